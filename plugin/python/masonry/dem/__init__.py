@@ -1,0 +1,15 @@
+"""Rocking masonry blocks in YADE: importing this module registers the plugin's classes in the running YADE.
+
+    from masonry import dem
+    stone = dem.BlockMat(density=2000, frictionAngle=0.6, restitution=0.7)
+
+The classes also appear in the module `yade`, so that `from yade import *` brings them in, and a saved simulation that
+holds them can be loaded once this module is imported.
+"""
+
+from masonry.dem._load import load_classes as _load_classes
+
+# Bound by name here: BlockMat, ...
+globals().update(_load_classes())
+
+# Helpers that build and read scenes: each in a file of its own in this folder, imported from here.

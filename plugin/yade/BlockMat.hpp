@@ -1,0 +1,27 @@
+#pragma once
+
+#include <pkg/common/ElastMat.hpp>
+
+namespace yade {
+
+/// Material of a rocking block. NaN stands for "not given"; who reads the attribute states what is then used.
+class BlockMat : public FrictMat {
+public:
+	/// Throws std::invalid_argument naming attribute, value and allowed range.
+	void postLoad(BlockMat&);
+
+	// clang-format off
+	YADE_CLASS_BASE_DOC_ATTRS_CTOR(BlockMat, FrictMat,
+		"Material of a block that rocks: friction, a rocking restitution and, for compliant joints, stiffness per area.",
+		((Real, restitution, NaN, Attr::triggerPostLoad, "Rocking restitution: angular velocity after / before an impact, 0 to 1. NaN (default): the natural restitution of the block, 1 - 1.5 sin^2(critical angle)."))
+		((Real, normalStiffness, NaN, Attr::triggerPostLoad, "Normal stiffness of a joint per unit of area [Pa/m], positive. NaN (default): chosen by dem.engines()."))
+		((Real, shearStiffness, NaN, Attr::triggerPostLoad, "Shear stiffness of a joint per unit of area [Pa/m], positive. NaN (default): chosen by dem.engines()."))
+		((bool, noSlip, false, , "The contact never slips, whatever the friction angle: the hypothesis of closed-form rocking.")),
+		createIndex();
+	);
+	// clang-format on
+	REGISTER_CLASS_INDEX(BlockMat, FrictMat);
+};
+REGISTER_SERIALIZABLE(BlockMat);
+
+} // namespace yade
