@@ -57,13 +57,19 @@ class LawFunctor
 	}
 };
 
-class BoundDispatcher : public Dispatcher {
+/// The matrix of functors by class index; a base without virtual functions in YADE.
+struct alignas(8) DispatchTable {
+	unsigned char undeclared[48];
+};
+
+// The dispatchers are read, never derived from: not all of their virtual functions are declared.
+class BoundDispatcher final : public Dispatcher {
 	YADE_ABI_CLASS(BoundDispatcher)
 	bool isActivated() override;
 	void action() override;
 	void pyHandleCustomCtorArgs(boost::python::tuple& args, boost::python::dict& keywords) override;
 
-	bool updateScene;
+	DispatchTable table;
 	vector<shared_ptr<BoundFunctor>> functors;
 	bool activated;
 	Real sweepDist;
@@ -72,28 +78,31 @@ class BoundDispatcher : public Dispatcher {
 	Real targetInterv;
 };
 
-class IGeomDispatcher : public Dispatcher {
+class IGeomDispatcher final : public Dispatcher {
 	YADE_ABI_CLASS(IGeomDispatcher)
 	void action() override;
 	void pyHandleCustomCtorArgs(boost::python::tuple& args, boost::python::dict& keywords) override;
 
+	DispatchTable table;
 	bool alreadyWarned;
 	vector<shared_ptr<IGeomFunctor>> functors;
 };
 
-class IPhysDispatcher : public Dispatcher {
+class IPhysDispatcher final : public Dispatcher {
 	YADE_ABI_CLASS(IPhysDispatcher)
 	void action() override;
 	void pyHandleCustomCtorArgs(boost::python::tuple& args, boost::python::dict& keywords) override;
 
+	DispatchTable table;
 	vector<shared_ptr<IPhysFunctor>> functors;
 };
 
-class LawDispatcher : public Dispatcher {
+class LawDispatcher final : public Dispatcher {
 	YADE_ABI_CLASS(LawDispatcher)
 	void action() override;
 	void pyHandleCustomCtorArgs(boost::python::tuple& args, boost::python::dict& keywords) override;
 
+	DispatchTable table;
 	vector<shared_ptr<LawFunctor>> functors;
 };
 
