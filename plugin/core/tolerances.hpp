@@ -4,4 +4,39 @@
 
 namespace masonry::tolerance {
 
+// --- impulses at one instant (impact/) ---
+// Relative pivot below which a contact row counts as redundant. Larger: real rows are dropped; smaller: round-off of
+// redundant rows becomes impulses.
+constexpr double rank = 1e-10;
+// Residual of an impulse problem relative to the largest approach speed. Larger: corners penetrate after an impact.
+constexpr double impulse = 1e-11;
+// Gain of kinetic energy relative to the kinetic energy before an impact that is round-off, not physics. Smaller: the
+// energy cap acts on C = 1 impacts that only round off.
+constexpr double energyGain = 1e-12;
+// Length of the old support relative to its distance from the new one above which it is an edge, not a corner.
+constexpr double pivotEdge = 1e-6;
+
+// --- compliant joints (dynamics/) ---
+// Least area that the stiffness of a joint is taken from, relative to the smaller face. A sliver of overlap, an edge or a
+// corner gets the stiffness of this share of the face; smaller: corners sink in.
+constexpr double leastPatchArea = 0.1;
+// Points that close within this distance of each other, relative to the size of the joint, close at one instant. A model
+// parameter: which corner of a nearly flat landing comes first is decided by it.
+constexpr double mergedClosing = 1e-6;
+// A rocking impact slower than this share of sqrt(g/R) ends the rocking (the Zeno end). Larger: the last, smallest
+// half cycles are lost; peaks above it do not change.
+constexpr double restSpeed = 1e-4;
+// Speed relative to a jump of the base above which a point parts from its support at the jump; below it is round-off.
+constexpr double parting = 1e-9;
+// |cos| of the angle between a joint's normal and gravity below which the joint stands upright (a head joint): it then
+// forms a joint of its own instead of being grouped with the others under its block.
+constexpr double uprightJoint = 0.1;
+
+// --- exact history of one block (rocking/) ---
+// A rocking impact slower than this share of sqrt(g/R) ends the rocking (infinitely many impacts in finite time follow).
+// Peaks lost are below 1e-16 lambda rad; larger: a block that is lifted again during its last hops starts with an error.
+constexpr double zenoSpeed = 1e-8;
+// An impact and a pulse closer than this share of the time elapsed (at least 1/p) happen at one instant, the impact first.
+constexpr double oneInstant = 1e-12;
+
 } // namespace masonry::tolerance

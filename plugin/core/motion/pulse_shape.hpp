@@ -1,0 +1,29 @@
+#pragma once
+// A base pulse of unit velocity jump: how the jump is spread over its duration.
+//
+//   dirac        all at t = 0
+//   rectangular  constant acceleration 1/T
+//   half-sine    acceleration (pi/2T) sin(pi t/T)
+//
+// All three are symmetric, so at the end of the pulse the base has moved by half its duration (times the jump).
+
+#include <string>
+
+namespace masonry {
+
+enum class PulseShape { Dirac, Rectangular, HalfSine };
+
+// "dirac", "rectangular" or "half-sine"; anything else: std::invalid_argument.
+PulseShape pulseShapeFromName(const std::string& name);
+
+// One pulse of velocity jump 1 m/s that starts at t = 0. Multiply by the jump wanted.
+struct UnitPulse {
+	PulseShape shape { PulseShape::Dirac };
+	double     duration { 0 }; // s; > 0 for the finite shapes, not used by dirac
+
+	double acceleration(double t) const; // 1/s; 0 for dirac, whose acceleration is no function
+	double velocity(double t) const;     // fraction of the jump reached: 0 before, 1 after
+	double displacement(double t) const; // s; integral of velocity
+};
+
+} // namespace masonry

@@ -1,0 +1,75 @@
+#pragma once
+// Exact history of one block: free rocking, base pulses, any base motion, three restoring moments.
+//
+// Signs: the angle is positive when the block is tilted towards +x (about its +x edge); a base acceleration towards +x tips
+// it towards -x. An impact multiplies the angular velocity by the restitution C. A block at rest starts to rock when the
+// base acceleration exceeds RockingLaw::upliftAcceleration(), or by any velocity jump of the base. A pulse at the instant of
+// an impact acts after it.
+//
+// Free half cycles are closed forms; half cycles under acceleration, or with a pulse in flight, are Taylor steps that end
+// at every kink of the motion, the impact being the root of the solution itself.
+
+#include "motion/base_motion.hpp"
+#include "rocking/restoring.hpp"
+#include "rocking/taylor_step.hpp"
+#include <limits>
+#include <utility>
+#include <vector>
+
+namespace masonry {
+
+// Base velocity jumps +I at t = 0, then -2I, +2I, ..., each right after an impact (Casapulla and Maione). The jump at
+// impact number `halfCycles`, if that is >= 0, is the last: it is I and brings the base to rest.
+struct ResonantTrain {
+	double impulse;           // I, m/s
+	int    halfCycles { -1 }; // -1: without end
+};
+
+struct HistoryOptions {
+	double    restitution { 1 }; // C in [0, 1]
+	Restoring restoring { Restoring::Exact };
+	double    initialAngle { 0 };    // rad, in (-pi/2, pi/2)
+	double    initialVelocity { 0 }; // rad/s
+	// The run ends at endTime (s), after so many half cycles (impacts), at rest or overturned with no motion to come.
+	double endTime { std::numeric_limits<double>::infinity() };
+	int    halfCycles { std::numeric_limits<int>::max() };
+	bool   keepStates { false };  // needed by History::sample
+	bool   onlyOverturning { false }; // end as soon as it is certain whether the block overturns
+};
+
+class History {
+public:
+	std::vector<double> impactTimes;      // s
+	std::vector<double> impactVelocities; // rad/s, signed, just before the impact
+	// Largest angle of each half cycle, signed, and its time; a block released from rest starts at its first peak. The last
+	// half cycle is listed if its peak has been passed when the run ends; one in which the block overturns is not.
+	std::vector<double> peakAngles; // rad
+	std::vector<double> peakTimes;  // s
+	int    overturnHalfCycle { 0 }; // the half cycle (1, 2, ...) in which the block overturns; 0: it does not
+	double restTime { std::numeric_limits<double>::quiet_NaN() }; // s, since when it is at rest at the end; NaN: it rocks
+	double endTime { 0 };                                         // s, infinite if nothing more will happen
+	BaseMotion motion;                                            // of the base; a resonant train is known afterwards only
+
+	bool overturned() const { return overturnHalfCycle > 0; }
+	// Displacement of the base (m) at the end of the run, or after the motion if the run has no end.
+	double baseDisplacement() const;
+	// Signed angle (rad) and angular velocity (rad/s) at time t >= 0; NaN after endTime and once the block lies on its side.
+	std::pair<double, double> sample(double t) const;
+
+private:
+	friend class HistoryRun;
+	struct Knot {
+		double       time;
+		RockingState state;
+	};
+	std::vector<Knot>       knots_;
+	std::vector<RockingLaw> law_; // one
+};
+
+// std::invalid_argument: restitution outside [0, 1], angle outside (-pi/2, pi/2), anything not finite, or a run without end
+// (no endTime and no halfCycles, while the pulses never end, or C = 1).
+// std::runtime_error: more than a million impacts.
+History simulate(const RockingBlock&, const BaseMotion&, const HistoryOptions&);
+History simulate(const RockingBlock&, const ResonantTrain&, const HistoryOptions&);
+
+} // namespace masonry

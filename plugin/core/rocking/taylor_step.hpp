@@ -1,0 +1,39 @@
+#pragma once
+// One step of the rocking block under base motion: the Taylor polynomial of u(t), by recurrence to the order at which its
+// terms drop below round-off. The polynomial is the solution inside the step, so events are its roots.
+
+#include "motion/base_motion.hpp"
+#include "rocking/restoring.hpp"
+#include <array>
+
+namespace masonry {
+
+// State of a block that rocks about one edge.
+struct RockingState {
+	int    side { 0 };     // +1: tilted towards +x, -1: towards -x, 0: at rest
+	double angle { 0 };    // u >= 0, rad
+	double velocity { 0 }; // u', rad/s
+};
+
+class TaylorStep {
+public:
+	// Expands about time t, valid for at most `longest` seconds (finite). No kink of the motion may lie inside.
+	TaylorStep(const RockingLaw&, const RockingState&, const BaseMotion::Piece&, double t, double longest);
+
+	double length() const { return length_; } // s, <= longest: the polynomial is exact to round-off up to here
+	double angle(double s) const;             // u, s seconds after t
+	double velocity(double s) const;          // u'
+	double firstChange() const;               // sign of the motion just after t: u', or u'' where u' = 0, or u'''
+
+private:
+	static constexpr int highestOrder = 24;
+	using Series = std::array<double, highestOrder + 1>;
+
+	void   expand(const RockingLaw&, int side, const Series& acceleration, int accelerationTerms, double longest);
+	bool   convergesAt(int order, double s) const;
+	Series c_;
+	int    order_;
+	double length_;
+};
+
+} // namespace masonry

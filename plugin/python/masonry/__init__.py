@@ -1,0 +1,16 @@
+"""Exact theory of the rocking masonry block: closed form, histories under any base motion, overturning thresholds.
+
+Needs NumPy only; `from masonry import dem` adds the simulated blocks inside YADE. SI units, angles in radians. Sizes,
+restitutions and motion parameters may be NumPy arrays that broadcast against each other; bad input raises ValueError.
+
+Signs: an angle is positive when the block is tilted towards +x; a base acceleration towards +x tips it towards -x.
+"""
+
+from . import closed_form
+from .block import RockingBlock
+from .history import History, simulate
+from .motions import HalfSine, PulseTrain, Record, Rectangular, Sine
+from .overturning import overturning_amplitude
+
+__all__ = ["HalfSine", "History", "PulseTrain", "Record", "Rectangular", "RockingBlock", "Sine", "closed_form",
+           "overturning_amplitude", "simulate"]

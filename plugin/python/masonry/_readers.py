@@ -1,0 +1,52 @@
+"""Files of accelerograms. Each reader says what it expected when it cannot read a file."""
+
+import re
+
+import numpy as np
+
+# "stuck" negatives (1.2-3.4) are two numbers; an exponent sign is not a separator
+_NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][-+]?\d+)?")
+
+
+def read_at2(path):
+    """(title, dt, samples in g) of a PEER NGA file: title in line 2, unit in line 3, NPTS and DT in line 4, in either order
+    (NPTS= 4000, DT= .0050 SEC; older files: 4000 .0050 NPTS, DT)."""
+    with open(path, encoding="latin-1") as file:
+        header = [file.readline().strip() for _ in range(4)]
+        body = file.read()
+    if not re.search(r"\bG\b", header[2].upper()):
+        raise ValueError(f"{path}: line 3 is {header[2]!r}: must state ACCELERATION in units of G")
+    labelled = re.search(r"NPTS\s*=\s*(\d+).*?DT\s*=\s*([\d.eE+-]+)", header[3], re.IGNORECASE)
+    counted = labelled or re.match(r"\s*(\d+)\s+([\d.eE+-]+)\s+NPTS", header[3], re.IGNORECASE)
+    if not counted:
+        raise ValueError(f"{path}: line 4 is {header[3]!r}: must give NPTS and DT")
+    samples = np.array([float(number.replace("D", "E").replace("d", "e")) for number in _NUMBER.findall(body)])
+    if len(samples) != int(counted[1]):
+        raise ValueError(f"{path}: {len(samples)} values: must be NPTS = {counted[1]}")
+    return header[1], float(counted[2]), samples
+
+
+def read_csv(path, unit, dt=None, gravity=9.80665):
+    """(dt, samples in m/s^2) of a text file with comma or blank separated columns; lines starting with # and a first line of
+    words are skipped. Two columns are time and acceleration, equally spaced; one column needs dt."""
+    factors = {"m/s^2": 1.0, "cm/s^2": 1e-2, "mm/s^2": 1e-3, "g": gravity}
+    if unit not in factors:
+        raise ValueError(f"unit = {unit!r}: must be one of {', '.join(factors)}")
+    with open(path, encoding="utf-8") as file:
+        lines = [line.replace(",", " ").split() for line in file if line.strip() and not line.startswith("#")]
+    if lines and not _NUMBER.fullmatch(lines[0][0]):
+        lines = lines[1:]
+    table = np.array(lines, dtype=float)
+    if table.ndim != 2 or table.shape[1] not in (1, 2) or len(table) < 2:
+        raise ValueError(f"{path}: table of shape {table.shape}: must have one or two columns and at least two rows")
+    if table.shape[1] == 1:
+        if dt is None:
+            raise ValueError(f"{path}: dt = None: must be given (s) for a file of one column")
+        return float(dt), factors[unit] * table[:, 0]
+    time = table[:, 0]
+    step = (time[-1] - time[0]) / (len(time) - 1)
+    if not np.allclose(np.diff(time), step, rtol=1e-3, atol=0):
+        raise ValueError(f"{path}: steps of time from {np.diff(time).min()} to {np.diff(time).max()} s: must be equal to 1 in 1000")
+    if dt is not None and abs(dt / step - 1) > 1e-3:
+        raise ValueError(f"dt = {dt}: must be the step of the file, {step} s")
+    return step, factors[unit] * table[:, 1]

@@ -1,0 +1,33 @@
+"""The rocking block."""
+
+from . import _core
+from ._arrays import columns, restore, shape_of
+
+
+class RockingBlock:
+    """Rigid rectangular block(s) on a rigid base, rocking about the two lower edges without sliding.
+
+    half_width (b), half_height (a) in m and gravity in m/s^2, each > 0, scalars or arrays that broadcast.
+
+    slenderness           lambda = a/b
+    radius                R = sqrt(a^2 + b^2), m
+    critical_angle        alpha = atan(b/a), rad
+    frequency_parameter   p = sqrt(3 g/(4 R)), rad/s
+    angular_acceleration  A = 3 g b/(4 R^2), rad/s^2: what gravity does to the block at angle 0 (Eq. 2)
+    natural_restitution   1 - 1.5 sin^2(alpha): angular velocity ratio of a plastic impact on the new edge; 0 where that is
+                          negative (slenderness below 1/sqrt(2)): the block stops
+    """
+
+    def __init__(self, half_width, half_height, gravity=9.81):
+        self.half_width = half_width
+        self.half_height = half_height
+        self.gravity = gravity
+        self.shape = shape_of(half_width, half_height, gravity)
+        (self.slenderness, self.radius, self.critical_angle, self.frequency_parameter, self.angular_acceleration,
+         self.natural_restitution) = (restore(value, self.shape) for value in _core.block_properties(self._columns(self.shape)))
+
+    def _columns(self, shape):
+        return columns(shape, self.half_width, self.half_height, self.gravity)
+
+    def __repr__(self):
+        return f"RockingBlock(half_width={self.half_width}, half_height={self.half_height}, gravity={self.gravity})"

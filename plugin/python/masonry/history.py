@@ -1,0 +1,67 @@
+"""Exact histories of rocking blocks."""
+
+import numpy as np
+
+from . import _core
+from ._arrays import columns, restore, shape_of
+from .motions import Still
+
+
+class History:
+    """What happened to the block(s). Scalar input: 1-D arrays and scalars. Array input: the cases' shape comes first, and the
+    last axis is filled up with NaN. Angles and angular velocities are signed.
+
+    impact_times         s
+    impact_velocities    angular velocity just before each impact, rad/s
+    peak_angles          largest angle of each half cycle, rad; a block released from rest starts at its first peak
+    peak_times           s
+    overturned           bool
+    overturn_half_cycle  the half cycle 1, 2, ... in which it overturns; 0: it does not
+    rest_time            s, since when it has been at rest; NaN: it was rocking (or had overturned) when the run ended
+    end_time             s; infinite: nothing more will happen
+    base_displacement    of the base at the end of the run, m
+    """
+
+    def __init__(self, shape, arguments, result):
+        self.shape = shape
+        self._arguments = arguments
+        for name, value in result.items():
+            setattr(self, name, restore(value, shape))
+        self.overturned = self.overturn_half_cycle > 0
+
+    def _sample(self, t):
+        return [restore(table.reshape((-1,) + np.shape(t)), self.shape)
+                for table in _core.sample(*self._arguments, np.ravel(np.asarray(t, dtype=float)))]
+
+    def sample(self, t):
+        """(angle, angular velocity) at times t >= 0 (s): shape of the cases, then shape of t. NaN after end_time and once the
+        block lies on its side. The run is repeated for it, so ask for many times at once."""
+        angle, velocity, _ = self._sample(t)
+        return angle, velocity
+
+    def sample_base(self, t):
+        """Displacement of the base at times t, m; of a resonant train too."""
+        return self._sample(t)[2]
+
+
+def _arguments(block, motion, restitution, restoring, initial_angle, initial_velocity, t_end, half_cycles):
+    """(shape of the cases, arguments of the compiled functions)"""
+    motion = Still() if motion is None else motion
+    restitution = block.natural_restitution if restitution is None else restitution
+    t_end = np.inf if t_end is None else t_end
+    if half_cycles is not None and half_cycles < 1:
+        raise ValueError(f"half_cycles = {half_cycles}: must be >= 1")
+    shape = np.broadcast_shapes(block.shape, motion.shape, shape_of(restitution, initial_angle, initial_velocity, t_end))
+    state = columns(shape, restitution, initial_angle, initial_velocity, t_end)
+    return shape, (block._columns(shape), motion._motions(shape), state, restoring, -1 if half_cycles is None else int(half_cycles))
+
+
+def simulate(block, motion=None, restitution=None, restoring="exact", initial_angle=0.0, initial_velocity=0.0, t_end=None, half_cycles=None):
+    """History of the block(s) from the given state under the motion of the base; all arguments but the names broadcast.
+
+    restitution: C in [0, 1]; None: the block's natural one. restoring: 'exact' (gravity as it is), 'linear' (Housner), 'constant'
+    (Casapulla and Maione). The run ends at t_end (s), after so many half_cycles, or when the motion is over and the block at rest
+    or overturned. A block is overturned when it cannot come back (free), lies on its side (moved base), or has reached the
+    critical angle (constant moment)."""
+    shape, arguments = _arguments(block, motion, restitution, restoring, initial_angle, initial_velocity, t_end, half_cycles)
+    return History(shape, arguments, _core.simulate(*arguments))

@@ -1,0 +1,155 @@
+"""Base motions: along x, exact at any time. Amplitudes, impulses and durations may be arrays (one motion a case).
+
+Every motion with a known course has .acceleration(t), .velocity(t), .displacement(t) (m/s^2, m/s, m; values right of a jump).
+"""
+
+import numpy as np
+
+from . import _core
+from ._arrays import columns, restore, shape_of
+from ._readers import read_at2, read_csv
+
+
+class Motion:
+    """Base class. A motion of one amplitude can be scaled: .amplitude, and .scaled(factor)."""
+
+    shape = ()
+
+    def _motions(self, shape):
+        """The compiled motions, one a case of that shape (or one for all)."""
+        raise NotImplementedError
+
+    def _values(self, t, which):
+        table = self._motions(self.shape).values(np.ravel(np.asarray(t, dtype=float)))[which]
+        return restore(table.reshape((-1,) + np.shape(t)), self.shape)
+
+    def acceleration(self, t):
+        return self._values(t, 0)
+
+    def velocity(self, t):
+        return self._values(t, 1)
+
+    def displacement(self, t):
+        return self._values(t, 2)
+
+
+class Still(Motion):
+    """A base that does not move."""
+
+    def _motions(self, shape):
+        return _core.none()
+
+
+class PulseTrain(Motion):
+    """Jumps of the base velocity: +I, -2I, +2I, ... (m/s), so that the base moves at +I, -I, +I, ...
+
+    times=None     resonant: the first at t = 0, each other right after an impact of the block. With half_cycles=n the jump
+                   after impact n is I and brings the base to rest; without, the train has no end.
+    times=[...]    at these times (s, increasing); with assembly=True the last jump is I and brings the base to rest.
+                   shape: 'dirac', or 'rectangular' or 'half-sine' with a duration (s).
+    """
+
+    def __init__(self, impulse, times=None, half_cycles=None, assembly=False, shape="dirac", duration=0.0):
+        if half_cycles is not None and (times is not None or half_cycles < 0):
+            raise ValueError(f"half_cycles = {half_cycles}: must be >= 0, and only for a resonant train (times=None)")
+        if times is None and (assembly or shape != "dirac"):
+            raise ValueError(f"shape = {shape!r}, assembly = {assembly}: a resonant train (times=None) has dirac pulses; give half_cycles "
+                             "to bring the base to rest")
+        self.impulse = self.amplitude = impulse
+        self.times = None if times is None else np.atleast_1d(np.asarray(times, dtype=float))
+        self.half_cycles, self.assembly = half_cycles, assembly
+        self.pulse_shape, self.duration = shape, duration
+        self.shape = np.shape(impulse)
+        if self.times is not None:
+            self.velocity(0.0)  # refuses bad input here
+
+    def scaled(self, factor):
+        return PulseTrain(np.multiply(self.impulse, factor), self.times, self.half_cycles, self.assembly, self.pulse_shape, self.duration)
+
+    def _motions(self, shape):
+        impulse, = columns(shape, self.impulse)
+        if self.times is None:
+            return _core.resonant(impulse, -1 if self.half_cycles is None else int(self.half_cycles))
+        return _core.pulses(impulse, self.times, self.assembly, self.pulse_shape, float(self.duration))
+
+
+class _Shaped(Motion):
+    """A motion of a few numbers, the first of which is the amplitude."""
+
+    def __init__(self, maker, **parameters):
+        self._maker, self._parameters = maker, parameters
+        self.__dict__.update(parameters)
+        self.shape = shape_of(*parameters.values())
+        self.acceleration(0.0)  # refuses bad input here
+
+    def scaled(self, factor):
+        return type(self)(**{**self._parameters, "amplitude": np.multiply(self.amplitude, factor)})
+
+    def _motions(self, shape):
+        return self._maker(*columns(shape, *self._parameters.values()))
+
+    def __repr__(self):
+        return f"{type(self).__name__}({', '.join(f'{name}={value}' for name, value in self._parameters.items())})"
+
+
+class Rectangular(_Shaped):
+    """Constant acceleration `amplitude` (m/s^2) for `duration` (s)."""
+
+    def __init__(self, amplitude, duration):
+        super().__init__(_core.rectangular, amplitude=amplitude, duration=duration)
+
+
+class HalfSine(_Shaped):
+    """Acceleration amplitude sin(pi t/duration) for `duration` (s)."""
+
+    def __init__(self, amplitude, duration):
+        super().__init__(_core.half_sine, amplitude=amplitude, duration=duration)
+
+
+class Sine(_Shaped):
+    """Acceleration amplitude sin(2 pi frequency t), frequency in Hz, for `cycles` (> 0, need not be whole)."""
+
+    def __init__(self, amplitude, frequency, cycles=1):
+        super().__init__(_core.sine, amplitude=amplitude, frequency=frequency, cycles=cycles)
+
+
+class Record(Motion):
+    """Accelerogram: samples (m/s^2) `dt` (s) apart, the first at t = 0, linear between them, zero after the last. Velocity and
+    displacement are its exact integrals. `scale` may be an array: one case each.
+
+    baseline: 'none'; 'constant': the mean acceleration is subtracted, so that the last velocity is zero; 'linear': the slope
+    of the straight line through the origin that fits the velocity best (least squares) is subtracted.
+    """
+
+    def __init__(self, dt, acceleration, scale=1.0, baseline="none", name="", source="", unit="m/s^2"):
+        self.dt = float(dt)
+        self.samples = np.ascontiguousarray(acceleration, dtype=float)
+        self.scale = self.amplitude = scale
+        self.baseline = baseline
+        self.name, self.source, self.unit = name, source, unit
+        self.shape = np.shape(scale)
+        self.velocity(0.0)  # refuses bad input here
+
+    @property
+    def duration(self):
+        """Time of the last sample, s."""
+        return self.dt * (len(self.samples) - 1)
+
+    def scaled(self, factor):
+        return Record(self.dt, self.samples, np.multiply(self.scale, factor), self.baseline, self.name, self.source, self.unit)
+
+    def _motions(self, shape):
+        scale, = columns(shape if np.ndim(self.scale) else (), self.scale)
+        return _core.record(self.dt, self.samples, scale, self.baseline)
+
+    @classmethod
+    def from_at2(cls, path, scale=1.0, baseline="none", gravity=9.80665):
+        """PEER NGA file (.AT2), accelerations in units of `gravity` (m/s^2)."""
+        name, dt, samples = read_at2(path)
+        return cls(dt, gravity * samples, scale, baseline, name=name, source=str(path), unit="g")
+
+    @classmethod
+    def from_csv(cls, path, unit, dt=None, scale=1.0, baseline="none", gravity=9.80665):
+        """Columns time, acceleration; or one column of acceleration with `dt` (s). unit: 'm/s^2', 'cm/s^2', 'mm/s^2' or 'g'."""
+        dt, samples = read_csv(path, unit, dt, gravity)
+        return cls(dt, samples, scale, baseline, name=str(path), source=str(path), unit=unit)

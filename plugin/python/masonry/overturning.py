@@ -1,0 +1,53 @@
+"""Amplitudes at which a block begins, or ceases, to overturn."""
+
+import numpy as np
+
+from . import _core
+from .history import _arguments
+from .motions import PulseTrain, Record
+
+
+def overturning_amplitude(block, shape, restitution=None, restoring="exact", bracket=None, samples=400, half_cycles=None, initial_angle=0.0,
+                          initial_velocity=0.0):
+    """All thresholds found in a bracket, in rising order: the block stands below the first, overturns between the first and the
+    second, stands between the second and the third ... (the other way round if it overturns at the lower end).
+
+    block          one block
+    shape          a motion; its amplitude (impulse of a PulseTrain, scale of a Record) is what is varied and returned
+    bracket        (lower, upper) of that amplitude, lower >= 0. None: from half the amplitude that lifts the block to 40 times
+                   that (acceleration), or 0.01 to 2 times the single velocity jump that overturns (PulseTrain)
+    samples        the bracket is scanned at so many equally spaced amplitudes, and every change is bisected to 1e-12 relative:
+                   a window narrower than (upper - lower)/(samples - 1) can be missed
+    half_cycles    for a resonant train without end: how many to wait for; None: 200
+    """
+    unit = shape.scaled(1 / shape.amplitude)
+    lower, upper = _default_bracket(block, unit) if bracket is None else bracket
+    if not 0 <= lower < upper < np.inf:
+        raise ValueError(f"bracket = ({lower}, {upper}): must be 0 <= lower < upper, finite")
+    if samples < 2:
+        raise ValueError(f"samples = {samples}: must be >= 2")
+    endless = isinstance(shape, PulseTrain) and shape.times is None and shape.half_cycles is None
+    half_cycles = 200 if endless and half_cycles is None else half_cycles
+
+    def overturns(amplitudes):
+        _, arguments = _arguments(block, unit.scaled(amplitudes), restitution, restoring, initial_angle, initial_velocity, None, half_cycles)
+        return _core.overturns(*arguments).astype(bool)
+
+    scan = np.linspace(lower, upper, samples)
+    result = overturns(scan)
+    change = np.flatnonzero(result[1:] != result[:-1])
+    low, high, at_low = scan[change], scan[change + 1], result[change]
+    while np.any(high - low > 1e-12 * high):
+        middle = (low + high) / 2
+        same = overturns(middle) == at_low
+        low, high = np.where(same, middle, low), np.where(same, high, middle)
+    return (low + high) / 2
+
+
+def _default_bracket(block, unit):
+    if isinstance(unit, PulseTrain):
+        jump = block.gravity * np.sqrt(2 * (1 - np.cos(block.critical_angle))) / (block.frequency_parameter * np.cos(block.critical_angle))
+        return 0.01 * jump, 2 * jump
+    largest = np.abs(unit.samples).max() if isinstance(unit, Record) else 1.0
+    uplift = block.gravity / block.slenderness / largest
+    return 0.5 * uplift, 40 * uplift
