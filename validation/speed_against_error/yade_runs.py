@@ -1,0 +1,63 @@
+"""What the YADE scripts here share: one scene run at several settings, timed, its history written.
+
+Prints one line a run, as the C++ drivers do: solver,settings,time step,CPU seconds per simulated second,file.
+"""
+import math
+import sys
+import time
+
+import measures
+import numpy as np
+from yade import O, Quaternion, Vector3, utils
+from yade.wrapper import PyRunner
+
+SAMPLE = 5e-5  # s; histories are sampled at least this finely, or at every step
+FOLDER = sys.argv[1]
+_written = 0
+
+
+def start_pose():
+    """Position and orientation of the block on its edge x = +half width, turned by the start angle."""
+    c, s = math.cos(measures.START_ANGLE), math.sin(measures.START_ANGLE)
+    b, a = measures.HALF_WIDTH, measures.HALF_HEIGHT
+    return Vector3(b - b * c + a * s, 0, a * c + b * s), Quaternion((0, 1, 0), measures.START_ANGLE)
+
+
+def angle_about_y(turn):
+    return 2 * math.atan2(turn[1], turn[3])
+
+
+def measure(solver, settings, dt, create, cpu_limit=60.0):
+    """`create()` fills an empty scene (bodies and engines) and returns a function that gives the block's angle. The history is
+    recorded in one run and timed in another, which YADE's determinism on one thread allows. A run that would take more than
+    `cpu_limit` CPU seconds is cut short: what it shows by then is judged."""
+    global _written
+    O.reset()
+    create()
+    O.dt = dt
+    O.run(20, True)
+    start = time.process_time()
+    O.run(200, True)
+    per_step = (time.process_time() - start) / 200
+    steps = round(min(measures.DURATION / dt, cpu_limit / per_step))
+
+    O.reset()
+    create()
+    O.dt = dt
+    start = time.process_time()
+    O.run(steps, True)
+    cpu_per_second = (time.process_time() - start) / (steps * dt)
+
+    O.reset()
+    angle = create()
+    O.dt = dt
+    every = max(1, round(SAMPLE / dt))
+    history = [(0.0, angle())]
+    O.engines += [PyRunner(command="record()", iterPeriod=every, initRun=False)]
+    sys.modules["__main__"].record = lambda: history.append((O.time + dt, angle()))
+    O.run(steps, True)
+
+    file = f"{FOLDER}/{_written}.f64"
+    _written += 1
+    np.array(history).tofile(file)
+    print(f"{solver},{settings},{dt:.9g},{cpu_per_second:.4g},{file}", flush=True)
