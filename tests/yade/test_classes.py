@@ -1,0 +1,55 @@
+"""Every class of the plugin is a full citizen of YADE: found by name, made by keywords, copied, pickled."""
+
+import copy
+import importlib
+import pickle
+
+import yade
+from masonry import dem
+from yade import O
+
+import masonry._yade
+
+names = masonry._yade.setup()
+assert "BlockMat" in names and names == sorted(names)
+
+
+def same(a, b):
+    """Attribute by attribute, by what Python prints: objects count by class, NaN equals NaN."""
+
+    def shown(value):
+        return type(value).__name__ if hasattr(value, "dict") else repr(value)
+
+    a, b = a.dict(), b.dict()
+    return a.keys() == b.keys() and all(
+        [shown(x) for x in a[key]] == [shown(x) for x in b[key]] if isinstance(a[key], list) else shown(a[key]) == shown(b[key])
+        for key in a
+    )
+
+
+for name in names:
+    cls = getattr(dem, name)
+    assert getattr(yade, name) is cls and name in yade.__all__, name
+    assert cls.__doc__, f"{name} has no documentation"
+    base = cls.__mro__[1].__name__
+    assert name in yade.system.childClasses(base), (name, base)
+
+    plain = cls()
+    assert type(plain) is cls
+    assert same(plain, cls(**plain.dict())), f"{name}: keywords"
+    assert same(plain, pickle.loads(pickle.dumps(plain))), f"{name}: pickle"
+    assert same(plain, copy.copy(plain)), f"{name}: copy"
+    assert same(plain, copy.deepcopy(plain)), f"{name}: deep copy"
+    try:
+        cls(noSuchAttribute=1)
+    except AttributeError as error:
+        assert "noSuchAttribute" in str(error), error
+    else:
+        raise AssertionError(f"{name} took an attribute that it does not have")
+
+# Loading again changes nothing: neither the classes nor what is made of them.
+before = dem.BlockMat
+importlib.reload(dem)
+assert dem.BlockMat is before and masonry._yade.setup() == names
+O.materials.append(dem.BlockMat(label="stone"))
+assert O.materials["stone"].dispHierarchy() == ["BlockMat", "FrictMat", "ElastMat", "Material"]
