@@ -1,0 +1,64 @@
+#pragma once
+// The compliant joint between two blocks: springs, dashpots and Coulomb friction at the points of a contact patch.
+//
+// The joint has stiffness per area, normal k_n and shear k_s (N/m^3). Point i has the share w_i of the patch area A
+// (sum w_i = 1), so the total stiffness k A does not depend on the number of points:
+//
+//     N_i = max(0, k_n A w_i d_i + c_n w_i d_i'),   d_i = -gap_i,   N_i = 0 when d_i <= 0
+//     T_i = -(k_s A w_i s_i + c_s w_i u_t,i),       |T_i| <= mu N_i
+//
+// s_i is the elastic tangential displacement, which slips as far as Coulomb's bound asks; c = 2 zeta sqrt(k A m) with m the
+// reduced mass of the pair. A muted point carries no force (see pivot_handoff.hpp).
+#include "body.hpp"
+#include "contact/contact_patch.hpp"
+
+namespace masonry {
+
+struct JointLaw {
+	double normalStiffness { 0 }; // N/m^3
+	double shearStiffness { 0 };  // N/m^3
+	double dampingRatio { 0 };    // zeta, of the contact springs
+	double friction { 0 };        // mu, or noSlip
+	double restitution { 0 };     // C in [0, 1], or NaN: natural
+};
+
+struct JointPoint {
+	int     identity { -1 };
+	bool    muted { false };
+	Vector3 shear { Vector3::Zero() };      // s_i, of body 2 relative to body 1, m
+	double  normalForce { 0 };              // N_i on body 2 along the normal, N
+	Vector3 shearForce { Vector3::Zero() }; // T_i on body 2, N
+};
+
+struct JointEnergy {
+	double elastic { 0 };  // stored now, J
+	double friction { 0 }; // dissipated in this step, J
+	double damping { 0 };  // dissipated in this step, J
+};
+
+struct JointContact {
+	int                       body1 { -1 }, body2 { -1 };
+	ContactPatch              patch;
+	JointLaw                  law;
+	int                       size { 0 };
+	std::array<JointPoint, 8> points; // parallel to patch.points
+	JointEnergy               energy;
+
+	double  stiffnessArea() const;                               // m^2, what the stiffness per area is multiplied with
+	double  normalStiffness(int i) const { return law.normalStiffness * stiffnessArea() * patch.points[i].weight; }
+	double  shearStiffness(int i) const { return law.shearStiffness * stiffnessArea() * patch.points[i].weight; }
+	Vector3 position(int i) const { return 0.5 * (patch.points[i].position1 + patch.points[i].position2); }
+	Vector3 force(int i) const { return points[i].normalForce * patch.normal + points[i].shearForce; } // on body 2
+	bool    rocking() const;                                     // some point is muted
+};
+
+// Carries the points' state over to a new patch, by identity. A point without a past is muted when the joint rocks.
+void renewPatch(JointContact& contact, const ContactPatch& patch);
+
+// Forces and energies after a step dt that ended in the present patch, velocities those of that step.
+void updateForces(JointContact& contact, const Body& body1, const Body& body2, double dt);
+
+// Forces and stored energy of the present gaps and shears, nothing moved (after a hand-off has set them).
+void holdForces(JointContact& contact);
+
+} // namespace masonry

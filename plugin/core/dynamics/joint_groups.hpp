@@ -1,0 +1,48 @@
+#pragma once
+// Joints: which contact points belong to one joint, which of them are muted, which are about to close.
+#include "dynamics/pivot_handoff.hpp"
+#include "dynamics/rigid_acceleration.hpp"
+
+namespace masonry {
+
+struct PointRef {
+	int contact, point;
+};
+
+// All patches under one face of a block: the block above, seen along gravity; a joint that stands upright is its pair alone.
+struct Joint {
+	int                   block;
+	Vector3               normal; // from the supports to the block
+	std::vector<int>      contacts;
+	std::vector<PointRef> points;
+
+	bool has(int contact) const;
+};
+
+// The muted points of a joint that reach the rotation zero at one instant of the step.
+struct Closing {
+	std::vector<PointRef> points;
+	int                   support { -1 };     // body under the first of them
+	double                restitution { 0 };  // of their pair
+	double                before { 0 };       // tau: the instant lies this long before the end of the step, s
+	double                lever { 0 };        // distance of the closing points from the pivot, m
+	double                depth { 0 };        // compression of the pivot, m
+};
+
+std::vector<Joint> groupJoints(const JointSystem& system);
+
+// A joint whose loaded points are an edge or a corner rocks: its open points are muted. One without any load flies:
+// nothing is muted, so that it may land on any point.
+void muteOpenPoints(JointSystem& system, const Joint& joint);
+void unmuteInFlight(JointSystem& system, const Joint& joint);
+
+Closing findClosing(const JointSystem& system, const Joint& joint);
+
+// Bodies have moved from the poses in `before` to their present ones: points, gaps and shears follow.
+void moveContacts(JointSystem& system, const std::vector<Body>& before);
+
+// Gives the held points the compression and shear that carry their forces: bodies move along the normals (least motion,
+// weighted by mass), shears are set. Forces are updated.
+void settle(JointSystem& system, const std::vector<HeldPoint>& held);
+
+} // namespace masonry

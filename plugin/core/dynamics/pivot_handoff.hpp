@@ -1,0 +1,63 @@
+#pragma once
+// Pivot hand-off: what makes a compliant joint rock with the restitution it is given.
+//
+// A joint is every patch under one face of a block: the block rocks about a pivot (its loaded points) while its other
+// points are MUTED: they carry no force until the ROTATION of the block crosses zero, that is until their gap equals the
+// pivot's gap (both compressed alike). That instant t_c lies tau before the end of the step. There
+//   1. bodies go back to t_c (positions, and velocities by the rigid accelerations about the old pivot),
+//   2. the rocking restitution law is applied (impact/rocking_restitution.hpp),
+//   3. the closing points take over as pivot, with the compression and shear that carry the pivot forces of the new
+//      phase, so that no vibration of the springs is excited; the old pivot is muted,
+//   4. bodies return to the end of the step with the new velocities and the rigid accelerations about the new pivot.
+// The correction makes the error of order dt^2 although the impact falls inside the step.
+//
+// Accelerations are not taken from the spring forces, which are noisy, but from the rigid bodies with every loaded point
+// held (rigid_acceleration.hpp). Velocities are those of the leapfrog scheme, half a step before the positions.
+//
+// A base that jumps (a Dirac pulse) is handled by the same back-solve-forth, with all loaded points in one impulse problem.
+#include "dynamics/joint_contact.hpp"
+#include "impact/rocking_restitution.hpp"
+#include <vector>
+
+namespace masonry {
+
+enum class ImpactOrder {
+	simultaneous, // the closing joint and every loaded point elsewhere in one impulse problem
+	sequential    // the closing joint alone; its neighbours feel the changed velocities afterwards, through their springs
+};
+
+struct JointSystem {
+	std::vector<Body>         bodies;
+	std::vector<JointContact> contacts; // sorted by body pair: the order of every sum
+	Vector3                   gravity { Vector3::Zero() };
+	double                    dt { 0 };
+	ImpactOrder               order { ImpactOrder::simultaneous };
+};
+
+struct ImpactRecord {
+	int    block, support;      // indices into the list of bodies
+	double before;              // tau: how long before the end of the step, s
+	double restitutionAsked;    // C, NaN: natural
+	double speedBefore;         // relative angular velocity, rad/s
+	double speedAfter;
+	double energyLost;          // J
+	double application;         // distance of the resultant from the new pivot, m
+	double frictionDemand;      // |p_t|/p_n of the resultant
+	bool   switched;            // false: the joint came to rest
+	bool   capped;              // the energy cap acted
+	double residual;            // m/s
+};
+
+// Puts bodies at rest in their equilibrium: compressions and shears that carry the weight (or, for a block that is let
+// go from a tilt, the pivot forces of the first instant). For the first step of a simulation.
+void startAtEquilibrium(JointSystem& system);
+
+// Finds the joints whose rotation crossed zero in this step and hands their pivots over. Forces must be up to date.
+std::vector<ImpactRecord> handOffPivots(JointSystem& system);
+
+// The prescribed bodies listed change their velocity by `jump` at the instant `before` seconds ago. Their own state is set
+// by the caller afterwards; everything that stands on them responds here.
+// Returns the work done on the system by the jump, J.
+double applyBaseJump(JointSystem& system, const std::vector<int>& moved, const Vector3& jump, double before);
+
+} // namespace masonry

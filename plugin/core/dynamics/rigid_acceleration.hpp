@@ -1,0 +1,36 @@
+#pragma once
+// Accelerations of rigid bodies whose loaded points are held: neither do they part nor slip beyond friction.
+//
+// For a point with arms r1, r2 the relative acceleration is
+//     (a2 + alpha2 x r2) - (a1 + alpha1 x r1) + w2 x (w2 x r2) - w1 x (w1 x r1),
+// so the accelerations solve the impulse problem (impact/impulse_problem.hpp) in which "velocity" means acceleration, the
+// free values are external force / mass (with the gyroscopic moment) and the last two terms are the points' bias. The
+// "impulses" are then the forces at the points.
+#include "dynamics/joint_contact.hpp"
+#include <vector>
+
+namespace masonry {
+
+struct HeldPoint {
+	int     contact, point; // indices
+	Vector3 force;          // on body 2, N
+};
+
+struct RigidAcceleration {
+	std::vector<Vector3>   linear, angular; // per body, m/s^2 and rad/s^2
+	std::vector<HeldPoint> points;
+};
+
+// `held(contact, point)` selects the points.
+template <class Held> std::vector<HeldPoint> selectPoints(const std::vector<JointContact>& contacts, Held held)
+{
+	std::vector<HeldPoint> result;
+	for (size_t c = 0; c < contacts.size(); ++c)
+		for (int i = 0; i < contacts[c].size; ++i)
+			if (held(contacts[c], i)) result.push_back({ int(c), i, Vector3::Zero() });
+	return result;
+}
+
+RigidAcceleration rigidAcceleration(const std::vector<Body>& bodies, const std::vector<JointContact>& contacts, std::vector<HeldPoint> points);
+
+} // namespace masonry

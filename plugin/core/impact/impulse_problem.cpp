@@ -1,0 +1,250 @@
+#include "impact/impulse_problem.hpp"
+#include "tolerances.hpp"
+#include <Eigen/QR>
+#include <cmath>
+
+namespace masonry {
+
+namespace {
+
+	using Matrix = Eigen::MatrixXd;
+	using Vector = Eigen::VectorXd;
+
+	enum class State { open, stick, slip };
+
+	// Rows: three a point (normal, two tangents), then one a couple, each couple multiplied by a length so that all rows
+	// are velocities. u = G p + free, G = J M^-1 J^T.
+	struct System {
+		Matrix              J, G;
+		Vector              free, p;
+		int                 nPoints, nCouples;
+		double              length; // of the couple rows, m
+		std::vector<State>  states;
+		Matrix              slipDirection; // column i: unit vector of p_t of point i while it slips
+		std::vector<double> friction;
+
+		Vector velocity() const { return G * p + free; }
+	};
+
+	// Rows: the normal and two tangents.
+	Matrix3 frame(const Vector3& normal)
+	{
+		int smallest;
+		normal.cwiseAbs().minCoeff(&smallest);
+		Matrix3 axes;
+		axes.row(0) = normal;
+		axes.row(1) = normal.cross(Vector3(Vector3::Unit(smallest))).normalized();
+		axes.row(2) = normal.cross(Vector3(axes.row(1)));
+		return axes;
+	}
+
+	Matrix jacobian(const std::vector<Body>& bodies, const std::vector<ImpulsePoint>& points, const std::vector<CoupleRow>& couples, double length)
+	{
+		Matrix J = Matrix::Zero(3 * points.size() + couples.size(), 6 * bodies.size());
+		int    row = 0;
+		for (const auto& point : points) {
+			const Matrix3 axes = frame(point.normal);
+			for (int k = 0; k < 3; ++k) {
+				const Vector3 axis = axes.row(k);
+				for (int side = 0; side < 2; ++side) {
+					const int    body = side ? point.body2 : point.body1;
+					const double sign = side ? 1 : -1;
+					J.block<1, 3>(row, 6 * body) = sign * axis.transpose();
+					J.block<1, 3>(row, 6 * body + 3) = sign * (point.position - bodies[body].pose.position).cross(axis).transpose();
+				}
+				++row;
+			}
+		}
+		for (const auto& couple : couples) {
+			J.block<1, 3>(row, 6 * couple.body1 + 3) = -length * couple.axis.transpose();
+			J.block<1, 3>(row, 6 * couple.body2 + 3) = length * couple.axis.transpose();
+			++row;
+		}
+		return J;
+	}
+
+	Matrix inverseMassTimes(const std::vector<Body>& bodies, const Matrix& transposedJacobian)
+	{
+		Matrix result(transposedJacobian.rows(), transposedJacobian.cols());
+		for (size_t i = 0; i < bodies.size(); ++i) {
+			result.middleRows<3>(6 * i) = bodies[i].inverseMass() * transposedJacobian.middleRows<3>(6 * i);
+			result.middleRows<3>(6 * i + 3) = bodies[i].inverseInertia() * transposedJacobian.middleRows<3>(6 * i + 3);
+		}
+		return result;
+	}
+
+	// Least-norm solution for the present states. The map S takes the unknowns (three for a sticking point, the normal
+	// impulse for a slipping one, one for a couple) to all impulses; the equations are the velocities that must vanish.
+	void solveForStates(System& s)
+	{
+		std::vector<int> equations;
+		std::vector<Vector> columns;
+		const auto unit = [&](int row) { return Vector(Vector::Unit(s.p.size(), row)); };
+		for (int i = 0; i < s.nPoints; ++i) {
+			if (s.states[i] == State::open) continue;
+			equations.push_back(3 * i);
+			Vector normal = unit(3 * i);
+			if (s.states[i] == State::slip) normal.segment<2>(3 * i + 1) = s.friction[i] * s.slipDirection.col(i);
+			columns.push_back(normal);
+			if (s.states[i] == State::stick)
+				for (int t : { 3 * i + 1, 3 * i + 2 }) {
+					equations.push_back(t);
+					columns.push_back(unit(t));
+				}
+		}
+		for (int c = 0; c < s.nCouples; ++c) {
+			equations.push_back(3 * s.nPoints + c);
+			columns.push_back(unit(equations.back()));
+		}
+		s.p.setZero();
+		if (equations.empty()) return;
+		Matrix S(s.p.size(), columns.size());
+		for (size_t k = 0; k < columns.size(); ++k)
+			S.col(k) = columns[k];
+		const Matrix GS = s.G * S;
+		Matrix       A(equations.size(), columns.size());
+		Vector       b(equations.size());
+		for (size_t k = 0; k < equations.size(); ++k) {
+			A.row(k) = GS.row(equations[k]);
+			b[k] = -s.free[equations[k]];
+		}
+		Eigen::CompleteOrthogonalDecomposition<Matrix> decomposition;
+		decomposition.setThreshold(tolerance::rank);
+		decomposition.compute(A);
+		Vector x = decomposition.solve(b);
+		x += decomposition.solve(b - A * x); // one refinement: long arms on slender blocks cost four digits
+		s.p = S * x;
+	}
+
+	// Stiffness of one point's impulse against its own velocity, an upper bound: with r = 1/response the map below contracts.
+	double response(const System& s, int i) { return s.G.block<3, 3>(3 * i, 3 * i).trace(); }
+
+	// Projection of p - r u on the friction cone of one point; also tells the state that it stands for.
+	Vector3 project(const System& s, int i, const Vector3& u, State& state)
+	{
+		const Vector3 y = s.p.segment<3>(3 * i) - u / response(s, i);
+		state = State::open;
+		if (!(y[0] > 0)) return Vector3::Zero();
+		const double size = y.tail<2>().norm(), bound = s.friction[i] * y[0];
+		state = size > bound ? State::slip : State::stick;
+		Vector3 result = y;
+		if (size > bound) result.tail<2>() *= bound / size;
+		return result;
+	}
+
+	double residual(const System& s)
+	{
+		const Vector u = s.velocity();
+		double       worst = s.nCouples ? u.tail(s.nCouples).cwiseAbs().maxCoeff() : 0;
+		for (int i = 0; i < s.nPoints; ++i) {
+			State         ignored;
+			const Vector3 step = s.p.segment<3>(3 * i) - project(s, i, u.segment<3>(3 * i), ignored);
+			worst = std::max(worst, step.norm() * response(s, i));
+		}
+		return worst;
+	}
+
+	// One Newton update of the states and slip directions.
+	void updateStates(System& s)
+	{
+		const Vector u = s.velocity();
+		for (int i = 0; i < s.nPoints; ++i) {
+			State         state;
+			const Vector3 p = project(s, i, u.segment<3>(3 * i), state);
+			s.states[i] = state;
+			if (state == State::slip && p.tail<2>().norm() > 0) s.slipDirection.col(i) = p.tail<2>().normalized();
+		}
+	}
+
+	// Residual that counts as zero: a share of the approach speed, and round-off of the products in G p.
+	double target(const System& s)
+	{
+		const double roundOff = 64 * std::numeric_limits<double>::epsilon() * (s.G.cwiseAbs() * s.p.cwiseAbs()).maxCoeff();
+		return tolerance::impulse * s.free.cwiseAbs().maxCoeff() + roundOff;
+	}
+
+	int gaussSeidel(System& s)
+	{
+		constexpr int maxSweeps = 20000, checkEvery = 20;
+		for (int sweep = 1; sweep <= maxSweeps; ++sweep) {
+			for (int i = 0; i < s.nPoints; ++i) {
+				State         ignored;
+				const Vector3 u = s.G.middleRows<3>(3 * i) * s.p + s.free.segment<3>(3 * i);
+				s.p.segment<3>(3 * i) = project(s, i, u, ignored);
+			}
+			for (int row = 3 * s.nPoints; row < s.p.size(); ++row)
+				s.p[row] -= (s.G.row(row).dot(s.p) + s.free[row]) / s.G(row, row);
+			if (sweep % checkEvery == 0 && residual(s) <= target(s)) return sweep;
+		}
+		return maxSweeps;
+	}
+
+} // namespace
+
+ImpulseReport solveImpulses(std::vector<Body>& bodies, std::vector<ImpulsePoint>& points, std::vector<CoupleRow>& couples)
+{
+	if (points.empty() && couples.empty()) return { 0, 0. };
+	System s;
+	s.nPoints = int(points.size());
+	s.nCouples = int(couples.size());
+	s.length = 0;
+	for (const auto& point : points)
+		for (int body : { point.body1, point.body2 })
+			if (!bodies[body].prescribed) s.length = std::max(s.length, (point.position - bodies[body].pose.position).norm());
+	if (s.length == 0) s.length = 1;
+	s.J = jacobian(bodies, points, couples, s.length);
+	const Matrix perImpulse = inverseMassTimes(bodies, s.J.transpose());
+	s.G = s.J * perImpulse;
+	Vector v(6 * bodies.size());
+	for (size_t i = 0; i < bodies.size(); ++i)
+		v.segment<6>(6 * i) << bodies[i].velocity, bodies[i].angularVelocity;
+	s.free = s.J * v;
+	for (int i = 0; i < s.nPoints; ++i)
+		s.free.segment<3>(3 * i) += frame(points[i].normal) * points[i].bias;
+	for (int c = 0; c < s.nCouples; ++c)
+		s.free[3 * s.nPoints + c] -= s.length * couples[c].target;
+	s.p = Vector::Zero(s.J.rows());
+	s.slipDirection = Matrix::Zero(2, s.nPoints);
+	for (const auto& point : points) {
+		s.friction.push_back(point.friction);
+		s.states.push_back(point.holds ? State::stick : State::open);
+	}
+
+	constexpr int maxNewton = 60;
+	ImpulseReport report { 0, std::numeric_limits<double>::infinity() };
+	bool          solved = false;
+	Vector        best = s.p;
+	const auto    keepBest = [&] {
+		const double r = residual(s);
+		solved = r <= target(s);
+		if (!(r < report.residual)) return;
+		report.residual = r;
+		best = s.p;
+	};
+	for (; report.iterations < maxNewton && !solved; ++report.iterations) {
+		solveForStates(s);
+		keepBest();
+		updateStates(s);
+	}
+	if (!solved) {
+		s.p = best;
+		report.iterations += gaussSeidel(s);
+		keepBest();
+	}
+	s.p = best;
+
+	v += perImpulse * s.p;
+	for (size_t i = 0; i < bodies.size(); ++i) {
+		if (bodies[i].prescribed) continue;
+		bodies[i].velocity = v.segment<3>(6 * i);
+		bodies[i].angularVelocity = v.segment<3>(6 * i + 3);
+	}
+	for (int i = 0; i < s.nPoints; ++i) {
+		points[i].impulse = frame(points[i].normal).transpose() * s.p.segment<3>(3 * i);
+	}
+	for (int c = 0; c < s.nCouples; ++c)
+		couples[c].couple = s.length * s.p[3 * s.nPoints + c];
+	return report;
+}
+
+} // namespace masonry

@@ -1,0 +1,49 @@
+#pragma once
+// Impulses that act at one instant on bodies in touch.
+//
+// Each contact point i between body 1 and body 2 carries an impulse p (on body 2; -p on body 1), with normal part p_n
+// and tangential part p_t, and after the instant the relative velocity u = v2 - v1 of its two material points obeys
+//
+//     p_n >= 0,  u_n >= 0,  p_n u_n = 0          plastic and unilateral
+//     u_t = 0                  if |p_t| <  mu p_n   stick
+//     p_t = -mu p_n u_t/|u_t|  otherwise            slip (Coulomb)
+//
+// mu = infinity is a law of its own: a point that carries an impulse never slips. A couple row is bilateral: the couple
+// along `axis` that makes axis.(w2 - w1) equal `target`.
+//
+// Method: semi-smooth Newton on the contact states (open, stick, slip), each linear system solved in the least-norm
+// sense, since the points of a face are redundant; projected Gauss-Seidel takes over should the states cycle.
+#include "body.hpp"
+#include <limits>
+#include <vector>
+
+namespace masonry {
+
+constexpr double noSlip = std::numeric_limits<double>::infinity();
+
+struct ImpulsePoint {
+	int     body1, body2; // indices into the list of bodies
+	Vector3 position;     // global, m
+	Vector3 normal;       // unit, from body 1 to body 2
+	double  friction;     // mu >= 0, or noSlip
+	bool    holds { true };              // first guess: sticks (true) or parts (false)
+	Vector3 bias { Vector3::Zero() };    // added to the relative velocity u, m/s (see rigid_acceleration.hpp)
+	Vector3 impulse { Vector3::Zero() }; // result: on body 2, global, N s
+};
+
+struct CoupleRow {
+	int     body1, body2;
+	Vector3 axis;   // unit, global
+	double  target; // axis.(w2 - w1) after the instant, rad/s
+	double  couple { 0 }; // result: on body 2, N m s
+};
+
+struct ImpulseReport {
+	int    iterations;
+	double residual; // largest violation of the laws above, as a velocity, m/s (natural map)
+};
+
+// Finds the impulses and changes the bodies' velocities. Prescribed bodies keep theirs.
+ImpulseReport solveImpulses(std::vector<Body>& bodies, std::vector<ImpulsePoint>& points, std::vector<CoupleRow>& couples);
+
+} // namespace masonry
