@@ -11,6 +11,18 @@
 #include <registry.hpp>
 #endif
 
+#ifdef MASONRY_YADE_TREE
+namespace {
+void enterClasses(yade::Omega&, const std::vector<std::string>&);
+
+// The function is private in YADE's header, meant for its own start-up; an explicit instantiation may name it.
+template <void (yade::Omega::*function)(const std::vector<std::string>&)> struct Reach {
+	friend void enterClasses(yade::Omega& omega, const std::vector<std::string>& names) { (omega.*function)(names); }
+};
+template struct Reach<&yade::Omega::buildDynlibDatabase>;
+} // namespace
+#endif
+
 namespace {
 
 /// Makes the plugin's classes known to the running YADE, once; returns their names. Raises RuntimeError, and leaves
@@ -21,7 +33,7 @@ boost::python::list setup()
 	// YADE's own macros have entered the classes in its factory; they are the source files of this folder.
 	static const std::vector<std::string> names = { MASONRY_YADE_CLASSES };
 	static bool done = false;
-	if (!done) yade::Omega::instance().buildDynlibDatabase(names);
+	if (!done) enterClasses(yade::Omega::instance(), names);
 	done = true;
 #else
 	yade::abi::requireBuild(yade::abi::declaredBuild());

@@ -45,10 +45,11 @@ class GlIPhysFunctor
 
 } // namespace yade
 
-/// What a drawing functor answers for the class it draws.
+/// The class that a drawing functor draws; stands in its body in place of FUNCTOR1D.
 #define RENDERS(Class)                                                                                                 \
 public:                                                                                                                \
-	string renders() const override { return #Class; }
+	string renders() const override { return #Class; }                                                                 \
+	FUNCTOR1D(Class)
 
 YADE_ABI_ARCHIVED(GlShapeFunctor)
 YADE_ABI_ARCHIVED(GlIGeomFunctor)
