@@ -9,6 +9,7 @@ class OdeBlock {
 public:
 	OdeBlock(const Scene& scene, Method stepMethod) : method(stepMethod)
 	{
+		dRandSetSeed(0); // QuickStep shuffles its rows
 		dWorldSetGravity(world, 0, 0, -scene.gravity);
 		dWorldSetQuickStepNumIterations(world, 50);
 		const dReal baseHeight = 1;

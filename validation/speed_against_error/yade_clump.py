@@ -34,7 +34,7 @@ def viscous(stiffness):
     return material, Ip2_ViscElMat_ViscElMat_ViscElPhys(), Law2_ScGeom_ViscElPhys_Basic()
 
 
-def scene(contact, penetration):
+def scene(contact, penetration, dt):
     depth = penetration * 2 * measures.HALF_WIDTH
     stiffness = measures.MASS * measures.GRAVITY / depth / CONTACTS
     # Twice what a corner sinks in when it strikes at 0.25 m/s, more than here; the contact point rolls by the radius times the angle.
@@ -54,6 +54,7 @@ def scene(contact, penetration):
         squares = 4 * np.array((measures.HALF_WIDTH, measures.DEPTH / 2, measures.HALF_HEIGHT)) ** 2
         clump.state.mass = measures.MASS
         clump.state.inertia = Vector3(*np.diag(axes.T @ np.diag(measures.MASS / 12 * (squares.sum() - squares)) @ axes))
+        O.dt = dt
         O.engines = [
             ForceResetter(),
             InsertionSortCollider([Bo1_Sphere_Aabb(), Bo1_Box_Aabb()], verletDist=0.05),
@@ -67,4 +68,4 @@ def scene(contact, penetration):
 
 for contact in (elastic, viscous):
     for penetration, dt in [(1e-3, 1e-4), (1e-4, 5e-5), (1e-5, 1e-5), (1e-6, 5e-6)]:
-        measure("YADE clump of spheres", f"{contact.__name__}; penetration {penetration:g} of the width", dt, scene(contact, penetration))
+        measure("YADE clump of spheres", f"{contact.__name__}; penetration {penetration:g} of the width", scene(contact, penetration, dt))

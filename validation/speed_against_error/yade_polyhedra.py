@@ -16,7 +16,7 @@ def corners(half_sizes):
     return [Vector3(x, y, z) for x in (-half_sizes[0], half_sizes[0]) for y in (-half_sizes[1], half_sizes[1]) for z in (-half_sizes[2], half_sizes[2])]
 
 
-def scene(penetration, damping):
+def scene(penetration, damping, dt):
     pressure = measures.DENSITY * 2 * measures.HALF_HEIGHT * measures.GRAVITY
     stiffness = pressure / (penetration * 2 * measures.HALF_WIDTH)
     # the stiffness of a pair is the product of the two over their sum
@@ -30,6 +30,7 @@ def scene(penetration, damping):
         block.state.pos, turn = start_pose()
         block.state.ori = turn * upright
         O.bodies.append([base, block])
+        O.dt = dt
         O.engines = [
             ForceResetter(),
             InsertionSortCollider([Bo1_Polyhedra_Aabb()], verletDist=0.05),
@@ -46,4 +47,4 @@ def scene(penetration, damping):
 
 
 for penetration, damping, dt in [(1e-3, 0, 1e-4), (1e-4, 0, 1e-4), (1e-5, 0, 5e-5), (1e-4, 0.2, 1e-4)]:
-    measure("YADE Polyhedra", f"penetration {penetration:g} of the width; damping {damping:g}", dt, scene(penetration, damping))
+    measure("YADE Polyhedra", f"damping {damping:g}; penetration {penetration:g} of the width", scene(penetration, damping, dt))

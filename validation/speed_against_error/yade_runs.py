@@ -8,7 +8,7 @@ import time
 
 import measures
 import numpy as np
-from yade import O, Quaternion, Vector3, utils
+from yade import O, Quaternion, Vector3
 from yade.wrapper import PyRunner
 
 SAMPLE = 5e-5  # s; histories are sampled at least this finely, or at every step
@@ -27,33 +27,31 @@ def angle_about_y(turn):
     return 2 * math.atan2(turn[1], turn[3])
 
 
-def measure(solver, settings, dt, create, cpu_limit=60.0):
-    """`create()` fills an empty scene (bodies and engines) and returns a function that gives the block's angle. The history is
+def _run(steps):
+    """CPU seconds of so many steps"""
+    start = time.process_time()
+    O.run(steps, True)
+    return time.process_time() - start
+
+
+def measure(solver, settings, create, cpu_limit=40.0):
+    """`create()` fills an empty scene (bodies, engines, O.dt) and returns a function that gives the block's angle. The history is
     recorded in one run and timed in another, which YADE's determinism on one thread allows. A run that would take more than
     `cpu_limit` CPU seconds is cut short: what it shows by then is judged."""
     global _written
     O.reset()
     create()
-    O.dt = dt
     O.run(20, True)
-    start = time.process_time()
-    O.run(200, True)
-    per_step = (time.process_time() - start) / 200
-    steps = round(min(measures.DURATION / dt, cpu_limit / per_step))
+    steps = min(round(measures.DURATION / O.dt), round(200 * cpu_limit / _run(200)))
 
     O.reset()
     create()
-    O.dt = dt
-    start = time.process_time()
-    O.run(steps, True)
-    cpu_per_second = (time.process_time() - start) / (steps * dt)
+    cpu_per_second = _run(steps) / (steps * O.dt)
 
     O.reset()
-    angle = create()
-    O.dt = dt
-    every = max(1, round(SAMPLE / dt))
+    angle, dt = create(), O.dt
     history = [(0.0, angle())]
-    O.engines += [PyRunner(command="record()", iterPeriod=every, initRun=False)]
+    O.engines = O.engines + [PyRunner(command="record()", iterPeriod=max(1, round(SAMPLE / dt)), initRun=False)]
     sys.modules["__main__"].record = lambda: history.append((O.time + dt, angle()))
     O.run(steps, True)
 

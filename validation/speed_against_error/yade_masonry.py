@@ -1,0 +1,27 @@
+"""The rocking block with this plugin in YADE: compliant joints at several stiffnesses, set by the penetration of the standing block
+as a share of its width, with the time step that dem.engines() chooses and a quarter of it."""
+import measures
+from masonry import dem
+from yade import O
+from yade_runs import measure
+
+
+def compliant(penetration, step_share=1.0):
+    pressure = measures.DENSITY * 2 * measures.HALF_HEIGHT * measures.GRAVITY
+    stiffness = pressure / (penetration * 2 * measures.HALF_WIDTH)
+
+    def create():
+        stone = dem.BlockMat(density=measures.DENSITY, noSlip=True, normalStiffness=stiffness, shearStiffness=stiffness)
+        base = dem.base((4, 2, 0.2), stone)
+        block = dem.block((2 * measures.HALF_WIDTH, measures.DEPTH, 2 * measures.HALF_HEIGHT), stone, on=base)
+        dem.tilt(block, measures.START_ANGLE)
+        O.engines = dem.engines(model="compliant")
+        O.dt *= step_share
+        return lambda: dem.angle(block)
+
+    return create
+
+
+for penetration in (1e-4, 1e-5, 1e-6):
+    for step_share in (1.0, 0.25):
+        measure("yade-masonry in YADE", f"compliant; penetration {penetration:g} of the width", compliant(penetration, step_share))
