@@ -8,8 +8,12 @@ import math
 
 import measures
 import numpy as np
-from yade import Matrix3, O, Vector3, utils
-from yade.wrapper import *
+from yade import O, Vector3, utils
+from yade.wrapper import (
+    Bo1_Box_Aabb, Bo1_Sphere_Aabb, ForceResetter, FrictMat, Ig2_Box_Sphere_ScGeom, InsertionSortCollider, InteractionLoop,
+    Ip2_FrictMat_FrictMat_FrictPhys, Ip2_ViscElMat_ViscElMat_ViscElPhys, Law2_ScGeom_FrictPhys_CundallStrack,
+    Law2_ScGeom_ViscElPhys_Basic, MatchMaker, NewtonIntegrator, ViscElMat,
+)
 from yade_runs import angle_about_y, measure, start_pose
 
 FRICTION_ANGLE = 1.4  # rad; no slip

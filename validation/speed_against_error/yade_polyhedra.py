@@ -5,7 +5,10 @@ share of its width. No damping (the elastic block hops from corner to corner), o
 """
 import measures
 from yade import O, Vector3, log, polyhedra_utils
-from yade.wrapper import *
+from yade.wrapper import (
+    Bo1_Polyhedra_Aabb, ForceResetter, Ig2_Polyhedra_Polyhedra_PolyhedraGeom, InsertionSortCollider, InteractionLoop,
+    Ip2_PolyhedraMat_PolyhedraMat_PolyhedraPhys, Law2_PolyhedraGeom_PolyhedraPhys_Volumetric, NewtonIntegrator, PolyhedraMat,
+)
 from yade_runs import angle_about_y, measure, start_pose
 
 log.setDefaultLogLevel(1)  # Polyhedra warns at nearly every step
