@@ -10,18 +10,19 @@ namespace yade {
 YADE_PLUGIN((BlockMat));
 
 namespace {
-	[[noreturn]] void reject(const char* attribute, Real value, const char* allowed)
-	{
-		std::ostringstream text;
-		text << "BlockMat." << attribute << " = " << value << " is not allowed: it must be " << allowed << ".";
-		throw std::invalid_argument(text.str());
-	}
+[[noreturn]] void reject(const char* attribute, Real value, const char* allowed)
+{
+	std::ostringstream text;
+	text << "BlockMat." << attribute << " = " << value << " is not allowed: it must be " << allowed << ".";
+	throw std::invalid_argument(text.str());
+}
 
-	void checkStiffness(const char* attribute, Real value)
-	{
-		if (std::isnan(value) || (value > 0 && std::isfinite(value))) return;
-		reject(attribute, value, "a positive finite stiffness per area in Pa/m, or NaN to have it chosen");
-	}
+void checkStiffness(const char* attribute, Real value)
+{
+	if (std::isnan(value) || (value > 0 && std::isfinite(value)))
+		return;
+	reject(attribute, value, "a positive finite stiffness per area in Pa/m, or NaN to have it chosen");
+}
 } // namespace
 
 void BlockMat::postLoad(BlockMat&)

@@ -16,7 +16,8 @@ namespace {
 void enterClasses(yade::Omega&, const std::vector<std::string>&);
 
 // The function is private in YADE's header, meant for its own start-up; an explicit instantiation may name it.
-template <void (yade::Omega::*function)(const std::vector<std::string>&)> struct Reach {
+template <void (yade::Omega::*function)(const std::vector<std::string>&)>
+struct Reach {
 	friend void enterClasses(yade::Omega& omega, const std::vector<std::string>& names) { (omega.*function)(names); }
 };
 template struct Reach<&yade::Omega::buildDynlibDatabase>;
@@ -31,16 +32,18 @@ boost::python::list setup()
 {
 #ifdef MASONRY_YADE_TREE
 	// YADE's own macros have entered the classes in its factory; they are the source files of this folder.
-	static const std::vector<std::string> names = { MASONRY_YADE_CLASSES };
+	static const std::vector<std::string> names = {MASONRY_YADE_CLASSES};
 	static bool done = false;
-	if (!done) enterClasses(yade::Omega::instance(), names);
+	if (!done)
+		enterClasses(yade::Omega::instance(), names);
 	done = true;
 #else
 	yade::abi::requireBuild(yade::abi::declaredBuild());
 	const std::vector<std::string> names = yade::abi::registerClasses();
 #endif
 	boost::python::list all;
-	for (const std::string& name : names) all.append(name);
+	for (const std::string& name : names)
+		all.append(name);
 	return all;
 }
 

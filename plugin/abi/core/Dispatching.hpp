@@ -14,41 +14,39 @@
 namespace yade {
 
 /// Bo1_*: makes the bound of a shape.
-class BoundFunctor : public Functor1D<Shape, void,
-						 boost::mpl::vector<const shared_ptr<Shape>&, shared_ptr<Bound>&, const Se3r&, const Body*>> {
+class BoundFunctor
+    : public Functor1D<Shape, void, boost::mpl::vector<const shared_ptr<Shape>&, shared_ptr<Bound>&, const Se3r&, const Body*>> {
 	YADE_ABI_CLASS(BoundFunctor)
 	BoundFunctor() = default;
 };
 
 /// Ig2_*: geometry of a pair of shapes. True when they touch (or touched before); then I->geom must be set.
-class IGeomFunctor
-	: public Functor2D<Shape, Shape, bool,
-		  boost::mpl::vector<const shared_ptr<Shape>&, const shared_ptr<Shape>&, const State&, const State&,
-			  const Vector3r&, const bool&, const shared_ptr<Interaction>&>> {
+class IGeomFunctor : public Functor2D<Shape, Shape, bool,
+                                      boost::mpl::vector<const shared_ptr<Shape>&, const shared_ptr<Shape>&, const State&, const State&,
+                                                         const Vector3r&, const bool&, const shared_ptr<Interaction>&>> {
 	YADE_ABI_CLASS(IGeomFunctor)
 	IGeomFunctor() = default;
 	virtual void preStep();
 };
 
 /// Ip2_*: physics of a pair of materials; called every step, must leave I->phys set.
-class IPhysFunctor : public Functor2D<Material, Material, void,
-						 boost::mpl::vector<const shared_ptr<Material>&, const shared_ptr<Material>&,
-							 const shared_ptr<Interaction>&>> {
+class IPhysFunctor
+    : public Functor2D<Material, Material, void,
+                       boost::mpl::vector<const shared_ptr<Material>&, const shared_ptr<Material>&, const shared_ptr<Interaction>&>> {
 	YADE_ABI_CLASS(IPhysFunctor)
 	IPhysFunctor() = default;
 };
 
 /// Law2_*: forces. False drops the contact.
-class LawFunctor
-	: public Functor2D<IGeom, IPhys, bool, boost::mpl::vector<shared_ptr<IGeom>&, shared_ptr<IPhys>&, Interaction*>> {
+class LawFunctor : public Functor2D<IGeom, IPhys, bool, boost::mpl::vector<shared_ptr<IGeom>&, shared_ptr<IPhys>&, Interaction*>> {
 	YADE_ABI_CLASS(LawFunctor)
 	LawFunctor() = default;
 
 	void addForce(const int id, const Vector3r& force, Scene* in) { in->forces.addForce(id, force); }
 	void addTorque(const int id, const Vector3r& torque, Scene* in) { in->forces.addTorque(id, torque); }
 	/// Force on the first body, its opposite on the second, both acting at the point.
-	void applyForceAtContactPoint(const Vector3r& force, const Vector3r& point, const int id1, const Vector3r& position1,
-		const int id2, const Vector3r& position2)
+	void applyForceAtContactPoint(const Vector3r& force, const Vector3r& point, const int id1, const Vector3r& position1, const int id2,
+	                              const Vector3r& position2)
 	{
 		addForce(id1, force, scene);
 		addForce(id2, -force, scene);

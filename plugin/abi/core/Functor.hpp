@@ -50,12 +50,12 @@ public:
 } // namespace yade
 
 /// The classes that a plugin functor accepts; stands in its body.
-#define FUNCTOR1D(A)                                                                                                   \
-public:                                                                                                                \
+#define FUNCTOR1D(A)                                                                                                                       \
+public:                                                                                                                                    \
 	string get1DFunctorType1() const override { return #A; }
-#define FUNCTOR2D(A, B)                                                                                                \
-public:                                                                                                                \
-	string get2DFunctorType1() const override { return #A; }                                                           \
+#define FUNCTOR2D(A, B)                                                                                                                    \
+public:                                                                                                                                    \
+	string get2DFunctorType1() const override { return #A; }                                                                               \
 	string get2DFunctorType2() const override { return #B; }
 
 YADE_ABI_ARCHIVED(Functor)

@@ -21,7 +21,7 @@ class State : public Serializable, public Indexable {
 	Vector3r displ() const;
 	Vector3r rot() const;
 
-	Vector3r& pos; // se3.position
+	Vector3r& pos;    // se3.position
 	Quaternionr& ori; // se3.orientation
 	std::mutex updateMutex;
 	Se3r se3;

@@ -44,7 +44,8 @@ static_assert(sizeof(Quaternionr) == 32 && alignof(Quaternionr) == 8, "Eigen mus
 inline constexpr Real NaN = std::numeric_limits<Real>::quiet_NaN();
 
 /// Position and orientation of a body.
-template <class Scalar> struct Se3 {
+template <class Scalar>
+struct Se3 {
 	Eigen::Matrix<Scalar, 3, 1> position;
 	Eigen::Quaternion<Scalar> orientation;
 };

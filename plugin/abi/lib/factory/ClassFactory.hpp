@@ -17,38 +17,39 @@ public:
 
 } // namespace yade
 
-#define YADE_ABI_PLUGIN_CLASS(r, data, Class)                                                                          \
-	string Class::getBaseClassName(unsigned i) const { return i == 0 ? AbiTraits::baseName() : ""; }                   \
-	int Class::getBaseClassNumber() const { return 1; }                                                                \
-	string Class::getClassName() const { return AbiTraits::name(); }                                                   \
-	void Class::pySetAttr(const string& name, const ::boost::python::object& value)                                    \
-	{                                                                                                                  \
-		if (!abi::setAttribute(*this, name, value)) AbiTraits::BaseClass::pySetAttr(name, value);                      \
-	}                                                                                                                  \
-	::boost::python::dict Class::pyDict() const                                                                        \
-	{                                                                                                                  \
-		::boost::python::dict all = abi::attributeDict(*this);                                                         \
-		all.update(pyDictCustom());                                                                                    \
-		all.update(AbiTraits::BaseClass::pyDict());                                                                    \
-		return all;                                                                                                    \
-	}                                                                                                                  \
-	void Class::callPostLoad()                                                                                         \
-	{                                                                                                                  \
-		AbiTraits::BaseClass::callPostLoad();                                                                          \
-		abiPostLoad();                                                                                                 \
-	}                                                                                                                  \
-	void Class::pyRegisterClass(::boost::python::object scope)                                                         \
-	{                                                                                                                  \
-		checkPyClassRegistersItself(AbiTraits::name());                                                                \
-		abi::registerPythonClass<Class>(scope);                                                                        \
-	}                                                                                                                  \
-	namespace {                                                                                                        \
-		[[maybe_unused]] const bool BOOST_PP_CAT(announced, Class) = abi::announce<Class>();                           \
-	}                                                                                                                  \
-	}                                                                                                                  \
-	YADE_ABI_ARCHIVED_ELSEWHERE(yade::Class::AbiTraits::BaseClass)                                                     \
-	BOOST_CLASS_EXPORT_IMPLEMENT(yade::Class)                                                                          \
-	BOOST_SERIALIZATION_FACTORY_0(yade::Class)                                                                         \
+#define YADE_ABI_PLUGIN_CLASS(r, data, Class)                                                                                              \
+	string Class::getBaseClassName(unsigned i) const { return i == 0 ? AbiTraits::baseName() : ""; }                                       \
+	int Class::getBaseClassNumber() const { return 1; }                                                                                    \
+	string Class::getClassName() const { return AbiTraits::name(); }                                                                       \
+	void Class::pySetAttr(const string& name, const ::boost::python::object& value)                                                        \
+	{                                                                                                                                      \
+		if (!abi::setAttribute(*this, name, value))                                                                                        \
+			AbiTraits::BaseClass::pySetAttr(name, value);                                                                                  \
+	}                                                                                                                                      \
+	::boost::python::dict Class::pyDict() const                                                                                            \
+	{                                                                                                                                      \
+		::boost::python::dict all = abi::attributeDict(*this);                                                                             \
+		all.update(pyDictCustom());                                                                                                        \
+		all.update(AbiTraits::BaseClass::pyDict());                                                                                        \
+		return all;                                                                                                                        \
+	}                                                                                                                                      \
+	void Class::callPostLoad()                                                                                                             \
+	{                                                                                                                                      \
+		AbiTraits::BaseClass::callPostLoad();                                                                                              \
+		abiPostLoad();                                                                                                                     \
+	}                                                                                                                                      \
+	void Class::pyRegisterClass(::boost::python::object scope)                                                                             \
+	{                                                                                                                                      \
+		checkPyClassRegistersItself(AbiTraits::name());                                                                                    \
+		abi::registerPythonClass<Class>(scope);                                                                                            \
+	}                                                                                                                                      \
+	namespace {                                                                                                                            \
+	[[maybe_unused]] const bool BOOST_PP_CAT(announced, Class) = abi::announce<Class>();                                                   \
+	}                                                                                                                                      \
+	}                                                                                                                                      \
+	YADE_ABI_ARCHIVED_ELSEWHERE(yade::Class::AbiTraits::BaseClass)                                                                         \
+	BOOST_CLASS_EXPORT_IMPLEMENT(yade::Class)                                                                                              \
+	BOOST_SERIALIZATION_FACTORY_0(yade::Class)                                                                                             \
 	namespace yade {
 
 /// Stands inside namespace yade in the source file of the classes named: YADE_PLUGIN((A)(B)).

@@ -9,8 +9,10 @@
 
 namespace yade {
 
-template <class Result, class ArgList> class FunctorWrapper {
-	template <int I> using Arg = typename boost::mpl::at_c<ArgList, I>::type;
+template <class Result, class ArgList>
+class FunctorWrapper {
+	template <int I>
+	using Arg = typename boost::mpl::at_c<ArgList, I>::type;
 
 public:
 	using A1 = Arg<0>;
@@ -43,6 +45,6 @@ public:
 } // namespace yade
 
 /// What an Ig2 functor must answer: the order of the two shapes in which go() takes them.
-#define DEFINE_FUNCTOR_ORDER_2D(A, B)                                                                                  \
-public:                                                                                                                \
+#define DEFINE_FUNCTOR_ORDER_2D(A, B)                                                                                                      \
+public:                                                                                                                                    \
 	std::string checkOrder() const override { return #A " " #B; }

@@ -12,7 +12,8 @@ protected:
 	void createIndex()
 	{
 		int& index = modifyClassIndex();
-		if (index >= 0) return;
+		if (index >= 0)
+			return;
 		index = getMaxCurrentlyUsedClassIndexOfKin() + 1;
 		incrementMaxCurrentlyUsedClassIndexOfKin();
 	}
@@ -23,27 +24,24 @@ public:
 	virtual ~Indexable() {}
 	virtual const int& getClassIndex() const { throw std::logic_error("Indexable: class without an index"); }
 	virtual const int& getBaseClassIndex(int) const { throw std::logic_error("Indexable: class without an index"); }
-	virtual const int& getMaxCurrentlyUsedClassIndexOfKin() const
-	{
-		throw std::logic_error("Indexable: class without an index");
-	}
+	virtual const int& getMaxCurrentlyUsedClassIndexOfKin() const { throw std::logic_error("Indexable: class without an index"); }
 };
 
 } // namespace yade
 
 /// To stand in the body of every indexable plugin class; its constructor calls createIndex().
 /// getBaseClassIndex(1) is the number of Base, getBaseClassIndex(2) that of Base's base, and so on.
-#define REGISTER_CLASS_INDEX(Class, Base)                                                                              \
-protected:                                                                                                             \
-	int& modifyClassIndex() override                                                                                   \
-	{                                                                                                                  \
-		static int index = -1;                                                                                         \
-		return index;                                                                                                  \
-	}                                                                                                                  \
-                                                                                                                       \
-public:                                                                                                                \
-	const int& getClassIndex() const override { return const_cast<Class*>(this)->Class::modifyClassIndex(); }          \
-	const int& getBaseClassIndex(int depth) const override                                                             \
-	{                                                                                                                  \
-		return depth == 1 ? Base::getClassIndex() : Base::getBaseClassIndex(depth - 1);                                \
+#define REGISTER_CLASS_INDEX(Class, Base)                                                                                                  \
+protected:                                                                                                                                 \
+	int& modifyClassIndex() override                                                                                                       \
+	{                                                                                                                                      \
+		static int index = -1;                                                                                                             \
+		return index;                                                                                                                      \
+	}                                                                                                                                      \
+                                                                                                                                           \
+public:                                                                                                                                    \
+	const int& getClassIndex() const override { return const_cast<Class*>(this)->Class::modifyClassIndex(); }                              \
+	const int& getBaseClassIndex(int depth) const override                                                                                 \
+	{                                                                                                                                      \
+		return depth == 1 ? Base::getClassIndex() : Base::getBaseClassIndex(depth - 1);                                                    \
 	}

@@ -35,9 +35,9 @@
 namespace yade {
 
 namespace Attr {
-	/// noSave: not archived. readonly: Python cannot assign it. hidden: not seen by Python at all (nor by pickle).
-	/// triggerPostLoad: assignment from Python ends in postLoad.
-	enum flags { noSave = 1, readonly = 2, triggerPostLoad = 4, hidden = 8, noResize = 16 };
+/// noSave: not archived. readonly: Python cannot assign it. hidden: not seen by Python at all (nor by pickle).
+/// triggerPostLoad: assignment from Python ends in postLoad.
+enum flags { noSave = 1, readonly = 2, triggerPostLoad = 4, hidden = 8, noResize = 16 };
 } // namespace Attr
 
 class Serializable : public Factorable {
@@ -59,25 +59,30 @@ public:
 };
 
 /// Does nothing: what a class without a postLoad of its own gets.
-template <class T> void postLoad(T&) {}
+template <class T>
+void postLoad(T&)
+{
+}
 
 namespace abi {
-	/// One attribute, as handed to the visitors of Plugin.hpp. The flags are part of the type: what is not saved
-	/// needs no archive, and what is hidden no converter.
-	template <class Class, class T, int Flags> struct Attribute {
-		static constexpr int flags = Flags;
-		const char* name;
-		T Class::*member;
-		const char* doc;
-	};
-	template <int Flags, class Class, class T>
-	Attribute<Class, T, Flags> attribute(const char* name, T Class::*member, const char* doc)
-	{
-		return { name, member, doc };
-	}
-	template <class T> struct Identity {
-		using type = T;
-	};
+/// One attribute, as handed to the visitors of Plugin.hpp. The flags are part of the type: what is not saved
+/// needs no archive, and what is hidden no converter.
+template <class Class, class T, int Flags>
+struct Attribute {
+	static constexpr int flags = Flags;
+	const char* name;
+	T Class::*member;
+	const char* doc;
+};
+template <int Flags, class Class, class T>
+Attribute<Class, T, Flags> attribute(const char* name, T Class::*member, const char* doc)
+{
+	return {name, member, doc};
+}
+template <class T>
+struct Identity {
+	using type = T;
+};
 } // namespace abi
 
 } // namespace yade
@@ -89,68 +94,73 @@ namespace abi {
 #define YADE_ABI_FLAGS(attr) (BOOST_PP_TUPLE_ELEM(3, attr) + 0)
 #define YADE_ABI_DOC(attr) BOOST_PP_TUPLE_ELEM(4, attr)
 
-#define YADE_ABI_MEMBER(r, data, attr)                                                                                 \
+#define YADE_ABI_MEMBER(r, data, attr)                                                                                                     \
 	YADE_ABI_TYPE(attr) YADE_ABI_NAME(attr) = yade::abi::Identity<YADE_ABI_TYPE(attr)>::type(YADE_ABI_DEFAULT(attr));
-#define YADE_ABI_VISIT(r, Class, attr)                                                                                 \
-	visit(yade::abi::attribute<YADE_ABI_FLAGS(attr)>(                                                                  \
-		BOOST_PP_STRINGIZE(YADE_ABI_NAME(attr)), &Class::YADE_ABI_NAME(attr), YADE_ABI_DOC(attr)));
-#define YADE_ABI_INITIALIZER(r, data, i, pair)                                                                         \
+#define YADE_ABI_VISIT(r, Class, attr)                                                                                                     \
+	visit(yade::abi::attribute<YADE_ABI_FLAGS(attr)>(BOOST_PP_STRINGIZE(YADE_ABI_NAME(attr)), &Class::YADE_ABI_NAME(attr),                 \
+	                                                                    YADE_ABI_DOC(attr)));
+#define YADE_ABI_INITIALIZER(r, data, i, pair)                                                                                             \
 	BOOST_PP_IF(i, BOOST_PP_COMMA, BOOST_PP_EMPTY)() BOOST_PP_TUPLE_ELEM(0, pair)(BOOST_PP_TUPLE_ELEM(1, pair))
-#define YADE_ABI_INITIALIZERS(inits)                                                                                   \
-	BOOST_PP_EXPR_IF(BOOST_PP_SEQ_SIZE(inits), :) BOOST_PP_SEQ_FOR_EACH_I(YADE_ABI_INITIALIZER, ~, inits)
+#define YADE_ABI_INITIALIZERS(inits) BOOST_PP_EXPR_IF(BOOST_PP_SEQ_SIZE(inits), :) BOOST_PP_SEQ_FOR_EACH_I(YADE_ABI_INITIALIZER, ~, inits)
 
-#define YADE_CLASS_BASE_DOC_ATTRS_INIT_CTOR_PY(Class, Base, docText, attrs, inits, ctor, py)                           \
-public:                                                                                                                \
-	BOOST_PP_SEQ_FOR_EACH(YADE_ABI_MEMBER, ~, attrs)                                                                   \
-	Class() YADE_ABI_INITIALIZERS(inits) { ctor; }                                                                     \
-	string getBaseClassName(unsigned i = 0) const override;                                                            \
-	int getBaseClassNumber() const override;                                                                           \
-	string getClassName() const override;                                                                              \
-	void pySetAttr(const string& name, const ::boost::python::object& value) override;                                 \
-	::boost::python::dict pyDict() const override;                                                                     \
-	void callPostLoad() override;                                                                                      \
-	void pyRegisterClass(::boost::python::object scope) override;                                                      \
-                                                                                                                       \
-	struct AbiTraits {                                                                                                 \
-		using BaseClass = Base;                                                                                        \
-		static const char* name() { return #Class; }                                                                   \
-		static const char* baseName() { return #Base; }                                                                \
-		static const char* doc() { return docText; }                                                                   \
-		template <class Visitor> static void attributes(Visitor& visit)                                                \
-		{                                                                                                              \
-			(void)visit;                                                                                               \
-			BOOST_PP_SEQ_FOR_EACH(YADE_ABI_VISIT, Class, attrs)                                                        \
-		}                                                                                                              \
-		template <class PythonClass> static void extras(PythonClass& pythonClass) { (void)pythonClass py; }            \
-	};                                                                                                                 \
-	void abiPostLoad() { postLoad(*this); }                                                                            \
-                                                                                                                       \
-private:                                                                                                               \
-	friend class ::boost::serialization::access;                                                                       \
-	template <class Archive> void serialize(Archive& archive, unsigned)                                                \
-	{                                                                                                                  \
-		yade::abi::archiveObject<Archive, Class>(archive, *this);                                                      \
-	}                                                                                                                  \
-                                                                                                                       \
+#define YADE_CLASS_BASE_DOC_ATTRS_INIT_CTOR_PY(Class, Base, docText, attrs, inits, ctor, py)                                               \
+public:                                                                                                                                    \
+	BOOST_PP_SEQ_FOR_EACH(YADE_ABI_MEMBER, ~, attrs)                                                                                       \
+	Class() YADE_ABI_INITIALIZERS(inits) { ctor; }                                                                                         \
+	string getBaseClassName(unsigned i = 0) const override;                                                                                \
+	int getBaseClassNumber() const override;                                                                                               \
+	string getClassName() const override;                                                                                                  \
+	void pySetAttr(const string& name, const ::boost::python::object& value) override;                                                     \
+	::boost::python::dict pyDict() const override;                                                                                         \
+	void callPostLoad() override;                                                                                                          \
+	void pyRegisterClass(::boost::python::object scope) override;                                                                          \
+                                                                                                                                           \
+	struct AbiTraits {                                                                                                                     \
+		using BaseClass = Base;                                                                                                            \
+		static const char* name() { return #Class; }                                                                                       \
+		static const char* baseName() { return #Base; }                                                                                    \
+		static const char* doc() { return docText; }                                                                                       \
+		template <class Visitor>                                                                                                           \
+		static void attributes(Visitor& visit)                                                                                             \
+		{                                                                                                                                  \
+			(void)visit;                                                                                                                   \
+			BOOST_PP_SEQ_FOR_EACH(YADE_ABI_VISIT, Class, attrs)                                                                            \
+		}                                                                                                                                  \
+		template <class PythonClass>                                                                                                       \
+		static void extras(PythonClass& pythonClass)                                                                                       \
+		{                                                                                                                                  \
+			(void)pythonClass py;                                                                                                          \
+		}                                                                                                                                  \
+	};                                                                                                                                     \
+	void abiPostLoad() { postLoad(*this); }                                                                                                \
+                                                                                                                                           \
+private:                                                                                                                                   \
+	friend class ::boost::serialization::access;                                                                                           \
+	template <class Archive>                                                                                                               \
+	void serialize(Archive& archive, unsigned)                                                                                             \
+	{                                                                                                                                      \
+		yade::abi::archiveObject<Archive, Class>(archive, *this);                                                                          \
+	}                                                                                                                                      \
+                                                                                                                                           \
 public:
 
-#define YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(Class, Base, doc, attrs, ctor, py)                                           \
+#define YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(Class, Base, doc, attrs, ctor, py)                                                               \
 	YADE_CLASS_BASE_DOC_ATTRS_INIT_CTOR_PY(Class, Base, doc, attrs, , ctor, py)
-#define YADE_CLASS_BASE_DOC_ATTRS_CTOR(Class, Base, doc, attrs, ctor)                                                  \
+#define YADE_CLASS_BASE_DOC_ATTRS_CTOR(Class, Base, doc, attrs, ctor)                                                                      \
 	YADE_CLASS_BASE_DOC_ATTRS_INIT_CTOR_PY(Class, Base, doc, attrs, , ctor, )
-#define YADE_CLASS_BASE_DOC_ATTRS(Class, Base, doc, attrs)                                                             \
-	YADE_CLASS_BASE_DOC_ATTRS_INIT_CTOR_PY(Class, Base, doc, attrs, , , )
+#define YADE_CLASS_BASE_DOC_ATTRS(Class, Base, doc, attrs) YADE_CLASS_BASE_DOC_ATTRS_INIT_CTOR_PY(Class, Base, doc, attrs, , , )
 #define YADE_CLASS_BASE_DOC(Class, Base, doc) YADE_CLASS_BASE_DOC_ATTRS_INIT_CTOR_PY(Class, Base, doc, , , , )
 
 namespace yade {
 namespace abi {
-	/// Writes or reads the base object and the attributes (Plugin.hpp).
-	template <class Archive, class Class> void archiveObject(Archive&, Class&);
+/// Writes or reads the base object and the attributes (Plugin.hpp).
+template <class Archive, class Class>
+void archiveObject(Archive&, Class&);
 } // namespace abi
 } // namespace yade
 
 /// Stands inside namespace yade, after the class; leaves and re-enters it, as the key belongs to Boost's namespace.
-#define REGISTER_SERIALIZABLE(Class)                                                                                   \
-	}                                                                                                                  \
-	BOOST_CLASS_EXPORT_KEY(yade::Class)                                                                                \
+#define REGISTER_SERIALIZABLE(Class)                                                                                                       \
+	}                                                                                                                                      \
+	BOOST_CLASS_EXPORT_KEY(yade::Class)                                                                                                    \
 	namespace yade {

@@ -17,8 +17,8 @@ class ScGeom : public GenericSpheresContact {
 	Vector3r& rotate(Vector3r& shear) const;
 	Vector3r getIncidentVel(const State*, const State*, Real dt, bool avoidGranularRatcheting) const;
 	Vector3r getRelAngVel(const State*, const State*, Real dt) const;
-	void precompute(const State&, const State&, const Scene*, const shared_ptr<Interaction>&, const Vector3r& normal,
-		bool isNew, const Vector3r& shift2, bool avoidGranularRatcheting);
+	void precompute(const State&, const State&, const Scene*, const shared_ptr<Interaction>&, const Vector3r& normal, bool isNew,
+	                const Vector3r& shift2, bool avoidGranularRatcheting);
 
 	Vector3r twist_axis;
 	Vector3r orthonormal_axis;
