@@ -179,12 +179,13 @@ void defineProperty(PythonClass& pythonClass, Attribute<Class, T, Flags> attribu
 	using Policy =
 	    std::conditional_t<IsEigen<T>::value, python::return_internal_reference<>, python::return_value_policy<python::return_by_value>>;
 	python::object get = python::make_getter(attribute.member, Policy());
+	const string doc = attribute.doc + (" :yattrflags:`" + std::to_string(Flags) + "`");
 	if constexpr ((Flags & Attr::readonly) != 0)
-		pythonClass.add_property(attribute.name, get, attribute.doc);
+		pythonClass.add_property(attribute.name, get, doc.c_str());
 	else if constexpr ((Flags & Attr::triggerPostLoad) != 0)
-		pythonClass.add_property(attribute.name, get, checkedSetter(attribute.member), attribute.doc);
+		pythonClass.add_property(attribute.name, get, checkedSetter(attribute.member), doc.c_str());
 	else
-		pythonClass.add_property(attribute.name, get, python::make_setter(attribute.member), attribute.doc);
+		pythonClass.add_property(attribute.name, get, python::make_setter(attribute.member), doc.c_str());
 }
 
 /// The constructor that Python sees: attributes as keywords, positional arguments only where a class takes them

@@ -40,6 +40,11 @@ for name in names:
     assert same(plain, pickle.loads(pickle.dumps(plain))), f"{name}: pickle"
     assert same(plain, copy.copy(plain)), f"{name}: copy"
     assert same(plain, copy.deepcopy(plain)), f"{name}: deep copy"
+    # YADE's object editor reads type and flags there.
+    for attribute in plain.dict().keys() - cls.__mro__[1]().dict().keys():
+        doc = getattr(cls, attribute).__doc__
+        assert ":yattrtype:`" in doc and ":yattrflags:`" in doc, (name, attribute, doc)
+
     try:
         cls(noSuchAttribute=1)
     except AttributeError as error:

@@ -96,9 +96,13 @@ struct Identity {
 
 #define YADE_ABI_MEMBER(r, data, attr)                                                                                                     \
 	YADE_ABI_TYPE(attr) YADE_ABI_NAME(attr) = yade::abi::Identity<YADE_ABI_TYPE(attr)>::type(YADE_ABI_DEFAULT(attr));
+// The marks at the end of the text are read by YADE's object editor, to know what an empty list may hold.
+#define YADE_ABI_FULL_DOC(attr)                                                                                                            \
+	YADE_ABI_DOC(attr)                                                                                                                     \
+	" :ydefault:`" BOOST_PP_STRINGIZE(YADE_ABI_DEFAULT(attr)) "` :yattrtype:`" BOOST_PP_STRINGIZE(YADE_ABI_TYPE(attr)) "`"
 #define YADE_ABI_VISIT(r, Class, attr)                                                                                                     \
 	visit(yade::abi::attribute<YADE_ABI_FLAGS(attr)>(BOOST_PP_STRINGIZE(YADE_ABI_NAME(attr)), &Class::YADE_ABI_NAME(attr),                 \
-	                                                                    YADE_ABI_DOC(attr)));
+	                                                                    YADE_ABI_FULL_DOC(attr)));
 #define YADE_ABI_INITIALIZER(r, data, i, pair)                                                                                             \
 	BOOST_PP_IF(i, BOOST_PP_COMMA, BOOST_PP_EMPTY)() BOOST_PP_TUPLE_ELEM(0, pair)(BOOST_PP_TUPLE_ELEM(1, pair))
 #define YADE_ABI_INITIALIZERS(inits) BOOST_PP_EXPR_IF(BOOST_PP_SEQ_SIZE(inits), :) BOOST_PP_SEQ_FOR_EACH_I(YADE_ABI_INITIALIZER, ~, inits)
