@@ -53,38 +53,33 @@ def declared_tables(dump):
     }
 
 
-def library_tables(path):
-    """Class name -> {byte offset: function} for every class of namespace yade in one library."""
+def library_tables(path, wanted):
+    """Class name -> {byte offset: function} for those of the classes that have a table in one library."""
     places = {}
     for line in output("readelf", "-W", "--dyn-syms", path).splitlines():
         found = re.match(r"\s*\d+: ([0-9a-f]+)\s+(\d+) OBJECT .* (?!UND)\d+ _ZTVN4yade(\d+)(\w+)E$", line)
-        if found and len(found[4]) == int(found[3]):
+        if found and len(found[4]) == int(found[3]) and "yade::" + found[4] in wanted:
             places["yade::" + found[4]] = (int(found[1], 16), int(found[2]))
     slots = {}
     for line in output("readelf", "-W", "-r", path).splitlines():
         field = line.split()
         if len(field) >= 5 and field[2] == "R_X86_64_64":
             slots[int(field[0], 16)] = field[4].split("@")[0]
-    plain = demangled(sorted({symbol for symbol in slots.values() if symbol.startswith("_Z")}))
-    return {
-        name: {
-            at: plain[slots[start + at]]
-            for at in range(0, size, 8)
-            if start + at in slots and not slots[start + at].startswith("_ZTI")
-        }
+    tables = {
+        name: {at: slots[start + at] for at in range(0, size, 8) if slots.get(start + at, "_ZTI")[:4] != "_ZTI"}
         for name, (start, size) in places.items()
     }
+    plain = demangled(sorted({symbol for table in tables.values() for symbol in table.values()}))
+    return {name: {at: plain[symbol] for at, symbol in table.items()} for name, table in tables.items()}
 
 
 def main(dump, folder):
-    declared = declared_tables(dump)
+    declared = {name: table for name, table in declared_tables(dump).items() if name not in NOT_IN_YADE | READ_ONLY}
     yade = {}
     for library in LIBRARIES:
-        yade = {**library_tables(f"{folder}/{library}"), **yade}
+        yade = {**library_tables(f"{folder}/{library}", declared), **yade}
     wrong = []
     for name, table in sorted(declared.items()):
-        if name in NOT_IN_YADE | READ_ONLY:
-            continue
         if name not in yade:
             wrong.append(f"{name}: YADE has no such table")
             continue
