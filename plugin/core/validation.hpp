@@ -11,7 +11,8 @@ namespace masonry {
 
 inline void require(const std::string& attribute, double value, bool allowed, const std::string& range)
 {
-	if (allowed) return;
+	if (allowed)
+		return;
 	std::ostringstream text;
 	text.precision(12);
 	text << attribute << " = " << value << ": " << range;

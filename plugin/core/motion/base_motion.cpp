@@ -19,37 +19,44 @@ double BaseMotion::Piece::accelerationAt(double t) const
 
 double BaseMotion::Piece::velocityAt(double t) const
 {
-	if (isFree()) return velocity;
+	if (isFree())
+		return velocity;
 	const double s = t - start;
 	// cos(phase) - cos(frequency s + phase), without the difference of near-equal numbers
-	if (amplitude != 0) return velocity + 2 * amplitude / frequency * std::sin(frequency * s / 2 + phase) * std::sin(frequency * s / 2);
+	if (amplitude != 0)
+		return velocity + 2 * amplitude / frequency * std::sin(frequency * s / 2 + phase) * std::sin(frequency * s / 2);
 	return velocity + s * (constant + s * slope / 2);
 }
 
 double BaseMotion::Piece::displacementAt(double t) const
 {
-	if (isFree()) return velocity == 0 ? displacement : displacement + velocity * (t - start);
+	if (isFree())
+		return velocity == 0 ? displacement : displacement + velocity * (t - start);
 	const double s = t - start;
 	if (amplitude != 0)
-		return displacement + (velocity + amplitude / frequency * std::cos(phase)) * s
-		        - amplitude / (frequency * frequency) * (std::sin(frequency * s + phase) - std::sin(phase));
+		return displacement + (velocity + amplitude / frequency * std::cos(phase)) * s -
+		       amplitude / (frequency * frequency) * (std::sin(frequency * s + phase) - std::sin(phase));
 	return displacement + s * (velocity + s * (constant / 2 + s * slope / 6));
 }
 
 std::optional<double> BaseMotion::Piece::firstAbove(double level, double from, double until) const
 {
-	if (isFree()) return std::nullopt;
-	if (std::abs(accelerationAt(from)) > level) return from;
+	if (isFree())
+		return std::nullopt;
+	if (std::abs(accelerationAt(from)) > level)
+		return from;
 	double first = infinity;
 	if (amplitude != 0) {
-		if (std::abs(amplitude) <= level) return std::nullopt;
+		if (std::abs(amplitude) <= level)
+			return std::nullopt;
 		// |sin| rises above the ratio at angle asin(ratio), then every half turn
 		const double angle = std::asin(level / std::abs(amplitude)), now = frequency * (from - start) + phase;
 		first = start + (angle + pi * std::ceil((now - angle) / pi) - phase) / frequency;
 	} else if (slope != 0) {
 		first = start + (std::copysign(level, slope) - constant) / slope;
 	}
-	if (!(first <= until)) return std::nullopt;
+	if (!(first <= until))
+		return std::nullopt;
 	return std::max(first, from);
 }
 
@@ -75,8 +82,8 @@ std::vector<double> BaseMotion::kinks() const
 
 void BaseMotion::append(Piece piece)
 {
-	const Piece& last  = pieces_.back();
-	piece.velocity     = last.velocityAt(piece.start) + piece.velocityJump;
+	const Piece& last = pieces_.back();
+	piece.velocity = last.velocityAt(piece.start) + piece.velocityJump;
 	piece.displacement = last.displacementAt(piece.start);
 	pieces_.push_back(piece);
 }
@@ -87,12 +94,16 @@ void BaseMotion::appendPulse(double t, double jump, PulseShape shape, double dur
 	pulse.start = t;
 	after.start = t + duration;
 	switch (shape) {
-		case PulseShape::Dirac: pulse.velocityJump = jump; return append(pulse);
-		case PulseShape::Rectangular: pulse.constant = jump / duration; break;
-		case PulseShape::HalfSine:
-			pulse.amplitude = pi / 2 * jump / duration;
-			pulse.frequency = pi / duration;
-			break;
+	case PulseShape::Dirac:
+		pulse.velocityJump = jump;
+		return append(pulse);
+	case PulseShape::Rectangular:
+		pulse.constant = jump / duration;
+		break;
+	case PulseShape::HalfSine:
+		pulse.amplitude = pi / 2 * jump / duration;
+		pulse.frequency = pi / duration;
+		break;
 	}
 	append(pulse);
 	append(after);
@@ -103,14 +114,16 @@ namespace motion {
 BaseMotion pulseTrain(double impulse, const std::vector<double>& times, bool assembly, PulseShape shape, double duration)
 {
 	requireFinite("impulse", impulse);
-	if (shape != PulseShape::Dirac) requirePositive("duration", duration);
+	if (shape != PulseShape::Dirac)
+		requirePositive("duration", duration);
 	BaseMotion train;
 	for (size_t i = 0; i < times.size(); i++) {
 		const double earliest = i == 0 ? 0 : times[i - 1] + (shape == PulseShape::Dirac ? 0 : duration);
-		require("times[" + std::to_string(i) + "]", times[i], times[i] >= earliest && (i == 0 || times[i] > times[i - 1]) && times[i] < infinity,
+		require("times[" + std::to_string(i) + "]", times[i],
+		        times[i] >= earliest && (i == 0 || times[i] > times[i - 1]) && times[i] < infinity,
 		        i == 0 ? "must be >= 0 s" : "must be increasing, each pulse ended before the next");
-		const bool   single = i == 0 || (assembly && i + 1 == times.size());
-		const double sign   = i % 2 == 0 ? 1 : -1;
+		const bool single = i == 0 || (assembly && i + 1 == times.size());
+		const double sign = i % 2 == 0 ? 1 : -1;
 		train.appendPulse(times[i], sign * (single ? 1 : 2) * impulse, shape, duration);
 	}
 	return train;
@@ -136,11 +149,11 @@ BaseMotion sine(double amplitude, double frequency, double cycles)
 	requireFinite("amplitude", amplitude);
 	requirePositive("frequency", frequency);
 	requirePositive("cycles", cycles);
-	BaseMotion        result;
+	BaseMotion result;
 	BaseMotion::Piece wave, after;
 	wave.amplitude = amplitude;
 	wave.frequency = two_pi * frequency;
-	after.start    = cycles / frequency;
+	after.start = cycles / frequency;
 	result.append(wave);
 	result.append(after);
 	return result;
@@ -148,53 +161,58 @@ BaseMotion sine(double amplitude, double frequency, double cycles)
 
 Baseline baselineFromName(const std::string& name)
 {
-	if (name == "none") return Baseline::None;
-	if (name == "constant") return Baseline::Constant;
-	if (name == "linear") return Baseline::LinearVelocity;
+	if (name == "none")
+		return Baseline::None;
+	if (name == "constant")
+		return Baseline::Constant;
+	if (name == "linear")
+		return Baseline::LinearVelocity;
 	throw std::invalid_argument("baseline = '" + name + "': must be 'none', 'constant' or 'linear'");
 }
 
 namespace {
-	BaseMotion piecewiseLinear(double dt, const std::vector<double>& acceleration, double scale, double offset)
-	{
-		BaseMotion result;
-		const auto last = acceleration.size() - 1;
-		for (size_t i = 0; i <= last; i++) {
-			BaseMotion::Piece piece;
-			piece.start = double(i) * dt;
-			if (i < last) {
-				piece.constant = scale * acceleration[i] - offset;
-				piece.slope    = scale * (acceleration[i + 1] - acceleration[i]) / dt;
-			}
-			result.append(piece);
+BaseMotion piecewiseLinear(double dt, const std::vector<double>& acceleration, double scale, double offset)
+{
+	BaseMotion result;
+	const auto last = acceleration.size() - 1;
+	for (size_t i = 0; i <= last; i++) {
+		BaseMotion::Piece piece;
+		piece.start = double(i) * dt;
+		if (i < last) {
+			piece.constant = scale * acceleration[i] - offset;
+			piece.slope = scale * (acceleration[i + 1] - acceleration[i]) / dt;
 		}
-		return result;
+		result.append(piece);
 	}
-
-	// min over c of integral (v - c t)^2 dt: c = integral v t dt / integral t^2 dt. v is quadratic between samples, so
-	// Simpson's rule is exact for v t, a cubic.
-	double slopeOfVelocity(const BaseMotion& raw, double dt, size_t samples)
-	{
-		double moment = 0;
-		for (size_t i = 0; i + 1 < samples; i++) {
-			const double t = double(i) * dt, middle = t + dt / 2, next = t + dt;
-			moment += dt / 6 * (raw.velocity(t) * t + 4 * raw.velocity(middle) * middle + raw.velocity(next) * next);
-		}
-		const double end = double(samples - 1) * dt;
-		return 3 * moment / (end * end * end);
-	}
+	return result;
 }
+
+// min over c of integral (v - c t)^2 dt: c = integral v t dt / integral t^2 dt. v is quadratic between samples, so
+// Simpson's rule is exact for v t, a cubic.
+double slopeOfVelocity(const BaseMotion& raw, double dt, size_t samples)
+{
+	double moment = 0;
+	for (size_t i = 0; i + 1 < samples; i++) {
+		const double t = double(i) * dt, middle = t + dt / 2, next = t + dt;
+		moment += dt / 6 * (raw.velocity(t) * t + 4 * raw.velocity(middle) * middle + raw.velocity(next) * next);
+	}
+	const double end = double(samples - 1) * dt;
+	return 3 * moment / (end * end * end);
+}
+} // namespace
 
 BaseMotion record(double dt, const std::vector<double>& acceleration, double scale, Baseline baseline)
 {
 	requirePositive("dt", dt);
 	requireFinite("scale", scale);
-	if (acceleration.size() < 2) throw std::invalid_argument("acceleration has " + std::to_string(acceleration.size()) + " samples: must be >= 2");
+	if (acceleration.size() < 2)
+		throw std::invalid_argument("acceleration has " + std::to_string(acceleration.size()) + " samples: must be >= 2");
 	for (size_t i = 0; i < acceleration.size(); i++)
 		requireFinite("acceleration[" + std::to_string(i) + "]", acceleration[i]);
 	const BaseMotion raw = piecewiseLinear(dt, acceleration, scale, 0);
-	if (baseline == Baseline::None) return raw;
-	const double end    = double(acceleration.size() - 1) * dt;
+	if (baseline == Baseline::None)
+		return raw;
+	const double end = double(acceleration.size() - 1) * dt;
 	const double offset = baseline == Baseline::Constant ? raw.velocity(end) / end : slopeOfVelocity(raw, dt, acceleration.size());
 	return piecewiseLinear(dt, acceleration, scale, offset);
 }

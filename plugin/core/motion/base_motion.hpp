@@ -18,17 +18,17 @@ public:
 	//   acceleration(s) = constant + slope s + amplitude sin(frequency s + phase)
 	// A piece has either the linear or the sine part, not both.
 	struct Piece {
-		double start { 0 };        // s
-		double velocityJump { 0 }; // m/s, at the start
-		double constant { 0 };     // m/s^2
-		double slope { 0 };        // m/s^3
-		double amplitude { 0 };    // m/s^2
-		double frequency { 0 };    // rad/s
-		double phase { 0 };        // rad
-		double velocity { 0 };     // m/s, at the start, after the jump
-		double displacement { 0 }; // m, at the start
+		double start {0};        // s
+		double velocityJump {0}; // m/s, at the start
+		double constant {0};     // m/s^2
+		double slope {0};        // m/s^3
+		double amplitude {0};    // m/s^2
+		double frequency {0};    // rad/s
+		double phase {0};        // rad
+		double velocity {0};     // m/s, at the start, after the jump
+		double displacement {0}; // m, at the start
 
-		bool   isFree() const { return constant == 0 && slope == 0 && amplitude == 0; }
+		bool isFree() const { return constant == 0 && slope == 0 && amplitude == 0; }
 		double accelerationAt(double t) const;
 		double velocityAt(double t) const;
 		double displacementAt(double t) const;
@@ -45,8 +45,8 @@ public:
 
 	// In order of time; the first starts at -infinity, the last never ends.
 	const std::vector<Piece>& pieces() const { return pieces_; }
-	const Piece&              pieceAt(double t) const;
-	std::vector<double>       kinks() const;
+	const Piece& pieceAt(double t) const;
+	std::vector<double> kinks() const;
 
 	// Adds the next piece (its velocity and displacement are computed here). Its start must not precede the last one's.
 	void append(Piece piece);

@@ -18,8 +18,8 @@ PulseShape pulseShapeFromName(const std::string& name);
 
 // One pulse of velocity jump 1 m/s that starts at t = 0. Multiply by the jump wanted.
 struct UnitPulse {
-	PulseShape shape { PulseShape::Dirac };
-	double     duration { 0 }; // s; > 0 for the finite shapes, not used by dirac
+	PulseShape shape {PulseShape::Dirac};
+	double duration {0}; // s; > 0 for the finite shapes, not used by dirac
 
 	double acceleration(double t) const; // 1/s; 0 for dirac, whose acceleration is no function
 	double velocity(double t) const;     // fraction of the jump reached: 0 before, 1 after

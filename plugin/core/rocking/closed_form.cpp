@@ -6,27 +6,27 @@
 namespace masonry::closed_form {
 
 namespace {
-	void requireTrain(double impulse, double restitution)
-	{
-		requirePositive("impulse", impulse);
-		require("restitution", restitution, restitution >= 0 && restitution <= 1, "must be in [0, 1]");
-	}
+void requireTrain(double impulse, double restitution)
+{
+	requirePositive("impulse", impulse);
+	require("restitution", restitution, restitution >= 0 && restitution <= 1, "must be in [0, 1]");
 }
+} // namespace
 
 SinglePulse singlePulse(const RockingBlock& block, double impulse)
 {
 	requirePositive("impulse", impulse);
 	const double w1 = block.angularVelocityFromImpulse(impulse), A = block.angularAcceleration;
-	return { w1, 2 * w1 / A, w1 * w1 / (2 * A) };
+	return {w1, 2 * w1 / A, w1 * w1 / (2 * A)};
 }
 
 PulseSequence pulseSequence(const RockingBlock& block, double impulse, double restitution, int halfCycles)
 {
 	requireTrain(impulse, restitution);
 	require("n", halfCycles, halfCycles >= 1, "must be >= 1");
-	const double  w1 = block.angularVelocityFromImpulse(impulse), A = block.angularAcceleration;
+	const double w1 = block.angularVelocityFromImpulse(impulse), A = block.angularAcceleration;
 	PulseSequence sequence;
-	double        w = w1, time = 0;
+	double w = w1, time = 0;
 	for (int i = 1; i <= halfCycles; i++, w = restitution * w + 2 * w1) {
 		time += 2 * w / A;
 		sequence.angularVelocity.push_back(w);
@@ -41,14 +41,14 @@ Stabilised stabilised(const RockingBlock& block, double impulse, double restitut
 {
 	requireTrain(impulse, restitution);
 	const SinglePulse first = singlePulse(block, impulse);
-	Stabilised        limit;
+	Stabilised limit;
 	limit.angularVelocity = 2 * first.angularVelocity / (1 - restitution);
-	limit.duration        = 2 * first.duration / (1 - restitution);
-	limit.period          = 2 * limit.duration;
-	limit.amplification   = 4 / ((1 - restitution) * (1 - restitution));
-	limit.peakAngle       = limit.amplification * first.peakAngle;
-	limit.ratio           = limit.peakAngle / block.criticalAngle;
-	limit.overturns       = limit.ratio >= 1;
+	limit.duration = 2 * first.duration / (1 - restitution);
+	limit.period = 2 * limit.duration;
+	limit.amplification = 4 / ((1 - restitution) * (1 - restitution));
+	limit.peakAngle = limit.amplification * first.peakAngle;
+	limit.ratio = limit.peakAngle / block.criticalAngle;
+	limit.overturns = limit.ratio >= 1;
 	return limit;
 }
 
@@ -56,7 +56,8 @@ double timeToStabilise(const RockingBlock& block, double impulse, double restitu
 {
 	requireTrain(impulse, restitution);
 	require("tolerance", tolerance, tolerance > 0 && tolerance < 1, "must be in (0, 1)");
-	if (restitution == 1) return std::numeric_limits<double>::infinity();
+	if (restitution == 1)
+		return std::numeric_limits<double>::infinity();
 	double distance = (1 + restitution) / 2, s = 1, sum = 1; // s_i = w_i/w1
 	while (distance > tolerance) {
 		distance *= restitution;

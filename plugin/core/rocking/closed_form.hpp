@@ -32,7 +32,7 @@ struct Stabilised {
 	double peakAngle;       // theta* = 2 w1^2/(A (1-C)^2), rad (Eq. 12)
 	double amplification;   // xi = theta*/theta1 = 4/(1-C)^2 (Eq. 13)
 	double ratio;           // theta*/alpha
-	bool   overturns;       // ratio >= 1
+	bool overturns;         // ratio >= 1
 };
 Stabilised stabilised(const RockingBlock&, double impulse, double restitution);
 

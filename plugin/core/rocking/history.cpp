@@ -8,15 +8,13 @@
 namespace masonry {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr int    mostImpacts = 1000000;
+constexpr int mostImpacts = 1000000;
 
 class HistoryRun {
 public:
 	HistoryRun(const RockingBlock& block, const HistoryOptions& options, const ResonantTrain* train)
-	        : options_(options)
-	        , train_(train)
-	        , law_(block, options.restoring)
-	        , restSpeed_(tolerance::zenoSpeed * std::sqrt(block.gravity / block.radius))
+	    : options_(options), train_(train), law_(block, options.restoring),
+	      restSpeed_(tolerance::zenoSpeed * std::sqrt(block.gravity / block.radius))
 	{
 	}
 
@@ -38,20 +36,20 @@ private:
 	void overturn();
 	void keepState();
 
-	bool         atRest() const { return state_.side == 0; }
-	RockingState lying() const { return { 1, std::numeric_limits<double>::quiet_NaN(), 0 }; }
+	bool atRest() const { return state_.side == 0; }
+	RockingState lying() const { return {1, std::numeric_limits<double>::quiet_NaN(), 0}; }
 
 	const HistoryOptions& options_;
-	const ResonantTrain*  train_;
-	const RockingLaw      law_;
-	const double          restSpeed_;
+	const ResonantTrain* train_;
+	const RockingLaw law_;
+	const double restSpeed_;
 
-	History      history_;
-	double       time_ { 0 };
+	History history_;
+	double time_ {0};
 	RockingState state_;
-	FreeEnergy   energy_ { 0, 0 }; // of state_, valid in free flight
-	double       peakAngle_ { 0 }, peakTime_ { 0 };
-	bool         done_ { false };
+	FreeEnergy energy_ {0, 0}; // of state_, valid in free flight
+	double peakAngle_ {0}, peakTime_ {0};
+	bool done_ {false};
 };
 
 History HistoryRun::run(const BaseMotion& motion)
@@ -60,12 +58,16 @@ History HistoryRun::run(const BaseMotion& motion)
 	start();
 	const auto pieces = motion.pieces(); // a resonant train appends to history_.motion while this runs
 	for (size_t i = 0; i < pieces.size() && !done_; i++) {
-		if (pieces[i].velocityJump != 0) jumpBase(pieces[i].velocityJump);
+		if (pieces[i].velocityJump != 0)
+			jumpBase(pieces[i].velocityJump);
 		const double end = i + 1 < pieces.size() ? pieces[i + 1].start : infinity;
-		if (end > time_) followPiece(pieces[i], std::min(end, options_.endTime));
-		if (time_ >= options_.endTime) done_ = true;
+		if (end > time_)
+			followPiece(pieces[i], std::min(end, options_.endTime));
+		if (time_ >= options_.endTime)
+			done_ = true;
 	}
-	if (!atRest() && !history_.overturned() && state_.velocity < 0 && state_.angle > 0) endHalfCycle();
+	if (!atRest() && !history_.overturned() && state_.velocity < 0 && state_.angle > 0)
+		endHalfCycle();
 	history_.endTime = std::isinf(options_.endTime) && (atRest() || history_.overturned()) ? infinity : time_;
 	history_.law_.push_back(law_);
 	return std::move(history_);
@@ -78,8 +80,8 @@ void HistoryRun::start()
 		restAt(0);
 	} else {
 		const int side = (angle != 0 ? angle : velocity) > 0 ? 1 : -1;
-		state_         = { side, std::abs(angle), side * velocity };
-		energy_        = law_.energy(state_.angle, state_.velocity);
+		state_ = {side, std::abs(angle), side * velocity};
+		energy_ = law_.energy(state_.angle, state_.velocity);
 		beginHalfCycle();
 	}
 	if (train_) {
@@ -92,12 +94,16 @@ void HistoryRun::followPiece(const BaseMotion::Piece& piece, double until)
 {
 	keepState();
 	while (!done_ && time_ < until) {
-		if (atRest() && staysAtRest(piece, until)) return;
+		if (atRest() && staysAtRest(piece, until))
+			return;
 		if (piece.isFree() && until == infinity) {
-			if (cannotReturn()) return overturn();
-			if (options_.onlyOverturning && !train_) done_ = true;
+			if (cannotReturn())
+				return overturn();
+			if (options_.onlyOverturning && !train_)
+				done_ = true;
 		}
-		if (!piece.isFree() || !flyFreely(until)) flyForced(piece, until);
+		if (!piece.isFree() || !flyFreely(until))
+			flyForced(piece, until);
 	}
 }
 
@@ -106,12 +112,13 @@ bool HistoryRun::staysAtRest(const BaseMotion::Piece& piece, double until)
 {
 	const auto uplift = piece.firstAbove(law_.upliftAcceleration(), time_, until);
 	if (!uplift || *uplift >= until) {
-		if (until == infinity) done_ = true;
+		if (until == infinity)
+			done_ = true;
 		time_ = until;
 		return true;
 	}
-	time_  = *uplift;
-	state_ = { piece.accelerationAt(time_) > 0 ? -1 : 1, 0, 0 };
+	time_ = *uplift;
+	state_ = {piece.accelerationAt(time_) > 0 ? -1 : 1, 0, 0};
 	beginHalfCycle();
 	keepState();
 	return false;
@@ -128,15 +135,18 @@ bool HistoryRun::cannotReturn() const
 // The rest of a free half cycle in closed form, if it ends by an impact before `until`.
 bool HistoryRun::flyFreely(double until)
 {
-	if (energy_.deficit <= 0 || state_.angle >= law_.alpha) return false;
-	const double fall    = law_.timeFromPeakToImpact(energy_);
+	if (energy_.deficit <= 0 || state_.angle >= law_.alpha)
+		return false;
+	const double fall = law_.timeFromPeakToImpact(energy_);
 	const double sincePeak = law_.timeFromPeak(energy_, state_.angle, state_.velocity);
-	const double peakTime  = state_.velocity > 0 ? time_ + sincePeak : time_ - sincePeak;
+	const double peakTime = state_.velocity > 0 ? time_ + sincePeak : time_ - sincePeak;
 	const double impactTime = peakTime + fall;
-	if (impactTime > until + tolerance::oneInstant * std::max(until, 1 / law_.p)) return false;
+	if (impactTime > until + tolerance::oneInstant * std::max(until, 1 / law_.p))
+		return false;
 	if (state_.velocity > 0) {
 		notePeak(law_.peakAngle(energy_), peakTime);
-		if (options_.keepStates) history_.knots_.push_back({ peakTime, { state_.side, peakAngle_, 0 } });
+		if (options_.keepStates)
+			history_.knots_.push_back({peakTime, {state_.side, peakAngle_, 0}});
 	}
 	impact(std::max(impactTime, time_), law_.impactVelocity(energy_), true);
 	return true;
@@ -148,9 +158,9 @@ void HistoryRun::flyForced(const BaseMotion::Piece& piece, double until)
 	while (time_ < until) {
 		keepState();
 		const TaylorStep step(law_, state_, piece, time_, std::min(until - time_, 2 / law_.p));
-		const double     length = step.length(), end = step.angle(length), endVelocity = step.velocity(length);
-		const auto       angle    = [&step](double s) { return step.angle(s); };
-		const auto       velocity = [&step](double s) { return step.velocity(s); };
+		const double length = step.length(), end = step.angle(length), endVelocity = step.velocity(length);
+		const auto angle = [&step](double s) { return step.angle(s); };
+		const auto velocity = [&step](double s) { return step.velocity(s); };
 
 		double above = 0, below = end <= 0 ? length : 0; // a bracket of the impact, if there is one
 		if (step.firstChange() > 0 && endVelocity < 0) {
@@ -161,15 +171,17 @@ void HistoryRun::flyForced(const BaseMotion::Piece& piece, double until)
 			notePeak(angle(above), time_ + above);
 		} else if (state_.velocity < 0 && endVelocity > 0) {
 			const double lowest = root(velocity, 0, length);
-			if (angle(lowest) <= 0) below = lowest;
+			if (angle(lowest) <= 0)
+				below = lowest;
 		}
 		if (below > above) {
 			const double s = root(angle, above, below);
 			return impact(std::max(time_ + s, std::nextafter(time_, infinity)), -step.velocity(s), piece.isFree());
 		}
-		time_  = length == until - time_ ? until : time_ + length;
-		state_ = { side, end, endVelocity };
-		if (std::max(end, peakAngle_) >= law_.lostAngle()) return overturn();
+		time_ = length == until - time_ ? until : time_ + length;
+		state_ = {side, end, endVelocity};
+		if (std::max(end, peakAngle_) >= law_.lostAngle())
+			return overturn();
 	}
 	energy_ = law_.energy(state_.angle, state_.velocity);
 }
@@ -177,15 +189,16 @@ void HistoryRun::flyForced(const BaseMotion::Piece& piece, double until)
 void HistoryRun::beginHalfCycle()
 {
 	history_.restTime = std::numeric_limits<double>::quiet_NaN();
-	peakAngle_        = state_.angle;
-	peakTime_         = time_;
+	peakAngle_ = state_.angle;
+	peakTime_ = time_;
 }
 
 void HistoryRun::notePeak(double angle, double time)
 {
-	if (angle <= peakAngle_) return;
+	if (angle <= peakAngle_)
+		return;
 	peakAngle_ = angle;
-	peakTime_  = time;
+	peakTime_ = time;
 }
 
 void HistoryRun::endHalfCycle()
@@ -199,12 +212,13 @@ void HistoryRun::impact(double time, double speed, bool free)
 	endHalfCycle();
 	history_.impactTimes.push_back(time);
 	history_.impactVelocities.push_back(-state_.side * speed);
-	if (history_.impactTimes.size() > mostImpacts) throw std::runtime_error("more than a million impacts: give half_cycles or an earlier t_end");
+	if (history_.impactTimes.size() > mostImpacts)
+		throw std::runtime_error("more than a million impacts: give half_cycles or an earlier t_end");
 
-	time_   = time;
+	time_ = time;
 	energy_ = law_.afterImpact(free ? energy_ : law_.energy(0, speed), options_.restitution);
-	state_  = { -state_.side, 0, options_.restitution * speed };
-	done_   = history_.impactTimes.size() >= size_t(options_.halfCycles);
+	state_ = {-state_.side, 0, options_.restitution * speed};
+	done_ = history_.impactTimes.size() >= size_t(options_.halfCycles);
 
 	const int last = train_ ? train_->halfCycles : -1, count = int(history_.impactTimes.size());
 	if (train_ && (last < 0 || count <= last)) {
@@ -217,7 +231,8 @@ void HistoryRun::impact(double time, double speed, bool free)
 	const bool counted = free && options_.halfCycles < std::numeric_limits<int>::max();
 	if (state_.velocity <= (counted ? 0 : restSpeed_)) {
 		// hops left: 2 v/A, each C times the one before
-		const double hops = free && options_.restitution < 1 ? 2 * state_.velocity / (law_.p * law_.p * law_.sinAlpha * (1 - options_.restitution)) : 0;
+		const double hops =
+		    free && options_.restitution < 1 ? 2 * state_.velocity / (law_.p * law_.p * law_.sinAlpha * (1 - options_.restitution)) : 0;
 		return restAt(time + hops);
 	}
 	beginHalfCycle();
@@ -228,8 +243,9 @@ void HistoryRun::jumpBase(double velocityJump)
 {
 	const double omega = state_.side * state_.velocity - law_.impulseLever(state_.angle) * velocityJump;
 	if (state_.angle == 0) {
-		if (omega == 0) return restAt(time_);
-		state_ = { omega > 0 ? 1 : -1, 0, std::abs(omega) };
+		if (omega == 0)
+			return restAt(time_);
+		state_ = {omega > 0 ? 1 : -1, 0, std::abs(omega)};
 		beginHalfCycle();
 	} else {
 		state_.velocity = state_.side * omega;
@@ -240,7 +256,7 @@ void HistoryRun::jumpBase(double velocityJump)
 
 void HistoryRun::restAt(double since)
 {
-	state_            = {};
+	state_ = {};
 	history_.restTime = since;
 	keepState();
 }
@@ -248,12 +264,13 @@ void HistoryRun::restAt(double since)
 void HistoryRun::overturn()
 {
 	history_.overturnHalfCycle = int(history_.impactTimes.size()) + 1;
-	done_                      = true;
+	done_ = true;
 }
 
 void HistoryRun::keepState()
 {
-	if (options_.keepStates) history_.knots_.push_back({ time_, state_ });
+	if (options_.keepStates)
+		history_.knots_.push_back({time_, state_});
 }
 
 double History::baseDisplacement() const
@@ -264,34 +281,38 @@ double History::baseDisplacement() const
 std::pair<double, double> History::sample(double t) const
 {
 	constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-	const auto       next = std::upper_bound(knots_.begin(), knots_.end(), t, [](double time, const Knot& knot) { return time < knot.time; });
-	if (next == knots_.begin() || !(t <= endTime)) return { nan, nan };
-	const Knot&       knot  = *(next - 1);
-	const RockingLaw& law   = law_.front();
-	const auto&       piece = motion.pieceAt(knot.time);
-	RockingState      state = knot.state;
-	if (state.side == 0) return { 0, 0 };
+	const auto next = std::upper_bound(knots_.begin(), knots_.end(), t, [](double time, const Knot& knot) { return time < knot.time; });
+	if (next == knots_.begin() || !(t <= endTime))
+		return {nan, nan};
+	const Knot& knot = *(next - 1);
+	const RockingLaw& law = law_.front();
+	const auto& piece = motion.pieceAt(knot.time);
+	RockingState state = knot.state;
+	if (state.side == 0)
+		return {0, 0};
 	for (double time = knot.time; time < t && state.angle < law.lostAngle();) {
 		const TaylorStep step(law, state, piece, time, std::min(t - time, 2 / law.p));
-		time  = step.length() == t - time ? t : time + step.length();
-		state = { state.side, step.angle(step.length()), step.velocity(step.length()) };
+		time = step.length() == t - time ? t : time + step.length();
+		state = {state.side, step.angle(step.length()), step.velocity(step.length())};
 	}
-	if (!(state.angle < law.lostAngle())) return { nan, nan };
-	return { state.side * state.angle, state.side * state.velocity };
+	if (!(state.angle < law.lostAngle()))
+		return {nan, nan};
+	return {state.side * state.angle, state.side * state.velocity};
 }
 
 namespace {
-	void check(const HistoryOptions& options, bool endless)
-	{
-		require("restitution", options.restitution, options.restitution >= 0 && options.restitution <= 1, "must be in [0, 1]");
-		require("initial_angle", options.initialAngle, std::abs(options.initialAngle) < std::asin(1), "must be in (-pi/2, pi/2) rad");
-		requireFinite("initial_velocity", options.initialVelocity);
-		require("t_end", options.endTime, options.endTime >= 0, "must be >= 0 s");
-		require("half_cycles", options.halfCycles, options.halfCycles >= 1, "must be >= 1");
-		const bool bounded = std::isfinite(options.endTime) || options.halfCycles < std::numeric_limits<int>::max() || options.onlyOverturning;
-		if (endless && !bounded) throw std::invalid_argument("t_end and half_cycles are not given: one is needed, this rocking never ends");
-	}
+void check(const HistoryOptions& options, bool endless)
+{
+	require("restitution", options.restitution, options.restitution >= 0 && options.restitution <= 1, "must be in [0, 1]");
+	require("initial_angle", options.initialAngle, std::abs(options.initialAngle) < std::asin(1), "must be in (-pi/2, pi/2) rad");
+	requireFinite("initial_velocity", options.initialVelocity);
+	require("t_end", options.endTime, options.endTime >= 0, "must be >= 0 s");
+	require("half_cycles", options.halfCycles, options.halfCycles >= 1, "must be >= 1");
+	const bool bounded = std::isfinite(options.endTime) || options.halfCycles < std::numeric_limits<int>::max() || options.onlyOverturning;
+	if (endless && !bounded)
+		throw std::invalid_argument("t_end and half_cycles are not given: one is needed, this rocking never ends");
 }
+} // namespace
 
 History simulate(const RockingBlock& block, const BaseMotion& motion, const HistoryOptions& options)
 {

@@ -21,20 +21,20 @@ namespace masonry {
 // Base velocity jumps +I at t = 0, then -2I, +2I, ..., each right after an impact (Casapulla and Maione). The jump at
 // impact number `halfCycles`, if that is >= 0, is the last: it is I and brings the base to rest.
 struct ResonantTrain {
-	double impulse;           // I, m/s
-	int    halfCycles { -1 }; // -1: without end
+	double impulse;      // I, m/s
+	int halfCycles {-1}; // -1: without end
 };
 
 struct HistoryOptions {
-	double    restitution { 1 }; // C in [0, 1]
-	Restoring restoring { Restoring::Exact };
-	double    initialAngle { 0 };    // rad, in (-pi/2, pi/2)
-	double    initialVelocity { 0 }; // rad/s
+	double restitution {1}; // C in [0, 1]
+	Restoring restoring {Restoring::Exact};
+	double initialAngle {0};    // rad, in (-pi/2, pi/2)
+	double initialVelocity {0}; // rad/s
 	// The run ends at endTime (s), after so many half cycles (impacts), at rest or overturned with no motion to come.
-	double endTime { std::numeric_limits<double>::infinity() };
-	int    halfCycles { std::numeric_limits<int>::max() };
-	bool   keepStates { false };  // needed by History::sample
-	bool   onlyOverturning { false }; // end as soon as it is certain whether the block overturns
+	double endTime {std::numeric_limits<double>::infinity()};
+	int halfCycles {std::numeric_limits<int>::max()};
+	bool keepStates {false};      // needed by History::sample
+	bool onlyOverturning {false}; // end as soon as it is certain whether the block overturns
 };
 
 class History {
@@ -43,12 +43,12 @@ public:
 	std::vector<double> impactVelocities; // rad/s, signed, just before the impact
 	// Largest angle of each half cycle, signed, and its time; a block released from rest starts at its first peak. The last
 	// half cycle is listed if its peak has been passed when the run ends; one in which the block overturns is not.
-	std::vector<double> peakAngles; // rad
-	std::vector<double> peakTimes;  // s
-	int    overturnHalfCycle { 0 }; // the half cycle (1, 2, ...) in which the block overturns; 0: it does not
-	double restTime { std::numeric_limits<double>::quiet_NaN() }; // s, since when it is at rest at the end; NaN: it rocks
-	double endTime { 0 };                                         // s, infinite if nothing more will happen
-	BaseMotion motion;                                            // of the base; a resonant train is known afterwards only
+	std::vector<double> peakAngles;                             // rad
+	std::vector<double> peakTimes;                              // s
+	int overturnHalfCycle {0};                                  // the half cycle (1, 2, ...) in which the block overturns; 0: it does not
+	double restTime {std::numeric_limits<double>::quiet_NaN()}; // s, since when it is at rest at the end; NaN: it rocks
+	double endTime {0};                                         // s, infinite if nothing more will happen
+	BaseMotion motion;                                          // of the base; a resonant train is known afterwards only
 
 	bool overturned() const { return overturnHalfCycle > 0; }
 	// Displacement of the base (m) at the end of the run, or after the motion if the run has no end.
@@ -59,10 +59,10 @@ public:
 private:
 	friend class HistoryRun;
 	struct Knot {
-		double       time;
+		double time;
 		RockingState state;
 	};
-	std::vector<Knot>       knots_;
+	std::vector<Knot> knots_;
 	std::vector<RockingLaw> law_; // one
 };
 

@@ -6,24 +6,26 @@
 namespace masonry {
 
 namespace {
-	double square(double x) { return x * x; }
+double square(double x) { return x * x; }
 
-	// long double would cost a factor of three and gain nothing: the arguments are doubles
-	using DoublePrecision = boost::math::policies::policy<boost::math::policies::promote_double<false>>;
-}
+// long double would cost a factor of three and gain nothing: the arguments are doubles
+using DoublePrecision = boost::math::policies::policy<boost::math::policies::promote_double<false>>;
+} // namespace
 
 RockingLaw::RockingLaw(const RockingBlock& block, Restoring restoring_)
-        : restoring(restoring_)
-        , alpha(block.criticalAngle)
-        , sinAlpha(block.halfWidth / block.radius)
-        , cosAlpha(block.halfHeight / block.radius)
-        , p(block.frequencyParameter)
-        , gravity(block.gravity)
+    : restoring(restoring_), alpha(block.criticalAngle), sinAlpha(block.halfWidth / block.radius),
+      cosAlpha(block.halfHeight / block.radius), p(block.frequencyParameter), gravity(block.gravity)
 {
 	switch (restoring) {
-		case Restoring::Constant: maximumEnergy_ = alpha * sinAlpha / 2; break;
-		case Restoring::Linear: maximumEnergy_ = square(alpha / 2); break;
-		case Restoring::Exact: maximumEnergy_ = square(std::sin(alpha / 2)); break;
+	case Restoring::Constant:
+		maximumEnergy_ = alpha * sinAlpha / 2;
+		break;
+	case Restoring::Linear:
+		maximumEnergy_ = square(alpha / 2);
+		break;
+	case Restoring::Exact:
+		maximumEnergy_ = square(std::sin(alpha / 2));
+		break;
 	}
 }
 
@@ -31,17 +33,20 @@ FreeEnergy RockingLaw::energy(double u, double velocity) const
 {
 	const double kinetic = square(velocity / (2 * p)), phi = alpha - u;
 	switch (restoring) {
-		case Restoring::Constant: return { kinetic + u * sinAlpha / 2, phi * sinAlpha / 2 - kinetic };
-		case Restoring::Linear: return { kinetic + u * (alpha + phi) / 4, square(phi / 2) - kinetic };
-		case Restoring::Exact: break;
+	case Restoring::Constant:
+		return {kinetic + u * sinAlpha / 2, phi * sinAlpha / 2 - kinetic};
+	case Restoring::Linear:
+		return {kinetic + u * (alpha + phi) / 4, square(phi / 2) - kinetic};
+	case Restoring::Exact:
+		break;
 	}
-	return { kinetic + std::sin(u / 2) * std::sin(alpha - u / 2), square(std::sin(phi / 2)) - kinetic };
+	return {kinetic + std::sin(u / 2) * std::sin(alpha - u / 2), square(std::sin(phi / 2)) - kinetic};
 }
 
 FreeEnergy RockingLaw::afterImpact(const FreeEnergy& e, double restitution) const
 {
 	const double kept = square(restitution);
-	return { kept * e.energy, (1 - restitution) * (1 + restitution) * maximumEnergy_ + kept * e.deficit };
+	return {kept * e.energy, (1 - restitution) * (1 + restitution) * maximumEnergy_ + kept * e.deficit};
 }
 
 double RockingLaw::impactVelocity(const FreeEnergy& e) const { return 2 * p * std::sqrt(e.energy); }
@@ -51,9 +56,12 @@ double RockingLaw::impactVelocity(const FreeEnergy& e) const { return 2 * p * st
 double RockingLaw::peakAngle(const FreeEnergy& e) const
 {
 	switch (restoring) {
-		case Restoring::Constant: return 2 * e.energy / sinAlpha;
-		case Restoring::Linear: return 2 * e.energy / (alpha / 2 + std::sqrt(e.deficit));
-		case Restoring::Exact: break;
+	case Restoring::Constant:
+		return 2 * e.energy / sinAlpha;
+	case Restoring::Linear:
+		return 2 * e.energy / (alpha / 2 + std::sqrt(e.deficit));
+	case Restoring::Exact:
+		break;
 	}
 	return 2 * std::asin(e.energy / (std::sin(alpha / 2) * std::sqrt(1 - e.deficit) + std::sqrt(e.deficit) * std::cos(alpha / 2)));
 }
@@ -66,9 +74,12 @@ double RockingLaw::timeFromPeak(const FreeEnergy& e, double u, double velocity) 
 {
 	const double rate = std::abs(velocity) / p, phi = alpha - u, K = e.deficit;
 	switch (restoring) {
-		case Restoring::Constant: return rate / (p * sinAlpha);
-		case Restoring::Linear: return std::log1p(rate * (phi + rate) / (2 * K)) / (2 * p);
-		case Restoring::Exact: break;
+	case Restoring::Constant:
+		return rate / (p * sinAlpha);
+	case Restoring::Linear:
+		return std::log1p(rate * (phi + rate) / (2 * K)) / (2 * p);
+	case Restoring::Exact:
+		break;
 	}
 	const double x = std::sin(phi / 2), ratio = K / square(x), S = rate / (2 * x * std::sqrt(1 - K));
 	return S * boost::math::ellint_rf(ratio * (1 - square(x)) / (1 - K), ratio, 1.0, DoublePrecision()) / p;

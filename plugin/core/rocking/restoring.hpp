@@ -35,15 +35,15 @@ public:
 	RockingLaw(const RockingBlock&, Restoring);
 
 	const Restoring restoring;
-	const double    alpha, sinAlpha, cosAlpha, p, gravity;
+	const double alpha, sinAlpha, cosAlpha, p, gravity;
 
 	FreeEnergy energy(double u, double velocity) const; // velocity = u', rad/s
 	FreeEnergy afterImpact(const FreeEnergy&, double restitution) const;
-	double     impactVelocity(const FreeEnergy& e) const; // w, rad/s
+	double impactVelocity(const FreeEnergy& e) const; // w, rad/s
 
 	// For deficit > 0 and u < alpha:
-	double peakAngle(const FreeEnergy&) const;                                        // rad
-	double timeFromPeak(const FreeEnergy&, double u, double velocity) const;          // s, sign of velocity not used
+	double peakAngle(const FreeEnergy&) const;                               // rad
+	double timeFromPeak(const FreeEnergy&, double u, double velocity) const; // s, sign of velocity not used
 	double timeFromPeakToImpact(const FreeEnergy& e) const { return timeFromPeak(e, 0, impactVelocity(e)); }
 
 	// A base velocity jump dv changes the angular velocity by -impulseLever(u) dv (1/m). The moment of an impulse at a known

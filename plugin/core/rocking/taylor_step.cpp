@@ -7,9 +7,9 @@ namespace masonry {
 
 TaylorStep::TaylorStep(const RockingLaw& law, const RockingState& state, const BaseMotion::Piece& piece, double t, double longest)
 {
-	Series     a;
-	int        terms = 0;
-	const auto s     = t - piece.start;
+	Series a;
+	int terms = 0;
+	const auto s = t - piece.start;
 	if (piece.amplitude != 0) {
 		a[0] = piece.amplitude * std::sin(piece.frequency * s + piece.phase);
 		a[1] = piece.amplitude * piece.frequency * std::cos(piece.frequency * s + piece.phase);
@@ -17,8 +17,8 @@ TaylorStep::TaylorStep(const RockingLaw& law, const RockingState& state, const B
 			a[k] = -piece.frequency * piece.frequency * a[k - 2] / (k * (k - 1));
 		terms = highestOrder + 1;
 	} else if (!piece.isFree()) {
-		a[0]  = piece.constant + piece.slope * s;
-		a[1]  = piece.slope;
+		a[0] = piece.constant + piece.slope * s;
+		a[1] = piece.slope;
 		terms = 2;
 	}
 	c_[0] = state.angle;
@@ -32,12 +32,12 @@ TaylorStep::TaylorStep(const RockingLaw& law, const RockingState& state, const B
 void TaylorStep::expand(const RockingLaw& law, int side, const Series& a, int terms, double longest)
 {
 	const double p2 = law.p * law.p, push = side / law.gravity;
-	const bool   exact = law.restoring == Restoring::Exact;
-	Series       S, C, rate;
-	S[0]       = exact ? std::sin(law.alpha - c_[0]) : law.restoring == Restoring::Constant ? law.sinAlpha : law.alpha - c_[0];
-	C[0]       = exact ? std::cos(law.alpha - c_[0]) : law.restoring == Restoring::Constant ? law.cosAlpha : 1;
-	rate[0]    = c_[1];
-	length_    = longest;
+	const bool exact = law.restoring == Restoring::Exact;
+	Series S, C, rate;
+	S[0] = exact ? std::sin(law.alpha - c_[0]) : law.restoring == Restoring::Constant ? law.sinAlpha : law.alpha - c_[0];
+	C[0] = exact ? std::cos(law.alpha - c_[0]) : law.restoring == Restoring::Constant ? law.cosAlpha : 1;
+	rate[0] = c_[1];
+	length_ = longest;
 	for (int k = 0;; k++) {
 		double force = 0;
 		if (exact)
@@ -45,10 +45,11 @@ void TaylorStep::expand(const RockingLaw& law, int side, const Series& a, int te
 				force += a[j] * C[k - j];
 		else if (k < terms)
 			force = a[k] * C[0];
-		c_[k + 2]   = -p2 * (S[k] + push * force) / ((k + 2) * (k + 1));
+		c_[k + 2] = -p2 * (S[k] + push * force) / ((k + 2) * (k + 1));
 		rate[k + 1] = (k + 2) * c_[k + 2];
-		order_      = k + 2;
-		if (order_ == highestOrder || (order_ >= 5 && convergesAt(order_, longest))) break;
+		order_ = k + 2;
+		if (order_ == highestOrder || (order_ >= 5 && convergesAt(order_, longest)))
+			break;
 		if (exact) {
 			double sine = 0, cosine = 0;
 			for (int j = 0; j <= k; j++) {
@@ -69,8 +70,9 @@ void TaylorStep::expand(const RockingLaw& law, int side, const Series& a, int te
 bool TaylorStep::convergesAt(int order, double s) const
 {
 	const double change = std::abs(c_[1]) * s + std::abs(c_[2]) * s * s + std::abs(c_[3]) * s * s * s;
-	const double power  = std::pow(s, order - 1);
-	return std::max(std::abs(c_[order - 1]) * power, std::abs(c_[order]) * power * s) <= std::numeric_limits<double>::epsilon() / 8 * change;
+	const double power = std::pow(s, order - 1);
+	return std::max(std::abs(c_[order - 1]) * power, std::abs(c_[order]) * power * s) <=
+	       std::numeric_limits<double>::epsilon() / 8 * change;
 }
 
 double TaylorStep::angle(double s) const

@@ -10,9 +10,9 @@ namespace masonry {
 
 // State of a block that rocks about one edge.
 struct RockingState {
-	int    side { 0 };     // +1: tilted towards +x, -1: towards -x, 0: at rest
-	double angle { 0 };    // u >= 0, rad
-	double velocity { 0 }; // u', rad/s
+	int side {0};        // +1: tilted towards +x, -1: towards -x, 0: at rest
+	double angle {0};    // u >= 0, rad
+	double velocity {0}; // u', rad/s
 };
 
 class TaylorStep {
@@ -29,10 +29,10 @@ private:
 	static constexpr int highestOrder = 24;
 	using Series = std::array<double, highestOrder + 1>;
 
-	void   expand(const RockingLaw&, int side, const Series& acceleration, int accelerationTerms, double longest);
-	bool   convergesAt(int order, double s) const;
+	void expand(const RockingLaw&, int side, const Series& acceleration, int accelerationTerms, double longest);
+	bool convergesAt(int order, double s) const;
 	Series c_;
-	int    order_;
+	int order_;
 	double length_;
 };
 

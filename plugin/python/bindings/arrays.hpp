@@ -19,14 +19,16 @@ namespace np = boost::python::numpy;
 inline std::vector<double> toVector(const py::object& object)
 {
 	const np::ndarray array = np::from_object(object, np::dtype::get_builtin<double>(), 1, 1, np::ndarray::CARRAY);
-	const auto*       data  = reinterpret_cast<const double*>(array.get_data());
-	return { data, data + array.shape(0) };
+	const auto* data = reinterpret_cast<const double*>(array.get_data());
+	return {data, data + array.shape(0)};
 }
 
-template <typename T> np::ndarray toArray(const std::vector<T>& values)
+template <typename T>
+np::ndarray toArray(const std::vector<T>& values)
 {
 	np::ndarray array = np::empty(py::make_tuple(values.size()), np::dtype::get_builtin<T>());
-	if (!values.empty()) std::memcpy(array.get_data(), values.data(), values.size() * sizeof(T));
+	if (!values.empty())
+		std::memcpy(array.get_data(), values.data(), values.size() * sizeof(T));
 	return array;
 }
 
@@ -37,7 +39,7 @@ inline np::ndarray toTable(const std::vector<std::vector<double>>& rows)
 	for (const auto& row : rows)
 		columns = std::max(columns, row.size());
 	np::ndarray table = np::empty(py::make_tuple(rows.size(), columns), np::dtype::get_builtin<double>());
-	auto*       data  = reinterpret_cast<double*>(table.get_data());
+	auto* data = reinterpret_cast<double*>(table.get_data());
 	std::fill(data, data + rows.size() * columns, std::numeric_limits<double>::quiet_NaN());
 	for (size_t i = 0; i < rows.size(); i++)
 		std::copy(rows[i].begin(), rows[i].end(), data + i * columns);
@@ -46,7 +48,7 @@ inline np::ndarray toTable(const std::vector<std::vector<double>>& rows)
 
 class WithoutGil {
 public:
-	WithoutGil() : thread_(PyEval_SaveThread()) { }
+	WithoutGil() : thread_(PyEval_SaveThread()) {}
 	~WithoutGil() { PyEval_RestoreThread(thread_); }
 	WithoutGil(const WithoutGil&) = delete;
 	WithoutGil& operator=(const WithoutGil&) = delete;
@@ -57,11 +59,12 @@ private:
 
 // body(i) for every case, without the GIL, in any order on all cores: it may write to place i of its results only. If cases
 // fail, the exception of the first of them is thrown.
-template <typename Body> void forEachCase(size_t cases, const Body& body)
+template <typename Body>
+void forEachCase(size_t cases, const Body& body)
 {
 	std::exception_ptr failure;
-	size_t             failed = cases;
-	std::mutex         mutex;
+	size_t failed = cases;
+	std::mutex mutex;
 	{
 		WithoutGil nogil;
 #pragma omp parallel for schedule(dynamic, 16) if (cases > 16)
@@ -71,13 +74,14 @@ template <typename Body> void forEachCase(size_t cases, const Body& body)
 			} catch (...) {
 				const std::lock_guard<std::mutex> lock(mutex);
 				if (i < failed) {
-					failed  = i;
+					failed = i;
 					failure = std::current_exception();
 				}
 			}
 		}
 	}
-	if (failure) std::rethrow_exception(failure);
+	if (failure)
+		std::rethrow_exception(failure);
 }
 
 } // namespace masonry::python

@@ -1,94 +1,96 @@
-#include "expose.hpp"
 #include "rocking/closed_form.hpp"
+#include "expose.hpp"
 
 namespace masonry::python {
 
-Blocks toBlocks(const py::object& tuple) { return { toVector(tuple[0]), toVector(tuple[1]), toVector(tuple[2]) }; }
+Blocks toBlocks(const py::object& tuple) { return {toVector(tuple[0]), toVector(tuple[1]), toVector(tuple[2])}; }
 
 namespace {
-	using Column = std::vector<double>;
-	using Table  = std::vector<Column>;
+using Column = std::vector<double>;
+using Table = std::vector<Column>;
 
-	py::tuple blockProperties(const py::object& geometry)
-	{
-		const Blocks blocks = toBlocks(geometry);
-		const size_t n      = blocks.size();
-		Column       slenderness(n), radius(n), angle(n), frequency(n), acceleration(n), restitution(n);
-		forEachCase(n, [&](size_t i) {
-			const RockingBlock block = blocks[i];
-			slenderness[i]           = block.slenderness;
-			radius[i]                = block.radius;
-			angle[i]                 = block.criticalAngle;
-			frequency[i]             = block.frequencyParameter;
-			acceleration[i]          = block.angularAcceleration;
-			restitution[i]           = block.naturalRestitution;
-		});
-		return py::make_tuple(
-		        toArray(slenderness), toArray(radius), toArray(angle), toArray(frequency), toArray(acceleration), toArray(restitution));
-	}
-
-	py::tuple singlePulse(const py::object& geometry, const py::object& impulses)
-	{
-		const Blocks blocks  = toBlocks(geometry);
-		const Column impulse = toVector(impulses);
-		const size_t n       = blocks.size();
-		Column       velocity(n), duration(n), peak(n);
-		forEachCase(n, [&](size_t i) {
-			const auto pulse = closed_form::singlePulse(blocks[i], impulse[i]);
-			velocity[i]      = pulse.angularVelocity;
-			duration[i]      = pulse.duration;
-			peak[i]          = pulse.peakAngle;
-		});
-		return py::make_tuple(toArray(velocity), toArray(duration), toArray(peak));
-	}
-
-	py::tuple pulseSequence(const py::object& geometry, const py::object& impulses, const py::object& restitutions, int halfCycles)
-	{
-		const Blocks blocks      = toBlocks(geometry);
-		const Column impulse     = toVector(impulses);
-		const Column restitution = toVector(restitutions);
-		const size_t n           = blocks.size();
-		Table        velocity(n), duration(n), end(n), peak(n);
-		forEachCase(n, [&](size_t i) {
-			auto sequence = closed_form::pulseSequence(blocks[i], impulse[i], restitution[i], halfCycles);
-			velocity[i]   = std::move(sequence.angularVelocity);
-			duration[i]   = std::move(sequence.duration);
-			end[i]        = std::move(sequence.endTime);
-			peak[i]       = std::move(sequence.peakAngle);
-		});
-		return py::make_tuple(toTable(velocity), toTable(duration), toTable(end), toTable(peak));
-	}
-
-	py::tuple stabilised(const py::object& geometry, const py::object& impulses, const py::object& restitutions)
-	{
-		const Blocks blocks      = toBlocks(geometry);
-		const Column impulse     = toVector(impulses);
-		const Column restitution = toVector(restitutions);
-		const size_t n           = blocks.size();
-		Column       velocity(n), duration(n), period(n), peak(n), amplification(n), ratio(n);
-		forEachCase(n, [&](size_t i) {
-			const auto limit = closed_form::stabilised(blocks[i], impulse[i], restitution[i]);
-			velocity[i]      = limit.angularVelocity;
-			duration[i]      = limit.duration;
-			period[i]        = limit.period;
-			peak[i]          = limit.peakAngle;
-			amplification[i] = limit.amplification;
-			ratio[i]         = limit.ratio;
-		});
-		return py::make_tuple(toArray(velocity), toArray(duration), toArray(period), toArray(peak), toArray(amplification), toArray(ratio));
-	}
-
-	np::ndarray timeToStabilise(const py::object& geometry, const py::object& impulses, const py::object& restitutions, const py::object& tolerances)
-	{
-		const Blocks blocks      = toBlocks(geometry);
-		const Column impulse     = toVector(impulses);
-		const Column restitution = toVector(restitutions);
-		const Column tolerance   = toVector(tolerances);
-		Column       time(blocks.size());
-		forEachCase(blocks.size(), [&](size_t i) { time[i] = closed_form::timeToStabilise(blocks[i], impulse[i], restitution[i], tolerance[i]); });
-		return toArray(time);
-	}
+py::tuple blockProperties(const py::object& geometry)
+{
+	const Blocks blocks = toBlocks(geometry);
+	const size_t n = blocks.size();
+	Column slenderness(n), radius(n), angle(n), frequency(n), acceleration(n), restitution(n);
+	forEachCase(n, [&](size_t i) {
+		const RockingBlock block = blocks[i];
+		slenderness[i] = block.slenderness;
+		radius[i] = block.radius;
+		angle[i] = block.criticalAngle;
+		frequency[i] = block.frequencyParameter;
+		acceleration[i] = block.angularAcceleration;
+		restitution[i] = block.naturalRestitution;
+	});
+	return py::make_tuple(toArray(slenderness), toArray(radius), toArray(angle), toArray(frequency), toArray(acceleration),
+	                      toArray(restitution));
 }
+
+py::tuple singlePulse(const py::object& geometry, const py::object& impulses)
+{
+	const Blocks blocks = toBlocks(geometry);
+	const Column impulse = toVector(impulses);
+	const size_t n = blocks.size();
+	Column velocity(n), duration(n), peak(n);
+	forEachCase(n, [&](size_t i) {
+		const auto pulse = closed_form::singlePulse(blocks[i], impulse[i]);
+		velocity[i] = pulse.angularVelocity;
+		duration[i] = pulse.duration;
+		peak[i] = pulse.peakAngle;
+	});
+	return py::make_tuple(toArray(velocity), toArray(duration), toArray(peak));
+}
+
+py::tuple pulseSequence(const py::object& geometry, const py::object& impulses, const py::object& restitutions, int halfCycles)
+{
+	const Blocks blocks = toBlocks(geometry);
+	const Column impulse = toVector(impulses);
+	const Column restitution = toVector(restitutions);
+	const size_t n = blocks.size();
+	Table velocity(n), duration(n), end(n), peak(n);
+	forEachCase(n, [&](size_t i) {
+		auto sequence = closed_form::pulseSequence(blocks[i], impulse[i], restitution[i], halfCycles);
+		velocity[i] = std::move(sequence.angularVelocity);
+		duration[i] = std::move(sequence.duration);
+		end[i] = std::move(sequence.endTime);
+		peak[i] = std::move(sequence.peakAngle);
+	});
+	return py::make_tuple(toTable(velocity), toTable(duration), toTable(end), toTable(peak));
+}
+
+py::tuple stabilised(const py::object& geometry, const py::object& impulses, const py::object& restitutions)
+{
+	const Blocks blocks = toBlocks(geometry);
+	const Column impulse = toVector(impulses);
+	const Column restitution = toVector(restitutions);
+	const size_t n = blocks.size();
+	Column velocity(n), duration(n), period(n), peak(n), amplification(n), ratio(n);
+	forEachCase(n, [&](size_t i) {
+		const auto limit = closed_form::stabilised(blocks[i], impulse[i], restitution[i]);
+		velocity[i] = limit.angularVelocity;
+		duration[i] = limit.duration;
+		period[i] = limit.period;
+		peak[i] = limit.peakAngle;
+		amplification[i] = limit.amplification;
+		ratio[i] = limit.ratio;
+	});
+	return py::make_tuple(toArray(velocity), toArray(duration), toArray(period), toArray(peak), toArray(amplification), toArray(ratio));
+}
+
+np::ndarray timeToStabilise(const py::object& geometry, const py::object& impulses, const py::object& restitutions,
+                            const py::object& tolerances)
+{
+	const Blocks blocks = toBlocks(geometry);
+	const Column impulse = toVector(impulses);
+	const Column restitution = toVector(restitutions);
+	const Column tolerance = toVector(tolerances);
+	Column time(blocks.size());
+	forEachCase(blocks.size(),
+	            [&](size_t i) { time[i] = closed_form::timeToStabilise(blocks[i], impulse[i], restitution[i], tolerance[i]); });
+	return toArray(time);
+}
+} // namespace
 
 void exposeClosedForm()
 {
@@ -100,7 +102,8 @@ void exposeClosedForm()
 	        "angular velocity, duration, end time, peak angle of half cycles 1..n (Eqs 7, 9, 8)");
 	py::def("stabilised", stabilised, args("blocks", "impulse", "restitution"),
 	        "angular velocity, duration, period, peak angle, amplification, ratio (Eqs 10-13)");
-	py::def("time_to_stabilise", timeToStabilise, args("blocks", "impulse", "restitution", "tolerance"), "end time of the first half cycle in tolerance");
+	py::def("time_to_stabilise", timeToStabilise, args("blocks", "impulse", "restitution", "tolerance"),
+	        "end time of the first half cycle in tolerance");
 }
 
 } // namespace masonry::python

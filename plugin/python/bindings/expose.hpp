@@ -14,15 +14,15 @@ namespace masonry::python {
 struct Blocks {
 	std::vector<double> halfWidth, halfHeight, gravity;
 
-	size_t       size() const { return halfWidth.size(); }
+	size_t size() const { return halfWidth.size(); }
 	RockingBlock operator[](size_t i) const { return RockingBlock(halfWidth[i], halfHeight[i], gravity[i]); }
 };
 Blocks toBlocks(const py::object& tuple); // (half_width, half_height, gravity)
 
 // One base motion a case, or one for all; either known in time or a resonant train.
 struct Motions {
-	size_t                              size;
-	std::function<BaseMotion(size_t)>    motion;
+	size_t size;
+	std::function<BaseMotion(size_t)> motion;
 	std::function<ResonantTrain(size_t)> train; // empty unless resonant
 
 	size_t place(size_t i) const { return size == 1 ? 0 : i; }

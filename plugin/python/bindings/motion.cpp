@@ -3,74 +3,75 @@
 namespace masonry::python {
 
 namespace {
-	using Column = std::vector<double>;
+using Column = std::vector<double>;
 
-	Motions none()
-	{
-		return { 1, [](size_t) { return BaseMotion(); }, {} };
-	}
-
-	Motions resonant(const py::object& impulses, int halfCycles)
-	{
-		const Column impulse = toVector(impulses);
-		return { impulse.size(), {}, [=](size_t i) { return ResonantTrain { impulse[i], halfCycles }; } };
-	}
-
-	Motions pulses(const py::object& impulses, const py::object& times, bool assembly, const std::string& shape, double duration)
-	{
-		const Column     impulse = toVector(impulses), at = toVector(times);
-		const PulseShape form = pulseShapeFromName(shape);
-		return { impulse.size(), [=](size_t i) { return motion::pulseTrain(impulse[i], at, assembly, form, duration); }, {} };
-	}
-
-	Motions rectangular(const py::object& amplitudes, const py::object& durations)
-	{
-		const Column amplitude = toVector(amplitudes), duration = toVector(durations);
-		return { amplitude.size(), [=](size_t i) { return motion::rectangular(amplitude[i], duration[i]); }, {} };
-	}
-
-	Motions halfSine(const py::object& amplitudes, const py::object& durations)
-	{
-		const Column amplitude = toVector(amplitudes), duration = toVector(durations);
-		return { amplitude.size(), [=](size_t i) { return motion::halfSine(amplitude[i], duration[i]); }, {} };
-	}
-
-	Motions sine(const py::object& amplitudes, const py::object& frequencies, const py::object& cycleCounts)
-	{
-		const Column amplitude = toVector(amplitudes), frequency = toVector(frequencies), cycles = toVector(cycleCounts);
-		return { amplitude.size(), [=](size_t i) { return motion::sine(amplitude[i], frequency[i], cycles[i]); }, {} };
-	}
-
-	Motions record(double dt, const py::object& accelerations, const py::object& scales, const std::string& baseline)
-	{
-		const Column           acceleration = toVector(accelerations), scale = toVector(scales);
-		const motion::Baseline correction   = motion::baselineFromName(baseline);
-		return { scale.size(), [=](size_t i) { return motion::record(dt, acceleration, scale[i], correction); }, {} };
-	}
-
-	py::tuple values(const Motions& motions, const py::object& timesObject)
-	{
-		if (motions.train) throw std::invalid_argument("a resonant train depends on the block: its base motion is known after simulate()");
-		const Column                     times = toVector(timesObject);
-		std::vector<std::vector<double>> a(motions.size), v(motions.size), u(motions.size);
-		forEachCase(motions.size, [&](size_t i) {
-			const BaseMotion motion = motions.motion(i);
-			for (const double t : times) {
-				a[i].push_back(motion.acceleration(t));
-				v[i].push_back(motion.velocity(t));
-				u[i].push_back(motion.displacement(t));
-			}
-		});
-		return py::make_tuple(toTable(a), toTable(v), toTable(u));
-	}
+Motions none()
+{
+	return {1, [](size_t) { return BaseMotion(); }, {}};
 }
+
+Motions resonant(const py::object& impulses, int halfCycles)
+{
+	const Column impulse = toVector(impulses);
+	return {impulse.size(), {}, [=](size_t i) { return ResonantTrain {impulse[i], halfCycles}; }};
+}
+
+Motions pulses(const py::object& impulses, const py::object& times, bool assembly, const std::string& shape, double duration)
+{
+	const Column impulse = toVector(impulses), at = toVector(times);
+	const PulseShape form = pulseShapeFromName(shape);
+	return {impulse.size(), [=](size_t i) { return motion::pulseTrain(impulse[i], at, assembly, form, duration); }, {}};
+}
+
+Motions rectangular(const py::object& amplitudes, const py::object& durations)
+{
+	const Column amplitude = toVector(amplitudes), duration = toVector(durations);
+	return {amplitude.size(), [=](size_t i) { return motion::rectangular(amplitude[i], duration[i]); }, {}};
+}
+
+Motions halfSine(const py::object& amplitudes, const py::object& durations)
+{
+	const Column amplitude = toVector(amplitudes), duration = toVector(durations);
+	return {amplitude.size(), [=](size_t i) { return motion::halfSine(amplitude[i], duration[i]); }, {}};
+}
+
+Motions sine(const py::object& amplitudes, const py::object& frequencies, const py::object& cycleCounts)
+{
+	const Column amplitude = toVector(amplitudes), frequency = toVector(frequencies), cycles = toVector(cycleCounts);
+	return {amplitude.size(), [=](size_t i) { return motion::sine(amplitude[i], frequency[i], cycles[i]); }, {}};
+}
+
+Motions record(double dt, const py::object& accelerations, const py::object& scales, const std::string& baseline)
+{
+	const Column acceleration = toVector(accelerations), scale = toVector(scales);
+	const motion::Baseline correction = motion::baselineFromName(baseline);
+	return {scale.size(), [=](size_t i) { return motion::record(dt, acceleration, scale[i], correction); }, {}};
+}
+
+py::tuple values(const Motions& motions, const py::object& timesObject)
+{
+	if (motions.train)
+		throw std::invalid_argument("a resonant train depends on the block: its base motion is known after simulate()");
+	const Column times = toVector(timesObject);
+	std::vector<std::vector<double>> a(motions.size), v(motions.size), u(motions.size);
+	forEachCase(motions.size, [&](size_t i) {
+		const BaseMotion motion = motions.motion(i);
+		for (const double t : times) {
+			a[i].push_back(motion.acceleration(t));
+			v[i].push_back(motion.velocity(t));
+			u[i].push_back(motion.displacement(t));
+		}
+	});
+	return py::make_tuple(toTable(a), toTable(v), toTable(u));
+}
+} // namespace
 
 void exposeMotion()
 {
 	using py::args;
 	py::class_<Motions>("Motions", "Base motions, one a case or one for all", py::no_init)
-	        .def("values", values, args("t"), "acceleration, velocity, displacement at times t, one row a motion")
-	        .def_readonly("size", &Motions::size);
+	    .def("values", values, args("t"), "acceleration, velocity, displacement at times t, one row a motion")
+	    .def_readonly("size", &Motions::size);
 	py::def("none", none);
 	py::def("resonant", resonant, args("impulse", "half_cycles"));
 	py::def("pulses", pulses, args("impulse", "times", "assembly", "shape", "duration"));

@@ -10,10 +10,10 @@ using Real = boost::multiprecision::cpp_bin_float_50;
 // Oracle: the definitions in 50 digits, from mass, moment of inertia about the edge and lever arms instead of the short forms.
 TEST_CASE("derived quantities of the block")
 {
-	for (const double slenderness : { 0.5, 1.0, 5.0, 20.0 }) {
+	for (const double slenderness : {0.5, 1.0, 5.0, 20.0}) {
 		const RockingBlock block(0.3, 0.3 * slenderness, 9.81);
-		const Real         b = 0.3, a = block.halfHeight, g = 9.81, mass = 1, R2 = a * a + b * b, inertia = 4 * mass * R2 / 3;
-		const auto         near = [](const Real& exact) { return Approx(double(exact)).epsilon(4e-16); };
+		const Real b = 0.3, a = block.halfHeight, g = 9.81, mass = 1, R2 = a * a + b * b, inertia = 4 * mass * R2 / 3;
+		const auto near = [](const Real& exact) { return Approx(double(exact)).epsilon(4e-16); };
 		REQUIRE(block.slenderness == near(a / b));
 		REQUIRE(block.radius == near(sqrt(R2)));
 		REQUIRE(block.criticalAngle == near(atan(b / a)));
