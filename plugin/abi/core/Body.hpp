@@ -39,7 +39,7 @@ class Body : public Serializable {
 	shared_ptr<State> state;
 	shared_ptr<Shape> shape;
 	shared_ptr<Bound> bound;
-	map<id_t, shared_ptr<Interaction>> intrs;
+	std::map<id_t, shared_ptr<Interaction>> intrs;
 	id_t clumpId;
 	long iterBorn;
 	Real timeBorn;

@@ -29,7 +29,7 @@ class EnergyTracker : public Serializable {
 	void setItem_py(const string& name, Real value);
 
 	EnergyAccumulator energies;
-	map<string, int> names;
+	std::map<string, int> names;
 	vector<bool> resetStep;
 };
 

@@ -49,13 +49,25 @@ public:
 
 } // namespace yade
 
-/// The classes that a plugin functor accepts; stands in its body.
+/// The classes that a plugin functor accepts; stands in its body. They must be defined, as YADE's own macros cast to them.
 #define FUNCTOR1D(A)                                                                                                                       \
 public:                                                                                                                                    \
-	string get1DFunctorType1() const override { return #A; }
+	string get1DFunctorType1() const override                                                                                              \
+	{                                                                                                                                      \
+		static_assert(sizeof(A), "include the header of " #A);                                                                             \
+		return #A;                                                                                                                         \
+	}
 #define FUNCTOR2D(A, B)                                                                                                                    \
 public:                                                                                                                                    \
-	string get2DFunctorType1() const override { return #A; }                                                                               \
-	string get2DFunctorType2() const override { return #B; }
+	string get2DFunctorType1() const override                                                                                              \
+	{                                                                                                                                      \
+		static_assert(sizeof(A), "include the header of " #A);                                                                             \
+		return #A;                                                                                                                         \
+	}                                                                                                                                      \
+	string get2DFunctorType2() const override                                                                                              \
+	{                                                                                                                                      \
+		static_assert(sizeof(B), "include the header of " #B);                                                                             \
+		return #B;                                                                                                                         \
+	}
 
 YADE_ABI_ARCHIVED(Functor)

@@ -14,7 +14,7 @@ class InteractionLoop : public GlobalEngine {
 	void pyHandleCustomCtorArgs(boost::python::tuple& args, boost::python::dict& keywords) override;
 
 	bool alreadyWarnedNoCollider;
-	vector<list<Interaction*>> eraseAfterLoopIds; // one list a thread
+	vector<std::list<Interaction*>> eraseAfterLoopIds; // one list a thread
 	shared_ptr<IGeomDispatcher> geomDispatcher;
 	shared_ptr<IPhysDispatcher> physDispatcher;
 	shared_ptr<LawDispatcher> lawDispatcher;

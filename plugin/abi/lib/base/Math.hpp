@@ -14,7 +14,6 @@
 #include <list>
 #include <map>
 #include <mutex>
-#include <set>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -22,9 +21,6 @@
 namespace yade {
 
 using boost::shared_ptr;
-using std::list;
-using std::map;
-using std::set;
 using std::string;
 using std::vector;
 
