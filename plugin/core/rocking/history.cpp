@@ -13,8 +13,10 @@ constexpr int mostImpacts = 1000000;
 class HistoryRun {
 public:
 	HistoryRun(const RockingBlock& block, const HistoryOptions& options, const ResonantTrain* train)
-	    : options_(options), train_(train), law_(block, options.restoring),
-	      restSpeed_(tolerance::zenoSpeed * std::sqrt(block.gravity / block.radius))
+	    : options_(options), train_(train), lastJump_(!train                  ? 0
+	                                                  : train->halfCycles < 0 ? std::numeric_limits<int>::max()
+	                                                                          : train->halfCycles),
+	      law_(block, options.restoring), restSpeed_(tolerance::zenoSpeed * std::sqrt(block.gravity / block.radius))
 	{
 	}
 
@@ -37,10 +39,11 @@ private:
 	void keepState();
 
 	bool atRest() const { return state_.side == 0; }
-	RockingState lying() const { return {1, std::numeric_limits<double>::quiet_NaN(), 0}; }
+	int impacts() const { return int(history_.impactTimes.size()); }
 
 	const HistoryOptions& options_;
 	const ResonantTrain* train_;
+	const int lastJump_; // number of the impact after which a resonant train makes its last jump; 0: no train
 	const RockingLaw law_;
 	const double restSpeed_;
 
@@ -54,9 +57,10 @@ private:
 
 History HistoryRun::run(const BaseMotion& motion)
 {
-	history_.motion = motion;
+	if (options_.keepStates)
+		history_.motion = motion;
 	start();
-	const auto pieces = motion.pieces(); // a resonant train appends to history_.motion while this runs
+	const auto& pieces = motion.pieces();
 	for (size_t i = 0; i < pieces.size() && !done_; i++) {
 		if (pieces[i].velocityJump != 0)
 			jumpBase(pieces[i].velocityJump);
@@ -69,7 +73,10 @@ History HistoryRun::run(const BaseMotion& motion)
 	if (!atRest() && !history_.overturned() && state_.velocity < 0 && state_.angle > 0)
 		endHalfCycle();
 	history_.endTime = std::isinf(options_.endTime) && (atRest() || history_.overturned()) ? infinity : time_;
-	history_.law_.push_back(law_);
+	const BaseMotion& moved = train_ ? history_.motion : motion;
+	history_.baseDisplacement =
+	    moved.displacement(std::isfinite(history_.endTime) ? history_.endTime : std::max(moved.pieces().back().start, 0.0));
+	history_.law_.emplace(law_);
 	return std::move(history_);
 }
 
@@ -99,7 +106,7 @@ void HistoryRun::followPiece(const BaseMotion::Piece& piece, double until)
 		if (piece.isFree() && until == infinity) {
 			if (cannotReturn())
 				return overturn();
-			if (options_.onlyOverturning && !train_)
+			if (options_.onlyOverturning && impacts() >= lastJump_)
 				done_ = true;
 		}
 		if (!piece.isFree() || !flyFreely(until))
@@ -138,7 +145,7 @@ bool HistoryRun::flyFreely(double until)
 	if (energy_.deficit <= 0 || state_.angle >= law_.alpha)
 		return false;
 	const double fall = law_.timeFromPeakToImpact(energy_);
-	const double sincePeak = law_.timeFromPeak(energy_, state_.angle, state_.velocity);
+	const double sincePeak = state_.angle == 0 ? fall : law_.timeFromPeak(energy_, state_.angle, state_.velocity);
 	const double peakTime = state_.velocity > 0 ? time_ + sincePeak : time_ - sincePeak;
 	const double impactTime = peakTime + fall;
 	if (impactTime > until + tolerance::oneInstant * std::max(until, 1 / law_.p))
@@ -212,17 +219,16 @@ void HistoryRun::impact(double time, double speed, bool free)
 	endHalfCycle();
 	history_.impactTimes.push_back(time);
 	history_.impactVelocities.push_back(-state_.side * speed);
-	if (history_.impactTimes.size() > mostImpacts)
+	if (impacts() > mostImpacts)
 		throw std::runtime_error("more than a million impacts: give half_cycles or an earlier t_end");
 
 	time_ = time;
 	energy_ = law_.afterImpact(free ? energy_ : law_.energy(0, speed), options_.restitution);
 	state_ = {-state_.side, 0, options_.restitution * speed};
-	done_ = history_.impactTimes.size() >= size_t(options_.halfCycles);
+	done_ = impacts() >= options_.halfCycles;
 
-	const int last = train_ ? train_->halfCycles : -1, count = int(history_.impactTimes.size());
-	if (train_ && (last < 0 || count <= last)) {
-		const double jump = (count % 2 == 0 ? 1 : -1) * (count == last ? 1 : 2) * train_->impulse;
+	if (impacts() <= lastJump_) {
+		const double jump = (impacts() % 2 == 0 ? 1 : -1) * (impacts() == lastJump_ ? 1 : 2) * train_->impulse;
 		history_.motion.appendPulse(time, jump);
 		jumpBase(jump);
 		return;
@@ -230,10 +236,9 @@ void HistoryRun::impact(double time, double speed, bool free)
 	// with a number of half cycles to reach, free rocking needs no threshold to end
 	const bool counted = free && options_.halfCycles < std::numeric_limits<int>::max();
 	if (state_.velocity <= (counted ? 0 : restSpeed_)) {
-		// hops left: 2 v/A, each C times the one before
-		const double hops =
-		    free && options_.restitution < 1 ? 2 * state_.velocity / (law_.p * law_.p * law_.sinAlpha * (1 - options_.restitution)) : 0;
-		return restAt(time + hops);
+		// the hops left: each takes C times the time of the one before
+		const bool hops = free && options_.restitution < 1;
+		return restAt(time + (hops ? 2 * law_.timeFromPeakToImpact(energy_) / (1 - options_.restitution) : 0));
 	}
 	beginHalfCycle();
 	keepState();
@@ -263,7 +268,7 @@ void HistoryRun::restAt(double since)
 
 void HistoryRun::overturn()
 {
-	history_.overturnHalfCycle = int(history_.impactTimes.size()) + 1;
+	history_.overturnHalfCycle = impacts() + 1;
 	done_ = true;
 }
 
@@ -273,11 +278,6 @@ void HistoryRun::keepState()
 		history_.knots_.push_back({time_, state_});
 }
 
-double History::baseDisplacement() const
-{
-	return motion.displacement(std::isfinite(endTime) ? endTime : std::max(motion.pieces().back().start, 0.0));
-}
-
 std::pair<double, double> History::sample(double t) const
 {
 	constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -285,7 +285,7 @@ std::pair<double, double> History::sample(double t) const
 	if (next == knots_.begin() || !(t <= endTime))
 		return {nan, nan};
 	const Knot& knot = *(next - 1);
-	const RockingLaw& law = law_.front();
+	const RockingLaw& law = *law_;
 	const auto& piece = motion.pieceAt(knot.time);
 	RockingState state = knot.state;
 	if (state.side == 0)
@@ -323,8 +323,12 @@ History simulate(const RockingBlock& block, const BaseMotion& motion, const Hist
 History simulate(const RockingBlock& block, const ResonantTrain& train, const HistoryOptions& options)
 {
 	requireFinite("impulse", train.impulse);
-	const bool endless = train.halfCycles < 0;
-	check(options, endless || options.restitution == 1);
+	require("half_cycles of the train", train.halfCycles, train.halfCycles >= 1 || train.halfCycles == -1,
+	        "must be >= 1, or -1 for no end");
+	HistoryOptions bounded = options;
+	if (train.halfCycles < 0)
+		bounded.onlyOverturning = false; // its pulses never end: not certain at any time
+	check(bounded, train.halfCycles < 0 || options.restitution == 1);
 	return HistoryRun(block, options, &train).run(BaseMotion());
 }
 

@@ -13,6 +13,7 @@
 #include "rocking/restoring.hpp"
 #include "rocking/taylor_step.hpp"
 #include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -48,11 +49,12 @@ public:
 	int overturnHalfCycle {0};                                  // the half cycle (1, 2, ...) in which the block overturns; 0: it does not
 	double restTime {std::numeric_limits<double>::quiet_NaN()}; // s, since when it is at rest at the end; NaN: it rocks
 	double endTime {0};                                         // s, infinite if nothing more will happen
-	BaseMotion motion;                                          // of the base; a resonant train is known afterwards only
+	// Displacement of the base (m) at endTime, or where the motion leaves it if the run has no end.
+	double baseDisplacement {0};
+	// Of the base; a resonant train becomes known here. Another motion is copied only with keepStates.
+	BaseMotion motion;
 
 	bool overturned() const { return overturnHalfCycle > 0; }
-	// Displacement of the base (m) at the end of the run, or after the motion if the run has no end.
-	double baseDisplacement() const;
 	// Signed angle (rad) and angular velocity (rad/s) at time t >= 0; NaN after endTime and once the block lies on its side.
 	std::pair<double, double> sample(double t) const;
 
@@ -63,7 +65,7 @@ private:
 		RockingState state;
 	};
 	std::vector<Knot> knots_;
-	std::vector<RockingLaw> law_; // one
+	std::optional<RockingLaw> law_;
 };
 
 // std::invalid_argument: restitution outside [0, 1], angle outside (-pi/2, pi/2), anything not finite, or a run without end

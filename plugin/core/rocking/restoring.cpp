@@ -14,7 +14,8 @@ using DoublePrecision = boost::math::policies::policy<boost::math::policies::pro
 
 RockingLaw::RockingLaw(const RockingBlock& block, Restoring restoring_)
     : restoring(restoring_), alpha(block.criticalAngle), sinAlpha(block.halfWidth / block.radius),
-      cosAlpha(block.halfHeight / block.radius), p(block.frequencyParameter), gravity(block.gravity)
+      cosAlpha(block.halfHeight / block.radius), p(block.frequencyParameter), gravity(block.gravity), sinHalf_(std::sin(alpha / 2)),
+      cosHalf_(std::cos(alpha / 2))
 {
 	switch (restoring) {
 	case Restoring::Constant:
@@ -24,7 +25,7 @@ RockingLaw::RockingLaw(const RockingBlock& block, Restoring restoring_)
 		maximumEnergy_ = square(alpha / 2);
 		break;
 	case Restoring::Exact:
-		maximumEnergy_ = square(std::sin(alpha / 2));
+		maximumEnergy_ = square(sinHalf_);
 		break;
 	}
 }
@@ -63,7 +64,7 @@ double RockingLaw::peakAngle(const FreeEnergy& e) const
 	case Restoring::Exact:
 		break;
 	}
-	return 2 * std::asin(e.energy / (std::sin(alpha / 2) * std::sqrt(1 - e.deficit) + std::sqrt(e.deficit) * std::cos(alpha / 2)));
+	return 2 * std::asin(e.energy / (sinHalf_ * std::sqrt(1 - e.deficit) + std::sqrt(e.deficit) * cosHalf_));
 }
 
 // Exact: integral from sin(phi/2) = sqrt(K) of dphi/(2p sqrt(sin^2(phi/2) - K)). With x = sin(phi/2) of the state,
@@ -81,7 +82,7 @@ double RockingLaw::timeFromPeak(const FreeEnergy& e, double u, double velocity) 
 	case Restoring::Exact:
 		break;
 	}
-	const double x = std::sin(phi / 2), ratio = K / square(x), S = rate / (2 * x * std::sqrt(1 - K));
+	const double x = u == 0 ? sinHalf_ : std::sin(phi / 2), ratio = K / square(x), S = rate / (2 * x * std::sqrt(1 - K));
 	return S * boost::math::ellint_rf(ratio * (1 - square(x)) / (1 - K), ratio, 1.0, DoublePrecision()) / p;
 }
 

@@ -56,7 +56,8 @@ public:
 	double lostAngle() const;
 
 private:
-	double maximumEnergy_;
+	const double sinHalf_, cosHalf_; // of alpha/2
+	double maximumEnergy_;           // D_max
 };
 
 } // namespace masonry

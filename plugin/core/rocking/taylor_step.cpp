@@ -5,6 +5,19 @@
 
 namespace masonry {
 
+namespace {
+// 1/k, because divisions would take half the time of an expansion
+template <size_t size>
+std::array<double, size> reciprocals()
+{
+	std::array<double, size> result {};
+	for (size_t k = 1; k < size; k++)
+		result[k] = 1.0 / double(k);
+	return result;
+}
+const auto inverse = reciprocals<32>();
+} // namespace
+
 TaylorStep::TaylorStep(const RockingLaw& law, const RockingState& state, const BaseMotion::Piece& piece, double t, double longest)
 {
 	Series a;
@@ -38,17 +51,20 @@ void TaylorStep::expand(const RockingLaw& law, int side, const Series& a, int te
 	C[0] = exact ? std::cos(law.alpha - c_[0]) : law.restoring == Restoring::Constant ? law.cosAlpha : 1;
 	rate[0] = c_[1];
 	length_ = longest;
-	for (int k = 0;; k++) {
+	double power = longest; // longest^(k+1)
+	for (int k = 0;; k++, power *= longest) {
 		double force = 0;
 		if (exact)
 			for (int j = 0, last = std::min(k, terms - 1); j <= last; j++)
 				force += a[j] * C[k - j];
 		else if (k < terms)
 			force = a[k] * C[0];
-		c_[k + 2] = -p2 * (S[k] + push * force) / ((k + 2) * (k + 1));
+		c_[k + 2] = -p2 * (S[k] + push * force) * inverse[k + 1] * inverse[k + 2];
 		rate[k + 1] = (k + 2) * c_[k + 2];
 		order_ = k + 2;
-		if (order_ == highestOrder || (order_ >= 5 && convergesAt(order_, longest)))
+		if (order_ >= 5 && convergesAt(longest, power))
+			return;
+		if (order_ == highestOrder)
 			break;
 		if (exact) {
 			double sine = 0, cosine = 0;
@@ -56,23 +72,22 @@ void TaylorStep::expand(const RockingLaw& law, int side, const Series& a, int te
 				sine -= rate[j] * C[k - j];
 				cosine += rate[j] * S[k - j];
 			}
-			S[k + 1] = sine / (k + 1);
-			C[k + 1] = cosine / (k + 1);
+			S[k + 1] = sine * inverse[k + 1];
+			C[k + 1] = cosine * inverse[k + 1];
 		} else {
 			S[k + 1] = law.restoring == Restoring::Constant ? 0 : -c_[k + 1];
 		}
 	}
-	while (!convergesAt(order_, length_))
+	while (!convergesAt(length_, std::pow(length_, order_ - 1)))
 		length_ *= 0.8;
 }
 
 // Two terms in a row below a small share of the change of the angle, because every other term may vanish by symmetry.
-bool TaylorStep::convergesAt(int order, double s) const
+bool TaylorStep::convergesAt(double s, double power) const
 {
-	const double change = std::abs(c_[1]) * s + std::abs(c_[2]) * s * s + std::abs(c_[3]) * s * s * s;
-	const double power = std::pow(s, order - 1);
-	return std::max(std::abs(c_[order - 1]) * power, std::abs(c_[order]) * power * s) <=
-	       std::numeric_limits<double>::epsilon() / 8 * change;
+	const double change = s * (std::abs(c_[1]) + s * (std::abs(c_[2]) + s * std::abs(c_[3])));
+	const double last = power * std::max(std::abs(c_[order_ - 1]), s * std::abs(c_[order_]));
+	return last <= std::numeric_limits<double>::epsilon() / 8 * change;
 }
 
 double TaylorStep::angle(double s) const

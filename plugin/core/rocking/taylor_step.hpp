@@ -30,7 +30,7 @@ private:
 	using Series = std::array<double, highestOrder + 1>;
 
 	void expand(const RockingLaw&, int side, const Series& acceleration, int accelerationTerms, double longest);
-	bool convergesAt(int order, double s) const;
+	bool convergesAt(double s, double power) const; // power = s^(order - 1)
 	Series c_;
 	int order_;
 	double length_;

@@ -58,7 +58,7 @@ py::dict simulateCases(const py::object& blocks, const Motions& motions, const p
 		overturnHalfCycle[i] = history.overturnHalfCycle;
 		restTime[i] = history.restTime;
 		endTime[i] = history.endTime;
-		baseDisplacement[i] = history.baseDisplacement();
+		baseDisplacement[i] = history.baseDisplacement;
 		impactTimes[i] = std::move(history.impactTimes);
 		impactVelocities[i] = std::move(history.impactVelocities);
 		peakAngles[i] = std::move(history.peakAngles);
