@@ -50,8 +50,8 @@ class PulseTrain(Motion):
     """
 
     def __init__(self, impulse, times=None, half_cycles=None, assembly=False, shape="dirac", duration=0.0):
-        if half_cycles is not None and (times is not None or half_cycles < 0):
-            raise ValueError(f"half_cycles = {half_cycles}: must be >= 0, and only for a resonant train (times=None)")
+        if half_cycles is not None and (times is not None or half_cycles < 1):
+            raise ValueError(f"half_cycles = {half_cycles}: must be >= 1, and only for a resonant train (times=None)")
         if times is None and (assembly or shape != "dirac"):
             raise ValueError(f"shape = {shape!r}, assembly = {assembly}: a resonant train (times=None) has dirac pulses; give half_cycles "
                              "to bring the base to rest")

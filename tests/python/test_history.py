@@ -1,0 +1,147 @@
+"""Histories: scalar and array input agree, and agree with SciPy where a closed form of another kind is at hand."""
+
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.integrate import solve_ivp
+from scipy.special import ellipk, ellipkinc
+
+import masonry
+
+G = 9.81
+I = 0.0125 * G
+
+
+def test_quarter_period_by_elliptic_integrals():
+    block = masonry.RockingBlock(0.1, 0.5)
+    alpha, p, start = block.critical_angle, block.frequency_parameter, block.critical_angle / 2
+    k = np.cos((alpha - start) / 2)
+    quarter = (ellipk(k**2) - ellipkinc(np.arcsin(np.cos(alpha / 2) / k), k**2)) / p
+    history = masonry.simulate(block, initial_angle=start, restitution=1.0, half_cycles=3)
+    np.testing.assert_allclose(history.impact_times, quarter * np.array([1, 3, 5]), rtol=1e-13)
+    np.testing.assert_allclose(np.abs(history.peak_angles), start, rtol=1e-14)
+
+
+def test_stabilised_peak_under_real_gravity():
+    block = masonry.RockingBlock(0.3, 1.5)
+    history = masonry.simulate(block, masonry.PulseTrain(I), 0.7, half_cycles=200)
+    w = masonry.closed_form.stabilised(block, I, 0.7).angular_velocity
+    peak = block.critical_angle - np.arccos(np.cos(block.critical_angle) + w**2 / (2 * block.frequency_parameter**2))
+    assert abs(history.impact_velocities[-1]) == pytest.approx(w, rel=1e-13)
+    assert abs(history.peak_angles[-1]) == pytest.approx(peak, rel=1e-12)
+    assert masonry.simulate(block, masonry.PulseTrain(I), 0.8, half_cycles=200).overturn_half_cycle == 7
+
+
+def test_velocities_of_the_recurrence_in_all_models():
+    block = masonry.RockingBlock(0.3, 1.5)
+    expected = masonry.closed_form.pulse_sequence(block, I, 0.7, 25).angular_velocity
+    for restoring in ("exact", "linear", "constant"):
+        history = masonry.simulate(block, masonry.PulseTrain(I), 0.7, restoring, half_cycles=25)
+        np.testing.assert_allclose(np.abs(history.impact_velocities), expected, rtol=1e-13)
+
+
+def test_sample_against_scipy():
+    block = masonry.RockingBlock(0.3, 1.5)
+    motion = masonry.Sine(0.3 * G, 1.0, cycles=2)
+    history = masonry.simulate(block, motion, 0.9)
+    uplift = np.arcsin((0.3 / 1.5) / 0.3) / (2 * np.pi)
+    t = np.linspace(uplift, history.impact_times[0], 50)
+    p2, alpha = block.frequency_parameter**2, block.critical_angle
+    equation = lambda t, y: [y[1], -p2 * (np.sin(alpha - y[0]) - motion.acceleration(t) / G * np.cos(alpha - y[0]))]  # tilted to -x
+    reference = solve_ivp(equation, (t[0], t[-1]), [0, 0], "DOP853", t, rtol=1e-13, atol=1e-15).y
+    angle, velocity = history.sample(t)
+    np.testing.assert_allclose(-angle, reference[0], atol=1e-11)
+    np.testing.assert_allclose(-velocity[:-1], reference[1][:-1], atol=1e-11)
+
+
+@given(st.floats(0.5, 20), st.floats(0, 1), st.floats(-0.999, 0.999), st.sampled_from(["exact", "linear", "constant"]))
+def test_free_rocking_loses_energy_as_restitution_says(slenderness, C, share, restoring):
+    block = masonry.RockingBlock(0.3, 0.3 * slenderness)
+    history = masonry.simulate(block, initial_angle=share * block.critical_angle, restitution=C, restoring=restoring, half_cycles=12)
+    w = np.abs(history.impact_velocities)
+    assert not history.overturned
+    np.testing.assert_allclose(w[1:], C * w[:-1], rtol=1e-12)
+    assert np.all(np.diff(np.abs(history.peak_angles)) <= 1e-15)
+    assert np.all(history.peak_angles[1:] * history.peak_angles[:-1] <= 0)
+    assert np.all(np.diff(history.impact_times) > 0)
+
+
+@given(st.floats(1, 15), st.floats(0.3, 1), st.floats(-0.3, 0.3), st.floats(-0.5, 0.5))
+def test_mirror(slenderness, C, share, velocity):
+    block = masonry.RockingBlock(0.3, 0.3 * slenderness)
+    one = masonry.simulate(block, masonry.HalfSine(5.0, 0.4), C, initial_angle=share / slenderness, initial_velocity=velocity, t_end=4)
+    two = masonry.simulate(block, masonry.HalfSine(-5.0, 0.4), C, initial_angle=-share / slenderness, initial_velocity=-velocity, t_end=4)
+    np.testing.assert_array_equal(one.impact_times, two.impact_times)
+    np.testing.assert_array_equal(one.peak_angles, -two.peak_angles)
+    assert one.overturn_half_cycle == two.overturn_half_cycle
+
+
+def test_arrays_give_the_scalar_answers_in_the_callers_shape():
+    half_height, C = np.array([0.9, 1.5, 2.7]), np.array([[0.6], [0.8]])
+    block = masonry.RockingBlock(0.3, half_height)
+    table = masonry.simulate(block, masonry.PulseTrain(I), C, half_cycles=15)
+    t = np.array([[0.1, 0.5, 2.0, 4.0]])
+    angles, _ = table.sample(t)
+    assert table.overturned.shape == (2, 3) and angles.shape == (2, 3, 1, 4)
+    for i, j in np.ndindex(2, 3):
+        one = masonry.simulate(masonry.RockingBlock(0.3, half_height[j]), masonry.PulseTrain(I), C[i, 0], half_cycles=15)
+        n = len(one.impact_times)
+        np.testing.assert_array_equal(table.impact_times[i, j, :n], one.impact_times)
+        assert np.all(np.isnan(table.impact_times[i, j, n:]))
+        assert table.overturn_half_cycle[i, j] == one.overturn_half_cycle
+        assert table.base_displacement[i, j] == one.base_displacement
+        np.testing.assert_array_equal(angles[i, j], one.sample(t)[0])
+
+
+def test_one_and_two_threads_give_the_same_bits():
+    script = ("import masonry, numpy as np; b = masonry.RockingBlock(0.3, np.linspace(0.5, 4, 400));"
+              "h = masonry.simulate(b, masonry.Sine(3.0, 1.0), 0.8, t_end=10);"
+              "print(np.nansum(h.peak_angles).hex(), np.nansum(h.impact_times).hex(), h.overturned.sum())")
+    run = lambda threads: subprocess.run([sys.executable, "-c", script], env={**os.environ, "OMP_NUM_THREADS": threads}, check=True,
+                                         capture_output=True).stdout
+    assert run("1") == run("2")
+
+
+def test_train_of_given_length_leaves_the_base_at_rest_where_the_paper_says():
+    block = masonry.RockingBlock(0.3, 1.5)
+    history = masonry.simulate(block, masonry.PulseTrain(I, half_cycles=60), 0.7, "constant")
+    drift = -2 * 5 * 0.0125 * I / (1 - 0.7)
+    assert history.base_displacement == pytest.approx(drift, rel=1e-8)  # up to C^60
+    np.testing.assert_allclose(history.sample_base(np.array([100.0, 200.0])), drift, rtol=1e-8)
+    assert history.rest_time > history.impact_times[60]
+    assert history.sample(history.rest_time + 1) == (0, 0)
+
+
+def test_the_block_rests_until_the_base_accelerates_enough():
+    block = masonry.RockingBlock(0.3, 1.5)
+    history = masonry.simulate(block, masonry.Rectangular(0.999 * G / 5, 1.0))
+    assert len(history.impact_times) == 0 and history.rest_time == 0 and not history.overturned
+    moved = masonry.simulate(block, masonry.Rectangular(1.001 * G / 5, 1.0))
+    assert moved.peak_angles[0] < 0  # a base that accelerates towards +x tips it towards -x
+
+
+@pytest.mark.parametrize("arguments, words", [
+    (dict(restitution=-0.1), "restitution = -0.1"),
+    (dict(restitution=np.nan), "restitution = nan"),
+    (dict(initial_angle=2.0), "initial_angle = 2"),
+    (dict(initial_velocity=np.inf), "initial_velocity = inf"),
+    (dict(t_end=-1), "t_end = -1"),
+    (dict(half_cycles=0), "half_cycles = 0"),
+    (dict(restoring="cubic"), "restoring = 'cubic'"),
+    (dict(initial_angle=0.1, restitution=1.0), "never ends"),
+    (dict(motion=masonry.PulseTrain(0.1)), "never ends"),
+])
+def test_bad_input(arguments, words):
+    with pytest.raises(ValueError, match=words):
+        masonry.simulate(masonry.RockingBlock(0.3, 1.5), **arguments)
+
+
+def test_import_is_light():
+    script = "import sys, numpy; before = set(sys.modules); import masonry; print(sorted(set(sys.modules) - before))"
+    added = subprocess.run([sys.executable, "-c", script], check=True, capture_output=True, text=True).stdout
+    assert not any(heavy in added for heavy in ("matplotlib", "scipy", "h5py", "pandas", "yade", "masonry.dem"))

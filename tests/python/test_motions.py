@@ -1,0 +1,79 @@
+"""Motions and readers."""
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+import masonry
+
+
+@pytest.mark.parametrize("motion", [
+    masonry.Rectangular(2.0, 0.4), masonry.HalfSine(-1.5, 0.4), masonry.Sine(2.0, 1.7, 1.4), masonry.Record(0.1, [0, 1, -2, 0.5, 1]),
+    masonry.PulseTrain(0.2, [0.0, 0.25], shape="half-sine", duration=0.2)
+])
+def test_velocity_and_displacement_are_integrals(motion):
+    for t in (0.15, 0.3, 0.7):
+        points = np.arange(0.05, t, 0.05)
+        assert motion.velocity(t) == pytest.approx(quad(motion.acceleration, 0, t, points=points, limit=200)[0], abs=1e-10)
+        assert motion.displacement(t) == pytest.approx(quad(motion.velocity, 0, t, points=points, limit=200)[0], abs=1e-10)
+
+
+def test_values_have_the_shape_of_the_motions_then_of_the_times():
+    motion = masonry.Sine(np.array([[1.0], [2.0]]), np.array([1.0, 2.0, 3.0]))
+    t = np.linspace(0, 0.2, 5)
+    np.testing.assert_allclose(motion.acceleration(t)[1, 2], 2 * np.sin(6 * np.pi * t), rtol=1e-13, atol=1e-15)
+    assert isinstance(masonry.Sine(1.0, 1.0).velocity(0.1), float)
+
+
+def test_baselines_by_name():
+    t = 0.01 * np.arange(500)
+    samples = 0.2 + np.sin(7 * t)
+    assert masonry.Record(0.01, samples, baseline="constant").velocity(4.99) == pytest.approx(0, abs=1e-12)
+    left = masonry.Record(0.01, samples, baseline="linear")
+    fine = np.linspace(0, 4.99, 20001)
+    assert np.trapz(left.velocity(fine) * fine, fine) == pytest.approx(0, abs=1e-5)
+
+
+@pytest.mark.parametrize("text", [
+    "PEER\nA QUAKE\nACCELERATION TIME SERIES IN UNITS OF G\nNPTS=   5, DT=   .0050 SEC,\n  .1E-01 -.2E-01  .3E-01\n .1-.25E+00\n",
+    "PEER\nA QUAKE\nACCELERATION TIME HISTORY IN UNITS OF G\n    5   0.0050  NPTS, DT\n  .1E-01 -.2E-01  .3E-01\n .1-.25E+00\n",
+])
+def test_at2(tmp_path, text):
+    path = tmp_path / "record.AT2"
+    path.write_text(text)
+    record = masonry.Record.from_at2(path)
+    assert (record.dt, record.name, record.unit) == (0.005, "A QUAKE", "g")
+    np.testing.assert_allclose(record.samples, 9.80665 * np.array([0.01, -0.02, 0.03, 0.1, -0.25]), rtol=1e-15)
+    path.write_text(text.replace("5", "6", 1))
+    with pytest.raises(ValueError, match="must be NPTS = 6"):
+        masonry.Record.from_at2(path)
+
+
+def test_csv(tmp_path):
+    path = tmp_path / "record.csv"
+    path.write_text("# a laboratory\ntime,acceleration\n0.00,1\n0.02,-2\n0.04,3\n")
+    record = masonry.Record.from_csv(path, "cm/s^2")
+    assert record.dt == pytest.approx(0.02)
+    np.testing.assert_allclose(record.samples, [0.01, -0.02, 0.03])
+    path.write_text("1\n-2\n3\n")
+    np.testing.assert_allclose(masonry.Record.from_csv(path, "g", dt=0.01).samples, 9.80665 * np.array([1, -2, 3]))
+    with pytest.raises(ValueError, match="dt = None"):
+        masonry.Record.from_csv(path, "g")
+    with pytest.raises(ValueError, match="unit = 'gal'"):
+        masonry.Record.from_csv(path, "gal", dt=0.01)
+
+
+@pytest.mark.parametrize("make, words", [
+    (lambda: masonry.PulseTrain(1.0, [0, 2, 1]), r"times\[2\] = 1: must be increasing"),
+    (lambda: masonry.PulseTrain(np.nan, [0]), "impulse = nan"),
+    (lambda: masonry.PulseTrain(1.0, [0], shape="triangle"), "shape = 'triangle'"),
+    (lambda: masonry.PulseTrain(1.0, half_cycles=0), "half_cycles = 0"),
+    (lambda: masonry.Rectangular(1.0, 0.0), "duration = 0"),
+    (lambda: masonry.Sine(1.0, -1.0), "frequency = -1"),
+    (lambda: masonry.Record(0.01, [1.0]), "1 samples"),
+    (lambda: masonry.Record(0.01, [1.0, np.nan]), r"acceleration\[1\] = nan"),
+    (lambda: masonry.Record(0.01, [1.0, 2.0], baseline="cubic"), "baseline = 'cubic'"),
+])
+def test_bad_input(make, words):
+    with pytest.raises(ValueError, match=words):
+        make()

@@ -1,0 +1,50 @@
+"""Thresholds of overturning against closed forms and known structure."""
+
+import numpy as np
+import pytest
+
+import masonry
+
+G = 9.81
+BLOCK = masonry.RockingBlock(0.1, 0.5)
+P, ALPHA = BLOCK.frequency_parameter, BLOCK.critical_angle
+V1 = G * np.sqrt(2 * (1 - np.cos(ALPHA))) / (P * np.cos(ALPHA))  # single velocity jump, by energy
+
+
+def test_single_velocity_jump():
+    thresholds = masonry.overturning_amplitude(BLOCK, masonry.PulseTrain(1.0, times=[0.0]), restitution=0.9)
+    np.testing.assert_allclose(thresholds, [V1], rtol=2e-12)
+
+
+def test_resonant_train():
+    for C in (0.5, 0.8):
+        thresholds = masonry.overturning_amplitude(BLOCK, masonry.PulseTrain(0.3), restitution=C)
+        np.testing.assert_allclose(thresholds, [(1 - C) * V1 / 2], rtol=1e-11)
+
+
+def test_rectangle_of_the_linear_equation():
+    for duration in (0.1, 0.5):
+        thresholds = masonry.overturning_amplitude(BLOCK, masonry.Rectangular(2.0, duration), restitution=0.9, restoring="linear")
+        np.testing.assert_allclose(thresholds, [G * ALPHA / (1 - np.exp(-P * duration))], rtol=2e-12)
+
+
+# Zhang and Makris 2001: a window that is safe between two overturning modes; the mode without impact does not depend on C.
+def test_full_sine_has_a_safe_window():
+    thresholds = {C: masonry.overturning_amplitude(BLOCK, masonry.Sine(1.0, 4 * P / (2 * np.pi)), restitution=C, samples=2000)
+                  for C in (0.8, 0.9)}
+    assert all(len(found) >= 3 and len(found) % 2 == 1 for found in thresholds.values())
+    for C, found in thresholds.items():
+        for threshold in found:
+            states = [masonry.simulate(BLOCK, masonry.Sine(threshold * (1 + side * 1e-9), 4 * P / (2 * np.pi)), C) for side in (-1, 1)]
+            assert states[0].overturned != states[1].overturned
+        assert states[1].overturn_half_cycle == 1  # above the last threshold: without impact
+    assert thresholds[0.8][-1] == pytest.approx(thresholds[0.9][-1], rel=1e-11)
+    assert abs(thresholds[0.8][0] / thresholds[0.9][0] - 1) > 1e-2
+
+
+def test_no_threshold_in_a_safe_bracket_and_bad_brackets():
+    assert len(masonry.overturning_amplitude(BLOCK, masonry.PulseTrain(1.0, times=[0.0]), bracket=(0.1 * V1, 0.9 * V1))) == 0
+    with pytest.raises(ValueError, match="bracket = "):
+        masonry.overturning_amplitude(BLOCK, masonry.Rectangular(1.0, 0.1), bracket=(2, 1))
+    with pytest.raises(ValueError, match="samples = 1"):
+        masonry.overturning_amplitude(BLOCK, masonry.Rectangular(1.0, 0.1), samples=1)
