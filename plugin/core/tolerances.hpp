@@ -40,3 +40,34 @@ constexpr double zenoSpeed = 1e-8;
 constexpr double oneInstant = 1e-12;
 
 } // namespace masonry::tolerance
+
+// --- box-box contact patches (contact/) --- lengths relative to the smallest half size of the two boxes
+namespace masonry::tolerance::contact {
+
+// Separation that a face must gain before it takes over as reference. Smaller: round-off chooses the normal of faces
+// that tie; larger: a face that has slid off its support keeps the normal longer.
+constexpr double reference = 1e-7;
+// Share of the penetration that adds to it. Smaller: a compressed joint of equal blocks changes its normal while it
+// rocks; it must stay below 1.
+constexpr double depthShare = 0.5;
+// Gain of alignment (cosine) before another face becomes incident. Only a block tilted by 45 degrees notices.
+constexpr double incident = 1e-7;
+// A vertex this far beyond an edge lies on the edge. Smaller: round-off makes edge crossings out of vertices.
+constexpr double slack = 1e-7;
+// A vertex that was a corner of the patch stays one up to this far beyond the edge, so that elastic slip in the joint
+// changes no identity. Larger: lever arms are wrong by as much.
+constexpr double vertexReach = 1e-4;
+// Overlaps narrower than this are no contact. Smaller: blocks that meet corner to corner push each other sideways;
+// larger: a block sliding off an edge falls that much too early.
+constexpr double sliver = 1e-4;
+// Separation that edge across edge must gain over the best face (the share below of the penetration is added). Larger:
+// the gap jumps by as much where a vertex slides off a face edge.
+constexpr double edge      = 1e-6;
+constexpr double edgeShare = 0.1;
+// Angle (rad) within which a normal counts as that of a face: no edge across edge between nearly parallel faces, whose
+// patch has the right gaps and a normal wrong by at most this angle. Half of it where the edges touched before.
+constexpr double faceAngle = 0.1;
+// Sine of the angle between two edges below which they are parallel. Smaller: round-off divided by it enters the normal.
+constexpr double parallelEdges = 1e-3;
+
+} // namespace masonry::tolerance::contact

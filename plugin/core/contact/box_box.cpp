@@ -1,0 +1,110 @@
+#include "contact/box_box.hpp"
+#include "contact/face_patch.hpp"
+#include "contact/features.hpp"
+#include "tolerances.hpp"
+#include <algorithm>
+#include <cmath>
+
+namespace masonry {
+
+using feature::signOf;
+
+namespace {
+
+// The reference face is the right normal without a look at the edges if the faces are nearly parallel or if the deepest
+// incident vertex lies over the reference face: then its distance is the separation of the boxes.
+bool isFaceContact(const FacePair& pair, const ClipTask& task, double cosineLimit)
+{
+	if (std::abs(pair.incident.rotation(pair.face.axis, pair.incidentAxis)) > cosineLimit)
+		return true;
+	const auto lower = [](const ClipPoint& a, const ClipPoint& b) { return a.height < b.height; };
+	const auto deepest = *std::min_element(task.incident.begin(), task.incident.end(), lower);
+	return std::abs(deepest.u) <= task.halfU && std::abs(deepest.v) <= task.halfV;
+}
+
+// The face whose normal is within the angle limit of the edges' normal, the present reference first.
+bool nearbyFace(const EdgeAxis& edges, const RelativePose& second, double cosineLimit, FaceAxis& reference)
+{
+	const Vector3 normalIn[2] = {edges.normal, -(second.rotation.transpose() * edges.normal)}; // outward for each body
+	if (std::abs(normalIn[reference.body - 1][reference.axis]) > cosineLimit)
+		return true;
+	for (int body : {1, 2}) {
+		for (int axis = 0; axis < 3; ++axis) {
+			const double cosine = normalIn[body - 1][axis];
+			if (std::abs(cosine) > cosineLimit) {
+				reference = {body, axis, signOf(cosine), edges.separation};
+				return true;
+			}
+		}
+	}
+	return false;
+}
+
+// Area of the face of the box that looks most along the normal.
+double areaAcross(const Box& box, const Vector3& normal)
+{
+	int axis;
+	normal.cwiseAbs().maxCoeff(&axis);
+	return box.faceArea(axis);
+}
+
+void edgePatch(const Box& box1, const Box& box2, const RelativePose& second, const Pose& pose1, const EdgeAxis& edges, ContactPatch& out)
+{
+	const int edge1 = feature::edgeNumber(edges.axis1, edges.signs1), edge2 = feature::edgeNumber(edges.axis2, edges.signs2);
+	out.normal = pose1.orientation * edges.normal;
+	out.area = 0;
+	out.nominalArea = std::min(areaAcross(box1, edges.normal), areaAcross(box2, second.rotation.transpose() * edges.normal));
+	out.size = 1;
+	out.points[0] = {pose1.toGlobal(edges.point1), pose1.toGlobal(edges.point2), edges.separation, 1, feature::edgeIdentity(edge1, edge2)};
+	out.feature = {PatchKind::Edges, edge1, edge2, 0};
+}
+
+double smallestGap(const ContactPatch& patch)
+{
+	double gap = patch.points[0].gap;
+	for (int i = 1; i < patch.size; ++i)
+		gap = std::min(gap, patch.points[i].gap);
+	return gap;
+}
+
+} // namespace
+
+bool collide(const Box& box1, const Pose& pose1, const Box& box2, const Pose& pose2, double margin, const PatchFeature& previous,
+             ContactPatch& out)
+{
+	const Matrix3 axes1 = pose1.orientation.toRotationMatrix();
+	const RelativePose second {axes1.transpose() * pose2.orientation.toRotationMatrix(),
+	                           axes1.transpose() * (pose2.position - pose1.position)};
+	FaceAxis reference = bestFace(box1, box2, second, previous);
+	if (reference.separation > margin)
+		return false;
+
+	FacePair pair = facePair(box1, box2, second, reference, previous);
+	ClipTask task = clipTask(pair, previous);
+	const bool edgesBefore = previous.kind == PatchKind::Edges;
+	const double cosineLimit = std::cos(edgesBefore ? tolerance::contact::faceAngle / 2 : tolerance::contact::faceAngle);
+	EdgeAxis edges;
+	if (!isFaceContact(pair, task, cosineLimit) && bestEdges(box1, box2, second, edges)) {
+		const double gain = tolerance::contact::edge * pair.length + tolerance::contact::edgeShare * std::max(0., -edges.separation);
+		if (edges.separation > reference.separation + (edgesBefore ? -gain : gain)) {
+			if (edges.separation > margin)
+				return false;
+			if (!nearbyFace(edges, second, cosineLimit, reference)) {
+				edgePatch(box1, box2, second, pose1, edges, out);
+				return true;
+			}
+			const FacePair nearby = facePair(box1, box2, second, reference, previous);
+			const ClipTask again = clipTask(nearby, previous);
+			return facePatch(nearby, again, nearby.face.body == 1 ? pose1 : pose2, previous, out) && smallestGap(out) <= margin;
+		}
+	}
+	const Pose& referencePose = reference.body == 1 ? pose1 : pose2;
+	if (!facePatch(pair, task, referencePose, previous, out)) {
+		const FacePair next = withNextIncident(pair);
+		if (!facePatch(next, clipTask(next, previous), referencePose, previous, out))
+			return false;
+	}
+	return smallestGap(out) <= margin;
+}
+
+} // namespace masonry

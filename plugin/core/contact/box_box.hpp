@@ -1,0 +1,29 @@
+#pragma once
+// Contact patch of two boxes in any position.
+#include "contact/contact_patch.hpp"
+
+namespace masonry {
+
+struct Box {
+	Vector3 halfSize; // m, all > 0
+
+	double faceArea(int axis) const { return 4 * halfSize[(axis + 1) % 3] * halfSize[(axis + 2) % 3]; } // m^2
+};
+
+// Finds the patch between two boxes; false, with `out` unspecified, when they are farther apart than `margin` (m).
+//
+// Normal. Of the separating axes, the face normals of both boxes come first: the face with the largest separation is
+// the reference. Faces that tie (parallel faces; an edge exactly above an edge) are decided by `previous`, else by the
+// larger face, else body 1. An edge across an edge gives the normal only where it separates better and its normal is
+// not close to any face's: two faces that are nearly parallel keep their patch and its points.
+//
+// Points. A vertex of the incident face keeps its own position, its partner is the projection on the reference face; a
+// vertex of the reference face likewise; elsewhere two edges cross. `previous` is the feature of the last call for this
+// pair (default: none): it keeps reference, incident face and vertices until another choice is clearly better, by the
+// limits in tolerances.hpp. The patch depends on poses and `previous` only, not on `margin`.
+//
+// Overlaps thinner than tolerance::contact::sliver are no contact: two blocks that meet corner to corner.
+bool collide(const Box& box1, const Pose& pose1, const Box& box2, const Pose& pose2, double margin, const PatchFeature& previous,
+             ContactPatch& out);
+
+} // namespace masonry

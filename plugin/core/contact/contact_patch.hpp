@@ -1,0 +1,44 @@
+#pragma once
+// Where two faces (or two edges) of a pair of boxes meet: the contact patch.
+#include "math.hpp"
+#include <array>
+
+namespace masonry {
+
+// One corner of the patch, with a material point on each body. Once both lie on the faces, they differ along the
+// normal only: position2 - position1 = gap * normal.
+struct PatchPoint {
+	Vector3 position1, position2; // global, m: on body 1 and on body 2
+	double gap;                   // m, along the normal; negative = penetration
+	double weight;                // share of the patch; the weights sum to 1, sum of weight * position = centroid of the patch
+	int identity;                 // which features meet here, independent of the reference: see features.hpp
+};
+
+enum class PatchKind { None = 0, Face1 = 1, Face2 = 2, Edges = 3 };
+
+// What the patch was made of: all that `collide` remembers from one step to the next. Small integers, fit to be saved.
+struct PatchFeature {
+	PatchKind kind {PatchKind::None}; // Face1, Face2: face on face, the number names the reference body; Edges: edge across edge
+	int feature1 {-1};                // face 0..5 (kind Face1, Face2) or edge 0..11 (kind Edges) of body 1
+	int feature2 {-1};                // the same of body 2
+	int vertices {0};                 // bit `identity` is set for each vertex that is a corner of the patch
+};
+
+inline bool operator==(const PatchFeature& a, const PatchFeature& b)
+{
+	return a.kind == b.kind && a.feature1 == b.feature1 && a.feature2 == b.feature2 && a.vertices == b.vertices;
+}
+
+// Face on face: the incident face, projected along the reference face's normal and clipped by the reference face. All
+// corners are there, those with an open gap too: the far edge of a rocking block keeps its points while it is up.
+// Edge across edge: one point.
+struct ContactPatch {
+	Vector3 normal;         // unit, from body 1 to body 2; of the reference face, or normal to both edges
+	double area {0};        // of the overlap in the reference plane, m^2; 0 for edge across edge
+	double nominalArea {0}; // the smaller of the two faces' areas, m^2; for edges, of the faces nearest to the normal
+	int size {0};
+	std::array<PatchPoint, 8> points; // the first `size`, counter-clockwise about the normal
+	PatchFeature feature;
+};
+
+} // namespace masonry

@@ -1,0 +1,110 @@
+#include "contact/separating_axes.hpp"
+#include "contact/features.hpp"
+#include "tolerances.hpp"
+#include <algorithm>
+
+namespace masonry {
+
+using feature::nextAxis;
+using feature::signOf;
+
+namespace {
+
+// Separation that another axis must gain before the previous one is given up. In a compressed joint that rocks about an
+// edge above an edge, the separations of the two faces differ by a part of the penetration; the reference must not
+// change with it, hence the second term.
+double lead(double separation, double length)
+{
+	return std::max(tolerance::contact::reference * length, tolerance::contact::depthShare * -separation);
+}
+
+// Best face of the box in whose frame `other` is given; the previous reference face, if it is one of this box, leads.
+FaceAxis bestFaceOf(int body, const Box& box, const Box& otherBox, const RelativePose& other, int previousFace, double length)
+{
+	FaceAxis best {body, -1, 1, 0};
+	double bestScore = 0;
+	for (int axis = 0; axis < 3; ++axis) {
+		const double sign = signOf(other.offset[axis]);
+		const double reach = other.rotation.row(axis).cwiseAbs().dot(otherBox.halfSize);
+		const double separation = std::abs(other.offset[axis]) - box.halfSize[axis] - reach;
+		const bool held = previousFace == feature::faceNumber(axis, sign);
+		const double score = held ? separation + lead(separation, length) : separation;
+		if (best.axis < 0 || score > bestScore) {
+			best = {body, axis, sign, separation};
+			bestScore = score;
+		}
+	}
+	return best;
+}
+
+// Nearest points of the two straight lines along the edges; false if one lies beyond its edge's ends.
+bool placeOnEdges(const Box& box1, const Box& box2, const RelativePose& second, EdgeAxis& edges)
+{
+	Vector3 middle1 = edges.signs1.cwiseProduct(box1.halfSize), middle2 = edges.signs2.cwiseProduct(box2.halfSize);
+	middle1[edges.axis1] = middle2[edges.axis2] = 0;
+	const Vector3 line2 = second.rotation.col(edges.axis2), start2 = second.offset + second.rotation * middle2;
+	const Vector3 apart = start2 - middle1;
+	const double cosine = line2[edges.axis1], sineSquared = 1 - cosine * cosine;
+	const double along1 = (apart[edges.axis1] - cosine * apart.dot(line2)) / sineSquared;
+	const double along2 = (cosine * apart[edges.axis1] - apart.dot(line2)) / sineSquared;
+	edges.point1 = middle1;
+	edges.point1[edges.axis1] = along1;
+	edges.point2 = start2 + along2 * line2;
+	return std::abs(along1) <= box1.halfSize[edges.axis1] && std::abs(along2) <= box2.halfSize[edges.axis2];
+}
+
+} // namespace
+
+FaceAxis bestFace(const Box& box1, const Box& box2, const RelativePose& second, const PatchFeature& previous)
+{
+	const double length = std::min(box1.halfSize.minCoeff(), box2.halfSize.minCoeff());
+	const bool held1 = previous.kind == PatchKind::Face1, held2 = previous.kind == PatchKind::Face2;
+	const RelativePose first = second.reversed();
+	const FaceAxis face1 = bestFaceOf(1, box1, box2, second, held1 ? previous.feature1 : -1, length);
+	const FaceAxis face2 = bestFaceOf(2, box2, box1, first, held2 ? previous.feature2 : -1, length);
+	if (held1)
+		return face2.separation > face1.separation + lead(face1.separation, length) ? face2 : face1;
+	if (held2)
+		return face1.separation > face2.separation + lead(face2.separation, length) ? face1 : face2;
+	const bool larger2 = box2.faceArea(face2.axis) > box1.faceArea(face1.axis) * (1 + tolerance::contact::reference);
+	const double tie = tolerance::contact::reference * length;
+	return face2.separation > face1.separation + (larger2 ? -tie : tie) ? face2 : face1;
+}
+
+// The nine axes e_i x c_j, e_i the axes of box 1 and c_j those of box 2 in the frame of box 1. With i, k, l cyclic,
+// (e_i x c_j)_k = -c_j[l] and (e_i x c_j)_l = c_j[k]; its length is sqrt(1 - c_j[i]^2).
+bool bestEdges(const Box& box1, const Box& box2, const RelativePose& second, EdgeAxis& best)
+{
+	bool found = false;
+	for (int i = 0; i < 3; ++i) {
+		const int k = nextAxis(i), l = nextAxis(k);
+		for (int j = 0; j < 3; ++j) {
+			const auto edge2 = second.rotation.col(j);
+			const double length = std::hypot(edge2[k], edge2[l]);
+			if (length < tolerance::contact::parallelEdges)
+				continue;
+			EdgeAxis edges;
+			edges.axis1 = i;
+			edges.axis2 = j;
+			edges.normal[i] = 0;
+			edges.normal[k] = -edge2[l] / length;
+			edges.normal[l] = edge2[k] / length;
+			const double distance = edges.normal.dot(second.offset);
+			edges.normal *= signOf(distance);
+			Vector3 normalIn2 = second.rotation.transpose() * edges.normal;
+			normalIn2[j] = 0;
+			edges.separation = std::abs(distance) - edges.normal.cwiseAbs().dot(box1.halfSize) - normalIn2.cwiseAbs().dot(box2.halfSize);
+			if (found && edges.separation <= best.separation)
+				continue;
+			edges.signs1 = edges.normal.unaryExpr(&signOf);
+			edges.signs2 = (-normalIn2).unaryExpr(&signOf);
+			if (placeOnEdges(box1, box2, second, edges)) {
+				best = edges;
+				found = true;
+			}
+		}
+	}
+	return found;
+}
+
+} // namespace masonry

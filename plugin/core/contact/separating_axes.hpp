@@ -1,0 +1,39 @@
+#pragma once
+// Separation of two boxes along the axes that can separate them: the face normals of both and the products of an edge
+// of one with an edge of the other. Positive: gap; negative: penetration; in m.
+#include "contact/box_box.hpp"
+#include "math.hpp"
+
+namespace masonry {
+
+// One box seen from the other.
+struct RelativePose {
+	Matrix3 rotation; // columns: the other box's axes in the frame of the first
+	Vector3 offset;   // the other box's centre in that frame
+
+	RelativePose reversed() const { return {rotation.transpose(), -(rotation.transpose() * offset)}; }
+};
+
+// Face of box `body` (1, 2) with outward normal `sign` times its axis.
+struct FaceAxis {
+	int body;
+	int axis;
+	double sign;
+	double separation;
+};
+
+struct EdgeAxis {
+	int axis1, axis2;       // the edge of box 1 runs along its axis1, that of box 2 along its axis2
+	Vector3 signs1, signs2; // where the edges sit, in each box's own axes; the component along the edge is unused
+	Vector3 normal;         // unit, in the frame of box 1, from box 1 to box 2
+	Vector3 point1, point2; // nearest points of the two edges, in the frame of box 1
+	double separation;
+};
+
+// The reference face: that of the largest separation, ties decided as `collide` says.
+FaceAxis bestFace(const Box& box1, const Box& box2, const RelativePose& second, const PatchFeature& previous);
+
+// The pair of edges of the largest separation whose nearest points lie on both edges; false if there is none.
+bool bestEdges(const Box& box1, const Box& box2, const RelativePose& second, EdgeAxis& best);
+
+} // namespace masonry
