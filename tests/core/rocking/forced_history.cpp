@@ -1,9 +1,9 @@
+#include "oracle/artificial_record.hpp"
 #include "oracle/forced_rocking.hpp"
 #include "rocking/history.hpp"
 #include <boost/math/constants/constants.hpp>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <random>
 
 using namespace masonry;
 using boost::math::double_constants::pi;
@@ -15,25 +15,6 @@ HistoryOptions with(double restitution, Restoring restoring = Restoring::Exact)
 	options.restitution = restitution;
 	options.restoring = restoring;
 	return options;
-}
-
-std::vector<double> artificialRecord(unsigned seed, double peak, size_t samples, double dt)
-{
-	std::mt19937 random(seed);
-	std::uniform_real_distribution<double> uniform(0, 1);
-	std::vector<double> result(samples);
-	for (int wave = 0; wave < 12; wave++) {
-		const double frequency = 0.3 + 3 * uniform(random), phase = 2 * pi * uniform(random);
-		for (size_t i = 0; i < samples; i++)
-			result[i] += std::sin(2 * pi * frequency * double(i) * dt + phase);
-	}
-	double largest = 0;
-	for (const double a : result)
-		largest = std::max(largest, std::abs(a));
-	for (double& a : result)
-		a *= peak / largest;
-	result[0] = 0;
-	return result;
 }
 
 using Acceleration = std::function<oracle::Long(size_t, oracle::Long)>;
@@ -58,25 +39,11 @@ void requireAgreement(const History& history, const oracle::ForcedHistory& exact
 TEST_CASE("records: peaks and impact times")
 {
 	const RockingBlock block(0.3, 1.5);
-	const double dt = 0.01, level = block.gravity * 0.3 / 1.5;
 	size_t impacts = 0;
 	for (const unsigned seed : {1u, 2u, 3u, 4u}) {
-		const auto samples = artificialRecord(seed, 0.3 * block.gravity, 1000, dt);
-		size_t lifted = 0; // the interval in which the acceleration first exceeds the level
-		while (std::abs(samples[lifted + 1]) <= level)
-			lifted++;
-		std::vector<oracle::Long> kinks {
-		    (oracle::Long(lifted) + (std::copysign(level, samples[lifted + 1]) - oracle::Long(samples[lifted])) /
-		                                (oracle::Long(samples[lifted + 1]) - samples[lifted])) *
-		    dt};
-		for (size_t i = lifted + 1; i < samples.size(); i++)
-			kinks.push_back(oracle::Long(i) * dt);
-		const Acceleration acceleration = [&](size_t interval, oracle::Long t) {
-			const size_t i = lifted + interval;
-			return samples[i] + (t / dt - oracle::Long(i)) * (oracle::Long(samples[i + 1]) - samples[i]);
-		};
-		const auto exact = oracle::ForcedRocking(0.3, 1.5, 9.81, 0.9, acceleration, 4).run(kinks, 1e-3L);
-		requireAgreement(simulate(block, motion::record(dt, samples), with(0.9)), exact, 1e-11);
+		const oracle::ArtificialRecord record(seed, 0.3 * block.gravity, 1000, 0.01);
+		const auto exact = record.rocking(0.3, 1.5, 9.81, 0.9, 1e-3L);
+		requireAgreement(simulate(block, motion::record(0.01, record.samples), with(0.9)), exact, 1e-11);
 		impacts += exact.impactTimes.size();
 	}
 	REQUIRE(impacts > 40);
@@ -220,7 +187,7 @@ TEST_CASE("uplift from rest: only beyond g b/a, only in the right direction, and
 TEST_CASE("mirrored base motion gives the mirrored history bit for bit")
 {
 	const RockingBlock block(0.3, 1.5);
-	const auto samples = artificialRecord(7, 0.35 * block.gravity, 1000, 0.01);
+	const auto samples = oracle::ArtificialRecord(7, 0.35 * block.gravity, 1000, 0.01).samples;
 	const auto history = simulate(block, motion::record(0.01, samples, 1), with(0.9));
 	const auto mirrored = simulate(block, motion::record(0.01, samples, -1), with(0.9));
 	REQUIRE(history.impactTimes.size() >= 5);
