@@ -122,7 +122,7 @@ std::vector<ImpactRecord> handOffPivots(JointSystem& s)
 	return records;
 }
 
-double applyBaseJump(JointSystem& s, const std::vector<int>& moved, const Vector3& jump, double before)
+JumpResponse applyBaseJump(JointSystem& s, const std::vector<int>& moved, const Vector3& jump, double before)
 {
 	const std::vector<Body> end = s.bodies;
 	const auto              touching = selectPoints(s.contacts, [](const JointContact& contact, int i) {
@@ -140,12 +140,19 @@ double applyBaseJump(JointSystem& s, const std::vector<int>& moved, const Vector
 		rows.push_back({ contact.body1, contact.body2, contact.position(p.point), contact.patch.normal, contact.law.friction });
 	}
 	std::vector<CoupleRow> none;
-	solveImpulses(s.bodies, rows, none);
-
-	double work = 0;
+	const auto             kinetic = [&] {
+        double sum = 0;
+        for (const Body& body : s.bodies)
+            sum += body.kineticEnergy();
+        return sum;
+	};
+	JumpResponse response;
+	const double energyBefore = kinetic();
+	response.residual = solveImpulses(s.bodies, rows, none).residual;
 	for (const ImpulsePoint& row : rows)
 		for (size_t k = 0; k < moved.size(); ++k)
-			work += (row.body1 == moved[k] ? 1 : row.body2 == moved[k] ? -1 : 0) * row.impulse.dot(baseVelocity[k]);
+			response.work += (row.body1 == moved[k] ? 1 : row.body2 == moved[k] ? -1 : 0) * row.impulse.dot(baseVelocity[k]);
+	response.dissipated = energyBefore + response.work - kinetic();
 	// Points that part are muted where their joint keeps a pivot: the joint rocks from this instant on.
 	std::vector<HeldPoint> held;
 	for (size_t k = 0; k < touching.size(); ++k) {
@@ -163,7 +170,7 @@ double applyBaseJump(JointSystem& s, const std::vector<int>& moved, const Vector
 	settle(s, rates.points);
 	for (const Joint& joint : groupJoints(s))
 		unmuteInFlight(s, joint);
-	return work;
+	return response;
 }
 
 } // namespace masonry

@@ -55,9 +55,14 @@ void startAtEquilibrium(JointSystem& system);
 // Finds the joints whose rotation crossed zero in this step and hands their pivots over. Forces must be up to date.
 std::vector<ImpactRecord> handOffPivots(JointSystem& system);
 
-// The prescribed bodies listed change their velocity by `jump` at the instant `before` seconds ago. Their own state is set
-// by the caller afterwards; everything that stands on them responds here.
-// Returns the work done on the system by the jump, J.
-double applyBaseJump(JointSystem& system, const std::vector<int>& moved, const Vector3& jump, double before);
+struct JumpResponse {
+	double work { 0 };       // of the moved bodies on the others, J
+	double dissipated { 0 }; // by the plastic, frictional response, J
+	double residual { 0 };   // of the impulse problem, m/s
+};
+
+// The prescribed bodies listed change their velocity by `jump` at the instant `before` seconds ago. Their own state in
+// YADE is set by their motion; everything that stands on them responds here.
+JumpResponse applyBaseJump(JointSystem& system, const std::vector<int>& moved, const Vector3& jump, double before);
 
 } // namespace masonry

@@ -12,4 +12,5 @@ from masonry.dem._load import load_classes as _load_classes
 # Bound by name here: BlockMat, ...
 globals().update(_load_classes())
 
-# Helpers that build and read scenes: each in a file of its own in this folder, imported from here.
+from masonry.dem.engines import energy, engines, impacts  # noqa: E402  (YADE's classes must be registered first)
+from masonry.dem.scene import angle, base, block, stack, tilt, wall  # noqa: E402

@@ -1,0 +1,128 @@
+"""The engines of a scene, chosen and explained."""
+
+import numpy as np
+from yade import O, wrapper
+
+_MODELS = ("auto", "compliant")
+# Share of the critical time step at which the step no longer shows in the error (README, convergence).
+_STEP_FRACTION = 0.2
+
+
+def _blocks():
+    return [b for b in O.bodies if isinstance(b.mat, wrapper.BlockMat) and isinstance(b.shape, wrapper.Box)]
+
+
+def _column_pressure(body, free, gravity):
+    """Weight of the block and of what stands above it, over its lower face, Pa."""
+    half, pos = body.shape.extents, body.state.pos
+    load = body.state.mass
+    for other in free:
+        if other.state.pos[2] <= pos[2] or other.id == body.id:
+            continue
+        overlap = [min(half[i], other.shape.extents[i] + 0.0) + 0.5 * (max(half[i], other.shape.extents[i]) - min(half[i], other.shape.extents[i]))
+                   - 0.5 * abs(pos[i] - other.state.pos[i]) for i in (0, 1)]
+        shares = [np.clip(overlap[i] / other.shape.extents[i], 0, 1) for i in (0, 1)]
+        load += other.state.mass * shares[0] * shares[1]
+    return load * gravity / (4 * half[0] * half[1])
+
+
+def _choose_stiffness(penetration, gravity):
+    """Fills in the stiffness per area of every BlockMat that has none: the most loaded joint gets in by `penetration` times the
+    smallest width. Returns a sentence, or None when nothing was chosen."""
+    blocks = _blocks()
+    missing = {b.mat.id: b.mat for b in blocks if np.isnan(b.mat.normalStiffness)}
+    for material in missing.values():
+        free = [b for b in blocks if b.dynamic]
+        if not free:
+            raise ValueError("there is no free block in O.bodies: add one with dem.block() before dem.engines()")
+        pressure = max(_column_pressure(b, free, gravity) for b in free)
+        width = min(2 * min(b.shape.extents[0], b.shape.extents[1]) for b in free)
+        material.normalStiffness = pressure / (penetration * width)
+    for body in blocks:
+        if np.isnan(body.mat.shearStiffness):
+            body.mat.shearStiffness = body.mat.normalStiffness
+    if missing:
+        stiffness = max(m.normalStiffness for m in missing.values())
+        return f"stiffness {stiffness:.3g} Pa/m (the weight presses the joints in by {penetration:g} of the width)"
+    return None
+
+
+def engines(motion=None, model="auto", dt=None, penetration=1e-5, impact_order="simultaneous", gravity=9.81):
+    """The list for O.engines; sets O.dt and prints the choice and its reason.
+
+    motion        a motion engine (PulseTrainEngine, RecordMotionEngine), a list of them, or None
+    model         'compliant': joints with stiffness, YADE's usual loop with NewtonIntegrator. 'auto' chooses; at present the
+                  compliant model is the one there is.
+    dt            time step, s; None: 0.2 of the critical one. Too large a step is refused before the first step.
+    penetration   where BlockMat gives no stiffness: how far the weight presses the most loaded joint in, relative to the
+                  smallest width (0 < penetration <= 1e-2). The error of rocking angles is about ten times this; the cost grows as
+                  its inverse square root.
+    impact_order  'simultaneous' or 'sequential': how an impact acts on a structure (RockingJointEngine.impactOrder)
+    gravity       m/s^2, along -z
+    """
+    if model not in _MODELS:
+        raise ValueError(f"model = {model!r}: must be one of {', '.join(_MODELS)}")
+    if not 0 < penetration <= 1e-2:
+        raise ValueError(f"penetration = {penetration}: must be above 0 and at most 0.01")
+    if dt is not None and not dt > 0:
+        raise ValueError(f"dt = {dt}: must be positive, in s")
+    if not gravity >= 0:
+        raise ValueError(f"gravity = {gravity}: must be 0 or positive, in m/s^2")
+    motions = [] if motion is None else list(motion) if isinstance(motion, (list, tuple)) else [motion]
+    for item in motions:
+        if not isinstance(item, wrapper.BaseMotionEngine):
+            raise ValueError(f"motion = {item!r}: must be a PulseTrainEngine, a RecordMotionEngine, or a list of them")
+        item.checkBodies()
+    reasons = ["compliant joints: YADE's usual loop"]
+    chosen = _choose_stiffness(penetration, gravity)
+    if chosen:
+        reasons.append(chosen)
+
+    joints = wrapper.RockingJointEngine(impactOrder=impact_order)
+    critical = joints.criticalTimeStep()
+    O.dt = dt if dt is not None else _STEP_FRACTION * critical
+    reasons.append(f"dt = {O.dt:.3g} s ({O.dt / critical:.2g} of the critical step)" if np.isfinite(critical) else f"dt = {O.dt:.3g} s")
+    print("masonry.dem:", "; ".join(reasons))
+
+    smallest = min(min(b.shape.extents) for b in _blocks())
+    return [
+        wrapper.ForceResetter(),
+        wrapper.InsertionSortCollider([wrapper.Bo1_Box_Aabb()], verletDist=0.05 * smallest),
+        wrapper.InteractionLoop([wrapper.Ig2_Box_Box_BlockGeom()], [wrapper.Ip2_BlockMat_BlockMat_BlockPhys()], [wrapper.Law2_BlockGeom_BlockPhys_Rocking()]),
+        joints,
+        *motions,
+        wrapper.NewtonIntegrator(gravity=(0, 0, -gravity), damping=0),
+    ]
+
+
+def _joint_engine():
+    for engine in O.engines:
+        if isinstance(engine, wrapper.RockingJointEngine):
+            return engine
+    raise ValueError("O.engines has no RockingJointEngine: set O.engines = dem.engines(...)")
+
+
+_IMPACT_FIELDS = [("time", float), ("body", int), ("support", int), ("restitution_asked", float), ("restitution", float), ("velocity", float),
+                  ("energy_lost", float), ("friction_demand", float), ("application", float), ("switched", bool), ("capped", bool)]
+
+
+def impacts():
+    """The rocking impacts so far, a structured array: time (s), body, support, restitution_asked (NaN: natural), restitution
+    (realised), velocity (relative angular velocity before, rad/s), energy_lost (J), friction_demand (the friction coefficient that it
+    asks for), application (distance of the resultant from the new pivot, m), switched (False: the joint came to rest), capped (the
+    restitution was lowered so that no energy appears)."""
+    e = _joint_engine()
+    table = np.zeros(len(e.impactTimes), dtype=_IMPACT_FIELDS)
+    before, after = np.array(e.impactBefore), np.array(e.impactAfter)
+    columns = (e.impactTimes, e.impactBlocks, e.impactSupports, e.impactAsked, np.divide(after, before, out=np.zeros_like(before), where=before > 0),
+               before, e.impactEnergy, e.impactFriction, e.impactApplication, e.impactSwitched, e.impactCapped)
+    for (name, _), values in zip(_IMPACT_FIELDS, columns):
+        table[name] = values
+    return table
+
+
+def energy():
+    """Energies in J: kinetic, potential and elastPotential now; frictDissip, dampDissip, impactDissip and baseWork so far. The sum of
+    the first six less baseWork is constant."""
+    e = _joint_engine()
+    return {key: getattr(e, key) for key in ("kinetic", "potential", "elastPotential", "frictDissip", "dampDissip", "impactDissip", "baseWork")}

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <core/PartialEngine.hpp>
+
+namespace yade {
+
+/// A jump of the base velocity inside the step that ends now.
+struct BaseJump {
+	Vector3r velocity; // change of velocity, m/s
+	Real before;       // the instant lies this long before the end of the step, s
+};
+
+/// An impact of this step, as a base motion may answer to it.
+struct StepImpact {
+	int block;
+	Real before; // s before the end of the step
+};
+
+/// Base class of prescribed base motions along one direction. The bodies `ids` move by origin + direction displacement(t)
+/// exactly at every step; between steps with the mean velocity, so that nothing drifts. Goes after RockingJointEngine and
+/// before NewtonIntegrator in O.engines.
+class BaseMotionEngine : public PartialEngine {
+public:
+	void action() override;
+
+	/// Of the time in this motion, t = 0 at `start`. Along `direction`.
+	virtual Real displacement(Real) const { return 0; } // m
+	virtual Real velocity(Real) const { return 0; }     // m/s
+	virtual Real acceleration(Real) const { return 0; } // m/s^2, jumps left out
+
+	/// Mean velocity over [from, to].
+	virtual Real meanVelocity(Real from, Real to) const { return (displacement(to) - displacement(from)) / (to - from); }
+
+	/// The velocity jumps up to the present time that were not asked for before, in order of time; impacts of this step
+	/// may cause them. RockingJointEngine asks, so that blocks respond at the instant itself.
+	virtual vector<BaseJump> takeJumps(Real now, const vector<StepImpact>& impacts);
+
+	/// Raises std::invalid_argument for ids that do not exist or are free to move.
+	void checkBodies() const;
+
+	// clang-format off
+	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(BaseMotionEngine, PartialEngine,
+		"Base class of prescribed motions of the base; does not move anything by itself.",
+		((Vector3r, direction, Vector3r(1, 0, 0), , "Unit vector along which the base moves."))
+		((Real, start, 0, , "Time at which the motion begins [s]."))
+		((vector<Vector3r>, origins, , Attr::readonly, "Positions of the bodies when the motion began [m].")),
+		/* ctor */,
+		.def("checkBodies", &BaseMotionEngine::checkBodies, "Raises ValueError unless every body of ids exists and is prescribed.")
+	);
+	// clang-format on
+};
+REGISTER_SERIALIZABLE(BaseMotionEngine);
+
+} // namespace yade

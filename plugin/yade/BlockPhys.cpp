@@ -1,0 +1,57 @@
+#include "BlockPhys.hpp"
+
+#include "impact/impulse_problem.hpp"
+#include <lib/factory/ClassFactory.hpp>
+
+namespace yade {
+
+YADE_PLUGIN((BlockPhys));
+
+masonry::JointLaw BlockPhys::law(Real dampingRatio) const
+{
+	return { normalStiffness, shearStiffness, dampingRatio, noSlip ? masonry::noSlip : tangensOfFrictionAngle, restitution };
+}
+
+void BlockPhys::readPoints(masonry::JointContact& contact) const
+{
+	contact.size = int(identities.size());
+	const Vector3r& n = contact.patch.normal;
+	for (int i = 0; i < contact.size; ++i) {
+		const Real normal = n.dot(forces[i]);
+		contact.points[i] = { identities[i], muted[i] != 0, shears[i], normal, forces[i] - n * normal };
+	}
+	contact.energy = energy;
+}
+
+void BlockPhys::writePoints(const masonry::JointContact& contact)
+{
+	const size_t size = contact.size;
+	identities.resize(size);
+	muted.resize(size);
+	shears.resize(size);
+	forces.resize(size);
+	kn = contact.law.normalStiffness * contact.stiffnessArea();
+	ks = contact.law.shearStiffness * contact.stiffnessArea();
+	normalForce.setZero();
+	shearForce.setZero();
+	for (size_t i = 0; i < size; ++i) {
+		const masonry::JointPoint& point = contact.points[i];
+		identities[i] = point.identity;
+		muted[i] = point.muted;
+		shears[i] = point.shear;
+		forces[i] = contact.force(i);
+		normalForce += point.normalForce * contact.patch.normal;
+		shearForce += point.shearForce;
+	}
+	energy = contact.energy;
+}
+
+vector<Real> BlockPhys::normalForces() const
+{
+	const Vector3r direction = normalForce.norm() > 0 ? Vector3r(normalForce.normalized()) : Vector3r(Vector3r::Zero());
+	vector<Real> result;
+	for (const Vector3r& force : forces) result.push_back(force.dot(direction));
+	return result;
+}
+
+} // namespace yade

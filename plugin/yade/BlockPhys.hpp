@@ -1,0 +1,39 @@
+#pragma once
+
+#include "dynamics/joint_contact.hpp"
+#include <pkg/dem/FrictPhys.hpp>
+
+namespace yade {
+
+/// The compliant joint of a pair of blocks (dynamics/joint_contact.hpp): its law, and the state of its points.
+class BlockPhys : public FrictPhys {
+public:
+	masonry::JointLaw law(Real dampingRatio) const;
+	/// The state of the points, as the core sees it, and back.
+	void readPoints(masonry::JointContact&) const;
+	void writePoints(const masonry::JointContact&);
+
+	masonry::JointEnergy energy; // of this step
+
+	vector<Real> normalForces() const;
+
+	// clang-format off
+	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(BlockPhys, FrictPhys,
+		"Compliant joint of two blocks. kn and ks are the stiffness of the whole patch [N/m]; normalForce and shearForce act on body 2.",
+		((Real, normalStiffness, NaN, , "Normal stiffness per area [Pa/m]."))
+		((Real, shearStiffness, NaN, , "Shear stiffness per area [Pa/m]."))
+		((Real, restitution, NaN, , "Rocking restitution of the pair, 0 to 1; NaN: natural."))
+		((bool, noSlip, false, , "The points never slip."))
+		((vector<int>, identities, , Attr::readonly, "Which features make each point; the same in the next step for the same features."))
+		((vector<int>, muted, , Attr::readonly, "1 for a point that carries no force until the rotation of the block has crossed zero."))
+		((vector<Vector3r>, shears, , Attr::readonly, "Elastic tangential displacement of each point, of body 2 relative to body 1 [m]."))
+		((vector<Vector3r>, forces, , Attr::readonly, "Force on body 2 at each point [N].")),
+		createIndex();,
+		.add_property("normalForces", &BlockPhys::normalForces, "Normal force at each point [N], compression positive.")
+	);
+	// clang-format on
+	REGISTER_CLASS_INDEX(BlockPhys, FrictPhys);
+};
+REGISTER_SERIALIZABLE(BlockPhys);
+
+} // namespace yade

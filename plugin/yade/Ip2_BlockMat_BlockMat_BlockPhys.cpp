@@ -1,0 +1,36 @@
+#include "Ip2_BlockMat_BlockMat_BlockPhys.hpp"
+#include "BlockMat.hpp"
+#include "BlockPhys.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <lib/factory/ClassFactory.hpp>
+
+namespace yade {
+
+YADE_PLUGIN((Ip2_BlockMat_BlockMat_BlockPhys));
+
+namespace {
+	Real given(Real a, Real b, Real both) { return std::isnan(a) ? b : std::isnan(b) ? a : both; }
+} // namespace
+
+void Ip2_BlockMat_BlockMat_BlockPhys::go(const shared_ptr<Material>& material1, const shared_ptr<Material>& material2, const shared_ptr<Interaction>& interaction)
+{
+	if (interaction->phys) return;
+	const auto& a = static_cast<const BlockMat&>(*material1);
+	const auto& b = static_cast<const BlockMat&>(*material2);
+	const auto matched = [&](const shared_ptr<MatchMaker>& maker, Real va, Real vb, Real rule) {
+		return maker ? (*maker)(a.id, b.id, va, vb) : given(va, vb, rule);
+	};
+	const auto harmonic = [](Real x, Real y) { return 2 * x * y / (x + y); };
+
+	shared_ptr<BlockPhys> phys(new BlockPhys);
+	phys->restitution = matched(restitution, a.restitution, b.restitution, 0.5 * (a.restitution + b.restitution));
+	phys->tangensOfFrictionAngle = std::tan(matched(frictionAngle, a.frictionAngle, b.frictionAngle, std::min(a.frictionAngle, b.frictionAngle)));
+	phys->normalStiffness = matched(normalStiffness, a.normalStiffness, b.normalStiffness, harmonic(a.normalStiffness, b.normalStiffness));
+	phys->shearStiffness = matched(shearStiffness, a.shearStiffness, b.shearStiffness, harmonic(a.shearStiffness, b.shearStiffness));
+	phys->noSlip = a.noSlip || b.noSlip;
+	interaction->phys = phys;
+}
+
+} // namespace yade

@@ -1,0 +1,334 @@
+#include "RockingJointEngine.hpp"
+#include "BlockGeom.hpp"
+#include "BlockMat.hpp"
+#include "BlockPhys.hpp"
+#include "Ip2_BlockMat_BlockMat_BlockPhys.hpp"
+#include "core_state.hpp"
+
+#include "contact/box_box.hpp"
+#include "dynamics/time_step.hpp"
+#include <algorithm>
+#include <boost/python/extract.hpp>
+#include <cmath>
+#include <core/Scene.hpp>
+#include <lib/factory/ClassFactory.hpp>
+#include <pkg/common/Box.hpp>
+#include <sstream>
+#include <stdexcept>
+
+namespace yade {
+
+YADE_PLUGIN((RockingJointEngine));
+
+namespace {
+
+	/// O.run() works in a thread of its own: Python objects need the interpreter's lock.
+	struct PythonLock {
+		PyGILState_STATE state = PyGILState_Ensure();
+		~PythonLock() { PyGILState_Release(state); }
+	};
+
+	/// NewtonIntegrator is read through its Python attributes, as a script would.
+	struct Integrator {
+		Vector3r gravity = Vector3r::Zero();
+		Real damping = 0;
+	};
+
+	Integrator findIntegrator(const Scene& scene)
+	{
+		Integrator result;
+		for (const auto& engine : scene.engines) {
+			if (engine->getClassName() != "NewtonIntegrator") continue;
+			const PythonLock lock;
+			const boost::python::dict attributes = engine->pyDict();
+			result.gravity = boost::python::extract<Vector3r>(attributes["gravity"])();
+			result.damping = boost::python::extract<Real>(attributes["damping"])();
+		}
+		return result;
+	}
+
+	[[noreturn]] void fail(const std::ostringstream& text) { throw std::runtime_error(text.str()); }
+
+} // namespace
+
+void RockingJointEngine::postLoad(RockingJointEngine&)
+{
+	if (impactOrder != "simultaneous" && impactOrder != "sequential")
+		throw std::invalid_argument("RockingJointEngine.impactOrder = '" + impactOrder + "' is not allowed: it must be 'simultaneous' or 'sequential'.");
+}
+
+void RockingJointEngine::checkScene()
+{
+	constexpr int period = 50; // steps between two looks at the integrator, whose gravity a script may turn slowly
+	if (checkedTimeStep > 0 && scene->iter % period != 0) return;
+	const Integrator integrator = findIntegrator(*scene);
+	gravity = integrator.gravity;
+	for (int id : ids) {
+		const Body& body = *(*scene->bodies)[id];
+		std::ostringstream text;
+		if (body.isDynamic() && body.state->isDamped && integrator.damping != 0) {
+			text << "NewtonIntegrator.damping = " << integrator.damping << " would damp the rocking of block " << id
+			     << " behind the back of its restitution: it must be 0 (or set O.bodies[" << id << "].state.isDamped=False).";
+			fail(text);
+		}
+		const Vector3r& inertia = body.state->inertia;
+		if (body.isDynamic() && !(body.flags & Body::FLAG_ASPHERICAL) && inertia.maxCoeff() > inertia.minCoeff()) {
+			text << "O.bodies[" << id << "].aspherical = False is not allowed for a block: set it to True (dem.block() does).";
+			fail(text);
+		}
+	}
+}
+
+vector<RockingJointEngine::Pair> RockingJointEngine::gather()
+{
+	ids.clear();
+	system.bodies.clear();
+	index.assign(scene->bodies->size(), -1);
+	for (const auto& body : scene->bodies->body) {
+		if (!body || !dynamic_cast<BlockMat*>(body->material.get())) continue;
+		index[body->id] = int(ids.size());
+		ids.push_back(body->id);
+		system.bodies.push_back(coreBody(*body));
+	}
+	vector<Interaction*> found;
+	for (const auto& interaction : *scene->interactions)
+		if (interaction->isReal() && dynamic_cast<BlockPhys*>(interaction->phys.get())) found.push_back(interaction.get());
+	std::sort(found.begin(), found.end(), [](const Interaction* a, const Interaction* b) {
+		return std::minmax(a->id1, a->id2) < std::minmax(b->id1, b->id2);
+	});
+	vector<Pair> pairs;
+	system.contacts.clear();
+	for (const Interaction* interaction : found) {
+		auto& geom = static_cast<BlockGeom&>(*interaction->geom);
+		auto& phys = static_cast<BlockPhys&>(*interaction->phys);
+		if (!(phys.normalStiffness > 0 && phys.shearStiffness > 0)) {
+			std::ostringstream text;
+			text << "The joint of bodies " << interaction->id1 << " and " << interaction->id2 << " has normalStiffness = " << phys.normalStiffness
+			     << ", shearStiffness = " << phys.shearStiffness
+			     << ": both must be positive, in Pa/m. Give them to BlockMat, or let dem.engines(model='compliant') choose.";
+			fail(text);
+		}
+		masonry::JointContact contact = coreContact(*interaction, geom, phys, 0);
+		contact.body1 = index[contact.body1];
+		contact.body2 = index[contact.body2];
+		system.contacts.push_back(contact);
+		pairs.push_back({ &geom, &phys });
+	}
+	return pairs;
+}
+
+void RockingJointEngine::addExternalForces()
+{
+	scene->forces.sync();
+	for (size_t b = 0; b < ids.size(); ++b) {
+		masonry::Body& body = system.bodies[b];
+		if (body.prescribed) continue;
+		body.force = scene->forces.getForce(ids[b]) + body.mass * gravity;
+		body.torque = scene->forces.getTorque(ids[b]);
+	}
+}
+
+Real RockingJointEngine::criticalTimeStep()
+{
+	if (started) return masonry::criticalTimeStep(system.bodies, system.contacts);
+	// Before the first step there are no interactions yet: every pair of boxes is looked at.
+	vector<masonry::JointContact> contacts;
+	gather();
+	Ip2_BlockMat_BlockMat_BlockPhys law;
+	for (size_t a = 0; a < ids.size(); ++a)
+		for (size_t b = a + 1; b < ids.size(); ++b) {
+			if (system.bodies[a].prescribed && system.bodies[b].prescribed) continue;
+			const Body &body1 = *(*scene->bodies)[ids[a]], &body2 = *(*scene->bodies)[ids[b]];
+			const auto *box1 = dynamic_cast<Box*>(body1.shape.get()), *box2 = dynamic_cast<Box*>(body2.shape.get());
+			masonry::ContactPatch patch;
+			if (!box1 || !box2) continue;
+			if ((body1.state->pos - body2.state->pos).norm() > box1->extents.norm() + box2->extents.norm()) continue;
+			const Real near = 1e-2 * std::min(box1->extents.minCoeff(), box2->extents.minCoeff());
+			if (!masonry::collide({ box1->extents }, system.bodies[a].pose, { box2->extents }, system.bodies[b].pose, near, {}, patch)) continue;
+			const shared_ptr<Interaction> interaction(new Interaction(ids[a], ids[b]));
+			law.go(body1.material, body2.material, interaction);
+			masonry::JointContact contact;
+			contact.body1 = int(a);
+			contact.body2 = int(b);
+			contact.law = static_cast<BlockPhys&>(*interaction->phys).law(0);
+			renewPatch(contact, patch);
+			contacts.push_back(contact);
+		}
+	return masonry::criticalTimeStep(system.bodies, contacts);
+}
+
+void RockingJointEngine::checkTimeStep()
+{
+	const Real critical = masonry::criticalTimeStep(system.bodies, system.contacts);
+	if (scene->dt > 0 && scene->dt < critical) return;
+	std::ostringstream text;
+	text << "O.dt = " << scene->dt << " s is not allowed with these joint stiffnesses: it must be positive and below " << critical
+	     << " s (a tenth of that is accurate); dem.engines() chooses one.";
+	fail(text);
+}
+
+void RockingJointEngine::recordImpact(const masonry::ImpactRecord& record)
+{
+	impactTimes.push_back(scene->time - record.before);
+	impactBlocks.push_back(ids[record.block]);
+	impactSupports.push_back(ids[record.support]);
+	impactAsked.push_back(record.restitutionAsked);
+	impactBefore.push_back(record.speedBefore);
+	impactAfter.push_back(record.speedAfter);
+	impactEnergy.push_back(record.energyLost);
+	impactApplication.push_back(record.application);
+	impactFriction.push_back(record.frictionDemand);
+	impactSwitched.push_back(record.switched);
+	impactCapped.push_back(record.capped);
+	impactDissip += record.energyLost;
+	worstResidual = std::max(worstResidual, record.residual);
+}
+
+bool RockingJointEngine::applyJumps(const vector<BaseMotionEngine*>& motions, const vector<StepImpact>& impacts)
+{
+	bool acted = false;
+	for (BaseMotionEngine* motion : motions) {
+		motion->scene = scene;
+		for (const BaseJump& jump : motion->takeJumps(scene->time, impacts)) {
+			vector<int> moved;
+			for (int id : motion->ids)
+				if (size_t(id) < index.size() && index[id] >= 0) moved.push_back(index[id]);
+			const Real powerBefore = basePower();
+			const auto response = masonry::applyBaseJump(system, moved, jump.velocity, jump.before);
+			// The trapezoidal rule of addBaseWork took the old power up to the end of the step.
+			baseWork += response.work + jump.before * (basePower() - powerBefore);
+			acted = true;
+			impactDissip += response.dissipated;
+			worstResidual = std::max(worstResidual, response.residual);
+		}
+	}
+	return acted;
+}
+
+void RockingJointEngine::applyForces(const vector<Pair>& pairs)
+{
+	bodyForce.assign(ids.size(), Vector3r::Zero());
+	bodyTorque.assign(ids.size(), Vector3r::Zero());
+	for (size_t c = 0; c < pairs.size(); ++c) {
+		const masonry::JointContact& contact = system.contacts[c];
+		pairs[c].geom->patch = contact.patch;
+		pairs[c].phys->writePoints(contact);
+		for (int i = 0; i < contact.size; ++i) {
+			const Vector3r force = contact.force(i), point = contact.position(i);
+			bodyForce[contact.body1] -= force;
+			bodyTorque[contact.body1] -= (point - system.bodies[contact.body1].pose.position).cross(force);
+			bodyForce[contact.body2] += force;
+			bodyTorque[contact.body2] += (point - system.bodies[contact.body2].pose.position).cross(force);
+		}
+	}
+	for (size_t b = 0; b < ids.size(); ++b) {
+		scene->forces.addForce(ids[b], bodyForce[b]);
+		scene->forces.addTorque(ids[b], bodyTorque[b]);
+	}
+}
+
+void RockingJointEngine::measureEnergy()
+{
+	kinetic = potential = elastPotential = 0;
+	for (size_t b = 0; b < ids.size(); ++b) {
+		masonry::Body body = system.bodies[b];
+		if (body.prescribed) continue;
+		// Velocities are half a step behind the positions: bring them up with the forces of now.
+		body.velocity += 0.5 * scene->dt / body.mass * (body.force + bodyForce[b]);
+		body.angularVelocity += 0.5 * scene->dt * body.inverseInertia() * (body.torque + bodyTorque[b]);
+		kinetic += body.kineticEnergy();
+		potential -= body.mass * gravity.dot(body.pose.position);
+	}
+	for (const auto& contact : system.contacts) elastPotential += contact.energy.elastic;
+	if (!scene->trackEnergy) return;
+	const std::pair<const char*, Real> keys[] = { { "elastPotential", elastPotential }, { "frictDissip", frictDissip },
+		{ "dampDissip", dampDissip }, { "impactDissip", impactDissip }, { "baseWork", -baseWork } };
+	for (const auto& [key, value] : keys) scene->energy->setItem_py(key, value);
+}
+
+/// Force of the joints on each moved body, by index.
+std::map<int, Vector3r> RockingJointEngine::baseReactions() const
+{
+	std::map<int, Vector3r> result;
+	for (const auto& contact : system.contacts)
+		for (int i = 0; i < contact.size; ++i) {
+			if (system.bodies[contact.body1].prescribed) result.emplace(contact.body1, Vector3r::Zero()).first->second -= contact.force(i);
+			if (system.bodies[contact.body2].prescribed) result.emplace(contact.body2, Vector3r::Zero()).first->second += contact.force(i);
+		}
+	return result;
+}
+
+/// Power of the moved bodies on the blocks, W.
+Real RockingJointEngine::basePower() const
+{
+	Real power = 0;
+	for (const auto& [b, force] : baseReactions()) power -= force.dot(system.bodies[b].velocity);
+	return power;
+}
+
+/// Work of the moved bodies over the step that ends now, by the trapezoidal rule on the reactions.
+void RockingJointEngine::addBaseWork()
+{
+	std::map<int, Vector3r> before;
+	for (size_t k = 0; k < reactionIds.size(); ++k) before[reactionIds[k]] = reactions[k];
+	for (const auto& [b, force] : baseReactions()) {
+		const auto old = before.find(ids[b]);
+		const Vector3r mean = old == before.end() ? force : Vector3r(0.5 * (force + old->second));
+		baseWork -= mean.dot(system.bodies[b].velocity) * scene->dt;
+	}
+}
+
+void RockingJointEngine::keepReactions()
+{
+	reactionIds.clear();
+	reactions.clear();
+	for (const auto& [b, force] : baseReactions()) {
+		reactionIds.push_back(ids[b]);
+		reactions.push_back(force);
+	}
+}
+
+void RockingJointEngine::action()
+{
+	const vector<Pair> pairs = gather();
+	checkScene();
+	if (scene->dt != checkedTimeStep) checkTimeStep();
+	checkedTimeStep = scene->dt;
+	system.gravity = gravity;
+	system.dt = scene->dt;
+	system.order = impactOrder == "sequential" ? masonry::ImpactOrder::sequential : masonry::ImpactOrder::simultaneous;
+	addExternalForces();
+	vector<BaseMotionEngine*> motions;
+	for (const auto& engine : scene->engines) {
+		auto* motion = dynamic_cast<BaseMotionEngine*>(engine.get());
+		if (!motion || motion->dead) continue;
+		motions.push_back(motion);
+		for (int id : motion->ids)
+			if (size_t(id) < index.size() && index[id] >= 0)
+				system.bodies[index[id]].acceleration = motion->direction * motion->acceleration(scene->time - motion->start);
+	}
+	for (const auto& contact : system.contacts) {
+		frictDissip += contact.energy.friction;
+		dampDissip += contact.energy.damping;
+	}
+
+	const bool starting = !started;
+	if (starting) startAtEquilibrium(system);
+	started = true;
+	vector<StepImpact> impacts;
+	const auto records = handOffPivots(system);
+	for (const auto& record : records) {
+		recordImpact(record);
+		impacts.push_back({ ids[record.block], record.before });
+	}
+	if (!starting) addBaseWork();
+	const bool jumped = applyJumps(motions, impacts);
+	for (size_t b = 0; b < ids.size(); ++b)
+		if (!system.bodies[b].prescribed && (starting || !records.empty() || jumped))
+			writeState(system.bodies[b], *(*scene->bodies)[ids[b]]->state);
+	applyForces(pairs);
+	keepReactions();
+	measureEnergy();
+}
+
+} // namespace yade

@@ -1,0 +1,81 @@
+#pragma once
+
+#include "BaseMotionEngine.hpp"
+#include "dynamics/pivot_handoff.hpp"
+#include <core/GlobalEngine.hpp>
+
+namespace yade {
+
+class BlockGeom;
+class BlockPhys;
+
+/// The joint stage of compliant blocks (dynamics/pivot_handoff.hpp); between InteractionLoop and the base motion.
+class RockingJointEngine : public GlobalEngine {
+public:
+	void action() override;
+	/// Throws std::invalid_argument naming attribute, value and allowed range.
+	void postLoad(RockingJointEngine&);
+
+	/// Of the present contacts; before the first step, of all boxes that are in touch.
+	Real criticalTimeStep();
+
+	// clang-format off
+	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(RockingJointEngine, GlobalEngine,
+		"Joints of compliant blocks: groups the patches under each block into joints, hands pivots over when the rotation of a block crosses zero, applies the rocking restitution, lets base pulses act at their instant, and puts the joint forces on the bodies. All in a fixed order: the same bits for any number of threads. Goes right after InteractionLoop.",
+		((string, impactOrder, "simultaneous", Attr::triggerPostLoad, "How an impact acts on a structure: 'simultaneous' (the closing joint and all loaded joints in one impulse problem) or 'sequential' (the closing joint first; the others feel it afterwards through their springs)."))
+		((bool, started, false, Attr::readonly, "The bodies have been put in equilibrium on their joints."))
+		((vector<Real>, impactTimes, , Attr::readonly, "Time of each impact [s], inside the step."))
+		((vector<int>, impactBlocks, , Attr::readonly, "The block that rocks."))
+		((vector<int>, impactSupports, , Attr::readonly, "What it rocks on."))
+		((vector<Real>, impactAsked, , Attr::readonly, "Restitution asked for; NaN: natural."))
+		((vector<Real>, impactBefore, , Attr::readonly, "Relative angular velocity before [rad/s]."))
+		((vector<Real>, impactAfter, , Attr::readonly, "Relative angular velocity after [rad/s]."))
+		((vector<Real>, impactEnergy, , Attr::readonly, "Kinetic energy lost [J]."))
+		((vector<Real>, impactApplication, , Attr::readonly, "Distance of the resultant impulse from the new pivot, inward positive [m]."))
+		((vector<Real>, impactFriction, , Attr::readonly, "Friction coefficient that the impact asks for; where friction is smaller the pivot has slipped."))
+		((vector<int>, impactSwitched, , Attr::readonly, "1: the pivot was handed over; 0: the joint came to rest."))
+		((vector<int>, impactCapped, , Attr::readonly, "1: the restitution was lowered so that the energy does not grow."))
+		((Real, worstResidual, 0, Attr::readonly, "Largest residual of the impulse problems so far [m/s]."))
+		((Real, kinetic, 0, Attr::readonly, "Kinetic energy now [J]."))
+		((Real, potential, 0, Attr::readonly, "Potential energy of gravity now, zero at the origin [J]."))
+		((Real, elastPotential, 0, Attr::readonly, "Energy stored in the joints now [J]."))
+		((Real, frictDissip, 0, Attr::readonly, "Dissipated by friction so far [J]."))
+		((Real, dampDissip, 0, Attr::readonly, "Dissipated by the joints' dashpots so far [J]."))
+		((Real, impactDissip, 0, Attr::readonly, "Dissipated by impacts so far [J]."))
+		((Real, baseWork, 0, Attr::readonly, "Work of the moved base on the blocks so far [J]."))
+		((vector<int>, reactionIds, , Attr::readonly, "Bodies that are moved ..."))
+		((vector<Vector3r>, reactions, , Attr::readonly, "... and the force of the joints on them in the last step [N].")),
+		/* ctor */,
+		.def("criticalTimeStep", &RockingJointEngine::criticalTimeStep, "Largest stable time step of the joints [s].")
+	);
+	// clang-format on
+private:
+	struct Pair {
+		BlockGeom* geom;
+		BlockPhys* phys;
+	};
+
+	void checkScene();
+	vector<Pair> gather();
+	void addExternalForces();
+	void checkTimeStep();
+	void recordImpact(const masonry::ImpactRecord&);
+	bool applyJumps(const vector<BaseMotionEngine*>& motions, const vector<StepImpact>& impacts);
+	void applyForces(const vector<Pair>& pairs);
+	void measureEnergy();
+	std::map<int, Vector3r> baseReactions() const;
+	Real basePower() const;
+	void addBaseWork();
+	void keepReactions();
+
+	// Of the running process, found again after loading.
+	Vector3r gravity = Vector3r::Zero();
+	Real checkedTimeStep = 0;
+	masonry::JointSystem system;
+	vector<int> ids;   // index in system.bodies -> body id
+	vector<int> index; // body id -> index in system.bodies, or -1
+	vector<Vector3r> bodyForce, bodyTorque; // joint forces on each body
+};
+REGISTER_SERIALIZABLE(RockingJointEngine);
+
+} // namespace yade
