@@ -1,28 +1,20 @@
 #pragma once
-// Root of a continuous function between two points of opposite sign, to the last bit or two.
+// Root of a smooth function in a bracket, to the last bit or two: Newton's method kept in the bracket.
 
-#include <boost/math/tools/toms748_solve.hpp>
-#include <cmath>
+#include <boost/math/tools/roots.hpp>
 #include <cstdint>
 #include <limits>
+#include <utility>
 
 namespace masonry {
 
-// f(lower) and f(upper) have opposite signs, or one of them is zero.
+// f(x) returns the value and the derivative; the values at lower and upper have opposite signs, or one of them is zero.
 template <typename Function>
 double root(const Function& f, double lower, double upper)
 {
-	const double atLower = f(lower), atUpper = f(upper);
-	if (atLower == 0)
-		return lower;
-	if (atUpper == 0)
-		return upper;
-	const auto tight = [](double a, double b) {
-		return std::abs(b - a) <= 2 * std::numeric_limits<double>::epsilon() * std::max(std::abs(a), std::abs(b));
-	};
-	std::uintmax_t evaluations = 100;
-	const auto bracket = boost::math::tools::toms748_solve(f, lower, upper, atLower, atUpper, tight, evaluations);
-	return std::abs(f(bracket.first)) < std::abs(f(bracket.second)) ? bracket.first : bracket.second;
+	std::uintmax_t iterations = 200;
+	const int digits = std::numeric_limits<double>::digits - 1;
+	return boost::math::tools::newton_raphson_iterate(f, (lower + upper) / 2, lower, upper, digits, iterations);
 }
 
 } // namespace masonry

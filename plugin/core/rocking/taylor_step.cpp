@@ -50,6 +50,10 @@ void TaylorStep::expand(const RockingLaw& law, int side, const Series& a, int te
 	S[0] = exact ? std::sin(law.alpha - c_[0]) : law.restoring == Restoring::Constant ? law.sinAlpha : law.alpha - c_[0];
 	C[0] = exact ? std::cos(law.alpha - c_[0]) : law.restoring == Restoring::Constant ? law.cosAlpha : 1;
 	rate[0] = c_[1];
+	// a small hop needs no more than a few terms: its length is about -2 u'/u''
+	const double lift = -p2 * (S[0] + push * (terms > 0 ? a[0] : 0) * C[0]);
+	if (c_[0] == 0 && c_[1] > 0 && lift < 0)
+		longest = std::min(longest, -2.5 * c_[1] / lift);
 	length_ = longest;
 	double power = longest; // longest^(k+1)
 	for (int k = 0;; k++, power *= longest) {
@@ -103,6 +107,14 @@ double TaylorStep::velocity(double s) const
 	double sum = order_ * c_[order_];
 	for (int k = order_ - 1; k >= 1; k--)
 		sum = sum * s + k * c_[k];
+	return sum;
+}
+
+double TaylorStep::acceleration(double s) const
+{
+	double sum = order_ * (order_ - 1) * c_[order_];
+	for (int k = order_ - 1; k >= 2; k--)
+		sum = sum * s + k * (k - 1) * c_[k];
 	return sum;
 }
 

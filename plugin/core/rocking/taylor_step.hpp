@@ -23,6 +23,7 @@ public:
 	double length() const { return length_; } // s, <= longest: the polynomial is exact to round-off up to here
 	double angle(double s) const;             // u, s seconds after t
 	double velocity(double s) const;          // u'
+	double acceleration(double s) const;      // u''
 	double firstChange() const;               // sign of the motion just after t: u', or u'' where u' = 0, or u'''
 
 private:
