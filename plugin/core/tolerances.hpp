@@ -60,10 +60,13 @@ constexpr double vertexReach = 1e-4;
 // Overlaps narrower than this are no contact. Smaller: blocks that meet corner to corner push each other sideways;
 // larger: a block sliding off an edge falls that much too early.
 constexpr double sliver = 1e-4;
-// Separation that edge across edge must gain over the best face (the share below of the penetration is added). Larger:
-// the gap jumps by as much where a vertex slides off a face edge.
+// Separation that edge across edge must gain over the best face (the share below of the penetration is added, or
+// depthShare where a face was the reference before). Larger: the gap jumps by as much where a vertex slides off an edge.
 constexpr double edge      = 1e-6;
 constexpr double edgeShare = 0.1;
+// Penetration up to which a face contact is taken without a look at the edges. Larger: a corner that meets a corner from
+// the side can be taken for one from above, deeper by as much; smaller: closed joints cost the nine edge axes.
+constexpr double shallow = 1e-4;
 // Angle (rad) within which a normal counts as that of a face: no edge across edge between nearly parallel faces, whose
 // patch has the right gaps and a normal wrong by at most this angle. Half of it where the edges touched before.
 constexpr double faceAngle = 0.1;

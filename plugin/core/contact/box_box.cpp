@@ -12,9 +12,12 @@ using feature::signOf;
 namespace {
 
 // The reference face is the right normal without a look at the edges if the faces are nearly parallel or if the deepest
-// incident vertex lies over the reference face: then its distance is the separation of the boxes.
+// incident vertex lies over the reference face: then its distance is the separation of the boxes. Both hold for boxes that
+// touch; one box deep beside the edge of another can have a shorter way out across its edges.
 bool isFaceContact(const FacePair& pair, const ClipTask& task, double cosineLimit)
 {
+	if (pair.face.separation < -tolerance::contact::shallow * pair.length)
+		return false;
 	if (std::abs(pair.incident.rotation(pair.face.axis, pair.incidentAxis)) > cosineLimit)
 		return true;
 	const auto lower = [](const ClipPoint& a, const ClipPoint& b) { return a.height < b.height; };
@@ -22,22 +25,33 @@ bool isFaceContact(const FacePair& pair, const ClipTask& task, double cosineLimi
 	return std::abs(deepest.u) <= task.halfU && std::abs(deepest.v) <= task.halfV;
 }
 
-// The face whose normal is within the angle limit of the edges' normal, the present reference first.
+// The face whose normal is nearest to the edges' normal if that is within the angle limit; the present reference as long as
+// it is within.
 bool nearbyFace(const EdgeAxis& edges, const RelativePose& second, double cosineLimit, FaceAxis& reference)
 {
-	const Vector3 normalIn[2] = {edges.normal, -(second.rotation.transpose() * edges.normal)}; // outward for each body
-	if (std::abs(normalIn[reference.body - 1][reference.axis]) > cosineLimit)
+	const Vector3 outward[2] = {edges.normal, -(second.rotation.transpose() * edges.normal)}; // in each body's own axes
+	if (std::abs(outward[reference.body - 1][reference.axis]) > cosineLimit)
 		return true;
+	double nearest = cosineLimit;
 	for (int body : {1, 2}) {
-		for (int axis = 0; axis < 3; ++axis) {
-			const double cosine = normalIn[body - 1][axis];
-			if (std::abs(cosine) > cosineLimit) {
-				reference = {body, axis, signOf(cosine), edges.separation};
-				return true;
-			}
+		int axis;
+		const double cosine = outward[body - 1].cwiseAbs().maxCoeff(&axis);
+		if (cosine > nearest) {
+			nearest = cosine;
+			reference = {body, axis, signOf(outward[body - 1][axis]), edges.separation};
 		}
 	}
-	return false;
+	return nearest > cosineLimit;
+}
+
+// Separation that edge across edge must gain over the face: a little over any face, and as much as another face would
+// need over a face that was the reference before.
+double gainOfEdges(double separation, double length, const PatchFeature& previous)
+{
+	const bool edgesBefore = previous.kind == PatchKind::Edges;
+	const double share = previous.kind == PatchKind::None || edgesBefore ? tolerance::contact::edgeShare : tolerance::contact::depthShare;
+	const double gain = tolerance::contact::edge * length + share * std::max(0., -separation);
+	return edgesBefore ? -gain : gain;
 }
 
 // Area of the face of the box that looks most along the normal.
@@ -57,6 +71,16 @@ void edgePatch(const Box& box1, const Box& box2, const RelativePose& second, con
 	out.size = 1;
 	out.points[0] = {pose1.toGlobal(edges.point1), pose1.toGlobal(edges.point2), edges.separation, 1, feature::edgeIdentity(edge1, edge2)};
 	out.feature = {PatchKind::Edges, edge1, edge2, 0};
+}
+
+bool patchOn(const FacePair& pair, const ClipTask& task, const Pose& pose1, const Pose& pose2, const PatchFeature& previous,
+             ContactPatch& out)
+{
+	const Pose& referencePose = pair.face.body == 1 ? pose1 : pose2;
+	if (facePatch(pair, task, referencePose, previous, out))
+		return true;
+	const FacePair next = withNextIncident(pair);
+	return facePatch(next, clipTask(next, previous), referencePose, previous, out);
 }
 
 double smallestGap(const ContactPatch& patch)
@@ -79,32 +103,23 @@ bool collide(const Box& box1, const Pose& pose1, const Box& box2, const Pose& po
 	if (reference.separation > margin)
 		return false;
 
-	FacePair pair = facePair(box1, box2, second, reference, previous);
-	ClipTask task = clipTask(pair, previous);
+	const FacePair pair = facePair(box1, box2, second, reference, previous);
+	const ClipTask task = clipTask(pair, previous);
 	const bool edgesBefore = previous.kind == PatchKind::Edges;
 	const double cosineLimit = std::cos(edgesBefore ? tolerance::contact::faceAngle / 2 : tolerance::contact::faceAngle);
 	EdgeAxis edges;
-	if (!isFaceContact(pair, task, cosineLimit) && bestEdges(box1, box2, second, edges)) {
-		const double gain = tolerance::contact::edge * pair.length + tolerance::contact::edgeShare * std::max(0., -edges.separation);
-		if (edges.separation > reference.separation + (edgesBefore ? -gain : gain)) {
-			if (edges.separation > margin)
-				return false;
-			if (!nearbyFace(edges, second, cosineLimit, reference)) {
-				edgePatch(box1, box2, second, pose1, edges, out);
-				return true;
-			}
-			const FacePair nearby = facePair(box1, box2, second, reference, previous);
-			const ClipTask again = clipTask(nearby, previous);
-			return facePatch(nearby, again, nearby.face.body == 1 ? pose1 : pose2, previous, out) && smallestGap(out) <= margin;
-		}
-	}
-	const Pose& referencePose = reference.body == 1 ? pose1 : pose2;
-	if (!facePatch(pair, task, referencePose, previous, out)) {
-		const FacePair next = withNextIncident(pair);
-		if (!facePatch(next, clipTask(next, previous), referencePose, previous, out))
+	if (!isFaceContact(pair, task, cosineLimit) && bestEdges(box1, box2, second, edges) &&
+	    edges.separation > reference.separation + gainOfEdges(reference.separation, pair.length, previous)) {
+		if (edges.separation > margin)
 			return false;
+		if (!nearbyFace(edges, second, cosineLimit, reference)) {
+			edgePatch(box1, box2, second, pose1, edges, out);
+			return true;
+		}
+		const FacePair nearby = facePair(box1, box2, second, reference, previous);
+		return patchOn(nearby, clipTask(nearby, previous), pose1, pose2, previous, out) && smallestGap(out) <= margin;
 	}
-	return smallestGap(out) <= margin;
+	return patchOn(pair, task, pose1, pose2, previous, out) && smallestGap(out) <= margin;
 }
 
 } // namespace masonry

@@ -23,6 +23,10 @@ struct Box {
 // limits in tolerances.hpp. The patch depends on poses and `previous` only, not on `margin`.
 //
 // Overlaps thinner than tolerance::contact::sliver are no contact: two blocks that meet corner to corner.
+//
+// Limits. Gaps are exact for boxes that touch. Deeper overlaps may be taken along an axis that is up to
+// tolerance::contact::shallow or ::depthShare of the depth deeper than the least one. Apart, no gap is smaller than the true
+// distance, but it can be larger, or the patch missing, where the nearest features are corners or edges beside each other.
 bool collide(const Box& box1, const Pose& pose1, const Box& box2, const Pose& pose2, double margin, const PatchFeature& previous,
              ContactPatch& out);
 

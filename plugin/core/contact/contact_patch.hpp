@@ -5,8 +5,8 @@
 
 namespace masonry {
 
-// One corner of the patch, with a material point on each body. Once both lie on the faces, they differ along the
-// normal only: position2 - position1 = gap * normal.
+// One corner of the patch, with a point on each body; position2 - position1 = gap * normal. A vertex is a material point of
+// its body, its partner and the crossings of two edges move over theirs.
 struct PatchPoint {
 	Vector3 position1, position2; // global, m: on body 1 and on body 2
 	double gap;                   // m, along the normal; negative = penetration

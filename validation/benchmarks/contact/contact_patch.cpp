@@ -1,0 +1,44 @@
+// Cost of one contact patch, with the feature of the call before, as in a time loop.
+#include "contact/box_box.hpp"
+#include <benchmark/benchmark.h>
+
+using namespace masonry;
+
+namespace {
+
+Quaternion turn(double angle, const Vector3& axis) { return Quaternion(Eigen::AngleAxisd(angle, axis)); }
+
+void measure(benchmark::State& state, const Box& box1, const Pose& pose1, const Box& box2, const Pose& pose2)
+{
+	ContactPatch patch;
+	for (auto step : state)
+		benchmark::DoNotOptimize(collide(box1, pose1, box2, pose2, 1e-3, patch.feature, patch));
+}
+
+const Box base {{2, 2, .1}}, block {{.3, .5, 1.5}}, cube {{.5, .5, .5}};
+const Pose basePose {{0, 0, -.1}, Quaternion::Identity()}, lower;
+const Vector3 y = Vector3::UnitY(), z = Vector3::UnitZ(), pivot(.3, 0, 0);
+
+void flatOnBase(benchmark::State& state) { measure(state, base, basePose, block, {1.5 * z, Quaternion::Identity()}); }
+void rockingOnBase(benchmark::State& state)
+{
+	measure(state, base, basePose, block, {pivot + turn(.2, y) * (1.5 * z - pivot), turn(.2, y)});
+}
+void cubeOnCube(benchmark::State& state) { measure(state, cube, lower, cube, {z, Quaternion::Identity()}); }
+void runningBond(benchmark::State& state) { measure(state, cube, lower, cube, {{.5, 0, 1}, Quaternion::Identity()}); }
+void eightPoints(benchmark::State& state) { measure(state, cube, lower, cube, {z, turn(.785, z)}); }
+void edgeOnEdge(benchmark::State& state)
+{
+	measure(state, cube, {Vector3::Zero(), turn(.785, y)}, cube, {std::sqrt(2.) * z, turn(1.5, z) * turn(.785, y)});
+}
+void apart(benchmark::State& state) { measure(state, cube, lower, cube, {1.1 * z, Quaternion::Identity()}); }
+
+BENCHMARK(flatOnBase);
+BENCHMARK(rockingOnBase);
+BENCHMARK(cubeOnCube);
+BENCHMARK(runningBond);
+BENCHMARK(eightPoints);
+BENCHMARK(edgeOnEdge);
+BENCHMARK(apart);
+
+} // namespace
