@@ -91,7 +91,7 @@ bool TaylorStep::convergesAt(double s, double power) const
 {
 	const double change = s * (std::abs(c_[1]) + s * (std::abs(c_[2]) + s * std::abs(c_[3])));
 	const double last = power * std::max(std::abs(c_[order_ - 1]), s * std::abs(c_[order_]));
-	return last <= std::numeric_limits<double>::epsilon() / 8 * change;
+	return last <= std::numeric_limits<double>::epsilon() * change;
 }
 
 double TaylorStep::angle(double s) const
