@@ -12,7 +12,7 @@ constexpr double rank = 1e-10;
 constexpr double impulse = 1e-11;
 // Gain of kinetic energy relative to the kinetic energy before an impact that is round-off, not physics. Smaller: the
 // energy cap acts on C = 1 impacts that only round off.
-constexpr double energyGain = 1e-12;
+constexpr double energyGain = 1e-11;
 // Length of the old support relative to its distance from the new one above which it is an edge, not a corner.
 constexpr double pivotEdge = 1e-6;
 

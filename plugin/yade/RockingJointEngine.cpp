@@ -180,7 +180,7 @@ void RockingJointEngine::recordImpact(const masonry::ImpactRecord& record)
 	impactFriction.push_back(record.frictionDemand);
 	impactSwitched.push_back(record.switched);
 	impactCapped.push_back(record.capped);
-	impactDissip += record.energyLost;
+	impactDissip += record.energyLost + record.settled;
 	worstResidual = std::max(worstResidual, record.residual);
 }
 

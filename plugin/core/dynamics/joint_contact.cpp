@@ -45,6 +45,25 @@ namespace {
 		return 0.5 * contact.normalStiffness(i) * depth * depth + 0.5 * contact.shearStiffness(i) * contact.points[i].shear.squaredNorm();
 	}
 
+	// Mean velocity of material points over the step dt that ends now. Leapfrog velocities belong to the middle of the
+	// step and arms to its end: v + w x r would creep by w^2 r dt/2.
+	class StepMotion {
+	public:
+		StepMotion(const Body& body, double dt)
+		        : end(body.pose)
+		        , dt(dt)
+		{
+			Body earlier = body;
+			earlier.advance(-dt);
+			start = earlier.pose;
+		}
+		Vector3 velocityAt(const Vector3& point) const { return (point - start.toGlobal(end.toLocal(point))) / dt; }
+
+	private:
+		Pose   end, start;
+		double dt;
+	};
+
 	void release(JointPoint& point)
 	{
 		point.normalForce = 0;
@@ -61,6 +80,7 @@ void updateForces(JointContact& contact, const Body& body1, const Body& body2, d
 	const double    mass = reducedMass(body1, body2), area = contact.stiffnessArea();
 	const double    dampingNormal = 2 * law.dampingRatio * std::sqrt(law.normalStiffness * area * mass);
 	const double    dampingShear = 2 * law.dampingRatio * std::sqrt(law.shearStiffness * area * mass);
+	const StepMotion motion1(body1, dt), motion2(body2, dt);
 	contact.energy = {};
 	for (int i = 0; i < contact.size; ++i) {
 		JointPoint&  point = contact.points[i];
@@ -69,7 +89,7 @@ void updateForces(JointContact& contact, const Body& body1, const Body& body2, d
 			release(point);
 			continue;
 		}
-		const Vector3 velocity = body2.velocityAt(contact.position(i)) - body1.velocityAt(contact.position(i));
+		const Vector3 velocity = motion2.velocityAt(contact.position(i)) - motion1.velocityAt(contact.position(i));
 		const double  normalVelocity = n.dot(velocity);
 		const Vector3 slideVelocity = velocity - n * normalVelocity;
 		const double  elastic = contact.normalStiffness(i) * depth;

@@ -161,7 +161,15 @@ void moveContacts(JointSystem& s, const std::vector<Body>& before)
 	}
 }
 
-void settle(JointSystem& s, const std::vector<HeldPoint>& held)
+double storedEnergy(const JointSystem& s)
+{
+	double sum = 0;
+	for (const JointContact& contact : s.contacts)
+		sum += contact.energy.elastic;
+	return sum;
+}
+
+double settle(JointSystem& s, const std::vector<HeldPoint>& held, double stored)
 {
 	std::vector<HeldPoint> loaded;
 	for (const HeldPoint& p : held)
@@ -203,8 +211,12 @@ void settle(JointSystem& s, const std::vector<HeldPoint>& held)
 		const Vector3& n = contact.patch.normal;
 		contact.points[p.point].shear = -(p.force - n * n.dot(p.force)) / contact.shearStiffness(p.point);
 	}
+	double work = 0; // of the loads
+	for (size_t b = 0; b < s.bodies.size(); ++b)
+		work += s.bodies[b].force.dot(s.bodies[b].pose.position - before[b].pose.position);
 	for (JointContact& contact : s.contacts)
 		holdForces(contact);
+	return stored + work - storedEnergy(s);
 }
 
 } // namespace masonry

@@ -41,8 +41,12 @@ Closing findClosing(const JointSystem& system, const Joint& joint);
 // Bodies have moved from the poses in `before` to their present ones: points, gaps and shears follow.
 void moveContacts(JointSystem& system, const std::vector<Body>& before);
 
+// Energy stored in all joints, as of their last forces, J.
+double storedEnergy(const JointSystem& system);
+
 // Gives the held points the compression and shear that carry their forces: bodies move along the normals (least motion,
-// weighted by mass), shears are set. Forces are updated.
-void settle(JointSystem& system, const std::vector<HeldPoint>& held);
+// weighted by mass), shears are set, forces updated. Returns the energy that this takes from loads and springs, which
+// held `stored` before (J, of either sign).
+double settle(JointSystem& system, const std::vector<HeldPoint>& held, double stored);
 
 } // namespace masonry

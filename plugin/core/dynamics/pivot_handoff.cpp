@@ -10,9 +10,10 @@ namespace masonry {
 namespace {
 
 	// The state at an instant inside the step, and the way back to its end. Leapfrog: positions are those of the end of
-	// the step, velocities those of its middle.
+	// the step, velocities those of its middle. Contact points follow.
 	void goBack(JointSystem& s, const RigidAcceleration& rates, double before)
 	{
+		const std::vector<Body> end = s.bodies;
 		for (size_t i = 0; i < s.bodies.size(); ++i) {
 			Body& body = s.bodies[i];
 			body.advance(-before);
@@ -20,10 +21,12 @@ namespace {
 			body.velocity += rates.linear[i] * (0.5 * s.dt - before);
 			body.angularVelocity += rates.angular[i] * (0.5 * s.dt - before);
 		}
+		moveContacts(s, end);
 	}
 
 	void goForth(JointSystem& s, const RigidAcceleration& rates, double before)
 	{
+		const std::vector<Body> instant = s.bodies;
 		for (size_t i = 0; i < s.bodies.size(); ++i) {
 			Body& body = s.bodies[i];
 			if (!body.prescribed) { // mean velocity of the rest of the step
@@ -35,6 +38,7 @@ namespace {
 			body.velocity += 0.5 * (before - s.dt) * rates.linear[i];
 			body.angularVelocity += 0.5 * (before - s.dt) * rates.angular[i];
 		}
+		moveContacts(s, instant);
 	}
 
 	bool loaded(const JointContact& contact, int i) { return !contact.points[i].muted && contact.patch.points[i].gap < 0; }
@@ -55,16 +59,14 @@ namespace {
 		const auto isClosing = [&](int c, int i) {
 			return std::any_of(closing.points.begin(), closing.points.end(), [&](const PointRef& p) { return p.contact == c && p.point == i; });
 		};
-		const std::vector<Body> end = s.bodies;
-		const auto              pivots = selectPoints(s.contacts, loaded);
+		const double stored = storedEnergy(s);
+		const auto   pivots = selectPoints(s.contacts, loaded);
 		goBack(s, rigidAcceleration(s.bodies, s.contacts, pivots), closing.before);
 
 		RockingImpact impact { joint.block, closing.support, joint.normal, {}, int(closing.points.size()), closing.restitution };
 		const auto    addPoint = [&](int c, int i) {
             const JointContact& contact = s.contacts[c];
-            const int           carrier = contact.body2;
-            const Vector3       there = s.bodies[carrier].pose.toGlobal(end[carrier].pose.toLocal(contact.position(i)));
-            impact.points.push_back({ contact.body1, contact.body2, there, contact.patch.normal, contact.law.friction });
+            impact.points.push_back({ contact.body1, contact.body2, contact.position(i), contact.patch.normal, contact.law.friction });
 		};
 		for (const PointRef& p : closing.points)
 			addPoint(p.contact, p.point);
@@ -92,10 +94,9 @@ namespace {
 		};
 		const RigidAcceleration rates = rigidAcceleration(s.bodies, s.contacts, selectPoints(s.contacts, acts));
 		goForth(s, rates, closing.before);
-		moveContacts(s, end);
-		settle(s, rates.points);
+		const double settled = settle(s, rates.points, stored);
 		return { joint.block,          closing.support, closing.before,      closing.restitution,   result.before,  result.after,
-			     result.energyLost, result.application, result.frictionDemand, !stops, result.capped, result.residual };
+			     result.energyLost, result.application, result.frictionDemand, !stops, result.capped, result.residual, settled };
 	}
 
 } // namespace
@@ -107,8 +108,8 @@ void startAtEquilibrium(JointSystem& s)
 		size = std::max(size, std::sqrt(contact.patch.nominalArea));
 	const auto near = [&](const JointContact& contact, int i) { return contact.patch.points[i].gap <= tolerance::mergedClosing * size; };
 	const RigidAcceleration rates = rigidAcceleration(s.bodies, s.contacts, selectPoints(s.contacts, near));
-	settle(s, rates.points);
-	goForth(s, rates, 0.);
+	settle(s, rates.points, storedEnergy(s));
+	goForth(s, rates, 0.); // velocities go half a step back
 }
 
 std::vector<ImpactRecord> handOffPivots(JointSystem& s)
@@ -124,8 +125,8 @@ std::vector<ImpactRecord> handOffPivots(JointSystem& s)
 
 JumpResponse applyBaseJump(JointSystem& s, const std::vector<int>& moved, const Vector3& jump, double before)
 {
-	const std::vector<Body> end = s.bodies;
-	const auto              touching = selectPoints(s.contacts, [](const JointContact& contact, int i) {
+	const double stored = storedEnergy(s);
+	const auto   touching = selectPoints(s.contacts, [](const JointContact& contact, int i) {
         return !contact.points[i].muted && contact.patch.points[i].gap <= 0;
     });
 	goBack(s, rigidAcceleration(s.bodies, s.contacts, selectPoints(s.contacts, loaded)), before);
@@ -166,8 +167,7 @@ JumpResponse applyBaseJump(JointSystem& s, const std::vector<int>& moved, const 
 	}
 	const RigidAcceleration rates = rigidAcceleration(s.bodies, s.contacts, held);
 	goForth(s, rates, before);
-	moveContacts(s, end);
-	settle(s, rates.points);
+	response.dissipated += settle(s, rates.points, stored);
 	for (const Joint& joint : groupJoints(s))
 		unmuteInFlight(s, joint);
 	return response;

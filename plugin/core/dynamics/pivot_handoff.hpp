@@ -46,6 +46,7 @@ struct ImpactRecord {
 	bool   switched;            // false: the joint came to rest
 	bool   capped;              // the energy cap acted
 	double residual;            // m/s
+	double settled;             // J, given up as the springs take the pivot forces of the new phase (of either sign)
 };
 
 // Puts bodies at rest in their equilibrium: compressions and shears that carry the weight (or, for a block that is let
