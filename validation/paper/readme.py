@@ -1,0 +1,21 @@
+"""Writes the tables of one run between the markers of README.md, so that they cannot go stale."""
+from pathlib import Path
+
+README = Path(__file__).resolve().parent / "README.md"
+BEGIN, END = "<!-- written by validation/paper/run: begin -->", "<!-- end -->"
+
+
+def _table(header, rows):
+    lines = [header, ["---"] * len(header), *rows]
+    return "\n".join("| " + " | ".join(str(cell).replace("|", "\\|") for cell in line) + " |" for line in lines)
+
+
+def update(stated, verdicts, table):
+    claims = _table(["where", "the text", "paper", "closed form", "real gravity", "verdict"],
+                    [[c.where, c.statement, c.paper, c.closed_form, c.gravity, c.verdict] for c in stated])
+    checks = _table(["what must hold", "value", "bound", "holds"], [[*v[:3], "yes" if v[3] else "NO"] for v in verdicts])
+    generated = (f"{BEGIN}\n\n### The paper's text against its closed form and real gravity\n\n{claims}\n\n"
+                 f"### Verdicts\n\n{len(table)} YADE cases.\n\n{checks}\n\n{END}")
+    text = README.read_text()
+    before, rest = text.split(BEGIN)
+    README.write_text(before + generated + rest.split(END)[1])
