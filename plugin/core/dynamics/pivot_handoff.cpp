@@ -4,6 +4,7 @@
 #include "tolerances.hpp"
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace masonry {
 
@@ -59,7 +60,7 @@ namespace {
 		const auto isClosing = [&](int c, int i) {
 			return std::any_of(closing.points.begin(), closing.points.end(), [&](const PointRef& p) { return p.contact == c && p.point == i; });
 		};
-		const double stored = storedEnergy(s);
+		const double stored = storedEnergy(s), power = supportPower(s);
 		const auto   pivots = selectPoints(s.contacts, loaded);
 		goBack(s, rigidAcceleration(s.bodies, s.contacts, pivots), closing.before);
 
@@ -95,8 +96,9 @@ namespace {
 		const RigidAcceleration rates = rigidAcceleration(s.bodies, s.contacts, selectPoints(s.contacts, acts));
 		goForth(s, rates, closing.before);
 		const double settled = settle(s, rates.points, stored);
+		const double work = result.work + closing.before * (supportPower(s) - power);
 		return { joint.block,          closing.support, closing.before,      closing.restitution,   result.before,  result.after,
-			     result.energyLost, result.application, result.frictionDemand, !stops, result.capped, result.residual, settled };
+			     result.energyLost, work, result.application, result.frictionDemand, !stops, result.capped, result.residual, settled };
 	}
 
 } // namespace
@@ -112,6 +114,16 @@ void startAtEquilibrium(JointSystem& s)
 	goForth(s, rates, 0.); // velocities go half a step back
 }
 
+double supportPower(const JointSystem& s)
+{
+	double power = 0;
+	for (const JointContact& contact : s.contacts)
+		for (int i = 0; i < contact.size; ++i)
+			for (const auto& [b, sign] : { std::pair(contact.body1, 1.), std::pair(contact.body2, -1.) })
+				if (s.bodies[b].prescribed) power += sign * contact.force(i).dot(s.bodies[b].velocity);
+	return power;
+}
+
 std::vector<ImpactRecord> handOffPivots(JointSystem& s)
 {
 	std::vector<ImpactRecord> records;
@@ -125,7 +137,7 @@ std::vector<ImpactRecord> handOffPivots(JointSystem& s)
 
 JumpResponse applyBaseJump(JointSystem& s, const std::vector<int>& moved, const Vector3& jump, double before)
 {
-	const double stored = storedEnergy(s);
+	const double stored = storedEnergy(s), power = supportPower(s);
 	const auto   touching = selectPoints(s.contacts, [](const JointContact& contact, int i) {
         return !contact.points[i].muted && contact.patch.points[i].gap <= 0;
     });
@@ -168,6 +180,7 @@ JumpResponse applyBaseJump(JointSystem& s, const std::vector<int>& moved, const 
 	const RigidAcceleration rates = rigidAcceleration(s.bodies, s.contacts, held);
 	goForth(s, rates, before);
 	response.dissipated += settle(s, rates.points, stored);
+	response.work += before * (supportPower(s) - power);
 	for (const Joint& joint : groupJoints(s))
 		unmuteInFlight(s, joint);
 	return response;

@@ -41,6 +41,7 @@ struct ImpactRecord {
 	double speedBefore;         // relative angular velocity, rad/s
 	double speedAfter;
 	double energyLost;          // J
+	double work;                // of the prescribed bodies: their impulses, and the changed forces up to the end of the step, J
 	double application;         // distance of the resultant from the new pivot, m
 	double frictionDemand;      // |p_t|/p_n of the resultant
 	bool   switched;            // false: the joint came to rest
@@ -53,11 +54,14 @@ struct ImpactRecord {
 // go from a tilt, the pivot forces of the first instant). For the first step of a simulation.
 void startAtEquilibrium(JointSystem& system);
 
+// Power of the prescribed bodies on the others, W.
+double supportPower(const JointSystem& system);
+
 // Finds the joints whose rotation crossed zero in this step and hands their pivots over. Forces must be up to date.
 std::vector<ImpactRecord> handOffPivots(JointSystem& system);
 
 struct JumpResponse {
-	double work { 0 };       // of the moved bodies on the others, J
+	double work { 0 };       // of the moved bodies: their impulses, and the changed forces up to the end of the step, J
 	double dissipated { 0 }; // by the plastic, frictional response, J
 	double residual { 0 };   // of the impulse problem, m/s
 };

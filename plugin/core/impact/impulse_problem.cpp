@@ -1,6 +1,7 @@
 #include "impact/impulse_problem.hpp"
 #include "tolerances.hpp"
 #include <Eigen/QR>
+#include <algorithm>
 #include <cmath>
 
 namespace masonry {
@@ -20,7 +21,8 @@ namespace {
 		int                 nPoints, nCouples;
 		double              length; // of the couple rows, m
 		std::vector<State>  states;
-		Matrix              slipDirection; // column i: unit vector of p_t of point i while it slips
+		Matrix              slipDirection; // column i: unit vector d of p_t of point i while it slips
+		std::vector<double> slipTurn;      // beta = mu p_n / |y_t| of that point: how d turns with y_t
 		std::vector<double> friction;
 
 		Vector velocity() const { return G * p + free; }
@@ -73,51 +75,49 @@ namespace {
 		return result;
 	}
 
-	// Least-norm solution for the present states. The map S takes the unknowns (three for a sticking point, the normal
-	// impulse for a slipping one, one for a couple) to all impulses; the equations are the velocities that must vanish.
-	void solveForStates(System& s)
-	{
-		std::vector<int> equations;
-		std::vector<Vector> columns;
-		const auto unit = [&](int row) { return Vector(Vector::Unit(s.p.size(), row)); };
-		for (int i = 0; i < s.nPoints; ++i) {
-			if (s.states[i] == State::open) continue;
-			equations.push_back(3 * i);
-			Vector normal = unit(3 * i);
-			if (s.states[i] == State::slip) normal.segment<2>(3 * i + 1) = s.friction[i] * s.slipDirection.col(i);
-			columns.push_back(normal);
-			if (s.states[i] == State::stick)
-				for (int t : { 3 * i + 1, 3 * i + 2 }) {
-					equations.push_back(t);
-					columns.push_back(unit(t));
-				}
-		}
-		for (int c = 0; c < s.nCouples; ++c) {
-			equations.push_back(3 * s.nPoints + c);
-			columns.push_back(unit(equations.back()));
-		}
-		s.p.setZero();
-		if (equations.empty()) return;
-		Matrix S(s.p.size(), columns.size());
-		for (size_t k = 0; k < columns.size(); ++k)
-			S.col(k) = columns[k];
-		const Matrix GS = s.G * S;
-		Matrix       A(equations.size(), columns.size());
-		Vector       b(equations.size());
-		for (size_t k = 0; k < equations.size(); ++k) {
-			A.row(k) = GS.row(equations[k]);
-			b[k] = -s.free[equations[k]];
-		}
-		Eigen::CompleteOrthogonalDecomposition<Matrix> decomposition;
-		decomposition.setThreshold(tolerance::rank);
-		decomposition.compute(A);
-		Vector x = decomposition.solve(b);
-		x += decomposition.solve(b - A * x); // one refinement: long arms on slender blocks cost four digits
-		s.p = S * x;
-	}
-
 	// Stiffness of one point's impulse against its own velocity, an upper bound: with r = 1/response the map below contracts.
 	double response(const System& s, int i) { return s.G.block<3, 3>(3 * i, 3 * i).trace(); }
+
+	// Newton step: least-norm solution of the laws, linear for the present states. A slipping point obeys u_n = 0 and
+	//     p_t = mu p_n d(y_t),  y_t = p_t - r u_t,  d(y) = y/|y| ~ d + (1 - d d^T) y / |y_k|,
+	// so  p_t - mu p_n d - beta (1 - d d^T)(p_t - r u_t) = 0 with beta from the last iterate.
+	void solveForStates(System& s)
+	{
+		std::vector<int> active; // rows of p that may differ from zero
+		for (int i = 0; i < s.nPoints; ++i)
+			if (s.states[i] != State::open) active.insert(active.end(), { 3 * i, 3 * i + 1, 3 * i + 2 });
+		for (int row = 3 * s.nPoints; row < s.p.size(); ++row)
+			active.push_back(row);
+		s.p.setZero();
+		if (active.empty()) return;
+		Matrix A(active.size(), s.p.size()); // on all of p first; velocity rows by default
+		Vector b(active.size());
+		for (size_t k = 0; k < active.size(); ++k) {
+			A.row(k) = s.G.row(active[k]);
+			b[k] = -s.free[active[k]];
+		}
+		for (size_t k = 0; k < active.size(); ++k) {
+			const int i = active[k] / 3;
+			if (i >= s.nPoints || s.states[i] != State::slip || active[k] % 3 != 1) continue;
+			const Vector2         d = s.slipDirection.col(i);
+			const Eigen::Matrix2d turn = s.slipTurn[i] * (Eigen::Matrix2d::Identity() - d * d.transpose());
+			const double          stiffness = response(s, i); // 1/r: turns impulses into velocities, as in the other rows
+			A.middleRows<2>(k) = turn * s.G.middleRows<2>(active[k]);
+			b.segment<2>(k) = -turn * s.free.segment<2>(active[k]);
+			A.block<2, 1>(k, 3 * i) -= stiffness * s.friction[i] * d;
+			A.block<2, 2>(k, 3 * i + 1) += stiffness * (Eigen::Matrix2d::Identity() - turn);
+		}
+		Matrix reduced(active.size(), active.size());
+		for (size_t k = 0; k < active.size(); ++k)
+			reduced.col(k) = A.col(active[k]);
+		Eigen::CompleteOrthogonalDecomposition<Matrix> decomposition;
+		decomposition.setThreshold(tolerance::rank);
+		decomposition.compute(reduced);
+		Vector x = decomposition.solve(b);
+		x += decomposition.solve(b - reduced * x); // one refinement: long arms on slender blocks cost four digits
+		for (size_t k = 0; k < active.size(); ++k)
+			s.p[active[k]] = x[k];
+	}
 
 	// Projection of p - r u on the friction cone of one point; also tells the state that it stands for.
 	Vector3 project(const System& s, int i, const Vector3& u, State& state)
@@ -144,15 +144,31 @@ namespace {
 		return worst;
 	}
 
-	// One Newton update of the states and slip directions.
+	// States and slip directions for the next Newton step.
 	void updateStates(System& s)
 	{
 		const Vector u = s.velocity();
 		for (int i = 0; i < s.nPoints; ++i) {
-			State         state;
-			const Vector3 p = project(s, i, u.segment<3>(3 * i), state);
-			s.states[i] = state;
-			if (state == State::slip && p.tail<2>().norm() > 0) s.slipDirection.col(i) = p.tail<2>().normalized();
+			const Vector3 p = project(s, i, u.segment<3>(3 * i), s.states[i]);
+			const Vector2 y = s.p.segment<2>(3 * i + 1) - u.segment<2>(3 * i + 1) / response(s, i);
+			if (s.states[i] != State::slip || !(y.norm() > 0)) continue;
+			s.slipDirection.col(i) = y.normalized();
+			s.slipTurn[i] = p.tail<2>().norm() / y.norm();
+		}
+	}
+
+	// Without slip some problems have no solution. The way out keeps every promise on energy: all points held, then the one
+	// that pulls most let go, until none pulls. A point let go may still approach, which the residual tells.
+	void letPullingPointsGo(System& s)
+	{
+		s.states.assign(s.nPoints, State::stick);
+		for (int left = s.nPoints; left >= 0; --left) {
+			solveForStates(s);
+			int worst = -1;
+			for (int i = 0; i < s.nPoints; ++i)
+				if (s.p[3 * i] < 0 && (worst < 0 || s.p[3 * i] < s.p[3 * worst])) worst = i;
+			if (worst < 0) return;
+			s.states[worst] = State::open;
 		}
 	}
 
@@ -165,7 +181,7 @@ namespace {
 
 	int gaussSeidel(System& s)
 	{
-		constexpr int maxSweeps = 20000, checkEvery = 20;
+		constexpr int maxSweeps = 4000, checkEvery = 20;
 		for (int sweep = 1; sweep <= maxSweeps; ++sweep) {
 			for (int i = 0; i < s.nPoints; ++i) {
 				State         ignored;
@@ -205,12 +221,13 @@ ImpulseReport solveImpulses(std::vector<Body>& bodies, std::vector<ImpulsePoint>
 		s.free[3 * s.nPoints + c] -= s.length * couples[c].target;
 	s.p = Vector::Zero(s.J.rows());
 	s.slipDirection = Matrix::Zero(2, s.nPoints);
+	s.slipTurn.assign(s.nPoints, 0.);
 	for (const auto& point : points) {
 		s.friction.push_back(point.friction);
 		s.states.push_back(point.holds ? State::stick : State::open);
 	}
 
-	constexpr int maxNewton = 60;
+	constexpr int rounds = 6, maxNewton = 30;
 	ImpulseReport report { 0, std::numeric_limits<double>::infinity() };
 	bool          solved = false;
 	Vector        best = s.p;
@@ -221,17 +238,23 @@ ImpulseReport solveImpulses(std::vector<Body>& bodies, std::vector<ImpulsePoint>
 		report.residual = r;
 		best = s.p;
 	};
-	for (; report.iterations < maxNewton && !solved; ++report.iterations) {
-		solveForStates(s);
-		keepBest();
-		updateStates(s);
-	}
-	if (!solved) {
+	for (int round = 0; round < rounds && !solved; ++round) {
+		for (int k = 0; k < maxNewton && !solved; ++k, ++report.iterations) {
+			solveForStates(s);
+			keepBest();
+			updateStates(s);
+		}
+		if (solved) break;
 		s.p = best;
 		report.iterations += gaussSeidel(s);
 		keepBest();
+		updateStates(s);
 	}
 	s.p = best;
+	if (!solved && std::isinf(*std::max_element(s.friction.begin(), s.friction.end()))) {
+		letPullingPointsGo(s);
+		report.residual = residual(s);
+	}
 
 	v += perImpulse * s.p;
 	for (size_t i = 0; i < bodies.size(); ++i) {

@@ -12,7 +12,9 @@
 // along `axis` that makes axis.(w2 - w1) equal `target`.
 //
 // Method: semi-smooth Newton on the contact states (open, stick, slip), each linear system solved in the least-norm
-// sense, since the points of a face are redundant; projected Gauss-Seidel takes over should the states cycle.
+// sense, since the points of a face are redundant; projected Gauss-Seidel takes over should the states cycle. Without
+// slip a problem may have no solution (a point that can only be held by pulling); then points are let go until none pulls,
+// which never adds energy, and the residual tells by how much the laws are missed.
 #include "body.hpp"
 #include <limits>
 #include <vector>

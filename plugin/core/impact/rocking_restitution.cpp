@@ -1,6 +1,7 @@
 #include "impact/rocking_restitution.hpp"
 #include "tolerances.hpp"
 #include <cmath>
+#include <utility>
 
 namespace masonry {
 
@@ -23,19 +24,32 @@ namespace {
 	struct Try {
 		std::vector<Body>         bodies;
 		std::vector<ImpulsePoint> points;
-		double                    couple;
+		double                    couple, work;
 		ImpulseReport             report;
 	};
 
+	// Work of the prescribed bodies' impulses: they keep their velocities.
+	double supportWork(const Try& impact, const Vector3& axis, int support, int block)
+	{
+		double sum = 0;
+		for (const ImpulsePoint& point : impact.points)
+			for (const auto& [b, sign] : { std::pair(point.body1, 1.), std::pair(point.body2, -1.) })
+				if (impact.bodies[b].prescribed) sum += sign * point.impulse.dot(impact.bodies[b].velocityAt(point.position));
+		for (const auto& [b, sign] : { std::pair(support, 1.), std::pair(block, -1.) })
+			if (impact.bodies[b].prescribed) sum += sign * impact.couple * axis.dot(impact.bodies[b].angularVelocity);
+		return sum;
+	}
+
 	Try attempt(const std::vector<Body>& bodies, const RockingImpact& impact, const Vector3& axis, double target)
 	{
-		Try                    result { bodies, impact.points, 0., {} };
+		Try                    result { bodies, impact.points, 0., 0., {} };
 		std::vector<CoupleRow> rows;
 		for (int i = impact.closing; i < impact.old; ++i)
 			result.points[i].holds = false;
 		if (!std::isnan(target)) rows.push_back({ impact.support, impact.block, axis, target });
 		result.report = solveImpulses(result.bodies, result.points, rows);
-		if (!rows.empty()) result.couple = rows.front().couple;
+		result.couple = rows.empty() ? 0 : rows.front().couple;
+		result.work = supportWork(result, axis, impact.support, impact.block);
 		return result;
 	}
 
@@ -75,10 +89,12 @@ RockingImpactResult applyRockingImpact(std::vector<Body>& bodies, RockingImpact&
 		return result.axis.dot(b[impact.block].angularVelocity - b[impact.support].angularVelocity);
 	};
 	result.before = spin(bodies);
-	const double before = kineticEnergy(bodies), allowed = before * (1 + tolerance::energyGain);
+	const double before = kineticEnergy(bodies);
+	const auto   lost = [&](const Try& t) { return before + t.work - kineticEnergy(t.bodies); };
+	const auto   grows = [&](const Try& t) { return lost(t) < -tolerance::energyGain * (before + std::abs(t.work)); };
 
 	Try best = attempt(bodies, impact, result.axis, impact.restitution * result.before);
-	if (!std::isnan(impact.restitution) && kineticEnergy(best.bodies) > allowed) {
+	if (!std::isnan(impact.restitution) && grows(best)) {
 		const Try    plastic = attempt(bodies, impact, result.axis, NAN);
 		const double low = spin(plastic.bodies), high = impact.restitution * result.before;
 		double       safe = 0, unsafe = 1; // fractions of the way from the plastic value to the asked one
@@ -87,7 +103,7 @@ RockingImpactResult applyRockingImpact(std::vector<Body>& bodies, RockingImpact&
 		for (int i = 0; i < bisections; ++i) {
 			const double fraction = 0.5 * (safe + unsafe);
 			Try          next = attempt(bodies, impact, result.axis, low + fraction * (high - low));
-			if (kineticEnergy(next.bodies) > allowed) {
+			if (grows(next)) {
 				unsafe = fraction;
 			} else {
 				safe = fraction;
@@ -97,10 +113,11 @@ RockingImpactResult applyRockingImpact(std::vector<Body>& bodies, RockingImpact&
 		result.capped = true;
 	}
 
+	result.energyLost = lost(best);
+	result.work = best.work;
 	bodies = best.bodies;
 	impact.points = best.points;
 	result.after = spin(bodies);
-	result.energyLost = before - kineticEnergy(bodies);
 	result.residual = best.report.residual;
 	Vector3 resultant = Vector3::Zero(); // on the block, at the new support
 	for (int i = 0; i < impact.closing; ++i)

@@ -21,8 +21,9 @@
 // pivot, inward positive (Giannini 1984). For the rectangular block x/b = (4/3)(1 + slenderness^2)(C - C_H)/(1 + C):
 // C > C_H lies inside the base, C < C_H outside, a dissipative couple that no plastic no-slip contact can make.
 //
-// Energy never grows: were the kinetic energy larger after than before, the row's target is moved from C e.w- towards the
-// plastic value until it is not (bisection). `capped` tells.
+// Energy never grows: were the kinetic energy larger after than before by more than the work of the prescribed bodies (zero
+// where they stand still), the row's target is moved from C e.w- towards the plastic value until it is not (bisection).
+// `capped` tells.
 #include "impact/impulse_problem.hpp"
 
 namespace masonry {
@@ -39,7 +40,8 @@ struct RockingImpact {
 struct RockingImpactResult {
 	Vector3 axis;                  // e, directed so that `before` is not negative
 	double  before, after;         // e.w- and e.w+, rad/s
-	double  energyLost;            // J, not negative but for round-off
+	double  work;                  // of the prescribed bodies, J
+	double  energyLost;            // kinetic energy before + work - after, J, not negative but for round-off
 	double  application;           // x, m: couple / normal impulse (0 without a row)
 	double  frictionDemand;        // largest |p_t|/p_n among the closing points' resultant
 	bool    capped;                // the energy cap lowered the realised restitution

@@ -3,6 +3,7 @@
 #include "contact/box_box.hpp"
 #include "dynamics/joint_groups.hpp"
 #include "dynamics/time_step.hpp"
+#include <functional>
 #include <vector>
 
 struct LeapfrogRig {
@@ -17,7 +18,8 @@ struct LeapfrogRig {
 	std::vector<double>                  impactTimes;
 	double                               time { 0 };
 	bool                                 started { false };
-	double                               friction { 0 }, damping { 0 }, impactLoss { 0 }, elastic { 0 };
+	std::function<void()>                              onStart = [] {};
+	std::function<void(const masonry::ImpactRecord&)>  onImpact = [](const masonry::ImpactRecord&) {};
 
 	int addBox(const masonry::Vector3& size, const masonry::Vector3& centre, double density, bool prescribed)
 	{
@@ -69,16 +71,15 @@ struct LeapfrogRig {
 			body.torque.setZero();
 		}
 		findContacts();
-		for (const auto& contact : system.contacts) {
-			friction += contact.energy.friction;
-			damping += contact.energy.damping;
+		if (!started) {
+			startAtEquilibrium(system);
+			onStart();
 		}
-		if (!started) startAtEquilibrium(system);
 		started = true;
 		for (const ImpactRecord& record : handOffPivots(system)) {
 			impacts.push_back(record);
 			impactTimes.push_back(time - record.before);
-			impactLoss += record.energyLost;
+			onImpact(record);
 		}
 		finish();
 	}
@@ -86,11 +87,9 @@ struct LeapfrogRig {
 	void finish()
 	{
 		using namespace masonry;
-		elastic = 0;
 		for (size_t c = 0; c < system.contacts.size(); ++c) {
 			const JointContact& contact = system.contacts[c];
 			known[index[c]] = contact;
-			elastic += contact.energy.elastic;
 			for (int i = 0; i < contact.size; ++i) {
 				const Vector3 f = contact.force(i), x = contact.position(i);
 				Body &        b1 = system.bodies[contact.body1], &b2 = system.bodies[contact.body2];
@@ -112,15 +111,6 @@ struct LeapfrogRig {
 			body.advance(system.dt);
 		}
 		time += system.dt;
-	}
-
-	// Kinetic and potential energy at the present positions, velocities centred with the forces of the last step.
-	double mechanicalEnergy(const masonry::Vector3& gravity) const
-	{
-		double sum = elastic;
-		for (const auto& body : system.bodies)
-			if (!body.prescribed) sum += body.kineticEnergy() - body.mass * gravity.dot(body.pose.position);
-		return sum;
 	}
 
 	std::vector<size_t> index; // contact -> pair

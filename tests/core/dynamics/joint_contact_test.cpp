@@ -1,0 +1,113 @@
+// Forces of one compliant joint.
+#include "contact/box_box.hpp"
+#include "dynamics/joint_contact.hpp"
+#include "impact/impulse_problem.hpp"
+#include <catch2/catch.hpp>
+#include <cmath>
+
+using namespace masonry;
+
+namespace {
+
+// A block of 1 x 1 x 1 m on another, turned by `yaw`, pressed in by `depth`; moved by `step` in the last dt = 1e-3 s.
+struct PressedBlocks {
+	Body         lower, upper;
+	JointContact contact;
+	ContactPatch patch;
+
+	PressedBlocks(double yaw, double depth, const JointLaw& law)
+	{
+		lower.prescribed = true;
+		upper.mass = 1000;
+		upper.inertia = { 160, 160, 160 };
+		upper.pose.position = { 0, 0, 1 - depth };
+		upper.pose.orientation = Eigen::AngleAxisd(yaw, Vector3::UnitZ());
+		contact.body1 = 0;
+		contact.body2 = 1;
+		contact.law = law;
+		look();
+	}
+	void look()
+	{
+		const Box cube { Vector3::Constant(0.5) };
+		REQUIRE(collide(cube, lower.pose, cube, upper.pose, 0, contact.patch.feature, patch));
+		renewPatch(contact, patch);
+	}
+	void move(const Vector3& step, double dt = 1e-3)
+	{
+		upper.velocity = step / dt;
+		upper.pose.position += step;
+		look();
+		updateForces(contact, lower, upper, dt);
+	}
+	Vector3 total() const
+	{
+		Vector3 sum = Vector3::Zero();
+		for (int i = 0; i < contact.size; ++i)
+			sum += contact.force(i);
+		return sum;
+	}
+};
+
+const JointLaw law { 1e9, 5e8, 0, 0.5, 1 };
+
+} // namespace
+
+TEST_CASE("The stiffness of a joint does not depend on the number of its points")
+{
+	for (double yaw : { 0., 0.1, 0.5, 0.785 }) {
+		PressedBlocks blocks(yaw, 1e-6, law);
+		blocks.move(Vector3::Zero());
+		INFO("yaw " << yaw << ", " << blocks.contact.size << " points");
+		CHECK(blocks.total().z() == Approx(law.normalStiffness * blocks.patch.area * 1e-6).epsilon(1e-9));
+		CHECK(blocks.total().head<2>().norm() < 1e-9 * blocks.total().z());
+	}
+}
+
+TEST_CASE("Shear is elastic up to mu N and slips beyond, and the work done goes where the energies say")
+{
+	PressedBlocks blocks(0, 1e-6, law);
+	blocks.move(Vector3::Zero());
+	const double N = 1e9 * 1e-6, k = 5e8; // area 1 m^2
+	blocks.move({ 5e-7, 0, 0 });
+	CHECK(blocks.total().x() == Approx(-k * 5e-7).epsilon(1e-9)); // 250 N of 500 N
+	CHECK(blocks.contact.energy.friction == 0);
+	blocks.move({ 2e-6, 0, 0 });
+	CHECK(blocks.total().x() == Approx(-0.5 * N).epsilon(1e-9));
+	// Elastic limit 1e-6 m: 1.5e-6 of the 2.5e-6 m has slipped; the law takes the mean of trial and limit force.
+	const double trial = k * 2.5e-6, limit = 0.5 * N;
+	CHECK(blocks.contact.energy.friction == Approx(0.5 * (trial + limit) * 1.5e-6).epsilon(1e-9));
+}
+
+TEST_CASE("No slip is a law of its own")
+{
+	JointLaw stuck = law;
+	stuck.friction = noSlip;
+	PressedBlocks blocks(0, 1e-6, stuck);
+	blocks.move({ 1e-4, 0, 0 });
+	CHECK(blocks.total().x() == Approx(-5e8 * blocks.patch.area * 1e-4).epsilon(1e-9));
+}
+
+TEST_CASE("A muted point carries nothing, an open one neither, and no joint pulls")
+{
+	JointLaw damped = law;
+	damped.dampingRatio = 1;
+	PressedBlocks blocks(0, 1e-6, damped);
+	blocks.contact.points[0].muted = true;
+	blocks.move(Vector3::Zero());
+	CHECK(blocks.contact.force(0).norm() == 0);
+	CHECK(blocks.total().z() == Approx(0.75 * 1e9 * 1e-6).epsilon(1e-9));
+	blocks.move({ 0, 0, 0.9e-6 }); // leaves fast: the dashpot would pull
+	for (int i = 0; i < blocks.contact.size; ++i)
+		CHECK(blocks.contact.points[i].normalForce >= 0);
+}
+
+TEST_CASE("A point that stays keeps its shear when the patch is renewed")
+{
+	PressedBlocks blocks(0, 1e-6, law);
+	blocks.move({ 3e-7, 0, 0 });
+	const auto before = blocks.contact.points[2];
+	blocks.look();
+	CHECK(blocks.contact.points[2].identity == before.identity);
+	CHECK((blocks.contact.points[2].shear - before.shear).norm() < 1e-20);
+}
