@@ -13,4 +13,4 @@ from masonry.dem._load import load_classes as _load_classes
 globals().update(_load_classes())
 
 from masonry.dem.engines import energy, engines, impacts  # noqa: E402  (YADE's classes must be registered first)
-from masonry.dem.scene import angle, base, block, stack, tilt, wall  # noqa: E402
+from masonry.dem.scene import angle, base, block, overturned, stack, tilt, wall  # noqa: E402

@@ -114,3 +114,16 @@ def angle(id, axis="y"):
     state = _box(id).state
     turn = state.refOri.conjugate() * state.ori
     return 2 * math.atan2(turn[_AXES[axis]], turn[3])
+
+
+def overturned():
+    """Ids of the free blocks that lean by more than their own critical angle: a single block that does will not come back."""
+    found = []
+    for body in O.bodies:
+        if not (isinstance(body.mat, wrapper.BlockMat) and isinstance(body.shape, wrapper.Box) and body.dynamic):
+            continue
+        half = body.shape.extents
+        lean = math.acos(max(-1.0, min(1.0, (body.state.ori * body.state.refOri.conjugate() * Vector3.UnitZ)[2])))
+        if lean > math.atan2(min(half[0], half[1]), half[2]):
+            found.append(body.id)
+    return found
