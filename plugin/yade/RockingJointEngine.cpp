@@ -181,6 +181,7 @@ void RockingJointEngine::recordImpact(const masonry::ImpactRecord& record)
 	impactSwitched.push_back(record.switched);
 	impactCapped.push_back(record.capped);
 	impactDissip += record.energyLost + record.settled;
+	baseWork += record.work;
 	worstResidual = std::max(worstResidual, record.residual);
 }
 
@@ -193,10 +194,8 @@ bool RockingJointEngine::applyJumps(const vector<BaseMotionEngine*>& motions, co
 			vector<int> moved;
 			for (int id : motion->ids)
 				if (size_t(id) < index.size() && index[id] >= 0) moved.push_back(index[id]);
-			const Real powerBefore = basePower();
 			const auto response = masonry::applyBaseJump(system, moved, jump.velocity, jump.before);
-			// The trapezoidal rule of addBaseWork took the old power up to the end of the step.
-			baseWork += response.work + jump.before * (basePower() - powerBefore);
+			baseWork += response.work;
 			acted = true;
 			impactDissip += response.dissipated;
 			worstResidual = std::max(worstResidual, response.residual);
@@ -258,15 +257,8 @@ std::map<int, Vector3r> RockingJointEngine::baseReactions() const
 	return result;
 }
 
-/// Power of the moved bodies on the blocks, W.
-Real RockingJointEngine::basePower() const
-{
-	Real power = 0;
-	for (const auto& [b, force] : baseReactions()) power -= force.dot(system.bodies[b].velocity);
-	return power;
-}
-
-/// Work of the moved bodies over the step that ends now, by the trapezoidal rule on the reactions.
+/// Work of the moved bodies over the step that ends now, by the trapezoidal rule on the reactions as if no impact came;
+/// impacts and jumps then add what they change.
 void RockingJointEngine::addBaseWork()
 {
 	std::map<int, Vector3r> before;
@@ -315,13 +307,13 @@ void RockingJointEngine::action()
 	const bool starting = !started;
 	if (starting) startAtEquilibrium(system);
 	started = true;
+	if (!starting) addBaseWork();
 	vector<StepImpact> impacts;
 	const auto records = handOffPivots(system);
 	for (const auto& record : records) {
 		recordImpact(record);
 		impacts.push_back({ ids[record.block], record.before });
 	}
-	if (!starting) addBaseWork();
 	const bool jumped = applyJumps(motions, impacts);
 	for (size_t b = 0; b < ids.size(); ++b)
 		if (!system.bodies[b].prescribed && (starting || !records.empty() || jumped))

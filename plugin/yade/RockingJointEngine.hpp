@@ -64,7 +64,6 @@ private:
 	void applyForces(const vector<Pair>& pairs);
 	void measureEnergy();
 	std::map<int, Vector3r> baseReactions() const;
-	Real basePower() const;
 	void addBaseWork();
 	void keepReactions();
 

@@ -1,0 +1,82 @@
+"""What the physics tests share: one block on a base, its history, and the balance of energy."""
+
+import contextlib
+import io
+import math
+
+import numpy as np
+from masonry import dem
+from yade import O, PyRunner
+
+import masonry
+
+
+def stone(restitution=None, **attributes):
+    given = {} if restitution is None else {"restitution": restitution}
+    return dem.BlockMat(density=2000, **{"noSlip": True, **given, **attributes})
+
+
+def quiet_engines(*arguments, **options):
+    with contextlib.redirect_stdout(io.StringIO()):
+        return dem.engines(*arguments, **options)
+
+
+class Samples:
+    """(time, value) every few steps, taken inside O.run()."""
+
+    instance = None
+
+    def __init__(self, value, period):
+        self.times, self.values, self._value = [], [], value
+        Samples.instance = self
+        O.engines = O.engines + [PyRunner(command="import rocking_scene; rocking_scene.Samples.instance.take()", iterPeriod=period)]
+
+    def take(self):
+        self.times.append(O.time + O.dt)  # NewtonIntegrator has moved the bodies already; O.time follows after the step
+        self.values.append(self._value())
+
+    def peaks(self):
+        """Largest |value| of each half cycle, by the parabola through three samples: error (period w)^4/1000 or so."""
+        h = np.abs(self.values)
+        top = np.flatnonzero((h[1:-1] >= h[2:]) & (h[1:-1] > h[:-2])) + 1
+        left, mid, right = h[top - 1], h[top], h[top + 1]
+        return mid + (right - left) ** 2 / (16 * mid - 8 * left - 8 * right)
+
+
+class Balance:
+    """Energy that appears (+) or is lost track of (-) since the first step, J."""
+
+    def __init__(self):
+        if O.iter == 0:
+            O.step()
+        self.start = self._sum()
+
+    @staticmethod
+    def _sum():
+        e = dem.energy()
+        return sum(e.values()) - 2 * e["baseWork"]
+
+    def error(self):
+        return self._sum() - self.start
+
+
+def one_block(slenderness, half_width=0.3, restitution=None, depth=1.0, **attributes):
+    """(base id, block id, masonry.RockingBlock) of a fresh scene."""
+    O.reset()
+    b, a = half_width, half_width * slenderness
+    material = stone(restitution, **attributes)
+    base = dem.base((6 * b + 4 * a, 2 * depth, b), material)
+    block = dem.block((2 * b, depth, 2 * a), material, on=base)
+    return base, block, masonry.RockingBlock(b, a)
+
+
+def barrier(id, block):
+    """Energy from rest to overturning, J."""
+    return O.bodies[id].state.mass * block.gravity * block.radius * (1 - math.cos(block.critical_angle))
+
+
+def run_impacts(count, t_end):
+    """Runs until so many impacts have been counted, at most to t_end (s). Returns them all."""
+    while len(dem.impacts()) < count and O.time < t_end:
+        O.run(5000, True)
+    return dem.impacts()

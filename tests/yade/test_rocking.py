@@ -1,0 +1,62 @@
+"""One block that rocks freely on compliant joints, against the exact history of a rigid one."""
+
+import math
+
+import numpy as np
+from rocking_scene import Balance, Samples, barrier, one_block, quiet_engines, run_impacts
+
+import masonry
+from masonry import dem
+from yade import O
+
+
+def rock(slenderness, restitution, half_cycles, penetration=1e-5, tilt=0.9):
+    """(peaks, impacts, exact history, energy error relative to the energy put in, block)"""
+    _, id, block = one_block(slenderness, restitution=restitution)
+    dem.tilt(id, tilt * block.critical_angle)
+
+    O.engines = quiet_engines(penetration=penetration)
+    angles = Samples(lambda: dem.angle(id), 10)
+    exact = masonry.simulate(block, restitution=restitution, initial_angle=tilt * block.critical_angle, half_cycles=half_cycles)
+    balance = Balance()
+    impacts = run_impacts(half_cycles, 1.05 * exact.impact_times[-1])
+    put_in = barrier(id, block) * (1 - (1 - math.cos(block.critical_angle * (1 - tilt))) / (1 - math.cos(block.critical_angle)))
+    return angles.peaks(), impacts, exact, abs(balance.error()) / put_in, block
+
+
+# The compressed pivot leans the block by about the penetration over the lever: an error of the angle that is proportional to
+# the penetration, and is the bound asked of the law.
+for penetration, bound in ((1e-5, 1e-3), (1e-6, 1e-4)):
+    peaks, impacts, exact, energy, _ = rock(5, 0.9, 15, penetration)
+    wanted = np.abs(exact.peak_angles[1:15])
+    error = np.max(np.abs(peaks[:14] / wanted - 1))
+    assert len(peaks) >= 14 and error <= bound, (penetration, error)
+    assert np.max(np.abs(impacts["time"][:15] / exact.impact_times[:15] - 1)) <= bound
+    assert np.all(impacts["switched"][:15]) and not np.any(impacts["capped"])
+    assert np.all(np.abs(impacts["restitution"][:15] - 0.9) < 1e-12)  # a row of the impulse problem, met to round-off
+    assert energy <= 1e-4, energy
+    print(f"penetration {penetration:g}: peaks {error:.1e}, energy {energy:.1e}")
+
+# The restitution that comes out, from heights alone: the energy of a peak is m g R (cos(alpha - theta) - cos(alpha)), and the
+# ratio of two is C^2. A compressed joint turns the block by an elastic angle, penetration times width over lever: peaks that it
+# changes by more than the bound say nothing about C.
+penetration = 1e-6
+for slenderness in (3, 5, 8, 12):
+    for restitution in (0.5, 0.7, 0.9, 1.0):
+        peaks, impacts, exact, energy, block = rock(slenderness, restitution, 8, penetration)
+        peaks = peaks[peaks > penetration / 1e-3]
+        height = np.cos(block.critical_angle - peaks) - math.cos(block.critical_angle)
+        realised = np.sqrt(height[1:] / height[:-1])
+        error = np.max(np.abs(realised - restitution))
+        assert len(realised) >= 1 and error <= 1e-3, (slenderness, restitution, realised)
+        assert energy <= 1e-4, (slenderness, restitution, energy)
+        print(f"lambda {slenderness}, C {restitution}: {len(realised)} peaks, C within {error:.1e}, energy {energy:.1e}")
+
+# None given: the plastic impact on the corner gives the natural restitution by itself.
+for slenderness in (2, 5):
+    peaks, impacts, exact, energy, block = rock(slenderness, None, 4, penetration)
+    natural = 1 - 1.5 * math.sin(block.critical_angle) ** 2
+    assert np.all(np.isnan(impacts["restitution_asked"]))
+    assert np.max(np.abs(impacts["restitution"][:4] - natural)) < 1e-5  # the pivot's compression moves it by that share
+    assert np.max(np.abs(impacts["application"][:4])) == 0
+    assert energy <= 1e-4, energy
