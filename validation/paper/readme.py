@@ -1,6 +1,9 @@
 """Writes the tables of one run between the markers of README.md, so that they cannot go stale."""
 from pathlib import Path
 
+import theory
+from cases import grid, relative_error
+
 README = Path(__file__).resolve().parent / "README.md"
 BEGIN, END = "<!-- written by validation/paper/run: begin -->", "<!-- end -->"
 
@@ -10,12 +13,20 @@ def _table(header, rows):
     return "\n".join("| " + " | ".join(str(cell).replace("|", "\\|") for cell in line) + " |" for line in lines)
 
 
+def _nearest():
+    """The case of the figures whose slenderness is nearest to an exact overturning limit, in words."""
+    limits = {(c.two_b, c.restitution): theory.exact_critical_slenderness(c.two_b, c.restitution) for c in grid()}
+    distance, case = min(((relative_error(c.slenderness, limits[c.two_b, c.restitution]), c) for c in grid()), key=lambda pair: pair[0])
+    return (f"Nearest to overturning under gravity: 2b = {case.two_b} m, lambda = {case.slenderness}, C = {case.restitution}, "
+            f"{distance:.1%} from its limit.")
+
+
 def update(stated, verdicts, table):
     claims = _table(["where", "the text", "paper", "closed form", "real gravity", "verdict"],
                     [[c.where, c.statement, c.paper, c.closed_form, c.gravity, c.verdict] for c in stated])
     checks = _table(["what must hold", "value", "bound", "holds"], [[*v[:3], "yes" if v[3] else "NO"] for v in verdicts])
     generated = (f"{BEGIN}\n\n### The paper's text against its closed form and real gravity\n\n{claims}\n\n"
-                 f"### Verdicts\n\n{len(table)} YADE cases.\n\n{checks}\n\n{END}")
+                 f"### Verdicts\n\n{len(table)} YADE cases. {_nearest()}\n\n{checks}\n\n{END}")
     text = README.read_text()
     before, rest = text.split(BEGIN)
     README.write_text(before + generated + rest.split(END)[1])

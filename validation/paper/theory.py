@@ -111,3 +111,9 @@ def finite_train(two_b, slenderness, restitution, duration, n, first="dirac"):
         # An overturned block goes on as one at rest, which keeps its NaN.
         speed = np.where(alive, restitution * np.nan_to_num(velocity), 0.0)
     return train
+
+
+def finite_ratio(two_b, slenderness, restitution, duration, n=60):
+    """theta/alpha of half cycle n, when the train has stabilised; NaN: overturned."""
+    train = finite_train(two_b, slenderness, restitution, duration, n)
+    return train.peak_ratio[-1] if len(train.peak_ratio) == n else np.full(np.shape(slenderness), np.nan)

@@ -47,6 +47,10 @@ class Recorder:
             start = stop
         return result
 
+    def thinned(self):
+        """(time, angle), a few tens a cycle."""
+        return list(zip(self.times, self.angles))[::SAMPLES // 20]
+
     def _refined(self, i):
         before, at, after = (abs(self.angles[j]) for j in (i - 1, i, i + 1))
         return at + (after - before) ** 2 / (8 * (2 * at - before - after))
@@ -68,11 +72,10 @@ def simulate(case):
     clock = time.process_time()
     O.run(int(TIME_LIMIT / O.dt), True)
     impacts = dem.impacts()[:case.half_cycles]
-    energy = dem.energy()
     return dict(key=case.key, overturn_half_cycle=len(impacts) + 1 if recorder.overturned else 0,
                 impact_times=impacts["time"].tolist(), velocities=impacts["velocity"].tolist(),
                 peaks=recorder.peaks(impacts["time"]), restitutions=impacts["restitution"].tolist(),
-                base_displacement=train.residualDisplacement, base_work=energy["baseWork"],
+                base_displacement=train.residualDisplacement, history=recorder.thinned() if case.duration else [],
                 simulated_s=O.time, cpu_s=time.process_time() - clock, time_step=O.dt)
 
 
