@@ -10,6 +10,8 @@ namespace masonry::tolerance {
 constexpr double rank = 1e-10;
 // Residual of an impulse problem relative to the largest approach speed. Larger: corners penetrate after an impact.
 constexpr double impulse = 1e-11;
+// Change of any velocity in a sweep, relative to the largest approach speed, at which a large problem counts as solved.
+constexpr double sweeps = 1e-8;
 // Gain of kinetic energy relative to the kinetic energy before an impact that is round-off, not physics. Smaller: the
 // energy cap acts on C = 1 impacts that only round off.
 constexpr double energyGain = 1e-11;
@@ -28,9 +30,11 @@ constexpr double mergedClosing = 1e-6;
 constexpr double restSpeed = 1e-4;
 // Speed relative to a jump of the base above which a point parts from its support at the jump; below it is round-off.
 constexpr double parting = 1e-9;
-// |cos| of the angle between a joint's normal and gravity below which the joint stands upright (a head joint): it then
-// forms a joint of its own instead of being grouped with the others under its block.
+// |cos| of the angle between a joint's normal and gravity below which the joint stands upright (a head joint): it does
+// not rock, its springs and dashpots act alone. Larger: leaning beds lose their restitution.
 constexpr double uprightJoint = 0.1;
+// Part of the largest wanted displacement by which settled gaps may miss theirs. Larger: springs start to vibrate.
+constexpr double settle = 1e-9;
 
 // --- exact history of one block (rocking/) ---
 // A rocking impact slower than this share of sqrt(g/R) ends the rocking (infinitely many impacts in finite time follow).

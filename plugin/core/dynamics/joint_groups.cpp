@@ -1,6 +1,5 @@
 #include "dynamics/joint_groups.hpp"
 #include "tolerances.hpp"
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -65,21 +64,77 @@ std::vector<Joint> groupJoints(const JointSystem& s)
 	for (int c = 0; c < int(s.contacts.size()); ++c) {
 		const JointContact& contact = s.contacts[c];
 		const Vector3&      n = contact.patch.normal;
-		const double        up = g > 0 ? -n.dot(s.gravity) / g : 0;
-		const bool          lying = std::abs(up) > tolerance::uprightJoint;
-		bool                second = lying ? up > 0 : true;
-		if (s.bodies[second ? contact.body2 : contact.body1].prescribed) second = !second;
-		const int block = second ? contact.body2 : contact.body1;
+		const double        up = g > 0 ? -n.dot(s.gravity) / g : 1;
+		if (std::abs(up) < tolerance::uprightJoint) continue;
+		const int block = up > 0 ? contact.body2 : contact.body1;
 		if (s.bodies[block].prescribed) continue;
-		const Vector3 normal = second ? n : Vector3(-n);
-		int           index = int(joints.size());
-		if (lying) index = byFace.emplace(std::make_pair(block, faceOf(s.bodies[block], normal)), index).first->second;
+		const Vector3 normal = up > 0 ? n : Vector3(-n);
+		const int     index = byFace.emplace(std::make_pair(block, faceOf(s.bodies[block], normal)), int(joints.size())).first->second;
 		if (index == int(joints.size())) joints.push_back({ block, normal, {}, {} });
 		joints[index].contacts.push_back(c);
 		for (int i = 0; i < contact.size; ++i)
 			joints[index].points.push_back({ c, i });
 	}
 	return joints;
+}
+
+Neighbourhood neighbourhood(const JointSystem& s, const Joint& joint)
+{
+	constexpr size_t  small = 16; // contacts that the dense impulse solver takes as a whole
+	std::vector<bool> near(s.bodies.size(), s.contacts.size() <= small);
+	near[joint.block] = true;
+	for (const JointContact& contact : s.contacts)
+		if (contact.body1 == joint.block || contact.body2 == joint.block) near[contact.body1] = near[contact.body2] = true;
+
+	Neighbourhood part;
+	part.system.gravity = s.gravity;
+	part.system.dt = s.dt;
+	part.system.order = s.order;
+	std::vector<int> local(s.bodies.size(), -1);
+	const auto       take = [&](int b) {
+        if (local[b] >= 0) return local[b];
+        local[b] = int(part.bodies.size());
+        part.bodies.push_back(b);
+        part.inside.push_back(near[b]);
+        part.system.bodies.push_back(s.bodies[b]);
+        if (!near[b]) {
+            part.system.bodies.back().prescribed = true;
+            part.system.bodies.back().acceleration.setZero();
+        }
+        return local[b];
+	};
+	std::vector<int> localContact(s.contacts.size(), -1);
+	for (size_t c = 0; c < s.contacts.size(); ++c) {
+		const auto moves = [&](int b) { return near[b] && !s.bodies[b].prescribed; };
+		if (!moves(s.contacts[c].body1) && !moves(s.contacts[c].body2)) continue;
+		localContact[c] = int(part.contacts.size());
+		part.contacts.push_back(int(c));
+		part.system.contacts.push_back(s.contacts[c]);
+		part.system.contacts.back().body1 = take(s.contacts[c].body1);
+		part.system.contacts.back().body2 = take(s.contacts[c].body2);
+	}
+	part.joint = joint;
+	part.joint.block = local[joint.block];
+	for (int& c : part.joint.contacts)
+		c = localContact[c];
+	for (PointRef& p : part.joint.points)
+		p.contact = localContact[p.contact];
+	return part;
+}
+
+void putBack(const Neighbourhood& part, JointSystem& s)
+{
+	for (size_t k = 0; k < part.bodies.size(); ++k) {
+		if (!part.inside[k] || part.system.bodies[k].prescribed) continue;
+		s.bodies[part.bodies[k]] = part.system.bodies[k];
+	}
+	for (size_t k = 0; k < part.contacts.size(); ++k) {
+		JointContact&   contact = s.contacts[part.contacts[k]];
+		const int       body1 = contact.body1, body2 = contact.body2;
+		contact = part.system.contacts[k];
+		contact.body1 = body1;
+		contact.body2 = body2;
+	}
 }
 
 void unmuteInFlight(JointSystem& s, const Joint& joint)
@@ -169,41 +224,70 @@ double storedEnergy(const JointSystem& s)
 	return sum;
 }
 
+namespace {
+
+	struct NormalRow {
+		int     body1, body2;
+		Vector3 normal, turn1, turn2; // displacement along the normal per displacement and turn of each body
+		double  wanted;               // change of the gap, m
+	};
+
+	// Displacements (position, turn) that change the gaps as wanted: least motion weighted by mass. Row by row, since the
+	// rows are few per body; consistent redundant rows do no harm.
+	std::vector<std::pair<Vector3, Vector3>> leastMotion(const std::vector<Body>& bodies, const std::vector<NormalRow>& rows)
+	{
+		std::vector<std::pair<Vector3, Vector3>> motion(bodies.size(), { Vector3::Zero(), Vector3::Zero() });
+		std::vector<Matrix3>                     inverseInertia;
+		for (const Body& body : bodies)
+			inverseInertia.push_back(body.inverseInertia());
+		double largest = 0;
+		for (const NormalRow& row : rows)
+			largest = std::max(largest, std::abs(row.wanted));
+		constexpr int maxSweeps = 2000;
+		double        miss = largest;
+		for (int sweep = 0; sweep < maxSweeps && miss > tolerance::settle * largest; ++sweep) {
+			miss = 0;
+			for (const NormalRow& row : rows) {
+				auto &       m1 = motion[row.body1], &m2 = motion[row.body2];
+				const double now = row.normal.dot(m2.first - m1.first) + row.turn2.dot(m2.second) - row.turn1.dot(m1.second);
+				const double softness = bodies[row.body1].inverseMass() + bodies[row.body2].inverseMass()
+				        + row.turn1.dot(inverseInertia[row.body1] * row.turn1) + row.turn2.dot(inverseInertia[row.body2] * row.turn2);
+				const double push = (row.wanted - now) / softness;
+				m1.first -= bodies[row.body1].inverseMass() * push * row.normal;
+				m1.second -= inverseInertia[row.body1] * row.turn1 * push;
+				m2.first += bodies[row.body2].inverseMass() * push * row.normal;
+				m2.second += inverseInertia[row.body2] * row.turn2 * push;
+				miss = std::max(miss, std::abs(row.wanted - now));
+			}
+		}
+		return motion;
+	}
+
+} // namespace
+
 double settle(JointSystem& s, const std::vector<HeldPoint>& held, double stored)
 {
 	std::vector<HeldPoint> loaded;
-	for (const HeldPoint& p : held)
-		if (s.contacts[p.contact].patch.normal.dot(p.force) > 0) loaded.push_back(p);
-	const int       rows = int(loaded.size()), columns = 6 * int(s.bodies.size());
-	Eigen::MatrixXd J = Eigen::MatrixXd::Zero(rows, columns), response = Eigen::MatrixXd::Zero(columns, rows);
-	Eigen::VectorXd closing(rows);
-	for (int k = 0; k < rows; ++k) {
-		const JointContact& contact = s.contacts[loaded[k].contact];
-		const int           i = loaded[k].point;
+	std::vector<NormalRow> rows;
+	for (const HeldPoint& p : held) {
+		const JointContact& contact = s.contacts[p.contact];
 		const Vector3&      n = contact.patch.normal;
-		for (const auto& [b, sign] : { std::pair(contact.body1, -1.), std::pair(contact.body2, 1.) }) {
-			const Vector3 turn = (contact.position(i) - s.bodies[b].pose.position).cross(n);
-			J.block<1, 3>(k, 6 * b) = sign * n.transpose();
-			J.block<1, 3>(k, 6 * b + 3) = sign * turn.transpose();
-			response.block<3, 1>(6 * b, k) = sign * s.bodies[b].inverseMass() * n;
-			response.block<3, 1>(6 * b + 3, k) = sign * (s.bodies[b].inverseInertia() * turn);
-		}
-		closing[k] = -n.dot(loaded[k].force) / contact.normalStiffness(i) - contact.patch.points[i].gap;
+		if (!(n.dot(p.force) > 0)) continue;
+		loaded.push_back(p);
+		const Vector3 x = contact.position(p.point);
+		rows.push_back({ contact.body1, contact.body2, n, (x - s.bodies[contact.body1].pose.position).cross(n), (x - s.bodies[contact.body2].pose.position).cross(n),
+		                 -n.dot(p.force) / contact.normalStiffness(p.point) - contact.patch.points[p.point].gap });
 	}
 	const std::vector<Body> before = s.bodies;
-	if (rows > 0) {
-		Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition;
-		decomposition.setThreshold(tolerance::rank);
-		const Eigen::VectorXd shift = response * decomposition.compute(J * response).solve(closing);
-		for (size_t b = 0; b < s.bodies.size(); ++b) {
-			Body& body = s.bodies[b];
-			if (body.prescribed) continue;
-			Body moving = body; // displacement over unit time
-			moving.velocity = shift.segment<3>(6 * b);
-			moving.angularVelocity = shift.segment<3>(6 * b + 3);
-			moving.advance(1);
-			body.pose = moving.pose;
-		}
+	const auto              motion = leastMotion(s.bodies, rows);
+	for (size_t b = 0; b < s.bodies.size(); ++b) {
+		Body& body = s.bodies[b];
+		if (body.prescribed) continue;
+		Body moving = body; // displacement over unit time
+		moving.velocity = motion[b].first;
+		moving.angularVelocity = motion[b].second;
+		moving.advance(1);
+		body.pose = moving.pose;
 	}
 	moveContacts(s, before);
 	for (const HeldPoint& p : loaded) {

@@ -9,7 +9,8 @@ struct PointRef {
 	int contact, point;
 };
 
-// All patches under one face of a block: the block above, seen along gravity; a joint that stands upright is its pair alone.
+// All patches under one face of a block: the block above, seen along gravity. Joints that stand upright do not rock and are
+// left out; without gravity the block is body 2.
 struct Joint {
 	int                   block;
 	Vector3               normal; // from the supports to the block
@@ -30,6 +31,18 @@ struct Closing {
 };
 
 std::vector<Joint> groupJoints(const JointSystem& system);
+
+// What an impact of a joint is solved on: the whole system while it is small, else the block, its neighbours and their
+// contacts; what stands beyond them moves on as it does.
+struct Neighbourhood {
+	JointSystem      system;
+	Joint            joint;             // in its numbers
+	std::vector<int> bodies, contacts;  // its numbers -> those of the whole
+	std::vector<bool> inside;           // false: a body beyond, held at its velocity
+};
+
+Neighbourhood neighbourhood(const JointSystem& system, const Joint& joint);
+void          putBack(const Neighbourhood& part, JointSystem& system);
 
 // A joint whose loaded points are an edge or a corner rocks: its open points are muted. One without any load flies:
 // nothing is muted, so that it may land on any point.

@@ -129,8 +129,13 @@ std::vector<ImpactRecord> handOffPivots(JointSystem& s)
 	std::vector<ImpactRecord> records;
 	for (const Joint& joint : groupJoints(s)) {
 		muteOpenPoints(s, joint);
-		const Closing closing = findClosing(s, joint);
-		if (!closing.points.empty()) records.push_back(switchPivot(s, joint, closing));
+		if (findClosing(s, joint).points.empty()) continue;
+		Neighbourhood part = neighbourhood(s, joint);
+		ImpactRecord  record = switchPivot(part.system, part.joint, findClosing(part.system, part.joint));
+		record.block = part.bodies[record.block];
+		record.support = part.bodies[record.support];
+		records.push_back(record);
+		putBack(part, s);
 	}
 	return records;
 }
