@@ -35,6 +35,10 @@ constexpr double parting = 1e-9;
 constexpr double uprightJoint = 0.1;
 // Part of the largest wanted displacement by which settled gaps may miss theirs. Larger: springs start to vibrate.
 constexpr double settle = 1e-9;
+// Energy that settling may put into the joints, relative to what they store: the pivot forces of a new phase differ by
+// that much at most. Smaller: squat blocks at low restitution start a half cycle with a vibration; larger: a stack that
+// comes apart can gain energy.
+constexpr double settlingGain = 0.5;
 
 // --- exact history of one block (rocking/) ---
 // A rocking impact slower than this share of sqrt(g/R) ends the rocking (infinitely many impacts in finite time follow).

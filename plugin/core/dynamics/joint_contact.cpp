@@ -39,10 +39,11 @@ namespace {
 		return inverse > 0 ? 1 / inverse : 0;
 	}
 
+	double squared(double depth) { return depth > 0 ? depth * depth : 0; }
+
 	double storedEnergy(const JointContact& contact, int i)
 	{
-		const double depth = std::max(0., -contact.patch.points[i].gap);
-		return 0.5 * contact.normalStiffness(i) * depth * depth + 0.5 * contact.shearStiffness(i) * contact.points[i].shear.squaredNorm();
+		return 0.5 * contact.normalStiffness(i) * squared(-contact.patch.points[i].gap) + 0.5 * contact.shearStiffness(i) * contact.points[i].shear.squaredNorm();
 	}
 
 	// Mean velocity of material points over the step dt that ends now. Leapfrog velocities belong to the middle of the
@@ -83,35 +84,41 @@ void updateForces(JointContact& contact, const Body& body1, const Body& body2, d
 	const StepMotion motion1(body1, dt), motion2(body2, dt);
 	contact.energy = {};
 	for (int i = 0; i < contact.size; ++i) {
-		JointPoint&  point = contact.points[i];
-		const double depth = -contact.patch.points[i].gap, weight = contact.patch.points[i].weight;
+		JointPoint&      point = contact.points[i];
+		const JointPoint old = point;
+		const double     depth = -contact.patch.points[i].gap, weight = contact.patch.points[i].weight;
+		const double     stiffness = contact.shearStiffness(i);
+		const Vector3    velocity = motion2.velocityAt(contact.position(i)) - motion1.velocityAt(contact.position(i));
+		const double     normalVelocity = n.dot(velocity);
+		const Vector3    slideVelocity = velocity - n * normalVelocity;
+		double           slipped = 0; // J
 		if (point.muted || depth <= 0) {
 			release(point);
-			continue;
-		}
-		const Vector3 velocity = motion2.velocityAt(contact.position(i)) - motion1.velocityAt(contact.position(i));
-		const double  normalVelocity = n.dot(velocity);
-		const Vector3 slideVelocity = velocity - n * normalVelocity;
-		const double  elastic = contact.normalStiffness(i) * depth;
-		point.normalForce = std::max(0., elastic - dampingNormal * weight * normalVelocity);
-		contact.energy.damping += (elastic - point.normalForce) * normalVelocity * dt;
-
-		const double stiffness = contact.shearStiffness(i);
-		point.shear += slideVelocity * dt;
-		const double bound = std::isinf(law.friction) ? law.friction : law.friction * point.normalForce;
-		const double pull = stiffness * point.shear.norm();
-		if (pull > bound) {
-			const double slip = (pull - bound) / stiffness;
-			point.shear *= bound / pull;
-			point.shearForce = -stiffness * point.shear;
-			contact.energy.friction += 0.5 * (pull + bound) * slip;
 		} else {
-			const Vector3 total = -stiffness * point.shear - dampingShear * weight * slideVelocity;
-			const double  size = total.norm();
-			point.shearForce = size > bound ? Vector3(total * (bound / size)) : total;
-			contact.energy.damping -= (point.shearForce + stiffness * point.shear).dot(slideVelocity) * dt;
+			point.normalForce = std::max(0., contact.normalStiffness(i) * depth - dampingNormal * weight * normalVelocity);
+			point.shear += slideVelocity * dt;
+			const double bound = std::isinf(law.friction) ? law.friction : law.friction * point.normalForce;
+			const double pull = stiffness * point.shear.norm();
+			if (pull > bound) {
+				slipped = bound * (pull - bound) / stiffness;
+				point.shear *= bound / pull;
+				point.shearForce = -stiffness * point.shear;
+			} else {
+				const Vector3 total = -stiffness * point.shear - dampingShear * weight * slideVelocity;
+				const double  size = total.norm();
+				point.shearForce = size > bound ? Vector3(total * (bound / size)) : total;
+			}
 		}
-		contact.energy.elastic += storedEnergy(contact, i);
+		// What the forces took from the bodies, less what the springs have stored of it. The leapfrog scheme's own work of a
+		// force over a step is that of the mean of its values at the two ends.
+		const double oldDepth = depth + normalVelocity * dt;
+		const double takenNormal = -0.5 * (old.normalForce + point.normalForce) * normalVelocity * dt;
+		const double takenShear = -0.5 * (old.shearForce + point.shearForce).dot(slideVelocity) * dt;
+		const double storedNormal = old.muted ? 0 : 0.5 * contact.normalStiffness(i) * (squared(depth) - squared(oldDepth));
+		const double storedShear = 0.5 * stiffness * (point.shear.squaredNorm() - old.shear.squaredNorm());
+		contact.energy.friction += slipped;
+		contact.energy.damping += takenNormal - storedNormal + takenShear - storedShear - slipped;
+		if (!point.muted) contact.energy.elastic += storedEnergy(contact, i);
 	}
 }
 

@@ -21,13 +21,6 @@ namespace {
 	const JointPoint& stateOf(const JointSystem& s, const PointRef& p) { return s.contacts[p.contact].points[p.point]; }
 	Vector3 positionOf(const JointSystem& s, const PointRef& p) { return s.contacts[p.contact].position(p.point); }
 
-	double gapRate(const JointSystem& s, const PointRef& p)
-	{
-		const JointContact& contact = s.contacts[p.contact];
-		const Vector3       x = positionOf(s, p);
-		return contact.patch.normal.dot(s.bodies[contact.body2].velocityAt(x) - s.bodies[contact.body1].velocityAt(x));
-	}
-
 	// An edge or a corner: all points on one line, as against a face.
 	bool isPivot(const JointSystem& s, const std::vector<PointRef>& points, const Vector3& normal, double size)
 	{
@@ -53,6 +46,13 @@ namespace {
 	}
 
 } // namespace
+
+double gapRate(const JointSystem& s, const PointRef& p)
+{
+	const JointContact& contact = s.contacts[p.contact];
+	const Vector3       x = positionOf(s, p);
+	return contact.patch.normal.dot(s.bodies[contact.body2].velocityAt(x) - s.bodies[contact.body1].velocityAt(x));
+}
 
 bool Joint::has(int contact) const { return std::find(contacts.begin(), contacts.end(), contact) != contacts.end(); }
 
@@ -95,11 +95,10 @@ Neighbourhood neighbourhood(const JointSystem& s, const Joint& joint)
         if (local[b] >= 0) return local[b];
         local[b] = int(part.bodies.size());
         part.bodies.push_back(b);
-        part.inside.push_back(near[b]);
         part.system.bodies.push_back(s.bodies[b]);
-        if (!near[b]) {
+        if (!near[b] && !s.bodies[b].prescribed) {
             part.system.bodies.back().prescribed = true;
-            part.system.bodies.back().acceleration.setZero();
+            part.system.rim.push_back(local[b]);
         }
         return local[b];
 	};
@@ -124,9 +123,11 @@ Neighbourhood neighbourhood(const JointSystem& s, const Joint& joint)
 
 void putBack(const Neighbourhood& part, JointSystem& s)
 {
-	for (size_t k = 0; k < part.bodies.size(); ++k) {
-		if (!part.inside[k] || part.system.bodies[k].prescribed) continue;
-		s.bodies[part.bodies[k]] = part.system.bodies[k];
+	for (size_t k = 0; k < part.bodies.size(); ++k)
+		if (!part.system.bodies[k].prescribed) s.bodies[part.bodies[k]] = part.system.bodies[k];
+	for (int k : part.system.rim) { // the pose has only gone back and forth
+		s.bodies[part.bodies[k]].velocity = part.system.bodies[k].velocity;
+		s.bodies[part.bodies[k]].angularVelocity = part.system.bodies[k].angularVelocity;
 	}
 	for (size_t k = 0; k < part.contacts.size(); ++k) {
 		JointContact&   contact = s.contacts[part.contacts[k]];
@@ -149,9 +150,20 @@ void muteOpenPoints(JointSystem& s, const Joint& joint)
 {
 	unmuteInFlight(s, joint);
 	std::vector<PointRef> loaded, open;
+	bool                  rocks = false;
 	for (const PointRef& p : joint.points) {
-		if (stateOf(s, p).muted) return; // rocks already
+		rocks |= stateOf(s, p).muted;
 		(gapOf(s, p) > 0 ? open : loaded).push_back(p);
+	}
+	if (rocks) { // a support that has come into reach since
+		for (int c : joint.contacts) {
+			JointContact& contact = s.contacts[c];
+			const auto    first = contact.points.begin();
+			const bool    unused = std::none_of(joint.points.begin(), joint.points.end(),
+			        [&](const PointRef& p) { return p.contact == c && (stateOf(s, p).muted || !(gapOf(s, p) > 0)); });
+			if (unused) std::for_each(first, first + contact.size, [](JointPoint& p) { p.muted = true; });
+		}
+		return;
 	}
 	if (loaded.empty() || open.empty() || !isPivot(s, loaded, joint.normal, sizeOf(s, joint))) return;
 	for (const PointRef& p : open)
@@ -278,8 +290,9 @@ double settle(JointSystem& s, const std::vector<HeldPoint>& held, double stored)
 		rows.push_back({ contact.body1, contact.body2, n, (x - s.bodies[contact.body1].pose.position).cross(n), (x - s.bodies[contact.body2].pose.position).cross(n),
 		                 -n.dot(p.force) / contact.normalStiffness(p.point) - contact.patch.points[p.point].gap });
 	}
-	const std::vector<Body> before = s.bodies;
-	const auto              motion = leastMotion(s.bodies, rows);
+	const std::vector<Body>         before = s.bodies;
+	const std::vector<JointContact> contactsBefore = s.contacts;
+	const auto                      motion = leastMotion(s.bodies, rows);
 	for (size_t b = 0; b < s.bodies.size(); ++b) {
 		Body& body = s.bodies[b];
 		if (body.prescribed) continue;
@@ -298,9 +311,20 @@ double settle(JointSystem& s, const std::vector<HeldPoint>& held, double stored)
 	double work = 0; // of the loads
 	for (size_t b = 0; b < s.bodies.size(); ++b)
 		work += s.bodies[b].force.dot(s.bodies[b].pose.position - before[b].pose.position);
-	for (JointContact& contact : s.contacts)
-		holdForces(contact);
-	return stored + work - storedEnergy(s);
+	const auto hold = [&] {
+		for (JointContact& contact : s.contacts)
+			holdForces(contact);
+	};
+	hold();
+	double given = stored + work - storedEnergy(s);
+	// Bodies on their way over an edge may have no such equilibrium near: then they stay where they are.
+	if (given < -tolerance::settlingGain * stored) {
+		s.bodies = before;
+		s.contacts = contactsBefore;
+		hold();
+		given = stored - storedEnergy(s);
+	}
+	return given;
 }
 
 } // namespace masonry

@@ -33,12 +33,11 @@ struct Closing {
 std::vector<Joint> groupJoints(const JointSystem& system);
 
 // What an impact of a joint is solved on: the whole system while it is small, else the block, its neighbours and their
-// contacts; what stands beyond them moves on as it does.
+// contacts, with the bodies beyond them as its rim.
 struct Neighbourhood {
 	JointSystem      system;
-	Joint            joint;             // in its numbers
-	std::vector<int> bodies, contacts;  // its numbers -> those of the whole
-	std::vector<bool> inside;           // false: a body beyond, held at its velocity
+	Joint            joint;            // in its numbers
+	std::vector<int> bodies, contacts; // its numbers -> those of the whole
 };
 
 Neighbourhood neighbourhood(const JointSystem& system, const Joint& joint);
@@ -48,6 +47,9 @@ void          putBack(const Neighbourhood& part, JointSystem& system);
 // nothing is muted, so that it may land on any point.
 void muteOpenPoints(JointSystem& system, const Joint& joint);
 void unmuteInFlight(JointSystem& system, const Joint& joint);
+
+// Speed at which a point's gap opens, m/s.
+double gapRate(const JointSystem& system, const PointRef& point);
 
 Closing findClosing(const JointSystem& system, const Joint& joint);
 

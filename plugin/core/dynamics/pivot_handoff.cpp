@@ -4,6 +4,7 @@
 #include "tolerances.hpp"
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace masonry {
@@ -57,8 +58,8 @@ namespace {
 
 	ImpactRecord switchPivot(JointSystem& s, const Joint& joint, const Closing& closing)
 	{
-		const auto isClosing = [&](int c, int i) {
-			return std::any_of(closing.points.begin(), closing.points.end(), [&](const PointRef& p) { return p.contact == c && p.point == i; });
+		const auto among = [](const auto& points, int c, int i) {
+			return std::any_of(points.begin(), points.end(), [&](const auto& p) { return p.contact == c && p.point == i; });
 		};
 		const double stored = storedEnergy(s), power = supportPower(s);
 		const auto   pivots = selectPoints(s.contacts, loaded);
@@ -84,14 +85,22 @@ namespace {
 		const double  kept = std::isnan(closing.restitution) ? 1 : closing.restitution;
 		const bool    rests = speed * kept < least;
 		if (rests) impact.restitution = 0;
+		for (int b : s.rim)
+			s.bodies[b].prescribed = false;
 		const RockingImpactResult result = applyRockingImpact(s.bodies, impact);
+		for (int b : s.rim)
+			s.bodies[b].prescribed = true;
 		const bool                stops = rests || result.after < least;
 
+		// Of the points that have closed, those between the pivots part again at once (a face on two supports).
+		const double parting = tolerance::parting * closing.lever * result.before;
 		for (const PointRef& p : joint.points)
-			s.contacts[p.contact].points[p.point].muted = !stops && !isClosing(p.contact, p.point);
+			s.contacts[p.contact].points[p.point].muted = !stops && !(among(closing.points, p.contact, p.point) && gapRate(s, p) <= parting);
+		// What carries the new phase: the closing points, with the old pivot when the joint stops, and the joints elsewhere.
 		const auto acts = [&](const JointContact& contact, int i) {
 			const int c = int(&contact - s.contacts.data());
-			return joint.has(c) ? !contact.points[i].muted : s.order == ImpactOrder::simultaneous && loaded(contact, i);
+			if (!joint.has(c)) return s.order == ImpactOrder::simultaneous && among(pivots, c, i);
+			return !contact.points[i].muted && (among(closing.points, c, i) || (stops && among(pivots, c, i)));
 		};
 		const RigidAcceleration rates = rigidAcceleration(s.bodies, s.contacts, selectPoints(s.contacts, acts));
 		goForth(s, rates, closing.before);
@@ -110,17 +119,18 @@ void startAtEquilibrium(JointSystem& s)
 		size = std::max(size, std::sqrt(contact.patch.nominalArea));
 	const auto near = [&](const JointContact& contact, int i) { return contact.patch.points[i].gap <= tolerance::mergedClosing * size; };
 	const RigidAcceleration rates = rigidAcceleration(s.bodies, s.contacts, selectPoints(s.contacts, near));
-	settle(s, rates.points, storedEnergy(s));
+	settle(s, rates.points, std::numeric_limits<double>::infinity()); // whatever it takes
 	goForth(s, rates, 0.); // velocities go half a step back
 }
 
 double supportPower(const JointSystem& s)
 {
-	double power = 0;
+	double     power = 0;
+	const auto moved = [&](int b) { return s.bodies[b].prescribed && std::find(s.rim.begin(), s.rim.end(), b) == s.rim.end(); };
 	for (const JointContact& contact : s.contacts)
 		for (int i = 0; i < contact.size; ++i)
 			for (const auto& [b, sign] : { std::pair(contact.body1, 1.), std::pair(contact.body2, -1.) })
-				if (s.bodies[b].prescribed) power += sign * contact.force(i).dot(s.bodies[b].velocity);
+				if (moved(b)) power += sign * contact.force(i).dot(s.bodies[b].velocity);
 	return power;
 }
 

@@ -32,6 +32,9 @@ struct JointSystem {
 	Vector3                   gravity { Vector3::Zero() };
 	double                    dt { 0 };
 	ImpactOrder               order { ImpactOrder::simultaneous };
+	// Bodies at the rim of a part cut out of a larger structure: they take impulses, but what else stands on them is not
+	// here, so between impulses they keep their velocity (they are marked as prescribed). Empty: none.
+	std::vector<int> rim;
 };
 
 struct ImpactRecord {
