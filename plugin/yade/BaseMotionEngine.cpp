@@ -11,7 +11,7 @@ YADE_PLUGIN((BaseMotionEngine));
 
 vector<BaseJump> BaseMotionEngine::takeJumps(Real, const vector<StepImpact>&) { return {}; }
 
-void BaseMotionEngine::checkBodies() const
+void BaseMotionEngine::check() const
 {
 	const auto reject = [&](int id, const char* why) {
 		std::ostringstream text;
@@ -31,7 +31,7 @@ void BaseMotionEngine::checkBodies() const
 void BaseMotionEngine::action()
 {
 	if (origins.empty()) {
-		checkBodies();
+		check();
 		for (int id : ids) origins.push_back((*scene->bodies)[id]->state->pos - direction * displacement(scene->time - start));
 	}
 	takeJumps(scene->time, {}); // those that no joint has asked for

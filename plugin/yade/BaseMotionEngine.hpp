@@ -35,8 +35,9 @@ public:
 	/// may cause them. RockingJointEngine asks, so that blocks respond at the instant itself.
 	virtual vector<BaseJump> takeJumps(Real now, const vector<StepImpact>& impacts);
 
-	/// Raises std::invalid_argument for ids that do not exist or are free to move.
-	void checkBodies() const;
+	/// Throws std::invalid_argument for what only the finished scene can tell: ids that do not exist or are free to move, an
+	/// attribute that is missing or contradicts another. Called before the first step.
+	virtual void check() const;
 
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(BaseMotionEngine, PartialEngine,
@@ -45,7 +46,7 @@ public:
 		((Real, start, 0, , "Time at which the motion begins [s]."))
 		((vector<Vector3r>, origins, , Attr::readonly, "Positions of the bodies when the motion began [m].")),
 		/* ctor */,
-		.def("checkBodies", &BaseMotionEngine::checkBodies, "Raises ValueError unless every body of ids exists and is prescribed.")
+		.def("check", &BaseMotionEngine::check, "Raises ValueError unless the attributes are complete and every body of ids exists and is prescribed; done before the first step.")
 	);
 	// clang-format on
 };

@@ -14,6 +14,7 @@ public:
 	void writePoints(const masonry::JointContact&);
 
 	masonry::JointEnergy energy; // of this step
+	bool applied = false;        // RockingJointEngine has put the last forces on the bodies
 
 	vector<Real> normalForces() const;
 

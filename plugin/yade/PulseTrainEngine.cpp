@@ -98,16 +98,14 @@ vector<BaseJump> PulseTrainEngine::takeJumps(Real sceneTime, const vector<StepIm
 	return jumps;
 }
 
-void PulseTrainEngine::action()
+void PulseTrainEngine::check() const
 {
-	if (origins.empty()) {
-		if (std::isnan(impulse)) reject("impulse", impulse, "given: the velocity jump I in m/s");
-		if (resonant() == !times.empty())
-			reject("times", times.size(), "given for a scheduled train, or resonantBlock for a resonant one, not both and not neither");
-		if ((shape != "dirac") != (duration > 0)) reject("duration", duration, "positive for a finite shape and 0 for 'dirac'");
-		if (resonant() && !scene->bodies->exists(resonantBlock)) reject("resonantBlock", resonantBlock, "the id of a body in O.bodies");
-	}
-	BaseMotionEngine::action();
+	BaseMotionEngine::check();
+	if (std::isnan(impulse)) reject("impulse", impulse, "given: the velocity jump I in m/s");
+	if (resonant() == !times.empty())
+		reject("times", times.size(), "given for a scheduled train, or resonantBlock for a resonant one, not both and not neither");
+	if ((shape != "dirac") != (duration > 0)) reject("duration", duration, "positive for a finite shape and 0 for 'dirac'");
+	if (resonant() && !scene->bodies->exists(resonantBlock)) reject("resonantBlock", resonantBlock, "the id of a body in O.bodies");
 }
 
 Real PulseTrainEngine::residualDisplacement() const { return displacement(scene->time - start); }

@@ -7,7 +7,7 @@ namespace yade {
 /// Casapulla and Maione's pulse train: velocity jumps I, -2I, +2I, ... of the base.
 class PulseTrainEngine : public BaseMotionEngine {
 public:
-	void action() override;
+	void check() const override;
 	Real displacement(Real) const override;
 	Real velocity(Real) const override;
 	Real acceleration(Real) const override;

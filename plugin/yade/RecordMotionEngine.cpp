@@ -1,20 +1,36 @@
 #include "RecordMotionEngine.hpp"
 
+#include <cmath>
 #include <lib/factory/ClassFactory.hpp>
+#include <sstream>
+#include <stdexcept>
 
 namespace yade {
 
 YADE_PLUGIN((RecordMotionEngine));
 
+namespace {
+	void requireFinite(const char* attribute, Real value, bool positive)
+	{
+		if (std::isfinite(value) && (value > 0 || !positive)) return;
+		std::ostringstream text;
+		text << "RecordMotionEngine." << attribute << " has " << value << ": it must be finite" << (positive ? " and positive." : ".");
+		throw std::invalid_argument(text.str());
+	}
+} // namespace
+
 void RecordMotionEngine::postLoad(RecordMotionEngine&)
 {
+	for (Real sample : samples) requireFinite("samples", sample, false);
+	requireFinite("interval", interval, true);
+	requireFinite("scale", scale, false);
 	if (!samples.empty()) motion = masonry::motion::record(interval, samples, scale, masonry::motion::baselineFromName(baseline));
 }
 
-void RecordMotionEngine::action()
+void RecordMotionEngine::check() const
 {
+	BaseMotionEngine::check();
 	if (samples.empty()) throw std::invalid_argument("RecordMotionEngine.samples is empty: it must hold at least two accelerations in m/s^2.");
-	BaseMotionEngine::action();
 }
 
 } // namespace yade

@@ -8,7 +8,7 @@ namespace yade {
 /// An accelerogram as base motion: linear between its samples, integrated exactly.
 class RecordMotionEngine : public BaseMotionEngine {
 public:
-	void action() override;
+	void check() const override;
 	Real displacement(Real t) const override { return motion.displacement(t); }
 	Real velocity(Real t) const override { return motion.velocity(t); }
 	Real acceleration(Real t) const override { return motion.acceleration(t); }

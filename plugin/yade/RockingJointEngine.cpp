@@ -212,6 +212,7 @@ void RockingJointEngine::applyForces(const vector<Pair>& pairs)
 		const masonry::JointContact& contact = system.contacts[c];
 		pairs[c].geom->patch = contact.patch;
 		pairs[c].phys->writePoints(contact);
+		pairs[c].phys->applied = true;
 		for (int i = 0; i < contact.size; ++i) {
 			const Vector3r force = contact.force(i), point = contact.position(i);
 			bodyForce[contact.body1] -= force;
@@ -239,6 +240,11 @@ void RockingJointEngine::measureEnergy()
 		potential -= body.mass * gravity.dot(body.pose.position);
 	}
 	for (const auto& contact : system.contacts) elastPotential += contact.energy.elastic;
+	if (!std::isfinite(kinetic + potential + elastPotential)) {
+		std::ostringstream text;
+		text << "The simulation has diverged at t = " << scene->time << " s (kinetic energy " << kinetic << " J): take a smaller O.dt, or look for blocks that overlap.";
+		fail(text);
+	}
 	if (!scene->trackEnergy) return;
 	const std::pair<const char*, Real> keys[] = { { "elastPotential", elastPotential }, { "frictDissip", frictDissip },
 		{ "dampDissip", dampDissip }, { "impactDissip", impactDissip }, { "baseWork", -baseWork } };

@@ -47,6 +47,14 @@ def _choose_stiffness(penetration, gravity):
     return None
 
 
+def _landing_step(body):
+    """Critical time step of a block on its largest face, s. Above the frequency of any of its joints: all springs at the corner."""
+    half, state = body.shape.extents, body.state
+    area = 4 * half[0] * half[1] * half[2] / min(half)
+    stiffness = max(body.mat.normalStiffness, body.mat.shearStiffness)
+    return 2 / np.sqrt(stiffness * area * (1 / state.mass + half.squaredNorm() / min(state.inertia)))
+
+
 def engines(motion=None, model="auto", dt=None, penetration=1e-5, impact_order="simultaneous", gravity=9.81):
     """The list for O.engines; sets O.dt and prints the choice and its reason.
 
@@ -72,7 +80,7 @@ def engines(motion=None, model="auto", dt=None, penetration=1e-5, impact_order="
     for item in motions:
         if not isinstance(item, wrapper.BaseMotionEngine):
             raise ValueError(f"motion = {item!r}: must be a PulseTrainEngine, a RecordMotionEngine, or a list of them")
-        item.checkBodies()
+        item.check()
     reasons = ["compliant joints: YADE's usual loop"]
     chosen = _choose_stiffness(penetration, gravity)
     if chosen:
@@ -80,6 +88,10 @@ def engines(motion=None, model="auto", dt=None, penetration=1e-5, impact_order="
 
     joints = wrapper.RockingJointEngine(impactOrder=impact_order)
     critical = joints.criticalTimeStep()
+    if not np.isfinite(critical):  # nothing touches yet
+        critical = min(_landing_step(b) for b in _blocks() if b.dynamic)
+    if dt is not None and not dt < critical:
+        raise ValueError(f"dt = {dt}: must be below {critical:.3g} s, the critical step of joints this stiff")
     O.dt = dt if dt is not None else _STEP_FRACTION * critical
     reasons.append(f"dt = {O.dt:.3g} s ({O.dt / critical:.2g} of the critical step)" if np.isfinite(critical) else f"dt = {O.dt:.3g} s")
     print("masonry.dem:", "; ".join(reasons))

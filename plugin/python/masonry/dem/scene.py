@@ -33,6 +33,12 @@ def _box(id):
     return body
 
 
+def _axis(name):
+    if name not in _AXES:
+        raise ValueError(f"axis = {name!r}: must be 'x' or 'y'")
+    return _AXES[name]
+
+
 def _append(center, size, material, orientation=None, fixed=False):
     body = utils.box(center, size / 2, orientation or Quaternion.Identity, material=_block_material(material), fixed=fixed)
     body.aspherical = True
@@ -56,7 +62,12 @@ def block(size, material, on=None, center=None, orientation=None):
         below = _box(on)
         center = below.state.pos + below.state.ori * Vector3(0, 0, below.shape.extents[2] + size[2] / 2)
         orientation = below.state.ori * (orientation or Quaternion.Identity)
-    return _append(Vector3(center), size, material, orientation)
+    center, orientation = Vector3(center), orientation or Quaternion.Identity
+    if not all(math.isfinite(v) for v in center):
+        raise ValueError(f"center = {tuple(center)}: must be finite, in m")
+    if not abs(orientation.norm() - 1) < 1e-9:
+        raise ValueError(f"orientation = {orientation}: must be a Quaternion of length 1")
+    return _append(center, size, material, orientation)
 
 
 def stack(n, size, material, on):
@@ -96,24 +107,22 @@ def wall(courses, per_course, size, material, on, gap=0.0):
 def tilt(id, angle, axis="y"):
     """Turns a standing block by `angle` (rad) about its own axis 'x' or 'y', so that it rests on its lower edge. A positive
     turn about y leans towards +x."""
-    body = _box(id)
-    if axis not in _AXES:
-        raise ValueError(f"axis = {axis!r}: must be 'x' or 'y'")
+    body, row = _box(id), _axis(axis)
     if not -math.pi / 2 < angle < math.pi / 2:
         raise ValueError(f"angle = {angle}: must be between -pi/2 and pi/2")
     half, state = body.shape.extents, body.state
     side = math.copysign(1, angle) if angle else 0
     edge = Vector3(side * half[0], 0, -half[2]) if axis == "y" else Vector3(0, -side * half[1], -half[2])
     pivot = state.pos + state.ori * edge
-    state.ori = state.ori * Quaternion(Vector3.Unit(_AXES[axis]), angle)
+    state.ori = state.ori * Quaternion(Vector3.Unit(row), angle)
     state.pos = pivot - state.ori * edge
 
 
 def angle(id, axis="y"):
     """Rotation of a block from its resting pose about its own axis 'x' or 'y', signed, rad."""
-    state = _box(id).state
+    state, row = _box(id).state, _axis(axis)
     turn = state.refOri.conjugate() * state.ori
-    return 2 * math.atan2(turn[_AXES[axis]], turn[3])
+    return 2 * math.atan2(turn[row], turn[3])
 
 
 def overturned():

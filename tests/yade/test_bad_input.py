@@ -1,0 +1,132 @@
+"""Bad input: one clear error that names attribute, value and what is allowed, before anything has moved."""
+
+import math
+
+from masonry import dem
+from rocking_scene import one_block, quiet_engines, stone
+from yade import O, RockingJointEngine, utils
+
+
+def refuses(act, *words, kind=ValueError):
+    try:
+        act()
+    except kind as error:
+        assert all(word in str(error) for word in words), error
+    else:
+        raise AssertionError(f"accepted: {words}")
+
+
+def refuses_to_run(*words):
+    """The first step ends in an error, and the block has not moved."""
+    poses = [(tuple(b.state.pos), tuple(b.state.ori)) for b in O.bodies]
+    try:
+        O.step()
+    except (RuntimeError, ValueError) as error:
+        assert all(word in str(error) for word in words), error
+    else:
+        raise AssertionError(f"ran: {words}")
+    assert poses == [(tuple(b.state.pos), tuple(b.state.ori)) for b in O.bodies], words
+
+
+nan, inf = math.nan, math.inf
+
+# Sizes, places and counts.
+for make in (dem.base, lambda size, material: dem.block(size, material, center=(0, 0, 0)), lambda size, material: dem.stack(2, size, material, 0),
+             lambda size, material: dem.wall(2, 2, size, material, 0)):
+    O.reset()
+    dem.base((1, 1, 1), stone())
+    for bad in ((0, 1, 1), (1, -1, 1), (1, 1, nan), (1, 1, inf), (1, 1)):
+        refuses(lambda: make(bad, stone()), "size", str(bad), "positive")
+refuses(lambda: dem.block((1, 1, 1), stone()), "on = None", "center = None")
+refuses(lambda: dem.block((1, 1, 1), stone(), on=0, center=(0, 0, 0)), "on = 0", "one of the two")
+refuses(lambda: dem.block((1, 1, 1), stone(), center=(0, 0, nan)), "center", "nan", "finite")
+refuses(lambda: dem.block((1, 1, 1), utils.defaultMaterial(), on=0), "material", "BlockMat")
+refuses(lambda: dem.stack(0, (1, 1, 1), stone(), 0), "n = 0", "at least 1")
+refuses(lambda: dem.wall(0, 2, (1, 1, 1), stone(), 0), "courses = 0", "at least 1")
+refuses(lambda: dem.wall(2, 2, (1, 1, 1), stone(), 0, gap=-0.1), "gap = -0.1", "positive")
+refuses(lambda: dem.wall(2, 2, (1, 1, 1), stone(), 0, gap=nan), "gap = nan", "positive")
+
+# Ids.
+sphere = O.bodies.append(utils.sphere((9, 9, 9), 1))
+for bad, why in ((-1, "no such body"), (77, "no such body"), (1.5, "no such body"), (sphere, "must be a Box")):
+    refuses(lambda: dem.block((1, 1, 1), stone(), on=bad), "id", str(bad), why)
+    refuses(lambda: dem.tilt(bad, 0.1), "id", str(bad), why)
+    refuses(lambda: dem.angle(bad), "id", str(bad), why)
+for bad in (2.0, nan, -inf):
+    refuses(lambda: dem.tilt(0, bad), "angle", str(bad), "-pi/2")
+refuses(lambda: dem.tilt(0, 0.1, axis="z"), "axis", "'z'", "'x' or 'y'")
+refuses(lambda: dem.angle(0, axis="z"), "axis", "'z'", "'x' or 'y'")
+
+# dem.engines().
+for name, bad in (("model", "magic"), ("penetration", 0), ("penetration", 0.1), ("penetration", nan), ("dt", 0), ("dt", -1e-4), ("dt", nan), ("gravity", -1),
+                  ("gravity", nan), ("impactOrder", "random")):
+    one_block(5)
+    option = {"impactOrder": "impact_order"}.get(name, name)
+    refuses(lambda: quiet_engines(**{option: bad}), name, str(bad), "must be")
+O.reset()
+dem.base((1, 1, 1), stone())
+refuses(quiet_engines, "no free block", "dem.block()")
+one_block(5)
+refuses(lambda: quiet_engines("pulse"), "motion", "'pulse'", "PulseTrainEngine")
+refuses(lambda: quiet_engines(dt=1.0), "dt", "1", "below")
+
+# Motions.
+base, block, _ = one_block(5)
+for name, bad, why in (("impulse", inf, "finite"), ("times", [0, 2, 1], "increasing"), ("times", [1, 1], "increasing"), ("times", [-1, 1], ">= 0"),
+                       ("times", [0, nan], "finite"), ("halfCycles", -2, ">= 0"), ("duration", -1, ">= 0"), ("duration", nan, ">= 0"), ("shape", "square", "square")):
+    refuses(lambda: dem.PulseTrainEngine(**{name: bad}), name, why)
+for bad in (77, -1):
+    refuses(lambda: quiet_engines(dem.PulseTrainEngine(ids=[bad], impulse=0.1, times=[0])), "ids", str(bad), "no such body")
+refuses(lambda: quiet_engines(dem.PulseTrainEngine(impulse=0.1, times=[0])), "ids", "empty")
+refuses(lambda: quiet_engines(dem.PulseTrainEngine(ids=[block], impulse=0.1, times=[0])), "ids", str(block), "prescribed")
+refuses(lambda: quiet_engines(dem.PulseTrainEngine(ids=[base], impulse=0.1, times=[0], direction=(2, 0, 0))), "direction", "unit")
+for bad, words in ((dict(times=[0]), ("impulse", "nan")), (dict(impulse=0.1), ("times", "resonantBlock")),
+                   (dict(impulse=0.1, times=[0], resonantBlock=block), ("times", "resonantBlock")), (dict(impulse=0.1, resonantBlock=77), ("resonantBlock", "77")),
+                   (dict(impulse=0.1, times=[0], duration=1), ("duration", "1", "dirac")), (dict(impulse=0.1, times=[0], shape="half-sine"), ("duration", "0"))):
+    refuses(lambda: quiet_engines(dem.PulseTrainEngine(ids=[base], **bad)), *words)
+for bad, words in ((dict(samples=[0, nan]), ("samples", "nan")), (dict(samples=[0, 1], interval=0), ("interval", "0")), (dict(samples=[0, 1], scale=inf), ("scale", "inf")),
+                   (dict(samples=[0, 1], baseline="wavy"), ("baseline", "wavy"))):
+    refuses(lambda: dem.RecordMotionEngine(**bad), *words)
+refuses(lambda: quiet_engines(dem.RecordMotionEngine(ids=[base])), "samples", "empty")
+refuses(lambda: dem.RockingJointEngine(impactOrder="random"), "impactOrder", "'random'", "simultaneous")
+
+# What a script changes after dem.engines().
+
+
+def scene():
+    one_block(5, restitution=0.7)
+    O.engines = quiet_engines()
+
+
+scene()
+O.dt = 1e-2
+refuses_to_run("O.dt", "0.01", "below")
+scene()
+O.engines[-1].damping = 0.2
+refuses_to_run("NewtonIntegrator.damping", "0.2", "must be 0")
+scene()
+O.bodies[1].aspherical = False
+refuses_to_run("O.bodies[1].aspherical", "True")
+scene()
+O.bodies[1].mat.normalStiffness = nan
+refuses_to_run("normalStiffness", "nan", "positive")
+
+# Without RockingJointEngine the restitution, and with it every joint force, would be lost in silence. A functor can stop the run
+# only at the end of its step, and Python raises as soon as it has its turn: the block has fallen by a step or two.
+def refuses_to_fall(*words):
+    try:
+        for _ in range(1000):
+            O.step()
+    except RuntimeError as error:
+        assert all(word in str(error) for word in words), error
+    else:
+        raise AssertionError(f"ran: {words}")
+    assert O.iter <= 2
+
+
+scene()
+O.engines = [e for e in O.engines if not isinstance(e, RockingJointEngine)]
+refuses_to_fall("RockingJointEngine", "InteractionLoop")
+scene()
+O.engines[3].dead = True
+refuses_to_fall("RockingJointEngine", "InteractionLoop")
