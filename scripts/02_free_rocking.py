@@ -7,7 +7,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
-from yade import O, PyRunner
+from yade import O
 
 import masonry
 from masonry import dem
@@ -20,11 +20,12 @@ exact_block = masonry.RockingBlock(half_width, half_height)
 tilt = 0.5 * exact_block.critical_angle
 dem.tilt(block, tilt)
 
-history = []
-O.engines = dem.engines() + [PyRunner(command="history.append((O.time, dem.angle(block)))", iterPeriod=20)]
+recorder = dem.BlockRecorder(ids=[block], iterPeriod=20)
+O.engines = dem.engines(recorder=recorder)
 O.run(40000, True)
 
-time, angle = np.array(history).T
+history = dem.history(recorder)
+time, angle = history["time"], history["rotation"][:, 0, 1]
 exact = masonry.simulate(exact_block, restitution=restitution, initial_angle=tilt, t_end=time[-1])
 print(f"largest difference of the angle: {np.max(np.abs(angle - exact.sample(time)[0])) / exact_block.critical_angle:.1e} of the critical angle")
 print("energies (J):", {key: round(value, 3) for key, value in dem.energy().items()})
@@ -38,5 +39,5 @@ plt.ylabel("angle / critical angle")
 plt.legend()
 plt.tight_layout()
 plt.savefig("results/02_free_rocking.png", dpi=150)
-np.savetxt("results/02_free_rocking.csv", history, delimiter=",", header="time (s),angle (rad)", comments="")
+dem.save_history(recorder, "results/02_free_rocking.csv")
 print("wrote results/02_free_rocking.png and .csv")

@@ -12,5 +12,5 @@ from masonry.dem._load import load_classes as _load_classes
 # Bound by name here: BlockMat, ...
 globals().update(_load_classes())
 
-from masonry.dem.engines import energy, engines, impacts  # noqa: E402  (YADE's classes must be registered first)
+from masonry.dem.engines import energy, engines, history, impacts, save_history  # noqa: E402  (YADE's classes must be registered first)
 from masonry.dem.scene import angle, base, block, overturned, stack, tilt, wall  # noqa: E402

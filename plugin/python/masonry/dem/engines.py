@@ -55,7 +55,7 @@ def _landing_step(body):
     return 2 / np.sqrt(stiffness * area * (1 / state.mass + half.squaredNorm() / min(state.inertia)))
 
 
-def engines(motion=None, model="auto", dt=None, penetration=1e-5, impact_order="simultaneous", gravity=9.81):
+def engines(motion=None, model="auto", dt=None, penetration=1e-5, impact_order="simultaneous", gravity=9.81, recorder=None):
     """The list for O.engines; sets O.dt and prints the choice and its reason.
 
     motion        a motion engine (PulseTrainEngine, RecordMotionEngine), a list of them, or None
@@ -67,6 +67,7 @@ def engines(motion=None, model="auto", dt=None, penetration=1e-5, impact_order="
                   its inverse square root.
     impact_order  'simultaneous' or 'sequential': how an impact acts on a structure (RockingJointEngine.impactOrder)
     gravity       m/s^2, along -z
+    recorder      a BlockRecorder, put where positions, forces and O.time belong together; None
     """
     if model not in _MODELS:
         raise ValueError(f"model = {model!r}: must be one of {', '.join(_MODELS)}")
@@ -103,6 +104,7 @@ def engines(motion=None, model="auto", dt=None, penetration=1e-5, impact_order="
         wrapper.InteractionLoop([wrapper.Ig2_Box_Box_BlockGeom()], [wrapper.Ip2_BlockMat_BlockMat_BlockPhys()], [wrapper.Law2_BlockGeom_BlockPhys_Rocking()]),
         joints,
         *motions,
+        *([] if recorder is None else [recorder]),
         wrapper.NewtonIntegrator(gravity=(0, 0, -gravity), damping=0),
     ]
 
@@ -138,3 +140,35 @@ def energy():
     the first six less baseWork is constant."""
     e = _joint_engine()
     return {key: getattr(e, key) for key in ("kinetic", "potential", "elastPotential", "frictDissip", "dampDissip", "impactDissip", "baseWork")}
+
+
+def history(recorder):
+    """What a BlockRecorder has kept, a structured array with one row per time: time (s) and, for each block in the order of its ids,
+    rotation (rad, vector in the block's own axes; the y component is dem.angle), position (m), uplift (m, largest gap of the joint
+    below, NaN in flight) and force (N, of what is below)."""
+    rows, blocks = len(recorder.times), len(recorder.ids)
+    fields = [("time", float), ("rotation", float, (blocks, 3)), ("position", float, (blocks, 3)), ("uplift", float, (blocks,)), ("force", float, (blocks, 3))]
+    table = np.zeros(rows, dtype=fields)
+    table["time"] = recorder.times
+    for name, values in (("rotation", recorder.rotations), ("position", recorder.positions), ("uplift", recorder.uplifts), ("force", recorder.forces)):
+        table[name] = np.array(values, dtype=float).reshape(table[name].shape)
+    return table
+
+
+def save_history(recorder, path):
+    """Writes dem.history() to a file: .npz (NumPy), or .csv with one column per number and a header line (pandas, ParaView)."""
+    table = history(recorder)
+    if str(path).endswith(".npz"):
+        np.savez(path, ids=recorder.ids, **{name: table[name] for name in table.dtype.names})
+    elif str(path).endswith(".csv"):
+        header, columns = ["time (s)"], [table["time"]]
+        for k, id in enumerate(recorder.ids):
+            for name, unit in (("rotation", "rad"), ("position", "m"), ("force", "N")):
+                for axis, letter in enumerate("xyz"):
+                    header.append(f"{name} {letter} of {id} ({unit})")
+                    columns.append(table[name][:, k, axis])
+            header.append(f"uplift of {id} (m)")
+            columns.append(table["uplift"][:, k])
+        np.savetxt(path, np.column_stack(columns), delimiter=",", header=",".join(header), comments="")
+    else:
+        raise ValueError(f"path = {path}: must end in .npz or .csv")

@@ -1,0 +1,45 @@
+#include "BlockRecorder.hpp"
+#include "BlockGeom.hpp"
+#include "BlockPhys.hpp"
+
+#include <algorithm>
+#include <core/Scene.hpp>
+#include <lib/factory/ClassFactory.hpp>
+#include <sstream>
+#include <stdexcept>
+
+namespace yade {
+
+YADE_PLUGIN((BlockRecorder));
+
+void BlockRecorder::action()
+{
+	times.push_back(scene->time);
+	for (int id : ids) {
+		if (!scene->bodies->exists(id)) {
+			std::ostringstream text;
+			text << "BlockRecorder.ids has " << id << ": there is no such body in O.bodies.";
+			throw std::invalid_argument(text.str());
+		}
+		const Body& body = *(*scene->bodies)[id];
+		const State& state = *body.state;
+		const AngleAxisr turn(state.refOri.conjugate() * state.ori);
+		Vector3r force = Vector3r::Zero();
+		Real uplift = NaN;
+		for (const auto& [other, interaction] : body.intrs) {
+			if (!interaction->isReal()) continue;
+			const auto* geom = dynamic_cast<const BlockGeom*>(interaction->geom.get());
+			const auto* phys = dynamic_cast<const BlockPhys*>(interaction->phys.get());
+			if (!geom || !phys || geom->contactPoint.z() > state.pos.z()) continue;
+			force += (interaction->getId2() == id ? 1 : -1) * (phys->normalForce + phys->shearForce);
+			for (Real gap : geom->gaps()) uplift = std::isnan(uplift) ? std::max(gap, Real(0)) : std::max(gap, uplift);
+		}
+		const Real angle = turn.angle() > M_PI ? turn.angle() - 2 * M_PI : turn.angle();
+		rotations.push_back(angle * turn.axis());
+		positions.push_back(state.pos);
+		uplifts.push_back(uplift);
+		forces.push_back(force);
+	}
+}
+
+} // namespace yade

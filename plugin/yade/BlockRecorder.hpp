@@ -1,0 +1,26 @@
+#pragma once
+
+#include <pkg/common/PeriodicEngines.hpp>
+
+namespace yade {
+
+/// Histories of blocks, kept as attributes: saved and loaded with the simulation.
+class BlockRecorder : public PeriodicEngine {
+public:
+	void action() override;
+
+	// clang-format off
+	YADE_CLASS_BASE_DOC_ATTRS(BlockRecorder, PeriodicEngine,
+		"Histories of blocks: rotation, position, uplift and the force of what they stand on, every iterPeriod steps. Goes between RockingJointEngine and NewtonIntegrator (dem.engines(recorder=...) does that), where positions, forces and O.time belong together. dem.history() gives arrays, dem.save_history() a file.",
+		((vector<int>, ids, , , "The blocks."))
+		((vector<Real>, times, , Attr::readonly, "Times of the rows [s]."))
+		((vector<Vector3r>, rotations, , Attr::readonly, "Rotation vectors from the resting pose in the block's own axes [rad], row by row, one a block."))
+		((vector<Vector3r>, positions, , Attr::readonly, "Positions of the centres [m], as rotations."))
+		((vector<Real>, uplifts, , Attr::readonly, "Largest gap of the points of the joint below [m], as rotations; 0 where all points touch, NaN in flight."))
+		((vector<Vector3r>, forces, , Attr::readonly, "Force of what is below on the block [N], as rotations."))
+	);
+	// clang-format on
+};
+REGISTER_SERIALIZABLE(BlockRecorder);
+
+} // namespace yade
