@@ -178,7 +178,7 @@ def mass_ratios():
         lower = dem.block((0.5, 0.5, 0.3), heavy if heavy_below else light, on=base)
         ids = [lower, dem.block((0.5, 0.5, 0.3), light if heavy_below else heavy, on=lower)]
         O.engines = quiet_engines()
-        rests(ids, 1, 1e-4)  # a share of the penetration, 1e-5 of the width, while the springs settle
+        rests(ids, 1, 1e-7)
 
 
 @case

@@ -244,14 +244,17 @@ namespace {
 		double  wanted;               // change of the gap, m
 	};
 
-	// Displacements (position, turn) that change the gaps as wanted: least motion weighted by mass. Row by row, since the
+	// Displacements (position, turn) that change the gaps as wanted: least motion, each turn weighted by the radius of gyration. Row by row, since the
 	// rows are few per body; consistent redundant rows do no harm.
 	std::vector<std::pair<Vector3, Vector3>> leastMotion(const std::vector<Body>& bodies, const std::vector<NormalRow>& rows)
 	{
 		std::vector<std::pair<Vector3, Vector3>> motion(bodies.size(), { Vector3::Zero(), Vector3::Zero() });
-		std::vector<Matrix3>                     inverseInertia;
-		for (const Body& body : bodies)
-			inverseInertia.push_back(body.inverseInertia());
+		std::vector<double>  inverseMass;
+		std::vector<Matrix3> inverseInertia;
+		for (const Body& body : bodies) { // as if all had the mass 1: the sweeps converge whatever stands on what
+			inverseMass.push_back(body.prescribed ? 0. : 1.);
+			inverseInertia.push_back(body.prescribed ? Matrix3(Matrix3::Zero()) : Matrix3(body.mass * body.inverseInertia()));
+		}
 		double largest = 0;
 		for (const NormalRow& row : rows)
 			largest = std::max(largest, std::abs(row.wanted));
@@ -262,12 +265,12 @@ namespace {
 			for (const NormalRow& row : rows) {
 				auto &       m1 = motion[row.body1], &m2 = motion[row.body2];
 				const double now = row.normal.dot(m2.first - m1.first) + row.turn2.dot(m2.second) - row.turn1.dot(m1.second);
-				const double softness = bodies[row.body1].inverseMass() + bodies[row.body2].inverseMass()
+				const double softness = inverseMass[row.body1] + inverseMass[row.body2]
 				        + row.turn1.dot(inverseInertia[row.body1] * row.turn1) + row.turn2.dot(inverseInertia[row.body2] * row.turn2);
 				const double push = (row.wanted - now) / softness;
-				m1.first -= bodies[row.body1].inverseMass() * push * row.normal;
+				m1.first -= inverseMass[row.body1] * push * row.normal;
 				m1.second -= inverseInertia[row.body1] * row.turn1 * push;
-				m2.first += bodies[row.body2].inverseMass() * push * row.normal;
+				m2.first += inverseMass[row.body2] * push * row.normal;
 				m2.second += inverseInertia[row.body2] * row.turn2 * push;
 				miss = std::max(miss, std::abs(row.wanted - now));
 			}

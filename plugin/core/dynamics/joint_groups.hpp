@@ -60,7 +60,7 @@ void moveContacts(JointSystem& system, const std::vector<Body>& before);
 double storedEnergy(const JointSystem& system);
 
 // Gives the held points the compression and shear that carry their forces: bodies move along the normals (least motion,
-// weighted by mass), shears are set, forces updated. Returns the energy that this takes from loads and springs, which
+// whatever the masses), shears are set, forces updated. Returns the energy that this takes from loads and springs, which
 // held `stored` before (J, of either sign).
 double settle(JointSystem& system, const std::vector<HeldPoint>& held, double stored);
 
