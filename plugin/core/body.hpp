@@ -1,6 +1,7 @@
 #pragma once
 // A rigid body as the core sees it: its state, its inertia, and the loads that do not come from the joints under study.
 #include "math.hpp"
+#include <vector>
 
 namespace masonry {
 
@@ -47,5 +48,13 @@ struct Body {
 			pose.orientation = (Quaternion(Eigen::AngleAxisd(angle, angularVelocity.normalized())) * pose.orientation).normalized();
 	}
 };
+
+inline double kineticEnergy(const std::vector<Body>& bodies)
+{
+	double sum = 0;
+	for (const Body& body : bodies)
+		sum += body.kineticEnergy();
+	return sum;
+}
 
 } // namespace masonry

@@ -173,16 +173,16 @@ void RockingJointEngine::recordImpact(const masonry::ImpactRecord& record)
 	impactBlocks.push_back(ids[record.block]);
 	impactSupports.push_back(ids[record.support]);
 	impactAsked.push_back(record.restitutionAsked);
-	impactBefore.push_back(record.speedBefore);
-	impactAfter.push_back(record.speedAfter);
-	impactEnergy.push_back(record.energyLost);
-	impactApplication.push_back(record.application);
-	impactFriction.push_back(record.frictionDemand);
+	impactBefore.push_back(record.result.before);
+	impactAfter.push_back(record.result.after);
+	impactEnergy.push_back(record.result.energyLost);
+	impactApplication.push_back(record.result.application);
+	impactFriction.push_back(record.result.frictionDemand);
 	impactSwitched.push_back(record.switched);
-	impactCapped.push_back(record.capped);
-	impactDissip += record.energyLost + record.settled;
+	impactCapped.push_back(record.result.capped);
+	impactDissip += record.result.energyLost + record.settled;
 	baseWork += record.work;
-	worstResidual = std::max(worstResidual, record.residual);
+	worstResidual = std::max(worstResidual, record.result.residual);
 }
 
 bool RockingJointEngine::applyJumps(const vector<BaseMotionEngine*>& motions, const vector<StepImpact>& impacts)
@@ -315,6 +315,8 @@ void RockingJointEngine::action()
 	started = true;
 	if (!starting) addBaseWork();
 	vector<StepImpact> impacts;
+	const Real lifted = liftJoints(system);
+	impactDissip += lifted;
 	const auto records = handOffPivots(system);
 	for (const auto& record : records) {
 		recordImpact(record);
@@ -322,7 +324,7 @@ void RockingJointEngine::action()
 	}
 	const bool jumped = applyJumps(motions, impacts);
 	for (size_t b = 0; b < ids.size(); ++b)
-		if (!system.bodies[b].prescribed && (starting || !records.empty() || jumped))
+		if (!system.bodies[b].prescribed && (starting || lifted != 0 || !records.empty() || jumped))
 			writeState(system.bodies[b], *(*scene->bodies)[ids[b]]->state);
 	applyForces(pairs);
 	keepReactions();

@@ -56,58 +56,94 @@ namespace {
 		return std::max(tolerance::restSpeed * std::sqrt(gravity / radius), std::sqrt(2 * A * depth / lever));
 	}
 
-	ImpactRecord switchPivot(JointSystem& s, const Joint& joint, const Closing& closing)
+	std::vector<ImpulsePoint> impulsePoints(const JointSystem& s, const std::vector<HeldPoint>& points)
 	{
-		const auto among = [](const auto& points, int c, int i) {
-			return std::any_of(points.begin(), points.end(), [&](const auto& p) { return p.contact == c && p.point == i; });
-		};
-		const double stored = storedEnergy(s), power = supportPower(s);
-		const auto   pivots = selectPoints(s.contacts, loaded);
-		goBack(s, rigidAcceleration(s.bodies, s.contacts, pivots), closing.before);
+		std::vector<ImpulsePoint> rows;
+		for (const HeldPoint& p : points) {
+			const JointContact& contact = s.contacts[p.contact];
+			rows.push_back({ contact.body1, contact.body2, contact.position(p.point), contact.patch.normal, contact.law.friction });
+		}
+		return rows;
+	}
 
+	template <class Points> bool among(const Points& points, int contact, int i)
+	{
+		return std::any_of(points.begin(), points.end(), [&](const auto& p) { return p.contact == contact && p.point == i; });
+	}
+
+	// The impact of a closing joint, at the instant: new support, old support and, for the simultaneous law, the rest.
+	RockingImpact closingImpact(const JointSystem& s, const Joint& joint, const Closing& closing, const std::vector<HeldPoint>& loadedPoints)
+	{
 		RockingImpact impact { joint.block, closing.support, joint.normal, {}, int(closing.points.size()), closing.restitution };
-		const auto    addPoint = [&](int c, int i) {
+		const auto    add = [&](int c, int i) {
             const JointContact& contact = s.contacts[c];
             impact.points.push_back({ contact.body1, contact.body2, contact.position(i), contact.patch.normal, contact.law.friction });
 		};
 		for (const PointRef& p : closing.points)
-			addPoint(p.contact, p.point);
-		for (const PointRef& p : joint.points)
-			if (loaded(s.contacts[p.contact], p.point)) addPoint(p.contact, p.point);
+			add(p.contact, p.point);
+		for (const HeldPoint& p : loadedPoints)
+			if (joint.has(p.contact)) add(p.contact, p.point);
 		impact.old = int(impact.points.size());
 		if (s.order == ImpactOrder::simultaneous)
-			for (const HeldPoint& p : pivots)
-				if (!joint.has(p.contact)) addPoint(p.contact, p.point);
+			for (const HeldPoint& p : loadedPoints)
+				if (!joint.has(p.contact)) add(p.contact, p.point);
+		return impact;
+	}
 
-		const Vector3 axis = rockingAxis(s.bodies, impact);
-		const double  speed = axis.dot(s.bodies[joint.block].angularVelocity - s.bodies[closing.support].angularVelocity);
-		const double  least = leastRockingSpeed(s, joint, impact.points.front().position, closing.lever, closing.depth);
-		const double  kept = std::isnan(closing.restitution) ? 1 : closing.restitution;
-		const bool    rests = speed * kept < least;
-		if (rests) impact.restitution = 0;
+	RockingImpactResult applyWithRim(JointSystem& s, RockingImpact& impact)
+	{
 		for (int b : s.rim)
 			s.bodies[b].prescribed = false;
 		const RockingImpactResult result = applyRockingImpact(s.bodies, impact);
 		for (int b : s.rim)
 			s.bodies[b].prescribed = true;
+		return result;
+	}
+
+	// Who carries the next phase: the closing points, with the old pivot too when the joint stops. Of the closing points,
+	// those between the pivots part again at once (a face on two supports).
+	std::vector<HeldPoint> passPivot(JointSystem& s, const Joint& joint, const Closing& closing, const std::vector<HeldPoint>& loadedPoints, bool stops, double parting)
+	{
+		for (const PointRef& p : joint.points) {
+			const bool stays = among(closing.points, p.contact, p.point) && gapRate(s, p) <= parting;
+			s.contacts[p.contact].points[p.point].muted = !stops && !stays;
+		}
+		return selectPoints(s.contacts, [&](const JointContact& contact, int i) {
+			const int c = int(&contact - s.contacts.data());
+			if (!joint.has(c)) return s.order == ImpactOrder::simultaneous && among(loadedPoints, c, i);
+			return !contact.points[i].muted && (among(closing.points, c, i) || (stops && among(loadedPoints, c, i)));
+		});
+	}
+
+	ImpactRecord switchPivot(JointSystem& s, const Joint& joint, const Closing& closing)
+	{
+		const double stored = storedEnergy(s), power = supportPower(s);
+		const auto   loadedPoints = selectPoints(s.contacts, loaded);
+		goBack(s, rigidAcceleration(s.bodies, s.contacts, loadedPoints), closing.before);
+
+		RockingImpact impact = closingImpact(s, joint, closing, loadedPoints);
+		const Vector3 axis = rockingAxis(s.bodies, impact);
+		const double  speed = axis.dot(s.bodies[joint.block].angularVelocity - s.bodies[closing.support].angularVelocity);
+		const double  least = leastRockingSpeed(s, joint, impact.points.front().position, closing.lever, closing.depth);
+		const bool    rests = speed * (std::isnan(closing.restitution) ? 1 : closing.restitution) < least;
+		if (rests) impact.restitution = 0;
+		const RockingImpactResult result = applyWithRim(s, impact);
 		const bool                stops = rests || result.after < least;
 
-		// Of the points that have closed, those between the pivots part again at once (a face on two supports).
-		const double parting = tolerance::parting * closing.lever * result.before;
-		for (const PointRef& p : joint.points)
-			s.contacts[p.contact].points[p.point].muted = !stops && !(among(closing.points, p.contact, p.point) && gapRate(s, p) <= parting);
-		// What carries the new phase: the closing points, with the old pivot when the joint stops, and the joints elsewhere.
-		const auto acts = [&](const JointContact& contact, int i) {
-			const int c = int(&contact - s.contacts.data());
-			if (!joint.has(c)) return s.order == ImpactOrder::simultaneous && among(pivots, c, i);
-			return !contact.points[i].muted && (among(closing.points, c, i) || (stops && among(pivots, c, i)));
-		};
-		const RigidAcceleration rates = rigidAcceleration(s.bodies, s.contacts, selectPoints(s.contacts, acts));
+		const auto held = passPivot(s, joint, closing, loadedPoints, stops, tolerance::parting * closing.lever * result.before);
+		const RigidAcceleration rates = rigidAcceleration(s.bodies, s.contacts, held);
 		goForth(s, rates, closing.before);
-		const double settled = settle(s, rates.points, stored);
-		const double work = result.work + closing.before * (supportPower(s) - power);
-		return { joint.block,          closing.support, closing.before,      closing.restitution,   result.before,  result.after,
-			     result.energyLost, work, result.application, result.frictionDemand, !stops, result.capped, result.residual, settled };
+
+		ImpactRecord record;
+		record.block = joint.block;
+		record.support = closing.support;
+		record.before = closing.before;
+		record.restitutionAsked = closing.restitution;
+		record.switched = !stops;
+		record.result = result;
+		record.settled = settle(s, rates.points, stored);
+		record.work = result.work + closing.before * (supportPower(s) - power);
+		return record;
 	}
 
 } // namespace
@@ -134,6 +170,52 @@ double supportPower(const JointSystem& s)
 	return power;
 }
 
+namespace {
+
+	// The points that part in the rigid accelerations while others carry the block; empty: the joint stays closed.
+	std::vector<HeldPoint> partingPoints(const RigidAcceleration& rates, const std::vector<JointContact>& contacts)
+	{
+		std::vector<HeldPoint> parting;
+		for (const HeldPoint& p : rates.points)
+			if (!(contacts[p.contact].patch.normal.dot(p.force) > 0)) parting.push_back(p);
+		return parting.size() < rates.points.size() ? parting : std::vector<HeldPoint>();
+	}
+
+	// A closed joint becomes a rocking one: its springs' own swaying ends, the parting points are muted, the others take the
+	// pivot forces. Returns the energy that this takes.
+	double lift(JointSystem& s, const Joint& joint, const std::vector<HeldPoint>& parting)
+	{
+		const double stored = storedEnergy(s), moving = kineticEnergy(s.bodies);
+		auto         rows = impulsePoints(s, selectPoints(s.contacts, loaded));
+		const auto&  contact = s.contacts[joint.contacts.front()];
+		const int    support = contact.body1 == joint.block ? contact.body2 : contact.body1;
+		std::vector<CoupleRow> noTurn;
+		for (int axis = 0; axis < 3; ++axis)
+			noTurn.push_back({ support, joint.block, Vector3::Unit(axis), 0. });
+		solveImpulses(s.bodies, rows, noTurn);
+		const double stopped = moving - kineticEnergy(s.bodies);
+		for (const HeldPoint& p : parting)
+			s.contacts[p.contact].points[p.point].muted = true;
+		const RigidAcceleration rates = rigidAcceleration(s.bodies, s.contacts, selectPoints(s.contacts, loaded));
+		const double            settled = settle(s, rates.points, stored);
+		goForth(s, rates, 0.); // velocities go half a step back
+		return stopped + settled;
+	}
+
+} // namespace
+
+double liftJoints(JointSystem& s)
+{
+	const bool shaken = std::any_of(s.bodies.begin(), s.bodies.end(), [](const Body& body) { return body.prescribed && !body.acceleration.isZero(0); });
+	if (!shaken || s.contacts.size() != 1 || s.contacts.front().rocking()) return 0;
+	double given = 0;
+	for (const Joint& joint : groupJoints(s)) { // one at most
+		const auto parting = partingPoints(rigidAcceleration(s.bodies, s.contacts, selectPoints(s.contacts, loaded)), s.contacts);
+		if (!parting.empty()) given += lift(s, joint, parting);
+	}
+	return given;
+}
+
 std::vector<ImpactRecord> handOffPivots(JointSystem& s)
 {
 	std::vector<ImpactRecord> records;
@@ -150,48 +232,42 @@ std::vector<ImpactRecord> handOffPivots(JointSystem& s)
 	return records;
 }
 
+namespace {
+
+	// The impulses of a base whose velocity has just jumped. Points that part are muted where their joint keeps a pivot (it
+	// rocks from this instant on); those that stay are returned.
+	std::vector<HeldPoint> respondToJump(JointSystem& s, const std::vector<int>& moved, const Vector3& jump, JumpResponse& response)
+	{
+		const auto touching = selectPoints(s.contacts, [](const JointContact& contact, int i) { return !contact.points[i].muted && contact.patch.points[i].gap <= 0; });
+		auto       rows = impulsePoints(s, touching);
+		std::vector<CoupleRow> none;
+		const double           energyBefore = kineticEnergy(s.bodies);
+		response.residual = solveImpulses(s.bodies, rows, none).residual;
+		for (const ImpulsePoint& row : rows)
+			for (int b : moved) // impulse times the mean of the base's velocities before and after
+				response.work += (row.body1 == b ? 1 : row.body2 == b ? -1 : 0) * row.impulse.dot(s.bodies[b].velocity - 0.5 * jump);
+		response.dissipated = energyBefore + response.work - kineticEnergy(s.bodies);
+
+		std::vector<HeldPoint> held;
+		for (const HeldPoint& p : touching) {
+			if (gapRate(s, { p.contact, p.point }) > tolerance::parting * jump.norm())
+				s.contacts[p.contact].points[p.point].muted = true;
+			else
+				held.push_back(p);
+		}
+		return held;
+	}
+
+} // namespace
+
 JumpResponse applyBaseJump(JointSystem& s, const std::vector<int>& moved, const Vector3& jump, double before)
 {
 	const double stored = storedEnergy(s), power = supportPower(s);
-	const auto   touching = selectPoints(s.contacts, [](const JointContact& contact, int i) {
-        return !contact.points[i].muted && contact.patch.points[i].gap <= 0;
-    });
 	goBack(s, rigidAcceleration(s.bodies, s.contacts, selectPoints(s.contacts, loaded)), before);
-	std::vector<Vector3> baseVelocity; // mean of before and after
-	for (int b : moved) {
+	for (int b : moved)
 		s.bodies[b].velocity += jump;
-		baseVelocity.push_back(s.bodies[b].velocity - 0.5 * jump);
-	}
-	std::vector<ImpulsePoint> rows;
-	for (const HeldPoint& p : touching) {
-		const JointContact& contact = s.contacts[p.contact];
-		rows.push_back({ contact.body1, contact.body2, contact.position(p.point), contact.patch.normal, contact.law.friction });
-	}
-	std::vector<CoupleRow> none;
-	const auto             kinetic = [&] {
-        double sum = 0;
-        for (const Body& body : s.bodies)
-            sum += body.kineticEnergy();
-        return sum;
-	};
-	JumpResponse response;
-	const double energyBefore = kinetic();
-	response.residual = solveImpulses(s.bodies, rows, none).residual;
-	for (const ImpulsePoint& row : rows)
-		for (size_t k = 0; k < moved.size(); ++k)
-			response.work += (row.body1 == moved[k] ? 1 : row.body2 == moved[k] ? -1 : 0) * row.impulse.dot(baseVelocity[k]);
-	response.dissipated = energyBefore + response.work - kinetic();
-	// Points that part are muted where their joint keeps a pivot: the joint rocks from this instant on.
-	std::vector<HeldPoint> held;
-	for (size_t k = 0; k < touching.size(); ++k) {
-		const ImpulsePoint& row = rows[k];
-		JointContact&       contact = s.contacts[touching[k].contact];
-		const double        parting = row.normal.dot(s.bodies[row.body2].velocityAt(row.position) - s.bodies[row.body1].velocityAt(row.position));
-		if (parting > tolerance::parting * jump.norm())
-			contact.points[touching[k].point].muted = true;
-		else
-			held.push_back(touching[k]);
-	}
+	JumpResponse            response;
+	const auto              held = respondToJump(s, moved, jump, response);
 	const RigidAcceleration rates = rigidAcceleration(s.bodies, s.contacts, held);
 	goForth(s, rates, before);
 	response.dissipated += settle(s, rates.points, stored);

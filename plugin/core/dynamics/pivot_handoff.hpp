@@ -38,19 +38,13 @@ struct JointSystem {
 };
 
 struct ImpactRecord {
-	int    block, support;      // indices into the list of bodies
-	double before;              // tau: how long before the end of the step, s
-	double restitutionAsked;    // C, NaN: natural
-	double speedBefore;         // relative angular velocity, rad/s
-	double speedAfter;
-	double energyLost;          // J
-	double work;                // of the prescribed bodies: their impulses, and the changed forces up to the end of the step, J
-	double application;         // distance of the resultant from the new pivot, m
-	double frictionDemand;      // |p_t|/p_n of the resultant
-	bool   switched;            // false: the joint came to rest
-	bool   capped;              // the energy cap acted
-	double residual;            // m/s
-	double settled;             // J, given up as the springs take the pivot forces of the new phase (of either sign)
+	int                 block { -1 }, support { -1 }; // indices into the list of bodies
+	double              before { 0 };                 // tau: how long before the end of the step, s
+	double              restitutionAsked { 0 };       // C, NaN: natural
+	bool                switched { false };           // false: the joint came to rest
+	RockingImpactResult result {};                    // of the restitution law
+	double              work { 0 };                   // of the moved bodies: their impulses, and the changed forces up to the end of the step, J
+	double              settled { 0 };                // given up as the springs take the pivot forces of the new phase (of either sign), J
 };
 
 // Puts bodies at rest in their equilibrium: compressions and shears that carry the weight (or, for a block that is let
@@ -59,6 +53,13 @@ void startAtEquilibrium(JointSystem& system);
 
 // Power of the prescribed bodies on the others, W.
 double supportPower(const JointSystem& system);
+
+// A single block on an accelerating base starts to rock as soon as the rigid block would: some of its points then carry
+// nothing any more. Waiting for the springs to let go would cost an error of the order of the square root of the penetration.
+// Not localised: it is found at the end of the step. Structures of several joints do wait for their springs: the rigid
+// accelerations of every step would cost too much there.
+// Returns the energy that settling on the new pivot takes, J; 0 when the block does not lift.
+double liftJoints(JointSystem& system);
 
 // Finds the joints whose rotation crossed zero in this step and hands their pivots over. Forces must be up to date.
 std::vector<ImpactRecord> handOffPivots(JointSystem& system);

@@ -7,14 +7,6 @@ namespace masonry {
 
 namespace {
 
-	double kineticEnergy(const std::vector<Body>& bodies)
-	{
-		double sum = 0;
-		for (const Body& body : bodies)
-			sum += body.kineticEnergy();
-		return sum;
-	}
-
 	Vector3 relativeVelocity(const std::vector<Body>& bodies, const ImpulsePoint& point)
 	{
 		return bodies[point.body2].velocityAt(point.position) - bodies[point.body1].velocityAt(point.position);
