@@ -72,10 +72,9 @@ for assembly in (False, True):
     assert train.pulseTimes == times
     assert train.pulseJumps == [impulse, -2 * impulse, impulse if assembly else 2 * impulse]
     assert O.bodies[base].state.vel[0] == sum(train.pulseJumps)
-# The instant of uplift is found at the end of a step of 1.6e-4 s: the impulse that a pulse gives the block after it is wrong by
-# up to that share of the duration, at each of the pulses. The springs turn the block by 2e-5 rad, of peaks of 4e-3 rad, twice.
-duration = 0.06
-bound = 3 * 1.6e-4 / duration + 2 * 2e-5 / 4e-3
+# Until it lifts, the block sways on its springs: by the elastic angle 2 penetration = 2e-6 rad, at the frequency
+# sqrt(g b^2 / (4 d R^2)) = 400 rad/s, d = 6e-7 m, so with 8e-4 rad/s of the 6e-2 rad/s that the pulse gives it.
+duration, bound = 0.06, 8e-4 / 6e-2
 for shape in ("rectangular", "half-sine"):
     compare(shape, lambda ids: dem.PulseTrainEngine(ids=ids, impulse=2 * impulse, times=times, shape=shape, duration=duration),
             masonry.PulseTrain(2 * impulse, times=times, shape=shape, duration=duration), 1.0, bound)

@@ -172,6 +172,20 @@ double supportPower(const JointSystem& s)
 
 namespace {
 
+	// A single block that stands on an accelerating base with all its points, but for what its swaying springs have just
+	// opened: less than their compression.
+	bool closedOnMovingBase(const JointSystem& s)
+	{
+		const bool shaken = std::any_of(s.bodies.begin(), s.bodies.end(), [](const Body& body) { return body.prescribed && !body.acceleration.isZero(0); });
+		if (!shaken || s.contacts.size() != 1 || s.contacts.front().rocking()) return false;
+		double lowest = 0, highest = 0;
+		for (int i = 0; i < s.contacts.front().size; ++i) {
+			lowest = std::min(lowest, s.contacts.front().patch.points[i].gap);
+			highest = std::max(highest, s.contacts.front().patch.points[i].gap);
+		}
+		return lowest < 0 && highest < -lowest;
+	}
+
 	// The points that part in the rigid accelerations while others carry the block; empty: the joint stays closed.
 	std::vector<HeldPoint> partingPoints(const RigidAcceleration& rates, const std::vector<JointContact>& contacts)
 	{
@@ -206,11 +220,11 @@ namespace {
 
 double liftJoints(JointSystem& s)
 {
-	const bool shaken = std::any_of(s.bodies.begin(), s.bodies.end(), [](const Body& body) { return body.prescribed && !body.acceleration.isZero(0); });
-	if (!shaken || s.contacts.size() != 1 || s.contacts.front().rocking()) return 0;
+	if (!closedOnMovingBase(s)) return 0;
 	double given = 0;
 	for (const Joint& joint : groupJoints(s)) { // one at most
-		const auto parting = partingPoints(rigidAcceleration(s.bodies, s.contacts, selectPoints(s.contacts, loaded)), s.contacts);
+		const auto all = selectPoints(s.contacts, [](const JointContact&, int) { return true; });
+		const auto parting = partingPoints(rigidAcceleration(s.bodies, s.contacts, all), s.contacts);
 		if (!parting.empty()) given += lift(s, joint, parting);
 	}
 	return given;
@@ -220,7 +234,7 @@ std::vector<ImpactRecord> handOffPivots(JointSystem& s)
 {
 	std::vector<ImpactRecord> records;
 	for (const Joint& joint : groupJoints(s)) {
-		muteOpenPoints(s, joint);
+		if (!closedOnMovingBase(s)) muteOpenPoints(s, joint); // else liftJoints decides
 		if (findClosing(s, joint).points.empty()) continue;
 		Neighbourhood part = neighbourhood(s, joint);
 		ImpactRecord  record = switchPivot(part.system, part.joint, findClosing(part.system, part.joint));
