@@ -1,6 +1,5 @@
 #include "PulseTrainEngine.hpp"
 
-#include "motion/pulse_shape.hpp"
 #include <cmath>
 #include <core/Scene.hpp>
 #include <lib/factory/ClassFactory.hpp>
@@ -32,32 +31,18 @@ void PulseTrainEngine::postLoad(PulseTrainEngine&)
 	masonry::pulseShapeFromName(shape);
 }
 
-Real PulseTrainEngine::displacement(Real t) const
+Real PulseTrainEngine::sum(Real t, Real (masonry::UnitPulse::*part)(double) const) const
 {
 	const masonry::UnitPulse pulse { masonry::pulseShapeFromName(shape), duration };
-	Real sum = 0;
+	Real result = 0;
 	for (size_t k = 0; k < pulseTimes.size(); ++k)
-		if (t > pulseTimes[k]) sum += pulseJumps[k] * pulse.displacement(t - pulseTimes[k]);
-	return sum;
+		if (t >= pulseTimes[k]) result += pulseJumps[k] * (pulse.*part)(t - pulseTimes[k]);
+	return result;
 }
 
-Real PulseTrainEngine::velocity(Real t) const
-{
-	const masonry::UnitPulse pulse { masonry::pulseShapeFromName(shape), duration };
-	Real sum = 0;
-	for (size_t k = 0; k < pulseTimes.size(); ++k)
-		if (t >= pulseTimes[k]) sum += pulseJumps[k] * pulse.velocity(t - pulseTimes[k]);
-	return sum;
-}
-
-Real PulseTrainEngine::acceleration(Real t) const
-{
-	const masonry::UnitPulse pulse { masonry::pulseShapeFromName(shape), duration };
-	Real sum = 0;
-	for (size_t k = 0; k < pulseTimes.size(); ++k)
-		if (t >= pulseTimes[k]) sum += pulseJumps[k] * pulse.acceleration(t - pulseTimes[k]);
-	return sum;
-}
+Real PulseTrainEngine::displacement(Real t) const { return sum(t, &masonry::UnitPulse::displacement); }
+Real PulseTrainEngine::velocity(Real t) const { return sum(t, &masonry::UnitPulse::velocity); }
+Real PulseTrainEngine::acceleration(Real t) const { return sum(t, &masonry::UnitPulse::acceleration); }
 
 Real PulseTrainEngine::meanVelocity(Real from, Real to) const
 {

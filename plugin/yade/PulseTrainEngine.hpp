@@ -1,6 +1,7 @@
 #pragma once
 
 #include "BaseMotionEngine.hpp"
+#include "motion/pulse_shape.hpp"
 
 namespace yade {
 
@@ -36,6 +37,8 @@ public:
 	// clang-format on
 private:
 	bool resonant() const { return resonantBlock >= 0; }
+	/// Of all pulses so far at time t: their displacement, velocity or acceleration.
+	Real sum(Real t, Real (masonry::UnitPulse::*part)(double) const) const;
 	void addPulse(Real time, vector<BaseJump>& jumps, Real now);
 };
 REGISTER_SERIALIZABLE(PulseTrainEngine);
