@@ -26,12 +26,6 @@ struct Body {
 		return axes * inertia.cwiseInverse().asDiagonal() * axes.transpose();
 	}
 
-	void applyImpulse(const Vector3& impulse, const Vector3& point)
-	{
-		velocity += inverseMass() * impulse;
-		angularVelocity += inverseInertia() * (point - pose.position).cross(impulse);
-	}
-
 	double kineticEnergy() const // of a free body, J
 	{
 		if (prescribed) return 0;

@@ -78,8 +78,10 @@ void pointByPoint(Scene& scene)
 			const double next = std::max(0., impulse[i] - p.normal.dot(relativeVelocity(scene, p)) / response);
 			const double step = next - impulse[i];
 			impulse[i] = next;
-			b1.applyImpulse(-step * p.normal, p.position);
-			b2.applyImpulse(step * p.normal, p.position);
+			for (const auto& [b, sign] : { std::pair(&b1, -1.), std::pair(&b2, 1.) }) {
+				b->velocity += sign * step * b->inverseMass() * p.normal;
+				b->angularVelocity += sign * step * (b->inverseInertia() * (p.position - b->pose.position).cross(p.normal));
+			}
 			change = std::max(change, std::abs(step) * response);
 		}
 		if (change < 1e-14) return;

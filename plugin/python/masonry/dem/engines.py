@@ -19,9 +19,8 @@ def _column_pressure(body, free, gravity):
     for other in free:
         if other.state.pos[2] <= pos[2] or other.id == body.id:
             continue
-        overlap = [min(half[i], other.shape.extents[i] + 0.0) + 0.5 * (max(half[i], other.shape.extents[i]) - min(half[i], other.shape.extents[i]))
-                   - 0.5 * abs(pos[i] - other.state.pos[i]) for i in (0, 1)]
-        shares = [np.clip(overlap[i] / other.shape.extents[i], 0, 1) for i in (0, 1)]
+        # Half of the overlap of the two intervals over half the other's length, along x and y.
+        shares = [np.clip((half[i] + other.shape.extents[i] - abs(pos[i] - other.state.pos[i])) / (2 * other.shape.extents[i]), 0, 1) for i in (0, 1)]
         load += other.state.mass * shares[0] * shares[1]
     return load * gravity / (4 * half[0] * half[1])
 
