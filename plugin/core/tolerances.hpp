@@ -18,7 +18,7 @@ constexpr double energyGain = 1e-11;
 // Length of the old support relative to its distance from the new one above which it is an edge, not a corner.
 constexpr double pivotEdge = 1e-6;
 
-// --- compliant joints (dynamics/) ---
+// --- compliant joints (dynamics/compliant/) ---
 // Least area that the stiffness of a joint is taken from, relative to the smaller face. A sliver of overlap, an edge or a
 // corner gets the stiffness of this share of the face; smaller: corners sink in.
 constexpr double leastPatchArea = 0.1;

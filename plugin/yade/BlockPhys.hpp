@@ -1,11 +1,11 @@
 #pragma once
 
-#include "dynamics/joint_contact.hpp"
+#include "dynamics/compliant/joint_contact.hpp"
 #include <pkg/dem/FrictPhys.hpp>
 
 namespace yade {
 
-/// The compliant joint of a pair of blocks (dynamics/joint_contact.hpp): its law, and the state of its points.
+/// The compliant joint of a pair of blocks (dynamics/compliant/joint_contact.hpp): its law, and the state of its points.
 class BlockPhys : public FrictPhys {
 public:
 	masonry::JointLaw law(Real dampingRatio) const;

@@ -6,7 +6,7 @@
 #include "core_state.hpp"
 
 #include "contact/box_box.hpp"
-#include "dynamics/time_step.hpp"
+#include "dynamics/compliant/time_step.hpp"
 #include <algorithm>
 #include <boost/python/extract.hpp>
 #include <cmath>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "BaseMotionEngine.hpp"
-#include "dynamics/pivot_handoff.hpp"
+#include "dynamics/compliant/pivot_handoff.hpp"
 #include <core/GlobalEngine.hpp>
 
 namespace yade {
@@ -9,7 +9,7 @@ namespace yade {
 class BlockGeom;
 class BlockPhys;
 
-/// The joint stage of compliant blocks (dynamics/pivot_handoff.hpp); between InteractionLoop and the base motion.
+/// The joint stage of compliant blocks (dynamics/compliant/pivot_handoff.hpp); between InteractionLoop and the base motion.
 class RockingJointEngine : public GlobalEngine {
 public:
 	void action() override;

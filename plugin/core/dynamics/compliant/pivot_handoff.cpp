@@ -1,6 +1,6 @@
-#include "dynamics/pivot_handoff.hpp"
-#include "dynamics/joint_groups.hpp"
-#include "dynamics/rigid_acceleration.hpp"
+#include "dynamics/compliant/pivot_handoff.hpp"
+#include "dynamics/compliant/joint_groups.hpp"
+#include "dynamics/compliant/rigid_acceleration.hpp"
 #include "tolerances.hpp"
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 #pragma once
 // Blocks stepped as YADE steps them: contacts at x_n, joint stage, then v_{n+1/2} += f/m dt, x_{n+1} += v dt. Test use only.
 #include "contact/box_box.hpp"
-#include "dynamics/joint_groups.hpp"
-#include "dynamics/time_step.hpp"
+#include "dynamics/compliant/joint_groups.hpp"
+#include "dynamics/compliant/time_step.hpp"
 #include <functional>
 #include <vector>
 

@@ -1,7 +1,7 @@
 #pragma once
 // Joints: which contact points belong to one joint, which of them are muted, which are about to close.
-#include "dynamics/pivot_handoff.hpp"
-#include "dynamics/rigid_acceleration.hpp"
+#include "dynamics/compliant/pivot_handoff.hpp"
+#include "dynamics/compliant/rigid_acceleration.hpp"
 
 namespace masonry {
 

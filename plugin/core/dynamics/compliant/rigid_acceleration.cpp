@@ -1,4 +1,4 @@
-#include "dynamics/rigid_acceleration.hpp"
+#include "dynamics/compliant/rigid_acceleration.hpp"
 #include "impact/impulse_problem.hpp"
 
 namespace masonry {

@@ -6,7 +6,7 @@
 // so the accelerations solve the impulse problem (impact/impulse_problem.hpp) in which "velocity" means acceleration, the
 // free values are external force / mass (with the gyroscopic moment) and the last two terms are the points' bias. The
 // "impulses" are then the forces at the points.
-#include "dynamics/joint_contact.hpp"
+#include "dynamics/compliant/joint_contact.hpp"
 #include <vector>
 
 namespace masonry {

@@ -1,4 +1,4 @@
-#include "dynamics/joint_groups.hpp"
+#include "dynamics/compliant/joint_groups.hpp"
 #include "tolerances.hpp"
 #include <algorithm>
 #include <cmath>

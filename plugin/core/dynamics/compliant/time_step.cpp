@@ -1,4 +1,4 @@
-#include "dynamics/time_step.hpp"
+#include "dynamics/compliant/time_step.hpp"
 #include <Eigen/Eigenvalues>
 #include <cmath>
 #include <limits>

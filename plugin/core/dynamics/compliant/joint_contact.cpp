@@ -1,4 +1,4 @@
-#include "dynamics/joint_contact.hpp"
+#include "dynamics/compliant/joint_contact.hpp"
 #include "tolerances.hpp"
 #include <algorithm>
 #include <cmath>

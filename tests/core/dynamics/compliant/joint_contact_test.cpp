@@ -1,6 +1,6 @@
 // Forces of one compliant joint.
 #include "contact/box_box.hpp"
-#include "dynamics/joint_contact.hpp"
+#include "dynamics/compliant/joint_contact.hpp"
 #include "impact/impulse_problem.hpp"
 #include <catch2/catch.hpp>
 #include <cmath>

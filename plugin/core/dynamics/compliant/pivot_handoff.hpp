@@ -15,7 +15,7 @@
 // held (rigid_acceleration.hpp). Velocities are those of the leapfrog scheme, half a step before the positions.
 //
 // A base that jumps (a Dirac pulse) is handled by the same back-solve-forth, with all loaded points in one impulse problem.
-#include "dynamics/joint_contact.hpp"
+#include "dynamics/compliant/joint_contact.hpp"
 #include "impact/rocking_restitution.hpp"
 #include <vector>
 

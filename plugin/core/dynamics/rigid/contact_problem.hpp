@@ -1,0 +1,83 @@
+#pragma once
+// One set of contact laws for every step, and the solvers that meet it.
+//
+// Unknown are the velocities V of the free bodies and an impulse p per contact point. With u = J1 V1 + J2 V2 + offset, whose first
+// component is normal and the others tangential,
+//
+//     M (V - free) = sum J^T p                     momentum
+//     p_n >= 0,  u_n >= 0,  p_n u_n = 0            unilateral
+//     u_t = 0                 if |p_t| <  mu p_n   stick
+//     p_t = -mu p_n u_t/|u_t| otherwise            slip (Coulomb)
+//
+// mu = noSlip is a law of its own: a point that carries an impulse does not slip.
+//
+// The residual, one for all solvers: with r = 1/trace(J M^-1 J^T) of the point, |p - P(p - r u)| / r, in m/s, where P projects the
+// normal part on p_n >= 0 and then the tangential part on the disc of radius mu p_n; V is always the one that p gives by the
+// momentum equation. It is zero if and only if the laws hold.
+//
+// Method. Block Gauss-Seidel, warm-started with the given impulses, ends early where it converges (most steps). Where it stalls,
+// a proximal semi-smooth Newton method takes over: with R = small * trace and a centre l (the last impulses) the regularised
+// law p = P(l - u/R) makes V the root of M (V - free) - J^T P(l - (J V + offset)/R); each linear system M + J^T D J / R is factorised
+// over the graph of bodies (block sparse, minimum degree order). Redundant points and any mass ratio are harmless to it.
+#include "dynamics/rigid/kinematics.hpp"
+#include "impact/impulse_problem.hpp" // noSlip
+#include <memory>
+#include <vector>
+
+namespace masonry::rigid {
+
+template <class K> struct InverseMass {
+	double                     linear { 0 };                                       // 1/kg
+	typename K::InverseInertia angular { K::InverseInertia::Zero() }; // global axes
+	typename K::Velocity       operator*(const typename K::Velocity& impulse) const
+	{
+		typename K::Velocity v;
+		v.template head<K::dimension>() = linear * impulse.template head<K::dimension>();
+		v.template tail<K::spins>() = angular * impulse.template tail<K::spins>();
+		return v;
+	}
+};
+
+template <class K> struct FreeBody {
+	InverseMass<K>       inverseMass;
+	typename K::Velocity free { K::Velocity::Zero() };     // without contact
+	typename K::Velocity velocity { K::Velocity::Zero() }; // result
+};
+
+template <class K> struct ContactRows {
+	using Rows = Eigen::Matrix<double, K::rows, 1>;
+	using Jacobian = Eigen::Matrix<double, K::rows, K::dof>;
+	int      body1 { -1 }, body2 { -1 }; // indices of free bodies; -1: prescribed, its motion is in the offset
+	Jacobian J1, J2;                     // of body 1 with its minus sign
+	Rows     offset { Rows::Zero() };    // m/s
+	double   friction { 0 };
+	Rows     impulse { Rows::Zero() };   // in: first guess; out: result. N s, on body 2 along the rows
+};
+
+struct SolveReport {
+	int    sweeps { 0 }, factorisations { 0 };
+	double residual { 0 }; // m/s
+	bool   converged { true };
+};
+
+// Owns its workspace: no heap allocation once it has seen a problem of this size.
+template <class K> class ContactSolver {
+public:
+	std::vector<FreeBody<K>>    bodies;
+	std::vector<ContactRows<K>> points;
+
+	// Until the residual is at most `tolerance` (m/s).
+	SolveReport solve(double tolerance);
+	double      residual(); // of the present velocities and impulses
+
+	int  maxSweeps { 40 };    // of Gauss-Seidel before Newton takes over
+	bool useNewton { true };  // false: Gauss-Seidel alone, up to `lastSweeps`
+	int  lastSweeps { 2000 };
+
+private:
+	struct Workspace;
+	struct Deleter { void operator()(Workspace*) const; };
+	std::unique_ptr<Workspace, Deleter> workspace;
+};
+
+} // namespace masonry::rigid

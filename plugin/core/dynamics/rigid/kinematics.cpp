@@ -1,0 +1,1 @@
+#include "dynamics/rigid/kinematics.hpp"

@@ -1,0 +1,95 @@
+#pragma once
+// Rigid blocks in unilateral contact: model, state and settings. rigid_step.hpp moves them.
+#include "dynamics/rigid/base_drive.hpp"
+#include "dynamics/rigid/contact_problem.hpp"
+#include "impact/rocking_restitution.hpp"
+#include <vector>
+
+namespace masonry::rigid {
+
+template <class K> struct RigidBody {
+	typename K::Vector   halfSize { K::Vector::Zero() };   // m
+	double               mass { 0 };                       // kg; not used when prescribed
+	typename K::Inertia  inertia { K::Inertia::Zero() };   // about the centre, kg m^2
+	bool                 prescribed { false };             // moved by the user: an infinite mass
+	typename K::Pose     pose;
+	typename K::Velocity velocity { K::Velocity::Zero() }; // linear, then spin
+	typename K::Velocity force { K::Velocity::Zero() };    // external force (weight included) and moment about the centre
+	typename K::Velocity increment { K::Velocity::Zero() }; // change of velocity per second in the last smooth step: predicts the middle of the next
+	int                  drive { -1 };                     // index of the base drive that moves it; -1: it keeps its velocity
+	typename K::Vector   origin { K::Vector::Zero() };     // position at zero displacement of its drive
+
+	double kineticEnergy() const
+	{
+		const auto w = velocity.template tail<K::spins>();
+		return prescribed ? 0 : 0.5 * (mass * velocity.template head<K::dimension>().squaredNorm() + w.dot(K::angularMomentum(inertia, pose, w)));
+	}
+};
+
+template <class K> struct ContactPoint {
+	typename K::Feature feature;
+	bool                closed { false };  // in touch: may carry force
+	bool                sliding { false };
+	double              gap { 0 };         // m, at the end of the last step
+	Eigen::Matrix<double, K::rows, 1> force { Eigen::Matrix<double, K::rows, 1>::Zero() }; // N, mean of the last smooth step; on body 2, normal then tangents
+	ContactFrame<K>     frame;             // at the end of the last step
+};
+
+template <class K> struct ContactPair {
+	int                body1 { -1 }, body2 { -1 };
+	double             friction { noSlip };
+	double             restitution { NAN }; // NaN: natural
+	typename K::Memory memory;
+	int                face1 { -1 }, face2 { -1 };
+	int                size { 0 };
+	std::array<ContactPoint<K>, K::maxPoints> points;
+};
+
+enum class ImpactOrder { simultaneous, sequential };
+
+struct Settings {
+	double      tolerance { 1e-9 };   // residual of a step's contact laws relative to the speed that gravity gives in that step
+	ImpactOrder order { ImpactOrder::simultaneous };
+	bool        localise { true };    // events are found inside the step; false: they are met at its end
+	int         mostEvents { 12 };    // in one step; further ones are met at its end
+};
+
+// An impact as it came out.
+struct Impact {
+	double              time;
+	int                 block, support;
+	double              asked; // restitution; NaN: natural
+	bool                switched; // the pivot was handed over; false: the joint came to rest
+	RockingImpactResult result;
+};
+
+struct StepReport {
+	int    substeps { 0 }, events { 0 }, sweeps { 0 }, factorisations { 0 };
+	int    unlocalised { 0 }; // events beyond mostEvents
+	double residual { 0 };    // largest of the solves, m/s
+	bool   converged { true };
+};
+
+template <class K> struct RigidSystem {
+	double                      time { 0 }; // s
+	std::vector<RigidBody<K>>   bodies;
+	std::vector<ContactPair<K>> pairs;      // of boxes that are near each other, in a fixed order
+	typename K::Vector          gravity { K::Vector::Zero() }; // which way is down, and the scale of tolerances; the weight itself is in `force`
+	std::vector<BaseDrive*>     drives;
+	std::vector<typename K::Vector> driveDirections;
+	Settings                    settings;
+
+	// Since the start of the run.
+	std::vector<Impact> impacts; // of the last step
+	double              frictDissip { 0 }, impactDissip { 0 }, baseWork { 0 }; // J
+
+	double kineticEnergy() const
+	{
+		double sum = 0;
+		for (const auto& body : bodies)
+			sum += body.kineticEnergy();
+		return sum;
+	}
+};
+
+} // namespace masonry::rigid
