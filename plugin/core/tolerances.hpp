@@ -40,6 +40,23 @@ constexpr double settle = 1e-9;
 // comes apart can gain energy.
 constexpr double settlingGain = 0.5;
 
+// --- rigid blocks (dynamics/rigid/) ---
+namespace rigid {
+// Share of the constraint velocity error at the start of a step that the step takes off. Larger: energy errors of a smooth
+// step, third order in the step, grow with it; 0: an error once made changes its sign for ever.
+constexpr double damping = 1. / 16;
+// Gap relative to the smallest half size that is zero: ends the search for an impact and the closing of gaps. Larger: impact
+// times are wrong by gap / approach speed.
+constexpr double gap = 1e-13;
+// Relative velocity at a point, relative to what gravity gives in a step, that is zero: a point that parts more slowly
+// stays in touch. Smaller: round-off opens closed joints; larger: the first such part of a hop is lost.
+constexpr double parting = 1e-6;
+// Share of the friction limit within which a point counts as sliding.
+constexpr double cone = 1e-9;
+// Share of the step within which two instants are one.
+constexpr double instant = 1e-9;
+} // namespace rigid
+
 // --- exact history of one block (rocking/) ---
 // A rocking impact slower than this share of sqrt(g/R) ends the rocking (infinitely many impacts in finite time follow).
 // Peaks lost are below 1e-16 lambda rad; larger: a block that is lifted again during its last hops starts with an error.
