@@ -3,6 +3,7 @@
 //
 // Plane: coordinates (along, up); angles and moments counter-clockwise from `along` to `up`. Space: global axes.
 // A velocity holds the linear part, then the spin; a force likewise the force, then the moment about the centre.
+#include "contact/contact_patch.hpp"
 #include "math.hpp"
 #include <array>
 #include <cmath>
@@ -86,15 +87,11 @@ struct Plane {
 	static InverseInertia inverseInertia(const Inertia& inertia, const Pose&) { return inertia.cwiseInverse(); }
 
 	static ContactFrame<Plane> frame(const Feature&, const Vector& half1, const Pose&, const Vector& half2, const Pose&);
-	// False, with nothing found, when the boxes are farther apart than `margin` (m).
+	// The vertices that meet a face at the ends of the two faces' overlap; of a corner that stands past the end of a face, only that
+	// vertex. Points keep their features by the memory until another choice is clearly better (tolerance::contact). False, with
+	// nothing found, when the boxes are farther apart than `margin` (m) or only meet corner beside corner (overlap below ::sliver).
 	static bool findPoints(const Vector& half1, const Pose&, const Vector& half2, const Pose&, double margin, Memory&, FoundPoints<Plane>&);
 };
-
-} // namespace masonry::rigid
-
-#include "contact/contact_patch.hpp"
-
-namespace masonry::rigid {
 
 struct Space {
 	static constexpr int dimension = 3, spins = 3, dof = 6, rows = 3, maxPoints = 8;

@@ -1,0 +1,211 @@
+// Contact points of two rectangles in the plane.
+#include "dynamics/rigid/kinematics.hpp"
+#include "tolerances.hpp"
+#include <algorithm>
+
+namespace masonry::rigid {
+
+namespace {
+
+namespace limits = tolerance::contact;
+
+double signOf(double value) { return std::signbit(value) ? -1. : 1.; }
+int    bit(double sign) { return sign > 0 ? 1 : 0; }
+
+// A face looks along `sign` times `axis`; a vertex is an end of a face, where the other axis has the sign `end`.
+int faceNumber(int axis, double sign) { return 2 * axis + bit(sign); }
+int vertexNumber(int axis, double sign, double end)
+{
+	return axis == 0 ? bit(sign) + 2 * bit(end) : bit(end) + 2 * bit(sign);
+}
+
+Vector2 vertexOf(int number, const Vector2& half) { return { number & 1 ? half.x() : -half.x(), number & 2 ? half.y() : -half.y() }; }
+
+// One rectangle seen from the other.
+struct RelativePose {
+	double  cosine, sine;
+	Vector2 offset; // its centre in the other's frame
+
+	RelativePose(double c, double s, const Vector2& o) : cosine(c), sine(s), offset(o) { }
+	RelativePose(const PlanePose& from, const PlanePose& seen)
+	        : cosine(from.cosine * seen.cosine + from.sine * seen.sine)
+	        , sine(from.cosine * seen.sine - from.sine * seen.cosine)
+	        , offset(from.toLocal(seen.position))
+	{
+	}
+	// Component, along `row` of the frame, of the rectangle's own axis `column`.
+	double       rotation(int row, int column) const { return row == column ? cosine : (row == 0 ? -sine : sine); }
+	RelativePose reversed() const
+	{
+		return { cosine, -sine, { -cosine * offset.x() - sine * offset.y(), sine * offset.x() - cosine * offset.y() } };
+	}
+};
+
+struct FaceAxis {
+	int    body, axis;
+	double sign, separation;
+};
+
+// Separation that another face must gain before the previous one is given up.
+double lead(double separation, double length) { return std::max(limits::reference * length, -limits::depthShare * separation); }
+
+FaceAxis bestFaceOf(int body, const Vector2& half, const Vector2& otherHalf, const RelativePose& other, int held, double length)
+{
+	FaceAxis best { body, -1, 1, 0 };
+	double   bestScore = 0;
+	for (int axis : { 0, 1 }) {
+		const double sign = signOf(other.offset[axis]);
+		const double reach = std::abs(other.rotation(axis, 0)) * otherHalf.x() + std::abs(other.rotation(axis, 1)) * otherHalf.y();
+		const double separation = std::abs(other.offset[axis]) - half[axis] - reach;
+		const double score = held == faceNumber(axis, sign) ? separation + lead(separation, length) : separation;
+		if (best.axis < 0 || score > bestScore) {
+			best = { body, axis, sign, separation };
+			bestScore = score;
+		}
+	}
+	return best;
+}
+
+// The two rectangles as the reference face sees them. Ends are counted along the tangent that follows from the normal (from
+// body 1 to body 2), so that their order does not depend on the reference.
+struct FacePair {
+	FaceAxis       face;
+	const Vector2 &referenceHalf, &incidentHalf;
+	RelativePose   incident; // in the frame of the reference body
+	double         length;   // m, smallest half size: tolerances are relative to it
+	int            tangent;  // axis of the reference body along its face
+	double         direction; // of the common tangent along it
+	int            incidentAxis { 0 };
+	double         incidentSign { 1 };
+
+	FacePair(const FaceAxis& f, const Vector2& reference, const Vector2& other, const RelativePose& pose, double size)
+	        : face(f)
+	        , referenceHalf(reference)
+	        , incidentHalf(other)
+	        , incident(pose)
+	        , length(size)
+	        , tangent(1 - f.axis)
+	        , direction((f.axis == 0) == (f.body == 1) ? f.sign : -f.sign)
+	{
+	}
+	double middle() const // of the incident face, along the tangent
+	{
+		return direction * (incident.offset[tangent] + incidentSign * incidentHalf[incidentAxis] * incident.rotation(tangent, incidentAxis));
+	}
+	// From the middle of the incident face to its corner of positive sign, along the tangent.
+	double halfSpan() const { return direction * incidentHalf[1 - incidentAxis] * incident.rotation(tangent, 1 - incidentAxis); }
+	double overlap() const
+	{
+		const double half = referenceHalf[tangent], span = std::abs(halfSpan());
+		return std::min(half, middle() + span) - std::max(-half, middle() - span);
+	}
+	int referenceFace() const { return faceNumber(face.axis, face.sign); }
+	int incidentFace() const { return faceNumber(incidentAxis, incidentSign); }
+};
+
+// The face of the largest separation. The one that was the reference before leads; a tie goes to the larger face, then to body 1.
+FaceAxis referenceFace(const Vector2& half1, const Vector2& half2, const RelativePose& second, const RelativePose& first, double length,
+                       const PlaneMemory& memory)
+{
+	const FaceAxis face1 = bestFaceOf(1, half1, half2, second, memory.reference == 1 ? memory.face1 : -1, length);
+	const FaceAxis face2 = bestFaceOf(2, half2, half1, first, memory.reference == 2 ? memory.face2 : -1, length);
+	if (memory.reference == 1)
+		return face2.separation > face1.separation + lead(face1.separation, length) ? face2 : face1;
+	if (memory.reference == 2)
+		return face1.separation > face2.separation + lead(face2.separation, length) ? face1 : face2;
+	const bool   larger2 = half2[1 - face2.axis] > half1[1 - face1.axis] * (1 + limits::reference);
+	const double tie = limits::reference * length;
+	return face2.separation > face1.separation + (larger2 ? -tie : tie) ? face2 : face1;
+}
+
+// Of the two faces along this axis, the one that looks against the reference face.
+void takeIncident(FacePair& pair, int axis)
+{
+	pair.incidentAxis = axis;
+	pair.incidentSign = -signOf(pair.face.sign * pair.incident.rotation(pair.face.axis, axis));
+}
+
+// The face that looks most against the reference face.
+void chooseIncident(FacePair& pair, const PlaneMemory& memory)
+{
+	const int    same = pair.face.axis, held = pair.face.body == 1 ? memory.face2 : memory.face1;
+	const double gain = memory.reference != 0 && held / 2 != same ? -limits::incident : limits::incident;
+	const double facing = std::abs(pair.incident.cosine), across = std::abs(pair.incident.sine);
+	takeIncident(pair, facing + gain > across ? same : 1 - same);
+}
+
+// What meets at one end (-1 or +1 along the tangent) of the overlap: the incident vertex where it lies over the reference face,
+// else the reference face's own vertex.
+PlaneFeature endOfOverlap(const FacePair& pair, double end, const PlaneMemory& memory)
+{
+	const double span = pair.halfSpan();
+	const double inside = pair.referenceHalf[pair.tangent] - (end * pair.middle() + std::abs(span));
+	const int    reference = pair.face.body;
+	const PlaneFeature ofIncident { 3 - reference, vertexNumber(pair.incidentAxis, pair.incidentSign, end * signOf(span)), pair.referenceFace() };
+	const PlaneFeature ofReference { reference, vertexNumber(pair.face.axis, pair.face.sign, end * pair.direction), pair.incidentFace() };
+	const auto held = [&memory](const PlaneFeature& feature) { return feature == memory.features[0] || feature == memory.features[1]; };
+	const double beyond = held(ofIncident) ? -limits::vertexReach : held(ofReference) ? limits::vertexReach : -limits::slack;
+	return inside >= beyond * pair.length ? ofIncident : ofReference;
+}
+
+} // namespace
+
+// Vertex P of body V, face of body F with outward normal m at the distance h from its centre x: gap = m.(P - x) - h. Its rate
+// m.(v_P - v_F) + (w_F x m).(P - x) = m.(v_P - v_F - w_F x (P - x)) is the relative velocity along m at P.
+ContactFrame<Plane> Plane::frame(const Feature& feature, const Vector& half1, const Pose& pose1, const Vector& half2, const Pose& pose2)
+{
+	const bool    vertexOn1 = feature.vertexBody == 1;
+	const Pose &  vertexPose = vertexOn1 ? pose1 : pose2, &facePose = vertexOn1 ? pose2 : pose1;
+	const Vector &vertexHalf = vertexOn1 ? half1 : half2, &faceHalf = vertexOn1 ? half2 : half1;
+	const int     axis = feature.face / 2;
+	const double  sign = feature.face % 2 ? 1 : -1;
+
+	ContactFrame<Plane> frame;
+	const Vector        arm = vertexPose.rotate(vertexOf(feature.vertex, vertexHalf));
+	frame.position = vertexPose.position + arm;
+	const Vector outward = axis == 0 ? Vector(sign * facePose.cosine, sign * facePose.sine) : Vector(-sign * facePose.sine, sign * facePose.cosine);
+	frame.gap = outward.dot((vertexPose.position - facePose.position) + arm) - faceHalf[axis];
+	const Vector normal = vertexOn1 ? Vector(-outward) : outward;
+	frame.axes << normal.x(), normal.y(), -normal.y(), normal.x();
+	return frame;
+}
+
+bool Plane::findPoints(const Vector& half1, const Pose& pose1, const Vector& half2, const Pose& pose2, double margin, Memory& memory,
+                       FoundPoints<Plane>& out)
+{
+	const Memory before = memory;
+	memory = {};
+	out = {};
+	const RelativePose second(pose1, pose2), first = second.reversed();
+	const double       length = std::min(half1.minCoeff(), half2.minCoeff());
+	const FaceAxis     face = referenceFace(half1, half2, second, first, length, before);
+	if (face.separation > margin)
+		return false;
+
+	const bool on1 = face.body == 1;
+	FacePair   pair(face, on1 ? half1 : half2, on1 ? half2 : half1, on1 ? second : first, length);
+	chooseIncident(pair, before);
+	const bool beyondFace = pair.overlap() <= limits::sliver * length;
+	if (beyondFace) {
+		takeIncident(pair, 1 - pair.incidentAxis);
+		if (pair.overlap() <= limits::sliver * length)
+			return false;
+	}
+
+	const std::array<Feature, 2> ends { endOfOverlap(pair, -1, before), endOfOverlap(pair, 1, before) };
+	const double gaps[2] = { frame(ends[0], half1, pose1, half2, pose2).gap, frame(ends[1], half1, pose1, half2, pose2).gap };
+	const int    nearer = gaps[1] < gaps[0] ? 1 : 0;
+	if (gaps[nearer] > margin)
+		return false;
+	out.size = beyondFace ? 1 : 2;
+	if (beyondFace)
+		out.features[0] = ends[nearer];
+	else
+		out.features = ends;
+	out.face1 = on1 ? pair.referenceFace() : pair.incidentFace();
+	out.face2 = on1 ? pair.incidentFace() : pair.referenceFace();
+	memory = { face.body, out.face1, out.face2, out.features };
+	return true;
+}
+
+} // namespace masonry::rigid
