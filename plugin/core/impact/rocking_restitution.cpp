@@ -1,6 +1,8 @@
 #include "impact/rocking_restitution.hpp"
 #include "tolerances.hpp"
+#include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 namespace masonry {
@@ -12,113 +14,181 @@ namespace {
 		return bodies[point.body2].velocityAt(point.position) - bodies[point.body1].velocityAt(point.position);
 	}
 
-	// One try: the impact with the row's target (NaN: no row), from the given state of the bodies.
-	struct Try {
-		std::vector<Body>         bodies;
-		std::vector<ImpulsePoint> points;
-		double                    couple, work;
-		ImpulseReport             report;
-	};
+	double spin(const std::vector<Body>& bodies, const ClosingJoint& joint)
+	{
+		return joint.result.axis.dot(bodies[joint.block].angularVelocity - bodies[joint.support].angularVelocity);
+	}
+
+	bool hasRow(const ClosingJoint& joint) { return !std::isnan(joint.restitution) && !joint.result.axis.isZero(0); }
 
 	// Work of the prescribed bodies' impulses: they keep their velocities.
-	double supportWork(const Try& impact, const Vector3& axis, int support, int block)
+	double supportWork(const std::vector<Body>& bodies, const std::vector<ImpulsePoint>& points, const std::vector<CoupleRow>& rows)
 	{
 		double sum = 0;
-		for (const ImpulsePoint& point : impact.points)
+		for (const ImpulsePoint& point : points)
 			for (const auto& [b, sign] : { std::pair(point.body1, 1.), std::pair(point.body2, -1.) })
-				if (impact.bodies[b].prescribed) sum += sign * point.impulse.dot(impact.bodies[b].velocityAt(point.position));
-		for (const auto& [b, sign] : { std::pair(support, 1.), std::pair(block, -1.) })
-			if (impact.bodies[b].prescribed) sum += sign * impact.couple * axis.dot(impact.bodies[b].angularVelocity);
+				if (bodies[b].prescribed) sum += sign * point.impulse.dot(bodies[b].velocityAt(point.position));
+		for (const CoupleRow& row : rows)
+			for (const auto& [b, sign] : { std::pair(row.body1, 1.), std::pair(row.body2, -1.) })
+				if (bodies[b].prescribed) sum += sign * row.couple * row.axis.dot(bodies[b].angularVelocity);
 		return sum;
 	}
 
-	Try attempt(const std::vector<Body>& bodies, const RockingImpact& impact, const Vector3& axis, double target)
+	// One impulse problem under the energy cap: solved as often as the cap asks, always from the velocities at its start.
+	struct CappedProblem {
+		std::vector<CoupleRow>                   rows;
+		std::vector<double>                      asked, plastic; // targets
+		std::vector<std::pair<Vector3, Vector3>> start;          // velocity and angular velocity of each body
+
+		void add(const std::vector<Body>& bodies, const ClosingJoint& joint)
+		{
+			if (hasRow(joint)) rows.push_back({ joint.support, joint.block, joint.result.axis, joint.restitution * spin(bodies, joint) });
+		}
+
+		RockingImpactResult solve(std::vector<Body>& bodies, std::vector<ImpulsePoint>& points)
+		{
+			start.clear();
+			for (const Body& body : bodies)
+				start.emplace_back(body.velocity, body.angularVelocity);
+			const double        before = kineticEnergy(bodies);
+			RockingImpactResult result;
+			const auto          energyGrows = [&](bool withRows) {
+				std::vector<CoupleRow> none;
+				for (size_t i = 0; i < bodies.size(); ++i)
+					std::tie(bodies[i].velocity, bodies[i].angularVelocity) = start[i];
+				for (CoupleRow& row : rows)
+					row.couple = 0;
+				result.residual = solveImpulses(bodies, points, withRows ? rows : none).residual;
+				result.work = supportWork(bodies, points, rows);
+				result.energyLost = before + result.work - kineticEnergy(bodies);
+				return result.energyLost < -tolerance::energyGain * (before + std::abs(result.work));
+			};
+			if (!energyGrows(true) || rows.empty()) return result;
+
+			result.capped = true;
+			energyGrows(false);
+			asked.clear();
+			plastic.clear();
+			for (const CoupleRow& row : rows) {
+				asked.push_back(row.target);
+				plastic.push_back(row.axis.dot(bodies[row.body2].angularVelocity - bodies[row.body1].angularVelocity));
+			}
+			const auto growsAt = [&](double fraction) {
+				for (size_t i = 0; i < rows.size(); ++i)
+					rows[i].target = plastic[i] + fraction * (asked[i] - plastic[i]);
+				return energyGrows(fraction > 0);
+			};
+			double        safe = 0, unsafe = 1; // fractions of the way from the plastic to the asked targets
+			constexpr int bisections = 40;
+			for (int i = 0; i < bisections; ++i) {
+				const double fraction = 0.5 * (safe + unsafe);
+				(growsAt(fraction) ? unsafe : safe) = fraction;
+			}
+			growsAt(safe);
+			return result;
+		}
+	};
+
+	void begin(const std::vector<Body>& bodies, RockingImpact& impact)
 	{
-		Try                    result { bodies, impact.points, 0., 0., {} };
-		std::vector<CoupleRow> rows;
-		for (int i = impact.closing; i < impact.old; ++i)
-			result.points[i].holds = false;
-		if (!std::isnan(target)) rows.push_back({ impact.support, impact.block, axis, target });
-		result.report = solveImpulses(result.bodies, result.points, rows);
-		result.couple = rows.empty() ? 0 : rows.front().couple;
-		result.work = supportWork(result, axis, impact.support, impact.block);
-		return result;
+		for (ClosingJoint& joint : impact.joints) {
+			joint.result = {};
+			joint.result.axis = rockingAxis(bodies, joint, impact.points);
+			joint.result.before = spin(bodies, joint);
+			for (int i = joint.oldBegin; i < joint.oldEnd; ++i)
+				impact.points[i].holds = false;
+		}
+	}
+
+	void report(const std::vector<Body>& bodies, const std::vector<ImpulsePoint>& points, ClosingJoint& joint, double couple)
+	{
+		joint.result.after = spin(bodies, joint);
+		Vector3 resultant = Vector3::Zero(); // on the block, at the new support
+		for (int i = joint.newBegin; i < joint.oldBegin; ++i)
+			resultant += points[i].body2 == joint.block ? points[i].impulse : Vector3(-points[i].impulse);
+		const double normal = joint.normal.dot(resultant);
+		if (!(normal > 0)) return;
+		joint.result.application = couple / normal;
+		joint.result.frictionDemand = (resultant - normal * joint.normal).norm() / normal;
 	}
 
 } // namespace
 
-Vector3 rockingAxis(const std::vector<Body>& bodies, const RockingImpact& impact)
+Vector3 rockingAxis(const std::vector<Body>& bodies, const ClosingJoint& joint, const std::vector<ImpulsePoint>& points)
 {
-	const Vector3& n = impact.normal;
+	if (joint.oldBegin == joint.oldEnd) return Vector3::Zero();
+	const Vector3& n = joint.normal;
+	const Vector3& old = points[joint.oldBegin].position;
 	const auto     inPlane = [&](const Vector3& v) { return Vector3(v - n * n.dot(v)); };
-	const int      old = impact.closing; // index of the first point of the old support
 	// The old support is an edge when its points are apart by more than round-off of their distance from the new ones.
 	Vector3 edge = Vector3::Zero();
-	for (int i = old; i < impact.old; ++i) {
-		const Vector3 span = inPlane(impact.points[i].position - impact.points[old].position);
+	for (int i = joint.oldBegin; i < joint.oldEnd; ++i) {
+		const Vector3 span = inPlane(points[i].position - old);
 		if (span.norm() > edge.norm()) edge = span;
 	}
 	Vector3 lever = Vector3::Zero(); // from the old support to the new, weighted by the approach speeds
 	double  reach = 0;
-	for (int i = 0; i < old; ++i) {
-		const Vector3 d = inPlane(impact.points[i].position - impact.points[old].position);
-		const double  side = impact.points[i].body2 == impact.block ? 1 : -1;
-		const double  approach = -side * n.dot(relativeVelocity(bodies, impact.points[i]));
+	for (int i = joint.newBegin; i < joint.oldBegin; ++i) {
+		const Vector3 d = inPlane(points[i].position - old);
+		const double  side = points[i].body2 == joint.block ? 1 : -1;
+		const double  approach = -side * n.dot(relativeVelocity(bodies, points[i]));
 		lever += std::max(approach, 0.) * d;
 		reach = std::max(reach, d.norm());
 	}
 	Vector3 axis = edge.norm() > tolerance::pivotEdge * reach ? edge : Vector3(n.cross(lever));
 	axis.normalize();
-	const Vector3 spin = bodies[impact.block].angularVelocity - bodies[impact.support].angularVelocity;
+	const Vector3 spin = bodies[joint.block].angularVelocity - bodies[joint.support].angularVelocity;
 	return axis.dot(spin) < 0 ? Vector3(-axis) : axis;
 }
 
 RockingImpactResult applyRockingImpact(std::vector<Body>& bodies, RockingImpact& impact)
 {
-	RockingImpactResult result {};
-	result.axis = rockingAxis(bodies, impact);
-	const auto spin = [&](const std::vector<Body>& b) {
-		return result.axis.dot(b[impact.block].angularVelocity - b[impact.support].angularVelocity);
-	};
-	result.before = spin(bodies);
-	const double before = kineticEnergy(bodies);
-	const auto   lost = [&](const Try& t) { return before + t.work - kineticEnergy(t.bodies); };
-	const auto   grows = [&](const Try& t) { return lost(t) < -tolerance::energyGain * (before + std::abs(t.work)); };
+	CappedProblem problem;
+	begin(bodies, impact);
+	for (const ClosingJoint& joint : impact.joints)
+		problem.add(bodies, joint);
+	const RockingImpactResult result = problem.solve(bodies, impact.points);
+	auto                      row = problem.rows.begin();
+	for (ClosingJoint& joint : impact.joints)
+		report(bodies, impact.points, joint, hasRow(joint) ? (row++)->couple : 0);
+	return result;
+}
 
-	Try best = attempt(bodies, impact, result.axis, impact.restitution * result.before);
-	if (!std::isnan(impact.restitution) && grows(best)) {
-		const Try    plastic = attempt(bodies, impact, result.axis, NAN);
-		const double low = spin(plastic.bodies), high = impact.restitution * result.before;
-		double       safe = 0, unsafe = 1; // fractions of the way from the plastic value to the asked one
-		best = plastic;
-		constexpr int bisections = 40;
-		for (int i = 0; i < bisections; ++i) {
-			const double fraction = 0.5 * (safe + unsafe);
-			Try          next = attempt(bodies, impact, result.axis, low + fraction * (high - low));
-			if (grows(next)) {
-				unsafe = fraction;
-			} else {
-				safe = fraction;
-				best = std::move(next);
-			}
-		}
-		result.capped = true;
+namespace {
+
+	void addTo(RockingImpactResult& sum, const RockingImpactResult& stage)
+	{
+		sum.work += stage.work;
+		sum.energyLost += stage.energyLost;
+		sum.capped |= stage.capped;
+		sum.residual = std::max(sum.residual, stage.residual);
 	}
 
-	result.energyLost = lost(best);
-	result.work = best.work;
-	bodies = best.bodies;
-	impact.points = best.points;
-	result.after = spin(bodies);
-	result.residual = best.report.residual;
-	Vector3 resultant = Vector3::Zero(); // on the block, at the new support
-	for (int i = 0; i < impact.closing; ++i)
-		resultant += impact.points[i].body2 == impact.block ? impact.points[i].impulse : Vector3(-impact.points[i].impulse);
-	const double normal = impact.normal.dot(resultant);
-	if (normal > 0) {
-		result.application = std::abs(best.couple) > 0 ? best.couple / normal : 0;
-		result.frictionDemand = (resultant - normal * impact.normal).norm() / normal;
+} // namespace
+
+RockingImpactResult applySequentially(std::vector<Body>& bodies, RockingImpact& impact)
+{
+	RockingImpactResult  result;
+	std::vector<double>  couples;
+	std::vector<Vector3> impulses; // of the first stage
+	for (ImpulsePoint& point : impact.points)
+		point.impulse.setZero();
+	begin(bodies, impact);
+	for (const ClosingJoint& joint : impact.joints) {
+		CappedProblem             pair;
+		std::vector<ImpulsePoint> own(impact.points.begin() + joint.newBegin, impact.points.begin() + joint.oldEnd);
+		pair.add(bodies, joint);
+		addTo(result, pair.solve(bodies, own));
+		std::copy(own.begin(), own.end(), impact.points.begin() + joint.newBegin);
+		couples.push_back(pair.rows.empty() ? 0 : pair.rows.front().couple);
 	}
+	for (const ImpulsePoint& point : impact.points)
+		impulses.push_back(point.impulse);
+	addTo(result, CappedProblem().solve(bodies, impact.points));
+	for (size_t i = 0; i < impulses.size(); ++i)
+		impact.points[i].impulse += impulses[i];
+	for (size_t j = 0; j < couples.size(); ++j)
+		report(bodies, impact.points, impact.joints[j], couples[j]);
 	return result;
 }
 

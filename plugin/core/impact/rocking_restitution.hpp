@@ -21,37 +21,56 @@
 // pivot, inward positive (Giannini 1984). For the rectangular block x/b = (4/3)(1 + slenderness^2)(C - C_H)/(1 + C):
 // C > C_H lies inside the base, C < C_H outside, a dissipative couple that no plastic no-slip contact can make.
 //
+// Several joints may close at one instant. Two laws, to choose from:
+//   simultaneous  one row a joint, all rows and all points solved together. A stack that rocks as one body obeys the
+//                 single block's C.
+//   sequential    joint by joint in the given order, its own points and its row alone (its other neighbours not felt), then
+//                 everything that touches, plastic and without a row. A compliant law that corrects pair by pair and leaves the
+//                 rest to its springs converges to this as they stiffen. The second stage does not keep C: the ratio that
+//                 a joint reports is the realised one, after both stages.
+//
+// No row either for a joint without an old support (a landing out of free flight) or that does not turn: plastic impact.
+//
 // Energy never grows: were the kinetic energy larger after than before by more than the work of the prescribed bodies (zero
-// where they stand still), the row's target is moved from C e.w- towards the plastic value until it is not (bisection).
-// `capped` tells.
+// where they stand still), the targets of all rows are moved, by one fraction, from C e.w- towards their plastic values until
+// it is not (bisection). `capped` tells.
 #include "impact/impulse_problem.hpp"
 
 namespace masonry {
 
-struct RockingImpact {
-	int                       block, support;         // indices into the list of bodies
-	Vector3                   normal;                 // of the joint, from the support to the block
-	std::vector<ImpulsePoint> points;                 // all that may act: the new support, the old, those of other joints
-	int                       closing;                // points [0, closing) are the new support
-	double                    restitution;            // C in [0, 1], or NaN: natural
-	int                       old { 0 };              // points [closing, old) are the old support
-};
-
-struct RockingImpactResult {
-	Vector3 axis;                  // e, directed so that `before` is not negative
-	double  before, after;         // e.w- and e.w+, rad/s
-	double  work;                  // of the prescribed bodies, J
-	double  energyLost;            // kinetic energy before + work - after, J, not negative but for round-off
-	double  application;           // x, m: couple / normal impulse (0 without a row)
-	double  frictionDemand;        // largest |p_t|/p_n among the closing points' resultant
-	bool    capped;                // the energy cap lowered the realised restitution
-	double  residual;              // of the impulse problem, m/s
+struct JointResult {
+	Vector3 axis { Vector3::Zero() }; // e, directed so that `before` is not negative; zero: the joint had no row
+	double  before { 0 }, after { 0 }; // e.w- and e.w+, rad/s
+	double  application { 0 };        // x, m: couple / normal impulse (0 without a row)
+	double  frictionDemand { 0 };     // |p_t|/p_n of the closing points' resultant
 	double  restitution() const { return before > 0 ? after / before : 0; }
 };
 
-Vector3 rockingAxis(const std::vector<Body>& bodies, const RockingImpact& impact);
+struct ClosingJoint {
+	int         block, support;            // indices into the list of bodies
+	Vector3     normal;                    // from the support to the block
+	double      restitution;               // C in [0, 1], or NaN: natural
+	int         newBegin, oldBegin, oldEnd; // points [newBegin, oldBegin) are the new support, [oldBegin, oldEnd) the old
+	JointResult result {};
+};
 
-// Applies the law: changes the bodies' velocities and the points' impulses.
+struct RockingImpact {
+	std::vector<ClosingJoint> joints;
+	std::vector<ImpulsePoint> points; // all that may act: new and old supports, and what else touches
+};
+
+struct RockingImpactResult {
+	double work { 0 };       // of the prescribed bodies, J
+	double energyLost { 0 }; // kinetic energy before + work - after, J, not negative but for round-off
+	bool   capped { false }; // the energy cap lowered the realised restitution
+	double residual { 0 };   // of the impulse problem, m/s
+};
+
+// Zero where there is no old support or no closing point approaches.
+Vector3 rockingAxis(const std::vector<Body>& bodies, const ClosingJoint& joint, const std::vector<ImpulsePoint>& points);
+
+// The two laws, simultaneous and sequential: they change the bodies' velocities, the points' impulses and the joints' results.
 RockingImpactResult applyRockingImpact(std::vector<Body>& bodies, RockingImpact& impact);
+RockingImpactResult applySequentially(std::vector<Body>& bodies, RockingImpact& impact);
 
 } // namespace masonry

@@ -74,7 +74,7 @@ namespace {
 	// The impact of a closing joint, at the instant: new support, old support and, for the simultaneous law, the rest.
 	RockingImpact closingImpact(const JointSystem& s, const Joint& joint, const Closing& closing, const std::vector<HeldPoint>& loadedPoints)
 	{
-		RockingImpact impact { joint.block, closing.support, joint.normal, {}, int(closing.points.size()), closing.restitution };
+		RockingImpact impact;
 		const auto    add = [&](int c, int i) {
             const JointContact& contact = s.contacts[c];
             impact.points.push_back({ contact.body1, contact.body2, contact.position(i), contact.patch.normal, contact.law.friction });
@@ -83,21 +83,22 @@ namespace {
 			add(p.contact, p.point);
 		for (const HeldPoint& p : loadedPoints)
 			if (joint.has(p.contact)) add(p.contact, p.point);
-		impact.old = int(impact.points.size());
+		const int newSupport = int(closing.points.size()), supports = int(impact.points.size());
+		impact.joints = { { joint.block, closing.support, joint.normal, closing.restitution, 0, newSupport, supports } };
 		if (s.order == ImpactOrder::simultaneous)
 			for (const HeldPoint& p : loadedPoints)
 				if (!joint.has(p.contact)) add(p.contact, p.point);
 		return impact;
 	}
 
-	RockingImpactResult applyWithRim(JointSystem& s, RockingImpact& impact)
+	ImpactRecord::Result applyWithRim(JointSystem& s, RockingImpact& impact)
 	{
 		for (int b : s.rim)
 			s.bodies[b].prescribed = false;
 		const RockingImpactResult result = applyRockingImpact(s.bodies, impact);
 		for (int b : s.rim)
 			s.bodies[b].prescribed = true;
-		return result;
+		return { impact.joints.front().result, result };
 	}
 
 	// Who carries the next phase: the closing points, with the old pivot too when the joint stops. Of the closing points,
@@ -122,13 +123,13 @@ namespace {
 		goBack(s, rigidAcceleration(s.bodies, s.contacts, loadedPoints), closing.before);
 
 		RockingImpact impact = closingImpact(s, joint, closing, loadedPoints);
-		const Vector3 axis = rockingAxis(s.bodies, impact);
+		const Vector3 axis = rockingAxis(s.bodies, impact.joints.front(), impact.points);
 		const double  speed = axis.dot(s.bodies[joint.block].angularVelocity - s.bodies[closing.support].angularVelocity);
 		const double  least = leastRockingSpeed(s, joint, impact.points.front().position, closing.lever, closing.depth);
 		const bool    rests = speed * (std::isnan(closing.restitution) ? 1 : closing.restitution) < least;
-		if (rests) impact.restitution = 0;
-		const RockingImpactResult result = applyWithRim(s, impact);
-		const bool                stops = rests || result.after < least;
+		if (rests) impact.joints.front().restitution = 0;
+		const ImpactRecord::Result result = applyWithRim(s, impact);
+		const bool                 stops = rests || result.after < least;
 
 		const auto held = passPivot(s, joint, closing, loadedPoints, stops, tolerance::parting * closing.lever * result.before);
 		const RigidAcceleration rates = rigidAcceleration(s.bodies, s.contacts, held);

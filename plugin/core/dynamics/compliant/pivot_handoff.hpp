@@ -38,11 +38,13 @@ struct JointSystem {
 };
 
 struct ImpactRecord {
+	struct Result : JointResult, RockingImpactResult {
+	};
 	int                 block { -1 }, support { -1 }; // indices into the list of bodies
 	double              before { 0 };                 // tau: how long before the end of the step, s
 	double              restitutionAsked { 0 };       // C, NaN: natural
 	bool                switched { false };           // false: the joint came to rest
-	RockingImpactResult result {};                    // of the restitution law
+	Result result {};                                 // of the restitution law
 	double              work { 0 };                   // of the moved bodies: their impulses, and the changed forces up to the end of the step, J
 	double              settled { 0 };                // given up as the springs take the pivot forces of the new phase (of either sign), J
 };
