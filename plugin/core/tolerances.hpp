@@ -99,3 +99,12 @@ constexpr double faceAngle = 0.1;
 constexpr double parallelEdges = 1e-3;
 
 } // namespace masonry::tolerance::contact
+
+// --- contact points of rigid blocks (dynamics/rigid/) ---
+namespace masonry::tolerance::rigid {
+
+// Least cosine between the common normal of two crossing edges and the normal of the faces that meet, for a corner of the overlap
+// to be a contact point. Smaller: points push to the side; larger: yawed blocks lose corners while they rock.
+constexpr double crossing = 0.8;
+
+} // namespace masonry::tolerance::rigid

@@ -118,6 +118,7 @@ struct Space {
 	}
 
 	static ContactFrame<Space> frame(const Feature&, const Vector& half1, const Pose&, const Vector& half2, const Pose&);
+	// The corners of the contact patch (contact/contact_patch.hpp), without the crossings of nearly parallel edges. False as in the plane.
 	static bool findPoints(const Vector& half1, const Pose&, const Vector& half2, const Pose&, double margin, Memory&, FoundPoints<Space>&);
 };
 

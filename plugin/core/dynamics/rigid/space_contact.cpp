@@ -1,1 +1,149 @@
+// Contact points of two boxes in space, and how a box turns.
+#include "contact/box_box.hpp"
+#include "contact/features.hpp"
 #include "dynamics/rigid/kinematics.hpp"
+#include "tolerances.hpp"
+
+namespace masonry::rigid {
+
+using feature::nextAxis;
+
+namespace {
+
+using Frame = ContactFrame<Space>;
+
+Vector3 vertexOf(int number, const Vector3& half)
+{
+	return { number & 1 ? half.x() : -half.x(), number & 2 ? half.y() : -half.y(), number & 4 ? half.z() : -half.z() };
+}
+
+// Vertex P of one body, face of the other with outward normal m at the distance h from its centre x: gap = m.(P - x) - h. Its rate
+// m.(v_P - v_F) + (w_F x m).(P - x) = m.(v_P - v_F - w_F x (P - x)) is the relative velocity along m at P.
+Frame vertexOnFace(int vertex, const Vector3& vertexHalf, const Pose& vertexPose, int face, const Vector3& faceHalf, const Pose& facePose,
+                   bool faceOn1)
+{
+	const Matrix3 axes = facePose.orientation.toRotationMatrix();
+	const int     axis = face / 2, second = nextAxis(axis), third = nextAxis(second);
+	const double  outward = face % 2 ? 1 : -1, alongNormal = faceOn1 ? outward : -outward;
+	const Vector3 arm = vertexPose.orientation * vertexOf(vertex, vertexHalf);
+	Frame         frame;
+	frame.position = vertexPose.position + arm;
+	frame.gap = outward * axes.col(axis).dot((vertexPose.position - facePose.position) + arm) - faceHalf[axis];
+	frame.axes.row(0) = alongNormal * axes.col(axis);
+	frame.axes.row(1) = axes.col(second);
+	frame.axes.row(2) = alongNormal * axes.col(third);
+	return frame;
+}
+
+// An edge in global axes; the corner between its two faces looks along `outward`.
+struct Edge {
+	Vector3 direction, middle, outward; // middle: from the body's centre
+
+	Edge(int number, const Vector3& half, const Pose& pose)
+	{
+		const Matrix3 axes = pose.orientation.toRotationMatrix();
+		const int     axis = number / 4, next = nextAxis(axis), last = nextAxis(next);
+		const Vector3 toNext = (number & 1 ? 1. : -1.) * axes.col(next), toLast = (number & 2 ? 1. : -1.) * axes.col(last);
+		direction = axes.col(axis);
+		middle = half[next] * toNext + half[last] * toLast;
+		outward = toNext + toLast;
+	}
+};
+
+// Straight lines along e1, e2 through m1, m2, d = m2 - m1, c = e1.e2: the nearest points are m1 + s1 e1 and m2 + s2 e2 with
+// s1 = (d.e1 - c d.e2) / (1 - c^2), s2 = (c d.e1 - d.e2) / (1 - c^2). What lies between them is along n = +-e1 x e2, hence
+// gap = n.d. As n turns its change is across n, the gap's rate is the relative velocity along n at either point or between them.
+Frame edgeAcrossEdge(const Edge& edge1, const Vector3& centre1, const Edge& edge2, const Vector3& centre2)
+{
+	const Vector3 apart = (centre2 - centre1) + (edge2.middle - edge1.middle);
+	const double  cosine = edge1.direction.dot(edge2.direction);
+	Vector3       normal = edge1.direction.cross(edge2.direction);
+	const double  sineSquared = normal.squaredNorm();
+	normal *= feature::signOf(normal.dot(edge1.outward - edge2.outward)) / std::sqrt(sineSquared);
+	const double along1 = apart.dot(edge1.direction), along2 = apart.dot(edge2.direction);
+	const double s1 = (along1 - cosine * along2) / sineSquared, s2 = (cosine * along1 - along2) / sineSquared;
+
+	Frame frame;
+	frame.position = (centre1 + edge1.middle + s1 * edge1.direction + centre2 + edge2.middle + s2 * edge2.direction) / 2;
+	frame.gap = normal.dot(apart);
+	frame.axes.row(0) = normal;
+	frame.axes.row(1) = edge1.direction;
+	frame.axes.row(2) = normal.cross(edge1.direction);
+	return frame;
+}
+
+bool isCrossing(int identity) { return identity >= 16; }
+
+SpaceFeature featureOf(const PatchPoint& point, const PatchFeature& faces)
+{
+	if (isCrossing(point.identity))
+		return { SpaceFeature::Edges, (point.identity - 16) / 12, (point.identity - 16) % 12 };
+	if (point.identity < 8)
+		return { SpaceFeature::Vertex1, point.identity, faces.feature2 };
+	return { SpaceFeature::Vertex2, faces.feature1, point.identity - 8 };
+}
+
+// A crossing of two edges has a normal of its own, which leaves the faces' normal by their tilt / sine of the angle between the
+// edges. Nearly parallel edges mark no corner of the overlap that others do not mark; their normal can point anywhere.
+bool isSharp(const Edge& edge1, const Edge& edge2, const Vector3& faceNormal)
+{
+	Vector3 normal = edge1.direction.cross(edge2.direction);
+	normal *= feature::signOf(normal.dot(edge1.outward - edge2.outward));
+	const double sine = normal.norm();
+	return sine > tolerance::contact::parallelEdges && normal.dot(faceNormal) > tolerance::rigid::crossing * sine;
+}
+
+int faceNearest(const Vector3& direction, const Pose& pose)
+{
+	const Vector3 local = pose.orientation.conjugate() * direction;
+	int           axis;
+	local.cwiseAbs().maxCoeff(&axis);
+	return feature::faceNumber(axis, local[axis]);
+}
+
+} // namespace
+
+void Space::advance(Pose& pose, const Velocity& velocity, double t)
+{
+	const Vector3 half = t / 2 * velocity.tail<3>();
+	const double  angle = half.norm(), sinc = angle > 0 ? std::sin(angle) / angle : 1;
+	Quaternion    turn;
+	turn.w() = std::cos(angle);
+	turn.vec() = sinc * half;
+	pose.position += t * velocity.head<3>();
+	pose.orientation = (turn * pose.orientation).normalized();
+}
+
+Frame Space::frame(const Feature& feature, const Vector& half1, const Pose& pose1, const Vector& half2, const Pose& pose2)
+{
+	if (feature.kind == Feature::Vertex1)
+		return vertexOnFace(feature.first, half1, pose1, feature.second, half2, pose2, false);
+	if (feature.kind == Feature::Vertex2)
+		return vertexOnFace(feature.second, half2, pose2, feature.first, half1, pose1, true);
+	return edgeAcrossEdge(Edge(feature.first, half1, pose1), pose1.position, Edge(feature.second, half2, pose2), pose2.position);
+}
+
+bool Space::findPoints(const Vector& half1, const Pose& pose1, const Vector& half2, const Pose& pose2, double margin, Memory& memory,
+                       FoundPoints<Space>& out)
+{
+	const Memory before = memory;
+	memory = {};
+	out.size = 0;
+	out.face1 = out.face2 = -1;
+	ContactPatch patch;
+	if (!collide({ half1 }, pose1, { half2 }, pose2, margin, before, patch))
+		return false;
+
+	memory = patch.feature;
+	const bool faces = patch.feature.kind != PatchKind::Edges;
+	out.face1 = faces ? patch.feature.feature1 : faceNearest(patch.normal, pose1);
+	out.face2 = faces ? patch.feature.feature2 : faceNearest(-patch.normal, pose2);
+	for (int i = 0; i < patch.size; ++i) {
+		const Feature feature = featureOf(patch.points[i], patch.feature);
+		if (!faces || feature.kind != Feature::Edges || isSharp(Edge(feature.first, half1, pose1), Edge(feature.second, half2, pose2), patch.normal))
+			out.features[out.size++] = feature;
+	}
+	return out.size > 0;
+}
+
+} // namespace masonry::rigid
