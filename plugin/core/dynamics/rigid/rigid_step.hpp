@@ -1,19 +1,27 @@
 #pragma once
-// The step of rigid blocks (Moreau-Jean time stepping with localised events).
-#include "dynamics/rigid/rigid_system.hpp"
+// The step of rigid blocks: Moreau-Jean time stepping with events found inside the step.
+#include "dynamics/rigid/events.hpp"
+#include "dynamics/rigid/impact_stage.hpp"
 
 namespace masonry::rigid {
 
-// Owns its workspace, no state: the same system steps to the same bits with any RigidStep.
+// Owns the workspace, no state: the same system steps to the same bits with any RigidStep.
 template <class K> class RigidStep {
 public:
-	RigidStep();
-	~RigidStep();
 	StepReport advance(RigidSystem<K>& system, double dt);
 
 private:
-	struct Stages;
-	std::unique_ptr<Stages> stages;
+	void   findContacts(RigidSystem<K>& system);
+	Event  tryStep(RigidSystem<K>& system, double h);
+	void   answerImpacts(RigidSystem<K>& system, size_t known);
+	void   takeJumps(RigidSystem<K>& system);
+	double untilKink(const RigidSystem<K>& system, double left, double dt) const;
+	void   note(const SolveReport& solved);
+
+	SmoothStep<K>         step;
+	ImpactStage<K>        impacts;
+	std::vector<PointRef> closing;
+	StepReport            report;
 };
 
 } // namespace masonry::rigid

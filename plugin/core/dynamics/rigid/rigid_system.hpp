@@ -54,13 +54,16 @@ struct Settings {
 	int         mostEvents { 12 };    // in one step; further ones are met at its end
 };
 
-// An impact as it came out.
+// A rocking impact as it came out.
 struct Impact {
-	double              time;
-	int                 block, support;
-	double              asked; // restitution; NaN: natural
-	bool                switched; // the pivot was handed over; false: the joint came to rest
-	RockingImpactResult result;
+	double      time;        // s
+	int         block, support;
+	double      asked;       // restitution; NaN: natural
+	bool        switched;    // the pivot was handed over; false: the joint came to rest
+	JointResult joint;
+	double      energyLost;  // J; of all joints that closed at this instant, kept with the first
+	bool        capped;
+	double      residual;    // m/s
 };
 
 struct StepReport {
@@ -78,9 +81,10 @@ template <class K> struct RigidSystem {
 	std::vector<BaseDrive*>     drives;
 	std::vector<typename K::Vector> driveDirections;
 	Settings                    settings;
+	bool                        fresh { true }; // velocities have just jumped: the last accelerations predict nothing
 
-	// Since the start of the run.
 	std::vector<Impact> impacts; // of the last step
+	// Since the start of the run.
 	double              frictDissip { 0 }, impactDissip { 0 }, baseWork { 0 }; // J
 
 	double kineticEnergy() const

@@ -1,0 +1,224 @@
+#include "dynamics/rigid/impact_stage.hpp"
+#include "dynamics/rigid/scales.hpp"
+#include "tolerances.hpp"
+#include <algorithm>
+
+namespace masonry::rigid {
+
+namespace {
+
+	// --- plane and space as the impact law knows them: the plane is z = 0 ---
+
+	Vector3 inSpace(const Vector2& v) { return { v.x(), v.y(), 0 }; }
+	Vector3 inSpace(const Vector3& v) { return v; }
+
+	masonry::Body inSpace(const RigidBody<Plane>& body)
+	{
+		masonry::Body result;
+		result.pose = { inSpace(body.pose.position), Quaternion(Eigen::AngleAxisd(body.pose.angle, Vector3::UnitZ())) };
+		result.velocity = inSpace(Vector2(body.velocity.head<2>()));
+		result.angularVelocity = { 0, 0, body.velocity[2] };
+		result.mass = body.mass;
+		result.inertia.setConstant(body.inertia[0]);
+		result.prescribed = body.prescribed;
+		return result;
+	}
+
+	masonry::Body inSpace(const RigidBody<Space>& body)
+	{
+		masonry::Body result;
+		result.pose = body.pose;
+		result.velocity = body.velocity.head<3>();
+		result.angularVelocity = body.velocity.tail<3>();
+		result.mass = body.mass;
+		result.inertia = body.inertia;
+		result.prescribed = body.prescribed;
+		return result;
+	}
+
+	void takeVelocity(const masonry::Body& from, RigidBody<Plane>& to) { to.velocity << from.velocity.head<2>(), from.angularVelocity.z(); }
+	void takeVelocity(const masonry::Body& from, RigidBody<Space>& to) { to.velocity << from.velocity, from.angularVelocity; }
+
+	// --- joints ---
+
+	template <class K> Vector3 normalOf(const ContactPoint<K>& point) { return inSpace(typename K::Vector(point.frame.axes.row(0).transpose())); }
+	template <class K> Vector3 positionOf(const ContactPoint<K>& point) { return inSpace(point.frame.position); }
+
+	// A joint is all that touches one face of a block from below; upright faces (head joints) do not rock.
+	struct JointKey {
+		int  block { -1 }, face { -1 };
+		bool operator==(const JointKey& o) const { return block == o.block && face == o.face; }
+	};
+
+	template <class K> JointKey jointOf(const RigidSystem<K>& s, PointRef ref)
+	{
+		const ContactPair<K>& pair = s.pairs[ref.pair];
+		const double          g = s.gravity.norm();
+		const double          up = g > 0 ? -normalOf(pair.points[ref.point]).dot(inSpace(s.gravity)) / g : 1;
+		const int             block = up > 0 ? pair.body2 : pair.body1;
+		if (std::abs(up) < tolerance::uprightJoint || s.bodies[block].prescribed) return {};
+		return { block, up > 0 ? pair.face2 : pair.face1 };
+	}
+
+	// Whether the old support is a pivot, an edge or a corner, that the new support lies beside.
+	bool isPivot(const std::vector<Vector3>& old, const std::vector<Vector3>& closing)
+	{
+		Vector3 edge = Vector3::Zero();
+		for (const Vector3& p : old)
+			if ((p - old.front()).norm() > edge.norm()) edge = p - old.front();
+		double reach = 0;
+		for (const Vector3& p : closing)
+			reach = std::max(reach, (p - old.front()).norm());
+		const bool    isEdge = edge.norm() > tolerance::pivotEdge * reach;
+		const Vector3 along = isEdge ? Vector3(edge.normalized()) : Vector3(Vector3::Zero());
+		const auto    beside = [&](const Vector3& p) { return Vector3(p - old.front() - along * along.dot(p - old.front())).norm(); };
+		const auto    onPivot = [&](const Vector3& p) { return beside(p) <= tolerance::pivotEdge * reach; };
+		return std::all_of(old.begin(), old.end(), onPivot) && std::none_of(closing.begin(), closing.end(), onPivot);
+	}
+
+} // namespace
+
+// Everything that touches, in the order that the law wants: for each closing joint its new support and its old, then the rest.
+template <class K> struct ImpactStage<K>::Builder {
+	const RigidSystem<K>& s;
+	ImpactStage<K>&       stage;
+
+	void add(PointRef ref)
+	{
+		const ContactPair<K>&  pair = s.pairs[ref.pair];
+		const ContactPoint<K>& point = pair.points[ref.point];
+		stage.refs.push_back(ref);
+		stage.impact.points.push_back({ pair.body1, pair.body2, positionOf(point), normalOf(point), pair.friction });
+	}
+
+	template <class Take> void forTouching(Take take)
+	{
+		for (int c = 0; c < int(s.pairs.size()); ++c)
+			for (int i = 0; i < s.pairs[c].size; ++i)
+				if (s.pairs[c].points[i].closed) take(PointRef { c, i });
+	}
+
+	void addJoint(const JointKey& key, const std::vector<PointRef>& closing)
+	{
+		ClosingJoint joint {};
+		joint.block = key.block;
+		joint.newBegin = int(stage.refs.size());
+		stage.newPositions.clear();
+		stage.oldPositions.clear();
+		for (PointRef ref : closing)
+			if (jointOf(s, ref) == key) {
+				add(ref);
+				stage.newPositions.push_back(positionOf(s.pairs[ref.pair].points[ref.point]));
+			}
+		joint.oldBegin = int(stage.refs.size());
+		forTouching([&](PointRef ref) {
+			if (!(s.pairs[ref.pair].points[ref.point].force[0] > 0) || !(jointOf(s, ref) == key)) return;
+			add(ref);
+			stage.oldPositions.push_back(positionOf(s.pairs[ref.pair].points[ref.point]));
+		});
+		joint.oldEnd = int(stage.refs.size());
+		if (stage.oldPositions.empty() || !isPivot(stage.oldPositions, stage.newPositions)) return;
+
+		// Of several supports, the one under the point farthest from the old pivot names the joint's law.
+		double farthest = -1;
+		for (int k = joint.newBegin; k < joint.oldBegin; ++k) {
+			const double distance = (stage.impact.points[k].position - stage.oldPositions.front()).norm();
+			if (distance <= farthest) continue;
+			farthest = distance;
+			const ContactPair<K>& pair = s.pairs[stage.refs[k].pair];
+			const bool            above = pair.body2 == key.block;
+			joint.support = above ? pair.body1 : pair.body2;
+			joint.normal = above ? stage.impact.points[k].normal : Vector3(-stage.impact.points[k].normal);
+			joint.restitution = pair.restitution;
+		}
+		stage.impact.joints.push_back(joint);
+	}
+
+	bool has(PointRef ref) const
+	{
+		return std::any_of(stage.refs.begin(), stage.refs.end(), [&](const PointRef& p) { return p.pair == ref.pair && p.point == ref.point; });
+	}
+};
+
+template <class K> void ImpactStage<K>::gather(const RigidSystem<K>& s, const std::vector<PointRef>& closing)
+{
+	impact.joints.clear();
+	impact.points.clear();
+	refs.clear();
+	bodies.clear();
+	for (const auto& body : s.bodies)
+		bodies.push_back(inSpace(body));
+	Builder builder { s, *this };
+	for (size_t k = 0; k < closing.size(); ++k) {
+		const JointKey key = jointOf(s, closing[k]);
+		const bool     first = std::none_of(closing.begin(), closing.begin() + k, [&](PointRef p) { return jointOf(s, p) == key; });
+		if (first && key.block >= 0) builder.addJoint(key, closing);
+	}
+	for (PointRef ref : closing) // head joints
+		if (!builder.has(ref)) builder.add(ref);
+	builder.forTouching([&](PointRef ref) {
+		if (!builder.has(ref)) builder.add(ref);
+	});
+}
+
+// After an impulse: velocities, and which points stay in touch.
+template <class K> void ImpactStage<K>::settle(RigidSystem<K>& s)
+{
+	for (size_t b = 0; b < bodies.size(); ++b)
+		if (!s.bodies[b].prescribed) takeVelocity(bodies[b], s.bodies[b]);
+	const double still = tolerance::rigid::parting * std::sqrt(scale::acceleration(s) * scale::length(s)) * tolerance::restSpeed;
+	for (size_t k = 0; k < refs.size(); ++k) {
+		ContactPair<K>&  pair = s.pairs[refs[k].pair];
+		ContactPoint<K>& point = pair.points[refs[k].point];
+		const auto &     body1 = s.bodies[pair.body1], &body2 = s.bodies[pair.body2];
+		const auto       u = relativeVelocity(point.frame, body1.pose.position, body1.velocity, body2.pose.position, body2.velocity);
+		point.closed = u[0] <= still;
+		point.sliding = point.closed && u.template tail<K::rows - 1>().norm() > still;
+	}
+	s.fresh = true;
+}
+
+template <class K> double ImpactStage<K>::land(RigidSystem<K>& s, const std::vector<PointRef>& closing)
+{
+	gather(s, closing);
+	for (ClosingJoint& joint : impact.joints) {
+		const Vector3 axis = rockingAxis(bodies, joint, impact.points);
+		const double  speed = axis.dot(bodies[joint.block].angularVelocity - bodies[joint.support].angularVelocity);
+		const double  least = tolerance::restSpeed * std::sqrt(scale::acceleration(s) / s.bodies[joint.block].halfSize.norm());
+		if (speed * (std::isnan(joint.restitution) ? 1 : joint.restitution) < least) joint.restitution = 0;
+	}
+	const auto result = s.settings.order == ImpactOrder::simultaneous ? applyRockingImpact(bodies, impact) : applySequentially(bodies, impact);
+	settle(s);
+	s.impactDissip += result.energyLost;
+	s.baseWork += result.work;
+	double energy = result.energyLost;
+	for (const ClosingJoint& joint : impact.joints) {
+		const double asked = s.pairs[refs[joint.newBegin].pair].restitution;
+		s.impacts.push_back({ s.time, joint.block, joint.support, asked, joint.result.after > 0, joint.result, energy, result.capped, result.residual });
+		energy = 0;
+	}
+	return result.residual;
+}
+
+template <class K> double ImpactStage<K>::pulse(RigidSystem<K>& s, int drive, double jump)
+{
+	const typename K::Vector change = jump * s.driveDirections[drive];
+	for (auto& body : s.bodies)
+		if (body.drive == drive) body.velocity.template head<K::dimension>() += change;
+	gather(s, {});
+	const auto result = applyRockingImpact(bodies, impact);
+	settle(s);
+	// While the base speeds up from v - jump to v, its impulse works on the mean of the two.
+	double work = result.work;
+	for (const ImpulsePoint& point : impact.points)
+		for (const auto& [b, sign] : { std::pair(point.body1, 1.), std::pair(point.body2, -1.) })
+			if (s.bodies[b].drive == drive) work -= 0.5 * sign * point.impulse.dot(inSpace(change));
+	s.baseWork += work;
+	s.impactDissip += result.energyLost + work - result.work;
+	return result.residual;
+}
+
+template class ImpactStage<Plane>;
+template class ImpactStage<Space>;
+
+} // namespace masonry::rigid

@@ -1,0 +1,27 @@
+#pragma once
+// Impulses at one instant, between two smooth steps: the rocking restitution law and base pulses, on all points in touch.
+#include "dynamics/rigid/smooth_step.hpp"
+
+namespace masonry::rigid {
+
+template <class K> class ImpactStage {
+public:
+	// The open points `closing` land now. A joint that rocks on another pivot obeys its restitution; all others are plastic. Points that
+	// part afterwards are open. Impacts are appended to system.impacts. Returns the residual, m/s.
+	double land(RigidSystem<K>& system, const std::vector<PointRef>& closing);
+
+	// The bodies moved by a drive change their velocity by `jump` (m/s along its direction) at this instant. Returns the residual, m/s.
+	double pulse(RigidSystem<K>& system, int drive, double jump);
+
+private:
+	struct Builder;
+	void gather(const RigidSystem<K>& system, const std::vector<PointRef>& closing);
+	void settle(RigidSystem<K>& system);
+
+	RockingImpact              impact;
+	std::vector<masonry::Body> bodies;
+	std::vector<PointRef>      refs; // of impact.points
+	std::vector<Vector3>       newPositions, oldPositions;
+};
+
+} // namespace masonry::rigid

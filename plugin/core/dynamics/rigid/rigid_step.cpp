@@ -1,0 +1,130 @@
+#include "dynamics/rigid/rigid_step.hpp"
+#include "dynamics/rigid/scales.hpp"
+#include "tolerances.hpp"
+
+namespace masonry::rigid {
+
+// The stages of a step. All but the first repeat for each part of the step that ends with an event.
+template <class K> StepReport RigidStep<K>::advance(RigidSystem<K>& s, double dt)
+{
+	report = {};
+	s.impacts.clear();
+	findContacts(s);
+	takeJumps(s);
+	for (double left = dt; left > 0;) {
+		const double h = untilKink(s, left, dt);
+		const Event  event = tryStep(s, h);
+		step.accept(s);
+		left = event.kind == Event::none && h == left ? 0 : left - step.trial().h;
+		if (event.kind == Event::closing) {
+			touchingPoints(s, closing);
+			const size_t known = s.impacts.size();
+			report.residual = std::max(report.residual, impacts.land(s, closing));
+			answerImpacts(s, known);
+		} else if (event.kind == Event::stop) {
+			s.pairs[event.point.pair].points[event.point.point].sliding = false;
+			s.fresh = true;
+		} else if (left > 0) {
+			takeJumps(s);
+			s.fresh = true;
+		}
+	}
+	return report;
+}
+
+// Points of all pairs, as features; those that stay keep their state.
+template <class K> void RigidStep<K>::findContacts(RigidSystem<K>& s)
+{
+	const double touching = tolerance::mergedClosing * scale::length(s);
+	for (ContactPair<K>& pair : s.pairs) {
+		const auto &   body1 = s.bodies[pair.body1], &body2 = s.bodies[pair.body2];
+		FoundPoints<K> found;
+		const double   margin = std::numeric_limits<double>::infinity(); // the list of pairs holds only boxes that are near
+		if (!K::findPoints(body1.halfSize, body1.pose, body2.halfSize, body2.pose, margin, pair.memory, found)) found.size = 0;
+		const bool same = found.size == pair.size && std::equal(found.features.begin(), found.features.begin() + found.size, pair.points.begin(),
+		                                                          [](const auto& feature, const ContactPoint<K>& point) { return feature == point.feature; });
+		if (same) continue;
+		const auto before = pair.points;
+		const int  sizeBefore = pair.size;
+		pair.size = found.size;
+		pair.face1 = found.face1;
+		pair.face2 = found.face2;
+		for (int i = 0; i < found.size; ++i) {
+			ContactPoint<K>& point = pair.points[i];
+			point = {};
+			point.feature = found.features[i];
+			point.frame = K::frame(point.feature, body1.halfSize, body1.pose, body2.halfSize, body2.pose);
+			point.gap = point.frame.gap;
+			point.closed = point.gap <= touching;
+			for (int k = 0; k < sizeBefore; ++k) { // the same point, or one that another feature of the same place takes over from
+				const bool sameFeature = before[k].feature == point.feature;
+				if (!sameFeature && !((before[k].frame.position - point.frame.position).norm() <= 2 * tolerance::contact::vertexReach * scale::length(s))) continue;
+				point.closed = before[k].closed;
+				point.sliding = before[k].sliding;
+				point.force = before[k].force;
+				if (sameFeature) break;
+			}
+		}
+	}
+}
+
+// A trial that ends with the first event, or without one after h.
+template <class K> Event RigidStep<K>::tryStep(RigidSystem<K>& s, double h)
+{
+	const bool   localised = s.settings.localise && report.events < s.settings.mostEvents;
+	const double rest = tolerance::restSpeed * std::sqrt(scale::acceleration(s) * scale::length(s));
+	step.anticipated.clear();
+	step.stopsInside = !localised;
+	Event event;
+	size_t known;
+	do { // until no point closes that the trial did not know of
+		known = step.anticipated.size();
+		step.attempt(s, h);
+		event = findEvent(s, step, localised ? rest : std::numeric_limits<double>::infinity());
+	} while (step.anticipated.size() > known);
+	++report.substeps;
+	if (event.kind != Event::none) {
+		event = localise(s, step, event);
+		++report.events;
+	} else if (!localised) {
+		report.unlocalised += int(step.anticipated.size());
+	}
+	note(step.trial().solved);
+	return event;
+}
+
+template <class K> void RigidStep<K>::note(const SolveReport& solved)
+{
+	report.sweeps += solved.sweeps;
+	report.factorisations += solved.factorisations;
+	report.residual = std::max(report.residual, solved.residual);
+	report.converged &= solved.converged;
+}
+
+// Resonant pulses act right after the impact that releases them.
+template <class K> void RigidStep<K>::answerImpacts(RigidSystem<K>& s, size_t known)
+{
+	for (size_t k = known; k < s.impacts.size(); ++k)
+		for (size_t d = 0; d < s.drives.size(); ++d)
+			if (const double jump = s.drives[d]->respond(s.impacts[k].block, s.time)) report.residual = std::max(report.residual, impacts.pulse(s, int(d), jump));
+}
+
+template <class K> void RigidStep<K>::takeJumps(RigidSystem<K>& s)
+{
+	for (size_t d = 0; d < s.drives.size(); ++d)
+		if (const double jump = s.drives[d]->jumpAt(s.time)) report.residual = std::max(report.residual, impacts.pulse(s, int(d), jump));
+}
+
+template <class K> double RigidStep<K>::untilKink(const RigidSystem<K>& s, double left, double dt) const
+{
+	const double tiny = tolerance::rigid::instant * dt;
+	double       first = s.time + left;
+	for (const BaseDrive* drive : s.drives)
+		first = std::min(first, drive->nextKink(s.time + tiny, s.time + left - tiny));
+	return first < s.time + left ? first - s.time : left;
+}
+
+template class RigidStep<Plane>;
+template class RigidStep<Space>;
+
+} // namespace masonry::rigid

@@ -1,0 +1,261 @@
+#include "dynamics/rigid/smooth_step.hpp"
+#include "dynamics/rigid/scales.hpp"
+#include "tolerances.hpp"
+#include <algorithm>
+
+namespace masonry::rigid {
+
+namespace {
+
+	template <class K> typename K::Velocity prescribedVelocity(const RigidSystem<K>& s, const RigidBody<K>& body, double t)
+	{
+		typename K::Velocity v = body.velocity;
+		if (body.drive >= 0) v.template head<K::dimension>() = s.driveDirections[body.drive] * s.drives[body.drive]->velocity(t);
+		return v;
+	}
+
+	template <class K> typename K::Pose prescribedPose(const RigidSystem<K>& s, const RigidBody<K>& body, double h)
+	{
+		typename K::Pose pose = body.pose;
+		K::advance(pose, body.velocity, h);
+		if (body.drive >= 0) pose.position = body.origin + s.driveDirections[body.drive] * s.drives[body.drive]->displacement(s.time + h);
+		return pose;
+	}
+
+	template <class K> InverseMass<K> inverseMass(const RigidBody<K>& body, const typename K::Pose& pose)
+	{
+		return { 1 / body.mass, K::inverseInertia(body.inertia, pose) };
+	}
+
+	template <class K> Eigen::Matrix<double, K::rows, K::dof> jacobian(const ContactFrame<K>& frame, const typename K::Vector& center, double sign)
+	{
+		Eigen::Matrix<double, K::rows, K::dof> J;
+		const typename K::Vector               arm = frame.position - center;
+		for (int k = 0; k < K::rows; ++k) {
+			const typename K::Vector axis = sign * frame.axes.row(k).transpose();
+			J.row(k).template head<K::dimension>() = axis.transpose();
+			J.row(k).template tail<K::spins>() = K::moment(arm, axis).transpose();
+		}
+		return J;
+	}
+
+} // namespace
+
+template <class K> void SmoothStep<K>::predict(const RigidSystem<K>& s, double h)
+{
+	last.bodies.resize(s.bodies.size());
+	solver.bodies.clear();
+	for (size_t b = 0; b < s.bodies.size(); ++b) {
+		const RigidBody<K>& body = s.bodies[b];
+		auto&               next = last.bodies[b];
+		if (body.prescribed) {
+			next.unknown = -1;
+			next.middle = prescribedPose(s, body, h / 2);
+			next.end = prescribedPose(s, body, h);
+			next.velocity = prescribedVelocity(s, body, s.time + h);
+			next.mean = 0.5 * (body.velocity + next.velocity);
+			continue;
+		}
+		next.unknown = int(solver.bodies.size());
+		const typename K::Velocity mean = body.velocity + 0.5 * h * increments[b];
+		next.middle = next.predicted = body.pose;
+		K::advance(next.middle, mean, h / 2);
+		if constexpr (K::spins == 3) K::advance(next.predicted, mean, h);
+
+		FreeBody<K> unknown;
+		unknown.inverseMass = inverseMass(body, next.predicted);
+		typename K::Velocity momentum = h * body.force;
+		momentum.template head<K::dimension>() += body.mass * body.velocity.template head<K::dimension>();
+		momentum.template tail<K::spins>() += K::angularMomentum(body.inertia, body.pose, body.velocity.template tail<K::spins>());
+		unknown.free = unknown.inverseMass * momentum;
+		solver.bodies.push_back(unknown);
+	}
+}
+
+template <class K> void SmoothStep<K>::assemble(const RigidSystem<K>& s, double h)
+{
+	solver.points.clear();
+	last.rows.clear();
+	const auto isAnticipated = [&](int pair, int point) {
+		return std::any_of(anticipated.begin(), anticipated.end(), [&](const PointRef& p) { return p.pair == pair && p.point == point; });
+	};
+	for (int c = 0; c < int(s.pairs.size()); ++c) {
+		const ContactPair<K>& pair = s.pairs[c];
+		for (int i = 0; i < pair.size; ++i) {
+			const ContactPoint<K>& point = pair.points[i];
+			if (!point.closed && (anticipated.empty() || !isAnticipated(c, i))) continue;
+			const RigidBody<K>&   body1 = s.bodies[pair.body1];
+			const RigidBody<K>&   body2 = s.bodies[pair.body2];
+			const auto&           next1 = last.bodies[pair.body1];
+			const auto&           next2 = last.bodies[pair.body2];
+			const ContactFrame<K> frame = K::frame(point.feature, body1.halfSize, next1.middle, body2.halfSize, next2.middle);
+			last.rows.push_back({ { c, i }, point.closed });
+
+			ContactRows<K> rows;
+			rows.body1 = next1.unknown;
+			rows.body2 = next2.unknown;
+			rows.J1 = jacobian(frame, next1.middle.position, -1);
+			rows.J2 = jacobian(frame, next2.middle.position, 1);
+			rows.friction = pair.friction;
+			rows.impulse = h * point.force;
+			if (body1.prescribed) rows.offset += rows.J1 * next1.velocity;
+			if (body2.prescribed) rows.offset += rows.J2 * next2.velocity;
+			if (point.closed) {
+				const auto error = rigid::relativeVelocity(point.frame, body1.pose.position, body1.velocity, body2.pose.position, body2.velocity);
+				const auto now = (rows.J1 * body1.velocity + rows.J2 * body2.velocity).eval();
+				rows.offset[0] += now[0] - tolerance::rigid::damping * error[0];
+				if (!point.sliding)
+					rows.offset.template tail<K::rows - 1>() += (now - tolerance::rigid::damping * error).template tail<K::rows - 1>();
+				else if (!stopsInside)
+					rows.offset.template tail<K::rows - 1>() += now.template tail<K::rows - 1>();
+			} else {
+				rows.offset[0] += 2 * frame.gap / h;
+			}
+			solver.points.push_back(rows);
+		}
+	}
+}
+
+template <class K> void SmoothStep<K>::finish(const RigidSystem<K>& s, double h)
+{
+	for (size_t b = 0; b < s.bodies.size(); ++b) {
+		const RigidBody<K>& body = s.bodies[b];
+		auto&               next = last.bodies[b];
+		if (body.prescribed) continue;
+		next.velocity = solver.bodies[next.unknown].velocity;
+		next.mean = 0.5 * (body.velocity + next.velocity);
+		next.end = body.pose;
+		K::advance(next.end, next.mean, h);
+		if constexpr (K::spins == 3) { // the momentum is the state: the spin belongs to the orientation reached
+			const auto spin = next.velocity.template tail<K::spins>();
+			next.velocity.template tail<K::spins>() = K::inverseInertia(body.inertia, next.end) * K::angularMomentum(body.inertia, next.predicted, spin);
+		}
+	}
+	first.resize(s.pairs.size());
+	last.frames.clear();
+	for (size_t c = 0; c < s.pairs.size(); ++c) {
+		const ContactPair<K>& pair = s.pairs[c];
+		first[c] = int(last.frames.size());
+		for (int i = 0; i < pair.size; ++i)
+			last.frames.push_back(K::frame(pair.points[i].feature, s.bodies[pair.body1].halfSize, last.bodies[pair.body1].end, s.bodies[pair.body2].halfSize,
+			                               last.bodies[pair.body2].end));
+	}
+}
+
+template <class K> void SmoothStep<K>::attempt(const RigidSystem<K>& s, double h)
+{
+	last.h = h;
+	increments.resize(s.bodies.size());
+	for (size_t b = 0; b < s.bodies.size(); ++b)
+		increments[b] = s.bodies[b].increment;
+	// After an event the acceleration of the last step tells nothing: a second pass takes that of the first.
+	for (int pass = s.fresh ? 0 : 1; pass < 2; ++pass) {
+		predict(s, h);
+		assemble(s, h);
+		last.solved = solver.solve(s.settings.tolerance * scale::stepSpeed(s, h));
+		if (pass == 0)
+			for (size_t b = 0; b < s.bodies.size(); ++b)
+				if (!s.bodies[b].prescribed) increments[b] = (solver.bodies[last.bodies[b].unknown].velocity - s.bodies[b].velocity) / h;
+	}
+	finish(s, h);
+}
+
+// Sweeps over the loaded points, each moved back along its normal row (least motion, weighted by mass); the gaps follow linearly.
+template <class K> void SmoothStep<K>::project(RigidSystem<K>& s)
+{
+	gaps.clear();
+	double largest = 0;
+	for (size_t r = 0; r < last.rows.size(); ++r) {
+		const PointRef ref = last.rows[r].ref;
+		gaps.push_back(last.frames[first[ref.pair] + ref.point].gap);
+		if (solver.points[r].impulse[0] > 0 || gaps.back() < 0) largest = std::max(largest, std::abs(gaps.back()));
+	}
+	const double enough = tolerance::rigid::gap * scale::length(s);
+	if (!(largest > enough)) return;
+	shifts.assign(solver.bodies.size(), K::Velocity::Zero());
+	constexpr int maxSweeps = 20;
+	for (int sweep = 0; sweep < maxSweeps && largest > enough; ++sweep) {
+		largest = 0;
+		for (size_t r = 0; r < last.rows.size(); ++r) {
+			const ContactRows<K>& rows = solver.points[r];
+			double                gap = gaps[r], softness = 0;
+			typename K::Velocity  move1 = K::Velocity::Zero(), move2 = K::Velocity::Zero();
+			if (rows.body1 >= 0) {
+				move1 = solver.bodies[rows.body1].inverseMass * rows.J1.row(0).transpose();
+				softness += rows.J1.row(0).dot(move1);
+				gap += rows.J1.row(0).dot(shifts[rows.body1]);
+			}
+			if (rows.body2 >= 0) {
+				move2 = solver.bodies[rows.body2].inverseMass * rows.J2.row(0).transpose();
+				softness += rows.J2.row(0).dot(move2);
+				gap += rows.J2.row(0).dot(shifts[rows.body2]);
+			}
+			if (!(rows.impulse[0] > 0) && gap >= 0) continue;
+			largest = std::max(largest, std::abs(gap));
+			if (rows.body1 >= 0) shifts[rows.body1] -= gap / softness * move1;
+			if (rows.body2 >= 0) shifts[rows.body2] -= gap / softness * move2;
+		}
+	}
+	for (size_t b = 0; b < s.bodies.size(); ++b)
+		if (last.bodies[b].unknown >= 0) K::advance(last.bodies[b].end, shifts[last.bodies[b].unknown], 1.);
+	for (size_t c = 0; c < s.pairs.size(); ++c)
+		for (int i = 0; i < s.pairs[c].size; ++i)
+			last.frames[first[c] + i] = K::frame(s.pairs[c].points[i].feature, s.bodies[s.pairs[c].body1].halfSize, last.bodies[s.pairs[c].body1].end,
+			                                     s.bodies[s.pairs[c].body2].halfSize, last.bodies[s.pairs[c].body2].end);
+}
+
+template <class K> void SmoothStep<K>::accept(RigidSystem<K>& s)
+{
+	project(s);
+	for (size_t r = 0; r < last.rows.size(); ++r) {
+		const ContactRows<K>& rows = solver.points[r];
+		const auto            ref = last.rows[r].ref;
+		const auto&           next1 = last.bodies[s.pairs[ref.pair].body1];
+		const auto&           next2 = last.bodies[s.pairs[ref.pair].body2];
+		const auto            slip = (rows.J1 * next1.mean + rows.J2 * next2.mean).eval();
+		s.impactDissip -= rows.impulse[0] * slip[0];
+		s.frictDissip -= rows.impulse.template tail<K::rows - 1>().dot(slip.template tail<K::rows - 1>());
+		if (next1.unknown < 0) s.baseWork += rows.impulse.dot(rows.J1 * next1.mean);
+		if (next2.unknown < 0) s.baseWork += rows.impulse.dot(rows.J2 * next2.mean);
+	}
+	for (size_t b = 0; b < s.bodies.size(); ++b) {
+		RigidBody<K>& body = s.bodies[b];
+		const auto&   next = last.bodies[b];
+		if (!body.prescribed) body.increment = (next.velocity - body.velocity) / last.h;
+		body.pose = next.end;
+		body.velocity = next.velocity;
+	}
+	s.time += last.h;
+	s.fresh = false;
+
+	const double still = tolerance::rigid::parting * scale::stepSpeed(s, last.h);
+	size_t       row = 0;
+	for (size_t c = 0; c < s.pairs.size(); ++c)
+		for (int i = 0; i < s.pairs[c].size; ++i) {
+			ContactPoint<K>& point = s.pairs[c].points[i];
+			point.frame = last.frames[first[c] + i];
+			point.gap = point.frame.gap;
+			point.force.setZero();
+			const bool acted = row < last.rows.size() && last.rows[row].ref.pair == int(c) && last.rows[row].ref.point == i;
+			if (!acted) continue;
+			const auto& rows = solver.points[row++];
+			const auto  u = relativeVelocity(s, int(c), i);
+			point.closed = rows.impulse[0] > 0 || u[0] <= still;
+			if (!point.closed) continue;
+			point.force = rows.impulse / last.h;
+			point.sliding = rows.impulse[0] > 0 && u.template tail<K::rows - 1>().norm() > still
+			        && rows.impulse.template tail<K::rows - 1>().norm() >= (1 - tolerance::rigid::cone) * rows.friction * rows.impulse[0];
+		}
+}
+
+template <class K> Eigen::Matrix<double, K::rows, 1> SmoothStep<K>::relativeVelocity(const RigidSystem<K>& s, int pair, int point) const
+{
+	const auto& next1 = last.bodies[s.pairs[pair].body1];
+	const auto& next2 = last.bodies[s.pairs[pair].body2];
+	return rigid::relativeVelocity(last.frames[first[pair] + point], next1.end.position, next1.velocity, next2.end.position, next2.velocity);
+}
+
+template class SmoothStep<Plane>;
+template class SmoothStep<Space>;
+
+} // namespace masonry::rigid
