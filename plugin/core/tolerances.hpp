@@ -103,8 +103,18 @@ constexpr double parallelEdges = 1e-3;
 // --- contact points of rigid blocks (dynamics/rigid/) ---
 namespace masonry::tolerance::rigid {
 
-// Least cosine between the common normal of two crossing edges and the normal of the faces that meet, for a corner of the overlap
-// to be a contact point. Smaller: points push to the side; larger: yawed blocks lose corners while they rock.
-constexpr double crossing = 0.8;
+// Least component of the common normal of two crossing edges along the faces' normal and along the sum of the outward normals
+// beside either edge (1 or more where edges touch), for the crossing to be a contact point. Smaller: points push to the side, at 0
+// to the wrong side; larger: yawed blocks lose corners while they rock.
+constexpr double crossing = 0.2;
 
 } // namespace masonry::tolerance::rigid
+
+// --- contact problem (dynamics/rigid/) ---
+namespace masonry::tolerance::contactProblem {
+
+// Softness of a point in a Newton step, relative to its own response. Larger: more solves until the impulses are those of
+// rigid contact (the number of blocks in a column squared counts too); smaller: round-off of the factorisation.
+constexpr double softness = 1e-4;
+
+} // namespace masonry::tolerance::contactProblem

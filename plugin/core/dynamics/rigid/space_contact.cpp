@@ -3,6 +3,8 @@
 #include "contact/features.hpp"
 #include "dynamics/rigid/kinematics.hpp"
 #include "tolerances.hpp"
+#include <algorithm>
+#include <limits>
 
 namespace masonry::rigid {
 
@@ -83,14 +85,41 @@ SpaceFeature featureOf(const PatchPoint& point, const PatchFeature& faces)
 	return { SpaceFeature::Vertex2, faces.feature1, point.identity - 8 };
 }
 
-// A crossing of two edges has a normal of its own, which leaves the faces' normal by their tilt / sine of the angle between the
-// edges. Nearly parallel edges mark no corner of the overlap that others do not mark; their normal can point anywhere.
+// Two edges that touch have their common normal between the outward normals of the faces beside them: along `outward` it is 1 at
+// least. The normal at a crossing of nearly parallel faces leaves theirs by their tilt / sine of the angle between the edges. Nearly
+// parallel edges mark no corner of the overlap that others do not mark; their normal can point anywhere.
 bool isSharp(const Edge& edge1, const Edge& edge2, const Vector3& faceNormal)
 {
-	Vector3 normal = edge1.direction.cross(edge2.direction);
-	normal *= feature::signOf(normal.dot(edge1.outward - edge2.outward));
+	Vector3      normal = edge1.direction.cross(edge2.direction);
 	const double sine = normal.norm();
-	return sine > tolerance::contact::parallelEdges && normal.dot(faceNormal) > tolerance::rigid::crossing * sine;
+	if (sine <= tolerance::contact::parallelEdges)
+		return false;
+	normal *= feature::signOf(normal.dot(faceNormal)) / sine;
+	return std::min({ normal.dot(faceNormal), normal.dot(edge1.outward), -normal.dot(edge2.outward) }) > tolerance::rigid::crossing;
+}
+
+// The corners of the patch but crossings that are not sharp; of these only one that lies far deeper than all others.
+void takeCorners(const ContactPatch& patch, const Vector3& half1, const Pose& pose1, const Vector3& half2, const Pose& pose2,
+                 FoundPoints<Space>& out)
+{
+	constexpr double infinity = std::numeric_limits<double>::infinity();
+	const double     length = std::min(half1.minCoeff(), half2.minCoeff());
+	double           nearest = infinity, nearestBlunt = infinity;
+	SpaceFeature     blunt;
+	for (int i = 0; i < patch.size; ++i) {
+		const PatchPoint&  point = patch.points[i];
+		const SpaceFeature feature = featureOf(point, patch.feature);
+		if (feature.kind != SpaceFeature::Edges
+		    || isSharp(Edge(feature.first, half1, pose1), Edge(feature.second, half2, pose2), patch.normal)) {
+			nearest = std::min(nearest, point.gap);
+			out.features[out.size++] = feature;
+		} else if (point.gap < nearestBlunt) {
+			nearestBlunt = point.gap;
+			blunt = feature;
+		}
+	}
+	if (nearestBlunt < nearest - tolerance::contact::vertexReach * length)
+		out.features[out.size++] = blunt;
 }
 
 int faceNearest(const Vector3& direction, const Pose& pose)
@@ -138,12 +167,8 @@ bool Space::findPoints(const Vector& half1, const Pose& pose1, const Vector& hal
 	const bool faces = patch.feature.kind != PatchKind::Edges;
 	out.face1 = faces ? patch.feature.feature1 : faceNearest(patch.normal, pose1);
 	out.face2 = faces ? patch.feature.feature2 : faceNearest(-patch.normal, pose2);
-	for (int i = 0; i < patch.size; ++i) {
-		const Feature feature = featureOf(patch.points[i], patch.feature);
-		if (!faces || feature.kind != Feature::Edges || isSharp(Edge(feature.first, half1, pose1), Edge(feature.second, half2, pose2), patch.normal))
-			out.features[out.size++] = feature;
-	}
-	return out.size > 0;
+	takeCorners(patch, half1, pose1, half2, pose2, out);
+	return true;
 }
 
 } // namespace masonry::rigid
