@@ -2,33 +2,60 @@
 #include "tolerances.hpp"
 #include <Eigen/QR>
 #include <algorithm>
+#include <array>
+#include <boost/container/small_vector.hpp>
 #include <cmath>
+#include <utility>
 
 namespace masonry {
 
 namespace {
 
-	using Matrix = Eigen::MatrixXd;
-	using Vector = Eigen::VectorXd;
-
 	enum class State { open, stick, slip };
 
-	// Rows: three a point (normal, two tangents), then one a couple, each couple multiplied by a length so that all rows
-	// are velocities. u = G p + free, G = J M^-1 J^T.
-	struct System {
-		Matrix              J, G;
-		Vector              free, p;
-		int                 nPoints, nCouples;
-		double              length; // of the couple rows, m
-		std::vector<State>  states;
-		Matrix              slipDirection; // column i: unit vector d of p_t of point i while it slips
-		std::vector<double> slipTurn;      // beta = mu p_n / |y_t| of that point: how d turns with y_t
-		std::vector<double> friction;
+	// Up to so many points and rows everything lies on the stack.
+	constexpr int fewPoints = 16, fewRows = 56;
+	template <class T> using PerPoint = boost::container::small_vector<T, fewPoints>;
+	template <class T> using PerRow = boost::container::small_vector<T, fewRows>;
+	using Vector6 = Eigen::Matrix<double, 6, 1>;
 
+	// How a row acts on one free body: the velocity that it sees is direction.(v, w), and an impulse p along it changes (v, w)
+	// by response p.
+	struct Side {
+		int     body;
+		Vector6 direction, response;
+	};
+
+	struct Row {
+		int                 sides { 0 }; // free bodies
+		std::array<Side, 2> side;
+	};
+
+	struct PointState {
+		double  friction;
+		State   state;
+		Matrix3 axes;                              // rows: the normal and two tangents
+		Vector2 slipDirection { Vector2::Zero() }; // unit vector d of p_t while the point slips
+		double  slipTurn { 0 };                    // beta = mu p_n / |y_t|: how d turns with y_t
+	};
+
+	// Rows: three a point (normal, two tangents), then one a couple, each couple multiplied by a length so that all rows
+	// are velocities. u = G p + free, G = J M^-1 J^T. `most`: rows, or Eigen::Dynamic.
+	template <int most> struct System {
+		using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, most, most>;
+		using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, most, 1>;
+
+		PerRow<Row>          rows;
+		Matrix               G;
+		Vector               free, p;
+		int                  nPoints, nCouples;
+		double               length; // of the couple rows, m
+		PerPoint<PointState> points;
+
+		System(const std::vector<Body>& bodies, const std::vector<ImpulsePoint>& points, const std::vector<CoupleRow>& couples);
 		Vector velocity() const { return G * p + free; }
 	};
 
-	// Rows: the normal and two tangents.
 	Matrix3 frame(const Vector3& normal)
 	{
 		int smallest;
@@ -40,142 +67,194 @@ namespace {
 		return axes;
 	}
 
-	Matrix jacobian(const std::vector<Body>& bodies, const std::vector<ImpulsePoint>& points, const std::vector<CoupleRow>& couples, double length)
+	Vector3 relativeVelocity(const std::vector<Body>& bodies, const ImpulsePoint& point)
 	{
-		Matrix J = Matrix::Zero(3 * points.size() + couples.size(), 6 * bodies.size());
-		int    row = 0;
-		for (const auto& point : points) {
-			const Matrix3 axes = frame(point.normal);
-			for (int k = 0; k < 3; ++k) {
-				const Vector3 axis = axes.row(k);
-				for (int side = 0; side < 2; ++side) {
-					const int    body = side ? point.body2 : point.body1;
-					const double sign = side ? 1 : -1;
-					J.block<1, 3>(row, 6 * body) = sign * axis.transpose();
-					J.block<1, 3>(row, 6 * body + 3) = sign * (point.position - bodies[body].pose.position).cross(axis).transpose();
-				}
-				++row;
-			}
-		}
-		for (const auto& couple : couples) {
-			J.block<1, 3>(row, 6 * couple.body1 + 3) = -length * couple.axis.transpose();
-			J.block<1, 3>(row, 6 * couple.body2 + 3) = length * couple.axis.transpose();
-			++row;
-		}
-		return J;
+		return bodies[point.body2].velocityAt(point.position) - bodies[point.body1].velocityAt(point.position) + point.bias;
 	}
 
-	Matrix inverseMassTimes(const std::vector<Body>& bodies, const Matrix& transposedJacobian)
+	void addSides(Row* rows, const std::vector<Body>& bodies, const ImpulsePoint& point, const Matrix3& axes)
 	{
-		Matrix result(transposedJacobian.rows(), transposedJacobian.cols());
-		for (size_t i = 0; i < bodies.size(); ++i) {
-			result.middleRows<3>(6 * i) = bodies[i].inverseMass() * transposedJacobian.middleRows<3>(6 * i);
-			result.middleRows<3>(6 * i + 3) = bodies[i].inverseInertia() * transposedJacobian.middleRows<3>(6 * i + 3);
+		for (const auto& [b, sign] : { std::pair(point.body1, -1.), std::pair(point.body2, 1.) }) {
+			const Body& body = bodies[b];
+			if (body.prescribed) continue;
+			const Vector3 arm = point.position - body.pose.position;
+			const Matrix3 inverseInertia = body.inverseInertia();
+			for (int k = 0; k < 3; ++k) {
+				Side& side = rows[k].side[rows[k].sides++];
+				side.body = b;
+				const Vector3 axis = sign * axes.row(k).transpose(), turn = arm.cross(axis);
+				side.direction << axis, turn;
+				side.response << body.inverseMass() * axis, inverseInertia * turn;
+			}
 		}
-		return result;
+	}
+
+	void addSides(Row& row, const std::vector<Body>& bodies, const CoupleRow& couple, double length)
+	{
+		for (const auto& [b, sign] : { std::pair(couple.body1, -1.), std::pair(couple.body2, 1.) }) {
+			if (bodies[b].prescribed) continue;
+			Side& side = row.side[row.sides++];
+			side.body = b;
+			const Vector3 turn = sign * length * couple.axis;
+			side.direction << Vector3::Zero(), turn;
+			side.response << Vector3::Zero(), bodies[b].inverseInertia() * turn;
+		}
+	}
+
+	double coupling(const Row& r, const Row& s)
+	{
+		double sum = 0;
+		for (int i = 0; i < r.sides; ++i)
+			for (int j = 0; j < s.sides; ++j)
+				if (r.side[i].body == s.side[j].body) sum += r.side[i].direction.dot(s.side[j].response);
+		return sum;
+	}
+
+	// Longest arm of a point about a free body.
+	double longestArm(const std::vector<Body>& bodies, const std::vector<ImpulsePoint>& points)
+	{
+		double longest = 0;
+		for (const auto& point : points)
+			for (int b : { point.body1, point.body2 })
+				if (!bodies[b].prescribed) longest = std::max(longest, (point.position - bodies[b].pose.position).norm());
+		return longest;
+	}
+
+	template <int most>
+	System<most>::System(const std::vector<Body>& bodies, const std::vector<ImpulsePoint>& given, const std::vector<CoupleRow>& couples)
+	        : nPoints(int(given.size()))
+	        , nCouples(int(couples.size()))
+	        , length(longestArm(bodies, given))
+	{
+		if (length == 0) length = 1;
+		const int n = 3 * nPoints + nCouples;
+		rows.resize(n);
+		free.resize(n);
+		for (int i = 0; i < nPoints; ++i) {
+			points.push_back({ given[i].friction, given[i].holds ? State::stick : State::open, frame(given[i].normal) });
+			addSides(&rows[3 * i], bodies, given[i], points[i].axes);
+			free.template segment<3>(3 * i) = points[i].axes * relativeVelocity(bodies, given[i]);
+		}
+		for (int c = 0; c < nCouples; ++c) {
+			const CoupleRow& couple = couples[c];
+			addSides(rows[3 * nPoints + c], bodies, couple, length);
+			const Vector3 spin = bodies[couple.body2].angularVelocity - bodies[couple.body1].angularVelocity;
+			free[3 * nPoints + c] = length * (couple.axis.dot(spin) - couple.target);
+		}
+		G.resize(n, n);
+		for (int r = 0; r < n; ++r)
+			for (int s = 0; s <= r; ++s)
+				G(r, s) = G(s, r) = coupling(rows[r], rows[s]);
+		p = Vector::Zero(n);
 	}
 
 	// Stiffness of one point's impulse against its own velocity, an upper bound: with r = 1/response the map below contracts.
-	double response(const System& s, int i) { return s.G.block<3, 3>(3 * i, 3 * i).trace(); }
+	template <int most> double response(const System<most>& s, int i) { return s.G.template block<3, 3>(3 * i, 3 * i).trace(); }
 
 	// Newton step: least-norm solution of the laws, linear for the present states. A slipping point obeys u_n = 0 and
 	//     p_t = mu p_n d(y_t),  y_t = p_t - r u_t,  d(y) = y/|y| ~ d + (1 - d d^T) y / |y_k|,
 	// so  p_t - mu p_n d - beta (1 - d d^T)(p_t - r u_t) = 0 with beta from the last iterate.
-	void solveForStates(System& s)
+	template <int most> void solveForStates(System<most>& s)
 	{
-		std::vector<int> active; // rows of p that may differ from zero
+		using Matrix = typename System<most>::Matrix;
+		using Vector = typename System<most>::Vector;
+		PerRow<int> active; // rows of p that may differ from zero
 		for (int i = 0; i < s.nPoints; ++i)
-			if (s.states[i] != State::open) active.insert(active.end(), { 3 * i, 3 * i + 1, 3 * i + 2 });
+			if (s.points[i].state != State::open) active.insert(active.end(), { 3 * i, 3 * i + 1, 3 * i + 2 });
 		for (int row = 3 * s.nPoints; row < s.p.size(); ++row)
 			active.push_back(row);
 		s.p.setZero();
 		if (active.empty()) return;
-		Matrix A(active.size(), s.p.size()); // on all of p first; velocity rows by default
-		Vector b(active.size());
-		for (size_t k = 0; k < active.size(); ++k) {
-			A.row(k) = s.G.row(active[k]);
+		const int n = int(active.size());
+		Matrix    A(n, n); // velocity rows by default
+		Vector    b(n);
+		for (int k = 0; k < n; ++k) {
+			for (int l = 0; l < n; ++l)
+				A(l, k) = s.G(active[l], active[k]);
 			b[k] = -s.free[active[k]];
 		}
-		for (size_t k = 0; k < active.size(); ++k) {
-			const int i = active[k] / 3;
-			if (i >= s.nPoints || s.states[i] != State::slip || active[k] % 3 != 1) continue;
-			const Vector2         d = s.slipDirection.col(i);
-			const Eigen::Matrix2d turn = s.slipTurn[i] * (Eigen::Matrix2d::Identity() - d * d.transpose());
+		for (int k = 0; k < n && active[k] < 3 * s.nPoints; k += 3) {
+			const int         i = active[k] / 3, t = k + 1; // t: first tangent
+			const PointState& point = s.points[i];
+			if (point.state != State::slip) continue;
+			const Vector2&        d = point.slipDirection;
+			const Eigen::Matrix2d turn = point.slipTurn * (Eigen::Matrix2d::Identity() - d * d.transpose());
 			const double          stiffness = response(s, i); // 1/r: turns impulses into velocities, as in the other rows
-			A.middleRows<2>(k) = turn * s.G.middleRows<2>(active[k]);
-			b.segment<2>(k) = -turn * s.free.segment<2>(active[k]);
-			A.block<2, 1>(k, 3 * i) -= stiffness * s.friction[i] * d;
-			A.block<2, 2>(k, 3 * i + 1) += stiffness * (Eigen::Matrix2d::Identity() - turn);
+			for (int l = 0; l < n; ++l)
+				A.template block<2, 1>(t, l) = (turn * A.template block<2, 1>(t, l)).eval();
+			b.template segment<2>(t) = (turn * b.template segment<2>(t)).eval();
+			A.template block<2, 1>(t, k) -= stiffness * point.friction * d;
+			A.template block<2, 2>(t, t) += stiffness * (Eigen::Matrix2d::Identity() - turn);
 		}
-		Matrix reduced(active.size(), active.size());
-		for (size_t k = 0; k < active.size(); ++k)
-			reduced.col(k) = A.col(active[k]);
-		Eigen::CompleteOrthogonalDecomposition<Matrix> decomposition;
+		Eigen::CompleteOrthogonalDecomposition<Matrix> decomposition(n, n);
 		decomposition.setThreshold(tolerance::rank);
-		decomposition.compute(reduced);
+		decomposition.compute(A);
 		Vector x = decomposition.solve(b);
-		x += decomposition.solve(b - reduced * x); // one refinement: long arms on slender blocks cost four digits
-		for (size_t k = 0; k < active.size(); ++k)
+		x += decomposition.solve(b - A * x); // one refinement: long arms on slender blocks cost four digits
+		for (int k = 0; k < n; ++k)
 			s.p[active[k]] = x[k];
 	}
 
 	// Projection of p - r u on the friction cone of one point; also tells the state that it stands for.
-	Vector3 project(const System& s, int i, const Vector3& u, State& state)
+	template <int most> Vector3 project(const System<most>& s, int i, const Vector3& u, State& state)
 	{
-		const Vector3 y = s.p.segment<3>(3 * i) - u / response(s, i);
+		const Vector3 y = s.p.template segment<3>(3 * i) - u / response(s, i);
 		state = State::open;
 		if (!(y[0] > 0)) return Vector3::Zero();
-		const double size = y.tail<2>().norm(), bound = s.friction[i] * y[0];
+		const double size = y.tail<2>().norm(), bound = s.points[i].friction * y[0];
 		state = size > bound ? State::slip : State::stick;
 		Vector3 result = y;
 		if (size > bound) result.tail<2>() *= bound / size;
 		return result;
 	}
 
-	double residual(const System& s)
+	template <int most> double residual(const System<most>& s)
 	{
-		const Vector u = s.velocity();
+		const auto u = s.velocity();
 		double       worst = s.nCouples ? u.tail(s.nCouples).cwiseAbs().maxCoeff() : 0;
 		for (int i = 0; i < s.nPoints; ++i) {
 			State         ignored;
-			const Vector3 step = s.p.segment<3>(3 * i) - project(s, i, u.segment<3>(3 * i), ignored);
+			const Vector3 step = s.p.template segment<3>(3 * i) - project(s, i, u.template segment<3>(3 * i), ignored);
 			worst = std::max(worst, step.norm() * response(s, i));
 		}
 		return worst;
 	}
 
 	// States and slip directions for the next Newton step.
-	void updateStates(System& s)
+	template <int most> void updateStates(System<most>& s)
 	{
-		const Vector u = s.velocity();
+		const auto u = s.velocity();
 		for (int i = 0; i < s.nPoints; ++i) {
-			const Vector3 p = project(s, i, u.segment<3>(3 * i), s.states[i]);
-			const Vector2 y = s.p.segment<2>(3 * i + 1) - u.segment<2>(3 * i + 1) / response(s, i);
-			if (s.states[i] != State::slip || !(y.norm() > 0)) continue;
-			s.slipDirection.col(i) = y.normalized();
-			s.slipTurn[i] = p.tail<2>().norm() / y.norm();
+			PointState&   point = s.points[i];
+			const Vector3 p = project(s, i, u.template segment<3>(3 * i), point.state);
+			const Vector2 y = s.p.template segment<2>(3 * i + 1) - u.template segment<2>(3 * i + 1) / response(s, i);
+			if (point.state != State::slip || !(y.norm() > 0)) continue;
+			point.slipDirection = y.normalized();
+			point.slipTurn = p.tail<2>().norm() / y.norm();
 		}
 	}
 
 	// Without slip some problems have no solution. The way out keeps every promise on energy: all points held, then the one
 	// that pulls most let go, until none pulls. A point let go may still approach, which the residual tells.
-	void letPullingPointsGo(System& s)
+	template <int most> void letPullingPointsGo(System<most>& s)
 	{
-		s.states.assign(s.nPoints, State::stick);
+		for (PointState& point : s.points)
+			point.state = State::stick;
 		for (int left = s.nPoints; left >= 0; --left) {
 			solveForStates(s);
 			int worst = -1;
 			for (int i = 0; i < s.nPoints; ++i)
 				if (s.p[3 * i] < 0 && (worst < 0 || s.p[3 * i] < s.p[3 * worst])) worst = i;
 			if (worst < 0) return;
-			s.states[worst] = State::open;
+			s.points[worst].state = State::open;
 		}
 	}
 
 	// Residual that counts as zero: a share of the approach speed, and round-off of the products in G p.
-	double target(const System& s)
+	template <int most> double target(const System<most>& s)
 	{
-		const double roundOff = 64 * std::numeric_limits<double>::epsilon() * (s.G.cwiseAbs() * s.p.cwiseAbs()).maxCoeff();
+		const auto   terms = (s.G.cwiseAbs() * s.p.cwiseAbs()).eval();
+		const double roundOff = 64 * std::numeric_limits<double>::epsilon() * terms.maxCoeff();
 		return tolerance::impulse * s.free.cwiseAbs().maxCoeff() + roundOff;
 	}
 
@@ -190,7 +269,6 @@ namespace {
 			bodies[b].velocity += bodies[b].inverseMass() * impulse;
 			bodies[b].angularVelocity += inverseInertia[b] * (point - bodies[b].pose.position).cross(impulse);
 		};
-		const auto relative = [&](const ImpulsePoint& p) -> Vector3 { return bodies[p.body2].velocityAt(p.position) - bodies[p.body1].velocityAt(p.position) + p.bias; };
 		std::vector<double> response; // trace of each point's own 3x3 block
 		double              scale = 0;
 		for (const ImpulsePoint& p : points) {
@@ -201,7 +279,7 @@ namespace {
 				sum += 3 * bodies[b].inverseMass() - (cross * inverseInertia[b] * cross).trace();
 			}
 			response.push_back(sum);
-			scale = std::max(scale, relative(p).norm());
+			scale = std::max(scale, relativeVelocity(bodies, p).norm());
 		}
 		constexpr int maxSweeps = 20000;
 		ImpulseReport report { 0, 0. };
@@ -209,7 +287,7 @@ namespace {
 			report.residual = 0;
 			for (size_t i = 0; i < points.size(); ++i) {
 				ImpulsePoint& p = points[i];
-				const Vector3 trial = p.impulse - relative(p) / response[i];
+				const Vector3 trial = p.impulse - relativeVelocity(bodies, p) / response[i];
 				const double  normal = p.normal.dot(trial);
 				Vector3       next = Vector3::Zero();
 				if (normal > 0) {
@@ -236,20 +314,66 @@ namespace {
 		return report;
 	}
 
-	int gaussSeidel(System& s)
+	template <int most> int gaussSeidel(System<most>& s)
 	{
 		constexpr int maxSweeps = 4000, checkEvery = 20;
 		for (int sweep = 1; sweep <= maxSweeps; ++sweep) {
 			for (int i = 0; i < s.nPoints; ++i) {
 				State         ignored;
-				const Vector3 u = s.G.middleRows<3>(3 * i) * s.p + s.free.segment<3>(3 * i);
-				s.p.segment<3>(3 * i) = project(s, i, u, ignored);
+				const Vector3 u = s.G.template middleRows<3>(3 * i) * s.p + s.free.template segment<3>(3 * i);
+				s.p.template segment<3>(3 * i) = project(s, i, u, ignored);
 			}
 			for (int row = 3 * s.nPoints; row < s.p.size(); ++row)
 				s.p[row] -= (s.G.row(row).dot(s.p) + s.free[row]) / s.G(row, row);
 			if (sweep % checkEvery == 0 && residual(s) <= target(s)) return sweep;
 		}
 		return maxSweeps;
+	}
+
+	template <int most> ImpulseReport solveDense(std::vector<Body>& bodies, std::vector<ImpulsePoint>& points, std::vector<CoupleRow>& couples)
+	{
+		System<most>  s(bodies, points, couples);
+		constexpr int rounds = 6, maxNewton = 30;
+		ImpulseReport report { 0, std::numeric_limits<double>::infinity() };
+		bool          solved = false;
+		auto          best = s.p;
+		const auto    keepBest = [&] {
+			const double r = residual(s);
+			solved = r <= target(s);
+			if (!(r < report.residual)) return;
+			report.residual = r;
+			best = s.p;
+		};
+		for (int round = 0; round < rounds && !solved; ++round) {
+			for (int k = 0; k < maxNewton && !solved; ++k, ++report.iterations) {
+				solveForStates(s);
+				keepBest();
+				updateStates(s);
+			}
+			if (solved) break;
+			s.p = best;
+			report.iterations += gaussSeidel(s);
+			keepBest();
+			updateStates(s);
+		}
+		s.p = best;
+		const auto noSlipping = [](const PointState& point) { return std::isinf(point.friction); };
+		if (!solved && std::any_of(s.points.begin(), s.points.end(), noSlipping)) {
+			letPullingPointsGo(s);
+			report.residual = residual(s);
+		}
+
+		for (int row = 0; row < s.p.size(); ++row)
+			for (int i = 0; i < s.rows[row].sides; ++i) {
+				const Side& side = s.rows[row].side[i];
+				bodies[side.body].velocity += s.p[row] * side.response.template head<3>();
+				bodies[side.body].angularVelocity += s.p[row] * side.response.template tail<3>();
+			}
+		for (int i = 0; i < s.nPoints; ++i)
+			points[i].impulse = s.points[i].axes.transpose() * s.p.template segment<3>(3 * i);
+		for (int c = 0; c < s.nCouples; ++c)
+			couples[c].couple = s.length * s.p[3 * s.nPoints + c];
+		return report;
 	}
 
 } // namespace
@@ -259,74 +383,8 @@ ImpulseReport solveImpulses(std::vector<Body>& bodies, std::vector<ImpulsePoint>
 	if (points.empty() && couples.empty()) return { 0, 0. };
 	constexpr size_t mostDense = 100; // points; the dense solver's cost grows with their cube
 	if (points.size() > mostDense) return solveBySweeps(bodies, points, couples);
-	System s;
-	s.nPoints = int(points.size());
-	s.nCouples = int(couples.size());
-	s.length = 0;
-	for (const auto& point : points)
-		for (int body : { point.body1, point.body2 })
-			if (!bodies[body].prescribed) s.length = std::max(s.length, (point.position - bodies[body].pose.position).norm());
-	if (s.length == 0) s.length = 1;
-	s.J = jacobian(bodies, points, couples, s.length);
-	const Matrix perImpulse = inverseMassTimes(bodies, s.J.transpose());
-	s.G = s.J * perImpulse;
-	Vector v(6 * bodies.size());
-	for (size_t i = 0; i < bodies.size(); ++i)
-		v.segment<6>(6 * i) << bodies[i].velocity, bodies[i].angularVelocity;
-	s.free = s.J * v;
-	for (int i = 0; i < s.nPoints; ++i)
-		s.free.segment<3>(3 * i) += frame(points[i].normal) * points[i].bias;
-	for (int c = 0; c < s.nCouples; ++c)
-		s.free[3 * s.nPoints + c] -= s.length * couples[c].target;
-	s.p = Vector::Zero(s.J.rows());
-	s.slipDirection = Matrix::Zero(2, s.nPoints);
-	s.slipTurn.assign(s.nPoints, 0.);
-	for (const auto& point : points) {
-		s.friction.push_back(point.friction);
-		s.states.push_back(point.holds ? State::stick : State::open);
-	}
-
-	constexpr int rounds = 6, maxNewton = 30;
-	ImpulseReport report { 0, std::numeric_limits<double>::infinity() };
-	bool          solved = false;
-	Vector        best = s.p;
-	const auto    keepBest = [&] {
-		const double r = residual(s);
-		solved = r <= target(s);
-		if (!(r < report.residual)) return;
-		report.residual = r;
-		best = s.p;
-	};
-	for (int round = 0; round < rounds && !solved; ++round) {
-		for (int k = 0; k < maxNewton && !solved; ++k, ++report.iterations) {
-			solveForStates(s);
-			keepBest();
-			updateStates(s);
-		}
-		if (solved) break;
-		s.p = best;
-		report.iterations += gaussSeidel(s);
-		keepBest();
-		updateStates(s);
-	}
-	s.p = best;
-	if (!solved && std::isinf(*std::max_element(s.friction.begin(), s.friction.end()))) {
-		letPullingPointsGo(s);
-		report.residual = residual(s);
-	}
-
-	v += perImpulse * s.p;
-	for (size_t i = 0; i < bodies.size(); ++i) {
-		if (bodies[i].prescribed) continue;
-		bodies[i].velocity = v.segment<3>(6 * i);
-		bodies[i].angularVelocity = v.segment<3>(6 * i + 3);
-	}
-	for (int i = 0; i < s.nPoints; ++i) {
-		points[i].impulse = frame(points[i].normal).transpose() * s.p.segment<3>(3 * i);
-	}
-	for (int c = 0; c < s.nCouples; ++c)
-		couples[c].couple = s.length * s.p[3 * s.nPoints + c];
-	return report;
+	const bool few = points.size() <= fewPoints && 3 * points.size() + couples.size() <= fewRows;
+	return few ? solveDense<fewRows>(bodies, points, couples) : solveDense<Eigen::Dynamic>(bodies, points, couples);
 }
 
 } // namespace masonry

@@ -36,7 +36,7 @@ namespace {
 
 	// One impulse problem under the energy cap: solved as often as the cap asks, always from the velocities at its start.
 	struct CappedProblem {
-		std::vector<CoupleRow>                   rows;
+		std::vector<CoupleRow>                   rows, none;
 		std::vector<double>                      asked, plastic; // targets
 		std::vector<std::pair<Vector3, Vector3>> start;          // velocity and angular velocity of each body
 
@@ -53,7 +53,6 @@ namespace {
 			const double        before = kineticEnergy(bodies);
 			RockingImpactResult result;
 			const auto          energyGrows = [&](bool withRows) {
-				std::vector<CoupleRow> none;
 				for (size_t i = 0; i < bodies.size(); ++i)
 					std::tie(bodies[i].velocity, bodies[i].angularVelocity) = start[i];
 				for (CoupleRow& row : rows)
@@ -88,6 +87,15 @@ namespace {
 			return result;
 		}
 	};
+
+	// Kept between impacts for its memory only.
+	struct Workspace {
+		CappedProblem             problem;
+		std::vector<ImpulsePoint> own;
+		std::vector<double>       couples;
+		std::vector<Vector3>      impulses;
+	};
+	thread_local Workspace workspace;
 
 	void begin(const std::vector<Body>& bodies, RockingImpact& impact)
 	{
@@ -143,7 +151,8 @@ Vector3 rockingAxis(const std::vector<Body>& bodies, const ClosingJoint& joint, 
 
 RockingImpactResult applyRockingImpact(std::vector<Body>& bodies, RockingImpact& impact)
 {
-	CappedProblem problem;
+	CappedProblem& problem = workspace.problem;
+	problem.rows.clear();
 	begin(bodies, impact);
 	for (const ClosingJoint& joint : impact.joints)
 		problem.add(bodies, joint);
@@ -168,23 +177,22 @@ namespace {
 
 RockingImpactResult applySequentially(std::vector<Body>& bodies, RockingImpact& impact)
 {
-	RockingImpactResult  result;
-	std::vector<double>  couples;
-	std::vector<Vector3> impulses; // of the first stage
-	for (ImpulsePoint& point : impact.points)
-		point.impulse.setZero();
+	auto& [problem, own, couples, impulses] = workspace;
+	RockingImpactResult result;
+	couples.clear();
+	impulses.assign(impact.points.size(), Vector3::Zero()); // of the first stage
 	begin(bodies, impact);
 	for (const ClosingJoint& joint : impact.joints) {
-		CappedProblem             pair;
-		std::vector<ImpulsePoint> own(impact.points.begin() + joint.newBegin, impact.points.begin() + joint.oldEnd);
-		pair.add(bodies, joint);
-		addTo(result, pair.solve(bodies, own));
-		std::copy(own.begin(), own.end(), impact.points.begin() + joint.newBegin);
-		couples.push_back(pair.rows.empty() ? 0 : pair.rows.front().couple);
+		own.assign(impact.points.begin() + joint.newBegin, impact.points.begin() + joint.oldEnd);
+		problem.rows.clear();
+		problem.add(bodies, joint);
+		addTo(result, problem.solve(bodies, own));
+		for (size_t i = 0; i < own.size(); ++i)
+			impulses[joint.newBegin + i] = own[i].impulse;
+		couples.push_back(problem.rows.empty() ? 0 : problem.rows.front().couple);
 	}
-	for (const ImpulsePoint& point : impact.points)
-		impulses.push_back(point.impulse);
-	addTo(result, CappedProblem().solve(bodies, impact.points));
+	problem.rows.clear();
+	addTo(result, problem.solve(bodies, impact.points));
 	for (size_t i = 0; i < impulses.size(); ++i)
 		impact.points[i].impulse += impulses[i];
 	for (size_t j = 0; j < couples.size(); ++j)
