@@ -1,5 +1,6 @@
 #include "dynamics/rigid/contact_problem.hpp"
-#include <Eigen/LU>
+#include "dynamics/rigid/block_factor.hpp"
+#include "tolerances.hpp"
 #include <algorithm>
 #include <cmath>
 
@@ -16,6 +17,23 @@ namespace {
 		const double bound = friction * y[0], square = tangential.squaredNorm();
 		if (square > bound * bound) tangential *= bound / std::sqrt(square);
 		return p;
+	}
+
+	// Derivative of P.
+	template <class Rows> auto projectionRate(const Rows& y, double friction)
+	{
+		constexpr int                              tangents = Rows::RowsAtCompileTime - 1;
+		Eigen::Matrix<double, tangents + 1, tangents + 1> rate;
+		rate.setZero();
+		if (!(y[0] > 0)) return rate;
+		rate.setIdentity();
+		const double size = y.template tail<tangents>().norm();
+		if (size <= friction * y[0]) return rate;
+		const Eigen::Matrix<double, tangents, 1> d = y.template tail<tangents>() / size;
+		rate.template bottomLeftCorner<tangents, 1>() = friction * d;
+		auto turn = rate.template bottomRightCorner<tangents, tangents>();
+		turn = friction * y[0] / size * (turn - d * d.transpose()).eval();
+		return rate;
 	}
 
 	// The law of one point alone, whose impulse p makes u = u0 + G p.
@@ -94,9 +112,20 @@ template <class K> struct ContactSolver<K>::Workspace {
 	using Velocity = typename K::Velocity;
 	using Response = Eigen::Matrix<double, K::dof, K::rows>;
 
+	using Block = typename OnePoint<K::rows>::Block;
+	using Mass = Eigen::Matrix<double, K::dof, K::dof>;
+
 	struct Point {
 		OnePoint<K::rows> alone;
 		Response          W1, W2; // M^-1 J^T: velocities per impulse
+		// Newton: u at the centre (the impulses before the step), y, P(y) and its derivative; the derivative in the factor
+		Rows  centre, next;
+		Block rate { Block::Zero() }, factored { Block::Zero() };
+	};
+
+	struct NewtonBody {
+		Mass     mass;
+		Velocity w, start, force; // w: velocity minus that of the centre, and before the line search; force: F
 	};
 
 	FreeBody<K>*       bodies { nullptr }; // the solver's own, as of this call
@@ -105,6 +134,12 @@ template <class K> struct ContactSolver<K>::Workspace {
 	std::vector<Point> points;
 	std::vector<Rows>  best;
 	double             bestResidual { 0 };
+
+	std::vector<NewtonBody>                       newtonBodies;
+	std::vector<Velocity>                         step;
+	std::vector<typename BlockFactor<K::dof>::Edge> edges; // points between two free bodies, in order
+	BlockFactor<K::dof>                           factor;
+	bool                                          factored { false };
 
 	static Response response(const InverseMass<K>& m, const typename ContactRows<K>::Jacobian& J)
 	{
@@ -209,6 +244,172 @@ template <class K> struct ContactSolver<K>::Workspace {
 		}
 	}
 
+	// Newton. With the impulses l of the rows as centre and V their velocities, w is the root of
+	//
+	//     F(w) = M w - J^T (P(y) - l),  y = l - (u + J w)/R
+	//
+	// Only increments enter, so that round-off does not grow with 1/R; and P(y) is the next centre.
+
+	double softness(int i) const { return tolerance::contactProblem::softness * points[i].alone.trace; }
+
+	void prepareNewton()
+	{
+		newtonBodies.resize(nBodies);
+		step.resize(nBodies);
+		for (int b = 0; b < nBodies; ++b) {
+			Mass& mass = newtonBodies[b].mass;
+			mass.setZero();
+			mass.diagonal().template head<K::dimension>().setConstant(1 / bodies[b].inverseMass.linear);
+			mass.template bottomRightCorner<K::spins, K::spins>() = bodies[b].inverseMass.angular.inverse();
+		}
+		edges.clear();
+		for (int i = 0; i < nPoints; ++i)
+			if (rows[i].body1 >= 0 && rows[i].body2 >= 0) edges.push_back({ rows[i].body1, rows[i].body2 });
+		factor.setGraph(nBodies, edges);
+		factored = false;
+	}
+
+	// Sets F, P(y) and its derivative; returns F^T M^-1 F.
+	double evaluate()
+	{
+		for (int b = 0; b < nBodies; ++b)
+			newtonBodies[b].force = newtonBodies[b].mass * newtonBodies[b].w;
+		for (int i = 0; i < nPoints; ++i) {
+			const ContactRows<K>& c = rows[i];
+			Point&                p = points[i];
+			Rows                  u = p.centre;
+			if (c.body1 >= 0) u += c.J1 * newtonBodies[c.body1].w;
+			if (c.body2 >= 0) u += c.J2 * newtonBodies[c.body2].w;
+			const Rows y = c.impulse - u / softness(i);
+			p.next = project(y, c.friction);
+			p.rate = projectionRate(y, c.friction);
+			const Rows change = p.next - c.impulse;
+			if (c.body1 >= 0) newtonBodies[c.body1].force -= c.J1.transpose() * change;
+			if (c.body2 >= 0) newtonBodies[c.body2].force -= c.J2.transpose() * change;
+		}
+		double merit = 0;
+		for (int b = 0; b < nBodies; ++b)
+			merit += newtonBodies[b].force.dot(bodies[b].inverseMass * newtonBodies[b].force);
+		return merit;
+	}
+
+	bool factorIsPresent() const
+	{
+		return factored && std::all_of(points.begin(), points.begin() + nPoints, [](const Point& p) { return p.rate == p.factored; });
+	}
+
+	// M + J^T P' J / R
+	void factorise(SolveReport& report)
+	{
+		factor.setZero();
+		for (int b = 0; b < nBodies; ++b)
+			factor.diagonal(b) = newtonBodies[b].mass;
+		int edge = 0;
+		for (int i = 0; i < nPoints; ++i) {
+			const ContactRows<K>& c = rows[i];
+			points[i].factored = points[i].rate;
+			const int e = c.body1 >= 0 && c.body2 >= 0 ? edge++ : -1;
+			if (points[i].rate.isZero(0)) continue;
+			const Block                            stiffness = points[i].rate / softness(i);
+			const typename ContactRows<K>::Jacobian K1 = stiffness * c.J1, K2 = stiffness * c.J2;
+			if (c.body1 >= 0) factor.diagonal(c.body1) += c.J1.transpose() * K1;
+			if (c.body2 >= 0) factor.diagonal(c.body2) += c.J2.transpose() * K2;
+			if (e < 0) continue;
+			factor.firstSecond(e) += c.J1.transpose() * K2;
+			factor.secondFirst(e) += c.J2.transpose() * K1;
+		}
+		factor.factorise();
+		factored = true;
+		++report.factorisations;
+	}
+
+	// One Newton step, shortened until the merit falls. False: it does not.
+	bool newtonStep(double& merit, bool& full)
+	{
+		constexpr double decrease = 1e-4, shortest = 0.01;
+		for (int b = 0; b < nBodies; ++b) {
+			step[b] = newtonBodies[b].force;
+			newtonBodies[b].start = newtonBodies[b].w;
+		}
+		factor.solve(step);
+		for (double t = 1; t >= shortest; t /= 2) {
+			for (int b = 0; b < nBodies; ++b)
+				newtonBodies[b].w = newtonBodies[b].start - t * step[b];
+			const double trial = evaluate();
+			full = t == 1;
+			if (trial <= (1 - decrease * t) * merit) {
+				merit = trial;
+				return true;
+			}
+		}
+		return false;
+	}
+
+	// Root of F for the present centre. False: stopped short of it.
+	bool findRoot(SolveReport& report)
+	{
+		constexpr int    maxSteps = 30;
+		constexpr double reduction = 1e-8; // of the merit
+		for (int b = 0; b < nBodies; ++b)
+			newtonBodies[b].w.setZero();
+		for (int i = 0; i < nPoints; ++i)
+			points[i].centre = relativeVelocity(rows[i]);
+		double       merit = evaluate();
+		const double enough = reduction * merit;
+		for (int k = 0; k < maxSteps; ++k) {
+			if (!factorIsPresent()) factorise(report);
+			bool full = false;
+			if (!newtonStep(merit, full)) return false;
+			if (merit <= enough || (full && factorIsPresent())) return true;
+		}
+		return false;
+	}
+
+	double newton(double tolerance, SolveReport& report)
+	{
+		constexpr int    maxCentres = 30;
+		constexpr double contraction = 0.9; // of the residual from centre to centre; slower is a stall
+		prepareNewton();
+		applyImpulses();
+		double last = std::numeric_limits<double>::infinity();
+		for (int k = 0; k < maxCentres; ++k) {
+			const bool found = findRoot(report);
+			for (int i = 0; i < nPoints; ++i)
+				rows[i].impulse = points[i].next;
+			applyImpulses();
+			const double present = residual();
+			keepBest(present);
+			if (present <= tolerance || !found || present > contraction * last) return present;
+			last = present;
+		}
+		return last;
+	}
+
+	// Newton, and where that stops sweeps from the best iterate to start anew from.
+	double alternate(double tolerance, int lastSweeps, SolveReport& report)
+	{
+		constexpr int rounds = 8;
+		bestResidual = std::numeric_limits<double>::infinity();
+		for (int round = 1; round <= rounds; ++round) {
+			applyImpulses();
+			keepBest(residual());
+			if (newton(tolerance, report) <= tolerance) return bestResidual;
+			restoreBest();
+			if (gaussSeidel(tolerance, lastSweeps * round / 36, true, report) <= tolerance) return residual();
+		}
+		applyImpulses();
+		keepBest(residual());
+		restoreBest();
+		return bestResidual;
+	}
+
+	void restoreBest()
+	{
+		for (int i = 0; i < nPoints; ++i)
+			rows[i].impulse = best[i];
+		applyImpulses();
+	}
+
 	void keepBest(double residual)
 	{
 		if (!(residual < bestResidual)) return;
@@ -235,7 +436,8 @@ template <class K> SolveReport ContactSolver<K>::solve(double tolerance)
 	SolveReport report;
 	w.prepare(*this);
 	w.applyImpulses();
-	report.residual = w.gaussSeidel(tolerance, lastSweeps, true, report);
+	report.residual = w.gaussSeidel(tolerance, useNewton ? maxSweeps : lastSweeps, !useNewton, report);
+	if (useNewton && report.residual > tolerance) report.residual = w.alternate(tolerance, lastSweeps, report);
 	report.converged = report.residual <= tolerance;
 	return report;
 }
