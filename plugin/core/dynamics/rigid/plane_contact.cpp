@@ -23,23 +23,21 @@ Vector2 vertexOf(int number, const Vector2& half) { return { number & 1 ? half.x
 
 // One rectangle seen from the other.
 struct RelativePose {
-	double  cosine, sine;
-	Vector2 offset; // its centre in the other's frame
+	double  axes[2][2]; // [row][column]: component, along `row` of the frame, of the rectangle's own axis `column`
+	Vector2 offset;     // its centre in the frame
 
-	RelativePose(double c, double s, const Vector2& o) : cosine(c), sine(s), offset(o) { }
-	RelativePose(const PlanePose& from, const PlanePose& seen)
-	        : cosine(from.cosine * seen.cosine + from.sine * seen.sine)
-	        , sine(from.cosine * seen.sine - from.sine * seen.cosine)
-	        , offset(from.toLocal(seen.position))
-	{
-	}
-	// Component, along `row` of the frame, of the rectangle's own axis `column`.
-	double       rotation(int row, int column) const { return row == column ? cosine : (row == 0 ? -sine : sine); }
+	RelativePose(double cosine, double sine, const Vector2& centre) : axes { { cosine, -sine }, { sine, cosine } }, offset(centre) { }
 	RelativePose reversed() const
 	{
-		return { cosine, -sine, { -cosine * offset.x() - sine * offset.y(), sine * offset.x() - cosine * offset.y() } };
+		const double c = axes[0][0], s = axes[1][0];
+		return { c, -s, { -c * offset.x() - s * offset.y(), s * offset.x() - c * offset.y() } };
 	}
 };
+
+RelativePose relative(const PlanePose& from, const PlanePose& seen)
+{
+	return { from.cosine * seen.cosine + from.sine * seen.sine, from.cosine * seen.sine - from.sine * seen.cosine, from.toLocal(seen.position) };
+}
 
 struct FaceAxis {
 	int    body, axis;
@@ -55,7 +53,7 @@ FaceAxis bestFaceOf(int body, const Vector2& half, const Vector2& otherHalf, con
 	double   bestScore = 0;
 	for (int axis : { 0, 1 }) {
 		const double sign = signOf(other.offset[axis]);
-		const double reach = std::abs(other.rotation(axis, 0)) * otherHalf.x() + std::abs(other.rotation(axis, 1)) * otherHalf.y();
+		const double reach = std::abs(other.axes[axis][0]) * otherHalf.x() + std::abs(other.axes[axis][1]) * otherHalf.y();
 		const double separation = std::abs(other.offset[axis]) - half[axis] - reach;
 		const double score = held == faceNumber(axis, sign) ? separation + lead(separation, length) : separation;
 		if (best.axis < 0 || score > bestScore) {
@@ -66,17 +64,20 @@ FaceAxis bestFaceOf(int body, const Vector2& half, const Vector2& otherHalf, con
 	return best;
 }
 
-// The two rectangles as the reference face sees them. Ends are counted along the tangent that follows from the normal (from
-// body 1 to body 2), so that their order does not depend on the reference.
+// The two rectangles as the reference face sees them. Lengths along the face are counted along the tangent that follows from the
+// normal (from body 1 to body 2), so that the order of the ends does not depend on the reference.
 struct FacePair {
 	FaceAxis       face;
 	const Vector2 &referenceHalf, &incidentHalf;
-	RelativePose   incident; // in the frame of the reference body
-	double         length;   // m, smallest half size: tolerances are relative to it
-	int            tangent;  // axis of the reference body along its face
+	RelativePose   incident;  // in the frame of the reference body
+	double         length;    // m, smallest half size: tolerances are relative to it
+	int            tangent;   // axis of the reference body along its face
 	double         direction; // of the common tangent along it
-	int            incidentAxis { 0 };
-	double         incidentSign { 1 };
+
+	// Incident face: its middle, the way from there to its corner of positive sign (along the face and over it), its outward normal.
+	int    incidentAxis { 0 };
+	double incidentSign { 1 };
+	double middle { 0 }, height { 0 }, span { 0 }, rise { 0 }, normalAlong { 0 }, normalOver { 0 };
 
 	FacePair(const FaceAxis& f, const Vector2& reference, const Vector2& other, const RelativePose& pose, double size)
 	        : face(f)
@@ -88,19 +89,30 @@ struct FacePair {
 	        , direction((f.axis == 0) == (f.body == 1) ? f.sign : -f.sign)
 	{
 	}
-	double middle() const // of the incident face, along the tangent
+
+	// Of the two faces along this axis, the one that looks against the reference face.
+	void takeIncident(int axis)
 	{
-		return direction * (incident.offset[tangent] + incidentSign * incidentHalf[incidentAxis] * incident.rotation(tangent, incidentAxis));
+		const auto &along = incident.axes[tangent], &over = incident.axes[face.axis];
+		incidentAxis = axis;
+		incidentSign = -signOf(face.sign * over[axis]);
+		normalAlong = direction * incidentSign * along[axis];
+		normalOver = face.sign * incidentSign * over[axis];
+		middle = direction * incident.offset[tangent] + incidentHalf[axis] * normalAlong;
+		height = face.sign * incident.offset[face.axis] - referenceHalf[face.axis] + incidentHalf[axis] * normalOver;
+		span = direction * incidentHalf[1 - axis] * along[1 - axis];
+		rise = face.sign * incidentHalf[1 - axis] * over[1 - axis];
 	}
-	// From the middle of the incident face to its corner of positive sign, along the tangent.
-	double halfSpan() const { return direction * incidentHalf[1 - incidentAxis] * incident.rotation(tangent, 1 - incidentAxis); }
-	double overlap() const
+
+	double referenceEnd() const { return referenceHalf[tangent]; }
+	// Thinner than this is no contact.
+	bool   overlaps() const
 	{
-		const double half = referenceHalf[tangent], span = std::abs(halfSpan());
-		return std::min(half, middle() + span) - std::max(-half, middle() - span);
+		const double reach = std::abs(span);
+		return std::min(referenceEnd(), middle + reach) - std::max(-referenceEnd(), middle - reach) > limits::sliver * length;
 	}
-	int referenceFace() const { return faceNumber(face.axis, face.sign); }
-	int incidentFace() const { return faceNumber(incidentAxis, incidentSign); }
+	int    referenceFace() const { return faceNumber(face.axis, face.sign); }
+	int    incidentFace() const { return faceNumber(incidentAxis, incidentSign); }
 };
 
 // The face of the largest separation. The one that was the reference before leads; a tie goes to the larger face, then to body 1.
@@ -118,34 +130,33 @@ FaceAxis referenceFace(const Vector2& half1, const Vector2& half2, const Relativ
 	return face2.separation > face1.separation + (larger2 ? -tie : tie) ? face2 : face1;
 }
 
-// Of the two faces along this axis, the one that looks against the reference face.
-void takeIncident(FacePair& pair, int axis)
-{
-	pair.incidentAxis = axis;
-	pair.incidentSign = -signOf(pair.face.sign * pair.incident.rotation(pair.face.axis, axis));
-}
-
 // The face that looks most against the reference face.
 void chooseIncident(FacePair& pair, const PlaneMemory& memory)
 {
 	const int    same = pair.face.axis, held = pair.face.body == 1 ? memory.face2 : memory.face1;
 	const double gain = memory.reference != 0 && held / 2 != same ? -limits::incident : limits::incident;
-	const double facing = std::abs(pair.incident.cosine), across = std::abs(pair.incident.sine);
-	takeIncident(pair, facing + gain > across ? same : 1 - same);
+	const double facing = std::abs(pair.incident.axes[0][0]), across = std::abs(pair.incident.axes[0][1]);
+	pair.takeIncident(facing + gain > across ? same : 1 - same);
 }
+
+struct End {
+	PlaneFeature feature;
+	double       gap;
+};
 
 // What meets at one end (-1 or +1 along the tangent) of the overlap: the incident vertex where it lies over the reference face,
 // else the reference face's own vertex.
-PlaneFeature endOfOverlap(const FacePair& pair, double end, const PlaneMemory& memory)
+End endOfOverlap(const FacePair& pair, double end, const PlaneMemory& memory)
 {
-	const double span = pair.halfSpan();
-	const double inside = pair.referenceHalf[pair.tangent] - (end * pair.middle() + std::abs(span));
+	const double corner = end * signOf(pair.span), inside = pair.referenceEnd() - end * (pair.middle + corner * pair.span);
 	const int    reference = pair.face.body;
-	const PlaneFeature ofIncident { 3 - reference, vertexNumber(pair.incidentAxis, pair.incidentSign, end * signOf(span)), pair.referenceFace() };
+	const PlaneFeature ofIncident { 3 - reference, vertexNumber(pair.incidentAxis, pair.incidentSign, corner), pair.referenceFace() };
 	const PlaneFeature ofReference { reference, vertexNumber(pair.face.axis, pair.face.sign, end * pair.direction), pair.incidentFace() };
-	const auto held = [&memory](const PlaneFeature& feature) { return feature == memory.features[0] || feature == memory.features[1]; };
+	const auto   held = [&memory](const PlaneFeature& feature) { return feature == memory.features[0] || feature == memory.features[1]; };
 	const double beyond = held(ofIncident) ? -limits::vertexReach : held(ofReference) ? limits::vertexReach : -limits::slack;
-	return inside >= beyond * pair.length ? ofIncident : ofReference;
+	if (inside >= beyond * pair.length)
+		return { ofIncident, pair.height + corner * pair.rise };
+	return { ofReference, pair.normalAlong * (end * pair.referenceEnd() - pair.middle) - pair.normalOver * pair.height };
 }
 
 } // namespace
@@ -176,7 +187,7 @@ bool Plane::findPoints(const Vector& half1, const Pose& pose1, const Vector& hal
 	const Memory before = memory;
 	memory = {};
 	out = {};
-	const RelativePose second(pose1, pose2), first = second.reversed();
+	const RelativePose second = relative(pose1, pose2), first = second.reversed();
 	const double       length = std::min(half1.minCoeff(), half2.minCoeff());
 	const FaceAxis     face = referenceFace(half1, half2, second, first, length, before);
 	if (face.separation > margin)
@@ -185,23 +196,21 @@ bool Plane::findPoints(const Vector& half1, const Pose& pose1, const Vector& hal
 	const bool on1 = face.body == 1;
 	FacePair   pair(face, on1 ? half1 : half2, on1 ? half2 : half1, on1 ? second : first, length);
 	chooseIncident(pair, before);
-	const bool beyondFace = pair.overlap() <= limits::sliver * length;
+	const bool beyondFace = !pair.overlaps();
 	if (beyondFace) {
-		takeIncident(pair, 1 - pair.incidentAxis);
-		if (pair.overlap() <= limits::sliver * length)
+		pair.takeIncident(1 - pair.incidentAxis);
+		if (!pair.overlaps())
 			return false;
 	}
 
-	const std::array<Feature, 2> ends { endOfOverlap(pair, -1, before), endOfOverlap(pair, 1, before) };
-	const double gaps[2] = { frame(ends[0], half1, pose1, half2, pose2).gap, frame(ends[1], half1, pose1, half2, pose2).gap };
-	const int    nearer = gaps[1] < gaps[0] ? 1 : 0;
-	if (gaps[nearer] > margin)
+	const End  low = endOfOverlap(pair, -1, before), high = endOfOverlap(pair, 1, before);
+	const End& nearer = high.gap < low.gap ? high : low;
+	if (nearer.gap > margin)
 		return false;
 	out.size = beyondFace ? 1 : 2;
-	if (beyondFace)
-		out.features[0] = ends[nearer];
-	else
-		out.features = ends;
+	out.features[0] = beyondFace ? nearer.feature : low.feature;
+	if (!beyondFace)
+		out.features[1] = high.feature;
 	out.face1 = on1 ? pair.referenceFace() : pair.incidentFace();
 	out.face2 = on1 ? pair.incidentFace() : pair.referenceFace();
 	memory = { face.body, out.face1, out.face2, out.features };
