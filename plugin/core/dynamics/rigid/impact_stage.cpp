@@ -173,19 +173,32 @@ template <class K> void ImpactStage<K>::settle(RigidSystem<K>& s)
 		const auto &     body1 = s.bodies[pair.body1], &body2 = s.bodies[pair.body2];
 		const auto       u = relativeVelocity(point.frame, body1.pose.position, body1.velocity, body2.pose.position, body2.velocity);
 		point.closed = u[0] <= still;
+		point.landing = false;
 		point.sliding = point.closed && u.template tail<K::rows - 1>().norm() > still;
 	}
 	s.fresh = true;
 }
 
+// The smooth step leaves velocities of the order h^2 at the points in touch; the law's w- is that of bodies that hold on to their pivots.
+template <class K> void ImpactStage<K>::holdPivots(RigidSystem<K>& s)
+{
+	gather(s, {});
+	const auto result = applyRockingImpact(bodies, impact);
+	for (size_t b = 0; b < bodies.size(); ++b)
+		if (!s.bodies[b].prescribed) takeVelocity(bodies[b], s.bodies[b]);
+	s.impactDissip += result.energyLost;
+	s.baseWork += result.work;
+}
+
 template <class K> double ImpactStage<K>::land(RigidSystem<K>& s, const std::vector<PointRef>& closing)
 {
+	holdPivots(s);
 	gather(s, closing);
+	const auto leastSpin = [&](const ClosingJoint& joint) { return tolerance::restSpeed * std::sqrt(scale::acceleration(s) / s.bodies[joint.block].halfSize.norm()); };
 	for (ClosingJoint& joint : impact.joints) {
 		const Vector3 axis = rockingAxis(bodies, joint, impact.points);
-		const double  speed = axis.dot(bodies[joint.block].angularVelocity - bodies[joint.support].angularVelocity);
-		const double  least = tolerance::restSpeed * std::sqrt(scale::acceleration(s) / s.bodies[joint.block].halfSize.norm());
-		if (speed * (std::isnan(joint.restitution) ? 1 : joint.restitution) < least) joint.restitution = 0;
+		const double  spin = axis.dot(bodies[joint.block].angularVelocity - bodies[joint.support].angularVelocity);
+		if (spin * (std::isnan(joint.restitution) ? 1 : joint.restitution) < leastSpin(joint)) joint.restitution = 0;
 	}
 	const auto result = s.settings.order == ImpactOrder::simultaneous ? applyRockingImpact(bodies, impact) : applySequentially(bodies, impact);
 	settle(s);
@@ -194,7 +207,7 @@ template <class K> double ImpactStage<K>::land(RigidSystem<K>& s, const std::vec
 	double energy = result.energyLost;
 	for (const ClosingJoint& joint : impact.joints) {
 		const double asked = s.pairs[refs[joint.newBegin].pair].restitution;
-		s.impacts.push_back({ s.time, joint.block, joint.support, asked, joint.result.after > 0, joint.result, energy, result.capped, result.residual });
+		s.impacts.push_back({ s.time, joint.block, joint.support, asked, joint.result.after >= leastSpin(joint), joint.result, energy, result.capped, result.residual });
 		energy = 0;
 	}
 	return result.residual;

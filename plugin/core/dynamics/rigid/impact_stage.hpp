@@ -16,6 +16,7 @@ public:
 private:
 	struct Builder;
 	void gather(const RigidSystem<K>& system, const std::vector<PointRef>& closing);
+	void holdPivots(RigidSystem<K>& system);
 	void settle(RigidSystem<K>& system);
 
 	RockingImpact              impact;

@@ -32,40 +32,57 @@ template <class K> StepReport RigidStep<K>::advance(RigidSystem<K>& s, double dt
 	return report;
 }
 
-// Points of all pairs, as features; those that stay keep their state.
+namespace {
+
+	template <class K> bool sameFeatures(const ContactPair<K>& pair, const FoundPoints<K>& found)
+	{
+		const auto same = [](const auto& feature, const ContactPoint<K>& point) { return feature == point.feature; };
+		return found.size == pair.size && std::equal(found.features.begin(), found.features.begin() + found.size, pair.points.begin(), same);
+	}
+
+	// A point that was there before keeps its state, and so does one that another feature of the same place takes over from.
+	template <class K> void takeOver(const ContactPair<K>& before, double samePlace, ContactPoint<K>& point)
+	{
+		for (int k = 0; k < before.size; ++k) {
+			const ContactPoint<K>& old = before.points[k];
+			const bool             same = old.feature == point.feature;
+			if (!same && !((old.frame.position - point.frame.position).norm() <= samePlace)) continue;
+			point.closed = old.closed;
+			point.sliding = old.sliding;
+			point.force = old.force;
+			if (same) return;
+		}
+	}
+
+} // namespace
+
+// Points of all pairs, as features.
 template <class K> void RigidStep<K>::findContacts(RigidSystem<K>& s)
 {
-	const double touching = tolerance::mergedClosing * scale::length(s);
+	const double touching = tolerance::mergedClosing * scale::length(s), samePlace = 2 * tolerance::contact::vertexReach * scale::length(s);
 	for (ContactPair<K>& pair : s.pairs) {
 		const auto &   body1 = s.bodies[pair.body1], &body2 = s.bodies[pair.body2];
 		FoundPoints<K> found;
 		const double   margin = std::numeric_limits<double>::infinity(); // the list of pairs holds only boxes that are near
 		if (!K::findPoints(body1.halfSize, body1.pose, body2.halfSize, body2.pose, margin, pair.memory, found)) found.size = 0;
-		const bool same = found.size == pair.size && std::equal(found.features.begin(), found.features.begin() + found.size, pair.points.begin(),
-		                                                          [](const auto& feature, const ContactPoint<K>& point) { return feature == point.feature; });
-		if (same) continue;
-		const auto before = pair.points;
-		const int  sizeBefore = pair.size;
+		const bool same = sameFeatures(pair, found);
+		if (same && !s.moved) continue;
+		const ContactPair<K> before = pair;
 		pair.size = found.size;
 		pair.face1 = found.face1;
 		pair.face2 = found.face2;
 		for (int i = 0; i < found.size; ++i) {
 			ContactPoint<K>& point = pair.points[i];
-			point = {};
+			if (!same) point = {};
 			point.feature = found.features[i];
 			point.frame = K::frame(point.feature, body1.halfSize, body1.pose, body2.halfSize, body2.pose);
 			point.gap = point.frame.gap;
+			if (same) continue;
 			point.closed = point.gap <= touching;
-			for (int k = 0; k < sizeBefore; ++k) { // the same point, or one that another feature of the same place takes over from
-				const bool sameFeature = before[k].feature == point.feature;
-				if (!sameFeature && !((before[k].frame.position - point.frame.position).norm() <= 2 * tolerance::contact::vertexReach * scale::length(s))) continue;
-				point.closed = before[k].closed;
-				point.sliding = before[k].sliding;
-				point.force = before[k].force;
-				if (sameFeature) break;
-			}
+			takeOver(before, samePlace, point);
 		}
 	}
+	s.moved = false;
 }
 
 // A trial that ends with the first event, or without one after h.

@@ -30,6 +30,7 @@ template <class K> struct ContactPoint {
 	typename K::Feature feature;
 	bool                closed { false };  // in touch: may carry force
 	bool                sliding { false };
+	bool                landing { false }; // closed in the last step, not localised: its approach speed is taken off in the next
 	double              gap { 0 };         // m, at the end of the last step
 	Eigen::Matrix<double, K::rows, 1> force { Eigen::Matrix<double, K::rows, 1>::Zero() }; // N, mean of the last smooth step; on body 2, normal then tangents
 	ContactFrame<K>     frame;             // at the end of the last step
@@ -81,6 +82,7 @@ template <class K> struct RigidSystem {
 	std::vector<BaseDrive*>     drives;
 	std::vector<typename K::Vector> driveDirections;
 	Settings                    settings;
+	bool                        moved { true }; // poses were set from outside: gaps are to be measured anew
 	bool                        fresh { true }; // velocities have just jumped: the last accelerations predict nothing
 
 	std::vector<Impact> impacts; // of the last step

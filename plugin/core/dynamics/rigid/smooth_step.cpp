@@ -27,10 +27,17 @@ namespace {
 		return { 1 / body.mass, K::inverseInertia(body.inertia, pose) };
 	}
 
-	template <class K> Eigen::Matrix<double, K::rows, K::dof> jacobian(const ContactFrame<K>& frame, const typename K::Vector& center, double sign)
+	// Turned by phi about the middle of the step, an arm r there moves by 2 sin(phi/2) (phi/|phi|) x r: the rows act on this chord, so that a
+	// point at rest on average does not move at all.
+	template <class K> double chord(const typename K::Velocity& mean, double h)
+	{
+		return 1 - mean.template tail<K::spins>().squaredNorm() * h * h / 24;
+	}
+
+	template <class K> Eigen::Matrix<double, K::rows, K::dof> jacobian(const ContactFrame<K>& frame, const typename K::Vector& center, double chord, double sign)
 	{
 		Eigen::Matrix<double, K::rows, K::dof> J;
-		const typename K::Vector               arm = frame.position - center;
+		const typename K::Vector               arm = chord * (frame.position - center);
 		for (int k = 0; k < K::rows; ++k) {
 			const typename K::Vector axis = sign * frame.axes.row(k).transpose();
 			J.row(k).template head<K::dimension>() = axis.transpose();
@@ -57,10 +64,10 @@ template <class K> void SmoothStep<K>::predict(const RigidSystem<K>& s, double h
 			continue;
 		}
 		next.unknown = int(solver.bodies.size());
-		const typename K::Velocity mean = body.velocity + 0.5 * h * increments[b];
+		next.mean = body.velocity + 0.5 * h * increments[b];
 		next.middle = next.predicted = body.pose;
-		K::advance(next.middle, mean, h / 2);
-		if constexpr (K::spins == 3) K::advance(next.predicted, mean, h);
+		K::advance(next.middle, next.mean, h / 2);
+		if constexpr (K::spins == 3) K::advance(next.predicted, next.mean, h);
 
 		FreeBody<K> unknown;
 		unknown.inverseMass = inverseMass(body, next.predicted);
@@ -89,18 +96,18 @@ template <class K> void SmoothStep<K>::assemble(const RigidSystem<K>& s, double 
 			const auto&           next1 = last.bodies[pair.body1];
 			const auto&           next2 = last.bodies[pair.body2];
 			const ContactFrame<K> frame = K::frame(point.feature, body1.halfSize, next1.middle, body2.halfSize, next2.middle);
-			last.rows.push_back({ { c, i }, point.closed });
+			last.rows.push_back({ c, i });
 
 			ContactRows<K> rows;
 			rows.body1 = next1.unknown;
 			rows.body2 = next2.unknown;
-			rows.J1 = jacobian(frame, next1.middle.position, -1);
-			rows.J2 = jacobian(frame, next2.middle.position, 1);
+			rows.J1 = jacobian(frame, next1.middle.position, chord<K>(next1.mean, h), -1);
+			rows.J2 = jacobian(frame, next2.middle.position, chord<K>(next2.mean, h), 1);
 			rows.friction = pair.friction;
 			rows.impulse = h * point.force;
 			if (body1.prescribed) rows.offset += rows.J1 * next1.velocity;
 			if (body2.prescribed) rows.offset += rows.J2 * next2.velocity;
-			if (point.closed) {
+			if (point.closed && !point.landing) {
 				const auto error = rigid::relativeVelocity(point.frame, body1.pose.position, body1.velocity, body2.pose.position, body2.velocity);
 				const auto now = (rows.J1 * body1.velocity + rows.J2 * body2.velocity).eval();
 				rows.offset[0] += now[0] - tolerance::rigid::damping * error[0];
@@ -108,7 +115,7 @@ template <class K> void SmoothStep<K>::assemble(const RigidSystem<K>& s, double 
 					rows.offset.template tail<K::rows - 1>() += (now - tolerance::rigid::damping * error).template tail<K::rows - 1>();
 				else if (!stopsInside)
 					rows.offset.template tail<K::rows - 1>() += now.template tail<K::rows - 1>();
-			} else {
+			} else if (!point.closed) {
 				rows.offset[0] += 2 * frame.gap / h;
 			}
 			solver.points.push_back(rows);
@@ -166,7 +173,7 @@ template <class K> void SmoothStep<K>::project(RigidSystem<K>& s)
 	gaps.clear();
 	double largest = 0;
 	for (size_t r = 0; r < last.rows.size(); ++r) {
-		const PointRef ref = last.rows[r].ref;
+		const PointRef ref = last.rows[r];
 		gaps.push_back(last.frames[first[ref.pair] + ref.point].gap);
 		if (solver.points[r].impulse[0] > 0 || gaps.back() < 0) largest = std::max(largest, std::abs(gaps.back()));
 	}
@@ -209,14 +216,14 @@ template <class K> void SmoothStep<K>::accept(RigidSystem<K>& s)
 	project(s);
 	for (size_t r = 0; r < last.rows.size(); ++r) {
 		const ContactRows<K>& rows = solver.points[r];
-		const auto            ref = last.rows[r].ref;
+		const PointRef        ref = last.rows[r];
 		const auto&           next1 = last.bodies[s.pairs[ref.pair].body1];
 		const auto&           next2 = last.bodies[s.pairs[ref.pair].body2];
 		const auto            slip = (rows.J1 * next1.mean + rows.J2 * next2.mean).eval();
 		s.impactDissip -= rows.impulse[0] * slip[0];
 		s.frictDissip -= rows.impulse.template tail<K::rows - 1>().dot(slip.template tail<K::rows - 1>());
-		if (next1.unknown < 0) s.baseWork += rows.impulse.dot(rows.J1 * next1.mean);
-		if (next2.unknown < 0) s.baseWork += rows.impulse.dot(rows.J2 * next2.mean);
+		if (next1.unknown < 0) s.baseWork -= rows.impulse.dot(rows.J1 * next1.mean);
+		if (next2.unknown < 0) s.baseWork -= rows.impulse.dot(rows.J2 * next2.mean);
 	}
 	for (size_t b = 0; b < s.bodies.size(); ++b) {
 		RigidBody<K>& body = s.bodies[b];
@@ -236,11 +243,13 @@ template <class K> void SmoothStep<K>::accept(RigidSystem<K>& s)
 			point.frame = last.frames[first[c] + i];
 			point.gap = point.frame.gap;
 			point.force.setZero();
-			const bool acted = row < last.rows.size() && last.rows[row].ref.pair == int(c) && last.rows[row].ref.point == i;
+			const bool acted = row < last.rows.size() && last.rows[row].pair == int(c) && last.rows[row].point == i;
 			if (!acted) continue;
 			const auto& rows = solver.points[row++];
 			const auto  u = relativeVelocity(s, int(c), i);
+			const bool  wasOpen = !point.closed;
 			point.closed = rows.impulse[0] > 0 || u[0] <= still;
+			point.landing = wasOpen && point.closed;
 			if (!point.closed) continue;
 			point.force = rows.impulse / last.h;
 			point.sliding = rows.impulse[0] > 0 && u.template tail<K::rows - 1>().norm() > still

@@ -6,7 +6,7 @@
 //     M (V+ - V) = h f + sum J^T p            M with the inertia of the predicted end
 //     q+ = q advanced by h (V + V+)/2         orientation by the exponential of the mean spin
 //     u = J (V + V+) - damping delta          for points in touch: the laws of contact_problem.hpp act on the MEAN velocity
-//     u_n = J V+ + 2 gap_mid / h              for points that are about to close and are not localised
+//     u = J V+ (+ 2 gap_mid / h, normal)      for points that land and are not localised: still open (and, one step later, just closed)
 //
 // Why the mean. The work of the contact forces in the step is p . J (V + V+)/2, which the laws make zero for sticking and negative
 // for sliding points: the step never gives energy, whatever h. It is symmetric in time and of second order; no gap curvature has to be
@@ -31,13 +31,9 @@ template <class K> struct Trial {
 		typename K::Velocity velocity, mean;
 		int                  unknown; // index in the solver; -1: prescribed
 	};
-	struct Row {
-		PointRef ref;
-		bool     mean;     // law on the mean velocity; false: about to close
-	};
 	double               h { 0 };
 	std::vector<BodyEnd> bodies;
-	std::vector<Row>     rows; // as in solver.points
+	std::vector<PointRef> rows; // as in solver.points
 	std::vector<ContactFrame<K>> frames; // at the end, of all points, pair by pair
 	SolveReport          solved;
 };
