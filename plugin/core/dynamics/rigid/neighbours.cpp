@@ -1,0 +1,114 @@
+#include "dynamics/rigid/neighbours.hpp"
+#include <algorithm>
+#include <numeric>
+#include <tuple>
+
+namespace masonry::rigid {
+
+namespace {
+
+Vector2 reach(const Vector2& half, const PlanePose& pose)
+{
+	const double c = std::abs(pose.cosine), s = std::abs(pose.sine);
+	return { c * half.x() + s * half.y(), s * half.x() + c * half.y() };
+}
+
+Vector3 reach(const Vector3& half, const Pose& pose) { return pose.orientation.toRotationMatrix().cwiseAbs() * half; }
+
+template <class K> Bounds<K> bounds(const RigidBody<K>& body, double enlargement)
+{
+	const typename K::Vector half = reach(body.halfSize, body.pose) + K::Vector::Constant(enlargement);
+	return { body.pose.position - half, body.pose.position + half };
+}
+
+template <class K> bool contains(const Bounds<K>& outer, const Bounds<K>& inner)
+{
+	return (outer.low.array() <= inner.low.array()).all() && (inner.high.array() <= outer.high.array()).all();
+}
+
+template <class K> bool overlap(const Bounds<K>& a, const Bounds<K>& b)
+{
+	return (a.low.array() <= b.high.array()).all() && (b.low.array() <= a.high.array()).all();
+}
+
+// Along which the centres are spread most: fewest bounds overlap along it.
+template <class K> int widestAxis(const std::vector<Bounds<K>>& all)
+{
+	typename K::Vector mean = K::Vector::Zero(), spread = K::Vector::Zero();
+	for (const auto& box : all)
+		mean += (box.low + box.high) / all.size();
+	for (const auto& box : all)
+		spread += (box.low + box.high - mean).cwiseAbs2();
+	int axis;
+	spread.maxCoeff(&axis);
+	return axis;
+}
+
+template <class K> bool isBefore(const ContactPair<K>& a, const ContactPair<K>& b)
+{
+	return std::tie(a.body1, a.body2) < std::tie(b.body1, b.body2);
+}
+
+} // namespace
+
+template <class K> bool Neighbours<K>::isValid(const RigidSystem<K>& system) const
+{
+	if (enlarged.size() != system.bodies.size())
+		return false;
+	for (size_t i = 0; i < enlarged.size(); ++i)
+		if (!contains(enlarged[i], bounds(system.bodies[i], margin / 2)))
+			return false;
+	return true;
+}
+
+// Sweep: of the bodies in the order of their lower ends, each one meets those that begin before it ends.
+template <class K> void Neighbours<K>::findPairs(const RigidSystem<K>& system)
+{
+	enlarged.clear();
+	for (const auto& body : system.bodies)
+		enlarged.push_back(bounds(body, margin));
+	order.resize(enlarged.size());
+	std::iota(order.begin(), order.end(), 0);
+	const int axis = widestAxis(enlarged);
+	std::sort(order.begin(), order.end(), [&](int a, int b) { return enlarged[a].low[axis] < enlarged[b].low[axis]; });
+
+	pairs.clear();
+	for (auto first = order.begin(); first != order.end(); ++first)
+		for (auto second = first + 1; second != order.end() && enlarged[*second].low[axis] <= enlarged[*first].high[axis]; ++second) {
+			const auto [body1, body2] = std::minmax(*first, *second);
+			if (overlap(enlarged[body1], enlarged[body2]) && !(system.bodies[body1].prescribed && system.bodies[body2].prescribed)) {
+				ContactPair<K>& pair = pairs.emplace_back();
+				pair.body1 = body1;
+				pair.body2 = body2;
+			}
+		}
+	std::sort(pairs.begin(), pairs.end(), &isBefore<K>);
+}
+
+template <class K> void Neighbours<K>::keepStates(const std::vector<ContactPair<K>>& old)
+{
+	auto before = old.begin();
+	for (auto& pair : pairs) {
+		while (before != old.end() && isBefore(*before, pair))
+			++before;
+		if (before != old.end() && !isBefore(pair, *before))
+			pair = *before;
+		else
+			newPair(pair);
+	}
+}
+
+template <class K> bool Neighbours<K>::update(RigidSystem<K>& system)
+{
+	if (isValid(system))
+		return false;
+	findPairs(system);
+	keepStates(system.pairs);
+	system.pairs.swap(pairs);
+	return true;
+}
+
+template class Neighbours<Plane>;
+template class Neighbours<Space>;
+
+} // namespace masonry::rigid

@@ -1,0 +1,40 @@
+#pragma once
+// Which boxes are near each other.
+#include "dynamics/rigid/rigid_system.hpp"
+#include <functional>
+#include <vector>
+
+namespace masonry::rigid {
+
+// Box with sides along the global axes.
+template <class K> struct Bounds {
+	typename K::Vector low { K::Vector::Zero() }, high { K::Vector::Zero() };
+};
+
+// Keeps the system's list of pairs: those with less than `margin` (m) between their bounds are always in it, farther ones may be.
+// Sorted by body1 < body2; a pair stays with all its state as long as it is near; two prescribed bodies are no pair.
+//
+// Bounds are enlarged by the margin, and pairs are those whose enlarged bounds overlap. The list holds until a body comes nearer
+// than half the margin to the end of its enlarged bounds.
+template <class K> class Neighbours {
+public:
+	using NewPair = std::function<void(ContactPair<K>&)>; // sets friction and restitution
+
+	Neighbours(double margin, NewPair newPair) : margin(margin), newPair(std::move(newPair)) { }
+
+	// True if the list was made anew.
+	bool update(RigidSystem<K>& system);
+
+private:
+	bool isValid(const RigidSystem<K>& system) const;
+	void findPairs(const RigidSystem<K>& system);
+	void keepStates(const std::vector<ContactPair<K>>& old);
+
+	double                      margin;
+	NewPair                     newPair;
+	std::vector<Bounds<K>>      enlarged;
+	std::vector<int>            order; // of bodies along the axis of the sweep
+	std::vector<ContactPair<K>> pairs;
+};
+
+} // namespace masonry::rigid

@@ -1,0 +1,150 @@
+// The list of near pairs against a search through all pairs.
+#include "dynamics/rigid/neighbours.hpp"
+#include <catch2/catch.hpp>
+#include <random>
+#include <set>
+
+using namespace masonry;
+using namespace masonry::rigid;
+
+namespace {
+
+// Oracle: bounds from the corners themselves, every pair tried.
+template <class K> std::vector<typename K::Vector> corners(const RigidBody<K>& body)
+{
+	std::vector<typename K::Vector> all;
+	for (int bits = 0; bits < 1 << K::dimension; ++bits) {
+		typename K::Vector corner = body.halfSize;
+		for (int axis = 0; axis < K::dimension; ++axis)
+			if (bits >> axis & 1)
+				corner[axis] *= -1;
+		all.push_back(body.pose.toGlobal(corner));
+	}
+	return all;
+}
+
+template <class K> double distanceOfBounds(const RigidBody<K>& a, const RigidBody<K>& b)
+{
+	double widest = -1e300;
+	for (int axis = 0; axis < K::dimension; ++axis) {
+		double low[2] = { 1e300, 1e300 }, high[2] = { -1e300, -1e300 };
+		for (int which : { 0, 1 })
+			for (const auto& corner : corners(which == 0 ? a : b)) {
+				low[which] = std::min(low[which], corner[axis]);
+				high[which] = std::max(high[which], corner[axis]);
+			}
+		widest = std::max({ widest, low[0] - high[1], low[1] - high[0] });
+	}
+	return widest;
+}
+
+template <class K> RigidSystem<K> scattered(int number, std::mt19937& random)
+{
+	std::uniform_real_distribution<double> unit(-1, 1);
+	RigidSystem<K>                         system;
+	for (int i = 0; i < number; ++i) {
+		RigidBody<K>         body;
+		typename K::Velocity motion;
+		for (int k = 0; k < K::dof; ++k)
+			motion[k] = 6 * unit(random);
+		K::advance(body.pose, motion, 1);
+		for (int axis = 0; axis < K::dimension; ++axis)
+			body.halfSize[axis] = 0.6 + 0.5 * unit(random);
+		body.mass = 1;
+		body.prescribed = i % 5 == 0;
+		system.bodies.push_back(body);
+	}
+	return system;
+}
+
+template <class K> void checkAgainstAllPairs(const RigidSystem<K>& system, double margin)
+{
+	std::set<std::pair<int, int>> listed;
+	for (const auto& pair : system.pairs) {
+		REQUIRE(pair.body1 < pair.body2);
+		REQUIRE((listed.empty() || *listed.rbegin() < std::pair(pair.body1, pair.body2))); // in order, none twice
+		REQUIRE_FALSE((system.bodies[pair.body1].prescribed && system.bodies[pair.body2].prescribed));
+		listed.emplace(pair.body1, pair.body2);
+	}
+	for (int i = 0; i < int(system.bodies.size()); ++i)
+		for (int j = i + 1; j < int(system.bodies.size()); ++j) {
+			const bool   count = !(system.bodies[i].prescribed && system.bodies[j].prescribed);
+			const double distance = distanceOfBounds(system.bodies[i], system.bodies[j]);
+			if (count && distance < margin)
+				REQUIRE(listed.count({ i, j }) == 1);
+			if (distance > 3.1 * margin) // enlarged by it on both sides, moved since by half of it on both sides
+				REQUIRE(listed.count({ i, j }) == 0);
+		}
+}
+
+template <class K> void wander(unsigned seed)
+{
+	std::mt19937                           random(seed);
+	std::uniform_real_distribution<double> unit(-1, 1);
+	RigidSystem<K>                         system = scattered<K>(120, random);
+	const double                           margin = 0.2;
+	int                                    rebuilt = 0;
+	Neighbours<K>                          neighbours(margin, [](ContactPair<K>& pair) { pair.friction = 0.7; });
+	for (int step = 0; step < 60; ++step) {
+		rebuilt += neighbours.update(system);
+		checkAgainstAllPairs(system, margin);
+		for (auto& body : system.bodies) {
+			typename K::Velocity motion;
+			for (int k = 0; k < K::dof; ++k)
+				motion[k] = 0.03 * unit(random);
+			K::advance(body.pose, motion, 1);
+		}
+	}
+	CHECK(rebuilt > 3);
+	CHECK(rebuilt < 50);
+}
+
+} // namespace
+
+TEST_CASE("every near pair is in the list while boxes wander")
+{
+	wander<Plane>(1);
+	wander<Space>(2);
+}
+
+TEST_CASE("pairs that stay keep their state, new ones get friction and restitution")
+{
+	RigidSystem<Plane> system;
+	for (double x : { 0., 1., 5. }) {
+		RigidBody<Plane> body;
+		body.halfSize << 0.5, 0.5;
+		body.pose.position << x, 0;
+		system.bodies.push_back(body);
+	}
+	int               made = 0;
+	Neighbours<Plane> neighbours(0.1, [&made](ContactPair<Plane>& pair) {
+                pair.friction = 0.7;
+                pair.restitution = 0.8;
+                ++made;
+	});
+	REQUIRE(neighbours.update(system));
+	REQUIRE(system.pairs.size() == 1);
+	system.pairs[0].size = 2;
+	system.pairs[0].points[1].gap = 0.125;
+
+	const auto* place = system.pairs.data();
+	CHECK_FALSE(neighbours.update(system));
+	CHECK(system.pairs.data() == place);
+
+	system.bodies[2].pose.position << -1, 0;
+	REQUIRE(neighbours.update(system));
+	REQUIRE(system.pairs.size() == 2);
+	CHECK(system.pairs[0].points[1].gap == 0.125);
+	CHECK(system.pairs[0].size == 2);
+	CHECK(system.pairs[1].body1 == 0);
+	CHECK(system.pairs[1].body2 == 2);
+	CHECK(system.pairs[1].size == 0);
+	CHECK(system.pairs[1].friction == 0.7);
+	CHECK(system.pairs[1].restitution == 0.8);
+	CHECK(made == 2);
+
+	system.bodies[1].pose.setAngle(0.3); // a turn alone: its bounds grow
+	CHECK(neighbours.update(system));
+	system.bodies.push_back(system.bodies[1]);
+	CHECK(neighbours.update(system));
+}
