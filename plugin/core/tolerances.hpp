@@ -15,6 +15,9 @@ constexpr double sweeps = 1e-8;
 // Gain of kinetic energy relative to the kinetic energy before an impact that is round-off, not physics. Smaller: the
 // energy cap acts on C = 1 impacts that only round off.
 constexpr double energyGain = 1e-11;
+// Residual of an impulse problem relative to the largest speed of its points above which the rows of the restitution law
+// give way. Larger: a landing corner may go on into its support by this share of its speed.
+constexpr double noSolution = 1e-6;
 // Length of the old support relative to its distance from the new one above which it is an edge, not a corner.
 constexpr double pivotEdge = 1e-6;
 

@@ -50,6 +50,7 @@ namespace {
 		Vector               free, p;
 		int                  nPoints, nCouples;
 		double               length; // of the couple rows, m
+		double               noise;  // velocity that counts as zero, m/s
 		PerPoint<PointState> points;
 
 		System(const std::vector<Body>& bodies, const std::vector<ImpulsePoint>& points, const std::vector<CoupleRow>& couples);
@@ -141,6 +142,7 @@ namespace {
 			const Vector3 spin = bodies[couple.body2].angularVelocity - bodies[couple.body1].angularVelocity;
 			free[3 * nPoints + c] = length * (couple.axis.dot(spin) - couple.target);
 		}
+		noise = tolerance::impulse * free.cwiseAbs().maxCoeff();
 		G.resize(n, n);
 		for (int r = 0; r < n; ++r)
 			for (int s = 0; s <= r; ++s)
@@ -200,7 +202,9 @@ namespace {
 	{
 		const Vector3 y = s.p.template segment<3>(3 * i) - u / response(s, i);
 		state = State::open;
-		if (!(y[0] > 0)) return Vector3::Zero();
+		// Without slip the projection jumps where y_n changes sign: a point that just touches (C = 0) must not be held by round-off.
+		const double least = std::isinf(s.points[i].friction) ? s.noise / response(s, i) : 0;
+		if (!(y[0] > least)) return Vector3::Zero();
 		const double size = y.tail<2>().norm(), bound = s.points[i].friction * y[0];
 		state = size > bound ? State::slip : State::stick;
 		Vector3 result = y;
@@ -255,7 +259,7 @@ namespace {
 	{
 		const auto   terms = (s.G.cwiseAbs() * s.p.cwiseAbs()).eval();
 		const double roundOff = 64 * std::numeric_limits<double>::epsilon() * terms.maxCoeff();
-		return tolerance::impulse * s.free.cwiseAbs().maxCoeff() + roundOff;
+		return s.noise + roundOff;
 	}
 
 	// The same laws point by point on the bodies' velocities, without any matrix: for more points than the dense solver can
@@ -332,8 +336,11 @@ namespace {
 
 	template <int most> ImpulseReport solveDense(std::vector<Body>& bodies, std::vector<ImpulsePoint>& points, std::vector<CoupleRow>& couples)
 	{
-		System<most>  s(bodies, points, couples);
-		constexpr int rounds = 6, maxNewton = 30;
+		System<most> s(bodies, points, couples);
+		const auto   slips = [](const PointState& point) { return std::isfinite(point.friction); };
+		const bool   anySlips = std::any_of(s.points.begin(), s.points.end(), slips), allSlip = std::all_of(s.points.begin(), s.points.end(), slips);
+		const int    rounds = anySlips ? 6 : 2; // where nothing slips there may be no solution to wait for
+		constexpr int maxNewton = 30;
 		ImpulseReport report { 0, std::numeric_limits<double>::infinity() };
 		bool          solved = false;
 		auto          best = s.p;
@@ -357,8 +364,7 @@ namespace {
 			updateStates(s);
 		}
 		s.p = best;
-		const auto noSlipping = [](const PointState& point) { return std::isinf(point.friction); };
-		if (!solved && std::any_of(s.points.begin(), s.points.end(), noSlipping)) {
+		if (!solved && !allSlip) {
 			letPullingPointsGo(s);
 			report.residual = residual(s);
 		}

@@ -34,7 +34,7 @@ namespace {
 		return sum;
 	}
 
-	// One impulse problem under the energy cap: solved as often as the cap asks, always from the velocities at its start.
+	// One impulse problem under the cap: solved as often as the cap asks, always from the velocities at its start.
 	struct CappedProblem {
 		std::vector<CoupleRow>                   rows, none;
 		std::vector<double>                      asked, plastic; // targets
@@ -50,9 +50,12 @@ namespace {
 			start.clear();
 			for (const Body& body : bodies)
 				start.emplace_back(body.velocity, body.angularVelocity);
+			double speed = 0;
+			for (const ImpulsePoint& point : points)
+				speed = std::max(speed, relativeVelocity(bodies, point).norm());
 			const double        before = kineticEnergy(bodies);
 			RockingImpactResult result;
-			const auto          energyGrows = [&](bool withRows) {
+			const auto          fails = [&](bool withRows) {
 				for (size_t i = 0; i < bodies.size(); ++i)
 					std::tie(bodies[i].velocity, bodies[i].angularVelocity) = start[i];
 				for (CoupleRow& row : rows)
@@ -60,30 +63,30 @@ namespace {
 				result.residual = solveImpulses(bodies, points, withRows ? rows : none).residual;
 				result.work = supportWork(bodies, points, rows);
 				result.energyLost = before + result.work - kineticEnergy(bodies);
-				return result.energyLost < -tolerance::energyGain * (before + std::abs(result.work));
+				return result.residual > tolerance::noSolution * speed || result.energyLost < -tolerance::energyGain * (before + std::abs(result.work));
 			};
-			if (!energyGrows(true) || rows.empty()) return result;
+			if (!fails(true) || rows.empty()) return result;
 
 			result.capped = true;
-			energyGrows(false);
+			fails(false);
 			asked.clear();
 			plastic.clear();
 			for (const CoupleRow& row : rows) {
 				asked.push_back(row.target);
 				plastic.push_back(row.axis.dot(bodies[row.body2].angularVelocity - bodies[row.body1].angularVelocity));
 			}
-			const auto growsAt = [&](double fraction) {
+			const auto failsAt = [&](double fraction) {
 				for (size_t i = 0; i < rows.size(); ++i)
 					rows[i].target = plastic[i] + fraction * (asked[i] - plastic[i]);
-				return energyGrows(fraction > 0);
+				return fails(fraction > 0);
 			};
 			double        safe = 0, unsafe = 1; // fractions of the way from the plastic to the asked targets
 			constexpr int bisections = 40;
 			for (int i = 0; i < bisections; ++i) {
 				const double fraction = 0.5 * (safe + unsafe);
-				(growsAt(fraction) ? unsafe : safe) = fraction;
+				(failsAt(fraction) ? unsafe : safe) = fraction;
 			}
-			growsAt(safe);
+			failsAt(safe);
 			return result;
 		}
 	};

@@ -33,7 +33,8 @@
 //
 // Energy never grows: were the kinetic energy larger after than before by more than the work of the prescribed bodies (zero
 // where they stand still), the targets of all rows are moved, by one fraction, from C e.w- towards their plastic values until
-// it is not (bisection). `capped` tells.
+// it is not (bisection). The same where the laws cannot all be met because the rows ask landing points to pull (without
+// slip only). `capped` tells.
 #include "impact/impulse_problem.hpp"
 
 namespace masonry {
@@ -62,7 +63,7 @@ struct RockingImpact {
 struct RockingImpactResult {
 	double work { 0 };       // of the prescribed bodies, J
 	double energyLost { 0 }; // kinetic energy before + work - after, J, not negative but for round-off
-	bool   capped { false }; // the energy cap lowered the realised restitution
+	bool   capped { false }; // the targets were moved: C is not realised
 	double residual { 0 };   // of the impulse problem, m/s
 };
 
