@@ -140,6 +140,7 @@ template <class K> struct ContactSolver<K>::Workspace {
 	std::vector<typename BlockFactor<K::dof>::Edge> edges; // points between two free bodies, in order
 	BlockFactor<K::dof>                           factor;
 	bool                                          factored { false };
+	double                                        softness { 0 }; // R relative to the response of the point
 
 	static Response response(const InverseMass<K>& m, const typename ContactRows<K>::Jacobian& J)
 	{
@@ -250,7 +251,7 @@ template <class K> struct ContactSolver<K>::Workspace {
 	//
 	// Only increments enter, so that round-off does not grow with 1/R; and P(y) is the next centre.
 
-	double softness(int i) const { return tolerance::contactProblem::softness * points[i].alone.trace; }
+	double compliance(int i) const { return softness * points[i].alone.trace; } // R
 
 	void prepareNewton()
 	{
@@ -280,7 +281,7 @@ template <class K> struct ContactSolver<K>::Workspace {
 			Rows                  u = p.centre;
 			if (c.body1 >= 0) u += c.J1 * newtonBodies[c.body1].w;
 			if (c.body2 >= 0) u += c.J2 * newtonBodies[c.body2].w;
-			const Rows y = c.impulse - u / softness(i);
+			const Rows y = c.impulse - u / compliance(i);
 			p.next = project(y, c.friction);
 			p.rate = projectionRate(y, c.friction);
 			const Rows change = p.next - c.impulse;
@@ -310,7 +311,7 @@ template <class K> struct ContactSolver<K>::Workspace {
 			points[i].factored = points[i].rate;
 			const int e = c.body1 >= 0 && c.body2 >= 0 ? edge++ : -1;
 			if (points[i].rate.isZero(0)) continue;
-			const Block                            stiffness = points[i].rate / softness(i);
+			const Block                            stiffness = points[i].rate / compliance(i);
 			const typename ContactRows<K>::Jacobian K1 = stiffness * c.J1, K2 = stiffness * c.J2;
 			if (c.body1 >= 0) factor.diagonal(c.body1) += c.J1.transpose() * K1;
 			if (c.body2 >= 0) factor.diagonal(c.body2) += c.J2.transpose() * K2;
@@ -345,16 +346,38 @@ template <class K> struct ContactSolver<K>::Workspace {
 		return false;
 	}
 
+	// The root if every point were in the state of the last one: P(y) = P'(y) y since P is homogeneous.
+	void predict(SolveReport& report)
+	{
+		for (Velocity& right : step)
+			right.setZero();
+		for (int i = 0; i < nPoints; ++i) {
+			const ContactRows<K>& c = rows[i];
+			const Rows            change = points[i].rate * (c.impulse - points[i].centre / compliance(i)) - c.impulse;
+			if (c.body1 >= 0) step[c.body1] += c.J1.transpose() * change;
+			if (c.body2 >= 0) step[c.body2] += c.J2.transpose() * change;
+		}
+		factorise(report);
+		factor.solve(step);
+		for (int b = 0; b < nBodies; ++b)
+			newtonBodies[b].w = step[b];
+	}
+
 	// Root of F for the present centre. False: stopped short of it.
-	bool findRoot(SolveReport& report)
+	bool findRoot(bool statesKnown, SolveReport& report)
 	{
 		constexpr int    maxSteps = 30;
 		constexpr double reduction = 1e-8; // of the merit
-		for (int b = 0; b < nBodies; ++b)
-			newtonBodies[b].w.setZero();
 		for (int i = 0; i < nPoints; ++i)
 			points[i].centre = relativeVelocity(rows[i]);
-		double       merit = evaluate();
+		if (statesKnown) {
+			predict(report);
+		} else {
+			for (NewtonBody& body : newtonBodies)
+				body.w.setZero();
+		}
+		double merit = evaluate();
+		if (statesKnown && factorIsPresent()) return true;
 		const double enough = reduction * merit;
 		for (int k = 0; k < maxSteps; ++k) {
 			if (!factorIsPresent()) factorise(report);
@@ -365,24 +388,35 @@ template <class K> struct ContactSolver<K>::Workspace {
 		return false;
 	}
 
+	// Centre after centre. R falls while roots are found, so that the centres converge faster than linearly, and grows where
+	// one is not.
 	double newton(double tolerance, SolveReport& report)
 	{
-		constexpr int    maxCentres = 30;
-		constexpr double contraction = 0.9; // of the residual from centre to centre; slower is a stall
+		constexpr int    maxCentres = 40;
+		constexpr double first = 1e-2, least = 1e-8, fall = 1e-2, growth = 10, most = 1;
 		prepareNewton();
-		applyImpulses();
-		double last = std::numeric_limits<double>::infinity();
-		for (int k = 0; k < maxCentres; ++k) {
-			const bool found = findRoot(report);
+		softness = first;
+		double present = residual();
+		bool   found = false;
+		for (int k = 0; k < maxCentres && softness <= most; ++k) {
+			found = findRoot(found, report);
 			for (int i = 0; i < nPoints; ++i)
-				rows[i].impulse = points[i].next;
+				std::swap(rows[i].impulse, points[i].next);
 			applyImpulses();
-			const double present = residual();
-			keepBest(present);
-			if (present <= tolerance || !found || present > contraction * last) return present;
-			last = present;
+			const double next = residual();
+			keepBest(next);
+			if (next <= tolerance) return next;
+			if (!found && next > present) {
+				for (int i = 0; i < nPoints; ++i)
+					rows[i].impulse = points[i].next;
+				applyImpulses();
+			} else {
+				present = next;
+			}
+			softness = found ? std::max(least, fall * softness) : growth * softness;
+			factored = false;
 		}
-		return last;
+		return present;
 	}
 
 	// Newton, and where that stops sweeps from the best iterate to start anew from.
@@ -401,6 +435,28 @@ template <class K> struct ContactSolver<K>::Workspace {
 		keepBest(residual());
 		restoreBest();
 		return bestResidual;
+	}
+
+	// Impulses that miss the laws may do work. If those of the rows do, they are scaled to the least energy: with p.u0 their
+	// power on the free velocities (seen from the offsets) and p.Gp = p.(u - u0), the energy is s p.u0 + s^2 p.Gp / 2.
+	void addNoEnergy()
+	{
+		const auto power = [&] {
+			double sum = 0;
+			for (int i = 0; i < nPoints; ++i)
+				sum += rows[i].impulse.dot(relativeVelocity(rows[i]));
+			return sum;
+		};
+		const double after = power();
+		for (int b = 0; b < nBodies; ++b)
+			bodies[b].velocity = bodies[b].free;
+		const double before = power();
+		if (before + after > 0) {
+			const double scale = std::max(0., -before / (after - before));
+			for (int i = 0; i < nPoints; ++i)
+				rows[i].impulse *= scale;
+		}
+		applyImpulses();
 	}
 
 	void restoreBest()
@@ -439,6 +495,10 @@ template <class K> SolveReport ContactSolver<K>::solve(double tolerance)
 	report.residual = w.gaussSeidel(tolerance, useNewton ? maxSweeps : lastSweeps, !useNewton, report);
 	if (useNewton && report.residual > tolerance) report.residual = w.alternate(tolerance, lastSweeps, report);
 	report.converged = report.residual <= tolerance;
+	if (!report.converged) {
+		w.addNoEnergy();
+		report.residual = w.residual();
+	}
 	return report;
 }
 
