@@ -11,8 +11,8 @@
 namespace masonry::rigid {
 
 struct PlanePose {
-	Vector2 position { Vector2::Zero() };
-	double  angle { 0 }, cosine { 1 }, sine { 0 }; // of the body axes against the global ones
+	Vector2 position {Vector2::Zero()};
+	double angle {0}, cosine {1}, sine {0}; // of the body axes against the global ones
 
 	void setAngle(double value)
 	{
@@ -20,8 +20,11 @@ struct PlanePose {
 		cosine = std::cos(value);
 		sine = std::sin(value);
 	}
-	Vector2 rotate(const Vector2& local) const { return { cosine * local.x() - sine * local.y(), sine * local.x() + cosine * local.y() }; }
-	Vector2 rotateBack(const Vector2& global) const { return { cosine * global.x() + sine * global.y(), cosine * global.y() - sine * global.x() }; }
+	Vector2 rotate(const Vector2& local) const { return {cosine * local.x() - sine * local.y(), sine * local.x() + cosine * local.y()}; }
+	Vector2 rotateBack(const Vector2& global) const
+	{
+		return {cosine * global.x() + sine * global.y(), cosine * global.y() - sine * global.x()};
+	}
 	Vector2 toGlobal(const Vector2& local) const { return position + rotate(local); }
 	Vector2 toLocal(const Vector2& global) const { return rotateBack(global - position); }
 };
@@ -29,40 +32,42 @@ struct PlanePose {
 // Where a vertex of one body meets a face of the other. Vertex: bits 0, 1 set where along, up is positive; face = 2 axis +
 // (1 if it looks along +axis).
 struct PlaneFeature {
-	int vertexBody { 0 }; // 1 or 2, the other one has the face; 0: none
-	int vertex { 0 }, face { 0 };
+	int vertexBody {0}; // 1 or 2, the other one has the face; 0: none
+	int vertex {0}, face {0};
 	bool operator==(const PlaneFeature& o) const { return vertexBody == o.vertexBody && vertex == o.vertex && face == o.face; }
 };
 
 // What a pair of boxes in the plane remembers from one search to the next.
 struct PlaneMemory {
-	int reference { 0 };          // body 1 or 2 whose face was the reference; 0: none
-	int face1 { -1 }, face2 { -1 }; // faces in touch
+	int reference {0};          // body 1 or 2 whose face was the reference; 0: none
+	int face1 {-1}, face2 {-1}; // faces in touch
 	std::array<PlaneFeature, 2> features;
 };
 
 // A vertex of one body on a face of the other, or an edge of body 1 across an edge of body 2 (numbers as in contact/features.hpp).
 struct SpaceFeature {
-	enum Kind { None, Vertex1, Vertex2, Edges } kind { None };
-	int first { -1 };  // Vertex1: vertex of body 1; Vertex2: face of body 1; Edges: edge of body 1
-	int second { -1 }; // Vertex1: face of body 2; Vertex2: vertex of body 2; Edges: edge of body 2
+	enum Kind { None, Vertex1, Vertex2, Edges } kind {None};
+	int first {-1};  // Vertex1: vertex of body 1; Vertex2: face of body 1; Edges: edge of body 1
+	int second {-1}; // Vertex1: face of body 2; Vertex2: vertex of body 2; Edges: edge of body 2
 	bool operator==(const SpaceFeature& o) const { return kind == o.kind && first == o.first && second == o.second; }
 };
 
 // Where and how two bodies meet at one contact point. Axes, in rows: the normal from body 1 to body 2, then one or two tangents;
 // they move with the body that has the face (edges: with body 1's edge). The gap's rate is the normal row of the relative velocity
 // (body 2 minus body 1) at `position`, also while it is open.
-template <class K> struct ContactFrame {
-	typename K::Vector                               position { K::Vector::Zero() };
-	Eigen::Matrix<double, K::rows, K::dimension>     axes { Eigen::Matrix<double, K::rows, K::dimension>::Zero() };
-	double                                           gap { 0 };
+template <class K>
+struct ContactFrame {
+	typename K::Vector position {K::Vector::Zero()};
+	Eigen::Matrix<double, K::rows, K::dimension> axes {Eigen::Matrix<double, K::rows, K::dimension>::Zero()};
+	double gap {0};
 };
 
 // The contact points of a pair of boxes.
-template <class K> struct FoundPoints {
-	int                                             size { 0 };
-	std::array<typename K::Feature, K::maxPoints>   features;
-	int                                             face1 { -1 }, face2 { -1 }; // the faces that meet (edges: those nearest to the normal)
+template <class K>
+struct FoundPoints {
+	int size {0};
+	std::array<typename K::Feature, K::maxPoints> features;
+	int face1 {-1}, face2 {-1}; // the faces that meet (edges: those nearest to the normal)
 };
 
 struct Plane {
@@ -76,14 +81,14 @@ struct Plane {
 	using Feature = PlaneFeature;
 	using Memory = PlaneMemory;
 
-	static Vector cross(const Spin& w, const Vector& r) { return { -w[0] * r.y(), w[0] * r.x() }; }
-	static Spin   moment(const Vector& r, const Vector& f) { return Spin(r.x() * f.y() - r.y() * f.x()); }
-	static void   advance(Pose& pose, const Velocity& velocity, double t)
+	static Vector cross(const Spin& w, const Vector& r) { return {-w[0] * r.y(), w[0] * r.x()}; }
+	static Spin moment(const Vector& r, const Vector& f) { return Spin(r.x() * f.y() - r.y() * f.x()); }
+	static void advance(Pose& pose, const Velocity& velocity, double t)
 	{
 		pose.position += t * velocity.head<2>();
 		pose.setAngle(pose.angle + t * velocity[2]);
 	}
-	static Spin           angularMomentum(const Inertia& inertia, const Pose&, const Spin& w) { return inertia * w; }
+	static Spin angularMomentum(const Inertia& inertia, const Pose&, const Spin& w) { return inertia * w; }
 	static InverseInertia inverseInertia(const Inertia& inertia, const Pose&) { return inertia.cwiseInverse(); }
 
 	static ContactFrame<Plane> frame(const Feature&, const Vector& half1, const Pose&, const Vector& half2, const Pose&);
@@ -98,16 +103,16 @@ struct Space {
 	using Vector = Vector3;
 	using Spin = Vector3;
 	using Velocity = Eigen::Matrix<double, 6, 1>;
-	using Inertia = Vector3; // principal moments, kg m^2
+	using Inertia = Vector3;        // principal moments, kg m^2
 	using InverseInertia = Matrix3; // global axes
 	using Pose = masonry::Pose;
 	using Feature = SpaceFeature;
 	using Memory = PatchFeature;
 
 	static Vector cross(const Spin& w, const Vector& r) { return w.cross(r); }
-	static Spin   moment(const Vector& r, const Vector& f) { return r.cross(f); }
-	static void   advance(Pose& pose, const Velocity& velocity, double t); // orientation by the exponential of the spin
-	static Spin   angularMomentum(const Inertia& inertia, const Pose& pose, const Spin& w)
+	static Spin moment(const Vector& r, const Vector& f) { return r.cross(f); }
+	static void advance(Pose& pose, const Velocity& velocity, double t); // orientation by the exponential of the spin
+	static Spin angularMomentum(const Inertia& inertia, const Pose& pose, const Spin& w)
 	{
 		return pose.orientation * inertia.cwiseProduct(pose.orientation.conjugate() * w);
 	}

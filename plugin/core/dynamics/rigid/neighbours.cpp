@@ -10,29 +10,33 @@ namespace {
 Vector2 reach(const Vector2& half, const PlanePose& pose)
 {
 	const double c = std::abs(pose.cosine), s = std::abs(pose.sine);
-	return { c * half.x() + s * half.y(), s * half.x() + c * half.y() };
+	return {c * half.x() + s * half.y(), s * half.x() + c * half.y()};
 }
 
 Vector3 reach(const Vector3& half, const Pose& pose) { return pose.orientation.toRotationMatrix().cwiseAbs() * half; }
 
-template <class K> Bounds<K> bounds(const RigidBody<K>& body, double enlargement)
+template <class K>
+Bounds<K> bounds(const RigidBody<K>& body, double enlargement)
 {
 	const typename K::Vector half = reach(body.halfSize, body.pose) + K::Vector::Constant(enlargement);
-	return { body.pose.position - half, body.pose.position + half };
+	return {body.pose.position - half, body.pose.position + half};
 }
 
-template <class K> bool contains(const Bounds<K>& outer, const Bounds<K>& inner)
+template <class K>
+bool contains(const Bounds<K>& outer, const Bounds<K>& inner)
 {
 	return (outer.low.array() <= inner.low.array()).all() && (inner.high.array() <= outer.high.array()).all();
 }
 
-template <class K> bool overlap(const Bounds<K>& a, const Bounds<K>& b)
+template <class K>
+bool overlap(const Bounds<K>& a, const Bounds<K>& b)
 {
 	return (a.low.array() <= b.high.array()).all() && (b.low.array() <= a.high.array()).all();
 }
 
 // Along which the centres are spread most: fewest bounds overlap along it.
-template <class K> int widestAxis(const std::vector<Bounds<K>>& all)
+template <class K>
+int widestAxis(const std::vector<Bounds<K>>& all)
 {
 	typename K::Vector mean = K::Vector::Zero(), spread = K::Vector::Zero();
 	for (const auto& box : all)
@@ -44,14 +48,16 @@ template <class K> int widestAxis(const std::vector<Bounds<K>>& all)
 	return axis;
 }
 
-template <class K> bool isBefore(const ContactPair<K>& a, const ContactPair<K>& b)
+template <class K>
+bool isBefore(const ContactPair<K>& a, const ContactPair<K>& b)
 {
 	return std::tie(a.body1, a.body2) < std::tie(b.body1, b.body2);
 }
 
 } // namespace
 
-template <class K> bool Neighbours<K>::isValid(const RigidSystem<K>& system) const
+template <class K>
+bool Neighbours<K>::isValid(const RigidSystem<K>& system) const
 {
 	if (enlarged.size() != system.bodies.size())
 		return false;
@@ -62,7 +68,8 @@ template <class K> bool Neighbours<K>::isValid(const RigidSystem<K>& system) con
 }
 
 // Sweep: of the bodies in the order of their lower ends, each one meets those that begin before it ends.
-template <class K> void Neighbours<K>::findPairs(const RigidSystem<K>& system)
+template <class K>
+void Neighbours<K>::findPairs(const RigidSystem<K>& system)
 {
 	enlarged.clear();
 	for (const auto& body : system.bodies)
@@ -85,7 +92,8 @@ template <class K> void Neighbours<K>::findPairs(const RigidSystem<K>& system)
 	std::sort(pairs.begin(), pairs.end(), &isBefore<K>);
 }
 
-template <class K> void Neighbours<K>::keepStates(const std::vector<ContactPair<K>>& old)
+template <class K>
+void Neighbours<K>::keepStates(const std::vector<ContactPair<K>>& old)
 {
 	auto before = old.begin();
 	for (auto& pair : pairs) {
@@ -98,7 +106,8 @@ template <class K> void Neighbours<K>::keepStates(const std::vector<ContactPair<
 	}
 }
 
-template <class K> bool Neighbours<K>::update(RigidSystem<K>& system)
+template <class K>
+bool Neighbours<K>::update(RigidSystem<K>& system)
 {
 	if (isValid(system))
 		return false;

@@ -7,8 +7,9 @@
 namespace masonry::rigid {
 
 // Box with sides along the global axes.
-template <class K> struct Bounds {
-	typename K::Vector low { K::Vector::Zero() }, high { K::Vector::Zero() };
+template <class K>
+struct Bounds {
+	typename K::Vector low {K::Vector::Zero()}, high {K::Vector::Zero()};
 };
 
 // Keeps the system's list of pairs: those with less than `margin` (m) between their bounds are always in it, farther ones may be.
@@ -16,11 +17,12 @@ template <class K> struct Bounds {
 //
 // Bounds are enlarged by the margin, and pairs are those whose enlarged bounds overlap. The list holds until a body comes nearer
 // than half the margin to the end of its enlarged bounds.
-template <class K> class Neighbours {
+template <class K>
+class Neighbours {
 public:
 	using NewPair = std::function<void(ContactPair<K>&)>; // sets friction and restitution
 
-	Neighbours(double margin, NewPair newPair) : margin(margin), newPair(std::move(newPair)) { }
+	Neighbours(double margin, NewPair newPair) : margin(margin), newPair(std::move(newPair)) {}
 
 	// True if the list was made anew.
 	bool update(RigidSystem<K>& system);
@@ -30,10 +32,10 @@ private:
 	void findPairs(const RigidSystem<K>& system);
 	void keepStates(const std::vector<ContactPair<K>>& old);
 
-	double                      margin;
-	NewPair                     newPair;
-	std::vector<Bounds<K>>      enlarged;
-	std::vector<int>            order; // of bodies along the axis of the sweep
+	double margin;
+	NewPair newPair;
+	std::vector<Bounds<K>> enlarged;
+	std::vector<int> order; // of bodies along the axis of the sweep
 	std::vector<ContactPair<K>> pairs;
 };
 

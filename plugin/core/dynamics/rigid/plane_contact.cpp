@@ -10,37 +10,35 @@ namespace {
 namespace limits = tolerance::contact;
 
 double signOf(double value) { return std::signbit(value) ? -1. : 1.; }
-int    bit(double sign) { return sign > 0 ? 1 : 0; }
+int bit(double sign) { return sign > 0 ? 1 : 0; }
 
 // A face looks along `sign` times `axis`; a vertex is an end of a face, where the other axis has the sign `end`.
 int faceNumber(int axis, double sign) { return 2 * axis + bit(sign); }
-int vertexNumber(int axis, double sign, double end)
-{
-	return axis == 0 ? bit(sign) + 2 * bit(end) : bit(end) + 2 * bit(sign);
-}
+int vertexNumber(int axis, double sign, double end) { return axis == 0 ? bit(sign) + 2 * bit(end) : bit(end) + 2 * bit(sign); }
 
-Vector2 vertexOf(int number, const Vector2& half) { return { number & 1 ? half.x() : -half.x(), number & 2 ? half.y() : -half.y() }; }
+Vector2 vertexOf(int number, const Vector2& half) { return {number & 1 ? half.x() : -half.x(), number & 2 ? half.y() : -half.y()}; }
 
 // One rectangle seen from the other.
 struct RelativePose {
-	double  axes[2][2]; // [row][column]: component, along `row` of the frame, of the rectangle's own axis `column`
-	Vector2 offset;     // its centre in the frame
+	double axes[2][2]; // [row][column]: component, along `row` of the frame, of the rectangle's own axis `column`
+	Vector2 offset;    // its centre in the frame
 
-	RelativePose(double cosine, double sine, const Vector2& centre) : axes { { cosine, -sine }, { sine, cosine } }, offset(centre) { }
+	RelativePose(double cosine, double sine, const Vector2& centre) : axes {{cosine, -sine}, {sine, cosine}}, offset(centre) {}
 	RelativePose reversed() const
 	{
 		const double c = axes[0][0], s = axes[1][0];
-		return { c, -s, { -c * offset.x() - s * offset.y(), s * offset.x() - c * offset.y() } };
+		return {c, -s, {-c * offset.x() - s * offset.y(), s * offset.x() - c * offset.y()}};
 	}
 };
 
 RelativePose relative(const PlanePose& from, const PlanePose& seen)
 {
-	return { from.cosine * seen.cosine + from.sine * seen.sine, from.cosine * seen.sine - from.sine * seen.cosine, from.toLocal(seen.position) };
+	return {from.cosine * seen.cosine + from.sine * seen.sine, from.cosine * seen.sine - from.sine * seen.cosine,
+	        from.toLocal(seen.position)};
 }
 
 struct FaceAxis {
-	int    body, axis;
+	int body, axis;
 	double sign, separation;
 };
 
@@ -49,15 +47,15 @@ double lead(double separation, double length) { return std::max(limits::referenc
 
 FaceAxis bestFaceOf(int body, const Vector2& half, const Vector2& otherHalf, const RelativePose& other, int held, double length)
 {
-	FaceAxis best { body, -1, 1, 0 };
-	double   bestScore = 0;
-	for (int axis : { 0, 1 }) {
+	FaceAxis best {body, -1, 1, 0};
+	double bestScore = 0;
+	for (int axis : {0, 1}) {
 		const double sign = signOf(other.offset[axis]);
 		const double reach = std::abs(other.axes[axis][0]) * otherHalf.x() + std::abs(other.axes[axis][1]) * otherHalf.y();
 		const double separation = std::abs(other.offset[axis]) - half[axis] - reach;
 		const double score = held == faceNumber(axis, sign) ? separation + lead(separation, length) : separation;
 		if (best.axis < 0 || score > bestScore) {
-			best = { body, axis, sign, separation };
+			best = {body, axis, sign, separation};
 			bestScore = score;
 		}
 	}
@@ -67,26 +65,21 @@ FaceAxis bestFaceOf(int body, const Vector2& half, const Vector2& otherHalf, con
 // The two rectangles as the reference face sees them. Lengths along the face are counted along the tangent that follows from the
 // normal (from body 1 to body 2), so that the order of the ends does not depend on the reference.
 struct FacePair {
-	FaceAxis       face;
+	FaceAxis face;
 	const Vector2 &referenceHalf, &incidentHalf;
-	RelativePose   incident;  // in the frame of the reference body
-	double         length;    // m, smallest half size: tolerances are relative to it
-	int            tangent;   // axis of the reference body along its face
-	double         direction; // of the common tangent along it
+	RelativePose incident; // in the frame of the reference body
+	double length;         // m, smallest half size: tolerances are relative to it
+	int tangent;           // axis of the reference body along its face
+	double direction;      // of the common tangent along it
 
 	// Incident face: its middle, the way from there to its corner of positive sign (along the face and over it), its outward normal.
-	int    incidentAxis { 0 };
-	double incidentSign { 1 };
-	double middle { 0 }, height { 0 }, span { 0 }, rise { 0 }, normalAlong { 0 }, normalOver { 0 };
+	int incidentAxis {0};
+	double incidentSign {1};
+	double middle {0}, height {0}, span {0}, rise {0}, normalAlong {0}, normalOver {0};
 
 	FacePair(const FaceAxis& f, const Vector2& reference, const Vector2& other, const RelativePose& pose, double size)
-	        : face(f)
-	        , referenceHalf(reference)
-	        , incidentHalf(other)
-	        , incident(pose)
-	        , length(size)
-	        , tangent(1 - f.axis)
-	        , direction((f.axis == 0) == (f.body == 1) ? f.sign : -f.sign)
+	    : face(f), referenceHalf(reference), incidentHalf(other), incident(pose), length(size), tangent(1 - f.axis),
+	      direction((f.axis == 0) == (f.body == 1) ? f.sign : -f.sign)
 	{
 	}
 
@@ -106,13 +99,13 @@ struct FacePair {
 
 	double referenceEnd() const { return referenceHalf[tangent]; }
 	// Thinner than this is no contact.
-	bool   overlaps() const
+	bool overlaps() const
 	{
 		const double reach = std::abs(span);
 		return std::min(referenceEnd(), middle + reach) - std::max(-referenceEnd(), middle - reach) > limits::sliver * length;
 	}
-	int    referenceFace() const { return faceNumber(face.axis, face.sign); }
-	int    incidentFace() const { return faceNumber(incidentAxis, incidentSign); }
+	int referenceFace() const { return faceNumber(face.axis, face.sign); }
+	int incidentFace() const { return faceNumber(incidentAxis, incidentSign); }
 };
 
 // The face of the largest separation. The one that was the reference before leads; a tie goes to the larger face, then to body 1.
@@ -125,7 +118,7 @@ FaceAxis referenceFace(const Vector2& half1, const Vector2& half2, const Relativ
 		return face2.separation > face1.separation + lead(face1.separation, length) ? face2 : face1;
 	if (memory.reference == 2)
 		return face1.separation > face2.separation + lead(face2.separation, length) ? face1 : face2;
-	const bool   larger2 = half2[1 - face2.axis] > half1[1 - face1.axis] * (1 + limits::reference);
+	const bool larger2 = half2[1 - face2.axis] > half1[1 - face1.axis] * (1 + limits::reference);
 	const double tie = limits::reference * length;
 	return face2.separation > face1.separation + (larger2 ? -tie : tie) ? face2 : face1;
 }
@@ -133,7 +126,7 @@ FaceAxis referenceFace(const Vector2& half1, const Vector2& half2, const Relativ
 // The face that looks most against the reference face.
 void chooseIncident(FacePair& pair, const PlaneMemory& memory)
 {
-	const int    same = pair.face.axis, held = pair.face.body == 1 ? memory.face2 : memory.face1;
+	const int same = pair.face.axis, held = pair.face.body == 1 ? memory.face2 : memory.face1;
 	const double gain = memory.reference != 0 && held / 2 != same ? -limits::incident : limits::incident;
 	const double facing = std::abs(pair.incident.axes[0][0]), across = std::abs(pair.incident.axes[0][1]);
 	pair.takeIncident(facing + gain > across ? same : 1 - same);
@@ -141,7 +134,7 @@ void chooseIncident(FacePair& pair, const PlaneMemory& memory)
 
 struct End {
 	PlaneFeature feature;
-	double       gap;
+	double gap;
 };
 
 // What meets at one end (-1 or +1 along the tangent) of the overlap: the incident vertex where it lies over the reference face,
@@ -149,14 +142,14 @@ struct End {
 End endOfOverlap(const FacePair& pair, double end, const PlaneMemory& memory)
 {
 	const double corner = end * signOf(pair.span), inside = pair.referenceEnd() - end * (pair.middle + corner * pair.span);
-	const int    reference = pair.face.body;
-	const PlaneFeature ofIncident { 3 - reference, vertexNumber(pair.incidentAxis, pair.incidentSign, corner), pair.referenceFace() };
-	const PlaneFeature ofReference { reference, vertexNumber(pair.face.axis, pair.face.sign, end * pair.direction), pair.incidentFace() };
-	const auto   held = [&memory](const PlaneFeature& feature) { return feature == memory.features[0] || feature == memory.features[1]; };
+	const int reference = pair.face.body;
+	const PlaneFeature ofIncident {3 - reference, vertexNumber(pair.incidentAxis, pair.incidentSign, corner), pair.referenceFace()};
+	const PlaneFeature ofReference {reference, vertexNumber(pair.face.axis, pair.face.sign, end * pair.direction), pair.incidentFace()};
+	const auto held = [&memory](const PlaneFeature& feature) { return feature == memory.features[0] || feature == memory.features[1]; };
 	const double beyond = held(ofIncident) ? -limits::vertexReach : held(ofReference) ? limits::vertexReach : -limits::slack;
 	if (inside >= beyond * pair.length)
-		return { ofIncident, pair.height + corner * pair.rise };
-	return { ofReference, pair.normalAlong * (end * pair.referenceEnd() - pair.middle) - pair.normalOver * pair.height };
+		return {ofIncident, pair.height + corner * pair.rise};
+	return {ofReference, pair.normalAlong * (end * pair.referenceEnd() - pair.middle) - pair.normalOver * pair.height};
 }
 
 } // namespace
@@ -165,16 +158,17 @@ End endOfOverlap(const FacePair& pair, double end, const PlaneMemory& memory)
 // m.(v_P - v_F) + (w_F x m).(P - x) = m.(v_P - v_F - w_F x (P - x)) is the relative velocity along m at P.
 ContactFrame<Plane> Plane::frame(const Feature& feature, const Vector& half1, const Pose& pose1, const Vector& half2, const Pose& pose2)
 {
-	const bool    vertexOn1 = feature.vertexBody == 1;
-	const Pose &  vertexPose = vertexOn1 ? pose1 : pose2, &facePose = vertexOn1 ? pose2 : pose1;
+	const bool vertexOn1 = feature.vertexBody == 1;
+	const Pose &vertexPose = vertexOn1 ? pose1 : pose2, &facePose = vertexOn1 ? pose2 : pose1;
 	const Vector &vertexHalf = vertexOn1 ? half1 : half2, &faceHalf = vertexOn1 ? half2 : half1;
-	const int     axis = feature.face / 2;
-	const double  sign = feature.face % 2 ? 1 : -1;
+	const int axis = feature.face / 2;
+	const double sign = feature.face % 2 ? 1 : -1;
 
 	ContactFrame<Plane> frame;
-	const Vector        arm = vertexPose.rotate(vertexOf(feature.vertex, vertexHalf));
+	const Vector arm = vertexPose.rotate(vertexOf(feature.vertex, vertexHalf));
 	frame.position = vertexPose.position + arm;
-	const Vector outward = axis == 0 ? Vector(sign * facePose.cosine, sign * facePose.sine) : Vector(-sign * facePose.sine, sign * facePose.cosine);
+	const Vector outward =
+	    axis == 0 ? Vector(sign * facePose.cosine, sign * facePose.sine) : Vector(-sign * facePose.sine, sign * facePose.cosine);
 	frame.gap = outward.dot((vertexPose.position - facePose.position) + arm) - faceHalf[axis];
 	const Vector normal = vertexOn1 ? Vector(-outward) : outward;
 	frame.axes << normal.x(), normal.y(), -normal.y(), normal.x();
@@ -188,13 +182,13 @@ bool Plane::findPoints(const Vector& half1, const Pose& pose1, const Vector& hal
 	memory = {};
 	out = {};
 	const RelativePose second = relative(pose1, pose2), first = second.reversed();
-	const double       length = std::min(half1.minCoeff(), half2.minCoeff());
-	const FaceAxis     face = referenceFace(half1, half2, second, first, length, before);
+	const double length = std::min(half1.minCoeff(), half2.minCoeff());
+	const FaceAxis face = referenceFace(half1, half2, second, first, length, before);
 	if (face.separation > margin)
 		return false;
 
 	const bool on1 = face.body == 1;
-	FacePair   pair(face, on1 ? half1 : half2, on1 ? half2 : half1, on1 ? second : first, length);
+	FacePair pair(face, on1 ? half1 : half2, on1 ? half2 : half1, on1 ? second : first, length);
 	chooseIncident(pair, before);
 	const bool beyondFace = !pair.overlaps();
 	if (beyondFace) {
@@ -203,7 +197,7 @@ bool Plane::findPoints(const Vector& half1, const Pose& pose1, const Vector& hal
 			return false;
 	}
 
-	const End  low = endOfOverlap(pair, -1, before), high = endOfOverlap(pair, 1, before);
+	const End low = endOfOverlap(pair, -1, before), high = endOfOverlap(pair, 1, before);
 	const End& nearer = high.gap < low.gap ? high : low;
 	if (nearer.gap > margin)
 		return false;
@@ -213,7 +207,7 @@ bool Plane::findPoints(const Vector& half1, const Pose& pose1, const Vector& hal
 		out.features[1] = high.feature;
 	out.face1 = on1 ? pair.referenceFace() : pair.incidentFace();
 	out.face2 = on1 ? pair.incidentFace() : pair.referenceFace();
-	memory = { face.body, out.face1, out.face2, out.features };
+	memory = {face.body, out.face1, out.face2, out.features};
 	return true;
 }
 

@@ -16,7 +16,7 @@ using Frame = ContactFrame<Space>;
 
 Vector3 vertexOf(int number, const Vector3& half)
 {
-	return { number & 1 ? half.x() : -half.x(), number & 2 ? half.y() : -half.y(), number & 4 ? half.z() : -half.z() };
+	return {number & 1 ? half.x() : -half.x(), number & 2 ? half.y() : -half.y(), number & 4 ? half.z() : -half.z()};
 }
 
 // Vertex P of one body, face of the other with outward normal m at the distance h from its centre x: gap = m.(P - x) - h. Its rate
@@ -25,10 +25,10 @@ Frame vertexOnFace(int vertex, const Vector3& vertexHalf, const Pose& vertexPose
                    bool faceOn1)
 {
 	const Matrix3 axes = facePose.orientation.toRotationMatrix();
-	const int     axis = face / 2, second = nextAxis(axis), third = nextAxis(second);
-	const double  outward = face % 2 ? 1 : -1, alongNormal = faceOn1 ? outward : -outward;
+	const int axis = face / 2, second = nextAxis(axis), third = nextAxis(second);
+	const double outward = face % 2 ? 1 : -1, alongNormal = faceOn1 ? outward : -outward;
 	const Vector3 arm = vertexPose.orientation * vertexOf(vertex, vertexHalf);
-	Frame         frame;
+	Frame frame;
 	frame.position = vertexPose.position + arm;
 	frame.gap = outward * axes.col(axis).dot((vertexPose.position - facePose.position) + arm) - faceHalf[axis];
 	frame.axes.row(0) = alongNormal * axes.col(axis);
@@ -44,7 +44,7 @@ struct Edge {
 	Edge(int number, const Vector3& half, const Pose& pose)
 	{
 		const Matrix3 axes = pose.orientation.toRotationMatrix();
-		const int     axis = number / 4, next = nextAxis(axis), last = nextAxis(next);
+		const int axis = number / 4, next = nextAxis(axis), last = nextAxis(next);
 		const Vector3 toNext = (number & 1 ? 1. : -1.) * axes.col(next), toLast = (number & 2 ? 1. : -1.) * axes.col(last);
 		direction = axes.col(axis);
 		middle = half[next] * toNext + half[last] * toLast;
@@ -58,9 +58,9 @@ struct Edge {
 Frame edgeAcrossEdge(const Edge& edge1, const Vector3& centre1, const Edge& edge2, const Vector3& centre2)
 {
 	const Vector3 apart = (centre2 - centre1) + (edge2.middle - edge1.middle);
-	const double  cosine = edge1.direction.dot(edge2.direction);
-	Vector3       normal = edge1.direction.cross(edge2.direction);
-	const double  sineSquared = normal.squaredNorm();
+	const double cosine = edge1.direction.dot(edge2.direction);
+	Vector3 normal = edge1.direction.cross(edge2.direction);
+	const double sineSquared = normal.squaredNorm();
 	normal *= feature::signOf(normal.dot(edge1.outward - edge2.outward)) / std::sqrt(sineSquared);
 	const double along1 = apart.dot(edge1.direction), along2 = apart.dot(edge2.direction);
 	const double s1 = (along1 - cosine * along2) / sineSquared, s2 = (cosine * along1 - along2) / sineSquared;
@@ -79,10 +79,10 @@ bool isCrossing(int identity) { return identity >= 16; }
 SpaceFeature featureOf(const PatchPoint& point, const PatchFeature& faces)
 {
 	if (isCrossing(point.identity))
-		return { SpaceFeature::Edges, (point.identity - 16) / 12, (point.identity - 16) % 12 };
+		return {SpaceFeature::Edges, (point.identity - 16) / 12, (point.identity - 16) % 12};
 	if (point.identity < 8)
-		return { SpaceFeature::Vertex1, point.identity, faces.feature2 };
-	return { SpaceFeature::Vertex2, faces.feature1, point.identity - 8 };
+		return {SpaceFeature::Vertex1, point.identity, faces.feature2};
+	return {SpaceFeature::Vertex2, faces.feature1, point.identity - 8};
 }
 
 // Two edges that touch have their common normal between the outward normals of the faces beside them: along `outward` it is 1 at
@@ -90,12 +90,12 @@ SpaceFeature featureOf(const PatchPoint& point, const PatchFeature& faces)
 // parallel edges mark no corner of the overlap that others do not mark; their normal can point anywhere.
 bool isSharp(const Edge& edge1, const Edge& edge2, const Vector3& faceNormal)
 {
-	Vector3      normal = edge1.direction.cross(edge2.direction);
+	Vector3 normal = edge1.direction.cross(edge2.direction);
 	const double sine = normal.norm();
 	if (sine <= tolerance::contact::parallelEdges)
 		return false;
 	normal *= feature::signOf(normal.dot(faceNormal)) / sine;
-	return std::min({ normal.dot(faceNormal), normal.dot(edge1.outward), -normal.dot(edge2.outward) }) > tolerance::rigid::crossing;
+	return std::min({normal.dot(faceNormal), normal.dot(edge1.outward), -normal.dot(edge2.outward)}) > tolerance::rigid::crossing;
 }
 
 // The corners of the patch but crossings that are not sharp; of these only one that lies far deeper than all others.
@@ -103,14 +103,14 @@ void takeCorners(const ContactPatch& patch, const Vector3& half1, const Pose& po
                  FoundPoints<Space>& out)
 {
 	constexpr double infinity = std::numeric_limits<double>::infinity();
-	const double     length = std::min(half1.minCoeff(), half2.minCoeff());
-	double           nearest = infinity, nearestBlunt = infinity;
-	SpaceFeature     blunt;
+	const double length = std::min(half1.minCoeff(), half2.minCoeff());
+	double nearest = infinity, nearestBlunt = infinity;
+	SpaceFeature blunt;
 	for (int i = 0; i < patch.size; ++i) {
-		const PatchPoint&  point = patch.points[i];
+		const PatchPoint& point = patch.points[i];
 		const SpaceFeature feature = featureOf(point, patch.feature);
-		if (feature.kind != SpaceFeature::Edges
-		    || isSharp(Edge(feature.first, half1, pose1), Edge(feature.second, half2, pose2), patch.normal)) {
+		if (feature.kind != SpaceFeature::Edges ||
+		    isSharp(Edge(feature.first, half1, pose1), Edge(feature.second, half2, pose2), patch.normal)) {
 			nearest = std::min(nearest, point.gap);
 			out.features[out.size++] = feature;
 		} else if (point.gap < nearestBlunt) {
@@ -125,7 +125,7 @@ void takeCorners(const ContactPatch& patch, const Vector3& half1, const Pose& po
 int faceNearest(const Vector3& direction, const Pose& pose)
 {
 	const Vector3 local = pose.orientation.conjugate() * direction;
-	int           axis;
+	int axis;
 	local.cwiseAbs().maxCoeff(&axis);
 	return feature::faceNumber(axis, local[axis]);
 }
@@ -135,8 +135,8 @@ int faceNearest(const Vector3& direction, const Pose& pose)
 void Space::advance(Pose& pose, const Velocity& velocity, double t)
 {
 	const Vector3 half = t / 2 * velocity.tail<3>();
-	const double  angle = half.norm(), sinc = angle > 0 ? std::sin(angle) / angle : 1;
-	Quaternion    turn;
+	const double angle = half.norm(), sinc = angle > 0 ? std::sin(angle) / angle : 1;
+	Quaternion turn;
 	turn.w() = std::cos(angle);
 	turn.vec() = sinc * half;
 	pose.position += t * velocity.head<3>();
@@ -160,7 +160,7 @@ bool Space::findPoints(const Vector& half1, const Pose& pose1, const Vector& hal
 	out.size = 0;
 	out.face1 = out.face2 = -1;
 	ContactPatch patch;
-	if (!collide({ half1 }, pose1, { half2 }, pose2, margin, before, patch))
+	if (!collide({half1}, pose1, {half2}, pose2, margin, before, patch))
 		return false;
 
 	memory = patch.feature;

@@ -10,7 +10,8 @@ using namespace masonry::rigid;
 namespace {
 
 // Oracle: bounds from the corners themselves, every pair tried.
-template <class K> std::vector<typename K::Vector> corners(const RigidBody<K>& body)
+template <class K>
+std::vector<typename K::Vector> corners(const RigidBody<K>& body)
 {
 	std::vector<typename K::Vector> all;
 	for (int bits = 0; bits < 1 << K::dimension; ++bits) {
@@ -23,27 +24,29 @@ template <class K> std::vector<typename K::Vector> corners(const RigidBody<K>& b
 	return all;
 }
 
-template <class K> double distanceOfBounds(const RigidBody<K>& a, const RigidBody<K>& b)
+template <class K>
+double distanceOfBounds(const RigidBody<K>& a, const RigidBody<K>& b)
 {
 	double widest = -1e300;
 	for (int axis = 0; axis < K::dimension; ++axis) {
-		double low[2] = { 1e300, 1e300 }, high[2] = { -1e300, -1e300 };
-		for (int which : { 0, 1 })
+		double low[2] = {1e300, 1e300}, high[2] = {-1e300, -1e300};
+		for (int which : {0, 1})
 			for (const auto& corner : corners(which == 0 ? a : b)) {
 				low[which] = std::min(low[which], corner[axis]);
 				high[which] = std::max(high[which], corner[axis]);
 			}
-		widest = std::max({ widest, low[0] - high[1], low[1] - high[0] });
+		widest = std::max({widest, low[0] - high[1], low[1] - high[0]});
 	}
 	return widest;
 }
 
-template <class K> RigidSystem<K> scattered(int number, std::mt19937& random)
+template <class K>
+RigidSystem<K> scattered(int number, std::mt19937& random)
 {
 	std::uniform_real_distribution<double> unit(-1, 1);
-	RigidSystem<K>                         system;
+	RigidSystem<K> system;
 	for (int i = 0; i < number; ++i) {
-		RigidBody<K>         body;
+		RigidBody<K> body;
 		typename K::Velocity motion;
 		for (int k = 0; k < K::dof; ++k)
 			motion[k] = 6 * unit(random);
@@ -57,7 +60,8 @@ template <class K> RigidSystem<K> scattered(int number, std::mt19937& random)
 	return system;
 }
 
-template <class K> void checkAgainstAllPairs(const RigidSystem<K>& system, double margin)
+template <class K>
+void checkAgainstAllPairs(const RigidSystem<K>& system, double margin)
 {
 	std::set<std::pair<int, int>> listed;
 	for (const auto& pair : system.pairs) {
@@ -68,23 +72,24 @@ template <class K> void checkAgainstAllPairs(const RigidSystem<K>& system, doubl
 	}
 	for (int i = 0; i < int(system.bodies.size()); ++i)
 		for (int j = i + 1; j < int(system.bodies.size()); ++j) {
-			const bool   count = !(system.bodies[i].prescribed && system.bodies[j].prescribed);
+			const bool count = !(system.bodies[i].prescribed && system.bodies[j].prescribed);
 			const double distance = distanceOfBounds(system.bodies[i], system.bodies[j]);
 			if (count && distance < margin)
-				REQUIRE(listed.count({ i, j }) == 1);
+				REQUIRE(listed.count({i, j}) == 1);
 			if (distance > 3.1 * margin) // enlarged by it on both sides, moved since by half of it on both sides
-				REQUIRE(listed.count({ i, j }) == 0);
+				REQUIRE(listed.count({i, j}) == 0);
 		}
 }
 
-template <class K> void wander(unsigned seed)
+template <class K>
+void wander(unsigned seed)
 {
-	std::mt19937                           random(seed);
+	std::mt19937 random(seed);
 	std::uniform_real_distribution<double> unit(-1, 1);
-	RigidSystem<K>                         system = scattered<K>(120, random);
-	const double                           margin = 0.2;
-	int                                    rebuilt = 0;
-	Neighbours<K>                          neighbours(margin, [](ContactPair<K>& pair) { pair.friction = 0.7; });
+	RigidSystem<K> system = scattered<K>(120, random);
+	const double margin = 0.2;
+	int rebuilt = 0;
+	Neighbours<K> neighbours(margin, [](ContactPair<K>& pair) { pair.friction = 0.7; });
 	for (int step = 0; step < 60; ++step) {
 		rebuilt += neighbours.update(system);
 		checkAgainstAllPairs(system, margin);
@@ -110,17 +115,17 @@ TEST_CASE("every near pair is in the list while boxes wander")
 TEST_CASE("pairs that stay keep their state, new ones get friction and restitution")
 {
 	RigidSystem<Plane> system;
-	for (double x : { 0., 1., 5. }) {
+	for (double x : {0., 1., 5.}) {
 		RigidBody<Plane> body;
 		body.halfSize << 0.5, 0.5;
 		body.pose.position << x, 0;
 		system.bodies.push_back(body);
 	}
-	int               made = 0;
+	int made = 0;
 	Neighbours<Plane> neighbours(0.1, [&made](ContactPair<Plane>& pair) {
-                pair.friction = 0.7;
-                pair.restitution = 0.8;
-                ++made;
+		pair.friction = 0.7;
+		pair.restitution = 0.8;
+		++made;
 	});
 	REQUIRE(neighbours.update(system));
 	REQUIRE(system.pairs.size() == 1);

@@ -21,9 +21,9 @@ PlanePose at(double x, double y, double angle = 0)
 }
 
 struct Found : FoundPoints<Plane> {
-	bool                             near;
+	bool near;
 	std::vector<ContactFrame<Plane>> frames;
-	double                           smallestGap { infinity };
+	double smallestGap {infinity};
 };
 
 Found find(const Vector2& half1, const PlanePose& pose1, const Vector2& half2, const PlanePose& pose2, double margin, PlaneMemory& memory)
@@ -48,7 +48,7 @@ using Polygon = std::vector<Vector2>;
 Polygon corners(const Vector2& half, const PlanePose& pose)
 {
 	Polygon polygon;
-	for (const Vector2& sign : { Vector2(-1, -1), Vector2(1, -1), Vector2(1, 1), Vector2(-1, 1) })
+	for (const Vector2& sign : {Vector2(-1, -1), Vector2(1, -1), Vector2(1, 1), Vector2(-1, 1)})
 		polygon.push_back(pose.toGlobal(sign.cwiseProduct(half)));
 	return polygon;
 }
@@ -58,10 +58,10 @@ Polygon corners(const Vector2& half, const PlanePose& pose)
 double separation(const Polygon& a, const Polygon& b)
 {
 	double best = -infinity;
-	for (const auto& [own, other] : { std::pair(a, b), std::pair(b, a) })
+	for (const auto& [own, other] : {std::pair(a, b), std::pair(b, a)})
 		for (size_t i = 0; i < own.size(); ++i) {
 			const Vector2 side = own[(i + 1) % own.size()] - own[i], normal = Vector2(side.y(), -side.x()).normalized();
-			double        least = infinity;
+			double least = infinity;
 			for (const Vector2& corner : other)
 				least = std::min(least, normal.dot(corner - own[i]));
 			best = std::max(best, least);
@@ -73,10 +73,10 @@ double separation(const Polygon& a, const Polygon& b)
 // where it then stands.
 PlanePose rocking(const Vector2& half1, const Vector2& half2, double shift, double tilt)
 {
-	const double    side = tilt > 0 ? -1 : 1;
+	const double side = tilt > 0 ? -1 : 1;
 	const PlanePose turned = at(0, 0, tilt);
-	const Vector2   pivot(shift + side * half2.x(), half1.y());
-	const Vector2   centre = pivot - turned.rotate(Vector2(side * half2.x(), -half2.y()));
+	const Vector2 pivot(shift + side * half2.x(), half1.y());
+	const Vector2 centre = pivot - turned.rotate(Vector2(side * half2.x(), -half2.y()));
 	return at(centre.x(), centre.y(), tilt);
 }
 
@@ -85,12 +85,12 @@ PlanePose rocking(const Vector2& half1, const Vector2& half2, double shift, doub
 TEST_CASE("a block on a wider one stands on its own two corners, from left to right")
 {
 	const Vector2 base(2, 0.5), block(0.3, 1);
-	const Found   found = find(base, at(0, 0), block, at(0.2, 1.5));
+	const Found found = find(base, at(0, 0), block, at(0.2, 1.5));
 	REQUIRE(found.size == 2);
 	CHECK(found.face1 == 3);
 	CHECK(found.face2 == 2);
-	CHECK(found.features[0] == PlaneFeature { 2, 1, 3 }); // the tangent is the normal turned by +90 degrees: right to left
-	CHECK(found.features[1] == PlaneFeature { 2, 0, 3 });
+	CHECK(found.features[0] == PlaneFeature {2, 1, 3}); // the tangent is the normal turned by +90 degrees: right to left
+	CHECK(found.features[1] == PlaneFeature {2, 0, 3});
 	for (const auto& frame : found.frames) {
 		CHECK(std::abs(frame.gap) < 1e-15);
 		CHECK((frame.axes - (Eigen::Matrix2d() << 0, 1, -1, 0).finished()).norm() < 1e-15);
@@ -101,26 +101,26 @@ TEST_CASE("a block on a wider one stands on its own two corners, from left to ri
 
 TEST_CASE("a block that overhangs stands on the corner of the one below")
 {
-	const Found found = find({ 1, 0.5 }, at(0, 0), { 1, 0.5 }, at(0.7, 1));
+	const Found found = find({1, 0.5}, at(0, 0), {1, 0.5}, at(0.7, 1));
 	REQUIRE(found.size == 2);
-	CHECK(found.features[0] == PlaneFeature { 1, 3, 2 });
-	CHECK(found.features[1] == PlaneFeature { 2, 0, 3 });
+	CHECK(found.features[0] == PlaneFeature {1, 3, 2});
+	CHECK(found.features[1] == PlaneFeature {2, 0, 3});
 	CHECK((found.frames[0].position - Vector2(1, 0.5)).norm() < 1e-15);
 	CHECK((found.frames[1].position - Vector2(-0.3, 0.5)).norm() < 1e-15);
 }
 
 TEST_CASE("features last through a rocking motion about either corner, forwards and back")
 {
-	for (const Vector2& half1 : { Vector2(2, 0.5), Vector2(0.3, 1) }) // wide base; equal blocks, corner above corner
-		for (double shift : { 0., 0.1 }) {
+	for (const Vector2& half1 : {Vector2(2, 0.5), Vector2(0.3, 1)}) // wide base; equal blocks, corner above corner
+		for (double shift : {0., 0.1}) {
 			const Vector2 half2(0.3, 1);
-			PlaneMemory   memory;
-			const Found   first = find(half1, at(0, 0), half2, rocking(half1, half2, shift, 0), 0.01, memory);
+			PlaneMemory memory;
+			const Found first = find(half1, at(0, 0), half2, rocking(half1, half2, shift, 0), 0.01, memory);
 			REQUIRE(first.size == 2);
-			for (double amplitude : { 0.3, -0.3 })
+			for (double amplitude : {0.3, -0.3})
 				for (int i = 0; i <= 600; ++i) {
 					const double tilt = amplitude * (1 - std::abs(i / 300. - 1));
-					PlanePose    pose2 = rocking(half1, half2, shift, tilt);
+					PlanePose pose2 = rocking(half1, half2, shift, tilt);
 					if (shift > 0 && half1.x() < 1 && tilt < 0) { // over the edge of body 1: stands on the corner of body 1
 						const Vector2 pivot(half1.x(), half1.y());
 						const Vector2 centre = pivot - at(0, 0, tilt).rotate(Vector2(half1.x() - shift, -half2.y()));
@@ -141,18 +141,18 @@ TEST_CASE("features last through a rocking motion about either corner, forwards 
 
 TEST_CASE("round-off of the poses changes no feature")
 {
-	std::mt19937                           random(1);
+	std::mt19937 random(1);
 	std::uniform_real_distribution<double> unit(-1, 1);
-	const Vector2                          half(0.5, 0.25);
+	const Vector2 half(0.5, 0.25);
 	// upon each other (equal widths, half a block aside), beside each other with faces that touch exactly
-	for (const Vector2& offset : { Vector2(0, 0.5), Vector2(0.5, 0.5), Vector2(1, 0), Vector2(1, 0.1) }) {
+	for (const Vector2& offset : {Vector2(0, 0.5), Vector2(0.5, 0.5), Vector2(1, 0), Vector2(1, 0.1)}) {
 		PlaneMemory memory;
 		const Found first = find(half, at(0, 0), half, at(offset.x(), offset.y()), 0.01, memory);
 		REQUIRE(first.size == 2);
 		for (int i = 0; i < 1000; ++i) {
 			const Vector2 nudge = 1e-12 * Vector2(unit(random), unit(random));
-			const Found   now = find(half, at(0, 0, 1e-12 * unit(random)), half,
-                                                 at(offset.x() + nudge.x(), offset.y() + nudge.y(), 1e-12 * unit(random)), 0.01, memory);
+			const Found now = find(half, at(0, 0, 1e-12 * unit(random)), half,
+			                       at(offset.x() + nudge.x(), offset.y() + nudge.y(), 1e-12 * unit(random)), 0.01, memory);
 			REQUIRE(now.size == 2);
 			CHECK(now.features == first.features);
 			CHECK(std::abs(now.smallestGap) < 4e-12);
@@ -162,29 +162,29 @@ TEST_CASE("round-off of the poses changes no feature")
 
 TEST_CASE("every normal in a running-bond wall with exact head joints is that of its joint")
 {
-	std::mt19937                           random(2);
+	std::mt19937 random(2);
 	std::uniform_real_distribution<double> unit(-1, 1);
-	const double                           length = 1, height = 0.5;
+	const double length = 1, height = 0.5;
 	struct Block {
-		Vector2   half, centre;
+		Vector2 half, centre;
 		PlanePose pose;
 	};
 	std::vector<Block> wall;
 	for (int course = 0; course < 6; ++course)
 		for (double left = 0; left < 4 * length;) {
-			const bool   isHalf = course % 2 == 1 && (left == 0 || left == 3.5 * length);
+			const bool isHalf = course % 2 == 1 && (left == 0 || left == 3.5 * length);
 			const double width = isHalf ? length / 2 : length;
 			const Vector2 centre(left + width / 2, (course + 0.5) * height);
 			const Vector2 nudge = 1e-12 * Vector2(unit(random), unit(random));
-			wall.push_back({ { width / 2, height / 2 }, centre, at(centre.x() + nudge.x(), centre.y() + nudge.y(), 1e-12 * unit(random)) });
+			wall.push_back({{width / 2, height / 2}, centre, at(centre.x() + nudge.x(), centre.y() + nudge.y(), 1e-12 * unit(random))});
 			left += width;
 		}
 	int beds = 0, heads = 0;
 	for (size_t i = 0; i < wall.size(); ++i)
 		for (size_t j = i + 1; j < wall.size(); ++j) {
-			const Found   found = find(wall[i].half, wall[i].pose, wall[j].half, wall[j].pose);
+			const Found found = find(wall[i].half, wall[i].pose, wall[j].half, wall[j].pose);
 			const Vector2 apart = (wall[j].centre - wall[i].centre).cwiseAbs(), touch = wall[i].half + wall[j].half;
-			const bool    head = apart.y() == 0 && apart.x() == touch.x(), bed = apart.y() == touch.y() && apart.x() < touch.x();
+			const bool head = apart.y() == 0 && apart.x() == touch.x(), bed = apart.y() == touch.y() && apart.x() < touch.x();
 			CHECK(found.near == (head || bed));
 			if (!found.near)
 				continue;
@@ -201,18 +201,18 @@ TEST_CASE("every normal in a running-bond wall with exact head joints is that of
 
 TEST_CASE("blocks that meet corner to corner do not touch")
 {
-	for (double x : { -1e-9, 0., 1e-9 })
-		for (double y : { -1e-9, 0., 1e-9 })
-			CHECK_FALSE(find({ 0.5, 0.25 }, at(0, 0), { 0.5, 0.25 }, at(1 + x, 0.5 + y)).near);
+	for (double x : {-1e-9, 0., 1e-9})
+		for (double y : {-1e-9, 0., 1e-9})
+			CHECK_FALSE(find({0.5, 0.25}, at(0, 0), {0.5, 0.25}, at(1 + x, 0.5 + y)).near);
 }
 
 TEST_CASE("a corner that stands past the middle of its turn, or at the very end of a face, is a point")
 {
 	const Vector2 base(1, 0.5), block(0.5, 0.5);
-	for (double tilt : { 0.01, 0.3, M_PI / 4, 1.2 })
-		for (double x : { -0.5, 0.5, 0.999999, 1. }) {
+	for (double tilt : {0.01, 0.3, M_PI / 4, 1.2})
+		for (double x : {-0.5, 0.5, 0.999999, 1.}) {
 			const Vector2 arm = at(0, 0, tilt).rotate(Vector2(-0.5, -0.5)); // to the lowest corner
-			const Found   found = find(base, at(0, 0), block, at(x - arm.x(), 0.5 - arm.y() - 1e-9, tilt));
+			const Found found = find(base, at(0, 0), block, at(x - arm.x(), 0.5 - arm.y() - 1e-9, tilt));
 			REQUIRE(found.size >= 1);
 			CHECK(found.smallestGap == Approx(-1e-9).epsilon(1e-5));
 			for (const auto& frame : found.frames)
@@ -228,17 +228,17 @@ TEST_CASE("a corner that stands past the middle of its turn, or at the very end 
 // end of a face, positive.
 TEST_CASE("the smallest gap is the penetration of boxes in any position")
 {
-	std::mt19937                           random(3);
+	std::mt19937 random(3);
 	std::uniform_real_distribution<double> unit(-1, 1);
-	const double                           margin = 0.2;
-	int                                    touching = 0, apart = 0;
+	const double margin = 0.2;
+	int touching = 0, apart = 0;
 	for (int i = 0; i < 200000; ++i) {
-		const Vector2   half1(1 + 0.9 * unit(random), 1 + 0.9 * unit(random)), half2(1 + 0.9 * unit(random), 1 + 0.9 * unit(random));
+		const Vector2 half1(1 + 0.9 * unit(random), 1 + 0.9 * unit(random)), half2(1 + 0.9 * unit(random), 1 + 0.9 * unit(random));
 		const PlanePose pose1 = at(2 * unit(random), 2 * unit(random), 4 * unit(random));
 		const PlanePose pose2 = at(2 * unit(random), 2 * unit(random), 4 * unit(random));
-		const double    expected = separation(corners(half1, pose1), corners(half2, pose2));
-		const Found     found = find(half1, pose1, half2, pose2, margin);
-		const double    length = std::min(half1.minCoeff(), half2.minCoeff());
+		const double expected = separation(corners(half1, pose1), corners(half2, pose2));
+		const Found found = find(half1, pose1, half2, pose2, margin);
+		const double length = std::min(half1.minCoeff(), half2.minCoeff());
 		if (expected > margin) {
 			REQUIRE_FALSE(found.near);
 		} else if (expected > 0 && found.near) {
@@ -258,20 +258,20 @@ TEST_CASE("the smallest gap is the penetration of boxes in any position")
 // derivatives near 1e2, round-off 1e-16 / 1e-3.
 TEST_CASE("the gap's rate is the relative velocity along the normal at the point")
 {
-	std::mt19937                           random(4);
+	std::mt19937 random(4);
 	std::uniform_real_distribution<double> unit(-1, 1);
 	for (int i = 0; i < 2000; ++i) {
-		const Vector2   half1(1 + 0.5 * unit(random), 1 + 0.5 * unit(random)), half2(1 + 0.5 * unit(random), 1 + 0.5 * unit(random));
+		const Vector2 half1(1 + 0.5 * unit(random), 1 + 0.5 * unit(random)), half2(1 + 0.5 * unit(random), 1 + 0.5 * unit(random));
 		const PlanePose pose1 = at(unit(random), unit(random), 4 * unit(random)), pose2 = at(unit(random), unit(random), 4 * unit(random));
-		const PlaneFeature   feature { i % 2 + 1, (i / 2) % 4, (i / 8) % 4 };
+		const PlaneFeature feature {i % 2 + 1, (i / 2) % 4, (i / 8) % 4};
 		const Plane::Velocity velocity1 = Plane::Velocity::Random(), velocity2 = Plane::Velocity::Random();
-		const auto            gap = [&](double t) {
-                        PlanePose moved1 = pose1, moved2 = pose2;
-                        Plane::advance(moved1, velocity1, t);
-                        Plane::advance(moved2, velocity2, t);
-                        return Plane::frame(feature, half1, moved1, half2, moved2).gap;
+		const auto gap = [&](double t) {
+			PlanePose moved1 = pose1, moved2 = pose2;
+			Plane::advance(moved1, velocity1, t);
+			Plane::advance(moved2, velocity2, t);
+			return Plane::frame(feature, half1, moved1, half2, moved2).gap;
 		};
-		const auto   slope = [&gap](double h) { return (gap(h) - gap(-h)) / (2 * h); };
+		const auto slope = [&gap](double h) { return (gap(h) - gap(-h)) / (2 * h); };
 		const double rate = (64 * slope(1e-3) - 20 * slope(2e-3) + slope(4e-3)) / 45;
 
 		const auto frame = Plane::frame(feature, half1, pose1, half2, pose2);
@@ -286,18 +286,18 @@ TEST_CASE("the gap's rate is the relative velocity along the normal at the point
 
 TEST_CASE("a mirrored scene has the mirrored points")
 {
-	std::mt19937                           random(5);
+	std::mt19937 random(5);
 	std::uniform_real_distribution<double> unit(-1, 1);
-	const auto                             mirror = [](PlanePose pose) {
-                pose.position.x() *= -1;
-                pose.angle *= -1;
-                pose.sine *= -1;
-                return pose;
+	const auto mirror = [](PlanePose pose) {
+		pose.position.x() *= -1;
+		pose.angle *= -1;
+		pose.sine *= -1;
+		return pose;
 	};
 	for (int i = 0; i < 20000; ++i) {
-		const Vector2   half1(1 + 0.5 * unit(random), 1 + 0.5 * unit(random)), half2(1 + 0.5 * unit(random), 1 + 0.5 * unit(random));
+		const Vector2 half1(1 + 0.5 * unit(random), 1 + 0.5 * unit(random)), half2(1 + 0.5 * unit(random), 1 + 0.5 * unit(random));
 		const PlanePose pose1 = at(0, 0, 0.1 * unit(random)), pose2 = at(2 * unit(random), 2 * unit(random), unit(random));
-		const Found     found = find(half1, pose1, half2, pose2), mirrored = find(half1, mirror(pose1), half2, mirror(pose2));
+		const Found found = find(half1, pose1, half2, pose2), mirrored = find(half1, mirror(pose1), half2, mirror(pose2));
 		REQUIRE(found.size == mirrored.size);
 		for (int k = 0; k < found.size; ++k) {
 			const auto &frame = found.frames[k], &other = mirrored.frames[found.size - 1 - k];

@@ -21,7 +21,7 @@ Pose at(const Vector3& position, const Vector3& turn = Vector3::Zero())
 }
 
 struct Found : FoundPoints<Space> {
-	bool                             near;
+	bool near;
 	std::vector<ContactFrame<Space>> frames;
 };
 
@@ -50,22 +50,23 @@ Vector3 velocityAt(const Vector3& point, const Pose& pose, const Space::Velocity
 // The plane's (along, up) are x and z; a turn counter-clockwise from x to z is one about -y.
 TEST_CASE("a planar scene has the points of the plane, once in front and once behind")
 {
-	std::mt19937                           random(1);
+	std::mt19937 random(1);
 	std::uniform_real_distribution<double> unit(-1, 1);
-	int                                    compared = 0;
+	int compared = 0;
 	for (int i = 0; i < 20000; ++i) {
 		const Vector2 half1(1 + 0.5 * unit(random), 1 + 0.5 * unit(random)), half2(1 + 0.5 * unit(random), 1 + 0.5 * unit(random));
-		PlanePose     plane1, plane2;
+		PlanePose plane1, plane2;
 		plane1.position << unit(random), unit(random);
 		plane1.setAngle(0.3 * unit(random));
 		plane2.setAngle(0.6 * unit(random));
-		plane2.position << plane1.position.x() + 0.9 * half1.x() * unit(random), plane1.position.y() + half1.y() + half2.y() + 0.2 * unit(random);
-		PlaneMemory        memory;
+		plane2.position << plane1.position.x() + 0.9 * half1.x() * unit(random),
+		    plane1.position.y() + half1.y() + half2.y() + 0.2 * unit(random);
+		PlaneMemory memory;
 		FoundPoints<Plane> expected;
-		const bool         near = Plane::findPoints(half1, plane1, half2, plane2, 0.1, memory, expected);
+		const bool near = Plane::findPoints(half1, plane1, half2, plane2, 0.1, memory, expected);
 
-		const auto  inSpace = [](const PlanePose& p) { return at({ p.position.x(), 0, p.position.y() }, { 0, -p.angle, 0 }); };
-		const Found found = find({ half1.x(), 0.5, half1.y() }, inSpace(plane1), { half2.x(), 0.5, half2.y() }, inSpace(plane2), 0.1);
+		const auto inSpace = [](const PlanePose& p) { return at({p.position.x(), 0, p.position.y()}, {0, -p.angle, 0}); };
+		const Found found = find({half1.x(), 0.5, half1.y()}, inSpace(plane1), {half2.x(), 0.5, half2.y()}, inSpace(plane2), 0.1);
 		if (expected.size == 1) // a single corner: space keeps the clipped face beside it
 			continue;
 		// heights over the reference face decide in space, gaps over the incident face in the plane: they can lie on either side
@@ -90,8 +91,9 @@ TEST_CASE("a planar scene has the points of the plane, once in front and once be
 			int matches = 0;
 			for (int k = 0; k < expected.size; ++k) {
 				const auto flat = Plane::frame(expected.features[k], half1, plane1, half2, plane2);
-				const double error = (Vector2(frame.position.x(), frame.position.z()) - flat.position).norm() + std::abs(frame.gap - flat.gap)
-				        + (Vector2(frame.axes(0, 0), frame.axes(0, 2)) - Vector2(flat.axes(0, 0), flat.axes(0, 1))).norm();
+				const double error = (Vector2(frame.position.x(), frame.position.z()) - flat.position).norm() +
+				                     std::abs(frame.gap - flat.gap) +
+				                     (Vector2(frame.axes(0, 0), frame.axes(0, 2)) - Vector2(flat.axes(0, 0), flat.axes(0, 1))).norm();
 				matches += error < 1e-14; // round-off of numbers near 2
 			}
 			CHECK(matches == 1);
@@ -102,8 +104,8 @@ TEST_CASE("a planar scene has the points of the plane, once in front and once be
 
 TEST_CASE("axes are right-handed and the normal points from body 1 to body 2")
 {
-	for (const bool swapped : { false, true }) {
-		const Pose  low = at({ 0, 0, 0 }), high = at({ 0.2, 0.1, 1.5 }, { 0, 0, 0.4 });
+	for (const bool swapped : {false, true}) {
+		const Pose low = at({0, 0, 0}), high = at({0.2, 0.1, 1.5}, {0, 0, 0.4});
 		const Vector3 base(2, 2, 0.5), block(0.3, 0.4, 1);
 		const Found found = swapped ? find(block, high, base, low) : find(base, low, block, high);
 		REQUIRE(found.size == 4);
@@ -119,7 +121,7 @@ TEST_CASE("axes are right-handed and the normal points from body 1 to body 2")
 
 TEST_CASE("two bars that cross have their four crossings, with the faces' normal")
 {
-	const Found found = find({ 2, 0.3, 0.3 }, at({ 0, 0, 0 }), { 2, 0.3, 0.3 }, at({ 0, 0, 0.6 }, { 0, 0, 1 }));
+	const Found found = find({2, 0.3, 0.3}, at({0, 0, 0}), {2, 0.3, 0.3}, at({0, 0, 0.6}, {0, 0, 1}));
 	REQUIRE(found.size == 4);
 	for (int i = 0; i < 4; ++i) {
 		CHECK(found.features[i].kind == SpaceFeature::Edges);
@@ -132,15 +134,15 @@ TEST_CASE("two bars that cross have their four crossings, with the faces' normal
 // e / sin(angle between the edges) + O(e^2), and so does gap from height.
 TEST_CASE("crossings of nearly parallel faces agree with the faces to first order")
 {
-	for (double yaw : { 0.2, 0.6, 1., M_PI / 2 })
-		for (double tilt : { 1e-6, 1e-3, 1e-2 })
+	for (double yaw : {0.2, 0.6, 1., M_PI / 2})
+		for (double tilt : {1e-6, 1e-3, 1e-2})
 			for (double direction = 0; direction < 6; direction += 0.5) {
-				Pose upper = at({ 0, 0, 0.6 }, { 0, 0, yaw });
+				Pose upper = at({0, 0, 0.6}, {0, 0, yaw});
 				upper.orientation = Eigen::AngleAxisd(tilt, Vector3(std::cos(direction), std::sin(direction), 0)) * upper.orientation;
 				const Vector3 half(2, 0.3, 0.3);
-				ContactPatch  patch;
-				REQUIRE(collide({ half }, at({ 0, 0, 0 }), { half }, upper, 0.1, {}, patch));
-				const Found found = find(half, at({ 0, 0, 0 }), half, upper, 0.1);
+				ContactPatch patch;
+				REQUIRE(collide({half}, at({0, 0, 0}), {half}, upper, 0.1, {}, patch));
+				const Found found = find(half, at({0, 0, 0}), half, upper, 0.1);
 				REQUIRE(found.size == patch.size);
 				for (int i = 0; i < found.size; ++i) {
 					CHECK((found.frames[i].axes.row(0).transpose() - patch.normal).norm() < 1.1 * tilt / std::sin(yaw));
@@ -152,8 +154,8 @@ TEST_CASE("crossings of nearly parallel faces agree with the faces to first orde
 
 TEST_CASE("equal blocks with a little yaw meet at the four corners")
 {
-	for (double yaw : { 1e-12, 1e-9, 1e-6, 1e-5, 3e-4 }) {
-		const Found found = find({ 0.3, 0.3, 1 }, at({ 0, 0, 0 }), { 0.3, 0.3, 1 }, at({ 0, 0, 2 }, { 0, 0, yaw }));
+	for (double yaw : {1e-12, 1e-9, 1e-6, 1e-5, 3e-4}) {
+		const Found found = find({0.3, 0.3, 1}, at({0, 0, 0}), {0.3, 0.3, 1}, at({0, 0, 2}, {0, 0, yaw}));
 		REQUIRE(found.size == 4);
 		for (const auto& frame : found.frames) {
 			CHECK(std::abs(frame.axes(0, 2)) == Approx(1));
@@ -166,7 +168,7 @@ TEST_CASE("edge across edge")
 {
 	// the lower edge of a box turned by 45 degrees about y upon the upper edge of one turned by 45 degrees about x
 	const double up = std::sqrt(2.) * 0.5 * 2;
-	const Found  found = find({ 1, 0.5, 0.5 }, at({ 0, 0, 0 }, { M_PI / 4, 0, 0 }), { 0.5, 1, 0.5 }, at({ 0.1, 0.2, up + 1e-3 }, { 0, M_PI / 4, 0 }));
+	const Found found = find({1, 0.5, 0.5}, at({0, 0, 0}, {M_PI / 4, 0, 0}), {0.5, 1, 0.5}, at({0.1, 0.2, up + 1e-3}, {0, M_PI / 4, 0}));
 	REQUIRE(found.size == 1);
 	CHECK(found.features[0].kind == SpaceFeature::Edges);
 	CHECK(found.frames[0].gap == Approx(1e-3).epsilon(1e-12));
@@ -176,13 +178,13 @@ TEST_CASE("edge across edge")
 
 TEST_CASE("round-off of the poses changes no feature in space")
 {
-	std::mt19937                           random(2);
+	std::mt19937 random(2);
 	std::uniform_real_distribution<double> unit(-1, 1);
-	const auto                             nudge = [&] { return Vector3(1e-12 * Vector3(unit(random), unit(random), unit(random))); };
-	const Vector3                          half(0.5, 0.2, 0.25);
-	for (const Vector3& offset : { Vector3(0, 0, 0.5), Vector3(0.5, 0, 0.5), Vector3(1, 0, 0), Vector3(0.5, 0.1, 0.5) }) {
+	const auto nudge = [&] { return Vector3(1e-12 * Vector3(unit(random), unit(random), unit(random))); };
+	const Vector3 half(0.5, 0.2, 0.25);
+	for (const Vector3& offset : {Vector3(0, 0, 0.5), Vector3(0.5, 0, 0.5), Vector3(1, 0, 0), Vector3(0.5, 0.1, 0.5)}) {
 		PatchFeature memory;
-		const Found  first = find(half, at({ 0, 0, 0 }), half, at(offset), 0.01, memory);
+		const Found first = find(half, at({0, 0, 0}), half, at(offset), 0.01, memory);
 		REQUIRE(first.size == 4);
 		for (int i = 0; i < 500; ++i) {
 			const Found now = find(half, at(nudge(), nudge()), half, at(offset + nudge(), nudge()), 0.01, memory);
@@ -196,20 +198,20 @@ TEST_CASE("round-off of the poses changes no feature in space")
 TEST_CASE("features last through a rocking motion in space")
 {
 	const Vector3 base(2, 2, 0.5), block(0.3, 0.4, 1);
-	for (double yaw : { 0., 0.3, M_PI / 4 })
-		for (double amplitude : { 0.3, -0.3 }) {
+	for (double yaw : {0., 0.3, M_PI / 4})
+		for (double amplitude : {0.3, -0.3}) {
 			PatchFeature memory;
-			const Found  first = find(base, at({ 0, 0, 0 }), block, at({ 0, 0, 1.5 }, { 0, 0, yaw }), 0.01, memory);
+			const Found first = find(base, at({0, 0, 0}), block, at({0, 0, 1.5}, {0, 0, yaw}), 0.01, memory);
 			REQUIRE(first.size == 4);
 			for (int i = 0; i <= 300; ++i) {
-				const double     tilt = amplitude * i / 300;
+				const double tilt = amplitude * i / 300;
 				const Quaternion turn(Eigen::AngleAxisd(yaw, Vector3::UnitZ()) * Eigen::AngleAxisd(tilt, Vector3::UnitY()));
-				const double     side = tilt > 0 ? 1 : -1;
-				const Vector3    pivot = Eigen::AngleAxisd(yaw, Vector3::UnitZ()) * Vector3(side * block.x(), 0, 0) + Vector3(0, 0, 0.5);
-				Pose             pose;
+				const double side = tilt > 0 ? 1 : -1;
+				const Vector3 pivot = Eigen::AngleAxisd(yaw, Vector3::UnitZ()) * Vector3(side * block.x(), 0, 0) + Vector3(0, 0, 0.5);
+				Pose pose;
 				pose.orientation = turn;
 				pose.position = pivot - turn * Vector3(side * block.x(), 0, -block.z());
-				const Found now = find(base, at({ 0, 0, 0 }), block, pose, 0.01, memory);
+				const Found now = find(base, at({0, 0, 0}), block, pose, 0.01, memory);
 				REQUIRE(now.size == 4);
 				int closed = 0;
 				for (int k = 0; k < 4; ++k) {
@@ -225,18 +227,18 @@ TEST_CASE("features last through a rocking motion in space")
 // sine s of their angle, on which the normal's derivatives depend as 1/s per turn.
 TEST_CASE("the gap's rate in space is the relative velocity along the normal at the point")
 {
-	std::mt19937                           random(3);
+	std::mt19937 random(3);
 	std::uniform_real_distribution<double> unit(-1, 1);
-	const auto                             vector = [&] { return Vector3(unit(random), unit(random), unit(random)); };
-	int                                    kinds[4] = { 0, 0, 0, 0 };
+	const auto vector = [&] { return Vector3(unit(random), unit(random), unit(random)); };
+	int kinds[4] = {0, 0, 0, 0};
 	for (int i = 0; i < 40000; ++i) {
 		const Vector3 half1 = Vector3::Ones() + 0.5 * vector(), half2 = Vector3::Ones() + 0.5 * vector();
-		const Pose    pose1 = at(vector(), vector()), pose2 = at(pose1.position + 2.5 * vector(), (i % 2 ? 1 : 3) * vector());
-		const Found   found = find(half1, pose1, half2, pose2, 0.1);
+		const Pose pose1 = at(vector(), vector()), pose2 = at(pose1.position + 2.5 * vector(), (i % 2 ? 1 : 3) * vector());
+		const Found found = find(half1, pose1, half2, pose2, 0.1);
 		for (int k = 0; k < found.size; ++k) {
 			const SpaceFeature feature = found.features[k];
-			const auto&        frame = found.frames[k];
-			Space::Velocity    velocity1, velocity2;
+			const auto& frame = found.frames[k];
+			Space::Velocity velocity1, velocity2;
 			velocity1 << vector(), vector();
 			velocity2 << vector(), vector();
 			const auto gap = [&](double t) {
@@ -250,7 +252,7 @@ TEST_CASE("the gap's rate in space is the relative velocity along the normal at 
 				const Matrix3 axes1 = pose1.orientation.toRotationMatrix(), axes2 = pose2.orientation.toRotationMatrix();
 				h *= axes1.col(feature.first / 4).cross(axes2.col(feature.second / 4)).norm();
 			}
-			const auto   slope = [&gap](double t) { return (gap(t) - gap(-t)) / (2 * t); };
+			const auto slope = [&gap](double t) { return (gap(t) - gap(-t)) / (2 * t); };
 			const double rate = (64 * slope(h) - 20 * slope(2 * h) + slope(4 * h)) / 45;
 			const Vector3 relative = velocityAt(frame.position, pose2, velocity2) - velocityAt(frame.position, pose1, velocity1);
 			// (4e-3)^6 times derivatives near 1e3, and round-off 1e-15 / h
@@ -260,7 +262,7 @@ TEST_CASE("the gap's rate in space is the relative velocity along the normal at 
 			++kinds[feature.kind];
 		}
 	}
-	for (int kind : { SpaceFeature::Vertex1, SpaceFeature::Vertex2, SpaceFeature::Edges })
+	for (int kind : {SpaceFeature::Vertex1, SpaceFeature::Vertex2, SpaceFeature::Edges})
 		CHECK(kinds[kind] > 500);
 }
 
@@ -268,28 +270,28 @@ TEST_CASE("the gap's rate in space is the relative velocity along the normal at 
 // times the height; near touch they agree to the square of small numbers, and the deepest point is never lost.
 TEST_CASE("no box in touch is without its deepest point, and no open corner counts as deep")
 {
-	std::mt19937                           random(4);
+	std::mt19937 random(4);
 	std::uniform_real_distribution<double> unit(-1, 1);
-	const auto                             vector = [&] { return Vector3(unit(random), unit(random), unit(random)); };
-	int                                    touching = 0;
+	const auto vector = [&] { return Vector3(unit(random), unit(random), unit(random)); };
+	int touching = 0;
 	for (int i = 0; i < 40000; ++i) {
-		const double  tilt = std::pow(10., -3 * std::abs(unit(random)));
+		const double tilt = std::pow(10., -3 * std::abs(unit(random)));
 		const Vector3 half1 = Vector3::Ones() + 0.9 * vector(), half2 = Vector3::Ones() + 0.9 * vector();
-		Vector3       turn = tilt * vector();
+		Vector3 turn = tilt * vector();
 		turn.z() = 3 * unit(random);
-		const Pose   pose1;
-		Pose         pose2 = at(2 * vector(), turn);
+		const Pose pose1;
+		Pose pose2 = at(2 * vector(), turn);
 		ContactPatch patch;
-		const auto   nearest = [&patch] {
-                        double gap = patch.points[0].gap;
-                        for (int k = 1; k < patch.size; ++k)
-                                gap = std::min(gap, patch.points[k].gap);
-                        return gap;
+		const auto nearest = [&patch] {
+			double gap = patch.points[0].gap;
+			for (int k = 1; k < patch.size; ++k)
+				gap = std::min(gap, patch.points[k].gap);
+			return gap;
 		};
-		if (!collide({ half1 }, pose1, { half2 }, pose2, 1, {}, patch))
+		if (!collide({half1}, pose1, {half2}, pose2, 1, {}, patch))
 			continue;
 		pose2.position -= (nearest() + 1e-6) * patch.normal; // 1e-6 deep
-		if (!collide({ half1 }, pose1, { half2 }, pose2, 1e-3, {}, patch) || nearest() < -1e-3)
+		if (!collide({half1}, pose1, {half2}, pose2, 1e-3, {}, patch) || nearest() < -1e-3)
 			continue;
 		++touching;
 		const Found found = find(half1, pose1, half2, pose2, 1e-3);
