@@ -3,21 +3,25 @@
 import math
 
 import numpy as np
+from masonry.dem import walls
 from yade import O, Quaternion, Vector3, utils, wrapper
 
 _AXES = {"x": 0, "y": 1}
+# Faults that a message names one by one; more are counted.
+_NAMED = 10
 
 
 def _positive_size(name, size):
-    values = [float(v) for v in size]
-    if len(values) != 3 or not all(math.isfinite(v) and v > 0 for v in values):
-        raise ValueError(f"{name} = {tuple(size)}: must be three full sizes in m, each finite and positive")
-    return Vector3(values)
+    return Vector3(walls.positive_size(name, size))
+
+
+def _is_block_material(material):
+    if not isinstance(material, wrapper.BlockMat):
+        raise ValueError(f"material = {material!r}: must be a BlockMat")
 
 
 def _block_material(material):
-    if not isinstance(material, wrapper.BlockMat):
-        raise ValueError(f"material = {material!r}: must be a BlockMat")
+    _is_block_material(material)
     if material.id < 0:
         O.materials.append(material)
     return material
@@ -43,6 +47,38 @@ def _append(center, size, material, orientation=None, fixed=False):
     body = utils.box(center, size / 2, orientation or Quaternion.Identity, material=_block_material(material), fixed=fixed)
     body.aspherical = True
     return O.bodies.append(body)
+
+
+def _append_all(centers, sizes, material, orientations, resting):
+    """Free blocks at those places of the world. material, orientations, resting (the pose from which dem.angle counts): one for all,
+    or one a block."""
+    def each(value):
+        return value if isinstance(value, list) else [value] * len(centers)
+
+    bodies = []
+    for center, half, mat, turn, rest in zip(centers.tolist(), (sizes / 2).tolist(), each(material), each(orientations), each(resting)):
+        body = utils.box(Vector3(center), Vector3(half), turn, material=mat)
+        body.aspherical, body.state.refOri = True, rest
+        bodies.append(body)
+    return O.bodies.append(bodies)
+
+
+def _top(on, at=(0.0, 0.0)):
+    """Where a layout stands on the body: the place `at` on its upper face, in world axes, and the body's orientation."""
+    below, at = _box(on), tuple(at)
+    if len(at) != 2 or not all(math.isfinite(v) for v in at):
+        raise ValueError(f"at = {at}: must be two finite numbers, in m")
+    return below.state.pos + below.state.ori * Vector3(at[0], at[1], below.shape.extents[2]), below.state.ori
+
+
+def _placed(centers, foot, orientation):
+    return np.array(foot) + centers @ np.array(orientation.toRotationMatrix()).reshape(3, 3).T
+
+
+def _stand(layout, material, on, at):
+    """The blocks of a layout on the body `on`. Everything is checked before the first one is made."""
+    foot, orientation = _top(on, at)
+    return _append_all(_placed(layout[0], foot, orientation), layout[1], _block_material(material), orientation, orientation)
 
 
 def base(size, material):
@@ -80,28 +116,132 @@ def stack(n, size, material, on):
     return ids
 
 
-def wall(courses, per_course, size, material, on, gap=0.0):
-    """Running-bond wall, centred on the body `on`: every second course starts and ends with a half block. size: of a whole block
-    (x along the wall, y through it, z up); gap: between the blocks of a course, m. Returns the ids, bottom up, along x."""
-    size = _positive_size("size", size)
-    if not (courses >= 1 and per_course >= 1):
-        raise ValueError(f"courses = {courses}, per_course = {per_course}: both must be at least 1")
-    if not gap >= 0:
-        raise ValueError(f"gap = {gap}: must be 0 or positive, in m")
-    below = _box(on)
-    pitch = size[0] + gap
-    left = -pitch * per_course / 2
-    ids = []
-    for course in range(courses):
-        # Joints lie at multiples of the pitch in even courses and half a pitch aside in odd ones.
-        joints = [left + pitch * k for k in range(per_course + 1)]
-        if course % 2:
-            joints = [left] + [left + pitch * (k + 0.5) for k in range(per_course)] + [left + pitch * per_course]
-        z = below.shape.extents[2] + size[2] * (course + 0.5)
-        for start, end in zip(joints, joints[1:]):
-            length = Vector3(end - start - gap, size[1], size[2])
-            ids.append(block(length, material, center=below.state.pos + below.state.ori * Vector3((start + end) / 2, 0, z)))
-    return ids
+def wall(courses=None, per_course=None, size=None, material=None, on=None, gap=0.0, *, length=None, height=None, thickness=None, openings=(),
+         openings_in="m", at=(0.0, 0.0)):
+    """Running-bond wall on the body `on`: every second course starts and ends with a half block. Returns the ids, bottom up, along x.
+
+    The wall is given by one of
+        courses, per_course, size                          size: of a whole block (x along the wall, y through it, z up), m
+        length, height, size                               outer length and height, m: a multiple of half a block, of a course
+        courses, per_course, length, height, thickness     outer sizes, m, divided evenly
+    per_course    blocks in a course, a multiple of one half
+    gap           width of the head joints, m; half a gap is left free at both ends of the wall
+    openings      (x0, z0, width, height) of each one, from the lower left corner of the wall, in m (a multiple of half a block and of a
+                  course), or with openings_in='blocks' in blocks along x and courses along z. Half a block at least stays at both
+                  ends. Over each one lies a lintel: a single block that bears on half a block or a whole one, so that it ends
+                  where its course has a joint. There is none over an opening that reaches the top.
+    at            (x, y) of the middle of the wall on the body `on`, m
+    """
+    courses, per_course, size = walls.wall_modules(courses, per_course, size, length, height, thickness, gap)
+    return _stand(walls.wall_layout(courses, per_course, size, gap, openings, openings_in), material, on, at)
+
+
+def two_wythe_wall(courses, per_course, size, material, on, header_every=6, gap=0.0, collar=0.0, at=(0.0, 0.0)):
+    """Wall of two leaves in running bond, tied by courses of headers. Returns the ids, bottom up, the front leaf (least y) first.
+
+    size            of a whole stretcher, m; per_course: stretchers in a course of a leaf, a multiple of one half
+    header_every    courses header_every, 2 header_every, ... (counted from 1) are headers: half a block long on the face, through both
+                    leaves, with a quarter closer at either end; 2 to courses
+    gap, collar     widths of the head joints and of the joint between the leaves, m
+    at              (x, y) of the middle of the wall on the body `on`, m
+    """
+    return _stand(walls.two_wythe_layout(courses, per_course, size, header_every, gap, collar), material, on, at)
+
+
+def return_wall(courses, along_x, along_y, size, material, on, gap=0.0, at=(0.0, 0.0)):
+    """Corner of two running-bond legs, along x and along y, that interlock: they run through the corner in turns. Returns the ids,
+    bottom up, in each course the leg along x first.
+
+    along_x, along_y    length of a leg from the outer corner, in whole blocks, at least 2; in every second course the block at its
+                        free end is shorter by the thickness
+    size                of a whole block (along its leg, through it, z), m; through it 1/4 to 3/4 of along it: that is the lap
+    gap                 width of the head joints, m
+    at                  (x, y) of the middle of the rectangle around the plan on the body `on`, m
+    """
+    return _stand(walls.return_layout(courses, along_x, along_y, size, gap), material, on, at)
+
+
+def pier(courses, size, material, on, per_course=1, at=(0.0, 0.0)):
+    """A pier: a column of blocks. per_course: 1, or 2 for two blocks side by side, turned by a quarter turn from course to course (size x
+    twice size y). at: (x, y) of its axis on the body `on`, m. Returns the ids, bottom up."""
+    return _stand(walls.pier_layout(courses, size, per_course), material, on, at)
+
+
+def blocks_from_table(table, materials, on=None):
+    """Free blocks from a table: a path that ends in .csv (a header line names the columns) or .json (a list of objects), or rows (mappings,
+    or sequences in the order below). Returns the ids in the order of the rows.
+
+    x, y, z                   centre, m: of the world, or from the middle of the upper face of the body `on`, in its axes
+    size_x, size_y, size_z    full sizes, m, positive
+    rotation_y, rotation_z    optional, rad: a turn about z, then a lean about the block's own y axis (positive towards +x). dem.angle
+                              counts the lean.
+    material                  optional: a key of `materials`, a dict of BlockMats. One BlockMat instead serves the rows that name
+                              none, or its label.
+    qw, qx, qy, qz            optional, instead of the rotations: the orientation as a quaternion (dem.save_blocks writes it)
+    """
+    centers, sizes, quaternions, names = walls.read_table(table)
+    if not isinstance(materials, dict):
+        _is_block_material(materials)
+        materials = {materials.label: materials, "": materials}
+    for material in materials.values():
+        _is_block_material(material)
+    for index, name in enumerate(names):
+        if name not in materials:
+            raise ValueError(f"row {index}: material = {name!r}: must be one of {', '.join(repr(key) for key in materials)}")
+    orientations = [Quaternion(*q) for q in quaternions.tolist()]
+    # A block rests upright: its turn about z alone. Lying on its side it has none.
+    norms = np.hypot(quaternions[:, 0], quaternions[:, 3]).tolist()
+    resting = [Quaternion(q[3] / norm, 0, 0, q[2] / norm) if norm else Quaternion.Identity for q, norm in zip(orientations, norms)]
+    if on is not None:
+        foot, turn = _top(on)
+        centers = _placed(centers, foot, turn)
+        orientations, resting = [turn * q for q in orientations], [turn * q for q in resting]
+    return _append_all(centers, sizes, [_block_material(materials[name]) for name in names], orientations, resting)
+
+
+def _boxes():
+    return [b for b in O.bodies if isinstance(b.mat, wrapper.BlockMat) and isinstance(b.shape, wrapper.Box)]
+
+
+def _layout(bodies):
+    """centers (n, 3), full sizes (n, 3) in m and quaternions (n, 4) as w, x, y, z."""
+    states = [b.state for b in bodies]
+    quaternions = np.array([tuple(s.ori) for s in states]).reshape(-1, 4)[:, [3, 0, 1, 2]]
+    sizes = 2 * np.array([tuple(b.shape.extents) for b in bodies]).reshape(-1, 3)
+    return np.array([tuple(s.pos) for s in states]).reshape(-1, 3), sizes, quaternions
+
+
+def save_blocks(path):
+    """Writes the free blocks as they are now (centre, size, orientation, label of the material) to a .csv or .json table, in the order of their
+    ids: dem.blocks_from_table(path, ...) makes the same bits of them again. Velocities are not kept: O.save does that."""
+    bodies = [b for b in _boxes() if b.dynamic]
+    walls.write_table(path, *_layout(bodies), [b.mat.label for b in bodies])
+
+
+def _listed(items):
+    return ", ".join(items[:_NAMED]) + (f" and {len(items) - _NAMED} more" if len(items) > _NAMED else "")
+
+
+def check_blocks(tolerance=1e-3, floating=True):
+    """Raises a ValueError that names the ids of overlapping blocks and, with `floating`, of those that no chain of supports joins to
+    a prescribed body (head joints do not carry). tolerance: depth of an overlap, or gap in a joint, that is still accepted, relative to
+    the smallest size of the two blocks; 0 < tolerance <= 0.1."""
+    if not 0 < tolerance <= 0.1:
+        raise ValueError(f"tolerance = {tolerance}: must be above 0 and at most 0.1")
+    bodies = _boxes()
+    if not bodies:
+        return
+    centers, sizes, quaternions = _layout(bodies)
+    prescribed = np.array([not b.dynamic for b in bodies])
+    pairs, depths, loose = walls.faults(centers, sizes, walls.axes_of(quaternions), prescribed, tolerance)
+    ids, found = [b.id for b in bodies], []
+    if len(pairs):
+        each = [f"{ids[i]} and {ids[j]} (by {depth:.3g} m)" for (i, j), depth in zip(pairs.tolist(), depths.tolist())]
+        found.append("overlapping blocks: " + _listed(each))
+    if floating and len(loose):
+        found.append("floating blocks, which no chain of supports joins to a prescribed body: " + _listed([str(ids[i]) for i in loose]))
+    if found:
+        raise ValueError(f"{'; '.join(found)}; overlaps and gaps must be at most {tolerance:g} of the smallest size (tolerance)")
 
 
 def tilt(id, angle, axis="y"):

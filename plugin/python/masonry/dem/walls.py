@@ -1,0 +1,381 @@
+"""Layouts of blocks and what may be wrong with one: geometry alone, NumPy arrays, no YADE.
+
+A layout is (centers, sizes): two arrays (n, 3) in m, x along the wall, y through it, z up from the foot at z = 0; centred on the
+z axis; bottom up, along x. A block is a box; sizes are full sizes. Where a course is cut, `gap` is the width of the head joints:
+every block fills its cell less half a gap at either end."""
+
+import csv
+import json
+import math
+
+import numpy as np
+
+# A length fits the modules of a wall when it is off by less than this share of a module: far above round-off, far below a cut.
+_FIT = 1e-6
+# Smallest upward part of the normal of a joint that carries: the joint of a leaning block does, a head joint does not.
+_CARRIES = 0.1
+
+
+def positive_size(name, size):
+    """The three full sizes as floats; ValueError unless finite and positive."""
+    values = [float(v) for v in size]
+    if len(values) != 3 or not all(math.isfinite(v) and v > 0 for v in values):
+        raise ValueError(f"{name} = {tuple(size)}: must be three full sizes in m, each finite and positive")
+    return values
+
+
+def _whole(name, value, least):
+    if not (math.isfinite(value) and value == int(value) and value >= least):
+        raise ValueError(f"{name} = {value}: must be a whole number, at least {least}")
+    return int(value)
+
+
+def _head_joint(gap, size, shortest):
+    """Checks the width of the head joints: something must be left of a piece that is `shortest` blocks long."""
+    limit = size[0] * shortest / (1 - shortest)
+    if not 0 <= gap < limit:
+        raise ValueError(f"gap = {gap}: must be 0 or positive, in m, and below {limit:g} m, where the cut blocks of a course vanish")
+
+
+def _in_course(joints, size, gap):
+    """Centres and lengths of the blocks between the joints of a course. A whole block has exactly the size given: round-off goes
+    into the places."""
+    lengths = np.diff(joints) - gap
+    return (joints[1:] + joints[:-1]) / 2, np.where(np.abs(lengths - size[0]) <= 1e-12 * size[0], size[0], lengths)
+
+
+def _joined(parts):
+    """One layout of rows (x, y, z, size x, size y, size z), broadcast."""
+    rows = np.concatenate([np.stack(np.broadcast_arrays(*part), axis=-1).reshape(-1, 6) for part in parts])
+    return rows[:, :3], rows[:, 3:]
+
+
+# Running bond.
+
+
+def _fitted(name, length, module):
+    modules = length / module
+    if not (math.isfinite(modules) and modules > 0 and abs(modules - round(modules)) < _FIT * max(1, modules)):
+        raise ValueError(f"{name} = {length}: must be a positive whole multiple of {module:g} m")
+    return round(modules)
+
+
+def wall_modules(courses=None, per_course=None, size=None, length=None, height=None, thickness=None, gap=0.0):
+    """(courses, blocks per course, size of a whole block) from one of: courses, per_course, size; length, height, size; courses,
+    per_course, length, height, thickness."""
+    given = {name for name, value in locals().items() if value is not None and name != "gap"}
+    forms = ({"courses", "per_course", "size"}, {"length", "height", "size"}, {"courses", "per_course", "length", "height", "thickness"})
+    if given not in forms:
+        raise ValueError(f"{', '.join(sorted(given)) or 'nothing'} given: must be one of {'; '.join(', '.join(sorted(f)) for f in forms)}")
+    if "courses" in given:
+        if not (courses >= 1 and per_course >= 1):
+            raise ValueError(f"courses = {courses}, per_course = {per_course}: both must be at least 1")
+        courses = _whole("courses", courses, 1)
+        if not (math.isfinite(per_course) and 2 * per_course == int(2 * per_course)):
+            raise ValueError(f"per_course = {per_course}: must be a multiple of one half")
+    if size is not None:
+        size = positive_size("size", size)
+    if thickness is not None:
+        outer = positive_size("(length, thickness, height)", (length, thickness, height))
+        size = positive_size("size of a block", ((outer[0] + gap) / per_course - gap, outer[1], outer[2] / courses))
+    elif length is not None:
+        courses = _fitted("height", height, size[2])
+        per_course = _fitted("length + gap", length + gap, (size[0] + gap) / 2) / 2
+        if per_course < 1:
+            raise ValueError(f"length = {length}: must be at least one block of {size[0]:g} m")
+    _head_joint(gap, size, 1 / 2)
+    return courses, per_course, size
+
+
+def _opening_cells(index, opening, unit, shape):
+    """Half blocks [x0, x1) and courses [z0, z1) of an opening; unit: (block, course) in the unit of the opening."""
+    name = f"openings[{index}] = {tuple(opening)}"
+    if len(opening) != 4:
+        raise ValueError(f"{name}: must be (x0, z0, width, height)")
+    cells = []
+    for part, value, module in zip(("x0", "z0", "width", "height"), opening, (unit[0] / 2, unit[1]) * 2):
+        cell = value / module
+        if not (math.isfinite(cell) and abs(cell - round(cell)) < _FIT * max(1, abs(cell))):
+            raise ValueError(f"{name}: its {part} = {value} must be a whole multiple of {module:g} (half a block, one course)")
+        cells.append(round(cell))
+    x0, z0, width, height = cells
+    courses, halves = shape
+    if not (width >= 1 and height >= 1 and 0 <= z0 and z0 + height <= courses and 1 <= x0 and x0 + width <= halves - 1):
+        raise ValueError(f"{name}: must have positive width and height, lie within the {courses * unit[1]:g} of the height and leave half a block "
+                         f"({unit[0] / 2:g}) at both ends of the {halves * unit[0] / 2:g} of the length")
+    return x0, x0 + width, z0, z0 + height
+
+
+def _openings(openings, unit, shape):
+    """Grid of half blocks by courses: 0 masonry, -(k+1) opening k, k+1 its lintel. A lintel bears on half a block at least and ends
+    where its course has a joint anyway, so that no joint runs through. Above an opening that reaches the top there is none."""
+    grid = np.zeros(shape, dtype=int)
+    for k, opening in enumerate(openings):
+        x0, x1, z0, z1 = _opening_cells(k, opening, unit, shape)
+        left, right = max(x0 - 1 - (x0 - 1 + z1) % 2, 0), min(x1 + 1 + (x1 + 1 + z1) % 2, shape[1])
+        areas = [(grid[z0:z1, x0:x1], -(k + 1))] + ([(grid[z1, left:right], k + 1)] if z1 < shape[0] else [])
+        for area, mark in areas:
+            if area.any():
+                other = abs(area[area != 0][0]) - 1
+                raise ValueError(f"openings[{k}] = {tuple(opening)}: it or its lintel meets openings[{other}] = {tuple(openings[other])} or its lintel: "
+                                 f"must be two blocks apart, or one where both lintels end at the same joint")
+            area[...] = mark
+    return grid
+
+
+def wall_layout(courses, per_course, size, gap=0.0, openings=(), openings_in="m"):
+    """Running bond: joints at whole blocks in even courses, half a block aside in odd ones, half blocks where a course is cut (at the
+    ends, at openings). openings: (x0, z0, width, height) from the lower left corner, in 'm' or in 'blocks' (blocks along x,
+    courses along z); over each one a lintel, a single block."""
+    pitch, halves = size[0] + gap, round(2 * per_course)
+    if openings_in not in ("m", "blocks"):
+        raise ValueError(f"openings_in = {openings_in!r}: must be 'm' or 'blocks'")
+    grid = _openings(openings, (pitch, size[2]) if openings_in == "m" else (1, 1), (courses, halves))
+    joint = np.ones((courses, halves + 1), dtype=bool)
+    bond = (np.arange(1, halves) + np.arange(courses)[:, None]) % 2 == 0
+    joint[:, 1:-1] = (grid[:, 1:] != grid[:, :-1]) | bond & (grid[:, 1:] == 0)
+    parts = []
+    for course in range(courses):
+        cuts = np.flatnonzero(joint[course])
+        x, length = _in_course(-pitch * per_course / 2 + pitch * (cuts / 2), size, gap)
+        solid = grid[course, cuts[:-1]] >= 0
+        parts.append((x[solid], 0, size[2] * (course + 0.5), length[solid], size[1], size[2]))
+    return _joined(parts)
+
+
+# Other walls.
+
+
+def two_wythe_layout(courses, per_course, size, header_every, gap=0.0, collar=0.0):
+    """Two leaves in running bond, `collar` apart; courses header_every, 2 header_every, ... are headers through both leaves, half a
+    block long on the face, their joints a quarter of a block aside from those above and below (a quarter closer at either end)."""
+    courses, per_course, size = wall_modules(courses, per_course, size)
+    header_every = _whole("header_every", header_every, 2)
+    if header_every > courses:
+        raise ValueError(f"header_every = {header_every}: must be from 2 to the number of courses, {courses}")
+    _head_joint(gap, size, 1 / 4)
+    if not 0 <= collar < math.inf:
+        raise ValueError(f"collar = {collar}: must be 0 or positive, in m")
+    pitch, quarters = size[0] + gap, round(4 * per_course)
+    inner, thickness = np.arange(1, quarters), 2 * size[1] + collar
+    leaves = np.array([[-1], [1]]) * (size[1] + collar) / 2
+    parts = []
+    for course in range(courses):
+        headers = (course + 1) % header_every == 0
+        cut = inner % 2 == 1 if headers else inner % 4 == 2 * (course % 2)
+        joints = pitch * np.concatenate([[0], inner[cut], [quarters]]) / 4 - pitch * per_course / 2
+        x, length = _in_course(joints, size, gap)
+        parts.append((x, 0 if headers else leaves, size[2] * (course + 0.5), length, thickness if headers else size[1], size[2]))
+    return _joined(parts)
+
+
+def return_layout(courses, along_x, along_y, size, gap=0.0):
+    """Two legs that meet in a corner at their ends of least x and y. In even courses the leg along x runs through the corner, in odd
+    ones the leg along y; the other starts at its face with a whole block. The lap is the thickness."""
+    courses, along_x, along_y = _whole("courses", courses, 1), _whole("along_x", along_x, 2), _whole("along_y", along_y, 2)
+    size = positive_size("size", size)
+    if not size[0] / 4 <= size[1] <= size[0] * 3 / 4:
+        raise ValueError(f"size = {tuple(size)}: its y must be from 1/4 to 3/4 of its x, so that the blocks lap by a quarter at least")
+    _head_joint(gap, size, 1 / 4)
+    pitch, corner = size[0] + gap, size[1] + gap
+    middle = np.array([along_x, along_y]) * pitch / 2
+
+    def leg(through, blocks):
+        starts = pitch * np.arange(blocks) + (0 if through else corner)
+        return _in_course(np.append(starts, pitch * blocks), size, gap)
+
+    parts = []
+    for course in range(courses):
+        z = size[2] * (course + 0.5)
+        x, length = leg(course % 2 == 0, along_x)
+        parts.append((x - middle[0], corner / 2 - middle[1], z, length, size[1], size[2]))
+        y, length = leg(course % 2 == 1, along_y)
+        parts.append((corner / 2 - middle[0], y - middle[1], z, size[1], length, size[2]))
+    return _joined(parts)
+
+
+def pier_layout(courses, size, per_course=1):
+    """A column: one block a course, or two side by side, turned by a quarter turn from course to course."""
+    courses = _whole("courses", courses, 1)
+    size = positive_size("size", size)
+    z = size[2] * (np.arange(courses) + 0.5)
+    if per_course == 1:
+        return _joined([(0, 0, z, *size)])
+    if per_course != 2:
+        raise ValueError(f"per_course = {per_course}: must be 1 or 2")
+    if not math.isclose(size[0], 2 * size[1], rel_tol=_FIT):
+        raise ValueError(f"size = {tuple(size)}: its x must be twice its y where a course has two blocks")
+    side = np.array([-1, 1]) * size[1] / 2
+    return _joined([(side, 0, height, size[1], size[0], size[2]) if k % 2 else (0, side, height, *size) for k, height in enumerate(z)])
+
+
+# Tables of blocks.
+
+_PLACE, _TURN, _QUATERNION = ("x", "y", "z", "size_x", "size_y", "size_z"), ("rotation_y", "rotation_z"), ("qw", "qx", "qy", "qz")
+COLUMNS = _PLACE + _TURN + ("material",) + _QUATERNION
+
+
+def _number(row, index, column, default=None):
+    value = row.get(column, default)
+    try:
+        number = float(value)
+    except (TypeError, ValueError):
+        number = math.nan
+    if not math.isfinite(number) or (column.startswith("size") and number <= 0):
+        raise ValueError(f"row {index}: {column} = {value!r}: must be a finite{' positive' if column.startswith('size') else ''} number")
+    return number
+
+
+def _quaternion(row, index):
+    """(w, x, y, z): a turn about z, then a lean about the block's own y axis; or as it stands in the row."""
+    turned = [c for c in _QUATERNION if row.get(c) not in (None, "")]
+    if turned:
+        q = [_number(row, index, c) for c in _QUATERNION]
+        if not abs(math.hypot(*q) - 1) < 1e-9:
+            raise ValueError(f"row {index}: {', '.join(_QUATERNION)} = {tuple(q)}: must be a quaternion of length 1")
+        return q
+    y, z = (_number({c: row.get(c) or 0 for c in _TURN}, index, c) / 2 for c in _TURN)
+    return [math.cos(z) * math.cos(y), -math.sin(z) * math.sin(y), math.cos(z) * math.sin(y), math.sin(z) * math.cos(y)]
+
+
+def _rows(table):
+    if not isinstance(table, str) and not hasattr(table, "__fspath__"):
+        return [dict(row) if hasattr(row, "keys") else dict(zip(COLUMNS, row)) for row in table]
+    path = str(table)
+    if not path.endswith((".csv", ".json")):
+        raise ValueError(f"table = {path}: must end in .csv or .json, or be rows")
+    with open(path, newline="", encoding="utf-8") as file:
+        rows = json.load(file) if path.endswith(".json") else list(csv.DictReader(file, skipinitialspace=True))
+    if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
+        raise ValueError(f"table = {path}: must be a list of objects, one a block")
+    return rows
+
+
+def read_table(table):
+    """(centers (n, 3), sizes (n, 3), quaternions (n, 4) as w, x, y, z, material names) of a table, see dem.blocks_from_table."""
+    rows = _rows(table)
+    if not rows:
+        raise ValueError("table: must have at least one row")
+    for index, row in enumerate(rows):
+        for column in row:
+            if column not in COLUMNS:
+                raise ValueError(f"row {index}: column {column!r}: must be one of {', '.join(COLUMNS)}")
+    place = np.array([[_number(row, k, c) for c in _PLACE] for k, row in enumerate(rows)])
+    return place[:, :3], place[:, 3:], np.array([_quaternion(row, k) for k, row in enumerate(rows)]), [row.get("material") or "" for row in rows]
+
+
+def write_table(path, centers, sizes, quaternions, names):
+    """Writes what read_table reads back bit by bit. Quaternions and names stand there only where a block is turned or named."""
+    path = str(path)
+    if not path.endswith((".csv", ".json")):
+        raise ValueError(f"path = {path}: must end in .csv or .json")
+    columns, values = list(_PLACE), [list(row) for row in np.hstack([centers, sizes]).tolist()]
+    if np.any(quaternions != [1, 0, 0, 0]):
+        columns += _QUATERNION
+        values = [row + list(q) for row, q in zip(values, np.asarray(quaternions).tolist())]
+    if any(names):
+        columns.append("material")
+        values = [row + [name] for row, name in zip(values, names)]
+    with open(path, "w", newline="", encoding="utf-8") as file:
+        if path.endswith(".json"):
+            file.write("[\n" + ",\n".join(json.dumps(dict(zip(columns, row))) for row in values) + "\n]\n")
+        else:
+            csv.writer(file).writerows([columns, *values])
+
+
+# Overlapping and floating blocks.
+
+
+def _ranges(starts, ends):
+    """All integers of the half-open ranges, one range after the other, and the range each comes from."""
+    counts = ends - starts
+    owner = np.repeat(np.arange(len(starts)), counts)
+    return np.arange(len(owner)) + (starts - np.cumsum(counts) + counts)[owner], owner
+
+
+def _near_pairs(low, high):
+    """Pairs (i, j) of axis-aligned boxes that meet, each once. A box lies by its centre in a grid whose cell, a power of two, is at least
+    as large as the box; it is looked for from all boxes of the same or a smaller cell, in 3 x 3 x 3 cells: the cost is
+    proportional to the number of boxes, however different their sizes."""
+    level = np.frexp((high - low).max(axis=1))[1]
+    center = (low + high) / 2
+    center = center - center.min(axis=0)
+    pairs = []
+    for top in np.unique(level):
+        cell = np.floor(center / 2.0**top).astype(np.int64) + 1
+        shape = cell.max(axis=0) + 2
+        key = (cell[:, 0] * shape[1] + cell[:, 1]) * shape[2] + cell[:, 2]
+        members, asking = np.flatnonzero(level == top), np.flatnonzero(level <= top)
+        members = members[np.argsort(key[members], kind="stable")]
+        for dx in (-1, 0, 1):
+            for dy in (-1, 0, 1):
+                wanted = key[asking] + (dx * shape[1] + dy) * shape[2]
+                found, owner = _ranges(np.searchsorted(key[members], wanted - 1, "left"), np.searchsorted(key[members], wanted + 1, "right"))
+                i, j = asking[owner], members[found]
+                keep = ((level[i] < top) | (i < j)) & (low[i] <= high[j]).all(axis=1) & (low[j] <= high[i]).all(axis=1)
+                pairs.append(np.stack([i[keep], j[keep]], axis=1))
+    return np.concatenate(pairs)
+
+
+def _separations(i, j, centers, sizes, axes):
+    """Gaps of the pairs along the 15 separating axes of two boxes (faces of both, crossed edges), negative where they overlap, and the
+    upward part of each axis, directed from i to j: two arrays (pairs, 15)."""
+    a, b, between = axes[i], axes[j], centers[j] - centers[i]
+    n = np.concatenate([a, b, np.cross(a[:, :, None], b[:, None]).reshape(-1, 9, 3)], axis=1)
+    norm = np.linalg.norm(n, axis=2)
+    parallel = norm < 1e-6  # edges this parallel add nothing to the faces
+    n = n / np.where(parallel, 1, norm)[..., None]
+    along = np.einsum("pka,pa->pk", n, between)
+    reach = np.einsum("pkm,pm->pk", np.abs(np.einsum("pka,pma->pkm", n, a)), sizes[i] / 2)
+    reach += np.einsum("pkm,pm->pk", np.abs(np.einsum("pka,pma->pkm", n, b)), sizes[j] / 2)
+    return np.where(parallel, -np.inf, np.abs(along) - reach), np.where(along < 0, -1, 1) * n[..., 2]
+
+
+def axes_of(quaternions):
+    """(n, 3, 3): rows are the axes of the bodies turned by the quaternions (n, 4), w, x, y, z."""
+    w, x, y, z = quaternions.T
+    return np.stack([
+        np.stack([1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)], axis=1),
+        np.stack([2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)], axis=1),
+        np.stack([2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)], axis=1),
+    ], axis=1)
+
+
+def _carried(supports, prescribed):
+    """Which blocks a chain of supports (rows: lower, upper) joins to a prescribed one."""
+    supports = supports[np.argsort(supports[:, 0], kind="stable")]
+    first = np.searchsorted(supports[:, 0], np.arange(len(prescribed) + 1)).tolist()
+    upper, carried = supports[:, 1].tolist(), prescribed.tolist()
+    waiting = np.flatnonzero(prescribed).tolist()
+    while waiting:
+        block = waiting.pop()
+        for above in upper[first[block]:first[block + 1]]:
+            if not carried[above]:
+                carried[above] = True
+                waiting.append(above)
+    return np.array(carried, dtype=bool)
+
+
+def faults(centers, sizes, axes, prescribed, tolerance):
+    """(overlapping pairs (m, 2), their depths in m, floating blocks), by row. axes: (n, 3, 3), rows are the axes of a block; prescribed:
+    (n,) bool, blocks that carry by themselves. Blocks overlap where no separating axis keeps their depth within `tolerance` of the
+    smallest size of the two. A block is supported by one that it touches within the same from above, over more than an edge."""
+    smallest = sizes.min(axis=1)
+    reach = np.einsum("nka,nk->na", np.abs(axes), sizes / 2) + tolerance * smallest[:, None]
+    pairs = _near_pairs(centers - reach, centers + reach)
+    pairs = pairs[~(prescribed[pairs[:, 0]] & prescribed[pairs[:, 1]])]
+    pairs = pairs[np.lexsort((pairs.max(axis=1), pairs.min(axis=1)))]
+    depth, supports = np.empty(len(pairs)), [np.empty((0, 2), dtype=int)]
+    for start in range(0, len(pairs), 20000):  # bounds the memory: about 1 kB a pair
+        part = slice(start, start + 20000)
+        i, j = pairs[part].T
+        gap, up = _separations(i, j, centers, sizes, axes)
+        margin, best = tolerance * np.minimum(smallest[i], smallest[j]), gap.argmax(axis=1)
+        widest, up_best = np.take_along_axis(gap, best[:, None], 1)[:, 0], np.take_along_axis(up, best[:, None], 1)[:, 0]
+        beside = (np.where(np.abs(up) < _CARRIES, gap, -np.inf) >= -margin[:, None]).any(axis=1)
+        joined = (widest <= margin) & (np.abs(up_best) >= _CARRIES) & ~beside
+        supports.append(np.where(up_best[:, None] > 0, np.stack([i, j], axis=1), np.stack([j, i], axis=1))[joined])
+        depth[part] = -widest
+    deep = depth > tolerance * np.minimum(smallest[pairs[:, 0]], smallest[pairs[:, 1]])
+    floating = np.flatnonzero(~_carried(np.concatenate(supports), prescribed))
+    return np.sort(pairs[deep], axis=1), depth[deep], floating
