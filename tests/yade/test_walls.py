@@ -234,6 +234,11 @@ assert math.isclose(dem.angle(leaning), 0.1, rel_tol=1e-12) and dem.angle(uprigh
 with open(path := os.path.join(folder, "rows.json"), "w") as file:
     json.dump([row], file)
 assert (O.bodies[dem.blocks_from_table(path, material, on=base)[0]].state.ori - state.ori).norm() == 0
+with open(path := os.path.join(folder, "spreadsheet.csv"), "w", encoding="utf-8-sig") as file:
+    file.write("x, y, z, size_x, size_y, size_z, rotation_y, rotation_z, material\n0.5, 0, 1, 0.6, 0.5, 2, 0.1, 0.5,\n4, 0, 0.5, 1, 1, 1, , ,\n")
+for made, wanted in zip(dem.blocks_from_table(path, material, on=base), (leaning, upright)):
+    made, wanted = O.bodies[made].state, O.bodies[wanted].state
+    assert made.pos == wanted.pos and made.ori == wanted.ori and made.refOri == wanted.refOri
 
 # Separations: two cubes, one turned by 45 degrees about z: its corner reaches sqrt(2)/2. Crossed edges: both turned by 45 degrees, about x and
 # about y, one over the other: their top and bottom edges cross, each sqrt(2)/2 from its centre.
@@ -267,6 +272,11 @@ refuses(lambda: dem.check_blocks(tolerance=0.02), f": {beside}, {above};")
 dem.check_blocks(floating=False)
 O.bodies[beside].state.blockedDOFs = "xyzXYZ"
 refuses(dem.check_blocks, f": {lifted};")
+for x, z in ((1 - 1e-5, 1.5), (1, 0.7), (-1, 0.7)):  # over an edge that laps by less than the tolerance; by a head joint
+    for order in (1, -1):
+        base, material = ground()
+        ids = [dem.block((1, 1, 1), material, center=place) for place in ((0, 0, 0.5), (x, 0, z))[::order]]
+        refuses(dem.check_blocks, f": {ids[::order][1]};")
 base, material = ground()
 pair = dem.stack(2, (0.6, 0.5, 1), material, base)
 dem.tilt(pair[1], 0.3)

@@ -244,7 +244,7 @@ def _rows(table):
     path = str(table)
     if not path.endswith((".csv", ".json")):
         raise ValueError(f"table = {path}: must end in .csv or .json, or be rows")
-    with open(path, newline="", encoding="utf-8") as file:
+    with open(path, newline="", encoding="utf-8-sig") as file:  # spreadsheets begin a file with a byte-order mark
         rows = json.load(file) if path.endswith(".json") else list(csv.DictReader(file, skipinitialspace=True))
     if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
         raise ValueError(f"table = {path}: must be a list of objects, one a block")
@@ -373,7 +373,7 @@ def faults(centers, sizes, axes, prescribed, tolerance):
         margin, best = tolerance * np.minimum(smallest[i], smallest[j]), gap.argmax(axis=1)
         widest, up_best = np.take_along_axis(gap, best[:, None], 1)[:, 0], np.take_along_axis(up, best[:, None], 1)[:, 0]
         beside = (np.where(np.abs(up) < _CARRIES, gap, -np.inf) >= -margin[:, None]).any(axis=1)
-        joined = (widest <= margin) & (np.abs(up_best) >= _CARRIES) & ~beside
+        joined = (widest <= margin) & ~beside
         supports.append(np.where(up_best[:, None] > 0, np.stack([i, j], axis=1), np.stack([j, i], axis=1))[joined])
         depth[part] = -widest
     deep = depth > tolerance * np.minimum(smallest[pairs[:, 0]], smallest[pairs[:, 1]])
