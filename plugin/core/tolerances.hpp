@@ -116,8 +116,11 @@ constexpr double crossing = 0.2;
 // --- contact problem (dynamics/rigid/) ---
 namespace masonry::tolerance::contactProblem {
 
-// Softness of a point in a Newton step, relative to its own response. Larger: more solves until the impulses are those of
-// rigid contact (the number of blocks in a column squared counts too); smaller: round-off of the factorisation.
-constexpr double softness = 1e-4;
+// Softness R of a point in Newton's first step, relative to its own response. Larger: more steps until the impulses are those
+// of rigid contact; smaller: more changes of state in the first.
+constexpr double softness = 1e-2;
+// The smallest that it falls to. Larger: tall columns and large mass ratios converge linearly; smaller: round-off of the
+// factorisation.
+constexpr double leastSoftness = 1e-8;
 
 } // namespace masonry::tolerance::contactProblem

@@ -11,7 +11,8 @@
 
 namespace masonry::rigid {
 
-template <int size> class BlockFactor {
+template <int size>
+class BlockFactor {
 public:
 	using Block = Eigen::Matrix<double, size, size>;
 	using Rows = Eigen::Matrix<double, size, 1>;
@@ -19,14 +20,15 @@ public:
 
 	void setGraph(int nodeCount, const std::vector<Edge>& graph)
 	{
-		if (nodeCount == nodes() && graph == edges) return;
+		if (nodeCount == nodes() && graph == edges)
+			return;
 		edges = graph;
 		order(nodeCount);
 		fill();
 		schedule();
 	}
 
-	int    nodes() const { return int(position.size()); }
+	int nodes() const { return int(position.size()); }
 	Block& diagonal(int node) { return pivots[position[node]]; }
 	// The block in the row of edge e's first (second) node and the column of its second (first).
 	Block& firstSecond(int e) { return firstIsLater(e) ? lower[slot[e]] : upper[slot[e]]; }
@@ -34,7 +36,7 @@ public:
 
 	void setZero()
 	{
-		for (auto* blocks : { &pivots, &lower, &upper })
+		for (auto* blocks : {&pivots, &lower, &upper})
 			std::fill(blocks->begin(), blocks->end(), Block::Zero());
 	}
 
@@ -88,7 +90,8 @@ private:
 		Eigen::SparseMatrix<double> pattern(nodeCount, nodeCount);
 		pattern.setFromTriplets(entries.begin(), entries.end());
 		Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> permutation(nodeCount);
-		if (nodeCount > 0) Eigen::AMDOrdering<int>()(pattern, permutation);
+		if (nodeCount > 0)
+			Eigen::AMDOrdering<int>()(pattern, permutation);
 		nodeAt.assign(permutation.indices().data(), permutation.indices().data() + nodeCount);
 		position.resize(nodeCount);
 		for (int k = 0; k < nodeCount; ++k)
@@ -98,7 +101,7 @@ private:
 	// Column k of L: its own later neighbours, and those of every earlier column whose first later neighbour is k.
 	void fill()
 	{
-		const int                     n = nodes();
+		const int n = nodes();
 		std::vector<std::vector<int>> columns(n);
 		for (const Edge& e : edges) {
 			const auto ends = std::minmax(position[e[0]], position[e[1]]);
@@ -110,7 +113,8 @@ private:
 			auto& column = columns[k];
 			std::sort(column.begin(), column.end());
 			column.erase(std::unique(column.begin(), column.end()), column.end());
-			if (!column.empty()) columns[column[0]].insert(columns[column[0]].end(), column.begin() + 1, column.end());
+			if (!column.empty())
+				columns[column[0]].insert(columns[column[0]].end(), column.begin() + 1, column.end());
 			row.insert(row.end(), column.begin(), column.end());
 			first.push_back(int(row.size()));
 		}
@@ -135,14 +139,15 @@ private:
 		for (int k = 0; k < nodes(); ++k)
 			for (int a = first[k]; a < first[k + 1]; ++a)
 				for (int b = first[k]; b < first[k + 1]; ++b)
-					if (a != b) targets.push_back(entry(row[a], row[b]));
+					if (a != b)
+						targets.push_back(entry(row[a], row[b]));
 	}
 
-	std::vector<Edge>  edges;
-	std::vector<int>   position, nodeAt;           // of a node in the order of elimination, and back
-	std::vector<int>   first, row, slot, targets;  // columns of L (rows of U): entries first[k] .. first[k + 1] at rows `row`
+	std::vector<Edge> edges;
+	std::vector<int> position, nodeAt;          // of a node in the order of elimination, and back
+	std::vector<int> first, row, slot, targets; // columns of L (rows of U): entries first[k] .. first[k + 1] at rows `row`
 	std::vector<Block> pivots, lower, upper;
-	std::vector<Rows>  work;
+	std::vector<Rows> work;
 };
 
 } // namespace masonry::rigid

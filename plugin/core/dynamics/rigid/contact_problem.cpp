@@ -8,106 +8,123 @@ namespace masonry::rigid {
 
 namespace {
 
-	// P: the normal part on p_n >= 0, then the tangential part on the disc of radius mu p_n.
-	template <class Rows> Rows project(const Rows& y, double friction)
+// P: the normal part on p_n >= 0, then the tangential part on the disc of radius mu p_n.
+template <class Rows>
+Rows project(const Rows& y, double friction)
+{
+	if (!(y[0] > 0))
+		return Rows::Zero();
+	Rows p = y;
+	auto tangential = p.template tail<Rows::RowsAtCompileTime - 1>();
+	const double bound = friction * y[0], square = tangential.squaredNorm();
+	if (square > bound * bound)
+		tangential *= bound / std::sqrt(square);
+	return p;
+}
+
+// Derivative of P.
+template <class Rows>
+auto projectionRate(const Rows& y, double friction)
+{
+	constexpr int tangents = Rows::RowsAtCompileTime - 1;
+	Eigen::Matrix<double, tangents + 1, tangents + 1> rate;
+	rate.setZero();
+	if (!(y[0] > 0))
+		return rate;
+	rate.setIdentity();
+	const double size = y.template tail<tangents>().norm();
+	if (size <= friction * y[0])
+		return rate;
+	const Eigen::Matrix<double, tangents, 1> d = y.template tail<tangents>() / size;
+	rate.template bottomLeftCorner<tangents, 1>() = friction * d;
+	auto turn = rate.template bottomRightCorner<tangents, tangents>();
+	turn = friction * y[0] / size * (turn - d * d.transpose()).eval();
+	return rate;
+}
+
+// The law of one point alone, whose impulse p makes u = u0 + G p.
+template <int rows>
+struct OnePoint {
+	using Rows = Eigen::Matrix<double, rows, 1>;
+	using Block = Eigen::Matrix<double, rows, rows>;
+	using Tangential = Eigen::Matrix<double, rows - 1, 1>;
+
+	Block G {Block::Zero()}, inverse {Block::Zero()};
+	double trace {0};
+
+	// Without slip a point may ask for a pull; then, as where slip finds nothing, it is held along the normal alone.
+	Rows impulse(const Rows& u0, double friction) const
 	{
-		if (!(y[0] > 0)) return Rows::Zero();
-		Rows         p = y;
-		auto         tangential = p.template tail<Rows::RowsAtCompileTime - 1>();
-		const double bound = friction * y[0], square = tangential.squaredNorm();
-		if (square > bound * bound) tangential *= bound / std::sqrt(square);
+		if (u0[0] >= 0)
+			return Rows::Zero();
+		const Rows stick = -(inverse * u0);
+		const double bound = friction * stick[0];
+		if (stick[0] > 0 && stick.template tail<rows - 1>().squaredNorm() <= bound * bound)
+			return stick;
+		Rows p = Rows::Zero();
+		if (friction > 0 && friction < noSlip && slip(u0, friction, stick.template tail<rows - 1>(), p))
+			return p;
+		p << -u0[0] / G(0, 0), Tangential::Zero();
 		return p;
 	}
 
-	// Derivative of P.
-	template <class Rows> auto projectionRate(const Rows& y, double friction)
+	// False: no slip that starts near the direction of `guess`.
+	bool slip(const Rows& u0, double friction, const Tangential& guess, Rows& p) const;
+
+	// p = p_n (1, mu d) with the p_n that makes u_n = 0. False: it would have to pull.
+	bool slipAlong(const Tangential& d, const Rows& u0, double friction, Rows& p, Tangential& ut) const
 	{
-		constexpr int                              tangents = Rows::RowsAtCompileTime - 1;
-		Eigen::Matrix<double, tangents + 1, tangents + 1> rate;
-		rate.setZero();
-		if (!(y[0] > 0)) return rate;
-		rate.setIdentity();
-		const double size = y.template tail<tangents>().norm();
-		if (size <= friction * y[0]) return rate;
-		const Eigen::Matrix<double, tangents, 1> d = y.template tail<tangents>() / size;
-		rate.template bottomLeftCorner<tangents, 1>() = friction * d;
-		auto turn = rate.template bottomRightCorner<tangents, tangents>();
-		turn = friction * y[0] / size * (turn - d * d.transpose()).eval();
-		return rate;
+		const double stiffness = G(0, 0) + friction * G.template topRightCorner<1, rows - 1>().dot(d);
+		if (!(stiffness > 0))
+			return false;
+		p[0] = -u0[0] / stiffness;
+		p.template tail<rows - 1>() = friction * p[0] * d;
+		ut = u0.template tail<rows - 1>() + G.template bottomRows<rows - 1>() * p;
+		return true;
 	}
+};
 
-	// The law of one point alone, whose impulse p makes u = u0 + G p.
-	template <int rows> struct OnePoint {
-		using Rows = Eigen::Matrix<double, rows, 1>;
-		using Block = Eigen::Matrix<double, rows, rows>;
-		using Tangential = Eigen::Matrix<double, rows - 1, 1>;
-
-		Block  G { Block::Zero() }, inverse { Block::Zero() };
-		double trace { 0 };
-
-		// Without slip a point may ask for a pull; then, as where slip finds nothing, it is held along the normal alone.
-		Rows impulse(const Rows& u0, double friction) const
-		{
-			if (u0[0] >= 0) return Rows::Zero();
-			const Rows   stick = -(inverse * u0);
-			const double bound = friction * stick[0];
-			if (stick[0] > 0 && stick.template tail<rows - 1>().squaredNorm() <= bound * bound) return stick;
-			Rows p = Rows::Zero();
-			if (friction > 0 && friction < noSlip && slip(u0, friction, stick.template tail<rows - 1>(), p)) return p;
-			p << -u0[0] / G(0, 0), Tangential::Zero();
-			return p;
-		}
-
-		// False: no slip that starts near the direction of `guess`.
-		bool slip(const Rows& u0, double friction, const Tangential& guess, Rows& p) const;
-
-		// p = p_n (1, mu d) with the p_n that makes u_n = 0. False: it would have to pull.
-		bool slipAlong(const Tangential& d, const Rows& u0, double friction, Rows& p, Tangential& ut) const
-		{
-			const double stiffness = G(0, 0) + friction * G.template topRightCorner<1, rows - 1>().dot(d);
-			if (!(stiffness > 0)) return false;
-			p[0] = -u0[0] / stiffness;
-			p.template tail<rows - 1>() = friction * p[0] * d;
-			ut = u0.template tail<rows - 1>() + G.template bottomRows<rows - 1>() * p;
+// Plane: two directions, that of the sticking impulse first.
+template <>
+bool OnePoint<2>::slip(const Rows& u0, double friction, const Tangential& guess, Rows& p) const
+{
+	Tangential ut;
+	for (const double d : {std::copysign(1., guess[0]), -std::copysign(1., guess[0])})
+		if (slipAlong(Tangential(d), u0, friction, p, ut) && ut[0] * d <= 0)
 			return true;
-		}
-	};
+	return false;
+}
 
-	// Plane: two directions, that of the sticking impulse first.
-	template <> bool OnePoint<2>::slip(const Rows& u0, double friction, const Tangential& guess, Rows& p) const
-	{
-		Tangential ut;
-		for (const double d : { std::copysign(1., guess[0]), -std::copysign(1., guess[0]) })
-			if (slipAlong(Tangential(d), u0, friction, p, ut) && ut[0] * d <= 0) return true;
-		return false;
+// Space: Newton on the angle of d, a root of e.u_t with e = d turned by 90 degrees, where u_t looks against d.
+template <>
+bool OnePoint<3>::slip(const Rows& u0, double friction, const Tangential& guess, Rows& p) const
+{
+	constexpr int maxIterations = 20;
+	constexpr double roundOff = 1e-15, largestTurn = 0.5;
+	const double scale = std::abs(u0[0]) + std::abs(u0[1]) + std::abs(u0[2]);
+	Tangential d = guess.normalized(), ut;
+	for (int k = 0; k < maxIterations; ++k) {
+		if (!slipAlong(d, u0, friction, p, ut))
+			return false;
+		const Tangential e(-d[1], d[0]);
+		const double miss = e.dot(ut), against = -d.dot(ut);
+		if (std::abs(miss) <= roundOff * scale && against >= 0)
+			return true;
+		const double pnRate = friction * p[0] * p[0] * (G(0, 1) * e[0] + G(0, 2) * e[1]) / u0[0];
+		const Tangential ptRate = friction * (pnRate * d + p[0] * e);
+		const double rate = against + e.dot(Tangential(G.block<2, 1>(1, 0) * pnRate + G.block<2, 2>(1, 1) * ptRate));
+		if (rate > 0 && against >= 0)
+			d = (d + std::clamp(-miss / rate, -largestTurn, largestTurn) * e).normalized();
+		else
+			d = -ut.normalized();
 	}
-
-	// Space: Newton on the angle of d, a root of e.u_t with e = d turned by 90 degrees, where u_t looks against d.
-	template <> bool OnePoint<3>::slip(const Rows& u0, double friction, const Tangential& guess, Rows& p) const
-	{
-		constexpr int    maxIterations = 20;
-		constexpr double roundOff = 1e-15, largestTurn = 0.5;
-		const double     scale = std::abs(u0[0]) + std::abs(u0[1]) + std::abs(u0[2]);
-		Tangential       d = guess.normalized(), ut;
-		for (int k = 0; k < maxIterations; ++k) {
-			if (!slipAlong(d, u0, friction, p, ut)) return false;
-			const Tangential e(-d[1], d[0]);
-			const double     miss = e.dot(ut), against = -d.dot(ut);
-			if (std::abs(miss) <= roundOff * scale && against >= 0) return true;
-			const double     pnRate = friction * p[0] * p[0] * (G(0, 1) * e[0] + G(0, 2) * e[1]) / u0[0];
-			const Tangential ptRate = friction * (pnRate * d + p[0] * e);
-			const double     rate = against + e.dot(Tangential(G.block<2, 1>(1, 0) * pnRate + G.block<2, 2>(1, 1) * ptRate));
-			if (rate > 0 && against >= 0)
-				d = (d + std::clamp(-miss / rate, -largestTurn, largestTurn) * e).normalized();
-			else
-				d = -ut.normalized();
-		}
-		return false;
-	}
+	return false;
+}
 
 } // namespace
 
-template <class K> struct ContactSolver<K>::Workspace {
+template <class K>
+struct ContactSolver<K>::Workspace {
 	using Rows = typename ContactRows<K>::Rows;
 	using Velocity = typename K::Velocity;
 	using Response = Eigen::Matrix<double, K::dof, K::rows>;
@@ -117,30 +134,30 @@ template <class K> struct ContactSolver<K>::Workspace {
 
 	struct Point {
 		OnePoint<K::rows> alone;
-		Response          W1, W2; // M^-1 J^T: velocities per impulse
-		// Newton: u at the centre (the impulses before the step), y, P(y) and its derivative; the derivative in the factor
-		Rows  centre, next;
-		Block rate { Block::Zero() }, factored { Block::Zero() };
+		Response W1, W2; // M^-1 J^T: velocities per impulse
+		// Newton: u at the centre, P(y), its derivative, and the derivative that is in the factor
+		Rows centre, next;
+		Block rate {Block::Zero()}, factored {Block::Zero()};
 	};
 
 	struct NewtonBody {
-		Mass     mass;
+		Mass mass;
 		Velocity w, start, force; // w: velocity minus that of the centre, and before the line search; force: F
 	};
 
-	FreeBody<K>*       bodies { nullptr }; // the solver's own, as of this call
-	ContactRows<K>*    rows { nullptr };
-	int                nBodies { 0 }, nPoints { 0 };
+	FreeBody<K>* bodies {nullptr}; // the solver's own, as of this call
+	ContactRows<K>* rows {nullptr};
+	int nBodies {0}, nPoints {0};
 	std::vector<Point> points;
-	std::vector<Rows>  best;
-	double             bestResidual { 0 };
+	std::vector<Rows> best;
+	double bestResidual {0};
 
-	std::vector<NewtonBody>                       newtonBodies;
-	std::vector<Velocity>                         step;
+	std::vector<NewtonBody> newtonBodies;
+	std::vector<Velocity> step;
 	std::vector<typename BlockFactor<K::dof>::Edge> edges; // points between two free bodies, in order
-	BlockFactor<K::dof>                           factor;
-	bool                                          factored { false };
-	double                                        softness { 0 }; // R relative to the response of the point
+	BlockFactor<K::dof> factor;
+	bool factored {false};
+	double softness {0}; // R relative to the response of the point
 
 	static Response response(const InverseMass<K>& m, const typename ContactRows<K>::Jacobian& J)
 	{
@@ -159,7 +176,7 @@ template <class K> struct ContactSolver<K>::Workspace {
 		points.resize(nPoints);
 		for (int i = 0; i < nPoints; ++i) {
 			const ContactRows<K>& c = rows[i];
-			Point&                p = points[i];
+			Point& p = points[i];
 			p.alone.G.setZero();
 			if (c.body1 >= 0) {
 				p.W1 = response(bodies[c.body1].inverseMass, c.J1);
@@ -177,15 +194,19 @@ template <class K> struct ContactSolver<K>::Workspace {
 	Rows relativeVelocity(const ContactRows<K>& c) const
 	{
 		Rows u = c.offset;
-		if (c.body1 >= 0) u += c.J1 * bodies[c.body1].velocity;
-		if (c.body2 >= 0) u += c.J2 * bodies[c.body2].velocity;
+		if (c.body1 >= 0)
+			u += c.J1 * bodies[c.body1].velocity;
+		if (c.body2 >= 0)
+			u += c.J2 * bodies[c.body2].velocity;
 		return u;
 	}
 
 	void push(int i, const Rows& impulse)
 	{
-		if (rows[i].body1 >= 0) bodies[rows[i].body1].velocity += points[i].W1 * impulse;
-		if (rows[i].body2 >= 0) bodies[rows[i].body2].velocity += points[i].W2 * impulse;
+		if (rows[i].body1 >= 0)
+			bodies[rows[i].body1].velocity += points[i].W1 * impulse;
+		if (rows[i].body2 >= 0)
+			bodies[rows[i].body2].velocity += points[i].W2 * impulse;
 	}
 
 	// The velocities that the impulses give by the momentum equation.
@@ -199,7 +220,7 @@ template <class K> struct ContactSolver<K>::Workspace {
 
 	double violation(int i, const Rows& u) const
 	{
-		const Rows&  p = rows[i].impulse;
+		const Rows& p = rows[i].impulse;
 		const double trace = points[i].alone.trace;
 		return (p - project<Rows>(p - u / trace, rows[i].friction)).norm() * trace;
 	}
@@ -218,29 +239,33 @@ template <class K> struct ContactSolver<K>::Workspace {
 	{
 		double worst = 0;
 		for (int i = 0; i < nPoints; ++i) {
-			const Rows   u = relativeVelocity(rows[i]);
+			const Rows u = relativeVelocity(rows[i]);
 			const double miss = violation(i, u);
 			worst = std::max(worst, miss);
-			if (miss <= tolerance) continue;
+			if (miss <= tolerance)
+				continue;
 			const OnePoint<K::rows>& alone = points[i].alone;
-			const Rows               next = alone.impulse(u - alone.G * rows[i].impulse, rows[i].friction);
+			const Rows next = alone.impulse(u - alone.G * rows[i].impulse, rows[i].friction);
 			push(i, next - rows[i].impulse);
 			rows[i].impulse = next;
 		}
 		return worst;
 	}
 
-	// Sweeps until solved, or, given `patience`, until the rate of convergence tells that `limit` will not do.
+	// Sweeps until solved, up to `limit`; impatient: or until the rate of convergence tells that `limit` will not do.
 	double gaussSeidel(double tolerance, int limit, bool patient, SolveReport& report)
 	{
 		constexpr int look = 4; // sweeps between two looks at the rate
-		double        last = std::numeric_limits<double>::infinity();
+		double last = std::numeric_limits<double>::infinity();
 		for (int k = 1;; ++k) {
 			const double miss = sweep(tolerance);
 			++report.sweeps;
-			if (miss <= tolerance || k == limit) return miss;
-			if (k % look) continue;
-			if (!patient && std::log(miss / tolerance) * look > (limit - k) * std::log(last / miss)) return miss;
+			if (miss <= tolerance || k == limit)
+				return miss;
+			if (k % look)
+				continue;
+			if (!patient && std::log(miss / tolerance) * look > (limit - k) * std::log(last / miss))
+				return miss;
 			last = miss;
 		}
 	}
@@ -265,7 +290,8 @@ template <class K> struct ContactSolver<K>::Workspace {
 		}
 		edges.clear();
 		for (int i = 0; i < nPoints; ++i)
-			if (rows[i].body1 >= 0 && rows[i].body2 >= 0) edges.push_back({ rows[i].body1, rows[i].body2 });
+			if (rows[i].body1 >= 0 && rows[i].body2 >= 0)
+				edges.push_back({rows[i].body1, rows[i].body2});
 		factor.setGraph(nBodies, edges);
 		factored = false;
 	}
@@ -277,16 +303,20 @@ template <class K> struct ContactSolver<K>::Workspace {
 			newtonBodies[b].force = newtonBodies[b].mass * newtonBodies[b].w;
 		for (int i = 0; i < nPoints; ++i) {
 			const ContactRows<K>& c = rows[i];
-			Point&                p = points[i];
-			Rows                  u = p.centre;
-			if (c.body1 >= 0) u += c.J1 * newtonBodies[c.body1].w;
-			if (c.body2 >= 0) u += c.J2 * newtonBodies[c.body2].w;
+			Point& p = points[i];
+			Rows u = p.centre;
+			if (c.body1 >= 0)
+				u += c.J1 * newtonBodies[c.body1].w;
+			if (c.body2 >= 0)
+				u += c.J2 * newtonBodies[c.body2].w;
 			const Rows y = c.impulse - u / compliance(i);
 			p.next = project(y, c.friction);
 			p.rate = projectionRate(y, c.friction);
 			const Rows change = p.next - c.impulse;
-			if (c.body1 >= 0) newtonBodies[c.body1].force -= c.J1.transpose() * change;
-			if (c.body2 >= 0) newtonBodies[c.body2].force -= c.J2.transpose() * change;
+			if (c.body1 >= 0)
+				newtonBodies[c.body1].force -= c.J1.transpose() * change;
+			if (c.body2 >= 0)
+				newtonBodies[c.body2].force -= c.J2.transpose() * change;
 		}
 		double merit = 0;
 		for (int b = 0; b < nBodies; ++b)
@@ -310,12 +340,16 @@ template <class K> struct ContactSolver<K>::Workspace {
 			const ContactRows<K>& c = rows[i];
 			points[i].factored = points[i].rate;
 			const int e = c.body1 >= 0 && c.body2 >= 0 ? edge++ : -1;
-			if (points[i].rate.isZero(0)) continue;
-			const Block                            stiffness = points[i].rate / compliance(i);
+			if (points[i].rate.isZero(0))
+				continue;
+			const Block stiffness = points[i].rate / compliance(i);
 			const typename ContactRows<K>::Jacobian K1 = stiffness * c.J1, K2 = stiffness * c.J2;
-			if (c.body1 >= 0) factor.diagonal(c.body1) += c.J1.transpose() * K1;
-			if (c.body2 >= 0) factor.diagonal(c.body2) += c.J2.transpose() * K2;
-			if (e < 0) continue;
+			if (c.body1 >= 0)
+				factor.diagonal(c.body1) += c.J1.transpose() * K1;
+			if (c.body2 >= 0)
+				factor.diagonal(c.body2) += c.J2.transpose() * K2;
+			if (e < 0)
+				continue;
 			factor.firstSecond(e) += c.J1.transpose() * K2;
 			factor.secondFirst(e) += c.J2.transpose() * K1;
 		}
@@ -353,9 +387,11 @@ template <class K> struct ContactSolver<K>::Workspace {
 			right.setZero();
 		for (int i = 0; i < nPoints; ++i) {
 			const ContactRows<K>& c = rows[i];
-			const Rows            change = points[i].rate * (c.impulse - points[i].centre / compliance(i)) - c.impulse;
-			if (c.body1 >= 0) step[c.body1] += c.J1.transpose() * change;
-			if (c.body2 >= 0) step[c.body2] += c.J2.transpose() * change;
+			const Rows change = points[i].rate * (c.impulse - points[i].centre / compliance(i)) - c.impulse;
+			if (c.body1 >= 0)
+				step[c.body1] += c.J1.transpose() * change;
+			if (c.body2 >= 0)
+				step[c.body2] += c.J2.transpose() * change;
 		}
 		factorise(report);
 		factor.solve(step);
@@ -366,7 +402,7 @@ template <class K> struct ContactSolver<K>::Workspace {
 	// Root of F for the present centre. False: stopped short of it.
 	bool findRoot(bool statesKnown, SolveReport& report)
 	{
-		constexpr int    maxSteps = 30;
+		constexpr int maxSteps = 30;
 		constexpr double reduction = 1e-8; // of the merit
 		for (int i = 0; i < nPoints; ++i)
 			points[i].centre = relativeVelocity(rows[i]);
@@ -377,27 +413,31 @@ template <class K> struct ContactSolver<K>::Workspace {
 				body.w.setZero();
 		}
 		double merit = evaluate();
-		if (statesKnown && factorIsPresent()) return true;
+		if (statesKnown && factorIsPresent())
+			return true;
 		const double enough = reduction * merit;
 		for (int k = 0; k < maxSteps; ++k) {
-			if (!factorIsPresent()) factorise(report);
+			if (!factorIsPresent())
+				factorise(report);
 			bool full = false;
-			if (!newtonStep(merit, full)) return false;
-			if (merit <= enough || (full && factorIsPresent())) return true;
+			if (!newtonStep(merit, full))
+				return false;
+			if (merit <= enough || (full && factorIsPresent()))
+				return true;
 		}
 		return false;
 	}
 
 	// Centre after centre. R falls while roots are found, so that the centres converge faster than linearly, and grows where
 	// one is not.
-	double newton(double tolerance, SolveReport& report)
+	double newton(double target, SolveReport& report)
 	{
-		constexpr int    maxCentres = 40;
-		constexpr double first = 1e-2, least = 1e-8, fall = 1e-2, growth = 10, most = 1;
+		constexpr int maxCentres = 40;
+		constexpr double fall = 1e-2, growth = 10, most = 1; // of the softness
 		prepareNewton();
-		softness = first;
+		softness = tolerance::contactProblem::softness;
 		double present = residual();
-		bool   found = false;
+		bool found = false;
 		for (int k = 0; k < maxCentres && softness <= most; ++k) {
 			found = findRoot(found, report);
 			for (int i = 0; i < nPoints; ++i)
@@ -405,7 +445,8 @@ template <class K> struct ContactSolver<K>::Workspace {
 			applyImpulses();
 			const double next = residual();
 			keepBest(next);
-			if (next <= tolerance) return next;
+			if (next <= target)
+				return next;
 			if (!found && next > present) {
 				for (int i = 0; i < nPoints; ++i)
 					rows[i].impulse = points[i].next;
@@ -413,7 +454,7 @@ template <class K> struct ContactSolver<K>::Workspace {
 			} else {
 				present = next;
 			}
-			softness = found ? std::max(least, fall * softness) : growth * softness;
+			softness = found ? std::max(tolerance::contactProblem::leastSoftness, fall * softness) : growth * softness;
 			factored = false;
 		}
 		return present;
@@ -422,14 +463,16 @@ template <class K> struct ContactSolver<K>::Workspace {
 	// Newton, and where that stops sweeps from the best iterate to start anew from.
 	double alternate(double tolerance, int lastSweeps, SolveReport& report)
 	{
-		constexpr int rounds = 8;
+		constexpr int rounds = 8, shares = 36; // 1 + 2 + .. + 8: each round sweeps longer, all together lastSweeps
 		bestResidual = std::numeric_limits<double>::infinity();
 		for (int round = 1; round <= rounds; ++round) {
 			applyImpulses();
 			keepBest(residual());
-			if (newton(tolerance, report) <= tolerance) return bestResidual;
+			if (newton(tolerance, report) <= tolerance)
+				return bestResidual;
 			restoreBest();
-			if (gaussSeidel(tolerance, lastSweeps * round / 36, true, report) <= tolerance) return residual();
+			if (gaussSeidel(tolerance, lastSweeps * round / shares, true, report) <= tolerance)
+				return residual();
 		}
 		applyImpulses();
 		keepBest(residual());
@@ -468,7 +511,8 @@ template <class K> struct ContactSolver<K>::Workspace {
 
 	void keepBest(double residual)
 	{
-		if (!(residual < bestResidual)) return;
+		if (!(residual < bestResidual))
+			return;
 		bestResidual = residual;
 		best.resize(nPoints);
 		for (int i = 0; i < nPoints; ++i)
@@ -476,24 +520,33 @@ template <class K> struct ContactSolver<K>::Workspace {
 	}
 };
 
-template <class K> void ContactSolver<K>::Deleter::operator()(Workspace* w) const { delete w; }
-
-template <class K> double ContactSolver<K>::residual()
+template <class K>
+void ContactSolver<K>::Deleter::operator()(Workspace* w) const
 {
-	if (!workspace) workspace.reset(new Workspace);
+	delete w;
+}
+
+template <class K>
+double ContactSolver<K>::residual()
+{
+	if (!workspace)
+		workspace.reset(new Workspace);
 	workspace->prepare(*this);
 	return workspace->residual();
 }
 
-template <class K> SolveReport ContactSolver<K>::solve(double tolerance)
+template <class K>
+SolveReport ContactSolver<K>::solve(double tolerance)
 {
-	if (!workspace) workspace.reset(new Workspace);
-	Workspace&  w = *workspace;
+	if (!workspace)
+		workspace.reset(new Workspace);
+	Workspace& w = *workspace;
 	SolveReport report;
 	w.prepare(*this);
 	w.applyImpulses();
 	report.residual = w.gaussSeidel(tolerance, useNewton ? maxSweeps : lastSweeps, !useNewton, report);
-	if (useNewton && report.residual > tolerance) report.residual = w.alternate(tolerance, lastSweeps, report);
+	if (useNewton && report.residual > tolerance)
+		report.residual = w.alternate(tolerance, lastSweeps, report);
 	report.converged = report.residual <= tolerance;
 	if (!report.converged) {
 		w.addNoEnergy();
