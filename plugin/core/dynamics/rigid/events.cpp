@@ -77,9 +77,14 @@ template <class K> Event localise(const RigidSystem<K>& s, SmoothStep<K>& step, 
 {
 	const double  tiny = tolerance::rigid::gap * scale::length(s), still = tolerance::rigid::parting * scale::stepSpeed(s, step.trial().h);
 	double        early = 0, late = step.trial().h; // the event lies between
+	const double  instant = tolerance::rigid::instant * late;
 	constexpr int most = 40;
 	for (int k = 0; k < most; ++k) {
-		const double h = std::clamp(event.at, early, late);
+		const double h = event.at;
+		if (h <= instant) { // it is now
+			event.at = 0;
+			return event;
+		}
 		step.attempt(s, h);
 		if (event.kind == Event::closing) {
 			const auto end = atEnd(s, step, event.point);
@@ -94,7 +99,7 @@ template <class K> Event localise(const RigidSystem<K>& s, SmoothStep<K>& step, 
 			event.at = after > 0 ? h * before / (before - after) : 0.5 * (early + h); // secant; past the stop the slip tells nothing
 			if (!(event.at > early && event.at < late)) event.at = 0.5 * (early + late);
 		}
-		if (late - early <= 1e-15 * step.trial().h) break;
+		if (late - early <= tolerance::rigid::instant * instant) break;
 	}
 	event.at = step.trial().h;
 	return event;

@@ -17,7 +17,8 @@ struct Event {
 // The earliest event of the trial; `slow` closings, below that speed (m/s), are left out and added to the step's anticipated points.
 template <class K> Event findEvent(const RigidSystem<K>& system, SmoothStep<K>& step, double slow);
 
-// Shortens the trial until the event lies at its end, or another one that comes before it. Returns that event; its time is the trial's length.
+// Shortens the trial until the event lies at its end, or another one that comes before it. Returns it; its time is the trial's
+// length, or 0 when it is now and no time passes.
 template <class K> Event localise(const RigidSystem<K>& system, SmoothStep<K>& step, Event event);
 
 // Open points that touch in the system's present state and approach each other faster than round-off.

@@ -14,8 +14,14 @@ template <class K> StepReport RigidStep<K>::advance(RigidSystem<K>& s, double dt
 	for (double left = dt; left > 0;) {
 		const double h = untilKink(s, left, dt);
 		const Event  event = tryStep(s, h);
-		step.accept(s);
-		left = event.kind == Event::none && h == left ? 0 : left - step.trial().h;
+		if (event.kind == Event::none || event.at > 0) {
+			step.accept(s);
+			left = event.kind == Event::none && h == left ? 0 : left - step.trial().h;
+		}
+		if (!std::isfinite(s.kineticEnergy())) {
+			report.diverged = true;
+			return report;
+		}
 		if (event.kind == Event::closing) {
 			touchingPoints(s, closing);
 			const size_t known = s.impacts.size();

@@ -72,6 +72,7 @@ struct StepReport {
 	int    unlocalised { 0 }; // events beyond mostEvents
 	double residual { 0 };    // largest of the solves, m/s
 	bool   converged { true };
+	bool   diverged { false }; // the state is no longer finite
 };
 
 template <class K> struct RigidSystem {
