@@ -40,6 +40,7 @@ class Engine;
 class IGeom;
 class Interaction;
 class IPhys;
+class IPhysFunctor;
 class Material;
 class MatchMaker;
 class Scene;
@@ -87,8 +88,9 @@ YADE_ABI_ARCHIVED_ELSEWHERE(std::vector<boost::shared_ptr<yade::Engine>>)
 YADE_ABI_ARCHIVED_ELSEWHERE(std::vector<boost::shared_ptr<yade::Interaction>>)
 YADE_ABI_ARCHIVED_ELSEWHERE(std::vector<boost::shared_ptr<yade::Material>>)
 YADE_ABI_ARCHIVED_ELSEWHERE(std::vector<boost::shared_ptr<yade::Serializable>>)
-// Reached through shared_ptr<MatchMaker>, whose own archiving YADE does not export.
+// Reached through a shared_ptr whose own archiving YADE does not export, as attribute or as base of one.
 YADE_ABI_ARCHIVED_ELSEWHERE(yade::MatchMaker)
+YADE_ABI_ARCHIVED_ELSEWHERE(yade::IPhysFunctor)
 
 namespace yade {
 namespace abi {

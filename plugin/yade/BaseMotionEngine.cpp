@@ -2,6 +2,7 @@
 
 #include <core/Scene.hpp>
 #include <lib/factory/ClassFactory.hpp>
+#include <limits>
 #include <sstream>
 #include <stdexcept>
 
@@ -10,6 +11,8 @@ namespace yade {
 YADE_PLUGIN((BaseMotionEngine));
 
 vector<BaseJump> BaseMotionEngine::takeJumps(Real, const vector<StepImpact>&) { return {}; }
+
+Real BaseMotionEngine::nextKink(Real, Real) const { return std::numeric_limits<Real>::infinity(); }
 
 void BaseMotionEngine::check() const
 {
@@ -28,12 +31,16 @@ void BaseMotionEngine::check() const
 		throw std::invalid_argument(getClassName() + ".direction must be a unit vector.");
 }
 
+void BaseMotionEngine::begin()
+{
+	if (!origins.empty()) return;
+	check();
+	for (int id : ids) origins.push_back((*scene->bodies)[id]->state->pos - direction * displacement(scene->time - start));
+}
+
 void BaseMotionEngine::action()
 {
-	if (origins.empty()) {
-		check();
-		for (int id : ids) origins.push_back((*scene->bodies)[id]->state->pos - direction * displacement(scene->time - start));
-	}
+	begin();
 	takeJumps(scene->time, {}); // those that no joint has asked for
 	const Real now = scene->time - start, next = now + scene->dt;
 	const Real here = displacement(now);

@@ -7,6 +7,7 @@ namespace yade {
 /// A jump of the base velocity inside the step that ends now.
 struct BaseJump {
 	Vector3r velocity; // change of velocity, m/s
+	Real size;         // the same along the direction of the motion
 	Real before;       // the instant lies this long before the end of the step, s
 };
 
@@ -18,7 +19,7 @@ struct StepImpact {
 
 /// Base class of prescribed base motions along one direction. The bodies `ids` move by origin + direction displacement(t)
 /// exactly at every step; between steps with the mean velocity, so that nothing drifts. Goes after RockingJointEngine and
-/// before NewtonIntegrator in O.engines.
+/// before NewtonIntegrator in O.engines; MoreauJeanIntegrator has a list of its own.
 class BaseMotionEngine : public PartialEngine {
 public:
 	void action() override;
@@ -30,6 +31,12 @@ public:
 
 	/// Mean velocity over [from, to].
 	virtual Real meanVelocity(Real from, Real to) const { return (displacement(to) - displacement(from)) / (to - from); }
+
+	/// First instant in (after, until) at which velocity or acceleration jumps, as far as it is known by now; else infinity.
+	virtual Real nextKink(Real after, Real until) const;
+
+	/// Finds where the bodies stand when the motion begins. Called before the first step.
+	void begin();
 
 	/// The velocity jumps up to the present time that were not asked for before, in order of time; impacts of this step
 	/// may cause them. RockingJointEngine asks, so that blocks respond at the instant itself.

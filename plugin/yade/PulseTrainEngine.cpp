@@ -1,8 +1,10 @@
 #include "PulseTrainEngine.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <core/Scene.hpp>
 #include <lib/factory/ClassFactory.hpp>
+#include <limits>
 #include <sstream>
 #include <stdexcept>
 
@@ -28,21 +30,58 @@ void PulseTrainEngine::postLoad(PulseTrainEngine&)
 	}
 	if (halfCycles < -1) reject("halfCycles", halfCycles, "a number >= 0, or -1 for a train without end");
 	if (!(duration >= 0) || std::isinf(duration)) reject("duration", duration, "a finite time >= 0 in s");
-	masonry::pulseShapeFromName(shape);
+	unit = { masonry::pulseShapeFromName(shape), duration };
+	past.clear();
+	for (size_t k = 0; k < pulseTimes.size(); ++k) addPast(k);
 }
 
-Real PulseTrainEngine::sum(Real t, Real (masonry::UnitPulse::*part)(double) const) const
+void PulseTrainEngine::addPast(size_t k)
 {
-	const masonry::UnitPulse pulse { masonry::pulseShapeFromName(shape), duration };
+	const Real end = pulseTimes[k] + unit.duration, moved = pulseJumps[k] * unit.displacement(unit.duration);
+	const Past before = past.empty() ? Past { end, 0, 0 } : past.back();
+	past.push_back({ end, before.velocity + pulseJumps[k], before.displacement + before.velocity * (end - before.end) + moved });
+}
+
+size_t PulseTrainEngine::ended(Real t) const
+{
+	const auto next = std::upper_bound(past.begin(), past.end(), t, [](Real time, const Past& pulse) { return time < pulse.end; });
+	return size_t(next - past.begin());
+}
+
+Real PulseTrainEngine::acting(Real t, Real (masonry::UnitPulse::*part)(double) const) const
+{
 	Real result = 0;
-	for (size_t k = 0; k < pulseTimes.size(); ++k)
-		if (t >= pulseTimes[k]) result += pulseJumps[k] * (pulse.*part)(t - pulseTimes[k]);
+	for (size_t k = ended(t); k < pulseTimes.size() && pulseTimes[k] <= t; ++k) result += pulseJumps[k] * (unit.*part)(t - pulseTimes[k]);
 	return result;
 }
 
-Real PulseTrainEngine::displacement(Real t) const { return sum(t, &masonry::UnitPulse::displacement); }
-Real PulseTrainEngine::velocity(Real t) const { return sum(t, &masonry::UnitPulse::velocity); }
-Real PulseTrainEngine::acceleration(Real t) const { return sum(t, &masonry::UnitPulse::acceleration); }
+Real PulseTrainEngine::displacement(Real t) const
+{
+	const size_t k = ended(t);
+	const Real   before = k == 0 ? 0 : past[k - 1].displacement + past[k - 1].velocity * (t - past[k - 1].end);
+	return before + acting(t, &masonry::UnitPulse::displacement);
+}
+
+Real PulseTrainEngine::velocity(Real t) const
+{
+	const size_t k = ended(t);
+	return (k == 0 ? 0 : past[k - 1].velocity) + acting(t, &masonry::UnitPulse::velocity);
+}
+
+Real PulseTrainEngine::acceleration(Real t) const { return acting(t, &masonry::UnitPulse::acceleration); }
+
+Real PulseTrainEngine::nextKink(Real after, Real until) const
+{
+	Real       first = until;
+	const auto consider = [&](const vector<Real>& instants, Real shift) {
+		const auto next = std::upper_bound(instants.begin(), instants.end(), after - shift);
+		if (next != instants.end()) first = std::min(first, *next + shift);
+	};
+	consider(times, 0);
+	if (resonant() && pulseTimes.empty() && after < 0) first = std::min(first, Real(0));
+	if (!dirac()) consider(pulseTimes, duration);
+	return first < until ? first : std::numeric_limits<Real>::infinity();
+}
 
 Real PulseTrainEngine::meanVelocity(Real from, Real to) const
 {
@@ -60,7 +99,8 @@ void PulseTrainEngine::addPulse(Real time, vector<BaseJump>& jumps, Real now)
 	const Real jump = count % 2 == 0 ? size : -size;
 	pulseTimes.push_back(time);
 	pulseJumps.push_back(jump);
-	if (masonry::pulseShapeFromName(shape) == masonry::PulseShape::Dirac) jumps.push_back({ direction * jump, now - time });
+	addPast(count);
+	if (dirac()) jumps.push_back({ direction * jump, jump, now - time });
 }
 
 vector<BaseJump> PulseTrainEngine::takeJumps(Real sceneTime, const vector<StepImpact>& impacts)
@@ -69,8 +109,7 @@ vector<BaseJump> PulseTrainEngine::takeJumps(Real sceneTime, const vector<StepIm
 	const Real now = sceneTime - start;
 	if (!resonant()) {
 		// Finite pulses are known ahead, so that the mean velocity of a step holds a pulse that starts inside it.
-		const bool ahead = masonry::pulseShapeFromName(shape) != masonry::PulseShape::Dirac;
-		while (pulseTimes.size() < times.size() && (ahead || times[pulseTimes.size()] <= now)) addPulse(times[pulseTimes.size()], jumps, now);
+		while (pulseTimes.size() < times.size() && (!dirac() || times[pulseTimes.size()] <= now)) addPulse(times[pulseTimes.size()], jumps, now);
 		return jumps;
 	}
 	if (pulseTimes.empty()) {

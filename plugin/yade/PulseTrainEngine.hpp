@@ -13,6 +13,7 @@ public:
 	Real velocity(Real) const override;
 	Real acceleration(Real) const override;
 	Real meanVelocity(Real from, Real to) const override;
+	Real nextKink(Real after, Real until) const override;
 	vector<BaseJump> takeJumps(Real now, const vector<StepImpact>& impacts) override;
 	/// Throws std::invalid_argument naming attribute, value and allowed range.
 	void postLoad(PulseTrainEngine&);
@@ -36,10 +37,22 @@ public:
 	);
 	// clang-format on
 private:
+	/// The base when a pulse and all before it have ended.
+	struct Past {
+		Real end, velocity, displacement;
+	};
+
 	bool resonant() const { return resonantBlock >= 0; }
-	/// Of all pulses so far at time t: their displacement, velocity or acceleration.
-	Real sum(Real t, Real (masonry::UnitPulse::*part)(double) const) const;
+	bool dirac() const { return unit.shape == masonry::PulseShape::Dirac; }
+	/// Number of pulses that have ended at time t.
+	size_t ended(Real t) const;
+	/// Of the pulses that act at time t: their displacement, velocity or acceleration.
+	Real acting(Real t, Real (masonry::UnitPulse::*part)(double) const) const;
 	void addPulse(Real time, vector<BaseJump>& jumps, Real now);
+	void addPast(size_t pulse);
+
+	masonry::UnitPulse unit; // shape and duration
+	vector<Past> past;       // pulse by pulse, from pulseTimes and pulseJumps
 };
 REGISTER_SERIALIZABLE(PulseTrainEngine);
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <lib/factory/ClassFactory.hpp>
+#include <limits>
 #include <sstream>
 #include <stdexcept>
 
@@ -25,6 +26,13 @@ void RecordMotionEngine::postLoad(RecordMotionEngine&)
 	requireFinite("interval", interval, true);
 	requireFinite("scale", scale, false);
 	if (!samples.empty()) motion = masonry::motion::record(interval, samples, scale, masonry::motion::baselineFromName(baseline));
+}
+
+Real RecordMotionEngine::nextKink(Real after, Real until) const
+{
+	for (Real end : { Real(0), interval * Real(samples.size() - 1) })
+		if (after < end && end < until) return end;
+	return std::numeric_limits<Real>::infinity();
 }
 
 void RecordMotionEngine::check() const

@@ -4,6 +4,7 @@
 #include "BlockPhys.hpp"
 #include "Ip2_BlockMat_BlockMat_BlockPhys.hpp"
 #include "core_state.hpp"
+#include "python_lock.hpp"
 
 #include "contact/box_box.hpp"
 #include "dynamics/compliant/time_step.hpp"
@@ -21,12 +22,6 @@ namespace yade {
 YADE_PLUGIN((RockingJointEngine));
 
 namespace {
-
-	/// O.run() works in a thread of its own: Python objects need the interpreter's lock.
-	struct PythonLock {
-		PyGILState_STATE state = PyGILState_Ensure();
-		~PythonLock() { PyGILState_Release(state); }
-	};
 
 	/// NewtonIntegrator is read through its Python attributes, as a script would.
 	struct Integrator {

@@ -16,9 +16,13 @@ def stone(restitution=None, **attributes):
     return dem.BlockMat(density=2000, **{"noSlip": True, **given, **attributes})
 
 
-def quiet_engines(*arguments, **options):
+def quiet_engines(*arguments, model="compliant", **options):
     with contextlib.redirect_stdout(io.StringIO()):
-        return dem.engines(*arguments, **options)
+        return dem.engines(*arguments, model=model, **options)
+
+
+def rigid_engines(*arguments, model="auto", **options):
+    return quiet_engines(*arguments, model=model, **options)
 
 
 class Samples:

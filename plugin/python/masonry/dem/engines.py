@@ -3,7 +3,11 @@
 import numpy as np
 from yade import O, wrapper
 
-_MODELS = ("auto", "compliant")
+_MODELS = ("auto", "planar", "spatial", "compliant")
+# Time step of rigid blocks, relative to sqrt(R/g) of the smallest one: 1e-3 s for a block 3 m high. Rocking angles of one block
+# are then right to 1e-6.
+_RIGID_STEP = 2.5e-3
+_PENETRATION = 1e-5
 # Share of the critical time step at which the step no longer shows in the error (README, convergence).
 _STEP_FRACTION = 0.2
 
@@ -32,8 +36,6 @@ def _choose_stiffness(penetration, gravity):
     missing = {b.mat.id: b.mat for b in blocks if np.isnan(b.mat.normalStiffness)}
     for material in missing.values():
         free = [b for b in blocks if b.dynamic]
-        if not free:
-            raise ValueError("there is no free block in O.bodies: add one with dem.block() before dem.engines()")
         pressure = max(_column_pressure(b, free, gravity) for b in free)
         width = min(2 * min(b.shape.extents[0], b.shape.extents[1]) for b in free)
         material.normalStiffness = pressure / (penetration * width)
@@ -54,24 +56,32 @@ def _landing_step(body):
     return 2 / np.sqrt(stiffness * area * (1 / state.mass + half.squaredNorm() / min(state.inertia)))
 
 
-def engines(motion=None, model="auto", dt=None, penetration=1e-5, impact_order="simultaneous", gravity=9.81, recorder=None):
+def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None, impact_order="simultaneous", gravity=9.81, recorder=None, others=()):
     """The list for O.engines; sets O.dt and prints the choice and its reason.
 
     motion        a motion engine (PulseTrainEngine, RecordMotionEngine), a list of them, or None
-    model         'compliant': joints with stiffness, YADE's usual loop with NewtonIntegrator. 'auto' chooses; at present the
-                  compliant model is the one there is.
-    dt            time step, s; None: 0.2 of the critical one. Too large a step is refused before the first step.
-    penetration   where BlockMat gives no stiffness: how far the weight presses the most loaded joint in, relative to the
-                  smallest width (0 < penetration <= 1e-2). The error of rocking angles is about ten times this; the cost grows as
-                  its inverse square root.
-    impact_order  'simultaneous' or 'sequential': how an impact acts on a structure (RockingJointEngine.impactOrder)
+    model         'planar' or 'spatial': rigid blocks in a plane or in space (MoreauJeanIntegrator). 'compliant': joints with
+                  stiffness, YADE's usual loop with NewtonIntegrator. 'auto': compliant where a BlockMat has a stiffness or
+                  `penetration` is given; else planar where the scene lies in one upright plane; else spatial.
+    dt            time step, s; None: rigid 2.5e-3 sqrt(R/g) of the smallest block (1 ms for a block 3 m high), compliant 0.2 of
+                  the critical step. Too large a step is refused.
+    tolerance     rigid: residual of the contact laws relative to the speed that gravity gives in a step (above 0, at most 1e-3;
+                  None: 1e-9)
+    penetration   compliant, where BlockMat gives no stiffness: how far the weight presses the most loaded joint in, relative to
+                  the smallest width (0 < penetration <= 1e-2; None: 1e-5). The error of rocking angles is about ten times this;
+                  the cost grows as its inverse square root.
+    impact_order  'simultaneous' or 'sequential': how an impact acts on a structure (impactOrder of the engine)
     gravity       m/s^2, along -z
     recorder      a BlockRecorder, put where positions, forces and O.time belong together; None
+    others        rigid: engines of bodies that are no blocks (collider, InteractionLoop, NewtonIntegrator with a mask that leaves
+                  the blocks out), put between ForceResetter and the blocks' own
     """
     if model not in _MODELS:
         raise ValueError(f"model = {model!r}: must be one of {', '.join(_MODELS)}")
-    if not 0 < penetration <= 1e-2:
+    if penetration is not None and not 0 < penetration <= 1e-2:
         raise ValueError(f"penetration = {penetration}: must be above 0 and at most 0.01")
+    if tolerance is not None and not 0 < tolerance <= 1e-3:
+        raise ValueError(f"tolerance = {tolerance}: must be above 0 and at most 0.001")
     if dt is not None and not dt > 0:
         raise ValueError(f"dt = {dt}: must be positive, in s")
     if not gravity >= 0:
@@ -81,7 +91,40 @@ def engines(motion=None, model="auto", dt=None, penetration=1e-5, impact_order="
         if not isinstance(item, wrapper.BaseMotionEngine):
             raise ValueError(f"motion = {item!r}: must be a PulseTrainEngine, a RecordMotionEngine, or a list of them")
         item.check()
-    reasons = ["compliant joints: YADE's usual loop"]
+    if not any(b.dynamic for b in _blocks()):
+        raise ValueError("there is no free block in O.bodies: add one with dem.block() before dem.engines()")
+    reason = "asked for"
+    if model == "auto":
+        if penetration is not None:
+            model, reason = "compliant", "penetration is given"
+        elif any(not np.isnan(b.mat.normalStiffness) for b in _blocks()):
+            model, reason = "compliant", "a BlockMat has a joint stiffness"
+    recorders = [] if recorder is None else [recorder]
+    if model == "compliant":
+        if tolerance is not None or others:
+            raise ValueError("tolerance and others are for rigid blocks: they must be left out with model='compliant'")
+        return _compliant(motions, reason, dt, penetration or _PENETRATION, impact_order, gravity, recorders)
+    if penetration is not None:
+        raise ValueError(f"penetration = {penetration}: must be left out with model={model!r}, it is for compliant joints")
+    return _rigid(motions, model, dt, tolerance or 1e-9, impact_order, gravity, recorders, list(others))
+
+
+def _rigid(motions, model, dt, tolerance, impact_order, gravity, recorders, others):
+    integrator = wrapper.MoreauJeanIntegrator(motions=motions, model=model, tolerance=tolerance, impactOrder=impact_order, gravity=(0, 0, -gravity))
+    choice = integrator.choice()
+    if dt is None and gravity == 0:
+        raise ValueError("dt = None: must be given where gravity is 0")
+    smallest = min(b.shape.extents.norm() for b in _blocks() if b.dynamic)
+    step = dt if dt is not None else _RIGID_STEP * np.sqrt(smallest / gravity)
+    if not step <= integrator.largestTimeStep:
+        raise ValueError(f"dt = {dt}: must be at most {integrator.largestTimeStep:.3g} s, 0.05 sqrt(R/g) of the smallest block")
+    O.dt = step
+    print(f"masonry.dem: rigid blocks, {choice}; dt = {O.dt:.3g} s")
+    return [wrapper.ForceResetter(), *others, *recorders, integrator]
+
+
+def _compliant(motions, reason, dt, penetration, impact_order, gravity, recorders):
+    reasons = [f"compliant joints, YADE's usual loop: {reason}"]
     chosen = _choose_stiffness(penetration, gravity)
     if chosen:
         reasons.append(chosen)
@@ -103,16 +146,16 @@ def engines(motion=None, model="auto", dt=None, penetration=1e-5, impact_order="
         wrapper.InteractionLoop([wrapper.Ig2_Box_Box_BlockGeom()], [wrapper.Ip2_BlockMat_BlockMat_BlockPhys()], [wrapper.Law2_BlockGeom_BlockPhys_Rocking()]),
         joints,
         *motions,
-        *([] if recorder is None else [recorder]),
+        *recorders,
         wrapper.NewtonIntegrator(gravity=(0, 0, -gravity), damping=0),
     ]
 
 
 def _joint_engine():
     for engine in O.engines:
-        if isinstance(engine, wrapper.RockingJointEngine):
+        if isinstance(engine, (wrapper.MoreauJeanIntegrator, wrapper.RockingJointEngine)):
             return engine
-    raise ValueError("O.engines has no RockingJointEngine: set O.engines = dem.engines(...)")
+    raise ValueError("O.engines has no MoreauJeanIntegrator and no RockingJointEngine: set O.engines = dem.engines(...)")
 
 
 _IMPACT_FIELDS = [("time", float), ("body", int), ("support", int), ("restitution_asked", float), ("restitution", float), ("velocity", float),
@@ -135,10 +178,11 @@ def impacts():
 
 
 def energy():
-    """Energies in J: kinetic, potential and elastPotential now; frictDissip, dampDissip, impactDissip and baseWork so far. The sum of
-    the first six less baseWork is constant."""
+    """Energies in J: kinetic and potential now; frictDissip, impactDissip and baseWork so far; compliant joints: also elastPotential
+    now and dampDissip so far. The sum of all others less baseWork is constant."""
     e = _joint_engine()
-    return {key: getattr(e, key) for key in ("kinetic", "potential", "elastPotential", "frictDissip", "dampDissip", "impactDissip", "baseWork")}
+    keys = ("kinetic", "potential", "elastPotential", "frictDissip", "dampDissip", "impactDissip", "baseWork")
+    return {key: getattr(e, key) for key in keys if hasattr(e, key)}
 
 
 def history(recorder):

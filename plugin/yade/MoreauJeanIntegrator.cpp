@@ -1,0 +1,329 @@
+#include "MoreauJeanIntegrator.hpp"
+#include "RockingJointEngine.hpp"
+#include "python_lock.hpp"
+#include "rigid_scene.hpp"
+
+#include <boost/python/extract.hpp>
+#include <core/Scene.hpp>
+#include <lib/factory/ClassFactory.hpp>
+#include <sstream>
+#include <stdexcept>
+
+namespace yade {
+
+YADE_PLUGIN((MoreauJeanIntegrator));
+
+namespace {
+
+	/// Largest time step relative to sqrt(R/g) of the smallest block.
+	constexpr Real coarsestStep = 0.05;
+
+	template <class... Parts> string sentence(const Parts&... parts)
+	{
+		std::ostringstream text;
+		(text << ... << parts);
+		return text.str();
+	}
+
+	template <class Value> [[noreturn]] void reject(const char* attribute, const Value& value, const char* allowed)
+	{
+		throw std::invalid_argument(sentence("MoreauJeanIntegrator.", attribute, " = ", value, " is not allowed: it must be ", allowed, "."));
+	}
+
+	/// Degrees of freedom, as in State::blockedDOFs, that a planar motion never uses.
+	unsigned unusedInPlane(const Vector3r& normal)
+	{
+		unsigned result = 0;
+		for (int axis = 0; axis < 3; ++axis) {
+			if (std::abs(normal[axis]) == 1) result |= State::DOF_X << axis;
+			if (normal[axis] == 0) result |= State::DOF_RX << axis;
+		}
+		return result;
+	}
+
+	AnyRigidScene& sceneOf(const RigidMemory& memory) { return static_cast<AnyRigidScene&>(*memory.run); }
+
+	template <class K>
+	std::shared_ptr<RigidRun> makeScene(MoreauJeanIntegrator& engine, const vector<BaseMotionEngine*>& motions, const vector<Real>& values)
+	{
+		Remembered<K> before;
+		if (!values.empty()) {
+			Unpacker unpacker { values };
+			before.pass(unpacker);
+		}
+		return std::make_shared<RigidScene<K>>(engine, motions, before);
+	}
+
+} // namespace
+
+void MoreauJeanIntegrator::postLoad(MoreauJeanIntegrator&)
+{
+	for (const auto& motion : motions)
+		if (!dynamic_cast<BaseMotionEngine*>(motion.get()))
+			reject("motions", motion ? motion->getClassName() : "None", "a list of motions (PulseTrainEngine, RecordMotionEngine)");
+	if (model != "auto" && model != "planar" && model != "spatial") reject("model", "'" + model + "'", "'auto', 'planar' or 'spatial'");
+	if (impactOrder != "simultaneous" && impactOrder != "sequential") reject("impactOrder", "'" + impactOrder + "'", "'simultaneous' or 'sequential'");
+	if (onTrouble != "stop" && onTrouble != "continue") reject("onTrouble", "'" + onTrouble + "'", "'stop' or 'continue'");
+	if (!(tolerance > 0 && tolerance <= 1e-3)) reject("tolerance", tolerance, "above 0 and at most 1e-3");
+	if (mostEvents < 1) reject("mostEvents", mostEvents, "at least 1");
+	sequential = impactOrder == "sequential";
+}
+
+vector<BaseMotionEngine*> MoreauJeanIntegrator::motionEngines() const
+{
+	vector<BaseMotionEngine*> result;
+	for (const auto& motion : motions) result.push_back(static_cast<BaseMotionEngine*>(motion.get()));
+	return result;
+}
+
+vector<const Body*> MoreauJeanIntegrator::blocks() const
+{
+	vector<const Body*> result;
+	for (const auto& body : scene->bodies->body)
+		if (body && isBlock(*body)) result.push_back(body.get());
+	return result;
+}
+
+// --- before the first step ---
+
+void MoreauJeanIntegrator::start()
+{
+	for (BaseMotionEngine* motion : motionEngines()) {
+		motion->scene = scene;
+		motion->begin();
+	}
+	if (chosenModel.empty()) choose();
+	build(memory.values);
+}
+
+void MoreauJeanIntegrator::renew()
+{
+	sceneOf(memory).dropErased();
+	build(memory.run->pack());
+}
+
+void MoreauJeanIntegrator::build(const vector<Real>& remembered)
+{
+	checkScene();
+	memory.run = chosenModel == "planar" ? makeScene<Plane>(*this, motionEngines(), remembered) : makeScene<Space>(*this, motionEngines(), remembered);
+	checkedTimeStep = 0;
+}
+
+void MoreauJeanIntegrator::checkScene() const
+{
+	std::map<int, int> moved;
+	for (const BaseMotionEngine* motion : motionEngines())
+		for (int id : motion->ids)
+			if (moved[id]++) throw std::invalid_argument(sentence("Body ", id, " is in the ids of two motions: one body follows one motion."));
+	const unsigned unused = chosenModel == "planar" ? unusedInPlane(Coordinates<Plane>(along).normal) : 0;
+	bool free = false;
+	for (const Body* body : blocks()) {
+		free |= body->isDynamic();
+		if (body->isDynamic() && (body->state->blockedDOFs & ~unused))
+			throw std::invalid_argument(sentence("O.bodies[", body->id, "].state.blockedDOFs = '", body->state->blockedDOFs_vec_get(),
+				"' is not allowed for a rigid block: all six degrees of freedom are blocked ('xyzXYZ') or none."));
+		if (body->isClumpMember()) throw std::invalid_argument(sentence("O.bodies[", body->id, "] is a member of a clump: rigid blocks cannot be clumped."));
+	}
+	if (!free) throw std::invalid_argument("There is no free block in O.bodies: add one with dem.block().");
+	for (const auto& body : scene->bodies->body)
+		if (body && dynamic_cast<BlockMat*>(body->material.get()) && !isBlock(*body))
+			throw std::invalid_argument(sentence("O.bodies[", body->id, "] has a BlockMat and is no Box: rigid blocks touch boxes only."));
+
+	for (const auto& engine : scene->engines) {
+		if (engine->dead) continue;
+		if (dynamic_cast<BaseMotionEngine*>(engine.get()))
+			throw std::invalid_argument(engine->getClassName() + " is in O.engines: rigid blocks need it in MoreauJeanIntegrator.motions instead.");
+		if (dynamic_cast<RockingJointEngine*>(engine.get()))
+			throw std::invalid_argument("O.engines has a RockingJointEngine and a MoreauJeanIntegrator: blocks are compliant or rigid, not both.");
+		if (engine->getClassName() != "NewtonIntegrator") continue;
+		const PythonLock lock;
+		const int mask = boost::python::extract<int>(engine->pyDict()["mask"])();
+		for (const Body* body : blocks())
+			if (mask == 0 || (body->groupMask & mask) != 0)
+				throw std::invalid_argument(sentence("NewtonIntegrator would move block ", body->id,
+					" as well: give the other bodies mask=3 and NewtonIntegrator mask=2, which the blocks (groupMask ", body->groupMask, ") must not have."));
+	}
+}
+
+// --- plane or space ---
+
+string MoreauJeanIntegrator::whyNotPlanar(const Vector3r& normal) const
+{
+	const auto across = [&](const Vector3r& v) { return std::abs(normal.dot(v)) > outOfPlane * v.norm(); };
+	const auto all = blocks();
+	const auto first = std::find_if(all.begin(), all.end(), [](const Body* body) { return body->isDynamic(); });
+	if (across(gravity)) return "gravity points out of the plane";
+	const Real depth = normal.dot((*first)->state->pos);
+	Real front = depth, back = depth; // of the free blocks
+	for (int pass : { 0, 1 }) // free blocks, then the others
+		for (const Body* body : all) {
+			if (body->isDynamic() != (pass == 0)) continue;
+			const State&   state = *body->state;
+			const Vector3r local = state.ori.conjugate() * normal, size = static_cast<const Box&>(*body->shape).extents;
+			int axis;
+			local.cwiseAbs().maxCoeff(&axis);
+			const Real half = size[axis], here = normal.dot(state.pos), rounding = outOfPlane * size.minCoeff();
+			if (local.cwiseAbs().sum() - std::abs(local[axis]) > outOfPlane) return sentence("block ", body->id, " has no axis across the plane");
+			const bool shares = std::abs(here - depth) <= rounding;
+			if (body->isDynamic()) {
+				if (!shares) return sentence("blocks ", (*first)->id, " and ", body->id, " have different mid-planes");
+				front = std::max(front, here + half);
+				back = std::min(back, here - half);
+			} else if (!shares && !(here + half >= front - rounding && here - half <= back + rounding)) {
+				return sentence("body ", body->id, " lies under a part of the depth only");
+			}
+			if (across(state.vel) || state.angVel.cross(normal).norm() > outOfPlane * state.angVel.norm()) return sentence("block ", body->id, " moves out of the plane");
+		}
+	for (const BaseMotionEngine* motion : motionEngines())
+		if (across(motion->direction)) return "a motion points out of the plane";
+	scene->forces.sync();
+	for (const Body* body : all)
+		if (across(scene->forces.getForce(body->id)) || scene->forces.getTorque(body->id).cross(normal).norm() > outOfPlane * scene->forces.getTorque(body->id).norm())
+			return sentence("a force or torque acts on block ", body->id, " out of the plane");
+	return "";
+}
+
+/// The plane is upright; its normal is an axis of every block. Of two that will do, the one nearest to y is taken.
+void MoreauJeanIntegrator::choose()
+{
+	chosenModel = "spatial";
+	reason = "asked for";
+	if (model == "spatial") return;
+	const auto all = blocks();
+	const auto first = std::find_if(all.begin(), all.end(), [](const Body* body) { return body->isDynamic(); });
+	reason = "no block has a horizontal axis";
+	if (first != all.end()) {
+		const Matrix3r axes = (*first)->state->ori.toRotationMatrix();
+		vector<Vector3r> normals;
+		for (int axis = 0; axis < 3; ++axis)
+			if (std::abs(axes(2, axis)) <= outOfPlane) normals.push_back(Vector3r(axes(0, axis), axes(1, axis), 0).normalized());
+		std::sort(normals.begin(), normals.end(), [](const Vector3r& a, const Vector3r& b) { return std::abs(a.y()) > std::abs(b.y()); });
+		for (size_t k = 0; k < normals.size() && chosenModel != "planar"; ++k) {
+			const string obstacle = whyNotPlanar(normals[k]);
+			if (k == 0 || obstacle.empty()) reason = obstacle;
+			if (!obstacle.empty()) continue;
+			chosenModel = "planar";
+			reason = "blocks, motions and loads lie in one upright plane";
+			along = Vector3r::UnitZ().cross(normals[k]);
+			if (along.x() < 0 || (along.x() == 0 && along.y() < 0)) along = Vector3r::Zero() - along; // no -0
+		}
+	}
+	if (model == "planar" && chosenModel != "planar") {
+		chosenModel.clear();
+		throw std::invalid_argument("MoreauJeanIntegrator.model = 'planar' is not allowed for this scene: " + reason + ".");
+	}
+}
+
+string MoreauJeanIntegrator::choice()
+{
+	const std::tuple before(chosenModel, reason, along);
+	choose();
+	checkScene();
+	const string result = chosenModel + ": " + reason;
+	std::tie(chosenModel, reason, along) = before;
+	return result;
+}
+
+// --- time step ---
+
+Real MoreauJeanIntegrator::largestTimeStep() const
+{
+	Real smallest = std::numeric_limits<Real>::infinity();
+	for (const Body* body : blocks())
+		if (body->isDynamic()) smallest = std::min(smallest, static_cast<const Box&>(*body->shape).extents.norm());
+	return coarsestStep * std::sqrt(smallest / gravity.norm());
+}
+
+void MoreauJeanIntegrator::checkTimeStep()
+{
+	const Real largest = largestTimeStep();
+	if (!(scene->dt > 0 && scene->dt <= largest))
+		throw std::runtime_error(sentence("O.dt = ", scene->dt, " s is not allowed for these blocks: it must be positive and at most ", largest, " s (",
+			coarsestStep, " of sqrt(R/g) of the smallest block); dem.engines() chooses one."));
+	sceneOf(memory).setInstant(masonry::tolerance::rigid::instant * scene->dt);
+	checkedTimeStep = scene->dt;
+}
+
+// --- the step ---
+
+void MoreauJeanIntegrator::action()
+{
+	if (!memory.run)
+		start();
+	else if (sceneOf(memory).outdated())
+		renew();
+	if (scene->dt != checkedTimeStep) checkTimeStep();
+	count(stepRun());
+	if (scene->trackEnergy) showEnergy();
+}
+
+masonry::rigid::StepReport MoreauJeanIntegrator::stepRun()
+{
+	try {
+		return sceneOf(memory).step();
+	} catch (const LeavesPlane& obstacle) {
+		if (model == "planar") throw std::runtime_error(sentence("MoreauJeanIntegrator.model = 'planar', but ", obstacle.what(), " at t = ", scene->time, " s."));
+		LOG_WARN("the scene is no longer planar at t = " << scene->time << " s: " << obstacle.what() << "; it goes on in space.");
+		chosenModel = "spatial";
+		reason = obstacle.what();
+		build({});
+		checkTimeStep();
+		return sceneOf(memory).step();
+	}
+}
+
+void MoreauJeanIntegrator::count(const masonry::rigid::StepReport& report)
+{
+	substeps += report.substeps;
+	events += report.events;
+	sweeps += report.sweeps;
+	factorisations += report.factorisations;
+	unlocalised += report.unlocalised;
+	worstResidual = std::max(worstResidual, report.residual);
+	const bool crowded = localise && report.unlocalised > 0;
+	if (report.converged && !crowded) return;
+
+	std::ostringstream text;
+	text << "In the step from t = " << scene->time << " s ";
+	if (!report.converged) text << "the contact laws are missed: residual " << report.residual << " m/s. ";
+	if (crowded) text << report.unlocalised << " points closed after mostEvents = " << mostEvents << " events, at its end. ";
+	text << "Blocks in touch:";
+	for (int id : sceneOf(memory).touching()) text << ' ' << id;
+	text << '.';
+	if (failures++ == 0) {
+		firstFailure = text.str();
+		if (onTrouble == "continue") LOG_WARN(firstFailure << " The run goes on; MoreauJeanIntegrator.failures counts such steps.");
+	}
+	if (onTrouble == "stop") throw std::runtime_error(text.str() + " Take a smaller O.dt, or set MoreauJeanIntegrator.onTrouble='continue'.");
+}
+
+// --- energy ---
+
+Real MoreauJeanIntegrator::kinetic() const
+{
+	Real sum = 0;
+	for (const Body* body : blocks()) {
+		if (!body->isDynamic()) continue;
+		const State&   state = *body->state;
+		const Vector3r spin = state.ori.conjugate() * state.angVel;
+		sum += 0.5 * (state.mass * state.vel.squaredNorm() + spin.dot(state.inertia.cwiseProduct(spin)));
+	}
+	return sum;
+}
+
+Real MoreauJeanIntegrator::potential() const
+{
+	Real sum = 0;
+	for (const Body* body : blocks())
+		if (body->isDynamic()) sum -= body->state->mass * gravity.dot(body->state->pos);
+	return sum;
+}
+
+void MoreauJeanIntegrator::showEnergy()
+{
+	const std::pair<const char*, Real> keys[] = { { "kinetic", kinetic() }, { "potential", potential() }, { "frictDissip", frictDissip },
+		{ "impactDissip", impactDissip }, { "baseWork", -baseWork } };
+	for (const auto& [key, value] : keys) scene->energy->setItem_py(key, value);
+}
+
+} // namespace yade

@@ -1,0 +1,91 @@
+#pragma once
+
+#include "Ip2_BlockMat_BlockMat_BlockPhys.hpp"
+#include "rigid_memory.hpp"
+
+#include <core/GlobalEngine.hpp>
+
+namespace yade {
+
+class BaseMotionEngine;
+
+/// Rigid blocks (dynamics/rigid/): takes the place of InteractionLoop and NewtonIntegrator for them.
+class MoreauJeanIntegrator : public GlobalEngine {
+public:
+	void action() override;
+	/// Throws std::invalid_argument naming attribute, value and allowed range.
+	void postLoad(MoreauJeanIntegrator&);
+
+	Real kinetic() const;
+	Real potential() const;
+	Real largestTimeStep() const;
+	/// The model that the first step would choose in the present scene, and why.
+	string choice();
+
+	// clang-format off
+	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(MoreauJeanIntegrator, GlobalEngine,
+		"Motion of rigid blocks (boxes with a BlockMat) in unilateral contact, with impacts found inside the step. It takes the place of InteractionLoop and NewtonIntegrator for them; forces that other engines leave in O.forces act on the blocks. Blocks without a free degree of freedom move with their velocity, or as `motions` says. dem.engines() makes the list of engines.",
+		((vector<shared_ptr<Engine>>, motions, , Attr::triggerPostLoad, "Motions of the base: PulseTrainEngine, RecordMotionEngine. They are asked at any instant inside a step and must not be in O.engines."))
+		((Vector3r, gravity, Vector3r(0, 0, -9.81), , "Gravity [m/s^2]."))
+		((string, model, "auto", Attr::triggerPostLoad, "'planar', 'spatial', or 'auto': planar where blocks, motions and loads lie in one upright plane."))
+		((string, impactOrder, "simultaneous", Attr::triggerPostLoad, "How an impact acts on a structure: 'simultaneous' (all joints that close and all that touch in one impulse problem) or 'sequential' (joint by joint)."))
+		((Real, tolerance, 1e-9, Attr::triggerPostLoad, "Largest residual of the contact laws of a step, relative to the speed that gravity gives in that step; above 0, at most 1e-3."))
+		((bool, localise, true, , "Impacts are found inside the step. False: they are met at its end, of first order in the step."))
+		((int, mostEvents, 12, Attr::triggerPostLoad, "Impacts and stops of sliding that are found in one step, at least 1; further ones are met at its end."))
+		((string, onTrouble, "stop", Attr::triggerPostLoad, "What a step does that misses the tolerance or has more events than mostEvents: 'stop' (an error, after the step) or 'continue' (one warning)."))
+		((shared_ptr<Ip2_BlockMat_BlockMat_BlockPhys>, pairLaw, shared_ptr<Ip2_BlockMat_BlockMat_BlockPhys>(new Ip2_BlockMat_BlockMat_BlockPhys), , "Restitution and friction of a pair of blocks from their materials."))
+		((string, chosenModel, "", Attr::readonly, "'planar' or 'spatial', from the first step on."))
+		((string, reason, "", Attr::readonly, "Why."))
+		((Vector3r, along, Vector3r::Zero(), Attr::readonly, "Planar: the horizontal direction in the plane."))
+		((vector<Real>, impactTimes, , Attr::readonly, "Time of each impact [s], inside the step."))
+		((vector<int>, impactBlocks, , Attr::readonly, "The block that rocks."))
+		((vector<int>, impactSupports, , Attr::readonly, "What it rocks on."))
+		((vector<Real>, impactAsked, , Attr::readonly, "Restitution asked for; NaN: natural."))
+		((vector<Real>, impactBefore, , Attr::readonly, "Relative angular velocity before [rad/s]."))
+		((vector<Real>, impactAfter, , Attr::readonly, "Relative angular velocity after [rad/s]."))
+		((vector<Real>, impactEnergy, , Attr::readonly, "Kinetic energy lost [J]."))
+		((vector<Real>, impactApplication, , Attr::readonly, "Distance of the resultant impulse from the new pivot, inward positive [m]."))
+		((vector<Real>, impactFriction, , Attr::readonly, "Friction coefficient that the impact asks for; where friction is smaller the pivot has slipped."))
+		((vector<int>, impactSwitched, , Attr::readonly, "1: the pivot was handed over; 0: the joint came to rest."))
+		((vector<int>, impactCapped, , Attr::readonly, "1: the restitution was lowered so that the energy does not grow."))
+		((Real, frictDissip, 0, Attr::readonly, "Dissipated by friction so far [J]."))
+		((Real, impactDissip, 0, Attr::readonly, "Dissipated by impacts so far [J]."))
+		((Real, baseWork, 0, Attr::readonly, "Work of the moved base on the blocks so far [J]."))
+		((Real, worstResidual, 0, Attr::readonly, "Largest residual of a step so far [m/s]."))
+		((long, substeps, 0, Attr::readonly, "Parts of steps so far; one a step where nothing happens."))
+		((long, events, 0, Attr::readonly, "Impacts and stops of sliding found inside steps so far."))
+		((long, unlocalised, 0, Attr::readonly, "Points that closed at the end of a step because mostEvents was reached, so far."))
+		((long, sweeps, 0, Attr::readonly, "Sweeps of the contact solver so far."))
+		((long, factorisations, 0, Attr::readonly, "Factorisations of the contact solver so far."))
+		((long, failures, 0, Attr::readonly, "Steps so far that missed the tolerance or had too many events."))
+		((string, firstFailure, "", Attr::readonly, "What the first of them was, with time, blocks and residual."))
+		((RigidMemory, memory, , Attr::hidden, "")),
+		/* ctor */,
+		.add_property("kinetic", &MoreauJeanIntegrator::kinetic, "Kinetic energy now [J].")
+		.add_property("potential", &MoreauJeanIntegrator::potential, "Potential energy of gravity now, zero at the origin [J].")
+		.add_property("largestTimeStep", &MoreauJeanIntegrator::largestTimeStep, "Largest time step that is allowed [s].")
+		.def("choice", &MoreauJeanIntegrator::choice, "The model that the first step would choose in the present scene, and why; raises ValueError where it would refuse.")
+	);
+	// clang-format on
+private:
+	template <class K> friend class RigidScene;
+
+	void start();
+	void renew();
+	void choose();
+	void build(const vector<Real>& remembered);
+	void checkScene() const;
+	void checkTimeStep();
+	masonry::rigid::StepReport stepRun();
+	void count(const masonry::rigid::StepReport&);
+	void showEnergy();
+	vector<BaseMotionEngine*> motionEngines() const;
+	vector<const Body*> blocks() const;
+	string whyNotPlanar(const Vector3r& normal) const;
+
+	Real checkedTimeStep = 0;
+	bool sequential = false;
+};
+REGISTER_SERIALIZABLE(MoreauJeanIntegrator);
+
+} // namespace yade

@@ -1,0 +1,168 @@
+#pragma once
+// Where the core's plane or space lies in the scene, and how a body sits in it. No physics here.
+
+#include "dynamics/rigid/rigid_system.hpp"
+#include <core/Body.hpp>
+#include <cstring>
+#include <pkg/common/Box.hpp>
+#include <sstream>
+#include <stdexcept>
+
+namespace yade {
+
+using masonry::rigid::Plane;
+using masonry::rigid::Space;
+
+/// A body moves, or is pushed, out of the plane of a planar scene.
+struct LeavesPlane : std::runtime_error {
+	using std::runtime_error::runtime_error;
+};
+
+/// Sine of an angle, or share of a length, a force or a speed, by which a planar scene may miss its plane: what rounding leaves of
+/// a yawed scene. Larger: a real push out of the plane is lost.
+constexpr Real outOfPlane = 1e-9;
+
+/// What a body's State says, as it was written last.
+struct Motion {
+	Vector3r pos, vel, angVel;
+	Quaternionr ori;
+
+	void write(State& state, const Vector3r& angMom) const
+	{
+		state.pos = pos;
+		state.ori = ori;
+		state.vel = vel;
+		state.angVel = angVel;
+		state.angMom = angMom;
+	}
+	/// Bit by bit: nobody has touched the body since.
+	bool isOf(const State& state) const
+	{
+		const auto same = [](const auto& a, const auto& b) { return std::memcmp(&a, &b, sizeof(a)) == 0; };
+		return same(pos, state.pos) && same(ori.coeffs(), state.ori.coeffs()) && same(vel, state.vel) && same(angVel, state.angVel);
+	}
+};
+
+template <class K> struct Coordinates;
+template <class K> struct Seat;
+
+template <> struct Coordinates<Plane> {
+	Vector3r along, up, normal; // angles count from along to up, about the normal
+
+	explicit Coordinates(const Vector3r& horizontal) : along(horizontal), up(Vector3r::UnitZ()), normal(horizontal.cross(up)) { }
+
+	masonry::Vector2 in(const Vector3r& v) const { return { along.dot(v), up.dot(v) }; }
+	Vector3r out(const masonry::Vector2& v) const { return v.x() * along + v.y() * up; }
+	Plane::Velocity load(const Vector3r& force, const Vector3r& torque, int id) const
+	{
+		if (std::abs(normal.dot(force)) > outOfPlane * force.norm() || torque.cross(normal).norm() > outOfPlane * torque.norm()) {
+			std::ostringstream text;
+			text << "a force or torque acts on block " << id << " out of the plane";
+			throw LeavesPlane(text.str());
+		}
+		Plane::Velocity result;
+		result << in(force), normal.dot(torque);
+		return result;
+	}
+};
+
+template <> struct Coordinates<Space> {
+	explicit Coordinates(const Vector3r&) { }
+
+	const Vector3r& in(const Vector3r& v) const { return v; }
+	const Vector3r& out(const Vector3r& v) const { return v; }
+	Space::Velocity load(const Vector3r& force, const Vector3r& torque, int) const
+	{
+		Space::Velocity result;
+		result << force, torque;
+		return result;
+	}
+};
+
+/// A box in the plane: which of its axes lies across, which upright, how deep it is, how it stands at angle zero.
+template <> struct Seat<Plane> {
+	int across = 0, upright = 0, lengthwise = 0;
+	Real depth = 0; // along the normal
+	Quaternionr reference = Quaternionr::Identity();
+
+	Seat() = default;
+	Seat(const Coordinates<Plane>& c, const State& state)
+	{
+		const Matrix3r axes = state.ori.toRotationMatrix();
+		(c.normal.transpose() * axes).cwiseAbs().maxCoeff(&across);
+		lengthwise = (across + 1) % 3;
+		upright = (across + 2) % 3;
+		if (std::abs(c.along.dot(axes.col(lengthwise))) < std::abs(c.along.dot(axes.col(upright)))) std::swap(lengthwise, upright);
+		Matrix3r standing;
+		standing.col(across) = std::copysign(1, c.normal.dot(axes.col(across))) * c.normal;
+		standing.col(lengthwise) = std::copysign(1, c.along.dot(axes.col(lengthwise))) * c.along;
+		standing.col(upright) = standing.col((upright + 1) % 3).cross(standing.col((upright + 2) % 3));
+		reference = Quaternionr(standing);
+		depth = c.normal.dot(state.pos);
+	}
+
+	masonry::Vector2 halfSize(const Vector3r& extents) const { return { extents[lengthwise], extents[upright] }; }
+	Plane::Inertia inertia(const Vector3r& principal) const { return Plane::Inertia(principal[across]); }
+
+	/// Angles within half a turn. Throws LeavesPlane.
+	void read(const Coordinates<Plane>& c, const State& state, Real size, int id, masonry::rigid::RigidBody<Plane>& body) const
+	{
+		const Quaternionr turn = state.ori * reference.conjugate();
+		const Real        about = turn.vec().dot(c.normal);
+		const Vector3r    astray = turn.vec() - about * c.normal;
+		const bool        moved = std::abs(c.normal.dot(state.pos) - depth) > outOfPlane * size || astray.norm() > outOfPlane;
+		if (moved || std::abs(c.normal.dot(state.vel)) > outOfPlane * state.vel.norm() || state.angVel.cross(c.normal).norm() > outOfPlane * state.angVel.norm()) {
+			std::ostringstream text;
+			text << "block " << id << (moved ? " has been moved" : " moves") << " out of the plane";
+			throw LeavesPlane(text.str());
+		}
+		body.pose.position = c.in(state.pos);
+		body.pose.setAngle(2 * (turn.w() < 0 ? std::atan2(-about, -turn.w()) : std::atan2(about, turn.w())));
+		body.velocity << c.in(state.vel), c.normal.dot(state.angVel);
+	}
+	Motion motion(const Coordinates<Plane>& c, const masonry::rigid::RigidBody<Plane>& body) const
+	{
+		// Half the angle, within a quarter turn, from its cosine and sine.
+		const auto& pose = body.pose;
+		const Real  w = pose.cosine >= 0 ? std::sqrt((1 + pose.cosine) / 2) : std::abs(pose.sine) / std::sqrt(2 * (1 - pose.cosine));
+		const Real  s = pose.cosine >= 0 ? pose.sine / (2 * w) : std::copysign(std::sqrt((1 - pose.cosine) / 2), pose.sine);
+		Quaternionr turn;
+		turn.w() = w;
+		turn.vec() = s * c.normal;
+		return { c.out(pose.position) + depth * c.normal, c.out(body.velocity.head<2>()), body.velocity[2] * c.normal, turn * reference };
+	}
+	Vector3r spin(const Coordinates<Plane>& c, const masonry::rigid::RigidBody<Plane>& body) const
+	{
+		return body.inertia[0] * body.velocity[2] * c.normal;
+	}
+};
+
+template <> struct Seat<Space> {
+	static constexpr Real depth = 0;
+
+	Seat() = default;
+	Seat(const Coordinates<Space>&, const State&) { }
+
+	const Vector3r& halfSize(const Vector3r& extents) const { return extents; }
+	const Vector3r& inertia(const Vector3r& principal) const { return principal; }
+	void read(const Coordinates<Space>&, const State& state, Real, int, masonry::rigid::RigidBody<Space>& body) const
+	{
+		body.pose = { state.pos, state.ori };
+		body.velocity << state.vel, state.angVel;
+	}
+	Motion motion(const Coordinates<Space>&, const masonry::rigid::RigidBody<Space>& body) const
+	{
+		return { body.pose.position, body.velocity.head<3>(), body.velocity.tail<3>(), body.pose.orientation };
+	}
+	Vector3r spin(const Coordinates<Space>&, const masonry::rigid::RigidBody<Space>& body) const
+	{
+		return Space::angularMomentum(body.inertia, body.pose, body.velocity.tail<3>());
+	}
+};
+
+// --- depth of points: those of the plane lie in the middle of the blocks ---
+
+inline Vector3r pointInScene(const Coordinates<Plane>& c, const masonry::Vector2& p, Real depth) { return c.out(p) + depth * c.normal; }
+inline Vector3r pointInScene(const Coordinates<Space>&, const Vector3r& p, Real) { return p; }
+
+} // namespace yade

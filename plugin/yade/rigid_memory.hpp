@@ -1,0 +1,116 @@
+#pragma once
+// All that rigid blocks remember from one step to the next, as a row of numbers that is saved with the simulation.
+
+#include "rigid_coordinates.hpp"
+#include <boost/serialization/level.hpp>
+#include <boost/serialization/nvp.hpp>
+#include <boost/serialization/tracking.hpp>
+#include <memory>
+
+namespace yade {
+
+/// Numbers, enumerations and matrices go into the row, or come out of it, by the same list of members.
+struct Packer {
+	vector<Real> values;
+	template <class T> void operator()(const T& value)
+	{
+		if constexpr (std::is_arithmetic_v<T> || std::is_enum_v<T>)
+			values.push_back(Real(value));
+		else
+			for (int i = 0; i < value.size(); ++i) values.push_back(value(i));
+	}
+};
+
+struct Unpacker {
+	const vector<Real>& values;
+	size_t              next = 0;
+	template <class T> void operator()(T& value)
+	{
+		if constexpr (std::is_arithmetic_v<T> || std::is_enum_v<T>)
+			value = T(values.at(next++));
+		else
+			for (int i = 0; i < value.size(); ++i) value(i) = values.at(next++);
+	}
+};
+
+namespace memory {
+	using namespace masonry::rigid;
+
+	template <class Flow> void pass(Flow& f, PlanePose& p) { f(p.position), f(p.angle), f(p.cosine), f(p.sine); }
+	template <class Flow> void pass(Flow& f, masonry::Pose& p) { f(p.position), f(p.orientation.coeffs()); }
+	template <class Flow> void pass(Flow& f, PlaneFeature& p) { f(p.vertexBody), f(p.vertex), f(p.face); }
+	template <class Flow> void pass(Flow& f, SpaceFeature& p) { f(p.kind), f(p.first), f(p.second); }
+	template <class Flow> void pass(Flow& f, PlaneMemory& m)
+	{
+		f(m.reference), f(m.face1), f(m.face2);
+		for (PlaneFeature& feature : m.features) pass(f, feature);
+	}
+	template <class Flow> void pass(Flow& f, masonry::PatchFeature& m) { f(m.kind), f(m.feature1), f(m.feature2), f(m.vertices); }
+	template <class Flow> void pass(Flow& f, Seat<Plane>& s) { f(s.across), f(s.upright), f(s.lengthwise), f(s.depth), f(s.reference.coeffs()); }
+	template <class Flow> void pass(Flow&, Seat<Space>&) { }
+
+	// Sizes, masses and laws belong to the scene; gaps are measured anew.
+	template <class Flow, class K> void pass(Flow& f, RigidBody<K>& b) { pass(f, b.pose), f(b.velocity), f(b.increment), f(b.origin); }
+	template <class Flow, class K> void pass(Flow& f, ContactPair<K>& p)
+	{
+		f(p.body1), f(p.body2), f(p.face1), f(p.face2), f(p.size);
+		pass(f, p.memory);
+		for (int i = 0; i < p.size; ++i) {
+			ContactPoint<K>& point = p.points[i];
+			pass(f, point.feature);
+			f(point.closed), f(point.sliding), f(point.force);
+		}
+	}
+} // namespace memory
+
+/// Blocks by their ids, pairs by the numbers of their blocks.
+template <class K> struct Remembered {
+	vector<int>                            ids;
+	vector<Seat<K>>                        seats;
+	vector<masonry::rigid::RigidBody<K>>   bodies;
+	vector<masonry::rigid::ContactPair<K>> pairs;
+	bool                                   fresh = true;
+
+	template <class Flow> void pass(Flow& f)
+	{
+		size_t blocks = ids.size(), joints = pairs.size();
+		f(blocks), f(joints), f(fresh);
+		ids.resize(blocks);
+		seats.resize(blocks);
+		bodies.resize(blocks);
+		pairs.resize(joints);
+		for (size_t b = 0; b < blocks; ++b) {
+			f(ids[b]);
+			memory::pass(f, seats[b]);
+			memory::pass(f, bodies[b]);
+		}
+		for (auto& pair : pairs) memory::pass(f, pair);
+	}
+};
+
+/// The blocks of a run in the core's form.
+struct RigidRun {
+	virtual ~RigidRun() = default;
+	virtual vector<Real> pack() = 0;
+};
+
+/// Attribute of the integrator: the blocks while it runs, numbers in a file.
+struct RigidMemory {
+	std::shared_ptr<RigidRun> run;
+	vector<Real>              values;
+
+	template <class Archive> void serialize(Archive& archive, unsigned)
+	{
+		if constexpr (Archive::is_saving::value) {
+			if (run) values = run->pack();
+		} else {
+			run.reset();
+		}
+		archive& boost::serialization::make_nvp("values", values);
+	}
+};
+
+} // namespace yade
+
+BOOST_CLASS_IMPLEMENTATION(yade::RigidMemory, boost::serialization::object_serializable)
+BOOST_CLASS_TRACKING(yade::RigidMemory, boost::serialization::track_never)

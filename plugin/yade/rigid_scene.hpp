@@ -1,0 +1,475 @@
+#pragma once
+// Rigid blocks of a scene in the core's form, and back after each step. No physics here.
+
+#include "BlockGeom.hpp"
+#include "BlockMat.hpp"
+#include "BlockPhys.hpp"
+#include "MoreauJeanIntegrator.hpp"
+#include "motion_drive.hpp"
+
+#include "dynamics/rigid/neighbours.hpp"
+#include "dynamics/rigid/rigid_step.hpp"
+#include "dynamics/rigid/scales.hpp"
+#include "tolerances.hpp"
+#include <algorithm>
+#include <core/Scene.hpp>
+
+namespace yade {
+
+/// What the integrator handles.
+inline bool isBlock(const Body& body)
+{
+	return dynamic_cast<const BlockMat*>(body.material.get()) && dynamic_cast<const Box*>(body.shape.get());
+}
+
+/// What a script may change between steps and the core has taken over.
+struct Properties {
+	Vector3r extents, inertia;
+	Real     mass;
+	unsigned blockedDOFs;
+
+	explicit Properties(const Body& body)
+	        : extents(static_cast<const Box&>(*body.shape).extents)
+	        , inertia(body.state->inertia)
+	        , mass(body.state->mass)
+	        , blockedDOFs(body.state->blockedDOFs)
+	{
+	}
+	bool operator==(const Properties& o) const
+	{
+		return extents == o.extents && inertia == o.inertia && mass == o.mass && blockedDOFs == o.blockedDOFs;
+	}
+};
+
+class AnyRigidScene : public RigidRun {
+public:
+	/// Blocks have come, gone or changed: build it anew, with what this one remembers.
+	virtual bool outdated() const = 0;
+	/// Throws LeavesPlane before anything has moved.
+	virtual masonry::rigid::StepReport step() = 0;
+	virtual vector<int> touching() const = 0;
+	virtual void setInstant(Real) = 0;
+	/// Takes the interactions of erased bodies out of O.interactions.
+	virtual void dropErased() = 0;
+};
+
+template <class K> class RigidScene final : public AnyRigidScene {
+	using System = masonry::rigid::RigidSystem<K>;
+	using Pair = masonry::rigid::ContactPair<K>;
+
+	struct Link {
+		shared_ptr<Body> body;
+		Properties       properties;
+		Motion           written;
+	};
+	/// A pair's interaction; in O.interactions from first touch until the blocks are clearly apart.
+	struct Joint {
+		shared_ptr<Interaction> interaction;
+		shared_ptr<BlockGeom>   geom;
+		shared_ptr<BlockPhys>   phys;
+	};
+
+public:
+	RigidScene(MoreauJeanIntegrator& engine, const vector<BaseMotionEngine*>& motions, const Remembered<K>& before)
+	        : integrator(engine)
+	        , scene(*engine.scene)
+	        , coordinates(engine.along)
+	{
+		system.frictDissip = engine.frictDissip;
+		system.impactDissip = engine.impactDissip;
+		system.baseWork = engine.baseWork;
+		system.fresh = before.fresh;
+		const vector<int> inBefore = addBlocks(before);
+		addDrives(motions, inBefore);
+		addPairs(before, inBefore);
+		forgetNeighbours();
+	}
+
+	vector<Real> pack() override
+	{
+		Packer packer;
+		kept.bodies = system.bodies;
+		kept.pairs = system.pairs;
+		kept.fresh = system.fresh;
+		kept.pass(packer);
+		return packer.values;
+	}
+
+	bool outdated() const override
+	{
+		const auto& all = scene.bodies->body;
+		if (all.size() != bodyCount) return true;
+		for (const Link& link : links)
+			if (all[link.body->id].get() != link.body.get() || !(Properties(*link.body) == link.properties)) return true;
+		return false;
+	}
+
+	masonry::rigid::StepReport step() override
+	{
+		try {
+			system.gravity = coordinates.in(integrator.gravity);
+			readLoads();
+			readStates();
+			if (neighbours->update(system)) renewJoints();
+		} catch (...) {
+			forgetStates();
+			throw;
+		}
+		system.time = scene.time;
+		system.settings.tolerance = integrator.tolerance;
+		system.settings.localise = integrator.localise;
+		system.settings.mostEvents = integrator.mostEvents;
+		system.settings.order = integrator.sequential ? masonry::rigid::ImpactOrder::sequential : masonry::rigid::ImpactOrder::simultaneous;
+		const auto report = stepper.advance(system, scene.dt);
+		writeStates();
+		for (size_t c = 0; c < joints.size(); ++c) writeJoint(joints[c], system.pairs[c]);
+		for (const auto& impact : system.impacts) record(impact);
+		integrator.frictDissip = system.frictDissip;
+		integrator.impactDissip = system.impactDissip;
+		integrator.baseWork = system.baseWork;
+		return report;
+	}
+
+	vector<int> touching() const override
+	{
+		vector<int> result;
+		for (const Pair& pair : system.pairs)
+			if (touches(pair)) {
+				result.push_back(kept.ids[pair.body1]);
+				result.push_back(kept.ids[pair.body2]);
+			}
+		std::sort(result.begin(), result.end());
+		result.erase(std::unique(result.begin(), result.end()), result.end());
+		return result;
+	}
+
+	void setInstant(Real instant) override
+	{
+		for (MotionDrive& drive : drives) drive.instant = instant;
+	}
+
+	void dropErased() override
+	{
+		for (const Joint& joint : joints)
+			if (!(scene.bodies->exists(joint.interaction->id1) && scene.bodies->exists(joint.interaction->id2)) && isListed(joint)) erase(joint);
+	}
+
+private:
+	// --- building ---
+
+	/// Returns each block's number in `before`, or -1.
+	vector<int> addBlocks(const Remembered<K>& before)
+	{
+		vector<int> inBefore;
+		bodyCount = scene.bodies->body.size();
+		for (const auto& body : scene.bodies->body) {
+			if (!body || !isBlock(*body)) continue;
+			const auto old = std::find(before.ids.begin(), before.ids.end(), body->id);
+			const int  k = old == before.ids.end() ? -1 : int(old - before.ids.begin());
+			inBefore.push_back(k);
+			const State& state = *body->state;
+			const Properties properties(*body);
+			const Seat<K> seat = k < 0 ? Seat<K>(coordinates, state) : before.seats[k];
+
+			masonry::rigid::RigidBody<K> block = k < 0 ? masonry::rigid::RigidBody<K>() : before.bodies[k];
+			block.halfSize = seat.halfSize(properties.extents);
+			block.mass = properties.mass;
+			block.inertia = seat.inertia(properties.inertia);
+			block.prescribed = !body->isDynamic();
+			block.drive = -1;
+			if (k < 0) seat.read(coordinates, state, properties.extents.minCoeff(), body->id, block);
+			links.push_back({ body, properties, seat.motion(coordinates, block) });
+			if (k < 0) links.back().written = { state.pos, state.vel, state.angVel, state.ori };
+			kept.ids.push_back(body->id);
+			kept.seats.push_back(seat);
+			system.bodies.push_back(block);
+		}
+		return inBefore;
+	}
+
+	void addDrives(const vector<BaseMotionEngine*>& motions, const vector<int>& inBefore)
+	{
+		drives.reserve(motions.size());
+		for (BaseMotionEngine* motion : motions) {
+			drives.emplace_back(*motion, kept.ids);
+			system.driveDirections.push_back(coordinates.in(motion->direction));
+			for (size_t k = 0; k < motion->ids.size(); ++k) {
+				const auto found = std::find(kept.ids.begin(), kept.ids.end(), motion->ids[k]);
+				if (found == kept.ids.end()) continue; // moved, but no block
+				const size_t b = size_t(found - kept.ids.begin());
+				auto&        block = system.bodies[b];
+				block.drive = int(system.drives.size());
+				block.origin = coordinates.in(motion->origins[k]);
+				if (inBefore[b] < 0) block.velocity.template head<K::dimension>() = system.driveDirections.back() * drives.back().velocity(scene.time);
+			}
+			system.drives.push_back(&drives.back());
+		}
+	}
+
+	/// Pairs of blocks that are still there.
+	void addPairs(const Remembered<K>& before, const vector<int>& inBefore)
+	{
+		const auto now = [&](int k) { return int(std::find(inBefore.begin(), inBefore.end(), k) - inBefore.begin()); };
+		for (Pair pair : before.pairs) {
+			pair.body1 = now(pair.body1);
+			pair.body2 = now(pair.body2);
+			if (std::max(pair.body1, pair.body2) < int(links.size())) system.pairs.push_back(pair);
+		}
+	}
+
+	void forgetNeighbours()
+	{
+		const Real margin = searchMargin * masonry::rigid::scale::length(system);
+		neighbours = std::make_unique<masonry::rigid::Neighbours<K>>(margin, [this](Pair& pair) { meet(pair); });
+	}
+
+	/// After a scene has been refused: all is read again when a script has put it right.
+	void forgetStates()
+	{
+		for (Link& link : links) link.written.pos.setConstant(NaN);
+		forgetNeighbours();
+	}
+
+	/// Both lists are in the order of the ids. Joints that are no longer near leave the scene.
+	void renewJoints()
+	{
+		const auto ids = [](const Joint& joint) { return std::pair(joint.interaction->id1, joint.interaction->id2); };
+		vector<Joint> old;
+		old.swap(joints);
+		auto before = old.begin();
+		const auto drop = [&] {
+			if (isListed(*before)) erase(*before);
+			++before;
+		};
+		for (Pair& pair : system.pairs) {
+			const std::pair wanted(kept.ids[pair.body1], kept.ids[pair.body2]);
+			while (before != old.end() && ids(*before) < wanted) drop();
+			joints.push_back(before != old.end() && ids(*before) == wanted ? *before++ : jointOf(pair));
+			takeLaw(joints.back(), pair);
+		}
+		while (before != old.end()) drop();
+	}
+
+	Joint jointOf(const Pair& pair)
+	{
+		Joint joint;
+		const Body &body1 = *links[pair.body1].body, &body2 = *links[pair.body2].body;
+		joint.interaction = scene.interactions->find(body1.id, body2.id);
+		if (joint.interaction) {
+			joint.geom = boost::dynamic_pointer_cast<BlockGeom>(joint.interaction->geom);
+			joint.phys = boost::dynamic_pointer_cast<BlockPhys>(joint.interaction->phys);
+			if (joint.geom && joint.phys) return joint;
+		}
+		return newJoint(body1, body2);
+	}
+
+	Joint newJoint(const Body& body1, const Body& body2)
+	{
+		Joint joint;
+		joint.interaction.reset(new Interaction(body1.id, body2.id));
+		integrator.pairLaw->go(body1.material, body2.material, joint.interaction);
+		joint.phys = boost::static_pointer_cast<BlockPhys>(joint.interaction->phys);
+		joint.geom.reset(new BlockGeom);
+		joint.geom->refR1 = static_cast<const Box&>(*body1.shape).extents.minCoeff();
+		joint.geom->refR2 = static_cast<const Box&>(*body2.shape).extents.minCoeff();
+		joint.interaction->geom = joint.geom;
+		return joint;
+	}
+
+	// --- scene to core ---
+
+	void readLoads()
+	{
+		scene.forces.sync();
+		for (size_t b = 0; b < links.size(); ++b) {
+			auto& block = system.bodies[b];
+			if (block.prescribed) continue;
+			const int id = kept.ids[b];
+			block.force = coordinates.load(scene.forces.getForce(id), scene.forces.getTorque(id), id);
+			block.force.template head<K::dimension>() += block.mass * coordinates.in(integrator.gravity);
+		}
+	}
+
+	/// Bodies that a script has moved or pushed since the last step. The base goes where its motion says.
+	void readStates()
+	{
+		bool touched = false;
+		for (size_t b = 0; b < links.size(); ++b) {
+			Link&        link = links[b];
+			auto&        block = system.bodies[b];
+			const State& state = *link.body->state;
+			if (link.written.isOf(state) || block.drive >= 0) continue;
+			kept.seats[b].read(coordinates, state, link.properties.extents.minCoeff(), kept.ids[b], block);
+			block.increment.setZero();
+			link.written = { state.pos, state.vel, state.angVel, state.ori };
+			touched = true;
+			for (Pair& pair : system.pairs)
+				if (pair.body1 == int(b) || pair.body2 == int(b)) pair.size = -1;
+		}
+		if (!touched) return;
+		for (Pair& pair : system.pairs)
+			if (pair.size < 0) meet(pair);
+		system.moved = system.fresh = true;
+	}
+
+	/// The points of a pair that nothing is known of: in touch where they are, and do not approach each other.
+	void meet(Pair& pair)
+	{
+		const auto &body1 = system.bodies[pair.body1], &body2 = system.bodies[pair.body2];
+		const Real  length = masonry::rigid::scale::length(system), rest = masonry::tolerance::restSpeed
+		        * std::sqrt(integrator.gravity.norm() * length);
+		masonry::rigid::FoundPoints<K> found;
+		pair.memory = {};
+		pair.size = 0;
+		if (!K::findPoints(body1.halfSize, body1.pose, body2.halfSize, body2.pose, std::numeric_limits<double>::infinity(), pair.memory, found)) return;
+		pair.size = found.size;
+		pair.face1 = found.face1;
+		pair.face2 = found.face2;
+		for (int i = 0; i < found.size; ++i) {
+			auto& point = pair.points[i];
+			point = {};
+			point.feature = found.features[i];
+			point.frame = K::frame(point.feature, body1.halfSize, body1.pose, body2.halfSize, body2.pose);
+			point.gap = point.frame.gap;
+			const auto speed = masonry::rigid::relativeVelocity(point.frame, body1.pose.position, body1.velocity, body2.pose.position, body2.velocity);
+			point.closed = point.gap <= masonry::tolerance::mergedClosing * length && speed[0] >= -rest;
+			if (point.gap < -mostOverlap * length) refuseOverlap(pair, -point.gap);
+		}
+	}
+
+	[[noreturn]] void refuseOverlap(const Pair& pair, Real depth) const
+	{
+		std::ostringstream text;
+		text << "Blocks " << kept.ids[pair.body1] << " and " << kept.ids[pair.body2] << " overlap by " << depth
+		     << " m: rigid blocks must be apart or just touch when the run starts or a script moves them.";
+		throw std::runtime_error(text.str());
+	}
+
+	/// The law may be changed by scripts through the interaction.
+	void takeLaw(const Joint& joint, Pair& pair) const
+	{
+		pair.friction = joint.phys->noSlip ? masonry::noSlip : joint.phys->tangensOfFrictionAngle;
+		pair.restitution = joint.phys->restitution;
+	}
+
+	// --- core to scene ---
+
+	void writeStates()
+	{
+		for (size_t b = 0; b < links.size(); ++b) {
+			links[b].written = kept.seats[b].motion(coordinates, system.bodies[b]);
+			links[b].written.write(*links[b].body->state, kept.seats[b].spin(coordinates, system.bodies[b]));
+		}
+	}
+
+	static bool touches(const Pair& pair)
+	{
+		return std::any_of(pair.points.begin(), pair.points.begin() + pair.size, [](const auto& point) { return point.closed; });
+	}
+
+	bool apart(const Pair& pair) const
+	{
+		const Real far = clearlyApart * std::min(system.bodies[pair.body1].halfSize.minCoeff(), system.bodies[pair.body2].halfSize.minCoeff());
+		return std::none_of(pair.points.begin(), pair.points.begin() + pair.size, [&](const auto& point) { return point.gap <= far; });
+	}
+
+	/// Not so before the blocks touch, and when a script or the end of a body has erased it.
+	bool isListed(const Joint& joint) const
+	{
+		const int place = joint.interaction->linIx;
+		return place >= 0 && size_t(place) < scene.interactions->size() && (*scene.interactions)[place] == joint.interaction;
+	}
+
+	void writeJoint(Joint& joint, Pair& pair)
+	{
+		const bool touching = touches(pair);
+		if (!(isListed(joint) && joint.interaction->isReal())) {
+			if (!touching) return;
+			list(joint, pair);
+		} else if (!touching && apart(pair)) {
+			erase(joint);
+			return;
+		}
+		takeLaw(joint, pair);
+		writeGeom(*joint.geom, pair);
+		writePhys(*joint.phys, pair);
+	}
+
+	void list(Joint& joint, const Pair& pair)
+	{
+		if (!joint.interaction->isReal()) joint = newJoint(*links[pair.body1].body, *links[pair.body2].body);
+		const auto other = scene.interactions->find(joint.interaction->id1, joint.interaction->id2); // a collider's
+		if (other) scene.interactions->erase(other->id1, other->id2, other->linIx);
+		joint.interaction->iterMadeReal = joint.interaction->iterBorn = scene.iter;
+		scene.interactions->insert(joint.interaction);
+	}
+
+	void erase(const Joint& joint) { scene.interactions->erase(joint.interaction->id1, joint.interaction->id2, joint.interaction->linIx); }
+
+	void writeGeom(BlockGeom& geom, const Pair& pair) const
+	{
+		const Real depth = kept.seats[pair.body2].depth;
+		geom.feature1 = pair.face1;
+		geom.feature2 = pair.face2;
+		geom.patch.size = pair.size;
+		geom.contactPoint.setZero();
+		for (int i = 0; i < pair.size; ++i) {
+			const auto& point = pair.points[i];
+			auto&       to = geom.patch.points[i];
+			to.position1 = to.position2 = pointInScene(coordinates, point.frame.position, depth);
+			to.gap = point.gap;
+			geom.contactPoint += to.position1 / pair.size;
+			if (i == 0) geom.normal = coordinates.out(point.frame.axes.row(0).transpose());
+		}
+	}
+
+	void writePhys(BlockPhys& phys, const Pair& pair) const
+	{
+		phys.forces.resize(pair.size);
+		phys.normalForce.setZero();
+		phys.shearForce.setZero();
+		for (int i = 0; i < pair.size; ++i) {
+			const auto&    point = pair.points[i];
+			const Vector3r normal = coordinates.out(point.frame.axes.row(0).transpose() * point.force[0]);
+			phys.forces[i] = coordinates.out(point.frame.axes.transpose() * point.force);
+			phys.normalForce += normal;
+			phys.shearForce += phys.forces[i] - normal;
+		}
+	}
+
+	void record(const masonry::rigid::Impact& impact)
+	{
+		integrator.impactTimes.push_back(impact.time);
+		integrator.impactBlocks.push_back(kept.ids[impact.block]);
+		integrator.impactSupports.push_back(kept.ids[impact.support]);
+		integrator.impactAsked.push_back(impact.asked);
+		integrator.impactBefore.push_back(impact.joint.before);
+		integrator.impactAfter.push_back(impact.joint.after);
+		integrator.impactEnergy.push_back(impact.energyLost);
+		integrator.impactApplication.push_back(impact.joint.application);
+		integrator.impactFriction.push_back(impact.joint.frictionDemand);
+		integrator.impactSwitched.push_back(impact.switched);
+		integrator.impactCapped.push_back(impact.capped);
+	}
+
+	/// Overlap, relative to the smallest half size, that is no rounding of coordinates but a mistake.
+	static constexpr Real mostOverlap = 1e-6;
+	/// Gap, relative to the smaller block, at which an interaction ends; as for compliant joints.
+	static constexpr Real clearlyApart = 2e-2;
+	/// Margin of the list of pairs, relative to the smallest half size. Larger: more pairs; smaller: the list is made anew more often.
+	static constexpr Real searchMargin = 0.1;
+
+	MoreauJeanIntegrator& integrator;
+	Scene& scene;
+	const Coordinates<K> coordinates;
+	System system;
+	masonry::rigid::RigidStep<K> stepper;
+	std::unique_ptr<masonry::rigid::Neighbours<K>> neighbours;
+	vector<MotionDrive> drives;
+	vector<Link> links;
+	vector<Joint> joints;
+	Remembered<K> kept; // ids and seats; bodies and pairs are filled in when it is packed
+	size_t bodyCount = 0;
+};
+
+} // namespace yade
