@@ -86,7 +86,7 @@ struct Plane {
 	static void advance(Pose& pose, const Velocity& velocity, double t)
 	{
 		pose.position += t * velocity.head<2>();
-		pose.setAngle(pose.angle + t * velocity[2]);
+		if (velocity[2] != 0) pose.setAngle(pose.angle + t * velocity[2]);
 	}
 	static Spin angularMomentum(const Inertia& inertia, const Pose&, const Spin& w) { return inertia * w; }
 	static InverseInertia inverseInertia(const Inertia& inertia, const Pose&) { return inertia.cwiseInverse(); }
