@@ -22,7 +22,7 @@ dem.tilt(block, tilt)
 
 recorder = dem.BlockRecorder(ids=[block], iterPeriod=20)
 O.engines = dem.engines(recorder=recorder)
-O.run(40000, True)
+O.run(12000, True)
 
 history = dem.history(recorder)
 time, angle = history["time"], history["rotation"][:, 0, 1]

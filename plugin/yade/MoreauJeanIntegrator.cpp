@@ -104,12 +104,14 @@ void MoreauJeanIntegrator::renew()
 
 void MoreauJeanIntegrator::build(const vector<Real>& remembered)
 {
-	checkScene();
+	checkBlocks();
+	checkEngines();
+	const PythonLock lock; // the last hold on an erased body may be given up, which Python has made
 	memory.run = chosenModel == "planar" ? makeScene<Plane>(*this, motionEngines(), remembered) : makeScene<Space>(*this, motionEngines(), remembered);
-	checkedTimeStep = 0;
+	checkedTimeStep = NaN;
 }
 
-void MoreauJeanIntegrator::checkScene() const
+void MoreauJeanIntegrator::checkBlocks() const
 {
 	std::map<int, int> moved;
 	for (const BaseMotionEngine* motion : motionEngines())
@@ -128,7 +130,10 @@ void MoreauJeanIntegrator::checkScene() const
 	for (const auto& body : scene->bodies->body)
 		if (body && dynamic_cast<BlockMat*>(body->material.get()) && !isBlock(*body))
 			throw std::invalid_argument(sentence("O.bodies[", body->id, "] has a BlockMat and is no Box: rigid blocks touch boxes only."));
+}
 
+void MoreauJeanIntegrator::checkEngines() const
+{
 	for (const auto& engine : scene->engines) {
 		if (engine->dead) continue;
 		if (dynamic_cast<BaseMotionEngine*>(engine.get()))
@@ -216,9 +221,10 @@ void MoreauJeanIntegrator::choose()
 
 string MoreauJeanIntegrator::choice()
 {
+	scene = Omega::instance().getScene().get();
 	const std::tuple before(chosenModel, reason, along);
 	choose();
-	checkScene();
+	checkBlocks();
 	const string result = chosenModel + ": " + reason;
 	std::tie(chosenModel, reason, along) = before;
 	return result;
@@ -226,8 +232,9 @@ string MoreauJeanIntegrator::choice()
 
 // --- time step ---
 
-Real MoreauJeanIntegrator::largestTimeStep() const
+Real MoreauJeanIntegrator::largestTimeStep()
 {
+	scene = Omega::instance().getScene().get();
 	Real smallest = std::numeric_limits<Real>::infinity();
 	for (const Body* body : blocks())
 		if (body->isDynamic()) smallest = std::min(smallest, static_cast<const Box&>(*body->shape).extents.norm());
@@ -299,8 +306,9 @@ void MoreauJeanIntegrator::count(const masonry::rigid::StepReport& report)
 
 // --- energy ---
 
-Real MoreauJeanIntegrator::kinetic() const
+Real MoreauJeanIntegrator::kinetic()
 {
+	scene = Omega::instance().getScene().get();
 	Real sum = 0;
 	for (const Body* body : blocks()) {
 		if (!body->isDynamic()) continue;
@@ -311,8 +319,9 @@ Real MoreauJeanIntegrator::kinetic() const
 	return sum;
 }
 
-Real MoreauJeanIntegrator::potential() const
+Real MoreauJeanIntegrator::potential()
 {
+	scene = Omega::instance().getScene().get();
 	Real sum = 0;
 	for (const Body* body : blocks())
 		if (body->isDynamic()) sum -= body->state->mass * gravity.dot(body->state->pos);

@@ -16,9 +16,10 @@ public:
 	/// Throws std::invalid_argument naming attribute, value and allowed range.
 	void postLoad(MoreauJeanIntegrator&);
 
-	Real kinetic() const;
-	Real potential() const;
-	Real largestTimeStep() const;
+	// As a script asks, in the present scene: a loaded engine knows its own only from its first step on.
+	Real kinetic();
+	Real potential();
+	Real largestTimeStep();
 	/// The model that the first step would choose in the present scene, and why.
 	string choice();
 
@@ -74,7 +75,8 @@ private:
 	void renew();
 	void choose();
 	void build(const vector<Real>& remembered);
-	void checkScene() const;
+	void checkBlocks() const;
+	void checkEngines() const;
 	void checkTimeStep();
 	masonry::rigid::StepReport stepRun();
 	void count(const masonry::rigid::StepReport&);
@@ -83,7 +85,7 @@ private:
 	vector<const Body*> blocks() const;
 	string whyNotPlanar(const Vector3r& normal) const;
 
-	Real checkedTimeStep = 0;
+	Real checkedTimeStep = NaN;
 	bool sequential = false;
 };
 REGISTER_SERIALIZABLE(MoreauJeanIntegrator);

@@ -132,6 +132,6 @@ void PulseTrainEngine::check() const
 	if (resonant() && !scene->bodies->exists(resonantBlock)) reject("resonantBlock", resonantBlock, "the id of a body in O.bodies");
 }
 
-Real PulseTrainEngine::residualDisplacement() const { return displacement(scene->time - start); }
+Real PulseTrainEngine::residualDisplacement() const { return displacement(Omega::instance().getScene()->time - start); }
 
 } // namespace yade

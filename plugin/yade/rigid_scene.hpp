@@ -6,6 +6,7 @@
 #include "BlockPhys.hpp"
 #include "MoreauJeanIntegrator.hpp"
 #include "motion_drive.hpp"
+#include "still_functors.hpp"
 
 #include "dynamics/rigid/neighbours.hpp"
 #include "dynamics/rigid/rigid_step.hpp"
@@ -258,7 +259,10 @@ private:
 		if (joint.interaction) {
 			joint.geom = boost::dynamic_pointer_cast<BlockGeom>(joint.interaction->geom);
 			joint.phys = boost::dynamic_pointer_cast<BlockPhys>(joint.interaction->phys);
-			if (joint.geom && joint.phys) return joint;
+			if (joint.geom && joint.phys) {
+				keepStill(*joint.interaction, integrator.pairLaw);
+				return joint;
+			}
 		}
 		return newJoint(body1, body2);
 	}
@@ -273,6 +277,7 @@ private:
 		joint.geom->refR1 = static_cast<const Box&>(*body1.shape).extents.minCoeff();
 		joint.geom->refR2 = static_cast<const Box&>(*body2.shape).extents.minCoeff();
 		joint.interaction->geom = joint.geom;
+		keepStill(*joint.interaction, integrator.pairLaw);
 		return joint;
 	}
 

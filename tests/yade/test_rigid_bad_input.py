@@ -1,0 +1,93 @@
+"""Bad input to rigid blocks: one clear error that names attribute, value and what is allowed, before anything has moved."""
+
+import math
+
+from masonry import dem
+from rocking_scene import one_block, rigid_engines, stone
+from yade import NewtonIntegrator, O, Quaternion, Vector3, utils
+
+
+def refuses(act, *words, kind=ValueError):
+    try:
+        act()
+    except kind as error:
+        assert all(word in str(error) for word in words), error
+    else:
+        raise AssertionError(f"accepted: {words}")
+
+
+def refuses_to_run(*words):
+    """The first step ends in an error, and so does the next; the blocks have not moved."""
+    poses = [(tuple(b.state.pos), tuple(b.state.ori)) for b in O.bodies]
+    for _ in range(2):
+        refuses(O.step, *words, kind=(RuntimeError, ValueError))
+        assert poses == [(tuple(b.state.pos), tuple(b.state.ori)) for b in O.bodies], words
+
+
+nan = math.nan
+base, block, _ = one_block(5)
+for name, bad, why in (("model", "magic", "'planar'"), ("impactOrder", "random", "'simultaneous'"), ("onTrouble", "ignore", "'continue'"), ("tolerance", 0, "above 0"),
+                       ("tolerance", 0.1, "1e-3"), ("tolerance", nan, "above 0"), ("mostEvents", 0, "at least 1"), ("motions", [NewtonIntegrator()], "PulseTrainEngine")):
+    refuses(lambda: dem.MoreauJeanIntegrator(**{name: bad}), "MoreauJeanIntegrator." + name, why)
+    engine = dem.MoreauJeanIntegrator()
+    before = getattr(engine, name)
+    refuses(lambda: setattr(engine, name, bad), name, why)
+    assert getattr(engine, name) == before
+for option, bad, words in (("model", "magic", ("planar",)), ("dt", 1.0, ("at most",)), ("dt", 0, ("positive",)), ("dt", nan, ("positive",)), ("tolerance", 0, ("above 0",)),
+                           ("tolerance", 1, ("0.001",)), ("impact_order", "random", ("simultaneous",)), ("penetration", 1e-5, ("compliant",)), ("motion", "pulse", ("PulseTrainEngine",))):
+    model = {} if option == "model" else {"model": "planar"}
+    refuses(lambda: rigid_engines(**{**model, option: bad}), str(bad), *words)
+refuses(lambda: rigid_engines(gravity=0), "dt = None", "gravity is 0")
+refuses(lambda: rigid_engines(model="compliant", tolerance=1e-9), "tolerance", "rigid")
+refuses(lambda: rigid_engines(dem.PulseTrainEngine(ids=[block], impulse=0.1, times=[0])), "ids", str(block), "prescribed")
+refuses(lambda: rigid_engines([dem.PulseTrainEngine(ids=[base], impulse=0.1, times=[0])] * 2), f"Body {base}", "two motions")
+O.reset()
+dem.base((1, 1, 1), stone())
+refuses(rigid_engines, "no free block", "dem.block()")
+
+
+def scene(**options):
+    ids = one_block(5)
+    O.engines = rigid_engines(**options)
+    return ids
+
+
+scene()
+O.dt = 0.1
+refuses_to_run("O.dt", "0.1", "at most")
+scene()
+O.dt = 0
+refuses_to_run("O.dt", "0", "positive")
+scene()
+O.bodies[block].state.blockedDOFs = "z"
+refuses_to_run(f"O.bodies[{block}]", "blockedDOFs = 'z'", "none")
+scene()
+O.bodies[block].state.blockedDOFs = "yXZ"  # what the plane never uses
+O.step()
+scene()
+O.engines = O.engines + [NewtonIntegrator()]
+refuses_to_run("NewtonIntegrator", f"move block {base}", "mask")
+scene()
+O.engines = [dem.PulseTrainEngine(ids=[base], impulse=0.1, times=[0])] + O.engines
+refuses_to_run("PulseTrainEngine", "MoreauJeanIntegrator.motions")
+scene()
+O.engines = [dem.RockingJointEngine()] + O.engines
+refuses_to_run("RockingJointEngine", "not both")
+scene(model="planar")
+O.bodies[block].state.ori = Quaternion(Vector3(1, 1, 0).normalized(), 0.1)
+refuses_to_run("'planar'", "no block has a horizontal axis")
+scene()
+O.bodies.append(utils.sphere((9, 9, 9), 1, material=O.bodies[block].mat))
+refuses_to_run("BlockMat", "no Box")
+
+# Overlap: at the start, and where a script puts a block; right again, the run goes on.
+scene()
+O.bodies[block].state.pos -= Vector3(0, 0, 1e-3)
+refuses_to_run(f"Blocks {base} and {block}", "0.001", "overlap")
+O.bodies[block].state.pos += Vector3(0, 0, 1e-3)
+O.run(10, True)
+O.bodies[block].state.pos -= Vector3(0, 0, 1e-3)
+refuses_to_run(f"Blocks {base} and {block}", "0.001", "overlap")
+O.bodies[block].state.pos += Vector3(0, 0, 1e-3)
+O.run(10, True)
+assert abs(O.bodies[block].state.pos[2] - 1.5) < 1e-9

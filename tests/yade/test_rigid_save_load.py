@@ -1,0 +1,68 @@
+"""A run that is saved, loaded and continued has the bits of one that was not."""
+
+import math
+import os
+import tempfile
+
+import numpy as np
+from masonry import dem
+from rocking_scene import one_block, rigid_engines, stone
+from yade import O, Quaternion, Vector3
+
+
+def bits():
+    e = dem.energy()
+    state = [x for b in O.bodies for v in (b.state.pos, b.state.ori, b.state.vel, b.state.angVel) for x in v]
+    impacts = [v for name in ("time", "velocity", "energy_lost") for v in dem.impacts()[name]]
+    forces = [x for i in O.interactions for f in i.phys.forces for x in f]
+    return np.array(state + list(e.values()) + impacts + forces + [O.time, O.engines[1].sweeps, O.engines[1].events])
+
+
+def free(model):
+    _, id, block = one_block(5, restitution=0.9)
+    dem.tilt(id, 0.5 * block.critical_angle)
+    O.engines = rigid_engines(model=model, dt=1e-3)
+
+
+def yawed(model):
+    _, id, block = one_block(3, restitution=0.8)
+    for body in O.bodies:
+        body.state.ori = Quaternion(Vector3(0, 0, 1), math.radians(17))
+    dem.tilt(id, 0.5 * block.critical_angle)
+    O.engines = rigid_engines(model=model, dt=1e-3)
+
+
+def train(model):
+    base, id, _ = one_block(5, restitution=0.7)
+    O.engines = rigid_engines(dem.PulseTrainEngine(ids=[base], impulse=0.12, resonantBlock=id), model=model, dt=1e-3)
+
+
+def stack_on_record(model):
+    O.reset()
+    base = dem.base((4, 2, 0.2), stone(noSlip=False, frictionAngle=0.6))
+    dem.stack(2, (0.6, 1, 1.5), O.bodies[base].mat, base)
+    samples = list(0.4 * 9.81 * np.sin(np.arange(0, 2, 0.01) * 7))
+    O.engines = rigid_engines(dem.RecordMotionEngine(ids=[base], samples=samples, interval=0.01), model=model, dt=1e-3)
+
+
+with tempfile.TemporaryDirectory() as folder:
+    for make in (free, yawed, train, stack_on_record):
+        for model in ("planar", "spatial"):
+            make(model)
+            O.engines[1].onTrouble = "continue"
+            O.run(1200, True)
+            wanted = bits()
+            for ending in ("xml", "yade"):
+                make(model)
+                O.engines[1].onTrouble = "continue"
+                O.run(457, True)
+                path = os.path.join(folder, "scene." + ending)
+                O.save(path)
+                saved = bits()
+                O.reset()
+                O.load(path)
+                assert np.array_equal(saved, bits(), equal_nan=True), (make.__name__, model, ending)
+                O.run(1200 - 457, True)
+                assert np.array_equal(wanted, bits(), equal_nan=True), (make.__name__, model, ending)
+            assert np.any(np.abs(wanted[:20]) > 0.01) and np.all(np.isfinite(wanted))
+            print(make.__name__, model, len(dem.impacts()), "impacts")
