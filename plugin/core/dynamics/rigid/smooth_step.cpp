@@ -116,7 +116,7 @@ template <class K> void SmoothStep<K>::assemble(const RigidSystem<K>& s, double 
 				else if (!stopsInside)
 					rows.offset.template tail<K::rows - 1>() += now.template tail<K::rows - 1>();
 			} else if (!point.closed) {
-				rows.offset[0] += 2 * frame.gap / h;
+				rows.offset[0] += 2 * (frame.gap - std::min(point.gap, 0.)) / h; // a penetration at the start is no approach: `project` closes it
 			}
 			solver.points.push_back(rows);
 		}

@@ -6,7 +6,8 @@
 //     M (V+ - V) = h f + sum J^T p            M with the inertia of the predicted end
 //     q+ = q advanced by h (V + V+)/2         orientation by the exponential of the mean spin
 //     u = J (V + V+) - damping delta          for points in touch: the laws of contact_problem.hpp act on the MEAN velocity
-//     u = J V+ (+ 2 gap_mid / h, normal)      for points that land and are not localised: still open (and, one step later, just closed)
+//     u = J V+ (+ 2 gap_mid / h, normal)      for points that land and are not localised: still open (and, one step later, just closed);
+//                                             gap_mid from zero where the step starts with a penetration
 //
 // Why the mean. The work of the contact forces in the step is p . J (V + V+)/2, which the laws make zero for sticking and negative
 // for sliding points: the step never gives energy, whatever h. It is symmetric in time and of second order; no gap curvature has to be
