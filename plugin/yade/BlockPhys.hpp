@@ -20,7 +20,7 @@ public:
 
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(BlockPhys, FrictPhys,
-		"Compliant joint of two blocks. kn and ks are the stiffness of the whole patch [N/m]; normalForce and shearForce act on body 2.",
+		"Joint of two blocks; rigid ones use the law (restitution, friction, noSlip) and forces only. kn and ks are the stiffness of the whole patch [N/m]; normalForce and shearForce act on body 2.",
 		((Real, normalStiffness, NaN, , "Normal stiffness per area [Pa/m]."))
 		((Real, shearStiffness, NaN, , "Shear stiffness per area [Pa/m]."))
 		((Real, restitution, NaN, , "Rocking restitution of the pair, 0 to 1; NaN: natural."))

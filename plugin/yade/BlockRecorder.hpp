@@ -11,7 +11,7 @@ public:
 
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS(BlockRecorder, PeriodicEngine,
-		"Histories of blocks: rotation, position, uplift and the force of what they stand on, every iterPeriod steps. Goes between RockingJointEngine and NewtonIntegrator (dem.engines(recorder=...) does that), where positions, forces and O.time belong together. dem.history() gives arrays, dem.save_history() a file.",
+		"Histories of blocks: rotation, position, uplift and the force of what they stand on, every iterPeriod steps. Goes between RockingJointEngine and NewtonIntegrator, or before MoreauJeanIntegrator (dem.engines(recorder=...) does that), where positions, forces and O.time belong together. dem.history() gives arrays, dem.save_history() a file.",
 		((vector<int>, ids, , , "The blocks."))
 		((vector<Real>, times, , Attr::readonly, "Times of the rows [s]."))
 		((vector<Vector3r>, rotations, , Attr::readonly, "Rotation vectors from the resting pose in the block's own axes [rad], row by row, one a block."))

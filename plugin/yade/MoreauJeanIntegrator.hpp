@@ -73,6 +73,7 @@ private:
 
 	void start();
 	void renew();
+	void leaveScene();
 	void choose();
 	void build(const vector<Real>& remembered);
 	void checkBlocks() const;

@@ -44,6 +44,7 @@ struct Properties {
 
 class AnyRigidScene : public RigidRun {
 public:
+	virtual bool isOf(const Scene&) const = 0;
 	/// Blocks have come, gone or changed: build it anew, with what this one remembers.
 	virtual bool outdated() const = 0;
 	/// Throws LeavesPlane before anything has moved.
@@ -95,6 +96,8 @@ public:
 		kept.pass(packer);
 		return packer.values;
 	}
+
+	bool isOf(const Scene& other) const override { return &other == &scene; }
 
 	bool outdated() const override
 	{

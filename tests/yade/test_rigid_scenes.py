@@ -168,6 +168,16 @@ O.engines = rigid_engines(dt=1e-3)
 O.run(100, True)
 assert O.bodies[block].state.vel.norm() < 1e-9 and abs(O.bodies[block].state.pos[2] - 0.2) < 1e-12
 
+# The engines of one scene in another.
+engines = O.engines
+_, block, theory = one_block(5, restitution=0.9)
+dem.tilt(block, 0.5 * theory.critical_angle)
+O.dt = 1e-3
+O.engines = engines
+O.run(100, True)
+turned = dem.angle(block)
+assert abs(turned - masonry.simulate(theory, restitution=0.9, initial_angle=0.5 * theory.critical_angle, t_end=1).sample(np.array([0.1]))[0][0]) < 1e-6
+
 # --- records and energies ---
 base, block, theory = one_block(5, restitution=0.9)
 dem.tilt(block, 0.5 * theory.critical_angle)
