@@ -154,8 +154,9 @@ template <class K> void SmoothStep<K>::attempt(const RigidSystem<K>& s, double h
 	last.h = h;
 	increments.resize(s.bodies.size());
 	for (size_t b = 0; b < s.bodies.size(); ++b)
-		increments[b] = s.bodies[b].increment;
-	// After an event the acceleration of the last step tells nothing: a second pass takes that of the first.
+		increments[b] = s.fresh ? typename K::Velocity(K::Velocity::Zero()) : s.bodies[b].increment;
+	// After an event the change of velocity in the last step, which can have been of any length, tells nothing: a second pass takes that
+	// of the first.
 	for (int pass = s.fresh ? 0 : 1; pass < 2; ++pass) {
 		predict(s, h);
 		assemble(s, h);
@@ -250,6 +251,7 @@ template <class K> void SmoothStep<K>::accept(RigidSystem<K>& s)
 			const bool  wasOpen = !point.closed;
 			point.closed = rows.impulse[0] > 0 || u[0] <= still;
 			point.landing = wasOpen && point.closed;
+			s.fresh |= point.landing;
 			if (!point.closed) continue;
 			point.force = rows.impulse / last.h;
 			point.sliding = rows.impulse[0] > 0 && u.template tail<K::rows - 1>().norm() > still
