@@ -121,7 +121,7 @@ public:
 		}
 		system.time = scene.time;
 		system.settings.tolerance = integrator.tolerance;
-		system.settings.localise = integrator.localise;
+		system.settings.merged = integrator.mergedClosing;
 		system.settings.mostEvents = integrator.mostEvents;
 		system.settings.order = integrator.sequential ? masonry::rigid::ImpactOrder::sequential : masonry::rigid::ImpactOrder::simultaneous;
 		const auto report = stepper.advance(system, scene.dt);
@@ -340,7 +340,7 @@ private:
 			point.frame = K::frame(point.feature, body1.halfSize, body1.pose, body2.halfSize, body2.pose);
 			point.gap = point.frame.gap;
 			const auto speed = masonry::rigid::relativeVelocity(point.frame, body1.pose.position, body1.velocity, body2.pose.position, body2.velocity);
-			point.closed = point.gap <= masonry::tolerance::mergedClosing * length && speed[0] >= -rest;
+			point.closed = point.gap <= integrator.mergedClosing * length && speed[0] >= -rest;
 			if (point.gap < -mostOverlap * length) refuseOverlap(pair, -point.gap);
 		}
 	}

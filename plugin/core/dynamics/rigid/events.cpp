@@ -108,7 +108,7 @@ template <class K> Event localise(const RigidSystem<K>& s, SmoothStep<K>& step, 
 template <class K> void touchingPoints(const RigidSystem<K>& s, std::vector<PointRef>& out)
 {
 	out.clear();
-	const double merged = tolerance::mergedClosing * scale::length(s);
+	const double merged = s.settings.merged * scale::length(s);
 	for (int c = 0; c < int(s.pairs.size()); ++c)
 		for (int i = 0; i < s.pairs[c].size; ++i) {
 			const ContactPoint<K>& point = s.pairs[c].points[i];

@@ -29,11 +29,10 @@ template <class K> StepReport RigidStep<K>::advance(RigidSystem<K>& s, double dt
 			answerImpacts(s, known);
 		} else if (event.kind == Event::stop) {
 			s.pairs[event.point.pair].points[event.point.point].sliding = false;
-			s.fresh = true;
-		} else if (left > 0) {
-			takeJumps(s);
-			s.fresh = true;
 		}
+		if (event.kind == Event::none && left == 0) break;
+		takeJumps(s);
+		s.fresh = true;
 	}
 	return report;
 }
@@ -65,7 +64,7 @@ namespace {
 // Points of all pairs, as features.
 template <class K> void RigidStep<K>::findContacts(RigidSystem<K>& s)
 {
-	const double touching = tolerance::mergedClosing * scale::length(s), samePlace = 2 * tolerance::contact::vertexReach * scale::length(s);
+	const double touching = s.settings.merged * scale::length(s), samePlace = 2 * tolerance::contact::vertexReach * scale::length(s);
 	for (ContactPair<K>& pair : s.pairs) {
 		const auto &   body1 = s.bodies[pair.body1], &body2 = s.bodies[pair.body2];
 		FoundPoints<K> found;
@@ -94,7 +93,7 @@ template <class K> void RigidStep<K>::findContacts(RigidSystem<K>& s)
 // A trial that ends with the first event, or without one after h.
 template <class K> Event RigidStep<K>::tryStep(RigidSystem<K>& s, double h)
 {
-	const bool   localised = s.settings.localise && report.events < s.settings.mostEvents;
+	const bool   localised = report.events < s.settings.mostEvents;
 	const double rest = tolerance::restSpeed * std::sqrt(scale::acceleration(s) * scale::length(s));
 	step.anticipated.clear();
 	step.stopsInside = !localised;

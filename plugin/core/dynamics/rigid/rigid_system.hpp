@@ -51,8 +51,8 @@ enum class ImpactOrder { simultaneous, sequential };
 struct Settings {
 	double      tolerance { 1e-9 };   // residual of a step's contact laws relative to the speed that gravity gives in that step
 	ImpactOrder order { ImpactOrder::simultaneous };
-	bool        localise { true };    // events are found inside the step; false: they are met at its end
-	int         mostEvents { 12 };    // in one step; further ones are met at its end
+	double      merged { 1e-6 };      // closings within this gap, relative to the smallest half size, are one impact: a model parameter
+	int         mostEvents { 50 };    // found inside one step; points that close later in it do so at its end, plastically
 };
 
 // A rocking impact as it came out.
@@ -69,7 +69,7 @@ struct Impact {
 
 struct StepReport {
 	int    substeps { 0 }, events { 0 }, sweeps { 0 }, factorisations { 0 };
-	int    unlocalised { 0 }; // events beyond mostEvents
+	int    unlocalised { 0 }; // points that closed beyond mostEvents
 	double residual { 0 };    // largest of the solves, m/s
 	bool   converged { true };
 	bool   diverged { false }; // the state is no longer finite

@@ -3,6 +3,8 @@
 import numpy as np
 from yade import O, wrapper
 
+from masonry.dem.scene import check_blocks
+
 _MODELS = ("auto", "planar", "spatial", "compliant")
 # Time step of rigid blocks, relative to sqrt(R/g) of the smallest one: 1e-3 s for a block 3 m high. Rocking angles of one block
 # are then right to 1e-6.
@@ -93,6 +95,7 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
         item.check()
     if not any(b.dynamic for b in _blocks()):
         raise ValueError("there is no free block in O.bodies: add one with dem.block() before dem.engines()")
+    check_blocks(floating=False)
     reason = "asked for"
     if model == "auto":
         if penetration is not None:
@@ -117,7 +120,7 @@ def _rigid(motions, model, dt, tolerance, impact_order, gravity, recorders, othe
     smallest = min(b.shape.extents.norm() for b in _blocks() if b.dynamic)
     step = dt if dt is not None else _RIGID_STEP * np.sqrt(smallest / gravity)
     if not step <= integrator.largestTimeStep:
-        raise ValueError(f"dt = {dt}: must be at most {integrator.largestTimeStep:.3g} s, 0.05 sqrt(R/g) of the smallest block")
+        raise ValueError(f"dt = {dt}: must be at most {integrator.largestTimeStep:.3g} s, 0.12 sqrt(R/g) of the smallest block")
     O.dt = step
     print(f"masonry.dem: rigid blocks, {choice}; dt = {O.dt:.3g} s")
     return [wrapper.ForceResetter(), *others, *recorders, integrator]
