@@ -124,3 +124,19 @@ constexpr double softness = 1e-2;
 constexpr double leastSoftness = 1e-8;
 
 } // namespace masonry::tolerance::contactProblem
+
+// --- walls (dynamics/wall/) ---
+namespace masonry::tolerance::wall {
+
+// Relative movement of a pair, relative to the smallest half size, after which the features in touch are looked up again. Larger: a vertex
+// that has slid over the end of a face is held there that much longer; smaller: moving walls spend their time on it.
+constexpr double search = 1e-3;
+// Gap relative to the smallest half size up to which a point takes part in the still mode. Larger: open joints slow its convergence;
+// smaller: joints that close change the factorisation.
+constexpr double touching = 1e-4;
+// Velocity residual, relative to what gravity gives in a step, that the still mode may leave. Larger: the onset of motion is glued.
+constexpr double still = 1e-2;
+// Time relative to sqrt(half size / g) for which nothing may move before the still mode is tried again.
+constexpr double patience = 0.5;
+
+} // namespace masonry::tolerance::wall

@@ -1,0 +1,63 @@
+#pragma once
+// The step of a wall that stands still: all contact laws at once, by the method of multipliers (ADMM) with one factorisation that is
+// kept as long as the same points touch.
+//
+// Unknown are the velocities V at the end of the step, moved with (q+ = q + h V+), the impulses p and the relative velocities z that the
+// laws allow. With w = J V - b, R = r / (J M^-1 J^T) of each point and A = M + J^T J / R over all points that touch, whatever their state,
+//
+//     V += A^-1 [ M (V_free - V) + J^T (p + (z - w)/R) ]
+//     y  = p - (1.6 w - 0.6 z)/R
+//     p  = clip(y): normal part on p_n >= 0, then tangential part on |p_t| <= mu p_n
+//     z  = (p - y) R
+//
+// until w = z. Nothing in A depends on which points stick, slide or part: states may chatter and A stays. Only residuals are corrected,
+// so that A may be of slightly other positions.
+//
+// b_n = -gap/h (an open point may close; a share of a penetration is pushed out), b_t = -(a share of) slip/h: a point that sticks is drawn
+// back to where it stuck first, so that what a few iterations leave does not add up.
+#include "dynamics/wall/symmetric_factor.hpp"
+#include "dynamics/wall/wall_contacts.hpp"
+
+namespace masonry::rigid::wall {
+
+struct KeptReport {
+	int solves {0}, factorisations {0};
+	double velocity {0}; // largest |J V - b - z|, m/s
+	double force {0};    // largest error of an impulse, as the velocity that it gives its point, m/s
+	double motion {0};   // largest relative velocity of a point that touches, m/s
+};
+
+class KeptFactor {
+public:
+	struct alignas(alignment) Row { // of a point
+		Lanes bn, bt, resistance, stiffness; // R and 1/R; zero: does not touch
+		Lanes un, ut;                        // J V, m/s
+	};
+
+	// Starts a step from the contacts' velocities; `load` is the change of velocity by external forces, per body.
+	void begin(WallContacts& contacts, const LaneArray& load, double h, bool newPoints);
+	// Solves until both residuals are at most theirs, at most `most` times. May be called again to go on.
+	void iterate(int most, double velocityResidual, double forceResidual);
+	void keepSlip();  // of the step that ends
+	void giveUp();    // impulses as they were at the beginning
+
+	KeptReport report;
+	LaneArray velocity;          // V
+	std::vector<std::array<Row, 2>> rows; // by group
+	size_t factorBlocks() const { return factor.blocks(); }
+
+private:
+	bool takeRows(bool newPoints);
+	void factorise();
+
+	struct alignas(alignment) Before { Lanes pn, pt, zn, zt; };
+
+	WallContacts* contacts {nullptr};
+	SymmetricFactor factor;
+	std::vector<SymmetricFactor::Edge> edges;
+	LaneArray free, force;
+	std::vector<std::array<Before, 2>> before; // by group
+	double h {0}, softness {0};
+};
+
+} // namespace masonry::rigid::wall

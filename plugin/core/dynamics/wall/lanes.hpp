@@ -1,0 +1,76 @@
+#pragma once
+// Four doubles side by side. Each lane is computed as a scalar would be, so that the bits do not depend on the vector width that the
+// processor has; functions marked MASONRY_LANES are compiled for several and the widest is picked when the program starts.
+
+#include <cstddef>
+#include <new>
+#include <vector>
+
+#pragma GCC diagnostic ignored "-Wpsabi" // lanes are passed between inlined functions only
+
+#define MASONRY_LANES __attribute__((target_clones("avx2", "default")))
+#define MASONRY_INLINE __attribute__((always_inline)) inline
+
+namespace masonry::rigid::wall {
+
+constexpr int width = 4;
+using Lanes = double __attribute__((vector_size(32)));
+using Mask = long long __attribute__((vector_size(32))); // -1: true
+
+// Code for wide vectors counts on this alignment, code for narrow ones does not ask for it: structures of lanes state it.
+constexpr std::size_t alignment = 32;
+
+template <class T>
+struct AlignedAllocator {
+	using value_type = T;
+	AlignedAllocator() = default;
+	template <class U>
+	AlignedAllocator(const AlignedAllocator<U>&) {}
+	T* allocate(std::size_t n) { return static_cast<T*>(::operator new(n * sizeof(T), std::align_val_t(alignment))); }
+	void deallocate(T* p, std::size_t) { ::operator delete(p, std::align_val_t(alignment)); }
+	bool operator==(const AlignedAllocator&) const { return true; }
+	bool operator!=(const AlignedAllocator&) const { return false; }
+};
+
+using LaneArray = std::vector<Lanes, AlignedAllocator<Lanes>>;
+
+MASONRY_INLINE Lanes all(double value) { return Lanes {value, value, value, value}; }
+MASONRY_INLINE Lanes larger(const Lanes& a, const Lanes& b) { return a > b ? a : b; }
+MASONRY_INLINE Lanes smaller(const Lanes& a, const Lanes& b) { return a < b ? a : b; }
+MASONRY_INLINE Lanes size(const Lanes& a) { return a < 0 ? -a : a; }
+MASONRY_INLINE double largest(const Lanes& a)
+{
+	const double low = a[0] > a[1] ? a[0] : a[1], high = a[2] > a[3] ? a[2] : a[3];
+	return low > high ? low : high;
+}
+
+MASONRY_INLINE void transpose(Lanes& a, Lanes& b, Lanes& c, Lanes& d)
+{
+	const Lanes ab0 = __builtin_shuffle(a, b, Mask {0, 4, 2, 6}), ab1 = __builtin_shuffle(a, b, Mask {1, 5, 3, 7});
+	const Lanes cd0 = __builtin_shuffle(c, d, Mask {0, 4, 2, 6}), cd1 = __builtin_shuffle(c, d, Mask {1, 5, 3, 7});
+	a = __builtin_shuffle(ab0, cd0, Mask {0, 1, 4, 5});
+	b = __builtin_shuffle(ab1, cd1, Mask {0, 1, 4, 5});
+	c = __builtin_shuffle(ab0, cd0, Mask {2, 3, 6, 7});
+	d = __builtin_shuffle(ab1, cd1, Mask {2, 3, 6, 7});
+}
+
+// Four quantities of four bodies: rows of `from` in, one lane a body out.
+struct alignas(alignment) Bodies {
+	Lanes x, y, w, m;
+
+	MASONRY_INLINE Bodies(const Lanes* from, const int* body) : x(from[body[0]]), y(from[body[1]]), w(from[body[2]]), m(from[body[3]])
+	{
+		transpose(x, y, w, m);
+	}
+	// Back to where they came from; bodies with m = 0 are prescribed and stay.
+	MASONRY_INLINE void store(Lanes* to, const int* body, const Lanes& mass) const
+	{
+		Lanes row[width] = {x, y, w, m};
+		transpose(row[0], row[1], row[2], row[3]);
+		for (int i = 0; i < width; ++i)
+			if (mass[i] != 0)
+				to[body[i]] = row[i];
+	}
+};
+
+} // namespace masonry::rigid::wall

@@ -1,0 +1,37 @@
+#pragma once
+// The step of a wall that moves: substeps of length s, each of
+//
+//     V += s M^-1 f + M^-1 J^T p        p of the last substep
+//     one sweep over the points, a penetration as a damped spring (frequency 1/8 of the substep rate, damping ratio 10)
+//     q += s V, gaps with it
+//     one sweep without springs: takes out the velocity that they gave
+//
+// An open point may close: u_n >= -gap/s, in both sweeps. (Without it in the second, corners that approach stop short, and piers do not rock
+// as they should.) One sweep carries an impulse one course on: what the courses miss of each other falls as 1/substeps^2.
+//
+// After Box2D's soft step (Catto, 2024).
+#include "dynamics/wall/wall_contacts.hpp"
+
+namespace masonry::rigid::wall {
+
+struct SoftReport {
+	double velocity {0}; // largest velocity into a closed point after the last sweep, m/s
+	double force {0};    // largest change of an impulse by the last sweep, as the velocity that it gives its point, m/s
+	double motion {0};   // largest relative velocity of a closed point, m/s
+};
+
+class SoftSubsteps {
+public:
+	// From the contacts' velocities; `load` is the change of velocity in a substep by external forces, per body. Leaves velocities and
+	// the impulses of the last substep in the contacts.
+	void begin(WallContacts& contacts);
+	void substep(WallContacts& contacts, const LaneArray& load, double s);
+
+	SoftReport report;        // of the last substep
+	LaneArray shift; // how far the bodies have moved since begin(); components as of velocities
+
+private:
+	LaneArray contactPart; // of the velocities: what the impulses of the last substep gave
+};
+
+} // namespace masonry::rigid::wall

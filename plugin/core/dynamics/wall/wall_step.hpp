@@ -1,0 +1,67 @@
+#pragma once
+// The step of many rigid blocks in a plane: walls.
+//
+// While nothing moves against its neighbour, a step is solved for all contacts at once with a factorisation that is kept (kept_factor.hpp:
+// mode `still`); when something does, in soft substeps (soft_substeps.hpp: mode `moving`). A step that the first cannot solve is taken back and
+// done by the second. Back it goes when every relative velocity has been at rest level for a while; a stay that ends soon doubles that while.
+//
+// Positions are first order in the step; impacts are met at the end of a substep. Few blocks: rigid_step.hpp.
+#include "dynamics/wall/kept_factor.hpp"
+#include "dynamics/wall/soft_substeps.hpp"
+
+namespace masonry::rigid {
+
+struct WallSettings {
+	// Velocity residual of the still mode relative to the speed that gravity gives in a step. Contact forces are right to some hundred
+	// times as much of a block's weight; with `strictForces` to as much.
+	double tolerance {1e-3};
+	bool strictForces {false};
+};
+
+enum class WallMode { still, moving };
+
+struct WallReport : StepReport {
+	WallMode mode {WallMode::moving};
+	bool switched {false};
+	int solves {0};               // of the still mode
+	double velocityResidual {0};  // m/s
+	double forceResidual {0};     // error of impulses, as the velocity that it gives the point, m/s
+};
+
+template <class K>
+class WallStep {
+public:
+	WallSettings settings;
+	WallReport report; // of the last step
+
+	StepReport advance(RigidSystem<K>& system, double dt);
+
+	size_t memory() const; // bytes of the workspace
+
+private:
+	void advancePart(RigidSystem<K>& system, double h);
+	bool tryStill(RigidSystem<K>& system, double h, bool newPoints);
+	void substeps(RigidSystem<K>& system, double h);
+	void setBase(const RigidSystem<K>& system, double h);
+	void setLoads(const RigidSystem<K>& system, double h);
+	void takeMotion(RigidSystem<K>& system, double h);
+	void takePoints(RigidSystem<K>& system, double unit);
+	void choose(const RigidSystem<K>& system, double h);
+
+	// What the choice of the mode remembers.
+	struct Memory {
+		WallMode mode {WallMode::still};
+		bool started {false};
+		double quiet {0};    // s, how long nothing has moved
+		double patience {0}; // s, for how long it must not
+		double stay {0};     // s, in the still mode
+	};
+
+	Memory memoryOfModes;
+	wall::WallContacts contacts;
+	wall::KeptFactor kept;
+	wall::SoftSubsteps soft;
+	wall::LaneArray loads, shift;
+};
+
+} // namespace masonry::rigid
