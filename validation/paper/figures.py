@@ -1,5 +1,5 @@
 """The figures. A restitution has one colour, a base 2b another, in all of them; solid: closed form; dashed: exact under gravity;
-open circles: YADE; crosses: YADE, overturned, with the half cycle in which."""
+open circles: YADE, rigid blocks; crosses: YADE, overturned, with the half cycle in which."""
 import matplotlib
 
 matplotlib.use("Agg")
@@ -29,7 +29,7 @@ def _save(figure, out, name):
 def _kinds(closed_colour="0.2", overturned=True):
     """Legend entries for the kinds of lines and points."""
     entries = [Line2D([], [], color=closed_colour, label="closed form (paper)"), Line2D([], [], color="0.4", ls="--", label="exact, real gravity"),
-               Line2D([], [], color="0.4", **POINT, label="YADE")]
+               Line2D([], [], color="0.4", **POINT, label="YADE, rigid blocks")]
     cross = Line2D([], [], color="0.4", marker="x", ls="none", ms=5, label="YADE: overturns in the half cycle named")
     return entries + [cross] * overturned
 
@@ -151,7 +151,7 @@ def convergence_figure(rows, out):
         axes.set(title=title, xlabel="impulse / the paper's impulse")
     panels[0].set_ylabel("relative difference from the closed form")
     figure.suptitle(r"Real gravity tends to the closed form as $I \to 0$ ($2b$ = 0.6 m, $\lambda$ = 5)", fontsize=10)
-    entries = [Line2D([], [], color="0.4", ls="--", label="exact, real gravity"), Line2D([], [], color="0.4", **POINT, label="YADE")]
+    entries = [Line2D([], [], color="0.4", ls="--", label="exact, real gravity"), Line2D([], [], color="0.4", **POINT, label="YADE, rigid blocks")]
     entries += [Line2D([], [], color=colour, label=f"$C$ = {c}") for c, colour in C_COLOURS.items()]
     _legend(figure, entries, 5)
     _save(figure, out, "convergence.png")

@@ -1,8 +1,9 @@
 """Writes the tables of one run between the markers of README.md, so that they cannot go stale."""
 from pathlib import Path
 
+import judge
 import theory
-from cases import grid, relative_error
+from cases import COMPLIANT, RIGID, grid, relative_error
 
 README = Path(__file__).resolve().parent / "README.md"
 BEGIN, END = "<!-- written by validation/paper/run: begin -->", "<!-- end -->"
@@ -21,12 +22,21 @@ def _nearest():
             f"{distance:.1%} from its limit.")
 
 
-def update(stated, verdicts, table):
+def _models(table):
+    """Figs 4 to 8 by rigid blocks and by compliant joints, side by side."""
+    rows = [[rigid[0], *rigid[1:3], *compliant[1:3]] for rigid, compliant in zip(judge.spectra(table, RIGID), judge.spectra(table, COMPLIANT))]
+    rows += [[rigid[0], rigid[1], "", compliant[1], ""] for rigid, compliant in zip(judge.cost(table, RIGID), judge.cost(table, COMPLIANT))]
+    return _table(["", "rigid", "bound", "compliant", "bound"], rows)
+
+
+def update(stated, table, others):
+    """others: verdicts that are not in the table of the two models."""
     claims = _table(["where", "the text", "paper", "closed form", "real gravity", "verdict"],
                     [[c.where, c.statement, c.paper, c.closed_form, c.gravity, c.verdict] for c in stated])
-    checks = _table(["what must hold", "value", "bound", "holds"], [[*v[:3], "yes" if v[3] else "NO"] for v in verdicts])
+    checks = _table(["what must hold", "value", "bound", "holds"], [[*v[:3], "yes" if v[3] else "NO"] for v in others])
     generated = (f"{BEGIN}\n\n### The paper's text against its closed form and real gravity\n\n{claims}\n\n"
-                 f"### Verdicts\n\n{len(table)} YADE cases. {_nearest()}\n\n{checks}\n\n{END}")
+                 f"### Figures 4 to 8 in YADE\n\n{len(grid())} blocks by each model, at the settings that `dem.engines()` chooses. {_nearest()}\n\n{_models(table)}\n\n"
+                 f"### The other verdicts\n\n{checks}\n\n{END}")
     text = README.read_text()
     before, rest = text.split(BEGIN)
     README.write_text(before + generated + rest.split(END)[1])

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import masonry
 import theory
+from cases import COMPLIANT
 from tqdm import tqdm
 
 HERE = Path(__file__).resolve().parent
@@ -18,22 +19,22 @@ PROCESSES = min(2, os.cpu_count())
 
 
 def _stamp():
-    """Of the plugin and of the scripts that a result depends on: results of another build are not reused."""
+    """Of the plugin and of the scripts that a result depends on: results of another build are not reused. The model is in Case.key."""
     plugin = Path(masonry.__file__).parent
-    files = [plugin / "_yade.so", *sorted((plugin / "dem").glob("*.py")), HERE / "yade_runs.py"]
+    files = [plugin / "_yade.so", *sorted((plugin / "dem").glob("*.py")), HERE / "cases.py", HERE / "yade_runs.py"]
     return hashlib.sha256(b"".join(f.read_bytes() for f in files)).hexdigest()[:16]
 
 
-def _expected_steps(case):
-    h = theory.history(case)
-    simulated = h.impact_times[-1] if h.impact_times.size else 1.0
-    return simulated / case.penetration**0.5
+def _expected_cost(case):
+    """Compliant joints first: they take the longer."""
+    return case.model == COMPLIANT, theory.history(case).impact_times.max(initial=0)
 
 
 def _read(store, stamp):
     if not store.exists():
         return {}
-    runs = [json.loads(line) for line in store.read_text().splitlines()]
+    # A line without its end: the run was stopped while writing it.
+    runs = [json.loads(line) for line in store.read_text().splitlines(keepends=True) if line.endswith("\n")]
     return {r["key"]: r for r in runs if r["stamp"] == stamp}
 
 
@@ -42,7 +43,7 @@ def run(cases, store, fresh):
     stamp = _stamp()
     runs = {} if fresh else _read(store, stamp)
     store.write_text("".join(json.dumps(r) + "\n" for r in runs.values()))
-    missing = sorted((c for c in cases if c.key not in runs), key=_expected_steps, reverse=True)
+    missing = sorted((c for c in cases if c.key not in runs), key=_expected_cost, reverse=True)
     if not missing:
         return runs
     yade = shutil.which("yade")
