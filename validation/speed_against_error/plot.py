@@ -6,10 +6,11 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
-FLOOR = 1e-7  # peak errors below this are drawn at it, with their value written beside
+FLOOR = 1e-10  # peak errors below this are drawn at it, with their value written beside
 STYLE = {  # one colour and marker a program, one line style a series of it
     "masonry theory": ("black", "*"),
-    "yade-masonry in YADE": ("tab:red", "o"),
+    "yade-masonry rigid": ("tab:red", "o"),
+    "yade-masonry compliant": ("tab:pink", "o"),
     "YADE clump of spheres": ("tab:orange", "v"),
     "YADE Polyhedra": ("tab:brown", "^"),
     "Bullet double": ("tab:blue", "s"),
