@@ -24,10 +24,13 @@ template <class K> StepReport RigidStep<K>::advance(RigidSystem<K>& s, double dt
 		}
 		if (event.kind == Event::closing) {
 			touchingPoints(s, closing);
-			if (closing.empty()) s.pairs[event.point.pair].points[event.point.point].closed = true; // parts and is back at once: it stays
-			const size_t known = s.impacts.size();
-			report.residual = std::max(report.residual, impacts.land(s, closing));
-			answerImpacts(s, known);
+			if (closing.empty()) { // the point parts and would be back at once: it stays
+				s.pairs[event.point.pair].points[event.point.point].closed = true;
+			} else {
+				const size_t known = s.impacts.size();
+				report.residual = std::max(report.residual, impacts.land(s, closing));
+				answerImpacts(s, known);
+			}
 		} else if (event.kind == Event::stop) {
 			s.pairs[event.point.pair].points[event.point.point].sliding = false;
 		}
