@@ -46,6 +46,30 @@ namespace {
 		return J;
 	}
 
+	// The forces of more than three points on a face are not determined by its motion, but where it spins as it slides the friction couple
+	// hangs on them: they start from linear pressure, that is from the least sum of squares with the same resultant and moments, so that the
+	// solver's path does not decide. Points that would have to pull, or stick, are left as they are.
+	template <class Rows> void spreadLinearly(Rows* begin, Rows* end, const std::vector<Vector3>& positions)
+	{
+		const int n = int(end - begin);
+		Matrix3   squares = Matrix3::Zero();
+		Vector3   sums = Vector3::Zero(), middle = Vector3::Zero();
+		for (const Vector3& x : positions)
+			middle += x / n;
+		const Vector3 across = begin->J2.row(1).template head<3>(), beside = begin->J2.row(2).template head<3>();
+		const auto    shape = [&](int i) { return Vector3(1, across.dot(positions[i] - middle), beside.dot(positions[i] - middle)); };
+		for (int i = 0; i < n; ++i) {
+			squares += shape(i) * shape(i).transpose();
+			sums += begin[i].impulse[0] * shape(i);
+		}
+		if (!(squares.bottomRightCorner<2, 2>().determinant() > tolerance::rank * squares.bottomRightCorner<2, 2>().squaredNorm())) return;
+		const Vector3 pressure = squares.ldlt().solve(sums);
+		for (int i = 0; i < n; ++i)
+			if (!(pressure.dot(shape(i)) > 0)) return;
+		for (int i = 0; i < n; ++i)
+			begin[i].impulse *= pressure.dot(shape(i)) / begin[i].impulse[0];
+	}
+
 } // namespace
 
 template <class K> void SmoothStep<K>::predict(const RigidSystem<K>& s, double h)
@@ -88,6 +112,9 @@ template <class K> void SmoothStep<K>::assemble(const RigidSystem<K>& s, double 
 	};
 	for (int c = 0; c < int(s.pairs.size()); ++c) {
 		const ContactPair<K>& pair = s.pairs[c];
+		const size_t          begin = solver.points.size();
+		bool                  slides = true;
+		positions.clear();
 		for (int i = 0; i < pair.size; ++i) {
 			const ContactPoint<K>& point = pair.points[i];
 			if (!point.closed && (anticipated.empty() || !isAnticipated(c, i))) continue;
@@ -119,7 +146,13 @@ template <class K> void SmoothStep<K>::assemble(const RigidSystem<K>& s, double 
 				rows.offset[0] += 2 * (frame.gap - std::min(point.gap, 0.)) / h; // a penetration at the start is no approach: `project` closes it
 			}
 			solver.points.push_back(rows);
+			if constexpr (K::maxPoints > 3) {
+				positions.push_back(frame.position);
+				slides &= point.sliding && point.force[0] > 0;
+			}
 		}
+		if constexpr (K::maxPoints > 3)
+			if (slides && positions.size() > 3) spreadLinearly(solver.points.data() + begin, solver.points.data() + solver.points.size(), positions);
 	}
 }
 

@@ -64,6 +64,7 @@ private:
 	std::vector<int> first; // index in last.frames of a pair's first point
 	std::vector<typename K::Velocity> increments, shifts;
 	std::vector<double> gaps;
+	std::vector<typename K::Vector> positions; // of the rows of one pair
 	ContactSolver<K> solver;
 };
 
