@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <limits>
 #include <random>
+#include <utility>
 
 using namespace rig;
 
@@ -274,6 +275,38 @@ TEST_CASE("a box that lands flat out of free flight stays where it lands")
 	CHECK(s.kineticEnergy() < 1e-15 * overturning(s.bodies[1]));
 }
 
+// The forces at four corners that slide are not determined, but the friction couple hangs on them. Oracles: the same box with its axes
+// named otherwise, whose corners come in another order (1.7e-2 rad apart where the solver's path decides; with linear pressure, which each
+// step starts from, first order in the step), and pressures that are linear: both diagonals carry the same.
+TEST_CASE("a face that spins as it slides has linear pressure, whatever the order of its corners")
+{
+	const double h = 1e-3;
+	const auto run = [h](bool renamed) {
+		const Vector3 half = renamed ? Vector3(0.2, 0.3, 0.5) : Vector3(0.3, 0.2, 0.5);
+		const Quaternion start = turn(renamed ? M_PI / 2 : 0, Vector3::UnitZ());
+		System s = oneBox(half, placed(start, {0, 0, -0.5}, {0, 0, 0}), 0.7, 0.1);
+		s.bodies[1].velocity << 1, 0, 0, 0, 0, 2;
+		RigidStep<Space> step;
+		for (int i = 0; i < 300; ++i)
+			step.advance(s, h);
+		const ContactPair<Space>& pair = s.pairs[0];
+		REQUIRE(pair.size == 4);
+		double opposite = 0, all = 0; // corners that the centre lies between
+		for (int i = 0; i < 4; ++i) {
+			const double force = pair.points[i].force[0];
+			const Vector3 local = s.bodies[1].pose.toLocal(pair.points[i].frame.position);
+			opposite += local.x() * local.y() > 0 ? force : -force;
+			all += force;
+		}
+		CHECK(std::abs(opposite) < 1e-3 * all);
+		const Quaternion q = s.bodies[1].pose.orientation * start.conjugate();
+		return 2 * std::atan2(q.z(), q.w());
+	};
+	const double yaw = run(false);
+	CHECK(yaw > 0.4);
+	CHECK(std::abs(run(true) - yaw) < 1e-4);
+}
+
 // Sizes scaled by L, times by sqrt(L): every tolerance is relative, so the answers differ by round-off alone.
 TEST_CASE("a millimetre and thirty metres are the same motion")
 {
@@ -299,7 +332,7 @@ TEST_CASE("random starts on a corner end in no trouble")
 {
 	std::mt19937 random(5);
 	std::uniform_real_distribution<double> unit(0, 1);
-	for (int k = 0; k < 40; ++k) {
+	for (int k = 0; k < 25; ++k) {
 		const double slenderness = 0.5 * std::pow(20., unit(random)), restitution = unit(random), twist = unit(random);
 		const Vector3 half(0.3, 0.3 * (1 + 0.7 * unit(random)), 0.3 * slenderness), corner(half.x(), half.y(), -half.z());
 		const double direction = M_PI / 2 * unit(random);
@@ -364,21 +397,21 @@ struct TurnedStack {
 
 } // namespace
 
-// Oracle: half the step. Until 0.4 s; then a corner comes down on one of two ways, which round-off decides.
+// Oracle: half the step. Until 0.2 s: from 0.43 s on a corner comes down in one of two ways, which the step's error decides.
 TEST_CASE("a stack whose upper block is turned by 30 degrees and shaken")
 {
-	for (ImpactOrder order : {ImpactOrder::simultaneous, ImpactOrder::sequential})
-		for (double direction : {0., M_PI / 6}) {
-			TurnedStack coarse(M_PI / 6, direction, order), fine(M_PI / 6, direction, order);
-			CHECK((coarse.top(0.4, 1e-3) - fine.top(0.4, 5e-4)).norm() < 1e-4);
-			const double scale = overturning(coarse.s.bodies[1]);
-			for (const Watch* watch : {&coarse.watch, &fine.watch}) {
-				CHECK(!watch->diverged);
-				CHECK(watch->rise < 1e-5 * scale); // as above
-				CHECK(watch->impactGain < 1e-10 * scale);
-				CHECK(watch->depth < 1e-6);
-			}
+	const double direction = M_PI / 6;
+	for (ImpactOrder order : {ImpactOrder::simultaneous, ImpactOrder::sequential}) {
+		TurnedStack coarse(M_PI / 6, direction, order), fine(M_PI / 6, direction, order);
+		CHECK((coarse.top(0.2, 1e-3) - fine.top(0.2, 5e-4)).norm() < 1e-5);
+		const double scale = overturning(coarse.s.bodies[1]);
+		for (const Watch* watch : {&coarse.watch, &fine.watch}) {
+			CHECK(!watch->diverged);
+			CHECK(watch->rise < 1e-5 * scale); // as above
+			CHECK(watch->impactGain < 1e-10 * scale);
+			CHECK(watch->depth < 1e-6);
 		}
+	}
 }
 
 // Oracle: the planar step. Straight blocks, the base moved along a face.
