@@ -122,6 +122,12 @@ constexpr double softness = 1e-2;
 // The smallest that it falls to. Larger: tall columns and large mass ratios converge linearly; smaller: round-off of the
 // factorisation.
 constexpr double leastSoftness = 1e-8;
+// That from impulses close to the solution. Larger: a second centre a step, and more changes of state; smaller: round-off decides
+// the states of unloaded points.
+constexpr double resumedSoftness = 3e-9;
+// Relative distance from the friction cone at which an impulse given is taken to slip. Larger: sticking points start as slipping;
+// smaller: round-off makes slipping ones stick. Either costs a factorisation.
+constexpr double onCone = 1e-9;
 
 } // namespace masonry::tolerance::contactProblem
 

@@ -47,14 +47,14 @@ public:
 		for (int k = 0; k < nodes(); ++k) {
 			pivots[k] = pivots[k].inverse().eval();
 			for (int a = first[k]; a < first[k + 1]; ++a) {
-				const Block factor = lower[a] * pivots[k];
+				const Block factor = lower[a].lazyProduct(pivots[k]);
 				for (int b = first[k]; b < first[k + 1]; ++b) {
 					if (b < a)
-						lower[*target++] -= factor * upper[b];
+						lower[*target++].noalias() -= factor.lazyProduct(upper[b]);
 					else if (b > a)
-						upper[*target++] -= factor * upper[b];
+						upper[*target++].noalias() -= factor.lazyProduct(upper[b]);
 					else
-						pivots[row[a]] -= factor * upper[a];
+						pivots[row[a]].noalias() -= factor.lazyProduct(upper[a]);
 				}
 				lower[a] = factor;
 			}
@@ -68,10 +68,10 @@ public:
 			work[k] = x[nodeAt[k]];
 		for (int k = 0; k < nodes(); ++k)
 			for (int a = first[k]; a < first[k + 1]; ++a)
-				work[row[a]] -= lower[a] * work[k];
+				work[row[a]].noalias() -= lower[a].lazyProduct(work[k]);
 		for (int k = nodes() - 1; k >= 0; --k) {
 			for (int a = first[k]; a < first[k + 1]; ++a)
-				work[k] -= upper[a] * work[row[a]];
+				work[k].noalias() -= upper[a].lazyProduct(work[row[a]]);
 			work[k] = pivots[k] * work[k];
 			x[nodeAt[k]] = work[k];
 		}

@@ -157,7 +157,9 @@ struct ContactSolver<K>::Workspace {
 	std::vector<typename BlockFactor<K::dof>::Edge> edges; // points between two free bodies, in order
 	BlockFactor<K::dof> factor;
 	bool factored {false};
-	double softness {0}; // R relative to the response of the point
+	std::vector<typename BlockFactor<K::dof>::Edge> kept; // bodies of the points of the factor that the next solve may start with
+	double softness {0};   // R relative to the response of the point
+	double rootMerit {0};  // kg m^2/s^2: below it F is zero
 
 	static Response response(const InverseMass<K>& m, const typename ContactRows<K>::Jacobian& J)
 	{
@@ -278,22 +280,27 @@ struct ContactSolver<K>::Workspace {
 
 	double compliance(int i) const { return softness * points[i].alone.trace; } // R
 
-	void prepareNewton()
+	void prepareNewton(double tolerance)
 	{
+		constexpr double share = 0.1; // of the merit that lets the lightest body miss its velocity by the tolerance
 		newtonBodies.resize(nBodies);
 		step.resize(nBodies);
+		double lightest = std::numeric_limits<double>::infinity();
 		for (int b = 0; b < nBodies; ++b) {
+			lightest = std::min(lightest, 1 / bodies[b].inverseMass.linear);
 			Mass& mass = newtonBodies[b].mass;
 			mass.setZero();
 			mass.diagonal().template head<K::dimension>().setConstant(1 / bodies[b].inverseMass.linear);
 			mass.template bottomRightCorner<K::spins, K::spins>() = bodies[b].inverseMass.angular.inverse();
 		}
+		rootMerit = share * lightest * tolerance * tolerance;
 		edges.clear();
 		for (int i = 0; i < nPoints; ++i)
 			if (rows[i].body1 >= 0 && rows[i].body2 >= 0)
 				edges.push_back({rows[i].body1, rows[i].body2});
 		factor.setGraph(nBodies, edges);
 		factored = false;
+		kept.clear();
 	}
 
 	// Sets F, P(y) and its derivative; returns F^T M^-1 F.
@@ -343,15 +350,15 @@ struct ContactSolver<K>::Workspace {
 			if (points[i].rate.isZero(0))
 				continue;
 			const Block stiffness = points[i].rate / compliance(i);
-			const typename ContactRows<K>::Jacobian K1 = stiffness * c.J1, K2 = stiffness * c.J2;
+			const typename ContactRows<K>::Jacobian K1 = stiffness.lazyProduct(c.J1), K2 = stiffness.lazyProduct(c.J2);
 			if (c.body1 >= 0)
-				factor.diagonal(c.body1) += c.J1.transpose() * K1;
+				factor.diagonal(c.body1).noalias() += c.J1.transpose().lazyProduct(K1);
 			if (c.body2 >= 0)
-				factor.diagonal(c.body2) += c.J2.transpose() * K2;
+				factor.diagonal(c.body2).noalias() += c.J2.transpose().lazyProduct(K2);
 			if (e < 0)
 				continue;
-			factor.firstSecond(e) += c.J1.transpose() * K2;
-			factor.secondFirst(e) += c.J2.transpose() * K1;
+			factor.firstSecond(e).noalias() += c.J1.transpose().lazyProduct(K2);
+			factor.secondFirst(e).noalias() += c.J2.transpose().lazyProduct(K1);
 		}
 		factor.factorise();
 		factored = true;
@@ -380,29 +387,29 @@ struct ContactSolver<K>::Workspace {
 		return false;
 	}
 
-	// The root if every point were in the state of the last one: P(y) = P'(y) y since P is homogeneous.
+	// The root if every point were in its state in the factor: P(y) = P'(y) y since P is homogeneous.
 	void predict(SolveReport& report)
 	{
+		if (!factored)
+			factorise(report);
 		for (Velocity& right : step)
 			right.setZero();
 		for (int i = 0; i < nPoints; ++i) {
 			const ContactRows<K>& c = rows[i];
-			const Rows change = points[i].rate * (c.impulse - points[i].centre / compliance(i)) - c.impulse;
+			const Rows change = points[i].factored * (c.impulse - points[i].centre / compliance(i)) - c.impulse;
 			if (c.body1 >= 0)
 				step[c.body1] += c.J1.transpose() * change;
 			if (c.body2 >= 0)
 				step[c.body2] += c.J2.transpose() * change;
 		}
-		factorise(report);
 		factor.solve(step);
 		for (int b = 0; b < nBodies; ++b)
 			newtonBodies[b].w = step[b];
 	}
 
 	// Root of F for the present centre. False: stopped short of it.
-	bool findRoot(bool statesKnown, SolveReport& report)
+	bool findRoot(bool statesKnown, int maxSteps, SolveReport& report)
 	{
-		constexpr int maxSteps = 30;
 		constexpr double reduction = 1e-8; // of the merit
 		for (int i = 0; i < nPoints; ++i)
 			points[i].centre = relativeVelocity(rows[i]);
@@ -413,9 +420,9 @@ struct ContactSolver<K>::Workspace {
 				body.w.setZero();
 		}
 		double merit = evaluate();
-		if (statesKnown && factorIsPresent())
+		if (statesKnown && (merit <= rootMerit || factorIsPresent()))
 			return true;
-		const double enough = reduction * merit;
+		const double enough = std::max(rootMerit, reduction * merit);
 		for (int k = 0; k < maxSteps; ++k) {
 			if (!factorIsPresent())
 				factorise(report);
@@ -428,18 +435,87 @@ struct ContactSolver<K>::Workspace {
 		return false;
 	}
 
+	bool factorIsKept() const
+	{
+		return int(kept.size()) == nPoints && nBodies == int(newtonBodies.size())
+		    && std::equal(kept.begin(), kept.end(), rows, [](const auto& k, const ContactRows<K>& c) { return k[0] == c.body1 && k[1] == c.body2; });
+	}
+
+	void keepFactor()
+	{
+		kept.clear();
+		for (int i = 0; i < nPoints; ++i)
+			kept.push_back({rows[i].body1, rows[i].body2});
+	}
+
+	// Newton with a small R at once, for impulses that are close to the solution: from the states in the kept factor, else from
+	// those of the impulses. That factor is of another problem with the same points; as only increments enter, this slows
+	// convergence but does not move the solution. False: too far.
+	bool resume(double tolerance, SolveReport& report)
+	{
+		constexpr int maxCentres = 6, maxSteps = 10;
+		constexpr double slow = 0.1; // ratio of residuals from centre to centre that calls for a new factor
+		const bool known = factorIsKept();
+		prepareNewton(tolerance);
+		factored = known;
+		softness = tolerance::contactProblem::resumedSoftness;
+		if (!factored) {
+			for (int i = 0; i < nPoints; ++i)
+				points[i].rate = projectionRate<Rows>(onCone(rows[i].impulse), rows[i].friction);
+		}
+		for (int k = 0; k < maxCentres; ++k) {
+			if (!findRoot(true, maxSteps, report))
+				return false;
+			for (int i = 0; i < nPoints; ++i)
+				rows[i].impulse = points[i].next;
+			applyImpulses();
+			const double present = report.residual;
+			report.residual = residual();
+			if (report.residual <= tolerance) {
+				keepFactor();
+				return true;
+			}
+			if (report.residual > slow * present)
+				factored = false;
+		}
+		return false;
+	}
+
+	// An impulse that has reached the cone but for round-off, moved beyond it.
+	static Rows onCone(Rows impulse)
+	{
+		impulse.template tail<K::rows - 1>() *= 1 + tolerance::contactProblem::onCone;
+		return impulse;
+	}
+
+	// Whether the impulses given meet the laws, or lead to those that do.
+	bool startsClose(double tolerance, SolveReport& report)
+	{
+		report.residual = residual();
+		if (report.residual <= tolerance)
+			return true;
+		if (std::none_of(rows, rows + nPoints, [](const ContactRows<K>& c) { return c.impulse[0] > 0; }))
+			return false;
+		bestResidual = std::numeric_limits<double>::infinity();
+		keepBest(report.residual);
+		if (resume(tolerance, report))
+			return true;
+		restoreBest();
+		return false;
+	}
+
 	// Centre after centre. R falls while roots are found, so that the centres converge faster than linearly, and grows where
 	// one is not.
 	double newton(double target, SolveReport& report)
 	{
-		constexpr int maxCentres = 40;
+		constexpr int maxCentres = 40, maxSteps = 30;
 		constexpr double fall = 1e-2, growth = 10, most = 1; // of the softness
-		prepareNewton();
+		prepareNewton(target);
 		softness = tolerance::contactProblem::softness;
 		double present = residual();
 		bool found = false;
 		for (int k = 0; k < maxCentres && softness <= most; ++k) {
-			found = findRoot(found, report);
+			found = findRoot(found, maxSteps, report);
 			for (int i = 0; i < nPoints; ++i)
 				std::swap(rows[i].impulse, points[i].next);
 			applyImpulses();
@@ -544,6 +620,8 @@ SolveReport ContactSolver<K>::solve(double tolerance)
 	SolveReport report;
 	w.prepare(*this);
 	w.applyImpulses();
+	if (useNewton && w.startsClose(tolerance, report))
+		return report;
 	report.residual = w.gaussSeidel(tolerance, useNewton ? maxSweeps : lastSweeps, !useNewton, report);
 	if (useNewton && report.residual > tolerance)
 		report.residual = w.alternate(tolerance, lastSweeps, report);

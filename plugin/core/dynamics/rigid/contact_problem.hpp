@@ -15,12 +15,13 @@
 // normal part on p_n >= 0 and then the tangential part on the disc of radius mu p_n; V is always the one that p gives by the
 // momentum equation. It is zero if and only if the laws hold.
 //
-// Method. Block Gauss-Seidel, warm-started with the given impulses, ends early where it converges (most steps). Where its rate
-// tells that it will not, a proximal semi-smooth Newton method takes over: with R = softness * trace and a centre l (the last
-// impulses) the regularised law p = P(l - u/R) makes V the root of M (V - free) - J^T P(l - (J V + offset)/R); each linear
-// system M + J^T P' J / R is factorised over the graph of bodies (block_factor.hpp). R falls as the centres converge. Redundant
-// points and any mass ratio are harmless to it. Impulses that still miss the laws are returned with their residual, and made
-// to add no energy (seen from the offsets).
+// Method. A proximal semi-smooth Newton method: with R = softness * trace and a centre l (the last impulses) the regularised law
+// p = P(l - u/R) makes V the root of M (V - free) - J^T P(l - (J V + offset)/R); each linear system M + J^T P' J / R is
+// factorised over the graph of bodies (block_factor.hpp). Redundant points and any mass ratio are harmless to it.
+// First, impulses that are given: Newton with a small R from their states (stick, slip, open), and with the factor of the last
+// solve while the points are the same; one back-substitution where no state changes. From impulses far from the solution, or none:
+// block Gauss-Seidel, and where its rate tells that it will not converge, Newton with a large R that falls as the centres converge.
+// Impulses that still miss the laws are returned with their residual, and made to add no energy (seen from the offsets).
 #include "dynamics/rigid/kinematics.hpp"
 #include "impact/impulse_problem.hpp" // noSlip
 #include <memory>
