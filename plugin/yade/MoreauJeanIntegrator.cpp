@@ -244,10 +244,18 @@ string MoreauJeanIntegrator::choice()
 Real MoreauJeanIntegrator::largestTimeStep()
 {
 	scene = Omega::instance().getScene().get();
-	Real smallest = std::numeric_limits<Real>::infinity();
-	for (const Body* body : blocks())
-		if (body->isDynamic()) smallest = std::min(smallest, static_cast<const Box&>(*body->shape).extents.norm());
-	return coarsestStep * std::sqrt(smallest / gravity.norm());
+	const std::tuple before(chosenModel, reason, along);
+	if (chosenModel.empty()) choose();
+	const Vector3r across = chosenModel == "planar" ? Coordinates<Plane>(along).normal : Vector3r(Vector3r::Zero());
+	std::tie(chosenModel, reason, along) = before;
+	Real smallest = std::numeric_limits<Real>::infinity(); // R^2, in the plane without the depth
+	for (const Body* body : blocks()) {
+		if (!body->isDynamic()) continue;
+		const Vector3r& extents = static_cast<const Box&>(*body->shape).extents;
+		const Real depth = (body->state->ori.conjugate() * across).cwiseAbs().dot(extents);
+		smallest = std::min(smallest, extents.squaredNorm() - depth * depth);
+	}
+	return coarsestStep * std::sqrt(std::sqrt(smallest) / gravity.norm());
 }
 
 void MoreauJeanIntegrator::checkTimeStep()
