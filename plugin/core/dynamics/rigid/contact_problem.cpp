@@ -494,8 +494,6 @@ struct ContactSolver<K>::Workspace {
 		report.residual = residual();
 		if (report.residual <= tolerance)
 			return true;
-		if (std::none_of(rows, rows + nPoints, [](const ContactRows<K>& c) { return c.impulse[0] > 0; }))
-			return false;
 		bestResidual = std::numeric_limits<double>::infinity();
 		keepBest(report.residual);
 		if (resume(tolerance, report))
