@@ -72,6 +72,7 @@ public:
 	// Until the residual is at most `tolerance` (m/s).
 	SolveReport solve(double tolerance);
 	double      residual(); // of the present velocities and impulses
+	void        forget();   // the next solve starts without the factor of the last: its bits depend on its input alone
 
 	int  maxSweeps { 40 };    // of Gauss-Seidel before Newton takes over
 	bool useNewton { true };  // false: Gauss-Seidel alone, up to `lastSweeps`
