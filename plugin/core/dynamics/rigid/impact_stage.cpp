@@ -179,10 +179,16 @@ template <class K> void ImpactStage<K>::settle(RigidSystem<K>& s)
 	s.fresh = true;
 }
 
-// The smooth step leaves velocities of the order h^2 at the points in touch; the law's w- is that of bodies that hold on to their pivots.
+// The smooth step leaves velocities of the order h^2 at the points in touch, of either sign; the law's w- is that of bodies that hold on to
+// their pivots. A loaded point that parts is held from the other side.
 template <class K> void ImpactStage<K>::holdPivots(RigidSystem<K>& s)
 {
 	gather(s, {});
+	for (size_t k = 0; k < refs.size(); ++k) {
+		ImpulsePoint& point = impact.points[k];
+		const Vector3 u = bodies[point.body2].velocityAt(point.position) - bodies[point.body1].velocityAt(point.position);
+		if (s.pairs[refs[k].pair].points[refs[k].point].force[0] > 0 && point.normal.dot(u) > 0) point.normal = -point.normal;
+	}
 	const auto result = applyRockingImpact(bodies, impact);
 	for (size_t b = 0; b < bodies.size(); ++b)
 		if (!s.bodies[b].prescribed) takeVelocity(bodies[b], s.bodies[b]);

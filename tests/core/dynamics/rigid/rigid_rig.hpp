@@ -2,6 +2,7 @@
 // Scenes of rigid blocks for the tests: blocks on a base, stepped, with the peaks and impacts of a rocking block.
 #include "dynamics/rigid/rigid_step.hpp"
 #include <cmath>
+#include <limits>
 #include <vector>
 
 namespace rig {
@@ -12,9 +13,8 @@ using namespace masonry::rigid;
 constexpr double g = 9.81, density = 2000;
 
 // A base whose top face is at height 0, and its gravity.
-template <class K> RigidSystem<K> emptyScene(double friction = noSlip)
+template <class K> RigidSystem<K> emptyScene()
 {
-	(void)friction;
 	RigidSystem<K> s;
 	s.gravity[K::dimension - 1] = -g;
 	RigidBody<K> base;
@@ -57,6 +57,146 @@ inline Vector2 onEdge(double b, double a, double angle, const Vector2& pivot)
 	return pivot - pose.rotate(Vector2(angle > 0 ? -b : b, -a));
 }
 
+// A block on the base, turned about one of its edges.
+inline RigidSystem<Plane> rockingBlock(double b, double a, double angle, double restitution, double friction = noSlip)
+{
+	auto s = emptyScene<Plane>();
+	addBlock(s, b, a, onEdge(b, a, angle, { angle > 0 ? -b : b, 0 }), angle);
+	addPair(s, 0, 1, restitution, friction);
+	return s;
+}
+
+// Equal blocks, one upon the other; bodies 1.. upwards.
+inline RigidSystem<Plane> stack(int n, double b, double a, double restitution, double friction = noSlip)
+{
+	auto s = emptyScene<Plane>();
+	for (int k = 0; k < n; ++k) {
+		addBlock(s, b, a, { 0, (2 * k + 1) * a });
+		addPair(s, k, k + 1, restitution, friction);
+	}
+	return s;
+}
+
+template <class K> double potentialEnergy(const RigidSystem<K>& s)
+{
+	double sum = 0;
+	for (const auto& body : s.bodies)
+		if (!body.prescribed) sum -= body.mass * s.gravity.dot(body.pose.position);
+	return sum;
+}
+
+template <class K> double energy(const RigidSystem<K>& s) { return s.kineticEnergy() + potentialEnergy(s); }
+
+// Constant through a run.
+template <class K> double balance(const RigidSystem<K>& s) { return energy(s) + s.frictDissip + s.impactDissip - s.baseWork; }
+
+// What takes a block from its base onto its corner.
+inline double overturningEnergy(const RigidBody<Plane>& block) { return block.mass * g * (block.halfSize.norm() - block.halfSize.y()); }
+
+// The drive moves the base along x, or along `direction`.
+template <class K> void moveBase(RigidSystem<K>& s, BaseDrive& drive, const typename K::Vector& direction = K::Vector::Unit(0))
+{
+	s.drives.push_back(&drive);
+	s.driveDirections.push_back(direction);
+	s.bodies[0].drive = 0;
+}
+
+// Motion in pieces: velocity jumps at the start of a piece, then acceleration(x) = constant + slope x + amplitude sin(frequency x + phase),
+// x the time since.
+class ScheduledMotion : public BaseDrive {
+public:
+	struct Piece {
+		double start, jump { 0 }, constant { 0 }, slope { 0 }, amplitude { 0 }, frequency { 1 }, phase { 0 };
+	};
+
+	void append(Piece piece)
+	{
+		const double u = displacement(piece.start), v = velocityAt(piece.start, pieces.size());
+		pieces.push_back({ piece, u, v + piece.jump });
+	}
+
+	double displacement(double t) const override
+	{
+		const auto [p, x] = at(t, pieces.size());
+		if (!p) return 0;
+		const auto& q = p->law;
+		return p->displacement + x * (p->velocity + x * (q.constant / 2 + x * q.slope / 6))
+		        + q.amplitude / q.frequency * (std::cos(q.phase) * x - (std::sin(q.frequency * x + q.phase) - std::sin(q.phase)) / q.frequency);
+	}
+	double velocity(double t) const override { return velocityAt(t, taken); }
+	double acceleration(double t) const override
+	{
+		const auto [p, x] = at(t, pieces.size());
+		return p ? p->law.constant + x * p->law.slope + p->law.amplitude * std::sin(p->law.frequency * x + p->law.phase) : 0;
+	}
+	double nextKink(double after, double until) const override
+	{
+		for (const auto& piece : pieces)
+			if (piece.law.start > after) return piece.law.start <= until ? piece.law.start : infinity;
+		return infinity;
+	}
+	double jumpAt(double t) override
+	{
+		double jump = 0;
+		for (; taken < pieces.size() && pieces[taken].law.start <= t + roundOff; ++taken)
+			jump += pieces[taken].law.jump;
+		return jump;
+	}
+	double respond(int, double) override { return 0; }
+
+private:
+	static constexpr double infinity = std::numeric_limits<double>::infinity();
+	static constexpr double roundOff = 1e-12; // s
+
+	struct Placed {
+		Piece  law;
+		double displacement, velocity; // at its start, after the jump
+	};
+
+	// The piece that holds at t, of the first `count`, and the time since its start.
+	std::pair<const Placed*, double> at(double t, size_t count) const
+	{
+		const Placed* found = nullptr;
+		for (size_t k = 0; k < count && pieces[k].law.start <= t + roundOff; ++k)
+			found = &pieces[k];
+		return { found, found ? t - found->law.start : 0 };
+	}
+	double velocityAt(double t, size_t count) const
+	{
+		const auto [p, x] = at(t, count);
+		if (!p) return 0;
+		const auto& q = p->law;
+		return p->velocity + x * (q.constant + x * q.slope / 2)
+		        + q.amplitude / q.frequency * (std::cos(q.phase) - std::cos(q.frequency * x + q.phase));
+	}
+
+	std::vector<Placed> pieces;
+	size_t              taken { 0 }; // pieces whose jump has been
+};
+
+// The paper's train: +I at once, then -2I, +2I ... each right after an impact of a block.
+class ResonantTrain : public BaseDrive {
+public:
+	explicit ResonantTrain(double impulse) : impulse(impulse) {}
+
+	double displacement(double t) const override { return moved + speed * (t - since); }
+	double velocity(double) const override { return speed; }
+	double acceleration(double) const override { return 0; }
+	double nextKink(double, double) const override { return std::numeric_limits<double>::infinity(); }
+	double jumpAt(double t) override { return speed == 0 ? jump(impulse, t) : 0; }
+	double respond(int, double t) override { return jump(-2 * speed, t); }
+
+private:
+	double jump(double size, double t)
+	{
+		moved = displacement(t);
+		since = t;
+		speed += size;
+		return size;
+	}
+	double impulse, speed { 0 }, moved { 0 }, since { 0 };
+};
+
 // Peaks of |angle| between impacts, each from the step in which the spin changes sign: cubic through angle and spin at both ends.
 struct Peaks {
 	std::vector<double> found;
@@ -65,10 +205,8 @@ struct Peaks {
 	void take(double t, double newAngle, double newSpin)
 	{
 		if (!std::isnan(angle) && spin * newSpin < 0 && newAngle * spin > 0) {
-			const double h = t - time, share = spin / (spin - newSpin);
-			const double u = share, d = newAngle - angle;
+			const double h = t - time, u = spin / (spin - newSpin);
 			found.push_back((1 - u) * (1 - u) * (1 + 2 * u) * angle + u * u * (3 - 2 * u) * newAngle + h * u * (1 - u) * ((1 - u) * spin - u * newSpin));
-			(void)d;
 		}
 		angle = newAngle;
 		spin = newSpin;
