@@ -601,6 +601,13 @@ void ContactSolver<K>::Deleter::operator()(Workspace* w) const
 }
 
 template <class K>
+void ContactSolver<K>::forget()
+{
+	if (workspace)
+		workspace->kept.clear();
+}
+
+template <class K>
 double ContactSolver<K>::residual()
 {
 	if (!workspace)

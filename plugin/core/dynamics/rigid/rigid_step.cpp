@@ -9,6 +9,7 @@ template <class K> StepReport RigidStep<K>::advance(RigidSystem<K>& s, double dt
 {
 	report = {};
 	s.impacts.clear();
+	step.begin();
 	findContacts(s);
 	takeJumps(s);
 	for (double left = dt; left > 0;) {

@@ -41,6 +41,8 @@ template <class K> struct Trial {
 
 template <class K> class SmoothStep {
 public:
+	// Forgets earlier steps: a run that was saved goes on with the same bits.
+	void begin() { solver.forget(); }
 	// Computes the trial of length h from the system's state. Open points do not act, but for those in `anticipated`.
 	void attempt(const RigidSystem<K>& system, double h);
 	// Makes it the system's state: poses, velocities, forces, energies; gaps of loaded points closed.
