@@ -142,7 +142,12 @@ constexpr double search = 1e-3;
 constexpr double touching = 1e-4;
 // Velocity residual, relative to what gravity gives in a step, that the still mode may leave. Larger: the onset of motion is glued.
 constexpr double still = 1e-2;
+// Relative velocity of points in touch, relative to the speed of rest (restSpeed sqrt(g half size)), above which the wall moves; it
+// stands when none is above the speed of rest. Nearer to 1: what the moving mode calls rest is motion to the still mode.
+constexpr double motion = 5;
 // Time relative to sqrt(half size / g) for which nothing may move before the still mode is tried again.
 constexpr double patience = 0.5;
+// Extent of the loaded part of a joint, relative to the smallest half size, up to which it is a pivot. Larger: narrow patches rock.
+constexpr double pivot = 1e-3;
 
 } // namespace masonry::tolerance::wall

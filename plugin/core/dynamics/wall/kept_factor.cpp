@@ -1,4 +1,5 @@
 #include "dynamics/wall/kept_factor.hpp"
+#include "dynamics/wall/threads.hpp"
 #include "tolerances.hpp"
 #include <algorithm>
 
@@ -9,7 +10,7 @@ namespace {
 using Row = KeptFactor::Row;
 
 constexpr double relaxation = 1.6;
-constexpr double pushOut = 0.2; // share of a penetration, or of a slip, that a step takes back
+constexpr double pullBack = 0.2; // share of a slip, or of a penetration that has grown in this mode, that a step takes back
 
 struct alignas(alignment) Largest {
 	Lanes velocity, force, motion;
@@ -18,11 +19,11 @@ struct alignas(alignment) Largest {
 MASONRY_INLINE Lanes clip(const Lanes& value, const Lanes& bound) { return larger(smaller(value, bound), -bound); }
 
 // Which points take part, R, and b. Returns whether another point touches than before.
-MASONRY_LANES bool takeAll(Group* groups, const FeatureGroup* features, std::array<Row, 2>* rows, size_t count, double h, double softness, double enter, double leave)
+MASONRY_LANES bool takeAll(Group* groups, const FeatureGroup* features, std::array<Row, 2>* rows, int begin, int end, double h, double softness, double enter, double leave)
 {
 	const Lanes perH = all(1 / h), none = all(0);
 	Mask different {0, 0, 0, 0};
-	for (size_t g = 0; g < count; ++g)
+	for (int g = begin; g < end; ++g)
 		for (int k = 0; k < 2; ++k) {
 			const FeatureLanes& f = features[g].point[k];
 			PointLanes& p = groups[g].point[k];
@@ -33,8 +34,9 @@ MASONRY_LANES bool takeAll(Group* groups, const FeatureGroup* features, std::arr
 			const Lanes stiffness = p.massN * p.massT / ((p.massN + p.massT) * (0.5 * softness));
 			row.stiffness = touches ? stiffness : none;
 			row.resistance = touches ? all(1) / stiffness : none;
-			row.bn = -p.gap * perH * (p.gap > 0 ? all(1) : all(pushOut));
-			row.bt = -pushOut * perH * f.slip;
+			const Lanes gap = p.gap - f.zero;
+			row.bn = -gap * perH * (gap > 0 ? all(1) : all(pullBack));
+			row.bt = -pullBack * perH * f.slip;
 			row.bn = touches ? row.bn : none;
 			p.pn = touches ? p.pn : none;
 			p.pt = touches ? p.pt : none;
@@ -76,6 +78,10 @@ MASONRY_INLINE void passAll(Group* groups, FeatureGroup* features, std::array<Ro
 				worst.motion = larger(worst.motion, touches ? motion : all(0));
 				worst.force = larger(worst.force, larger(size(errorN), size(errorT)) * perMass);
 			}
+			if constexpr (!laws) { // a point without an impulse is free to move as it does
+				f.zn = p.pn > 0 ? f.zn : larger(wn, all(0));
+				f.zt = p.pn > 0 ? f.zt : wt;
+			}
 			const Lanes qn = p.pn + (f.zn - wn) * row.stiffness, qt = p.pt + (f.zt - wt) * row.stiffness;
 			const Lanes fx = p.nx * qn - p.ny * qt, fy = p.ny * qn + p.nx * qt;
 			f1.x -= fx;
@@ -101,9 +107,9 @@ MASONRY_LANES void lawPass(Group* groups, FeatureGroup* features, std::array<Row
 }
 
 // M (V_free - V)
-void inertia(const LaneArray& free, const LaneArray& velocity, LaneArray& force)
+void inertia(const LaneArray& free, const LaneArray& velocity, LaneArray& force, int begin, int end)
 {
-	for (size_t b = 0; b < free.size(); ++b)
+	for (int b = begin; b < end; ++b)
 		force[b] = velocity[b][3] > 0 ? (free[b] - velocity[b]) / all(velocity[b][3]) : all(0);
 }
 
@@ -118,7 +124,13 @@ bool KeptFactor::takeRows(bool newPoints)
 	if (rows.size() != contacts->groups.size())
 		rows.assign(contacts->groups.size(), {});
 	const double enter = tolerance::wall::touching * contacts->length;
-	const bool different = takeAll(contacts->groups.data(), contacts->features.data(), rows.data(), rows.size(), h, softness, enter, 4 * enter);
+	bool different = false;
+	inParallel(contacts->threads, [&](const Share& share) {
+		const auto [first, last] = share.of(0, int(rows.size()));
+		const bool here = takeAll(contacts->groups.data(), contacts->features.data(), rows.data(), first, last, h, softness, enter, 4 * enter);
+#pragma omp critical
+		different |= here;
+	});
 	return different || newPoints || otherSoftness;
 }
 
@@ -179,9 +191,25 @@ void KeptFactor::begin(WallContacts& c, const LaneArray& load, double step, bool
 	force.resize(velocity.size());
 	for (size_t b = 0; b < velocity.size(); ++b)
 		free[b] = velocity[b] + load[b];
-	inertia(free, velocity, force);
-	Largest none {};
-	firstPass(c.groups.data(), c.features.data(), rows.data(), 0, int(c.groups.size()), velocity.data(), force.data(), none);
+	inParallel(c.threads, [&](const Share& share) {
+		const auto [first, last] = share.of(0, int(velocity.size()));
+		inertia(free, velocity, force, first, last);
+		share.meet();
+		Largest none {};
+		byColour(c.colourEnd, share, [&](int begin, int end) {
+			firstPass(c.groups.data(), c.features.data(), rows.data(), begin, end, velocity.data(), force.data(), none);
+		});
+	});
+}
+
+void KeptFactor::forget(WallContacts& c)
+{
+	for (size_t g = 0; g < c.groups.size(); ++g)
+		for (int k = 0; k < 2; ++k) {
+			FeatureLanes& f = c.features[g].point[k];
+			f.zn = f.zt = f.slip = all(0);
+			f.zero = smaller(c.groups[g].point[k].gap, all(0));
+		}
 }
 
 void KeptFactor::iterate(int most, double velocityResidual, double forceResidual)
@@ -189,13 +217,25 @@ void KeptFactor::iterate(int most, double velocityResidual, double forceResidual
 	auto& c = *contacts;
 	for (int k = 0; k < most; ++k) {
 		factor.solve(force.data());
-		for (size_t b = 0; b < velocity.size(); ++b) {
-			force[b][3] = 0;
-			velocity[b] += force[b];
-		}
-		inertia(free, velocity, force);
 		Largest worst {all(0), all(0), all(0)};
-		lawPass(c.groups.data(), c.features.data(), rows.data(), 0, int(c.groups.size()), velocity.data(), force.data(), worst);
+		inParallel(c.threads, [&](const Share& share) {
+			const Lanes noMass {1, 1, 1, 0};
+			const auto [first, last] = share.of(0, int(velocity.size()));
+			for (int b = first; b < last; ++b)
+				velocity[b] += noMass * force[b];
+			inertia(free, velocity, force, first, last);
+			share.meet();
+			Largest here {all(0), all(0), all(0)};
+			byColour(c.colourEnd, share, [&](int begin, int end) {
+				lawPass(c.groups.data(), c.features.data(), rows.data(), begin, end, velocity.data(), force.data(), here);
+			});
+#pragma omp critical
+			{
+				worst.velocity = larger(worst.velocity, here.velocity);
+				worst.force = larger(worst.force, here.force);
+				worst.motion = larger(worst.motion, here.motion);
+			}
+		});
 		report.velocity = largest(worst.velocity);
 		report.force = largest(worst.force);
 		report.motion = largest(worst.motion);

@@ -13,8 +13,9 @@
 // until w = z. Nothing in A depends on which points stick, slide or part: states may chatter and A stays. Only residuals are corrected,
 // so that A may be of slightly other positions.
 //
-// b_n = -gap/h (an open point may close; a share of a penetration is pushed out), b_t = -(a share of) slip/h: a point that sticks is drawn
-// back to where it stuck first, so that what a few iterations leave does not add up.
+// b_n = -gap/h (an open point may close), b_t = 0; but of what a few iterations have left, a penetration or a slip, a share is taken back in
+// each step, so that it does not add up. Penetrations that were there when the wall came to rest stay: pushed out, they would wedge blocks
+// against friction.
 #include "dynamics/wall/symmetric_factor.hpp"
 #include "dynamics/wall/wall_contacts.hpp"
 
@@ -34,6 +35,8 @@ public:
 		Lanes un, ut;                        // J V, m/s
 	};
 
+	// The wall has moved since the last step in this mode, and holds what it finds.
+	static void forget(WallContacts& contacts);
 	// Starts a step from the contacts' velocities; `load` is the change of velocity by external forces, per body.
 	void begin(WallContacts& contacts, const LaneArray& load, double h, bool newPoints);
 	// Solves until both residuals are at most theirs, at most `most` times. May be called again to go on.

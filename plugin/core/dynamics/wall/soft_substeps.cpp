@@ -1,4 +1,5 @@
 #include "dynamics/wall/soft_substeps.hpp"
+#include "dynamics/wall/threads.hpp"
 #include <cmath>
 
 namespace masonry::rigid::wall {
@@ -21,7 +22,7 @@ struct Spring {
 };
 
 struct alignas(alignment) Largest {
-	Lanes velocity, force, motion;
+	Lanes change, motion;
 };
 
 MASONRY_INLINE void push(Bodies& v1, Bodies& v2, const PointLanes& p, const Lanes& dn, const Lanes& dt)
@@ -45,7 +46,7 @@ MASONRY_INLINE Lanes slipRate(const Bodies& v1, const Bodies& v2, const PointLan
 	return p.nx * (v2.y - v1.y) - p.ny * (v2.x - v1.x) + p.a2t * v2.w - p.a1t * v1.w;
 }
 
-template <bool springs>
+template <bool springs, bool measured>
 MASONRY_INLINE void sweepGroups(Group* groups, int begin, int end, Lanes* velocity, const Spring& spring, Largest& worst)
 {
 	const Lanes none = all(0), one = all(1);
@@ -73,10 +74,10 @@ MASONRY_INLINE void sweepGroups(Group* groups, int begin, int end, Lanes* veloci
 			const Lanes pt = larger(smaller(p.pt - p.massT * ut, bound), -bound), dt = pt - p.pt;
 			push(v1, v2, p, none, dt);
 			p.pt = pt;
-			if constexpr (!springs) {
+			if constexpr (measured) {
 				const Mask closed = pn > 0;
 				worst.motion = larger(worst.motion, closed ? larger(size(un), size(ut)) : none);
-				worst.force = larger(worst.force, closed ? larger(size(dn) / p.massN, size(dt) / p.massT) : none);
+				worst.change = larger(worst.change, closed ? larger(size(dn) / p.massN, size(dt) / p.massT) : none);
 			}
 		}
 		v1.store(velocity, group.body1, v1.m);
@@ -86,12 +87,17 @@ MASONRY_INLINE void sweepGroups(Group* groups, int begin, int end, Lanes* veloci
 
 MASONRY_LANES void springSweep(Group* groups, int begin, int end, Lanes* velocity, const Spring& spring, Largest& worst)
 {
-	sweepGroups<true>(groups, begin, end, velocity, spring, worst);
+	sweepGroups<true, false>(groups, begin, end, velocity, spring, worst);
 }
 
 MASONRY_LANES void relaxSweep(Group* groups, int begin, int end, Lanes* velocity, const Spring& spring, Largest& worst)
 {
-	sweepGroups<false>(groups, begin, end, velocity, spring, worst);
+	sweepGroups<false, false>(groups, begin, end, velocity, spring, worst);
+}
+
+MASONRY_LANES void lastSweep(Group* groups, int begin, int end, Lanes* velocity, const Spring& spring, Largest& worst)
+{
+	sweepGroups<false, true>(groups, begin, end, velocity, spring, worst);
 }
 
 MASONRY_LANES void moveGaps(Group* groups, int begin, int end, const Lanes* velocity, double s)
@@ -120,34 +126,48 @@ MASONRY_LANES void applyImpulses(Group* groups, int begin, int end, Lanes* veloc
 
 void SoftSubsteps::begin(WallContacts& c)
 {
+	const Lanes onlyMass {0, 0, 0, 1};
 	shift.assign(c.velocity.size(), all(0));
 	contactPart = c.velocity;
 	for (Lanes& v : contactPart)
-		v = Lanes {0, 0, 0, v[3]};
-	applyImpulses(c.groups.data(), 0, int(c.groups.size()), contactPart.data());
+		v *= onlyMass;
+	inParallel(c.threads, [&](const Share& share) {
+		byColour(c.colourEnd, share, [&](int first, int last) { applyImpulses(c.groups.data(), first, last, contactPart.data()); });
+	});
 }
 
-void SoftSubsteps::substep(WallContacts& c, const LaneArray& load, double s)
+void SoftSubsteps::substep(WallContacts& c, const LaneArray& load, double s, bool isLast)
 {
 	const Spring spring(s);
-	const int count = int(c.groups.size());
-	const size_t bodies = c.velocity.size();
 	const Lanes noMass {1, 1, 1, 0};
-	for (size_t b = 0; b < bodies; ++b) {
-		const Lanes before = c.velocity[b] + load[b];
-		c.velocity[b] = before + contactPart[b] * noMass;
-		contactPart[b] = before;
-	}
-	Largest worst {all(0), all(0), all(0)};
-	springSweep(c.groups.data(), 0, count, c.velocity.data(), spring, worst);
-	moveGaps(c.groups.data(), 0, count, c.velocity.data(), s);
-	for (size_t b = 0; b < bodies; ++b)
-		shift[b] += s * noMass * c.velocity[b];
-	relaxSweep(c.groups.data(), 0, count, c.velocity.data(), spring, worst);
-	for (size_t b = 0; b < bodies; ++b)
-		contactPart[b] = c.velocity[b] - contactPart[b];
-	report.velocity = report.force = largest(worst.force);
-	report.motion = largest(worst.motion);
+	Group* groups = c.groups.data();
+	Lanes* velocity = c.velocity.data();
+	Largest worst {all(0), all(0)};
+	inParallel(c.threads, [&](const Share& share) {
+		const auto [firstBody, lastBody] = share.of(0, int(c.velocity.size()));
+		const auto [firstGroup, lastGroup] = share.of(0, int(c.groups.size()));
+		Largest here {all(0), all(0)};
+		for (int b = firstBody; b < lastBody; ++b) {
+			const Lanes before = velocity[b] + load[b];
+			velocity[b] = before + contactPart[b] * noMass;
+			contactPart[b] = before;
+		}
+		share.meet();
+		byColour(c.colourEnd, share, [&](int first, int last) { springSweep(groups, first, last, velocity, spring, here); });
+		moveGaps(groups, firstGroup, lastGroup, velocity, s);
+		for (int b = firstBody; b < lastBody; ++b)
+			shift[b] += s * noMass * velocity[b];
+		share.meet();
+		byColour(c.colourEnd, share, [&](int first, int last) { (isLast ? lastSweep : relaxSweep)(groups, first, last, velocity, spring, here); });
+		for (int b = firstBody; b < lastBody; ++b)
+			contactPart[b] = velocity[b] - contactPart[b];
+#pragma omp critical
+		{
+			worst.change = larger(worst.change, here.change);
+			worst.motion = larger(worst.motion, here.motion);
+		}
+	});
+	report = {largest(worst.change), largest(worst.motion)};
 }
 
 } // namespace masonry::rigid::wall

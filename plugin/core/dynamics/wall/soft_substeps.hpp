@@ -15,8 +15,7 @@
 namespace masonry::rigid::wall {
 
 struct SoftReport {
-	double velocity {0}; // largest velocity into a closed point after the last sweep, m/s
-	double force {0};    // largest change of an impulse by the last sweep, as the velocity that it gives its point, m/s
+	double residual {0}; // largest change of an impulse by the last sweep, as the velocity that it gives its point, m/s
 	double motion {0};   // largest relative velocity of a closed point, m/s
 };
 
@@ -25,9 +24,9 @@ public:
 	// From the contacts' velocities; `load` is the change of velocity in a substep by external forces, per body. Leaves velocities and
 	// the impulses of the last substep in the contacts.
 	void begin(WallContacts& contacts);
-	void substep(WallContacts& contacts, const LaneArray& load, double s);
+	void substep(WallContacts& contacts, const LaneArray& load, double s, bool isLast);
 
-	SoftReport report;        // of the last substep
+	SoftReport report;        // of the last substep of the step
 	LaneArray shift; // how far the bodies have moved since begin(); components as of velocities
 
 private:

@@ -1,5 +1,6 @@
 #include "dynamics/wall/wall_contacts.hpp"
 #include "dynamics/rigid/scales.hpp"
+#include "dynamics/wall/threads.hpp"
 #include "tolerances.hpp"
 #include <algorithm>
 #include <cmath>
@@ -8,6 +9,7 @@ namespace masonry::rigid::wall {
 
 namespace {
 
+constexpr int groupsPerThread = 256; // fewer do not repay the meetings of the threads
 constexpr double farAway = 1e30; // m
 constexpr double mostFriction = 1e12; // stands for noSlip: infinity times a zero impulse is no number
 
@@ -117,6 +119,11 @@ void WallContacts::colour(const RigidSystem<Plane>& s)
 		colourEnd.push_back(int(groups.size()));
 	}
 	stale.assign(groups.size(), 1);
+	onBase.clear();
+	for (int g = 0; g < int(groups.size()); ++g)
+		for (int i = 0; i < width && features[g].pair[i] >= 0; ++i)
+			if (s.bodies[groups[g].body1[i]].prescribed || s.bodies[groups[g].body2[i]].prescribed)
+				onBase.push_back({g, i});
 
 	// Breadth first from the prescribed bodies.
 	std::vector<int> level(s.bodies.size(), -1);
@@ -198,13 +205,14 @@ bool WallContacts::lookUp(RigidSystem<Plane>& s, int g)
 		pair.face1 = found.face1;
 		pair.face2 = found.face2;
 		for (int k = 0; k < 2; ++k) {
-			double pn = 0, pt = 0, zn = 0, zt = 0, slip = 0;
+			double pn = 0, pt = 0, zn = 0, zt = 0, slip = 0, zero = 0;
 			if (k < found.size) {
 				ContactPoint<Plane> point;
 				point.feature = found.features[k];
 				point.frame = Plane::frame(point.feature, body1.halfSize, body1.pose, body2.halfSize, body2.pose);
 				point.gap = point.frame.gap;
 				point.closed = point.gap <= touching;
+				zero = std::min(0., point.gap);
 				bool known = false, same = false;
 				for (int j = 0; j < before.size && !same; ++j) {
 					const ContactPoint<Plane>& old = before.points[j];
@@ -221,6 +229,7 @@ bool WallContacts::lookUp(RigidSystem<Plane>& s, int g)
 					zn = state.point[j].zn[lane];
 					zt = state.point[j].zt[lane];
 					slip = state.point[j].slip[lane];
+					zero = std::min(zero, state.point[j].zero[lane]);
 				}
 				changed |= !known || !same;
 				pair.points[k] = point;
@@ -231,6 +240,7 @@ bool WallContacts::lookUp(RigidSystem<Plane>& s, int g)
 			f.zn[lane] = zn;
 			f.zt[lane] = zt;
 			f.slip[lane] = slip;
+			f.zero[lane] = zero;
 			groups[g].point[k].pn[lane] = pn;
 			groups[g].point[k].pt[lane] = pt;
 		}
@@ -250,7 +260,11 @@ bool WallContacts::measure(RigidSystem<Plane>& s)
 		std::fill(stale.begin(), stale.end(), 1);
 	s.moved = false;
 	takeBodies(s);
-	locateAll(groups.data(), features.data(), stale.data(), groups.size(), pose.data(), velocity.data(), gyration.data(), travel);
+	threads = std::clamp(int(groups.size()) / groupsPerThread, 1, omp_get_max_threads());
+	inParallel(threads, [&](const Share& share) {
+		const auto [first, last] = share.of(0, int(groups.size()));
+		locateAll(&groups[first], &features[first], &stale[first], last - first, pose.data(), velocity.data(), gyration.data(), travel);
+	});
 	for (size_t g = 0; g < groups.size(); ++g)
 		if (stale[g]) {
 			changed |= lookUp(s, int(g));

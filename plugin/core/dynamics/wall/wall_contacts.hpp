@@ -34,7 +34,7 @@ struct alignas(alignment) FeatureLanes {
 	Mask vertexOn1, present;
 	Lanes vertexX, vertexY, normalX, normalY, faceDistance;
 	Lanes foundGap, foundShift; // of the vertex over and along the face when they were looked up
-	Lanes zn, zt, slip;         // kept by KeptFactor: relative velocity that the laws allow, and slip since the point last slid
+	Lanes zn, zt, slip, zero;   // of KeptFactor: relative velocity that the laws allow; slip since the point last slid; gap that it holds
 };
 
 struct alignas(alignment) FeatureGroup {
@@ -52,11 +52,13 @@ public:
 	std::vector<Group> groups;
 	std::vector<FeatureGroup> features;
 	std::vector<int> colourEnd; // groups of colour c end before colourEnd[c]
+	std::vector<std::array<int, 2>> onBase; // group and lane of the pairs with a prescribed body
 	LaneArray velocity; // (v, rho w, 1/m); 1/m = 0: prescribed. One more at the end, for empty lanes
 	LaneArray pose;     // (position, cosine, sine)
 	std::vector<double> gyration; // rho, m
 	int depth {0};               // courses: pairs between a prescribed body and the block farthest from one
 	double length {0};           // m, smallest half size
+	int threads {1};             // that share the loops over groups
 
 private:
 	bool samePairs(const RigidSystem<Plane>& system);

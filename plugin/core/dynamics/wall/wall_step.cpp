@@ -10,7 +10,7 @@ using wall::Lanes;
 
 namespace {
 
-constexpr int coldSolves = 3000, returnSolves = 100, mostSolves = 16;
+constexpr int coldSolves = 3000, returnSolves = 300, mostSolves = 16;
 
 double restSpeed(const RigidSystem<Plane>& s, double length) { return tolerance::restSpeed * std::sqrt(scale::acceleration(s) * length); }
 
@@ -60,16 +60,17 @@ template <class K>
 void WallStep<K>::advancePart(RigidSystem<K>& s, double h)
 {
 	auto& m = memoryOfModes;
+	const double workBefore = s.baseWork;
 	const bool newPoints = contacts.measure(s);
 	const WallMode before = m.mode;
 	if (m.mode == WallMode::still && !tryStill(s, h, newPoints))
 		m.mode = WallMode::moving;
 	if (m.mode == WallMode::moving)
-		substeps(s, h);
+		substeps(s, h, newPoints);
 	report.mode = m.mode;
 	report.switched |= m.started && before != m.mode;
 	m.started = true;
-	takeMotion(s, h);
+	takeMotion(s, h, workBefore);
 	choose(s, h);
 	s.time += h;
 	s.fresh = false;
@@ -107,13 +108,16 @@ bool WallStep<K>::tryStill(RigidSystem<K>& s, double h, bool newPoints)
 	contacts.setUnit(h);
 	setBase(s, h);
 	setLoads(s, h);
+	const double rest = restSpeed(s, contacts.length);
+	if (memoryOfModes.stay == 0)
+		kept.forget(contacts);
 	kept.begin(contacts, loads, h, newPoints);
 	const double forces = settings.strictForces ? enough : std::numeric_limits<double>::infinity();
 	const int most = !memoryOfModes.started ? coldSolves : memoryOfModes.stay == 0 ? returnSolves : mostSolves;
 	kept.iterate(settings.strictForces ? coldSolves : most, enough, forces);
 	report.solves += kept.report.solves;
 	report.factorisations += kept.report.factorisations;
-	if (kept.report.velocity > tolerance::wall::still * stepSpeed || kept.report.motion > restSpeed(s, contacts.length)) {
+	if (kept.report.velocity > tolerance::wall::still * stepSpeed || kept.report.motion > tolerance::wall::motion * rest) {
 		kept.giveUp();
 		return false;
 	}
@@ -121,6 +125,7 @@ bool WallStep<K>::tryStill(RigidSystem<K>& s, double h, bool newPoints)
 	report.forceResidual = std::max(report.forceResidual, kept.report.force);
 	kept.keepSlip();
 	contacts.velocity = kept.velocity;
+	s.baseWork += baseWork(s);
 	shift.resize(kept.velocity.size());
 	for (size_t b = 0; b < shift.size(); ++b)
 		shift[b] = h * kept.velocity[b];
@@ -131,30 +136,88 @@ bool WallStep<K>::tryStill(RigidSystem<K>& s, double h, bool newPoints)
 }
 
 template <class K>
-void WallStep<K>::substeps(RigidSystem<K>& s, double h)
+void WallStep<K>::substeps(RigidSystem<K>& s, double h, bool newPoints)
 {
-	const int count = 8;
+	const int count = substepCount();
 	const double part = h / count, start = s.time;
 	contacts.setUnit(part);
 	setLoads(s, part);
 	soft.begin(contacts);
+	joints.find(s, contacts, newPoints);
 	for (int k = 0; k < count; ++k) {
 		s.time = start + k * part;
 		setBase(s, part);
-		soft.substep(contacts, loads, part);
+		report.events += land(s, part);
+		soft.substep(contacts, loads, part, k + 1 == count);
+		s.baseWork += baseWork(s);
 	}
 	s.time = start;
 	report.substeps += count;
-	report.velocityResidual = std::max(report.velocityResidual, soft.report.velocity);
-	report.forceResidual = std::max(report.forceResidual, soft.report.force);
+	report.velocityResidual = std::max(report.velocityResidual, soft.report.residual);
+	report.forceResidual = std::max(report.forceResidual, soft.report.residual);
 	shift = soft.shift;
+}
+
+// What the courses miss of each other falls as the square of the substep.
+template <class K>
+int WallStep<K>::substepCount() const
+{
+	constexpr double few = 8, tolerance = 1e-3;
+	return int(std::lround(std::max(1., few * std::sqrt(tolerance / settings.tolerance))));
+}
+
+// Rocking impacts, and the base pulses that answer them.
+template <class K>
+int WallStep<K>::land(RigidSystem<K>& s, double part)
+{
+	const size_t known = s.impacts.size();
+	s.baseWork += joints.land(s, contacts, part);
+	for (size_t k = known; k < s.impacts.size(); ++k)
+		for (BaseDrive* drive : s.drives)
+			drive->respond(s.impacts[k].block, s.time);
+	return int(s.impacts.size() - known);
+}
+
+// Of the impulses that the prescribed bodies give, J.
+template <class K>
+double WallStep<K>::baseWork(const RigidSystem<K>& s) const
+{
+	double work = 0;
+	for (const auto& [g, i] : contacts.onBase) {
+		const wall::Group& group = contacts.groups[g];
+		const bool first = s.bodies[group.body1[i]].prescribed;
+		const Lanes& v = contacts.velocity[first ? group.body1[i] : group.body2[i]];
+		for (const auto& p : group.point) {
+			const double an = first ? p.a1n[i] : p.a2n[i], at = first ? p.a1t[i] : p.a2t[i];
+			const double power = p.pn[i] * (p.nx[i] * v[0] + p.ny[i] * v[1] + an * v[2]) + p.pt[i] * (p.nx[i] * v[1] - p.ny[i] * v[0] + at * v[2]);
+			work += first ? power : -power;
+		}
+	}
+	return work;
+}
+
+// What friction takes in the time of one set of impulses, J.
+template <class K>
+double WallStep<K>::slidingLoss() const
+{
+	double loss = 0;
+	for (const wall::Group& group : contacts.groups)
+		for (const auto& p : group.point)
+			for (int i = 0; i < wall::width; ++i) {
+				if (!(p.pn[i] > 0) || std::abs(p.pt[i]) < group.friction[i] * p.pn[i])
+					continue;
+				const Lanes &v1 = contacts.velocity[group.body1[i]], &v2 = contacts.velocity[group.body2[i]];
+				loss -= p.pt[i] * (p.nx[i] * (v2[1] - v1[1]) - p.ny[i] * (v2[0] - v1[0]) + p.a2t[i] * v2[2] - p.a1t[i] * v1[2]);
+			}
+	return loss;
 }
 
 // Poses, velocities and points back into the system; energies.
 template <class K>
-void WallStep<K>::takeMotion(RigidSystem<K>& s, double h)
+void WallStep<K>::takeMotion(RigidSystem<K>& s, double h, double workBefore)
 {
-	const double end = s.time + h;
+	const double end = s.time + h, before = s.kineticEnergy();
+	double work = 0;
 	for (size_t b = 0; b < s.bodies.size(); ++b) {
 		auto& body = s.bodies[b];
 		const double rho = contacts.gyration[b];
@@ -165,12 +228,18 @@ void WallStep<K>::takeMotion(RigidSystem<K>& s, double h)
 		}
 		const Lanes &v = contacts.velocity[b], &moved = shift[b];
 		const typename K::Velocity now(v[0], v[1], v[2] / rho);
+		if (!body.prescribed)
+			work += body.force[0] * moved[0] + body.force[1] * moved[1] + body.force[2] * moved[2] / rho;
 		body.increment = (now - body.velocity) / h;
 		body.velocity = now;
 		body.pose.position += Vector2(moved[0], moved[1]);
 		body.pose.setAngle(body.pose.angle + moved[2] / rho);
 	}
-	takePoints(s, report.mode == WallMode::still ? h : h / 8);
+	const int parts = report.mode == WallMode::still ? 1 : substepCount();
+	const double friction = parts * slidingLoss();
+	s.frictDissip += friction;
+	s.impactDissip += before + work + (s.baseWork - workBefore) - s.kineticEnergy() - friction;
+	takePoints(s, h / parts);
 }
 
 template <class K>

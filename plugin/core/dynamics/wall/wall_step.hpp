@@ -7,6 +7,7 @@
 //
 // Positions are first order in the step; impacts are met at the end of a substep. Few blocks: rigid_step.hpp.
 #include "dynamics/wall/kept_factor.hpp"
+#include "dynamics/wall/rocking_joints.hpp"
 #include "dynamics/wall/soft_substeps.hpp"
 
 namespace masonry::rigid {
@@ -41,10 +42,14 @@ public:
 private:
 	void advancePart(RigidSystem<K>& system, double h);
 	bool tryStill(RigidSystem<K>& system, double h, bool newPoints);
-	void substeps(RigidSystem<K>& system, double h);
+	void substeps(RigidSystem<K>& system, double h, bool newPoints);
+	int land(RigidSystem<K>& system, double part);
+	int substepCount() const;
+	double baseWork(const RigidSystem<K>& system) const;
+	double slidingLoss() const;
 	void setBase(const RigidSystem<K>& system, double h);
 	void setLoads(const RigidSystem<K>& system, double h);
-	void takeMotion(RigidSystem<K>& system, double h);
+	void takeMotion(RigidSystem<K>& system, double h, double workBefore);
 	void takePoints(RigidSystem<K>& system, double unit);
 	void choose(const RigidSystem<K>& system, double h);
 
@@ -61,6 +66,7 @@ private:
 	wall::WallContacts contacts;
 	wall::KeptFactor kept;
 	wall::SoftSubsteps soft;
+	wall::RockingJoints joints;
 	wall::LaneArray loads, shift;
 };
 

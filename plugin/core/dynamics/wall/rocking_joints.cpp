@@ -1,0 +1,206 @@
+#include "dynamics/wall/rocking_joints.hpp"
+#include "dynamics/rigid/scales.hpp"
+#include "tolerances.hpp"
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+namespace masonry::rigid::wall {
+
+namespace {
+
+// One lane of a point, as seen from the block: relative velocities are the block's minus the support's.
+struct Contact {
+	const PointLanes& p;
+	int lane, block, support;
+	bool second; // the block is body 2
+
+	double gap() const { return p.gap[lane]; }
+	double impulse() const { return p.pn[lane]; }
+	// Coordinate along the face, from the middle of the block. Tangents of the points of a joint agree but for their sign.
+	double along(const WallContacts& c) const { return c.gyration[block] * (second ? -p.a2n[lane] : p.a1n[lane]); }
+	double normalRate(const WallContacts& c) const
+	{
+		const Lanes &v1 = c.velocity[second ? support : block], &v2 = c.velocity[second ? block : support];
+		return p.nx[lane] * (v2[0] - v1[0]) + p.ny[lane] * (v2[1] - v1[1]) + p.a2n[lane] * v2[2] - p.a1n[lane] * v1[2];
+	}
+};
+
+} // namespace
+
+void RockingJoints::gather(const RigidSystem<Plane>& s, const WallContacts& c)
+{
+	points.clear();
+	anyLaw = std::any_of(s.pairs.begin(), s.pairs.end(), [](const auto& pair) { return !std::isnan(pair.restitution); });
+	if (!anyLaw)
+		return;
+	const double g = s.gravity.norm();
+	for (int group = 0; group < int(c.groups.size()); ++group)
+		for (int lane = 0; lane < width && c.features[group].pair[lane] >= 0; ++lane) {
+			const ContactPair<Plane>& pair = s.pairs[c.features[group].pair[lane]];
+			for (int k = 0; k < pair.size; ++k) {
+				const PointLanes& p = c.groups[group].point[k];
+				const double up = g > 0 ? -(p.nx[lane] * s.gravity.x() + p.ny[lane] * s.gravity.y()) / g : 1;
+				const int block = up > 0 ? pair.body2 : pair.body1;
+				if (std::abs(up) >= tolerance::uprightJoint && !s.bodies[block].prescribed)
+					points.push_back({block, up > 0 ? pair.face2 : pair.face1, group, lane, k});
+			}
+		}
+	std::sort(points.begin(), points.end(), [](const JointPoint& a, const JointPoint& b) {
+		return std::tie(a.block, a.face, a.group, a.lane, a.point) < std::tie(b.block, b.face, b.group, b.lane, b.point);
+	});
+}
+
+namespace {
+
+template <class JointPoint>
+Contact contact(const WallContacts& c, const JointPoint& at)
+{
+	const Group& group = c.groups[at.group];
+	const bool second = group.body2[at.lane] == at.block;
+	return {group.point[at.point], at.lane, at.block, second ? group.body1[at.lane] : group.body2[at.lane], second};
+}
+
+} // namespace
+
+void RockingJoints::find(const RigidSystem<Plane>& s, const WallContacts& c, bool newPoints)
+{
+	if (newPoints || !gathered)
+		gather(s, c);
+	gathered = true;
+	rocking.clear();
+	if (!anyLaw)
+		return;
+	const double open = tolerance::mergedClosing * c.length;
+	for (int begin = 0, end = 0; begin < int(points.size()); begin = end) {
+		double low = INFINITY, high = -INFINITY;
+		int gaping = 0;
+		for (end = begin; end < int(points.size()) && points[end].block == points[begin].block && points[end].face == points[begin].face; ++end) {
+			const Contact at = contact(c, points[end]);
+			if (at.impulse() > 0) {
+				low = std::min(low, at.along(c));
+				high = std::max(high, at.along(c));
+			} else {
+				gaping += at.gap() > open;
+			}
+		}
+		if (gaping > 0 && high - low <= tolerance::wall::pivot * c.length)
+			rocking.push_back({begin, end, low});
+	}
+}
+
+const RockingJoints::JointPoint* RockingJoints::landing(const WallContacts& c, const Joint& joint, double s) const
+{
+	constexpr double laterSteps = 2; // closings within so many substeps are one
+	bool closes = false;
+	const JointPoint* farthest = nullptr;
+	double distance = tolerance::wall::pivot * c.length;
+	for (int i = joint.begin; i < joint.end; ++i) {
+		const Contact at = contact(c, points[i]);
+		const double rate = at.normalRate(c), away = std::abs(at.along(c) - joint.pivot);
+		if (!(rate < 0) || away <= tolerance::wall::pivot * c.length)
+			continue;
+		closes |= at.gap() + s * rate <= 0;
+		if (at.gap() + laterSteps * s * rate <= 0 && away > distance) {
+			distance = away;
+			farthest = &points[i];
+		}
+	}
+	return closes ? farthest : nullptr;
+}
+
+bool RockingJoints::answer(RigidSystem<Plane>& s, WallContacts& c, const JointPoint& where, double& baseWork) const
+{
+	const Contact at = contact(c, where);
+	const ContactPair<Plane>& pair = s.pairs[c.features[where.group].pair[where.lane]];
+	const int b1 = at.second ? at.support : at.block, b2 = at.second ? at.block : at.support;
+	const int i = at.lane;
+	Lanes &v1 = c.velocity[b1], &v2 = c.velocity[b2];
+
+	// Rows: normal, tangent, relative spin (body 2 minus body 1).
+	Eigen::Matrix<double, 3, 6> J;
+	J << -at.p.nx[i], -at.p.ny[i], -at.p.a1n[i], at.p.nx[i], at.p.ny[i], at.p.a2n[i], //
+	    at.p.ny[i], -at.p.nx[i], -at.p.a1t[i], -at.p.ny[i], at.p.nx[i], at.p.a2t[i],  //
+	    0, 0, -1 / c.gyration[b1], 0, 0, 1 / c.gyration[b2];
+	Eigen::Matrix<double, 6, 1> velocity, inverseMass;
+	velocity << v1[0], v1[1], v1[2], v2[0], v2[1], v2[2];
+	inverseMass << v1[3], v1[3], v1[3], v2[3], v2[3], v2[3];
+	const Eigen::Matrix<double, 6, 3> W = inverseMass.asDiagonal() * J.transpose();
+	const Matrix3 G = J * W;
+	const Vector3 u = J * velocity;
+	const double before = u[2], leastSpin = tolerance::restSpeed * std::sqrt(scale::acceleration(s) / s.bodies[at.block].halfSize.norm());
+	if (std::isnan(pair.restitution) || !(std::abs(before) * pair.restitution >= leastSpin))
+		return false;
+
+	// The impulse x for the couple's target; friction at its limit where sticking asks for more.
+	const double friction = c.groups[where.group].friction[i];
+	const auto impulse = [&](const Vector3& target) {
+		const Vector3 stick = G.inverse() * (target - u);
+		if (std::abs(stick[1]) <= friction * stick[0])
+			return stick;
+		const double slope = std::copysign(friction, stick[1]);
+		Matrix3 H = G;
+		H.col(0) += slope * G.col(1);
+		H.col(1) << 0, -1, 0;
+		const Vector3 slip = H.inverse() * (target - u);
+		return Vector3(slip[0], slope * slip[0], slip[2]);
+	};
+	const Vector3 wanted = impulse({0, 0, pair.restitution * before});
+	const Eigen::Matrix2d G2 = G.topLeftCorner<2, 2>();
+	Vector3 plastic = Vector3::Zero(); // no couple
+	plastic.head<2>() = -G2.inverse() * u.head<2>();
+	if (std::abs(plastic[1]) > friction * plastic[0]) {
+		const double slope = std::copysign(friction, plastic[1]);
+		plastic[0] = -u[0] / (G(0, 0) + slope * G(0, 1));
+		plastic[1] = slope * plastic[0];
+	}
+	const auto gain = [&](const Vector3& x) { return x.dot(u) + 0.5 * x.dot(G * x); };
+	Vector3 x = wanted;
+	const bool capped = gain(wanted) > 0;
+	if (capped) {
+		double low = 0, high = 1;
+		constexpr int bisections = 40;
+		for (int k = 0; k < bisections; ++k) {
+			const double middle = 0.5 * (low + high);
+			(gain(plastic + middle * (wanted - plastic)) > 0 ? high : low) = middle;
+		}
+		x = plastic + low * (wanted - plastic);
+	}
+	if (!(x[0] > 0) || gain(x) > 0)
+		return false;
+
+	const Eigen::Matrix<double, 6, 1> change = W * x;
+	v1 += Lanes {change[0], change[1], change[2], 0};
+	v2 += Lanes {change[3], change[4], change[5], 0};
+	const double side = std::copysign(1., before), after = (u + G * x)[2];
+	JointResult result;
+	result.axis = Vector3(0, 0, at.second ? side : -side);
+	result.before = side * before;
+	result.after = side * after;
+	result.application = std::abs(x[2]) / x[0];
+	result.frictionDemand = std::abs(x[1]) / x[0];
+	const double lost = -gain(x);
+	if (s.bodies[b1].prescribed)
+		baseWork -= x.dot(J.leftCols<3>() * velocity.head<3>());
+	if (s.bodies[b2].prescribed)
+		baseWork -= x.dot(J.rightCols<3>() * velocity.tail<3>());
+	s.impacts.push_back({s.time, at.block, at.support, pair.restitution, result.after >= leastSpin, result, lost, capped, 0});
+	return true;
+}
+
+double RockingJoints::land(RigidSystem<Plane>& s, WallContacts& c, double substep)
+{
+	double baseWork = 0;
+	for (size_t j = 0; j < rocking.size();) {
+		const JointPoint* at = landing(c, rocking[j], substep);
+		if (at && answer(s, c, *at, baseWork)) {
+			rocking[j] = rocking.back(); // it has another pivot now, and is looked at again in the next step
+			rocking.pop_back();
+		} else {
+			++j;
+		}
+	}
+	return baseWork;
+}
+
+} // namespace masonry::rigid::wall
