@@ -24,14 +24,8 @@ template <class K> StepReport RigidStep<K>::advance(RigidSystem<K>& s, double dt
 			return report;
 		}
 		if (event.kind == Event::closing) {
-			touchingPoints(s, closing);
-			if (closing.empty()) { // the point parts and would be back at once: it stays
+			if (!land(s)) // the point parts and would be back at once: it stays
 				s.pairs[event.point.pair].points[event.point.point].closed = true;
-			} else {
-				const size_t known = s.impacts.size();
-				report.residual = std::max(report.residual, impacts.land(s, closing));
-				answerImpacts(s, known);
-			}
 		} else if (event.kind == Event::stop) {
 			s.pairs[event.point.pair].points[event.point.point].sliding = false;
 		}
@@ -128,6 +122,17 @@ template <class K> void RigidStep<K>::note(const SolveReport& solved)
 	report.converged &= solved.converged;
 }
 
+// Points that touch and approach each other land; false: there are none.
+template <class K> bool RigidStep<K>::land(RigidSystem<K>& s)
+{
+	touchingPoints(s, closing);
+	if (closing.empty()) return false;
+	const size_t known = s.impacts.size();
+	report.residual = std::max(report.residual, impacts.land(s, closing));
+	answerImpacts(s, known);
+	return true;
+}
+
 // Resonant pulses act right after the impact that releases them.
 template <class K> void RigidStep<K>::answerImpacts(RigidSystem<K>& s, size_t known)
 {
@@ -136,10 +141,14 @@ template <class K> void RigidStep<K>::answerImpacts(RigidSystem<K>& s, size_t kn
 			if (const double jump = s.drives[d]->respond(s.impacts[k].block, s.time)) report.residual = std::max(report.residual, impacts.pulse(s, int(d), jump));
 }
 
+// An impact at the same instant comes before the pulse.
 template <class K> void RigidStep<K>::takeJumps(RigidSystem<K>& s)
 {
 	for (size_t d = 0; d < s.drives.size(); ++d)
-		if (const double jump = s.drives[d]->jumpAt(s.time)) report.residual = std::max(report.residual, impacts.pulse(s, int(d), jump));
+		if (const double jump = s.drives[d]->jumpAt(s.time)) {
+			land(s);
+			report.residual = std::max(report.residual, impacts.pulse(s, int(d), jump));
+		}
 }
 
 template <class K> double RigidStep<K>::untilKink(const RigidSystem<K>& s, double left, double dt) const

@@ -13,6 +13,7 @@ public:
 private:
 	void   findContacts(RigidSystem<K>& system);
 	Event  tryStep(RigidSystem<K>& system, double h);
+	bool   land(RigidSystem<K>& system);
 	void   answerImpacts(RigidSystem<K>& system, size_t known);
 	void   takeJumps(RigidSystem<K>& system);
 	double untilKink(const RigidSystem<K>& system, double left, double dt) const;

@@ -333,8 +333,8 @@ TEST_CASE("contact problem: a factor kept from another problem does not change t
 
 TEST_CASE("contact problem: a wall that stands in slow shaking needs few factorisations")
 {
-	// 0.3 g at 2 Hz: nothing moves (mu 0.7, and too low to rock), forces change by 0.4 % of the weight a step. Two factorisations a step at
-	// most: states that flip, and what follows from them. Blocks stay on the base: their velocities miss its by the residual, 1e-9 of
+	// 0.3 g at 2 Hz: nothing moves (mu 0.7, and too low to rock), forces change by 0.4 % of the weight a step. Three factorisations a step at
+	// most: no factor is kept from one step to the next, and states that flip need another. Blocks stay on the base: their velocities miss its by the residual, 1e-9 of
 	// g h, times the courses, and a head joint more for each column.
 	constexpr int    steps = 250;
 	constexpr double h = 1e-3, frequency = 4 * M_PI;
@@ -354,7 +354,7 @@ TEST_CASE("contact problem: a wall that stands in slow shaking needs few factori
 			CHECK((s.bodies[b].velocity.head<2>() - s.bodies[0].velocity.head<2>()).norm() < 1e-7 * rig::g * h);
 	}
 	INFO(factorisations);
-	CHECK(factorisations <= 2 * steps);
+	CHECK(factorisations <= 3 * steps);
 }
 
 TEST_CASE("contact problem: no heap allocation once the size is known")

@@ -129,3 +129,21 @@ TEST_CASE("The same bits on another run, and with another step object half way")
 	CHECK(once == history(false));
 	CHECK(once == history(true));
 }
+
+TEST_CASE("A pulse at the very instant of an impact comes after it")
+{
+	auto             free = rockingBlock(b, a, 0.1, 0.8);
+	RigidStep<Plane> step;
+	while (free.impacts.empty())
+		step.advance(free, 1e-3);
+	const double    at = free.impacts[0].time, after = free.impacts[0].joint.after, jump = 0.05;
+	ScheduledMotion motion;
+	motion.append({ at, -jump });
+	auto s = rockingBlock(b, a, 0.1, 0.8);
+	moveBase(s, motion);
+	while (s.time + 1e-3 < at)
+		step.advance(s, 1e-3);
+	step.advance(s, at - s.time + 1e-6);
+	CHECK(-s.bodies[1].velocity[2] == Approx(after + 3 * a / (4 * (a * a + b * b)) * jump).epsilon(1e-5));
+}
+
