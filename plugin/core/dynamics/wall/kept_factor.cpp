@@ -75,7 +75,7 @@ MASONRY_INLINE void passAll(Group* groups, FeatureGroup* features, std::array<Ro
 				const Mask touches = row.stiffness > 0;
 				const Lanes miss = larger(size(wn - zn), size(wt - zt)), motion = larger(size(un), size(ut));
 				worst.velocity = larger(worst.velocity, touches ? miss : all(0));
-				worst.motion = larger(worst.motion, touches ? motion : all(0));
+				worst.motion = larger(worst.motion, f.present ? motion : all(0));
 				worst.force = larger(worst.force, larger(size(errorN), size(errorT)) * perMass);
 			}
 			if constexpr (!laws) { // a point without an impulse is free to move as it does

@@ -25,7 +25,7 @@ struct KeptReport {
 	int solves {0}, factorisations {0};
 	double velocity {0}; // largest |J V - b - z|, m/s
 	double force {0};    // largest error of an impulse, as the velocity that it gives its point, m/s
-	double motion {0};   // largest relative velocity of a point that touches, m/s
+	double motion {0};   // largest relative velocity of a point, in touch or open, m/s
 };
 
 class KeptFactor {

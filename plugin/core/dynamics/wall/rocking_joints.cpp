@@ -63,7 +63,7 @@ Contact contact(const WallContacts& c, const JointPoint& at)
 
 } // namespace
 
-void RockingJoints::find(const RigidSystem<Plane>& s, const WallContacts& c, bool newPoints)
+void RockingJoints::find(const RigidSystem<Plane>& s, WallContacts& c, bool newPoints)
 {
 	if (newPoints || !gathered)
 		gather(s, c);
@@ -84,24 +84,48 @@ void RockingJoints::find(const RigidSystem<Plane>& s, const WallContacts& c, boo
 				gaping += at.gap() > open;
 			}
 		}
-		if (gaping > 0 && high - low <= tolerance::wall::pivot * c.length)
+		if (gaping > 0 && high >= low && high - low <= tolerance::wall::pivot * c.length)
 			rocking.push_back({begin, end, low});
 	}
+	for (const Joint& joint : rocking)
+		for (int i = joint.begin; i < joint.end; ++i)
+			if (const Contact at = contact(c, points[i]); !(at.impulse() > 0) && at.gap() > open)
+				c.groups[points[i].group].point[points[i].point].gap[points[i].lane] += aside(c);
+}
+
+// Distance by which the open points of a joint that rocks are put aside: far beyond what a step can close.
+double RockingJoints::aside(const WallContacts& c) const { return 1e3 * c.length; }
+
+void RockingJoints::putBack(WallContacts& c, const Joint& joint) const
+{
+	for (int i = joint.begin; i < joint.end; ++i) {
+		double gap = c.groups[points[i].group].point[points[i].point].gap[points[i].lane];
+		if (gap > 0.5 * aside(c))
+			gap -= aside(c);
+		c.groups[points[i].group].point[points[i].point].gap[points[i].lane] = gap;
+	}
+}
+
+void RockingJoints::release(WallContacts& c)
+{
+	for (const Joint& joint : rocking)
+		putBack(c, joint);
+	rocking.clear();
 }
 
 const RockingJoints::JointPoint* RockingJoints::landing(const WallContacts& c, const Joint& joint, double s) const
 {
-	constexpr double laterSteps = 2; // closings within so many substeps are one
+	constexpr double nearest = 0.5, together = 2; // in substeps: an impact is met as near as may be; closings so near each other are one
 	bool closes = false;
 	const JointPoint* farthest = nullptr;
 	double distance = tolerance::wall::pivot * c.length;
 	for (int i = joint.begin; i < joint.end; ++i) {
 		const Contact at = contact(c, points[i]);
-		const double rate = at.normalRate(c), away = std::abs(at.along(c) - joint.pivot);
+		const double gap = at.gap() > 0.5 * aside(c) ? at.gap() - aside(c) : at.gap(), rate = at.normalRate(c), away = std::abs(at.along(c) - joint.pivot);
 		if (!(rate < 0) || away <= tolerance::wall::pivot * c.length)
 			continue;
-		closes |= at.gap() + s * rate <= 0;
-		if (at.gap() + laterSteps * s * rate <= 0 && away > distance) {
+		closes |= gap + nearest * s * rate <= 0;
+		if (gap + together * s * rate <= 0 && away > distance) {
 			distance = away;
 			farthest = &points[i];
 		}
@@ -109,7 +133,7 @@ const RockingJoints::JointPoint* RockingJoints::landing(const WallContacts& c, c
 	return closes ? farthest : nullptr;
 }
 
-bool RockingJoints::answer(RigidSystem<Plane>& s, WallContacts& c, const JointPoint& where, double& baseWork) const
+void RockingJoints::answer(RigidSystem<Plane>& s, WallContacts& c, const JointPoint& where, double& baseWork) const
 {
 	const Contact at = contact(c, where);
 	const ContactPair<Plane>& pair = s.pairs[c.features[where.group].pair[where.lane]];
@@ -130,7 +154,7 @@ bool RockingJoints::answer(RigidSystem<Plane>& s, WallContacts& c, const JointPo
 	const Vector3 u = J * velocity;
 	const double before = u[2], leastSpin = tolerance::restSpeed * std::sqrt(scale::acceleration(s) / s.bodies[at.block].halfSize.norm());
 	if (std::isnan(pair.restitution) || !(std::abs(before) * pair.restitution >= leastSpin))
-		return false;
+		return;
 
 	// The impulse x for the couple's target; friction at its limit where sticking asks for more.
 	const double friction = c.groups[where.group].friction[i];
@@ -167,7 +191,7 @@ bool RockingJoints::answer(RigidSystem<Plane>& s, WallContacts& c, const JointPo
 		x = plastic + low * (wanted - plastic);
 	}
 	if (!(x[0] > 0) || gain(x) > 0)
-		return false;
+		return;
 
 	const Eigen::Matrix<double, 6, 1> change = W * x;
 	v1 += Lanes {change[0], change[1], change[2], 0};
@@ -185,7 +209,6 @@ bool RockingJoints::answer(RigidSystem<Plane>& s, WallContacts& c, const JointPo
 	if (s.bodies[b2].prescribed)
 		baseWork -= x.dot(J.rightCols<3>() * velocity.tail<3>());
 	s.impacts.push_back({s.time, at.block, at.support, pair.restitution, result.after >= leastSpin, result, lost, capped, 0});
-	return true;
 }
 
 double RockingJoints::land(RigidSystem<Plane>& s, WallContacts& c, double substep)
@@ -193,12 +216,14 @@ double RockingJoints::land(RigidSystem<Plane>& s, WallContacts& c, double subste
 	double baseWork = 0;
 	for (size_t j = 0; j < rocking.size();) {
 		const JointPoint* at = landing(c, rocking[j], substep);
-		if (at && answer(s, c, *at, baseWork)) {
-			rocking[j] = rocking.back(); // it has another pivot now, and is looked at again in the next step
-			rocking.pop_back();
-		} else {
+		if (!at) {
 			++j;
+			continue;
 		}
+		putBack(c, rocking[j]);
+		answer(s, c, *at, baseWork);
+		rocking[j] = rocking.back(); // another pivot, or none, until the next step
+		rocking.pop_back();
 	}
 	return baseWork;
 }

@@ -1,8 +1,8 @@
 #pragma once
 // The rocking restitution law between substeps.
 //
-// A joint is all that touches one face of a block from below. It rocks when it is loaded at one place and open beside it; the first of its
-// open points that would close in the coming substep ends that. The farthest point P that closes with it is the new pivot, and the block
+// A joint is all that touches one face of a block from below. It rocks when it is loaded at one place and open beside it. Then the sweeps do
+// not see its open points, which would lose approach speed to them; the first that closes in the coming substep ends that. The farthest point P that closes with it is the new pivot, and the block
 // and the support under P exchange an impulse (p_n, p_t) at P and a couple such that
 //
 //     u_n+ = 0,   u_t+ = 0 or |p_t| = mu p_n,   w+ = C w-         w = w_block - w_support
@@ -17,7 +17,8 @@ namespace masonry::rigid::wall {
 class RockingJoints {
 public:
 	// Finds the joints that rock. `newPoints`: other points than at the last call.
-	void find(const RigidSystem<Plane>& system, const WallContacts& contacts, bool newPoints);
+	void find(const RigidSystem<Plane>& system, WallContacts& contacts, bool newPoints);
+	void release(WallContacts& contacts); // after the last substep
 	// Impacts of the substep s that comes, into the contacts' velocities and system.impacts. Returns the work of the base, J.
 	double land(RigidSystem<Plane>& system, WallContacts& contacts, double s);
 
@@ -32,7 +33,9 @@ private:
 	};
 	void gather(const RigidSystem<Plane>& system, const WallContacts& contacts);
 	const JointPoint* landing(const WallContacts& contacts, const Joint& joint, double s) const;
-	bool answer(RigidSystem<Plane>& system, WallContacts& contacts, const JointPoint& at, double& baseWork) const;
+	double aside(const WallContacts& contacts) const;
+	void putBack(WallContacts& contacts, const Joint& joint) const;
+	void answer(RigidSystem<Plane>& system, WallContacts& contacts, const JointPoint& at, double& baseWork) const;
 
 	bool gathered {false}, anyLaw {false};
 	std::vector<JointPoint> points; // joint by joint

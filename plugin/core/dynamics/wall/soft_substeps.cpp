@@ -75,8 +75,8 @@ MASONRY_INLINE void sweepGroups(Group* groups, int begin, int end, Lanes* veloci
 			push(v1, v2, p, none, dt);
 			p.pt = pt;
 			if constexpr (measured) {
-				const Mask closed = pn > 0;
-				worst.motion = larger(worst.motion, closed ? larger(size(un), size(ut)) : none);
+				const Mask closed = pn > 0, present = p.massN > 0;
+				worst.motion = larger(worst.motion, present ? larger(size(un), size(ut)) : none);
 				worst.change = larger(worst.change, closed ? larger(size(dn) / p.massN, size(dt) / p.massT) : none);
 			}
 		}

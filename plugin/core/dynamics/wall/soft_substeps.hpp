@@ -16,7 +16,7 @@ namespace masonry::rigid::wall {
 
 struct SoftReport {
 	double residual {0}; // largest change of an impulse by the last sweep, as the velocity that it gives its point, m/s
-	double motion {0};   // largest relative velocity of a closed point, m/s
+	double motion {0};   // largest relative velocity of a point, closed or open, m/s
 };
 
 class SoftSubsteps {

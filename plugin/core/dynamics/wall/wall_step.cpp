@@ -151,6 +151,7 @@ void WallStep<K>::substeps(RigidSystem<K>& s, double h, bool newPoints)
 		soft.substep(contacts, loads, part, k + 1 == count);
 		s.baseWork += baseWork(s);
 	}
+	joints.release(contacts);
 	s.time = start;
 	report.substeps += count;
 	report.velocityResidual = std::max(report.velocityResidual, soft.report.residual);

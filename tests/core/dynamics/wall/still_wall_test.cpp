@@ -53,3 +53,21 @@ TEST_CASE("a wall shaken below sliding does not drift")
 	CHECK(scene.drift() < 1e-6);
 	CHECK(scene.sink() / 10 < 1e-8);
 }
+
+// Statics of a wedge-free pair: one block on the base carries its weight on two points, equally.
+TEST_CASE("strict forces are those of statics")
+{
+	Scene scene;
+	addBlock(scene.system, {0.5, 0.25}, {0, 0.25});
+	addBlock(scene.system, {0.5, 0.25}, {0.2, 0.75});
+	scene.step.settings.strictForces = true;
+	scene.step.settings.tolerance = 1e-6;
+	scene.run(0.01, 1e-3);
+	const auto& pair = scene.system.pairs;
+	REQUIRE(pair.size() == 2);
+	const double weight = -scene.system.bodies[1].force[1];
+	// Moments about the left edge: N_right = W (0.5 + 0.7) / 1 on the base; the upper block stands on 0.8 m, its weight at 0.5 from the right end.
+	CHECK(pair[0].points[0].force[0] + pair[0].points[1].force[0] == Approx(2 * weight).epsilon(1e-5));
+	CHECK(std::max(pair[0].points[0].force[0], pair[0].points[1].force[0]) == Approx(1.2 * weight).epsilon(1e-5));
+	CHECK(std::max(pair[1].points[0].force[0], pair[1].points[1].force[0]) == Approx(0.5 / 0.8 * weight).epsilon(1e-5));
+}
