@@ -260,7 +260,7 @@ bool WallContacts::measure(RigidSystem<Plane>& s)
 		std::fill(stale.begin(), stale.end(), 1);
 	s.moved = false;
 	takeBodies(s);
-	threads = std::clamp(int(groups.size()) / groupsPerThread, 1, omp_get_max_threads());
+	threads = std::clamp(int(groups.size()) / groupsPerThread, 1, std::max(1, mostThreads));
 	inParallel(threads, [&](const Share& share) {
 		const auto [first, last] = share.of(0, int(groups.size()));
 		locateAll(&groups[first], &features[first], &stale[first], last - first, pose.data(), velocity.data(), gyration.data(), travel);

@@ -58,7 +58,7 @@ public:
 	std::vector<double> gyration; // rho, m
 	int depth {0};               // courses: pairs between a prescribed body and the block farthest from one
 	double length {0};           // m, smallest half size
-	int threads {1};             // that share the loops over groups
+	int mostThreads {1}, threads {1}; // that may, and that do, share the loops over groups
 
 private:
 	bool samePairs(const RigidSystem<Plane>& system);

@@ -61,6 +61,7 @@ void WallStep<K>::advancePart(RigidSystem<K>& s, double h)
 {
 	auto& m = memoryOfModes;
 	const double workBefore = s.baseWork;
+	contacts.mostThreads = settings.threads;
 	const bool newPoints = contacts.measure(s);
 	const WallMode before = m.mode;
 	if (m.mode == WallMode::still && !tryStill(s, h, newPoints))

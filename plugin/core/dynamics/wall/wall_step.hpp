@@ -17,6 +17,7 @@ struct WallSettings {
 	// times as much of a block's weight; with `strictForces` to as much.
 	double tolerance {1e-3};
 	bool strictForces {false};
+	int threads {1}; // at most; small walls use one. The bits do not depend on it
 };
 
 enum class WallMode { still, moving };
