@@ -19,7 +19,8 @@ struct alignas(alignment) Largest {
 MASONRY_INLINE Lanes clip(const Lanes& value, const Lanes& bound) { return larger(smaller(value, bound), -bound); }
 
 // Which points take part, R, and b. Returns whether another point touches than before.
-MASONRY_LANES bool takeAll(Group* groups, const FeatureGroup* features, std::array<Row, 2>* rows, int begin, int end, double h, double softness, double enter, double leave)
+MASONRY_LANES bool takeAll(Group* groups, const FeatureGroup* features, std::array<Row, 2>* rows, int begin, int end, double h,
+                           double softness, double enter, double leave)
 {
 	const Lanes perH = all(1 / h), none = all(0);
 	Mask different {0, 0, 0, 0};
@@ -46,7 +47,8 @@ MASONRY_LANES bool takeAll(Group* groups, const FeatureGroup* features, std::arr
 
 // One pass over the points: the laws (not before the first solve), and the right-hand side of the next solve.
 template <bool laws>
-MASONRY_INLINE void passAll(Group* groups, FeatureGroup* features, std::array<Row, 2>* rows, int begin, int end, const Lanes* velocity, Lanes* force, Largest& worst)
+MASONRY_INLINE void passAll(Group* groups, FeatureGroup* features, std::array<Row, 2>* rows, int begin, int end, const Lanes* velocity,
+                            Lanes* force, Largest& worst)
 {
 	for (int g = begin; g < end; ++g) {
 		Group& group = groups[g];
@@ -96,12 +98,14 @@ MASONRY_INLINE void passAll(Group* groups, FeatureGroup* features, std::array<Ro
 	}
 }
 
-MASONRY_LANES void firstPass(Group* groups, FeatureGroup* features, std::array<Row, 2>* rows, int begin, int end, const Lanes* velocity, Lanes* force, Largest& worst)
+MASONRY_LANES void firstPass(Group* groups, FeatureGroup* features, std::array<Row, 2>* rows, int begin, int end, const Lanes* velocity,
+                             Lanes* force, Largest& worst)
 {
 	passAll<false>(groups, features, rows, begin, end, velocity, force, worst);
 }
 
-MASONRY_LANES void lawPass(Group* groups, FeatureGroup* features, std::array<Row, 2>* rows, int begin, int end, const Lanes* velocity, Lanes* force, Largest& worst)
+MASONRY_LANES void lawPass(Group* groups, FeatureGroup* features, std::array<Row, 2>* rows, int begin, int end, const Lanes* velocity,
+                           Lanes* force, Largest& worst)
 {
 	passAll<true>(groups, features, rows, begin, end, velocity, force, worst);
 }
@@ -127,7 +131,8 @@ bool KeptFactor::takeRows(bool newPoints)
 	bool different = false;
 	inParallel(contacts->threads, [&](const Share& share) {
 		const auto [first, last] = share.of(0, int(rows.size()));
-		const bool here = takeAll(contacts->groups.data(), contacts->features.data(), rows.data(), first, last, h, softness, enter, 4 * enter);
+		const bool here =
+		    takeAll(contacts->groups.data(), contacts->features.data(), rows.data(), first, last, h, softness, enter, 4 * enter);
 #pragma omp critical
 		different |= here;
 	});

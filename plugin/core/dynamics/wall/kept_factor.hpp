@@ -13,9 +13,9 @@
 // until w = z. Nothing in A depends on which points stick, slide or part: states may chatter and A stays. Only residuals are corrected,
 // so that A may be of slightly other positions.
 //
-// b_n = -gap/h (an open point may close), b_t = 0; but of what a few iterations have left, a penetration or a slip, a share is taken back in
-// each step, so that it does not add up. Penetrations that were there when the wall came to rest stay: pushed out, they would wedge blocks
-// against friction.
+// b_n = -gap/h (an open point may close), b_t = 0; but of what a few iterations have left, a penetration or a slip, a share is taken back
+// in each step, so that it does not add up. Penetrations that were there when the wall came to rest stay: pushed out, they would wedge
+// blocks against friction.
 #include "dynamics/wall/symmetric_factor.hpp"
 #include "dynamics/wall/wall_contacts.hpp"
 
@@ -30,7 +30,7 @@ struct KeptReport {
 
 class KeptFactor {
 public:
-	struct alignas(alignment) Row { // of a point
+	struct alignas(alignment) Row {          // of a point
 		Lanes bn, bt, resistance, stiffness; // R and 1/R; zero: does not touch
 		Lanes un, ut;                        // J V, m/s
 	};
@@ -41,11 +41,11 @@ public:
 	void begin(WallContacts& contacts, const LaneArray& load, double h, bool newPoints);
 	// Solves until both residuals are at most theirs, at most `most` times. May be called again to go on.
 	void iterate(int most, double velocityResidual, double forceResidual);
-	void keepSlip();  // of the step that ends
-	void giveUp();    // impulses as they were at the beginning
+	void keepSlip(); // of the step that ends
+	void giveUp();   // impulses as they were at the beginning
 
 	KeptReport report;
-	LaneArray velocity;          // V
+	LaneArray velocity;                   // V
 	std::vector<std::array<Row, 2>> rows; // by group
 	size_t factorBlocks() const { return factor.blocks(); }
 
@@ -53,7 +53,9 @@ private:
 	bool takeRows(bool newPoints);
 	void factorise();
 
-	struct alignas(alignment) Before { Lanes pn, pt, zn, zt; };
+	struct alignas(alignment) Before {
+		Lanes pn, pt, zn, zt;
+	};
 
 	WallContacts* contacts {nullptr};
 	SymmetricFactor factor;

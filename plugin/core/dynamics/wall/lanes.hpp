@@ -25,7 +25,9 @@ struct AlignedAllocator {
 	using value_type = T;
 	AlignedAllocator() = default;
 	template <class U>
-	AlignedAllocator(const AlignedAllocator<U>&) {}
+	AlignedAllocator(const AlignedAllocator<U>&)
+	{
+	}
 	T* allocate(std::size_t n) { return static_cast<T*>(::operator new(n * sizeof(T), std::align_val_t(alignment))); }
 	void deallocate(T* p, std::size_t) { ::operator delete(p, std::align_val_t(alignment)); }
 	bool operator==(const AlignedAllocator&) const { return true; }

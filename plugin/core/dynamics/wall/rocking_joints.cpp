@@ -75,7 +75,8 @@ void RockingJoints::find(const RigidSystem<Plane>& s, WallContacts& c, bool newP
 	for (int begin = 0, end = 0; begin < int(points.size()); begin = end) {
 		double low = INFINITY, high = -INFINITY;
 		int gaping = 0;
-		for (end = begin; end < int(points.size()) && points[end].block == points[begin].block && points[end].face == points[begin].face; ++end) {
+		for (end = begin; end < int(points.size()) && points[end].block == points[begin].block && points[end].face == points[begin].face;
+		     ++end) {
 			const Contact at = contact(c, points[end]);
 			if (at.impulse() > 0) {
 				low = std::min(low, at.along(c));
@@ -121,7 +122,8 @@ const RockingJoints::JointPoint* RockingJoints::landing(const WallContacts& c, c
 	double distance = tolerance::wall::pivot * c.length;
 	for (int i = joint.begin; i < joint.end; ++i) {
 		const Contact at = contact(c, points[i]);
-		const double gap = at.gap() > 0.5 * aside(c) ? at.gap() - aside(c) : at.gap(), rate = at.normalRate(c), away = std::abs(at.along(c) - joint.pivot);
+		const double gap = at.gap() > 0.5 * aside(c) ? at.gap() - aside(c) : at.gap(), rate = at.normalRate(c),
+		             away = std::abs(at.along(c) - joint.pivot);
 		if (!(rate < 0) || away <= tolerance::wall::pivot * c.length)
 			continue;
 		closes |= gap + nearest * s * rate <= 0;

@@ -1,9 +1,10 @@
 #pragma once
 // The rocking restitution law between substeps.
 //
-// A joint is all that touches one face of a block from below. It rocks when it is loaded at one place and open beside it. Then the sweeps do
-// not see its open points, which would lose approach speed to them; the first that closes in the coming substep ends that. The farthest point P that closes with it is the new pivot, and the block
-// and the support under P exchange an impulse (p_n, p_t) at P and a couple such that
+// A joint is all that touches one face of a block from below. It rocks when it is loaded at one place and open beside it. Then the sweeps
+// do not see its open points, which would lose approach speed to them; the first that closes in the coming substep ends that. The farthest
+// point P that closes with it is the new pivot, and the block and the support under P exchange an impulse (p_n, p_t) at P and a couple such
+// that
 //
 //     u_n+ = 0,   u_t+ = 0 or |p_t| = mu p_n,   w+ = C w-         w = w_block - w_support
 //

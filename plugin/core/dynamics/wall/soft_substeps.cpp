@@ -158,7 +158,8 @@ void SoftSubsteps::substep(WallContacts& c, const LaneArray& load, double s, boo
 		for (int b = firstBody; b < lastBody; ++b)
 			shift[b] += s * noMass * velocity[b];
 		share.meet();
-		byColour(c.colourEnd, share, [&](int first, int last) { (isLast ? lastSweep : relaxSweep)(groups, first, last, velocity, spring, here); });
+		byColour(c.colourEnd, share,
+		         [&](int first, int last) { (isLast ? lastSweep : relaxSweep)(groups, first, last, velocity, spring, here); });
 		for (int b = firstBody; b < lastBody; ++b)
 			contactPart[b] = velocity[b] - contactPart[b];
 #pragma omp critical

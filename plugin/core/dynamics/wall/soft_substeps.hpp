@@ -6,8 +6,8 @@
 //     q += s V, gaps with it
 //     one sweep without springs: takes out the velocity that they gave
 //
-// An open point may close: u_n >= -gap/s, in both sweeps. (Without it in the second, corners that approach stop short, and piers do not rock
-// as they should.) One sweep carries an impulse one course on: what the courses miss of each other falls as 1/substeps^2.
+// An open point may close: u_n >= -gap/s, in both sweeps. (Without it in the second, corners that approach stop short, and piers do not
+// rock as they should.) One sweep carries an impulse one course on: what the courses miss of each other falls as 1/substeps^2.
 //
 // After Box2D's soft step (Catto, 2024).
 #include "dynamics/wall/wall_contacts.hpp"
@@ -26,8 +26,8 @@ public:
 	void begin(WallContacts& contacts);
 	void substep(WallContacts& contacts, const LaneArray& load, double s, bool isLast);
 
-	SoftReport report;        // of the last substep of the step
-	LaneArray shift; // how far the bodies have moved since begin(); components as of velocities
+	SoftReport report; // of the last substep of the step
+	LaneArray shift;   // how far the bodies have moved since begin(); components as of velocities
 
 private:
 	LaneArray contactPart; // of the velocities: what the impulses of the last substep gave

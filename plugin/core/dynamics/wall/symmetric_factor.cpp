@@ -25,7 +25,10 @@ MASONRY_INLINE void store(std::vector<float>& to, size_t block, const Eigen::Mat
 }
 
 // B x; the fourth lane of the result is meaningless.
-MASONRY_INLINE Lanes times(const float* block, const Lanes& x) { return column(block) * all(x[0]) + column(block + 3) * all(x[1]) + column(block + 6) * all(x[2]); }
+MASONRY_INLINE Lanes times(const float* block, const Lanes& x)
+{
+	return column(block) * all(x[0]) + column(block + 3) * all(x[1]) + column(block + 6) * all(x[2]);
+}
 
 MASONRY_LANES void substitute(int n, const int* first, const int* row, const float* lower, const float* pivots, Lanes* x)
 {

@@ -9,14 +9,15 @@ namespace masonry::rigid::wall {
 
 namespace {
 
-constexpr int groupsPerThread = 256; // fewer do not repay the meetings of the threads
-constexpr double farAway = 1e30; // m
+constexpr int groupsPerThread = 256;  // fewer do not repay the meetings of the threads
+constexpr double farAway = 1e30;      // m
 constexpr double mostFriction = 1e12; // stands for noSlip: infinity times a zero impulse is no number
 
 MASONRY_INLINE Lanes select(const Mask& mask, const Lanes& a, const Lanes& b) { return mask ? a : b; }
 
 // Gap, normal and arms of a group's points; returns whether some pair has moved by more than `travel` since it was looked up.
-MASONRY_INLINE bool locate(Group& group, const FeatureGroup& features, const Lanes* pose, const Lanes* velocity, const double* gyration, double travel)
+MASONRY_INLINE bool locate(Group& group, const FeatureGroup& features, const Lanes* pose, const Lanes* velocity, const double* gyration,
+                           double travel)
 {
 	const Bodies p1(pose, group.body1), p2(pose, group.body2); // position, cosine, sine
 	Lanes mass1, mass2, rho1, rho2;
@@ -168,7 +169,8 @@ void WallContacts::takePoint(const RigidSystem<Plane>& s, int g, int lane, int k
 	const bool present = k < pair.size;
 	const PlaneFeature feature = present ? pair.points[k].feature : PlaneFeature {1, 0, 0}; // any will tell how far the pair moves
 	const bool vertexOn1 = feature.vertexBody == 1;
-	const Vector2 &vertexHalf = s.bodies[vertexOn1 ? pair.body1 : pair.body2].halfSize, &faceHalf = s.bodies[vertexOn1 ? pair.body2 : pair.body1].halfSize;
+	const Vector2 &vertexHalf = s.bodies[vertexOn1 ? pair.body1 : pair.body2].halfSize,
+	              &faceHalf = s.bodies[vertexOn1 ? pair.body2 : pair.body1].halfSize;
 	const int axis = feature.face / 2;
 	f.vertexOn1[lane] = vertexOn1 ? -1 : 0;
 	f.present[lane] = present ? -1 : 0;
@@ -196,7 +198,8 @@ bool WallContacts::lookUp(RigidSystem<Plane>& s, int g)
 		ContactPair<Plane>& pair = s.pairs[features[g].pair[lane]];
 		const auto &body1 = s.bodies[pair.body1], &body2 = s.bodies[pair.body2];
 		FoundPoints<Plane> found;
-		if (!Plane::findPoints(body1.halfSize, body1.pose, body2.halfSize, body2.pose, std::numeric_limits<double>::infinity(), pair.memory, found))
+		if (!Plane::findPoints(body1.halfSize, body1.pose, body2.halfSize, body2.pose, std::numeric_limits<double>::infinity(), pair.memory,
+		                       found))
 			found.size = 0;
 		const ContactPair<Plane> before = pair;
 		const Group& group = groups[g];

@@ -18,9 +18,9 @@ namespace masonry::rigid::wall {
 
 struct alignas(alignment) PointLanes {
 	Lanes nx, ny, a1n, a1t, a2n, a2t;
-	Lanes gap;            // m; far away in lanes without a point
-	Lanes massN, massT;   // 1 / (J M^-1 J^T), kg
-	Lanes pn, pt;         // impulse of a step or substep, N s
+	Lanes gap;          // m; far away in lanes without a point
+	Lanes massN, massT; // 1 / (J M^-1 J^T), kg
+	Lanes pn, pt;       // impulse of a step or substep, N s
 };
 
 struct alignas(alignment) Group {
@@ -51,14 +51,14 @@ public:
 
 	std::vector<Group> groups;
 	std::vector<FeatureGroup> features;
-	std::vector<int> colourEnd; // groups of colour c end before colourEnd[c]
+	std::vector<int> colourEnd;             // groups of colour c end before colourEnd[c]
 	std::vector<std::array<int, 2>> onBase; // group and lane of the pairs with a prescribed body
-	LaneArray velocity; // (v, rho w, 1/m); 1/m = 0: prescribed. One more at the end, for empty lanes
-	LaneArray pose;     // (position, cosine, sine)
-	std::vector<double> gyration; // rho, m
-	int depth {0};               // courses: pairs between a prescribed body and the block farthest from one
-	double length {0};           // m, smallest half size
-	int mostThreads {1}, threads {1}; // that may, and that do, share the loops over groups
+	LaneArray velocity;                     // (v, rho w, 1/m); 1/m = 0: prescribed. One more at the end, for empty lanes
+	LaneArray pose;                         // (position, cosine, sine)
+	std::vector<double> gyration;           // rho, m
+	int depth {0};                          // courses: pairs between a prescribed body and the block farthest from one
+	double length {0};                      // m, smallest half size
+	int mostThreads {1}, threads {1};       // that may, and that do, share the loops over groups
 
 private:
 	bool samePairs(const RigidSystem<Plane>& system);

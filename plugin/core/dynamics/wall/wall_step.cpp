@@ -86,7 +86,8 @@ void WallStep<K>::setBase(const RigidSystem<K>& s, double h)
 		const auto& body = s.bodies[b];
 		if (!body.prescribed || body.drive < 0)
 			continue;
-		const Vector2 mean = s.driveDirections[body.drive] * ((s.drives[body.drive]->displacement(s.time + h) - s.drives[body.drive]->displacement(s.time)) / h);
+		const Vector2 mean = s.driveDirections[body.drive] *
+		                     ((s.drives[body.drive]->displacement(s.time + h) - s.drives[body.drive]->displacement(s.time)) / h);
 		contacts.velocity[b] = Lanes {mean.x(), mean.y(), contacts.velocity[b][2], 0};
 	}
 }
@@ -191,7 +192,8 @@ double WallStep<K>::baseWork(const RigidSystem<K>& s) const
 		const Lanes& v = contacts.velocity[first ? group.body1[i] : group.body2[i]];
 		for (const auto& p : group.point) {
 			const double an = first ? p.a1n[i] : p.a2n[i], at = first ? p.a1t[i] : p.a2t[i];
-			const double power = p.pn[i] * (p.nx[i] * v[0] + p.ny[i] * v[1] + an * v[2]) + p.pt[i] * (p.nx[i] * v[1] - p.ny[i] * v[0] + at * v[2]);
+			const double power =
+			    p.pn[i] * (p.nx[i] * v[0] + p.ny[i] * v[1] + an * v[2]) + p.pt[i] * (p.nx[i] * v[1] - p.ny[i] * v[0] + at * v[2]);
 			work += first ? power : -power;
 		}
 	}
@@ -295,8 +297,8 @@ void WallStep<K>::choose(const RigidSystem<K>& s, double h)
 template <class K>
 size_t WallStep<K>::memory() const
 {
-	return contacts.groups.size() * (sizeof(wall::Group) + sizeof(wall::FeatureGroup) + 2 * sizeof(wall::KeptFactor::Row))
-	        + kept.factorBlocks() * 9 * (sizeof(double) + sizeof(float)) + contacts.velocity.size() * 10 * sizeof(Lanes);
+	return contacts.groups.size() * (sizeof(wall::Group) + sizeof(wall::FeatureGroup) + 2 * sizeof(wall::KeptFactor::Row)) +
+	       kept.factorBlocks() * 9 * (sizeof(double) + sizeof(float)) + contacts.velocity.size() * 10 * sizeof(Lanes);
 }
 
 template class WallStep<Plane>;

@@ -2,8 +2,9 @@
 // The step of many rigid blocks in a plane: walls.
 //
 // While nothing moves against its neighbour, a step is solved for all contacts at once with a factorisation that is kept (kept_factor.hpp:
-// mode `still`); when something does, in soft substeps (soft_substeps.hpp: mode `moving`). A step that the first cannot solve is taken back and
-// done by the second. Back it goes when every relative velocity has been at rest level for a while; a stay that ends soon doubles that while.
+// mode `still`); when something does, in soft substeps (soft_substeps.hpp: mode `moving`). A step that the first cannot solve is taken back
+// and done by the second. Back it goes when every relative velocity has been at rest level for a while; a stay that ends soon doubles that
+// while.
 //
 // Positions are first order in the step; impacts are met at the end of a substep. Few blocks: rigid_step.hpp.
 #include "dynamics/wall/kept_factor.hpp"
@@ -25,9 +26,9 @@ enum class WallMode { still, moving };
 struct WallReport : StepReport {
 	WallMode mode {WallMode::moving};
 	bool switched {false};
-	int solves {0};               // of the still mode
-	double velocityResidual {0};  // m/s
-	double forceResidual {0};     // error of impulses, as the velocity that it gives the point, m/s
+	int solves {0};              // of the still mode
+	double velocityResidual {0}; // m/s
+	double forceResidual {0};    // error of impulses, as the velocity that it gives the point, m/s
 };
 
 template <class K>

@@ -1,6 +1,6 @@
 // Walls and piers that move, against the localised step of few blocks, finer substeps, and invariants.
-#include "wall_rig.hpp"
 #include "dynamics/rigid/rigid_step.hpp"
+#include "wall_rig.hpp"
 #include <catch2/catch.hpp>
 #include <cstring>
 
@@ -28,7 +28,10 @@ double energy(const RigidSystem<Plane>& s)
 }
 
 // Mean shift of the blocks of the top course of a pier of two blocks a course.
-double topShift(const Scene& scene) { return 0.5 * (scene.shift(scene.system.bodies.size() - 1).x() + scene.shift(scene.system.bodies.size() - 2).x()); }
+double topShift(const Scene& scene)
+{
+	return 0.5 * (scene.shift(scene.system.bodies.size() - 1).x() + scene.shift(scene.system.bodies.size() - 2).x());
+}
 
 // Shaken at 1 g until `end`, then held.
 struct Stopped : Harmonic {
@@ -41,8 +44,8 @@ struct Stopped : Harmonic {
 } // namespace
 
 // Over three impacts, the block sliding a little at each. Positions are first order in the substep of 1.25e-4 s: a period of a second is
-// wrong by some 3e-3, and the angle by as much of the largest spin, 0.37 rad/s. Where corners that approach lose speed to the sweeps (no gap
-// allowance in the relax sweep, or open points of a rocking joint not put aside) it is 20 to 40 %.
+// wrong by some 3e-3, and the angle by as much of the largest spin, 0.37 rad/s. Where corners that approach lose speed to the sweeps (no
+// gap allowance in the relax sweep, or open points of a rocking joint not put aside) it is 20 to 40 %.
 TEST_CASE("a block rocks as with localised impacts")
 {
 	const double restitution = GENERATE(0.7, 0.9, double(NAN));
@@ -165,7 +168,8 @@ TEST_CASE("two threads give the bits of one")
 		CHECK(scene.step.report.mode == WallMode::moving);
 		std::vector<double> state {scene.system.baseWork, scene.system.frictDissip, scene.system.impactDissip};
 		for (const auto& body : scene.system.bodies)
-			for (double value : {body.pose.position.x(), body.pose.position.y(), body.pose.angle, body.velocity[0], body.velocity[1], body.velocity[2]})
+			for (double value :
+			     {body.pose.position.x(), body.pose.position.y(), body.pose.angle, body.velocity[0], body.velocity[1], body.velocity[2]})
 				state.push_back(value);
 		return state;
 	};

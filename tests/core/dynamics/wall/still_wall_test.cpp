@@ -66,7 +66,8 @@ TEST_CASE("strict forces are those of statics")
 	const auto& pair = scene.system.pairs;
 	REQUIRE(pair.size() == 2);
 	const double weight = -scene.system.bodies[1].force[1];
-	// Moments about the left edge: N_right = W (0.5 + 0.7) / 1 on the base; the upper block stands on 0.8 m, its weight at 0.5 from the right end.
+	// Moments about the left edge: N_right = W (0.5 + 0.7) / 1 on the base; the upper block stands on 0.8 m, its weight at 0.5 from the
+	// right end.
 	CHECK(pair[0].points[0].force[0] + pair[0].points[1].force[0] == Approx(2 * weight).epsilon(1e-5));
 	CHECK(std::max(pair[0].points[0].force[0], pair[0].points[1].force[0]) == Approx(1.2 * weight).epsilon(1e-5));
 	CHECK(std::max(pair[1].points[0].force[0], pair[1].points[1].force[0]) == Approx(0.5 / 0.8 * weight).epsilon(1e-5));
