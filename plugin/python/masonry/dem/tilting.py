@@ -1,0 +1,325 @@
+"""Quasi-static tilting of rigid blocks: the multiplier of their weight at which they collapse, and how."""
+
+import contextlib
+import io
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+from masonry.dem.engines import engines
+from masonry.dem.scene import _boxes, _layout
+from masonry.dem.walls import axes_of
+from tqdm import tqdm
+from yade import O, Vector3
+
+_DIRECTIONS = {"x": (1, 0, 0), "-x": (-1, 0, 0), "y": (0, 1, 0), "-y": (0, -1, 0)}
+# Time step of a trial relative to sqrt(R/g) of the smallest block. Blocks that stand still or begin to move ask for no small one.
+_STEP = 0.02
+# Impacts found inside a step; later ones close at its end, plastically. They do not matter where collapse begins, and cost most.
+_EVENTS = 1
+# Steps between two looks at the blocks.
+_LOOK = 5
+# Speed of blocks at rest relative to sqrt(g H): a multiplier above the critical one by this share is taken for it.
+_REST = 1e-6
+# A trial is held longer, at most this many times, while blocks move and slow down.
+_LONGEST = 5
+# Larger multipliers are not tried; the time step would be too large for them.
+_MOST = 30
+# A joint opens or slides where its points have moved by more than this share of the farthest moved block.
+_MOVED = 0.05
+# Drawn movement of the farthest moved block, relative to the smallest size of a block.
+_DRAWN = 0.4
+_JOINT_FIELDS = [("id1", int), ("id2", int), ("opening", float), ("slip", float), ("opens", bool), ("slides", bool)]
+
+
+def _is_plausible(multiplier):
+    if multiplier > _MOST:
+        raise ValueError(f"the blocks stand at any multiplier up to {_MOST:g}: they are held on all sides")
+
+
+def _advance():
+    # In this thread: of thousands of short O.run(n, True), one sooner or later waits for ever.
+    for _ in range(_LOOK):
+        O.step()
+
+
+@dataclass
+class Trial:
+    """What a multiplier did: 'rest', 'collapse', or 'unclear' where blocks still moved at the end and slowed down."""
+
+    multiplier: float
+    verdict: str
+    moved: float  # m, of the farthest moved block
+    time: float  # s, simulated
+    failures: int  # of the integrator
+
+
+@dataclass
+class Collapse:
+    """Multiplier at which a scene collapses: the mean of `bracket`, the largest that it stands and the least that it does not."""
+
+    multiplier: float
+    bracket: tuple
+    trials: list
+    joints: np.ndarray  # id1, id2, opening (m), slip (m, of body 2 on body 1), opens, slides; at the end of the trial that is drawn
+    blocks: list  # ids that have moved
+    doubts: list  # why the result cannot be trusted; empty: none
+    _mechanism: object = field(repr=False)
+
+    def __str__(self):
+        opens, slides = int(self.joints["opens"].sum()), int(self.joints["slides"].sum())
+        lines = [f"collapse multiplier {self.multiplier:.5g} (stands {self.bracket[0]:.5g}, collapses {self.bracket[1]:.5g})",
+                 f"{len(self.blocks)} blocks move; {opens} joints open, {slides} slide"]
+        return "\n".join(lines + [f"NOT TO BE TRUSTED: {doubt}" for doubt in self.doubts])
+
+    def draw(self, path, title=None):
+        """Writes a picture (.png, .pdf, ...): the blocks, their movement magnified; open joints red, sliding ones blue."""
+        self._mechanism.draw(path, self, title or str(self))
+
+
+class TiltTable:
+    """Finds the multiplier of the weight, acting sideways, at which the free blocks of the scene collapse.
+
+    direction    'x', '-x', 'y' or '-y': where the blocks are pulled
+    load         'force': a horizontal body force, multiplier times the weight, is added to gravity. 'turned': gravity keeps its size and is
+                 turned by the arc tangent of the multiplier, as on a tilting table.
+    model        'auto', 'planar' or 'spatial', as in dem.engines()
+    hold         how long a multiplier is held, in sqrt(height / gravity) of the scene
+    share        movement of a block, relative to the smallest size of any, that is collapse: more than the gaps
+                 that the joints may close, and little, since blocks that fall apart take long
+    gravity      m/s^2
+
+    A trial starts from rest, from where the blocks are when the table is made, and ends when a block has moved by `share`; collapse is
+    also when blocks still gain speed at the end of the hold. Rigid blocks that carry a load do not move at all, and have no spring to
+    overshoot, so the load is put on at once. Restitution hardly matters, but 0 is fastest. The scene is put back afterwards; O.engines
+    is left to the last trial.
+    """
+
+    def __init__(self, direction="x", load="force", model="auto", hold=3.0, share=2e-3, gravity=9.81):
+        if direction not in _DIRECTIONS:
+            raise ValueError(f"direction = {direction!r}: must be one of {', '.join(map(repr, _DIRECTIONS))}")
+        if load not in ("force", "turned"):
+            raise ValueError(f"load = {load!r}: must be 'force' or 'turned'")
+        if model not in ("auto", "planar", "spatial"):
+            raise ValueError(f"model = {model!r}: must be 'auto', 'planar' or 'spatial'")
+        for name, value in (("hold", hold), ("share", share), ("gravity", gravity)):
+            if not 0 < value < math.inf:
+                raise ValueError(f"{name} = {value}: must be positive and finite")
+        self.direction, self.load, self.model, self.share, self.gravity = direction, load, model, share, gravity
+        self._blocks = _boxes()
+        self._free = [b for b in self._blocks if b.dynamic]
+        if not self._free:
+            raise ValueError("there is no free block in O.bodies: add one with dem.block() before dem.TiltTable()")
+        if model == "auto" and any(not math.isnan(b.mat.normalStiffness) for b in self._blocks):
+            raise ValueError("model = 'auto': must be 'planar' or 'spatial' where a BlockMat has a joint stiffness: TiltTable is for rigid blocks")
+        self._start = [(b.state.pos, b.state.ori) for b in self._blocks]
+        centers, sizes, quaternions = _layout(self._free)
+        reach = (np.abs(axes_of(quaternions)) * sizes[:, :, None]).sum(axis=1)[:, 2] / 2
+        self._size, self._reach = sizes.min(), np.linalg.norm(sizes, axis=1) / 2
+        self._unit = math.sqrt(np.ptp(np.concatenate([centers[:, 2] - reach, centers[:, 2] + reach])) / gravity)
+        self._hold, self._rest = hold * self._unit, _REST * gravity * self._unit
+        self._dt = _STEP * math.sqrt(self._reach.min() / gravity)
+        self._joints = self._find_joints()
+
+    # --- the two ways to the multiplier ---
+
+    def bisect(self, tolerance=1e-3, upper=1.0, progress=True):
+        """The Collapse within `tolerance` of its multiplier. upper: first guess of a multiplier that collapses; doubled until it does."""
+        if not 0 < tolerance < 1:
+            raise ValueError(f"tolerance = {tolerance}: must be above 0 and below 1")
+        if not 0 < upper < math.inf:
+            raise ValueError(f"upper = {upper}: must be positive and finite")
+        trials, mechanism = [], None
+
+        def collapses(multiplier):
+            nonlocal mechanism
+            trials.append(self.trial(multiplier))
+            moves = trials[-1].verdict != "rest"
+            if moves:
+                mechanism = self._mechanism()
+            bar.set_postfix_str(f"{multiplier:.5g} {trials[-1].verdict}")
+            bar.update()
+            return moves
+
+        with self._trials("trial", progress) as bar:
+            if collapses(0.0):
+                raise ValueError("the blocks do not stand without a sideways load: check supports and friction")
+            low, high = 0.0, upper
+            while not collapses(high):
+                low, high = high, 2 * high
+                _is_plausible(high)
+            bar.total = bar.n + math.ceil(math.log2(max(1, (high - low) / (tolerance * high))))
+            while high - low > tolerance * high:
+                middle = (low + high) / 2
+                low, high = (low, middle) if collapses(middle) else (middle, high)
+        return self._collapse((low + high) / 2, (low, high), trials, mechanism)
+
+    def ramp(self, rate=0.02, start=0.0, progress=True):
+        """The Collapse of a multiplier that grows slowly. rate: per sqrt(height / gravity) of the scene. The bracket is from where the
+        blocks last rested to where one had moved by `share`; the multiplier is its lower end: what follows is delay."""
+        if not 0 < rate < math.inf:
+            raise ValueError(f"rate = {rate}: must be positive and finite")
+        if not 0 <= start < math.inf:
+            raise ValueError(f"start = {start}: must be 0 or positive")
+        multiplier = rested = start
+        with self._trials("stair", progress) as bar:
+            integrator = self._begin(start)
+            while self._moved() <= self.share * self._size:
+                multiplier = start + rate * O.time / self._unit
+                _is_plausible(multiplier)
+                self._pull(integrator, multiplier)
+                _advance()
+                if self._speed() <= self._rest:
+                    rested = multiplier
+                bar.set_postfix_str(f"{multiplier:.5g}")
+                bar.update()
+            trial, mechanism = Trial(multiplier, "collapse", self._moved(), O.time, integrator.failures), self._mechanism()
+        return self._collapse(rested, (rested, multiplier), [trial], mechanism)
+
+    def trial(self, multiplier):
+        """Holds one multiplier from rest. The scene is left as it is at the end."""
+        integrator = self._begin(multiplier)
+        verdict, fastest = "", 0.0
+        while not verdict:
+            _advance()
+            speed = self._speed()
+            if self._moved() > self.share * self._size:
+                verdict = "collapse"
+            elif O.time >= self._hold:
+                if speed <= self._rest:
+                    verdict = "rest"
+                elif speed >= fastest:
+                    verdict = "collapse"
+                elif O.time >= _LONGEST * self._hold:
+                    verdict = "unclear"
+            fastest = max(fastest, speed)
+        return Trial(multiplier, verdict, self._moved(), O.time, integrator.failures)
+
+    # --- a trial ---
+
+    @contextlib.contextmanager
+    def _trials(self, unit, shown):
+        """The progress bar; at the end, whatever it was, the scene is put back."""
+        try:
+            with tqdm(desc="TiltTable", unit=unit, disable=not shown) as bar:
+                yield bar
+        finally:
+            self._put_back()
+
+    def _put_back(self):
+        O.interactions.clear()
+        O.resetTime()
+        for body, (pos, ori) in zip(self._blocks, self._start):
+            body.state.pos, body.state.ori = pos, ori
+            body.state.vel = body.state.angVel = body.state.angMom = Vector3.Zero
+
+    def _begin(self, multiplier):
+        self._put_back()
+        with contextlib.redirect_stdout(io.StringIO()):
+            O.engines = engines(model=self.model, dt=self._dt, gravity=self.gravity)
+        integrator = O.engines[-1]
+        integrator.mostEvents = _EVENTS
+        self._pull(integrator, multiplier)
+        return integrator
+
+    def _pull(self, integrator, multiplier):
+        pull = Vector3(_DIRECTIONS[self.direction]) * multiplier - Vector3.UnitZ
+        integrator.gravity = self.gravity * (pull.normalized() if self.load == "turned" else pull)
+
+    def _speed(self):
+        return max(b.state.vel.norm() + r * b.state.angVel.norm() for b, r in zip(self._free, self._reach))
+
+    def _moved(self):
+        start = (s for b, s in zip(self._blocks, self._start) if b.dynamic)
+        return max((b.state.pos - pos).norm() + reach * (b.state.ori * ori.conjugate()).toAxisAngle()[1]
+                   for b, (pos, ori), reach in zip(self._free, start, self._reach))
+
+    # --- what is reported ---
+
+    def _find_joints(self):
+        """(id1, id2, normal from 1 to 2, points) of the joints that are closed at the start."""
+        self._begin(0.0)
+        O.step()
+        found = [(i.id1, i.id2, np.array(i.geom.normal), np.array([tuple(p) for p in i.geom.points])) for i in O.interactions]
+        self._put_back()
+        return found
+
+    def _mechanism(self):
+        return _Mechanism(self._blocks, self._start, self._joints, 1 if "y" in self.direction else 0)
+
+    def _collapse(self, multiplier, bracket, trials, mechanism):
+        failures = sum(t.failures for t in trials if t.multiplier in bracket)
+        doubts = [f"the integrator missed its tolerance or left out impacts in {failures} steps of the trials that decide"] if failures else []
+        unclear = [f"{t.multiplier:.5g}" for t in trials if t.verdict == "unclear"]
+        if unclear:
+            doubts.append(f"blocks still moved, slowing down, when the trials of {', '.join(unclear)} were ended; taken for collapse")
+        return Collapse(multiplier, bracket, trials, mechanism.joints(), mechanism.moving(), doubts, mechanism)
+
+
+def _section(size, axes, across):
+    """Half diagonals (4, 3), in order around, of the middle section of a block; `across` is the axis one looks along."""
+    one, two = (size[k] / 2 * axes[k] for k in range(3) if k != np.argmax(np.abs(axes[:, across])))
+    return np.array([one + two, one - two, -one - two, two - one])
+
+
+class _Mechanism:
+    """Where the blocks were at the start, where they are now, and the joints that were closed at the start."""
+
+    def __init__(self, blocks, start, joints, axis):
+        self._ids, self._axis, self._joints = [b.id for b in blocks], axis, joints
+        self._free = np.array([b.dynamic for b in blocks])
+        self._now, self._sizes, turned = _layout(blocks)
+        self._before = np.array([tuple(pos) for pos, _ in start])
+        self._axes = axes_of(np.array([tuple(ori) for _, ori in start])[:, [3, 0, 1, 2]])
+        self._turn = np.einsum("nka,nkb->nab", axes_of(turned), self._axes)
+        self._row = {id: k for k, id in enumerate(self._ids)}
+        corners = [self._movement(k, self._before[k] + _section(self._sizes[k], self._axes[k], 1 - axis)) for k in range(len(blocks))]
+        self._moved = np.array([np.linalg.norm(c, axis=1).max() for c in corners])
+
+    def _movement(self, row, points):
+        """Of points of a block, from where they were."""
+        arm = points - self._before[row]
+        return self._now[row] - self._before[row] + arm @ self._turn[row].T - arm
+
+    def moving(self):
+        return [id for id, moved in zip(self._ids, self._moved) if moved > _MOVED * self._moved.max()]
+
+    def joints(self):
+        table = np.zeros(len(self._joints), dtype=_JOINT_FIELDS)
+        for k, (id1, id2, normal, points) in enumerate(self._joints):
+            apart = self._movement(self._row[id2], points) - self._movement(self._row[id1], points)
+            gap = apart @ normal
+            slip = np.linalg.norm(apart - gap[:, None] * normal, axis=1)[gap.argmin()]  # where it is closed, or nearest to it
+            least = _MOVED * self._moved.max()
+            table[k] = id1, id2, max(gap.max(), 0), slip, gap.max() > least, slip > least
+        return table
+
+    def draw(self, path, collapse, title):
+        from matplotlib.collections import PolyCollection
+        from matplotlib.figure import Figure
+
+        plane, scale = [self._axis, 2], _DRAWN * self._sizes[self._free].min() / self._moved.max()
+
+        def place(row, points):
+            return (points + scale * self._movement(row, points))[:, plane]
+
+        outlines = [place(k, self._before[k] + _section(self._sizes[k], self._axes[k], 1 - self._axis)) for k in range(len(self._ids))]
+        figure = Figure(figsize=(7, 6), layout="constrained")
+        axes = figure.add_subplot(aspect="equal")
+        axes.add_collection(PolyCollection(outlines, facecolors=np.where(self._free, "0.85", "0.6"), edgecolors="0.3", linewidths=0.6))
+        for joint, (id1, id2, _, points) in zip(collapse.joints, self._joints):
+            ends = points[[np.lexsort(points[:, plane].T)[k] for k in (0, -1)]]
+            sides = [place(self._row[id], ends) for id in (id1, id2)]
+            if joint["opens"]:
+                axes.fill(*np.concatenate([sides[0], sides[1][::-1]]).T, facecolor="C3", edgecolor="C3", linewidth=1.2)
+            elif joint["slides"]:
+                axes.plot(*sides[0].T, color="C0", linewidth=1.8)
+        axes.plot([], [], color="C3", linewidth=4, label="opens")
+        axes.plot([], [], color="C0", linewidth=1.8, label="slides, closed")
+        axes.legend(loc="upper left", fontsize="small")
+        shown = np.concatenate([outline for outline, free in zip(outlines, self._free) if free])
+        (left, low), (right, high), margin = shown.min(axis=0), shown.max(axis=0), self._sizes[self._free].max()
+        axes.set(xlim=(left - margin, right + margin), ylim=(low - margin, high + margin))
+        axes.set(xlabel=f"{'xy'[self._axis]} (m)", ylabel="z (m)")
+        axes.set_title(f"{title}\nmovement drawn {scale:.3g} times", fontsize="small")
+        figure.savefig(path, dpi=150)

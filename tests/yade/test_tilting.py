@@ -1,0 +1,137 @@
+"""Collapse multipliers against statics, mechanisms, and what a TiltTable leaves behind. mu: tangent of the friction angle."""
+
+import math
+import os
+import tempfile
+
+import numpy as np
+from masonry import dem
+from masonry.dem import tilting
+from yade import O, Vector3
+
+# Bisection ends within 1e-3 of the multiplier; the mean of the bracket is off by at most half of that, and a trial by _REST.
+CLOSE = 1e-3
+
+
+def ground(mu, **attributes):
+    O.reset()
+    stone = dem.BlockMat(density=2000, frictionAngle=math.atan(mu), restitution=0, **attributes)
+    return dem.base((4, 4, 0.2), stone), stone
+
+
+def bond_wall(courses, mu):
+    """Blocks 0.40 x 0.175 m, five long, on a fixed course; the lowest free course starts with a half block."""
+    base, stone = ground(mu)
+    ids = dem.wall(courses + 1, 5, (0.40, 0.20, 0.175), stone, base)
+    for id in ids[:5]:
+        O.bodies[id].dynamic = False
+
+
+def found(**options):
+    result = dem.TiltTable(**options).bisect(progress=False)
+    low, high = result.bracket
+    assert low <= result.multiplier <= high and high - low <= CLOSE * high, result
+    assert not result.doubts, result
+    return result
+
+
+def marks(result, kind):
+    return [(int(j["id1"]), int(j["id2"])) for j in result.joints if j[kind]]
+
+
+def refuses(act, *words):
+    try:
+        act()
+    except ValueError as error:
+        assert all(word in str(error) for word in words), (words, str(error))
+    else:
+        raise AssertionError(f"accepted: {words}")
+
+
+# --- stacks: n blocks of width 2 b and height 2 a turn about the edge of their base at b / (n a), whichever way they are loaded ---
+for n in (1, 2, 4):
+    exact = 0.6 / (n * 0.4)
+    for options in ({}, {"load": "turned"}, {"direction": "-x"}, {"gravity": 1.62}):
+        base, stone = ground(2.0)
+        ids = dem.stack(n, (0.6, 0.5, 0.4), stone, base)
+        result = found(**options)
+        assert abs(result.multiplier / exact - 1) < CLOSE, (n, options, result)
+        assert marks(result, "opens") == [(base, ids[0])] and marks(result, "slides") == [], (n, result.joints)
+        assert result.blocks == ids
+
+# --- a block that slides does so at mu; the joint slides and stays closed ---
+for mu in (0.2, 0.6):
+    base, stone = ground(mu)
+    block = dem.block((0.6, 0.5, 0.4), stone, on=base)
+    result = found()
+    assert abs(result.multiplier / mu - 1) < CLOSE, result
+    assert marks(result, "slides") == [(base, block)] and marks(result, "opens") == [], result.joints
+
+# --- the slow ramp: the same multiplier, from below by at most the stairs between two looks ---
+base, stone = ground(2.0)
+dem.stack(2, (0.6, 0.5, 0.4), stone, base)
+table = dem.TiltTable()
+result = table.ramp(progress=False)
+stair = 0.02 * tilting._LOOK * table._dt / table._unit
+assert -2 * stair < result.multiplier - 0.75 <= 1e-9 and result.bracket[1] > 0.75, result
+assert marks(result, "opens") == [(0, 1)], result.joints
+
+# --- running bond: associative limit analysis gives an upper bound of a block wall's multiplier; low friction: all slides at mu ---
+for courses, bound in ((6, 0.64286), (10, 0.58000)):
+    bond_wall(courses, 0.65)
+    result = found()
+    assert 0.95 * bound < result.bracket[0] and result.bracket[1] <= bound, result
+    assert any(result.joints["opens"])
+bond_wall(6, 0.3)
+result = found()
+assert abs(result.multiplier / 0.3 - 1) < CLOSE, result
+assert not any(result.joints["opens"]) and all(id1 <= 5 < id2 for id1, id2 in marks(result, "slides")), result.joints
+
+# --- out of plane: the wall turns about the edge of its base at thickness / height ---
+for options in ({}, {"load": "turned"}):
+    base, stone = ground(0.7)
+    ids = dem.wall(3, 2, (0.40, 0.15, 0.20), stone, base)
+    result = found(direction="y", **options)
+    assert abs(result.multiplier / (0.15 / 0.60) - 1) < CLOSE, result
+    assert O.engines[-1].chosenModel == "spatial"
+    assert marks(result, "opens") == [(base, ids[0]), (base, ids[1])], result.joints
+
+# --- the scene is put back, and the same table finds the same bits again ---
+start = [(b.state.pos, b.state.ori) for b in O.bodies]
+table = dem.TiltTable(direction="y")
+first, again = table.bisect(progress=False), table.bisect(progress=False)
+assert first.bracket == again.bracket and np.array_equal(first.joints, again.joints)
+assert start == [(b.state.pos, b.state.ori) for b in O.bodies] and all(b.state.vel.norm() == 0 == b.state.angVel.norm() for b in O.bodies)
+
+# --- the picture; the words of a doubt ---
+with tempfile.TemporaryDirectory() as folder:
+    path = os.path.join(folder, "mechanism.png")
+    first.draw(path)
+    assert open(path, "rb").read(8) == b"\x89PNG\r\n\x1a\n"
+trial = table.trial(0.5)
+doubtful = table._collapse(0.5, (0.4, 0.5), [tilting.Trial(0.4, "unclear", 0, 0, 0), tilting.Trial(0.5, "collapse", 0, 0, 3)], table._mechanism())
+assert trial.verdict == "collapse" and str(doubtful).count("NOT TO BE TRUSTED") == 2 and "in 3 steps" in str(doubtful), doubtful
+
+# --- input that cannot be meant ---
+refuses(lambda: dem.TiltTable(direction="z"), "direction", "'z'")
+refuses(lambda: dem.TiltTable(load="angle"), "load", "'turned'")
+refuses(lambda: dem.TiltTable(model="compliant"), "model")
+refuses(lambda: dem.TiltTable(hold=0), "hold = 0", "positive")
+refuses(lambda: table.bisect(tolerance=1), "tolerance = 1")
+refuses(lambda: table.bisect(upper=-1), "upper = -1")
+refuses(lambda: table.ramp(rate=0), "rate = 0")
+base, stone = ground(0.5)
+refuses(lambda: dem.TiltTable(), "no free block")
+block = dem.block((0.6, 0.5, 0.4), stone, on=base)
+O.bodies[block].state.pos += Vector3(2.01, 0, 0)  # its centre is beyond the edge of the base
+refuses(lambda: dem.TiltTable().bisect(progress=False), "do not stand")
+O.bodies[block].state.pos = Vector3(0, 0, 0.2)
+for side in (-1, 1):
+    held = dem.block((0.6, 0.5, 0.4), stone, center=(0.6 * side, 0, 0.2))
+    O.bodies[held].dynamic = False
+refuses(lambda: dem.TiltTable().bisect(progress=False), "held on all sides")
+refuses(lambda: dem.TiltTable().ramp(rate=2, progress=False), "held on all sides")
+base, stone = ground(0.5, normalStiffness=1e9)
+dem.block((0.6, 0.5, 0.4), stone, on=base)
+refuses(lambda: dem.TiltTable(), "rigid", "stiffness")
+assert abs(dem.TiltTable(model="planar").bisect(progress=False).multiplier / 0.5 - 1) < CLOSE
