@@ -1,5 +1,6 @@
 // The contact solver against a dense solver of the same laws, against the other dimension, and against what must always hold.
 #include "dynamics/rigid/contact_problem.hpp"
+#include "dynamics/rigid/rigid_step.hpp"
 #include "rigid_rig.hpp"
 #include <catch2/catch.hpp>
 #include <atomic>
@@ -367,6 +368,23 @@ TEST_CASE("contact problem: no heap allocation once the size is known")
 	const long before = allocations;
 	solver.solve(1e-13);
 	CHECK(allocations == before);
+}
+
+TEST_CASE("rigid step: no heap allocation in steps and impacts once a scene has been seen")
+{
+	// The workspace has seen every size after the first second; a rocking block then goes on to land, once a second or so.
+	auto             s = rig::rockingBlock(0.3, 1.5, 0.17, 0.9);
+	RigidStep<Plane> step;
+	while (s.time < 3)
+		step.advance(s, 1e-3);
+	int        impacts = 0;
+	const long before = allocations;
+	while (s.time < 6) {
+		step.advance(s, 1e-3);
+		impacts += int(s.impacts.size());
+	}
+	CHECK(allocations == before);
+	CHECK(impacts >= 2);
 }
 
 TEST_CASE("contact problem: without slip an unsolvable problem gains no energy")
