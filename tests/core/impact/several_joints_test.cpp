@@ -22,6 +22,11 @@ void* operator new(size_t size)
 	if (void* memory = std::malloc(size)) return memory;
 	throw std::bad_alloc();
 }
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept // the sanitizer pairs it with the delete below
+{
+	++allocations;
+	return std::malloc(size ? size : 1);
+}
 void operator delete(void* memory) noexcept { std::free(memory); }
 void operator delete(void* memory, size_t) noexcept { std::free(memory); }
 
