@@ -84,3 +84,13 @@ def run_impacts(count, t_end):
     while len(dem.impacts()) < count and O.time < t_end:
         O.run(5000, True)
     return dem.impacts()
+
+
+def refuses(act, *words, kind=ValueError):
+    """act() ends in an error of that kind, whose text holds all the words."""
+    try:
+        act()
+    except kind as error:
+        assert all(word in str(error) for word in words), error
+    else:
+        raise AssertionError(f"accepted: {words}")
