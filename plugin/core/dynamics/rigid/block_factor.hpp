@@ -1,8 +1,8 @@
 #pragma once
 // Square matrix of blocks over a graph: one row of blocks a node, and for every edge the two blocks that couple its nodes.
-// Factorised as L D U in a minimum-degree order (the pattern is symmetric, the values need not be), without pivoting between
-// blocks. The pattern, its fill and every update's target are found once per graph.
-#include <Eigen/LU>
+// Factorised as L U, with ones in U's diagonal, in a minimum-degree order (the pattern is symmetric, the values need not be), without
+// pivoting between blocks. The pattern, its fill and every update's target are found once per graph.
+#include "dynamics/rigid/pivot_factor.hpp"
 #include <Eigen/OrderingMethods>
 #include <Eigen/SparseCore>
 #include <algorithm>
@@ -43,21 +43,16 @@ public:
 	// Replaces the matrix by its factors.
 	void factorise()
 	{
-		const int* target = targets.data();
+		const int* next = targets.data();
 		for (int k = 0; k < nodes(); ++k) {
-			pivots[k] = pivots[k].inverse().eval();
-			for (int a = first[k]; a < first[k + 1]; ++a) {
-				const Block factor = lower[a].lazyProduct(pivots[k]);
+			factors[k].compute(pivots[k]);
+			for (int b = first[k]; b < first[k + 1]; ++b)
+				factors[k].solve(upper[b]);
+			for (int a = first[k]; a < first[k + 1]; ++a)
 				for (int b = first[k]; b < first[k + 1]; ++b) {
-					if (b < a)
-						lower[*target++].noalias() -= factor.lazyProduct(upper[b]);
-					else if (b > a)
-						upper[*target++].noalias() -= factor.lazyProduct(upper[b]);
-					else
-						pivots[row[a]].noalias() -= factor.lazyProduct(upper[a]);
+					Block& target = b == a ? pivots[row[a]] : b < a ? lower[*next++] : upper[*next++];
+					target.noalias() -= lower[a].lazyProduct(upper[b]);
 				}
-				lower[a] = factor;
-			}
 		}
 	}
 
@@ -66,13 +61,14 @@ public:
 	{
 		for (int k = 0; k < nodes(); ++k)
 			work[k] = x[nodeAt[k]];
-		for (int k = 0; k < nodes(); ++k)
+		for (int k = 0; k < nodes(); ++k) {
+			factors[k].solve(work[k]);
 			for (int a = first[k]; a < first[k + 1]; ++a)
 				work[row[a]].noalias() -= lower[a].lazyProduct(work[k]);
+		}
 		for (int k = nodes() - 1; k >= 0; --k) {
 			for (int a = first[k]; a < first[k + 1]; ++a)
 				work[k].noalias() -= upper[a].lazyProduct(work[row[a]]);
-			work[k] = pivots[k] * work[k];
 			x[nodeAt[k]] = work[k];
 		}
 	}
@@ -119,6 +115,7 @@ private:
 			first.push_back(int(row.size()));
 		}
 		pivots.resize(n);
+		factors.resize(n);
 		work.resize(n);
 		lower.resize(row.size());
 		upper.resize(row.size());
@@ -147,6 +144,7 @@ private:
 	std::vector<int> position, nodeAt;          // of a node in the order of elimination, and back
 	std::vector<int> first, row, slot, targets; // columns of L (rows of U): entries first[k] .. first[k + 1] at rows `row`
 	std::vector<Block> pivots, lower, upper;
+	std::vector<PivotFactor<size>> factors; // of the pivots
 	std::vector<Rows> work;
 };
 

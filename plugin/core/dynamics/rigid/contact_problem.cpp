@@ -625,7 +625,8 @@ SolveReport ContactSolver<K>::solve(double tolerance)
 	SolveReport report;
 	w.prepare(*this);
 	w.applyImpulses();
-	constexpr int fewPoints = 2, fewSweeps = 4; // a block on its pivot, or on a face in the plane: dearer to factorise than to sweep
+	// A block on its pivot, or on a face in the plane: dearer to factorise than to sweep. Sweeps over an edge in space are slow.
+	constexpr int fewPoints = K::dimension == 2 ? 2 : 1, fewSweeps = 4;
 	if (w.nPoints <= fewPoints) {
 		report.residual = w.gaussSeidel(tolerance, fewSweeps, true, report);
 		if (report.residual <= tolerance)

@@ -1,0 +1,61 @@
+#pragma once
+// Factors of a small matrix, to solve with. Its inverse will not do where the matrix is stiff along some directions and soft across them:
+// the round-off of the inverse, of the size of the soft part, would move the stiff directions.
+#include <Eigen/Core>
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace masonry::rigid {
+
+// Small matrix as L U, its rows exchanged for the largest pivots.
+template <int size>
+class PivotFactor {
+public:
+	using Block = Eigen::Matrix<double, size, size>;
+
+	void compute(const Block& matrix)
+	{
+		LU = matrix;
+		for (int k = 0; k < size; ++k) {
+			int largest = k;
+			for (int i = k + 1; i < size; ++i)
+				if (std::abs(LU(i, k)) > std::abs(LU(largest, k)))
+					largest = i;
+			exchanged[k] = largest;
+			if (largest != k)
+				LU.row(k).swap(LU.row(largest));
+			reciprocal[k] = 1 / LU(k, k);
+			for (int i = k + 1; i < size; ++i) {
+				LU(i, k) *= reciprocal[k];
+				for (int j = k + 1; j < size; ++j)
+					LU(i, j) -= LU(i, k) * LU(k, j);
+			}
+		}
+	}
+
+	// Solves in place, column by column.
+	template <int columns>
+	void solve(Eigen::Matrix<double, size, columns>& x) const
+	{
+		for (int c = 0; c < columns; ++c) {
+			for (int k = 0; k < size; ++k)
+				std::swap(x(k, c), x(exchanged[k], c));
+			for (int k = 0; k < size; ++k)
+				for (int i = k + 1; i < size; ++i)
+					x(i, c) -= LU(i, k) * x(k, c);
+			for (int k = size - 1; k >= 0; --k) {
+				x(k, c) *= reciprocal[k];
+				for (int i = 0; i < k; ++i)
+					x(i, c) -= LU(i, k) * x(k, c);
+			}
+		}
+	}
+
+private:
+	Block LU;
+	std::array<double, size> reciprocal; // of U's diagonal
+	std::array<int, size> exchanged;     // row k with this one, one after the other
+};
+
+} // namespace masonry::rigid
