@@ -7,7 +7,8 @@ namespace masonry::rigid::wall {
 
 namespace {
 
-using Row = KeptFactor::Row;
+template <class K>
+using Rows = typename KeptFactor<K>::Rows;
 
 constexpr double relaxation = 1.6;
 constexpr double pullBack = 0.2; // share of a slip, or of a penetration that has grown in this mode, that a step takes back
@@ -16,19 +17,19 @@ struct alignas(alignment) Largest {
 	Lanes velocity, force, motion;
 };
 
-MASONRY_INLINE Lanes clip(const Lanes& value, const Lanes& bound) { return larger(smaller(value, bound), -bound); }
-
 // Which points take part, R, and b. Returns whether another point touches than before.
-MASONRY_LANES bool takeAll(Group* groups, const FeatureGroup* features, std::array<Row, 2>* rows, int begin, int end, double h,
-                           double softness, double enter, double leave)
+template <class K>
+MASONRY_INLINE bool takePoints(Group<K>* groups, const FeatureGroup<K>* features, Rows<K>* rows, int begin, int end, double h,
+                               double softness, double enter, double leave)
 {
 	const Lanes perH = all(1 / h), none = all(0);
+	const typename PointLanes<K>::Tangent noTangent {};
 	Mask different {0, 0, 0, 0};
 	for (int g = begin; g < end; ++g)
-		for (int k = 0; k < 2; ++k) {
-			const FeatureLanes& f = features[g].point[k];
-			PointLanes& p = groups[g].point[k];
-			Row& row = rows[g][k];
+		for (int k = 0; k < groups[g].count; ++k) {
+			const FeatureLanes<K>& f = features[g].point[k];
+			PointLanes<K>& p = groups[g].point[k];
+			auto& row = rows[g][k];
 			const Mask was = row.stiffness > 0;
 			const Mask touches = f.present & (was ? p.gap < leave : p.gap < enter);
 			different |= touches ^ was;
@@ -39,36 +40,37 @@ MASONRY_LANES bool takeAll(Group* groups, const FeatureGroup* features, std::arr
 			row.bn = -gap * perH * (gap > 0 ? all(1) : all(pullBack));
 			row.bt = -pullBack * perH * f.slip;
 			row.bn = touches ? row.bn : none;
+			row.bt = select(touches, row.bt, noTangent);
 			p.pn = touches ? p.pn : none;
-			p.pt = touches ? p.pt : none;
+			p.pt = select(touches, p.pt, noTangent);
 		}
 	return (different[0] | different[1] | different[2] | different[3]) != 0;
 }
 
 // One pass over the points: the laws (not before the first solve), and the right-hand side of the next solve.
-template <bool laws>
-MASONRY_INLINE void passAll(Group* groups, FeatureGroup* features, std::array<Row, 2>* rows, int begin, int end, const Lanes* velocity,
+template <class K, bool laws>
+MASONRY_INLINE void passAll(Group<K>* groups, FeatureGroup<K>* features, Rows<K>* rows, int begin, int end, const Lanes* velocity,
                             Lanes* force, Largest& worst)
 {
 	for (int g = begin; g < end; ++g) {
-		Group& group = groups[g];
-		const Bodies v1(velocity, group.body1), v2(velocity, group.body2);
-		Bodies f1(force, group.body1), f2(force, group.body2);
-		const Lanes dx = v2.x - v1.x, dy = v2.y - v1.y;
-		for (int k = 0; k < 2; ++k) {
-			PointLanes& p = group.point[k];
-			FeatureLanes& f = features[g].point[k];
-			Row& row = rows[g][k];
-			const Lanes un = p.nx * dx + p.ny * dy + p.a2n * v2.w - p.a1n * v1.w, ut = p.nx * dy - p.ny * dx + p.a2t * v2.w - p.a1t * v1.w;
-			const Lanes wn = un - row.bn, wt = ut - row.bt;
+		Group<K>& group = groups[g];
+		const Bodies<K> v1(velocity, group.body1), v2(velocity, group.body2);
+		Bodies<K> f1(force, group.body1), f2(force, group.body2);
+		for (int k = 0; k < group.count; ++k) {
+			PointLanes<K>& p = group.point[k];
+			FeatureLanes<K>& f = features[g].point[k];
+			auto& row = rows[g][k];
+			const Lanes un = normalRate(v1, v2, p), wn = un - row.bn;
+			const auto ut = slipRate(v1, v2, p), wt = ut - row.bt;
 			if constexpr (laws) {
 				const Lanes yn = p.pn - (relaxation * wn - (relaxation - 1) * f.zn) * row.stiffness;
-				const Lanes yt = p.pt - (relaxation * wt - (relaxation - 1) * f.zt) * row.stiffness;
+				const auto yt = p.pt - (relaxation * wt - (relaxation - 1) * f.zt) * row.stiffness;
 				p.pn = larger(yn, all(0));
 				p.pt = clip(yt, group.friction * p.pn);
-				const Lanes zn = (p.pn - yn) * row.resistance, zt = (p.pt - yt) * row.resistance;
+				const Lanes zn = (p.pn - yn) * row.resistance;
+				const auto zt = (p.pt - yt) * row.resistance;
 				const Lanes errorN = (zn - (2 - relaxation) * f.zn - (relaxation - 1) * wn) * row.stiffness;
-				const Lanes errorT = (zt - (2 - relaxation) * f.zt - (relaxation - 1) * wt) * row.stiffness;
+				const auto errorT = (zt - (2 - relaxation) * f.zt - (relaxation - 1) * wt) * row.stiffness;
 				const Lanes perMass = row.stiffness > 0 ? all(1) / p.massN : all(0);
 				f.zn = zn;
 				f.zt = zt;
@@ -82,33 +84,35 @@ MASONRY_INLINE void passAll(Group* groups, FeatureGroup* features, std::array<Ro
 			}
 			if constexpr (!laws) { // a point without an impulse is free to move as it does
 				f.zn = p.pn > 0 ? f.zn : larger(wn, all(0));
-				f.zt = p.pn > 0 ? f.zt : wt;
+				f.zt = select(p.pn > 0, f.zt, wt);
 			}
-			const Lanes qn = p.pn + (f.zn - wn) * row.stiffness, qt = p.pt + (f.zt - wt) * row.stiffness;
-			const Lanes fx = p.nx * qn - p.ny * qt, fy = p.ny * qn + p.nx * qt;
-			f1.x -= fx;
-			f1.y -= fy;
-			f1.w -= p.a1n * qn + p.a1t * qt;
-			f2.x += fx;
-			f2.y += fy;
-			f2.w += p.a2n * qn + p.a2t * qt;
+			add(f1, f2, p, p.pn + (f.zn - wn) * row.stiffness, p.pt + (f.zt - wt) * row.stiffness);
 		}
 		f1.store(force, group.body1, v1.m);
 		f2.store(force, group.body2, v2.m);
 	}
 }
 
-MASONRY_LANES void firstPass(Group* groups, FeatureGroup* features, std::array<Row, 2>* rows, int begin, int end, const Lanes* velocity,
-                             Lanes* force, Largest& worst)
-{
-	passAll<false>(groups, features, rows, begin, end, velocity, force, worst);
-}
-
-MASONRY_LANES void lawPass(Group* groups, FeatureGroup* features, std::array<Row, 2>* rows, int begin, int end, const Lanes* velocity,
-                           Lanes* force, Largest& worst)
-{
-	passAll<true>(groups, features, rows, begin, end, velocity, force, worst);
-}
+// No template is compiled for several vector widths.
+#define MASONRY_PASSES(K)                                                                                                                  \
+	MASONRY_LANES bool takeAll(Group<K>* groups, const FeatureGroup<K>* features, Rows<K>* rows, int begin, int end, double h,             \
+	                           double softness, double enter, double leave)                                                                \
+	{                                                                                                                                      \
+		return takePoints<K>(groups, features, rows, begin, end, h, softness, enter, leave);                                               \
+	}                                                                                                                                      \
+	MASONRY_LANES void firstPass(Group<K>* groups, FeatureGroup<K>* features, Rows<K>* rows, int begin, int end, const Lanes* velocity,    \
+	                             Lanes* force, Largest& worst)                                                                             \
+	{                                                                                                                                      \
+		passAll<K, false>(groups, features, rows, begin, end, velocity, force, worst);                                                     \
+	}                                                                                                                                      \
+	MASONRY_LANES void lawPass(Group<K>* groups, FeatureGroup<K>* features, Rows<K>* rows, int begin, int end, const Lanes* velocity,      \
+	                           Lanes* force, Largest& worst)                                                                               \
+	{                                                                                                                                      \
+		passAll<K, true>(groups, features, rows, begin, end, velocity, force, worst);                                                      \
+	}
+MASONRY_PASSES(Plane)
+MASONRY_PASSES(Space)
+#undef MASONRY_PASSES
 
 // M (V_free - V)
 void inertia(const LaneArray& free, const LaneArray& velocity, LaneArray& force, int begin, int end)
@@ -119,7 +123,8 @@ void inertia(const LaneArray& free, const LaneArray& velocity, LaneArray& force,
 
 } // namespace
 
-bool KeptFactor::takeRows(bool newPoints)
+template <class K>
+bool KeptFactor<K>::takeRows(bool newPoints)
 {
 	const double deepest = 3., softest = 3e-3; // of r: waves of correction cross the courses in some sqrt(1/r) solves
 	const double wanted = std::min(softest, deepest / (double(contacts->depth) * contacts->depth));
@@ -139,55 +144,80 @@ bool KeptFactor::takeRows(bool newPoints)
 	return different || newPoints || otherSoftness;
 }
 
-// A, in the components (v, rho w).
-void KeptFactor::factorise()
+// A, pack by pack.
+template <class K>
+void KeptFactor<K>::factorise()
 {
 	const auto& c = *contacts;
+	constexpr int n = packs<K>;
 	edges.clear();
-	for (const Group& group : c.groups)
+	const int bodies = int(c.velocity.size()) / n;
+	for (int b = 0; n > 1 && b < bodies; ++b)
+		edges.push_back({n * b, n * b + 1});
+	for (const Group<K>& group : c.groups)
 		for (int i = 0; i < width; ++i)
-			if (c.velocity[group.body1[i]][3] > 0 && c.velocity[group.body2[i]][3] > 0)
-				edges.push_back({group.body1[i], group.body2[i]});
+			if (c.isFree(group.body1[i]) && c.isFree(group.body2[i]))
+				for (int k = 0; k < n * n; ++k)
+					edges.push_back({n * group.body1[i] + k / n, n * group.body2[i] + k % n});
 	factor.setGraph(int(c.velocity.size()), edges);
 	using Block = SymmetricFactor::Block;
 	for (size_t b = 0; b < c.velocity.size(); ++b) {
 		const double inverseMass = c.velocity[b][3];
 		factor.addDiagonal(int(b), Block::Identity() * (inverseMass > 0 ? 1 / inverseMass : 1));
 	}
-	int edge = 0;
+	int edge = n > 1 ? bodies : 0;
 	for (size_t g = 0; g < c.groups.size(); ++g)
 		for (int i = 0; i < width; ++i) {
-			const Group& group = c.groups[g];
-			Block k11 = Block::Zero(), k12 = Block::Zero(), k22 = Block::Zero();
-			for (int k = 0; k < 2; ++k) {
-				const PointLanes& p = group.point[k];
-				const Eigen::Vector3d n1(-p.nx[i], -p.ny[i], -p.a1n[i]), n2(p.nx[i], p.ny[i], p.a2n[i]);
-				const Eigen::Vector3d t1(p.ny[i], -p.nx[i], -p.a1t[i]), t2(-p.ny[i], p.nx[i], p.a2t[i]);
+			const Group<K>& group = c.groups[g];
+			Block own[2][n][n], across[n][n]; // of J^T J / R; rows and columns by pack
+			for (int k = 0; k < n * n; ++k)
+				own[0][k / n][k % n] = own[1][k / n][k % n] = across[k / n][k % n] = Block::Zero();
+			for (int k = 0; k < group.count; ++k) {
+				const PointLanes<K>& p = group.point[k];
 				const double stiffness = rows[g][k].stiffness[i];
-				k11 += stiffness * (n1 * n1.transpose() + t1 * t1.transpose());
-				k12 += stiffness * (n1 * n2.transpose() + t1 * t2.transpose());
-				k22 += stiffness * (n2 * n2.transpose() + t2 * t2.transpose());
+				if (!(stiffness > 0))
+					continue;
+				for (int a = 0; a < n; ++a)
+					for (int b = 0; b < n; ++b) {
+						Block sum[3] = {Block::Zero(), Block::Zero(), Block::Zero()};
+						for (int row = 0; row < K::rows; ++row) {
+							const Vector3 a1 = -partOf(p, row, i, 1, a), b1 = -partOf(p, row, i, 1, b), a2 = partOf(p, row, i, 2, a),
+							              b2 = partOf(p, row, i, 2, b);
+							sum[0] += a1 * b1.transpose();
+							sum[1] += a2 * b2.transpose();
+							sum[2] += a1 * b2.transpose();
+						}
+						own[0][a][b] += stiffness * sum[0];
+						own[1][a][b] += stiffness * sum[1];
+						across[a][b] += stiffness * sum[2];
+					}
 			}
-			const bool free1 = c.velocity[group.body1[i]][3] > 0, free2 = c.velocity[group.body2[i]][3] > 0;
-			if (free1)
-				factor.addDiagonal(group.body1[i], k11);
-			if (free2)
-				factor.addDiagonal(group.body2[i], k22);
-			if (free1 && free2)
-				factor.addEdge(edge++, k12);
+			const int body[2] = {group.body1[i], group.body2[i]};
+			for (int side = 0; side < 2; ++side) {
+				if (!c.isFree(body[side]))
+					continue;
+				for (int a = 0; a < n; ++a)
+					factor.addDiagonal(n * body[side] + a, own[side][a][a]);
+				if (n > 1)
+					factor.addEdge(body[side], own[side][0][n - 1]);
+			}
+			if (c.isFree(body[0]) && c.isFree(body[1]))
+				for (int k = 0; k < n * n; ++k)
+					factor.addEdge(edge++, across[k / n][k % n]);
 		}
 	factor.factorise();
 	++report.factorisations;
 }
 
-void KeptFactor::begin(WallContacts& c, const LaneArray& load, double step, bool newPoints)
+template <class K>
+void KeptFactor<K>::begin(WallContacts<K>& c, const LaneArray& load, double step, bool newPoints)
 {
 	contacts = &c;
 	h = step;
 	report = {};
 	before.resize(c.groups.size());
 	for (size_t g = 0; g < c.groups.size(); ++g)
-		for (int k = 0; k < 2; ++k)
+		for (int k = 0; k < c.groups[g].count; ++k)
 			before[g][k] = {c.groups[g].point[k].pn, c.groups[g].point[k].pt, c.features[g].point[k].zn, c.features[g].point[k].zt};
 	if (takeRows(newPoints))
 		factorise();
@@ -207,17 +237,20 @@ void KeptFactor::begin(WallContacts& c, const LaneArray& load, double step, bool
 	});
 }
 
-void KeptFactor::forget(WallContacts& c)
+template <class K>
+void KeptFactor<K>::forget(WallContacts<K>& c)
 {
 	for (size_t g = 0; g < c.groups.size(); ++g)
-		for (int k = 0; k < 2; ++k) {
-			FeatureLanes& f = c.features[g].point[k];
-			f.zn = f.zt = f.slip = all(0);
+		for (int k = 0; k < lanePoints<K>; ++k) {
+			FeatureLanes<K>& f = c.features[g].point[k];
+			f.zn = all(0);
+			f.zt = f.slip = Tangent {};
 			f.zero = smaller(c.groups[g].point[k].gap, all(0));
 		}
 }
 
-void KeptFactor::iterate(int most, double velocityResidual, double forceResidual)
+template <class K>
+void KeptFactor<K>::iterate(int most, double velocityResidual, double forceResidual)
 {
 	auto& c = *contacts;
 	for (int k = 0; k < most; ++k) {
@@ -250,30 +283,34 @@ void KeptFactor::iterate(int most, double velocityResidual, double forceResidual
 	}
 }
 
-void KeptFactor::keepSlip()
+template <class K>
+void KeptFactor<K>::keepSlip()
 {
 	auto& c = *contacts;
 	for (size_t g = 0; g < c.groups.size(); ++g)
-		for (int k = 0; k < 2; ++k) {
-			const PointLanes& p = c.groups[g].point[k];
-			Lanes& slip = c.features[g].point[k].slip;
-			const Mask sticks = size(p.pt) < c.groups[g].friction * p.pn;
-			slip = sticks ? slip + h * rows[g][k].ut : all(0);
+		for (int k = 0; k < c.groups[g].count; ++k) {
+			const PointLanes<K>& p = c.groups[g].point[k];
+			Tangent& slip = c.features[g].point[k].slip;
+			slip = select(slides(p.pt, c.groups[g].friction * p.pn), Tangent {}, slip + h * rows[g][k].ut);
 		}
 }
 
-void KeptFactor::giveUp()
+template <class K>
+void KeptFactor<K>::giveUp()
 {
 	auto& c = *contacts;
 	for (size_t g = 0; g < c.groups.size(); ++g)
-		for (int k = 0; k < 2; ++k) {
-			PointLanes& p = c.groups[g].point[k];
-			FeatureLanes& f = c.features[g].point[k];
+		for (int k = 0; k < c.groups[g].count; ++k) {
+			PointLanes<K>& p = c.groups[g].point[k];
+			FeatureLanes<K>& f = c.features[g].point[k];
 			p.pn = before[g][k].pn;
 			p.pt = before[g][k].pt;
 			f.zn = before[g][k].zn;
 			f.zt = before[g][k].zt;
 		}
 }
+
+template class KeptFactor<Plane>;
+template class KeptFactor<Space>;
 
 } // namespace masonry::rigid::wall

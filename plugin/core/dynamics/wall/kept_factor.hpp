@@ -28,25 +28,31 @@ struct KeptReport {
 	double motion {0};   // largest relative velocity of a point, in touch or open, m/s
 };
 
+template <class K>
 class KeptFactor {
 public:
-	struct alignas(alignment) Row {          // of a point
-		Lanes bn, bt, resistance, stiffness; // R and 1/R; zero: does not touch
-		Lanes un, ut;                        // J V, m/s
+	using Tangent = typename PointLanes<K>::Tangent;
+	struct alignas(alignment) Row { // of a point
+		Lanes bn;
+		Tangent bt;
+		Lanes resistance, stiffness; // R and 1/R; zero: does not touch
+		Lanes un;                    // J V, m/s
+		Tangent ut;
 	};
+	using Rows = std::array<Row, lanePoints<K>>;
 
 	// The wall has moved since the last step in this mode, and holds what it finds.
-	static void forget(WallContacts& contacts);
+	static void forget(WallContacts<K>& contacts);
 	// Starts a step from the contacts' velocities; `load` is the change of velocity by external forces, per body.
-	void begin(WallContacts& contacts, const LaneArray& load, double h, bool newPoints);
+	void begin(WallContacts<K>& contacts, const LaneArray& load, double h, bool newPoints);
 	// Solves until both residuals are at most theirs, at most `most` times. May be called again to go on.
 	void iterate(int most, double velocityResidual, double forceResidual);
 	void keepSlip(); // of the step that ends
 	void giveUp();   // impulses as they were at the beginning
 
 	KeptReport report;
-	LaneArray velocity;                   // V
-	std::vector<std::array<Row, 2>> rows; // by group
+	LaneArray velocity;     // V
+	std::vector<Rows> rows; // by group
 	size_t factorBlocks() const { return factor.blocks(); }
 
 private:
@@ -54,14 +60,17 @@ private:
 	void factorise();
 
 	struct alignas(alignment) Before {
-		Lanes pn, pt, zn, zt;
+		Lanes pn;
+		Tangent pt;
+		Lanes zn;
+		Tangent zt;
 	};
 
-	WallContacts* contacts {nullptr};
-	SymmetricFactor factor;
+	WallContacts<K>* contacts {nullptr};
+	SymmetricFactor factor; // a node for each pack
 	std::vector<SymmetricFactor::Edge> edges;
 	LaneArray free, force;
-	std::vector<std::array<Before, 2>> before; // by group
+	std::vector<std::array<Before, lanePoints<K>>> before; // by group
 	double h {0}, softness {0};
 };
 

@@ -40,6 +40,11 @@ MASONRY_INLINE Lanes all(double value) { return Lanes {value, value, value, valu
 MASONRY_INLINE Lanes larger(const Lanes& a, const Lanes& b) { return a > b ? a : b; }
 MASONRY_INLINE Lanes smaller(const Lanes& a, const Lanes& b) { return a < b ? a : b; }
 MASONRY_INLINE Lanes size(const Lanes& a) { return a < 0 ? -a : a; }
+MASONRY_INLINE Lanes select(const Mask& mask, const Lanes& a, const Lanes& b) { return mask ? a : b; }
+MASONRY_INLINE Lanes root(const Lanes& a)
+{
+	return Lanes {__builtin_sqrt(a[0]), __builtin_sqrt(a[1]), __builtin_sqrt(a[2]), __builtin_sqrt(a[3])};
+}
 MASONRY_INLINE double largest(const Lanes& a)
 {
 	const double low = a[0] > a[1] ? a[0] : a[1], high = a[2] > a[3] ? a[2] : a[3];
@@ -55,24 +60,5 @@ MASONRY_INLINE void transpose(Lanes& a, Lanes& b, Lanes& c, Lanes& d)
 	c = __builtin_shuffle(ab0, cd0, Mask {2, 3, 6, 7});
 	d = __builtin_shuffle(ab1, cd1, Mask {2, 3, 6, 7});
 }
-
-// Four quantities of four bodies: rows of `from` in, one lane a body out.
-struct alignas(alignment) Bodies {
-	Lanes x, y, w, m;
-
-	MASONRY_INLINE Bodies(const Lanes* from, const int* body) : x(from[body[0]]), y(from[body[1]]), w(from[body[2]]), m(from[body[3]])
-	{
-		transpose(x, y, w, m);
-	}
-	// Back to where they came from; bodies with m = 0 are prescribed and stay.
-	MASONRY_INLINE void store(Lanes* to, const int* body, const Lanes& mass) const
-	{
-		Lanes row[width] = {x, y, w, m};
-		transpose(row[0], row[1], row[2], row[3]);
-		for (int i = 0; i < width; ++i)
-			if (mass[i] != 0)
-				to[body[i]] = row[i];
-	}
-};
 
 } // namespace masonry::rigid::wall

@@ -9,26 +9,33 @@ namespace masonry::rigid::wall {
 
 namespace {
 
+Vector2 normal(const PointLanes<Plane>& p, int lane) { return {p.nx[lane], p.ny[lane]}; }
+Vector3 normal(const PointLanes<Space>& p, int lane) { return {p.normal.axis.x[lane], p.normal.axis.y[lane], p.normal.axis.z[lane]}; }
+
 // One lane of a point, as seen from the block: relative velocities are the block's minus the support's.
+template <class K>
 struct Contact {
-	const PointLanes& p;
+	const PointLanes<K>& p;
 	int lane, block, support;
 	bool second; // the block is body 2
 
 	double gap() const { return p.gap[lane]; }
 	double impulse() const { return p.pn[lane]; }
 	// Coordinate along the face, from the middle of the block. Tangents of the points of a joint agree but for their sign.
-	double along(const WallContacts& c) const { return c.gyration[block] * (second ? -p.a2n[lane] : p.a1n[lane]); }
-	double normalRate(const WallContacts& c) const
+	double along(const WallContacts<Plane>& c) const { return c.gyration[block][0] * (second ? -p.a2n[lane] : p.a1n[lane]); }
+	double along(const WallContacts<Space>&) const { return 0; }
+	double normalRate(const WallContacts<Plane>& c) const
 	{
 		const Lanes &v1 = c.velocity[second ? support : block], &v2 = c.velocity[second ? block : support];
 		return p.nx[lane] * (v2[0] - v1[0]) + p.ny[lane] * (v2[1] - v1[1]) + p.a2n[lane] * v2[2] - p.a1n[lane] * v1[2];
 	}
+	double normalRate(const WallContacts<Space>&) const { return 0; }
 };
 
 } // namespace
 
-void RockingJoints::gather(const RigidSystem<Plane>& s, const WallContacts& c)
+template <class K>
+void RockingJoints<K>::gather(const RigidSystem<K>& s, const WallContacts<K>& c)
 {
 	points.clear();
 	anyLaw = std::any_of(s.pairs.begin(), s.pairs.end(), [](const auto& pair) { return !std::isnan(pair.restitution); });
@@ -37,10 +44,10 @@ void RockingJoints::gather(const RigidSystem<Plane>& s, const WallContacts& c)
 	const double g = s.gravity.norm();
 	for (int group = 0; group < int(c.groups.size()); ++group)
 		for (int lane = 0; lane < width && c.features[group].pair[lane] >= 0; ++lane) {
-			const ContactPair<Plane>& pair = s.pairs[c.features[group].pair[lane]];
-			for (int k = 0; k < pair.size; ++k) {
-				const PointLanes& p = c.groups[group].point[k];
-				const double up = g > 0 ? -(p.nx[lane] * s.gravity.x() + p.ny[lane] * s.gravity.y()) / g : 1;
+			const ContactPair<K>& pair = s.pairs[c.features[group].pair[lane]];
+			for (int k = 0; k < c.points(s, group, lane); ++k) {
+				const PointLanes<K>& p = c.groups[group].point[k];
+				const double up = g > 0 ? -normal(p, lane).dot(s.gravity) / g : 1;
 				const int block = up > 0 ? pair.body2 : pair.body1;
 				if (std::abs(up) >= tolerance::uprightJoint && !s.bodies[block].prescribed)
 					points.push_back({block, up > 0 ? pair.face2 : pair.face1, group, lane, k});
@@ -53,23 +60,24 @@ void RockingJoints::gather(const RigidSystem<Plane>& s, const WallContacts& c)
 
 namespace {
 
-template <class JointPoint>
-Contact contact(const WallContacts& c, const JointPoint& at)
+template <class K, class JointPoint>
+Contact<K> contact(const WallContacts<K>& c, const JointPoint& at)
 {
-	const Group& group = c.groups[at.group];
+	const Group<K>& group = c.groups[at.group];
 	const bool second = group.body2[at.lane] == at.block;
 	return {group.point[at.point], at.lane, at.block, second ? group.body1[at.lane] : group.body2[at.lane], second};
 }
 
 } // namespace
 
-void RockingJoints::find(const RigidSystem<Plane>& s, WallContacts& c, bool newPoints)
+template <class K>
+void RockingJoints<K>::find(const RigidSystem<K>& s, WallContacts<K>& c, bool newPoints)
 {
 	if (newPoints || !gathered)
 		gather(s, c);
 	gathered = true;
 	rocking.clear();
-	if (!anyLaw)
+	if (!anyLaw || K::dimension == 3)
 		return;
 	const double open = tolerance::mergedClosing * c.length;
 	for (int begin = 0, end = 0; begin < int(points.size()); begin = end) {
@@ -77,7 +85,7 @@ void RockingJoints::find(const RigidSystem<Plane>& s, WallContacts& c, bool newP
 		int gaping = 0;
 		for (end = begin; end < int(points.size()) && points[end].block == points[begin].block && points[end].face == points[begin].face;
 		     ++end) {
-			const Contact at = contact(c, points[end]);
+			const Contact<K> at = contact(c, points[end]);
 			if (at.impulse() > 0) {
 				low = std::min(low, at.along(c));
 				high = std::max(high, at.along(c));
@@ -90,14 +98,16 @@ void RockingJoints::find(const RigidSystem<Plane>& s, WallContacts& c, bool newP
 	}
 	for (const Joint& joint : rocking)
 		for (int i = joint.begin; i < joint.end; ++i)
-			if (const Contact at = contact(c, points[i]); !(at.impulse() > 0) && at.gap() > open)
+			if (const Contact<K> at = contact(c, points[i]); !(at.impulse() > 0) && at.gap() > open)
 				c.groups[points[i].group].point[points[i].point].gap[points[i].lane] += aside(c);
 }
 
 // Distance by which the open points of a joint that rocks are put aside: far beyond what a step can close.
-double RockingJoints::aside(const WallContacts& c) const { return 1e3 * c.length; }
+template <class K>
+double RockingJoints<K>::aside(const WallContacts<K>& c) const { return 1e3 * c.length; }
 
-void RockingJoints::putBack(WallContacts& c, const Joint& joint) const
+template <class K>
+void RockingJoints<K>::putBack(WallContacts<K>& c, const Joint& joint) const
 {
 	for (int i = joint.begin; i < joint.end; ++i) {
 		double gap = c.groups[points[i].group].point[points[i].point].gap[points[i].lane];
@@ -107,21 +117,23 @@ void RockingJoints::putBack(WallContacts& c, const Joint& joint) const
 	}
 }
 
-void RockingJoints::release(WallContacts& c)
+template <class K>
+void RockingJoints<K>::release(WallContacts<K>& c)
 {
 	for (const Joint& joint : rocking)
 		putBack(c, joint);
 	rocking.clear();
 }
 
-const RockingJoints::JointPoint* RockingJoints::landing(const WallContacts& c, const Joint& joint, double s) const
+template <class K>
+const typename RockingJoints<K>::JointPoint* RockingJoints<K>::landing(const WallContacts<K>& c, const Joint& joint, double s) const
 {
 	constexpr double nearest = 0.5, together = 2; // in substeps: an impact is met as near as may be; closings so near each other are one
 	bool closes = false;
 	const JointPoint* farthest = nullptr;
 	double distance = tolerance::wall::pivot * c.length;
 	for (int i = joint.begin; i < joint.end; ++i) {
-		const Contact at = contact(c, points[i]);
+		const Contact<K> at = contact(c, points[i]);
 		const double gap = at.gap() > 0.5 * aside(c) ? at.gap() - aside(c) : at.gap(), rate = at.normalRate(c),
 		             away = std::abs(at.along(c) - joint.pivot);
 		if (!(rate < 0) || away <= tolerance::wall::pivot * c.length)
@@ -135,9 +147,13 @@ const RockingJoints::JointPoint* RockingJoints::landing(const WallContacts& c, c
 	return closes ? farthest : nullptr;
 }
 
-void RockingJoints::answer(RigidSystem<Plane>& s, WallContacts& c, const JointPoint& where, double& baseWork) const
+template <>
+void RockingJoints<Space>::answer(RigidSystem<Space>&, WallContacts<Space>&, const JointPoint&, double&) const {}
+
+template <>
+void RockingJoints<Plane>::answer(RigidSystem<Plane>& s, WallContacts<Plane>& c, const JointPoint& where, double& baseWork) const
 {
-	const Contact at = contact(c, where);
+	const Contact<Plane> at = contact(c, where);
 	const ContactPair<Plane>& pair = s.pairs[c.features[where.group].pair[where.lane]];
 	const int b1 = at.second ? at.support : at.block, b2 = at.second ? at.block : at.support;
 	const int i = at.lane;
@@ -147,7 +163,7 @@ void RockingJoints::answer(RigidSystem<Plane>& s, WallContacts& c, const JointPo
 	Eigen::Matrix<double, 3, 6> J;
 	J << -at.p.nx[i], -at.p.ny[i], -at.p.a1n[i], at.p.nx[i], at.p.ny[i], at.p.a2n[i], //
 	    at.p.ny[i], -at.p.nx[i], -at.p.a1t[i], -at.p.ny[i], at.p.nx[i], at.p.a2t[i],  //
-	    0, 0, -1 / c.gyration[b1], 0, 0, 1 / c.gyration[b2];
+	    0, 0, -1 / c.gyration[b1][0], 0, 0, 1 / c.gyration[b2][0];
 	Eigen::Matrix<double, 6, 1> velocity, inverseMass;
 	velocity << v1[0], v1[1], v1[2], v2[0], v2[1], v2[2];
 	inverseMass << v1[3], v1[3], v1[3], v2[3], v2[3], v2[3];
@@ -213,7 +229,8 @@ void RockingJoints::answer(RigidSystem<Plane>& s, WallContacts& c, const JointPo
 	s.impacts.push_back({s.time, at.block, at.support, pair.restitution, result.after >= leastSpin, result, lost, capped, 0});
 }
 
-double RockingJoints::land(RigidSystem<Plane>& s, WallContacts& c, double substep)
+template <class K>
+double RockingJoints<K>::land(RigidSystem<K>& s, WallContacts<K>& c, double substep)
 {
 	double baseWork = 0;
 	for (size_t j = 0; j < rocking.size();) {
@@ -229,5 +246,8 @@ double RockingJoints::land(RigidSystem<Plane>& s, WallContacts& c, double subste
 	}
 	return baseWork;
 }
+
+template class RockingJoints<Plane>;
+template class RockingJoints<Space>;
 
 } // namespace masonry::rigid::wall

@@ -15,13 +15,14 @@
 
 namespace masonry::rigid::wall {
 
+template <class K>
 class RockingJoints {
 public:
 	// Finds the joints that rock. `newPoints`: other points than at the last call.
-	void find(const RigidSystem<Plane>& system, WallContacts& contacts, bool newPoints);
-	void release(WallContacts& contacts); // after the last substep
+	void find(const RigidSystem<K>& system, WallContacts<K>& contacts, bool newPoints);
+	void release(WallContacts<K>& contacts); // after the last substep
 	// Impacts of the substep s that comes, into the contacts' velocities and system.impacts. Returns the work of the base, J.
-	double land(RigidSystem<Plane>& system, WallContacts& contacts, double s);
+	double land(RigidSystem<K>& system, WallContacts<K>& contacts, double s);
 
 private:
 	struct JointPoint {
@@ -32,11 +33,11 @@ private:
 		int begin, end; // points
 		double pivot;   // m, along the face
 	};
-	void gather(const RigidSystem<Plane>& system, const WallContacts& contacts);
-	const JointPoint* landing(const WallContacts& contacts, const Joint& joint, double s) const;
-	double aside(const WallContacts& contacts) const;
-	void putBack(WallContacts& contacts, const Joint& joint) const;
-	void answer(RigidSystem<Plane>& system, WallContacts& contacts, const JointPoint& at, double& baseWork) const;
+	void gather(const RigidSystem<K>& system, const WallContacts<K>& contacts);
+	const JointPoint* landing(const WallContacts<K>& contacts, const Joint& joint, double s) const;
+	double aside(const WallContacts<K>& contacts) const;
+	void putBack(WallContacts<K>& contacts, const Joint& joint) const;
+	void answer(RigidSystem<K>& system, WallContacts<K>& contacts, const JointPoint& at, double& baseWork) const;
 
 	bool gathered {false}, anyLaw {false};
 	std::vector<JointPoint> points; // joint by joint

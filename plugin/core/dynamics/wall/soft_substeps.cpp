@@ -25,36 +25,15 @@ struct alignas(alignment) Largest {
 	Lanes change, motion;
 };
 
-MASONRY_INLINE void push(Bodies& v1, Bodies& v2, const PointLanes& p, const Lanes& dn, const Lanes& dt)
-{
-	const Lanes fx = p.nx * dn - p.ny * dt, fy = p.ny * dn + p.nx * dt;
-	v1.x -= v1.m * fx;
-	v1.y -= v1.m * fy;
-	v1.w -= v1.m * (p.a1n * dn + p.a1t * dt);
-	v2.x += v2.m * fx;
-	v2.y += v2.m * fy;
-	v2.w += v2.m * (p.a2n * dn + p.a2t * dt);
-}
-
-MASONRY_INLINE Lanes normalRate(const Bodies& v1, const Bodies& v2, const PointLanes& p)
-{
-	return p.nx * (v2.x - v1.x) + p.ny * (v2.y - v1.y) + p.a2n * v2.w - p.a1n * v1.w;
-}
-
-MASONRY_INLINE Lanes slipRate(const Bodies& v1, const Bodies& v2, const PointLanes& p)
-{
-	return p.nx * (v2.y - v1.y) - p.ny * (v2.x - v1.x) + p.a2t * v2.w - p.a1t * v1.w;
-}
-
-template <bool springs, bool measured>
-MASONRY_INLINE void sweepGroups(Group* groups, int begin, int end, Lanes* velocity, const Spring& spring, Largest& worst)
+template <class K, bool springs, bool measured>
+MASONRY_INLINE void sweepGroups(Group<K>* groups, int begin, int end, Lanes* velocity, const Spring& spring, Largest& worst)
 {
 	const Lanes none = all(0), one = all(1);
 	for (int g = begin; g < end; ++g) {
-		Group& group = groups[g];
-		Bodies v1(velocity, group.body1), v2(velocity, group.body2);
-		for (int k = 0; k < 2; ++k) {
-			PointLanes& p = group.point[k];
+		Group<K>& group = groups[g];
+		Bodies<K> v1(velocity, group.body1), v2(velocity, group.body2);
+		for (int k = 0; k < group.count; ++k) {
+			PointLanes<K>& p = group.point[k];
 			const Mask open = p.gap > 0;
 			const Lanes un = normalRate(v1, v2, p);
 			Lanes pn;
@@ -67,12 +46,11 @@ MASONRY_INLINE void sweepGroups(Group* groups, int begin, int end, Lanes* veloci
 				pn = larger(p.pn - p.massN * (un + bias), none);
 			}
 			const Lanes dn = pn - p.pn;
-			push(v1, v2, p, dn, none);
+			pushNormal(v1, v2, p, dn);
 			p.pn = pn;
 
-			const Lanes ut = slipRate(v1, v2, p), bound = group.friction * pn;
-			const Lanes pt = larger(smaller(p.pt - p.massT * ut, bound), -bound), dt = pt - p.pt;
-			push(v1, v2, p, none, dt);
+			const auto ut = slipRate(v1, v2, p), pt = friction(p, ut, group.friction * pn), dt = pt - p.pt;
+			pushTangential(v1, v2, p, dt);
 			p.pt = pt;
 			if constexpr (measured) {
 				const Mask closed = pn > 0, present = p.massN > 0;
@@ -85,46 +63,60 @@ MASONRY_INLINE void sweepGroups(Group* groups, int begin, int end, Lanes* veloci
 	}
 }
 
-MASONRY_LANES void springSweep(Group* groups, int begin, int end, Lanes* velocity, const Spring& spring, Largest& worst)
-{
-	sweepGroups<true, false>(groups, begin, end, velocity, spring, worst);
-}
-
-MASONRY_LANES void relaxSweep(Group* groups, int begin, int end, Lanes* velocity, const Spring& spring, Largest& worst)
-{
-	sweepGroups<false, false>(groups, begin, end, velocity, spring, worst);
-}
-
-MASONRY_LANES void lastSweep(Group* groups, int begin, int end, Lanes* velocity, const Spring& spring, Largest& worst)
-{
-	sweepGroups<false, true>(groups, begin, end, velocity, spring, worst);
-}
-
-MASONRY_LANES void moveGaps(Group* groups, int begin, int end, const Lanes* velocity, double s)
+template <class K>
+MASONRY_INLINE void moveGroups(Group<K>* groups, int begin, int end, const Lanes* velocity, double s)
 {
 	for (int g = begin; g < end; ++g) {
-		Group& group = groups[g];
-		const Bodies v1(velocity, group.body1), v2(velocity, group.body2);
-		for (PointLanes& p : group.point)
-			p.gap += s * normalRate(v1, v2, p);
+		Group<K>& group = groups[g];
+		const Bodies<K> v1(velocity, group.body1), v2(velocity, group.body2);
+		for (int k = 0; k < group.count; ++k)
+			group.point[k].gap += s * normalRate(v1, v2, group.point[k]);
 	}
 }
 
-MASONRY_LANES void applyImpulses(Group* groups, int begin, int end, Lanes* velocity)
+template <class K>
+MASONRY_INLINE void pushGroups(Group<K>* groups, int begin, int end, Lanes* velocity)
 {
 	for (int g = begin; g < end; ++g) {
-		Group& group = groups[g];
-		Bodies v1(velocity, group.body1), v2(velocity, group.body2);
-		for (PointLanes& p : group.point)
-			push(v1, v2, p, p.pn, p.pt);
+		Group<K>& group = groups[g];
+		Bodies<K> v1(velocity, group.body1), v2(velocity, group.body2);
+		for (int k = 0; k < group.count; ++k)
+			push(v1, v2, group.point[k], group.point[k].pn, group.point[k].pt);
 		v1.store(velocity, group.body1, v1.m);
 		v2.store(velocity, group.body2, v2.m);
 	}
 }
 
+// No template is compiled for several vector widths.
+#define MASONRY_SWEEPS(K)                                                                                                                  \
+	MASONRY_LANES void springSweep(Group<K>* groups, int begin, int end, Lanes* velocity, const Spring& spring, Largest& worst)            \
+	{                                                                                                                                      \
+		sweepGroups<K, true, false>(groups, begin, end, velocity, spring, worst);                                                          \
+	}                                                                                                                                      \
+	MASONRY_LANES void relaxSweep(Group<K>* groups, int begin, int end, Lanes* velocity, const Spring& spring, Largest& worst)             \
+	{                                                                                                                                      \
+		sweepGroups<K, false, false>(groups, begin, end, velocity, spring, worst);                                                         \
+	}                                                                                                                                      \
+	MASONRY_LANES void lastSweep(Group<K>* groups, int begin, int end, Lanes* velocity, const Spring& spring, Largest& worst)              \
+	{                                                                                                                                      \
+		sweepGroups<K, false, true>(groups, begin, end, velocity, spring, worst);                                                          \
+	}                                                                                                                                      \
+	MASONRY_LANES void moveGaps(Group<K>* groups, int begin, int end, const Lanes* velocity, double s)                                     \
+	{                                                                                                                                      \
+		moveGroups<K>(groups, begin, end, velocity, s);                                                                                    \
+	}                                                                                                                                      \
+	MASONRY_LANES void applyImpulses(Group<K>* groups, int begin, int end, Lanes* velocity)                                                \
+	{                                                                                                                                      \
+		pushGroups<K>(groups, begin, end, velocity);                                                                                       \
+	}
+MASONRY_SWEEPS(Plane)
+MASONRY_SWEEPS(Space)
+#undef MASONRY_SWEEPS
+
 } // namespace
 
-void SoftSubsteps::begin(WallContacts& c)
+template <class K>
+void SoftSubsteps<K>::begin(WallContacts<K>& c)
 {
 	const Lanes onlyMass {0, 0, 0, 1};
 	shift.assign(c.velocity.size(), all(0));
@@ -136,11 +128,12 @@ void SoftSubsteps::begin(WallContacts& c)
 	});
 }
 
-void SoftSubsteps::substep(WallContacts& c, const LaneArray& load, double s, bool isLast)
+template <class K>
+void SoftSubsteps<K>::substep(WallContacts<K>& c, const LaneArray& load, double s, bool isLast)
 {
 	const Spring spring(s);
 	const Lanes noMass {1, 1, 1, 0};
-	Group* groups = c.groups.data();
+	Group<K>* groups = c.groups.data();
 	Lanes* velocity = c.velocity.data();
 	Largest worst {all(0), all(0)};
 	inParallel(c.threads, [&](const Share& share) {
@@ -158,8 +151,12 @@ void SoftSubsteps::substep(WallContacts& c, const LaneArray& load, double s, boo
 		for (int b = firstBody; b < lastBody; ++b)
 			shift[b] += s * noMass * velocity[b];
 		share.meet();
-		byColour(c.colourEnd, share,
-		         [&](int first, int last) { (isLast ? lastSweep : relaxSweep)(groups, first, last, velocity, spring, here); });
+		byColour(c.colourEnd, share, [&](int first, int last) {
+			if (isLast)
+				lastSweep(groups, first, last, velocity, spring, here);
+			else
+				relaxSweep(groups, first, last, velocity, spring, here);
+		});
 		for (int b = firstBody; b < lastBody; ++b)
 			contactPart[b] = velocity[b] - contactPart[b];
 #pragma omp critical
@@ -170,5 +167,8 @@ void SoftSubsteps::substep(WallContacts& c, const LaneArray& load, double s, boo
 	});
 	report = {largest(worst.change), largest(worst.motion)};
 }
+
+template class SoftSubsteps<Plane>;
+template class SoftSubsteps<Space>;
 
 } // namespace masonry::rigid::wall

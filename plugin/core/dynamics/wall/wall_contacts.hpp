@@ -1,75 +1,138 @@
 #pragma once
 // The contacts of a wall as both of its methods see them: plain arrays, four pairs a group, groups by colour.
 //
-// Spins are multiplied by the radius of gyration rho of the body, so that it has one mass m for all three components; arms are divided
-// by it. With n from body 1 to body 2, t = n turned by 90 degrees and V = (v, rho w), the relative velocity at a point is
-//
-//     u_n = n.(v2 - v1) + a2n W2 - a1n W1        a_n = (r x n)/rho,  a_t = (r x t)/rho = (r.n)/rho
-//     u_t = t.(v2 - v1) + a2t W2 - a1t W1
+// Spins are multiplied by the radius of gyration rho of the body, so that it has one mass m for all components; arms are divided by it
+// (plane_lanes.hpp, space_lanes.hpp). Velocities come in packs of three components and 1/m: in the plane (v, rho w), in space v and then
+// the spin.
 //
 // No two pairs of a colour share a free body: the pairs of a colour can be taken in any order, or at the same time, with the same result.
+// A lane holds as many points as most pairs have; a pair with more takes a second lane, of another colour.
 //
-// Gaps, normals and arms are exact at the start of every step; which vertex meets which face is looked up again only where a pair has
-// moved by a small share of its size since (tolerance::wall::search).
+// Gaps, normals and arms are exact at the start of every step; which features meet is looked up again only where a pair has moved by a
+// small share of its size since (tolerance::wall::search).
 #include "dynamics/rigid/rigid_system.hpp"
-#include "dynamics/wall/lanes.hpp"
+#include "dynamics/wall/space_lanes.hpp"
 
 namespace masonry::rigid::wall {
 
-struct alignas(alignment) PointLanes {
-	Lanes nx, ny, a1n, a1t, a2n, a2t;
-	Lanes gap;          // m; far away in lanes without a point
-	Lanes massN, massT; // 1 / (J M^-1 J^T), kg
-	Lanes pn, pt;       // impulse of a step or substep, N s
+template <class K>
+constexpr int packs = K::dof / 3; // of a body
+template <class K>
+constexpr int lanePoints = K::maxPoints == 2 ? 2 : 4;
+template <class K>
+constexpr int lanesOfPair = K::maxPoints / lanePoints<K>;
+
+// Of the points of a group, how many there are at most in a lane: in the plane all of them are always gone through.
+template <class K>
+struct PointCount {
+	static constexpr int count = lanePoints<K>;
+	void setCount(int) {}
+};
+template <>
+struct PointCount<Space> {
+	int count;
+	void setCount(int value) { count = value; }
 };
 
-struct alignas(alignment) Group {
+template <class K>
+struct alignas(alignment) Group : PointCount<K> {
 	int body1[width], body2[width];
 	Lanes friction;
-	PointLanes point[2];
+	PointLanes<K> point[lanePoints<K>];
 };
 
-// What a point is made of: vertex and face in the axes of their bodies.
-struct alignas(alignment) FeatureLanes {
-	Mask vertexOn1, present;
-	Lanes vertexX, vertexY, normalX, normalY, faceDistance;
-	Lanes foundGap, foundShift; // of the vertex over and along the face when they were looked up
-	Lanes zn, zt, slip, zero;   // of KeptFactor: relative velocity that the laws allow; slip since the point last slid; gap that it holds
-};
-
+template <class K>
 struct alignas(alignment) FeatureGroup {
-	FeatureLanes point[2];
-	int pair[width]; // of the system; -1: empty lane
+	FeatureLanes<K> point[lanePoints<K>];
+	int pair[width];  // of the system; -1: empty lane
+	int first[width]; // number in the pair of the lane's first point
 };
 
+template <class K>
 class WallContacts {
 public:
+	using Tangent = typename PointLanes<K>::Tangent;
+
 	// Takes over poses and velocities, looks up features where needed, and measures all points. True: other points than before.
-	bool measure(RigidSystem<Plane>& system);
+	bool measure(RigidSystem<K>& system);
 	// Impulses are those of a time h from now on. They never grow: an impact's would become a hundred.
 	void setUnit(double h);
 
-	std::vector<Group> groups;
-	std::vector<FeatureGroup> features;
+	// Points of a lane.
+	int points(const RigidSystem<K>& s, int group, int lane) const
+	{
+		const FeatureGroup<K>& f = features[group];
+		return f.pair[lane] < 0 ? 0 : std::min(s.pairs[f.pair[lane]].size - f.first[lane], lanePoints<K>);
+	}
+	// Of one point; its position from the centre of body 2.
+	ContactFrame<K> frame(int group, int lane, int point) const;
+	bool isFree(int body) const { return velocity[packs<K> * body][3] > 0; }
+	// Packs of a body as a velocity in global axes; a force and moment in global axes as the velocity that it gives in a time h.
+	typename K::Velocity inGlobal(const LaneArray& from, size_t body) const;
+	void takeForce(const typename K::Velocity& force, double h, size_t body, LaneArray& to) const;
+	void setLinearVelocity(size_t body, const typename K::Vector& v)
+	{
+		for (int i = 0; i < K::dimension; ++i)
+			velocity[packs<K> * body][i] = v[i];
+	}
+
+	std::vector<Group<K>> groups;
+	std::vector<FeatureGroup<K>> features;
 	std::vector<int> colourEnd;             // groups of colour c end before colourEnd[c]
 	std::vector<std::array<int, 2>> onBase; // group and lane of the pairs with a prescribed body
-	LaneArray velocity;                     // (v, rho w, 1/m); 1/m = 0: prescribed. One more at the end, for empty lanes
-	LaneArray pose;                         // (position, cosine, sine)
-	std::vector<double> gyration;           // rho, m
+	LaneArray velocity;                     // packs; 1/m = 0: prescribed. One more body at the end, for empty lanes
+	LaneArray pose;                         // plane: (position, cosine, sine). Space: axes and position in three rows, then 1/rho
+	std::vector<typename K::Spin> gyration; // rho, m
 	int depth {0};                          // courses: pairs between a prescribed body and the block farthest from one
 	double length {0};                      // m, smallest half size
 	int mostThreads {1}, threads {1};       // that may, and that do, share the loops over groups
 
 private:
-	bool samePairs(const RigidSystem<Plane>& system);
-	void colour(const RigidSystem<Plane>& system);
-	void takeBodies(const RigidSystem<Plane>& system);
-	bool lookUp(RigidSystem<Plane>& system, int group);
-	void takePoint(const RigidSystem<Plane>& system, int group, int lane, int point);
+	struct Slot {
+		int group, lane;
+	};
+	struct State { // of one point, in a lane
+		bool present {false};
+		double pn {0}, zn {0}, zero {0};
+		Eigen::Matrix<double, K::rows - 1, 1> pt, zt, slip;
+	};
+
+	bool samePairs(const RigidSystem<K>& system);
+	void colour(const RigidSystem<K>& system);
+	void findDepth(const RigidSystem<K>& system);
+	void takeBodies(const RigidSystem<K>& system);
+	// Gaps, normals, arms. Groups of which a pair has moved by more than `travel` become stale; with `remember`, movement counts from here.
+	void locate(const RigidSystem<K>& system, int begin, int end, double travel, bool remember);
+	void lookUpStale(RigidSystem<K>& system);
+	bool lookUp(RigidSystem<K>& system, int pair);
+	State state(int pair, int point) const;
+	void setState(const State& state, int pair, int point);
+	void takePoint(const RigidSystem<K>& system, int pair, int point);
 
 	double unit {0};                       // s, that the impulses are of
 	std::vector<std::array<int, 2>> pairs; // that the groups are made of
+	std::vector<std::array<Slot, lanesOfPair<K>>> slots; // of a pair; group -1: none
+	std::vector<unsigned char> wide;       // pairs that need all their lanes
 	std::vector<unsigned char> stale;      // groups with a pair to be looked up
+	bool otherPoints {false}, wider {false};
 };
+
+// plane_points.cpp, space_points.cpp
+#define MASONRY_OF(K)                                                                                                                      \
+	template <>                                                                                                                            \
+	void WallContacts<K>::takeBodies(const RigidSystem<K>&);                                                                               \
+	template <>                                                                                                                            \
+	void WallContacts<K>::takePoint(const RigidSystem<K>&, int, int);                                                                      \
+	template <>                                                                                                                            \
+	void WallContacts<K>::locate(const RigidSystem<K>&, int, int, double, bool);                                                           \
+	template <>                                                                                                                            \
+	ContactFrame<K> WallContacts<K>::frame(int, int, int) const;                                                                           \
+	template <>                                                                                                                            \
+	K::Velocity WallContacts<K>::inGlobal(const LaneArray&, size_t) const;                                                                 \
+	template <>                                                                                                                            \
+	void WallContacts<K>::takeForce(const K::Velocity&, double, size_t, LaneArray&) const;
+MASONRY_OF(Plane)
+MASONRY_OF(Space)
+#undef MASONRY_OF
 
 } // namespace masonry::rigid::wall

@@ -6,15 +6,22 @@
 namespace masonry::rigid {
 
 using wall::all;
+using wall::dot;
 using wall::Lanes;
+using wall::slides;
 
 namespace {
 
 constexpr int coldSolves = 3000, returnSolves = 300, mostSolves = 16;
 
-double restSpeed(const RigidSystem<Plane>& s, double length) { return tolerance::restSpeed * std::sqrt(scale::acceleration(s) * length); }
+template <class K>
+double restSpeed(const RigidSystem<K>& s, double length)
+{
+	return tolerance::restSpeed * std::sqrt(scale::acceleration(s) * length);
+}
 
-double untilKink(const RigidSystem<Plane>& s, double left, double dt)
+template <class K>
+double untilKink(const RigidSystem<K>& s, double left, double dt)
 {
 	const double tiny = tolerance::rigid::instant * dt;
 	double first = s.time + left;
@@ -23,18 +30,37 @@ double untilKink(const RigidSystem<Plane>& s, double left, double dt)
 	return first < s.time + left ? first - s.time : left;
 }
 
-void takeJumps(RigidSystem<Plane>& s)
+template <class K>
+void takeJumps(RigidSystem<K>& s)
 {
 	for (size_t d = 0; d < s.drives.size(); ++d)
 		if (const double jump = s.drives[d]->jumpAt(s.time))
 			for (auto& body : s.bodies)
 				if (body.drive == int(d))
-					body.velocity.head<2>() += jump * s.driveDirections[d];
+					body.velocity.template head<K::dimension>() += jump * s.driveDirections[d];
 }
 
-Vector2 driven(const RigidSystem<Plane>& s, const RigidBody<Plane>& body, double t)
+template <class K>
+typename K::Vector driven(const RigidSystem<K>& s, const RigidBody<K>& body, double t)
 {
 	return body.origin + s.driveDirections[body.drive] * s.drives[body.drive]->displacement(t);
+}
+
+// Moves a free body by what its velocities of the step add up to; its momentum stays. In space the spin follows from it in the new pose,
+// and changes on the way: from that of the middle to first order.
+void move(RigidBody<Plane>& body, const Plane::Velocity& moved, double)
+{
+	Plane::advance(body.pose, moved, 1);
+}
+
+void move(RigidBody<Space>& body, Space::Velocity moved, double h)
+{
+	const Vector3 spin = body.velocity.tail<3>(), momentum = Space::angularMomentum(body.inertia, body.pose, spin);
+	Pose middle = body.pose;
+	Space::advance(middle, moved, 0.5);
+	moved.tail<3>() += h * (Space::inverseInertia(body.inertia, middle) * momentum - spin);
+	Space::advance(body.pose, moved, 1);
+	body.velocity.tail<3>() = Space::inverseInertia(body.inertia, body.pose) * momentum;
 }
 
 } // namespace
@@ -86,9 +112,8 @@ void WallStep<K>::setBase(const RigidSystem<K>& s, double h)
 		const auto& body = s.bodies[b];
 		if (!body.prescribed || body.drive < 0)
 			continue;
-		const Vector2 mean = s.driveDirections[body.drive] *
-		                     ((s.drives[body.drive]->displacement(s.time + h) - s.drives[body.drive]->displacement(s.time)) / h);
-		contacts.velocity[b] = Lanes {mean.x(), mean.y(), contacts.velocity[b][2], 0};
+		contacts.setLinearVelocity(b, s.driveDirections[body.drive] *
+		                                  ((s.drives[body.drive]->displacement(s.time + h) - s.drives[body.drive]->displacement(s.time)) / h));
 	}
 }
 
@@ -96,11 +121,8 @@ template <class K>
 void WallStep<K>::setLoads(const RigidSystem<K>& s, double h)
 {
 	loads.assign(contacts.velocity.size(), all(0));
-	for (size_t b = 0; b < s.bodies.size(); ++b) {
-		const auto& body = s.bodies[b];
-		const double perMass = contacts.velocity[b][3];
-		loads[b] = h * perMass * Lanes {body.force[0], body.force[1], body.force[2] / contacts.gyration[b], 0};
-	}
+	for (size_t b = 0; b < s.bodies.size(); ++b)
+		contacts.takeForce(s.bodies[b].force, h, b, loads);
 }
 
 template <class K>
@@ -132,7 +154,7 @@ bool WallStep<K>::tryStill(RigidSystem<K>& s, double h, bool newPoints)
 	for (size_t b = 0; b < shift.size(); ++b)
 		shift[b] = h * kept.velocity[b];
 	for (size_t g = 0; g < contacts.groups.size(); ++g)
-		for (int k = 0; k < 2; ++k)
+		for (int k = 0; k < contacts.groups[g].count; ++k)
 			contacts.groups[g].point[k].gap += h * kept.rows[g][k].un;
 	return true;
 }
@@ -187,15 +209,11 @@ double WallStep<K>::baseWork(const RigidSystem<K>& s) const
 {
 	double work = 0;
 	for (const auto& [g, i] : contacts.onBase) {
-		const wall::Group& group = contacts.groups[g];
+		const wall::Group<K>& group = contacts.groups[g];
 		const bool first = s.bodies[group.body1[i]].prescribed;
-		const Lanes& v = contacts.velocity[first ? group.body1[i] : group.body2[i]];
-		for (const auto& p : group.point) {
-			const double an = first ? p.a1n[i] : p.a2n[i], at = first ? p.a1t[i] : p.a2t[i];
-			const double power =
-			    p.pn[i] * (p.nx[i] * v[0] + p.ny[i] * v[1] + an * v[2]) + p.pt[i] * (p.nx[i] * v[1] - p.ny[i] * v[0] + at * v[2]);
-			work += first ? power : -power;
-		}
+		const wall::Bodies<K> v1(contacts.velocity.data(), group.body1), v2(contacts.velocity.data(), group.body2);
+		for (int k = 0; k < group.count; ++k)
+			work += first ? wall::powerOn1(v1, group.point[k])[i] : -wall::powerOn2(v2, group.point[k])[i];
 	}
 	return work;
 }
@@ -205,14 +223,17 @@ template <class K>
 double WallStep<K>::slidingLoss() const
 {
 	double loss = 0;
-	for (const wall::Group& group : contacts.groups)
-		for (const auto& p : group.point)
-			for (int i = 0; i < wall::width; ++i) {
-				if (!(p.pn[i] > 0) || std::abs(p.pt[i]) < group.friction[i] * p.pn[i])
-					continue;
-				const Lanes &v1 = contacts.velocity[group.body1[i]], &v2 = contacts.velocity[group.body2[i]];
-				loss -= p.pt[i] * (p.nx[i] * (v2[1] - v1[1]) - p.ny[i] * (v2[0] - v1[0]) + p.a2t[i] * v2[2] - p.a1t[i] * v1[2]);
-			}
+	for (const wall::Group<K>& group : contacts.groups) {
+		const wall::Bodies<K> v1(contacts.velocity.data(), group.body1), v2(contacts.velocity.data(), group.body2);
+		for (int k = 0; k < group.count; ++k) {
+			const wall::PointLanes<K>& p = group.point[k];
+			const Lanes power = dot(p.pt, slipRate(v1, v2, p));
+			const wall::Mask sliding = (p.pn > 0) & slides(p.pt, group.friction * p.pn);
+			for (int i = 0; i < wall::width; ++i)
+				if (sliding[i])
+					loss -= power[i];
+		}
+	}
 	return loss;
 }
 
@@ -224,20 +245,20 @@ void WallStep<K>::takeMotion(RigidSystem<K>& s, double h, double workBefore)
 	double work = 0;
 	for (size_t b = 0; b < s.bodies.size(); ++b) {
 		auto& body = s.bodies[b];
-		const double rho = contacts.gyration[b];
 		if (body.prescribed && body.drive >= 0) {
 			body.pose.position = driven(s, body, end);
-			body.velocity.template head<2>() = s.driveDirections[body.drive] * s.drives[body.drive]->velocity(end);
+			body.velocity.template head<K::dimension>() = s.driveDirections[body.drive] * s.drives[body.drive]->velocity(end);
 			continue;
 		}
-		const Lanes &v = contacts.velocity[b], &moved = shift[b];
-		const typename K::Velocity now(v[0], v[1], v[2] / rho);
-		if (!body.prescribed)
-			work += body.force[0] * moved[0] + body.force[1] * moved[1] + body.force[2] * moved[2] / rho;
-		body.increment = (now - body.velocity) / h;
-		body.velocity = now;
-		body.pose.position += Vector2(moved[0], moved[1]);
-		body.pose.setAngle(body.pose.angle + moved[2] / rho);
+		const typename K::Velocity moved = contacts.inGlobal(shift, b), before = body.velocity;
+		body.velocity = contacts.inGlobal(contacts.velocity, b);
+		if (body.prescribed) {
+			K::advance(body.pose, moved, 1);
+			continue;
+		}
+		work += body.force.dot(moved);
+		move(body, moved, h);
+		body.increment = (body.velocity - before) / h;
 	}
 	const int parts = report.mode == WallMode::still ? 1 : substepCount();
 	const double friction = parts * slidingLoss();
@@ -251,23 +272,22 @@ void WallStep<K>::takePoints(RigidSystem<K>& s, double unit)
 {
 	const double touching = tolerance::mergedClosing * contacts.length, perUnit = 1 / unit;
 	for (size_t g = 0; g < contacts.groups.size(); ++g) {
-		const wall::Group& group = contacts.groups[g];
-		for (int i = 0; i < wall::width && contacts.features[g].pair[i] >= 0; ++i) {
-			ContactPair<K>& pair = s.pairs[contacts.features[g].pair[i]];
-			const Vector2& position = s.bodies[pair.body2].pose.position;
-			const double rho = contacts.gyration[pair.body2];
-			for (int k = 0; k < pair.size; ++k) {
-				const wall::PointLanes& p = group.point[k];
-				ContactPoint<K>& point = pair.points[k];
-				const double nx = p.nx[i], ny = p.ny[i], along = rho * p.a2t[i], across = -rho * p.a2n[i];
+		const wall::Group<K>& group = contacts.groups[g];
+		const wall::FeatureGroup<K>& features = contacts.features[g];
+		for (int i = 0; i < wall::width && features.pair[i] >= 0; ++i) {
+			ContactPair<K>& pair = s.pairs[features.pair[i]];
+			for (int k = 0; k < contacts.points(s, int(g), i); ++k) {
+				const wall::PointLanes<K>& p = group.point[k];
+				ContactPoint<K>& point = pair.points[features.first[i] + k];
 				point.gap = p.gap[i];
 				point.closed = p.pn[i] > 0 || p.gap[i] <= touching;
-				point.sliding = p.pn[i] > 0 && std::abs(p.pt[i]) >= group.friction[i] * p.pn[i];
+				point.sliding = p.pn[i] > 0 && slides(p.pt, group.friction * p.pn)[i];
 				point.landing = false;
-				point.force = Vector2(p.pn[i] * perUnit, p.pt[i] * perUnit);
-				point.frame.gap = p.gap[i];
-				point.frame.axes << nx, ny, -ny, nx;
-				point.frame.position = position + Vector2(along * nx - across * ny, along * ny + across * nx);
+				point.force[0] = p.pn[i] * perUnit;
+				for (int row = 1; row < K::rows; ++row)
+					point.force[row] = wall::component(p.pt, row - 1, i) * perUnit;
+				point.frame = contacts.frame(int(g), i, k);
+				point.frame.position += s.bodies[pair.body2].pose.position;
 			}
 		}
 	}
@@ -297,10 +317,11 @@ void WallStep<K>::choose(const RigidSystem<K>& s, double h)
 template <class K>
 size_t WallStep<K>::memory() const
 {
-	return contacts.groups.size() * (sizeof(wall::Group) + sizeof(wall::FeatureGroup) + 2 * sizeof(wall::KeptFactor::Row)) +
+	return contacts.groups.size() * (sizeof(wall::Group<K>) + sizeof(wall::FeatureGroup<K>) + sizeof(typename wall::KeptFactor<K>::Rows)) +
 	       kept.factorBlocks() * 9 * (sizeof(double) + sizeof(float)) + contacts.velocity.size() * 10 * sizeof(Lanes);
 }
 
 template class WallStep<Plane>;
+template class WallStep<Space>;
 
 } // namespace masonry::rigid

@@ -1,5 +1,5 @@
 #pragma once
-// The step of many rigid blocks in a plane: walls.
+// The step of many rigid blocks, in a plane or in space: walls.
 //
 // While nothing moves against its neighbour, a step is solved for all contacts at once with a factorisation that is kept (kept_factor.hpp:
 // mode `still`); when something does, in soft substeps (soft_substeps.hpp: mode `moving`). A step that the first cannot solve is taken back
@@ -65,10 +65,10 @@ private:
 	};
 
 	Memory memoryOfModes;
-	wall::WallContacts contacts;
-	wall::KeptFactor kept;
-	wall::SoftSubsteps soft;
-	wall::RockingJoints joints;
+	wall::WallContacts<K> contacts;
+	wall::KeptFactor<K> kept;
+	wall::SoftSubsteps<K> soft;
+	wall::RockingJoints<K> joints;
 	wall::LaneArray loads, shift;
 };
 

@@ -38,46 +38,67 @@ inline int addBlock(RigidSystem<Plane>& s, const Vector2& half, const Vector2& c
 	return int(s.bodies.size()) - 1;
 }
 
-struct Scene {
-	RigidSystem<Plane> system;
-	Neighbours<Plane> near;
-	WallStep<Plane> step;
-	std::vector<RigidBody<Plane>> start;
+inline int addBlock(RigidSystem<Space>& s, const Vector3& half, const Vector3& center, const Quaternion& orientation = Quaternion::Identity())
+{
+	RigidBody<Space> block;
+	block.halfSize = half;
+	block.mass = density * 8 * half.prod();
+	block.inertia = block.mass / 3 * (Vector3::Constant(half.squaredNorm()) - half.cwiseAbs2());
+	block.pose = {center, orientation};
+	block.force << 0, 0, -block.mass * g, 0, 0, 0;
+	s.bodies.push_back(block);
+	return int(s.bodies.size()) - 1;
+}
 
-	explicit Scene(double friction = 0.7, double restitution = NAN)
-	    : near(0.05, [=](ContactPair<Plane>& pair) {
+// Of a block 0.5 m deep.
+inline Vector2 sizeOf(const RigidSystem<Plane>&, double x, double z) { return {x, z}; }
+inline Vector3 sizeOf(const RigidSystem<Space>&, double x, double z) { return {x, 0.25, z}; }
+inline Vector2 placeOf(const RigidSystem<Plane>&, double x, double z) { return {x, z}; }
+inline Vector3 placeOf(const RigidSystem<Space>&, double x, double z) { return {x, 0, z}; }
+
+template <class K>
+struct SceneOf {
+	static constexpr int up = K::dimension - 1;
+	RigidSystem<K> system;
+	Neighbours<K> near;
+	WallStep<K> step;
+	std::vector<RigidBody<K>> start;
+
+	explicit SceneOf(double friction = 0.7, double restitution = NAN)
+	    : near(0.05, [=](ContactPair<K>& pair) {
 		      pair.friction = friction;
 		      pair.restitution = restitution;
 	      })
 	{
-		system.gravity << 0, -g;
-		RigidBody<Plane> base;
-		base.halfSize << 50, 1;
-		base.pose.position << 0, -1;
+		system.gravity[up] = -g;
+		RigidBody<K> base;
+		base.halfSize.setConstant(50);
+		base.halfSize[up] = 1;
+		base.pose.position[up] = -1;
 		base.origin = base.pose.position;
 		base.prescribed = true;
 		system.bodies.push_back(base);
 	}
-	Scene(const Scene&) = delete;
+	SceneOf(const SceneOf&) = delete;
 
-	// Blocks 1.0 x 0.5 m.
+	// Blocks 1.0 x 0.5 m, in space 0.5 m deep.
 	void addWall(int courses, int perCourse)
 	{
 		for (int c = 0; c < courses; ++c) {
 			const double y = 0.25 + 0.5 * c;
 			if (c % 2 == 1) {
-				addBlock(system, {0.25, 0.25}, {0.25, y});
-				addBlock(system, {0.25, 0.25}, {perCourse - 0.25, y});
+				addBlock(system, sizeOf(system, 0.25, 0.25), placeOf(system, 0.25, y));
+				addBlock(system, sizeOf(system, 0.25, 0.25), placeOf(system, perCourse - 0.25, y));
 			}
 			for (int i = 0; i < perCourse - c % 2; ++i)
-				addBlock(system, {0.5, 0.25}, {i + 0.5 + 0.5 * (c % 2), y});
+				addBlock(system, sizeOf(system, 0.5, 0.25), placeOf(system, i + 0.5 + 0.5 * (c % 2), y));
 		}
 	}
 
-	void drive(BaseDrive& motion)
+	void drive(BaseDrive& motion, const typename K::Vector& direction = K::Vector::Unit(0))
 	{
 		system.drives = {&motion};
-		system.driveDirections = {Vector2(1, 0)};
+		system.driveDirections = {direction};
 		system.bodies[0].drive = 0;
 	}
 
@@ -95,25 +116,28 @@ struct Scene {
 	}
 
 	// Of a block, relative to the base, since the start.
-	Vector2 shift(size_t block) const
+	typename K::Vector shift(size_t block) const
 	{
-		const auto moved = [&](size_t b) { return Vector2(system.bodies[b].pose.position - start[b].pose.position); };
+		const auto moved = [&](size_t b) { return typename K::Vector(system.bodies[b].pose.position - start[b].pose.position); };
 		return moved(block) - moved(0);
 	}
 	double drift() const
 	{
 		double most = 0;
 		for (size_t b = 1; b < system.bodies.size(); ++b)
-			most = std::max(most, std::abs(shift(b).x()));
+			most = std::max(most, shift(b).template head<up>().norm());
 		return most;
 	}
 	double sink() const
 	{
 		double most = 0;
 		for (size_t b = 1; b < system.bodies.size(); ++b)
-			most = std::max(most, -shift(b).y());
+			most = std::max(most, -shift(b)[up]);
 		return most;
 	}
 };
+
+using Scene = SceneOf<Plane>;
+using SpaceScene = SceneOf<Space>;
 
 } // namespace rig

@@ -1,0 +1,127 @@
+#pragma once
+// Contact points in the plane, four side by side. With n from body 1 to body 2, t = n turned by 90 degrees and V = (v, rho w), the relative
+// velocity at a point is
+//
+//     u_n = n.(v2 - v1) + a2n W2 - a1n W1        a_n = (r x n)/rho,  a_t = (r x t)/rho = (r.n)/rho
+//     u_t = t.(v2 - v1) + a2t W2 - a1t W1
+#include "dynamics/rigid/kinematics.hpp"
+#include "dynamics/wall/lanes.hpp"
+
+namespace masonry::rigid::wall {
+
+template <class K>
+struct Bodies;
+template <class K>
+struct PointLanes;
+template <class K>
+struct FeatureLanes;
+
+// Velocities of four bodies: packs of `from` in, one lane a body out.
+template <>
+struct alignas(alignment) Bodies<Plane> {
+	Lanes x, y, w, m;
+
+	MASONRY_INLINE Bodies(const Lanes* from, const int* body) : x(from[body[0]]), y(from[body[1]]), w(from[body[2]]), m(from[body[3]])
+	{
+		transpose(x, y, w, m);
+	}
+	// Back to where they came from; bodies with m = 0 are prescribed and stay.
+	MASONRY_INLINE void store(Lanes* to, const int* body, const Lanes& mass) const
+	{
+		Lanes row[width] = {x, y, w, m};
+		transpose(row[0], row[1], row[2], row[3]);
+		for (int i = 0; i < width; ++i)
+			if (mass[i] != 0)
+				to[body[i]] = row[i];
+	}
+};
+
+template <>
+struct alignas(alignment) PointLanes<Plane> {
+	using Tangent = Lanes;
+	Lanes nx, ny, a1n, a1t, a2n, a2t;
+	Lanes gap;          // m; far away in lanes without a point
+	Lanes massN, massT; // 1 / (J M^-1 J^T), kg
+	Lanes pn, pt;       // impulse of a step or substep, N s
+};
+
+// What a point is made of: vertex and face in the axes of their bodies.
+template <>
+struct alignas(alignment) FeatureLanes<Plane> {
+	Mask vertexOn1, present;
+	Lanes vertexX, vertexY, normalX, normalY, faceDistance;
+	Lanes foundGap, foundShift; // of the vertex over and along the face when they were looked up
+	Lanes zn, zt, slip, zero;   // of KeptFactor: relative velocity that the laws allow; slip since the point last slid; gap that it holds
+};
+
+MASONRY_INLINE double component(const Lanes& tangent, int, int lane) { return tangent[lane]; }
+MASONRY_INLINE void setComponent(Lanes& tangent, int, int lane, double value) { tangent[lane] = value; }
+MASONRY_INLINE Lanes dot(const Lanes& a, const Lanes& b) { return a * b; }
+
+MASONRY_INLINE Lanes normalRate(const Bodies<Plane>& v1, const Bodies<Plane>& v2, const PointLanes<Plane>& p)
+{
+	return p.nx * (v2.x - v1.x) + p.ny * (v2.y - v1.y) + p.a2n * v2.w - p.a1n * v1.w;
+}
+MASONRY_INLINE Lanes slipRate(const Bodies<Plane>& v1, const Bodies<Plane>& v2, const PointLanes<Plane>& p)
+{
+	return p.nx * (v2.y - v1.y) - p.ny * (v2.x - v1.x) + p.a2t * v2.w - p.a1t * v1.w;
+}
+
+// Impulses into velocities.
+MASONRY_INLINE void push(Bodies<Plane>& v1, Bodies<Plane>& v2, const PointLanes<Plane>& p, const Lanes& dn, const Lanes& dt)
+{
+	const Lanes fx = p.nx * dn - p.ny * dt, fy = p.ny * dn + p.nx * dt;
+	v1.x -= v1.m * fx;
+	v1.y -= v1.m * fy;
+	v1.w -= v1.m * (p.a1n * dn + p.a1t * dt);
+	v2.x += v2.m * fx;
+	v2.y += v2.m * fy;
+	v2.w += v2.m * (p.a2n * dn + p.a2t * dt);
+}
+MASONRY_INLINE void pushNormal(Bodies<Plane>& v1, Bodies<Plane>& v2, const PointLanes<Plane>& p, const Lanes& dn)
+{
+	push(v1, v2, p, dn, all(0));
+}
+MASONRY_INLINE void pushTangential(Bodies<Plane>& v1, Bodies<Plane>& v2, const PointLanes<Plane>& p, const Lanes& dt)
+{
+	push(v1, v2, p, all(0), dt);
+}
+// Impulses into momenta.
+MASONRY_INLINE void add(Bodies<Plane>& f1, Bodies<Plane>& f2, const PointLanes<Plane>& p, const Lanes& qn, const Lanes& qt)
+{
+	const Lanes fx = p.nx * qn - p.ny * qt, fy = p.ny * qn + p.nx * qt;
+	f1.x -= fx;
+	f1.y -= fy;
+	f1.w -= p.a1n * qn + p.a1t * qt;
+	f2.x += fx;
+	f2.y += fy;
+	f2.w += p.a2n * qn + p.a2t * qt;
+}
+
+// Power of a point's impulse on either body.
+MASONRY_INLINE Lanes powerOn1(const Bodies<Plane>& v1, const PointLanes<Plane>& p)
+{
+	return p.pn * (p.nx * v1.x + p.ny * v1.y + p.a1n * v1.w) + p.pt * (p.nx * v1.y - p.ny * v1.x + p.a1t * v1.w);
+}
+MASONRY_INLINE Lanes powerOn2(const Bodies<Plane>& v2, const PointLanes<Plane>& p)
+{
+	return p.pn * (p.nx * v2.x + p.ny * v2.y + p.a2n * v2.w) + p.pt * (p.nx * v2.y - p.ny * v2.x + p.a2t * v2.w);
+}
+
+// Coulomb: within the bound.
+MASONRY_INLINE Lanes clip(const Lanes& tangential, const Lanes& bound) { return larger(smaller(tangential, bound), -bound); }
+MASONRY_INLINE Mask slides(const Lanes& tangential, const Lanes& bound) { return size(tangential) >= bound; }
+// The friction that a slip rate asks for.
+MASONRY_INLINE Lanes friction(const PointLanes<Plane>& p, const Lanes& slipRate, const Lanes& bound)
+{
+	return clip(p.pt - p.massT * slipRate, bound);
+}
+
+// Along a row (0 normal, 1 tangential) what one lane's point takes of a body's pack.
+MASONRY_INLINE Vector3 partOf(const PointLanes<Plane>& p, int row, int lane, int body, int)
+{
+	const double n[3] = {p.nx[lane], p.ny[lane], (body == 1 ? p.a1n : p.a2n)[lane]};
+	return row == 0 ? Vector3(n[0], n[1], n[2]) : Vector3(-n[1], n[0], (body == 1 ? p.a1t : p.a2t)[lane]);
+}
+
+} // namespace masonry::rigid::wall

@@ -1,0 +1,150 @@
+// Contact points in the plane: what wall_contacts.cpp asks of it.
+#include "dynamics/wall/wall_contacts.hpp"
+#include <cmath>
+
+namespace masonry::rigid::wall {
+
+namespace {
+
+constexpr double farAway = 1e30; // m
+
+struct Placed {
+	Lanes x, y, cosine, sine;
+};
+
+MASONRY_INLINE Placed placed(const Lanes* pose, const int* body)
+{
+	Placed p {pose[body[0]], pose[body[1]], pose[body[2]], pose[body[3]]};
+	transpose(p.x, p.y, p.cosine, p.sine);
+	return p;
+}
+
+// Returns how far the pairs have moved since they were looked up.
+MASONRY_INLINE Lanes locateGroup(Group<Plane>& group, FeatureGroup<Plane>& features, const Lanes* pose, const Lanes* velocity,
+                                 const Plane::Spin* gyration, bool remember)
+{
+	const Placed p1 = placed(pose, group.body1), p2 = placed(pose, group.body2);
+	Lanes mass1, mass2, rho1, rho2;
+	for (int i = 0; i < width; ++i) {
+		mass1[i] = velocity[group.body1[i]][3];
+		mass2[i] = velocity[group.body2[i]][3];
+		rho1[i] = gyration[group.body1[i]][0];
+		rho2[i] = gyration[group.body2[i]][0];
+	}
+	const Lanes one = all(1), perRho1 = one / rho1, perRho2 = one / rho2;
+	Lanes moved = all(0);
+	for (int k = 0; k < 2; ++k) {
+		FeatureLanes<Plane>& f = features.point[k];
+		PointLanes<Plane>& p = group.point[k];
+		const Lanes vertexC = select(f.vertexOn1, p1.cosine, p2.cosine), vertexS = select(f.vertexOn1, p1.sine, p2.sine);
+		const Lanes faceC = select(f.vertexOn1, p2.cosine, p1.cosine), faceS = select(f.vertexOn1, p2.sine, p1.sine);
+		const Lanes awayX = select(f.vertexOn1, p1.x - p2.x, p2.x - p1.x), awayY = select(f.vertexOn1, p1.y - p2.y, p2.y - p1.y);
+		const Lanes armX = vertexC * f.vertexX - vertexS * f.vertexY, armY = vertexS * f.vertexX + vertexC * f.vertexY;
+		const Lanes outX = faceC * f.normalX - faceS * f.normalY, outY = faceS * f.normalX + faceC * f.normalY;
+		const Lanes fromX = awayX + armX, fromY = awayY + armY; // the centre of the face's body
+		const Lanes gap = outX * fromX + outY * fromY - f.faceDistance, shift = outX * fromY - outY * fromX;
+		if (remember) {
+			f.foundGap = gap;
+			f.foundShift = shift;
+		}
+		moved = larger(moved, size(gap - f.foundGap) + size(shift - f.foundShift));
+
+		p.nx = select(f.vertexOn1, -outX, outX);
+		p.ny = select(f.vertexOn1, -outY, outY);
+		const Lanes r1x = select(f.vertexOn1, armX, fromX), r1y = select(f.vertexOn1, armY, fromY);
+		const Lanes r2x = select(f.vertexOn1, fromX, armX), r2y = select(f.vertexOn1, fromY, armY);
+		p.a1n = (r1x * p.ny - r1y * p.nx) * perRho1;
+		p.a1t = (r1x * p.nx + r1y * p.ny) * perRho1;
+		p.a2n = (r2x * p.ny - r2y * p.nx) * perRho2;
+		p.a2t = (r2x * p.nx + r2y * p.ny) * perRho2;
+		p.gap = select(f.present, gap, all(farAway));
+		const Lanes none = all(0);
+		p.massN = select(f.present, one / (mass1 + mass2 + mass1 * p.a1n * p.a1n + mass2 * p.a2n * p.a2n), none);
+		p.massT = select(f.present, one / (mass1 + mass2 + mass1 * p.a1t * p.a1t + mass2 * p.a2t * p.a2t), none);
+	}
+	return moved;
+}
+
+MASONRY_LANES void locateGroups(Group<Plane>* groups, FeatureGroup<Plane>* features, unsigned char* stale, size_t count, const Lanes* pose,
+                                const Lanes* velocity, const Plane::Spin* gyration, double travel, bool remember)
+{
+	for (size_t g = 0; g < count; ++g)
+		stale[g] |= largest(locateGroup(groups[g], features[g], pose, velocity, gyration, remember)) > travel;
+}
+
+} // namespace
+
+template <>
+void WallContacts<Plane>::locate(const RigidSystem<Plane>&, int begin, int end, double travel, bool remember)
+{
+	locateGroups(&groups[begin], &features[begin], &stale[begin], end - begin, pose.data(), velocity.data(), gyration.data(), travel,
+	             remember);
+}
+
+template <>
+void WallContacts<Plane>::takeBodies(const RigidSystem<Plane>& s)
+{
+	const size_t n = s.bodies.size();
+	velocity.resize(n + 1);
+	pose.resize(n + 1);
+	gyration.resize(n + 1);
+	for (size_t b = 0; b < n; ++b) {
+		const auto& body = s.bodies[b];
+		const double mass = body.prescribed ? 0 : 1 / body.mass;
+		gyration[b][0] = body.prescribed ? 1 : std::sqrt(body.inertia[0] * mass);
+		velocity[b] = Lanes {body.velocity[0], body.velocity[1], gyration[b][0] * body.velocity[2], mass};
+		pose[b] = Lanes {body.pose.position.x(), body.pose.position.y(), body.pose.cosine, body.pose.sine};
+	}
+	velocity[n] = all(0);
+	pose[n] = Lanes {0, 0, 1, 0};
+	gyration[n][0] = 1;
+}
+
+template <>
+void WallContacts<Plane>::takePoint(const RigidSystem<Plane>& s, int c, int k)
+{
+	const ContactPair<Plane>& pair = s.pairs[c];
+	const auto [group, lane] = slots[c][0];
+	FeatureLanes<Plane>& f = features[group].point[k];
+	const bool present = k < pair.size;
+	const PlaneFeature feature = present ? pair.points[k].feature : PlaneFeature {1, 0, 0}; // any will tell how far the pair moves
+	const bool vertexOn1 = feature.vertexBody == 1;
+	const Vector2 &vertexHalf = s.bodies[vertexOn1 ? pair.body1 : pair.body2].halfSize,
+	              &faceHalf = s.bodies[vertexOn1 ? pair.body2 : pair.body1].halfSize;
+	const int axis = feature.face / 2;
+	f.vertexOn1[lane] = vertexOn1 ? -1 : 0;
+	f.present[lane] = present ? -1 : 0;
+	f.vertexX[lane] = feature.vertex & 1 ? vertexHalf.x() : -vertexHalf.x();
+	f.vertexY[lane] = feature.vertex & 2 ? vertexHalf.y() : -vertexHalf.y();
+	f.normalX[lane] = axis == 0 ? (feature.face % 2 ? 1 : -1) : 0;
+	f.normalY[lane] = axis == 1 ? (feature.face % 2 ? 1 : -1) : 0;
+	f.faceDistance[lane] = faceHalf[axis];
+}
+
+template <>
+ContactFrame<Plane> WallContacts<Plane>::frame(int group, int lane, int k) const
+{
+	const PointLanes<Plane>& p = groups[group].point[k];
+	const double nx = p.nx[lane], ny = p.ny[lane], rho = gyration[groups[group].body2[lane]][0];
+	const double along = rho * p.a2t[lane], across = -rho * p.a2n[lane];
+	ContactFrame<Plane> frame;
+	frame.position = {along * nx - across * ny, along * ny + across * nx};
+	frame.axes << nx, ny, -ny, nx;
+	frame.gap = p.gap[lane];
+	return frame;
+}
+
+template <>
+Plane::Velocity WallContacts<Plane>::inGlobal(const LaneArray& from, size_t b) const
+{
+	return {from[b][0], from[b][1], from[b][2] / gyration[b][0]};
+}
+
+template <>
+void WallContacts<Plane>::takeForce(const Plane::Velocity& force, double h, size_t b, LaneArray& to) const
+{
+	const double perMass = velocity[b][3];
+	to[b] = h * perMass * Lanes {force[0], force[1], force[2] / gyration[b][0], 0};
+}
+
+} // namespace masonry::rigid::wall

@@ -1,0 +1,197 @@
+#pragma once
+// Contact points in space, four side by side. The spin of a body is taken along its principal axes and multiplied by the radii of gyration
+// rho about them, W = rho R^T w: then it too goes with the mass m. Along each row e of a point, the normal n (from body 1 to body 2) and two
+// tangents, the relative velocity is
+//
+//     u_e = e.(v2 - v1) + a2.W2 - a1.W1        a = R^T (r x e) / rho
+#include "dynamics/wall/plane_lanes.hpp"
+
+namespace masonry::rigid::wall {
+
+struct alignas(alignment) Lanes3 {
+	Lanes x, y, z;
+	MASONRY_INLINE void operator+=(const Lanes3& o)
+	{
+		x += o.x;
+		y += o.y;
+		z += o.z;
+	}
+	MASONRY_INLINE void operator-=(const Lanes3& o)
+	{
+		x -= o.x;
+		y -= o.y;
+		z -= o.z;
+	}
+};
+MASONRY_INLINE Lanes3 operator+(const Lanes3& a, const Lanes3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+MASONRY_INLINE Lanes3 operator-(const Lanes3& a, const Lanes3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+MASONRY_INLINE Lanes3 operator*(const Lanes& f, const Lanes3& a) { return {f * a.x, f * a.y, f * a.z}; }
+MASONRY_INLINE Lanes dot(const Lanes3& a, const Lanes3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+MASONRY_INLINE Lanes3 cross(const Lanes3& a, const Lanes3& b)
+{
+	return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+MASONRY_INLINE Lanes3 select(const Mask& mask, const Lanes3& a, const Lanes3& b)
+{
+	return {select(mask, a.x, b.x), select(mask, a.y, b.y), select(mask, a.z, b.z)};
+}
+
+// Along the two tangents.
+struct alignas(alignment) Lanes2 {
+	Lanes x, y;
+};
+MASONRY_INLINE Lanes2 operator+(const Lanes2& a, const Lanes2& b) { return {a.x + b.x, a.y + b.y}; }
+MASONRY_INLINE Lanes2 operator-(const Lanes2& a, const Lanes2& b) { return {a.x - b.x, a.y - b.y}; }
+MASONRY_INLINE Lanes2 operator*(const Lanes& f, const Lanes2& a) { return {f * a.x, f * a.y}; }
+MASONRY_INLINE Lanes2 operator*(const Lanes2& a, const Lanes& f) { return f * a; }
+MASONRY_INLINE Lanes2 operator*(double f, const Lanes2& a) { return all(f) * a; }
+MASONRY_INLINE Lanes2& operator*=(Lanes2& a, const Lanes& f) { return a = f * a; }
+MASONRY_INLINE Lanes dot(const Lanes2& a, const Lanes2& b) { return a.x * b.x + a.y * b.y; }
+MASONRY_INLINE Lanes size(const Lanes2& a) { return larger(size(a.x), size(a.y)); } // to report and compare only: saves the root
+MASONRY_INLINE Lanes2 select(const Mask& mask, const Lanes2& a, const Lanes2& b) { return {select(mask, a.x, b.x), select(mask, a.y, b.y)}; }
+MASONRY_INLINE double component(const Lanes2& tangent, int k, int lane) { return k == 0 ? tangent.x[lane] : tangent.y[lane]; }
+MASONRY_INLINE void setComponent(Lanes2& tangent, int k, int lane, double value) { (k == 0 ? tangent.x : tangent.y)[lane] = value; }
+
+// Velocities of four bodies: packs (v, 1/m) and (W, 1/m) of each in, one lane a body out.
+template <>
+struct alignas(alignment) Bodies<Space> {
+	Lanes3 v, w;
+	Lanes m;
+
+	MASONRY_INLINE Bodies(const Lanes* from, const int* body)
+	{
+		Lanes a = from[2 * body[0]], b = from[2 * body[1]], c = from[2 * body[2]], d = from[2 * body[3]];
+		transpose(a, b, c, d);
+		v = {a, b, c};
+		m = d;
+		a = from[2 * body[0] + 1], b = from[2 * body[1] + 1], c = from[2 * body[2] + 1], d = from[2 * body[3] + 1];
+		transpose(a, b, c, d);
+		w = {a, b, c};
+	}
+	// Back to where they came from; bodies with m = 0 are prescribed and stay.
+	MASONRY_INLINE void store(Lanes* to, const int* body, const Lanes& mass) const
+	{
+		Lanes linear[width] = {v.x, v.y, v.z, m}, spin[width] = {w.x, w.y, w.z, m};
+		transpose(linear[0], linear[1], linear[2], linear[3]);
+		transpose(spin[0], spin[1], spin[2], spin[3]);
+		for (int i = 0; i < width; ++i)
+			if (mass[i] != 0) {
+				to[2 * body[i]] = linear[i];
+				to[2 * body[i] + 1] = spin[i];
+			}
+	}
+};
+
+struct alignas(alignment) RowLanes {
+	Lanes3 axis, arm1, arm2;
+	MASONRY_INLINE Lanes rate(const Bodies<Space>& v1, const Bodies<Space>& v2) const
+	{
+		return dot(axis, v2.v - v1.v) + dot(arm2, v2.w) - dot(arm1, v1.w);
+	}
+};
+
+template <>
+struct alignas(alignment) PointLanes<Space> {
+	using Tangent = Lanes2;
+	RowLanes normal, tangent[2];
+	Lanes gap;                         // m; far away in lanes without a point
+	Lanes massN, massT;                // 1 / (J M^-1 J^T), kg; of the tangents along that in which the point gives most
+	Lanes stick[2], stickAcross; // inverse of the tangents' J M^-1 J^T, kg: diagonal and beside it
+	Lanes pn;                          // impulse of a step or substep, N s
+	Lanes2 pt;
+};
+
+// What a point is made of: vertex and face in the axes of their bodies; or two edges that cross, which are looked at one by one.
+template <>
+struct alignas(alignment) FeatureLanes<Space> {
+	Mask vertexOn1, present, crossing;
+	Lanes3 vertex, normal, tangent; // of the face: outward normal, first tangent
+	Lanes faceDistance;
+	Lanes3 arm;                // from body 2 to the point, global axes
+	Lanes foundGap;            // when the features were looked up
+	Lanes2 found;              // where along them
+	Lanes zn, zero;            // of KeptFactor, as in the plane
+	Lanes2 zt, slip;
+};
+
+MASONRY_INLINE Lanes normalRate(const Bodies<Space>& v1, const Bodies<Space>& v2, const PointLanes<Space>& p) { return p.normal.rate(v1, v2); }
+MASONRY_INLINE Lanes2 slipRate(const Bodies<Space>& v1, const Bodies<Space>& v2, const PointLanes<Space>& p)
+{
+	return {p.tangent[0].rate(v1, v2), p.tangent[1].rate(v1, v2)};
+}
+
+// Impulses into velocities.
+MASONRY_INLINE void pushNormal(Bodies<Space>& v1, Bodies<Space>& v2, const PointLanes<Space>& p, const Lanes& dn)
+{
+	const Lanes d1 = v1.m * dn, d2 = v2.m * dn;
+	v1.v -= d1 * p.normal.axis;
+	v1.w -= d1 * p.normal.arm1;
+	v2.v += d2 * p.normal.axis;
+	v2.w += d2 * p.normal.arm2;
+}
+MASONRY_INLINE void pushTangential(Bodies<Space>& v1, Bodies<Space>& v2, const PointLanes<Space>& p, const Lanes2& dt)
+{
+	const Lanes3 f = dt.x * p.tangent[0].axis + dt.y * p.tangent[1].axis;
+	v1.v -= v1.m * f;
+	v1.w -= v1.m * (dt.x * p.tangent[0].arm1 + dt.y * p.tangent[1].arm1);
+	v2.v += v2.m * f;
+	v2.w += v2.m * (dt.x * p.tangent[0].arm2 + dt.y * p.tangent[1].arm2);
+}
+MASONRY_INLINE void push(Bodies<Space>& v1, Bodies<Space>& v2, const PointLanes<Space>& p, const Lanes& dn, const Lanes2& dt)
+{
+	pushNormal(v1, v2, p, dn);
+	pushTangential(v1, v2, p, dt);
+}
+// Impulses into momenta.
+MASONRY_INLINE void add(Bodies<Space>& f1, Bodies<Space>& f2, const PointLanes<Space>& p, const Lanes& qn, const Lanes2& qt)
+{
+	const Lanes3 f = qn * p.normal.axis + qt.x * p.tangent[0].axis + qt.y * p.tangent[1].axis;
+	f1.v -= f;
+	f1.w -= qn * p.normal.arm1 + qt.x * p.tangent[0].arm1 + qt.y * p.tangent[1].arm1;
+	f2.v += f;
+	f2.w += qn * p.normal.arm2 + qt.x * p.tangent[0].arm2 + qt.y * p.tangent[1].arm2;
+}
+
+// Power of a point's impulse on either body.
+MASONRY_INLINE Lanes powerOn1(const Bodies<Space>& v1, const PointLanes<Space>& p)
+{
+	const auto along = [&](const RowLanes& r) { return dot(r.axis, v1.v) + dot(r.arm1, v1.w); };
+	return p.pn * along(p.normal) + p.pt.x * along(p.tangent[0]) + p.pt.y * along(p.tangent[1]);
+}
+MASONRY_INLINE Lanes powerOn2(const Bodies<Space>& v2, const PointLanes<Space>& p)
+{
+	const auto along = [&](const RowLanes& r) { return dot(r.axis, v2.v) + dot(r.arm2, v2.w); };
+	return p.pn * along(p.normal) + p.pt.x * along(p.tangent[0]) + p.pt.y * along(p.tangent[1]);
+}
+
+// Coulomb: within the disc of radius `bound`.
+MASONRY_INLINE Lanes2 clip(const Lanes2& tangential, const Lanes& bound)
+{
+	const Lanes square = dot(tangential, tangential);
+	const Mask outside = square > bound * bound;
+	return select(outside, bound / select(outside, root(square), all(1)), all(1)) * tangential;
+}
+// On the rim but for round-off.
+MASONRY_INLINE Mask slides(const Lanes2& tangential, const Lanes& bound)
+{
+	constexpr double onRim = 1 - 1e-12;
+	return dot(tangential, tangential) >= onRim * bound * bound;
+}
+// The friction that a slip rate asks for: what stops it if the cone allows that. Else it opposes the slip, for which both tangents must give
+// alike.
+MASONRY_INLINE Lanes2 friction(const PointLanes<Space>& p, const Lanes2& slipRate, const Lanes& bound)
+{
+	const Lanes2 stops = {p.stick[0] * slipRate.x + p.stickAcross * slipRate.y, p.stickAcross * slipRate.x + p.stick[1] * slipRate.y};
+	const Lanes2 stick = p.pt - stops;
+	return select(dot(stick, stick) <= bound * bound, stick, clip(p.pt - p.massT * slipRate, bound));
+}
+
+// Along a row (0 normal, then tangential) what one lane's point takes of a body's pack (0 velocity, 1 spin).
+MASONRY_INLINE Vector3 partOf(const PointLanes<Space>& p, int row, int lane, int body, int pack)
+{
+	const RowLanes& r = row == 0 ? p.normal : p.tangent[row - 1];
+	const Lanes3& part = pack == 0 ? r.axis : body == 1 ? r.arm1 : r.arm2;
+	return {part.x[lane], part.y[lane], part.z[lane]};
+}
+
+} // namespace masonry::rigid::wall

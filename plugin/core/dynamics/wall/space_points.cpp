@@ -1,0 +1,251 @@
+// Contact points in space: what wall_contacts.cpp asks of it.
+#include "contact/features.hpp"
+#include "dynamics/wall/wall_contacts.hpp"
+#include <cmath>
+
+namespace masonry::rigid::wall {
+
+namespace {
+
+constexpr double farAway = 1e30; // m
+constexpr int poseRows = 4;
+
+struct alignas(alignment) Placed {
+	Lanes3 row[3], position, perRho; // rows of the rotation matrix
+
+	MASONRY_INLINE Lanes3 turn(const Lanes3& local) const { return {dot(row[0], local), dot(row[1], local), dot(row[2], local)}; }
+	MASONRY_INLINE Lanes3 turnBack(const Lanes3& global) const { return global.x * row[0] + global.y * row[1] + global.z * row[2]; }
+};
+
+MASONRY_INLINE Lanes3 threeOf(const Lanes* pose, const int* body, int row, Lanes& fourth)
+{
+	Lanes a = pose[poseRows * body[0] + row], b = pose[poseRows * body[1] + row], c = pose[poseRows * body[2] + row],
+	      d = pose[poseRows * body[3] + row];
+	transpose(a, b, c, d);
+	fourth = d;
+	return {a, b, c};
+}
+
+MASONRY_INLINE Placed placed(const Lanes* pose, const int* body)
+{
+	Placed p;
+	Lanes unused;
+	p.row[0] = threeOf(pose, body, 0, p.position.x);
+	p.row[1] = threeOf(pose, body, 1, p.position.y);
+	p.row[2] = threeOf(pose, body, 2, p.position.z);
+	p.perRho = threeOf(pose, body, 3, unused);
+	return p;
+}
+
+MASONRY_INLINE Placed oneOf(const Mask& mask, const Placed& a, const Placed& b)
+{
+	return {{select(mask, a.row[0], b.row[0]), select(mask, a.row[1], b.row[1]), select(mask, a.row[2], b.row[2])},
+	        select(mask, a.position, b.position),
+	        select(mask, a.perRho, b.perRho)};
+}
+
+void set(Lanes3& to, int lane, const Vector3& value)
+{
+	to.x[lane] = value.x();
+	to.y[lane] = value.y();
+	to.z[lane] = value.z();
+}
+
+Vector3 get(const Lanes3& from, int lane) { return {from.x[lane], from.y[lane], from.z[lane]}; }
+
+// Gap, normal, first tangent and arm of a point; where it lies along its features: what is found out lane by lane, or one by one.
+struct alignas(alignment) Found {
+	Lanes3 normal, tangent, arm2;
+	Lanes gap, along1, along2;
+};
+
+MASONRY_INLINE Found vertexOnFace(const FeatureLanes<Space>& f, const Placed& p1, const Placed& p2)
+{
+	const Placed vertexBody = oneOf(f.vertexOn1, p1, p2), faceBody = oneOf(f.vertexOn1, p2, p1);
+	const Lanes3 arm = vertexBody.turn(f.vertex), out = faceBody.turn(f.normal);
+	const Lanes3 from = (vertexBody.position - faceBody.position) + arm;
+	Found found;
+	found.normal = select(f.vertexOn1, all(-1) * out, out);
+	found.tangent = faceBody.turn(f.tangent);
+	found.arm2 = select(f.vertexOn1, from, arm);
+	found.gap = dot(out, from) - f.faceDistance;
+	found.along1 = dot(found.tangent, from);
+	found.along2 = dot(cross(out, found.tangent), from);
+	return found;
+}
+
+// Edges that cross. The tangents are along and across body 1's edge.
+void takeCrossings(const RigidSystem<Space>& s, const FeatureGroup<Space>& features, int k, Found& found)
+{
+	for (int i = 0; i < width; ++i) {
+		if (!features.point[k].crossing[i])
+			continue;
+		const ContactPair<Space>& pair = s.pairs[features.pair[i]];
+		const auto &body1 = s.bodies[pair.body1], &body2 = s.bodies[pair.body2];
+		const ContactFrame<Space> frame =
+		    Space::frame(pair.points[features.first[i] + k].feature, body1.halfSize, body1.pose, body2.halfSize, body2.pose);
+		set(found.normal, i, frame.axes.row(0));
+		set(found.tangent, i, frame.axes.row(1));
+		set(found.arm2, i, frame.position - body2.pose.position);
+		found.gap[i] = frame.gap;
+		found.along1[i] = frame.axes.row(1) * (frame.position - body1.pose.position);
+		found.along2[i] = frame.axes.row(2) * (frame.position - body2.pose.position);
+	}
+}
+
+// Arms and masses. Along two rows a point gives J M^-1 J^T.
+MASONRY_INLINE Lanes response(const RowLanes& a, const RowLanes& b, const Lanes& mass1, const Lanes& mass2)
+{
+	return mass1 * dot(a.arm1, b.arm1) + mass2 * dot(a.arm2, b.arm2);
+}
+
+MASONRY_INLINE void takeRow(RowLanes& row, const Lanes3& axis, const Lanes3& r1, const Lanes3& r2, const Placed& p1, const Placed& p2)
+{
+	const Lanes3 a1 = p1.turnBack(cross(r1, axis)), a2 = p2.turnBack(cross(r2, axis));
+	row.axis = axis;
+	row.arm1 = {a1.x * p1.perRho.x, a1.y * p1.perRho.y, a1.z * p1.perRho.z};
+	row.arm2 = {a2.x * p2.perRho.x, a2.y * p2.perRho.y, a2.z * p2.perRho.z};
+}
+
+MASONRY_INLINE void takeFound(PointLanes<Space>& p, FeatureLanes<Space>& f, const Found& found, const Placed& p1, const Placed& p2,
+                              const Lanes& mass1, const Lanes& mass2)
+{
+	f.arm = found.arm2;
+	const Lanes3 r1 = (p2.position - p1.position) + found.arm2;
+	takeRow(p.normal, found.normal, r1, found.arm2, p1, p2);
+	takeRow(p.tangent[0], found.tangent, r1, found.arm2, p1, p2);
+	takeRow(p.tangent[1], cross(found.normal, found.tangent), r1, found.arm2, p1, p2);
+
+	const Lanes none = all(0), one = all(1), mass = mass1 + mass2;
+	p.gap = select(f.present, found.gap, all(farAway));
+	p.massN = select(f.present, one / (mass + response(p.normal, p.normal, mass1, mass2)), none);
+	const Lanes k11 = mass + response(p.tangent[0], p.tangent[0], mass1, mass2),
+	            k22 = mass + response(p.tangent[1], p.tangent[1], mass1, mass2), k12 = response(p.tangent[0], p.tangent[1], mass1, mass2);
+	const Lanes perDeterminant = one / (k11 * k22 - k12 * k12), middle = all(0.5) * (k11 + k22), half = all(0.5) * (k11 - k22);
+	p.stick[0] = select(f.present, k22 * perDeterminant, none);
+	p.stick[1] = select(f.present, k11 * perDeterminant, none);
+	p.stickAcross = select(f.present, -k12 * perDeterminant, none);
+	p.massT = select(f.present, one / (middle + root(half * half + k12 * k12)), none);
+}
+
+MASONRY_LANES void locateGroups(const RigidSystem<Space>& s, Group<Space>* groups, FeatureGroup<Space>* features, unsigned char* stale,
+                                size_t count, const Lanes* pose, const Lanes* velocity, double travel, bool remember)
+{
+	for (size_t g = 0; g < count; ++g) {
+		Group<Space>& group = groups[g];
+		const Placed p1 = placed(pose, group.body1), p2 = placed(pose, group.body2);
+		Lanes mass1, mass2, moved = all(0);
+		for (int i = 0; i < width; ++i) {
+			mass1[i] = velocity[packs<Space> * group.body1[i]][3];
+			mass2[i] = velocity[packs<Space> * group.body2[i]][3];
+		}
+		for (int k = 0; k < group.count; ++k) {
+			FeatureLanes<Space>& f = features[g].point[k];
+			Found found = vertexOnFace(f, p1, p2);
+			if (f.crossing[0] | f.crossing[1] | f.crossing[2] | f.crossing[3])
+				takeCrossings(s, features[g], k, found);
+			if (remember) {
+				f.foundGap = found.gap;
+				f.found = {found.along1, found.along2};
+			}
+			moved = larger(moved, size(found.gap - f.foundGap) + size(found.along1 - f.found.x) + size(found.along2 - f.found.y));
+			takeFound(group.point[k], f, found, p1, p2, mass1, mass2);
+		}
+		stale[g] |= largest(moved) > travel;
+	}
+}
+
+} // namespace
+
+template <>
+void WallContacts<Space>::locate(const RigidSystem<Space>& s, int begin, int end, double travel, bool remember)
+{
+	locateGroups(s, &groups[begin], &features[begin], &stale[begin], end - begin, pose.data(), velocity.data(), travel, remember);
+}
+
+template <>
+void WallContacts<Space>::takeBodies(const RigidSystem<Space>& s)
+{
+	const size_t n = s.bodies.size();
+	velocity.resize(2 * (n + 1));
+	pose.resize(poseRows * (n + 1));
+	gyration.resize(n + 1);
+	const auto take = [this](size_t b, const Pose& at, const Space::Velocity& v, double perMass) {
+		const Matrix3 axes = at.orientation.toRotationMatrix();
+		const Vector3 spin = gyration[b].cwiseProduct(axes.transpose() * v.tail<3>()), perRho = gyration[b].cwiseInverse();
+		velocity[2 * b] = Lanes {v[0], v[1], v[2], perMass};
+		velocity[2 * b + 1] = Lanes {spin[0], spin[1], spin[2], perMass};
+		for (int i = 0; i < 3; ++i)
+			pose[poseRows * b + i] = Lanes {axes(i, 0), axes(i, 1), axes(i, 2), at.position[i]};
+		pose[poseRows * b + 3] = Lanes {perRho[0], perRho[1], perRho[2], 0};
+	};
+	for (size_t b = 0; b < n; ++b) {
+		const auto& body = s.bodies[b];
+		gyration[b] = body.prescribed ? Vector3(Vector3::Ones()) : Vector3((body.inertia / body.mass).cwiseSqrt());
+		take(b, body.pose, body.velocity, body.prescribed ? 0 : 1 / body.mass);
+	}
+	gyration[n].setOnes();
+	take(n, {}, Space::Velocity::Zero(), 0);
+}
+
+template <>
+void WallContacts<Space>::takePoint(const RigidSystem<Space>& s, int c, int k)
+{
+	const ContactPair<Space>& pair = s.pairs[c];
+	const auto [group, lane] = slots[c][k / lanePoints<Space>];
+	FeatureLanes<Space>& f = features[group].point[k % lanePoints<Space>];
+	const bool present = k < pair.size;
+	const SpaceFeature feature = present ? pair.points[k].feature : SpaceFeature {SpaceFeature::Vertex1, 0, 0}; // tells how far the pair moves
+	f.present[lane] = present ? -1 : 0;
+	f.crossing[lane] = feature.kind == SpaceFeature::Edges ? -1 : 0;
+	const bool vertexOn1 = feature.kind == SpaceFeature::Vertex1;
+	f.vertexOn1[lane] = vertexOn1 ? -1 : 0;
+	const Vector3 &vertexHalf = s.bodies[vertexOn1 ? pair.body1 : pair.body2].halfSize,
+	              &faceHalf = s.bodies[vertexOn1 ? pair.body2 : pair.body1].halfSize;
+	const int vertex = vertexOn1 ? feature.first : feature.second, face = f.crossing[lane] ? 0 : vertexOn1 ? feature.second : feature.first;
+	const int axis = face / 2;
+	set(f.vertex, lane,
+	    {vertex & 1 ? vertexHalf.x() : -vertexHalf.x(), vertex & 2 ? vertexHalf.y() : -vertexHalf.y(),
+	     vertex & 4 ? vertexHalf.z() : -vertexHalf.z()});
+	set(f.normal, lane, (face % 2 ? 1. : -1.) * Vector3::Unit(axis));
+	set(f.tangent, lane, Vector3::Unit(feature::nextAxis(axis)));
+	f.faceDistance[lane] = faceHalf[axis];
+}
+
+template <>
+ContactFrame<Space> WallContacts<Space>::frame(int group, int lane, int k) const
+{
+	const PointLanes<Space>& p = groups[group].point[k];
+	ContactFrame<Space> frame;
+	frame.position = get(features[group].point[k].arm, lane);
+	frame.axes.row(0) = get(p.normal.axis, lane);
+	frame.axes.row(1) = get(p.tangent[0].axis, lane);
+	frame.axes.row(2) = get(p.tangent[1].axis, lane);
+	frame.gap = p.gap[lane];
+	return frame;
+}
+
+template <>
+Space::Velocity WallContacts<Space>::inGlobal(const LaneArray& from, size_t b) const
+{
+	const Lanes &v = from[2 * b], &spin = from[2 * b + 1], *rows = &pose[poseRows * b];
+	const Lanes w = spin * rows[3];
+	Space::Velocity result;
+	for (int i = 0; i < 3; ++i) {
+		result[i] = v[i];
+		result[3 + i] = rows[i][0] * w[0] + rows[i][1] * w[1] + rows[i][2] * w[2];
+	}
+	return result;
+}
+
+template <>
+void WallContacts<Space>::takeForce(const Space::Velocity& force, double h, size_t b, LaneArray& to) const
+{
+	const Lanes* rows = &pose[poseRows * b];
+	const double perMass = h * velocity[2 * b][3];
+	const Lanes moment = force[3] * rows[0] + force[4] * rows[1] + force[5] * rows[2]; // R^T times it
+	to[2 * b] = perMass * Lanes {force[0], force[1], force[2], 0};
+	to[2 * b + 1] = perMass * moment * rows[3]; // whose fourth component is zero
+}
+
+} // namespace masonry::rigid::wall
