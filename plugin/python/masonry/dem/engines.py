@@ -74,7 +74,7 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
                   the cost grows as its inverse square root.
     impact_order  'simultaneous' or 'sequential': how an impact acts on a structure (impactOrder of the engine)
     gravity       m/s^2, along -z
-    recorder      a BlockRecorder, put where positions, forces and O.time belong together; None
+    recorder      a BlockRecorder, a WallRecorder or a list of them, put where positions, forces and O.time belong together; None
     others        rigid: engines of bodies that are no blocks (collider, InteractionLoop, NewtonIntegrator with a mask that leaves
                   the blocks out), put between ForceResetter and the blocks' own
     """
@@ -102,7 +102,7 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
             model, reason = "compliant", "penetration is given"
         elif any(not np.isnan(b.mat.normalStiffness) for b in _blocks()):
             model, reason = "compliant", "a BlockMat has a joint stiffness"
-    recorders = [] if recorder is None else [recorder]
+    recorders = [] if recorder is None else list(recorder) if isinstance(recorder, (list, tuple)) else [recorder]
     if model == "compliant":
         if tolerance is not None or others:
             raise ValueError("tolerance and others are for rigid blocks: they must be left out with model='compliant'")

@@ -1,0 +1,18 @@
+"""What a WallRecorder has kept, as arrays."""
+
+import numpy as np
+from masonry.results import WallHistory
+from yade import wrapper
+
+
+def wall_history(recorder):
+    """The masonry.results.WallHistory of a WallRecorder that has run: motion and energies of its blocks, apart from YADE, to be
+    saved, drawn, counted (masonry.results). Raises ValueError where it has recorded nothing, or no free block."""
+    if not isinstance(recorder, wrapper.WallRecorder):
+        raise ValueError(f"recorder = {recorder!r}: must be a WallRecorder")
+    if not recorder.times:
+        raise ValueError("recorder: has recorded nothing yet: give it to dem.engines(recorder=...) and run")
+    blocks = np.array(recorder.blocks).reshape(-1, 4)
+    poses = np.frombuffer(recorder.posesAsBytes()).reshape(len(recorder.times), -1, 7)
+    return WallHistory(recorder.times, recorder.ids, 2 * blocks[:, :3], blocks[:, 3] > 0, poses[..., :3], poses[..., 3:],
+                       np.array(recorder.energies).reshape(len(recorder.times), -1))

@@ -1,0 +1,83 @@
+"""Has the structure collapsed, when, and how far had it moved before?"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass
+class CollapseReport:
+    """What collapse() found. Times are those of samples, s."""
+
+    collapsed: bool
+    time: float  # of collapse; NaN: none
+    fallen: np.ndarray  # ids of the blocks that have fallen by the end of the history, in the order in which they fell
+    fall_times: np.ndarray  # theirs
+    free: int  # blocks that could fall
+    peak_drift: float  # largest drift before collapse, relative to the height
+    peak_drift_time: float
+    excursion: float  # the level asked for
+    first_excursion: float  # when the drift first reached it, also after collapse; NaN: never
+
+    def __str__(self):
+        fate = f"collapsed at {self.time:.4g} s: {len(self.fallen)} of {self.free} blocks have fallen" if self.collapsed else \
+            f"stands: {len(self.fallen)} of {self.free} blocks have fallen"
+        first = "never" if math.isnan(self.first_excursion) else f"first at {self.first_excursion:.4g} s"
+        return (f"{fate}\npeak drift {'before collapse ' if self.collapsed else ''}{self.peak_drift:.3g} of the height, at {self.peak_drift_time:.4g} s\n"
+                f"drift of {self.excursion:g}: {first}")
+
+    def numbers(self):
+        """A dict of plain numbers, for tables: collapsed, collapse_time, fallen (how many), peak_drift, peak_drift_time, first_excursion."""
+        return {"collapsed": self.collapsed, "collapse_time": self.time, "fallen": len(self.fallen), "peak_drift": self.peak_drift,
+                "peak_drift_time": self.peak_drift_time, "first_excursion": self.first_excursion}
+
+
+def fallen(history):
+    """(s, n) bool: which blocks have fallen. A free block has, when its centre is lower, relative to the base, by more than half of its first
+    height, or when it has overturned: it leans further than where its centre is highest over its lowest corner, so that, alone, it
+    would not come back. An erased block has fallen.
+
+    That critical lean is atan((b |cos f| + d |sin f|) / a) for half widths b, d, half height a and a lean in the direction f of the
+    block's own plan: atan(b / a) about an edge, atan(sqrt(b^2 + d^2) / a) over a corner.
+    """
+    half, blocks = history.sizes / 2, np.arange(len(history.ids))
+    # Of the lean: sine times (cos f, sin f), and cosine, from the vertical in the block's axes.
+    sideways = np.abs(history.vertical)
+    sideways[:, blocks, history.upright] = 0
+    sine, cosine = np.linalg.norm(sideways, axis=2), np.cos(history.lean)
+    low, high = history.extent
+    with np.errstate(invalid="ignore"):
+        back = (cosine > 0) & (sine**2 * half[blocks, history.upright] <= cosine * (sideways * half).sum(axis=2))
+        stands = back & (history.displacement[..., 2] >= -(high - low) / 2)
+    return ~stands & history.free
+
+
+def collapse(history, blocks=1, excursion=0.01):
+    """The CollapseReport of a WallHistory.
+
+    blocks       so many fallen blocks are a collapse (1 to the number of free blocks)
+    excursion    level of the drift whose first crossing is reported, relative to the height (positive)
+
+    A block has fallen from the sample on from which fallen() holds until the end of the history; one that leans far and comes back has not.
+    The time of collapse is that at which `blocks` of them have fallen, right within the time between two samples. Drift is
+    WallHistory.drift(). Raises ValueError for input out of its range.
+    """
+    free = int(history.free.sum())
+    if not (blocks == int(blocks) and 1 <= blocks <= free):
+        raise ValueError(f"blocks = {blocks}: must be a whole number from 1 to {free}, the number of free blocks")
+    if not 0 < excursion < math.inf:
+        raise ValueError(f"excursion = {excursion}: must be positive and finite")
+    # From the last sample backwards: True as long as the block lies.
+    lies = np.logical_and.accumulate(fallen(history)[::-1])[::-1]
+    rows = np.flatnonzero(lies[-1])
+    samples = lies[:, rows].argmax(axis=0)
+    order = np.argsort(samples, kind="stable")
+    times = history.time[samples[order]]
+    collapsed = len(rows) >= blocks
+    drift = history.drift()
+    before = samples[order][int(blocks) - 1] if collapsed else len(drift)
+    peak = int(np.nanargmax(drift[:max(before, 1)]))
+    beyond = np.flatnonzero(drift >= excursion)
+    return CollapseReport(collapsed, float(times[int(blocks) - 1]) if collapsed else math.nan, history.ids[rows[order]], times, free, float(drift[peak]),
+                          float(history.time[peak]), excursion, float(history.time[beyond[0]]) if len(beyond) else math.nan)

@@ -1,0 +1,144 @@
+"""Joints that opened and slid: from the motion of the blocks alone, so it holds for every model."""
+
+import math
+
+import numpy as np
+from masonry.results import _pose
+
+# Blocks touch at first where their faces are within this share of the smallest size of the two, and opposite within this angle (rad).
+_TOUCH = 1e-3
+# Smallest patch that is a joint, relative to the smaller face.
+_LEAST_AREA = 1e-6
+# A joint is closed somewhere, so that its slip means something, when its points are within this share of the smallest size of the two.
+_CLOSED = 1e-2
+# Two faces of boxes overlap in a polygon of at most eight corners.
+_CORNERS = 8
+
+_FIELDS = [("id1", int), ("id2", int), ("center", float, 3), ("normal", float, 3), ("area", float), ("opening", float), ("opening_time", float),
+           ("slip", float), ("slip_time", float)]
+
+
+def _clip(polygon, half):
+    """Part of a polygon (k, 2) within |x| <= half[0], |y| <= half[1]: side by side (Sutherland and Hodgman)."""
+    for axis in (0, 1):
+        for side in (-1, 1):
+            if not len(polygon):
+                return polygon
+            inside = half[axis] - side * polygon[:, axis]
+            kept = []
+            for k, point in enumerate(polygon):
+                before, d0, d1 = polygon[k - 1], inside[k - 1], inside[k]
+                if (d0 < 0) != (d1 < 0):
+                    kept.append(before + d0 / (d0 - d1) * (point - before))
+                if d1 >= 0:
+                    kept.append(point)
+            polygon = np.array(kept).reshape(-1, 2)
+    return polygon
+
+
+def _area(polygon):
+    x, y = polygon.T
+    return abs(x @ np.roll(y, -1) - y @ np.roll(x, -1)) / 2
+
+
+def _patch(a, b, margin):
+    """(normal from a to b, corners (k, 3), area) of the faces that touch, or None. a, b: (center, axes as columns, half sizes)."""
+    (center, axes, half), (other, turned, reach) = a, b
+    between = other - center
+    cosines = axes.T @ turned
+    for k in range(3):
+        m = int(np.abs(cosines[k]).argmax())
+        if 1 - abs(cosines[k, m]) > _TOUCH**2 / 2:
+            continue
+        side = math.copysign(1, between @ axes[:, k])
+        if abs(side * (between @ axes[:, k]) - half[k] - reach[m]) > margin:
+            continue
+        u, v, p, q = (k + 1) % 3, (k + 2) % 3, (m + 1) % 3, (m + 2) % 3
+        plane = axes[:, [u, v]]
+        face = between @ plane + np.array([[1, 1], [-1, 1], [-1, -1], [1, -1]]) * reach[[p, q]] @ (turned[:, [p, q]].T @ plane)
+        polygon = _clip(face, half[[u, v]])
+        area = _area(polygon) if len(polygon) > 2 else 0
+        if area > _LEAST_AREA * 4 * min(half[u] * half[v], reach[p] * reach[q]):
+            return side * axes[:, k], center + polygon @ plane.T + side * half[k] * axes[:, k], area
+    return None
+
+
+class _Joints:
+    """Face patches of the blocks that touch in the first sample. Polygons are filled up to eight corners with their last one."""
+
+    def __init__(self, history):
+        center, axes, half = history.position[0], _pose.matrices(history.orientation[0]), history.sizes / 2
+        reach = np.einsum("nak,nk->na", np.abs(axes), half)
+        smallest = history.sizes.min(axis=1)
+        low, high = center - reach, center + reach
+        pairs, normals, polygons, centers, areas = [], [], [], [], []
+        for i in range(len(center)):
+            margin = _TOUCH * np.minimum(smallest[i], smallest[i + 1:])[:, None]
+            near = ((low[i + 1:] <= high[i] + margin) & (low[i] <= high[i + 1:] + margin)).all(axis=1)
+            for j in i + 1 + np.flatnonzero(near):
+                if not (history.free[i] or history.free[j]):
+                    continue
+                patch = _patch((center[i], axes[i], half[i]), (center[j], axes[j], half[j]), margin[j - i - 1, 0])
+                if patch is not None:
+                    pairs.append((i, j))
+                    normals.append(patch[0])
+                    polygons.append(np.concatenate([patch[1], np.repeat(patch[1][-1:], _CORNERS - len(patch[1]), axis=0)]))
+                    centers.append(patch[1].mean(axis=0))
+                    areas.append(patch[2])
+        self.rows = np.array(pairs, dtype=int).reshape(-1, 2)
+        self.normals, self.polygons = np.array(normals).reshape(-1, 3), np.array(polygons).reshape(-1, _CORNERS, 3)
+        self.centers = np.array(centers).reshape(-1, 3)
+        self.areas, self.smallest = np.array(areas), smallest[self.rows].min(axis=1)
+        self._start = axes
+        self._arms = [np.einsum("jab,jka->jkb", axes[row], self.polygons - center[row][:, None]) for row in self.rows.T]
+
+    def movement(self, history, sample):
+        """(opening, slip, closed) of each joint at a sample: the largest gap of the points of the patch, 0 where all touch; how far the least open
+        point of block 2 has moved along the joint, over block 1 as it stands now; whether that point is closed."""
+        axes, place = _pose.matrices(history.orientation[sample]), history.position[sample]
+        first, second = (place[row][:, None] + np.einsum("jab,jkb->jka", axes[row], arm) for row, arm in zip(self.rows.T, self._arms))
+        one = self.rows[:, 0]
+        apart = np.einsum("jab,jcb,jkc->jka", self._start[one], axes[one], second - first)  # seen from block 1
+        gaps = np.einsum("jka,ja->jk", apart, self.normals)
+        least = gaps.argmin(axis=1)[:, None]
+        along = np.take_along_axis(apart, least[..., None], 1)[:, 0] - np.take_along_axis(gaps, least, 1) * self.normals
+        return np.maximum(gaps.max(axis=1), 0), np.linalg.norm(along, axis=1), np.take_along_axis(gaps, least, 1)[:, 0] <= _CLOSED * self.smallest
+
+
+def _joints_of(history):
+    if not hasattr(history, "_joints"):  # found once
+        history._joints = _Joints(history)
+    return history._joints
+
+
+def joints(history, time=None):
+    """How far the joints of a WallHistory opened and slid: a structured array, one row for each pair of blocks that touch face on face in the
+    first sample (bed joints, head joints, joints with the base).
+
+    time    None: the largest values of all samples; else those of the sample nearest to it (s)
+
+    id1, id2                the blocks; id2 is the later one of the history
+    center, normal, area    of the patch in the first sample: mean of its corners (m), from block 1 to block 2, m^2
+    opening                 the largest distance of the two sides, m: of a block that rocks by an angle a on a joint of width 2b, 2b sin(a)
+    slip                    sliding of block 2 over block 1 where the joint is closed, or nearest to it, m; NaN: it is open all over (for
+                            the largest: samples in which it is are left out)
+    opening_time, slip_time when, s
+    """
+    found = _joints_of(history)
+    table = np.zeros(len(found.rows), dtype=_FIELDS)
+    table["id1"], table["id2"] = history.ids[found.rows].T
+    table["center"], table["normal"], table["area"] = found.centers, found.normals, found.areas
+    samples = range(len(history.time)) if time is None else [history.sample(time)]
+    table["slip"] = table["slip_time"] = np.nan
+    table["opening_time"] = history.time[samples[0]]
+    for sample in samples:
+        opening, slip, closed = found.movement(history, sample)
+        for name, values, better in (("opening", opening, opening > table["opening"]), ("slip", slip, closed & ~(slip <= table["slip"]))):
+            table[name][better] = values[better]
+            table[name + "_time"][better] = history.time[sample]
+    return table
+
+
+def patches(history):
+    """(j, 8, 3) corners of the patches of joints(history), in the first sample, m; those with fewer corners repeat their last one."""
+    return _joints_of(history).polygons

@@ -1,0 +1,65 @@
+"""The motion of a structure as files that ParaView opens: one of boxes (.vtu) a sample, and a list of them with their times (.pvd)."""
+
+import base64
+from pathlib import Path
+
+import numpy as np
+from masonry.results import _pose
+
+# VTK's order of the corners of a hexahedron, from ours (x fastest, then y).
+_HEXAHEDRON = [0, 1, 3, 2, 4, 5, 7, 6]
+_TYPES = {"f8": "Float64", "f4": "Float32", "i8": "Int64", "i4": "Int32", "u1": "UInt8"}
+
+
+def _array(name, values):
+    values = np.ascontiguousarray(values)
+    data = values.astype(values.dtype.newbyteorder("<")).tobytes()
+    parts = f' NumberOfComponents="{values.shape[1]}"' if values.ndim == 2 else ""
+    text = base64.b64encode(len(data).to_bytes(8, "little") + data).decode()
+    return f'<DataArray type="{_TYPES[values.dtype.str[1:]]}" Name="{name}"{parts} format="binary">{text}</DataArray>\n'
+
+
+def _vtu(points, cell_data, point_data):
+    count = len(points) // 8
+    connectivity = (8 * np.arange(count)[:, None] + _HEXAHEDRON).ravel()
+    sections = {"Points": _array("Points", points),
+                "Cells": _array("connectivity", connectivity) + _array("offsets", 8 * np.arange(1, count + 1)) + _array("types", np.full(count, 12, np.uint8)),
+                "CellData": "".join(_array(*item) for item in cell_data.items()), "PointData": "".join(_array(*item) for item in point_data.items())}
+    body = "".join(f"<{name}>\n{text}</{name}>\n" for name, text in sections.items())
+    return ('<?xml version="1.0"?>\n<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64">\n<UnstructuredGrid>\n'
+            f'<Piece NumberOfPoints="{8 * count}" NumberOfCells="{count}">\n{body}</Piece>\n</UnstructuredGrid>\n</VTKFile>\n')
+
+
+def write_paraview(history, path, every=1, relative=False):
+    """Writes the history for ParaView (open the .pvd file) and returns the path of that file.
+
+    path        of the .pvd file; the .vtu files go to the folder of the same name beside it, which is made
+    every       only each so-manieth sample is written, at least 1
+    relative    True: as seen from the base, which then stands still
+
+    Each block is a cell with id, free (1 or 0), displacement of its centre (m), rotation and lean (rad); the corners have their displacement too, for
+    the filter "Warp By Vector" on the first file. Displacements and rotations are relative to the base and the first sample. Erased blocks are
+    left out.
+    """
+    path = Path(path)
+    if path.suffix != ".pvd":
+        raise ValueError(f"path = {path}: must end in .pvd")
+    if not (every == int(every) and every >= 1):
+        raise ValueError(f"every = {every}: must be a whole number, at least 1")
+    folder = path.with_suffix("")
+    folder.mkdir(parents=True, exist_ok=True)
+    position, orientation = (history.relative_position, history.relative_orientation) if relative else (history.position, history.orientation)
+    start, sets = history.corners(0), []
+    for sample in range(0, len(history.time), int(every)):
+        there = np.isfinite(position[sample]).all(axis=1)
+        points = _pose.corners(position[sample], orientation[sample], history.sizes)
+        cells = {"id": history.ids, "free": history.free.astype(np.uint8), "displacement": history.displacement[sample],
+                 "rotation": history.rotation[sample], "lean": history.lean[sample]}
+        moved = history.corners(sample) - start
+        file = folder / f"{path.stem}_{sample:06d}.vtu"
+        file.write_text(_vtu(points[there].reshape(-1, 3), {name: values[there] for name, values in cells.items()},
+                             {"displacement": moved[there].reshape(-1, 3)}))
+        sets.append(f'<DataSet timestep="{float(history.time[sample])!r}" file="{folder.name}/{file.name}"/>\n')
+    path.write_text('<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1" byte_order="LittleEndian">\n<Collection>\n'
+                    f'{"".join(sets)}</Collection>\n</VTKFile>\n')
+    return path

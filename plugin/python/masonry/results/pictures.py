@@ -1,0 +1,193 @@
+"""Pictures and films of a WallHistory. Files are written without a screen; matplotlib is imported where it is needed."""
+
+import math
+
+import numpy as np
+from masonry.results.joints import joints, patches
+from masonry.results.view import View, enlargement, largest, nice
+
+# Movement of the farthest moved block in a picture, relative to the smallest block, where no factor is given.
+_DRAWN = 0.5
+_COLOURS = {"displacement": "displacement relative to the base (m)", "rotation": "rotation (rad)"}
+_PRESCRIBED, _UNMOVED = "0.62", "0.85"
+
+
+def _shades(name, most):
+    """Colour map from 0 to `most`, without the palest colours, which are lost on white."""
+    from matplotlib import colormaps
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.colors import ListedColormap, Normalize
+
+    return ScalarMappable(Normalize(0, most or 1.0), ListedColormap(colormaps[name](np.linspace(0.12, 1, 256))))
+
+
+def _check(color, enlarge):
+    if color not in _COLOURS:
+        raise ValueError(f"color = {color!r}: must be one of {', '.join(map(repr, _COLOURS))}")
+    if enlarge is not None and not 0 < enlarge < math.inf:
+        raise ValueError(f"enlarge = {enlarge}: must be positive and finite, or None")
+
+
+def _figure(view, shown, title, columns=1):
+    """Axes for a wall that fills `shown` (points in the picture)."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    (left, low), (right, high) = np.nanmin(shown, axis=0), np.nanmax(shown, axis=0)
+    margin = 0.06 * max(right - left, high - low)
+    width, height = right - left + 2 * margin, high - low + 2 * margin
+    scale = min(7.5 / columns / width, 5.5 / height)
+    figure = Figure(figsize=(max(width * scale + 1.8, 3.6) * columns, max(height * scale, 1.5) + 1.0), layout="constrained")
+    FigureCanvasAgg(figure)
+    all_axes = figure.subplots(1, columns, squeeze=False)[0]
+    for axes in all_axes:
+        axes.set(aspect="equal", xlim=(left - margin, right + margin), ylim=(low - margin, high + margin))
+        if view.from_side:
+            axes.set(xlabel=view.label(), ylabel="z (m)")
+        else:
+            axes.axis("off")
+            bar = nice(width / 4)
+            axes.plot([left, left + bar], [low - margin / 2] * 2, color="k", linewidth=2, zorder=3)
+            axes.text(left + 1.1 * bar, low - margin / 2, f"{bar:g} m", va="center", fontsize="small", zorder=3)
+    if title:
+        all_axes[0].set_title(title, fontsize="small")
+    return figure, all_axes
+
+
+class _Painter:
+    """The blocks in one picture, drawn anew for each sample."""
+
+    def __init__(self, history, samples, enlarge, color, view, title):
+        from matplotlib.collections import LineCollection, PolyCollection
+        from matplotlib.colors import to_rgb
+
+        _check(color, enlarge)
+        self._history, self._view, self._title = history, View(history, view), title
+        self._enlarge = enlargement(history, samples, _DRAWN) if enlarge is None else float(enlarge)
+        self._values = np.linalg.norm(history.displacement, axis=2) if color == "displacement" else history.rotation
+        self._map = _shades("YlOrRd", largest(self._values[samples][:, history.free]))
+        self._grey = np.array(to_rgb(_PRESCRIBED))
+        start, free = history.corners(0), history.free
+        shown = np.concatenate([self._view.place(history.corners(k, self._enlarge)[free]).reshape(-1, 2) for k in {0, *samples}])
+        self.figure, (self._axes,) = _figure(self._view, shown[np.isfinite(shown).all(axis=1)], " ")
+        self._axes.add_collection(LineCollection(self._view.outlines(start[free]), colors="0.6", linewidths=0.6, linestyles="--", zorder=1))
+        self._blocks = PolyCollection([], edgecolors="0.2", linewidths=0.5 if len(start) < 300 else 0.25, zorder=2)
+        self._axes.add_collection(self._blocks)
+        self.figure.colorbar(self._map, ax=self._axes, label=_COLOURS[color], shrink=0.8, pad=0.02)
+
+    def paint(self, sample):
+        corners = self._history.corners(sample, self._enlarge)
+        there = np.flatnonzero(np.isfinite(corners).all(axis=(1, 2)))
+        polygons, rows, bright = self._view.faces(corners[there])
+        rows = there[rows]
+        colors = np.where(self._history.free[rows, None], self._map.to_rgba(self._values[sample, rows])[:, :3], self._grey)
+        self._blocks.set_verts(polygons)
+        self._blocks.set_facecolor(np.clip(colors * bright[:, None], 0, 1))
+        drawn = "" if self._enlarge == 1 else f", movement drawn {self._enlarge:.3g} times"
+        self._axes.set_title(f"{self._title + ': ' if self._title else ''}t = {self._history.time[sample]:.3f} s{drawn}", fontsize="small")
+
+
+def draw(history, path, time=None, enlarge=None, color="displacement", view=None, title=""):
+    """Writes a picture (.png, .pdf, .svg) of the displaced structure: relative to its base, with the blocks as they were at first dashed
+    behind it.
+
+    time       the sample nearest to it is drawn, s; None: the one in which the drift (WallHistory.drift) is largest
+    enlarge    factor on the movement, positive; None: so that the largest is drawn as half of the smallest block, at least 1
+    color      'displacement' (of the centre, m) or 'rotation' (rad), since the first sample and relative to the base
+    view       direction from the scene to the viewer (x, y, z); None: across the plane in which all blocks move, else from
+               the right, the front and above
+    """
+    sample = int(np.nanargmax(history.drift())) if time is None else history.sample(time)
+    painter = _Painter(history, [sample], enlarge, color, view, title)
+    painter.paint(sample)
+    painter.figure.savefig(path, dpi=150)
+
+
+def film(history, path, start=None, end=None, frames_per_second=20, speed=1.0, enlarge=1.0, color="displacement", view=None, title="", progress=True):
+    """Writes a film of the recorded motion, relative to the base: .gif, or .mp4 where ffmpeg is installed.
+
+    start, end           part of the history, s; None: all of it
+    frames_per_second    of the film, above 0 and at most 60; a frame is the sample nearest to its instant, so more than were
+                         recorded show nothing new
+    speed                seconds of motion in a second of the film, positive
+    enlarge, color, view, title    as in draw(); None for enlarge chooses as there, for the largest movement of the film
+    """
+    from matplotlib import animation
+    from tqdm import tqdm
+
+    if str(path).endswith(".mp4"):
+        if not animation.FFMpegWriter.isAvailable():
+            raise ValueError(f"path = {path}: .mp4 needs ffmpeg (Debian: apt install ffmpeg); a path that ends in .gif needs nothing")
+        writer = animation.FFMpegWriter(fps=frames_per_second)
+    elif str(path).endswith(".gif"):
+        writer = animation.PillowWriter(fps=frames_per_second)
+    else:
+        raise ValueError(f"path = {path}: must end in .gif or .mp4")
+    if not 0 < frames_per_second <= 60:
+        raise ValueError(f"frames_per_second = {frames_per_second}: must be above 0 and at most 60")
+    if not 0 < speed < math.inf:
+        raise ValueError(f"speed = {speed}: must be positive and finite")
+    first, last = (history.time[history.sample(t)] if t is not None else history.time[k] for t, k in ((start, 0), (end, -1)))
+    if not first <= last:
+        raise ValueError(f"start = {start}, end = {end}: start must not come after end")
+    samples = [history.sample(t) for t in np.arange(first, last + 1e-9 * (last - first), speed / frames_per_second)]
+    painter = _Painter(history, samples, enlarge, color, view, title)
+    with writer.saving(painter.figure, path, dpi=100):
+        for sample in tqdm(samples, desc="film", unit="frame", disable=not progress):
+            painter.paint(sample)
+            writer.grab_frame()
+            painter.figure.set_layout_engine("none")  # the first frame has laid it out
+
+
+def draw_joints(history, path, time=None, view=None, title=""):
+    """Writes a picture with two maps on the undisplaced structure: opening and slip of each joint (joints()), in mm. time: the sample nearest
+    to it, s; None: the largest of each joint in the whole history. view: as in draw()."""
+    from matplotlib.collections import LineCollection, PolyCollection
+    from matplotlib.colors import to_rgba
+
+    table, polygons, view = joints(history, time), patches(history), View(history, view)
+    corners = history.corners(0)
+    flat = view.place(polygons)
+    when = "largest so far" if time is None else f"at {history.time[history.sample(time)]:.3f} s"
+    figure, panels = _figure(view, view.place(corners[history.free]).reshape(-1, 2), "", columns=2)
+    for axes, name, colours in zip(panels, ("opening", "slip"), ("YlOrRd", "YlGnBu")):
+        values = 1e3 * table[name]
+        most = largest(values)
+        shades = _shades(colours, most)
+        order = np.argsort(np.nan_to_num(values))
+        # What opens or slides by less than a hundredth of the most is left grey and thin. Edge on, the line of a joint is its outline.
+        moves = np.nan_to_num(values) > 0.01 * most
+        axes.add_collection(LineCollection(view.outlines(corners[history.free]), colors="0.8", linewidths=0.4, zorder=1))
+        width = np.where(moves, 3.0 if view.from_side else 0.8, 0.8)
+        colors = np.where(moves[:, None], shades.to_rgba(np.nan_to_num(values), alpha=1.0 if view.from_side else 0.6), to_rgba(_UNMOVED, 0.3))
+        axes.add_collection(PolyCollection(flat[order], facecolors=colors[order], edgecolors=colors[order], linewidths=width[order], zorder=2))
+        axes.set_title(f"{title + ': ' if title else ''}{name}, {when}", fontsize="small")
+        figure.colorbar(shades, ax=axes, label=f"{name} (mm)", shrink=0.8, pad=0.02)
+    figure.savefig(path, dpi=150)
+
+
+def draw_energy(history, path, title=""):
+    """Writes a picture of WallHistory.energy over time: kinetic, potential (since the first sample), what friction, impacts and dashpots have
+    dissipated and the work of the base; below, the error of their balance."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    energy = history.energy
+    if np.isnan(energy["kinetic"]).all():
+        raise ValueError("history: it has no energies: record with a WallRecorder while engines of dem.engines() run")
+    figure = Figure(figsize=(7.5, 6), layout="constrained")
+    FigureCanvasAgg(figure)
+    upper, lower = figure.subplots(2, 1, sharex=True, gridspec_kw={"height_ratios": (3, 1)})
+    names = {"baseWork": "work of the base", "kinetic": "kinetic", "potential": "potential, since the start", "elastPotential": "elastic",
+             "frictDissip": "dissipated by friction", "impactDissip": "dissipated by impacts", "dampDissip": "dissipated by dashpots"}
+    for k, (key, name) in enumerate(names.items()):
+        values = energy[key] - (energy[key][0] if key == "potential" else 0)
+        if values.any() or key in ("baseWork", "kinetic"):
+            upper.plot(energy["time"], values, label=name, color="k" if key == "baseWork" else f"C{k - 1}", linewidth=1.2)
+    upper.set(ylabel="energy (J)")
+    upper.legend(fontsize="small")
+    if title:
+        upper.set_title(title, fontsize="small")
+    lower.plot(energy["time"], energy["error"], color="C3", linewidth=1)
+    lower.set(xlabel="time (s)", ylabel="error of the\nbalance (J)")
+    figure.savefig(path, dpi=150)

@@ -1,0 +1,143 @@
+"""Blocks seen from afar in a given direction: which faces show, and which blocks hide which."""
+
+import heapq
+import math
+
+import numpy as np
+from masonry.results import _pose
+
+# From the scene towards the viewer of a structure that moves in space: from the right, the front, above.
+OBLIQUE = (0.45, -1.0, 0.4)
+# Movement out of a plane, relative to the largest size of a block or in rad, that still counts as motion in it.
+_PLANAR = 1e-6
+# Corners (of _pose.corners) around the face on the least side of an axis and on the other one, counterclockwise from outside.
+_FACES = np.array([[[0, 4, 6, 2], [1, 3, 7, 5]], [[0, 1, 5, 4], [2, 6, 7, 3]], [[0, 2, 3, 1], [4, 5, 7, 6]]])
+_EDGES = np.array([[0, 1], [2, 3], [4, 5], [6, 7], [0, 2], [1, 3], [4, 6], [5, 7], [0, 4], [1, 5], [2, 6], [3, 7]])
+
+
+def plane_normal(history):
+    """Horizontal unit vector, an axis of every free block, across which nothing moves, with y not positive; None: there is none."""
+    axes = _pose.matrices(history.orientation[0])[history.free]
+    moved, turned = history.displacement[:, history.free], history.relative_orientation[:, history.free]
+    for normal in axes[0].T:
+        if abs(normal[2]) > _PLANAR or (np.abs(np.einsum("a,nab->nb", normal, axes)).max(axis=1) < 1 - _PLANAR).any():
+            continue
+        across = np.abs(_pose.matrices(turned).swapaxes(-1, -2) @ normal - axes.swapaxes(-1, -2) @ normal)
+        if largest(np.abs(moved @ normal)) <= _PLANAR * history.sizes[history.free].max() and largest(across) <= _PLANAR:
+            return -normal if (normal[1], normal[0]) > (0, 0) else normal
+    return None
+
+
+class View:
+    """Orthographic projection. towards: from the scene to the viewer; None: across the plane of motion, else OBLIQUE."""
+
+    def __init__(self, history, towards=None):
+        if towards is None:
+            towards = plane_normal(history)
+        towards = np.array(OBLIQUE if towards is None else [float(v) for v in towards])
+        if towards.shape != (3,) or not np.isfinite(towards).all() or not np.linalg.norm(towards) > 0:
+            raise ValueError(f"view = {towards}: must be three finite numbers, not all 0: the direction from the scene to the viewer")
+        self.towards = towards / np.linalg.norm(towards)
+        right = np.cross([0, 0, 1], self.towards)
+        right = right / np.linalg.norm(right) if np.linalg.norm(right) > 1e-9 else np.array([1.0, 0, 0])
+        self.frame = np.stack([right, np.cross(self.towards, right)], axis=1)
+        self.from_side = abs(self.towards[2]) < 1e-9
+
+    def place(self, points):
+        """(..., 2): to the right and upwards."""
+        return points @ self.frame
+
+    def label(self):
+        """Of the axis to the right, where it is one of the scene's."""
+        for name, value in zip("xy", self.frame[:, 0]):
+            if abs(abs(value) - 1) < 1e-9:
+                return f"{'-' if value < 0 else ''}{name} (m)"
+        return "along the wall (m)"
+
+    def outlines(self, corners):
+        """(12 n, 2, 2): the edges of all blocks."""
+        return self.place(corners)[:, _EDGES].reshape(-1, 2, 2)
+
+    def faces(self, corners):
+        """Faces that show, back to front: polygons (m, 4, 2), the row of the block of each, and how bright it is, 0 to 1."""
+        polygons = corners[:, _FACES]  # block, axis, side, corner
+        normals = np.cross(polygons[..., 1, :] - polygons[..., 0, :], polygons[..., 2, :] - polygons[..., 1, :])
+        normals /= np.maximum(np.linalg.norm(normals, axis=-1, keepdims=True), 1e-300)
+        shows = normals @ self.towards > 1e-6
+        # Tops are bright, fronts a little darker, flanks dark, so that colours can still be read off the scale.
+        light = 0.9 + 0.1 * normals[..., 2] - 0.2 * np.abs(normals[..., 0])
+        order = self.back_to_front(corners)
+        block, axis, side = (v.ravel() for v in np.broadcast_arrays(order[:, None, None], np.arange(3)[:, None], np.arange(2)))
+        keep = shows[block, axis, side]
+        block, axis, side = block[keep], axis[keep], side[keep]
+        bright = np.ones(len(block)) if self.from_side else light[block, axis, side]
+        return self.place(polygons[block, axis, side]), block, bright
+
+    def back_to_front(self, corners):
+        """Order of the blocks in which each is drawn after those behind it: of two that overlap in the picture, the face of either that
+        separates them best tells. Where that goes around in a circle, and from the side, the middle's depth does."""
+        center = corners.mean(axis=1)
+        depth = center @ self.towards
+        if self.from_side and np.ptp(depth) < 1e-9 * np.ptp(corners):
+            return np.arange(len(corners))
+        flat = self.place(corners)
+        low, high = flat.min(axis=1), flat.max(axis=1)
+        axes = corners[:, [1, 2, 4]] - corners[:, :1]  # rows
+        half = np.linalg.norm(axes, axis=2) / 2
+        axes = axes / np.maximum(2 * half, 1e-300)[..., None]
+        pairs = [np.empty((0, 2), dtype=int)]
+        for i in range(len(corners) - 1):
+            near = i + 1 + np.flatnonzero(((low[i + 1:] < high[i]) & (low[i] < high[i + 1:])).all(axis=1))
+            pairs.append(np.stack([np.full(len(near), i), near], axis=1))
+        i, j = np.concatenate(pairs).T
+        normals = np.concatenate([axes[i], axes[j]], axis=1)
+        along = np.einsum("pka,pa->pk", normals, center[j] - center[i])
+        reach = sum(np.abs(np.einsum("pka,pma->pkm", normals, axes[k])) @ half[k][..., None] for k in (i, j))[..., 0]
+        best = (np.abs(along) - reach).argmax(axis=1)[:, None]
+        front = np.take_along_axis(np.sign(along) * (normals @ self.towards), best, 1)[:, 0]  # positive: j is before i
+        behind, before = np.where(front > 0, i, j), np.where(front > 0, j, i)
+        told = np.abs(front) > 1e-9
+        return _sorted(behind[told], before[told], depth)
+
+
+def _sorted(behind, before, depth):
+    """Topological order by the pairs; among those that are free the deepest first."""
+    order = np.argsort(behind, kind="stable")
+    first = np.searchsorted(behind[order], np.arange(len(depth) + 1)).tolist()
+    hides, waits = before[order].tolist(), np.bincount(before, minlength=len(depth)).tolist()
+    by_depth = np.argsort(depth, kind="stable").tolist()
+    rank = {block: k for k, block in enumerate(by_depth)}
+    ready, done, result, next_stuck = [rank[b] for b in range(len(depth)) if not waits[b]], set(), [], 0
+    heapq.heapify(ready)
+    while len(result) < len(depth):
+        if not ready:  # a circle
+            while by_depth[next_stuck] in done:
+                next_stuck += 1
+            ready.append(next_stuck)
+        block = by_depth[heapq.heappop(ready)]
+        if block in done:
+            continue
+        done.add(block)
+        result.append(block)
+        for other in hides[first[block]:first[block + 1]]:
+            waits[other] -= 1
+            if waits[other] == 0:
+                heapq.heappush(ready, rank[other])
+    return np.array(result)
+
+
+def largest(values):
+    """Of numbers that are not negative; NaN is left out, and of none it is 0."""
+    return float(np.max(np.nan_to_num(values), initial=0))
+
+
+def enlargement(history, samples, share):
+    """Factor at which the largest movement of those samples is drawn as `share` of the smallest block; at least 1."""
+    most = max(largest(np.linalg.norm(history.corners(k) - history.corners(0), axis=2)[history.free]) for k in samples)
+    return max(1.0, share * history.sizes[history.free].min() / most) if most > 0 else 1.0
+
+
+def nice(value):
+    """The round number (1, 2 or 5 times a power of ten) at or below a positive value."""
+    power = 10.0 ** math.floor(math.log10(value))
+    return max(n for n in (1, 2, 5) if n * power <= value * (1 + 1e-12)) * power

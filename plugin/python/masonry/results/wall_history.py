@@ -1,0 +1,155 @@
+"""The recorded motion of a structure: what the other files of this folder draw, count and export."""
+
+from functools import cached_property
+
+import numpy as np
+from masonry.results import _pose
+
+ENERGIES = ("kinetic", "potential", "elastPotential", "frictDissip", "dampDissip", "impactDissip", "baseWork")
+_SAVED = ("time", "ids", "sizes", "free", "position", "orientation", "energies")
+
+
+class WallHistory:
+    """Positions and orientations of n blocks at s instants, and the energies. Arrays; SI units, rad.
+
+    time           (s,) s, increasing
+    ids            (n,) of the bodies in YADE
+    sizes          (n, 3) full sizes along the axes of each block, m
+    free           (n,) False: prescribed, as the base is
+    position       (s, n, 3) of the centres, m
+    orientation    (s, n, 4) quaternions w, x, y, z
+    energies       (s, 7) kinetic, potential, elastPotential, frictDissip, dampDissip, impactDissip, baseWork, J; None: not recorded
+
+    Displacements and rotations are relative to the base, which is the first prescribed block, and to the first sample. Without
+    a prescribed block they are those in the world. dem.wall_history(recorder) makes one; save and load keep it in a file.
+    Raises ValueError when shapes do not fit, times do not increase or a block that is there at first is nowhere.
+    """
+
+    def __init__(self, time, ids, sizes, free, position, orientation, energies=None):
+        self.time, self.ids, self.sizes = np.asarray(time, dtype=float), np.asarray(ids, dtype=int), np.asarray(sizes, dtype=float)
+        self.free, self.position, self.orientation = np.asarray(free, dtype=bool), np.asarray(position, dtype=float), np.asarray(orientation, dtype=float)
+        samples, blocks = len(self.time), len(self.ids)
+        self._energies = np.full((samples, len(ENERGIES)), np.nan) if energies is None else np.asarray(energies, dtype=float)
+        shapes = {"sizes": (blocks, 3), "free": (blocks,), "position": (samples, blocks, 3), "orientation": (samples, blocks, 4),
+                  "_energies": (samples, len(ENERGIES))}
+        for name, shape in shapes.items():
+            if getattr(self, name).shape != shape:
+                raise ValueError(f"{name.strip('_')} has the shape {getattr(self, name).shape}: must be {shape} for {samples} times and {blocks} ids")
+        if samples == 0 or not self.free.any():
+            raise ValueError(f"{samples} samples of {int(self.free.sum())} free blocks: there must be at least one of each")
+        if not (np.diff(self.time) > 0).all():
+            raise ValueError(f"time: must increase, and does not after {self.time[:-1][np.diff(self.time) <= 0][0]:g} s: record each run with a recorder of its own")
+        if not (np.isfinite(self.position[0]).all() and np.isfinite(self.orientation[0]).all()):
+            raise ValueError("position, orientation: must be finite in the first sample")
+
+    def __repr__(self):
+        return f"WallHistory({len(self.ids)} blocks, {self.time[0]:g} to {self.time[-1]:g} s, {len(self.time)} samples)"
+
+    def save(self, path):
+        """Writes a compressed .npz file, which WallHistory.load reads back bit by bit."""
+        if not str(path).endswith(".npz"):
+            raise ValueError(f"path = {path}: must end in .npz")
+        np.savez_compressed(path, **{name: getattr(self, "_energies" if name == "energies" else name) for name in _SAVED})
+
+    @classmethod
+    def load(cls, path):
+        """The WallHistory of a file that save() has written."""
+        with np.load(path) as file:
+            if set(_SAVED) - set(file.files):
+                raise ValueError(f"path = {path}: is no WallHistory: {', '.join(sorted(set(_SAVED) - set(file.files)))} is missing")
+            return cls(**{name: file[name] for name in _SAVED})
+
+    def sample(self, time=None):
+        """Number of the sample nearest to `time` (s, within the history); None: the last."""
+        if time is None:
+            return len(self.time) - 1
+        if not self.time[0] <= time <= self.time[-1]:
+            raise ValueError(f"time = {time}: must be from {self.time[0]:g} to {self.time[-1]:g} s")
+        return int(np.abs(self.time - time).argmin())
+
+    @property
+    def base(self):
+        """Row of the block that motion is relative to, or None."""
+        return None if self.free.all() else int(np.argmin(self.free))
+
+    @cached_property
+    def _from_base(self):
+        """Positions and orientations as one sees them from the base, put back where it was at first."""
+        if self.base is None:
+            return self.position, self.orientation
+        place, turned = self.position[:, self.base], self.orientation[:, self.base]
+        if (turned == turned[0]).all():
+            return self.position - (place - place[0])[:, None], self.orientation
+        back = _pose.product(turned[0], _pose.inverse(turned))
+        return place[0] + np.einsum("sab,snb->sna", _pose.matrices(back), self.position - place[:, None]), _pose.product(back[:, None], self.orientation)
+
+    @property
+    def relative_position(self):
+        """(s, n, 3) m, seen from the base, which stays where it was in the first sample."""
+        return self._from_base[0]
+
+    @property
+    def relative_orientation(self):
+        """(s, n, 4) quaternions, seen from the base."""
+        return self._from_base[1]
+
+    @cached_property
+    def displacement(self):
+        """(s, n, 3) of the centres relative to the base, since the first sample, m."""
+        return self.relative_position - self.relative_position[0]
+
+    @cached_property
+    def rotation(self):
+        """(s, n) angle of each block relative to the base, since the first sample, 0 to pi rad."""
+        turn = _pose.product(self.relative_orientation, _pose.inverse(self.relative_orientation[0]))
+        return 2 * np.arctan2(np.linalg.norm(turn[..., 1:], axis=-1), np.abs(turn[..., 0]))
+
+    @cached_property
+    def upright(self):
+        """(n,) which axis of each block, 0 to 2, was nearest to the vertical in the first sample."""
+        return np.abs(_pose.matrices(self.orientation[0])[:, 2]).argmax(axis=1)
+
+    @cached_property
+    def vertical(self):
+        """(s, n, 3) the vertical in the axes of each block."""
+        return _pose.matrices(self.orientation)[..., 2, :]
+
+    @cached_property
+    def lean(self):
+        """(s, n) angle between the upright axis of each block, which points up at first, and the vertical, 0 to pi rad."""
+        along = np.take_along_axis(self.vertical, self.upright[None, :, None], 2)[..., 0]
+        across = np.sqrt(np.maximum(0, (self.vertical**2).sum(axis=2) - along**2))
+        return np.arctan2(across, np.sign(along[0]) * along)
+
+    @cached_property
+    def energy(self):
+        """(s,) structured array, J: kinetic, potential and elastPotential now; frictDissip, dampDissip, impactDissip and baseWork since the
+        start of the run; error: by how much the sum of all others less baseWork has grown since the first sample. NaN where it
+        was not recorded."""
+        table = np.zeros(len(self.time), dtype=[("time", float)] + [(name, float) for name in ENERGIES] + [("error", float)])
+        table["time"] = self.time
+        for name, column in zip(ENERGIES, self._energies.T):
+            table[name] = column
+        total = self._energies[:, :-1].sum(axis=1) - self._energies[:, -1]
+        table["error"] = total - total[0]
+        return table
+
+    def drift(self):
+        """(s,) horizontal displacement of the top relative to the base over the height of the structure, 0 or positive, dimensionless. The
+        top: the block that is farthest away among those whose upper end is at first within half their height of the highest one. The
+        height: from the lowest point of the free blocks to the highest, at first."""
+        low, high = self.extent
+        top = self.free & (high > high[self.free].max() - (high - low) / 2)
+        moved = np.linalg.norm(self.displacement[:, top, :2], axis=2)
+        return np.fmax.reduce(moved, axis=1) / (high[self.free].max() - low[self.free].min())
+
+    @cached_property
+    def extent(self):
+        """Lowest and highest point of each block in the first sample, m."""
+        z = self.corners(0)[..., 2]
+        return z.min(axis=1), z.max(axis=1)
+
+    def corners(self, sample, enlarge=1.0):
+        """(n, 8, 3) corners of the blocks, seen from the base, their movement since the first sample taken `enlarge` times, m."""
+        start = _pose.corners(self.relative_position[0], self.orientation[0], self.sizes)
+        return start + enlarge * (_pose.corners(self.relative_position[sample], self.relative_orientation[sample], self.sizes) - start)

@@ -1,0 +1,82 @@
+#include "WallRecorder.hpp"
+#include "BlockMat.hpp"
+#include "MoreauJeanIntegrator.hpp"
+#include "RockingJointEngine.hpp"
+
+#include <boost/python/handle.hpp>
+#include <core/Scene.hpp>
+#include <lib/factory/ClassFactory.hpp>
+#include <pkg/common/Box.hpp>
+#include <sstream>
+#include <stdexcept>
+
+namespace yade {
+
+YADE_PLUGIN((WallRecorder));
+
+namespace {
+
+	constexpr size_t blockNumbers = 4, poseNumbers = 7;
+
+	template <class... Numbers> void add(vector<Real>& row, Numbers... numbers) { (row.push_back(numbers), ...); }
+
+	const Box* boxOf(const Body& body) { return dynamic_cast<const Box*>(body.shape.get()); }
+
+} // namespace
+
+/// Fixes what is recorded.
+void WallRecorder::begin()
+{
+	if (iterPeriod <= 0 && virtPeriod <= 0 && realPeriod <= 0)
+		throw std::invalid_argument("WallRecorder.iterPeriod = 0, virtPeriod = 0: one of them must be positive.");
+	if (ids.empty())
+		for (const auto& body : scene->bodies->body)
+			if (body && boxOf(*body) && dynamic_cast<const BlockMat*>(body->material.get())) ids.push_back(body->id);
+	blocks.clear();
+	for (int id : ids) {
+		if (!scene->bodies->exists(id) || !boxOf(*(*scene->bodies)[id])) {
+			std::ostringstream text;
+			text << "WallRecorder.ids has " << id << ": there is no such box in O.bodies.";
+			throw std::invalid_argument(text.str());
+		}
+		const Body& body = *(*scene->bodies)[id];
+		const Vector3r& half = boxOf(body)->extents;
+		add(blocks, half.x(), half.y(), half.z(), Real(body.isDynamic()));
+	}
+}
+
+void WallRecorder::addEnergies()
+{
+	for (const auto& engine : scene->engines) {
+		if (auto* rigid = dynamic_cast<MoreauJeanIntegrator*>(engine.get()))
+			return add(energies, rigid->kinetic(), rigid->potential(), Real(0), rigid->frictDissip, Real(0), rigid->impactDissip, rigid->baseWork);
+		if (const auto* joints = dynamic_cast<RockingJointEngine*>(engine.get()))
+			return add(energies, joints->kinetic, joints->potential, joints->elastPotential, joints->frictDissip, joints->dampDissip, joints->impactDissip,
+				joints->baseWork);
+	}
+	add(energies, NaN, NaN, NaN, NaN, NaN, NaN, NaN);
+}
+
+void WallRecorder::action()
+{
+	if (times.empty()) begin();
+	if (blocks.size() != blockNumbers * ids.size()) throw std::invalid_argument("WallRecorder.ids has been changed after the first sample: make a new WallRecorder.");
+	times.push_back(scene->time);
+	addEnergies();
+	for (int id : ids) {
+		if (!scene->bodies->exists(id)) {
+			poses.insert(poses.end(), poseNumbers, NaN);
+			continue;
+		}
+		const State& state = *(*scene->bodies)[id]->state;
+		add(poses, state.pos.x(), state.pos.y(), state.pos.z(), state.ori.w(), state.ori.x(), state.ori.y(), state.ori.z());
+	}
+}
+
+boost::python::object WallRecorder::posesAsBytes() const
+{
+	const char* first = reinterpret_cast<const char*>(poses.data());
+	return boost::python::object(boost::python::handle<>(PyBytes_FromStringAndSize(first, Py_ssize_t(poses.size() * sizeof(Real)))));
+}
+
+} // namespace yade

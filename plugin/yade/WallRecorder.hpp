@@ -1,0 +1,36 @@
+#pragma once
+
+#include <boost/python/object.hpp>
+#include <pkg/common/PeriodicEngines.hpp>
+
+namespace yade {
+
+class Body;
+
+/// Motion of all blocks of a structure and its energies, sampled; kept as attributes: saved and loaded with the simulation.
+class WallRecorder : public PeriodicEngine {
+public:
+	void action() override;
+
+	/// As rows of doubles in one piece of memory: thousands of blocks give too many numbers for a list.
+	boost::python::object posesAsBytes() const;
+
+	// clang-format off
+	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(WallRecorder, PeriodicEngine,
+		"Motion of a structure: positions and orientations of blocks and the energies, every virtPeriod seconds of simulated time or every iterPeriod steps, from the first step on. Seven numbers a block and sample; joints are not looked at (BlockRecorder does that). dem.engines(recorder=...) puts it where positions and O.time belong together; dem.wall_history() gives a masonry.results.WallHistory.",
+		((vector<int>, ids, , , "The blocks, fixed by the first sample; none given: all boxes with a BlockMat, prescribed ones too. A block erased later has NaN from then on."))
+		((vector<Real>, times, , Attr::readonly, "Times of the samples [s]."))
+		((vector<Real>, blocks, , Attr::readonly, "At the first sample, block by block: half sizes x, y, z [m], 1 for a free block or 0."))
+		((vector<Real>, energies, , Attr::readonly, "Sample by sample: kinetic, potential, elastPotential, frictDissip, dampDissip, impactDissip, baseWork, as dem.energy() [J]; NaN without an engine of the joints."))
+		((vector<Real>, poses, , Attr::hidden, "")),
+		initRun = true;,
+		.def("posesAsBytes", &WallRecorder::posesAsBytes, "Sample by sample and block by block x, y, z [m], w, x, y, z, as doubles in memory: numpy.frombuffer(...).")
+	);
+	// clang-format on
+private:
+	void begin();
+	void addEnergies();
+};
+REGISTER_SERIALIZABLE(WallRecorder);
+
+} // namespace yade

@@ -1,0 +1,290 @@
+"""Histories made by hand, whose openings, slips, drifts, falls and pictures are known."""
+
+import base64
+import math
+import xml.etree.ElementTree as ElementTree
+
+import numpy as np
+import pytest
+from masonry import results
+from masonry.results import _pose, view
+
+UPRIGHT = [1.0, 0, 0, 0]
+# Of sums of a few numbers of order one.
+ROUND = 1e-13
+
+
+def turn(angle, axis):
+    return np.array([math.cos(angle / 2), *(math.sin(angle / 2) * np.asarray(axis, dtype=float))])
+
+
+def about_edge(center, pivot, rotation):
+    """Where the centre goes when the block turns about a point."""
+    return pivot + _pose.matrices(rotation) @ (np.asarray(center) - pivot)
+
+
+def history(sizes, positions, orientations=None, free=None, **given):
+    """positions: (s, n, 3); the first block is the base unless `free` says otherwise."""
+    positions = np.asarray(positions, dtype=float)
+    samples, blocks = positions.shape[:2]
+    orientations = np.tile(UPRIGHT, (samples, blocks, 1)) if orientations is None else orientations
+    free = [False] + [True] * (blocks - 1) if free is None else free
+    return results.WallHistory(0.5 * np.arange(samples), 10 + np.arange(blocks), sizes, free, positions, orientations, **given)
+
+
+def rocking(angles, axis=(0, 1, 0), shift=(0, 0, 0), frame=None):
+    """A block 0.6 x 0.5 x 2 on a base 2 x 2 x 0.2 that moves by `shift` a sample; it turns about its edge. frame: everything is turned by it."""
+    frame = np.array(UPRIGHT) if frame is None else frame
+    world, positions, orientations = _pose.matrices(frame), [], []
+    for k, angle in enumerate(angles):
+        rotation = turn(angle, axis)
+        side = np.cross(axis, [0, 0, 1]) * math.copysign(1, angle)
+        pivot = side * [0.3, 0.25, 0]
+        block = about_edge([0, 0, 1.0], pivot, rotation)
+        positions.append([world @ p + k * np.asarray(shift) for p in ([0, 0, -0.1], block)])
+        orientations.append([frame, _pose.product(frame, rotation)])
+    return history([[2, 2, 0.2], [0.6, 0.5, 2]], positions, np.array(orientations))
+
+
+@pytest.mark.parametrize("axis, width", [((0, 1, 0), 0.6), ((1, 0, 0), 0.5)])
+@pytest.mark.parametrize("frame", [UPRIGHT, turn(0.7, (0, 0, 1)), turn(0.2, (1, 0, 0))])
+def test_a_rocking_block_opens_its_joint_by_2b_sin_angle(axis, width, frame):
+    angles = np.array([0, 0.05, -0.11, 0.02])
+    h = rocking(angles, axis, shift=(0.3, 0.1, 0), frame=np.asarray(frame))
+    for k, angle in enumerate(angles):
+        joint, = results.joints(h, time=h.time[k])
+        assert abs(joint["opening"] - width * math.sin(abs(angle))) < ROUND
+        assert joint["slip"] < ROUND  # it turns about its edge
+    most, = results.joints(h)
+    assert (most["id1"], most["id2"]) == (10, 11) and abs(most["area"] - 0.3) < ROUND
+    assert abs(most["opening"] - width * math.sin(0.11)) < ROUND and most["opening_time"] == h.time[2]
+    assert np.allclose(h.rotation[:, 1], np.abs(angles), rtol=0, atol=ROUND) and (h.rotation[:, 0] == 0).all()
+
+
+def test_a_sliding_block_slips_by_its_way_over_the_base():
+    way = np.array([0, 0.04, 0.07, 0.05])
+    base = np.array([[0, 0, -0.1], [1, 0, -0.1], [2, 0.5, -0.1], [0, 0, -0.1]])
+    block = base + [0, 0, 0.3] + way[:, None] * [0.6, 0.8, 0]
+    h = history([[2, 2, 0.2], [0.6, 0.5, 0.4]], np.stack([base, block], axis=1))
+    most, = results.joints(h)
+    assert abs(most["slip"] - 0.07) < ROUND and most["slip_time"] == h.time[2] and most["opening"] < ROUND
+    assert abs(results.joints(h, time=1.4)["slip"][0] - 0.05) < ROUND
+    assert abs(h.drift().max() - 0.07 / 0.4) < ROUND
+
+
+def test_what_moves_in_flight_is_no_slip():
+    h = history([[2, 2, 0.2], [0.6, 0.5, 0.4]], [[[0, 0, -0.1], [x, 0, 0.2 + z]] for x, z in ((0, 0), (0.01, 0), (0.5, 0.3), (0.02, 0))])
+    most, = results.joints(h)
+    assert abs(most["slip"] - 0.02) < ROUND and abs(most["opening"] - 0.3) < ROUND
+
+
+def test_joints_are_the_faces_that_touch():
+    # Side by side with a gap, beside each other, across a corner, lying in the air; a square on a square turned by 45 degrees: an octagon.
+    size = np.array([[4, 4, 0.2], [1, 1, 1], [1, 1, 1], [1, 1, 1], [1, 1, 1]])
+    place = [[[0, 0, -0.1], [-1.5, 0, 0.5], [-0.5, 0, 0.5], [1.0, 0, 0.5], [1.0, 0, 1.5]]]
+    turned = np.tile(UPRIGHT, (1, 5, 1))
+    turned[0, 4] = turn(math.pi / 4, (0, 0, 1))
+    table = results.joints(history(size, place, turned))
+    assert [(j["id1"], j["id2"]) for j in table] == [(10, 11), (10, 12), (10, 13), (11, 12), (13, 14)]
+    assert np.allclose(table["area"], [1, 1, 1, 1, 2 * (math.sqrt(2) - 1)], rtol=0, atol=1e-12)
+    assert np.allclose(table["normal"][[0, 3]], [[0, 0, 1], [1, 0, 0]]) and np.allclose(table["center"][3], [-1, 0, 0.5])
+    corner = history(size[:3], [[[0, 0, -0.1], [-1, 0, 0.5], [0, 1, 0.5]]])  # the two blocks share an edge: no joint
+    assert len(results.joints(corner)) == 2
+
+
+def test_movement_is_relative_to_the_base_also_where_it_turns():
+    frame = turn(0.3, (0, 0, 1))
+    start = rocking([0.0, 0.1])
+    moved = np.stack([start.position[0], start.position[1] @ _pose.matrices(frame).T + [3, 2, 1]])
+    turned = np.stack([start.orientation[0], _pose.product(frame, start.orientation[1])])
+    h = history(start.sizes, moved, turned)
+    assert np.allclose(h.displacement, start.displacement, rtol=0, atol=1e-12)
+    assert np.allclose(h.rotation, start.rotation, rtol=0, atol=1e-7) and abs(h.rotation[1, 1] - 0.1) < 1e-12
+    assert np.allclose(results.joints(h)["opening"], results.joints(start)["opening"], rtol=0, atol=1e-12)
+
+
+def test_fallen_is_lower_by_half_a_height_or_beyond_the_critical_angle():
+    critical = math.atan(0.6 / 2)
+    h = rocking([0, 0.99 * critical, 1.01 * critical, 0.5 * critical, 1.2 * critical, 1.4 * critical])
+    assert results.fallen(h)[:, 1].tolist() == [False, False, True, False, True, True] and not results.fallen(h)[:, 0].any()
+    report = results.collapse(h, excursion=0.1)
+    assert report.collapsed and report.time == 2.0 and report.fallen.tolist() == [11]  # it came back from the first excursion
+    assert report.peak_drift == h.drift()[2] and report.peak_drift_time == 1.0 and report.first_excursion == h.time[h.drift() >= 0.1][0]
+    assert "collapsed at 2 s" in str(report) and report.numbers()["fallen"] == 1
+    assert np.allclose(h.lean[:, 1], h.rotation[:, 1], rtol=0, atol=1e-12)
+    for axis, critical in (((1, 0, 0), math.atan(0.5 / 2)), (np.array([-0.5, 0.6, 0]) / math.hypot(0.5, 0.6), math.atan(math.hypot(0.5, 0.6) / 2))):
+        assert results.fallen(rocking([0, 0.999 * critical, 1.001 * critical, 3.0], axis))[:, 1].tolist() == [False, False, True, True]
+    # A slab that lies on its side from the start: its height is the size that stands upright.
+    lying = history([[9, 9, 0.2], [0.6, 0.5, 0.2]], [[[0, 0, -0.1], [0, 0, 0.3]]] * 2, np.array([[UPRIGHT, turn(math.pi / 2, (0, 1, 0))]] * 2))
+    assert not results.fallen(lying).any() and (lying.lean < 1e-7).all()
+    stands = results.collapse(rocking([0, 0.1, 0.05]))
+    assert not stands.collapsed and math.isnan(stands.time) and len(stands.fallen) == 0 and "stands" in str(stands)
+    for drop, lies in ((0.19, False), (0.21, True)):
+        h = history([[2, 2, 0.2], [0.6, 0.5, 0.4]], [[[0, 0, -0.1], [0, 0, 0.2]], [[0, 0, 0.9], [2, 0, 1.2 - drop]]])
+        assert results.collapse(h).collapsed == lies  # the base has gone up with it
+    # Two of three blocks are a collapse: the time is that of the second.
+    z = np.array([[0.2, 0.6, 1.0], [0.2, 0.6, 0.2], [0.2, 0.2, 0.2]])
+    h = history([[2, 2, 0.2]] + [[0.6, 0.5, 0.4]] * 3, [[[0, 0, -0.1], *([0.1 * k, 0, v] for v in row)] for k, row in enumerate(z)])
+    assert results.collapse(h).time == 0.5 and results.collapse(h, blocks=2).time == 1.0 and not results.collapse(h, blocks=3).collapsed
+    assert results.collapse(h).fallen.tolist() == [13, 12]
+
+
+def test_an_erased_block_has_fallen_and_is_drawn_no_more(tmp_path):
+    h = rocking([0, 0.1, 0.1])
+    h.position[2, 1] = h.orientation[2, 1] = np.nan
+    assert results.fallen(h)[:, 1].tolist() == [False, False, True]
+    assert abs(results.joints(h)["opening"][0] - 0.6 * math.sin(0.1)) < ROUND
+    results.draw(h, tmp_path / "shape.png", time=1.0)
+    assert b'NumberOfCells="1"' in (results.write_paraview(h, tmp_path / "h.pvd").parent / "h/h_000002.vtu").read_bytes()
+
+
+def test_drift_is_that_of_the_top():
+    place = [[[0, 0, -0.1], [0, 0, 0.2], [0, 0, 0.6], [0.9, 0, 0.5]], [[1, 0, -0.1], [1.3, 0, 0.2], [1.01, 0.02, 0.6], [1.9, 0.05, 0.5]]]
+    h = history([[2, 2, 0.2], [0.6, 0.5, 0.4], [0.6, 0.5, 0.4], [0.3, 0.5, 1.0]], place)
+    # Height 1: of the slender pillar; the upper block ends at 0.8, which is its half height below it: no longer top.
+    assert abs(h.drift()[1] - 0.05) < ROUND
+    h = history([[2, 2, 0.2], [0.6, 0.5, 0.4], [0.6, 0.5, 0.4]], np.array(place)[:, :3])
+    assert abs(h.drift()[1] - math.hypot(0.01, 0.02) / 0.8) < ROUND
+
+
+def test_energy_error_is_what_the_balance_lacks():
+    energies = np.array([[0, 10, 0, 0, 0, 0, 0], [3, 11, 0.5, 1, 0.25, 2, 8.0], [1, 10, 0, 2, 1, 3, 6.5]])
+    h = rocking([0, 0.1, 0], )
+    h = history(h.sizes, h.position, h.orientation, energies=energies)
+    assert np.allclose(h.energy["error"], [0, 17.75 - 8 - 10, 17 - 6.5 - 10], rtol=0, atol=ROUND)
+    assert h.energy["impactDissip"].tolist() == [0, 2, 3] and np.isnan(rocking([0.0]).energy["error"]).all()
+
+
+def test_a_file_gives_the_same_bits_back(tmp_path):
+    h = rocking([0, 0.1, 0.05])
+    h.save(tmp_path / "h.npz")
+    again = results.WallHistory.load(tmp_path / "h.npz")
+    for name in ("time", "ids", "sizes", "free", "position", "orientation"):
+        assert np.array_equal(getattr(h, name), getattr(again, name)), name
+    np.savez(tmp_path / "other.npz", time=[0])
+    with pytest.raises(ValueError, match="is no WallHistory"):
+        results.WallHistory.load(tmp_path / "other.npz")
+
+
+# --- seen from the side and from afar ---
+
+
+def test_the_view_is_across_the_plane_of_motion():
+    assert np.allclose(view.View(rocking([0, 0.1])).towards, [0, -1, 0])
+    assert np.allclose(np.abs(view.View(rocking([0, 0.1], (1, 0, 0))).towards), [1, 0, 0])
+    yawed = view.View(rocking([0, 0.1], frame=turn(0.7, (0, 0, 1))))
+    assert np.allclose(yawed.towards, [math.sin(0.7), -math.cos(0.7), 0]) and yawed.from_side
+    both = rocking([0, 0.1])
+    both.position[1, 1, 1] += 0.01
+    assert view.plane_normal(both) is None and not view.View(both).from_side
+    assert view.View(both, (0, -2, 0)).label() == "x (m)"
+
+
+def test_blocks_behind_are_drawn_first():
+    """Boxes of a regular pattern, in any order: along a ray towards the viewer the last face drawn is that of the nearest box."""
+    rng = np.random.default_rng(3)
+    center = np.array([[x, y, z] for x in range(3) for y in range(3) for z in range(3)], dtype=float)[rng.permutation(27)]
+    sizes = np.where(rng.random((27, 1)) < 0.5, [1.0, 0.4, 0.9], [0.3, 1.0, 1.0])
+    h = history(np.vstack([[9, 9, 1], sizes]), [np.vstack([[1, 1, -1], center])])
+    seen = view.View(h, (0.5, -1, 0.4))
+    polygons, rows, _ = seen.faces(h.corners(0))
+    assert all(np.cross(p[1] - p[0], p[2] - p[1]) > 0 for p in polygons)  # counterclockwise: outsides
+    depth = h.position[0] @ seen.towards
+    checked = 0
+    for point in rng.uniform(*np.quantile(polygons.reshape(-1, 2), (0.2, 0.8), axis=0), size=(500, 2)):
+        edges = np.roll(polygons, -1, axis=1) - polygons
+        inside = (np.cross(edges, point - polygons) > 1e-9).all(axis=1)
+        if not inside.any():
+            continue
+        # How near the box is where the ray leaves it: the least over its three slabs.
+        origin, near = seen.frame @ point, []
+        for k in range(len(sizes) + 1):
+            with np.errstate(divide="ignore"):
+                exits = (np.sign(seen.towards) * h.sizes[k] / 2 - (origin - h.position[0, k])) / seen.towards
+            near.append(exits.min())
+        hit = np.unique(rows[inside])
+        assert rows[np.flatnonzero(inside)[-1]] == max(hit, key=lambda k: near[k])
+        checked += 1
+    assert checked > 300 and len(np.unique(depth)) > 1
+
+
+def test_pictures_show_the_movement_enlarged(tmp_path):
+    from masonry.results import pictures
+
+    h = rocking([0, 0.1, -0.05], shift=(0.4, 0, 0))
+    painter = pictures._Painter(h, [1], 3.0, "rotation", None, "")
+    painter.paint(1)
+    drawn = np.concatenate([path.vertices for path in painter._blocks.get_paths()])
+    assert abs(drawn[:, 0].max() - h.corners(1, 3.0)[:, :, 0].max()) < ROUND and "3 times" in painter.figure.axes[0].get_title()
+    # The upper right corner of the block: movement times three. Half of the smallest block where no factor is given.
+    start, moved = h.corners(0)[1], h.corners(1)[1]
+    assert np.allclose(h.corners(1, 3.0)[1] - start, 3 * (moved - start), rtol=0, atol=ROUND)
+    assert abs(view.enlargement(h, [1], 0.5) * np.linalg.norm(moved - start, axis=1).max() - 0.25) < 0.25 or view.enlargement(h, [1], 0.5) == 1
+    for name, act in (("shape", results.draw), ("joints", results.draw_joints)):
+        act(h, tmp_path / f"{name}.png")
+        assert (tmp_path / f"{name}.png").read_bytes()[:4] == b"\x89PNG"
+
+
+def test_a_film_has_the_frames_asked_for(tmp_path):
+    from PIL import Image
+
+    h = rocking([0, 0.1, -0.05, 0.02, 0.2], shift=(0.4, 0, 0))
+    results.film(h, tmp_path / "h.gif", frames_per_second=4, progress=False)  # 2 s of motion
+    with Image.open(tmp_path / "h.gif") as gif:
+        durations = []
+        for k in range(gif.n_frames):
+            gif.seek(k)
+            durations.append(gif.info["duration"])
+    assert len(durations) == 5 and sum(durations) == 9 * 250  # frames of one sample are one, shown longer
+    results.film(h, tmp_path / "slow.gif", start=0.5, end=1.0, frames_per_second=2, speed=0.5, progress=False)
+    with Image.open(tmp_path / "slow.gif") as gif:
+        assert gif.n_frames == 2
+
+
+# --- ParaView ---
+
+
+def decoded(node):
+    kinds = {"Float64": "<f8", "Int64": "<i8", "UInt8": "u1"}
+    data = base64.b64decode(node.text)
+    assert int.from_bytes(data[:8], "little") == len(data) - 8
+    return np.frombuffer(data[8:], kinds[node.get("type")]).reshape(-1, int(node.get("NumberOfComponents", 1)))
+
+
+def test_paraview_files_hold_the_boxes(tmp_path):
+    h = rocking([0, 0.1, -0.05], shift=(0.4, 0, 0))
+    listed = ElementTree.parse(results.write_paraview(h, tmp_path / "wall.pvd", every=2)).getroot().findall(".//DataSet")
+    assert [float(d.get("timestep")) for d in listed] == [0.0, 1.0]
+    piece = ElementTree.parse(tmp_path / listed[1].get("file")).getroot().find(".//Piece")
+    arrays = {node.get("Name"): decoded(node) for node in piece.iter("DataArray")}
+    points = arrays["Points"].reshape(2, 8, 3)
+    assert np.allclose(points.mean(axis=1), h.position[2], rtol=0, atol=ROUND)
+    assert arrays["types"].ravel().tolist() == [12, 12] and arrays["id"].ravel().tolist() == [10, 11] and arrays["offsets"].ravel().tolist() == [8, 16]
+    for box, center, axes, size in zip(arrays["connectivity"].reshape(2, 8), points.mean(axis=1), _pose.matrices(h.orientation[2]), h.sizes):
+        local = (arrays["Points"][box] - center) @ axes / (size / 2)
+        # VTK's hexahedron: a face around, then the opposite one.
+        assert np.allclose(local, [[-1, -1, -1], [1, -1, -1], [1, 1, -1], [-1, 1, -1], [-1, -1, 1], [1, -1, 1], [1, 1, 1], [-1, 1, 1]], rtol=0, atol=1e-12)
+    assert np.allclose(arrays["rotation"].ravel(), [0, 0.05], rtol=0, atol=1e-12)
+
+
+# --- input that cannot be meant ---
+
+
+def test_bad_input_is_refused(tmp_path):
+    h = rocking([0, 0.1])
+    good = dict(time=[0, 1], ids=[1, 2], sizes=h.sizes, free=h.free, position=h.position, orientation=h.orientation)
+    results.WallHistory(**good)
+    for name, value, word in (("sizes", np.ones((3, 3)), "sizes has the shape"), ("time", [1, 1], "must increase"), ("free", [False, False], "free blocks"),
+                              ("position", h.position * np.nan, "finite"), ("energies", np.ones((2, 3)), "energies has the shape")):
+        with pytest.raises(ValueError, match=word):
+            results.WallHistory(**{**good, name: value})
+    path = tmp_path / "x.gif"
+    for act, word in ((lambda: h.sample(7), "time = 7"), (lambda: results.collapse(h, blocks=2), "blocks = 2"),
+                      (lambda: results.collapse(h, excursion=0), "excursion = 0"), (lambda: h.save("h.txt"), "must end in .npz"),
+                      (lambda: results.draw(h, path, color="red"), "color = 'red'"), (lambda: results.draw(h, path, enlarge=-1), "enlarge = -1"),
+                      (lambda: results.draw(h, path, view=(0, 0, 0)), "view"), (lambda: results.draw_energy(h, path), "no energies"),
+                      (lambda: results.film(h, "h.avi"), "must end in .gif or .mp4"), (lambda: results.film(h, path, frames_per_second=100), "frames_per_second"),
+                      (lambda: results.film(h, path, speed=0), "speed = 0"), (lambda: results.film(h, path, start=0.5, end=0.0), "start"),
+                      (lambda: results.write_paraview(h, "h.vtu"), "must end in .pvd"), (lambda: results.write_paraview(h, tmp_path / "h.pvd", every=0), "every = 0")):
+        with pytest.raises(ValueError, match=word):
+            act()
