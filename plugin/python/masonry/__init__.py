@@ -7,10 +7,11 @@ Signs: an angle is positive when the block is tilted towards +x; a base accelera
 """
 
 from . import closed_form
+from .artificial import artificial_record
 from .block import RockingBlock
 from .history import History, simulate
 from .motions import HalfSine, PulseTrain, Record, Rectangular, Sine
 from .overturning import overturning_amplitude
 
-__all__ = ["HalfSine", "History", "PulseTrain", "Record", "Rectangular", "RockingBlock", "Sine", "closed_form",
-           "overturning_amplitude", "simulate"]
+__all__ = ["HalfSine", "History", "PulseTrain", "Record", "Rectangular", "RockingBlock", "Sine", "artificial_record",
+           "closed_form", "overturning_amplitude", "simulate"]

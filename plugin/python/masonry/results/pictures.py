@@ -148,7 +148,7 @@ def draw_joints(history, path, time=None, view=None, title=""):
     table, polygons, view = joints(history, time), patches(history), View(history, view)
     corners = history.corners(0)
     flat = view.place(polygons)
-    when = "largest so far" if time is None else f"at {history.time[history.sample(time)]:.3f} s"
+    when = "largest" if time is None else f"at {history.time[history.sample(time)]:.3f} s"
     figure, panels = _figure(view, view.place(corners[history.free]).reshape(-1, 2), "", columns=2)
     for axes, name, colours in zip(panels, ("opening", "slip"), ("YlOrRd", "YlGnBu")):
         values = 1e3 * table[name]

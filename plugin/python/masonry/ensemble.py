@@ -1,0 +1,274 @@
+"""One scene under many motions: each case in a YADE process of its own, only what is missing computed, and what the cases say together.
+
+    # shaken.py: the scene
+    def run(case):                                  # in YADE; case: a dict of plain values
+        ...
+        return results.collapse(dem.wall_history(recorder)).numbers()
+
+    # study.py: plain Python
+    from masonry import ensemble
+    cases = [{"seed": seed, "scale": scale} for scale in (0.2, 0.4) for seed in range(50)]
+    table = ensemble.run("shaken.py", cases, "results/study")
+    print(ensemble.statistics(table, by="scale"))
+"""
+
+import csv
+import hashlib
+import json
+import math
+import os
+import shutil
+import subprocess
+import threading
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import numpy as np
+
+_RUN_CASE = Path(__file__).with_name("_run_case.py")
+# Lines of what a failed case has said that the error repeats.
+_TAIL = 15
+
+
+def _plain(case):
+    """The case as JSON, NumPy's numbers as Python's."""
+    def convert(value):
+        if isinstance(value, (np.generic, np.ndarray)):
+            return value.tolist()
+        raise TypeError
+
+    try:
+        return json.dumps(case, sort_keys=True, default=convert)
+    except TypeError:
+        raise ValueError(f"case = {case!r}: must be a dict of numbers, strings, and lists of them") from None
+
+
+def _contents(paths):
+    digest = hashlib.sha256()
+    for path in paths:
+        digest.update(hashlib.sha256(Path(path).read_bytes()).digest())
+    return digest.hexdigest()
+
+
+def _keys(script, function, cases):
+    """A name for each case: of its values, of the files that they name, of the script and of this package as it is installed."""
+    package = Path(__file__).parent
+    code = _contents([script, *sorted(f for f in package.rglob("*") if f.suffix in (".py", ".so") and f != Path(__file__))])
+    named = {}
+    for case in cases:
+        for value in case.values():
+            if isinstance(value, (str, os.PathLike)) and value not in named and os.path.isfile(value):
+                named[value] = _contents([value])
+    keys = []
+    for case in cases:
+        files = [named[v] for v in case.values() if isinstance(v, (str, os.PathLike)) and v in named]
+        keys.append(hashlib.sha256(json.dumps([code, function, _plain(case), files]).encode()).hexdigest()[:20])
+    return keys
+
+
+def run(script, cases, folder, function="run", processes=None, time_limit=None, progress=True):
+    """Calls the function `function(case)` of a Python file inside YADE, one process a case, and returns the table of what came out.
+
+    script        path of the file; importing it must not run anything
+    cases         dicts of numbers and strings, all with the same keys: what the function is given
+    folder        one .npz file a finished case, and the tables ensemble.csv and ensemble.npz; made if it is not there
+    processes     how many run at once; None: one a core. Each has one thread.
+    time_limit    s of wall clock after which a case is stopped and counts as failed; None: no limit
+    progress      a progress bar (tqdm)
+
+    The function returns a dict of numbers (and, if it likes, arrays: ensemble.result() reads them), the same keys for every case.
+    Results are kept: a later call computes only cases that have none, or whose values, script, files named in them or masonry package
+    have changed since. Data that the function reads without the case naming it is not looked into.
+
+    Table: a structured array, one row a case in the order of `cases`: what the case says, then what its numbers are.
+    Raises ValueError for cases that cannot be told apart or written down, RuntimeError, after all the others have run, for cases that failed
+    (their output is in the folder as .log); FileNotFoundError where there is no script or no YADE.
+    """
+    script, folder = Path(script).resolve(strict=True), Path(folder)
+    cases = [dict(case) for case in cases]
+    if not cases:
+        raise ValueError("cases: must have at least one")
+    for case in cases:
+        if case.keys() != cases[0].keys():
+            raise ValueError(f"case = {case}: must have the same keys as the first, {', '.join(cases[0])}")
+    if processes is not None and not (processes == int(processes) and processes >= 1):
+        raise ValueError(f"processes = {processes}: must be a whole number, at least 1")
+    if time_limit is not None and not 0 < time_limit < math.inf:
+        raise ValueError(f"time_limit = {time_limit}: must be positive and finite, in s, or None")
+    keys = _keys(script, function, cases)
+    if len(set(keys)) < len(keys):
+        raise ValueError(f"case = {next(c for c, k in zip(cases, keys) if keys.count(k) > 1)}: stands there twice")
+    folder.mkdir(parents=True, exist_ok=True)
+    missing = [(case, key) for case, key in zip(cases, keys) if not _path(folder, key).exists()]
+    failures = _run_missing(script, function, missing, len(cases), folder, processes or os.cpu_count(), time_limit, progress) if missing else []
+    if failures:
+        raise RuntimeError(f"{len(failures)} of {len(cases)} cases failed; {len(cases) - len(failures)} are kept in {folder}. The first, "
+                           f"{failures[0][0]}:\n{failures[0][1]}")
+    table = _table(cases, [_load(_path(folder, key)) for key in keys])
+    np.savez(folder / "ensemble.npz", table=table)
+    with open(folder / "ensemble.csv", "w", newline="", encoding="utf-8") as file:
+        csv.writer(file).writerows([table.dtype.names, *table.tolist()])
+    return table
+
+
+def result(script, case, folder, function="run"):
+    """What the function returned for one case that has been run: a dict of numbers and arrays. KeyError: it has not, or is out of date."""
+    path = _path(Path(folder), _keys(Path(script).resolve(strict=True), function, [dict(case)])[0])
+    if not path.exists():
+        raise KeyError(f"{case} has no result in {folder}")
+    return _load(path)
+
+
+def _path(folder, key):
+    return folder / f"case_{key}.npz"
+
+
+def _load(path):
+    with np.load(path) as file:
+        return {name: file[name] if file[name].ndim else file[name].item() for name in file.files if name != "case"}
+
+
+def _run_missing(script, function, missing, total, folder, processes, time_limit, progress):
+    """[(case, last lines of its output)] of those that failed."""
+    from tqdm import tqdm
+
+    yade = shutil.which("yade")
+    if yade is None:
+        raise FileNotFoundError("there is no YADE: install it with `apt install yade`")
+    package = str(Path(__file__).parents[1])
+    environment = {**os.environ, "OMP_NUM_THREADS": "1", "OMP_WAIT_POLICY": "passive",
+                   "PYTHONPATH": os.pathsep.join([package, str(script.parent), os.environ.get("PYTHONPATH", "")])}
+    running, lock, stopped, failures = set(), threading.Lock(), threading.Event(), []
+
+    def one(case, key, bar):
+        log, path = folder / f"case_{key}.log", _path(folder, key)
+        arguments = json.dumps({"script": str(script), "function": function, "case": json.loads(_plain(case)), "path": str(path.resolve())})
+        with open(log, "w", encoding="utf-8") as output, lock:
+            if stopped.is_set():
+                return
+            process = subprocess.Popen([yade, "-j1", "-n", "-x", str(_RUN_CASE), arguments], env=environment, stdin=subprocess.DEVNULL,
+                                       stdout=output, stderr=subprocess.STDOUT)
+            running.add(process)
+        try:
+            process.wait(time_limit)
+            why = "" if path.exists() else f"it ended with status {process.returncode}"
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.wait()
+            why = f"it was stopped after {time_limit:g} s"
+        with lock:
+            running.discard(process)
+            if not why:
+                log.unlink()
+            elif not stopped.is_set():
+                said = log.read_text(encoding="utf-8", errors="replace").splitlines()[-_TAIL:]
+                failures.append((case, "\n".join([*said, f"{why}: {log}"])))
+            bar.update()
+
+    with tqdm(total=total, initial=total - len(missing), desc="ensemble", unit="case", disable=not progress) as bar, \
+            ThreadPoolExecutor(processes) as pool:
+        waiting = [pool.submit(one, case, key, bar) for case, key in missing]
+        try:
+            for future in waiting:
+                future.result()
+        except BaseException:  # interrupted: what runs is ended, what is finished is kept
+            with lock:
+                stopped.set()
+                for process in running:
+                    process.kill()
+            for future in waiting:
+                future.cancel()
+            raise
+    return failures
+
+
+def _table(cases, outcomes):
+    for case, outcome in zip(cases, outcomes):
+        if outcome.keys() != outcomes[0].keys():
+            raise ValueError(f"case = {case}: returned {', '.join(outcome)}, and the first {', '.join(outcomes[0])}: must be the same for every case")
+    numbers = [name for name, value in outcomes[0].items() if np.ndim(value) == 0]
+    both = set(cases[0]) & set(numbers)
+    if both:
+        raise ValueError(f"{', '.join(sorted(both))}: must not be a key of the case and of what the function returns")
+    columns = {name: np.array([str(c[name]) if isinstance(c[name], (list, dict, tuple)) else c[name] for c in cases]) for name in cases[0]}
+    columns.update({name: np.array([outcome[name] for outcome in outcomes]) for name in numbers})
+    table = np.zeros(len(cases), dtype=[(name, column.dtype) for name, column in columns.items()])
+    for name, column in columns.items():
+        table[name] = column
+    return table
+
+
+# --- statistics ---
+
+
+def _check_confidence(confidence):
+    if not 0 < confidence < 1:
+        raise ValueError(f"confidence = {confidence}: must be above 0 and below 1")
+
+
+def fraction(events, confidence=0.95):
+    """(share of True, lower and upper end of its confidence interval), by Clopper and Pearson: the interval holds the true probability in at least
+    `confidence` of all ensembles. events: bools, one a case, at least one."""
+    from scipy.stats import binomtest
+
+    _check_confidence(confidence)
+    events = np.asarray(events, dtype=bool).ravel()
+    if not len(events):
+        raise ValueError("events: must have at least one")
+    interval = binomtest(int(events.sum()), len(events)).proportion_ci(confidence, method="exact")
+    return float(events.mean()), float(interval.low), float(interval.high)
+
+
+def quantile(values, probability, confidence=0.95):
+    """(quantile, lower and upper end of its confidence interval) of numbers of which some may be infinite.
+
+    The quantile is the ceil(n probability)-th of the n values in order, so that infinite ones (a collapse has no largest drift) take part. The
+    interval's ends are values of the sample, or infinite where the sample is too small to bound it: the number of values below the
+    true quantile is binomial, whatever their distribution, and on either side at most (1 - confidence)/2 is left out.
+    probability: above 0 and below 1. Raises ValueError for NaN.
+    """
+    from scipy.stats import binom
+
+    _check_confidence(confidence)
+    if not 0 < probability < 1:
+        raise ValueError(f"probability = {probability}: must be above 0 and below 1")
+    values = np.sort(np.asarray(values, dtype=float).ravel())
+    if not len(values) or np.isnan(values).any():
+        raise ValueError(f"values: must be at least one number, without NaN; {int(np.isnan(values).sum())} of {len(values)} are NaN")
+    count, outside = len(values), (1 - confidence) / 2
+    padded = np.concatenate([[-math.inf], values, [math.inf]])
+    # K, the number of values below the quantile, is binomial. The r-th value is above the quantile when K < r: the lower end is the largest r with
+    # P(K < r) <= outside; it is below when K >= r: the upper end is the least r with P(K >= r) <= outside. r = 0 and n + 1: infinity.
+    ranks = np.arange(count + 2)
+    low = np.flatnonzero(binom.cdf(ranks - 1, count, probability) <= outside)[-1]
+    high = np.flatnonzero(binom.sf(ranks - 1, count, probability) <= outside)[0]
+    middle = math.ceil(count * probability * (1 - 1e-12))
+    return float(values[max(middle, 1) - 1]), float(padded[low]), float(padded[high])
+
+
+def statistics(table, by=None, probabilities=(0.16, 0.5, 0.84), confidence=0.95, event="collapsed", value="peak_drift"):
+    """How often the event happened and how large the value was: a structured array, one row for each value of the column `by`, or one for
+    the whole table. Columns: that of `by`; cases; fraction, fraction_low, fraction_high (fraction()); and for each probability
+    quantile_0.5, quantile_0.5_low, quantile_0.5_high (quantile()), where cases with the event count as infinite: quantiles are those of all
+    cases, and infinite where more than that share has collapsed.
+
+    table         of run(); its columns `event` (bool) and `value` (numbers) are those of results.CollapseReport.numbers()
+    """
+    for name in (by, event, value):
+        if name is not None and name not in table.dtype.names:
+            raise ValueError(f"{name!r}: is no column of the table, which has {', '.join(table.dtype.names)}")
+    groups = [None] if by is None else np.unique(table[by])
+    rows = []
+    for group in groups:
+        part = table if by is None else table[table[by] == group]
+        happened = part[event].astype(bool)
+        numbers = np.where(happened, np.inf, part[value])
+        row = [] if by is None else [group]
+        row += [len(part), *fraction(happened, confidence)]
+        for probability in probabilities:
+            row += quantile(numbers, probability, confidence)
+        rows.append(tuple(row))
+    fields = [] if by is None else [(by, table.dtype[by])]
+    fields += [("cases", int)] + [(f"fraction{end}", float) for end in ("", "_low", "_high")]
+    fields += [(f"quantile_{p:g}{end}", float) for p in probabilities for end in ("", "_low", "_high")]
+    return np.array(rows, dtype=fields)

@@ -1,0 +1,101 @@
+"""Statistics of ensembles against closed forms and SciPy, artificial records against their spectrum."""
+
+import math
+
+import numpy as np
+import pytest
+from masonry import ensemble
+from masonry.artificial import power
+from scipy import stats
+
+import masonry
+
+
+@pytest.mark.parametrize("count", [1, 7, 50])
+def test_a_share_of_none_or_all_has_the_interval_of_clopper_and_pearson(count):
+    # All of n fail with probability (1 - p)^n: the upper end solves (1 - p)^n = 0.025.
+    none, every = ensemble.fraction([False] * count), ensemble.fraction([True] * count)
+    assert none[:2] == (0, 0) and abs(none[2] - (1 - 0.025**(1 / count))) < 1e-12
+    assert every[::2] == (1, 1) and abs(every[1] - 0.025**(1 / count)) < 1e-12
+
+
+def test_shares_have_the_interval_of_the_beta_distribution():
+    for events, count, confidence in ((3, 10, 0.95), (17, 40, 0.9), (99, 200, 0.99)):
+        share, low, high = ensemble.fraction(np.arange(count) < events, confidence)
+        outside = (1 - confidence) / 2
+        assert share == events / count
+        assert np.allclose([low, high], [stats.beta.ppf(outside, events, count - events + 1), stats.beta.ppf(1 - outside, events + 1, count - events)],
+                           rtol=0, atol=1e-9)
+
+
+@pytest.mark.parametrize("count", [1, 5, 10, 40, 101])
+@pytest.mark.parametrize("probability", [0.16, 0.5, 0.84])
+def test_quantiles_are_values_of_the_sample_and_so_are_their_bounds(count, probability):
+    values = np.random.default_rng(count).permutation(np.arange(1.0, count + 1))
+    middle, low, high = ensemble.quantile(values, probability, 0.95)
+    assert middle == np.quantile(values, probability, method="inverted_cdf")
+
+    def above(rank):
+        """Probability that the rank-th of n uniform numbers, Beta(r, n + 1 - r), is above the quantile `probability`."""
+        return 0.0 if rank < 1 else 1.0 if rank > count else stats.beta.sf(probability, rank, count + 1 - rank)
+
+    # The values are their own ranks: at most 2.5 % on either side, and no end could be drawn closer.
+    first, last = (0 if low == -math.inf else int(low)), (count + 1 if high == math.inf else int(high))
+    assert above(first) <= 0.025 < above(first + 1) and 1 - above(last) <= 0.025 < 1 - above(last - 1)
+
+
+def test_collapsed_cases_have_no_largest_drift():
+    table = np.array([(s, c, v) for s, row in ((0.2, [0.1, 0.2, 0.3, 0.4]), (0.4, [0.5, np.nan, 0.6, np.nan]), (0.8, [np.nan] * 4))
+                      for v in row for c in [math.isnan(v)]], dtype=[("scale", float), ("collapsed", bool), ("peak_drift", float)])
+    found = ensemble.statistics(table, by="scale", probabilities=(0.25, 0.5, 0.75))
+    assert found["scale"].tolist() == [0.2, 0.4, 0.8] and found["cases"].tolist() == [4, 4, 4] and found["fraction"].tolist() == [0, 0.5, 1]
+    assert found["quantile_0.5"].tolist() == [0.2, 0.6, math.inf] and found["quantile_0.75"].tolist() == [0.3, math.inf, math.inf]
+    assert found["fraction_high"][0] == ensemble.fraction([False] * 4)[2]
+    whole = ensemble.statistics(table)
+    assert whole["cases"][0] == 12 and whole["fraction"][0] == 0.5 and "scale" not in whole.dtype.names
+
+
+def test_artificial_records_are_those_of_their_seed():
+    record = masonry.artificial_record(3, peak=2.5, duration=8, dt=0.01)
+    assert record.samples.max() == 2.5 or -record.samples.min() == 2.5
+    assert np.array_equal(record.samples, masonry.artificial_record(3, peak=2.5, duration=8, dt=0.01).samples)
+    assert not np.array_equal(record.samples, masonry.artificial_record(4, peak=2.5, duration=8, dt=0.01).samples)
+    assert len(record.samples) == 801 and abs(record.velocity(record.duration)) < 1e-12 and record.baseline == "constant"
+    # Linear between samples: its integral is the trapezoidal rule, which leaves nothing for the baseline to take off.
+    assert abs(record.acceleration(1.0) - record.samples[100]) < 1e-12
+
+
+def test_artificial_records_have_the_spectrum_of_kanai_and_tajimi():
+    assert abs(power(np.array([1.0]), 30, 0.6, 0.01)[0] - 1) < 5e-3 and power(np.array([0.0]), 2.5, 0.6, 0.2)[0] == 0
+    assert abs(power(np.array([2.5]), 2.5, 0.6, 1e-4)[0] - (1 + 1.44) / 1.44) < 1e-6
+    dt, count, records = 0.02, 1001, 400
+    strong = slice(200, 600)  # where the envelope is flat: 8 s
+    total = 0
+    for seed in range(records):
+        samples = masonry.artificial_record(seed, 1.0, 20.0, dt).samples[strong]
+        total = total + np.abs(np.fft.rfft(samples / samples.std() * np.hanning(400)))**2
+    f = np.fft.rfftfreq(400, dt)
+    band = (f > 0.8) & (f < 8)
+    ratio = total[band] / power(f[band], 2.5, 0.6, 0.2)
+    # The mean of 400 periodograms scatters by 1/sqrt(400) = 5 %; 58 frequencies: four times that.
+    assert np.max(np.abs(ratio / ratio.mean() - 1)) < 0.2 and count == 1001
+
+
+def test_bad_input_is_refused(tmp_path):
+    script = tmp_path / "scene.py"
+    script.write_text("def run(case): return {}")
+    table = np.zeros(2, dtype=[("collapsed", bool), ("peak_drift", float)])
+    for act, word in ((lambda: ensemble.fraction([]), "events"), (lambda: ensemble.fraction([True], 1), "confidence = 1"),
+                      (lambda: ensemble.quantile([1, math.nan], 0.5), "NaN"), (lambda: ensemble.quantile([], 0.5), "values"),
+                      (lambda: ensemble.quantile([1], 1.0), "probability = 1"), (lambda: ensemble.statistics(table, by="scale"), "scale"),
+                      (lambda: ensemble.run(script, [], tmp_path), "at least one"), (lambda: ensemble.run(script, [{"a": 1}, {"b": 1}], tmp_path), "same keys"),
+                      (lambda: ensemble.run(script, [{"a": 1}, {"a": 1}], tmp_path), "twice"), (lambda: ensemble.run(script, [{"a": {1}}], tmp_path), "must be a dict"),
+                      (lambda: ensemble.run(script, [{"a": 1}], tmp_path, processes=0), "processes = 0"),
+                      (lambda: ensemble.run(script, [{"a": 1}], tmp_path, time_limit=0), "time_limit = 0"),
+                      (lambda: masonry.artificial_record(-1, 1), "seed = -1"), (lambda: masonry.artificial_record(1, 0), "peak = 0"),
+                      (lambda: masonry.artificial_record(1, 1, dt=0.1), "dt = 0.1"), (lambda: masonry.artificial_record(1, 1, cutoff=3), "cutoff = 3"),
+                      (lambda: masonry.artificial_record(1, 1, duration=0.1), "duration = 0.1")):
+        with pytest.raises(ValueError, match=word):
+            act()
+    with pytest.raises(FileNotFoundError):
+        ensemble.run(tmp_path / "none.py", [{"a": 1}], tmp_path)

@@ -1,0 +1,88 @@
+"""Ensembles: each case is what the exact block does; a second call computes what is missing or has changed, and gives the same numbers."""
+
+import math
+import shutil
+import tempfile
+from pathlib import Path
+
+import ensemble_scene
+import numpy as np
+from masonry import ensemble
+from rocking_scene import refuses
+
+import masonry
+
+computed = []
+run_missing = ensemble._run_missing
+
+
+def watched(script, function, missing, *rest):
+    computed.append([case["scale"] for case, _ in missing])
+    return run_missing(script, function, missing, *rest)
+
+
+ensemble._run_missing = watched
+
+
+def study(cases, script, folder):
+    computed.clear()
+    return ensemble.run(script, cases, folder, processes=2, progress=False)
+
+
+with tempfile.TemporaryDirectory() as folder:
+    script, out = Path(folder) / "scene.py", Path(folder) / "out"
+    shutil.copy(ensemble_scene.__file__, script)
+    scales = [0.32, 0.1, 1.0]
+    cases = [{"scale": s, "name": f"sine {s}"} for s in scales]
+    table = study(cases, script, out)
+    assert computed == [scales] and table["scale"].tolist() == scales and table["name"][1] == "sine 0.1"
+
+    # The exact block: whether it overturns; drift of the centre, R (sin(alpha) - sin(alpha - |angle|)) over the height.
+    block = masonry.RockingBlock(ensemble_scene.HALF_WIDTH, ensemble_scene.HALF_WIDTH * ensemble_scene.SLENDERNESS)
+    alpha = block.critical_angle
+    for row in table:
+        exact = masonry.simulate(block, ensemble_scene.record(row["scale"]), restitution=ensemble_scene.RESTITUTION, t_end=2.0)
+        falls = bool(exact.overturned) or abs(exact.sample(2.0)[0]) > alpha
+        assert row["collapsed"] == falls and row["fallen"] == row["collapsed"], row
+        if not row["collapsed"]:
+            angle = np.abs(exact.sample(np.arange(0, 2, 0.001))[0])
+            drift = np.max(block.radius * (math.sin(alpha) - np.sin(alpha - angle))) / (2 * block.half_height)
+            # Samples 5 ms apart miss a peak by (2.5e-3 s)^2 / 2 of the acceleration there, below g: 3e-5 m; the step by 1e-4 (README).
+            assert abs(row["peak_drift"] - drift) < 2e-5 + 1e-4 * drift, (row["peak_drift"], drift)
+    assert table["collapsed"].tolist() == [False, False, True] and table["peak_drift"][1] < 1e-6 < table["peak_drift"][0]
+    found = ensemble.statistics(table)
+    assert found["fraction"][0] == 1 / 3 and found["quantile_0.5"][0] == table["peak_drift"][0] and found["quantile_0.84"][0] == math.inf
+
+    # Files: numbers and arrays of a case, the tables.
+    one = ensemble.result(script, cases[0], out)
+    assert one["peak_drift"] == table["peak_drift"][0] == one["drift"].max()
+    assert np.load(out / "ensemble.npz")["table"].tobytes() == table.tobytes()
+    read = np.genfromtxt(out / "ensemble.csv", delimiter=",", names=True, dtype=None, encoding="utf-8")
+    assert read["peak_drift"].tolist() == table["peak_drift"].tolist() and read["name"].tolist() == table["name"].tolist()
+
+    # Nothing is missing; one is; the order is another and one case new; a case with another value is another case.
+    assert study(cases, script, out).tobytes() == table.tobytes() and computed == []
+    next(out.glob(f"case_{ensemble._keys(script.resolve(), 'run', cases)[0]}.npz")).unlink()
+    assert study(cases, script, out).tobytes() == table.tobytes() and computed == [[0.32]]
+    changed = study([cases[2], {"scale": 0.2, "name": "sine 0.1"}, cases[0]], script, out)
+    assert computed == [[0.2]] and changed["peak_drift"].tolist()[::2] == table["peak_drift"].tolist()[::-2]
+
+    # Another script, another package or another file that a case names: another result.
+    keys = ensemble._keys(script, "run", cases)
+    script.write_text(script.read_text() + "# changed\n")
+    assert not set(keys) & set(ensemble._keys(script, "run", cases))
+    record = Path(folder) / "record.txt"
+    names = []
+    for text in ("0 1 0", "0 2 0"):
+        record.write_text(text)
+        names.append(ensemble._keys(script, "run", [{"scale": 1, "record": str(record)}]))
+    assert names[0] != names[1]
+
+    # A case that fails is told, with what it said; the others are kept.
+    refuses(lambda: study([{"scale": -1}, {"scale": 0.1}], script, out), "1 of 2 cases failed", "{'scale': -1}", "this case is made to fail", kind=RuntimeError)
+    assert computed == [[-1, 0.1]]
+    refuses(lambda: study([{"scale": -1}, {"scale": 0.1}], script, out), "1 of 2 cases failed", kind=RuntimeError)
+    assert computed == [[-1]]
+    refuses(lambda: ensemble.run(script, [{"scale": 0.3}], out, time_limit=0.05, progress=False), "stopped after 0.05 s", kind=RuntimeError)
+    refuses(lambda: ensemble.result(script, {"scale": 0.3}, out), "no result", kind=KeyError)
+print("ensemble: exact blocks, resuming, failures")
