@@ -11,7 +11,14 @@ template <class K>
 using Rows = typename KeptFactor<K>::Rows;
 
 constexpr double relaxation = 1.6;
-constexpr double pullBack = 0.2; // share of a slip, or of a penetration that has grown in this mode, that a step takes back
+// Share of a slip, or of a penetration that has grown in this mode, that a step takes back. Walls in space are slender across their plane:
+// taken back before the few solves of a step have spread over the courses, it would make them sway.
+template <class K>
+double pullBack(int courses)
+{
+	constexpr double most = 0.2;
+	return K::dimension == 2 ? most : most / std::max(1, courses);
+}
 
 struct alignas(alignment) Largest {
 	Lanes velocity, force, motion;
@@ -20,7 +27,7 @@ struct alignas(alignment) Largest {
 // Which points take part, R, and b. Returns whether another point touches than before.
 template <class K>
 MASONRY_INLINE bool takePoints(Group<K>* groups, const FeatureGroup<K>* features, Rows<K>* rows, int begin, int end, double h,
-                               double softness, double enter, double leave)
+                               double softness, double pullBack, double enter, double leave)
 {
 	const Lanes perH = all(1 / h), none = all(0);
 	const typename PointLanes<K>::Tangent noTangent {};
@@ -96,9 +103,9 @@ MASONRY_INLINE void passAll(Group<K>* groups, FeatureGroup<K>* features, Rows<K>
 // No template is compiled for several vector widths.
 #define MASONRY_PASSES(K)                                                                                                                  \
 	MASONRY_LANES bool takeAll(Group<K>* groups, const FeatureGroup<K>* features, Rows<K>* rows, int begin, int end, double h,             \
-	                           double softness, double enter, double leave)                                                                \
+	                           double softness, double pullBack, double enter, double leave)                                               \
 	{                                                                                                                                      \
-		return takePoints<K>(groups, features, rows, begin, end, h, softness, enter, leave);                                               \
+		return takePoints<K>(groups, features, rows, begin, end, h, softness, pullBack, enter, leave);                                     \
 	}                                                                                                                                      \
 	MASONRY_LANES void firstPass(Group<K>* groups, FeatureGroup<K>* features, Rows<K>* rows, int begin, int end, const Lanes* velocity,    \
 	                             Lanes* force, Largest& worst)                                                                             \
@@ -136,8 +143,8 @@ bool KeptFactor<K>::takeRows(bool newPoints)
 	bool different = false;
 	inParallel(contacts->threads, [&](const Share& share) {
 		const auto [first, last] = share.of(0, int(rows.size()));
-		const bool here =
-		    takeAll(contacts->groups.data(), contacts->features.data(), rows.data(), first, last, h, softness, enter, 4 * enter);
+		const bool here = takeAll(contacts->groups.data(), contacts->features.data(), rows.data(), first, last, h, softness,
+		                          pullBack<K>(contacts->depth), enter, 4 * enter);
 #pragma omp critical
 		different |= here;
 	});
