@@ -92,7 +92,8 @@ void WallContacts<Plane>::takeBodies(const RigidSystem<Plane>& s)
 		const auto& body = s.bodies[b];
 		const double mass = body.prescribed ? 0 : 1 / body.mass;
 		gyration[b][0] = body.prescribed ? 1 : std::sqrt(body.inertia[0] * mass);
-		velocity[b] = Lanes {body.velocity[0], body.velocity[1], gyration[b][0] * body.velocity[2], mass};
+		velocity[b][3] = mass;
+		setVelocity(b, body.velocity);
 		pose[b] = Lanes {body.pose.position.x(), body.pose.position.y(), body.pose.cosine, body.pose.sine};
 	}
 	velocity[n] = all(0);
@@ -132,6 +133,18 @@ ContactFrame<Plane> WallContacts<Plane>::frame(int group, int lane, int k) const
 	frame.axes << nx, ny, -ny, nx;
 	frame.gap = p.gap[lane];
 	return frame;
+}
+
+template <>
+Vector2 WallContacts<Plane>::position(size_t b) const
+{
+	return {pose[b][0], pose[b][1]};
+}
+
+template <>
+void WallContacts<Plane>::setVelocity(size_t b, const Plane::Velocity& v)
+{
+	velocity[b] = Lanes {v[0], v[1], gyration[b][0] * v[2], velocity[b][3]};
 }
 
 template <>

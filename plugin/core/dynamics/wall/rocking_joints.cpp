@@ -23,13 +23,23 @@ struct Contact {
 	double impulse() const { return p.pn[lane]; }
 	// Coordinate along the face, from the middle of the block. Tangents of the points of a joint agree but for their sign.
 	double along(const WallContacts<Plane>& c) const { return c.gyration[block][0] * (second ? -p.a2n[lane] : p.a1n[lane]); }
-	double along(const WallContacts<Space>&) const { return 0; }
 	double normalRate(const WallContacts<Plane>& c) const
 	{
 		const Lanes &v1 = c.velocity[second ? support : block], &v2 = c.velocity[second ? block : support];
 		return p.nx[lane] * (v2[0] - v1[0]) + p.ny[lane] * (v2[1] - v1[1]) + p.a2n[lane] * v2[2] - p.a1n[lane] * v1[2];
 	}
-	double normalRate(const WallContacts<Space>&) const { return 0; }
+	double normalRate(const WallContacts<Space>& c) const
+	{
+		double rate = 0;
+		for (int pack = 0; pack < packs<Space>; ++pack) {
+			const Lanes &v1 = c.velocity[packs<Space> * (second ? support : block) + pack],
+			            &v2 = c.velocity[packs<Space> * (second ? block : support) + pack];
+			const Vector3 part1 = partOf(p, 0, lane, 1, pack), part2 = partOf(p, 0, lane, 2, pack);
+			for (int k = 0; k < 3; ++k)
+				rate += part2[k] * v2[k] - part1[k] * v1[k];
+		}
+		return rate;
+	}
 };
 
 } // namespace
@@ -70,6 +80,64 @@ Contact<K> contact(const WallContacts<K>& c, const JointPoint& at)
 
 } // namespace
 
+namespace {
+
+template <class JointPoint>
+Vector3 position(const WallContacts<Space>& c, const JointPoint& at)
+{
+	return c.position(c.groups[at.group].body2[at.lane]) + c.frame(at.group, at.lane, at.point).position;
+}
+
+} // namespace
+
+template <>
+double RockingJoints<Plane>::away(const WallContacts<Plane>& c, const JointPoint& at, const Pivot<Plane>& pivot) const
+{
+	return std::abs(contact(c, at).along(c) - pivot.place);
+}
+
+template <>
+double RockingJoints<Space>::away(const WallContacts<Space>& c, const JointPoint& at, const Pivot<Space>& pivot) const
+{
+	const Vector3 from = position(c, at) - pivot.place;
+	return (from - pivot.direction * pivot.direction.dot(from)).norm();
+}
+
+template <>
+bool RockingJoints<Plane>::findPivot(const WallContacts<Plane>& c, int begin, int end, Pivot<Plane>& pivot) const
+{
+	double low = INFINITY, high = -INFINITY;
+	for (int i = begin; i < end; ++i)
+		if (const Contact<Plane> at = contact(c, points[i]); at.impulse() > 0) {
+			low = std::min(low, at.along(c));
+			high = std::max(high, at.along(c));
+		}
+	pivot.place = low;
+	return high >= low && high - low <= tolerance::wall::pivot * c.length;
+}
+
+template <>
+bool RockingJoints<Space>::findPivot(const WallContacts<Space>& c, int begin, int end, Pivot<Space>& pivot) const
+{
+	const double narrow = tolerance::wall::pivot * c.length;
+	bool loaded = false;
+	Vector3 edge = Vector3::Zero();
+	for (int i = begin; i < end; ++i)
+		if (contact(c, points[i]).impulse() > 0) {
+			const Vector3 place = position(c, points[i]);
+			if (!loaded)
+				pivot.place = place;
+			if ((place - pivot.place).norm() > edge.norm())
+				edge = place - pivot.place;
+			loaded = true;
+		}
+	pivot.direction = edge.norm() > narrow ? Vector3(edge.normalized()) : Vector3(Vector3::Zero());
+	for (int i = begin; i < end; ++i)
+		if (contact(c, points[i]).impulse() > 0 && away(c, points[i], pivot) > narrow)
+			return false;
+	return loaded;
+}
+
 template <class K>
 void RockingJoints<K>::find(const RigidSystem<K>& s, WallContacts<K>& c, bool newPoints)
 {
@@ -77,24 +145,19 @@ void RockingJoints<K>::find(const RigidSystem<K>& s, WallContacts<K>& c, bool ne
 		gather(s, c);
 	gathered = true;
 	rocking.clear();
-	if (!anyLaw || K::dimension == 3)
+	if (!anyLaw)
 		return;
 	const double open = tolerance::mergedClosing * c.length;
 	for (int begin = 0, end = 0; begin < int(points.size()); begin = end) {
-		double low = INFINITY, high = -INFINITY;
 		int gaping = 0;
 		for (end = begin; end < int(points.size()) && points[end].block == points[begin].block && points[end].face == points[begin].face;
 		     ++end) {
 			const Contact<K> at = contact(c, points[end]);
-			if (at.impulse() > 0) {
-				low = std::min(low, at.along(c));
-				high = std::max(high, at.along(c));
-			} else {
-				gaping += at.gap() > open;
-			}
+			gaping += !(at.impulse() > 0) && at.gap() > open;
 		}
-		if (gaping > 0 && high >= low && high - low <= tolerance::wall::pivot * c.length)
-			rocking.push_back({begin, end, low});
+		Pivot<K> pivot;
+		if (gaping > 0 && findPivot(c, begin, end, pivot))
+			rocking.push_back({begin, end, pivot});
 	}
 	for (const Joint& joint : rocking)
 		for (int i = joint.begin; i < joint.end; ++i)
@@ -104,7 +167,10 @@ void RockingJoints<K>::find(const RigidSystem<K>& s, WallContacts<K>& c, bool ne
 
 // Distance by which the open points of a joint that rocks are put aside: far beyond what a step can close.
 template <class K>
-double RockingJoints<K>::aside(const WallContacts<K>& c) const { return 1e3 * c.length; }
+double RockingJoints<K>::aside(const WallContacts<K>& c) const
+{
+	return 1e3 * c.length;
+}
 
 template <class K>
 void RockingJoints<K>::putBack(WallContacts<K>& c, const Joint& joint) const
@@ -126,32 +192,105 @@ void RockingJoints<K>::release(WallContacts<K>& c)
 }
 
 template <class K>
+bool RockingJoints<K>::closes(const WallContacts<K>& c, const JointPoint& point, double time) const
+{
+	const Contact<K> at = contact(c, point);
+	const double gap = at.gap() > 0.5 * aside(c) ? at.gap() - aside(c) : at.gap(), rate = at.normalRate(c);
+	return rate < 0 && gap + time * rate <= 0;
+}
+
+// In substeps: an impact is met as near as may be; closings so near each other are one.
+constexpr double nearest = 0.5, together = 2;
+
+template <class K>
 const typename RockingJoints<K>::JointPoint* RockingJoints<K>::landing(const WallContacts<K>& c, const Joint& joint, double s) const
 {
-	constexpr double nearest = 0.5, together = 2; // in substeps: an impact is met as near as may be; closings so near each other are one
-	bool closes = false;
+	bool lands = false;
 	const JointPoint* farthest = nullptr;
 	double distance = tolerance::wall::pivot * c.length;
 	for (int i = joint.begin; i < joint.end; ++i) {
-		const Contact<K> at = contact(c, points[i]);
-		const double gap = at.gap() > 0.5 * aside(c) ? at.gap() - aside(c) : at.gap(), rate = at.normalRate(c),
-		             away = std::abs(at.along(c) - joint.pivot);
-		if (!(rate < 0) || away <= tolerance::wall::pivot * c.length)
+		if (!closes(c, points[i], together * s))
 			continue;
-		closes |= gap + nearest * s * rate <= 0;
-		if (gap + together * s * rate <= 0 && away > distance) {
-			distance = away;
+		const double distant = away(c, points[i], joint.pivot);
+		if (distant <= tolerance::wall::pivot * c.length)
+			continue;
+		lands |= closes(c, points[i], nearest * s);
+		if (distant > distance) {
+			distance = distant;
 			farthest = &points[i];
 		}
 	}
-	return closes ? farthest : nullptr;
+	return lands ? farthest : nullptr;
 }
 
 template <>
-void RockingJoints<Space>::answer(RigidSystem<Space>&, WallContacts<Space>&, const JointPoint&, double&) const {}
+void RockingJoints<Space>::answer(RigidSystem<Space>& s, WallContacts<Space>& c, const Joint& joint, const JointPoint& where,
+                                  double substep, double& baseWork)
+{
+	const Contact<Space> at = contact(c, where);
+	const double restitution = s.pairs[c.features[where.group].pair[where.lane]].restitution;
+	if (std::isnan(restitution))
+		return;
+	numbers.clear();
+	impact.bodies.clear();
+	impact.points.clear();
+	const auto number = [&](int b) {
+		const auto known = std::find(numbers.begin(), numbers.end(), b);
+		if (known != numbers.end())
+			return int(known - numbers.begin());
+		const auto& from = s.bodies[b];
+		const Space::Velocity v = c.inGlobal(c.velocity, b);
+		masonry::Body& body = impact.bodies.emplace_back();
+		body.pose = from.pose;
+		body.velocity = v.head<3>();
+		body.angularVelocity = v.tail<3>();
+		body.mass = from.mass;
+		body.inertia = from.inertia;
+		body.prescribed = from.prescribed;
+		numbers.push_back(b);
+		return int(numbers.size()) - 1;
+	};
+	const auto add = [&](const JointPoint& point) {
+		const Group<Space>& group = c.groups[point.group];
+		impact.points.push_back({number(group.body1[point.lane]), number(group.body2[point.lane]), position(c, point),
+		                         normal(group.point[point.point], point.lane), s.pairs[c.features[point.group].pair[point.lane]].friction});
+	};
+	const double narrow = tolerance::wall::pivot * c.length;
+	ClosingJoint& law = impact.joint;
+	law.newBegin = 0;
+	law.block = number(at.block);
+	law.support = number(at.support);
+	law.normal = (at.second ? 1 : -1) * normal(at.p, at.lane);
+	law.restitution = restitution;
+	for (int i = joint.begin; i < joint.end; ++i)
+		if (closes(c, points[i], together * substep) && away(c, points[i], joint.pivot) > narrow)
+			add(points[i]);
+	law.oldBegin = int(impact.points.size());
+	for (int i = joint.begin; i < joint.end; ++i)
+		if (contact(c, points[i]).impulse() > 0 && away(c, points[i], joint.pivot) <= narrow)
+			add(points[i]);
+	law.oldEnd = int(impact.points.size());
+	const Vector3 axis = rockingAxis(impact.bodies, law, impact.points);
+	const double spin = axis.dot(impact.bodies[law.block].angularVelocity - impact.bodies[law.support].angularVelocity),
+	             leastSpin = tolerance::restSpeed * std::sqrt(scale::acceleration(s) / s.bodies[at.block].halfSize.norm());
+	if (!(spin * restitution >= leastSpin))
+		return;
+	const auto result = impact.apply();
+	for (size_t i = 0; i < numbers.size(); ++i)
+		if (!impact.bodies[i].prescribed) {
+			Space::Velocity v;
+			v << impact.bodies[i].velocity, impact.bodies[i].angularVelocity;
+			c.setVelocity(numbers[i], v);
+		}
+	baseWork += result.work;
+	const JointResult& after = law.result;
+	s.impacts.push_back(
+	    {s.time, at.block, at.support, restitution, after.after >= leastSpin, after, result.energyLost, result.capped, result.residual});
+}
 
 template <>
-void RockingJoints<Plane>::answer(RigidSystem<Plane>& s, WallContacts<Plane>& c, const JointPoint& where, double& baseWork) const
+void RockingJoints<Plane>::answer(RigidSystem<Plane>& s, WallContacts<Plane>& c, const Joint&, const JointPoint& where, double,
+                                  double& baseWork)
 {
 	const Contact<Plane> at = contact(c, where);
 	const ContactPair<Plane>& pair = s.pairs[c.features[where.group].pair[where.lane]];
@@ -240,7 +379,7 @@ double RockingJoints<K>::land(RigidSystem<K>& s, WallContacts<K>& c, double subs
 			continue;
 		}
 		putBack(c, rocking[j]);
-		answer(s, c, *at, baseWork);
+		answer(s, c, rocking[j], *at, substep, baseWork);
 		rocking[j] = rocking.back(); // another pivot, or none, until the next step
 		rocking.pop_back();
 	}

@@ -11,9 +11,25 @@
 // Other neighbours feel it in the sweeps that follow: the sequential law of impact/rocking_restitution.hpp. Kinetic energy does not
 // grow: where it would, the couple is reduced until it does not. Without a restitution, or when the joint would come to rest
 // (tolerance::restSpeed), nothing is done here: the sweeps are plastic.
+//
+// In space all points that close together are the new pivot and the loaded ones the old, and there is one row, along the old edge or across
+// the lever (joint_impact.hpp).
+#include "dynamics/wall/joint_impact.hpp"
 #include "dynamics/wall/wall_contacts.hpp"
 
 namespace masonry::rigid::wall {
+
+// Where a joint is loaded: m along its face in the plane; in space a corner, or an edge and its direction.
+template <class K>
+struct Pivot;
+template <>
+struct Pivot<Plane> {
+	double place;
+};
+template <>
+struct Pivot<Space> {
+	Vector3 place, direction;
+};
 
 template <class K>
 class RockingJoints {
@@ -31,17 +47,24 @@ private:
 	};
 	struct Joint {
 		int begin, end; // points
-		double pivot;   // m, along the face
+		Pivot<K> pivot;
 	};
 	void gather(const RigidSystem<K>& system, const WallContacts<K>& contacts);
+	// False: loaded at more than one place, or not at all.
+	bool findPivot(const WallContacts<K>& contacts, int begin, int end, Pivot<K>& pivot) const;
+	double away(const WallContacts<K>& contacts, const JointPoint& point, const Pivot<K>& pivot) const; // m
+	bool closes(const WallContacts<K>& contacts, const JointPoint& point, double time) const;           // within it
 	const JointPoint* landing(const WallContacts<K>& contacts, const Joint& joint, double s) const;
 	double aside(const WallContacts<K>& contacts) const;
 	void putBack(WallContacts<K>& contacts, const Joint& joint) const;
-	void answer(RigidSystem<K>& system, WallContacts<K>& contacts, const JointPoint& at, double& baseWork) const;
+	void answer(RigidSystem<K>& system, WallContacts<K>& contacts, const Joint& joint, const JointPoint& at, double s, double& baseWork);
 
 	bool gathered {false}, anyLaw {false};
 	std::vector<JointPoint> points; // joint by joint
 	std::vector<Joint> rocking;
+
+	JointImpact impact;       // in space
+	std::vector<int> numbers; // of its bodies in the system
 };
 
 } // namespace masonry::rigid::wall

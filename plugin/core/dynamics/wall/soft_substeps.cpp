@@ -105,10 +105,7 @@ MASONRY_INLINE void pushGroups(Group<K>* groups, int begin, int end, Lanes* velo
 	{                                                                                                                                      \
 		moveGroups<K>(groups, begin, end, velocity, s);                                                                                    \
 	}                                                                                                                                      \
-	MASONRY_LANES void applyImpulses(Group<K>* groups, int begin, int end, Lanes* velocity)                                                \
-	{                                                                                                                                      \
-		pushGroups<K>(groups, begin, end, velocity);                                                                                       \
-	}
+	MASONRY_LANES void applyImpulses(Group<K>* groups, int begin, int end, Lanes* velocity) { pushGroups<K>(groups, begin, end, velocity); }
 MASONRY_SWEEPS(Plane)
 MASONRY_SWEEPS(Space)
 #undef MASONRY_SWEEPS

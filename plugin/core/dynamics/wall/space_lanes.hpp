@@ -1,7 +1,7 @@
 #pragma once
 // Contact points in space, four side by side. The spin of a body is taken along its principal axes and multiplied by the radii of gyration
-// rho about them, W = rho R^T w: then it too goes with the mass m. Along each row e of a point, the normal n (from body 1 to body 2) and two
-// tangents, the relative velocity is
+// rho about them, W = rho R^T w: then it too goes with the mass m. Along each row e of a point, the normal n (from body 1 to body 2) and
+// two tangents, the relative velocity is
 //
 //     u_e = e.(v2 - v1) + a2.W2 - a1.W1        a = R^T (r x e) / rho
 #include "dynamics/wall/plane_lanes.hpp"
@@ -48,7 +48,10 @@ MASONRY_INLINE Lanes2 operator*(double f, const Lanes2& a) { return all(f) * a; 
 MASONRY_INLINE Lanes2& operator*=(Lanes2& a, const Lanes& f) { return a = f * a; }
 MASONRY_INLINE Lanes dot(const Lanes2& a, const Lanes2& b) { return a.x * b.x + a.y * b.y; }
 MASONRY_INLINE Lanes size(const Lanes2& a) { return larger(size(a.x), size(a.y)); } // to report and compare only: saves the root
-MASONRY_INLINE Lanes2 select(const Mask& mask, const Lanes2& a, const Lanes2& b) { return {select(mask, a.x, b.x), select(mask, a.y, b.y)}; }
+MASONRY_INLINE Lanes2 select(const Mask& mask, const Lanes2& a, const Lanes2& b)
+{
+	return {select(mask, a.x, b.x), select(mask, a.y, b.y)};
+}
 MASONRY_INLINE double component(const Lanes2& tangent, int k, int lane) { return k == 0 ? tangent.x[lane] : tangent.y[lane]; }
 MASONRY_INLINE void setComponent(Lanes2& tangent, int k, int lane, double value) { (k == 0 ? tangent.x : tangent.y)[lane] = value; }
 
@@ -94,10 +97,10 @@ template <>
 struct alignas(alignment) PointLanes<Space> {
 	using Tangent = Lanes2;
 	RowLanes normal, tangent[2];
-	Lanes gap;                         // m; far away in lanes without a point
-	Lanes massN, massT;                // 1 / (J M^-1 J^T), kg; of the tangents along that in which the point gives most
+	Lanes gap;                   // m; far away in lanes without a point
+	Lanes massN, massT;          // 1 / (J M^-1 J^T), kg; of the tangents along that in which the point gives most
 	Lanes stick[2], stickAcross; // inverse of the tangents' J M^-1 J^T, kg: diagonal and beside it
-	Lanes pn;                          // impulse of a step or substep, N s
+	Lanes pn;                    // impulse of a step or substep, N s
 	Lanes2 pt;
 };
 
@@ -107,14 +110,17 @@ struct alignas(alignment) FeatureLanes<Space> {
 	Mask vertexOn1, present, crossing;
 	Lanes3 vertex, normal, tangent; // of the face: outward normal, first tangent
 	Lanes faceDistance;
-	Lanes3 arm;                // from body 2 to the point, global axes
-	Lanes foundGap;            // when the features were looked up
-	Lanes2 found;              // where along them
-	Lanes zn, zero;            // of KeptFactor, as in the plane
+	Lanes3 arm;     // from body 2 to the point, global axes
+	Lanes foundGap; // when the features were looked up
+	Lanes2 found;   // where along them
+	Lanes zn, zero; // of KeptFactor, as in the plane
 	Lanes2 zt, slip;
 };
 
-MASONRY_INLINE Lanes normalRate(const Bodies<Space>& v1, const Bodies<Space>& v2, const PointLanes<Space>& p) { return p.normal.rate(v1, v2); }
+MASONRY_INLINE Lanes normalRate(const Bodies<Space>& v1, const Bodies<Space>& v2, const PointLanes<Space>& p)
+{
+	return p.normal.rate(v1, v2);
+}
 MASONRY_INLINE Lanes2 slipRate(const Bodies<Space>& v1, const Bodies<Space>& v2, const PointLanes<Space>& p)
 {
 	return {p.tangent[0].rate(v1, v2), p.tangent[1].rate(v1, v2)};
@@ -177,8 +183,8 @@ MASONRY_INLINE Mask slides(const Lanes2& tangential, const Lanes& bound)
 	constexpr double onRim = 1 - 1e-12;
 	return dot(tangential, tangential) >= onRim * bound * bound;
 }
-// The friction that a slip rate asks for: what stops it if the cone allows that. Else it opposes the slip, for which both tangents must give
-// alike.
+// The friction that a slip rate asks for: what stops it if the cone allows that. Else it opposes the slip, for which both tangents must
+// give alike.
 MASONRY_INLINE Lanes2 friction(const PointLanes<Space>& p, const Lanes2& slipRate, const Lanes& bound)
 {
 	const Lanes2 stops = {p.stick[0] * slipRate.x + p.stickAcross * slipRate.y, p.stickAcross * slipRate.x + p.stick[1] * slipRate.y};

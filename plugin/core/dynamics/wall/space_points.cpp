@@ -172,12 +172,12 @@ void WallContacts<Space>::takeBodies(const RigidSystem<Space>& s)
 	gyration.resize(n + 1);
 	const auto take = [this](size_t b, const Pose& at, const Space::Velocity& v, double perMass) {
 		const Matrix3 axes = at.orientation.toRotationMatrix();
-		const Vector3 spin = gyration[b].cwiseProduct(axes.transpose() * v.tail<3>()), perRho = gyration[b].cwiseInverse();
-		velocity[2 * b] = Lanes {v[0], v[1], v[2], perMass};
-		velocity[2 * b + 1] = Lanes {spin[0], spin[1], spin[2], perMass};
+		const Vector3 perRho = gyration[b].cwiseInverse();
 		for (int i = 0; i < 3; ++i)
 			pose[poseRows * b + i] = Lanes {axes(i, 0), axes(i, 1), axes(i, 2), at.position[i]};
-		pose[poseRows * b + 3] = Lanes {perRho[0], perRho[1], perRho[2], 0};
+		pose[poseRows * b + 3] = Lanes {perRho[0], perRho[1], perRho[2], 1};
+		velocity[2 * b][3] = perMass;
+		setVelocity(b, v);
 	};
 	for (size_t b = 0; b < n; ++b) {
 		const auto& body = s.bodies[b];
@@ -195,7 +195,8 @@ void WallContacts<Space>::takePoint(const RigidSystem<Space>& s, int c, int k)
 	const auto [group, lane] = slots[c][k / lanePoints<Space>];
 	FeatureLanes<Space>& f = features[group].point[k % lanePoints<Space>];
 	const bool present = k < pair.size;
-	const SpaceFeature feature = present ? pair.points[k].feature : SpaceFeature {SpaceFeature::Vertex1, 0, 0}; // tells how far the pair moves
+	const SpaceFeature feature =
+	    present ? pair.points[k].feature : SpaceFeature {SpaceFeature::Vertex1, 0, 0}; // tells how far the pair moves
 	f.present[lane] = present ? -1 : 0;
 	f.crossing[lane] = feature.kind == SpaceFeature::Edges ? -1 : 0;
 	const bool vertexOn1 = feature.kind == SpaceFeature::Vertex1;
@@ -226,6 +227,22 @@ ContactFrame<Space> WallContacts<Space>::frame(int group, int lane, int k) const
 }
 
 template <>
+Vector3 WallContacts<Space>::position(size_t b) const
+{
+	return {pose[poseRows * b][3], pose[poseRows * b + 1][3], pose[poseRows * b + 2][3]};
+}
+
+template <>
+void WallContacts<Space>::setVelocity(size_t b, const Space::Velocity& v)
+{
+	const Lanes* rows = &pose[poseRows * b];
+	const double perMass = velocity[2 * b][3];
+	const Lanes spin = (v[3] * rows[0] + v[4] * rows[1] + v[5] * rows[2]) / rows[3]; // R^T w rho
+	velocity[2 * b] = Lanes {v[0], v[1], v[2], perMass};
+	velocity[2 * b + 1] = Lanes {spin[0], spin[1], spin[2], perMass};
+}
+
+template <>
 Space::Velocity WallContacts<Space>::inGlobal(const LaneArray& from, size_t b) const
 {
 	const Lanes &v = from[2 * b], &spin = from[2 * b + 1], *rows = &pose[poseRows * b];
@@ -245,7 +262,8 @@ void WallContacts<Space>::takeForce(const Space::Velocity& force, double h, size
 	const double perMass = h * velocity[2 * b][3];
 	const Lanes moment = force[3] * rows[0] + force[4] * rows[1] + force[5] * rows[2]; // R^T times it
 	to[2 * b] = perMass * Lanes {force[0], force[1], force[2], 0};
-	to[2 * b + 1] = perMass * moment * rows[3]; // whose fourth component is zero
+	const Lanes spin = perMass * moment * rows[3];
+	to[2 * b + 1] = Lanes {spin[0], spin[1], spin[2], 0};
 }
 
 } // namespace masonry::rigid::wall

@@ -196,7 +196,8 @@ bool WallContacts<K>::lookUp(RigidSystem<K>& s, int c)
 				now.zero = std::min(now.zero, states[j].zero);
 				if constexpr (K::rows == 3)
 					if (!same) { // along the tangents of another face
-						const Eigen::Matrix2d turn = point.frame.axes.template bottomRows<2>() * old.frame.axes.template bottomRows<2>().transpose();
+						const Eigen::Matrix2d turn =
+						    point.frame.axes.template bottomRows<2>() * old.frame.axes.template bottomRows<2>().transpose();
 						point.force.template tail<2>() = (turn * old.force.template tail<2>()).eval();
 						now.pt = (turn * now.pt).eval();
 						now.zt = (turn * now.zt).eval();
@@ -221,7 +222,7 @@ void WallContacts<K>::lookUpStale(RigidSystem<K>& s)
 {
 	if (std::none_of(stale.begin(), stale.end(), [](unsigned char is) { return is; }))
 		return;
-	if (lanesOfPair<K> > 1)
+	if (lanesOfPair < K >> 1)
 		for (bool spread = true; spread;) {
 			spread = false;
 			for (const auto& lanes : slots)

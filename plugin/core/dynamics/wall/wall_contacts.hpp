@@ -70,6 +70,8 @@ public:
 	// Packs of a body as a velocity in global axes; a force and moment in global axes as the velocity that it gives in a time h.
 	typename K::Velocity inGlobal(const LaneArray& from, size_t body) const;
 	void takeForce(const typename K::Velocity& force, double h, size_t body, LaneArray& to) const;
+	void setVelocity(size_t body, const typename K::Velocity& v); // in global axes
+	typename K::Vector position(size_t body) const;
 	void setLinearVelocity(size_t body, const typename K::Vector& v)
 	{
 		for (int i = 0; i < K::dimension; ++i)
@@ -109,11 +111,11 @@ private:
 	void setState(const State& state, int pair, int point);
 	void takePoint(const RigidSystem<K>& system, int pair, int point);
 
-	double unit {0};                       // s, that the impulses are of
-	std::vector<std::array<int, 2>> pairs; // that the groups are made of
+	double unit {0};                                     // s, that the impulses are of
+	std::vector<std::array<int, 2>> pairs;               // that the groups are made of
 	std::vector<std::array<Slot, lanesOfPair<K>>> slots; // of a pair; group -1: none
-	std::vector<unsigned char> wide;       // pairs that need all their lanes
-	std::vector<unsigned char> stale;      // groups with a pair to be looked up
+	std::vector<unsigned char> wide;                     // pairs that need all their lanes
+	std::vector<unsigned char> stale;                    // groups with a pair to be looked up
 	bool otherPoints {false}, wider {false};
 };
 
@@ -127,6 +129,10 @@ private:
 	void WallContacts<K>::locate(const RigidSystem<K>&, int, int, double, bool);                                                           \
 	template <>                                                                                                                            \
 	ContactFrame<K> WallContacts<K>::frame(int, int, int) const;                                                                           \
+	template <>                                                                                                                            \
+	void WallContacts<K>::setVelocity(size_t, const K::Velocity&);                                                                         \
+	template <>                                                                                                                            \
+	K::Vector WallContacts<K>::position(size_t) const;                                                                                     \
 	template <>                                                                                                                            \
 	K::Velocity WallContacts<K>::inGlobal(const LaneArray&, size_t) const;                                                                 \
 	template <>                                                                                                                            \

@@ -48,10 +48,7 @@ typename K::Vector driven(const RigidSystem<K>& s, const RigidBody<K>& body, dou
 
 // Moves a free body by what its velocities of the step add up to; its momentum stays. In space the spin follows from it in the new pose,
 // and changes on the way: from that of the middle to first order.
-void move(RigidBody<Plane>& body, const Plane::Velocity& moved, double)
-{
-	Plane::advance(body.pose, moved, 1);
-}
+void move(RigidBody<Plane>& body, const Plane::Velocity& moved, double) { Plane::advance(body.pose, moved, 1); }
 
 void move(RigidBody<Space>& body, Space::Velocity moved, double h)
 {
@@ -112,8 +109,9 @@ void WallStep<K>::setBase(const RigidSystem<K>& s, double h)
 		const auto& body = s.bodies[b];
 		if (!body.prescribed || body.drive < 0)
 			continue;
-		contacts.setLinearVelocity(b, s.driveDirections[body.drive] *
-		                                  ((s.drives[body.drive]->displacement(s.time + h) - s.drives[body.drive]->displacement(s.time)) / h));
+		contacts.setLinearVelocity(b,
+		                           s.driveDirections[body.drive] *
+		                               ((s.drives[body.drive]->displacement(s.time + h) - s.drives[body.drive]->displacement(s.time)) / h));
 	}
 }
 

@@ -38,7 +38,8 @@ inline int addBlock(RigidSystem<Plane>& s, const Vector2& half, const Vector2& c
 	return int(s.bodies.size()) - 1;
 }
 
-inline int addBlock(RigidSystem<Space>& s, const Vector3& half, const Vector3& center, const Quaternion& orientation = Quaternion::Identity())
+inline int addBlock(RigidSystem<Space>& s, const Vector3& half, const Vector3& center,
+                    const Quaternion& orientation = Quaternion::Identity())
 {
 	RigidBody<Space> block;
 	block.halfSize = half;
