@@ -78,7 +78,7 @@ def run(script, cases, folder, function="run", processes=None, time_limit=None, 
 
     The function returns a dict of numbers (and, if it likes, arrays: ensemble.result() reads them), the same keys for every case.
     Results are kept: a later call computes only cases that have none, or whose values, script, files named in them or masonry package
-    have changed since. Data that the function reads without the case naming it is not looked into.
+    have changed since. Other files that the function reads, and modules beside the script, are not looked into.
 
     Table: a structured array, one row a case in the order of `cases`: what the case says, then what its numbers are.
     Raises ValueError for cases that cannot be told apart or written down, RuntimeError, after all the others have run, for cases that failed

@@ -16,7 +16,7 @@ _EDGES = np.array([[0, 1], [2, 3], [4, 5], [6, 7], [0, 2], [1, 3], [4, 6], [5, 7
 
 
 def plane_normal(history):
-    """Horizontal unit vector, an axis of every free block, across which nothing moves, with y not positive; None: there is none."""
+    """Horizontal unit vector, an axis of every free block, across which nothing moves, towards the viewer who has x to the right, or y; None: there is none."""
     axes = _pose.matrices(history.orientation[0])[history.free]
     moved, turned = history.displacement[:, history.free], history.relative_orientation[:, history.free]
     for normal in axes[0].T:
@@ -24,7 +24,7 @@ def plane_normal(history):
             continue
         across = np.abs(_pose.matrices(turned).swapaxes(-1, -2) @ normal - axes.swapaxes(-1, -2) @ normal)
         if largest(np.abs(moved @ normal)) <= _PLANAR * history.sizes[history.free].max() and largest(across) <= _PLANAR:
-            return -normal if (normal[1], normal[0]) > (0, 0) else normal
+            return normal if normal[1] < -_PLANAR or (normal[1] <= _PLANAR and normal[0] > 0) else -normal
     return None
 
 
