@@ -254,6 +254,17 @@ struct ContactSolver<K>::Workspace {
 		return worst;
 	}
 
+	// A point alone needs no sweeps.
+	double solveAlone()
+	{
+		for (int b = 0; b < nBodies; ++b)
+			bodies[b].velocity = bodies[b].free;
+		ContactRows<K>& row = rows[0];
+		row.impulse = points[0].alone.impulse(relativeVelocity(row), row.friction);
+		push(0, row.impulse);
+		return violation(0, relativeVelocity(row));
+	}
+
 	// Sweeps until solved, up to `limit`; impatient: or until the rate of convergence tells that `limit` will not do.
 	double gaussSeidel(double tolerance, int limit, bool patient, SolveReport& report)
 	{
@@ -624,10 +635,14 @@ SolveReport ContactSolver<K>::solve(double tolerance)
 	Workspace& w = *workspace;
 	SolveReport report;
 	w.prepare(*this);
+	if (w.nPoints == 1) {
+		report.residual = w.solveAlone();
+		if (report.residual <= tolerance)
+			return report;
+	}
 	w.applyImpulses();
-	// A block on its pivot, or on a face in the plane: dearer to factorise than to sweep. Sweeps over an edge in space are slow.
-	constexpr int fewPoints = K::dimension == 2 ? 2 : 1, fewSweeps = 4;
-	if (w.nPoints <= fewPoints) {
+	constexpr int fewSweeps = 4;
+	if (K::dimension == 2 && w.nPoints <= K::maxPoints) { // a block on its face: dearer to factorise than to sweep
 		report.residual = w.gaussSeidel(tolerance, fewSweeps, true, report);
 		if (report.residual <= tolerance)
 			return report;

@@ -50,7 +50,7 @@ namespace {
 template <class K> Event findEvent(const RigidSystem<K>& s, SmoothStep<K>& step, double slow)
 {
 	Event        first;
-	const double h = step.trial().h, tiny = tolerance::rigid::gap * scale::length(s), still = tolerance::rigid::parting * scale::stepSpeed(s, h);
+	const double h = step.trial().h, tiny = tolerance::rigid::gap * step.scales.length, still = tolerance::rigid::parting * step.scales.stepSpeed(h);
 	const auto   consider = [&](Event::Kind kind, PointRef ref, double at) {
         if (first.kind == Event::none || at < first.at) first = { kind, ref, at };
 	};
@@ -75,7 +75,7 @@ template <class K> Event findEvent(const RigidSystem<K>& s, SmoothStep<K>& step,
 
 template <class K> Event localise(const RigidSystem<K>& s, SmoothStep<K>& step, Event event)
 {
-	const double  tiny = tolerance::rigid::gap * scale::length(s), still = tolerance::rigid::parting * scale::stepSpeed(s, step.trial().h);
+	const double  tiny = tolerance::rigid::gap * step.scales.length, still = tolerance::rigid::parting * step.scales.stepSpeed(step.trial().h);
 	double        early = 0, late = step.trial().h; // the event lies between
 	const double  instant = tolerance::rigid::instant * late;
 	constexpr int most = 40;

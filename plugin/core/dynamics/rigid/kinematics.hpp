@@ -20,6 +20,16 @@ struct PlanePose {
 		cosine = std::cos(value);
 		sine = std::sin(value);
 	}
+	void turn(double by)
+	{
+		constexpr double tiny = 1e-9; // its square is below the last digit
+		if (std::abs(by) > tiny)
+			return setAngle(angle + by);
+		angle += by;
+		const double before = cosine;
+		cosine -= by * sine;
+		sine += by * before;
+	}
 	Vector2 rotate(const Vector2& local) const { return {cosine * local.x() - sine * local.y(), sine * local.x() + cosine * local.y()}; }
 	Vector2 rotateBack(const Vector2& global) const
 	{
@@ -86,7 +96,7 @@ struct Plane {
 	static void advance(Pose& pose, const Velocity& velocity, double t)
 	{
 		pose.position += t * velocity.head<2>();
-		if (velocity[2] != 0) pose.setAngle(pose.angle + t * velocity[2]);
+		pose.turn(t * velocity[2]);
 	}
 	static Spin angularMomentum(const Inertia& inertia, const Pose&, const Spin& w) { return inertia * w; }
 	static InverseInertia inverseInertia(const Inertia& inertia, const Pose&) { return inertia.cwiseInverse(); }

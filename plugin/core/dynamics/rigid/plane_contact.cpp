@@ -146,8 +146,13 @@ End endOfOverlap(const FacePair& pair, double end, const PlaneMemory& memory)
 	const PlaneFeature ofIncident {3 - reference, vertexNumber(pair.incidentAxis, pair.incidentSign, corner), pair.referenceFace()};
 	const PlaneFeature ofReference {reference, vertexNumber(pair.face.axis, pair.face.sign, end * pair.direction), pair.incidentFace()};
 	const auto held = [&memory](const PlaneFeature& feature) { return feature == memory.features[0] || feature == memory.features[1]; };
-	const double beyond = held(ofIncident) ? -limits::vertexReach : held(ofReference) ? limits::vertexReach : -limits::slack;
-	if (inside >= beyond * pair.length)
+	const auto takesIncident = [&] {
+		const double reach = limits::vertexReach * pair.length;
+		if (std::abs(inside) > reach)
+			return inside > 0;
+		return held(ofIncident) || (!held(ofReference) && inside >= -limits::slack * pair.length);
+	};
+	if (takesIncident())
 		return {ofIncident, pair.height + corner * pair.rise};
 	return {ofReference, pair.normalAlong * (end * pair.referenceEnd() - pair.middle) - pair.normalOver * pair.height};
 }

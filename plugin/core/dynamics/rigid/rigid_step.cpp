@@ -1,5 +1,4 @@
 #include "dynamics/rigid/rigid_step.hpp"
-#include "dynamics/rigid/scales.hpp"
 #include "tolerances.hpp"
 
 namespace masonry::rigid {
@@ -9,7 +8,7 @@ template <class K> StepReport RigidStep<K>::advance(RigidSystem<K>& s, double dt
 {
 	report = {};
 	s.impacts.clear();
-	step.begin();
+	step.begin(s);
 	findContacts(s);
 	takeJumps(s);
 	for (double left = dt; left > 0;) {
@@ -63,7 +62,7 @@ namespace {
 // Points of all pairs, as features.
 template <class K> void RigidStep<K>::findContacts(RigidSystem<K>& s)
 {
-	const double touching = s.settings.merged * scale::length(s), samePlace = 2 * tolerance::contact::vertexReach * scale::length(s);
+	const double touching = s.settings.merged * step.scales.length, samePlace = 2 * tolerance::contact::vertexReach * step.scales.length;
 	for (ContactPair<K>& pair : s.pairs) {
 		const auto &   body1 = s.bodies[pair.body1], &body2 = s.bodies[pair.body2];
 		FoundPoints<K> found;
@@ -93,7 +92,7 @@ template <class K> void RigidStep<K>::findContacts(RigidSystem<K>& s)
 template <class K> Event RigidStep<K>::tryStep(RigidSystem<K>& s, double h)
 {
 	const bool   localised = report.events < s.settings.mostEvents;
-	const double rest = tolerance::restSpeed * std::sqrt(scale::acceleration(s) * scale::length(s));
+	const double rest = tolerance::restSpeed * step.scales.speed;
 	step.anticipated.clear();
 	step.stopsInside = !localised;
 	Event event;

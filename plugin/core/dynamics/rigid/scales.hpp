@@ -29,11 +29,23 @@ template <class K> double acceleration(const RigidSystem<K>& s)
 }
 
 // What gravity gives in a step; not below the round-off of speeds in the scene. m/s
-template <class K> double stepSpeed(const RigidSystem<K>& s, double h)
+inline double stepSpeed(double acceleration, double speed, double h)
 {
 	constexpr double roundOff = 1e-5; // times the solver's tolerance of 1e-9: 45 units of the last digit
-	const double     a = acceleration(s);
-	return std::max(a * h, roundOff * std::sqrt(a * length(s)));
+	return std::max(acceleration * h, roundOff * speed);
 }
 
 } // namespace masonry::rigid::scale
+
+namespace masonry::rigid {
+
+// Taken once for a whole step.
+struct Scales {
+	double length { 0 }, acceleration { 0 }, speed { 0 }; // m, m/s^2, m/s: sqrt(acceleration length)
+
+	Scales() = default;
+	template <class K> explicit Scales(const RigidSystem<K>& s) : length(scale::length(s)), acceleration(scale::acceleration(s)), speed(std::sqrt(acceleration * length)) {}
+	double stepSpeed(double h) const { return scale::stepSpeed(acceleration, speed, h); }
+};
+
+} // namespace masonry::rigid

@@ -1,5 +1,4 @@
 #include "dynamics/rigid/smooth_step.hpp"
-#include "dynamics/rigid/scales.hpp"
 #include "tolerances.hpp"
 #include <algorithm>
 
@@ -193,7 +192,7 @@ template <class K> void SmoothStep<K>::attempt(const RigidSystem<K>& s, double h
 	for (int pass = s.fresh ? 0 : 1; pass < 2; ++pass) {
 		predict(s, h);
 		assemble(s, h);
-		last.solved = solver.solve(s.settings.tolerance * scale::stepSpeed(s, h));
+		last.solved = solver.solve(s.settings.tolerance * scales.stepSpeed(h));
 		if (pass == 0)
 			for (size_t b = 0; b < s.bodies.size(); ++b)
 				if (!s.bodies[b].prescribed) increments[b] = (solver.bodies[last.bodies[b].unknown].velocity - s.bodies[b].velocity) / h;
@@ -211,10 +210,10 @@ template <class K> void SmoothStep<K>::project(RigidSystem<K>& s)
 		gaps.push_back(last.frames[first[ref.pair] + ref.point].gap);
 		if (solver.points[r].impulse[0] > 0 || gaps.back() < 0) largest = std::max(largest, std::abs(gaps.back()));
 	}
-	const double enough = tolerance::rigid::gap * scale::length(s);
+	const double enough = tolerance::rigid::gap * scales.length;
 	if (!(largest > enough)) return;
 	shifts.assign(solver.bodies.size(), K::Velocity::Zero());
-	constexpr int maxSweeps = 20;
+	const int maxSweeps = last.rows.size() == 1 ? 1 : 20;
 	for (int sweep = 0; sweep < maxSweeps && largest > enough; ++sweep) {
 		largest = 0;
 		for (size_t r = 0; r < last.rows.size(); ++r) {
@@ -253,11 +252,11 @@ template <class K> void SmoothStep<K>::accept(RigidSystem<K>& s)
 		const PointRef        ref = last.rows[r];
 		const auto&           next1 = last.bodies[s.pairs[ref.pair].body1];
 		const auto&           next2 = last.bodies[s.pairs[ref.pair].body2];
-		const auto            slip = (rows.J1 * next1.mean + rows.J2 * next2.mean).eval();
+		const auto            mean1 = (rows.J1 * next1.mean).eval(), mean2 = (rows.J2 * next2.mean).eval(), slip = (mean1 + mean2).eval();
 		s.impactDissip -= rows.impulse[0] * slip[0];
 		s.frictDissip -= rows.impulse.template tail<K::rows - 1>().dot(slip.template tail<K::rows - 1>());
-		if (next1.unknown < 0) s.baseWork -= rows.impulse.dot(rows.J1 * next1.mean);
-		if (next2.unknown < 0) s.baseWork -= rows.impulse.dot(rows.J2 * next2.mean);
+		if (next1.unknown < 0) s.baseWork -= rows.impulse.dot(mean1);
+		if (next2.unknown < 0) s.baseWork -= rows.impulse.dot(mean2);
 	}
 	for (size_t b = 0; b < s.bodies.size(); ++b) {
 		RigidBody<K>& body = s.bodies[b];
@@ -269,7 +268,7 @@ template <class K> void SmoothStep<K>::accept(RigidSystem<K>& s)
 	s.time += last.h;
 	s.fresh = false;
 
-	const double still = tolerance::rigid::parting * scale::stepSpeed(s, last.h);
+	const double still = tolerance::rigid::parting * scales.stepSpeed(last.h);
 	size_t       row = 0;
 	for (size_t c = 0; c < s.pairs.size(); ++c)
 		for (int i = 0; i < s.pairs[c].size; ++i) {

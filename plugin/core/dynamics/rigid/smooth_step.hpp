@@ -16,7 +16,7 @@
 //
 // The middle is predicted with the acceleration of the last step, V + h/2 dV/dt: then gaps of points in touch drift by O(h^4) a step, and
 // `project` closes them without a change of velocity.
-#include "dynamics/rigid/rigid_system.hpp"
+#include "dynamics/rigid/scales.hpp"
 
 namespace masonry::rigid {
 
@@ -42,13 +42,18 @@ template <class K> struct Trial {
 template <class K> class SmoothStep {
 public:
 	// Forgets earlier steps: a run that was saved goes on with the same bits.
-	void begin() { solver.forget(); }
+	void begin(const RigidSystem<K>& system)
+	{
+		solver.forget();
+		scales = Scales(system);
+	}
 	// Computes the trial of length h from the system's state. Open points do not act, but for those in `anticipated`.
 	void attempt(const RigidSystem<K>& system, double h);
 	// Makes it the system's state: poses, velocities, forces, energies; gaps of loaded points closed.
 	void accept(RigidSystem<K>& system);
 
 	const Trial<K>&       trial() const { return last; }
+	Scales                scales;              // of this step
 	std::vector<PointRef> anticipated;         // open points that are about to close and are not localised
 	bool                  stopsInside { false }; // sliding points may stop inside the step: friction opposes their last velocity, not the mean
 

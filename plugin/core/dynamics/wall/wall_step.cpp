@@ -126,7 +126,7 @@ void WallStep<K>::setLoads(const RigidSystem<K>& s, double h)
 template <class K>
 bool WallStep<K>::tryStill(RigidSystem<K>& s, double h, bool newPoints)
 {
-	const double stepSpeed = scale::stepSpeed(s, h), enough = settings.tolerance * stepSpeed;
+	const double stepSpeed = Scales(s).stepSpeed(h), enough = settings.tolerance * stepSpeed;
 	contacts.setUnit(h);
 	setBase(s, h);
 	setLoads(s, h);
