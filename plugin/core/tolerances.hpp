@@ -145,6 +145,12 @@ constexpr double still = 1e-2;
 // Relative velocity of points in touch, relative to the speed of rest (restSpeed sqrt(g half size)), above which the wall moves; it
 // stands when none is above the speed of rest. Nearer to 1: what the moving mode calls rest is motion to the still mode.
 constexpr double motion = 5;
+// Velocity, relative to what gravity gives in a step, that the unfinished iterations of the still mode may keep from a point that parts or
+// slides. Larger: motion sets in too late; smaller: a wall at rest, whose idle head joints flicker, leaves the still mode.
+constexpr double held = 2;
+// Relative velocity that a step gives such points when they are let go, relative to what gravity gives in it, above which the wall moves.
+// Larger: slow sliding is glued; smaller: impulses that are late are taken for motion.
+constexpr double free = 5e-3;
 // Time relative to sqrt(half size / g) for which nothing may move before the still mode is tried again.
 constexpr double patience = 0.5;
 // Extent of the loaded part of a joint, relative to the smallest half size, up to which it is a pivot. Larger: narrow patches rock.

@@ -1,6 +1,7 @@
 #include "BlockRecorder.hpp"
 #include "BlockGeom.hpp"
 #include "BlockPhys.hpp"
+#include "MoreauJeanIntegrator.hpp"
 
 #include <algorithm>
 #include <core/Scene.hpp>
@@ -14,6 +15,8 @@ YADE_PLUGIN((BlockRecorder));
 
 void BlockRecorder::action()
 {
+	for (const auto& engine : scene->engines)
+		if (auto* integrator = dynamic_cast<MoreauJeanIntegrator*>(engine.get())) integrator->writeInteractions();
 	times.push_back(scene->time);
 	for (int id : ids) {
 		if (!scene->bodies->exists(id)) {

@@ -5,6 +5,7 @@
 
 #include <boost/python/extract.hpp>
 #include <core/Scene.hpp>
+#include <pkg/common/PeriodicEngines.hpp>
 #include <lib/factory/ClassFactory.hpp>
 #include <sstream>
 #include <stdexcept>
@@ -47,11 +48,11 @@ namespace {
 	std::shared_ptr<RigidRun> makeScene(MoreauJeanIntegrator& engine, const vector<BaseMotionEngine*>& motions, const vector<Real>& values)
 	{
 		Remembered<K> before;
-		if (!values.empty()) {
-			Unpacker unpacker { values };
-			before.pass(unpacker);
-		}
-		return std::make_shared<RigidScene<K>>(engine, motions, before);
+		Unpacker unpacker { values };
+		if (!values.empty()) before.pass(unpacker);
+		const auto result = std::make_shared<RigidScene<K>>(engine, motions, before);
+		if (!values.empty()) result->unpackStepper(unpacker, before);
+		return result;
 	}
 
 } // namespace
@@ -64,10 +65,17 @@ void MoreauJeanIntegrator::postLoad(MoreauJeanIntegrator&)
 	if (model != "auto" && model != "planar" && model != "spatial") reject("model", "'" + model + "'", "'auto', 'planar' or 'spatial'");
 	if (impactOrder != "simultaneous" && impactOrder != "sequential") reject("impactOrder", "'" + impactOrder + "'", "'simultaneous' or 'sequential'");
 	if (onTrouble != "stop" && onTrouble != "continue") reject("onTrouble", "'" + onTrouble + "'", "'stop' or 'continue'");
-	if (!(tolerance > 0 && tolerance <= 1e-3)) reject("tolerance", tolerance, "above 0 and at most 1e-3");
+	if (method != "localised" && method != "wall") reject("method", "'" + method + "'", "'localised' or 'wall'");
+	if (method == "wall") {
+		if (impactOrder != "sequential") reject("impactOrder", "'" + impactOrder + "'", "'sequential' with method='wall', whose impacts act joint by joint");
+		if (!(tolerance >= 1e-6 && tolerance <= 1e-2)) reject("tolerance", tolerance, "from 1e-6 to 1e-2 with method='wall'");
+	} else if (!(tolerance > 0 && tolerance <= 1e-3)) {
+		reject("tolerance", tolerance, "above 0 and at most 1e-3");
+	}
 	if (!(mergedClosing >= 0 && mergedClosing <= 1e-3)) reject("mergedClosing", mergedClosing, "from 0 to 1e-3");
 	if (mostEvents < 1) reject("mostEvents", mostEvents, "at least 1");
 	sequential = impactOrder == "sequential";
+	wall = method == "wall";
 }
 
 vector<BaseMotionEngine*> MoreauJeanIntegrator::motionEngines() const
@@ -280,6 +288,27 @@ void MoreauJeanIntegrator::action()
 	if (scene->dt != checkedTimeStep) checkTimeStep();
 	count(stepRun());
 	if (scene->trackEnergy) showEnergy();
+}
+
+bool MoreauJeanIntegrator::isWatched() const
+{
+	// Scripts look when the run has stopped: O.step(), the end of O.run(), O.pause().
+	const bool stops = (scene->stopAtIter > 0 && scene->iter + 1 >= scene->stopAtIter) || (scene->stopAtTime > 0 && scene->time + 1.5 * scene->dt >= scene->stopAtTime);
+	if (stops || !Omega::instance().isRunning()) return true;
+	const auto looks = [this](const Engine& engine) {
+		if (engine.dead || &engine == this || engine.getClassName() == "ForceResetter" || engine.getClassName() == "BlockRecorder") return false;
+		const auto* periodic = dynamic_cast<const PeriodicEngine*>(&engine);
+		if (!periodic) return true;
+		// Now, if it comes after this engine, or in the next step.
+		return periodic->realPeriod > 0 || (periodic->iterPeriod > 0 && scene->iter + 1 - periodic->iterLast >= periodic->iterPeriod)
+		        || (periodic->virtPeriod > 0 && scene->time + 1.5 * scene->dt - periodic->virtLast >= periodic->virtPeriod) || periodic->nDone == 0;
+	};
+	return std::any_of(scene->engines.begin(), scene->engines.end(), [&](const auto& engine) { return looks(*engine); });
+}
+
+void MoreauJeanIntegrator::writeInteractions()
+{
+	if (memory.run) sceneOf(memory).writeJoints();
 }
 
 masonry::rigid::StepReport MoreauJeanIntegrator::stepRun()

@@ -22,6 +22,11 @@ public:
 	Real largestTimeStep();
 	/// The model that the first step would choose in the present scene, and why.
 	string choice();
+	bool isWall() const { return wall; }
+	/// Whether a script or another engine may look at O.interactions before the next step of this engine.
+	bool isWatched() const;
+	/// O.interactions as they are after the last step.
+	void writeInteractions();
 
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(MoreauJeanIntegrator, GlobalEngine,
@@ -29,12 +34,19 @@ public:
 		((vector<shared_ptr<Engine>>, motions, , Attr::triggerPostLoad, "Motions of the base: PulseTrainEngine, RecordMotionEngine. They are asked at any instant inside a step and must not be in O.engines."))
 		((Vector3r, gravity, Vector3r(0, 0, -9.81), , "Gravity [m/s^2]."))
 		((string, model, "auto", Attr::triggerPostLoad, "'planar', 'spatial', or 'auto': planar where blocks, motions and loads lie in one upright plane."))
-		((string, impactOrder, "simultaneous", Attr::triggerPostLoad, "How an impact acts on a structure: 'simultaneous' (all joints that close and all that touch in one impulse problem) or 'sequential' (joint by joint)."))
-		((Real, tolerance, 1e-9, Attr::triggerPostLoad, "Largest residual of the contact laws of a step, relative to the speed that gravity gives in that step; above 0, at most 1e-3."))
+		((string, method, "localised", Attr::triggerPostLoad, "'localised': every impact is found inside the step; second order; for a block, stacks, piers. 'wall': for many blocks; impacts are met at the end of a substep; first order, at a cost that hardly grows when hundreds of blocks move."))
+		((string, impactOrder, "simultaneous", Attr::triggerPostLoad, "How an impact acts on a structure: 'simultaneous' (all joints that close and all that touch in one impulse problem) or 'sequential' (joint by joint; the only one of method='wall')."))
+		((Real, tolerance, 1e-9, Attr::triggerPostLoad, "Largest residual of the contact laws of a step, relative to the speed that gravity gives in that step; above 0, at most 1e-3. With method='wall' from 1e-6 to 1e-2: that of velocities while the wall stands; the number of substeps while it moves grows as its inverse square root (8 at 1e-3)."))
+		((bool, strictForces, false, , "method='wall', while the wall stands: `tolerance` holds for contact forces as well. Otherwise forces are right to some hundred times the tolerance of a block's weight, motions to the tolerance."))
 		((Real, mergedClosing, 1e-6, Attr::triggerPostLoad, "Points that close within this gap of each other, relative to the smallest half size, close in one impact (0 to 1e-3). A parameter of the model: which corner of a nearly flat landing comes first is decided by it."))
 		((int, mostEvents, 50, Attr::triggerPostLoad, "Impacts and stops of sliding that are found inside one step, at least 1. Points that close later in it do so at its end, plastically."))
 		((string, onTrouble, "continue", Attr::triggerPostLoad, "What happens after a step that misses the tolerance or has more events than mostEvents: 'continue' (one warning; failures counts them) or 'stop' (an error)."))
 		((shared_ptr<Ip2_BlockMat_BlockMat_BlockPhys>, pairLaw, shared_ptr<Ip2_BlockMat_BlockMat_BlockPhys>(new Ip2_BlockMat_BlockMat_BlockPhys), , "Restitution and friction of a pair of blocks from their materials."))
+		((string, mode, "", Attr::readonly, "method='wall': how the last step was done, 'still' (all contacts at once, as long as nothing moves against its neighbour) or 'moving' (substeps)."))
+		((Real, velocityResidual, 0, Attr::readonly, "method='wall': residual of the last step's velocities [m/s]."))
+		((Real, forceResidual, 0, Attr::readonly, "method='wall': error of the last step's impulses, as the velocity that it gives a point [m/s]."))
+		((long, stillSteps, 0, Attr::readonly, "method='wall': steps done in the mode 'still' so far."))
+		((long, movingSteps, 0, Attr::readonly, "method='wall': steps done in the mode 'moving' so far."))
 		((string, chosenModel, "", Attr::readonly, "'planar' or 'spatial', from the first step on."))
 		((string, reason, "", Attr::readonly, "Why."))
 		((Vector3r, along, Vector3r::Zero(), Attr::readonly, "Planar: the horizontal direction in the plane."))
@@ -87,7 +99,7 @@ private:
 	string whyNotPlanar(const Vector3r& normal) const;
 
 	Real checkedTimeStep = NaN;
-	bool sequential = false;
+	bool sequential = false, wall = false;
 };
 REGISTER_SERIALIZABLE(MoreauJeanIntegrator);
 

@@ -45,15 +45,11 @@ void WallRecorder::begin()
 	}
 }
 
-/// Energies and failures.
-void WallRecorder::addEngine()
+void WallRecorder::addEnergies()
 {
-	failures.push_back(0);
 	for (const auto& engine : scene->engines) {
-		if (auto* rigid = dynamic_cast<MoreauJeanIntegrator*>(engine.get())) {
-			failures.back() = rigid->failures;
+		if (auto* rigid = dynamic_cast<MoreauJeanIntegrator*>(engine.get()))
 			return add(energies, rigid->kinetic(), rigid->potential(), Real(0), rigid->frictDissip, Real(0), rigid->impactDissip, rigid->baseWork);
-		}
 		if (const auto* joints = dynamic_cast<RockingJointEngine*>(engine.get()))
 			return add(energies, joints->kinetic, joints->potential, joints->elastPotential, joints->frictDissip, joints->dampDissip, joints->impactDissip,
 				joints->baseWork);
@@ -66,7 +62,7 @@ void WallRecorder::action()
 	if (times.empty()) begin();
 	if (blocks.size() != blockNumbers * ids.size()) throw std::invalid_argument("WallRecorder.ids has been changed after the first sample: make a new WallRecorder.");
 	times.push_back(scene->time);
-	addEngine();
+	addEnergies();
 	for (int id : ids) {
 		if (!scene->bodies->exists(id)) {
 			poses.insert(poses.end(), poseNumbers, NaN);

@@ -22,7 +22,6 @@ public:
 		((vector<Real>, times, , Attr::readonly, "Times of the samples [s]."))
 		((vector<Real>, blocks, , Attr::readonly, "At the first sample, block by block: half sizes x, y, z [m], 1 for a free block or 0."))
 		((vector<Real>, energies, , Attr::readonly, "Sample by sample: kinetic, potential, elastPotential, frictDissip, dampDissip, impactDissip, baseWork, as dem.energy() [J]; NaN without an engine of the joints."))
-		((vector<int>, failures, , Attr::readonly, "Sample by sample: MoreauJeanIntegrator.failures so far; 0 with compliant joints."))
 		((vector<Real>, poses, , Attr::hidden, "")),
 		initRun = true;,
 		.def("posesAsBytes", &WallRecorder::posesAsBytes, "Sample by sample and block by block x, y, z [m], w, x, y, z, as doubles in memory: numpy.frombuffer(...).")
@@ -30,7 +29,7 @@ public:
 	// clang-format on
 private:
 	void begin();
-	void addEngine();
+	void addEnergies();
 };
 REGISTER_SERIALIZABLE(WallRecorder);
 

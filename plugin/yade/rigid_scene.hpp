@@ -11,6 +11,7 @@
 #include "dynamics/rigid/neighbours.hpp"
 #include "dynamics/rigid/rigid_step.hpp"
 #include "dynamics/rigid/scales.hpp"
+#include "dynamics/wall/wall_step.hpp"
 #include "tolerances.hpp"
 #include <algorithm>
 #include <core/Scene.hpp>
@@ -49,7 +50,9 @@ public:
 	virtual bool outdated() const = 0;
 	/// Throws LeavesPlane before anything has moved.
 	virtual masonry::rigid::StepReport step() = 0;
-	virtual vector<int> touching() const = 0;
+	/// O.interactions as they are after the last step: a wall leaves them behind while nobody looks.
+	virtual void writeJoints() = 0;
+	virtual vector<int> touching() = 0;
 	virtual void setInstant(Real) = 0;
 	/// Takes the interactions of erased bodies out of O.interactions.
 	virtual void dropErased() = 0;
@@ -58,13 +61,12 @@ public:
 template <class K> class RigidScene final : public AnyRigidScene {
 	using System = masonry::rigid::RigidSystem<K>;
 	using Pair = masonry::rigid::ContactPair<K>;
-
 	struct Link {
 		shared_ptr<Body> body;
 		Properties       properties;
 		Motion           written;
 	};
-	/// A pair's interaction; in O.interactions from first touch until the blocks are clearly apart.
+	/// A pair's interaction; in O.interactions from first touch, with method='wall' as soon as it is near, until the blocks are clearly apart.
 	struct Joint {
 		shared_ptr<Interaction> interaction;
 		shared_ptr<BlockGeom>   geom;
@@ -89,12 +91,28 @@ public:
 
 	vector<Real> pack() override
 	{
+		showPoints();
 		Packer packer;
 		kept.bodies = system.bodies;
 		kept.pairs = system.pairs;
 		kept.fresh = system.fresh;
 		kept.pass(packer);
+		if (integrator.isWall()) {
+			neighbours->pass(packer);
+			wall.pass(packer, system);
+		}
 		return packer.values;
+	}
+
+	/// What the step itself remembers, if the blocks are still those of `before`.
+	void unpackStepper(Unpacker& unpacker, const Remembered<K>& before)
+	{
+		byWalls = integrator.isWall();
+		if (!byWalls || before.ids != kept.ids || before.pairs.size() != system.pairs.size()) return;
+		renewJoints();
+		neighbours->pass(unpacker);
+		wall.pass(unpacker, system);
+		system.moved = lawsChanged = false;
 	}
 
 	bool isOf(const Scene& other) const override { return &other == &scene; }
@@ -114,7 +132,12 @@ public:
 			system.gravity = coordinates.in(integrator.gravity);
 			readLoads();
 			readStates();
-			if (neighbours->update(system)) renewJoints();
+			readLaws();
+			if (!neighbours->isValid(system)) {
+				showPoints();
+				neighbours->update(system);
+				renewJoints();
+			}
 		} catch (...) {
 			forgetStates();
 			throw;
@@ -124,9 +147,13 @@ public:
 		system.settings.merged = integrator.mergedClosing;
 		system.settings.mostEvents = integrator.mostEvents;
 		system.settings.order = integrator.sequential ? masonry::rigid::ImpactOrder::sequential : masonry::rigid::ImpactOrder::simultaneous;
-		const auto report = stepper.advance(system, scene.dt);
+		if (integrator.isWall() != byWalls) system.moved = system.fresh = true;
+		if (integrator.isWall() && lawsChanged) system.moved = true;
+		lawsChanged = false;
+		byWalls = integrator.isWall();
+		const auto report = byWalls ? advanceWall() : stepper.advance(system, scene.dt);
 		writeStates();
-		for (size_t c = 0; c < joints.size(); ++c) writeJoint(joints[c], system.pairs[c]);
+		if (++unshown >= mostUnshown || !byWalls || integrator.isWatched()) writeJoints();
 		for (const auto& impact : system.impacts) record(impact);
 		integrator.frictDissip = system.frictDissip;
 		integrator.impactDissip = system.impactDissip;
@@ -134,8 +161,17 @@ public:
 		return report;
 	}
 
-	vector<int> touching() const override
+	void writeJoints() override
 	{
+		if (unshown == 0) return;
+		showPoints();
+		for (size_t c = 0; c < joints.size(); ++c) writeJoint(joints[c], system.pairs[c]);
+		unshown = 0;
+	}
+
+	vector<int> touching() override
+	{
+		showPoints();
 		vector<int> result;
 		for (const Pair& pair : system.pairs)
 			if (touches(pair)) {
@@ -159,6 +195,18 @@ public:
 	}
 
 private:
+	masonry::rigid::StepReport advanceWall()
+	{
+		wall.settings = { integrator.tolerance, integrator.strictForces, integrator.ompThreads > 0 ? integrator.ompThreads : omp_get_max_threads() };
+		const auto report = wall.advance(system, scene.dt);
+		const bool still = wall.report.mode == masonry::rigid::WallMode::still;
+		integrator.mode = still ? "still" : "moving";
+		++(still ? integrator.stillSteps : integrator.movingSteps);
+		integrator.velocityResidual = wall.report.velocityResidual;
+		integrator.forceResidual = wall.report.forceResidual;
+		return report;
+	}
+
 	// --- building ---
 
 	/// Returns each block's number in `before`, or -1.
@@ -353,14 +401,28 @@ private:
 		throw std::runtime_error(text.str());
 	}
 
-	/// The law may be changed by scripts through the interaction.
-	void takeLaw(const Joint& joint, Pair& pair) const
+	void takeLaw(const Joint& joint, Pair& pair)
 	{
-		pair.friction = joint.phys->noSlip ? masonry::noSlip : joint.phys->tangensOfFrictionAngle;
-		pair.restitution = joint.phys->restitution;
+		const Real friction = joint.phys->noSlip ? masonry::noSlip : joint.phys->tangensOfFrictionAngle, restitution = joint.phys->restitution;
+		if (pair.friction == friction && (pair.restitution == restitution || (std::isnan(pair.restitution) && std::isnan(restitution)))) return;
+		pair.friction = friction;
+		pair.restitution = restitution;
+		lawsChanged = true;
+	}
+
+	/// The laws may be changed by scripts through the interactions, after they have been shown.
+	void readLaws()
+	{
+		if (unshown > 0) return;
+		for (size_t c = 0; c < joints.size(); ++c) takeLaw(joints[c], system.pairs[c]);
 	}
 
 	// --- core to scene ---
+
+	void showPoints()
+	{
+		if (byWalls) wall.showPoints(system);
+	}
 
 	void writeStates()
 	{
@@ -392,13 +454,12 @@ private:
 	{
 		const bool touching = touches(pair);
 		if (!(isListed(joint) && joint.interaction->isReal())) {
-			if (!touching) return;
+			if (byWalls ? apart(pair) : !touching) return; // of a wall, what nobody saw must not decide
 			list(joint, pair);
 		} else if (!touching && apart(pair)) {
 			erase(joint);
 			return;
 		}
-		takeLaw(joint, pair);
 		writeGeom(*joint.geom, pair);
 		writePhys(*joint.phys, pair);
 	}
@@ -466,12 +527,17 @@ private:
 	static constexpr Real clearlyApart = 2e-2;
 	/// Margin of the list of pairs, relative to the smallest half size. Larger: more pairs; smaller: the list is made anew more often.
 	static constexpr Real searchMargin = 0.1;
+	/// Steps of a wall after which O.interactions are written even if nobody seems to look.
+	static constexpr int mostUnshown = 64;
 
 	MoreauJeanIntegrator& integrator;
 	Scene& scene;
 	const Coordinates<K> coordinates;
 	System system;
 	masonry::rigid::RigidStep<K> stepper;
+	masonry::rigid::WallStep<K> wall;
+	bool byWalls = false, lawsChanged = false;
+	int unshown = 1; // steps since the interactions were written
 	std::unique_ptr<masonry::rigid::Neighbours<K>> neighbours;
 	vector<MotionDrive> drives;
 	vector<Link> links;

@@ -55,16 +55,6 @@ def test_collapsed_cases_have_no_largest_drift():
     assert whole["cases"][0] == 12 and whole["fraction"][0] == 0.5 and "scale" not in whole.dtype.names
 
 
-def test_tables_hold_any_case_and_plain_numbers():
-    cases = [{"scale": np.float64(0.5), "points": [1, 2], "site": None}, {"scale": 1, "points": (3,), "site": "rock"}]
-    table = ensemble._table(cases, [{"fell": True, "peak": 0.5, "drift": np.zeros(3)}, {"fell": False, "peak": math.nan, "drift": np.zeros(2)}])
-    assert table.dtype.names == ("scale", "points", "site", "fell", "peak") and not table.dtype.hasobject
-    assert table["points"].tolist() == ["[1, 2]", "(3,)"] and table["site"].tolist() == ["None", "rock"] and table["fell"].tolist() == [True, False]
-    for outcomes, word in (([{"a": 1}, {"b": 1}], "same for every case"), ([{"scale": 1}, {"scale": 2}], "scale: must not be a key")):
-        with pytest.raises(ValueError, match=word):
-            ensemble._table(cases, outcomes)
-
-
 def test_artificial_records_are_those_of_their_seed():
     record = masonry.artificial_record(3, peak=2.5, duration=8, dt=0.01)
     assert record.samples.max() == 2.5 or -record.samples.min() == 2.5

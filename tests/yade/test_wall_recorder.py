@@ -98,7 +98,6 @@ for model in MODELS:
         set_turning([lower, upper], push * needed, edge)
         recorder, h = recorded(2.5, model)
         report = results.collapse(h, blocks=2)
-        assert h.failures[-1] == getattr(O.engines[-1], "failures", 0) and report.failures <= h.failures[-1]
         assert report.collapsed == falls and len(report.fallen) == 2 * falls, (model, push, report)
         assert falls == (len(dem.overturned()) == 2)
         if falls:

@@ -12,6 +12,7 @@ class Omega : public Singleton<Omega> {
 public:
 	/// The current scene.
 	const shared_ptr<Scene>& getScene() const;
+	bool isRunning();
 	/// Enters classes known to the factory in the class database and in Python's yade.wrapper.
 	void buildDynlibDatabase(const vector<string>& classNames);
 };

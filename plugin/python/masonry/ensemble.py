@@ -190,7 +190,7 @@ def _table(cases, outcomes):
     both = set(cases[0]) & set(numbers)
     if both:
         raise ValueError(f"{', '.join(sorted(both))}: must not be a key of the case and of what the function returns")
-    columns = {name: np.array([c[name] if isinstance(c[name], (bool, int, float, str, np.generic)) else str(c[name]) for c in cases]) for name in cases[0]}
+    columns = {name: np.array([str(c[name]) if isinstance(c[name], (list, dict, tuple)) else c[name] for c in cases]) for name in cases[0]}
     columns.update({name: np.array([outcome[name] for outcome in outcomes]) for name in numbers})
     table = np.zeros(len(cases), dtype=[(name, column.dtype) for name, column in columns.items()])
     for name, column in columns.items():

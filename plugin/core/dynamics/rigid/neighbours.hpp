@@ -24,11 +24,23 @@ public:
 
 	Neighbours(double margin, NewPair newPair) : margin(margin), newPair(std::move(newPair)) {}
 
+	// How long the list of the system's pairs holds, number by number: f(number) takes it, or gives it to a new object.
+	template <class Flow>
+	void pass(Flow& f)
+	{
+		size_t count = enlarged.size();
+		f(count);
+		enlarged.resize(count);
+		for (Bounds<K>& b : enlarged)
+			f(b.low), f(b.high);
+	}
+
 	// True if the list was made anew.
 	bool update(RigidSystem<K>& system);
 
+	bool isValid(const RigidSystem<K>& system) const; // update() would change nothing
+
 private:
-	bool isValid(const RigidSystem<K>& system) const;
 	void findPairs(const RigidSystem<K>& system);
 	void keepStates(const std::vector<ContactPair<K>>& old);
 

@@ -24,6 +24,12 @@ struct alignas(alignment) Largest {
 	Lanes velocity, force, motion;
 };
 
+template <class K>
+MASONRY_INLINE Lanes stiffnessOf(const PointLanes<K>& p, double softness)
+{
+	return p.massN * p.massT / ((p.massN + p.massT) * (0.5 * softness));
+}
+
 // Which points take part, R, and b. Returns whether another point touches than before.
 template <class K>
 MASONRY_INLINE bool takePoints(Group<K>* groups, const FeatureGroup<K>* features, Rows<K>* rows, int begin, int end, double h,
@@ -40,7 +46,7 @@ MASONRY_INLINE bool takePoints(Group<K>* groups, const FeatureGroup<K>* features
 			const Mask was = row.stiffness > 0;
 			const Mask touches = f.present & (was ? p.gap < leave : p.gap < enter);
 			different |= touches ^ was;
-			const Lanes stiffness = p.massN * p.massT / ((p.massN + p.massT) * (0.5 * softness));
+			const Lanes stiffness = stiffnessOf(p, softness);
 			row.stiffness = touches ? stiffness : none;
 			row.resistance = touches ? all(1) / stiffness : none;
 			const Lanes gap = p.gap - f.zero;
@@ -131,10 +137,10 @@ void inertia(const LaneArray& free, const LaneArray& velocity, LaneArray& force,
 } // namespace
 
 template <class K>
-bool KeptFactor<K>::takeRows(bool newPoints)
+bool KeptFactor<K>::takeRows()
 {
 	const double deepest = 3., softest = 3e-3; // of r: waves of correction cross the courses in some sqrt(1/r) solves
-	const double wanted = std::min(softest, deepest / (double(contacts->depth) * contacts->depth));
+	const double wanted = given > 0 ? given : std::min(softest, deepest / (double(contacts->depth) * contacts->depth));
 	const bool otherSoftness = wanted != softness;
 	softness = wanted;
 	if (rows.size() != contacts->groups.size())
@@ -148,7 +154,26 @@ bool KeptFactor<K>::takeRows(bool newPoints)
 #pragma omp critical
 		different |= here;
 	});
-	return different || newPoints || otherSoftness;
+	return different || outdated || otherSoftness;
+}
+
+template <class K>
+void KeptFactor<K>::refactorise(WallContacts<K>& c, RigidSystem<K>& s, const Touches& touches)
+{
+	const auto swap = [&] {
+		for (size_t b = 0; b < factored.size(); ++b)
+			std::swap(s.bodies[b].pose, factored[b]);
+	};
+	swap();
+	c.place(s);
+	contacts = &c;
+	for (size_t g = 0; g < rows.size(); ++g)
+		for (int k = 0; k < lanePoints<K>; ++k)
+			rows[g][k].stiffness = touches[g][k] ? stiffnessOf(c.groups[g].point[k], softness) : all(0);
+	if (!outdated)
+		factorise();
+	swap();
+	c.place(s);
 }
 
 // A, pack by pack.
@@ -217,17 +242,25 @@ void KeptFactor<K>::factorise()
 }
 
 template <class K>
-void KeptFactor<K>::begin(WallContacts<K>& c, const LaneArray& load, double step, bool newPoints)
+void KeptFactor<K>::begin(WallContacts<K>& c, const RigidSystem<K>& s, const LaneArray& load, double step)
 {
 	contacts = &c;
 	h = step;
 	report = {};
 	before.resize(c.groups.size());
 	for (size_t g = 0; g < c.groups.size(); ++g)
-		for (int k = 0; k < c.groups[g].count; ++k)
-			before[g][k] = {c.groups[g].point[k].pn, c.groups[g].point[k].pt, c.features[g].point[k].zn, c.features[g].point[k].zt};
-	if (takeRows(newPoints))
+		for (int k = 0; k < c.groups[g].count; ++k) {
+			const PointLanes<K>& p = c.groups[g].point[k];
+			const FeatureLanes<K>& f = c.features[g].point[k];
+			before[g][k] = {p.pn, p.pt, f.zn, f.zt, f.heldN, f.heldT};
+		}
+	if (takeRows()) {
 		factorise();
+		outdated = false;
+		factored.clear();
+		for (const auto& body : s.bodies)
+			factored.push_back(body.pose);
+	}
 	velocity = c.velocity;
 	free.resize(velocity.size());
 	force.resize(velocity.size());
@@ -250,8 +283,8 @@ void KeptFactor<K>::forget(WallContacts<K>& c)
 	for (size_t g = 0; g < c.groups.size(); ++g)
 		for (int k = 0; k < lanePoints<K>; ++k) {
 			FeatureLanes<K>& f = c.features[g].point[k];
-			f.zn = all(0);
-			f.zt = f.slip = Tangent {};
+			f.zn = f.heldN = all(0);
+			f.zt = f.slip = f.heldT = Tangent {};
 			f.zero = smaller(c.groups[g].point[k].gap, all(0));
 		}
 }
@@ -290,6 +323,52 @@ void KeptFactor<K>::iterate(int most, double velocityResidual, double forceResid
 	}
 }
 
+// (z - w)/R is the impulse that V lacks; over the mass, the velocity.
+template <class K>
+double KeptFactor<K>::findHeld()
+{
+	const Lanes none = all(0);
+	Lanes most = none;
+	for (size_t g = 0; g < rows.size(); ++g)
+		for (int k = 0; k < contacts->groups[g].count; ++k) {
+			const PointLanes<K>& p = contacts->groups[g].point[k];
+			FeatureLanes<K>& f = contacts->features[g].point[k];
+			const Row& row = rows[g][k];
+			const Mask touches = row.stiffness > 0, loaded = p.pn > 0, parts = touches & ~loaded,
+			           glides = touches & loaded & slides(p.pt, contacts->groups[g].friction * p.pn);
+			const Lanes perMass = touches ? row.stiffness / p.massN : none;
+			f.heldN = parts ? larger(f.heldN + (f.zn - row.un + row.bn) * perMass, none) : none;
+			f.heldT = select(glides, f.heldT + perMass * (f.zt - row.ut + row.bt), Tangent {});
+			most = larger(most, larger(f.heldN, size(f.heldT)));
+		}
+	return largest(most);
+}
+
+template <class K>
+double KeptFactor<K>::motionOfHeld(double held) const
+{
+	const Lanes none = all(0);
+	Lanes fastest = none;
+	for (size_t g = 0; g < rows.size(); ++g)
+		for (int k = 0; k < contacts->groups[g].count; ++k) {
+			const FeatureLanes<K>& f = contacts->features[g].point[k];
+			const Mask along = size(f.heldT) >= held;
+			const Lanes slip = dot(rows[g][k].ut, f.heldT) / select(along, root(dot(f.heldT, f.heldT)), all(1));
+			fastest = larger(fastest, larger(f.heldN >= held ? rows[g][k].un : none, along ? slip : none));
+		}
+	return largest(fastest);
+}
+
+template <class K>
+void KeptFactor<K>::forgetHeld()
+{
+	for (auto& features : contacts->features)
+		for (FeatureLanes<K>& f : features.point) {
+			f.heldN = all(0);
+			f.heldT = Tangent {};
+		}
+}
+
 template <class K>
 void KeptFactor<K>::keepSlip()
 {
@@ -314,6 +393,8 @@ void KeptFactor<K>::giveUp()
 			p.pt = before[g][k].pt;
 			f.zn = before[g][k].zn;
 			f.zt = before[g][k].zt;
+			f.heldN = before[g][k].heldN;
+			f.heldT = before[g][k].heldT;
 		}
 }
 

@@ -21,6 +21,17 @@
 
 namespace masonry::rigid::wall {
 
+template <class Flow>
+void passPose(Flow& f, PlanePose& pose)
+{
+	f(pose.position), f(pose.angle), f(pose.cosine), f(pose.sine);
+}
+template <class Flow>
+void passPose(Flow& f, Pose& pose)
+{
+	f(pose.position), f(pose.orientation.coeffs());
+}
+
 struct KeptReport {
 	int solves {0}, factorisations {0};
 	double velocity {0}; // largest |J V - b - z|, m/s
@@ -31,6 +42,9 @@ struct KeptReport {
 template <class K>
 class KeptFactor {
 public:
+	// r; 0: small enough for corrections to cross all courses in some solves.
+	explicit KeptFactor(double softness = 0) : given(softness) {}
+
 	using Tangent = typename PointLanes<K>::Tangent;
 	struct alignas(alignment) Row { // of a point
 		Lanes bn;
@@ -44,9 +58,17 @@ public:
 	// The wall has moved since the last step in this mode, and holds what it finds.
 	static void forget(WallContacts<K>& contacts);
 	// Starts a step from the contacts' velocities; `load` is the change of velocity by external forces, per body.
-	void begin(WallContacts<K>& contacts, const LaneArray& load, double h, bool newPoints);
+	void begin(WallContacts<K>& contacts, const RigidSystem<K>& system, const LaneArray& load, double h);
+	// There are other points than before.
+	void outdate() { outdated = true; }
 	// Solves until both residuals are at most theirs, at most `most` times. May be called again to go on.
 	void iterate(int most, double velocityResidual, double forceResidual);
+	// Largest velocity, m/s, that the iterations have kept from a point since it parts or slides, this step included. Few iterations find
+	// impulses that let go at once, but velocities that follow slowly, by r each: a wall would stick to the state of rest for many steps.
+	double findHeld();
+	// Largest velocity of the points that were kept from at least `held`, the way they were kept from, m/s.
+	double motionOfHeld(double held) const;
+	void forgetHeld();
 	void keepSlip(); // of the step that ends
 	void giveUp();   // impulses as they were at the beginning
 
@@ -55,15 +77,45 @@ public:
 	std::vector<Rows> rows; // by group
 	size_t factorBlocks() const { return factor.blocks(); }
 
+	// As of the contacts, whose own numbers have been passed. A factor is made anew from the poses that it was of.
+	template <class Flow>
+	void pass(Flow& f, WallContacts<K>& c, RigidSystem<K>& system)
+	{
+		size_t count = rows.size();
+		f(outdated), f(softness), f(count);
+		rows.resize(count);
+		Touches touches(count);
+		for (size_t g = 0; g < count; ++g)
+			for (int k = 0; k < lanePoints<K>; ++k)
+				for (int i = 0; i < width; ++i) {
+					bool touch = rows[g][k].stiffness[i] > 0;
+					f(touch);
+					touches[g][k][i] = touch ? -1 : 0;
+				}
+		const bool isNew = factored.empty();
+		count = factored.size();
+		f(count);
+		factored.resize(count);
+		for (auto& pose : factored)
+			passPose(f, pose);
+		if (isNew && count > 0)
+			refactorise(c, system, touches);
+	}
+
 private:
-	bool takeRows(bool newPoints);
+	using Touches = std::vector<std::array<Mask, lanePoints<K>>>; // which points touch, by group
+
+	bool takeRows();
 	void factorise();
+	void refactorise(WallContacts<K>& contacts, RigidSystem<K>& system, const Touches& touches);
 
 	struct alignas(alignment) Before {
 		Lanes pn;
 		Tangent pt;
 		Lanes zn;
 		Tangent zt;
+		Lanes heldN;
+		Tangent heldT;
 	};
 
 	WallContacts<K>* contacts {nullptr};
@@ -71,7 +123,10 @@ private:
 	std::vector<SymmetricFactor::Edge> edges;
 	LaneArray free, force;
 	std::vector<std::array<Before, lanePoints<K>>> before; // by group
+	const double given;
 	double h {0}, softness {0};
+	bool outdated {true};
+	std::vector<typename K::Pose> factored; // poses that the factor is of
 };
 
 } // namespace masonry::rigid::wall

@@ -6,6 +6,7 @@
 //     u_t = t.(v2 - v1) + a2t W2 - a1t W1
 #include "dynamics/rigid/kinematics.hpp"
 #include "dynamics/wall/lanes.hpp"
+#include <array>
 
 namespace masonry::rigid::wall {
 
@@ -52,6 +53,10 @@ struct alignas(alignment) FeatureLanes<Plane> {
 	Lanes vertexX, vertexY, normalX, normalY, faceDistance;
 	Lanes foundGap, foundShift; // of the vertex over and along the face when they were looked up
 	Lanes zn, zt, slip, zero;   // of KeptFactor: relative velocity that the laws allow; slip since the point last slid; gap that it holds
+	Lanes heldN, heldT;         // of KeptFactor: velocity that its unfinished iterations have kept from a point that parts or slides
+
+	std::array<double, 2> foundAt(int lane) const { return {foundGap[lane], foundShift[lane]}; }
+	void setFound(const std::array<double, 2>& f, int lane) { foundGap[lane] = f[0], foundShift[lane] = f[1]; }
 };
 
 MASONRY_INLINE double component(const Lanes& tangent, int, int lane) { return tangent[lane]; }

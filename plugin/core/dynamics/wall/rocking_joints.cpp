@@ -139,9 +139,9 @@ bool RockingJoints<Space>::findPivot(const WallContacts<Space>& c, int begin, in
 }
 
 template <class K>
-void RockingJoints<K>::find(const RigidSystem<K>& s, WallContacts<K>& c, bool newPoints)
+void RockingJoints<K>::find(const RigidSystem<K>& s, WallContacts<K>& c)
 {
-	if (newPoints || !gathered)
+	if (!gathered)
 		gather(s, c);
 	gathered = true;
 	rocking.clear();

@@ -34,11 +34,23 @@ struct Pivot<Space> {
 template <class K>
 class RockingJoints {
 public:
-	// Finds the joints that rock. `newPoints`: other points than at the last call.
-	void find(const RigidSystem<K>& system, WallContacts<K>& contacts, bool newPoints);
+	// Finds the joints that rock.
+	void find(const RigidSystem<K>& system, WallContacts<K>& contacts);
+	// There are other points than before.
+	void outdate() { gathered = false; }
 	void release(WallContacts<K>& contacts); // after the last substep
 	// Impacts of the substep s that comes, into the contacts' velocities and system.impacts. Returns the work of the base, J.
 	double land(RigidSystem<K>& system, WallContacts<K>& contacts, double s);
+
+	template <class Flow>
+	void pass(Flow& f)
+	{
+		size_t count = points.size();
+		f(gathered), f(anyLaw), f(count);
+		points.resize(count);
+		for (JointPoint& p : points)
+			f(p.block), f(p.face), f(p.group), f(p.lane), f(p.point);
+	}
 
 private:
 	struct JointPoint {

@@ -113,8 +113,11 @@ struct alignas(alignment) FeatureLanes<Space> {
 	Lanes3 arm;     // from body 2 to the point, global axes
 	Lanes foundGap; // when the features were looked up
 	Lanes2 found;   // where along them
-	Lanes zn, zero; // of KeptFactor, as in the plane
-	Lanes2 zt, slip;
+	Lanes zn, zero, heldN; // of KeptFactor, as in the plane
+	Lanes2 zt, slip, heldT;
+
+	std::array<double, 3> foundAt(int lane) const { return {foundGap[lane], found.x[lane], found.y[lane]}; }
+	void setFound(const std::array<double, 3>& f, int lane) { foundGap[lane] = f[0], found.x[lane] = f[1], found.y[lane] = f[2]; }
 };
 
 MASONRY_INLINE Lanes normalRate(const Bodies<Space>& v1, const Bodies<Space>& v2, const PointLanes<Space>& p)

@@ -78,6 +78,7 @@ void WallContacts<K>::colour(const RigidSystem<K>& s)
 		colourEnd.push_back(int(groups.size()));
 	}
 	stale.assign(groups.size(), 1);
+	known.assign(pairs.size(), 0);
 	onBase.clear();
 	for (int g = 0; g < int(groups.size()); ++g)
 		for (int i = 0; i < width && features[g].pair[i] >= 0; ++i)
@@ -110,9 +111,6 @@ template <class K>
 typename WallContacts<K>::State WallContacts<K>::state(int pair, int point) const
 {
 	State state;
-	state.pt.setZero();
-	state.zt.setZero();
-	state.slip.setZero();
 	const auto [group, lane] = slots[pair][point / lanePoints<K>];
 	if (group < 0)
 		return state;
@@ -122,10 +120,12 @@ typename WallContacts<K>::State WallContacts<K>::state(int pair, int point) cons
 	state.pn = p.pn[lane];
 	state.zn = f.zn[lane];
 	state.zero = f.zero[lane];
+	state.heldN = f.heldN[lane];
 	for (int k = 0; k < K::rows - 1; ++k) {
 		state.pt[k] = component(p.pt, k, lane);
 		state.zt[k] = component(f.zt, k, lane);
 		state.slip[k] = component(f.slip, k, lane);
+		state.heldT[k] = component(f.heldT, k, lane);
 	}
 	return state;
 }
@@ -139,10 +139,12 @@ void WallContacts<K>::setState(const State& state, int pair, int point)
 	p.pn[lane] = state.pn;
 	f.zn[lane] = state.zn;
 	f.zero[lane] = state.zero;
+	f.heldN[lane] = state.heldN;
 	for (int k = 0; k < K::rows - 1; ++k) {
 		setComponent(p.pt, k, lane, state.pt[k]);
 		setComponent(f.zt, k, lane, state.zt[k]);
 		setComponent(f.slip, k, lane, state.slip[k]);
+		setComponent(f.heldT, k, lane, state.heldT[k]);
 	}
 }
 
@@ -157,6 +159,9 @@ bool WallContacts<K>::lookUp(RigidSystem<K>& s, int c)
 	FoundPoints<K> found;
 	if (!K::findPoints(body1.halfSize, body1.pose, body2.halfSize, body2.pose, std::numeric_limits<double>::infinity(), pair.memory, found))
 		found.size = 0;
+	if (known[c])
+		showPair(s, c);
+	known[c] = true;
 	const ContactPair<K> before = pair;
 	State states[K::maxPoints];
 	for (int k = 0; k < K::maxPoints; ++k)
@@ -168,9 +173,6 @@ bool WallContacts<K>::lookUp(RigidSystem<K>& s, int c)
 		wide[c] = wider = true;
 	for (int k = 0; k < K::maxPoints && slots[c][k / lanePoints<K>].group >= 0; ++k) {
 		State now;
-		now.pt.setZero();
-		now.zt.setZero();
-		now.slip.setZero();
 		if (k < found.size) {
 			ContactPoint<K> point;
 			point.feature = found.features[k];
@@ -193,6 +195,8 @@ bool WallContacts<K>::lookUp(RigidSystem<K>& s, int c)
 				now.zn = states[j].zn;
 				now.zt = states[j].zt;
 				now.slip = states[j].slip;
+				now.heldN = states[j].heldN;
+				now.heldT = states[j].heldT;
 				now.zero = std::min(now.zero, states[j].zero);
 				if constexpr (K::rows == 3)
 					if (!same) { // along the tangents of another face
@@ -202,6 +206,7 @@ bool WallContacts<K>::lookUp(RigidSystem<K>& s, int c)
 						now.pt = (turn * now.pt).eval();
 						now.zt = (turn * now.zt).eval();
 						now.slip = (turn * now.slip).eval();
+						now.heldT = (turn * now.heldT).eval();
 					}
 			}
 			changed |= !known || !same;
@@ -237,13 +242,81 @@ void WallContacts<K>::lookUpStale(RigidSystem<K>& s)
 				otherPoints |= lookUp(s, features[g].pair[lane]);
 	for (size_t g = 0; g < groups.size(); ++g)
 		if (stale[g]) {
-			int most = 1; // a pair without points still shows how far it moves
-			for (int lane = 0; lane < width; ++lane)
-				most = std::max(most, points(s, int(g), lane));
-			groups[g].setCount(most);
+			countPoints(s, int(g));
 			locate(s, int(g), int(g) + 1, 0, true);
 			stale[g] = 0;
 		}
+}
+
+template <class K>
+void WallContacts<K>::countPoints(const RigidSystem<K>& s, int g)
+{
+	int most = 1; // a pair without points still shows how far it moves
+	for (int lane = 0; lane < width; ++lane)
+		most = std::max(most, points(s, g, lane));
+	groups[g].setCount(most);
+}
+
+template <class K>
+void WallContacts<K>::takePairs(const RigidSystem<K>& s)
+{
+	pairs.clear();
+	wide.clear();
+	for (const auto& pair : s.pairs) {
+		pairs.push_back({pair.body1, pair.body2});
+		wide.push_back(pair.size > lanePoints<K>);
+	}
+}
+
+// A system whose points are known already.
+template <class K>
+void WallContacts<K>::takeOver(const RigidSystem<K>& s)
+{
+	length = scale::length(s);
+	colour(s);
+	findDepth(s);
+	takeBodies(s);
+	std::fill(stale.begin(), stale.end(), 0);
+	std::fill(known.begin(), known.end(), 1);
+	for (int c = 0; c < int(pairs.size()); ++c)
+		for (int k = 0; k < K::maxPoints && slots[c][k / lanePoints<K>].group >= 0; ++k) {
+			const auto [group, lane] = slots[c][k / lanePoints<K>];
+			takePoint(s, c, k);
+			groups[group].friction[lane] = std::min(s.pairs[c].friction, mostFriction);
+		}
+	for (int g = 0; g < int(groups.size()); ++g)
+		countPoints(s, g);
+}
+
+template <class K>
+void WallContacts<K>::showPair(RigidSystem<K>& s, int c) const
+{
+	const double touching = tolerance::mergedClosing * length, perUnit = unit > 0 ? 1 / unit : 0;
+	ContactPair<K>& pair = s.pairs[c];
+	for (int k = 0; k < pair.size; ++k) {
+		const auto [group, lane] = slots[c][k / lanePoints<K>];
+		if (group < 0)
+			return;
+		const PointLanes<K>& p = groups[group].point[k % lanePoints<K>];
+		ContactPoint<K>& point = pair.points[k];
+		point.gap = p.gap[lane];
+		point.closed = p.pn[lane] > 0 || p.gap[lane] <= touching;
+		point.sliding = p.pn[lane] > 0 && slides(p.pt, groups[group].friction * p.pn)[lane];
+		point.landing = false;
+		point.force[0] = p.pn[lane] * perUnit;
+		for (int row = 1; row < K::rows; ++row)
+			point.force[row] = component(p.pt, row - 1, lane) * perUnit;
+		point.frame = frame(group, lane, k % lanePoints<K>);
+		point.frame.position += s.bodies[pair.body2].pose.position;
+	}
+}
+
+template <class K>
+void WallContacts<K>::showPoints(RigidSystem<K>& s) const
+{
+	for (int c = 0; c < int(pairs.size()); ++c)
+		if (known[c])
+			showPair(s, c);
 }
 
 template <class K>
@@ -252,12 +325,7 @@ bool WallContacts<K>::measure(RigidSystem<K>& s)
 	length = scale::length(s);
 	otherPoints = !samePairs(s);
 	if (otherPoints) {
-		pairs.clear();
-		wide.clear();
-		for (const auto& pair : s.pairs) {
-			pairs.push_back({pair.body1, pair.body2});
-			wide.push_back(pair.size > lanePoints<K>);
-		}
+		takePairs(s);
 		colour(s);
 		findDepth(s);
 	}
@@ -274,8 +342,10 @@ bool WallContacts<K>::measure(RigidSystem<K>& s)
 	for (wider = true; wider;) {
 		wider = false;
 		lookUpStale(s);
-		if (wider) // a pair needs another lane
+		if (wider) { // a pair needs another lane
+			showPoints(s);
 			colour(s);
+		}
 	}
 	return otherPoints;
 }

@@ -57,6 +57,40 @@ public:
 	bool measure(RigidSystem<K>& system);
 	// Impulses are those of a time h from now on. They never grow: an impact's would become a hundred.
 	void setUnit(double h);
+	// Gaps, forces and places of all points, as they are now, into the pairs. Needed before the list of pairs changes.
+	void showPoints(RigidSystem<K>& system) const;
+	// What the next step needs of the last besides the system, number by number: f(number) takes it, or gives it to a new object.
+	template <class Flow>
+	void pass(Flow& f, const RigidSystem<K>& system)
+	{
+		const bool isNew = !samePairs(system);
+		if (isNew)
+			takePairs(system);
+		for (auto& is : wide)
+			f(is);
+		f(unit);
+		if (isNew)
+			takeOver(system);
+		for (int c = 0; c < int(pairs.size()); ++c)
+			for (int k = 0; k < K::maxPoints && slots[c][k / lanePoints<K>].group >= 0; ++k) {
+				const auto [group, lane] = slots[c][k / lanePoints<K>];
+				State now = state(c, k);
+				f(now.pn), f(now.pt), f(now.zn), f(now.zt), f(now.slip), f(now.zero), f(now.heldN), f(now.heldT);
+				setState(now, c, k);
+				FeatureLanes<K>& feature = features[group].point[k % lanePoints<K>];
+				auto found = feature.foundAt(lane);
+				for (double& value : found)
+					f(value);
+				feature.setFound(found, lane);
+			}
+	}
+
+	// Bodies and points where the system has them now.
+	void place(const RigidSystem<K>& s)
+	{
+		takeBodies(s);
+		locate(s, 0, int(groups.size()), std::numeric_limits<double>::infinity(), false);
+	}
 
 	// Points of a lane.
 	int points(const RigidSystem<K>& s, int group, int lane) const
@@ -95,12 +129,22 @@ private:
 	};
 	struct State { // of one point, in a lane
 		bool present {false};
-		double pn {0}, zn {0}, zero {0};
-		Eigen::Matrix<double, K::rows - 1, 1> pt, zt, slip;
+		double pn {0}, zn {0}, zero {0}, heldN {0};
+		Eigen::Matrix<double, K::rows - 1, 1> pt, zt, slip, heldT;
+
+		State()
+		{
+			for (auto* part : {&pt, &zt, &slip, &heldT})
+				part->setZero();
+		}
 	};
 
 	bool samePairs(const RigidSystem<K>& system);
+	void takePairs(const RigidSystem<K>& system);
+	void takeOver(const RigidSystem<K>& system);
 	void colour(const RigidSystem<K>& system);
+	void showPair(RigidSystem<K>& system, int pair) const;
+	void countPoints(const RigidSystem<K>& system, int group);
 	void findDepth(const RigidSystem<K>& system);
 	void takeBodies(const RigidSystem<K>& system);
 	// Gaps, normals, arms. Groups of which a pair has moved by more than `travel` become stale; with `remember`, movement counts from here.
@@ -115,6 +159,7 @@ private:
 	std::vector<std::array<int, 2>> pairs;               // that the groups are made of
 	std::vector<std::array<Slot, lanesOfPair<K>>> slots; // of a pair; group -1: none
 	std::vector<unsigned char> wide;                     // pairs that need all their lanes
+	std::vector<unsigned char> known; // pairs whose lanes hold their points
 	std::vector<unsigned char> stale;                    // groups with a pair to be looked up
 	bool otherPoints {false}, wider {false};
 };

@@ -12,7 +12,7 @@ using wall::slides;
 
 namespace {
 
-constexpr int coldSolves = 3000, returnSolves = 300, mostSolves = 16;
+constexpr int coldSolves = 3000, returnSolves = 300, mostSolves = 16, quickSolves = 8, quickRounds = 20;
 
 template <class K>
 double restSpeed(const RigidSystem<K>& s, double length)
@@ -85,12 +85,16 @@ void WallStep<K>::advancePart(RigidSystem<K>& s, double h)
 	auto& m = memoryOfModes;
 	const double workBefore = s.baseWork;
 	contacts.mostThreads = settings.threads;
-	const bool newPoints = contacts.measure(s);
+	if (contacts.measure(s)) {
+		kept.outdate();
+		quick.outdate();
+		joints.outdate();
+	}
 	const WallMode before = m.mode;
-	if (m.mode == WallMode::still && !tryStill(s, h, newPoints))
+	if (m.mode == WallMode::still && !tryStill(s, h))
 		m.mode = WallMode::moving;
 	if (m.mode == WallMode::moving)
-		substeps(s, h, newPoints);
+		substeps(s, h);
 	report.mode = m.mode;
 	report.switched |= m.started && before != m.mode;
 	m.started = true;
@@ -124,7 +128,7 @@ void WallStep<K>::setLoads(const RigidSystem<K>& s, double h)
 }
 
 template <class K>
-bool WallStep<K>::tryStill(RigidSystem<K>& s, double h, bool newPoints)
+bool WallStep<K>::tryStill(RigidSystem<K>& s, double h)
 {
 	const double stepSpeed = Scales(s).stepSpeed(h), enough = settings.tolerance * stepSpeed;
 	contacts.setUnit(h);
@@ -133,13 +137,14 @@ bool WallStep<K>::tryStill(RigidSystem<K>& s, double h, bool newPoints)
 	const double rest = restSpeed(s, contacts.length);
 	if (memoryOfModes.stay == 0)
 		kept.forget(contacts);
-	kept.begin(contacts, loads, h, newPoints);
+	kept.begin(contacts, s, loads, h);
 	const double forces = settings.strictForces ? enough : std::numeric_limits<double>::infinity();
 	const int most = !memoryOfModes.started ? coldSolves : memoryOfModes.stay == 0 ? returnSolves : mostSolves;
 	kept.iterate(settings.strictForces ? coldSolves : most, enough, forces);
 	report.solves += kept.report.solves;
 	report.factorisations += kept.report.factorisations;
-	if (kept.report.velocity > tolerance::wall::still * stepSpeed || kept.report.motion > tolerance::wall::motion * rest) {
+	const bool moves = kept.findHeld() > tolerance::wall::held * stepSpeed && !stands(s, h);
+	if (moves || kept.report.velocity > tolerance::wall::still * stepSpeed || kept.report.motion > tolerance::wall::motion * rest) {
 		kept.giveUp();
 		return false;
 	}
@@ -157,15 +162,34 @@ bool WallStep<K>::tryStill(RigidSystem<K>& s, double h, bool newPoints)
 	return true;
 }
 
+// Whether the points that were held would go nowhere if they were let go: then the impulses have only been late.
 template <class K>
-void WallStep<K>::substeps(RigidSystem<K>& s, double h, bool newPoints)
+bool WallStep<K>::stands(const RigidSystem<K>& s, double h)
+{
+	const double stepSpeed = Scales(s).stepSpeed(h);
+	quick.begin(contacts, s, loads, h);
+	bool stand = false;
+	for (int k = 0; k < quickRounds && !stand; ++k) {
+		quick.iterate(quickSolves, 0, 0);
+		stand = quick.motionOfHeld(0.5 * tolerance::wall::held * stepSpeed) <= tolerance::wall::free * stepSpeed;
+	}
+	report.solves += quick.report.solves;
+	report.factorisations += quick.report.factorisations;
+	quick.giveUp();
+	if (stand)
+		kept.forgetHeld();
+	return stand;
+}
+
+template <class K>
+void WallStep<K>::substeps(RigidSystem<K>& s, double h)
 {
 	const int count = substepCount();
 	const double part = h / count, start = s.time;
 	contacts.setUnit(part);
 	setLoads(s, part);
 	soft.begin(contacts);
-	joints.find(s, contacts, newPoints);
+	joints.find(s, contacts);
 	for (int k = 0; k < count; ++k) {
 		s.time = start + k * part;
 		setBase(s, part);
@@ -262,33 +286,6 @@ void WallStep<K>::takeMotion(RigidSystem<K>& s, double h, double workBefore)
 	const double friction = parts * slidingLoss();
 	s.frictDissip += friction;
 	s.impactDissip += before + work + (s.baseWork - workBefore) - s.kineticEnergy() - friction;
-	takePoints(s, h / parts);
-}
-
-template <class K>
-void WallStep<K>::takePoints(RigidSystem<K>& s, double unit)
-{
-	const double touching = tolerance::mergedClosing * contacts.length, perUnit = 1 / unit;
-	for (size_t g = 0; g < contacts.groups.size(); ++g) {
-		const wall::Group<K>& group = contacts.groups[g];
-		const wall::FeatureGroup<K>& features = contacts.features[g];
-		for (int i = 0; i < wall::width && features.pair[i] >= 0; ++i) {
-			ContactPair<K>& pair = s.pairs[features.pair[i]];
-			for (int k = 0; k < contacts.points(s, int(g), i); ++k) {
-				const wall::PointLanes<K>& p = group.point[k];
-				ContactPoint<K>& point = pair.points[features.first[i] + k];
-				point.gap = p.gap[i];
-				point.closed = p.pn[i] > 0 || p.gap[i] <= touching;
-				point.sliding = p.pn[i] > 0 && slides(p.pt, group.friction * p.pn)[i];
-				point.landing = false;
-				point.force[0] = p.pn[i] * perUnit;
-				for (int row = 1; row < K::rows; ++row)
-					point.force[row] = wall::component(p.pt, row - 1, i) * perUnit;
-				point.frame = contacts.frame(int(g), i, k);
-				point.frame.position += s.bodies[pair.body2].pose.position;
-			}
-		}
-	}
 }
 
 template <class K>

@@ -39,12 +39,31 @@ public:
 
 	StepReport advance(RigidSystem<K>& system, double dt);
 
+	// Gaps, forces and places of the points as they are after the step, into the system's pairs: the step itself does without. To be called
+	// before the list of pairs changes.
+	void showPoints(RigidSystem<K>& system) const { contacts.showPoints(system); }
+	// What the next step needs of the last besides the system, number by number: f(number) takes it, or gives it to a new object, whose run
+	// has the same bits from there on.
+	template <class Flow>
+	void pass(Flow& f, RigidSystem<K>& system)
+	{
+		auto& m = memoryOfModes;
+		f(m.mode), f(m.started), f(m.quiet), f(m.patience), f(m.stay);
+		if (!m.started)
+			return;
+		contacts.pass(f, system);
+		kept.pass(f, contacts, system);
+		quick.pass(f, contacts, system);
+		joints.pass(f);
+	}
+
 	size_t memory() const; // bytes of the workspace
 
 private:
 	void advancePart(RigidSystem<K>& system, double h);
-	bool tryStill(RigidSystem<K>& system, double h, bool newPoints);
-	void substeps(RigidSystem<K>& system, double h, bool newPoints);
+	bool tryStill(RigidSystem<K>& system, double h);
+	bool stands(const RigidSystem<K>& system, double h);
+	void substeps(RigidSystem<K>& system, double h);
 	int land(RigidSystem<K>& system, double part);
 	int substepCount() const;
 	double baseWork(const RigidSystem<K>& system) const;
@@ -52,8 +71,9 @@ private:
 	void setBase(const RigidSystem<K>& system, double h);
 	void setLoads(const RigidSystem<K>& system, double h);
 	void takeMotion(RigidSystem<K>& system, double h, double workBefore);
-	void takePoints(RigidSystem<K>& system, double unit);
 	void choose(const RigidSystem<K>& system, double h);
+
+	static constexpr double quickSoftness = 0.1; // velocities follow their laws within some ten solves
 
 	// What the choice of the mode remembers.
 	struct Memory {
@@ -66,7 +86,7 @@ private:
 
 	Memory memoryOfModes;
 	wall::WallContacts<K> contacts;
-	wall::KeptFactor<K> kept;
+	wall::KeptFactor<K> kept, quick {quickSoftness};
 	wall::SoftSubsteps<K> soft;
 	wall::RockingJoints<K> joints;
 	wall::LaneArray loads, shift;

@@ -6,9 +6,15 @@ from yade import O, wrapper
 from masonry.dem.scene import check_blocks
 
 _MODELS = ("auto", "planar", "spatial", "compliant")
+_METHODS = ("auto", "localised", "wall")
+_ORDERS = (None, "simultaneous", "sequential")
+# Up to so many free blocks impacts are found one by one.
+_FEW_BLOCKS = 20
 # Time step of rigid blocks, share of the largest that is allowed (0.12 sqrt(R/g) of the smallest block): 2.5e-3 sqrt(R/g), 1e-3 s for a
 # block 3 m high. Rocking angles of one block are then right to 1e-6.
 _RIGID_STEP = 1 / 48
+# The same for method='wall': 4e-3 sqrt(R/g), 1e-3 s for blocks of 1.0 x 0.5 m.
+_WALL_STEP = 1 / 30
 _PENETRATION = 1e-5
 # Share of the critical time step at which the step no longer shows in the error (README, convergence).
 _STEP_FRACTION = 0.2
@@ -58,32 +64,40 @@ def _landing_step(body):
     return 2 / np.sqrt(stiffness * area * (1 / state.mass + half.squaredNorm() / min(state.inertia)))
 
 
-def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None, impact_order="simultaneous", gravity=9.81, recorder=None, others=()):
+def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None, impact_order=None, gravity=9.81, recorder=None, others=(), method="auto"):
     """The list for O.engines; sets O.dt and prints the choice and its reason.
 
     motion        a motion engine (PulseTrainEngine, RecordMotionEngine), a list of them, or None
     model         'planar' or 'spatial': rigid blocks in a plane or in space (MoreauJeanIntegrator). 'compliant': joints with
                   stiffness, YADE's usual loop with NewtonIntegrator. 'auto': compliant where a BlockMat has a stiffness or
                   `penetration` is given; else planar where the scene lies in one upright plane; else spatial.
-    dt            time step, s; None: rigid 2.5e-3 sqrt(R/g) of the smallest block (1 ms for a block 3 m high), compliant 0.2 of
-                  the critical step. Too large a step is refused.
+    dt            time step, s; None: rigid 2.5e-3 sqrt(R/g) of the smallest block (1 ms for a block 3 m high), with method='wall'
+                  4e-3 sqrt(R/g); compliant 0.2 of the critical step. Too large a step is refused.
     tolerance     rigid: residual of the contact laws relative to the speed that gravity gives in a step (above 0, at most 1e-3;
-                  None: 1e-9)
+                  None: 1e-9). With method='wall' from 1e-6 to 1e-2, None: 1e-3 (MoreauJeanIntegrator.tolerance)
     penetration   compliant, where BlockMat gives no stiffness: how far the weight presses the most loaded joint in, relative to
                   the smallest width (0 < penetration <= 1e-2; None: 1e-5). The error of rocking angles is about ten times this;
                   the cost grows as its inverse square root.
-    impact_order  'simultaneous' or 'sequential': how an impact acts on a structure (impactOrder of the engine)
+    impact_order  'simultaneous' or 'sequential': how an impact acts on a structure (impactOrder of the engine). None: 'sequential'
+                  with method='wall', which has no other; else 'simultaneous'
     gravity       m/s^2, along -z
     recorder      a BlockRecorder, a WallRecorder or a list of them, put where positions, forces and O.time belong together; None
     others        rigid: engines of bodies that are no blocks (collider, InteractionLoop, NewtonIntegrator with a mask that leaves
                   the blocks out), put between ForceResetter and the blocks' own
+    method        rigid: 'localised' (each impact found inside the step: second order) or 'wall' (many blocks: impacts met
+                  at the end of a substep, first order, hundreds of times faster when a wall moves). 'auto': 'wall' where a
+                  scene has more than 20 free blocks, unless an impact_order 'simultaneous' or a tolerance below 1e-6 is asked for
     """
     if model not in _MODELS:
         raise ValueError(f"model = {model!r}: must be one of {', '.join(_MODELS)}")
+    if method not in _METHODS:
+        raise ValueError(f"method = {method!r}: must be one of {', '.join(_METHODS)}")
+    if impact_order not in _ORDERS:
+        raise ValueError(f"impact_order = {impact_order!r}: must be 'simultaneous', 'sequential' or None")
     if penetration is not None and not 0 < penetration <= 1e-2:
         raise ValueError(f"penetration = {penetration}: must be above 0 and at most 0.01")
-    if tolerance is not None and not 0 < tolerance <= 1e-3:
-        raise ValueError(f"tolerance = {tolerance}: must be above 0 and at most 0.001")
+    if tolerance is not None and not 0 < tolerance <= 1e-2:
+        raise ValueError(f"tolerance = {tolerance}: must be above 0 and at most 0.001, with method='wall' 0.01")
     if dt is not None and not dt > 0:
         raise ValueError(f"dt = {dt}: must be positive, in s")
     if not gravity >= 0:
@@ -104,20 +118,28 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
             model, reason = "compliant", "a BlockMat has a joint stiffness"
     recorders = [] if recorder is None else list(recorder) if isinstance(recorder, (list, tuple)) else [recorder]
     if model == "compliant":
-        if tolerance is not None or others:
-            raise ValueError("tolerance and others are for rigid blocks: they must be left out with model='compliant'")
-        return _compliant(motions, reason, dt, penetration or _PENETRATION, impact_order, gravity, recorders)
+        if tolerance is not None or others or method != "auto":
+            raise ValueError("tolerance, others and method are for rigid blocks: they must be left out with model='compliant'")
+        return _compliant(motions, reason, dt, penetration or _PENETRATION, impact_order or "simultaneous", gravity, recorders)
     if penetration is not None:
         raise ValueError(f"penetration = {penetration}: must be left out with model={model!r}, it is for compliant joints")
-    return _rigid(motions, model, dt, tolerance or 1e-9, impact_order, gravity, recorders, list(others))
+    return _rigid(motions, model, method, dt, tolerance, impact_order, gravity, recorders, list(others))
 
 
-def _rigid(motions, model, dt, tolerance, impact_order, gravity, recorders, others):
-    integrator = wrapper.MoreauJeanIntegrator(motions=motions, model=model, tolerance=tolerance, impactOrder=impact_order, gravity=(0, 0, -gravity))
+def _rigid(motions, model, method, dt, tolerance, impact_order, gravity, recorders, others):
+    integrator = wrapper.MoreauJeanIntegrator(motions=motions, model=model, gravity=(0, 0, -gravity))
     choice = integrator.choice()
+    if method == "auto":
+        free = sum(b.dynamic for b in _blocks())
+        fine = impact_order == "simultaneous" or (tolerance is not None and tolerance < 1e-6)
+        method = "wall" if free > _FEW_BLOCKS and not fine else "localised"
+        if method == "wall":
+            choice += f"; {free} blocks: method 'wall'"
+    wall = method == "wall"
+    integrator.updateAttrs(dict(method=method, tolerance=tolerance or (1e-3 if wall else 1e-9), impactOrder=impact_order or ("sequential" if wall else "simultaneous")))
     if dt is None and gravity == 0:
         raise ValueError("dt = None: must be given where gravity is 0")
-    step = dt if dt is not None else _RIGID_STEP * integrator.largestTimeStep
+    step = dt if dt is not None else (_WALL_STEP if wall else _RIGID_STEP) * integrator.largestTimeStep
     if not step <= integrator.largestTimeStep:
         raise ValueError(f"dt = {dt}: must be at most {integrator.largestTimeStep:.3g} s, 0.12 sqrt(R/g) of the smallest block")
     O.dt = step

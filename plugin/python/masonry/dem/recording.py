@@ -15,4 +15,4 @@ def wall_history(recorder):
     blocks = np.array(recorder.blocks).reshape(-1, 4)
     poses = np.frombuffer(recorder.posesAsBytes()).reshape(len(recorder.times), -1, 7)
     return WallHistory(recorder.times, recorder.ids, 2 * blocks[:, :3], blocks[:, 3] > 0, poses[..., :3], poses[..., 3:],
-                       np.array(recorder.energies).reshape(len(recorder.times), -1), recorder.failures)
+                       np.array(recorder.energies).reshape(len(recorder.times), -1))

@@ -216,7 +216,7 @@ class TiltTable:
     def _begin(self, multiplier):
         self._put_back()
         with contextlib.redirect_stdout(io.StringIO()):
-            O.engines = engines(model=self.model, dt=self._dt, gravity=self.gravity)
+            O.engines = engines(model=self.model, method="localised", dt=self._dt, gravity=self.gravity)
         integrator = O.engines[-1]
         integrator.mostEvents = _EVENTS
         self._pull(integrator, multiplier)

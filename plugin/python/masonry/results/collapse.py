@@ -20,23 +20,20 @@ class CollapseReport:
     residual_drift: float  # in the last sample
     excursion: float  # the level asked for
     first_excursion: float  # when the drift first reached it, also after collapse; NaN: never
-    failures: int  # steps before collapse in which the integrator missed its tolerance or left out impacts
 
     def __str__(self):
         fate = f"collapsed at {self.time:.4g} s: {len(self.fallen)} of {self.free} blocks have fallen" if self.collapsed else \
             f"stands: {len(self.fallen)} of {self.free} blocks have fallen"
         first = "never" if math.isnan(self.first_excursion) else f"first at {self.first_excursion:.4g} s"
-        doubt = f"\nin {self.failures} steps {'before collapse ' if self.collapsed else ''}the integrator missed its tolerance or left out impacts" if self.failures else ""
         return (f"{fate}\npeak drift {'before collapse ' if self.collapsed else ''}{self.peak_drift:.3g} of the height, at {self.peak_drift_time:.4g} s; "
                 f"{self.residual_drift:.3g} at the end\n"
-                f"drift of {self.excursion:g}: {first}{doubt}")
+                f"drift of {self.excursion:g}: {first}")
 
     def numbers(self):
         """A dict of plain numbers, for tables: collapsed, collapse_time, fallen (how many), peak_drift, peak_drift_time, residual_drift,
-        first_excursion, failures."""
+        first_excursion."""
         return {"collapsed": self.collapsed, "collapse_time": self.time, "fallen": len(self.fallen), "peak_drift": self.peak_drift,
-                "peak_drift_time": self.peak_drift_time, "residual_drift": self.residual_drift, "first_excursion": self.first_excursion,
-                "failures": self.failures}
+                "peak_drift_time": self.peak_drift_time, "residual_drift": self.residual_drift, "first_excursion": self.first_excursion}
 
 
 def fallen(history):
@@ -86,5 +83,4 @@ def collapse(history, blocks=1, excursion=0.01):
     peak = int(np.nanargmax(drift[:max(before, 1)]))
     beyond = np.flatnonzero(drift >= excursion)
     return CollapseReport(collapsed, float(times[int(blocks) - 1]) if collapsed else math.nan, history.ids[rows[order]], times, free, float(drift[peak]),
-                          float(history.time[peak]), float(drift[-1]), excursion, float(history.time[beyond[0]]) if len(beyond) else math.nan,
-                          int(history.failures[min(before, len(drift) - 1)]))
+                          float(history.time[peak]), float(drift[-1]), excursion, float(history.time[beyond[0]]) if len(beyond) else math.nan)

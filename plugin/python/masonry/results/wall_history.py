@@ -6,7 +6,7 @@ import numpy as np
 from masonry.results import _pose
 
 ENERGIES = ("kinetic", "potential", "elastPotential", "frictDissip", "dampDissip", "impactDissip", "baseWork")
-_SAVED = ("time", "ids", "sizes", "free", "position", "orientation", "energies", "failures")
+_SAVED = ("time", "ids", "sizes", "free", "position", "orientation", "energies")
 
 
 class WallHistory:
@@ -19,21 +19,19 @@ class WallHistory:
     position       (s, n, 3) of the centres, m
     orientation    (s, n, 4) quaternions w, x, y, z
     energies       (s, 7) kinetic, potential, elastPotential, frictDissip, dampDissip, impactDissip, baseWork, J; None: not recorded
-    failures       (s,) steps so far in which the integrator missed its tolerance or left out impacts; None: none
 
     Displacements and rotations are relative to the base, which is the first prescribed block, and to the first sample. Without
     a prescribed block they are those in the world. dem.wall_history(recorder) makes one; save and load keep it in a file.
     Raises ValueError when shapes do not fit, times do not increase or a block that is there at first is nowhere.
     """
 
-    def __init__(self, time, ids, sizes, free, position, orientation, energies=None, failures=None):
+    def __init__(self, time, ids, sizes, free, position, orientation, energies=None):
         self.time, self.ids, self.sizes = np.asarray(time, dtype=float), np.asarray(ids, dtype=int), np.asarray(sizes, dtype=float)
         self.free, self.position, self.orientation = np.asarray(free, dtype=bool), np.asarray(position, dtype=float), np.asarray(orientation, dtype=float)
         samples, blocks = len(self.time), len(self.ids)
         self._energies = np.full((samples, len(ENERGIES)), np.nan) if energies is None else np.asarray(energies, dtype=float)
-        self.failures = np.zeros(samples, dtype=int) if failures is None else np.asarray(failures, dtype=int)
         shapes = {"sizes": (blocks, 3), "free": (blocks,), "position": (samples, blocks, 3), "orientation": (samples, blocks, 4),
-                  "_energies": (samples, len(ENERGIES)), "failures": (samples,)}
+                  "_energies": (samples, len(ENERGIES))}
         for name, shape in shapes.items():
             if getattr(self, name).shape != shape:
                 raise ValueError(f"{name.strip('_')} has the shape {getattr(self, name).shape}: must be {shape} for {samples} times and {blocks} ids")

@@ -109,6 +109,7 @@ struct SceneOf {
 			start = system.bodies;
 		near.update(system);
 		step.advance(system, h);
+		step.showPoints(system);
 	}
 	void run(double time, double h)
 	{

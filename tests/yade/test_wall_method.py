@@ -1,0 +1,125 @@
+"""method='wall' in YADE: when it is chosen, what it refuses, O.interactions while nobody looks, laws changed by a script, the same bits after
+loading."""
+
+import math
+import os
+import tempfile
+
+import numpy as np
+from masonry import dem
+from rocking_scene import Balance, refuses, rigid_engines, stone
+from yade import O, PyRunner, Quaternion, Vector3
+
+MU = 0.7
+
+
+def wall(courses, per_course, shaking, **options):
+    """A wall on a base that shakes by `shaking` g at 2 Hz from 0.1 s on."""
+    O.reset()
+    attributes = {"restitution": options.pop("restitution")} if "restitution" in options else {}
+    base = dem.base((per_course + 6, 2, 0.4), dem.BlockMat(density=2000, frictionAngle=math.atan(MU), **attributes))
+    ids = dem.wall(courses, per_course, (1.0, 0.5, 0.5), O.bodies[base].mat, on=base)
+    samples = [0] * 20 + list(shaking * 9.81 * np.sin(4 * np.pi * np.arange(0, 2, 0.005)))
+    motion = dem.RecordMotionEngine(ids=[base], samples=samples, interval=0.005, direction=(1, 0, 0))
+    O.engines = rigid_engines(motion, **{"dt": 1e-3, **options})
+    return base, ids
+
+
+def integrator():
+    return O.engines[-1] if isinstance(O.engines[-1], dem.MoreauJeanIntegrator) else [e for e in O.engines if isinstance(e, dem.MoreauJeanIntegrator)][0]
+
+
+# --- the choice ---
+for options, method in (({}, "wall"), ({"method": "localised"}, "localised"), ({"impact_order": "simultaneous"}, "localised"), ({"tolerance": 1e-9}, "localised"),
+                        ({"tolerance": 1e-4}, "wall")):
+    wall(4, 6, 0.1, **options)
+    assert integrator().method == method, options
+wall(3, 6, 0.1)
+assert integrator().method == "localised"  # 19 blocks
+for options, words in (({"impact_order": "simultaneous"}, ("impactOrder", "'sequential'")), ({"tolerance": 1e-9}, ("tolerance", "1e-6 to 1e-2")),
+                       ({"model": "compliant"}, ("method", "rigid")), ({"method": "fast"}, ("method", "'fast'"))):
+    refuses(lambda: wall(4, 6, 0.1, **{"method": "wall", **options}), *words)
+
+# --- O.interactions: what one step after the other shows, a run shows where somebody looks ---
+base, ids = wall(5, 6, 0.5)
+
+
+def reaction():
+    return sum(((1 if i.id1 == base else -1) * (i.phys.normalForce + i.phys.shearForce) for i in O.interactions if base in (i.id1, i.id2)), Vector3.Zero)
+
+
+shown = []
+for _ in range(300):
+    O.step()
+    shown.append(reaction())
+weight = sum(O.bodies[i].state.mass for i in ids) * 9.81
+assert abs(shown[90][2] / weight - 1) < 1e-3  # the tolerance, while the wall stands
+wall(5, 6, 0.5)
+seen = []
+O.engines = O.engines + [PyRunner(command="seen.append((O.iter, reaction()))", iterPeriod=37)]
+O.run(222, True)
+assert len(seen) >= 5 and all(forces == shown[step] for step, forces in seen)
+O.engines = O.engines[:-1]
+assert reaction() == shown[221]
+O.run(53, True)
+assert reaction() == shown[274]
+print("interactions: base reaction", reaction()[2] / weight, "of the weight, mode", integrator().mode)
+
+# --- friction changed through the interactions: blocks pushed by half their weight slide with (0.5 - mu) g ---
+O.reset()
+base = dem.base((60, 2, 0.4), dem.BlockMat(density=2000, frictionAngle=math.atan(MU)))
+ids = [dem.block((1, 0.5, 0.5), O.bodies[base].mat, center=(2 * k - 24, 0, 0.25)) for k in range(25)]
+O.engines = rigid_engines(dt=1e-3)
+for id in ids:
+    O.forces.setPermF(id, (0.5 * O.bodies[id].state.mass * 9.81, 0, 0))
+O.run(200, True)
+assert integrator().method == "wall" and max(abs(O.bodies[i].state.vel[0]) for i in ids) < 1e-6
+for i in O.interactions:
+    i.phys.tangensOfFrictionAngle = 0.3
+O.run(200, True)
+speeds = [O.bodies[i].state.vel[0] / (0.2 * 9.81 * 0.2) - 1 for i in ids]
+print("sliding with the new friction: speed", max(map(abs, speeds)))
+assert max(map(abs, speeds)) < 2 * 9.81e-3 / (0.2 * 9.81 * 0.2)  # what gravity gives in two steps may be lost (tolerance::wall::held)
+
+# --- saved, loaded, continued: the same bits ---
+
+
+def bits():
+    e, m = dem.energy(), integrator()
+    state = [x for b in O.bodies for v in (b.state.pos, b.state.ori, b.state.vel, b.state.angVel) for x in v]
+    impacts = [v for name in ("time", "velocity", "energy_lost") for v in dem.impacts()[name]]
+    joints = sorted(O.interactions, key=lambda i: (i.id1, i.id2))
+    forces = [x for i in joints for v in [(i.id1, i.id2), *i.phys.forces] for x in v]
+    return np.array(state + list(e.values()) + impacts + forces + [O.time, m.stillSteps, m.movingSteps])
+
+
+with tempfile.TemporaryDirectory() as folder:
+    for model, shaking, restitution in (("planar", 0.3, {}), ("planar", 1.2, {"restitution": 0.6}), ("spatial", 0.3, {}), ("spatial", 1.2, {"restitution": 0.6})):
+        last = 900 if model == "planar" else 500
+        wall(6, 6, shaking, model=model, **restitution)
+        O.run(last, True)
+        wanted = bits()
+        modes = integrator().stillSteps, integrator().movingSteps
+        for first, ending in ((80, "xml"), (457, "yade")):
+            wall(6, 6, shaking, model=model, **restitution)
+            O.run(first, True)
+            path = os.path.join(folder, "wall." + ending)
+            O.save(path)
+            saved = bits()
+            O.reset()
+            O.load(path)
+            assert np.array_equal(saved, bits(), equal_nan=True), (model, shaking, first)
+            O.run(last - first, True)
+            assert np.array_equal(wanted, bits(), equal_nan=True), (model, shaking, first, np.flatnonzero(wanted != bits())[:5])
+        print(f"{model}, {shaking} g: {modes[0]} still and {modes[1]} moving steps, {len(dem.impacts())} impacts")
+        assert (modes[1] == 0) if shaking < MU else (modes[1] > 200 and len(dem.impacts()) > 10)
+
+# --- energy: no step gives any ---
+wall(6, 6, 1.2, restitution=0.6)
+balance, lost = Balance(), [0]
+for _ in range(600):
+    O.step()
+    lost.append(integrator().impactDissip + integrator().frictDissip)
+rise = -min(np.diff(lost))
+print(f"largest rise of energy in a step {rise:.1e} J, of {lost[-1]:.0f} J lost; balance {balance.error():.1e} J")
+assert rise < 1e-3 * lost[-1] and abs(balance.error()) < 1e-4 * abs(dem.energy()["baseWork"])
