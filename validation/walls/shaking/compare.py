@@ -1,0 +1,199 @@
+"""The shaken wall in every program that is there: CPU time, drift, sink, first excursion, energy; what was asked for and whether it holds.
+
+    compare.py <build folder> [--quick]
+
+Writes results/shaken_walls.csv, .json and .png; prints the tables. Ends with status 1 when something that must hold does not.
+"""
+import argparse
+import csv
+import datetime
+import json
+import math
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+RESULTS = HERE.parents[2] / "results"
+SMALL, LARGE = (10, 10), (32, 32)  # courses, blocks per course: 105 and 1,040 blocks
+# CPU s per simulated s, drift and sink per joint in mm, of programs measured elsewhere (another machine; 2 Hz, 0.3 g): rest / shaken.
+ELSEWHERE = [("Box2D 3, 8 substeps", 105, 0.069, 0.08, 1.9e-3), ("Box2D 3, 8 substeps", 1040, 0.65, 1.5, 5.2e-3), ("LMGC90 NLGS 1e-4", 105, 3.1, 0.011, 3e-4),
+             ("LMGC90 NLGS 1e-4", 1040, 73, 0.19, 1.3e-3), ("Jolt", 105, 0.28, 0.37, 4.2e-3), ("Jolt", 1040, 4.5, 2.4, 1.4e-2)]
+
+
+def masonry(build, size, amplitude, rest, shaking, threads=1, **options):
+    """Rows of the plugin, one for each phase."""
+    case = dict(courses=size[0], per_course=size[1], amplitude=amplitude, rest=rest, shaking=shaking, **options)
+    environment = {**os.environ, "PYTHONPATH": str(build.resolve() / "python"), "OMP_WAIT_POLICY": "active" if threads > 1 else "passive"}
+    done = subprocess.run(["yade", f"-j{threads}", "-n", "-x", HERE / "yade_masonry.py", json.dumps(case)], capture_output=True, text=True, env=environment)
+    if done.returncode != 0:
+        raise RuntimeError(done.stdout[-2000:] + done.stderr[-2000:])
+    rows = [dict(json.loads(line), threads=threads) for line in done.stdout.splitlines() if line.startswith("{")]
+    for r in rows:
+        name = f"{r.get('model', 'planar')}, C = {r['restitution']}" if r.get("restitution") is not None else r.get("model", "planar")
+        r["solver"] = f"yade-masonry, {name}"
+        print(f"  {r['solver']:32} {r['blocks']:6} blocks {amplitude:4} g {r['phase']:8} {r['cpu']:.4f} CPU s/s  drift {r['drift']:.2e} mm  sink {r['sink']:.1e} mm", flush=True)
+    return rows
+
+
+def peer(program, size, amplitude, rest, shaking, **environment):
+    if not program.exists():
+        print(f"  {program.name} is left out: apt install libbullet-dev libode-dev, then run this again")
+        return []
+    done = subprocess.run([program, *map(str, (*size, amplitude, rest, shaking))], capture_output=True, text=True, check=True, env={**os.environ, **environment})
+    rows = []
+    for line in done.stdout.splitlines():
+        solver, phase, blocks, cpu, drift, sink, excursion = line.split(",")
+        rows.append(dict(solver=solver, phase={"shaken": "shaking"}.get(phase, phase), blocks=int(blocks), amplitude=amplitude, cpu=float(cpu), drift=float(drift),
+                         sink=float(sink), excursion=float(excursion), rest=rest, shaking=shaking))
+        print(f"  {solver:32} {blocks:>6} blocks {amplitude:4} g {rows[-1]['phase']:8} {float(cpu):.4f} CPU s/s  drift {float(drift):.2e} mm  sink {float(sink):.1e} mm", flush=True)
+    return rows
+
+
+def stock(size, seconds):
+    done = subprocess.run(["yade", "-j1", "-n", "-x", HERE / "yade_polyhedra.py", *map(str, (*size, seconds))], capture_output=True, text=True, check=True)
+    _, blocks, cpu, dt = next(line for line in done.stdout.splitlines() if line.startswith("stock,")).split(",")
+    print(f"  stock YADE Polyhedra {blocks} blocks, dt = {dt} s: {float(cpu):.0f} CPU s/s", flush=True)
+    return [dict(solver="stock YADE Polyhedra", phase="rest", blocks=int(blocks), amplitude=0, cpu=float(cpu), drift=math.nan, sink=math.nan)]
+
+
+def run(build, quick):
+    ours = lambda *a, **o: masonry(build, *a, **o)
+    print("Still walls: rest, then 0.3 g", flush=True)
+    rows = ours(SMALL, 0.3, 5, 5)
+    print("Walls that move: 1 g")
+    rows += ours(SMALL, 1.0, 0, 5) + ours(SMALL, 1.0, 0, 0.5, fine=True, role="h = 1 ms")
+    rows += ours(SMALL, 1.0, 0, 0.5, fine=True, dt=2.5e-4, role="h = 0.25 ms") + ours(SMALL, 1.0, 0, 0.5, fine=True, dt=2.5e-4, tolerance=1e-5, role="converged")
+    if quick:
+        return rows
+    rows += ours(LARGE, 0.3, 5, 5) + ours(LARGE, 1.0, 0, 2)
+    for restitution in (0.5, 0.9):
+        rows += ours(SMALL, 0.3, 2, 2, restitution=restitution) + ours(SMALL, 1.0, 0, 2, restitution=restitution)
+        rows += ours(LARGE, 0.3, 1, 1, restitution=restitution) + ours(LARGE, 1.0, 0, 1, restitution=restitution)
+    print("In space")
+    rows += ours(SMALL, 0.3, 2, 2, model="spatial") + ours(SMALL, 1.0, 0, 2, model="spatial")
+    rows += ours(LARGE, 0.3, 0.5, 0.5, model="spatial") + ours(LARGE, 1.0, 0, 0.5, model="spatial")
+    print("Size")
+    for size in ((20, 20), (45, 45), (64, 64), (100, 99)):
+        rows += ours(size, 0.3, 0.5, 0.3, role="size")
+    print("Threads")
+    for size in (SMALL, LARGE):
+        for threads in (1, 2):
+            rows += ours(size, 1.0, 0.5, 1, threads=threads, role="threads")
+    print("Other programs, in this run")
+    for size, seconds in ((SMALL, 2), (LARGE, 0.5)):
+        rows += peer(build / "validation/wall_bullet", size, 0.3, seconds, seconds)
+        rows += peer(build / "validation/wall_ode", size, 0.3, seconds / 2, seconds / 2)
+    rows += peer(build / "validation/wall_bullet", SMALL, 0.3, 1, 1, ITERATIONS="50") + peer(build / "validation/wall_bullet", SMALL, 1.0, 0, 1)
+    return rows + stock(SMALL, 0.03)
+
+
+def verdicts(rows):
+    """(what, asked, reached, holds) of what the rows can tell."""
+    def find(**wanted):
+        return next((r for r in rows if all(r.get(k) == v for k, v in wanted.items())), None)
+
+    plain = {"solver": "yade-masonry, planar", "role": None}
+    lines = []
+
+    def line(what, asked, value, holds, text=None):
+        lines.append((what, asked, text or f"{value:.3g}", bool(holds)))
+
+    for blocks, cpu, drift, moving in ((105, 0.03, 1e-3, 0.10), (1040, 0.4, 1e-2, 0.7)):
+        for phase in ("rest", "shaking"):
+            r = find(**plain, blocks=blocks, amplitude=0.3, phase=phase)
+            if r:
+                line(f"{blocks} blocks, {'rest' if phase == 'rest' else '0.3 g'}: CPU s per s", f"{cpu}", r["cpu"], r["cpu"] <= cpu)
+                line(f"{blocks} blocks, {'rest' if phase == 'rest' else '0.3 g'}: drift (mm)", f"{drift:g}", r["drift"], r["drift"] <= drift)
+                line(f"{blocks} blocks, {'rest' if phase == 'rest' else '0.3 g'}: sink per joint (mm)", "1e-5", r["sink"], abs(r["sink"]) <= 1e-5)
+        r = find(**plain, blocks=blocks, amplitude=1.0, phase="shaking")
+        if r:
+            line(f"{blocks} blocks, 1 g: CPU s per s", f"{moving}", r["cpu"], r["cpu"] <= moving)
+            line(f"{blocks} blocks, 1 g: largest rise of energy in a tenth of a second, of the loss", "1e-3", max(0, r["rise"]) / r["lost"], r["rise"] <= 1e-3 * r["lost"])
+        bullet = find(solver="Bullet double 10 iterations", blocks=blocks, amplitude=0.3, phase="rest")
+        r = find(**plain, blocks=blocks, amplitude=0.3, phase="rest")
+        if bullet and r:
+            ratio = {105: 19, 1040: 28}[blocks]
+            line(f"{blocks} blocks, rest: CPU of Bullet over ours, same run", f"{ratio}", bullet["cpu"] / r["cpu"], bullet["cpu"] / r["cpu"] >= ratio)
+    fine = {role: find(role=role, phase="shaking") for role in ("h = 1 ms", "h = 0.25 ms", "converged")}
+    if all(fine.values()):
+        x = {role: r["excursion"] for role, r in fine.items()}
+        for role, other, bound in (("h = 1 ms", "converged", 0.15), ("h = 1 ms", "h = 0.25 ms", 0.20)):
+            difference = x[role] / x[other] - 1
+            line(f"105 blocks, 1 g: first excursion, {role} against {other}", f"{bound:.0%}", difference, abs(difference) <= bound, f"{difference:+.1%} ({1e3 * x[role]:.1f} mm)")
+    poly, r = find(solver="stock YADE Polyhedra"), find(**plain, blocks=105, amplitude=0.3, phase="rest")
+    if poly:
+        line("105 blocks: CPU of stock YADE Polyhedra over ours, same run", "5000", poly["cpu"] / r["cpu"], poly["cpu"] >= 5000 * r["cpu"])
+    sizes = sorted((r["blocks"], r["cpu"]) for r in rows if r.get("phase") == "rest" and (r.get("role") == "size" or (r["blocks"] in (105, 1040) and r.get("role") is None and
+                   r["solver"] == plain["solver"] and r["amplitude"] == 0.3)))
+    if len(sizes) > 3:
+        within = [s for s in sizes if s[0] <= 4200]
+        power = math.log(within[-1][1] / within[0][1]) / math.log(within[-1][0] / within[0][0])
+        line(f"growth of CPU from {within[0][0]} to {within[-1][0]} blocks", "N^1.2", power, power <= 1.2, f"N^{power:.2f}")
+        line(f"{sizes[-1][0]} blocks run", "yes", sizes[-1][1], True, f"{sizes[-1][1]:.1f} CPU s per s")
+    for blocks, bound in ((105, 1.0), (1040, 1.4)):
+        one, two = (find(role="threads", blocks=blocks, threads=n, phase="shaking") for n in (1, 2))
+        if one and two:
+            line(f"{blocks} blocks, 1 g: two threads, times faster", f"{bound}", one["wall"] / two["wall"], one["wall"] >= bound * two["wall"])
+            line(f"{blocks} blocks: same bits with two threads", "yes", 0, one["bits"] == two["bits"], "yes" if one["bits"] == two["bits"] else "no")
+    return lines
+
+
+def figure(path, rows):
+    import matplotlib
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+
+    picture, axes = plt.subplots(1, 2, figsize=(11, 4.6), sharey=True, layout="constrained")
+    for axis, blocks in zip(axes, (105, 1040)):
+        shaken = [r for r in rows if r["phase"] == "shaking" and r["blocks"] == blocks and r["amplitude"] == 0.3 and r.get("role") is None]
+        marks = {"yade-masonry, planar": ("o", "#c0392b"), "yade-masonry, planar, C = 0.5": ("s", "#c0392b"), "yade-masonry, planar, C = 0.9": ("^", "#c0392b"),
+                 "yade-masonry, spatial": ("o", "#e67e22")}
+        for r in shaken:
+            mark, colour = marks.get(r["solver"], ("D", "#2c3e50"))
+            axis.plot(r["cpu"], r["drift"], mark, color=colour, label=r["solver"])
+        for k, (name, count, cpu, drift, _) in enumerate(e for e in ELSEWHERE if e[1] == blocks):
+            axis.plot(cpu, drift, "x+1"[k], color="#7f8c8d", label=f"{name} (measured elsewhere)")
+        axis.set(xscale="log", yscale="log", xlabel="CPU s per simulated s", title=f"{blocks} blocks, 0.3 g at 2 Hz, step 1 ms")
+        axis.grid(alpha=0.3)
+        axis.legend(fontsize=7)
+    axes[0].set_ylabel("sideways drift of the wall, mm")
+    picture.savefig(path, dpi=110)
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("build", type=Path)
+    parser.add_argument("--quick", action="store_true", help="105 blocks in the plane only")
+    parser.add_argument("--from", dest="old", type=Path, help="tables and figure of a file written before")
+    arguments = parser.parse_args()
+    rows = json.loads(arguments.old.read_text()) if arguments.old else run(arguments.build, arguments.quick)
+    RESULTS.mkdir(exist_ok=True)
+    if not arguments.quick:
+        (RESULTS / "shaken_walls.json").write_text(json.dumps(rows, indent=0))
+        fields = ["solver", "blocks", "amplitude", "phase", "role", "threads", "dt", "tolerance", "cpu", "wall", "drift", "sink", "excursion", "still", "moving", "impacts", "rise", "lost",
+                  "memory", "bits"]
+        with open(RESULTS / "shaken_walls.csv", "w", newline="") as out:
+            writer = csv.DictWriter(out, fields, extrasaction="ignore")
+            writer.writeheader()
+            writer.writerows(rows)
+        figure(RESULTS / "shaken_walls.png", rows)
+    print("\n| program | blocks | motion | CPU s per s | drift (mm) | sink per joint (mm) | steps still / moving | bytes per block |\n" + "| --- " * 8 + "|")
+    for r in rows:
+        motion = "rest" if r["phase"] == "rest" else f"{r['amplitude']:g} g"
+        motion += f" ({r['role']}{', %d threads' % r['threads'] if r['role'] == 'threads' else ''})" if r.get("role") else ""
+        modes = f"{r['still']} / {r['moving']}" if "still" in r else "-"
+        print(f"| {r['solver']} | {r['blocks']} | {motion} | {r['cpu']:.3g} | {r['drift']:.2g} | {r['sink']:.2g} | {modes} | {r['memory']:.0f} |" if "memory" in r else
+              f"| {r['solver']} | {r['blocks']} | {motion} | {r['cpu']:.3g} | {r['drift']:.2g} | {r['sink']:.2g} | - | - |")
+    lines = verdicts(rows)
+    print("\n| what | asked | reached | |\n| --- | --- | --- | --- |")
+    for what, asked, reached, holds in lines:
+        print(f"| {what} | {asked} | {reached} | {'holds' if holds else '**missed**'} |")
+    model = next(line.split(":")[1].strip() for line in Path("/proc/cpuinfo").read_text().splitlines() if line.startswith("model name"))
+    print(f"\n{model}, {os.cpu_count()} logical processors, {datetime.date.today()}")
+    return 0 if all(holds for *_, holds in lines) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

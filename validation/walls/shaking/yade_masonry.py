@@ -1,0 +1,66 @@
+"""The wall in this plugin: `yade -n -x yade_masonry.py '<JSON>'`; prints one JSON line for each phase.
+
+courses, per_course, amplitude (g), rest, shaking (s); model, restitution (null: natural), dt, tolerance (null: as dem.engines() chooses).
+"""
+import hashlib
+import json
+import math
+import resource
+import sys
+import time
+
+import numpy as np
+from masonry import dem
+from yade import O
+
+case = json.loads(sys.argv[1])
+before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+law = {} if case.get("restitution") is None else {"restitution": case["restitution"]}
+stone = dem.BlockMat(density=2000, frictionAngle=math.atan(0.7), **law)
+base = dem.base((case["per_course"] + 4, 4, 1), stone)
+ids = dem.wall(case["courses"], case["per_course"], (1.0, 0.5, 0.5), stone, on=base)
+STARTED = 5  # steps of a millisecond before anything is measured: the first finds the forces
+rate, omega = 1000, 4 * math.pi
+times = np.arange(0, case["shaking"] + 0.01, 1 / rate)
+samples = np.concatenate([np.zeros(round(case["rest"] * rate) + STARTED), case["amplitude"] * 9.81 * np.sin(omega * times)])
+motion = dem.RecordMotionEngine(ids=[base], samples=list(samples), interval=1 / rate, direction=(1, 0, 0))
+O.engines = dem.engines(motion, model=case.get("model", "auto"), method="wall", dt=case.get("dt", 1e-3), tolerance=case.get("tolerance"))
+integrator = O.engines[-1]
+
+
+def places():
+    return np.array([O.bodies[i].state.pos for i in ids]) - np.array(O.bodies[base].state.pos)
+
+
+def losses():
+    return integrator.impactDissip + integrator.frictDissip
+
+
+start = places()
+courses = np.rint((start[:, 2] - start[:, 2].min()) / 0.5)
+top = int(np.flatnonzero(courses == courses.max())[-1])
+O.run(round(STARTED * 1e-3 / O.dt), True)
+memory = (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before) * 1024 / len(ids)  # bytes
+sunk = 0
+for phase in ("rest", "shaking"):
+    if not case[phase]:
+        continue
+    modes = integrator.stillSteps, integrator.movingSteps
+    steps, excursion, rise, lost, cpu, wall = round(case[phase] / O.dt), 0, 0, losses(), 0, 0
+    first = lost
+    sample = max(1, round(0.01 / O.dt)) if case.get("fine") else max(1, round(0.1 / O.dt))
+    for k in range(0, steps, sample):
+        c, w = time.process_time(), time.perf_counter()
+        O.run(min(sample, steps - k), True)
+        cpu, wall = cpu + time.process_time() - c, wall + time.perf_counter() - w
+        now = losses()
+        rise, lost = max(rise, lost - now), now
+        if (k + sample) * O.dt <= 0.5 + 1e-9:
+            excursion = max(excursion, abs(places()[top, 0] - start[top, 0]))
+    moved = places() - start
+    sink = -moved[courses == courses.max(), 2].mean() / case["courses"]
+    bits = hashlib.sha256(np.array([x for i in ids for v in (O.bodies[i].state.pos, O.bodies[i].state.vel) for x in v]).tobytes()).hexdigest()[:12]
+    print(json.dumps(dict(case, phase=phase, blocks=len(ids), cpu=cpu / case[phase], wall=wall / case[phase], drift=1e3 * float(np.linalg.norm(moved[:, :2], axis=1).max()),
+                          sink=1e3 * float(sink - sunk), excursion=float(excursion), still=integrator.stillSteps - modes[0], moving=integrator.movingSteps - modes[1],
+                          impacts=len(integrator.impactTimes), rise=float(rise), lost=float(lost - first), work=integrator.baseWork, memory=memory, bits=bits)), flush=True)
+    sunk = sink
