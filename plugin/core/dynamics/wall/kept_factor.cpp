@@ -106,6 +106,36 @@ MASONRY_INLINE void passAll(Group<K>* groups, FeatureGroup<K>* features, Rows<K>
 	}
 }
 
+// (z - w)/R is the impulse that V lacks; over the mass, the velocity.
+template <class K>
+MASONRY_INLINE void addHeld(const Group<K>* groups, FeatureGroup<K>* features, const Rows<K>* rows, int count, Lanes& most)
+{
+	const Lanes none = all(0);
+	for (int g = 0; g < count; ++g)
+		for (int k = 0; k < groups[g].count; ++k) {
+			const PointLanes<K>& p = groups[g].point[k];
+			FeatureLanes<K>& f = features[g].point[k];
+			const auto& row = rows[g][k];
+			const Mask touches = row.stiffness > 0, loaded = p.pn > 0, parts = touches & ~loaded,
+			           glides = touches & loaded & slides(p.pt, groups[g].friction * p.pn);
+			const Lanes perMass = touches ? row.stiffness / p.massN : none;
+			f.heldN = parts ? larger(f.heldN + (f.zn - row.un + row.bn) * perMass, none) : none;
+			f.heldT = select(glides, f.heldT + perMass * (f.zt - row.ut + row.bt), typename PointLanes<K>::Tangent {});
+			most = larger(most, larger(f.heldN, size(f.heldT)));
+		}
+}
+
+template <class K>
+MASONRY_INLINE void addSlip(const Group<K>* groups, FeatureGroup<K>* features, const Rows<K>* rows, int count, double h)
+{
+	for (int g = 0; g < count; ++g)
+		for (int k = 0; k < groups[g].count; ++k) {
+			const PointLanes<K>& p = groups[g].point[k];
+			auto& slip = features[g].point[k].slip;
+			slip = select(slides(p.pt, groups[g].friction * p.pn), typename PointLanes<K>::Tangent {}, slip + h * rows[g][k].ut);
+		}
+}
+
 // No template is compiled for several vector widths.
 #define MASONRY_PASSES(K)                                                                                                                  \
 	MASONRY_LANES bool takeAll(Group<K>* groups, const FeatureGroup<K>* features, Rows<K>* rows, int begin, int end, double h,             \
@@ -122,6 +152,14 @@ MASONRY_INLINE void passAll(Group<K>* groups, FeatureGroup<K>* features, Rows<K>
 	                           Lanes* force, Largest& worst)                                                                               \
 	{                                                                                                                                      \
 		passAll<K, true>(groups, features, rows, begin, end, velocity, force, worst);                                                      \
+	}                                                                                                                                      \
+	MASONRY_LANES void heldPass(const Group<K>* groups, FeatureGroup<K>* features, const Rows<K>* rows, int count, Lanes& most)            \
+	{                                                                                                                                      \
+		addHeld<K>(groups, features, rows, count, most);                                                                                   \
+	}                                                                                                                                      \
+	MASONRY_LANES void slipPass(const Group<K>* groups, FeatureGroup<K>* features, const Rows<K>* rows, int count, double h)               \
+	{                                                                                                                                      \
+		addSlip<K>(groups, features, rows, count, h);                                                                                      \
 	}
 MASONRY_PASSES(Plane)
 MASONRY_PASSES(Space)
@@ -323,24 +361,11 @@ void KeptFactor<K>::iterate(int most, double velocityResidual, double forceResid
 	}
 }
 
-// (z - w)/R is the impulse that V lacks; over the mass, the velocity.
 template <class K>
 double KeptFactor<K>::findHeld()
 {
-	const Lanes none = all(0);
-	Lanes most = none;
-	for (size_t g = 0; g < rows.size(); ++g)
-		for (int k = 0; k < contacts->groups[g].count; ++k) {
-			const PointLanes<K>& p = contacts->groups[g].point[k];
-			FeatureLanes<K>& f = contacts->features[g].point[k];
-			const Row& row = rows[g][k];
-			const Mask touches = row.stiffness > 0, loaded = p.pn > 0, parts = touches & ~loaded,
-			           glides = touches & loaded & slides(p.pt, contacts->groups[g].friction * p.pn);
-			const Lanes perMass = touches ? row.stiffness / p.massN : none;
-			f.heldN = parts ? larger(f.heldN + (f.zn - row.un + row.bn) * perMass, none) : none;
-			f.heldT = select(glides, f.heldT + perMass * (f.zt - row.ut + row.bt), Tangent {});
-			most = larger(most, larger(f.heldN, size(f.heldT)));
-		}
+	Lanes most = all(0);
+	heldPass(contacts->groups.data(), contacts->features.data(), rows.data(), int(rows.size()), most);
 	return largest(most);
 }
 
@@ -372,13 +397,7 @@ void KeptFactor<K>::forgetHeld()
 template <class K>
 void KeptFactor<K>::keepSlip()
 {
-	auto& c = *contacts;
-	for (size_t g = 0; g < c.groups.size(); ++g)
-		for (int k = 0; k < c.groups[g].count; ++k) {
-			const PointLanes<K>& p = c.groups[g].point[k];
-			Tangent& slip = c.features[g].point[k].slip;
-			slip = select(slides(p.pt, c.groups[g].friction * p.pn), Tangent {}, slip + h * rows[g][k].ut);
-		}
+	slipPass(contacts->groups.data(), contacts->features.data(), rows.data(), int(rows.size()), h);
 }
 
 template <class K>

@@ -246,6 +246,11 @@ double WallStep<K>::slidingLoss() const
 {
 	double loss = 0;
 	for (const wall::Group<K>& group : contacts.groups) {
+		wall::Mask any {0, 0, 0, 0};
+		for (int k = 0; k < group.count; ++k)
+			any |= (group.point[k].pn > 0) & slides(group.point[k].pt, group.friction * group.point[k].pn);
+		if (!(any[0] | any[1] | any[2] | any[3]))
+			continue;
 		const wall::Bodies<K> v1(contacts.velocity.data(), group.body1), v2(contacts.velocity.data(), group.body2);
 		for (int k = 0; k < group.count; ++k) {
 			const wall::PointLanes<K>& p = group.point[k];
