@@ -67,6 +67,7 @@ RockingImpactResult JointImpact::apply()
 	joint.result.axis = rockingAxis(bodies, joint, points);
 	const auto spin = [this] { return joint.result.axis.dot(bodies[joint.block].angularVelocity - bodies[joint.support].angularVelocity); };
 	joint.result.before = spin();
+	points.erase(points.begin() + joint.oldBegin, points.end());
 	wall::take(bodies, start);
 	double speed = 0;
 	for (const ImpulsePoint& point : points)
@@ -76,8 +77,6 @@ RockingImpactResult JointImpact::apply()
 		return kineticEnergy(bodies) - before - outcome.work > tolerance::energyGain * (before + std::abs(outcome.work));
 	};
 
-	for (int i = joint.oldBegin; i < joint.oldEnd; ++i)
-		points[i].holds = false;
 	row.assign(1, {joint.support, joint.block, joint.result.axis, joint.restitution * joint.result.before});
 	solve(row, asked);
 	const bool met = asked.residual <= tolerance::noSolution * speed;
@@ -103,10 +102,9 @@ RockingImpactResult JointImpact::apply()
 
 	joint.result.after = spin();
 	Vector3 resultant = Vector3::Zero(); // on the block, at the new support
-	for (int i = 0; i < int(points.size()); ++i) {
+	for (size_t i = 0; i < points.size(); ++i) {
 		points[i].impulse = end->impulses[i];
-		if (i < joint.oldBegin)
-			resultant += points[i].body2 == joint.block ? points[i].impulse : Vector3(-points[i].impulse);
+		resultant += points[i].body2 == joint.block ? points[i].impulse : Vector3(-points[i].impulse);
 	}
 	if (const double normal = joint.normal.dot(resultant); normal > 0) {
 		joint.result.application = end->couple / normal;

@@ -2,7 +2,8 @@
 // The impact of one joint of a wall in space: the law of impact/rocking_restitution.hpp for the block, its supports and the points of the
 // joint alone.
 //
-// One thing is simpler. Where kinetic energy would grow, or the row cannot be met, impulses between those of the law and those of the
+// Two things are simpler. The old support gives the axis and no impulse: nearly always it opens, and the sweeps that follow see to the rest.
+// Where kinetic energy would grow, or the row cannot be met, impulses between those of the law and those of the
 // plastic impact are taken: both obey cones and u_n >= 0, so all between do, and two impulse problems are enough.
 #include "impact/rocking_restitution.hpp"
 
@@ -11,7 +12,7 @@ namespace masonry::rigid::wall {
 class JointImpact {
 public:
 	std::vector<masonry::Body> bodies;
-	std::vector<ImpulsePoint> points; // new support, then old
+	std::vector<ImpulsePoint> points; // new support, then old; after apply() the new alone
 	ClosingJoint joint;
 
 	// Changes the bodies' velocities, the points' impulses and the joint's result.
