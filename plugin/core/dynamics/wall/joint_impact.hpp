@@ -2,9 +2,9 @@
 // The impact of one joint of a wall in space: the law of impact/rocking_restitution.hpp for the block, its supports and the points of the
 // joint alone.
 //
-// Two things are simpler. The old support gives the axis and no impulse: nearly always it opens, and the sweeps that follow see to the rest.
-// Where kinetic energy would grow, or the row cannot be met, impulses between those of the law and those of the
-// plastic impact are taken: both obey cones and u_n >= 0, so all between do, and two impulse problems are enough.
+// Two things are simpler. The old support gives the axis and no impulse: nearly always it opens, and the sweeps that follow see to the
+// rest. Where kinetic energy would grow, or the row cannot be met, impulses between those of the law and those of the plastic impact are
+// taken: both obey cones and u_n >= 0, so all between do, and two impulse problems are enough.
 #include "impact/rocking_restitution.hpp"
 
 namespace masonry::rigid::wall {

@@ -57,7 +57,7 @@ MASONRY_INLINE bool takePoints(Group<K>* groups, const FeatureGroup<K>* features
 			p.pn = touches ? p.pn : none;
 			p.pt = select(touches, p.pt, noTangent);
 		}
-	return (different[0] | different[1] | different[2] | different[3]) != 0;
+	return any(different);
 }
 
 // One pass over the points: the laws (not before the first solve), and the right-hand side of the next solve.

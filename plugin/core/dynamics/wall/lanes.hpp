@@ -41,6 +41,7 @@ MASONRY_INLINE Lanes larger(const Lanes& a, const Lanes& b) { return a > b ? a :
 MASONRY_INLINE Lanes smaller(const Lanes& a, const Lanes& b) { return a < b ? a : b; }
 MASONRY_INLINE Lanes size(const Lanes& a) { return a < 0 ? -a : a; }
 MASONRY_INLINE Lanes select(const Mask& mask, const Lanes& a, const Lanes& b) { return mask ? a : b; }
+MASONRY_INLINE bool any(const Mask& mask) { return (mask[0] | mask[1] | mask[2] | mask[3]) != 0; }
 MASONRY_INLINE Lanes root(const Lanes& a)
 {
 	return Lanes {__builtin_sqrt(a[0]), __builtin_sqrt(a[1]), __builtin_sqrt(a[2]), __builtin_sqrt(a[3])};

@@ -103,16 +103,6 @@ MASONRY_INLINE void add(Bodies<Plane>& f1, Bodies<Plane>& f2, const PointLanes<P
 	f2.w += p.a2n * qn + p.a2t * qt;
 }
 
-// Power of a point's impulse on either body.
-MASONRY_INLINE Lanes powerOn1(const Bodies<Plane>& v1, const PointLanes<Plane>& p)
-{
-	return p.pn * (p.nx * v1.x + p.ny * v1.y + p.a1n * v1.w) + p.pt * (p.nx * v1.y - p.ny * v1.x + p.a1t * v1.w);
-}
-MASONRY_INLINE Lanes powerOn2(const Bodies<Plane>& v2, const PointLanes<Plane>& p)
-{
-	return p.pn * (p.nx * v2.x + p.ny * v2.y + p.a2n * v2.w) + p.pt * (p.nx * v2.y - p.ny * v2.x + p.a2t * v2.w);
-}
-
 // Coulomb: within the bound.
 MASONRY_INLINE Lanes clip(const Lanes& tangential, const Lanes& bound) { return larger(smaller(tangential, bound), -bound); }
 MASONRY_INLINE Mask slides(const Lanes& tangential, const Lanes& bound) { return size(tangential) >= bound; }
@@ -127,6 +117,16 @@ MASONRY_INLINE Vector3 partOf(const PointLanes<Plane>& p, int row, int lane, int
 {
 	const double n[3] = {p.nx[lane], p.ny[lane], (body == 1 ? p.a1n : p.a2n)[lane]};
 	return row == 0 ? Vector3(n[0], n[1], n[2]) : Vector3(-n[1], n[0], (body == 1 ? p.a1t : p.a2t)[lane]);
+}
+
+// Of one lane's point; its position from the centre of body 2, whose radius of gyration is rho.
+MASONRY_INLINE void takeFrame(const PointLanes<Plane>& p, const FeatureLanes<Plane>&, int lane, const Plane::Spin& rho,
+                              ContactFrame<Plane>& frame)
+{
+	const double nx = p.nx[lane], ny = p.ny[lane], along = rho[0] * p.a2t[lane], across = -rho[0] * p.a2n[lane];
+	frame.position = {along * nx - across * ny, along * ny + across * nx};
+	frame.axes << nx, ny, -ny, nx;
+	frame.gap = p.gap[lane];
 }
 
 } // namespace masonry::rigid::wall

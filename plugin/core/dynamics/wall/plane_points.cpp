@@ -72,7 +72,20 @@ MASONRY_LANES void locateGroups(Group<Plane>* groups, FeatureGroup<Plane>* featu
 		stale[g] |= largest(locateGroup(groups[g], features[g], pose, velocity, gyration, remember)) > travel;
 }
 
+MASONRY_LANES void findSliders(const Group<Plane>* groups, std::array<unsigned char, lanePoints<Plane>>* sliding, size_t count)
+{
+	for (size_t g = 0; g < count; ++g)
+		sliding[g] = slidersOf(groups[g]);
+}
+
 } // namespace
+
+template <>
+void WallContacts<Plane>::findSliding()
+{
+	sliding.resize(groups.size());
+	findSliders(groups.data(), sliding.data(), groups.size());
+}
 
 template <>
 void WallContacts<Plane>::locate(const RigidSystem<Plane>&, int begin, int end, double travel, bool remember)
@@ -120,19 +133,6 @@ void WallContacts<Plane>::takePoint(const RigidSystem<Plane>& s, int c, int k)
 	f.normalX[lane] = axis == 0 ? (feature.face % 2 ? 1 : -1) : 0;
 	f.normalY[lane] = axis == 1 ? (feature.face % 2 ? 1 : -1) : 0;
 	f.faceDistance[lane] = faceHalf[axis];
-}
-
-template <>
-ContactFrame<Plane> WallContacts<Plane>::frame(int group, int lane, int k) const
-{
-	const PointLanes<Plane>& p = groups[group].point[k];
-	const double nx = p.nx[lane], ny = p.ny[lane], rho = gyration[groups[group].body2[lane]][0];
-	const double along = rho * p.a2t[lane], across = -rho * p.a2n[lane];
-	ContactFrame<Plane> frame;
-	frame.position = {along * nx - across * ny, along * ny + across * nx};
-	frame.axes << nx, ny, -ny, nx;
-	frame.gap = p.gap[lane];
-	return frame;
 }
 
 template <>

@@ -10,7 +10,7 @@ namespace masonry::rigid::wall {
 namespace {
 
 Vector2 normal(const PointLanes<Plane>& p, int lane) { return {p.nx[lane], p.ny[lane]}; }
-Vector3 normal(const PointLanes<Space>& p, int lane) { return {p.normal.axis.x[lane], p.normal.axis.y[lane], p.normal.axis.z[lane]}; }
+Vector3 normal(const PointLanes<Space>& p, int lane) { return p.normal.axis.lane(lane); }
 
 // One lane of a point, as seen from the block: relative velocities are the block's minus the support's.
 template <class K>
@@ -30,15 +30,8 @@ struct Contact {
 	}
 	double normalRate(const WallContacts<Space>& c) const
 	{
-		double rate = 0;
-		for (int pack = 0; pack < packs<Space>; ++pack) {
-			const Lanes &v1 = c.velocity[packs<Space> * (second ? support : block) + pack],
-			            &v2 = c.velocity[packs<Space> * (second ? block : support) + pack];
-			const Vector3 part1 = partOf(p, 0, lane, 1, pack), part2 = partOf(p, 0, lane, 2, pack);
-			for (int k = 0; k < 3; ++k)
-				rate += part2[k] * v2[k] - part1[k] * v1[k];
-		}
-		return rate;
+		const int body1 = second ? support : block, body2 = second ? block : support;
+		return rateOf(p, 0, lane, 2, &c.velocity[packs<Space> * body2]) - rateOf(p, 0, lane, 1, &c.velocity[packs<Space> * body1]);
 	}
 };
 
@@ -85,7 +78,7 @@ namespace {
 template <class JointPoint>
 Vector3 position(const WallContacts<Space>& c, const JointPoint& at)
 {
-	return c.position(c.groups[at.group].body2[at.lane]) + c.frame(at.group, at.lane, at.point).position;
+	return c.position(c.groups[at.group].body2[at.lane]) + c.features[at.group].point[at.point].arm.lane(at.lane);
 }
 
 } // namespace

@@ -1,5 +1,6 @@
 #include "dynamics/wall/soft_substeps.hpp"
 #include "dynamics/wall/threads.hpp"
+#include <algorithm>
 #include <cmath>
 
 namespace masonry::rigid::wall {
@@ -25,42 +26,76 @@ struct alignas(alignment) Largest {
 	Lanes change, motion;
 };
 
+// The laws of one point of each of four pairs.
+template <class K, bool springs, bool measured>
+MASONRY_INLINE void sweepPoint(PointLanes<K>& p, const Lanes& frictionCoefficient, Bodies<K>& v1, Bodies<K>& v2, const Spring& spring,
+                               Largest& worst)
+{
+	const Lanes none = all(0), one = all(1);
+	const Mask open = p.gap > 0;
+	const Lanes un = normalRate(v1, v2, p);
+	Lanes pn;
+	if constexpr (springs) {
+		const Lanes bias = p.gap * (open ? all(spring.perStep) : all(spring.rate));
+		const Lanes scale = open ? one : all(spring.massScale), fading = open ? none : all(spring.impulseScale);
+		pn = larger(p.pn - p.massN * scale * (un + bias) - fading * p.pn, none);
+	} else {
+		const Lanes bias = open ? p.gap * spring.perStep : none;
+		pn = larger(p.pn - p.massN * (un + bias), none);
+	}
+	const Lanes dn = pn - p.pn;
+	pushNormal(v1, v2, p, dn);
+	p.pn = pn;
+
+	const auto ut = slipRate(v1, v2, p), pt = friction(p, ut, frictionCoefficient * pn), dt = pt - p.pt;
+	pushTangential(v1, v2, p, dt);
+	p.pt = pt;
+	if constexpr (measured) {
+		const Mask closed = pn > 0, present = p.massN > 0;
+		worst.motion = larger(worst.motion, present ? larger(size(un), size(ut)) : none);
+		worst.change = larger(worst.change, closed ? larger(size(dn) / p.massN, size(dt) / p.massT) : none);
+	}
+}
+
+// Groups that are swept at the same time: in space one alone waits for its own results.
+template <class K>
+constexpr int abreast = K::dimension - 1;
+
+template <class K, int groupCount, bool springs, bool measured>
+MASONRY_INLINE void sweepAbreast(Group<K>* group, Lanes* velocity, const Spring& spring, Largest& worst)
+{
+	if constexpr (groupCount == 1) {
+		Bodies<K> v1(velocity, group->body1), v2(velocity, group->body2);
+		for (int k = 0; k < group->count; ++k)
+			sweepPoint<K, springs, measured>(group->point[k], group->friction, v1, v2, spring, worst);
+		v1.store(velocity, group->body1, v1.m);
+		v2.store(velocity, group->body2, v2.m);
+	} else {
+		Bodies<K> v1(velocity, group[0].body1), v2(velocity, group[0].body2), w1(velocity, group[1].body1), w2(velocity, group[1].body2);
+		const int both = std::min(group[0].count, group[1].count);
+		for (int k = 0; k < both; ++k) {
+			sweepPoint<K, springs, measured>(group[0].point[k], group[0].friction, v1, v2, spring, worst);
+			sweepPoint<K, springs, measured>(group[1].point[k], group[1].friction, w1, w2, spring, worst);
+		}
+		for (int k = both; k < group[0].count; ++k)
+			sweepPoint<K, springs, measured>(group[0].point[k], group[0].friction, v1, v2, spring, worst);
+		for (int k = both; k < group[1].count; ++k)
+			sweepPoint<K, springs, measured>(group[1].point[k], group[1].friction, w1, w2, spring, worst);
+		v1.store(velocity, group[0].body1, v1.m);
+		v2.store(velocity, group[0].body2, v2.m);
+		w1.store(velocity, group[1].body1, w1.m);
+		w2.store(velocity, group[1].body2, w2.m);
+	}
+}
+
 template <class K, bool springs, bool measured>
 MASONRY_INLINE void sweepGroups(Group<K>* groups, int begin, int end, Lanes* velocity, const Spring& spring, Largest& worst)
 {
-	const Lanes none = all(0), one = all(1);
-	for (int g = begin; g < end; ++g) {
-		Group<K>& group = groups[g];
-		Bodies<K> v1(velocity, group.body1), v2(velocity, group.body2);
-		for (int k = 0; k < group.count; ++k) {
-			PointLanes<K>& p = group.point[k];
-			const Mask open = p.gap > 0;
-			const Lanes un = normalRate(v1, v2, p);
-			Lanes pn;
-			if constexpr (springs) {
-				const Lanes bias = p.gap * (open ? all(spring.perStep) : all(spring.rate));
-				const Lanes scale = open ? one : all(spring.massScale), fading = open ? none : all(spring.impulseScale);
-				pn = larger(p.pn - p.massN * scale * (un + bias) - fading * p.pn, none);
-			} else {
-				const Lanes bias = open ? p.gap * spring.perStep : none;
-				pn = larger(p.pn - p.massN * (un + bias), none);
-			}
-			const Lanes dn = pn - p.pn;
-			pushNormal(v1, v2, p, dn);
-			p.pn = pn;
-
-			const auto ut = slipRate(v1, v2, p), pt = friction(p, ut, group.friction * pn), dt = pt - p.pt;
-			pushTangential(v1, v2, p, dt);
-			p.pt = pt;
-			if constexpr (measured) {
-				const Mask closed = pn > 0, present = p.massN > 0;
-				worst.motion = larger(worst.motion, present ? larger(size(un), size(ut)) : none);
-				worst.change = larger(worst.change, closed ? larger(size(dn) / p.massN, size(dt) / p.massT) : none);
-			}
-		}
-		v1.store(velocity, group.body1, v1.m);
-		v2.store(velocity, group.body2, v2.m);
-	}
+	int g = begin;
+	for (; g + abreast<K> <= end; g += abreast<K>)
+		sweepAbreast<K, abreast<K>, springs, measured>(groups + g, velocity, spring, worst);
+	for (; g < end; ++g)
+		sweepAbreast<K, 1, springs, measured>(groups + g, velocity, spring, worst);
 }
 
 template <class K>

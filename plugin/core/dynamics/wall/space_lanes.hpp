@@ -10,6 +10,7 @@ namespace masonry::rigid::wall {
 
 struct alignas(alignment) Lanes3 {
 	Lanes x, y, z;
+	MASONRY_INLINE Vector3 lane(int i) const { return {x[i], y[i], z[i]}; }
 	MASONRY_INLINE void operator+=(const Lanes3& o)
 	{
 		x += o.x;
@@ -110,9 +111,9 @@ struct alignas(alignment) FeatureLanes<Space> {
 	Mask vertexOn1, present, crossing;
 	Lanes3 vertex, normal, tangent; // of the face: outward normal, first tangent
 	Lanes faceDistance;
-	Lanes3 arm;     // from body 2 to the point, global axes
-	Lanes foundGap; // when the features were looked up
-	Lanes2 found;   // where along them
+	Lanes3 arm;            // from body 2 to the point, global axes
+	Lanes foundGap;        // when the features were looked up
+	Lanes2 found;          // where along them
 	Lanes zn, zero, heldN; // of KeptFactor, as in the plane
 	Lanes2 zt, slip, heldT;
 
@@ -161,18 +162,6 @@ MASONRY_INLINE void add(Bodies<Space>& f1, Bodies<Space>& f2, const PointLanes<S
 	f2.w += qn * p.normal.arm2 + qt.x * p.tangent[0].arm2 + qt.y * p.tangent[1].arm2;
 }
 
-// Power of a point's impulse on either body.
-MASONRY_INLINE Lanes powerOn1(const Bodies<Space>& v1, const PointLanes<Space>& p)
-{
-	const auto along = [&](const RowLanes& r) { return dot(r.axis, v1.v) + dot(r.arm1, v1.w); };
-	return p.pn * along(p.normal) + p.pt.x * along(p.tangent[0]) + p.pt.y * along(p.tangent[1]);
-}
-MASONRY_INLINE Lanes powerOn2(const Bodies<Space>& v2, const PointLanes<Space>& p)
-{
-	const auto along = [&](const RowLanes& r) { return dot(r.axis, v2.v) + dot(r.arm2, v2.w); };
-	return p.pn * along(p.normal) + p.pt.x * along(p.tangent[0]) + p.pt.y * along(p.tangent[1]);
-}
-
 // Coulomb: within the disc of radius `bound`.
 MASONRY_INLINE Lanes2 clip(const Lanes2& tangential, const Lanes& bound)
 {
@@ -199,8 +188,18 @@ MASONRY_INLINE Lanes2 friction(const PointLanes<Space>& p, const Lanes2& slipRat
 MASONRY_INLINE Vector3 partOf(const PointLanes<Space>& p, int row, int lane, int body, int pack)
 {
 	const RowLanes& r = row == 0 ? p.normal : p.tangent[row - 1];
-	const Lanes3& part = pack == 0 ? r.axis : body == 1 ? r.arm1 : r.arm2;
-	return {part.x[lane], part.y[lane], part.z[lane]};
+	return (pack == 0 ? r.axis : body == 1 ? r.arm1 : r.arm2).lane(lane);
+}
+
+// Of one lane's point; its position from the centre of body 2.
+MASONRY_INLINE void takeFrame(const PointLanes<Space>& p, const FeatureLanes<Space>& f, int lane, const Space::Spin&,
+                              ContactFrame<Space>& frame)
+{
+	frame.position = f.arm.lane(lane);
+	frame.axes.row(0) = p.normal.axis.lane(lane);
+	frame.axes.row(1) = p.tangent[0].axis.lane(lane);
+	frame.axes.row(2) = p.tangent[1].axis.lane(lane);
+	frame.gap = p.gap[lane];
 }
 
 } // namespace masonry::rigid::wall

@@ -51,8 +51,6 @@ void set(Lanes3& to, int lane, const Vector3& value)
 	to.z[lane] = value.z();
 }
 
-Vector3 get(const Lanes3& from, int lane) { return {from.x[lane], from.y[lane], from.z[lane]}; }
-
 // Gap, normal, first tangent and arm of a point; where it lies along its features: what is found out lane by lane, or one by one.
 struct alignas(alignment) Found {
 	Lanes3 normal, tangent, arm2;
@@ -155,7 +153,20 @@ MASONRY_LANES void locateGroups(const RigidSystem<Space>& s, Group<Space>* group
 	}
 }
 
+MASONRY_LANES void findSliders(const Group<Space>* groups, std::array<unsigned char, lanePoints<Space>>* sliding, size_t count)
+{
+	for (size_t g = 0; g < count; ++g)
+		sliding[g] = slidersOf(groups[g]);
+}
+
 } // namespace
+
+template <>
+void WallContacts<Space>::findSliding()
+{
+	sliding.resize(groups.size());
+	findSliders(groups.data(), sliding.data(), groups.size());
+}
 
 template <>
 void WallContacts<Space>::locate(const RigidSystem<Space>& s, int begin, int end, double travel, bool remember)
@@ -211,19 +222,6 @@ void WallContacts<Space>::takePoint(const RigidSystem<Space>& s, int c, int k)
 	set(f.normal, lane, (face % 2 ? 1. : -1.) * Vector3::Unit(axis));
 	set(f.tangent, lane, Vector3::Unit(feature::nextAxis(axis)));
 	f.faceDistance[lane] = faceHalf[axis];
-}
-
-template <>
-ContactFrame<Space> WallContacts<Space>::frame(int group, int lane, int k) const
-{
-	const PointLanes<Space>& p = groups[group].point[k];
-	ContactFrame<Space> frame;
-	frame.position = get(features[group].point[k].arm, lane);
-	frame.axes.row(0) = get(p.normal.axis, lane);
-	frame.axes.row(1) = get(p.tangent[0].axis, lane);
-	frame.axes.row(2) = get(p.tangent[1].axis, lane);
-	frame.gap = p.gap[lane];
-	return frame;
 }
 
 template <>

@@ -227,7 +227,7 @@ void WallContacts<K>::lookUpStale(RigidSystem<K>& s)
 {
 	if (std::none_of(stale.begin(), stale.end(), [](unsigned char is) { return is; }))
 		return;
-	if (lanesOfPair < K >> 1)
+	if constexpr (lanesOfPair<K> != 1)
 		for (bool spread = true; spread;) {
 			spread = false;
 			for (const auto& lanes : slots)
@@ -306,7 +306,7 @@ void WallContacts<K>::showPair(RigidSystem<K>& s, int c) const
 		point.force[0] = p.pn[lane] * perUnit;
 		for (int row = 1; row < K::rows; ++row)
 			point.force[row] = component(p.pt, row - 1, lane) * perUnit;
-		point.frame = frame(group, lane, k % lanePoints<K>);
+		takeFrame(p, features[group].point[k % lanePoints<K>], lane, gyration[pair.body2], point.frame);
 		point.frame.position += s.bodies[pair.body2].pose.position;
 	}
 }

@@ -41,6 +41,32 @@ struct alignas(alignment) Group : PointCount<K> {
 	PointLanes<K> point[lanePoints<K>];
 };
 
+// Points that carry all the friction that they can: a bit for each lane.
+template <class K>
+MASONRY_INLINE std::array<unsigned char, lanePoints<K>> slidersOf(const Group<K>& group)
+{
+	std::array<unsigned char, lanePoints<K>> bits {};
+	for (int k = 0; k < group.count; ++k) {
+		const PointLanes<K>& p = group.point[k];
+		const Mask mask = (p.pn > 0) & slides(p.pt, group.friction * p.pn) & Mask {1, 2, 4, 8};
+		bits[k] = (unsigned char)(mask[0] | mask[1] | mask[2] | mask[3]);
+	}
+	return bits;
+}
+
+// Rate along a row of one lane's point, of the velocity (packs) of either body alone.
+template <class K>
+MASONRY_INLINE double rateOf(const PointLanes<K>& p, int row, int lane, int body, const Lanes* v)
+{
+	double sum = 0;
+	for (int pack = 0; pack < packs<K>; ++pack) {
+		const Vector3 part = partOf(p, row, lane, body, pack);
+		for (int k = 0; k < 3; ++k)
+			sum += part[k] * v[pack][k];
+	}
+	return sum;
+}
+
 template <class K>
 struct alignas(alignment) FeatureGroup {
 	FeatureLanes<K> point[lanePoints<K>];
@@ -98,8 +124,7 @@ public:
 		const FeatureGroup<K>& f = features[group];
 		return f.pair[lane] < 0 ? 0 : std::min(s.pairs[f.pair[lane]].size - f.first[lane], lanePoints<K>);
 	}
-	// Of one point; its position from the centre of body 2.
-	ContactFrame<K> frame(int group, int lane, int point) const;
+	void findSliding(); // from the impulses
 	bool isFree(int body) const { return velocity[packs<K> * body][3] > 0; }
 	// Packs of a body as a velocity in global axes; a force and moment in global axes as the velocity that it gives in a time h.
 	typename K::Velocity inGlobal(const LaneArray& from, size_t body) const;
@@ -114,9 +139,10 @@ public:
 
 	std::vector<Group<K>> groups;
 	std::vector<FeatureGroup<K>> features;
-	std::vector<int> colourEnd;             // groups of colour c end before colourEnd[c]
-	std::vector<std::array<int, 2>> onBase; // group and lane of the pairs with a prescribed body
-	LaneArray velocity;                     // packs; 1/m = 0: prescribed. One more body at the end, for empty lanes
+	std::vector<std::array<unsigned char, lanePoints<K>>> sliding; // by group: a bit for each lane
+	std::vector<int> colourEnd;                                    // groups of colour c end before colourEnd[c]
+	std::vector<std::array<int, 2>> onBase;                        // group and lane of the pairs with a prescribed body
+	LaneArray velocity;                                            // packs; 1/m = 0: prescribed. One more body at the end, for empty lanes
 	LaneArray pose;                         // plane: (position, cosine, sine). Space: axes and position in three rows, then 1/rho
 	std::vector<typename K::Spin> gyration; // rho, m
 	int depth {0};                          // courses: pairs between a prescribed body and the block farthest from one
@@ -159,7 +185,7 @@ private:
 	std::vector<std::array<int, 2>> pairs;               // that the groups are made of
 	std::vector<std::array<Slot, lanesOfPair<K>>> slots; // of a pair; group -1: none
 	std::vector<unsigned char> wide;                     // pairs that need all their lanes
-	std::vector<unsigned char> known; // pairs whose lanes hold their points
+	std::vector<unsigned char> known;                    // pairs whose lanes hold their points
 	std::vector<unsigned char> stale;                    // groups with a pair to be looked up
 	bool otherPoints {false}, wider {false};
 };
@@ -173,7 +199,7 @@ private:
 	template <>                                                                                                                            \
 	void WallContacts<K>::locate(const RigidSystem<K>&, int, int, double, bool);                                                           \
 	template <>                                                                                                                            \
-	ContactFrame<K> WallContacts<K>::frame(int, int, int) const;                                                                           \
+	void WallContacts<K>::findSliding();                                                                                                   \
 	template <>                                                                                                                            \
 	void WallContacts<K>::setVelocity(size_t, const K::Velocity&);                                                                         \
 	template <>                                                                                                                            \

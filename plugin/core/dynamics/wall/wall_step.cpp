@@ -8,7 +8,6 @@ namespace masonry::rigid {
 using wall::all;
 using wall::dot;
 using wall::Lanes;
-using wall::slides;
 
 namespace {
 
@@ -233,9 +232,14 @@ double WallStep<K>::baseWork(const RigidSystem<K>& s) const
 	for (const auto& [g, i] : contacts.onBase) {
 		const wall::Group<K>& group = contacts.groups[g];
 		const bool first = s.bodies[group.body1[i]].prescribed;
-		const wall::Bodies<K> v1(contacts.velocity.data(), group.body1), v2(contacts.velocity.data(), group.body2);
-		for (int k = 0; k < group.count; ++k)
-			work += first ? wall::powerOn1(v1, group.point[k])[i] : -wall::powerOn2(v2, group.point[k])[i];
+		const Lanes* v = &contacts.velocity[wall::packs<K> * (first ? group.body1 : group.body2)[i]];
+		for (int k = 0; k < group.count; ++k) {
+			const wall::PointLanes<K>& p = group.point[k];
+			double power = p.pn[i] * wall::rateOf(p, 0, i, first ? 1 : 2, v);
+			for (int row = 1; row < K::rows; ++row)
+				power += wall::component(p.pt, row - 1, i) * wall::rateOf(p, row, i, first ? 1 : 2, v);
+			work += first ? power : -power;
+		}
 	}
 	return work;
 }
@@ -245,19 +249,16 @@ template <class K>
 double WallStep<K>::slidingLoss() const
 {
 	double loss = 0;
-	for (const wall::Group<K>& group : contacts.groups) {
-		wall::Mask any {0, 0, 0, 0};
-		for (int k = 0; k < group.count; ++k)
-			any |= (group.point[k].pn > 0) & slides(group.point[k].pt, group.friction * group.point[k].pn);
-		if (!(any[0] | any[1] | any[2] | any[3]))
+	for (size_t g = 0; g < contacts.groups.size(); ++g) {
+		const auto& sliding = contacts.sliding[g];
+		if (std::all_of(sliding.begin(), sliding.end(), [](unsigned char bits) { return bits == 0; }))
 			continue;
+		const wall::Group<K>& group = contacts.groups[g];
 		const wall::Bodies<K> v1(contacts.velocity.data(), group.body1), v2(contacts.velocity.data(), group.body2);
 		for (int k = 0; k < group.count; ++k) {
-			const wall::PointLanes<K>& p = group.point[k];
-			const Lanes power = dot(p.pt, slipRate(v1, v2, p));
-			const wall::Mask sliding = (p.pn > 0) & slides(p.pt, group.friction * p.pn);
+			const Lanes power = dot(group.point[k].pt, slipRate(v1, v2, group.point[k]));
 			for (int i = 0; i < wall::width; ++i)
-				if (sliding[i])
+				if (sliding[k] >> i & 1)
 					loss -= power[i];
 		}
 	}
@@ -288,6 +289,7 @@ void WallStep<K>::takeMotion(RigidSystem<K>& s, double h, double workBefore)
 		body.increment = (body.velocity - before) / h;
 	}
 	const int parts = report.mode == WallMode::still ? 1 : substepCount();
+	contacts.findSliding();
 	const double friction = parts * slidingLoss();
 	s.frictDissip += friction;
 	s.impactDissip += before + work + (s.baseWork - workBefore) - s.kineticEnergy() - friction;
