@@ -104,7 +104,7 @@ void WallStep<K>::advancePart(RigidSystem<K>& s, double h)
 	report.diverged = !std::isfinite(s.kineticEnergy());
 }
 
-// Velocities of the prescribed bodies that bring them where they belong after h.
+// Velocities of the prescribed bodies that bring them where they belong after h; 0: those that they have now.
 template <class K>
 void WallStep<K>::setBase(const RigidSystem<K>& s, double h)
 {
@@ -112,9 +112,9 @@ void WallStep<K>::setBase(const RigidSystem<K>& s, double h)
 		const auto& body = s.bodies[b];
 		if (!body.prescribed || body.drive < 0)
 			continue;
-		contacts.setLinearVelocity(b,
-		                           s.driveDirections[body.drive] *
-		                               ((s.drives[body.drive]->displacement(s.time + h) - s.drives[body.drive]->displacement(s.time)) / h));
+		const BaseDrive& drive = *s.drives[body.drive];
+		const double speed = h > 0 ? (drive.displacement(s.time + h) - drive.displacement(s.time)) / h : drive.velocity(s.time);
+		contacts.setLinearVelocity(b, s.driveDirections[body.drive] * speed);
 	}
 }
 
@@ -150,8 +150,8 @@ bool WallStep<K>::tryStill(RigidSystem<K>& s, double h)
 	report.velocityResidual = std::max(report.velocityResidual, kept.report.velocity);
 	report.forceResidual = std::max(report.forceResidual, kept.report.force);
 	kept.keepSlip();
+	s.baseWork += baseWorkWhenStill(s);
 	contacts.velocity = kept.velocity;
-	s.baseWork += baseWork(s);
 	shift.resize(kept.velocity.size());
 	for (size_t b = 0; b < shift.size(); ++b)
 		shift[b] = h * kept.velocity[b];
@@ -195,6 +195,7 @@ void WallStep<K>::substeps(RigidSystem<K>& s, double h)
 		report.events += land(s, part);
 		soft.substep(contacts, loads, part, k + 1 == count);
 		s.baseWork += baseWork(s);
+		setBase(s, part);
 	}
 	joints.release(contacts);
 	s.time = start;
@@ -224,11 +225,22 @@ int WallStep<K>::land(RigidSystem<K>& s, double part)
 	return int(s.impacts.size() - known);
 }
 
-// Of the impulses that the prescribed bodies give, J.
 template <class K>
-double WallStep<K>::baseWork(const RigidSystem<K>& s) const
+typename K::Velocity WallStep<K>::startVelocity(const RigidSystem<K>& s, int b) const
+{
+	typename K::Velocity velocity = s.bodies[b].velocity;
+	if (const int drive = s.bodies[b].drive; drive >= 0)
+		velocity.template head<K::dimension>() = s.driveDirections[drive] * s.drives[drive]->velocity(s.time);
+	return velocity;
+}
+
+// Of the impulses that the prescribed bodies give, J, with their velocities at the start of the substep: the mean of those that blocks which
+// go with them have before and after it.
+template <class K>
+double WallStep<K>::baseWork(const RigidSystem<K>& s)
 {
 	double work = 0;
+	setBase(s, 0);
 	for (const auto& [g, i] : contacts.onBase) {
 		const wall::Group<K>& group = contacts.groups[g];
 		const bool first = s.bodies[group.body1[i]].prescribed;
@@ -242,6 +254,33 @@ double WallStep<K>::baseWork(const RigidSystem<K>& s) const
 		}
 	}
 	return work;
+}
+
+// The same from the momentum that the blocks have taken up: of a few iterations, impulses are less right than velocities. Where prescribed
+// bodies move differently, from the impulses.
+template <class K>
+double WallStep<K>::baseWorkWhenStill(const RigidSystem<K>& s)
+{
+	using Vector = typename K::Vector;
+	int base = -1;
+	for (const auto& [g, i] : contacts.onBase) {
+		const int b = s.bodies[contacts.groups[g].body1[i]].prescribed ? contacts.groups[g].body1[i] : contacts.groups[g].body2[i];
+		if (base < 0)
+			base = b;
+		const typename K::Velocity v = startVelocity(s, b);
+		if (v.template head<K::dimension>() != startVelocity(s, base).template head<K::dimension>() || !v.template tail<K::spins>().isZero(0))
+			return baseWork(s);
+	}
+	if (base < 0)
+		return 0;
+	Vector impulse = Vector::Zero();
+	for (size_t b = 0; b < s.bodies.size(); ++b)
+		if (!s.bodies[b].prescribed) {
+			const Lanes change = kept.velocity[wall::packs<K> * b] - contacts.velocity[wall::packs<K> * b] - loads[wall::packs<K> * b];
+			for (int i = 0; i < K::dimension; ++i)
+				impulse[i] += s.bodies[b].mass * change[i];
+		}
+	return impulse.dot(startVelocity(s, base).template head<K::dimension>());
 }
 
 // What friction takes in the time of one set of impulses, J.

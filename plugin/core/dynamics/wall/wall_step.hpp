@@ -66,7 +66,9 @@ private:
 	void substeps(RigidSystem<K>& system, double h);
 	int land(RigidSystem<K>& system, double part);
 	int substepCount() const;
-	double baseWork(const RigidSystem<K>& system) const;
+	typename K::Velocity startVelocity(const RigidSystem<K>& system, int body) const;
+	double baseWork(const RigidSystem<K>& system);
+	double baseWorkWhenStill(const RigidSystem<K>& system);
 	double slidingLoss() const;
 	void setBase(const RigidSystem<K>& system, double h);
 	void setLoads(const RigidSystem<K>& system, double h);
