@@ -16,13 +16,13 @@ OUT = os.environ.get("RESTITUTION_OUT", "results/restitution")
 WIDTH, HEIGHT, DEPTH, FREQUENCY = 0.6, 3.0, 1.0, 1.0  # m, Hz; slenderness 5 in all scenes
 ALPHA = math.atan(WIDTH / HEIGHT)
 NATURAL = 1 - 1.5 * math.sin(ALPHA) ** 2
-RESTITUTIONS = (0.3, 0.5, 0.7, 0.8, 0.9, NATURAL, 1.0)
+RESTITUTIONS = (0.5, 0.7, 0.8, 0.9, NATURAL, 1.0)
 LIFTS = WIDTH / HEIGHT  # g: below it the monolith does not rock
-TIME = 5.0  # s
+TIME = 4.0  # s
 
 
 def scene(blocks, amplitude, restitution, order):
-    """A column of so many equal blocks as wide and as high, together, as the one block; the pier is a column of flat blocks."""
+    """A column of so many equal blocks, together as wide and as high as the one block. order 'wall': method='wall' instead."""
     O.reset()
     law = {} if restitution is None else {"restitution": restitution}
     # The exact block does not slip; joints of a structure that pull apart at their pivots have no solution without slip.
@@ -32,7 +32,7 @@ def scene(blocks, amplitude, restitution, order):
     t = np.arange(0, 1 / FREQUENCY + 1e-9, 2e-3)
     motion = dem.RecordMotionEngine(ids=[base], samples=list(amplitude * 9.81 * np.sin(2 * np.pi * FREQUENCY * t)), interval=2e-3, direction=(1, 0, 0))
     with contextlib.redirect_stdout(io.StringIO()):
-        O.engines = dem.engines(motion, impact_order=order, dt=1e-3)
+        O.engines = dem.engines(motion, dt=1e-3, **({"method": "wall"} if order == "wall" else {"method": "localised", "impact_order": order}))
     return ids
 
 
@@ -47,14 +47,14 @@ def falls(blocks, amplitude, restitution, order):
 
 
 def limit(blocks, restitution, order="simultaneous"):
-    """Smallest amplitude (g) on a ladder of 4 % that overturns, then bisected to 0.1 %: above it there may be safe windows again."""
+    """Smallest amplitude (g) on a ladder of 5 % that overturns, then bisected to 0.5 %: above it there may be safe windows again."""
     low = LIFTS
     high = low
     while not falls(blocks, high, restitution, order):
-        low, high = high, 1.04 * high
+        low, high = high, 1.05 * high
         if high > 40 * LIFTS:
             return math.inf
-    while high / low > 1.001:
+    while high / low > 1.005:
         middle = math.sqrt(low * high)
         low, high = (low, middle) if falls(blocks, middle, restitution, order) else (middle, high)
     return math.sqrt(low * high)
@@ -77,7 +77,7 @@ def final(restitution):
 
 def main():
     os.makedirs(OUT, exist_ok=True)
-    scenes = (("one block", 1, "simultaneous"), ("column of 3", 3, "simultaneous"), ("column of 3, sequential", 3, "sequential"), ("pier of 6", 6, "simultaneous"))
+    scenes = (("one block", 1, "simultaneous"), ("column of 3", 3, "simultaneous"), ("column of 3, sequential", 3, "sequential"), ("pier of 12, method='wall'", 12, "wall"))
     print("| C | exact, one block | " + " | ".join(name for name, *_ in scenes) + " |\n" + "| --- " * (len(scenes) + 2) + "|", flush=True)
     table = []
     for restitution in RESTITUTIONS:
@@ -91,8 +91,8 @@ def main():
     given, impacts = final(NATURAL)
     plastic, _ = final(None)
     apart = np.max(np.abs(given - plastic))
-    checks = [("one block: limit against the exact solution, bisected to 0.1 %", one, one <= 1e-3),
-              ("one block: the limit rises as C falls", np.max(np.diff(table[:, 1])), np.all(np.diff(table[:, 1]) <= 1e-3 * table[:-1, 1])),
+    checks = [("one block: limit against the exact solution, bisected to 0.5 %", one, one <= 5e-3),
+              ("one block: the limit rises as C falls", np.max(np.diff(table[:, 1])), np.all(np.diff(table[:, 1]) <= 5e-3 * table[:-1, 1])),
               (f"C = C_H against no C given (plastic), after {impacts} impacts: largest difference of the state", apart, apart <= 1e-6 and impacts > 0)]
     for text, value, holds in checks:
         print(f"{'holds' if holds else 'MISSED'}: {text}: {value:.2g}")
