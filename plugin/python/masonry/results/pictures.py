@@ -3,6 +3,7 @@
 import math
 
 import numpy as np
+from masonry.results.collapse import fallen
 from masonry.results.joints import joints, patches
 from masonry.results.view import View, enlargement, largest, nice
 
@@ -65,7 +66,10 @@ class _Painter:
         self._history, self._view, self._title = history, View(history, view), title
         self._enlarge = enlargement(history, samples, _DRAWN) if enlarge is None else float(enlarge)
         self._values = np.linalg.norm(history.displacement, axis=2) if color == "displacement" else history.rotation
-        self._map = _shades("YlOrRd", largest(self._values[samples][:, history.free]))
+        # Of the blocks that have not fallen: one on the floor would leave no colours to the others.
+        values, stands = self._values[samples], history.free & ~fallen(history)[samples]
+        most = largest(values[stands]) or largest(values[:, history.free])
+        self._map = _shades("YlOrRd", most)
         self._grey = np.array(to_rgb(_PRESCRIBED))
         start, free = history.corners(0), history.free
         shown = np.concatenate([self._view.place(history.corners(k, self._enlarge)[free]).reshape(-1, 2) for k in {0, *samples}])
@@ -73,7 +77,8 @@ class _Painter:
         self._axes.add_collection(LineCollection(self._view.outlines(start[free]), colors="0.6", linewidths=0.6, linestyles="--", zorder=1))
         self._blocks = PolyCollection([], edgecolors="0.2", linewidths=0.5 if len(start) < 300 else 0.25, zorder=2)
         self._axes.add_collection(self._blocks)
-        self.figure.colorbar(self._map, ax=self._axes, label=_COLOURS[color], shrink=0.8, pad=0.02)
+        self.figure.colorbar(self._map, ax=self._axes, label=_COLOURS[color], shrink=0.8, pad=0.02,
+                             extend="max" if largest(values[:, history.free]) > most else "neither")
 
     def paint(self, sample):
         corners = self._history.corners(sample, self._enlarge)
@@ -93,7 +98,8 @@ def draw(history, path, time=None, enlarge=None, color="displacement", view=None
 
     time       the sample nearest to it is drawn, s; None: the one in which the drift (WallHistory.drift) is largest
     enlarge    factor on the movement, positive; None: so that the largest is drawn as half of the smallest block, at least 1
-    color      'displacement' (of the centre, m) or 'rotation' (rad), since the first sample and relative to the base
+    color      'displacement' (of the centre, m) or 'rotation' (rad), since the first sample and relative to the base; the scale ends at the
+               largest of the blocks that have not fallen
     view       direction from the scene to the viewer (x, y, z); None: across the plane in which all blocks move, else from
                the right, the front and above
     """
