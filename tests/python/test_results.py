@@ -76,6 +76,9 @@ def test_what_moves_in_flight_is_no_slip():
     h = history([[2, 2, 0.2], [0.6, 0.5, 0.4]], [[[0, 0, -0.1], [x, 0, 0.2 + z]] for x, z in ((0, 0), (0.01, 0), (0.5, 0.3), (0.02, 0))])
     most, = results.joints(h)
     assert abs(most["slip"] - 0.02) < ROUND and abs(most["opening"] - 0.3) < ROUND
+    # Nor is it where the block has slid off, and lies as high as the joint once was.
+    h = history([[1, 1, 0.2], [0.6, 0.5, 0.4]], [[[0, 0, -0.1], [x, 0, 0.2]] for x in (0, 0.79, 0.81, 3.0)])
+    assert abs(results.joints(h)["slip"][0] - 0.79) < ROUND
 
 
 def test_joints_are_the_faces_that_touch():

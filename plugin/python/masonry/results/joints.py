@@ -89,20 +89,25 @@ class _Joints:
         self.normals, self.polygons = np.array(normals).reshape(-1, 3), np.array(polygons).reshape(-1, _CORNERS, 3)
         self.centers = np.array(centers).reshape(-1, 3)
         self.areas, self.smallest = np.array(areas), smallest[self.rows].min(axis=1)
-        self._start = axes
+        self._start, self._half = axes, half
+        self._across = np.abs(np.einsum("jab,ja->jb", axes[self.rows[:, 0]], self.normals)) > 0.5  # the axis of block 1 that is the normal
         self._arms = [np.einsum("jab,jka->jkb", axes[row], self.polygons - center[row][:, None]) for row in self.rows.T]
 
     def movement(self, history, sample):
         """(opening, slip, closed) of each joint at a sample: the largest gap of the points of the patch, 0 where all touch; how far the least open
-        point of block 2 has moved along the joint, over block 1 as it stands now; whether that point is closed."""
+        point of block 2 has moved along the joint, over block 1 as it stands now; whether that point is closed, and the blocks still lie against each other."""
         axes, place = _pose.matrices(history.orientation[sample]), history.position[sample]
         first, second = (place[row][:, None] + np.einsum("jab,jkb->jka", axes[row], arm) for row, arm in zip(self.rows.T, self._arms))
-        one = self.rows[:, 0]
+        one, two = self.rows.T
         apart = np.einsum("jab,jcb,jkc->jka", self._start[one], axes[one], second - first)  # seen from block 1
         gaps = np.einsum("jka,ja->jk", apart, self.normals)
         least = gaps.argmin(axis=1)[:, None]
         along = np.take_along_axis(apart, least[..., None], 1)[:, 0] - np.take_along_axis(gaps, least, 1) * self.normals
-        return np.maximum(gaps.max(axis=1), 0), np.linalg.norm(along, axis=1), np.take_along_axis(gaps, least, 1)[:, 0] <= _CLOSED * self.smallest
+        beside = np.einsum("jab,ja->jb", axes[one], place[two] - place[one])
+        reach = self._half[one] + np.einsum("jbc,jc->jb", np.abs(np.einsum("jab,jac->jbc", axes[one], axes[two])), self._half[two])
+        over = ((np.abs(beside) <= reach) | self._across).all(axis=1)
+        least = np.take_along_axis(gaps, least, 1)[:, 0]
+        return np.maximum(gaps.max(axis=1), 0), np.linalg.norm(along, axis=1), over & (np.abs(least) <= _CLOSED * self.smallest)
 
 
 def _joints_of(history):
@@ -120,8 +125,8 @@ def joints(history, time=None):
     id1, id2                the blocks; id2 is the later one of the history
     center, normal, area    of the patch in the first sample: mean of its corners (m), from block 1 to block 2, m^2
     opening                 the largest distance of the two sides, m: of a block that rocks by an angle a on a joint of width 2b, 2b sin(a)
-    slip                    sliding of block 2 over block 1 where the joint is closed, or nearest to it, m; NaN: it is open all over (for
-                            the largest: samples in which it is are left out)
+    slip                    sliding of block 2 over block 1 where the joint is closed, or nearest to it, m. Of the largest: samples in which it is
+                            open all over, or the blocks have parted, are left out; NaN where that is all of them
     opening_time, slip_time when, s
     """
     found = _joints_of(history)
@@ -142,3 +147,8 @@ def joints(history, time=None):
 def patches(history):
     """(j, 8, 3) corners of the patches of joints(history), in the first sample, m; those with fewer corners repeat their last one."""
     return _joints_of(history).polygons
+
+
+def joint_rows(history):
+    """(j, 2) rows in the history of the blocks of joints(history)."""
+    return _joints_of(history).rows

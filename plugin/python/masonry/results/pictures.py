@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 from masonry.results.collapse import fallen
-from masonry.results.joints import joints, patches
+from masonry.results.joints import joint_rows, joints, patches
 from masonry.results.view import View, enlargement, largest, nice
 
 # Movement of the farthest moved block in a picture, relative to the smallest block, where no factor is given.
@@ -155,10 +155,12 @@ def draw_joints(history, path, time=None, view=None, title=""):
     corners = history.corners(0)
     flat = view.place(polygons)
     when = "largest" if time is None else f"at {history.time[history.sample(time)]:.3f} s"
+    # The scale ends at the largest joint of two blocks that have not fallen.
+    stands = ~fallen(history)[history.sample(time)][joint_rows(history)].any(axis=1)
     figure, panels = _figure(view, view.place(corners[history.free]).reshape(-1, 2), "", columns=2)
     for axes, name, colours in zip(panels, ("opening", "slip"), ("YlOrRd", "YlGnBu")):
         values = 1e3 * table[name]
-        most = largest(values)
+        most = largest(values[stands]) or largest(values)
         shades = _shades(colours, most)
         order = np.argsort(np.nan_to_num(values))
         # What opens or slides by less than a hundredth of the most is left grey and thin. Edge on, the line of a joint is its outline.
@@ -168,7 +170,7 @@ def draw_joints(history, path, time=None, view=None, title=""):
         colors = np.where(moves[:, None], shades.to_rgba(np.nan_to_num(values), alpha=1.0 if view.from_side else 0.6), to_rgba(_UNMOVED, 0.3))
         axes.add_collection(PolyCollection(flat[order], facecolors=colors[order], edgecolors=colors[order], linewidths=width[order], zorder=2))
         axes.set_title(f"{title + ': ' if title else ''}{name}, {when}", fontsize="small")
-        figure.colorbar(shades, ax=axes, label=f"{name} (mm)", shrink=0.8, pad=0.02)
+        figure.colorbar(shades, ax=axes, label=f"{name} (mm)", shrink=0.8, pad=0.02, extend="max" if largest(values) > most else "neither")
     figure.savefig(path, dpi=150)
 
 
