@@ -41,6 +41,15 @@ MASONRY_INLINE Lanes larger(const Lanes& a, const Lanes& b) { return a > b ? a :
 MASONRY_INLINE Lanes smaller(const Lanes& a, const Lanes& b) { return a < b ? a : b; }
 MASONRY_INLINE Lanes size(const Lanes& a) { return a < 0 ? -a : a; }
 MASONRY_INLINE Lanes select(const Mask& mask, const Lanes& a, const Lanes& b) { return mask ? a : b; }
+// A bit for each lane.
+constexpr unsigned char allLanes = 15;
+MASONRY_INLINE unsigned char bitsOf(const Mask& mask)
+{
+	const Mask bits = mask & Mask {1, 2, 4, 8};
+	return (unsigned char)(bits[0] | bits[1] | bits[2] | bits[3]);
+}
+MASONRY_INLINE Mask maskOf(unsigned char bits) { return (Mask {bits, bits, bits, bits} & Mask {1, 2, 4, 8}) != 0; }
+
 MASONRY_INLINE bool any(const Mask& mask) { return (mask[0] | mask[1] | mask[2] | mask[3]) != 0; }
 MASONRY_INLINE Lanes root(const Lanes& a)
 {

@@ -69,7 +69,8 @@ MASONRY_LANES void locateGroups(Group<Plane>* groups, FeatureGroup<Plane>* featu
                                 const Lanes* velocity, const Plane::Spin* gyration, double travel, bool remember)
 {
 	for (size_t g = 0; g < count; ++g)
-		stale[g] |= largest(locateGroup(groups[g], features[g], pose, velocity, gyration, remember)) > travel;
+		if (largest(locateGroup(groups[g], features[g], pose, velocity, gyration, remember)) > travel)
+			stale[g] = allLanes;
 }
 
 MASONRY_LANES void findSliders(const Group<Plane>* groups, std::array<unsigned char, lanePoints<Plane>>* sliding, size_t count)

@@ -133,6 +133,7 @@ MASONRY_LANES void locateGroups(const RigidSystem<Space>& s, Group<Space>* group
 		Group<Space>& group = groups[g];
 		const Placed p1 = placed(pose, group.body1), p2 = placed(pose, group.body2);
 		Lanes mass1, mass2, moved = all(0);
+		const Mask anew = maskOf(stale[g]);
 		for (int i = 0; i < width; ++i) {
 			mass1[i] = velocity[packs<Space> * group.body1[i]][3];
 			mass2[i] = velocity[packs<Space> * group.body2[i]][3];
@@ -143,13 +144,13 @@ MASONRY_LANES void locateGroups(const RigidSystem<Space>& s, Group<Space>* group
 			if (f.crossing[0] | f.crossing[1] | f.crossing[2] | f.crossing[3])
 				takeCrossings(s, features[g], k, found);
 			if (remember) {
-				f.foundGap = found.gap;
-				f.found = {found.along1, found.along2};
+				f.foundGap = select(anew, found.gap, f.foundGap);
+				f.found = select(anew, {found.along1, found.along2}, f.found);
 			}
 			moved = larger(moved, size(found.gap - f.foundGap) + size(found.along1 - f.found.x) + size(found.along2 - f.found.y));
 			takeFound(group.point[k], f, found, p1, p2, mass1, mass2);
 		}
-		stale[g] |= largest(moved) > travel;
+		stale[g] |= bitsOf(moved > travel);
 	}
 }
 

@@ -77,7 +77,7 @@ void WallContacts<K>::colour(const RigidSystem<K>& s)
 		}
 		colourEnd.push_back(int(groups.size()));
 	}
-	stale.assign(groups.size(), 1);
+	stale.assign(groups.size(), allLanes);
 	known.assign(pairs.size(), 0);
 	onBase.clear();
 	for (int g = 0; g < int(groups.size()); ++g)
@@ -159,6 +159,16 @@ bool WallContacts<K>::lookUp(RigidSystem<K>& s, int c)
 	FoundPoints<K> found;
 	if (!K::findPoints(body1.halfSize, body1.pose, body2.halfSize, body2.pose, std::numeric_limits<double>::infinity(), pair.memory, found))
 		found.size = 0;
+	pair.face1 = found.face1;
+	pair.face2 = found.face2;
+	bool same = known[c] && found.size == pair.size;
+	for (int k = 0; same && k < found.size; ++k)
+		same = found.features[k] == pair.points[k].feature;
+	for (const auto [group, lane] : slots[c])
+		if (group >= 0)
+			groups[group].friction[lane] = std::min(pair.friction, mostFriction);
+	if (same)
+		return false;
 	if (known[c])
 		showPair(s, c);
 	known[c] = true;
@@ -167,8 +177,6 @@ bool WallContacts<K>::lookUp(RigidSystem<K>& s, int c)
 	for (int k = 0; k < K::maxPoints; ++k)
 		states[k] = state(c, k);
 	pair.size = found.size;
-	pair.face1 = found.face1;
-	pair.face2 = found.face2;
 	if (found.size > lanePoints<K> && !wide[c])
 		wide[c] = wider = true;
 	for (int k = 0; k < K::maxPoints && slots[c][k / lanePoints<K>].group >= 0; ++k) {
@@ -216,29 +224,24 @@ bool WallContacts<K>::lookUp(RigidSystem<K>& s, int c)
 		changed |= bool(features[group].point[k % lanePoints<K>].present[lane]) != (k < found.size);
 		takePoint(s, c, k);
 		setState(now, c, k);
-		groups[group].friction[lane] = std::min(pair.friction, mostFriction);
 	}
 	return changed;
 }
 
-// All pairs of the stale groups; lanes of one pair are looked up together.
+// Lanes of one pair are looked up together.
 template <class K>
 void WallContacts<K>::lookUpStale(RigidSystem<K>& s)
 {
 	if (std::none_of(stale.begin(), stale.end(), [](unsigned char is) { return is; }))
 		return;
-	if constexpr (lanesOfPair<K> != 1)
-		for (bool spread = true; spread;) {
-			spread = false;
-			for (const auto& lanes : slots)
-				if (lanes.back().group >= 0 && stale[lanes.front().group] != stale[lanes.back().group]) {
-					stale[lanes.front().group] = stale[lanes.back().group] = 1;
-					spread = true;
-				}
-		}
+	const auto isStale = [this](const Slot& slot) { return stale[slot.group] >> slot.lane & 1; };
+	for (const auto& lanes : slots)
+		if (lanes.back().group >= 0 && (isStale(lanes.front()) || isStale(lanes.back())))
+			for (const Slot& slot : lanes)
+				stale[slot.group] |= 1 << slot.lane;
 	for (size_t g = 0; g < groups.size(); ++g)
-		for (int lane = 0; stale[g] && lane < width && features[g].pair[lane] >= 0; ++lane)
-			if (features[g].first[lane] == 0)
+		for (int lane = 0; lane < width && features[g].pair[lane] >= 0; ++lane)
+			if (stale[g] >> lane & 1 && features[g].first[lane] == 0)
 				otherPoints |= lookUp(s, features[g].pair[lane]);
 	for (size_t g = 0; g < groups.size(); ++g)
 		if (stale[g]) {
@@ -330,7 +333,7 @@ bool WallContacts<K>::measure(RigidSystem<K>& s)
 		findDepth(s);
 	}
 	if (s.moved)
-		std::fill(stale.begin(), stale.end(), 1);
+		std::fill(stale.begin(), stale.end(), allLanes);
 	s.moved = false;
 	takeBodies(s);
 	threads = std::clamp(int(groups.size()) / groupsPerThread, 1, std::max(1, mostThreads));

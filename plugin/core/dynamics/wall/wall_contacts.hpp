@@ -48,8 +48,7 @@ MASONRY_INLINE std::array<unsigned char, lanePoints<K>> slidersOf(const Group<K>
 	std::array<unsigned char, lanePoints<K>> bits {};
 	for (int k = 0; k < group.count; ++k) {
 		const PointLanes<K>& p = group.point[k];
-		const Mask mask = (p.pn > 0) & slides(p.pt, group.friction * p.pn) & Mask {1, 2, 4, 8};
-		bits[k] = (unsigned char)(mask[0] | mask[1] | mask[2] | mask[3]);
+		bits[k] = bitsOf((p.pn > 0) & slides(p.pt, group.friction * p.pn));
 	}
 	return bits;
 }
@@ -173,7 +172,8 @@ private:
 	void countPoints(const RigidSystem<K>& system, int group);
 	void findDepth(const RigidSystem<K>& system);
 	void takeBodies(const RigidSystem<K>& system);
-	// Gaps, normals, arms. Groups of which a pair has moved by more than `travel` become stale; with `remember`, movement counts from here.
+	// Gaps, normals, arms. Pairs that have moved by more than `travel` become stale (in the plane with the others of their group); with
+	// `remember`, movement of those that are stale counts from here.
 	void locate(const RigidSystem<K>& system, int begin, int end, double travel, bool remember);
 	void lookUpStale(RigidSystem<K>& system);
 	bool lookUp(RigidSystem<K>& system, int pair);
@@ -186,7 +186,7 @@ private:
 	std::vector<std::array<Slot, lanesOfPair<K>>> slots; // of a pair; group -1: none
 	std::vector<unsigned char> wide;                     // pairs that need all their lanes
 	std::vector<unsigned char> known;                    // pairs whose lanes hold their points
-	std::vector<unsigned char> stale;                    // groups with a pair to be looked up
+	std::vector<unsigned char> stale;                    // lanes with a pair to be looked up, by group: a bit each
 	bool otherPoints {false}, wider {false};
 };
 
