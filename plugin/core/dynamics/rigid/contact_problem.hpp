@@ -18,9 +18,10 @@
 // Method. A proximal semi-smooth Newton method: with R = softness * trace and a centre l (the last impulses) the regularised law
 // p = P(l - u/R) makes V the root of M (V - free) - J^T P(l - (J V + offset)/R); each linear system M + J^T P' J / R is
 // factorised over the graph of bodies (block_factor.hpp). Redundant points and any mass ratio are harmless to it.
-// First, Newton with a small R from the states of the impulses given (stick, slip, open), and with the factor of the last
-// solve while the points are the same: one back-substitution where no state changes. From impulses far from the solution:
-// block Gauss-Seidel, and where its rate tells that it will not converge, Newton with a large R that falls as the centres converge.
+// A point alone is solved by its law at once. Else, first, Newton with a small R from the states of the impulses given (stick, slip,
+// open), and with the factor of the last solve while the points are the same: one back-substitution where no state changes. From
+// impulses far from the solution: block Gauss-Seidel, and where its rate tells that it will not converge, Newton with a large R that
+// falls as the centres converge.
 // Impulses that still miss the laws are returned with their residual, and made to add no energy (seen from the offsets).
 #include "dynamics/rigid/kinematics.hpp"
 #include "impact/impulse_problem.hpp" // noSlip

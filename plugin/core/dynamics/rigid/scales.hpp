@@ -28,13 +28,6 @@ template <class K> double acceleration(const RigidSystem<K>& s)
 	return force > 0 ? force : speed * speed / length(s);
 }
 
-// What gravity gives in a step; not below the round-off of speeds in the scene. m/s
-inline double stepSpeed(double acceleration, double speed, double h)
-{
-	constexpr double roundOff = 1e-5; // times the solver's tolerance of 1e-9: 45 units of the last digit
-	return std::max(acceleration * h, roundOff * speed);
-}
-
 } // namespace masonry::rigid::scale
 
 namespace masonry::rigid {
@@ -45,7 +38,13 @@ struct Scales {
 
 	Scales() = default;
 	template <class K> explicit Scales(const RigidSystem<K>& s) : length(scale::length(s)), acceleration(scale::acceleration(s)), speed(std::sqrt(acceleration * length)) {}
-	double stepSpeed(double h) const { return scale::stepSpeed(acceleration, speed, h); }
+
+	// What gravity gives in a step; not below the round-off of speeds in the scene. m/s
+	double stepSpeed(double h) const
+	{
+		constexpr double roundOff = 1e-5; // times the solver's tolerance of 1e-9: 45 units of the last digit
+		return std::max(acceleration * h, roundOff * speed);
+	}
 };
 
 } // namespace masonry::rigid
