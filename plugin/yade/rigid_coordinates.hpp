@@ -3,7 +3,6 @@
 
 #include "dynamics/rigid/rigid_system.hpp"
 #include <core/Body.hpp>
-#include <cstring>
 #include <pkg/common/Box.hpp>
 #include <sstream>
 #include <stdexcept>
@@ -35,12 +34,8 @@ struct Motion {
 		state.angVel = angVel;
 		state.angMom = angMom;
 	}
-	/// Bit by bit: nobody has touched the body since.
-	bool isOf(const State& state) const
-	{
-		const auto same = [](const auto& a, const auto& b) { return std::memcmp(&a, &b, sizeof(a)) == 0; };
-		return same(pos, state.pos) && same(ori.coeffs(), state.ori.coeffs()) && same(vel, state.vel) && same(angVel, state.angVel);
-	}
+	/// Nobody has touched the body since.
+	bool isOf(const State& state) const { return pos == state.pos && ori.coeffs() == state.ori.coeffs() && vel == state.vel && angVel == state.angVel; }
 };
 
 template <class K> struct Coordinates;
@@ -55,7 +50,9 @@ template <> struct Coordinates<Plane> {
 	Vector3r out(const masonry::Vector2& v) const { return v.x() * along + v.y() * up; }
 	Plane::Velocity load(const Vector3r& force, const Vector3r& torque, int id) const
 	{
-		if (std::abs(normal.dot(force)) > outOfPlane * force.norm() || torque.cross(normal).norm() > outOfPlane * torque.norm()) {
+		const auto share = [](Real square, const Vector3r& of) { return square > outOfPlane * outOfPlane * of.squaredNorm(); };
+		const Real across = normal.dot(force);
+		if (share(across * across, force) || share(torque.cross(normal).squaredNorm(), torque)) {
 			std::ostringstream text;
 			text << "a force or torque acts on block " << id << " out of the plane";
 			throw LeavesPlane(text.str());

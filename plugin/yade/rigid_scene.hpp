@@ -342,7 +342,7 @@ private:
 			if (block.prescribed) continue;
 			const int id = kept.ids[b];
 			block.force = coordinates.load(scene.forces.getForce(id), scene.forces.getTorque(id), id);
-			block.force.template head<K::dimension>() += block.mass * coordinates.in(integrator.gravity);
+			block.force.template head<K::dimension>() += block.mass * system.gravity;
 		}
 	}
 
@@ -424,9 +424,12 @@ private:
 		if (byWalls) wall.showPoints(system);
 	}
 
+	/// Bodies that stand still by prescription are as they were.
 	void writeStates()
 	{
 		for (size_t b = 0; b < links.size(); ++b) {
+			const auto& block = system.bodies[b];
+			if (block.prescribed && block.drive < 0 && block.velocity.isZero(0)) continue;
 			links[b].written = kept.seats[b].motion(coordinates, system.bodies[b]);
 			links[b].written.write(*links[b].body->state, kept.seats[b].spin(coordinates, system.bodies[b]));
 		}
