@@ -10,11 +10,11 @@ _METHODS = ("auto", "localised", "wall")
 _ORDERS = (None, "simultaneous", "sequential")
 # Up to so many free blocks impacts are found one by one.
 _FEW_BLOCKS = 20
-# Time step of rigid blocks, share of the largest that is allowed (0.12 sqrt(R/g) of the smallest block): 2.5e-3 sqrt(R/g), 1e-3 s for a
+# Time step of rigid blocks, share of the largest that is allowed (0.15 sqrt(R/g) of the smallest block): 2.5e-3 sqrt(R/g), 1e-3 s for a
 # block 3 m high. Rocking angles of one block are then right to 1e-6.
-_RIGID_STEP = 1 / 48
+_RIGID_STEP = 1 / 60
 # The same for method='wall': 4e-3 sqrt(R/g), 1e-3 s for blocks of 1.0 x 0.5 m.
-_WALL_STEP = 1 / 30
+_WALL_STEP = 2 / 75
 _PENETRATION = 1e-5
 # Share of the critical time step at which the step no longer shows in the error (README, convergence).
 _STEP_FRACTION = 0.2
@@ -141,7 +141,7 @@ def _rigid(motions, model, method, dt, tolerance, impact_order, gravity, recorde
         raise ValueError("dt = None: must be given where gravity is 0")
     step = dt if dt is not None else (_WALL_STEP if wall else _RIGID_STEP) * integrator.largestTimeStep
     if not step <= integrator.largestTimeStep:
-        raise ValueError(f"dt = {dt}: must be at most {integrator.largestTimeStep:.3g} s, 0.12 sqrt(R/g) of the smallest block")
+        raise ValueError(f"dt = {dt}: must be at most {integrator.largestTimeStep:.3g} s, 0.15 sqrt(R/g) of the smallest block")
     O.dt = step
     print(f"masonry.dem: rigid blocks, {choice}; dt = {O.dt:.3g} s")
     return [wrapper.ForceResetter(), *others, *recorders, integrator]
