@@ -45,12 +45,21 @@ constexpr double settlingGain = 0.5;
 
 // --- rigid blocks (dynamics/rigid/) ---
 namespace rigid {
-// Share of the constraint velocity error at the start of a step that the step takes off. Larger: energy errors of a smooth
-// step, third order in the step, grow with it; 0: an error once made changes its sign for ever.
+// Share of the stray velocities of points in touch that a steady step takes off. Larger: round-off of the solver is damped sooner; 0: an
+// error once made changes its sign for ever.
 constexpr double damping = 1. / 16;
 // Gap relative to the smallest half size that is zero: ends the search for an impact and the closing of gaps. Larger: impact
 // times are wrong by gap / approach speed.
 constexpr double gap = 1e-13;
+// Speed relative to sqrt(g * smallest half size) at which a penetration is taken off where lifting costs more energy than the contacts
+// lose. Larger: a block rises with its weight times this speed; smaller: penetrations, up to the merged gap, stay longer.
+constexpr double closingSpeed = 5e-9;
+// What the spins may gain in a step over the work on them, relative to the weight times the smallest half size. Smaller: more passes over
+// a step.
+constexpr double spinEnergy = 1e-11;
+// Energy, relative to the same, that a step may give where it takes stray velocities off. Larger: round-off decides more often whether it
+// does; smaller: the solver's errors stay in blocks at rest.
+constexpr double strayEnergy = 1e-13;
 // Relative velocity at a point, relative to what gravity gives in a step, that is zero: a point that parts more slowly
 // stays in touch. Smaller: round-off opens closed joints; larger: the first such part of a hop is lost.
 constexpr double parting = 1e-6;

@@ -83,8 +83,12 @@ struct ContactState {
 	double residual() const
 	{
 		double worst = 0;
-		for (int i = 0; i < nPoints; ++i)
-			worst = std::max(worst, violation(i, relativeVelocity(rows[i])));
+		for (int i = 0; i < nPoints; ++i) {
+			const double miss = violation(i, relativeVelocity(rows[i]));
+			if (std::isnan(miss))
+				return std::numeric_limits<double>::infinity();
+			worst = std::max(worst, miss);
+		}
 		return worst;
 	}
 

@@ -6,14 +6,21 @@ namespace masonry::rigid {
 
 namespace {
 
-	// Time at which a gap with the value g0 and rate r0 at the start and g1 < 0 after h falls through zero (parabola through the three).
-	double downCrossing(double g0, double r0, double g1, double h)
+	struct Crossing {
+		double at, speed;
+	};
+
+	// Where a gap with the value g0 and rate r0 at the start and g1 < 0 after h falls through zero (parabola through the three).
+	Crossing downCrossing(double g0, double r0, double g1, double h)
 	{
 		const double c = (g1 - g0 - r0 * h) / (h * h);
 		const double root = std::sqrt(std::max(0., r0 * r0 - 4 * c * g0));
 		const double t = c < 0 ? (r0 + root) / (-2 * c) : 2 * g0 / (root - r0);
-		return std::isfinite(t) ? std::clamp(t, 0., h) : 0.;
+		return { std::isfinite(t) ? std::clamp(t, 0., h) : 0., root };
 	}
+
+	// Gap of an open point that counts as closed: zero, or the penetration that it parted with.
+	template <class K> double zeroOf(const RigidSystem<K>& s, PointRef ref) { return std::min(s.pairs[ref.pair].points[ref.point].gap, 0.); }
 
 	template <class K> struct Relative {
 		double                                gap, rate;
@@ -59,12 +66,13 @@ template <class K> Event findEvent(const RigidSystem<K>& s, SmoothStep<K>& step,
 			const ContactPoint<K>& point = s.pairs[c].points[i];
 			const PointRef         ref { c, i };
 			if (!point.closed) {
-				const double gap = step.frame(c, i).gap;
+				const double zero = zeroOf(s, ref), gap = step.frame(c, i).gap - zero;
 				if (gap >= -tiny || contains(step.anticipated, ref)) continue;
-				if (-atEnd(s, step, ref).rate < slow)
+				const Crossing crossing = downCrossing(point.gap - zero, atStart(s, ref).rate, gap, h);
+				if (crossing.speed < slow)
 					step.anticipated.push_back(ref);
 				else
-					consider(Event::closing, ref, downCrossing(point.gap, atStart(s, ref).rate, gap, h));
+					consider(Event::closing, ref, crossing.at);
 			} else if (point.sliding && !step.stopsInside) {
 				const double before = atStart(s, ref).slip.norm(), after = slipOn(s, step, ref);
 				if (after < -still && before > still) consider(Event::stop, ref, h * before / (before - after));
@@ -87,10 +95,11 @@ template <class K> Event localise(const RigidSystem<K>& s, SmoothStep<K>& step, 
 		}
 		step.attempt(s, h);
 		if (event.kind == Event::closing) {
-			const auto end = atEnd(s, step, event.point);
-			if (std::abs(end.gap) <= tiny) break;
-			(end.gap > 0 ? early : late) = h;
-			event.at = h - end.gap / end.rate; // Newton
+			const auto   end = atEnd(s, step, event.point);
+			const double gap = end.gap - zeroOf(s, event.point);
+			if (std::abs(gap) <= tiny) break;
+			(gap > 0 ? early : late) = h;
+			event.at = h - gap / end.rate; // Newton
 			if (!(end.rate < 0) || !(event.at > early && event.at < late)) event.at = 0.5 * (early + late);
 		} else {
 			const double before = atStart(s, event.point).slip.norm(), after = slipOn(s, step, event.point);

@@ -173,27 +173,48 @@ template <class K> void ImpactStage<K>::settle(RigidSystem<K>& s)
 		const auto &     body1 = s.bodies[pair.body1], &body2 = s.bodies[pair.body2];
 		const auto       u = relativeVelocity(point.frame, body1.pose.position, body1.velocity, body2.pose.position, body2.velocity);
 		point.closed = u[0] <= still;
-		point.landing = false;
 		point.sliding = point.closed && u.template tail<K::rows - 1>().norm() > still;
 	}
 	s.fresh = true;
 }
 
 // The smooth step leaves velocities of the order h^2 at the points in touch, of either sign; the law's w- is that of bodies that hold on to
-// their pivots. A loaded point that parts is held from the other side.
+// their pivots. Loaded points are held from both sides: an impulse larger than holding takes is taken away from each and found anew.
 template <class K> void ImpactStage<K>::holdPivots(RigidSystem<K>& s)
 {
+	constexpr double enough = 10;
 	gather(s, {});
+	const auto loaded = [&](size_t k) -> const ContactPoint<K>* {
+		const ContactPoint<K>& point = s.pairs[refs[k].pair].points[refs[k].point];
+		return point.force[0] > 0 ? &point : nullptr;
+	};
+	double stray = 0, heaviest = 0;
+	for (const masonry::Body& body : bodies)
+		if (!body.prescribed) heaviest = std::max(heaviest, body.mass);
+	for (size_t k = 0; k < refs.size(); ++k)
+		if (const ContactPoint<K>* held = loaded(k)) {
+			ImpulsePoint& point = impact.points[k];
+			const Vector3 u = bodies[point.body2].velocityAt(point.position) - bodies[point.body1].velocityAt(point.position);
+			if (held->sliding) point.friction = 0;
+			stray = std::max(stray, held->sliding ? std::abs(point.normal.dot(u)) : u.norm());
+		}
+	const double before = kineticEnergy(bodies), impulse = enough * heaviest * stray;
+	double       work = 0; // of the prescribed bodies
 	for (size_t k = 0; k < refs.size(); ++k) {
-		ImpulsePoint& point = impact.points[k];
-		const Vector3 u = bodies[point.body2].velocityAt(point.position) - bodies[point.body1].velocityAt(point.position);
-		if (s.pairs[refs[k].pair].points[refs[k].point].force[0] > 0 && point.normal.dot(u) > 0) point.normal = -point.normal;
+		if (!loaded(k)) continue;
+		const ImpulsePoint& point = impact.points[k];
+		for (const auto& [b, sign] : { std::pair(point.body1, impulse), std::pair(point.body2, -impulse) }) {
+			masonry::Body& body = bodies[b];
+			if (body.prescribed) work -= sign * point.normal.dot(body.velocityAt(point.position));
+			body.velocity += sign * body.inverseMass() * point.normal;
+			body.angularVelocity += sign * (body.inverseInertia() * (point.position - body.pose.position).cross(point.normal));
+		}
 	}
-	const auto result = applyRockingImpact(bodies, impact);
+	work += applyRockingImpact(bodies, impact).work;
 	for (size_t b = 0; b < bodies.size(); ++b)
 		if (!s.bodies[b].prescribed) takeVelocity(bodies[b], s.bodies[b]);
-	s.impactDissip += result.energyLost;
-	s.baseWork += result.work;
+	s.impactDissip += before + work - kineticEnergy(bodies);
+	s.baseWork += work;
 }
 
 template <class K> double ImpactStage<K>::land(RigidSystem<K>& s, const std::vector<PointRef>& closing)

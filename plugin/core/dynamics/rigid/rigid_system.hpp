@@ -30,7 +30,6 @@ template <class K> struct ContactPoint {
 	typename K::Feature feature;
 	bool                closed { false };  // in touch: may carry force
 	bool                sliding { false };
-	bool                landing { false }; // closed in the last step, not localised: its approach speed is taken off in the next
 	double              gap { 0 };         // m, at the end of the last step
 	Eigen::Matrix<double, K::rows, 1> force { Eigen::Matrix<double, K::rows, 1>::Zero() }; // N, mean of the last smooth step; on body 2, normal then tangents
 	ContactFrame<K>     frame;             // at the end of the last step

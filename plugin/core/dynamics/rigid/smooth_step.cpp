@@ -45,6 +45,20 @@ namespace {
 		return J;
 	}
 
+	// Whether the impulse has reached the friction cone.
+	template <class K> bool slides(const ContactRows<K>& rows)
+	{
+		const double normal = rows.impulse[0];
+		return normal > 0 && rows.impulse.template tail<K::rows - 1>().norm() >= (1 - tolerance::rigid::cone) * rows.friction * normal;
+	}
+
+	template <class K> Eigen::Matrix<double, K::rows, 1> velocityAtStart(const RigidSystem<K>& s, const PointRef& ref)
+	{
+		const auto& pair = s.pairs[ref.pair];
+		const auto &body1 = s.bodies[pair.body1], &body2 = s.bodies[pair.body2];
+		return rigid::relativeVelocity(pair.points[ref.point].frame, body1.pose.position, body1.velocity, body2.pose.position, body2.velocity);
+	}
+
 	// The forces of more than three points on a face are not determined by its motion, but where it spins as it slides the friction couple
 	// hangs on them: they start from linear pressure, that is from the least sum of squares with the same resultant and moments, so that the
 	// solver's path does not decide. Points that would have to pull, or stick, are left as they are.
@@ -71,7 +85,16 @@ namespace {
 
 } // namespace
 
-template <class K> void SmoothStep<K>::predict(const RigidSystem<K>& s, double h)
+template <class K> void SmoothStep<K>::begin(const RigidSystem<K>& s)
+{
+	solver.forget();
+	scales = Scales(s);
+	weight = 0;
+	for (const RigidBody<K>& body : s.bodies)
+		if (!body.prescribed) weight += body.mass * scales.acceleration * scales.length;
+}
+
+template <class K> void SmoothStep<K>::predict(const RigidSystem<K>& s, double h, bool again)
 {
 	last.bodies.resize(s.bodies.size());
 	solver.bodies.clear();
@@ -87,28 +110,80 @@ template <class K> void SmoothStep<K>::predict(const RigidSystem<K>& s, double h
 			continue;
 		}
 		next.unknown = int(solver.bodies.size());
-		next.mean = body.velocity + 0.5 * h * increments[b];
-		next.middle = next.predicted = body.pose;
+		if (!again) {
+			const typename K::Velocity change = s.fresh ? typename K::Velocity(K::Velocity::Zero()) : typename K::Velocity(h * body.increment);
+			next.mean = body.velocity + 0.5 * change;
+			next.velocity = body.velocity + change;
+			next.end = body.pose;
+			K::advance(next.end, next.mean, h);
+			next.momentum = K::angularMomentum(body.inertia, next.end, next.velocity.template tail<K::spins>());
+		}
+		next.middle = body.pose;
 		K::advance(next.middle, next.mean, h / 2);
-		if constexpr (K::spins == 3) K::advance(next.predicted, next.mean, h);
 
 		FreeBody<K> unknown;
-		unknown.inverseMass = inverseMass(body, next.predicted);
-		typename K::Velocity momentum = h * body.force;
-		momentum.template head<K::dimension>() += body.mass * body.velocity.template head<K::dimension>();
-		momentum.template tail<K::spins>() += K::angularMomentum(body.inertia, body.pose, body.velocity.template tail<K::spins>());
-		unknown.free = unknown.inverseMass * momentum;
+		unknown.inverseMass = inverseMass(body, next.middle);
+		unknown.free = body.velocity + h * (unknown.inverseMass * body.force);
+		if constexpr (K::spins == 3) {
+			const Quaternion half = next.middle.orientation * body.pose.orientation.conjugate();
+			const Vector3    spin = body.velocity.template tail<3>(), momentum = K::angularMomentum(body.inertia, body.pose, spin);
+			const Vector3    back = half.conjugate() * next.momentum - next.momentum;
+			unknown.free.template tail<3>() = half * spin - spin + unknown.inverseMass.angular * (momentum + h * body.force.template tail<3>() + back);
+		}
 		solver.bodies.push_back(unknown);
 	}
+}
+
+template <class K> bool SmoothStep<K>::acts(const RigidSystem<K>& s, PointRef ref) const
+{
+	return s.pairs[ref.pair].points[ref.point].closed
+	        || std::any_of(anticipated.begin(), anticipated.end(), [&](const PointRef& p) { return p.pair == ref.pair && p.point == ref.point; });
+}
+
+// A share of the stray velocities, where the forces of the last step would do no work on it.
+template <class K> void SmoothStep<K>::dampStray(const RigidSystem<K>& s, double h)
+{
+	double work = 0;
+	for (int c = 0; c < int(s.pairs.size()); ++c)
+		for (int i = 0; i < s.pairs[c].size; ++i) {
+			if (!acts(s, { c, i })) continue;
+			const ContactPoint<K>& point = s.pairs[c].points[i];
+			stray.push_back(Impulse::Zero());
+			if (!point.closed) continue;
+			stray.back() = tolerance::rigid::damping * velocityAtStart(s, PointRef { c, i });
+			if (point.sliding) stray.back().template tail<K::rows - 1>().setZero();
+			work += 0.5 * h * point.force.dot(stray.back());
+		}
+	if (std::abs(work) > tolerance::rigid::strayEnergy * weight) stray.clear();
+}
+
+// The stray velocity of the closed points that alternates from step to step, seen from a pass that took nothing off: half of what it
+// changes by.
+template <class K> void SmoothStep<K>::findStray(const RigidSystem<K>& s)
+{
+	for (size_t r = 0; r < last.rows.size(); ++r) {
+		const PointRef         ref = last.rows[r];
+		const ContactPoint<K>& point = s.pairs[ref.pair].points[ref.point];
+		stray.push_back(Impulse::Zero());
+		if (!point.closed) continue;
+		stray.back() = 0.5 * (velocityAtStart(s, ref) - relativeVelocity(s, ref.pair, ref.point));
+		if (point.sliding || slides(solver.points[r])) stray.back().template tail<K::rows - 1>().setZero();
+	}
+}
+
+// Work of the impulses where the stray velocities are taken off, J.
+template <class K> double SmoothStep<K>::strayWork() const
+{
+	double work = 0;
+	for (size_t r = 0; r < stray.size(); ++r)
+		work += 0.5 * solver.points[r].impulse.dot(stray[r]);
+	return work;
 }
 
 template <class K> void SmoothStep<K>::assemble(const RigidSystem<K>& s, double h)
 {
 	solver.points.clear();
 	last.rows.clear();
-	const auto isAnticipated = [&](int pair, int point) {
-		return std::any_of(anticipated.begin(), anticipated.end(), [&](const PointRef& p) { return p.pair == pair && p.point == point; });
-	};
 	for (int c = 0; c < int(s.pairs.size()); ++c) {
 		const ContactPair<K>& pair = s.pairs[c];
 		const size_t          begin = solver.points.size();
@@ -116,7 +191,7 @@ template <class K> void SmoothStep<K>::assemble(const RigidSystem<K>& s, double 
 		positions.clear();
 		for (int i = 0; i < pair.size; ++i) {
 			const ContactPoint<K>& point = pair.points[i];
-			if (!point.closed && (anticipated.empty() || !isAnticipated(c, i))) continue;
+			if (!acts(s, { c, i })) continue;
 			const RigidBody<K>&   body1 = s.bodies[pair.body1];
 			const RigidBody<K>&   body2 = s.bodies[pair.body2];
 			const auto&           next1 = last.bodies[pair.body1];
@@ -130,24 +205,20 @@ template <class K> void SmoothStep<K>::assemble(const RigidSystem<K>& s, double 
 			rows.J1 = jacobian(frame, next1.middle.position, chord<K>(next1.mean, h), -1);
 			rows.J2 = jacobian(frame, next2.middle.position, chord<K>(next2.mean, h), 1);
 			rows.friction = pair.friction;
-			rows.impulse = h * point.force;
+			rows.impulse = guesses.empty() ? Impulse(h * point.force) : guesses[last.rows.size() - 1];
 			if (body1.prescribed) rows.offset += rows.J1 * next1.velocity;
 			if (body2.prescribed) rows.offset += rows.J2 * next2.velocity;
-			if (point.closed && !point.landing) {
-				const auto error = rigid::relativeVelocity(point.frame, body1.pose.position, body1.velocity, body2.pose.position, body2.velocity);
-				const auto now = (rows.J1 * body1.velocity + rows.J2 * body2.velocity).eval();
-				rows.offset[0] += now[0] - tolerance::rigid::damping * error[0];
-				if (!point.sliding)
-					rows.offset.template tail<K::rows - 1>() += (now - tolerance::rigid::damping * error).template tail<K::rows - 1>();
-				else if (!stopsInside)
-					rows.offset.template tail<K::rows - 1>() += now.template tail<K::rows - 1>();
-			} else if (!point.closed) {
-				rows.offset[0] += 2 * (frame.gap - std::min(point.gap, 0.)) / h; // a penetration at the start is no approach: `project` closes it
-			}
+			auto now = (rows.J1 * body1.velocity + rows.J2 * body2.velocity).eval();
+			if (!point.closed)
+				now[0] = std::max(now[0] + 2 * std::max(point.gap, 0.) / h, 0.);
+			else if (!stray.empty())
+				now -= stray[last.rows.size() - 1];
+			if (point.sliding && stopsInside) now.template tail<K::rows - 1>().setZero();
+			rows.offset += now;
 			solver.points.push_back(rows);
 			if constexpr (K::maxPoints > 3) {
 				positions.push_back(frame.position);
-				slides &= point.sliding && point.force[0] > 0;
+				slides &= point.sliding && rows.impulse[0] > 0;
 			}
 		}
 		if constexpr (K::maxPoints > 3)
@@ -155,21 +226,33 @@ template <class K> void SmoothStep<K>::assemble(const RigidSystem<K>& s, double 
 	}
 }
 
-template <class K> void SmoothStep<K>::finish(const RigidSystem<K>& s, double h)
+// Returns what the spins gain over the work on them, of all bodies, J.
+template <class K> double SmoothStep<K>::finish(const RigidSystem<K>& s, double h)
 {
+	double gain = 0;
 	for (size_t b = 0; b < s.bodies.size(); ++b) {
 		const RigidBody<K>& body = s.bodies[b];
 		auto&               next = last.bodies[b];
 		if (body.prescribed) continue;
-		next.velocity = solver.bodies[next.unknown].velocity;
+		const FreeBody<K>& solved = solver.bodies[next.unknown];
+		next.velocity = solved.velocity;
 		next.mean = 0.5 * (body.velocity + next.velocity);
 		next.end = body.pose;
 		K::advance(next.end, next.mean, h);
-		if constexpr (K::spins == 3) { // the momentum is the state: the spin belongs to the orientation reached
-			const auto spin = next.velocity.template tail<K::spins>();
-			next.velocity.template tail<K::spins>() = K::inverseInertia(body.inertia, next.end) * K::angularMomentum(body.inertia, next.predicted, spin);
+		if constexpr (K::spins == 3) {
+			const Vector3 spin = body.velocity.template tail<3>(), mean = next.mean.template tail<3>();
+			const Vector3 before = K::angularMomentum(body.inertia, body.pose, spin);
+			const Vector3 contact = K::angularMomentum(body.inertia, next.middle, (solved.velocity - solved.free).template tail<3>());
+			next.momentum = before + h * body.force.template tail<3>() + contact;
+			next.velocity.template tail<3>() = K::inverseInertia(body.inertia, next.end) * next.momentum;
+			gain += std::abs(0.5 * (next.velocity.template tail<3>().dot(next.momentum) - spin.dot(before)) - mean.dot(next.momentum - before));
 		}
 	}
+	return gain;
+}
+
+template <class K> void SmoothStep<K>::findFrames(const RigidSystem<K>& s)
+{
 	first.resize(s.pairs.size());
 	last.frames.clear();
 	for (size_t c = 0; c < s.pairs.size(); ++c) {
@@ -184,69 +267,99 @@ template <class K> void SmoothStep<K>::finish(const RigidSystem<K>& s, double h)
 template <class K> void SmoothStep<K>::attempt(const RigidSystem<K>& s, double h)
 {
 	last.h = h;
-	increments.resize(s.bodies.size());
-	for (size_t b = 0; b < s.bodies.size(); ++b)
-		increments[b] = s.fresh ? typename K::Velocity(K::Velocity::Zero()) : s.bodies[b].increment;
 	// After an event the change of velocity in the last step, which can have been of any length, tells nothing: a second pass takes that
 	// of the first.
-	for (int pass = s.fresh ? 0 : 1; pass < 2; ++pass) {
-		predict(s, h);
+	constexpr int mostPasses = 5;
+	guesses.clear();
+	stray.clear();
+	unsteady = false;
+	if (!s.fresh) dampStray(s, h);
+	for (int pass = 0; pass < mostPasses; ++pass) {
+		predict(s, h, pass > 0);
 		assemble(s, h);
 		last.solved = solver.solve(s.settings.tolerance * scales.stepSpeed(h));
-		if (pass == 0)
-			for (size_t b = 0; b < s.bodies.size(); ++b)
-				if (!s.bodies[b].prescribed) increments[b] = (solver.bodies[last.bodies[b].unknown].velocity - s.bodies[b].velocity) / h;
+		const double gain = finish(s, h);
+		const bool   first = pass == 0 && s.fresh;
+		if (first) {
+			findFrames(s);
+			findStray(s);
+		}
+		const bool gives = strayWork() > tolerance::rigid::strayEnergy * weight; // then they stay: in the next step they have the other sign
+		if (gives) {
+			stray.clear();
+			unsteady = true;
+		}
+		if (!first && !gives && gain <= tolerance::rigid::spinEnergy * weight) break;
+		guesses.clear();
+		for (const ContactRows<K>& rows : solver.points)
+			guesses.push_back(rows.impulse);
 	}
-	finish(s, h);
+	findFrames(s);
 }
 
-// Sweeps over the loaded points, each moved back along its normal row (least motion, weighted by mass); the gaps follow linearly.
-template <class K> void SmoothStep<K>::project(RigidSystem<K>& s)
+// Movements that close the gaps of loaded points and take penetrations off, both up to `most` (m), and all that arose in the step. Sweeps
+// over the points, each moved back along its normal row (least motion, weighted by mass); the gaps follow linearly. Returns the work
+// against the forces on the bodies, J.
+template <class K> double SmoothStep<K>::findShifts(const RigidSystem<K>& s, double most)
 {
-	gaps.clear();
-	double largest = 0;
-	for (size_t r = 0; r < last.rows.size(); ++r) {
-		const PointRef ref = last.rows[r];
-		gaps.push_back(last.frames[first[ref.pair] + ref.point].gap);
-		if (solver.points[r].impulse[0] > 0 || gaps.back() < 0) largest = std::max(largest, std::abs(gaps.back()));
-	}
 	const double enough = tolerance::rigid::gap * scales.length;
-	if (!(largest > enough)) return;
+	double       largest = 0;
+	misses.clear();
+	for (size_t r = 0; r < last.rows.size(); ++r) {
+		const ContactPoint<K>& point = s.pairs[last.rows[r].pair].points[last.rows[r].point];
+		const double           gap = frame(last.rows[r].pair, last.rows[r].point).gap;
+		const bool             loaded = solver.points[r].impulse[0] > 0;
+		const double           sunk = stray.empty() ? 0. : 0.5 * last.h * stray[r][0];
+		const double           meant = point.closed ? point.gap + sunk : std::min(gap, 0.);
+		const double           kept = meant - std::clamp(meant, -most, most);
+		misses.push_back(gap - (loaded ? kept : std::min(kept, 0.)));
+		if (loaded || misses.back() < 0) largest = std::max(largest, std::abs(misses.back()));
+	}
+	shifts.clear();
+	if (!(largest > enough)) return 0;
 	shifts.assign(solver.bodies.size(), K::Velocity::Zero());
 	const int maxSweeps = last.rows.size() == 1 ? 1 : 20;
 	for (int sweep = 0; sweep < maxSweeps && largest > enough; ++sweep) {
 		largest = 0;
 		for (size_t r = 0; r < last.rows.size(); ++r) {
 			const ContactRows<K>& rows = solver.points[r];
-			double                gap = gaps[r], softness = 0;
+			double                miss = misses[r], softness = 0;
 			typename K::Velocity  move1 = K::Velocity::Zero(), move2 = K::Velocity::Zero();
 			if (rows.body1 >= 0) {
 				move1 = solver.bodies[rows.body1].inverseMass * rows.J1.row(0).transpose();
 				softness += rows.J1.row(0).dot(move1);
-				gap += rows.J1.row(0).dot(shifts[rows.body1]);
+				miss += rows.J1.row(0).dot(shifts[rows.body1]);
 			}
 			if (rows.body2 >= 0) {
 				move2 = solver.bodies[rows.body2].inverseMass * rows.J2.row(0).transpose();
 				softness += rows.J2.row(0).dot(move2);
-				gap += rows.J2.row(0).dot(shifts[rows.body2]);
+				miss += rows.J2.row(0).dot(shifts[rows.body2]);
 			}
-			if (!(rows.impulse[0] > 0) && gap >= 0) continue;
-			largest = std::max(largest, std::abs(gap));
-			if (rows.body1 >= 0) shifts[rows.body1] -= gap / softness * move1;
-			if (rows.body2 >= 0) shifts[rows.body2] -= gap / softness * move2;
+			if (!(rows.impulse[0] > 0) && miss >= 0) continue;
+			largest = std::max(largest, std::abs(miss));
+			if (rows.body1 >= 0) shifts[rows.body1] -= miss / softness * move1;
+			if (rows.body2 >= 0) shifts[rows.body2] -= miss / softness * move2;
 		}
 	}
+	double work = 0;
+	for (size_t b = 0; b < s.bodies.size(); ++b)
+		if (last.bodies[b].unknown >= 0) work -= s.bodies[b].force.dot(shifts[last.bodies[b].unknown]);
+	return work;
+}
+
+// Closes gaps and penetrations: at once where that costs no more energy than the contacts have lost in the step, else little by little.
+template <class K> void SmoothStep<K>::project(const RigidSystem<K>& s, double lost)
+{
+	if (findShifts(s, std::numeric_limits<double>::infinity()) > lost) findShifts(s, tolerance::rigid::closingSpeed * scales.speed * last.h);
+	if (shifts.empty()) return;
 	for (size_t b = 0; b < s.bodies.size(); ++b)
 		if (last.bodies[b].unknown >= 0) K::advance(last.bodies[b].end, shifts[last.bodies[b].unknown], 1.);
-	for (size_t c = 0; c < s.pairs.size(); ++c)
-		for (int i = 0; i < s.pairs[c].size; ++i)
-			last.frames[first[c] + i] = K::frame(s.pairs[c].points[i].feature, s.bodies[s.pairs[c].body1].halfSize, last.bodies[s.pairs[c].body1].end,
-			                                     s.bodies[s.pairs[c].body2].halfSize, last.bodies[s.pairs[c].body2].end);
+	findFrames(s);
 }
 
 template <class K> void SmoothStep<K>::accept(RigidSystem<K>& s)
 {
-	project(s);
+	const double before = s.impactDissip + s.frictDissip;
 	for (size_t r = 0; r < last.rows.size(); ++r) {
 		const ContactRows<K>& rows = solver.points[r];
 		const PointRef        ref = last.rows[r];
@@ -258,6 +371,7 @@ template <class K> void SmoothStep<K>::accept(RigidSystem<K>& s)
 		if (next1.unknown < 0) s.baseWork -= rows.impulse.dot(mean1);
 		if (next2.unknown < 0) s.baseWork -= rows.impulse.dot(mean2);
 	}
+	project(s, s.impactDissip + s.frictDissip - before);
 	for (size_t b = 0; b < s.bodies.size(); ++b) {
 		RigidBody<K>& body = s.bodies[b];
 		const auto&   next = last.bodies[b];
@@ -266,7 +380,7 @@ template <class K> void SmoothStep<K>::accept(RigidSystem<K>& s)
 		body.velocity = next.velocity;
 	}
 	s.time += last.h;
-	s.fresh = false;
+	s.fresh = unsteady;
 
 	const double still = tolerance::rigid::parting * scales.stepSpeed(last.h);
 	size_t       row = 0;
@@ -282,12 +396,10 @@ template <class K> void SmoothStep<K>::accept(RigidSystem<K>& s)
 			const auto  u = relativeVelocity(s, int(c), i);
 			const bool  wasOpen = !point.closed;
 			point.closed = rows.impulse[0] > 0 || u[0] <= still;
-			point.landing = wasOpen && point.closed;
-			s.fresh |= point.landing;
+			s.fresh |= wasOpen && point.closed;
 			if (!point.closed) continue;
 			point.force = rows.impulse / last.h;
-			point.sliding = rows.impulse[0] > 0 && u.template tail<K::rows - 1>().norm() > still
-			        && rows.impulse.template tail<K::rows - 1>().norm() >= (1 - tolerance::rigid::cone) * rows.friction * rows.impulse[0];
+			point.sliding = u.template tail<K::rows - 1>().norm() > still && slides(rows);
 		}
 }
 

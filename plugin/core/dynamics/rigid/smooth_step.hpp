@@ -3,16 +3,27 @@
 //
 // From the state (q, V) to (q+, V+) in the time h, with the contact rows J taken in the middle of the step:
 //
-//     M (V+ - V) = h f + sum J^T p            M with the inertia of the predicted end
+//     M (V+ - V) = h f + sum J^T p            M with the inertia of the middle
 //     q+ = q advanced by h (V + V+)/2         orientation by the exponential of the mean spin
-//     u = J (V + V+) - damping delta          for points in touch: the laws of contact_problem.hpp act on the MEAN velocity
-//     u = J V+ (+ 2 gap_mid / h, normal)      for points that land and are not localised: still open (and, one step later, just closed);
-//                                             gap_mid from zero where the step starts with a penetration
+//     u = J (V + V+) - c                      for points in touch: the laws of contact_problem.hpp act on the MEAN velocity
+//     u_n = max(J (V + V+) + 2 gap / h, J V+) for points that land and are not localised: they end with a gap of zero, or stop
 //
 // Why the mean. The work of the contact forces in the step is p . J (V + V+)/2, which the laws make zero for sticking and negative
 // for sliding points: the step never gives energy, whatever h. It is symmetric in time and of second order; no gap curvature has to be
-// computed. What is left undamped is an error delta = J(q) V of the velocity at the start that changes sign each step; a small share
-// `damping` of it is taken off (tolerances.hpp).
+// computed.
+//
+// Spins. With W the spin in the body's own axes and the turn of the step about the mean of W and W+, which is the same vector in both poses
+// and in the middle, the work of the change of angular momentum L on it is the change of the kinetic energy (Simo and Wong 1991). In the
+// axes of the middle, D half the turn,
+//
+//     w + w+ := D w + I_mid^-1 D^T L+         L+ = L + h moment + sum of the contacts' moments
+//
+// where D and the small part (D^T - 1) L+ are those of the last pass: passes are repeated until the energies agree.
+//
+// Stray velocities. J(q+) V+ = -J(q) V + r: an error at the start changes its sign each step, about r/2, of the order h^2. The part that
+// alternates is c = (J(q) V - J(q+) V+)/2 of a pass with c = 0. A step after an event takes it off, a landing's approach speed with it, where
+// that gives no energy; else the next one does, when it has the other sign. All points or none: redundant points would otherwise be asked
+// for motions that no rigid body makes. Steady steps take off a share, which only damps round-off.
 //
 // The middle is predicted with the acceleration of the last step, V + h/2 dV/dt: then gaps of points in touch drift by O(h^4) a step, and
 // `project` closes them without a change of velocity.
@@ -28,8 +39,9 @@ struct PointRef {
 // End of a step of which nothing has been accepted yet.
 template <class K> struct Trial {
 	struct BodyEnd {
-		typename K::Pose     middle, predicted, end;
-		typename K::Velocity velocity, mean;
+		typename K::Pose     middle, end;
+		typename K::Velocity velocity, mean; // at the end; over the step
+		typename K::Spin     momentum;       // angular, at the end
 		int                  unknown; // index in the solver; -1: prescribed
 	};
 	double               h { 0 };
@@ -42,11 +54,7 @@ template <class K> struct Trial {
 template <class K> class SmoothStep {
 public:
 	// Forgets earlier steps: a run that was saved goes on with the same bits.
-	void begin(const RigidSystem<K>& system)
-	{
-		solver.forget();
-		scales = Scales(system);
-	}
+	void begin(const RigidSystem<K>& system);
 	// Computes the trial of length h from the system's state. Open points do not act, but for those in `anticipated`.
 	void attempt(const RigidSystem<K>& system, double h);
 	// Makes it the system's state: poses, velocities, forces, energies; gaps of loaded points closed.
@@ -62,15 +70,25 @@ public:
 	const ContactFrame<K>&            frame(int pair, int point) const { return last.frames[first[pair] + point]; }
 
 private:
-	void predict(const RigidSystem<K>& system, double h);
-	void assemble(const RigidSystem<K>& system, double h);
-	void finish(const RigidSystem<K>& system, double h);
-	void project(RigidSystem<K>& system);
+	using Impulse = Eigen::Matrix<double, K::rows, 1>;
+	void   predict(const RigidSystem<K>& system, double h, bool again);
+	void   assemble(const RigidSystem<K>& system, double h);
+	bool   acts(const RigidSystem<K>& system, PointRef ref) const;
+	void   dampStray(const RigidSystem<K>& system, double h);
+	void   findStray(const RigidSystem<K>& system);
+	double strayWork() const;
+	double finish(const RigidSystem<K>& system, double h);
+	void   findFrames(const RigidSystem<K>& system);
+	double findShifts(const RigidSystem<K>& system, double most);
+	void   project(const RigidSystem<K>& system, double lost);
 
 	Trial<K>         last;
 	std::vector<int> first; // index in last.frames of a pair's first point
-	std::vector<typename K::Velocity> increments, shifts;
-	std::vector<double> gaps;
+	std::vector<typename K::Velocity> shifts;
+	std::vector<double> misses;
+	std::vector<Impulse> guesses, stray; // of the rows: impulses of the last pass; velocities that the step takes off (none: empty)
+	double weight { 0 };                 // of the free bodies times the scene's length, J
+	bool   unsteady { false };            // the stray velocities were left
 	std::vector<typename K::Vector> positions; // of the rows of one pair
 	ContactSolver<K> solver;
 };

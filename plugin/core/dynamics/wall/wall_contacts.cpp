@@ -305,7 +305,6 @@ void WallContacts<K>::showPair(RigidSystem<K>& s, int c) const
 		point.gap = p.gap[lane];
 		point.closed = p.pn[lane] > 0 || p.gap[lane] <= touching;
 		point.sliding = p.pn[lane] > 0 && slides(p.pt, groups[group].friction * p.pn)[lane];
-		point.landing = false;
 		point.force[0] = p.pn[lane] * perUnit;
 		for (int row = 1; row < K::rows; ++row)
 			point.force[row] = component(p.pt, row - 1, lane) * perUnit;

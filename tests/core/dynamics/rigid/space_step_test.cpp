@@ -218,7 +218,7 @@ TEST_CASE("three corner impacts converge with second order")
 		CHECK((middle.position - fine.position).norm() < 3e-6);
 		CHECK((coarse.axes - fine.axes).norm() / (middle.axes - fine.axes).norm() > 3.5);
 		CHECK(fine.rise < 1e-9);
-		CHECK(middle.rise < 1e-8); // third order in the step
+		CHECK(middle.rise < 1e-9);
 	}
 }
 
@@ -326,8 +326,8 @@ TEST_CASE("a millimetre and thirty metres are the same motion")
 	CHECK((run(30) - one).norm() < 1e-9);
 }
 
-// From numerics: 600 runs of 10 s, of which these are a few. Positions closed by projection lift a body by up to the merged gap, 1e-6
-// of its size.
+// From numerics: 600 runs of 10 s, of which these are a few. The rise, by drifts of closed gaps, is of third order in the step; its bound was
+// set after 1.4e-9 was seen.
 TEST_CASE("random starts on a corner end in no trouble")
 {
 	std::mt19937 random(5);
@@ -347,7 +347,7 @@ TEST_CASE("random starts on a corner end in no trouble")
 			watch.take(s, step.advance(s, 1e-3));
 		REQUIRE(!watch.diverged);
 		CHECK(watch.depth < 1e-6 * half.minCoeff());
-		CHECK(watch.rise < 1e-5 * scale);
+		CHECK(watch.rise < 3e-9 * scale);
 		CHECK(watch.impactGain < 1e-10 * scale);
 		CHECK(watch.residual < 1e-6);
 	}
@@ -367,26 +367,27 @@ struct Jump : BaseDrive {
 	double respond(int, double) override { return 0; }
 };
 
-// Two blocks, the upper one turned, after a jump of the base towards `direction`.
+// Each block turned by `angle` against the one below; the base moved towards `direction`.
+System turnedStack(int blocks, double angle, BaseDrive& drive, double direction)
+{
+	System s = emptyScene<Space>();
+	const Vector3 half(0.25, 0.25, 0.5);
+	for (int k = 0; k < blocks; ++k) {
+		addBox(s, half, placed(turn(k * angle, Vector3::UnitZ()), {0, 0, -0.5}, {0, 0, double(k)}));
+		addPair(s, k, k + 1, 0.7, 0.7);
+	}
+	moveBase(s, drive, Vector3(std::cos(direction), std::sin(direction), 0));
+	return s;
+}
+
+// Two blocks after a jump of the base.
 struct TurnedStack {
 	Jump jump {0.6};
 	System s;
 	RigidStep<Space> step;
 	Watch watch;
 
-	TurnedStack(double angle, double direction, ImpactOrder order) : s(emptyScene<Space>()), watch(s)
-	{
-		const Vector3 half(0.25, 0.25, 0.5);
-		for (int k = 0; k < 2; ++k) {
-			addBox(s, half, placed(turn(k * angle, Vector3::UnitZ()), {0, 0, -0.5}, {0, 0, double(k)}));
-			addPair(s, k, k + 1, 0.7, 0.7);
-		}
-		s.drives.push_back(&jump);
-		s.driveDirections.push_back({std::cos(direction), std::sin(direction), 0});
-		s.bodies[0].drive = 0;
-		s.settings.order = order;
-		watch = Watch(s);
-	}
+	TurnedStack(double angle, double direction, ImpactOrder order) : s(turnedStack(2, angle, jump, direction)), watch(s) { s.settings.order = order; }
 	Vector3 top(double time, double h)
 	{
 		while (s.time < time - h / 2)
@@ -407,10 +408,34 @@ TEST_CASE("a stack whose upper block is turned by 30 degrees and shaken")
 		const double scale = overturning(coarse.s.bodies[1]);
 		for (const Watch* watch : {&coarse.watch, &fine.watch}) {
 			CHECK(!watch->diverged);
-			CHECK(watch->rise < 1e-5 * scale); // as above
+			CHECK(watch->rise < 1e-9 * scale);
 			CHECK(watch->impactGain < 1e-10 * scale);
 			CHECK(watch->depth < 1e-6);
 		}
+	}
+}
+
+// Two blocks that wobble on their edges and corners, and three that topple.
+TEST_CASE("turned stacks under a harmonic base motion give no energy, and their closings are few")
+{
+	struct Case {
+		int blocks;
+		double amplitude, frequency, direction; // g, 1/s, rad
+	};
+	for (const Case& c : {Case {2, 0.4, 2, 0}, Case {3, 0.8, 1, M_PI / 6}}) {
+		ScheduledMotion motion;
+		motion.append({0, 0, 0, 0, c.amplitude * g, 2 * M_PI * c.frequency});
+		System s = turnedStack(c.blocks, M_PI / 6, motion, c.direction);
+		RigidStep<Space> step;
+		Watch watch(s);
+		while (s.time < 0.6)
+			watch.take(s, step.advance(s, 1e-3));
+		const double scale = overturning(s.bodies[1]);
+		CHECK(!watch.diverged);
+		CHECK(watch.unlocalised == 0);
+		CHECK(watch.rise < 1e-9 * scale);
+		CHECK(watch.impactGain < 1e-10 * scale);
+		CHECK(watch.residual < 1e-6);
 	}
 }
 
