@@ -91,8 +91,8 @@ void WallContacts<Plane>::findSliding()
 template <>
 void WallContacts<Plane>::locate(const RigidSystem<Plane>&, int begin, int end, double travel, bool remember)
 {
-	locateGroups(&groups[begin], &features[begin], &stale[begin], end - begin, pose.data(), velocity.data(), gyration.data(), travel,
-	             remember);
+	locateGroups(groups.data() + begin, features.data() + begin, stale.data() + begin, end - begin, pose.data(), velocity.data(),
+	             gyration.data(), travel, remember);
 }
 
 template <>

@@ -172,7 +172,8 @@ void WallContacts<Space>::findSliding()
 template <>
 void WallContacts<Space>::locate(const RigidSystem<Space>& s, int begin, int end, double travel, bool remember)
 {
-	locateGroups(s, &groups[begin], &features[begin], &stale[begin], end - begin, pose.data(), velocity.data(), travel, remember);
+	locateGroups(s, groups.data() + begin, features.data() + begin, stale.data() + begin, end - begin, pose.data(), velocity.data(), travel,
+	             remember);
 }
 
 template <>
