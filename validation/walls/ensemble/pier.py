@@ -1,0 +1,18 @@
+"""The scene: a pier of four blocks on a base that follows an artificial record."""
+import math
+
+
+def run(case):
+    from masonry import artificial_record, dem, results
+    from yade import O
+
+    record = artificial_record(case["seed"], case["peak"] * 9.81, duration=5, frequency=1.5)
+    stone = dem.BlockMat(density=2000, frictionAngle=math.atan(0.7), restitution=case["restitution"])
+    base = dem.base((6, 2, 0.2), stone)
+    dem.pier(4, (0.40, 0.50, 0.40), stone, on=base)
+    motion = dem.RecordMotionEngine(ids=[base], samples=list(record.samples), interval=record.dt, baseline=record.baseline)
+    recorder = dem.WallRecorder(virtPeriod=0.02)
+    law = {"compliant": dict(penetration=1e-3), "localised": dict(method="localised", dt=1e-3), "wall": dict(method="wall", dt=1e-3)}[case["law"]]
+    O.engines = dem.engines(motion, recorder=recorder, **law)
+    O.run(math.ceil(6 / O.dt), True)
+    return results.collapse(dem.wall_history(recorder)).numbers()
