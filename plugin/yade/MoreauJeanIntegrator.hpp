@@ -62,7 +62,7 @@ public:
 		((vector<int>, impactSwitched, , Attr::readonly, "1: the pivot was handed over; 0: the joint came to rest."))
 		((vector<int>, impactCapped, , Attr::readonly, "1: the restitution was lowered so that the energy does not grow."))
 		((Real, frictDissip, 0, Attr::readonly, "Dissipated by friction so far [J]."))
-		((Real, impactDissip, 0, Attr::readonly, "Dissipated by impacts so far [J]."))
+		((Real, impactDissip, 0, Attr::readonly, "Dissipated by impacts so far [J]; method='wall': all that is left over, numerical losses included."))
 		((Real, baseWork, 0, Attr::readonly, "Work of the moved base on the blocks so far [J]."))
 		((Real, worstResidual, 0, Attr::readonly, "Largest residual of a step so far [m/s]."))
 		((long, substeps, 0, Attr::readonly, "Parts of steps so far; one a step where nothing happens."))
