@@ -266,13 +266,16 @@ def angle(id, axis="y"):
 
 
 def overturned():
-    """Ids of the free blocks that lean by more than their own critical angle: a single block that does will not come back."""
+    """Ids of the free blocks that lean so far that their weight no longer acts through their base, the face that was below in the
+    resting pose: a single block that does will not come back."""
     found = []
     for body in O.bodies:
         if not (isinstance(body.mat, wrapper.BlockMat) and isinstance(body.shape, wrapper.Box) and body.dynamic):
             continue
         half = body.shape.extents
-        lean = math.acos(max(-1.0, min(1.0, (body.state.ori * body.state.refOri.conjugate() * Vector3.UnitZ)[2])))
-        if lean > math.atan2(min(half[0], half[1]), half[2]):
+        rest, up = (list(turn.conjugate() * Vector3.UnitZ) for turn in (body.state.refOri, body.state.ori))  # upwards, in the block's axes
+        upright = max(range(3), key=lambda axis: abs(rest[axis]))
+        above = math.copysign(up[upright], up[upright] * rest[upright])
+        if any(abs(up[axis]) * half[upright] > half[axis] * above for axis in range(3) if axis != upright):
             found.append(body.id)
     return found
