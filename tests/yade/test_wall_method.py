@@ -114,7 +114,13 @@ with tempfile.TemporaryDirectory() as folder:
         print(f"{model}, {shaking} g: {modes[0]} still and {modes[1]} moving steps, {len(dem.impacts())} impacts")
         assert (modes[1] == 0) if shaking < MU else (modes[1] > 200 and len(dem.impacts()) > 10)
 
-# --- energy: no step gives any ---
+# --- energy: what the base puts into a wall that stands is what its blocks have; no step gives any ---
+wall(6, 6, 0.3)
+before = sum(dem.energy()[key] for key in ("kinetic", "potential"))
+O.run(345, True)
+gained = sum(dem.energy()[key] for key in ("kinetic", "potential")) - before
+print(f"still wall: work of the base over what the blocks gain {dem.energy()['baseWork'] / gained - 1:.1e}")
+assert integrator().movingSteps == 0 and abs(dem.energy()["baseWork"] / gained - 1) < 1e-4
 wall(6, 6, 1.2, restitution=0.6)
 balance, lost = Balance(), [0]
 for _ in range(600):
