@@ -5,7 +5,7 @@ from pathlib import Path
 from masonry import ensemble
 
 HERE = Path(__file__).resolve().parent
-LAWS, PEAKS, MOTIONS = ("localised", "wall", "compliant"), (0.8,), 30
+LAWS, PEAKS, MOTIONS = ("localised", "wall", "compliant"), (0.6,), 30
 
 
 def main():

@@ -8,7 +8,7 @@ template <class K> StepReport RigidStep<K>::advance(RigidSystem<K>& s, double dt
 {
 	report = {};
 	s.impacts.clear();
-	step.begin(s);
+	step.begin(s, dt);
 	findContacts(s);
 	takeJumps(s);
 	for (double left = dt; left > 0;) {

@@ -85,8 +85,9 @@ namespace {
 
 } // namespace
 
-template <class K> void SmoothStep<K>::begin(const RigidSystem<K>& s)
+template <class K> void SmoothStep<K>::begin(const RigidSystem<K>& s, double dt)
 {
+	whole = dt;
 	solver.forget();
 	scales = Scales(s);
 	weight = 0;
@@ -383,12 +384,14 @@ template <class K> void SmoothStep<K>::accept(RigidSystem<K>& s)
 	s.fresh = unsteady;
 
 	const double still = tolerance::rigid::parting * scales.stepSpeed(last.h);
+	const bool   isShort = last.h < tolerance::rigid::shortPart * whole;
 	size_t       row = 0;
 	for (size_t c = 0; c < s.pairs.size(); ++c)
 		for (int i = 0; i < s.pairs[c].size; ++i) {
 			ContactPoint<K>& point = s.pairs[c].points[i];
 			point.frame = last.frames[first[c] + i];
 			point.gap = point.frame.gap;
+			const auto before = point.force;
 			point.force.setZero();
 			const bool acted = row < last.rows.size() && last.rows[row].pair == int(c) && last.rows[row].point == i;
 			if (!acted) continue;
@@ -397,6 +400,11 @@ template <class K> void SmoothStep<K>::accept(RigidSystem<K>& s)
 			const bool  wasOpen = !point.closed;
 			point.closed = rows.impulse[0] > 0 || u[0] <= still;
 			s.fresh |= wasOpen && point.closed;
+			if (isShort && !wasOpen && before[0] > 0 && !(rows.impulse[0] > 0) && std::abs(u[0]) <= tolerance::rigid::stray * scales.stepSpeed(whole)) {
+				point.closed = true;
+				point.force = before;
+				continue;
+			}
 			if (!point.closed) continue;
 			point.force = rows.impulse / last.h;
 			point.sliding = u.template tail<K::rows - 1>().norm() > still && slides(rows);

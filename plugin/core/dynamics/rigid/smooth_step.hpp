@@ -54,7 +54,7 @@ template <class K> struct Trial {
 template <class K> class SmoothStep {
 public:
 	// Forgets earlier steps: a run that was saved goes on with the same bits.
-	void begin(const RigidSystem<K>& system);
+	void begin(const RigidSystem<K>& system, double dt);
 	// Computes the trial of length h from the system's state. Open points do not act, but for those in `anticipated`.
 	void attempt(const RigidSystem<K>& system, double h);
 	// Makes it the system's state: poses, velocities, forces, energies; gaps of loaded points closed.
@@ -87,6 +87,7 @@ private:
 	std::vector<typename K::Velocity> shifts;
 	std::vector<double> misses;
 	std::vector<Impulse> guesses, stray; // of the rows: impulses of the last pass; velocities that the step takes off (none: empty)
+	double whole { 0 };                  // s, the step that is being done in parts
 	double weight { 0 };                 // of the free bodies times the scene's length, J
 	bool   unsteady { false };            // the stray velocities were left
 	std::vector<typename K::Vector> positions; // of the rows of one pair
