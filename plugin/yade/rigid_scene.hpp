@@ -197,7 +197,7 @@ public:
 private:
 	masonry::rigid::StepReport advanceWall()
 	{
-		wall.settings = { integrator.tolerance, integrator.strictForces, integrator.ompThreads > 0 ? integrator.ompThreads : omp_get_max_threads() };
+		wall.settings = { integrator.tolerance, integrator.strictForces, std::max(1, integrator.ompThreads) };
 		const auto report = wall.advance(system, scene.dt);
 		const bool still = wall.report.mode == masonry::rigid::WallMode::still;
 		integrator.mode = still ? "still" : "moving";

@@ -24,12 +24,12 @@ ELSEWHERE = [("Box2D 3, 8 substeps", 105, 0.069, 0.08, 1.9e-3), ("Box2D 3, 8 sub
 
 def masonry(build, size, amplitude, rest, shaking, threads=1, **options):
     """Rows of the plugin, one for each phase."""
-    case = dict(courses=size[0], per_course=size[1], amplitude=amplitude, rest=rest, shaking=shaking, **options)
-    environment = {**os.environ, "PYTHONPATH": str(build.resolve() / "python"), "OMP_WAIT_POLICY": "active" if threads > 1 else "passive"}
+    case = dict(courses=size[0], per_course=size[1], amplitude=amplitude, rest=rest, shaking=shaking, threads=threads, **options)
+    environment = {**os.environ, "PYTHONPATH": str(build.resolve() / "python")}
     done = subprocess.run(["yade", f"-j{threads}", "-n", "-x", HERE / "yade_masonry.py", json.dumps(case)], capture_output=True, text=True, env=environment)
     if done.returncode != 0:
         raise RuntimeError(done.stdout[-2000:] + done.stderr[-2000:])
-    rows = [dict(json.loads(line), threads=threads) for line in done.stdout.splitlines() if line.startswith("{")]
+    rows = [json.loads(line) for line in done.stdout.splitlines() if line.startswith("{")]
     for r in rows:
         name = f"{r.get('model', 'planar')}, C = {r['restitution']}" if r.get("restitution") is not None else r.get("model", "planar")
         r["solver"] = f"yade-masonry, {name}"
