@@ -145,19 +145,22 @@ def figure(path, rows):
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
 
-    picture, axes = plt.subplots(1, 2, figsize=(11, 4.6), sharey=True, layout="constrained")
+    picture, axes = plt.subplots(1, 2, figsize=(11, 5.2), sharey=True)
     for axis, blocks in zip(axes, (105, 1040)):
         shaken = [r for r in rows if r["phase"] == "shaking" and r["blocks"] == blocks and r["amplitude"] == 0.3 and r.get("role") is None]
         marks = {"yade-masonry, planar": ("o", "#c0392b"), "yade-masonry, planar, C = 0.5": ("s", "#c0392b"), "yade-masonry, planar, C = 0.9": ("^", "#c0392b"),
-                 "yade-masonry, spatial": ("o", "#e67e22")}
+                 "yade-masonry, spatial": ("o", "#e67e22"), "Bullet double 10 iterations": ("D", "#2c3e50"), "Bullet double 50 iterations": ("d", "#2c3e50"),
+                 "ODE QuickStep 20 iterations": ("v", "#2980b9")}
         for r in shaken:
-            mark, colour = marks.get(r["solver"], ("D", "#2c3e50"))
+            mark, colour = marks[r["solver"]]
             axis.plot(r["cpu"], r["drift"], mark, color=colour, label=r["solver"])
         for k, (name, count, cpu, drift, _) in enumerate(e for e in ELSEWHERE if e[1] == blocks):
             axis.plot(cpu, drift, "x+1"[k], color="#7f8c8d", label=f"{name} (measured elsewhere)")
         axis.set(xscale="log", yscale="log", xlabel="CPU s per simulated s", title=f"{blocks} blocks, 0.3 g at 2 Hz, step 1 ms")
         axis.grid(alpha=0.3)
-        axis.legend(fontsize=7)
+    handles, labels = axes[0].get_legend_handles_labels()
+    picture.subplots_adjust(left=0.07, right=0.99, top=0.93, bottom=0.28, wspace=0.05)
+    picture.legend(handles, labels, loc="lower center", ncol=4, fontsize=8)
     axes[0].set_ylabel("sideways drift of the wall, mm")
     picture.savefig(path, dpi=110)
 

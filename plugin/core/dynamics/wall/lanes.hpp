@@ -8,7 +8,11 @@
 
 #pragma GCC diagnostic ignored "-Wpsabi" // lanes are passed between inlined functions only
 
+#ifdef __SANITIZE_ADDRESS__ // checked once is enough, and takes a minute less to compile
+#define MASONRY_LANES
+#else
 #define MASONRY_LANES __attribute__((target_clones("avx2", "default")))
+#endif
 #define MASONRY_INLINE __attribute__((always_inline)) inline
 
 namespace masonry::rigid::wall {
