@@ -18,7 +18,7 @@ ALPHA = math.atan(WIDTH / HEIGHT)
 NATURAL = 1 - 1.5 * math.sin(ALPHA) ** 2
 RESTITUTIONS = (0.5, 0.7, 0.8, 0.9, NATURAL, 1.0)
 LIFTS = WIDTH / HEIGHT  # g: below it the monolith does not rock
-TIME = 4.0  # s
+TIME = 6.0  # s
 
 
 def scene(blocks, amplitude, restitution, order):
@@ -41,7 +41,7 @@ def falls(blocks, amplitude, restitution, order):
     start = O.bodies[ids[-1]].state.pos[2]
     while O.time < TIME:
         O.run(200, True)
-        if dem.overturned() or O.bodies[ids[-1]].state.pos[2] < 0.8 * start:
+        if O.bodies[ids[-1]].state.pos[2] < 0.8 * start:  # a lean beyond the critical angle may come back while the base moves
             return True
     return False
 
