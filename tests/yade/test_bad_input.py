@@ -50,10 +50,9 @@ refuses(lambda: dem.angle(0, axis="z"), "axis", "'z'", "'x' or 'y'")
 
 # dem.engines().
 for name, bad in (("model", "magic"), ("penetration", 0), ("penetration", 0.1), ("penetration", nan), ("dt", 0), ("dt", -1e-4), ("dt", nan), ("gravity", -1),
-                  ("gravity", nan), ("impactOrder", "random")):
+                  ("gravity", nan), ("impact_order", "random")):
     one_block(5)
-    option = {"impactOrder": "impact_order"}.get(name, name)
-    refuses(lambda: quiet_engines(**{option: bad}), name, str(bad), "must be")
+    refuses(lambda: quiet_engines(**{name: bad}), name, str(bad), "must be")
 O.reset()
 dem.base((1, 1, 1), stone())
 refuses(quiet_engines, "no free block", "dem.block()")
