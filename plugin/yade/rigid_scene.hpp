@@ -61,6 +61,7 @@ public:
 template <class K> class RigidScene final : public AnyRigidScene {
 	using System = masonry::rigid::RigidSystem<K>;
 	using Pair = masonry::rigid::ContactPair<K>;
+
 	struct Link {
 		shared_ptr<Body> body;
 		Properties       properties;

@@ -65,4 +65,4 @@ for share, slenderness, restitution, start in ((0.01, 2, 0.9, 0.4), (0.04, 4, 0.
     O.run(math.ceil(1.01 * exact.impact_times[4] / O.dt) + 1, True)
     error = np.max(np.abs(dem.impacts()["velocity"][:5] / np.abs(exact.impact_velocities[:5]) - 1))
     print(f"step of {share} sqrt(R/g), slenderness {slenderness}: velocities before impacts {error:.1e}")
-    assert len(dem.impacts()) >= 5 and error < 0.2 * share**2  # second order; seen: 0.13 at most
+    assert len(dem.impacts()) >= 5 and error < 0.2 * share**2  # second order; the factor is set after seeing 0.12 at most over 1,300 runs

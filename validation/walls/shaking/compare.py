@@ -111,6 +111,8 @@ def verdicts(rows):
         if r:
             line(f"{blocks} blocks, 1 g: CPU s per s", f"{moving}", r["cpu"], r["cpu"] <= moving)
             line(f"{blocks} blocks, 1 g: largest rise of energy in a tenth of a second, of the loss", "1e-3", max(0, r["rise"]) / r["lost"], r["rise"] <= 1e-3 * r["lost"])
+            if "deepest" in r:
+                line(f"{blocks} blocks, 1 g: deepest penetration, of a block's height", "1e-5", r["deepest"] / 0.5, r["deepest"] <= 1e-5 * 0.5)
         bullet = find(solver="Bullet double 10 iterations", blocks=blocks, amplitude=0.3, phase="rest")
         r = find(**plain, blocks=blocks, amplitude=0.3, phase="rest")
         if bullet and r:

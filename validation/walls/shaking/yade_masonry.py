@@ -47,7 +47,7 @@ for phase in ("rest", "shaking"):
     if not case[phase]:
         continue
     modes = integrator.stillSteps, integrator.movingSteps
-    steps, excursion, rise, lost, cpu, wall = round(case[phase] / O.dt), 0, 0, losses(), 0, 0
+    steps, excursion, rise, lost, cpu, wall, deepest = round(case[phase] / O.dt), 0, 0, losses(), 0, 0, 0
     first = lost
     # Energy and excursion are looked at on the way where the wall moves only.
     sample = max(1, round(0.01 / O.dt)) if case.get("fine") else max(1, round(0.1 / O.dt)) if case["amplitude"] > 0.7 and phase == "shaking" else steps
@@ -57,12 +57,13 @@ for phase in ("rest", "shaking"):
         cpu, wall = cpu + time.process_time() - c, wall + time.perf_counter() - w
         now = losses()
         rise, lost = max(rise, lost - now), now
+        deepest = max([deepest] + [-gap for i in O.interactions for gap in i.geom.gaps])
         if (k + sample) * O.dt <= 0.5 + 1e-9:
             excursion = max(excursion, abs(places()[top, 0] - start[top, 0]))
     moved = places() - start
     sink = -moved[courses == courses.max(), 2].mean() / case["courses"]
     bits = hashlib.sha256(np.array([x for i in ids for v in (O.bodies[i].state.pos, O.bodies[i].state.vel) for x in v]).tobytes()).hexdigest()[:12]
     print(json.dumps(dict(case, phase=phase, blocks=len(ids), cpu=cpu / case[phase], wall=wall / case[phase], drift=1e3 * float(np.linalg.norm(moved[:, :2], axis=1).max()),
-                          sink=1e3 * float(sink - sunk), excursion=float(excursion), still=integrator.stillSteps - modes[0], moving=integrator.movingSteps - modes[1],
+                          sink=1e3 * float(sink - sunk), excursion=float(excursion), deepest=float(deepest), still=integrator.stillSteps - modes[0], moving=integrator.movingSteps - modes[1],
                           impacts=len(integrator.impactTimes), rise=float(rise), lost=float(lost - first), work=integrator.baseWork, memory=memory, bits=bits)), flush=True)
     sunk = sink
