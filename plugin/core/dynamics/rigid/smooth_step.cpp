@@ -89,6 +89,7 @@ template <class K> void SmoothStep<K>::begin(const RigidSystem<K>& s, double dt)
 {
 	whole = dt;
 	solver.forget();
+	shifts.reserve(s.bodies.size()); // a step that closes gaps may be the first to
 	scales = Scales(s);
 	weight = 0;
 	for (const RigidBody<K>& body : s.bodies)
