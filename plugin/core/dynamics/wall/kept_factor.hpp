@@ -75,7 +75,6 @@ public:
 	KeptReport report;
 	LaneArray velocity;     // V
 	std::vector<Rows> rows; // by group
-	size_t factorBlocks() const { return factor.blocks(); }
 
 	// As of the contacts, whose own numbers have been passed. A factor is made anew from the poses that it was of.
 	template <class Flow>

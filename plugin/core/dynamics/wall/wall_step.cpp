@@ -75,6 +75,7 @@ StepReport WallStep<K>::advance(RigidSystem<K>& s, double dt)
 			takeJumps(s);
 	}
 	report.residual = std::max(report.velocityResidual, report.forceResidual);
+	report.sweeps = report.solves;
 	return report;
 }
 
@@ -353,13 +354,6 @@ void WallStep<K>::choose(const RigidSystem<K>& s, double h)
 		return;
 	m.mode = WallMode::still;
 	m.quiet = m.stay = 0;
-}
-
-template <class K>
-size_t WallStep<K>::memory() const
-{
-	return contacts.groups.size() * (sizeof(wall::Group<K>) + sizeof(wall::FeatureGroup<K>) + sizeof(typename wall::KeptFactor<K>::Rows)) +
-	       kept.factorBlocks() * 9 * (sizeof(double) + sizeof(float)) + contacts.velocity.size() * 10 * sizeof(Lanes);
 }
 
 template class WallStep<Plane>;

@@ -57,8 +57,6 @@ public:
 		joints.pass(f);
 	}
 
-	size_t memory() const; // bytes of the workspace
-
 private:
 	void advancePart(RigidSystem<K>& system, double h);
 	bool tryStill(RigidSystem<K>& system, double h);
