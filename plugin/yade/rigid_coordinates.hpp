@@ -117,7 +117,7 @@ template <> struct Seat<Plane> {
 		body.pose.setAngle(2 * (turn.w() < 0 ? std::atan2(-about, -turn.w()) : std::atan2(about, turn.w())));
 		body.velocity << c.in(state.vel), c.normal.dot(state.angVel);
 	}
-	Motion motion(const Coordinates<Plane>& c, const masonry::rigid::RigidBody<Plane>& body) const
+	void tell(const Coordinates<Plane>& c, const masonry::rigid::RigidBody<Plane>& body, Motion& to) const
 	{
 		// Half the angle, within a quarter turn, from its cosine and sine.
 		const auto& pose = body.pose;
@@ -126,7 +126,10 @@ template <> struct Seat<Plane> {
 		Quaternionr turn;
 		turn.w() = w;
 		turn.vec() = s * c.normal;
-		return { c.out(pose.position) + depth * c.normal, c.out(body.velocity.head<2>()), body.velocity[2] * c.normal, turn * reference };
+		to.pos = c.out(pose.position) + depth * c.normal;
+		to.vel = c.out(body.velocity.head<2>());
+		to.angVel = body.velocity[2] * c.normal;
+		to.ori = turn * reference;
 	}
 	Vector3r spin(const Coordinates<Plane>& c, const masonry::rigid::RigidBody<Plane>& body) const
 	{
@@ -147,9 +150,9 @@ template <> struct Seat<Space> {
 		body.pose = { state.pos, state.ori };
 		body.velocity << state.vel, state.angVel;
 	}
-	Motion motion(const Coordinates<Space>&, const masonry::rigid::RigidBody<Space>& body) const
+	void tell(const Coordinates<Space>&, const masonry::rigid::RigidBody<Space>& body, Motion& to) const
 	{
-		return { body.pose.position, body.velocity.head<3>(), body.velocity.tail<3>(), body.pose.orientation };
+		to = { body.pose.position, body.velocity.head<3>(), body.velocity.tail<3>(), body.pose.orientation };
 	}
 	Vector3r spin(const Coordinates<Space>&, const masonry::rigid::RigidBody<Space>& body) const
 	{

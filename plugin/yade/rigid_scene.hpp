@@ -231,8 +231,8 @@ private:
 			block.prescribed = !body->isDynamic();
 			block.drive = -1;
 			if (k < 0) seat.read(coordinates, state, properties.extents.minCoeff(), body->id, block);
-			links.push_back({ body, properties, seat.motion(coordinates, block) });
-			if (k < 0) links.back().written = { state.pos, state.vel, state.angVel, state.ori };
+			links.push_back({ body, properties, { state.pos, state.vel, state.angVel, state.ori } });
+			if (k >= 0) seat.tell(coordinates, block, links.back().written);
 			kept.ids.push_back(body->id);
 			kept.seats.push_back(seat);
 			system.bodies.push_back(block);
@@ -426,14 +426,19 @@ private:
 	}
 
 	/// Bodies that stand still by prescription are as they were.
+	bool stands(size_t b) const
+	{
+		const auto& block = system.bodies[b];
+		return block.prescribed && block.drive < 0 && block.velocity.isZero(0);
+	}
+
+	/// In two passes: read while it is still being written, a number keeps the processor waiting.
 	void writeStates()
 	{
-		for (size_t b = 0; b < links.size(); ++b) {
-			const auto& block = system.bodies[b];
-			if (block.prescribed && block.drive < 0 && block.velocity.isZero(0)) continue;
-			links[b].written = kept.seats[b].motion(coordinates, system.bodies[b]);
-			links[b].written.write(*links[b].body->state, kept.seats[b].spin(coordinates, system.bodies[b]));
-		}
+		for (size_t b = 0; b < links.size(); ++b)
+			if (!stands(b)) kept.seats[b].tell(coordinates, system.bodies[b], links[b].written);
+		for (size_t b = 0; b < links.size(); ++b)
+			if (!stands(b)) links[b].written.write(*links[b].body->state, kept.seats[b].spin(coordinates, system.bodies[b]));
 	}
 
 	static bool touches(const Pair& pair)
