@@ -59,6 +59,22 @@ struct alignas(alignment) FeatureLanes<Plane> {
 	void setFound(const std::array<double, 2>& f, int lane) { foundGap[lane] = f[0], foundShift[lane] = f[1]; }
 };
 
+// Of the two points of a pair, J M^-1 J^T beside its diagonal, 1/kg: what an impulse along one row adds to the velocity along another.
+struct alignas(alignment) Coupling {
+	Lanes n1t1, n2t2, n1n2, t1t2, n1t2, t1n2;
+
+	MASONRY_INLINE void set(const PointLanes<Plane>& p, const PointLanes<Plane>& q, const Lanes& m1, const Lanes& m2)
+	{
+		const Lanes m = m1 + m2, cosine = m * (p.nx * q.nx + p.ny * q.ny), sine = m * (p.nx * q.ny - p.ny * q.nx);
+		n1t1 = m1 * p.a1n * p.a1t + m2 * p.a2n * p.a2t;
+		n2t2 = m1 * q.a1n * q.a1t + m2 * q.a2n * q.a2t;
+		n1n2 = cosine + m1 * p.a1n * q.a1n + m2 * p.a2n * q.a2n;
+		t1t2 = cosine + m1 * p.a1t * q.a1t + m2 * p.a2t * q.a2t;
+		n1t2 = m1 * p.a1n * q.a1t + m2 * p.a2n * q.a2t - sine;
+		t1n2 = m1 * p.a1t * q.a1n + m2 * p.a2t * q.a2n + sine;
+	}
+};
+
 MASONRY_INLINE double component(const Lanes& tangent, int, int lane) { return tangent[lane]; }
 MASONRY_INLINE void setComponent(Lanes& tangent, int, int lane, double value) { tangent[lane] = value; }
 MASONRY_INLINE Lanes dot(const Lanes& a, const Lanes& b) { return a * b; }
@@ -82,14 +98,6 @@ MASONRY_INLINE void push(Bodies<Plane>& v1, Bodies<Plane>& v2, const PointLanes<
 	v2.x += v2.m * fx;
 	v2.y += v2.m * fy;
 	v2.w += v2.m * (p.a2n * dn + p.a2t * dt);
-}
-MASONRY_INLINE void pushNormal(Bodies<Plane>& v1, Bodies<Plane>& v2, const PointLanes<Plane>& p, const Lanes& dn)
-{
-	push(v1, v2, p, dn, all(0));
-}
-MASONRY_INLINE void pushTangential(Bodies<Plane>& v1, Bodies<Plane>& v2, const PointLanes<Plane>& p, const Lanes& dt)
-{
-	push(v1, v2, p, all(0), dt);
 }
 // Impulses into momenta.
 MASONRY_INLINE void add(Bodies<Plane>& f1, Bodies<Plane>& f2, const PointLanes<Plane>& p, const Lanes& qn, const Lanes& qt)

@@ -26,76 +26,110 @@ struct alignas(alignment) Largest {
 	Lanes change, motion;
 };
 
-// The laws of one point of each of four pairs.
-template <class K, bool springs, bool measured>
-MASONRY_INLINE void sweepPoint(PointLanes<K>& p, const Lanes& frictionCoefficient, Bodies<K>& v1, Bodies<K>& v2, const Spring& spring,
-                               Largest& worst)
+template <class K, bool springs>
+MASONRY_INLINE Lanes normalImpulse(const PointLanes<K>& p, const Lanes& un, const Spring& spring)
 {
 	const Lanes none = all(0), one = all(1);
 	const Mask open = p.gap > 0;
-	const Lanes un = normalRate(v1, v2, p);
-	Lanes pn;
 	if constexpr (springs) {
 		const Lanes bias = p.gap * (open ? all(spring.perStep) : all(spring.rate));
 		const Lanes scale = open ? one : all(spring.massScale), fading = open ? none : all(spring.impulseScale);
-		pn = larger(p.pn - p.massN * scale * (un + bias) - fading * p.pn, none);
-	} else {
-		const Lanes bias = open ? p.gap * spring.perStep : none;
-		pn = larger(p.pn - p.massN * (un + bias), none);
+		return larger(p.pn - p.massN * scale * (un + bias) - fading * p.pn, none);
 	}
-	const Lanes dn = pn - p.pn;
-	pushNormal(v1, v2, p, dn);
-	p.pn = pn;
+	const Lanes bias = open ? p.gap * spring.perStep : none;
+	return larger(p.pn - p.massN * (un + bias), none);
+}
 
-	const auto ut = slipRate(v1, v2, p), pt = friction(p, ut, frictionCoefficient * pn), dt = pt - p.pt;
-	pushTangential(v1, v2, p, dt);
-	p.pt = pt;
+template <class K, class Tangent>
+MASONRY_INLINE void measure(const PointLanes<K>& p, const Lanes& un, const Tangent& ut, const Lanes& dn, const Tangent& dt, Largest& worst)
+{
+	const Lanes none = all(0);
+	const Mask closed = p.pn > 0, present = p.massN > 0;
+	worst.motion = larger(worst.motion, present ? larger(size(un), size(ut)) : none);
+	worst.change = larger(worst.change, closed ? larger(size(dn) / p.massN, size(dt) / p.massT) : none);
+}
+
+// Both points of each of four pairs, row by row in terms of their relative velocities: what an impulse adds to the rows that follow is
+// known (Coupling), and need not go through the velocities of the bodies.
+template <bool springs, bool measured>
+MASONRY_INLINE void sweepGroup(Group<Plane>& group, Lanes* velocity, const Spring& spring, Largest& worst)
+{
+	Bodies<Plane> v1(velocity, group.body1), v2(velocity, group.body2);
+	PointLanes<Plane>&p = group.point[0], &q = group.point[1];
+	const Coupling& w = group.coupling;
+	const Lanes un1 = normalRate(v1, v2, p), pn1 = normalImpulse<Plane, springs>(p, un1, spring), dn1 = pn1 - p.pn;
+	const Lanes ut1 = slipRate(v1, v2, p) + w.n1t1 * dn1, pt1 = friction(p, ut1, group.friction * pn1), dt1 = pt1 - p.pt;
+	const Lanes un2 = normalRate(v1, v2, q) + w.n1n2 * dn1 + w.t1n2 * dt1, pn2 = normalImpulse<Plane, springs>(q, un2, spring),
+	            dn2 = pn2 - q.pn;
+	const Lanes ut2 = slipRate(v1, v2, q) + w.n1t2 * dn1 + w.t1t2 * dt1 + w.n2t2 * dn2, pt2 = friction(q, ut2, group.friction * pn2),
+	            dt2 = pt2 - q.pt;
+	p.pn = pn1;
+	p.pt = pt1;
+	q.pn = pn2;
+	q.pt = pt2;
+	push(v1, v2, p, dn1, dt1);
+	push(v1, v2, q, dn2, dt2);
+	v1.store(velocity, group.body1, v1.m);
+	v2.store(velocity, group.body2, v2.m);
 	if constexpr (measured) {
-		const Mask closed = pn > 0, present = p.massN > 0;
-		worst.motion = larger(worst.motion, present ? larger(size(un), size(ut)) : none);
-		worst.change = larger(worst.change, closed ? larger(size(dn) / p.massN, size(dt) / p.massT) : none);
+		measure(p, un1, ut1, dn1, dt1, worst);
+		measure(q, un2, ut2, dn2, dt2, worst);
 	}
 }
 
-// Groups that are swept at the same time: in space one alone waits for its own results.
-template <class K>
-constexpr int abreast = K::dimension - 1;
-
-template <class K, int groupCount, bool springs, bool measured>
-MASONRY_INLINE void sweepAbreast(Group<K>* group, Lanes* velocity, const Spring& spring, Largest& worst)
+template <bool springs, bool measured>
+MASONRY_INLINE void sweepPoint(PointLanes<Space>& p, const Lanes& frictionCoefficient, Bodies<Space>& v1, Bodies<Space>& v2,
+                               const Spring& spring, Largest& worst)
 {
-	if constexpr (groupCount == 1) {
-		Bodies<K> v1(velocity, group->body1), v2(velocity, group->body2);
-		for (int k = 0; k < group->count; ++k)
-			sweepPoint<K, springs, measured>(group->point[k], group->friction, v1, v2, spring, worst);
-		v1.store(velocity, group->body1, v1.m);
-		v2.store(velocity, group->body2, v2.m);
-	} else {
-		Bodies<K> v1(velocity, group[0].body1), v2(velocity, group[0].body2), w1(velocity, group[1].body1), w2(velocity, group[1].body2);
-		const int both = std::min(group[0].count, group[1].count);
-		for (int k = 0; k < both; ++k) {
-			sweepPoint<K, springs, measured>(group[0].point[k], group[0].friction, v1, v2, spring, worst);
-			sweepPoint<K, springs, measured>(group[1].point[k], group[1].friction, w1, w2, spring, worst);
-		}
-		for (int k = both; k < group[0].count; ++k)
-			sweepPoint<K, springs, measured>(group[0].point[k], group[0].friction, v1, v2, spring, worst);
-		for (int k = both; k < group[1].count; ++k)
-			sweepPoint<K, springs, measured>(group[1].point[k], group[1].friction, w1, w2, spring, worst);
-		v1.store(velocity, group[0].body1, v1.m);
-		v2.store(velocity, group[0].body2, v2.m);
-		w1.store(velocity, group[1].body1, w1.m);
-		w2.store(velocity, group[1].body2, w2.m);
+	const Lanes un = normalRate(v1, v2, p), pn = normalImpulse<Space, springs>(p, un, spring), dn = pn - p.pn;
+	pushNormal(v1, v2, p, dn);
+	p.pn = pn;
+	const Lanes2 ut = slipRate(v1, v2, p), pt = friction(p, ut, frictionCoefficient * pn), dt = pt - p.pt;
+	pushTangential(v1, v2, p, dt);
+	p.pt = pt;
+	if constexpr (measured)
+		measure(p, un, ut, dn, dt, worst);
+}
+
+template <bool springs, bool measured>
+MASONRY_INLINE void sweepGroup(Group<Space>& group, Lanes* velocity, const Spring& spring, Largest& worst)
+{
+	Bodies<Space> v1(velocity, group.body1), v2(velocity, group.body2);
+	for (int k = 0; k < group.count; ++k)
+		sweepPoint<springs, measured>(group.point[k], group.friction, v1, v2, spring, worst);
+	v1.store(velocity, group.body1, v1.m);
+	v2.store(velocity, group.body2, v2.m);
+}
+
+// Two groups at the same time: one alone waits for its own results.
+template <bool springs, bool measured>
+MASONRY_INLINE void sweepTwo(Group<Space>* group, Lanes* velocity, const Spring& spring, Largest& worst)
+{
+	Bodies<Space> v1(velocity, group[0].body1), v2(velocity, group[0].body2), w1(velocity, group[1].body1), w2(velocity, group[1].body2);
+	const int both = std::min(group[0].count, group[1].count);
+	for (int k = 0; k < both; ++k) {
+		sweepPoint<springs, measured>(group[0].point[k], group[0].friction, v1, v2, spring, worst);
+		sweepPoint<springs, measured>(group[1].point[k], group[1].friction, w1, w2, spring, worst);
 	}
+	for (int k = both; k < group[0].count; ++k)
+		sweepPoint<springs, measured>(group[0].point[k], group[0].friction, v1, v2, spring, worst);
+	for (int k = both; k < group[1].count; ++k)
+		sweepPoint<springs, measured>(group[1].point[k], group[1].friction, w1, w2, spring, worst);
+	v1.store(velocity, group[0].body1, v1.m);
+	v2.store(velocity, group[0].body2, v2.m);
+	w1.store(velocity, group[1].body1, w1.m);
+	w2.store(velocity, group[1].body2, w2.m);
 }
 
 template <class K, bool springs, bool measured>
 MASONRY_INLINE void sweepGroups(Group<K>* groups, int begin, int end, Lanes* velocity, const Spring& spring, Largest& worst)
 {
 	int g = begin;
-	for (; g + abreast<K> <= end; g += abreast<K>)
-		sweepAbreast<K, abreast<K>, springs, measured>(groups + g, velocity, spring, worst);
+	if constexpr (K::dimension == 3)
+		for (; g + 2 <= end; g += 2)
+			sweepTwo<springs, measured>(groups + g, velocity, spring, worst);
 	for (; g < end; ++g)
-		sweepAbreast<K, 1, springs, measured>(groups + g, velocity, spring, worst);
+		sweepGroup<springs, measured>(groups[g], velocity, spring, worst);
 }
 
 template <class K>

@@ -22,20 +22,23 @@ constexpr int lanePoints = K::maxPoints == 2 ? 2 : 4;
 template <class K>
 constexpr int lanesOfPair = K::maxPoints / lanePoints<K>;
 
-// Of the points of a group, how many there are at most in a lane: in the plane all of them are always gone through.
+// Of the points of a group, how many there are at most in a lane: in the plane all of them are always gone through, together.
 template <class K>
-struct PointCount {
-	static constexpr int count = lanePoints<K>;
+struct PointSet;
+template <>
+struct PointSet<Plane> {
+	static constexpr int count = lanePoints<Plane>;
 	void setCount(int) {}
+	Coupling coupling;
 };
 template <>
-struct PointCount<Space> {
+struct PointSet<Space> {
 	int count;
 	void setCount(int value) { count = value; }
 };
 
 template <class K>
-struct alignas(alignment) Group : PointCount<K> {
+struct alignas(alignment) Group : PointSet<K> {
 	int body1[width], body2[width];
 	Lanes friction;
 	PointLanes<K> point[lanePoints<K>];
