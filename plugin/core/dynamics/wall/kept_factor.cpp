@@ -1,5 +1,4 @@
 #include "dynamics/wall/kept_factor.hpp"
-#include "dynamics/wall/threads.hpp"
 #include "tolerances.hpp"
 #include <algorithm>
 
@@ -9,6 +8,8 @@ namespace {
 
 template <class K>
 using Rows = typename KeptFactor<K>::Rows;
+template <class K>
+using Befores = typename KeptFactor<K>::Befores;
 
 constexpr double relaxation = 1.6;
 // Share of a slip, or of a penetration that has grown in this mode, that a step takes back. Walls in space are slender across their plane:
@@ -30,88 +31,98 @@ MASONRY_INLINE Lanes stiffnessOf(const PointLanes<K>& p, double softness)
 	return p.massN * p.massT / ((p.massN + p.massT) * (0.5 * softness));
 }
 
-// Which points take part, R, and b. Returns whether another point touches than before.
+// What is the same for all points of a step.
+struct Step {
+	double h, softness, pullBack, enter, leave;
+};
+
+// Which points take part, R, and b. Returns where another point touches than before.
 template <class K>
-MASONRY_INLINE bool takePoints(Group<K>* groups, const FeatureGroup<K>* features, Rows<K>* rows, int begin, int end, double h,
-                               double softness, double pullBack, double enter, double leave)
+MASONRY_INLINE Mask takePoint(PointLanes<K>& p, const FeatureLanes<K>& f, typename KeptFactor<K>::Row& row, const Step& step)
 {
-	const Lanes perH = all(1 / h), none = all(0);
+	const Lanes perH = all(1 / step.h), none = all(0);
 	const typename PointLanes<K>::Tangent noTangent {};
-	Mask different {0, 0, 0, 0};
-	for (int g = begin; g < end; ++g)
-		for (int k = 0; k < groups[g].count; ++k) {
-			const FeatureLanes<K>& f = features[g].point[k];
-			PointLanes<K>& p = groups[g].point[k];
-			auto& row = rows[g][k];
-			const Mask was = row.stiffness > 0;
-			const Mask touches = f.present & (was ? p.gap < leave : p.gap < enter);
-			different |= touches ^ was;
-			const Lanes stiffness = stiffnessOf(p, softness);
-			row.stiffness = touches ? stiffness : none;
-			row.resistance = touches ? all(1) / stiffness : none;
-			const Lanes gap = p.gap - f.zero;
-			row.bn = -gap * perH * (gap > 0 ? all(1) : all(pullBack));
-			row.bt = -pullBack * perH * f.slip;
-			row.bn = touches ? row.bn : none;
-			row.bt = select(touches, row.bt, noTangent);
-			p.pn = touches ? p.pn : none;
-			p.pt = select(touches, p.pt, noTangent);
-		}
-	return any(different);
+	const Mask was = row.stiffness > 0;
+	const Mask touches = f.present & (was ? p.gap < step.leave : p.gap < step.enter);
+	const Lanes stiffness = stiffnessOf(p, step.softness);
+	row.stiffness = touches ? stiffness : none;
+	row.resistance = touches ? all(1) / stiffness : none;
+	const Lanes gap = p.gap - f.zero;
+	row.bn = -gap * perH * (gap > 0 ? all(1) : all(step.pullBack));
+	row.bt = -step.pullBack * perH * f.slip;
+	row.bn = touches ? row.bn : none;
+	row.bt = select(touches, row.bt, noTangent);
+	p.pn = touches ? p.pn : none;
+	p.pt = select(touches, p.pt, noTangent);
+	return touches ^ was;
 }
 
-// One pass over the points: the laws (not before the first solve), and the right-hand side of the next solve.
+// One pass over the points of a group: the laws (not before the first solve), and the right-hand side of the next solve.
 template <class K, bool laws>
-MASONRY_INLINE void passAll(Group<K>* groups, FeatureGroup<K>* features, Rows<K>* rows, int begin, int end, const Lanes* velocity,
-                            Lanes* force, Largest& worst)
+MASONRY_INLINE void passGroup(Group<K>& group, FeatureGroup<K>& features, Rows<K>& rows, const Lanes* velocity, Lanes* force, Largest& worst)
 {
-	for (int g = begin; g < end; ++g) {
-		Group<K>& group = groups[g];
-		const Bodies<K> v1(velocity, group.body1), v2(velocity, group.body2);
-		Bodies<K> f1(force, group.body1), f2(force, group.body2);
-		for (int k = 0; k < group.count; ++k) {
-			PointLanes<K>& p = group.point[k];
-			FeatureLanes<K>& f = features[g].point[k];
-			auto& row = rows[g][k];
-			const Lanes un = normalRate(v1, v2, p), wn = un - row.bn;
-			const auto ut = slipRate(v1, v2, p), wt = ut - row.bt;
-			if constexpr (laws) {
-				const Lanes yn = p.pn - (relaxation * wn - (relaxation - 1) * f.zn) * row.stiffness;
-				const auto yt = p.pt - (relaxation * wt - (relaxation - 1) * f.zt) * row.stiffness;
-				p.pn = larger(yn, all(0));
-				p.pt = clip(yt, group.friction * p.pn);
-				const Lanes zn = (p.pn - yn) * row.resistance;
-				const auto zt = (p.pt - yt) * row.resistance;
-				const Lanes errorN = (zn - (2 - relaxation) * f.zn - (relaxation - 1) * wn) * row.stiffness;
-				const auto errorT = (zt - (2 - relaxation) * f.zt - (relaxation - 1) * wt) * row.stiffness;
-				const Lanes perMass = row.stiffness > 0 ? all(1) / p.massN : all(0);
-				f.zn = zn;
-				f.zt = zt;
-				row.un = un;
-				row.ut = ut;
-				const Mask touches = row.stiffness > 0;
-				const Lanes miss = larger(size(wn - zn), size(wt - zt)), motion = larger(size(un), size(ut));
-				worst.velocity = larger(worst.velocity, touches ? miss : all(0));
-				worst.motion = larger(worst.motion, f.present ? motion : all(0));
-				worst.force = larger(worst.force, larger(size(errorN), size(errorT)) * perMass);
-			}
-			if constexpr (!laws) { // a point without an impulse is free to move as it does
-				f.zn = p.pn > 0 ? f.zn : larger(wn, all(0));
-				f.zt = select(p.pn > 0, f.zt, wt);
-			}
-			add(f1, f2, p, p.pn + (f.zn - wn) * row.stiffness, p.pt + (f.zt - wt) * row.stiffness);
+	const Bodies<K> v1(velocity, group.body1), v2(velocity, group.body2);
+	Bodies<K> f1(force, group.body1), f2(force, group.body2);
+	for (int k = 0; k < group.count; ++k) {
+		PointLanes<K>& p = group.point[k];
+		FeatureLanes<K>& f = features.point[k];
+		auto& row = rows[k];
+		const Lanes un = normalRate(v1, v2, p), wn = un - row.bn;
+		const auto ut = slipRate(v1, v2, p), wt = ut - row.bt;
+		if constexpr (laws) {
+			const Lanes yn = p.pn - (relaxation * wn - (relaxation - 1) * f.zn) * row.stiffness;
+			const auto yt = p.pt - (relaxation * wt - (relaxation - 1) * f.zt) * row.stiffness;
+			p.pn = larger(yn, all(0));
+			p.pt = clip(yt, group.friction * p.pn);
+			const Lanes zn = (p.pn - yn) * row.resistance;
+			const auto zt = (p.pt - yt) * row.resistance;
+			const Lanes errorN = (zn - (2 - relaxation) * f.zn - (relaxation - 1) * wn) * row.stiffness;
+			const auto errorT = (zt - (2 - relaxation) * f.zt - (relaxation - 1) * wt) * row.stiffness;
+			const Lanes perMass = row.stiffness > 0 ? all(1) / p.massN : all(0);
+			f.zn = zn;
+			f.zt = zt;
+			row.un = un;
+			row.ut = ut;
+			const Mask touches = row.stiffness > 0;
+			const Lanes miss = larger(size(wn - zn), size(wt - zt)), motion = larger(size(un), size(ut));
+			worst.velocity = larger(worst.velocity, touches ? miss : all(0));
+			worst.motion = larger(worst.motion, f.present ? motion : all(0));
+			worst.force = larger(worst.force, larger(size(errorN), size(errorT)) * perMass);
 		}
-		f1.store(force, group.body1, v1.m);
-		f2.store(force, group.body2, v2.m);
+		if constexpr (!laws) { // a point without an impulse is free to move as it does
+			f.zn = p.pn > 0 ? f.zn : larger(wn, all(0));
+			f.zt = select(p.pn > 0, f.zt, wt);
+		}
+		add(f1, f2, p, p.pn + (f.zn - wn) * row.stiffness, p.pt + (f.zt - wt) * row.stiffness);
 	}
+	f1.store(force, group.body1, v1.m);
+	f2.store(force, group.body2, v2.m);
+}
+
+template <class K>
+MASONRY_INLINE bool startGroups(Group<K>* groups, FeatureGroup<K>* features, Rows<K>* rows, Befores<K>* before, int begin, int end,
+                                const Step& step, const Lanes* velocity, Lanes* force)
+{
+	Mask different {0, 0, 0, 0};
+	Largest none {};
+	for (int g = begin; g < end; ++g) {
+		for (int k = 0; k < groups[g].count; ++k) {
+			PointLanes<K>& p = groups[g].point[k];
+			const FeatureLanes<K>& f = features[g].point[k];
+			before[g][k] = {p.pn, p.pt, f.zn, f.zt, f.heldN, f.heldT};
+			different |= takePoint<K>(p, f, rows[g][k], step);
+		}
+		passGroup<K, false>(groups[g], features[g], rows[g], velocity, force, none);
+	}
+	return any(different);
 }
 
 // (z - w)/R is the impulse that V lacks; over the mass, the velocity.
 template <class K>
-MASONRY_INLINE void addHeld(const Group<K>* groups, FeatureGroup<K>* features, const Rows<K>* rows, int count, Lanes& most)
+MASONRY_INLINE void addHeld(const Group<K>* groups, FeatureGroup<K>* features, const Rows<K>* rows, int begin, int end, Lanes& most)
 {
 	const Lanes none = all(0);
-	for (int g = 0; g < count; ++g)
+	for (int g = begin; g < end; ++g)
 		for (int k = 0; k < groups[g].count; ++k) {
 			const PointLanes<K>& p = groups[g].point[k];
 			FeatureLanes<K>& f = features[g].point[k];
@@ -126,11 +137,12 @@ MASONRY_INLINE void addHeld(const Group<K>* groups, FeatureGroup<K>* features, c
 }
 
 template <class K>
-MASONRY_INLINE void addSlip(const Group<K>* groups, FeatureGroup<K>* features, const Rows<K>* rows, int count, double h)
+MASONRY_INLINE void addSlip(Group<K>* groups, FeatureGroup<K>* features, const Rows<K>* rows, int begin, int end, double h)
 {
-	for (int g = 0; g < count; ++g)
+	for (int g = begin; g < end; ++g)
 		for (int k = 0; k < groups[g].count; ++k) {
-			const PointLanes<K>& p = groups[g].point[k];
+			PointLanes<K>& p = groups[g].point[k];
+			p.gap += h * rows[g][k].un;
 			auto& slip = features[g].point[k].slip;
 			slip = select(slides(p.pt, groups[g].friction * p.pn), typename PointLanes<K>::Tangent {}, slip + h * rows[g][k].ut);
 		}
@@ -138,61 +150,39 @@ MASONRY_INLINE void addSlip(const Group<K>* groups, FeatureGroup<K>* features, c
 
 // No template is compiled for several vector widths.
 #define MASONRY_PASSES(K)                                                                                                                  \
-	MASONRY_LANES bool takeAll(Group<K>* groups, const FeatureGroup<K>* features, Rows<K>* rows, int begin, int end, double h,             \
-	                           double softness, double pullBack, double enter, double leave)                                               \
+	MASONRY_LANES bool startPass(Group<K>* groups, FeatureGroup<K>* features, Rows<K>* rows, Befores<K>* before, int begin, int end,       \
+	                             const Step& step, const Lanes* velocity, Lanes* force)                                                    \
 	{                                                                                                                                      \
-		return takePoints<K>(groups, features, rows, begin, end, h, softness, pullBack, enter, leave);                                     \
-	}                                                                                                                                      \
-	MASONRY_LANES void firstPass(Group<K>* groups, FeatureGroup<K>* features, Rows<K>* rows, int begin, int end, const Lanes* velocity,    \
-	                             Lanes* force, Largest& worst)                                                                             \
-	{                                                                                                                                      \
-		passAll<K, false>(groups, features, rows, begin, end, velocity, force, worst);                                                     \
+		return startGroups<K>(groups, features, rows, before, begin, end, step, velocity, force);                                          \
 	}                                                                                                                                      \
 	MASONRY_LANES void lawPass(Group<K>* groups, FeatureGroup<K>* features, Rows<K>* rows, int begin, int end, const Lanes* velocity,      \
 	                           Lanes* force, Largest& worst)                                                                               \
 	{                                                                                                                                      \
-		passAll<K, true>(groups, features, rows, begin, end, velocity, force, worst);                                                      \
+		for (int g = begin; g < end; ++g)                                                                                                  \
+			passGroup<K, true>(groups[g], features[g], rows[g], velocity, force, worst);                                                   \
 	}                                                                                                                                      \
-	MASONRY_LANES void heldPass(const Group<K>* groups, FeatureGroup<K>* features, const Rows<K>* rows, int count, Lanes& most)            \
+	MASONRY_LANES void heldPass(const Group<K>* groups, FeatureGroup<K>* features, const Rows<K>* rows, int begin, int end, Lanes& most)   \
 	{                                                                                                                                      \
-		addHeld<K>(groups, features, rows, count, most);                                                                                   \
+		addHeld<K>(groups, features, rows, begin, end, most);                                                                              \
 	}                                                                                                                                      \
-	MASONRY_LANES void slipPass(const Group<K>* groups, FeatureGroup<K>* features, const Rows<K>* rows, int count, double h)               \
+	MASONRY_LANES void slipPass(Group<K>* groups, FeatureGroup<K>* features, const Rows<K>* rows, int begin, int end, double h)            \
 	{                                                                                                                                      \
-		addSlip<K>(groups, features, rows, count, h);                                                                                      \
+		addSlip<K>(groups, features, rows, begin, end, h);                                                                                 \
 	}
 MASONRY_PASSES(Plane)
 MASONRY_PASSES(Space)
 #undef MASONRY_PASSES
 
-// M (V_free - V)
-void inertia(const LaneArray& free, const LaneArray& velocity, LaneArray& force, int begin, int end)
-{
-	for (int b = begin; b < end; ++b)
-		force[b] = velocity[b][3] > 0 ? (free[b] - velocity[b]) / all(velocity[b][3]) : all(0);
-}
-
 } // namespace
 
+// True: it is another.
 template <class K>
-bool KeptFactor<K>::takeRows()
+bool KeptFactor<K>::takeSoftness()
 {
 	const double deepest = 3., softest = 3e-3; // of r: waves of correction cross the courses in some sqrt(1/r) solves
-	const double wanted = given > 0 ? given : std::min(softest, deepest / (double(contacts->depth) * contacts->depth));
-	const bool otherSoftness = wanted != softness;
-	softness = wanted;
-	if (rows.size() != contacts->groups.size())
-		rows.assign(contacts->groups.size(), {});
-	const double enter = tolerance::wall::touching * contacts->length;
-	bool different = false;
-	inParallel(contacts->threads, [&](const Share& share) {
-		const auto [first, last] = share.of(0, int(rows.size()));
-		const bool here = takeAll(contacts->groups.data(), contacts->features.data(), rows.data(), first, last, h, softness,
-		                          pullBack<K>(contacts->depth), enter, 4 * enter);
-#pragma omp critical
-		different |= here;
-	});
-	return different || outdated || otherSoftness;
+	const double before = softness;
+	softness = given > 0 ? given : std::min(softest, deepest / (double(contacts->depth) * contacts->depth));
+	return softness != before;
 }
 
 template <class K>
@@ -279,40 +269,53 @@ void KeptFactor<K>::factorise()
 	++report.factorisations;
 }
 
+// M (V_free - V)
+template <class K>
+void KeptFactor<K>::inertia(const Part& part)
+{
+	for (const int b : part.members)
+		force[b] = velocity[b][3] > 0 ? (free[b] - velocity[b]) / all(velocity[b][3]) : all(0);
+}
+
+// The seam goes first where a loop is over bodies, since parts add to those of the seam, and last where it is over contacts.
 template <class K>
 void KeptFactor<K>::begin(WallContacts<K>& c, const RigidSystem<K>& s, const LaneArray& load, double step)
 {
 	contacts = &c;
 	h = step;
 	report = {};
+	outdated |= takeSoftness();
 	before.resize(c.groups.size());
-	for (size_t g = 0; g < c.groups.size(); ++g)
-		for (int k = 0; k < c.groups[g].count; ++k) {
-			const PointLanes<K>& p = c.groups[g].point[k];
-			const FeatureLanes<K>& f = c.features[g].point[k];
-			before[g][k] = {p.pn, p.pt, f.zn, f.zt, f.heldN, f.heldT};
-		}
-	if (takeRows()) {
-		factorise();
-		outdated = false;
-		factored.clear();
-		for (const auto& body : s.bodies)
-			factored.push_back(body.pose);
-	}
+	if (rows.size() != c.groups.size())
+		rows.assign(c.groups.size(), {});
 	velocity = c.velocity;
 	free.resize(velocity.size());
 	force.resize(velocity.size());
-	for (size_t b = 0; b < velocity.size(); ++b)
-		free[b] = velocity[b] + load[b];
-	inParallel(c.threads, [&](const Share& share) {
-		const auto [first, last] = share.of(0, int(velocity.size()));
-		inertia(free, velocity, force, first, last);
-		share.meet();
-		Largest none {};
-		byColour(c.colourEnd, share, [&](int begin, int end) {
-			firstPass(c.groups.data(), c.features.data(), rows.data(), begin, end, velocity.data(), force.data(), none);
-		});
+	const double enter = tolerance::wall::touching * c.length;
+	const Step same {h, softness, pullBack<K>(c.depth), enter, 4 * enter};
+	bool different[Team::mostParts + 1] {};
+	const auto startBodies = [&](const Part& part) {
+		for (const int b : part.members)
+			free[b] = velocity[b] + load[b];
+		inertia(part);
+	};
+	const auto startPoints = [&](const Part& part, int number) {
+		different[number] = startPass(c.groups.data(), c.features.data(), rows.data(), before.data(), part.begin, part.end, same,
+		                              velocity.data(), force.data());
+	};
+	startBodies(c.parts.back());
+	c.eachPart([&](const Part& part, int number) {
+		startBodies(part);
+		startPoints(part, number);
 	});
+	startPoints(c.parts.back(), Team::mostParts);
+	if (!outdated && std::none_of(std::begin(different), std::end(different), [](bool is) { return is; }))
+		return;
+	factorise();
+	outdated = false;
+	factored.clear();
+	for (const auto& body : s.bodies)
+		factored.push_back(body.pose);
 }
 
 template <class K>
@@ -331,30 +334,30 @@ template <class K>
 void KeptFactor<K>::iterate(int most, double velocityResidual, double forceResidual)
 {
 	auto& c = *contacts;
+	const Lanes noMass {1, 1, 1, 0};
 	for (int k = 0; k < most; ++k) {
 		factor.solve(force.data());
-		Largest worst {all(0), all(0), all(0)};
-		inParallel(c.threads, [&](const Share& share) {
-			const Lanes noMass {1, 1, 1, 0};
-			const auto [first, last] = share.of(0, int(velocity.size()));
-			for (int b = first; b < last; ++b)
+		Largest worst[Team::mostParts + 1] {};
+		const auto move = [&](const Part& part) {
+			for (const int b : part.members)
 				velocity[b] += noMass * force[b];
-			inertia(free, velocity, force, first, last);
-			share.meet();
-			Largest here {all(0), all(0), all(0)};
-			byColour(c.colourEnd, share, [&](int begin, int end) {
-				lawPass(c.groups.data(), c.features.data(), rows.data(), begin, end, velocity.data(), force.data(), here);
-			});
-#pragma omp critical
-			{
-				worst.velocity = larger(worst.velocity, here.velocity);
-				worst.force = larger(worst.force, here.force);
-				worst.motion = larger(worst.motion, here.motion);
-			}
+			inertia(part);
+		};
+		const auto laws = [&](const Part& part, int number) {
+			lawPass(c.groups.data(), c.features.data(), rows.data(), part.begin, part.end, velocity.data(), force.data(), worst[number]);
+		};
+		move(c.parts.back());
+		c.eachPart([&](const Part& part, int number) {
+			move(part);
+			laws(part, number);
 		});
-		report.velocity = largest(worst.velocity);
-		report.force = largest(worst.force);
-		report.motion = largest(worst.motion);
+		laws(c.parts.back(), Team::mostParts);
+		report.velocity = report.force = report.motion = 0;
+		for (const Largest& here : worst) {
+			report.velocity = std::max(report.velocity, largest(here.velocity));
+			report.force = std::max(report.force, largest(here.force));
+			report.motion = std::max(report.motion, largest(here.motion));
+		}
 		++report.solves;
 		if (report.velocity <= velocityResidual && report.force <= forceResidual)
 			return;
@@ -364,9 +367,15 @@ void KeptFactor<K>::iterate(int most, double velocityResidual, double forceResid
 template <class K>
 double KeptFactor<K>::findHeld()
 {
-	Lanes most = all(0);
-	heldPass(contacts->groups.data(), contacts->features.data(), rows.data(), int(rows.size()), most);
-	return largest(most);
+	auto& c = *contacts;
+	Largest most[Team::mostParts + 1] {};
+	c.allParts([&](const Part& part, int number) {
+		heldPass(c.groups.data(), c.features.data(), rows.data(), part.begin, part.end, most[number].velocity);
+	});
+	double held = 0;
+	for (const Largest& here : most)
+		held = std::max(held, largest(here.velocity));
+	return held;
 }
 
 template <class K>
@@ -397,7 +406,8 @@ void KeptFactor<K>::forgetHeld()
 template <class K>
 void KeptFactor<K>::keepSlip()
 {
-	slipPass(contacts->groups.data(), contacts->features.data(), rows.data(), int(rows.size()), h);
+	auto& c = *contacts;
+	c.allParts([&](const Part& part, int) { slipPass(c.groups.data(), c.features.data(), rows.data(), part.begin, part.end, h); });
 }
 
 template <class K>

@@ -54,6 +54,15 @@ public:
 		Tangent ut;
 	};
 	using Rows = std::array<Row, lanePoints<K>>;
+	struct alignas(alignment) Before { // what a step that is given up finds again
+		Lanes pn;
+		Tangent pt;
+		Lanes zn;
+		Tangent zt;
+		Lanes heldN;
+		Tangent heldT;
+	};
+	using Befores = std::array<Before, lanePoints<K>>;
 
 	// The wall has moved since the last step in this mode, and holds what it finds.
 	static void forget(WallContacts<K>& contacts);
@@ -69,7 +78,7 @@ public:
 	// Largest velocity of the points that were kept from at least `held`, the way they were kept from, m/s.
 	double motionOfHeld(double held) const;
 	void forgetHeld();
-	void keepSlip(); // of the step that ends
+	void keepSlip(); // of the step that ends, in which gaps have moved
 	void giveUp();   // impulses as they were at the beginning
 
 	KeptReport report;
@@ -104,24 +113,16 @@ public:
 private:
 	using Touches = std::vector<std::array<Mask, lanePoints<K>>>; // which points touch, by group
 
-	bool takeRows();
+	bool takeSoftness();
+	void inertia(const Part& part);
 	void factorise();
 	void refactorise(WallContacts<K>& contacts, RigidSystem<K>& system, const Touches& touches);
-
-	struct alignas(alignment) Before {
-		Lanes pn;
-		Tangent pt;
-		Lanes zn;
-		Tangent zt;
-		Lanes heldN;
-		Tangent heldT;
-	};
 
 	WallContacts<K>* contacts {nullptr};
 	SymmetricFactor factor; // a node for each pack
 	std::vector<SymmetricFactor::Edge> edges;
 	LaneArray free, force;
-	std::vector<std::array<Before, lanePoints<K>>> before; // by group
+	std::vector<Befores> before; // by group
 	const double given;
 	double h {0}, softness {0};
 	bool outdated {true};

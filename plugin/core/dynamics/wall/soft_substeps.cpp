@@ -1,5 +1,4 @@
 #include "dynamics/wall/soft_substeps.hpp"
-#include "dynamics/wall/threads.hpp"
 #include <algorithm>
 #include <cmath>
 
@@ -189,11 +188,14 @@ void SoftSubsteps<K>::begin(WallContacts<K>& c)
 	contactPart = c.velocity;
 	for (Lanes& v : contactPart)
 		v *= onlyMass;
-	inParallel(c.threads, [&](const Share& share) {
-		byColour(c.colourEnd, share, [&](int first, int last) { applyImpulses(c.groups.data(), first, last, contactPart.data()); });
-	});
+	const auto apply = [&](const Part& part, int) {
+		part.byColour([&](int first, int last) { applyImpulses(c.groups.data(), first, last, contactPart.data()); });
+	};
+	c.eachPart(apply);
+	apply(c.parts.back(), 0);
 }
 
+// The seam goes first where a loop is over bodies, since the parts read those of the seam, and last where it is over contacts.
 template <class K>
 void SoftSubsteps<K>::substep(WallContacts<K>& c, const LaneArray& load, double s, bool isLast)
 {
@@ -201,37 +203,50 @@ void SoftSubsteps<K>::substep(WallContacts<K>& c, const LaneArray& load, double 
 	const Lanes noMass {1, 1, 1, 0};
 	Group<K>* groups = c.groups.data();
 	Lanes* velocity = c.velocity.data();
-	Largest worst {all(0), all(0)};
-	inParallel(c.threads, [&](const Share& share) {
-		const auto [firstBody, lastBody] = share.of(0, int(c.velocity.size()));
-		const auto [firstGroup, lastGroup] = share.of(0, int(c.groups.size()));
-		Largest here {all(0), all(0)};
-		for (int b = firstBody; b < lastBody; ++b) {
+	Largest worst[Team::mostParts + 1] {};
+	const auto accelerate = [&](const Part& part) {
+		for (const int b : part.members) {
 			const Lanes before = velocity[b] + load[b];
 			velocity[b] = before + contactPart[b] * noMass;
 			contactPart[b] = before;
 		}
-		share.meet();
-		byColour(c.colourEnd, share, [&](int first, int last) { springSweep(groups, first, last, velocity, spring, here); });
-		moveGaps(groups, firstGroup, lastGroup, velocity, s);
-		for (int b = firstBody; b < lastBody; ++b)
+	};
+	const auto press = [&](const Part& part) {
+		part.byColour([&](int first, int last) { springSweep(groups, first, last, velocity, spring, worst[0]); });
+	};
+	const auto move = [&](const Part& part) {
+		moveGaps(groups, part.begin, part.end, velocity, s);
+		for (const int b : part.members)
 			shift[b] += s * noMass * velocity[b];
-		share.meet();
-		byColour(c.colourEnd, share, [&](int first, int last) {
+	};
+	const auto relax = [&](const Part& part, int number) {
+		part.byColour([&](int first, int last) {
 			if (isLast)
-				lastSweep(groups, first, last, velocity, spring, here);
+				lastSweep(groups, first, last, velocity, spring, worst[number]);
 			else
-				relaxSweep(groups, first, last, velocity, spring, here);
+				relaxSweep(groups, first, last, velocity, spring, worst[number]);
 		});
-		for (int b = firstBody; b < lastBody; ++b)
+		for (const int b : part.members)
 			contactPart[b] = velocity[b] - contactPart[b];
-#pragma omp critical
-		{
-			worst.change = larger(worst.change, here.change);
-			worst.motion = larger(worst.motion, here.motion);
-		}
+	};
+	const Part& seam = c.parts.back();
+	accelerate(seam);
+	c.eachPart([&](const Part& part, int) {
+		accelerate(part);
+		press(part);
 	});
-	report = {largest(worst.change), largest(worst.motion)};
+	press(seam);
+	move(seam);
+	c.eachPart([&](const Part& part, int number) {
+		move(part);
+		relax(part, number);
+	});
+	relax(seam, int(c.parts.size()) - 1);
+	report = {};
+	for (const Largest& here : worst) {
+		report.residual = std::max(report.residual, largest(here.change));
+		report.motion = std::max(report.motion, largest(here.motion));
+	}
 }
 
 template class SoftSubsteps<Plane>;

@@ -1,6 +1,5 @@
 #include "dynamics/wall/wall_contacts.hpp"
 #include "dynamics/rigid/scales.hpp"
-#include "dynamics/wall/threads.hpp"
 #include "tolerances.hpp"
 #include <algorithm>
 #include <cmath>
@@ -9,7 +8,7 @@ namespace masonry::rigid::wall {
 
 namespace {
 
-constexpr int groupsPerThread = 256;  // fewer do not repay the meetings of the threads
+constexpr int pairsOfPart = 1024;     // at least: fewer do not repay that threads meet
 constexpr double mostFriction = 1e12; // stands for noSlip: infinity times a zero impulse is no number
 
 } // namespace
@@ -25,64 +24,115 @@ bool WallContacts<K>::samePairs(const RigidSystem<K>& s)
 	return true;
 }
 
-// Greedy in the order of the pairs, then packed by four.
+// In halves, as often as there are pairs for: by place along the axis along which the free bodies are spread most.
+template <class K>
+void WallContacts<K>::divide(const RigidSystem<K>& s)
+{
+	partOf.assign(s.bodies.size(), 0);
+	std::vector<int> order;
+	for (int b = 0; b < int(s.bodies.size()); ++b)
+		if (!s.bodies[b].prescribed)
+			order.push_back(b);
+	int count = 1;
+	for (; 2 * count <= Team::mostParts && int(pairs.size()) >= 2 * count * pairsOfPart; count *= 2) {
+		for (int part = 0; part < count; ++part) {
+			const auto from = [&](int k) { return order.begin() + long(order.size()) * k / (2 * count); };
+			const auto begin = from(2 * part), middle = from(2 * part + 1), end = from(2 * part + 2);
+			typename K::Vector low = s.bodies[*begin].pose.position, high = low;
+			for (auto b = begin; b != end; ++b) {
+				low = low.cwiseMin(s.bodies[*b].pose.position);
+				high = high.cwiseMax(s.bodies[*b].pose.position);
+			}
+			int axis;
+			(high - low).maxCoeff(&axis);
+			std::nth_element(begin, middle, end, [&](int a, int b) {
+				const double at = s.bodies[a].pose.position[axis], other = s.bodies[b].pose.position[axis];
+				return at != other ? at < other : a < b;
+			});
+		}
+	}
+	for (int part = 0; part < count; ++part)
+		for (long k = long(order.size()) * part / count; k < long(order.size()) * (part + 1) / count; ++k)
+			partOf[order[k]] = part;
+}
+
+// In each part greedy in the order of the pairs, then packed by four.
 template <class K>
 void WallContacts<K>::colour(const RigidSystem<K>& s)
 {
 	struct Lane {
 		int pair, part;
 	};
-	const int none = int(s.bodies.size());
-	std::vector<std::vector<Lane>> ofColour;
-	std::vector<std::vector<char>> used; // by colour, whether a body has a pair of it
-	for (int c = 0; c < int(pairs.size()); ++c)
-		for (int part = 0; part < (wide[c] ? lanesOfPair<K> : 1); ++part) {
-			size_t k = 0;
-			for (;; ++k) {
-				if (k == ofColour.size()) {
-					ofColour.emplace_back();
-					used.emplace_back(s.bodies.size(), 0);
-				}
-				const auto taken = [&](int body) { return !s.bodies[body].prescribed && used[k][body]; };
-				if (!taken(pairs[c][0]) && !taken(pairs[c][1]))
-					break;
-			}
-			ofColour[k].push_back({c, part});
-			used[k][pairs[c][0]] = used[k][pairs[c][1]] = 1;
-		}
+	const int none = int(s.bodies.size()), seam = 1 + *std::max_element(partOf.begin(), partOf.end());
+	const auto isFixed = [&](int body) { return s.bodies[body].prescribed; };
+	std::vector<std::vector<int>> pairsOf(seam + 1);
+	std::vector<char> atSeam(s.bodies.size() + 1, 0);
+	for (int c = 0; c < int(pairs.size()); ++c) {
+		const auto [a, b] = pairs[c];
+		const bool within = isFixed(a) || isFixed(b) || partOf[a] == partOf[b];
+		pairsOf[within ? partOf[isFixed(a) ? b : a] : seam].push_back(c);
+		if (!within)
+			atSeam[a] = atSeam[b] = 1;
+	}
+	parts.assign(seam + 1, {});
+	for (int b = 0; b <= none; ++b) {
+		const bool within = b < none && !isFixed(b) && !atSeam[b];
+		for (int k = 0; k < packs<K>; ++k)
+			parts[within ? partOf[b] : seam].members.push_back(packs<K> * b + k);
+	}
 
 	groups.clear();
 	features.clear();
-	colourEnd.clear();
 	std::array<Slot, lanesOfPair<K>> noSlots;
 	noSlots.fill({-1, -1});
 	slots.assign(pairs.size(), noSlots);
-	for (const auto& members : ofColour) {
-		for (size_t first = 0; first < members.size(); first += width) {
-			Group<K> group {};
-			FeatureGroup<K> feature {};
-			group.setCount(lanePoints<K>);
-			for (int i = 0; i < width; ++i) {
-				const bool filled = first + i < members.size();
-				const Lane lane = filled ? members[first + i] : Lane {-1, 0};
-				feature.pair[i] = lane.pair;
-				feature.first[i] = lane.part * lanePoints<K>;
-				group.body1[i] = filled ? pairs[lane.pair][0] : none;
-				group.body2[i] = filled ? pairs[lane.pair][1] : none;
-				if (filled)
-					slots[lane.pair][lane.part] = {int(groups.size()), i};
+	for (int p = 0; p <= seam; ++p) {
+		std::vector<std::vector<Lane>> ofColour;
+		std::vector<std::vector<char>> used; // by colour, whether a body has a pair of it
+		for (const int c : pairsOf[p])
+			for (int part = 0; part < (wide[c] ? lanesOfPair<K> : 1); ++part) {
+				size_t k = 0;
+				for (;; ++k) {
+					if (k == ofColour.size()) {
+						ofColour.emplace_back();
+						used.emplace_back(s.bodies.size(), 0);
+					}
+					const auto taken = [&](int body) { return !isFixed(body) && used[k][body]; };
+					if (!taken(pairs[c][0]) && !taken(pairs[c][1]))
+						break;
+				}
+				ofColour[k].push_back({c, part});
+				used[k][pairs[c][0]] = used[k][pairs[c][1]] = 1;
 			}
-			groups.push_back(group);
-			features.push_back(feature);
+		parts[p].begin = int(groups.size());
+		for (const auto& members : ofColour) {
+			for (size_t first = 0; first < members.size(); first += width) {
+				Group<K> group {};
+				FeatureGroup<K> feature {};
+				group.setCount(lanePoints<K>);
+				for (int i = 0; i < width; ++i) {
+					const bool filled = first + i < members.size();
+					const Lane lane = filled ? members[first + i] : Lane {-1, 0};
+					feature.pair[i] = lane.pair;
+					feature.first[i] = lane.part * lanePoints<K>;
+					group.body1[i] = filled ? pairs[lane.pair][0] : none;
+					group.body2[i] = filled ? pairs[lane.pair][1] : none;
+					if (filled)
+						slots[lane.pair][lane.part] = {int(groups.size()), i};
+				}
+				groups.push_back(group);
+				features.push_back(feature);
+			}
+			parts[p].colourEnd.push_back(int(groups.size()));
 		}
-		colourEnd.push_back(int(groups.size()));
+		parts[p].end = int(groups.size());
 	}
 	stale.assign(groups.size(), allLanes);
 	known.assign(pairs.size(), 0);
 	onBase.clear();
 	for (int g = 0; g < int(groups.size()); ++g)
 		for (int i = 0; i < width && features[g].pair[i] >= 0; ++i)
-			if (s.bodies[groups[g].body1[i]].prescribed || s.bodies[groups[g].body2[i]].prescribed)
+			if (isFixed(groups[g].body1[i]) || isFixed(groups[g].body2[i]))
 				onBase.push_back({g, i});
 }
 
@@ -328,6 +378,7 @@ bool WallContacts<K>::measure(RigidSystem<K>& s)
 	otherPoints = !samePairs(s);
 	if (otherPoints) {
 		takePairs(s);
+		divide(s);
 		colour(s);
 		findDepth(s);
 	}
@@ -335,12 +386,8 @@ bool WallContacts<K>::measure(RigidSystem<K>& s)
 		std::fill(stale.begin(), stale.end(), allLanes);
 	s.moved = false;
 	takeBodies(s);
-	threads = std::clamp(int(groups.size()) / groupsPerThread, 1, std::max(1, mostThreads));
 	const double travel = tolerance::wall::search * length;
-	inParallel(threads, [&](const Share& share) {
-		const auto [first, last] = share.of(0, int(groups.size()));
-		locate(s, first, last, travel, false);
-	});
+	allParts([&](const Part& part, int) { locate(s, part.begin, part.end, travel, false); });
 	for (wider = true; wider;) {
 		wider = false;
 		lookUpStale(s);

@@ -5,13 +5,17 @@
 // (plane_lanes.hpp, space_lanes.hpp). Velocities come in packs of three components and 1/m: in the plane (v, rho w), in space v and then
 // the spin.
 //
-// No two pairs of a colour share a free body: the pairs of a colour can be taken in any order, or at the same time, with the same result.
-// A lane holds as many points as most pairs have; a pair with more takes a second lane, of another colour.
+// A large wall is divided into parts of equally many blocks, and the pairs within a part are taken apart from those of other parts, by any
+// thread; then, or before, those between two parts, which are the seam. The division is the wall's and not that of the threads.
+//
+// Within a part no two pairs of a colour share a free body: the pairs of a colour can be taken in any order, or at the same time, with the
+// same result. A lane holds as many points as most pairs have; a pair with more takes a second lane, of another colour.
 //
 // Gaps, normals and arms are exact at the start of every step; which features meet is looked up again only where a pair has moved by a
 // small share of its size since (tolerance::wall::search).
 #include "dynamics/rigid/rigid_system.hpp"
 #include "dynamics/wall/space_lanes.hpp"
+#include "dynamics/wall/team.hpp"
 
 namespace masonry::rigid::wall {
 
@@ -76,10 +80,41 @@ struct alignas(alignment) FeatureGroup {
 	int first[width]; // number in the pair of the lane's first point
 };
 
+struct Part {
+	int begin {0}, end {0};     // groups
+	std::vector<int> colourEnd; // groups of the first colour end here, and so on
+	std::vector<int> members;   // packs of the bodies that have no pair in another part; of the seam: of all others
+
+	// work(begin, end) with the groups of each colour in turn.
+	template <class Work>
+	void byColour(const Work& work) const
+	{
+		int first = begin;
+		for (const int last : colourEnd) {
+			work(first, last);
+			first = last;
+		}
+	}
+};
+
 template <class K>
 class WallContacts {
 public:
 	using Tangent = typename PointLanes<K>::Tangent;
+
+	// work(part, number) for each part but the seam, the last number.
+	template <class Work>
+	void eachPart(const Work& work)
+	{
+		team.each(int(parts.size()) - 1, [&](int part) { work(parts[part], part); });
+	}
+	// For each part, the seam included, where their order does not matter.
+	template <class Work>
+	void allParts(const Work& work)
+	{
+		eachPart(work);
+		work(parts.back(), int(parts.size()) - 1);
+	}
 
 	// Takes over poses and velocities, looks up features where needed, and measures all points. True: other points than before.
 	bool measure(RigidSystem<K>& system);
@@ -96,6 +131,9 @@ public:
 			takePairs(system);
 		for (auto& is : wide)
 			f(is);
+		partOf.resize(system.bodies.size());
+		for (int& part : partOf)
+			f(part);
 		f(unit);
 		if (isNew)
 			takeOver(system);
@@ -142,14 +180,14 @@ public:
 	std::vector<Group<K>> groups;
 	std::vector<FeatureGroup<K>> features;
 	std::vector<std::array<unsigned char, lanePoints<K>>> sliding; // by group: a bit for each lane
-	std::vector<int> colourEnd;                                    // groups of colour c end before colourEnd[c]
+	std::vector<Part> parts;                                       // the last is the seam
 	std::vector<std::array<int, 2>> onBase;                        // group and lane of the pairs with a prescribed body
 	LaneArray velocity;                                            // packs; 1/m = 0: prescribed. One more body at the end, for empty lanes
 	LaneArray pose;                         // plane: (position, cosine, sine). Space: axes and position in three rows, then 1/rho
 	std::vector<typename K::Spin> gyration; // rho, m
 	int depth {0};                          // courses: pairs between a prescribed body and the block farthest from one
 	double length {0};                      // m, smallest half size
-	int mostThreads {1}, threads {1};       // that may, and that do, share the loops over groups
+	Team team;
 
 private:
 	struct Slot {
@@ -170,6 +208,7 @@ private:
 	bool samePairs(const RigidSystem<K>& system);
 	void takePairs(const RigidSystem<K>& system);
 	void takeOver(const RigidSystem<K>& system);
+	void divide(const RigidSystem<K>& system);
 	void colour(const RigidSystem<K>& system);
 	void showPair(RigidSystem<K>& system, int pair) const;
 	void countPoints(const RigidSystem<K>& system, int group);
@@ -188,6 +227,7 @@ private:
 	std::vector<std::array<int, 2>> pairs;               // that the groups are made of
 	std::vector<std::array<Slot, lanesOfPair<K>>> slots; // of a pair; group -1: none
 	std::vector<unsigned char> wide;                     // pairs that need all their lanes
+	std::vector<int> partOf;                             // of a body
 	std::vector<unsigned char> known;                    // pairs whose lanes hold their points
 	std::vector<unsigned char> stale;                    // lanes with a pair to be looked up, by group: a bit each
 	bool otherPoints {false}, wider {false};

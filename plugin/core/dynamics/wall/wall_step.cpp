@@ -84,7 +84,7 @@ void WallStep<K>::advancePart(RigidSystem<K>& s, double h)
 {
 	auto& m = memoryOfModes;
 	const double workBefore = s.baseWork;
-	contacts.mostThreads = settings.threads;
+	contacts.team.setThreads(settings.threads);
 	if (contacts.measure(s)) {
 		kept.outdate();
 		quick.outdate();
@@ -156,9 +156,6 @@ bool WallStep<K>::tryStill(RigidSystem<K>& s, double h)
 	shift.resize(kept.velocity.size());
 	for (size_t b = 0; b < shift.size(); ++b)
 		shift[b] = h * kept.velocity[b];
-	for (size_t g = 0; g < contacts.groups.size(); ++g)
-		for (int k = 0; k < contacts.groups[g].count; ++k)
-			contacts.groups[g].point[k].gap += h * kept.rows[g][k].un;
 	return true;
 }
 
