@@ -30,6 +30,18 @@ struct PlanePose {
 		cosine -= by * sine;
 		sine += by * before;
 	}
+	// The same to round-off by series, without sine and cosine: for a pose that no other one follows from.
+	void turnOnce(double by)
+	{
+		constexpr double small = 0.05; // the first terms left out are below 1e-17
+		if (std::abs(by) > small)
+			return setAngle(angle + by);
+		const double x = by * by, s = by * (1 - x / 6 * (1 - x / 20 * (1 - x / 42))), less = x / 2 * (1 - x / 12 * (1 - x / 30 * (1 - x / 56)));
+		const double before = cosine;
+		angle += by;
+		cosine -= less * cosine + s * sine;
+		sine += s * before - less * sine;
+	}
 	Vector2 rotate(const Vector2& local) const { return {cosine * local.x() - sine * local.y(), sine * local.x() + cosine * local.y()}; }
 	Vector2 rotateBack(const Vector2& global) const
 	{
@@ -98,6 +110,11 @@ struct Plane {
 		pose.position += t * velocity.head<2>();
 		pose.turn(t * velocity[2]);
 	}
+	static void advanceOnce(Pose& pose, const Velocity& velocity, double t) // a pose that no other one follows from
+	{
+		pose.position += t * velocity.head<2>();
+		pose.turnOnce(t * velocity[2]);
+	}
 	static Spin angularMomentum(const Inertia& inertia, const Pose&, const Spin& w) { return inertia * w; }
 	static InverseInertia inverseInertia(const Inertia& inertia, const Pose&) { return inertia.cwiseInverse(); }
 
@@ -122,6 +139,7 @@ struct Space {
 	static Vector cross(const Spin& w, const Vector& r) { return w.cross(r); }
 	static Spin moment(const Vector& r, const Vector& f) { return r.cross(f); }
 	static void advance(Pose& pose, const Velocity& velocity, double t); // orientation by the exponential of the spin
+	static void advanceOnce(Pose& pose, const Velocity& velocity, double t) { advance(pose, velocity, t); }
 	static Spin angularMomentum(const Inertia& inertia, const Pose& pose, const Spin& w)
 	{
 		return pose.orientation * inertia.cwiseProduct(pose.orientation.conjugate() * w);

@@ -115,13 +115,15 @@ template <class K> void SmoothStep<K>::predict(const RigidSystem<K>& s, double h
 		if (!again) {
 			const typename K::Velocity change = s.fresh ? typename K::Velocity(K::Velocity::Zero()) : typename K::Velocity(h * body.increment);
 			next.mean = body.velocity + 0.5 * change;
-			next.velocity = body.velocity + change;
-			next.end = body.pose;
-			K::advance(next.end, next.mean, h);
-			next.momentum = K::angularMomentum(body.inertia, next.end, next.velocity.template tail<K::spins>());
+			if constexpr (K::spins == 3) {
+				next.velocity = body.velocity + change;
+				next.end = body.pose;
+				K::advance(next.end, next.mean, h);
+				next.momentum = K::angularMomentum(body.inertia, next.end, next.velocity.template tail<3>());
+			}
 		}
 		next.middle = body.pose;
-		K::advance(next.middle, next.mean, h / 2);
+		K::advanceOnce(next.middle, next.mean, h / 2);
 
 		FreeBody<K> unknown;
 		unknown.inverseMass = inverseMass(body, next.middle);
