@@ -16,6 +16,7 @@
 // slip a problem may have no solution (a point that can only be held by pulling); then points are let go until none pulls,
 // which never adds energy, and the residual tells by how much the laws are missed.
 #include "body.hpp"
+#include <functional>
 #include <limits>
 #include <vector>
 
@@ -46,6 +47,9 @@ struct ImpulseReport {
 };
 
 // Finds the impulses and changes the bodies' velocities. Prescribed bodies keep theirs.
+using ImpulseSolver = std::function<ImpulseReport(std::vector<Body>&, std::vector<ImpulsePoint>&, std::vector<CoupleRow>&)>;
+
+// One dense problem of all points: for few.
 ImpulseReport solveImpulses(std::vector<Body>& bodies, std::vector<ImpulsePoint>& points, std::vector<CoupleRow>& couples);
 
 } // namespace masonry

@@ -45,7 +45,7 @@ namespace {
 			if (hasRow(joint)) rows.push_back({ joint.support, joint.block, joint.result.axis, joint.restitution * spin(bodies, joint) });
 		}
 
-		RockingImpactResult solve(std::vector<Body>& bodies, std::vector<ImpulsePoint>& points)
+		RockingImpactResult solve(const ImpulseSolver& solver, std::vector<Body>& bodies, std::vector<ImpulsePoint>& points)
 		{
 			start.clear();
 			for (const Body& body : bodies)
@@ -60,7 +60,7 @@ namespace {
 					std::tie(bodies[i].velocity, bodies[i].angularVelocity) = start[i];
 				for (CoupleRow& row : rows)
 					row.couple = 0;
-				result.residual = solveImpulses(bodies, points, withRows ? rows : none).residual;
+				result.residual = solver(bodies, points, withRows ? rows : none).residual;
 				result.work = supportWork(bodies, points, rows);
 				result.energyLost = before + result.work - kineticEnergy(bodies);
 				return result.residual > tolerance::noSolution * speed || result.energyLost < -tolerance::energyGain * (before + std::abs(result.work));
@@ -159,7 +159,7 @@ RockingImpactResult applyRockingImpact(std::vector<Body>& bodies, RockingImpact&
 	begin(bodies, impact);
 	for (const ClosingJoint& joint : impact.joints)
 		problem.add(bodies, joint);
-	const RockingImpactResult result = problem.solve(bodies, impact.points);
+	const RockingImpactResult result = problem.solve(impact.solve, bodies, impact.points);
 	auto                      row = problem.rows.begin();
 	for (ClosingJoint& joint : impact.joints)
 		report(bodies, impact.points, joint, hasRow(joint) ? (row++)->couple : 0);
@@ -189,13 +189,13 @@ RockingImpactResult applySequentially(std::vector<Body>& bodies, RockingImpact& 
 		own.assign(impact.points.begin() + joint.newBegin, impact.points.begin() + joint.oldEnd);
 		problem.rows.clear();
 		problem.add(bodies, joint);
-		addTo(result, problem.solve(bodies, own));
+		addTo(result, problem.solve(impact.solve, bodies, own));
 		for (size_t i = 0; i < own.size(); ++i)
 			impulses[joint.newBegin + i] = own[i].impulse;
 		couples.push_back(problem.rows.empty() ? 0 : problem.rows.front().couple);
 	}
 	problem.rows.clear();
-	addTo(result, problem.solve(bodies, impact.points));
+	addTo(result, problem.solve(impact.solve, bodies, impact.points));
 	for (size_t i = 0; i < impulses.size(); ++i)
 		impact.points[i].impulse += impulses[i];
 	for (size_t j = 0; j < couples.size(); ++j)

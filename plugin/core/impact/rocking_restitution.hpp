@@ -58,6 +58,7 @@ struct ClosingJoint {
 struct RockingImpact {
 	std::vector<ClosingJoint> joints;
 	std::vector<ImpulsePoint> points; // all that may act: new and old supports, and what else touches
+	ImpulseSolver solve { solveImpulses };
 };
 
 struct RockingImpactResult {

@@ -54,7 +54,7 @@ template <class K> struct ContactRows {
 	int      body1 { -1 }, body2 { -1 }; // indices of free bodies; -1: prescribed, its motion is in the offset
 	Jacobian J1, J2;                     // of body 1 with its minus sign
 	Rows     offset { Rows::Zero() };    // m/s
-	double   friction { 0 };
+	double   friction { 0 };             // mu >= 0, noSlip, or bilateral (point_law.hpp)
 	Rows     impulse { Rows::Zero() };   // in: first guess; out: result. N s, on body 2 along the rows
 };
 

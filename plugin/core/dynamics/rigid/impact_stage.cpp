@@ -142,6 +142,7 @@ template <class K> struct ImpactStage<K>::Builder {
 
 template <class K> void ImpactStage<K>::gather(const RigidSystem<K>& s, const std::vector<PointRef>& closing)
 {
+	impact.solve = [this](auto& all, auto& points, auto& couples) { return impulses.solve(all, points, couples); };
 	impact.joints.clear();
 	impact.points.clear();
 	refs.clear();

@@ -1,6 +1,7 @@
 #pragma once
 // Impulses at one instant, between two smooth steps: the rocking restitution law and base pulses, on all points in touch.
 #include "dynamics/rigid/smooth_step.hpp"
+#include "dynamics/rigid/sparse_impulses.hpp"
 
 namespace masonry::rigid {
 
@@ -19,6 +20,7 @@ private:
 	void holdPivots(RigidSystem<K>& system);
 	void settle(RigidSystem<K>& system);
 
+	SparseImpulses<K>          impulses;
 	RockingImpact              impact;
 	std::vector<masonry::Body> bodies;
 	std::vector<PointRef>      refs; // of impact.points

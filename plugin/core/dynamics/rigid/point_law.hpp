@@ -7,10 +7,15 @@
 
 namespace masonry::rigid {
 
+// In the place of a friction coefficient: the first row alone acts, pulling as well as pushing.
+constexpr double bilateral = -1;
+
 // P: the normal part on p_n >= 0, then the tangential part on the disc of radius mu p_n.
 template <class Rows>
 Rows project(const Rows& y, double friction)
 {
+	if (friction == bilateral)
+		return Rows(y[0] * Rows::Unit(0));
 	if (!(y[0] > 0))
 		return Rows::Zero();
 	Rows p = y;
@@ -28,7 +33,9 @@ auto projectionRate(const Rows& y, double friction)
 	constexpr int tangents = Rows::RowsAtCompileTime - 1;
 	Eigen::Matrix<double, tangents + 1, tangents + 1> rate;
 	rate.setZero();
-	if (!(y[0] > 0))
+	if (friction == bilateral)
+		rate(0, 0) = 1;
+	if (friction == bilateral || !(y[0] > 0))
 		return rate;
 	rate.setIdentity();
 	const double size = y.template tail<tangents>().norm();
@@ -54,6 +61,8 @@ struct OnePoint {
 	// Without slip a point may ask for a pull; then, as where slip finds nothing, it is held along the normal alone.
 	Rows impulse(const Rows& u0, double friction) const
 	{
+		if (friction == bilateral)
+			return Rows(-u0[0] / G(0, 0) * Rows::Unit(0));
 		if (u0[0] >= 0)
 			return Rows::Zero();
 		const Rows stick = -(G.inverse() * u0);

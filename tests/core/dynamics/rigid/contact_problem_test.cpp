@@ -1,6 +1,7 @@
 // The contact solver against a dense solver of the same laws, against the other dimension, and against what must always hold.
 #include "dynamics/rigid/contact_problem.hpp"
 #include "dynamics/rigid/rigid_step.hpp"
+#include "dynamics/rigid/sparse_impulses.hpp"
 #include "space_rig.hpp"
 #include <catch2/catch.hpp>
 #include <atomic>
@@ -423,6 +424,72 @@ TEST_CASE("rigid step: no heap allocation in impacts once a motion has been seen
 	check(flat, RigidStep<Plane>(), 3);
 	auto box = rig::oneBox({0.3, 0.2, 1}, rig::placed(rig::turn(0.15, {-0.5, 0.8, 0}), {0.3, 0.2, -1}, {0, 0, 0}), 0.8, 0.7);
 	check(box, RigidStep<Space>(), 1.5);
+}
+
+namespace {
+
+// Turned about x, so that a column in the plane of x and z lies in that of x and y.
+Column laidDown(Column column)
+{
+	const auto lay = [](Vector3& v) { v = Vector3(v.x(), v.z(), -v.y()); };
+	for (Body& body : column.bodies) {
+		for (Vector3* v : {&body.pose.position, &body.velocity, &body.angularVelocity})
+			lay(*v);
+		std::swap(body.inertia.y(), body.inertia.z());
+	}
+	for (ImpulsePoint& point : column.points)
+		for (Vector3* v : {&point.position, &point.normal})
+			lay(*v);
+	return column;
+}
+
+struct Compared {
+	int problems {0}, equal {0};
+};
+
+// Velocities and couples against those of the dense solver, where both solve the problem.
+template <class K>
+Compared compareWithDense(double friction)
+{
+	Random random(7);
+	SparseImpulses<K> sparse;
+	Compared compared;
+	for (int k = 0; k < 300; ++k) {
+		const bool planar = K::dimension == 2;
+		Column one = randomColumn(random, friction, planar, 5);
+		if (planar)
+			one = laidDown(one);
+		const int block = int(one.bodies.size()) - 1;
+		const Vector3 axis = planar ? Vector3(0, 0, 1) : Vector3(number(random, -1, 1), 1, 0).normalized();
+		std::vector<CoupleRow> couples {{block - 1, block, axis, number(random, -1, 1)}}, again = couples;
+		Column other = one;
+		const double sparseResidual = sparse.solve(one.bodies, one.points, couples).residual;
+		const double denseResidual = solveImpulses(other.bodies, other.points, again).residual;
+		if (one.points.size() <= 4 || std::max(sparseResidual, denseResidual) > 1e-9)
+			continue;
+		++compared.problems;
+		double apart = 0;
+		for (size_t b = 1; b < one.bodies.size(); ++b)
+			apart = std::max({apart, (one.bodies[b].velocity - other.bodies[b].velocity).norm(),
+			                  (one.bodies[b].angularVelocity - other.bodies[b].angularVelocity).norm()});
+		const double couple = std::abs(couples[0].couple - again[0].couple) / (1 + std::abs(again[0].couple));
+		compared.equal += apart < 1e-8 && couple < 1e-8;
+	}
+	return compared;
+}
+
+} // namespace
+
+// Solutions are unique without friction, and most often with it; shares as for the contact solver, nearer to one in the plane.
+TEST_CASE("sparse impulses: velocities and couples are those of the dense solver")
+{
+	for (double friction : {0., 0.3, 0.7, noSlip}) {
+		CAPTURE(friction);
+		const Compared plane = compareWithDense<Plane>(friction), space = compareWithDense<Space>(friction);
+		CHECK(std::min(plane.problems, space.problems) > 60);
+		CHECK(plane.equal >= (friction == 0 ? 1 : 0.95) * plane.problems);
+		CHECK(space.equal >= (friction == 0 ? 1 : 0.8) * space.problems);
+	}
 }
 
 TEST_CASE("contact problem: without slip an unsolvable problem gains no energy")

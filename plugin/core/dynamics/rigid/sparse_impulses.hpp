@@ -1,0 +1,22 @@
+#pragma once
+// Impulse problems of many points, by the contact solver: its cost grows with their number, that of the dense solver with its cube.
+#include "dynamics/rigid/contact_problem.hpp"
+
+namespace masonry::rigid {
+
+// Velocities instead of forces, the same laws: plastic and unilateral with friction; a couple is a row that pulls as well as pushes.
+template <class K> class SparseImpulses {
+public:
+	// As solveImpulses, which small problems are left to, and those that it alone can end (without slip they may have no solution).
+	ImpulseReport solve(std::vector<Body>& bodies, std::vector<ImpulsePoint>& points, std::vector<CoupleRow>& couples);
+
+private:
+	void        addPoint(const std::vector<Body>& bodies, const ImpulsePoint& point);
+	void        addCouple(const std::vector<Body>& bodies, const CoupleRow& couple, double length);
+	SolveReport solveRows(const std::vector<Body>& bodies, const std::vector<ImpulsePoint>& points, const std::vector<CoupleRow>& couples, double length);
+
+	ContactSolver<K> solver;
+	std::vector<int> unknown; // of a body in the solver; -1: prescribed
+};
+
+} // namespace masonry::rigid
