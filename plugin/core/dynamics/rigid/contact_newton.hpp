@@ -92,6 +92,7 @@ private:
 	struct Point {
 		Rows centre, next;                                        // u at the centre, P(y)
 		Block rate {Block::Zero()}, factored {Block::Zero()}; // derivative of P(y), and the one that is in the factor
+		int edge;                                             // between its bodies; -1: one of them is prescribed
 	};
 
 	struct Body {
@@ -116,13 +117,26 @@ private:
 			mass.template bottomRightCorner<K::spins, K::spins>() = s.bodies[b].inverseMass.angular.inverse();
 		}
 		rootMerit = share * lightest * tolerance * tolerance;
-		edges.clear();
-		for (int i = 0; i < s.nPoints; ++i)
-			if (s.rows[i].body1 >= 0 && s.rows[i].body2 >= 0)
-				edges.push_back({s.rows[i].body1, s.rows[i].body2});
+		edges = *s.near;
+		int last = 0;
+		for (int i = 0; i < s.nPoints; ++i) {
+			const Edge edge {s.rows[i].body1, s.rows[i].body2};
+			points[i].edge = edge[0] >= 0 && edge[1] >= 0 ? last = numberOf(edge, last) : -1;
+		}
 		factor.setGraph(s.nBodies, edges);
 		factored = false;
 		kept.clear();
+	}
+
+	// Points come pair by pair: the edge is sought from that of the last point on.
+	int numberOf(const Edge& edge, int last)
+	{
+		auto found = std::find(edges.begin() + last, edges.end(), edge);
+		if (found == edges.end())
+			found = std::find(edges.begin(), edges.begin() + last, edge);
+		if (found == edges.end() || *found != edge)
+			found = edges.insert(edges.end(), edge);
+		return int(found - edges.begin());
 	}
 
 	// Sets F, P(y) and its derivative; returns F^T M^-1 F.
@@ -164,11 +178,9 @@ private:
 		factor.setZero();
 		for (int b = 0; b < s.nBodies; ++b)
 			factor.diagonal(b) = bodies[b].mass;
-		int edge = 0;
 		for (int i = 0; i < s.nPoints; ++i) {
 			const ContactRows<K>& c = s.rows[i];
 			points[i].factored = points[i].rate;
-			const int e = c.body1 >= 0 && c.body2 >= 0 ? edge++ : -1;
 			if (points[i].rate.isZero(0))
 				continue;
 			const Block stiffness = points[i].rate / compliance(i);
@@ -177,10 +189,10 @@ private:
 				factor.diagonal(c.body1).noalias() += c.J1.transpose().lazyProduct(K1);
 			if (c.body2 >= 0)
 				factor.diagonal(c.body2).noalias() += c.J2.transpose().lazyProduct(K2);
-			if (e < 0)
+			if (points[i].edge < 0)
 				continue;
-			factor.firstSecond(e).noalias() += c.J1.transpose().lazyProduct(K2);
-			factor.secondFirst(e).noalias() += c.J2.transpose().lazyProduct(K1);
+			factor.firstSecond(points[i].edge).noalias() += c.J1.transpose().lazyProduct(K2);
+			factor.secondFirst(points[i].edge).noalias() += c.J2.transpose().lazyProduct(K1);
 		}
 		factor.factorise();
 		factored = true;
@@ -281,7 +293,7 @@ private:
 	std::vector<Point> points;
 	std::vector<Body> bodies;
 	std::vector<Velocity> step;
-	std::vector<Edge> edges; // points between two free bodies, in order
+	std::vector<Edge> edges; // the pairs known to be near, then those of points between others
 	BlockFactor<K::dof> factor;
 	bool factored {false};
 	std::vector<Edge> kept; // bodies of the points of the factor that the next solve may start with

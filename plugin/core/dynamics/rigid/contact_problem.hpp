@@ -69,6 +69,8 @@ template <class K> class ContactSolver {
 public:
 	std::vector<FreeBody<K>>    bodies;
 	std::vector<ContactRows<K>> points;
+	// Pairs of free bodies that may meet, if known: the order of elimination then stays while points come and go.
+	std::vector<std::array<int, 2>> near;
 
 	// Until the residual is at most `tolerance` (m/s).
 	SolveReport solve(double tolerance);

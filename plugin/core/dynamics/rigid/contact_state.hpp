@@ -18,6 +18,7 @@ struct ContactState {
 
 	FreeBody<K>* bodies {nullptr}; // the solver's own, as of this call
 	ContactRows<K>* rows {nullptr};
+	const std::vector<std::array<int, 2>>* near {nullptr};
 	int nBodies {0}, nPoints {0};
 	std::vector<Response> points;
 	std::vector<Rows> best; // impulses
@@ -27,6 +28,7 @@ struct ContactState {
 	{
 		bodies = solver.bodies.data();
 		rows = solver.points.data();
+		near = &solver.near;
 		nBodies = int(solver.bodies.size());
 		nPoints = int(solver.points.size());
 		points.resize(nPoints);

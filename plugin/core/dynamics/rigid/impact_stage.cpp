@@ -142,6 +142,9 @@ template <class K> struct ImpactStage<K>::Builder {
 
 template <class K> void ImpactStage<K>::gather(const RigidSystem<K>& s, const std::vector<PointRef>& closing)
 {
+	impulses.near.clear();
+	for (const ContactPair<K>& pair : s.pairs)
+		impulses.near.push_back({ pair.body1, pair.body2 });
 	impact.solve = [this](auto& all, auto& points, auto& couples) { return impulses.solve(all, points, couples); };
 	impact.joints.clear();
 	impact.points.clear();

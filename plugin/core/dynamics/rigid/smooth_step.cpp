@@ -187,9 +187,12 @@ template <class K> double SmoothStep<K>::strayWork() const
 template <class K> void SmoothStep<K>::assemble(const RigidSystem<K>& s, double h)
 {
 	solver.points.clear();
+	solver.near.clear();
 	last.rows.clear();
 	for (int c = 0; c < int(s.pairs.size()); ++c) {
 		const ContactPair<K>& pair = s.pairs[c];
+		if (last.bodies[pair.body1].unknown >= 0 && last.bodies[pair.body2].unknown >= 0)
+			solver.near.push_back({ last.bodies[pair.body1].unknown, last.bodies[pair.body2].unknown });
 		const size_t          begin = solver.points.size();
 		bool                  slides = true;
 		positions.clear();

@@ -160,6 +160,9 @@ SolveReport SparseImpulses<K>::solveRows(const std::vector<masonry::Body>& bodie
 		inverseInertia(body, free.inverseMass.angular);
 		free.free = velocityOf<K>(body);
 	}
+	solver.near.clear();
+	for (const auto& [body1, body2] : near)
+		if (unknown[body1] >= 0 && unknown[body2] >= 0) solver.near.push_back({ unknown[body1], unknown[body2] });
 	for (const ImpulsePoint& point : points)
 		addPoint(bodies, point);
 	for (const CoupleRow& couple : couples)

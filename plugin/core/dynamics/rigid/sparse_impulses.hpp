@@ -7,6 +7,8 @@ namespace masonry::rigid {
 // Velocities instead of forces, the same laws: plastic and unilateral with friction; a couple is a row that pulls as well as pushes.
 template <class K> class SparseImpulses {
 public:
+	std::vector<std::array<int, 2>> near; // bodies that may meet, if known: as in the contact solver
+
 	// As solveImpulses, which small problems are left to, and those that it alone can end (without slip they may have no solution).
 	ImpulseReport solve(std::vector<Body>& bodies, std::vector<ImpulsePoint>& points, std::vector<CoupleRow>& couples);
 

@@ -424,6 +424,12 @@ TEST_CASE("rigid step: no heap allocation in impacts once a motion has been seen
 	check(flat, RigidStep<Plane>(), 3);
 	auto box = rig::oneBox({0.3, 0.2, 1}, rig::placed(rig::turn(0.15, {-0.5, 0.8, 0}), {0.3, 0.2, -1}, {0, 0, 0}), 0.8, 0.7);
 	check(box, RigidStep<Space>(), 1.5);
+	for (int n : {2, 5}) { // thrown along: they rock, slide and come apart
+		auto thrown = rig::stack(n, 0.25, 0.5, 0.7, 0.7);
+		for (auto& body : thrown.bodies)
+			body.velocity[0] = body.prescribed ? 0 : 0.6;
+		check(thrown, RigidStep<Plane>(), n == 2 ? 2 : 0.3);
+	}
 }
 
 namespace {
