@@ -93,7 +93,7 @@ template <class K> Event localise(const RigidSystem<K>& s, SmoothStep<K>& step, 
 			event.at = 0;
 			return event;
 		}
-		step.attempt(s, h);
+		step.attempt(s, h, true);
 		if (event.kind == Event::closing) {
 			const auto   end = atEnd(s, step, event.point);
 			const double gap = end.gap - zeroOf(s, event.point);

@@ -271,13 +271,16 @@ template <class K> void SmoothStep<K>::findFrames(const RigidSystem<K>& s)
 	}
 }
 
-template <class K> void SmoothStep<K>::attempt(const RigidSystem<K>& s, double h)
+template <class K> void SmoothStep<K>::attempt(const RigidSystem<K>& s, double h, bool again)
 {
-	last.h = h;
 	// After an event the change of velocity in the last step, which can have been of any length, tells nothing: a second pass takes that
 	// of the first.
 	constexpr int mostPasses = 5;
 	guesses.clear();
+	if (again)
+		for (const ContactRows<K>& rows : solver.points)
+			guesses.push_back(h / last.h * rows.impulse);
+	last.h = h;
 	stray.clear();
 	unsteady = false;
 	if (!s.fresh) dampStray(s, h);

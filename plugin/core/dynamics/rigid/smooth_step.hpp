@@ -55,8 +55,10 @@ template <class K> class SmoothStep {
 public:
 	// Forgets earlier steps: a run that was saved goes on with the same bits.
 	void begin(const RigidSystem<K>& system, double dt);
-	// Computes the trial of length h from the system's state. Open points do not act, but for those in `anticipated`.
-	void attempt(const RigidSystem<K>& system, double h);
+	// Computes the trial of length h from the system's state. Open points do not act, but for those in `anticipated`. `again`: the last trial
+	// was of the same step and points; its forces are the first guess, which decides where a sliding point stops by a jam (an impulse
+	// however short the step).
+	void attempt(const RigidSystem<K>& system, double h, bool again = false);
 	// Makes it the system's state: poses, velocities, forces, energies; gaps of loaded points closed.
 	void accept(RigidSystem<K>& system);
 

@@ -103,7 +103,6 @@ template <class K> void SparseImpulses<K>::addPoint(const std::vector<masonry::B
 	rows.offset = axes * linear<K>(point.bias);
 	rows.body1 = unknown[point.body1];
 	rows.body2 = unknown[point.body2];
-	if (point.holds) rows.impulse[0] = std::numeric_limits<double>::min(); // a first guess of its state alone
 	for (const auto& [b, sign, J] : { std::tuple(point.body1, -1., &rows.J1), std::tuple(point.body2, 1., &rows.J2) }) {
 		const typename K::Vector arm = linear<K>(point.position - bodies[b].pose.position);
 		for (int k = 0; k < K::rows; ++k) {
@@ -158,7 +157,7 @@ SolveReport SparseImpulses<K>::solveRows(const std::vector<masonry::Body>& bodie
 		FreeBody<K>& free = solver.bodies.emplace_back();
 		free.inverseMass.linear = body.inverseMass();
 		inverseInertia(body, free.inverseMass.angular);
-		free.free = velocityOf<K>(body);
+		free.free = free.velocity = velocityOf<K>(body);
 	}
 	solver.near.clear();
 	for (const auto& [body1, body2] : near)
@@ -167,7 +166,11 @@ SolveReport SparseImpulses<K>::solveRows(const std::vector<masonry::Body>& bodie
 		addPoint(bodies, point);
 	for (const CoupleRow& couple : couples)
 		addCouple(bodies, couple, length);
-	return solver.solve(zeroSpeed(solver));
+	const double zero = zeroSpeed(solver), without = solver.residual();
+	if (without <= zero) return { 0, 0, without };
+	for (size_t i = 0; i < points.size(); ++i)
+		if (points[i].holds) solver.points[i].impulse[0] = std::numeric_limits<double>::min(); // a first guess of its state alone
+	return solver.solve(zero);
 }
 
 template class SparseImpulses<Plane>;
