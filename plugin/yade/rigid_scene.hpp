@@ -122,6 +122,7 @@ public:
 	{
 		const auto& all = scene.bodies->body;
 		if (all.size() != bodyCount) return true;
+		if (!mayHaveChanged()) return false;
 		for (const Link& link : links)
 			if (all[link.body->id].get() != link.body.get() || !(Properties(*link.body) == link.properties)) return true;
 		return false;
@@ -130,8 +131,10 @@ public:
 	masonry::rigid::StepReport step() override
 	{
 		try {
-			system.gravity = coordinates.in(integrator.gravity);
-			readLoads();
+			if (mayHaveChanged()) {
+				system.gravity = coordinates.in(integrator.gravity);
+				readLoads();
+			}
 			readStates();
 			readLaws();
 			if (!neighbours->isValid(system)) {
@@ -334,6 +337,10 @@ private:
 	}
 
 	// --- scene to core ---
+
+	/// Other engines act in steps that are watched, before or after the blocks move; their loads are taken back in the step after. What another
+	/// thread changes meanwhile is met some steps late.
+	bool mayHaveChanged() const { return unshown <= 1; }
 
 	void readLoads()
 	{
