@@ -26,14 +26,6 @@ struct Motion {
 	Vector3r pos, vel, angVel;
 	Quaternionr ori;
 
-	void write(State& state, const Vector3r& angMom) const
-	{
-		state.pos = pos;
-		state.ori = ori;
-		state.vel = vel;
-		state.angVel = angVel;
-		state.angMom = angMom;
-	}
 	/// Nobody has touched the body since.
 	bool isOf(const State& state) const { return pos == state.pos && ori.coeffs() == state.ori.coeffs() && vel == state.vel && angVel == state.angVel; }
 };
@@ -117,7 +109,8 @@ template <> struct Seat<Plane> {
 		body.pose.setAngle(2 * (turn.w() < 0 ? std::atan2(-about, -turn.w()) : std::atan2(about, turn.w())));
 		body.velocity << c.in(state.vel), c.normal.dot(state.angVel);
 	}
-	void tell(const Coordinates<Plane>& c, const masonry::rigid::RigidBody<Plane>& body, Motion& to) const
+	/// To all at once: read back while it is still being written, a number keeps the processor waiting.
+	template <class... To> void tell(const Coordinates<Plane>& c, const masonry::rigid::RigidBody<Plane>& body, To&... to) const
 	{
 		// Half the angle, within a quarter turn, from its cosine and sine.
 		const auto& pose = body.pose;
@@ -126,10 +119,9 @@ template <> struct Seat<Plane> {
 		Quaternionr turn;
 		turn.w() = w;
 		turn.vec() = s * c.normal;
-		to.pos = c.out(pose.position) + depth * c.normal;
-		to.vel = c.out(body.velocity.head<2>());
-		to.angVel = body.velocity[2] * c.normal;
-		to.ori = turn * reference;
+		const Vector3r    pos = c.out(pose.position) + depth * c.normal, vel = c.out(body.velocity.head<2>()), angVel = body.velocity[2] * c.normal;
+		const Quaternionr ori = turn * reference;
+		((to.pos = pos, to.vel = vel, to.angVel = angVel, to.ori = ori), ...);
 	}
 	Vector3r spin(const Coordinates<Plane>& c, const masonry::rigid::RigidBody<Plane>& body) const
 	{
@@ -150,9 +142,9 @@ template <> struct Seat<Space> {
 		body.pose = { state.pos, state.ori };
 		body.velocity << state.vel, state.angVel;
 	}
-	void tell(const Coordinates<Space>&, const masonry::rigid::RigidBody<Space>& body, Motion& to) const
+	template <class... To> void tell(const Coordinates<Space>&, const masonry::rigid::RigidBody<Space>& body, To&... to) const
 	{
-		to = { body.pose.position, body.velocity.head<3>(), body.velocity.tail<3>(), body.pose.orientation };
+		((to.pos = body.pose.position, to.vel = body.velocity.head<3>(), to.angVel = body.velocity.tail<3>(), to.ori = body.pose.orientation), ...);
 	}
 	Vector3r spin(const Coordinates<Space>&, const masonry::rigid::RigidBody<Space>& body) const
 	{

@@ -433,19 +433,15 @@ private:
 	}
 
 	/// Bodies that stand still by prescription are as they were.
-	bool stands(size_t b) const
-	{
-		const auto& block = system.bodies[b];
-		return block.prescribed && block.drive < 0 && block.velocity.isZero(0);
-	}
-
-	/// In two passes: read while it is still being written, a number keeps the processor waiting.
 	void writeStates()
 	{
-		for (size_t b = 0; b < links.size(); ++b)
-			if (!stands(b)) kept.seats[b].tell(coordinates, system.bodies[b], links[b].written);
-		for (size_t b = 0; b < links.size(); ++b)
-			if (!stands(b)) links[b].written.write(*links[b].body->state, kept.seats[b].spin(coordinates, system.bodies[b]));
+		for (size_t b = 0; b < links.size(); ++b) {
+			const auto& block = system.bodies[b];
+			if (block.prescribed && block.drive < 0 && block.velocity.isZero(0)) continue;
+			State& state = *links[b].body->state;
+			kept.seats[b].tell(coordinates, block, links[b].written, state);
+			state.angMom = kept.seats[b].spin(coordinates, block);
+		}
 	}
 
 	static bool touches(const Pair& pair)
