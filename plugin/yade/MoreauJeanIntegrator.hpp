@@ -68,7 +68,7 @@ public:
 		((long, substeps, 0, Attr::readonly, "Parts of steps so far; one a step where nothing happens."))
 		((long, events, 0, Attr::readonly, "Impacts and stops of sliding found inside steps so far."))
 		((long, unlocalised, 0, Attr::readonly, "Points that closed at the end of a step because mostEvents was reached, so far."))
-		((long, sweeps, 0, Attr::readonly, "Sweeps of the contact solver so far."))
+		((long, sweeps, 0, Attr::readonly, "Sweeps of the contact solver so far; with method='wall' solves of the mode 'still'."))
 		((long, factorisations, 0, Attr::readonly, "Factorisations of the contact solver so far."))
 		((long, failures, 0, Attr::readonly, "Steps so far that missed the tolerance or had too many events."))
 		((string, firstFailure, "", Attr::readonly, "What the first of them was, with time, blocks and residual."))
