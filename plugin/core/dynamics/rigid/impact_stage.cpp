@@ -179,7 +179,7 @@ template <class K> void ImpactStage<K>::settle(RigidSystem<K>& s)
 		point.closed = u[0] <= still;
 		point.sliding = point.closed && u.template tail<K::rows - 1>().norm() > still;
 	}
-	s.fresh = true;
+	s.startAnew();
 }
 
 // The smooth step leaves velocities of the order h^2 at the points in touch, of either sign; the law's w- is that of bodies that hold on to

@@ -30,7 +30,7 @@ template <class K> StepReport RigidStep<K>::advance(RigidSystem<K>& s, double dt
 		}
 		if (event.kind == Event::none && left == 0) break;
 		takeJumps(s);
-		s.fresh = true;
+		s.startAnew();
 	}
 	return report;
 }

@@ -83,11 +83,19 @@ template <class K> struct RigidSystem {
 	std::vector<typename K::Vector> driveDirections;
 	Settings                    settings;
 	bool                        moved { true }; // poses were set from outside: gaps are to be measured anew
-	bool                        fresh { true }; // velocities have just jumped: the last accelerations predict nothing
+	bool                        fresh { true }; // velocities have just jumped, or stray ones are left: the next step looks for those
 
 	std::vector<Impact> impacts; // of the last step
 	// Since the start of the run.
 	double              frictDissip { 0 }, impactDissip { 0 }, baseWork { 0 }; // J
+
+	// Velocities have jumped, or forces: the last accelerations predict nothing.
+	void startAnew()
+	{
+		fresh = true;
+		for (auto& body : bodies)
+			body.increment.setZero();
+	}
 
 	double kineticEnergy() const
 	{

@@ -113,7 +113,7 @@ template <class K> void SmoothStep<K>::predict(const RigidSystem<K>& s, double h
 		}
 		next.unknown = int(solver.bodies.size());
 		if (!again) {
-			const typename K::Velocity change = s.fresh ? typename K::Velocity(K::Velocity::Zero()) : typename K::Velocity(h * body.increment);
+			const typename K::Velocity change = h * body.increment;
 			next.mean = body.velocity + 0.5 * change;
 			if constexpr (K::spins == 3) {
 				next.velocity = body.velocity + change;
@@ -395,6 +395,7 @@ template <class K> void SmoothStep<K>::accept(RigidSystem<K>& s)
 	const double still = tolerance::rigid::parting * scales.stepSpeed(last.h);
 	const bool   isShort = last.h < tolerance::rigid::shortPart * whole;
 	size_t       row = 0;
+	bool         landed = false;
 	for (size_t c = 0; c < s.pairs.size(); ++c)
 		for (int i = 0; i < s.pairs[c].size; ++i) {
 			ContactPoint<K>& point = s.pairs[c].points[i];
@@ -408,7 +409,7 @@ template <class K> void SmoothStep<K>::accept(RigidSystem<K>& s)
 			const auto  u = relativeVelocity(s, int(c), i);
 			const bool  wasOpen = !point.closed;
 			point.closed = rows.impulse[0] > 0 || u[0] <= still;
-			s.fresh |= wasOpen && point.closed;
+			landed |= wasOpen && point.closed;
 			if (isShort && !wasOpen && before[0] > 0 && !(rows.impulse[0] > 0) && std::abs(u[0]) <= tolerance::rigid::stray * scales.stepSpeed(whole)) {
 				point.closed = true;
 				point.force = before;
@@ -418,6 +419,7 @@ template <class K> void SmoothStep<K>::accept(RigidSystem<K>& s)
 			point.force = rows.impulse / last.h;
 			point.sliding = u.template tail<K::rows - 1>().norm() > still && slides(rows);
 		}
+	if (landed) s.startAnew();
 }
 
 template <class K> Eigen::Matrix<double, K::rows, 1> SmoothStep<K>::relativeVelocity(const RigidSystem<K>& s, int pair, int point) const
