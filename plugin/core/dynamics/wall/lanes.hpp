@@ -11,7 +11,7 @@
 #ifdef __SANITIZE_ADDRESS__ // checked once is enough, and takes a minute less to compile
 #define MASONRY_LANES
 #else
-#define MASONRY_LANES __attribute__((target_clones("avx2", "default")))
+#define MASONRY_LANES __attribute__((target_clones("arch=x86-64-v4", "avx2", "default")))
 #endif
 #define MASONRY_INLINE __attribute__((always_inline)) inline
 
