@@ -9,10 +9,9 @@ namespace masonry::rigid::wall {
 
 namespace {
 
-constexpr int spins = 1000;     // some 50 us: longer than the caller is by itself within a step
-constexpr int yields = 1000;    // about a step
-constexpr int lateYields = 100; // as long as a part at least: the helper has been interrupted
-constexpr int rests = 1000;     // calls, some tens of steps
+constexpr int spins = 1000;      // some 50 us: longer than the caller is by itself within a step
+constexpr int yields = 1000;     // about a step
+constexpr int lateYields = 1000; // many times as long as a part: the helper has been interrupted
 
 void pause()
 {
@@ -120,14 +119,20 @@ void Team::share(int parts, Call call, const void* context)
 	b.round.store(now);
 	b.wake();
 	b.takeParts(now, parts, 0);
+	bool late = false;
 	for (int idle = 0; b.done.load(std::memory_order_acquire) < parts; ++idle)
 		if (idle < spins)
 			pause();
 		else {
 			std::this_thread::yield();
-			if (idle > spins + lateYields)
-				alone = rests;
+			late = idle > spins + lateYields;
 		}
+	if (late) {
+		alone = rest;
+		rest = std::min(2 * rest, longestRest);
+		undisturbed = 0;
+	} else if (++undisturbed > longestRest)
+		rest = shortestRest;
 }
 
 } // namespace masonry::rigid::wall

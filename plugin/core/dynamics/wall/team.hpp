@@ -2,7 +2,8 @@
 // Threads that share the parts of a wall. What is done does not depend on who does it: nor do the bits, on how many there are.
 //
 // The caller takes every part that no helper has begun, so that it waits for a helper only while that is at work: a helper whose processor
-// is taken by another program is missed, not waited for. One that is interrupted at work is, and then the caller goes on alone for a while.
+// is taken by another program is missed, not waited for. One that is interrupted at work is, and then the caller goes on alone for a while:
+// longer each time that this happens again soon.
 // Between two calls a helper spins, then lets others go first, then sleeps.
 #include <atomic>
 #include <memory>
@@ -26,7 +27,8 @@ public:
 		const auto call = [](const void* context, int part) { (*static_cast<const Work*>(context))(part); };
 		if (parts > 1 && helpers > 0 && alone == 0)
 			return share(parts, call, &work);
-		alone -= alone > 0;
+		if (alone > 0)
+			--alone;
 		for (int part = 0; part < parts; ++part)
 			work(part);
 	}
@@ -34,12 +36,14 @@ public:
 private:
 	using Call = void (*)(const void*, int);
 	struct Board;
+	static constexpr int shortestRest = 64, longestRest = 8192; // some steps; some hundreds
 
 	void share(int parts, Call call, const void* context);
 
 	std::shared_ptr<Board> board; // helpers may outlive the team, and a fork of the process has none
 	int helpers {0};
-	int alone {0}; // calls to come without helpers
+	int alone {0};                           // calls to come without helpers
+	int rest {shortestRest}, undisturbed {0}; // calls without helpers the next time; calls since the last
 };
 
 } // namespace masonry::rigid::wall

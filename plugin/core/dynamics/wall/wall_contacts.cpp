@@ -9,6 +9,7 @@ namespace masonry::rigid::wall {
 namespace {
 
 constexpr int pairsOfPart = 1024;     // at least: fewer do not repay that threads meet
+constexpr int mostSeam = 8;           // times as many pairs as are in the seam there are at least
 constexpr double mostFriction = 1e12; // stands for noSlip: infinity times a zero impulse is no number
 
 } // namespace
@@ -24,36 +25,26 @@ bool WallContacts<K>::samePairs(const RigidSystem<K>& s)
 	return true;
 }
 
-// In halves, as often as there are pairs for: by place along the axis along which the free bodies are spread most.
+// By number: blocks of one part are neighbours in memory, which threads then do not share; of walls numbered course by course the seams are
+// bed joints. Where numbers say little about places the seam is large, and there are fewer parts.
 template <class K>
 void WallContacts<K>::divide(const RigidSystem<K>& s)
 {
-	partOf.assign(s.bodies.size(), 0);
-	std::vector<int> order;
-	for (int b = 0; b < int(s.bodies.size()); ++b)
-		if (!s.bodies[b].prescribed)
-			order.push_back(b);
-	int count = 1;
-	for (; 2 * count <= Team::mostParts && int(pairs.size()) >= 2 * count * pairsOfPart; count *= 2) {
-		for (int part = 0; part < count; ++part) {
-			const auto from = [&](int k) { return order.begin() + long(order.size()) * k / (2 * count); };
-			const auto begin = from(2 * part), middle = from(2 * part + 1), end = from(2 * part + 2);
-			typename K::Vector low = s.bodies[*begin].pose.position, high = low;
-			for (auto b = begin; b != end; ++b) {
-				low = low.cwiseMin(s.bodies[*b].pose.position);
-				high = high.cwiseMax(s.bodies[*b].pose.position);
-			}
-			int axis;
-			(high - low).maxCoeff(&axis);
-			std::nth_element(begin, middle, end, [&](int a, int b) {
-				const double at = s.bodies[a].pose.position[axis], other = s.bodies[b].pose.position[axis];
-				return at != other ? at < other : a < b;
-			});
-		}
+	std::vector<int> rank; // of a body among the free ones
+	int free = 0;
+	for (const auto& body : s.bodies)
+		rank.push_back(body.prescribed ? -1 : free++);
+	const auto atSeam = [&](const std::array<int, 2>& pair) {
+		const auto [a, b] = pair;
+		return rank[a] >= 0 && rank[b] >= 0 && partOf[a] != partOf[b];
+	};
+	for (int count = std::clamp(int(pairs.size()) / pairsOfPart, 1, Team::mostParts);; count /= 2) {
+		partOf.clear();
+		for (const int r : rank)
+			partOf.push_back(r < 0 ? 0 : int(long(r) * count / free));
+		if (count == 1 || mostSeam * std::count_if(pairs.begin(), pairs.end(), atSeam) <= long(pairs.size()))
+			return;
 	}
-	for (int part = 0; part < count; ++part)
-		for (long k = long(order.size()) * part / count; k < long(order.size()) * (part + 1) / count; ++k)
-			partOf[order[k]] = part;
 }
 
 // In each part greedy in the order of the pairs, then packed by four.
@@ -63,6 +54,7 @@ void WallContacts<K>::colour(const RigidSystem<K>& s)
 	struct Lane {
 		int pair, part;
 	};
+	divide(s);
 	const int none = int(s.bodies.size()), seam = 1 + *std::max_element(partOf.begin(), partOf.end());
 	const auto isFixed = [&](int body) { return s.bodies[body].prescribed; };
 	std::vector<std::vector<int>> pairsOf(seam + 1);
@@ -378,7 +370,6 @@ bool WallContacts<K>::measure(RigidSystem<K>& s)
 	otherPoints = !samePairs(s);
 	if (otherPoints) {
 		takePairs(s);
-		divide(s);
 		colour(s);
 		findDepth(s);
 	}

@@ -6,7 +6,7 @@
 // the spin.
 //
 // A large wall is divided into parts of equally many blocks, and the pairs within a part are taken apart from those of other parts, by any
-// thread; then, or before, those between two parts, which are the seam. The division is the wall's and not that of the threads.
+// thread; then those between two parts, which are the seam. The division is the wall's and not that of the threads.
 //
 // Within a part no two pairs of a colour share a free body: the pairs of a colour can be taken in any order, or at the same time, with the
 // same result. A lane holds as many points as most pairs have; a pair with more takes a second lane, of another colour.
@@ -131,9 +131,6 @@ public:
 			takePairs(system);
 		for (auto& is : wide)
 			f(is);
-		partOf.resize(system.bodies.size());
-		for (int& part : partOf)
-			f(part);
 		f(unit);
 		if (isNew)
 			takeOver(system);

@@ -85,6 +85,10 @@ void WallStep<K>::advancePart(RigidSystem<K>& s, double h)
 	auto& m = memoryOfModes;
 	const double workBefore = s.baseWork;
 	contacts.team.setThreads(settings.threads);
+	onDrives.clear();
+	for (size_t b = 0; b < s.bodies.size(); ++b)
+		if (s.bodies[b].prescribed && s.bodies[b].drive >= 0)
+			onDrives.push_back(int(b));
 	if (contacts.measure(s)) {
 		kept.outdate();
 		quick.outdate();
@@ -109,10 +113,8 @@ void WallStep<K>::advancePart(RigidSystem<K>& s, double h)
 template <class K>
 void WallStep<K>::setBase(const RigidSystem<K>& s, double h)
 {
-	for (size_t b = 0; b < s.bodies.size(); ++b) {
+	for (const int b : onDrives) {
 		const auto& body = s.bodies[b];
-		if (!body.prescribed || body.drive < 0)
-			continue;
 		const BaseDrive& drive = *s.drives[body.drive];
 		const double speed = h > 0 ? (drive.displacement(s.time + h) - drive.displacement(s.time)) / h : drive.velocity(s.time);
 		contacts.setLinearVelocity(b, s.driveDirections[body.drive] * speed);

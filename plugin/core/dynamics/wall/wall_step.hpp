@@ -90,6 +90,7 @@ private:
 	wall::SoftSubsteps<K> soft;
 	wall::RockingJoints<K> joints;
 	wall::LaneArray loads, shift;
+	std::vector<int> onDrives; // prescribed bodies with a drive
 };
 
 } // namespace masonry::rigid
