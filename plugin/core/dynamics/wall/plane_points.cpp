@@ -74,19 +74,26 @@ MASONRY_LANES void locateGroups(Group<Plane>* groups, FeatureGroup<Plane>* featu
 			stale[g] = allLanes;
 }
 
-MASONRY_LANES void findSliders(const Group<Plane>* groups, std::array<unsigned char, lanePoints<Plane>>* sliding, size_t count)
+MASONRY_LANES void lossOf(const Group<Plane>* groups, int begin, int end, const Lanes* velocity, Lanes& loss)
 {
-	for (size_t g = 0; g < count; ++g)
-		sliding[g] = slidersOf(groups[g]);
+	addSlidingLoss<Plane>(groups, begin, end, velocity, loss);
 }
 
 } // namespace
 
 template <>
-void WallContacts<Plane>::findSliding()
+double WallContacts<Plane>::slidingLoss()
 {
-	sliding.resize(groups.size());
-	findSliders(groups.data(), sliding.data(), groups.size());
+	LaneArray of(parts.size(), all(0));
+	allParts([&](const Part& part, int number) {
+		Lanes loss = all(0);
+		lossOf(groups.data(), part.begin, part.end, velocity.data(), loss);
+		of[number] = loss;
+	});
+	double sum = 0;
+	for (const Lanes& loss : of)
+		sum += loss[0] + loss[1] + loss[2] + loss[3];
+	return sum;
 }
 
 template <>
@@ -103,14 +110,16 @@ void WallContacts<Plane>::takeBodies(const RigidSystem<Plane>& s)
 	velocity.resize(n + 1);
 	pose.resize(n + 1);
 	gyration.resize(n + 1);
-	for (size_t b = 0; b < n; ++b) {
-		const auto& body = s.bodies[b];
-		const double mass = body.prescribed ? 0 : 1 / body.mass;
-		gyration[b][0] = body.prescribed ? 1 : std::sqrt(body.inertia[0] * mass);
-		velocity[b][3] = mass;
-		setVelocity(b, body.velocity);
-		pose[b] = Lanes {body.pose.position.x(), body.pose.position.y(), body.pose.cosine, body.pose.sine};
-	}
+	eachShare(n, [&](size_t begin, size_t end, int) {
+		for (size_t b = begin; b < end; ++b) {
+			const auto& body = s.bodies[b];
+			const double mass = body.prescribed ? 0 : 1 / body.mass;
+			gyration[b][0] = body.prescribed ? 1 : std::sqrt(body.inertia[0] * mass);
+			velocity[b][3] = mass;
+			setVelocity(b, body.velocity);
+			pose[b] = Lanes {body.pose.position.x(), body.pose.position.y(), body.pose.cosine, body.pose.sine};
+		}
+	});
 	velocity[n] = all(0);
 	pose[n] = Lanes {0, 0, 1, 0};
 	gyration[n][0] = 1;

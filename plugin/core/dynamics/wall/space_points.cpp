@@ -154,19 +154,26 @@ MASONRY_LANES void locateGroups(const RigidSystem<Space>& s, Group<Space>* group
 	}
 }
 
-MASONRY_LANES void findSliders(const Group<Space>* groups, std::array<unsigned char, lanePoints<Space>>* sliding, size_t count)
+MASONRY_LANES void lossOf(const Group<Space>* groups, int begin, int end, const Lanes* velocity, Lanes& loss)
 {
-	for (size_t g = 0; g < count; ++g)
-		sliding[g] = slidersOf(groups[g]);
+	addSlidingLoss<Space>(groups, begin, end, velocity, loss);
 }
 
 } // namespace
 
 template <>
-void WallContacts<Space>::findSliding()
+double WallContacts<Space>::slidingLoss()
 {
-	sliding.resize(groups.size());
-	findSliders(groups.data(), sliding.data(), groups.size());
+	LaneArray of(parts.size(), all(0));
+	allParts([&](const Part& part, int number) {
+		Lanes loss = all(0);
+		lossOf(groups.data(), part.begin, part.end, velocity.data(), loss);
+		of[number] = loss;
+	});
+	double sum = 0;
+	for (const Lanes& loss : of)
+		sum += loss[0] + loss[1] + loss[2] + loss[3];
+	return sum;
 }
 
 template <>
@@ -192,11 +199,13 @@ void WallContacts<Space>::takeBodies(const RigidSystem<Space>& s)
 		velocity[2 * b][3] = perMass;
 		setVelocity(b, v);
 	};
-	for (size_t b = 0; b < n; ++b) {
-		const auto& body = s.bodies[b];
-		gyration[b] = body.prescribed ? Vector3(Vector3::Ones()) : Vector3((body.inertia / body.mass).cwiseSqrt());
-		take(b, body.pose, body.velocity, body.prescribed ? 0 : 1 / body.mass);
-	}
+	eachShare(n, [&](size_t begin, size_t end, int) {
+		for (size_t b = begin; b < end; ++b) {
+			const auto& body = s.bodies[b];
+			gyration[b] = body.prescribed ? Vector3(Vector3::Ones()) : Vector3((body.inertia / body.mass).cwiseSqrt());
+			take(b, body.pose, body.velocity, body.prescribed ? 0 : 1 / body.mass);
+		}
+	});
 	gyration[n].setOnes();
 	take(n, {}, Space::Velocity::Zero(), 0);
 }

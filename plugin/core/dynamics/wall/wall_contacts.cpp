@@ -27,8 +27,9 @@ bool WallContacts<K>::samePairs(const RigidSystem<K>& s)
 
 // By number: blocks of one part are neighbours in memory, which threads then do not share; of walls numbered course by course the seams are
 // bed joints. Where numbers say little about places the seam is large, and there are fewer parts.
+// Returns how many parts there are.
 template <class K>
-void WallContacts<K>::divide(const RigidSystem<K>& s)
+int WallContacts<K>::divide(const RigidSystem<K>& s)
 {
 	std::vector<int> rank; // of a body among the free ones
 	int free = 0;
@@ -43,7 +44,7 @@ void WallContacts<K>::divide(const RigidSystem<K>& s)
 		for (const int r : rank)
 			partOf.push_back(r < 0 ? 0 : int(long(r) * count / free));
 		if (count == 1 || mostSeam * std::count_if(pairs.begin(), pairs.end(), atSeam) <= long(pairs.size()))
-			return;
+			return count;
 	}
 }
 
@@ -54,8 +55,7 @@ void WallContacts<K>::colour(const RigidSystem<K>& s)
 	struct Lane {
 		int pair, part;
 	};
-	divide(s);
-	const int none = int(s.bodies.size()), seam = 1 + *std::max_element(partOf.begin(), partOf.end());
+	const int none = int(s.bodies.size()), seam = divide(s);
 	const auto isFixed = [&](int body) { return s.bodies[body].prescribed; };
 	std::vector<std::vector<int>> pairsOf(seam + 1);
 	std::vector<char> atSeam(s.bodies.size() + 1, 0);
@@ -270,27 +270,39 @@ bool WallContacts<K>::lookUp(RigidSystem<K>& s, int c)
 	return changed;
 }
 
-// Lanes of one pair are looked up together.
 template <class K>
 void WallContacts<K>::lookUpStale(RigidSystem<K>& s)
 {
-	if (std::none_of(stale.begin(), stale.end(), [](unsigned char is) { return is; }))
-		return;
+	bool other[Team::mostParts + 1] {};
+	allParts([&](const Part& part, int number) { other[number] = lookUpStale(s, part); });
+	for (const bool is : other)
+		otherPoints |= is;
+}
+
+// Lanes of one pair are looked up together; they are in one part.
+template <class K>
+bool WallContacts<K>::lookUpStale(RigidSystem<K>& s, const Part& part)
+{
 	const auto isStale = [this](const Slot& slot) { return stale[slot.group] >> slot.lane & 1; };
-	for (const auto& lanes : slots)
-		if (lanes.back().group >= 0 && (isStale(lanes.front()) || isStale(lanes.back())))
-			for (const Slot& slot : lanes)
-				stale[slot.group] |= 1 << slot.lane;
-	for (size_t g = 0; g < groups.size(); ++g)
-		for (int lane = 0; lane < width && features[g].pair[lane] >= 0; ++lane)
+	for (int g = part.begin; lanesOfPair<K> > 1 && g < part.end; ++g)
+		for (int lane = 0; stale[g] && lane < width && features[g].pair[lane] >= 0; ++lane) {
+			const auto& lanes = slots[features[g].pair[lane]];
+			if (lanes.back().group >= 0 && (isStale(lanes.front()) || isStale(lanes.back())))
+				for (const Slot& slot : lanes)
+					stale[slot.group] |= 1 << slot.lane;
+		}
+	bool other = false;
+	for (int g = part.begin; g < part.end; ++g)
+		for (int lane = 0; stale[g] && lane < width && features[g].pair[lane] >= 0; ++lane)
 			if (stale[g] >> lane & 1 && features[g].first[lane] == 0)
-				otherPoints |= lookUp(s, features[g].pair[lane]);
-	for (size_t g = 0; g < groups.size(); ++g)
+				other |= lookUp(s, features[g].pair[lane]);
+	for (int g = part.begin; g < part.end; ++g)
 		if (stale[g]) {
-			countPoints(s, int(g));
-			locate(s, int(g), int(g) + 1, 0, true);
+			countPoints(s, g);
+			locate(s, g, g + 1, 0, true);
 			stale[g] = 0;
 		}
+	return other;
 }
 
 template <class K>

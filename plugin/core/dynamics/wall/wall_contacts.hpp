@@ -48,16 +48,24 @@ struct alignas(alignment) Group : PointSet<K> {
 	PointLanes<K> point[lanePoints<K>];
 };
 
-// Points that carry all the friction that they can: a bit for each lane.
+// What friction takes at the points that carry all that they can, in the time of one set of impulses, J.
 template <class K>
-MASONRY_INLINE std::array<unsigned char, lanePoints<K>> slidersOf(const Group<K>& group)
+MASONRY_INLINE void addSlidingLoss(const Group<K>* groups, int begin, int end, const Lanes* velocity, Lanes& loss)
 {
-	std::array<unsigned char, lanePoints<K>> bits {};
-	for (int k = 0; k < group.count; ++k) {
-		const PointLanes<K>& p = group.point[k];
-		bits[k] = bitsOf((p.pn > 0) & slides(p.pt, group.friction * p.pn));
+	for (int g = begin; g < end; ++g) {
+		const Group<K>& group = groups[g];
+		Mask slide[lanePoints<K>], some {};
+		for (int k = 0; k < group.count; ++k) {
+			const PointLanes<K>& p = group.point[k];
+			slide[k] = (p.pn > 0) & slides(p.pt, group.friction * p.pn);
+			some |= slide[k];
+		}
+		if (!any(some))
+			continue;
+		const Bodies<K> v1(velocity, group.body1), v2(velocity, group.body2);
+		for (int k = 0; k < group.count; ++k)
+			loss -= select(slide[k], dot(group.point[k].pt, slipRate(v1, v2, group.point[k])), all(0));
 	}
-	return bits;
 }
 
 // Rate along a row of one lane's point, of the velocity (packs) of either body alone.
@@ -116,6 +124,14 @@ public:
 		work(parts.back(), int(parts.size()) - 1);
 	}
 
+	// work(begin, end, number) for as many equal shares of 0 .. size - 1 as there are parts.
+	template <class Work>
+	void eachShare(size_t size, const Work& work)
+	{
+		const size_t count = parts.size() - 1;
+		team.each(int(count), [&](int k) { work(size * k / count, size * (k + 1) / count, k); });
+	}
+
 	// Takes over poses and velocities, looks up features where needed, and measures all points. True: other points than before.
 	bool measure(RigidSystem<K>& system);
 	// Impulses are those of a time h from now on. They never grow: an impact's would become a hundred.
@@ -161,7 +177,7 @@ public:
 		const FeatureGroup<K>& f = features[group];
 		return f.pair[lane] < 0 ? 0 : std::min(s.pairs[f.pair[lane]].size - f.first[lane], lanePoints<K>);
 	}
-	void findSliding(); // from the impulses
+	double slidingLoss(); // of the impulses and velocities that are now, J
 	bool isFree(int body) const { return velocity[packs<K> * body][3] > 0; }
 	// Packs of a body as a velocity in global axes; a force and moment in global axes as the velocity that it gives in a time h.
 	typename K::Velocity inGlobal(const LaneArray& from, size_t body) const;
@@ -176,7 +192,6 @@ public:
 
 	std::vector<Group<K>> groups;
 	std::vector<FeatureGroup<K>> features;
-	std::vector<std::array<unsigned char, lanePoints<K>>> sliding; // by group: a bit for each lane
 	std::vector<Part> parts;                                       // the last is the seam
 	std::vector<std::array<int, 2>> onBase;                        // group and lane of the pairs with a prescribed body
 	LaneArray velocity;                                            // packs; 1/m = 0: prescribed. One more body at the end, for empty lanes
@@ -205,7 +220,7 @@ private:
 	bool samePairs(const RigidSystem<K>& system);
 	void takePairs(const RigidSystem<K>& system);
 	void takeOver(const RigidSystem<K>& system);
-	void divide(const RigidSystem<K>& system);
+	int divide(const RigidSystem<K>& system);
 	void colour(const RigidSystem<K>& system);
 	void showPair(RigidSystem<K>& system, int pair) const;
 	void countPoints(const RigidSystem<K>& system, int group);
@@ -215,6 +230,7 @@ private:
 	// `remember`, movement of those that are stale counts from here.
 	void locate(const RigidSystem<K>& system, int begin, int end, double travel, bool remember);
 	void lookUpStale(RigidSystem<K>& system);
+	bool lookUpStale(RigidSystem<K>& system, const Part& part);
 	bool lookUp(RigidSystem<K>& system, int pair);
 	State state(int pair, int point) const;
 	void setState(const State& state, int pair, int point);
@@ -227,7 +243,8 @@ private:
 	std::vector<int> partOf;                             // of a body
 	std::vector<unsigned char> known;                    // pairs whose lanes hold their points
 	std::vector<unsigned char> stale;                    // lanes with a pair to be looked up, by group: a bit each
-	bool otherPoints {false}, wider {false};
+	bool otherPoints {false};
+	std::atomic<bool> wider {false}; // a pair needs another lane
 };
 
 // plane_points.cpp, space_points.cpp
@@ -239,7 +256,7 @@ private:
 	template <>                                                                                                                            \
 	void WallContacts<K>::locate(const RigidSystem<K>&, int, int, double, bool);                                                           \
 	template <>                                                                                                                            \
-	void WallContacts<K>::findSliding();                                                                                                   \
+	double WallContacts<K>::slidingLoss();                                                                                                 \
 	template <>                                                                                                                            \
 	void WallContacts<K>::setVelocity(size_t, const K::Velocity&);                                                                         \
 	template <>                                                                                                                            \

@@ -6,7 +6,6 @@
 namespace masonry::rigid {
 
 using wall::all;
-using wall::dot;
 using wall::Lanes;
 
 namespace {
@@ -124,9 +123,12 @@ void WallStep<K>::setBase(const RigidSystem<K>& s, double h)
 template <class K>
 void WallStep<K>::setLoads(const RigidSystem<K>& s, double h)
 {
-	loads.assign(contacts.velocity.size(), all(0));
-	for (size_t b = 0; b < s.bodies.size(); ++b)
-		contacts.takeForce(s.bodies[b].force, h, b, loads);
+	if (loads.size() != contacts.velocity.size())
+		loads.assign(contacts.velocity.size(), all(0));
+	contacts.eachShare(s.bodies.size(), [&](size_t begin, size_t end, int) {
+		for (size_t b = begin; b < end; ++b)
+			contacts.takeForce(s.bodies[b].force, h, b, loads);
+	});
 }
 
 template <class K>
@@ -283,55 +285,50 @@ double WallStep<K>::baseWorkWhenStill(const RigidSystem<K>& s)
 	return impulse.dot(startVelocity(s, base).template head<K::dimension>());
 }
 
-// What friction takes in the time of one set of impulses, J.
+// A body's pose and velocity back into the system. Returns the work of the force on it, J.
 template <class K>
-double WallStep<K>::slidingLoss() const
+double WallStep<K>::takeBody(RigidSystem<K>& s, size_t b, double h)
 {
-	double loss = 0;
-	for (size_t g = 0; g < contacts.groups.size(); ++g) {
-		const auto& sliding = contacts.sliding[g];
-		if (std::all_of(sliding.begin(), sliding.end(), [](unsigned char bits) { return bits == 0; }))
-			continue;
-		const wall::Group<K>& group = contacts.groups[g];
-		const wall::Bodies<K> v1(contacts.velocity.data(), group.body1), v2(contacts.velocity.data(), group.body2);
-		for (int k = 0; k < group.count; ++k) {
-			const Lanes power = dot(group.point[k].pt, slipRate(v1, v2, group.point[k]));
-			for (int i = 0; i < wall::width; ++i)
-				if (sliding[k] >> i & 1)
-					loss -= power[i];
-		}
+	auto& body = s.bodies[b];
+	if (body.prescribed && body.drive >= 0) {
+		body.pose.position = driven(s, body, s.time + h);
+		body.velocity.template head<K::dimension>() = s.driveDirections[body.drive] * s.drives[body.drive]->velocity(s.time + h);
+		return 0;
 	}
-	return loss;
+	const typename K::Velocity moved = contacts.inGlobal(shift, b), before = body.velocity;
+	body.velocity = contacts.inGlobal(contacts.velocity, b);
+	if (body.prescribed) {
+		K::advance(body.pose, moved, 1);
+		return 0;
+	}
+	move(body, moved, h);
+	body.increment = (body.velocity - before) / h;
+	return body.force.dot(moved);
 }
 
-// Poses, velocities and points back into the system; energies.
+// Poses and velocities back into the system; energies.
 template <class K>
 void WallStep<K>::takeMotion(RigidSystem<K>& s, double h, double workBefore)
 {
-	const double end = s.time + h, before = s.kineticEnergy();
-	double work = 0;
-	for (size_t b = 0; b < s.bodies.size(); ++b) {
-		auto& body = s.bodies[b];
-		if (body.prescribed && body.drive >= 0) {
-			body.pose.position = driven(s, body, end);
-			body.velocity.template head<K::dimension>() = s.driveDirections[body.drive] * s.drives[body.drive]->velocity(end);
-			continue;
+	struct alignas(64) Energies { // of the bodies of a share; lines of the cache of their own
+		double gained {0}, work {0};
+	};
+	Energies of[wall::Team::mostParts];
+	contacts.eachShare(s.bodies.size(), [&](size_t begin, size_t end, int number) {
+		Energies sum;
+		for (size_t b = begin; b < end; ++b) {
+			const double before = s.bodies[b].kineticEnergy();
+			sum.work += takeBody(s, b, h);
+			sum.gained += s.bodies[b].kineticEnergy() - before;
 		}
-		const typename K::Velocity moved = contacts.inGlobal(shift, b), before = body.velocity;
-		body.velocity = contacts.inGlobal(contacts.velocity, b);
-		if (body.prescribed) {
-			K::advance(body.pose, moved, 1);
-			continue;
-		}
-		work += body.force.dot(moved);
-		move(body, moved, h);
-		body.increment = (body.velocity - before) / h;
-	}
+		of[number] = sum;
+	});
 	const int parts = report.mode == WallMode::still ? 1 : substepCount();
-	contacts.findSliding();
-	const double friction = parts * slidingLoss();
+	const double friction = parts * contacts.slidingLoss();
 	s.frictDissip += friction;
-	s.impactDissip += before + work + (s.baseWork - workBefore) - s.kineticEnergy() - friction;
+	s.impactDissip += (s.baseWork - workBefore) - friction;
+	for (const Energies& share : of)
+		s.impactDissip += share.work - share.gained;
 }
 
 template <class K>

@@ -67,9 +67,9 @@ private:
 	typename K::Velocity startVelocity(const RigidSystem<K>& system, int body) const;
 	double baseWork(const RigidSystem<K>& system);
 	double baseWorkWhenStill(const RigidSystem<K>& system);
-	double slidingLoss() const;
 	void setBase(const RigidSystem<K>& system, double h);
 	void setLoads(const RigidSystem<K>& system, double h);
+	double takeBody(RigidSystem<K>& system, size_t body, double h);
 	void takeMotion(RigidSystem<K>& system, double h, double workBefore);
 	void choose(const RigidSystem<K>& system, double h);
 
