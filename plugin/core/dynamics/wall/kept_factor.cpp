@@ -179,7 +179,7 @@ MASONRY_PASSES(Space)
 template <class K>
 bool KeptFactor<K>::takeSoftness()
 {
-	const double deepest = 3., softest = 3e-3; // of r: waves of correction cross the courses in some sqrt(1/r) solves
+	const double deepest = 12, softest = 3e-3; // of r: waves of correction cross the courses in some sqrt(1/r) solves
 	const double before = softness;
 	softness = given > 0 ? given : std::min(softest, deepest / (double(contacts->depth) * contacts->depth));
 	return softness != before;
