@@ -167,6 +167,11 @@ constexpr double held = 2;
 constexpr double free = 5e-3;
 // Time relative to sqrt(half size / g) for which nothing may move before the still mode is tried again.
 constexpr double patience = 0.5;
+// Depth of a pair relative to the smallest half size above which moving steps take it off, and what they leave of it. Larger: blocks deeper in
+// each other; smaller: the sweeps let loaded points sink, and what is given back costs them energy; nearer to each other: a wall that comes to
+// rest is moved again and again.
+constexpr double penetration = 8e-6;
+constexpr double lifted = 6e-6;
 // Extent of the loaded part of a joint, relative to the smallest half size, up to which it is a pivot. Larger: narrow patches rock.
 constexpr double pivot = 1e-3;
 

@@ -44,6 +44,7 @@ struct alignas(alignment) PointLanes<Plane> {
 	Lanes gap;          // m; far away in lanes without a point
 	Lanes massN, massT; // 1 / (J M^-1 J^T), kg
 	Lanes pn, pt;       // impulse of a step or substep, N s
+	Lanes steady;       // mean of pn over the last steps that moved
 };
 
 // What a point is made of: vertex and face in the axes of their bodies.
@@ -98,6 +99,20 @@ MASONRY_INLINE void push(Bodies<Plane>& v1, Bodies<Plane>& v2, const PointLanes<
 	v2.x += v2.m * fx;
 	v2.y += v2.m * fy;
 	v2.w += v2.m * (p.a2n * dn + p.a2t * dt);
+}
+MASONRY_INLINE void pushNormal(Bodies<Plane>& v1, Bodies<Plane>& v2, const PointLanes<Plane>& p, const Lanes& dn)
+{
+	v1.x -= v1.m * p.nx * dn;
+	v1.y -= v1.m * p.ny * dn;
+	v1.w -= v1.m * p.a1n * dn;
+	v2.x += v2.m * p.nx * dn;
+	v2.y += v2.m * p.ny * dn;
+	v2.w += v2.m * p.a2n * dn;
+}
+// 1 / (J M^-1 J^T) along the normal of bodies with these 1/m.
+MASONRY_INLINE Lanes normalMass(const PointLanes<Plane>& p, const Lanes& m1, const Lanes& m2)
+{
+	return all(1) / (m1 + m2 + m1 * p.a1n * p.a1n + m2 * p.a2n * p.a2n);
 }
 // Impulses into momenta.
 MASONRY_INLINE void add(Bodies<Plane>& f1, Bodies<Plane>& f2, const PointLanes<Plane>& p, const Lanes& qn, const Lanes& qt)

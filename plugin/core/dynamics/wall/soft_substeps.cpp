@@ -6,37 +6,21 @@ namespace masonry::rigid::wall {
 
 namespace {
 
-// The spring of a penetration, solved implicitly in its impulse (Catto).
-struct Spring {
-	double perStep, rate, massScale, impulseScale;
-
-	explicit Spring(double s)
-	{
-		constexpr double dampingRatio = 10, anglePerStep = 2 * M_PI / 8;
-		const double a = 2 * dampingRatio + anglePerStep, b = anglePerStep * a;
-		perStep = 1 / s;
-		rate = anglePerStep / a / s;
-		massScale = b / (1 + b);
-		impulseScale = 1 / (1 + b);
-	}
-};
-
 struct alignas(alignment) Largest {
 	Lanes change, motion;
 };
 
-template <class K, bool springs>
-MASONRY_INLINE Lanes normalImpulse(const PointLanes<K>& p, const Lanes& un, const Spring& spring)
+// Of the difference of an impulse from its mean over the last steps: what a sweep takes off, and what a step takes into the mean.
+constexpr double damping = 0.015, inMean = 0.1;
+
+// An open point may close within the substep.
+template <class K>
+MASONRY_INLINE Lanes normalImpulse(const PointLanes<K>& p, const Lanes& un, double perSubstep)
 {
-	const Lanes none = all(0), one = all(1);
+	const Lanes none = all(0);
 	const Mask open = p.gap > 0;
-	if constexpr (springs) {
-		const Lanes bias = p.gap * (open ? all(spring.perStep) : all(spring.rate));
-		const Lanes scale = open ? one : all(spring.massScale), fading = open ? none : all(spring.impulseScale);
-		return larger(p.pn - p.massN * scale * (un + bias) - fading * p.pn, none);
-	}
-	const Lanes bias = open ? p.gap * spring.perStep : none;
-	return larger(p.pn - p.massN * (un + bias), none);
+	const Lanes closing = open ? perSubstep * p.gap : none, damped = open ? none : damping * (p.pn - p.steady);
+	return larger(p.pn - p.massN * (un + closing) - damped, none);
 }
 
 template <class K, class Tangent>
@@ -50,16 +34,15 @@ MASONRY_INLINE void measure(const PointLanes<K>& p, const Lanes& un, const Tange
 
 // Both points of each of four pairs, row by row in terms of their relative velocities: what an impulse adds to the rows that follow is
 // known (Coupling), and need not go through the velocities of the bodies.
-template <bool springs, bool measured>
-MASONRY_INLINE void sweepGroup(Group<Plane>& group, Lanes* velocity, const Spring& spring, Largest& worst)
+template <bool measured>
+MASONRY_INLINE void sweepGroup(Group<Plane>& group, Lanes* velocity, double perSubstep, Largest& worst)
 {
 	Bodies<Plane> v1(velocity, group.body1), v2(velocity, group.body2);
 	PointLanes<Plane>&p = group.point[0], &q = group.point[1];
 	const Coupling& w = group.coupling;
-	const Lanes un1 = normalRate(v1, v2, p), pn1 = normalImpulse<Plane, springs>(p, un1, spring), dn1 = pn1 - p.pn;
+	const Lanes un1 = normalRate(v1, v2, p), pn1 = normalImpulse(p, un1, perSubstep), dn1 = pn1 - p.pn;
 	const Lanes ut1 = slipRate(v1, v2, p) + w.n1t1 * dn1, pt1 = friction(p, ut1, group.friction * pn1), dt1 = pt1 - p.pt;
-	const Lanes un2 = normalRate(v1, v2, q) + w.n1n2 * dn1 + w.t1n2 * dt1, pn2 = normalImpulse<Plane, springs>(q, un2, spring),
-	            dn2 = pn2 - q.pn;
+	const Lanes un2 = normalRate(v1, v2, q) + w.n1n2 * dn1 + w.t1n2 * dt1, pn2 = normalImpulse(q, un2, perSubstep), dn2 = pn2 - q.pn;
 	const Lanes ut2 = slipRate(v1, v2, q) + w.n1t2 * dn1 + w.t1t2 * dt1 + w.n2t2 * dn2, pt2 = friction(q, ut2, group.friction * pn2),
 	            dt2 = pt2 - q.pt;
 	p.pn = pn1;
@@ -76,11 +59,11 @@ MASONRY_INLINE void sweepGroup(Group<Plane>& group, Lanes* velocity, const Sprin
 	}
 }
 
-template <bool springs, bool measured>
+template <bool measured>
 MASONRY_INLINE void sweepPoint(PointLanes<Space>& p, const Lanes& frictionCoefficient, Bodies<Space>& v1, Bodies<Space>& v2,
-                               const Spring& spring, Largest& worst)
+                               double perSubstep, Largest& worst)
 {
-	const Lanes un = normalRate(v1, v2, p), pn = normalImpulse<Space, springs>(p, un, spring), dn = pn - p.pn;
+	const Lanes un = normalRate(v1, v2, p), pn = normalImpulse(p, un, perSubstep), dn = pn - p.pn;
 	pushNormal(v1, v2, p, dn);
 	p.pn = pn;
 	const Lanes2 ut = slipRate(v1, v2, p), pt = friction(p, ut, frictionCoefficient * pn), dt = pt - p.pt;
@@ -90,45 +73,45 @@ MASONRY_INLINE void sweepPoint(PointLanes<Space>& p, const Lanes& frictionCoeffi
 		measure(p, un, ut, dn, dt, worst);
 }
 
-template <bool springs, bool measured>
-MASONRY_INLINE void sweepGroup(Group<Space>& group, Lanes* velocity, const Spring& spring, Largest& worst)
+template <bool measured>
+MASONRY_INLINE void sweepGroup(Group<Space>& group, Lanes* velocity, double perSubstep, Largest& worst)
 {
 	Bodies<Space> v1(velocity, group.body1), v2(velocity, group.body2);
 	for (int k = 0; k < group.count; ++k)
-		sweepPoint<springs, measured>(group.point[k], group.friction, v1, v2, spring, worst);
+		sweepPoint<measured>(group.point[k], group.friction, v1, v2, perSubstep, worst);
 	v1.store(velocity, group.body1, v1.m);
 	v2.store(velocity, group.body2, v2.m);
 }
 
 // Two groups at the same time: one alone waits for its own results.
-template <bool springs, bool measured>
-MASONRY_INLINE void sweepTwo(Group<Space>* group, Lanes* velocity, const Spring& spring, Largest& worst)
+template <bool measured>
+MASONRY_INLINE void sweepTwo(Group<Space>* group, Lanes* velocity, double perSubstep, Largest& worst)
 {
 	Bodies<Space> v1(velocity, group[0].body1), v2(velocity, group[0].body2), w1(velocity, group[1].body1), w2(velocity, group[1].body2);
 	const int both = std::min(group[0].count, group[1].count);
 	for (int k = 0; k < both; ++k) {
-		sweepPoint<springs, measured>(group[0].point[k], group[0].friction, v1, v2, spring, worst);
-		sweepPoint<springs, measured>(group[1].point[k], group[1].friction, w1, w2, spring, worst);
+		sweepPoint<measured>(group[0].point[k], group[0].friction, v1, v2, perSubstep, worst);
+		sweepPoint<measured>(group[1].point[k], group[1].friction, w1, w2, perSubstep, worst);
 	}
 	for (int k = both; k < group[0].count; ++k)
-		sweepPoint<springs, measured>(group[0].point[k], group[0].friction, v1, v2, spring, worst);
+		sweepPoint<measured>(group[0].point[k], group[0].friction, v1, v2, perSubstep, worst);
 	for (int k = both; k < group[1].count; ++k)
-		sweepPoint<springs, measured>(group[1].point[k], group[1].friction, w1, w2, spring, worst);
+		sweepPoint<measured>(group[1].point[k], group[1].friction, w1, w2, perSubstep, worst);
 	v1.store(velocity, group[0].body1, v1.m);
 	v2.store(velocity, group[0].body2, v2.m);
 	w1.store(velocity, group[1].body1, w1.m);
 	w2.store(velocity, group[1].body2, w2.m);
 }
 
-template <class K, bool springs, bool measured>
-MASONRY_INLINE void sweepGroups(Group<K>* groups, int begin, int end, Lanes* velocity, const Spring& spring, Largest& worst)
+template <class K, bool measured>
+MASONRY_INLINE void sweepGroups(Group<K>* groups, int begin, int end, Lanes* velocity, double perSubstep, Largest& worst)
 {
 	int g = begin;
 	if constexpr (K::dimension == 3)
 		for (; g + 2 <= end; g += 2)
-			sweepTwo<springs, measured>(groups + g, velocity, spring, worst);
+			sweepTwo<measured>(groups + g, velocity, perSubstep, worst);
 	for (; g < end; ++g)
-		sweepGroup<springs, measured>(groups[g], velocity, spring, worst);
+		sweepGroup<measured>(groups[g], velocity, perSubstep, worst);
 }
 
 template <class K>
@@ -143,13 +126,16 @@ MASONRY_INLINE void moveGroups(Group<K>* groups, int begin, int end, const Lanes
 }
 
 template <class K>
-MASONRY_INLINE void pushGroups(Group<K>* groups, int begin, int end, Lanes* velocity)
+MASONRY_INLINE void beginGroups(Group<K>* groups, int begin, int end, Lanes* velocity)
 {
 	for (int g = begin; g < end; ++g) {
 		Group<K>& group = groups[g];
 		Bodies<K> v1(velocity, group.body1), v2(velocity, group.body2);
-		for (int k = 0; k < group.count; ++k)
-			push(v1, v2, group.point[k], group.point[k].pn, group.point[k].pt);
+		for (int k = 0; k < group.count; ++k) {
+			PointLanes<K>& p = group.point[k];
+			push(v1, v2, p, p.pn, p.pt);
+			p.steady += inMean * (p.pn - p.steady);
+		}
 		v1.store(velocity, group.body1, v1.m);
 		v2.store(velocity, group.body2, v2.m);
 	}
@@ -157,23 +143,19 @@ MASONRY_INLINE void pushGroups(Group<K>* groups, int begin, int end, Lanes* velo
 
 // No template is compiled for several vector widths.
 #define MASONRY_SWEEPS(K)                                                                                                                  \
-	MASONRY_LANES void springSweep(Group<K>* groups, int begin, int end, Lanes* velocity, const Spring& spring, Largest& worst)            \
+	MASONRY_LANES void sweep(Group<K>* groups, int begin, int end, Lanes* velocity, double perSubstep, Largest& worst)                     \
 	{                                                                                                                                      \
-		sweepGroups<K, true, false>(groups, begin, end, velocity, spring, worst);                                                          \
+		sweepGroups<K, false>(groups, begin, end, velocity, perSubstep, worst);                                                            \
 	}                                                                                                                                      \
-	MASONRY_LANES void relaxSweep(Group<K>* groups, int begin, int end, Lanes* velocity, const Spring& spring, Largest& worst)             \
+	MASONRY_LANES void lastSweep(Group<K>* groups, int begin, int end, Lanes* velocity, double perSubstep, Largest& worst)                 \
 	{                                                                                                                                      \
-		sweepGroups<K, false, false>(groups, begin, end, velocity, spring, worst);                                                         \
-	}                                                                                                                                      \
-	MASONRY_LANES void lastSweep(Group<K>* groups, int begin, int end, Lanes* velocity, const Spring& spring, Largest& worst)              \
-	{                                                                                                                                      \
-		sweepGroups<K, false, true>(groups, begin, end, velocity, spring, worst);                                                          \
+		sweepGroups<K, true>(groups, begin, end, velocity, perSubstep, worst);                                                             \
 	}                                                                                                                                      \
 	MASONRY_LANES void moveGaps(Group<K>* groups, int begin, int end, const Lanes* velocity, double s)                                     \
 	{                                                                                                                                      \
 		moveGroups<K>(groups, begin, end, velocity, s);                                                                                    \
 	}                                                                                                                                      \
-	MASONRY_LANES void applyImpulses(Group<K>* groups, int begin, int end, Lanes* velocity) { pushGroups<K>(groups, begin, end, velocity); }
+	MASONRY_LANES void beginStep(Group<K>* groups, int begin, int end, Lanes* velocity) { beginGroups<K>(groups, begin, end, velocity); }
 MASONRY_SWEEPS(Plane)
 MASONRY_SWEEPS(Space)
 #undef MASONRY_SWEEPS
@@ -189,7 +171,7 @@ void SoftSubsteps<K>::begin(WallContacts<K>& c)
 	for (Lanes& v : contactPart)
 		v *= onlyMass;
 	const auto apply = [&](const Part& part, int) {
-		part.byColour([&](int first, int last) { applyImpulses(c.groups.data(), first, last, contactPart.data()); });
+		part.byColour([&](int first, int last) { beginStep(c.groups.data(), first, last, contactPart.data()); });
 	};
 	c.eachPart(apply);
 	apply(c.parts.back(), 0);
@@ -199,7 +181,6 @@ void SoftSubsteps<K>::begin(WallContacts<K>& c)
 template <class K>
 void SoftSubsteps<K>::substep(WallContacts<K>& c, const LaneArray& load, double s, bool isLast)
 {
-	const Spring spring(s);
 	const Lanes noMass {1, 1, 1, 0};
 	Group<K>* groups = c.groups.data();
 	Lanes* velocity = c.velocity.data();
@@ -212,7 +193,7 @@ void SoftSubsteps<K>::substep(WallContacts<K>& c, const LaneArray& load, double 
 		}
 	};
 	const auto press = [&](const Part& part) {
-		part.byColour([&](int first, int last) { springSweep(groups, first, last, velocity, spring, worst[0]); });
+		part.byColour([&](int first, int last) { sweep(groups, first, last, velocity, 1 / s, worst[0]); });
 	};
 	const auto move = [&](const Part& part) {
 		moveGaps(groups, part.begin, part.end, velocity, s);
@@ -222,9 +203,9 @@ void SoftSubsteps<K>::substep(WallContacts<K>& c, const LaneArray& load, double 
 	const auto relax = [&](const Part& part, int number) {
 		part.byColour([&](int first, int last) {
 			if (isLast)
-				lastSweep(groups, first, last, velocity, spring, worst[number]);
+				lastSweep(groups, first, last, velocity, 1 / s, worst[number]);
 			else
-				relaxSweep(groups, first, last, velocity, spring, worst[number]);
+				sweep(groups, first, last, velocity, 1 / s, worst[number]);
 		});
 		for (const int b : part.members)
 			contactPart[b] = velocity[b] - contactPart[b];

@@ -2,14 +2,17 @@
 // The step of a wall that moves: substeps of length s, each of
 //
 //     V += s M^-1 f + M^-1 J^T p        p of the last substep
-//     one sweep over the points, a penetration as a damped spring (frequency 1/8 of the substep rate, damping ratio 10)
+//     one sweep over the points
 //     q += s V, gaps with it
-//     one sweep without springs: takes out the velocity that they gave
+//     one sweep: p for the next
 //
-// An open point may close: u_n >= -gap/s, in both sweeps. (Without it in the second, corners that approach stop short, and piers do not
-// rock as they should.) One sweep carries an impulse one course on: what the courses miss of each other falls as 1/substeps^2.
+// An open point may close, u_n >= -gap/s, in both sweeps; a closed one does not, u_n >= 0. (Without the gap in the second, corners that
+// approach stop short, and piers do not rock as they should.) One sweep carries an impulse one course on: what the courses miss of each
+// other falls as 1/substeps^2, and loads that lag behind like that bounce. So a sweep takes a little off what an impulse differs from its
+// mean over the last steps, which lets no load that stays sink. Penetrations are taken off at the end of the step (lift.hpp): springs that
+// do it in the sweeps give way under every load, ten times as deep.
 //
-// After Box2D's soft step (Catto, 2024).
+// Substeps of one iteration after Macklin et al. (2019), a second sweep after Catto (2024).
 #include "dynamics/wall/wall_contacts.hpp"
 
 namespace masonry::rigid::wall {

@@ -103,6 +103,7 @@ struct alignas(alignment) PointLanes<Space> {
 	Lanes stick[2], stickAcross; // inverse of the tangents' J M^-1 J^T, kg: diagonal and beside it
 	Lanes pn;                    // impulse of a step or substep, N s
 	Lanes2 pt;
+	Lanes steady; // mean of pn over the last steps that moved
 };
 
 // What a point is made of: vertex and face in the axes of their bodies; or two edges that cross, which are looked at one by one.
@@ -138,6 +139,11 @@ MASONRY_INLINE void pushNormal(Bodies<Space>& v1, Bodies<Space>& v2, const Point
 	v1.w -= d1 * p.normal.arm1;
 	v2.v += d2 * p.normal.axis;
 	v2.w += d2 * p.normal.arm2;
+}
+// 1 / (J M^-1 J^T) along the normal of bodies with these 1/m.
+MASONRY_INLINE Lanes normalMass(const PointLanes<Space>& p, const Lanes& m1, const Lanes& m2)
+{
+	return all(1) / (m1 + m2 + m1 * dot(p.normal.arm1, p.normal.arm1) + m2 * dot(p.normal.arm2, p.normal.arm2));
 }
 MASONRY_INLINE void pushTangential(Bodies<Space>& v1, Bodies<Space>& v2, const PointLanes<Space>& p, const Lanes2& dt)
 {

@@ -130,19 +130,19 @@ void WallContacts<K>::colour(const RigidSystem<K>& s)
 
 // Breadth first from the prescribed bodies.
 template <class K>
-void WallContacts<K>::findDepth(const RigidSystem<K>& s)
+void WallContacts<K>::findCourses(const RigidSystem<K>& s)
 {
-	std::vector<int> level(s.bodies.size(), -1);
+	course.assign(s.bodies.size(), -1);
 	for (size_t b = 0; b < s.bodies.size(); ++b)
 		if (s.bodies[b].prescribed)
-			level[b] = 0;
+			course[b] = 0;
 	depth = 0;
 	for (bool grew = true; grew; ++depth) {
 		grew = false;
 		for (const auto& [a, b] : pairs)
 			for (const auto& [from, to] : {std::pair(a, b), std::pair(b, a)})
-				if (level[from] == depth && level[to] < 0) {
-					level[to] = depth + 1;
+				if (course[from] == depth && course[to] < 0) {
+					course[to] = depth + 1;
 					grew = true;
 				}
 	}
@@ -160,6 +160,7 @@ typename WallContacts<K>::State WallContacts<K>::state(int pair, int point) cons
 	const FeatureLanes<K>& f = features[group].point[point % lanePoints<K>];
 	state.present = f.present[lane];
 	state.pn = p.pn[lane];
+	state.steady = p.steady[lane];
 	state.zn = f.zn[lane];
 	state.zero = f.zero[lane];
 	state.heldN = f.heldN[lane];
@@ -179,6 +180,7 @@ void WallContacts<K>::setState(const State& state, int pair, int point)
 	PointLanes<K>& p = groups[group].point[point % lanePoints<K>];
 	FeatureLanes<K>& f = features[group].point[point % lanePoints<K>];
 	p.pn[lane] = state.pn;
+	p.steady[lane] = state.steady;
 	f.zn[lane] = state.zn;
 	f.zero[lane] = state.zero;
 	f.heldN[lane] = state.heldN;
@@ -242,6 +244,7 @@ bool WallContacts<K>::lookUp(RigidSystem<K>& s, int c)
 				point.force = old.force;
 				now.pn = states[j].present ? states[j].pn : unit * old.force[0];
 				now.pt = states[j].present ? states[j].pt : unit * old.force.template tail<K::rows - 1>();
+				now.steady = states[j].present ? states[j].steady : now.pn;
 				now.zn = states[j].zn;
 				now.zt = states[j].zt;
 				now.slip = states[j].slip;
@@ -331,7 +334,7 @@ void WallContacts<K>::takeOver(const RigidSystem<K>& s)
 {
 	length = scale::length(s);
 	colour(s);
-	findDepth(s);
+	findCourses(s);
 	takeBodies(s);
 	std::fill(stale.begin(), stale.end(), 0);
 	std::fill(known.begin(), known.end(), 1);
@@ -383,7 +386,7 @@ bool WallContacts<K>::measure(RigidSystem<K>& s)
 	if (otherPoints) {
 		takePairs(s);
 		colour(s);
-		findDepth(s);
+		findCourses(s);
 	}
 	if (s.moved)
 		std::fill(stale.begin(), stale.end(), allLanes);
@@ -412,8 +415,17 @@ void WallContacts<K>::setUnit(double h)
 		for (PointLanes<K>& p : group.point) {
 			p.pn *= factor;
 			p.pt *= factor;
+			p.steady *= factor;
 		}
 	unit = h;
+}
+
+template <class K>
+void WallContacts<K>::startMeans()
+{
+	for (Group<K>& group : groups)
+		for (PointLanes<K>& p : group.point)
+			p.steady = p.pn;
 }
 
 template class WallContacts<Plane>;

@@ -136,6 +136,8 @@ public:
 	bool measure(RigidSystem<K>& system);
 	// Impulses are those of a time h from now on. They never grow: an impact's would become a hundred.
 	void setUnit(double h);
+	// The means of the impulses are those that there are now.
+	void startMeans();
 	// Gaps, forces and places of all points, as they are now, into the pairs. Needed before the list of pairs changes.
 	void showPoints(RigidSystem<K>& system) const;
 	// What the next step needs of the last besides the system, number by number: f(number) takes it, or gives it to a new object.
@@ -154,7 +156,7 @@ public:
 			for (int k = 0; k < K::maxPoints && slots[c][k / lanePoints<K>].group >= 0; ++k) {
 				const auto [group, lane] = slots[c][k / lanePoints<K>];
 				State now = state(c, k);
-				f(now.pn), f(now.pt), f(now.zn), f(now.zt), f(now.slip), f(now.zero), f(now.heldN), f(now.heldT);
+				f(now.pn), f(now.steady), f(now.pt), f(now.zn), f(now.zt), f(now.slip), f(now.zero), f(now.heldN), f(now.heldT);
 				setState(now, c, k);
 				FeatureLanes<K>& feature = features[group].point[k % lanePoints<K>];
 				auto found = feature.foundAt(lane);
@@ -197,7 +199,8 @@ public:
 	LaneArray velocity;                                            // packs; 1/m = 0: prescribed. One more body at the end, for empty lanes
 	LaneArray pose;                         // plane: (position, cosine, sine). Space: axes and position in three rows, then 1/rho
 	std::vector<typename K::Spin> gyration; // rho, m
-	int depth {0};                          // courses: pairs between a prescribed body and the block farthest from one
+	std::vector<int> course;                // of a body: pairs between it and the nearest prescribed one; -1: no way there
+	int depth {0};                          // courses: the highest
 	double length {0};                      // m, smallest half size
 	Team team;
 
@@ -207,7 +210,7 @@ private:
 	};
 	struct State { // of one point, in a lane
 		bool present {false};
-		double pn {0}, zn {0}, zero {0}, heldN {0};
+		double pn {0}, steady {0}, zn {0}, zero {0}, heldN {0};
 		Eigen::Matrix<double, K::rows - 1, 1> pt, zt, slip, heldT;
 
 		State()
@@ -224,7 +227,7 @@ private:
 	void colour(const RigidSystem<K>& system);
 	void showPair(RigidSystem<K>& system, int pair) const;
 	void countPoints(const RigidSystem<K>& system, int group);
-	void findDepth(const RigidSystem<K>& system);
+	void findCourses(const RigidSystem<K>& system);
 	void takeBodies(const RigidSystem<K>& system);
 	// Gaps, normals, arms. Pairs that have moved by more than `travel` become stale (in the plane with the others of their group); with
 	// `remember`, movement of those that are stale counts from here.

@@ -94,8 +94,10 @@ void WallStep<K>::advancePart(RigidSystem<K>& s, double h)
 		joints.outdate();
 	}
 	const WallMode before = m.mode;
-	if (m.mode == WallMode::still && !tryStill(s, h))
+	if (m.mode == WallMode::still && !tryStill(s, h)) {
 		m.mode = WallMode::moving;
+		contacts.startMeans();
+	}
 	if (m.mode == WallMode::moving)
 		substeps(s, h);
 	report.mode = m.mode;
@@ -200,6 +202,7 @@ void WallStep<K>::substeps(RigidSystem<K>& s, double h)
 		setBase(s, part);
 	}
 	joints.release(contacts);
+	lift.settle(contacts, soft.shift);
 	s.time = start;
 	report.substeps += count;
 	report.velocityResidual = std::max(report.velocityResidual, soft.report.residual);
@@ -236,8 +239,8 @@ typename K::Velocity WallStep<K>::startVelocity(const RigidSystem<K>& s, int b) 
 	return velocity;
 }
 
-// Of the impulses that the prescribed bodies give, J, with their velocities at the start of the substep: the mean of those that blocks which
-// go with them have before and after it.
+// Of the impulses that the prescribed bodies give, J, with their velocities at the start of the substep: the mean of those that blocks
+// which go with them have before and after it.
 template <class K>
 double WallStep<K>::baseWork(const RigidSystem<K>& s)
 {
@@ -270,7 +273,8 @@ double WallStep<K>::baseWorkWhenStill(const RigidSystem<K>& s)
 		if (base < 0)
 			base = b;
 		const typename K::Velocity v = startVelocity(s, b);
-		if (v.template head<K::dimension>() != startVelocity(s, base).template head<K::dimension>() || !v.template tail<K::spins>().isZero(0))
+		if (v.template head<K::dimension>() != startVelocity(s, base).template head<K::dimension>() ||
+		    !v.template tail<K::spins>().isZero(0))
 			return baseWork(s);
 	}
 	if (base < 0)

@@ -8,6 +8,7 @@
 //
 // Positions are first order in the step; impacts are met at the end of a substep. Few blocks: rigid_step.hpp.
 #include "dynamics/wall/kept_factor.hpp"
+#include "dynamics/wall/lift.hpp"
 #include "dynamics/wall/rocking_joints.hpp"
 #include "dynamics/wall/soft_substeps.hpp"
 
@@ -88,6 +89,7 @@ private:
 	wall::WallContacts<K> contacts;
 	wall::KeptFactor<K> kept, quick {quickSoftness};
 	wall::SoftSubsteps<K> soft;
+	wall::Lift<K> lift;
 	wall::RockingJoints<K> joints;
 	wall::LaneArray loads, shift;
 	std::vector<int> onDrives; // prescribed bodies with a drive

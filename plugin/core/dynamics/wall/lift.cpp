@@ -1,0 +1,108 @@
+#include "dynamics/wall/lift.hpp"
+#include "tolerances.hpp"
+#include <algorithm>
+#include <cmath>
+
+namespace masonry::rigid::wall {
+
+namespace {
+
+constexpr int sweeps = 12;
+constexpr double perCourse = 10;   // 1/m' of a block over that of the one below it
+constexpr int highestCourse = 100; // that is told from those below it: the numbers must not overflow
+
+template <class K>
+MASONRY_INLINE Lanes prepareGroups(const Group<K>* groups, typename Lift<K>::Points* points, int begin, int end, const Lanes* moved,
+                                   double length)
+{
+	const Lanes none = all(0), deep = all(-tolerance::wall::penetration * length), allowed = all(-tolerance::wall::lifted * length);
+	Lanes least = none;
+	for (int g = begin; g < end; ++g) {
+		const Group<K>& group = groups[g];
+		const Bodies<K> v1(moved, group.body1), v2(moved, group.body2);
+		for (int k = 0; k < group.count; ++k) {
+			const PointLanes<K>& p = group.point[k];
+			least = smaller(least, p.gap - deep);
+			const Lanes room = p.gap - allowed;
+			points[g][k] = {room > 0 ? room : p.gap < deep ? room : none, p.massN > 0 ? normalMass(p, v1.m, v2.m) : none, none};
+		}
+	}
+	return least;
+}
+
+template <class K>
+MASONRY_INLINE void liftGroups(const Group<K>* groups, typename Lift<K>::Points* points, int begin, int end, Lanes* moved)
+{
+	const Lanes none = all(0);
+	for (int g = begin; g < end; ++g) {
+		const Group<K>& group = groups[g];
+		Bodies<K> v1(moved, group.body1), v2(moved, group.body2);
+		Mask changed = none != none;
+		for (int k = 0; k < group.count; ++k) {
+			auto& at = points[g][k];
+			const Lanes next = larger(at.impulse - at.mass * (normalRate(v1, v2, group.point[k]) + at.room), none);
+			pushNormal(v1, v2, group.point[k], next - at.impulse);
+			changed |= next != at.impulse;
+			at.impulse = next;
+		}
+		if (!any(changed))
+			continue;
+		v1.store(moved, group.body1, v1.m);
+		v2.store(moved, group.body2, v2.m);
+	}
+}
+
+template <class K>
+MASONRY_INLINE void partGroups(Group<K>* groups, int begin, int end, const Lanes* moved)
+{
+	for (int g = begin; g < end; ++g) {
+		const Bodies<K> v1(moved, groups[g].body1), v2(moved, groups[g].body2);
+		for (int k = 0; k < groups[g].count; ++k)
+			groups[g].point[k].gap += normalRate(v1, v2, groups[g].point[k]);
+	}
+}
+
+// No template is compiled for several vector widths.
+#define MASONRY_LIFT(K)                                                                                                                    \
+	MASONRY_LANES bool anyDeep(const Group<K>* groups, Lift<K>::Points* points, int count, const Lanes* moved, double length)              \
+	{                                                                                                                                      \
+		return any(prepareGroups<K>(groups, points, 0, count, moved, length) < 0);                                                         \
+	}                                                                                                                                      \
+	MASONRY_LANES void liftSweep(const Group<K>* groups, Lift<K>::Points* points, int begin, int end, Lanes* moved)                        \
+	{                                                                                                                                      \
+		liftGroups<K>(groups, points, begin, end, moved);                                                                                  \
+	}                                                                                                                                      \
+	MASONRY_LANES void partGaps(Group<K>* groups, int begin, int end, const Lanes* moved) { partGroups<K>(groups, begin, end, moved); }
+MASONRY_LIFT(Plane)
+MASONRY_LIFT(Space)
+#undef MASONRY_LIFT
+
+} // namespace
+
+template <class K>
+void Lift<K>::settle(WallContacts<K>& c, LaneArray& shift)
+{
+	points.resize(c.groups.size());
+	moved.assign(c.velocity.size(), all(0));
+	for (size_t b = 0; b < c.course.size(); ++b)
+		for (int pack = 0; pack < packs<K>; ++pack)
+			moved[packs<K> * b + pack][3] = c.velocity[packs<K> * b][3] * std::pow(perCourse, std::clamp(c.course[b], 0, highestCourse));
+	if (!anyDeep(c.groups.data(), points.data(), int(c.groups.size()), moved.data(), c.length))
+		return;
+	const Lanes noMass {1, 1, 1, 0};
+	const auto lift = [&](const Part& part, int) {
+		part.byColour([&](int first, int last) { liftSweep(c.groups.data(), points.data(), first, last, moved.data()); });
+	};
+	for (int k = 0; k < sweeps; ++k) {
+		c.eachPart(lift);
+		lift(c.parts.back(), 0);
+	}
+	partGaps(c.groups.data(), 0, int(c.groups.size()), moved.data());
+	for (size_t b = 0; b < shift.size(); ++b)
+		shift[b] += noMass * moved[b];
+}
+
+template class Lift<Plane>;
+template class Lift<Space>;
+
+} // namespace masonry::rigid::wall

@@ -1,0 +1,33 @@
+#pragma once
+// Penetrations that the sweeps of a step have left, taken off by positions alone.
+//
+// A pair that is deeper than tolerance::wall::penetration is moved apart, until it is tolerance::wall::lifted deep; what is less deep may
+// stay, but gets no deeper: a wall at rest would not come to rest if every step moved it. Velocities do not see any of it, so it gives no
+// speed; the height that it gives is what the sweeps had let sink.
+//
+// The displacements w are those of an impulse problem with gaps for velocities, J w >= -gap, p >= 0, by sweeps: w += M'^-1 J^T dp. With the
+// masses of the blocks, what is taken off at the base would need as many sweeps to be carried up as the square of the courses. Here a block
+// counts for a tenth of the one below it: it gives way, a sweep leaves a ninth of what is deep, and a dozen are enough.
+#include "dynamics/wall/wall_contacts.hpp"
+
+namespace masonry::rigid::wall {
+
+template <class K>
+class Lift {
+public:
+	// Changes the contacts' gaps and adds to `shift`, components as of velocities.
+	void settle(WallContacts<K>& contacts, LaneArray& shift);
+
+	struct alignas(alignment) Point {
+		Lanes room;    // m, by which it may close; negative: that it must part
+		Lanes mass;    // 1 / (J M'^-1 J^T)
+		Lanes impulse; // p
+	};
+	using Points = std::array<Point, lanePoints<K>>;
+
+private:
+	std::vector<Points> points; // by group
+	LaneArray moved;            // w, and 1/m'
+};
+
+} // namespace masonry::rigid::wall
