@@ -8,7 +8,7 @@ namespace masonry::rigid::wall {
 namespace {
 
 constexpr int sweeps = 12;
-constexpr double perCourse = 10;   // 1/m' of a block over that of the one below it
+constexpr double perCourse = 6;    // 1/m' of a block over that of the one below it
 constexpr int highestCourse = 100; // that is told from those below it: the numbers must not overflow
 
 template <class K>

@@ -34,8 +34,8 @@ struct Pivot<Space> {
 template <class K>
 class RockingJoints {
 public:
-	// Finds the joints that rock.
-	void find(const RigidSystem<K>& system, WallContacts<K>& contacts);
+	// Finds the joints that rock, for a step in such substeps.
+	void find(const RigidSystem<K>& system, WallContacts<K>& contacts, double substep);
 	// There are other points than before.
 	void outdate() { gathered = false; }
 	void release(WallContacts<K>& contacts); // after the last substep

@@ -19,7 +19,7 @@ MASONRY_INLINE Lanes normalImpulse(const PointLanes<K>& p, const Lanes& un, doub
 {
 	const Lanes none = all(0);
 	const Mask open = p.gap > 0;
-	const Lanes closing = open ? perSubstep * p.gap : none, damped = open ? none : damping * (p.pn - p.steady);
+	const Lanes closing = open ? perSubstep * p.gap : none, damped = open ? none : damping * smaller(p.pn - p.steady, p.steady);
 	return larger(p.pn - p.massN * (un + closing) - damped, none);
 }
 

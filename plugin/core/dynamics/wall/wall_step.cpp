@@ -192,7 +192,7 @@ void WallStep<K>::substeps(RigidSystem<K>& s, double h)
 	contacts.setUnit(part);
 	setLoads(s, part);
 	soft.begin(contacts);
-	joints.find(s, contacts);
+	joints.find(s, contacts, part);
 	for (int k = 0; k < count; ++k) {
 		s.time = start + k * part;
 		setBase(s, part);
