@@ -45,6 +45,19 @@ namespace {
 		return J;
 	}
 
+	// Whether velocities have come out otherwise than the middle was predicted with, by more than gravity gives in the step: a sliding block
+	// has jammed, or had in the last step.
+	template <class K> bool surprises(const RigidSystem<K>& s, const Trial<K>& trial, const std::vector<FreeBody<K>>& solved, const Scales& scales)
+	{
+		const double enough = scales.stepSpeed(trial.h) * scales.stepSpeed(trial.h), square = scales.length * scales.length;
+		for (size_t b = 0; b < s.bodies.size(); ++b) {
+			if (trial.bodies[b].unknown < 0) continue;
+			const typename K::Velocity miss = 0.5 * (s.bodies[b].velocity + solved[trial.bodies[b].unknown].velocity) - trial.bodies[b].mean;
+			if (miss.template head<K::dimension>().squaredNorm() + square * miss.template tail<K::spins>().squaredNorm() > enough) return true;
+		}
+		return false;
+	}
+
 	// Whether the impulse has reached the friction cone.
 	template <class K> bool slides(const ContactRows<K>& rows)
 	{
@@ -288,6 +301,7 @@ template <class K> void SmoothStep<K>::attempt(const RigidSystem<K>& s, double h
 		predict(s, h, pass > 0);
 		assemble(s, h);
 		last.solved = solver.solve(s.settings.tolerance * scales.stepSpeed(h));
+		const bool   surprised = pass == 0 && surprises(s, last, solver.bodies, scales);
 		const double gain = finish(s, h);
 		const bool   first = pass == 0 && s.fresh;
 		if (first) {
@@ -299,7 +313,7 @@ template <class K> void SmoothStep<K>::attempt(const RigidSystem<K>& s, double h
 			stray.clear();
 			unsteady = true;
 		}
-		if (!first && !gives && gain <= tolerance::rigid::spinEnergy * weight) break;
+		if (!first && !surprised && !gives && gain <= tolerance::rigid::spinEnergy * weight) break;
 		guesses.clear();
 		for (const ContactRows<K>& rows : solver.points)
 			guesses.push_back(rows.impulse);

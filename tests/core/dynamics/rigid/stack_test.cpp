@@ -1,6 +1,7 @@
 // Stacks: rest, mass ratios, a base pulse under both impact laws, thresholds of uplift and sliding.
 #include "core/dynamics/rigid/rigid_rig.hpp"
 #include <catch2/catch.hpp>
+#include <tuple>
 
 using namespace rig;
 
@@ -88,16 +89,19 @@ TEST_CASE("Two blocks after a base pulse, simultaneous and sequential impacts")
 	CHECK((fine.cwiseAbs() - known.cwiseAbs()).norm() < (together ? 3e-7 : 2e-5));
 }
 
-TEST_CASE("Five blocks topple without a failure or a gain of energy")
+// Five topple; of the taller columns the first block jams under the others as soon as the base slides below it, and all come apart.
+TEST_CASE("Columns under a base pulse come apart without a failure or a gain of energy")
 {
+	const auto [n, pulse, end] = GENERATE(std::tuple(5, 0., 1.5), std::tuple(10, 0.01, 0.3), std::tuple(20, 0.01, 0.04));
+	CAPTURE(n);
 	ScheduledMotion motion;
-	motion.append({ 0, 0.6 });
-	auto s = stack(5, 0.25, 0.5, 0.7, 0.7);
+	motion.append({ pulse, 0.6 });
+	auto s = stack(n, 0.25, 0.5, 0.7, 0.7);
 	moveBase(s, motion);
 	RigidStep<Plane> step;
 	double           before = energy(s), rise = 0;
 	bool             sound = true;
-	while (s.time < 1.5) {
+	while (s.time < end) {
 		const double work = s.baseWork;
 		const auto   report = step.advance(s, 1e-3);
 		sound = sound && !report.diverged && report.converged;
@@ -105,7 +109,7 @@ TEST_CASE("Five blocks topple without a failure or a gain of energy")
 		before = energy(s);
 	}
 	CHECK(sound);
-	CHECK(rise < 2e-9 * overturningEnergy(s.bodies[1])); // of one block; set after 1.05e-9 was seen
+	CHECK(rise < 2e-9 * overturningEnergy(s.bodies[1])); // of one block; set after 1.7e-9 was seen
 }
 
 namespace {
