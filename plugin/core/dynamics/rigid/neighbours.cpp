@@ -1,7 +1,6 @@
 #include "dynamics/rigid/neighbours.hpp"
 #include <algorithm>
 #include <numeric>
-#include <tuple>
 
 namespace masonry::rigid {
 
@@ -49,9 +48,9 @@ int widestAxis(const std::vector<Bounds<K>>& all)
 }
 
 template <class K>
-bool isBefore(const ContactPair<K>& a, const ContactPair<K>& b)
+std::array<int, 2> bodiesOf(const ContactPair<K>& pair)
 {
-	return std::tie(a.body1, a.body2) < std::tie(b.body1, b.body2);
+	return {pair.body1, pair.body2};
 }
 
 } // namespace
@@ -79,30 +78,32 @@ void Neighbours<K>::findPairs(const RigidSystem<K>& system)
 	const int axis = widestAxis(enlarged);
 	std::sort(order.begin(), order.end(), [&](int a, int b) { return enlarged[a].low[axis] < enlarged[b].low[axis]; });
 
-	pairs.clear();
+	near.clear();
 	for (auto first = order.begin(); first != order.end(); ++first)
 		for (auto second = first + 1; second != order.end() && enlarged[*second].low[axis] <= enlarged[*first].high[axis]; ++second) {
 			const auto [body1, body2] = std::minmax(*first, *second);
-			if (overlap(enlarged[body1], enlarged[body2]) && !(system.bodies[body1].prescribed && system.bodies[body2].prescribed)) {
-				ContactPair<K>& pair = pairs.emplace_back();
-				pair.body1 = body1;
-				pair.body2 = body2;
-			}
+			if (overlap(enlarged[body1], enlarged[body2]) && !(system.bodies[body1].prescribed && system.bodies[body2].prescribed))
+				near.push_back({body1, body2});
 		}
-	std::sort(pairs.begin(), pairs.end(), &isBefore<K>);
+	std::sort(near.begin(), near.end());
 }
 
 template <class K>
 void Neighbours<K>::keepStates(const std::vector<ContactPair<K>>& old)
 {
+	pairs.clear();
 	auto before = old.begin();
-	for (auto& pair : pairs) {
-		while (before != old.end() && isBefore(*before, pair))
+	for (const auto& bodies : near) {
+		while (before != old.end() && bodiesOf(*before) < bodies)
 			++before;
-		if (before != old.end() && !isBefore(pair, *before))
-			pair = *before;
-		else
-			newPair(pair);
+		if (before != old.end() && bodiesOf(*before) == bodies) {
+			pairs.push_back(*before);
+			continue;
+		}
+		ContactPair<K>& pair = pairs.emplace_back();
+		pair.body1 = bodies[0];
+		pair.body2 = bodies[1];
+		newPair(pair);
 	}
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 // Which boxes are near each other.
 #include "dynamics/rigid/rigid_system.hpp"
+#include <array>
 #include <functional>
 #include <vector>
 
@@ -47,7 +48,8 @@ private:
 	double margin;
 	NewPair newPair;
 	std::vector<Bounds<K>> enlarged;
-	std::vector<int> order; // of bodies along the axis of the sweep
+	std::vector<int> order;               // of bodies along the axis of the sweep
+	std::vector<std::array<int, 2>> near; // bodies of the pairs
 	std::vector<ContactPair<K>> pairs;
 };
 
