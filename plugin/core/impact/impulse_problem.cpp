@@ -57,17 +57,6 @@ namespace {
 		Vector velocity() const { return G * p + free; }
 	};
 
-	Matrix3 frame(const Vector3& normal)
-	{
-		int smallest;
-		normal.cwiseAbs().minCoeff(&smallest);
-		Matrix3 axes;
-		axes.row(0) = normal;
-		axes.row(1) = normal.cross(Vector3(Vector3::Unit(smallest))).normalized();
-		axes.row(2) = normal.cross(Vector3(axes.row(1)));
-		return axes;
-	}
-
 	Vector3 relativeVelocity(const std::vector<Body>& bodies, const ImpulsePoint& point)
 	{
 		return bodies[point.body2].velocityAt(point.position) - bodies[point.body1].velocityAt(point.position) + point.bias;
@@ -111,16 +100,6 @@ namespace {
 		return sum;
 	}
 
-	// Longest arm of a point about a free body.
-	double longestArm(const std::vector<Body>& bodies, const std::vector<ImpulsePoint>& points)
-	{
-		double longest = 0;
-		for (const auto& point : points)
-			for (int b : { point.body1, point.body2 })
-				if (!bodies[b].prescribed) longest = std::max(longest, (point.position - bodies[b].pose.position).norm());
-		return longest;
-	}
-
 	template <int most>
 	System<most>::System(const std::vector<Body>& bodies, const std::vector<ImpulsePoint>& given, const std::vector<CoupleRow>& couples)
 	        : nPoints(int(given.size()))
@@ -132,7 +111,7 @@ namespace {
 		rows.resize(n);
 		free.resize(n);
 		for (int i = 0; i < nPoints; ++i) {
-			points.push_back({ given[i].friction, given[i].holds ? State::stick : State::open, frame(given[i].normal) });
+			points.push_back({ given[i].friction, given[i].holds ? State::stick : State::open, axesAlong(given[i].normal) });
 			addSides(&rows[3 * i], bodies, given[i], points[i].axes);
 			free.template segment<3>(3 * i) = points[i].axes * relativeVelocity(bodies, given[i]);
 		}
@@ -383,6 +362,26 @@ namespace {
 	}
 
 } // namespace
+
+Matrix3 axesAlong(const Vector3& normal)
+{
+	int smallest;
+	normal.cwiseAbs().minCoeff(&smallest);
+	Matrix3 axes;
+	axes.row(0) = normal;
+	axes.row(1) = normal.cross(Vector3(Vector3::Unit(smallest))).normalized();
+	axes.row(2) = normal.cross(Vector3(axes.row(1)));
+	return axes;
+}
+
+double longestArm(const std::vector<Body>& bodies, const std::vector<ImpulsePoint>& points)
+{
+	double longest = 0;
+	for (const auto& point : points)
+		for (int b : { point.body1, point.body2 })
+			if (!bodies[b].prescribed) longest = std::max(longest, (point.position - bodies[b].pose.position).norm());
+	return longest;
+}
 
 ImpulseReport solveImpulses(std::vector<Body>& bodies, std::vector<ImpulsePoint>& points, std::vector<CoupleRow>& couples)
 {

@@ -49,6 +49,11 @@ struct ImpulseReport {
 // Finds the impulses and changes the bodies' velocities. Prescribed bodies keep theirs.
 using ImpulseSolver = std::function<ImpulseReport(std::vector<Body>&, std::vector<ImpulsePoint>&, std::vector<CoupleRow>&)>;
 
+// Rows: the unit normal, then two unit tangents.
+Matrix3 axesAlong(const Vector3& normal);
+// Of a point about a free body, m: the length that makes velocities of spins.
+double longestArm(const std::vector<Body>& bodies, const std::vector<ImpulsePoint>& points);
+
 // One dense problem of all points: for few.
 ImpulseReport solveImpulses(std::vector<Body>& bodies, std::vector<ImpulsePoint>& points, std::vector<CoupleRow>& couples);
 

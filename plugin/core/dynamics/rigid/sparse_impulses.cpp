@@ -47,28 +47,9 @@ namespace {
 
 	// The normal, then one or two tangents.
 	Eigen::Matrix2d frame(const Vector2& normal) { return (Eigen::Matrix2d() << normal.x(), normal.y(), -normal.y(), normal.x()).finished(); }
-	Matrix3 frame(const Vector3& normal)
-	{
-		int smallest;
-		normal.cwiseAbs().minCoeff(&smallest);
-		Matrix3 axes;
-		axes.row(0) = normal;
-		axes.row(1) = normal.cross(Vector3(Vector3::Unit(smallest))).normalized();
-		axes.row(2) = normal.cross(Vector3(axes.row(1)));
-		return axes;
-	}
+	Matrix3 frame(const Vector3& normal) { return axesAlong(normal); }
 	Vector3 global(const Vector2& v) { return { v.x(), v.y(), 0 }; }
 	Vector3 global(const Vector3& v) { return v; }
-
-	// Longest arm of a point about a free body, the length that makes velocities of spins.
-	double longestArm(const std::vector<masonry::Body>& bodies, const std::vector<ImpulsePoint>& points)
-	{
-		double longest = 0;
-		for (const ImpulsePoint& point : points)
-			for (int b : { point.body1, point.body2 })
-				if (!bodies[b].prescribed) longest = std::max(longest, (point.position - bodies[b].pose.position).norm());
-		return longest;
-	}
 
 	// What counts as zero, m/s: a share of the approach, and round-off of the velocities and of impulses that carry the momentum of all bodies.
 	template <class K> double zeroSpeed(const ContactSolver<K>& solver)
