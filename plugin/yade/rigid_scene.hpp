@@ -151,7 +151,10 @@ public:
 		system.settings.merged = integrator.mergedClosing;
 		system.settings.mostEvents = integrator.mostEvents;
 		system.settings.order = integrator.sequential ? masonry::rigid::ImpactOrder::sequential : masonry::rigid::ImpactOrder::simultaneous;
-		if (integrator.isWall() != byWalls) system.moved = system.fresh = true;
+		if (integrator.isWall() != byWalls) {
+			system.moved = true;
+			system.startAnew();
+		}
 		if (integrator.isWall() && lawsChanged) system.moved = true;
 		lawsChanged = false;
 		byWalls = integrator.isWall();
@@ -373,7 +376,8 @@ private:
 		if (!touched) return;
 		for (Pair& pair : system.pairs)
 			if (pair.size < 0) meet(pair);
-		system.moved = system.fresh = true;
+		system.moved = true;
+		system.startAnew();
 	}
 
 	/// The points of a pair that nothing is known of: in touch where they are, and do not approach each other.
