@@ -1,6 +1,6 @@
 """The wall in this plugin: `yade -n -x yade_masonry.py '<JSON>'`; prints one JSON line for each phase.
 
-courses, per_course, amplitude (g), rest, shaking (s); model, restitution (null: natural), dt, tolerance (null: as dem.engines() chooses).
+courses, per_course, amplitude (g), rest, shaking (s); model, restitution (null: natural), dt, tolerance (null: as dem.engines() chooses), strict (forces).
 """
 import hashlib
 import json
@@ -27,6 +27,7 @@ motion = dem.RecordMotionEngine(ids=[base], samples=list(samples), interval=1 / 
 O.engines = dem.engines(motion, model=case.get("model", "auto"), method="wall", dt=case.get("dt", 1e-3), tolerance=case.get("tolerance"))
 integrator = O.engines[-1]
 integrator.ompThreads = case.get("threads", 1)
+integrator.strictForces = case.get("strict", False)
 
 
 def places():
@@ -48,7 +49,7 @@ for phase in ("rest", "shaking"):
         continue
     modes = integrator.stillSteps, integrator.movingSteps
     steps, excursion, rise, lost, cpu, wall, deepest = round(case[phase] / O.dt), 0, 0, losses(), 0, 0, 0
-    first = lost
+    first, solved = lost, integrator.sweeps
     # Energy and excursion are looked at on the way where the wall moves only.
     sample = max(1, round(0.01 / O.dt)) if case.get("fine") else max(1, round(0.1 / O.dt)) if case["amplitude"] > 0.7 and phase == "shaking" else steps
     for k in range(0, steps, sample):
@@ -65,5 +66,6 @@ for phase in ("rest", "shaking"):
     bits = hashlib.sha256(np.array([x for i in ids for v in (O.bodies[i].state.pos, O.bodies[i].state.vel) for x in v]).tobytes()).hexdigest()[:12]
     print(json.dumps(dict(case, phase=phase, blocks=len(ids), cpu=cpu / case[phase], wall=wall / case[phase], drift=1e3 * float(np.linalg.norm(moved[:, :2], axis=1).max()),
                           sink=1e3 * float(sink - sunk), excursion=float(excursion), deepest=float(deepest), still=integrator.stillSteps - modes[0], moving=integrator.movingSteps - modes[1],
-                          impacts=len(integrator.impactTimes), rise=float(rise), lost=float(lost - first), work=integrator.baseWork, memory=memory, bits=bits)), flush=True)
+                          impacts=len(integrator.impactTimes), solves=integrator.sweeps - solved, velocityResidual=integrator.velocityResidual,
+                          forceResidual=integrator.forceResidual, rise=float(rise), lost=float(lost - first), work=integrator.baseWork, memory=memory, bits=bits)), flush=True)
     sunk = sink

@@ -191,23 +191,23 @@ void WallStep<K>::substeps(RigidSystem<K>& s, double h)
 	const double part = h / count, start = s.time;
 	contacts.setUnit(part);
 	setLoads(s, part);
-	soft.begin(contacts);
+	moving.begin(contacts);
 	joints.find(s, contacts, part);
 	for (int k = 0; k < count; ++k) {
 		s.time = start + k * part;
 		setBase(s, part);
 		report.events += land(s, part);
-		soft.substep(contacts, loads, part, k + 1 == count);
+		moving.substep(contacts, loads, part, k + 1 == count);
 		s.baseWork += baseWork(s);
 		setBase(s, part);
 	}
 	joints.release(contacts);
-	lift.settle(contacts, soft.shift);
+	lift.settle(contacts, moving.shift);
 	s.time = start;
 	report.substeps += count;
-	report.velocityResidual = std::max(report.velocityResidual, soft.report.residual);
-	report.forceResidual = std::max(report.forceResidual, soft.report.residual);
-	shift = soft.shift;
+	report.velocityResidual = std::max(report.velocityResidual, moving.report.residual);
+	report.forceResidual = std::max(report.forceResidual, moving.report.residual);
+	shift = moving.shift;
 }
 
 // What the courses miss of each other falls as the square of the substep.
@@ -349,7 +349,7 @@ void WallStep<K>::choose(const RigidSystem<K>& s, double h)
 		m.patience = std::max(m.patience, shortest);
 		m.stay = -1;
 	}
-	m.quiet = soft.report.motion <= restSpeed(s, contacts.length) ? m.quiet + h : 0;
+	m.quiet = moving.report.motion <= restSpeed(s, contacts.length) ? m.quiet + h : 0;
 	if (m.quiet < m.patience)
 		return;
 	m.mode = WallMode::still;

@@ -2,7 +2,7 @@
 // The step of many rigid blocks, in a plane or in space: walls.
 //
 // While nothing moves against its neighbour, a step is solved for all contacts at once with a factorisation that is kept (kept_factor.hpp:
-// mode `still`); when something does, in soft substeps (soft_substeps.hpp: mode `moving`). A step that the first cannot solve is taken back
+// mode `still`); when something does, in substeps (substeps.hpp: mode `moving`). A step that the first cannot solve is taken back
 // and done by the second. Back it goes when every relative velocity has been at rest level for a while; a stay that ends soon doubles that
 // while.
 //
@@ -10,7 +10,7 @@
 #include "dynamics/wall/kept_factor.hpp"
 #include "dynamics/wall/lift.hpp"
 #include "dynamics/wall/rocking_joints.hpp"
-#include "dynamics/wall/soft_substeps.hpp"
+#include "dynamics/wall/substeps.hpp"
 
 namespace masonry::rigid {
 
@@ -88,7 +88,7 @@ private:
 	Memory memoryOfModes;
 	wall::WallContacts<K> contacts;
 	wall::KeptFactor<K> kept, quick {quickSoftness};
-	wall::SoftSubsteps<K> soft;
+	wall::Substeps<K> moving;
 	wall::Lift<K> lift;
 	wall::RockingJoints<K> joints;
 	wall::LaneArray loads, shift;

@@ -17,20 +17,20 @@
 
 namespace masonry::rigid::wall {
 
-struct SoftReport {
+struct SubstepReport {
 	double residual {0}; // largest change of an impulse by the last sweep, as the velocity that it gives its point, m/s
 	double motion {0};   // largest relative velocity of a point, closed or open, m/s
 };
 
 template <class K>
-class SoftSubsteps {
+class Substeps {
 public:
 	// From the contacts' velocities; `load` is the change of velocity in a substep by external forces, per body. Leaves velocities and
 	// the impulses of the last substep in the contacts.
 	void begin(WallContacts<K>& contacts);
 	void substep(WallContacts<K>& contacts, const LaneArray& load, double s, bool isLast);
 
-	SoftReport report; // of the last substep of the step
+	SubstepReport report; // of the last substep of the step
 	LaneArray shift;   // how far the bodies have moved since begin(); components as of velocities
 
 private:

@@ -1,4 +1,4 @@
-#include "dynamics/wall/soft_substeps.hpp"
+#include "dynamics/wall/substeps.hpp"
 #include <algorithm>
 #include <cmath>
 
@@ -163,7 +163,7 @@ MASONRY_SWEEPS(Space)
 } // namespace
 
 template <class K>
-void SoftSubsteps<K>::begin(WallContacts<K>& c)
+void Substeps<K>::begin(WallContacts<K>& c)
 {
 	const Lanes onlyMass {0, 0, 0, 1};
 	shift.assign(c.velocity.size(), all(0));
@@ -179,7 +179,7 @@ void SoftSubsteps<K>::begin(WallContacts<K>& c)
 
 // The seam goes first where a loop is over bodies, since the parts read those of the seam, and last where it is over contacts.
 template <class K>
-void SoftSubsteps<K>::substep(WallContacts<K>& c, const LaneArray& load, double s, bool isLast)
+void Substeps<K>::substep(WallContacts<K>& c, const LaneArray& load, double s, bool isLast)
 {
 	const Lanes noMass {1, 1, 1, 0};
 	Group<K>* groups = c.groups.data();
@@ -230,7 +230,7 @@ void SoftSubsteps<K>::substep(WallContacts<K>& c, const LaneArray& load, double 
 	}
 }
 
-template class SoftSubsteps<Plane>;
-template class SoftSubsteps<Space>;
+template class Substeps<Plane>;
+template class Substeps<Space>;
 
 } // namespace masonry::rigid::wall
