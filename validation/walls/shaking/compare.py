@@ -78,6 +78,10 @@ def run(build, quick):
     for restitution in (0.5, 0.9):
         rows += ours(SMALL, 0.3, 2, 2, restitution=restitution) + ours(SMALL, 1.0, 0, 2, restitution=restitution)
         rows += ours(LARGE, 0.3, 1, 1, restitution=restitution) + ours(LARGE, 1.0, 0, 1, restitution=restitution)
+    print("Strict forces")
+    for size, seconds in ((SMALL, 1), (LARGE, 0.2)):
+        for strict in (False, True):
+            rows += ours(size, 0.3, 0, seconds, strict=strict, role="forces " + ("strict" if strict else "as they come"))
     print("In space")
     rows += ours(SMALL, 0.3, 2, 2, model="spatial") + ours(SMALL, 1.0, 0, 2, model="spatial")
     rows += ours(LARGE, 0.3, 0.5, 0.5, model="spatial") + ours(LARGE, 1.0, 0, 0.5, model="spatial")
@@ -182,7 +186,7 @@ def main():
     RESULTS.mkdir(exist_ok=True)
     if not arguments.quick:
         (RESULTS / "shaken_walls.json").write_text(json.dumps(rows, indent=0))
-        fields = ["solver", "blocks", "amplitude", "phase", "role", "threads", "dt", "tolerance", "cpu", "wall", "drift", "sink", "excursion", "still", "moving", "impacts", "rise", "lost",
+        fields = ["solver", "blocks", "amplitude", "phase", "role", "threads", "dt", "tolerance", "cpu", "wall", "drift", "sink", "excursion", "still", "moving", "impacts", "solves", "velocityResidual", "forceResidual", "rise", "lost",
                   "memory", "bits"]
         with open(RESULTS / "shaken_walls.csv", "w", newline="") as out:
             writer = csv.DictWriter(out, fields, extrasaction="ignore")
@@ -196,6 +200,10 @@ def main():
         modes = f"{r['still']} / {r['moving']}" if "still" in r else "-"
         print(f"| {r['solver']} | {r['blocks']} | {motion} | {r['cpu']:.3g} | {r['drift']:.2g} | {r['sink']:.2g} | {modes} | {r['memory']:.0f} |" if "memory" in r else
               f"| {r['solver']} | {r['blocks']} | {motion} | {r['cpu']:.3g} | {r['drift']:.2g} | {r['sink']:.2g} | - | - |")
+    print("\n| blocks | forces | solves per step | velocity residual (m/s) | force residual (m/s) | CPU s per s |\n" + "| --- " * 6 + "|")
+    for r in rows:
+        if (r.get("role") or "").startswith("forces"):
+            print(f"| {r['blocks']} | {r['role'][7:]} | {r['solves'] / r['still']:.3g} | {r['velocityResidual']:.1e} | {r['forceResidual']:.1e} | {r['cpu']:.3g} |")
     lines = verdicts(rows)
     print("\n| what | asked | reached | |\n| --- | --- | --- | --- |")
     for what, asked, reached, holds in lines:

@@ -1,7 +1,7 @@
 #include "dynamics/wall/lift.hpp"
 #include "tolerances.hpp"
 #include <algorithm>
-#include <cmath>
+#include <array>
 
 namespace masonry::rigid::wall {
 
@@ -10,6 +10,14 @@ namespace {
 constexpr int sweeps = 12;
 constexpr double perCourse = 6;    // 1/m' of a block over that of the one below it
 constexpr int highestCourse = 100; // that is told from those below it: the numbers must not overflow
+
+std::array<double, highestCourse + 1> sharesOfCourses()
+{
+	std::array<double, highestCourse + 1> result {1};
+	for (int course = 1; course <= highestCourse; ++course)
+		result[course] = perCourse * result[course - 1];
+	return result;
+}
 
 template <class K>
 MASONRY_INLINE Lanes prepareGroups(const Group<K>* groups, typename Lift<K>::Points* points, int begin, int end, const Lanes* moved,
@@ -82,11 +90,12 @@ MASONRY_LIFT(Space)
 template <class K>
 void Lift<K>::settle(WallContacts<K>& c, LaneArray& shift)
 {
+	static const auto share = sharesOfCourses();
 	points.resize(c.groups.size());
 	moved.assign(c.velocity.size(), all(0));
 	for (size_t b = 0; b < c.course.size(); ++b)
 		for (int pack = 0; pack < packs<K>; ++pack)
-			moved[packs<K> * b + pack][3] = c.velocity[packs<K> * b][3] * std::pow(perCourse, std::clamp(c.course[b], 0, highestCourse));
+			moved[packs<K> * b + pack][3] = c.velocity[packs<K> * b][3] * share[std::clamp(c.course[b], 0, highestCourse)];
 	if (!anyDeep(c.groups.data(), points.data(), int(c.groups.size()), moved.data(), c.length))
 		return;
 	const Lanes noMass {1, 1, 1, 0};
