@@ -211,6 +211,11 @@ private:
 		++(still ? integrator.stillSteps : integrator.movingSteps);
 		integrator.velocityResidual = wall.report.velocityResidual;
 		integrator.forceResidual = wall.report.forceResidual;
+		if (!still && wall.report.courses > mostCourses && !warnedOfCourses) {
+			warnedOfCourses = true;
+			LOG_WARN("blocks of a wall of " << wall.report.courses << " courses move from t = " << scene.time << " s on: substeps carry loads a course a sweep, and above "
+				<< mostCourses << " courses walls sway by millimetres too much; a smaller MoreauJeanIntegrator.tolerance takes more of them.");
+		}
 		return report;
 	}
 
@@ -543,6 +548,8 @@ private:
 	static constexpr Real clearlyApart = 2e-2;
 	/// Margin of the list of pairs, relative to the smallest half size. Larger: more pairs; smaller: the list is made anew more often.
 	static constexpr Real searchMargin = 0.1;
+	/// Courses of a wall up to which its moving mode is measured to be right (validation/walls/shaking).
+	static constexpr int mostCourses = 64;
 	/// Steps of a wall after which O.interactions are written even if nobody seems to look.
 	static constexpr int mostUnshown = 64;
 
@@ -552,7 +559,7 @@ private:
 	System system;
 	masonry::rigid::RigidStep<K> stepper;
 	masonry::rigid::WallStep<K> wall;
-	bool byWalls = false, lawsChanged = false;
+	bool byWalls = false, lawsChanged = false, warnedOfCourses = false;
 	int unshown = 1; // steps since the interactions were written
 	std::unique_ptr<masonry::rigid::Neighbours<K>> neighbours;
 	vector<MotionDrive> drives;

@@ -46,6 +46,8 @@ def peer(program, size, amplitude, rest, shaking, **environment):
     rows = []
     for line in done.stdout.splitlines():
         solver, phase, blocks, cpu, drift, sink, excursion = line.split(",")
+        if phase == "rest" and not rest:
+            continue
         rows.append(dict(solver=solver, phase={"shaken": "shaking"}.get(phase, phase), blocks=int(blocks), amplitude=amplitude, cpu=float(cpu), drift=float(drift),
                          sink=float(sink), excursion=float(excursion), rest=rest, shaking=shaking))
         print(f"  {solver:32} {blocks:>6} blocks {amplitude:4} g {rows[-1]['phase']:8} {float(cpu):.4f} CPU s/s  drift {float(drift):.2e} mm  sink {float(sink):.1e} mm", flush=True)

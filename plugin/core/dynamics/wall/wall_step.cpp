@@ -75,6 +75,7 @@ StepReport WallStep<K>::advance(RigidSystem<K>& s, double dt)
 	}
 	report.residual = std::max(report.velocityResidual, report.forceResidual);
 	report.sweeps = report.solves;
+	report.courses = contacts.depth;
 	return report;
 }
 

@@ -27,6 +27,7 @@ enum class WallMode { still, moving };
 struct WallReport : StepReport {
 	WallMode mode {WallMode::moving};
 	bool switched {false};
+	int courses {0};             // blocks one upon another, at most
 	int solves {0};              // of the still mode
 	double velocityResidual {0}; // m/s
 	double forceResidual {0};    // error of impulses, as the velocity that it gives the point, m/s
