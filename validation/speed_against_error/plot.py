@@ -26,7 +26,7 @@ def figure(path, rows, machine):
     for row in rows:
         if math.isfinite(row.peak_error):
             series.setdefault(row.series, []).append(row)
-    used = {}
+    used, below = {}, 0
     for name, members in series.items():
         solver = members[0].solver
         colour, marker = STYLE.get(solver, ("grey", "x"))
@@ -36,7 +36,8 @@ def figure(path, rows, machine):
         axes.plot([row.cpu for row in members], errors, line, color=colour, marker=marker, markersize=5, label=name)
         for row in members:
             if row.peak_error < FLOOR:
-                axes.annotate(f"in truth at {row.peak_error:.0e}", (row.cpu, FLOOR), (8, 6), textcoords="offset points")
+                axes.annotate(f"in truth at {row.peak_error:.0e}", (row.cpu, FLOOR), (8, 6 + 11 * below), textcoords="offset points", fontsize=8)
+                below += 1
     axes.set(xscale="log", yscale="log", xlabel="CPU seconds per simulated second, one block", ylabel="worst relative error of peaks 1 to 5")
     axes.set_ylim(bottom=FLOOR / 1.5)
     axes.grid(True, which="major", alpha=0.4)
