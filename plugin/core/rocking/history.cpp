@@ -176,7 +176,7 @@ void HistoryRun::flyForced(const BaseMotion::Piece& piece, double until)
 				rising /= 2;
 			above = root(velocity, rising, length);
 			notePeak(step.angle(above), time_ + above);
-		} else if (state_.velocity < 0 && endVelocity > 0) {
+		} else if (step.firstChange() < 0 && endVelocity > 0) {
 			const double lowest = root(velocity, 0, length);
 			if (step.angle(lowest) <= 0)
 				below = lowest;

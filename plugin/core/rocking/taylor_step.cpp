@@ -37,6 +37,8 @@ TaylorStep::TaylorStep(const RockingLaw& law, const RockingState& state, const B
 	c_[0] = state.angle;
 	c_[1] = state.velocity;
 	expand(law, state.side, a, terms, longest);
+	while (!turnsOnce(length_))
+		length_ /= 2;
 }
 
 // With S = sin(phi), C = cos(phi), phi = alpha - u and X_k the k-th Taylor coefficient of X:
@@ -92,6 +94,41 @@ bool TaylorStep::convergesAt(double s, double power) const
 	const double change = s * (std::abs(c_[1]) + s * (std::abs(c_[2]) + s * std::abs(c_[3])));
 	const double last = power * std::max(std::abs(c_[order_ - 1]), s * std::abs(c_[order_]));
 	return last <= std::numeric_limits<double>::epsilon() * change;
+}
+
+// Certain where the first term of the velocity outweighs the others, or that of the acceleration. Else the roots of the velocity
+// in (0, s) are at most as many as its Bernstein coefficients over [0, s] change their sign (Descartes' rule): of a polynomial
+// sum_i a_i x^i of degree n they are b_j = sum_i binomial(j, i)/binomial(n, i) a_i s^i.
+bool TaylorStep::turnsOnce(double s) const
+{
+	const int n = order_ - 1;
+	Series b;
+	b[0] = c_[1];
+	double others = 0, bends = 0, power = s;
+	for (int i = 1; i <= n; i++, power *= s) {
+		b[i] = (i + 1) * c_[i + 1] * power;
+		others += std::abs(b[i]);
+		bends += i * std::abs(b[i]);
+	}
+	if (std::abs(b[0]) >= others || 2 * std::abs(b[1]) >= bends)
+		return true;
+	const double roundOff = std::numeric_limits<double>::epsilon() * (std::abs(b[0]) + others);
+	double share = 1; // 1/binomial(n, i)
+	for (int i = 1; i <= n; i++) {
+		share *= i * inverse[n + 1 - i];
+		b[i] *= share;
+	}
+	for (int i = 1; i <= n; i++)
+		for (int j = n; j >= i; j--)
+			b[j] += b[j - 1];
+	int changes = 0;
+	double last = 0;
+	for (int j = 0; j <= n; j++)
+		if (std::abs(b[j]) > roundOff) {
+			changes += b[j] * last < 0;
+			last = b[j];
+		}
+	return changes <= 1;
 }
 
 double TaylorStep::angle(double s) const

@@ -20,11 +20,12 @@ public:
 	// Expands about time t, valid for at most `longest` seconds (finite). No kink of the motion may lie inside.
 	TaylorStep(const RockingLaw&, const RockingState&, const BaseMotion::Piece&, double t, double longest);
 
-	double length() const { return length_; } // s, <= longest: the polynomial is exact to round-off up to here
-	double angle(double s) const;             // u, s seconds after t
-	double velocity(double s) const;          // u'
-	double acceleration(double s) const;      // u''
-	double firstChange() const;               // sign of the motion just after t: u', or u'' where u' = 0, or u'''
+	// s, <= longest. Up to here the polynomial is exact to round-off, and the velocity changes its sign once at most.
+	double length() const { return length_; }
+	double angle(double s) const;        // u, s seconds after t
+	double velocity(double s) const;     // u'
+	double acceleration(double s) const; // u''
+	double firstChange() const;          // sign of the motion just after t: u', or u'' where u' = 0, or u'''
 
 private:
 	static constexpr int highestOrder = 24;
@@ -32,6 +33,7 @@ private:
 
 	void expand(const RockingLaw&, int side, const Series& acceleration, int accelerationTerms, double longest);
 	bool convergesAt(double s, double power) const; // power = s^(order - 1)
+	bool turnsOnce(double s) const;                 // at most
 	Series c_;
 	int order_;
 	double length_;
