@@ -1,15 +1,12 @@
 #pragma once
-// Reference for rocking under any base acceleration: Runge-Kutta-Fehlberg 7(8) of Boost.Odeint with small fixed steps in
-// 64-bit mantissa, in phi = alpha - |angle|; the impact is found by repeating the last step with a shorter length.
-#include <array>
-#include <boost/numeric/odeint/stepper/runge_kutta_fehlberg78.hpp>
+// Reference for rocking under any base acceleration: small fixed steps of Runge-Kutta-Fehlberg 7(8) in phi = alpha - |angle|;
+// the impact is found by repeating the last step with a shorter length.
+#include "oracle/runge_kutta.hpp"
+#include <algorithm>
 #include <cmath>
-#include <functional>
 #include <vector>
 
 namespace oracle {
-
-using Long = long double;
 
 struct ForcedHistory {
 	std::vector<Long> impactTimes, impactVelocities, peaks; // unsigned
@@ -68,16 +65,12 @@ public:
 	}
 
 private:
-	using State = std::array<Long, 2>; // phi, phi'
-
 	State advanced(Long length)
 	{
-		State x = state_;
 		const auto equation = [this](const State& y, State& rate, Long t) {
 			rate = {y[1], p2_ * (std::sin(y[0]) + side_ * acceleration_(interval_, t) / g_ * std::cos(y[0]))};
 		};
-		boost::numeric::odeint::runge_kutta_fehlberg78<State, Long>().do_step(equation, x, time_, length);
-		return x;
+		return rungeKutta(equation, state_, time_, length);
 	}
 
 	// Longest step, up to `left`, after which the state still is as `holds` says; it holds after a short one.
@@ -97,7 +90,7 @@ private:
 	const Long g_, p2_, alpha_, restitution_;
 	const std::function<Long(size_t, Long)> acceleration_;
 	const int steps_;
-	State state_ {};
+	State state_ {}; // phi, phi'
 	int side_ = 0;
 	size_t interval_ = 0;
 	Long time_ = 0;

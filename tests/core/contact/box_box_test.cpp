@@ -232,7 +232,7 @@ TEST_CASE("Edge across edge: one point, normal to both edges, at any depth", "[e
 
 TEST_CASE("Vertex on face: the vertex itself is a point with its height", "[vertex]")
 {
-	const Quaternion onVertex = Quaternion::FromTwoVectors(Vector3(1, 1, 1), -zAxis);
+	const Quaternion onVertex = turn(pi - std::acos(1 / std::sqrt(3.)), Vector3(-1, 1, 0).normalized()); // (1, 1, 1) downwards
 	const auto patch = touch(base, basePose, cube, {{.1, .2, std::sqrt(.75) - 1e-4}, onVertex});
 	CHECK((patch.normal - zAxis).norm() < 1e-15);
 	CHECK(std::abs(at(patch, {.1, .2, -1e-4}).gap + 1e-4) < 1e-14);

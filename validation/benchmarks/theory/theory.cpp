@@ -38,11 +38,11 @@ HistoryOptions options(double restitution, Restoring restoring)
 }
 
 struct FreeReference { // the names of ForcedHistory
-	std::vector<oracle::Real> peaks, impactTimes;
+	std::vector<long double> peaks, impactTimes;
 	FreeReference(const oracle::Impacts& impacts) : peaks(impacts.peaks), impactTimes(impacts.times) {}
 };
 
-const oracle::Block reference(0.3, 1.5, 9.81);
+const oracle::Block reference {0.3, 1.5, 9.81};
 
 void freeRocking(benchmark::State& state, Restoring restoring, oracle::Moment moment)
 {

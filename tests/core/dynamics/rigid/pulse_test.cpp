@@ -45,7 +45,7 @@ TEST_CASE("The resonant pulse train gives the exact peaks, and the velocities of
 {
 	const double restitution = 0.7, impulse = 0.0125 * g;
 	const int    n = 30;
-	const auto   exact = oracle::pulseTrain(oracle::Block(b, a, g), oracle::Moment::Exact, restitution, impulse, n);
+	const auto   exact = oracle::pulseTrain({ b, a, g }, oracle::Moment::Exact, restitution, impulse, n);
 	ResonantTrain train(impulse);
 	auto          s = rockingBlock(b, a, 0, restitution);
 	moveBase(s, train);
@@ -86,7 +86,7 @@ public:
 		const oracle::Long step = 1e-3L;
 		while (time < end) {
 			const oracle::Long length = std::min(step, end - time);
-			State              next = advanced(length);
+			oracle::State      next = advanced(length);
 			oracle::Long       taken = length;
 			if (next[0] * side < 0) {
 				oracle::Long low = 0, high = length;
@@ -105,20 +105,16 @@ public:
 	}
 
 private:
-	using State = std::array<oracle::Long, 2>;
-
-	State advanced(oracle::Long length) const
+	oracle::State advanced(oracle::Long length) const
 	{
-		State      x = state;
-		const auto equation = [this](const State& y, State& rate, oracle::Long) { rate = { y[1], -p2 * std::sin(side * alpha - y[0]) }; };
-		boost::numeric::odeint::runge_kutta_fehlberg78<State, oracle::Long>().do_step(equation, x, oracle::Long(0), length);
-		return x;
+		const auto equation = [this](const oracle::State& y, oracle::State& rate, oracle::Long) { rate = { y[1], -p2 * std::sin(side * alpha - y[0]) }; };
+		return oracle::rungeKutta(equation, state, 0, length);
 	}
 
 	const oracle::Long restitution, R = std::sqrt(oracle::Long(a) * a + oracle::Long(b) * b), p2 = 3 * oracle::Long(g) / (4 * R),
 	                                alpha = std::atan(oracle::Long(b) / a);
-	State        state {};
-	oracle::Long side { 1 }, time { 0 };
+	oracle::State state {};
+	oracle::Long  side { 1 }, time { 0 };
 };
 
 } // namespace

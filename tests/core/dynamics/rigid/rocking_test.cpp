@@ -43,7 +43,7 @@ struct Error {
 Error freeRockingError(double h)
 {
 	const double a = 5 * b, start = 0.9 * std::atan(b / a);
-	const auto   exact = oracle::freeRocking(oracle::Block(b, a, g), oracle::Moment::Exact, 0.9, start, 16);
+	const auto   exact = oracle::freeRocking({ b, a, g }, oracle::Moment::Exact, 0.9, start, 16);
 	auto         s = rockingBlock(b, a, start, 0.9);
 	const auto   history = rock(s, h, double(exact.times[15]) + 0.1);
 	REQUIRE(history.peaks.size() >= 15);

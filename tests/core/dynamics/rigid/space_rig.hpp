@@ -39,6 +39,17 @@ inline System oneBox(const Vector3& half, const Pose& pose, double restitution, 
 	return s;
 }
 
+// The box as a block of the plane, of half width b: turned by angle > 0 about its edge, with the mass and the moment of inertia of the box.
+inline RigidSystem<Plane> inPlane(const RigidBody<Space>& box, double b, double angle, double restitution)
+{
+	const double a = box.halfSize.z();
+	auto s = emptyScene<Plane>();
+	addBlock(s, b, a, onEdge(b, a, angle, {-b, 0}), angle, box.mass);
+	s.bodies[1].inertia[0] = box.inertia.x();
+	addPair(s, 0, 1, restitution);
+	return s;
+}
+
 inline double energyOf(const System& s)
 {
 	double sum = s.kineticEnergy();

@@ -162,10 +162,7 @@ TEST_CASE("a square base tilted about its diagonal rocks as in the plane and kee
 			const Quaternion about = turn(yaw, Vector3::UnitZ());
 			const Vector3 towards = about * Vector3(b, b, 0);
 			System s = oneBox({b, b, a}, placed(turn(start, Vector3::UnitZ().cross(towards)) * about, {b, b, -a}, towards), restitution);
-			auto flat = emptyScene<Plane>();
-			addBlock(flat, half, a, onEdge(half, a, start, {-half, 0}), start, s.bodies[1].mass);
-			flat.bodies[1].inertia[0] = s.bodies[1].inertia.x();
-			addPair(flat, 0, 1, restitution);
+			auto flat = inPlane(s.bodies[1], half, start, restitution);
 			RigidStep<Plane> planar;
 			RigidStep<Space> spatial;
 			const double before = energyOf(s) - s.bodies[1].mass * g * a; // of motion, where all corners are down
