@@ -134,7 +134,7 @@ public:
 
 	// Takes over poses and velocities, looks up features where needed, and measures all points. True: other points than before.
 	bool measure(RigidSystem<K>& system);
-	// Impulses are those of a time h from now on. They never grow: an impact's would become a hundred.
+	// Impulses are those of a time h from now on; not many times the last, or an impact's would become as many.
 	void setUnit(double h);
 	// The means of the impulses are those that there are now.
 	void startMeans();
