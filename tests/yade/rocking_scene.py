@@ -79,6 +79,12 @@ def barrier(id, block):
     return O.bodies[id].state.mass * block.gravity * block.radius * (1 - math.cos(block.critical_angle))
 
 
+def steps(count):
+    """A short O.run(count, True), which looks every 40 ms only whether it has ended."""
+    for _ in range(count):
+        O.step()
+
+
 def run_impacts(count, t_end):
     """Runs until so many impacts have been counted, at most to t_end (s). Returns them all."""
     while len(dem.impacts()) < count and O.time < t_end:

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 from masonry import dem
-from rocking_scene import Balance, one_block, quiet_engines, run_impacts, stone
+from rocking_scene import Balance, one_block, quiet_engines, run_impacts, steps, stone
 from yade import (Bo1_Box_Aabb, Bo1_Sphere_Aabb, FrictMat, Ig2_Box_Sphere_ScGeom, InsertionSortCollider, InteractionLoop, Ip2_FrictMat_FrictMat_FrictPhys,
                   Law2_ScGeom_FrictPhys_CundallStrack, O, Quaternion, Vector3, utils)
 
@@ -134,7 +134,7 @@ def tilted_about_its_diagonal():
     balance = Balance()
     worst = 0
     for _ in range(40):
-        O.run(int(0.1 / O.dt), True)
+        steps(int(0.1 / O.dt))
         worst = max(worst, balance.error() / fall([block]))
         assert 0.85 < s.pos[2] < 0.95 and abs(s.pos[0]) < 0.1
     print(f"    impacts {len(dem.impacts())}, rest {s.pos - Vector3(0, 0, 0.9)}, speed {s.vel.norm():.1e}, energy grew by {worst:.1e}")
@@ -207,7 +207,7 @@ def overturning():
     balance = Balance()
     worst = 0
     for _ in range(60):
-        O.run(int(0.1 / O.dt), True)
+        steps(int(0.1 / O.dt))
         worst = max(worst, balance.error() / fall([block]))
     s = O.bodies[block].state
     print(f"    centre {s.pos}, angle {dem.angle(block)}, speed {s.vel.norm():.1e}, energy grew by {worst:.1e}, {dem.energy()}")

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 from masonry import dem
-from rocking_scene import Balance, Samples, barrier, one_block, rigid_engines
+from rocking_scene import Balance, Samples, barrier, one_block, rigid_engines, steps
 from yade import O, Quaternion, Vector3
 
 import masonry
@@ -49,7 +49,7 @@ for slenderness in (1, 2, 5, 12):
         balance = Balance()
         worst = 0
         for _ in range(20):
-            O.run(200, True)
+            steps(200)
             worst = max(worst, balance.error() / barrier(id, block))
         print(f"lambda {slenderness}, C {restitution}: {len(dem.impacts())} impacts, energy {worst:.1e}, failures {O.engines[1].failures}")
         assert worst <= 1e-6 and O.engines[1].failures == 0

@@ -38,7 +38,7 @@ def _is_plausible(multiplier):
 
 
 def _advance():
-    # In this thread: of thousands of short O.run(n, True), one sooner or later waits for ever.
+    # In this thread: O.run(n, True) looks every 40 ms only whether it has ended.
     for _ in range(_LOOK):
         O.step()
 
