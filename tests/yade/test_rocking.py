@@ -16,7 +16,7 @@ def rock(slenderness, restitution, half_cycles, penetration=1e-5, tilt=0.9):
     dem.tilt(id, tilt * block.critical_angle)
 
     O.engines = quiet_engines(penetration=penetration)
-    angles = Samples(lambda: dem.angle(id), 10)
+    angles = Samples(lambda: dem.angle(id), 50)
     exact = masonry.simulate(block, restitution=restitution, initial_angle=tilt * block.critical_angle, half_cycles=half_cycles)
     balance = Balance()
     impacts = run_impacts(half_cycles, 1.05 * exact.impact_times[-1])
