@@ -37,6 +37,8 @@ namespace {
 		Matrix3 axes;                              // rows: the normal and two tangents
 		Vector2 slipDirection { Vector2::Zero() }; // unit vector d of p_t while the point slips
 		double  slipTurn { 0 };                    // beta = mu p_n / |y_t|: how d turns with y_t
+		// Stiffness of the point's impulse against its own velocity, an upper bound: with r = 1/response the map below contracts.
+		double  response { 0 };
 	};
 
 	// Rows: three a point (normal, two tangents), then one a couple, each couple multiplied by a length so that all rows
@@ -126,11 +128,10 @@ namespace {
 		for (int r = 0; r < n; ++r)
 			for (int s = 0; s <= r; ++s)
 				G(r, s) = G(s, r) = coupling(rows[r], rows[s]);
+		for (int i = 0; i < nPoints; ++i)
+			points[i].response = G.template block<3, 3>(3 * i, 3 * i).trace();
 		p = Vector::Zero(n);
 	}
-
-	// Stiffness of one point's impulse against its own velocity, an upper bound: with r = 1/response the map below contracts.
-	template <int most> double response(const System<most>& s, int i) { return s.G.template block<3, 3>(3 * i, 3 * i).trace(); }
 
 	// Newton step: least-norm solution of the laws, linear for the present states. A slipping point obeys u_n = 0 and
 	//     p_t = mu p_n d(y_t),  y_t = p_t - r u_t,  d(y) = y/|y| ~ d + (1 - d d^T) y / |y_k|,
@@ -160,7 +161,7 @@ namespace {
 			if (point.state != State::slip) continue;
 			const Vector2&        d = point.slipDirection;
 			const Eigen::Matrix2d turn = point.slipTurn * (Eigen::Matrix2d::Identity() - d * d.transpose());
-			const double          stiffness = response(s, i); // 1/r: turns impulses into velocities, as in the other rows
+			const double          stiffness = point.response; // 1/r: turns impulses into velocities, as in the other rows
 			for (int l = 0; l < n; ++l)
 				A.template block<2, 1>(t, l) = (turn * A.template block<2, 1>(t, l)).eval();
 			b.template segment<2>(t) = (turn * b.template segment<2>(t)).eval();
@@ -179,10 +180,10 @@ namespace {
 	// Projection of p - r u on the friction cone of one point; also tells the state that it stands for.
 	template <int most> Vector3 project(const System<most>& s, int i, const Vector3& u, State& state)
 	{
-		const Vector3 y = s.p.template segment<3>(3 * i) - u / response(s, i);
+		const Vector3 y = s.p.template segment<3>(3 * i) - u / s.points[i].response;
 		state = State::open;
 		// Without slip the projection jumps where y_n changes sign: a point that just touches (C = 0) must not be held by round-off.
-		const double least = std::isinf(s.points[i].friction) ? s.noise / response(s, i) : 0;
+		const double least = std::isinf(s.points[i].friction) ? s.noise / s.points[i].response : 0;
 		if (!(y[0] > least)) return Vector3::Zero();
 		const double size = y.tail<2>().norm(), bound = s.points[i].friction * y[0];
 		state = size > bound ? State::slip : State::stick;
@@ -198,7 +199,7 @@ namespace {
 		for (int i = 0; i < s.nPoints; ++i) {
 			State         ignored;
 			const Vector3 step = s.p.template segment<3>(3 * i) - project(s, i, u.template segment<3>(3 * i), ignored);
-			worst = std::max(worst, step.norm() * response(s, i));
+			worst = std::max(worst, step.norm() * s.points[i].response);
 		}
 		return worst;
 	}
@@ -210,7 +211,7 @@ namespace {
 		for (int i = 0; i < s.nPoints; ++i) {
 			PointState&   point = s.points[i];
 			const Vector3 p = project(s, i, u.template segment<3>(3 * i), point.state);
-			const Vector2 y = s.p.template segment<2>(3 * i + 1) - u.template segment<2>(3 * i + 1) / response(s, i);
+			const Vector2 y = s.p.template segment<2>(3 * i + 1) - u.template segment<2>(3 * i + 1) / s.points[i].response;
 			if (point.state != State::slip || !(y.norm() > 0)) continue;
 			point.slipDirection = y.normalized();
 			point.slipTurn = p.tail<2>().norm() / y.norm();
@@ -297,17 +298,18 @@ namespace {
 		return report;
 	}
 
+	// G is symmetric, and its columns, not its rows, lie together in memory.
 	template <int most> int gaussSeidel(System<most>& s)
 	{
 		constexpr int maxSweeps = 4000, checkEvery = 20;
 		for (int sweep = 1; sweep <= maxSweeps; ++sweep) {
 			for (int i = 0; i < s.nPoints; ++i) {
 				State         ignored;
-				const Vector3 u = s.G.template middleRows<3>(3 * i) * s.p + s.free.template segment<3>(3 * i);
+				const Vector3 u = s.G.template middleCols<3>(3 * i).transpose() * s.p + s.free.template segment<3>(3 * i);
 				s.p.template segment<3>(3 * i) = project(s, i, u, ignored);
 			}
 			for (int row = 3 * s.nPoints; row < s.p.size(); ++row)
-				s.p[row] -= (s.G.row(row).dot(s.p) + s.free[row]) / s.G(row, row);
+				s.p[row] -= (s.G.col(row).dot(s.p) + s.free[row]) / s.G(row, row);
 			if (sweep % checkEvery == 0 && residual(s) <= target(s)) return sweep;
 		}
 		return maxSweeps;
