@@ -1,16 +1,11 @@
-#pragma once
-// Separation of two boxes by another way: the convex hull of the 64 differences of their corners, found by trying the
-// plane through every three of them. No axis, face or edge of a box is used.
-#include "contact/box_box.hpp"
+#include "oracle/minkowski.hpp"
 #include <vector>
 
 namespace oracle {
 
-using masonry::Box;
-using masonry::Pose;
-using masonry::Vector3;
+namespace {
 
-inline std::vector<Vector3> corners(const Box& box, const Pose& pose)
+std::vector<Vector3> corners(const Box& box, const Pose& pose)
 {
 	std::vector<Vector3> all;
 	for (double x : {-1., 1.})
@@ -20,12 +15,9 @@ inline std::vector<Vector3> corners(const Box& box, const Pose& pose)
 	return all;
 }
 
-struct Separation {
-	double value {-1e300}; // positive: the widest slab between the boxes; negative: minus the penetration depth
-	Vector3 normal;        // of that slab, from box 1 to box 2
-};
+} // namespace
 
-inline Separation separation(const Box& box1, const Pose& pose1, const Box& box2, const Pose& pose2)
+Separation separation(const Box& box1, const Pose& pose1, const Box& box2, const Pose& pose2)
 {
 	std::vector<Vector3> differences;
 	for (const auto& a : corners(box1, pose1))
