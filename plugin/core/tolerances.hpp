@@ -151,6 +151,8 @@ namespace masonry::tolerance::wall {
 // Relative movement of a pair, relative to the smallest half size, after which the features in touch are looked up again. Larger: a vertex
 // that has slid over the end of a face is held there that much longer; smaller: moving walls spend their time on it.
 constexpr double search = 1e-3;
+// Angle, rad, by which a block may turn in still steps before normals and arms follow. Larger: forces and gaps are so much askew.
+constexpr double turned = 1e-7;
 // Gap relative to the smallest half size up to which a point takes part in the still mode. Larger: open joints slow its convergence;
 // smaller: joints that close change the factorisation.
 constexpr double touching = 1e-4;

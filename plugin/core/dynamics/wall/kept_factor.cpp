@@ -188,20 +188,14 @@ bool KeptFactor<K>::takeSoftness()
 template <class K>
 void KeptFactor<K>::refactorise(WallContacts<K>& c, RigidSystem<K>& s, const Touches& touches)
 {
-	const auto swap = [&] {
-		for (size_t b = 0; b < factored.size(); ++b)
-			std::swap(s.bodies[b].pose, factored[b]);
-	};
-	swap();
-	c.place(s);
 	contacts = &c;
-	for (size_t g = 0; g < rows.size(); ++g)
-		for (int k = 0; k < lanePoints<K>; ++k)
-			rows[g][k].stiffness = touches[g][k] ? stiffnessOf(c.groups[g].point[k], softness) : all(0);
-	if (!outdated)
-		factorise();
-	swap();
-	c.place(s);
+	c.at(s, factored, [&] {
+		for (size_t g = 0; g < rows.size(); ++g)
+			for (int k = 0; k < lanePoints<K>; ++k)
+				rows[g][k].stiffness = touches[g][k] ? stiffnessOf(c.groups[g].point[k], softness) : all(0);
+		if (!outdated)
+			factorise();
+	});
 }
 
 // A, pack by pack.

@@ -21,17 +21,6 @@
 
 namespace masonry::rigid::wall {
 
-template <class Flow>
-void passPose(Flow& f, PlanePose& pose)
-{
-	f(pose.position), f(pose.angle), f(pose.cosine), f(pose.sine);
-}
-template <class Flow>
-void passPose(Flow& f, Pose& pose)
-{
-	f(pose.position), f(pose.orientation.coeffs());
-}
-
 struct KeptReport {
 	int solves {0}, factorisations {0};
 	double velocity {0}; // largest |J V - b - z|, m/s

@@ -11,6 +11,10 @@ namespace {
 constexpr int pairsOfPart = 1024;     // at least: fewer do not repay that threads meet
 constexpr int mostSeam = 8;           // times as many pairs as are in the seam there are at least
 constexpr double mostFriction = 1e12; // stands for noSlip: infinity times a zero impulse is no number
+constexpr int mostStood = 16;         // still steps, in which blocks may go far in small steps
+
+double turned(const PlanePose& from, const PlanePose& to) { return std::abs(to.angle - from.angle); }
+double turned(const Pose& from, const Pose& to) { return 2 * (to.orientation.coeffs() - from.orientation.coeffs()).norm(); }
 
 } // namespace
 
@@ -378,11 +382,46 @@ void WallContacts<K>::showPoints(RigidSystem<K>& s) const
 			showPair(s, c);
 }
 
+// Poses for those of the bodies, and points located there, but the bodies afterwards where they were.
 template <class K>
-bool WallContacts<K>::measure(RigidSystem<K>& s)
+void WallContacts<K>::placeAt(RigidSystem<K>& s, std::vector<typename K::Pose>& poses)
+{
+	const auto swap = [&] {
+		for (size_t b = 0; b < poses.size(); ++b)
+			std::swap(s.bodies[b].pose, poses[b]);
+	};
+	swap();
+	takeBodies(s);
+	locate(s, 0, int(groups.size()), std::numeric_limits<double>::infinity(), false);
+	swap();
+	takeBodies(s);
+}
+
+// Whether normals, arms and masses may stay.
+template <class K>
+bool WallContacts<K>::isLocated(const RigidSystem<K>& s) const
+{
+	if (stood == 0 || stood == mostStood || s.moved)
+		return false;
+	for (size_t b = 0; b < s.bodies.size(); ++b) {
+		const auto& body = s.bodies[b];
+		if (!(turned(located[b], body.pose) <= tolerance::wall::turned) ||
+		    velocity[packs<K> * b][3] != (body.prescribed ? 0 : 1 / body.mass))
+			return false;
+	}
+	return true;
+}
+
+template <class K>
+bool WallContacts<K>::measure(RigidSystem<K>& s, bool still)
 {
 	length = scale::length(s);
 	otherPoints = !samePairs(s);
+	if (still && !otherPoints && isLocated(s)) {
+		takeBodies(s);
+		++stood;
+		return false;
+	}
 	if (otherPoints) {
 		takePairs(s);
 		colour(s);
@@ -402,6 +441,10 @@ bool WallContacts<K>::measure(RigidSystem<K>& s)
 			colour(s);
 		}
 	}
+	stood = still ? 1 : 0;
+	located.clear();
+	for (size_t b = 0; still && b < s.bodies.size(); ++b)
+		located.push_back(s.bodies[b].pose);
 	return otherPoints;
 }
 

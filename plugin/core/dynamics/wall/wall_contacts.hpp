@@ -11,8 +11,9 @@
 // Within a part no two pairs of a colour share a free body: the pairs of a colour can be taken in any order, or at the same time, with the
 // same result. A lane holds as many points as most pairs have; a pair with more takes a second lane, of another colour.
 //
-// Gaps, normals and arms are exact at the start of every step; which features meet is looked up again only where a pair has moved by a
-// small share of its size since (tolerance::wall::search).
+// Gaps, normals and arms are exact at the start of every step that moves. While the wall is still, gaps are added up, and the points are
+// located every few steps only. Which features meet is looked up again only where a pair has moved by a small share of its size since
+// (tolerance::wall::search).
 #include "dynamics/rigid/rigid_system.hpp"
 #include "dynamics/wall/space_lanes.hpp"
 #include "dynamics/wall/team.hpp"
@@ -25,6 +26,17 @@ template <class K>
 constexpr int lanePoints = K::maxPoints == 2 ? 2 : 4;
 template <class K>
 constexpr int lanesOfPair = K::maxPoints / lanePoints<K>;
+
+template <class Flow>
+void passPose(Flow& f, PlanePose& pose)
+{
+	f(pose.position), f(pose.angle), f(pose.cosine), f(pose.sine);
+}
+template <class Flow>
+void passPose(Flow& f, Pose& pose)
+{
+	f(pose.position), f(pose.orientation.coeffs());
+}
 
 // Of the points of a group, how many there are at most in a lane: in the plane all of them are always gone through, together.
 template <class K>
@@ -132,8 +144,9 @@ public:
 		team.each(int(count), [&](int k) { work(size * k / count, size * (k + 1) / count, k); });
 	}
 
-	// Takes over poses and velocities, looks up features where needed, and measures all points. True: other points than before.
-	bool measure(RigidSystem<K>& system);
+	// Takes over poses and velocities, looks up features where needed, and measures all points; `still`: where the last steps have been
+	// still too, every few steps. True: other points than before.
+	bool measure(RigidSystem<K>& system, bool still);
 	// Impulses are those of a time h from now on; not many times the last, or an impact's would become as many.
 	void setUnit(double h);
 	// The means of the impulses are those that there are now.
@@ -142,20 +155,30 @@ public:
 	void showPoints(RigidSystem<K>& system) const;
 	// What the next step needs of the last besides the system, number by number: f(number) takes it, or gives it to a new object.
 	template <class Flow>
-	void pass(Flow& f, const RigidSystem<K>& system)
+	void pass(Flow& f, RigidSystem<K>& system)
 	{
 		const bool isNew = !samePairs(system);
 		if (isNew)
 			takePairs(system);
 		for (auto& is : wide)
 			f(is);
-		f(unit);
-		if (isNew)
+		f(unit), f(stood);
+		located.resize(stood > 0 ? system.bodies.size() : 0);
+		for (auto& pose : located)
+			passPose(f, pose);
+		if (isNew) {
 			takeOver(system);
+			if (stood > 0)
+				placeAt(system, located);
+		}
 		for (int c = 0; c < int(pairs.size()); ++c)
 			for (int k = 0; k < K::maxPoints && slots[c][k / lanePoints<K>].group >= 0; ++k) {
 				const auto [group, lane] = slots[c][k / lanePoints<K>];
 				State now = state(c, k);
+				Lanes& gaps = groups[group].point[k % lanePoints<K>].gap;
+				double gap = gaps[lane];
+				f(gap);
+				gaps[lane] = gap;
 				f(now.pn), f(now.steady), f(now.pt), f(now.zn), f(now.zt), f(now.slip), f(now.zero), f(now.heldN), f(now.heldT);
 				setState(now, c, k);
 				FeatureLanes<K>& feature = features[group].point[k % lanePoints<K>];
@@ -166,11 +189,16 @@ public:
 			}
 	}
 
-	// Bodies and points where the system has them now.
-	void place(const RigidSystem<K>& s)
+	// work() with bodies and points where these poses put them.
+	template <class Work>
+	void at(RigidSystem<K>& s, std::vector<typename K::Pose>& poses, const Work& work)
 	{
-		takeBodies(s);
-		locate(s, 0, int(groups.size()), std::numeric_limits<double>::infinity(), false);
+		const auto groupsNow = groups;
+		const auto featuresNow = features;
+		placeAt(s, poses);
+		work();
+		groups = groupsNow;
+		features = featuresNow;
 	}
 
 	// Points of a lane.
@@ -229,6 +257,8 @@ private:
 	void countPoints(const RigidSystem<K>& system, int group);
 	void findCourses(const RigidSystem<K>& system);
 	void takeBodies(const RigidSystem<K>& system);
+	void placeAt(RigidSystem<K>& system, std::vector<typename K::Pose>& poses);
+	bool isLocated(const RigidSystem<K>& system) const;
 	// Gaps, normals, arms. Pairs that have moved by more than `travel` become stale (in the plane with the others of their group); with
 	// `remember`, movement of those that are stale counts from here.
 	void locate(const RigidSystem<K>& system, int begin, int end, double travel, bool remember);
@@ -240,6 +270,8 @@ private:
 	void takePoint(const RigidSystem<K>& system, int pair, int point);
 
 	double unit {0};                                     // s, that the impulses are of
+	int stood {0};                                       // still steps with the points as they were located; 0: the last moved
+	std::vector<typename K::Pose> located;               // poses then
 	std::vector<std::array<int, 2>> pairs;               // that the groups are made of
 	std::vector<std::array<Slot, lanesOfPair<K>>> slots; // of a pair; group -1: none
 	std::vector<unsigned char> wide;                     // pairs that need all their lanes

@@ -94,14 +94,18 @@ void WallStep<K>::advancePart(RigidSystem<K>& s, double h)
 	for (size_t b = 0; b < s.bodies.size(); ++b)
 		if (s.bodies[b].prescribed && s.bodies[b].drive >= 0)
 			onDrives.push_back(int(b));
-	if (contacts.measure(s)) {
-		kept.outdate();
-		quick.outdate();
-		joints.outdate();
-	}
+	const auto measure = [&] {
+		if (contacts.measure(s, m.mode == WallMode::still)) {
+			kept.outdate();
+			quick.outdate();
+			joints.outdate();
+		}
+	};
+	measure();
 	const WallMode before = m.mode;
 	if (m.mode == WallMode::still && !tryStill(s, h)) {
 		m.mode = WallMode::moving;
+		measure();
 		contacts.startMeans();
 	}
 	if (m.mode == WallMode::moving)
