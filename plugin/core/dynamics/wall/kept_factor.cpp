@@ -31,44 +31,40 @@ MASONRY_INLINE Lanes stiffnessOf(const PointLanes<K>& p, double softness)
 	return p.massN * p.massT / ((p.massN + p.massT) * (0.5 * softness));
 }
 
-// What is the same for all points of a step.
+// What is the same for all points of a step; of what a few iterations have left, pullBack is taken back a second.
 struct Step {
-	double h, softness, pullBack, enter, leave;
+	double perH, pullBack, softness, enter, leave;
 };
 
-// Which points take part, R, and b. Returns where another point touches than before.
+// Which points take part, R, and b_n. Returns where another point touches than before.
 template <class K>
-MASONRY_INLINE Mask takePoint(PointLanes<K>& p, const FeatureLanes<K>& f, typename KeptFactor<K>::Row& row, const Step& step)
+MASONRY_INLINE Mask takePoint(PointLanes<K>& p, const StillLanes<K>& f, typename KeptFactor<K>::Row& row, const Step& step)
 {
-	const Lanes perH = all(1 / step.h), none = all(0);
-	const typename PointLanes<K>::Tangent noTangent {};
+	const Lanes none = all(0);
 	const Mask was = row.stiffness > 0;
-	const Mask touches = f.present & (was ? p.gap < step.leave : p.gap < step.enter);
-	const Lanes stiffness = stiffnessOf(p, step.softness);
+	const Mask touches = was ? p.gap < step.leave : p.gap < step.enter;
+	const Lanes stiffness = stiffnessOf(p, step.softness), gap = p.gap - f.zero;
 	row.stiffness = touches ? stiffness : none;
 	row.resistance = touches ? all(1) / stiffness : none;
-	const Lanes gap = p.gap - f.zero;
-	row.bn = -gap * perH * (gap > 0 ? all(1) : all(step.pullBack));
-	row.bt = -step.pullBack * perH * f.slip;
-	row.bn = touches ? row.bn : none;
-	row.bt = select(touches, row.bt, noTangent);
+	row.bn = touches ? gap * (gap > 0 ? all(-step.perH) : all(-step.pullBack)) : none;
 	p.pn = touches ? p.pn : none;
-	p.pt = select(touches, p.pt, noTangent);
+	p.pt = select(touches, p.pt, typename PointLanes<K>::Tangent {});
 	return touches ^ was;
 }
 
 // One pass over the points of a group: the laws (not before the first solve), and the right-hand side of the next solve.
 template <class K, bool laws>
-MASONRY_INLINE void passGroup(Group<K>& group, FeatureGroup<K>& features, Rows<K>& rows, const Lanes* velocity, Lanes* force, Largest& worst)
+MASONRY_INLINE void passGroup(Group<K>& group, StillGroup<K>& still, Rows<K>& rows, double pullBack, const Lanes* velocity, Lanes* force,
+                              Largest& worst)
 {
 	const Bodies<K> v1(velocity, group.body1), v2(velocity, group.body2);
 	Bodies<K> f1(force, group.body1), f2(force, group.body2);
 	for (int k = 0; k < group.count; ++k) {
 		PointLanes<K>& p = group.point[k];
-		FeatureLanes<K>& f = features.point[k];
+		StillLanes<K>& f = still[k];
 		auto& row = rows[k];
 		const Lanes un = normalRate(v1, v2, p), wn = un - row.bn;
-		const auto ut = slipRate(v1, v2, p), wt = ut - row.bt;
+		const auto ut = slipRate(v1, v2, p), wt = ut + pullBack * f.slip;
 		if constexpr (laws) {
 			const Lanes yn = p.pn - (relaxation * wn - (relaxation - 1) * f.zn) * row.stiffness;
 			const auto yt = p.pt - (relaxation * wt - (relaxation - 1) * f.zt) * row.stiffness;
@@ -86,7 +82,7 @@ MASONRY_INLINE void passGroup(Group<K>& group, FeatureGroup<K>& features, Rows<K
 			const Mask touches = row.stiffness > 0;
 			const Lanes miss = larger(size(wn - zn), size(wt - zt)), motion = larger(size(un), size(ut));
 			worst.velocity = larger(worst.velocity, touches ? miss : all(0));
-			worst.motion = larger(worst.motion, f.present ? motion : all(0));
+			worst.motion = larger(worst.motion, p.massN > 0 ? motion : all(0));
 			worst.force = larger(worst.force, larger(size(errorN), size(errorT)) * perMass);
 		}
 		if constexpr (!laws) { // a point without an impulse is free to move as it does
@@ -100,7 +96,7 @@ MASONRY_INLINE void passGroup(Group<K>& group, FeatureGroup<K>& features, Rows<K
 }
 
 template <class K>
-MASONRY_INLINE bool startGroups(Group<K>* groups, FeatureGroup<K>* features, Rows<K>* rows, Befores<K>* before, int begin, int end,
+MASONRY_INLINE bool startGroups(Group<K>* groups, StillGroup<K>* still, Rows<K>* rows, Befores<K>* before, int begin, int end,
                                 const Step& step, const Lanes* velocity, Lanes* force)
 {
 	Mask different {0, 0, 0, 0};
@@ -108,66 +104,68 @@ MASONRY_INLINE bool startGroups(Group<K>* groups, FeatureGroup<K>* features, Row
 	for (int g = begin; g < end; ++g) {
 		for (int k = 0; k < groups[g].count; ++k) {
 			PointLanes<K>& p = groups[g].point[k];
-			const FeatureLanes<K>& f = features[g].point[k];
+			const StillLanes<K>& f = still[g][k];
 			before[g][k] = {p.pn, p.pt, f.zn, f.zt, f.heldN, f.heldT};
 			different |= takePoint<K>(p, f, rows[g][k], step);
 		}
-		passGroup<K, false>(groups[g], features[g], rows[g], velocity, force, none);
+		passGroup<K, false>(groups[g], still[g], rows[g], step.pullBack, velocity, force, none);
 	}
 	return any(different);
 }
 
 // (z - w)/R is the impulse that V lacks; over the mass, the velocity.
 template <class K>
-MASONRY_INLINE void addHeld(const Group<K>* groups, FeatureGroup<K>* features, const Rows<K>* rows, int begin, int end, Lanes& most)
+MASONRY_INLINE void addHeld(const Group<K>* groups, StillGroup<K>* still, const Rows<K>* rows, int begin, int end, double pullBack,
+                            Lanes& most)
 {
 	const Lanes none = all(0);
 	for (int g = begin; g < end; ++g)
 		for (int k = 0; k < groups[g].count; ++k) {
 			const PointLanes<K>& p = groups[g].point[k];
-			FeatureLanes<K>& f = features[g].point[k];
+			StillLanes<K>& f = still[g][k];
 			const auto& row = rows[g][k];
 			const Mask touches = row.stiffness > 0, loaded = p.pn > 0, parts = touches & ~loaded,
 			           glides = touches & loaded & slides(p.pt, groups[g].friction * p.pn);
 			const Lanes perMass = touches ? row.stiffness / p.massN : none;
 			f.heldN = parts ? larger(f.heldN + (f.zn - row.un + row.bn) * perMass, none) : none;
-			f.heldT = select(glides, f.heldT + perMass * (f.zt - row.ut + row.bt), typename PointLanes<K>::Tangent {});
+			f.heldT = select(glides, f.heldT + perMass * (f.zt - row.ut - pullBack * f.slip), typename PointLanes<K>::Tangent {});
 			most = larger(most, larger(f.heldN, size(f.heldT)));
 		}
 }
 
 template <class K>
-MASONRY_INLINE void addSlip(Group<K>* groups, FeatureGroup<K>* features, const Rows<K>* rows, int begin, int end, double h)
+MASONRY_INLINE void addSlip(Group<K>* groups, StillGroup<K>* still, const Rows<K>* rows, int begin, int end, double h)
 {
 	for (int g = begin; g < end; ++g)
 		for (int k = 0; k < groups[g].count; ++k) {
 			PointLanes<K>& p = groups[g].point[k];
 			p.gap += h * rows[g][k].un;
-			auto& slip = features[g].point[k].slip;
+			auto& slip = still[g][k].slip;
 			slip = select(slides(p.pt, groups[g].friction * p.pn), typename PointLanes<K>::Tangent {}, slip + h * rows[g][k].ut);
 		}
 }
 
 // No template is compiled for several vector widths.
 #define MASONRY_PASSES(K)                                                                                                                  \
-	MASONRY_LANES bool startPass(Group<K>* groups, FeatureGroup<K>* features, Rows<K>* rows, Befores<K>* before, int begin, int end,       \
+	MASONRY_LANES bool startPass(Group<K>* groups, StillGroup<K>* still, Rows<K>* rows, Befores<K>* before, int begin, int end,            \
 	                             const Step& step, const Lanes* velocity, Lanes* force)                                                    \
 	{                                                                                                                                      \
-		return startGroups<K>(groups, features, rows, before, begin, end, step, velocity, force);                                          \
+		return startGroups<K>(groups, still, rows, before, begin, end, step, velocity, force);                                             \
 	}                                                                                                                                      \
-	MASONRY_LANES void lawPass(Group<K>* groups, FeatureGroup<K>* features, Rows<K>* rows, int begin, int end, const Lanes* velocity,      \
-	                           Lanes* force, Largest& worst)                                                                               \
+	MASONRY_LANES void lawPass(Group<K>* groups, StillGroup<K>* still, Rows<K>* rows, int begin, int end, double pullBack,                 \
+	                           const Lanes* velocity, Lanes* force, Largest& worst)                                                        \
 	{                                                                                                                                      \
 		for (int g = begin; g < end; ++g)                                                                                                  \
-			passGroup<K, true>(groups[g], features[g], rows[g], velocity, force, worst);                                                   \
+			passGroup<K, true>(groups[g], still[g], rows[g], pullBack, velocity, force, worst);                                            \
 	}                                                                                                                                      \
-	MASONRY_LANES void heldPass(const Group<K>* groups, FeatureGroup<K>* features, const Rows<K>* rows, int begin, int end, Lanes& most)   \
+	MASONRY_LANES void heldPass(const Group<K>* groups, StillGroup<K>* still, const Rows<K>* rows, int begin, int end, double pullBack,    \
+	                            Lanes& most)                                                                                               \
 	{                                                                                                                                      \
-		addHeld<K>(groups, features, rows, begin, end, most);                                                                              \
+		addHeld<K>(groups, still, rows, begin, end, pullBack, most);                                                                       \
 	}                                                                                                                                      \
-	MASONRY_LANES void slipPass(Group<K>* groups, FeatureGroup<K>* features, const Rows<K>* rows, int begin, int end, double h)            \
+	MASONRY_LANES void slipPass(Group<K>* groups, StillGroup<K>* still, const Rows<K>* rows, int begin, int end, double h)                 \
 	{                                                                                                                                      \
-		addSlip<K>(groups, features, rows, begin, end, h);                                                                                 \
+		addSlip<K>(groups, still, rows, begin, end, h);                                                                                    \
 	}
 MASONRY_PASSES(Plane)
 MASONRY_PASSES(Space)
@@ -285,8 +283,9 @@ void KeptFactor<K>::begin(WallContacts<K>& c, const RigidSystem<K>& s, const Lan
 	velocity = c.velocity;
 	free.resize(velocity.size());
 	force.resize(velocity.size());
+	backPerSecond = pullBack<K>(c.depth) / h;
 	const double enter = tolerance::wall::touching * c.length;
-	const Step same {h, softness, pullBack<K>(c.depth), enter, 4 * enter};
+	const Step same {1 / h, backPerSecond, softness, enter, 4 * enter};
 	bool different[Team::mostParts + 1] {};
 	const auto startBodies = [&](const Part& part) {
 		for (const int b : part.members)
@@ -294,7 +293,7 @@ void KeptFactor<K>::begin(WallContacts<K>& c, const RigidSystem<K>& s, const Lan
 		inertia(part);
 	};
 	const auto startPoints = [&](const Part& part, int number) {
-		different[number] = startPass(c.groups.data(), c.features.data(), rows.data(), before.data(), part.begin, part.end, same,
+		different[number] = startPass(c.groups.data(), c.still.data(), rows.data(), before.data(), part.begin, part.end, same,
 		                              velocity.data(), force.data());
 	};
 	startBodies(c.parts.back());
@@ -317,7 +316,7 @@ void KeptFactor<K>::forget(WallContacts<K>& c)
 {
 	for (size_t g = 0; g < c.groups.size(); ++g)
 		for (int k = 0; k < lanePoints<K>; ++k) {
-			FeatureLanes<K>& f = c.features[g].point[k];
+			StillLanes<K>& f = c.still[g][k];
 			f.zn = f.heldN = all(0);
 			f.zt = f.slip = f.heldT = Tangent {};
 			f.zero = smaller(c.groups[g].point[k].gap, all(0));
@@ -338,7 +337,8 @@ void KeptFactor<K>::iterate(int most, double velocityResidual, double forceResid
 			inertia(part);
 		};
 		const auto laws = [&](const Part& part, int number) {
-			lawPass(c.groups.data(), c.features.data(), rows.data(), part.begin, part.end, velocity.data(), force.data(), worst[number]);
+			lawPass(c.groups.data(), c.still.data(), rows.data(), part.begin, part.end, backPerSecond, velocity.data(), force.data(),
+			        worst[number]);
 		};
 		move(c.parts.back());
 		c.eachPart([&](const Part& part, int number) {
@@ -364,7 +364,7 @@ double KeptFactor<K>::findHeld()
 	auto& c = *contacts;
 	Largest most[Team::mostParts + 1] {};
 	c.allParts([&](const Part& part, int number) {
-		heldPass(c.groups.data(), c.features.data(), rows.data(), part.begin, part.end, most[number].velocity);
+		heldPass(c.groups.data(), c.still.data(), rows.data(), part.begin, part.end, backPerSecond, most[number].velocity);
 	});
 	double held = 0;
 	for (const Largest& here : most)
@@ -379,7 +379,7 @@ double KeptFactor<K>::motionOfHeld(double held) const
 	Lanes fastest = none;
 	for (size_t g = 0; g < rows.size(); ++g)
 		for (int k = 0; k < contacts->groups[g].count; ++k) {
-			const FeatureLanes<K>& f = contacts->features[g].point[k];
+			const StillLanes<K>& f = contacts->still[g][k];
 			const Mask along = size(f.heldT) >= held;
 			const Lanes slip = dot(rows[g][k].ut, f.heldT) / select(along, root(dot(f.heldT, f.heldT)), all(1));
 			fastest = larger(fastest, larger(f.heldN >= held ? rows[g][k].un : none, along ? slip : none));
@@ -390,8 +390,8 @@ double KeptFactor<K>::motionOfHeld(double held) const
 template <class K>
 void KeptFactor<K>::forgetHeld()
 {
-	for (auto& features : contacts->features)
-		for (FeatureLanes<K>& f : features.point) {
+	for (auto& still : contacts->still)
+		for (StillLanes<K>& f : still) {
 			f.heldN = all(0);
 			f.heldT = Tangent {};
 		}
@@ -401,7 +401,7 @@ template <class K>
 void KeptFactor<K>::keepSlip()
 {
 	auto& c = *contacts;
-	c.allParts([&](const Part& part, int) { slipPass(c.groups.data(), c.features.data(), rows.data(), part.begin, part.end, h); });
+	c.allParts([&](const Part& part, int) { slipPass(c.groups.data(), c.still.data(), rows.data(), part.begin, part.end, h); });
 }
 
 template <class K>
@@ -411,7 +411,7 @@ void KeptFactor<K>::giveUp()
 	for (size_t g = 0; g < c.groups.size(); ++g)
 		for (int k = 0; k < c.groups[g].count; ++k) {
 			PointLanes<K>& p = c.groups[g].point[k];
-			FeatureLanes<K>& f = c.features[g].point[k];
+			StillLanes<K>& f = c.still[g][k];
 			p.pn = before[g][k].pn;
 			p.pt = before[g][k].pt;
 			f.zn = before[g][k].zn;

@@ -37,7 +37,6 @@ public:
 	using Tangent = typename PointLanes<K>::Tangent;
 	struct alignas(alignment) Row { // of a point
 		Lanes bn;
-		Tangent bt;
 		Lanes resistance, stiffness; // R and 1/R; zero: does not touch
 		Lanes un;                    // J V, m/s
 		Tangent ut;
@@ -113,7 +112,7 @@ private:
 	LaneArray free, force;
 	std::vector<Befores> before; // by group
 	const double given;
-	double h {0}, softness {0};
+	double h {0}, softness {0}, backPerSecond {0};
 	bool outdated {true};
 	std::vector<typename K::Pose> factored; // poses that the factor is of
 };

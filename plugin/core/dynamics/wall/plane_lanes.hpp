@@ -16,6 +16,8 @@ template <class K>
 struct PointLanes;
 template <class K>
 struct FeatureLanes;
+template <class K>
+struct Coupling;
 
 // Velocities of four bodies: packs of `from` in, one lane a body out.
 template <>
@@ -53,19 +55,19 @@ struct alignas(alignment) FeatureLanes<Plane> {
 	Mask vertexOn1, present;
 	Lanes vertexX, vertexY, normalX, normalY, faceDistance;
 	Lanes foundGap, foundShift; // of the vertex over and along the face when they were looked up
-	Lanes zn, zt, slip, zero;   // of KeptFactor: relative velocity that the laws allow; slip since the point last slid; gap that it holds
-	Lanes heldN, heldT;         // of KeptFactor: velocity that its unfinished iterations have kept from a point that parts or slides
 
 	std::array<double, 2> foundAt(int lane) const { return {foundGap[lane], foundShift[lane]}; }
 	void setFound(const std::array<double, 2>& f, int lane) { foundGap[lane] = f[0], foundShift[lane] = f[1]; }
 };
 
 // Of the two points of a pair, J M^-1 J^T beside its diagonal, 1/kg: what an impulse along one row adds to the velocity along another.
-struct alignas(alignment) Coupling {
+template <>
+struct alignas(alignment) Coupling<Plane> {
 	Lanes n1t1, n2t2, n1n2, t1t2, n1t2, t1n2;
 
-	MASONRY_INLINE void set(const PointLanes<Plane>& p, const PointLanes<Plane>& q, const Lanes& m1, const Lanes& m2)
+	MASONRY_INLINE void set(const PointLanes<Plane>* point, const Lanes& m1, const Lanes& m2)
 	{
+		const PointLanes<Plane>&p = point[0], &q = point[1];
 		const Lanes m = m1 + m2, cosine = m * (p.nx * q.nx + p.ny * q.ny), sine = m * (p.nx * q.ny - p.ny * q.nx);
 		n1t1 = m1 * p.a1n * p.a1t + m2 * p.a2n * p.a2t;
 		n2t2 = m1 * q.a1n * q.a1t + m2 * q.a2n * q.a2t;

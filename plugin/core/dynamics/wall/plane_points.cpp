@@ -62,7 +62,6 @@ MASONRY_INLINE Lanes locateGroup(Group<Plane>& group, FeatureGroup<Plane>& featu
 		p.massN = select(f.present, one / (mass1 + mass2 + mass1 * p.a1n * p.a1n + mass2 * p.a2n * p.a2n), none);
 		p.massT = select(f.present, one / (mass1 + mass2 + mass1 * p.a1t * p.a1t + mass2 * p.a2t * p.a2t), none);
 	}
-	group.coupling.set(group.point[0], group.point[1], mass1, mass2);
 	return moved;
 }
 

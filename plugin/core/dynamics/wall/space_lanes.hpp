@@ -106,17 +106,21 @@ struct alignas(alignment) PointLanes<Space> {
 	Lanes steady; // mean of pn over the last steps that moved
 };
 
+// Points in space are taken one after another.
+template <>
+struct Coupling<Space> {
+	MASONRY_INLINE void set(const PointLanes<Space>*, const Lanes&, const Lanes&) {}
+};
+
 // What a point is made of: vertex and face in the axes of their bodies; or two edges that cross, which are looked at one by one.
 template <>
 struct alignas(alignment) FeatureLanes<Space> {
 	Mask vertexOn1, present, crossing;
 	Lanes3 vertex, normal, tangent; // of the face: outward normal, first tangent
 	Lanes faceDistance;
-	Lanes3 arm;            // from body 2 to the point, global axes
-	Lanes foundGap;        // when the features were looked up
-	Lanes2 found;          // where along them
-	Lanes zn, zero, heldN; // of KeptFactor, as in the plane
-	Lanes2 zt, slip, heldT;
+	Lanes3 arm;     // from body 2 to the point, global axes
+	Lanes foundGap; // when the features were looked up
+	Lanes2 found;   // where along them
 
 	std::array<double, 3> foundAt(int lane) const { return {foundGap[lane], found.x[lane], found.y[lane]}; }
 	void setFound(const std::array<double, 3>& f, int lane) { foundGap[lane] = f[0], found.x[lane] = f[1], found.y[lane] = f[2]; }

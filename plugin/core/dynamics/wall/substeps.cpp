@@ -35,11 +35,10 @@ MASONRY_INLINE void measure(const PointLanes<K>& p, const Lanes& un, const Tange
 // Both points of each of four pairs, row by row in terms of their relative velocities: what an impulse adds to the rows that follow is
 // known (Coupling), and need not go through the velocities of the bodies.
 template <bool measured>
-MASONRY_INLINE void sweepGroup(Group<Plane>& group, Lanes* velocity, double perSubstep, Largest& worst)
+MASONRY_INLINE void sweepGroup(Group<Plane>& group, const Coupling<Plane>& w, Lanes* velocity, double perSubstep, Largest& worst)
 {
 	Bodies<Plane> v1(velocity, group.body1), v2(velocity, group.body2);
 	PointLanes<Plane>&p = group.point[0], &q = group.point[1];
-	const Coupling& w = group.coupling;
 	const Lanes un1 = normalRate(v1, v2, p), pn1 = normalImpulse(p, un1, perSubstep), dn1 = pn1 - p.pn;
 	const Lanes ut1 = slipRate(v1, v2, p) + w.n1t1 * dn1, pt1 = friction(p, ut1, group.friction * pn1), dt1 = pt1 - p.pt;
 	const Lanes un2 = normalRate(v1, v2, q) + w.n1n2 * dn1 + w.t1n2 * dt1, pn2 = normalImpulse(q, un2, perSubstep), dn2 = pn2 - q.pn;
@@ -88,30 +87,36 @@ template <bool measured>
 MASONRY_INLINE void sweepTwo(Group<Space>* group, Lanes* velocity, double perSubstep, Largest& worst)
 {
 	Bodies<Space> v1(velocity, group[0].body1), v2(velocity, group[0].body2), w1(velocity, group[1].body1), w2(velocity, group[1].body2);
-	const int both = std::min(group[0].count, group[1].count);
-	for (int k = 0; k < both; ++k) {
-		sweepPoint<measured>(group[0].point[k], group[0].friction, v1, v2, perSubstep, worst);
-		sweepPoint<measured>(group[1].point[k], group[1].friction, w1, w2, perSubstep, worst);
+	const int most = std::max(group[0].count, group[1].count);
+	for (int k = 0; k < most; ++k) {
+		if (k < group[0].count)
+			sweepPoint<measured>(group[0].point[k], group[0].friction, v1, v2, perSubstep, worst);
+		if (k < group[1].count)
+			sweepPoint<measured>(group[1].point[k], group[1].friction, w1, w2, perSubstep, worst);
 	}
-	for (int k = both; k < group[0].count; ++k)
-		sweepPoint<measured>(group[0].point[k], group[0].friction, v1, v2, perSubstep, worst);
-	for (int k = both; k < group[1].count; ++k)
-		sweepPoint<measured>(group[1].point[k], group[1].friction, w1, w2, perSubstep, worst);
 	v1.store(velocity, group[0].body1, v1.m);
 	v2.store(velocity, group[0].body2, v2.m);
 	w1.store(velocity, group[1].body1, w1.m);
 	w2.store(velocity, group[1].body2, w2.m);
 }
 
-template <class K, bool measured>
-MASONRY_INLINE void sweepGroups(Group<K>* groups, int begin, int end, Lanes* velocity, double perSubstep, Largest& worst)
+template <bool measured>
+MASONRY_INLINE void sweepGroups(Group<Space>* groups, const Coupling<Space>*, int begin, int end, Lanes* velocity, double perSubstep,
+                                Largest& worst)
 {
 	int g = begin;
-	if constexpr (K::dimension == 3)
-		for (; g + 2 <= end; g += 2)
-			sweepTwo<measured>(groups + g, velocity, perSubstep, worst);
-	for (; g < end; ++g)
+	for (; g + 2 <= end; g += 2)
+		sweepTwo<measured>(groups + g, velocity, perSubstep, worst);
+	if (g < end)
 		sweepGroup<measured>(groups[g], velocity, perSubstep, worst);
+}
+
+template <bool measured>
+MASONRY_INLINE void sweepGroups(Group<Plane>* groups, const Coupling<Plane>* couplings, int begin, int end, Lanes* velocity,
+                                double perSubstep, Largest& worst)
+{
+	for (int g = begin; g < end; ++g)
+		sweepGroup<measured>(groups[g], couplings[g], velocity, perSubstep, worst);
 }
 
 template <class K>
@@ -126,11 +131,12 @@ MASONRY_INLINE void moveGroups(Group<K>* groups, int begin, int end, const Lanes
 }
 
 template <class K>
-MASONRY_INLINE void beginGroups(Group<K>* groups, int begin, int end, Lanes* velocity)
+MASONRY_INLINE void beginGroups(Group<K>* groups, Coupling<K>* couplings, int begin, int end, Lanes* velocity)
 {
 	for (int g = begin; g < end; ++g) {
 		Group<K>& group = groups[g];
 		Bodies<K> v1(velocity, group.body1), v2(velocity, group.body2);
+		couplings[g].set(group.point, v1.m, v2.m);
 		for (int k = 0; k < group.count; ++k) {
 			PointLanes<K>& p = group.point[k];
 			push(v1, v2, p, p.pn, p.pt);
@@ -143,19 +149,24 @@ MASONRY_INLINE void beginGroups(Group<K>* groups, int begin, int end, Lanes* vel
 
 // No template is compiled for several vector widths.
 #define MASONRY_SWEEPS(K)                                                                                                                  \
-	MASONRY_LANES void sweep(Group<K>* groups, int begin, int end, Lanes* velocity, double perSubstep, Largest& worst)                     \
+	MASONRY_LANES void sweep(Group<K>* groups, const Coupling<K>* couplings, int begin, int end, Lanes* velocity, double perSubstep)       \
 	{                                                                                                                                      \
-		sweepGroups<K, false>(groups, begin, end, velocity, perSubstep, worst);                                                            \
+		Largest unused;                                                                                                                    \
+		sweepGroups<false>(groups, couplings, begin, end, velocity, perSubstep, unused);                                                   \
 	}                                                                                                                                      \
-	MASONRY_LANES void lastSweep(Group<K>* groups, int begin, int end, Lanes* velocity, double perSubstep, Largest& worst)                 \
+	MASONRY_LANES void lastSweep(Group<K>* groups, const Coupling<K>* couplings, int begin, int end, Lanes* velocity, double perSubstep,   \
+	                             Largest& worst)                                                                                           \
 	{                                                                                                                                      \
-		sweepGroups<K, true>(groups, begin, end, velocity, perSubstep, worst);                                                             \
+		sweepGroups<true>(groups, couplings, begin, end, velocity, perSubstep, worst);                                                     \
 	}                                                                                                                                      \
 	MASONRY_LANES void moveGaps(Group<K>* groups, int begin, int end, const Lanes* velocity, double s)                                     \
 	{                                                                                                                                      \
 		moveGroups<K>(groups, begin, end, velocity, s);                                                                                    \
 	}                                                                                                                                      \
-	MASONRY_LANES void beginStep(Group<K>* groups, int begin, int end, Lanes* velocity) { beginGroups<K>(groups, begin, end, velocity); }
+	MASONRY_LANES void beginStep(Group<K>* groups, Coupling<K>* couplings, int begin, int end, Lanes* velocity)                            \
+	{                                                                                                                                      \
+		beginGroups<K>(groups, couplings, begin, end, velocity);                                                                           \
+	}
 MASONRY_SWEEPS(Plane)
 MASONRY_SWEEPS(Space)
 #undef MASONRY_SWEEPS
@@ -167,11 +178,12 @@ void Substeps<K>::begin(WallContacts<K>& c)
 {
 	const Lanes onlyMass {0, 0, 0, 1};
 	shift.assign(c.velocity.size(), all(0));
+	couplings.resize(c.groups.size());
 	contactPart = c.velocity;
 	for (Lanes& v : contactPart)
 		v *= onlyMass;
 	const auto apply = [&](const Part& part, int) {
-		part.byColour([&](int first, int last) { beginStep(c.groups.data(), first, last, contactPart.data()); });
+		part.byColour([&](int first, int last) { beginStep(c.groups.data(), couplings.data(), first, last, contactPart.data()); });
 	};
 	c.eachPart(apply);
 	apply(c.parts.back(), 0);
@@ -193,7 +205,7 @@ void Substeps<K>::substep(WallContacts<K>& c, const LaneArray& load, double s, b
 		}
 	};
 	const auto press = [&](const Part& part) {
-		part.byColour([&](int first, int last) { sweep(groups, first, last, velocity, 1 / s, worst[0]); });
+		part.byColour([&](int first, int last) { sweep(groups, couplings.data(), first, last, velocity, 1 / s); });
 	};
 	const auto move = [&](const Part& part) {
 		moveGaps(groups, part.begin, part.end, velocity, s);
@@ -203,9 +215,9 @@ void Substeps<K>::substep(WallContacts<K>& c, const LaneArray& load, double s, b
 	const auto relax = [&](const Part& part, int number) {
 		part.byColour([&](int first, int last) {
 			if (isLast)
-				lastSweep(groups, first, last, velocity, 1 / s, worst[number]);
+				lastSweep(groups, couplings.data(), first, last, velocity, 1 / s, worst[number]);
 			else
-				sweep(groups, first, last, velocity, 1 / s, worst[number]);
+				sweep(groups, couplings.data(), first, last, velocity, 1 / s);
 		});
 		for (const int b : part.members)
 			contactPart[b] = velocity[b] - contactPart[b];

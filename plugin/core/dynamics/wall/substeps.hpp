@@ -31,10 +31,11 @@ public:
 	void substep(WallContacts<K>& contacts, const LaneArray& load, double s, bool isLast);
 
 	SubstepReport report; // of the last substep of the step
-	LaneArray shift;   // how far the bodies have moved since begin(); components as of velocities
+	LaneArray shift;      // how far the bodies have moved since begin(); components as of velocities
 
 private:
-	LaneArray contactPart; // of the velocities: what the impulses of the last substep gave
+	std::vector<Coupling<K>> couplings; // by group
+	LaneArray contactPart;              // of the velocities: what the impulses of the last substep gave
 };
 
 } // namespace masonry::rigid::wall

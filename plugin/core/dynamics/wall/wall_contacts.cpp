@@ -123,6 +123,7 @@ void WallContacts<K>::colour(const RigidSystem<K>& s)
 		}
 		parts[p].end = int(groups.size());
 	}
+	still.assign(groups.size(), {});
 	stale.assign(groups.size(), allLanes);
 	known.assign(pairs.size(), 0);
 	onBase.clear();
@@ -161,8 +162,8 @@ typename WallContacts<K>::State WallContacts<K>::state(int pair, int point) cons
 	if (group < 0)
 		return state;
 	const PointLanes<K>& p = groups[group].point[point % lanePoints<K>];
-	const FeatureLanes<K>& f = features[group].point[point % lanePoints<K>];
-	state.present = f.present[lane];
+	const StillLanes<K>& f = still[group][point % lanePoints<K>];
+	state.present = features[group].point[point % lanePoints<K>].present[lane];
 	state.pn = p.pn[lane];
 	state.steady = p.steady[lane];
 	state.zn = f.zn[lane];
@@ -182,7 +183,7 @@ void WallContacts<K>::setState(const State& state, int pair, int point)
 {
 	const auto [group, lane] = slots[pair][point / lanePoints<K>];
 	PointLanes<K>& p = groups[group].point[point % lanePoints<K>];
-	FeatureLanes<K>& f = features[group].point[point % lanePoints<K>];
+	StillLanes<K>& f = still[group][point % lanePoints<K>];
 	p.pn[lane] = state.pn;
 	p.steady[lane] = state.steady;
 	f.zn[lane] = state.zn;
@@ -291,7 +292,7 @@ template <class K>
 bool WallContacts<K>::lookUpStale(RigidSystem<K>& s, const Part& part)
 {
 	const auto isStale = [this](const Slot& slot) { return stale[slot.group] >> slot.lane & 1; };
-	for (int g = part.begin; lanesOfPair<K> > 1 && g < part.end; ++g)
+	for (int g = part.begin; lanesOfPair < K >> 1 && g < part.end; ++g)
 		for (int lane = 0; stale[g] && lane < width && features[g].pair[lane] >= 0; ++lane) {
 			const auto& lanes = slots[features[g].pair[lane]];
 			if (lanes.back().group >= 0 && (isStale(lanes.front()) || isStale(lanes.back())))
@@ -413,11 +414,11 @@ bool WallContacts<K>::isLocated(const RigidSystem<K>& s) const
 }
 
 template <class K>
-bool WallContacts<K>::measure(RigidSystem<K>& s, bool still)
+bool WallContacts<K>::measure(RigidSystem<K>& s, bool isStill)
 {
 	length = scale::length(s);
 	otherPoints = !samePairs(s);
-	if (still && !otherPoints && isLocated(s)) {
+	if (isStill && !otherPoints && isLocated(s)) {
 		takeBodies(s);
 		++stood;
 		return false;
@@ -441,9 +442,9 @@ bool WallContacts<K>::measure(RigidSystem<K>& s, bool still)
 			colour(s);
 		}
 	}
-	stood = still ? 1 : 0;
+	stood = isStill ? 1 : 0;
 	located.clear();
-	for (size_t b = 0; still && b < s.bodies.size(); ++b)
+	for (size_t b = 0; isStill && b < s.bodies.size(); ++b)
 		located.push_back(s.bodies[b].pose);
 	return otherPoints;
 }

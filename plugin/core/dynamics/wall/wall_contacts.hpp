@@ -45,7 +45,6 @@ template <>
 struct PointSet<Plane> {
 	static constexpr int count = lanePoints<Plane>;
 	void setCount(int) {}
-	Coupling coupling;
 };
 template <>
 struct PointSet<Space> {
@@ -59,6 +58,20 @@ struct alignas(alignment) Group : PointSet<K> {
 	Lanes friction;
 	PointLanes<K> point[lanePoints<K>];
 };
+
+// What the still mode (kept_factor.hpp) remembers of a point.
+template <class K>
+struct alignas(alignment) StillLanes {
+	using Tangent = typename PointLanes<K>::Tangent;
+	Lanes zn; // relative velocity that the laws allow
+	Tangent zt;
+	Tangent slip; // since the point last slid
+	Lanes zero;   // gap that it holds
+	Lanes heldN;  // velocity that unfinished iterations have kept from a point that parts or slides
+	Tangent heldT;
+};
+template <class K>
+using StillGroup = std::array<StillLanes<K>, lanePoints<K>>;
 
 // What friction takes at the points that carry all that they can, in the time of one set of impulses, J.
 template <class K>
@@ -144,9 +157,9 @@ public:
 		team.each(int(count), [&](int k) { work(size * k / count, size * (k + 1) / count, k); });
 	}
 
-	// Takes over poses and velocities, looks up features where needed, and measures all points; `still`: where the last steps have been
+	// Takes over poses and velocities, looks up features where needed, and measures all points; `isStill`: where the last steps have been
 	// still too, every few steps. True: other points than before.
-	bool measure(RigidSystem<K>& system, bool still);
+	bool measure(RigidSystem<K>& system, bool isStill);
 	// Impulses are those of a time h from now on; not many times the last, or an impact's would become as many.
 	void setUnit(double h);
 	// The means of the impulses are those that there are now.
@@ -222,9 +235,10 @@ public:
 
 	std::vector<Group<K>> groups;
 	std::vector<FeatureGroup<K>> features;
-	std::vector<Part> parts;                                       // the last is the seam
-	std::vector<std::array<int, 2>> onBase;                        // group and lane of the pairs with a prescribed body
-	LaneArray velocity;                                            // packs; 1/m = 0: prescribed. One more body at the end, for empty lanes
+	std::vector<StillGroup<K>> still;
+	std::vector<Part> parts;                // the last is the seam
+	std::vector<std::array<int, 2>> onBase; // group and lane of the pairs with a prescribed body
+	LaneArray velocity;                     // packs; 1/m = 0: prescribed. One more body at the end, for empty lanes
 	LaneArray pose;                         // plane: (position, cosine, sine). Space: axes and position in three rows, then 1/rho
 	std::vector<typename K::Spin> gyration; // rho, m
 	std::vector<int> course;                // of a body: pairs between it and the nearest prescribed one; -1: no way there

