@@ -115,6 +115,7 @@ bool Neighbours<K>::update(RigidSystem<K>& system)
 	findPairs(system);
 	keepStates(system.pairs);
 	system.pairs.swap(pairs);
+	++system.lists;
 	return true;
 }
 

@@ -78,6 +78,7 @@ template <class K> struct RigidSystem {
 	double                      time { 0 }; // s
 	std::vector<RigidBody<K>>   bodies;
 	std::vector<ContactPair<K>> pairs;      // of boxes that are near each other, in a fixed order
+	int                         lists { 0 }; // of pairs that there have been
 	typename K::Vector          gravity { K::Vector::Zero() }; // which way is down, and the scale of tolerances; the weight itself is in `force`
 	std::vector<BaseDrive*>     drives;
 	std::vector<typename K::Vector> driveDirections;

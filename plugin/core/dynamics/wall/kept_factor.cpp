@@ -105,7 +105,7 @@ MASONRY_INLINE bool startGroups(Group<K>* groups, StillGroup<K>* still, Rows<K>*
 		for (int k = 0; k < groups[g].count; ++k) {
 			PointLanes<K>& p = groups[g].point[k];
 			const StillLanes<K>& f = still[g][k];
-			before[g][k] = {p.pn, p.pt, f.zn, f.zt, f.heldN, f.heldT};
+			before[g][k] = {p.pn, p.pt, f.zn, f.zt};
 			different |= takePoint<K>(p, f, rows[g][k], step);
 		}
 		passGroup<K, false>(groups[g], still[g], rows[g], step.pullBack, velocity, force, none);
@@ -416,8 +416,6 @@ void KeptFactor<K>::giveUp()
 			p.pt = before[g][k].pt;
 			f.zn = before[g][k].zn;
 			f.zt = before[g][k].zt;
-			f.heldN = before[g][k].heldN;
-			f.heldT = before[g][k].heldT;
 		}
 }
 

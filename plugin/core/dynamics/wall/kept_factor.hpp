@@ -47,8 +47,6 @@ public:
 		Tangent pt;
 		Lanes zn;
 		Tangent zt;
-		Lanes heldN;
-		Tangent heldT;
 	};
 	using Befores = std::array<Before, lanePoints<K>>;
 

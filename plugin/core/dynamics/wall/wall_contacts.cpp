@@ -23,9 +23,10 @@ bool WallContacts<K>::samePairs(const RigidSystem<K>& s)
 {
 	if (s.pairs.size() != pairs.size() || gyration.size() != s.bodies.size() + 1)
 		return false;
-	for (size_t c = 0; c < pairs.size(); ++c)
-		if (s.pairs[c].body1 != pairs[c][0] || s.pairs[c].body2 != pairs[c][1])
-			return false;
+	const auto same = [](const ContactPair<K>& a, const std::array<int, 2>& b) { return a.body1 == b[0] && a.body2 == b[1]; };
+	if (s.lists != list && !std::equal(s.pairs.begin(), s.pairs.end(), pairs.begin(), same))
+		return false;
+	list = s.lists;
 	return true;
 }
 
@@ -325,6 +326,7 @@ void WallContacts<K>::countPoints(const RigidSystem<K>& s, int g)
 template <class K>
 void WallContacts<K>::takePairs(const RigidSystem<K>& s)
 {
+	list = s.lists;
 	pairs.clear();
 	wide.clear();
 	for (const auto& pair : s.pairs) {

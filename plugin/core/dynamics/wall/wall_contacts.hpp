@@ -284,6 +284,7 @@ private:
 	void takePoint(const RigidSystem<K>& system, int pair, int point);
 
 	double unit {0};                                     // s, that the impulses are of
+	int list {-1};                                       // of the system, that pairs are of
 	int stood {0};                                       // still steps with the points as they were located; 0: the last moved
 	std::vector<typename K::Pose> located;               // poses then
 	std::vector<std::array<int, 2>> pairs;               // that the groups are made of
