@@ -7,7 +7,7 @@ namespace masonry::rigid::wall {
 
 namespace {
 
-constexpr int sweeps = 12;
+constexpr int mostSweeps = 12;
 constexpr double perCourse = 6;    // 1/m' of a block over that of the one below it
 constexpr int highestCourse = 100; // that is told from those below it: the numbers must not overflow
 
@@ -18,6 +18,10 @@ std::array<double, highestCourse + 1> sharesOfCourses()
 		result[course] = perCourse * result[course - 1];
 	return result;
 }
+
+struct alignas(2 * alignment) Missing { // a line of the cache of its own
+	Lanes most;
+};
 
 template <class K>
 MASONRY_INLINE Lanes prepareGroups(const Group<K>* groups, typename Lift<K>::Points* points, int begin, int end, const Lanes* moved,
@@ -39,7 +43,7 @@ MASONRY_INLINE Lanes prepareGroups(const Group<K>* groups, typename Lift<K>::Poi
 }
 
 template <class K>
-MASONRY_INLINE void liftGroups(const Group<K>* groups, typename Lift<K>::Points* points, int begin, int end, Lanes* moved)
+MASONRY_INLINE void liftGroups(const Group<K>* groups, typename Lift<K>::Points* points, int begin, int end, Lanes* moved, Lanes& missing)
 {
 	const Lanes none = all(0);
 	for (int g = begin; g < end; ++g) {
@@ -48,7 +52,8 @@ MASONRY_INLINE void liftGroups(const Group<K>* groups, typename Lift<K>::Points*
 		Mask changed = none != none;
 		for (int k = 0; k < group.count; ++k) {
 			auto& at = points[g][k];
-			const Lanes next = larger(at.impulse - at.mass * (normalRate(v1, v2, group.point[k]) + at.room), none);
+			const Lanes excess = normalRate(v1, v2, group.point[k]) + at.room, next = larger(at.impulse - at.mass * excess, none);
+			missing = larger(missing, at.mass > 0 ? -excess : none);
 			pushNormal(v1, v2, group.point[k], next - at.impulse);
 			changed |= next != at.impulse;
 			at.impulse = next;
@@ -76,9 +81,9 @@ MASONRY_INLINE void partGroups(Group<K>* groups, int begin, int end, const Lanes
 	{                                                                                                                                      \
 		return any(prepareGroups<K>(groups, points, 0, count, moved, length) < 0);                                                         \
 	}                                                                                                                                      \
-	MASONRY_LANES void liftSweep(const Group<K>* groups, Lift<K>::Points* points, int begin, int end, Lanes* moved)                        \
+	MASONRY_LANES void liftSweep(const Group<K>* groups, Lift<K>::Points* points, int begin, int end, Lanes* moved, Lanes& missing)        \
 	{                                                                                                                                      \
-		liftGroups<K>(groups, points, begin, end, moved);                                                                                  \
+		liftGroups<K>(groups, points, begin, end, moved, missing);                                                                         \
 	}                                                                                                                                      \
 	MASONRY_LANES void partGaps(Group<K>* groups, int begin, int end, const Lanes* moved) { partGroups<K>(groups, begin, end, moved); }
 MASONRY_LIFT(Plane)
@@ -99,12 +104,17 @@ void Lift<K>::settle(WallContacts<K>& c, LaneArray& shift)
 	if (!anyDeep(c.groups.data(), points.data(), int(c.groups.size()), moved.data(), c.length))
 		return;
 	const Lanes noMass {1, 1, 1, 0};
-	const auto lift = [&](const Part& part, int) {
-		part.byColour([&](int first, int last) { liftSweep(c.groups.data(), points.data(), first, last, moved.data()); });
-	};
-	for (int k = 0; k < sweeps; ++k) {
+	const double enough = (tolerance::wall::penetration - tolerance::wall::lifted) * c.length;
+	for (int k = 0; k < mostSweeps; ++k) {
+		Missing missing[Team::mostParts + 1] {};
+		const auto lift = [&](const Part& part, int number) {
+			part.byColour(
+			    [&](int first, int last) { liftSweep(c.groups.data(), points.data(), first, last, moved.data(), missing[number].most); });
+		};
 		c.eachPart(lift);
-		lift(c.parts.back(), 0);
+		lift(c.parts.back(), Team::mostParts);
+		if (std::none_of(std::begin(missing), std::end(missing), [&](const Missing& here) { return largest(here.most) > enough; }))
+			break;
 	}
 	partGaps(c.groups.data(), 0, int(c.groups.size()), moved.data());
 	for (size_t b = 0; b < shift.size(); ++b)

@@ -73,26 +73,11 @@ MASONRY_LANES void locateGroups(Group<Plane>* groups, FeatureGroup<Plane>* featu
 			stale[g] = allLanes;
 }
 
-MASONRY_LANES void lossOf(const Group<Plane>* groups, int begin, int end, const Lanes* velocity, Lanes& loss)
-{
-	addSlidingLoss<Plane>(groups, begin, end, velocity, loss);
-}
-
 } // namespace
 
-template <>
-double WallContacts<Plane>::slidingLoss()
+MASONRY_LANES void takeSlidingLoss(const Group<Plane>* groups, int begin, int end, const Lanes* velocity, Lanes& loss)
 {
-	LaneArray of(parts.size(), all(0));
-	allParts([&](const Part& part, int number) {
-		Lanes loss = all(0);
-		lossOf(groups.data(), part.begin, part.end, velocity.data(), loss);
-		of[number] = loss;
-	});
-	double sum = 0;
-	for (const Lanes& loss : of)
-		sum += loss[0] + loss[1] + loss[2] + loss[3];
-	return sum;
+	addSlidingLoss<Plane>(groups, begin, end, velocity, loss);
 }
 
 template <>

@@ -154,26 +154,11 @@ MASONRY_LANES void locateGroups(const RigidSystem<Space>& s, Group<Space>* group
 	}
 }
 
-MASONRY_LANES void lossOf(const Group<Space>* groups, int begin, int end, const Lanes* velocity, Lanes& loss)
-{
-	addSlidingLoss<Space>(groups, begin, end, velocity, loss);
-}
-
 } // namespace
 
-template <>
-double WallContacts<Space>::slidingLoss()
+MASONRY_LANES void takeSlidingLoss(const Group<Space>* groups, int begin, int end, const Lanes* velocity, Lanes& loss)
 {
-	LaneArray of(parts.size(), all(0));
-	allParts([&](const Part& part, int number) {
-		Lanes loss = all(0);
-		lossOf(groups.data(), part.begin, part.end, velocity.data(), loss);
-		of[number] = loss;
-	});
-	double sum = 0;
-	for (const Lanes& loss : of)
-		sum += loss[0] + loss[1] + loss[2] + loss[3];
-	return sum;
+	addSlidingLoss<Space>(groups, begin, end, velocity, loss);
 }
 
 template <>

@@ -9,8 +9,7 @@ namespace {
 
 using Node = Supernodes::Node;
 
-constexpr int mostWidth = 16;         // columns of blocks; limits the arrays on the stack
-constexpr int mostColumns = 3 * mostWidth;
+constexpr int mostWidth = 16; // columns of blocks; limits the arrays on the stack
 
 // Eights that hold so many blocks of three.
 constexpr int eights(int blocks) { return (3 * blocks + floatWidth - 1) / floatWidth; }
@@ -114,12 +113,16 @@ void Supernodes::setPattern(const EliminationOrder& order)
 		begin += size(s);
 	}
 	numbers.assign(begin, Floats {});
+	int most = 0;
+	for (const Node& s : nodes)
+		most = std::max(most, eights(s.rows));
+	below.resize(most);
 }
 
 void Supernodes::take(const EliminationOrder& order, const std::vector<Block>& lower, const std::vector<Block>& pivots)
 {
 	Eigen::MatrixXd own, inverse, below;
-	// Row of a panel's number, column, and where in the panel.
+	// A matrix as eight rows by eight rows, each column by column.
 	const auto store = [&](const Eigen::MatrixXd& from, size_t begin) {
 		for (int i = 0; i < from.rows(); ++i)
 			for (int c = 0; c < from.cols(); ++c)
@@ -151,12 +154,8 @@ void Supernodes::take(const EliminationOrder& order, const std::vector<Block>& l
 	}
 }
 
-void Supernodes::solve(const EliminationOrder& order, float* x) const
+void Supernodes::solve(const EliminationOrder& order, float* x)
 {
-	int most = 0;
-	for (const Node& s : nodes)
-		most = std::max(most, eights(s.rows));
-	below.resize(most);
 	substitute(nodes.data(), int(nodes.size()), order.row.data(), numbers.data(), x, below.data());
 }
 

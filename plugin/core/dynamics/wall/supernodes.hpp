@@ -23,7 +23,7 @@ public:
 	// L without its diagonal of ones, entry by entry of the order, and D.
 	void take(const EliminationOrder& order, const std::vector<Block>& lower, const std::vector<Block>& pivots);
 	// x = A^-1 x; three numbers a node, in the order of elimination.
-	void solve(const EliminationOrder& order, float* x) const;
+	void solve(const EliminationOrder& order, float* x);
 
 	struct Node {
 		int column, width, firstRow, rows; // in 3 x 3 blocks; rows of the last column
@@ -33,7 +33,7 @@ public:
 private:
 	std::vector<Node> nodes;
 	FloatArray numbers;
-	mutable FloatArray below; // workspace
+	FloatArray below; // workspace
 };
 
 } // namespace masonry::rigid::wall

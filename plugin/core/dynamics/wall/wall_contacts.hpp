@@ -93,6 +93,9 @@ MASONRY_INLINE void addSlidingLoss(const Group<K>* groups, int begin, int end, c
 	}
 }
 
+void takeSlidingLoss(const Group<Plane>* groups, int begin, int end, const Lanes* velocity, Lanes& loss);
+void takeSlidingLoss(const Group<Space>* groups, int begin, int end, const Lanes* velocity, Lanes& loss);
+
 // Rate along a row of one lane's point, of the velocity (packs) of either body alone.
 template <class K>
 MASONRY_INLINE double rateOf(const PointLanes<K>& p, int row, int lane, int body, const Lanes* v)
@@ -305,8 +308,6 @@ private:
 	void WallContacts<K>::takePoint(const RigidSystem<K>&, int, int);                                                                      \
 	template <>                                                                                                                            \
 	void WallContacts<K>::locate(const RigidSystem<K>&, int, int, double, bool);                                                           \
-	template <>                                                                                                                            \
-	double WallContacts<K>::slidingLoss();                                                                                                 \
 	template <>                                                                                                                            \
 	void WallContacts<K>::setVelocity(size_t, const K::Velocity&);                                                                         \
 	template <>                                                                                                                            \
