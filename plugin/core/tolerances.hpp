@@ -174,6 +174,9 @@ constexpr double patience = 0.5;
 // rest is moved again and again.
 constexpr double penetration = 8e-6;
 constexpr double lifted = 6e-6;
+// Energy that a step may seem to make: share of what moves and what the forces do in it, and of what lifts all blocks by the smallest half
+// size. Smaller: the errors of sound steps, 1e-3 of what is lost, are reported; larger: a wall that flies apart is not.
+constexpr double createdShare = 0.1, createdLift = 1e-4;
 // Extent of the loaded part of a joint, relative to the smallest half size, up to which it is a pivot. Larger: narrow patches rock.
 constexpr double pivot = 1e-3;
 

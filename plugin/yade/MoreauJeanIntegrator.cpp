@@ -337,12 +337,13 @@ void MoreauJeanIntegrator::count(const masonry::rigid::StepReport& report)
 	if (report.diverged)
 		throw std::runtime_error(sentence("The simulation has diverged in the step from t = ", scene->time, " s: positions or velocities are no longer finite."));
 	const bool crowded = report.unlocalised > 0;
-	if (report.converged && !crowded) return;
+	if (report.converged && !crowded && !(report.created > 0)) return;
 
 	std::ostringstream text;
 	text << "In the step from t = " << scene->time << " s ";
 	if (!report.converged) text << "the contact laws are missed: residual " << report.residual << " m/s. ";
 	if (crowded) text << report.unlocalised << " points closed after mostEvents = " << mostEvents << " events, plastically at its end. ";
+	if (report.created > 0) text << report.created << " J of energy come from nowhere. ";
 	text << "Blocks in touch:";
 	for (int id : sceneOf(memory).touching()) text << ' ' << id;
 	text << '.';

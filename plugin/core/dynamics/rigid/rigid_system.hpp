@@ -70,6 +70,7 @@ struct StepReport {
 	int    substeps { 0 }, events { 0 }, sweeps { 0 }, factorisations { 0 };
 	int    unlocalised { 0 }; // points that closed beyond mostEvents
 	double residual { 0 };    // largest of the solves, m/s
+	double created { 0 };     // J, more than round-off and the error of a sound step can make of nothing
 	bool   converged { true };
 	bool   diverged { false }; // the state is no longer finite
 };

@@ -325,7 +325,7 @@ template <class K>
 void WallStep<K>::takeMotion(RigidSystem<K>& s, double h, double workBefore)
 {
 	struct alignas(64) Energies { // of the bodies of a share; lines of the cache of their own
-		double gained {0}, work {0};
+		double before {0}, gained {0}, work {0}, mass {0};
 	};
 	Energies of[wall::Team::mostParts];
 	contacts.eachShare(s.bodies.size(), [&](size_t begin, size_t end, int number) {
@@ -333,16 +333,26 @@ void WallStep<K>::takeMotion(RigidSystem<K>& s, double h, double workBefore)
 		for (size_t b = begin; b < end; ++b) {
 			const double before = s.bodies[b].kineticEnergy();
 			sum.work += takeBody(s, b, h);
+			sum.before += before;
 			sum.gained += s.bodies[b].kineticEnergy() - before;
+			sum.mass += s.bodies[b].prescribed ? 0 : s.bodies[b].mass;
 		}
 		of[number] = sum;
 	});
 	const int parts = report.mode == WallMode::still ? 1 : substepCount();
 	const double friction = parts * contacts.slidingLoss();
+	const double baseWork = s.baseWork - workBefore;
+	double lost = baseWork - friction, atStake = std::abs(baseWork), mass = 0;
+	for (const Energies& share : of) {
+		lost += share.work - share.gained;
+		atStake += std::abs(share.work) + share.before;
+		mass += share.mass;
+	}
 	s.frictDissip += friction;
-	s.impactDissip += (s.baseWork - workBefore) - friction;
-	for (const Energies& share : of)
-		s.impactDissip += share.work - share.gained;
+	s.impactDissip += lost;
+	const double liftedAll = mass * scale::acceleration(s) * contacts.length;
+	if (lost < -tolerance::wall::createdShare * atStake - tolerance::wall::createdLift * liftedAll)
+		report.created -= lost;
 }
 
 template <class K>

@@ -94,6 +94,26 @@ TEST_CASE("kinks of the base motion do not move a block, however near the start 
 	CHECK(worst < 0.04 * start);
 }
 
+// A block that slides and starts in the base is lifted out, which costs m g times the height: the step says so; one that falls and lands does
+// not.
+TEST_CASE("a step says what energy it has made of nothing")
+{
+	Scene inside, above;
+	const double deep = 0.05;
+	addBlock(inside.system, slender, {0, slender.y() - deep});
+	addBlock(above.system, slender, {0, slender.y() + deep});
+	inside.system.bodies[1].velocity[0] = 0.5;
+	double created = 0;
+	for (int k = 0; k < 300; ++k) {
+		inside.advance(1e-3);
+		created += inside.step.report.created;
+		above.advance(1e-3);
+		CHECK(above.step.report.created == 0);
+	}
+	const auto& block = inside.system.bodies[1];
+	CHECK(created == Approx(block.mass * g * deep).epsilon(1e-2));
+}
+
 // The law acts between two substeps: the ratio is the one asked, and the spin that goes on is that of the law up to what gravity and one
 // sweep change in a substep.
 TEST_CASE("a rocking joint has the restitution that is asked")
