@@ -1,0 +1,144 @@
+// How a wall is divided into parts and groups, and which course a block is in.
+#include "dynamics/wall/wall_contacts.hpp"
+#include <algorithm>
+
+namespace masonry::rigid::wall {
+
+namespace {
+
+constexpr int pairsOfPart = 1024; // at least: fewer do not repay that threads meet
+constexpr int mostSeam = 8;       // times as many pairs as are in the seam there are at least
+
+} // namespace
+
+// By number: blocks of one part are neighbours in memory, which threads then do not share; of walls numbered course by course the seams are
+// bed joints. Where numbers say little about places the seam is large, and there are fewer parts.
+// Returns how many parts there are.
+template <class K>
+int WallContacts<K>::divide(const RigidSystem<K>& s)
+{
+	std::vector<int> rank; // of a body among the free ones
+	int free = 0;
+	for (const auto& body : s.bodies)
+		rank.push_back(body.prescribed ? -1 : free++);
+	const auto atSeam = [&](const std::array<int, 2>& pair) {
+		const auto [a, b] = pair;
+		return rank[a] >= 0 && rank[b] >= 0 && partOf[a] != partOf[b];
+	};
+	for (int count = std::clamp(int(pairs.size()) / pairsOfPart, 1, Team::mostParts);; count /= 2) {
+		partOf.clear();
+		for (const int r : rank)
+			partOf.push_back(r < 0 ? 0 : int(long(r) * count / free));
+		if (count == 1 || mostSeam * std::count_if(pairs.begin(), pairs.end(), atSeam) <= long(pairs.size()))
+			return count;
+	}
+}
+
+// In each part greedy in the order of the pairs, then packed by four.
+template <class K>
+void WallContacts<K>::colour(const RigidSystem<K>& s)
+{
+	struct Lane {
+		int pair, part;
+	};
+	const int none = int(s.bodies.size()), seam = divide(s);
+	const auto isFixed = [&](int body) { return s.bodies[body].prescribed; };
+	std::vector<std::vector<int>> pairsOf(seam + 1);
+	std::vector<char> atSeam(s.bodies.size() + 1, 0);
+	for (int c = 0; c < int(pairs.size()); ++c) {
+		const auto [a, b] = pairs[c];
+		const bool within = isFixed(a) || isFixed(b) || partOf[a] == partOf[b];
+		pairsOf[within ? partOf[isFixed(a) ? b : a] : seam].push_back(c);
+		if (!within)
+			atSeam[a] = atSeam[b] = 1;
+	}
+	parts.assign(seam + 1, {});
+	for (int b = 0; b <= none; ++b) {
+		const bool within = b < none && !isFixed(b) && !atSeam[b];
+		for (int k = 0; k < packs<K>; ++k)
+			parts[within ? partOf[b] : seam].members.push_back(packs<K> * b + k);
+	}
+
+	groups.clear();
+	features.clear();
+	std::array<Slot, lanesOfPair<K>> noSlots;
+	noSlots.fill({-1, -1});
+	slots.assign(pairs.size(), noSlots);
+	for (int p = 0; p <= seam; ++p) {
+		std::vector<std::vector<Lane>> ofColour;
+		std::vector<std::vector<char>> used; // by colour, whether a body has a pair of it
+		for (const int c : pairsOf[p])
+			for (int part = 0; part < (wide[c] ? lanesOfPair<K> : 1); ++part) {
+				size_t k = 0;
+				for (;; ++k) {
+					if (k == ofColour.size()) {
+						ofColour.emplace_back();
+						used.emplace_back(s.bodies.size(), 0);
+					}
+					const auto taken = [&](int body) { return !isFixed(body) && used[k][body]; };
+					if (!taken(pairs[c][0]) && !taken(pairs[c][1]))
+						break;
+				}
+				ofColour[k].push_back({c, part});
+				used[k][pairs[c][0]] = used[k][pairs[c][1]] = 1;
+			}
+		parts[p].begin = int(groups.size());
+		for (const auto& members : ofColour) {
+			for (size_t first = 0; first < members.size(); first += width) {
+				Group<K> group {};
+				FeatureGroup<K> feature {};
+				group.setCount(lanePoints<K>);
+				for (int i = 0; i < width; ++i) {
+					const bool filled = first + i < members.size();
+					const Lane lane = filled ? members[first + i] : Lane {-1, 0};
+					feature.pair[i] = lane.pair;
+					feature.first[i] = lane.part * lanePoints<K>;
+					group.body1[i] = filled ? pairs[lane.pair][0] : none;
+					group.body2[i] = filled ? pairs[lane.pair][1] : none;
+					if (filled)
+						slots[lane.pair][lane.part] = {int(groups.size()), i};
+				}
+				groups.push_back(group);
+				features.push_back(feature);
+			}
+			parts[p].colourEnd.push_back(int(groups.size()));
+		}
+		parts[p].end = int(groups.size());
+	}
+	still.assign(groups.size(), {});
+	stale.assign(groups.size(), allLanes);
+	known.assign(pairs.size(), 0);
+	onBase.clear();
+	for (int g = 0; g < int(groups.size()); ++g)
+		for (int i = 0; i < width && features[g].pair[i] >= 0; ++i)
+			if (isFixed(groups[g].body1[i]) || isFixed(groups[g].body2[i]))
+				onBase.push_back({g, i});
+}
+
+// Breadth first from the prescribed bodies.
+template <class K>
+void WallContacts<K>::findCourses(const RigidSystem<K>& s)
+{
+	course.assign(s.bodies.size(), -1);
+	for (size_t b = 0; b < s.bodies.size(); ++b)
+		if (s.bodies[b].prescribed)
+			course[b] = 0;
+	depth = 0;
+	for (bool grew = true; grew; ++depth) {
+		grew = false;
+		for (const auto& [a, b] : pairs)
+			for (const auto& [from, to] : {std::pair(a, b), std::pair(b, a)})
+				if (course[from] == depth && course[to] < 0) {
+					course[to] = depth + 1;
+					grew = true;
+				}
+	}
+	--depth;
+}
+
+template void WallContacts<Plane>::colour(const RigidSystem<Plane>&);
+template void WallContacts<Space>::colour(const RigidSystem<Space>&);
+template void WallContacts<Plane>::findCourses(const RigidSystem<Plane>&);
+template void WallContacts<Space>::findCourses(const RigidSystem<Space>&);
+
+} // namespace masonry::rigid::wall
