@@ -50,7 +50,7 @@ public:
 	virtual bool outdated() const = 0;
 	/// Throws LeavesPlane before anything has moved.
 	virtual masonry::rigid::StepReport step() = 0;
-	/// O.interactions as they are after the last step: a wall leaves them behind while nobody looks.
+	/// O.interactions as they are after the last step: they are left behind while nobody looks.
 	virtual void writeJoints() = 0;
 	virtual vector<int> touching() = 0;
 	virtual void setInstant(Real) = 0;
@@ -67,7 +67,7 @@ template <class K> class RigidScene final : public AnyRigidScene {
 		Properties       properties;
 		Motion           written;
 	};
-	/// A pair's interaction; in O.interactions from first touch, with method='wall' as soon as it is near, until the blocks are clearly apart.
+	/// A pair's interaction; in O.interactions as soon as the blocks are near, until they are clearly apart.
 	struct Joint {
 		shared_ptr<Interaction> interaction;
 		shared_ptr<BlockGeom>   geom;
@@ -160,7 +160,7 @@ public:
 		byWalls = integrator.isWall();
 		const auto report = byWalls ? advanceWall() : stepper.advance(system, scene.dt);
 		writeStates();
-		if (++unshown >= mostUnshown || !byWalls || integrator.isWatched()) writeJoints();
+		if (++unshown >= mostUnshown || integrator.isWatched()) writeJoints();
 		for (const auto& impact : system.impacts) record(impact);
 		integrator.frictDissip = system.frictDissip;
 		integrator.impactDissip = system.impactDissip;
@@ -464,7 +464,7 @@ private:
 		return std::none_of(pair.points.begin(), pair.points.begin() + pair.size, [&](const auto& point) { return point.gap <= far; });
 	}
 
-	/// Not so before the blocks touch, and when a script or the end of a body has erased it.
+	/// Not so before the blocks are near, and when a script or the end of a body has erased it.
 	bool isListed(const Joint& joint) const
 	{
 		const int place = joint.interaction->linIx;
@@ -475,7 +475,7 @@ private:
 	{
 		const bool touching = touches(pair);
 		if (!(isListed(joint) && joint.interaction->isReal())) {
-			if (byWalls ? apart(pair) : !touching) return; // of a wall, what nobody saw must not decide
+			if (apart(pair)) return; // not whether they have touched: what nobody saw must not decide
 			list(joint, pair);
 		} else if (!touching && apart(pair)) {
 			erase(joint);
@@ -550,7 +550,7 @@ private:
 	static constexpr Real searchMargin = 0.1;
 	/// Courses of a wall up to which its moving mode is measured to be right (validation/walls/shaking).
 	static constexpr int mostCourses = 64;
-	/// Steps of a wall after which O.interactions are written even if nobody seems to look.
+	/// Steps after which O.interactions are written even if nobody seems to look.
 	static constexpr int mostUnshown = 64;
 
 	MoreauJeanIntegrator& integrator;

@@ -1,5 +1,5 @@
-"""method='wall' in YADE: when it is chosen, what it refuses, O.interactions while nobody looks, laws changed by a script, the same bits after
-loading."""
+"""method='wall' in YADE: when it is chosen, what it refuses, O.interactions while nobody looks (of either method), laws changed by a script, the
+same bits after loading."""
 
 import math
 import os
@@ -41,29 +41,30 @@ for options, words in (({"impact_order": "simultaneous"}, ("impactOrder", "'sequ
     refuses(lambda: wall(4, 6, 0.1, **{"method": "wall", **options}), *words)
 
 # --- O.interactions: what one step after the other shows, a run shows where somebody looks ---
-base, ids = wall(5, 6, 0.5)
 
 
 def reaction():
     return sum(((1 if i.id1 == base else -1) * (i.phys.normalForce + i.phys.shearForce) for i in O.interactions if base in (i.id1, i.id2)), Vector3.Zero)
 
 
-shown = []
-for _ in range(300):
-    O.step()
-    shown.append(reaction())
-weight = sum(O.bodies[i].state.mass for i in ids) * 9.81
-assert abs(shown[90][2] / weight - 1) < 1e-3  # the tolerance, while the wall stands
-wall(5, 6, 0.5)
-seen = []
-O.engines = O.engines + [PyRunner(command="seen.append((O.iter, reaction()))", iterPeriod=37)]
-O.run(222, True)
-assert len(seen) >= 5 and all(forces == shown[step] for step, forces in seen)
-O.engines = O.engines[:-1]
-assert reaction() == shown[221]
-O.run(53, True)
-assert reaction() == shown[274]
-print("interactions: base reaction", reaction()[2] / weight, "of the weight, mode", integrator().mode)
+for courses, per_course, method in ((5, 6, "wall"), (2, 2, "localised")):
+    base, ids = wall(courses, per_course, 0.5)
+    shown = []
+    for _ in range(300):
+        O.step()
+        shown.append(reaction())
+    weight = sum(O.bodies[i].state.mass for i in ids) * 9.81
+    assert abs(shown[90][2] / weight - 1) < 1e-3  # the tolerance, while the wall stands
+    wall(courses, per_course, 0.5)
+    seen = []
+    O.engines = O.engines + [PyRunner(command="seen.append((O.iter, reaction()))", iterPeriod=37)]
+    O.run(222, True)
+    assert integrator().method == method and len(seen) >= 5 and all(forces == shown[step] for step, forces in seen)
+    O.engines = O.engines[:-1]
+    assert reaction() == shown[221]
+    O.run(53, True)
+    assert reaction() == shown[274]
+    print("interactions: base reaction", reaction()[2] / weight, "of the weight, mode", integrator().mode)
 
 # --- friction changed through the interactions: blocks pushed by half their weight slide with (0.5 - mu) g ---
 O.reset()

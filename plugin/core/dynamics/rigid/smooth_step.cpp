@@ -16,7 +16,7 @@ namespace {
 	template <class K> typename K::Pose prescribedPose(const RigidSystem<K>& s, const RigidBody<K>& body, double h)
 	{
 		typename K::Pose pose = body.pose;
-		K::advance(pose, body.velocity, h);
+		if (!body.velocity.isZero(0)) K::advance(pose, body.velocity, h);
 		if (body.drive >= 0) pose.position = body.origin + s.driveDirections[body.drive] * s.drives[body.drive]->displacement(s.time + h);
 		return pose;
 	}
