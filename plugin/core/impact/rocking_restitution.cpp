@@ -1,7 +1,9 @@
 #include "impact/rocking_restitution.hpp"
 #include "tolerances.hpp"
 #include <algorithm>
+#include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
+#include <cstdint>
 #include <tuple>
 #include <utility>
 
@@ -55,7 +57,8 @@ namespace {
 				speed = std::max(speed, relativeVelocity(bodies, point).norm());
 			const double        before = kineticEnergy(bodies);
 			RockingImpactResult result;
-			const auto          fails = [&](bool withRows) {
+			// Energy that is left, J; negative: the laws are missed, or energy has grown.
+			const auto spare = [&](bool withRows) {
 				for (size_t i = 0; i < bodies.size(); ++i)
 					std::tie(bodies[i].velocity, bodies[i].angularVelocity) = start[i];
 				for (CoupleRow& row : rows)
@@ -63,30 +66,33 @@ namespace {
 				result.residual = solver(bodies, points, withRows ? rows : none).residual;
 				result.work = supportWork(bodies, points, rows);
 				result.energyLost = before + result.work - kineticEnergy(bodies);
-				return result.residual > tolerance::noSolution * speed || result.energyLost < -tolerance::energyGain * (before + std::abs(result.work));
+				const double scale = before + std::abs(result.work);
+				return result.residual > tolerance::noSolution * speed ? -scale : result.energyLost + tolerance::energyGain * scale;
 			};
-			if (!fails(true) || rows.empty()) return result;
+			const double asAsked = spare(true);
+			if (!(asAsked < 0) || rows.empty()) return result;
 
 			result.capped = true;
-			fails(false);
+			const double withoutRows = spare(false);
 			asked.clear();
 			plastic.clear();
 			for (const CoupleRow& row : rows) {
 				asked.push_back(row.target);
 				plastic.push_back(row.axis.dot(bodies[row.body2].angularVelocity - bodies[row.body1].angularVelocity));
 			}
-			const auto failsAt = [&](double fraction) {
+			const auto spareAt = [&](double fraction) { // of the way from the plastic to the asked targets
 				for (size_t i = 0; i < rows.size(); ++i)
 					rows[i].target = plastic[i] + fraction * (asked[i] - plastic[i]);
-				return fails(fraction > 0);
+				return spare(fraction > 0);
 			};
-			double        safe = 0, unsafe = 1; // fractions of the way from the plastic to the asked targets
-			constexpr int bisections = 40;
-			for (int i = 0; i < bisections; ++i) {
-				const double fraction = 0.5 * (safe + unsafe);
-				(failsAt(fraction) ? unsafe : safe) = fraction;
+			double safe = 0;
+			if (withoutRows > 0) {
+				constexpr double   narrow = 1e-12;
+				std::uintmax_t     iterations = 100;
+				const auto         enough = [](double low, double high) { return high - low <= narrow; };
+				safe = boost::math::tools::toms748_solve(spareAt, 0., 1., withoutRows, asAsked, enough, iterations).first;
 			}
-			failsAt(safe);
+			spareAt(safe);
 			return result;
 		}
 	};

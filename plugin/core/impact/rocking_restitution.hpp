@@ -33,7 +33,7 @@
 //
 // Energy never grows: were the kinetic energy larger after than before by more than the work of the prescribed bodies (zero
 // where they stand still), the targets of all rows are moved, by one fraction, from C e.w- towards their plastic values until
-// it is not (bisection). The same where the laws cannot all be met because the rows ask landing points to pull (without
+// it is not. The same where the laws cannot all be met because the rows ask landing points to pull (without
 // slip only). `capped` tells.
 #include "impact/impulse_problem.hpp"
 
