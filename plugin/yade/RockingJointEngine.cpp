@@ -177,7 +177,15 @@ void RockingJointEngine::recordImpact(const masonry::ImpactRecord& record)
 	impactCapped.push_back(record.result.capped);
 	impactDissip += record.result.energyLost + record.settled;
 	baseWork += record.work;
-	worstResidual = std::max(worstResidual, record.result.residual);
+}
+
+void RockingJointEngine::reportUnsolved()
+{
+	worstResidual = std::max(worstResidual, system.residual);
+	if (system.unsolved > 0 && failures == 0)
+		LOG_WARN("at t = " << scene->time << " s the impulses at the joints miss their laws by " << system.residual << " m/s"
+		         << " (without slip they may have no solution). The run goes on; RockingJointEngine.failures counts such problems.");
+	failures += system.unsolved;
 }
 
 bool RockingJointEngine::applyJumps(const vector<BaseMotionEngine*>& motions, const vector<StepImpact>& impacts)
@@ -193,7 +201,6 @@ bool RockingJointEngine::applyJumps(const vector<BaseMotionEngine*>& motions, co
 			baseWork += response.work;
 			acted = true;
 			impactDissip += response.dissipated;
-			worstResidual = std::max(worstResidual, response.residual);
 		}
 	}
 	return acted;
@@ -289,6 +296,8 @@ void RockingJointEngine::action()
 	checkedTimeStep = scene->dt;
 	system.gravity = gravity;
 	system.dt = scene->dt;
+	system.residual = 0;
+	system.unsolved = 0;
 	system.order = impactOrder == "sequential" ? masonry::ImpactOrder::sequential : masonry::ImpactOrder::simultaneous;
 	addExternalForces();
 	vector<BaseMotionEngine*> motions;
@@ -318,6 +327,7 @@ void RockingJointEngine::action()
 		impacts.push_back({ ids[record.block], record.before });
 	}
 	const bool jumped = applyJumps(motions, impacts);
+	reportUnsolved();
 	for (size_t b = 0; b < ids.size(); ++b)
 		if (!system.bodies[b].prescribed && (starting || lifted != 0 || !records.empty() || jumped))
 			writeState(system.bodies[b], *(*scene->bodies)[ids[b]]->state);

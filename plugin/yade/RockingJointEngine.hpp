@@ -35,7 +35,8 @@ public:
 		((vector<Real>, impactFriction, , Attr::readonly, "Friction coefficient that the impact asks for; where friction is smaller the pivot has slipped."))
 		((vector<int>, impactSwitched, , Attr::readonly, "1: the pivot was handed over; 0: the joint came to rest."))
 		((vector<int>, impactCapped, , Attr::readonly, "1: the restitution was lowered so that the energy does not grow."))
-		((Real, worstResidual, 0, Attr::readonly, "Largest residual of the impulse problems so far [m/s]."))
+		((Real, worstResidual, 0, Attr::readonly, "Largest residual of the impulse problems so far [m/s]; of accelerations times the time step."))
+		((long, failures, 0, Attr::readonly, "Impulse problems so far that missed their laws: residual above 1e-8 of their speed."))
 		((Real, kinetic, 0, Attr::readonly, "Kinetic energy now [J]."))
 		((Real, potential, 0, Attr::readonly, "Potential energy of gravity now, zero at the origin [J]."))
 		((Real, elastPotential, 0, Attr::readonly, "Energy stored in the joints now [J]."))
@@ -59,6 +60,7 @@ private:
 	vector<Pair> gather();
 	void addExternalForces();
 	void checkTimeStep();
+	void reportUnsolved();
 	void recordImpact(const masonry::ImpactRecord&);
 	bool applyJumps(const vector<BaseMotionEngine*>& motions, const vector<StepImpact>& impacts);
 	void applyForces(const vector<Pair>& pairs);

@@ -52,6 +52,7 @@ namespace {
 		Vector               free, p;
 		int                  nPoints, nCouples;
 		double               length; // of the couple rows, m
+		double               speed;  // largest velocity that the impulses have to take away, m/s
 		double               noise;  // velocity that counts as zero, m/s
 		PerPoint<PointState> points;
 
@@ -123,7 +124,8 @@ namespace {
 			const Vector3 spin = bodies[couple.body2].angularVelocity - bodies[couple.body1].angularVelocity;
 			free[3 * nPoints + c] = length * (couple.axis.dot(spin) - couple.target);
 		}
-		noise = tolerance::impulse * free.cwiseAbs().maxCoeff();
+		speed = free.cwiseAbs().maxCoeff();
+		noise = tolerance::impulse * speed;
 		G.resize(n, n);
 		for (int r = 0; r < n; ++r)
 			for (int s = 0; s <= r; ++s)
@@ -293,8 +295,9 @@ namespace {
 				bodies[row.body1].angularVelocity -= inverseInertia[row.body1] * row.axis * change;
 				bodies[row.body2].angularVelocity += inverseInertia[row.body2] * row.axis * change;
 			}
-			if (report.residual <= tolerance::sweeps * scale) break;
+			if (report.residual <= tolerance::sweeps * scale) return report;
 		}
+		report.solved = false;
 		return report;
 	}
 
@@ -313,6 +316,20 @@ namespace {
 			if (sweep % checkEvery == 0 && residual(s) <= target(s)) return sweep;
 		}
 		return maxSweeps;
+	}
+
+	template <int most> void apply(const System<most>& s, std::vector<Body>& bodies, std::vector<ImpulsePoint>& points, std::vector<CoupleRow>& couples)
+	{
+		for (int row = 0; row < s.p.size(); ++row)
+			for (int i = 0; i < s.rows[row].sides; ++i) {
+				const Side& side = s.rows[row].side[i];
+				bodies[side.body].velocity += s.p[row] * side.response.template head<3>();
+				bodies[side.body].angularVelocity += s.p[row] * side.response.template tail<3>();
+			}
+		for (int i = 0; i < s.nPoints; ++i)
+			points[i].impulse = s.points[i].axes.transpose() * s.p.template segment<3>(3 * i);
+		for (int c = 0; c < s.nCouples; ++c)
+			couples[c].couple = s.length * s.p[3 * s.nPoints + c];
 	}
 
 	template <int most> ImpulseReport solveDense(std::vector<Body>& bodies, std::vector<ImpulsePoint>& points, std::vector<CoupleRow>& couples)
@@ -349,17 +366,8 @@ namespace {
 			letPullingPointsGo(s);
 			report.residual = residual(s);
 		}
-
-		for (int row = 0; row < s.p.size(); ++row)
-			for (int i = 0; i < s.rows[row].sides; ++i) {
-				const Side& side = s.rows[row].side[i];
-				bodies[side.body].velocity += s.p[row] * side.response.template head<3>();
-				bodies[side.body].angularVelocity += s.p[row] * side.response.template tail<3>();
-			}
-		for (int i = 0; i < s.nPoints; ++i)
-			points[i].impulse = s.points[i].axes.transpose() * s.p.template segment<3>(3 * i);
-		for (int c = 0; c < s.nCouples; ++c)
-			couples[c].couple = s.length * s.p[3 * s.nPoints + c];
+		report.solved = report.residual <= std::max(target(s), tolerance::impulseEnough * s.speed);
+		apply(s, bodies, points, couples);
 		return report;
 	}
 
@@ -392,6 +400,15 @@ ImpulseReport solveImpulses(std::vector<Body>& bodies, std::vector<ImpulsePoint>
 	if (points.size() > mostDense) return solveBySweeps(bodies, points, couples);
 	const bool few = points.size() <= fewPoints && 3 * points.size() + couples.size() <= fewRows;
 	return few ? solveDense<fewRows>(bodies, points, couples) : solveDense<Eigen::Dynamic>(bodies, points, couples);
+}
+
+ImpulseReport letPullingPointsGo(std::vector<Body>& bodies, std::vector<ImpulsePoint>& points, std::vector<CoupleRow>& couples)
+{
+	System<Eigen::Dynamic> s(bodies, points, couples);
+	letPullingPointsGo(s);
+	apply(s, bodies, points, couples);
+	const double missed = residual(s);
+	return { 0, missed, missed <= tolerance::impulseEnough * s.speed };
 }
 
 } // namespace masonry

@@ -44,6 +44,7 @@ struct CoupleRow {
 struct ImpulseReport {
 	int    iterations;
 	double residual; // largest violation of the laws above, as a velocity, m/s (natural map)
+	bool   solved { true }; // the residual is what counts as zero
 };
 
 // Finds the impulses and changes the bodies' velocities. Prescribed bodies keep theirs.
@@ -56,5 +57,7 @@ double longestArm(const std::vector<Body>& bodies, const std::vector<ImpulsePoin
 
 // One dense problem of all points: for few.
 ImpulseReport solveImpulses(std::vector<Body>& bodies, std::vector<ImpulsePoint>& points, std::vector<CoupleRow>& couples);
+// The way out alone, for problems without slip that are known to have no solution.
+ImpulseReport letPullingPointsGo(std::vector<Body>& bodies, std::vector<ImpulsePoint>& points, std::vector<CoupleRow>& couples);
 
 } // namespace masonry

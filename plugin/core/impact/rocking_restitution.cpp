@@ -55,19 +55,23 @@ namespace {
 			double speed = 0;
 			for (const ImpulsePoint& point : points)
 				speed = std::max(speed, relativeVelocity(bodies, point).norm());
+			const bool          maySlip = std::all_of(points.begin(), points.end(), [](const ImpulsePoint& point) { return point.friction < noSlip; });
 			const double        before = kineticEnergy(bodies);
 			RockingImpactResult result;
-			// Energy that is left, J; negative: the laws are missed, or energy has grown.
+			// Energy that is left, J; negative: the laws cannot be met, or energy has grown.
 			const auto spare = [&](bool withRows) {
 				for (size_t i = 0; i < bodies.size(); ++i)
 					std::tie(bodies[i].velocity, bodies[i].angularVelocity) = start[i];
 				for (CoupleRow& row : rows)
 					row.couple = 0;
-				result.residual = solver(bodies, points, withRows ? rows : none).residual;
+				const ImpulseReport report = solver(bodies, points, withRows ? rows : none);
+				result.residual = report.residual;
+				result.solved = report.solved;
 				result.work = supportWork(bodies, points, rows);
 				result.energyLost = before + result.work - kineticEnergy(bodies);
 				const double scale = before + std::abs(result.work);
-				return result.residual > tolerance::noSolution * speed ? -scale : result.energyLost + tolerance::energyGain * scale;
+				const bool   unsolvable = !maySlip && result.residual > tolerance::noSolution * speed;
+				return unsolvable ? -scale : result.energyLost + tolerance::energyGain * scale;
 			};
 			const double asAsked = spare(true);
 			if (!(asAsked < 0) || rows.empty()) return result;
@@ -180,6 +184,7 @@ namespace {
 		sum.energyLost += stage.energyLost;
 		sum.capped |= stage.capped;
 		sum.residual = std::max(sum.residual, stage.residual);
+		sum.solved &= stage.solved;
 	}
 
 } // namespace

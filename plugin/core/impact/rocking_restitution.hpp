@@ -34,7 +34,7 @@
 // Energy never grows: were the kinetic energy larger after than before by more than the work of the prescribed bodies (zero
 // where they stand still), the targets of all rows are moved, by one fraction, from C e.w- towards their plastic values until
 // it is not. The same where the laws cannot all be met because the rows ask landing points to pull (without
-// slip only). `capped` tells.
+// slip only; if they cannot be met without rows either, impact is plastic). `capped` tells.
 #include "impact/impulse_problem.hpp"
 
 namespace masonry {
@@ -66,6 +66,7 @@ struct RockingImpactResult {
 	double energyLost { 0 }; // kinetic energy before + work - after, J, not negative but for round-off
 	bool   capped { false }; // the targets were moved: C is not realised
 	double residual { 0 };   // of the impulse problem, m/s
+	bool   solved { true };  // it counts as zero
 };
 
 // Zero where there is no old support or no closing point approaches.

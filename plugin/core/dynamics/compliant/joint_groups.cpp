@@ -123,6 +123,8 @@ Neighbourhood neighbourhood(const JointSystem& s, const Joint& joint)
 
 void putBack(const Neighbourhood& part, JointSystem& s)
 {
+	s.residual = std::max(s.residual, part.system.residual);
+	s.unsolved += part.system.unsolved;
 	for (size_t k = 0; k < part.bodies.size(); ++k)
 		if (!part.system.bodies[k].prescribed) s.bodies[part.bodies[k]] = part.system.bodies[k];
 	for (int k : part.system.rim) { // the pose has only gone back and forth

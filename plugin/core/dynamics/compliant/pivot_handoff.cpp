@@ -1,6 +1,7 @@
 #include "dynamics/compliant/pivot_handoff.hpp"
 #include "dynamics/compliant/joint_groups.hpp"
 #include "dynamics/compliant/rigid_acceleration.hpp"
+#include "dynamics/rigid/sparse_impulses.hpp"
 #include "tolerances.hpp"
 #include <algorithm>
 #include <cmath>
@@ -10,6 +11,19 @@
 namespace masonry {
 
 namespace {
+
+	void note(JointSystem& s, double residual, bool solved)
+	{
+		s.residual = std::max(s.residual, residual);
+		s.unsolved += !solved;
+	}
+
+	RigidAcceleration accelerations(JointSystem& s, std::vector<HeldPoint> points)
+	{
+		RigidAcceleration rates = rigidAcceleration(s.bodies, s.contacts, std::move(points));
+		note(s, rates.report.residual * s.dt, rates.report.solved);
+		return rates;
+	}
 
 	// The state at an instant inside the step, and the way back to its end. Leapfrog: positions are those of the end of
 	// the step, velocities those of its middle. Contact points follow.
@@ -95,7 +109,9 @@ namespace {
 	{
 		for (int b : s.rim)
 			s.bodies[b].prescribed = false;
+		impact.solve = rigid::solveSparsely;
 		const RockingImpactResult result = applyRockingImpact(s.bodies, impact);
+		note(s, result.residual, result.solved);
 		for (int b : s.rim)
 			s.bodies[b].prescribed = true;
 		return { impact.joints.front().result, result };
@@ -120,7 +136,7 @@ namespace {
 	{
 		const double stored = storedEnergy(s), power = supportPower(s);
 		const auto   loadedPoints = selectPoints(s.contacts, loaded);
-		goBack(s, rigidAcceleration(s.bodies, s.contacts, loadedPoints), closing.before);
+		goBack(s, accelerations(s, loadedPoints), closing.before);
 
 		RockingImpact impact = closingImpact(s, joint, closing, loadedPoints);
 		const Vector3 axis = rockingAxis(s.bodies, impact.joints.front(), impact.points);
@@ -132,7 +148,7 @@ namespace {
 		const bool                 stops = rests || result.after < least;
 
 		const auto held = passPivot(s, joint, closing, loadedPoints, stops, tolerance::parting * closing.lever * result.before);
-		const RigidAcceleration rates = rigidAcceleration(s.bodies, s.contacts, held);
+		const RigidAcceleration rates = accelerations(s, held);
 		goForth(s, rates, closing.before);
 
 		ImpactRecord record;
@@ -155,7 +171,7 @@ void startAtEquilibrium(JointSystem& s)
 	for (const JointContact& contact : s.contacts)
 		size = std::max(size, std::sqrt(contact.patch.nominalArea));
 	const auto near = [&](const JointContact& contact, int i) { return contact.patch.points[i].gap <= tolerance::mergedClosing * size; };
-	const RigidAcceleration rates = rigidAcceleration(s.bodies, s.contacts, selectPoints(s.contacts, near));
+	const RigidAcceleration rates = accelerations(s, selectPoints(s.contacts, near));
 	settle(s, rates.points, std::numeric_limits<double>::infinity()); // whatever it takes
 	goForth(s, rates, 0.); // velocities go half a step back
 }
@@ -207,11 +223,12 @@ namespace {
 		std::vector<CoupleRow> noTurn;
 		for (int axis = 0; axis < 3; ++axis)
 			noTurn.push_back({ support, joint.block, Vector3::Unit(axis), 0. });
-		solveImpulses(s.bodies, rows, noTurn);
+		const ImpulseReport report = solveImpulses(s.bodies, rows, noTurn); // one block: few points
+		note(s, report.residual, report.solved);
 		const double stopped = moving - kineticEnergy(s.bodies);
 		for (const HeldPoint& p : parting)
 			s.contacts[p.contact].points[p.point].muted = true;
-		const RigidAcceleration rates = rigidAcceleration(s.bodies, s.contacts, selectPoints(s.contacts, loaded));
+		const RigidAcceleration rates = accelerations(s, selectPoints(s.contacts, loaded));
 		const double            settled = settle(s, rates.points, stored);
 		goForth(s, rates, 0.); // velocities go half a step back
 		return stopped + settled;
@@ -225,7 +242,7 @@ double liftJoints(JointSystem& s)
 	double given = 0;
 	for (const Joint& joint : groupJoints(s)) { // one at most
 		const auto all = selectPoints(s.contacts, [](const JointContact&, int) { return true; });
-		const auto parting = partingPoints(rigidAcceleration(s.bodies, s.contacts, all), s.contacts);
+		const auto parting = partingPoints(accelerations(s, all), s.contacts);
 		if (!parting.empty()) given += lift(s, joint, parting);
 	}
 	return given;
@@ -257,7 +274,8 @@ namespace {
 		auto       rows = impulsePoints(s, touching);
 		std::vector<CoupleRow> none;
 		const double           energyBefore = kineticEnergy(s.bodies);
-		response.residual = solveImpulses(s.bodies, rows, none).residual;
+		const ImpulseReport    report = rigid::solveSparsely(s.bodies, rows, none);
+		note(s, report.residual, report.solved);
 		for (const ImpulsePoint& row : rows)
 			for (int b : moved) // impulse times the mean of the base's velocities before and after
 				response.work += (row.body1 == b ? 1 : row.body2 == b ? -1 : 0) * row.impulse.dot(s.bodies[b].velocity - 0.5 * jump);
@@ -278,12 +296,12 @@ namespace {
 JumpResponse applyBaseJump(JointSystem& s, const std::vector<int>& moved, const Vector3& jump, double before)
 {
 	const double stored = storedEnergy(s), power = supportPower(s);
-	goBack(s, rigidAcceleration(s.bodies, s.contacts, selectPoints(s.contacts, loaded)), before);
+	goBack(s, accelerations(s, selectPoints(s.contacts, loaded)), before);
 	for (int b : moved)
 		s.bodies[b].velocity += jump;
 	JumpResponse            response;
 	const auto              held = respondToJump(s, moved, jump, response);
-	const RigidAcceleration rates = rigidAcceleration(s.bodies, s.contacts, held);
+	const RigidAcceleration rates = accelerations(s, held);
 	goForth(s, rates, before);
 	response.dissipated += settle(s, rates.points, stored);
 	response.work += before * (supportPower(s) - power);

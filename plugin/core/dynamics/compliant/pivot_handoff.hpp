@@ -35,6 +35,10 @@ struct JointSystem {
 	// Bodies at the rim of a part cut out of a larger structure: they take impulses, but what else stands on them is not
 	// here, so between impulses they keep their velocity (they are marked as prescribed). Empty: none.
 	std::vector<int> rim;
+	// Impulse problems since these were last set to zero: their largest residual (of accelerations: times dt, the velocity that they
+	// are used for), m/s, and how many miss their laws by more than counts as zero.
+	double residual { 0 };
+	int    unsolved { 0 };
 };
 
 struct ImpactRecord {
@@ -69,7 +73,6 @@ std::vector<ImpactRecord> handOffPivots(JointSystem& system);
 struct JumpResponse {
 	double work { 0 };       // of the moved bodies: their impulses, and the changed forces up to the end of the step, J
 	double dissipated { 0 }; // by the plastic, frictional response, J
-	double residual { 0 };   // of the impulse problem, m/s
 };
 
 // The prescribed bodies listed change their velocity by `jump` at the instant `before` seconds ago. Their own state in

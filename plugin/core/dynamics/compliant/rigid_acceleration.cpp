@@ -1,5 +1,5 @@
 #include "dynamics/compliant/rigid_acceleration.hpp"
-#include "impact/impulse_problem.hpp"
+#include "dynamics/rigid/sparse_impulses.hpp"
 
 namespace masonry {
 
@@ -30,9 +30,8 @@ RigidAcceleration rigidAcceleration(const std::vector<Body>& bodies, const std::
 		rows.push_back(row);
 	}
 	std::vector<CoupleRow> none;
-	solveImpulses(rates, rows, none);
-
 	RigidAcceleration result;
+	result.report = rigid::solveSparsely(rates, rows, none);
 	for (const Body& body : rates) {
 		result.linear.push_back(body.velocity);
 		result.angular.push_back(body.angularVelocity);

@@ -7,6 +7,7 @@
 // free values are external force / mass (with the gyroscopic moment) and the last two terms are the points' bias. The
 // "impulses" are then the forces at the points.
 #include "dynamics/compliant/joint_contact.hpp"
+#include "impact/impulse_problem.hpp"
 #include <vector>
 
 namespace masonry {
@@ -19,6 +20,7 @@ struct HeldPoint {
 struct RigidAcceleration {
 	std::vector<Vector3>   linear, angular; // per body, m/s^2 and rad/s^2
 	std::vector<HeldPoint> points;
+	ImpulseReport          report; // of the impulse problem: m/s^2
 };
 
 // `held(contact, point)` selects the points.

@@ -24,16 +24,19 @@ struct ContactSolver<K>::Workspace {
 	}
 
 	// Newton, and where that stops sweeps from the best iterate to start anew from.
-	double alternate(double tolerance, int lastSweeps, SolveReport& report)
+	double alternate(double tolerance, double enough, int lastSweeps, SolveReport& report)
 	{
 		constexpr int rounds = 8, shares = 36; // 1 + 2 + .. + 8: each round sweeps longer, all together lastSweeps
 		s.bestResidual = std::numeric_limits<double>::infinity();
 		for (int round = 1; round <= rounds; ++round) {
 			s.applyImpulses();
 			s.keepBest(s.residual());
-			if (newton.converge(tolerance, report) <= tolerance)
+			newton.converge(tolerance, report);
+			if (s.bestResidual <= tolerance)
 				return s.bestResidual;
 			s.restoreBest();
+			if (s.bestResidual <= enough)
+				return s.bestResidual;
 			if (gaussSeidel(s, tolerance, lastSweeps * round / shares, true, report) <= tolerance)
 				return s.residual();
 		}
@@ -67,7 +70,7 @@ double ContactSolver<K>::residual()
 }
 
 template <class K>
-SolveReport ContactSolver<K>::solve(double tolerance)
+SolveReport ContactSolver<K>::solve(double tolerance, double enough)
 {
 	if (!workspace)
 		workspace.reset(new Workspace);
@@ -90,8 +93,8 @@ SolveReport ContactSolver<K>::solve(double tolerance)
 		return report;
 	report.residual = gaussSeidel(w.s, tolerance, useNewton ? maxSweeps : lastSweeps, !useNewton, report);
 	if (useNewton && report.residual > tolerance)
-		report.residual = w.alternate(tolerance, lastSweeps, report);
-	report.converged = report.residual <= tolerance;
+		report.residual = w.alternate(tolerance, enough, lastSweeps, report);
+	report.converged = report.residual <= std::max(tolerance, enough);
 	if (!report.converged) {
 		w.s.addNoEnergy();
 		report.residual = w.s.residual();

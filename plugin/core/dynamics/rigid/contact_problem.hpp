@@ -72,8 +72,8 @@ public:
 	// Pairs of free bodies that may meet, if known: the order of elimination then stays while points come and go.
 	std::vector<std::array<int, 2>> near;
 
-	// Until the residual is at most `tolerance` (m/s).
-	SolveReport solve(double tolerance);
+	// Until the residual is at most `tolerance` (m/s); where Newton stops short of that, `enough` will do.
+	SolveReport solve(double tolerance, double enough = 0);
 	double      residual(); // of the present velocities and impulses
 	void        forget();   // the next solve starts without the factor of the last: its bits depend on its input alone
 

@@ -51,8 +51,12 @@ namespace {
 	Vector3 global(const Vector2& v) { return { v.x(), v.y(), 0 }; }
 	Vector3 global(const Vector3& v) { return v; }
 
-	// What counts as zero, m/s: a share of the approach, and round-off of the velocities and of impulses that carry the momentum of all bodies.
-	template <class K> double zeroSpeed(const ContactSolver<K>& solver)
+	struct Speeds {
+		double zero, enough; // m/s
+	};
+
+	// What counts as zero: a share of the approach, and round-off of the velocities and of impulses that carry the momentum of all bodies.
+	template <class K> Speeds speeds(const ContactSolver<K>& solver)
 	{
 		constexpr double roundOff = 64 * std::numeric_limits<double>::epsilon();
 		double speed = 0, terms = 0, sum = 0, lightest = std::numeric_limits<double>::infinity();
@@ -71,7 +75,7 @@ namespace {
 			}
 			speed = std::max(speed, u.norm());
 		}
-		return tolerance::impulse * speed + roundOff * (terms + speed * sum / lightest);
+		return { tolerance::impulse * speed + roundOff * (terms + speed * sum / lightest), tolerance::impulseEnough * speed };
 	}
 
 } // namespace
@@ -114,14 +118,15 @@ template <class K> ImpulseReport SparseImpulses<K>::solve(std::vector<masonry::B
 	if (points.size() <= few) return solveImpulses(bodies, points, couples);
 	const double length = longestArm(bodies, points);
 	const SolveReport report = solveRows(bodies, points, couples, length);
-	if (!report.converged && points.size() <= mostDense) return solveImpulses(bodies, points, couples);
+	const bool sticks = std::any_of(points.begin(), points.end(), [](const ImpulsePoint& p) { return p.friction == noSlip; });
+	if (!report.converged && sticks && points.size() <= mostDense) return letPullingPointsGo(bodies, points, couples);
 	for (size_t b = 0; b < bodies.size(); ++b)
 		if (unknown[b] >= 0) giveVelocity(solver.bodies[unknown[b]].velocity, bodies[b]);
 	for (size_t i = 0; i < points.size(); ++i)
 		points[i].impulse = global(typename K::Vector(frame(linear<K>(points[i].normal)).transpose() * solver.points[i].impulse));
 	for (size_t c = 0; c < couples.size(); ++c)
 		couples[c].couple = length * solver.points[points.size() + c].impulse[0];
-	return { report.factorisations, report.residual };
+	return { report.factorisations, report.residual, report.converged };
 }
 
 template <class K>
@@ -147,11 +152,18 @@ SolveReport SparseImpulses<K>::solveRows(const std::vector<masonry::Body>& bodie
 		addPoint(bodies, point);
 	for (const CoupleRow& couple : couples)
 		addCouple(bodies, couple, length);
-	const double zero = zeroSpeed(solver), without = solver.residual();
+	const auto [zero, enough] = speeds(solver);
+	const double without = solver.residual();
 	if (without <= zero) return { 0, 0, without };
 	for (size_t i = 0; i < points.size(); ++i)
 		if (points[i].holds) solver.points[i].impulse[0] = std::numeric_limits<double>::min(); // a first guess of its state alone
-	return solver.solve(zero);
+	return solver.solve(zero, enough);
+}
+
+ImpulseReport solveSparsely(std::vector<masonry::Body>& bodies, std::vector<ImpulsePoint>& points, std::vector<CoupleRow>& couples)
+{
+	thread_local SparseImpulses<Space> solver;
+	return solver.solve(bodies, points, couples);
 }
 
 template class SparseImpulses<Plane>;

@@ -9,7 +9,7 @@ template <class K> class SparseImpulses {
 public:
 	std::vector<std::array<int, 2>> near; // bodies that may meet, if known: as in the contact solver
 
-	// As solveImpulses, which small problems are left to, and those that it alone can end (without slip they may have no solution).
+	// As solveImpulses, which small problems are left to. Without slip some have no solution: points that pull are let go.
 	ImpulseReport solve(std::vector<Body>& bodies, std::vector<ImpulsePoint>& points, std::vector<CoupleRow>& couples);
 
 private:
@@ -20,5 +20,8 @@ private:
 	ContactSolver<K> solver;
 	std::vector<int> unknown; // of a body in the solver; -1: prescribed
 };
+
+// In space, with a memory of its own (of each thread).
+ImpulseReport solveSparsely(std::vector<masonry::Body>& bodies, std::vector<ImpulsePoint>& points, std::vector<CoupleRow>& couples);
 
 } // namespace masonry::rigid
