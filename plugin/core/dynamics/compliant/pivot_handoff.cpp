@@ -18,9 +18,9 @@ namespace {
 		s.unsolved += !solved;
 	}
 
-	RigidAcceleration accelerations(JointSystem& s, std::vector<HeldPoint> points)
+	RigidAcceleration accelerations(JointSystem& s, std::vector<HeldPoint> points, const ImpulseSolver& solve = rigid::solveSparsely)
 	{
-		RigidAcceleration rates = rigidAcceleration(s.bodies, s.contacts, std::move(points));
+		RigidAcceleration rates = rigidAcceleration(s.bodies, s.contacts, std::move(points), solve);
 		note(s, rates.report.residual * s.dt, rates.report.solved);
 		return rates;
 	}
@@ -171,7 +171,8 @@ void startAtEquilibrium(JointSystem& s)
 	for (const JointContact& contact : s.contacts)
 		size = std::max(size, std::sqrt(contact.patch.nominalArea));
 	const auto near = [&](const JointContact& contact, int i) { return contact.patch.points[i].gap <= tolerance::mergedClosing * size; };
-	const RigidAcceleration rates = accelerations(s, selectPoints(s.contacts, near));
+	// The dense solver's forces are those of least norm: without self-stress, and symmetric where the scene is.
+	const RigidAcceleration rates = accelerations(s, selectPoints(s.contacts, near), solveImpulses);
 	settle(s, rates.points, std::numeric_limits<double>::infinity()); // whatever it takes
 	goForth(s, rates, 0.); // velocities go half a step back
 }

@@ -1,9 +1,9 @@
 #include "dynamics/compliant/rigid_acceleration.hpp"
-#include "dynamics/rigid/sparse_impulses.hpp"
 
 namespace masonry {
 
-RigidAcceleration rigidAcceleration(const std::vector<Body>& bodies, const std::vector<JointContact>& contacts, std::vector<HeldPoint> points)
+RigidAcceleration rigidAcceleration(const std::vector<Body>& bodies, const std::vector<JointContact>& contacts, std::vector<HeldPoint> points,
+                                    const ImpulseSolver& solve)
 {
 	std::vector<Body> rates = bodies; // velocities stand for accelerations
 	for (size_t i = 0; i < bodies.size(); ++i) {
@@ -31,7 +31,7 @@ RigidAcceleration rigidAcceleration(const std::vector<Body>& bodies, const std::
 	}
 	std::vector<CoupleRow> none;
 	RigidAcceleration result;
-	result.report = rigid::solveSparsely(rates, rows, none);
+	result.report = solve(rates, rows, none);
 	for (const Body& body : rates) {
 		result.linear.push_back(body.velocity);
 		result.angular.push_back(body.angularVelocity);

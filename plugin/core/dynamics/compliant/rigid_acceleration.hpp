@@ -33,6 +33,7 @@ template <class Held> std::vector<HeldPoint> selectPoints(const std::vector<Join
 	return result;
 }
 
-RigidAcceleration rigidAcceleration(const std::vector<Body>& bodies, const std::vector<JointContact>& contacts, std::vector<HeldPoint> points);
+RigidAcceleration rigidAcceleration(const std::vector<Body>& bodies, const std::vector<JointContact>& contacts, std::vector<HeldPoint> points,
+                                    const ImpulseSolver& solve);
 
 } // namespace masonry
