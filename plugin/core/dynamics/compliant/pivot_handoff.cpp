@@ -172,7 +172,10 @@ void startAtEquilibrium(JointSystem& s)
 		size = std::max(size, std::sqrt(contact.patch.nominalArea));
 	const auto near = [&](const JointContact& contact, int i) { return contact.patch.points[i].gap <= tolerance::mergedClosing * size; };
 	// The dense solver's forces are those of least norm: without self-stress, and symmetric where the scene is.
-	const RigidAcceleration rates = accelerations(s, selectPoints(s.contacts, near), solveImpulses);
+	constexpr size_t        mostDense = 100;
+	std::vector<HeldPoint>  held = selectPoints(s.contacts, near);
+	const ImpulseSolver     solve = held.size() <= mostDense ? solveImpulses : rigid::solveSparsely;
+	const RigidAcceleration rates = accelerations(s, std::move(held), solve);
 	settle(s, rates.points, std::numeric_limits<double>::infinity()); // whatever it takes
 	goForth(s, rates, 0.); // velocities go half a step back
 }
