@@ -53,15 +53,16 @@ MASONRY_INLINE void liftGroups(const Group<K>* groups, typename Lift<K>::Points*
 		for (int k = 0; k < group.count; ++k) {
 			auto& at = points[g][k];
 			const Lanes excess = normalRate(v1, v2, group.point[k]) + at.room, next = larger(at.impulse - at.mass * excess, none);
-			missing = larger(missing, at.mass > 0 ? -excess : none);
+			missing = larger(missing, -excess);
 			pushNormal(v1, v2, group.point[k], next - at.impulse);
 			changed |= next != at.impulse;
 			at.impulse = next;
 		}
 		if (!any(changed))
 			continue;
-		v1.store(moved, group.body1, v1.m);
-		v2.store(moved, group.body2, v2.m);
+		const bool allFree = !any(v1.m * v2.m == 0);
+		v1.store(moved, group.body1, v1.m, allFree);
+		v2.store(moved, group.body2, v2.m, allFree);
 	}
 }
 

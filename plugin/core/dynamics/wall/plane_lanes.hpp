@@ -29,12 +29,12 @@ struct alignas(alignment) Bodies<Plane> {
 		transpose(x, y, w, m);
 	}
 	// Back to where they came from; bodies with m = 0 are prescribed and stay.
-	MASONRY_INLINE void store(Lanes* to, const int* body, const Lanes& mass) const
+	MASONRY_INLINE void store(Lanes* to, const int* body, const Lanes& mass, bool allFree = false) const
 	{
 		Lanes row[width] = {x, y, w, m};
 		transpose(row[0], row[1], row[2], row[3]);
 		for (int i = 0; i < width; ++i)
-			if (mass[i] != 0)
+			if (allFree || mass[i] != 0)
 				to[body[i]] = row[i];
 	}
 };
@@ -60,10 +60,12 @@ struct alignas(alignment) FeatureLanes<Plane> {
 	void setFound(const std::array<double, 2>& f, int lane) { foundGap[lane] = f[0], foundShift[lane] = f[1]; }
 };
 
-// Of the two points of a pair, J M^-1 J^T beside its diagonal, 1/kg: what an impulse along one row adds to the velocity along another.
+// What the sweeps of a step know of a group. Of the two points of a pair, J M^-1 J^T beside its diagonal, 1/kg: what an impulse along one
+// row adds to the velocity along another.
 template <>
 struct alignas(alignment) Coupling<Plane> {
 	Lanes n1t1, n2t2, n1n2, t1t2, n1t2, t1n2;
+	bool allFree; // no body is prescribed, no lane empty
 
 	MASONRY_INLINE void set(const PointLanes<Plane>* point, const Lanes& m1, const Lanes& m2)
 	{
@@ -75,6 +77,7 @@ struct alignas(alignment) Coupling<Plane> {
 		t1t2 = cosine + m1 * p.a1t * q.a1t + m2 * p.a2t * q.a2t;
 		n1t2 = m1 * p.a1n * q.a1t + m2 * p.a2n * q.a2t - sine;
 		t1n2 = m1 * p.a1t * q.a1n + m2 * p.a2t * q.a2n + sine;
+		allFree = !any(m1 * m2 == 0);
 	}
 };
 

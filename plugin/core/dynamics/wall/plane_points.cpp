@@ -21,7 +21,7 @@ MASONRY_INLINE Placed placed(const Lanes* pose, const int* body)
 
 // Returns how far the pairs have moved since they were looked up.
 MASONRY_INLINE Lanes locateGroup(Group<Plane>& group, FeatureGroup<Plane>& features, const Lanes* pose, const Lanes* velocity,
-                                 const Plane::Spin* gyration, bool remember)
+                                 const Plane::Spin* gyration, unsigned char anew)
 {
 	const Placed p1 = placed(pose, group.body1), p2 = placed(pose, group.body2);
 	Lanes mass1, mass2, rho1, rho2;
@@ -43,9 +43,9 @@ MASONRY_INLINE Lanes locateGroup(Group<Plane>& group, FeatureGroup<Plane>& featu
 		const Lanes outX = faceC * f.normalX - faceS * f.normalY, outY = faceS * f.normalX + faceC * f.normalY;
 		const Lanes fromX = awayX + armX, fromY = awayY + armY; // the centre of the face's body
 		const Lanes gap = outX * fromX + outY * fromY - f.faceDistance, shift = outX * fromY - outY * fromX;
-		if (remember) {
-			f.foundGap = gap;
-			f.foundShift = shift;
+		if (anew) {
+			f.foundGap = select(maskOf(anew), gap, f.foundGap);
+			f.foundShift = select(maskOf(anew), shift, f.foundShift);
 		}
 		moved = larger(moved, size(gap - f.foundGap) + size(shift - f.foundShift));
 
@@ -69,8 +69,7 @@ MASONRY_LANES void locateGroups(Group<Plane>* groups, FeatureGroup<Plane>* featu
                                 const Lanes* velocity, const Plane::Spin* gyration, double travel, bool remember)
 {
 	for (size_t g = 0; g < count; ++g)
-		if (largest(locateGroup(groups[g], features[g], pose, velocity, gyration, remember)) > travel)
-			stale[g] = allLanes;
+		stale[g] |= bitsOf(locateGroup(groups[g], features[g], pose, velocity, gyration, remember ? stale[g] : 0) > travel);
 }
 
 } // namespace

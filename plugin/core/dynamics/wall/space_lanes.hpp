@@ -73,13 +73,13 @@ struct alignas(alignment) Bodies<Space> {
 		w = {a, b, c};
 	}
 	// Back to where they came from; bodies with m = 0 are prescribed and stay.
-	MASONRY_INLINE void store(Lanes* to, const int* body, const Lanes& mass) const
+	MASONRY_INLINE void store(Lanes* to, const int* body, const Lanes& mass, bool allFree = false) const
 	{
 		Lanes linear[width] = {v.x, v.y, v.z, m}, spin[width] = {w.x, w.y, w.z, m};
 		transpose(linear[0], linear[1], linear[2], linear[3]);
 		transpose(spin[0], spin[1], spin[2], spin[3]);
 		for (int i = 0; i < width; ++i)
-			if (mass[i] != 0) {
+			if (allFree || mass[i] != 0) {
 				to[2 * body[i]] = linear[i];
 				to[2 * body[i] + 1] = spin[i];
 			}
@@ -109,7 +109,8 @@ struct alignas(alignment) PointLanes<Space> {
 // Points in space are taken one after another.
 template <>
 struct Coupling<Space> {
-	MASONRY_INLINE void set(const PointLanes<Space>*, const Lanes&, const Lanes&) {}
+	bool allFree;
+	MASONRY_INLINE void set(const PointLanes<Space>*, const Lanes& m1, const Lanes& m2) { allFree = !any(m1 * m2 == 0); }
 };
 
 // What a point is made of: vertex and face in the axes of their bodies; or two edges that cross, which are looked at one by one.

@@ -32,91 +32,126 @@ MASONRY_INLINE void measure(const PointLanes<K>& p, const Lanes& un, const Tange
 	worst.change = larger(worst.change, closed ? larger(size(dn) / p.massN, size(dt) / p.massT) : none);
 }
 
-// Both points of each of four pairs, row by row in terms of their relative velocities: what an impulse adds to the rows that follow is
-// known (Coupling), and need not go through the velocities of the bodies.
-template <bool measured>
-MASONRY_INLINE void sweepGroup(Group<Plane>& group, const Coupling<Plane>& w, Lanes* velocity, double perSubstep, Largest& worst)
-{
-	Bodies<Plane> v1(velocity, group.body1), v2(velocity, group.body2);
-	PointLanes<Plane>&p = group.point[0], &q = group.point[1];
-	const Lanes un1 = normalRate(v1, v2, p), pn1 = normalImpulse(p, un1, perSubstep), dn1 = pn1 - p.pn;
-	const Lanes ut1 = slipRate(v1, v2, p) + w.n1t1 * dn1, pt1 = friction(p, ut1, group.friction * pn1), dt1 = pt1 - p.pt;
-	const Lanes un2 = normalRate(v1, v2, q) + w.n1n2 * dn1 + w.t1n2 * dt1, pn2 = normalImpulse(q, un2, perSubstep), dn2 = pn2 - q.pn;
-	const Lanes ut2 = slipRate(v1, v2, q) + w.n1t2 * dn1 + w.t1t2 * dt1 + w.n2t2 * dn2, pt2 = friction(q, ut2, group.friction * pn2),
-	            dt2 = pt2 - q.pt;
-	p.pn = pn1;
-	p.pt = pt1;
-	q.pn = pn2;
-	q.pt = pt2;
-	push(v1, v2, p, dn1, dt1);
-	push(v1, v2, q, dn2, dt2);
-	v1.store(velocity, group.body1, v1.m);
-	v2.store(velocity, group.body2, v2.m);
-	if constexpr (measured) {
-		measure(p, un1, ut1, dn1, dt1, worst);
-		measure(q, un2, ut2, dn2, dt2, worst);
+// A sweep over the four pairs of a group, row by row.
+template <class K>
+class Visit;
+
+// In terms of the relative velocities of both points: what an impulse adds to the rows that follow is known (Coupling), and need not go
+// through the velocities of the bodies.
+template <>
+class Visit<Plane> {
+public:
+	MASONRY_INLINE Visit(Group<Plane>& group, const Coupling<Plane>& coupling, Lanes* velocity)
+	    : group(group), w(coupling), velocity(velocity), v1(velocity, group.body1), v2(velocity, group.body2)
+	{
 	}
-}
-
-template <bool measured>
-MASONRY_INLINE void sweepPoint(PointLanes<Space>& p, const Lanes& frictionCoefficient, Bodies<Space>& v1, Bodies<Space>& v2,
-                               double perSubstep, Largest& worst)
-{
-	const Lanes un = normalRate(v1, v2, p), pn = normalImpulse(p, un, perSubstep), dn = pn - p.pn;
-	pushNormal(v1, v2, p, dn);
-	p.pn = pn;
-	const Lanes2 ut = slipRate(v1, v2, p), pt = friction(p, ut, frictionCoefficient * pn), dt = pt - p.pt;
-	pushTangential(v1, v2, p, dt);
-	p.pt = pt;
-	if constexpr (measured)
-		measure(p, un, ut, dn, dt, worst);
-}
-
-template <bool measured>
-MASONRY_INLINE void sweepGroup(Group<Space>& group, Lanes* velocity, double perSubstep, Largest& worst)
-{
-	Bodies<Space> v1(velocity, group.body1), v2(velocity, group.body2);
-	for (int k = 0; k < group.count; ++k)
-		sweepPoint<measured>(group.point[k], group.friction, v1, v2, perSubstep, worst);
-	v1.store(velocity, group.body1, v1.m);
-	v2.store(velocity, group.body2, v2.m);
-}
-
-// Two groups at the same time: one alone waits for its own results.
-template <bool measured>
-MASONRY_INLINE void sweepTwo(Group<Space>* group, Lanes* velocity, double perSubstep, Largest& worst)
-{
-	Bodies<Space> v1(velocity, group[0].body1), v2(velocity, group[0].body2), w1(velocity, group[1].body1), w2(velocity, group[1].body2);
-	const int most = std::max(group[0].count, group[1].count);
-	for (int k = 0; k < most; ++k) {
-		if (k < group[0].count)
-			sweepPoint<measured>(group[0].point[k], group[0].friction, v1, v2, perSubstep, worst);
-		if (k < group[1].count)
-			sweepPoint<measured>(group[1].point[k], group[1].friction, w1, w2, perSubstep, worst);
+	template <int k>
+	MASONRY_INLINE void normal(double perSubstep)
+	{
+		PointLanes<Plane>& p = group.point[k];
+		un[k] = normalRate(v1, v2, p);
+		if constexpr (k == 1)
+			un[1] = un[1] + w.n1n2 * dn[0] + w.t1n2 * dt[0];
+		const Lanes pn = normalImpulse(p, un[k], perSubstep);
+		dn[k] = pn - p.pn;
+		p.pn = pn;
 	}
-	v1.store(velocity, group[0].body1, v1.m);
-	v2.store(velocity, group[0].body2, v2.m);
-	w1.store(velocity, group[1].body1, w1.m);
-	w2.store(velocity, group[1].body2, w2.m);
+	template <int k>
+	MASONRY_INLINE void tangential(Largest* worst)
+	{
+		PointLanes<Plane>& p = group.point[k];
+		const Lanes before = slipRate(v1, v2, p);
+		const Lanes ut = k == 0 ? before + w.n1t1 * dn[0] : before + w.n1t2 * dn[0] + w.t1t2 * dt[0] + w.n2t2 * dn[1];
+		const Lanes pt = friction(p, ut, group.friction * p.pn);
+		dt[k] = pt - p.pt;
+		p.pt = pt;
+		if (worst)
+			measure(p, un[k], ut, dn[k], dt[k], *worst);
+	}
+	MASONRY_INLINE void end()
+	{
+		for (int k = 0; k < lanePoints<Plane>; ++k)
+			push(v1, v2, group.point[k], dn[k], dt[k]);
+		v1.store(velocity, group.body1, v1.m, w.allFree);
+		v2.store(velocity, group.body2, v2.m, w.allFree);
+	}
+
+private:
+	Group<Plane>& group;
+	const Coupling<Plane>& w;
+	Lanes* velocity;
+	Bodies<Plane> v1, v2;
+	Lanes un[lanePoints<Plane>], dn[lanePoints<Plane>], dt[lanePoints<Plane>];
+};
+
+template <>
+class Visit<Space> {
+public:
+	MASONRY_INLINE Visit(Group<Space>& group, const Coupling<Space>& coupling, Lanes* velocity)
+	    : group(group), w(coupling), velocity(velocity), v1(velocity, group.body1), v2(velocity, group.body2)
+	{
+	}
+	template <int k>
+	MASONRY_INLINE void normal(double perSubstep)
+	{
+		if (k >= group.count)
+			return;
+		PointLanes<Space>& p = group.point[k];
+		un = normalRate(v1, v2, p);
+		const Lanes pn = normalImpulse(p, un, perSubstep);
+		dn = pn - p.pn;
+		pushNormal(v1, v2, p, dn);
+		p.pn = pn;
+	}
+	template <int k>
+	MASONRY_INLINE void tangential(Largest* worst)
+	{
+		if (k >= group.count)
+			return;
+		PointLanes<Space>& p = group.point[k];
+		const Lanes2 ut = slipRate(v1, v2, p), pt = friction(p, ut, group.friction * p.pn), dt = pt - p.pt;
+		pushTangential(v1, v2, p, dt);
+		p.pt = pt;
+		if (worst)
+			measure(p, un, ut, dn, dt, *worst);
+	}
+	MASONRY_INLINE void end()
+	{
+		v1.store(velocity, group.body1, v1.m, w.allFree);
+		v2.store(velocity, group.body2, v2.m, w.allFree);
+	}
+
+private:
+	Group<Space>& group;
+	const Coupling<Space>& w;
+	Lanes* velocity;
+	Bodies<Space> v1, v2;
+	Lanes un, dn;
+};
+
+// Groups at the same time: one alone waits for its own results.
+template <class K, int k = 0, class... Visits>
+MASONRY_INLINE void sweepTogether(double perSubstep, Largest* worst, Visits&&... visits)
+{
+	(visits.template normal<k>(perSubstep), ...);
+	(visits.template tangential<k>(worst), ...);
+	if constexpr (k + 1 < lanePoints<K>)
+		sweepTogether<K, k + 1>(perSubstep, worst, visits...);
+	else
+		(visits.end(), ...);
 }
 
-template <bool measured>
-MASONRY_INLINE void sweepGroups(Group<Space>* groups, const Coupling<Space>*, int begin, int end, Lanes* velocity, double perSubstep,
-                                Largest& worst)
+// `worst`: null where nobody asks.
+template <class K>
+MASONRY_INLINE void sweepGroups(Group<K>* groups, const Coupling<K>* couplings, int begin, int end, Lanes* velocity, double perSubstep,
+                                Largest* worst)
 {
 	int g = begin;
 	for (; g + 2 <= end; g += 2)
-		sweepTwo<measured>(groups + g, velocity, perSubstep, worst);
+		sweepTogether<K>(perSubstep, worst, Visit<K>(groups[g], couplings[g], velocity),
+		                 Visit<K>(groups[g + 1], couplings[g + 1], velocity));
 	if (g < end)
-		sweepGroup<measured>(groups[g], velocity, perSubstep, worst);
-}
-
-template <bool measured>
-MASONRY_INLINE void sweepGroups(Group<Plane>* groups, const Coupling<Plane>* couplings, int begin, int end, Lanes* velocity,
-                                double perSubstep, Largest& worst)
-{
-	for (int g = begin; g < end; ++g)
-		sweepGroup<measured>(groups[g], couplings[g], velocity, perSubstep, worst);
+		sweepTogether<K>(perSubstep, worst, Visit<K>(groups[g], couplings[g], velocity));
 }
 
 template <class K>
@@ -142,8 +177,8 @@ MASONRY_INLINE void beginGroups(Group<K>* groups, Coupling<K>* couplings, int be
 			push(v1, v2, p, p.pn, p.pt);
 			p.steady += inMean * (p.pn - p.steady);
 		}
-		v1.store(velocity, group.body1, v1.m);
-		v2.store(velocity, group.body2, v2.m);
+		v1.store(velocity, group.body1, v1.m, couplings[g].allFree);
+		v2.store(velocity, group.body2, v2.m, couplings[g].allFree);
 	}
 }
 
@@ -151,13 +186,12 @@ MASONRY_INLINE void beginGroups(Group<K>* groups, Coupling<K>* couplings, int be
 #define MASONRY_SWEEPS(K)                                                                                                                  \
 	MASONRY_LANES void sweep(Group<K>* groups, const Coupling<K>* couplings, int begin, int end, Lanes* velocity, double perSubstep)       \
 	{                                                                                                                                      \
-		Largest unused;                                                                                                                    \
-		sweepGroups<false>(groups, couplings, begin, end, velocity, perSubstep, unused);                                                   \
+		sweepGroups<K>(groups, couplings, begin, end, velocity, perSubstep, nullptr);                                                      \
 	}                                                                                                                                      \
 	MASONRY_LANES void lastSweep(Group<K>* groups, const Coupling<K>* couplings, int begin, int end, Lanes* velocity, double perSubstep,   \
 	                             Largest& worst)                                                                                           \
 	{                                                                                                                                      \
-		sweepGroups<true>(groups, couplings, begin, end, velocity, perSubstep, worst);                                                     \
+		sweepGroups<K>(groups, couplings, begin, end, velocity, perSubstep, &worst);                                                       \
 	}                                                                                                                                      \
 	MASONRY_LANES void moveGaps(Group<K>* groups, int begin, int end, const Lanes* velocity, double s)                                     \
 	{                                                                                                                                      \

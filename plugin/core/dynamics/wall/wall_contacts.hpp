@@ -276,8 +276,8 @@ private:
 	void takeBodies(const RigidSystem<K>& system);
 	void placeAt(RigidSystem<K>& system, std::vector<typename K::Pose>& poses);
 	bool isLocated(const RigidSystem<K>& system) const;
-	// Gaps, normals, arms. Pairs that have moved by more than `travel` become stale (in the plane with the others of their group); with
-	// `remember`, movement of those that are stale counts from here.
+	// Gaps, normals, arms. Pairs that have moved by more than `travel` become stale; with `remember`, movement of those that are stale
+	// counts from here.
 	void locate(const RigidSystem<K>& system, int begin, int end, double travel, bool remember);
 	void lookUpStale(RigidSystem<K>& system);
 	bool lookUpStale(RigidSystem<K>& system, const Part& part);
