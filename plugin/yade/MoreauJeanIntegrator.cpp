@@ -344,8 +344,11 @@ void MoreauJeanIntegrator::count(const masonry::rigid::StepReport& report)
 	if (!report.converged) text << "the contact laws are missed: residual " << report.residual << " m/s. ";
 	if (crowded) text << report.unlocalised << " points closed after mostEvents = " << mostEvents << " events, plastically at its end. ";
 	if (report.created > 0) text << report.created << " J of energy come from nowhere. ";
+	constexpr size_t mostNamed = 30;
+	const vector<int> touching = sceneOf(memory).touching();
 	text << "Blocks in touch:";
-	for (int id : sceneOf(memory).touching()) text << ' ' << id;
+	for (size_t k = 0; k < std::min(mostNamed, touching.size()); ++k) text << ' ' << touching[k];
+	if (touching.size() > mostNamed) text << " and " << touching.size() - mostNamed << " more";
 	text << '.';
 	if (failures++ == 0) {
 		firstFailure = text.str();

@@ -21,8 +21,13 @@ _EVENTS = 1
 _LOOK = 5
 # Speed of blocks at rest relative to sqrt(g H): a multiplier above the critical one by this share is taken for it.
 _REST = 1e-6
+# Blocks that have been at rest for this share of the hold stay so: their state has not changed, nor have the loads.
+_QUIET = 0.1
 # A trial is held longer, at most this many times, while blocks move and slow down.
 _LONGEST = 5
+# Growth of the multiplier until the blocks collapse. Far above collapse all of them move at once, which costs up to a hundred times more
+# than a rest does.
+_GROWTH = 1.1
 # Larger multipliers are not tried; the time step would be too large for them.
 _MOST = 30
 # A joint opens or slides where its points have moved by more than this share of the farthest moved block.
@@ -84,7 +89,7 @@ class TiltTable:
     load         'force': a horizontal body force, multiplier times the weight, is added to gravity. 'turned': gravity keeps its size and is
                  turned by the arc tangent of the multiplier, as on a tilting table.
     model        'auto', 'planar' or 'spatial', as in dem.engines()
-    hold         how long a multiplier is held, in sqrt(height / gravity) of the scene
+    hold         how long a multiplier is held while blocks move, in sqrt(height / gravity) of the scene; a tenth of it where they rest
     share        movement of a block, relative to the smallest size of any, that is collapse: more than the gaps
                  that the joints may close, and little, since blocks that fall apart take long
     gravity      m/s^2
@@ -123,12 +128,13 @@ class TiltTable:
 
     # --- the two ways to the multiplier ---
 
-    def bisect(self, tolerance=1e-3, upper=1.0, progress=True):
-        """The Collapse within `tolerance` of its multiplier. upper: first guess of a multiplier that collapses; doubled until it does."""
+    def bisect(self, tolerance=1e-3, lower=0.1, progress=True):
+        """The Collapse within `tolerance` of its multiplier. lower: the first that is tried, which grows by a tenth until the blocks
+        collapse; the nearer below, the faster."""
         if not 0 < tolerance < 1:
             raise ValueError(f"tolerance = {tolerance}: must be above 0 and below 1")
-        if not 0 < upper < math.inf:
-            raise ValueError(f"upper = {upper}: must be positive and finite")
+        if not 0 < lower < math.inf:
+            raise ValueError(f"lower = {lower}: must be positive and finite")
         trials, mechanism = [], None
 
         def collapses(multiplier):
@@ -144,9 +150,9 @@ class TiltTable:
         with self._trials("trial", progress) as bar:
             if collapses(0.0):
                 raise ValueError("the blocks do not stand without a sideways load: check supports and friction")
-            low, high = 0.0, upper
+            low, high = 0.0, lower
             while not collapses(high):
-                low, high = high, 2 * high
+                low, high = high, _GROWTH * high
                 _is_plausible(high)
             bar.total = bar.n + math.ceil(math.log2(max(1, (high - low) / (tolerance * high))))
             while high - low > tolerance * high:
@@ -179,16 +185,18 @@ class TiltTable:
     def trial(self, multiplier):
         """Holds one multiplier from rest. The scene is left as it is at the end."""
         integrator = self._begin(multiplier)
-        verdict, fastest = "", 0.0
+        verdict, fastest, rested = "", 0.0, 0.0
         while not verdict:
             _advance()
             speed = self._speed()
+            if speed > self._rest:
+                rested = O.time
             if self._moved() > self.share * self._size:
                 verdict = "collapse"
+            elif O.time >= rested + _QUIET * self._hold:
+                verdict = "rest"
             elif O.time >= self._hold:
-                if speed <= self._rest:
-                    verdict = "rest"
-                elif speed >= fastest:
+                if speed >= fastest:
                     verdict = "collapse"
                 elif O.time >= _LONGEST * self._hold:
                     verdict = "unclear"
