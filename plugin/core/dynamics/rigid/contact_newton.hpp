@@ -51,12 +51,13 @@ public:
 		return false;
 	}
 
-	// Centre after centre. R falls while roots are found, so that the centres converge faster than linearly, and grows where
-	// one is not.
+	// Centre after centre. R falls while roots are found, so that the centres converge faster than linearly; where one is not it grows, and
+	// falls in smaller steps from there on.
 	double converge(double target, SolveReport& report)
 	{
 		constexpr int maxCentres = 40, maxSteps = 30;
-		constexpr double fall = 1e-2, growth = 10, most = 1; // of the softness
+		constexpr double growth = 10, most = 1; // of the softness
+		double fall = 1e-2;
 		begin(target);
 		softness = tolerance::contactProblem::softness;
 		double present = s.residual();
@@ -78,6 +79,8 @@ public:
 				present = next;
 			}
 			softness = found ? std::max(tolerance::contactProblem::leastSoftness, fall * softness) : growth * softness;
+			if (!found)
+				fall = std::sqrt(fall);
 			factored = false;
 		}
 		return present;

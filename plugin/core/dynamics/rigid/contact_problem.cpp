@@ -1,6 +1,7 @@
 #include "dynamics/rigid/contact_problem.hpp"
 #include "dynamics/rigid/contact_newton.hpp"
 #include "dynamics/rigid/contact_sweeps.hpp"
+#include <utility>
 
 namespace masonry::rigid {
 
@@ -27,8 +28,11 @@ struct ContactSolver<K>::Workspace {
 	double alternate(double tolerance, double enough, int lastSweeps, SolveReport& report)
 	{
 		constexpr int rounds = 8, shares = 36; // 1 + 2 + .. + 8: each round sweeps longer, all together lastSweeps
-		s.bestResidual = std::numeric_limits<double>::infinity();
-		for (int round = 1; round <= rounds; ++round) {
+		constexpr double stalled = 0.9;        // of the best residual two rounds before
+		double before = std::numeric_limits<double>::infinity(), last = before;
+		s.bestResidual = before;
+		for (int round = 1; round <= rounds && !(s.bestResidual > stalled * before); ++round) {
+			before = std::exchange(last, s.bestResidual);
 			s.applyImpulses();
 			s.keepBest(s.residual());
 			newton.converge(tolerance, report);
