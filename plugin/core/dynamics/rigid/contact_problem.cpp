@@ -36,10 +36,8 @@ struct ContactSolver<K>::Workspace {
 			s.applyImpulses();
 			s.keepBest(s.residual());
 			newton.converge(tolerance, report);
-			if (s.bestResidual <= tolerance)
-				return s.bestResidual;
 			s.restoreBest();
-			if (s.bestResidual <= enough)
+			if (s.bestResidual <= std::max(tolerance, enough))
 				return s.bestResidual;
 			if (gaussSeidel(s, tolerance, lastSweeps * round / shares, true, report) <= tolerance)
 				return s.residual();
