@@ -23,7 +23,12 @@ StepReport run(RigidSystem<Plane>& s, double h, double end)
 
 TEST_CASE("Stacks at rest stay")
 {
-	const auto [n, end] = GENERATE(std::pair(2, 60.), std::pair(5, 60.), std::pair(20, 5.));
+	const int n = GENERATE(2, 5, 20);
+#ifdef __SANITIZE_ADDRESS__
+	constexpr double end = 5; // s; steps take fifty times as long
+#else
+	constexpr double end = 60;
+#endif
 	CAPTURE(n);
 	auto         s = stack(n, 0.5, 0.25, 0.7, 0.7);
 	const double atStart = energy(s);
