@@ -473,14 +473,12 @@ private:
 
 	void writeJoint(Joint& joint, Pair& pair)
 	{
-		const bool touching = touches(pair);
-		if (!(isListed(joint) && joint.interaction->isReal())) {
-			if (apart(pair)) return; // not whether they have touched: what nobody saw must not decide
-			list(joint, pair);
-		} else if (!touching && apart(pair)) {
-			erase(joint);
+		const bool listed = isListed(joint) && joint.interaction->isReal();
+		if (apart(pair)) { // not whether they have touched: what nobody saw must not decide
+			if (listed) erase(joint);
 			return;
 		}
+		if (!listed) list(joint, pair);
 		writeGeom(*joint.geom, pair);
 		writePhys(*joint.phys, pair);
 	}
