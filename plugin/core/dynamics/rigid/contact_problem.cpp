@@ -28,7 +28,7 @@ struct ContactSolver<K>::Workspace {
 	double alternate(double tolerance, double enough, int lastSweeps, SolveReport& report)
 	{
 		constexpr int rounds = 8, shares = 36; // 1 + 2 + .. + 8: each round sweeps longer, all together lastSweeps
-		constexpr double stalled = 0.9;        // of the best residual two rounds before
+		constexpr double stalled = 0.9;        // of the best residual two rounds before: above it more rounds change nothing
 		double before = std::numeric_limits<double>::infinity(), last = before;
 		s.bestResidual = before;
 		for (int round = 1; round <= rounds && !(s.bestResidual > stalled * before); ++round) {

@@ -116,12 +116,12 @@ double apart(const Problem& one, const Problem& other)
 } // namespace
 
 // Without friction velocities are unique: as near to each other as the residuals, 1e-8 of the speed at most, times the lever of narrow
-// patches, at most a hundred. With friction there may be several solutions: most agree (seen: 11 of 15), and each meets the laws.
+// patches, at most a hundred. With friction there may be several solutions: each meets the laws.
 TEST_CASE("Impulses of a moving wall: the sparse solver's velocities are the dense one's")
 {
 	for (const double friction : { 0., 0.65 }) {
 		Wall wall(0.65);
-		int  problems = 0, solved = 0, compared = 0, equal = 0;
+		int  problems = 0, solved = 0, compared = 0;
 		for (int k = 0; k < 16; ++k) {
 			wall.run(100);
 			Problem sparse = wall.problem(friction, k % 2), dense = sparse;
@@ -135,13 +135,12 @@ TEST_CASE("Impulses of a moving wall: the sparse solver's velocities are the den
 			if (!solveImpulses(dense.bodies, dense.points, dense.couples).solved) continue;
 			++compared;
 			CHECK(missed(dense) <= 1e-6 * fastest);
-			equal += apart(sparse, dense) <= 1e-6 * fastest;
+			if (friction == 0) CHECK(apart(sparse, dense) <= 1e-6 * fastest);
 		}
-		CAPTURE(friction, problems, solved, compared, equal);
+		CAPTURE(friction, problems, solved, compared);
 		CHECK(problems > 10);
 		CHECK(solved >= 0.75 * problems);
 		CHECK(compared > 5);
-		CHECK(equal >= (friction == 0 ? 1 : 0.6) * compared);
 	}
 }
 
