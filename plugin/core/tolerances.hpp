@@ -138,7 +138,7 @@ namespace masonry::tolerance::contactProblem {
 constexpr double softness = 1e-2;
 // The smallest that it falls to. Larger: tall columns and large mass ratios converge linearly; smaller: round-off of the
 // factorisation.
-constexpr double leastSoftness = 1e-8;
+constexpr double leastSoftness = 1e-9;
 // That from impulses close to the solution. Larger: a second centre a step, and more changes of state; smaller: round-off decides
 // the states of unloaded points.
 constexpr double resumedSoftness = 3e-9;

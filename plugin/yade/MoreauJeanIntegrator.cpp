@@ -113,6 +113,14 @@ void MoreauJeanIntegrator::leaveScene()
 	chosenModel.clear();
 }
 
+vector<Real> MoreauJeanIntegrator::remembered() { return memory.run ? memory.run->pack() : memory.values; }
+
+void MoreauJeanIntegrator::goOnFrom(const vector<Real>& values)
+{
+	memory.run.reset();
+	memory.values = values;
+}
+
 void MoreauJeanIntegrator::renew()
 {
 	sceneOf(memory).dropErased();

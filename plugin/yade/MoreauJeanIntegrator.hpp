@@ -22,6 +22,9 @@ public:
 	Real largestTimeStep();
 	/// The model that the first step would choose in the present scene, and why.
 	string choice();
+	/// What the next step goes on from besides the states of the blocks: forces, contact points.
+	vector<Real> remembered();
+	void goOnFrom(const vector<Real>&);
 	bool isWall() const { return wall; }
 	/// Whether a script or another engine may look at O.interactions before the next step of this engine.
 	bool isWatched() const;
@@ -77,6 +80,7 @@ public:
 		.add_property("kinetic", &MoreauJeanIntegrator::kinetic, "Kinetic energy now [J].")
 		.add_property("potential", &MoreauJeanIntegrator::potential, "Potential energy of gravity now, zero at the origin [J].")
 		.add_property("largestTimeStep", &MoreauJeanIntegrator::largestTimeStep, "Largest time step that is allowed [s].")
+		.add_property("remembered", &MoreauJeanIntegrator::remembered, &MoreauJeanIntegrator::goOnFrom, "What the next step goes on from, forces and contact points among it, as numbers. With the blocks put back to where they were, the run can be taken up from there again.")
 		.def("choice", &MoreauJeanIntegrator::choice, "The model that the first step would choose in the present scene, and why; raises ValueError where it would refuse.")
 	);
 	// clang-format on

@@ -76,6 +76,17 @@ stair = 0.02 * tilting._LOOK * table._dt / table._unit
 assert -2 * stair < result.multiplier - 0.75 <= 1e-9 and result.bracket[1] > 0.75, result
 assert marks(result, "opens") == [(0, 1)], result.joints
 
+# --- a block that slides at 0.3 over a gap of half a millimetre, then leans on one as heavy that slides at 0.6: the two stand up to 0.45,
+# but for the share v of a weight that friction between them moves from one to the other: m = 0.45 + 0.15 v, and |v| is at most 0.3 of the
+# push m - 0.3 (1 - v): 1.75 % ---
+base, stone = ground(0.6)
+slippery = dem.BlockMat(density=2000, frictionAngle=math.atan(0.3), restitution=0)
+first = dem.block((0.6, 0.5, 0.4), slippery, on=base)
+second = dem.block((0.6, 0.5, 0.4), stone, center=(0.6005, 0, 0.2))
+result = found()
+assert abs(result.multiplier / 0.45 - 1) < 0.0175 + CLOSE and result.blocks == [first, second], result
+assert any(t.verdict == "rest" and t.moved > 5e-4 for t in result.trials), result.trials
+
 # --- running bond: associative limit analysis gives an upper bound of a block wall's multiplier; low friction: all slides at mu ---
 for courses, bound in ((6, 0.64286), (10, 0.58000)):
     bond_wall(courses, 0.65)

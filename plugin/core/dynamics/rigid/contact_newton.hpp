@@ -52,18 +52,21 @@ public:
 	}
 
 	// Centre after centre. R falls while roots are found, so that the centres converge faster than linearly; where one is not it grows, and
-	// falls in smaller steps from there on.
+	// falls in smaller steps from there on, until roots come easily again. As the load on springs of stiffness 1/R, a centre moves the forces
+	// by what the points still move, over R: forces that have far to go need a small R, and a path of many changes of state small steps.
 	double converge(double target, SolveReport& report)
 	{
-		constexpr int maxCentres = 40, maxSteps = 30;
-		constexpr double growth = 10, most = 1; // of the softness
-		double fall = 1e-2;
+		constexpr int maxCentres = 40, maxSteps = 30, easy = 3; // factorisations
+		constexpr double growth = 10, most = 1, steepest = 1e-2; // of the softness
+		double fall = steepest;
 		begin(target);
 		softness = tolerance::contactProblem::softness;
 		double present = s.residual();
 		bool found = false;
 		for (int k = 0; k < maxCentres && softness <= most; ++k) {
+			const int before = report.factorisations;
 			found = findRoot(found, maxSteps, report);
+			const bool easily = found && report.factorisations - before <= easy;
 			for (int i = 0; i < s.nPoints; ++i)
 				std::swap(s.rows[i].impulse, points[i].next);
 			s.applyImpulses();
@@ -78,6 +81,8 @@ public:
 			} else {
 				present = next;
 			}
+			if (easily)
+				fall = std::max(steepest, fall * fall);
 			softness = found ? std::max(tolerance::contactProblem::leastSoftness, fall * softness) : growth * softness;
 			if (!found)
 				fall = std::sqrt(fall);

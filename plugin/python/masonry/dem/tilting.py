@@ -19,15 +19,22 @@ _STEP = 0.02
 _EVENTS = 1
 # Steps between two looks at the blocks.
 _LOOK = 5
-# Speed of blocks at rest relative to sqrt(g H): a multiplier above the critical one by this share is taken for it.
+# Speed of blocks at rest relative to what gravity gives since the load was put on: a multiplier above the critical one by this is taken for it.
 _REST = 1e-6
-# Blocks that have been at rest for this share of the hold stay so: their state has not changed, nor have the loads.
+# Blocks that have been at rest for two looks stay so: their state has not changed, nor have the loads. Blocks that have moved, for this
+# share of the hold: they may be turning back.
 _QUIET = 0.1
+# Looks in a row at which blocks gain speed in proportion to the time, but for this share, that tell of collapse.
+_STEADY, _SLACK = 3, 0.1
+# Blocks that move off under a constant load move with the square of the time: steps may be this share of it.
+_SHARE_OF_TIME = 0.05
 # A trial is held longer, at most this many times, while blocks move and slow down.
 _LONGEST = 5
-# Growth of the multiplier until the blocks collapse. Far above collapse all of them move at once, which costs up to a hundred times more
-# than a rest does.
-_GROWTH = 1.1
+# Largest stair of the multiplier, relative to it. Far above collapse all blocks move at once, which costs up to a hundred times more than a
+# rest does.
+_GROWTH = 0.1
+# A stair whose contact laws the solver misses is taken by halves; the next ones grow again by this factor.
+_RECOVERY = 1.25
 # Larger multipliers are not tried; the time step would be too large for them.
 _MOST = 30
 # A joint opens or slides where its points have moved by more than this share of the farthest moved block.
@@ -42,15 +49,10 @@ def _is_plausible(multiplier):
         raise ValueError(f"the blocks stand at any multiplier up to {_MOST:g}: they are held on all sides")
 
 
-def _advance():
-    # In this thread: O.run(n, True) looks every 40 ms only whether it has ended.
-    for _ in range(_LOOK):
-        O.step()
-
-
 @dataclass
 class Trial:
-    """What a multiplier did: 'rest', 'collapse', or 'unclear' where blocks still moved at the end and slowed down."""
+    """What a multiplier did: 'rest', 'collapse', 'unclear' where blocks still moved at the end and slowed down, or 'missed' where the contact
+    laws were, so that a smaller stair is taken."""
 
     multiplier: float
     verdict: str
@@ -94,10 +96,11 @@ class TiltTable:
                  that the joints may close, and little, since blocks that fall apart take long
     gravity      m/s^2
 
-    A trial starts from rest, from where the blocks are when the table is made, and ends when a block has moved by `share`; collapse is
-    also when blocks still gain speed at the end of the hold. Rigid blocks that carry a load do not move at all, and have no spring to
-    overshoot, so the load is put on at once. Restitution hardly matters, but 0 is fastest. The scene is put back afterwards; O.engines
-    is left to the last trial.
+    A trial starts from rest and ends when a block has moved by `share`; collapse is also when blocks still gain speed at the end of the
+    hold. Rigid blocks that carry a load do not move at all, and have no spring to overshoot, so a stair of the load is put on at once: with
+    bisect() upon the largest load that the blocks have stood, with the forces in their joints that it has left, since with friction these
+    depend on what came before. Of its trials that collapse only the first and the last move the blocks by `share`; the others end when
+    these gain speed steadily. Restitution hardly matters, but 0 is fastest. The scene is put back afterwards; O.engines is left to the last trial.
     """
 
     def __init__(self, direction="x", load="force", model="auto", hold=3.0, share=2e-3, gravity=9.81):
@@ -122,8 +125,11 @@ class TiltTable:
         reach = (np.abs(axes_of(quaternions)) * sizes[:, :, None]).sum(axis=1)[:, 2] / 2
         self._size, self._reach = sizes.min(), np.linalg.norm(sizes, axis=1) / 2
         self._unit = math.sqrt(np.ptp(np.concatenate([centers[:, 2] - reach, centers[:, 2] + reach])) / gravity)
-        self._hold, self._rest = hold * self._unit, _REST * gravity * self._unit
+        self._hold = hold * self._unit
         self._dt = _STEP * math.sqrt(self._reach.min() / gravity)
+        self._model = model
+        if model == "auto":
+            self._model = self._begin(1.0).choice().split(":")[0]  # of the pulled blocks, not of those that only stand
         self._joints = self._find_joints()
 
     # --- the two ways to the multiplier ---
@@ -135,29 +141,44 @@ class TiltTable:
             raise ValueError(f"tolerance = {tolerance}: must be above 0 and below 1")
         if not 0 < lower < math.inf:
             raise ValueError(f"lower = {lower}: must be positive and finite")
-        trials, mechanism = [], None
+        trials, rest, mechanism = [], None, None
 
-        def collapses(multiplier):
-            nonlocal mechanism
-            trials.append(self.trial(multiplier))
-            moves = trials[-1].verdict != "rest"
-            if moves:
+        def hold(multiplier, **ends):
+            nonlocal rest, mechanism
+            trials.append(self._hold_load(integrator, multiplier, **ends))
+            verdict = trials[-1].verdict
+            if verdict == "rest":
+                rest = self._keep(integrator)
+            elif rest:
                 mechanism = self._mechanism()
-            bar.set_postfix_str(f"{multiplier:.5g} {trials[-1].verdict}")
+                self._go_back(integrator, rest)
+            bar.set_postfix_str(f"{multiplier:.5g} {verdict}")
             bar.update()
-            return moves
+            return verdict
 
         with self._trials("trial", progress) as bar:
-            if collapses(0.0):
+            integrator = self._begin(0.0)
+            if hold(0.0) != "rest":
                 raise ValueError("the blocks do not stand without a sideways load: check supports and friction")
-            low, high = 0.0, lower
-            while not collapses(high):
-                low, high = high, _GROWTH * high
-                _is_plausible(high)
-            bar.total = bar.n + math.ceil(math.log2(max(1, (high - low) / (tolerance * high))))
-            while high - low > tolerance * high:
-                middle = (low + high) / 2
-                low, high = (low, middle) if collapses(middle) else (middle, high)
+            low, high, growth, careful, sure = 0.0, math.inf, _GROWTH, False, False
+            while not sure:
+                while math.isinf(high) or high - low > tolerance * high:
+                    height = low or lower / _GROWTH
+                    stair = min(growth * height, (high - low) / 2)
+                    tried = low + stair
+                    _is_plausible(tried)
+                    early = math.isfinite(high) and not careful
+                    verdict = hold(tried, early=early, again=stair > tolerance * tried)
+                    if verdict == "rest":
+                        low, growth = tried, min(_RECOVERY * growth, _GROWTH)
+                    elif verdict == "missed":
+                        growth = stair / height / 2
+                    else:
+                        high, sure = tried, not early
+                if not sure and hold(high) == "rest":  # they moved off, and came to rest
+                    low, high, careful = high, math.inf, True
+                else:
+                    sure = True
         return self._collapse((low + high) / 2, (low, high), trials, mechanism)
 
     def ramp(self, rate=0.02, start=0.0, progress=True):
@@ -174,8 +195,9 @@ class TiltTable:
                 multiplier = start + rate * O.time / self._unit
                 _is_plausible(multiplier)
                 self._pull(integrator, multiplier)
-                _advance()
-                if self._speed() <= self._rest:
+                for _ in range(_LOOK):
+                    O.step()
+                if self._speed() <= _REST * self.gravity * self._unit:
                     rested = multiplier
                 bar.set_postfix_str(f"{multiplier:.5g}")
                 bar.update()
@@ -184,16 +206,33 @@ class TiltTable:
 
     def trial(self, multiplier):
         """Holds one multiplier from rest. The scene is left as it is at the end."""
-        integrator = self._begin(multiplier)
-        verdict, fastest, rested = "", 0.0, 0.0
+        return self._hold_load(self._begin(multiplier), multiplier)
+
+    # --- a trial ---
+
+    def _hold_load(self, integrator, multiplier, early=False, again=False):
+        """The Trial of a multiplier from the present state. early: it ends when the blocks gain speed steadily; again: when the solver
+        misses the contact laws, to be tried again with a smaller stair."""
+        self._pull(integrator, multiplier)
+        O.resetTime()
+        O.dt = self._dt
+        before, verdict, fastest, pace, moving, steady, quiet = integrator.failures, "", 0.0, 0.0, 0.0, 0, 0
         while not verdict:
-            _advance()
+            for _ in range(_LOOK):
+                O.step()  # in this thread: O.run(n, True) looks every 40 ms only whether it has ended
+                if again and integrator.failures > before:
+                    return Trial(multiplier, "missed", self._moved(), O.time, integrator.failures - before)
             speed = self._speed()
-            if speed > self._rest:
-                rested = O.time
-            if self._moved() > self.share * self._size:
+            last, pace = pace, speed / O.time
+            if pace > _REST * self.gravity:
+                moving, quiet = O.time, 0
+                steady = steady + 1 if pace >= (1 - _SLACK) * last else 0
+                O.dt = min(max(self._dt, _SHARE_OF_TIME * O.time), integrator.largestTimeStep)
+            else:
+                steady, quiet = 0, quiet + 1
+            if self._moved() > self.share * self._size or (early and steady >= _STEADY):
                 verdict = "collapse"
-            elif O.time >= rested + _QUIET * self._hold:
+            elif quiet >= 2 and (not moving or O.time >= moving + _QUIET * self._hold):
                 verdict = "rest"
             elif O.time >= self._hold:
                 if speed >= fastest:
@@ -201,9 +240,15 @@ class TiltTable:
                 elif O.time >= _LONGEST * self._hold:
                     verdict = "unclear"
             fastest = max(fastest, speed)
-        return Trial(multiplier, verdict, self._moved(), O.time, integrator.failures)
+        return Trial(multiplier, verdict, self._moved(), O.time, integrator.failures - before)
 
-    # --- a trial ---
+    def _keep(self, integrator):
+        return integrator.remembered, [(b.state.pos, b.state.ori, Vector3(b.state.vel), Vector3(b.state.angVel)) for b in self._free]
+
+    def _go_back(self, integrator, kept):
+        integrator.remembered, states = kept
+        for body, (pos, ori, vel, spin) in zip(self._free, states):
+            body.state.pos, body.state.ori, body.state.vel, body.state.angVel = pos, ori, vel, spin
 
     @contextlib.contextmanager
     def _trials(self, unit, shown):
@@ -224,7 +269,7 @@ class TiltTable:
     def _begin(self, multiplier):
         self._put_back()
         with contextlib.redirect_stdout(io.StringIO()):
-            O.engines = engines(model=self.model, method="localised", dt=self._dt, gravity=self.gravity)
+            O.engines = engines(model=self._model, method="localised", dt=self._dt, gravity=self.gravity)
         integrator = O.engines[-1]
         integrator.mostEvents = _EVENTS
         self._pull(integrator, multiplier)
