@@ -42,6 +42,9 @@ public:
 	/// may cause them. RockingJointEngine asks, so that blocks respond at the instant itself.
 	virtual vector<BaseJump> takeJumps(Real now, const vector<StepImpact>& impacts);
 
+	/// Whether takeJumps must be asked in order of time.
+	virtual bool ordered() const { return false; }
+
 	/// Throws std::invalid_argument for what only the finished scene can tell: ids that do not exist or are free to move, an
 	/// attribute that is missing or contradicts another. Called before the first step.
 	virtual void check() const;

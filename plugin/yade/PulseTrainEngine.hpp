@@ -15,6 +15,7 @@ public:
 	Real meanVelocity(Real from, Real to) const override;
 	Real nextKink(Real after, Real until) const override;
 	vector<BaseJump> takeJumps(Real now, const vector<StepImpact>& impacts) override;
+	bool ordered() const override { return true; }
 	/// Throws std::invalid_argument naming attribute, value and allowed range.
 	void postLoad(PulseTrainEngine&);
 

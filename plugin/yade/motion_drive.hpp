@@ -18,6 +18,8 @@ public:
 	double jumpAt(double t) override { return sum(motion.takeJumps(t + instant, {})); }
 	double respond(int block, double t) override { return sum(motion.takeJumps(t, { { blocks[block], 0 } })); }
 
+	bool ordered() const override { return motion.ordered(); }
+
 	Real instant = 0;
 
 private:

@@ -50,7 +50,7 @@ namespace memory {
 	template <class Flow> void pass(Flow&, Seat<Space>&) { }
 
 	// Sizes, masses and laws belong to the scene; gaps are measured anew.
-	template <class Flow, class K> void pass(Flow& f, RigidBody<K>& b) { pass(f, b.pose), f(b.velocity), f(b.increment), f(b.origin); }
+	template <class Flow, class K> void pass(Flow& f, RigidBody<K>& b) { pass(f, b.pose), f(b.velocity), f(b.increment), f(b.fresh), f(b.origin); }
 	template <class Flow, class K> void pass(Flow& f, ContactPair<K>& p)
 	{
 		f(p.body1), f(p.body2), f(p.face1), f(p.face2), f(p.size);
@@ -69,12 +69,11 @@ template <class K> struct Remembered {
 	vector<Seat<K>>                        seats;
 	vector<masonry::rigid::RigidBody<K>>   bodies;
 	vector<masonry::rigid::ContactPair<K>> pairs;
-	bool                                   fresh = true;
 
 	template <class Flow> void pass(Flow& f)
 	{
 		size_t blocks = ids.size(), joints = pairs.size();
-		f(blocks), f(joints), f(fresh);
+		f(blocks), f(joints);
 		ids.resize(blocks);
 		seats.resize(blocks);
 		bodies.resize(blocks);

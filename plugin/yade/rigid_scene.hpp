@@ -8,8 +8,8 @@
 #include "motion_drive.hpp"
 #include "still_functors.hpp"
 
+#include "dynamics/rigid/islands.hpp"
 #include "dynamics/rigid/neighbours.hpp"
-#include "dynamics/rigid/rigid_step.hpp"
 #include "dynamics/rigid/scales.hpp"
 #include "dynamics/wall/wall_step.hpp"
 #include "tolerances.hpp"
@@ -83,7 +83,6 @@ public:
 		system.frictDissip = engine.frictDissip;
 		system.impactDissip = engine.impactDissip;
 		system.baseWork = engine.baseWork;
-		system.fresh = before.fresh;
 		const vector<int> inBefore = addBlocks(before);
 		addDrives(motions, inBefore);
 		addPairs(before, inBefore);
@@ -96,7 +95,6 @@ public:
 		Packer packer;
 		kept.bodies = system.bodies;
 		kept.pairs = system.pairs;
-		kept.fresh = system.fresh;
 		kept.pass(packer);
 		if (integrator.isWall()) {
 			neighbours->pass(packer);
@@ -158,7 +156,7 @@ public:
 		if (integrator.isWall() && lawsChanged) system.moved = true;
 		lawsChanged = false;
 		byWalls = integrator.isWall();
-		const auto report = byWalls ? advanceWall() : stepper.advance(system, scene.dt);
+		const auto report = byWalls ? advanceWall() : islands.advance(system, scene.dt);
 		writeStates();
 		if (++unshown >= mostUnshown || integrator.isWatched()) writeJoints();
 		for (const auto& impact : system.impacts) record(impact);
@@ -555,7 +553,7 @@ private:
 	Scene& scene;
 	const Coordinates<K> coordinates;
 	System system;
-	masonry::rigid::RigidStep<K> stepper;
+	masonry::rigid::Islands<K> islands;
 	masonry::rigid::WallStep<K> wall;
 	bool byWalls = false, lawsChanged = false, warnedOfCourses = false;
 	int unshown = 1; // steps since the interactions were written

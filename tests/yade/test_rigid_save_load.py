@@ -45,8 +45,17 @@ def stack_on_record(model):
     O.engines = rigid_engines(dem.RecordMotionEngine(ids=[base], samples=samples, interval=0.01), model=model, dt=1e-3)
 
 
+def apart_on_record(model):
+    O.reset()
+    base = dem.base((9, 2, 0.2), stone(restitution=0.8))
+    for k, width in enumerate((0.3, 0.4, 0.5)):
+        dem.block((width, 0.5, 1.5), O.bodies[base].mat, center=(3 * k - 3, 0, 0.75))
+    samples = list(0.4 * 9.81 * np.sin(np.arange(0, 2, 0.01) * 7))
+    O.engines = rigid_engines(dem.RecordMotionEngine(ids=[base], samples=samples, interval=0.01), model=model, dt=1e-3)
+
+
 with tempfile.TemporaryDirectory() as folder:
-    for make in (free, yawed, train, stack_on_record):
+    for make in (free, yawed, train, stack_on_record, apart_on_record):
         for model in ("planar", "spatial"):
             make(model)
             O.engines[1].onTrouble = "continue"

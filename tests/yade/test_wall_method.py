@@ -36,6 +36,41 @@ for options, method in (({}, "wall"), ({"method": "localised"}, "localised"), ({
     assert integrator().method == method, options
 wall(3, 6, 0.1)
 assert integrator().method == "localised"  # 19 blocks
+
+# It is the largest structure that counts: blocks that stand apart move as each of them would alone. Pulses keep all in one step.
+
+
+def row(sizes, motion, **options):
+    O.reset()
+    base = dem.base((3 * len(sizes) + 4, 2, 0.4), stone(restitution=0.8))
+    O.engines = []
+    ids = [dem.block(size, O.bodies[base].mat, center=(3 * k, 0, size[2] / 2)) for k, size in enumerate(sizes) if size]
+    O.engines = rigid_engines(motion(base, ids), dt=1e-3, **options)
+    return ids
+
+
+def shaking(base, ids):
+    return dem.RecordMotionEngine(ids=[base], samples=list(4 * np.sin(9 * np.arange(0, 2, 0.01))), interval=0.01, direction=(1, 0, 0))
+
+
+def after(ids):
+    O.run(1500, True)
+    return np.array([(*O.bodies[i].state.pos, *O.bodies[i].state.vel, *O.bodies[i].state.angVel) for i in ids])
+
+
+sizes = [(0.3 + 0.01 * k, 0.5, 1 + 0.02 * k) for k in range(24)]
+ids = row(sizes, shaking)
+assert integrator().method == "localised" and dem.structures() == [[i] for i in ids]
+refuses(lambda: dem.structures(gap=0), "gap", "at most 1")
+assert dem.structures(gap=1) == [[i] for i in ids]  # 2.4 to 2.7 m apart, the smallest size is 0.3 m
+many = after(ids)
+assert len(integrator().impactTimes) > 24 and integrator().failures == 0
+for k in (0, 7, 23):
+    alone = after(row([size if j == k else None for j, size in enumerate(sizes)], shaking))
+    assert np.abs(alone - many[k]).max() < 1e-9, k  # round-off of the instants of impacts, which the base's velocity takes over
+row(sizes, lambda base, ids: dem.PulseTrainEngine(ids=[base], impulse=0.1, times=[0.1]))
+assert integrator().method == "wall"
+
 for options, words in (({"impact_order": "simultaneous"}, ("impactOrder", "'sequential'")), ({"tolerance": 1e-9}, ("tolerance", "1e-6 to 1e-2")),
                        ({"model": "compliant"}, ("method", "rigid")), ({"method": "fast"}, ("method", "'fast'"))):
     refuses(lambda: wall(4, 6, 0.1, **{"method": "wall", **options}), *words)
@@ -70,7 +105,7 @@ for courses, per_course, method in ((5, 6, "wall"), (2, 2, "localised")):
 O.reset()
 base = dem.base((60, 2, 0.4), dem.BlockMat(density=2000, frictionAngle=math.atan(MU)))
 ids = [dem.block((1, 0.5, 0.5), O.bodies[base].mat, center=(2 * k - 24, 0, 0.25)) for k in range(25)]
-O.engines = rigid_engines(dt=1e-3)
+O.engines = rigid_engines(dt=1e-3, method="wall")
 for id in ids:
     O.forces.setPermF(id, (0.5 * O.bodies[id].state.mass * 9.81, 0, 0))
 O.run(200, True)

@@ -18,6 +18,8 @@ public:
 	virtual double jumpAt(double t) = 0;
 	// A block has had an impact at t; the jump that this causes at once (a resonant pulse), m/s.
 	virtual double respond(int block, double t) = 0;
+	// Whether instants must be asked for in order of time: velocities jump, or impacts are answered.
+	virtual bool ordered() const { return true; }
 };
 
 } // namespace masonry::rigid

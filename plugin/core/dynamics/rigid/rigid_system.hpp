@@ -3,6 +3,7 @@
 #include "dynamics/rigid/base_drive.hpp"
 #include "dynamics/rigid/contact_problem.hpp"
 #include "impact/rocking_restitution.hpp"
+#include <algorithm>
 #include <vector>
 
 namespace masonry::rigid {
@@ -16,6 +17,7 @@ template <class K> struct RigidBody {
 	typename K::Velocity velocity { K::Velocity::Zero() }; // linear, then spin
 	typename K::Velocity force { K::Velocity::Zero() };    // external force (weight included) and moment about the centre
 	typename K::Velocity increment { K::Velocity::Zero() }; // change of velocity per second in the last smooth step: predicts the middle of the next
+	bool                 fresh { true };                   // the velocity has just jumped, or a stray one is left: the next step looks for those
 	int                  drive { -1 };                     // index of the base drive that moves it; -1: it keeps its velocity
 	typename K::Vector   origin { K::Vector::Zero() };     // position at zero displacement of its drive
 
@@ -85,7 +87,6 @@ template <class K> struct RigidSystem {
 	std::vector<typename K::Vector> driveDirections;
 	Settings                    settings;
 	bool                        moved { true }; // poses were set from outside: gaps are to be measured anew
-	bool                        fresh { true }; // velocities have just jumped, or stray ones are left: the next step looks for those
 
 	std::vector<Impact> impacts; // of the last step
 	// Since the start of the run.
@@ -94,9 +95,19 @@ template <class K> struct RigidSystem {
 	// Velocities have jumped, or forces: the last accelerations predict nothing.
 	void startAnew()
 	{
-		fresh = true;
+		setFresh(true);
 		for (auto& body : bodies)
 			body.increment.setZero();
+	}
+
+	bool isFresh() const
+	{
+		return std::any_of(bodies.begin(), bodies.end(), [](const auto& body) { return body.fresh && !body.prescribed; });
+	}
+	void setFresh(bool fresh)
+	{
+		for (auto& body : bodies)
+			body.fresh = fresh;
 	}
 
 	double kineticEnergy() const

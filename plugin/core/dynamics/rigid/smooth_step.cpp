@@ -296,14 +296,15 @@ template <class K> void SmoothStep<K>::attempt(const RigidSystem<K>& s, double h
 	last.h = h;
 	stray.clear();
 	unsteady = false;
-	if (!s.fresh) dampStray(s, h);
+	const bool fresh = s.isFresh();
+	if (!fresh) dampStray(s, h);
 	for (int pass = 0; pass < mostPasses; ++pass) {
 		predict(s, h, pass > 0);
 		assemble(s, h);
 		last.solved = solver.solve(s.settings.tolerance * scales.stepSpeed(h));
 		const bool   surprised = pass == 0 && surprises(s, last, solver.bodies, scales);
 		const double gain = finish(s, h);
-		const bool   first = pass == 0 && s.fresh;
+		const bool   first = pass == 0 && fresh;
 		if (first) {
 			findFrames(s);
 			findStray(s);
@@ -383,19 +384,21 @@ template <class K> void SmoothStep<K>::project(const RigidSystem<K>& s, double l
 
 template <class K> void SmoothStep<K>::accept(RigidSystem<K>& s)
 {
-	const double before = s.impactDissip + s.frictDissip;
+	double impact = 0, friction = 0; // lost in this step: not a difference of what has been lost since the start
 	for (size_t r = 0; r < last.rows.size(); ++r) {
 		const ContactRows<K>& rows = solver.points[r];
 		const PointRef        ref = last.rows[r];
 		const auto&           next1 = last.bodies[s.pairs[ref.pair].body1];
 		const auto&           next2 = last.bodies[s.pairs[ref.pair].body2];
 		const auto            mean1 = (rows.J1 * next1.mean).eval(), mean2 = (rows.J2 * next2.mean).eval(), slip = (mean1 + mean2).eval();
-		s.impactDissip -= rows.impulse[0] * slip[0];
-		s.frictDissip -= rows.impulse.template tail<K::rows - 1>().dot(slip.template tail<K::rows - 1>());
+		impact -= rows.impulse[0] * slip[0];
+		friction -= rows.impulse.template tail<K::rows - 1>().dot(slip.template tail<K::rows - 1>());
 		if (next1.unknown < 0) s.baseWork -= rows.impulse.dot(mean1);
 		if (next2.unknown < 0) s.baseWork -= rows.impulse.dot(mean2);
 	}
-	project(s, s.impactDissip + s.frictDissip - before);
+	s.impactDissip += impact;
+	s.frictDissip += friction;
+	project(s, impact + friction);
 	for (size_t b = 0; b < s.bodies.size(); ++b) {
 		RigidBody<K>& body = s.bodies[b];
 		const auto&   next = last.bodies[b];
@@ -404,7 +407,7 @@ template <class K> void SmoothStep<K>::accept(RigidSystem<K>& s)
 		body.velocity = next.velocity;
 	}
 	s.time += last.h;
-	s.fresh = unsteady;
+	s.setFresh(unsteady);
 
 	const double still = tolerance::rigid::parting * scales.stepSpeed(last.h);
 	const bool   isShort = last.h < tolerance::rigid::shortPart * whole;

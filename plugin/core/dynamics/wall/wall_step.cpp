@@ -116,7 +116,7 @@ void WallStep<K>::advancePart(RigidSystem<K>& s, double h)
 	takeMotion(s, h, workBefore);
 	choose(s, h);
 	s.time += h;
-	s.fresh = false;
+	s.setFresh(false);
 	report.diverged = !std::isfinite(s.kineticEnergy());
 }
 

@@ -15,5 +15,5 @@ globals().update(_load_classes())
 from masonry.dem.engines import energy, engines, history, impacts, save_history  # noqa: E402  (YADE's classes must be registered first)
 from masonry.dem.recording import wall_history  # noqa: E402
 from masonry.dem.scene import (angle, base, block, blocks_from_table, check_blocks, overturned, pier,  # noqa: E402
-                               return_wall, save_blocks, stack, tilt, two_wythe_wall, wall)
+                               return_wall, save_blocks, stack, structures, tilt, two_wythe_wall, wall)
 from masonry.dem.tilting import TiltTable  # noqa: E402

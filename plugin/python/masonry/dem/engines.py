@@ -3,12 +3,12 @@
 import numpy as np
 from yade import O, wrapper
 
-from masonry.dem.scene import check_blocks
+from masonry.dem.scene import check_blocks, structures
 
 _MODELS = ("auto", "planar", "spatial", "compliant")
 _METHODS = ("auto", "localised", "wall")
 _ORDERS = (None, "simultaneous", "sequential")
-# Up to so many free blocks impacts are found one by one.
+# Up to so many free blocks that are stepped together, impacts are found one by one.
 _FEW_BLOCKS = 20
 # Time step of rigid blocks, share of the largest that is allowed (0.15 sqrt(R/g) of the smallest block): 2.5e-3 sqrt(R/g), 1e-3 s for a
 # block 3 m high. Rocking angles of one block are then right to 1e-6.
@@ -86,7 +86,8 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
                   the blocks out), put between ForceResetter and the blocks' own
     method        rigid: 'localised' (each impact found inside the step: second order) or 'wall' (many blocks: impacts met
                   at the end of a substep, first order, hundreds of times faster when a wall moves). 'auto': 'wall' where a
-                  scene has more than 20 free blocks, unless an impact_order 'simultaneous' or a tolerance below 1e-6 is asked for
+                  structure (dem.structures) has more than 20 free blocks, or with a PulseTrainEngine the scene, unless an
+                  impact_order 'simultaneous' or a tolerance below 1e-6 is asked for
     """
     if model not in _MODELS:
         raise ValueError(f"model = {model!r}: must be one of {', '.join(_MODELS)}")
@@ -130,11 +131,13 @@ def _rigid(motions, model, method, dt, tolerance, impact_order, gravity, recorde
     integrator = wrapper.MoreauJeanIntegrator(motions=motions, model=model, gravity=(0, 0, -gravity))
     choice = integrator.choice()
     if method == "auto":
-        free = sum(b.dynamic for b in _blocks())
+        pulses = any(isinstance(m, wrapper.PulseTrainEngine) for m in motions)  # they keep all structures in one step
+        joined = [len(ids) for ids in structures()]
+        blocks = sum(joined) if pulses else max(joined)
         fine = impact_order == "simultaneous" or (tolerance is not None and tolerance < 1e-6)
-        method = "wall" if free > _FEW_BLOCKS and not fine else "localised"
+        method = "wall" if blocks > _FEW_BLOCKS and not fine else "localised"
         if method == "wall":
-            choice += f"; {free} blocks: method 'wall'"
+            choice += f"; {blocks} blocks: method 'wall'"
     wall = method == "wall"
     integrator.updateAttrs(dict(method=method, tolerance=tolerance or (1e-3 if wall else 1e-9), impactOrder=impact_order or ("sequential" if wall else "simultaneous")))
     if dt is None and gravity == 0:

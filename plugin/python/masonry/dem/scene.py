@@ -244,6 +244,20 @@ def check_blocks(tolerance=1e-3, floating=True):
         raise ValueError(f"{'; '.join(found)}; overlaps and gaps must be at most {tolerance:g} of the smallest size (tolerance)")
 
 
+def structures(gap=0.1):
+    """Ids of the free blocks, a list for each structure: blocks that are joined by others that are near each other. gap: how far apart the
+    bounding boxes of two that are near may be, relative to the smallest size of a free block; 0 < gap <= 1. Rigid structures of their own
+    are stepped as if the others were not there, unless pulses move the base."""
+    if not 0 < gap <= 1:
+        raise ValueError(f"gap = {gap}: must be above 0 and at most 1")
+    bodies = [b for b in _boxes() if b.dynamic]
+    if not bodies:
+        return []
+    centers, sizes, quaternions = _layout(bodies)
+    found = walls.structures(centers, sizes, walls.axes_of(quaternions), gap)
+    return [[bodies[k].id for k in members] for members in found]
+
+
 def tilt(id, angle, axis="y"):
     """Turns a standing block by `angle` (rad) about its own axis 'x' or 'y', so that it rests on its lower edge. A positive
     turn about y leans towards +x."""

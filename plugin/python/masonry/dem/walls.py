@@ -317,6 +317,24 @@ def _near_pairs(low, high):
     return np.concatenate(pairs)
 
 
+def _bounds(centers, sizes, axes, margins):
+    reach = np.einsum("nka,nk->na", np.abs(axes), sizes / 2) + margins
+    return centers - reach, centers + reach
+
+
+def structures(centers, sizes, axes, gap):
+    """Rows of blocks that are joined by others whose bounding boxes are at most `gap` of the smallest size apart, a list for each structure, in
+    the order of their first rows."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    low, high = _bounds(centers, sizes, axes, gap / 2 * sizes.min())
+    i, j = _near_pairs(low, high).T
+    near = coo_array((np.ones(len(i)), (i, j)), shape=(len(centers), len(centers)))
+    count, label = connected_components(near, directed=False)
+    return [np.flatnonzero(label == k).tolist() for k in range(count)]
+
+
 def _separations(i, j, centers, sizes, axes):
     """Gaps of the pairs along the 15 separating axes of two boxes (faces of both, crossed edges), negative where they overlap, and the
     upward part of each axis, directed from i to j: two arrays (pairs, 15)."""
@@ -361,8 +379,7 @@ def faults(centers, sizes, axes, prescribed, tolerance):
     (n,) bool, blocks that carry by themselves. Blocks overlap where no separating axis keeps their depth within `tolerance` of the
     smallest size of the two. A block is supported by one that it touches within the same from above, over more than an edge."""
     smallest = sizes.min(axis=1)
-    reach = np.einsum("nka,nk->na", np.abs(axes), sizes / 2) + tolerance * smallest[:, None]
-    pairs = _near_pairs(centers - reach, centers + reach)
+    pairs = _near_pairs(*_bounds(centers, sizes, axes, tolerance * smallest[:, None]))
     pairs = pairs[~(prescribed[pairs[:, 0]] & prescribed[pairs[:, 1]])]
     pairs = pairs[np.lexsort((pairs.max(axis=1), pairs.min(axis=1)))]
     depth, supports = np.empty(len(pairs)), [np.empty((0, 2), dtype=int)]

@@ -1,0 +1,35 @@
+#pragma once
+// Structures that are not near each other, each a system of its own: what happens in one divides no step of another, and a block moves as
+// if the others were not there.
+//
+// Blocks that a chain of pairs joins are an island; prescribed bodies join nothing. Motions that must be asked in order of time
+// (BaseDrive::ordered) keep all in one.
+#include "dynamics/rigid/rigid_step.hpp"
+
+namespace masonry::rigid {
+
+template <class K>
+class Islands {
+public:
+	StepReport advance(RigidSystem<K>& system, double dt);
+
+	// The most free bodies that an island has.
+	static int largest(const RigidSystem<K>& system);
+
+private:
+	struct Island {
+		RigidSystem<K> system;
+		std::vector<int> bodies, pairs; // of the whole system
+	};
+
+	void divide(const RigidSystem<K>& system);
+	void take(const RigidSystem<K>& system, Island& island) const;
+	void giveBack(RigidSystem<K>& system, Island& island) const;
+
+	RigidStep<K> step;
+	std::vector<Island> islands;
+	int list {-1}; // of the system's pairs, that the islands are of
+	size_t bodies {0};
+};
+
+} // namespace masonry::rigid
