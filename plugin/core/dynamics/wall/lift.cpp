@@ -7,8 +7,9 @@ namespace masonry::rigid::wall {
 
 namespace {
 
-constexpr int mostSweeps = 12;
-constexpr double perCourse = 6;    // 1/m' of a block over that of the one below it
+constexpr int mostSweeps = 100;
+constexpr double perCourse = 10;   // 1/m' of a block over that of the one below it
+constexpr double passedOn = 0.25;  // of what may be missing: pairs whose blocks have moved by less are not looked at again
 constexpr int highestCourse = 100; // that is told from those below it: the numbers must not overflow
 
 std::array<double, highestCourse + 1> sharesOfCourses()
@@ -42,20 +43,31 @@ MASONRY_INLINE Lanes prepareGroups(const Group<K>* groups, typename Lift<K>::Poi
 	return least;
 }
 
+// Sweep number `now`: groups of which no block has moved since they were looked at stay.
 template <class K>
-MASONRY_INLINE void liftGroups(const Group<K>* groups, typename Lift<K>::Points* points, int begin, int end, Lanes* moved, Lanes& missing)
+MASONRY_INLINE void liftGroups(const Group<K>* groups, typename Lift<K>::Points* points, const int* upwards, int begin, int end,
+                               int now, int* last, int* seen, double small, Lanes* moved, Lanes& missing)
 {
 	const Lanes none = all(0);
-	for (int g = begin; g < end; ++g) {
+	for (int place = begin; place < end; ++place) {
+		const int g = upwards[place];
 		const Group<K>& group = groups[g];
+		int since = -1;
+		for (int i = 0; i < width; ++i)
+			since = std::max(since, std::max(last[group.body1[i]], last[group.body2[i]]));
+		if (since < seen[g])
+			continue;
+		seen[g] = now;
 		Bodies<K> v1(moved, group.body1), v2(moved, group.body2);
-		Mask changed = none != none;
+		Mask changed = none != none, far = changed;
 		for (int k = 0; k < group.count; ++k) {
 			auto& at = points[g][k];
 			const Lanes excess = normalRate(v1, v2, group.point[k]) + at.room, next = larger(at.impulse - at.mass * excess, none);
 			missing = larger(missing, -excess);
-			pushNormal(v1, v2, group.point[k], next - at.impulse);
-			changed |= next != at.impulse;
+			const Lanes change = next - at.impulse;
+			pushNormal(v1, v2, group.point[k], change);
+			changed |= change != 0;
+			far |= size(change) > small * at.mass;
 			at.impulse = next;
 		}
 		if (!any(changed))
@@ -63,6 +75,13 @@ MASONRY_INLINE void liftGroups(const Group<K>* groups, typename Lift<K>::Points*
 		const bool allFree = !any(v1.m * v2.m == 0);
 		v1.store(moved, group.body1, v1.m, allFree);
 		v2.store(moved, group.body2, v2.m, allFree);
+		for (int i = 0; i < width; ++i)
+			if (far[i]) {
+				if (v1.m[i] != 0)
+					last[group.body1[i]] = now;
+				if (v2.m[i] != 0)
+					last[group.body2[i]] = now;
+			}
 	}
 }
 
@@ -78,13 +97,14 @@ MASONRY_INLINE void partGroups(Group<K>* groups, int begin, int end, const Lanes
 
 // No template is compiled for several vector widths.
 #define MASONRY_LIFT(K)                                                                                                                    \
-	MASONRY_LANES bool anyDeep(const Group<K>* groups, Lift<K>::Points* points, int count, const Lanes* moved, double length)              \
+	MASONRY_LANES bool anyDeep(const Group<K>* groups, Lift<K>::Points* points, int begin, int end, const Lanes* moved, double length)     \
 	{                                                                                                                                      \
-		return any(prepareGroups<K>(groups, points, 0, count, moved, length) < 0);                                                         \
+		return any(prepareGroups<K>(groups, points, begin, end, moved, length) < 0);                                                       \
 	}                                                                                                                                      \
-	MASONRY_LANES void liftSweep(const Group<K>* groups, Lift<K>::Points* points, int begin, int end, Lanes* moved, Lanes& missing)        \
+	MASONRY_LANES void liftSweep(const Group<K>* groups, Lift<K>::Points* points, const int* upwards, int begin, int end, int now,         \
+	                             int* last, int* seen, double small, Lanes* moved, Lanes& missing)                                         \
 	{                                                                                                                                      \
-		liftGroups<K>(groups, points, begin, end, moved, missing);                                                                         \
+		liftGroups<K>(groups, points, upwards, begin, end, now, last, seen, small, moved, missing);                                        \
 	}                                                                                                                                      \
 	MASONRY_LANES void partGaps(Group<K>* groups, int begin, int end, const Lanes* moved) { partGroups<K>(groups, begin, end, moved); }
 MASONRY_LIFT(Plane)
@@ -102,22 +122,28 @@ void Lift<K>::settle(WallContacts<K>& c, LaneArray& shift)
 	for (size_t b = 0; b < c.course.size(); ++b)
 		for (int pack = 0; pack < packs<K>; ++pack)
 			moved[packs<K> * b + pack][3] = c.velocity[packs<K> * b][3] * share[std::clamp(c.course[b], 0, highestCourse)];
-	if (!anyDeep(c.groups.data(), points.data(), int(c.groups.size()), moved.data(), c.length))
+	std::array<bool, Team::mostParts + 1> deep {};
+	c.allParts([&](const Part& part, int number) {
+		deep[number] = anyDeep(c.groups.data(), points.data(), part.begin, part.end, moved.data(), c.length);
+	});
+	if (std::none_of(deep.begin(), deep.end(), [](bool is) { return is; }))
 		return;
 	const Lanes noMass {1, 1, 1, 0};
 	const double enough = (tolerance::wall::penetration - tolerance::wall::lifted) * c.length;
+	last.assign(c.course.size() + 1, 0);
+	seen.assign(c.groups.size(), 0);
 	for (int k = 0; k < mostSweeps; ++k) {
 		Missing missing[Team::mostParts + 1] {};
 		const auto lift = [&](const Part& part, int number) {
-			part.byColour(
-			    [&](int first, int last) { liftSweep(c.groups.data(), points.data(), first, last, moved.data(), missing[number].most); });
+			liftSweep(c.groups.data(), points.data(), c.upwards.data(), part.begin, part.end, k + 1, last.data(), seen.data(),
+			          passedOn * enough, moved.data(), missing[number].most);
 		};
 		c.eachPart(lift);
 		lift(c.parts.back(), Team::mostParts);
 		if (std::none_of(std::begin(missing), std::end(missing), [&](const Missing& here) { return largest(here.most) > enough; }))
 			break;
 	}
-	partGaps(c.groups.data(), 0, int(c.groups.size()), moved.data());
+	c.allParts([&](const Part& part, int) { partGaps(c.groups.data(), part.begin, part.end, moved.data()); });
 	for (size_t b = 0; b < shift.size(); ++b)
 		shift[b] += noMass * moved[b];
 }

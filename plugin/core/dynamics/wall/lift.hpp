@@ -7,8 +7,8 @@
 //
 // The displacements w are those of an impulse problem with gaps for velocities, J w >= -gap, p >= 0, by sweeps: w += M'^-1 J^T dp. With the
 // masses of the blocks, what is taken off at the base would need as many sweeps to be carried up as the square of the courses. Here a block
-// counts for a share r of the one below it and gives way: a sweep leaves 4 r/(1 + r)^2 of what is deep in a tall column. A dozen are the most;
-// half of that is enough for ten courses.
+// counts for a share r of the one below it and gives way: a sweep leaves 4 r/(1 + r)^2 of what is deep in a tall column. Sweeps go from the
+// base upwards; later ones visit only pairs whose blocks have moved since, so that all together cost as much as a dozen full ones.
 #include "dynamics/wall/wall_contacts.hpp"
 
 namespace masonry::rigid::wall {
@@ -28,6 +28,7 @@ public:
 
 private:
 	std::vector<Points> points; // by group
+	std::vector<int> last, seen; // sweep in which a body has moved; in which a group was looked at
 	LaneArray moved;            // w, and 1/m'
 };
 

@@ -213,8 +213,8 @@ template <class K>
 void WallContacts<K>::takeOver(const RigidSystem<K>& s)
 {
 	length = scale::length(s);
-	colour(s);
 	findCourses(s);
+	colour(s);
 	takeBodies(s);
 	std::fill(stale.begin(), stale.end(), 0);
 	std::fill(known.begin(), known.end(), 1);
@@ -300,8 +300,8 @@ bool WallContacts<K>::measure(RigidSystem<K>& s, bool isStill)
 	}
 	if (otherPoints) {
 		takePairs(s);
-		colour(s);
 		findCourses(s);
+		colour(s);
 	}
 	if (s.moved)
 		std::fill(stale.begin(), stale.end(), allLanes);

@@ -246,6 +246,7 @@ public:
 	std::vector<typename K::Spin> gyration; // rho, m
 	std::vector<int> course;                // of a body: pairs between it and the nearest prescribed one; -1: no way there
 	int depth {0};                          // courses: the highest
+	std::vector<int> upwards;               // groups in the order of their courses, those of a part from its begin to its end
 	double length {0};                      // m, smallest half size
 	Team team;
 
@@ -273,6 +274,7 @@ private:
 	void showPair(RigidSystem<K>& system, int pair) const;
 	void countPoints(const RigidSystem<K>& system, int group);
 	void findCourses(const RigidSystem<K>& system);
+	void orderUpwards();
 	void takeBodies(const RigidSystem<K>& system);
 	void placeAt(RigidSystem<K>& system, std::vector<typename K::Pose>& poses);
 	bool isLocated(const RigidSystem<K>& system) const;

@@ -1,6 +1,7 @@
 // How a wall is divided into parts and groups, and which course a block is in.
 #include "dynamics/wall/wall_contacts.hpp"
 #include <algorithm>
+#include <numeric>
 
 namespace masonry::rigid::wall {
 
@@ -113,6 +114,20 @@ void WallContacts<K>::colour(const RigidSystem<K>& s)
 		for (int i = 0; i < width && features[g].pair[i] >= 0; ++i)
 			if (isFixed(groups[g].body1[i]) || isFixed(groups[g].body2[i]))
 				onBase.push_back({g, i});
+	orderUpwards();
+}
+
+template <class K>
+void WallContacts<K>::orderUpwards()
+{
+	std::vector<int> highest(groups.size(), 0); // course of a group
+	for (int g = 0; g < int(groups.size()); ++g)
+		for (int i = 0; i < width && features[g].pair[i] >= 0; ++i)
+			highest[g] = std::max({highest[g], course[groups[g].body1[i]], course[groups[g].body2[i]]});
+	upwards.resize(groups.size());
+	std::iota(upwards.begin(), upwards.end(), 0);
+	for (const Part& part : parts)
+		std::stable_sort(upwards.begin() + part.begin, upwards.begin() + part.end, [&](int a, int b) { return highest[a] < highest[b]; });
 }
 
 // Breadth first from the prescribed bodies.
@@ -138,6 +153,8 @@ void WallContacts<K>::findCourses(const RigidSystem<K>& s)
 
 template void WallContacts<Plane>::colour(const RigidSystem<Plane>&);
 template void WallContacts<Space>::colour(const RigidSystem<Space>&);
+template void WallContacts<Plane>::orderUpwards();
+template void WallContacts<Space>::orderUpwards();
 template void WallContacts<Plane>::findCourses(const RigidSystem<Plane>&);
 template void WallContacts<Space>::findCourses(const RigidSystem<Space>&);
 
