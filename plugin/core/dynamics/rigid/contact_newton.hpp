@@ -70,7 +70,7 @@ public:
 			for (int i = 0; i < s.nPoints; ++i)
 				std::swap(s.rows[i].impulse, points[i].next);
 			s.applyImpulses();
-			const double next = s.residual();
+			const double next = found ? goOn(s.residual()) : s.residual();
 			s.keepBest(next);
 			if (next <= target)
 				return next;
@@ -98,7 +98,7 @@ private:
 	using Edge = typename BlockFactor<K::dof>::Edge;
 
 	struct Point {
-		Rows centre, next;                                        // u at the centre, P(y)
+		Rows centre, next, move;                                  // u at the centre, P(y), last change of the centre
 		Block rate {Block::Zero()}, factored {Block::Zero()}; // derivative of P(y), and the one that is in the factor
 		int edge;                                             // between its bodies; -1: one of them is prescribed
 	};
@@ -107,6 +107,32 @@ private:
 		Eigen::Matrix<double, K::dof, K::dof> mass;
 		Velocity w, start, force; // w: velocity minus that of the centre, and before the line search; force: F
 	};
+
+	// From the new centre, with the old one in `next`, on by its last move, ever farther while the residual hardly grows: where no point
+	// changes its state, centre after centre moves by the same u/R. Returns the residual.
+	double goOn(double present)
+	{
+		constexpr double slack = 1e-2, most = 1e6;
+		for (int i = 0; i < s.nPoints; ++i) {
+			points[i].move = s.rows[i].impulse - points[i].next;
+			points[i].next = s.rows[i].impulse;
+		}
+		const auto residualAt = [&](double moves) {
+			for (int i = 0; i < s.nPoints; ++i)
+				s.rows[i].impulse = moves > 0 ? project<Rows>(points[i].next + moves * points[i].move, s.rows[i].friction) : points[i].next;
+			s.applyImpulses();
+			return s.residual();
+		};
+		double reached = 0;
+		for (double moves = 1; moves <= most; moves *= 2) {
+			const double next = residualAt(moves);
+			if (!(next <= (1 + slack) * present))
+				break;
+			present = next;
+			reached = moves;
+		}
+		return residualAt(reached);
+	}
 
 	double compliance(int i) const { return softness * s.points[i].alone.trace; } // R
 

@@ -21,7 +21,7 @@
 // A point alone is solved by its law at once. Else, first, Newton with a small R from the states of the impulses given (stick, slip,
 // open), and with the factor of the last solve while the points are the same: one back-substitution where no state changes. From
 // impulses far from the solution: block Gauss-Seidel, and where its rate tells that it will not converge, Newton with a large R that
-// falls as the centres converge.
+// falls as the centres converge, each going on along its move while that does no harm.
 // Impulses that still miss the laws are returned with their residual, and made to add no energy (seen from the offsets).
 #include "dynamics/rigid/kinematics.hpp"
 #include "impact/impulse_problem.hpp" // noSlip
