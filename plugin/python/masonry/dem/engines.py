@@ -138,6 +138,8 @@ def _rigid(motions, model, method, dt, tolerance, impact_order, gravity, recorde
         method = "wall" if blocks > _FEW_BLOCKS and not fine else "localised"
         if method == "wall":
             choice += f"; {blocks} blocks: method 'wall'"
+        elif len(joined) > 1 and not pulses:
+            choice += f"; {len(joined)} structures apart, each stepped by itself"
     wall = method == "wall"
     integrator.updateAttrs(dict(method=method, tolerance=tolerance or (1e-3 if wall else 1e-9), impactOrder=impact_order or ("sequential" if wall else "simultaneous")))
     if dt is None and gravity == 0:

@@ -206,22 +206,6 @@ RigidSystem<Plane> wall(int courses, int perCourse)
 	return s;
 }
 
-// Acceleration a sin(w t) from rest.
-class Sine : public BaseDrive {
-public:
-	Sine(double amplitude, double frequency) : a(amplitude), w(frequency) {}
-
-	double displacement(double t) const override { return a / w * (t - std::sin(w * t) / w); }
-	double velocity(double t) const override { return a / w * (1 - std::cos(w * t)); }
-	double acceleration(double t) const override { return a * std::sin(w * t); }
-	double nextKink(double, double) const override { return std::numeric_limits<double>::infinity(); }
-	double jumpAt(double) override { return 0; }
-	double respond(int, double) override { return 0; }
-
-private:
-	double a, w; // m/s^2, rad/s
-};
-
 constexpr double tolerance = 1e-11; // m/s; speeds are of the order of one
 
 } // namespace
@@ -346,7 +330,7 @@ TEST_CASE("contact problem: a wall that stands in slow shaking needs few factori
 	constexpr int    steps = 250;
 	constexpr double h = 1e-3, frequency = 4 * M_PI;
 	auto             s = wall(6, 6);
-	Sine             motion(0.3 * rig::g, frequency);
+	rig::Sine        motion(0.3 * rig::g, frequency);
 	s.drives.push_back(&motion);
 	s.driveDirections.push_back(Vector2::UnitX());
 	s.bodies[0].drive = 0;

@@ -7,23 +7,6 @@ using namespace rig;
 
 namespace {
 
-// A smooth motion, asked in any order.
-class Shaking : public BaseDrive {
-public:
-	double displacement(double t) const override { return speed / w * (t - std::sin(w * t) / w); }
-	double velocity(double t) const override { return speed / w * (1 - std::cos(w * t)); }
-	double acceleration(double t) const override { return speed * std::sin(w * t); }
-	double nextKink(double, double) const override { return std::numeric_limits<double>::infinity(); }
-	double jumpAt(double) override { return 0; }
-	double respond(int, double) override { return 0; }
-	bool ordered() const override { return asked; }
-
-	bool asked {false};
-
-private:
-	static constexpr double w = 10, speed = 0.5 * g; // of the acceleration
-};
-
 struct Structure {
 	int blocks;
 	double b, a;
@@ -50,8 +33,7 @@ RigidSystem<Plane> scene(const std::vector<int>& which)
 template <class Stepper>
 std::vector<Impact> shake(RigidSystem<Plane>& s, bool ordered = false)
 {
-	Shaking drive;
-	drive.asked = ordered;
+	Sine drive(0.5 * g, 10, ordered);
 	moveBase(s, drive);
 	Stepper step;
 	std::vector<Impact> impacts;

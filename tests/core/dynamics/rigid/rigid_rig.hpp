@@ -174,6 +174,24 @@ private:
 	size_t              taken { 0 }; // pieces whose jump has been
 };
 
+// Acceleration a sin(w t) from rest, asked in any order of time unless `inOrder`.
+class Sine : public BaseDrive {
+public:
+	Sine(double amplitude, double frequency, bool inOrder = true) : a(amplitude), w(frequency), inOrder(inOrder) {}
+
+	double displacement(double t) const override { return a / w * (t - std::sin(w * t) / w); }
+	double velocity(double t) const override { return a / w * (1 - std::cos(w * t)); }
+	double acceleration(double t) const override { return a * std::sin(w * t); }
+	double nextKink(double, double) const override { return std::numeric_limits<double>::infinity(); }
+	double jumpAt(double) override { return 0; }
+	double respond(int, double) override { return 0; }
+	bool   ordered() const override { return inOrder; }
+
+private:
+	double a, w; // m/s^2, rad/s
+	bool   inOrder;
+};
+
 // The paper's train: +I at once, then -2I, +2I ... each right after an impact of a block.
 class ResonantTrain : public BaseDrive {
 public:
