@@ -63,9 +63,10 @@ template <class K> class RigidScene final : public AnyRigidScene {
 	using Pair = masonry::rigid::ContactPair<K>;
 
 	struct Link {
-		shared_ptr<Body> body;
-		Properties       properties;
-		Motion           written;
+		shared_ptr<Body>  body;
+		shared_ptr<State> state; // the body's
+		Properties        properties;
+		Motion            written;
 	};
 	/// A pair's interaction; in O.interactions as soon as the blocks are near, until they are clearly apart.
 	struct Joint {
@@ -122,7 +123,7 @@ public:
 		if (all.size() != bodyCount) return true;
 		if (!mayHaveChanged()) return false;
 		for (const Link& link : links)
-			if (all[link.body->id].get() != link.body.get() || !(Properties(*link.body) == link.properties)) return true;
+			if (all[link.body->id].get() != link.body.get() || link.body->state != link.state || !(Properties(*link.body) == link.properties)) return true;
 		return false;
 	}
 
@@ -240,7 +241,7 @@ private:
 			block.prescribed = !body->isDynamic();
 			block.drive = -1;
 			if (k < 0) seat.read(coordinates, state, properties.extents.minCoeff(), body->id, block);
-			links.push_back({ body, properties, { state.pos, state.vel, state.angVel, state.ori } });
+			links.push_back({ body, body->state, properties, { state.pos, state.vel, state.angVel, state.ori } });
 			if (k >= 0) seat.tell(coordinates, block, links.back().written);
 			kept.ids.push_back(body->id);
 			kept.seats.push_back(seat);
@@ -367,7 +368,7 @@ private:
 		for (size_t b = 0; b < links.size(); ++b) {
 			Link&        link = links[b];
 			auto&        block = system.bodies[b];
-			const State& state = *link.body->state;
+			const State& state = *link.state;
 			if (link.written.isOf(state) || block.drive >= 0) continue;
 			kept.seats[b].read(coordinates, state, link.properties.extents.minCoeff(), kept.ids[b], block);
 			block.increment.setZero();
@@ -445,7 +446,7 @@ private:
 		for (size_t b = 0; b < links.size(); ++b) {
 			const auto& block = system.bodies[b];
 			if (block.prescribed && block.drive < 0 && block.velocity.isZero(0)) continue;
-			State& state = *links[b].body->state;
+			State& state = *links[b].state;
 			kept.seats[b].tell(coordinates, block, links[b].written, state);
 			state.angMom = kept.seats[b].spin(coordinates, block);
 		}

@@ -134,14 +134,16 @@ MASONRY_INLINE void addHeld(const Group<K>* groups, StillGroup<K>* still, const 
 }
 
 template <class K>
-MASONRY_INLINE void addSlip(Group<K>* groups, StillGroup<K>* still, const Rows<K>* rows, int begin, int end, double h)
+MASONRY_INLINE void addSlip(Group<K>* groups, StillGroup<K>* still, const Rows<K>* rows, int begin, int end, double h, Lanes& loss)
 {
 	for (int g = begin; g < end; ++g)
 		for (int k = 0; k < groups[g].count; ++k) {
 			PointLanes<K>& p = groups[g].point[k];
 			p.gap += h * rows[g][k].un;
 			auto& slip = still[g][k].slip;
-			slip = select(slides(p.pt, groups[g].friction * p.pn), typename PointLanes<K>::Tangent {}, slip + h * rows[g][k].ut);
+			const Mask glides = slides(p.pt, groups[g].friction * p.pn);
+			slip = select(glides, typename PointLanes<K>::Tangent {}, slip + h * rows[g][k].ut);
+			loss -= select(glides, dot(p.pt, rows[g][k].ut), all(0));
 		}
 }
 
@@ -163,9 +165,10 @@ MASONRY_INLINE void addSlip(Group<K>* groups, StillGroup<K>* still, const Rows<K
 	{                                                                                                                                      \
 		addHeld<K>(groups, still, rows, begin, end, pullBack, most);                                                                       \
 	}                                                                                                                                      \
-	MASONRY_LANES void slipPass(Group<K>* groups, StillGroup<K>* still, const Rows<K>* rows, int begin, int end, double h)                 \
+	MASONRY_LANES void slipPass(Group<K>* groups, StillGroup<K>* still, const Rows<K>* rows, int begin, int end, double h,                 \
+	                            Lanes& loss)                                                                                               \
 	{                                                                                                                                      \
-		addSlip<K>(groups, still, rows, begin, end, h);                                                                                    \
+		addSlip<K>(groups, still, rows, begin, end, h, loss);                                                                              \
 	}
 MASONRY_PASSES(Plane)
 MASONRY_PASSES(Space)
@@ -398,10 +401,17 @@ void KeptFactor<K>::forgetHeld()
 }
 
 template <class K>
-void KeptFactor<K>::keepSlip()
+double KeptFactor<K>::keepSlip()
 {
 	auto& c = *contacts;
-	c.allParts([&](const Part& part, int) { slipPass(c.groups.data(), c.still.data(), rows.data(), part.begin, part.end, h); });
+	LaneArray loss(c.parts.size(), all(0));
+	c.allParts([&](const Part& part, int number) {
+		slipPass(c.groups.data(), c.still.data(), rows.data(), part.begin, part.end, h, loss[number]);
+	});
+	double sum = 0;
+	for (const Lanes& here : loss)
+		sum += here[0] + here[1] + here[2] + here[3];
+	return sum;
 }
 
 template <class K>

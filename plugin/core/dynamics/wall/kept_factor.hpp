@@ -64,7 +64,7 @@ public:
 	// Largest velocity of the points that were kept from at least `held`, the way they were kept from, m/s.
 	double motionOfHeld(double held) const;
 	void forgetHeld();
-	void keepSlip(); // of the step that ends, in which gaps have moved
+	double keepSlip(); // of the step that ends, in which gaps have moved. Returns what friction has taken, J
 	void giveUp();   // impulses as they were at the beginning
 
 	KeptReport report;

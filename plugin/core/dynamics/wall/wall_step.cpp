@@ -166,7 +166,7 @@ bool WallStep<K>::tryStill(RigidSystem<K>& s, double h)
 	}
 	report.velocityResidual = std::max(report.velocityResidual, kept.report.velocity);
 	report.forceResidual = std::max(report.forceResidual, kept.report.force);
-	kept.keepSlip();
+	frictionLoss = kept.keepSlip();
 	s.baseWork += baseWorkWhenStill(s);
 	contacts.velocity = kept.velocity;
 	shift.resize(kept.velocity.size());
@@ -218,6 +218,7 @@ void WallStep<K>::substeps(RigidSystem<K>& s, double h)
 	report.velocityResidual = std::max(report.velocityResidual, moving.report.residual);
 	report.forceResidual = std::max(report.forceResidual, moving.report.residual);
 	shift = moving.shift;
+	frictionLoss = count * contacts.slidingLoss();
 }
 
 // What the courses miss of each other falls as the square of the substep.
@@ -339,16 +340,14 @@ void WallStep<K>::takeMotion(RigidSystem<K>& s, double h, double workBefore)
 		}
 		of[number] = sum;
 	});
-	const int parts = report.mode == WallMode::still ? 1 : substepCount();
-	const double friction = parts * contacts.slidingLoss();
 	const double baseWork = s.baseWork - workBefore;
-	double lost = baseWork - friction, atStake = std::abs(baseWork), mass = 0;
+	double lost = baseWork - frictionLoss, atStake = std::abs(baseWork), mass = 0;
 	for (const Energies& share : of) {
 		lost += share.work - share.gained;
 		atStake += std::abs(share.work) + share.before;
 		mass += share.mass;
 	}
-	s.frictDissip += friction;
+	s.frictDissip += frictionLoss;
 	s.impactDissip += lost;
 	const double liftedAll = mass * scale::acceleration(s) * contacts.length;
 	if (lost < -tolerance::wall::createdShare * atStake - tolerance::wall::createdLift * liftedAll)

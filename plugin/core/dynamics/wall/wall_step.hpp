@@ -94,6 +94,7 @@ private:
 	wall::RockingJoints<K> joints;
 	wall::LaneArray loads, shift;
 	std::vector<int> onDrives; // prescribed bodies with a drive
+	double frictionLoss {0};   // J, of the part of the step
 };
 
 } // namespace masonry::rigid
