@@ -44,17 +44,6 @@ void add(StepReport& sum, const StepReport& report)
 } // namespace
 
 template <class K>
-int Islands<K>::largest(const RigidSystem<K>& s)
-{
-	std::vector<int> sizes(s.bodies.size(), 0);
-	int most = 0;
-	for (const int first : firstOfIsland(s))
-		if (first >= 0)
-			most = std::max(most, ++sizes[first]);
-	return most;
-}
-
-template <class K>
 StepReport Islands<K>::advance(RigidSystem<K>& s, double dt)
 {
 	if (s.lists != list || s.bodies.size() != bodies)

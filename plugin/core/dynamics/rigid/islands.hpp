@@ -13,9 +13,6 @@ class Islands {
 public:
 	StepReport advance(RigidSystem<K>& system, double dt);
 
-	// The most free bodies that an island has.
-	static int largest(const RigidSystem<K>& system);
-
 private:
 	struct Island {
 		RigidSystem<K> system;

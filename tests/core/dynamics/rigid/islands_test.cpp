@@ -76,7 +76,6 @@ TEST_CASE("structures apart from each other move as each does alone")
 	CHECK(all.baseWork == Approx(work).epsilon(1e-9));
 	for (const Impact& one : impacts)
 		CHECK((one.block >= 1 && one.block <= 5 && one.support < one.block));
-	CHECK(Islands<Plane>::largest(all) == 2);
 }
 
 TEST_CASE("a motion that must be asked in order of time keeps all structures in one step")
@@ -112,7 +111,6 @@ TEST_CASE("blocks that come near each other are one structure from then on, and 
 			++s.lists;
 		}
 		REQUIRE(step.advance(s, 1e-3).converged);
-		CHECK(Islands<Plane>::largest(s) == (k < 300 ? 1 : 2));
 	}
 	CHECK(std::abs(s.bodies[left].velocity[0]) < 1e-9);
 	CHECK(std::abs(s.bodies[right].velocity[0]) < 1e-9);
