@@ -52,6 +52,15 @@ MASONRY_INLINE Mask takePoint(PointLanes<K>& p, const StillLanes<K>& f, typename
 	return touches ^ was;
 }
 
+// Normal part of the nearest impulse that friction allows, of one with a normal part and the length of a tangential one. Infinite friction
+// holds nothing that parts.
+MASONRY_INLINE Lanes nearestNormal(const Lanes& normal, const Lanes& tangential, const Lanes& friction)
+{
+	const Lanes onRim = (normal + friction * tangential) / (1 + friction * friction);
+	const Mask inside = (tangential <= friction * normal) | (friction >= mostFriction);
+	return larger(inside ? normal : onRim, all(0));
+}
+
 // One pass over the points of a group: the laws (not before the first solve), and the right-hand side of the next solve.
 template <class K, bool laws>
 MASONRY_INLINE void passGroup(Group<K>& group, StillGroup<K>& still, Rows<K>& rows, double pullBack, const Lanes* velocity, Lanes* force,
@@ -68,7 +77,7 @@ MASONRY_INLINE void passGroup(Group<K>& group, StillGroup<K>& still, Rows<K>& ro
 		if constexpr (laws) {
 			const Lanes yn = p.pn - (relaxation * wn - (relaxation - 1) * f.zn) * row.stiffness;
 			const auto yt = p.pt - (relaxation * wt - (relaxation - 1) * f.zt) * row.stiffness;
-			p.pn = larger(yn, all(0));
+			p.pn = nearestNormal(yn, length(yt), group.friction);
 			p.pt = clip(yt, group.friction * p.pn);
 			const Lanes zn = (p.pn - yn) * row.resistance;
 			const auto zt = (p.pt - yt) * row.resistance;
@@ -180,7 +189,7 @@ MASONRY_PASSES(Space)
 template <class K>
 bool KeptFactor<K>::takeSoftness()
 {
-	const double deepest = 12, softest = 3e-3; // of r: waves of correction cross the courses in some sqrt(1/r) solves
+	const double deepest = 30, softest = 3e-3; // of r: waves of correction cross the courses in some sqrt(1/r) solves
 	const double before = softness;
 	softness = given > 0 ? given : std::min(softest, deepest / (double(contacts->depth) * contacts->depth));
 	return softness != before;
@@ -286,7 +295,7 @@ void KeptFactor<K>::begin(WallContacts<K>& c, const RigidSystem<K>& s, const Lan
 	velocity = c.velocity;
 	free.resize(velocity.size());
 	force.resize(velocity.size());
-	backPerSecond = pullBack<K>(c.depth) / h;
+	backPerSecond = given > 0 ? 0 : pullBack<K>(c.depth) / h;
 	const double enter = tolerance::wall::touching * c.length;
 	const Step same {1 / h, backPerSecond, softness, enter, 4 * enter};
 	bool different[Team::mostParts + 1] {};

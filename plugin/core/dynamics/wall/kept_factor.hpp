@@ -7,11 +7,14 @@
 //
 //     V += A^-1 [ M (V_free - V) + J^T (p + (z - w)/R) ]
 //     y  = p - (1.6 w - 0.6 z)/R
-//     p  = clip(y): normal part on p_n >= 0, then tangential part on |p_t| <= mu p_n
+//     p  = the impulse nearest to y with |p_t| <= mu p_n
 //     z  = (p - y) R
 //
 // until w = z. Nothing in A depends on which points stick, slide or part: states may chatter and A stays. Only residuals are corrected,
 // so that A may be of slightly other positions.
+//
+// That p makes the problem convex, and impulses with which a wall stands are found where there are any. What slides by this law also lifts,
+// by mu times as much: but a step in which blocks move is not done in this mode.
 //
 // b_n = -gap/h (an open point may close), b_t = 0; but of what a few iterations have left, a penetration or a slip, a share is taken back
 // in each step, so that it does not add up. Penetrations that were there when the wall came to rest stay: pushed out, they would wedge
@@ -31,7 +34,7 @@ struct KeptReport {
 template <class K>
 class KeptFactor {
 public:
-	// r; 0: small enough for corrections to cross all courses in some solves.
+	// r; 0: small enough for corrections to cross all courses in some solves. With a softness given, nothing is taken back.
 	explicit KeptFactor(double softness = 0) : given(softness) {}
 
 	using Tangent = typename PointLanes<K>::Tangent;

@@ -44,6 +44,7 @@ MASONRY_INLINE Lanes all(double value) { return Lanes {value, value, value, valu
 MASONRY_INLINE Lanes larger(const Lanes& a, const Lanes& b) { return a > b ? a : b; }
 MASONRY_INLINE Lanes smaller(const Lanes& a, const Lanes& b) { return a < b ? a : b; }
 MASONRY_INLINE Lanes size(const Lanes& a) { return a < 0 ? -a : a; }
+MASONRY_INLINE Lanes length(const Lanes& a) { return size(a); }
 MASONRY_INLINE Lanes select(const Mask& mask, const Lanes& a, const Lanes& b) { return mask ? a : b; }
 // A bit for each lane.
 constexpr unsigned char allLanes = 15;

@@ -49,6 +49,7 @@ MASONRY_INLINE Lanes2 operator*(double f, const Lanes2& a) { return all(f) * a; 
 MASONRY_INLINE Lanes2& operator*=(Lanes2& a, const Lanes& f) { return a = f * a; }
 MASONRY_INLINE Lanes dot(const Lanes2& a, const Lanes2& b) { return a.x * b.x + a.y * b.y; }
 MASONRY_INLINE Lanes size(const Lanes2& a) { return larger(size(a.x), size(a.y)); } // to report and compare only: saves the root
+MASONRY_INLINE Lanes length(const Lanes2& a) { return root(dot(a, a)); }
 MASONRY_INLINE Lanes2 select(const Mask& mask, const Lanes2& a, const Lanes2& b)
 {
 	return {select(mask, a.x, b.x), select(mask, a.y, b.y)};

@@ -8,8 +8,7 @@ namespace masonry::rigid::wall {
 
 namespace {
 
-constexpr double mostFriction = 1e12; // stands for noSlip: infinity times a zero impulse is no number
-constexpr int mostStood = 16;         // still steps, in which blocks may go far in small steps
+constexpr int mostStood = 16; // still steps, in which blocks may go far in small steps
 
 double turned(const PlanePose& from, const PlanePose& to) { return std::abs(to.angle - from.angle); }
 double turned(const Pose& from, const Pose& to) { return 2 * (to.orientation.coeffs() - from.orientation.coeffs()).norm(); }

@@ -20,6 +20,7 @@
 
 namespace masonry::rigid::wall {
 
+constexpr double mostFriction = 1e12; // stands for noSlip: infinity times a zero impulse is no number
 template <class K>
 constexpr int packs = K::dof / 3; // of a body
 template <class K>

@@ -10,7 +10,7 @@ using wall::Lanes;
 
 namespace {
 
-constexpr int coldSolves = 3000, returnSolves = 300, mostSolves = 16, quickSolves = 8, quickRounds = 20;
+constexpr int coldSolves = 3000, mostSolves = 300, quickSolves = 8, quickRounds = 20;
 
 template <class K>
 double restSpeed(const RigidSystem<K>& s, double length)
@@ -155,8 +155,7 @@ bool WallStep<K>::tryStill(RigidSystem<K>& s, double h)
 		kept.forget(contacts);
 	kept.begin(contacts, s, loads, h);
 	const double forces = settings.strictForces ? enough : std::numeric_limits<double>::infinity();
-	const int most = !memoryOfModes.started ? coldSolves : memoryOfModes.stay == 0 ? returnSolves : mostSolves;
-	kept.iterate(settings.strictForces ? coldSolves : most, enough, forces);
+	kept.iterate(settings.strictForces || !memoryOfModes.started ? coldSolves : mostSolves, enough, forces);
 	report.solves += kept.report.solves;
 	report.factorisations += kept.report.factorisations;
 	const bool moves = kept.findHeld() > tolerance::wall::held * stepSpeed && !stands(s, h);
