@@ -1,32 +1,10 @@
 #include "dynamics/rigid/islands.hpp"
+#include "dynamics/rigid/island_numbers.hpp"
 #include <algorithm>
-#include <numeric>
 
 namespace masonry::rigid {
 
 namespace {
-
-// Of each body, the lowest number in its island; -1: prescribed.
-template <class K>
-std::vector<int> firstOfIsland(const RigidSystem<K>& s)
-{
-	std::vector<int> parent(s.bodies.size());
-	std::iota(parent.begin(), parent.end(), 0);
-	const auto root = [&](int body) {
-		while (parent[body] != body)
-			body = parent[body] = parent[parent[body]];
-		return body;
-	};
-	for (const ContactPair<K>& pair : s.pairs)
-		if (!s.bodies[pair.body1].prescribed && !s.bodies[pair.body2].prescribed) {
-			const int a = root(pair.body1), b = root(pair.body2);
-			parent[std::max(a, b)] = std::min(a, b);
-		}
-	std::vector<int> first;
-	for (size_t b = 0; b < s.bodies.size(); ++b)
-		first.push_back(s.bodies[b].prescribed ? -1 : root(int(b)));
-	return first;
-}
 
 void add(StepReport& sum, const StepReport& report)
 {
@@ -71,32 +49,27 @@ void Islands<K>::divide(const RigidSystem<K>& s)
 {
 	list = s.lists;
 	bodies = s.bodies.size();
+	const std::vector<int> number = islandNumbers(s);
 	islands.clear();
-	const std::vector<int> first = firstOfIsland(s);
-	std::vector<int> number(bodies, -1);
-	for (size_t b = 0; b < bodies; ++b)
-		if (first[b] == int(b)) {
-			number[b] = int(islands.size());
-			islands.emplace_back();
-		}
+	islands.resize(number.empty() ? 0 : 1 + *std::max_element(number.begin(), number.end()));
 	if (islands.size() < 2)
 		return;
 	std::vector<std::vector<int>> members(islands.size());
 	std::vector<char> used(bodies, 0);
 	for (size_t b = 0; b < bodies; ++b)
-		if (first[b] >= 0)
-			members[number[first[b]]].push_back(int(b));
+		if (number[b] >= 0)
+			members[number[b]].push_back(int(b));
 	for (int c = 0; c < int(s.pairs.size()); ++c) {
-		const int a = s.pairs[c].body1, b = s.pairs[c].body2, free = first[a] >= 0 ? a : b, other = free == a ? b : a;
-		const int island = number[first[free]];
+		const int a = s.pairs[c].body1, b = s.pairs[c].body2, free = number[a] >= 0 ? a : b, other = free == a ? b : a;
+		const int island = number[free];
 		islands[island].pairs.push_back(c);
-		if (first[other] < 0) {
+		if (number[other] < 0) {
 			members[island].push_back(other);
 			used[other] = 1;
 		}
 	}
 	for (size_t b = 0; b < bodies; ++b)
-		if (first[b] < 0 && !used[b])
+		if (number[b] < 0 && !used[b])
 			members[0].push_back(int(b));
 	for (size_t k = 0; k < islands.size(); ++k) {
 		auto& own = members[k];

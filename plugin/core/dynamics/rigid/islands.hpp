@@ -1,9 +1,6 @@
 #pragma once
-// Structures that are not near each other, each a system of its own: what happens in one divides no step of another, and a block moves as
-// if the others were not there.
-//
-// Blocks that a chain of pairs joins are an island; prescribed bodies join nothing. Motions that must be asked in order of time
-// (BaseDrive::ordered) keep all in one.
+// Structures that are not near each other (island_numbers.hpp), each a system of its own: what happens in one divides no step of another,
+// and a block moves as if the others were not there. Motions that must be asked in order of time (BaseDrive::ordered) keep all in one.
 #include "dynamics/rigid/rigid_step.hpp"
 
 namespace masonry::rigid {
