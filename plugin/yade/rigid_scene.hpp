@@ -207,6 +207,7 @@ private:
 		const auto report = wall.advance(system, scene.dt);
 		const bool still = wall.report.mode == masonry::rigid::WallMode::still;
 		integrator.mode = still ? "still" : "moving";
+		integrator.movingBlocks = wall.report.moved;
 		++(still ? integrator.stillSteps : integrator.movingSteps);
 		integrator.velocityResidual = wall.report.velocityResidual;
 		integrator.forceResidual = wall.report.forceResidual;

@@ -196,11 +196,11 @@ bool KeptFactor<K>::takeSoftness()
 }
 
 template <class K>
-void KeptFactor<K>::refactorise(WallContacts<K>& c, RigidSystem<K>& s, const Touches& touches)
+void KeptFactor<K>::refactorise(RigidSystem<K>& s, const Touches& touches)
 {
-	contacts = &c;
+	auto& c = *contacts;
 	c.at(s, factored, [&] {
-		for (size_t g = 0; g < rows.size(); ++g)
+		for (size_t g = 0; g < std::min(rows.size(), c.groups.size()); ++g)
 			for (int k = 0; k < lanePoints<K>; ++k)
 				rows[g][k].stiffness = touches[g][k] ? stiffnessOf(c.groups[g].point[k], softness) : all(0);
 		if (!outdated)
@@ -214,22 +214,27 @@ void KeptFactor<K>::factorise()
 {
 	const auto& c = *contacts;
 	constexpr int n = packs<K>;
+	std::vector<int> node(c.own.size(), -1); // of a body, its first
+	places.clear();
 	edges.clear();
-	const int bodies = int(c.velocity.size()) / n;
-	for (int b = 0; n > 1 && b < bodies; ++b)
-		edges.push_back({n * b, n * b + 1});
+	for (int b = 0; b < int(c.own.size()); ++b)
+		if (c.own[b]) {
+			node[b] = int(places.size());
+			for (int k = 0; k < n; ++k)
+				places.push_back(n * b + k);
+			if (n > 1)
+				edges.push_back({node[b], node[b] + 1});
+		}
 	for (const Group<K>& group : c.groups)
 		for (int i = 0; i < width; ++i)
 			if (c.isFree(group.body1[i]) && c.isFree(group.body2[i]))
 				for (int k = 0; k < n * n; ++k)
-					edges.push_back({n * group.body1[i] + k / n, n * group.body2[i] + k % n});
-	factor.setGraph(int(c.velocity.size()), edges);
+					edges.push_back({node[group.body1[i]] + k / n, node[group.body2[i]] + k % n});
+	factor.setGraph(int(places.size()), edges);
 	using Block = SymmetricFactor::Block;
-	for (size_t b = 0; b < c.velocity.size(); ++b) {
-		const double inverseMass = c.velocity[b][3];
-		factor.addDiagonal(int(b), Block::Identity() * (inverseMass > 0 ? 1 / inverseMass : 1));
-	}
-	int edge = n > 1 ? bodies : 0;
+	for (size_t k = 0; k < places.size(); ++k)
+		factor.addDiagonal(int(k), Block::Identity() / c.velocity[places[k]][3]);
+	int edge = n > 1 ? int(places.size()) / n : 0;
 	for (size_t g = 0; g < c.groups.size(); ++g)
 		for (int i = 0; i < width; ++i) {
 			const Group<K>& group = c.groups[g];
@@ -261,15 +266,16 @@ void KeptFactor<K>::factorise()
 				if (!c.isFree(body[side]))
 					continue;
 				for (int a = 0; a < n; ++a)
-					factor.addDiagonal(n * body[side] + a, own[side][a][a]);
+					factor.addDiagonal(node[body[side]] + a, own[side][a][a]);
 				if (n > 1)
-					factor.addEdge(body[side], own[side][0][n - 1]);
+					factor.addEdge(node[body[side]] / n, own[side][0][n - 1]);
 			}
 			if (c.isFree(body[0]) && c.isFree(body[1]))
 				for (int k = 0; k < n * n; ++k)
 					factor.addEdge(edge++, across[k / n][k % n]);
 		}
 	factor.factorise();
+	nodes = places.size();
 	++report.factorisations;
 }
 
@@ -283,8 +289,9 @@ void KeptFactor<K>::inertia(const Part& part)
 
 // The seam goes first where a loop is over bodies, since parts add to those of the seam, and last where it is over contacts.
 template <class K>
-void KeptFactor<K>::begin(WallContacts<K>& c, const RigidSystem<K>& s, const LaneArray& load, double step)
+void KeptFactor<K>::begin(WallContacts<K>& c, const LaneArray& load, double step)
 {
+	outdated |= contacts != &c;
 	contacts = &c;
 	h = step;
 	report = {};
@@ -294,7 +301,7 @@ void KeptFactor<K>::begin(WallContacts<K>& c, const RigidSystem<K>& s, const Lan
 		rows.assign(c.groups.size(), {});
 	velocity = c.velocity;
 	free.resize(velocity.size());
-	force.resize(velocity.size());
+	force.assign(velocity.size(), all(0));
 	backPerSecond = given > 0 ? 0 : pullBack<K>(c.depth) / h;
 	const double enter = tolerance::wall::touching * c.length;
 	const Step same {1 / h, backPerSecond, softness, enter, 4 * enter};
@@ -318,20 +325,41 @@ void KeptFactor<K>::begin(WallContacts<K>& c, const RigidSystem<K>& s, const Lan
 		return;
 	factorise();
 	outdated = false;
-	factored.clear();
-	for (const auto& body : s.bodies)
-		factored.push_back(body.pose);
+	factored = c.located;
 }
 
 template <class K>
-void KeptFactor<K>::forget(WallContacts<K>& c)
+void KeptFactor<K>::follow(const WallContacts<K>& here)
 {
+	if (contacts != &here)
+		return;
+	const std::vector<Rows> old = std::move(rows);
+	rows.assign(here.groups.size(), {});
+	const size_t left = packs<K> * std::count(here.own.begin(), here.own.end(), 1);
+	outdated |= rows.empty() || nodes > 2 * left;
+	for (size_t g = 0; g < rows.size(); ++g)
+		for (int i = 0; i < width && here.features[g].pair[i] >= 0; ++i) {
+			const auto [group, lane] = here.origin[g][i];
+			if (group >= 0 && group < int(old.size()))
+				copyLane(old[group], lane, rows[g], i);
+			else
+				outdated = true;
+		}
+}
+
+template <class K>
+void KeptFactor<K>::forget(WallContacts<K>& c, const LaneBits& lanes)
+{
+	const Lanes none = all(0);
 	for (size_t g = 0; g < c.groups.size(); ++g)
 		for (int k = 0; k < lanePoints<K>; ++k) {
+			const Mask is = maskOf(lanes[g]);
 			StillLanes<K>& f = c.still[g][k];
-			f.zn = f.heldN = all(0);
-			f.zt = f.slip = f.heldT = Tangent {};
-			f.zero = smaller(c.groups[g].point[k].gap, all(0));
+			f.zn = is ? none : f.zn;
+			f.heldN = is ? none : f.heldN;
+			for (Tangent* tangent : {&f.zt, &f.slip, &f.heldT})
+				*tangent = select(is, Tangent {}, *tangent);
+			f.zero = is ? smaller(c.groups[g].point[k].gap, none) : f.zero;
 		}
 }
 
@@ -341,7 +369,7 @@ void KeptFactor<K>::iterate(int most, double velocityResidual, double forceResid
 	auto& c = *contacts;
 	const Lanes noMass {1, 1, 1, 0};
 	for (int k = 0; k < most; ++k) {
-		factor.solve(force.data());
+		factor.solve(force.data(), places);
 		Largest worst[Team::mostParts + 1] {};
 		const auto move = [&](const Part& part) {
 			for (const int b : part.members)
@@ -384,28 +412,61 @@ double KeptFactor<K>::findHeld()
 	return held;
 }
 
+// Lanes with a point that mark(g, k, some) adds to `some`.
 template <class K>
-double KeptFactor<K>::motionOfHeld(double held) const
+template <class Mark>
+LaneBits KeptFactor<K>::where(const Mark& mark) const
 {
-	const Lanes none = all(0);
-	Lanes fastest = none;
-	for (size_t g = 0; g < rows.size(); ++g)
-		for (int k = 0; k < contacts->groups[g].count; ++k) {
-			const StillLanes<K>& f = contacts->still[g][k];
-			const Mask along = size(f.heldT) >= held;
-			const Lanes slip = dot(rows[g][k].ut, f.heldT) / select(along, root(dot(f.heldT, f.heldT)), all(1));
-			fastest = larger(fastest, larger(f.heldN >= held ? rows[g][k].un : none, along ? slip : none));
-		}
-	return largest(fastest);
+	LaneBits lanes;
+	for (int g = 0; g < int(rows.size()); ++g) {
+		Mask some {};
+		for (int k = 0; k < contacts->groups[g].count; ++k)
+			mark(g, k, some);
+		lanes.push_back(bitsOf(some));
+	}
+	return lanes;
 }
 
 template <class K>
-void KeptFactor<K>::forgetHeld()
+LaneBits KeptFactor<K>::unsolved(double residual, double motion) const
 {
-	for (auto& still : contacts->still)
-		for (StillLanes<K>& f : still) {
-			f.heldN = all(0);
-			f.heldT = Tangent {};
+	return where([&](int g, int k, Mask& some) {
+		const Row& row = rows[g][k];
+		const StillLanes<K>& f = contacts->still[g][k];
+		const Lanes miss = larger(size(row.un - row.bn - f.zn), size(row.ut + backPerSecond * f.slip - f.zt));
+		some |= (row.stiffness > 0) & (miss > residual);
+		some |= (contacts->groups[g].point[k].massN > 0) & (larger(size(row.un), size(row.ut)) > motion);
+	});
+}
+
+template <class K>
+LaneBits KeptFactor<K>::held(double held) const
+{
+	return where([&](int g, int k, Mask& some) {
+		const StillLanes<K>& f = contacts->still[g][k];
+		some |= larger(f.heldN, size(f.heldT)) > held;
+	});
+}
+
+template <class K>
+LaneBits KeptFactor<K>::gone(double held, double speed) const
+{
+	const Lanes none = all(0);
+	return where([&](int g, int k, Mask& some) {
+		const StillLanes<K>& f = contacts->still[g][k];
+		const Mask along = size(f.heldT) >= held;
+		const Lanes slip = dot(rows[g][k].ut, f.heldT) / select(along, root(dot(f.heldT, f.heldT)), all(1));
+		some |= larger(f.heldN >= held ? rows[g][k].un : none, along ? slip : none) > speed;
+	});
+}
+
+template <class K>
+void KeptFactor<K>::forgetHeld(const LaneBits& lanes)
+{
+	for (size_t g = 0; g < lanes.size(); ++g)
+		for (StillLanes<K>& f : contacts->still[g]) {
+			f.heldN = maskOf(lanes[g]) ? all(0) : f.heldN;
+			f.heldT = select(maskOf(lanes[g]), Tangent {}, f.heldT);
 		}
 }
 
@@ -426,15 +487,25 @@ double KeptFactor<K>::keepSlip()
 template <class K>
 void KeptFactor<K>::giveUp()
 {
+	giveUp(LaneBits(rows.size(), allLanes));
+}
+
+template <class K>
+void KeptFactor<K>::giveUp(const LaneBits& lanes)
+{
 	auto& c = *contacts;
 	for (size_t g = 0; g < c.groups.size(); ++g)
-		for (int k = 0; k < c.groups[g].count; ++k) {
+		for (int k = 0; lanes[g] && k < c.groups[g].count; ++k) {
+			const Mask are = maskOf(lanes[g]);
 			PointLanes<K>& p = c.groups[g].point[k];
 			StillLanes<K>& f = c.still[g][k];
-			p.pn = before[g][k].pn;
-			p.pt = before[g][k].pt;
-			f.zn = before[g][k].zn;
-			f.zt = before[g][k].zt;
+			const Before& then = before[g][k];
+			p.pn = select(are, then.pn, p.pn);
+			p.pt = select(are, then.pt, p.pt);
+			f.zn = select(are, then.zn, f.zn);
+			f.zt = select(are, then.zt, f.zt);
+			rows[g][k].un = select(are, all(0), rows[g][k].un);
+			rows[g][k].ut = select(are, Tangent {}, rows[g][k].ut);
 		}
 }
 

@@ -53,22 +53,31 @@ public:
 	};
 	using Befores = std::array<Before, lanePoints<K>>;
 
-	// The wall has moved since the last step in this mode, and holds what it finds.
-	static void forget(WallContacts<K>& contacts);
+	// These pairs have moved since the last step in this mode, and hold what they find.
+	static void forget(WallContacts<K>& contacts, const LaneBits& lanes);
 	// Starts a step from the contacts' velocities; `load` is the change of velocity by external forces, per body.
-	void begin(WallContacts<K>& contacts, const RigidSystem<K>& system, const LaneArray& load, double h);
-	// There are other points than before.
-	void outdate() { outdated = true; }
+	void begin(WallContacts<K>& contacts, const LaneArray& load, double h);
+	// There are other points here than before.
+	void outdate(const WallContacts<K>& here) { outdated |= contacts == &here; }
+	// Pairs are in other lanes here than before, and some may have come or gone. Without those that have gone the factor stays, a block for
+	// each structure, until they are most of it.
+	void follow(const WallContacts<K>& here);
 	// Solves until both residuals are at most theirs, at most `most` times. May be called again to go on.
 	void iterate(int most, double velocityResidual, double forceResidual);
 	// Largest velocity, m/s, that the iterations have kept from a point since it parts or slides, this step included. Few iterations find
 	// impulses that let go at once, but velocities that follow slowly, by r each: a wall would stick to the state of rest for many steps.
 	double findHeld();
-	// Largest velocity of the points that were kept from at least `held`, the way they were kept from, m/s.
-	double motionOfHeld(double held) const;
-	void forgetHeld();
+	// Pairs that miss the laws by more than `residual`, or move by more than `motion`, m/s.
+	LaneBits unsolved(double residual, double motion) const;
+	// Pairs with a point that has been kept from more than `held`, m/s.
+	LaneBits held(double held) const;
+	// Pairs with a point that was kept from at least `held` and goes faster than `speed` the way it was kept from, m/s.
+	LaneBits gone(double held, double speed) const;
+	void forgetHeld(const LaneBits& lanes);
 	double keepSlip(); // of the step that ends, in which gaps have moved. Returns what friction has taken, J
-	void giveUp();   // impulses as they were at the beginning
+	// Impulses as they were at the beginning, of all pairs or of these, which then have not moved in this step.
+	void giveUp();
+	void giveUp(const LaneBits& lanes);
 
 	KeptReport report;
 	LaneArray velocity;     // V
@@ -76,8 +85,11 @@ public:
 
 	// As of the contacts, whose own numbers have been passed. A factor is made anew from the poses that it was of.
 	template <class Flow>
-	void pass(Flow& f, WallContacts<K>& c, RigidSystem<K>& system)
+	void pass(Flow& f, WallContacts<K>* sets, RigidSystem<K>& system)
 	{
+		int set = contacts == &sets[1];
+		f(set);
+		contacts = &sets[set];
 		size_t count = rows.size();
 		f(outdated), f(softness), f(count);
 		rows.resize(count);
@@ -95,8 +107,11 @@ public:
 		factored.resize(count);
 		for (auto& pose : factored)
 			passPose(f, pose);
+		size_t known = nodes;
+		f(known);
 		if (isNew && count > 0)
-			refactorise(c, system, touches);
+			refactorise(system, touches);
+		nodes = known;
 	}
 
 private:
@@ -105,10 +120,14 @@ private:
 	bool takeSoftness();
 	void inertia(const Part& part);
 	void factorise();
-	void refactorise(WallContacts<K>& contacts, RigidSystem<K>& system, const Touches& touches);
+	void refactorise(RigidSystem<K>& system, const Touches& touches);
+	template <class Mark>
+	LaneBits where(const Mark& mark) const;
 
 	WallContacts<K>* contacts {nullptr};
-	SymmetricFactor factor; // a node for each pack
+	SymmetricFactor factor; // a node for each pack of the bodies here
+	std::vector<int> places; // of the nodes
+	size_t nodes {0};        // of the factor, those of bodies that have gone included
 	std::vector<SymmetricFactor::Edge> edges;
 	LaneArray free, force;
 	std::vector<Befores> before; // by group

@@ -3,7 +3,9 @@
 // processor has; functions marked MASONRY_LANES are compiled for several and the widest is picked when the program starts.
 
 #include <cstddef>
+#include <cstring>
 #include <new>
+#include <type_traits>
 #include <vector>
 
 #pragma GCC diagnostic ignored "-Wpsabi" // lanes are passed between inlined functions only
@@ -74,6 +76,17 @@ MASONRY_INLINE void transpose(Lanes& a, Lanes& b, Lanes& c, Lanes& d)
 	b = __builtin_shuffle(ab1, cd1, Mask {0, 1, 4, 5});
 	c = __builtin_shuffle(ab0, cd0, Mask {2, 3, 6, 7});
 	d = __builtin_shuffle(ab1, cd1, Mask {2, 3, 6, 7});
+}
+
+// All numbers of a lane of a structure of lanes.
+template <class T>
+void copyLane(const T& from, int i, T& to, int j)
+{
+	static_assert(std::is_trivially_copyable_v<T> && sizeof(T) % sizeof(Lanes) == 0);
+	const auto* source = reinterpret_cast<const char*>(&from) + i * sizeof(double);
+	auto* target = reinterpret_cast<char*>(&to) + j * sizeof(double);
+	for (std::size_t at = 0; at < sizeof(T); at += sizeof(Lanes))
+		std::memcpy(target + at, source + at, sizeof(double));
 }
 
 } // namespace masonry::rigid::wall

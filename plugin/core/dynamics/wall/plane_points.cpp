@@ -6,8 +6,6 @@ namespace masonry::rigid::wall {
 
 namespace {
 
-constexpr double farAway = 1e30; // m
-
 struct Placed {
 	Lanes x, y, cosine, sine;
 };

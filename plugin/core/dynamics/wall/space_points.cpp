@@ -7,7 +7,6 @@ namespace masonry::rigid::wall {
 
 namespace {
 
-constexpr double farAway = 1e30; // m
 constexpr int poseRows = 4;
 
 struct alignas(alignment) Placed {

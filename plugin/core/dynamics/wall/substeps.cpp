@@ -6,8 +6,9 @@ namespace masonry::rigid::wall {
 
 namespace {
 
-struct alignas(alignment) Largest {
-	Lanes change, motion;
+// Where the last sweep leaves what is reported, by group; null: nobody asks.
+struct Watch {
+	Lanes *change {nullptr}, *motion {nullptr};
 };
 
 // Of the difference of an impulse from its mean over the last steps: what a sweep takes off, and what a step takes into the mean.
@@ -24,12 +25,13 @@ MASONRY_INLINE Lanes normalImpulse(const PointLanes<K>& p, const Lanes& un, doub
 }
 
 template <class K, class Tangent>
-MASONRY_INLINE void measure(const PointLanes<K>& p, const Lanes& un, const Tangent& ut, const Lanes& dn, const Tangent& dt, Largest& worst)
+MASONRY_INLINE void measure(const PointLanes<K>& p, const Lanes& un, const Tangent& ut, const Lanes& dn, const Tangent& dt, Lanes& change,
+                            Lanes& motion)
 {
 	const Lanes none = all(0);
 	const Mask closed = p.pn > 0, present = p.massN > 0;
-	worst.motion = larger(worst.motion, present ? larger(size(un), size(ut)) : none);
-	worst.change = larger(worst.change, closed ? larger(size(dn) / p.massN, size(dt) / p.massT) : none);
+	motion = larger(motion, present ? larger(size(un), size(ut)) : none);
+	change = larger(change, closed ? larger(size(dn) / p.massN, size(dt) / p.massT) : none);
 }
 
 // A sweep over the four pairs of a group, row by row.
@@ -41,8 +43,8 @@ class Visit;
 template <>
 class Visit<Plane> {
 public:
-	MASONRY_INLINE Visit(Group<Plane>& group, const Coupling<Plane>& coupling, Lanes* velocity)
-	    : group(group), w(coupling), velocity(velocity), v1(velocity, group.body1), v2(velocity, group.body2)
+	MASONRY_INLINE Visit(Group<Plane>* groups, const Coupling<Plane>* couplings, int g, Lanes* velocity)
+	    : group(groups[g]), w(couplings[g]), g(g), velocity(velocity), v1(velocity, group.body1), v2(velocity, group.body2)
 	{
 	}
 	template <int k>
@@ -57,7 +59,7 @@ public:
 		p.pn = pn;
 	}
 	template <int k>
-	MASONRY_INLINE void tangential(Largest* worst)
+	MASONRY_INLINE void tangential(const Watch& watch)
 	{
 		PointLanes<Plane>& p = group.point[k];
 		const Lanes before = slipRate(v1, v2, p);
@@ -65,8 +67,8 @@ public:
 		const Lanes pt = friction(p, ut, group.friction * p.pn);
 		dt[k] = pt - p.pt;
 		p.pt = pt;
-		if (worst)
-			measure(p, un[k], ut, dn[k], dt[k], *worst);
+		if (watch.change)
+			measure(p, un[k], ut, dn[k], dt[k], watch.change[g], watch.motion[g]);
 	}
 	MASONRY_INLINE void end()
 	{
@@ -79,6 +81,7 @@ public:
 private:
 	Group<Plane>& group;
 	const Coupling<Plane>& w;
+	const int g;
 	Lanes* velocity;
 	Bodies<Plane> v1, v2;
 	Lanes un[lanePoints<Plane>], dn[lanePoints<Plane>], dt[lanePoints<Plane>];
@@ -87,8 +90,8 @@ private:
 template <>
 class Visit<Space> {
 public:
-	MASONRY_INLINE Visit(Group<Space>& group, const Coupling<Space>& coupling, Lanes* velocity)
-	    : group(group), w(coupling), velocity(velocity), v1(velocity, group.body1), v2(velocity, group.body2)
+	MASONRY_INLINE Visit(Group<Space>* groups, const Coupling<Space>* couplings, int g, Lanes* velocity)
+	    : group(groups[g]), w(couplings[g]), g(g), velocity(velocity), v1(velocity, group.body1), v2(velocity, group.body2)
 	{
 	}
 	template <int k>
@@ -104,7 +107,7 @@ public:
 		p.pn = pn;
 	}
 	template <int k>
-	MASONRY_INLINE void tangential(Largest* worst)
+	MASONRY_INLINE void tangential(const Watch& watch)
 	{
 		if (k >= group.count)
 			return;
@@ -112,8 +115,8 @@ public:
 		const Lanes2 ut = slipRate(v1, v2, p), pt = friction(p, ut, group.friction * p.pn), dt = pt - p.pt;
 		pushTangential(v1, v2, p, dt);
 		p.pt = pt;
-		if (worst)
-			measure(p, un, ut, dn, dt, *worst);
+		if (watch.change)
+			measure(p, un, ut, dn, dt, watch.change[g], watch.motion[g]);
 	}
 	MASONRY_INLINE void end()
 	{
@@ -124,6 +127,7 @@ public:
 private:
 	Group<Space>& group;
 	const Coupling<Space>& w;
+	const int g;
 	Lanes* velocity;
 	Bodies<Space> v1, v2;
 	Lanes un, dn;
@@ -131,27 +135,25 @@ private:
 
 // Groups at the same time: one alone waits for its own results.
 template <class K, int k = 0, class... Visits>
-MASONRY_INLINE void sweepTogether(double perSubstep, Largest* worst, Visits&&... visits)
+MASONRY_INLINE void sweepTogether(double perSubstep, const Watch& watch, Visits&&... visits)
 {
 	(visits.template normal<k>(perSubstep), ...);
-	(visits.template tangential<k>(worst), ...);
+	(visits.template tangential<k>(watch), ...);
 	if constexpr (k + 1 < lanePoints<K>)
-		sweepTogether<K, k + 1>(perSubstep, worst, visits...);
+		sweepTogether<K, k + 1>(perSubstep, watch, visits...);
 	else
 		(visits.end(), ...);
 }
 
-// `worst`: null where nobody asks.
 template <class K>
 MASONRY_INLINE void sweepGroups(Group<K>* groups, const Coupling<K>* couplings, int begin, int end, Lanes* velocity, double perSubstep,
-                                Largest* worst)
+                                const Watch& watch)
 {
 	int g = begin;
 	for (; g + 2 <= end; g += 2)
-		sweepTogether<K>(perSubstep, worst, Visit<K>(groups[g], couplings[g], velocity),
-		                 Visit<K>(groups[g + 1], couplings[g + 1], velocity));
+		sweepTogether<K>(perSubstep, watch, Visit<K>(groups, couplings, g, velocity), Visit<K>(groups, couplings, g + 1, velocity));
 	if (g < end)
-		sweepTogether<K>(perSubstep, worst, Visit<K>(groups[g], couplings[g], velocity));
+		sweepTogether<K>(perSubstep, watch, Visit<K>(groups, couplings, g, velocity));
 }
 
 template <class K>
@@ -186,12 +188,12 @@ MASONRY_INLINE void beginGroups(Group<K>* groups, Coupling<K>* couplings, int be
 #define MASONRY_SWEEPS(K)                                                                                                                  \
 	MASONRY_LANES void sweep(Group<K>* groups, const Coupling<K>* couplings, int begin, int end, Lanes* velocity, double perSubstep)       \
 	{                                                                                                                                      \
-		sweepGroups<K>(groups, couplings, begin, end, velocity, perSubstep, nullptr);                                                      \
+		sweepGroups<K>(groups, couplings, begin, end, velocity, perSubstep, {});                                                           \
 	}                                                                                                                                      \
 	MASONRY_LANES void lastSweep(Group<K>* groups, const Coupling<K>* couplings, int begin, int end, Lanes* velocity, double perSubstep,   \
-	                             Largest& worst)                                                                                           \
+	                             const Watch& watch)                                                                                       \
 	{                                                                                                                                      \
-		sweepGroups<K>(groups, couplings, begin, end, velocity, perSubstep, &worst);                                                       \
+		sweepGroups<K>(groups, couplings, begin, end, velocity, perSubstep, watch);                                                        \
 	}                                                                                                                                      \
 	MASONRY_LANES void moveGaps(Group<K>* groups, int begin, int end, const Lanes* velocity, double s)                                     \
 	{                                                                                                                                      \
@@ -213,6 +215,8 @@ void Substeps<K>::begin(WallContacts<K>& c)
 	const Lanes onlyMass {0, 0, 0, 1};
 	shift.assign(c.velocity.size(), all(0));
 	couplings.resize(c.groups.size());
+	change.assign(c.groups.size(), all(0));
+	report.motion = change;
 	contactPart = c.velocity;
 	for (Lanes& v : contactPart)
 		v *= onlyMass;
@@ -230,7 +234,6 @@ void Substeps<K>::substep(WallContacts<K>& c, const LaneArray& load, double s, b
 	const Lanes noMass {1, 1, 1, 0};
 	Group<K>* groups = c.groups.data();
 	Lanes* velocity = c.velocity.data();
-	Largest worst[Team::mostParts + 1] {};
 	const auto accelerate = [&](const Part& part) {
 		for (const int b : part.members) {
 			const Lanes before = velocity[b] + load[b];
@@ -246,10 +249,10 @@ void Substeps<K>::substep(WallContacts<K>& c, const LaneArray& load, double s, b
 		for (const int b : part.members)
 			shift[b] += s * noMass * velocity[b];
 	};
-	const auto relax = [&](const Part& part, int number) {
+	const auto relax = [&](const Part& part) {
 		part.byColour([&](int first, int last) {
 			if (isLast)
-				lastSweep(groups, couplings.data(), first, last, velocity, 1 / s, worst[number]);
+				lastSweep(groups, couplings.data(), first, last, velocity, 1 / s, {change.data(), report.motion.data()});
 			else
 				sweep(groups, couplings.data(), first, last, velocity, 1 / s);
 		});
@@ -264,16 +267,16 @@ void Substeps<K>::substep(WallContacts<K>& c, const LaneArray& load, double s, b
 	});
 	press(seam);
 	move(seam);
-	c.eachPart([&](const Part& part, int number) {
+	c.eachPart([&](const Part& part, int) {
 		move(part);
-		relax(part, number);
+		relax(part);
 	});
-	relax(seam, int(c.parts.size()) - 1);
-	report = {};
-	for (const Largest& here : worst) {
-		report.residual = std::max(report.residual, largest(here.change));
-		report.motion = std::max(report.motion, largest(here.motion));
-	}
+	relax(seam);
+	if (!isLast)
+		return;
+	report.residual = 0;
+	for (const Lanes& here : change)
+		report.residual = std::max(report.residual, largest(here));
 }
 
 template class Substeps<Plane>;

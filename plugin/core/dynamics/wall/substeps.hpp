@@ -19,7 +19,7 @@ namespace masonry::rigid::wall {
 
 struct SubstepReport {
 	double residual {0}; // largest change of an impulse by the last sweep, as the velocity that it gives its point, m/s
-	double motion {0};   // largest relative velocity of a point, closed or open, m/s
+	LaneArray motion;    // of the pairs, by group: largest relative velocity of a point, closed or open, m/s
 };
 
 template <class K>
@@ -35,6 +35,7 @@ public:
 
 private:
 	std::vector<Coupling<K>> couplings; // by group
+	LaneArray change;                   // as of the report, of the pairs
 	LaneArray contactPart;              // of the velocities: what the impulses of the last substep gave
 };
 

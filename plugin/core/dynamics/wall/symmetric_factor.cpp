@@ -44,16 +44,16 @@ void SymmetricFactor::factorise()
 	supernodes.take(order, lower, pivots);
 }
 
-void SymmetricFactor::solve(Lanes* x)
+void SymmetricFactor::solve(Lanes* x, const std::vector<int>& places)
 {
 	const int n = order.nodes();
 	work.resize(3 * n);
 	for (int k = 0; k < n; ++k)
 		for (int i = 0; i < 3; ++i)
-			work[3 * k + i] = float(x[order.nodeAt[k]][i]);
+			work[3 * k + i] = float(x[places[order.nodeAt[k]]][i]);
 	supernodes.solve(order, work.data());
 	for (int k = 0; k < n; ++k)
-		x[order.nodeAt[k]] = Lanes {work[3 * k], work[3 * k + 1], work[3 * k + 2], 0};
+		x[places[order.nodeAt[k]]] = Lanes {work[3 * k], work[3 * k + 1], work[3 * k + 2], 0};
 }
 
 } // namespace masonry::rigid::wall

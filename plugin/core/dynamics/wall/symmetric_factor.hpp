@@ -14,8 +14,8 @@ public:
 	void addEdge(int edge, const Block& firstSecond); // the block in the row of the edge's first node and the column of its second
 	void factorise();
 
-	// x = A^-1 x to single precision; one entry a node, whose fourth component is not used.
-	void solve(Lanes* x);
+	// x = A^-1 x to single precision; the entry of node k is x[places[k]], whose fourth component is not used.
+	void solve(Lanes* x, const std::vector<int>& places);
 
 private:
 	EliminationOrder order;

@@ -1,5 +1,6 @@
 #pragma once
-// The contacts of a wall as both of its methods see them: plain arrays, four pairs a group, groups by colour.
+// The contacts of a wall as both of its methods see them: plain arrays, four pairs a group, groups by colour. Those of the structures that
+// stand are apart from those of the structures that move.
 //
 // Spins are multiplied by the radius of gyration rho of the body, so that it has one mass m for all components; arms are divided by it
 // (plane_lanes.hpp, space_lanes.hpp). Velocities come in packs of three components and 1/m: in the plane (v, rho w), in space v and then
@@ -27,6 +28,7 @@ template <class K>
 constexpr int lanePoints = K::maxPoints == 2 ? 2 : 4;
 template <class K>
 constexpr int lanesOfPair = K::maxPoints / lanePoints<K>;
+constexpr double farAway = 1e30; // m, gap of a lane without a point
 
 template <class Flow>
 void passPose(Flow& f, PlanePose& pose)
@@ -117,6 +119,9 @@ struct alignas(alignment) FeatureGroup {
 	int first[width]; // number in the pair of the lane's first point
 };
 
+// By group, a bit for each lane.
+using LaneBits = std::vector<unsigned char>;
+
 struct Part {
 	int begin {0}, end {0};     // groups
 	std::vector<int> colourEnd; // groups of the first colour end here, and so on
@@ -138,6 +143,8 @@ template <class K>
 class WallContacts {
 public:
 	using Tangent = typename PointLanes<K>::Tangent;
+
+	explicit WallContacts(Team& team) : team(team) {}
 
 	// work(part, number) for each part but the seam, the last number.
 	template <class Work>
@@ -161,24 +168,28 @@ public:
 		team.each(int(count), [&](int k) { work(size * k / count, size * (k + 1) / count, k); });
 	}
 
+	// The contacts of these bodies from now on, those of `giver` among them with all that it knows of them. True: other lanes than before.
+	bool take(const RigidSystem<K>& system, const std::vector<char>& bodies, const WallContacts& giver);
 	// Takes over poses and velocities, looks up features where needed, and measures all points; `isStill`: where the last steps have been
 	// still too, every few steps. True: other points than before.
 	bool measure(RigidSystem<K>& system, bool isStill);
 	// Impulses are those of a time h from now on; not many times the last, or an impact's would become as many.
 	void setUnit(double h);
-	// The means of the impulses are those that there are now.
-	void startMeans();
+	// The means of the impulses of these pairs are those that there are now.
+	void startMeans(const LaneBits& lanes);
 	// Gaps, forces and places of all points, as they are now, into the pairs. Needed before the list of pairs changes.
 	void showPoints(RigidSystem<K>& system) const;
 	// What the next step needs of the last besides the system, number by number: f(number) takes it, or gives it to a new object.
 	template <class Flow>
-	void pass(Flow& f, RigidSystem<K>& system)
+	void pass(Flow& f, RigidSystem<K>& system, const std::vector<char>& bodies)
 	{
 		const bool isNew = !samePairs(system);
-		if (isNew)
+		if (isNew) {
+			own = bodies;
 			takePairs(system);
-		for (auto& is : wide)
-			f(is);
+		}
+		for (const int c : numbers)
+			f(wide[c]);
 		f(unit), f(stood);
 		located.resize(stood > 0 ? system.bodies.size() : 0);
 		for (auto& pose : located)
@@ -188,7 +199,7 @@ public:
 			if (stood > 0)
 				placeAt(system, located);
 		}
-		for (int c = 0; c < int(pairs.size()); ++c)
+		for (const int c : numbers)
 			for (int k = 0; k < K::maxPoints && slots[c][k / lanePoints<K>].group >= 0; ++k) {
 				const auto [group, lane] = slots[c][k / lanePoints<K>];
 				State now = state(c, k);
@@ -218,6 +229,13 @@ public:
 		features = featuresNow;
 	}
 
+	bool isEmpty() const { return std::find(own.begin(), own.end(), 1) == own.end(); }
+	// A free body of a lane's pair.
+	int freeBody(int group, int lane) const
+	{
+		const int first = groups[group].body1[lane];
+		return isFree(first) ? first : groups[group].body2[lane];
+	}
 	// Points of a lane.
 	int points(const RigidSystem<K>& s, int group, int lane) const
 	{
@@ -249,12 +267,15 @@ public:
 	int depth {0};                          // courses: the highest
 	std::vector<int> upwards;               // groups in the order of their courses, those of a part from its begin to its end
 	double length {0};                      // m, smallest half size
-	Team team;
+	std::vector<char> own;                  // 1: a free body that is of the structures here
+	std::vector<typename K::Pose> located;  // poses of all bodies where the points of still steps are
+	struct Slot {
+		int group {-1}, lane {-1};
+	};
+	std::vector<std::array<Slot, width>> origin; // by group: where lanes were before the last take(); group -1: not here
+	Team& team;
 
 private:
-	struct Slot {
-		int group, lane;
-	};
 	struct State { // of one point, in a lane
 		bool present {false};
 		double pn {0}, steady {0}, zn {0}, zero {0}, heldN {0};
@@ -268,9 +289,11 @@ private:
 	};
 
 	bool samePairs(const RigidSystem<K>& system);
+	bool renumber(const RigidSystem<K>& system);
+	void bring(const WallContacts& from, int pair);
 	void takePairs(const RigidSystem<K>& system);
 	void takeOver(const RigidSystem<K>& system);
-	int divide(const RigidSystem<K>& system);
+	int divide();
 	void colour(const RigidSystem<K>& system);
 	void showPair(RigidSystem<K>& system, int pair) const;
 	void countPoints(const RigidSystem<K>& system, int group);
@@ -291,10 +314,10 @@ private:
 
 	double unit {0};                                     // s, that the impulses are of
 	int list {-1};                                       // of the system, that pairs are of
-	int stood {0};                                       // still steps with the points as they were located; 0: the last moved
-	std::vector<typename K::Pose> located;               // poses then
-	std::vector<std::array<int, 2>> pairs;               // that the groups are made of
-	std::vector<std::array<Slot, lanesOfPair<K>>> slots; // of a pair; group -1: none
+	int stood {0};                                       // still steps with the points as they are located; 0: the last moved
+	std::vector<std::array<int, 2>> pairs;               // all of the system
+	std::vector<int> numbers;                            // of those that the groups are made of
+	std::vector<std::array<Slot, lanesOfPair<K>>> slots; // of a pair; group -1: none, or not here
 	std::vector<unsigned char> wide;                     // pairs that need all their lanes
 	std::vector<int> partOf;                             // of a body
 	std::vector<unsigned char> known;                    // pairs whose lanes hold their points

@@ -16,21 +16,21 @@ constexpr int mostSeam = 8;       // times as many pairs as are in the seam ther
 // bed joints. Where numbers say little about places the seam is large, and there are fewer parts.
 // Returns how many parts there are.
 template <class K>
-int WallContacts<K>::divide(const RigidSystem<K>& s)
+int WallContacts<K>::divide()
 {
-	std::vector<int> rank; // of a body among the free ones
+	std::vector<int> rank; // of a body among its own
 	int free = 0;
-	for (const auto& body : s.bodies)
-		rank.push_back(body.prescribed ? -1 : free++);
-	const auto atSeam = [&](const std::array<int, 2>& pair) {
-		const auto [a, b] = pair;
+	for (const char is : own)
+		rank.push_back(is ? free++ : -1);
+	const auto atSeam = [&](int c) {
+		const auto [a, b] = pairs[c];
 		return rank[a] >= 0 && rank[b] >= 0 && partOf[a] != partOf[b];
 	};
-	for (int count = std::clamp(int(pairs.size()) / pairsOfPart, 1, Team::mostParts);; count /= 2) {
+	for (int count = std::clamp(int(numbers.size()) / pairsOfPart, 1, Team::mostParts);; count /= 2) {
 		partOf.clear();
 		for (const int r : rank)
 			partOf.push_back(r < 0 ? 0 : int(long(r) * count / free));
-		if (count == 1 || mostSeam * std::count_if(pairs.begin(), pairs.end(), atSeam) <= long(pairs.size()))
+		if (count == 1 || mostSeam * std::count_if(numbers.begin(), numbers.end(), atSeam) <= long(numbers.size()))
 			return count;
 	}
 }
@@ -42,11 +42,11 @@ void WallContacts<K>::colour(const RigidSystem<K>& s)
 	struct Lane {
 		int pair, part;
 	};
-	const int none = int(s.bodies.size()), seam = divide(s);
+	const int none = int(s.bodies.size()), seam = divide();
 	const auto isFixed = [&](int body) { return s.bodies[body].prescribed; };
 	std::vector<std::vector<int>> pairsOf(seam + 1);
 	std::vector<char> atSeam(s.bodies.size() + 1, 0);
-	for (int c = 0; c < int(pairs.size()); ++c) {
+	for (const int c : numbers) {
 		const auto [a, b] = pairs[c];
 		const bool within = isFixed(a) || isFixed(b) || partOf[a] == partOf[b];
 		pairsOf[within ? partOf[isFixed(a) ? b : a] : seam].push_back(c);
@@ -55,6 +55,8 @@ void WallContacts<K>::colour(const RigidSystem<K>& s)
 	}
 	parts.assign(seam + 1, {});
 	for (int b = 0; b <= none; ++b) {
+		if (b < none && !isFixed(b) && !own[b])
+			continue;
 		const bool within = b < none && !isFixed(b) && !atSeam[b];
 		for (int k = 0; k < packs<K>; ++k)
 			parts[within ? partOf[b] : seam].members.push_back(packs<K> * b + k);
@@ -62,9 +64,7 @@ void WallContacts<K>::colour(const RigidSystem<K>& s)
 
 	groups.clear();
 	features.clear();
-	std::array<Slot, lanesOfPair<K>> noSlots;
-	noSlots.fill({-1, -1});
-	slots.assign(pairs.size(), noSlots);
+	slots.assign(pairs.size(), {});
 	for (int p = 0; p <= seam; ++p) {
 		std::vector<std::vector<Lane>> ofColour;
 		std::vector<std::vector<char>> used; // by colour, whether a body has a pair of it
@@ -89,6 +89,8 @@ void WallContacts<K>::colour(const RigidSystem<K>& s)
 				Group<K> group {};
 				FeatureGroup<K> feature {};
 				group.setCount(lanePoints<K>);
+				for (PointLanes<K>& p : group.point)
+					p.gap = all(farAway);
 				for (int i = 0; i < width; ++i) {
 					const bool filled = first + i < members.size();
 					const Lane lane = filled ? members[first + i] : Lane {-1, 0};
@@ -141,8 +143,8 @@ void WallContacts<K>::findCourses(const RigidSystem<K>& s)
 	depth = 0;
 	for (bool grew = true; grew; ++depth) {
 		grew = false;
-		for (const auto& [a, b] : pairs)
-			for (const auto& [from, to] : {std::pair(a, b), std::pair(b, a)})
+		for (const int c : numbers)
+			for (const auto& [from, to] : {std::pair(pairs[c][0], pairs[c][1]), std::pair(pairs[c][1], pairs[c][0])})
 				if (course[from] == depth && course[to] < 0) {
 					course[to] = depth + 1;
 					grew = true;

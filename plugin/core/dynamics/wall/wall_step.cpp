@@ -80,49 +80,95 @@ StepReport WallStep<K>::advance(RigidSystem<K>& s, double dt)
 	}
 	report.residual = std::max(report.velocityResidual, report.forceResidual);
 	report.sweeps = report.solves;
-	report.courses = contacts.depth;
+	report.courses = (report.mode == WallMode::still ? still() : moving()).depth;
 	return report;
 }
 
 template <class K>
 void WallStep<K>::advancePart(RigidSystem<K>& s, double h)
 {
-	auto& m = memoryOfModes;
 	const double workBefore = s.baseWork;
-	contacts.team.setThreads(settings.threads);
+	frictionLoss = 0;
+	team.setThreads(settings.threads);
 	onDrives.clear();
 	for (size_t b = 0; b < s.bodies.size(); ++b)
 		if (s.bodies[b].prescribed && s.bodies[b].drive >= 0)
 			onDrives.push_back(int(b));
-	const auto measure = [&] {
-		if (contacts.measure(s, m.mode == WallMode::still)) {
-			kept.outdate();
-			quick.outdate();
-			joints.outdate();
-		}
-	};
-	measure();
-	const WallMode before = m.mode;
-	if (m.mode == WallMode::still && !tryStill(s, h)) {
-		m.mode = WallMode::moving;
-		measure();
-		contacts.startMeans();
+	const bool found = structures.find(s);
+	if (structures.letReturn() || found)
+		arrange(s, still(), moving());
+	if (structures.any(WallMode::still) || !structures.any(WallMode::moving)) {
+		measure(s, still());
+		if (!stepStill(s, h))
+			arrange(s, moving(), still());
 	}
-	if (m.mode == WallMode::moving)
-		substeps(s, h);
-	report.mode = m.mode;
-	report.switched |= m.started && before != m.mode;
-	m.started = true;
+	report.mode = structures.any(WallMode::moving) ? WallMode::moving : WallMode::still;
+	report.moved = 0;
+	if (report.mode == WallMode::moving) {
+		report.moved = int(std::count(moving().own.begin(), moving().own.end(), 1));
+		measure(s, moving());
+		stepMoving(s, h);
+	}
+	started = true;
 	takeMotion(s, h, workBefore);
 	choose(s, h);
 	s.time += h;
+	s.moved = false;
 	s.setFresh(false);
 	report.diverged = !std::isfinite(s.kineticEnergy());
 }
 
+// Every pair into the set of its structure's mode; the taker takes from the giver.
+template <class K>
+void WallStep<K>::arrange(const RigidSystem<K>& s, Contacts& taker, Contacts& giver)
+{
+	const bool allStill = !structures.any(WallMode::moving), allMove = !structures.any(WallMode::still);
+	if (taker.isEmpty() && !giver.isEmpty() && allStill != allMove && allStill == (&taker == &still())) {
+		stillSet = 1 - stillSet; // all go, as they are
+		return arrange(s, giver, taker);
+	}
+	for (Contacts* set : {&taker, &giver})
+		if (set->take(s, structures.bodies(set == &still() ? WallMode::still : WallMode::moving), set == &taker ? giver : taker)) {
+			kept.follow(*set);
+			quick.follow(*set);
+			joints.outdate();
+		}
+}
+
+template <class K>
+void WallStep<K>::measure(RigidSystem<K>& s, Contacts& contacts)
+{
+	if (!contacts.measure(s, &contacts == &still()))
+		return;
+	kept.outdate(contacts);
+	quick.outdate(contacts);
+	joints.outdate();
+}
+
+template <class K>
+typename WallStep<K>::Chosen WallStep<K>::structuresOf(const Contacts& contacts, const wall::LaneBits& lanes) const
+{
+	Chosen chosen(structures.all.size(), 0);
+	for (int g = 0; g < int(lanes.size()); ++g)
+		for (int i = 0; lanes[g] && i < wall::width && contacts.features[g].pair[i] >= 0; ++i)
+			if (lanes[g] >> i & 1)
+				chosen[structures.of[contacts.freeBody(g, i)]] = 1;
+	return chosen;
+}
+
+template <class K>
+wall::LaneBits WallStep<K>::lanesOf(const Contacts& contacts, const Chosen& chosen) const
+{
+	wall::LaneBits lanes(contacts.groups.size(), 0);
+	for (int g = 0; g < int(lanes.size()); ++g)
+		for (int i = 0; i < wall::width && contacts.features[g].pair[i] >= 0; ++i)
+			lanes[g] |= chosen[structures.of[contacts.freeBody(g, i)]] << i;
+	return lanes;
+}
+
 // Velocities of the prescribed bodies that bring them where they belong after h; 0: those that they have now.
 template <class K>
-void WallStep<K>::setBase(const RigidSystem<K>& s, double h)
+void WallStep<K>::setBase(const RigidSystem<K>& s, Contacts& contacts, double h)
 {
 	for (const int b : onDrives) {
 		const auto& body = s.bodies[b];
@@ -133,7 +179,7 @@ void WallStep<K>::setBase(const RigidSystem<K>& s, double h)
 }
 
 template <class K>
-void WallStep<K>::setLoads(const RigidSystem<K>& s, double h)
+void WallStep<K>::setLoads(const RigidSystem<K>& s, Contacts& contacts, double h)
 {
 	if (loads.size() != contacts.velocity.size())
 		loads.assign(contacts.velocity.size(), all(0));
@@ -143,81 +189,119 @@ void WallStep<K>::setLoads(const RigidSystem<K>& s, double h)
 	});
 }
 
+// False: some structures begin to move, and have not been moved.
 template <class K>
-bool WallStep<K>::tryStill(RigidSystem<K>& s, double h)
+bool WallStep<K>::stepStill(RigidSystem<K>& s, double h)
 {
-	const double stepSpeed = Scales(s).stepSpeed(h), enough = settings.tolerance * stepSpeed;
+	Contacts& contacts = still();
+	const double enough = settings.tolerance * Scales(s).stepSpeed(h);
 	contacts.setUnit(h);
-	setBase(s, h);
-	setLoads(s, h);
-	const double rest = restSpeed(s, contacts.length);
-	if (memoryOfModes.stay == 0)
-		kept.forget(contacts);
-	kept.begin(contacts, s, loads, h);
+	setBase(s, contacts, h);
+	setLoads(s, contacts, h);
+	Chosen returned;
+	for (const auto& one : structures.all)
+		returned.push_back(one.stay == 0);
+	if (std::find(returned.begin(), returned.end(), 1) != returned.end())
+		kept.forget(contacts, lanesOf(contacts, returned));
+	kept.begin(contacts, loads, h);
 	const double forces = settings.strictForces ? enough : std::numeric_limits<double>::infinity();
-	kept.iterate(settings.strictForces || !memoryOfModes.started ? coldSolves : mostSolves, enough, forces);
+	kept.iterate(settings.strictForces || !started ? coldSolves : mostSolves, enough, forces);
 	report.solves += kept.report.solves;
 	report.factorisations += kept.report.factorisations;
-	const bool moves = kept.findHeld() > tolerance::wall::held * stepSpeed && !stands(s, h);
-	if (moves || kept.report.velocity > tolerance::wall::still * stepSpeed || kept.report.motion > tolerance::wall::motion * rest) {
-		kept.giveUp();
-		return false;
+	const Chosen move = findMoving(s, h);
+	const bool allStand = std::find(move.begin(), move.end(), 1) == move.end();
+	if (allStand) {
+		report.velocityResidual = std::max(report.velocityResidual, kept.report.velocity);
+		report.forceResidual = std::max(report.forceResidual, kept.report.force);
+	} else {
+		const auto lanes = lanesOf(contacts, move);
+		kept.giveUp(lanes);
+		contacts.startMeans(lanes);
+		for (size_t k = 0; k < move.size(); ++k)
+			if (move[k])
+				structures.all[k].mode = WallMode::moving;
+		report.switched |= started;
+		if (!structures.any(WallMode::still))
+			return false;
 	}
-	report.velocityResidual = std::max(report.velocityResidual, kept.report.velocity);
-	report.forceResidual = std::max(report.forceResidual, kept.report.force);
 	frictionLoss = kept.keepSlip();
 	s.baseWork += baseWorkWhenStill(s);
 	contacts.velocity = kept.velocity;
 	shift.resize(kept.velocity.size());
 	for (size_t b = 0; b < shift.size(); ++b)
 		shift[b] = h * kept.velocity[b];
-	return true;
+	return allStand;
 }
 
-// Whether the points that were held would go nowhere if they were let go: then the impulses have only been late.
+// Those that the step of the still mode cannot solve.
 template <class K>
-bool WallStep<K>::stands(const RigidSystem<K>& s, double h)
+typename WallStep<K>::Chosen WallStep<K>::findMoving(const RigidSystem<K>& s, double h)
 {
-	const double stepSpeed = Scales(s).stepSpeed(h);
-	quick.begin(contacts, s, loads, h);
-	bool stand = false;
-	for (int k = 0; k < quickRounds && !stand; ++k) {
+	const double stepSpeed = Scales(s).stepSpeed(h), held = tolerance::wall::held * stepSpeed,
+	             residual = tolerance::wall::still * stepSpeed, motion = tolerance::wall::motion * restSpeed(s, still().length);
+	Chosen move(structures.all.size(), 0);
+	if (kept.findHeld() > held)
+		move = letGo(s, h, held);
+	if (kept.report.velocity > residual || kept.report.motion > motion) {
+		const Chosen more = structuresOf(still(), kept.unsolved(residual, motion));
+		for (size_t k = 0; k < move.size(); ++k)
+			move[k] |= more[k];
+	}
+	return move;
+}
+
+// Those of which points that were held go somewhere when they are let go. In the others the impulses have only been late.
+template <class K>
+typename WallStep<K>::Chosen WallStep<K>::letGo(const RigidSystem<K>& s, double h, double held)
+{
+	Contacts& contacts = still();
+	const double free = tolerance::wall::free * Scales(s).stepSpeed(h);
+	Chosen asked = structuresOf(contacts, kept.held(held)), go;
+	const auto lanes = lanesOf(contacts, asked);
+	quick.begin(contacts, loads, h);
+	bool some = true;
+	for (int k = 0; k < quickRounds && some; ++k) {
 		quick.iterate(quickSolves, 0, 0);
-		stand = quick.motionOfHeld(0.5 * tolerance::wall::held * stepSpeed) <= tolerance::wall::free * stepSpeed;
+		auto gone = quick.gone(0.5 * held, free);
+		for (size_t g = 0; g < gone.size(); ++g)
+			gone[g] &= lanes[g];
+		go = structuresOf(contacts, gone);
+		some = std::find(go.begin(), go.end(), 1) != go.end();
 	}
 	report.solves += quick.report.solves;
 	report.factorisations += quick.report.factorisations;
 	quick.giveUp();
-	if (stand)
-		kept.forgetHeld();
-	return stand;
+	for (size_t k = 0; k < go.size(); ++k)
+		asked[k] &= !go[k];
+	kept.forgetHeld(lanesOf(contacts, asked));
+	return go;
 }
 
 template <class K>
-void WallStep<K>::substeps(RigidSystem<K>& s, double h)
+void WallStep<K>::stepMoving(RigidSystem<K>& s, double h)
 {
+	Contacts& contacts = moving();
 	const int count = substepCount();
 	const double part = h / count, start = s.time;
 	contacts.setUnit(part);
-	setLoads(s, part);
-	moving.begin(contacts);
+	setLoads(s, contacts, part);
+	sweeps.begin(contacts);
 	joints.find(s, contacts, part);
 	for (int k = 0; k < count; ++k) {
 		s.time = start + k * part;
-		setBase(s, part);
+		setBase(s, contacts, part);
 		report.events += land(s, part);
-		moving.substep(contacts, loads, part, k + 1 == count);
-		s.baseWork += baseWork(s);
-		setBase(s, part);
+		sweeps.substep(contacts, loads, part, k + 1 == count);
+		s.baseWork += baseWork(s, contacts);
+		setBase(s, contacts, part);
 	}
 	joints.release(contacts);
-	lift.settle(contacts, moving.shift);
+	lift.settle(contacts, sweeps.shift);
 	s.time = start;
 	report.substeps += count;
-	report.velocityResidual = std::max(report.velocityResidual, moving.report.residual);
-	report.forceResidual = std::max(report.forceResidual, moving.report.residual);
-	shift = moving.shift;
-	frictionLoss = count * contacts.slidingLoss();
+	report.velocityResidual = std::max(report.velocityResidual, sweeps.report.residual);
+	report.forceResidual = std::max(report.forceResidual, sweeps.report.residual);
+	frictionLoss += count * contacts.slidingLoss();
 }
 
 // What the courses miss of each other falls as the square of the substep.
@@ -233,7 +317,7 @@ template <class K>
 int WallStep<K>::land(RigidSystem<K>& s, double part)
 {
 	const size_t known = s.impacts.size();
-	s.baseWork += joints.land(s, contacts, part);
+	s.baseWork += joints.land(s, moving(), part);
 	for (size_t k = known; k < s.impacts.size(); ++k)
 		for (BaseDrive* drive : s.drives)
 			drive->respond(s.impacts[k].block, s.time);
@@ -252,13 +336,15 @@ typename K::Velocity WallStep<K>::startVelocity(const RigidSystem<K>& s, int b) 
 // Of the impulses that the prescribed bodies give, J, with their velocities at the start of the substep: the mean of those that blocks
 // which go with them have before and after it.
 template <class K>
-double WallStep<K>::baseWork(const RigidSystem<K>& s)
+double WallStep<K>::baseWork(const RigidSystem<K>& s, Contacts& contacts)
 {
 	double work = 0;
-	setBase(s, 0);
+	setBase(s, contacts, 0);
 	for (const auto& [g, i] : contacts.onBase) {
 		const wall::Group<K>& group = contacts.groups[g];
 		const bool first = s.bodies[group.body1[i]].prescribed;
+		if (isStill(first ? group.body2[i] : group.body1[i]) != (&contacts == &still()))
+			continue;
 		const Lanes* v = &contacts.velocity[wall::packs<K> * (first ? group.body1 : group.body2)[i]];
 		for (int k = 0; k < group.count; ++k) {
 			const wall::PointLanes<K>& p = group.point[k];
@@ -277,21 +363,24 @@ template <class K>
 double WallStep<K>::baseWorkWhenStill(const RigidSystem<K>& s)
 {
 	using Vector = typename K::Vector;
+	Contacts& contacts = still();
 	int base = -1;
 	for (const auto& [g, i] : contacts.onBase) {
+		if (!isStill(contacts.freeBody(g, i)))
+			continue;
 		const int b = s.bodies[contacts.groups[g].body1[i]].prescribed ? contacts.groups[g].body1[i] : contacts.groups[g].body2[i];
 		if (base < 0)
 			base = b;
 		const typename K::Velocity v = startVelocity(s, b);
 		if (v.template head<K::dimension>() != startVelocity(s, base).template head<K::dimension>() ||
 		    !v.template tail<K::spins>().isZero(0))
-			return baseWork(s);
+			return baseWork(s, contacts);
 	}
 	if (base < 0)
 		return 0;
 	Vector impulse = Vector::Zero();
 	for (size_t b = 0; b < s.bodies.size(); ++b)
-		if (!s.bodies[b].prescribed) {
+		if (isStill(int(b))) {
 			const Lanes change = kept.velocity[wall::packs<K> * b] - contacts.velocity[wall::packs<K> * b] - loads[wall::packs<K> * b];
 			for (int i = 0; i < K::dimension; ++i)
 				impulse[i] += s.bodies[b].mass * change[i];
@@ -309,7 +398,9 @@ double WallStep<K>::takeBody(RigidSystem<K>& s, size_t b, double h)
 		body.velocity.template head<K::dimension>() = s.driveDirections[body.drive] * s.drives[body.drive]->velocity(s.time + h);
 		return 0;
 	}
-	const typename K::Velocity moved = contacts.inGlobal(shift, b), before = body.velocity;
+	const bool stands = isStill(int(b)) || report.mode == WallMode::still;
+	const Contacts& contacts = stands ? still() : moving();
+	const typename K::Velocity moved = contacts.inGlobal(stands ? shift : sweeps.shift, b), before = body.velocity;
 	body.velocity = contacts.inGlobal(contacts.velocity, b);
 	if (body.prescribed) {
 		K::advance(body.pose, moved, 1);
@@ -328,6 +419,7 @@ void WallStep<K>::takeMotion(RigidSystem<K>& s, double h, double workBefore)
 		double before {0}, gained {0}, work {0}, mass {0};
 	};
 	Energies of[wall::Team::mostParts];
+	Contacts& contacts = report.mode == WallMode::still ? still() : moving();
 	contacts.eachShare(s.bodies.size(), [&](size_t begin, size_t end, int number) {
 		Energies sum;
 		for (size_t b = begin; b < end; ++b) {
@@ -356,22 +448,15 @@ void WallStep<K>::takeMotion(RigidSystem<K>& s, double h, double workBefore)
 template <class K>
 void WallStep<K>::choose(const RigidSystem<K>& s, double h)
 {
-	auto& m = memoryOfModes;
-	const double shortest = tolerance::wall::patience * std::sqrt(contacts.length / scale::acceleration(s));
-	if (m.mode == WallMode::still) {
-		m.stay += h;
-		return;
-	}
-	if (m.stay >= 0) { // has just left
-		m.patience = m.stay < 10 * m.patience ? 2 * m.patience : shortest;
-		m.patience = std::max(m.patience, shortest);
-		m.stay = -1;
-	}
-	m.quiet = moving.report.motion <= restSpeed(s, contacts.length) ? m.quiet + h : 0;
-	if (m.quiet < m.patience)
-		return;
-	m.mode = WallMode::still;
-	m.quiet = m.stay = 0;
+	const double length = scale::length(s), shortest = tolerance::wall::patience * std::sqrt(length / scale::acceleration(s));
+	std::vector<double> motion(structures.all.size(), 0);
+	const Contacts& contacts = moving();
+	for (int g = 0; report.mode == WallMode::moving && g < int(contacts.groups.size()); ++g)
+		for (int i = 0; i < wall::width && contacts.features[g].pair[i] >= 0; ++i) {
+			double& most = motion[structures.of[contacts.freeBody(g, i)]];
+			most = std::max(most, sweeps.report.motion[g][i]);
+		}
+	structures.endStep(motion, restSpeed(s, length), shortest, h);
 }
 
 template class WallStep<Plane>;

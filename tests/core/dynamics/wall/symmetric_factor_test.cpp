@@ -58,13 +58,16 @@ double error(int nodes, const std::vector<EliminationOrder::Edge>& edges)
 		}
 		factor.factorise();
 		const Eigen::VectorXd b = random(3 * nodes, 1, generator), exact = dense.ldlt().solve(b);
-		LaneArray x(nodes);
-		for (int k = 0; k < nodes; ++k)
-			x[k] = Lanes {b[3 * k], b[3 * k + 1], b[3 * k + 2], 0};
-		factor.solve(x.data());
+		LaneArray x(2 * nodes);
+		std::vector<int> places;
+		for (int k = 0; k < nodes; ++k) {
+			places.push_back(2 * k);
+			x[2 * k] = Lanes {b[3 * k], b[3 * k + 1], b[3 * k + 2], 0};
+		}
+		factor.solve(x.data(), places);
 		for (int k = 0; k < nodes; ++k)
 			for (int i = 0; i < 3; ++i)
-				worst = std::max(worst, std::abs(x[k][i] - exact[3 * k + i]) / exact.cwiseAbs().maxCoeff());
+				worst = std::max(worst, std::abs(x[2 * k][i] - exact[3 * k + i]) / exact.cwiseAbs().maxCoeff());
 	}
 	return worst;
 }

@@ -23,6 +23,7 @@ struct Harmonic : BaseDrive {
 	double nextKink(double after, double until) const override { return after < begin && begin <= until ? begin : INFINITY; }
 	double jumpAt(double) override { return 0; }
 	double respond(int, double) override { return 0; }
+	bool ordered() const override { return false; }
 };
 
 inline int addBlock(RigidSystem<Plane>& s, const Vector2& half, const Vector2& center, double angle = 0)
@@ -83,16 +84,16 @@ struct SceneOf {
 	SceneOf(const SceneOf&) = delete;
 
 	// Blocks 1.0 x 0.5 m, in space 0.5 m deep.
-	void addWall(int courses, int perCourse)
+	void addWall(int courses, int perCourse, double left = 0)
 	{
 		for (int c = 0; c < courses; ++c) {
 			const double y = 0.25 + 0.5 * c;
 			if (c % 2 == 1) {
-				addBlock(system, sizeOf(system, 0.25, 0.25), placeOf(system, 0.25, y));
-				addBlock(system, sizeOf(system, 0.25, 0.25), placeOf(system, perCourse - 0.25, y));
+				addBlock(system, sizeOf(system, 0.25, 0.25), placeOf(system, left + 0.25, y));
+				addBlock(system, sizeOf(system, 0.25, 0.25), placeOf(system, left + perCourse - 0.25, y));
 			}
 			for (int i = 0; i < perCourse - c % 2; ++i)
-				addBlock(system, sizeOf(system, 0.5, 0.25), placeOf(system, i + 0.5 + 0.5 * (c % 2), y));
+				addBlock(system, sizeOf(system, 0.5, 0.25), placeOf(system, left + i + 0.5 + 0.5 * (c % 2), y));
 		}
 	}
 
