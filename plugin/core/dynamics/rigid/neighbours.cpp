@@ -1,5 +1,6 @@
 #include "dynamics/rigid/neighbours.hpp"
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace masonry::rigid {
@@ -19,12 +20,6 @@ Bounds<K> bounds(const RigidBody<K>& body, double enlargement)
 {
 	const typename K::Vector half = reach(body.halfSize, body.pose) + K::Vector::Constant(enlargement);
 	return {body.pose.position - half, body.pose.position + half};
-}
-
-template <class K>
-bool contains(const Bounds<K>& outer, const Bounds<K>& inner)
-{
-	return (outer.low.array() <= inner.low.array()).all() && (inner.high.array() <= outer.high.array()).all();
 }
 
 template <class K>
@@ -60,10 +55,13 @@ bool Neighbours<K>::isValid(const RigidSystem<K>& system) const
 {
 	if (enlarged.size() != system.bodies.size())
 		return false;
-	for (size_t i = 0; i < enlarged.size(); ++i)
-		if (!contains(enlarged[i], bounds(system.bodies[i], margin / 2)))
-			return false;
-	return true;
+	typename K::Vector least = K::Vector::Constant(-INFINITY), most = K::Vector::Constant(INFINITY); // that all may have moved together
+	for (size_t i = 0; i < enlarged.size(); ++i) {
+		const Bounds<K> now = bounds(system.bodies[i], margin / 2);
+		least = least.cwiseMax(now.high - enlarged[i].high);
+		most = most.cwiseMin(now.low - enlarged[i].low);
+	}
+	return (least.array() <= most.array()).all();
 }
 
 // Sweep: of the bodies in the order of their lower ends, each one meets those that begin before it ends.

@@ -17,7 +17,7 @@ struct Bounds {
 // Sorted by body1 < body2; a pair stays with all its state as long as it is near; two prescribed bodies are no pair.
 //
 // Bounds are enlarged by the margin, and pairs are those whose enlarged bounds overlap. The list holds until a body comes nearer
-// than half the margin to the end of its enlarged bounds.
+// than half the margin to the end of its enlarged bounds, which move with what moves all bodies alike: a base that shakes its wall.
 template <class K>
 class Neighbours {
 public:
