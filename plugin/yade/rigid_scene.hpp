@@ -370,6 +370,7 @@ private:
 			Link&        link = links[b];
 			auto&        block = system.bodies[b];
 			const State& state = *link.state;
+			fetch(b + 6);
 			if (link.written.isOf(state) || block.drive >= 0) continue;
 			kept.seats[b].read(coordinates, state, link.properties.extents.minCoeff(), kept.ids[b], block);
 			block.increment.setZero();
@@ -441,6 +442,14 @@ private:
 		if (byWalls) wall.showPoints(system);
 	}
 
+	/// YADE's states lie scattered in memory.
+	void fetch(size_t b) const
+	{
+		if (b >= links.size()) return;
+		const char* state = reinterpret_cast<const char*>(links[b].state.get());
+		for (size_t line = 0; line < sizeof(State); line += 64) __builtin_prefetch(state + line);
+	}
+
 	/// Bodies that stand still by prescription are as they were.
 	void writeStates()
 	{
@@ -448,6 +457,7 @@ private:
 			const auto& block = system.bodies[b];
 			if (block.prescribed && block.drive < 0 && block.velocity.isZero(0)) continue;
 			State& state = *links[b].state;
+			fetch(b + 6);
 			kept.seats[b].tell(coordinates, block, links[b].written, state);
 			state.angMom = kept.seats[b].spin(coordinates, block);
 		}
