@@ -72,11 +72,6 @@ MASONRY_LANES void locateGroups(Group<Plane>* groups, FeatureGroup<Plane>* featu
 
 } // namespace
 
-MASONRY_LANES void takeSlidingLoss(const Group<Plane>* groups, int begin, int end, const Lanes* velocity, Lanes& loss)
-{
-	addSlidingLoss<Plane>(groups, begin, end, velocity, loss);
-}
-
 template <>
 void WallContacts<Plane>::locate(const RigidSystem<Plane>&, int begin, int end, double travel, bool remember)
 {

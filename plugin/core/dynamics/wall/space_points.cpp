@@ -155,11 +155,6 @@ MASONRY_LANES void locateGroups(const RigidSystem<Space>& s, Group<Space>* group
 
 } // namespace
 
-MASONRY_LANES void takeSlidingLoss(const Group<Space>* groups, int begin, int end, const Lanes* velocity, Lanes& loss)
-{
-	addSlidingLoss<Space>(groups, begin, end, velocity, loss);
-}
-
 template <>
 void WallContacts<Space>::locate(const RigidSystem<Space>& s, int begin, int end, double travel, bool remember)
 {

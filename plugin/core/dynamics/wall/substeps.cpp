@@ -157,13 +157,17 @@ MASONRY_INLINE void sweepGroups(Group<K>* groups, const Coupling<K>* couplings, 
 }
 
 template <class K>
-MASONRY_INLINE void moveGroups(Group<K>* groups, int begin, int end, const Lanes* velocity, double s)
+MASONRY_INLINE void moveGroups(Group<K>* groups, int begin, int end, const Lanes* velocity, double s, Lanes& loss)
 {
 	for (int g = begin; g < end; ++g) {
 		Group<K>& group = groups[g];
 		const Bodies<K> v1(velocity, group.body1), v2(velocity, group.body2);
-		for (int k = 0; k < group.count; ++k)
-			group.point[k].gap += s * normalRate(v1, v2, group.point[k]);
+		for (int k = 0; k < group.count; ++k) {
+			PointLanes<K>& p = group.point[k];
+			p.gap += s * normalRate(v1, v2, p);
+			const Mask glides = (p.pn > 0) & slides(p.pt, group.friction * p.pn);
+			loss -= select(glides, dot(p.pt, slipRate(v1, v2, p)), all(0));
+		}
 	}
 }
 
@@ -195,9 +199,9 @@ MASONRY_INLINE void beginGroups(Group<K>* groups, Coupling<K>* couplings, int be
 	{                                                                                                                                      \
 		sweepGroups<K>(groups, couplings, begin, end, velocity, perSubstep, watch);                                                        \
 	}                                                                                                                                      \
-	MASONRY_LANES void moveGaps(Group<K>* groups, int begin, int end, const Lanes* velocity, double s)                                     \
+	MASONRY_LANES void moveGaps(Group<K>* groups, int begin, int end, const Lanes* velocity, double s, Lanes& loss)                        \
 	{                                                                                                                                      \
-		moveGroups<K>(groups, begin, end, velocity, s);                                                                                    \
+		moveGroups<K>(groups, begin, end, velocity, s, loss);                                                                              \
 	}                                                                                                                                      \
 	MASONRY_LANES void beginStep(Group<K>* groups, Coupling<K>* couplings, int begin, int end, Lanes* velocity)                            \
 	{                                                                                                                                      \
@@ -217,6 +221,7 @@ void Substeps<K>::begin(WallContacts<K>& c)
 	couplings.resize(c.groups.size());
 	change.assign(c.groups.size(), all(0));
 	report.motion = change;
+	loss.assign(c.parts.size(), all(0));
 	contactPart = c.velocity;
 	for (Lanes& v : contactPart)
 		v *= onlyMass;
@@ -244,8 +249,8 @@ void Substeps<K>::substep(WallContacts<K>& c, const LaneArray& load, double s, b
 	const auto press = [&](const Part& part) {
 		part.byColour([&](int first, int last) { sweep(groups, couplings.data(), first, last, velocity, 1 / s); });
 	};
-	const auto move = [&](const Part& part) {
-		moveGaps(groups, part.begin, part.end, velocity, s);
+	const auto move = [&](const Part& part, int number) {
+		moveGaps(groups, part.begin, part.end, velocity, s, loss[number]);
 		for (const int b : part.members)
 			shift[b] += s * noMass * velocity[b];
 	};
@@ -266,17 +271,19 @@ void Substeps<K>::substep(WallContacts<K>& c, const LaneArray& load, double s, b
 		press(part);
 	});
 	press(seam);
-	move(seam);
-	c.eachPart([&](const Part& part, int) {
-		move(part);
+	move(seam, int(c.parts.size()) - 1);
+	c.eachPart([&](const Part& part, int number) {
+		move(part, number);
 		relax(part);
 	});
 	relax(seam);
 	if (!isLast)
 		return;
-	report.residual = 0;
+	report.residual = report.loss = 0;
 	for (const Lanes& here : change)
 		report.residual = std::max(report.residual, largest(here));
+	for (const Lanes& here : loss)
+		report.loss += here[0] + here[1] + here[2] + here[3];
 }
 
 template class Substeps<Plane>;

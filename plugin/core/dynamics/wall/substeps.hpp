@@ -19,6 +19,7 @@ namespace masonry::rigid::wall {
 
 struct SubstepReport {
 	double residual {0}; // largest change of an impulse by the last sweep, as the velocity that it gives its point, m/s
+	double loss {0};     // to friction since begin(), J
 	LaneArray motion;    // of the pairs, by group: largest relative velocity of a point, closed or open, m/s
 };
 
@@ -36,6 +37,7 @@ public:
 private:
 	std::vector<Coupling<K>> couplings; // by group
 	LaneArray change;                   // as of the report, of the pairs
+	LaneArray loss;                     // to friction since begin(), J; by part
 	LaneArray contactPart;              // of the velocities: what the impulses of the last substep gave
 };
 

@@ -443,21 +443,6 @@ void WallContacts<K>::setUnit(double h)
 }
 
 template <class K>
-double WallContacts<K>::slidingLoss()
-{
-	LaneArray of(parts.size(), all(0));
-	allParts([&](const Part& part, int number) {
-		Lanes loss = all(0);
-		takeSlidingLoss(groups.data(), part.begin, part.end, velocity.data(), loss);
-		of[number] = loss;
-	});
-	double sum = 0;
-	for (const Lanes& loss : of)
-		sum += loss[0] + loss[1] + loss[2] + loss[3];
-	return sum;
-}
-
-template <class K>
 void WallContacts<K>::startMeans(const LaneBits& lanes)
 {
 	for (size_t g = 0; g < groups.size(); ++g)

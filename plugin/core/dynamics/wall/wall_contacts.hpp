@@ -76,29 +76,6 @@ struct alignas(alignment) StillLanes {
 template <class K>
 using StillGroup = std::array<StillLanes<K>, lanePoints<K>>;
 
-// What friction takes at the points that carry all that they can, in the time of one set of impulses, J.
-template <class K>
-MASONRY_INLINE void addSlidingLoss(const Group<K>* groups, int begin, int end, const Lanes* velocity, Lanes& loss)
-{
-	for (int g = begin; g < end; ++g) {
-		const Group<K>& group = groups[g];
-		Mask slide[lanePoints<K>], some {};
-		for (int k = 0; k < group.count; ++k) {
-			const PointLanes<K>& p = group.point[k];
-			slide[k] = (p.pn > 0) & slides(p.pt, group.friction * p.pn);
-			some |= slide[k];
-		}
-		if (!any(some))
-			continue;
-		const Bodies<K> v1(velocity, group.body1), v2(velocity, group.body2);
-		for (int k = 0; k < group.count; ++k)
-			loss -= select(slide[k], dot(group.point[k].pt, slipRate(v1, v2, group.point[k])), all(0));
-	}
-}
-
-void takeSlidingLoss(const Group<Plane>* groups, int begin, int end, const Lanes* velocity, Lanes& loss);
-void takeSlidingLoss(const Group<Space>* groups, int begin, int end, const Lanes* velocity, Lanes& loss);
-
 // Rate along a row of one lane's point, of the velocity (packs) of either body alone.
 template <class K>
 MASONRY_INLINE double rateOf(const PointLanes<K>& p, int row, int lane, int body, const Lanes* v)
@@ -242,7 +219,6 @@ public:
 		const FeatureGroup<K>& f = features[group];
 		return f.pair[lane] < 0 ? 0 : std::min(s.pairs[f.pair[lane]].size - f.first[lane], lanePoints<K>);
 	}
-	double slidingLoss(); // of the impulses and velocities that are now, J
 	bool isFree(int body) const { return velocity[packs<K> * body][3] > 0; }
 	// Packs of a body as a velocity in global axes; a force and moment in global axes as the velocity that it gives in a time h.
 	typename K::Velocity inGlobal(const LaneArray& from, size_t body) const;

@@ -204,8 +204,7 @@ bool WallStep<K>::stepStill(RigidSystem<K>& s, double h)
 	if (std::find(returned.begin(), returned.end(), 1) != returned.end())
 		kept.forget(contacts, lanesOf(contacts, returned));
 	kept.begin(contacts, loads, h);
-	const double forces = settings.strictForces ? enough : std::numeric_limits<double>::infinity();
-	kept.iterate(settings.strictForces || !started ? coldSolves : mostSolves, enough, forces);
+	kept.iterate(settings.strictForces || !started ? coldSolves : mostSolves, enough, settings.strictForces ? enough : INFINITY);
 	report.solves += kept.report.solves;
 	report.factorisations += kept.report.factorisations;
 	const Chosen move = findMoving(s, h);
@@ -301,7 +300,7 @@ void WallStep<K>::stepMoving(RigidSystem<K>& s, double h)
 	report.substeps += count;
 	report.velocityResidual = std::max(report.velocityResidual, sweeps.report.residual);
 	report.forceResidual = std::max(report.forceResidual, sweeps.report.residual);
-	frictionLoss += count * contacts.slidingLoss();
+	frictionLoss += sweeps.report.loss;
 }
 
 // What the courses miss of each other falls as the square of the substep.
