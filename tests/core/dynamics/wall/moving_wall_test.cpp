@@ -218,12 +218,7 @@ TEST_CASE("any number of threads gives the bits of one")
 		scene.drive(motion);
 		scene.run(0.04, 1e-3);
 		CHECK(scene.step.report.mode == WallMode::moving);
-		std::vector<double> state {scene.system.baseWork, scene.system.frictDissip, scene.system.impactDissip};
-		for (const auto& body : scene.system.bodies)
-			for (double value :
-			     {body.pose.position.x(), body.pose.position.y(), body.pose.angle, body.velocity[0], body.velocity[1], body.velocity[2]})
-				state.push_back(value);
-		return state;
+		return numbersOf(scene.system);
 	};
 	const auto one = run(1);
 	for (const int threads : {2, 3}) {

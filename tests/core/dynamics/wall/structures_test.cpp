@@ -155,12 +155,7 @@ TEST_CASE("any number of threads gives the bits of one where some structures sta
 		scene.run(0.06, h);
 		CHECK(scene.system.pairs.size() > 2048); // two parts
 		CHECK(scene.step.report.moved == 40);
-		std::vector<double> state {scene.system.baseWork, scene.system.frictDissip, scene.system.impactDissip};
-		for (const auto& body : scene.system.bodies)
-			for (double value :
-			     {body.pose.position.x(), body.pose.position.y(), body.pose.angle, body.velocity[0], body.velocity[1], body.velocity[2]})
-				state.push_back(value);
-		return state;
+		return numbersOf(scene.system);
 	};
 	const auto one = run(1), two = run(2);
 	REQUIRE(one.size() == two.size());

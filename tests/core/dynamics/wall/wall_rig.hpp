@@ -52,6 +52,17 @@ inline int addBlock(RigidSystem<Space>& s, const Vector3& half, const Vector3& c
 	return int(s.bodies.size()) - 1;
 }
 
+// Energies, places and velocities, to compare bit by bit.
+inline std::vector<double> numbersOf(const RigidSystem<Plane>& s)
+{
+	std::vector<double> numbers {s.baseWork, s.frictDissip, s.impactDissip};
+	for (const auto& body : s.bodies)
+		for (double value :
+		     {body.pose.position.x(), body.pose.position.y(), body.pose.angle, body.velocity[0], body.velocity[1], body.velocity[2]})
+			numbers.push_back(value);
+	return numbers;
+}
+
 // Of a block 0.5 m deep.
 inline Vector2 sizeOf(const RigidSystem<Plane>&, double x, double z) { return {x, z}; }
 inline Vector3 sizeOf(const RigidSystem<Space>&, double x, double z) { return {x, 0.25, z}; }
