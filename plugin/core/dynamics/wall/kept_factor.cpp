@@ -25,12 +25,6 @@ struct alignas(alignment) Largest {
 	Lanes velocity, force, motion;
 };
 
-template <class K>
-MASONRY_INLINE Lanes stiffnessOf(const PointLanes<K>& p, double softness)
-{
-	return p.massN * p.massT / ((p.massN + p.massT) * (0.5 * softness));
-}
-
 // What is the same for all points of a step; of what a few iterations have left, pullBack is taken back a second.
 struct Step {
 	double perH, pullBack, softness, enter, leave;
@@ -193,90 +187,6 @@ bool KeptFactor<K>::takeSoftness()
 	const double before = softness;
 	softness = given > 0 ? given : std::min(softest, deepest / (double(contacts->depth) * contacts->depth));
 	return softness != before;
-}
-
-template <class K>
-void KeptFactor<K>::refactorise(RigidSystem<K>& s, const Touches& touches)
-{
-	auto& c = *contacts;
-	c.at(s, factored, [&] {
-		for (size_t g = 0; g < std::min(rows.size(), c.groups.size()); ++g)
-			for (int k = 0; k < lanePoints<K>; ++k)
-				rows[g][k].stiffness = touches[g][k] ? stiffnessOf(c.groups[g].point[k], softness) : all(0);
-		if (!outdated)
-			factorise();
-	});
-}
-
-// A, pack by pack.
-template <class K>
-void KeptFactor<K>::factorise()
-{
-	const auto& c = *contacts;
-	constexpr int n = packs<K>;
-	std::vector<int> node(c.own.size(), -1); // of a body, its first
-	places.clear();
-	edges.clear();
-	for (int b = 0; b < int(c.own.size()); ++b)
-		if (c.own[b]) {
-			node[b] = int(places.size());
-			for (int k = 0; k < n; ++k)
-				places.push_back(n * b + k);
-			if (n > 1)
-				edges.push_back({node[b], node[b] + 1});
-		}
-	for (const Group<K>& group : c.groups)
-		for (int i = 0; i < width; ++i)
-			if (c.isFree(group.body1[i]) && c.isFree(group.body2[i]))
-				for (int k = 0; k < n * n; ++k)
-					edges.push_back({node[group.body1[i]] + k / n, node[group.body2[i]] + k % n});
-	factor.setGraph(int(places.size()), edges);
-	using Block = SymmetricFactor::Block;
-	for (size_t k = 0; k < places.size(); ++k)
-		factor.addDiagonal(int(k), Block::Identity() / c.velocity[places[k]][3]);
-	int edge = n > 1 ? int(places.size()) / n : 0;
-	for (size_t g = 0; g < c.groups.size(); ++g)
-		for (int i = 0; i < width; ++i) {
-			const Group<K>& group = c.groups[g];
-			Block own[2][n][n], across[n][n]; // of J^T J / R; rows and columns by pack
-			for (int k = 0; k < n * n; ++k)
-				own[0][k / n][k % n] = own[1][k / n][k % n] = across[k / n][k % n] = Block::Zero();
-			for (int k = 0; k < group.count; ++k) {
-				const PointLanes<K>& p = group.point[k];
-				const double stiffness = rows[g][k].stiffness[i];
-				if (!(stiffness > 0))
-					continue;
-				for (int a = 0; a < n; ++a)
-					for (int b = 0; b < n; ++b) {
-						Block sum[3] = {Block::Zero(), Block::Zero(), Block::Zero()};
-						for (int row = 0; row < K::rows; ++row) {
-							const Vector3 a1 = -partOf(p, row, i, 1, a), b1 = -partOf(p, row, i, 1, b), a2 = partOf(p, row, i, 2, a),
-							              b2 = partOf(p, row, i, 2, b);
-							sum[0] += a1 * b1.transpose();
-							sum[1] += a2 * b2.transpose();
-							sum[2] += a1 * b2.transpose();
-						}
-						own[0][a][b] += stiffness * sum[0];
-						own[1][a][b] += stiffness * sum[1];
-						across[a][b] += stiffness * sum[2];
-					}
-			}
-			const int body[2] = {group.body1[i], group.body2[i]};
-			for (int side = 0; side < 2; ++side) {
-				if (!c.isFree(body[side]))
-					continue;
-				for (int a = 0; a < n; ++a)
-					factor.addDiagonal(node[body[side]] + a, own[side][a][a]);
-				if (n > 1)
-					factor.addEdge(node[body[side]] / n, own[side][0][n - 1]);
-			}
-			if (c.isFree(body[0]) && c.isFree(body[1]))
-				for (int k = 0; k < n * n; ++k)
-					factor.addEdge(edge++, across[k / n][k % n]);
-		}
-	factor.factorise();
-	nodes = places.size();
-	++report.factorisations;
 }
 
 // M (V_free - V)

@@ -13,8 +13,8 @@
 // until w = z. Nothing in A depends on which points stick, slide or part: states may chatter and A stays. Only residuals are corrected,
 // so that A may be of slightly other positions.
 //
-// That p makes the problem convex, and impulses with which a wall stands are found where there are any. What slides by this law also lifts,
-// by mu times as much: but a step in which blocks move is not done in this mode.
+// That p makes the problem convex: the iteration goes towards impulses with which a wall stands where there are any. What slides by this law
+// also lifts, by mu times as much: but a step in which blocks move is not done in this mode.
 //
 // b_n = -gap/h (an open point may close), b_t = 0; but of what a few iterations have left, a penetration or a slip, a share is taken back
 // in each step, so that it does not add up. Penetrations that were there when the wall came to rest stay: pushed out, they would wedge
@@ -30,6 +30,13 @@ struct KeptReport {
 	double force {0};    // largest error of an impulse, as the velocity that it gives its point, m/s
 	double motion {0};   // largest relative velocity of a point, in touch or open, m/s
 };
+
+// 1/R
+template <class K>
+MASONRY_INLINE Lanes stiffnessOf(const PointLanes<K>& p, double softness)
+{
+	return p.massN * p.massT / ((p.massN + p.massT) * (0.5 * softness));
+}
 
 template <class K>
 class KeptFactor {

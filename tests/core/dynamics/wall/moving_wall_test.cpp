@@ -19,14 +19,6 @@ void addTilted(Scene& scene)
 	addBlock(scene.system, slender, Vector2(-slender.x(), 0) - pose.rotate(Vector2(-slender.x(), -slender.y())), angle);
 }
 
-double energy(const RigidSystem<Plane>& s)
-{
-	double sum = s.kineticEnergy();
-	for (size_t b = 1; b < s.bodies.size(); ++b)
-		sum -= s.bodies[b].force[1] * s.bodies[b].pose.position.y();
-	return sum;
-}
-
 // Mean shift of the blocks of the top course of a pier of two blocks a course.
 double topShift(const Scene& scene)
 {

@@ -7,14 +7,6 @@ using namespace rig;
 
 namespace {
 
-double energy(const RigidSystem<Space>& s)
-{
-	double sum = s.kineticEnergy();
-	for (size_t b = 1; b < s.bodies.size(); ++b)
-		sum += s.bodies[b].mass * g * s.bodies[b].pose.position.z();
-	return sum;
-}
-
 Quaternion turned(double angle, const Vector3& axis) { return Quaternion(Eigen::AngleAxisd(angle, axis)); }
 
 // Adds a horizontal force on each block, as a share of its weight.

@@ -19,15 +19,6 @@ void addPier(SceneOf<K>& scene)
 		    0.05 * (k + 1);
 }
 
-template <class K>
-double energy(const RigidSystem<K>& s)
-{
-	double sum = s.kineticEnergy();
-	for (size_t b = 1; b < s.bodies.size(); ++b)
-		sum += s.bodies[b].mass * g * s.bodies[b].pose.position[K::dimension - 1];
-	return sum;
-}
-
 // What the base carries of these blocks, N.
 template <class K>
 double reaction(const RigidSystem<K>& s, int first, int last)

@@ -52,6 +52,17 @@ inline int addBlock(RigidSystem<Space>& s, const Vector3& half, const Vector3& c
 	return int(s.bodies.size()) - 1;
 }
 
+// Kinetic, and of the weights, J.
+template <class K>
+double energy(const RigidSystem<K>& s)
+{
+	constexpr int up = K::dimension - 1;
+	double sum = s.kineticEnergy();
+	for (size_t b = 1; b < s.bodies.size(); ++b)
+		sum -= s.bodies[b].force[up] * s.bodies[b].pose.position[up];
+	return sum;
+}
+
 // Energies, places and velocities, to compare bit by bit.
 inline std::vector<double> numbersOf(const RigidSystem<Plane>& s)
 {
