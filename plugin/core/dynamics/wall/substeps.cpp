@@ -157,17 +157,33 @@ MASONRY_INLINE void sweepGroups(Group<K>* groups, const Coupling<K>* couplings, 
 }
 
 template <class K>
-MASONRY_INLINE void moveGroups(Group<K>* groups, int begin, int end, const Lanes* velocity, double s, Lanes& loss)
+MASONRY_INLINE void moveGroups(Group<K>* groups, int begin, int end, const Lanes* velocity, double s)
 {
 	for (int g = begin; g < end; ++g) {
 		Group<K>& group = groups[g];
 		const Bodies<K> v1(velocity, group.body1), v2(velocity, group.body2);
+		for (int k = 0; k < group.count; ++k)
+			group.point[k].gap += s * normalRate(v1, v2, group.point[k]);
+	}
+}
+
+// What friction takes at the points that carry all that they can, J.
+template <class K>
+MASONRY_INLINE void addLoss(const Group<K>* groups, int begin, int end, const Lanes* velocity, Lanes& loss)
+{
+	for (int g = begin; g < end; ++g) {
+		const Group<K>& group = groups[g];
+		Mask glide[lanePoints<K>], some {};
 		for (int k = 0; k < group.count; ++k) {
-			PointLanes<K>& p = group.point[k];
-			p.gap += s * normalRate(v1, v2, p);
-			const Mask glides = (p.pn > 0) & slides(p.pt, group.friction * p.pn);
-			loss -= select(glides, dot(p.pt, slipRate(v1, v2, p)), all(0));
+			const PointLanes<K>& p = group.point[k];
+			glide[k] = (p.pn > 0) & slides(p.pt, group.friction * p.pn);
+			some |= glide[k];
 		}
+		if (!any(some))
+			continue;
+		const Bodies<K> v1(velocity, group.body1), v2(velocity, group.body2);
+		for (int k = 0; k < group.count; ++k)
+			loss -= select(glide[k], dot(group.point[k].pt, slipRate(v1, v2, group.point[k])), all(0));
 	}
 }
 
@@ -199,9 +215,13 @@ MASONRY_INLINE void beginGroups(Group<K>* groups, Coupling<K>* couplings, int be
 	{                                                                                                                                      \
 		sweepGroups<K>(groups, couplings, begin, end, velocity, perSubstep, watch);                                                        \
 	}                                                                                                                                      \
-	MASONRY_LANES void moveGaps(Group<K>* groups, int begin, int end, const Lanes* velocity, double s, Lanes& loss)                        \
+	MASONRY_LANES void moveGaps(Group<K>* groups, int begin, int end, const Lanes* velocity, double s)                                     \
 	{                                                                                                                                      \
-		moveGroups<K>(groups, begin, end, velocity, s, loss);                                                                              \
+		moveGroups<K>(groups, begin, end, velocity, s);                                                                                    \
+	}                                                                                                                                      \
+	MASONRY_LANES void takeLoss(const Group<K>* groups, int begin, int end, const Lanes* velocity, Lanes& loss)                            \
+	{                                                                                                                                      \
+		addLoss<K>(groups, begin, end, velocity, loss);                                                                                    \
 	}                                                                                                                                      \
 	MASONRY_LANES void beginStep(Group<K>* groups, Coupling<K>* couplings, int begin, int end, Lanes* velocity)                            \
 	{                                                                                                                                      \
@@ -249,8 +269,8 @@ void Substeps<K>::substep(WallContacts<K>& c, const LaneArray& load, double s, b
 	const auto press = [&](const Part& part) {
 		part.byColour([&](int first, int last) { sweep(groups, couplings.data(), first, last, velocity, 1 / s); });
 	};
-	const auto move = [&](const Part& part, int number) {
-		moveGaps(groups, part.begin, part.end, velocity, s, loss[number]);
+	const auto move = [&](const Part& part) {
+		moveGaps(groups, part.begin, part.end, velocity, s);
 		for (const int b : part.members)
 			shift[b] += s * noMass * velocity[b];
 	};
@@ -271,12 +291,13 @@ void Substeps<K>::substep(WallContacts<K>& c, const LaneArray& load, double s, b
 		press(part);
 	});
 	press(seam);
-	move(seam, int(c.parts.size()) - 1);
-	c.eachPart([&](const Part& part, int number) {
-		move(part, number);
+	move(seam);
+	c.eachPart([&](const Part& part, int) {
+		move(part);
 		relax(part);
 	});
 	relax(seam);
+	c.allParts([&](const Part& part, int number) { takeLoss(groups, part.begin, part.end, velocity, loss[number]); });
 	if (!isLast)
 		return;
 	report.residual = report.loss = 0;
