@@ -43,7 +43,7 @@ def wall_hash():
 
 
 if os.environ.get("MASONRY_WALL_HASH"):
-    print("hash", wall_hash())
+    print("hash", wall_hash(), flush=True)  # the exit does not
     O.exitNoBacktrace()
 
 
