@@ -26,7 +26,10 @@ int WallContacts<K>::divide()
 		const auto [a, b] = pairs[c];
 		return rank[a] >= 0 && rank[b] >= 0 && partOf[a] != partOf[b];
 	};
-	for (int count = std::clamp(int(numbers.size()) / pairsOfPart, 1, Team::mostParts);; count /= 2) {
+	int count = 1; // a power of two, of which threads get equally many
+	while (2 * count <= std::min(int(numbers.size()) / pairsOfPart, Team::mostParts))
+		count *= 2;
+	for (;; count /= 2) {
 		partOf.clear();
 		for (const int r : rank)
 			partOf.push_back(r < 0 ? 0 : int(long(r) * count / free));
