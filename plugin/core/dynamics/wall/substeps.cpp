@@ -11,8 +11,13 @@ struct Watch {
 	Lanes *change {nullptr}, *motion {nullptr};
 };
 
-// Of the difference of an impulse from its mean over the last steps: what a sweep takes off, and what a step takes into the mean.
-constexpr double damping = 0.015, inMean = 0.1;
+// Of the difference of an impulse from its mean over the last substeps: what a sweep takes off, and what a substep takes into the mean.
+constexpr double damping = 0.015, inMean = 0.0125;
+
+// What a substep hands on of an impulse at most: so many times its mean, or so many times what stops a point alone after a substep's fall,
+// which is how a block that begins to turn about it presses. Larger: what has stopped a block pushes it up before the sweep takes it off;
+// smaller: a block that lands on another corner than the one that has carried it sinks while the sweeps build up what holds it.
+constexpr double mostOfMean = 5, mostOfFall = 2;
 
 // An open point may close within the substep.
 template <class K>
@@ -169,22 +174,45 @@ MASONRY_INLINE void moveGroups(Group<K>* groups, int begin, int end, const Lanes
 
 // What friction takes at the points that carry all that they can, J.
 template <class K>
-MASONRY_INLINE void addLoss(const Group<K>* groups, int begin, int end, const Lanes* velocity, Lanes& loss)
+MASONRY_INLINE void addLoss(const Group<K>& group, const Lanes* velocity, Lanes& loss)
 {
-	for (int g = begin; g < end; ++g) {
-		const Group<K>& group = groups[g];
-		Mask glide[lanePoints<K>], some {};
-		for (int k = 0; k < group.count; ++k) {
-			const PointLanes<K>& p = group.point[k];
-			glide[k] = (p.pn > 0) & slides(p.pt, group.friction * p.pn);
-			some |= glide[k];
-		}
-		if (!any(some))
-			continue;
-		const Bodies<K> v1(velocity, group.body1), v2(velocity, group.body2);
-		for (int k = 0; k < group.count; ++k)
-			loss -= select(glide[k], dot(group.point[k].pt, slipRate(v1, v2, group.point[k])), all(0));
+	Mask glide[lanePoints<K>], some {};
+	for (int k = 0; k < group.count; ++k) {
+		const PointLanes<K>& p = group.point[k];
+		glide[k] = (p.pn > 0) & slides(p.pt, group.friction * p.pn);
+		some |= glide[k];
 	}
+	if (!any(some))
+		return;
+	const Bodies<K> v1(velocity, group.body1), v2(velocity, group.body2);
+	for (int k = 0; k < group.count; ++k)
+		loss -= select(glide[k], dot(group.point[k].pt, slipRate(v1, v2, group.point[k])), all(0));
+}
+
+// An impact is over, and is not what the next substep starts from.
+template <class K>
+MASONRY_INLINE void trim(Group<K>& group, double fall, Lanes* contactPart)
+{
+	const auto most = [fall](const PointLanes<K>& p) { return larger(mostOfMean * p.steady, mostOfFall * fall * p.massN); };
+	Mask some {};
+	for (int k = 0; k < group.count; ++k) {
+		PointLanes<K>& p = group.point[k];
+		p.steady += inMean * (p.pn - p.steady);
+		some |= p.pn > most(p);
+	}
+	if (!any(some))
+		return;
+	Bodies<K> v1(contactPart, group.body1), v2(contactPart, group.body2);
+	for (int k = 0; k < group.count; ++k) {
+		PointLanes<K>& p = group.point[k];
+		const Lanes pn = smaller(p.pn, most(p));
+		const auto pt = clip(p.pt, group.friction * pn);
+		push(v1, v2, p, pn - p.pn, pt - p.pt);
+		p.pn = pn;
+		p.pt = pt;
+	}
+	v1.store(contactPart, group.body1, v1.m);
+	v2.store(contactPart, group.body2, v2.m);
 }
 
 template <class K>
@@ -197,7 +225,6 @@ MASONRY_INLINE void beginGroups(Group<K>* groups, Coupling<K>* couplings, int be
 		for (int k = 0; k < group.count; ++k) {
 			PointLanes<K>& p = group.point[k];
 			push(v1, v2, p, p.pn, p.pt);
-			p.steady += inMean * (p.pn - p.steady);
 		}
 		v1.store(velocity, group.body1, v1.m, couplings[g].allFree);
 		v2.store(velocity, group.body2, v2.m, couplings[g].allFree);
@@ -219,9 +246,13 @@ MASONRY_INLINE void beginGroups(Group<K>* groups, Coupling<K>* couplings, int be
 	{                                                                                                                                      \
 		moveGroups<K>(groups, begin, end, velocity, s);                                                                                    \
 	}                                                                                                                                      \
-	MASONRY_LANES void takeLoss(const Group<K>* groups, int begin, int end, const Lanes* velocity, Lanes& loss)                            \
+	MASONRY_LANES void handOnGroups(Group<K>* groups, int begin, int end, const Lanes* velocity, double fall, Lanes* contactPart,          \
+	                                Lanes& loss)                                                                                           \
 	{                                                                                                                                      \
-		addLoss<K>(groups, begin, end, velocity, loss);                                                                                    \
+		for (int g = begin; g < end; ++g) {                                                                                                \
+			addLoss(groups[g], velocity, loss);                                                                                            \
+			trim(groups[g], fall, contactPart);                                                                                            \
+		}                                                                                                                                  \
 	}                                                                                                                                      \
 	MASONRY_LANES void beginStep(Group<K>* groups, Coupling<K>* couplings, int begin, int end, Lanes* velocity)                            \
 	{                                                                                                                                      \
@@ -282,7 +313,7 @@ void Substeps<K>::substep(WallContacts<K>& c, const LaneArray& load, double s, b
 				sweep(groups, couplings.data(), first, last, velocity, 1 / s);
 		});
 		for (const int b : part.members)
-			contactPart[b] = velocity[b] - contactPart[b];
+			contactPart[b] = velocity[b] - noMass * contactPart[b];
 	};
 	const Part& seam = c.parts.back();
 	accelerate(seam);
@@ -297,12 +328,20 @@ void Substeps<K>::substep(WallContacts<K>& c, const LaneArray& load, double s, b
 		relax(part);
 	});
 	relax(seam);
-	c.allParts([&](const Part& part, int number) { takeLoss(groups, part.begin, part.end, velocity, loss[number]); });
 	if (!isLast)
 		return;
-	report.residual = report.loss = 0;
+	report.residual = 0;
 	for (const Lanes& here : change)
 		report.residual = std::max(report.residual, largest(here));
+}
+
+template <class K>
+void Substeps<K>::handOn(WallContacts<K>& c, double fall)
+{
+	c.allParts([&](const Part& part, int number) {
+		handOnGroups(c.groups.data(), part.begin, part.end, c.velocity.data(), fall, contactPart.data(), loss[number]);
+	});
+	report.loss = 0;
 	for (const Lanes& here : loss)
 		report.loss += here[0] + here[1] + here[2] + here[3];
 }

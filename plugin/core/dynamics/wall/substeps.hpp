@@ -4,7 +4,7 @@
 //     V += s M^-1 f + M^-1 J^T p        p of the last substep
 //     one sweep over the points
 //     q += s V, gaps with it
-//     one sweep: p for the next
+//     one sweep: p for the next, impacts taken off
 //
 // An open point may close, u_n >= -gap/s, in both sweeps; a closed one does not, u_n >= 0. (Without the gap in the second, corners that
 // approach stop short, and piers do not rock as they should.) One sweep carries an impulse one course on: what the courses miss of each
@@ -30,6 +30,8 @@ public:
 	// the impulses of the last substep in the contacts.
 	void begin(WallContacts<K>& contacts);
 	void substep(WallContacts<K>& contacts, const LaneArray& load, double s, bool isLast);
+	// After each substep: what friction has taken, and the impulses that the next one starts from. `fall`: what gravity gives in a substep, m/s.
+	void handOn(WallContacts<K>& contacts, double fall);
 
 	SubstepReport report; // of the last substep of the step
 	LaneArray shift;      // how far the bodies have moved since begin(); components as of velocities

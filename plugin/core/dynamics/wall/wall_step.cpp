@@ -281,7 +281,7 @@ void WallStep<K>::stepMoving(RigidSystem<K>& s, double h)
 {
 	Contacts& contacts = moving();
 	const int count = substepCount();
-	const double part = h / count, start = s.time;
+	const double part = h / count, fall = Scales(s).stepSpeed(part), start = s.time;
 	contacts.setUnit(part);
 	setLoads(s, contacts, part);
 	sweeps.begin(contacts);
@@ -293,6 +293,7 @@ void WallStep<K>::stepMoving(RigidSystem<K>& s, double h)
 		sweeps.substep(contacts, loads, part, k + 1 == count);
 		s.baseWork += baseWork(s, contacts);
 		setBase(s, contacts, part);
+		sweeps.handOn(contacts, fall);
 	}
 	joints.release(contacts);
 	lift.settle(contacts, sweeps.shift);

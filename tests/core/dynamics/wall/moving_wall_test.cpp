@@ -11,12 +11,15 @@ namespace {
 const Vector2 slender(0.3, 1.5);
 
 // A block that stands on its left edge, turned by half its critical angle.
-void addTilted(Scene& scene)
+// Or a column of as many blocks that is as large.
+const double critical = std::atan(slender.x() / slender.y()), startAngle = critical / 2;
+void addTilted(Scene& scene, int blocks = 1)
 {
-	const double angle = 0.5 * std::atan(slender.x() / slender.y());
 	PlanePose pose;
-	pose.setAngle(angle);
-	addBlock(scene.system, slender, Vector2(-slender.x(), 0) - pose.rotate(Vector2(-slender.x(), -slender.y())), angle);
+	pose.setAngle(startAngle);
+	const Vector2 corner(-slender.x(), 0), half(slender.x(), slender.y() / blocks);
+	for (int k = 0; k < blocks; ++k)
+		addBlock(scene.system, half, corner + pose.rotate(Vector2(slender.x(), (2 * k + 1) * half.y())), startAngle);
 }
 
 // Mean shift of the blocks of the top course of a pier of two blocks a course.
@@ -67,7 +70,27 @@ TEST_CASE("a block rocks as with localised impacts")
 	CHECK(worst < 0.04 * start);
 }
 
-// A step that is divided moves the block as one that is not, within the bounds of the test before: impulses of a part are no measure for
+// Plastic landings leave a column one block, of which C is 1 - 1.5 sin^2(critical angle): the first peak has C^2 of the energy. Errors are
+// first order in the substep, and grow with the courses that a sweep has to cross; bounds: half as much again as measured (0.6, 1.6 and
+// 0.12, 0.43 %). An impact that is handed on to the next substep keeps upper blocks from landing with those below: 2.4 and 1.7 % for twelve
+// blocks.
+TEST_CASE("a column rocks as the block that it makes")
+{
+	const auto [blocks, h, bound] =
+	    GENERATE(table<int, double, double>({{1, 1e-3, 9e-3}, {12, 1e-3, 0.0235}, {1, 2.5e-4, 1.9e-3}, {12, 2.5e-4, 6.5e-3}}));
+	Scene scene(0.8);
+	addTilted(scene, blocks);
+	double peak = 0;
+	for (double t = 0; t < 1.4; t += h) {
+		scene.advance(h);
+		peak = std::max(peak, -scene.system.bodies[1].pose.angle);
+	}
+	const double natural = 1 - 1.5 * std::pow(std::sin(critical), 2), height = std::cos(critical - startAngle) - std::cos(critical);
+	const double expected = critical - std::acos(std::cos(critical) + natural * natural * height);
+	CHECK(peak == Approx(expected).epsilon(bound));
+}
+
+// A step that is divided moves the block as one that is not, within the bounds of the first test here: impulses of a part are no measure for
 // those of one that is much longer.
 TEST_CASE("kinks of the base motion do not move a block, however near the start of a step")
 {
@@ -86,8 +109,8 @@ TEST_CASE("kinks of the base motion do not move a block, however near the start 
 	CHECK(worst < 0.04 * start);
 }
 
-// A block that slides and starts in the base is lifted out, which costs m g times the height: the step says so; one that falls and lands does
-// not.
+// A block that slides and starts in the base is lifted out, which costs m g times the height: the step says so; one that falls and lands
+// does not.
 TEST_CASE("a step says what energy it has made of nothing")
 {
 	Scene inside, above;

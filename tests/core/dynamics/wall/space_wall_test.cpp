@@ -58,8 +58,8 @@ TEST_CASE("a wall in space at rest does not drift")
 }
 
 // In a shaken pier everything happens in one plane. The sweeps go over twice as many points and end at other residuals: what differs is the
-// error of either step. Corners that part and land in turn make round-off grow: shaken by 1e-9 more or less, the top ends elsewhere by up to 4 %
-// of its shift along the motion and 0.4 % across it (measured); hence the bounds.
+// error of either step. Corners that part and land in turn make round-off grow: shaken by 1e-9 more or less, the top ends elsewhere by up
+// to 4 % of its shift along the motion and 0.4 % across it (measured); hence the bounds.
 TEST_CASE("a planar pier moves in space as in the plane")
 {
 	Scene plane;
@@ -128,7 +128,8 @@ TEST_CASE("blocks fall, turn and land")
 }
 
 // Three impacts with the law of the plane. The law's own answer is the same to round-off; between impacts four corners are swept instead of
-// two. Without a law the corners of an edge land one after the other.
+// two. Without a law the corners of an edge land one after the other, in sweeps that end before they agree: the two differ by no more than
+// either is wrong, which is 6e-3 at the first peak already ("a column rocks as the block that it makes").
 TEST_CASE("a block rocks in space as in the plane, whatever its direction")
 {
 	const double yaw = GENERATE(0., 0.3, M_PI / 4), restitution = GENERATE(0.7, 0.9, double(NAN));
@@ -145,7 +146,7 @@ TEST_CASE("a block rocks in space as in the plane, whatever its direction")
 		for (const auto& [from, to] : {std::pair(&plane.system.impacts, &inPlane), std::pair(&space.system.impacts, &inSpace)})
 			std::copy_if(from->begin(), from->end(), std::back_inserter(*to), [](const Impact& i) { return i.joint.before > 0.1; });
 	}
-	CHECK(worst < 2e-3 * startAngle);
+	CHECK(worst < (std::isnan(restitution) ? 6e-3 : 2e-3) * startAngle);
 	REQUIRE(inSpace.size() == inPlane.size());
 	for (size_t k = 0; k < inSpace.size(); ++k) {
 		CHECK(inSpace[k].time == Approx(inPlane[k].time).margin(2.5e-4)); // two substeps
@@ -178,8 +179,9 @@ TEST_CASE("a block that flies turns as a free body")
 	CHECK(fine < 0.3 * coarse);
 }
 
-// Shaken across and along, then held: with the base at rest energy can only fall. What rises is the error of the substeps: in a step 1e-3 of
-// what is lost is asked; all rises together: bound set after seeing 1.3e-3. The wall rocks across its plane for three seconds and more.
+// Shaken across and along, then held: with the base at rest energy can only fall. What rises is the error of the substeps: 1e-3 of what is
+// lost is asked; bounds: five times the most of sixteen such motions (3e-5 in a step, 8e-5 in all; 1.4e-3 and 1.6e-3 where impacts are
+// handed on to the next substep). The wall rocks across its plane for three seconds and more.
 TEST_CASE("a wall that was shaken in space loses energy and comes to rest")
 {
 	struct Stopped : Harmonic {
@@ -202,8 +204,8 @@ TEST_CASE("a wall that was shaken in space loses energy and comes to rest")
 		rises += std::max(0., energy(scene.system) - last);
 		last = energy(scene.system);
 	}
-	CHECK(largest < 1e-3 * (height - last));
-	CHECK(rises < 2e-3 * (height - last));
+	CHECK(largest < 1.5e-4 * (height - last));
+	CHECK(rises < 4e-4 * (height - last));
 	CHECK(scene.system.kineticEnergy() < 1e-6 * (height - last));
 	const auto& s = scene.system;
 	CHECK(s.impactDissip + s.frictDissip > 0);
