@@ -283,8 +283,8 @@ private:
 
 	void forgetNeighbours()
 	{
-		const Real margin = searchMargin * masonry::rigid::scale::length(system);
-		neighbours = std::make_unique<masonry::rigid::Neighbours<K>>(margin, [this](Pair& pair) { meet(pair); });
+		length = masonry::rigid::scale::length(system);
+		neighbours = std::make_unique<masonry::rigid::Neighbours<K>>(searchMargin * length, [this](Pair& pair) { meet(pair); });
 	}
 
 	/// After a scene has been refused: all is read again when a script has put it right.
@@ -390,8 +390,7 @@ private:
 	void meet(Pair& pair)
 	{
 		const auto &body1 = system.bodies[pair.body1], &body2 = system.bodies[pair.body2];
-		const Real  length = masonry::rigid::scale::length(system), rest = masonry::tolerance::restSpeed
-		        * std::sqrt(integrator.gravity.norm() * length);
+		const Real  rest = masonry::tolerance::restSpeed * std::sqrt(integrator.gravity.norm() * length);
 		masonry::rigid::FoundPoints<K> found;
 		pair.memory = {};
 		pair.size = 0;
@@ -575,6 +574,7 @@ private:
 	vector<Joint> joints;
 	Remembered<K> kept; // ids and seats; bodies and pairs are filled in when it is packed
 	size_t bodyCount = 0;
+	Real length = 0; // smallest half size, m
 };
 
 } // namespace yade

@@ -70,12 +70,14 @@ def in_turn(*runs, times=3):
 def run(build, quick):
     ours = lambda *a, **o: masonry(build, *a, **o)
     bullet = lambda size, seconds: peer(build / "validation/wall_bullet", size, 0.3, seconds, seconds)
+    precisions = {"h = 1 ms": {}, "h = 0.25 ms": {"dt": 2.5e-4}, "converged": {"dt": 2.5e-4, "tolerance": 1e-5}}
+    excursions = lambda size: [row for role, how in precisions.items() for row in ours(size, 1.0, 0, 0.5, fine=True, role=role, **how)]
     print("Rest, then 0.3 g: still walls; 1 g: walls that move; Bullet in turn with them", flush=True)
     rows = in_turn(lambda: ours(SMALL, 0.3, 5, 5), lambda: ours(SMALL, 1.0, 0, 5), lambda: bullet(SMALL, 2))
-    rows += ours(SMALL, 1.0, 0, 0.5, fine=True, role="h = 1 ms")
-    rows += ours(SMALL, 1.0, 0, 0.5, fine=True, dt=2.5e-4, role="h = 0.25 ms") + ours(SMALL, 1.0, 0, 0.5, fine=True, dt=2.5e-4, tolerance=1e-5, role="converged")
+    rows += excursions(SMALL)
     if quick:
         return rows
+    rows += excursions(LARGE)
     rows += in_turn(lambda: ours(LARGE, 0.3, 5, 5), lambda: ours(LARGE, 1.0, 0, 2), lambda: bullet(LARGE, 0.5))
     for restitution in (0.5, 0.9):
         rows += ours(SMALL, 0.3, 2, 2, restitution=restitution) + ours(SMALL, 1.0, 0, 2, restitution=restitution)
@@ -130,12 +132,12 @@ def verdicts(rows):
             if bullet and r:
                 ratio = {105: 19, 1040: 28}[blocks]
                 line(f"{blocks} blocks, {'rest' if phase == 'rest' else '0.3 g'}: CPU of Bullet over ours, same run", f"{ratio}", bullet["cpu"] / r["cpu"], bullet["cpu"] / r["cpu"] >= ratio)
-    fine = {role: find(role=role, phase="shaking") for role in ("h = 1 ms", "h = 0.25 ms", "converged")}
-    if all(fine.values()):
-        x = {role: r["excursion"] for role, r in fine.items()}
-        for role, other, bound in (("h = 1 ms", "converged", 0.15), ("h = 1 ms", "h = 0.25 ms", 0.20)):
-            difference = x[role] / x[other] - 1
-            line(f"105 blocks, 1 g: first excursion, {role} against {other}", f"{bound:.0%}", difference, abs(difference) <= bound, f"{difference:+.1%} ({1e3 * x[role]:.1f} mm)")
+        fine = {role: find(role=role, blocks=blocks, phase="shaking") for role in ("h = 1 ms", "h = 0.25 ms", "converged")}
+        if all(fine.values()):
+            x = {role: r["excursion"] for role, r in fine.items()}
+            for role, other, bound in (("h = 1 ms", "converged", 0.15), ("h = 1 ms", "h = 0.25 ms", 0.20)):
+                difference = x[role] / x[other] - 1
+                line(f"{blocks} blocks, 1 g: first excursion, {role} against {other}", f"{bound:.0%}", difference, abs(difference) <= bound, f"{difference:+.1%} ({1e3 * x[role]:.1f} mm)")
     poly, r = find(solver="stock YADE Polyhedra"), find(**plain, blocks=105, amplitude=0.3, phase="rest")
     if poly:
         line("105 blocks: CPU of stock YADE Polyhedra over ours, same run", "5000", poly["cpu"] / r["cpu"], poly["cpu"] >= 5000 * r["cpu"])

@@ -1,5 +1,4 @@
 #include "dynamics/wall/wall_contacts.hpp"
-#include "dynamics/rigid/scales.hpp"
 #include "tolerances.hpp"
 #include <algorithm>
 #include <cmath>
@@ -187,7 +186,6 @@ void WallContacts<K>::countPoints(const RigidSystem<K>& s, int g)
 template <class K>
 void WallContacts<K>::takeOver(const RigidSystem<K>& s)
 {
-	length = scale::length(s);
 	findCourses(s);
 	colour(s);
 	takeBodies(s);
@@ -268,7 +266,6 @@ bool WallContacts<K>::isLocated(const RigidSystem<K>& s) const
 template <class K>
 bool WallContacts<K>::measure(RigidSystem<K>& s, bool isStill)
 {
-	length = scale::length(s);
 	otherPoints = false;
 	if (isStill && isLocated(s)) {
 		takeBodies(s);

@@ -1,4 +1,5 @@
 // Which pairs are in a set of contacts, and how they go from one to the other.
+#include "dynamics/rigid/scales.hpp"
 #include "dynamics/wall/wall_contacts.hpp"
 #include <algorithm>
 #include <utility>
@@ -21,6 +22,7 @@ template <class K>
 void WallContacts<K>::takePairs(const RigidSystem<K>& s)
 {
 	list = s.lists;
+	length = scale::length(s);
 	pairs.clear();
 	wide.clear();
 	numbers.clear();

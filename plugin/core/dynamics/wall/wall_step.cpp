@@ -1,5 +1,4 @@
 #include "dynamics/wall/wall_step.hpp"
-#include "dynamics/rigid/scales.hpp"
 #include "tolerances.hpp"
 #include <algorithm>
 
@@ -11,12 +10,6 @@ using wall::Lanes;
 namespace {
 
 constexpr int coldSolves = 3000, mostSolves = 300, quickSolves = 8, quickRounds = 20;
-
-template <class K>
-double restSpeed(const RigidSystem<K>& s, double length)
-{
-	return tolerance::restSpeed * std::sqrt(scale::acceleration(s) * length);
-}
 
 // A step is divided once at most, into halves: the impulses of a part are where those of the next start, and one that is much shorter
 // would hand on an impact's as many times too large. Displacements of the base are exact anyway; a pulse of the first half acts at the
@@ -89,6 +82,7 @@ void WallStep<K>::advancePart(RigidSystem<K>& s, double h)
 {
 	const double workBefore = s.baseWork;
 	frictionLoss = 0;
+	scales = Scales(s);
 	team.setThreads(settings.threads);
 	onDrives.clear();
 	for (size_t b = 0; b < s.bodies.size(); ++b)
@@ -111,7 +105,7 @@ void WallStep<K>::advancePart(RigidSystem<K>& s, double h)
 	}
 	started = true;
 	takeMotion(s, h, workBefore);
-	choose(s, h);
+	choose(h);
 	s.time += h;
 	s.moved = false;
 	s.setFresh(false);
@@ -194,7 +188,7 @@ template <class K>
 bool WallStep<K>::stepStill(RigidSystem<K>& s, double h)
 {
 	Contacts& contacts = still();
-	const double enough = settings.tolerance * Scales(s).stepSpeed(h);
+	const double enough = settings.tolerance * scales.stepSpeed(h);
 	contacts.setUnit(h);
 	setBase(s, contacts, h);
 	setLoads(s, contacts, h);
@@ -207,7 +201,7 @@ bool WallStep<K>::stepStill(RigidSystem<K>& s, double h)
 	kept.iterate(settings.strictForces || !started ? coldSolves : mostSolves, enough, settings.strictForces ? enough : INFINITY);
 	report.solves += kept.report.solves;
 	report.factorisations += kept.report.factorisations;
-	const Chosen move = findMoving(s, h);
+	const Chosen move = findMoving(h);
 	const bool allStand = std::find(move.begin(), move.end(), 1) == move.end();
 	if (allStand) {
 		report.velocityResidual = std::max(report.velocityResidual, kept.report.velocity);
@@ -234,13 +228,13 @@ bool WallStep<K>::stepStill(RigidSystem<K>& s, double h)
 
 // Those that the step of the still mode cannot solve.
 template <class K>
-typename WallStep<K>::Chosen WallStep<K>::findMoving(const RigidSystem<K>& s, double h)
+typename WallStep<K>::Chosen WallStep<K>::findMoving(double h)
 {
-	const double stepSpeed = Scales(s).stepSpeed(h), held = tolerance::wall::held * stepSpeed,
-	             residual = tolerance::wall::still * stepSpeed, motion = tolerance::wall::motion * restSpeed(s, still().length);
+	const double stepSpeed = scales.stepSpeed(h), held = tolerance::wall::held * stepSpeed,
+	             residual = tolerance::wall::still * stepSpeed, motion = tolerance::wall::motion * tolerance::restSpeed * scales.speed;
 	Chosen move(structures.all.size(), 0);
 	if (kept.findHeld() > held)
-		move = letGo(s, h, held);
+		move = letGo(h, held);
 	if (kept.report.velocity > residual || kept.report.motion > motion) {
 		const Chosen more = structuresOf(still(), kept.unsolved(residual, motion));
 		for (size_t k = 0; k < move.size(); ++k)
@@ -251,10 +245,10 @@ typename WallStep<K>::Chosen WallStep<K>::findMoving(const RigidSystem<K>& s, do
 
 // Those of which points that were held go somewhere when they are let go. In the others the impulses have only been late.
 template <class K>
-typename WallStep<K>::Chosen WallStep<K>::letGo(const RigidSystem<K>& s, double h, double held)
+typename WallStep<K>::Chosen WallStep<K>::letGo(double h, double held)
 {
 	Contacts& contacts = still();
-	const double free = tolerance::wall::free * Scales(s).stepSpeed(h);
+	const double free = tolerance::wall::free * scales.stepSpeed(h);
 	Chosen asked = structuresOf(contacts, kept.held(held)), go;
 	const auto lanes = lanesOf(contacts, asked);
 	quick.begin(contacts, loads, h);
@@ -281,7 +275,7 @@ void WallStep<K>::stepMoving(RigidSystem<K>& s, double h)
 {
 	Contacts& contacts = moving();
 	const int count = substepCount();
-	const double part = h / count, fall = Scales(s).stepSpeed(part), start = s.time;
+	const double part = h / count, fall = scales.stepSpeed(part), start = s.time;
 	contacts.setUnit(part);
 	setLoads(s, contacts, part);
 	sweeps.begin(contacts);
@@ -440,15 +434,15 @@ void WallStep<K>::takeMotion(RigidSystem<K>& s, double h, double workBefore)
 	}
 	s.frictDissip += frictionLoss;
 	s.impactDissip += lost;
-	const double liftedAll = mass * scale::acceleration(s) * contacts.length;
+	const double liftedAll = mass * scales.acceleration * scales.length;
 	if (lost < -tolerance::wall::createdShare * atStake - tolerance::wall::createdLift * liftedAll)
 		report.created -= lost;
 }
 
 template <class K>
-void WallStep<K>::choose(const RigidSystem<K>& s, double h)
+void WallStep<K>::choose(double h)
 {
-	const double length = scale::length(s), shortest = tolerance::wall::patience * std::sqrt(length / scale::acceleration(s));
+	const double shortest = tolerance::wall::patience * scales.length / scales.speed;
 	std::vector<double> motion(structures.all.size(), 0);
 	const Contacts& contacts = moving();
 	for (int g = 0; report.mode == WallMode::moving && g < int(contacts.groups.size()); ++g)
@@ -456,7 +450,7 @@ void WallStep<K>::choose(const RigidSystem<K>& s, double h)
 			double& most = motion[structures.of[contacts.freeBody(g, i)]];
 			most = std::max(most, sweeps.report.motion[g][i]);
 		}
-	structures.endStep(motion, restSpeed(s, length), shortest, h);
+	structures.endStep(motion, tolerance::restSpeed * scales.speed, shortest, h);
 }
 
 template class WallStep<Plane>;

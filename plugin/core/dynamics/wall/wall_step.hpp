@@ -7,6 +7,7 @@
 // while; a stay that ends soon doubles that while. Structures in one mode share its solves or sweeps.
 //
 // Positions are first order in the step; impacts are met at the end of a substep. Few blocks: rigid_step.hpp.
+#include "dynamics/rigid/scales.hpp"
 #include "dynamics/wall/kept_factor.hpp"
 #include "dynamics/wall/lift.hpp"
 #include "dynamics/wall/rocking_joints.hpp"
@@ -77,8 +78,8 @@ private:
 	Chosen structuresOf(const Contacts& contacts, const wall::LaneBits& lanes) const;
 	wall::LaneBits lanesOf(const Contacts& contacts, const Chosen& structures) const;
 	bool stepStill(RigidSystem<K>& system, double h);
-	Chosen findMoving(const RigidSystem<K>& system, double h);
-	Chosen letGo(const RigidSystem<K>& system, double h, double held);
+	Chosen findMoving(double h);
+	Chosen letGo(double h, double held);
 	void stepMoving(RigidSystem<K>& system, double h);
 	int land(RigidSystem<K>& system, double part);
 	int substepCount() const;
@@ -90,11 +91,12 @@ private:
 	double takeBody(RigidSystem<K>& system, size_t body, double h);
 	void takeMotion(RigidSystem<K>& system, double h, double workBefore);
 	bool isStill(int body) const { return structures.of[body] >= 0 && structures.all[structures.of[body]].mode == WallMode::still; }
-	void choose(const RigidSystem<K>& system, double h);
+	void choose(double h);
 
 	static constexpr double quickSoftness = 0.1; // velocities follow their laws within some ten solves
 
 	bool started {false};
+	Scales scales; // of the step
 	wall::Structures<K> structures;
 	wall::Team team;
 	Contacts sets[2] {Contacts(team), Contacts(team)};

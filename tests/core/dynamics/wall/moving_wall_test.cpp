@@ -90,8 +90,8 @@ TEST_CASE("a column rocks as the block that it makes")
 	CHECK(peak == Approx(expected).epsilon(bound));
 }
 
-// A step that is divided moves the block as one that is not, within the bounds of the first test here: impulses of a part are no measure for
-// those of one that is much longer.
+// A step that is divided moves the block as one that is not, within the bounds of the first test here: impulses of a part are no measure
+// for those of one that is much longer.
 TEST_CASE("kinks of the base motion do not move a block, however near the start of a step")
 {
 	Scene still(1.0, 0.7), divided(1.0, 0.7);
