@@ -166,8 +166,8 @@ void HistoryRun::flyForced(const BaseMotion::Piece& piece, double until)
 		keepState();
 		const TaylorStep step(law_, state_, piece, time_, std::min(until - time_, 2 / law_.p));
 		const double length = step.length(), end = step.angle(length), endVelocity = step.velocity(length);
-		const auto angle = [&step](double s) { return std::make_pair(step.angle(s), step.velocity(s)); };
-		const auto velocity = [&step](double s) { return std::make_pair(step.velocity(s), step.acceleration(s)); };
+		const auto angle = [&step](double s) { return step.angle(s); };
+		const auto velocity = [&step](double s) { return step.velocity(s); };
 
 		double above = 0, below = end <= 0 ? length : 0; // a bracket of the impact, if there is one
 		if (step.firstChange() > 0 && endVelocity < 0) {

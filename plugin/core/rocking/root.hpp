@@ -1,37 +1,17 @@
 #pragma once
-// Root of a smooth function in a bracket, to the last bit or two: Newton's method kept in the bracket, which shrinks by the
-// signs of the values alone, so that the function may turn inside.
+// Root of a continuous function in a bracket, to the last bit or two.
 
-#include <cmath>
-#include <limits>
+#include <boost/math/tools/toms748_solve.hpp>
 
 namespace masonry {
 
-// f(x) returns the value and the derivative; the values at lower and upper have opposite signs, or one of them is zero.
+// f(lower) and f(upper) have opposite signs, or one of them is zero. The signs alone shrink the bracket, so the function may turn inside.
 template <typename Function>
 double root(const Function& f, double lower, double upper)
 {
-	const double atUpper = f(upper).first;
-	if (f(lower).first == 0)
-		return lower;
-	if (atUpper == 0)
-		return upper;
-	double x = (lower + upper) / 2, step = upper - lower, before = step; // sizes of the last step and of the one before it
-	for (;;) {
-		const auto [value, slope] = f(x);
-		if (value == 0)
-			return x;
-		(value > 0) == (atUpper > 0) ? upper = x : lower = x;
-		double next = x - value / slope;
-		// Bisection where Newton leaves the bracket or gains less than that.
-		if (!(next > lower && next < upper) || std::abs(next - x) > before / 2)
-			next = (lower + upper) / 2;
-		before = step;
-		step = std::abs(next - x);
-		x = next;
-		if (step <= std::numeric_limits<double>::epsilon() * std::abs(x) || x <= lower || x >= upper)
-			return x;
-	}
+	boost::uintmax_t most = 1000; // values; every four halve the bracket at least
+	const auto [low, high] = boost::math::tools::toms748_solve(f, lower, upper, boost::math::tools::eps_tolerance<double>(), most);
+	return low + (high - low) / 2;
 }
 
 } // namespace masonry

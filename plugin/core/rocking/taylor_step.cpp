@@ -147,14 +147,6 @@ double TaylorStep::velocity(double s) const
 	return sum;
 }
 
-double TaylorStep::acceleration(double s) const
-{
-	double sum = order_ * (order_ - 1) * c_[order_];
-	for (int k = order_ - 1; k >= 2; k--)
-		sum = sum * s + k * (k - 1) * c_[k];
-	return sum;
-}
-
 double TaylorStep::firstChange() const { return c_[1] != 0 ? c_[1] : c_[2] != 0 ? c_[2] : c_[3]; }
 
 } // namespace masonry
