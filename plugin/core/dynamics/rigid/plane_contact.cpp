@@ -1,19 +1,20 @@
 // Contact points of two rectangles in the plane.
+#include "contact/features.hpp"
 #include "dynamics/rigid/kinematics.hpp"
 #include "tolerances.hpp"
 #include <algorithm>
 
 namespace masonry::rigid {
 
+using feature::bit;
+using feature::faceNumber;
+using feature::signOf;
+
 namespace {
 
 namespace limits = tolerance::contact;
 
-double signOf(double value) { return std::signbit(value) ? -1. : 1.; }
-int bit(double sign) { return sign > 0 ? 1 : 0; }
-
 // A face looks along `sign` times `axis`; a vertex is an end of a face, where the other axis has the sign `end`.
-int faceNumber(int axis, double sign) { return 2 * axis + bit(sign); }
 int vertexNumber(int axis, double sign, double end) { return axis == 0 ? bit(sign) + 2 * bit(end) : bit(end) + 2 * bit(sign); }
 
 Vector2 vertexOf(int number, const Vector2& half) { return {number & 1 ? half.x() : -half.x(), number & 2 ? half.y() : -half.y()}; }
