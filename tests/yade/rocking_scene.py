@@ -93,10 +93,18 @@ def run_impacts(count, t_end):
 
 
 def refuses(act, *words, kind=ValueError):
-    """act() ends in an error of that kind, whose text holds all the words."""
+    """act() ends in an error of that kind, whose text, returned, holds all the words."""
     try:
         act()
     except kind as error:
-        assert all(word in str(error) for word in words), error
-    else:
-        raise AssertionError(f"accepted: {words}")
+        assert all(word in str(error) for word in words), (words, error)
+        return str(error)
+    raise AssertionError(f"accepted: {words}")
+
+
+def refuses_to_run(*words):
+    """The first step ends in an error, and so does the next; the blocks have not moved."""
+    poses = [(tuple(b.state.pos), tuple(b.state.ori)) for b in O.bodies]
+    for _ in range(2):
+        refuses(O.step, *words, kind=(RuntimeError, ValueError))
+        assert poses == [(tuple(b.state.pos), tuple(b.state.ori)) for b in O.bodies], words

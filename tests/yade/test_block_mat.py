@@ -4,6 +4,7 @@ import math
 import os
 
 from masonry import dem
+from rocking_scene import refuses
 
 stone = dem.BlockMat()
 assert all(math.isnan(getattr(stone, name)) for name in ("restitution", "normalStiffness", "shearStiffness"))
@@ -14,16 +15,6 @@ assert (stone.density, stone.frictionAngle, stone.restitution) == (2000, 0.6, 0.
 assert (stone.normalStiffness, stone.shearStiffness, stone.noSlip) == (1e9, 5e8, True)
 for edge in (0, 1, math.nan):
     dem.BlockMat(restitution=edge).restitution = edge
-
-
-def refuses(act, *words):
-    try:
-        act()
-    except ValueError as error:
-        assert all(word in str(error) for word in words), error
-    else:
-        raise AssertionError(f"accepted {words}")
-
 
 for attribute, bad, allowed in [
     ("restitution", -0.1, "from 0 to 1"),

@@ -3,16 +3,8 @@
 import math
 
 from masonry import dem
-from rocking_scene import one_block, rigid_engines, refuses, stone
+from rocking_scene import one_block, refuses, refuses_to_run, rigid_engines, stone
 from yade import NewtonIntegrator, O, Quaternion, Vector3, utils
-
-
-def refuses_to_run(*words):
-    """The first step ends in an error, and so does the next; the blocks have not moved."""
-    poses = [(tuple(b.state.pos), tuple(b.state.ori)) for b in O.bodies]
-    for _ in range(2):
-        refuses(O.step, *words, kind=(RuntimeError, ValueError))
-        assert poses == [(tuple(b.state.pos), tuple(b.state.ori)) for b in O.bodies], words
 
 
 nan = math.nan

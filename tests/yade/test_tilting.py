@@ -7,6 +7,7 @@ import tempfile
 import numpy as np
 from masonry import dem
 from masonry.dem import tilting
+from rocking_scene import refuses
 from yade import O, Vector3
 
 # Bisection ends within 1e-3 of the multiplier; the mean of the bracket is off by at most half of that, and a trial by _REST.
@@ -37,15 +38,6 @@ def found(**options):
 
 def marks(result, kind):
     return [(int(j["id1"]), int(j["id2"])) for j in result.joints if j[kind]]
-
-
-def refuses(act, *words):
-    try:
-        act()
-    except ValueError as error:
-        assert all(word in str(error) for word in words), (words, str(error))
-    else:
-        raise AssertionError(f"accepted: {words}")
 
 
 # --- stacks: n blocks of width 2 b and height 2 a turn about the edge of their base at b / (n a), whichever way they are loaded ---
