@@ -16,7 +16,7 @@ _RIGID_STEP = 1 / 60
 # The same for method='wall': 4e-3 sqrt(R/g), 1e-3 s for blocks of 1.0 x 0.5 m.
 _WALL_STEP = 2 / 75
 _PENETRATION = 1e-5
-# Share of the critical time step at which the step no longer shows in the error (README, convergence).
+# Share of the critical time step: peaks of a rocking block at the default penetration change by 1 % of their error below it.
 _STEP_FRACTION = 0.2
 
 
