@@ -25,6 +25,18 @@ refuses(lambda: dem.wall(0, 2, (1, 1, 1), stone(), 0), "courses = 0", "at least 
 refuses(lambda: dem.wall(2, 2, (1, 1, 1), stone(), 0, gap=-0.1), "gap = -0.1", "positive")
 refuses(lambda: dem.wall(2, 2, (1, 1, 1), stone(), 0, gap=nan), "gap = nan", "positive")
 
+# Materials: where a block is made of one, and where one has been changed before dem.engines().
+for name, bads, allowed in (("density", (0, -2000, nan, inf), "positive"), ("frictionAngle", (-0.1, math.pi / 2, nan), "pi/2")):
+    for bad in bads:
+        O.reset()
+        refuses(lambda: dem.base((1, 1, 1), dem.BlockMat(**{name: bad})), name, str(bad), allowed)
+        assert len(O.bodies) == 0 and len(O.materials) == 0
+        one_block(5)
+        setattr(O.bodies[1].mat, name, bad)
+        refuses(quiet_engines, name, str(bad), allowed)
+O.reset()
+dem.base((1, 1, 1), stone())
+
 # Ids.
 sphere = O.bodies.append(utils.sphere((9, 9, 9), 1))
 for bad, why in ((-1, "no such body"), (77, "no such body"), (1.5, "no such body"), (sphere, "must be a Box")):
@@ -38,7 +50,7 @@ refuses(lambda: dem.angle(0, axis="z"), "axis", "'z'", "'x' or 'y'")
 
 # dem.engines().
 for name, bad in (("model", "magic"), ("penetration", 0), ("penetration", 0.1), ("penetration", nan), ("dt", 0), ("dt", -1e-4), ("dt", nan), ("gravity", -1),
-                  ("gravity", nan), ("impact_order", "random")):
+                  ("gravity", nan), ("gravity", inf), ("impact_order", "random")):
     one_block(5)
     refuses(lambda: quiet_engines(**{name: bad}), name, str(bad), "must be")
 O.reset()

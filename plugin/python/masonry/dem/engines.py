@@ -3,7 +3,7 @@
 import numpy as np
 from yade import O, wrapper
 
-from masonry.dem.scene import check_blocks, structures
+from masonry.dem.scene import check_blocks, check_material, structures
 
 _MODELS = ("auto", "planar", "spatial", "compliant")
 _METHODS = ("auto", "localised", "wall")
@@ -101,8 +101,8 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
         raise ValueError(f"tolerance = {tolerance}: must be above 0 and at most 0.001, with method='wall' 0.01")
     if dt is not None and not dt > 0:
         raise ValueError(f"dt = {dt}: must be positive, in s")
-    if not gravity >= 0:
-        raise ValueError(f"gravity = {gravity}: must be 0 or positive, in m/s^2")
+    if not 0 <= gravity < np.inf:
+        raise ValueError(f"gravity = {gravity}: must be 0 or positive and finite, in m/s^2")
     motions = [] if motion is None else list(motion) if isinstance(motion, (list, tuple)) else [motion]
     for item in motions:
         if not isinstance(item, wrapper.BaseMotionEngine):
@@ -110,6 +110,8 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
         item.check()
     if not any(b.dynamic for b in _blocks()):
         raise ValueError("there is no free block in O.bodies: add one with dem.block() before dem.engines()")
+    for body in _blocks():
+        check_material(body.mat)
     check_blocks(floating=False)
     reason = "asked for"
     if model == "auto":

@@ -15,13 +15,17 @@ def _positive_size(name, size):
     return Vector3(walls.positive_size(name, size))
 
 
-def _is_block_material(material):
+def check_material(material):
     if not isinstance(material, wrapper.BlockMat):
         raise ValueError(f"material = {material!r}: must be a BlockMat")
+    if not 0 < material.density < math.inf:
+        raise ValueError(f"density = {material.density}: must be positive and finite, in kg/m^3")
+    if not 0 <= material.frictionAngle < math.pi / 2:
+        raise ValueError(f"frictionAngle = {material.frictionAngle}: must be from 0 to below pi/2, in rad (noSlip=True where nothing may slip)")
 
 
 def _block_material(material):
-    _is_block_material(material)
+    check_material(material)
     if material.id < 0:
         O.materials.append(material)
     return material
@@ -181,10 +185,10 @@ def blocks_from_table(table, materials, on=None):
     """
     centers, sizes, quaternions, names = walls.read_table(table)
     if not isinstance(materials, dict):
-        _is_block_material(materials)
+        check_material(materials)
         materials = {materials.label: materials, "": materials}
     for material in materials.values():
-        _is_block_material(material)
+        check_material(material)
     for index, name in enumerate(names):
         if name not in materials:
             raise ValueError(f"row {index}: material = {name!r}: must be one of {', '.join(repr(key) for key in materials)}")
