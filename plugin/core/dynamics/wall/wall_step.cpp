@@ -230,8 +230,8 @@ bool WallStep<K>::stepStill(RigidSystem<K>& s, double h)
 template <class K>
 typename WallStep<K>::Chosen WallStep<K>::findMoving(double h)
 {
-	const double stepSpeed = scales.stepSpeed(h), held = tolerance::wall::held * stepSpeed,
-	             residual = tolerance::wall::still * stepSpeed, motion = tolerance::wall::motion * tolerance::restSpeed * scales.speed;
+	const double stepSpeed = scales.stepSpeed(h), held = tolerance::wall::held * stepSpeed, residual = tolerance::wall::still * stepSpeed,
+	             motion = tolerance::wall::motion * tolerance::restSpeed * scales.speed;
 	Chosen move(structures.all.size(), 0);
 	if (kept.findHeld() > held)
 		move = letGo(h, held);
