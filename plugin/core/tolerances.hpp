@@ -175,8 +175,8 @@ constexpr double patience = 0.5;
 // Depth of a pair relative to the smallest half size above which moving steps take it off, and what they leave of it. Larger: blocks deeper in
 // each other; smaller: the sweeps let loaded points sink, and what is given back costs them energy; nearer to each other: a wall that comes to
 // rest is moved again and again.
-constexpr double penetration = 1.2e-5;
-constexpr double lifted = 6e-6;
+constexpr double penetration = 1e-5;
+constexpr double lifted = 5e-6;
 // Energy that a step may seem to make: share of what moves and what the forces do in it, and of what lifts all blocks by the smallest half
 // size. Smaller: the errors of sound steps, 1e-3 of what is lost, are reported; larger: a wall that flies apart is not.
 constexpr double createdShare = 0.1, createdLift = 1e-4;

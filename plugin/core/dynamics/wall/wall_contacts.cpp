@@ -231,9 +231,9 @@ void WallContacts<K>::showPoints(RigidSystem<K>& s) const
 			showPair(s, c);
 }
 
-// Poses for those of the bodies, and points located there, but the bodies afterwards where they were.
+// Points located where these poses put the bodies, which stay where they are.
 template <class K>
-void WallContacts<K>::placeAt(RigidSystem<K>& s, std::vector<typename K::Pose>& poses)
+void WallContacts<K>::locateAt(RigidSystem<K>& s, std::vector<typename K::Pose>& poses)
 {
 	const auto swap = [&] {
 		for (size_t b = 0; b < poses.size(); ++b)
@@ -241,9 +241,29 @@ void WallContacts<K>::placeAt(RigidSystem<K>& s, std::vector<typename K::Pose>& 
 	};
 	swap();
 	takeBodies(s);
-	locate(s, 0, int(groups.size()), std::numeric_limits<double>::infinity(), false);
+	allParts([&](const Part& part, int) { locate(s, part.begin, part.end, std::numeric_limits<double>::infinity(), false); });
 	swap();
+}
+
+template <class K>
+void WallContacts<K>::placeAt(RigidSystem<K>& s, std::vector<typename K::Pose>& poses)
+{
+	locateAt(s, poses);
 	takeBodies(s);
+}
+
+template <class K>
+void WallContacts<K>::lean(RigidSystem<K>& s, std::vector<typename K::Pose>& poses)
+{
+	gaps.clear();
+	for (const Group<K>& group : groups)
+		for (const PointLanes<K>& p : group.point)
+			gaps.push_back(p.gap);
+	locateAt(s, poses);
+	const Lanes* gap = gaps.data();
+	for (Group<K>& group : groups)
+		for (PointLanes<K>& p : group.point)
+			p.gap = *gap++;
 }
 
 // Whether normals, arms and masses may stay.

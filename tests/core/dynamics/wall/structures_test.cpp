@@ -128,7 +128,7 @@ TEST_CASE("structures join and split")
 	}
 	CHECK(moved == std::vector<int> {0, wall + 1, 1, 0});
 	CHECK(rises < 1e-3 * (start - last));
-	CHECK(created == 0); // friction and impacts of the same substeps
+	CHECK(created == 0);         // friction and impacts of the same substeps
 	CHECK(deepest < 1e-5 * 0.5); // of a block's height, as is asked of walls
 	CHECK(scene.system.bodies[block].pose.position.x() > 4.4);
 }

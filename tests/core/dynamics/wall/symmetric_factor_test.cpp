@@ -88,8 +88,8 @@ TEST_CASE("a block factor solves as a dense factorisation does")
 	CHECK(error(40, all) < 1e-5);
 }
 
-// In the order given, every column of n x n nodes fills n + 1 blocks. Of a good order n^2 (31/4 log2 n - some 7) remain (nested dissection of
-// a grid), a third of them at n = 100.
+// In the order given, every column of n x n nodes fills n + 1 blocks. Of a good order n^2 (31/4 log2 n - some 7) remain (nested dissection
+// of a grid), a third of them at n = 100.
 TEST_CASE("the order of elimination saves fill")
 {
 	constexpr int n = 100;
