@@ -88,6 +88,9 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
                   at the end of a substep, first order, hundreds of times faster when a wall moves). 'auto': 'wall' where a
                   structure (dem.structures) has more than 20 free blocks, or with a PulseTrainEngine the scene, unless an
                   impact_order 'simultaneous' or a tolerance below 1e-6 is asked for
+
+    A BlockMat is read when two blocks come near each other. Changed during a run, it acts on pairs that come later; for those that are there
+    already set phys.tangensOfFrictionAngle and phys.restitution of the interactions in O.interactions.
     """
     if model not in _MODELS:
         raise ValueError(f"model = {model!r}: must be one of {', '.join(_MODELS)}")
