@@ -136,9 +136,9 @@ public:
 			}
 			readStates();
 			readLaws();
-			if (!neighbours->isValid(system)) {
+			if (!neighbours->isValid(system, scene.dt)) {
 				showPoints();
-				neighbours->update(system);
+				neighbours->update(system, scene.dt);
 				renewJoints();
 			}
 		} catch (...) {

@@ -22,6 +22,14 @@ Bounds<K> bounds(const RigidBody<K>& body, double enlargement)
 	return {body.pose.position - half, body.pose.position + half};
 }
 
+// How far a point of a body may go in a step.
+template <class K>
+double travel(const RigidBody<K>& body, double step)
+{
+	return step *
+	       (body.velocity.template head<K::dimension>().norm() + body.velocity.template tail<K::spins>().norm() * body.halfSize.norm());
+}
+
 template <class K>
 bool overlap(const Bounds<K>& a, const Bounds<K>& b)
 {
@@ -51,13 +59,13 @@ std::array<int, 2> bodiesOf(const ContactPair<K>& pair)
 } // namespace
 
 template <class K>
-bool Neighbours<K>::isValid(const RigidSystem<K>& system) const
+bool Neighbours<K>::isValid(const RigidSystem<K>& system, double step) const
 {
 	if (enlarged.size() != system.bodies.size())
 		return false;
 	typename K::Vector least = K::Vector::Constant(-INFINITY), most = K::Vector::Constant(INFINITY); // that all may have moved together
 	for (size_t i = 0; i < enlarged.size(); ++i) {
-		const Bounds<K> now = bounds(system.bodies[i], margin / 2);
+		const Bounds<K> now = bounds(system.bodies[i], std::max(margin / 2, travel(system.bodies[i], step)));
 		least = least.cwiseMax(now.high - enlarged[i].high);
 		most = most.cwiseMin(now.low - enlarged[i].low);
 	}
@@ -66,11 +74,11 @@ bool Neighbours<K>::isValid(const RigidSystem<K>& system) const
 
 // Sweep: of the bodies in the order of their lower ends, each one meets those that begin before it ends.
 template <class K>
-void Neighbours<K>::findPairs(const RigidSystem<K>& system)
+void Neighbours<K>::findPairs(const RigidSystem<K>& system, double step)
 {
 	enlarged.clear();
 	for (const auto& body : system.bodies)
-		enlarged.push_back(bounds(body, margin));
+		enlarged.push_back(bounds(body, std::max(margin, 4 * travel(body, step))));
 	order.resize(enlarged.size());
 	std::iota(order.begin(), order.end(), 0);
 	const int axis = widestAxis(enlarged);
@@ -106,11 +114,11 @@ void Neighbours<K>::keepStates(const std::vector<ContactPair<K>>& old)
 }
 
 template <class K>
-bool Neighbours<K>::update(RigidSystem<K>& system)
+bool Neighbours<K>::update(RigidSystem<K>& system, double step)
 {
-	if (isValid(system))
+	if (isValid(system, step))
 		return false;
-	findPairs(system);
+	findPairs(system, step);
 	keepStates(system.pairs);
 	system.pairs.swap(pairs);
 	++system.lists;

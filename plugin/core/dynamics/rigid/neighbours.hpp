@@ -17,7 +17,8 @@ struct Bounds {
 // Sorted by body1 < body2; a pair stays with all its state as long as it is near; two prescribed bodies are no pair.
 //
 // Bounds are enlarged by the margin, and pairs are those whose enlarged bounds overlap. The list holds until a body comes nearer
-// than half the margin to the end of its enlarged bounds, which move with what moves all bodies alike: a base that shakes its wall.
+// than half the margin to the end of its enlarged bounds, which move with what moves all bodies alike: a base that shakes its wall. Bodies
+// that move by more than that in a step (s) have a margin of four steps, and half of it is one.
 template <class K>
 class Neighbours {
 public:
@@ -37,12 +38,12 @@ public:
 	}
 
 	// True if the list was made anew.
-	bool update(RigidSystem<K>& system);
+	bool update(RigidSystem<K>& system, double step = 0);
 
-	bool isValid(const RigidSystem<K>& system) const; // update() would change nothing
+	bool isValid(const RigidSystem<K>& system, double step = 0) const; // update() would change nothing
 
 private:
-	void findPairs(const RigidSystem<K>& system);
+	void findPairs(const RigidSystem<K>& system, double step);
 	void keepStates(const std::vector<ContactPair<K>>& old);
 
 	double margin;

@@ -157,3 +157,39 @@ TEST_CASE("pairs that stay keep their state, new ones get friction and restituti
 	system.bodies.push_back(system.bodies[1]);
 	CHECK(neighbours.update(system));
 }
+
+// Bodies that spin and fly, many times the margin in a step: pairs that come together within a step are in the list at its start.
+TEMPLATE_TEST_CASE("bodies that meet within a step are near before it", "", Plane, Space)
+{
+	const double step = 1e-2, margin = 0.02, speed = GENERATE(0.1, 3., 30.);
+	std::mt19937 random(7);
+	std::uniform_real_distribution<double> unit(-1, 1);
+	auto system = scattered<TestType>(40, random);
+	for (auto& body : system.bodies)
+		for (int k = 0; k < TestType::dof; ++k)
+			body.velocity[k] = speed * unit(random);
+	Neighbours<TestType> neighbours(margin, [](ContactPair<TestType>&) {});
+	int met = 0;
+	for (int k = 0; k < 200; ++k) {
+		neighbours.update(system, step);
+		std::set<std::pair<int, int>> listed;
+		for (const auto& pair : system.pairs)
+			listed.insert({pair.body1, pair.body2});
+		std::vector<decltype(boundsOf(system.bodies[0]))> before, after;
+		for (auto& body : system.bodies) {
+			before.push_back(boundsOf(body));
+			TestType::advance(body.pose, body.velocity, step);
+			after.push_back(boundsOf(body));
+		}
+		for (int i = 0; i < int(before.size()); ++i)
+			for (int j = i + 1; j < int(before.size()); ++j) {
+				if (system.bodies[i].prescribed && system.bodies[j].prescribed)
+					continue;
+				if (distance(before[i], before[j]) > 0 && distance(after[i], after[j]) < 0) {
+					++met;
+					CHECK(listed.count({i, j}) == 1);
+				}
+			}
+	}
+	CHECK((speed < 1 || met > 10));
+}
