@@ -1,6 +1,8 @@
 """Builders of walls: numbers of blocks, volumes, bond and openings from formulas of their own; tables; overlapping and floating blocks."""
 
+import contextlib
 import csv
+import io
 import itertools
 import json
 import math
@@ -265,7 +267,10 @@ above = dem.block((1, 1, 1), material, on=beside)
 lifted = dem.block((1, 1, 1), material, center=(5, 0, 0.508))
 refuses(dem.check_blocks, f"floating blocks, which no chain of supports joins to a prescribed body: {beside}, {above}, {lifted};")
 refuses(lambda: dem.check_blocks(tolerance=0.02), f": {beside}, {above};")
-dem.check_blocks(floating=False)
+assert dem.check_blocks(floating=False) == [beside, above, lifted]
+with contextlib.redirect_stdout(io.StringIO()) as printed:
+    dem.engines()
+assert f"they will fall: {beside}, {above}, {lifted}\n" in printed.getvalue()
 O.bodies[beside].state.blockedDOFs = "xyzXYZ"
 refuses(dem.check_blocks, f": {lifted};")
 for x, z in ((1 - 1e-5, 1.5), (1, 0.7), (-1, 0.7)):  # over an edge that laps by less than the tolerance; by a head joint

@@ -3,7 +3,7 @@
 import numpy as np
 from yade import O, wrapper
 
-from masonry.dem.scene import check_blocks, check_material, structures
+from masonry.dem.scene import check_blocks, check_material, listed, structures
 
 _MODELS = ("auto", "planar", "spatial", "compliant")
 _METHODS = ("auto", "localised", "wall")
@@ -65,7 +65,7 @@ def _landing_step(body):
 
 
 def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None, impact_order=None, gravity=9.81, recorder=None, others=(), method="auto"):
-    """The list for O.engines; sets O.dt and prints the choice and its reason.
+    """The list for O.engines; sets O.dt and prints the choice and its reason, and the blocks that stand on nothing.
 
     motion        a motion engine (PulseTrainEngine, RecordMotionEngine), a list of them, or None
     model         'planar' or 'spatial': rigid blocks in a plane or in space (MoreauJeanIntegrator). 'compliant': joints with
@@ -115,7 +115,9 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
         raise ValueError("there is no free block in O.bodies: add one with dem.block() before dem.engines()")
     for body in _blocks():
         check_material(body.mat)
-    check_blocks(floating=False)
+    floating = check_blocks(floating=False)
+    if floating and gravity > 0:
+        print(f"masonry.dem: no chain of supports joins these blocks to a prescribed body, they will fall: {listed(floating)}")
     reason = "asked for"
     if model == "auto":
         if penetration is not None:

@@ -222,30 +222,32 @@ def save_blocks(path):
     walls.write_table(path, *_layout(bodies), [b.mat.label for b in bodies])
 
 
-def _listed(items):
-    return ", ".join(items[:_NAMED]) + (f" and {len(items) - _NAMED} more" if len(items) > _NAMED else "")
+def listed(items):
+    return ", ".join(str(item) for item in items[:_NAMED]) + (f" and {len(items) - _NAMED} more" if len(items) > _NAMED else "")
 
 
 def check_blocks(tolerance=1e-3, floating=True):
     """Raises a ValueError that names the ids of overlapping blocks and, with `floating`, of those that no chain of supports joins to
     a prescribed body (head joints do not carry). tolerance: depth of an overlap, or gap in a joint, that is still accepted, relative to
-    the smallest size of the two blocks; 0 < tolerance <= 0.1."""
+    the smallest size of the two blocks; 0 < tolerance <= 0.1. Returns the ids of the floating blocks."""
     if not 0 < tolerance <= 0.1:
         raise ValueError(f"tolerance = {tolerance}: must be above 0 and at most 0.1")
     bodies = _boxes()
     if not bodies:
-        return
+        return []
     centers, sizes, quaternions = _layout(bodies)
     prescribed = np.array([not b.dynamic for b in bodies])
     pairs, depths, loose = walls.faults(centers, sizes, walls.axes_of(quaternions), prescribed, tolerance)
     ids, found = [b.id for b in bodies], []
+    loose = [ids[i] for i in loose]
     if len(pairs):
         each = [f"{ids[i]} and {ids[j]} (by {depth:.3g} m)" for (i, j), depth in zip(pairs.tolist(), depths.tolist())]
-        found.append("overlapping blocks: " + _listed(each))
-    if floating and len(loose):
-        found.append("floating blocks, which no chain of supports joins to a prescribed body: " + _listed([str(ids[i]) for i in loose]))
+        found.append("overlapping blocks: " + listed(each))
+    if floating and loose:
+        found.append("floating blocks, which no chain of supports joins to a prescribed body: " + listed(loose))
     if found:
         raise ValueError(f"{'; '.join(found)}; overlaps and gaps must be at most {tolerance:g} of the smallest size (tolerance)")
+    return loose
 
 
 def structures(gap=0.1):
