@@ -157,7 +157,7 @@ with tempfile.TemporaryDirectory() as folder:
             assert np.array_equal(wanted, bits(), equal_nan=True), (model, shaking, first, np.flatnonzero(wanted != bits())[:5])
         print(f"{model}, {shaking} g: {modes[0]} still and {modes[1]} moving steps, {len(dem.impacts())} impacts, {beside} of {len(O.bodies) - 1} blocks move")
         if "piers" in options:
-            assert modes[1] > 200 and 0 < beside <= options["piers"] and len(dem.impacts()) >= options["piers"]
+            assert modes[1] > 200 and 0 < beside <= options["piers"] and len(dem.impacts()) >= options["piers"]  # each has landed
         else:
             assert (modes[1] == 0) if shaking < MU else (modes[1] > 200 and len(dem.impacts()) > 10)
 
