@@ -6,12 +6,16 @@ namespace masonry::rigid::wall {
 
 namespace {
 
-// Where the last sweep leaves what is reported, by group; null: nobody asks.
-struct Watch {
+struct Sweep {
+	double perSubstep; // 1/s
+	double relaxation; // of the changes of impulses
+	double damping;    // as below, of this sweep
+	// Where the last sweep leaves what is reported, by group; null: nobody asks.
 	Lanes *change {nullptr}, *motion {nullptr};
 };
 
-// Of the difference of an impulse from its mean over the last substeps: what a sweep takes off, and what a substep takes into the mean.
+// Of the difference of an impulse from its mean over the last substeps: what a sweep takes off, over the root of their number (joints give
+// way by it, and many of them upon another sway; loads lag the less the more sweeps there are); what a substep takes into the mean.
 constexpr double damping = 0.015, inMean = 0.0125;
 
 // What a substep hands on of an impulse at most: so many times its mean, or so many times what stops a point alone after a substep's fall,
@@ -19,14 +23,18 @@ constexpr double damping = 0.015, inMean = 0.0125;
 // smaller: a block that lands on another corner than the one that has carried it sinks while the sweeps build up what holds it.
 constexpr double mostOfMean = 5, mostOfFall = 2;
 
+// Courses for each sweep before the move, and after it; what all but the last of them overdo. The last must not: an impact would bounce.
+constexpr int coursesOfSweep = 6;
+constexpr double overRelaxation = 1.4;
+
 // An open point may close within the substep.
 template <class K>
-MASONRY_INLINE Lanes normalImpulse(const PointLanes<K>& p, const Lanes& un, double perSubstep)
+MASONRY_INLINE Lanes normalImpulse(const PointLanes<K>& p, const Lanes& un, const Sweep& sweep)
 {
 	const Lanes none = all(0);
 	const Mask open = p.gap > 0;
-	const Lanes closing = open ? perSubstep * p.gap : none, damped = open ? none : damping * smaller(p.pn - p.steady, p.steady);
-	return larger(p.pn - p.massN * (un + closing) - damped, none);
+	const Lanes closing = open ? sweep.perSubstep * p.gap : none, damped = open ? none : sweep.damping * smaller(p.pn - p.steady, p.steady);
+	return larger(p.pn - sweep.relaxation * p.massN * (un + closing) - damped, none);
 }
 
 template <class K, class Tangent>
@@ -53,27 +61,27 @@ public:
 	{
 	}
 	template <int k>
-	MASONRY_INLINE void normal(double perSubstep)
+	MASONRY_INLINE void normal(const Sweep& sweep)
 	{
 		PointLanes<Plane>& p = group.point[k];
 		un[k] = normalRate(v1, v2, p);
 		if constexpr (k == 1)
 			un[1] = un[1] + w.n1n2 * dn[0] + w.t1n2 * dt[0];
-		const Lanes pn = normalImpulse(p, un[k], perSubstep);
+		const Lanes pn = normalImpulse(p, un[k], sweep);
 		dn[k] = pn - p.pn;
 		p.pn = pn;
 	}
 	template <int k>
-	MASONRY_INLINE void tangential(const Watch& watch)
+	MASONRY_INLINE void tangential(const Sweep& sweep)
 	{
 		PointLanes<Plane>& p = group.point[k];
 		const Lanes before = slipRate(v1, v2, p);
 		const Lanes ut = k == 0 ? before + w.n1t1 * dn[0] : before + w.n1t2 * dn[0] + w.t1t2 * dt[0] + w.n2t2 * dn[1];
-		const Lanes pt = friction(p, ut, group.friction * p.pn);
+		const Lanes pt = friction(p, sweep.relaxation * ut, group.friction * p.pn);
 		dt[k] = pt - p.pt;
 		p.pt = pt;
-		if (watch.change)
-			measure(p, un[k], ut, dn[k], dt[k], watch.change[g], watch.motion[g]);
+		if (sweep.change)
+			measure(p, un[k], ut, dn[k], dt[k], sweep.change[g], sweep.motion[g]);
 	}
 	MASONRY_INLINE void end()
 	{
@@ -100,28 +108,28 @@ public:
 	{
 	}
 	template <int k>
-	MASONRY_INLINE void normal(double perSubstep)
+	MASONRY_INLINE void normal(const Sweep& sweep)
 	{
 		if (k >= group.count)
 			return;
 		PointLanes<Space>& p = group.point[k];
 		un = normalRate(v1, v2, p);
-		const Lanes pn = normalImpulse(p, un, perSubstep);
+		const Lanes pn = normalImpulse(p, un, sweep);
 		dn = pn - p.pn;
 		pushNormal(v1, v2, p, dn);
 		p.pn = pn;
 	}
 	template <int k>
-	MASONRY_INLINE void tangential(const Watch& watch)
+	MASONRY_INLINE void tangential(const Sweep& sweep)
 	{
 		if (k >= group.count)
 			return;
 		PointLanes<Space>& p = group.point[k];
-		const Lanes2 ut = slipRate(v1, v2, p), pt = friction(p, ut, group.friction * p.pn), dt = pt - p.pt;
+		const Lanes2 ut = slipRate(v1, v2, p), pt = friction(p, sweep.relaxation * ut, group.friction * p.pn), dt = pt - p.pt;
 		pushTangential(v1, v2, p, dt);
 		p.pt = pt;
-		if (watch.change)
-			measure(p, un, ut, dn, dt, watch.change[g], watch.motion[g]);
+		if (sweep.change)
+			measure(p, un, ut, dn, dt, sweep.change[g], sweep.motion[g]);
 	}
 	MASONRY_INLINE void end()
 	{
@@ -140,25 +148,24 @@ private:
 
 // Groups at the same time: one alone waits for its own results.
 template <class K, int k = 0, class... Visits>
-MASONRY_INLINE void sweepTogether(double perSubstep, const Watch& watch, Visits&&... visits)
+MASONRY_INLINE void sweepTogether(const Sweep& sweep, Visits&&... visits)
 {
-	(visits.template normal<k>(perSubstep), ...);
-	(visits.template tangential<k>(watch), ...);
+	(visits.template normal<k>(sweep), ...);
+	(visits.template tangential<k>(sweep), ...);
 	if constexpr (k + 1 < lanePoints<K>)
-		sweepTogether<K, k + 1>(perSubstep, watch, visits...);
+		sweepTogether<K, k + 1>(sweep, visits...);
 	else
 		(visits.end(), ...);
 }
 
 template <class K>
-MASONRY_INLINE void sweepGroups(Group<K>* groups, const Coupling<K>* couplings, int begin, int end, Lanes* velocity, double perSubstep,
-                                const Watch& watch)
+MASONRY_INLINE void sweepGroups(Group<K>* groups, const Coupling<K>* couplings, int begin, int end, Lanes* velocity, const Sweep& sweep)
 {
 	int g = begin;
 	for (; g + 2 <= end; g += 2)
-		sweepTogether<K>(perSubstep, watch, Visit<K>(groups, couplings, g, velocity), Visit<K>(groups, couplings, g + 1, velocity));
+		sweepTogether<K>(sweep, Visit<K>(groups, couplings, g, velocity), Visit<K>(groups, couplings, g + 1, velocity));
 	if (g < end)
-		sweepTogether<K>(perSubstep, watch, Visit<K>(groups, couplings, g, velocity));
+		sweepTogether<K>(sweep, Visit<K>(groups, couplings, g, velocity));
 }
 
 template <class K>
@@ -233,14 +240,13 @@ MASONRY_INLINE void beginGroups(Group<K>* groups, Coupling<K>* couplings, int be
 
 // No template is compiled for several vector widths.
 #define MASONRY_SWEEPS(K)                                                                                                                  \
-	MASONRY_LANES void sweep(Group<K>* groups, const Coupling<K>* couplings, int begin, int end, Lanes* velocity, double perSubstep)       \
+	MASONRY_LANES void sweep(Group<K>* groups, const Coupling<K>* couplings, int begin, int end, Lanes* velocity, const Sweep& how)        \
 	{                                                                                                                                      \
-		sweepGroups<K>(groups, couplings, begin, end, velocity, perSubstep, {});                                                           \
+		sweepGroups<K>(groups, couplings, begin, end, velocity, {how.perSubstep, how.relaxation, how.damping});                            \
 	}                                                                                                                                      \
-	MASONRY_LANES void lastSweep(Group<K>* groups, const Coupling<K>* couplings, int begin, int end, Lanes* velocity, double perSubstep,   \
-	                             const Watch& watch)                                                                                       \
+	MASONRY_LANES void watchedSweep(Group<K>* groups, const Coupling<K>* couplings, int begin, int end, Lanes* velocity, const Sweep& how) \
 	{                                                                                                                                      \
-		sweepGroups<K>(groups, couplings, begin, end, velocity, perSubstep, watch);                                                        \
+		sweepGroups<K>(groups, couplings, begin, end, velocity, how);                                                                      \
 	}                                                                                                                                      \
 	MASONRY_LANES void moveGaps(Group<K>* groups, int begin, int end, const Lanes* velocity, double s)                                     \
 	{                                                                                                                                      \
@@ -268,6 +274,7 @@ template <class K>
 void Substeps<K>::begin(WallContacts<K>& c)
 {
 	const Lanes onlyMass {0, 0, 0, 1};
+	sweeps = std::max(1, c.depth / coursesOfSweep);
 	shift.assign(c.velocity.size(), all(0));
 	couplings.resize(c.groups.size());
 	change.assign(c.groups.size(), all(0));
@@ -297,37 +304,50 @@ void Substeps<K>::substep(WallContacts<K>& c, const LaneArray& load, double s, b
 			contactPart[b] = before;
 		}
 	};
-	const auto press = [&](const Part& part) {
-		part.byColour([&](int first, int last) { sweep(groups, couplings.data(), first, last, velocity, 1 / s); });
+	const auto press = [&](const Part& part, bool isEnd, bool watched = false) {
+		Sweep how {1 / s, isEnd ? 1 : overRelaxation, damping / std::sqrt(sweeps)};
+		if (watched)
+			how.change = change.data(), how.motion = report.motion.data();
+		part.byColour([&](int first, int last) {
+			if (watched)
+				watchedSweep(groups, couplings.data(), first, last, velocity, how);
+			else
+				sweep(groups, couplings.data(), first, last, velocity, how);
+		});
 	};
 	const auto move = [&](const Part& part) {
 		moveGaps(groups, part.begin, part.end, velocity, s);
 		for (const int b : part.members)
 			shift[b] += s * noMass * velocity[b];
 	};
-	const auto relax = [&](const Part& part) {
-		part.byColour([&](int first, int last) {
-			if (isLast)
-				lastSweep(groups, couplings.data(), first, last, velocity, 1 / s, {change.data(), report.motion.data()});
-			else
-				sweep(groups, couplings.data(), first, last, velocity, 1 / s);
-		});
+	const auto keep = [&](const Part& part) {
 		for (const int b : part.members)
 			contactPart[b] = velocity[b] - noMass * contactPart[b];
 	};
 	const Part& seam = c.parts.back();
 	accelerate(seam);
-	c.eachPart([&](const Part& part, int) {
-		accelerate(part);
-		press(part);
-	});
-	press(seam);
+	for (int k = 0; k < sweeps; ++k) {
+		const bool isEnd = k + 1 == sweeps;
+		c.eachPart([&](const Part& part, int) {
+			if (k == 0)
+				accelerate(part);
+			press(part, isEnd);
+		});
+		press(seam, isEnd);
+	}
 	move(seam);
-	c.eachPart([&](const Part& part, int) {
-		move(part);
-		relax(part);
-	});
-	relax(seam);
+	for (int k = 0; k < sweeps; ++k) {
+		const bool isEnd = k + 1 == sweeps;
+		c.eachPart([&](const Part& part, int) {
+			if (k == 0)
+				move(part);
+			press(part, isEnd, isLast && isEnd);
+			if (isEnd)
+				keep(part);
+		});
+		press(seam, isEnd, isLast && isEnd);
+	}
+	keep(seam);
 	if (!isLast)
 		return;
 	report.residual = 0;

@@ -2,17 +2,18 @@
 // The step of a wall that moves: substeps of length s, each of
 //
 //     V += s M^-1 f + M^-1 J^T p        p of the last substep
-//     one sweep over the points
+//     sweeps over the points
 //     q += s V, gaps with it
-//     one sweep: p for the next, impacts taken off
+//     as many sweeps: p for the next, impacts taken off
 //
-// An open point may close, u_n >= -gap/s, in both sweeps; a closed one does not, u_n >= 0. (Without the gap in the second, corners that
+// An open point may close, u_n >= -gap/s, in all sweeps; a closed one does not, u_n >= 0. (Without the gap in the second half, corners that
 // approach stop short, and piers do not rock as they should.) One sweep carries an impulse one course on: what the courses miss of each
 // other falls as 1/substeps^2, and loads that lag behind like that bounce. So a sweep takes a little off what an impulse differs from its
-// mean over the last steps, which lets no load that stays sink. Penetrations are taken off at the end of the step (lift.hpp): springs that
-// do it in the sweeps give way under every load, ten times as deep.
+// mean over the last steps, which lets no load that stays sink. High walls need more sweeps, one before and one after for every six
+// courses: with one, 32 courses that slide and rock go too far by half. Penetrations are taken off at the end of the step
+// (lift.hpp): springs that do it in the sweeps give way under every load, ten times as deep.
 //
-// Substeps of one iteration after Macklin et al. (2019), a second sweep after Catto (2024).
+// Substeps of one iteration after Macklin et al. (2019), sweeps after the move after Catto (2024).
 #include "dynamics/wall/wall_contacts.hpp"
 
 namespace masonry::rigid::wall {
@@ -30,13 +31,15 @@ public:
 	// the impulses of the last substep in the contacts.
 	void begin(WallContacts<K>& contacts);
 	void substep(WallContacts<K>& contacts, const LaneArray& load, double s, bool isLast);
-	// After each substep: what friction has taken, and the impulses that the next one starts from. `fall`: what gravity gives in a substep, m/s.
+	// After each substep: what friction has taken, and the impulses that the next one starts from. `fall`: what gravity gives in a substep,
+	// m/s.
 	void handOn(WallContacts<K>& contacts, double fall);
 
 	SubstepReport report; // of the last substep of the step
 	LaneArray shift;      // how far the bodies have moved since begin(); components as of velocities
 
 private:
+	int sweeps {1};                     // before the move, and after it
 	std::vector<Coupling<K>> couplings; // by group
 	LaneArray change;                   // as of the report, of the pairs
 	LaneArray loss;                     // to friction since begin(), J; by part
