@@ -4,7 +4,7 @@ import math
 
 from masonry import dem
 from rocking_scene import one_block, quiet_engines, refuses, refuses_to_run, stone
-from yade import O, RockingJointEngine, utils
+from yade import O, Quaternion, RockingJointEngine, utils
 
 
 nan, inf = math.nan, math.inf
@@ -14,13 +14,17 @@ for make in (dem.base, lambda size, material: dem.block(size, material, center=(
              lambda size, material: dem.wall(2, 2, size, material, 0)):
     O.reset()
     dem.base((1, 1, 1), stone())
-    for bad in ((0, 1, 1), (1, -1, 1), (1, 1, nan), (1, 1, inf), (1, 1)):
+    for bad in ((0, 1, 1), (1, -1, 1), (1, 1, nan), (1, 1, inf), (1, 1), 0.4, "1"):
         refuses(lambda: make(bad, stone()), "size", str(bad), "positive")
 refuses(lambda: dem.block((1, 1, 1), stone()), "on = None", "center = None")
 refuses(lambda: dem.block((1, 1, 1), stone(), on=0, center=(0, 0, 0)), "on = 0", "one of the two")
 refuses(lambda: dem.block((1, 1, 1), stone(), center=(0, 0, nan)), "center", "nan", "finite")
 refuses(lambda: dem.block((1, 1, 1), utils.defaultMaterial(), on=0), "material", "BlockMat")
+refuses(lambda: dem.block((1, 1, 1), stone(), center=(0, 0)), "center = (0, 0)", "three")
+refuses(lambda: dem.block((1, 1, 1), stone(), on=0, orientation=Quaternion((1, 0, 0), 0.1)), "orientation", "about z")
+refuses(lambda: dem.block((1, 1, 1), stone(), on=0, orientation=0.1), "orientation = 0.1", "Quaternion")
 refuses(lambda: dem.stack(0, (1, 1, 1), stone(), 0), "n = 0", "at least 1")
+refuses(lambda: dem.stack(2.5, (1, 1, 1), stone(), 0), "n = 2.5", "whole number")
 refuses(lambda: dem.wall(0, 2, (1, 1, 1), stone(), 0), "courses = 0", "at least 1")
 refuses(lambda: dem.wall(2, 2, (1, 1, 1), stone(), 0, gap=-0.1), "gap = -0.1", "positive")
 refuses(lambda: dem.wall(2, 2, (1, 1, 1), stone(), 0, gap=nan), "gap = nan", "positive")

@@ -307,6 +307,10 @@ for arguments, words in (
     (dict(courses=2.5, per_course=2, size=ok), ("courses = 2.5", "whole number")),
     (dict(courses=2, per_course=2.25, size=ok), ("per_course = 2.25", "multiple of one half")),
     (dict(courses=2, per_course=nan, size=ok), ("per_course = nan",)),
+    (dict(courses="2", per_course=2, size=ok), ("courses = '2'", "number")),
+    (dict(courses=2, per_course=2, size=0.4), ("size = 0.4", "three full sizes")),
+    (dict(courses=2, per_course=2, size=ok, gap="0"), ("gap = '0'", "number")),
+    (dict(courses=2, per_course=2, size=ok, at=0.5), ("at = 0.5", "two finite numbers")),
     (dict(courses=2, per_course=2, size=(0.4, 0, 0.2)), ("size = (0.4, 0, 0.2)", "positive")),
     (dict(courses=2, per_course=2, size=ok, gap=0.4), ("gap = 0.4", "below 0.4 m")),
     (dict(length=1.3, height=1, size=ok), ("length + gap = 1.3", "multiple of 0.2 m")),
@@ -321,6 +325,8 @@ for arguments, words in (
     refuses(lambda: dem.wall(**arguments, material=unused, on=base), *words)
 for opening, words in (
     ((0.4, 0, 0.4), ("openings[0] = (0.4, 0, 0.4)", "(x0, z0, width, height)")),
+    (0.4, ("openings[0] = 0.4", "(x0, z0, width, height)")),
+    (("0.4", 0, 0.4, 0.4), ("x0 = '0.4'", "number")),
     ((0.5, 0, 0.4, 0.4), ("openings[0]", "x0 = 0.5", "multiple of 0.2")),
     ((0.4, 0.1, 0.4, 0.4), ("z0 = 0.1", "multiple of 0.2")),
     ((0.4, 0, nan, 0.4), ("width = nan",)),

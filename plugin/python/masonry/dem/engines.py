@@ -125,6 +125,10 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
         elif any(not np.isnan(b.mat.normalStiffness) for b in _blocks()):
             model, reason = "compliant", "a BlockMat has a joint stiffness"
     recorders = [] if recorder is None else list(recorder) if isinstance(recorder, (list, tuple)) else [recorder]
+    if not all(isinstance(one, (wrapper.BlockRecorder, wrapper.WallRecorder)) for one in recorders):
+        raise ValueError(f"recorder = {recorder!r}: must be a BlockRecorder, a WallRecorder or a list of them")
+    if not isinstance(others, (list, tuple)) or not all(isinstance(one, wrapper.Engine) for one in others):
+        raise ValueError(f"others = {others!r}: must be a list of engines")
     if model == "compliant":
         if tolerance is not None or others or method != "auto":
             raise ValueError("tolerance, others and method are for rigid blocks: they must be left out with model='compliant'")

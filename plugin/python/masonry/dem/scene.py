@@ -69,9 +69,7 @@ def _append_all(centers, sizes, material, orientations, resting):
 
 def _top(on, at=(0.0, 0.0)):
     """Where a layout stands on the body: the place `at` on its upper face, in world axes, and the body's orientation."""
-    below, at = _box(on), tuple(at)
-    if len(at) != 2 or not all(math.isfinite(v) for v in at):
-        raise ValueError(f"at = {at}: must be two finite numbers, in m")
+    below, at = _box(on), walls.finite_numbers("at", at, 2, "two finite numbers, in m")
     return below.state.pos + below.state.ori * Vector3(at[0], at[1], below.shape.extents[2]), below.state.ori
 
 
@@ -98,24 +96,22 @@ def block(size, material, on=None, center=None, orientation=None):
     size = _positive_size("size", size)
     if (on is None) == (center is None):
         raise ValueError(f"on = {on}, center = {center}: give one of the two")
+    orientation = Quaternion.Identity if orientation is None else orientation
+    if not isinstance(orientation, Quaternion) or not abs(orientation.norm() - 1) < 1e-9:
+        raise ValueError(f"orientation = {orientation!r}: must be a Quaternion of length 1")
     if on is not None:
         below = _box(on)
+        if not (orientation * Vector3.UnitZ)[2] > 1 - 1e-12:
+            raise ValueError(f"orientation = {orientation!r}: must be a turn about z where the block stands on a body")
         center = below.state.pos + below.state.ori * Vector3(0, 0, below.shape.extents[2] + size[2] / 2)
-        orientation = below.state.ori * (orientation or Quaternion.Identity)
-    center, orientation = Vector3(center), orientation or Quaternion.Identity
-    if not all(math.isfinite(v) for v in center):
-        raise ValueError(f"center = {tuple(center)}: must be finite, in m")
-    if not abs(orientation.norm() - 1) < 1e-9:
-        raise ValueError(f"orientation = {orientation}: must be a Quaternion of length 1")
-    return _append(center, size, material, orientation)
+        orientation = below.state.ori * orientation
+    return _append(Vector3(walls.finite_numbers("center", center, 3, "three finite numbers, in m")), size, material, orientation)
 
 
 def stack(n, size, material, on):
     """n equal blocks on top of each other, the lowest on the body `on`. Returns their ids, bottom up."""
-    if not n >= 1:
-        raise ValueError(f"n = {n}: must be at least 1")
     ids = []
-    for _ in range(n):
+    for _ in range(walls.whole("n", n, 1)):
         ids.append(block(size, material, on=ids[-1] if ids else on))
     return ids
 

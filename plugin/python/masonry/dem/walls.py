@@ -7,6 +7,7 @@ every block fills its cell less half a gap at either end."""
 import csv
 import json
 import math
+import numbers
 
 import numpy as np
 
@@ -16,16 +17,35 @@ _FIT = 1e-6
 _CARRIES = 0.1
 
 
+def finite_numbers(name, values, count, what):
+    """`count` finite numbers as floats; or ValueError, that they must be `what`."""
+    try:
+        found = [float(v) for v in values]
+    except (TypeError, ValueError):
+        found = []
+    if len(found) != count or not all(math.isfinite(v) for v in found):
+        raise ValueError(f"{name} = {tuple(values) if isinstance(values, (list, np.ndarray)) else values}: must be {what}")
+    return found
+
+
 def positive_size(name, size):
     """The three full sizes as floats; ValueError unless finite and positive."""
-    values = [float(v) for v in size]
-    if len(values) != 3 or not all(math.isfinite(v) and v > 0 for v in values):
-        raise ValueError(f"{name} = {tuple(size)}: must be three full sizes in m, each finite and positive")
+    what = "three full sizes in m, each finite and positive"
+    values = finite_numbers(name, size, 3, what)
+    if min(values) <= 0:
+        raise ValueError(f"{name} = {tuple(size)}: must be {what}")
     return values
 
 
-def _whole(name, value, least):
-    if not (math.isfinite(value) and value == int(value) and value >= least):
+def _number_given(name, value):
+    if not isinstance(value, numbers.Real):
+        raise ValueError(f"{name} = {value!r}: must be a number")
+    return value
+
+
+def whole(name, value, least):
+    """The value as an integer; ValueError unless it is one and at least `least`."""
+    if not (math.isfinite(_number_given(name, value)) and value == int(value) and value >= least):
         raise ValueError(f"{name} = {value}: must be a whole number, at least {least}")
     return int(value)
 
@@ -33,7 +53,7 @@ def _whole(name, value, least):
 def _head_joint(gap, size, shortest):
     """Checks the width of the head joints: something must be left of a piece that is `shortest` blocks long."""
     limit = size[0] * shortest / (1 - shortest)
-    if not 0 <= gap < limit:
+    if not 0 <= _number_given("gap", gap) < limit:
         raise ValueError(f"gap = {gap}: must be 0 or positive, in m, and below {limit:g} m, where the cut blocks of a course vanish")
 
 
@@ -63,14 +83,17 @@ def _fitted(name, length, module):
 def wall_modules(courses=None, per_course=None, size=None, length=None, height=None, thickness=None, gap=0.0):
     """(courses, blocks per course, size of a whole block) from one of: courses, per_course, size; length, height, size; courses,
     per_course, length, height, thickness."""
-    given = {name for name, value in locals().items() if value is not None and name != "gap"}
+    values = {name: value for name, value in locals().items() if value is not None}
+    for name in values.keys() - {"size"}:
+        _number_given(name, values[name])
+    given = values.keys() - {"gap"}
     forms = ({"courses", "per_course", "size"}, {"length", "height", "size"}, {"courses", "per_course", "length", "height", "thickness"})
     if given not in forms:
         raise ValueError(f"{', '.join(sorted(given)) or 'nothing'} given: must be one of {'; '.join(', '.join(sorted(f)) for f in forms)}")
     if "courses" in given:
         if not (courses >= 1 and per_course >= 1):
             raise ValueError(f"courses = {courses}, per_course = {per_course}: both must be at least 1")
-        courses = _whole("courses", courses, 1)
+        courses = whole("courses", courses, 1)
         if not (math.isfinite(per_course) and 2 * per_course == int(2 * per_course)):
             raise ValueError(f"per_course = {per_course}: must be a multiple of one half")
     if size is not None:
@@ -89,12 +112,12 @@ def wall_modules(courses=None, per_course=None, size=None, length=None, height=N
 
 def _opening_cells(index, opening, unit, shape):
     """Half blocks [x0, x1) and courses [z0, z1) of an opening; unit: (block, course) in the unit of the opening."""
-    name = f"openings[{index}] = {tuple(opening)}"
-    if len(opening) != 4:
+    name = f"openings[{index}] = {opening}"
+    if not isinstance(opening, (tuple, list, np.ndarray)) or len(opening) != 4:
         raise ValueError(f"{name}: must be (x0, z0, width, height)")
     cells = []
     for part, value, module in zip(("x0", "z0", "width", "height"), opening, (unit[0] / 2, unit[1]) * 2):
-        cell = value / module
+        cell = _number_given(f"{name}: its {part}", value) / module
         if not (math.isfinite(cell) and abs(cell - round(cell)) < _FIT * max(1, abs(cell))):
             raise ValueError(f"{name}: its {part} = {value} must be a whole multiple of {module:g} (half a block, one course)")
         cells.append(round(cell))
@@ -150,11 +173,11 @@ def two_wythe_layout(courses, per_course, size, header_every, gap=0.0, collar=0.
     """Two leaves in running bond, `collar` apart; courses header_every, 2 header_every, ... are headers through both leaves, half a
     block long on the face, their joints a quarter of a block aside from those above and below (a quarter closer at either end)."""
     courses, per_course, size = wall_modules(courses, per_course, size)
-    header_every = _whole("header_every", header_every, 2)
+    header_every = whole("header_every", header_every, 2)
     if header_every > courses:
         raise ValueError(f"header_every = {header_every}: must be from 2 to the number of courses, {courses}")
     _head_joint(gap, size, 1 / 4)
-    if not 0 <= collar < math.inf:
+    if not 0 <= _number_given("collar", collar) < math.inf:
         raise ValueError(f"collar = {collar}: must be 0 or positive, in m")
     pitch, quarters = size[0] + gap, round(4 * per_course)
     inner, thickness = np.arange(1, quarters), 2 * size[1] + collar
@@ -172,7 +195,7 @@ def two_wythe_layout(courses, per_course, size, header_every, gap=0.0, collar=0.
 def return_layout(courses, along_x, along_y, size, gap=0.0):
     """Two legs that meet in a corner at their ends of least x and y. In even courses the leg along x runs through the corner, in odd
     ones the leg along y; the other starts at its face with a whole block. The lap is the thickness."""
-    courses, along_x, along_y = _whole("courses", courses, 1), _whole("along_x", along_x, 2), _whole("along_y", along_y, 2)
+    courses, along_x, along_y = whole("courses", courses, 1), whole("along_x", along_x, 2), whole("along_y", along_y, 2)
     size = positive_size("size", size)
     if not size[0] / 4 <= size[1] <= size[0] * 3 / 4:
         raise ValueError(f"size = {tuple(size)}: its y must be from 1/4 to 3/4 of its x, so that the blocks lap by a quarter at least")
@@ -196,7 +219,7 @@ def return_layout(courses, along_x, along_y, size, gap=0.0):
 
 def pier_layout(courses, size, per_course=1):
     """A column: one block a course, or two side by side, turned by a quarter turn from course to course."""
-    courses = _whole("courses", courses, 1)
+    courses = whole("courses", courses, 1)
     size = positive_size("size", size)
     z = size[2] * (np.arange(courses) + 0.5)
     if per_course == 1:
