@@ -12,7 +12,7 @@ public:
 
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR(BlockMat, FrictMat,
-		"Material of a block that rocks: friction, a rocking restitution and, for compliant joints, stiffness per area.",
+		"Material of a block that rocks: friction, a rocking restitution and, for compliant joints, stiffness per area. Read when two blocks come near each other: what changes during a run reaches pairs that come later.",
 		((Real, restitution, NaN, Attr::triggerPostLoad, "Rocking restitution: angular velocity after / before an impact, 0 to 1. NaN (default): the natural restitution of the block, 1 - 1.5 sin^2(critical angle)."))
 		((Real, normalStiffness, NaN, Attr::triggerPostLoad, "Normal stiffness of a joint per unit of area [Pa/m], positive. NaN (default): chosen by dem.engines()."))
 		((Real, shearStiffness, NaN, Attr::triggerPostLoad, "Shear stiffness of a joint per unit of area [Pa/m], positive. NaN (default): chosen by dem.engines()."))
