@@ -125,6 +125,9 @@ def verdicts(rows):
         if r:
             line(f"{blocks} blocks, 1 g: CPU s per s", f"{moving}", r["cpu"], r["cpu"] <= moving)
             line(f"{blocks} blocks, 1 g: largest rise of energy in a tenth of a second, of the loss", "1e-3", max(0, r["rise"]) / r["lost"], r["rise"] <= 1e-3 * r["lost"])
+            if "unbalanced" in r:
+                share = abs(r["unbalanced"]) / r["work"]
+                line(f"{blocks} blocks, 1 g: energy that the balance misses, of the work of the base", "1e-4", share, share <= 1e-4)
             if "deepest" in r:
                 line(f"{blocks} blocks, 1 g: deepest penetration, of a block's height", "1e-5", r["deepest"] / 0.5, r["deepest"] <= 1e-5 * 0.5)
         for phase in ("rest", "shaking"):
@@ -196,7 +199,7 @@ def main():
     RESULTS.mkdir(exist_ok=True)
     if not arguments.quick:
         (RESULTS / "shaken_walls.json").write_text(json.dumps(rows, indent=0))
-        fields = ["solver", "blocks", "amplitude", "phase", "role", "threads", "dt", "tolerance", "cpu", "wall", "drift", "sink", "excursion", "still", "moving", "impacts", "solves", "velocityResidual", "forceResidual", "rise", "lost",
+        fields = ["solver", "blocks", "amplitude", "phase", "role", "threads", "dt", "tolerance", "cpu", "wall", "drift", "sink", "excursion", "still", "moving", "impacts", "solves", "velocityResidual", "forceResidual", "rise", "lost", "work", "unbalanced",
                   "memory", "bits"]
         with open(RESULTS / "shaken_walls.csv", "w", newline="") as out:
             writer = csv.DictWriter(out, fields, extrasaction="ignore")

@@ -41,6 +41,16 @@ def losses():
     return integrator.impactDissip + integrator.frictDissip
 
 
+def mechanical():
+    """Kinetic and potential energy of the blocks, J, from the states of YADE's bodies alone."""
+    total = 0
+    for i in ids:
+        state = O.bodies[i].state
+        spin = state.ori.conjugate() * state.angVel
+        total += state.mass * (state.vel.squaredNorm() / 2 + 9.81 * state.pos[2]) + sum(state.inertia[k] * spin[k] ** 2 for k in range(3)) / 2
+    return total
+
+
 start = places()
 courses = np.rint((start[:, 2] - start[:, 2].min()) / 0.5)
 top = int(np.flatnonzero(courses == courses.max())[-1])
@@ -52,7 +62,7 @@ for phase in ("rest", "shaking"):
         continue
     modes = integrator.stillSteps, integrator.movingSteps
     steps, excursion, rise, lost, cpu, wall, deepest = round(case[phase] / O.dt), 0, 0, losses(), 0, 0, 0
-    first, solved = lost, integrator.sweeps
+    first, solved, held, worked = lost, integrator.sweeps, mechanical(), integrator.baseWork
     # Energy and excursion are looked at on the way where the wall moves only.
     sample = max(1, round(0.01 / O.dt)) if case.get("fine") else max(1, round(0.1 / O.dt)) if case["amplitude"] > 0.7 and phase == "shaking" else steps
     for k in range(0, steps, sample):
@@ -65,11 +75,13 @@ for phase in ("rest", "shaking"):
         deepest = max([deepest] + [-gap for i in O.interactions for gap in i.geom.gaps])
         if (k + sample) * O.dt <= 0.5 + 1e-9:
             excursion = max(excursion, abs(places()[top, 0] - start[top, 0]))
+    work = integrator.baseWork - worked
+    unbalanced = mechanical() - held + lost - first - work
     moved = places() - start
     sink = -moved[courses == courses.max(), 2].mean() / case["courses"]
     bits = hashlib.sha256(np.array([x for i in ids for v in (O.bodies[i].state.pos, O.bodies[i].state.vel) for x in v]).tobytes()).hexdigest()[:12]
     print(json.dumps(dict(case, phase=phase, blocks=len(ids), cpu=cpu / case[phase], wall=wall / case[phase], drift=1e3 * float(np.linalg.norm(moved[:, :2], axis=1).max()),
                           sink=1e3 * float(sink - sunk), excursion=float(excursion), deepest=float(deepest), still=integrator.stillSteps - modes[0], moving=integrator.movingSteps - modes[1],
                           impacts=len(integrator.impactTimes), solves=integrator.sweeps - solved, velocityResidual=integrator.velocityResidual,
-                          forceResidual=integrator.forceResidual, rise=float(rise), lost=float(lost - first), work=integrator.baseWork, memory=memory, bits=bits)), flush=True)
+                          forceResidual=integrator.forceResidual, rise=float(rise), lost=float(lost - first), work=work, unbalanced=unbalanced, memory=memory, bits=bits)), flush=True)
     sunk = sink
