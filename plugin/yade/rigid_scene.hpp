@@ -555,7 +555,8 @@ private:
 	static constexpr Real clearlyApart = 2e-2;
 	/// Margin of the list of pairs, relative to the smallest half size. Larger: more pairs; smaller: the list is made anew more often.
 	static constexpr Real searchMargin = 0.1;
-	/// Courses of a wall up to which its moving mode is measured to be right (validation/walls/shaking).
+	/// Courses of a wall above which a warning tells that it sways too much as it moves. Errors grow with the courses below it too
+	/// (validation/walls/shaking).
 	static constexpr int mostCourses = 64;
 	/// Steps after which O.interactions are written even if nobody seems to look.
 	static constexpr int mostUnshown = 64;
