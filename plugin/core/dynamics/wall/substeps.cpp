@@ -20,8 +20,9 @@ constexpr double damping = 0.015, inMean = 0.0125;
 
 // What a substep hands on of an impulse at most: so many times its mean, or so many times what stops a point alone after a substep's fall,
 // which is how a block that begins to turn about it presses. Larger: what has stopped a block pushes it up before the sweep takes it off;
-// smaller: a block that lands on another corner than the one that has carried it sinks while the sweeps build up what holds it.
-constexpr double mostOfMean = 5, mostOfFall = 2;
+// smaller: a block that lands on another corner than the one that has carried it sinks while the sweeps build up what holds it, one alone
+// more slowly than several.
+constexpr double mostOfMean = 5, mostOfMeanOfSeveral = 3, mostOfFall = 2;
 
 // Courses for each sweep before the move, and after it; what all but the last of them overdo. The last must not: an impact would bounce.
 constexpr int coursesOfSweep = 6;
@@ -198,9 +199,9 @@ MASONRY_INLINE void addLoss(const Group<K>& group, const Lanes* velocity, Lanes&
 
 // An impact is over, and is not what the next substep starts from.
 template <class K>
-MASONRY_INLINE void trim(Group<K>& group, double fall, Lanes* contactPart)
+MASONRY_INLINE void trim(Group<K>& group, double ofMean, double fall, Lanes* contactPart)
 {
-	const auto most = [fall](const PointLanes<K>& p) { return larger(mostOfMean * p.steady, mostOfFall * fall * p.massN); };
+	const auto most = [=](const PointLanes<K>& p) { return larger(ofMean * p.steady, mostOfFall * fall * p.massN); };
 	Mask some {};
 	for (int k = 0; k < group.count; ++k) {
 		PointLanes<K>& p = group.point[k];
@@ -252,12 +253,12 @@ MASONRY_INLINE void beginGroups(Group<K>* groups, Coupling<K>* couplings, int be
 	{                                                                                                                                      \
 		moveGroups<K>(groups, begin, end, velocity, s);                                                                                    \
 	}                                                                                                                                      \
-	MASONRY_LANES void handOnGroups(Group<K>* groups, int begin, int end, const Lanes* velocity, double fall, Lanes* contactPart,          \
-	                                Lanes& loss)                                                                                           \
+	MASONRY_LANES void handOnGroups(Group<K>* groups, int begin, int end, const Lanes* velocity, double ofMean, double fall,               \
+	                                Lanes* contactPart, Lanes& loss)                                                                       \
 	{                                                                                                                                      \
 		for (int g = begin; g < end; ++g) {                                                                                                \
 			addLoss(groups[g], velocity, loss);                                                                                            \
-			trim(groups[g], fall, contactPart);                                                                                            \
+			trim(groups[g], ofMean, fall, contactPart);                                                                                    \
 		}                                                                                                                                  \
 	}                                                                                                                                      \
 	MASONRY_LANES void beginStep(Group<K>* groups, Coupling<K>* couplings, int begin, int end, Lanes* velocity)                            \
@@ -358,8 +359,9 @@ void Substeps<K>::substep(WallContacts<K>& c, const LaneArray& load, double s, b
 template <class K>
 void Substeps<K>::handOn(WallContacts<K>& c, double fall)
 {
+	const double ofMean = sweeps > 1 ? mostOfMeanOfSeveral : mostOfMean;
 	c.allParts([&](const Part& part, int number) {
-		handOnGroups(c.groups.data(), part.begin, part.end, c.velocity.data(), fall, contactPart.data(), loss[number]);
+		handOnGroups(c.groups.data(), part.begin, part.end, c.velocity.data(), ofMean, fall, contactPart.data(), loss[number]);
 	});
 	report.loss = 0;
 	for (const Lanes& here : loss)
