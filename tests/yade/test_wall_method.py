@@ -3,6 +3,7 @@ same bits after loading."""
 
 import math
 import os
+import sys
 import tempfile
 
 import numpy as np
@@ -76,6 +77,29 @@ assert integrator().method == "wall"
 for options, words in (({"impact_order": "simultaneous"}, ("impactOrder", "'sequential'")), ({"tolerance": 1e-9}, ("tolerance", "1e-6 to 1e-2")),
                        ({"model": "compliant"}, ("method", "rigid")), ({"method": "fast"}, ("method", "'fast'"))):
     refuses(lambda: wall(4, 6, 0.1, **{"method": "wall", **options}), *words)
+
+# --- high walls that move: a warning, where the README says so ---
+
+
+def printed(work):
+    """What work() writes to the standard error output."""
+    sys.stderr.flush()
+    kept = os.dup(2)
+    with tempfile.TemporaryFile() as file:
+        os.dup2(file.fileno(), 2)
+        try:
+            work()
+        finally:
+            os.dup2(kept, 2)
+            os.close(kept)
+        file.seek(0)
+        return file.read().decode()
+
+
+for courses, shaken, warns in ((24, 1.2, False), (25, 1.2, True), (25, 0.1, False)):
+    wall(courses, 2, shaken)
+    text = printed(lambda: O.run(300, True))
+    assert (integrator().movingSteps > 0) == (shaken > 1) and (f"{courses} courses" in text) == warns, (courses, shaken, text)
 
 # --- O.interactions: what one step after the other shows, a run shows where somebody looks ---
 
