@@ -24,8 +24,9 @@ constexpr double damping = 0.015, inMean = 0.0125;
 // more slowly than several.
 constexpr double mostOfMean = 5, mostOfMeanOfSeveral = 3, mostOfFall = 2;
 
-// Courses for each sweep before the move, and after it; what all but the last of them overdo. The last must not: an impact would bounce.
-constexpr int coursesOfSweep = 6;
+// Courses that one sweep before the move and one after it are enough for; what all but the last of them overdo. The last must not: an
+// impact would bounce.
+constexpr double coursesOfSweep = 9;
 constexpr double overRelaxation = 1.4;
 
 // An open point may close within the substep.
@@ -275,7 +276,7 @@ template <class K>
 void Substeps<K>::begin(WallContacts<K>& c)
 {
 	const Lanes onlyMass {0, 0, 0, 1};
-	sweeps = std::max(1, c.depth / coursesOfSweep);
+	sweeps = std::max(1, int(std::ceil(std::pow(c.depth / coursesOfSweep, 2))));
 	shift.assign(c.velocity.size(), all(0));
 	couplings.resize(c.groups.size());
 	change.assign(c.groups.size(), all(0));

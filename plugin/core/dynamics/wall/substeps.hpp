@@ -9,9 +9,10 @@
 // An open point may close, u_n >= -gap/s, in all sweeps; a closed one does not, u_n >= 0. (Without the gap in the second half, corners that
 // approach stop short, and piers do not rock as they should.) One sweep carries an impulse one course on: what the courses miss of each
 // other falls as 1/substeps^2, and loads that lag behind like that bounce. So a sweep takes a little off what an impulse differs from its
-// mean over the last steps, which lets no load that stays sink. High walls need more sweeps, one before and one after for every six
-// courses: with one alone, the first peak of a column of 48 that rocks is 9 % off, not 2.5. Penetrations are taken off at the end of the
-// step (lift.hpp): springs that do it in the sweeps give way under every load, ten times as deep.
+// mean over the last steps, which lets no load that stays sink. Over many sweeps loads spread as by diffusion, and their number grows as
+// the courses squared: with one alone, the first peak of a column of 48 that rocks is 9 % off, not 2, and what is lost while loads lag
+// counts as impacts that were none. Penetrations are taken off at the end of the step (lift.hpp): springs that do it in the sweeps give way
+// under every load, ten times as deep.
 //
 // Substeps of one iteration after Macklin et al. (2019), sweeps after the move after Catto (2024).
 #include "dynamics/wall/wall_contacts.hpp"
