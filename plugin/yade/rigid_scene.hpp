@@ -555,9 +555,9 @@ private:
 	static constexpr Real clearlyApart = 2e-2;
 	/// Margin of the list of pairs, relative to the smallest half size. Larger: more pairs; smaller: the list is made anew more often.
 	static constexpr Real searchMargin = 0.1;
-	/// Courses of a wall above which a warning tells that it may go too far as it moves: at 1 g walls of 10 to 24 courses are within 10 % of a
-	/// converged run, one of 32 a quarter off (validation/walls/shaking).
-	static constexpr int mostCourses = 24;
+	/// Courses of a wall above which a warning tells that it may go too far as it moves: at 1 g walls of 8 to 32 courses are within an eighth
+	/// of a converged run; one of 64 at 0.4 g goes millimetres instead of fractions of one (validation/walls/shaking).
+	static constexpr int mostCourses = 32;
 	/// Steps after which O.interactions are written even if nobody seems to look.
 	static constexpr int mostUnshown = 64;
 
