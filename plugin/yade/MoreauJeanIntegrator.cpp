@@ -343,7 +343,8 @@ void MoreauJeanIntegrator::count(const masonry::rigid::StepReport& report)
 	unlocalised += report.unlocalised;
 	worstResidual = std::max(worstResidual, report.residual);
 	if (report.diverged)
-		throw std::runtime_error(sentence("The simulation has diverged in the step from t = ", scene->time, " s: positions or velocities are no longer finite."));
+		throw std::runtime_error(sentence("The simulation has diverged in the step from t = ", scene->time, " s: positions or velocities are no longer finite.",
+			method == "localised" ? " Structures of more than some twenty blocks are for method='wall'." : ""));
 	const bool crowded = report.unlocalised > 0;
 	if (report.converged && !crowded && !(report.created > 0)) return;
 
