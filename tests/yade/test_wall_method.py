@@ -96,7 +96,7 @@ def printed(work):
         return file.read().decode()
 
 
-for courses, shaken, warns in ((32, 1.2, False), (33, 1.2, True), (33, 0.1, False)):
+for courses, shaken, warns in ((24, 1.2, False), (25, 1.2, True), (25, 0.1, False)):
     wall(courses, 2, shaken)
     text = printed(lambda: O.run(300, True))
     assert (integrator().movingSteps > 0) == (shaken > 1) and (f"{courses} courses" in text) == warns, (courses, shaken, text)

@@ -85,5 +85,5 @@ for phase in ("rest", "shaking"):
     print(json.dumps(dict(case, phase=phase, blocks=len(ids), cpu=cpu / case[phase], wall=wall / case[phase], drift=1e3 * float(np.linalg.norm(moved[:, :2], axis=1).max()),
                           sink=1e3 * float(sink - sunk), excursion=float(excursion), corner=float(corner), deepest=float(deepest), still=integrator.stillSteps - modes[0], moving=integrator.movingSteps - modes[1],
                           impacts=len(integrator.impactTimes), solves=integrator.sweeps - solved, velocityResidual=integrator.velocityResidual,
-                          forceResidual=integrator.forceResidual, rise=float(rise), lost=float(lost - first), work=work, unbalanced=unbalanced, memory=memory, bits=bits)), flush=True)
+                          forceResidual=integrator.forceResidual, rise=float(rise), lost=float(lost - first), impactDissip=integrator.impactDissip, work=work, unbalanced=unbalanced, memory=memory, bits=bits)), flush=True)
     sunk = sink
