@@ -1,12 +1,10 @@
 #pragma once
 // Rigid blocks of a scene in the core's form, and back after each step. No physics here.
 
-#include "BlockGeom.hpp"
 #include "BlockMat.hpp"
-#include "BlockPhys.hpp"
 #include "MoreauJeanIntegrator.hpp"
 #include "motion_drive.hpp"
-#include "still_functors.hpp"
+#include "shown_joints.hpp"
 
 #include "dynamics/rigid/islands.hpp"
 #include "dynamics/rigid/neighbours.hpp"
@@ -68,18 +66,13 @@ template <class K> class RigidScene final : public AnyRigidScene {
 		Properties        properties;
 		Motion            written;
 	};
-	/// A pair's interaction; in O.interactions as soon as the blocks are near, until they are clearly apart.
-	struct Joint {
-		shared_ptr<Interaction> interaction;
-		shared_ptr<BlockGeom>   geom;
-		shared_ptr<BlockPhys>   phys;
-	};
 
 public:
 	RigidScene(MoreauJeanIntegrator& engine, const vector<BaseMotionEngine*>& motions, const Remembered<K>& before)
 	        : integrator(engine)
 	        , scene(*engine.scene)
 	        , coordinates(engine.along)
+	        , joints(scene, coordinates, engine.pairLaw)
 	{
 		system.frictDissip = engine.frictDissip;
 		system.impactDissip = engine.impactDissip;
@@ -171,7 +164,7 @@ public:
 	{
 		if (unshown == 0) return;
 		showPoints();
-		for (size_t c = 0; c < joints.size(); ++c) writeJoint(joints[c], system.pairs[c]);
+		joints.write(system, kept);
 		unshown = 0;
 	}
 
@@ -194,11 +187,7 @@ public:
 		for (MotionDrive& drive : drives) drive.instant = instant;
 	}
 
-	void dropErased() override
-	{
-		for (const Joint& joint : joints)
-			if (!(scene.bodies->exists(joint.interaction->id1) && scene.bodies->exists(joint.interaction->id2)) && isListed(joint)) erase(joint);
-	}
+	void dropErased() override { joints.dropErased(); }
 
 private:
 	masonry::rigid::StepReport advanceWall()
@@ -294,54 +283,10 @@ private:
 		forgetNeighbours();
 	}
 
-	/// Both lists are in the order of the ids. Joints that are no longer near leave the scene.
 	void renewJoints()
 	{
-		const auto ids = [](const Joint& joint) { return std::pair(joint.interaction->id1, joint.interaction->id2); };
-		vector<Joint> old;
-		old.swap(joints);
-		auto before = old.begin();
-		const auto drop = [&] {
-			if (isListed(*before)) erase(*before);
-			++before;
-		};
-		for (Pair& pair : system.pairs) {
-			const std::pair wanted(kept.ids[pair.body1], kept.ids[pair.body2]);
-			while (before != old.end() && ids(*before) < wanted) drop();
-			joints.push_back(before != old.end() && ids(*before) == wanted ? *before++ : jointOf(pair));
-			takeLaw(joints.back(), pair);
-		}
-		while (before != old.end()) drop();
-	}
-
-	Joint jointOf(const Pair& pair)
-	{
-		Joint joint;
-		const Body &body1 = *links[pair.body1].body, &body2 = *links[pair.body2].body;
-		joint.interaction = scene.interactions->find(body1.id, body2.id);
-		if (joint.interaction) {
-			joint.geom = boost::dynamic_pointer_cast<BlockGeom>(joint.interaction->geom);
-			joint.phys = boost::dynamic_pointer_cast<BlockPhys>(joint.interaction->phys);
-			if (joint.geom && joint.phys) {
-				keepStill(*joint.interaction, integrator.pairLaw);
-				return joint;
-			}
-		}
-		return newJoint(body1, body2);
-	}
-
-	Joint newJoint(const Body& body1, const Body& body2)
-	{
-		Joint joint;
-		joint.interaction.reset(new Interaction(body1.id, body2.id));
-		integrator.pairLaw->go(body1.material, body2.material, joint.interaction);
-		joint.phys = boost::static_pointer_cast<BlockPhys>(joint.interaction->phys);
-		joint.geom.reset(new BlockGeom);
-		joint.geom->refR1 = static_cast<const Box&>(*body1.shape).extents.minCoeff();
-		joint.geom->refR2 = static_cast<const Box&>(*body2.shape).extents.minCoeff();
-		joint.interaction->geom = joint.geom;
-		keepStill(*joint.interaction, integrator.pairLaw);
-		return joint;
+		joints.renew(system.pairs, kept.ids);
+		takeLaws();
 	}
 
 	// --- scene to core ---
@@ -418,20 +363,23 @@ private:
 		throw std::runtime_error(text.str());
 	}
 
-	void takeLaw(const Joint& joint, Pair& pair)
+	void takeLaws()
 	{
-		const Real friction = joint.phys->noSlip ? masonry::noSlip : joint.phys->tangensOfFrictionAngle, restitution = joint.phys->restitution;
-		if (pair.friction == friction && (pair.restitution == restitution || (std::isnan(pair.restitution) && std::isnan(restitution)))) return;
-		pair.friction = friction;
-		pair.restitution = restitution;
-		lawsChanged = true;
+		for (size_t c = 0; c < joints.size(); ++c) {
+			const BlockPhys& law = joints.law(c);
+			Pair& pair = system.pairs[c];
+			const Real friction = law.noSlip ? masonry::noSlip : law.tangensOfFrictionAngle, restitution = law.restitution;
+			if (pair.friction == friction && (pair.restitution == restitution || (std::isnan(pair.restitution) && std::isnan(restitution)))) continue;
+			pair.friction = friction;
+			pair.restitution = restitution;
+			lawsChanged = true;
+		}
 	}
 
 	/// The laws may be changed by scripts through the interactions, after they have been shown.
 	void readLaws()
 	{
-		if (unshown > 0) return;
-		for (size_t c = 0; c < joints.size(); ++c) takeLaw(joints[c], system.pairs[c]);
+		if (unshown == 0) takeLaws();
 	}
 
 	// --- core to scene ---
@@ -467,73 +415,6 @@ private:
 		return std::any_of(pair.points.begin(), pair.points.begin() + pair.size, [](const auto& point) { return point.closed; });
 	}
 
-	bool apart(const Pair& pair) const
-	{
-		const Real far = clearlyApart * std::min(system.bodies[pair.body1].halfSize.minCoeff(), system.bodies[pair.body2].halfSize.minCoeff());
-		return std::none_of(pair.points.begin(), pair.points.begin() + pair.size, [&](const auto& point) { return point.gap <= far; });
-	}
-
-	/// Not so before the blocks are near, and when a script or the end of a body has erased it.
-	bool isListed(const Joint& joint) const
-	{
-		const int place = joint.interaction->linIx;
-		return place >= 0 && size_t(place) < scene.interactions->size() && (*scene.interactions)[place] == joint.interaction;
-	}
-
-	void writeJoint(Joint& joint, Pair& pair)
-	{
-		const bool listed = isListed(joint) && joint.interaction->isReal();
-		if (apart(pair)) { // not whether they have touched: what nobody saw must not decide
-			if (listed) erase(joint);
-			return;
-		}
-		if (!listed) list(joint, pair);
-		writeGeom(*joint.geom, pair);
-		writePhys(*joint.phys, pair);
-	}
-
-	void list(Joint& joint, const Pair& pair)
-	{
-		if (!joint.interaction->isReal()) joint = newJoint(*links[pair.body1].body, *links[pair.body2].body);
-		const auto other = scene.interactions->find(joint.interaction->id1, joint.interaction->id2); // a collider's
-		if (other) scene.interactions->erase(other->id1, other->id2, other->linIx);
-		joint.interaction->iterMadeReal = joint.interaction->iterBorn = scene.iter;
-		scene.interactions->insert(joint.interaction);
-	}
-
-	void erase(const Joint& joint) { scene.interactions->erase(joint.interaction->id1, joint.interaction->id2, joint.interaction->linIx); }
-
-	void writeGeom(BlockGeom& geom, const Pair& pair) const
-	{
-		const Real depth = kept.seats[pair.body2].depth;
-		geom.feature1 = pair.face1;
-		geom.feature2 = pair.face2;
-		geom.patch.size = pair.size;
-		geom.contactPoint.setZero();
-		for (int i = 0; i < pair.size; ++i) {
-			const auto& point = pair.points[i];
-			auto&       to = geom.patch.points[i];
-			to.position1 = to.position2 = pointInScene(coordinates, point.frame.position, depth);
-			to.gap = point.gap;
-			geom.contactPoint += to.position1 / pair.size;
-			if (i == 0) geom.normal = coordinates.out(point.frame.axes.row(0).transpose());
-		}
-	}
-
-	void writePhys(BlockPhys& phys, const Pair& pair) const
-	{
-		phys.forces.resize(pair.size);
-		phys.normalForce.setZero();
-		phys.shearForce.setZero();
-		for (int i = 0; i < pair.size; ++i) {
-			const auto&    point = pair.points[i];
-			const Vector3r normal = coordinates.out(point.frame.axes.row(0).transpose() * point.force[0]);
-			phys.forces[i] = coordinates.out(point.frame.axes.transpose() * point.force);
-			phys.normalForce += normal;
-			phys.shearForce += phys.forces[i] - normal;
-		}
-	}
-
 	void record(const masonry::rigid::Impact& impact)
 	{
 		integrator.impactTimes.push_back(impact.time);
@@ -551,8 +432,6 @@ private:
 
 	/// Overlap, relative to the smallest half size, that is no rounding of coordinates but a mistake.
 	static constexpr Real mostOverlap = 1e-6;
-	/// Gap, relative to the smaller block, at which an interaction ends; as for compliant joints.
-	static constexpr Real clearlyApart = 2e-2;
 	/// Margin of the list of pairs, relative to the smallest half size. Larger: more pairs; smaller: the list is made anew more often.
 	static constexpr Real searchMargin = 0.1;
 	/// Courses of a wall above which a warning tells that it may go too far as it moves. At 1 g the top of walls as long as they are high goes
@@ -572,7 +451,7 @@ private:
 	std::unique_ptr<masonry::rigid::Neighbours<K>> neighbours;
 	vector<MotionDrive> drives;
 	vector<Link> links;
-	vector<Joint> joints;
+	ShownJoints<K> joints;
 	Remembered<K> kept; // ids and seats; bodies and pairs are filled in when it is packed
 	size_t bodyCount = 0;
 	Real length = 0; // smallest half size, m

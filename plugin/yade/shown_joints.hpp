@@ -1,0 +1,173 @@
+#pragma once
+// The interactions of rigid blocks: one for each pair of the core, in O.interactions as soon as the blocks are near, until they are clearly apart.
+
+#include "BlockGeom.hpp"
+#include "BlockPhys.hpp"
+#include "Ip2_BlockMat_BlockMat_BlockPhys.hpp"
+#include "rigid_memory.hpp"
+#include "still_functors.hpp"
+#include <core/Scene.hpp>
+
+namespace yade {
+
+template <class K> class ShownJoints {
+	using System = masonry::rigid::RigidSystem<K>;
+	using Pair = masonry::rigid::ContactPair<K>;
+	using PairLaw = shared_ptr<Ip2_BlockMat_BlockMat_BlockPhys>;
+
+public:
+	ShownJoints(Scene& s, const Coordinates<K>& c, const PairLaw& law)
+	        : scene(s)
+	        , coordinates(c)
+	        , pairLaw(law)
+	{
+	}
+
+	size_t size() const { return joints.size(); }
+	/// The law of a pair, which scripts may change through its interaction.
+	const BlockPhys& law(size_t pair) const { return *joints[pair].phys; }
+
+	/// Both lists are in the order of the ids. Joints that are no longer near leave the scene.
+	void renew(const vector<Pair>& pairs, const vector<Body::id_t>& ids)
+	{
+		const auto idsOf = [](const Joint& joint) { return std::pair(joint.interaction->id1, joint.interaction->id2); };
+		vector<Joint> old;
+		old.swap(joints);
+		auto before = old.begin();
+		const auto drop = [&] {
+			if (isListed(*before)) erase(*before);
+			++before;
+		};
+		for (const Pair& pair : pairs) {
+			const std::pair wanted(ids[pair.body1], ids[pair.body2]);
+			while (before != old.end() && idsOf(*before) < wanted) drop();
+			joints.push_back(before != old.end() && idsOf(*before) == wanted ? *before++ : jointOf(wanted));
+		}
+		while (before != old.end()) drop();
+	}
+
+	/// O.interactions as the system is.
+	void write(const System& system, const Remembered<K>& kept)
+	{
+		for (size_t c = 0; c < joints.size(); ++c) {
+			Joint& joint = joints[c];
+			const Pair& pair = system.pairs[c];
+			const bool listed = isListed(joint) && joint.interaction->isReal();
+			if (apart(system, pair)) { // not whether they have touched: what nobody saw must not decide
+				if (listed) erase(joint);
+				continue;
+			}
+			if (!listed) list(joint);
+			writeGeom(*joint.geom, pair, kept.seats[pair.body2].depth);
+			writePhys(*joint.phys, pair);
+		}
+	}
+
+	/// Takes the interactions of erased bodies out of O.interactions.
+	void dropErased()
+	{
+		for (const Joint& joint : joints)
+			if (!(scene.bodies->exists(joint.interaction->id1) && scene.bodies->exists(joint.interaction->id2)) && isListed(joint)) erase(joint);
+	}
+
+private:
+	struct Joint {
+		shared_ptr<Interaction> interaction;
+		shared_ptr<BlockGeom>   geom;
+		shared_ptr<BlockPhys>   phys;
+	};
+
+	Joint jointOf(std::pair<Body::id_t, Body::id_t> ids)
+	{
+		Joint joint;
+		joint.interaction = scene.interactions->find(ids.first, ids.second);
+		if (joint.interaction) {
+			joint.geom = boost::dynamic_pointer_cast<BlockGeom>(joint.interaction->geom);
+			joint.phys = boost::dynamic_pointer_cast<BlockPhys>(joint.interaction->phys);
+			if (joint.geom && joint.phys) {
+				keepStill(*joint.interaction, pairLaw);
+				return joint;
+			}
+		}
+		return newJoint(ids.first, ids.second);
+	}
+
+	Joint newJoint(Body::id_t id1, Body::id_t id2)
+	{
+		const Body &body1 = *scene.bodies->body[id1], &body2 = *scene.bodies->body[id2];
+		Joint joint;
+		joint.interaction.reset(new Interaction(id1, id2));
+		pairLaw->go(body1.material, body2.material, joint.interaction);
+		joint.phys = boost::static_pointer_cast<BlockPhys>(joint.interaction->phys);
+		joint.geom.reset(new BlockGeom);
+		joint.geom->refR1 = static_cast<const Box&>(*body1.shape).extents.minCoeff();
+		joint.geom->refR2 = static_cast<const Box&>(*body2.shape).extents.minCoeff();
+		joint.interaction->geom = joint.geom;
+		keepStill(*joint.interaction, pairLaw);
+		return joint;
+	}
+
+	static bool apart(const System& system, const Pair& pair)
+	{
+		const Real far = clearlyApart * std::min(system.bodies[pair.body1].halfSize.minCoeff(), system.bodies[pair.body2].halfSize.minCoeff());
+		return std::none_of(pair.points.begin(), pair.points.begin() + pair.size, [&](const auto& point) { return point.gap <= far; });
+	}
+
+	/// Not so before the blocks are near, and when a script or the end of a body has erased it.
+	bool isListed(const Joint& joint) const
+	{
+		const int place = joint.interaction->linIx;
+		return place >= 0 && size_t(place) < scene.interactions->size() && (*scene.interactions)[place] == joint.interaction;
+	}
+
+	void list(Joint& joint)
+	{
+		if (!joint.interaction->isReal()) joint = newJoint(joint.interaction->id1, joint.interaction->id2);
+		const auto other = scene.interactions->find(joint.interaction->id1, joint.interaction->id2); // a collider's
+		if (other) scene.interactions->erase(other->id1, other->id2, other->linIx);
+		joint.interaction->iterMadeReal = joint.interaction->iterBorn = scene.iter;
+		scene.interactions->insert(joint.interaction);
+	}
+
+	void erase(const Joint& joint) { scene.interactions->erase(joint.interaction->id1, joint.interaction->id2, joint.interaction->linIx); }
+
+	void writeGeom(BlockGeom& geom, const Pair& pair, Real depth) const
+	{
+		geom.feature1 = pair.face1;
+		geom.feature2 = pair.face2;
+		geom.patch.size = pair.size;
+		geom.contactPoint.setZero();
+		for (int i = 0; i < pair.size; ++i) {
+			const auto& point = pair.points[i];
+			auto&       to = geom.patch.points[i];
+			to.position1 = to.position2 = pointInScene(coordinates, point.frame.position, depth);
+			to.gap = point.gap;
+			geom.contactPoint += to.position1 / pair.size;
+			if (i == 0) geom.normal = coordinates.out(point.frame.axes.row(0).transpose());
+		}
+	}
+
+	void writePhys(BlockPhys& phys, const Pair& pair) const
+	{
+		phys.forces.resize(pair.size);
+		phys.normalForce.setZero();
+		phys.shearForce.setZero();
+		for (int i = 0; i < pair.size; ++i) {
+			const auto&    point = pair.points[i];
+			const Vector3r normal = coordinates.out(point.frame.axes.row(0).transpose() * point.force[0]);
+			phys.forces[i] = coordinates.out(point.frame.axes.transpose() * point.force);
+			phys.normalForce += normal;
+			phys.shearForce += phys.forces[i] - normal;
+		}
+	}
+
+	/// Gap, relative to the smaller block, at which an interaction ends; as for compliant joints.
+	static constexpr Real clearlyApart = 2e-2;
+
+	Scene&                scene;
+	const Coordinates<K>& coordinates;
+	const PairLaw&        pairLaw; // the integrator's: a script may give another
+	vector<Joint>         joints;  // of the core's pairs
+};
+
+} // namespace yade
