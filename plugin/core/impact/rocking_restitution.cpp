@@ -141,7 +141,7 @@ Vector3 rockingAxis(const std::vector<Body>& bodies, const ClosingJoint& joint, 
 	const Vector3& n = joint.normal;
 	const Vector3& old = points[joint.oldBegin].position;
 	const auto     inPlane = [&](const Vector3& v) { return Vector3(v - n * n.dot(v)); };
-	// The old support is an edge when its points are apart by more than round-off of their distance from the new ones.
+	// The old support is an edge when its points are apart by more than round-off of their distance from the new ones, and beside that line.
 	Vector3 edge = Vector3::Zero();
 	for (int i = joint.oldBegin; i < joint.oldEnd; ++i) {
 		const Vector3 span = inPlane(points[i].position - old);
@@ -156,7 +156,8 @@ Vector3 rockingAxis(const std::vector<Body>& bodies, const ClosingJoint& joint, 
 		lever += std::max(approach, 0.) * d;
 		reach = std::max(reach, d.norm());
 	}
-	Vector3 axis = edge.norm() > tolerance::pivotEdge * reach ? edge : Vector3(n.cross(lever));
+	const bool isEdge = edge.norm() > tolerance::pivotEdge * reach && edge.cross(lever).norm() > tolerance::pivotEdge * edge.norm() * lever.norm();
+	Vector3    axis = isEdge ? edge : Vector3(n.cross(lever));
 	axis.normalize();
 	const Vector3 spin = bodies[joint.block].angularVelocity - bodies[joint.support].angularVelocity;
 	return axis.dot(spin) < 0 ? Vector3(-axis) : axis;

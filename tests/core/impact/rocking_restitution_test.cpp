@@ -61,6 +61,20 @@ TEST_CASE("The restitution comes out as asked")
 			}
 }
 
+// Corners of two blocks below that touch: they lie in one line with the point that lands, and are no edge to turn about.
+TEST_CASE("The restitution comes out as asked about a pivot of two points in line with the one that lands")
+{
+	const double C = 0.8, apart = GENERATE(1e-9, 1e-4, 0.1);
+	FlatBlock flat(0.3, 5, C, noSlip);
+	flat.impact.points.clear();
+	for (double x : { flat.b, -flat.b, -flat.b * (1 - apart) })
+		flat.impact.points.push_back({ 0, 1, { x, 0, 0 }, Vector3::UnitZ(), noSlip });
+	flat.impact.joints = { { 1, 0, Vector3::UnitZ(), C, 0, 1, 3 } };
+	flat.apply();
+	CHECK(flat.joint().restitution() == Approx(C).epsilon(roundOff));
+	CHECK((flat.joint().axis - Vector3::UnitY()).norm() < roundOff);
+}
+
 TEST_CASE("Without a value the plastic impact gives Housner's restitution")
 {
 	for (double slenderness : { 1., 2., 5., 12. }) {
