@@ -148,15 +148,16 @@ Vector3 rockingAxis(const std::vector<Body>& bodies, const ClosingJoint& joint, 
 		if (span.norm() > edge.norm()) edge = span;
 	}
 	Vector3 lever = Vector3::Zero(); // from the old support to the new, weighted by the approach speeds
-	double  reach = 0;
+	double  reach = 0, beside = 0; // of the edge's length times the distance from its line
 	for (int i = joint.newBegin; i < joint.oldBegin; ++i) {
 		const Vector3 d = inPlane(points[i].position - old);
 		const double  side = points[i].body2 == joint.block ? 1 : -1;
 		const double  approach = -side * n.dot(relativeVelocity(bodies, points[i]));
 		lever += std::max(approach, 0.) * d;
 		reach = std::max(reach, d.norm());
+		beside = std::max(beside, edge.cross(d).norm());
 	}
-	const bool isEdge = edge.norm() > tolerance::pivotEdge * reach && edge.cross(lever).norm() > tolerance::pivotEdge * edge.norm() * lever.norm();
+	const bool isEdge = edge.norm() > tolerance::pivotEdge * reach && beside > tolerance::pivotEdge * edge.norm() * reach;
 	Vector3    axis = isEdge ? edge : Vector3(n.cross(lever));
 	axis.normalize();
 	const Vector3 spin = bodies[joint.block].angularVelocity - bodies[joint.support].angularVelocity;

@@ -69,7 +69,7 @@ struct RockingImpactResult {
 	bool   solved { true };  // it counts as zero
 };
 
-// Zero where there is no old support or no closing point approaches.
+// Zero where there is no old support, or where it is a corner and no closing point approaches.
 Vector3 rockingAxis(const std::vector<Body>& bodies, const ClosingJoint& joint, const std::vector<ImpulsePoint>& points);
 
 // The two laws, simultaneous and sequential: they change the bodies' velocities, the points' impulses and the joints' results.

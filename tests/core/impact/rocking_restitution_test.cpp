@@ -75,6 +75,14 @@ TEST_CASE("The restitution comes out as asked about a pivot of two points in lin
 	CHECK((flat.joint().axis - Vector3::UnitY()).norm() < roundOff);
 }
 
+TEST_CASE("A block on an edge turns about it whether or not the points beside it approach")
+{
+	for (double speed : { 0.3, -0.3 }) {
+		FlatBlock flat(0.3, 5, 0.8, noSlip, speed);
+		CHECK((rockingAxis(flat.bodies, flat.impact.joints.front(), flat.impact.points) - (speed > 0 ? 1 : -1) * Vector3::UnitY()).norm() < roundOff);
+	}
+}
+
 TEST_CASE("Without a value the plastic impact gives Housner's restitution")
 {
 	for (double slenderness : { 1., 2., 5., 12. }) {
