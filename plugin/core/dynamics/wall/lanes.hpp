@@ -1,6 +1,7 @@
 #pragma once
-// Four doubles side by side. Each lane is computed as a scalar would be, so that the bits do not depend on the vector width that the
-// processor has; functions marked MASONRY_LANES are compiled for several and the widest is picked when the program starts.
+// Numbers side by side: four doubles (Lanes), or eight floats (Floats) in sweeps and solves, whose errors the next correct. Each
+// lane is computed as a scalar would be, so that the bits do not depend on the vector width that the processor has; functions marked
+// MASONRY_LANES are compiled for several and the widest is picked when the program starts.
 
 #include <cstddef>
 #include <cstring>
@@ -21,7 +22,21 @@ namespace masonry::rigid::wall {
 
 constexpr int width = 4;
 using Lanes = double __attribute__((vector_size(32)));
-using Mask = long long __attribute__((vector_size(32))); // -1: true
+using Mask = long __attribute__((vector_size(32))); // -1: true
+
+constexpr int floatWidth = 8;
+using Floats = float __attribute__((vector_size(32)));
+using FloatMask = int __attribute__((vector_size(32)));
+
+template <class L>
+constexpr int widthOf = sizeof(L) / sizeof(L {}[0]);
+template <class L>
+using MaskOf = std::conditional_t<std::is_same_v<L, Lanes>, Mask, FloatMask>;
+
+// Four numbers of one body: three components and 1/m.
+using FloatPack = float __attribute__((vector_size(16)));
+template <class L>
+using PackOf = std::conditional_t<std::is_same_v<L, Lanes>, Lanes, FloatPack>;
 
 // Code for wide vectors counts on this alignment, code for narrow ones does not ask for it: structures of lanes state it.
 constexpr std::size_t alignment = 32;
@@ -40,14 +55,37 @@ struct AlignedAllocator {
 	bool operator!=(const AlignedAllocator&) const { return false; }
 };
 
-using LaneArray = std::vector<Lanes, AlignedAllocator<Lanes>>;
+template <class T>
+using Array = std::vector<T, AlignedAllocator<T>>;
+using LaneArray = Array<Lanes>;
 
-MASONRY_INLINE Lanes all(double value) { return Lanes {value, value, value, value}; }
-MASONRY_INLINE Lanes larger(const Lanes& a, const Lanes& b) { return a > b ? a : b; }
-MASONRY_INLINE Lanes smaller(const Lanes& a, const Lanes& b) { return a < b ? a : b; }
-MASONRY_INLINE Lanes size(const Lanes& a) { return a < 0 ? -a : a; }
-MASONRY_INLINE Lanes length(const Lanes& a) { return size(a); }
+template <class L = Lanes>
+MASONRY_INLINE L all(double value)
+{
+	return decltype(L {}[0])(value) - L {};
+}
+template <class L>
+MASONRY_INLINE L larger(const L& a, const L& b)
+{
+	return a > b ? a : b;
+}
+template <class L>
+MASONRY_INLINE L smaller(const L& a, const L& b)
+{
+	return a < b ? a : b;
+}
+template <class L>
+MASONRY_INLINE L size(const L& a)
+{
+	return a < 0 ? -a : a;
+}
+template <class L>
+MASONRY_INLINE L length(const L& a)
+{
+	return size(a);
+}
 MASONRY_INLINE Lanes select(const Mask& mask, const Lanes& a, const Lanes& b) { return mask ? a : b; }
+MASONRY_INLINE Floats select(const FloatMask& mask, const Floats& a, const Floats& b) { return mask ? a : b; }
 // A bit for each lane.
 constexpr unsigned char allLanes = 15;
 MASONRY_INLINE unsigned char bitsOf(const Mask& mask)
@@ -58,15 +96,31 @@ MASONRY_INLINE unsigned char bitsOf(const Mask& mask)
 MASONRY_INLINE Mask maskOf(unsigned char bits) { return (Mask {bits, bits, bits, bits} & Mask {1, 2, 4, 8}) != 0; }
 
 MASONRY_INLINE bool any(const Mask& mask) { return (mask[0] | mask[1] | mask[2] | mask[3]) != 0; }
+MASONRY_INLINE bool any(const FloatMask& mask) { return any(Mask(mask)); }
 MASONRY_INLINE Lanes root(const Lanes& a)
 {
 	return Lanes {__builtin_sqrt(a[0]), __builtin_sqrt(a[1]), __builtin_sqrt(a[2]), __builtin_sqrt(a[3])};
+}
+MASONRY_INLINE Floats root(const Floats& a)
+{
+	return Floats {__builtin_sqrtf(a[0]), __builtin_sqrtf(a[1]), __builtin_sqrtf(a[2]), __builtin_sqrtf(a[3]),
+	               __builtin_sqrtf(a[4]), __builtin_sqrtf(a[5]), __builtin_sqrtf(a[6]), __builtin_sqrtf(a[7])};
 }
 MASONRY_INLINE double largest(const Lanes& a)
 {
 	const double low = a[0] > a[1] ? a[0] : a[1], high = a[2] > a[3] ? a[2] : a[3];
 	return low > high ? low : high;
 }
+
+MASONRY_INLINE Floats joined(const FloatPack& low, const FloatPack& high)
+{
+	return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
+}
+MASONRY_INLINE FloatPack lowOf(const Floats& a) { return __builtin_shufflevector(a, a, 0, 1, 2, 3); }
+MASONRY_INLINE FloatPack highOf(const Floats& a) { return __builtin_shufflevector(a, a, 4, 5, 6, 7); }
+MASONRY_INLINE FloatPack halfOf(const Floats& a, int half) { return half == 0 ? lowOf(a) : highOf(a); }
+MASONRY_INLINE FloatPack narrow(const Lanes& a) { return __builtin_convertvector(a, FloatPack); }
+MASONRY_INLINE Lanes widen(const FloatPack& a) { return __builtin_convertvector(a, Lanes); }
 
 MASONRY_INLINE void transpose(Lanes& a, Lanes& b, Lanes& c, Lanes& d)
 {
@@ -76,6 +130,52 @@ MASONRY_INLINE void transpose(Lanes& a, Lanes& b, Lanes& c, Lanes& d)
 	b = __builtin_shuffle(ab1, cd1, Mask {0, 1, 4, 5});
 	c = __builtin_shuffle(ab0, cd0, Mask {2, 3, 6, 7});
 	d = __builtin_shuffle(ab1, cd1, Mask {2, 3, 6, 7});
+}
+// Each half for itself.
+MASONRY_INLINE void transpose(Floats& a, Floats& b, Floats& c, Floats& d)
+{
+	const Floats ab0 = __builtin_shufflevector(a, b, 0, 8, 1, 9, 4, 12, 5, 13),
+	             ab1 = __builtin_shufflevector(a, b, 2, 10, 3, 11, 6, 14, 7, 15);
+	const Floats cd0 = __builtin_shufflevector(c, d, 0, 8, 1, 9, 4, 12, 5, 13),
+	             cd1 = __builtin_shufflevector(c, d, 2, 10, 3, 11, 6, 14, 7, 15);
+	a = __builtin_shufflevector(ab0, cd0, 0, 1, 8, 9, 4, 5, 12, 13);
+	b = __builtin_shufflevector(ab0, cd0, 2, 3, 10, 11, 6, 7, 14, 15);
+	c = __builtin_shufflevector(ab1, cd1, 0, 1, 8, 9, 4, 5, 12, 13);
+	d = __builtin_shufflevector(ab1, cd1, 2, 3, 10, 11, 6, 7, 14, 15);
+}
+
+// Packs of bodies in, each `stride` times its number away, one lane a body out; and back, where `mass` is not 0.
+MASONRY_INLINE void gather(const Lanes* from, const int* body, int stride, Lanes& a, Lanes& b, Lanes& c, Lanes& d)
+{
+	a = from[stride * body[0]], b = from[stride * body[1]], c = from[stride * body[2]], d = from[stride * body[3]];
+	transpose(a, b, c, d);
+}
+MASONRY_INLINE void gather(const FloatPack* from, const int* body, int stride, Floats& a, Floats& b, Floats& c, Floats& d)
+{
+	Floats* pair[4] = {&a, &b, &c, &d};
+	for (int i = 0; i < 4; ++i)
+		*pair[i] = joined(from[stride * body[i]], from[stride * body[i + 4]]);
+	transpose(a, b, c, d);
+}
+MASONRY_INLINE void scatter(Lanes a, Lanes b, Lanes c, Lanes d, Lanes* to, const int* body, int stride, const Lanes& mass, bool allFree)
+{
+	transpose(a, b, c, d);
+	const Lanes* row[width] = {&a, &b, &c, &d};
+	for (int i = 0; i < width; ++i)
+		if (allFree || mass[i] != 0)
+			to[stride * body[i]] = *row[i];
+}
+MASONRY_INLINE void scatter(Floats a, Floats b, Floats c, Floats d, FloatPack* to, const int* body, int stride, const Floats& mass,
+                            bool allFree)
+{
+	transpose(a, b, c, d);
+	const Floats* row[4] = {&a, &b, &c, &d};
+	for (int i = 0; i < 4; ++i) {
+		if (allFree || mass[i] != 0)
+			to[stride * body[i]] = lowOf(*row[i]);
+		if (allFree || mass[i + 4] != 0)
+			to[stride * body[i + 4]] = highOf(*row[i]);
+	}
 }
 
 // All numbers of a lane of a structure of lanes.

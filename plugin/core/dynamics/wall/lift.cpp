@@ -45,8 +45,8 @@ MASONRY_INLINE Lanes prepareGroups(const Group<K>* groups, typename Lift<K>::Poi
 
 // Sweep number `now`: groups of which no block has moved since they were looked at stay.
 template <class K>
-MASONRY_INLINE void liftGroups(const Group<K>* groups, typename Lift<K>::Points* points, const int* upwards, int begin, int end,
-                               int now, int* last, int* seen, double small, Lanes* moved, Lanes& missing)
+MASONRY_INLINE void liftGroups(const Group<K>* groups, typename Lift<K>::Points* points, const int* upwards, int begin, int end, int now,
+                               int* last, int* seen, double small, Lanes* moved, Lanes& missing)
 {
 	const Lanes none = all(0);
 	for (int place = begin; place < end; ++place) {
@@ -114,7 +114,7 @@ MASONRY_LIFT(Space)
 } // namespace
 
 template <class K>
-void Lift<K>::settle(WallContacts<K>& c, LaneArray& shift)
+void Lift<K>::settle(WallContacts<K>& c)
 {
 	static const auto share = sharesOfCourses();
 	points.resize(c.groups.size());
@@ -144,8 +144,8 @@ void Lift<K>::settle(WallContacts<K>& c, LaneArray& shift)
 			break;
 	}
 	c.allParts([&](const Part& part, int) { partGaps(c.groups.data(), part.begin, part.end, moved.data()); });
-	for (size_t b = 0; b < shift.size(); ++b)
-		shift[b] += noMass * moved[b];
+	for (size_t b = 0; b < c.shift.size(); ++b)
+		c.shift[b] += noMass * moved[b];
 }
 
 template class Lift<Plane>;

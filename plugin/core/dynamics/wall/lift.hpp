@@ -16,8 +16,8 @@ namespace masonry::rigid::wall {
 template <class K>
 class Lift {
 public:
-	// Changes the contacts' gaps and adds to `shift`, components as of velocities.
-	void settle(WallContacts<K>& contacts, LaneArray& shift);
+	// Changes the contacts' gaps and shift.
+	void settle(WallContacts<K>& contacts);
 
 	struct alignas(alignment) Point {
 		Lanes room;    // m, by which it may close; negative: that it must part
@@ -27,9 +27,9 @@ public:
 	using Points = std::array<Point, lanePoints<K>>;
 
 private:
-	std::vector<Points> points; // by group
+	std::vector<Points> points;  // by group
 	std::vector<int> last, seen; // sweep in which a body has moved; in which a group was looked at
-	LaneArray moved;            // w, and 1/m'
+	LaneArray moved;             // w, and 1/m'
 };
 
 } // namespace masonry::rigid::wall

@@ -1,5 +1,5 @@
 #pragma once
-// Contact points in the plane, four side by side. With n from body 1 to body 2, t = n turned by 90 degrees and V = (v, rho w), the relative
+// Contact points in the plane, side by side. With n from body 1 to body 2, t = n turned by 90 degrees and V = (v, rho w), the relative
 // velocity at a point is
 //
 //     u_n = n.(v2 - v1) + a2n W2 - a1n W1        a_n = (r x n)/rho,  a_t = (r x t)/rho = (r.n)/rho
@@ -10,43 +10,36 @@
 
 namespace masonry::rigid::wall {
 
-template <class K>
+template <class K, class L = Lanes>
 struct Bodies;
-template <class K>
+template <class K, class L = Lanes>
 struct PointLanes;
 template <class K>
 struct FeatureLanes;
 template <class K>
 struct Coupling;
 
-// Velocities of four bodies: packs of `from` in, one lane a body out.
-template <>
-struct alignas(alignment) Bodies<Plane> {
-	Lanes x, y, w, m;
+// Velocities of bodies: packs of `from` in, one lane a body out.
+template <class L>
+struct alignas(alignment) Bodies<Plane, L> {
+	L x, y, w, m;
 
-	MASONRY_INLINE Bodies(const Lanes* from, const int* body) : x(from[body[0]]), y(from[body[1]]), w(from[body[2]]), m(from[body[3]])
-	{
-		transpose(x, y, w, m);
-	}
+	MASONRY_INLINE Bodies(const PackOf<L>* from, const int* body) { gather(from, body, 1, x, y, w, m); }
 	// Back to where they came from; bodies with m = 0 are prescribed and stay.
-	MASONRY_INLINE void store(Lanes* to, const int* body, const Lanes& mass, bool allFree = false) const
+	MASONRY_INLINE void store(PackOf<L>* to, const int* body, const L& mass, bool allFree = false) const
 	{
-		Lanes row[width] = {x, y, w, m};
-		transpose(row[0], row[1], row[2], row[3]);
-		for (int i = 0; i < width; ++i)
-			if (allFree || mass[i] != 0)
-				to[body[i]] = row[i];
+		scatter(x, y, w, m, to, body, 1, mass, allFree);
 	}
 };
 
-template <>
-struct alignas(alignment) PointLanes<Plane> {
-	using Tangent = Lanes;
-	Lanes nx, ny, a1n, a1t, a2n, a2t;
-	Lanes gap;          // m; far away in lanes without a point
-	Lanes massN, massT; // 1 / (J M^-1 J^T), kg
-	Lanes pn, pt;       // impulse of a step or substep, N s
-	Lanes steady;       // mean of pn over the last steps that moved
+template <class L>
+struct alignas(alignment) PointLanes<Plane, L> {
+	using Tangent = L;
+	L nx, ny, a1n, a1t, a2n, a2t;
+	L gap;          // m; far away in lanes without a point
+	L massN, massT; // 1 / (J M^-1 J^T), kg
+	L pn, pt;       // impulse of a step or substep, N s
+	L steady;       // mean of pn over the last steps that moved
 };
 
 // What a point is made of: vertex and face in the axes of their bodies.
@@ -64,13 +57,13 @@ struct alignas(alignment) FeatureLanes<Plane> {
 // row adds to the velocity along another.
 template <>
 struct alignas(alignment) Coupling<Plane> {
-	Lanes n1t1, n2t2, n1n2, t1t2, n1t2, t1n2;
+	Floats n1t1, n2t2, n1n2, t1t2, n1t2, t1n2;
 	bool allFree; // no body is prescribed, no lane empty
 
-	MASONRY_INLINE void set(const PointLanes<Plane>* point, const Lanes& m1, const Lanes& m2)
+	MASONRY_INLINE void set(const PointLanes<Plane, Floats>* point, const Floats& m1, const Floats& m2)
 	{
-		const PointLanes<Plane>&p = point[0], &q = point[1];
-		const Lanes m = m1 + m2, cosine = m * (p.nx * q.nx + p.ny * q.ny), sine = m * (p.nx * q.ny - p.ny * q.nx);
+		const PointLanes<Plane, Floats>&p = point[0], &q = point[1];
+		const Floats m = m1 + m2, cosine = m * (p.nx * q.nx + p.ny * q.ny), sine = m * (p.nx * q.ny - p.ny * q.nx);
 		n1t1 = m1 * p.a1n * p.a1t + m2 * p.a2n * p.a2t;
 		n2t2 = m1 * q.a1n * q.a1t + m2 * q.a2n * q.a2t;
 		n1n2 = cosine + m1 * p.a1n * q.a1n + m2 * p.a2n * q.a2n;
@@ -81,23 +74,34 @@ struct alignas(alignment) Coupling<Plane> {
 	}
 };
 
-MASONRY_INLINE double component(const Lanes& tangent, int, int lane) { return tangent[lane]; }
+template <class L>
+MASONRY_INLINE double component(const L& tangent, int, int lane)
+{
+	return tangent[lane];
+}
 MASONRY_INLINE void setComponent(Lanes& tangent, int, int lane, double value) { tangent[lane] = value; }
-MASONRY_INLINE Lanes dot(const Lanes& a, const Lanes& b) { return a * b; }
+template <class L>
+MASONRY_INLINE L dot(const L& a, const L& b)
+{
+	return a * b;
+}
 
-MASONRY_INLINE Lanes normalRate(const Bodies<Plane>& v1, const Bodies<Plane>& v2, const PointLanes<Plane>& p)
+template <class L>
+MASONRY_INLINE L normalRate(const Bodies<Plane, L>& v1, const Bodies<Plane, L>& v2, const PointLanes<Plane, L>& p)
 {
 	return p.nx * (v2.x - v1.x) + p.ny * (v2.y - v1.y) + p.a2n * v2.w - p.a1n * v1.w;
 }
-MASONRY_INLINE Lanes slipRate(const Bodies<Plane>& v1, const Bodies<Plane>& v2, const PointLanes<Plane>& p)
+template <class L>
+MASONRY_INLINE L slipRate(const Bodies<Plane, L>& v1, const Bodies<Plane, L>& v2, const PointLanes<Plane, L>& p)
 {
 	return p.nx * (v2.y - v1.y) - p.ny * (v2.x - v1.x) + p.a2t * v2.w - p.a1t * v1.w;
 }
 
 // Impulses into velocities.
-MASONRY_INLINE void push(Bodies<Plane>& v1, Bodies<Plane>& v2, const PointLanes<Plane>& p, const Lanes& dn, const Lanes& dt)
+template <class L>
+MASONRY_INLINE void push(Bodies<Plane, L>& v1, Bodies<Plane, L>& v2, const PointLanes<Plane, L>& p, const L& dn, const L& dt)
 {
-	const Lanes fx = p.nx * dn - p.ny * dt, fy = p.ny * dn + p.nx * dt;
+	const L fx = p.nx * dn - p.ny * dt, fy = p.ny * dn + p.nx * dt;
 	v1.x -= v1.m * fx;
 	v1.y -= v1.m * fy;
 	v1.w -= v1.m * (p.a1n * dn + p.a1t * dt);
@@ -105,7 +109,8 @@ MASONRY_INLINE void push(Bodies<Plane>& v1, Bodies<Plane>& v2, const PointLanes<
 	v2.y += v2.m * fy;
 	v2.w += v2.m * (p.a2n * dn + p.a2t * dt);
 }
-MASONRY_INLINE void pushNormal(Bodies<Plane>& v1, Bodies<Plane>& v2, const PointLanes<Plane>& p, const Lanes& dn)
+template <class L>
+MASONRY_INLINE void pushNormal(Bodies<Plane, L>& v1, Bodies<Plane, L>& v2, const PointLanes<Plane, L>& p, const L& dn)
 {
 	v1.x -= v1.m * p.nx * dn;
 	v1.y -= v1.m * p.ny * dn;
@@ -115,14 +120,16 @@ MASONRY_INLINE void pushNormal(Bodies<Plane>& v1, Bodies<Plane>& v2, const Point
 	v2.w += v2.m * p.a2n * dn;
 }
 // 1 / (J M^-1 J^T) along the normal of bodies with these 1/m.
-MASONRY_INLINE Lanes normalMass(const PointLanes<Plane>& p, const Lanes& m1, const Lanes& m2)
+template <class L>
+MASONRY_INLINE L normalMass(const PointLanes<Plane, L>& p, const L& m1, const L& m2)
 {
-	return all(1) / (m1 + m2 + m1 * p.a1n * p.a1n + m2 * p.a2n * p.a2n);
+	return all<L>(1) / (m1 + m2 + m1 * p.a1n * p.a1n + m2 * p.a2n * p.a2n);
 }
 // Impulses into momenta.
-MASONRY_INLINE void add(Bodies<Plane>& f1, Bodies<Plane>& f2, const PointLanes<Plane>& p, const Lanes& qn, const Lanes& qt)
+template <class L>
+MASONRY_INLINE void add(Bodies<Plane, L>& f1, Bodies<Plane, L>& f2, const PointLanes<Plane, L>& p, const L& qn, const L& qt)
 {
-	const Lanes fx = p.nx * qn - p.ny * qt, fy = p.ny * qn + p.nx * qt;
+	const L fx = p.nx * qn - p.ny * qt, fy = p.ny * qn + p.nx * qt;
 	f1.x -= fx;
 	f1.y -= fy;
 	f1.w -= p.a1n * qn + p.a1t * qt;
@@ -132,10 +139,19 @@ MASONRY_INLINE void add(Bodies<Plane>& f1, Bodies<Plane>& f2, const PointLanes<P
 }
 
 // Coulomb: within the bound.
-MASONRY_INLINE Lanes clip(const Lanes& tangential, const Lanes& bound) { return larger(smaller(tangential, bound), -bound); }
-MASONRY_INLINE Mask slides(const Lanes& tangential, const Lanes& bound) { return size(tangential) >= bound; }
+template <class L>
+MASONRY_INLINE L clip(const L& tangential, const L& bound)
+{
+	return larger(smaller(tangential, bound), -bound);
+}
+template <class L>
+MASONRY_INLINE MaskOf<L> slides(const L& tangential, const L& bound)
+{
+	return size(tangential) >= bound;
+}
 // The friction that a slip rate asks for.
-MASONRY_INLINE Lanes friction(const PointLanes<Plane>& p, const Lanes& slipRate, const Lanes& bound)
+template <class L>
+MASONRY_INLINE L friction(const PointLanes<Plane, L>& p, const L& slipRate, const L& bound)
 {
 	return clip(p.pt - p.massT * slipRate, bound);
 }

@@ -19,19 +19,15 @@ struct Contact {
 	int lane, block, support;
 	bool second; // the block is body 2
 
-	double gap() const { return p.gap[lane]; }
+	double gap(const WallContacts<K>& c) const { return p.gap[lane] + rate(c.shift); } // within the step
 	double impulse() const { return p.pn[lane]; }
 	// Coordinate along the face, from the middle of the block. Tangents of the points of a joint agree but for their sign.
 	double along(const WallContacts<Plane>& c) const { return c.gyration[block][0] * (second ? -p.a2n[lane] : p.a1n[lane]); }
-	double normalRate(const WallContacts<Plane>& c) const
-	{
-		const Lanes &v1 = c.velocity[second ? support : block], &v2 = c.velocity[second ? block : support];
-		return p.nx[lane] * (v2[0] - v1[0]) + p.ny[lane] * (v2[1] - v1[1]) + p.a2n[lane] * v2[2] - p.a1n[lane] * v1[2];
-	}
-	double normalRate(const WallContacts<Space>& c) const
+	double normalRate(const WallContacts<K>& c) const { return rate(c.velocity); }
+	double rate(const LaneArray& of) const
 	{
 		const int body1 = second ? support : block, body2 = second ? block : support;
-		return rateOf(p, 0, lane, 2, &c.velocity[packs<Space> * body2]) - rateOf(p, 0, lane, 1, &c.velocity[packs<Space> * body1]);
+		return rateOf(p, 0, lane, 2, &of[packs<K> * body2]) - rateOf(p, 0, lane, 1, &of[packs<K> * body1]);
 	}
 };
 
@@ -132,14 +128,13 @@ bool RockingJoints<Space>::findPivot(const WallContacts<Space>& c, int begin, in
 }
 
 template <class K>
-void RockingJoints<K>::find(const RigidSystem<K>& s, WallContacts<K>& c, double substep)
+void RockingJoints<K>::find(const RigidSystem<K>& s, const WallContacts<K>& c, Substeps<K>& sweeps, double substep)
 {
 	if (!gathered)
 		gather(s, c);
 	gathered = true;
 	rocking.clear();
-	if (!anyLaw)
-		return;
+	aside.assign(points.size(), 0);
 	const double open = tolerance::mergedClosing * c.length;
 	for (int begin = 0, end = 0; begin < int(points.size()); begin = end) {
 		int gaping = 0;
@@ -147,7 +142,7 @@ void RockingJoints<K>::find(const RigidSystem<K>& s, WallContacts<K>& c, double 
 		     ++end) {
 			const Contact<K> at = contact(c, points[end]);
 			// Also one that was open before the last substep: an impact nearer to its end than to its begin is met in the next.
-			gaping += !(at.impulse() > 0) && at.gap() + substep * std::max(0., -at.normalRate(c)) > open;
+			gaping += !(at.impulse() > 0) && at.gap(c) + substep * std::max(0., -at.normalRate(c)) > open;
 		}
 		Pivot<K> pivot;
 		if (gaping > 0 && findPivot(c, begin, end, pivot))
@@ -155,42 +150,18 @@ void RockingJoints<K>::find(const RigidSystem<K>& s, WallContacts<K>& c, double 
 	}
 	for (const Joint& joint : rocking)
 		for (int i = joint.begin; i < joint.end; ++i)
-			if (const Contact<K> at = contact(c, points[i]); !(at.impulse() > 0) && at.gap() > open)
-				c.groups[points[i].group].point[points[i].point].gap[points[i].lane] += aside(c);
-}
-
-// Distance by which the open points of a joint that rocks are put aside: far beyond what a step can close.
-template <class K>
-double RockingJoints<K>::aside(const WallContacts<K>& c) const
-{
-	return 1e3 * c.length;
-}
-
-template <class K>
-void RockingJoints<K>::putBack(WallContacts<K>& c, const Joint& joint) const
-{
-	for (int i = joint.begin; i < joint.end; ++i) {
-		double gap = c.groups[points[i].group].point[points[i].point].gap[points[i].lane];
-		if (gap > 0.5 * aside(c))
-			gap -= aside(c);
-		c.groups[points[i].group].point[points[i].point].gap[points[i].lane] = gap;
-	}
-}
-
-template <class K>
-void RockingJoints<K>::release(WallContacts<K>& c)
-{
-	for (const Joint& joint : rocking)
-		putBack(c, joint);
-	rocking.clear();
+			if (const Contact<K> at = contact(c, points[i]); !(at.impulse() > 0) && at.gap(c) > open) {
+				aside[i] = true;
+				sweeps.setGap(points[i].group, points[i].lane, points[i].point, farAway);
+			}
 }
 
 template <class K>
 bool RockingJoints<K>::closes(const WallContacts<K>& c, const JointPoint& point, double time) const
 {
 	const Contact<K> at = contact(c, point);
-	const double gap = at.gap() > 0.5 * aside(c) ? at.gap() - aside(c) : at.gap(), rate = at.normalRate(c);
-	return rate < 0 && gap + time * rate <= 0;
+	const double rate = at.normalRate(c);
+	return rate < 0 && at.gap(c) + time * rate <= 0;
 }
 
 // In substeps: an impact is met as near as may be; closings so near each other are one.
@@ -218,8 +189,8 @@ const typename RockingJoints<K>::JointPoint* RockingJoints<K>::landing(const Wal
 }
 
 template <>
-void RockingJoints<Space>::answer(RigidSystem<Space>& s, WallContacts<Space>& c, const Joint& joint, const JointPoint& where,
-                                  double substep, double& baseWork)
+void RockingJoints<Space>::answer(RigidSystem<Space>& s, WallContacts<Space>& c, const Substeps<Space>& sweeps, const Joint& joint,
+                                  const JointPoint& where, double substep, double& baseWork)
 {
 	const Contact<Space> at = contact(c, where);
 	const double restitution = s.pairs[c.features[where.group].pair[where.lane]].restitution;
@@ -261,8 +232,8 @@ void RockingJoints<Space>::answer(RigidSystem<Space>& s, WallContacts<Space>& c,
 			add(points[i]);
 	law.oldBegin = int(impact.points.size());
 	for (int i = joint.begin; i < joint.end; ++i)
-		if (contact(c, points[i]).impulse() > 0 && away(c, points[i], joint.pivot) <= narrow)
-			add(points[i]);
+		if (const JointPoint& p = points[i]; sweeps.impulse(p.group, p.lane, p.point)[0] > 0 && away(c, p, joint.pivot) <= narrow)
+			add(p);
 	law.oldEnd = int(impact.points.size());
 	const Vector3 axis = rockingAxis(impact.bodies, law, impact.points);
 	const double spin = axis.dot(impact.bodies[law.block].angularVelocity - impact.bodies[law.support].angularVelocity),
@@ -283,8 +254,8 @@ void RockingJoints<Space>::answer(RigidSystem<Space>& s, WallContacts<Space>& c,
 }
 
 template <>
-void RockingJoints<Plane>::answer(RigidSystem<Plane>& s, WallContacts<Plane>& c, const Joint&, const JointPoint& where, double,
-                                  double& baseWork)
+void RockingJoints<Plane>::answer(RigidSystem<Plane>& s, WallContacts<Plane>& c, const Substeps<Plane>&, const Joint&,
+                                  const JointPoint& where, double, double& baseWork)
 {
 	const Contact<Plane> at = contact(c, where);
 	const ContactPair<Plane>& pair = s.pairs[c.features[where.group].pair[where.lane]];
@@ -363,7 +334,7 @@ void RockingJoints<Plane>::answer(RigidSystem<Plane>& s, WallContacts<Plane>& c,
 }
 
 template <class K>
-double RockingJoints<K>::land(RigidSystem<K>& s, WallContacts<K>& c, double substep)
+double RockingJoints<K>::land(RigidSystem<K>& s, WallContacts<K>& c, Substeps<K>& sweeps, double substep)
 {
 	double baseWork = 0;
 	for (size_t j = 0; j < rocking.size();) {
@@ -372,8 +343,10 @@ double RockingJoints<K>::land(RigidSystem<K>& s, WallContacts<K>& c, double subs
 			++j;
 			continue;
 		}
-		putBack(c, rocking[j]);
-		answer(s, c, rocking[j], *at, substep, baseWork);
+		for (int i = rocking[j].begin; i < rocking[j].end; ++i)
+			if (aside[i])
+				sweeps.setGap(points[i].group, points[i].lane, points[i].point, contact(c, points[i]).gap(c));
+		answer(s, c, sweeps, rocking[j], *at, substep, baseWork);
 		rocking[j] = rocking.back(); // another pivot, or none, until the next step
 		rocking.pop_back();
 	}

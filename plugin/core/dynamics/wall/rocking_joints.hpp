@@ -15,7 +15,7 @@
 // In space all points that close together are the new pivot and the loaded ones the old, and there is one row, along the old edge or across
 // the lever (joint_impact.hpp).
 #include "dynamics/wall/joint_impact.hpp"
-#include "dynamics/wall/wall_contacts.hpp"
+#include "dynamics/wall/substeps.hpp"
 
 namespace masonry::rigid::wall {
 
@@ -34,13 +34,12 @@ struct Pivot<Space> {
 template <class K>
 class RockingJoints {
 public:
-	// Finds the joints that rock, for a step in such substeps.
-	void find(const RigidSystem<K>& system, WallContacts<K>& contacts, double substep);
+	// Finds the joints that rock, for a step in such substeps that has begun.
+	void find(const RigidSystem<K>& system, const WallContacts<K>& contacts, Substeps<K>& sweeps, double substep);
 	// There are other points than before.
 	void outdate() { gathered = false; }
-	void release(WallContacts<K>& contacts); // after the last substep
 	// Impacts of the substep s that comes, into the contacts' velocities and system.impacts. Returns the work of the base, J.
-	double land(RigidSystem<K>& system, WallContacts<K>& contacts, double s);
+	double land(RigidSystem<K>& system, WallContacts<K>& contacts, Substeps<K>& sweeps, double s);
 
 	template <class Flow>
 	void pass(Flow& f)
@@ -67,12 +66,12 @@ private:
 	double away(const WallContacts<K>& contacts, const JointPoint& point, const Pivot<K>& pivot) const; // m
 	bool closes(const WallContacts<K>& contacts, const JointPoint& point, double time) const;           // within it
 	const JointPoint* landing(const WallContacts<K>& contacts, const Joint& joint, double s) const;
-	double aside(const WallContacts<K>& contacts) const;
-	void putBack(WallContacts<K>& contacts, const Joint& joint) const;
-	void answer(RigidSystem<K>& system, WallContacts<K>& contacts, const Joint& joint, const JointPoint& at, double s, double& baseWork);
+	void answer(RigidSystem<K>& system, WallContacts<K>& contacts, const Substeps<K>& sweeps, const Joint& joint, const JointPoint& at,
+	            double s, double& baseWork);
 
 	bool gathered {false}, anyLaw {false};
 	std::vector<JointPoint> points; // joint by joint
+	std::vector<char> aside;        // points that the sweeps do not see
 	std::vector<Joint> rocking;
 
 	JointImpact impact;       // in space

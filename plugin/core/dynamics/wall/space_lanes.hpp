@@ -1,5 +1,5 @@
 #pragma once
-// Contact points in space, four side by side. The spin of a body is taken along its principal axes and multiplied by the radii of gyration
+// Contact points in space, side by side. The spin of a body is taken along its principal axes and multiplied by the radii of gyration
 // rho about them, W = rho R^T w: then it too goes with the mass m. Along each row e of a point, the normal n (from body 1 to body 2) and
 // two tangents, the relative velocity is
 //
@@ -8,110 +8,169 @@
 
 namespace masonry::rigid::wall {
 
-struct alignas(alignment) Lanes3 {
-	Lanes x, y, z;
+template <class L>
+struct alignas(alignment) Three {
+	L x, y, z;
 	MASONRY_INLINE Vector3 lane(int i) const { return {x[i], y[i], z[i]}; }
-	MASONRY_INLINE void operator+=(const Lanes3& o)
+	MASONRY_INLINE void operator+=(const Three<L>& o)
 	{
 		x += o.x;
 		y += o.y;
 		z += o.z;
 	}
-	MASONRY_INLINE void operator-=(const Lanes3& o)
+	MASONRY_INLINE void operator-=(const Three<L>& o)
 	{
 		x -= o.x;
 		y -= o.y;
 		z -= o.z;
 	}
 };
-MASONRY_INLINE Lanes3 operator+(const Lanes3& a, const Lanes3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-MASONRY_INLINE Lanes3 operator-(const Lanes3& a, const Lanes3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-MASONRY_INLINE Lanes3 operator*(const Lanes& f, const Lanes3& a) { return {f * a.x, f * a.y, f * a.z}; }
-MASONRY_INLINE Lanes dot(const Lanes3& a, const Lanes3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-MASONRY_INLINE Lanes3 cross(const Lanes3& a, const Lanes3& b)
+template <class L>
+MASONRY_INLINE Three<L> operator+(const Three<L>& a, const Three<L>& b)
+{
+	return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+template <class L>
+MASONRY_INLINE Three<L> operator-(const Three<L>& a, const Three<L>& b)
+{
+	return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+template <class L>
+MASONRY_INLINE Three<L> operator*(const L& f, const Three<L>& a)
+{
+	return {f * a.x, f * a.y, f * a.z};
+}
+template <class L>
+MASONRY_INLINE L dot(const Three<L>& a, const Three<L>& b)
+{
+	return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+template <class L>
+MASONRY_INLINE Three<L> cross(const Three<L>& a, const Three<L>& b)
 {
 	return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-MASONRY_INLINE Lanes3 select(const Mask& mask, const Lanes3& a, const Lanes3& b)
+template <class L>
+MASONRY_INLINE Three<L> select(const MaskOf<L>& mask, const Three<L>& a, const Three<L>& b)
 {
 	return {select(mask, a.x, b.x), select(mask, a.y, b.y), select(mask, a.z, b.z)};
 }
 
+using Lanes3 = Three<Lanes>;
+
 // Along the two tangents.
-struct alignas(alignment) Lanes2 {
-	Lanes x, y;
+template <class L>
+struct alignas(alignment) Two {
+	L x, y;
 };
-MASONRY_INLINE Lanes2 operator+(const Lanes2& a, const Lanes2& b) { return {a.x + b.x, a.y + b.y}; }
-MASONRY_INLINE Lanes2 operator-(const Lanes2& a, const Lanes2& b) { return {a.x - b.x, a.y - b.y}; }
-MASONRY_INLINE Lanes2 operator*(const Lanes& f, const Lanes2& a) { return {f * a.x, f * a.y}; }
-MASONRY_INLINE Lanes2 operator*(const Lanes2& a, const Lanes& f) { return f * a; }
-MASONRY_INLINE Lanes2 operator*(double f, const Lanes2& a) { return all(f) * a; }
-MASONRY_INLINE Lanes2& operator*=(Lanes2& a, const Lanes& f) { return a = f * a; }
-MASONRY_INLINE Lanes dot(const Lanes2& a, const Lanes2& b) { return a.x * b.x + a.y * b.y; }
-MASONRY_INLINE Lanes size(const Lanes2& a) { return larger(size(a.x), size(a.y)); } // to report and compare only: saves the root
-MASONRY_INLINE Lanes length(const Lanes2& a) { return root(dot(a, a)); }
-MASONRY_INLINE Lanes2 select(const Mask& mask, const Lanes2& a, const Lanes2& b)
+using Lanes2 = Two<Lanes>;
+template <class L>
+MASONRY_INLINE Two<L> operator+(const Two<L>& a, const Two<L>& b)
+{
+	return {a.x + b.x, a.y + b.y};
+}
+template <class L>
+MASONRY_INLINE Two<L> operator-(const Two<L>& a, const Two<L>& b)
+{
+	return {a.x - b.x, a.y - b.y};
+}
+template <class L>
+MASONRY_INLINE Two<L> operator*(const L& f, const Two<L>& a)
+{
+	return {f * a.x, f * a.y};
+}
+template <class L>
+MASONRY_INLINE Two<L> operator*(const Two<L>& a, const L& f)
+{
+	return f * a;
+}
+template <class L>
+MASONRY_INLINE Two<L> operator*(double f, const Two<L>& a)
+{
+	return all<L>(f) * a;
+}
+template <class L>
+MASONRY_INLINE Two<L>& operator*=(Two<L>& a, const L& f)
+{
+	return a = f * a;
+}
+template <class L>
+MASONRY_INLINE L dot(const Two<L>& a, const Two<L>& b)
+{
+	return a.x * b.x + a.y * b.y;
+}
+template <class L>
+MASONRY_INLINE L size(const Two<L>& a)
+{
+	return larger(size(a.x), size(a.y));
+} // to report and compare only: saves the root
+template <class L>
+MASONRY_INLINE L length(const Two<L>& a)
+{
+	return root(dot(a, a));
+}
+template <class L>
+MASONRY_INLINE Two<L> select(const MaskOf<L>& mask, const Two<L>& a, const Two<L>& b)
 {
 	return {select(mask, a.x, b.x), select(mask, a.y, b.y)};
 }
-MASONRY_INLINE double component(const Lanes2& tangent, int k, int lane) { return k == 0 ? tangent.x[lane] : tangent.y[lane]; }
-MASONRY_INLINE void setComponent(Lanes2& tangent, int k, int lane, double value) { (k == 0 ? tangent.x : tangent.y)[lane] = value; }
+template <class L>
+MASONRY_INLINE double component(const Two<L>& tangent, int k, int lane)
+{
+	return k == 0 ? tangent.x[lane] : tangent.y[lane];
+}
+template <class L>
+MASONRY_INLINE void setComponent(Two<L>& tangent, int k, int lane, double value)
+{
+	(k == 0 ? tangent.x : tangent.y)[lane] = value;
+}
 
-// Velocities of four bodies: packs (v, 1/m) and (W, 1/m) of each in, one lane a body out.
-template <>
-struct alignas(alignment) Bodies<Space> {
-	Lanes3 v, w;
-	Lanes m;
+// Velocities of bodies: packs (v, 1/m) and (W, 1/m) of each in, one lane a body out.
+template <class L>
+struct alignas(alignment) Bodies<Space, L> {
+	Three<L> v, w;
+	L m;
 
-	MASONRY_INLINE Bodies(const Lanes* from, const int* body)
+	MASONRY_INLINE Bodies(const PackOf<L>* from, const int* body)
 	{
-		Lanes a = from[2 * body[0]], b = from[2 * body[1]], c = from[2 * body[2]], d = from[2 * body[3]];
-		transpose(a, b, c, d);
-		v = {a, b, c};
-		m = d;
-		a = from[2 * body[0] + 1], b = from[2 * body[1] + 1], c = from[2 * body[2] + 1], d = from[2 * body[3] + 1];
-		transpose(a, b, c, d);
-		w = {a, b, c};
+		gather(from, body, 2, v.x, v.y, v.z, m);
+		gather(from + 1, body, 2, w.x, w.y, w.z, m);
 	}
 	// Back to where they came from; bodies with m = 0 are prescribed and stay.
-	MASONRY_INLINE void store(Lanes* to, const int* body, const Lanes& mass, bool allFree = false) const
+	MASONRY_INLINE void store(PackOf<L>* to, const int* body, const L& mass, bool allFree = false) const
 	{
-		Lanes linear[width] = {v.x, v.y, v.z, m}, spin[width] = {w.x, w.y, w.z, m};
-		transpose(linear[0], linear[1], linear[2], linear[3]);
-		transpose(spin[0], spin[1], spin[2], spin[3]);
-		for (int i = 0; i < width; ++i)
-			if (allFree || mass[i] != 0) {
-				to[2 * body[i]] = linear[i];
-				to[2 * body[i] + 1] = spin[i];
-			}
+		scatter(v.x, v.y, v.z, m, to, body, 2, mass, allFree);
+		scatter(w.x, w.y, w.z, m, to + 1, body, 2, mass, allFree);
 	}
 };
 
-struct alignas(alignment) RowLanes {
-	Lanes3 axis, arm1, arm2;
-	MASONRY_INLINE Lanes rate(const Bodies<Space>& v1, const Bodies<Space>& v2) const
+// Of one row of a point.
+template <class L>
+struct alignas(alignment) Row {
+	Three<L> axis, arm1, arm2;
+	MASONRY_INLINE L rate(const Bodies<Space, L>& v1, const Bodies<Space, L>& v2) const
 	{
 		return dot(axis, v2.v - v1.v) + dot(arm2, v2.w) - dot(arm1, v1.w);
 	}
 };
 
-template <>
-struct alignas(alignment) PointLanes<Space> {
-	using Tangent = Lanes2;
-	RowLanes normal, tangent[2];
-	Lanes gap;                   // m; far away in lanes without a point
-	Lanes massN, massT;          // 1 / (J M^-1 J^T), kg; of the tangents along that in which the point gives most
-	Lanes stick[2], stickAcross; // inverse of the tangents' J M^-1 J^T, kg: diagonal and beside it
-	Lanes pn;                    // impulse of a step or substep, N s
-	Lanes2 pt;
-	Lanes steady; // mean of pn over the last steps that moved
+template <class L>
+struct alignas(alignment) PointLanes<Space, L> {
+	using Tangent = Two<L>;
+	Row<L> normal, tangent[2];
+	L gap;                   // m; far away in lanes without a point
+	L massN, massT;          // 1 / (J M^-1 J^T), kg; of the tangents along that in which the point gives most
+	L stick[2], stickAcross; // inverse of the tangents' J M^-1 J^T, kg: diagonal and beside it
+	L pn;                    // impulse of a step or substep, N s
+	Two<L> pt;
+	L steady; // mean of pn over the last steps that moved
 };
 
 // Points in space are taken one after another.
 template <>
 struct Coupling<Space> {
 	bool allFree;
-	MASONRY_INLINE void set(const PointLanes<Space>*, const Lanes& m1, const Lanes& m2) { allFree = !any(m1 * m2 == 0); }
+	MASONRY_INLINE void set(const PointLanes<Space, Floats>*, const Floats& m1, const Floats& m2) { allFree = !any(m1 * m2 == 0); }
 };
 
 // What a point is made of: vertex and face in the axes of their bodies; or two edges that cross, which are looked at one by one.
@@ -128,46 +187,53 @@ struct alignas(alignment) FeatureLanes<Space> {
 	void setFound(const std::array<double, 3>& f, int lane) { foundGap[lane] = f[0], found.x[lane] = f[1], found.y[lane] = f[2]; }
 };
 
-MASONRY_INLINE Lanes normalRate(const Bodies<Space>& v1, const Bodies<Space>& v2, const PointLanes<Space>& p)
+template <class L>
+MASONRY_INLINE L normalRate(const Bodies<Space, L>& v1, const Bodies<Space, L>& v2, const PointLanes<Space, L>& p)
 {
 	return p.normal.rate(v1, v2);
 }
-MASONRY_INLINE Lanes2 slipRate(const Bodies<Space>& v1, const Bodies<Space>& v2, const PointLanes<Space>& p)
+template <class L>
+MASONRY_INLINE Two<L> slipRate(const Bodies<Space, L>& v1, const Bodies<Space, L>& v2, const PointLanes<Space, L>& p)
 {
 	return {p.tangent[0].rate(v1, v2), p.tangent[1].rate(v1, v2)};
 }
 
 // Impulses into velocities.
-MASONRY_INLINE void pushNormal(Bodies<Space>& v1, Bodies<Space>& v2, const PointLanes<Space>& p, const Lanes& dn)
+template <class L>
+MASONRY_INLINE void pushNormal(Bodies<Space, L>& v1, Bodies<Space, L>& v2, const PointLanes<Space, L>& p, const L& dn)
 {
-	const Lanes d1 = v1.m * dn, d2 = v2.m * dn;
+	const L d1 = v1.m * dn, d2 = v2.m * dn;
 	v1.v -= d1 * p.normal.axis;
 	v1.w -= d1 * p.normal.arm1;
 	v2.v += d2 * p.normal.axis;
 	v2.w += d2 * p.normal.arm2;
 }
 // 1 / (J M^-1 J^T) along the normal of bodies with these 1/m.
-MASONRY_INLINE Lanes normalMass(const PointLanes<Space>& p, const Lanes& m1, const Lanes& m2)
+template <class L>
+MASONRY_INLINE L normalMass(const PointLanes<Space, L>& p, const L& m1, const L& m2)
 {
-	return all(1) / (m1 + m2 + m1 * dot(p.normal.arm1, p.normal.arm1) + m2 * dot(p.normal.arm2, p.normal.arm2));
+	return all<L>(1) / (m1 + m2 + m1 * dot(p.normal.arm1, p.normal.arm1) + m2 * dot(p.normal.arm2, p.normal.arm2));
 }
-MASONRY_INLINE void pushTangential(Bodies<Space>& v1, Bodies<Space>& v2, const PointLanes<Space>& p, const Lanes2& dt)
+template <class L>
+MASONRY_INLINE void pushTangential(Bodies<Space, L>& v1, Bodies<Space, L>& v2, const PointLanes<Space, L>& p, const Two<L>& dt)
 {
-	const Lanes3 f = dt.x * p.tangent[0].axis + dt.y * p.tangent[1].axis;
+	const Three<L> f = dt.x * p.tangent[0].axis + dt.y * p.tangent[1].axis;
 	v1.v -= v1.m * f;
 	v1.w -= v1.m * (dt.x * p.tangent[0].arm1 + dt.y * p.tangent[1].arm1);
 	v2.v += v2.m * f;
 	v2.w += v2.m * (dt.x * p.tangent[0].arm2 + dt.y * p.tangent[1].arm2);
 }
-MASONRY_INLINE void push(Bodies<Space>& v1, Bodies<Space>& v2, const PointLanes<Space>& p, const Lanes& dn, const Lanes2& dt)
+template <class L>
+MASONRY_INLINE void push(Bodies<Space, L>& v1, Bodies<Space, L>& v2, const PointLanes<Space, L>& p, const L& dn, const Two<L>& dt)
 {
 	pushNormal(v1, v2, p, dn);
 	pushTangential(v1, v2, p, dt);
 }
 // Impulses into momenta.
-MASONRY_INLINE void add(Bodies<Space>& f1, Bodies<Space>& f2, const PointLanes<Space>& p, const Lanes& qn, const Lanes2& qt)
+template <class L>
+MASONRY_INLINE void add(Bodies<Space, L>& f1, Bodies<Space, L>& f2, const PointLanes<Space, L>& p, const L& qn, const Two<L>& qt)
 {
-	const Lanes3 f = qn * p.normal.axis + qt.x * p.tangent[0].axis + qt.y * p.tangent[1].axis;
+	const Three<L> f = qn * p.normal.axis + qt.x * p.tangent[0].axis + qt.y * p.tangent[1].axis;
 	f1.v -= f;
 	f1.w -= qn * p.normal.arm1 + qt.x * p.tangent[0].arm1 + qt.y * p.tangent[1].arm1;
 	f2.v += f;
@@ -175,31 +241,34 @@ MASONRY_INLINE void add(Bodies<Space>& f1, Bodies<Space>& f2, const PointLanes<S
 }
 
 // Coulomb: within the disc of radius `bound`.
-MASONRY_INLINE Lanes2 clip(const Lanes2& tangential, const Lanes& bound)
+template <class L>
+MASONRY_INLINE Two<L> clip(const Two<L>& tangential, const L& bound)
 {
-	const Lanes square = dot(tangential, tangential);
-	const Mask outside = square > bound * bound;
-	return select(outside, bound / select(outside, root(square), all(1)), all(1)) * tangential;
+	const L square = dot(tangential, tangential);
+	const MaskOf<L> outside = square > bound * bound;
+	return select(outside, bound / select(outside, root(square), all<L>(1)), all<L>(1)) * tangential;
 }
 // On the rim but for round-off.
-MASONRY_INLINE Mask slides(const Lanes2& tangential, const Lanes& bound)
+template <class L>
+MASONRY_INLINE MaskOf<L> slides(const Two<L>& tangential, const L& bound)
 {
-	constexpr double onRim = 1 - 1e-12;
-	return dot(tangential, tangential) >= onRim * bound * bound;
+	constexpr double offRim = std::is_same_v<L, Lanes> ? 1e-12 : 1e-6;
+	return dot(tangential, tangential) >= all<L>(1 - offRim) * bound * bound;
 }
 // The friction that a slip rate asks for: what stops it if the cone allows that. Else it opposes the slip, for which both tangents must
 // give alike.
-MASONRY_INLINE Lanes2 friction(const PointLanes<Space>& p, const Lanes2& slipRate, const Lanes& bound)
+template <class L>
+MASONRY_INLINE Two<L> friction(const PointLanes<Space, L>& p, const Two<L>& slipRate, const L& bound)
 {
-	const Lanes2 stops = {p.stick[0] * slipRate.x + p.stickAcross * slipRate.y, p.stickAcross * slipRate.x + p.stick[1] * slipRate.y};
-	const Lanes2 stick = p.pt - stops;
+	const Two<L> stops = {p.stick[0] * slipRate.x + p.stickAcross * slipRate.y, p.stickAcross * slipRate.x + p.stick[1] * slipRate.y};
+	const Two<L> stick = p.pt - stops;
 	return select(dot(stick, stick) <= bound * bound, stick, clip(p.pt - p.massT * slipRate, bound));
 }
 
 // Along a row (0 normal, then tangential) what one lane's point takes of a body's pack (0 velocity, 1 spin).
 MASONRY_INLINE Vector3 partOf(const PointLanes<Space>& p, int row, int lane, int body, int pack)
 {
-	const RowLanes& r = row == 0 ? p.normal : p.tangent[row - 1];
+	const Row<Lanes>& r = row == 0 ? p.normal : p.tangent[row - 1];
 	return (pack == 0 ? r.axis : body == 1 ? r.arm1 : r.arm2).lane(lane);
 }
 

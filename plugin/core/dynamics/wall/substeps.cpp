@@ -1,18 +1,11 @@
 #include "dynamics/wall/substeps.hpp"
+#include "dynamics/wall/sweep.hpp"
 #include <algorithm>
 #include <cmath>
 
 namespace masonry::rigid::wall {
 
 namespace {
-
-struct Sweep {
-	double perSubstep; // 1/s
-	double relaxation; // of the changes of impulses
-	double damping;    // as below, of this sweep
-	// Where the last sweep leaves what is reported, by group; null: nobody asks.
-	Lanes *change {nullptr}, *motion {nullptr};
-};
 
 // Of the difference of an impulse from its mean over the last substeps: what a sweep takes off, over the root of their number (joints give
 // way by it, and many of them upon another sway; loads lag the less the more sweeps there are); what a substep takes into the mean.
@@ -29,153 +22,12 @@ constexpr double mostOfMean = 5, mostOfMeanOfSeveral = 3, mostOfFall = 2;
 constexpr double coursesOfSweep = 9;
 constexpr double overRelaxation = 1.4;
 
-// An open point may close within the substep.
 template <class K>
-MASONRY_INLINE Lanes normalImpulse(const PointLanes<K>& p, const Lanes& un, const Sweep& sweep)
-{
-	const Lanes none = all(0);
-	const Mask open = p.gap > 0;
-	const Lanes closing = open ? sweep.perSubstep * p.gap : none, damped = open ? none : sweep.damping * smaller(p.pn - p.steady, p.steady);
-	return larger(p.pn - sweep.relaxation * p.massN * (un + closing) - damped, none);
-}
-
-template <class K, class Tangent>
-MASONRY_INLINE void measure(const PointLanes<K>& p, const Lanes& un, const Tangent& ut, const Lanes& dn, const Tangent& dt, Lanes& change,
-                            Lanes& motion)
-{
-	const Lanes none = all(0);
-	const Mask closed = p.pn > 0, present = p.massN > 0;
-	motion = larger(motion, present ? larger(size(un), size(ut)) : none);
-	change = larger(change, closed ? larger(size(dn) / p.massN, size(dt) / p.massT) : none);
-}
-
-// A sweep over the four pairs of a group, row by row.
-template <class K>
-class Visit;
-
-// In terms of the relative velocities of both points: what an impulse adds to the rows that follow is known (Coupling), and need not go
-// through the velocities of the bodies.
-template <>
-class Visit<Plane> {
-public:
-	MASONRY_INLINE Visit(Group<Plane>* groups, const Coupling<Plane>* couplings, int g, Lanes* velocity)
-	    : group(groups[g]), w(couplings[g]), g(g), velocity(velocity), v1(velocity, group.body1), v2(velocity, group.body2)
-	{
-	}
-	template <int k>
-	MASONRY_INLINE void normal(const Sweep& sweep)
-	{
-		PointLanes<Plane>& p = group.point[k];
-		un[k] = normalRate(v1, v2, p);
-		if constexpr (k == 1)
-			un[1] = un[1] + w.n1n2 * dn[0] + w.t1n2 * dt[0];
-		const Lanes pn = normalImpulse(p, un[k], sweep);
-		dn[k] = pn - p.pn;
-		p.pn = pn;
-	}
-	template <int k>
-	MASONRY_INLINE void tangential(const Sweep& sweep)
-	{
-		PointLanes<Plane>& p = group.point[k];
-		const Lanes before = slipRate(v1, v2, p);
-		const Lanes ut = k == 0 ? before + w.n1t1 * dn[0] : before + w.n1t2 * dn[0] + w.t1t2 * dt[0] + w.n2t2 * dn[1];
-		const Lanes pt = friction(p, sweep.relaxation * ut, group.friction * p.pn);
-		dt[k] = pt - p.pt;
-		p.pt = pt;
-		if (sweep.change)
-			measure(p, un[k], ut, dn[k], dt[k], sweep.change[g], sweep.motion[g]);
-	}
-	MASONRY_INLINE void end()
-	{
-		for (int k = 0; k < lanePoints<Plane>; ++k)
-			push(v1, v2, group.point[k], dn[k], dt[k]);
-		v1.store(velocity, group.body1, v1.m, w.allFree);
-		v2.store(velocity, group.body2, v2.m, w.allFree);
-	}
-
-private:
-	Group<Plane>& group;
-	const Coupling<Plane>& w;
-	const int g;
-	Lanes* velocity;
-	Bodies<Plane> v1, v2;
-	Lanes un[lanePoints<Plane>], dn[lanePoints<Plane>], dt[lanePoints<Plane>];
-};
-
-template <>
-class Visit<Space> {
-public:
-	MASONRY_INLINE Visit(Group<Space>* groups, const Coupling<Space>* couplings, int g, Lanes* velocity)
-	    : group(groups[g]), w(couplings[g]), g(g), velocity(velocity), v1(velocity, group.body1), v2(velocity, group.body2)
-	{
-	}
-	template <int k>
-	MASONRY_INLINE void normal(const Sweep& sweep)
-	{
-		if (k >= group.count)
-			return;
-		PointLanes<Space>& p = group.point[k];
-		un = normalRate(v1, v2, p);
-		const Lanes pn = normalImpulse(p, un, sweep);
-		dn = pn - p.pn;
-		pushNormal(v1, v2, p, dn);
-		p.pn = pn;
-	}
-	template <int k>
-	MASONRY_INLINE void tangential(const Sweep& sweep)
-	{
-		if (k >= group.count)
-			return;
-		PointLanes<Space>& p = group.point[k];
-		const Lanes2 ut = slipRate(v1, v2, p), pt = friction(p, sweep.relaxation * ut, group.friction * p.pn), dt = pt - p.pt;
-		pushTangential(v1, v2, p, dt);
-		p.pt = pt;
-		if (sweep.change)
-			measure(p, un, ut, dn, dt, sweep.change[g], sweep.motion[g]);
-	}
-	MASONRY_INLINE void end()
-	{
-		v1.store(velocity, group.body1, v1.m, w.allFree);
-		v2.store(velocity, group.body2, v2.m, w.allFree);
-	}
-
-private:
-	Group<Space>& group;
-	const Coupling<Space>& w;
-	const int g;
-	Lanes* velocity;
-	Bodies<Space> v1, v2;
-	Lanes un, dn;
-};
-
-// Groups at the same time: one alone waits for its own results.
-template <class K, int k = 0, class... Visits>
-MASONRY_INLINE void sweepTogether(const Sweep& sweep, Visits&&... visits)
-{
-	(visits.template normal<k>(sweep), ...);
-	(visits.template tangential<k>(sweep), ...);
-	if constexpr (k + 1 < lanePoints<K>)
-		sweepTogether<K, k + 1>(sweep, visits...);
-	else
-		(visits.end(), ...);
-}
-
-template <class K>
-MASONRY_INLINE void sweepGroups(Group<K>* groups, const Coupling<K>* couplings, int begin, int end, Lanes* velocity, const Sweep& sweep)
-{
-	int g = begin;
-	for (; g + 2 <= end; g += 2)
-		sweepTogether<K>(sweep, Visit<K>(groups, couplings, g, velocity), Visit<K>(groups, couplings, g + 1, velocity));
-	if (g < end)
-		sweepTogether<K>(sweep, Visit<K>(groups, couplings, g, velocity));
-}
-
-template <class K>
-MASONRY_INLINE void moveGroups(Group<K>* groups, int begin, int end, const Lanes* velocity, double s)
+MASONRY_INLINE void moveGroups(Group<K, Floats>* groups, int begin, int end, const FloatPack* velocity, float s)
 {
 	for (int g = begin; g < end; ++g) {
-		Group<K>& group = groups[g];
-		const Bodies<K> v1(velocity, group.body1), v2(velocity, group.body2);
+		Group<K, Floats>& group = groups[g];
+		const Bodies<K, Floats> v1(velocity, group.body1), v2(velocity, group.body2);
 		for (int k = 0; k < group.count; ++k)
 			group.point[k].gap += s * normalRate(v1, v2, group.point[k]);
 	}
@@ -183,38 +35,40 @@ MASONRY_INLINE void moveGroups(Group<K>* groups, int begin, int end, const Lanes
 
 // What friction takes at the points that carry all that they can, J.
 template <class K>
-MASONRY_INLINE void addLoss(const Group<K>& group, const Lanes* velocity, Lanes& loss)
+MASONRY_INLINE void addLoss(const Group<K, Floats>& group, const FloatPack* velocity, Lanes& loss)
 {
-	Mask glide[lanePoints<K>], some {};
+	FloatMask glide[lanePoints<K>], some {};
 	for (int k = 0; k < group.count; ++k) {
-		const PointLanes<K>& p = group.point[k];
+		const PointLanes<K, Floats>& p = group.point[k];
 		glide[k] = (p.pn > 0) & slides(p.pt, group.friction * p.pn);
 		some |= glide[k];
 	}
 	if (!any(some))
 		return;
-	const Bodies<K> v1(velocity, group.body1), v2(velocity, group.body2);
-	for (int k = 0; k < group.count; ++k)
-		loss -= select(glide[k], dot(group.point[k].pt, slipRate(v1, v2, group.point[k])), all(0));
+	const Bodies<K, Floats> v1(velocity, group.body1), v2(velocity, group.body2);
+	for (int k = 0; k < group.count; ++k) {
+		const Floats power = select(glide[k], dot(group.point[k].pt, slipRate(v1, v2, group.point[k])), all<Floats>(0));
+		loss -= widen(lowOf(power)) + widen(highOf(power));
+	}
 }
 
 // An impact is over, and is not what the next substep starts from.
 template <class K>
-MASONRY_INLINE void trim(Group<K>& group, double ofMean, double fall, Lanes* contactPart)
+MASONRY_INLINE void trim(Group<K, Floats>& group, float ofMean, float fall, FloatPack* contactPart)
 {
-	const auto most = [=](const PointLanes<K>& p) { return larger(ofMean * p.steady, mostOfFall * fall * p.massN); };
-	Mask some {};
+	const auto most = [=](const PointLanes<K, Floats>& p) { return larger(ofMean * p.steady, float(mostOfFall) * fall * p.massN); };
+	FloatMask some {};
 	for (int k = 0; k < group.count; ++k) {
-		PointLanes<K>& p = group.point[k];
-		p.steady += inMean * (p.pn - p.steady);
+		PointLanes<K, Floats>& p = group.point[k];
+		p.steady += float(inMean) * (p.pn - p.steady);
 		some |= p.pn > most(p);
 	}
 	if (!any(some))
 		return;
-	Bodies<K> v1(contactPart, group.body1), v2(contactPart, group.body2);
+	Bodies<K, Floats> v1(contactPart, group.body1), v2(contactPart, group.body2);
 	for (int k = 0; k < group.count; ++k) {
-		PointLanes<K>& p = group.point[k];
-		const Lanes pn = smaller(p.pn, most(p));
+		PointLanes<K, Floats>& p = group.point[k];
+		const Floats pn = smaller(p.pn, most(p));
 		const auto pt = clip(p.pt, group.friction * pn);
 		push(v1, v2, p, pn - p.pn, pt - p.pt);
 		p.pn = pn;
@@ -224,149 +78,281 @@ MASONRY_INLINE void trim(Group<K>& group, double ofMean, double fall, Lanes* con
 	v2.store(contactPart, group.body2, v2.m);
 }
 
+// Two groups of the contacts side by side.
+template <class T, class U>
+MASONRY_INLINE void join(const T& low, const T& high, U& to)
+{
+	static_assert(sizeof(T) == sizeof(U) && sizeof(T) % sizeof(Lanes) == 0);
+	const auto *a = reinterpret_cast<const Lanes*>(&low), *b = reinterpret_cast<const Lanes*>(&high);
+	for (size_t i = 0; i < sizeof(T) / sizeof(Lanes); ++i)
+		reinterpret_cast<Floats*>(&to)[i] = joined(narrow(a[i]), narrow(b[i]));
+}
+
 template <class K>
-MASONRY_INLINE void beginGroups(Group<K>* groups, Coupling<K>* couplings, int begin, int end, Lanes* velocity)
+MASONRY_INLINE void joinGroups(const Group<K>& low, const Group<K>& high, const Group<K>& empty, Group<K, Floats>& to)
+{
+	for (int i = 0; i < width; ++i) {
+		to.body1[i] = low.body1[i];
+		to.body2[i] = low.body2[i];
+		to.body1[width + i] = high.body1[i];
+		to.body2[width + i] = high.body2[i];
+	}
+	to.setCount(std::max<int>(low.count, high.count));
+	join(low.friction, high.friction, to.friction);
+	for (int k = 0; k < lanePoints<K>; ++k) // those beyond a group's own are of long ago
+		join(k < low.count ? low.point[k] : empty.point[k], k < high.count ? high.point[k] : empty.point[k], to.point[k]);
+}
+
+// And back: what the sweeps have changed.
+template <class K>
+MASONRY_INLINE void takeBack(const Group<K, Floats>& from, int half, const Lanes* shift, Group<K>& to)
+{
+	const Bodies<K> moved1(shift, to.body1), moved2(shift, to.body2);
+	for (int k = 0; k < to.count; ++k) {
+		PointLanes<K>& p = to.point[k];
+		p.gap += normalRate(moved1, moved2, p);
+		p.pn = widen(halfOf(from.point[k].pn, half));
+		p.steady = widen(halfOf(from.point[k].steady, half));
+		if constexpr (K::rows == 2)
+			p.pt = widen(halfOf(from.point[k].pt, half));
+		else
+			p.pt = {widen(halfOf(from.point[k].pt.x, half)), widen(halfOf(from.point[k].pt.y, half))};
+	}
+}
+
+// All impulses into the velocities that they give.
+template <class K>
+MASONRY_INLINE void sumGroups(const Group<K, Floats>* groups, const Coupling<K>* couplings, int begin, int end, FloatPack* contactPart)
 {
 	for (int g = begin; g < end; ++g) {
-		Group<K>& group = groups[g];
-		Bodies<K> v1(velocity, group.body1), v2(velocity, group.body2);
-		couplings[g].set(group.point, v1.m, v2.m);
-		for (int k = 0; k < group.count; ++k) {
-			PointLanes<K>& p = group.point[k];
-			push(v1, v2, p, p.pn, p.pt);
-		}
-		v1.store(velocity, group.body1, v1.m, couplings[g].allFree);
-		v2.store(velocity, group.body2, v2.m, couplings[g].allFree);
+		const Group<K, Floats>& group = groups[g];
+		Bodies<K, Floats> v1(contactPart, group.body1), v2(contactPart, group.body2);
+		for (int k = 0; k < group.count; ++k)
+			push(v1, v2, group.point[k], group.point[k].pn, group.point[k].pt);
+		v1.store(contactPart, group.body1, v1.m, couplings[g].allFree);
+		v2.store(contactPart, group.body2, v2.m, couplings[g].allFree);
 	}
 }
 
 // No template is compiled for several vector widths.
 #define MASONRY_SWEEPS(K)                                                                                                                  \
-	MASONRY_LANES void sweep(Group<K>* groups, const Coupling<K>* couplings, int begin, int end, Lanes* velocity, const Sweep& how)        \
+	MASONRY_LANES void sweep(Group<K, Floats>* groups, const Coupling<K>* couplings, int begin, int end, FloatPack* velocity,              \
+	                         const Sweep& how)                                                                                             \
 	{                                                                                                                                      \
 		sweepGroups<K>(groups, couplings, begin, end, velocity, {how.perSubstep, how.relaxation, how.damping});                            \
 	}                                                                                                                                      \
-	MASONRY_LANES void watchedSweep(Group<K>* groups, const Coupling<K>* couplings, int begin, int end, Lanes* velocity, const Sweep& how) \
+	MASONRY_LANES void watchedSweep(Group<K, Floats>* groups, const Coupling<K>* couplings, int begin, int end, FloatPack* velocity,       \
+	                                const Sweep& how)                                                                                      \
 	{                                                                                                                                      \
 		sweepGroups<K>(groups, couplings, begin, end, velocity, how);                                                                      \
 	}                                                                                                                                      \
-	MASONRY_LANES void moveGaps(Group<K>* groups, int begin, int end, const Lanes* velocity, double s)                                     \
+	MASONRY_LANES void moveGaps(Group<K, Floats>* groups, int begin, int end, const FloatPack* velocity, float s)                          \
 	{                                                                                                                                      \
 		moveGroups<K>(groups, begin, end, velocity, s);                                                                                    \
 	}                                                                                                                                      \
-	MASONRY_LANES void handOnGroups(Group<K>* groups, int begin, int end, const Lanes* velocity, double ofMean, double fall,               \
-	                                Lanes* contactPart, Lanes& loss)                                                                       \
+	MASONRY_LANES void handOnGroups(Group<K, Floats>* groups, int begin, int end, const FloatPack* velocity, float ofMean, float fall,     \
+	                                FloatPack* contactPart, Lanes& loss)                                                                   \
 	{                                                                                                                                      \
 		for (int g = begin; g < end; ++g) {                                                                                                \
 			addLoss(groups[g], velocity, loss);                                                                                            \
 			trim(groups[g], ofMean, fall, contactPart);                                                                                    \
 		}                                                                                                                                  \
 	}                                                                                                                                      \
-	MASONRY_LANES void beginStep(Group<K>* groups, Coupling<K>* couplings, int begin, int end, Lanes* velocity)                            \
+	MASONRY_LANES void takeGroups(const Group<K>* from, const std::array<int, 2>* halves, const Group<K>& empty, Group<K, Floats>* groups, \
+	                              Coupling<K>* couplings, int begin, int end, const FloatPack* velocity)                                   \
 	{                                                                                                                                      \
-		beginGroups<K>(groups, couplings, begin, end, velocity);                                                                           \
+		for (int g = begin; g < end; ++g) {                                                                                                \
+			joinGroups(from[halves[g][0]], halves[g][1] < 0 ? empty : from[halves[g][1]], empty, groups[g]);                               \
+			const Bodies<K, Floats> v1(velocity, groups[g].body1), v2(velocity, groups[g].body2);                                          \
+			couplings[g].set(groups[g].point, v1.m, v2.m);                                                                                 \
+		}                                                                                                                                  \
+	}                                                                                                                                      \
+	MASONRY_LANES void sum(const Group<K, Floats>* groups, const Coupling<K>* couplings, int begin, int end, FloatPack* contactPart)       \
+	{                                                                                                                                      \
+		sumGroups<K>(groups, couplings, begin, end, contactPart);                                                                          \
+	}                                                                                                                                      \
+	MASONRY_LANES void endStep(const Group<K, Floats>* groups, const std::array<int, 2>* halves, int begin, int end, const Lanes* shift,   \
+	                           Group<K>* to)                                                                                               \
+	{                                                                                                                                      \
+		for (int g = begin; g < end; ++g)                                                                                                  \
+			for (int half = 0; half < 2 && halves[g][half] >= 0; ++half)                                                                   \
+				takeBack(groups[g], half, shift, to[halves[g][half]]);                                                                     \
 	}
 MASONRY_SWEEPS(Plane)
 MASONRY_SWEEPS(Space)
 #undef MASONRY_SWEEPS
 
+constexpr Lanes noMass {1, 1, 1, 0};
+
+// A substep's loads, and the impulses that it starts from.
+MASONRY_LANES void accelerate(const std::vector<int>& members, const Lanes* load, const FloatPack* contactPart, Lanes* start,
+                              FloatPack* velocity)
+{
+	for (const int b : members) {
+		start[b] += load[b] + noMass * widen(contactPart[b]);
+		velocity[b] = narrow(start[b]);
+	}
+}
+// From there with what the sweeps have changed.
+MASONRY_LANES void moveBodies(const std::vector<int>& members, double s, const Lanes* start, const FloatPack* velocity, Lanes* shift)
+{
+	for (const int b : members)
+		shift[b] += s * noMass * (start[b] + (widen(velocity[b]) - widen(narrow(start[b]))));
+}
+MASONRY_LANES void takeOff(const std::vector<int>& members, Lanes* velocity, FloatPack* contactPart)
+{
+	for (const int b : members) {
+		velocity[b] -= noMass * widen(contactPart[b]);
+		contactPart[b] *= narrow(1 - noMass);
+	}
+}
+MASONRY_LANES void putOn(const std::vector<int>& members, Lanes* velocity, const FloatPack* contactPart)
+{
+	for (const int b : members)
+		velocity[b] += noMass * widen(contactPart[b]);
+}
+
 } // namespace
+
+// Groups of a colour two by two.
+template <class K>
+void Substeps<K>::arrange(const WallContacts<K>& c)
+{
+	halves.clear();
+	parts.clear();
+	places.resize(c.groups.size());
+	for (const Part& part : c.parts) {
+		Part& here = parts.emplace_back();
+		here.begin = int(halves.size());
+		part.byColour([&](int first, int last) {
+			for (int g = first; g < last; ++g) {
+				const int half = (g - first) % 2;
+				if (half == 0)
+					halves.push_back({g, -1});
+				else
+					halves.back()[1] = g;
+				places[g] = {int(halves.size()) - 1, half * width};
+			}
+			here.colourEnd.push_back(int(halves.size()));
+		});
+		here.end = int(halves.size());
+	}
+	groups.resize(halves.size());
+	couplings.resize(halves.size());
+}
 
 template <class K>
 void Substeps<K>::begin(WallContacts<K>& c)
 {
-	const Lanes onlyMass {0, 0, 0, 1};
 	sweeps = std::max(1, int(std::ceil(std::pow(c.depth / coursesOfSweep, 2))));
-	shift.assign(c.velocity.size(), all(0));
-	couplings.resize(c.groups.size());
-	change.assign(c.groups.size(), all(0));
-	report.motion = change;
+	arrange(c);
+	change.assign(halves.size(), all<Floats>(0));
+	motion = change;
 	loss.assign(c.parts.size(), all(0));
-	contactPart = c.velocity;
-	for (Lanes& v : contactPart)
-		v *= onlyMass;
-	const auto apply = [&](const Part& part, int) {
-		part.byColour([&](int first, int last) { beginStep(c.groups.data(), couplings.data(), first, last, contactPart.data()); });
+	velocity.resize(c.velocity.size());
+	contactPart.clear();
+	for (const Lanes& v : c.velocity)
+		contactPart.push_back(narrow(v * Lanes {0, 0, 0, 1}));
+	c.shift.assign(c.velocity.size(), all(0));
+	Group<K> empty {};
+	for (int i = 0; i < width; ++i)
+		empty.body1[i] = empty.body2[i] = int(c.course.size());
+	for (auto& p : empty.point)
+		p.gap = all(farAway);
+	const auto take = [&](const Part&, int number) {
+		takeGroups(c.groups.data(), halves.data(), empty, groups.data(), couplings.data(), parts[number].begin, parts[number].end,
+		           contactPart.data());
+		sumImpulses(number);
 	};
-	c.eachPart(apply);
-	apply(c.parts.back(), 0);
+	c.eachPart(take);
+	take(c.parts.back(), int(c.parts.size()) - 1);
+}
+
+template <class K>
+void Substeps<K>::sumImpulses(int number)
+{
+	parts[number].byColour([&](int first, int last) { sum(groups.data(), couplings.data(), first, last, contactPart.data()); });
 }
 
 // The seam goes first where a loop is over bodies, since the parts read those of the seam, and last where it is over contacts.
 template <class K>
 void Substeps<K>::substep(WallContacts<K>& c, const LaneArray& load, double s, bool isLast)
 {
-	const Lanes noMass {1, 1, 1, 0};
-	Group<K>* groups = c.groups.data();
-	Lanes* velocity = c.velocity.data();
-	const auto accelerate = [&](const Part& part) {
-		for (const int b : part.members) {
-			const Lanes before = velocity[b] + load[b];
-			velocity[b] = before + contactPart[b] * noMass;
-			contactPart[b] = before;
-		}
+	const int seam = int(c.parts.size()) - 1;
+	const auto begin = [&](int number) {
+		accelerate(c.parts[number].members, load.data(), contactPart.data(), c.velocity.data(), velocity.data());
 	};
-	const auto press = [&](const Part& part, bool isEnd, bool watched = false) {
-		Sweep how {1 / s, isEnd ? 1 : overRelaxation, damping / std::sqrt(sweeps)};
+	const auto press = [&](int number, bool isEnd, bool watched = false) {
+		Sweep how {float(1 / s), float(isEnd ? 1 : overRelaxation), float(damping / std::sqrt(sweeps))};
 		if (watched)
-			how.change = change.data(), how.motion = report.motion.data();
-		part.byColour([&](int first, int last) {
+			how.change = change.data(), how.motion = motion.data();
+		parts[number].byColour([&](int first, int last) {
 			if (watched)
-				watchedSweep(groups, couplings.data(), first, last, velocity, how);
+				watchedSweep(groups.data(), couplings.data(), first, last, velocity.data(), how);
 			else
-				sweep(groups, couplings.data(), first, last, velocity, how);
+				sweep(groups.data(), couplings.data(), first, last, velocity.data(), how);
 		});
 	};
-	const auto move = [&](const Part& part) {
-		moveGaps(groups, part.begin, part.end, velocity, s);
-		for (const int b : part.members)
-			shift[b] += s * noMass * velocity[b];
+	const auto move = [&](int number) {
+		moveGaps(groups.data(), parts[number].begin, parts[number].end, velocity.data(), float(s));
+		moveBodies(c.parts[number].members, s, c.velocity.data(), velocity.data(), c.shift.data());
 	};
-	const auto keep = [&](const Part& part) {
-		for (const int b : part.members)
-			contactPart[b] = velocity[b] - noMass * contactPart[b];
+	const auto clear = [&](int number) { takeOff(c.parts[number].members, c.velocity.data(), contactPart.data()); };
+	const auto end = [&](int number) {
+		sumImpulses(number);
+		putOn(c.parts[number].members, c.velocity.data(), contactPart.data());
 	};
-	const Part& seam = c.parts.back();
-	accelerate(seam);
+	begin(seam);
 	for (int k = 0; k < sweeps; ++k) {
 		const bool isEnd = k + 1 == sweeps;
-		c.eachPart([&](const Part& part, int) {
+		c.eachPart([&](const Part&, int number) {
 			if (k == 0)
-				accelerate(part);
-			press(part, isEnd);
+				begin(number);
+			press(number, isEnd);
 		});
 		press(seam, isEnd);
 	}
 	move(seam);
+	clear(seam);
 	for (int k = 0; k < sweeps; ++k) {
 		const bool isEnd = k + 1 == sweeps;
-		c.eachPart([&](const Part& part, int) {
+		c.eachPart([&](const Part&, int number) {
 			if (k == 0)
-				move(part);
-			press(part, isEnd, isLast && isEnd);
-			if (isEnd)
-				keep(part);
+				move(number);
+			press(number, isEnd, isLast && isEnd);
+			if (isEnd) {
+				clear(number);
+				end(number);
+			}
 		});
 		press(seam, isEnd, isLast && isEnd);
 	}
-	keep(seam);
-	if (!isLast)
-		return;
-	report.residual = 0;
-	for (const Lanes& here : change)
-		report.residual = std::max(report.residual, largest(here));
+	end(seam);
 }
 
 template <class K>
 void Substeps<K>::handOn(WallContacts<K>& c, double fall)
 {
 	const double ofMean = sweeps > 1 ? mostOfMeanOfSeveral : mostOfMean;
-	c.allParts([&](const Part& part, int number) {
-		handOnGroups(c.groups.data(), part.begin, part.end, c.velocity.data(), ofMean, fall, contactPart.data(), loss[number]);
+	c.allParts([&](const Part&, int number) {
+		handOnGroups(groups.data(), parts[number].begin, parts[number].end, velocity.data(), float(ofMean), float(fall), contactPart.data(),
+		             loss[number]);
 	});
-	report.loss = 0;
+}
+
+template <class K>
+void Substeps<K>::end(WallContacts<K>& c)
+{
+	c.allParts([&](const Part&, int number) {
+		endStep(groups.data(), halves.data(), parts[number].begin, parts[number].end, c.shift.data(), c.groups.data());
+	});
+	report = {};
+	for (const Floats& here : change)
+		report.residual = std::max({report.residual, largest(widen(lowOf(here))), largest(widen(highOf(here)))});
 	for (const Lanes& here : loss)
 		report.loss += here[0] + here[1] + here[2] + here[3];
+	for (const Place& place : places)
+		report.motion.push_back(widen(halfOf(motion[place.group], place.first / width)));
 }
 
 template class Substeps<Plane>;

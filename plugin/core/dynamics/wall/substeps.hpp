@@ -14,6 +14,9 @@
 // counts as impacts that were none. Penetrations are taken off at the end of the step (lift.hpp): springs that do it in the sweeps give way
 // under every load, ten times as deep.
 //
+// The sweeps compute in floats, eight pairs side by side. Gaps start anew in every step, and velocities are
+// in double precision what the loads and the impulses of each substep give: rounding does not add up.
+//
 // Substeps of one iteration after Macklin et al. (2019), sweeps after the move after Catto (2024).
 #include "dynamics/wall/wall_contacts.hpp"
 
@@ -28,23 +31,45 @@ struct SubstepReport {
 template <class K>
 class Substeps {
 public:
-	// From the contacts' velocities; `load` is the change of velocity in a substep by external forces, per body. Leaves velocities and
-	// the impulses of the last substep in the contacts.
+	// From the contacts' velocities and impulses.
 	void begin(WallContacts<K>& contacts);
+	// `load` is the change of velocity in a substep by external forces, per body. Into the contacts' velocities and shift.
 	void substep(WallContacts<K>& contacts, const LaneArray& load, double s, bool isLast);
 	// After each substep: what friction has taken, and the impulses that the next one starts from. `fall`: what gravity gives in a substep,
 	// m/s.
 	void handOn(WallContacts<K>& contacts, double fall);
+	// Gaps and impulses into the contacts.
+	void end(WallContacts<K>& contacts);
+
+	// Of one lane's point of the contacts, N s: normal and tangential.
+	Eigen::Matrix<double, K::rows, 1> impulse(int group, int lane, int point) const
+	{
+		return impulseOf<K>(groups[places[group].group].point[point], places[group].first + lane);
+	}
+	void setGap(int group, int lane, int point, double gap)
+	{
+		groups[places[group].group].point[point].gap[places[group].first + lane] = float(gap);
+	}
 
 	SubstepReport report; // of the last substep of the step
-	LaneArray shift;      // how far the bodies have moved since begin(); components as of velocities
 
 private:
-	int sweeps {1};                     // before the move, and after it
-	std::vector<Coupling<K>> couplings; // by group
-	LaneArray change;                   // as of the report, of the pairs
-	LaneArray loss;                     // to friction since begin(), J; by part
-	LaneArray contactPart;              // of the velocities: what the impulses of the last substep gave
+	struct Place {
+		int group, first; // lane
+	};
+	void arrange(const WallContacts<K>& contacts);
+	void sumImpulses(int part);
+
+	int sweeps {1};                         // before the move, and after it
+	Array<Group<K, Floats>> groups;         // two of the contacts each, of one colour
+	std::vector<std::array<int, 2>> halves; // which; -1: none
+	std::vector<Place> places;              // of the contacts' groups
+	std::vector<Part> parts;                // as the contacts', but for their members
+	Array<Coupling<K>> couplings;           // by group
+	Array<FloatPack> velocity;              // of the bodies
+	Array<FloatPack> contactPart;           // of it: what the impulses of the last substep gave
+	Array<Floats> change, motion;           // as of the report, by group
+	LaneArray loss;                         // to friction since begin(), J; by part
 };
 
 } // namespace masonry::rigid::wall

@@ -23,11 +23,10 @@ double cost(int width, int rows)
 	return own + (eights(width) + 2 * eights(rows)) * 3. * width;
 }
 
-using Places = int __attribute__((vector_size(32)));
 // Sums of neighbours: of a, then of b.
 MASONRY_INLINE Floats sums(const Floats& a, const Floats& b)
 {
-	return __builtin_shuffle(a, b, Places {0, 2, 4, 6, 8, 10, 12, 14}) + __builtin_shuffle(a, b, Places {1, 3, 5, 7, 9, 11, 13, 15});
+	return __builtin_shuffle(a, b, FloatMask {0, 2, 4, 6, 8, 10, 12, 14}) + __builtin_shuffle(a, b, FloatMask {1, 3, 5, 7, 9, 11, 13, 15});
 }
 // The sum of each of eight.
 MASONRY_INLINE Floats sumsOf(const Floats* a)

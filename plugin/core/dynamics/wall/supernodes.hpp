@@ -11,10 +11,6 @@
 
 namespace masonry::rigid::wall {
 
-using Floats = float __attribute__((vector_size(32)));
-constexpr int floatWidth = 8;
-using FloatArray = std::vector<Floats, AlignedAllocator<Floats>>;
-
 class Supernodes {
 public:
 	using Block = Eigen::Matrix3d;
@@ -32,8 +28,8 @@ public:
 
 private:
 	std::vector<Node> nodes;
-	FloatArray numbers;
-	FloatArray below; // workspace
+	Array<Floats> numbers;
+	Array<Floats> below; // workspace
 };
 
 } // namespace masonry::rigid::wall

@@ -55,11 +55,11 @@ struct PointSet<Space> {
 	void setCount(int value) { count = value; }
 };
 
-template <class K>
+template <class K, class L = Lanes>
 struct alignas(alignment) Group : PointSet<K> {
-	int body1[width], body2[width];
-	Lanes friction;
-	PointLanes<K> point[lanePoints<K>];
+	int body1[widthOf<L>], body2[widthOf<L>];
+	L friction;
+	PointLanes<K, L> point[lanePoints<K>];
 };
 
 // What the still mode (kept_factor.hpp) remembers of a point.
@@ -87,6 +87,17 @@ MASONRY_INLINE double rateOf(const PointLanes<K>& p, int row, int lane, int body
 			sum += part[k] * v[pack][k];
 	}
 	return sum;
+}
+
+// Of one lane's point, N s: normal and tangential.
+template <class K, class L>
+MASONRY_INLINE Eigen::Matrix<double, K::rows, 1> impulseOf(const PointLanes<K, L>& p, int lane)
+{
+	Eigen::Matrix<double, K::rows, 1> impulse;
+	impulse[0] = p.pn[lane];
+	for (int row = 1; row < K::rows; ++row)
+		impulse[row] = component(p.pt, row - 1, lane);
+	return impulse;
 }
 
 template <class K>
@@ -239,6 +250,7 @@ public:
 	std::vector<Part> parts;                // the last is the seam
 	std::vector<std::array<int, 2>> onBase; // group and lane of the pairs with a prescribed body
 	LaneArray velocity;                     // packs; 1/m = 0: prescribed. One more body at the end, for empty lanes
+	LaneArray shift;                        // how far the bodies have moved in the step; components as of velocities
 	LaneArray pose;                         // plane: (position, cosine, sine). Space: axes and position in three rows, then 1/rho
 	std::vector<typename K::Spin> gyration; // rho, m
 	std::vector<int> course;                // of a body: pairs between it and the nearest prescribed one; -1: no way there

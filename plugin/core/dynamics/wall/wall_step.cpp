@@ -220,9 +220,9 @@ bool WallStep<K>::stepStill(RigidSystem<K>& s, double h)
 	frictionLoss = kept.keepSlip();
 	s.baseWork += baseWorkWhenStill(s);
 	contacts.velocity = kept.velocity;
-	shift.resize(kept.velocity.size());
-	for (size_t b = 0; b < shift.size(); ++b)
-		shift[b] = h * kept.velocity[b];
+	contacts.shift.resize(kept.velocity.size());
+	for (size_t b = 0; b < contacts.shift.size(); ++b)
+		contacts.shift[b] = h * kept.velocity[b];
 	return allStand;
 }
 
@@ -280,7 +280,7 @@ void WallStep<K>::stepMoving(RigidSystem<K>& s, double h)
 	contacts.setUnit(part);
 	setLoads(s, contacts, part);
 	sweeps.begin(contacts);
-	joints.find(s, contacts, part);
+	joints.find(s, contacts, sweeps, part);
 	for (int k = 0; k < count; ++k) {
 		s.time = start + k * part;
 		setBase(s, contacts, part);
@@ -290,8 +290,8 @@ void WallStep<K>::stepMoving(RigidSystem<K>& s, double h)
 		setBase(s, contacts, part);
 		sweeps.handOn(contacts, fall);
 	}
-	joints.release(contacts);
-	lift.settle(contacts, sweeps.shift);
+	sweeps.end(contacts);
+	lift.settle(contacts);
 	s.time = start;
 	report.substeps += count;
 	report.velocityResidual = std::max(report.velocityResidual, sweeps.report.residual);
@@ -328,7 +328,7 @@ template <class K>
 int WallStep<K>::land(RigidSystem<K>& s, double part)
 {
 	const size_t known = s.impacts.size();
-	s.baseWork += joints.land(s, moving(), part);
+	s.baseWork += joints.land(s, moving(), sweeps, part);
 	for (size_t k = known; k < s.impacts.size(); ++k)
 		for (BaseDrive* drive : s.drives)
 			drive->respond(s.impacts[k].block, s.time);
@@ -350,19 +350,19 @@ template <class K>
 double WallStep<K>::baseWork(const RigidSystem<K>& s, Contacts& contacts)
 {
 	double work = 0;
+	const bool ofSweeps = &contacts == &moving();
 	setBase(s, contacts, 0);
 	for (const auto& [g, i] : contacts.onBase) {
 		const wall::Group<K>& group = contacts.groups[g];
 		const bool first = s.bodies[group.body1[i]].prescribed;
-		if (isStill(first ? group.body2[i] : group.body1[i]) != (&contacts == &still()))
+		if (isStill(first ? group.body2[i] : group.body1[i]) == ofSweeps)
 			continue;
 		const Lanes* v = &contacts.velocity[wall::packs<K> * (first ? group.body1 : group.body2)[i]];
 		for (int k = 0; k < group.count; ++k) {
 			const wall::PointLanes<K>& p = group.point[k];
-			double power = p.pn[i] * wall::rateOf(p, 0, i, first ? 1 : 2, v);
-			for (int row = 1; row < K::rows; ++row)
-				power += wall::component(p.pt, row - 1, i) * wall::rateOf(p, row, i, first ? 1 : 2, v);
-			work += first ? power : -power;
+			const auto impulse = ofSweeps ? sweeps.impulse(g, i, k) : wall::impulseOf(p, i);
+			for (int row = 0; row < K::rows; ++row)
+				work += (first ? impulse[row] : -impulse[row]) * wall::rateOf(p, row, i, first ? 1 : 2, v);
 		}
 	}
 	return work;
@@ -411,7 +411,7 @@ double WallStep<K>::takeBody(RigidSystem<K>& s, size_t b, double h)
 	}
 	const bool stands = isStill(int(b)) || report.mode == WallMode::still;
 	const Contacts& contacts = stands ? still() : moving();
-	const typename K::Velocity moved = contacts.inGlobal(stands ? shift : sweeps.shift, b), before = body.velocity;
+	const typename K::Velocity moved = contacts.inGlobal(contacts.shift, b), before = body.velocity;
 	body.velocity = contacts.inGlobal(contacts.velocity, b);
 	if (body.prescribed) {
 		K::advance(body.pose, moved, 1);

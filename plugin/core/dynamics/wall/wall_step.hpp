@@ -107,10 +107,9 @@ private:
 	wall::Lift<K> lift;
 	wall::RockingJoints<K> joints;
 	wall::LaneArray loads;
-	wall::LaneArray shift;     // of those that stand; components as of velocities
 	std::vector<typename K::Pose> middle; // of a step that moves
-	std::vector<int> onDrives; // prescribed bodies with a drive
-	double frictionLoss {0};   // J, of the part of the step
+	std::vector<int> onDrives;            // prescribed bodies with a drive
+	double frictionLoss {0};              // J, of the part of the step
 };
 
 } // namespace masonry::rigid
