@@ -178,6 +178,22 @@ MASONRY_INLINE void scatter(Floats a, Floats b, Floats c, Floats d, FloatPack* t
 	}
 }
 
+// While it lives, floats below the smallest normal one are zero in this thread: what decays comes to be such, and processors take many times
+// as long for it.
+class TinyIsZero {
+#ifdef __SSE__
+public:
+	TinyIsZero() { __builtin_ia32_ldmxcsr(before | flushToZero | denormalsAreZero); }
+	~TinyIsZero() { __builtin_ia32_ldmxcsr(before); }
+	TinyIsZero(const TinyIsZero&) = delete;
+	TinyIsZero& operator=(const TinyIsZero&) = delete;
+
+private:
+	static constexpr unsigned flushToZero = 1 << 15, denormalsAreZero = 1 << 6;
+	const unsigned before {__builtin_ia32_stmxcsr()};
+#endif
+};
+
 // All numbers of a lane of a structure of lanes.
 template <class T>
 void copyLane(const T& from, int i, T& to, int j)

@@ -271,6 +271,7 @@ void Substeps<K>::begin(WallContacts<K>& c)
 template <class K>
 void Substeps<K>::sumImpulses(int number)
 {
+	[[maybe_unused]] const TinyIsZero inSweeps;
 	parts[number].byColour([&](int first, int last) { sum(groups.data(), couplings.data(), first, last, contactPart.data()); });
 }
 
@@ -283,6 +284,7 @@ void Substeps<K>::substep(WallContacts<K>& c, const LaneArray& load, double s, b
 		accelerate(c.parts[number].members, load.data(), contactPart.data(), c.velocity.data(), velocity.data());
 	};
 	const auto press = [&](int number, bool isEnd, bool watched = false) {
+		[[maybe_unused]] const TinyIsZero inSweeps;
 		Sweep how {float(1 / s), float(isEnd ? 1 : overRelaxation), float(damping / std::sqrt(sweeps))};
 		if (watched)
 			how.change = change.data(), how.motion = motion.data();
@@ -335,6 +337,7 @@ void Substeps<K>::handOn(WallContacts<K>& c, double fall)
 {
 	const double ofMean = sweeps > 1 ? mostOfMeanOfSeveral : mostOfMean;
 	c.allParts([&](const Part&, int number) {
+		[[maybe_unused]] const TinyIsZero inSweeps;
 		handOnGroups(groups.data(), parts[number].begin, parts[number].end, velocity.data(), float(ofMean), float(fall), contactPart.data(),
 		             loss[number]);
 	});
