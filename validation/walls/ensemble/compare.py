@@ -40,7 +40,7 @@ def draw(motions):
     import matplotlib.pyplot as plt
 
     picture, axis = plt.subplots(figsize=(6.5, 4), layout="constrained")
-    for (law, table), line in zip(motions.items(), ("k-", "C3-", "C0-", "C0:")):
+    for (law, table), line in zip(motions.items(), ("k-", "C3-", "C3:", "C0-", "C0:")):
         drift = np.sort(np.where(table["collapsed"], np.inf, table["peak_drift"]))
         axis.step(np.append(drift[np.isfinite(drift)], 0.5), np.append(np.arange(1, np.isfinite(drift).sum() + 1), np.isfinite(drift).sum()) / len(drift),
                   line, where="post", label=law)
