@@ -94,8 +94,8 @@ MASONRY_INLINE void passGroup(Group<K>& group, StillGroup<K>& still, Rows<K>& ro
 		}
 		add(f1, f2, p, p.pn + (f.zn - wn) * row.stiffness, p.pt + (f.zt - wt) * row.stiffness);
 	}
-	f1.store(force, group.body1, v1.m);
-	f2.store(force, group.body2, v2.m);
+	f1.store(force, group.body1, bitsOf(v1.m > 0));
+	f2.store(force, group.body2, bitsOf(v2.m > 0));
 }
 
 template <class K>

@@ -37,6 +37,9 @@ using MaskOf = std::conditional_t<std::is_same_v<L, Lanes>, Mask, FloatMask>;
 using FloatPack = float __attribute__((vector_size(16)));
 template <class L>
 using PackOf = std::conditional_t<std::is_same_v<L, Lanes>, Lanes, FloatPack>;
+// Where the packs of a body are: for doubles its number, for floats bytes from the first pack of all to its own.
+template <class L>
+using PlaceOf = std::conditional_t<std::is_same_v<L, Lanes>, int, unsigned>;
 
 // Code for wide vectors counts on this alignment, code for narrow ones does not ask for it: structures of lanes state it.
 constexpr std::size_t alignment = 32;
@@ -87,11 +90,16 @@ MASONRY_INLINE L length(const L& a)
 MASONRY_INLINE Lanes select(const Mask& mask, const Lanes& a, const Lanes& b) { return mask ? a : b; }
 MASONRY_INLINE Floats select(const FloatMask& mask, const Floats& a, const Floats& b) { return mask ? a : b; }
 // A bit for each lane.
-constexpr unsigned char allLanes = 15;
+constexpr unsigned char allLanes = 15, allFloats = 255;
 MASONRY_INLINE unsigned char bitsOf(const Mask& mask)
 {
 	const Mask bits = mask & Mask {1, 2, 4, 8};
 	return (unsigned char)(bits[0] | bits[1] | bits[2] | bits[3]);
+}
+MASONRY_INLINE unsigned char bitsOf(const FloatMask& mask)
+{
+	const FloatMask bits = mask & FloatMask {1, 2, 4, 8, 16, 32, 64, 128};
+	return (unsigned char)(bits[0] | bits[1] | bits[2] | bits[3] | bits[4] | bits[5] | bits[6] | bits[7]);
 }
 MASONRY_INLINE Mask maskOf(unsigned char bits) { return (Mask {bits, bits, bits, bits} & Mask {1, 2, 4, 8}) != 0; }
 
@@ -144,37 +152,45 @@ MASONRY_INLINE void transpose(Floats& a, Floats& b, Floats& c, Floats& d)
 	d = __builtin_shufflevector(ab1, cd1, 2, 3, 10, 11, 6, 7, 14, 15);
 }
 
-// Packs of bodies in, each `stride` times its number away, one lane a body out; and back, where `mass` is not 0.
-MASONRY_INLINE void gather(const Lanes* from, const int* body, int stride, Lanes& a, Lanes& b, Lanes& c, Lanes& d)
+// Packs of bodies in, one lane a body out; and back, of those that are free. A body has `packs` of them.
+template <int packs>
+MASONRY_INLINE void gather(const Lanes* from, const int* body, Lanes& a, Lanes& b, Lanes& c, Lanes& d)
 {
-	a = from[stride * body[0]], b = from[stride * body[1]], c = from[stride * body[2]], d = from[stride * body[3]];
+	a = from[packs * body[0]], b = from[packs * body[1]], c = from[packs * body[2]], d = from[packs * body[3]];
 	transpose(a, b, c, d);
 }
-MASONRY_INLINE void gather(const FloatPack* from, const int* body, int stride, Floats& a, Floats& b, Floats& c, Floats& d)
-{
-	Floats* pair[4] = {&a, &b, &c, &d};
-	for (int i = 0; i < 4; ++i)
-		*pair[i] = joined(from[stride * body[i]], from[stride * body[i + 4]]);
-	transpose(a, b, c, d);
-}
-MASONRY_INLINE void scatter(Lanes a, Lanes b, Lanes c, Lanes d, Lanes* to, const int* body, int stride, const Lanes& mass, bool allFree)
+template <int packs>
+MASONRY_INLINE void scatter(Lanes a, Lanes b, Lanes c, Lanes d, Lanes* to, const int* body, unsigned free)
 {
 	transpose(a, b, c, d);
 	const Lanes* row[width] = {&a, &b, &c, &d};
 	for (int i = 0; i < width; ++i)
-		if (allFree || mass[i] != 0)
-			to[stride * body[i]] = *row[i];
+		if (free == allLanes || free >> i & 1)
+			to[packs * body[i]] = *row[i];
 }
-MASONRY_INLINE void scatter(Floats a, Floats b, Floats c, Floats d, FloatPack* to, const int* body, int stride, const Floats& mass,
-                            bool allFree)
+
+MASONRY_INLINE const FloatPack& packAt(const FloatPack* from, unsigned bytes)
+{
+	return *reinterpret_cast<const FloatPack*>(reinterpret_cast<const char*>(from) + bytes);
+}
+template <int>
+MASONRY_INLINE void gather(const FloatPack* from, const unsigned* body, Floats& a, Floats& b, Floats& c, Floats& d)
+{
+	Floats* row[4] = {&a, &b, &c, &d};
+	for (int i = 0; i < 4; ++i)
+		*row[i] = joined(packAt(from, body[i]), packAt(from, body[i + 4]));
+	transpose(a, b, c, d);
+}
+template <int>
+MASONRY_INLINE void scatter(Floats a, Floats b, Floats c, Floats d, FloatPack* to, const unsigned* body, unsigned free)
 {
 	transpose(a, b, c, d);
 	const Floats* row[4] = {&a, &b, &c, &d};
 	for (int i = 0; i < 4; ++i) {
-		if (allFree || mass[i] != 0)
-			to[stride * body[i]] = lowOf(*row[i]);
-		if (allFree || mass[i + 4] != 0)
-			to[stride * body[i + 4]] = highOf(*row[i]);
+		if (free == allFloats || free >> i & 1)
+			const_cast<FloatPack&>(packAt(to, body[i])) = lowOf(*row[i]);
+		if (free == allFloats || free >> (i + 4) & 1)
+			const_cast<FloatPack&>(packAt(to, body[i + 4])) = highOf(*row[i]);
 	}
 }
 

@@ -72,9 +72,8 @@ MASONRY_INLINE void liftGroups(const Group<K>* groups, typename Lift<K>::Points*
 		}
 		if (!any(changed))
 			continue;
-		const bool allFree = !any(v1.m * v2.m == 0);
-		v1.store(moved, group.body1, v1.m, allFree);
-		v2.store(moved, group.body2, v2.m, allFree);
+		v1.store(moved, group.body1, bitsOf(v1.m > 0));
+		v2.store(moved, group.body2, bitsOf(v2.m > 0));
 		for (int i = 0; i < width; ++i)
 			if (far[i]) {
 				if (v1.m[i] != 0)

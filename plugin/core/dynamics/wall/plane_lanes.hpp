@@ -24,11 +24,11 @@ template <class L>
 struct alignas(alignment) Bodies<Plane, L> {
 	L x, y, w, m;
 
-	MASONRY_INLINE Bodies(const PackOf<L>* from, const int* body) { gather(from, body, 1, x, y, w, m); }
-	// Back to where they came from; bodies with m = 0 are prescribed and stay.
-	MASONRY_INLINE void store(PackOf<L>* to, const int* body, const L& mass, bool allFree = false) const
+	MASONRY_INLINE Bodies(const PackOf<L>* from, const PlaceOf<L>* body) { gather<1>(from, body, x, y, w, m); }
+	// Back to where they came from; those that are not free stay.
+	MASONRY_INLINE void store(PackOf<L>* to, const PlaceOf<L>* body, unsigned free) const
 	{
-		scatter(x, y, w, m, to, body, 1, mass, allFree);
+		scatter<1>(x, y, w, m, to, body, free);
 	}
 };
 
@@ -58,7 +58,7 @@ struct alignas(alignment) FeatureLanes<Plane> {
 template <>
 struct alignas(alignment) Coupling<Plane> {
 	Floats n1t1, n2t2, n1n2, t1t2, n1t2, t1n2;
-	bool allFree; // no body is prescribed, no lane empty
+	unsigned char free1, free2; // a bit for each body that is not prescribed
 
 	MASONRY_INLINE void set(const PointLanes<Plane, Floats>* point, const Floats& m1, const Floats& m2)
 	{
@@ -70,7 +70,8 @@ struct alignas(alignment) Coupling<Plane> {
 		t1t2 = cosine + m1 * p.a1t * q.a1t + m2 * p.a2t * q.a2t;
 		n1t2 = m1 * p.a1n * q.a1t + m2 * p.a2n * q.a2t - sine;
 		t1n2 = m1 * p.a1t * q.a1n + m2 * p.a2t * q.a2n + sine;
-		allFree = !any(m1 * m2 == 0);
+		free1 = bitsOf(m1 > 0);
+		free2 = bitsOf(m2 > 0);
 	}
 };
 

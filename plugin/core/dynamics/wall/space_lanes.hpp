@@ -131,16 +131,16 @@ struct alignas(alignment) Bodies<Space, L> {
 	Three<L> v, w;
 	L m;
 
-	MASONRY_INLINE Bodies(const PackOf<L>* from, const int* body)
+	MASONRY_INLINE Bodies(const PackOf<L>* from, const PlaceOf<L>* body)
 	{
-		gather(from, body, 2, v.x, v.y, v.z, m);
-		gather(from + 1, body, 2, w.x, w.y, w.z, m);
+		gather<2>(from, body, v.x, v.y, v.z, m);
+		gather<2>(from + 1, body, w.x, w.y, w.z, m);
 	}
-	// Back to where they came from; bodies with m = 0 are prescribed and stay.
-	MASONRY_INLINE void store(PackOf<L>* to, const int* body, const L& mass, bool allFree = false) const
+	// Back to where they came from; those that are not free stay.
+	MASONRY_INLINE void store(PackOf<L>* to, const PlaceOf<L>* body, unsigned free) const
 	{
-		scatter(v.x, v.y, v.z, m, to, body, 2, mass, allFree);
-		scatter(w.x, w.y, w.z, m, to + 1, body, 2, mass, allFree);
+		scatter<2>(v.x, v.y, v.z, m, to, body, free);
+		scatter<2>(w.x, w.y, w.z, m, to + 1, body, free);
 	}
 };
 
@@ -169,8 +169,12 @@ struct alignas(alignment) PointLanes<Space, L> {
 // Points in space are taken one after another.
 template <>
 struct Coupling<Space> {
-	bool allFree;
-	MASONRY_INLINE void set(const PointLanes<Space, Floats>*, const Floats& m1, const Floats& m2) { allFree = !any(m1 * m2 == 0); }
+	unsigned char free1, free2; // a bit for each body that is not prescribed
+	MASONRY_INLINE void set(const PointLanes<Space, Floats>*, const Floats& m1, const Floats& m2) 
+	{
+		free1 = bitsOf(m1 > 0);
+		free2 = bitsOf(m2 > 0);
+	}
 };
 
 // What a point is made of: vertex and face in the axes of their bodies; or two edges that cross, which are looked at one by one.

@@ -17,9 +17,11 @@ constexpr double damping = 0.015, inMean = 0.0125;
 // more slowly than several.
 constexpr double mostOfMean = 5, mostOfMeanOfSeveral = 3, mostOfFall = 2;
 
-// Courses that one sweep before the move and one after it are enough for; what all but the last of them overdo. The last must not: an
-// impact would bounce.
+// Sweeps before the move, and after it, as the square of the courses asks; but as many as there are courses up to three, since what blocks
+// that land together have not been told of each other is lost. What all but the last of them overdo: the last must not, an impact would
+// bounce.
 constexpr double coursesOfSweep = 9;
+constexpr int ofFewCourses = 3;
 constexpr double overRelaxation = 1.4;
 
 template <class K>
@@ -74,8 +76,8 @@ MASONRY_INLINE void trim(Group<K, Floats>& group, float ofMean, float fall, Floa
 		p.pn = pn;
 		p.pt = pt;
 	}
-	v1.store(contactPart, group.body1, v1.m);
-	v2.store(contactPart, group.body2, v2.m);
+	v1.store(contactPart, group.body1, bitsOf(v1.m > 0));
+	v2.store(contactPart, group.body2, bitsOf(v2.m > 0));
 }
 
 // Two groups of the contacts side by side.
@@ -92,10 +94,10 @@ template <class K>
 MASONRY_INLINE void joinGroups(const Group<K>& low, const Group<K>& high, const Group<K>& empty, Group<K, Floats>& to)
 {
 	for (int i = 0; i < width; ++i) {
-		to.body1[i] = low.body1[i];
-		to.body2[i] = low.body2[i];
-		to.body1[width + i] = high.body1[i];
-		to.body2[width + i] = high.body2[i];
+		to.body1[i] = packs<K> * sizeof(FloatPack) * low.body1[i];
+		to.body2[i] = packs<K> * sizeof(FloatPack) * low.body2[i];
+		to.body1[width + i] = packs<K> * sizeof(FloatPack) * high.body1[i];
+		to.body2[width + i] = packs<K> * sizeof(FloatPack) * high.body2[i];
 	}
 	to.setCount(std::max<int>(low.count, high.count));
 	join(low.friction, high.friction, to.friction);
@@ -129,8 +131,8 @@ MASONRY_INLINE void sumGroups(const Group<K, Floats>* groups, const Coupling<K>*
 		Bodies<K, Floats> v1(contactPart, group.body1), v2(contactPart, group.body2);
 		for (int k = 0; k < group.count; ++k)
 			push(v1, v2, group.point[k], group.point[k].pn, group.point[k].pt);
-		v1.store(contactPart, group.body1, v1.m, couplings[g].allFree);
-		v2.store(contactPart, group.body2, v2.m, couplings[g].allFree);
+		v1.store(contactPart, group.body1, couplings[g].free1);
+		v2.store(contactPart, group.body2, couplings[g].free2);
 	}
 }
 
@@ -244,7 +246,7 @@ void Substeps<K>::arrange(const WallContacts<K>& c)
 template <class K>
 void Substeps<K>::begin(WallContacts<K>& c)
 {
-	sweeps = std::max(1, int(std::ceil(std::pow(c.depth / coursesOfSweep, 2))));
+	sweeps = std::max({1, std::min(c.depth, ofFewCourses), int(std::ceil(std::pow(c.depth / coursesOfSweep, 2)))});
 	arrange(c);
 	change.assign(halves.size(), all<Floats>(0));
 	motion = change;

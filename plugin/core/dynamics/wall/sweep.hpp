@@ -73,8 +73,8 @@ public:
 	{
 		for (int k = 0; k < lanePoints<Plane>; ++k)
 			push(v1, v2, group.point[k], dn[k], dt[k]);
-		v1.store(velocity, group.body1, v1.m, w.allFree);
-		v2.store(velocity, group.body2, v2.m, w.allFree);
+		v1.store(velocity, group.body1, w.free1);
+		v2.store(velocity, group.body2, w.free2);
 	}
 
 private:
@@ -119,8 +119,8 @@ public:
 	}
 	MASONRY_INLINE void end()
 	{
-		v1.store(velocity, group.body1, v1.m, w.allFree);
-		v2.store(velocity, group.body2, v2.m, w.allFree);
+		v1.store(velocity, group.body1, w.free1);
+		v2.store(velocity, group.body2, w.free2);
 	}
 
 private:

@@ -57,7 +57,7 @@ struct PointSet<Space> {
 
 template <class K, class L = Lanes>
 struct alignas(alignment) Group : PointSet<K> {
-	int body1[widthOf<L>], body2[widthOf<L>];
+	PlaceOf<L> body1[widthOf<L>], body2[widthOf<L>];
 	L friction;
 	PointLanes<K, L> point[lanePoints<K>];
 };
