@@ -107,7 +107,7 @@ constexpr double vertexReach = 1e-4;
 constexpr double sliver = 1e-4;
 // Separation that edge across edge must gain over the best face (the share below of the penetration is added, or
 // depthShare where a face was the reference before). Larger: the gap jumps by as much where a vertex slides off an edge.
-constexpr double edge      = 1e-6;
+constexpr double edge = 1e-6;
 constexpr double edgeShare = 0.1;
 // Penetration up to which a face contact is taken without a look at the edges. Larger: a corner that meets a corner from
 // the side can be taken for one from above, deeper by as much; smaller: closed joints cost the nine edge axes.
@@ -165,16 +165,17 @@ constexpr double still = 1e-2;
 // stands when none is above the speed of rest. Nearer to 1: what the moving mode calls rest is motion to the still mode.
 constexpr double motion = 5;
 // Velocity, relative to what gravity gives in a step, that the unfinished iterations of the still mode may keep from a point that parts or
-// slides. Larger: motion sets in too late; smaller: a wall at rest, whose idle head joints flicker, leaves the still mode.
-constexpr double held = 2;
+// slides, before it is let go to see. Larger: motion sets in too late; smaller: a wall at rest, whose points flicker, spends its time on
+// it. So a structure may hold little at first, and twice as much after each time that nothing has gone.
+constexpr double held = 2, leastHeld = 0.125;
 // Relative velocity that a step gives such points when they are let go, relative to what gravity gives in it, above which the wall moves.
 // Larger: slow sliding is glued; smaller: impulses that are late are taken for motion.
 constexpr double free = 5e-3;
 // Time relative to sqrt(half size / g) for which nothing may move before the still mode is tried again.
 constexpr double patience = 0.5;
-// Depth of a pair relative to the smallest half size above which moving steps take it off, and what they leave of it. Larger: blocks deeper in
-// each other; smaller: the sweeps let loaded points sink, and what is given back costs them energy; nearer to each other: a wall that comes to
-// rest is moved again and again.
+// Depth of a pair relative to the smallest half size above which moving steps take it off, and what they leave of it. Larger: blocks deeper
+// in each other; smaller: the sweeps let loaded points sink, and what is given back costs them energy; nearer to each other: a wall that
+// comes to rest is moved again and again.
 constexpr double penetration = 1e-5;
 constexpr double lifted = 5e-6;
 // Energy that a step may seem to make: share of what moves and what the forces do in it, and of what lifts all blocks by the smallest half

@@ -168,8 +168,7 @@ MASONRY_INLINE void addSlip(Group<K>* groups, StillGroup<K>* still, const Rows<K
 	{                                                                                                                                      \
 		addHeld<K>(groups, still, rows, begin, end, pullBack, most);                                                                       \
 	}                                                                                                                                      \
-	MASONRY_LANES void slipPass(Group<K>* groups, StillGroup<K>* still, const Rows<K>* rows, int begin, int end, double h,                 \
-	                            Lanes& loss)                                                                                               \
+	MASONRY_LANES void slipPass(Group<K>* groups, StillGroup<K>* still, const Rows<K>* rows, int begin, int end, double h, Lanes& loss)    \
 	{                                                                                                                                      \
 		addSlip<K>(groups, still, rows, begin, end, h, loss);                                                                              \
 	}
@@ -378,6 +377,32 @@ void KeptFactor<K>::forgetHeld(const LaneBits& lanes)
 			f.heldN = maskOf(lanes[g]) ? all(0) : f.heldN;
 			f.heldT = select(maskOf(lanes[g]), Tangent {}, f.heldT);
 		}
+}
+
+// The impulses that V has lacked.
+template <class K>
+void KeptFactor<K>::giveHeld(const LaneBits& lanes)
+{
+	auto& c = *contacts;
+	const Lanes none = all(0);
+	for (size_t g = 0; g < lanes.size(); ++g) {
+		if (!lanes[g])
+			continue;
+		const Group<K>& group = c.groups[g];
+		Bodies<K> v1(c.velocity.data(), group.body1), v2(c.velocity.data(), group.body2);
+		for (int k = 0; k < group.count; ++k) {
+			const StillLanes<K>& f = c.still[g][k];
+			const Row& row = rows[g][k];
+			const Mask is = maskOf(lanes[g]) & (row.stiffness > 0);
+			const Lanes missN = (f.zn - row.un + row.bn) * row.stiffness;
+			const Tangent missT = (f.zt - row.ut - backPerSecond * f.slip) * row.stiffness;
+			const Lanes& mass = group.point[k].massN;
+			push(v1, v2, group.point[k], is & (f.heldN > 0) ? larger(mass * f.heldN - missN, none) : none,
+			     select(is & (size(f.heldT) > 0), mass * f.heldT - missT, Tangent {}));
+		}
+		v1.store(c.velocity.data(), group.body1, bitsOf(v1.m > 0));
+		v2.store(c.velocity.data(), group.body2, bitsOf(v2.m > 0));
+	}
 }
 
 template <class K>

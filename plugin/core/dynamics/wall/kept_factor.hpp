@@ -13,8 +13,8 @@
 // until w = z. Nothing in A depends on which points stick, slide or part: states may chatter and A stays. Only residuals are corrected,
 // so that A may be of slightly other positions.
 //
-// That p makes the problem convex: the iteration goes towards impulses with which a wall stands where there are any. What slides by this law
-// also lifts, by mu times as much: but a step in which blocks move is not done in this mode.
+// That p makes the problem convex: the iteration goes towards impulses with which a wall stands where there are any. What slides by this
+// law also lifts, by mu times as much: but a step in which blocks move is not done in this mode.
 //
 // b_n = -gap/h (an open point may close), b_t = 0; but of what a few iterations have left, a penetration or a slip, a share is taken back
 // in each step, so that it does not add up. Penetrations that were there when the wall came to rest stay: pushed out, they would wedge
@@ -81,6 +81,8 @@ public:
 	// Pairs with a point that was kept from at least `held` and goes faster than `speed` the way it was kept from, m/s.
 	LaneBits gone(double held, double speed) const;
 	void forgetHeld(const LaneBits& lanes);
+	// What these pairs have been kept from in the steps before this one, into the contacts' velocities.
+	void giveHeld(const LaneBits& lanes);
 	double keepSlip(); // of the step that ends, in which gaps have moved. Returns what friction has taken, J
 	// Impulses as they were at the beginning, of all pairs or of these, which then have not moved in this step.
 	void giveUp();
@@ -132,7 +134,7 @@ private:
 	LaneBits where(const Mark& mark) const;
 
 	WallContacts<K>* contacts {nullptr};
-	SymmetricFactor factor; // a node for each pack of the bodies here
+	SymmetricFactor factor;  // a node for each pack of the bodies here
 	std::vector<int> places; // of the nodes
 	size_t nodes {0};        // of the factor, those of bodies that have gone included
 	std::vector<SymmetricFactor::Edge> edges;

@@ -194,8 +194,8 @@ MASONRY_INLINE void scatter(Floats a, Floats b, Floats c, Floats d, FloatPack* t
 	}
 }
 
-// While it lives, floats below the smallest normal one are zero in this thread: what decays comes to be such, and processors take many times
-// as long for it.
+// While it lives, floats below the smallest normal one are zero in this thread: what decays comes to be such, and processors take many
+// times as long for it.
 class TinyIsZero {
 #ifdef __SSE__
 public:

@@ -26,10 +26,7 @@ struct alignas(alignment) Bodies<Plane, L> {
 
 	MASONRY_INLINE Bodies(const PackOf<L>* from, const PlaceOf<L>* body) { gather<1>(from, body, x, y, w, m); }
 	// Back to where they came from; those that are not free stay.
-	MASONRY_INLINE void store(PackOf<L>* to, const PlaceOf<L>* body, unsigned free) const
-	{
-		scatter<1>(x, y, w, m, to, body, free);
-	}
+	MASONRY_INLINE void store(PackOf<L>* to, const PlaceOf<L>* body, unsigned free) const { scatter<1>(x, y, w, m, to, body, free); }
 };
 
 template <class L>

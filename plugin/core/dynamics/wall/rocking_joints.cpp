@@ -238,7 +238,7 @@ void RockingJoints<Space>::answer(RigidSystem<Space>& s, WallContacts<Space>& c,
 	const Vector3 axis = rockingAxis(impact.bodies, law, impact.points);
 	const double spin = axis.dot(impact.bodies[law.block].angularVelocity - impact.bodies[law.support].angularVelocity),
 	             leastSpin = tolerance::restSpeed * std::sqrt(scale::acceleration(s) / s.bodies[at.block].halfSize.norm());
-	if (!(spin * restitution >= leastSpin))
+	if (!(spin >= leastSpin))
 		return;
 	const auto result = impact.apply();
 	for (size_t i = 0; i < numbers.size(); ++i)
@@ -275,7 +275,7 @@ void RockingJoints<Plane>::answer(RigidSystem<Plane>& s, WallContacts<Plane>& c,
 	const Matrix3 G = J * W;
 	const Vector3 u = J * velocity;
 	const double before = u[2], leastSpin = tolerance::restSpeed * std::sqrt(scale::acceleration(s) / s.bodies[at.block].halfSize.norm());
-	if (std::isnan(pair.restitution) || !(std::abs(before) * pair.restitution >= leastSpin))
+	if (std::isnan(pair.restitution) || !(std::abs(before) >= leastSpin))
 		return;
 
 	// The impulse x for the couple's target; friction at its limit where sticking asks for more.

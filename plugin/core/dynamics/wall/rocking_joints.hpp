@@ -9,8 +9,8 @@
 //     u_n+ = 0,   u_t+ = 0 or |p_t| = mu p_n,   w+ = C w-         w = w_block - w_support
 //
 // Other neighbours feel it in the sweeps that follow: the sequential law of impact/rocking_restitution.hpp. Kinetic energy does not
-// grow: where it would, the couple is reduced until it does not. Without a restitution, or when the joint would come to rest
-// (tolerance::restSpeed), nothing is done here: the sweeps are plastic.
+// grow: where it would, the couple is reduced until it does not. Without a restitution, or when the joint lands as slowly as if at rest
+// (tolerance::restSpeed), nothing is done here: the sweeps are plastic, as which it rocks on where the other pivot takes the weight.
 //
 // In space all points that close together are the new pivot and the loaded ones the old, and there is one row, along the old edge or across
 // the lever (joint_impact.hpp).

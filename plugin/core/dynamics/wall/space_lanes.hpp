@@ -170,7 +170,7 @@ struct alignas(alignment) PointLanes<Space, L> {
 template <>
 struct Coupling<Space> {
 	unsigned char free1, free2; // a bit for each body that is not prescribed
-	MASONRY_INLINE void set(const PointLanes<Space, Floats>*, const Floats& m1, const Floats& m2) 
+	MASONRY_INLINE void set(const PointLanes<Space, Floats>*, const Floats& m1, const Floats& m2)
 	{
 		free1 = bitsOf(m1 > 0);
 		free2 = bitsOf(m2 > 0);

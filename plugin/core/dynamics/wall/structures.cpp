@@ -7,7 +7,8 @@ namespace {
 
 Structure joined(const Structure& a, const Structure& b)
 {
-	return {std::max(a.mode, b.mode), std::min(a.quiet, b.quiet), std::max(a.patience, b.patience), std::min(a.stay, b.stay)};
+	return {std::max(a.mode, b.mode), std::min(a.quiet, b.quiet), std::max(a.patience, b.patience), std::min(a.stay, b.stay),
+	        std::max(a.mayHold, b.mayHold)};
 }
 
 } // namespace
@@ -52,6 +53,7 @@ bool Structures<K>::letReturn()
 		if (isReady(one)) {
 			one.mode = WallMode::still;
 			one.quiet = one.stay = 0;
+			one.mayHold = std::min(2 * one.mayHold, tolerance::wall::held);
 		}
 	sinceReturn = 0;
 	return true;

@@ -5,6 +5,7 @@
 // Where blocks come near each other or part, structures join or split: all that is joined moves if any of it did. Motions that must be
 // asked in order of time (BaseDrive::ordered) make one of all.
 #include "dynamics/rigid/island_numbers.hpp"
+#include "tolerances.hpp"
 
 namespace masonry::rigid {
 
@@ -15,9 +16,10 @@ namespace wall {
 // What the choice of the mode remembers.
 struct Structure {
 	WallMode mode {WallMode::still};
-	double quiet {0};    // s, how long nothing has moved
-	double patience {0}; // s, for how long it must not
-	double stay {0};     // s, in the still mode; -1: has left it
+	double quiet {0};                            // s, how long nothing has moved
+	double patience {0};                         // s, for how long it must not
+	double stay {0};                             // s, in the still mode; -1: has left it
+	double mayHold {tolerance::wall::leastHeld}; // as tolerance::wall::held
 };
 
 template <class K>
@@ -43,7 +45,7 @@ public:
 		find(system);
 		f(sinceReturn), f(shortest);
 		for (Structure& one : all)
-			f(one.mode), f(one.quiet), f(one.patience), f(one.stay);
+			f(one.mode), f(one.quiet), f(one.patience), f(one.stay), f(one.mayHold);
 	}
 
 private:

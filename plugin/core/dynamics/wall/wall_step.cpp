@@ -81,7 +81,7 @@ template <class K>
 void WallStep<K>::advancePart(RigidSystem<K>& s, double h)
 {
 	const double workBefore = s.baseWork;
-	frictionLoss = 0;
+	frictionLoss = setOffEnergy = 0;
 	scales = Scales(s);
 	team.setThreads(settings.threads);
 	onDrives.clear();
@@ -208,6 +208,7 @@ bool WallStep<K>::stepStill(RigidSystem<K>& s, double h)
 		report.forceResidual = std::max(report.forceResidual, kept.report.force);
 	} else {
 		const auto lanes = lanesOf(contacts, move);
+		setOff(s, move);
 		kept.giveUp(lanes);
 		contacts.startMeans(lanes);
 		for (size_t k = 0; k < move.size(); ++k)
@@ -230,44 +231,111 @@ bool WallStep<K>::stepStill(RigidSystem<K>& s, double h)
 template <class K>
 typename WallStep<K>::Chosen WallStep<K>::findMoving(double h)
 {
-	const double stepSpeed = scales.stepSpeed(h), held = tolerance::wall::held * stepSpeed, residual = tolerance::wall::still * stepSpeed,
+	const double stepSpeed = scales.stepSpeed(h), residual = tolerance::wall::still * stepSpeed,
 	             motion = tolerance::wall::motion * tolerance::restSpeed * scales.speed;
 	Chosen move(structures.all.size(), 0);
-	if (kept.findHeld() > held)
-		move = letGo(h, held);
+	gone.clear();
+	const double most = kept.findHeld();
+	for (double held = tolerance::wall::leastHeld; held <= tolerance::wall::held && most > held * stepSpeed; held *= 2) {
+		const Chosen more = letGo(h, held);
+		for (size_t k = 0; k < move.size(); ++k)
+			move[k] |= more[k];
+	}
 	if (kept.report.velocity > residual || kept.report.motion > motion) {
-		const Chosen more = structuresOf(still(), kept.unsolved(residual, motion));
+		const auto lanes = kept.unsolved(residual, motion);
+		gone.resize(lanes.size(), 0);
+		for (size_t g = 0; g < lanes.size(); ++g)
+			gone[g] |= lanes[g];
+		const Chosen more = structuresOf(still(), lanes);
 		for (size_t k = 0; k < move.size(); ++k)
 			move[k] |= more[k];
 	}
 	return move;
 }
 
-// Those of which points that were held go somewhere when they are let go. In the others the impulses have only been late.
+// Those, of all that may hold `share` of what gravity gives in a step, of which points that were held go somewhere when they are let go. In
+// the others the impulses have only been late: they may hold more from now on.
 template <class K>
-typename WallStep<K>::Chosen WallStep<K>::letGo(double h, double held)
+typename WallStep<K>::Chosen WallStep<K>::letGo(double h, double share)
 {
 	Contacts& contacts = still();
-	const double free = tolerance::wall::free * scales.stepSpeed(h);
+	const double held = share * scales.stepSpeed(h), free = tolerance::wall::free * scales.stepSpeed(h);
 	Chosen asked = structuresOf(contacts, kept.held(held)), go;
+	for (size_t k = 0; k < asked.size(); ++k)
+		asked[k] &= structures.all[k].mayHold == share;
+	if (std::find(asked.begin(), asked.end(), 1) == asked.end())
+		return asked;
 	const auto lanes = lanesOf(contacts, asked);
+	wall::LaneBits here;
 	quick.begin(contacts, loads, h);
 	bool some = true;
 	for (int k = 0; k < quickRounds && some; ++k) {
 		quick.iterate(quickSolves, 0, 0);
-		auto gone = quick.gone(0.5 * held, free);
-		for (size_t g = 0; g < gone.size(); ++g)
-			gone[g] &= lanes[g];
-		go = structuresOf(contacts, gone);
+		here = quick.gone(0.5 * held, free);
+		for (size_t g = 0; g < here.size(); ++g)
+			here[g] &= lanes[g];
+		go = structuresOf(contacts, here);
 		some = std::find(go.begin(), go.end(), 1) != go.end();
 	}
+	gone.resize(here.size(), 0);
+	for (size_t g = 0; g < here.size(); ++g)
+		gone[g] |= here[g];
 	report.solves += quick.report.solves;
 	report.factorisations += quick.report.factorisations;
 	quick.giveUp();
-	for (size_t k = 0; k < go.size(); ++k)
+	for (size_t k = 0; k < go.size(); ++k) {
 		asked[k] &= !go[k];
+		if (asked[k])
+			structures.all[k].mayHold = std::min(2 * share, tolerance::wall::held);
+	}
 	kept.forgetHeld(lanesOf(contacts, asked));
 	return go;
+}
+
+// Velocities of structures that begin to move. While they stand, they have the mean velocity of their base over a step, which is late by
+// half of it: now by half a substep. And what has gone has what it was kept from.
+template <class K>
+void WallStep<K>::setOff(RigidSystem<K>& s, const Chosen& move)
+{
+	using Vector = typename K::Vector;
+	Contacts& contacts = still();
+	kept.giveHeld(gone);
+	struct Whole {
+		Vector momentum = Vector::Zero();
+		double mass {0};
+		int base {-1};
+		bool follows {true}; // one base
+	};
+	std::vector<Whole> wholes(structures.all.size());
+	for (const auto& [g, i] : contacts.onBase) {
+		const int free = contacts.freeBody(g, i);
+		const int b = s.bodies[contacts.groups[g].body1[i]].prescribed ? contacts.groups[g].body1[i] : contacts.groups[g].body2[i];
+		Whole& whole = wholes[structures.of[free]];
+		whole.follows &= s.bodies[b].drive >= 0 && (whole.base < 0 || s.bodies[b].drive == s.bodies[whole.base].drive);
+		whole.base = b;
+	}
+	for (size_t b = 0; b < s.bodies.size(); ++b)
+		if (isStill(int(b)) && move[structures.of[b]]) {
+			Whole& whole = wholes[structures.of[b]];
+			whole.momentum += s.bodies[b].mass * s.bodies[b].velocity.template head<K::dimension>();
+			whole.mass += s.bodies[b].mass;
+		}
+	for (size_t b = 0; b < s.bodies.size(); ++b)
+		if (isStill(int(b)) && move[structures.of[b]]) {
+			const Whole& whole = wholes[structures.of[b]];
+			auto& body = s.bodies[b];
+			const double before = body.kineticEnergy();
+			body.velocity = contacts.inGlobal(contacts.velocity, b);
+			setOffEnergy += body.kineticEnergy() - before;
+			if (!started || structures.all[structures.of[b]].stay == 0 || whole.base < 0 || !whole.follows)
+				continue;
+			const Vector late = startVelocity(s, whole.base).template head<K::dimension>() - whole.momentum / whole.mass,
+			             change = (1 - 1. / substepCount()) * late;
+			const double work = body.mass * change.dot(body.velocity.template head<K::dimension>() + change / 2);
+			s.baseWork += work;
+			setOffEnergy += work;
+			body.velocity.template head<K::dimension>() += change;
+		}
 }
 
 template <class K>
@@ -443,7 +511,7 @@ void WallStep<K>::takeMotion(RigidSystem<K>& s, double h, double workBefore)
 		of[number] = sum;
 	});
 	const double baseWork = s.baseWork - workBefore;
-	double lost = baseWork - frictionLoss, atStake = std::abs(baseWork), mass = 0;
+	double lost = baseWork - frictionLoss - setOffEnergy, atStake = std::abs(baseWork), mass = 0;
 	for (const Energies& share : of) {
 		lost += share.work - share.gained;
 		atStake += std::abs(share.work) + share.before;

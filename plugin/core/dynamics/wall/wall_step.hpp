@@ -79,7 +79,8 @@ private:
 	wall::LaneBits lanesOf(const Contacts& contacts, const Chosen& structures) const;
 	bool stepStill(RigidSystem<K>& system, double h);
 	Chosen findMoving(double h);
-	Chosen letGo(double h, double held);
+	Chosen letGo(double h, double share);
+	void setOff(RigidSystem<K>& system, const Chosen& move);
 	void stepMoving(RigidSystem<K>& system, double h);
 	void lean(RigidSystem<K>& system, Contacts& contacts, double h);
 	int land(RigidSystem<K>& system, double part);
@@ -107,9 +108,11 @@ private:
 	wall::Lift<K> lift;
 	wall::RockingJoints<K> joints;
 	wall::LaneArray loads;
+	wall::LaneBits gone;                  // pairs of the still set that have been let go in this step and have gone
 	std::vector<typename K::Pose> middle; // of a step that moves
 	std::vector<int> onDrives;            // prescribed bodies with a drive
 	double frictionLoss {0};              // J, of the part of the step
+	double setOffEnergy {0};              // J, that structures which begin to move have been given
 };
 
 } // namespace masonry::rigid
