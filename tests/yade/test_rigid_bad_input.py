@@ -75,3 +75,11 @@ refuses_to_run(f"Blocks {base} and {block}", "0.001", "overlap")
 O.bodies[block].state.pos += Vector3(0, 0, 1e-3)
 O.run(10, True)
 assert abs(O.bodies[block].state.pos[2] - 1.5) < 1e-9
+
+# A place that is none, given by a script on the way: the block is in touch with nothing there and would fall for ever.
+for method in ("localised", "wall"):
+    O.reset()
+    _, block, _ = scene(method=method)
+    O.step()
+    O.bodies[block].state.pos = (nan, 0, 1)
+    refuses(O.step, "diverged", "no longer finite", kind=RuntimeError)

@@ -18,7 +18,7 @@ template <class K> StepReport RigidStep<K>::advance(RigidSystem<K>& s, double dt
 			step.accept(s);
 			left = event.kind == Event::none && h == left ? 0 : left - step.trial().h;
 		}
-		if (!std::isfinite(s.kineticEnergy())) {
+		if (!s.isFinite()) {
 			report.diverged = true;
 			return report;
 		}

@@ -4,6 +4,7 @@
 #include "dynamics/rigid/contact_problem.hpp"
 #include "impact/rocking_restitution.hpp"
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 namespace masonry::rigid {
@@ -116,6 +117,14 @@ template <class K> struct RigidSystem {
 		for (const auto& body : bodies)
 			sum += body.kineticEnergy();
 		return sum;
+	}
+	// Velocities and places.
+	bool isFinite() const
+	{
+		double sum = kineticEnergy();
+		for (const auto& body : bodies)
+			sum += body.pose.position.sum();
+		return std::isfinite(sum);
 	}
 };
 

@@ -109,7 +109,7 @@ void WallStep<K>::advancePart(RigidSystem<K>& s, double h)
 	s.time += h;
 	s.moved = false;
 	s.setFresh(false);
-	report.diverged = !std::isfinite(s.kineticEnergy());
+	report.diverged = !s.isFinite();
 }
 
 // Every pair into the set of its structure's mode; the taker takes from the giver.
