@@ -26,14 +26,19 @@ double untilKink(const RigidSystem<K>& s, double left, double dt)
 	return left;
 }
 
+// True: there are some.
 template <class K>
-void takeJumps(RigidSystem<K>& s)
+bool takeJumps(RigidSystem<K>& s)
 {
+	bool some = false;
 	for (size_t d = 0; d < s.drives.size(); ++d)
-		if (const double jump = s.drives[d]->jumpAt(s.time))
+		if (const double jump = s.drives[d]->jumpAt(s.time)) {
+			some = true;
 			for (auto& body : s.bodies)
 				if (body.drive == int(d))
 					body.velocity.template head<K::dimension>() += jump * s.driveDirections[d];
+		}
+	return some;
 }
 
 template <class K>
@@ -63,13 +68,13 @@ StepReport WallStep<K>::advance(RigidSystem<K>& s, double dt)
 {
 	report = {};
 	s.impacts.clear();
-	takeJumps(s);
+	jumped = takeJumps(s);
 	for (double left = dt; left > 0 && !report.diverged;) {
 		const double h = untilKink(s, left, dt);
 		advancePart(s, h);
 		left = h == left ? 0 : left - h;
 		if (left > 0)
-			takeJumps(s);
+			jumped = takeJumps(s);
 	}
 	report.residual = std::max(report.velocityResidual, report.forceResidual);
 	report.sweeps = report.solves;
@@ -293,7 +298,7 @@ typename WallStep<K>::Chosen WallStep<K>::letGo(double h, double share)
 }
 
 // Velocities of structures that begin to move. While they stand, they have the mean velocity of their base over a step, which is late by
-// half of it: now by half a substep. And what has gone has what it was kept from.
+// half of it: now by half a substep (a jump of the base is for the sweeps). And what has gone has what it was kept from.
 template <class K>
 void WallStep<K>::setOff(RigidSystem<K>& s, const Chosen& move)
 {
@@ -327,7 +332,7 @@ void WallStep<K>::setOff(RigidSystem<K>& s, const Chosen& move)
 			const double before = body.kineticEnergy();
 			body.velocity = contacts.inGlobal(contacts.velocity, b);
 			setOffEnergy += body.kineticEnergy() - before;
-			if (!started || structures.all[structures.of[b]].stay == 0 || whole.base < 0 || !whole.follows)
+			if (!started || jumped || structures.all[structures.of[b]].stay == 0 || whole.base < 0 || !whole.follows)
 				continue;
 			const Vector late = startVelocity(s, whole.base).template head<K::dimension>() - whole.momentum / whole.mass,
 			             change = (1 - 1. / substepCount()) * late;

@@ -97,8 +97,8 @@ private:
 
 	static constexpr double quickSoftness = 0.1; // velocities follow their laws within some ten solves
 
-	bool started {false};
-	Scales scales; // of the step
+	bool started {false}, jumped {false}; // the base, at this instant
+	Scales scales;                        // of the step
 	wall::Structures<K> structures;
 	wall::Team team;
 	Contacts sets[2] {Contacts(team), Contacts(team)};
