@@ -109,6 +109,9 @@ void WallStep<K>::advancePart(RigidSystem<K>& s, double h)
 		stepMoving(s, h);
 	}
 	started = true;
+	speeds.clear();
+	for (const BaseDrive* drive : s.drives)
+		speeds.push_back((drive->displacement(s.time + h) - drive->displacement(s.time)) / h);
 	takeMotion(s, h, workBefore);
 	choose(h);
 	s.time += h;
@@ -247,11 +250,7 @@ typename WallStep<K>::Chosen WallStep<K>::findMoving(double h)
 			move[k] |= more[k];
 	}
 	if (kept.report.velocity > residual || kept.report.motion > motion) {
-		const auto lanes = kept.unsolved(residual, motion);
-		gone.resize(lanes.size(), 0);
-		for (size_t g = 0; g < lanes.size(); ++g)
-			gone[g] |= lanes[g];
-		const Chosen more = structuresOf(still(), lanes);
+		const Chosen more = structuresOf(still(), kept.unsolved(residual, motion));
 		for (size_t k = 0; k < move.size(); ++k)
 			move[k] |= more[k];
 	}
@@ -305,37 +304,24 @@ void WallStep<K>::setOff(RigidSystem<K>& s, const Chosen& move)
 	using Vector = typename K::Vector;
 	Contacts& contacts = still();
 	kept.giveHeld(gone);
-	struct Whole {
-		Vector momentum = Vector::Zero();
-		double mass {0};
-		int base {-1};
-		bool follows {true}; // one base
-	};
-	std::vector<Whole> wholes(structures.all.size());
+	constexpr int none = -1, several = -2;
+	std::vector<int> driveOf(structures.all.size(), none);
 	for (const auto& [g, i] : contacts.onBase) {
-		const int free = contacts.freeBody(g, i);
-		const int b = s.bodies[contacts.groups[g].body1[i]].prescribed ? contacts.groups[g].body1[i] : contacts.groups[g].body2[i];
-		Whole& whole = wholes[structures.of[free]];
-		whole.follows &= s.bodies[b].drive >= 0 && (whole.base < 0 || s.bodies[b].drive == s.bodies[whole.base].drive);
-		whole.base = b;
+		const int base = s.bodies[contacts.groups[g].body1[i]].prescribed ? contacts.groups[g].body1[i] : contacts.groups[g].body2[i];
+		int& drive = driveOf[structures.of[contacts.freeBody(g, i)]];
+		drive = s.bodies[base].drive >= 0 && (drive == none || drive == s.bodies[base].drive) ? s.bodies[base].drive : several;
 	}
 	for (size_t b = 0; b < s.bodies.size(); ++b)
 		if (isStill(int(b)) && move[structures.of[b]]) {
-			Whole& whole = wholes[structures.of[b]];
-			whole.momentum += s.bodies[b].mass * s.bodies[b].velocity.template head<K::dimension>();
-			whole.mass += s.bodies[b].mass;
-		}
-	for (size_t b = 0; b < s.bodies.size(); ++b)
-		if (isStill(int(b)) && move[structures.of[b]]) {
-			const Whole& whole = wholes[structures.of[b]];
+			const int drive = driveOf[structures.of[b]];
 			auto& body = s.bodies[b];
 			const double before = body.kineticEnergy();
 			body.velocity = contacts.inGlobal(contacts.velocity, b);
 			setOffEnergy += body.kineticEnergy() - before;
-			if (!started || jumped || structures.all[structures.of[b]].stay == 0 || whole.base < 0 || !whole.follows)
+			if (drive < 0 || jumped || structures.all[structures.of[b]].stay == 0 || speeds.size() != s.drives.size())
 				continue;
-			const Vector late = startVelocity(s, whole.base).template head<K::dimension>() - whole.momentum / whole.mass,
-			             change = (1 - 1. / substepCount()) * late;
+			const Vector change =
+			    (1 - 1. / substepCount()) * (s.drives[drive]->velocity(s.time) - speeds[drive]) * s.driveDirections[drive];
 			const double work = body.mass * change.dot(body.velocity.template head<K::dimension>() + change / 2);
 			s.baseWork += work;
 			setOffEnergy += work;

@@ -58,6 +58,11 @@ public:
 		if (!started)
 			return;
 		structures.pass(f, system);
+		size_t count = speeds.size();
+		f(count);
+		speeds.resize(count);
+		for (double& speed : speeds)
+			f(speed);
 		f(stillSet);
 		still().pass(f, system, structures.bodies(WallMode::still));
 		moving().pass(f, system, structures.bodies(WallMode::moving));
@@ -111,6 +116,7 @@ private:
 	wall::LaneBits gone;                  // pairs of the still set that have been let go in this step and have gone
 	std::vector<typename K::Pose> middle; // of a step that moves
 	std::vector<int> onDrives;            // prescribed bodies with a drive
+	std::vector<double> speeds;           // of the drives, mean of the last part of a step, m/s
 	double frictionLoss {0};              // J, of the part of the step
 	double setOffEnergy {0};              // J, that structures which begin to move have been given
 };
