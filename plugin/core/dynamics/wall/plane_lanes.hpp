@@ -55,7 +55,8 @@ struct alignas(alignment) FeatureLanes<Plane> {
 template <>
 struct alignas(alignment) Coupling<Plane> {
 	Floats n1t1, n2t2, n1n2, t1t2, n1t2, t1n2;
-	unsigned char free1, free2; // a bit for each body that is not prescribed
+	Floats inverse11, inverse12, inverse22; // of the block of both normals, kg
+	unsigned char free1, free2;             // a bit for each body that is not prescribed
 
 	MASONRY_INLINE void set(const PointLanes<Plane, Floats>* point, const Floats& m1, const Floats& m2)
 	{
@@ -67,6 +68,12 @@ struct alignas(alignment) Coupling<Plane> {
 		t1t2 = cosine + m1 * p.a1t * q.a1t + m2 * p.a2t * q.a2t;
 		n1t2 = m1 * p.a1n * q.a1t + m2 * p.a2n * q.a2t - sine;
 		t1n2 = m1 * p.a1t * q.a1n + m2 * p.a2t * q.a2n + sine;
+		// of points that nearly coincide at most so large
+		constexpr double least = 1e-4;
+		const Floats one = all<Floats>(1), cross = n1n2 * p.massN * q.massN, scale = one / larger(one - n1n2 * cross, all<Floats>(least));
+		inverse11 = scale * p.massN;
+		inverse22 = scale * q.massN;
+		inverse12 = -scale * cross;
 		free1 = bitsOf(m1 > 0);
 		free2 = bitsOf(m2 > 0);
 	}

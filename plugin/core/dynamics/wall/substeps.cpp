@@ -9,7 +9,11 @@ namespace {
 
 // Of the difference of an impulse from its mean over the last substeps: what a sweep takes off, over the root of their number (joints give
 // way by it, and many of them upon another sway; loads lag the less the more sweeps there are); what a substep takes into the mean.
-constexpr double damping = 0.015, inMean = 0.0125;
+constexpr double damping = 0.015, inMean = 0.06;
+
+// Of a load, where there are fewer sweeps than courses: how far friction's may be from it (frictionBound()). More: what slides is slow to
+// notice that its load changes.
+constexpr double mostLumps = 0.2;
 
 // What a substep hands on of an impulse at most: so many times its mean, or so many times what stops a point alone after a substep's fall,
 // which is how a block that begins to turn about it presses. Larger: what has stopped a block pushes it up before the sweep takes it off;
@@ -20,9 +24,9 @@ constexpr double mostOfMean = 5, mostOfMeanOfSeveral = 3, mostOfFall = 2;
 // Sweeps before the move, and after it, as the square of the courses asks; but as many as there are courses up to three, since what blocks
 // that land together have not been told of each other is lost. What all but the last of them overdo: the last must not, an impact would
 // bounce.
-constexpr double coursesOfSweep = 9;
+constexpr double coursesOfSweep = 12;
 constexpr int ofFewCourses = 3;
-constexpr double overRelaxation = 1.4;
+constexpr double overRelaxation = 1.2;
 
 template <class K>
 MASONRY_INLINE void moveGroups(Group<K, Floats>* groups, int begin, int end, const FloatPack* velocity, float s)
@@ -37,12 +41,12 @@ MASONRY_INLINE void moveGroups(Group<K, Floats>* groups, int begin, int end, con
 
 // What friction takes at the points that carry all that they can, J.
 template <class K>
-MASONRY_INLINE void addLoss(const Group<K, Floats>& group, const FloatPack* velocity, Lanes& loss)
+MASONRY_INLINE void addLoss(const Group<K, Floats>& group, const FloatPack* velocity, float lumps, Lanes& loss)
 {
 	FloatMask glide[lanePoints<K>], some {};
 	for (int k = 0; k < group.count; ++k) {
 		const PointLanes<K, Floats>& p = group.point[k];
-		glide[k] = (p.pn > 0) & slides(p.pt, group.friction * p.pn);
+		glide[k] = (p.pn > 0) & slides(p.pt, frictionBound(p, group.friction, lumps));
 		some |= glide[k];
 	}
 	if (!any(some))
@@ -141,7 +145,7 @@ MASONRY_INLINE void sumGroups(const Group<K, Floats>* groups, const Coupling<K>*
 	MASONRY_LANES void sweep(Group<K, Floats>* groups, const Coupling<K>* couplings, int begin, int end, FloatPack* velocity,              \
 	                         const Sweep& how)                                                                                             \
 	{                                                                                                                                      \
-		sweepGroups<K>(groups, couplings, begin, end, velocity, {how.perSubstep, how.relaxation, how.damping});                            \
+		sweepGroups<K>(groups, couplings, begin, end, velocity, {how.perSubstep, how.relaxation, how.damping, how.lumps});                 \
 	}                                                                                                                                      \
 	MASONRY_LANES void watchedSweep(Group<K, Floats>* groups, const Coupling<K>* couplings, int begin, int end, FloatPack* velocity,       \
 	                                const Sweep& how)                                                                                      \
@@ -152,11 +156,11 @@ MASONRY_INLINE void sumGroups(const Group<K, Floats>* groups, const Coupling<K>*
 	{                                                                                                                                      \
 		moveGroups<K>(groups, begin, end, velocity, s);                                                                                    \
 	}                                                                                                                                      \
-	MASONRY_LANES void handOnGroups(Group<K, Floats>* groups, int begin, int end, const FloatPack* velocity, float ofMean, float fall,     \
-	                                FloatPack* contactPart, Lanes& loss)                                                                   \
+	MASONRY_LANES void handOnGroups(Group<K, Floats>* groups, int begin, int end, const FloatPack* velocity, float lumps, float ofMean,    \
+	                                float fall, FloatPack* contactPart, Lanes& loss)                                                       \
 	{                                                                                                                                      \
 		for (int g = begin; g < end; ++g) {                                                                                                \
-			addLoss(groups[g], velocity, loss);                                                                                            \
+			addLoss(groups[g], velocity, lumps, loss);                                                                                     \
 			trim(groups[g], ofMean, fall, contactPart);                                                                                    \
 		}                                                                                                                                  \
 	}                                                                                                                                      \
@@ -247,6 +251,7 @@ template <class K>
 void Substeps<K>::begin(WallContacts<K>& c)
 {
 	sweeps = std::max({1, std::min(c.depth, ofFewCourses), int(std::ceil(std::pow(c.depth / coursesOfSweep, 2)))});
+	lumps = sweeps < c.depth ? float(mostLumps) : 0;
 	arrange(c);
 	change.assign(halves.size(), all<Floats>(0));
 	motion = change;
@@ -287,7 +292,7 @@ void Substeps<K>::substep(WallContacts<K>& c, const LaneArray& load, double s, b
 	};
 	const auto press = [&](int number, bool isEnd, bool watched = false) {
 		[[maybe_unused]] const TinyIsZero inSweeps;
-		Sweep how {float(1 / s), float(isEnd ? 1 : overRelaxation), float(damping / std::sqrt(sweeps))};
+		Sweep how {float(1 / s), float(isEnd ? 1 : overRelaxation), float(damping / std::sqrt(sweeps)), lumps};
 		if (watched)
 			how.change = change.data(), how.motion = motion.data();
 		parts[number].byColour([&](int first, int last) {
@@ -340,8 +345,8 @@ void Substeps<K>::handOn(WallContacts<K>& c, double fall)
 	const double ofMean = sweeps > 1 ? mostOfMeanOfSeveral : mostOfMean;
 	c.allParts([&](const Part&, int number) {
 		[[maybe_unused]] const TinyIsZero inSweeps;
-		handOnGroups(groups.data(), parts[number].begin, parts[number].end, velocity.data(), float(ofMean), float(fall), contactPart.data(),
-		             loss[number]);
+		handOnGroups(groups.data(), parts[number].begin, parts[number].end, velocity.data(), lumps, float(ofMean), float(fall),
+		             contactPart.data(), loss[number]);
 	});
 }
 

@@ -10,9 +10,10 @@
 // approach stop short, and piers do not rock as they should.) One sweep carries an impulse one course on: what the courses miss of each
 // other falls as 1/substeps^2, and loads that lag behind like that bounce. So a sweep takes a little off what an impulse differs from its
 // mean over the last steps, which lets no load that stays sink. Over many sweeps loads spread as by diffusion, and their number grows as
-// the courses squared: with one alone, the first peak of a column of 48 that rocks is 9 % off, not 2, and what is lost while loads lag
-// counts as impacts that were none. Penetrations are taken off at the end of the step (lift.hpp): springs that do it in the sweeps give way
-// under every load, ten times as deep.
+// the courses squared: with one alone, the first peak of a column of 48 that rocks is 9 % off, not 4, and what is lost while loads lag
+// counts as impacts that were none. Friction goes by the mean of loads that lag (frictionBound() in sweep.hpp): with the bound of the
+// moment the top of a wall of 32 courses at 1 g goes 28 % too far. Penetrations are taken off at the end of the step (lift.hpp): springs
+// that do it in the sweeps give way under every load, ten times as deep.
 //
 // The sweeps compute in floats, eight pairs side by side. Gaps start anew in every step, and velocities are
 // in double precision what the loads and the impulses of each substep give: rounding does not add up.
@@ -61,6 +62,7 @@ private:
 	void sumImpulses(int part);
 
 	int sweeps {1};                         // before the move, and after it
+	float lumps {0};                        // frictionBound()
 	Array<Group<K, Floats>> groups;         // two of the contacts each, of one colour
 	std::vector<std::array<int, 2>> halves; // which; -1: none
 	std::vector<Place> places;              // of the contacts' groups

@@ -1,5 +1,5 @@
 #pragma once
-// One sweep over the points of a wall that moves: Gauss-Seidel by groups, each point its normal impulse first, then friction.
+// One sweep over the points of a wall that moves: Gauss-Seidel by groups.
 #include "dynamics/wall/wall_contacts.hpp"
 
 namespace masonry::rigid::wall {
@@ -8,19 +8,32 @@ struct Sweep {
 	float perSubstep; // 1/s
 	float relaxation; // of the changes of impulses
 	float damping;    // what it takes off the difference of an impulse from its mean
+	float lumps;      // frictionBound()
 	// Where the last sweep leaves what is reported, by group; null: nobody asks.
 	Floats *change {nullptr}, *motion {nullptr};
 };
 
-// An open point may close within the substep.
-template <class K>
-MASONRY_INLINE Floats normalImpulse(const PointLanes<K, Floats>& p, const Floats& un, const Sweep& sweep)
+// What the normal velocity must not fall below, with its sign changed: an open point may close within the substep.
+template <class P>
+MASONRY_INLINE Floats closing(const P& p, const Sweep& sweep)
 {
-	const Floats none = all<Floats>(0);
-	const FloatMask open = p.gap > 0;
-	const Floats closing = open ? sweep.perSubstep * p.gap : none,
-	             damped = open ? none : sweep.damping * smaller(p.pn - p.steady, p.steady);
-	return larger(p.pn - sweep.relaxation * p.massN * (un + closing) - damped, none);
+	return p.gap > 0 ? sweep.perSubstep * p.gap : all<Floats>(0);
+}
+
+// The point's impulse, from the one that it needs. One that has ended is not drawn back to its mean.
+template <class P>
+MASONRY_INLINE Floats normalImpulse(const P& p, const Floats& needed, const Sweep& sweep)
+{
+	const Floats none = all<Floats>(0), damped = p.gap > 0 ? none : sweep.damping * larger(smaller(p.pn - p.steady, p.steady), -p.pn);
+	return larger(p.pn + sweep.relaxation * (needed - p.pn) - damped, none);
+}
+
+// Of friction's impulse. Where loads lag they come in lumps: under one, friction needs less than it may give, and between two, blocks slip
+// that would not. So the mean load counts, as far as it is within this share of the load.
+template <class P>
+MASONRY_INLINE Floats frictionBound(const P& p, const Floats& friction, float lumps)
+{
+	return friction * larger(smaller(p.steady, (1 + lumps) * p.pn), (1 - lumps) * p.pn);
 }
 
 template <class K, class Tangent>
@@ -38,36 +51,24 @@ template <class K>
 class Visit;
 
 // In terms of the relative velocities of both points: what an impulse adds to the rows that follow is known (Coupling), and need not go
-// through the velocities of the bodies.
+// through the velocities of the bodies. First both normal impulses at once, since one after the other they would turn a block that lands
+// flat; then friction.
 template <>
 class Visit<Plane> {
 public:
+	static constexpr int stages = 1 + lanePoints<Plane>;
+
 	MASONRY_INLINE Visit(Group<Plane, Floats>* groups, const Coupling<Plane>* couplings, int g, FloatPack* velocity)
 	    : group(groups[g]), w(couplings[g]), g(g), velocity(velocity), v1(velocity, group.body1), v2(velocity, group.body2)
 	{
 	}
-	template <int k>
-	MASONRY_INLINE void normal(const Sweep& sweep)
+	template <int stage>
+	MASONRY_INLINE void take(const Sweep& sweep)
 	{
-		PointLanes<Plane, Floats>& p = group.point[k];
-		un[k] = normalRate(v1, v2, p);
-		if constexpr (k == 1)
-			un[1] = un[1] + w.n1n2 * dn[0] + w.t1n2 * dt[0];
-		const Floats pn = normalImpulse(p, un[k], sweep);
-		dn[k] = pn - p.pn;
-		p.pn = pn;
-	}
-	template <int k>
-	MASONRY_INLINE void tangential(const Sweep& sweep)
-	{
-		PointLanes<Plane, Floats>& p = group.point[k];
-		const Floats before = slipRate(v1, v2, p);
-		const Floats ut = k == 0 ? before + w.n1t1 * dn[0] : before + w.n1t2 * dn[0] + w.t1t2 * dt[0] + w.n2t2 * dn[1];
-		const Floats pt = friction(p, sweep.relaxation * ut, group.friction * p.pn);
-		dt[k] = pt - p.pt;
-		p.pt = pt;
-		if (sweep.change)
-			measure(p, un[k], ut, dn[k], dt[k], sweep.change[g], sweep.motion[g]);
+		if constexpr (stage == 0)
+			normal(sweep);
+		else
+			tangential<stage - 1>(sweep);
 	}
 	MASONRY_INLINE void end()
 	{
@@ -78,6 +79,40 @@ public:
 	}
 
 private:
+	// Both press, or the first, or the second, or none: one of these fits.
+	MASONRY_INLINE void normal(const Sweep& sweep)
+	{
+		PointLanes<Plane, Floats>&p = group.point[0], &q = group.point[1];
+		un[0] = normalRate(v1, v2, p);
+		un[1] = normalRate(v1, v2, q);
+		const Floats none = all<Floats>(0), u = un[0] + closing(p, sweep), v = un[1] + closing(q, sweep);
+		const Floats p2 = p.pn - w.inverse11 * u - w.inverse12 * v, q2 = q.pn - w.inverse12 * u - w.inverse22 * v,
+		             p1 = larger(p.pn - p.massN * (u - w.n1n2 * q.pn), none), q1 = larger(q.pn - q.massN * (v - w.n1n2 * p.pn), none);
+		const FloatMask both = (p2 >= 0) & (q2 >= 0), first = q.massN * (v + w.n1n2 * (p1 - p.pn)) >= q.pn;
+		set<0>(both ? p2 : first ? p1 : none, sweep);
+		set<1>(both ? q2 : first ? none : q1, sweep);
+	}
+	template <int k>
+	MASONRY_INLINE void set(const Floats& needed, const Sweep& sweep)
+	{
+		PointLanes<Plane, Floats>& p = group.point[k];
+		const Floats pn = normalImpulse(p, needed, sweep);
+		dn[k] = pn - p.pn;
+		p.pn = pn;
+	}
+	template <int k>
+	MASONRY_INLINE void tangential(const Sweep& sweep)
+	{
+		PointLanes<Plane, Floats>& p = group.point[k];
+		const Floats before = slipRate(v1, v2, p);
+		const Floats ut = k == 0 ? before + w.n1t1 * dn[0] + w.t1n2 * dn[1] : before + w.n1t2 * dn[0] + w.t1t2 * dt[0] + w.n2t2 * dn[1];
+		const Floats pt = friction(p, sweep.relaxation * ut, frictionBound(p, group.friction, sweep.lumps));
+		dt[k] = pt - p.pt;
+		p.pt = pt;
+		if (sweep.change)
+			measure(p, un[k], ut, dn[k], dt[k], sweep.change[g], sweep.motion[g]);
+	}
+
 	Group<Plane, Floats>& group;
 	const Coupling<Plane>& w;
 	const int g;
@@ -86,36 +121,36 @@ private:
 	Floats un[lanePoints<Plane>], dn[lanePoints<Plane>], dt[lanePoints<Plane>];
 };
 
+// Point by point, normal impulse first.
 template <>
 class Visit<Space> {
 public:
+	static constexpr int stages = 2 * lanePoints<Space>;
+
 	MASONRY_INLINE Visit(Group<Space, Floats>* groups, const Coupling<Space>* couplings, int g, FloatPack* velocity)
 	    : group(groups[g]), w(couplings[g]), g(g), velocity(velocity), v1(velocity, group.body1), v2(velocity, group.body2)
 	{
 	}
-	template <int k>
-	MASONRY_INLINE void normal(const Sweep& sweep)
+	template <int stage>
+	MASONRY_INLINE void take(const Sweep& sweep)
 	{
-		if (k >= group.count)
+		if (stage / 2 >= group.count)
 			return;
-		PointLanes<Space, Floats>& p = group.point[k];
-		un = normalRate(v1, v2, p);
-		const Floats pn = normalImpulse(p, un, sweep);
-		dn = pn - p.pn;
-		pushNormal(v1, v2, p, dn);
-		p.pn = pn;
-	}
-	template <int k>
-	MASONRY_INLINE void tangential(const Sweep& sweep)
-	{
-		if (k >= group.count)
-			return;
-		PointLanes<Space, Floats>& p = group.point[k];
-		const Two<Floats> ut = slipRate(v1, v2, p), pt = friction(p, sweep.relaxation * ut, group.friction * p.pn), dt = pt - p.pt;
-		pushTangential(v1, v2, p, dt);
-		p.pt = pt;
-		if (sweep.change)
-			measure(p, un, ut, dn, dt, sweep.change[g], sweep.motion[g]);
+		PointLanes<Space, Floats>& p = group.point[stage / 2];
+		if constexpr (stage % 2 == 0) {
+			un = normalRate(v1, v2, p);
+			const Floats pn = normalImpulse(p, p.pn - p.massN * (un + closing(p, sweep)), sweep);
+			dn = pn - p.pn;
+			pushNormal(v1, v2, p, dn);
+			p.pn = pn;
+		} else {
+			const Two<Floats> ut = slipRate(v1, v2, p),
+			                  pt = friction(p, sweep.relaxation * ut, frictionBound(p, group.friction, sweep.lumps)), dt = pt - p.pt;
+			pushTangential(v1, v2, p, dt);
+			p.pt = pt;
+			if (sweep.change)
+				measure(p, un, ut, dn, dt, sweep.change[g], sweep.motion[g]);
+		}
 	}
 	MASONRY_INLINE void end()
 	{
@@ -133,13 +168,12 @@ private:
 };
 
 // Groups at the same time: one alone waits for its own results.
-template <class K, int k = 0, class... Visits>
+template <class K, int stage = 0, class... Visits>
 MASONRY_INLINE void sweepTogether(const Sweep& sweep, Visits&&... visits)
 {
-	(visits.template normal<k>(sweep), ...);
-	(visits.template tangential<k>(sweep), ...);
-	if constexpr (k + 1 < lanePoints<K>)
-		sweepTogether<K, k + 1>(sweep, visits...);
+	(visits.template take<stage>(sweep), ...);
+	if constexpr (stage + 1 < Visit<K>::stages)
+		sweepTogether<K, stage + 1>(sweep, visits...);
 	else
 		(visits.end(), ...);
 }

@@ -49,6 +49,39 @@ struct Kinked : Harmonic {
 
 } // namespace
 
+// Both corners land at once: the block stays where it lands, upright, and all that it had is lost. Corners one after another turn a slender
+// one over. Bounds: the impulse in single precision, and the turn that it gives over the time.
+TEST_CASE("a block that lands flat stays upright")
+{
+	const double h = GENERATE(1e-3, 1e-4), height = 1, gravityStep = g * h;
+	Scene scene(0.7);
+	addBlock(scene.system, slender, {0, slender.y() + height});
+	scene.run(std::sqrt(2 * height / g) + 0.5, h);
+	const auto& block = scene.system.bodies[1];
+	constexpr double single = 1e-6;
+	CHECK(std::abs(block.pose.angle) < single);
+	CHECK(std::abs(block.pose.position.x()) < single * height);
+	CHECK(block.velocity.norm() < gravityStep);
+	CHECK(scene.system.impactDissip == Approx(block.mass * g * height).epsilon(2 * gravityStep / std::sqrt(2 * g * height)));
+}
+
+// Momentum and spin are as before, none, and plastic blocks do not part. Bound: a rounding in single precision of what they had. An impulse
+// that is drawn to its mean where it has ended drives them apart, at a thousandth.
+TEST_CASE("two blocks that meet face to face stop")
+{
+	Scene scene(0.3);
+	scene.system.gravity.setZero();
+	const Vector2 half(0.3, 0.5);
+	for (const double side : {-1., 1.}) {
+		auto& block = scene.system.bodies[addBlock(scene.system, half, {side * 0.5, 5})];
+		block.velocity << -2 * side, 0, 0;
+		block.force.setZero();
+	}
+	scene.run(0.3, 1e-3);
+	for (int b : {1, 2})
+		CHECK(scene.system.bodies[b].velocity.norm() < 2e-6);
+}
+
 // Over three impacts, the block sliding a little at each. First order in the substep; bounds: twice what was measured of the start angle
 // (2.6e-3; plastic landings, which take two substeps, 1.6e-2). Where corners that approach lose speed to the sweeps (no gap allowance in
 // the relax sweep, or open points of a rocking joint not put aside) it is 20 to 40 %.
@@ -81,7 +114,7 @@ TEST_CASE("a column rocks as the block that it makes")
 	                                                                                          {1, NAN, 1e-3, 5.5e-3},
 	                                                                                          {12, NAN, 1e-3, 5.5e-3},
 	                                                                                          {24, NAN, 1e-3, 5.5e-3},
-	                                                                                          {48, NAN, 1e-3, 0.022},
+	                                                                                          {48, NAN, 1e-3, 0.057},
 	                                                                                          {1, NAN, 2.5e-4, 1.1e-3},
 	                                                                                          {12, NAN, 2.5e-4, 1.1e-3}}));
 	Scene scene(0.8, restitution);
@@ -114,8 +147,8 @@ TEST_CASE("without restitution a landing ends the rocking")
 }
 
 // A flat block on a base with acceleration A sin(w t), A > mu g: it slips from w t0 = asin(mu g/A) until the integral of mu g - A sin(w t)
-// from t0 is zero again, at t1. Errors are first order in the step. Bound: twice what is measured (1.4 and 0.33 %, at 0.4 g; 34 and 9 % where
-// a block may be kept from twice a step's fall, and then loses it and half a step's velocity of the base).
+// from t0 is zero again, at t1. Errors are first order in the step. Bound: twice what is measured (1.4 and 0.33 %, at 0.4 g; 34 and 9 %
+// where a block may be kept from twice a step's fall, and then loses it and half a step's velocity of the base).
 TEST_CASE("a block that is set off slips as far as it must")
 {
 	const double friction = 0.3, amplitude = GENERATE(0.4, 0.6) * g, hertz = 2, w = 2 * M_PI * hertz, h = GENERATE(1e-3, 2.5e-4);
@@ -126,7 +159,8 @@ TEST_CASE("a block that is set off slips as far as it must")
 	const double t0 = std::asin(friction * g / amplitude) / w;
 	const auto rate = [&](double t) { return friction * g * (t - t0) + amplitude / w * (std::cos(w * t) - std::cos(w * t0)); };
 	const auto slip = [&](double t) {
-		return friction * g * (t - t0) * (t - t0) / 2 + amplitude / w * ((std::sin(w * t) - std::sin(w * t0)) / w - std::cos(w * t0) * (t - t0));
+		return friction * g * (t - t0) * (t - t0) / 2 +
+		       amplitude / w * ((std::sin(w * t) - std::sin(w * t0)) / w - std::cos(w * t0) * (t - t0));
 	};
 	double t1 = M_PI / w - t0; // slips fastest there
 	while (rate(t1) < 0)
