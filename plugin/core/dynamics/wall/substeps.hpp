@@ -32,8 +32,8 @@ struct SubstepReport {
 template <class K>
 class Substeps {
 public:
-	// From the contacts' velocities and impulses.
-	void begin(WallContacts<K>& contacts);
+	// From the contacts' velocities and impulses. `finer`: how many times more substeps than at the default tolerance.
+	void begin(WallContacts<K>& contacts, double finer);
 	// `load` is the change of velocity in a substep by external forces, per body. Into the contacts' velocities and shift.
 	void substep(WallContacts<K>& contacts, const LaneArray& load, double s, bool isLast);
 	// After each substep: what friction has taken, and the impulses that the next one starts from. `fall`: what gravity gives in a substep,

@@ -9,7 +9,7 @@ using wall::Lanes;
 
 namespace {
 
-constexpr int coldSolves = 3000, mostSolves = 300, quickSolves = 8, quickRounds = 20;
+constexpr int coldSolves = 3000, mostSolves = 300, quickSolves = 8, quickRounds = 20, fewSubsteps = 8;
 
 // A step is divided once at most, into halves: the impulses of a part are where those of the next start, and one that is much shorter
 // would hand on an impact's as many times too large. Displacements of the base are exact anyway; a pulse of the first half acts at the
@@ -338,7 +338,7 @@ void WallStep<K>::stepMoving(RigidSystem<K>& s, double h)
 	lean(s, contacts, h);
 	contacts.setUnit(part);
 	setLoads(s, contacts, part);
-	sweeps.begin(contacts);
+	sweeps.begin(contacts, count / double(fewSubsteps));
 	joints.find(s, contacts, sweeps, part);
 	for (int k = 0; k < count; ++k) {
 		s.time = start + k * part;
@@ -378,8 +378,8 @@ void WallStep<K>::lean(RigidSystem<K>& s, Contacts& contacts, double h)
 template <class K>
 int WallStep<K>::substepCount() const
 {
-	constexpr double few = 8, tolerance = 1e-3;
-	return int(std::lround(std::max(1., few * std::sqrt(tolerance / settings.tolerance))));
+	constexpr double tolerance = 1e-3;
+	return int(std::lround(std::max(1., fewSubsteps * std::sqrt(tolerance / settings.tolerance))));
 }
 
 // Rocking impacts, and the base pulses that answer them.
