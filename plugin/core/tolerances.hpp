@@ -178,6 +178,8 @@ constexpr double patience = 0.5;
 // comes to rest is moved again and again.
 constexpr double penetration = 1e-5;
 constexpr double lifted = 5e-6;
+// That above which a step cannot be trusted. Larger: blocks that sink into each other are not told of; smaller: those that hit hard are.
+constexpr double sunk = 1e-3;
 // Energy that a step may seem to make: share of what moves and what the forces do in it, and of what lifts all blocks by the smallest half
 // size. Smaller: the errors of sound steps, 1e-3 of what is lost, are reported; larger: a wall that flies apart is not.
 constexpr double createdShare = 0.1, createdLift = 1e-4;

@@ -346,13 +346,17 @@ void MoreauJeanIntegrator::count(const masonry::rigid::StepReport& report)
 		throw std::runtime_error(sentence("The simulation has diverged in the step from t = ", scene->time, " s: positions or velocities are no longer finite.",
 			method == "localised" ? " Structures of more than some twenty blocks are for method='wall'." : ""));
 	const bool crowded = report.unlocalised > 0;
-	if (report.converged && !crowded && !(report.created > 0)) return;
+	if (report.converged && !crowded && !(report.created > 0) && !(report.deepest > 0) && !(report.burden > 0)) return;
 
 	std::ostringstream text;
 	text << "In the step from t = " << scene->time << " s ";
 	if (!report.converged) text << "the contact laws are missed: residual " << report.residual << " m/s. ";
 	if (crowded) text << report.unlocalised << " points closed after mostEvents = " << mostEvents << " events, plastically at its end. ";
 	if (report.created > 0) text << report.created << " J of energy come from nowhere. ";
+	if (report.deepest > 0) text << "blocks are " << report.deepest << " m deep in each other. ";
+	if (report.burden > 0)
+		text << "a block is too heavy for a lighter one below it: its course times the ratio of their masses is " << report.burden << ", for method='wall' at most "
+		     << masonry::rigid::wall::mostBurden << ". Few blocks: method='localised'. ";
 	constexpr size_t mostNamed = 30;
 	const vector<int> touching = sceneOf(memory).touching();
 	text << "Blocks in touch:";

@@ -101,6 +101,31 @@ for courses, shaken, warns in ((24, 1.2, False), (25, 1.2, True), (25, 0.1, Fals
     text = printed(lambda: O.run(300, True))
     assert (integrator().movingSteps > 0) == (shaken > 1) and (f"{courses} courses" in text) == warns, (courses, shaken, text)
 
+# --- heavy bodies on light blocks ---
+
+
+def slab(density, method):
+    """How far a slab on two courses slides on a shaken base, m; friction 0.3."""
+    O.reset()
+    light = dem.BlockMat(density=20, frictionAngle=math.atan(0.3))
+    base = dem.base((8, 4, 0.25), light)
+    dem.wall(2, 2, (0.5, 0.25, 0.2), light, on=base)
+    top = dem.block((1, 0.25, 0.2), dem.BlockMat(density=density, frictionAngle=math.atan(0.3)), center=(0, 0, 0.5))
+    t = np.arange(0, 0.8, 0.01)
+    motion = dem.RecordMotionEngine(ids=[base], samples=list(0.8 * 9.81 * np.sin(4 * np.pi * t) * np.sin(np.pi * t / 0.8)), interval=0.01, direction=(1, 0, 0))
+    O.engines = rigid_engines(motion, dt=5e-4, method=method)
+    while O.time < 1:
+        O.step()
+    return O.bodies[top].state.pos[0] - O.bodies[base].state.pos[0]
+
+
+exact = slab(2e4, "localised")
+assert exact > 0.05
+for density in (20, 2e4):
+    assert abs(slab(density, "wall") / exact - 1) < 0.01 and integrator().failures == 0, density  # first order: half a step of 0.9 m/s is 0.5 %
+slab(2e6, "wall")
+assert integrator().failures > 0 and "too heavy" in integrator().firstFailure
+
 # --- O.interactions: what one step after the other shows, a run shows where somebody looks ---
 
 

@@ -74,6 +74,8 @@ struct StepReport {
 	int    unlocalised { 0 }; // points that closed beyond mostEvents
 	double residual { 0 };    // largest of the solves, m/s
 	double created { 0 };     // J, more than round-off and the error of a sound step can make of nothing
+	double deepest { 0 };     // m, of a block in another, where no sound step leaves it so deep
+	double burden { 0 };      // course times ratio of masses of a block upon a lighter one, where it is more than a wall's sweeps carry
 	bool   converged { true };
 	bool   diverged { false }; // the state is no longer finite
 };

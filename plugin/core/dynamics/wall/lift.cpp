@@ -85,13 +85,17 @@ MASONRY_INLINE void liftGroups(const Group<K>* groups, typename Lift<K>::Points*
 }
 
 template <class K>
-MASONRY_INLINE void partGroups(Group<K>* groups, int begin, int end, const Lanes* moved)
+MASONRY_INLINE Lanes partGroups(Group<K>* groups, int begin, int end, const Lanes* moved)
 {
+	Lanes deepest = all(0);
 	for (int g = begin; g < end; ++g) {
 		const Bodies<K> v1(moved, groups[g].body1), v2(moved, groups[g].body2);
-		for (int k = 0; k < groups[g].count; ++k)
+		for (int k = 0; k < groups[g].count; ++k) {
 			groups[g].point[k].gap += normalRate(v1, v2, groups[g].point[k]);
+			deepest = larger(deepest, -groups[g].point[k].gap);
+		}
 	}
+	return deepest;
 }
 
 // No template is compiled for several vector widths.
@@ -105,7 +109,10 @@ MASONRY_INLINE void partGroups(Group<K>* groups, int begin, int end, const Lanes
 	{                                                                                                                                      \
 		liftGroups<K>(groups, points, upwards, begin, end, now, last, seen, small, moved, missing);                                        \
 	}                                                                                                                                      \
-	MASONRY_LANES void partGaps(Group<K>* groups, int begin, int end, const Lanes* moved) { partGroups<K>(groups, begin, end, moved); }
+	MASONRY_LANES double partGaps(Group<K>* groups, int begin, int end, const Lanes* moved)                                                \
+	{                                                                                                                                      \
+		return largest(partGroups<K>(groups, begin, end, moved));                                                                          \
+	}
 MASONRY_LIFT(Plane)
 MASONRY_LIFT(Space)
 #undef MASONRY_LIFT
@@ -113,7 +120,7 @@ MASONRY_LIFT(Space)
 } // namespace
 
 template <class K>
-void Lift<K>::settle(WallContacts<K>& c)
+double Lift<K>::settle(WallContacts<K>& c)
 {
 	static const auto share = sharesOfCourses();
 	points.resize(c.groups.size());
@@ -126,7 +133,7 @@ void Lift<K>::settle(WallContacts<K>& c)
 		deep[number] = anyDeep(c.groups.data(), points.data(), part.begin, part.end, moved.data(), c.length);
 	});
 	if (std::none_of(deep.begin(), deep.end(), [](bool is) { return is; }))
-		return;
+		return tolerance::wall::penetration * c.length; // or less
 	const Lanes noMass {1, 1, 1, 0};
 	const double enough = (tolerance::wall::penetration - tolerance::wall::lifted) * c.length;
 	last.assign(c.course.size() + 1, 0);
@@ -142,9 +149,11 @@ void Lift<K>::settle(WallContacts<K>& c)
 		if (std::none_of(std::begin(missing), std::end(missing), [&](const Missing& here) { return largest(here.most) > enough; }))
 			break;
 	}
-	c.allParts([&](const Part& part, int) { partGaps(c.groups.data(), part.begin, part.end, moved.data()); });
+	std::array<double, Team::mostParts + 1> left {};
+	c.allParts([&](const Part& part, int number) { left[number] = partGaps(c.groups.data(), part.begin, part.end, moved.data()); });
 	for (size_t b = 0; b < c.shift.size(); ++b)
 		c.shift[b] += noMass * moved[b];
+	return *std::max_element(left.begin(), left.end());
 }
 
 template class Lift<Plane>;

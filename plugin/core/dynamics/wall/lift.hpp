@@ -16,8 +16,8 @@ namespace masonry::rigid::wall {
 template <class K>
 class Lift {
 public:
-	// Changes the contacts' gaps and shift.
-	void settle(WallContacts<K>& contacts);
+	// Changes the contacts' gaps and shift. Returns how deep the deepest pair still is, m.
+	double settle(WallContacts<K>& contacts);
 
 	struct alignas(alignment) Point {
 		Lanes room;    // m, by which it may close; negative: that it must part

@@ -11,9 +11,10 @@
 // other falls as 1/substeps^2, and loads that lag behind like that bounce. So a sweep takes a little off what an impulse differs from its
 // mean over the last steps, which lets no load that stays sink. Over many sweeps loads spread as by diffusion, and their number grows as
 // the courses squared: with one alone, the first peak of a column of 48 that rocks is 9 % off, not 4, and what is lost while loads lag
-// counts as impacts that were none. Friction goes by the mean of loads that lag (frictionBound() in sweep.hpp): with the bound of the
-// moment the top of a wall of 32 courses at 1 g goes 28 % too far. Penetrations are taken off at the end of the step (lift.hpp): springs
-// that do it in the sweeps give way under every load, ten times as deep.
+// counts as impacts that were none. Where blocks carry heavier ones it grows as those are heavier and higher up (burden). Friction goes by
+// the mean of loads that lag (frictionBound() in sweep.hpp): with the bound of the moment the top of a wall of 32 courses at 1 g goes 28 %
+// too far. Penetrations are taken off at the end of the step (lift.hpp): springs that do it in the sweeps give way under every load, ten
+// times as deep.
 //
 // The sweeps compute in floats, eight pairs side by side. Gaps start anew in every step, and velocities are
 // in double precision what the loads and the impulses of each substep give: rounding does not add up.
@@ -22,6 +23,8 @@
 #include "dynamics/wall/wall_contacts.hpp"
 
 namespace masonry::rigid::wall {
+
+constexpr double mostBurden = 4e4; // of the contacts: what the sweeps can carry
 
 struct SubstepReport {
 	double residual {0}; // largest change of an impulse by the last sweep, as the velocity that it gives its point, m/s

@@ -154,6 +154,12 @@ void WallContacts<K>::findCourses(const RigidSystem<K>& s)
 				}
 	}
 	--depth;
+	burden = 0;
+	for (const int c : numbers) {
+		const auto [low, high] = std::minmax({pairs[c][0], pairs[c][1]}, [&](int a, int b) { return course[a] < course[b]; });
+		if (course[low] != course[high] && !s.bodies[low].prescribed)
+			burden = std::max(burden, course[high] * s.bodies[high].mass / s.bodies[low].mass);
+	}
 }
 
 template void WallContacts<Plane>::colour(const RigidSystem<Plane>&);
