@@ -166,12 +166,48 @@ struct alignas(alignment) PointLanes<Space, L> {
 	L steady; // mean of pn over the last steps that moved
 };
 
-// Points in space are taken one after another.
+// Of the four normals of a pair, in rows of the lower triangle.
 template <>
-struct Coupling<Space> {
+struct alignas(alignment) Coupling<Space> {
+	static constexpr int points = 4;
+	static constexpr int place(int i, int j) { return i > j ? i * (i + 1) / 2 + j : j * (j + 1) / 2 + i; }
+
+	Floats response[10];        // J M^-1 J^T, 1/kg
+	Floats inverse[10];         // of it, kg; four points of a face give a singular one: with a little of its diagonal added
 	unsigned char free1, free2; // a bit for each body that is not prescribed
-	MASONRY_INLINE void set(const PointLanes<Space, Floats>*, const Floats& m1, const Floats& m2)
+
+	MASONRY_INLINE void set(const PointLanes<Space, Floats>* point, const Floats& m1, const Floats& m2)
 	{
+		constexpr double softness = 1e-3;
+		const Floats none = all<Floats>(0), one = all<Floats>(1);
+		Floats a[points][points];
+		for (int i = 0; i < points; ++i)
+			for (int j = 0; j < points; ++j) {
+				const Row<Floats>&r = point[i].normal, &q = point[j].normal;
+				const FloatMask present = (point[i].massN > 0) & (point[j].massN > 0);
+				const Floats here = (m1 + m2) * dot(r.axis, q.axis) + m1 * dot(r.arm1, q.arm1) + m2 * dot(r.arm2, q.arm2);
+				a[i][j] = select(present, here, none);
+				if (j <= i)
+					response[place(i, j)] = a[i][j];
+				if (i == j)
+					a[i][i] = select(present, (1 + float(softness)) * here, one);
+			}
+		for (int k = 0; k < points; ++k) { // Gauss and Jordan
+			const Floats pivot = one / a[k][k];
+			a[k][k] = one;
+			for (int j = 0; j < points; ++j)
+				a[k][j] *= pivot;
+			for (int i = 0; i < points; ++i) {
+				const Floats factor = i == k ? none : a[i][k];
+				if (i != k)
+					a[i][k] = none;
+				for (int j = 0; j < points; ++j)
+					a[i][j] -= factor * a[k][j];
+			}
+		}
+		for (int i = 0; i < points; ++i)
+			for (int j = 0; j <= i; ++j)
+				inverse[place(i, j)] = select(point[i].massN > 0, a[i][j], none);
 		free1 = bitsOf(m1 > 0);
 		free2 = bitsOf(m2 > 0);
 	}

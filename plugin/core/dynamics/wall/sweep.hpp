@@ -121,11 +121,11 @@ private:
 	Floats un[lanePoints<Plane>], dn[lanePoints<Plane>], dt[lanePoints<Plane>];
 };
 
-// Point by point, normal impulse first.
+// First the normal impulses, all four at once where all of them press, else point by point; then friction.
 template <>
 class Visit<Space> {
 public:
-	static constexpr int stages = 2 * lanePoints<Space>;
+	static constexpr int points = lanePoints<Space>, stages = 1 + points;
 
 	MASONRY_INLINE Visit(Group<Space, Floats>* groups, const Coupling<Space>* couplings, int g, FloatPack* velocity)
 	    : group(groups[g]), w(couplings[g]), g(g), velocity(velocity), v1(velocity, group.body1), v2(velocity, group.body2)
@@ -134,23 +134,10 @@ public:
 	template <int stage>
 	MASONRY_INLINE void take(const Sweep& sweep)
 	{
-		if (stage / 2 >= group.count)
-			return;
-		PointLanes<Space, Floats>& p = group.point[stage / 2];
-		if constexpr (stage % 2 == 0) {
-			un = normalRate(v1, v2, p);
-			const Floats pn = normalImpulse(p, p.pn - p.massN * (un + closing(p, sweep)), sweep);
-			dn = pn - p.pn;
-			pushNormal(v1, v2, p, dn);
-			p.pn = pn;
-		} else {
-			const Two<Floats> ut = slipRate(v1, v2, p),
-			                  pt = friction(p, sweep.relaxation * ut, frictionBound(p, group.friction, sweep.lumps)), dt = pt - p.pt;
-			pushTangential(v1, v2, p, dt);
-			p.pt = pt;
-			if (sweep.change)
-				measure(p, un, ut, dn, dt, sweep.change[g], sweep.motion[g]);
-		}
+		if constexpr (stage == 0)
+			normal(sweep);
+		else if (stage <= group.count)
+			tangential(stage - 1, sweep);
 	}
 	MASONRY_INLINE void end()
 	{
@@ -159,12 +146,47 @@ public:
 	}
 
 private:
+	MASONRY_INLINE void normal(const Sweep& sweep)
+	{
+		Floats needed[points];
+		for (int i = 0; i < points; ++i) {
+			const PointLanes<Space, Floats>& p = group.point[i];
+			un[i] = i < group.count ? normalRate(v1, v2, p) + closing(p, sweep) : all<Floats>(0);
+		}
+		FloatMask press = un[0] == un[0];
+		for (int i = 0; i < points; ++i) {
+			needed[i] = group.point[i].pn;
+			for (int j = 0; j < points; ++j)
+				needed[i] -= w.inverse[w.place(i, j)] * un[j];
+			press &= needed[i] >= 0;
+		}
+		for (int i = 0; i < group.count; ++i) {
+			PointLanes<Space, Floats>& p = group.point[i];
+			const Floats pn = normalImpulse(p, press ? needed[i] : p.pn - p.massN * un[i], sweep);
+			dn[i] = pn - p.pn;
+			p.pn = pn;
+			pushNormal(v1, v2, p, dn[i]);
+			for (int j = i + 1; j < points; ++j)
+				un[j] += w.response[w.place(i, j)] * dn[i];
+		}
+	}
+	MASONRY_INLINE void tangential(int k, const Sweep& sweep)
+	{
+		PointLanes<Space, Floats>& p = group.point[k];
+		const Two<Floats> ut = slipRate(v1, v2, p),
+		                  pt = friction(p, sweep.relaxation * ut, frictionBound(p, group.friction, sweep.lumps)), dt = pt - p.pt;
+		pushTangential(v1, v2, p, dt);
+		p.pt = pt;
+		if (sweep.change)
+			measure(p, un[k] - closing(p, sweep), ut, dn[k], dt, sweep.change[g], sweep.motion[g]);
+	}
+
 	Group<Space, Floats>& group;
 	const Coupling<Space>& w;
 	const int g;
 	FloatPack* velocity;
 	Bodies<Space, Floats> v1, v2;
-	Floats un, dn;
+	Floats un[points], dn[points];
 };
 
 // Groups at the same time: one alone waits for its own results.

@@ -57,6 +57,35 @@ TEST_CASE("a wall in space at rest does not drift")
 	CHECK(scene.sink() / 10 < 1e-8);
 }
 
+// As in the plane (moving_wall_test.cpp): all four corners land at once.
+TEST_CASE("a block in space that lands flat stays upright")
+{
+	const double h = GENERATE(1e-3, 1e-4), height = 1, gravityStep = g * h;
+	SpaceScene scene(0.7);
+	addBlock(scene.system, slender, {0, 0, slender.z() + height});
+	scene.run(std::sqrt(2 * height / g) + 0.5, h);
+	const auto& block = scene.system.bodies[1];
+	constexpr double single = 1e-6;
+	CHECK(block.pose.orientation.vec().norm() < single);
+	CHECK(block.pose.position.head<2>().norm() < single * height);
+	CHECK(block.velocity.norm() < gravityStep);
+	CHECK(scene.system.impactDissip == Approx(block.mass * g * height).epsilon(2 * gravityStep / std::sqrt(2 * g * height)));
+}
+
+TEST_CASE("two blocks in space that meet face to face stop")
+{
+	SpaceScene scene(0.3);
+	scene.system.gravity.setZero();
+	for (const double side : {-1., 1.}) {
+		auto& block = scene.system.bodies[addBlock(scene.system, {0.3, 0.4, 0.5}, {side * 0.5, 0, 5})];
+		block.velocity << -2 * side, 0, 0, 0, 0, 0;
+		block.force.setZero();
+	}
+	scene.run(0.3, 1e-3);
+	for (int b : {1, 2})
+		CHECK(scene.system.bodies[b].velocity.norm() < 2e-6);
+}
+
 // In a shaken pier everything happens in one plane. The sweeps go over twice as many points and end at other residuals: what differs is the
 // error of either step. Corners that part and land in turn make round-off grow: shaken by 1e-9 more or less, the top ends elsewhere by up
 // to 4 % of its shift along the motion and 0.4 % across it (measured); hence the bounds.
