@@ -365,6 +365,21 @@ refuses(lambda: dem.save_blocks("wall.txt"), "path = wall.txt", ".csv or .json")
 for bad in (0, -1, 0.2, nan):
     refuses(lambda: dem.check_blocks(tolerance=bad), f"tolerance = {bad}", "at most 0.1")
 
+# A layout on a body that is too small for it: a block of the bottom course may hang over by less than half of its length and thickness.
+base, material = ground((3, 0.3, 0.5))
+for act, words in (
+    (lambda: dem.wall(2, 10, ok, unused, base), ("4 x 0.2 m at (0, 0) on body 0 of 3 x 0.3 m", "2 blocks of the bottom course", "(-1.8, 0), (1.8, 0)", "above it")),
+    (lambda: dem.wall(2, 7, ok, unused, base, at=(0, 0.15)), ("7 blocks of the bottom course", "at (0, 0.15)")),
+    (lambda: dem.wall(2, 5, ok, unused, base, at=(50, 0)), ("5 blocks", "at (50, 0)")),
+    (lambda: dem.two_wythe_wall(3, 4, ok, unused, base, header_every=3, collar=0.1), ("8 blocks", "(-0.6, -0.15)")),
+    (lambda: dem.return_wall(2, 3, 3, ok, unused, base), ("bottom course", "above it")),
+    (lambda: dem.pier(3, ok, unused, base, at=(1.5, 0)), ("1 blocks", "at (1.5, 0)")),
+):
+    refuses(act, *words)
+assert len(dem.wall(2, 8, ok, material, base, at=(0, 0.14))) == 17
+O.bodies[base].state.ori = Quaternion(Vector3.UnitZ, 0.7)
+dem.wall(2, 8, ok, material, base)
+
 # Ten thousand blocks.
 base, material = ground((50, 1, 0.5))
 start = time.perf_counter()

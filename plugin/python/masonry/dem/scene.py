@@ -9,6 +9,10 @@ from yade import O, Quaternion, Vector3, utils, wrapper
 _AXES = {"x": 0, "y": 1}
 # Faults that a message names one by one; more are counted.
 _NAMED = 10
+# kg/m^3. Wide enough for other units (t/mm^3), far from overflow.
+_DENSITIES = 1e-12, 1e12
+# Share of a half size by which a block's centre must be inside its support: a centre above the edge is off, whatever the round-off.
+_INSIDE = 1e-9
 
 
 def _positive_size(name, size):
@@ -77,9 +81,21 @@ def _placed(centers, foot, orientation):
     return np.array(foot) + centers @ np.array(orientation.toRotationMatrix()).reshape(3, 3).T
 
 
+def _check_support(layout, on, at):
+    """ValueError unless every block of the bottom course has its centre above the body `on`."""
+    (centers, sizes), half = layout, np.array(_box(on).shape.extents)
+    bottom = centers[centers[:, 2] - sizes[:, 2] / 2 < sizes[:, 2].min() / 2, :2] + at
+    off = bottom[(np.abs(bottom) > half[:2] * (1 - _INSIDE)).any(axis=1)]
+    if len(off):
+        reach = np.ptp(np.concatenate([centers - sizes / 2, centers + sizes / 2]), axis=0)
+        raise ValueError(f"{reach[0]:g} x {reach[1]:g} m at ({at[0]:g}, {at[1]:g}) on body {on} of {2 * half[0]:g} x {2 * half[1]:g} m: {len(off)} blocks of the bottom "
+                         f"course have their centres off it, at {listed([f'({x:g}, {y:g})' for x, y in off])}: all must be above it")
+
+
 def _stand(layout, material, on, at):
     """The blocks of a layout on the body `on`. Everything is checked before the first one is made."""
     foot, orientation = _top(on, at)
+    _check_support(layout, on, at)
     return _append_all(_placed(layout[0], foot, orientation), layout[1], _block_material(material), orientation, orientation)
 
 
@@ -130,7 +146,7 @@ def wall(courses=None, per_course=None, size=None, material=None, on=None, gap=0
                   course), or with openings_in='blocks' in blocks along x and courses along z. Half a block at least stays at both
                   ends. Over each one lies a lintel: a single block that bears on half a block or a whole one, so that it ends
                   where its course has a joint. There is none over an opening that reaches the top.
-    at            (x, y) of the middle of the wall on the body `on`, m
+    at            (x, y) of the middle of the wall on the body `on`, m; every block of the bottom course has its centre above that body
     """
     courses, per_course, size = walls.wall_modules(courses, per_course, size, length, height, thickness, gap)
     return _stand(walls.wall_layout(courses, per_course, size, gap, openings, openings_in), material, on, at)
