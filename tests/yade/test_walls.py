@@ -350,7 +350,8 @@ for arguments, options, words in (((0, ok), {}, ("courses = 0",)), ((2, ok), dic
     refuses(lambda: dem.pier(*arguments, unused, base, **options), *words)
 good = dict(x=0, y=0, z=1, size_x=1, size_y=1, size_z=1)
 for rows, words in (([], ("at least one row",)), ([good, {**good, "size_x": 0}], ("row 1", "size_x = 0", "positive")), ([{**good, "x": "far"}], ("row 0", "x = 'far'")),
-                    ([{**good, "y": nan}], ("y = nan", "finite")), ([(0, 0, 0, 1, 1)], ("size_z = None",)), ([{**good, "sizex": 1}], ("row 0", "'sizex'", "size_x")),
+                    ([{**good, "y": nan}], ("y = nan", "finite")), ([{**good, "size_x": 1e300}], ("size_x = 1e+300", "1e+06")), ([(0, 0, 0, 1, 1)], ("size_z = None",)),
+                    ([(0, 0, 0, 1, 1, 1, 0, 0, "", "", "", "", "", 5)], ("row 0", "more values")), ([{**good, "rotation_y": 90}], ("rotation_y = 90", "rad")), (None, ("table = None", "rows")), ([{**good, "sizex": 1}], ("row 0", "'sizex'", "size_x")),
                     ([{**good, "rotation_z": inf}], ("rotation_z = inf",)), ([{**good, "qw": 1}], ("qx = None",)),
                     ([{**good, "qw": 1, "qx": 1, "qy": 0, "qz": 0}], ("qw, qx, qy, qz", "length 1")), ([{**good, "material": "tuff"}], ("row 0", "'tuff'", "must be one of"))):
     refuses(lambda: dem.blocks_from_table(rows, unused), *words)
@@ -361,6 +362,9 @@ refuses(lambda: dem.blocks_from_table("wall.xlsx", unused), "table = wall.xlsx",
 with open(path := os.path.join(folder, "no_list.json"), "w") as file:
     file.write('{"x": 0}')
 refuses(lambda: dem.blocks_from_table(path, unused), "no_list.json", "list of objects")
+with open(path, "w") as file:
+    file.write("[{")
+refuses(lambda: dem.blocks_from_table(path, unused), "no_list.json", "cannot be read")
 refuses(lambda: dem.save_blocks("wall.txt"), "path = wall.txt", ".csv or .json")
 for bad in (0, -1, 0.2, nan):
     refuses(lambda: dem.check_blocks(tolerance=bad), f"tolerance = {bad}", "at most 0.1")

@@ -5,6 +5,7 @@ z axis; bottom up, along x. A block is a box; sizes are full sizes. Where a cour
 every block fills its cell less half a gap at either end."""
 
 import csv
+import itertools
 import json
 import math
 import numbers
@@ -13,6 +14,10 @@ import numpy as np
 
 # A length fits the modules of a wall when it is off by less than this share of a module: far above round-off, far below a cut.
 _FIT = 1e-6
+# Sizes that a body may have, m: volumes and moments of inertia are then far from overflow, whatever the unit of length that a script uses.
+_SIZES = 1e-6, 1e6
+# Most blocks of a layout, and most courses: more do not fit into memory.
+_MOST = 1_000_000
 # Smallest upward part of the normal of a joint that carries: the joint of a leaning block does, a head joint does not.
 _CARRIES = 0.1
 
@@ -244,8 +249,12 @@ def _number(row, index, column, default=None):
         number = float(value)
     except (TypeError, ValueError):
         number = math.nan
-    if not math.isfinite(number) or (column.startswith("size") and number <= 0):
-        raise ValueError(f"row {index}: {column} = {value!r}: must be a finite{' positive' if column.startswith('size') else ''} number")
+    if not math.isfinite(number):
+        raise ValueError(f"row {index}: {column} = {value!r}: must be a finite number")
+    if column.startswith("size") and not _SIZES[0] <= number <= _SIZES[1]:
+        raise ValueError(f"row {index}: {column} = {value!r}: must be positive, from {_SIZES[0]:g} to {_SIZES[1]:g}, in m")
+    if column in _TURN and abs(number) > 2 * math.pi:
+        raise ValueError(f"row {index}: {column} = {value!r}: must be from -2 pi to 2 pi, in rad")
     return number
 
 
@@ -263,12 +272,18 @@ def _quaternion(row, index):
 
 def _rows(table):
     if not isinstance(table, str) and not hasattr(table, "__fspath__"):
-        return [dict(row) if hasattr(row, "keys") else dict(zip(COLUMNS, row)) for row in table]
+        try:
+            return [dict(row) if hasattr(row, "keys") else dict(itertools.zip_longest(COLUMNS, row)) for row in table]
+        except TypeError:
+            raise ValueError(f"table = {table!r}: must be a path, or rows: mappings or sequences") from None
     path = str(table)
     if not path.endswith((".csv", ".json")):
         raise ValueError(f"table = {path}: must end in .csv or .json, or be rows")
     with open(path, newline="", encoding="utf-8-sig") as file:  # spreadsheets begin a file with a byte-order mark
-        rows = json.load(file) if path.endswith(".json") else list(csv.DictReader(file, skipinitialspace=True))
+        try:
+            rows = json.load(file) if path.endswith(".json") else list(csv.DictReader(file, skipinitialspace=True))
+        except (ValueError, csv.Error) as error:
+            raise ValueError(f"table = {path}: cannot be read: {error}") from None
     if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
         raise ValueError(f"table = {path}: must be a list of objects, one a block")
     return rows
@@ -281,6 +296,8 @@ def read_table(table):
         raise ValueError("table: must have at least one row")
     for index, row in enumerate(rows):
         for column in row:
+            if column is None:
+                raise ValueError(f"row {index}: has more values than there are columns")
             if column not in COLUMNS:
                 raise ValueError(f"row {index}: column {column!r}: must be one of {', '.join(COLUMNS)}")
     place = np.array([[_number(row, k, c) for c in _PLACE] for k, row in enumerate(rows)])
