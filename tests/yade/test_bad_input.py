@@ -14,7 +14,7 @@ for make in (dem.base, lambda size, material: dem.block(size, material, center=(
              lambda size, material: dem.wall(2, 2, size, material, 0)):
     O.reset()
     dem.base((1, 1, 1), stone())
-    for bad in ((0, 1, 1), (1, -1, 1), (1, 1, nan), (1, 1, inf), (1, 1), 0.4, "1"):
+    for bad in ((0, 1, 1), (1, -1, 1), (1, 1, nan), (1, 1, inf), (1, 1), 0.4, "1", "111", (1, 1, "1"), (True, 1, 1), (1, 1, 1e300), (1, 1, 1e-300)):
         refuses(lambda: make(bad, stone()), "size", str(bad), "positive")
 refuses(lambda: dem.block((1, 1, 1), stone()), "on = None", "center = None")
 refuses(lambda: dem.block((1, 1, 1), stone(), on=0, center=(0, 0, 0)), "on = 0", "one of the two")
@@ -24,6 +24,7 @@ refuses(lambda: dem.block((1, 1, 1), stone(), center=(0, 0)), "center = (0, 0)",
 refuses(lambda: dem.block((1, 1, 1), stone(), on=0, orientation=Quaternion((1, 0, 0), 0.1)), "orientation", "about z")
 refuses(lambda: dem.block((1, 1, 1), stone(), on=0, orientation=0.1), "orientation = 0.1", "Quaternion")
 refuses(lambda: dem.stack(0, (1, 1, 1), stone(), 0), "n = 0", "at least 1")
+refuses(lambda: dem.stack(1e300, (1, 1, 1), stone(), 0), "n = 1e+300", "at most 1000000")
 refuses(lambda: dem.stack(2.5, (1, 1, 1), stone(), 0), "n = 2.5", "whole number")
 refuses(lambda: dem.wall(0, 2, (1, 1, 1), stone(), 0), "courses = 0", "at least 1")
 refuses(lambda: dem.wall(2, 2, (1, 1, 1), stone(), 0, gap=-0.1), "gap = -0.1", "positive")
@@ -43,18 +44,22 @@ dem.base((1, 1, 1), stone())
 
 # Ids.
 sphere = O.bodies.append(utils.sphere((9, 9, 9), 1))
-for bad, why in ((-1, "no such body"), (77, "no such body"), (1.5, "no such body"), (sphere, "must be a Box")):
+for bad, why in ((-1, "no such body"), (77, "no such body"), (True, "no such body"), (1.5, "no such body"), (sphere, "must be a Box")):
     refuses(lambda: dem.block((1, 1, 1), stone(), on=bad), "id", str(bad), why)
     refuses(lambda: dem.tilt(bad, 0.1), "id", str(bad), why)
     refuses(lambda: dem.angle(bad), "id", str(bad), why)
 for bad in (2.0, nan, -inf):
-    refuses(lambda: dem.tilt(0, bad), "angle", str(bad), "-pi/2")
+    refuses(lambda: dem.tilt(0, bad), "angle", str(bad), "-pi/2", "rad")
+for act in (lambda: dem.tilt(0, "0.1"), lambda: dem.check_blocks("0.1"), lambda: dem.structures("0.1")):
+    refuses(act, "= '0.1': must be a number")
+refuses(lambda: dem.history(None), "recorder = None", "BlockRecorder")
 refuses(lambda: dem.tilt(0, 0.1, axis="z"), "axis", "'z'", "'x' or 'y'")
 refuses(lambda: dem.angle(0, axis="z"), "axis", "'z'", "'x' or 'y'")
 
 # dem.engines().
 for name, bad in (("model", "magic"), ("penetration", 0), ("penetration", 0.1), ("penetration", nan), ("dt", 0), ("dt", -1e-4), ("dt", nan), ("gravity", -1),
-                  ("gravity", nan), ("gravity", inf), ("impact_order", "random")):
+                  ("gravity", nan), ("gravity", inf), ("gravity", 1e300), ("gravity", 1e-300), ("gravity", None), ("gravity", (0, 0, -9.81)), ("dt", "1e-3"),
+                  ("dt", True), ("penetration", "1e-5"), ("penetration", 1e-300), ("tolerance", "1e-9"), ("impact_order", "random")):
     one_block(5)
     refuses(lambda: quiet_engines(**{name: bad}), name, str(bad), "must be")
 O.reset()
@@ -63,6 +68,10 @@ refuses(quiet_engines, "no free block", "dem.block()")
 one_block(5)
 refuses(lambda: quiet_engines("pulse"), "motion", "'pulse'", "PulseTrainEngine")
 refuses(lambda: quiet_engines(dt=1.0), "dt", "1", "below")
+for make, words in ((lambda: dem.WallRecorder(), ("WallRecorder.iterPeriod = 0", "positive")), (lambda: dem.WallRecorder(virtPeriod=nan), ("virtPeriod = nan", "positive")),
+                    (lambda: dem.WallRecorder(iterPeriod=1, ids=[99]), ("id = 99", "no such body")), (lambda: dem.BlockRecorder(iterPeriod=1), ("BlockRecorder.ids", "empty")),
+                    (lambda: dem.BlockRecorder(ids=[1]), ("BlockRecorder.iterPeriod = 0", "positive"))):
+    refuses(lambda: quiet_engines(recorder=make()), *words)
 
 # Motions.
 base, block, _ = one_block(5)

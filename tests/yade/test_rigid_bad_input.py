@@ -16,7 +16,7 @@ for name, bad, why in (("model", "magic", "'planar'"), ("impactOrder", "random",
     before = getattr(engine, name)
     refuses(lambda: setattr(engine, name, bad), name, why)
     assert getattr(engine, name) == before
-for option, bad, words in (("model", "magic", ("planar",)), ("dt", 1.0, ("at most",)), ("dt", 0, ("positive",)), ("dt", nan, ("positive",)), ("tolerance", 0, ("above 0",)),
+for option, bad, words in (("model", "magic", ("planar",)), ("dt", 1.0, ("at most",)), ("dt", "1e-3", ("number",)), ("gravity", 1e300, ("from 1e-06 to 1e+06",)), ("dt", 0, ("positive",)), ("dt", nan, ("positive",)), ("tolerance", 0, ("above 0",)),
                            ("tolerance", 1, ("0.001",)), ("impact_order", "random", ("simultaneous",)), ("penetration", 1e-5, ("compliant",)), ("motion", "pulse", ("PulseTrainEngine",)), ("recorder", 3, ("BlockRecorder",)),
                            ("others", 3, ("list of engines",))):
     model = {} if option == "model" else {"model": "planar"}

@@ -139,9 +139,11 @@ h = dem.wall_history(recorder)
 assert np.isnan(h.position[-1, 2]).all() and np.isfinite(h.position[-1, :2]).all() and results.fallen(h)[-1].tolist() == [False, False, True]
 
 # --- input that cannot be meant ---
-for attributes, word in (({}, "iterPeriod"), ({"iterPeriod": 1, "ids": [99]}, "99")):
+for attributes, word in (({"iterPeriod": 0}, "iterPeriod"), ({"ids": [99]}, "99")):
     base, block, theory = one_block(5)
-    O.engines = quiet_engines(model="auto", recorder=dem.WallRecorder(**attributes))
+    recorder = dem.WallRecorder(iterPeriod=1)
+    O.engines = quiet_engines(model="auto", recorder=recorder)
+    recorder.updateAttrs(attributes)
     refuses(O.step, word)
 recorder = dem.WallRecorder(iterPeriod=1)
 refuses(lambda: dem.wall_history(recorder), "recorded nothing")

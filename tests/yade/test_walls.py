@@ -320,6 +320,9 @@ for arguments, words in (
     (dict(courses=2, per_course=2, length=1, height=0, thickness=1), ("(length, thickness, height) = (1, 1, 0)", "positive")),
     (dict(courses=2, per_course=2, size=ok, at=(0, nan)), ("at = (0, nan)", "finite")),
     (dict(courses=2, per_course=2, size=ok, at=(0,)), ("at = (0,)", "two")),
+    (dict(courses=1e300, per_course=2, size=ok), ("courses = 1e+300", "at most 1000000")),
+    (dict(courses=1000, per_course=2000, size=ok), ("courses = 1000, per_course = 2000", "at most 1000000 blocks")),
+    (dict(courses=2, per_course=2, size=ok, openings=None), ("openings = None", "list of (x0, z0, width, height)")),
     (dict(courses=2, per_course=2, size=ok, openings_in="feet"), ("openings_in = 'feet'", "'m' or 'blocks'")),
 ):
     refuses(lambda: dem.wall(**arguments, material=unused, on=base), *words)

@@ -3,7 +3,8 @@
 import numpy as np
 from yade import O, wrapper
 
-from masonry.dem.scene import check_blocks, check_material, listed, structures
+from masonry.dem.scene import check_blocks, check_material, check_recorder, listed, structures
+from masonry.dem.walls import number_given
 
 _MODELS = ("auto", "planar", "spatial", "compliant")
 _METHODS = ("auto", "localised", "wall")
@@ -16,6 +17,12 @@ _RIGID_STEP = 1 / 60
 # The same for method='wall': 4e-3 sqrt(R/g), 1e-3 s for blocks of 1.0 x 0.5 m.
 _WALL_STEP = 2 / 75
 _PENETRATION = 1e-5
+# Smaller ones drown in the round-off of positions.
+_LEAST_PENETRATION = 1e-10
+# m/s^2: whatever the units of length and time, and far from overflow.
+_GRAVITIES = 1e-6, 1e6
+# Longest free block that is no slip of units (mm for m), m.
+_LONGEST = 50
 # Share of the critical time step: peaks of a rocking block at the default penetration change by 1 % of their error below it.
 _STEP_FRACTION = 0.2
 
@@ -76,7 +83,7 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
     tolerance     rigid: residual of the contact laws relative to the speed that gravity gives in a step (above 0, at most 1e-3;
                   None: 1e-9). With method='wall' from 1e-6 to 1e-2, None: 1e-3 (MoreauJeanIntegrator.tolerance)
     penetration   compliant, where BlockMat gives no stiffness: how far the weight presses the most loaded joint in, relative to
-                  the smallest width (0 < penetration <= 1e-2; None: 1e-5). The error of rocking angles is about ten times this;
+                  the smallest width (1e-10 to 1e-2; None: 1e-5). The error of rocking angles is about ten times this;
                   the cost grows as its inverse square root.
     impact_order  'simultaneous' or 'sequential': how an impact acts on a structure (impactOrder of the engine). None: 'sequential'
                   with method='wall', which has no other; else 'simultaneous'
@@ -98,14 +105,14 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
         raise ValueError(f"method = {method!r}: must be one of {', '.join(_METHODS)}")
     if impact_order not in _ORDERS:
         raise ValueError(f"impact_order = {impact_order!r}: must be 'simultaneous', 'sequential' or None")
-    if penetration is not None and not 0 < penetration <= 1e-2:
-        raise ValueError(f"penetration = {penetration}: must be above 0 and at most 0.01")
-    if tolerance is not None and not 0 < tolerance <= 1e-2:
+    if penetration is not None and not _LEAST_PENETRATION <= number_given("penetration", penetration) <= 1e-2:
+        raise ValueError(f"penetration = {penetration}: must be from {_LEAST_PENETRATION:g} to 0.01")
+    if tolerance is not None and not 0 < number_given("tolerance", tolerance) <= 1e-2:
         raise ValueError(f"tolerance = {tolerance}: must be above 0 and at most 0.001, with method='wall' 0.01")
-    if dt is not None and not dt > 0:
+    if dt is not None and not number_given("dt", dt) > 0:
         raise ValueError(f"dt = {dt}: must be positive, in s")
-    if not 0 <= gravity < np.inf:
-        raise ValueError(f"gravity = {gravity}: must be 0 or positive and finite, in m/s^2")
+    if not (number_given("gravity", gravity) == 0 or _GRAVITIES[0] <= gravity <= _GRAVITIES[1]):
+        raise ValueError(f"gravity = {gravity}: must be 0, or from {_GRAVITIES[0]:g} to {_GRAVITIES[1]:g}, in m/s^2")
     motions = [] if motion is None else list(motion) if isinstance(motion, (list, tuple)) else [motion]
     for item in motions:
         if not isinstance(item, wrapper.BaseMotionEngine):
@@ -127,6 +134,8 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
     recorders = [] if recorder is None else list(recorder) if isinstance(recorder, (list, tuple)) else [recorder]
     if not all(isinstance(one, (wrapper.BlockRecorder, wrapper.WallRecorder)) for one in recorders):
         raise ValueError(f"recorder = {recorder!r}: must be a BlockRecorder, a WallRecorder or a list of them")
+    for one in recorders:
+        check_recorder(one)
     if not isinstance(others, (list, tuple)) or not all(isinstance(one, wrapper.Engine) for one in others):
         raise ValueError(f"others = {others!r}: must be a list of engines")
     if model == "compliant":
@@ -229,6 +238,8 @@ def history(recorder):
     """What a BlockRecorder has kept, a structured array with one row per time: time (s) and, for each block in the order of its ids,
     rotation (rad, vector in the block's own axes; the y component is dem.angle), position (m), uplift (m, largest gap of the joint
     below, NaN in flight) and force (N, of what is below)."""
+    if not isinstance(recorder, wrapper.BlockRecorder):
+        raise ValueError(f"recorder = {recorder!r}: must be a BlockRecorder")
     rows, blocks = len(recorder.times), len(recorder.ids)
     fields = [("time", float), ("rotation", float, (blocks, 3)), ("position", float, (blocks, 3)), ("uplift", float, (blocks,)), ("force", float, (blocks, 3))]
     table = np.zeros(rows, dtype=fields)

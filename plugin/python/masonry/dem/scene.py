@@ -37,7 +37,7 @@ def _block_material(material):
 
 def _box(id):
     """The body of that id; ValueError unless it exists and is a Box."""
-    if not isinstance(id, (int, np.integer)) or not 0 <= id < len(O.bodies) or O.bodies[int(id)] is None:
+    if not isinstance(id, (int, np.integer)) or isinstance(id, bool) or not 0 <= id < len(O.bodies) or O.bodies[int(id)] is None:
         raise ValueError(f"id = {id!r}: there is no such body in O.bodies (0 to {len(O.bodies) - 1})")
     body = O.bodies[int(id)]
     if not isinstance(body.shape, wrapper.Box):
@@ -45,8 +45,18 @@ def _box(id):
     return body
 
 
+def check_recorder(recorder):
+    name = type(recorder).__name__
+    if not any(0 < period < math.inf for period in (recorder.iterPeriod, recorder.virtPeriod, recorder.realPeriod)):
+        raise ValueError(f"{name}.iterPeriod = {recorder.iterPeriod}, virtPeriod = {recorder.virtPeriod}: one of them must be positive and finite")
+    if isinstance(recorder, wrapper.BlockRecorder) and not recorder.ids:
+        raise ValueError(f"{name}.ids is empty: it must name at least one block")
+    for id in recorder.ids:
+        _box(id)
+
+
 def _axis(name):
-    if name not in _AXES:
+    if name not in tuple(_AXES):
         raise ValueError(f"axis = {name!r}: must be 'x' or 'y'")
     return _AXES[name]
 
@@ -242,7 +252,7 @@ def check_blocks(tolerance=1e-3, floating=True):
     """Raises a ValueError that names the ids of overlapping blocks and, with `floating`, of those that no chain of supports joins to
     a prescribed body (head joints do not carry). tolerance: depth of an overlap, or gap in a joint, that is still accepted, relative to
     the smallest size of the two blocks; 0 < tolerance <= 0.1. Returns the ids of the floating blocks."""
-    if not 0 < tolerance <= 0.1:
+    if not 0 < walls.number_given("tolerance", tolerance) <= 0.1:
         raise ValueError(f"tolerance = {tolerance}: must be above 0 and at most 0.1")
     bodies = _boxes()
     if not bodies:
@@ -266,7 +276,7 @@ def structures(gap=0.1):
     """Ids of the free blocks, a list for each structure: blocks that are joined by others that are near each other. gap: how far apart the
     bounding boxes of two that are near may be, relative to the smallest size of a free block; 0 < gap <= 1. Rigid structures of their own
     are stepped as if the others were not there, unless pulses move the base."""
-    if not 0 < gap <= 1:
+    if not 0 < walls.number_given("gap", gap) <= 1:
         raise ValueError(f"gap = {gap}: must be above 0 and at most 1")
     bodies = [b for b in _boxes() if b.dynamic]
     if not bodies:
@@ -280,8 +290,8 @@ def tilt(id, angle, axis="y"):
     """Turns a standing block by `angle` (rad) about its own axis 'x' or 'y', so that it rests on its lower edge. A positive
     turn about y leans towards +x."""
     body, row = _box(id), _axis(axis)
-    if not -math.pi / 2 < angle < math.pi / 2:
-        raise ValueError(f"angle = {angle}: must be between -pi/2 and pi/2")
+    if not -math.pi / 2 < walls.number_given("angle", angle) < math.pi / 2:
+        raise ValueError(f"angle = {angle}: must be between -pi/2 and pi/2, in rad")
     half, state = body.shape.extents, body.state
     side = math.copysign(1, angle) if angle else 0
     edge = Vector3(side * half[0], 0, -half[2]) if axis == "y" else Vector3(0, -side * half[1], -half[2])

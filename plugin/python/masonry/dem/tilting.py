@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from masonry.dem.engines import engines
 from masonry.dem.scene import _boxes, _layout
-from masonry.dem.walls import axes_of
+from masonry.dem.walls import axes_of, number_given
 from tqdm import tqdm
 from yade import O, Vector3
 
@@ -104,14 +104,14 @@ class TiltTable:
     """
 
     def __init__(self, direction="x", load="force", model="auto", hold=3.0, share=2e-3, gravity=9.81):
-        if direction not in _DIRECTIONS:
+        if direction not in tuple(_DIRECTIONS):
             raise ValueError(f"direction = {direction!r}: must be one of {', '.join(map(repr, _DIRECTIONS))}")
         if load not in ("force", "turned"):
             raise ValueError(f"load = {load!r}: must be 'force' or 'turned'")
         if model not in ("auto", "planar", "spatial"):
             raise ValueError(f"model = {model!r}: must be 'auto', 'planar' or 'spatial'")
         for name, value in (("hold", hold), ("share", share), ("gravity", gravity)):
-            if not 0 < value < math.inf:
+            if not 0 < number_given(name, value) < math.inf:
                 raise ValueError(f"{name} = {value}: must be positive and finite")
         self.direction, self.load, self.model, self.share, self.gravity = direction, load, model, share, gravity
         self._blocks = _boxes()
@@ -137,9 +137,9 @@ class TiltTable:
     def bisect(self, tolerance=1e-3, lower=0.1, progress=True):
         """The Collapse within `tolerance` of its multiplier. lower: the first that is tried, which grows by a tenth until the blocks
         collapse; the nearer below, the faster."""
-        if not 0 < tolerance < 1:
+        if not 0 < number_given("tolerance", tolerance) < 1:
             raise ValueError(f"tolerance = {tolerance}: must be above 0 and below 1")
-        if not 0 < lower < math.inf:
+        if not 0 < number_given("lower", lower) < math.inf:
             raise ValueError(f"lower = {lower}: must be positive and finite")
         trials, rest, mechanism = [], None, None
 
@@ -184,9 +184,9 @@ class TiltTable:
     def ramp(self, rate=0.02, start=0.0, progress=True):
         """The Collapse of a multiplier that grows slowly. rate: per sqrt(height / gravity) of the scene. The bracket is from where the
         blocks last rested to where one had moved by `share`; the multiplier is its lower end: what follows is delay."""
-        if not 0 < rate < math.inf:
+        if not 0 < number_given("rate", rate) < math.inf:
             raise ValueError(f"rate = {rate}: must be positive and finite")
-        if not 0 <= start < math.inf:
+        if not 0 <= number_given("start", start) < math.inf:
             raise ValueError(f"start = {start}: must be 0 or positive")
         multiplier = rested = start
         with self._trials("stair", progress) as bar:

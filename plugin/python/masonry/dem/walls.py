@@ -25,8 +25,8 @@ _CARRIES = 0.1
 def finite_numbers(name, values, count, what):
     """`count` finite numbers as floats; or ValueError, that they must be `what`."""
     try:
-        found = [float(v) for v in values]
-    except (TypeError, ValueError):
+        found = [float(number_given(name, v)) for v in values]
+    except (TypeError, ValueError, OverflowError):
         found = []
     if len(found) != count or not all(math.isfinite(v) for v in found):
         raise ValueError(f"{name} = {tuple(values) if isinstance(values, (list, np.ndarray)) else values}: must be {what}")
@@ -34,31 +34,32 @@ def finite_numbers(name, values, count, what):
 
 
 def positive_size(name, size):
-    """The three full sizes as floats; ValueError unless finite and positive."""
-    what = "three full sizes in m, each finite and positive"
+    """The three full sizes as floats; ValueError unless they are positive and within _SIZES."""
+    what = f"three full sizes in m, each positive, from {_SIZES[0]:g} to {_SIZES[1]:g}"
     values = finite_numbers(name, size, 3, what)
-    if min(values) <= 0:
+    if not _SIZES[0] <= min(values) <= max(values) <= _SIZES[1]:
         raise ValueError(f"{name} = {tuple(size)}: must be {what}")
     return values
 
 
-def _number_given(name, value):
-    if not isinstance(value, numbers.Real):
+def number_given(name, value):
+    """The value; ValueError unless it is a number (NaN is one)."""
+    if not isinstance(value, numbers.Real) or isinstance(value, bool):
         raise ValueError(f"{name} = {value!r}: must be a number")
     return value
 
 
 def whole(name, value, least):
-    """The value as an integer; ValueError unless it is one and at least `least`."""
-    if not (math.isfinite(_number_given(name, value)) and value == int(value) and value >= least):
-        raise ValueError(f"{name} = {value}: must be a whole number, at least {least}")
+    """The value as an integer; ValueError unless it is one, at least `least` and at most _MOST."""
+    if not (math.isfinite(number_given(name, value)) and value == int(value) and least <= value <= _MOST):
+        raise ValueError(f"{name} = {value}: must be a whole number, at least {least} and at most {_MOST}")
     return int(value)
 
 
 def _head_joint(gap, size, shortest):
     """Checks the width of the head joints: something must be left of a piece that is `shortest` blocks long."""
     limit = size[0] * shortest / (1 - shortest)
-    if not 0 <= _number_given("gap", gap) < limit:
+    if not 0 <= number_given("gap", gap) < limit:
         raise ValueError(f"gap = {gap}: must be 0 or positive, in m, and below {limit:g} m, where the cut blocks of a course vanish")
 
 
@@ -90,7 +91,7 @@ def wall_modules(courses=None, per_course=None, size=None, length=None, height=N
     per_course, length, height, thickness."""
     values = {name: value for name, value in locals().items() if value is not None}
     for name in values.keys() - {"size"}:
-        _number_given(name, values[name])
+        number_given(name, values[name])
     given = values.keys() - {"gap"}
     forms = ({"courses", "per_course", "size"}, {"length", "height", "size"}, {"courses", "per_course", "length", "height", "thickness"})
     if given not in forms:
@@ -111,6 +112,8 @@ def wall_modules(courses=None, per_course=None, size=None, length=None, height=N
         per_course = _fitted("length + gap", length + gap, (size[0] + gap) / 2) / 2
         if per_course < 1:
             raise ValueError(f"length = {length}: must be at least one block of {size[0]:g} m")
+    if courses * per_course > _MOST:
+        raise ValueError(f"courses = {courses}, per_course = {per_course}: must be at most {_MOST} blocks")
     _head_joint(gap, size, 1 / 2)
     return courses, per_course, size
 
@@ -122,7 +125,7 @@ def _opening_cells(index, opening, unit, shape):
         raise ValueError(f"{name}: must be (x0, z0, width, height)")
     cells = []
     for part, value, module in zip(("x0", "z0", "width", "height"), opening, (unit[0] / 2, unit[1]) * 2):
-        cell = _number_given(f"{name}: its {part}", value) / module
+        cell = number_given(f"{name}: its {part}", value) / module
         if not (math.isfinite(cell) and abs(cell - round(cell)) < _FIT * max(1, abs(cell))):
             raise ValueError(f"{name}: its {part} = {value} must be a whole multiple of {module:g} (half a block, one course)")
         cells.append(round(cell))
@@ -137,6 +140,8 @@ def _opening_cells(index, opening, unit, shape):
 def _openings(openings, unit, shape):
     """Grid of half blocks by courses: 0 masonry, -(k+1) opening k, k+1 its lintel. A lintel bears on half a block at least and ends
     where its course has a joint anyway, so that no joint runs through. Above an opening that reaches the top there is none."""
+    if not isinstance(openings, (tuple, list, np.ndarray)):
+        raise ValueError(f"openings = {openings!r}: must be a list of (x0, z0, width, height)")
     grid = np.zeros(shape, dtype=int)
     for k, opening in enumerate(openings):
         x0, x1, z0, z1 = _opening_cells(k, opening, unit, shape)
@@ -182,7 +187,7 @@ def two_wythe_layout(courses, per_course, size, header_every, gap=0.0, collar=0.
     if header_every > courses:
         raise ValueError(f"header_every = {header_every}: must be from 2 to the number of courses, {courses}")
     _head_joint(gap, size, 1 / 4)
-    if not 0 <= _number_given("collar", collar) < math.inf:
+    if not 0 <= number_given("collar", collar) < math.inf:
         raise ValueError(f"collar = {collar}: must be 0 or positive, in m")
     pitch, quarters = size[0] + gap, round(4 * per_course)
     inner, thickness = np.arange(1, quarters), 2 * size[1] + collar
