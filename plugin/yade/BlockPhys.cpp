@@ -2,6 +2,8 @@
 
 #include "impact/impulse_problem.hpp"
 #include <lib/factory/ClassFactory.hpp>
+#include <sstream>
+#include <stdexcept>
 
 namespace yade {
 
@@ -10,6 +12,19 @@ YADE_PLUGIN((BlockPhys));
 masonry::JointLaw BlockPhys::law(Real dampingRatio) const
 {
 	return { normalStiffness, shearStiffness, dampingRatio, noSlip ? masonry::noSlip : tangensOfFrictionAngle, restitution };
+}
+
+void BlockPhys::check(int id1, int id2) const
+{
+	std::ostringstream text;
+	text << "The joint of bodies " << id1 << " and " << id2 << " has ";
+	if (!(noSlip || tangensOfFrictionAngle >= 0))
+		text << "tangensOfFrictionAngle = " << tangensOfFrictionAngle << ": it must be 0 or positive, BlockMat.frictionAngle from 0 to below pi/2, in rad.";
+	else if (restitution < 0 || restitution > 1)
+		text << "restitution = " << restitution << ": it must be from 0 to 1, or NaN for the natural restitution.";
+	else
+		return;
+	throw std::runtime_error(text.str());
 }
 
 void BlockPhys::readPoints(masonry::JointContact& contact) const

@@ -26,7 +26,8 @@ void Ip2_BlockMat_BlockMat_BlockPhys::go(const shared_ptr<Material>& material1, 
 
 	shared_ptr<BlockPhys> phys(new BlockPhys);
 	phys->restitution = matched(restitution, a.restitution, b.restitution, 0.5 * (a.restitution + b.restitution));
-	phys->tangensOfFrictionAngle = std::tan(matched(frictionAngle, a.frictionAngle, b.frictionAngle, std::min(a.frictionAngle, b.frictionAngle)));
+	const Real angle = matched(frictionAngle, a.frictionAngle, b.frictionAngle, std::min(a.frictionAngle, b.frictionAngle));
+	phys->tangensOfFrictionAngle = angle >= 0 && angle < M_PI / 2 ? std::tan(angle) : NaN; // who reads it refuses NaN; no error may leave the loop of the functors
 	phys->normalStiffness = matched(normalStiffness, a.normalStiffness, b.normalStiffness, harmonic(a.normalStiffness, b.normalStiffness));
 	phys->shearStiffness = matched(shearStiffness, a.shearStiffness, b.shearStiffness, harmonic(a.shearStiffness, b.shearStiffness));
 	phys->noSlip = a.noSlip || b.noSlip;

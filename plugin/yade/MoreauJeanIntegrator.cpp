@@ -1,5 +1,6 @@
 #include "MoreauJeanIntegrator.hpp"
 #include "RockingJointEngine.hpp"
+#include "checked_body.hpp"
 #include "python_lock.hpp"
 #include "rigid_scene.hpp"
 
@@ -145,6 +146,7 @@ void MoreauJeanIntegrator::checkBlocks() const
 	const unsigned unused = chosenModel == "planar" ? unusedInPlane(Coordinates<Plane>(along).normal) : 0;
 	bool free = false;
 	for (const Body* body : blocks()) {
+		checkBody(*body);
 		free |= body->isDynamic();
 		if (body->isDynamic() && (body->state->blockedDOFs & ~unused))
 			throw std::invalid_argument(sentence("O.bodies[", body->id, "].state.blockedDOFs = '", body->state->blockedDOFs_vec_get(),
@@ -159,6 +161,9 @@ void MoreauJeanIntegrator::checkBlocks() const
 
 void MoreauJeanIntegrator::checkEngines() const
 {
+	const auto isOne = [](const auto& engine) { return !engine->dead && dynamic_cast<MoreauJeanIntegrator*>(engine.get()); };
+	if (std::count_if(scene->engines.begin(), scene->engines.end(), isOne) > 1)
+		throw std::invalid_argument("O.engines has more than one MoreauJeanIntegrator: each moves all blocks; there must be one.");
 	for (const auto& engine : scene->engines) {
 		if (engine->dead) continue;
 		if (dynamic_cast<BaseMotionEngine*>(engine.get()))
@@ -288,6 +293,7 @@ void MoreauJeanIntegrator::checkTimeStep()
 
 void MoreauJeanIntegrator::action()
 {
+	if (!gravity.allFinite()) reject("gravity", gravity.transpose(), "three finite numbers in m/s^2");
 	if (memory.run && !sceneOf(memory).isOf(*scene)) leaveScene();
 	if (!memory.run)
 		start();

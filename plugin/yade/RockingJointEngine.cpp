@@ -3,6 +3,7 @@
 #include "BlockMat.hpp"
 #include "BlockPhys.hpp"
 #include "Ip2_BlockMat_BlockMat_BlockPhys.hpp"
+#include "checked_body.hpp"
 #include "core_state.hpp"
 #include "python_lock.hpp"
 
@@ -56,6 +57,9 @@ void RockingJointEngine::checkScene()
 {
 	constexpr int period = 50; // steps between two looks at the integrator, whose gravity a script may turn slowly
 	if (checkedTimeStep > 0 && scene->iter % period != 0) return;
+	const auto isOne = [](const auto& engine) { return !engine->dead && dynamic_cast<RockingJointEngine*>(engine.get()); };
+	if (std::count_if(scene->engines.begin(), scene->engines.end(), isOne) > 1)
+		throw std::runtime_error("O.engines has more than one RockingJointEngine: each acts on all blocks; there must be one.");
 	const Integrator integrator = findIntegrator(*scene);
 	gravity = integrator.gravity;
 	for (int id : ids) {
@@ -81,6 +85,7 @@ vector<RockingJointEngine::Pair> RockingJointEngine::gather()
 	index.assign(scene->bodies->size(), -1);
 	for (const auto& body : scene->bodies->body) {
 		if (!body || !dynamic_cast<BlockMat*>(body->material.get())) continue;
+		checkBody(*body);
 		index[body->id] = int(ids.size());
 		ids.push_back(body->id);
 		system.bodies.push_back(coreBody(*body));
@@ -103,6 +108,7 @@ vector<RockingJointEngine::Pair> RockingJointEngine::gather()
 			     << ": both must be positive, in Pa/m. Give them to BlockMat, or let dem.engines(model='compliant') choose.";
 			fail(text);
 		}
+		phys.check(interaction->id1, interaction->id2);
 		masonry::JointContact contact = coreContact(*interaction, geom, phys, 0);
 		contact.body1 = index[contact.body1];
 		contact.body2 = index[contact.body2];

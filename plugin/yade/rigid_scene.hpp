@@ -370,6 +370,7 @@ private:
 			Pair& pair = system.pairs[c];
 			const Real friction = law.noSlip ? masonry::noSlip : law.tangensOfFrictionAngle, restitution = law.restitution;
 			if (pair.friction == friction && (pair.restitution == restitution || (std::isnan(pair.restitution) && std::isnan(restitution)))) continue;
+			law.check(kept.ids[pair.body1], kept.ids[pair.body2]);
 			pair.friction = friction;
 			pair.restitution = restitution;
 			lawsChanged = true;

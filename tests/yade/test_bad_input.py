@@ -31,7 +31,7 @@ refuses(lambda: dem.wall(2, 2, (1, 1, 1), stone(), 0, gap=-0.1), "gap = -0.1", "
 refuses(lambda: dem.wall(2, 2, (1, 1, 1), stone(), 0, gap=nan), "gap = nan", "positive")
 
 # Materials: where a block is made of one, and where one has been changed before dem.engines().
-for name, bads, allowed in (("density", (0, -2000, nan, inf), "positive"), ("frictionAngle", (-0.1, math.pi / 2, nan), "pi/2")):
+for name, bads, allowed in (("density", (0, -2000, nan, inf, 1e300, 1e40, 1e-300), "from 1e-12 to 1e+12"), ("frictionAngle", (-0.1, math.pi / 2, nan), "pi/2")):
     for bad in bads:
         O.reset()
         refuses(lambda: dem.base((1, 1, 1), dem.BlockMat(**{name: bad})), name, str(bad), allowed)
@@ -110,6 +110,15 @@ refuses_to_run("NewtonIntegrator.damping", "0.2", "must be 0")
 scene()
 O.bodies[1].aspherical = False
 refuses_to_run("O.bodies[1].aspherical", "True")
+scene()
+O.bodies[1].state.mass = 0
+refuses_to_run("O.bodies[1].state.mass = 0", "from 1e-18 to 1e+18 kg")
+scene()
+O.engines = O.engines + O.engines
+refuses_to_run("more than one RockingJointEngine")
+scene()
+O.bodies[0].mat.noSlip, O.bodies[0].mat.frictionAngle = False, 30
+refuses_to_run("bodies 0 and 1", "tangensOfFrictionAngle = nan", "rad")
 scene()
 O.bodies[1].mat.normalStiffness = nan
 refuses_to_run("normalStiffness", "nan", "positive")

@@ -43,6 +43,38 @@ scene()
 O.dt = 0
 refuses_to_run("O.dt", "0", "positive")
 scene()
+O.engines = O.engines + rigid_engines()
+refuses_to_run("more than one MoreauJeanIntegrator")
+scene()
+O.engines = O.engines * 2
+refuses_to_run("more than one MoreauJeanIntegrator")
+scene()
+O.engines[-1].gravity = (0, 0, nan)
+refuses_to_run("MoreauJeanIntegrator.gravity", "nan", "finite")
+for bad in (0, -1, nan, math.inf, 1e300, 1e-300):
+    for attribute, value in (("mass", bad), ("inertia", Vector3(1, bad, 1))):
+        one_block(5)
+        setattr(O.bodies[block].state, attribute, value)
+        refuses(rigid_engines, f"O.bodies[{block}].state.{attribute}", "from 1e-18 to 1e+18 kg")
+for method in ("localised", "wall"):
+    scene(method=method)
+    O.step()
+    O.bodies[block].state.mass = 0
+    refuses_to_run(f"O.bodies[{block}].state.mass = 0", "from 1e-18")
+one_block(5)
+O.bodies[block].shape.extents = (-0.3, 0.5, 1.5)
+refuses(rigid_engines, f"O.bodies[{block}].shape.extents[0] = -0.3", "from 1e-18 to 1e+18 m")
+for bad in (30, 45, -1, nan):
+    scene()
+    O.materials[0].noSlip, O.materials[0].frictionAngle = False, bad
+    refuses_to_run(f"bodies {base} and {block}", "tangensOfFrictionAngle = nan", "below pi/2, in rad")
+for name, bad, why in (("tangensOfFrictionAngle", -0.5, "0 or positive"), ("restitution", 1.5, "from 0 to 1")):
+    scene()
+    O.step()
+    O.interactions[base, block].phys.noSlip = False
+    setattr(O.interactions[base, block].phys, name, bad)
+    refuses_to_run(f"bodies {base} and {block}", f"{name} = {bad}", why)
+scene()
 O.bodies[block].state.blockedDOFs = "z"
 refuses_to_run(f"O.bodies[{block}]", "blockedDOFs = 'z'", "none")
 scene()

@@ -22,8 +22,8 @@ def _positive_size(name, size):
 def check_material(material):
     if not isinstance(material, wrapper.BlockMat):
         raise ValueError(f"material = {material!r}: must be a BlockMat")
-    if not 0 < material.density < math.inf:
-        raise ValueError(f"density = {material.density}: must be positive and finite, in kg/m^3")
+    if not _DENSITIES[0] <= material.density <= _DENSITIES[1]:
+        raise ValueError(f"density = {material.density}: must be positive, from {_DENSITIES[0]:g} to {_DENSITIES[1]:g}, in kg/m^3")
     if not 0 <= material.frictionAngle < math.pi / 2:
         raise ValueError(f"frictionAngle = {material.frictionAngle}: must be from 0 to below pi/2, in rad (noSlip=True where nothing may slip)")
 

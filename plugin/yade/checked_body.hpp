@@ -1,0 +1,31 @@
+#pragma once
+// What a block must be made of, for rigid and compliant joints alike.
+
+#include <core/Body.hpp>
+#include <pkg/common/Box.hpp>
+#include <sstream>
+#include <stdexcept>
+
+namespace yade {
+
+/// Throws unless half sizes, mass and moments of inertia are numbers whose squares, and those of their inverses, single precision holds.
+inline void checkBody(const Body& body)
+{
+	constexpr Real least = 1e-18, most = 1e18;
+	const auto check = [&](const char* attribute, const auto& values, const char* unit) {
+		for (int k = 0; k < int(values.size()); ++k) {
+			if (values[k] >= least && values[k] <= most) continue;
+			std::ostringstream text;
+			text << "O.bodies[" << body.id << "]." << attribute;
+			if (values.size() > 1) text << '[' << k << ']';
+			text << " = " << values[k] << " is not allowed for a block: it must be from " << least << " to " << most << ' ' << unit << '.';
+			throw std::invalid_argument(text.str());
+		}
+	};
+	if (const auto* box = dynamic_cast<const Box*>(body.shape.get())) check("shape.extents", box->extents, "m");
+	if (!body.isDynamic()) return;
+	check("state.mass", Eigen::Matrix<Real, 1, 1>(body.state->mass), "kg");
+	check("state.inertia", body.state->inertia, "kg m^2");
+}
+
+} // namespace yade
