@@ -27,8 +27,14 @@ void BaseMotionEngine::check() const
 		if ((*scene->bodies)[id]->isDynamic())
 			reject(id, "a moved base must have all degrees of freedom prescribed (blockedDOFs='xyzXYZ'; dem.base() does that).");
 	}
-	if (!(std::abs(direction.norm() - 1) < 1e-9))
-		throw std::invalid_argument(getClassName() + ".direction must be a unit vector.");
+	const auto require = [&](bool holds, const char* attribute, const auto& value, const char* allowed) {
+		if (holds) return;
+		std::ostringstream text;
+		text << getClassName() << '.' << attribute << " = " << value << " is not allowed: it must be " << allowed << '.';
+		throw std::invalid_argument(text.str());
+	};
+	require(std::abs(direction.norm() - 1) < 1e-9, "direction", direction.transpose(), "a unit vector");
+	require(std::isfinite(start), "start", start, "a finite time in s");
 }
 
 void BaseMotionEngine::begin()

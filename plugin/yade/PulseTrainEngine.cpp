@@ -125,11 +125,12 @@ vector<BaseJump> PulseTrainEngine::takeJumps(Real sceneTime, const vector<StepIm
 void PulseTrainEngine::check() const
 {
 	BaseMotionEngine::check();
-	if (std::isnan(impulse)) reject("impulse", impulse, "given: the velocity jump I in m/s");
+	if (!(std::abs(impulse) <= 1e6)) reject("impulse", impulse, "given: the velocity jump I, at most 1e6 m/s");
 	if (resonant() == !times.empty())
 		reject("times", times.size(), "given for a scheduled train, or resonantBlock for a resonant one, not both and not neither");
 	if ((shape != "dirac") != (duration > 0)) reject("duration", duration, "positive for a finite shape and 0 for 'dirac'");
-	if (resonant() && !scene->bodies->exists(resonantBlock)) reject("resonantBlock", resonantBlock, "the id of a body in O.bodies");
+	if (resonant() && !(scene->bodies->exists(resonantBlock) && (*scene->bodies)[resonantBlock]->isDynamic()))
+		reject("resonantBlock", resonantBlock, "the id of a free block in O.bodies");
 }
 
 Real PulseTrainEngine::residualDisplacement() const { return displacement(Omega::instance().getScene()->time - start); }

@@ -25,6 +25,7 @@ void RecordMotionEngine::postLoad(RecordMotionEngine&)
 	for (Real sample : samples) requireFinite("samples", sample, false);
 	requireFinite("interval", interval, true);
 	requireFinite("scale", scale, false);
+	if (samples.size() == 1) throw std::invalid_argument("RecordMotionEngine.samples has 1 value: it must hold at least two accelerations in m/s^2.");
 	if (!samples.empty()) motion = masonry::motion::record(interval, samples, scale, masonry::motion::baselineFromName(baseline));
 }
 
@@ -39,6 +40,12 @@ void RecordMotionEngine::check() const
 {
 	BaseMotionEngine::check();
 	if (samples.empty()) throw std::invalid_argument("RecordMotionEngine.samples is empty: it must hold at least two accelerations in m/s^2.");
+	for (Real sample : samples)
+		if (!(std::abs(sample * scale) <= 1e6)) {
+			std::ostringstream text;
+			text << "RecordMotionEngine.samples has " << sample << ", times scale = " << scale << ": accelerations must be at most 1e6 m/s^2.";
+			throw std::invalid_argument(text.str());
+		}
 }
 
 } // namespace yade

@@ -1,5 +1,7 @@
 """Bad input: one clear error that names attribute, value and what is allowed, before anything has moved."""
 
+import contextlib
+import io
 import math
 
 from masonry import dem
@@ -82,15 +84,27 @@ for bad in (77, -1):
     refuses(lambda: quiet_engines(dem.PulseTrainEngine(ids=[bad], impulse=0.1, times=[0])), "ids", str(bad), "no such body")
 refuses(lambda: quiet_engines(dem.PulseTrainEngine(impulse=0.1, times=[0])), "ids", "empty")
 refuses(lambda: quiet_engines(dem.PulseTrainEngine(ids=[block], impulse=0.1, times=[0])), "ids", str(block), "prescribed")
-refuses(lambda: quiet_engines(dem.PulseTrainEngine(ids=[base], impulse=0.1, times=[0], direction=(2, 0, 0))), "direction", "unit")
-for bad, words in ((dict(times=[0]), ("impulse", "nan")), (dict(impulse=0.1), ("times", "resonantBlock")),
-                   (dict(impulse=0.1, times=[0], resonantBlock=block), ("times", "resonantBlock")), (dict(impulse=0.1, resonantBlock=77), ("resonantBlock", "77")),
+refuses(lambda: quiet_engines(dem.PulseTrainEngine(ids=[base], impulse=0.1, times=[0], direction=(2, 0, 0))), "direction = 2 0 0", "unit")
+for bad in (nan, inf):
+    refuses(lambda: quiet_engines(dem.RecordMotionEngine(ids=[base], samples=[0, 1], start=bad)), f"RecordMotionEngine.start = {bad}", "finite")
+for bad, words in ((dict(times=[0]), ("impulse", "nan")), (dict(impulse=1e300, times=[0]), ("impulse = 1e+300", "at most 1e6")), (dict(impulse=0.1), ("times", "resonantBlock")),
+                   (dict(impulse=0.1, times=[0], resonantBlock=block), ("times", "resonantBlock")), (dict(impulse=0.1, resonantBlock=77), ("resonantBlock", "77")), (dict(impulse=0.1, resonantBlock=base), ("resonantBlock = 0", "free block")),
                    (dict(impulse=0.1, times=[0], duration=1), ("duration", "1", "dirac")), (dict(impulse=0.1, times=[0], shape="half-sine"), ("duration", "0"))):
     refuses(lambda: quiet_engines(dem.PulseTrainEngine(ids=[base], **bad)), *words)
-for bad, words in ((dict(samples=[0, nan]), ("samples", "nan")), (dict(samples=[0, 1], interval=0), ("interval", "0")), (dict(samples=[0, 1], scale=inf), ("scale", "inf")),
+for bad, words in ((dict(samples=[0, nan]), ("samples", "nan")), (dict(samples=[1]), ("samples has 1 value", "at least two")), (dict(samples=[0, 1], interval=0), ("interval", "0")), (dict(samples=[0, 1], scale=inf), ("scale", "inf")),
                    (dict(samples=[0, 1], baseline="wavy"), ("baseline", "wavy"))):
     refuses(lambda: dem.RecordMotionEngine(**bad), *words)
 refuses(lambda: quiet_engines(dem.RecordMotionEngine(ids=[base])), "samples", "empty")
+refuses(lambda: quiet_engines(dem.RecordMotionEngine(ids=[base], samples=[0, 3], scale=1e300)), "samples has 3", "scale = 1e+300", "at most 1e6 m/s^2")
+with contextlib.redirect_stdout(io.StringIO()) as printed:
+    dem.engines(dem.RecordMotionEngine(ids=[base], samples=[0, 0.3, -0.2], interval=200, scale=9.81))
+assert "; record of 400 s, at most 2.94 m/s^2\n" in printed.getvalue()
+O.reset()
+dem.block((400, 200, 200), stone(), on=dem.base((4000, 1000, 100), stone()))
+with contextlib.redirect_stdout(io.StringIO()) as printed:
+    dem.engines()
+assert "the longest block measures 400 m: sizes are in m\n" in printed.getvalue()
+base, block, _ = one_block(5)
 refuses(lambda: dem.RockingJointEngine(impactOrder="random"), "impactOrder", "'random'", "simultaneous")
 
 # What a script changes after dem.engines().

@@ -71,8 +71,18 @@ def _landing_step(body):
     return 2 / np.sqrt(stiffness * area * (1 / state.mass + half.squaredNorm() / min(state.inertia)))
 
 
+def _records(motions):
+    """Length and peak of each record, so that slips of units (g for m/s^2, samples a second for the interval) are seen."""
+    said = ""
+    for record in motions:
+        if isinstance(record, wrapper.RecordMotionEngine):
+            peak = max(map(abs, record.samples)) * abs(record.scale)
+            said += f"; record of {(len(record.samples) - 1) * record.interval:g} s, at most {peak:.3g} m/s^2"
+    return said
+
+
 def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None, impact_order=None, gravity=9.81, recorder=None, others=(), method="auto"):
-    """The list for O.engines; sets O.dt and prints the choice and its reason, and the blocks that stand on nothing.
+    """The list for O.engines; sets O.dt and prints the choice and its reason, the blocks that stand on nothing, length and peak of records.
 
     motion        a motion engine (PulseTrainEngine, RecordMotionEngine), a list of them, or None
     model         'planar' or 'spatial': rigid blocks in a plane or in space (MoreauJeanIntegrator). 'compliant': joints with
@@ -125,6 +135,9 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
     floating = check_blocks(floating=False)
     if floating and gravity > 0:
         print(f"masonry.dem: no chain of supports joins these blocks to a prescribed body, they will fall: {listed(floating)}")
+    longest = max(2 * max(b.shape.extents) for b in _blocks() if b.dynamic)
+    if longest > _LONGEST:
+        print(f"masonry.dem: the longest block measures {longest:g} m: sizes are in m")
     reason = "asked for"
     if model == "auto":
         if penetration is not None:
@@ -168,7 +181,7 @@ def _rigid(motions, model, method, dt, tolerance, impact_order, gravity, recorde
     if not step <= integrator.largestTimeStep:
         raise ValueError(f"dt = {dt}: must be at most {integrator.largestTimeStep:.3g} s, 0.15 sqrt(R/g) of the smallest block")
     O.dt = step
-    print(f"masonry.dem: rigid blocks, {choice}; dt = {O.dt:.3g} s")
+    print(f"masonry.dem: rigid blocks, {choice}; dt = {O.dt:.3g} s{_records(motions)}")
     return [wrapper.ForceResetter(), *others, *recorders, integrator]
 
 
@@ -186,7 +199,7 @@ def _compliant(motions, reason, dt, penetration, impact_order, gravity, recorder
         raise ValueError(f"dt = {dt}: must be below {critical:.3g} s, the critical step of joints this stiff")
     O.dt = dt if dt is not None else _STEP_FRACTION * critical
     reasons.append(f"dt = {O.dt:.3g} s ({O.dt / critical:.2g} of the critical step)" if np.isfinite(critical) else f"dt = {O.dt:.3g} s")
-    print("masonry.dem:", "; ".join(reasons))
+    print("masonry.dem:", "; ".join(reasons) + _records(motions))
 
     smallest = min(min(b.shape.extents) for b in _blocks())
     return [
