@@ -23,8 +23,13 @@ public:
 	string Class::getClassName() const { return AbiTraits::name(); }                                                                       \
 	void Class::pySetAttr(const string& name, const ::boost::python::object& value)                                                        \
 	{                                                                                                                                      \
-		if (!abi::setAttribute(*this, name, value))                                                                                        \
-			AbiTraits::BaseClass::pySetAttr(name, value);                                                                                  \
+		try {                                                                                                                              \
+			if (!abi::setAttribute(*this, name, value))                                                                                    \
+				AbiTraits::BaseClass::pySetAttr(name, value);                                                                              \
+		} catch (const ::boost::python::error_already_set&) {                                                                              \
+			abi::nameAttribute(getClassName(), name, value);                                                                               \
+			throw;                                                                                                                         \
+		}                                                                                                                                  \
 	}                                                                                                                                      \
 	::boost::python::dict Class::pyDict() const                                                                                            \
 	{                                                                                                                                      \
