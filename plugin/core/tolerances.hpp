@@ -164,6 +164,9 @@ constexpr double still = 1e-2;
 // Relative velocity of points in touch, relative to the speed of rest (restSpeed sqrt(g half size)), above which the wall moves; it
 // stands when none is above the speed of rest. Nearer to 1: what the moving mode calls rest is motion to the still mode.
 constexpr double motion = 5;
+// Relative velocity of points in touch, relative to the speed of rest, below which a wall that moves is about to stand. Larger: the
+// substeps take more sweeps, and what lags behind in them bounces more in slow motion; smaller: high walls in space creep on by it.
+constexpr double slow = 100;
 // Velocity, relative to what gravity gives in a step, that the unfinished iterations of the still mode may keep from a point that parts or
 // slides, before it is let go to see. Larger: motion sets in too late; smaller: a wall at rest, whose points flicker, spends its time on
 // it. So a structure may hold little at first, and twice as much after each time that nothing has gone.

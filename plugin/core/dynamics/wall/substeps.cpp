@@ -25,7 +25,7 @@ constexpr double mostOfMean = 5, mostOfMeanOfSeveral = 3, mostOfFall = 2;
 // their lag is (80 of a quarter of a step, 32 courses: 15 % off). But as many as there are courses up to three, since what blocks
 // that land together have not been told of each other is lost. What all but the last of them overdo: the last must not, an impact would
 // bounce.
-constexpr double coursesOfSweep = 12;
+constexpr double coursesOfSweep = 12, coursesOfSlowSweep = 6;
 constexpr int ofFewCourses = 3;
 // And as many as heavy blocks on light ones ask: with this burden per sweep one of 3,000 times the mass slides on two courses by 0.5 % more
 // than with ten times the sweeps. Up to mostBurden.
@@ -252,11 +252,13 @@ void Substeps<K>::arrange(const WallContacts<K>& c)
 }
 
 template <class K>
-void Substeps<K>::begin(WallContacts<K>& c, double finer)
+void Substeps<K>::begin(WallContacts<K>& c, double finer, double pace)
 {
-	const double asked = std::max(std::pow(c.depth / coursesOfSweep, 2), std::min(c.burden, mostBurden) / burdenOfSweep);
+	const double courses = pace < 1 ? coursesOfSlowSweep : coursesOfSweep,
+	             asked = std::max(std::pow(c.depth / courses, 2), std::min(c.burden, mostBurden) / burdenOfSweep);
 	sweeps = std::max({1, std::min(c.depth, ofFewCourses), int(std::ceil(asked * std::sqrt(std::max(1., finer))))});
 	lumps = sweeps < c.depth ? float(mostLumps) : 0;
+	damped = float(damping / std::sqrt(sweeps) * std::min(1., pace));
 	arrange(c);
 	change.assign(halves.size(), all<Floats>(0));
 	motion = change;
@@ -297,7 +299,7 @@ void Substeps<K>::substep(WallContacts<K>& c, const LaneArray& load, double s, b
 	};
 	const auto press = [&](int number, bool isEnd, bool watched = false) {
 		[[maybe_unused]] const TinyIsZero inSweeps;
-		Sweep how {float(1 / s), float(isEnd ? 1 : overRelaxation), float(damping / std::sqrt(sweeps)), lumps};
+		Sweep how {float(1 / s), float(isEnd ? 1 : overRelaxation), damped, lumps};
 		if (watched)
 			how.change = change.data(), how.motion = motion.data();
 		parts[number].byColour([&](int first, int last) {

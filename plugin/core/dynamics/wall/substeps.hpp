@@ -9,7 +9,8 @@
 // An open point may close, u_n >= -gap/s, in all sweeps; a closed one does not, u_n >= 0. (Without the gap in the second half, corners that
 // approach stop short, and piers do not rock as they should.) One sweep carries an impulse one course on: what the courses miss of each
 // other falls as 1/substeps^2, and loads that lag behind like that bounce. So a sweep takes a little off what an impulse differs from its
-// mean over the last steps, which lets no load that stays sink. Over many sweeps loads spread as by diffusion, and their number grows as
+// mean over the last steps, which lets no load that stays sink. A wall that is about
+// to stand would be kept in motion by that, joint by joint: there it fades, and more sweeps take its place. Over many sweeps loads spread as by diffusion, and their number grows as
 // the courses squared: with one alone, the first peak of a column of 48 that rocks is 9 % off, not 4, and what is lost while loads lag
 // counts as impacts that were none. Where blocks carry heavier ones it grows as those are heavier and higher up (burden). Friction goes by
 // the mean of loads that lag (frictionBound() in sweep.hpp): with the bound of the moment the top of a wall of 32 courses at 1 g goes 28 %
@@ -35,8 +36,9 @@ struct SubstepReport {
 template <class K>
 class Substeps {
 public:
-	// From the contacts' velocities and impulses. `finer`: how many times more substeps than at the default tolerance.
-	void begin(WallContacts<K>& contacts, double finer);
+	// From the contacts' velocities and impulses. `finer`: how many times more substeps than at the default tolerance; `pace`: relative
+	// velocities of the last step, of those of slow motion.
+	void begin(WallContacts<K>& contacts, double finer, double pace);
 	// `load` is the change of velocity in a substep by external forces, per body. Into the contacts' velocities and shift.
 	void substep(WallContacts<K>& contacts, const LaneArray& load, double s, bool isLast);
 	// After each substep: what friction has taken, and the impulses that the next one starts from. `fall`: what gravity gives in a substep,
@@ -66,6 +68,7 @@ private:
 
 	int sweeps {1};                         // before the move, and after it
 	float lumps {0};                        // frictionBound()
+	float damped {0};                       // damping of this step
 	Array<Group<K, Floats>> groups;         // two of the contacts each, of one colour
 	std::vector<std::array<int, 2>> halves; // which; -1: none
 	std::vector<Place> places;              // of the contacts' groups

@@ -338,7 +338,7 @@ void WallStep<K>::stepMoving(RigidSystem<K>& s, double h)
 	lean(s, contacts, h);
 	contacts.setUnit(part);
 	setLoads(s, contacts, part);
-	sweeps.begin(contacts, count / double(fewSubsteps));
+	sweeps.begin(contacts, count / double(fewSubsteps), pace);
 	joints.find(s, contacts, sweeps, part);
 	for (int k = 0; k < count; ++k) {
 		s.time = start + k * part;
@@ -530,7 +530,11 @@ void WallStep<K>::choose(double h)
 			double& most = motion[structures.of[contacts.freeBody(g, i)]];
 			most = std::max(most, sweeps.report.motion[g][i]);
 		}
-	structures.endStep(motion, tolerance::restSpeed * scales.speed, shortest, h);
+	const double rest = tolerance::restSpeed * scales.speed;
+	pace = 0;
+	for (const double most : motion)
+		pace = std::max(pace, most / (tolerance::wall::slow * rest));
+	structures.endStep(motion, rest, shortest, h);
 }
 
 template class WallStep<Plane>;

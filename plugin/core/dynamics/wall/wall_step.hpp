@@ -63,7 +63,7 @@ public:
 		speeds.resize(count);
 		for (double& speed : speeds)
 			f(speed);
-		f(stillSet);
+		f(stillSet), f(pace);
 		still().pass(f, system, structures.bodies(WallMode::still));
 		moving().pass(f, system, structures.bodies(WallMode::moving));
 		kept.pass(f, sets, system);
@@ -117,6 +117,7 @@ private:
 	std::vector<typename K::Pose> middle; // of a step that moves
 	std::vector<int> onDrives;            // prescribed bodies with a drive
 	std::vector<double> speeds;           // of the drives, mean of the last part of a step, m/s
+	double pace {0};                      // of the last step: largest relative velocity that moved, of that of slow motion
 	double frictionLoss {0};              // J, of the part of the step
 	double setOffEnergy {0};              // J, that structures which begin to move have been given
 };
