@@ -73,7 +73,7 @@ refuses(lambda: quiet_engines("pulse"), "motion", "'pulse'", "PulseTrainEngine")
 refuses(lambda: quiet_engines(dt=1.0), "dt", "1", "below")
 for make, words in ((lambda: dem.WallRecorder(), ("WallRecorder.iterPeriod = 0", "positive")), (lambda: dem.WallRecorder(virtPeriod=nan), ("virtPeriod = nan", "positive")),
                     (lambda: dem.WallRecorder(iterPeriod=1, ids=[99]), ("id = 99", "no such body")), (lambda: dem.BlockRecorder(iterPeriod=1), ("BlockRecorder.ids", "empty")),
-                    (lambda: dem.BlockRecorder(ids=[1]), ("BlockRecorder.iterPeriod = 0", "positive"))):
+                    (lambda: dem.BlockRecorder(ids=[1], iterPeriod=-1), ("BlockRecorder.iterPeriod = -1", "positive"))):
     refuses(lambda: quiet_engines(recorder=make()), *words)
 
 # Motions.
@@ -105,6 +105,10 @@ dem.block((400, 200, 200), stone(), on=dem.base((4000, 1000, 100), stone()))
 with contextlib.redirect_stdout(io.StringIO()) as printed:
     dem.engines()
 assert "the longest block measures 400 m: sizes are in m\n" in printed.getvalue()
+base, block, _ = one_block(5)
+with contextlib.redirect_stdout(io.StringIO()) as printed:
+    dem.engines(recorder=dem.BlockRecorder(ids=[block]))
+assert "BlockRecorder records nothing until its iterPeriod or virtPeriod is set\n" in printed.getvalue()
 base, block, _ = one_block(5)
 refuses(lambda: dem.RockingJointEngine(impactOrder="random"), "impactOrder", "'random'", "simultaneous")
 

@@ -47,7 +47,11 @@ def _box(id):
 
 def check_recorder(recorder):
     name = type(recorder).__name__
-    if not any(0 < period < math.inf for period in (recorder.iterPeriod, recorder.virtPeriod, recorder.realPeriod)):
+    periods = recorder.iterPeriod, recorder.virtPeriod, recorder.realPeriod
+    later = isinstance(recorder, wrapper.BlockRecorder) and not any(periods)  # by O.dt, which dem.engines() is to choose
+    if later:
+        print(f"masonry.dem: {name} records nothing until its iterPeriod or virtPeriod is set")
+    elif not any(0 < period < math.inf for period in periods):
         raise ValueError(f"{name}.iterPeriod = {recorder.iterPeriod}, virtPeriod = {recorder.virtPeriod}: one of them must be positive and finite")
     if isinstance(recorder, wrapper.BlockRecorder) and not recorder.ids:
         raise ValueError(f"{name}.ids is empty: it must name at least one block")
