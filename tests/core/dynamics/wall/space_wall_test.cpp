@@ -106,6 +106,28 @@ TEST_CASE("a planar pier moves in space as in the plane")
 	CHECK(std::abs(space.shift(top).y()) < 1e-2 * std::abs(space.shift(top).x()));
 }
 
+// What is asked of walls: 1e-5 of a block's height. Two walls that meet at a right angle, shaken along, across and aslant.
+TEST_CASE("blocks in space do not enter each other")
+{
+	const double direction = GENERATE(0., M_PI / 4, M_PI / 2);
+	SpaceScene scene;
+	scene.addWall(8, 4);
+	for (int course = 0; course < 8; ++course)
+		for (int i = 0; i < 3; ++i)
+			addBlock(scene.system, {0.25, 0.5, 0.25}, {0.25, 0.75 + i, 0.25 + 0.5 * course});
+	Harmonic motion(g, 2, 0);
+	scene.drive(motion, {std::cos(direction), std::sin(direction), 0});
+	double deepest = 0;
+	for (int k = 0; k < 1000; ++k) {
+		scene.advance(1e-3);
+		for (const auto& pair : scene.system.pairs)
+			for (int i = 0; i < pair.size; ++i)
+				deepest = std::max(deepest, -pair.points[i].gap);
+	}
+	CHECK(scene.shift(scene.system.bodies.size() - 1).norm() > 1e-2);
+	CHECK(deepest < 1e-5 * 0.5);
+}
+
 // Dry joints take energy from any motion, and 1.5 s after the shaking the blocks have found places to stand. Loads that lag in the sweeps
 // must not keep a high wall in motion, joint by joint, on the energy of its sinking: walls that crept like that sank by 3e-4 to 5e-4 m in
 // half a second. Bound: a hundredth of it.
