@@ -399,18 +399,18 @@ template <class K> void SmoothStep<K>::accept(RigidSystem<K>& s)
 	s.impactDissip += impact;
 	s.frictDissip += friction;
 	project(s, impact + friction);
+	const bool isShort = last.h < tolerance::rigid::shortPart * whole; // its change of velocity per second is round-off's
 	for (size_t b = 0; b < s.bodies.size(); ++b) {
 		RigidBody<K>& body = s.bodies[b];
 		const auto&   next = last.bodies[b];
-		if (!body.prescribed) body.increment = (next.velocity - body.velocity) / last.h;
+		if (!body.prescribed && !isShort) body.increment = (next.velocity - body.velocity) / last.h;
 		body.pose = next.end;
 		body.velocity = next.velocity;
 	}
 	s.time += last.h;
-	s.setFresh(unsteady);
+	s.setFresh(unsteady || (isShort && s.isFresh()));
 
 	const double still = tolerance::rigid::parting * scales.stepSpeed(last.h);
-	const bool   isShort = last.h < tolerance::rigid::shortPart * whole;
 	size_t       row = 0;
 	bool         landed = false;
 	for (size_t c = 0; c < s.pairs.size(); ++c)
