@@ -94,8 +94,8 @@ struct ContactState {
 		return worst;
 	}
 
-	// Impulses that miss the laws may do work. If those of the rows do, they are scaled to the least energy: with p.u0 their
-	// power on the free velocities (seen from the offsets) and p.Gp = p.(u - u0), the energy is s p.u0 + s^2 p.Gp / 2.
+	// Impulses that miss the laws may have p.u > 0, which the laws exclude. In a step, whose u is the sum of the velocities before and after,
+	// that is twice the energy that they give. Then they are scaled until it is zero: with u0 the free velocities, s p.u0 + s^2 p.Gp = 0.
 	void addNoEnergy()
 	{
 		const auto power = [&] {
@@ -108,7 +108,7 @@ struct ContactState {
 		for (int b = 0; b < nBodies; ++b)
 			bodies[b].velocity = bodies[b].free;
 		const double before = power();
-		if (before + after > 0) {
+		if (after > 0) {
 			const double scale = std::max(0., -before / (after - before));
 			for (int i = 0; i < nPoints; ++i)
 				rows[i].impulse *= scale;
