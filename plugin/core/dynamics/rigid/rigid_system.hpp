@@ -51,7 +51,7 @@ template <class K> struct ContactPair {
 enum class ImpactOrder { simultaneous, sequential };
 
 struct Settings {
-	double      tolerance { 1e-9 };   // residual of a step's contact laws relative to the speed that gravity gives in that step
+	double      tolerance { 1e-9 };   // residual of a step's contact laws relative to the speed that gravity gives in that step; its parts aim at theirs
 	ImpactOrder order { ImpactOrder::simultaneous };
 	double      merged { 1e-6 };      // closings within this gap, relative to the smallest half size, are one impact: a model parameter
 	int         mostEvents { 50 };    // found inside one step; points that close later in it do so at its end, plastically

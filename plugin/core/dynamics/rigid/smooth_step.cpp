@@ -301,7 +301,7 @@ template <class K> void SmoothStep<K>::attempt(const RigidSystem<K>& s, double h
 	for (int pass = 0; pass < mostPasses; ++pass) {
 		predict(s, h, pass > 0);
 		assemble(s, h);
-		last.solved = solver.solve(s.settings.tolerance * scales.stepSpeed(h));
+		last.solved = solver.solve(s.settings.tolerance * scales.stepSpeed(h), s.settings.tolerance * scales.stepSpeed(whole));
 		const bool   surprised = pass == 0 && surprises(s, last, solver.bodies, scales);
 		const double gain = finish(s, h);
 		const bool   first = pass == 0 && fresh;
