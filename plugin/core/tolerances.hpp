@@ -66,9 +66,9 @@ constexpr double strayEnergy = 1e-13;
 // Relative velocity at a point, relative to what gravity gives in a step, that is zero: a point that parts more slowly
 // stays in touch. Smaller: round-off opens closed joints; larger: the first such part of a hop is lost.
 constexpr double parting = 1e-6;
-// Part of a step, relative to the whole, that is too short to tell whether a loaded point parts: what is left of the velocity errors of the
-// step before, relative to the speed that gravity gives in a whole step, is more than its weight gives in the part. Smaller values lose the
-// pivot of a block just before it lands, and with it its restitution; larger: a point parts that much later.
+// Part of a step, relative to the whole, that is too short to tell accelerations, or whether a loaded point parts: what is left of the
+// velocity errors of the step before, relative to the speed that gravity gives in a whole step, is more than its weight gives in the part.
+// Smaller values lose the pivot of a block just before it lands, and with it its restitution; larger: a point parts that much later.
 constexpr double shortPart = 0.02;
 constexpr double stray = 0.01;
 // Share of the friction limit within which a point counts as sliding.

@@ -399,7 +399,7 @@ template <class K> void SmoothStep<K>::accept(RigidSystem<K>& s)
 	s.impactDissip += impact;
 	s.frictDissip += friction;
 	project(s, impact + friction);
-	const bool isShort = last.h < tolerance::rigid::shortPart * whole; // its change of velocity per second is round-off's
+	const bool isShort = last.h < tolerance::rigid::shortPart * whole;
 	for (size_t b = 0; b < s.bodies.size(); ++b) {
 		RigidBody<K>& body = s.bodies[b];
 		const auto&   next = last.bodies[b];
