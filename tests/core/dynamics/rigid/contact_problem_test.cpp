@@ -146,31 +146,23 @@ template <class K> void set(ContactSolver<K>& solver, const Column& column)
 		addPoint(solver, column, point);
 }
 
-// Twice the gain of kinetic energy seen from the base: impulses times the mean of the velocities before and after.
-template <class K> double gain(const ContactSolver<K>& solver)
-{
-	double sum = 0;
-	for (const ContactRows<K>& c : solver.points) {
-		typename ContactRows<K>::Rows twice = 2 * c.offset;
-		if (c.body1 >= 0) twice += c.J1 * (solver.bodies[c.body1].velocity + solver.bodies[c.body1].free);
-		if (c.body2 >= 0) twice += c.J2 * (solver.bodies[c.body2].velocity + solver.bodies[c.body2].free);
-		sum += c.impulse.dot(twice);
-	}
-	return sum;
-}
-
-// Twice the same of a step, whose relative velocities are the sum of those before and after: impulses times these.
-template <class K> double gainOfStep(const ContactSolver<K>& solver)
+// Impulses times the relative velocities of their points, those of the bodies as they are (velocity) or without impulses (free).
+template <class K> double power(const ContactSolver<K>& solver, typename K::Velocity FreeBody<K>::*of)
 {
 	double sum = 0;
 	for (const ContactRows<K>& c : solver.points) {
 		typename ContactRows<K>::Rows u = c.offset;
-		if (c.body1 >= 0) u += c.J1 * solver.bodies[c.body1].velocity;
-		if (c.body2 >= 0) u += c.J2 * solver.bodies[c.body2].velocity;
+		if (c.body1 >= 0) u += c.J1 * (solver.bodies[c.body1].*of);
+		if (c.body2 >= 0) u += c.J2 * (solver.bodies[c.body2].*of);
 		sum += c.impulse.dot(u);
 	}
 	return sum;
 }
+
+// Twice the gain of kinetic energy seen from the base: impulses times the sum of the velocities before and after. In a step the relative
+// velocities are that sum themselves.
+template <class K> double gain(const ContactSolver<K>& solver) { return power(solver, &FreeBody<K>::free) + power(solver, &FreeBody<K>::velocity); }
+template <class K> double gainOfStep(const ContactSolver<K>& solver) { return power(solver, &FreeBody<K>::velocity); }
 
 // Blocks 1.0 x 0.8 x 0.5 m at rest on each other, every second one `ratio` times as dense; free velocity: one step of gravity.
 Column standing(int blocks, double ratio, double speed, bool planar)
