@@ -39,6 +39,9 @@ for options, method in (({}, "wall"), ({"method": "localised"}, "localised"), ({
     assert integrator().method == method, options
 wall(3, 6, 0.1)
 assert integrator().method == "localised"  # 19 blocks
+for per_course, method in ((2, "localised"), (3, "wall")):  # 5 and 7 blocks
+    wall(2, per_course, 0.1, model="spatial")
+    assert integrator().method == method, per_course
 
 # It is the largest structure that counts: blocks that stand apart move as each of them would alone. Pulses keep all in one step.
 

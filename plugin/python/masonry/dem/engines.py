@@ -9,8 +9,9 @@ from masonry.dem.walls import number_given
 _MODELS = ("auto", "planar", "spatial", "compliant")
 _METHODS = ("auto", "localised", "wall")
 _ORDERS = (None, "simultaneous", "sequential")
-# Up to so many free blocks that are stepped together, impacts are found one by one.
-_FEW_BLOCKS = 20
+# Up to so many free blocks that are stepped together, impacts are found one by one. Larger: shaken walls of ten blocks in space take
+# minutes a second.
+_FEW_BLOCKS = {"planar": 20, "spatial": 6}
 # Time step of rigid blocks, share of the largest that is allowed (0.15 sqrt(R/g) of the smallest block): 2.5e-3 sqrt(R/g), 1e-3 s for a
 # block 3 m high. Rocking angles of one block are then right to 1e-6.
 _RIGID_STEP = 1 / 60
@@ -103,7 +104,7 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
                   the blocks out), put between ForceResetter and the blocks' own
     method        rigid: 'localised' (each impact found inside the step: second order) or 'wall' (many blocks: impacts met
                   at the end of a substep, first order, hundreds of times faster when a wall moves). 'auto': 'wall' where a
-                  structure (dem.structures) has more than 20 free blocks, or with a PulseTrainEngine the scene, unless an
+                  structure (dem.structures) has more than 20 free blocks, in space 6, or with a PulseTrainEngine the scene, unless an
                   impact_order 'simultaneous' or a tolerance below 1e-6 is asked for
 
     A BlockMat is read when two blocks come near each other. Changed during a run, it acts on pairs that come later; for those that are there
@@ -168,7 +169,7 @@ def _rigid(motions, model, method, dt, tolerance, impact_order, gravity, recorde
         joined = [len(ids) for ids in structures()]
         blocks = sum(joined) if pulses else max(joined)
         fine = impact_order == "simultaneous" or (tolerance is not None and tolerance < 1e-6)
-        method = "wall" if blocks > _FEW_BLOCKS and not fine else "localised"
+        method = "wall" if blocks > _FEW_BLOCKS[choice.split(":")[0]] and not fine else "localised"
         if method == "wall":
             choice += f"; {blocks} blocks: method 'wall'"
         elif len(joined) > 1 and not pulses:
