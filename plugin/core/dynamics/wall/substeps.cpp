@@ -255,7 +255,7 @@ template <class K>
 void Substeps<K>::begin(WallContacts<K>& c, double finer, double pace)
 {
 	const double courses = pace < 1 ? coursesOfSlowSweep : coursesOfSweep,
-	             asked = std::max(std::pow(c.depth / courses, 2), std::min(c.burden, mostBurden) / burdenOfSweep);
+	             asked = std::max(c.spread / (courses * courses), std::min(c.burden, mostBurden) / burdenOfSweep);
 	sweeps = std::max({1, std::min(c.depth, ofFewCourses), int(std::ceil(asked * std::sqrt(std::max(1., finer))))});
 	lumps = sweeps < c.depth ? float(mostLumps) : 0;
 	damped = float(damping / std::sqrt(sweeps) * std::min(1., pace));

@@ -255,6 +255,7 @@ public:
 	std::vector<typename K::Spin> gyration; // rho, m
 	std::vector<int> course;                // of a body: pairs between it and the nearest prescribed one; -1: no way there
 	int depth {0};                          // courses: the highest
+	double spread {0};                      // square of the courses, times how slender: as which loads take to spread; the largest
 	double burden {0};                      // largest course of a block times its mass over that of one below it that it touches
 	std::vector<int> upwards;               // groups in the order of their courses, those of a part from its begin to its end
 	double length {0};                      // m, smallest half size

@@ -1,4 +1,5 @@
 // How a wall is divided into parts and groups, and which course a block is in.
+#include "dynamics/rigid/island_numbers.hpp"
 #include "dynamics/wall/wall_contacts.hpp"
 #include <algorithm>
 #include <numeric>
@@ -9,6 +10,11 @@ namespace {
 
 constexpr int pairsOfPart = 1024; // at least: fewer do not repay that threads meet
 constexpr int mostSeam = 8;       // times as many pairs as are in the seam there are at least
+
+// Loads spread over the courses as by diffusion, in time as their square. A structure that is slender bends besides, and takes longer: in
+// proportion to its courses over the blocks of one from this on, up to so many times as long. Smaller: the first peak of a column of 48
+// that rocks is up to 3.6 % off, not 1.1; larger: slender structures take more sweeps.
+constexpr double slender = 2, mostOfSlender = 3;
 
 } // namespace
 
@@ -154,6 +160,17 @@ void WallContacts<K>::findCourses(const RigidSystem<K>& s)
 				}
 	}
 	--depth;
+	const std::vector<int> structure = islandNumbers(s);
+	std::vector<double> blocks(structure.size(), 0), courses = blocks;
+	for (size_t b = 0; b < structure.size(); ++b)
+		if (structure[b] >= 0 && course[b] > 0) {
+			++blocks[structure[b]];
+			courses[structure[b]] = std::max<double>(courses[structure[b]], course[b]);
+		}
+	spread = 0;
+	for (size_t k = 0; k < structure.size(); ++k)
+		if (const double square = courses[k] * courses[k]; square > 0)
+			spread = std::max(spread, square * std::clamp(square / blocks[k] / slender, 1., mostOfSlender));
 	burden = 0;
 	for (const int c : numbers) {
 		const auto [low, high] = std::minmax({pairs[c][0], pairs[c][1]}, [&](int a, int b) { return course[a] < course[b]; });
