@@ -79,7 +79,7 @@ MASONRY_INLINE void trim(Group<K, Floats>& group, float ofMean, float fall, Floa
 	for (int k = 0; k < group.count; ++k) {
 		PointLanes<K, Floats>& p = group.point[k];
 		const Floats pn = smaller(p.pn, most(p));
-		const auto pt = clip(p.pt, group.friction * pn);
+		const auto pt = select(pn < p.pn, clip(p.pt, group.friction * pn), p.pt);
 		push(v1, v2, p, pn - p.pn, pt - p.pt);
 		p.pn = pn;
 		p.pt = pt;

@@ -12,11 +12,11 @@ constexpr int pierBlocks = 4, courses = 6;
 
 // Blocks 0.5 x 1 m upon each other, three metres to the left of the walls. They move at once: the top at 0.2 m/s.
 template <class K>
-void addPier(SceneOf<K>& scene)
+void addPier(SceneOf<K>& scene, double x = -3, double speed = 0.05)
 {
 	for (int k = 0; k < pierBlocks; ++k)
-		scene.system.bodies[addBlock(scene.system, sizeOf(scene.system, 0.25, 0.5), placeOf(scene.system, -3, 0.5 + k))].velocity[0] =
-		    0.05 * (k + 1);
+		scene.system.bodies[addBlock(scene.system, sizeOf(scene.system, 0.25, 0.5), placeOf(scene.system, x, 0.5 + k))].velocity[0] =
+		    speed * (k + 1);
 }
 
 // What the base carries of these blocks, N.
@@ -77,6 +77,27 @@ TEMPLATE_TEST_CASE("a wall stands and a pier rocks on one base as each does alon
 	CHECK(both.system.baseWork == Approx(work).margin(error));
 	CHECK(both.system.frictDissip == Approx(wall.system.frictDissip + pier.system.frictDissip).margin(error));
 	CHECK(both.system.impactDissip == Approx(wall.system.impactDissip + pier.system.impactDissip).margin(error));
+}
+
+// Both are swept at once, their pairs side by side in one register: those of one do not feel what becomes of the other's. For as long as no
+// penetration is taken off: that is done for both together, to a tolerance.
+TEMPLATE_TEST_CASE("a pier moves beside another that moves as it does alone", "", Plane, Space)
+{
+	SceneOf<TestType> both(0.7), one(0.7);
+	Harmonic motion(g, 2, 0.1);
+	addPier(both);
+	addPier(both, -6, -0.3);
+	addPier(one);
+	for (auto* scene : {&both, &one})
+		scene->drive(motion);
+	for (int k = 0; k < 50; ++k) {
+		both.advance(h);
+		one.advance(h);
+		REQUIRE(both.step.report.moved == 2 * pierBlocks);
+		for (int b = 1; b <= pierBlocks; ++b)
+			REQUIRE((both.system.bodies[b].velocity == one.system.bodies[b].velocity &&
+			         both.system.bodies[b].pose.position == one.system.bodies[b].pose.position));
+	}
 }
 
 // As for walls: forces to 1e-3 of the weight, 1e-6 m of drift.
