@@ -45,6 +45,13 @@ constexpr double settle = 1e-9;
 // that much at most. Smaller: squat blocks at low restitution start a half cycle with a vibration; larger: a stack that
 // comes apart can gain energy.
 constexpr double settlingGain = 0.5;
+// How far settling may move a point, relative to the compression of the springs: points that lie nearly in a line ask for turns of
+// any size. Smaller: half cycles of stacks start with a vibration; larger: blocks jump.
+constexpr double settlingReach = 10;
+// Energy that springs may have of nothing, from points that are not where those of the last step were: share of what is turned over, and of
+// what lifts all blocks by their radius of gyration. Smaller: scenes whose corners change faces are reported; larger: blocks that hit so
+// hard that their corners jump to another face, deep in it, are not.
+constexpr double madeShare = 0.05, madeLift = 1e-4;
 
 // --- rigid blocks (dynamics/rigid/) ---
 namespace rigid {

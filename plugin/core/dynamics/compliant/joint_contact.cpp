@@ -116,6 +116,7 @@ void updateForces(JointContact& contact, const Body& body1, const Body& body2, d
 		const double takenShear = -0.5 * (old.shearForce + point.shearForce).dot(slideVelocity) * dt;
 		const double storedNormal = old.muted ? 0 : 0.5 * contact.normalStiffness(i) * (squared(depth) - squared(oldDepth));
 		const double storedShear = 0.5 * stiffness * (point.shear.squaredNorm() - old.shear.squaredNorm());
+		contact.energy.taken += storedNormal + storedShear;
 		contact.energy.friction += slipped;
 		contact.energy.damping += takenNormal - storedNormal + takenShear - storedShear - slipped;
 		if (!point.muted) contact.energy.elastic += storedEnergy(contact, i);

@@ -32,6 +32,7 @@ struct JointPoint {
 
 struct JointEnergy {
 	double elastic { 0 };  // stored now, J
+	double taken { 0 };    // of it: what the motion of this step has put in, J
 	double friction { 0 }; // dissipated in this step, J
 	double damping { 0 };  // dissipated in this step, J
 };

@@ -144,8 +144,20 @@ void unmuteInFlight(JointSystem& s, const Joint& joint)
 {
 	const auto carries = [&](const PointRef& p) { return !stateOf(s, p).muted && gapOf(s, p) < 0; };
 	if (std::any_of(joint.points.begin(), joint.points.end(), carries)) return;
+	// An old pivot on its way out, whose spring has been written off with the impact, would push again.
 	for (const PointRef& p : joint.points)
-		stateOf(s, p).muted = false;
+		stateOf(s, p).muted = stateOf(s, p).muted && gapOf(s, p) < 0 && gapRate(s, p) > 0;
+}
+
+void unmuteUpright(JointSystem& s, const std::vector<Joint>& joints)
+{
+	std::vector<bool> rocks(s.contacts.size(), false);
+	for (const Joint& joint : joints)
+		for (int c : joint.contacts)
+			rocks[c] = true;
+	for (size_t c = 0; c < s.contacts.size(); ++c)
+		for (JointPoint& point : s.contacts[c].points)
+			point.muted &= rocks[c];
 }
 
 void muteOpenPoints(JointSystem& s, const Joint& joint)
@@ -280,6 +292,41 @@ namespace {
 		return motion;
 	}
 
+	// What the normal springs would store if no point were muted.
+	double pressedEnergy(const std::vector<JointContact>& contacts)
+	{
+		double sum = 0;
+		for (const JointContact& contact : contacts)
+			for (int i = 0; i < contact.size; ++i) {
+				const double depth = std::max(0., -contact.patch.points[i].gap);
+				sum += 0.5 * contact.normalStiffness(i) * depth * depth;
+			}
+		return sum;
+	}
+
+	double largestChange(const std::vector<JointContact>& contacts, const std::vector<JointContact>& before)
+	{
+		double largest = 0;
+		for (size_t c = 0; c < contacts.size(); ++c)
+			for (int i = 0; i < contacts[c].size; ++i)
+				largest = std::max(largest, std::abs(contacts[c].patch.points[i].gap - before[c].patch.points[i].gap));
+		return largest;
+	}
+
+	// How deep the springs are pressed, or would be if one of them bore all.
+	double compression(const std::vector<Body>& bodies, const std::vector<JointContact>& contacts)
+	{
+		double load = 0, deepest = 0;
+		for (const Body& body : bodies)
+			if (!body.prescribed) load += body.force.norm();
+		for (const JointContact& contact : contacts) {
+			deepest = std::max(deepest, load / (contact.law.normalStiffness * contact.stiffnessArea()));
+			for (int i = 0; i < contact.size; ++i)
+				deepest = std::max(deepest, -contact.patch.points[i].gap);
+		}
+		return deepest;
+	}
+
 } // namespace
 
 double settle(JointSystem& s, const std::vector<HeldPoint>& held, double stored)
@@ -322,8 +369,10 @@ double settle(JointSystem& s, const std::vector<HeldPoint>& held, double stored)
 	};
 	hold();
 	double given = stored + work - storedEnergy(s);
-	// Bodies on their way over an edge may have no such equilibrium near: then they stay where they are.
-	if (given < -tolerance::settlingGain * stored) {
+	// Bodies on their way over an edge, or that hit hard, may have no such equilibrium near: then they stay where they are.
+	const double most = tolerance::settlingGain * stored;
+	if (given < -most || pressedEnergy(s.contacts) - pressedEnergy(contactsBefore) > most
+	    || largestChange(s.contacts, contactsBefore) > tolerance::settlingReach * compression(before, contactsBefore)) {
 		s.bodies = before;
 		s.contacts = contactsBefore;
 		hold();

@@ -47,6 +47,8 @@ void          putBack(const Neighbourhood& part, JointSystem& system);
 // nothing is muted, so that it may land on any point.
 void muteOpenPoints(JointSystem& system, const Joint& joint);
 void unmuteInFlight(JointSystem& system, const Joint& joint);
+// Contacts that are in none of the joints stand upright and do not rock: all their points carry.
+void unmuteUpright(JointSystem& system, const std::vector<Joint>& joints);
 
 // Speed at which a point's gap opens, m/s.
 double gapRate(const JointSystem& system, const PointRef& point);

@@ -255,7 +255,9 @@ double liftJoints(JointSystem& s)
 std::vector<ImpactRecord> handOffPivots(JointSystem& s)
 {
 	std::vector<ImpactRecord> records;
-	for (const Joint& joint : groupJoints(s)) {
+	const auto joints = groupJoints(s);
+	unmuteUpright(s, joints);
+	for (const Joint& joint : joints) {
 		if (!closedOnMovingBase(s)) muteOpenPoints(s, joint); // else liftJoints decides
 		if (findClosing(s, joint).points.empty()) continue;
 		Neighbourhood part = neighbourhood(s, joint);
@@ -305,11 +307,13 @@ JumpResponse applyBaseJump(JointSystem& s, const std::vector<int>& moved, const 
 		s.bodies[b].velocity += jump;
 	JumpResponse            response;
 	const auto              held = respondToJump(s, moved, jump, response);
+	const auto              joints = groupJoints(s);
+	unmuteUpright(s, joints);
 	const RigidAcceleration rates = accelerations(s, held);
 	goForth(s, rates, before);
 	response.dissipated += settle(s, rates.points, stored);
 	response.work += before * (supportPower(s) - power);
-	for (const Joint& joint : groupJoints(s))
+	for (const Joint& joint : joints)
 		unmuteInFlight(s, joint);
 	return response;
 }
