@@ -36,7 +36,8 @@ public:
 		((vector<int>, impactSwitched, , Attr::readonly, "1: the pivot was handed over; 0: the joint came to rest."))
 		((vector<int>, impactCapped, , Attr::readonly, "1: the restitution was lowered so that the energy does not grow."))
 		((Real, worstResidual, 0, Attr::readonly, "Largest residual of the impulse problems so far [m/s]; of accelerations times the time step."))
-		((long, failures, 0, Attr::readonly, "Impulse problems so far that missed their laws: residual above 1e-8 of their speed."))
+		((long, failures, 0, Attr::readonly, "Impulse problems so far that missed their laws (residual above 1e-8 of their speed); and 1 where madeEnergy has come to be a twentieth of the energy turned over."))
+		((Real, madeEnergy, 0, Attr::readonly, "Energy that the joints' springs have had of nothing so far [J]: blocks that hit hard go deep into each other, and a corner that passes to another face is deeper at once, or stiffer. A smaller penetration helps, or rigid blocks."))
 		((Real, kinetic, 0, Attr::readonly, "Kinetic energy now [J]."))
 		((Real, potential, 0, Attr::readonly, "Potential energy of gravity now, zero at the origin [J]."))
 		((Real, elastPotential, 0, Attr::readonly, "Energy stored in the joints now [J]."))
@@ -55,12 +56,18 @@ private:
 		BlockGeom* geom;
 		BlockPhys* phys;
 	};
+	struct BoundPose { // of a body when the collider last looked
+		long iteration = -1;
+		Quaternionr orientation = Quaternionr::Identity();
+	};
 
 	void checkScene();
 	vector<Pair> gather();
 	void addExternalForces();
 	void checkTimeStep();
 	void reportUnsolved();
+	void boundTurns();
+	void addMade();
 	void recordImpact(const masonry::ImpactRecord&);
 	bool applyJumps(const vector<BaseMotionEngine*>& motions, const vector<StepImpact>& impacts);
 	void applyForces(const vector<Pair>& pairs);
@@ -75,6 +82,7 @@ private:
 	masonry::JointSystem system;
 	vector<int> ids;   // index in system.bodies -> body id
 	vector<int> index; // body id -> index in system.bodies, or -1
+	vector<BoundPose> boundAt; // by body id
 	vector<Vector3r> bodyForce, bodyTorque; // joint forces on each body
 };
 REGISTER_SERIALIZABLE(RockingJointEngine);
