@@ -45,6 +45,26 @@ def rests(ids, time, bound):
     assert balance.error() <= 1e-6 * fall(ids)
 
 
+def joint_engine():
+    return next(e for e in O.engines if isinstance(e, dem.RockingJointEngine))
+
+
+def deepest_point():
+    """How far the deepest point of all joints is pressed in, m."""
+    return max((-gap for i in O.interactions if i.isReal for gap in i.geom.gaps), default=0)
+
+
+def lowest_corner(id):
+    """Height of a block's lowest corner, m."""
+    s = O.bodies[id].state
+    return s.pos[2] - sum(abs((s.ori * axis)[2]) * h for axis, h in zip((Vector3.UnitX, Vector3.UnitY, Vector3.UnitZ), O.bodies[id].shape.extents))
+
+
+def turned_over():
+    """Energy that the scene has had in hand, J: what "of nothing" is compared with."""
+    return sum(value for key, value in dem.energy().items() if key not in ("potential", "baseWork"))
+
+
 @case
 def perfect_cubes():
     base, material = ground(noSlip=False, frictionAngle=0.6)
@@ -277,6 +297,62 @@ def hit_by_a_sphere():
     spin = O.bodies[block].state.angVel[1]
     print(f"    ball {O.bodies[ball].state.vel[0]:.3f} m/s, spin {spin:.5f}, from momentum {given / inertia:.5f} less {held / inertia:.5f}")
     assert 0.98 * (given - held) < spin * inertia < 1.02 * given
+
+
+@case
+def wall_under_pulses():
+    """Head joints carry under pulses: no block goes into its neighbour."""
+    base, material = ground(size=(12, 4, 0.4), noSlip=False, frictionAngle=math.atan(1.0))
+    dem.wall(3, 3, (1, 0.5, 0.5), material, on=base)
+    O.engines = quiet_engines(dem.PulseTrainEngine(ids=[base], times=[0.05, 0.3, 0.7], impulse=1.0), penetration=1e-4)
+    balance = Balance()
+    deepest = 0
+    while O.time < 1.2:
+        O.run(500, True)
+        deepest = max(deepest, deepest_point())
+    print(f"    deepest {deepest:.1e} m, energy {balance.error() / turned_over():.1e}, made {joint_engine().madeEnergy / turned_over():.1e}")
+    # The weight presses in by d = 1e-4 * 1 m, a landing with v by v sqrt(d/g): 3 mm at 1 m/s, on an edge sqrt(2) of it.
+    assert deepest < 5e-3, deepest
+    assert abs(balance.error()) < 0.02 * turned_over()
+
+
+@case
+def thrown_spinning():
+    """The collider sees the corners of a block that turns: a contact is there one step after the touch. Saved and loaded on the way: the same bits."""
+    ends = []
+    for save in (False, True):
+        base, material = ground()
+        block = dem.block((1, 0.5, 0.5), material, center=(0, 0, 0.8))
+        O.bodies[block].state.angVel = (0, 20, 0)
+        O.engines = quiet_engines(penetration=1e-4)
+        balance = Balance()
+        while not any(i.isReal for i in O.interactions):
+            before = lowest_corner(block)
+            if save and O.iter == 600:
+                O.saveTmp()
+                O.loadTmp()
+            O.step()
+        depth, way = -lowest_corner(block), before - lowest_corner(block)
+        print(f"    contact {depth:.1e} m deep after a step of {way:.1e} m")
+        assert depth <= way and O.iter > 600, (depth, way, O.iter)
+        O.run(2000, True)
+        ends.append(poses([block]).tolist())
+        assert abs(balance.error()) < 0.01 * turned_over()
+    assert ends[0] == ends[1]
+
+
+@case
+def lands_on_an_edge():
+    """A block falls beside the middle of another, which it throws: the hand-off does not let them jump."""
+    base, material = ground(noSlip=False, frictionAngle=math.atan(0.4))
+    lower = dem.block((1, 0.5, 0.5), material, on=base)
+    upper = dem.block((1, 0.5, 0.5), material, center=(0.8, 0, 1.25))
+    O.engines = quiet_engines(penetration=1e-4)
+    balance = Balance()
+    O.run(int(2 / O.dt), True)
+    made = joint_engine().madeEnergy
+    print(f"    energy {balance.error() / turned_over():.1e}, made {made / turned_over():.1e}")
+    assert abs(balance.error()) < 0.01 * turned_over() and abs(made) < 0.01 * turned_over()
 
 
 for name, run in CASES.items():
