@@ -242,7 +242,7 @@ def impacts():
 
 def energy():
     """Energies in J: kinetic and potential now; frictDissip, impactDissip and baseWork so far; compliant joints: also elastPotential
-    now and dampDissip so far. The sum of all others less baseWork is constant."""
+    now and dampDissip so far. The sum of all others less baseWork is constant, but for RockingJointEngine.madeEnergy and the errors of steps."""
     e = _joint_engine()
     keys = ("kinetic", "potential", "elastPotential", "frictDissip", "dampDissip", "impactDissip", "baseWork")
     return {key: getattr(e, key) for key in keys if hasattr(e, key)}
