@@ -57,6 +57,28 @@ namespace {
 		moveContacts(s, instant);
 	}
 
+	// Kinetic energy at the end of the step by the forces of the springs, less that by the rigid accelerations: the springs' own
+	// motion, which the hand-off leaves out.
+	double springMotion(const JointSystem& s, const RigidAcceleration& rates)
+	{
+		std::vector<Body> sprung = s.bodies, rigid = s.bodies;
+		for (size_t i = 0; i < s.bodies.size(); ++i) {
+			sprung[i].velocity += 0.5 * s.dt * s.bodies[i].inverseMass() * s.bodies[i].force;
+			sprung[i].angularVelocity += 0.5 * s.dt * s.bodies[i].inverseInertia() * s.bodies[i].torque;
+			rigid[i].velocity += 0.5 * s.dt * rates.linear[i];
+			rigid[i].angularVelocity += 0.5 * s.dt * rates.angular[i];
+		}
+		for (const JointContact& contact : s.contacts)
+			for (int i = 0; i < contact.size; ++i)
+				for (const auto& [b, sign] : { std::pair(contact.body1, -1.), std::pair(contact.body2, 1.) }) {
+					Body&         body = sprung[b];
+					const Vector3 push = 0.5 * s.dt * sign * contact.force(i);
+					body.velocity += body.inverseMass() * push;
+					body.angularVelocity += body.inverseInertia() * (contact.position(i) - body.pose.position).cross(push);
+				}
+		return kineticEnergy(sprung) - kineticEnergy(rigid);
+	}
+
 	bool loaded(const JointContact& contact, int i) { return !contact.points[i].muted && contact.patch.points[i].gap < 0; }
 
 	// Smallest angular velocity of a rocking impact that starts another half cycle: the next peak must exceed the angle by
@@ -136,7 +158,9 @@ namespace {
 	{
 		const double stored = storedEnergy(s), power = supportPower(s);
 		const auto   loadedPoints = selectPoints(s.contacts, loaded);
-		goBack(s, accelerations(s, loadedPoints), closing.before);
+		const auto   old = accelerations(s, loadedPoints);
+		const double sprung = springMotion(s, old);
+		goBack(s, old, closing.before);
 
 		RockingImpact impact = closingImpact(s, joint, closing, loadedPoints);
 		const Vector3 axis = rockingAxis(s.bodies, impact.joints.front(), impact.points);
@@ -158,7 +182,8 @@ namespace {
 		record.restitutionAsked = closing.restitution;
 		record.switched = !stops;
 		record.result = result;
-		record.settled = settle(s, rates.points, stored);
+		record.settled = sprung + settle(s, rates.points, stored);
+		record.settled -= springMotion(s, rates);
 		record.work = result.work + closing.before * (supportPower(s) - power);
 		return record;
 	}

@@ -50,7 +50,7 @@ struct ImpactRecord {
 	bool                switched { false };           // false: the joint came to rest
 	Result result {};                                 // of the restitution law
 	double              work { 0 };                   // of the moved bodies: their impulses, and the changed forces up to the end of the step, J
-	double              settled { 0 };                // given up as the springs take the pivot forces of the new phase (of either sign), J
+	double              settled { 0 };                // given up as the springs stop and take the pivot forces of the new phase (of either sign), J
 };
 
 // Puts bodies at rest in their equilibrium: compressions and shears that carry the weight (or, for a block that is let
