@@ -12,9 +12,9 @@ constexpr int pairsOfPart = 1024; // at least: fewer do not repay that threads m
 constexpr int mostSeam = 8;       // times as many pairs as are in the seam there are at least
 
 // Loads spread over the courses as by diffusion, in time as their square. A structure that is slender bends besides, and takes longer: in
-// proportion to its courses over the blocks of one from this on, up to so many times as long. Smaller: the first peak of a column of 48
-// that rocks is up to 3.6 % off, not 1.1; larger: slender structures take more sweeps.
-constexpr double slender = 2, mostOfSlender = 3;
+// proportion to its courses over the blocks of one from this on, up to so many times as long. Without it the first peak of a column of 48
+// that rocks is 5 % off, not 1.9; smaller the first, or larger the second: slender structures take more sweeps.
+constexpr double slender = 1, mostOfSlender = 7;
 
 } // namespace
 
