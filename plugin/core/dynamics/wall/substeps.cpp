@@ -23,8 +23,8 @@ constexpr double mostLumps = 0.1;
 // times the mean the peaks of columns are 0.5 % too high at a tenth of a step, with 12 times 0.4 % too low at a whole one.
 constexpr double mostOfMean = 8, mostOfFall = 2;
 
-// Sweeps before the move, and after it, as the square of the courses asks, and with finer substeps more: these alone leave tall walls where
-// their lag is. But as many as there are courses up to three, since what blocks
+// Sweeps before the move, and after it, as the square of the courses asks, and as many times more as substeps are finer: these alone leave
+// tall walls where their lag is. But as many as there are courses up to three, since what blocks
 // that land together have not been told of each other is lost. What all but the last of them overdo: the last must not, an impact would
 // bounce.
 constexpr double coursesOfSweep = 18.5, coursesOfSlowSweep = coursesOfSweep / 2;
@@ -260,7 +260,7 @@ void Substeps<K>::begin(WallContacts<K>& c, double finer, double pace)
 {
 	const double courses = pace < 1 ? coursesOfSlowSweep : coursesOfSweep,
 	             asked = std::max(c.spread / (courses * courses), std::min(c.burden, mostBurden) / burdenOfSweep);
-	sweeps = std::max({1, std::min(c.depth, ofFewCourses), int(std::ceil(asked * std::sqrt(std::max(1., finer))))});
+	sweeps = std::max({1, std::min(c.depth, ofFewCourses), int(std::ceil(asked * std::max(1., finer)))});
 	lumps = sweeps < c.depth ? float(mostLumps) : 0;
 	damped = float(damping * (1 - 1. / std::max(1, c.depth)) / sweeps * std::min(1., pace));
 	inMean = float(std::max(leastInMean, inMeanOfOne / std::max(1, c.depth)));
