@@ -24,9 +24,8 @@ constexpr double mostLumps = 0.1;
 constexpr double mostOfMean = 8, mostOfFall = 2;
 
 // Sweeps before the move, and after it, as the square of the courses asks, and as many times more as substeps are finer: these alone leave
-// tall walls where their lag is. But as many as there are courses up to three, since what blocks
-// that land together have not been told of each other is lost. What all but the last of them overdo: the last must not, an impact would
-// bounce.
+// tall walls where their lag is. But as many as there are courses up to three, since what blocks that land together have not been told of
+// each other is lost. What all but the last of them overdo: the last must not, an impact would bounce.
 constexpr double coursesOfSweep = 18.5, coursesOfSlowSweep = coursesOfSweep / 2;
 constexpr int ofFewCourses = 3;
 // And as many as heavy blocks on light ones ask: with this burden per sweep one of 3,000 times the mass slides on two courses by 0.5 % more
