@@ -10,7 +10,7 @@ namespace {
 // Of the difference of an impulse from its mean over the last substeps: what all sweeps before the move take off, and all after it, in a
 // structure of many courses (a load on one course does not lag). More: joints give way by it, and many of them upon another sway; less:
 // loads that lag bounce. And what a substep takes into the mean, where there is one course and where there are many. More: loads bounce
-// longer than the mean, which then follows them; with 0.06 walls of 32 courses need eight sweeps, not three.
+// longer than the mean, which then follows them; with 0.06 walls of 32 courses go half as far again.
 constexpr double damping = 0.065, inMeanOfOne = 0.06, leastInMean = 0.02;
 
 // Of a load, where there are fewer sweeps than courses: how far friction's may be from it (frictionBound()). More: what slides is slow to
