@@ -174,6 +174,9 @@ constexpr double motion = 5;
 // Relative velocity of points in touch, relative to the speed of rest, below which a wall that moves is about to stand. Larger: the
 // substeps take more sweeps, and what lags behind in them bounces more in slow motion; smaller: high walls in space creep on by it.
 constexpr double slow = 100;
+// Change of the base's velocity in a step, relative to what gravity gives in it, from which on the still mode takes back in full what its
+// iterations leave. Larger: gentle shaking lets joints drift; smaller: a wall on a base that hardly moves any more shivers on.
+constexpr double stirred = 1e-2;
 // Velocity, relative to what gravity gives in a step, that the unfinished iterations of the still mode may keep from a point that parts or
 // slides, before it is let go to see. Larger: motion sets in too late; smaller: a wall at rest, whose points flicker, spends its time on
 // it. So a structure may hold little at first, and twice as much after each time that nothing has gone.

@@ -12,8 +12,8 @@ template <class K>
 using Befores = typename KeptFactor<K>::Befores;
 
 constexpr double relaxation = 1.6;
-// Share of a slip, or of a penetration that has grown in this mode, that a step takes back. Walls in space are slender across their plane:
-// taken back before the few solves of a step have spread over the courses, it would make them sway.
+// Share of a slip, or of a penetration that has grown in this mode, that a step takes back at most. Walls in space are slender across their
+// plane: taken back before the few solves of a step have spread over the courses, it would make them sway.
 template <class K>
 double pullBack(int courses)
 {
@@ -116,13 +116,14 @@ MASONRY_INLINE bool startGroups(Group<K>* groups, StillGroup<K>* still, Rows<K>*
 	return any(different);
 }
 
-// (z - w)/R is the impulse that V lacks; over the mass, the velocity.
+// (z - w)/R is the impulse that V lacks; over the mass, the velocity. The largest by group.
 template <class K>
 MASONRY_INLINE void addHeld(const Group<K>* groups, StillGroup<K>* still, const Rows<K>* rows, int begin, int end, double pullBack,
-                            Lanes& most)
+                            Lanes* most)
 {
 	const Lanes none = all(0);
-	for (int g = begin; g < end; ++g)
+	for (int g = begin; g < end; ++g) {
+		most[g] = none;
 		for (int k = 0; k < groups[g].count; ++k) {
 			const PointLanes<K>& p = groups[g].point[k];
 			StillLanes<K>& f = still[g][k];
@@ -132,8 +133,9 @@ MASONRY_INLINE void addHeld(const Group<K>* groups, StillGroup<K>* still, const 
 			const Lanes perMass = touches ? row.stiffness / p.massN : none;
 			f.heldN = parts ? larger(f.heldN + (f.zn - row.un + row.bn) * perMass, none) : none;
 			f.heldT = select(glides, f.heldT + perMass * (f.zt - row.ut - pullBack * f.slip), typename PointLanes<K>::Tangent {});
-			most = larger(most, larger(f.heldN, size(f.heldT)));
+			most[g] = larger(most[g], larger(f.heldN, size(f.heldT)));
 		}
+	}
 }
 
 template <class K>
@@ -164,7 +166,7 @@ MASONRY_INLINE void addSlip(Group<K>* groups, StillGroup<K>* still, const Rows<K
 			passGroup<K, true>(groups[g], still[g], rows[g], pullBack, velocity, force, worst);                                            \
 	}                                                                                                                                      \
 	MASONRY_LANES void heldPass(const Group<K>* groups, StillGroup<K>* still, const Rows<K>* rows, int begin, int end, double pullBack,    \
-	                            Lanes& most)                                                                                               \
+	                            Lanes* most)                                                                                               \
 	{                                                                                                                                      \
 		addHeld<K>(groups, still, rows, begin, end, pullBack, most);                                                                       \
 	}                                                                                                                                      \
@@ -198,7 +200,7 @@ void KeptFactor<K>::inertia(const Part& part)
 
 // The seam goes first where a loop is over bodies, since parts add to those of the seam, and last where it is over contacts.
 template <class K>
-void KeptFactor<K>::begin(WallContacts<K>& c, const LaneArray& load, double step)
+void KeptFactor<K>::begin(WallContacts<K>& c, const LaneArray& load, double step, double stirred)
 {
 	outdated |= contacts != &c;
 	contacts = &c;
@@ -211,7 +213,7 @@ void KeptFactor<K>::begin(WallContacts<K>& c, const LaneArray& load, double step
 	velocity = c.velocity;
 	free.resize(velocity.size());
 	force.assign(velocity.size(), all(0));
-	backPerSecond = given > 0 ? 0 : pullBack<K>(c.depth) / h;
+	backPerSecond = stirred * pullBack<K>(c.depth) / h;
 	const double enter = tolerance::wall::touching * c.length;
 	const Step same {1 / h, backPerSecond, softness, enter, 4 * enter};
 	bool different[Team::mostParts + 1] {};
@@ -311,14 +313,14 @@ template <class K>
 double KeptFactor<K>::findHeld()
 {
 	auto& c = *contacts;
-	Largest most[Team::mostParts + 1] {};
-	c.allParts([&](const Part& part, int number) {
-		heldPass(c.groups.data(), c.still.data(), rows.data(), part.begin, part.end, backPerSecond, most[number].velocity);
+	mostHeld.resize(c.groups.size());
+	c.allParts([&](const Part& part, int) {
+		heldPass(c.groups.data(), c.still.data(), rows.data(), part.begin, part.end, backPerSecond, mostHeld.data());
 	});
-	double held = 0;
-	for (const Largest& here : most)
-		held = std::max(held, largest(here.velocity));
-	return held;
+	double most = 0;
+	for (const Lanes& here : mostHeld)
+		most = std::max(most, largest(here));
+	return most;
 }
 
 // Lanes with a point that mark(g, k, some) adds to `some`.
@@ -351,10 +353,10 @@ LaneBits KeptFactor<K>::unsolved(double residual, double motion) const
 template <class K>
 LaneBits KeptFactor<K>::held(double held) const
 {
-	return where([&](int g, int k, Mask& some) {
-		const StillLanes<K>& f = contacts->still[g][k];
-		some |= larger(f.heldN, size(f.heldT)) > held;
-	});
+	LaneBits lanes;
+	for (const Lanes& most : mostHeld)
+		lanes.push_back(bitsOf(most > held));
+	return lanes;
 }
 
 template <class K>
@@ -372,11 +374,13 @@ LaneBits KeptFactor<K>::gone(double held, double speed) const
 template <class K>
 void KeptFactor<K>::forgetHeld(const LaneBits& lanes)
 {
-	for (size_t g = 0; g < lanes.size(); ++g)
+	for (size_t g = 0; g < lanes.size(); ++g) {
+		mostHeld[g] = maskOf(lanes[g]) ? all(0) : mostHeld[g];
 		for (StillLanes<K>& f : contacts->still[g]) {
 			f.heldN = maskOf(lanes[g]) ? all(0) : f.heldN;
 			f.heldT = select(maskOf(lanes[g]), Tangent {}, f.heldT);
 		}
+	}
 }
 
 // The impulses that V has lacked.

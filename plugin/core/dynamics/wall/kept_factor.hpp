@@ -16,9 +16,17 @@
 // That p makes the problem convex: the iteration goes towards impulses with which a wall stands where there are any. What slides by this
 // law also lifts, by mu times as much: but a step in which blocks move is not done in this mode.
 //
-// b_n = -gap/h (an open point may close), b_t = 0; but of what a few iterations have left, a penetration or a slip, a share is taken back
-// in each step, so that it does not add up. Penetrations that were there when the wall came to rest stay: pushed out, they would wedge
-// blocks against friction.
+// b_n = -gap/h (an open point may close), b_t = 0; but of what a few iterations have left, a penetration or a slip x, a share g is taken
+// back in each step, b = -g x/h, so that it does not add up. Penetrations that were there when the wall came to rest stay: pushed out, they
+// would wedge blocks against friction.
+//
+// That is done only while the loads change with the motion of the base (`stirred`): nothing adds up else, and it drives what gives way. Of
+// a mode in which J^T J/R is k times the inertia, one solve a step makes for small k, per step,
+//
+//     V' = p - k (V + g x)      p' = -1.6 k (V + g x)      x' = V      s^3 + k s^2 + k (1.6 + g) s + 1.6 k g = 0
+//
+// which grows where k (1.6 + g) < 1.6 g. After a wall has been shaken, blocks that stand on points near each other have such modes: taken
+// back from at rest, walls shivered at 1e-4 m/s and set off again after seconds.
 #include "dynamics/wall/symmetric_factor.hpp"
 #include "dynamics/wall/wall_contacts.hpp"
 
@@ -41,7 +49,7 @@ MASONRY_INLINE Lanes stiffnessOf(const PointLanes<K>& p, double softness)
 template <class K>
 class KeptFactor {
 public:
-	// r; 0: small enough for corrections to cross all courses in some solves. With a softness given, nothing is taken back.
+	// r; 0: small enough for corrections to cross all courses in some solves.
 	explicit KeptFactor(double softness = 0) : given(softness) {}
 
 	using Tangent = typename PointLanes<K>::Tangent;
@@ -62,8 +70,9 @@ public:
 
 	// These pairs have moved since the last step in this mode, and hold what they find.
 	static void forget(WallContacts<K>& contacts, const LaneBits& lanes);
-	// Starts a step from the contacts' velocities; `load` is the change of velocity by external forces, per body.
-	void begin(WallContacts<K>& contacts, const LaneArray& load, double h);
+	// Starts a step from the contacts' velocities; `load` is the change of velocity by external forces, per body; `stirred`, 0 to 1: of
+	// the share that is taken back.
+	void begin(WallContacts<K>& contacts, const LaneArray& load, double h, double stirred);
 	// There are other points here than before.
 	void outdate(const WallContacts<K>& here) { outdated |= contacts == &here; }
 	// Pairs are in other lanes here than before, and some may have come or gone. Without those that have gone the factor stays, a block for
@@ -140,6 +149,7 @@ private:
 	std::vector<SymmetricFactor::Edge> edges;
 	LaneArray free, force;
 	std::vector<Befores> before; // by group
+	LaneArray mostHeld;          // by group, as findHeld() last found it
 	const double given;
 	double h {0}, softness {0}, backPerSecond {0};
 	bool outdated {true};

@@ -41,6 +41,8 @@ bool takeJumps(RigidSystem<K>& s)
 	return some;
 }
 
+double meanSpeed(const BaseDrive& drive, double t, double h) { return (drive.displacement(t + h) - drive.displacement(t)) / h; }
+
 template <class K>
 typename K::Vector driven(const RigidSystem<K>& s, const RigidBody<K>& body, double t)
 {
@@ -111,7 +113,7 @@ void WallStep<K>::advancePart(RigidSystem<K>& s, double h)
 	started = true;
 	speeds.clear();
 	for (const BaseDrive* drive : s.drives)
-		speeds.push_back((drive->displacement(s.time + h) - drive->displacement(s.time)) / h);
+		speeds.push_back(meanSpeed(*drive, s.time, h));
 	takeMotion(s, h, workBefore);
 	choose(h);
 	s.time += h;
@@ -175,7 +177,7 @@ void WallStep<K>::setBase(const RigidSystem<K>& s, Contacts& contacts, double h)
 	for (const int b : onDrives) {
 		const auto& body = s.bodies[b];
 		const BaseDrive& drive = *s.drives[body.drive];
-		const double speed = h > 0 ? (drive.displacement(s.time + h) - drive.displacement(s.time)) / h : drive.velocity(s.time);
+		const double speed = h > 0 ? meanSpeed(drive, s.time, h) : drive.velocity(s.time);
 		contacts.setLinearVelocity(b, s.driveDirections[body.drive] * speed);
 	}
 }
@@ -189,6 +191,16 @@ void WallStep<K>::setLoads(const RigidSystem<K>& s, Contacts& contacts, double h
 		for (size_t b = begin; b < end; ++b)
 			contacts.takeForce(s.bodies[b].force, h, b, loads);
 	});
+}
+
+// How much the base speeds up in this step, 1: by tolerance::wall::stirred of what gravity gives, or more.
+template <class K>
+double WallStep<K>::stirred(const RigidSystem<K>& s, double h) const
+{
+	double most = 0;
+	for (size_t d = 0; d < speeds.size() && d < s.drives.size(); ++d)
+		most = std::max(most, std::abs(meanSpeed(*s.drives[d], s.time, h) - speeds[d]));
+	return std::min(1., most / (tolerance::wall::stirred * scales.stepSpeed(h)));
 }
 
 // False: some structures begin to move, and have not been moved.
@@ -205,7 +217,7 @@ bool WallStep<K>::stepStill(RigidSystem<K>& s, double h)
 		returned.push_back(one.stay == 0);
 	if (std::find(returned.begin(), returned.end(), 1) != returned.end())
 		kept.forget(contacts, lanesOf(contacts, returned));
-	kept.begin(contacts, loads, h);
+	kept.begin(contacts, loads, h, stirred(s, h));
 	kept.iterate(settings.strictForces || !started ? coldSolves : mostSolves, enough, settings.strictForces ? enough : INFINITY);
 	report.solves += kept.report.solves;
 	report.factorisations += kept.report.factorisations;
@@ -271,7 +283,7 @@ typename WallStep<K>::Chosen WallStep<K>::letGo(double h, double share)
 		return asked;
 	const auto lanes = lanesOf(contacts, asked);
 	wall::LaneBits here;
-	quick.begin(contacts, loads, h);
+	quick.begin(contacts, loads, h, 0);
 	bool some = true;
 	for (int k = 0; k < quickRounds && some; ++k) {
 		quick.iterate(quickSolves, 0, 0);

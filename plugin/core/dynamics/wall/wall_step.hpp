@@ -82,6 +82,7 @@ private:
 	void measure(RigidSystem<K>& system, Contacts& contacts);
 	Chosen structuresOf(const Contacts& contacts, const wall::LaneBits& lanes) const;
 	wall::LaneBits lanesOf(const Contacts& contacts, const Chosen& structures) const;
+	double stirred(const RigidSystem<K>& system, double h) const;
 	bool stepStill(RigidSystem<K>& system, double h);
 	Chosen findMoving(double h);
 	Chosen letGo(double h, double share);
