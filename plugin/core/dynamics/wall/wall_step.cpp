@@ -193,10 +193,14 @@ void WallStep<K>::setLoads(const RigidSystem<K>& s, Contacts& contacts, double h
 	});
 }
 
-// How much the base speeds up in this step, 1: by tolerance::wall::stirred of what gravity gives, or more.
+// How much the base speeds up in this step, 1: by tolerance::wall::stirred of what gravity gives, or more. Of one that moves without a
+// drive the step does not know the speed before: 1.
 template <class K>
 double WallStep<K>::stirred(const RigidSystem<K>& s, double h) const
 {
+	for (const auto& body : s.bodies)
+		if (body.prescribed && body.drive < 0 && !body.velocity.isZero(0))
+			return 1;
 	double most = 0;
 	for (size_t d = 0; d < speeds.size() && d < s.drives.size(); ++d)
 		most = std::max(most, std::abs(meanSpeed(*s.drives[d], s.time, h) - speeds[d]));
