@@ -352,7 +352,8 @@ TEST_CASE("friction takes what a sliding block loses, its landing included")
 	CHECK(scene.system.frictDissip == Approx(0.5 * scene.system.bodies[1].mass * (speed * speed - end * end)).epsilon(5e-3));
 }
 
-// With the base at rest energy can only fall. What rises is the error of the substeps: 1e-3 of what is lost is asked.
+// With the base at rest energy can only fall. What rises is the error of the substeps: 1e-3 of what is lost is asked. And what has come to
+// rest has nothing that would set it off.
 TEST_CASE("a wall that was shaken loses energy and comes to rest")
 {
 	const double restitution = GENERATE(double(NAN), 0.5);
@@ -373,7 +374,7 @@ TEST_CASE("a wall that was shaken loses energy and comes to rest")
 	}
 	CHECK(rises < 1e-3 * (height - last));
 	CHECK(scene.step.report.mode == WallMode::still);
-	CHECK(switches <= 3);
+	CHECK(switches == 0);
 	const auto& s = scene.system;
 	CHECK(s.kineticEnergy() < 1e-6 * (height - last));
 }
