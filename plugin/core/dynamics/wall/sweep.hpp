@@ -173,8 +173,8 @@ private:
 	MASONRY_INLINE void tangential(int k, const Sweep& sweep)
 	{
 		PointLanes<Space, Floats>& p = group.point[k];
-		const Two<Floats> ut = slipRate(v1, v2, p),
-		                  pt = friction(p, sweep.relaxation * ut, frictionBound(p, group.friction, sweep.lumps)), dt = pt - p.pt;
+		const Two<Floats> ut = slipRate(v1, v2, p), pt = friction(p, sweep.relaxation * ut, frictionBound(p, group.friction, sweep.lumps)),
+		                  dt = pt - p.pt;
 		pushTangential(v1, v2, p, dt);
 		p.pt = pt;
 		if (sweep.change)
