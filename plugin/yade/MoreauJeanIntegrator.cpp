@@ -48,11 +48,12 @@ namespace {
 	template <class K>
 	std::shared_ptr<RigidRun> makeScene(MoreauJeanIntegrator& engine, const vector<BaseMotionEngine*>& motions, const vector<Real>& values)
 	{
+		if (values.empty()) return std::make_shared<RigidScene<K>>(engine, motions, Remembered<K>());
 		Remembered<K> before;
-		Unpacker unpacker { values };
-		if (!values.empty()) before.pass(unpacker);
+		Unpacker unpacker(values);
+		before.pass(unpacker);
 		const auto result = std::make_shared<RigidScene<K>>(engine, motions, before);
-		if (!values.empty()) result->unpackStepper(unpacker, before);
+		result->unpackStepper(unpacker, before);
 		return result;
 	}
 

@@ -6,12 +6,17 @@
 #include <boost/serialization/nvp.hpp>
 #include <boost/serialization/tracking.hpp>
 #include <memory>
+#include <stdexcept>
 
 namespace yade {
 
+/// The row begins with the number of its layout, to be changed with any list of members. Rows of old have none: they begin with how many blocks
+/// there are.
+constexpr Real layout = -1;
+
 /// Numbers, enumerations and matrices go into the row, or come out of it, by the same list of members.
 struct Packer {
-	vector<Real> values;
+	vector<Real> values { layout };
 	template <class T> void operator()(const T& value)
 	{
 		if constexpr (std::is_arithmetic_v<T> || std::is_enum_v<T>)
@@ -21,16 +26,39 @@ struct Packer {
 	}
 };
 
-struct Unpacker {
-	const vector<Real>& values;
-	size_t              next = 0;
+class Unpacker {
+public:
+	explicit Unpacker(const vector<Real>& row)
+	        : values(row)
+	{
+		if (take() != layout) refuse();
+	}
 	template <class T> void operator()(T& value)
 	{
 		if constexpr (std::is_arithmetic_v<T> || std::is_enum_v<T>)
-			value = T(values.at(next++));
+			value = T(take());
 		else
-			for (int i = 0; i < value.size(); ++i) value(i) = values.at(next++);
+			for (int i = 0; i < value.size(); ++i) value(i) = take();
 	}
+	void end() const
+	{
+		if (next != values.size()) refuse();
+	}
+
+private:
+	Real take()
+	{
+		if (next == values.size()) refuse();
+		return values[next++];
+	}
+	[[noreturn]] static void refuse()
+	{
+		throw std::runtime_error("MoreauJeanIntegrator cannot go on with this simulation: it was saved by another version of yade-masonry. "
+		                         "Go on with that version, or build the scene anew.");
+	}
+
+	const vector<Real>& values;
+	size_t              next = 0;
 };
 
 namespace memory {

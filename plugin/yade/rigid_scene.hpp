@@ -90,7 +90,8 @@ public:
 		kept.bodies = system.bodies;
 		kept.pairs = system.pairs;
 		kept.pass(packer);
-		if (integrator.isWall()) {
+		packer(byWalls);
+		if (byWalls) {
 			neighbours->pass(packer);
 			wall.pass(packer, system);
 		}
@@ -100,11 +101,12 @@ public:
 	/// What the step itself remembers, if the blocks are still those of `before`.
 	void unpackStepper(Unpacker& unpacker, const Remembered<K>& before)
 	{
-		byWalls = integrator.isWall();
+		unpacker(byWalls);
 		if (!byWalls || before.ids != kept.ids || before.pairs.size() != system.pairs.size()) return;
 		renewJoints();
 		neighbours->pass(unpacker);
 		wall.pass(unpacker, system);
+		unpacker.end();
 		system.moved = lawsChanged = false;
 	}
 
@@ -435,8 +437,7 @@ private:
 	static constexpr Real mostOverlap = 1e-6;
 	/// Margin of the list of pairs, relative to the smallest half size. Larger: more pairs; smaller: the list is made anew more often.
 	static constexpr Real searchMargin = 0.1;
-	/// Courses of a wall above which a warning tells that it may go too far as it moves. At 1 g the top of walls as long as they are high goes
-	/// 4 to 9 % too far with 10 to 16 courses, 16 % with 24, a quarter with 32 (validation/walls/shaking).
+	/// Courses of a wall above which a warning tells that it may go too far, or not far enough, as it moves (validation/walls/shaking).
 	static constexpr int mostCourses = 24;
 	/// Steps after which O.interactions are written even if nobody seems to look.
 	static constexpr int mostUnshown = 64;
