@@ -177,6 +177,8 @@ constexpr double slow = 100;
 // Change of the base's velocity in a step, relative to what gravity gives in it, from which on the still mode takes back in full what its
 // iterations leave. Larger: gentle shaking lets joints drift; smaller: a wall on a base that hardly moves any more shivers on.
 constexpr double stirred = 1e-2;
+// The same for the change in a step of forces that act on blocks, relative to the weight. Larger: loads that grow slowly let joints drift.
+constexpr double pushed = 1e-6;
 // Velocity, relative to what gravity gives in a step, that the unfinished iterations of the still mode may keep from a point that parts or
 // slides, before it is let go to see. Larger: motion sets in too late; smaller: a wall at rest, whose points flicker, spends its time on
 // it. So a structure may hold little at first, and twice as much after each time that nothing has gone.

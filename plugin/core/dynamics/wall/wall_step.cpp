@@ -193,18 +193,29 @@ void WallStep<K>::setLoads(const RigidSystem<K>& s, Contacts& contacts, double h
 	});
 }
 
-// How much the base speeds up in this step, 1: by tolerance::wall::stirred of what gravity gives, or more. Of one that moves without a
-// drive the step does not know the speed before: 1.
+// How much the loads change: 1 where the base speeds up by tolerance::wall::stirred of what gravity gives, or other forces change in this
+// step by tolerance::wall::pushed of the weight. Of a base that moves without a drive the step does not know the speed before: 1.
 template <class K>
-double WallStep<K>::stirred(const RigidSystem<K>& s, double h) const
+double WallStep<K>::stirred(const RigidSystem<K>& s, double h)
 {
-	for (const auto& body : s.bodies)
+	constexpr int d = K::dimension;
+	const bool known = forces.size() == s.bodies.size();
+	forces.resize(s.bodies.size());
+	double push = 0, result = 0;
+	for (size_t b = 0; b < s.bodies.size(); ++b) {
+		const auto& body = s.bodies[b];
 		if (body.prescribed && body.drive < 0 && !body.velocity.isZero(0))
-			return 1;
-	double most = 0;
-	for (size_t d = 0; d < speeds.size() && d < s.drives.size(); ++d)
-		most = std::max(most, std::abs(meanSpeed(*s.drives[d], s.time, h) - speeds[d]));
-	return std::min(1., most / (tolerance::wall::stirred * scales.stepSpeed(h)));
+			result = 1;
+		if (known && !body.prescribed && body.force != forces[b]) {
+			const typename K::Velocity change = (body.force - forces[b]) / body.mass;
+			push = std::max({push, change.template head<d>().norm(), change.template tail<K::spins>().norm() / scales.length});
+		}
+		forces[b] = body.force;
+	}
+	for (size_t k = 0; k < speeds.size() && k < s.drives.size(); ++k)
+		result =
+		    std::max(result, std::abs(meanSpeed(*s.drives[k], s.time, h) - speeds[k]) / (tolerance::wall::stirred * scales.stepSpeed(h)));
+	return std::min(1., std::max(result, push / (tolerance::wall::pushed * scales.acceleration)));
 }
 
 // False: some structures begin to move, and have not been moved.

@@ -63,6 +63,11 @@ public:
 		speeds.resize(count);
 		for (double& speed : speeds)
 			f(speed);
+		count = forces.size();
+		f(count);
+		forces.resize(count);
+		for (auto& force : forces)
+			f(force);
 		f(stillSet), f(pace);
 		still().pass(f, system, structures.bodies(WallMode::still));
 		moving().pass(f, system, structures.bodies(WallMode::moving));
@@ -82,7 +87,7 @@ private:
 	void measure(RigidSystem<K>& system, Contacts& contacts);
 	Chosen structuresOf(const Contacts& contacts, const wall::LaneBits& lanes) const;
 	wall::LaneBits lanesOf(const Contacts& contacts, const Chosen& structures) const;
-	double stirred(const RigidSystem<K>& system, double h) const;
+	double stirred(const RigidSystem<K>& system, double h);
 	bool stepStill(RigidSystem<K>& system, double h);
 	Chosen findMoving(double h);
 	Chosen letGo(double h, double share);
@@ -114,13 +119,14 @@ private:
 	wall::Lift<K> lift;
 	wall::RockingJoints<K> joints;
 	wall::LaneArray loads;
-	wall::LaneBits gone;                  // pairs of the still set that have been let go in this step and have gone
-	std::vector<typename K::Pose> middle; // of a step that moves
-	std::vector<int> onDrives;            // prescribed bodies with a drive
-	std::vector<double> speeds;           // of the drives, mean of the last part of a step, m/s
-	double pace {0};                      // of the last step: largest relative velocity that moved, of that of slow motion
-	double frictionLoss {0};              // J, of the part of the step
-	double setOffEnergy {0};              // J, that structures which begin to move have been given
+	wall::LaneBits gone;                      // pairs of the still set that have been let go in this step and have gone
+	std::vector<typename K::Pose> middle;     // of a step that moves
+	std::vector<int> onDrives;                // prescribed bodies with a drive
+	std::vector<double> speeds;               // of the drives, mean of the last part of a step, m/s
+	std::vector<typename K::Velocity> forces; // on the bodies, of the last step in which some stood, N and N m
+	double pace {0};                          // of the last step: largest relative velocity that moved, of that of slow motion
+	double frictionLoss {0};                  // J, of the part of the step
+	double setOffEnergy {0};                  // J, that structures which begin to move have been given
 };
 
 } // namespace masonry::rigid
