@@ -1,6 +1,6 @@
 """The shaken wall in every program that is there: CPU time, drift, sink, first excursion, energy; what was asked for and whether it holds.
 
-    compare.py <build folder> [--quick | --other-walls]
+    compare.py <build folder> [--quick | --other-walls | --rest]
 
 Writes results/shaken_walls.csv, .json and .png; prints the tables. Ends with status 1 when something that must hold does not.
 """
@@ -25,14 +25,19 @@ ELSEWHERE = [("Box2D 3, 8 substeps", 105, 0.069, 0.08, 1.9e-3), ("Box2D 3, 8 sub
              ("LMGC90 NLGS 1e-4", 1040, 73, 0.19, 1.3e-3), ("Jolt", 105, 0.28, 0.37, 4.2e-3), ("Jolt", 1040, 4.5, 2.4, 1.4e-2)]
 
 
+def by_yade(build, script, case, threads=1):
+    """The JSON lines that a script in this folder prints."""
+    environment = {**os.environ, "PYTHONPATH": str(build.resolve() / "python")}
+    done = subprocess.run(["yade", f"-j{threads}", "-n", "-x", HERE / script, json.dumps(case)], capture_output=True, text=True, env=environment)
+    if done.returncode != 0:
+        raise RuntimeError(done.stdout[-2000:] + done.stderr[-2000:])
+    return [json.loads(line) for line in done.stdout.splitlines() if line.startswith("{")]
+
+
 def masonry(build, size, amplitude, rest, shaking, threads=1, **options):
     """Rows of the plugin, one for each phase."""
     case = dict(courses=size[0], per_course=size[1], amplitude=amplitude, rest=rest, shaking=shaking, threads=threads, **options)
-    environment = {**os.environ, "PYTHONPATH": str(build.resolve() / "python")}
-    done = subprocess.run(["yade", f"-j{threads}", "-n", "-x", HERE / "yade_masonry.py", json.dumps(case)], capture_output=True, text=True, env=environment)
-    if done.returncode != 0:
-        raise RuntimeError(done.stdout[-2000:] + done.stderr[-2000:])
-    rows = [json.loads(line) for line in done.stdout.splitlines() if line.startswith("{")]
+    rows = by_yade(build, "yade_masonry.py", case, threads)
     for r in rows:
         name = f"{r.get('model', 'planar')}, C = {r['restitution']}" if r.get("restitution") is not None else r.get("model", "planar")
         r["solver"] = f"yade-masonry, {name}"
@@ -122,6 +127,28 @@ def other_walls(build):
     for (courses, per_course, amplitude), (coarse, fine) in zip(cases, reached):
         print(f"| {courses} | {per_course} | {amplitude:g} g | {1e3 * coarse:.1f} | {1e3 * fine:.1f} | {coarse / fine - 1:+.1%} |")
     print(f"\nroot of the mean square: {math.sqrt(statistics.mean((coarse / fine - 1) ** 2 for coarse, fine in reached)):.1%}")
+
+
+def walls_at_rest(build):
+    """Table: walls shaken for half a second at 2 Hz whose base then stands, or goes on gently; how often they begin to move again."""
+    def walls(sizes, amplitudes, model, after=0, held=4):
+        return [dict(courses=c, per_course=p, amplitude=amplitude, model=model, after=after, held=held) for c, p in sizes for amplitude in amplitudes]
+
+    square = lambda *courses: [(c, c) for c in courses]
+    kinds = {"in the plane, the base stands": walls(square(6, 8, 10, 12, 16, 20, 24), (0.6, 0.9, 1.2), "planar"),
+             "in space, the base stands": walls([(6, 6), (10, 5), (16, 6)], (0.8, 1.2), "spatial", held=3)}
+    kinds |= {f"in the plane, the base goes on at {after} g": walls(square(8, 12, 16, 20), (0.9, 1.2), "planar", after) for after in (0.02, 0.1)}
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        reached = {kind: pool.map(lambda case: by_yade(build, "yade_rest.py", case)[0], cases) for kind, cases in kinds.items()}
+        print("| | courses | blocks a course | motion | moves on for (s) | set off again | at the end | fastest block (m/s) |\n" + "| --- " * 8 + "|")
+        for kind, rows in reached.items():
+            rows = reached[kind] = list(rows)
+            for r in rows:
+                print(f"| {kind} | {r['courses']} | {r['per_course']} | {r['amplitude']:g} g | {r['moving']:.2f} | {r['setOff']} | {r['ends']} | {r['fastest']:.1e} |", flush=True)
+    print("\n| walls | set off again | twice or more | still at the end | fastest block then (m/s) |\n" + "| --- " * 5 + "|")
+    for kind, rows in reached.items():
+        fastest = max((r["fastest"] for r in rows if r["ends"] == "still"), default=math.nan)
+        print(f"| {len(rows)} {kind} | {sum(r['setOff'] > 0 for r in rows)} | {sum(r['setOff'] > 1 for r in rows)} | {sum(r['ends'] == 'still' for r in rows)} | {fastest:.1e} |")
 
 
 def verdicts(rows):
@@ -219,9 +246,12 @@ def main():
     parser.add_argument("--quick", action="store_true", help="105 blocks in the plane only")
     parser.add_argument("--from", dest="old", type=Path, help="tables and figure of a file written before")
     parser.add_argument("--other-walls", action="store_true", help="first excursions of other walls against finer runs only, no CPU times")
+    parser.add_argument("--rest", action="store_true", help="whether walls that have been shaken rest, no CPU times")
     arguments = parser.parse_args()
     if arguments.other_walls:
         return other_walls(arguments.build)
+    if arguments.rest:
+        return walls_at_rest(arguments.build)
     rows = json.loads(arguments.old.read_text()) if arguments.old else run(arguments.build, arguments.quick)
     RESULTS.mkdir(exist_ok=True)
     if not arguments.quick:

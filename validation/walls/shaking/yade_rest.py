@@ -1,0 +1,30 @@
+"""A wall that is shaken for half a second and then held: `yade -n -x yade_rest.py '<JSON>'`; prints one JSON line.
+
+courses, per_course, amplitude (g, at 2 Hz); model; held (s); after (g, at 3 Hz: how the base goes on).
+"""
+import json
+import math
+import sys
+
+import numpy as np
+from masonry import dem
+from yade import O, PyRunner
+
+case = json.loads(sys.argv[1])
+SHAKEN = 0.5  # s: one cycle, after which the base stands
+stone = dem.BlockMat(density=2000, frictionAngle=math.atan(0.7))
+base = dem.base((case["per_course"] + 4, 4, 1), stone)
+ids = dem.wall(case["courses"], case["per_course"], (1.0, 0.5, 0.5), stone, on=base)
+interval = 1e-3
+shaking = case["amplitude"] * np.sin(4 * math.pi * np.arange(0, SHAKEN, interval))
+after = case["after"] * np.sin(6 * math.pi * np.arange(0, case["held"] + 0.01, interval))
+motion = dem.RecordMotionEngine(ids=[base], samples=list(9.81 * np.concatenate([shaking, after])), interval=interval, direction=(1, 0, 0))
+O.engines = dem.engines(motion, model=case["model"], method="wall", dt=1e-3)
+integrator = O.engines[-1]
+modes = []
+O.engines = O.engines + [PyRunner(command="modes.append(integrator.mode)", iterPeriod=1, initRun=True)]
+O.run(round((SHAKEN + case["held"]) / O.dt), True)
+held = modes[round(SHAKEN / O.dt):]
+velocity = np.array(O.bodies[base].state.vel)
+print(json.dumps(dict(case, blocks=len(ids), setOff=sum(one == "still" and next == "moving" for one, next in zip(held, held[1:])), ends=held[-1],
+                      moving=held.count("moving") * O.dt, fastest=max(float(np.linalg.norm(np.array(O.bodies[i].state.vel) - velocity)) for i in ids))), flush=True)
