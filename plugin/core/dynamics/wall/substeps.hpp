@@ -4,7 +4,7 @@
 //     V += s M^-1 f + M^-1 J^T p        p of the last substep
 //     sweeps over the points
 //     q += s V, gaps with it
-//     sweeps again: p for the next, impacts taken off
+//     as many sweeps: p for the next, impacts taken off
 //
 // An open point may close, u_n >= -gap/s, in all sweeps; a closed one does not, u_n >= 0. (Without the gap in the second half, corners that
 // approach stop short, and piers do not rock as they should.) One sweep carries an impulse one course on: what the courses miss of each
@@ -66,7 +66,7 @@ private:
 	void arrange(const WallContacts<K>& contacts);
 	void sumImpulses(int part);
 
-	int sweeps {1};                         // after the move
+	int sweeps {1};                         // before the move, and after it
 	float lumps {0};                        // frictionBound()
 	float damped {0};                       // damping of this step
 	float inMean {0};                       // what a substep takes into the mean of an impulse

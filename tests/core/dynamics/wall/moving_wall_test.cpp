@@ -23,10 +23,13 @@ void addTilted(Scene& scene, int blocks = 1)
 		addBlock(scene.system, half, corner + pose.rotate(Vector2(slender.x(), (2 * k + 1) * half.y())), startAngle);
 }
 
-// Mean shift of the blocks of the top course of a pier of two blocks a course.
-double topShift(const Scene& scene)
+// Mean shift of the blocks of the top course, of which there are so many.
+double topShift(const Scene& scene, int count)
 {
-	return 0.5 * (scene.shift(scene.system.bodies.size() - 1).x() + scene.shift(scene.system.bodies.size() - 2).x());
+	double sum = 0;
+	for (int k = 1; k <= count; ++k)
+		sum += scene.shift(scene.system.bodies.size() - k).x();
+	return sum / count;
 }
 
 // Shaken at 1 g until `end`, then held.
@@ -285,7 +288,7 @@ TEST_CASE("the first excursion of a pier does not depend on the substep")
 		scene.step.settings.tolerance = tolerance;
 		scene.run(0.5, 1e-3);
 		CHECK(scene.step.report.mode == WallMode::moving);
-		return topShift(scene);
+		return topShift(scene, 2);
 	};
 	const double fine = excursion(1e-3 / 256);
 	CHECK(excursion(1e-3) == Approx(fine).epsilon(0.15)); // what is asked of walls
@@ -304,14 +307,26 @@ TEST_CASE("the top of a wall at 1 g goes as far as with sixteen times the subste
 		scene.drive(motion);
 		scene.step.settings.tolerance = tolerance;
 		scene.run(0.2, 1e-3);
-		double sum = 0;
-		for (size_t b = scene.system.bodies.size() - perCourse - 1; b < scene.system.bodies.size(); ++b)
-			sum += scene.shift(b).x();
-		return sum / (perCourse + 1);
+		return topShift(scene, perCourse + 1);
 	};
 	const double fine = shift(4e-6);
 	CHECK(std::abs(fine) > 0.02);
 	CHECK(shift(1e-3) == Approx(fine).epsilon(0.03));
+}
+
+// Loads that bounce in the sweeps can let the upper half of a high wall slide where it should not, in one of two motions that are nearly the
+// same: 43 % farther. The converged answers of 0.98, 1 and 1.02 g differ by 3.6 % for each hundredth of the motion.
+TEST_CASE("a hundredth more of the motion takes the top of a high wall a few hundredths farther")
+{
+	const auto shift = [](double amplitude) {
+		Scene scene;
+		scene.addWall(32, 32);
+		Harmonic motion(amplitude * g, 2, 0.01);
+		scene.drive(motion);
+		scene.run(0.3, 1e-3);
+		return topShift(scene, 33);
+	};
+	CHECK(shift(1.01) == Approx(shift(1)).epsilon(0.1));
 }
 
 // A stack of two blocks rocks from rest: the same within the first order of the step while little has happened yet, and what the still mode
