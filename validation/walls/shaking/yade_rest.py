@@ -26,5 +26,5 @@ O.engines = O.engines + [PyRunner(command="modes.append(integrator.mode)", iterP
 O.run(round((SHAKEN + case["held"]) / O.dt), True)
 held = modes[round(SHAKEN / O.dt):]
 velocity = np.array(O.bodies[base].state.vel)
-print(json.dumps(dict(case, blocks=len(ids), setOff=sum(one == "still" and next == "moving" for one, next in zip(held, held[1:])), ends=held[-1],
+print(json.dumps(dict(case, blocks=len(ids), setOff=sum(one == "still" and then == "moving" for one, then in zip(held, held[1:])), ends=held[-1],
                       moving=held.count("moving") * O.dt, fastest=max(float(np.linalg.norm(np.array(O.bodies[i].state.vel) - velocity)) for i in ids))), flush=True)
