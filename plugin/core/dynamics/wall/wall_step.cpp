@@ -114,6 +114,9 @@ void WallStep<K>::advancePart(RigidSystem<K>& s, double h)
 	speeds.clear();
 	for (const BaseDrive* drive : s.drives)
 		speeds.push_back(meanSpeed(*drive, s.time, h));
+	forces.clear();
+	for (const auto& body : s.bodies)
+		forces.push_back(body.force);
 	takeMotion(s, h, workBefore);
 	choose(h);
 	s.time += h;
@@ -196,26 +199,22 @@ void WallStep<K>::setLoads(const RigidSystem<K>& s, Contacts& contacts, double h
 // How much the loads change: 1 where the base speeds up by tolerance::wall::stirred of what gravity gives, or other forces change in this
 // step by tolerance::wall::pushed of the weight. Of a base that moves without a drive the step does not know the speed before: 1.
 template <class K>
-double WallStep<K>::stirred(const RigidSystem<K>& s, double h)
+double WallStep<K>::stirred(const RigidSystem<K>& s, double h) const
 {
-	constexpr int d = K::dimension;
-	const bool known = forces.size() == s.bodies.size();
-	forces.resize(s.bodies.size());
-	double push = 0, result = 0;
+	double push = 0, speedUp = 0;
 	for (size_t b = 0; b < s.bodies.size(); ++b) {
 		const auto& body = s.bodies[b];
 		if (body.prescribed && body.drive < 0 && !body.velocity.isZero(0))
-			result = 1;
-		if (known && !body.prescribed && body.force != forces[b]) {
-			const typename K::Velocity change = (body.force - forces[b]) / body.mass;
-			push = std::max({push, change.template head<d>().norm(), change.template tail<K::spins>().norm() / scales.length});
-		}
-		forces[b] = body.force;
+			return 1;
+		if (body.prescribed || forces.size() != s.bodies.size() || body.force == forces[b])
+			continue;
+		const typename K::Velocity change = (body.force - forces[b]) / body.mass;
+		push = std::max({push, change.template head<K::dimension>().norm(), change.template tail<K::spins>().norm() / scales.length});
 	}
-	for (size_t k = 0; k < speeds.size() && k < s.drives.size(); ++k)
-		result =
-		    std::max(result, std::abs(meanSpeed(*s.drives[k], s.time, h) - speeds[k]) / (tolerance::wall::stirred * scales.stepSpeed(h)));
-	return std::min(1., std::max(result, push / (tolerance::wall::pushed * scales.acceleration)));
+	for (size_t d = 0; d < speeds.size() && d < s.drives.size(); ++d)
+		speedUp = std::max(speedUp, std::abs(meanSpeed(*s.drives[d], s.time, h) - speeds[d]));
+	return std::min(
+	    1., std::max(speedUp / (tolerance::wall::stirred * scales.stepSpeed(h)), push / (tolerance::wall::pushed * scales.acceleration)));
 }
 
 // False: some structures begin to move, and have not been moved.

@@ -87,7 +87,7 @@ private:
 	void measure(RigidSystem<K>& system, Contacts& contacts);
 	Chosen structuresOf(const Contacts& contacts, const wall::LaneBits& lanes) const;
 	wall::LaneBits lanesOf(const Contacts& contacts, const Chosen& structures) const;
-	double stirred(const RigidSystem<K>& system, double h);
+	double stirred(const RigidSystem<K>& system, double h) const;
 	bool stepStill(RigidSystem<K>& system, double h);
 	Chosen findMoving(double h);
 	Chosen letGo(double h, double share);
@@ -123,7 +123,7 @@ private:
 	std::vector<typename K::Pose> middle;     // of a step that moves
 	std::vector<int> onDrives;                // prescribed bodies with a drive
 	std::vector<double> speeds;               // of the drives, mean of the last part of a step, m/s
-	std::vector<typename K::Velocity> forces; // on the bodies, of the last step in which some stood, N and N m
+	std::vector<typename K::Velocity> forces; // on the bodies, of the last step, N and N m
 	double pace {0};                          // of the last step: largest relative velocity that moved, of that of slow motion
 	double frictionLoss {0};                  // J, of the part of the step
 	double setOffEnergy {0};                  // J, that structures which begin to move have been given
