@@ -68,12 +68,14 @@ struct alignas(alignment) Coupling<Plane> {
 		t1t2 = cosine + m1 * p.a1t * q.a1t + m2 * p.a2t * q.a2t;
 		n1t2 = m1 * p.a1n * q.a1t + m2 * p.a2n * q.a2t - sine;
 		t1n2 = m1 * p.a1t * q.a1n + m2 * p.a2t * q.a2n + sine;
-		// of points that nearly coincide at most so large
+		// Points that nearly coincide share what one of them needs: of the inverse, rounding would make impulses across an open gap.
 		constexpr double least = 1e-4;
-		const Floats one = all<Floats>(1), cross = n1n2 * p.massN * q.massN, scale = one / larger(one - n1n2 * cross, all<Floats>(least));
+		const Floats one = all<Floats>(1), cross = n1n2 * p.massN * q.massN, apart = one - n1n2 * cross;
+		const FloatMask coincide = apart < all<Floats>(least);
+		const Floats scale = coincide ? all<Floats>(0.5) : one / apart;
 		inverse11 = scale * p.massN;
 		inverse22 = scale * q.massN;
-		inverse12 = -scale * cross;
+		inverse12 = coincide ? all<Floats>(0) : -scale * cross;
 		free1 = bitsOf(m1 > 0);
 		free2 = bitsOf(m2 > 0);
 	}
