@@ -74,13 +74,11 @@ MASONRY_INLINE void liftGroups(const Group<K>* groups, typename Lift<K>::Points*
 			continue;
 		v1.store(moved, group.body1, bitsOf(v1.m > 0));
 		v2.store(moved, group.body2, bitsOf(v2.m > 0));
-		for (int i = 0; i < width; ++i)
-			if (far[i]) {
-				if (v1.m[i] != 0)
-					last[group.body1[i]] = now;
-				if (v2.m[i] != 0)
-					last[group.body2[i]] = now;
-			}
+		const Mask moved1 = far & (v1.m != 0) & now, moved2 = far & (v2.m != 0) & now;
+		for (int i = 0; i < width; ++i) { // without branches, which nobody could foresee
+			last[group.body1[i]] = std::max(last[group.body1[i]], int(moved1[i]));
+			last[group.body2[i]] = std::max(last[group.body2[i]], int(moved2[i]));
+		}
 	}
 }
 
