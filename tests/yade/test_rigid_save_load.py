@@ -85,7 +85,7 @@ with tempfile.TemporaryDirectory() as folder:
         O.run(20, True)
 
     def without_layout(row):
-        return row.replace("<item>-1.0", "<item>3.0", 1)
+        return row.replace("<item>-2.0", "<item>3.0", 1)
 
     def longer(row):
         count = int(re.search(r"<count>(\d+)", row)[1])

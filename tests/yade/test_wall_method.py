@@ -15,13 +15,15 @@ MU = 0.7
 
 
 def wall(courses, per_course, shaking, **options):
-    """A wall on a base that shakes by `shaking` g at 2 Hz from 0.1 s on; `piers` slender blocks beside it."""
+    """A wall on a base that shakes by `shaking` g at 2 Hz from 0.1 s on; `piers` slender blocks on it and beside it."""
     O.reset()
     piers = options.pop("piers", 0)
     attributes = {"restitution": options.pop("restitution")} if "restitution" in options else {}
     base = dem.base((per_course + 6 + 4 * piers, 2, 0.4), dem.BlockMat(density=2000, frictionAngle=math.atan(MU), **attributes))
     ids = dem.wall(courses, per_course, (1.0, 0.5, 0.5), O.bodies[base].mat, on=base)
-    ids += [dem.block((0.25, 0.5, 1.2 + 0.1 * k), O.bodies[base].mat, center=(per_course / 2 + 2 * (k + 1), 0, 0.6 + 0.05 * k)) for k in range(piers)]
+    for k in range(piers):  # the first on the wall, the others beside it
+        x, under = (per_course / 2 + 2 * k, 0) if k else (0.4, 0.5 * courses)
+        ids.append(dem.block((0.25, 0.5, 1.2 + 0.1 * k), O.bodies[base].mat, center=(x, 0, under + 0.6 + 0.05 * k)))
     samples = [0] * 20 + list(shaking * 9.81 * np.sin(4 * np.pi * np.arange(0, 2, 0.005)))
     motion = dem.RecordMotionEngine(ids=[base], samples=samples, interval=0.005, direction=(1, 0, 0))
     O.engines = rigid_engines(motion, **{"dt": 1e-3, **options})

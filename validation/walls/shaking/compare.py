@@ -90,6 +90,9 @@ def run(build, quick):
     for restitution in (0.5, 0.9):
         rows += ours(SMALL, 0.3, 2, 2, restitution=restitution) + ours(SMALL, 1.0, 0, 2, restitution=restitution)
         rows += ours(LARGE, 0.3, 1, 1, restitution=restitution) + ours(LARGE, 1.0, 0, 1, restitution=restitution)
+    print("A pillar that rocks on a wall that stands")
+    for size in (SMALL, LARGE):
+        rows += ours(size, 0.3, 0, 2, restitution=0.8, pillar=True, role="a pillar on top")
     print("Strict forces")
     for size, seconds in ((SMALL, 1), (LARGE, 0.2)):
         for strict in (False, True):
@@ -207,6 +210,11 @@ def verdicts(rows):
         if r["phase"] == "shaking" and (r.get("role") == "tall" or r.get("role") == "size" and r["courses"] == 100):
             line(f"{r['blocks']} blocks in {r['courses']} courses, {r['amplitude']} g: drift (mm; asked of 1040)", "0.01", r["drift"], r["drift"] <= 0.01,
                  f"{r['drift']:.2g}, {r['cpu']:.3g} CPU s per s")
+    for blocks, drift in ((105, 1e-3), (1040, 1e-2)):
+        r = find(role="a pillar on top", blocks=blocks)
+        if r:
+            line(f"{blocks} blocks, 0.3 g, a pillar that rocks on top: drift of the wall (mm; asked without it)", f"{drift:g}", r["drift"], r["drift"] <= drift,
+                 f"{r['drift']:.2g}, {r['movingBlocks']} blocks move, {r['cpu']:.3g} CPU s per s")
     for blocks, bound in ((105, 1.0), (1040, 1.4)):
         one, two = (find(role="threads", blocks=blocks, threads=n, phase="shaking") for n in (1, 2))
         if one and two:

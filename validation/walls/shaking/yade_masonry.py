@@ -1,6 +1,7 @@
 """The wall in this plugin: `yade -n -x yade_masonry.py '<JSON>'`; prints one JSON line for each phase.
 
-courses, per_course, amplitude (g), rest, shaking (s); model, restitution (null: natural), dt, tolerance (null: as dem.engines() chooses), strict (forces).
+courses, per_course, amplitude (g), rest, shaking (s); model, restitution (null: natural), dt, tolerance (null: as dem.engines() chooses), strict (forces), pillar
+(two slender blocks upon each other on the wall: drift and sink are those of the wall).
 """
 import hashlib
 import json
@@ -19,6 +20,7 @@ law = {} if case.get("restitution") is None else {"restitution": case["restituti
 stone = dem.BlockMat(density=2000, frictionAngle=math.atan(0.7), **law)
 base = dem.base((case["per_course"] + 4, 4, 1), stone)
 ids = dem.wall(case["courses"], case["per_course"], (1.0, 0.5, 0.5), stone, on=base)
+pillar = [dem.block((0.3, 0.5, 1.2), stone, center=(0.3, 0, 0.5 * case["courses"] + 0.6 + 1.2 * k)) for k in range(2 if case.get("pillar") else 0)]
 STARTED = 5  # steps of a millisecond before anything is measured: the first finds the forces
 rate, omega = 1000, 4 * math.pi
 times = np.arange(0, case["shaking"] + 0.01, 1 / rate)
@@ -44,7 +46,7 @@ def losses():
 def mechanical():
     """Kinetic and potential energy of the blocks, J, from the states of YADE's bodies alone."""
     total = 0
-    for i in ids:
+    for i in ids + pillar:
         state = O.bodies[i].state
         spin = state.ori.conjugate() * state.angVel
         total += state.mass * (state.vel.squaredNorm() / 2 + 9.81 * state.pos[2]) + sum(state.inertia[k] * spin[k] ** 2 for k in range(3)) / 2
@@ -84,6 +86,6 @@ for phase in ("rest", "shaking"):
     bits = hashlib.sha256(np.array([x for i in ids for v in (O.bodies[i].state.pos, O.bodies[i].state.vel) for x in v]).tobytes()).hexdigest()[:12]
     print(json.dumps(dict(case, phase=phase, blocks=len(ids), cpu=cpu / case[phase], wall=wall / case[phase], drift=1e3 * float(np.linalg.norm(moved[:, :2], axis=1).max()),
                           sink=1e3 * float(sink - sunk), excursion=float(excursion), corner=float(corner), deepest=float(deepest), still=integrator.stillSteps - modes[0], moving=integrator.movingSteps - modes[1],
-                          impacts=len(integrator.impactTimes), solves=integrator.sweeps - solved, velocityResidual=integrator.velocityResidual,
+                          movingBlocks=integrator.movingBlocks, impacts=len(integrator.impactTimes), solves=integrator.sweeps - solved, velocityResidual=integrator.velocityResidual,
                           forceResidual=integrator.forceResidual, rise=float(rise), lost=float(lost - first), impactDissip=integrator.impactDissip, work=work, unbalanced=unbalanced, memory=memory, bits=bits)), flush=True)
     sunk = sink

@@ -6,6 +6,12 @@ namespace masonry::rigid {
 template <class K>
 std::vector<int> islandNumbers(const RigidSystem<K>& s)
 {
+	return islandNumbers<K>(s, [](const ContactPair<K>&) { return true; });
+}
+
+template <class K>
+std::vector<int> islandNumbers(const RigidSystem<K>& s, const std::function<bool(const ContactPair<K>&)>& joins)
+{
 	std::vector<int> parent(s.bodies.size());
 	std::iota(parent.begin(), parent.end(), 0);
 	const auto root = [&](int body) {
@@ -14,7 +20,7 @@ std::vector<int> islandNumbers(const RigidSystem<K>& s)
 		return body;
 	};
 	for (const ContactPair<K>& pair : s.pairs)
-		if (!s.bodies[pair.body1].prescribed && !s.bodies[pair.body2].prescribed) {
+		if (!s.bodies[pair.body1].prescribed && !s.bodies[pair.body2].prescribed && joins(pair)) {
 			const int a = root(pair.body1), b = root(pair.body2);
 			parent[std::max(a, b)] = std::min(a, b);
 		}
@@ -28,5 +34,7 @@ std::vector<int> islandNumbers(const RigidSystem<K>& s)
 
 template std::vector<int> islandNumbers(const RigidSystem<Plane>&);
 template std::vector<int> islandNumbers(const RigidSystem<Space>&);
+template std::vector<int> islandNumbers(const RigidSystem<Plane>&, const std::function<bool(const ContactPair<Plane>&)>&);
+template std::vector<int> islandNumbers(const RigidSystem<Space>&, const std::function<bool(const ContactPair<Space>&)>&);
 
 } // namespace masonry::rigid

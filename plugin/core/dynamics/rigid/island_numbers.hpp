@@ -1,11 +1,15 @@
 #pragma once
 // Structures that are not near each other: blocks that a chain of pairs joins are an island; prescribed bodies join nothing.
 #include "dynamics/rigid/rigid_system.hpp"
+#include <functional>
 
 namespace masonry::rigid {
 
 // Of each body, the number of its island, in the order of their first bodies; -1: prescribed.
 template <class K>
 std::vector<int> islandNumbers(const RigidSystem<K>& system);
+// Where only these pairs join.
+template <class K>
+std::vector<int> islandNumbers(const RigidSystem<K>& system, const std::function<bool(const ContactPair<K>&)>& joins);
 
 } // namespace masonry::rigid

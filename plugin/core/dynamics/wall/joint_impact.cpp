@@ -97,6 +97,7 @@ RockingImpactResult JointImpact::apply()
 		result.residual = plastic.residual;
 		end = &taken;
 	}
+	couple = end->couple;
 	result.work = end->work;
 	result.energyLost = before + result.work - kineticEnergy(bodies);
 

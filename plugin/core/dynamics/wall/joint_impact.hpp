@@ -14,6 +14,7 @@ public:
 	std::vector<masonry::Body> bodies;
 	std::vector<ImpulsePoint> points; // new support, then old; after apply() the new alone
 	ClosingJoint joint;
+	double couple {0}; // on the block about the joint's axis, after apply(), N m s
 
 	// Changes the bodies' velocities, the points' impulses and the joint's result.
 	RockingImpactResult apply();

@@ -424,6 +424,19 @@ double KeptFactor<K>::keepSlip()
 }
 
 template <class K>
+void KeptFactor<K>::handOn(double fall)
+{
+	auto& c = *contacts;
+	for (size_t g = 0; g < c.groups.size(); ++g)
+		for (int k = 0; k < c.groups[g].count; ++k) {
+			PointLanes<K>& p = c.groups[g].point[k];
+			const Lanes most = larger(mostOfMean * before[g][k].pn, mostOfFall * fall * p.massN), pn = smaller(p.pn, most);
+			p.pt = select(pn < p.pn, clip(p.pt, c.groups[g].friction * pn), p.pt);
+			p.pn = pn;
+		}
+}
+
+template <class K>
 void KeptFactor<K>::giveUp()
 {
 	giveUp(LaneBits(rows.size(), allLanes));

@@ -89,9 +89,9 @@ void WallContacts<Plane>::takeBodies(const RigidSystem<Plane>& s)
 	eachShare(n, [&](size_t begin, size_t end, int) {
 		for (size_t b = begin; b < end; ++b) {
 			const auto& body = s.bodies[b];
-			const double mass = body.prescribed ? 0 : 1 / body.mass;
-			gyration[b][0] = body.prescribed ? 1 : std::sqrt(body.inertia[0] * mass);
-			velocity[b][3] = mass;
+			const double perMass = own[b] ? 1 / body.mass : 0;
+			gyration[b][0] = own[b] ? std::sqrt(body.inertia[0] * perMass) : 1;
+			velocity[b][3] = perMass;
 			setVelocity(b, body.velocity);
 			pose[b] = Lanes {body.pose.position.x(), body.pose.position.y(), body.pose.cosine, body.pose.sine};
 		}

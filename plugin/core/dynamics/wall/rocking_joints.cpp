@@ -31,6 +31,16 @@ struct Contact {
 	}
 };
 
+// On a support, if that is what the body is. Returns the work that it has been given, J.
+template <class K>
+double press(WallContacts<K>& c, int body, const typename K::Velocity& impulse)
+{
+	if (!c.supports[body])
+		return 0;
+	c.pressed[body] += impulse;
+	return impulse.dot(c.inGlobal(c.velocity, body));
+}
+
 } // namespace
 
 template <class K>
@@ -48,7 +58,7 @@ void RockingJoints<K>::gather(const RigidSystem<K>& s, const WallContacts<K>& c)
 				const PointLanes<K>& p = c.groups[group].point[k];
 				const double up = g > 0 ? -normal(p, lane).dot(s.gravity) / g : 1;
 				const int block = up > 0 ? pair.body2 : pair.body1;
-				if (std::abs(up) >= tolerance::uprightJoint && !s.bodies[block].prescribed)
+				if (std::abs(up) >= tolerance::uprightJoint && c.own[block])
 					points.push_back({block, up > 0 ? pair.face2 : pair.face1, group, lane, k});
 			}
 		}
@@ -211,7 +221,7 @@ void RockingJoints<Space>::answer(RigidSystem<Space>& s, WallContacts<Space>& c,
 		body.angularVelocity = v.tail<3>();
 		body.mass = from.mass;
 		body.inertia = from.inertia;
-		body.prescribed = from.prescribed;
+		body.prescribed = !c.own[b];
 		numbers.push_back(b);
 		return int(numbers.size()) - 1;
 	};
@@ -248,6 +258,15 @@ void RockingJoints<Space>::answer(RigidSystem<Space>& s, WallContacts<Space>& c,
 			c.setVelocity(numbers[i], v);
 		}
 	baseWork += result.work;
+	for (const ImpulsePoint& point : impact.points)
+		for (const auto& [k, sign] : {std::pair(point.body1, -1.), std::pair(point.body2, 1.)}) {
+			Space::Velocity impulse;
+			impulse << sign * point.impulse, sign * (point.position - impact.bodies[k].pose.position).cross(point.impulse);
+			baseWork += press(c, numbers[k], impulse);
+		}
+	Space::Velocity couple;
+	couple << Vector3::Zero(), -impact.couple * law.result.axis;
+	baseWork += press(c, at.support, couple);
 	const JointResult& after = law.result;
 	s.impacts.push_back(
 	    {s.time, at.block, at.support, restitution, after.after >= leastSpin, after, result.energyLost, result.capped, result.residual});
@@ -326,10 +345,12 @@ void RockingJoints<Plane>::answer(RigidSystem<Plane>& s, WallContacts<Plane>& c,
 	result.application = std::abs(x[2]) / x[0];
 	result.frictionDemand = std::abs(x[1]) / x[0];
 	const double lost = -gain(x);
-	if (s.bodies[b1].prescribed)
-		baseWork -= x.dot(J.leftCols<3>() * velocity.head<3>());
-	if (s.bodies[b2].prescribed)
-		baseWork -= x.dot(J.rightCols<3>() * velocity.tail<3>());
+	for (const auto& [b, impulse, speed] : {std::tuple(b1, Vector3(J.leftCols<3>().transpose() * x), Vector3(velocity.head<3>())),
+	                                        std::tuple(b2, Vector3(J.rightCols<3>().transpose() * x), Vector3(velocity.tail<3>()))}) {
+		if (s.bodies[b].prescribed)
+			baseWork -= impulse.dot(speed);
+		press(c, b, impulse);
+	}
 	s.impacts.push_back({s.time, at.block, at.support, pair.restitution, result.after >= leastSpin, result, lost, capped, 0});
 }
 

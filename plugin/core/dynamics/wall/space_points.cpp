@@ -181,8 +181,8 @@ void WallContacts<Space>::takeBodies(const RigidSystem<Space>& s)
 	eachShare(n, [&](size_t begin, size_t end, int) {
 		for (size_t b = begin; b < end; ++b) {
 			const auto& body = s.bodies[b];
-			gyration[b] = body.prescribed ? Vector3(Vector3::Ones()) : Vector3((body.inertia / body.mass).cwiseSqrt());
-			take(b, body.pose, body.velocity, body.prescribed ? 0 : 1 / body.mass);
+			gyration[b] = own[b] ? Vector3((body.inertia / body.mass).cwiseSqrt()) : Vector3(Vector3::Ones());
+			take(b, body.pose, body.velocity, own[b] ? 1 / body.mass : 0);
 		}
 	});
 	gyration[n].setOnes();

@@ -7,8 +7,8 @@ namespace {
 
 Structure joined(const Structure& a, const Structure& b)
 {
-	return {std::max(a.mode, b.mode), std::min(a.quiet, b.quiet), std::max(a.patience, b.patience), std::min(a.stay, b.stay),
-	        std::max(a.mayHold, b.mayHold)};
+	return {std::max(a.mode, b.mode), std::min(a.quiet, b.quiet), std::max(a.patience, b.patience),
+	        std::min(a.stay, b.stay), std::min(a.whole, b.whole), std::max(a.mayHold, b.mayHold)};
 }
 
 } // namespace
@@ -16,29 +16,99 @@ Structure joined(const Structure& a, const Structure& b)
 template <class K>
 bool Structures<K>::find(const RigidSystem<K>& s)
 {
-	if (s.lists == list && s.pairs.size() == pairs && s.bodies.size() == of.size())
+	if (!returned && s.lists == list && s.pairs.size() == pairs && s.bodies.size() == of.size())
 		return false;
+	returned = false;
+	if (s.bodies.size() != of.size()) {
+		of = islandNumbers(s);
+		all.assign(s.bodies.size(), {});
+	}
+	regroup(s);
+	return true;
+}
+
+template <class K>
+void Structures<K>::regroup(const RigidSystem<K>& s)
+{
+	std::vector<int> now = islandNumbers<K>(s, [this](const ContactPair<K>& pair) { return !isCut(pair); });
+	if (std::any_of(s.drives.begin(), s.drives.end(), [](const BaseDrive* drive) { return drive->ordered(); }))
+		for (int& number : now)
+			number = std::min(number, 0);
+	std::vector<Structure> next(now.empty() ? 0 : 1 + *std::max_element(now.begin(), now.end()));
+	std::vector<char> known(next.size(), 0);
+	for (size_t b = 0; b < now.size(); ++b)
+		if (now[b] >= 0 && of[b] >= 0) {
+			Structure& one = next[now[b]];
+			one = known[now[b]] ? joined(one, all[of[b]]) : all[of[b]];
+			known[now[b]] = 1;
+		}
+	of = std::move(now);
+	all = std::move(next);
+	takePairs(s);
+	if (joinUnborne(s))
+		regroup(s);
+}
+
+// What has no base of its own goes with what moves beside it. True: there was some.
+template <class K>
+bool Structures<K>::joinUnborne(const RigidSystem<K>& s)
+{
+	std::vector<char> borne(all.size(), 0), beside(all.size(), 0);
+	for (const ContactPair<K>& pair : s.pairs) {
+		const int a = of[pair.body1], b = of[pair.body2];
+		if (a < 0 || b < 0)
+			borne[std::max(a, b)] = 1;
+		else if (isCut(pair))
+			beside[all[a].mode == WallMode::still ? a : b] = 1;
+	}
+	bool some = false;
+	for (size_t k = 0; k < all.size(); ++k)
+		if (beside[k] && !borne[k]) {
+			all[k].mode = WallMode::moving;
+			some = true;
+		}
+	return some;
+}
+
+template <class K>
+void Structures<K>::takePairs(const RigidSystem<K>& s)
+{
 	list = s.lists;
 	pairs = s.pairs.size();
-	const std::vector<int> before = std::move(of);
-	const std::vector<Structure> old = std::move(all);
-	of = islandNumbers(s);
-	if (std::any_of(s.drives.begin(), s.drives.end(), [](const BaseDrive* drive) { return drive->ordered(); }))
-		for (int& number : of)
-			number = std::min(number, 0);
-	const int count = of.empty() ? 0 : 1 + *std::max_element(of.begin(), of.end());
-	all.assign(count, {});
-	inFlight.assign(count, 1);
-	std::vector<char> known(count, 0);
-	for (size_t b = 0; before.size() == of.size() && b < of.size(); ++b)
-		if (of[b] >= 0 && before[b] >= 0) {
-			Structure& one = all[of[b]];
-			one = known[of[b]] ? joined(one, old[before[b]]) : old[before[b]];
-			known[of[b]] = 1;
-		}
+	inFlight.assign(all.size(), 1);
 	for (const ContactPair<K>& pair : s.pairs)
-		inFlight[std::max(of[pair.body1], of[pair.body2])] = 0;
-	return true;
+		for (const int number : {of[pair.body1], of[pair.body2]})
+			if (number >= 0)
+				inFlight[number] = 0;
+}
+
+template <class K>
+bool Structures<K>::setOff(const RigidSystem<K>& s, const std::vector<char>& bodies)
+{
+	std::vector<int> left(all.size(), 0), part(all.size(), -1);
+	for (size_t b = 0; b < of.size(); ++b)
+		if (of[b] >= 0 && !bodies[b])
+			++left[of[b]];
+	for (size_t b = 0; b < of.size(); ++b) {
+		if (of[b] < 0 || !bodies[b])
+			continue;
+		const int whole = of[b];
+		if (left[whole] == 0) {
+			all[whole].mode = WallMode::moving;
+			continue;
+		}
+		if (part[whole] < 0) {
+			part[whole] = int(all.size());
+			all.push_back(all[whole]);
+			all.back().mode = WallMode::moving;
+			all[whole].whole = 0;
+		}
+		of[b] = part[whole];
+	}
+	regroup(s);
+	return std::any_of(s.pairs.begin(), s.pairs.end(), [&](const ContactPair<K>& pair) {
+		return of[pair.body1] >= 0 && of[pair.body2] >= 0 && bodies[pair.body1] != bodies[pair.body2] && isCut(pair);
+	});
 }
 
 template <class K>
@@ -56,6 +126,7 @@ bool Structures<K>::letReturn()
 			one.mayHold = std::min(2 * one.mayHold, tolerance::wall::held);
 		}
 	sinceReturn = 0;
+	returned = true;
 	return true;
 }
 
@@ -66,6 +137,7 @@ void Structures<K>::endStep(const std::vector<double>& motion, double rest, doub
 	sinceReturn += h;
 	for (size_t k = 0; k < all.size(); ++k) {
 		Structure& one = all[k];
+		one.whole += h;
 		if (one.mode == WallMode::still) {
 			one.stay += h;
 			continue;

@@ -1,11 +1,12 @@
 #pragma once
-// Structures of a scene (island_numbers.hpp), each in a mode of its own: what moves in one costs the others no substep, and one that stands
-// beside it stands as if it were alone.
+// Structures of a scene, each in a mode of its own: blocks near each other (island_numbers.hpp) that are in one mode. What moves in one
+// costs the others no substep, and one that stands beside it stands as if it were alone.
 //
-// Where blocks come near each other or part, structures join or split: all that is joined moves if any of it did. Motions that must be
-// asked in order of time (BaseDrive::ordered) make one of all.
+// Where blocks come near each other or part, and where some of a structure begin to move or come to rest, structures join or split. Motions
+// that must be asked in order of time (BaseDrive::ordered) make one of all.
 #include "dynamics/rigid/island_numbers.hpp"
 #include "tolerances.hpp"
+#include <cmath>
 
 namespace masonry::rigid {
 
@@ -19,6 +20,7 @@ struct Structure {
 	double quiet {0};                            // s, how long nothing has moved
 	double patience {0};                         // s, for how long it must not
 	double stay {0};                             // s, in the still mode; -1: has left it
+	double whole {INFINITY};                     // s, since a part of it has left the still mode
 	double mayHold {tolerance::wall::leastHeld}; // as tolerance::wall::held
 };
 
@@ -28,8 +30,10 @@ public:
 	std::vector<Structure> all;
 	std::vector<int> of; // of a body, its structure; -1: prescribed
 
-	// Finds them anew where the list of pairs has changed; then true.
+	// Finds them anew where the list of pairs has changed, or some have come to rest beside others in the step before; then true.
 	bool find(const RigidSystem<K>& system);
+	// These bodies, of structures that stand, begin to move. True: others beside them go on standing.
+	bool setOff(const RigidSystem<K>& system, const std::vector<char>& bodies);
 	// Those that have been quiet for long enough are to stand again: together where others move on, since every return costs a
 	// factorisation of all that stand. True: there are some.
 	bool letReturn();
@@ -42,13 +46,27 @@ public:
 	template <class Flow>
 	void pass(Flow& f, const RigidSystem<K>& system)
 	{
-		find(system);
-		f(sinceReturn), f(shortest);
+		if (!of.empty())
+			find(system);
+		size_t count = all.size();
+		f(count), f(sinceReturn), f(shortest);
+		all.resize(count);
+		of.resize(system.bodies.size());
 		for (Structure& one : all)
-			f(one.mode), f(one.quiet), f(one.patience), f(one.stay), f(one.mayHold);
+			f(one.mode), f(one.quiet), f(one.patience), f(one.stay), f(one.whole), f(one.mayHold);
+		for (int& number : of)
+			f(number);
+		takePairs(system);
 	}
 
 private:
+	// Between two free bodies.
+	bool isCut(const ContactPair<K>& pair) const { return all[of[pair.body1]].mode != all[of[pair.body2]].mode; }
+	bool joinUnborne(const RigidSystem<K>& system);
+	void regroup(const RigidSystem<K>& system);
+	void takePairs(const RigidSystem<K>& system);
+
+	bool returned {false};                // in this step
 	std::vector<char> inFlight;           // of a structure: a block without a pair, whose fall substeps follow better
 	double sinceReturn {0}, shortest {0}; // s
 	int list {-1};                        // of the system's pairs, that the structures are of

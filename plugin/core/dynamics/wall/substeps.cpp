@@ -19,12 +19,6 @@ constexpr double damping = 0.075, inMeanOfOne = 0.06, leastInMean = 0.02;
 // notice that its load changes; less: friction is lost where loads bounce, and walls of 32 courses go 30 to 40 % too far.
 constexpr double mostLumps = 0.1;
 
-// What a substep hands on of an impulse at most: so many times its mean, or so many times what stops a point alone after a substep's fall,
-// which is how a block that begins to turn about it presses. Larger: what has stopped a block pushes it up before the sweep takes it off;
-// smaller: a block that lands on another corner than the one that has carried it sinks while the sweeps build up what holds it. With 4
-// times the mean the peaks of columns are 0.5 % too high at a tenth of a step, with 12 times 0.4 % too low at a whole one.
-constexpr double mostOfMean = 8, mostOfFall = 2;
-
 // Sweeps before the move, and after it, as the square of the courses asks, and as many times more as substeps are finer: these alone leave
 // tall walls where their lag is. But as many as there are courses up to three, since what blocks that land together have not been told of
 // each other is lost. (One fewer before the move takes 6 to 10 % less time, but loads bounce more.) What all but the last of them overdo:
@@ -209,16 +203,13 @@ MASONRY_LANES void accelerate(const std::vector<int>& members, const Lanes* load
 		velocity[b] = narrow(start[b]);
 	}
 }
-// From there with what the sweeps have changed.
-MASONRY_LANES void moveBodies(const std::vector<int>& members, double s, const Lanes* start, const FloatPack* velocity, Lanes* shift)
-{
-	for (const int b : members)
-		shift[b] += s * noMass * (start[b] + (widen(velocity[b]) - widen(narrow(start[b]))));
-}
-MASONRY_LANES void takeOff(const std::vector<int>& members, Lanes* velocity, FloatPack* contactPart)
+// From there with what the sweeps have changed; then without the impulses that the substep started from.
+MASONRY_LANES void moveBodies(const std::vector<int>& members, double s, FloatPack* contactPart, const FloatPack* velocity, Lanes* start,
+                              Lanes* shift)
 {
 	for (const int b : members) {
-		velocity[b] -= noMass * widen(contactPart[b]);
+		shift[b] += s * noMass * (start[b] + (widen(velocity[b]) - widen(narrow(start[b]))));
+		start[b] -= noMass * widen(contactPart[b]);
 		contactPart[b] *= narrow(1 - noMass);
 	}
 }
@@ -318,9 +309,8 @@ void Substeps<K>::substep(WallContacts<K>& c, const LaneArray& load, double s, b
 	};
 	const auto move = [&](int number) {
 		moveGaps(groups.data(), parts[number].begin, parts[number].end, velocity.data(), float(s));
-		moveBodies(c.parts[number].members, s, c.velocity.data(), velocity.data(), c.shift.data());
+		moveBodies(c.parts[number].members, s, contactPart.data(), velocity.data(), c.velocity.data(), c.shift.data());
 	};
-	const auto clear = [&](int number) { takeOff(c.parts[number].members, c.velocity.data(), contactPart.data()); };
 	const auto end = [&](int number) {
 		sumImpulses(number);
 		putOn(c.parts[number].members, c.velocity.data(), contactPart.data());
@@ -336,17 +326,14 @@ void Substeps<K>::substep(WallContacts<K>& c, const LaneArray& load, double s, b
 		press(seam, isEnd);
 	}
 	move(seam);
-	clear(seam);
 	for (int k = 0; k < sweeps; ++k) {
 		const bool isEnd = k + 1 == sweeps;
 		c.eachPart([&](const Part&, int number) {
 			if (k == 0)
 				move(number);
 			press(number, isEnd, isLast && isEnd);
-			if (isEnd) {
-				clear(number);
+			if (isEnd)
 				end(number);
-			}
 		});
 		press(seam, isEnd, isLast && isEnd);
 	}

@@ -52,7 +52,7 @@ void WallContacts<K>::colour(const RigidSystem<K>& s)
 		int pair, part;
 	};
 	const int none = int(s.bodies.size()), seam = divide();
-	const auto isFixed = [&](int body) { return s.bodies[body].prescribed; };
+	const auto isFixed = [&](int body) { return !own[body]; };
 	std::vector<std::vector<int>> pairsOf(seam + 1);
 	std::vector<char> atSeam(s.bodies.size() + 1, 0);
 	for (const int c : numbers) {
@@ -64,7 +64,7 @@ void WallContacts<K>::colour(const RigidSystem<K>& s)
 	}
 	parts.assign(seam + 1, {});
 	for (int b = 0; b <= none; ++b) {
-		if (b < none && !isFixed(b) && !own[b])
+		if (b < none && !own[b] && !supports[b] && !s.bodies[b].prescribed)
 			continue;
 		const bool within = b < none && !isFixed(b) && !atSeam[b];
 		for (int k = 0; k < packs<K>; ++k)
@@ -121,10 +121,11 @@ void WallContacts<K>::colour(const RigidSystem<K>& s)
 	stale.assign(groups.size(), allLanes);
 	known.assign(pairs.size(), 0);
 	onBase.clear();
+	onStill.clear();
 	for (int g = 0; g < int(groups.size()); ++g)
 		for (int i = 0; i < width && features[g].pair[i] >= 0; ++i)
-			if (isFixed(groups[g].body1[i]) || isFixed(groups[g].body2[i]))
-				onBase.push_back({g, i});
+			if (const int a = groups[g].body1[i], b = groups[g].body2[i]; isFixed(a) || isFixed(b))
+				(supports[a] || supports[b] ? onStill : onBase).push_back({g, i});
 	orderUpwards();
 }
 
@@ -141,13 +142,13 @@ void WallContacts<K>::orderUpwards()
 		std::stable_sort(upwards.begin() + part.begin, upwards.begin() + part.end, [&](int a, int b) { return highest[a] < highest[b]; });
 }
 
-// Breadth first from the prescribed bodies.
+// Breadth first from the bodies that are not free here.
 template <class K>
 void WallContacts<K>::findCourses(const RigidSystem<K>& s)
 {
 	course.assign(s.bodies.size(), -1);
 	for (size_t b = 0; b < s.bodies.size(); ++b)
-		if (s.bodies[b].prescribed)
+		if (s.bodies[b].prescribed || supports[b])
 			course[b] = 0;
 	depth = 0;
 	for (bool grew = true; grew; ++depth) {
@@ -160,7 +161,8 @@ void WallContacts<K>::findCourses(const RigidSystem<K>& s)
 				}
 	}
 	--depth;
-	const std::vector<int> structure = islandNumbers(s);
+	const auto joins = [this](const ContactPair<K>& pair) { return own[pair.body1] && own[pair.body2]; };
+	const std::vector<int> structure = islandNumbers<K>(s, joins);
 	std::vector<double> blocks(structure.size(), 0), courses = blocks;
 	for (size_t b = 0; b < structure.size(); ++b)
 		if (structure[b] >= 0 && course[b] > 0) {
@@ -174,7 +176,7 @@ void WallContacts<K>::findCourses(const RigidSystem<K>& s)
 	burden = 0;
 	for (const int c : numbers) {
 		const auto [low, high] = std::minmax({pairs[c][0], pairs[c][1]}, [&](int a, int b) { return course[a] < course[b]; });
-		if (course[low] != course[high] && !s.bodies[low].prescribed)
+		if (course[low] != course[high] && own[low])
 			burden = std::max(burden, course[high] * s.bodies[high].mass / s.bodies[low].mass);
 	}
 }

@@ -26,8 +26,9 @@ void WallContacts<K>::takePairs(const RigidSystem<K>& s)
 	pairs.clear();
 	wide.clear();
 	numbers.clear();
+	const auto isHere = [&](int b) { return own[b] || supports[b] || s.bodies[b].prescribed; };
 	for (const auto& pair : s.pairs) {
-		if (own[pair.body1] || own[pair.body2])
+		if ((own[pair.body1] && isHere(pair.body2)) || (own[pair.body2] && isHere(pair.body1)))
 			numbers.push_back(int(pairs.size()));
 		pairs.push_back({pair.body1, pair.body2});
 		wide.push_back(pair.size > lanePoints<K>);
@@ -61,10 +62,10 @@ bool WallContacts<K>::renumber(const RigidSystem<K>& s)
 }
 
 template <class K>
-bool WallContacts<K>::take(const RigidSystem<K>& s, const std::vector<char>& bodies, const WallContacts& giver)
+bool WallContacts<K>::take(const RigidSystem<K>& s, const Members& bodies, const WallContacts& giver)
 {
 	const bool sameList = samePairs(s);
-	if (bodies == own && (sameList || renumber(s)))
+	if (bodies.own == own && bodies.supports == supports && (sameList || renumber(s)))
 		return false;
 	WallContacts before(team);
 	before.groups.swap(groups);
@@ -84,7 +85,8 @@ bool WallContacts<K>::take(const RigidSystem<K>& s, const std::vector<char>& bod
 	};
 	if (isEmpty())
 		unit = giver.unit;
-	own = bodies;
+	own = bodies.own;
+	supports = bodies.supports;
 	takePairs(s);
 	for (const int c : numbers)
 		if (const WallContacts* from = whoKnows(c))
@@ -140,9 +142,9 @@ void WallContacts<K>::bring(const WallContacts& from, int c)
 
 template bool WallContacts<Plane>::samePairs(const RigidSystem<Plane>&);
 template void WallContacts<Plane>::takePairs(const RigidSystem<Plane>&);
-template bool WallContacts<Plane>::take(const RigidSystem<Plane>&, const std::vector<char>&, const WallContacts&);
+template bool WallContacts<Plane>::take(const RigidSystem<Plane>&, const Members&, const WallContacts&);
 template bool WallContacts<Space>::samePairs(const RigidSystem<Space>&);
 template void WallContacts<Space>::takePairs(const RigidSystem<Space>&);
-template bool WallContacts<Space>::take(const RigidSystem<Space>&, const std::vector<char>&, const WallContacts&);
+template bool WallContacts<Space>::take(const RigidSystem<Space>&, const Members&, const WallContacts&);
 
 } // namespace masonry::rigid::wall

@@ -10,6 +10,9 @@ using wall::Lanes;
 namespace {
 
 constexpr int coldSolves = 3000, mostSolves = 300, quickSolves = 8, quickRounds = 20, fewSubsteps = 8;
+constexpr int unknown = -2, several = -3; // drives; -1: none
+// Of a structure that goes on standing when the rest begins to move: more is not worth two steps, and where so much goes, more will.
+constexpr double largestPart = 0.25;
 
 // A step is divided once at most, into halves: the impulses of a part are where those of the next start, and one that is much shorter
 // would hand on an impact's as many times too large. Displacements of the base are exact anyway; a pulse of the first half acts at the
@@ -98,18 +101,34 @@ void WallStep<K>::advancePart(RigidSystem<K>& s, double h)
 	const bool found = structures.find(s);
 	if (structures.letReturn() || found)
 		arrange(s, still(), moving());
-	if (structures.any(WallMode::still) || !structures.any(WallMode::moving)) {
-		measure(s, still());
-		if (!stepStill(s, h))
-			arrange(s, moving(), still());
+	const auto some = [](const auto& chosen) { return std::find(chosen.begin(), chosen.end(), 1) != chosen.end(); };
+	bool hasMoved = false;
+	for (bool again = false, done = false; !done; again = true) {
+		hasMoved = !moving().onStill.empty(); // before the others, which it presses on
+		const State before = state(s, moving());
+		if (hasMoved)
+			stepMoving(s, h);
+		if (!structures.any(WallMode::still) && structures.any(WallMode::moving))
+			break;
+		const Bodies move = solveStill(s, h, again);
+		if (!some(move)) {
+			keepStill(s, h);
+			break;
+		}
+		if (hasMoved)
+			takeBack(before, s, moving());
+		done = !setOff(s, move) && !hasMoved; // nothing that still stands is pressed on in another way than before
+		if (done)
+			keepStill(s, h);
+		else
+			kept.giveUp();
+		hasMoved = false;
+		arrange(s, moving(), still());
 	}
 	report.mode = structures.any(WallMode::moving) ? WallMode::moving : WallMode::still;
-	report.moved = 0;
-	if (report.mode == WallMode::moving) {
-		report.moved = int(std::count(moving().own.begin(), moving().own.end(), 1));
-		measure(s, moving());
+	if (report.mode == WallMode::moving && !hasMoved)
 		stepMoving(s, h);
-	}
+	report.moved = report.mode == WallMode::moving ? int(std::count(moving().own.begin(), moving().own.end(), 1)) : 0;
 	started = true;
 	speeds.clear();
 	for (const BaseDrive* drive : s.drives)
@@ -135,11 +154,42 @@ void WallStep<K>::arrange(const RigidSystem<K>& s, Contacts& taker, Contacts& gi
 		return arrange(s, giver, taker);
 	}
 	for (Contacts* set : {&taker, &giver})
-		if (set->take(s, structures.bodies(set == &still() ? WallMode::still : WallMode::moving), set == &taker ? giver : taker)) {
+		if (set->take(s, members(s, set == &still() ? WallMode::still : WallMode::moving), set == &taker ? giver : taker)) {
 			kept.follow(*set);
 			quick.follow(*set);
 			joints.outdate();
 		}
+}
+
+template <class K>
+wall::Members WallStep<K>::members(const RigidSystem<K>& s, WallMode mode) const
+{
+	wall::Members result {structures.bodies(mode), std::vector<char>(s.bodies.size(), 0)};
+	if (mode == WallMode::moving)
+		for (const auto& pair : s.pairs)
+			for (const auto& [one, other] : {std::pair(pair.body1, pair.body2), std::pair(pair.body2, pair.body1)})
+				result.supports[one] |= result.own[other] && isStill(one);
+	return result;
+}
+
+template <class K>
+typename WallStep<K>::State WallStep<K>::state(const RigidSystem<K>& s, const Contacts& contacts) const
+{
+	return {contacts.onStill.empty() ? std::vector<wall::Group<K>>() : contacts.groups, report, s.baseWork, frictionLoss, s.impacts.size()};
+}
+
+template <class K>
+void WallStep<K>::takeBack(const State& state, RigidSystem<K>& s, Contacts& contacts)
+{
+	contacts.groups = state.groups;
+	s.baseWork = state.baseWork;
+	s.impacts.resize(state.impacts);
+	frictionLoss = state.frictionLoss;
+	const WallReport now = report;
+	report = state.report;
+	report.solves = now.solves;
+	report.factorisations = now.factorisations;
+	report.switched = now.switched;
 }
 
 template <class K>
@@ -159,30 +209,44 @@ typename WallStep<K>::Chosen WallStep<K>::structuresOf(const Contacts& contacts,
 	for (int g = 0; g < int(lanes.size()); ++g)
 		for (int i = 0; lanes[g] && i < wall::width && contacts.features[g].pair[i] >= 0; ++i)
 			if (lanes[g] >> i & 1)
-				chosen[structures.of[contacts.freeBody(g, i)]] = 1;
+				for (const int b : {contacts.groups[g].body1[i], contacts.groups[g].body2[i]})
+					if (contacts.own[b])
+						chosen[structures.of[b]] = 1;
 	return chosen;
 }
 
 template <class K>
-wall::LaneBits WallStep<K>::lanesOf(const Contacts& contacts, const Chosen& chosen) const
+typename WallStep<K>::Bodies WallStep<K>::bodiesOf(const Chosen& chosen) const
+{
+	Bodies bodies;
+	for (const int number : structures.of)
+		bodies.push_back(number >= 0 && chosen[number]);
+	return bodies;
+}
+
+template <class K>
+wall::LaneBits WallStep<K>::lanesOf(const Contacts& contacts, const Bodies& bodies) const
 {
 	wall::LaneBits lanes(contacts.groups.size(), 0);
 	for (int g = 0; g < int(lanes.size()); ++g)
 		for (int i = 0; i < wall::width && contacts.features[g].pair[i] >= 0; ++i)
-			lanes[g] |= chosen[structures.of[contacts.freeBody(g, i)]] << i;
+			lanes[g] |= (bodies[contacts.groups[g].body1[i]] | bodies[contacts.groups[g].body2[i]]) << i;
 	return lanes;
 }
 
-// Velocities of the prescribed bodies that bring them where they belong after h; 0: those that they have now.
+// Velocities of the prescribed bodies that bring them where they belong after h, and of supports with them; 0: those that they have now.
 template <class K>
 void WallStep<K>::setBase(const RigidSystem<K>& s, Contacts& contacts, double h)
 {
-	for (const int b : onDrives) {
-		const auto& body = s.bodies[b];
-		const BaseDrive& drive = *s.drives[body.drive];
-		const double speed = h > 0 ? meanSpeed(drive, s.time, h) : drive.velocity(s.time);
-		contacts.setLinearVelocity(b, s.driveDirections[body.drive] * speed);
-	}
+	const auto set = [&](int b, int d) {
+		const double speed = h > 0 ? meanSpeed(*s.drives[d], s.time, h) : s.drives[d]->velocity(s.time);
+		contacts.setLinearVelocity(b, s.driveDirections[d] * speed);
+	};
+	for (const int b : onDrives)
+		set(b, s.bodies[b].drive);
+	if (&contacts == &moving())
+		for (const auto& [b, drive] : carried)
+			set(b, drive);
 }
 
 template <class K>
@@ -217,76 +281,76 @@ double WallStep<K>::stirred(const RigidSystem<K>& s, double h) const
 	    1., std::max(speedUp / (tolerance::wall::stirred * scales.stepSpeed(h)), push / (tolerance::wall::pushed * scales.acceleration)));
 }
 
-// False: some structures begin to move, and have not been moved.
+// Returns the bodies that begin to move; `again`: others have already in this step.
 template <class K>
-bool WallStep<K>::stepStill(RigidSystem<K>& s, double h)
+typename WallStep<K>::Bodies WallStep<K>::solveStill(RigidSystem<K>& s, double h, bool again)
 {
 	Contacts& contacts = still();
+	measure(s, contacts);
 	const double enough = settings.tolerance * scales.stepSpeed(h);
 	contacts.setUnit(h);
 	setBase(s, contacts, h);
 	setLoads(s, contacts, h);
+	bool pressed = false;
+	for (size_t b = 0; b < moving().pressed.size(); ++b)
+		if (moving().supports[b]) {
+			pressed = true;
+			contacts.takeForce(s.bodies[b].force + moving().pressed[b] / h, h, b, loads);
+		}
 	Chosen returned;
 	for (const auto& one : structures.all)
 		returned.push_back(one.stay == 0);
 	if (std::find(returned.begin(), returned.end(), 1) != returned.end())
-		kept.forget(contacts, lanesOf(contacts, returned));
-	kept.begin(contacts, loads, h, stirred(s, h));
+		kept.forget(contacts, lanesOf(contacts, bodiesOf(returned)));
+	kept.begin(contacts, loads, h, pressed ? 1 : stirred(s, h));
 	kept.iterate(settings.strictForces || !started ? coldSolves : mostSolves, enough, settings.strictForces ? enough : INFINITY);
 	report.solves += kept.report.solves;
 	report.factorisations += kept.report.factorisations;
-	const Chosen move = findMoving(h);
-	const bool allStand = std::find(move.begin(), move.end(), 1) == move.end();
-	if (allStand) {
-		report.velocityResidual = std::max(report.velocityResidual, kept.report.velocity);
-		report.forceResidual = std::max(report.forceResidual, kept.report.force);
-	} else {
-		const auto lanes = lanesOf(contacts, move);
-		setOff(s, move);
-		kept.giveUp(lanes);
-		contacts.startMeans(lanes);
-		for (size_t k = 0; k < move.size(); ++k)
-			if (move[k])
-				structures.all[k].mode = WallMode::moving;
-		report.switched |= started;
-		if (!structures.any(WallMode::still))
-			return false;
-	}
-	frictionLoss = kept.keepSlip();
+	return carriedBy(s, findMoving(h, again), again);
+}
+
+template <class K>
+void WallStep<K>::keepStill(RigidSystem<K>& s, double h)
+{
+	if (!structures.any(WallMode::still) && structures.any(WallMode::moving))
+		return;
+	Contacts& contacts = still();
+	report.velocityResidual = std::max(report.velocityResidual, kept.report.velocity);
+	report.forceResidual = std::max(report.forceResidual, kept.report.force);
+	frictionLoss += kept.keepSlip();
+	if (!moving().onStill.empty())
+		kept.handOn(scales.stepSpeed(h));
 	s.baseWork += baseWorkWhenStill(s);
 	contacts.velocity = kept.velocity;
 	contacts.shift.resize(kept.velocity.size());
 	for (size_t b = 0; b < contacts.shift.size(); ++b)
 		contacts.shift[b] = h * kept.velocity[b];
-	return allStand;
 }
 
-// Those that the step of the still mode cannot solve.
+// Pairs that the step of the still mode cannot solve. What they hold is looked at once in a step.
 template <class K>
-typename WallStep<K>::Chosen WallStep<K>::findMoving(double h)
+wall::LaneBits WallStep<K>::findMoving(double h, bool again)
 {
 	const double stepSpeed = scales.stepSpeed(h), residual = tolerance::wall::still * stepSpeed,
 	             motion = tolerance::wall::motion * tolerance::restSpeed * scales.speed;
-	Chosen move(structures.all.size(), 0);
 	gone.clear();
-	const double most = kept.findHeld();
-	for (double held = tolerance::wall::leastHeld; held <= tolerance::wall::held && most > held * stepSpeed; held *= 2) {
-		const Chosen more = letGo(h, held);
-		for (size_t k = 0; k < move.size(); ++k)
-			move[k] |= more[k];
-	}
+	const double most = again ? 0 : kept.findHeld();
+	for (double held = tolerance::wall::leastHeld; held <= tolerance::wall::held && most > held * stepSpeed; held *= 2)
+		letGo(h, held);
+	wall::LaneBits lanes = gone;
+	lanes.resize(still().groups.size(), 0);
 	if (kept.report.velocity > residual || kept.report.motion > motion) {
-		const Chosen more = structuresOf(still(), kept.unsolved(residual, motion));
-		for (size_t k = 0; k < move.size(); ++k)
-			move[k] |= more[k];
+		const wall::LaneBits unsolved = kept.unsolved(residual, motion);
+		for (size_t g = 0; g < lanes.size(); ++g)
+			lanes[g] |= unsolved[g];
 	}
-	return move;
+	return lanes;
 }
 
-// Those, of all that may hold `share` of what gravity gives in a step, of which points that were held go somewhere when they are let go. In
-// the others the impulses have only been late: they may hold more from now on.
+// Of all that may hold `share` of what gravity gives in a step, those of which points that were held go somewhere when they are let go join
+// `gone`. In the others the impulses have only been late: they may hold more from now on.
 template <class K>
-typename WallStep<K>::Chosen WallStep<K>::letGo(double h, double share)
+void WallStep<K>::letGo(double h, double share)
 {
 	Contacts& contacts = still();
 	const double held = share * scales.stepSpeed(h), free = tolerance::wall::free * scales.stepSpeed(h);
@@ -294,8 +358,8 @@ typename WallStep<K>::Chosen WallStep<K>::letGo(double h, double share)
 	for (size_t k = 0; k < asked.size(); ++k)
 		asked[k] &= structures.all[k].mayHold == share;
 	if (std::find(asked.begin(), asked.end(), 1) == asked.end())
-		return asked;
-	const auto lanes = lanesOf(contacts, asked);
+		return;
+	const auto lanes = lanesOf(contacts, bodiesOf(asked));
 	wall::LaneBits here;
 	quick.begin(contacts, loads, h, 0);
 	bool some = true;
@@ -318,28 +382,103 @@ typename WallStep<K>::Chosen WallStep<K>::letGo(double h, double share)
 		if (asked[k])
 			structures.all[k].mayHold = std::min(2 * share, tolerance::wall::held);
 	}
-	kept.forgetHeld(lanesOf(contacts, asked));
-	return go;
+	kept.forgetHeld(lanesOf(contacts, bodiesOf(asked)));
 }
 
-// Velocities of structures that begin to move. While they stand, they have the mean velocity of their base over a step, which is late by
-// half of it: now by half a substep (a jump of the base is for the sweeps). And what has gone has what it was kept from.
+// Where these pairs move: what is above their joints, all that it carries, and what has a part in upright ones. All of a structure where
+// that is much of it, where `whole` or a part before has not been enough, and where bases that move differently bear it.
 template <class K>
-void WallStep<K>::setOff(RigidSystem<K>& s, const Chosen& move)
+typename WallStep<K>::Bodies WallStep<K>::carriedBy(const RigidSystem<K>& s, const wall::LaneBits& lanes, bool whole) const
+{
+	const Contacts& contacts = sets[stillSet];
+	Bodies move(s.bodies.size(), 0);
+	if (std::all_of(lanes.begin(), lanes.end(), [](unsigned char bits) { return bits == 0; }))
+		return move;
+	std::vector<int> next;
+	const auto add = [&](int b) {
+		if (contacts.own[b] && !move[b]) {
+			move[b] = 1;
+			next.push_back(b);
+		}
+	};
+	std::vector<std::vector<int>> above(s.bodies.size());
+	const double weight = s.gravity.norm();
+	for (int g = 0; g < int(lanes.size()); ++g)
+		for (int i = 0; i < wall::width && contacts.features[g].pair[i] >= 0; ++i) {
+			const wall::Group<K>& group = contacts.groups[g];
+			double up = 0; // component of the normal
+			bool loaded = false;
+			for (int k = 0; k < group.count; ++k) {
+				if (!contacts.features[g].point[k].present[i] || loaded)
+					continue;
+				loaded = group.point[k].pn[i] > 0;
+				up = 0;
+				const Vector3 normal = wall::partOf(group.point[k], 0, i, 2, 0);
+				for (int d = 0; d < K::dimension && weight > 0; ++d)
+					up -= normal[d] * s.gravity[d] / weight;
+			}
+			const int low = up > 0 ? group.body1[i] : group.body2[i], high = up > 0 ? group.body2[i] : group.body1[i];
+			const bool isBed = std::abs(up) >= tolerance::uprightJoint;
+			if (loaded && isBed)
+				above[low].push_back(high);
+			if (lanes[g] >> i & 1) {
+				add(high);
+				if (!isBed || !contacts.own[high])
+					add(low);
+			}
+		}
+	while (!next.empty()) {
+		const int b = next.back();
+		next.pop_back();
+		for (const int high : above[b])
+			add(high);
+	}
+	std::vector<int> of(structures.all.size(), 0), moved = of;
+	for (size_t b = 0; b < move.size(); ++b)
+		if (structures.of[b] >= 0) {
+			++of[structures.of[b]];
+			moved[structures.of[b]] += move[b];
+		}
+	const double soon = tolerance::wall::patience * scales.length / scales.speed;
+	const std::vector<int> drives = drivesUnder(s);
+	Chosen all(of.size(), 0);
+	for (size_t k = 0; k < of.size(); ++k)
+		all[k] = moved[k] > 0 &&
+		         (whole || weight == 0 || moved[k] > largestPart * of[k] || structures.all[k].whole < soon || drives[k] <= unknown);
+	const Bodies bodies = bodiesOf(all);
+	for (size_t b = 0; b < move.size(); ++b)
+		move[b] |= bodies[b];
+	return move;
+}
+
+// Of each structure that stands, the drive of its base.
+template <class K>
+std::vector<int> WallStep<K>::drivesUnder(const RigidSystem<K>& s) const
+{
+	const Contacts& contacts = sets[stillSet];
+	std::vector<int> drives(structures.all.size(), unknown);
+	for (const auto& [g, i] : contacts.onBase) {
+		const wall::Group<K>& group = contacts.groups[g];
+		const int its = s.bodies[s.bodies[group.body1[i]].prescribed ? group.body1[i] : group.body2[i]].drive;
+		int& drive = drives[structures.of[contacts.freeBody(g, i)]];
+		drive = drive == unknown || drive == its ? its : several;
+	}
+	return drives;
+}
+
+// Velocities of bodies that begin to move. While they stand, they have the mean velocity of their base over a step, which is late by
+// half of it: now by half a substep (a jump of the base is for the sweeps). And what has gone has what it was kept from. True: others
+// beside them go on standing.
+template <class K>
+bool WallStep<K>::setOff(RigidSystem<K>& s, const Bodies& move)
 {
 	using Vector = typename K::Vector;
 	Contacts& contacts = still();
 	kept.giveHeld(gone);
-	constexpr int none = -1, several = -2;
-	std::vector<int> driveOf(structures.all.size(), none);
-	for (const auto& [g, i] : contacts.onBase) {
-		const int base = s.bodies[contacts.groups[g].body1[i]].prescribed ? contacts.groups[g].body1[i] : contacts.groups[g].body2[i];
-		int& drive = driveOf[structures.of[contacts.freeBody(g, i)]];
-		drive = s.bodies[base].drive >= 0 && (drive == none || drive == s.bodies[base].drive) ? s.bodies[base].drive : several;
-	}
+	const std::vector<int> drives = drivesUnder(s);
 	for (size_t b = 0; b < s.bodies.size(); ++b)
-		if (isStill(int(b)) && move[structures.of[b]]) {
-			const int drive = driveOf[structures.of[b]];
+		if (move[b]) {
+			const int drive = drives[structures.of[b]];
 			auto& body = s.bodies[b];
 			const double before = body.kineticEnergy();
 			body.velocity = contacts.inGlobal(contacts.velocity, b);
@@ -353,12 +492,31 @@ void WallStep<K>::setOff(RigidSystem<K>& s, const Chosen& move)
 			setOffEnergy += work;
 			body.velocity.template head<K::dimension>() += change;
 		}
+	const auto lanes = lanesOf(contacts, move);
+	kept.giveUp(lanes);
+	contacts.startMeans(lanes);
+	report.switched |= started;
+	const bool othersStand = structures.setOff(s, move);
+	if (othersStand) { // the factors are of what they have been parted from, too
+		kept.outdate(contacts);
+		quick.outdate(contacts);
+	}
+	return othersStand;
 }
 
 template <class K>
 void WallStep<K>::stepMoving(RigidSystem<K>& s, double h)
 {
 	Contacts& contacts = moving();
+	measure(s, contacts);
+	carried.clear();
+	if (!contacts.onStill.empty()) {
+		const std::vector<int> drives = drivesUnder(s);
+		for (size_t b = 0; b < s.bodies.size(); ++b)
+			if (contacts.supports[b] && drives[structures.of[b]] >= 0)
+				carried.push_back({int(b), drives[structures.of[b]]});
+	}
+	contacts.pressed.assign(contacts.onStill.empty() ? 0 : s.bodies.size(), K::Velocity::Zero());
 	const int count = substepCount();
 	const double part = h / count, fall = scales.stepSpeed(part), start = s.time;
 	lean(s, contacts, h);
@@ -372,6 +530,7 @@ void WallStep<K>::stepMoving(RigidSystem<K>& s, double h)
 		report.events += land(s, part);
 		sweeps.substep(contacts, loads, part, k + 1 == count);
 		s.baseWork += baseWork(s, contacts);
+		press();
 		setBase(s, contacts, part);
 		sweeps.handOn(contacts, fall);
 	}
@@ -386,6 +545,28 @@ void WallStep<K>::stepMoving(RigidSystem<K>& s, double h)
 	report.velocityResidual = std::max(report.velocityResidual, sweeps.report.residual);
 	report.forceResidual = std::max(report.forceResidual, sweeps.report.residual);
 	frictionLoss += sweeps.report.loss;
+}
+
+// The impulses of a substep onto the supports.
+template <class K>
+void WallStep<K>::press()
+{
+	Contacts& contacts = moving();
+	for (const auto& [g, i] : contacts.onStill) {
+		const wall::Group<K>& group = contacts.groups[g];
+		const bool first = contacts.supports[group.body1[i]];
+		const int b = (first ? group.body1 : group.body2)[i];
+		wall::LaneArray sum(wall::packs<K> * (b + 1), all(0));
+		for (int k = 0; k < group.count; ++k) {
+			const auto impulse = sweeps.impulse(g, i, k);
+			for (int row = 0; row < K::rows; ++row)
+				for (int pack = 0; pack < wall::packs<K>; ++pack) {
+					const Vector3 part = (first ? -impulse[row] : impulse[row]) * wall::partOf(group.point[k], row, i, first ? 1 : 2, pack);
+					sum[wall::packs<K> * b + pack] += Lanes {part[0], part[1], part[2], 0};
+				}
+		}
+		contacts.pressed[b] += contacts.inGlobal(sum, b);
+	}
 }
 
 // Normals and arms of a step are those of its middle, where the velocities at its start bring the bodies: those of its start would lag by

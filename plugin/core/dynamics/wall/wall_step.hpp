@@ -3,8 +3,10 @@
 //
 // While nothing moves against its neighbour in a structure (structures.hpp), its step is solved for all contacts at once with a
 // factorisation that is kept (kept_factor.hpp: mode `still`); when something does, in substeps (substeps.hpp: mode `moving`). A step that
-// the first cannot solve is taken back and done by the second. Back it goes when every relative velocity has been at rest level for a
-// while; a stay that ends soon doubles that while. Structures in one mode share its solves or sweeps.
+// the first cannot solve is taken back, and what moves goes on by the second: a few blocks on top as a structure of their own, or all. To
+// what moves, what stands below it is a base; what stands bears, in the same step, what it is pressed with. Back to the first goes a
+// structure when every relative velocity in it has been at rest level for a while; a stay that ends soon doubles that while. Structures in
+// one mode share its solves or sweeps.
 //
 // Positions are first order in the step; impacts are met at the end of a substep. Few blocks: rigid_step.hpp.
 #include "dynamics/rigid/scales.hpp"
@@ -69,30 +71,45 @@ public:
 		for (auto& force : forces)
 			f(force);
 		f(stillSet), f(pace);
-		still().pass(f, system, structures.bodies(WallMode::still));
-		moving().pass(f, system, structures.bodies(WallMode::moving));
+		still().pass(f, system, members(system, WallMode::still));
+		moving().pass(f, system, members(system, WallMode::moving));
 		kept.pass(f, sets, system);
 		quick.pass(f, sets, system);
 		joints.pass(f);
 	}
 
 private:
+	struct State { // to which a step of what moves is taken back
+		std::vector<wall::Group<K>> groups;
+		WallReport report;
+		double baseWork, frictionLoss;
+		size_t impacts;
+	};
 	using Contacts = wall::WallContacts<K>;
 	using Chosen = std::vector<char>; // structures, 1 or 0 each
+	using Bodies = std::vector<char>; // the same of bodies
 
 	Contacts& still() { return sets[stillSet]; }
 	Contacts& moving() { return sets[1 - stillSet]; }
 	void advancePart(RigidSystem<K>& system, double h);
+	State state(const RigidSystem<K>& system, const Contacts& contacts) const;
+	void takeBack(const State& state, RigidSystem<K>& system, Contacts& contacts);
 	void arrange(const RigidSystem<K>& system, Contacts& taker, Contacts& giver);
+	wall::Members members(const RigidSystem<K>& system, WallMode mode) const;
 	void measure(RigidSystem<K>& system, Contacts& contacts);
 	Chosen structuresOf(const Contacts& contacts, const wall::LaneBits& lanes) const;
-	wall::LaneBits lanesOf(const Contacts& contacts, const Chosen& structures) const;
+	Bodies bodiesOf(const Chosen& structures) const;
+	wall::LaneBits lanesOf(const Contacts& contacts, const Bodies& bodies) const;
 	double stirred(const RigidSystem<K>& system, double h) const;
-	bool stepStill(RigidSystem<K>& system, double h);
-	Chosen findMoving(double h);
-	Chosen letGo(double h, double share);
-	void setOff(RigidSystem<K>& system, const Chosen& move);
+	Bodies solveStill(RigidSystem<K>& system, double h, bool again);
+	void keepStill(RigidSystem<K>& system, double h);
+	wall::LaneBits findMoving(double h, bool again);
+	void letGo(double h, double share);
+	Bodies carriedBy(const RigidSystem<K>& system, const wall::LaneBits& lanes, bool whole) const;
+	std::vector<int> drivesUnder(const RigidSystem<K>& system) const;
+	bool setOff(RigidSystem<K>& system, const Bodies& move);
 	void stepMoving(RigidSystem<K>& system, double h);
+	void press();
 	void lean(RigidSystem<K>& system, Contacts& contacts, double h);
 	int land(RigidSystem<K>& system, double part);
 	int substepCount() const;
@@ -122,6 +139,7 @@ private:
 	wall::LaneBits gone;                      // pairs of the still set that have been let go in this step and have gone
 	std::vector<typename K::Pose> middle;     // of a step that moves
 	std::vector<int> onDrives;                // prescribed bodies with a drive
+	std::vector<std::array<int, 2>> carried;  // supports of what moves, and the drive that they go with
 	std::vector<double> speeds;               // of the drives, mean of the last part of a step, m/s
 	std::vector<typename K::Velocity> forces; // on the bodies, of the last step, N and N m
 	double pace {0};                          // of the last step: largest relative velocity that moved, of that of slow motion
