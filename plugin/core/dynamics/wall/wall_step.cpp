@@ -291,18 +291,15 @@ typename WallStep<K>::Bodies WallStep<K>::solveStill(RigidSystem<K>& s, double h
 	contacts.setUnit(h);
 	setBase(s, contacts, h);
 	setLoads(s, contacts, h);
-	bool pressed = false;
 	for (size_t b = 0; b < moving().pressed.size(); ++b)
-		if (moving().supports[b]) {
-			pressed = true;
+		if (moving().supports[b])
 			contacts.takeForce(s.bodies[b].force + moving().pressed[b] / h, h, b, loads);
-		}
 	Chosen returned;
 	for (const auto& one : structures.all)
 		returned.push_back(one.stay == 0);
 	if (std::find(returned.begin(), returned.end(), 1) != returned.end())
 		kept.forget(contacts, lanesOf(contacts, bodiesOf(returned)));
-	kept.begin(contacts, loads, h, pressed ? 1 : stirred(s, h));
+	kept.begin(contacts, loads, h, stirred(s, h));
 	kept.iterate(settings.strictForces || !started ? coldSolves : mostSolves, enough, settings.strictForces ? enough : INFINITY);
 	report.solves += kept.report.solves;
 	report.factorisations += kept.report.factorisations;
