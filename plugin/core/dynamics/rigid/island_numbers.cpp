@@ -4,13 +4,7 @@
 namespace masonry::rigid {
 
 template <class K>
-std::vector<int> islandNumbers(const RigidSystem<K>& s)
-{
-	return islandNumbers<K>(s, [](const ContactPair<K>&) { return true; });
-}
-
-template <class K>
-std::vector<int> islandNumbers(const RigidSystem<K>& s, const std::function<bool(const ContactPair<K>&)>& joins)
+std::vector<int> islandNumbers(const RigidSystem<K>& s, const Joins<K>& joins)
 {
 	std::vector<int> parent(s.bodies.size());
 	std::iota(parent.begin(), parent.end(), 0);
@@ -20,7 +14,7 @@ std::vector<int> islandNumbers(const RigidSystem<K>& s, const std::function<bool
 		return body;
 	};
 	for (const ContactPair<K>& pair : s.pairs)
-		if (!s.bodies[pair.body1].prescribed && !s.bodies[pair.body2].prescribed && joins(pair)) {
+		if (!s.bodies[pair.body1].prescribed && !s.bodies[pair.body2].prescribed && (!joins || joins(pair))) {
 			const int a = root(pair.body1), b = root(pair.body2);
 			parent[std::max(a, b)] = std::min(a, b);
 		}
@@ -32,9 +26,7 @@ std::vector<int> islandNumbers(const RigidSystem<K>& s, const std::function<bool
 	return number;
 }
 
-template std::vector<int> islandNumbers(const RigidSystem<Plane>&);
-template std::vector<int> islandNumbers(const RigidSystem<Space>&);
-template std::vector<int> islandNumbers(const RigidSystem<Plane>&, const std::function<bool(const ContactPair<Plane>&)>&);
-template std::vector<int> islandNumbers(const RigidSystem<Space>&, const std::function<bool(const ContactPair<Space>&)>&);
+template std::vector<int> islandNumbers(const RigidSystem<Plane>&, const Joins<Plane>&);
+template std::vector<int> islandNumbers(const RigidSystem<Space>&, const Joins<Space>&);
 
 } // namespace masonry::rigid

@@ -5,11 +5,12 @@
 
 namespace masonry::rigid {
 
-// Of each body, the number of its island, in the order of their first bodies; -1: prescribed.
 template <class K>
-std::vector<int> islandNumbers(const RigidSystem<K>& system);
-// Where only these pairs join.
+using Joins = std::function<bool(const ContactPair<K>&)>;
+
+// Of each body, the number of its island, in the order of their first bodies; -1: prescribed. `joins`: which pairs do, all if there is
+// none.
 template <class K>
-std::vector<int> islandNumbers(const RigidSystem<K>& system, const std::function<bool(const ContactPair<K>&)>& joins);
+std::vector<int> islandNumbers(const RigidSystem<K>& system, const Joins<K>& joins = {});
 
 } // namespace masonry::rigid

@@ -294,13 +294,13 @@ void WallStep<K>::stepMoving(RigidSystem<K>& s, double h)
 	Contacts& contacts = moving();
 	measure(s, contacts);
 	carried.clear();
-	if (!contacts.onStill.empty()) {
-		const std::vector<int> drives = drivesUnder(s);
-		for (size_t b = 0; b < s.bodies.size(); ++b)
-			if (contacts.supports[b] && drives[structures.of[b]] >= 0)
-				carried.push_back({int(b), drives[structures.of[b]]});
-	}
-	contacts.pressed.assign(contacts.onStill.empty() ? 0 : s.bodies.size(), K::Velocity::Zero());
+	const bool presses = !contacts.onStill.empty();
+	contacts.pressed.assign(presses ? s.bodies.size() : 0, K::Velocity::Zero());
+	wall::LaneArray pressed(presses ? contacts.velocity.size() : 0, all(0));
+	const std::vector<int> drives = presses ? drivesUnder(s) : std::vector<int>();
+	for (size_t b = 0; b < contacts.pressed.size(); ++b)
+		if (contacts.supports[b] && drives[structures.of[b]] >= 0)
+			carried.push_back({int(b), drives[structures.of[b]]});
 	const int count = substepCount();
 	const double part = h / count, fall = scales.stepSpeed(part), start = s.time;
 	lean(s, contacts, h);
@@ -314,10 +314,13 @@ void WallStep<K>::stepMoving(RigidSystem<K>& s, double h)
 		report.events += land(s, part);
 		sweeps.substep(contacts, loads, part, k + 1 == count);
 		s.baseWork += baseWork(s, contacts);
-		press();
+		press(pressed);
 		setBase(s, contacts, part);
 		sweeps.handOn(contacts, fall);
 	}
+	for (size_t b = 0; b < contacts.pressed.size(); ++b)
+		if (contacts.supports[b])
+			contacts.pressed[b] += contacts.inGlobal(pressed, b);
 	sweeps.end(contacts);
 	const double deepest = lift.settle(contacts);
 	if (deepest > tolerance::wall::sunk * contacts.length)
@@ -331,25 +334,23 @@ void WallStep<K>::stepMoving(RigidSystem<K>& s, double h)
 	frictionLoss += sweeps.report.loss;
 }
 
-// The impulses of a substep onto the supports.
+// The impulses of a substep onto the supports, added up in the axes of their packs.
 template <class K>
-void WallStep<K>::press()
+void WallStep<K>::press(wall::LaneArray& sum) const
 {
-	Contacts& contacts = moving();
+	const Contacts& contacts = sets[1 - stillSet];
 	for (const auto& [g, i] : contacts.onStill) {
 		const wall::Group<K>& group = contacts.groups[g];
 		const bool first = contacts.supports[group.body1[i]];
-		const int b = (first ? group.body1 : group.body2)[i];
-		wall::LaneArray sum(wall::packs<K> * (b + 1), all(0));
+		Lanes* support = &sum[wall::packs<K> * (first ? group.body1 : group.body2)[i]];
 		for (int k = 0; k < group.count; ++k) {
 			const auto impulse = sweeps.impulse(g, i, k);
 			for (int row = 0; row < K::rows; ++row)
 				for (int pack = 0; pack < wall::packs<K>; ++pack) {
 					const Vector3 part = (first ? -impulse[row] : impulse[row]) * wall::partOf(group.point[k], row, i, first ? 1 : 2, pack);
-					sum[wall::packs<K> * b + pack] += Lanes {part[0], part[1], part[2], 0};
+					support[pack] += Lanes {part[0], part[1], part[2], 0};
 				}
 		}
-		contacts.pressed[b] += contacts.inGlobal(sum, b);
 	}
 }
 

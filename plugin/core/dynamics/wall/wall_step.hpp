@@ -109,7 +109,7 @@ private:
 	std::vector<int> drivesUnder(const RigidSystem<K>& system) const;
 	bool setOff(RigidSystem<K>& system, const Bodies& move);
 	void stepMoving(RigidSystem<K>& system, double h);
-	void press();
+	void press(wall::LaneArray& sum) const;
 	void lean(RigidSystem<K>& system, Contacts& contacts, double h);
 	int land(RigidSystem<K>& system, double part);
 	int substepCount() const;
