@@ -166,7 +166,8 @@ TEST_CASE("structures join and split")
 }
 
 // Two blocks upon each other rock on a wall that stands. To them it is a base: they move as on one, but for what the wall drifts, and what
-// rocking makes of that. What they push it with is borne by its base, which gives them the same work as if they stood on it.
+// rocking makes of that. What they push it with is borne by its base, which gives them the same work as if they stood on it, to what is
+// asked of the work of a wall's base.
 TEMPLATE_TEST_CASE("a pillar rocks on a wall that stands as on its base", "", Plane, Space)
 {
 	SceneOf<TestType> high(0.7, 0.8), low(0.7, 0.8);
