@@ -266,12 +266,12 @@ public:
 	LaneArray shift;                           // how far the bodies have moved in the step; components as of velocities
 	LaneArray pose;                            // plane: (position, cosine, sine). Space: axes and position in three rows, then 1/rho
 	std::vector<typename K::Spin> gyration;    // rho, m
-	std::vector<int> course;                   // of a body: pairs between it and the nearest that is not free here; -1: no way there
-	int depth {0};                             // courses: the highest
+	std::vector<int> course;                   // of a body: pairs between it and the nearest prescribed one; -1: no way there
+	int depth {0};                             // courses upon what is not free here, at most
 	double spread {0};                         // square of the courses, times how slender: as which loads take to spread; the largest
-	double burden {0};                         // largest course of a block times its mass over that of one below it that it touches
-	std::vector<int> upwards;                  // groups in the order of their courses, those of a part from its begin to its end
+	double burden {0};                         // largest number of such courses times the mass of a block over that of one below it
 	double length {0};                         // m, smallest half size
+	std::vector<int> upwards;                  // groups in the order of their courses, those of a part from its begin to its end
 	std::vector<char> own, supports;           // as of Members
 	std::vector<typename K::Velocity> pressed; // on the supports in this step: impulse and moment in global axes, N s and N m s
 	std::vector<typename K::Pose> located;     // poses of all bodies where the points of still steps are
@@ -305,6 +305,7 @@ private:
 	void countPoints(const RigidSystem<K>& system, int group);
 	void findCourses(const RigidSystem<K>& system);
 	void orderUpwards();
+	void countFrom(const std::vector<int>& through, std::vector<int>& count) const;
 	void takeBodies(const RigidSystem<K>& system);
 	void locateAt(RigidSystem<K>& system, std::vector<typename K::Pose>& poses);
 	void placeAt(RigidSystem<K>& system, std::vector<typename K::Pose>& poses);

@@ -142,32 +142,44 @@ void WallContacts<K>::orderUpwards()
 		std::stable_sort(upwards.begin() + part.begin, upwards.begin() + part.end, [&](int a, int b) { return highest[a] < highest[b]; });
 }
 
-// Breadth first from the bodies that are not free here.
+// Breadth first through these pairs: how many are between a body and the nearest one that has 0; -1 stays where there is no way.
 template <class K>
-void WallContacts<K>::findCourses(const RigidSystem<K>& s)
+void WallContacts<K>::countFrom(const std::vector<int>& through, std::vector<int>& count) const
 {
-	course.assign(s.bodies.size(), -1);
-	for (size_t b = 0; b < s.bodies.size(); ++b)
-		if (s.bodies[b].prescribed || supports[b])
-			course[b] = 0;
-	depth = 0;
-	for (bool grew = true; grew; ++depth) {
+	bool grew = true;
+	for (int reached = 0; grew; ++reached) {
 		grew = false;
-		for (const int c : numbers)
+		for (const int c : through)
 			for (const auto& [from, to] : {std::pair(pairs[c][0], pairs[c][1]), std::pair(pairs[c][1], pairs[c][0])})
-				if (course[from] == depth && course[to] < 0) {
-					course[to] = depth + 1;
+				if (count[from] == reached && count[to] < 0) {
+					count[to] = reached + 1;
 					grew = true;
 				}
 	}
-	--depth;
+}
+
+template <class K>
+void WallContacts<K>::findCourses(const RigidSystem<K>& s)
+{
+	std::vector<int> everyPair(pairs.size()), above(s.bodies.size(), -1); // above what is not free here
+	std::iota(everyPair.begin(), everyPair.end(), 0);
+	course.assign(s.bodies.size(), -1);
+	for (size_t b = 0; b < s.bodies.size(); ++b) {
+		if (s.bodies[b].prescribed)
+			course[b] = 0;
+		if (s.bodies[b].prescribed || supports[b])
+			above[b] = 0;
+	}
+	countFrom(everyPair, course);
+	countFrom(numbers, above);
+	depth = std::max(0, *std::max_element(above.begin(), above.end()));
 	const auto joins = [this](const ContactPair<K>& pair) { return own[pair.body1] && own[pair.body2]; };
 	const std::vector<int> structure = islandNumbers<K>(s, joins);
 	std::vector<double> blocks(structure.size(), 0), courses = blocks;
 	for (size_t b = 0; b < structure.size(); ++b)
-		if (structure[b] >= 0 && course[b] > 0) {
+		if (structure[b] >= 0 && above[b] > 0) {
 			++blocks[structure[b]];
-			courses[structure[b]] = std::max<double>(courses[structure[b]], course[b]);
+			courses[structure[b]] = std::max<double>(courses[structure[b]], above[b]);
 		}
 	spread = 0;
 	for (size_t k = 0; k < structure.size(); ++k)
@@ -175,9 +187,9 @@ void WallContacts<K>::findCourses(const RigidSystem<K>& s)
 			spread = std::max(spread, square * std::clamp(square / blocks[k] / slender, 1., mostOfSlender));
 	burden = 0;
 	for (const int c : numbers) {
-		const auto [low, high] = std::minmax({pairs[c][0], pairs[c][1]}, [&](int a, int b) { return course[a] < course[b]; });
-		if (course[low] != course[high] && own[low])
-			burden = std::max(burden, course[high] * s.bodies[high].mass / s.bodies[low].mass);
+		const auto [low, high] = std::minmax({pairs[c][0], pairs[c][1]}, [&](int a, int b) { return above[a] < above[b]; });
+		if (above[low] != above[high] && own[low])
+			burden = std::max(burden, above[high] * s.bodies[high].mass / s.bodies[low].mass);
 	}
 }
 

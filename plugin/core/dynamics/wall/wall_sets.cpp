@@ -58,6 +58,8 @@ bool WallContacts<K>::renumber(const RigidSystem<K>& s)
 			if (slot.group >= 0)
 				features[slot.group].pair[slot.lane] = now;
 	}
+	findCourses(s);
+	orderUpwards();
 	return true;
 }
 

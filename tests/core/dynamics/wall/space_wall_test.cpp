@@ -146,7 +146,7 @@ TEST_CASE("a wall in space that has been shaken comes to rest")
 	OnePeriod motion(amplitude * g, 2, 0);
 	scene.drive(motion);
 	scene.run(2, 1e-3);
-	CHECK(std::abs(scene.shift(scene.system.bodies.size() - 1).x()) > 1e-3);
+	CHECK(scene.drift() > 1e-3);
 	double weight = 0;
 	for (size_t b = 1; b < scene.system.bodies.size(); ++b)
 		weight -= scene.system.bodies[b].force.z();
