@@ -135,12 +135,6 @@ void WallContacts<Plane>::setVelocity(size_t b, const Plane::Velocity& v)
 }
 
 template <>
-Plane::Velocity WallContacts<Plane>::inGlobal(const LaneArray& from, size_t b) const
-{
-	return {from[b][0], from[b][1], from[b][2] / gyration[b][0]};
-}
-
-template <>
 void WallContacts<Plane>::takeForce(const Plane::Velocity& force, double h, size_t b, LaneArray& to) const
 {
 	const double perMass = velocity[b][3];

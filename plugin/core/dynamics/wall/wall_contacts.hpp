@@ -355,4 +355,11 @@ MASONRY_OF(Plane)
 MASONRY_OF(Space)
 #undef MASONRY_OF
 
+// Of every body in every step: here, since what it returns would go through memory else.
+template <>
+inline Plane::Velocity WallContacts<Plane>::inGlobal(const LaneArray& from, size_t b) const
+{
+	return {from[b][0], from[b][1], from[b][2] / gyration[b][0]};
+}
+
 } // namespace masonry::rigid::wall
