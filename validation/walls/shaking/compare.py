@@ -86,7 +86,7 @@ def run(build, quick):
     if quick:
         return rows
     rows += excursions(LARGE)
-    rows += in_turn(lambda: ours(LARGE, 0.3, 5, 5), lambda: ours(LARGE, 1.0, 0, 2), lambda: bullet(LARGE, 1))
+    rows += in_turn(lambda: ours(LARGE, 0.3, 5, 5), lambda: ours(LARGE, 1.0, 0, 5), lambda: bullet(LARGE, 1))
     for restitution in (0.5, 0.9):
         rows += ours(SMALL, 0.3, 2, 2, restitution=restitution) + ours(SMALL, 1.0, 0, 2, restitution=restitution)
         rows += ours(LARGE, 0.3, 1, 1, restitution=restitution) + ours(LARGE, 1.0, 0, 1, restitution=restitution)
