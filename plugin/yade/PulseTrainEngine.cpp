@@ -28,7 +28,7 @@ void PulseTrainEngine::postLoad(PulseTrainEngine&)
 		if (!(std::isfinite(times[i]) && times[i] >= 0)) reject("times", times[i], "a list of finite times >= 0 in s");
 		if (i > 0 && !(times[i] > times[i - 1])) reject("times", times[i], "a list of increasing times");
 	}
-	if (halfCycles < -1) reject("halfCycles", halfCycles, "a number >= 0, or -1 for a train without end");
+	if (halfCycles < -1 || halfCycles == 0) reject("halfCycles", halfCycles, "a number >= 1, or -1 for a train without end");
 	if (!(duration >= 0) || std::isinf(duration)) reject("duration", duration, "a finite time >= 0 in s");
 	unit = { masonry::pulseShapeFromName(shape), duration };
 	past.clear();

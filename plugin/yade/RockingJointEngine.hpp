@@ -32,7 +32,7 @@ public:
 		((vector<Real>, impactAfter, , Attr::readonly, "Relative angular velocity after [rad/s]."))
 		((vector<Real>, impactEnergy, , Attr::readonly, "Kinetic energy lost [J]."))
 		((vector<Real>, impactApplication, , Attr::readonly, "Distance of the resultant impulse from the new pivot, inward positive [m]."))
-		((vector<Real>, impactFriction, , Attr::readonly, "Friction coefficient that the impact asks for; where friction is smaller the pivot has slipped."))
+		((vector<Real>, impactFriction, , Attr::readonly, "Friction coefficient that the impact takes: tangential over normal impulse. Where it is the joint's own, the pivot has slipped, and an impact without slip asks for more."))
 		((vector<int>, impactSwitched, , Attr::readonly, "1: the pivot was handed over; 0: the joint came to rest."))
 		((vector<int>, impactCapped, , Attr::readonly, "1: the restitution was lowered so that the energy does not grow."))
 		((Real, worstResidual, 0, Attr::readonly, "Largest residual of the impulse problems so far [m/s]; of accelerations times the time step."))

@@ -39,6 +39,12 @@ template <> struct Coordinates<Plane> {
 	explicit Coordinates(const Vector3r& horizontal) : along(horizontal), up(Vector3r::UnitZ()), normal(horizontal.cross(up)) { }
 
 	masonry::Vector2 in(const Vector3r& v) const { return { along.dot(v), up.dot(v) }; }
+	/// Throws LeavesPlane.
+	masonry::Vector2 gravity(const Vector3r& g) const
+	{
+		if (std::abs(normal.dot(g)) > outOfPlane * g.norm()) throw LeavesPlane("gravity points out of the plane");
+		return in(g);
+	}
 	Vector3r out(const masonry::Vector2& v) const { return v.x() * along + v.y() * up; }
 	Plane::Velocity load(const Vector3r& force, const Vector3r& torque, int id) const
 	{
@@ -59,6 +65,7 @@ template <> struct Coordinates<Space> {
 	explicit Coordinates(const Vector3r&) { }
 
 	const Vector3r& in(const Vector3r& v) const { return v; }
+	const Vector3r& gravity(const Vector3r& g) const { return g; }
 	const Vector3r& out(const Vector3r& v) const { return v; }
 	Space::Velocity load(const Vector3r& force, const Vector3r& torque, int) const
 	{

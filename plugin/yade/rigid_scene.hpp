@@ -126,7 +126,7 @@ public:
 	{
 		try {
 			if (mayHaveChanged()) {
-				system.gravity = coordinates.in(integrator.gravity);
+				system.gravity = coordinates.gravity(integrator.gravity);
 				readLoads();
 			}
 			readStates();
@@ -319,6 +319,7 @@ private:
 			const State& state = *link.state;
 			fetch(b + 6);
 			if (link.written.isOf(state) || block.drive >= 0) continue;
+			if (block.prescribed && scene.time > 0 && state.vel == Vector3r::Zero() && (state.pos - link.written.pos).norm() > 0) warnOfPlace(b);
 			kept.seats[b].read(coordinates, state, link.properties.extents.minCoeff(), kept.ids[b], block);
 			block.increment.setZero();
 			link.written = { state.pos, state.vel, state.angVel, state.ori };
@@ -331,6 +332,14 @@ private:
 			if (pair.size < 0) meet(pair);
 		system.moved = true;
 		system.startAnew();
+	}
+
+	void warnOfPlace(size_t b)
+	{
+		if (warnedOfPlace) return;
+		warnedOfPlace = true;
+		LOG_WARN("a script has moved body " << kept.ids[b] << " by its state.pos at t = " << scene.time
+			<< " s, with state.vel = 0: blocks on it do not feel that it moves. Set state.vel, by which it goes on, or give it a RecordMotionEngine.");
 	}
 
 	/// The points of a pair that nothing is known of: in touch where they are, and do not approach each other.
@@ -433,8 +442,9 @@ private:
 		integrator.impactCapped.push_back(impact.capped);
 	}
 
-	/// Overlap, relative to the smallest half size, that is no rounding of coordinates but a mistake.
-	static constexpr Real mostOverlap = 1e-6;
+	/// Overlap, relative to the smallest half size, that is no rounding of coordinates and nothing that a wall has left (some 1e-5), but a mistake.
+	/// Larger: blocks are lifted by as much, with energy of nothing.
+	static constexpr Real mostOverlap = 1e-4;
 	/// Margin of the list of pairs, relative to the smallest half size. Larger: more pairs; smaller: the list is made anew more often.
 	static constexpr Real searchMargin = 0.1;
 	/// Courses of a wall above which a warning tells that it may go too far, or not far enough, as it moves (validation/walls/shaking).
@@ -448,7 +458,7 @@ private:
 	System system;
 	masonry::rigid::Islands<K> islands;
 	masonry::rigid::WallStep<K> wall;
-	bool byWalls = false, lawsChanged = false, warnedOfCourses = false;
+	bool byWalls = false, lawsChanged = false, warnedOfCourses = false, warnedOfPlace = false;
 	int unshown = 1; // steps since the interactions were written
 	std::unique_ptr<masonry::rigid::Neighbours<K>> neighbours;
 	vector<MotionDrive> drives;

@@ -59,6 +59,12 @@ def test_csv(tmp_path):
     np.testing.assert_allclose(masonry.Record.from_csv(path, "g", dt=0.01).samples, 9.80665 * np.array([1, -2, 3]))
     with pytest.raises(ValueError, match="dt = None"):
         masonry.Record.from_csv(path, "g")
+    path.write_text("0,1\n0.02,-2\n", encoding="utf-8-sig")  # as spreadsheets write it
+    np.testing.assert_allclose(masonry.Record.from_csv(path, "m/s^2").samples, [1, -2])
+    for text in ("0,1\n0.02\n", "0;1\n0.02;2\n0.04;3\n", "time,a\ns,g\n0,1\n"):
+        path.write_text(text)
+        with pytest.raises(ValueError, match="record.csv: .*must be as many numbers"):
+            masonry.Record.from_csv(path, "m/s^2")
     with pytest.raises(ValueError, match="unit = 'gal'"):
         masonry.Record.from_csv(path, "gal", dt=0.01)
 

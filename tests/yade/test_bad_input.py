@@ -79,7 +79,7 @@ for make, words in ((lambda: dem.WallRecorder(), ("WallRecorder.iterPeriod = 0",
 # Motions.
 base, block, _ = one_block(5)
 for name, bad, why in (("impulse", inf, "finite"), ("times", [0, 2, 1], "increasing"), ("times", [1, 1], "increasing"), ("times", [-1, 1], ">= 0"),
-                       ("times", [0, nan], "finite"), ("halfCycles", -2, ">= 0"), ("duration", -1, ">= 0"), ("duration", nan, ">= 0"), ("shape", "square", "square")):
+                       ("times", [0, nan], "finite"), ("halfCycles", -2, ">= 1"), ("halfCycles", 0, ">= 1"), ("duration", -1, ">= 0"), ("duration", nan, ">= 0"), ("shape", "square", "square")):
     refuses(lambda: dem.PulseTrainEngine(**{name: bad}), name, why)
 for bad in (77, -1):
     refuses(lambda: quiet_engines(dem.PulseTrainEngine(ids=[bad], impulse=0.1, times=[0])), "ids", str(bad), "no such body")

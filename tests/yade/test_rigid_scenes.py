@@ -51,6 +51,12 @@ base = ground()
 for y in (-1, 1):
     dem.block((0.6, 1, 1.5), O.bodies[base].mat, center=(0, y, 0.75))
 assert choice() == "planar" and integrator().along == Vector3(0, 1, 0)  # side by side, seen from the side
+for friction, told in ((0.61, True), (1.22, False)):  # 5 (1 - 0.3)/(1 + 0.3) = 2.69 = tan(1.215)
+    base = ground(restitution=0.3, noSlip=False, frictionAngle=friction)
+    block = dem.block((0.6, 1, 3), O.bodies[base].mat, on=base)
+    with contextlib.redirect_stdout(io.StringIO()) as said:
+        dem.engines()
+    assert (f"block {block}" in said.getvalue() and "2.7" in said.getvalue()) == told, said.getvalue()
 base, block, _ = one_block(5)
 assert choice(motion=dem.RecordMotionEngine(ids=[base], samples=[0, 1], direction=(0, 1, 0))) == "planar"  # the other way round
 assert integrator().along == Vector3(0, 1, 0)

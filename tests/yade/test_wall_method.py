@@ -230,3 +230,56 @@ for _ in range(600):
 rise = -min(np.diff(lost))
 print(f"largest rise of energy in a step {rise:.1e} J, of {lost[-1]:.0f} J lost; balance {balance.error():.1e} J")
 assert rise < 1e-3 * lost[-1] and abs(balance.error()) < 1e-4 * abs(dem.energy()["baseWork"])
+
+# --- what a wall has left, another run takes: a base that a script drives, new engines of either method, a saved table ---
+O.reset()
+base = dem.base((6, 4, 0.2), dem.BlockMat(density=2000, frictionAngle=0.6))
+ids = dem.wall(6, 4, (0.4, 0.2, 0.175), O.bodies[base].mat, on=base)
+O.engines = rigid_engines()
+O.run(100, True)
+for speed in (0.05, 0):
+    O.bodies[base].state.vel = (speed, 0, 0)
+    O.run(100, True)
+assert integrator().movingSteps > 0 and integrator().failures == 0
+with tempfile.TemporaryDirectory() as folder:
+    dem.save_blocks(f"{folder}/wall.csv")
+    for method in ("wall", "localised", "table"):
+        if method == "table":
+            O.reset()
+            base = dem.base((6, 4, 0.2), dem.BlockMat(density=2000, frictionAngle=0.6))
+            ids = dem.blocks_from_table(f"{folder}/wall.csv", O.bodies[base].mat)
+        places = [O.bodies[id].state.pos for id in ids]
+        O.engines = rigid_engines(method="wall" if method == "table" else method)
+        O.run(50, True)
+        moved = max((O.bodies[id].state.pos - place).norm() for id, place in zip(ids, places))
+        print(f"wall that was moved, then '{method}': its blocks move by {moved:.1e} m")
+        assert moved < 1e-4 * 0.175  # what an overlap may be
+
+# --- a base whose place a script changes: a warning, since blocks do not feel it ---
+wall(2, 2, 0, method="wall")
+O.engines = rigid_engines(method="wall")
+
+
+def push():
+    for _ in range(3):
+        O.bodies[0].state.pos += Vector3(1e-4, 0, 0)
+        O.step()
+
+
+text = printed(push)
+assert text.count("state.pos") == 1 and "state.vel" in text, text
+
+# --- gravity that a script turns out of the plane: on in space, where it topples what it must ---
+for method in ("localised", "wall"):
+    O.reset()
+    base = dem.base((4, 4, 0.2), dem.BlockMat(density=2000, frictionAngle=0.6))
+    block = dem.block((0.3, 0.3, 1.5), O.bodies[base].mat, on=base)
+    O.engines = rigid_engines(method=method)
+    O.run(20, True)
+    assert integrator().chosenModel == "planar"
+    integrator().gravity = (0, 0.5 * 9.81, -9.81)
+    text = printed(lambda: O.run(600, True))
+    # Rigid: 3/(4 R^2) (a 0.5 g - b g) at first, 3 rad/s^2.
+    least = 0.5 * 3 / (4 * (0.15**2 + 0.75**2)) * (0.75 * 0.5 - 0.15) * 9.81 * (600 * O.dt) ** 2
+    assert integrator().chosenModel == "spatial" and "gravity points out of the plane" in text, text
+    assert -dem.angle(block, "x") > 0.9 * least or dem.overturned(), (dem.angle(block, "x"), least)

@@ -26,16 +26,27 @@ def read_at2(path):
     return header[1], float(counted[2]), samples
 
 
+def _is_number(text):
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
+
+
 def read_csv(path, unit, dt=None, gravity=9.80665):
     """(dt, samples in m/s^2) of a text file with comma or blank separated columns; lines starting with # and a first line of
     words are skipped. Two columns are time and acceleration, equally spaced; one column needs dt."""
     factors = {"m/s^2": 1.0, "cm/s^2": 1e-2, "mm/s^2": 1e-3, "g": gravity}
     if unit not in factors:
         raise ValueError(f"unit = {unit!r}: must be one of {', '.join(factors)}")
-    with open(path, encoding="utf-8") as file:
+    with open(path, encoding="utf-8-sig") as file:
         lines = [line.replace(",", " ").split() for line in file if line.strip() and not line.startswith("#")]
-    if lines and not _NUMBER.fullmatch(lines[0][0]):
+    if lines and not _is_number(lines[0][0]):
         lines = lines[1:]
+    for line in lines:
+        if not all(map(_is_number, line)) or len(line) != len(lines[0]):
+            raise ValueError(f"{path}: {' '.join(line)!r}: must be as many numbers as in the other lines, parted by commas or blanks")
     table = np.array(lines, dtype=float)
     if table.ndim != 2 or table.shape[1] not in (1, 2) or len(table) < 2:
         raise ValueError(f"{path}: table of shape {table.shape}: must have one or two columns and at least two rows")

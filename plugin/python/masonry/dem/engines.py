@@ -22,6 +22,8 @@ _PENETRATION = 1e-5
 _LEAST_PENETRATION = 1e-10
 # m/s^2: whatever the units of length and time, and far from overflow.
 _GRAVITIES = 1e-6, 1e6
+# Overlap of rigid blocks relative to their smallest size: what MoreauJeanIntegrator accepts, relative to half of it.
+_MOST_OVERLAP = 5e-5
 # Longest free block that is no slip of units (mm for m), m.
 _LONGEST = 50
 # Share of the critical time step: peaks of a rocking block at the default penetration change by 1 % of their error below it.
@@ -82,6 +84,21 @@ def _records(motions):
     return said
 
 
+def _pivots_that_slip():
+    """A sentence for blocks whose landings slip: without slip an impact that obeys C asks for a friction of slenderness (1 - C)/(1 + C)."""
+    most = 0, None
+    for body in _blocks():
+        material, half = body.mat, body.shape.extents
+        if body.dynamic and not material.noSlip and not np.isnan(material.restitution):
+            asked = half[2] / min(half[0], half[1]) * (1 - material.restitution) / (1 + material.restitution)
+            if asked > np.tan(material.frictionAngle):
+                most = max(most, (asked, body), key=lambda found: found[0])
+    asked, body = most
+    return "" if body is None else (
+        f"masonry.dem: where block {body.id} rocks about its narrow side it asks for a friction coefficient of {asked:.2g} to land with restitution "
+        f"{body.mat.restitution:g} and has {np.tan(body.mat.frictionAngle):.2g}: pivots slip, and what slips rocks on farther (noSlip=True: it does not slip)")
+
+
 def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None, impact_order=None, gravity=9.81, recorder=None, others=(), method="auto"):
     """The list for O.engines; sets O.dt and prints the choice and its reason, the blocks that stand on nothing, length and peak of records.
 
@@ -136,6 +153,9 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
     floating = check_blocks(floating=False)
     if floating and gravity > 0:
         print(f"masonry.dem: no chain of supports joins these blocks to a prescribed body, they will fall: {listed(floating)}")
+    slips = _pivots_that_slip()
+    if slips:
+        print(slips)
     longest = max(2 * max(b.shape.extents) for b in _blocks() if b.dynamic)
     if longest > _LONGEST:
         print(f"masonry.dem: the longest block measures {longest:g} m: sizes are in m")
@@ -158,6 +178,7 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
         return _compliant(motions, reason, dt, penetration or _PENETRATION, impact_order or "simultaneous", gravity, recorders)
     if penetration is not None:
         raise ValueError(f"penetration = {penetration}: must be left out with model={model!r}, it is for compliant joints")
+    check_blocks(_MOST_OVERLAP, floating=False)
     return _rigid(motions, model, method, dt, tolerance, impact_order, gravity, recorders, list(others))
 
 
@@ -228,7 +249,7 @@ _IMPACT_FIELDS = [("time", float), ("body", int), ("support", int), ("restitutio
 def impacts():
     """The rocking impacts so far, a structured array: time (s), body, support, restitution_asked (NaN: natural), restitution
     (realised), velocity (relative angular velocity before, rad/s), energy_lost (J), friction_demand (the friction coefficient that it
-    asks for), application (distance of the resultant from the new pivot, m), switched (False: the joint came to rest), capped (the
+    takes; where that is the joint's own, the pivot has slipped and more was asked for), application (distance of the resultant from the new pivot, m), switched (False: the impact stopped the rotation; a pivot that has slipped may set it off again), capped (the
     restitution was lowered so that no energy appears)."""
     e = _joint_engine()
     table = np.zeros(len(e.impactTimes), dtype=_IMPACT_FIELDS)
