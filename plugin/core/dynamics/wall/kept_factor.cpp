@@ -152,6 +152,19 @@ MASONRY_INLINE void addSlip(Group<K>* groups, StillGroup<K>* still, const Rows<K
 		}
 }
 
+MASONRY_LANES void addTo(const std::vector<int>& members, const Lanes* change, Lanes* velocity)
+{
+	constexpr Lanes noMass {1, 1, 1, 0};
+	for (const int b : members)
+		velocity[b] += noMass * change[b];
+}
+// M (V_free - V)
+MASONRY_LANES void inertia(const std::vector<int>& members, const Lanes* velocity, const Lanes* free, Lanes* force)
+{
+	for (const int b : members)
+		force[b] = velocity[b][3] > 0 ? (free[b] - velocity[b]) / all(velocity[b][3]) : all(0);
+}
+
 // No template is compiled for several vector widths.
 #define MASONRY_PASSES(K)                                                                                                                  \
 	MASONRY_LANES bool startPass(Group<K>* groups, StillGroup<K>* still, Rows<K>* rows, Befores<K>* before, int begin, int end,            \
@@ -191,13 +204,6 @@ bool KeptFactor<K>::takeSoftness()
 }
 
 // M (V_free - V)
-template <class K>
-void KeptFactor<K>::inertia(const Part& part)
-{
-	for (const int b : part.members)
-		force[b] = velocity[b][3] > 0 ? (free[b] - velocity[b]) / all(velocity[b][3]) : all(0);
-}
-
 // The seam goes first where a loop is over bodies, since parts add to those of the seam, and last where it is over contacts.
 template <class K>
 void KeptFactor<K>::begin(WallContacts<K>& c, const LaneArray& load, double step, double stirred)
@@ -220,7 +226,7 @@ void KeptFactor<K>::begin(WallContacts<K>& c, const LaneArray& load, double step
 	const auto startBodies = [&](const Part& part) {
 		for (const int b : part.members)
 			free[b] = velocity[b] + load[b];
-		inertia(part);
+		inertia(part.members, velocity.data(), free.data(), force.data());
 	};
 	const auto startPoints = [&](const Part& part, int number) {
 		different[number] = startPass(c.groups.data(), c.still.data(), rows.data(), before.data(), part.begin, part.end, same,
@@ -278,14 +284,12 @@ template <class K>
 void KeptFactor<K>::iterate(int most, double velocityResidual, double forceResidual)
 {
 	auto& c = *contacts;
-	const Lanes noMass {1, 1, 1, 0};
 	for (int k = 0; k < most; ++k) {
 		factor.solve(force.data(), places);
 		Largest worst[Team::mostParts + 1] {};
 		const auto move = [&](const Part& part) {
-			for (const int b : part.members)
-				velocity[b] += noMass * force[b];
-			inertia(part);
+			addTo(part.members, force.data(), velocity.data());
+			inertia(part.members, velocity.data(), free.data(), force.data());
 		};
 		const auto laws = [&](const Part& part, int number) {
 			lawPass(c.groups.data(), c.still.data(), rows.data(), part.begin, part.end, backPerSecond, velocity.data(), force.data(),

@@ -138,7 +138,6 @@ private:
 	using Touches = std::vector<std::array<Mask, lanePoints<K>>>; // which points touch, by group
 
 	bool takeSoftness();
-	void inertia(const Part& part);
 	void factorise();
 	void refactorise(RigidSystem<K>& system, const Touches& touches);
 	template <class Mark>

@@ -94,6 +94,8 @@ wall::LaneBits WallStep<K>::findMoving(double h, bool again)
 template <class K>
 void WallStep<K>::letGo(double h, double share)
 {
+	if (std::none_of(structures.all.begin(), structures.all.end(), [=](const auto& one) { return one.mayHold == share; }))
+		return;
 	Contacts& contacts = still();
 	const double held = share * scales.stepSpeed(h), free = tolerance::wall::free * scales.stepSpeed(h);
 	Chosen asked = structuresOf(contacts, kept.held(held)), go;
