@@ -128,7 +128,7 @@ TEST_CASE("a block rocks as with localised impacts")
 
 // After its landing a block has C^2 of the energy at the first peak. So has a column without a law: plastic landings leave it one block, of
 // which C is 1 - 1.5 sin^2(critical angle). Errors are first order in the substep. Bounds: half as much again as measured of a block (0.035
-// and 0.36; 0.07 %), which is that of columns of 12 and 24 too (0.08 and 0.11 %; a quarter of the step 0.04 %: errors change their signs
+// and 0.36; 0.07 %), which is that of columns of 12 and 24 too (0.06 and 0.08 %; a quarter of the step 0.07 %: errors change their signs
 // there); a sixth more than that of 48 (1.9 %; with sweeps as the courses alone ask 5 %). An impact that is handed on to the next substep
 // keeps upper blocks from landing with those below, 2.4 % for twelve blocks; with one sweep before and after the move the three are 1.4,
 // 2.2 and 9.2 %.
