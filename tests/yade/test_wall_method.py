@@ -255,6 +255,19 @@ with tempfile.TemporaryDirectory() as folder:
         print(f"wall that was moved, then '{method}': its blocks move by {moved:.1e} m")
         assert moved < 1e-4 * 0.175  # what an overlap may be
 
+# --- the deepest overlap that is accepted: blocks keep it at rest, and nothing comes of it ---
+overlap = 0.95e-4 * 0.25  # of the smallest half size
+for model in ("planar", "spatial"):
+    for method in ("localised", "wall"):
+        O.reset()
+        base = dem.base((6, 4, 1), dem.BlockMat(density=2000, frictionAngle=0.6))
+        ids = [dem.block((0.6, 0.6, 0.5), O.bodies[base].mat, center=(0, 0, 0.25 + 0.5 * k - (k + 1) * overlap)) for k in range(5)]
+        places = [O.bodies[id].state.pos for id in ids]
+        O.engines = rigid_engines(model=model, method=method)
+        O.run(300, True)
+        moved = max((O.bodies[id].state.pos - place).norm() for id, place in zip(ids, places))
+        assert moved < 1e-3 * overlap and integrator().failures == 0, (model, method, moved)
+
 # --- a base whose place a script changes: a warning, since blocks do not feel it ---
 wall(2, 2, 0, method="wall")
 O.engines = rigid_engines(method="wall")

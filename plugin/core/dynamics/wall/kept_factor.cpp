@@ -203,7 +203,6 @@ bool KeptFactor<K>::takeSoftness()
 	return softness != before;
 }
 
-// M (V_free - V)
 // The seam goes first where a loop is over bodies, since parts add to those of the seam, and last where it is over contacts.
 template <class K>
 void KeptFactor<K>::begin(WallContacts<K>& c, const LaneArray& load, double step, double stirred)

@@ -85,22 +85,25 @@ def _records(motions):
 
 
 def _pivots_that_slip():
-    """A sentence for blocks whose landings slip: without slip an impact that obeys C asks for a friction of slenderness (1 - C)/(1 + C)."""
-    most = 0, None
+    """A sentence on the block whose landings slip most: without slip, one that obeys C asks for a friction of slenderness (1 - C)/(1 + C)."""
+    slip = []
     for body in _blocks():
         material, half = body.mat, body.shape.extents
         if body.dynamic and not material.noSlip and not np.isnan(material.restitution):
             asked = half[2] / min(half[0], half[1]) * (1 - material.restitution) / (1 + material.restitution)
             if asked > np.tan(material.frictionAngle):
-                most = max(most, (asked, body), key=lambda found: found[0])
-    asked, body = most
-    return "" if body is None else (
-        f"masonry.dem: where block {body.id} rocks about its narrow side it asks for a friction coefficient of {asked:.2g} to land with restitution "
-        f"{body.mat.restitution:g} and has {np.tan(body.mat.frictionAngle):.2g}: pivots slip, and what slips rocks on farther (noSlip=True: it does not slip)")
+                slip.append((asked, body.id))
+    if not slip:
+        return None
+    asked, id = max(slip)
+    body = O.bodies[id]
+    return (f"masonry.dem: where block {body.id} rocks about its narrow side it asks for a friction coefficient of {asked:.2g} to land with restitution "
+            f"{body.mat.restitution:g} and has {np.tan(body.mat.frictionAngle):.2g}: pivots slip, and what slips rocks on farther (noSlip=True: it does not slip)")
 
 
 def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None, impact_order=None, gravity=9.81, recorder=None, others=(), method="auto"):
-    """The list for O.engines; sets O.dt and prints the choice and its reason, the blocks that stand on nothing, length and peak of records.
+    """The list for O.engines; sets O.dt and prints the choice and its reason, the blocks that stand on nothing or whose
+    landings slip, length and peak of records.
 
     motion        a motion engine (PulseTrainEngine, RecordMotionEngine), a list of them, or None
     model         'planar' or 'spatial': rigid blocks in a plane or in space (MoreauJeanIntegrator). 'compliant': joints with

@@ -277,7 +277,7 @@ TEMPLATE_TEST_CASE("loose blocks on a wall lose energy", "", Plane, Space)
 
 // The overhang breaks off and falls while the rest stands. It falls as where all blocks must move in one mode, and what it loses does not
 // come back, but for the thousandth that is asked of a moving wall: lifted by courses that are counted from what stands beside it, it gets
-// back twice as much, one of 20 courses six times what it loses. Bound of the fall: that of motions of walls against finer ones, root of
+// back 1.7e-3, one of 20 courses six times what it loses. Bound of the fall: that of motions of walls against finer ones, root of
 // the mean square.
 TEST_CASE("an overhang falls off a wall that stands as off one that moves")
 {
