@@ -1,7 +1,7 @@
 #pragma once
-// Numbers side by side: four doubles (Lanes), or eight floats (Floats) in sweeps and solves, whose errors the next correct. Each
-// lane is computed as a scalar would be, so that the bits do not depend on the vector width that the processor has; functions marked
-// MASONRY_LANES are compiled for several and the widest is picked when the program starts.
+// Numbers side by side: four doubles (Lanes), or floats, whose errors the next sweep or solve corrects: eight (Floats), or sixteen
+// (wide.hpp). Each lane is computed as a scalar would be, so that the bits do not depend on the vector width that the processor has;
+// functions marked MASONRY_LANES are compiled for several and the widest is picked when the program starts.
 
 #include <cstddef>
 #include <cstring>
@@ -29,9 +29,11 @@ using Floats = float __attribute__((vector_size(32)));
 using FloatMask = int __attribute__((vector_size(32)));
 
 template <class L>
-constexpr int widthOf = sizeof(L) / sizeof(L {}[0]);
+using NumberOf = std::conditional_t<std::is_same_v<L, Lanes>, double, float>;
 template <class L>
-using MaskOf = std::conditional_t<std::is_same_v<L, Lanes>, Mask, FloatMask>;
+constexpr int widthOf = sizeof(L) / sizeof(NumberOf<L>);
+template <class L>
+using MaskOf = decltype(L {} < L {});
 
 // Four numbers of one body: three components and 1/m.
 using FloatPack = float __attribute__((vector_size(16)));
@@ -52,10 +54,13 @@ struct AlignedAllocator {
 	AlignedAllocator(const AlignedAllocator<U>&)
 	{
 	}
-	T* allocate(std::size_t n) { return static_cast<T*>(::operator new(n * sizeof(T), std::align_val_t(alignment))); }
-	void deallocate(T* p, std::size_t) { ::operator delete(p, std::align_val_t(alignment)); }
+	T* allocate(std::size_t n) { return static_cast<T*>(::operator new(n * sizeof(T), of)); }
+	void deallocate(T* p, std::size_t) { ::operator delete(p, of); }
 	bool operator==(const AlignedAllocator&) const { return true; }
 	bool operator!=(const AlignedAllocator&) const { return false; }
+
+private:
+	static constexpr std::align_val_t of {alignof(T) > alignment ? alignof(T) : alignment};
 };
 
 template <class T>
@@ -65,30 +70,34 @@ using LaneArray = Array<Lanes>;
 template <class L = Lanes>
 MASONRY_INLINE L all(double value)
 {
-	return decltype(L {}[0])(value) - L {};
+	return NumberOf<L>(value) - L {};
+}
+// Lane by lane; for what is made of several vectors beside it.
+template <class M, class L>
+MASONRY_INLINE std::enable_if_t<!std::is_class_v<L>, L> select(const M& mask, const L& a, const L& b)
+{
+	return mask ? a : b;
 }
 template <class L>
 MASONRY_INLINE L larger(const L& a, const L& b)
 {
-	return a > b ? a : b;
+	return select(a > b, a, b);
 }
 template <class L>
 MASONRY_INLINE L smaller(const L& a, const L& b)
 {
-	return a < b ? a : b;
+	return select(a < b, a, b);
 }
 template <class L>
 MASONRY_INLINE L size(const L& a)
 {
-	return a < 0 ? -a : a;
+	return select(a < 0, -a, a);
 }
 template <class L>
 MASONRY_INLINE L length(const L& a)
 {
 	return size(a);
 }
-MASONRY_INLINE Lanes select(const Mask& mask, const Lanes& a, const Lanes& b) { return mask ? a : b; }
-MASONRY_INLINE Floats select(const FloatMask& mask, const Floats& a, const Floats& b) { return mask ? a : b; }
 // A bit for each lane.
 constexpr unsigned char allLanes = 15, allFloats = 255;
 MASONRY_INLINE unsigned char bitsOf(const Mask& mask)

@@ -5,7 +5,7 @@
 //     u_n = n.(v2 - v1) + a2n W2 - a1n W1        a_n = (r x n)/rho,  a_t = (r x t)/rho = (r.n)/rho
 //     u_t = t.(v2 - v1) + a2t W2 - a1t W1
 #include "dynamics/rigid/kinematics.hpp"
-#include "dynamics/wall/lanes.hpp"
+#include "dynamics/wall/wide.hpp"
 #include <array>
 
 namespace masonry::rigid::wall {
@@ -16,7 +16,7 @@ template <class K, class L = Lanes>
 struct PointLanes;
 template <class K>
 struct FeatureLanes;
-template <class K>
+template <class K, class L>
 struct Coupling;
 
 // Velocities of bodies: packs of `from` in, one lane a body out.
@@ -31,6 +31,7 @@ struct alignas(alignment) Bodies<Plane, L> {
 
 template <class L>
 struct alignas(alignment) PointLanes<Plane, L> {
+	using Number = L;
 	using Tangent = L;
 	L nx, ny, a1n, a1t, a2n, a2t;
 	L gap;          // m; far away in lanes without a point
@@ -52,16 +53,16 @@ struct alignas(alignment) FeatureLanes<Plane> {
 
 // What the sweeps of a step know of a group. Of the two points of a pair, J M^-1 J^T beside its diagonal, 1/kg: what an impulse along one
 // row adds to the velocity along another.
-template <>
-struct alignas(alignment) Coupling<Plane> {
-	Floats n1t1, n2t2, n1n2, t1t2, n1t2, t1n2;
-	Floats inverse11, inverse12, inverse22; // of the block of both normals, kg
-	unsigned char free1, free2;             // a bit for each body that is not prescribed
+template <class L>
+struct alignas(alignment) Coupling<Plane, L> {
+	L n1t1, n2t2, n1n2, t1t2, n1t2, t1n2;
+	L inverse11, inverse12, inverse22; // of the block of both normals, kg
+	unsigned free1, free2;             // a bit for each body that is not prescribed
 
-	MASONRY_INLINE void set(const PointLanes<Plane, Floats>* point, const Floats& m1, const Floats& m2)
+	MASONRY_INLINE void set(const PointLanes<Plane, L>* point, const L& m1, const L& m2)
 	{
-		const PointLanes<Plane, Floats>&p = point[0], &q = point[1];
-		const Floats m = m1 + m2, cosine = m * (p.nx * q.nx + p.ny * q.ny), sine = m * (p.nx * q.ny - p.ny * q.nx);
+		const PointLanes<Plane, L>&p = point[0], &q = point[1];
+		const L m = m1 + m2, cosine = m * (p.nx * q.nx + p.ny * q.ny), sine = m * (p.nx * q.ny - p.ny * q.nx);
 		n1t1 = m1 * p.a1n * p.a1t + m2 * p.a2n * p.a2t;
 		n2t2 = m1 * q.a1n * q.a1t + m2 * q.a2n * q.a2t;
 		n1n2 = cosine + m1 * p.a1n * q.a1n + m2 * p.a2n * q.a2n;
@@ -70,12 +71,12 @@ struct alignas(alignment) Coupling<Plane> {
 		t1n2 = m1 * p.a1t * q.a1n + m2 * p.a2t * q.a2n + sine;
 		// Points that nearly coincide share what one of them needs: of the inverse, rounding would make impulses across an open gap.
 		constexpr double least = 1e-4;
-		const Floats one = all<Floats>(1), cross = n1n2 * p.massN * q.massN, apart = one - n1n2 * cross;
-		const FloatMask coincide = apart < all<Floats>(least);
-		const Floats scale = coincide ? all<Floats>(0.5) : one / apart;
+		const L one = all<L>(1), cross = n1n2 * p.massN * q.massN, apart = one - n1n2 * cross;
+		const MaskOf<L> coincide = apart < all<L>(least);
+		const L scale = select(coincide, all<L>(0.5), one / apart);
 		inverse11 = scale * p.massN;
 		inverse22 = scale * q.massN;
-		inverse12 = coincide ? all<Floats>(0) : -scale * cross;
+		inverse12 = select(coincide, all<L>(0), -scale * cross);
 		free1 = bitsOf(m1 > 0);
 		free2 = bitsOf(m2 > 0);
 	}

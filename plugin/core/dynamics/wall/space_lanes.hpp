@@ -156,6 +156,7 @@ struct alignas(alignment) Row {
 
 template <class L>
 struct alignas(alignment) PointLanes<Space, L> {
+	using Number = L;
 	using Tangent = Two<L>;
 	Row<L> normal, tangent[2];
 	L gap;                   // m; far away in lanes without a point
@@ -167,25 +168,25 @@ struct alignas(alignment) PointLanes<Space, L> {
 };
 
 // Of the four normals of a pair, in rows of the lower triangle.
-template <>
-struct alignas(alignment) Coupling<Space> {
+template <class L>
+struct alignas(alignment) Coupling<Space, L> {
 	static constexpr int points = 4;
 	static constexpr int place(int i, int j) { return i > j ? i * (i + 1) / 2 + j : j * (j + 1) / 2 + i; }
 
-	Floats response[10];        // J M^-1 J^T, 1/kg
-	Floats inverse[10];         // of it, kg; four points of a face give a singular one: with a little of its diagonal added
-	unsigned char free1, free2; // a bit for each body that is not prescribed
+	L response[10];        // J M^-1 J^T, 1/kg
+	L inverse[10];         // of it, kg; four points of a face give a singular one: with a little of its diagonal added
+	unsigned free1, free2; // a bit for each body that is not prescribed
 
-	MASONRY_INLINE void set(const PointLanes<Space, Floats>* point, const Floats& m1, const Floats& m2)
+	MASONRY_INLINE void set(const PointLanes<Space, L>* point, const L& m1, const L& m2)
 	{
 		constexpr double softness = 1e-3;
-		const Floats none = all<Floats>(0), one = all<Floats>(1);
-		Floats a[points][points];
+		const L none = all<L>(0), one = all<L>(1);
+		L a[points][points];
 		for (int i = 0; i < points; ++i)
 			for (int j = 0; j < points; ++j) {
-				const Row<Floats>&r = point[i].normal, &q = point[j].normal;
-				const FloatMask present = (point[i].massN > 0) & (point[j].massN > 0);
-				const Floats here = (m1 + m2) * dot(r.axis, q.axis) + m1 * dot(r.arm1, q.arm1) + m2 * dot(r.arm2, q.arm2);
+				const Row<L>&r = point[i].normal, &q = point[j].normal;
+				const MaskOf<L> present = (point[i].massN > 0) & (point[j].massN > 0);
+				const L here = (m1 + m2) * dot(r.axis, q.axis) + m1 * dot(r.arm1, q.arm1) + m2 * dot(r.arm2, q.arm2);
 				a[i][j] = select(present, here, none);
 				if (j <= i)
 					response[place(i, j)] = a[i][j];
@@ -193,12 +194,12 @@ struct alignas(alignment) Coupling<Space> {
 					a[i][i] = select(present, (1 + float(softness)) * here, one);
 			}
 		for (int k = 0; k < points; ++k) { // Gauss and Jordan
-			const Floats pivot = one / a[k][k];
+			const L pivot = one / a[k][k];
 			a[k][k] = one;
 			for (int j = 0; j < points; ++j)
 				a[k][j] *= pivot;
 			for (int i = 0; i < points; ++i) {
-				const Floats factor = i == k ? none : a[i][k];
+				const L factor = i == k ? none : a[i][k];
 				if (i != k)
 					a[i][k] = none;
 				for (int j = 0; j < points; ++j)

@@ -17,11 +17,11 @@
 // of 32 courses at 1 g goes 39 % too far. Penetrations are taken off at the end of the step (lift.hpp): springs that do it in the sweeps
 // give way under every load, ten times as deep.
 //
-// The sweeps compute in floats, eight pairs side by side. Gaps start anew in every step, and velocities are
+// The sweeps compute in floats, eight or sixteen pairs side by side (sweep_groups.hpp). Gaps start anew in every step, and velocities are
 // in double precision what the loads and the impulses of each substep give: rounding does not add up.
 //
 // Substeps of one iteration after Macklin et al. (2019), sweeps after the move after Catto (2024).
-#include "dynamics/wall/wall_contacts.hpp"
+#include "dynamics/wall/sweep_groups.hpp"
 
 namespace masonry::rigid::wall {
 
@@ -50,35 +50,35 @@ public:
 	// Of one lane's point of the contacts, N s: normal and tangential.
 	Eigen::Matrix<double, K::rows, 1> impulse(int group, int lane, int point) const
 	{
-		return impulseOf<K>(groups[places[group].group].point[point], places[group].first + lane);
+		Eigen::Matrix<double, K::rows, 1> rows;
+		points->impulse(places[group].group, width * places[group].quarter + lane, point, rows.data());
+		return rows;
 	}
 	void setGap(int group, int lane, int point, double gap)
 	{
-		groups[places[group].group].point[point].gap[places[group].first + lane] = float(gap);
+		points->setGap(places[group].group, width * places[group].quarter + lane, point, gap);
 	}
 
 	SubstepReport report; // of the last substep of the step
 
 private:
 	struct Place {
-		int group, first; // lane
+		int group, quarter;
 	};
 	void arrange(const WallContacts<K>& contacts);
 	void sumImpulses(int part);
 
-	int sweeps {1};                         // before the move, and after it
-	float lumps {0};                        // frictionBound()
-	float damped {0};                       // damping of this step
-	float inMean {0};                       // what a substep takes into the mean of an impulse
-	Array<Group<K, Floats>> groups;         // two of the contacts each, of one colour
-	std::vector<std::array<int, 2>> halves; // which; -1: none
-	std::vector<Place> places;              // of the contacts' groups
-	std::vector<Part> parts;                // as the contacts', but for their members
-	Array<Coupling<K>> couplings;           // by group
-	Array<FloatPack> velocity;              // of the bodies
-	Array<FloatPack> contactPart;           // of it: what the impulses of the last substep gave
-	Array<Floats> change, motion;           // as of the report, by group
-	LaneArray loss;                         // to friction since begin(), J; by part
+	int sweeps {1};   // before the move, and after it
+	float lumps {0};  // frictionBound()
+	float damped {0}; // damping of this step
+	float inMean {0}; // what a substep takes into the mean of an impulse
+	std::unique_ptr<SweepGroups<K>> points {sweepGroups<K>()};
+	std::vector<Quarters> quarters; // of their groups
+	std::vector<Place> places;      // of the contacts' groups
+	std::vector<Part> parts;        // as the contacts', but for their members
+	Array<FloatPack> velocity;      // of the bodies
+	Array<FloatPack> contactPart;   // of it: what the impulses of the last substep gave
+	LaneArray loss;                 // to friction since begin(), J; by part
 };
 
 } // namespace masonry::rigid::wall

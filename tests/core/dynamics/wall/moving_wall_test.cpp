@@ -387,7 +387,7 @@ TEST_CASE("points that coincide do not press across a gap")
 		p.a1t = p.a2t = all<Floats>(-0.5);
 		p.massN = all<Floats>(1) / (m1 + m2 + m1 * p.a1n * p.a1n + m2 * p.a2n * p.a2n);
 	}
-	Coupling<Plane> w;
+	Coupling<Plane, Floats> w;
 	w.set(point, m1, m2);
 	const Floats closing = all<Floats>(600), first = -w.inverse11 * closing - w.inverse12 * closing,
 	             second = -w.inverse12 * closing - w.inverse22 * closing;

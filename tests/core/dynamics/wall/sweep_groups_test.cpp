@@ -1,0 +1,108 @@
+// Sweeps with the widest vectors of this processor against those with narrow ones.
+#include "dynamics/wall/sweep_groups.hpp"
+#include <catch2/catch.hpp>
+#include <random>
+
+using namespace masonry::rigid;
+using namespace masonry::rigid::wall;
+
+namespace {
+
+constexpr int groupCount = 7, bodyCount = 2 * width * groupCount; // not a whole number of wide groups; each lane has its own bodies
+
+template <class K>
+struct Scene {
+	std::mt19937 random {7};
+	std::vector<Group<K>> groups {groupCount};
+	Array<FloatPack> velocity;
+
+	float number(double least, double most) { return float(std::uniform_real_distribution<>(least, most)(random)); }
+
+	Scene()
+	{
+		for (int b = 0; b <= bodyCount; ++b)
+			for (int pack = 0; pack < packs<K>; ++pack) {
+				const float perMass = b < bodyCount && b % 5 != 0 ? 1e-3f : 0; // some are prescribed, the last is that of empty lanes
+				velocity.push_back(FloatPack {number(-1, 1), number(-1, 1), number(-1, 1), perMass});
+			}
+		for (int g = 0; g < groupCount; ++g) {
+			Group<K>& group = groups[g];
+			group.setCount(lanePoints<K>);
+			group.friction = all(0.5);
+			for (int i = 0; i < width; ++i) {
+				group.body1[i] = 2 * (width * g + i);
+				group.body2[i] = group.body1[i] + 1;
+			}
+			for (PointLanes<K>& p : group.point) { // any numbers will do: the same goes in
+				auto* numbers = reinterpret_cast<double*>(&p);
+				for (size_t k = 0; k < sizeof p / sizeof(double); ++k)
+					numbers[k] = number(0.1, 1);
+				for (int i = 0; i < width; ++i)
+					p.gap[i] = number(-1e-3, 1e-3);
+			}
+		}
+	}
+};
+
+// All that a substep does and tells, in numbers.
+template <class K>
+std::vector<double> substep(SweepGroups<K>& points)
+{
+	Scene<K> scene;
+	std::vector<Quarters> which;
+	for (int g = 0; g < groupCount; ++g) {
+		if (g % points.quarters() == 0)
+			which.push_back({-1, -1, -1, -1});
+		which.back()[g % points.quarters()] = g;
+	}
+	Group<K> empty {};
+	for (int i = 0; i < width; ++i)
+		empty.body1[i] = empty.body2[i] = bodyCount;
+	for (PointLanes<K>& p : empty.point)
+		p.gap = all(farAway);
+	const int count = int(which.size());
+	Array<FloatPack> contactPart(scene.velocity.size());
+	for (size_t k = 0; k < contactPart.size(); ++k)
+		contactPart[k] = FloatPack {0, 0, 0, scene.velocity[k][3]};
+	points.resize(count);
+	points.take(scene.groups.data(), which.data(), empty, 0, count, contactPart.data());
+	for (const bool watched : {false, true})
+		points.sweep(0, count, scene.velocity.data(), {8000, 1.2f, 0.02f, 0.1f, watched});
+	points.moveGaps(0, count, scene.velocity.data(), 1.25e-4f);
+	points.sum(0, count, contactPart.data());
+	Lanes loss = all(0);
+	points.handOn(0, count, scene.velocity.data(), {0.1f, 0.02f, 1e-3f}, contactPart.data(), loss);
+	const LaneArray shift(packs<K> * (bodyCount + 1), all(1e-3));
+	points.giveBack(0, count, which.data(), shift.data(), scene.groups.data());
+
+	std::vector<double> numbers {points.residual()};
+	for (int i = 0; i < width; ++i)
+		numbers.push_back(loss[i]);
+	for (const auto* packsOfBodies : {&scene.velocity, &contactPart})
+		for (const FloatPack& pack : *packsOfBodies)
+			for (int k = 0; k < 4; ++k)
+				numbers.push_back(pack[k]);
+	for (int g = 0; g < groupCount; ++g) {
+		Lanes motion;
+		points.motion(g / points.quarters(), g % points.quarters(), motion);
+		for (int i = 0; i < width; ++i) {
+			numbers.push_back(motion[i]);
+			for (const PointLanes<K>& p : scene.groups[g].point)
+				for (const double number : {p.gap[i], p.pn[i], p.steady[i], component(p.pt, 0, i)})
+					numbers.push_back(number);
+		}
+	}
+	return numbers;
+}
+
+} // namespace
+
+// Each lane is computed as a scalar would be, and sums are in the same order. Where the widest vectors are narrow the test says nothing.
+TEMPLATE_TEST_CASE("the widest sweeps give the bits of narrow ones", "", Plane, Space)
+{
+	const auto wide = sweepGroups<TestType>(), narrow = narrowSweepGroups<TestType>();
+	const std::vector<double> expected = substep(*narrow);
+	CHECK(substep(*wide) == expected);
+	CHECK(std::all_of(expected.begin(), expected.end(), [](double number) { return std::isfinite(number); }));
+	CHECK(expected[0] > 0); // the sweeps have something to do
+}
