@@ -14,13 +14,16 @@
 // courses squared, where a structure is slender faster: with two, the first peak of a column of 48 that rocks is 9 % off, not 2, and
 // what is lost while loads lag counts as impacts that were none. Where blocks carry heavier ones it grows as those are heavier and higher
 // up (burden). Friction goes by the mean of loads that lag (frictionBound() in sweep.hpp): with the bound of the moment the top of a wall
-// of 32 courses at 1 g goes 39 % too far. Penetrations are taken off at the end of the step (lift.hpp): springs that do it in the sweeps
-// give way under every load, ten times as deep.
+// of 32 courses at 1 g goes 39 % too far.
+//
+// What the courses miss of each other lets points that carry sink. In the plane one that is too deep must part by a share of it in the
+// sweeps before the move; those after the move let go the velocity that this has given. What is left is taken off at the end of the step
+// (lift.hpp).
 //
 // The sweeps compute in floats, eight or sixteen pairs side by side (sweep_groups.hpp). Gaps start anew in every step, and velocities are
 // in double precision what the loads and the impulses of each substep give: rounding does not add up.
 //
-// Substeps of one iteration after Macklin et al. (2019), sweeps after the move after Catto (2024).
+// Substeps of one iteration after Macklin et al. (2019); parting before the move, sweeps after it, after Catto (2024).
 #include "dynamics/wall/sweep_groups.hpp"
 
 namespace masonry::rigid::wall {
@@ -37,13 +40,12 @@ template <class K>
 class Substeps {
 public:
 	// From the contacts' velocities and impulses. `finer`: how many times more substeps than at the default tolerance; `pace`: relative
-	// velocities of the last step, of those of slow motion.
-	void begin(WallContacts<K>& contacts, double finer, double pace);
+	// velocities of the last step, of those of slow motion; `fall`: what gravity gives in a substep, m/s.
+	void begin(WallContacts<K>& contacts, double finer, double pace, double fall);
 	// `load` is the change of velocity in a substep by external forces, per body. Into the contacts' velocities and shift.
 	void substep(WallContacts<K>& contacts, const LaneArray& load, double s, bool isLast);
-	// After each substep: what friction has taken, and the impulses that the next one starts from. `fall`: what gravity gives in a substep,
-	// m/s.
-	void handOn(WallContacts<K>& contacts, double fall);
+	// After each substep: what friction has taken, and the impulses that the next one starts from.
+	void handOn(WallContacts<K>& contacts);
 	// Gaps and impulses into the contacts.
 	void end(WallContacts<K>& contacts);
 
@@ -68,10 +70,11 @@ private:
 	void arrange(const WallContacts<K>& contacts);
 	void sumImpulses(int part);
 
-	int sweeps {1};   // before the move, and after it
-	float lumps {0};  // frictionBound()
-	float damped {0}; // damping of this step
-	float inMean {0}; // what a substep takes into the mean of an impulse
+	int sweeps {1};               // before the move, and after it
+	float lumps {0};              // frictionBound()
+	float damped {0};             // damping of this step
+	double parting {0}, fall {0}; // of what a point is too deep, what a substep takes off; what gravity gives in it, m/s
+	float inMean {0};             // what a substep takes into the mean of an impulse
 	std::unique_ptr<SweepGroups<K>> points {sweepGroups<K>()};
 	std::vector<Quarters> quarters; // of their groups
 	std::vector<Place> places;      // of the contacts' groups

@@ -11,11 +11,13 @@ struct Watched {
 	L motion; // relative velocity, closed or open; the largest, m/s
 };
 
-// What the normal velocity must not fall below, with its sign changed: an open point may close within the substep.
+// What the normal velocity must not fall below, with its sign changed: an open point may close within the substep, one that is too deep
+// must part.
 template <class P, class L = typename P::Number>
 MASONRY_INLINE L closing(const P& p, const Sweep& sweep)
 {
-	return select(p.gap > 0, sweep.perSubstep * p.gap, all<L>(0));
+	return select(p.gap > 0, sweep.perSubstep * p.gap,
+	              larger(smaller(sweep.parting * (p.gap - sweep.deepest), all<L>(0)), all<L>(-sweep.fastest)));
 }
 
 // The point's impulse, from the one that it needs. One that has ended is not drawn back to its mean.

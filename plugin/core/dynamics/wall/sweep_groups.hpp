@@ -11,6 +11,9 @@ struct Sweep {
 	float relaxation; // of the changes of impulses
 	float damping;    // what it takes off the difference of an impulse from its mean
 	float lumps;      // frictionBound()
+	float deepest;    // gap, m, below which a point must part, and
+	float parting;    // how fast, of what it is deeper, 1/s, but
+	float fastest;    // not faster than this, m/s
 	bool watched;     // the last of a step, of which residual() and motion() tell
 };
 

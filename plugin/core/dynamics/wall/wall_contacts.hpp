@@ -268,6 +268,7 @@ public:
 	std::vector<typename K::Spin> gyration;    // rho, m
 	std::vector<int> course;                   // of a body: pairs between it and the nearest prescribed one; -1: no way there
 	int depth {0};                             // courses upon what is not free here, at most
+	bool broad {false};                        // every structure has many blocks in a course
 	double spread {0};                         // square of the courses, times how slender: as which loads take to spread; the largest
 	double burden {0};                         // largest number of such courses times the mass of a block over that of one below it
 	double length {0};                         // m, smallest half size

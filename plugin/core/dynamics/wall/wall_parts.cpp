@@ -16,6 +16,9 @@ constexpr int mostSeam = 8;       // times as many pairs as are in the seam ther
 // that rocks is 5 % off, not 1.9; smaller the first, or larger the second: slender structures take more sweeps.
 constexpr double slender = 1, mostOfSlender = 7;
 
+// Blocks in a course, on average, from which on a structure does not rock as a column.
+constexpr double blocksOfBroad = 6;
+
 } // namespace
 
 // By number: blocks of one part are neighbours in memory, which threads then do not share; of walls numbered course by course the seams are
@@ -182,9 +185,12 @@ void WallContacts<K>::findCourses(const RigidSystem<K>& s)
 			courses[structure[b]] = std::max<double>(courses[structure[b]], above[b]);
 		}
 	spread = 0;
+	broad = true;
 	for (size_t k = 0; k < structure.size(); ++k)
-		if (const double square = courses[k] * courses[k]; square > 0)
+		if (const double square = courses[k] * courses[k]; square > 0) {
 			spread = std::max(spread, square * std::clamp(square / blocks[k] / slender, 1., mostOfSlender));
+			broad &= blocks[k] >= blocksOfBroad * courses[k];
+		}
 	burden = 0;
 	for (const int c : numbers) {
 		const auto [low, high] = std::minmax({pairs[c][0], pairs[c][1]}, [&](int a, int b) { return above[a] < above[b]; });

@@ -113,6 +113,7 @@ private:
 	void lean(RigidSystem<K>& system, Contacts& contacts, double h);
 	int land(RigidSystem<K>& system, double part);
 	int substepCount() const;
+	double finer() const;
 	typename K::Velocity startVelocity(const RigidSystem<K>& system, int body) const;
 	double baseWork(const RigidSystem<K>& system, Contacts& contacts);
 	double baseWorkWhenStill(const RigidSystem<K>& system);

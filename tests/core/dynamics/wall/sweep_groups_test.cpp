@@ -67,7 +67,7 @@ std::vector<double> substep(SweepGroups<K>& points)
 	points.resize(count);
 	points.take(scene.groups.data(), which.data(), empty, 0, count, contactPart.data());
 	for (const bool watched : {false, true})
-		points.sweep(0, count, scene.velocity.data(), {8000, 1.2f, 0.02f, 0.1f, watched});
+		points.sweep(0, count, scene.velocity.data(), {8000, 1.2f, 0.02f, 0.1f, -1e-4f, 1000, 0.1f, watched});
 	points.moveGaps(0, count, scene.velocity.data(), 1.25e-4f);
 	points.sum(0, count, contactPart.data());
 	Lanes loss = all(0);
