@@ -29,11 +29,11 @@ constexpr int ofFewCourses = 3;
 // than with ten times the sweeps. Up to mostBurden.
 constexpr double burdenOfSweep = 100;
 constexpr double overRelaxation = 1.2;
-// Of what a point is too deep, what it must part by in the move of a substep, and how fast at most, of what gravity gives in a substep.
-// Less: more is left to the lifts, which give back at the end of a step what a wall has lost by sinking in it: without it they visit nearly
-// twice as many pairs, and the corner of 32 courses at 1 g goes 78 mm far, not 71 (59 where substeps are fine). Faster: blocks that have
-// landed deep in each other fly apart.
-constexpr double parted = 0.4, fastestParting = 1;
+// Of what a point is too deep, what it must part by in the move of a substep, at most as fast as gravity gives in it: faster, blocks that
+// have landed deep in each other fly apart. Less: more is left to the lifts, which give back at the end of a step what a wall has lost by
+// sinking in it: without it they visit nearly twice as many pairs, and the corner of 32 courses at 1 g goes 78 mm far, not 71 (59 where
+// substeps are fine).
+constexpr double parted = 0.4;
 // Walls in space are slender across their plane: what has been shaken would be kept swaying by it.
 template <class K>
 constexpr bool partsDeepPoints = K::dimension == 2;
@@ -147,7 +147,7 @@ void Substeps<K>::substep(WallContacts<K>& c, const LaneArray& load, double s, b
 		                 lumps,
 		                 float(-tolerance::wall::lifted * c.length),
 		                 float(isMoved ? 0 : parting / s),
-		                 float(fastestParting * fall),
+		                 float(fall),
 		                 watched};
 		parts[number].byColour([&](int first, int last) { points->sweep(first, last, velocity.data(), how); });
 	};

@@ -1,4 +1,3 @@
-#include "dynamics/wall/lanes.hpp"
 #define MASONRY_LOOP MASONRY_LANES
 #include "dynamics/wall/sweep_groups_impl.hpp"
 

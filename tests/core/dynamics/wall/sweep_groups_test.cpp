@@ -106,3 +106,46 @@ TEMPLATE_TEST_CASE("the widest sweeps give the bits of narrow ones", "", Plane, 
 	CHECK(std::all_of(expected.begin(), expected.end(), [](double number) { return std::isfinite(number); }));
 	CHECK(expected[0] > 0); // the sweeps have something to do
 }
+
+// A block that falls on a base at v with both points d deep: before the move it rises at R (d - allowed), or as fast as is allowed; without
+// parting, after the move, it stops, by m v and no more. Bound: a rounding in single precision of v.
+TEST_CASE("a point that is too deep parts, and is let go again")
+{
+	const double mass = 1000, v = 0.01, allowed = 1e-6, rate = 3000, fastest = 1.2e-3, d = GENERATE(0.5e-6, 1.2e-6, 3e-6);
+	const double rise = std::min(std::max(0., rate * (d - allowed)), fastest);
+	const auto points = GENERATE(0, 1) ? sweepGroups<Plane>() : narrowSweepGroups<Plane>();
+	Group<Plane> group {}, empty {};
+	for (int i = 0; i < width; ++i)
+		group.body1[i] = group.body2[i] = empty.body1[i] = empty.body2[i] = 2; // of no lane
+	group.body1[0] = 0;
+	group.body2[0] = 1;
+	for (int k = 0; k < 2; ++k) {
+		empty.point[k].gap = group.point[k].gap = all(farAway);
+		PointLanes<Plane>& p = group.point[k];
+		p.ny[0] = 1;
+		p.a2n[0] = k == 0 ? -0.8 : 0.8;
+		p.massN[0] = mass / (1 + 0.8 * 0.8);
+		p.massT[0] = mass;
+		p.gap[0] = -d;
+	}
+	Array<FloatPack> velocity {FloatPack {}, FloatPack {0, float(-v), 0, float(1 / mass)}, FloatPack {}};
+	const Quarters which {0, -1, -1, -1};
+	points->resize(1);
+	points->take(&group, &which, empty, 0, 1, velocity.data());
+	const auto impulse = [&] {
+		double sum = 0;
+		for (int k = 0; k < 2; ++k) {
+			double rows[2];
+			points->impulse(0, 0, k, rows);
+			sum += rows[0];
+		}
+		return sum;
+	};
+	constexpr double single = 1e-6;
+	points->sweep(0, 1, velocity.data(), {8000, 1, 0, 0, float(-allowed), float(rate), float(fastest), false});
+	CHECK(velocity[1][1] == Approx(rise).margin(single * v));
+	CHECK(impulse() == Approx(mass * (v + rise)).epsilon(single));
+	points->sweep(0, 1, velocity.data(), {8000, 1, 0, 0, float(-allowed), 0, float(fastest), true});
+	CHECK(std::abs(velocity[1][1]) < single * v);
+	CHECK(impulse() == Approx(mass * v).epsilon(single));
+}
