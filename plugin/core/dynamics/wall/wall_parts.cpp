@@ -13,7 +13,7 @@ constexpr int mostSeam = 8;       // times as many pairs as are in the seam ther
 
 // Loads spread over the courses as by diffusion, in time as their square. A structure that is slender bends besides, and takes longer: in
 // proportion to its courses over the blocks of one from this on, up to so many times as long. Without it the first peak of a column of 48
-// that rocks is 5 % off, not 1.9; smaller the first, or larger the second: slender structures take more sweeps.
+// that rocks is 6 % off, not 1; smaller the first, or larger the second: slender structures take more sweeps.
 constexpr double slender = 1, mostOfSlender = 7;
 
 // Blocks in a course, on average, from which on a structure does not rock as a column.
