@@ -10,8 +10,8 @@
 // approach stop short, and piers do not rock as they should.) One sweep carries an impulse one course on: what the courses miss of each
 // other falls as 1/substeps^2, and loads that lag behind like that bounce. So a sweep takes a little off what an impulse differs from its
 // mean over the last steps, which lets no load that stays sink. A wall that is about to stand would be kept in motion by that, joint by
-// joint: there it fades, and more sweeps take its place. Over many sweeps loads spread as by diffusion, and their number grows as the
-// courses squared, where a structure is slender faster: with two, the first peak of a column of 48 that rocks is 10 % off, not 1, and
+// joint: there it fades, and in space more sweeps take its place. Over many sweeps loads spread as by diffusion, and their number grows as
+// the courses squared, where a structure is slender faster: with two, the first peak of a column of 48 that rocks is 10 % off, not 1, and
 // what is lost while loads lag counts as impacts that were none. Where blocks carry heavier ones it grows as those are heavier and higher
 // up (burden). Friction goes by the mean of loads that lag (frictionBound() in sweep.hpp): with the bound of the moment the top of a wall
 // of 32 courses at 1 g goes 39 % too far.
