@@ -171,8 +171,8 @@ constexpr double still = 1e-2;
 // Relative velocity of points in touch, relative to the speed of rest (restSpeed sqrt(g half size)), above which the wall moves; it
 // stands when none is above the speed of rest. Nearer to 1: what the moving mode calls rest is motion to the still mode.
 constexpr double motion = 5;
-// Relative velocity of points in touch, relative to the speed of rest, below which a wall that moves is about to stand. Larger: the
-// substeps take more sweeps, and what lags behind in them bounces more in slow motion; smaller: high walls in space creep on by it.
+// Relative velocity of points in touch, relative to the speed of rest, below which a wall that moves is about to stand. Larger: what lags
+// behind in the substeps bounces more, and in space they take more sweeps; smaller: high walls in space creep on by it.
 constexpr double slow = 100;
 // Change of the base's velocity in a step, relative to what gravity gives in it, from which on the still mode takes back in full what its
 // iterations leave. Larger: gentle shaking lets joints drift; smaller: a wall on a base that hardly moves any more shivers on.

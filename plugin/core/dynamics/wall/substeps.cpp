@@ -25,8 +25,8 @@ constexpr double mostLumps = 0.1;
 // the last must not, an impact would bounce.
 constexpr double coursesOfSweep = 18.5;
 constexpr int ofFewCourses = 3;
-// In space four times as many in slow motion, or walls creep on. In the plane they would be no gain: what has been shaken rests as soon
-// without, and the tops of 42 walls go as right (4.6 % for 5.1).
+// In space four times as many in slow motion, or walls creep on. In the plane they would only cost: what has been shaken rests as soon
+// without, and the tops of 42 walls are 5.1 % off, with them 5.6 %.
 template <class K>
 constexpr double coursesOfSlowSweep = K::dimension == 2 ? coursesOfSweep : coursesOfSweep / 2;
 // And as many as heavy blocks on light ones ask: with this burden per sweep one of 3,000 times the mass slides on two courses by 0.5 % more
