@@ -1,6 +1,6 @@
 """The shaken wall in every program that is there: CPU time, drift, sink, first excursion, energy; what was asked for and whether it holds.
 
-    compare.py <build folder> [--quick | --other-walls | --rest]
+    compare.py <build folder> [--quick | --other-walls | --rest | --reference]
 
 Writes results/shaken_walls.csv, .json and .png; prints the tables. Ends with status 1 when something that must hold does not.
 """
@@ -20,6 +20,8 @@ HERE = Path(__file__).resolve().parent
 RESULTS = HERE.parents[2] / "results"
 SMALL, LARGE = (10, 10), (32, 32)  # courses, blocks per course: 105 and 1,040 blocks
 ALIKE = (0.98, 1.0, 1.02)  # g: of first excursions: a hundredth of the motion changes that of a corner by up to a tenth
+REFERENCE = HERE / "gauss_seidel.json"  # first excursions as gauss_seidel.cpp finds them: written by --reference
+EXCURSIONS = {"excursion": "top course's mean", "thrown": "corner that is thrown out", "follows": "corner that follows"}
 # CPU s per simulated s, drift and sink per joint in mm, of programs measured elsewhere (another machine; 2 Hz, 0.3 g): rest / shaken.
 ELSEWHERE = [("Box2D 3, 8 substeps", 105, 0.069, 0.08, 1.9e-3), ("Box2D 3, 8 substeps", 1040, 0.65, 1.5, 5.2e-3), ("LMGC90 NLGS 1e-4", 105, 3.1, 0.011, 3e-4),
              ("LMGC90 NLGS 1e-4", 1040, 73, 0.19, 1.3e-3), ("Jolt", 105, 0.28, 0.37, 4.2e-3), ("Jolt", 1040, 4.5, 2.4, 1.4e-2)]
@@ -52,11 +54,11 @@ def peer(program, size, amplitude, rest, shaking, **environment):
     done = subprocess.run([program, *map(str, (*size, amplitude, rest, shaking))], capture_output=True, text=True, check=True, env={**os.environ, **environment})
     rows = []
     for line in done.stdout.splitlines():
-        solver, phase, blocks, cpu, drift, sink, corner = line.split(",")
+        solver, phase, blocks, cpu, drift, sink = line.split(",")
         if phase == "rest" and not rest:
             continue
         rows.append(dict(solver=solver, phase={"shaken": "shaking"}.get(phase, phase), blocks=int(blocks), amplitude=amplitude, cpu=float(cpu), drift=float(drift),
-                         sink=float(sink), corner=float(corner), rest=rest, shaking=shaking))
+                         sink=float(sink), rest=rest, shaking=shaking))
         print(f"  {solver:32} {blocks:>6} blocks {amplitude:4} g {rows[-1]['phase']:8} {float(cpu):.4f} CPU s/s  drift {float(drift):.2e} mm  sink {float(sink):.1e} mm", flush=True)
     return rows
 
@@ -77,8 +79,7 @@ def in_turn(*runs, times=3):
 def run(build, quick):
     ours = lambda *a, **o: masonry(build, *a, **o)
     bullet = lambda size, seconds: peer(build / "validation/wall_bullet", size, 0.3, seconds, seconds)
-    precisions = {"h = 1 ms": {}, "h = 0.25 ms": {"dt": 2.5e-4}, "converged": {"dt": 2.5e-4, "tolerance": 1e-5},
-                  "in space": {"model": "spatial"}}
+    precisions = {"h = 1 ms": {}, "h = 0.25 ms": {"dt": 2.5e-4}, "in space": {"model": "spatial"}}
     excursions = lambda size: [row for role, how in precisions.items() for amplitude in ALIKE for row in ours(size, amplitude, 0, 0.5, fine=True, role=role, **how)]
     print("Rest, then 0.3 g: still walls; 1 g: walls that move; Bullet in turn with them", flush=True)
     rows = in_turn(lambda: ours(SMALL, 0.3, 5, 5), lambda: ours(SMALL, 1.0, 0, 5), lambda: bullet(SMALL, 2))
@@ -111,6 +112,22 @@ def run(build, quick):
     rows += peer(build / "validation/wall_ode", SMALL, 0.3, 1, 1) + peer(build / "validation/wall_ode", LARGE, 0.3, 0.25, 0.25)
     rows += peer(build / "validation/wall_bullet", SMALL, 0.3, 1, 1, ITERATIONS="50") + peer(build / "validation/wall_bullet", SMALL, 1.0, 0, 1)
     return rows + stock(SMALL, 0.03)
+
+
+def reference(build):
+    """Writes REFERENCE: time steps (s) and sweeps as far as a quarter of an hour goes."""
+    cases = [dict(courses=size[0], per_course=size[1], amplitude=amplitude, dt=dt, sweeps=sweeps)
+             for size, dt, sweeps in ((LARGE, 5e-4, 3000), (SMALL, 2.5e-4, 2000)) for amplitude in ALIKE]
+
+    def result(case):
+        command = [build / "validation/wall_gauss_seidel", *map(str, (case["courses"], case["per_course"], case["amplitude"], 0.005, 0.5, case["dt"], case["sweeps"]))]
+        numbers = map(float, subprocess.run(command, capture_output=True, text=True, check=True).stdout.split(","))
+        print(case, flush=True)
+        return case | dict(zip((*EXCURSIONS, "deepest"), numbers))
+
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        rows = list(pool.map(result, cases))
+    REFERENCE.write_text("[\n" + ",\n".join(map(json.dumps, rows)) + "\n]\n")
 
 
 def other_walls(build):
@@ -187,15 +204,15 @@ def verdicts(rows):
             if bullet and r:
                 ratio = {105: 19, 1040: 28}[blocks]
                 line(f"{blocks} blocks, {'rest' if phase == 'rest' else '0.3 g'}: CPU of Bullet over ours, same run", f"{ratio}", bullet["cpu"] / r["cpu"], bullet["cpu"] / r["cpu"] >= ratio)
-        for name, what in (("excursion", "top course's mean"), ("corner", "top corner")):
-            x = {role: [r[name] for r in rows if r.get("role") == role and r["blocks"] == blocks] for role in ("h = 1 ms", "h = 0.25 ms", "converged", "in space")}
-            if not all(x.values()):
-                continue
-            x = {role: statistics.mean(of) for role, of in x.items()}
-            for role, other, bound in (("h = 1 ms", "converged", 0.15), ("h = 1 ms", "h = 0.25 ms", 0.20), ("in space", "converged", 0.15)):
-                difference = x[role] / x[other] - 1
-                line(f"{blocks} blocks, 1 g: first excursion, {what}, {role} against {other}", f"{bound:.0%}", difference, abs(difference) <= bound,
-                     f"{difference:+.1%} ({1e3 * x[role]:.1f} mm)")
+        excursions = {role: [r for r in rows if r.get("role") == role and r["blocks"] == blocks] for role in ("h = 1 ms", "h = 0.25 ms", "in space")}
+        excursions["Gauss-Seidel"] = [r for r in json.loads(REFERENCE.read_text()) if (r["courses"], r["per_course"]) == (SMALL if blocks == 105 else LARGE)]
+        if all(excursions.values()):
+            for name, what in EXCURSIONS.items():
+                x = {role: statistics.mean(r[name] for r in of) for role, of in excursions.items()}
+                for role, other, bound in (("h = 1 ms", "Gauss-Seidel", 0.15), ("h = 1 ms", "h = 0.25 ms", 0.20), ("in space", "Gauss-Seidel", 0.15)):
+                    difference = x[role] / x[other] - 1
+                    line(f"{blocks} blocks, 1 g: first excursion, {what}, {role} against {other}", f"{bound:.0%}", difference, abs(difference) <= bound,
+                         f"{difference:+.1%} ({1e3 * x[role]:.1f} mm)")
     poly, r = find(solver="stock YADE Polyhedra"), find(**plain, blocks=105, amplitude=0.3, phase="rest")
     if poly:
         line("105 blocks: CPU of stock YADE Polyhedra over ours, same run", "5000", poly["cpu"] / r["cpu"], poly["cpu"] >= 5000 * r["cpu"])
@@ -254,17 +271,20 @@ def main():
     parser.add_argument("--quick", action="store_true", help="105 blocks in the plane only")
     parser.add_argument("--from", dest="old", type=Path, help="tables and figure of a file written before")
     parser.add_argument("--other-walls", action="store_true", help="first excursions of other walls against finer runs only, no CPU times")
+    parser.add_argument("--reference", action="store_true", help="compute first excursions by Gauss-Seidel anew, a quarter of an hour; no CPU times")
     parser.add_argument("--rest", action="store_true", help="whether walls that have been shaken rest, no CPU times")
     arguments = parser.parse_args()
     if arguments.other_walls:
         return other_walls(arguments.build)
+    if arguments.reference:
+        return reference(arguments.build)
     if arguments.rest:
         return walls_at_rest(arguments.build)
     rows = json.loads(arguments.old.read_text()) if arguments.old else run(arguments.build, arguments.quick)
     RESULTS.mkdir(exist_ok=True)
     if not arguments.quick:
         (RESULTS / "shaken_walls.json").write_text(json.dumps(rows, indent=0))
-        fields = ["solver", "blocks", "amplitude", "phase", "role", "threads", "dt", "tolerance", "cpu", "wall", "drift", "sink", "excursion", "corner", "still", "moving", "impacts", "solves", "velocityResidual", "forceResidual", "rise", "lost", "work", "unbalanced",
+        fields = ["solver", "blocks", "amplitude", "phase", "role", "threads", "dt", "tolerance", "cpu", "wall", "drift", "sink", *EXCURSIONS, "still", "moving", "impacts", "solves", "velocityResidual", "forceResidual", "rise", "lost", "work", "unbalanced",
                   "memory", "bits"]
         with open(RESULTS / "shaken_walls.csv", "w", newline="") as out:
             writer = csv.DictWriter(out, fields, extrasaction="ignore")

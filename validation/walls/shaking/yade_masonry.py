@@ -55,7 +55,8 @@ def mechanical():
 
 start = places()
 courses = np.rint((start[:, 2] - start[:, 2].min()) / 0.5)
-top = int(np.flatnonzero(courses == courses.max())[-1])  # the corner
+top = np.flatnonzero(courses == courses.max())
+corners = top[[start[top, 0].argmin(), start[top, 0].argmax()]]  # the base's first stroke throws the first one out
 O.run(round(STARTED * 1e-3 / O.dt), True)
 memory = (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before) * 1024 / len(ids)  # bytes
 sunk = 0
@@ -63,7 +64,7 @@ for phase in ("rest", "shaking"):
     if not case[phase]:
         continue
     modes = integrator.stillSteps, integrator.movingSteps
-    steps, excursion, corner, rise, lost, cpu, wall, deepest = round(case[phase] / O.dt), 0, 0, 0, losses(), 0, 0, 0
+    steps, excursion, corner, rise, lost, cpu, wall, deepest = round(case[phase] / O.dt), 0, np.zeros(2), 0, losses(), 0, 0, 0
     first, solved, held, worked = lost, integrator.sweeps, mechanical(), integrator.baseWork
     # Energy and excursion are looked at on the way where the wall moves only.
     sample = max(1, round(0.01 / O.dt)) if case.get("fine") else max(1, round(0.1 / O.dt)) if case["amplitude"] > 0.7 and phase == "shaking" else steps
@@ -77,15 +78,15 @@ for phase in ("rest", "shaking"):
         deepest = max([deepest] + [-gap for i in O.interactions for gap in i.geom.gaps])
         if (k + sample) * O.dt <= 0.5 + 1e-9:
             shift = places()[:, 0] - start[:, 0]
-            excursion = max(excursion, abs(shift[courses == courses.max()].mean()))
-            corner = max(corner, abs(shift[top]))
+            excursion = max(excursion, abs(shift[top].mean()))
+            corner = np.maximum(corner, abs(shift[corners]))
     work = integrator.baseWork - worked
     unbalanced = mechanical() - held + lost - first - work
     moved = places() - start
-    sink = -moved[courses == courses.max(), 2].mean() / case["courses"]
+    sink = -moved[top, 2].mean() / case["courses"]
     bits = hashlib.sha256(np.array([x for i in ids for v in (O.bodies[i].state.pos, O.bodies[i].state.vel) for x in v]).tobytes()).hexdigest()[:12]
     print(json.dumps(dict(case, phase=phase, blocks=len(ids), cpu=cpu / case[phase], wall=wall / case[phase], drift=1e3 * float(np.linalg.norm(moved[:, :2], axis=1).max()),
-                          sink=1e3 * float(sink - sunk), excursion=float(excursion), corner=float(corner), deepest=float(deepest), still=integrator.stillSteps - modes[0], moving=integrator.movingSteps - modes[1],
+                          sink=1e3 * float(sink - sunk), excursion=float(excursion), thrown=float(corner[0]), follows=float(corner[1]), deepest=float(deepest), still=integrator.stillSteps - modes[0], moving=integrator.movingSteps - modes[1],
                           movingBlocks=integrator.movingBlocks, impacts=len(integrator.impactTimes), solves=integrator.sweeps - solved, velocityResidual=integrator.velocityResidual,
                           forceResidual=integrator.forceResidual, rise=float(rise), lost=float(lost - first), impactDissip=integrator.impactDissip, work=work, unbalanced=unbalanced, memory=memory, bits=bits)), flush=True)
     sunk = sink

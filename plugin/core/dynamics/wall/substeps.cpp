@@ -20,11 +20,9 @@ constexpr double damping = 0.075, inMeanOfOne = 0.06, leastInMean = 0.02;
 constexpr double mostLumps = 0.1;
 
 // Sweeps before the move, and after it, as the square of the courses asks, and as many times more as substeps are finer: these alone leave
-// tall walls where their lag is. But as many as there are courses up to three, since what blocks that land together have not been told of
-// each other is lost. (One fewer before the move takes 6 to 10 % less time, but loads bounce more.) What all but the last of them overdo:
-// the last must not, an impact would bounce.
+// tall walls where their lag is. But as many as there are courses up to a few (Effort), since what blocks that land together have not been
+// told of each other is lost.
 constexpr double coursesOfSweep = 18.5;
-constexpr int ofFewCourses = 3;
 // In space four times as many in slow motion, or walls creep on. In the plane they would only cost: what has been shaken rests as soon
 // without, and the tops of 42 walls are 5.1 % off, with them 5.6 %.
 template <class K>
@@ -32,7 +30,6 @@ constexpr double coursesOfSlowSweep = K::dimension == 2 ? coursesOfSweep : cours
 // And as many as heavy blocks on light ones ask: with this burden per sweep one of 3,000 times the mass slides on two courses by 0.5 % more
 // than with ten times the sweeps. Up to mostBurden.
 constexpr double burdenOfSweep = 100;
-constexpr double overRelaxation = 1.2;
 // Of what a point is too deep, what it must part by in the move of a substep, at most as fast as gravity gives in it: faster, blocks that
 // have landed deep in each other fly apart. Less: more is left to the lifts, which give back at the end of a step what a wall has lost by
 // sinking in it: without it they visit nearly twice as many pairs, and the corner of 32 courses at 1 g goes 78 mm far, not 71 (59 where
@@ -100,9 +97,10 @@ template <class K>
 void Substeps<K>::begin(WallContacts<K>& c, double finer, double pace, double givenFall)
 {
 	fall = givenFall;
+	effort = effortFor(c.broad);
 	const double courses = pace < 1 ? coursesOfSlowSweep<K> : coursesOfSweep,
 	             asked = std::max(c.spread / (courses * courses), std::min(c.burden, mostBurden) / burdenOfSweep);
-	sweeps = std::max({1, std::min(c.depth, ofFewCourses), int(std::ceil(asked * std::max(1., finer)))});
+	sweeps = std::max({1, std::min(c.depth, effort.fewestSweeps), int(std::ceil(asked * std::max(1., finer)))});
 	lumps = sweeps < c.depth ? float(mostLumps) : 0;
 	const double lagging = (1 - 1. / std::max(1, c.depth)) * std::min(1., pace);
 	damped = float(damping * lagging / sweeps);
@@ -146,7 +144,7 @@ void Substeps<K>::substep(WallContacts<K>& c, const LaneArray& load, double s, b
 	const auto press = [&](int number, bool isEnd, bool isMoved, bool watched = false) {
 		[[maybe_unused]] const TinyIsZero inSweeps;
 		const Sweep how {float(1 / s),
-		                 float(isEnd ? 1 : overRelaxation),
+		                 float(isEnd ? 1 : isMoved ? effort.relaxationAfter : effort.relaxationBefore),
 		                 damped,
 		                 lumps,
 		                 float(-tolerance::wall::lifted * c.length),

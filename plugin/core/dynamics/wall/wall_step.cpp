@@ -378,13 +378,10 @@ double WallStep<K>::finer() const
 	return std::sqrt(tolerance / settings.tolerance);
 }
 
-// With fewer, blocks and columns that rock lose of their peaks, in proportion. Broad walls are as right with six, but one motion of some
-// fifty near 1 g loses the friction of the upper courses.
 template <class K>
 int WallStep<K>::substepCount() const
 {
-	constexpr int ofBroad = 7, ofOthers = 8;
-	return int(std::lround(std::max(1., (sets[1 - stillSet].broad ? ofBroad : ofOthers) * finer())));
+	return int(std::lround(std::max(1., wall::effortFor(sets[1 - stillSet].broad).substeps * finer())));
 }
 
 // Rocking impacts, and the base pulses that answer them.
