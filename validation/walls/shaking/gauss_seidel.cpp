@@ -9,8 +9,8 @@
 //
 //     wall_gauss_seidel <courses> <blocks per course> <amplitude, g> <rest, s> <shaking, s> <time step, s> <sweeps>
 //
-// One line: largest move relative to the base, m, looked at every 10 ms of shaking: of the mean of the top course, of its corner in -x, which
-// the base's first stroke throws out, and of that in +x; then the deepest penetration, m.
+// One line: largest move relative to the base, m, looked at every 10 ms of shaking: of the mean of the top course, of its corner in -x,
+// which the base's first stroke throws out, and of that in +x; then the deepest penetration, m.
 #include "wall.hpp"
 
 namespace {
@@ -43,12 +43,12 @@ struct Rectangle {
 
 struct Contact {
 	int one, two;
-	long id;                         // the pair, and which end of the edge
-	Vector normal;                   // from one to two
-	double gap;                      // m
-	double n1, n2, t1, t2;           // arms about the centres, m
-	double massN, massT;             // 1 / (J M^-1 J^T), kg
-	double closing, pn {0}, pt {0};  // m/s; N s
+	long id;                        // the pair, and which end of the edge
+	Vector normal;                  // from one to two
+	double gap;                     // m
+	double n1, n2, t1, t2;          // arms about the centres, m
+	double massN, massT;            // 1 / (J M^-1 J^T), kg
+	double closing, pn {0}, pt {0}; // m/s; N s
 };
 
 constexpr double nearby = 0.02; // m: contacts are looked for that far
@@ -62,8 +62,13 @@ public:
 		bodies.push_back({{100, 1}, 0, 0, {request.perCourse / 2., -1}, 0, {0, 0}, 0});
 		for (const Block& b : wall(request.courses, request.perCourse)) {
 			const double mass = density * b.length * b.height * thickness;
-			bodies.push_back(
-			    {{b.length / 2, b.height / 2}, 1 / mass, 12 / (mass * (b.length * b.length + b.height * b.height)), {b.x, b.z}, 0, {0, 0}, 0});
+			bodies.push_back({{b.length / 2, b.height / 2},
+			                  1 / mass,
+			                  12 / (mass * (b.length * b.length + b.height * b.height)),
+			                  {b.x, b.z},
+			                  0,
+			                  {0, 0},
+			                  0});
 		}
 	}
 
@@ -146,7 +151,8 @@ private:
 		// Ends are told apart along the joint as i sees it, whosever face it is.
 		const bool lowIsFirst = dot(half, turned(one == i ? n : -1. * n)) > 0;
 		for (const bool isLow : {true, false})
-			add(one, two, (long(i) * long(bodies.size()) + j) * 2 + (isLow != lowIsFirst), n, a.half[face], middle + (isLow ? low : high) * half);
+			add(one, two, (long(i) * long(bodies.size()) + j) * 2 + (isLow != lowIsFirst), n, a.half[face],
+			    middle + (isLow ? low : high) * half);
 	}
 	void add(int one, int two, long id, Vector n, double toFace, Vector point)
 	{
@@ -166,7 +172,8 @@ private:
 	}
 	double slipRate(const Contact& c) const
 	{
-		return dot(turned(c.normal), bodies[c.two].velocity - bodies[c.one].velocity) + c.t2 * bodies[c.two].spin - c.t1 * bodies[c.one].spin;
+		return dot(turned(c.normal), bodies[c.two].velocity - bodies[c.one].velocity) + c.t2 * bodies[c.two].spin -
+		       c.t1 * bodies[c.one].spin;
 	}
 	void push(const Contact& c, double pn, double pt)
 	{

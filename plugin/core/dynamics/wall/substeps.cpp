@@ -10,9 +10,9 @@ namespace {
 // Of the difference of an impulse from its mean over the last substeps: what all sweeps before the move take off, and all after it, in a
 // structure of many courses (a load on one course does not lag). More: joints give way by it, and many of them upon another sway (with
 // 0.09 the first peak of a column of 48 is 2.5 % too low); less: loads that lag bounce, and what stands on them loses friction: with 0.05
-// the top of walls of 28 to 34 courses goes 40 to 60 % too far in 4 of 48 motions near 1 g. And what a substep takes into
-// the mean, where there is one course and where there are many. More: loads bounce longer than the mean, which then follows them; with 0.06
-// walls of 32 courses go half as far again.
+// the top of walls of 28 to 34 courses goes 40 to 60 % too far in 4 of 48 motions near 1 g. And what a substep takes into the mean, where
+// there is one course and where there are many. More: loads bounce longer than the mean, which then follows them; with 0.06 walls of 32
+// courses go half as far again.
 constexpr double damping = 0.075, inMeanOfOne = 0.06, leastInMean = 0.02;
 
 // Of a load, where there are fewer sweeps than courses: how far friction's may be from it (frictionBound()). More: what slides is slow to
@@ -24,7 +24,7 @@ constexpr double mostLumps = 0.1;
 // told of each other is lost.
 constexpr double coursesOfSweep = 18.5;
 // In space four times as many in slow motion, or walls creep on. In the plane they would only cost: what has been shaken rests as soon
-// without, and the tops of 42 walls are 5.1 % off, with them 5.6 %.
+// without, and the tops of walls are as right.
 template <class K>
 constexpr double coursesOfSlowSweep = K::dimension == 2 ? coursesOfSweep : coursesOfSweep / 2;
 // And as many as heavy blocks on light ones ask: with this burden per sweep one of 3,000 times the mass slides on two courses by 0.5 % more
@@ -142,8 +142,9 @@ void Substeps<K>::substep(WallContacts<K>& c, const LaneArray& load, double s, b
 	};
 	const auto press = [&](int number, bool isEnd, bool isMoved, bool watched = false) {
 		[[maybe_unused]] const TinyIsZero inSweeps;
+		const double relaxation = isMoved ? effort.relaxationAfter : effort.relaxationBefore;
 		const Sweep how {float(1 / s),
-		                 float(isEnd ? 1 : isMoved ? effort.relaxationAfter : effort.relaxationBefore),
+		                 float(isEnd ? 1 : relaxation),
 		                 damped,
 		                 lumps,
 		                 float(-tolerance::wall::lifted * c.length),

@@ -35,9 +35,9 @@ struct Effort {
 	int substeps, fewestSweeps;               // before the move of a substep, and after it
 	double relaxationBefore, relaxationAfter; // of all sweeps but the last, which must not overdo: an impact would bounce
 };
-// Over-relaxed, loads cross the courses in fewer sweeps. Of 48 motions of broad walls (many blocks in every course) of 28 to 34 courses near
-// 1 g none is astray with the three sweeps that these take, the tops 4 % off; with five substeps three go 50 % too far, with seven of two
-// sweeps relaxed by 1.2 nineteen. The others rock: with fewer substeps they lose of their peaks, in proportion, and a column of twelve
+// Over-relaxed, loads cross the courses in fewer sweeps. Of 48 motions of broad walls (many blocks in every course) of 28 to 34 courses
+// near 1 g none is astray with the three sweeps that these take, the tops 4 % off; with five substeps three go 50 % too far, with seven of
+// two sweeps relaxed by 1.2 nineteen. The others rock: with fewer substeps they lose of their peaks, in proportion, and a column of twelve
 // that is over-relaxed so gains 0.5 %.
 constexpr Effort effortFor(bool broad) { return broad ? Effort {6, 2, 1.4, 1.7} : Effort {8, 3, 1.2, 1.2}; }
 
