@@ -36,9 +36,9 @@ struct Effort {
 	double relaxationBefore, relaxationAfter; // of all sweeps but the last, which must not overdo: an impact would bounce
 };
 // Over-relaxed, loads cross the courses in fewer sweeps. Of 48 motions of broad walls (many blocks in every course) of 28 to 34 courses
-// near 1 g none is astray with the three sweeps that these take, the tops 4 % off; with five substeps three go 50 % too far, with seven of
-// two sweeps relaxed by 1.2 nineteen. The others rock: with fewer substeps they lose of their peaks, in proportion, and a column of twelve
-// that is over-relaxed so gains 0.5 %.
+// near 1 g none is astray, with the three sweeps that these take, and the tops are 3 % off; with five substeps five go 30 to 60 % too far,
+// with two sweeps fourteen. Up to 26 courses two do (50 motions: 4 % off, at most 14). The others rock: with fewer substeps they lose of
+// their peaks, in proportion, and a column of twelve that is over-relaxed so gains 0.5 %.
 constexpr Effort effortFor(bool broad) { return broad ? Effort {6, 2, 1.4, 1.7} : Effort {8, 3, 1.2, 1.2}; }
 
 struct SubstepReport {

@@ -315,7 +315,7 @@ TEST_CASE("the first excursion of a pier does not depend on the substep")
 }
 
 // The mean of the top course, which all finer steps agree on; its corners go their own ways. Bound: twice the larger of what was measured
-// (0.9 and 1.4 %). With one sweep before the move and one after it: 12 and 5 %.
+// (0.5 and 0.9 %). With one sweep before the move and one after it: 3 and 1.5 %.
 TEST_CASE("the top of a wall at 1 g goes as far as with sixteen times the substeps, whatever the number of courses")
 {
 	const int courses = GENERATE(10, 16), perCourse = 8;
@@ -330,22 +330,25 @@ TEST_CASE("the top of a wall at 1 g goes as far as with sixteen times the subste
 	};
 	const double fine = shift(4e-6);
 	CHECK(std::abs(fine) > 0.02);
-	CHECK(shift(1e-3) == Approx(fine).epsilon(0.03));
+	CHECK(shift(1e-3) == Approx(fine).epsilon(0.02));
 }
 
 // Loads that bounce in the sweeps can let the upper half of a high wall slide where it should not, in one of two motions that are nearly
-// the same: 39 % farther. The converged answers of 0.98, 1 and 1.02 g differ by 3.6 % for each hundredth of the motion.
-TEST_CASE("a hundredth more of the motion takes the top of a high wall a few hundredths farther")
+// the same: 39 % farther where sweeps damped less (the first wall), 35 % with two sweeps for three (the second). Bounds: half as much again
+// and more as by finer substeps, 3.6 and 8.8 %; less than half of what they catch.
+TEST_CASE("a little more of the motion takes the top of a high wall a little farther")
 {
-	const auto shift = [](double amplitude) {
+	const auto [courses, amplitude, more, bound] =
+	    GENERATE(table<int, double, double, double>({{32, 1, 1.01, 0.1}, {34, 0.94, 0.96, 0.15}}));
+	const auto shift = [courses = courses](double amplitude) {
 		Scene scene;
-		scene.addWall(32, 32);
+		scene.addWall(courses, courses);
 		Harmonic motion(amplitude * g, 2, 0.01);
 		scene.drive(motion);
 		scene.run(0.3, 1e-3);
-		return topShift(scene, 33);
+		return topShift(scene, courses + 1);
 	};
-	CHECK(shift(1.01) == Approx(shift(1)).epsilon(0.1));
+	CHECK(shift(more) == Approx(shift(amplitude)).epsilon(bound));
 }
 
 // A stack of two blocks rocks from rest: the same within the first order of the step while little has happened yet, and what the still mode
