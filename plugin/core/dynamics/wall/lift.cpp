@@ -25,32 +25,35 @@ struct alignas(2 * alignment) Missing { // a line of the cache of its own
 };
 
 template <class K>
-MASONRY_INLINE Lanes prepareGroups(const Group<K>* groups, typename Lift<K>::Points* points, int begin, int end, const Lanes* moved,
-                                   double length)
+MASONRY_INLINE bool prepareGroups(const Group<K>* groups, typename Lift<K>::Points* points, int begin, int end, int* seen,
+                                  const Lanes* moved, double length)
 {
 	const Lanes none = all(0), deep = all(-tolerance::wall::penetration * length), allowed = all(-tolerance::wall::lifted * length);
-	Lanes least = none;
+	bool some = false;
 	for (int g = begin; g < end; ++g) {
 		const Group<K>& group = groups[g];
 		const Bodies<K> v1(moved, group.body1), v2(moved, group.body2);
+		Mask isDeep = none != none;
 		for (int k = 0; k < group.count; ++k) {
 			const PointLanes<K>& p = group.point[k];
-			least = smaller(least, p.gap - deep);
+			isDeep |= p.gap < deep;
 			const Lanes room = p.gap - allowed;
 			points[g][k] = {room > 0 ? room : p.gap < deep ? room : none, p.massN > 0 ? normalMass(p, v1.m, v2.m) : none, none};
 		}
+		seen[g] = any(isDeep) ? 0 : 1;
+		some |= !seen[g];
 	}
-	return least;
+	return some;
 }
 
-// Sweep number `now`: groups of which no block has moved since they were looked at stay.
+// Groups of which no block has moved since they were looked at stay. Instants are counted from that of the first place in this sweep on.
 template <class K>
-MASONRY_INLINE void liftGroups(const Group<K>* groups, typename Lift<K>::Points* points, const int* upwards, int begin, int end, int now,
+MASONRY_INLINE void liftGroups(const Group<K>* groups, typename Lift<K>::Points* points, const int* upwards, int begin, int end, int first,
                                int* last, int* seen, double small, Lanes* moved, Lanes& missing)
 {
 	const Lanes none = all(0);
 	for (int place = begin; place < end; ++place) {
-		const int g = upwards[place];
+		const int g = upwards[place], now = first + place;
 		const Group<K>& group = groups[g];
 		int since = -1;
 		for (int i = 0; i < width; ++i)
@@ -98,14 +101,15 @@ MASONRY_INLINE Lanes partGroups(Group<K>* groups, int begin, int end, const Lane
 
 // No template is compiled for several vector widths.
 #define MASONRY_LIFT(K)                                                                                                                    \
-	MASONRY_LANES bool anyDeep(const Group<K>* groups, Lift<K>::Points* points, int begin, int end, const Lanes* moved, double length)     \
+	MASONRY_LANES bool anyDeep(const Group<K>* groups, Lift<K>::Points* points, int begin, int end, int* seen, const Lanes* moved,         \
+	                           double length)                                                                                              \
 	{                                                                                                                                      \
-		return any(prepareGroups<K>(groups, points, begin, end, moved, length) < 0);                                                       \
+		return prepareGroups<K>(groups, points, begin, end, seen, moved, length);                                                          \
 	}                                                                                                                                      \
-	MASONRY_LANES void liftSweep(const Group<K>* groups, Lift<K>::Points* points, const int* upwards, int begin, int end, int now,         \
+	MASONRY_LANES void liftSweep(const Group<K>* groups, Lift<K>::Points* points, const int* upwards, int begin, int end, int first,       \
 	                             int* last, int* seen, double small, Lanes* moved, Lanes& missing)                                         \
 	{                                                                                                                                      \
-		liftGroups<K>(groups, points, upwards, begin, end, now, last, seen, small, moved, missing);                                        \
+		liftGroups<K>(groups, points, upwards, begin, end, first, last, seen, small, moved, missing);                                        \
 	}                                                                                                                                      \
 	MASONRY_LANES double partGaps(Group<K>* groups, int begin, int end, const Lanes* moved)                                                \
 	{                                                                                                                                      \
@@ -122,24 +126,25 @@ double Lift<K>::settle(WallContacts<K>& c)
 {
 	static const auto share = sharesOfCourses();
 	points.resize(c.groups.size());
+	seen.resize(c.groups.size());
 	moved.assign(c.velocity.size(), all(0));
 	for (size_t b = 0; b < c.course.size(); ++b)
 		for (int pack = 0; pack < packs<K>; ++pack)
 			moved[packs<K> * b + pack][3] = c.velocity[packs<K> * b][3] * share[std::clamp(c.course[b], 0, highestCourse)];
 	std::array<bool, Team::mostParts + 1> deep {};
 	c.allParts([&](const Part& part, int number) {
-		deep[number] = anyDeep(c.groups.data(), points.data(), part.begin, part.end, moved.data(), c.length);
+		deep[number] = anyDeep(c.groups.data(), points.data(), part.begin, part.end, seen.data(), moved.data(), c.length);
 	});
 	if (std::none_of(deep.begin(), deep.end(), [](bool is) { return is; }))
 		return tolerance::wall::penetration * c.length; // or less
 	const Lanes noMass {1, 1, 1, 0};
 	const double enough = (tolerance::wall::penetration - tolerance::wall::lifted) * c.length;
 	last.assign(c.course.size() + 1, 0);
-	seen.assign(c.groups.size(), 0);
 	for (int k = 0; k < mostSweeps; ++k) {
 		Missing missing[Team::mostParts + 1] {};
 		const auto lift = [&](const Part& part, int number) {
-			liftSweep(c.groups.data(), points.data(), c.upwards.data(), part.begin, part.end, k + 1, last.data(), seen.data(),
+			liftSweep(c.groups.data(), points.data(), c.upwards.data(), part.begin, part.end, 1 + k * int(c.groups.size()), last.data(),
+			          seen.data(),
 			          passedOn * enough, moved.data(), missing[number].most);
 		};
 		c.eachPart(lift);
