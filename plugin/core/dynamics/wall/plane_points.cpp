@@ -17,9 +17,52 @@ MASONRY_INLINE Placed placed(const Lanes* pose, const int* body)
 	return p;
 }
 
-// Returns how far the pairs have moved since they were looked up.
-MASONRY_INLINE Lanes locateGroup(Group<Plane>& group, FeatureGroup<Plane>& features, const Lanes* pose, const Lanes* velocity,
-                                 const Plane::Spin* gyration, unsigned char anew)
+// One of the two points of four pairs.
+struct Located {
+	Lanes outX, outY;   // of the face
+	Lanes armX, armY;   // from the centre of the vertex's body
+	Lanes fromX, fromY; // and of the face's
+	Lanes gap, shift;   // of the vertex, over and along the face
+};
+
+MASONRY_INLINE Located located(const FeatureLanes<Plane>& f, const Placed& p1, const Placed& p2)
+{
+	const Lanes vertexC = select(f.vertexOn1, p1.cosine, p2.cosine), vertexS = select(f.vertexOn1, p1.sine, p2.sine);
+	const Lanes faceC = select(f.vertexOn1, p2.cosine, p1.cosine), faceS = select(f.vertexOn1, p2.sine, p1.sine);
+	const Lanes awayX = select(f.vertexOn1, p1.x - p2.x, p2.x - p1.x), awayY = select(f.vertexOn1, p1.y - p2.y, p2.y - p1.y);
+	Located at;
+	at.armX = vertexC * f.vertexX - vertexS * f.vertexY;
+	at.armY = vertexS * f.vertexX + vertexC * f.vertexY;
+	at.outX = faceC * f.normalX - faceS * f.normalY;
+	at.outY = faceS * f.normalX + faceC * f.normalY;
+	at.fromX = awayX + at.armX;
+	at.fromY = awayY + at.armY;
+	at.gap = at.outX * at.fromX + at.outY * at.fromY - f.faceDistance;
+	at.shift = at.outX * at.fromY - at.outY * at.fromX;
+	return at;
+}
+
+// Gaps. Returns how far the pairs have moved since they were looked up.
+MASONRY_INLINE Lanes measureGroup(Group<Plane>& group, FeatureGroup<Plane>& features, const Lanes* pose, unsigned char anew)
+{
+	const Placed p1 = placed(pose, group.body1), p2 = placed(pose, group.body2);
+	Lanes moved = all(0);
+	for (int k = 0; k < lanePoints<Plane>; ++k) {
+		FeatureLanes<Plane>& f = features.point[k];
+		const Located at = located(f, p1, p2);
+		if (anew) {
+			f.foundGap = select(maskOf(anew), at.gap, f.foundGap);
+			f.foundShift = select(maskOf(anew), at.shift, f.foundShift);
+		}
+		moved = larger(moved, size(at.gap - f.foundGap) + size(at.shift - f.foundShift));
+		group.point[k].gap = select(f.present, at.gap, all(farAway));
+	}
+	return moved;
+}
+
+// Normals, arms and masses.
+MASONRY_INLINE void leanGroup(Group<Plane>& group, const FeatureGroup<Plane>& features, const Lanes* pose, const Lanes* velocity,
+                              const Plane::Spin* gyration)
 {
 	const Placed p1 = placed(pose, group.body1), p2 = placed(pose, group.body2);
 	Lanes mass1, mass2, rho1, rho2;
@@ -29,54 +72,50 @@ MASONRY_INLINE Lanes locateGroup(Group<Plane>& group, FeatureGroup<Plane>& featu
 		rho1[i] = gyration[group.body1[i]][0];
 		rho2[i] = gyration[group.body2[i]][0];
 	}
-	const Lanes one = all(1), perRho1 = one / rho1, perRho2 = one / rho2;
-	Lanes moved = all(0);
-	for (int k = 0; k < 2; ++k) {
-		FeatureLanes<Plane>& f = features.point[k];
+	const Lanes none = all(0), one = all(1), perRho1 = one / rho1, perRho2 = one / rho2;
+	for (int k = 0; k < lanePoints<Plane>; ++k) {
+		const FeatureLanes<Plane>& f = features.point[k];
 		PointLanes<Plane>& p = group.point[k];
-		const Lanes vertexC = select(f.vertexOn1, p1.cosine, p2.cosine), vertexS = select(f.vertexOn1, p1.sine, p2.sine);
-		const Lanes faceC = select(f.vertexOn1, p2.cosine, p1.cosine), faceS = select(f.vertexOn1, p2.sine, p1.sine);
-		const Lanes awayX = select(f.vertexOn1, p1.x - p2.x, p2.x - p1.x), awayY = select(f.vertexOn1, p1.y - p2.y, p2.y - p1.y);
-		const Lanes armX = vertexC * f.vertexX - vertexS * f.vertexY, armY = vertexS * f.vertexX + vertexC * f.vertexY;
-		const Lanes outX = faceC * f.normalX - faceS * f.normalY, outY = faceS * f.normalX + faceC * f.normalY;
-		const Lanes fromX = awayX + armX, fromY = awayY + armY; // the centre of the face's body
-		const Lanes gap = outX * fromX + outY * fromY - f.faceDistance, shift = outX * fromY - outY * fromX;
-		if (anew) {
-			f.foundGap = select(maskOf(anew), gap, f.foundGap);
-			f.foundShift = select(maskOf(anew), shift, f.foundShift);
-		}
-		moved = larger(moved, size(gap - f.foundGap) + size(shift - f.foundShift));
-
-		p.nx = select(f.vertexOn1, -outX, outX);
-		p.ny = select(f.vertexOn1, -outY, outY);
-		const Lanes r1x = select(f.vertexOn1, armX, fromX), r1y = select(f.vertexOn1, armY, fromY);
-		const Lanes r2x = select(f.vertexOn1, fromX, armX), r2y = select(f.vertexOn1, fromY, armY);
+		const Located at = located(f, p1, p2);
+		p.nx = select(f.vertexOn1, -at.outX, at.outX);
+		p.ny = select(f.vertexOn1, -at.outY, at.outY);
+		const Lanes r1x = select(f.vertexOn1, at.armX, at.fromX), r1y = select(f.vertexOn1, at.armY, at.fromY);
+		const Lanes r2x = select(f.vertexOn1, at.fromX, at.armX), r2y = select(f.vertexOn1, at.fromY, at.armY);
 		p.a1n = (r1x * p.ny - r1y * p.nx) * perRho1;
 		p.a1t = (r1x * p.nx + r1y * p.ny) * perRho1;
 		p.a2n = (r2x * p.ny - r2y * p.nx) * perRho2;
 		p.a2t = (r2x * p.nx + r2y * p.ny) * perRho2;
-		p.gap = select(f.present, gap, all(farAway));
-		const Lanes none = all(0);
 		p.massN = select(f.present, one / (mass1 + mass2 + mass1 * p.a1n * p.a1n + mass2 * p.a2n * p.a2n), none);
 		p.massT = select(f.present, one / (mass1 + mass2 + mass1 * p.a1t * p.a1t + mass2 * p.a2t * p.a2t), none);
 	}
-	return moved;
 }
 
-MASONRY_LANES void locateGroups(Group<Plane>* groups, FeatureGroup<Plane>* features, unsigned char* stale, size_t count, const Lanes* pose,
-                                const Lanes* velocity, const Plane::Spin* gyration, double travel, bool remember)
+MASONRY_LANES void measureGroups(Group<Plane>* groups, FeatureGroup<Plane>* features, unsigned char* stale, size_t count, const Lanes* pose,
+                                 double travel, bool remember)
 {
 	for (size_t g = 0; g < count; ++g)
-		stale[g] |= bitsOf(locateGroup(groups[g], features[g], pose, velocity, gyration, remember ? stale[g] : 0) > travel);
+		stale[g] |= bitsOf(measureGroup(groups[g], features[g], pose, remember ? stale[g] : 0) > travel);
+}
+
+MASONRY_LANES void leanGroups(Group<Plane>* groups, const FeatureGroup<Plane>* features, size_t count, const Lanes* pose,
+                              const Lanes* velocity, const Plane::Spin* gyration)
+{
+	for (size_t g = 0; g < count; ++g)
+		leanGroup(groups[g], features[g], pose, velocity, gyration);
 }
 
 } // namespace
 
 template <>
-void WallContacts<Plane>::locate(const RigidSystem<Plane>&, int begin, int end, double travel, bool remember)
+void WallContacts<Plane>::measureGaps(const RigidSystem<Plane>&, int begin, int end, double travel, bool remember)
 {
-	locateGroups(groups.data() + begin, features.data() + begin, stale.data() + begin, end - begin, pose.data(), velocity.data(),
-	             gyration.data(), travel, remember);
+	measureGroups(groups.data() + begin, features.data() + begin, stale.data() + begin, end - begin, pose.data(), travel, remember);
+}
+
+template <>
+void WallContacts<Plane>::takeFrames(const RigidSystem<Plane>&, int begin, int end)
+{
+	leanGroups(groups.data() + begin, features.data() + begin, end - begin, pose.data(), velocity.data(), gyration.data());
 }
 
 template <>
@@ -92,13 +131,19 @@ void WallContacts<Plane>::takeBodies(const RigidSystem<Plane>& s)
 			const double perMass = own[b] ? 1 / body.mass : 0;
 			gyration[b][0] = own[b] ? std::sqrt(body.inertia[0] * perMass) : 1;
 			velocity[b][3] = perMass;
+			place(b, body.pose);
 			setVelocity(b, body.velocity);
-			pose[b] = Lanes {body.pose.position.x(), body.pose.position.y(), body.pose.cosine, body.pose.sine};
 		}
 	});
 	velocity[n] = all(0);
 	pose[n] = Lanes {0, 0, 1, 0};
 	gyration[n][0] = 1;
+}
+
+template <>
+void WallContacts<Plane>::place(size_t b, const PlanePose& at)
+{
+	pose[b] = Lanes {at.position.x(), at.position.y(), at.cosine, at.sine};
 }
 
 template <>

@@ -71,23 +71,42 @@ MASONRY_INLINE Found vertexOnFace(const FeatureLanes<Space>& f, const Placed& p1
 	return found;
 }
 
+Pose poseOf(const Lanes* pose, int body)
+{
+	const Lanes* row = &pose[poseRows * body];
+	Matrix3 axes;
+	for (int i = 0; i < 3; ++i)
+		axes.row(i) << row[i][0], row[i][1], row[i][2];
+	return {{row[0][3], row[1][3], row[2][3]}, Quaternion(axes)};
+}
+
 // Edges that cross. The tangents are along and across body 1's edge.
-void takeCrossings(const RigidSystem<Space>& s, const FeatureGroup<Space>& features, int k, Found& found)
+void takeCrossings(const RigidSystem<Space>& s, const FeatureGroup<Space>& features, int k, const Lanes* poses, Found& found)
 {
 	for (int i = 0; i < width; ++i) {
 		if (!features.point[k].crossing[i])
 			continue;
 		const ContactPair<Space>& pair = s.pairs[features.pair[i]];
-		const auto &body1 = s.bodies[pair.body1], &body2 = s.bodies[pair.body2];
-		const ContactFrame<Space> frame =
-		    Space::frame(pair.points[features.first[i] + k].feature, body1.halfSize, body1.pose, body2.halfSize, body2.pose);
+		const Pose pose1 = poseOf(poses, pair.body1), pose2 = poseOf(poses, pair.body2);
+		const ContactFrame<Space> frame = Space::frame(pair.points[features.first[i] + k].feature, s.bodies[pair.body1].halfSize, pose1,
+		                                               s.bodies[pair.body2].halfSize, pose2);
 		set(found.normal, i, frame.axes.row(0));
 		set(found.tangent, i, frame.axes.row(1));
-		set(found.arm2, i, frame.position - body2.pose.position);
+		set(found.arm2, i, frame.position - pose2.position);
 		found.gap[i] = frame.gap;
-		found.along1[i] = frame.axes.row(1) * (frame.position - body1.pose.position);
-		found.along2[i] = frame.axes.row(2) * (frame.position - body2.pose.position);
+		found.along1[i] = frame.axes.row(1) * (frame.position - pose1.position);
+		found.along2[i] = frame.axes.row(2) * (frame.position - pose2.position);
 	}
+}
+
+MASONRY_INLINE Found located(const RigidSystem<Space>& s, const FeatureGroup<Space>& features, int k, const Lanes* poses, const Placed& p1,
+                             const Placed& p2)
+{
+	const FeatureLanes<Space>& f = features.point[k];
+	Found found = vertexOnFace(f, p1, p2);
+	if (f.crossing[0] | f.crossing[1] | f.crossing[2] | f.crossing[3])
+		takeCrossings(s, features, k, poses, found);
+	return found;
 }
 
 // Arms and masses. Along two rows a point gives J M^-1 J^T.
@@ -114,7 +133,6 @@ MASONRY_INLINE void takeFound(PointLanes<Space>& p, FeatureLanes<Space>& f, cons
 	takeRow(p.tangent[1], cross(found.normal, found.tangent), r1, found.arm2, p1, p2);
 
 	const Lanes none = all(0), one = all(1), mass = mass1 + mass2;
-	p.gap = select(f.present, found.gap, all(farAway));
 	p.massN = select(f.present, one / (mass + response(p.normal, p.normal, mass1, mass2)), none);
 	const Lanes k11 = mass + response(p.tangent[0], p.tangent[0], mass1, mass2),
 	            k22 = mass + response(p.tangent[1], p.tangent[1], mass1, mass2), k12 = response(p.tangent[0], p.tangent[1], mass1, mass2);
@@ -125,41 +143,56 @@ MASONRY_INLINE void takeFound(PointLanes<Space>& p, FeatureLanes<Space>& f, cons
 	p.massT = select(f.present, one / (middle + root(half * half + k12 * k12)), none);
 }
 
-MASONRY_LANES void locateGroups(const RigidSystem<Space>& s, Group<Space>* groups, FeatureGroup<Space>* features, unsigned char* stale,
-                                size_t count, const Lanes* pose, const Lanes* velocity, double travel, bool remember)
+MASONRY_LANES void measureGroups(const RigidSystem<Space>& s, Group<Space>* groups, FeatureGroup<Space>* features, unsigned char* stale,
+                                 size_t count, const Lanes* pose, double travel, bool remember)
 {
 	for (size_t g = 0; g < count; ++g) {
 		Group<Space>& group = groups[g];
 		const Placed p1 = placed(pose, group.body1), p2 = placed(pose, group.body2);
-		Lanes mass1, mass2, moved = all(0);
+		Lanes moved = all(0);
 		const Mask anew = maskOf(stale[g]);
-		for (int i = 0; i < width; ++i) {
-			mass1[i] = velocity[packs<Space> * group.body1[i]][3];
-			mass2[i] = velocity[packs<Space> * group.body2[i]][3];
-		}
 		for (int k = 0; k < group.count; ++k) {
 			FeatureLanes<Space>& f = features[g].point[k];
-			Found found = vertexOnFace(f, p1, p2);
-			if (f.crossing[0] | f.crossing[1] | f.crossing[2] | f.crossing[3])
-				takeCrossings(s, features[g], k, found);
+			const Found found = located(s, features[g], k, pose, p1, p2);
 			if (remember) {
 				f.foundGap = select(anew, found.gap, f.foundGap);
 				f.found = select(anew, {found.along1, found.along2}, f.found);
 			}
 			moved = larger(moved, size(found.gap - f.foundGap) + size(found.along1 - f.found.x) + size(found.along2 - f.found.y));
-			takeFound(group.point[k], f, found, p1, p2, mass1, mass2);
+			group.point[k].gap = select(f.present, found.gap, all(farAway));
 		}
 		stale[g] |= bitsOf(moved > travel);
+	}
+}
+
+MASONRY_LANES void leanGroups(const RigidSystem<Space>& s, Group<Space>* groups, FeatureGroup<Space>* features, size_t count,
+                              const Lanes* pose, const Lanes* velocity)
+{
+	for (size_t g = 0; g < count; ++g) {
+		Group<Space>& group = groups[g];
+		const Placed p1 = placed(pose, group.body1), p2 = placed(pose, group.body2);
+		Lanes mass1, mass2;
+		for (int i = 0; i < width; ++i) {
+			mass1[i] = velocity[packs<Space> * group.body1[i]][3];
+			mass2[i] = velocity[packs<Space> * group.body2[i]][3];
+		}
+		for (int k = 0; k < group.count; ++k)
+			takeFound(group.point[k], features[g].point[k], located(s, features[g], k, pose, p1, p2), p1, p2, mass1, mass2);
 	}
 }
 
 } // namespace
 
 template <>
-void WallContacts<Space>::locate(const RigidSystem<Space>& s, int begin, int end, double travel, bool remember)
+void WallContacts<Space>::measureGaps(const RigidSystem<Space>& s, int begin, int end, double travel, bool remember)
 {
-	locateGroups(s, groups.data() + begin, features.data() + begin, stale.data() + begin, end - begin, pose.data(), velocity.data(), travel,
-	             remember);
+	measureGroups(s, groups.data() + begin, features.data() + begin, stale.data() + begin, end - begin, pose.data(), travel, remember);
+}
+
+template <>
+void WallContacts<Space>::takeFrames(const RigidSystem<Space>& s, int begin, int end)
+{
+	leanGroups(s, groups.data() + begin, features.data() + begin, end - begin, pose.data(), velocity.data());
 }
 
 template <>
@@ -170,12 +203,10 @@ void WallContacts<Space>::takeBodies(const RigidSystem<Space>& s)
 	pose.resize(poseRows * (n + 1));
 	gyration.resize(n + 1);
 	const auto take = [this](size_t b, const Pose& at, const Space::Velocity& v, double perMass) {
-		const Matrix3 axes = at.orientation.toRotationMatrix();
 		const Vector3 perRho = gyration[b].cwiseInverse();
-		for (int i = 0; i < 3; ++i)
-			pose[poseRows * b + i] = Lanes {axes(i, 0), axes(i, 1), axes(i, 2), at.position[i]};
 		pose[poseRows * b + 3] = Lanes {perRho[0], perRho[1], perRho[2], 1};
 		velocity[2 * b][3] = perMass;
+		place(b, at);
 		setVelocity(b, v);
 	};
 	eachShare(n, [&](size_t begin, size_t end, int) {
@@ -187,6 +218,14 @@ void WallContacts<Space>::takeBodies(const RigidSystem<Space>& s)
 	});
 	gyration[n].setOnes();
 	take(n, {}, Space::Velocity::Zero(), 0);
+}
+
+template <>
+void WallContacts<Space>::place(size_t b, const Pose& at)
+{
+	const Matrix3 axes = at.orientation.toRotationMatrix();
+	for (int i = 0; i < 3; ++i)
+		pose[poseRows * b + i] = Lanes {axes(i, 0), axes(i, 1), axes(i, 2), at.position[i]};
 }
 
 template <>

@@ -167,7 +167,8 @@ bool WallContacts<K>::lookUpStale(RigidSystem<K>& s, const Part& part)
 	for (int g = part.begin; g < part.end; ++g)
 		if (stale[g]) {
 			countPoints(s, g);
-			locate(s, g, g + 1, 0, true);
+			measureGaps(s, g, g + 1, 0, true);
+			takeFrames(s, g, g + 1);
 			stale[g] = 0;
 		}
 	return other;
@@ -231,39 +232,35 @@ void WallContacts<K>::showPoints(RigidSystem<K>& s) const
 			showPair(s, c);
 }
 
+template <class K>
+void WallContacts<K>::placeAll(const RigidSystem<K>& s, const std::vector<typename K::Pose>& poses)
+{
+	eachShare(poses.size(), [&](size_t begin, size_t end, int) {
+		for (size_t b = begin; b < end; ++b) {
+			place(b, poses[b]);
+			setVelocity(b, s.bodies[b].velocity);
+		}
+	});
+}
+
 // Points located where these poses put the bodies, which stay where they are.
 template <class K>
-void WallContacts<K>::locateAt(RigidSystem<K>& s, std::vector<typename K::Pose>& poses)
+void WallContacts<K>::placeAt(const RigidSystem<K>& s, const std::vector<typename K::Pose>& poses)
 {
-	const auto swap = [&] {
-		for (size_t b = 0; b < poses.size(); ++b)
-			std::swap(s.bodies[b].pose, poses[b]);
-	};
-	swap();
 	takeBodies(s);
-	allParts([&](const Part& part, int) { locate(s, part.begin, part.end, std::numeric_limits<double>::infinity(), false); });
-	swap();
-}
-
-template <class K>
-void WallContacts<K>::placeAt(RigidSystem<K>& s, std::vector<typename K::Pose>& poses)
-{
-	locateAt(s, poses);
+	placeAll(s, poses);
+	allParts([&](const Part& part, int) {
+		measureGaps(s, part.begin, part.end, std::numeric_limits<double>::infinity(), false);
+		takeFrames(s, part.begin, part.end);
+	});
 	takeBodies(s);
 }
 
 template <class K>
-void WallContacts<K>::lean(RigidSystem<K>& s, std::vector<typename K::Pose>& poses)
+void WallContacts<K>::lean(const RigidSystem<K>& s, const std::vector<typename K::Pose>& poses)
 {
-	gaps.clear();
-	for (const Group<K>& group : groups)
-		for (const PointLanes<K>& p : group.point)
-			gaps.push_back(p.gap);
-	locateAt(s, poses);
-	const Lanes* gap = gaps.data();
-	for (Group<K>& group : groups)
-		for (PointLanes<K>& p : group.point)
-			p.gap = *gap++;
+	placeAll(s, poses);
+	allParts([&](const Part& part, int) { takeFrames(s, part.begin, part.end); });
 }
 
 // Whether normals, arms and masses may stay.
@@ -296,7 +293,11 @@ bool WallContacts<K>::measure(RigidSystem<K>& s, bool isStill)
 		std::fill(stale.begin(), stale.end(), allLanes);
 	takeBodies(s);
 	const double travel = tolerance::wall::search * length;
-	allParts([&](const Part& part, int) { locate(s, part.begin, part.end, travel, false); });
+	allParts([&](const Part& part, int) {
+		measureGaps(s, part.begin, part.end, travel, false);
+		if (isStill)
+			takeFrames(s, part.begin, part.end);
+	});
 	for (wider = true; wider;) {
 		wider = false;
 		lookUpStale(s);

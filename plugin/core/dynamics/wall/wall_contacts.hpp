@@ -173,7 +173,7 @@ public:
 	// still too, every few steps. True: other points than before.
 	bool measure(RigidSystem<K>& system, bool isStill);
 	// Normals, arms and masses as they are where these poses put the bodies; gaps stay.
-	void lean(RigidSystem<K>& system, std::vector<typename K::Pose>& poses);
+	void lean(const RigidSystem<K>& system, const std::vector<typename K::Pose>& poses);
 	// Impulses are those of a time h from now on; not many times the last, or an impact's would become as many.
 	void setUnit(double h);
 	// The means of the impulses of these pairs are those that there are now.
@@ -221,7 +221,7 @@ public:
 
 	// work() with bodies and points where these poses put them.
 	template <class Work>
-	void at(RigidSystem<K>& s, std::vector<typename K::Pose>& poses, const Work& work)
+	void at(const RigidSystem<K>& s, const std::vector<typename K::Pose>& poses, const Work& work)
 	{
 		const auto groupsNow = groups;
 		const auto featuresNow = features;
@@ -308,12 +308,13 @@ private:
 	void orderUpwards();
 	void countFrom(const std::vector<int>& through, std::vector<int>& count) const;
 	void takeBodies(const RigidSystem<K>& system);
-	void locateAt(RigidSystem<K>& system, std::vector<typename K::Pose>& poses);
-	void placeAt(RigidSystem<K>& system, std::vector<typename K::Pose>& poses);
+	void place(size_t body, const typename K::Pose& pose);
+	void placeAll(const RigidSystem<K>& system, const std::vector<typename K::Pose>& poses);
+	void placeAt(const RigidSystem<K>& system, const std::vector<typename K::Pose>& poses);
 	bool isLocated(const RigidSystem<K>& system) const;
-	// Gaps, normals, arms. Pairs that have moved by more than `travel` become stale; with `remember`, movement of those that are stale
-	// counts from here.
-	void locate(const RigidSystem<K>& system, int begin, int end, double travel, bool remember);
+	// Gaps. Pairs that have moved by more than `travel` become stale; with `remember`, movement of those that are stale counts from here.
+	void measureGaps(const RigidSystem<K>& system, int begin, int end, double travel, bool remember);
+	void takeFrames(const RigidSystem<K>& system, int begin, int end); // normals, arms and masses
 	void lookUpStale(RigidSystem<K>& system);
 	bool lookUpStale(RigidSystem<K>& system, const Part& part);
 	bool lookUp(RigidSystem<K>& system, int pair);
@@ -321,7 +322,6 @@ private:
 	void setState(const State& state, int pair, int point);
 	void takePoint(const RigidSystem<K>& system, int pair, int point);
 
-	LaneArray gaps;                                      // workspace
 	double unit {0};                                     // s, that the impulses are of
 	int list {-1};                                       // of the system, that pairs are of
 	int stood {0};                                       // still steps with the points as they are located; 0: the last moved
@@ -343,7 +343,11 @@ private:
 	template <>                                                                                                                            \
 	void WallContacts<K>::takePoint(const RigidSystem<K>&, int, int);                                                                      \
 	template <>                                                                                                                            \
-	void WallContacts<K>::locate(const RigidSystem<K>&, int, int, double, bool);                                                           \
+	void WallContacts<K>::place(size_t, const K::Pose&);                                                                                   \
+	template <>                                                                                                                            \
+	void WallContacts<K>::measureGaps(const RigidSystem<K>&, int, int, double, bool);                                                      \
+	template <>                                                                                                                            \
+	void WallContacts<K>::takeFrames(const RigidSystem<K>&, int, int);                                                                     \
 	template <>                                                                                                                            \
 	void WallContacts<K>::setVelocity(size_t, const K::Velocity&);                                                                         \
 	template <>                                                                                                                            \

@@ -359,14 +359,17 @@ void WallStep<K>::press(wall::LaneArray& sum) const
 template <class K>
 void WallStep<K>::lean(RigidSystem<K>& s, Contacts& contacts, double h)
 {
-	middle.clear();
-	for (const auto& body : s.bodies) {
-		middle.push_back(body.pose);
-		if (body.drive >= 0)
-			middle.back().position = driven(s, body, s.time + h / 2);
-		else
-			K::advance(middle.back(), body.velocity, h / 2);
-	}
+	middle.resize(s.bodies.size());
+	contacts.eachShare(middle.size(), [&](size_t begin, size_t end, int) {
+		for (size_t b = begin; b < end; ++b) {
+			const auto& body = s.bodies[b];
+			middle[b] = body.pose;
+			if (body.drive >= 0)
+				middle[b].position = driven(s, body, s.time + h / 2);
+			else
+				K::advance(middle[b], body.velocity, h / 2);
+		}
+	});
 	contacts.lean(s, middle);
 }
 
