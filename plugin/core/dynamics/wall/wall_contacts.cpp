@@ -78,8 +78,12 @@ bool WallContacts<K>::lookUp(RigidSystem<K>& s, int c)
 			groups[group].friction[lane] = std::min(pair.friction, mostFriction);
 	if (same)
 		return false;
-	if (known[c])
+	if (known[c]) {
+		for (const auto [group, lane] : slots[c])
+			if (group >= 0)
+				takeFrames(s, group, group + 1);
 		showPair(s, c);
+	}
 	known[c] = true;
 	const ContactPair<K> before = pair;
 	State states[K::maxPoints];
@@ -302,6 +306,7 @@ bool WallContacts<K>::measure(RigidSystem<K>& s, bool isStill)
 		wider = false;
 		lookUpStale(s);
 		if (wider) { // a pair needs another lane
+			allParts([&](const Part& part, int) { takeFrames(s, part.begin, part.end); });
 			showPoints(s);
 			colour(s);
 		}
