@@ -129,15 +129,10 @@ void WallStep<K>::advancePart(RigidSystem<K>& s, double h)
 	speeds.clear();
 	for (const BaseDrive* drive : s.drives)
 		speeds.push_back(meanSpeed(*drive, s.time, h));
-	forces.clear();
-	for (const auto& body : s.bodies)
-		forces.push_back(body.force);
 	takeMotion(s, h, workBefore);
 	choose(h);
 	s.time += h;
 	s.moved = false;
-	s.setFresh(false);
-	report.diverged = !s.isFinite();
 }
 
 // Every pair into the set of its structure's mode; the taker takes from the giver.
@@ -486,14 +481,16 @@ double WallStep<K>::takeBody(RigidSystem<K>& s, size_t b, double h)
 	return body.force.dot(moved);
 }
 
-// Poses and velocities back into the system; energies.
+// Poses and velocities back into the system; energies; what the next step compares with.
 template <class K>
 void WallStep<K>::takeMotion(RigidSystem<K>& s, double h, double workBefore)
 {
 	struct alignas(64) Energies { // of the bodies of a share; lines of the cache of their own
 		double before {0}, gained {0}, work {0}, mass {0};
+		double place {0}; // of no meaning, but finite if all places are
 	};
 	Energies of[wall::Team::mostParts];
+	forces.resize(s.bodies.size());
 	Contacts& contacts = report.mode == WallMode::still ? still() : moving();
 	contacts.eachShare(s.bodies.size(), [&](size_t begin, size_t end, int number) {
 		Energies sum;
@@ -503,6 +500,9 @@ void WallStep<K>::takeMotion(RigidSystem<K>& s, double h, double workBefore)
 			sum.before += before;
 			sum.gained += s.bodies[b].kineticEnergy() - before;
 			sum.mass += s.bodies[b].prescribed ? 0 : s.bodies[b].mass;
+			sum.place += s.bodies[b].pose.position.sum();
+			s.bodies[b].fresh = false;
+			forces[b] = s.bodies[b].force;
 		}
 		of[number] = sum;
 	});
@@ -512,6 +512,7 @@ void WallStep<K>::takeMotion(RigidSystem<K>& s, double h, double workBefore)
 		lost += share.work - share.gained;
 		atStake += std::abs(share.work) + share.before;
 		mass += share.mass;
+		report.diverged |= !std::isfinite(share.gained + share.place);
 	}
 	s.frictDissip += frictionLoss;
 	s.impactDissip += lost;
