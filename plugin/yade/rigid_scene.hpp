@@ -312,13 +312,19 @@ private:
 	/// Bodies that a script has moved or pushed since the last step. The base goes where its motion says.
 	void readStates()
 	{
+		others.resize(links.size());
+		wall.eachShare(links.size(), [&](size_t begin, size_t end) {
+			for (size_t b = begin; b < end; ++b) {
+				fetch(b + 6);
+				others[b] = !links[b].written.isOf(*links[b].state) && system.bodies[b].drive < 0;
+			}
+		});
 		bool touched = false;
-		for (size_t b = 0; b < links.size(); ++b) {
+		for (size_t b = size_t(std::find(others.begin(), others.end(), 1) - others.begin()); b < links.size(); ++b) {
+			if (!others[b]) continue;
 			Link&        link = links[b];
 			auto&        block = system.bodies[b];
 			const State& state = *link.state;
-			fetch(b + 6);
-			if (link.written.isOf(state) || block.drive >= 0) continue;
 			if (block.prescribed && scene.time > 0 && state.vel == Vector3r::Zero() && (state.pos - link.written.pos).norm() > 0) warnOfPlace(b);
 			kept.seats[b].read(coordinates, state, link.properties.extents.minCoeff(), kept.ids[b], block);
 			block.increment.setZero();
@@ -412,14 +418,16 @@ private:
 	/// Bodies that stand still by prescription are as they were.
 	void writeStates()
 	{
-		for (size_t b = 0; b < links.size(); ++b) {
-			const auto& block = system.bodies[b];
-			if (block.prescribed && block.drive < 0 && block.velocity.isZero(0)) continue;
-			State& state = *links[b].state;
-			fetch(b + 6);
-			kept.seats[b].tell(coordinates, block, links[b].written, state);
-			state.angMom = kept.seats[b].spin(coordinates, block);
-		}
+		wall.eachShare(links.size(), [&](size_t begin, size_t end) {
+			for (size_t b = begin; b < end; ++b) {
+				const auto& block = system.bodies[b];
+				if (block.prescribed && block.drive < 0 && block.velocity.isZero(0)) continue;
+				State& state = *links[b].state;
+				fetch(b + 6);
+				kept.seats[b].tell(coordinates, block, links[b].written, state);
+				state.angMom = kept.seats[b].spin(coordinates, block);
+			}
+		});
 	}
 
 	static bool touches(const Pair& pair)
@@ -463,6 +471,7 @@ private:
 	std::unique_ptr<masonry::rigid::Neighbours<K>> neighbours;
 	vector<MotionDrive> drives;
 	vector<Link> links;
+	vector<char> others; // by link: somebody else has written the state since the last step
 	ShownJoints<K> joints;
 	Remembered<K> kept; // ids and seats; bodies and pairs are filled in when it is packed
 	size_t bodyCount = 0;
