@@ -9,7 +9,7 @@
 #include "dynamics/rigid/islands.hpp"
 #include "dynamics/rigid/neighbours.hpp"
 #include "dynamics/rigid/scales.hpp"
-#include "dynamics/wall/wall_step.hpp"
+#include "dynamics/wall/step_by_size.hpp"
 #include "tolerances.hpp"
 #include <algorithm>
 #include <core/Scene.hpp>
@@ -93,7 +93,7 @@ public:
 		packer(byWalls);
 		if (byWalls) {
 			neighbours->pass(packer);
-			wall.pass(packer, system);
+			bySize.pass(packer, system);
 		}
 		return packer.values;
 	}
@@ -105,7 +105,7 @@ public:
 		if (!byWalls || before.ids != kept.ids || before.pairs.size() != system.pairs.size()) return;
 		renewJoints();
 		neighbours->pass(unpacker);
-		wall.pass(unpacker, system);
+		bySize.pass(unpacker, system);
 		unpacker.end();
 		system.moved = lawsChanged = false;
 	}
@@ -194,17 +194,20 @@ public:
 private:
 	masonry::rigid::StepReport advanceWall()
 	{
-		wall.settings = { integrator.tolerance, integrator.strictForces, std::max(1, integrator.ompThreads) };
-		const auto report = wall.advance(system, scene.dt);
-		const bool still = wall.report.mode == masonry::rigid::WallMode::still;
+		masonry::rigid::WallStep<K>& walls = bySize.walls;
+		walls.settings = { integrator.tolerance, integrator.strictForces, std::max(1, integrator.ompThreads) };
+		const auto report = bySize.advance(system, scene.dt);
+		const masonry::rigid::WallReport& ofWalls = walls.report;
+		const bool still = ofWalls.mode == masonry::rigid::WallMode::still;
 		integrator.mode = still ? "still" : "moving";
-		integrator.movingBlocks = wall.report.moved;
+		integrator.movingBlocks = ofWalls.moved;
+		integrator.localisedBlocks = bySize.localised();
 		++(still ? integrator.stillSteps : integrator.movingSteps);
-		integrator.velocityResidual = wall.report.velocityResidual;
-		integrator.forceResidual = wall.report.forceResidual;
-		if (!still && wall.report.courses > mostCourses && !warnedOfCourses) {
+		integrator.velocityResidual = ofWalls.velocityResidual;
+		integrator.forceResidual = ofWalls.forceResidual;
+		if (!still && ofWalls.courses > mostCourses && !warnedOfCourses) {
 			warnedOfCourses = true;
-			LOG_WARN("blocks of a wall of " << wall.report.courses << " courses move from t = " << scene.time << " s on: walls of more than " << mostCourses
+			LOG_WARN("blocks of a wall of " << ofWalls.courses << " courses move from t = " << scene.time << " s on: walls of more than " << mostCourses
 				<< " courses may go some tenths too far; see what a smaller MoreauJeanIntegrator.tolerance or O.dt changes.");
 		}
 		return report;
@@ -313,7 +316,7 @@ private:
 	void readStates()
 	{
 		others.resize(links.size());
-		wall.eachShare(links.size(), [&](size_t begin, size_t end) {
+		bySize.walls.eachShare(links.size(), [&](size_t begin, size_t end) {
 			for (size_t b = begin; b < end; ++b) {
 				fetch(b + 6);
 				others[b] = !links[b].written.isOf(*links[b].state) && system.bodies[b].drive < 0;
@@ -404,7 +407,7 @@ private:
 
 	void showPoints()
 	{
-		if (byWalls) wall.showPoints(system);
+		if (byWalls) bySize.walls.showPoints(system);
 	}
 
 	/// YADE's states lie scattered in memory.
@@ -418,7 +421,7 @@ private:
 	/// Bodies that stand still by prescription are as they were.
 	void writeStates()
 	{
-		wall.eachShare(links.size(), [&](size_t begin, size_t end) {
+		bySize.walls.eachShare(links.size(), [&](size_t begin, size_t end) {
 			for (size_t b = begin; b < end; ++b) {
 				const auto& block = system.bodies[b];
 				if (block.prescribed && block.drive < 0 && block.velocity.isZero(0)) continue;
@@ -465,7 +468,7 @@ private:
 	const Coordinates<K> coordinates;
 	System system;
 	masonry::rigid::Islands<K> islands;
-	masonry::rigid::WallStep<K> wall;
+	masonry::rigid::StepBySize<K> bySize; // method='wall'
 	bool byWalls = false, lawsChanged = false, warnedOfCourses = false, warnedOfPlace = false;
 	int unshown = 1; // steps since the interactions were written
 	std::unique_ptr<masonry::rigid::Neighbours<K>> neighbours;

@@ -212,6 +212,7 @@ with tempfile.TemporaryDirectory() as folder:
         print(f"{model}, {shaking} g: {modes[0]} still and {modes[1]} moving steps, {len(dem.impacts())} impacts, {beside} of {len(O.bodies) - 1} blocks move")
         if "piers" in options:
             assert modes[1] > 200 and 0 < beside <= options["piers"] and len(dem.impacts()) >= options["piers"]  # each has landed
+            assert integrator().localisedBlocks == options["piers"] - 1  # those beside the wall
         else:
             assert (modes[1] == 0) if shaking < MU else (modes[1] > 200 and len(dem.impacts()) > 10)
 

@@ -4,56 +4,50 @@
 
 namespace masonry::rigid {
 
-namespace {
-
-void add(StepReport& sum, const StepReport& report)
-{
-	sum.substeps = std::max(sum.substeps, report.substeps);
-	sum.events += report.events;
-	sum.sweeps += report.sweeps;
-	sum.factorisations += report.factorisations;
-	sum.unlocalised += report.unlocalised;
-	sum.residual = std::max(sum.residual, report.residual);
-	sum.created += report.created;
-	sum.converged &= report.converged;
-	sum.diverged |= report.diverged;
-}
-
-} // namespace
-
 template <class K>
 StepReport Islands<K>::advance(RigidSystem<K>& s, double dt)
 {
 	if (s.lists != list || s.bodies.size() != bodies)
-		divide(s);
+		divide(s, std::vector<char>(s.bodies.size(), 1));
 	if (islands.size() < 2 || std::any_of(s.drives.begin(), s.drives.end(), [](const BaseDrive* drive) { return drive->ordered(); }))
 		return step.advance(s, dt);
-	StepReport report;
 	s.impacts.clear();
-	for (Island& island : islands) // before any gives a shared base back
-		take(s, island);
-	for (Island& island : islands) {
-		add(report, step.advance(island.system, dt));
-		giveBack(s, island);
-	}
-	const auto earlier = [](const Impact& a, const Impact& b) { return a.time < b.time; };
-	std::stable_sort(s.impacts.begin(), s.impacts.end(), earlier);
+	take(s);
+	const StepReport report = advanceTaken(s, dt);
 	s.time = islands.front().system.time;
 	s.moved = false;
 	return report;
 }
 
+template <class K>
+void Islands<K>::take(const RigidSystem<K>& s)
+{
+	for (Island& island : islands) // before any gives a shared base back
+		take(s, island);
+}
+
+template <class K>
+StepReport Islands<K>::advanceTaken(RigidSystem<K>& s, double dt)
+{
+	StepReport report;
+	for (Island& island : islands) {
+		report += step.advance(island.system, dt);
+		giveBack(s, island);
+	}
+	const auto earlier = [](const Impact& a, const Impact& b) { return a.time < b.time; };
+	std::stable_sort(s.impacts.begin(), s.impacts.end(), earlier);
+	return report;
+}
+
 // Prescribed bodies are in the islands that they are near, or in the first.
 template <class K>
-void Islands<K>::divide(const RigidSystem<K>& s)
+void Islands<K>::divide(const RigidSystem<K>& s, const std::vector<char>& chosen)
 {
 	list = s.lists;
 	bodies = s.bodies.size();
 	const std::vector<int> number = islandNumbers(s);
 	islands.clear();
 	islands.resize(number.empty() ? 0 : 1 + *std::max_element(number.begin(), number.end()));
-	if (islands.size() < 2)
-		return;
 	std::vector<std::vector<int>> members(islands.size());
 	std::vector<char> used(bodies, 0);
 	for (size_t b = 0; b < bodies; ++b)
@@ -69,7 +63,7 @@ void Islands<K>::divide(const RigidSystem<K>& s)
 		}
 	}
 	for (size_t b = 0; b < bodies; ++b)
-		if (number[b] < 0 && !used[b])
+		if (number[b] < 0 && !used[b] && !members.empty())
 			members[0].push_back(int(b));
 	for (size_t k = 0; k < islands.size(); ++k) {
 		auto& own = members[k];
@@ -77,6 +71,10 @@ void Islands<K>::divide(const RigidSystem<K>& s)
 		own.erase(std::unique(own.begin(), own.end()), own.end());
 		islands[k].bodies = own;
 	}
+	const auto isOther = [&](const Island& island) {
+		return std::none_of(island.bodies.begin(), island.bodies.end(), [&](int b) { return number[b] >= 0 && chosen[b]; });
+	};
+	islands.erase(std::remove_if(islands.begin(), islands.end(), isOther), islands.end());
 }
 
 template <class K>

@@ -10,13 +10,18 @@ class Islands {
 public:
 	StepReport advance(RigidSystem<K>& system, double dt);
 
+	// The same for the islands of these bodies alone: what they are made of, and a step of them, which starts from where they were taken.
+	// Time and the system's other bodies are left to others.
+	void divide(const RigidSystem<K>& system, const std::vector<char>& bodies);
+	void take(const RigidSystem<K>& system);
+	StepReport advanceTaken(RigidSystem<K>& system, double dt);
+
 private:
 	struct Island {
 		RigidSystem<K> system;
 		std::vector<int> bodies, pairs; // of the whole system
 	};
 
-	void divide(const RigidSystem<K>& system);
 	void take(const RigidSystem<K>& system, Island& island) const;
 	void giveBack(RigidSystem<K>& system, Island& island) const;
 

@@ -78,6 +78,23 @@ struct StepReport {
 	double burden { 0 };      // course times ratio of masses of a block upon a lighter one, where it is more than a wall's sweeps carry
 	bool   converged { true };
 	bool   diverged { false }; // the state is no longer finite
+
+	// Of structures that are stepped apart.
+	StepReport& operator+=(const StepReport& other)
+	{
+		substeps = std::max(substeps, other.substeps);
+		events += other.events;
+		sweeps += other.sweeps;
+		factorisations += other.factorisations;
+		unlocalised += other.unlocalised;
+		residual = std::max(residual, other.residual);
+		created += other.created;
+		deepest = std::max(deepest, other.deepest);
+		burden = std::max(burden, other.burden);
+		converged &= other.converged;
+		diverged |= other.diverged;
+		return *this;
+	}
 };
 
 template <class K> struct RigidSystem {

@@ -56,6 +56,8 @@ bool Structures<K>::joinUnborne(const RigidSystem<K>& s)
 	std::vector<char> borne(all.size(), 0), beside(all.size(), 0);
 	for (const ContactPair<K>& pair : s.pairs) {
 		const int a = of[pair.body1], b = of[pair.body2];
+		if (a < 0 && b < 0)
+			continue;
 		if (a < 0 || b < 0)
 			borne[std::max(a, b)] = 1;
 		else if (isCut(pair))

@@ -125,7 +125,8 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
     method        rigid: 'localised' (each impact found inside the step: second order) or 'wall' (many blocks: impacts met
                   at the end of a substep, first order, hundreds of times faster when a wall moves). 'auto': 'wall' where a
                   structure (dem.structures) has more than 20 free blocks, in space 6, or with a PulseTrainEngine the scene, unless an
-                  impact_order 'simultaneous' or a tolerance below 1e-6 is asked for
+                  impact_order 'simultaneous' or a tolerance below 1e-6 is asked for. Smaller structures beside such a one go on with
+                  localised impacts (MoreauJeanIntegrator.localisedBlocks)
 
     A BlockMat is read when two blocks come near each other. Changed during a run, it acts on pairs that come later; for those that are there
     already set phys.tangensOfFrictionAngle and phys.restitution of the interactions in O.interactions.
@@ -188,17 +189,21 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
 def _rigid(motions, model, method, dt, tolerance, impact_order, gravity, recorders, others):
     integrator = wrapper.MoreauJeanIntegrator(motions=motions, model=model, gravity=(0, 0, -gravity))
     choice = integrator.choice()
+    few = _FEW_BLOCKS[choice.split(":")[0]]
+    pulses = any(isinstance(m, wrapper.PulseTrainEngine) for m in motions)  # they keep all structures in one step
+    joined = [len(ids) for ids in structures()]
+    blocks = sum(joined) if pulses else max(joined)
     if method == "auto":
-        pulses = any(isinstance(m, wrapper.PulseTrainEngine) for m in motions)  # they keep all structures in one step
-        joined = [len(ids) for ids in structures()]
-        blocks = sum(joined) if pulses else max(joined)
         fine = impact_order == "simultaneous" or (tolerance is not None and tolerance < 1e-6)
-        method = "wall" if blocks > _FEW_BLOCKS[choice.split(":")[0]] and not fine else "localised"
+        method = "wall" if blocks > few and not fine else "localised"
         if method == "wall":
             choice += f"; {blocks} blocks: method 'wall'"
         elif len(joined) > 1 and not pulses:
             choice += f"; {len(joined)} structures apart, each stepped by itself"
     wall = method == "wall"
+    small = [n for n in joined if n <= few]
+    if wall and small and blocks > few and not pulses:
+        choice += f"; localised impacts for {len(small)} structures of {sum(small)} blocks beside"
     integrator.updateAttrs(dict(method=method, tolerance=tolerance or (1e-3 if wall else 1e-9), impactOrder=impact_order or ("sequential" if wall else "simultaneous")))
     if dt is None and gravity == 0:
         raise ValueError("dt = None: must be given where gravity is 0")

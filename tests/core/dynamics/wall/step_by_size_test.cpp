@@ -1,0 +1,119 @@
+// Walls beside structures of few blocks: each moves as by its own method alone.
+#include "dynamics/wall/step_by_size.hpp"
+#include "wall_rig.hpp"
+#include <catch2/catch.hpp>
+
+using namespace rig;
+
+namespace {
+
+constexpr int wallBlocks = 34; // 4 courses of 8
+constexpr double farLeft = 20; // m, beside the wall
+
+void addPier(Scene& scene, int blocks)
+{
+	for (int n = 0; n < blocks; ++n)
+		addBlock(scene.system, {0.15, 0.4}, {farLeft, 0.4 + 0.8 * n});
+}
+
+// Of the bodies from this one on.
+std::vector<double> motionOf(const RigidSystem<Plane>& s, size_t first, size_t count)
+{
+	std::vector<double> numbers;
+	for (size_t b = first; b < first + count; ++b) {
+		const auto& body = s.bodies[b];
+		for (const double value :
+		     {body.pose.position.x(), body.pose.position.y(), body.pose.angle, body.velocity[0], body.velocity[1], body.velocity[2]})
+			numbers.push_back(value);
+	}
+	return numbers;
+}
+
+template <class Step>
+std::vector<Impact> shake(Scene& scene, Step& step, double time)
+{
+	std::vector<Impact> impacts;
+	for (int k = 0; k < std::lround(time / 1e-3); ++k) {
+		scene.near.update(scene.system);
+		step.advance(scene.system, 1e-3);
+		impacts.insert(impacts.end(), scene.system.impacts.begin(), scene.system.impacts.end());
+	}
+	return impacts;
+}
+
+} // namespace
+
+TEST_CASE("a wall moves as by the walls' method alone, a pier beside it as with localised impacts alone")
+{
+	const double amplitude = GENERATE(0.5 * g, 1.1 * g); // the wall stands, or moves
+	const double restitution = 0.8, time = 1;
+	Harmonic motion(amplitude, 2, 0.005);
+	Scene both(0.7, restitution), wall(0.7, restitution), pier(0.7, restitution);
+	for (Scene* scene : {&both, &wall, &pier})
+		scene->drive(motion);
+	both.addWall(4, 8);
+	wall.addWall(4, 8);
+	addPier(both, 3);
+	addPier(pier, 3);
+	REQUIRE(both.system.bodies.size() == 1 + wallBlocks + 3);
+	pier.system.settings = Settings();
+	both.system.settings.tolerance = wall.system.settings.tolerance = 1e-3;
+	StepBySize<Plane> bySize;
+	WallStep<Plane> byWalls;
+	RigidStep<Plane> localised;
+	const auto impacts = shake(both, bySize, time), ofWall = shake(wall, byWalls, time), ofPier = shake(pier, localised, time);
+	CHECK(bySize.localised() == 3);
+	CHECK(motionOf(both.system, 1, wallBlocks) == motionOf(wall.system, 1, wallBlocks));
+	CHECK(motionOf(both.system, 1 + wallBlocks, 3) == motionOf(pier.system, 1, 3));
+	CHECK(both.system.bodies[0].pose.position == pier.system.bodies[0].pose.position);
+	CHECK(ofPier.size() > 0); // it rocks
+	CHECK((ofWall.size() > 0) == (amplitude > g));
+	REQUIRE(impacts.size() == ofWall.size() + ofPier.size());
+	CHECK(std::is_sorted(impacts.begin(), impacts.end(), [](const Impact& a, const Impact& b) { return a.time < b.time; }));
+	for (double RigidSystem<Plane>::*energy :
+	     {&RigidSystem<Plane>::frictDissip, &RigidSystem<Plane>::impactDissip, &RigidSystem<Plane>::baseWork})
+		CHECK(both.system.*energy == Approx(wall.system.*energy + pier.system.*energy).epsilon(1e-9)); // summed in another order
+}
+
+// Where all are of few blocks the walls' method has been asked for, and has them.
+TEST_CASE("without a wall and with motions in order of time the walls' method has all")
+{
+	struct Ordered : Harmonic {
+		using Harmonic::Harmonic;
+		bool ordered() const override { return true; }
+	};
+	Harmonic alone(0.4 * g, 2, 0.005);
+	Ordered ordered(0.4 * g, 2, 0.005);
+	const bool withWall = GENERATE(false, true);
+	Scene bySizes, byWalls;
+	for (Scene* scene : {&bySizes, &byWalls}) {
+		if (withWall)
+			scene->addWall(4, 8);
+		addPier(*scene, 3);
+		scene->drive(withWall ? ordered : alone);
+		scene->system.settings.tolerance = 1e-3;
+	}
+	StepBySize<Plane> bySize;
+	shake(bySizes, bySize, 0.5);
+	shake(byWalls, byWalls.step, 0.5);
+	CHECK(bySize.localised() == 0);
+	CHECK(numbersOf(bySizes.system) == numbersOf(byWalls.system));
+}
+
+TEST_CASE("what has been near a wall stays with it, and what leaves it does")
+{
+	Scene scene;
+	scene.addWall(4, 8);
+	const int thrown = addBlock(scene.system, {0.2, 0.2}, {13, 1.5});
+	scene.system.settings.tolerance = 1e-3;
+	scene.system.bodies[thrown].velocity << -10, 2, 1;
+	StepBySize<Plane> bySize;
+	shake(scene, bySize, 0.1);
+	CHECK(bySize.localised() == 1);
+	CHECK(scene.system.bodies[thrown].pose.position.x() == Approx(12).epsilon(1e-12)); // it flies
+	shake(scene, bySize, 1.4);
+	CHECK(bySize.localised() == 0);
+	CHECK(scene.system.bodies[thrown].pose.position.x() > 8.2 - 1e-3); // not into the wall
+	CHECK(scene.system.bodies[thrown].pose.position.y() > 0.2 - 1e-3);
+	CHECK(scene.system.bodies[thrown].velocity.norm() < 1);
+}
