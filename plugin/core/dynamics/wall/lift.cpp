@@ -24,6 +24,7 @@ struct alignas(2 * alignment) Missing { // a line of the cache of its own
 	Lanes most;
 };
 
+// Returns whether some pair is too deep. Groups without one are as if they had been looked at, at the first instant.
 template <class K>
 MASONRY_INLINE bool prepareGroups(const Group<K>* groups, typename Lift<K>::Points* points, int begin, int end, int* seen,
                                   const Lanes* moved, double length)
@@ -46,7 +47,7 @@ MASONRY_INLINE bool prepareGroups(const Group<K>* groups, typename Lift<K>::Poin
 	return some;
 }
 
-// Groups of which no block has moved since they were looked at stay. Instants are counted from that of the first place in this sweep on.
+// Groups of which no block has moved since they were looked at stay. Each place of each sweep is an instant; `first` is that of place 0.
 template <class K>
 MASONRY_INLINE void liftGroups(const Group<K>* groups, typename Lift<K>::Points* points, const int* upwards, int begin, int end, int first,
                                int* last, int* seen, double small, Lanes* moved, Lanes& missing)
@@ -109,7 +110,7 @@ MASONRY_INLINE Lanes partGroups(Group<K>* groups, int begin, int end, const Lane
 	MASONRY_LANES void liftSweep(const Group<K>* groups, Lift<K>::Points* points, const int* upwards, int begin, int end, int first,       \
 	                             int* last, int* seen, double small, Lanes* moved, Lanes& missing)                                         \
 	{                                                                                                                                      \
-		liftGroups<K>(groups, points, upwards, begin, end, first, last, seen, small, moved, missing);                                        \
+		liftGroups<K>(groups, points, upwards, begin, end, first, last, seen, small, moved, missing);                                      \
 	}                                                                                                                                      \
 	MASONRY_LANES double partGaps(Group<K>* groups, int begin, int end, const Lanes* moved)                                                \
 	{                                                                                                                                      \
@@ -144,8 +145,7 @@ double Lift<K>::settle(WallContacts<K>& c)
 		Missing missing[Team::mostParts + 1] {};
 		const auto lift = [&](const Part& part, int number) {
 			liftSweep(c.groups.data(), points.data(), c.upwards.data(), part.begin, part.end, 1 + k * int(c.groups.size()), last.data(),
-			          seen.data(),
-			          passedOn * enough, moved.data(), missing[number].most);
+			          seen.data(), passedOn * enough, moved.data(), missing[number].most);
 		};
 		c.eachPart(lift);
 		lift(c.parts.back(), Team::mostParts);

@@ -8,9 +8,9 @@
 // The displacements w are those of an impulse problem with gaps for velocities, J w >= -gap, p >= 0, by sweeps: w += M'^-1 J^T dp. With the
 // masses of the blocks, what is taken off at the base would need as many sweeps to be carried up as the square of the courses. Here a block
 // counts for a share r of the one below it and gives way: a sweep leaves 4 r/(1 + r)^2 of what is deep in a tall column. Sweeps go from the
-// base upwards; later ones visit only pairs whose blocks have moved since, so that all together cost as much as a dozen full ones. What is
-// below is told by the courses from the base, also where some blocks move and the rest stands: counted from what stands beside them, an
-// overhang that breaks off is lifted as it falls, by up to six times the energy that it loses.
+// base upwards and visit pairs that are too deep, then those whose blocks have moved since. What is below is told by the courses from the
+// base, also where some blocks move and the rest stands: counted from what stands beside them, an overhang that breaks off is lifted as it
+// falls, by up to six times the energy that it loses.
 #include "dynamics/wall/wall_contacts.hpp"
 
 namespace masonry::rigid::wall {
@@ -30,7 +30,7 @@ public:
 
 private:
 	std::vector<Points> points;  // by group
-	std::vector<int> last, seen; // sweep in which a body has moved; in which a group was looked at
+	std::vector<int> last, seen; // instants: when a body has moved; when a group was looked at
 	LaneArray moved;             // w, and 1/m'
 };
 

@@ -61,8 +61,8 @@ MASONRY_INLINE Lanes measureGroup(Group<Plane>& group, FeatureGroup<Plane>& feat
 }
 
 // Normals, arms and masses.
-MASONRY_INLINE void leanGroup(Group<Plane>& group, const FeatureGroup<Plane>& features, const Lanes* pose, const Lanes* velocity,
-                              const Plane::Spin* gyration)
+MASONRY_INLINE void frameGroup(Group<Plane>& group, const FeatureGroup<Plane>& features, const Lanes* pose, const Lanes* velocity,
+                               const Plane::Spin* gyration)
 {
 	const Placed p1 = placed(pose, group.body1), p2 = placed(pose, group.body2);
 	Lanes mass1, mass2, rho1, rho2;
@@ -97,11 +97,11 @@ MASONRY_LANES void measureGroups(Group<Plane>* groups, FeatureGroup<Plane>* feat
 		stale[g] |= bitsOf(measureGroup(groups[g], features[g], pose, remember ? stale[g] : 0) > travel);
 }
 
-MASONRY_LANES void leanGroups(Group<Plane>* groups, const FeatureGroup<Plane>* features, size_t count, const Lanes* pose,
-                              const Lanes* velocity, const Plane::Spin* gyration)
+MASONRY_LANES void frameGroups(Group<Plane>* groups, const FeatureGroup<Plane>* features, size_t count, const Lanes* pose,
+                               const Lanes* velocity, const Plane::Spin* gyration)
 {
 	for (size_t g = 0; g < count; ++g)
-		leanGroup(groups[g], features[g], pose, velocity, gyration);
+		frameGroup(groups[g], features[g], pose, velocity, gyration);
 }
 
 } // namespace
@@ -115,7 +115,7 @@ void WallContacts<Plane>::measureGaps(const RigidSystem<Plane>&, int begin, int 
 template <>
 void WallContacts<Plane>::takeFrames(const RigidSystem<Plane>&, int begin, int end)
 {
-	leanGroups(groups.data() + begin, features.data() + begin, end - begin, pose.data(), velocity.data(), gyration.data());
+	frameGroups(groups.data() + begin, features.data() + begin, end - begin, pose.data(), velocity.data(), gyration.data());
 }
 
 template <>

@@ -165,8 +165,8 @@ MASONRY_LANES void measureGroups(const RigidSystem<Space>& s, Group<Space>* grou
 	}
 }
 
-MASONRY_LANES void leanGroups(const RigidSystem<Space>& s, Group<Space>* groups, FeatureGroup<Space>* features, size_t count,
-                              const Lanes* pose, const Lanes* velocity)
+MASONRY_LANES void frameGroups(const RigidSystem<Space>& s, Group<Space>* groups, FeatureGroup<Space>* features, size_t count,
+                               const Lanes* pose, const Lanes* velocity)
 {
 	for (size_t g = 0; g < count; ++g) {
 		Group<Space>& group = groups[g];
@@ -192,7 +192,7 @@ void WallContacts<Space>::measureGaps(const RigidSystem<Space>& s, int begin, in
 template <>
 void WallContacts<Space>::takeFrames(const RigidSystem<Space>& s, int begin, int end)
 {
-	leanGroups(s, groups.data() + begin, features.data() + begin, end - begin, pose.data(), velocity.data());
+	frameGroups(s, groups.data() + begin, features.data() + begin, end - begin, pose.data(), velocity.data());
 }
 
 template <>
