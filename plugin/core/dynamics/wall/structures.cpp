@@ -108,9 +108,8 @@ bool Structures<K>::setOff(const RigidSystem<K>& s, const std::vector<char>& bod
 		of[b] = part[whole];
 	}
 	regroup(s);
-	return std::any_of(s.pairs.begin(), s.pairs.end(), [&](const ContactPair<K>& pair) {
-		return of[pair.body1] >= 0 && of[pair.body2] >= 0 && bodies[pair.body1] != bodies[pair.body2] && isCut(pair);
-	});
+	return std::any_of(s.pairs.begin(), s.pairs.end(),
+	                   [&](const ContactPair<K>& pair) { return bodies[pair.body1] != bodies[pair.body2] && isCut(pair); });
 }
 
 template <class K>

@@ -60,8 +60,12 @@ public:
 	}
 
 private:
-	// Between two free bodies.
-	bool isCut(const ContactPair<K>& pair) const { return all[of[pair.body1]].mode != all[of[pair.body2]].mode; }
+	// Bodies of no structure are prescribed, or new (step_by_size.hpp) and join what they are near.
+	bool isCut(const ContactPair<K>& pair) const
+	{
+		const int a = of[pair.body1], b = of[pair.body2];
+		return a >= 0 && b >= 0 && all[a].mode != all[b].mode;
+	}
 	bool joinUnborne(const RigidSystem<K>& system);
 	void regroup(const RigidSystem<K>& system);
 	void takePairs(const RigidSystem<K>& system);
