@@ -191,8 +191,8 @@ constexpr double patience = 0.5;
 // Depth of a pair relative to the smallest half size above which moving steps take it off, and what they leave of it. Larger: blocks deeper
 // in each other; smaller: the sweeps let loaded points sink, and what is given back costs them energy; nearer to each other: a wall that
 // comes to rest is moved again and again.
-constexpr double penetration = 1.3e-5;
-constexpr double lifted = 6.5e-6;
+constexpr double penetration = 1.15e-5;
+constexpr double lifted = 5.75e-6;
 // That above which a step cannot be trusted. Larger: blocks that sink into each other are not told of; smaller: those that hit hard are.
 constexpr double sunk = 1e-3;
 // Energy that a step may seem to make: share of what moves and what the forces do in it, and of what lifts all blocks by the smallest half

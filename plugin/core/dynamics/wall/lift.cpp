@@ -9,7 +9,7 @@ namespace {
 
 constexpr int mostSweeps = 100;
 constexpr double perCourse = 10;   // 1/m' of a block over that of the one below it
-constexpr double passedOn = 0.25;  // of what may be missing: pairs whose blocks have moved by less are not looked at again
+constexpr double passedOn = 0.1;   // of what may be missing: pairs whose blocks have moved by less are not looked at again
 constexpr int highestCourse = 100; // that is told from those below it: the numbers must not overflow
 
 std::array<double, highestCourse + 1> sharesOfCourses()
