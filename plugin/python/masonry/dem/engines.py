@@ -189,21 +189,21 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
 def _rigid(motions, model, method, dt, tolerance, impact_order, gravity, recorders, others):
     integrator = wrapper.MoreauJeanIntegrator(motions=motions, model=model, gravity=(0, 0, -gravity))
     choice = integrator.choice()
-    few = _FEW_BLOCKS[choice.split(":")[0]]
-    pulses = any(isinstance(m, wrapper.PulseTrainEngine) for m in motions)  # they keep all structures in one step
-    joined = [len(ids) for ids in structures()]
-    blocks = sum(joined) if pulses else max(joined)
     if method == "auto":
+        few = _FEW_BLOCKS[choice.split(":")[0]]
+        pulses = any(isinstance(m, wrapper.PulseTrainEngine) for m in motions)  # they keep all structures in one step
+        joined = [len(ids) for ids in structures()]
+        blocks = sum(joined) if pulses else max(joined)
         fine = impact_order == "simultaneous" or (tolerance is not None and tolerance < 1e-6)
         method = "wall" if blocks > few and not fine else "localised"
+        beside = [n for n in joined if n <= few]
         if method == "wall":
             choice += f"; {blocks} blocks: method 'wall'"
+            if beside and not pulses:
+                choice += f", localised impacts for {len(beside)} structures of {sum(beside)} blocks beside"
         elif len(joined) > 1 and not pulses:
             choice += f"; {len(joined)} structures apart, each stepped by itself"
     wall = method == "wall"
-    small = [n for n in joined if n <= few]
-    if wall and small and blocks > few and not pulses:
-        choice += f"; localised impacts for {len(small)} structures of {sum(small)} blocks beside"
     integrator.updateAttrs(dict(method=method, tolerance=tolerance or (1e-3 if wall else 1e-9), impactOrder=impact_order or ("sequential" if wall else "simultaneous")))
     if dt is None and gravity == 0:
         raise ValueError("dt = None: must be given where gravity is 0")
