@@ -57,6 +57,7 @@ template <class L>
 struct alignas(alignment) Coupling<Plane, L> {
 	L n1t1, n2t2, n1n2, t1t2, n1t2, t1n2;
 	L inverse11, inverse12, inverse22; // of the block of both normals, kg
+	L parted;                          // share of what a point is too deep that it parts by in a substep
 	unsigned free1, free2;             // a bit for each body that is not prescribed
 
 	MASONRY_INLINE void set(const PointLanes<Plane, L>* point, const L& m1, const L& m2)
@@ -81,6 +82,12 @@ struct alignas(alignment) Coupling<Plane, L> {
 		free2 = bitsOf(m2 > 0);
 	}
 };
+
+template <class L>
+MASONRY_INLINE const L& firstOf(const Bodies<Plane, L>& bodies)
+{
+	return bodies.x;
+}
 
 template <class L>
 MASONRY_INLINE double component(const L& tangent, int, int lane)

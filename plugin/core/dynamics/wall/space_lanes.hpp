@@ -175,11 +175,12 @@ struct alignas(alignment) Coupling<Space, L> {
 
 	L response[10];        // J M^-1 J^T, 1/kg
 	L inverse[10];         // of it, kg; four points of a face give a singular one: with a little of its diagonal added
+	L parted;              // share of what a point is too deep that it parts by in a substep
 	unsigned free1, free2; // a bit for each body that is not prescribed
 
 	MASONRY_INLINE void set(const PointLanes<Space, L>* point, const L& m1, const L& m2)
 	{
-		constexpr double softness = 1e-3;
+		constexpr double softness = 5e-3;
 		const L none = all<L>(0), one = all<L>(1);
 		L a[points][points];
 		for (int i = 0; i < points; ++i)
@@ -207,12 +208,22 @@ struct alignas(alignment) Coupling<Space, L> {
 			}
 		}
 		for (int i = 0; i < points; ++i)
-			for (int j = 0; j <= i; ++j)
-				inverse[place(i, j)] = select(point[i].massN > 0, a[i][j], none);
+			for (int j = 0; j <= i; ++j) {
+				L known = a[i][j];
+				for (int k = 0; k < points; ++k)
+					known -= float(softness) * response[place(k, k)] * a[i][k] * a[k][j];
+				inverse[place(i, j)] = select(point[i].massN > 0, known, none);
+			}
 		free1 = bitsOf(m1 > 0);
 		free2 = bitsOf(m2 > 0);
 	}
 };
+
+template <class L>
+MASONRY_INLINE const L& firstOf(const Bodies<Space, L>& bodies)
+{
+	return bodies.v.x;
+}
 
 // What a point is made of: vertex and face in the axes of their bodies; or two edges that cross, which are looked at one by one.
 template <>

@@ -8,7 +8,7 @@ namespace {
 Structure joined(const Structure& a, const Structure& b)
 {
 	return {std::max(a.mode, b.mode), std::min(a.quiet, b.quiet), std::max(a.patience, b.patience),
-	        std::min(a.stay, b.stay), std::min(a.whole, b.whole), std::max(a.mayHold, b.mayHold)};
+	        std::min(a.stay, b.stay), std::min(a.whole, b.whole), std::max(a.mayHold, b.mayHold), std::max(a.pace, b.pace)};
 }
 
 } // namespace
@@ -139,6 +139,7 @@ void Structures<K>::endStep(const std::vector<double>& motion, double rest, doub
 	for (size_t k = 0; k < all.size(); ++k) {
 		Structure& one = all[k];
 		one.whole += h;
+		one.pace = motion[k] / (tolerance::wall::slow * rest);
 		if (one.mode == WallMode::still) {
 			one.stay += h;
 			continue;

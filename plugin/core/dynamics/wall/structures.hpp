@@ -22,6 +22,7 @@ struct Structure {
 	double stay {0};                             // s, in the still mode; -1: has left it
 	double whole {INFINITY};                     // s, since a part of it has left the still mode
 	double mayHold {tolerance::wall::leastHeld}; // as tolerance::wall::held
+	double pace {0};                             // of the last step: largest relative velocity that moved, of that of slow motion
 };
 
 template <class K>
@@ -53,7 +54,7 @@ public:
 		all.resize(count);
 		of.resize(system.bodies.size());
 		for (Structure& one : all)
-			f(one.mode), f(one.quiet), f(one.patience), f(one.stay), f(one.whole), f(one.mayHold);
+			f(one.mode), f(one.quiet), f(one.patience), f(one.stay), f(one.whole), f(one.mayHold), f(one.pace);
 		for (int& number : of)
 			f(number);
 		takePairs(system);

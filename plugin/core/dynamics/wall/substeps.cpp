@@ -34,9 +34,9 @@ constexpr double burdenOfSweep = 100;
 // have landed deep in each other fly apart. Less: more is left to the lifts, which give back at the end of a step what a wall has lost by
 // sinking in it: without it the corners of walls of 28 to 34 courses go 12 and 19 % too far near 1 g, not 6 and 7.
 constexpr double parted = 0.4;
-// Walls in space are slender across their plane: what has been shaken would be kept swaying by it.
-template <class K>
-constexpr bool partsDeepPoints = K::dimension == 2;
+// And less where relative velocities are below so many times those of slow motion: walls that come to rest would be kept swaying across
+// their plane by it. With 1 those of twenty courses in space creep on for a second longer.
+constexpr double fadesBelow = 10;
 
 constexpr Lanes noMass {1, 1, 1, 0};
 
@@ -93,24 +93,31 @@ void Substeps<K>::arrange(const WallContacts<K>& c)
 }
 
 template <class K>
-void Substeps<K>::begin(WallContacts<K>& c, double finer, double pace, double givenFall)
+void Substeps<K>::begin(WallContacts<K>& c, const Structures<K>& structures, double finer, double givenFall)
 {
 	fall = givenFall;
 	effort = effortFor(c.broad);
+	double pace = 0;
+	for (const Structure& one : structures.all)
+		pace = std::max(pace, one.pace);
 	const double courses = pace < 1 ? coursesOfSlowSweep<K> : coursesOfSweep,
 	             asked = std::max(c.spread / (courses * courses), std::min(c.burden, mostBurden) / burdenOfSweep);
 	sweeps = std::max({1, std::min(c.depth, effort.fewestSweeps), int(std::ceil(asked * std::max(1., finer)))});
 	lumps = sweeps < c.depth ? float(mostLumps) : 0;
-	const double lagging = (1 - 1. / std::max(1, c.depth)) * std::min(1., pace);
-	damped = float(damping * lagging / sweeps);
-	parting = partsDeepPoints<K> ? parted * lagging : 0;
+	const double lagging = 1 - 1. / std::max(1, c.depth);
+	damped = float(damping * lagging * std::min(1., pace) / sweeps);
 	inMean = float(std::max(leastInMean, inMeanOfOne / std::max(1, c.depth)));
 	arrange(c);
 	loss.assign(c.parts.size(), all(0));
 	velocity.resize(c.velocity.size());
+	known.clear();
 	contactPart.clear();
-	for (const Lanes& v : c.velocity)
-		contactPart.push_back(narrow(v * Lanes {0, 0, 0, 1}));
+	for (size_t k = 0; k < c.velocity.size(); ++k) {
+		const FloatPack perMass {0, 0, 0, float(c.velocity[k][3])};
+		const double own = c.isFree(k / packs<K>) ? structures.all[structures.of[k / packs<K>]].pace : 0;
+		known.push_back(perMass + FloatPack {float(parted * lagging * std::min(1., own / fadesBelow)), 0, 0, 0});
+		contactPart.push_back(perMass);
+	}
 	c.shift.assign(c.velocity.size(), all(0));
 	Group<K> empty {};
 	for (int i = 0; i < width; ++i)
@@ -118,7 +125,7 @@ void Substeps<K>::begin(WallContacts<K>& c, double finer, double pace, double gi
 	for (auto& p : empty.point)
 		p.gap = all(farAway);
 	const auto take = [&](const Part&, int number) {
-		points->take(c.groups.data(), quarters.data(), empty, parts[number].begin, parts[number].end, contactPart.data());
+		points->take(c.groups.data(), quarters.data(), empty, parts[number].begin, parts[number].end, known.data());
 		sumImpulses(number);
 	};
 	c.eachPart(take);
@@ -148,7 +155,7 @@ void Substeps<K>::substep(WallContacts<K>& c, const LaneArray& load, double s, b
 		                 damped,
 		                 lumps,
 		                 float(-tolerance::wall::lifted * c.length),
-		                 float(isMoved ? 0 : parting / s),
+		                 float(isMoved ? 0 : 1 / s),
 		                 float(fall),
 		                 watched};
 		parts[number].byColour([&](int first, int last) { points->sweep(first, last, velocity.data(), how); });

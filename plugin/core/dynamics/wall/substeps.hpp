@@ -16,14 +16,14 @@
 // up (burden). Friction goes by the mean of loads that lag (frictionBound() in sweep.hpp): with the bound of the moment the top of a wall
 // of 32 courses at 1 g goes 39 % too far.
 //
-// What the courses miss of each other lets points that carry sink. In the plane one that is too deep must part by a share of it in the
-// sweeps before the move; those after the move let go the velocity that this has given. What is left is taken off at the end of the step
+// What the courses miss of each other lets points that carry sink. One that is too deep must part by a share of it in the sweeps before the move; those after the move let go the velocity that this has given. What is left is taken off at the end of the step
 // (lift.hpp).
 //
 // The sweeps compute in floats, eight or sixteen pairs side by side (sweep_groups.hpp). Gaps start anew in every step, and velocities are
 // in double precision what the loads and the impulses of each substep give: rounding does not add up.
 //
 // Substeps of one iteration after Macklin et al. (2019); parting before the move, sweeps after it, after Catto (2024).
+#include "dynamics/wall/structures.hpp"
 #include "dynamics/wall/sweep_groups.hpp"
 
 namespace masonry::rigid::wall {
@@ -50,9 +50,9 @@ struct SubstepReport {
 template <class K>
 class Substeps {
 public:
-	// From the contacts' velocities and impulses. `finer`: how many times more substeps than at the default tolerance; `pace`: relative
-	// velocities of the last step, of those of slow motion; `fall`: what gravity gives in a substep, m/s.
-	void begin(WallContacts<K>& contacts, double finer, double pace, double fall);
+	// From the contacts' velocities and impulses. `structures`: that their bodies are of; `finer`: how many times more substeps than at the
+	// default tolerance; `fall`: what gravity gives in a substep, m/s.
+	void begin(WallContacts<K>& contacts, const Structures<K>& structures, double finer, double fall);
 	// `load` is the change of velocity in a substep by external forces, per body. Into the contacts' velocities and shift.
 	void substep(WallContacts<K>& contacts, const LaneArray& load, double s, bool isLast);
 	// After each substep: what friction has taken, and the impulses that the next one starts from.
@@ -85,12 +85,13 @@ private:
 	int sweeps {1};               // before the move, and after it
 	float lumps {0};              // frictionBound()
 	float damped {0};             // damping of this step
-	double parting {0}, fall {0}; // of what a point is too deep, what a substep takes off; what gravity gives in it, m/s
+	double fall {0};              // what gravity gives in a substep, m/s
 	float inMean {0};             // what a substep takes into the mean of an impulse
 	std::unique_ptr<SweepGroups<K>> points {sweepGroups<K>()};
 	std::vector<Quarters> quarters; // of their groups
 	std::vector<Place> places;      // of the contacts' groups
 	std::vector<Part> parts;        // as the contacts', but for their members
+	Array<FloatPack> known;         // of the bodies: (share of what is too deep that a substep takes off, -, -, 1/m)
 	Array<FloatPack> velocity;      // of the bodies
 	Array<FloatPack> contactPart;   // of it: what the impulses of the last substep gave
 	LaneArray loss;                 // to friction since begin(), J; by part

@@ -14,10 +14,10 @@ struct Watched {
 // What the normal velocity must not fall below, with its sign changed: an open point may close within the substep, one that is too deep
 // must part.
 template <class P, class L = typename P::Number>
-MASONRY_INLINE L closing(const P& p, const Sweep& sweep)
+MASONRY_INLINE L closing(const P& p, const L& parted, const Sweep& sweep)
 {
 	return select(p.gap > 0, sweep.perSubstep * p.gap,
-	              larger(smaller(sweep.parting * (p.gap - sweep.deepest), all<L>(0)), all<L>(-sweep.fastest)));
+	              larger(smaller(sweep.parting * parted * (p.gap - sweep.deepest), all<L>(0)), all<L>(-sweep.fastest)));
 }
 
 // The point's impulse, from the one that it needs. One that has ended is not drawn back to its mean.
@@ -84,7 +84,7 @@ private:
 		PointLanes<Plane, L>&p = group.point[0], &q = group.point[1];
 		un[0] = normalRate(v1, v2, p);
 		un[1] = normalRate(v1, v2, q);
-		const L none = all<L>(0), u = un[0] + closing(p, sweep), v = un[1] + closing(q, sweep);
+		const L none = all<L>(0), u = un[0] + closing(p, w.parted, sweep), v = un[1] + closing(q, w.parted, sweep);
 		const L p2 = p.pn - w.inverse11 * u - w.inverse12 * v, q2 = q.pn - w.inverse12 * u - w.inverse22 * v,
 		        p1 = larger(p.pn - p.massN * (u - w.n1n2 * q.pn), none), q1 = larger(q.pn - q.massN * (v - w.n1n2 * p.pn), none);
 		const MaskOf<L> both = (p2 >= 0) & (q2 >= 0), first = q.massN * (v + w.n1n2 * (p1 - p.pn)) >= q.pn;
@@ -150,7 +150,7 @@ private:
 		L needed[points];
 		for (int i = 0; i < points; ++i) {
 			const PointLanes<Space, L>& p = group.point[i];
-			un[i] = i < group.count ? L(normalRate(v1, v2, p) + closing(p, sweep)) : all<L>(0);
+			un[i] = i < group.count ? L(normalRate(v1, v2, p) + closing(p, w.parted, sweep)) : all<L>(0);
 		}
 		for (int i = 0; i < points; ++i) {
 			needed[i] = group.point[i].pn;
@@ -176,7 +176,7 @@ private:
 		pushTangential(v1, v2, p, dt);
 		p.pt = pt;
 		if (watched)
-			measure<PointLanes<Space, L>>(p, un[k] - closing(p, sweep), ut, dn[k], dt, *watched);
+			measure<PointLanes<Space, L>>(p, un[k] - closing(p, w.parted, sweep), ut, dn[k], dt, *watched);
 	}
 
 	Group<Space, L>& group;

@@ -12,7 +12,7 @@ struct Sweep {
 	float damping;    // what it takes off the difference of an impulse from its mean
 	float lumps;      // frictionBound()
 	float deepest;    // gap, m, below which a point must part, and
-	float parting;    // how fast, of what it is deeper, 1/s, but
+	float parting;    // how fast, of the share of what it is deeper that its bodies part by in a substep, 1/s, but
 	float fastest;    // not faster than this, m/s
 	bool watched;     // the last of a step, of which residual() and motion() tell
 };
@@ -35,9 +35,9 @@ public:
 
 	virtual int quarters() const = 0; // how many of the contacts' groups are in a group here
 	virtual void resize(int count) = 0;
-	// The contacts' points; `empty` where there are none.
+	// The contacts' points; `empty` where there are none. `bodies`: (share of what is too deep that they part by, -, -, 1/m).
 	virtual void take(const Group<K>* from, const Quarters* which, const Group<K>& empty, int begin, int end,
-	                  const FloatPack* inverseMass) = 0;
+	                  const FloatPack* bodies) = 0;
 	virtual void sweep(int begin, int end, FloatPack* velocity, const Sweep& how) = 0;
 	virtual void moveGaps(int begin, int end, const FloatPack* velocity, float s) = 0;
 	// Takes friction's loss, J, off `loss`, and off the impulses what is over, and its velocity off `contactPart`.

@@ -105,13 +105,14 @@ MASONRY_INLINE void giveBackGroup(const Group<K, L>& from, int quarter, const La
 // No template is compiled for several vector widths.
 #define MASONRY_LOOPS(K)                                                                                                                   \
 	MASONRY_LOOP void takeGroups(const Group<K>* from, const Quarters* which, const Group<K>& empty, Group<K, L>* groups,                  \
-	                             Coupling<K, L>* couplings, int begin, int end, const FloatPack* inverseMass)                              \
+	                             Coupling<K, L>* couplings, int begin, int end, const FloatPack* bodies)                                   \
 	{                                                                                                                                      \
 		for (int g = begin; g < end; ++g) {                                                                                                \
 			for (int quarter = 0; quarter < quartersOfWide; ++quarter)                                                                     \
 				putGroup(which[g][quarter] < 0 ? empty : from[which[g][quarter]], empty, quarter, groups[g]);                              \
-			const Bodies<K, L> v1(inverseMass, groups[g].body1), v2(inverseMass, groups[g].body2);                                         \
-			couplings[g].set(groups[g].point, v1.m, v2.m);                                                                                 \
+			const Bodies<K, L> b1(bodies, groups[g].body1), b2(bodies, groups[g].body2);                                                   \
+			couplings[g].set(groups[g].point, b1.m, b2.m);                                                                                 \
+			couplings[g].parted = larger(firstOf(b1), firstOf(b2));                                                                        \
 		}                                                                                                                                  \
 	}                                                                                                                                      \
 	MASONRY_LOOP void sweepOnce(Group<K, L>* groups, const Coupling<K, L>* couplings, int begin, int end, FloatPack* velocity,             \
@@ -171,9 +172,9 @@ public:
 		couplings.resize(count);
 		watched.assign(count, {all<L>(0), all<L>(0)});
 	}
-	void take(const Group<K>* from, const Quarters* which, const Group<K>& empty, int begin, int end, const FloatPack* inverseMass) override
+	void take(const Group<K>* from, const Quarters* which, const Group<K>& empty, int begin, int end, const FloatPack* bodies) override
 	{
-		takeGroups(from, which, empty, groups.data(), couplings.data(), begin, end, inverseMass);
+		takeGroups(from, which, empty, groups.data(), couplings.data(), begin, end, bodies);
 	}
 	void sweep(int begin, int end, FloatPack* velocity, const Sweep& how) override
 	{

@@ -301,7 +301,7 @@ void WallStep<K>::stepMoving(RigidSystem<K>& s, double h)
 	lean(s, contacts, h);
 	contacts.setUnit(part);
 	setLoads(s, contacts, part);
-	sweeps.begin(contacts, finer(), pace, scales.stepSpeed(part));
+	sweeps.begin(contacts, structures, finer(), scales.stepSpeed(part));
 	joints.find(s, contacts, sweeps, part);
 	for (int k = 0; k < count; ++k) {
 		s.time = start + k * part;
@@ -533,9 +533,6 @@ void WallStep<K>::choose(double h)
 			most = std::max(most, sweeps.report.motion[g][i]);
 		}
 	const double rest = tolerance::restSpeed * scales.speed;
-	pace = 0;
-	for (const double most : motion)
-		pace = std::max(pace, most / (tolerance::wall::slow * rest));
 	structures.endStep(motion, rest, shortest, h);
 }
 

@@ -79,7 +79,7 @@ public:
 		forces.resize(count);
 		for (auto& force : forces)
 			f(force);
-		f(stillSet), f(pace);
+		f(stillSet);
 		still().pass(f, system, members(system, WallMode::still));
 		moving().pass(f, system, members(system, WallMode::moving));
 		kept.pass(f, sets, system);
@@ -152,7 +152,6 @@ private:
 	std::vector<std::array<int, 2>> carried;  // supports of what moves, and the drive that they go with
 	std::vector<double> speeds;               // of the drives, mean of the last part of a step, m/s
 	std::vector<typename K::Velocity> forces; // on the bodies, of the last step, N and N m
-	double pace {0};                          // of the last step: largest relative velocity that moved, of that of slow motion
 	double frictionLoss {0};                  // J, of the part of the step
 	double setOffEnergy {0};                  // J, that structures which begin to move have been given
 };
