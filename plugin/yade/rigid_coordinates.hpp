@@ -26,8 +26,9 @@ struct Motion {
 	Vector3r pos, vel, angVel;
 	Quaternionr ori;
 
+	bool isPlaceOf(const State& state) const { return pos == state.pos && ori.coeffs() == state.ori.coeffs(); }
 	/// Nobody has touched the body since.
-	bool isOf(const State& state) const { return pos == state.pos && ori.coeffs() == state.ori.coeffs() && vel == state.vel && angVel == state.angVel; }
+	bool isOf(const State& state) const { return isPlaceOf(state) && vel == state.vel && angVel == state.angVel; }
 };
 
 template <class K> struct Coordinates;

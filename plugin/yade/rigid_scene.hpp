@@ -86,11 +86,13 @@ public:
 	vector<Real> pack() override
 	{
 		showPoints();
+		readLaws();
 		Packer packer;
 		kept.bodies = system.bodies;
 		kept.pairs = system.pairs;
 		kept.pass(packer);
 		packer(byWalls);
+		packer(lawsChanged);
 		if (byWalls) {
 			neighbours->pass(packer);
 			bySize.pass(packer, system);
@@ -102,12 +104,15 @@ public:
 	void unpackStepper(Unpacker& unpacker, const Remembered<K>& before)
 	{
 		unpacker(byWalls);
+		bool changed = false;
+		unpacker(changed);
 		if (!byWalls || before.ids != kept.ids || before.pairs.size() != system.pairs.size()) return;
 		renewJoints();
 		neighbours->pass(unpacker);
 		bySize.pass(unpacker, system);
 		unpacker.end();
-		system.moved = lawsChanged = false;
+		system.moved = false;
+		lawsChanged = changed;
 	}
 
 	bool isOf(const Scene& other) const override { return &other == &scene; }
@@ -278,7 +283,7 @@ private:
 	void forgetNeighbours()
 	{
 		length = masonry::rigid::scale::length(system);
-		neighbours = std::make_unique<masonry::rigid::Neighbours<K>>(searchMargin * length, [this](Pair& pair) { meet(pair); });
+		neighbours = std::make_unique<masonry::rigid::Neighbours<K>>(searchMargin * length, [this](Pair& pair) { meet(pair, true); });
 	}
 
 	/// After a scene has been refused: all is read again when a script has put it right.
@@ -322,7 +327,7 @@ private:
 				others[b] = !links[b].written.isOf(*links[b].state) && system.bodies[b].drive < 0;
 			}
 		});
-		bool touched = false;
+		bool touched = false, placed = false;
 		for (size_t b = size_t(std::find(others.begin(), others.end(), 1) - others.begin()); b < links.size(); ++b) {
 			if (!others[b]) continue;
 			Link&        link = links[b];
@@ -331,15 +336,19 @@ private:
 			if (block.prescribed && scene.time > 0 && state.vel == Vector3r::Zero() && (state.pos - link.written.pos).norm() > 0) warnOfPlace(b);
 			kept.seats[b].read(coordinates, state, link.properties.extents.minCoeff(), kept.ids[b], block);
 			block.increment.setZero();
+			if (!link.written.isPlaceOf(state)) {
+				others[b] = elsewhere;
+				placed = true;
+			}
 			link.written = { state.pos, state.vel, state.angVel, state.ori };
 			touched = true;
-			for (Pair& pair : system.pairs)
-				if (pair.body1 == int(b) || pair.body2 == int(b)) pair.size = -1;
 		}
 		if (!touched) return;
-		for (Pair& pair : system.pairs)
-			if (pair.size < 0) meet(pair);
-		system.moved = true;
+		for (Pair& pair : system.pairs) {
+			const auto is = std::max(others[pair.body1], others[pair.body2]);
+			if (is == elsewhere || (is && !isOfWall(pair))) meet(pair, is == elsewhere);
+		}
+		system.moved |= placed;
 		system.startAnew();
 	}
 
@@ -351,8 +360,11 @@ private:
 			<< " s, with state.vel = 0: blocks on it do not feel that it moves. Set state.vel, by which it goes on, or give it a RecordMotionEngine.");
 	}
 
-	/// The points of a pair that nothing is known of: in touch where they are, and do not approach each other.
-	void meet(Pair& pair)
+	/// What walls know of a pair is of places alone.
+	bool isOfWall(const Pair& pair) const { return byWalls && !bySize.isLocalised(pair.body1) && !bySize.isLocalised(pair.body2); }
+
+	/// The points of a pair that nothing is known of: in touch where they are, and do not approach each other. `placed`: by a script, not by a step.
+	void meet(Pair& pair, bool placed)
 	{
 		const auto &body1 = system.bodies[pair.body1], &body2 = system.bodies[pair.body2];
 		const Real  rest = masonry::tolerance::restSpeed * std::sqrt(integrator.gravity.norm() * length);
@@ -371,7 +383,7 @@ private:
 			point.gap = point.frame.gap;
 			const auto speed = masonry::rigid::relativeVelocity(point.frame, body1.pose.position, body1.velocity, body2.pose.position, body2.velocity);
 			point.closed = point.gap <= integrator.mergedClosing * length && speed[0] >= -rest;
-			if (point.gap < -mostOverlap * length) refuseOverlap(pair, -point.gap);
+			if (placed && point.gap < -mostOverlap * length) refuseOverlap(pair, -point.gap);
 		}
 	}
 
@@ -474,7 +486,8 @@ private:
 	std::unique_ptr<masonry::rigid::Neighbours<K>> neighbours;
 	vector<MotionDrive> drives;
 	vector<Link> links;
-	vector<char> others; // by link: somebody else has written the state since the last step
+	vector<char> others; // by link, 1: somebody else has written the state since the last step; elsewhere: and has moved the body
+	static constexpr char elsewhere = 2;
 	ShownJoints<K> joints;
 	Remembered<K> kept; // ids and seats; bodies and pairs are filled in when it is packed
 	size_t bodyCount = 0;

@@ -1,6 +1,7 @@
 #include "dynamics/wall/kept_factor.hpp"
 #include "tolerances.hpp"
 #include <algorithm>
+#include <cmath>
 
 namespace masonry::rigid::wall {
 
@@ -237,6 +238,9 @@ void KeptFactor<K>::begin(WallContacts<K>& c, const LaneArray& load, double step
 		startPoints(part, number);
 	});
 	startPoints(c.parts.back(), Team::mostParts);
+	outdated |= factored.size() != c.located.size();
+	for (size_t b = 0; b < c.own.size() && !outdated; ++b)
+		outdated = c.own[b] && !(turned(factored[b], c.located[b]) <= tolerance::wall::leant);
 	if (!outdated && std::none_of(std::begin(different), std::end(different), [](bool is) { return is; }))
 		return;
 	factorise();
@@ -308,8 +312,11 @@ void KeptFactor<K>::iterate(int most, double velocityResidual, double forceResid
 		}
 		++report.solves;
 		if (report.velocity <= velocityResidual && report.force <= forceResidual)
-			return;
+			break;
 	}
+	// The largest of numbers that are none is any number.
+	if (!std::all_of(velocity.begin(), velocity.end(), [](const Lanes& v) { return std::isfinite(v[0] + v[1] + v[2]); }))
+		report.velocity = INFINITY;
 }
 
 template <class K>
@@ -427,13 +434,21 @@ double KeptFactor<K>::keepSlip()
 }
 
 template <class K>
-void KeptFactor<K>::handOn(double fall)
+void KeptFactor<K>::handOn(double fall, bool always)
 {
 	auto& c = *contacts;
-	for (size_t g = 0; g < c.groups.size(); ++g)
+	const double ofColumn = fall * std::max(1, c.depth);
+	const auto most = [&](int g, int k, double ofFall) {
+		return larger(mostOfMean * before[g][k].pn, mostOfFall * ofFall * c.groups[g].point[k].massN);
+	};
+	const auto hits = [&](int g, int k, Mask& some) { some |= c.groups[g].point[k].pn > most(g, k, ofColumn); };
+	const LaneBits hit = where(hits);
+	if (!always && std::all_of(hit.begin(), hit.end(), [](unsigned char bits) { return bits == 0; }))
+		return;
+	for (int g = 0; g < int(c.groups.size()); ++g)
 		for (int k = 0; k < c.groups[g].count; ++k) {
 			PointLanes<K>& p = c.groups[g].point[k];
-			const Lanes most = larger(mostOfMean * before[g][k].pn, mostOfFall * fall * p.massN), pn = smaller(p.pn, most);
+			const Lanes pn = smaller(p.pn, most(g, k, fall));
 			p.pt = select(pn < p.pn, clip(p.pt, c.groups[g].friction * pn), p.pt);
 			p.pn = pn;
 		}

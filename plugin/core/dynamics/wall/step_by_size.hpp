@@ -9,6 +9,7 @@
 // Where all structures are of few blocks, or motions must be asked in order of time (BaseDrive::ordered), all are walls.
 #include "dynamics/rigid/islands.hpp"
 #include "dynamics/wall/wall_step.hpp"
+#include <algorithm>
 
 namespace masonry::rigid {
 
@@ -22,6 +23,7 @@ public:
 
 	StepReport advance(RigidSystem<K>& system, double dt);
 	int localised() const { return int(few.size()); } // blocks, in the last step
+	bool isLocalised(int body) const { return std::binary_search(few.begin(), few.end(), body); }
 
 	template <class Flow>
 	void pass(Flow& f, RigidSystem<K>& system)

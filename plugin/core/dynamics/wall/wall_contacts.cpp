@@ -9,8 +9,6 @@ namespace {
 
 constexpr int mostStood = 16; // still steps, in which blocks may go far in small steps
 
-double turned(const PlanePose& from, const PlanePose& to) { return std::abs(to.angle - from.angle); }
-double turned(const Pose& from, const Pose& to) { return 2 * (to.orientation.coeffs() - from.orientation.coeffs()).norm(); }
 
 } // namespace
 
@@ -62,7 +60,7 @@ template <class K>
 bool WallContacts<K>::lookUp(RigidSystem<K>& s, int c)
 {
 	const double samePlace = 2 * tolerance::wall::search * length, touching = tolerance::mergedClosing * length;
-	bool changed = false;
+	bool changed = s.moved;
 	ContactPair<K>& pair = s.pairs[c];
 	const auto &body1 = s.bodies[pair.body1], &body2 = s.bodies[pair.body2];
 	FoundPoints<K> found;
@@ -70,7 +68,7 @@ bool WallContacts<K>::lookUp(RigidSystem<K>& s, int c)
 		found.size = 0;
 	pair.face1 = found.face1;
 	pair.face2 = found.face2;
-	bool same = known[c] && found.size == pair.size;
+	bool same = known[c] && !s.moved && found.size == pair.size; // where bodies have been moved, the pair may know of other points than the lanes
 	for (int k = 0; same && k < found.size; ++k)
 		same = found.features[k] == pair.points[k].feature;
 	for (const auto [group, lane] : slots[c])

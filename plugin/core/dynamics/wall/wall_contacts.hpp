@@ -36,6 +36,10 @@ constexpr double farAway = 1e30; // m, gap of a lane without a point
 // times the mean the peaks of columns are 0.5 % too high at a tenth of a step, with 12 times 0.4 % too low at a whole one.
 constexpr double mostOfMean = 8, mostOfFall = 2;
 
+// Angle between two poses near each other, rad.
+inline double turned(const PlanePose& from, const PlanePose& to) { return std::abs(to.angle - from.angle); }
+inline double turned(const Pose& from, const Pose& to) { return 2 * (to.orientation.coeffs() - from.orientation.coeffs()).norm(); }
+
 template <class Flow>
 void passPose(Flow& f, PlanePose& pose)
 {

@@ -76,6 +76,11 @@ wall::LaneBits WallStep<K>::findMoving(double h, bool again)
 	const double stepSpeed = scales.stepSpeed(h), residual = tolerance::wall::still * stepSpeed,
 	             motion = tolerance::wall::motion * tolerance::restSpeed * scales.speed;
 	gone.clear();
+	if (!std::isfinite(kept.report.velocity)) { // of what they hold nothing is known
+		const wall::LaneBits all(still().groups.size(), wall::allLanes);
+		kept.forget(still(), all);
+		return all;
+	}
 	const double most = again ? 0 : kept.findHeld();
 	for (double held = tolerance::wall::leastHeld; held <= tolerance::wall::held && most > held * stepSpeed; held *= 2)
 		letGo(h, held);

@@ -274,8 +274,8 @@ void WallStep<K>::keepStill(RigidSystem<K>& s, double h)
 	report.velocityResidual = std::max(report.velocityResidual, kept.report.velocity);
 	report.forceResidual = std::max(report.forceResidual, kept.report.force);
 	frictionLoss += kept.keepSlip();
-	if (!moving().onStill.empty())
-		kept.handOn(scales.stepSpeed(h));
+	if (started)
+		kept.handOn(scales.stepSpeed(h), !moving().onStill.empty());
 	s.baseWork += baseWorkWhenStill(s);
 	contacts.velocity = kept.velocity;
 	contacts.shift.resize(kept.velocity.size());
@@ -516,8 +516,8 @@ void WallStep<K>::takeMotion(RigidSystem<K>& s, double h, double workBefore)
 	}
 	s.frictDissip += frictionLoss;
 	s.impactDissip += lost;
-	const double liftedAll = mass * scales.acceleration * scales.length;
-	if (lost < -tolerance::wall::createdShare * atStake - tolerance::wall::createdLift * liftedAll)
+	const double liftedAll = mass * scales.acceleration * scales.length, slowest = tolerance::wall::createdTravel * scales.length / h;
+	if (lost < -tolerance::wall::createdShare * atStake - tolerance::wall::createdLift * liftedAll - mass * slowest * slowest)
 		report.created -= lost;
 }
 
