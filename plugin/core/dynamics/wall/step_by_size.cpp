@@ -12,10 +12,14 @@ StepReport StepBySize<K>::advance(RigidSystem<K>& s, double dt)
 	if (few.empty())
 		return walls.advance(s, dt);
 	const Settings ofWalls = s.settings;
+	const bool moved = s.moved;
 	s.settings.tolerance = Settings().tolerance;
 	s.settings.order = Settings().order;
+	s.moved |= passed;
 	islands.take(s);
 	s.settings = ofWalls;
+	s.moved = moved;
+	passed = false;
 	hide(s);
 	StepReport report = walls.advance(s, dt);
 	show(s);

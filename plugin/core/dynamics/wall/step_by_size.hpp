@@ -38,6 +38,7 @@ public:
 		hide(system);
 		walls.pass(f, system);
 		show(system);
+		passed = true;
 	}
 
 private:
@@ -49,6 +50,7 @@ private:
 	std::vector<char> ofWall; // by body, 1: has been near a wall
 	std::vector<int> few;     // the other bodies, where there are walls
 	std::vector<RigidBody<K>> hidden;
+	bool passed {false}; // gaps are no part of what is passed
 	int list {-1}; // of the system's pairs
 };
 

@@ -90,7 +90,7 @@ bool WallContacts<K>::lookUp(RigidSystem<K>& s, int c)
 	pair.size = found.size;
 	if (found.size > lanePoints<K> && !wide[c])
 		wide[c] = wider = true;
-	for (int k = 0; k < K::maxPoints && slots[c][k / lanePoints<K>].group >= 0; ++k) {
+	for (int k = 0; k < K::maxPoints; ++k) {
 		State now;
 		if (k < found.size) {
 			ContactPoint<K> point;
@@ -133,6 +133,8 @@ bool WallContacts<K>::lookUp(RigidSystem<K>& s, int c)
 			pair.points[k] = point;
 		}
 		const auto [group, lane] = slots[c][k / lanePoints<K>];
+		if (group < 0)
+			continue;
 		changed |= bool(features[group].point[k % lanePoints<K>].present[lane]) != (k < found.size);
 		takePoint(s, c, k);
 		setState(now, c, k);
@@ -227,8 +229,14 @@ void WallContacts<K>::showPair(RigidSystem<K>& s, int c) const
 }
 
 template <class K>
-void WallContacts<K>::showPoints(RigidSystem<K>& s) const
+void WallContacts<K>::showPoints(RigidSystem<K>& s)
 {
+	if (stood == 0 && !numbers.empty()) {
+		std::vector<typename K::Pose> poses;
+		for (const auto& body : s.bodies)
+			poses.push_back(body.pose);
+		lean(s, poses);
+	}
 	for (const int c : numbers)
 		if (known[c])
 			showPair(s, c);
@@ -304,7 +312,7 @@ bool WallContacts<K>::measure(RigidSystem<K>& s, bool isStill)
 		wider = false;
 		lookUpStale(s);
 		if (wider) { // a pair needs another lane
-			allParts([&](const Part& part, int) { takeFrames(s, part.begin, part.end); });
+			stood = 0;
 			showPoints(s);
 			colour(s);
 		}

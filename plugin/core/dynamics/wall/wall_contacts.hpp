@@ -183,7 +183,7 @@ public:
 	// The means of the impulses of these pairs are those that there are now.
 	void startMeans(const LaneBits& lanes);
 	// Gaps, forces and places of all points, as they are now, into the pairs. Needed before the list of pairs changes.
-	void showPoints(RigidSystem<K>& system) const;
+	void showPoints(RigidSystem<K>& system);
 	// What the next step needs of the last besides the system, number by number: f(number) takes it, or gives it to a new object.
 	template <class Flow>
 	void pass(Flow& f, RigidSystem<K>& system, const Members& bodies)

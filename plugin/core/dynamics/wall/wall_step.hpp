@@ -55,9 +55,9 @@ public:
 
 	// Gaps, forces and places of the points as they are after the step, into the system's pairs: the step itself does without. To be called
 	// before the list of pairs changes.
-	void showPoints(RigidSystem<K>& system) const
+	void showPoints(RigidSystem<K>& system)
 	{
-		for (const auto& set : sets)
+		for (auto& set : sets)
 			set.showPoints(system);
 	}
 	// What the next step needs of the last besides the system, number by number: f(number) takes it, or gives it to a new object, whose run
