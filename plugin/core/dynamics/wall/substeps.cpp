@@ -34,9 +34,9 @@ constexpr double burdenOfSweep = 100;
 // have landed deep in each other fly apart. Less: more is left to the lifts, which give back at the end of a step what a wall has lost by
 // sinking in it: without it the corners of walls of 28 to 34 courses go 12 and 19 % too far near 1 g, not 6 and 7.
 constexpr double parted = 0.4;
-// And less where relative velocities are below so many times those of slow motion: walls that come to rest would be kept swaying across
-// their plane by it. With 1 those of twenty courses in space creep on for a second longer.
-constexpr double fadesBelow = 10;
+// And less where relative velocities are below so many times those of slow motion: walls in space that come to rest would be kept swaying
+// across their plane. With 1 eight of eighteen walls of 16 and 20 courses creep on two seconds after they were shaken, with 10 one.
+constexpr double fadesBelow = 30;
 
 constexpr Lanes noMass {1, 1, 1, 0};
 
