@@ -270,7 +270,7 @@ def impacts():
 
 
 def energy():
-    """Energies in J: kinetic and potential now; frictDissip, impactDissip and baseWork so far; compliant joints: also elastPotential
+    """Energies in J: kinetic and potential now; frictDissip, impactDissip and baseWork since dem.engines() made the engines; compliant joints: also elastPotential
     now and dampDissip so far. The sum of all others less baseWork is constant, but for RockingJointEngine.madeEnergy and the errors of steps."""
     e = _joint_engine()
     keys = ("kinetic", "potential", "elastPotential", "frictDissip", "dampDissip", "impactDissip", "baseWork")
