@@ -341,7 +341,9 @@ for opening, words in (
     refuses(lambda: dem.wall(6, 6, ok, unused, base, openings=[opening]), *words)
 refuses(lambda: dem.wall(6, 6, ok, unused, base, openings=[(1, 0, 1, 2), (1.5, 2, 1, 2)], openings_in="blocks"), "openings[1]", "meets openings[0] = (1, 0, 1, 2)")
 refuses(lambda: dem.wall(2, 2, ok, None, base), "material = None", "BlockMat")
-refuses(lambda: dem.wall(2, 2, ok, unused), "id = None", "no such body")
+refuses(lambda: dem.wall(2, 2, ok, unused), "on = None: must be given")
+refuses(lambda: dem.wall(2, 2, ok), "material = None, on = None: must be given")
+refuses(lambda: dem.wall(2, 2, ok, unused, "base"), "on = 'base'", "must be an id")
 for bad, words in ((dict(header_every=1), ("header_every = 1", "at least 2")), (dict(header_every=7), ("header_every = 7", "from 2 to", "6")),
                    (dict(collar=-1), ("collar = -1", "0 or positive")), (dict(gap=0.2), ("gap = 0.2", "below 0.133333 m"))):
     refuses(lambda: dem.two_wythe_wall(6, 4, ok, unused, base, **{"header_every": 3, **bad}), *words)
@@ -360,7 +362,7 @@ for rows, words in (([], ("at least one row",)), ([good, {**good, "size_x": 0}],
     refuses(lambda: dem.blocks_from_table(rows, unused), *words)
 refuses(lambda: dem.blocks_from_table([good], {"tuff": unused}), "row 0", "material = ''", "'tuff'")
 refuses(lambda: dem.blocks_from_table([good], {"tuff": 3}), "material = 3", "BlockMat")
-refuses(lambda: dem.blocks_from_table([good], unused, on=99), "id = 99")
+refuses(lambda: dem.blocks_from_table([good], unused, on=99), "on = 99", "no such body")
 refuses(lambda: dem.blocks_from_table("wall.xlsx", unused), "table = wall.xlsx", ".csv or .json")
 with open(path := os.path.join(folder, "no_list.json"), "w") as file:
     file.write('{"x": 0}')

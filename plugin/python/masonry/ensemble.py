@@ -20,10 +20,13 @@ import os
 import shutil
 import subprocess
 import threading
+from collections.abc import Iterable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
+
+from ._given import is_whole, number_given
 
 _RUN_CASE = Path(__file__).with_name("_run_case.py")
 # Lines of what a failed case has said that the error repeats.
@@ -85,15 +88,19 @@ def run(script, cases, folder, function="run", processes=None, time_limit=None, 
     (their output is in the folder as .log); FileNotFoundError where there is no script or no YADE.
     """
     script, folder = Path(script).resolve(strict=True), Path(folder)
-    cases = [dict(case) for case in cases]
+    if not isinstance(cases, Iterable):
+        raise ValueError(f"cases = {cases!r}: must be a list of dicts")
+    cases = list(cases)
     if not cases:
         raise ValueError("cases: must have at least one")
     for case in cases:
+        if not isinstance(case, dict):
+            raise ValueError(f"case = {case!r}: must be a dict of numbers, strings, and lists of them")
         if case.keys() != cases[0].keys():
             raise ValueError(f"case = {case}: must have the same keys as the first, {', '.join(cases[0])}")
-    if processes is not None and not (processes == int(processes) and processes >= 1):
-        raise ValueError(f"processes = {processes}: must be a whole number, at least 1")
-    if time_limit is not None and not 0 < time_limit < math.inf:
+    if processes is not None and not is_whole(processes, 1):
+        raise ValueError(f"processes = {processes!r}: must be a whole number, at least 1, or None")
+    if time_limit is not None and not 0 < number_given("time_limit", time_limit) < math.inf:
         raise ValueError(f"time_limit = {time_limit}: must be positive and finite, in s, or None")
     keys = _keys(script, function, cases)
     if len(set(keys)) < len(keys):

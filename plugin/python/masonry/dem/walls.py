@@ -8,9 +8,9 @@ import csv
 import itertools
 import json
 import math
-import numbers
 
 import numpy as np
+from masonry._given import is_whole, number_given
 
 # A length fits the modules of a wall when it is off by less than this share of a module: far above round-off, far below a cut.
 _FIT = 1e-6
@@ -42,16 +42,9 @@ def positive_size(name, size):
     return values
 
 
-def number_given(name, value):
-    """The value; ValueError unless it is a number (NaN is one)."""
-    if not isinstance(value, numbers.Real) or isinstance(value, bool):
-        raise ValueError(f"{name} = {value!r}: must be a number")
-    return value
-
-
 def whole(name, value, least):
     """The value as an integer; ValueError unless it is one, at least `least` and at most _MOST."""
-    if not (math.isfinite(number_given(name, value)) and value == int(value) and least <= value <= _MOST):
+    if not is_whole(number_given(name, value), least, _MOST):
         raise ValueError(f"{name} = {value}: must be a whole number, at least {least} and at most {_MOST}")
     return int(value)
 

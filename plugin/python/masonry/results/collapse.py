@@ -4,6 +4,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from masonry._given import is_whole, number_given
 
 
 @dataclass
@@ -67,9 +68,9 @@ def collapse(history, blocks=1, excursion=0.01):
     WallHistory.drift(). Raises ValueError for input out of its range.
     """
     free = int(history.free.sum())
-    if not (blocks == int(blocks) and 1 <= blocks <= free):
-        raise ValueError(f"blocks = {blocks}: must be a whole number from 1 to {free}, the number of free blocks")
-    if not 0 < excursion < math.inf:
+    if not is_whole(blocks, 1, free):
+        raise ValueError(f"blocks = {blocks!r}: must be a whole number from 1 to {free}, the number of free blocks")
+    if not 0 < number_given("excursion", excursion) < math.inf:
         raise ValueError(f"excursion = {excursion}: must be positive and finite")
     # From the last sample backwards: True as long as the block lies.
     lies = np.logical_and.accumulate(fallen(history)[::-1])[::-1]
