@@ -238,6 +238,14 @@ for made, wanted in zip(dem.blocks_from_table(path, material, on=base), (leaning
     made, wanted = O.bodies[made].state, O.bodies[wanted].state
     assert made.pos == wanted.pos and made.ori == wanted.ori and made.refOri == wanted.refOri
 
+# Endings and headers in capitals, blanks around headers; id and name say nothing.
+for ending, text in (("CSV", "ID, X ,Y,Z ,Size_X,SIZE_Y,size_z,Name\n7,4,0,0.5,1,1,1,corner\n"),
+                     ("JSON", '[{"id": 7, "X": 4, "Y": 0, "z ": 0.5, "Size_X": 1, "size_y": 1, "size_z": 1}]')):
+    with open(path := os.path.join(folder, f"TABLE.{ending}"), "w") as file:
+        file.write(text)
+    made, = dem.blocks_from_table(path, material)
+    assert O.bodies[made].state.pos == Vector3(4, 0, 0.5) and O.bodies[made].shape.extents == Vector3(0.5, 0.5, 0.5)
+
 # Separations: two cubes, one turned by 45 degrees about z: its corner reaches sqrt(2)/2. Crossed edges: both turned by 45 degrees, about x and
 # about y, one over the other: their top and bottom edges cross, each sqrt(2)/2 from its centre.
 diagonal = math.sqrt(0.5)
@@ -360,6 +368,16 @@ for rows, words in (([], ("at least one row",)), ([good, {**good, "size_x": 0}],
                     ([{**good, "rotation_z": inf}], ("rotation_z = inf",)), ([{**good, "qw": 1}], ("qx = None",)),
                     ([{**good, "qw": 1, "qx": 1, "qy": 0, "qz": 0}], ("qw, qx, qy, qz", "length 1")), ([{**good, "material": "tuff"}], ("row 0", "'tuff'", "must be one of"))):
     refuses(lambda: dem.blocks_from_table(rows, unused), *words)
+for rows, words in (([{**good, "material": ["tuff"]}], ("row 0", "material = ['tuff']", "a name")), ([good, {**good, "x": 10**400}], ("row 1", "x = 1000", "finite")),
+                    ([{**good, "y": True}], ("row 0", "y = True", "finite number")), ([{**good, "rotation_y": False}], ("row 0", "rotation_y = False")),
+                    ([{**good, " X": 1}], ("row 0", "' X' = 1", "twice"))):
+    refuses(lambda: dem.blocks_from_table(rows, unused), *words)
+for ending, text, words in (("csv", "x,y,z,size_x,size_y,size_z,x\n0,0,1,1,1,1,5\n", ("row 0", "'x' = '5'", "twice", "'0'")),
+                            ("json", '[{"x": 0, "y": 0, "z": true, "size_x": 1, "size_y": 1, "size_z": 1}]', ("row 0", "z = True")),
+                            ("json", '[{"x": 0, "y": 0, "z": 0, "size_x": 1, "size_y": 1, "size_z": 1, "z": 3}]', ("row 0", "'z' = 3", "twice"))):
+    with open(path := os.path.join(folder, f"bad.{ending}"), "w") as file:
+        file.write(text)
+    refuses(lambda: dem.blocks_from_table(path, unused), *words)
 refuses(lambda: dem.blocks_from_table([good], {"tuff": unused}), "row 0", "material = ''", "'tuff'")
 refuses(lambda: dem.blocks_from_table([good], {"tuff": 3}), "material = 3", "BlockMat")
 refuses(lambda: dem.blocks_from_table([good], unused, on=99), "on = 99", "no such body")

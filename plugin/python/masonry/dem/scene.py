@@ -211,6 +211,9 @@ def blocks_from_table(table, materials, on=None):
     material                  optional: a key of `materials`, a dict of BlockMats. One BlockMat instead serves the rows that name
                               none, or its label.
     qw, qx, qy, qz            optional, instead of the rotations: the orientation as a quaternion (dem.save_blocks writes it)
+    id, name                  optional, ignored
+
+    Columns may be written in capitals and with blanks around them.
     """
     centers, sizes, quaternions, names = walls.read_table(table)
     if not isinstance(materials, dict):
