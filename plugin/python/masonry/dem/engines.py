@@ -198,7 +198,8 @@ def _rigid(motions, model, method, dt, tolerance, impact_order, gravity, recorde
         method = "wall" if blocks > few and not fine else "localised"
         beside = [n for n in joined if n <= few]
         if method == "wall":
-            choice += f"; {blocks} blocks: method 'wall'"
+            whole = f"{blocks} blocks" if pulses or len(joined) == 1 else f"largest structure {blocks} of {sum(joined)} blocks"
+            choice += f"; {whole}: method 'wall'"
             if beside and not pulses:
                 choice += f", localised impacts for {len(beside)} structures of {sum(beside)} blocks beside"
         elif len(joined) > 1 and not pulses:
