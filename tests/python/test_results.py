@@ -142,6 +142,12 @@ def test_an_erased_block_has_fallen_and_is_drawn_no_more(tmp_path):
     assert b'NumberOfCells="1"' in (results.write_paraview(h, tmp_path / "h.pvd").parent / "h/h_000002.vtu").read_bytes()
 
 
+def test_a_wall_without_its_base_says_so():
+    h = rocking([0, 0.1], shift=(0.4, 0, 0))
+    whole, alone = results.collapse(h), results.collapse(results.WallHistory(h.time, h.ids[1:], h.sizes[1:], h.free[1:], h.position[:, 1:], h.orientation[:, 1:]))
+    assert whole.from_base and "NOT RELATIVE" not in str(whole) and not alone.from_base and "NOT RELATIVE TO THE BASE" in str(alone)
+
+
 def test_drift_is_that_of_the_top():
     place = [[[0, 0, -0.1], [0, 0, 0.2], [0, 0, 0.6], [0.9, 0, 0.5]], [[1, 0, -0.1], [1.3, 0, 0.2], [1.01, 0.02, 0.6], [1.9, 0.05, 0.5]]]
     h = history([[2, 2, 0.2], [0.6, 0.5, 0.4], [0.6, 0.5, 0.4], [0.3, 0.5, 1.0]], place)

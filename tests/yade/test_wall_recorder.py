@@ -1,6 +1,8 @@
 """WallRecorder and what masonry.results makes of it: joints that open and slide as statics and kinematics say, energies that close, blocks that
 fall, for every model; kept bit by bit over saving and loading."""
 
+import contextlib
+import io
 import math
 import os
 import tempfile
@@ -165,7 +167,17 @@ recorder = [e for e in O.engines if isinstance(e, dem.WallRecorder)][1]
 O.bodies.erase(other)
 O.run(7, True)
 h = dem.wall_history(recorder)
+quiet_engines(model="auto", recorder=recorder)  # goes on without the erased one
 assert np.isnan(h.position[-1, 2]).all() and np.isfinite(h.position[-1, :2]).all() and results.fallen(h)[-1].tolist() == [False, False, True]
+
+# --- a wall recorded without its base: said before the run and with the result ---
+base, block, theory = one_block(5)
+recorder = dem.WallRecorder(iterPeriod=1, ids=[block])
+for ids, said in (([block], True), ([base, block], False), ([], False)):
+    recorder.ids = ids
+    with contextlib.redirect_stdout(io.StringIO()) as printed:
+        O.engines = dem.engines(recorder=recorder)
+    assert ("WallRecorder.ids has no prescribed body" in printed.getvalue()) == said, printed.getvalue()
 
 # --- input that cannot be meant ---
 for attributes, word in (({"iterPeriod": 0}, "iterPeriod"), ({"ids": [99]}, "99")):
@@ -177,6 +189,7 @@ for attributes, word in (({"iterPeriod": 0}, "iterPeriod"), ({"ids": [99]}, "99"
 recorder = dem.WallRecorder(iterPeriod=1)
 refuses(lambda: dem.wall_history(recorder), "recorded nothing")
 refuses(lambda: dem.wall_history(dem.BlockRecorder()), "must be a WallRecorder")
+refuses(lambda: dem.save_history(recorder, "h.csv"), "must be a BlockRecorder", "dem.wall_history")
 base, block, theory = one_block(5)
 O.engines = quiet_engines(model="auto", recorder=recorder)
 O.run(3, True)

@@ -55,8 +55,12 @@ def check_recorder(recorder):
         raise ValueError(f"{name}.iterPeriod = {recorder.iterPeriod}, virtPeriod = {recorder.virtPeriod}: one of them must be positive and finite")
     if isinstance(recorder, wrapper.BlockRecorder) and not recorder.ids:
         raise ValueError(f"{name}.ids is empty: it must name at least one block")
-    for id in recorder.ids:
-        _box(id)
+    wall = isinstance(recorder, wrapper.WallRecorder)
+    if wall and recorder.times:  # it goes on, also without blocks that have been erased since
+        return
+    bodies = [_box(id) for id in recorder.ids]
+    if wall and bodies and all(b.dynamic for b in bodies) and not all(b.dynamic for b in _boxes()):
+        print(f"masonry.dem: {name}.ids has no prescribed body: drifts and falls will not be relative to the base: add its id where it moves")
 
 
 def _axis(name):
