@@ -283,7 +283,7 @@ def history(recorder):
     rotation (rad, vector in the block's own axes; the y component is dem.angle), position (m), uplift (m, largest gap of the joint
     below, NaN in flight) and force (N, of what is below)."""
     if not isinstance(recorder, wrapper.BlockRecorder):
-        raise ValueError(f"recorder = {recorder!r}: must be a BlockRecorder")
+        raise ValueError(f"recorder = {recorder!r}: must be a BlockRecorder (a WallRecorder: dem.wall_history)")
     rows, blocks = len(recorder.times), len(recorder.ids)
     fields = [("time", float), ("rotation", float, (blocks, 3)), ("position", float, (blocks, 3)), ("uplift", float, (blocks,)), ("force", float, (blocks, 3))]
     table = np.zeros(rows, dtype=fields)
@@ -294,7 +294,8 @@ def history(recorder):
 
 
 def save_history(recorder, path):
-    """Writes dem.history() to a file: .npz (NumPy), or .csv with one column per number and a header line (pandas, ParaView)."""
+    """Writes dem.history() to a file: .npz (NumPy), or .csv with one column per number and a header line (pandas, ParaView). Of a WallRecorder:
+    dem.wall_history(recorder).save("wall.npz"), or .to_csv("wall.csv") (time, drift, energies)."""
     table = history(recorder)
     if str(path).endswith(".npz"):
         np.savez(path, ids=recorder.ids, **{name: table[name] for name in table.dtype.names})

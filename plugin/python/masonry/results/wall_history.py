@@ -21,7 +21,7 @@ class WallHistory:
     energies       (s, 7) kinetic, potential, elastPotential, frictDissip, dampDissip, impactDissip, baseWork, J; None: not recorded
 
     Displacements and rotations are relative to the base, which is the first prescribed block, and to the first sample. Without
-    a prescribed block they are those in the world. dem.wall_history(recorder) makes one; save and load keep it in a file.
+    a prescribed block they are those in the world. dem.wall_history(recorder) makes one; save and load keep it in a file, to_csv writes a table.
     Raises ValueError when shapes do not fit, times do not increase or a block that is there at first is nowhere.
     """
 
