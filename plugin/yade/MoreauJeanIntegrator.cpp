@@ -113,6 +113,7 @@ void MoreauJeanIntegrator::leaveScene()
 	const PythonLock lock;
 	memory = {};
 	chosenModel.clear();
+	along = Vector3r::Zero();
 }
 
 vector<Real> MoreauJeanIntegrator::remembered() { return memory.run ? memory.run->pack() : memory.values; }
@@ -219,7 +220,7 @@ string MoreauJeanIntegrator::whyNotPlanar(const Vector3r& normal) const
 	return "";
 }
 
-/// The plane is upright; its normal is an axis of every block. Of two that will do, the one nearest to y is taken.
+/// The plane is upright; its normal is an axis of every block. Of two that will do, the one nearest to `along` is taken, without one nearest to x.
 void MoreauJeanIntegrator::choose()
 {
 	chosenModel = "spatial";
@@ -233,7 +234,8 @@ void MoreauJeanIntegrator::choose()
 		vector<Vector3r> normals;
 		for (int axis = 0; axis < 3; ++axis)
 			if (std::abs(axes(2, axis)) <= outOfPlane) normals.push_back(Vector3r(axes(0, axis), axes(1, axis), 0).normalized());
-		std::sort(normals.begin(), normals.end(), [](const Vector3r& a, const Vector3r& b) { return std::abs(a.y()) > std::abs(b.y()); });
+		const Vector3r ahead = along.allFinite() && along.head<2>().norm() > 0 ? along : Vector3r(Vector3r::UnitX());
+		std::sort(normals.begin(), normals.end(), [&](const Vector3r& a, const Vector3r& b) { return std::abs(a.dot(ahead)) < std::abs(b.dot(ahead)); });
 		for (size_t k = 0; k < normals.size() && chosenModel != "planar"; ++k) {
 			const string obstacle = whyNotPlanar(normals[k]);
 			if (k == 0 || obstacle.empty()) reason = obstacle;

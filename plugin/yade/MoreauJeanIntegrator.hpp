@@ -54,7 +54,7 @@ public:
 		((long, movingSteps, 0, Attr::readonly, "method='wall': steps done in the mode 'moving' so far."))
 		((string, chosenModel, "", Attr::readonly, "'planar' or 'spatial', from the first step on."))
 		((string, reason, "", Attr::readonly, "Why."))
-		((Vector3r, along, Vector3r::Zero(), Attr::readonly, "Planar: the horizontal direction in the plane."))
+		((Vector3r, along, Vector3r::Zero(), , "Planar: the horizontal direction in the plane. Given before the first step: of two planes that will do (one block, a stack), the nearest to it is taken; (0, 0, 0): to x."))
 		((vector<Real>, impactTimes, , Attr::readonly, "Time of each impact [s], inside the step."))
 		((vector<int>, impactBlocks, , Attr::readonly, "The block that rocks."))
 		((vector<int>, impactSupports, , Attr::readonly, "What it rocks on."))

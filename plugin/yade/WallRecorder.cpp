@@ -3,6 +3,7 @@
 #include "MoreauJeanIntegrator.hpp"
 #include "RockingJointEngine.hpp"
 
+#include <algorithm>
 #include <boost/python/handle.hpp>
 #include <core/Scene.hpp>
 #include <lib/factory/ClassFactory.hpp>
@@ -45,16 +46,27 @@ void WallRecorder::begin()
 	}
 }
 
+/// Energies of now belong to the present integrator; what has been dissipated and done, to all that there have been.
 void WallRecorder::addEnergies()
 {
-	for (const auto& engine : scene->engines) {
-		if (auto* rigid = dynamic_cast<MoreauJeanIntegrator*>(engine.get()))
-			return add(energies, rigid->kinetic(), rigid->potential(), Real(0), rigid->frictDissip, Real(0), rigid->impactDissip, rigid->baseWork);
+	const auto integrates = [](const auto& engine) {
+		return dynamic_cast<MoreauJeanIntegrator*>(engine.get()) || dynamic_cast<RockingJointEngine*>(engine.get());
+	};
+	const auto present = std::find_if(scene->engines.begin(), scene->engines.end(), integrates);
+	if (present == scene->engines.end()) return add(energies, NaN, NaN, NaN, NaN, NaN, NaN, NaN);
+	if (std::find(integrators.begin(), integrators.end(), *present) == integrators.end()) integrators.push_back(*present);
+	Real friction = 0, dashpots = 0, impacts = 0, work = 0;
+	for (const auto& engine : integrators) {
+		if (const auto* rigid = dynamic_cast<MoreauJeanIntegrator*>(engine.get()))
+			friction += rigid->frictDissip, impacts += rigid->impactDissip, work += rigid->baseWork;
 		if (const auto* joints = dynamic_cast<RockingJointEngine*>(engine.get()))
-			return add(energies, joints->kinetic, joints->potential, joints->elastPotential, joints->frictDissip, joints->dampDissip, joints->impactDissip,
-				joints->baseWork);
+			friction += joints->frictDissip, dashpots += joints->dampDissip, impacts += joints->impactDissip, work += joints->baseWork;
 	}
-	add(energies, NaN, NaN, NaN, NaN, NaN, NaN, NaN);
+	if (auto* rigid = dynamic_cast<MoreauJeanIntegrator*>(present->get()))
+		add(energies, rigid->kinetic(), rigid->potential(), Real(0));
+	else if (const auto* joints = dynamic_cast<RockingJointEngine*>(present->get()))
+		add(energies, joints->kinetic, joints->potential, joints->elastPotential);
+	add(energies, friction, dashpots, impacts, work);
 }
 
 void WallRecorder::action()

@@ -21,7 +21,8 @@ public:
 		((vector<int>, ids, , , "The blocks, fixed by the first sample; none given: all boxes with a BlockMat, prescribed ones too. A block erased later has NaN from then on."))
 		((vector<Real>, times, , Attr::readonly, "Times of the samples [s]."))
 		((vector<Real>, blocks, , Attr::readonly, "At the first sample, block by block: half sizes x, y, z [m], 1 for a free block or 0."))
-		((vector<Real>, energies, , Attr::readonly, "Sample by sample: kinetic, potential, elastPotential, frictDissip, dampDissip, impactDissip, baseWork, as dem.energy() [J]; NaN without an engine of the joints."))
+		((vector<Real>, energies, , Attr::readonly, "Sample by sample: kinetic, potential, elastPotential, frictDissip, dampDissip, impactDissip, baseWork, as dem.energy() [J]; NaN without an engine of the joints. Of several lists of engines, one after the other, what was dissipated and done is summed up."))
+		((vector<shared_ptr<Engine>>, integrators, , Attr::hidden, ""))
 		((vector<Real>, poses, , Attr::hidden, "")),
 		initRun = true;,
 		.def("posesAsBytes", &WallRecorder::posesAsBytes, "Sample by sample and block by block x, y, z [m], w, x, y, z, as doubles in memory: numpy.frombuffer(...).")

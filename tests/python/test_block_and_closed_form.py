@@ -69,6 +69,8 @@ def test_time_to_stabilise_needs_and_obeys_its_tolerance():
     (lambda: masonry.RockingBlock(0, 1), "half_width = 0: must be > 0"),
     (lambda: masonry.RockingBlock(1, [1, np.nan]), "half_height = nan"),
     (lambda: masonry.RockingBlock(1, 1, -1), "gravity = -1"),
+    (lambda: masonry.RockingBlock("a", 1), "half_width = 'a': must be a number"),
+    (lambda: masonry.RockingBlock(1, ["1", 2]), r"half_height = \['1', 2\]: must be a number"),
     (lambda: masonry.closed_form.single_pulse(masonry.RockingBlock(1, 1), -1), "impulse = -1"),
     (lambda: masonry.closed_form.stabilised(masonry.RockingBlock(1, 1), 1, 1.5), r"restitution = 1.5: must be in \[0, 1\]"),
     (lambda: masonry.closed_form.pulse_sequence(masonry.RockingBlock(1, 1), 1, 0.5, 0), "n = 0"),

@@ -85,6 +85,7 @@ def test_bad_input_is_refused(tmp_path):
     script = tmp_path / "scene.py"
     script.write_text("def run(case): return {}")
     table = np.zeros(2, dtype=[("collapsed", bool), ("peak_drift", float)])
+    gaps = np.array([(0.2, False, 0.1), (0.4, False, np.nan), (0.4, True, np.nan)], dtype=[("scale", float), ("collapsed", bool), ("peak_drift", float)])
     for act, word in ((lambda: ensemble.fraction([]), "events"), (lambda: ensemble.fraction([True], 1), "confidence = 1"),
                       (lambda: ensemble.quantile([1, math.nan], 0.5), "NaN"), (lambda: ensemble.quantile([], 0.5), "values"),
                       (lambda: ensemble.quantile([1], 1.0), "probability = 1"), (lambda: ensemble.statistics(table, by="scale"), "scale"),
@@ -92,6 +93,14 @@ def test_bad_input_is_refused(tmp_path):
                       (lambda: ensemble.run(script, [{"a": 1}, {"a": 1}], tmp_path), "twice"), (lambda: ensemble.run(script, [{"a": {1}}], tmp_path), "must be a dict"),
                       (lambda: ensemble.run(script, [{"a": 1}], tmp_path, processes=0), "processes = 0"),
                       (lambda: ensemble.run(script, [{"a": 1}], tmp_path, time_limit=0), "time_limit = 0"),
+                      (lambda: ensemble.run(script, [{"a": 1}], tmp_path, processes="two"), "processes = 'two'"),
+                      (lambda: ensemble.run(script, [{"a": 1}], tmp_path, processes=math.nan), "processes = nan"),
+                      (lambda: ensemble.run(script, [{"a": 1}], tmp_path, time_limit="1"), "time_limit = '1'"),
+                      (lambda: ensemble.run(script, 5, tmp_path), "cases = 5: must be a list"),
+                      (lambda: ensemble.run(script, [1, 2], tmp_path), "case = 1: must be a dict"),
+                      (lambda: ensemble.statistics(gaps), "column 'peak_drift': 1 of 3 cases are NaN"),
+                      (lambda: ensemble.statistics(gaps, by="scale"), "column 'peak_drift': 1 of 2 cases with scale = 0.4"),
+                      (lambda: masonry.artificial_record(1, "3"), "peak = '3'"), (lambda: masonry.artificial_record(1, 1, dt="a"), "dt = 'a'"),
                       (lambda: masonry.artificial_record(-1, 1), "seed = -1"), (lambda: masonry.artificial_record(1, 0), "peak = 0"),
                       (lambda: masonry.artificial_record(1, 1, dt=0.1), "dt = 0.1"), (lambda: masonry.artificial_record(1, 1, cutoff=3), "cutoff = 3"),
                       (lambda: masonry.artificial_record(1, 1, duration=0.1), "duration = 0.1")):

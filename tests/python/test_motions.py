@@ -76,7 +76,11 @@ def test_csv(tmp_path):
     (lambda: masonry.PulseTrain(1.0, half_cycles=0), "half_cycles = 0"),
     (lambda: masonry.Rectangular(1.0, 0.0), "duration = 0"),
     (lambda: masonry.Sine(1.0, -1.0), "frequency = -1"),
+    (lambda: masonry.Sine("a", 1.0), "amplitude = 'a': must be a number"),
     (lambda: masonry.Record(0.01, [1.0]), "1 samples"),
+    (lambda: masonry.Record(0.01, [[1, 2], [3, 4]]), r"acceleration has the shape \(2, 2\): must be one row"),
+    (lambda: masonry.Record(0.01, "abc"), "acceleration = 'abc': must be a number or an array"),
+    (lambda: masonry.Record("fast", [1.0, 2.0]), "dt = 'fast': must be a number"),
     (lambda: masonry.Record(0.01, [1.0, np.nan]), r"acceleration\[1\] = nan"),
     (lambda: masonry.Record(0.01, [1.0, 2.0], baseline="cubic"), "baseline = 'cubic'"),
 ])

@@ -142,6 +142,12 @@ def test_an_erased_block_has_fallen_and_is_drawn_no_more(tmp_path):
     assert b'NumberOfCells="1"' in (results.write_paraview(h, tmp_path / "h.pvd").parent / "h/h_000002.vtu").read_bytes()
 
 
+def test_a_wall_without_its_base_says_so():
+    h = rocking([0, 0.1], shift=(0.4, 0, 0))
+    whole, alone = results.collapse(h), results.collapse(results.WallHistory(h.time, h.ids[1:], h.sizes[1:], h.free[1:], h.position[:, 1:], h.orientation[:, 1:]))
+    assert whole.from_base and "NOT RELATIVE" not in str(whole) and not alone.from_base and "NOT RELATIVE TO THE BASE" in str(alone)
+
+
 def test_drift_is_that_of_the_top():
     place = [[[0, 0, -0.1], [0, 0, 0.2], [0, 0, 0.6], [0.9, 0, 0.5]], [[1, 0, -0.1], [1.3, 0, 0.2], [1.01, 0.02, 0.6], [1.9, 0.05, 0.5]]]
     h = history([[2, 2, 0.2], [0.6, 0.5, 0.4], [0.6, 0.5, 0.4], [0.3, 0.5, 1.0]], place)
@@ -168,6 +174,23 @@ def test_a_file_gives_the_same_bits_back(tmp_path):
     np.savez(tmp_path / "other.npz", time=[0])
     with pytest.raises(ValueError, match="is no WallHistory"):
         results.WallHistory.load(tmp_path / "other.npz")
+    for damage in (b"", b"PK", b"a line of text\n", (tmp_path / "h.npz").read_bytes()[:-100]):
+        (tmp_path / "damaged.npz").write_bytes(damage)
+        with pytest.raises(ValueError, match="path = .*damaged.npz: is no WallHistory"):
+            results.WallHistory.load(tmp_path / "damaged.npz")
+
+
+def test_a_csv_has_a_line_a_sample(tmp_path):
+    h = rocking([0, 0.1, 0.05])
+    h.to_csv(tmp_path / "h.csv")
+    table = np.genfromtxt(tmp_path / "h.csv", delimiter=",", skip_header=1)
+    assert (tmp_path / "h.csv").read_text().splitlines()[0] == "time (s),drift" and np.array_equal(table, np.column_stack([h.time, h.drift()]))
+    energies = np.arange(21.0).reshape(3, 7)
+    h = history(h.sizes, h.position, h.orientation, energies=energies)
+    h.to_csv(tmp_path / "h.csv")
+    table = np.genfromtxt(tmp_path / "h.csv", delimiter=",", skip_header=1)
+    assert (tmp_path / "h.csv").read_text().startswith("time (s),drift,kinetic (J),potential (J),") and np.array_equal(table[:, 2:9], energies)
+    assert np.array_equal(table[:, 9], h.energy["error"])
 
 
 # --- seen from the side and from afar ---
@@ -285,7 +308,10 @@ def test_bad_input_is_refused(tmp_path):
             results.WallHistory(**{**good, name: value})
     path = tmp_path / "x.gif"
     for act, word in ((lambda: h.sample(7), "time = 7"), (lambda: results.collapse(h, blocks=2), "blocks = 2"),
-                      (lambda: results.collapse(h, excursion=0), "excursion = 0"), (lambda: h.save("h.txt"), "must end in .npz"),
+                      (lambda: results.collapse(h, blocks=math.nan), "blocks = nan: must be"),
+                      (lambda: results.collapse(h, blocks="two"), "blocks = 'two'"), (lambda: results.collapse(h, excursion="a"), "excursion = 'a'"),
+                      (lambda: results.draw(h, path, view="front"), "view = 'front'"), (lambda: results.draw(h, path, view=(1, 0)), r"view = \(1, 0\): must be three"),
+                      (lambda: h.to_csv("h.txt"), "must end in .csv"), (lambda: results.collapse(h, excursion=0), "excursion = 0"), (lambda: h.save("h.txt"), "must end in .npz"),
                       (lambda: results.draw(h, path, color="red"), "color = 'red'"), (lambda: results.draw(h, path, enlarge=-1), "enlarge = -1"),
                       (lambda: results.draw(h, path, view=(0, 0, 0)), "view"), (lambda: results.draw_energy(h, path), "no energies"),
                       (lambda: results.film(h, "h.avi"), "must end in .gif or .mp4"), (lambda: results.film(h, path, frames_per_second=100), "frames_per_second"),

@@ -48,7 +48,7 @@ dem.base((1, 1, 1), stone())
 # Ids.
 sphere = O.bodies.append(utils.sphere((9, 9, 9), 1))
 for bad, why in ((-1, "no such body"), (77, "no such body"), (True, "no such body"), (1.5, "no such body"), (sphere, "must be a Box")):
-    refuses(lambda: dem.block((1, 1, 1), stone(), on=bad), "id", str(bad), why)
+    refuses(lambda: dem.block((1, 1, 1), stone(), on=bad), "on = ", str(bad), why)
     refuses(lambda: dem.tilt(bad, 0.1), "id", str(bad), why)
     refuses(lambda: dem.angle(bad), "id", str(bad), why)
 for bad in (2.0, nan, -inf):

@@ -1,5 +1,7 @@
 """Ensembles: each case is what the exact block does; a second call computes what is missing or has changed, and gives the same numbers."""
 
+import contextlib
+import io
 import math
 import shutil
 import tempfile
@@ -64,6 +66,13 @@ with tempfile.TemporaryDirectory() as folder:
     assert study(cases, script, out).tobytes() == table.tobytes() and computed == []
     next(out.glob(f"case_{ensemble._keys(script.resolve(), 'run', cases)[0]}.npz")).unlink()
     assert study(cases, script, out).tobytes() == table.tobytes() and computed == [[0.32]]
+    for damage in (b"", b"PK", b"a line of text\n", (out / f"case_{ensemble._keys(script.resolve(), 'run', cases)[0]}.npz").read_bytes()[:-200]):
+        damaged = out / f"case_{ensemble._keys(script.resolve(), 'run', cases)[0]}.npz"
+        damaged.write_bytes(damage)
+        refuses(lambda: ensemble.result(script, cases[0], out), "no result", kind=KeyError)
+        with contextlib.redirect_stdout(io.StringIO()) as printed:
+            assert study(cases, script, out).tobytes() == table.tobytes() and computed == [[0.32]]
+        assert f"{damaged} is damaged" in printed.getvalue()
     changed = study([cases[2], {"scale": 0.2, "name": "sine 0.1"}, cases[0]], script, out)
     assert computed == [[0.2]] and changed["peak_drift"].tolist()[::2] == table["peak_drift"].tolist()[::-2]
 

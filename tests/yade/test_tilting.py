@@ -99,6 +99,18 @@ for options in ({}, {"load": "turned"}):
     assert O.engines[-1].chosenModel == "spatial"
     assert marks(result, "opens") == [(base, ids[0]), (base, ids[1])], result.joints
 
+# --- one block, a stack, a column: two planes would do, and the pull's is taken; also with gravity that turns and on the slow ramp ---
+for count in (1, 3):
+    for options in ({"direction": "y"}, {"direction": "-y", "load": "turned"}, {"direction": "y", "model": "planar"}):
+        base, stone = ground(0.9)
+        ids = dem.stack(count, (0.5, 0.3, 1 / count), stone, base)
+        result = found(**options)
+        assert abs(result.multiplier / 0.3 - 1) < CLOSE and O.engines[-1].chosenModel == "planar", (count, options, result)
+        assert O.engines[-1].along == Vector3.UnitY and marks(result, "opens") == [(base, ids[0])], (count, options, result)
+    table = dem.TiltTable(direction="y")
+    result = table.ramp(progress=False)
+    assert -2 * 0.02 * tilting._LOOK * table._dt / table._unit < result.multiplier - 0.3 <= 1e-9, result
+
 # --- the scene is put back, and the same table finds the same bits again ---
 start = [(b.state.pos, b.state.ori) for b in O.bodies]
 table = dem.TiltTable(direction="y")

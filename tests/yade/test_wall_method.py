@@ -1,6 +1,8 @@
 """method='wall' in YADE: when it is chosen, what it refuses, O.interactions while nobody looks (of either method), laws changed by a script, the
 same bits after loading."""
 
+import contextlib
+import io
 import math
 import os
 import sys
@@ -44,6 +46,14 @@ assert integrator().method == "localised"  # 19 blocks
 for per_course, method in ((2, "localised"), (3, "wall")):  # 5 and 7 blocks
     wall(2, per_course, 0.1, model="spatial")
     assert integrator().method == method, per_course
+
+# What the choice says of sizes.
+for options, words in (({}, "; 26 blocks: method 'wall'"),
+                       ({"piers": 3}, "; largest structure 27 of 29 blocks: method 'wall', localised impacts for 2 structures of 2 blocks beside")):
+    base, ids = wall(4, 6, 0.1, **options)
+    with contextlib.redirect_stdout(io.StringIO()) as said:
+        dem.engines()
+    assert words in said.getvalue(), said.getvalue()
 
 # It is the largest structure that counts: blocks that stand apart move as each of them would alone. Pulses keep all in one step.
 

@@ -238,6 +238,14 @@ for made, wanted in zip(dem.blocks_from_table(path, material, on=base), (leaning
     made, wanted = O.bodies[made].state, O.bodies[wanted].state
     assert made.pos == wanted.pos and made.ori == wanted.ori and made.refOri == wanted.refOri
 
+# Endings and headers in capitals, blanks around headers; id and name say nothing.
+for ending, text in (("CSV", "ID, X ,Y,Z ,Size_X,SIZE_Y,size_z,Name\n7,4,0,0.5,1,1,1,corner\n"),
+                     ("JSON", '[{"id": 7, "X": 4, "Y": 0, "z ": 0.5, "Size_X": 1, "size_y": 1, "size_z": 1}]')):
+    with open(path := os.path.join(folder, f"TABLE.{ending}"), "w") as file:
+        file.write(text)
+    made, = dem.blocks_from_table(path, material)
+    assert O.bodies[made].state.pos == Vector3(4, 0, 0.5) and O.bodies[made].shape.extents == Vector3(0.5, 0.5, 0.5)
+
 # Separations: two cubes, one turned by 45 degrees about z: its corner reaches sqrt(2)/2. Crossed edges: both turned by 45 degrees, about x and
 # about y, one over the other: their top and bottom edges cross, each sqrt(2)/2 from its centre.
 diagonal = math.sqrt(0.5)
@@ -341,7 +349,9 @@ for opening, words in (
     refuses(lambda: dem.wall(6, 6, ok, unused, base, openings=[opening]), *words)
 refuses(lambda: dem.wall(6, 6, ok, unused, base, openings=[(1, 0, 1, 2), (1.5, 2, 1, 2)], openings_in="blocks"), "openings[1]", "meets openings[0] = (1, 0, 1, 2)")
 refuses(lambda: dem.wall(2, 2, ok, None, base), "material = None", "BlockMat")
-refuses(lambda: dem.wall(2, 2, ok, unused), "id = None", "no such body")
+refuses(lambda: dem.wall(2, 2, ok, unused), "on = None: must be given")
+refuses(lambda: dem.wall(2, 2, ok), "material = None, on = None: must be given")
+refuses(lambda: dem.wall(2, 2, ok, unused, "base"), "on = 'base'", "must be an id")
 for bad, words in ((dict(header_every=1), ("header_every = 1", "at least 2")), (dict(header_every=7), ("header_every = 7", "from 2 to", "6")),
                    (dict(collar=-1), ("collar = -1", "0 or positive")), (dict(gap=0.2), ("gap = 0.2", "below 0.133333 m"))):
     refuses(lambda: dem.two_wythe_wall(6, 4, ok, unused, base, **{"header_every": 3, **bad}), *words)
@@ -358,9 +368,19 @@ for rows, words in (([], ("at least one row",)), ([good, {**good, "size_x": 0}],
                     ([{**good, "rotation_z": inf}], ("rotation_z = inf",)), ([{**good, "qw": 1}], ("qx = None",)),
                     ([{**good, "qw": 1, "qx": 1, "qy": 0, "qz": 0}], ("qw, qx, qy, qz", "length 1")), ([{**good, "material": "tuff"}], ("row 0", "'tuff'", "must be one of"))):
     refuses(lambda: dem.blocks_from_table(rows, unused), *words)
+for rows, words in (([{**good, "material": ["tuff"]}], ("row 0", "material = ['tuff']", "a name")), ([good, {**good, "x": 10**400}], ("row 1", "x = 1000", "finite")),
+                    ([{**good, "y": True}], ("row 0", "y = True", "finite number")), ([{**good, "rotation_y": False}], ("row 0", "rotation_y = False")),
+                    ([{**good, " X": 1}], ("row 0", "' X' = 1", "twice"))):
+    refuses(lambda: dem.blocks_from_table(rows, unused), *words)
+for ending, text, words in (("csv", "x,y,z,size_x,size_y,size_z,x\n0,0,1,1,1,1,5\n", ("row 0", "'x' = '5'", "twice", "'0'")),
+                            ("json", '[{"x": 0, "y": 0, "z": true, "size_x": 1, "size_y": 1, "size_z": 1}]', ("row 0", "z = True")),
+                            ("json", '[{"x": 0, "y": 0, "z": 0, "size_x": 1, "size_y": 1, "size_z": 1, "z": 3}]', ("row 0", "'z' = 3", "twice"))):
+    with open(path := os.path.join(folder, f"bad.{ending}"), "w") as file:
+        file.write(text)
+    refuses(lambda: dem.blocks_from_table(path, unused), *words)
 refuses(lambda: dem.blocks_from_table([good], {"tuff": unused}), "row 0", "material = ''", "'tuff'")
 refuses(lambda: dem.blocks_from_table([good], {"tuff": 3}), "material = 3", "BlockMat")
-refuses(lambda: dem.blocks_from_table([good], unused, on=99), "id = 99")
+refuses(lambda: dem.blocks_from_table([good], unused, on=99), "on = 99", "no such body")
 refuses(lambda: dem.blocks_from_table("wall.xlsx", unused), "table = wall.xlsx", ".csv or .json")
 with open(path := os.path.join(folder, "no_list.json"), "w") as file:
     file.write('{"x": 0}')

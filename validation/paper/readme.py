@@ -1,4 +1,4 @@
-"""Writes the tables of one run between the markers of README.md, so that they cannot go stale."""
+"""The tables of one run, and how they get between the markers of README.md."""
 from pathlib import Path
 
 import judge
@@ -6,7 +6,7 @@ import theory
 from cases import COMPLIANT, RIGID, grid, relative_error
 
 README = Path(__file__).resolve().parent / "README.md"
-BEGIN, END = "<!-- written by validation/paper/run: begin -->", "<!-- end -->"
+BEGIN, END = "<!-- written by validation/paper/run --readme: begin -->", "<!-- end -->"
 
 
 def _table(header, rows):
@@ -29,14 +29,17 @@ def _models(table):
     return _table(["", "rigid", "bound", "compliant", "bound"], rows)
 
 
-def update(stated, table, others):
+def tables(stated, table, others):
     """others: verdicts that are not in the table of the two models."""
     claims = _table(["where", "the text", "paper", "closed form", "real gravity", "verdict"],
                     [[c.where, c.statement, c.paper, c.closed_form, c.gravity, c.verdict] for c in stated])
     checks = _table(["what must hold", "value", "bound", "holds"], [[*v[:3], "yes" if v[3] else "NO"] for v in others])
-    generated = (f"{BEGIN}\n\n### The paper's text against its closed form and real gravity\n\n{claims}\n\n"
-                 f"### Figures 4 to 8 in YADE\n\n{len(grid())} blocks by each model, at the settings that `dem.engines()` chooses. {_nearest()}\n\n{_models(table)}\n\n"
-                 f"### The other verdicts\n\n{checks}\n\n{END}")
+    return (f"### The paper's text against its closed form and real gravity\n\n{claims}\n\n"
+            f"### Figures 4 to 8 in YADE\n\n{len(grid())} blocks by each model, at the settings that `dem.engines()` chooses. {_nearest()}\n\n{_models(table)}\n\n"
+            f"### The other verdicts\n\n{checks}")
+
+
+def update(generated):
     text = README.read_text()
     before, rest = text.split(BEGIN)
-    README.write_text(before + generated + rest.split(END)[1])
+    README.write_text(f"{before}{BEGIN}\n\n{generated}\n\n{END}{rest.split(END)[1]}")

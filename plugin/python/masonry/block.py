@@ -1,6 +1,7 @@
 """The rocking block."""
 
 from . import _core
+from ._given import array_given
 from ._arrays import columns, restore, shape_of
 
 
@@ -19,6 +20,8 @@ class RockingBlock:
     """
 
     def __init__(self, half_width, half_height, gravity=9.81):
+        for name, value in (("half_width", half_width), ("half_height", half_height), ("gravity", gravity)):
+            array_given(name, value)
         self.half_width = half_width
         self.half_height = half_height
         self.gravity = gravity

@@ -20,10 +20,13 @@ import os
 import shutil
 import subprocess
 import threading
+from collections.abc import Iterable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
+
+from ._given import is_whole, number_given
 
 _RUN_CASE = Path(__file__).with_name("_run_case.py")
 # Lines of what a failed case has said that the error repeats.
@@ -78,33 +81,41 @@ def run(script, cases, folder, function="run", processes=None, time_limit=None, 
 
     The function returns a dict of numbers (and, if it likes, arrays: ensemble.result() reads them), the same keys for every case.
     Results are kept: a later call computes only cases that have none, or whose values, script, files named in them or masonry package
-    have changed since. Other files that the function reads, and modules beside the script, are not looked into.
+    have changed since, or whose file is damaged, which a line tells. Other files that the function reads, and modules beside the script, are not looked into.
 
     Table: a structured array, one row a case in the order of `cases`: what the case says, then what its numbers are.
     Raises ValueError for cases that cannot be told apart or written down, RuntimeError, after all the others have run, for cases that failed
     (their output is in the folder as .log); FileNotFoundError where there is no script or no YADE.
     """
     script, folder = Path(script).resolve(strict=True), Path(folder)
-    cases = [dict(case) for case in cases]
+    if not isinstance(cases, Iterable):
+        raise ValueError(f"cases = {cases!r}: must be a list of dicts")
+    cases = list(cases)
     if not cases:
         raise ValueError("cases: must have at least one")
     for case in cases:
+        if not isinstance(case, dict):
+            raise ValueError(f"case = {case!r}: must be a dict of numbers, strings, and lists of them")
         if case.keys() != cases[0].keys():
             raise ValueError(f"case = {case}: must have the same keys as the first, {', '.join(cases[0])}")
-    if processes is not None and not (processes == int(processes) and processes >= 1):
-        raise ValueError(f"processes = {processes}: must be a whole number, at least 1")
-    if time_limit is not None and not 0 < time_limit < math.inf:
+    if processes is not None and not is_whole(processes, 1):
+        raise ValueError(f"processes = {processes!r}: must be a whole number, at least 1, or None")
+    if time_limit is not None and not 0 < number_given("time_limit", time_limit) < math.inf:
         raise ValueError(f"time_limit = {time_limit}: must be positive and finite, in s, or None")
     keys = _keys(script, function, cases)
     if len(set(keys)) < len(keys):
         raise ValueError(f"case = {next(c for c, k in zip(cases, keys) if keys.count(k) > 1)}: stands there twice")
     folder.mkdir(parents=True, exist_ok=True)
-    missing = [(case, key) for case, key in zip(cases, keys) if not _path(folder, key).exists()]
-    failures = _run_missing(script, function, missing, len(cases), folder, processes or os.cpu_count(), time_limit, progress) if missing else []
+    outcomes = {key: _load(_path(folder, key)) for key in keys}
+    missing = [(case, key) for case, key in zip(cases, keys) if outcomes[key] is None]
+    for _, key in missing:
+        _path(folder, key).unlink(missing_ok=True)  # a damaged one
+    failures = _run_missing(script, function, missing, len(cases), folder, int(processes or os.cpu_count()), time_limit, progress) if missing else []
     if failures:
         raise RuntimeError(f"{len(failures)} of {len(cases)} cases failed; {len(cases) - len(failures)} are kept in {folder}. The first, "
                            f"{failures[0][0]}:\n{failures[0][1]}")
-    table = _table(cases, [_load(_path(folder, key)) for key in keys])
+    outcomes.update({key: _load(_path(folder, key)) for _, key in missing})
+    table = _table(cases, [outcomes[key] for key in keys])
     np.savez(folder / "ensemble.npz", table=table)
     with open(folder / "ensemble.csv", "w", newline="", encoding="utf-8") as file:
         csv.writer(file).writerows([table.dtype.names, *table.tolist()])
@@ -112,11 +123,11 @@ def run(script, cases, folder, function="run", processes=None, time_limit=None, 
 
 
 def result(script, case, folder, function="run"):
-    """What the function returned for one case that has been run: a dict of numbers and arrays. KeyError: it has not, or is out of date."""
-    path = _path(Path(folder), _keys(Path(script).resolve(strict=True), function, [dict(case)])[0])
-    if not path.exists():
+    """What the function returned for one case that has been run: a dict of numbers and arrays. KeyError: it has not, is out of date or damaged."""
+    outcome = _load(_path(Path(folder), _keys(Path(script).resolve(strict=True), function, [dict(case)])[0]))
+    if outcome is None:
         raise KeyError(f"{case} has no result in {folder}")
-    return _load(path)
+    return outcome
 
 
 def _path(folder, key):
@@ -124,8 +135,17 @@ def _path(folder, key):
 
 
 def _load(path):
-    with np.load(path) as file:
-        return {name: file[name] if file[name].ndim else file[name].item() for name in file.files if name != "case"}
+    """What a case returned; None where it has no file, or a damaged one, which a line tells."""
+    try:
+        with np.load(path) as file:
+            return {name: file[name] if file[name].ndim else file[name].item() for name in file.files if name != "case"}
+    except FileNotFoundError:
+        return None
+    except OSError:
+        raise
+    except Exception:  # whatever zipfile, zlib and NumPy say of one that was cut off
+        print(f"masonry.ensemble: {path} is damaged: its case counts as not yet computed")
+        return None
 
 
 def _run_missing(script, function, missing, total, folder, processes, time_limit, progress):
@@ -263,6 +283,10 @@ def statistics(table, by=None, probabilities=(0.16, 0.5, 0.84), confidence=0.95,
         part = table if by is None else table[table[by] == group]
         happened = part[event].astype(bool)
         numbers = np.where(happened, np.inf, part[value])
+        for name, column in ((event, part[event]), (value, numbers)):
+            if np.isnan(column).any():
+                raise ValueError(f"column {name!r}: {int(np.isnan(column).sum())} of {len(part)} cases{'' if by is None else f' with {by} = {group}'} are NaN: "
+                                 f"must be numbers{f', but where {event} is True' if name == value else ''}")
         row = [] if by is None else [group]
         row += [len(part), *fraction(happened, confidence)]
         for probability in probabilities:

@@ -6,6 +6,7 @@ Every motion with a known course has .acceleration(t), .velocity(t), .displaceme
 import numpy as np
 
 from . import _core
+from ._given import array_given, number_given
 from ._arrays import columns, restore, shape_of
 from ._readers import read_at2, read_csv
 
@@ -77,6 +78,8 @@ class _Shaped(Motion):
     """A motion of a few numbers, the first of which is the amplitude."""
 
     def __init__(self, maker, **parameters):
+        for name, value in parameters.items():
+            array_given(name, value)
         self._maker, self._parameters = maker, parameters
         self.__dict__.update(parameters)
         self.shape = shape_of(*parameters.values())
@@ -122,8 +125,10 @@ class Record(Motion):
     """
 
     def __init__(self, dt, acceleration, scale=1.0, baseline="none", name="", source="", unit="m/s^2"):
-        self.dt = float(dt)
-        self.samples = np.ascontiguousarray(acceleration, dtype=float)
+        self.dt = float(number_given("dt", dt))
+        self.samples = np.ascontiguousarray(array_given("acceleration", acceleration))
+        if self.samples.ndim != 1:
+            raise ValueError(f"acceleration has the shape {self.samples.shape}: must be one row of samples, at least two")
         self.scale = self.amplitude = scale
         self.baseline = baseline
         self.name, self.source, self.unit = name, source, unit

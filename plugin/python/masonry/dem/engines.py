@@ -198,7 +198,8 @@ def _rigid(motions, model, method, dt, tolerance, impact_order, gravity, recorde
         method = "wall" if blocks > few and not fine else "localised"
         beside = [n for n in joined if n <= few]
         if method == "wall":
-            choice += f"; {blocks} blocks: method 'wall'"
+            whole = f"{blocks} blocks" if pulses or len(joined) == 1 else f"largest structure {blocks} of {sum(joined)} blocks"
+            choice += f"; {whole}: method 'wall'"
             if beside and not pulses:
                 choice += f", localised impacts for {len(beside)} structures of {sum(beside)} blocks beside"
         elif len(joined) > 1 and not pulses:
@@ -270,7 +271,7 @@ def impacts():
 
 
 def energy():
-    """Energies in J: kinetic and potential now; frictDissip, impactDissip and baseWork so far; compliant joints: also elastPotential
+    """Energies in J: kinetic and potential now; frictDissip, impactDissip and baseWork since dem.engines() made the engines; compliant joints: also elastPotential
     now and dampDissip so far. The sum of all others less baseWork is constant, but for RockingJointEngine.madeEnergy and the errors of steps."""
     e = _joint_engine()
     keys = ("kinetic", "potential", "elastPotential", "frictDissip", "dampDissip", "impactDissip", "baseWork")
@@ -282,7 +283,7 @@ def history(recorder):
     rotation (rad, vector in the block's own axes; the y component is dem.angle), position (m), uplift (m, largest gap of the joint
     below, NaN in flight) and force (N, of what is below)."""
     if not isinstance(recorder, wrapper.BlockRecorder):
-        raise ValueError(f"recorder = {recorder!r}: must be a BlockRecorder")
+        raise ValueError(f"recorder = {recorder!r}: must be a BlockRecorder (a WallRecorder: dem.wall_history)")
     rows, blocks = len(recorder.times), len(recorder.ids)
     fields = [("time", float), ("rotation", float, (blocks, 3)), ("position", float, (blocks, 3)), ("uplift", float, (blocks,)), ("force", float, (blocks, 3))]
     table = np.zeros(rows, dtype=fields)
@@ -293,7 +294,8 @@ def history(recorder):
 
 
 def save_history(recorder, path):
-    """Writes dem.history() to a file: .npz (NumPy), or .csv with one column per number and a header line (pandas, ParaView)."""
+    """Writes dem.history() to a file: .npz (NumPy), or .csv with one column per number and a header line (pandas, ParaView). Of a WallRecorder:
+    dem.wall_history(recorder).save("wall.npz"), or .to_csv("wall.csv") (time, drift, energies)."""
     table = history(recorder)
     if str(path).endswith(".npz"):
         np.savez(path, ids=recorder.ids, **{name: table[name] for name in table.dtype.names})

@@ -35,13 +35,13 @@ def _block_material(material):
     return material
 
 
-def _box(id):
-    """The body of that id; ValueError unless it exists and is a Box."""
+def _box(id, name="id"):
+    """The body of that id, which the script gave as `name`; ValueError unless it exists and is a Box."""
     if not isinstance(id, (int, np.integer)) or isinstance(id, bool) or not 0 <= id < len(O.bodies) or O.bodies[int(id)] is None:
-        raise ValueError(f"id = {id!r}: there is no such body in O.bodies (0 to {len(O.bodies) - 1})")
+        raise ValueError(f"{name} = {id!r}: there is no such body in O.bodies: must be an id, a whole number from 0 to {len(O.bodies) - 1}")
     body = O.bodies[int(id)]
     if not isinstance(body.shape, wrapper.Box):
-        raise ValueError(f"id = {id}: that body is a {type(body.shape).__name__}, it must be a Box")
+        raise ValueError(f"{name} = {id}: that body is a {type(body.shape).__name__}, it must be a Box")
     return body
 
 
@@ -55,8 +55,12 @@ def check_recorder(recorder):
         raise ValueError(f"{name}.iterPeriod = {recorder.iterPeriod}, virtPeriod = {recorder.virtPeriod}: one of them must be positive and finite")
     if isinstance(recorder, wrapper.BlockRecorder) and not recorder.ids:
         raise ValueError(f"{name}.ids is empty: it must name at least one block")
-    for id in recorder.ids:
-        _box(id)
+    wall = isinstance(recorder, wrapper.WallRecorder)
+    if wall and recorder.times:  # it goes on, also without blocks that have been erased since
+        return
+    bodies = [_box(id) for id in recorder.ids]
+    if wall and bodies and all(b.dynamic for b in bodies) and not all(b.dynamic for b in _boxes()):
+        print(f"masonry.dem: {name}.ids has no prescribed body: drifts and falls will not be relative to the base: add its id where it moves")
 
 
 def _axis(name):
@@ -87,7 +91,7 @@ def _append_all(centers, sizes, material, orientations, resting):
 
 def _top(on, at=(0.0, 0.0)):
     """Where a layout stands on the body: the place `at` on its upper face, in world axes, and the body's orientation."""
-    below, at = _box(on), walls.finite_numbers("at", at, 2, "two finite numbers, in m")
+    below, at = _box(on, "on"), walls.finite_numbers("at", at, 2, "two finite numbers, in m")
     return below.state.pos + below.state.ori * Vector3(at[0], at[1], below.shape.extents[2]), below.state.ori
 
 
@@ -97,7 +101,7 @@ def _placed(centers, foot, orientation):
 
 def _check_support(layout, on, at):
     """ValueError unless every block of the bottom course has its centre above the body `on`."""
-    (centers, sizes), half = layout, np.array(_box(on).shape.extents)
+    (centers, sizes), half = layout, np.array(_box(on, "on").shape.extents)
     bottom = centers[centers[:, 2] - sizes[:, 2] / 2 < sizes[:, 2].min() / 2, :2] + at
     off = bottom[(np.abs(bottom) > half[:2] * (1 - _INSIDE)).any(axis=1)]
     if len(off):
@@ -130,7 +134,7 @@ def block(size, material, on=None, center=None, orientation=None):
     if not isinstance(orientation, Quaternion) or not abs(orientation.norm() - 1) < 1e-9:
         raise ValueError(f"orientation = {orientation!r}: must be a Quaternion of length 1")
     if on is not None:
-        below = _box(on)
+        below = _box(on, "on")
         if not (orientation * Vector3.UnitZ)[2] > 1 - 1e-12:
             raise ValueError(f"orientation = {orientation!r}: must be a turn about z where the block stands on a body")
         center = below.state.pos + below.state.ori * Vector3(0, 0, below.shape.extents[2] + size[2] / 2)
@@ -162,6 +166,9 @@ def wall(courses=None, per_course=None, size=None, material=None, on=None, gap=0
                   where its course has a joint. There is none over an opening that reaches the top.
     at            (x, y) of the middle of the wall on the body `on`, m; every block of the bottom course has its centre above that body
     """
+    missing = [name for name, value in (("material", material), ("on", on)) if value is None]
+    if missing:
+        raise ValueError(f"{' = None, '.join(missing)} = None: must be given: a BlockMat, and the id of the body that the wall stands on")
     courses, per_course, size = walls.wall_modules(courses, per_course, size, length, height, thickness, gap)
     return _stand(walls.wall_layout(courses, per_course, size, gap, openings, openings_in), material, on, at)
 
@@ -208,6 +215,9 @@ def blocks_from_table(table, materials, on=None):
     material                  optional: a key of `materials`, a dict of BlockMats. One BlockMat instead serves the rows that name
                               none, or its label.
     qw, qx, qy, qz            optional, instead of the rotations: the orientation as a quaternion (dem.save_blocks writes it)
+    id, name                  optional, ignored
+
+    Columns may be written in capitals and with blanks around them.
     """
     centers, sizes, quaternions, names = walls.read_table(table)
     if not isinstance(materials, dict):

@@ -272,6 +272,7 @@ class TiltTable:
             O.engines = engines(model=self._model, method="localised", dt=self._dt, gravity=self.gravity)
         integrator = O.engines[-1]
         integrator.mostEvents = _EVENTS
+        integrator.along = Vector3(_DIRECTIONS[self.direction])  # the plane, before there is a pull
         self._pull(integrator, multiplier)
         return integrator
 

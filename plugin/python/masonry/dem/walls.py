@@ -8,9 +8,9 @@ import csv
 import itertools
 import json
 import math
-import numbers
 
 import numpy as np
+from masonry._given import is_whole, number_given
 
 # A length fits the modules of a wall when it is off by less than this share of a module: far above round-off, far below a cut.
 _FIT = 1e-6
@@ -42,16 +42,9 @@ def positive_size(name, size):
     return values
 
 
-def number_given(name, value):
-    """The value; ValueError unless it is a number (NaN is one)."""
-    if not isinstance(value, numbers.Real) or isinstance(value, bool):
-        raise ValueError(f"{name} = {value!r}: must be a number")
-    return value
-
-
 def whole(name, value, least):
     """The value as an integer; ValueError unless it is one, at least `least` and at most _MOST."""
-    if not (math.isfinite(number_given(name, value)) and value == int(value) and least <= value <= _MOST):
+    if not is_whole(number_given(name, value), least, _MOST):
         raise ValueError(f"{name} = {value}: must be a whole number, at least {least} and at most {_MOST}")
     return int(value)
 
@@ -246,13 +239,15 @@ def pier_layout(courses, size, per_course=1):
 
 _PLACE, _TURN, _QUATERNION = ("x", "y", "z", "size_x", "size_y", "size_z"), ("rotation_y", "rotation_z"), ("qw", "qx", "qy", "qz")
 COLUMNS = _PLACE + _TURN + ("material",) + _QUATERNION
+# Columns that say nothing of a block.
+_IGNORED = ("id", "name")
 
 
 def _number(row, index, column, default=None):
     value = row.get(column, default)
     try:
-        number = float(value)
-    except (TypeError, ValueError):
+        number = math.nan if isinstance(value, (bool, np.bool_)) else float(value)
+    except (TypeError, ValueError, OverflowError):
         number = math.nan
     if not math.isfinite(number):
         raise ValueError(f"row {index}: {column} = {value!r}: must be a finite number")
@@ -271,42 +266,69 @@ def _quaternion(row, index):
         if not abs(math.hypot(*q) - 1) < 1e-9:
             raise ValueError(f"row {index}: {', '.join(_QUATERNION)} = {tuple(q)}: must be a quaternion of length 1")
         return q
-    y, z = (_number({c: row.get(c) or 0 for c in _TURN}, index, c) / 2 for c in _TURN)
+    y, z = (_number({c: 0 if row.get(c) in (None, "") else row[c]}, index, c) / 2 for c in _TURN)
     return [math.cos(z) * math.cos(y), -math.sin(z) * math.sin(y), math.cos(z) * math.sin(y), math.sin(z) * math.cos(y)]
 
 
+def _material(row, index):
+    name = row.get("material")
+    if name is not None and not isinstance(name, str):
+        raise ValueError(f"row {index}: material = {name!r}: must be a name")
+    return name or ""
+
+
+class _Cells(list):
+    """The (column, value) pairs of a row as they stand in a file, where a column may stand twice."""
+
+
+def _csv_rows(file):
+    lines = csv.reader(file, skipinitialspace=True)
+    header = next(lines, [])
+    return [_Cells(itertools.zip_longest(header, line)) for line in lines if line]
+
+
 def _rows(table):
+    """[(column, value) pairs of a block]."""
     if not isinstance(table, str) and not hasattr(table, "__fspath__"):
         try:
-            return [dict(row) if hasattr(row, "keys") else dict(itertools.zip_longest(COLUMNS, row)) for row in table]
+            return [list(row.items()) if hasattr(row, "items") else list(itertools.zip_longest(COLUMNS, row)) for row in table]
         except TypeError:
             raise ValueError(f"table = {table!r}: must be a path, or rows: mappings or sequences") from None
     path = str(table)
-    if not path.endswith((".csv", ".json")):
+    if not path.lower().endswith((".csv", ".json")):
         raise ValueError(f"table = {path}: must end in .csv or .json, or be rows")
     with open(path, newline="", encoding="utf-8-sig") as file:  # spreadsheets begin a file with a byte-order mark
         try:
-            rows = json.load(file) if path.endswith(".json") else list(csv.DictReader(file, skipinitialspace=True))
+            rows = json.load(file, object_pairs_hook=_Cells) if path.lower().endswith(".json") else _csv_rows(file)
         except (ValueError, csv.Error) as error:
             raise ValueError(f"table = {path}: cannot be read: {error}") from None
-    if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
+    if isinstance(rows, _Cells) or not isinstance(rows, list) or not all(isinstance(row, _Cells) for row in rows):
         raise ValueError(f"table = {path}: must be a list of objects, one a block")
     return rows
 
 
+def _named(cells, index):
+    """The row as a dict: columns in small letters, without blanks around them."""
+    row = {}
+    for column, value in cells:
+        if column is None:
+            raise ValueError(f"row {index}: has more values than there are columns")
+        name = str(column).strip().lower()
+        if name not in COLUMNS + _IGNORED:
+            raise ValueError(f"row {index}: column {column!r}: must be one of {', '.join(COLUMNS)}")
+        if name in row:
+            raise ValueError(f"row {index}: column {column!r} = {value!r}: stands there twice, first with {row[name]!r}")
+        row[name] = value
+    return row
+
+
 def read_table(table):
     """(centers (n, 3), sizes (n, 3), quaternions (n, 4) as w, x, y, z, material names) of a table, see dem.blocks_from_table."""
-    rows = _rows(table)
+    rows = [_named(cells, index) for index, cells in enumerate(_rows(table))]
     if not rows:
         raise ValueError("table: must have at least one row")
-    for index, row in enumerate(rows):
-        for column in row:
-            if column is None:
-                raise ValueError(f"row {index}: has more values than there are columns")
-            if column not in COLUMNS:
-                raise ValueError(f"row {index}: column {column!r}: must be one of {', '.join(COLUMNS)}")
     place = np.array([[_number(row, k, c) for c in _PLACE] for k, row in enumerate(rows)])
-    return place[:, :3], place[:, 3:], np.array([_quaternion(row, k) for k, row in enumerate(rows)]), [row.get("material") or "" for row in rows]
+    return place[:, :3], place[:, 3:], np.array([_quaternion(row, k) for k, row in enumerate(rows)]), [_material(row, k) for k, row in enumerate(rows)]
 
 
 def write_table(path, centers, sizes, quaternions, names):

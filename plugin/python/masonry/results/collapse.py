@@ -4,6 +4,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from masonry._given import is_whole, number_given
 
 
 @dataclass
@@ -20,6 +21,7 @@ class CollapseReport:
     residual_drift: float  # in the last sample
     excursion: float  # the level asked for
     first_excursion: float  # when the drift first reached it, also after collapse; NaN: never
+    from_base: bool  # False: the history has no prescribed block; drifts and falls are then those in the world
 
     def __str__(self):
         fate = f"collapsed at {self.time:.4g} s: {len(self.fallen)} of {self.free} blocks have fallen" if self.collapsed else \
@@ -27,7 +29,8 @@ class CollapseReport:
         first = "never" if math.isnan(self.first_excursion) else f"first at {self.first_excursion:.4g} s"
         return (f"{fate}\npeak drift {'before collapse ' if self.collapsed else ''}{self.peak_drift:.3g} of the height, at {self.peak_drift_time:.4g} s; "
                 f"{self.residual_drift:.3g} at the end\n"
-                f"drift of {self.excursion:g}: {first}")
+                f"drift of {self.excursion:g}: {first}"
+                + ("" if self.from_base else "\nNOT RELATIVE TO THE BASE, which was not recorded: its own motion is in every drift"))
 
     def numbers(self):
         """A dict of plain numbers, for tables: collapsed, collapse_time, fallen (how many), peak_drift, peak_drift_time, residual_drift,
@@ -67,9 +70,9 @@ def collapse(history, blocks=1, excursion=0.01):
     WallHistory.drift(). Raises ValueError for input out of its range.
     """
     free = int(history.free.sum())
-    if not (blocks == int(blocks) and 1 <= blocks <= free):
-        raise ValueError(f"blocks = {blocks}: must be a whole number from 1 to {free}, the number of free blocks")
-    if not 0 < excursion < math.inf:
+    if not is_whole(blocks, 1, free):
+        raise ValueError(f"blocks = {blocks!r}: must be a whole number from 1 to {free}, the number of free blocks")
+    if not 0 < number_given("excursion", excursion) < math.inf:
         raise ValueError(f"excursion = {excursion}: must be positive and finite")
     # From the last sample backwards: True as long as the block lies.
     lies = np.logical_and.accumulate(fallen(history)[::-1])[::-1]
@@ -83,4 +86,5 @@ def collapse(history, blocks=1, excursion=0.01):
     peak = int(np.nanargmax(drift[:max(before, 1)]))
     beyond = np.flatnonzero(drift >= excursion)
     return CollapseReport(collapsed, float(times[int(blocks) - 1]) if collapsed else math.nan, history.ids[rows[order]], times, free, float(drift[peak]),
-                          float(history.time[peak]), float(drift[-1]), excursion, float(history.time[beyond[0]]) if len(beyond) else math.nan)
+                          float(history.time[peak]), float(drift[-1]), excursion, float(history.time[beyond[0]]) if len(beyond) else math.nan,
+                          history.base is not None)

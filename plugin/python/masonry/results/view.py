@@ -4,6 +4,7 @@ import heapq
 import math
 
 import numpy as np
+from masonry._given import array_given
 from masonry.results import _pose
 
 # From the scene towards the viewer of a structure that moves in space: from the right, the front, above.
@@ -34,9 +35,9 @@ class View:
     def __init__(self, history, towards=None):
         if towards is None:
             towards = plane_normal(history)
-        towards = np.array(OBLIQUE if towards is None else [float(v) for v in towards])
+        given, towards = towards, array_given("view", OBLIQUE if towards is None else towards)
         if towards.shape != (3,) or not np.isfinite(towards).all() or not np.linalg.norm(towards) > 0:
-            raise ValueError(f"view = {towards}: must be three finite numbers, not all 0: the direction from the scene to the viewer")
+            raise ValueError(f"view = {given}: must be three finite numbers, not all 0: the direction from the scene to the viewer")
         self.towards = towards / np.linalg.norm(towards)
         right = np.cross([0, 0, 1], self.towards)
         right = right / np.linalg.norm(right) if np.linalg.norm(right) > 1e-9 else np.array([1.0, 0, 0])

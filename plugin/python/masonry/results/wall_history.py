@@ -21,7 +21,7 @@ class WallHistory:
     energies       (s, 7) kinetic, potential, elastPotential, frictDissip, dampDissip, impactDissip, baseWork, J; None: not recorded
 
     Displacements and rotations are relative to the base, which is the first prescribed block, and to the first sample. Without
-    a prescribed block they are those in the world. dem.wall_history(recorder) makes one; save and load keep it in a file.
+    a prescribed block they are those in the world. dem.wall_history(recorder) makes one; save and load keep it in a file, to_csv writes a table.
     Raises ValueError when shapes do not fit, times do not increase or a block that is there at first is nowhere.
     """
 
@@ -54,10 +54,26 @@ class WallHistory:
     @classmethod
     def load(cls, path):
         """The WallHistory of a file that save() has written."""
-        with np.load(path) as file:
-            if set(_SAVED) - set(file.files):
-                raise ValueError(f"path = {path}: is no WallHistory: {', '.join(sorted(set(_SAVED) - set(file.files)))} is missing")
-            return cls(**{name: file[name] for name in _SAVED})
+        try:
+            with np.load(path) as file:
+                found = {name: file[name] for name in _SAVED if name in file.files}
+        except OSError:
+            raise
+        except Exception as error:  # whatever zipfile, zlib and NumPy say of another file, or of one that was cut off
+            raise ValueError(f"path = {path}: is no WallHistory, or a damaged one: must be a file that save() has written ({error})") from None
+        if set(_SAVED) - found.keys():
+            raise ValueError(f"path = {path}: is no WallHistory: {', '.join(sorted(set(_SAVED) - found.keys()))} is missing")
+        return cls(**found)
+
+    def to_csv(self, path):
+        """Writes a .csv file, a line a sample, with a header: time (s), drift (of the height), and the columns of energy (J) where they were
+        recorded. Motion of single blocks: save()."""
+        if not str(path).endswith(".csv"):
+            raise ValueError(f"path = {path}: must end in .csv")
+        columns = {"time (s)": self.time, "drift": self.drift()}
+        if not np.isnan(self._energies).all():
+            columns.update({f"{name} (J)": self.energy[name] for name in self.energy.dtype.names[1:]})
+        np.savetxt(path, np.column_stack(list(columns.values())), delimiter=",", header=",".join(columns), comments="")
 
     def sample(self, time=None):
         """Number of the sample nearest to `time` (s, within the history); None: the last."""
@@ -124,7 +140,7 @@ class WallHistory:
     @cached_property
     def energy(self):
         """(s,) structured array, J: kinetic, potential and elastPotential now; frictDissip, dampDissip, impactDissip and baseWork since the
-        start of the run; error: by how much the sum of all others less baseWork has grown since the first sample. NaN where it
+        start of the run, over all lists of engines that the recorder has been in; error: by how much the sum of all others less baseWork has grown since the first sample. NaN where it
         was not recorded."""
         table = np.zeros(len(self.time), dtype=[("time", float)] + [(name, float) for name in ENERGIES] + [("error", float)])
         table["time"] = self.time

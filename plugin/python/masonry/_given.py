@@ -1,0 +1,30 @@
+"""Checks of what a script gives: a ValueError names the argument, its value and what it must be."""
+
+import math
+import numbers
+import reprlib
+
+import numpy as np
+
+
+def number_given(name, value):
+    """The value; ValueError unless it is a number (NaN is one)."""
+    if not isinstance(value, numbers.Real) or isinstance(value, bool):
+        raise ValueError(f"{name} = {value!r}: must be a number")
+    return value
+
+
+def is_whole(value, least, most=math.inf):
+    """Whether it is a whole number (2.0 is one) from `least` to `most`."""
+    return isinstance(value, numbers.Real) and not isinstance(value, bool) and least <= value <= most and value < math.inf and value == int(value)
+
+
+def array_given(name, values):
+    """The values, numbers of any shape, as an array of floats; ValueError unless they are that."""
+    try:
+        array = np.asarray(values)
+        if array.dtype.kind in "biufO":
+            return array.astype(float, copy=False)
+    except (TypeError, ValueError, OverflowError):
+        pass
+    raise ValueError(f"{name} = {reprlib.repr(values)}: must be a number or an array of numbers")
