@@ -126,8 +126,12 @@ void PulseTrainEngine::check() const
 {
 	BaseMotionEngine::check();
 	if (!(std::abs(impulse) <= 1e6)) reject("impulse", impulse, "given: the velocity jump I, at most 1e6 m/s");
-	if (resonant() == !times.empty())
-		reject("times", times.size(), "given for a scheduled train, or resonantBlock for a resonant one, not both and not neither");
+	if (resonant() == !times.empty()) {
+		std::ostringstream text;
+		text << "PulseTrainEngine.times has " << times.size() << " entries and resonantBlock = " << resonantBlock
+		     << ": times must be given for a scheduled train, or resonantBlock for a resonant one, not both and not neither.";
+		throw std::invalid_argument(text.str());
+	}
 	if ((shape != "dirac") != (duration > 0)) reject("duration", duration, "positive for a finite shape and 0 for 'dirac'");
 	if (resonant() && !(scene->bodies->exists(resonantBlock) && (*scene->bodies)[resonantBlock]->isDynamic()))
 		reject("resonantBlock", resonantBlock, "the id of a free block in O.bodies");
