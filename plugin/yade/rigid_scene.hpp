@@ -80,6 +80,9 @@ public:
 		const vector<int> inBefore = addBlocks(before);
 		addDrives(motions, inBefore);
 		addPairs(before, inBefore);
+		for (size_t b = 0; b < inBefore.size(); ++b)
+			if (inBefore[b] >= 0) changed |= system.bodies[b].prescribed != before.bodies[inBefore[b]].prescribed;
+		if (changed) system.startAnew();
 		forgetNeighbours();
 	}
 
@@ -98,11 +101,11 @@ public:
 		return packer.values;
 	}
 
-	/// What the step itself remembers, if the blocks are still those of `before`.
+	/// What the step itself remembers, if the blocks are still those of `before` and move as they did.
 	void unpackStepper(Unpacker& unpacker, const Remembered<K>& before)
 	{
 		unpacker(byWalls);
-		if (!byWalls || before.ids != kept.ids || before.pairs.size() != system.pairs.size()) return;
+		if (!byWalls || changed || before.ids != kept.ids || before.pairs.size() != system.pairs.size()) return;
 		renewJoints();
 		neighbours->pass(unpacker);
 		bySize.pass(unpacker, system);
@@ -469,6 +472,7 @@ private:
 	System system;
 	masonry::rigid::Islands<K> islands;
 	masonry::rigid::StepBySize<K> bySize; // method='wall'
+	bool changed = false; // what is moved, and how, is not as it was
 	bool byWalls = false, lawsChanged = false, warnedOfCourses = false, warnedOfPlace = false;
 	int unshown = 1; // steps since the interactions were written
 	std::unique_ptr<masonry::rigid::Neighbours<K>> neighbours;
