@@ -99,12 +99,17 @@ vector<const Body*> MoreauJeanIntegrator::blocks() const
 
 void MoreauJeanIntegrator::start()
 {
+	beginMotions();
+	if (chosenModel.empty()) choose();
+	build(memory.values);
+}
+
+void MoreauJeanIntegrator::beginMotions()
+{
 	for (BaseMotionEngine* motion : motionEngines()) {
 		motion->scene = scene;
 		motion->begin();
 	}
-	if (chosenModel.empty()) choose();
-	build(memory.values);
 }
 
 /// A script has put this engine into another scene.
@@ -112,6 +117,7 @@ void MoreauJeanIntegrator::leaveScene()
 {
 	const PythonLock lock;
 	memory = {};
+	taken.clear();
 	chosenModel.clear();
 }
 
@@ -123,8 +129,15 @@ void MoreauJeanIntegrator::goOnFrom(const vector<Real>& values)
 	memory.values = values;
 }
 
+bool MoreauJeanIntegrator::outdated() const
+{
+	const auto goesOn = [](const auto& motion) { return static_cast<const BaseMotionEngine&>(*motion).goesOn(); };
+	return motions != taken || !std::all_of(motions.begin(), motions.end(), goesOn) || sceneOf(memory).outdated();
+}
+
 void MoreauJeanIntegrator::renew()
 {
+	beginMotions();
 	sceneOf(memory).dropErased();
 	build(memory.run->pack());
 }
@@ -136,6 +149,10 @@ void MoreauJeanIntegrator::build(const vector<Real>& remembered)
 	const PythonLock lock; // the last hold on an erased body may be given up, which Python has made
 	memory.run = chosenModel == "planar" ? makeScene<Plane>(*this, motionEngines(), remembered) : makeScene<Space>(*this, motionEngines(), remembered);
 	checkedTimeStep = NaN;
+	// Those that are gone begin anew when they come back.
+	for (const auto& motion : taken)
+		if (std::find(motions.begin(), motions.end(), motion) == motions.end()) static_cast<BaseMotionEngine&>(*motion).forget();
+	taken = motions;
 }
 
 void MoreauJeanIntegrator::checkBlocks() const
@@ -296,11 +313,6 @@ void MoreauJeanIntegrator::action()
 {
 	if (!gravity.allFinite()) reject("gravity", gravity.transpose(), "three finite numbers in m/s^2");
 	if (memory.run && !sceneOf(memory).isOf(*scene)) leaveScene();
-	if (!memory.run)
-		start();
-	else if (sceneOf(memory).outdated())
-		renew();
-	if (scene->dt != checkedTimeStep) checkTimeStep();
 	count(stepRun());
 	if (scene->trackEnergy) showEnergy();
 }
@@ -329,6 +341,11 @@ void MoreauJeanIntegrator::writeInteractions()
 masonry::rigid::StepReport MoreauJeanIntegrator::stepRun()
 {
 	try {
+		if (!memory.run)
+			start();
+		else if (outdated())
+			renew();
+		if (scene->dt != checkedTimeStep) checkTimeStep();
 		return sceneOf(memory).step();
 	} catch (const LeavesPlane& obstacle) {
 		if (model == "planar") throw std::runtime_error(sentence("MoreauJeanIntegrator.model = 'planar', but ", obstacle.what(), " at t = ", scene->time, " s."));

@@ -35,6 +35,14 @@ void PulseTrainEngine::postLoad(PulseTrainEngine&)
 	for (size_t k = 0; k < pulseTimes.size(); ++k) addPast(k);
 }
 
+void PulseTrainEngine::forget()
+{
+	BaseMotionEngine::forget();
+	pulseTimes.clear();
+	pulseJumps.clear();
+	past.clear();
+}
+
 void PulseTrainEngine::addPast(size_t k)
 {
 	const Real end = pulseTimes[k] + unit.duration, moved = pulseJumps[k] * unit.displacement(unit.duration);

@@ -80,7 +80,7 @@ namespace memory {
 	// Sizes, masses and laws belong to the scene; gaps are measured anew.
 	template <class Flow, class K> void pass(Flow& f, RigidBody<K>& b)
 	{
-		pass(f, b.pose), f(b.velocity), f(b.increment), f(b.fresh), f(b.prescribed), f(b.origin);
+		pass(f, b.pose), f(b.velocity), f(b.increment), f(b.fresh), f(b.prescribed), f(b.drive), f(b.origin);
 	}
 	template <class Flow, class K> void pass(Flow& f, ContactPair<K>& p)
 	{

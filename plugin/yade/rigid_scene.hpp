@@ -80,8 +80,11 @@ public:
 		const vector<int> inBefore = addBlocks(before);
 		addDrives(motions, inBefore);
 		addPairs(before, inBefore);
-		for (size_t b = 0; b < inBefore.size(); ++b)
-			if (inBefore[b] >= 0) changed |= system.bodies[b].prescribed != before.bodies[inBefore[b]].prescribed;
+		for (size_t b = 0; b < inBefore.size(); ++b) {
+			if (inBefore[b] < 0) continue;
+			const auto &now = system.bodies[b], &then = before.bodies[inBefore[b]];
+			changed |= now.prescribed != then.prescribed || now.drive != then.drive;
+		}
 		if (changed) system.startAnew();
 		forgetNeighbours();
 	}
@@ -252,8 +255,9 @@ private:
 	{
 		drives.reserve(motions.size());
 		for (BaseMotionEngine* motion : motions) {
+			changed |= motion->beginsNow();
 			drives.emplace_back(*motion, kept.ids);
-			system.driveDirections.push_back(coordinates.in(motion->direction));
+			system.driveDirections.push_back(coordinates.direction(motion->direction));
 			for (size_t k = 0; k < motion->ids.size(); ++k) {
 				const auto found = std::find(kept.ids.begin(), kept.ids.end(), motion->ids[k]);
 				if (found == kept.ids.end()) continue; // moved, but no block
@@ -261,7 +265,8 @@ private:
 				auto&        block = system.bodies[b];
 				block.drive = int(system.drives.size());
 				block.origin = coordinates.in(motion->origins[k]);
-				if (inBefore[b] < 0) block.velocity.template head<K::dimension>() = system.driveDirections.back() * drives.back().velocity(scene.time);
+				if (inBefore[b] < 0 || motion->beginsNow())
+					block.velocity.template head<K::dimension>() = system.driveDirections.back() * drives.back().velocity(scene.time);
 			}
 			system.drives.push_back(&drives.back());
 		}

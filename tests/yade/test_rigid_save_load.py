@@ -141,3 +141,22 @@ with tempfile.TemporaryDirectory() as folder:
             ends.append(bits())
             assert abs(O.bodies[base].state.vel[2] + 0.3 * 9.81) < 1e-6, method  # all fall
         assert all(np.array_equal(ends[0], end, equal_nan=True) for end in ends), method
+
+    # --- and the motions ---
+    for method in ("localised", "wall"):
+        for leave in (True, False):
+            ends = []
+            for save in ("", "before", "after"):
+                stack_by(method)
+                O.run(180, True)
+                for when in ("before", "after"):
+                    if save == when:
+                        path = os.path.join(folder, "scene.xml")
+                        O.save(path)
+                        O.reset()
+                        O.load(path)
+                    if when == "before":
+                        O.engines[1].motions = [] if leave else [dem.RecordMotionEngine(ids=[0], samples=[1.0] * 201, interval=0.01, start=O.time)]
+                O.run(300, True)
+                ends.append(bits())
+            assert all(np.array_equal(ends[0], end, equal_nan=True) for end in ends), (method, leave)
