@@ -166,6 +166,9 @@ void MoreauJeanIntegrator::checkBlocks() const
 	for (const Body* body : blocks()) {
 		checkBody(*body);
 		free |= body->isDynamic();
+		if (body->isDynamic() && moved.count(body->id))
+			throw std::invalid_argument(sentence("Body ", body->id, " is free, and in the ids of a motion: what a motion moves must have all degrees of freedom "
+				"prescribed (O.bodies[", body->id, "].dynamic = False)."));
 		if (body->isDynamic() && (body->state->blockedDOFs & ~unused))
 			throw std::invalid_argument(sentence("O.bodies[", body->id, "].state.blockedDOFs = '", body->state->blockedDOFs_vec_get(),
 				"' is not allowed for a rigid block: all six degrees of freedom are blocked ('xyzXYZ') or none."));

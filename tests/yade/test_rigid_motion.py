@@ -127,6 +127,9 @@ for method in ("localised", "wall"):
     integrator.motions = [motion, record(0, 1.0, start=O.time)]
     refuses_to_run("Body 0", "two motions")
     integrator.motions = [motion]
+    O.bodies[0].dynamic = True
+    refuses_to_run("Body 0 is free, and in the ids of a motion", "O.bodies[0].dynamic = False")
+    O.bodies[0].dynamic = False
     O.run(500, True)
     assert abs(base.pos[0] - 1.125) < 1e-9 and integrator.failures == 0
 
