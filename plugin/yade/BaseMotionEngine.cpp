@@ -1,4 +1,5 @@
 #include "BaseMotionEngine.hpp"
+#include "python_lock.hpp"
 
 #include <core/Scene.hpp>
 #include <lib/factory/ClassFactory.hpp>
@@ -9,6 +10,18 @@
 namespace yade {
 
 YADE_PLUGIN((BaseMotionEngine));
+
+namespace {
+	/// Share of a step by which a start may have passed: what adding up time steps leaves of it. Larger: the base gets a push.
+	constexpr Real lateStart = 1e-3;
+	/// Relative to where a body is, what rounding leaves of its place. Larger: it may jump by so much.
+	constexpr Real samePlace = 1e-9;
+
+	const shared_ptr<Scene>& presentScene() { return Omega::instance().getScene(); }
+
+	/// Lists are cut: a record has thousands of numbers.
+	string inShort(const string& value) { return value.size() <= 60 ? value : value.substr(0, 40) + "...]"; }
+} // namespace
 
 vector<BaseJump> BaseMotionEngine::takeJumps(Real, const vector<StepImpact>&) { return {}; }
 
@@ -21,6 +34,7 @@ void BaseMotionEngine::check() const
 		text << getClassName() << ".ids has " << id << ": " << why;
 		throw std::invalid_argument(text.str());
 	};
+	if (underWay() && ids != begunIds) refuseChange("ids", settings().at("ids"), begun.at("ids"));
 	if (ids.empty()) throw std::invalid_argument(getClassName() + ".ids is empty: it must name at least one body to move.");
 	for (int id : ids) {
 		if (!scene->bodies->exists(id)) reject(id, "there is no such body in O.bodies.");
@@ -35,13 +49,108 @@ void BaseMotionEngine::check() const
 	};
 	require(std::abs(direction.norm() - 1) < 1e-9, "direction", direction.transpose(), "a unit vector");
 	require(std::isfinite(start), "start", start, "a finite time in s");
+	if (hasBegun())
+		checkPlaces();
+	else
+		checkStart();
+}
+
+// --- from its start on, a motion goes on as it is ---
+
+bool BaseMotionEngine::hasBegun() const { return !origins.empty() && (begun.empty() || home.lock() == presentScene()); }
+
+bool BaseMotionEngine::underWay() const { return !begun.empty() && hasBegun() && presentScene()->time > begunStart; }
+
+bool BaseMotionEngine::goesOn() const { return !begun.empty() && hasBegun() && ids == begunIds; }
+
+bool BaseMotionEngine::beginsNow() const { return begunAt == scene->time; }
+
+void BaseMotionEngine::forget()
+{
+	origins.clear();
+	begun.clear();
 }
 
 void BaseMotionEngine::begin()
 {
-	if (!origins.empty()) return;
+	if (goesOn()) return;
+	const bool saved = begun.empty() && !origins.empty();
+	if (!begun.empty() && !underWay()) forget();
 	check();
-	for (int id : ids) origins.push_back((*scene->bodies)[id]->state->pos - direction * displacement(scene->time - start));
+	begun = settings();
+	begunIds = ids;
+	begunStart = start;
+	home = presentScene();
+	if (saved) return;
+	begunAt = scene->time;
+	const Real speed = velocity(scene->time - start);
+	for (int id : ids) {
+		const State& state = *(*scene->bodies)[id]->state;
+		origins.push_back(state.pos - direction * displacement(scene->time - start));
+		if ((state.vel - direction * speed).norm() * scene->dt > samePlace * state.pos.norm())
+			LOG_WARN("body " << id << " moves at " << state.vel.transpose() << " m/s when " << getClassName() << " takes it over at t = " << scene->time
+				<< " s: it goes on at " << speed << " m/s, at once.");
+	}
+}
+
+void BaseMotionEngine::checkNow()
+{
+	scene = presentScene().get();
+	check();
+}
+
+void BaseMotionEngine::checkStart() const
+{
+	if (scene->time - start <= lateStart * scene->dt) return;
+	std::ostringstream text;
+	text << getClassName() << ".start = " << start << " s has passed, O.time = " << scene->time
+	     << " s: the base would jump into the middle of the motion; give start=O.time.";
+	throw std::invalid_argument(text.str());
+}
+
+/// A motion that was left out for a while would put its bodies back.
+void BaseMotionEngine::checkPlaces() const
+{
+	const Vector3r moved = direction * displacement(scene->time - start);
+	for (size_t k = 0; k < std::min(ids.size(), origins.size()); ++k) {
+		const Vector3r &pos = (*scene->bodies)[ids[k]]->state->pos, to = origins[k] + moved;
+		if ((pos - to).norm() <= samePlace * (pos.norm() + moved.norm())) continue;
+		std::ostringstream text;
+		text << getClassName() << ", which has begun at start = " << start << " s, would put body " << ids[k] << " from " << pos.transpose() << " m to "
+		     << to.transpose() << " m at once: give dem.engines() a new " << getClassName() << " with start=O.time.";
+		throw std::invalid_argument(text.str());
+	}
+}
+
+void BaseMotionEngine::postLoad(BaseMotionEngine&)
+{
+	if (begun.empty()) return;
+	if (!underWay()) return forget();
+	for (const auto& [attribute, value] : settings())
+		if (const string& before = begun[attribute]; value != before) refuseChange(attribute, value, before);
+}
+
+void BaseMotionEngine::refuseChange(const string& attribute, const string& value, const string& before) const
+{
+	throw std::invalid_argument(getClassName() + '.' + attribute + " = " + inShort(value) + " is not allowed once the motion has begun with " + inShort(before)
+		+ ": give dem.engines() a new " + getClassName() + " with start=O.time.");
+}
+
+BaseMotionEngine::Settings BaseMotionEngine::settings() const
+{
+	namespace python = boost::python;
+	const PythonLock lock;
+	const python::object type = python::import("yade.wrapper").attr(getClassName().c_str());
+	const python::dict   attributes = pyDict();
+	const python::list   names = attributes.keys();
+	Settings result;
+	for (int k = 0; k < python::len(names); ++k) {
+		const string name = python::extract<string>(names[k]);
+		const bool   ofEngine = name == "dead" || name == "label" || name == "ompThreads"; // which move nothing
+		const bool   ofRun = python::object(type.attr(name.c_str()).attr("fset")).is_none();
+		if (!ofEngine && !ofRun) result[name] = python::extract<string>(attributes[names[k]].attr("__repr__")());
+	}
+	return result;
 }
 
 void BaseMotionEngine::action()

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <core/PartialEngine.hpp>
+#include <map>
 
 namespace yade {
 
@@ -35,8 +36,17 @@ public:
 	/// First instant in (after, until) at which velocity or acceleration jumps, as far as it is known by now; else infinity.
 	virtual Real nextKink(Real after, Real until) const;
 
-	/// Finds where the bodies stand when the motion begins. Called before the first step.
+	/// Finds where the bodies stand when the motion begins; called before every step. Once its time has come it goes on as it is:
+	/// changed attributes are refused, as they would put the bodies elsewhere at once.
 	void begin();
+	/// begin() has nothing to do.
+	bool goesOn() const;
+	/// It has begun with the present step.
+	bool beginsNow() const;
+	/// Begins anew in the next step that asks for it.
+	virtual void forget();
+	/// Throws std::invalid_argument for an attribute that a script has changed once the motion's time has come.
+	void postLoad(BaseMotionEngine&);
 
 	/// The velocity jumps up to the present time that were not asked for before, in order of time; impacts of this step
 	/// may cause them. RockingJointEngine asks, so that blocks respond at the instant itself.
@@ -46,19 +56,38 @@ public:
 	virtual bool ordered() const { return false; }
 
 	/// Throws std::invalid_argument for what only the finished scene can tell: ids that do not exist or are free to move, an
-	/// attribute that is missing or contradicts another. Called before the first step.
+	/// attribute that is missing or contradicts another, a start that has passed. Called before the first step.
 	virtual void check() const;
 
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(BaseMotionEngine, PartialEngine,
 		"Base class of prescribed motions of the base; does not move anything by itself.",
-		((Vector3r, direction, Vector3r(1, 0, 0), , "Unit vector along which the base moves."))
-		((Real, start, 0, , "Time at which the motion begins [s]."))
+		((Vector3r, direction, Vector3r(1, 0, 0), Attr::triggerPostLoad, "Unit vector along which the base moves."))
+		((Real, start, 0, Attr::triggerPostLoad, "Time at which the motion begins [s]; from then on its attributes cannot be changed. In a run that has gone on already: start=O.time."))
 		((vector<Vector3r>, origins, , Attr::readonly, "Positions of the bodies when the motion began [m].")),
 		/* ctor */,
-		.def("check", &BaseMotionEngine::check, "Raises ValueError unless the attributes are complete and every body of ids exists and is prescribed; done before the first step.")
+		.def("check", &BaseMotionEngine::checkNow, "Raises ValueError unless the attributes are complete and every body of ids exists and is prescribed; done before the first step.")
 	);
 	// clang-format on
+private:
+	using Settings = std::map<string, string>; // attributes that scripts may set, as Python prints them
+
+	Settings settings() const;
+	/// Now, in the present scene or in the one it was saved from.
+	bool hasBegun() const;
+	/// Its time has come in the present scene.
+	bool underWay() const;
+	/// As a script asks: in the present scene.
+	void checkNow();
+	void checkStart() const;
+	void checkPlaces() const;
+	[[noreturn]] void refuseChange(const string& attribute, const string& value, const string& before) const;
+
+	// Of the motion that has begun; nothing yet after loading.
+	boost::weak_ptr<Scene> home;
+	Settings               begun;
+	vector<int>            begunIds;
+	Real                   begunStart = NaN, begunAt = NaN;
 };
 REGISTER_SERIALIZABLE(BaseMotionEngine);
 

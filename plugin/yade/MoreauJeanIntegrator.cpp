@@ -99,12 +99,17 @@ vector<const Body*> MoreauJeanIntegrator::blocks() const
 
 void MoreauJeanIntegrator::start()
 {
+	beginMotions();
+	if (chosenModel.empty()) choose();
+	build(memory.values);
+}
+
+void MoreauJeanIntegrator::beginMotions()
+{
 	for (BaseMotionEngine* motion : motionEngines()) {
 		motion->scene = scene;
 		motion->begin();
 	}
-	if (chosenModel.empty()) choose();
-	build(memory.values);
 }
 
 /// A script has put this engine into another scene.
@@ -112,6 +117,7 @@ void MoreauJeanIntegrator::leaveScene()
 {
 	const PythonLock lock;
 	memory = {};
+	taken.clear();
 	chosenModel.clear();
 	along = Vector3r::Zero();
 }
@@ -124,8 +130,15 @@ void MoreauJeanIntegrator::goOnFrom(const vector<Real>& values)
 	memory.values = values;
 }
 
+bool MoreauJeanIntegrator::outdated() const
+{
+	const auto goesOn = [](const auto& motion) { return static_cast<const BaseMotionEngine&>(*motion).goesOn(); };
+	return motions != taken || !std::all_of(motions.begin(), motions.end(), goesOn) || sceneOf(memory).outdated();
+}
+
 void MoreauJeanIntegrator::renew()
 {
+	beginMotions();
 	sceneOf(memory).dropErased();
 	build(memory.run->pack());
 }
@@ -137,6 +150,10 @@ void MoreauJeanIntegrator::build(const vector<Real>& remembered)
 	const PythonLock lock; // the last hold on an erased body may be given up, which Python has made
 	memory.run = chosenModel == "planar" ? makeScene<Plane>(*this, motionEngines(), remembered) : makeScene<Space>(*this, motionEngines(), remembered);
 	checkedTimeStep = NaN;
+	// Those that are gone begin anew when they come back.
+	for (const auto& motion : taken)
+		if (std::find(motions.begin(), motions.end(), motion) == motions.end()) static_cast<BaseMotionEngine&>(*motion).forget();
+	taken = motions;
 }
 
 void MoreauJeanIntegrator::checkBlocks() const
@@ -150,6 +167,9 @@ void MoreauJeanIntegrator::checkBlocks() const
 	for (const Body* body : blocks()) {
 		checkBody(*body);
 		free |= body->isDynamic();
+		if (body->isDynamic() && moved.count(body->id))
+			throw std::invalid_argument(sentence("Body ", body->id, " is free, and in the ids of a motion: what a motion moves must have all degrees of freedom "
+				"prescribed (O.bodies[", body->id, "].dynamic = False)."));
 		if (body->isDynamic() && (body->state->blockedDOFs & ~unused))
 			throw std::invalid_argument(sentence("O.bodies[", body->id, "].state.blockedDOFs = '", body->state->blockedDOFs_vec_get(),
 				"' is not allowed for a rigid block: all six degrees of freedom are blocked ('xyzXYZ') or none."));
@@ -298,11 +318,6 @@ void MoreauJeanIntegrator::action()
 {
 	if (!gravity.allFinite()) reject("gravity", gravity.transpose(), "three finite numbers in m/s^2");
 	if (memory.run && !sceneOf(memory).isOf(*scene)) leaveScene();
-	if (!memory.run)
-		start();
-	else if (sceneOf(memory).outdated())
-		renew();
-	if (scene->dt != checkedTimeStep) checkTimeStep();
 	count(stepRun());
 	if (scene->trackEnergy) showEnergy();
 }
@@ -331,6 +346,11 @@ void MoreauJeanIntegrator::writeInteractions()
 masonry::rigid::StepReport MoreauJeanIntegrator::stepRun()
 {
 	try {
+		if (!memory.run)
+			start();
+		else if (outdated())
+			renew();
+		if (scene->dt != checkedTimeStep) checkTimeStep();
 		return sceneOf(memory).step();
 	} catch (const LeavesPlane& obstacle) {
 		if (model == "planar") throw std::runtime_error(sentence("MoreauJeanIntegrator.model = 'planar', but ", obstacle.what(), " at t = ", scene->time, " s."));

@@ -35,6 +35,14 @@ void PulseTrainEngine::postLoad(PulseTrainEngine&)
 	for (size_t k = 0; k < pulseTimes.size(); ++k) addPast(k);
 }
 
+void PulseTrainEngine::forget()
+{
+	BaseMotionEngine::forget();
+	pulseTimes.clear();
+	pulseJumps.clear();
+	past.clear();
+}
+
 void PulseTrainEngine::addPast(size_t k)
 {
 	const Real end = pulseTimes[k] + unit.duration, moved = pulseJumps[k] * unit.displacement(unit.duration);
@@ -126,8 +134,12 @@ void PulseTrainEngine::check() const
 {
 	BaseMotionEngine::check();
 	if (!(std::abs(impulse) <= 1e6)) reject("impulse", impulse, "given: the velocity jump I, at most 1e6 m/s");
-	if (resonant() == !times.empty())
-		reject("times", times.size(), "given for a scheduled train, or resonantBlock for a resonant one, not both and not neither");
+	if (resonant() == !times.empty()) {
+		std::ostringstream text;
+		text << "PulseTrainEngine.times has " << times.size() << " entries and resonantBlock = " << resonantBlock
+		     << ": times must be given for a scheduled train, or resonantBlock for a resonant one, not both and not neither.";
+		throw std::invalid_argument(text.str());
+	}
 	if ((shape != "dirac") != (duration > 0)) reject("duration", duration, "positive for a finite shape and 0 for 'dirac'");
 	if (resonant() && !(scene->bodies->exists(resonantBlock) && (*scene->bodies)[resonantBlock]->isDynamic()))
 		reject("resonantBlock", resonantBlock, "the id of a free block in O.bodies");

@@ -9,6 +9,7 @@ namespace yade {
 class PulseTrainEngine : public BaseMotionEngine {
 public:
 	void check() const override;
+	void forget() override;
 	Real displacement(Real) const override;
 	Real velocity(Real) const override;
 	Real acceleration(Real) const override;

@@ -237,6 +237,7 @@ bool RockingJointEngine::applyJumps(const vector<BaseMotionEngine*>& motions, co
 	bool acted = false;
 	for (BaseMotionEngine* motion : motions) {
 		motion->scene = scene;
+		motion->begin();
 		for (const BaseJump& jump : motion->takeJumps(scene->time, impacts)) {
 			vector<int> moved;
 			for (int id : motion->ids)

@@ -46,6 +46,12 @@ template <> struct Coordinates<Plane> {
 		if (std::abs(normal.dot(g)) > outOfPlane * g.norm()) throw LeavesPlane("gravity points out of the plane");
 		return in(g);
 	}
+	/// Of a motion, a unit vector. Throws LeavesPlane.
+	masonry::Vector2 direction(const Vector3r& d) const
+	{
+		if (std::abs(normal.dot(d)) > outOfPlane) throw LeavesPlane("a motion points out of the plane");
+		return in(d);
+	}
 	Vector3r out(const masonry::Vector2& v) const { return v.x() * along + v.y() * up; }
 	Plane::Velocity load(const Vector3r& force, const Vector3r& torque, int id) const
 	{
@@ -67,6 +73,7 @@ template <> struct Coordinates<Space> {
 
 	const Vector3r& in(const Vector3r& v) const { return v; }
 	const Vector3r& gravity(const Vector3r& g) const { return g; }
+	const Vector3r& direction(const Vector3r& d) const { return d; }
 	const Vector3r& out(const Vector3r& v) const { return v; }
 	Space::Velocity load(const Vector3r& force, const Vector3r& torque, int) const
 	{

@@ -78,7 +78,10 @@ namespace memory {
 	template <class Flow> void pass(Flow&, Seat<Space>&) { }
 
 	// Sizes, masses and laws belong to the scene; gaps are measured anew.
-	template <class Flow, class K> void pass(Flow& f, RigidBody<K>& b) { pass(f, b.pose), f(b.velocity), f(b.increment), f(b.fresh), f(b.origin); }
+	template <class Flow, class K> void pass(Flow& f, RigidBody<K>& b)
+	{
+		pass(f, b.pose), f(b.velocity), f(b.increment), f(b.fresh), f(b.prescribed), f(b.drive), f(b.origin);
+	}
 	template <class Flow, class K> void pass(Flow& f, ContactPair<K>& p)
 	{
 		f(p.body1), f(p.body2), f(p.face1), f(p.face2), f(p.size);

@@ -80,6 +80,12 @@ public:
 		const vector<int> inBefore = addBlocks(before);
 		addDrives(motions, inBefore);
 		addPairs(before, inBefore);
+		for (size_t b = 0; b < inBefore.size(); ++b) {
+			if (inBefore[b] < 0) continue;
+			const auto &now = system.bodies[b], &then = before.bodies[inBefore[b]];
+			changed |= now.prescribed != then.prescribed || now.drive != then.drive;
+		}
+		if (changed) system.startAnew();
 		forgetNeighbours();
 	}
 
@@ -100,19 +106,19 @@ public:
 		return packer.values;
 	}
 
-	/// What the step itself remembers, if the blocks are still those of `before`.
+	/// What the step itself remembers, if the blocks are still those of `before` and move as they did.
 	void unpackStepper(Unpacker& unpacker, const Remembered<K>& before)
 	{
 		unpacker(byWalls);
-		bool changed = false;
-		unpacker(changed);
-		if (!byWalls || before.ids != kept.ids || before.pairs.size() != system.pairs.size()) return;
+		bool laws = false;
+		unpacker(laws);
+		if (!byWalls || changed || before.ids != kept.ids || before.pairs.size() != system.pairs.size()) return;
 		renewJoints();
 		neighbours->pass(unpacker);
 		bySize.pass(unpacker, system);
 		unpacker.end();
 		system.moved = false;
-		lawsChanged = changed;
+		lawsChanged = laws;
 	}
 
 	bool isOf(const Scene& other) const override { return &other == &scene; }
@@ -254,8 +260,9 @@ private:
 	{
 		drives.reserve(motions.size());
 		for (BaseMotionEngine* motion : motions) {
+			changed |= motion->beginsNow();
 			drives.emplace_back(*motion, kept.ids);
-			system.driveDirections.push_back(coordinates.in(motion->direction));
+			system.driveDirections.push_back(coordinates.direction(motion->direction));
 			for (size_t k = 0; k < motion->ids.size(); ++k) {
 				const auto found = std::find(kept.ids.begin(), kept.ids.end(), motion->ids[k]);
 				if (found == kept.ids.end()) continue; // moved, but no block
@@ -263,7 +270,8 @@ private:
 				auto&        block = system.bodies[b];
 				block.drive = int(system.drives.size());
 				block.origin = coordinates.in(motion->origins[k]);
-				if (inBefore[b] < 0) block.velocity.template head<K::dimension>() = system.driveDirections.back() * drives.back().velocity(scene.time);
+				if (inBefore[b] < 0 || motion->beginsNow())
+					block.velocity.template head<K::dimension>() = system.driveDirections.back() * drives.back().velocity(scene.time);
 			}
 			system.drives.push_back(&drives.back());
 		}
@@ -481,6 +489,7 @@ private:
 	System system;
 	masonry::rigid::Islands<K> islands;
 	masonry::rigid::StepBySize<K> bySize; // method='wall'
+	bool changed = false; // what is moved, and how, is not as it was
 	bool byWalls = false, lawsChanged = false, warnedOfCourses = false, warnedOfPlace = false;
 	int unshown = 1; // steps since the interactions were written
 	std::unique_ptr<masonry::rigid::Neighbours<K>> neighbours;

@@ -3,8 +3,8 @@
 import numpy as np
 from driven_block import IMPULSE, compare_record, compare_schedules, compare_shapes
 from masonry import dem
-from rocking_scene import Balance, Samples, one_block, rigid_engines
-from yade import O
+from rocking_scene import Balance, Samples, one_block, quiet_engines, refuses, refuses_to_run, rigid_engines
+from yade import O, Vector3
 
 import masonry
 
@@ -56,3 +56,117 @@ O.engines = rigid_engines(dt=1e-3)
 O.run(1000, True)
 for body in O.bodies:
     assert abs(body.state.pos[0] - 0.1) < 1e-12 and abs(body.state.vel[0] - 0.1) < 1e-12, body.state.pos
+
+# --- motions that a script changes on the way ---
+
+
+def pushed(method="localised", **options):
+    """A block on a base that accelerates by 1 m/s^2 for 2 s: (base, block, integrator), after 1 s."""
+    base, block, _ = one_block(2)
+    O.engines = engines(dem.RecordMotionEngine(ids=[base], samples=[1.0] * 201, interval=0.01), method=method, **options)
+    O.run(1000, True)
+    assert abs(O.bodies[base].state.pos[0] - 0.5) < 1e-9
+    return O.bodies[base].state, O.bodies[block].state, O.engines[-1]
+
+
+def record(base, value, **attributes):
+    return dem.RecordMotionEngine(ids=[base], samples=[value] * 201, interval=0.01, **attributes)
+
+
+for method in ("localised", "wall"):
+    # Taken out: the base goes on as fast as it was, and so do what stands on it and the energies.
+    base, block, integrator = pushed(method)
+    integrator.motions = []
+    O.step()
+    work = integrator.baseWork
+    O.run(999, True)
+    assert abs(base.vel[0] - 1) < 1e-9 and abs(base.pos[0] - 1.5) < 1e-9, (base.vel, base.pos)
+    assert abs(block.pos[0] - base.pos[0]) < 1e-6 and abs(integrator.baseWork - work) < 1e-4 * work
+
+    # Another in its place, and one beside it: each counts from where its body is when it begins.
+    base, block, integrator = pushed(method)
+    base.vel, gone = (0, 0, 0), integrator.motions[0]
+    integrator.motions = [record(0, -1.0, start=O.time)]
+    O.run(1000, True)
+    assert abs(base.pos[0] - 0) < 1e-9 and abs(base.vel[0] + 1) < 1e-9, (base.pos, base.vel)
+    gone.scale = 2  # moves nothing any more
+    gone.start = O.time
+    integrator.motions = [gone]
+    O.run(500, True)
+    assert abs(base.pos[0] - 0.25) < 1e-9, base.pos
+    assert integrator.chosenModel == "planar"
+    integrator.motions = []
+    O.run(1, True)
+    at = base.pos[0]
+    integrator.motions = [record(0, 1.0, direction=(0, 1, 0), start=O.time)]
+    O.run(500, True)
+    assert integrator.chosenModel == "spatial" and abs(base.pos[1] - 0.125) < 1e-9 and abs(base.pos[0] - at) < 2e-3
+
+    base, block, integrator = pushed(method)
+    other = dem.base((1, 1, 0.2), O.bodies[0].mat)
+    O.bodies[other].state.pos += Vector3(50, 0, 0)
+    integrator.motions = integrator.motions + [record(other, 0.5, start=O.time)]
+    O.run(500, True)
+    assert abs(O.bodies[other].state.pos[0] - 50.0625) < 1e-9 and abs(base.pos[0] - 1.125) < 1e-9
+
+    # What has begun goes on as it is; the run too.
+    base, block, integrator = pushed(method)
+    motion = integrator.motions[0]
+    for name, bad in (("scale", 3), ("samples", [3.0] * 201), ("start", 0.5), ("interval", 0.02), ("baseline", "linear"), ("direction", (0, 1, 0))):
+        before = getattr(motion, name)
+        refuses(lambda: setattr(motion, name, bad), f"RecordMotionEngine.{name} = ", str(bad)[:10] if name != "direction" else "0,1,0", "once the motion has begun", "start=O.time")
+        assert getattr(motion, name) == before
+    motion.scale = 1.0  # as it was
+    other = dem.base((1, 1, 0.2), O.bodies[0].mat)
+    O.bodies[other].state.pos += Vector3(50, 0, 0)
+    motion.ids = [0, other]
+    refuses_to_run("RecordMotionEngine.ids = [0, 2]", "once the motion has begun with [0]")
+    motion.ids = [0]
+    integrator.motions = [motion, record(0, 1.0)]
+    refuses_to_run("RecordMotionEngine.start = 0 s has passed", "start=O.time")
+    integrator.motions = [motion, record(0, 1.0, start=O.time)]
+    refuses_to_run("Body 0", "two motions")
+    integrator.motions = [motion]
+    O.bodies[0].dynamic = True
+    refuses_to_run("Body 0 is free, and in the ids of a motion", "O.bodies[0].dynamic = False")
+    O.bodies[0].dynamic = False
+    O.run(500, True)
+    assert abs(base.pos[0] - 1.125) < 1e-9 and integrator.failures == 0
+
+# What waits for its time may still be changed, finite pulses among it.
+base, block, _ = one_block(2)
+train = dem.PulseTrainEngine(ids=[base], impulse=0.1, times=[0, 1], shape="half-sine", duration=0.1, start=1e9)
+O.engines = engines(train)
+O.run(500, True)
+train.start = O.time
+train.impulse = 0.2
+train.direction = (-1, 0, 0)
+O.run(500, True)
+assert abs(O.bodies[base].state.vel[0] + 0.2) < 1e-9 and abs(O.bodies[base].state.pos[0] + 0.2 * 0.45) < 1e-9
+for name, bad in (("times", [0, 0.7]), ("impulse", 1), ("shape", "rectangular"), ("duration", 0.2)):
+    refuses(lambda: setattr(train, name, bad), f"PulseTrainEngine.{name} = ", "once the motion has begun")
+
+# A start that has passed, before the first step of the run and on the way; new engines with a motion that goes on.
+for model in ("planar", "compliant"):
+    base, block, _ = one_block(2)
+    refuses(lambda: quiet_engines(record(base, 1.0, start=-1), model=model), "RecordMotionEngine.start = -1 s has passed", "O.time = 0 s", "start=O.time")
+    O.engines = quiet_engines(model=model)
+    O.run(95, True)
+    refuses(lambda: quiet_engines(record(base, 1.0), model=model), "RecordMotionEngine.start = 0 s has passed", "start=O.time")
+    refuses(lambda: quiet_engines(dem.PulseTrainEngine(ids=[base], impulse=0.1, times=[0]), model=model), "PulseTrainEngine.start = 0 s has passed")
+    motion, begin = record(base, 1.0, start=O.time), O.time
+    O.engines = quiet_engines(motion, model=model)
+    O.run(100, True)
+    O.engines = quiet_engines(motion, model=model)
+    O.run(100, True)
+    assert abs(O.bodies[base].state.pos[0] - 0.5 * (O.time - begin) ** 2) < 1e-9
+    refuses(lambda: setattr(motion, "scale", 2), "RecordMotionEngine.scale = 2")
+    O.engines = quiet_engines(model=model)
+    O.run(100, True)
+    refuses(lambda: quiet_engines(motion, model=model), "RecordMotionEngine", f"would put body {base}", "start=O.time")
+    # In another scene it is as new.
+    base, block, _ = one_block(2)
+    motion.scale, motion.start = 2, 0
+    O.engines = quiet_engines(motion, model=model)
+    O.run(100, True)
+    assert abs(O.bodies[base].state.pos[0] - O.time**2) < 1e-9
