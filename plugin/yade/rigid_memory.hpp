@@ -77,7 +77,7 @@ namespace memory {
 	template <class Flow> void pass(Flow& f, Seat<Plane>& s) { f(s.across), f(s.upright), f(s.lengthwise), f(s.depth), f(s.reference.coeffs()); }
 	template <class Flow> void pass(Flow&, Seat<Space>&) { }
 
-	// Sizes, masses and laws belong to the scene; gaps are measured anew.
+	// Sizes, masses and laws belong to the scene; gaps are measured anew. By their places points are known again that go to other features.
 	template <class Flow, class K> void pass(Flow& f, RigidBody<K>& b)
 	{
 		pass(f, b.pose), f(b.velocity), f(b.increment), f(b.fresh), f(b.prescribed), f(b.drive), f(b.origin);
@@ -89,7 +89,7 @@ namespace memory {
 		for (int i = 0; i < p.size; ++i) {
 			ContactPoint<K>& point = p.points[i];
 			pass(f, point.feature);
-			f(point.closed), f(point.sliding), f(point.force);
+			f(point.closed), f(point.sliding), f(point.force), f(point.frame.position);
 		}
 	}
 } // namespace memory

@@ -1,0 +1,75 @@
+"""Walls on bases that scripts drive: what stands on one that turns, hits and slides, or whose velocity is set in every step; and no gravity."""
+
+import math
+
+from masonry import dem
+from rocking_scene import rigid_engines
+from yade import O, Vector3
+
+STEP = 1e-3
+
+
+def stone(friction):
+    return dem.BlockMat(density=2000, frictionAngle=math.atan(friction))
+
+
+def wall(courses, per_course, friction=0.6, of_base=None, **options):
+    O.reset()
+    base = dem.base((200, 40, 1), stone(of_base or friction))
+    ids = dem.wall(courses, per_course, (0.8, 0.4, 0.4), stone(friction), on=base)
+    O.engines = rigid_engines(method="wall", dt=STEP, **options)
+    return base, ids
+
+
+# --- a base that turns about the vertical, at most 1 % of what friction holds: blocks stay on it. Their steps are along tangents of circles, so
+# that radii grow by r spin STEP / 2 per radian, and energies by twice as much ---
+for spin in (0.1, 0.2):
+    base, ids = wall(4, 6)
+    for id in [base, *ids]:
+        state = O.bodies[id].state
+        state.vel, state.angVel = Vector3(0, 0, spin).cross(state.pos), Vector3(0, 0, spin)
+    places = {id: Vector3(O.bodies[id].state.pos) for id in ids}
+    kinetic = O.engines[-1].kinetic
+    O.run(int(1 / spin / STEP), True)
+    turn = O.bodies[base].state.ori.conjugate()
+    moved = max((turn * O.bodies[id].state.pos - place).norm() for id, place in places.items())
+    outwards = max(place.norm() for place in places.values()) * spin * STEP / 2
+    print(f"on a base that turns at {spin} rad/s: moved {moved:.2e} m, of first order {outwards:.2e}; energy times {O.engines[-1].kinetic / kinetic}")
+    assert moved < 1.1 * outwards
+    assert abs(O.engines[-1].kinetic / kinetic - 1) < 1.1 * spin * STEP
+    assert O.engines[-1].failures == 0 and O.engines[-1].movingSteps == 0
+
+# --- a base that hits a wall from below, and in the next step slides under it: the impact is over, and throws nothing up. A step that hands on at
+# most eight times what a point has carried may give eight times what gravity does in it ---
+thrown = (8 * 9.81 * STEP) ** 2 / (2 * 9.81)
+for model in ("planar", "spatial"):
+    for hit in (1.0, 3.0):
+        base, ids = wall(12, 12, of_base=0.2, model=model)
+        O.run(20, True)
+        above = lambda: [O.bodies[id].state.pos[2] - O.bodies[base].state.pos[2] for id in ids]
+        start, highest = above(), 0
+        O.bodies[base].state.vel = (0, 0, hit)
+        O.step()
+        O.bodies[base].state.vel = (1, 0, hit)
+        for _ in range(100):
+            O.step()
+            highest = max(highest, max(now - then for now, then in zip(above(), start)))
+        print(f"{model}, hit at {hit} m/s: thrown up by {highest:.1e} m")
+        assert O.engines[-1].movingSteps > 50 and highest < thrown and O.engines[-1].failures == 0
+
+# --- velocities set in every step: what a wall leaves of overlaps while it moves is not the script's ---
+for model in ("planar", "spatial"):
+    base, ids = wall(30, 1, friction=0.7, model=model)
+    pulsation = 2 * math.pi * 1.5
+    for _ in range(2900):
+        O.bodies[base].state.vel = (4 * 9.81 / pulsation * math.sin(pulsation * O.time), 0, 0)
+        O.step()
+    assert O.engines[-1].movingSteps > 1000 and O.engines[-1].failures == 0
+
+# --- no gravity, nothing moves: rounding is no energy from nowhere ---
+for model in ("planar", "spatial"):
+    base, ids = wall(5, 5, gravity=0, model=model)
+    places = [Vector3(O.bodies[id].state.pos) for id in ids]
+    O.run(100, True)
+    assert O.engines[-1].failures == 0
+    assert max((O.bodies[id].state.pos - place).norm() for id, place in zip(ids, places)) < 1e-9

@@ -1,0 +1,85 @@
+"""Walls that are saved again and again while they move, and after a script has changed something, go on with the bits of the run that was not."""
+
+import math
+
+import numpy as np
+from masonry import dem
+from rocking_scene import rigid_engines
+from yade import O, Vector3
+
+
+def stone():
+    return dem.BlockMat(density=2000, frictionAngle=math.atan(0.6), restitution=0.5)
+
+
+def scene(build, amplitude, direction=(0, 1, 0)):
+    """Blocks of 0.4 m on a base that shakes at 1.5 Hz, m/s^2. Returns their ids."""
+    O.reset()
+    base = dem.base((12, 6, 0.2), stone())
+    ids = build((0.4, 0.2, 0.2), O.bodies[base].mat, base)
+    samples = list(amplitude * np.sin(2 * math.pi * 1.5 * 0.01 * np.arange(301)))
+    O.engines = rigid_engines(dem.RecordMotionEngine(ids=[base], samples=samples, interval=0.01, direction=direction))
+    return ids
+
+
+def state():
+    return [x for b in O.bodies for v in (b.state.pos, b.state.ori, b.state.vel, b.state.angVel) for x in v]
+
+
+def wall_and_few(size, material, base):
+    dem.wall(6, 5, size, material, base)
+    dem.wall(3, 1.5, size, material, base, at=(2.5, 0))
+    dem.block((0.3, 0.3, 1.2), material, center=(-3.5, 0, 0.6))
+
+
+# --- saved every 20 steps: the list of pairs, points that come and go, and lanes have changed in between ---
+for name, build, amplitude, direction, begin in (("return wall", lambda *of: dem.return_wall(5, 3, 3, *of), 12, (0, 1, 0), 200),
+                                                 ("wall", lambda *of: dem.wall(6, 5, *of), 8, (0, 1, 0), 1000),
+                                                 ("wall and few blocks, in space", wall_and_few, 12, (0, 1, 0), 600),
+                                                 ("wall and few blocks", wall_and_few, 8, (1, 0, 0), 200)):
+    scene(build, amplitude, direction)
+    moving = 0
+    for first in range(begin, begin + 500, 20):
+        O.run(first - O.iter, True)
+        O.saveTmp()
+        O.run(20, True)
+        wanted = state()
+        O.loadTmp()
+        O.run(20, True)
+        assert state() == wanted, (name, first)
+        moving += O.engines[-1].mode == "moving"
+        O.loadTmp()
+    print(f"{name}: {moving} of 25 saved while it moves", flush=True)
+    assert moving > 15
+    assert (O.engines[-1].localisedBlocks > 0) == ("few" in name)
+
+
+# --- changed by a script, then saved ---
+def move(ids):
+    O.bodies[ids[-1]].state.pos += Vector3(0.03, 0, 0)
+
+
+def change_friction(ids):
+    for i in O.interactions:
+        i.phys.tangensOfFrictionAngle = 0.4
+
+
+def change_restitution(ids):
+    for i in O.interactions:
+        i.phys.restitution = 0.9
+
+
+for change, first, later in ((move, 2, 60), (move, 2, 200), (change_friction, 300, 0), (change_restitution, 300, 0)):
+    ends = []
+    for saved in (False, True):
+        ids = scene(lambda *of: dem.return_wall(5, 3, 3, *of), 6)
+        O.run(first, True)
+        change(ids)
+        if later:  # O.run(0) does not end
+            O.run(later, True)
+        if saved:
+            O.saveTmp()
+            O.loadTmp()
+        O.run(120, True)
+        ends.append(state())
+    assert ends[0] == ends[1], (change.__name__, later)
