@@ -93,8 +93,8 @@ public:
 	// What these pairs have been kept from in the steps before this one, into the contacts' velocities.
 	void giveHeld(const LaneBits& lanes);
 	double keepSlip(); // of the step that ends, in which gaps have moved. Returns what friction has taken, J
-	// What the next step starts from, where there has been an impact, or `always`: `fall` is what gravity gives in a step, m/s. An impact gives
-	// some point more than what it had, and more than the courses upon it weigh.
+	// What the next step starts from, where there has been an impact, or `always`: `fall` is what gravity gives in a step, m/s. An impact
+	// gives some point more than what it had, and more than the courses upon it weigh.
 	void handOn(double fall, bool always);
 	// Impulses as they were at the beginning, of all pairs or of these, which then have not moved in this step.
 	void giveUp();

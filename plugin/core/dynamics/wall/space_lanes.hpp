@@ -174,12 +174,14 @@ struct alignas(alignment) Coupling<Space, L> {
 	static constexpr int place(int i, int j) { return i > j ? i * (i + 1) / 2 + j : j * (j + 1) / 2 + i; }
 
 	L response[10];        // J M^-1 J^T, 1/kg
-	L inverse[10];         // of it, kg; four points of a face give a singular one: with a little of its diagonal added
+	L inverse[10];         // of it, kg; four points of a face give a singular A: what velocities no motion has are answered by nothing
 	L parted;              // share of what a point is too deep that it parts by in a substep
 	unsigned free1, free2; // a bit for each body that is not prescribed
 
 	MASONRY_INLINE void set(const PointLanes<Space, L>* point, const L& m1, const L& m2)
 	{
+		// B = (A + e D)^-1, D the diagonal of A, answers an eigenvalue k of D^-1 A by 1/(k + e), and where k = 0 by 1/e: without end. So
+		// B A B = B - e B D B is taken, which gives k/(k + e)^2. e smaller: rounding in the sum; larger: one solve is not enough.
 		constexpr double softness = 5e-3;
 		const L none = all<L>(0), one = all<L>(1);
 		L a[points][points];

@@ -51,7 +51,7 @@ private:
 	std::vector<int> few;     // the other bodies, where there are walls
 	std::vector<RigidBody<K>> hidden;
 	bool passed {false}; // gaps are no part of what is passed
-	int list {-1}; // of the system's pairs
+	int list {-1};       // of the system's pairs
 };
 
 } // namespace masonry::rigid

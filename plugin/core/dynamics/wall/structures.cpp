@@ -7,8 +7,8 @@ namespace {
 
 Structure joined(const Structure& a, const Structure& b)
 {
-	return {std::max(a.mode, b.mode), std::min(a.quiet, b.quiet), std::max(a.patience, b.patience),
-	        std::min(a.stay, b.stay), std::min(a.whole, b.whole), std::max(a.mayHold, b.mayHold), std::max(a.pace, b.pace)};
+	return {std::max(a.mode, b.mode),   std::min(a.quiet, b.quiet),     std::max(a.patience, b.patience), std::min(a.stay, b.stay),
+	        std::min(a.whole, b.whole), std::max(a.mayHold, b.mayHold), std::max(a.pace, b.pace)};
 }
 
 } // namespace

@@ -16,8 +16,8 @@
 // up (burden). Friction goes by the mean of loads that lag (frictionBound() in sweep.hpp): with the bound of the moment the top of a wall
 // of 32 courses at 1 g goes 39 % too far.
 //
-// What the courses miss of each other lets points that carry sink. One that is too deep must part by a share of it in the sweeps before the move; those after the move let go the velocity that this has given. What is left is taken off at the end of the step
-// (lift.hpp).
+// What the courses miss of each other lets points that carry sink. One that is too deep must part by a share of it in the sweeps before the
+// move; those after the move let go the velocity that this has given. What is left is taken off at the end of the step (lift.hpp).
 //
 // The sweeps compute in floats, eight or sixteen pairs side by side (sweep_groups.hpp). Gaps start anew in every step, and velocities are
 // in double precision what the loads and the impulses of each substep give: rounding does not add up.
@@ -82,11 +82,11 @@ private:
 	void sumImpulses(int part);
 
 	Effort effort {effortFor(false)};
-	int sweeps {1};               // before the move, and after it
-	float lumps {0};              // frictionBound()
-	float damped {0};             // damping of this step
-	double fall {0};              // what gravity gives in a substep, m/s
-	float inMean {0};             // what a substep takes into the mean of an impulse
+	int sweeps {1};   // before the move, and after it
+	float lumps {0};  // frictionBound()
+	float damped {0}; // damping of this step
+	double fall {0};  // what gravity gives in a substep, m/s
+	float inMean {0}; // what a substep takes into the mean of an impulse
 	std::unique_ptr<SweepGroups<K>> points {sweepGroups<K>()};
 	std::vector<Quarters> quarters; // of their groups
 	std::vector<Place> places;      // of the contacts' groups

@@ -36,8 +36,7 @@ public:
 	virtual int quarters() const = 0; // how many of the contacts' groups are in a group here
 	virtual void resize(int count) = 0;
 	// The contacts' points; `empty` where there are none. `bodies`: (share of what is too deep that they part by, -, -, 1/m).
-	virtual void take(const Group<K>* from, const Quarters* which, const Group<K>& empty, int begin, int end,
-	                  const FloatPack* bodies) = 0;
+	virtual void take(const Group<K>* from, const Quarters* which, const Group<K>& empty, int begin, int end, const FloatPack* bodies) = 0;
 	virtual void sweep(int begin, int end, FloatPack* velocity, const Sweep& how) = 0;
 	virtual void moveGaps(int begin, int end, const FloatPack* velocity, float s) = 0;
 	// Takes friction's loss, J, off `loss`, and off the impulses what is over, and its velocity off `contactPart`.
