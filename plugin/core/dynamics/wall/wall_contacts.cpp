@@ -67,8 +67,8 @@ bool WallContacts<K>::lookUp(RigidSystem<K>& s, int c)
 		found.size = 0;
 	pair.face1 = found.face1;
 	pair.face2 = found.face2;
-	bool same =
-	    known[c] && !s.moved && found.size == pair.size; // where bodies have been moved, the pair may know of other points than the lanes
+	// Of bodies that have been moved the pair may know other points than the lanes.
+	bool same = known[c] && !s.moved && found.size == pair.size;
 	for (int k = 0; same && k < found.size; ++k)
 		same = found.features[k] == pair.points[k].feature;
 	for (const auto [group, lane] : slots[c])

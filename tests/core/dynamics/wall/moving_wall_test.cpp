@@ -362,12 +362,10 @@ TEST_CASE("blocks of a high wall do not enter each other")
 	double deepest = 0;
 	for (int k = 0; k < 550; ++k) {
 		scene.advance(1e-3);
-		for (const auto& pair : scene.system.pairs)
-			for (int i = 0; i < pair.size; ++i)
-				deepest = std::max(deepest, -pair.points[i].gap);
+		deepest = std::max(deepest, scene.deepest());
 	}
 	CHECK(deepest < 1e-5 * 0.5);
-	CHECK(topShift(scene, 33) != 0);
+	CHECK(std::abs(topShift(scene, 33)) > 0.03); // half of its excursion
 }
 
 // A stack of two blocks rocks from rest: the same within the first order of the step while little has happened yet, and what the still mode

@@ -154,9 +154,7 @@ TEST_CASE("structures join and split")
 		created += scene.step.report.created;
 		if (moved.empty() || moved.back() != scene.step.report.moved)
 			moved.push_back(scene.step.report.moved);
-		for (const auto& pair : scene.system.pairs)
-			for (int i = 0; i < pair.size; ++i)
-				deepest = std::max(deepest, -pair.points[i].gap);
+		deepest = std::max(deepest, scene.deepest());
 	}
 	CHECK(moved == std::vector<int> {0, 1, wall + 1, 1, 0}); // falls; sets the wall off; flies on; stands
 	CHECK(rises < 1e-3 * (start - last));

@@ -155,10 +155,11 @@ TEST_CASE("a point that is too deep parts, and is let go again")
 	CHECK(impulse() == Approx(mass * v).epsilon(single));
 }
 
-// Of four points of a face three tell the motion of the block, so that A = J M^-1 J^T has no inverse. What velocities no motion has, + - -
-// +, are answered by nothing, and not by impulses without end (in single precision with e = 5e-3: by the mass times 1e-7 / e^2; bound: a
-// tenth of it). Those of a motion are answered by what gives them, but for 2 e over the eigenvalue of D^-1 A: with D = (1 + (x^2 +
-// y^2)/rho^2)/m, 4/(m D) of a shift, 4 (y/rho)^2/(m D) and 4 (x/rho)^2/(m D) of a turn.
+// Of four points of a face three tell the motion of the block, so that A = J M^-1 J^T has no inverse. What velocities no motion has
+// (+ - - +) are answered by nothing, and not by impulses without end: in single precision with e = 5e-3 by the mass times 1e-7 / e^2.
+// Bound: a tenth of the mass. Those of a motion are answered by what gives them, but for 2 e over the eigenvalue of D^-1 A: with
+// D = (1 + (x^2 + y^2)/rho^2)/m, 4/(m D) of a shift, 4 (y/rho)^2/(m D) and 4 (x/rho)^2/(m D) of a turn; and for rounding, 1e-7 / e of
+// velocities of some m/s.
 TEST_CASE("the normals of a face's four points answer what a motion can ask of them")
 {
 	std::mt19937 random(3);

@@ -146,6 +146,14 @@ struct SceneOf {
 		const auto moved = [&](size_t b) { return typename K::Vector(system.bodies[b].pose.position - start[b].pose.position); };
 		return moved(block) - moved(0);
 	}
+	double deepest() const // m, of a block in another now
+	{
+		double most = 0;
+		for (const auto& pair : system.pairs)
+			for (int i = 0; i < pair.size; ++i)
+				most = std::max(most, -pair.points[i].gap);
+		return most;
+	}
 	double drift() const
 	{
 		double most = 0;
