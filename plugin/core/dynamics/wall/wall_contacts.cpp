@@ -231,7 +231,7 @@ void WallContacts<K>::showPair(RigidSystem<K>& s, int c) const
 template <class K>
 void WallContacts<K>::showPoints(RigidSystem<K>& s)
 {
-	if (stood == 0 && !numbers.empty()) {
+	if (stood == 0 && !numbers.empty()) { // else frames are where the bodies are; those of a step that moves are of its middle
 		std::vector<typename K::Pose> poses;
 		for (const auto& body : s.bodies)
 			poses.push_back(body.pose);
@@ -311,8 +311,8 @@ bool WallContacts<K>::measure(RigidSystem<K>& s, bool isStill)
 	for (wider = true; wider;) {
 		wider = false;
 		lookUpStale(s);
-		if (wider) { // a pair needs another lane
-			stood = 0;
+		if (wider) {   // a pair needs another lane
+			stood = 0; // frames of all
 			showPoints(s);
 			colour(s);
 		}
