@@ -80,10 +80,17 @@ void MoreauJeanIntegrator::postLoad(MoreauJeanIntegrator&)
 	wall = method == "wall";
 }
 
+vector<shared_ptr<Engine>> MoreauJeanIntegrator::livingMotions() const
+{
+	vector<shared_ptr<Engine>> result;
+	std::copy_if(motions.begin(), motions.end(), std::back_inserter(result), [](const auto& motion) { return !motion->dead; });
+	return result;
+}
+
 vector<BaseMotionEngine*> MoreauJeanIntegrator::motionEngines() const
 {
 	vector<BaseMotionEngine*> result;
-	for (const auto& motion : motions) result.push_back(static_cast<BaseMotionEngine*>(motion.get()));
+	for (const auto& motion : livingMotions()) result.push_back(static_cast<BaseMotionEngine*>(motion.get()));
 	return result;
 }
 
@@ -133,7 +140,7 @@ void MoreauJeanIntegrator::goOnFrom(const vector<Real>& values)
 bool MoreauJeanIntegrator::outdated() const
 {
 	const auto goesOn = [](const auto& motion) { return static_cast<const BaseMotionEngine&>(*motion).goesOn(); };
-	return motions != taken || !std::all_of(motions.begin(), motions.end(), goesOn) || sceneOf(memory).outdated();
+	return livingMotions() != taken || !std::all_of(taken.begin(), taken.end(), goesOn) || sceneOf(memory).outdated();
 }
 
 void MoreauJeanIntegrator::renew()
@@ -151,9 +158,10 @@ void MoreauJeanIntegrator::build(const vector<Real>& remembered)
 	memory.run = chosenModel == "planar" ? makeScene<Plane>(*this, motionEngines(), remembered) : makeScene<Space>(*this, motionEngines(), remembered);
 	checkedTimeStep = NaN;
 	// Those that are gone begin anew when they come back.
+	const vector<shared_ptr<Engine>> living = livingMotions();
 	for (const auto& motion : taken)
-		if (std::find(motions.begin(), motions.end(), motion) == motions.end()) static_cast<BaseMotionEngine&>(*motion).forget();
-	taken = motions;
+		if (std::find(living.begin(), living.end(), motion) == living.end()) static_cast<BaseMotionEngine&>(*motion).forget();
+	taken = living;
 }
 
 void MoreauJeanIntegrator::checkBlocks() const

@@ -34,7 +34,7 @@ public:
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(MoreauJeanIntegrator, GlobalEngine,
 		"Motion of rigid blocks (boxes with a BlockMat) in unilateral contact, with impacts found inside the step. It takes the place of InteractionLoop and NewtonIntegrator for them; forces that other engines leave in O.forces act on the blocks. Blocks without a free degree of freedom move with their velocity, or as `motions` says. dem.engines() makes the list of engines.",
-		((vector<shared_ptr<Engine>>, motions, , Attr::triggerPostLoad, "Motions of the base: PulseTrainEngine, RecordMotionEngine. They are asked at any instant inside a step and must not be in O.engines. Those that come or go during a run do so with the next step: a new one counts from where the base is then (start=O.time), and a base that none moves any more keeps its velocity."))
+		((vector<shared_ptr<Engine>>, motions, , Attr::triggerPostLoad, "Motions of the base: PulseTrainEngine, RecordMotionEngine. They are asked at any instant inside a step and must not be in O.engines; one that is `dead` is as if it were not there. Those that come or go during a run do so with the next step: a new one counts from where the base is then (start=O.time), and a base that none moves any more keeps its velocity."))
 		((Vector3r, gravity, Vector3r(0, 0, -9.81), , "Gravity [m/s^2]."))
 		((string, model, "auto", Attr::triggerPostLoad, "'planar', 'spatial', or 'auto': planar where blocks, motions and loads lie in one upright plane."))
 		((string, method, "localised", Attr::triggerPostLoad, "'localised': every impact is found inside the step; second order; for a block, stacks, piers. 'wall': for many blocks; impacts are met at the end of a substep; first order, at a cost that hardly grows when hundreds of blocks move; structures of few blocks beside them are done as 'localised' does (localisedBlocks); with `ompThreads` threads, one where that is not set: measure before you set it."))
@@ -102,7 +102,8 @@ private:
 	masonry::rigid::StepReport stepRun();
 	void count(const masonry::rigid::StepReport&);
 	void showEnergy();
-	vector<BaseMotionEngine*> motionEngines() const;
+	vector<shared_ptr<Engine>> livingMotions() const; // those that are not dead
+	vector<BaseMotionEngine*> motionEngines() const;  // the same
 	vector<const Body*> blocks() const;
 	string whyNotPlanar(const Vector3r& normal) const;
 

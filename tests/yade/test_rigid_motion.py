@@ -83,6 +83,18 @@ for method in ("localised", "wall"):
     assert abs(base.vel[0] - 1) < 1e-9 and abs(base.pos[0] - 1.5) < 1e-9, (base.vel, base.pos)
     assert abs(block.pos[0] - base.pos[0]) < 1e-6 and abs(integrator.baseWork - work) < 1e-4 * work
 
+    # Dead: the same; one that was from the beginning moves nothing, and another may move its base.
+    base, block, integrator = pushed(method)
+    integrator.motions[0].dead = True
+    O.run(1000, True)
+    assert abs(base.vel[0] - 1) < 1e-9 and abs(base.pos[0] - 1.5) < 1e-9, (base.vel, base.pos)
+    integrator.motions[0].dead = False
+    refuses_to_run("RecordMotionEngine.start = 0 s has passed", "start=O.time")
+    base, _, _ = one_block(2)
+    O.engines = engines([record(base, 1.0, dead=True), record(base, -1.0)], method=method)
+    O.run(1000, True)
+    assert abs(O.bodies[base].state.pos[0] + 0.5) < 1e-9
+
     # Another in its place, and one beside it: each counts from where its body is when it begins.
     base, block, integrator = pushed(method)
     base.vel, gone = (0, 0, 0), integrator.motions[0]
