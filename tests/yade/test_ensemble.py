@@ -3,8 +3,12 @@
 import contextlib
 import io
 import math
+import os
 import shutil
+import signal
+import subprocess
 import tempfile
+import time
 from pathlib import Path
 
 import ensemble_scene
@@ -94,4 +98,21 @@ with tempfile.TemporaryDirectory() as folder:
     assert computed == [[-1]]
     refuses(lambda: ensemble.run(script, [{"scale": 0.3}], out, time_limit=0.05, progress=False), "stopped after 0.05 s", kind=RuntimeError)
     refuses(lambda: ensemble.result(script, {"scale": 0.3}, out), "no result", kind=KeyError)
-print("ensemble: exact blocks, resuming, failures")
+    # What ends the program ends its cases: Ctrl-C, and what a queue sends.
+    for number in (signal.SIGINT, signal.SIGTERM):
+        waiting, started = Path(folder) / "waiting.py", Path(folder) / f"started_{number}"
+        waiting.write_text("import os, pathlib, time\ndef run(case):\n\tpathlib.Path(case['to']).write_text(str(os.getpid()))\n\ttime.sleep(60)\n")
+        program = f"from masonry import ensemble\nensemble.run({str(waiting)!r}, [{{'to': {str(started)!r}}}], {str(out)!r}, progress=False)"
+        process = subprocess.Popen(["/usr/bin/python3", "-c", program], stderr=subprocess.DEVNULL,
+                                   env={**os.environ, "PYTHONPATH": str(Path(masonry.__file__).parents[1])})
+        while not (started.exists() and started.read_text()):
+            assert process.poll() is None
+            time.sleep(0.05)
+        process.send_signal(number)
+        assert process.wait(30) != 0
+        try:
+            os.kill(int(started.read_text()), 0)
+            raise AssertionError(f"the case goes on after signal {number}")
+        except ProcessLookupError:
+            pass
+print("ensemble: exact blocks, resuming, failures, ends")

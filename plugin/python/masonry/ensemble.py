@@ -18,10 +18,13 @@ import json
 import math
 import os
 import shutil
+import signal
 import subprocess
+import sys
 import threading
 from collections.abc import Iterable
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
@@ -148,6 +151,19 @@ def _load(path):
         return None
 
 
+@contextmanager
+def _termination():
+    """What a queue sends before it kills (SIGTERM) ends the run as Ctrl-C does, unless the program has a way of its own."""
+    if threading.current_thread() is not threading.main_thread() or signal.getsignal(signal.SIGTERM) is not signal.SIG_DFL:
+        yield
+        return
+    signal.signal(signal.SIGTERM, lambda number, frame: sys.exit(128 + number))
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, signal.SIG_DFL)
+
+
 def _run_missing(script, function, missing, total, folder, processes, time_limit, progress):
     """[(case, last lines of its output)] of those that failed."""
     from tqdm import tqdm
@@ -185,7 +201,7 @@ def _run_missing(script, function, missing, total, folder, processes, time_limit
                 failures.append((case, "\n".join([*said, f"{why}: {log}"])))
             bar.update()
 
-    with tqdm(total=total, initial=total - len(missing), desc="ensemble", unit="case", disable=not progress) as bar, \
+    with _termination(), tqdm(total=total, initial=total - len(missing), desc="ensemble", unit="case", disable=not progress) as bar, \
             ThreadPoolExecutor(processes) as pool:
         waiting = [pool.submit(one, case, key, bar) for case, key in missing]
         try:
