@@ -61,7 +61,15 @@ bool BaseMotionEngine::hasBegun() const { return !origins.empty() && (begun.empt
 
 bool BaseMotionEngine::underWay() const { return !begun.empty() && hasBegun() && presentScene()->time > begunStart; }
 
-bool BaseMotionEngine::goesOn() const { return !begun.empty() && hasBegun() && ids == begunIds; }
+bool BaseMotionEngine::wasLeftOut() const
+{
+	const long now = presentScene()->iter;
+	return lastStep >= 0 && now != lastStep && now != lastStep + 1;
+}
+
+bool BaseMotionEngine::goesOn() const { return !begun.empty() && hasBegun() && ids == begunIds && !wasLeftOut(); }
+
+void BaseMotionEngine::haveStepped() { lastStep = presentScene()->iter; }
 
 bool BaseMotionEngine::beginsNow() const { return begunAt == scene->time; }
 
@@ -69,13 +77,14 @@ void BaseMotionEngine::forget()
 {
 	origins.clear();
 	begun.clear();
+	lastStep = -1;
 }
 
 void BaseMotionEngine::begin()
 {
 	if (goesOn()) return;
 	const bool saved = begun.empty() && !origins.empty();
-	if (!begun.empty() && !underWay()) forget();
+	if (!begun.empty() && (!underWay() || wasLeftOut())) forget();
 	check();
 	begun = settings();
 	begunIds = ids;
@@ -165,6 +174,7 @@ void BaseMotionEngine::action()
 		state.pos = origins[k] + direction * here;
 		state.vel = mean;
 	}
+	haveStepped();
 }
 
 } // namespace yade

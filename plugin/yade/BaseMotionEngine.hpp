@@ -41,6 +41,9 @@ public:
 	void begin();
 	/// begin() has nothing to do.
 	bool goesOn() const;
+	/// The bodies are where they are at the end of the present step. One that does not in each step of the scene (it was taken out of O.engines
+	/// for a while, or O.resetTime() was called) begins anew: it would put them back.
+	void haveStepped();
 	/// It has begun with the present step.
 	bool beginsNow() const;
 	/// Begins anew in the next step that asks for it.
@@ -77,6 +80,7 @@ private:
 	bool hasBegun() const;
 	/// Its time has come in the present scene.
 	bool underWay() const;
+	bool wasLeftOut() const;
 	/// As a script asks: in the present scene.
 	void checkNow();
 	void checkStart() const;
@@ -88,6 +92,7 @@ private:
 	Settings               begun;
 	vector<int>            begunIds;
 	Real                   begunStart = NaN, begunAt = NaN;
+	long                   lastStep = -1; // not known
 };
 REGISTER_SERIALIZABLE(BaseMotionEngine);
 

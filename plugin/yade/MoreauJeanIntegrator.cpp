@@ -326,7 +326,9 @@ void MoreauJeanIntegrator::action()
 {
 	if (!gravity.allFinite()) reject("gravity", gravity.transpose(), "three finite numbers in m/s^2");
 	if (memory.run && !sceneOf(memory).isOf(*scene)) leaveScene();
-	count(stepRun());
+	const masonry::rigid::StepReport report = stepRun();
+	for (const auto& motion : taken) static_cast<BaseMotionEngine&>(*motion).haveStepped();
+	count(report);
 	if (scene->trackEnergy) showEnergy();
 }
 

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 from masonry import dem
-from rocking_scene import Balance, Samples, one_block
+from rocking_scene import Balance, Samples, one_block, refuses_to_run
 from yade import O
 
 import masonry
@@ -58,3 +58,21 @@ def compare_shapes(engines, times, bound):
 
 def compare_record(engines, bound):
     compare("record", engines, lambda ids: dem.RecordMotionEngine(ids=ids, samples=list(RECORD), interval=0.01), masonry.Record(0.01, RECORD), 4.0, bound)
+
+
+def keep_place(engines):
+    """A base that has begun to move is not put back: neither where the scene's time starts anew, nor by a motion that was left out for a while."""
+    base, _, _ = one_block(2)
+    O.engines = engines(dem.RecordMotionEngine(ids=[base], samples=[1.0] * 201, interval=0.01))
+    steps, state = round(0.5 / O.dt), O.bodies[base].state
+    O.run(steps, True)
+    at = state.pos[0]
+    assert abs(at - O.time**2 / 2) < 1e-9
+    O.resetTime()
+    O.run(steps, True)
+    assert abs(state.pos[0] - at - O.time**2 / 2) < 1e-9
+    kept = O.engines
+    O.engines = [e for e in kept if type(e).__name__ not in ("RecordMotionEngine", "MoreauJeanIntegrator")]
+    O.run(10, True)
+    O.engines = kept
+    refuses_to_run("RecordMotionEngine.start = 0 s has passed", "start=O.time")

@@ -1,7 +1,7 @@
 """Base motions: a block that rocks under pulses and records, and the base that carries it."""
 
 import numpy as np
-from driven_block import IMPULSE, compare_record, compare_schedules, compare_shapes
+from driven_block import IMPULSE, compare_record, compare_schedules, compare_shapes, keep_place
 from masonry import dem
 from rocking_scene import Balance, one_block, quiet_engines, run_impacts
 from yade import O
@@ -47,3 +47,4 @@ compare_schedules(engines, TIMES, 1e-3)
 # sqrt(g b^2 / (4 d R^2)) = 400 rad/s, d = 6e-7 m, so with 8e-4 rad/s of the 6e-2 rad/s that the pulse gives it.
 compare_shapes(engines, TIMES, 8e-4 / 6e-2)
 compare_record(engines, 1e-3)
+keep_place(engines)

@@ -1,7 +1,7 @@
 """Rigid blocks on a base that moves: resonant and scheduled pulses, finite pulses, records, and a base with a velocity of its own."""
 
 import numpy as np
-from driven_block import IMPULSE, compare_record, compare_schedules, compare_shapes
+from driven_block import IMPULSE, compare_record, compare_schedules, compare_shapes, keep_place
 from masonry import dem
 from rocking_scene import Balance, Samples, one_block, quiet_engines, refuses, refuses_to_run, rigid_engines
 from yade import O, Vector3
@@ -47,6 +47,8 @@ TIMES = [0.0, 0.15037, 0.5]  # the second not at a step's end
 compare_schedules(engines, TIMES, 1e-5)
 compare_shapes(engines, TIMES, 1e-4)
 compare_record(engines, 1e-4)
+for method in ("localised", "wall"):
+    keep_place(lambda motion: engines(motion, method=method))
 
 # A base that moves by itself carries its block along: nobody accelerates.
 base, id, block = one_block(5)
