@@ -199,8 +199,8 @@ const typename RockingJoints<K>::JointPoint* RockingJoints<K>::landing(const Wal
 }
 
 template <>
-void RockingJoints<Space>::answer(RigidSystem<Space>& s, WallContacts<Space>& c, const Substeps<Space>& sweeps, const Joint& joint,
-                                  const JointPoint& where, double substep, double& baseWork)
+void RockingJoints<Space>::answer(RigidSystem<Space>& s, WallContacts<Space>& c, const Joint& joint, const JointPoint& where,
+                                  double substep, double& baseWork)
 {
 	const Contact<Space> at = contact(c, where);
 	const double restitution = s.pairs[c.features[where.group].pair[where.lane]].restitution;
@@ -242,8 +242,8 @@ void RockingJoints<Space>::answer(RigidSystem<Space>& s, WallContacts<Space>& c,
 			add(points[i]);
 	law.oldBegin = int(impact.points.size());
 	for (int i = joint.begin; i < joint.end; ++i)
-		if (const JointPoint& p = points[i]; sweeps.impulse(p.group, p.lane, p.point)[0] > 0 && away(c, p, joint.pivot) <= narrow)
-			add(p);
+		if (away(c, points[i], joint.pivot) <= narrow) // whether or not they carried in the last substep: a pivot parts for some at a time
+			add(points[i]);
 	law.oldEnd = int(impact.points.size());
 	const Vector3 axis = rockingAxis(impact.bodies, law, impact.points);
 	const double spin = axis.dot(impact.bodies[law.block].angularVelocity - impact.bodies[law.support].angularVelocity),
@@ -273,8 +273,8 @@ void RockingJoints<Space>::answer(RigidSystem<Space>& s, WallContacts<Space>& c,
 }
 
 template <>
-void RockingJoints<Plane>::answer(RigidSystem<Plane>& s, WallContacts<Plane>& c, const Substeps<Plane>&, const Joint&,
-                                  const JointPoint& where, double, double& baseWork)
+void RockingJoints<Plane>::answer(RigidSystem<Plane>& s, WallContacts<Plane>& c, const Joint&, const JointPoint& where, double,
+                                  double& baseWork)
 {
 	const Contact<Plane> at = contact(c, where);
 	const ContactPair<Plane>& pair = s.pairs[c.features[where.group].pair[where.lane]];
@@ -367,7 +367,7 @@ double RockingJoints<K>::land(RigidSystem<K>& s, WallContacts<K>& c, Substeps<K>
 		for (int i = rocking[j].begin; i < rocking[j].end; ++i)
 			if (aside[i])
 				sweeps.setGap(points[i].group, points[i].lane, points[i].point, contact(c, points[i]).gap(c));
-		answer(s, c, sweeps, rocking[j], *at, substep, baseWork);
+		answer(s, c, rocking[j], *at, substep, baseWork);
 		rocking[j] = rocking.back(); // another pivot, or none, until the next step
 		rocking.pop_back();
 	}

@@ -66,8 +66,7 @@ private:
 	double away(const WallContacts<K>& contacts, const JointPoint& point, const Pivot<K>& pivot) const; // m
 	bool closes(const WallContacts<K>& contacts, const JointPoint& point, double time) const;           // within it
 	const JointPoint* landing(const WallContacts<K>& contacts, const Joint& joint, double s) const;
-	void answer(RigidSystem<K>& system, WallContacts<K>& contacts, const Substeps<K>& sweeps, const Joint& joint, const JointPoint& at,
-	            double s, double& baseWork);
+	void answer(RigidSystem<K>& system, WallContacts<K>& contacts, const Joint& joint, const JointPoint& at, double s, double& baseWork);
 
 	bool gathered {false}, anyLaw {false};
 	std::vector<JointPoint> points; // joint by joint

@@ -19,9 +19,10 @@ constexpr double damping = 0.075, inMeanOfOne = 0.06, leastInMean = 0.02;
 // notice that its load changes; less: friction is lost where loads bounce, and walls of 32 courses go 30 to 40 % too far.
 constexpr double mostLumps = 0.1;
 
-// Sweeps before the move, and after it, as the square of the courses asks, and as many times more as substeps are finer: these alone leave
-// tall walls where their lag is. But as many as there are courses up to a few (Effort), since what blocks that land together have not been
-// told of each other is lost.
+// Sweeps before the move, and after it, as the square of the courses asks; but a few (Effort), since what blocks that land together have
+// not been told of each other is lost, and in one alone normal impulses and friction do not find each other: squat blocks would rock on
+// with up to twice the energy. And as many times more as substeps are finer: finer substeps alone leave tall walls where their lag is, and
+// of two blocks that carry a third across the plane of their wall one is left behind.
 constexpr double coursesOfSweep = 18.5;
 // In space four times as many in slow motion, or walls creep on. In the plane they would only cost: what has been shaken rests as soon
 // without, and the tops of walls are as right.
@@ -101,9 +102,13 @@ void Substeps<K>::begin(WallContacts<K>& c, const Structures<K>& structures, dou
 	for (const Structure& one : structures.all)
 		pace = std::max(pace, one.pace);
 	const double courses = pace < 1 ? coursesOfSlowSweep<K> : coursesOfSweep,
-	             asked = std::max(c.spread / (courses * courses), std::min(c.burden, mostBurden) / burdenOfSweep);
-	sweeps = std::max({1, std::min(c.depth, effort.fewestSweeps), int(std::ceil(asked * std::max(1., finer)))});
-	lumps = sweeps < c.depth ? float(mostLumps) : 0;
+	             asked = std::max(
+	                 {double(effort.fewestSweeps), c.spread / (courses * courses), std::min(c.burden, mostBurden) / burdenOfSweep});
+	sweeps = int(std::ceil(asked * std::max(1., finer)));
+	const bool lags = sweeps < c.depth;
+	lumps = lags ? float(mostLumps) : 0;
+	if (!lags)
+		effort.relaxationBefore = effort.relaxationAfter = 1;
 	const double lagging = 1 - 1. / std::max(1, c.depth);
 	damped = float(damping * lagging * std::min(1., pace) / sweeps);
 	inMean = float(std::max(leastInMean, inMeanOfOne / std::max(1, c.depth)));

@@ -154,6 +154,40 @@ TEST_CASE("a column rocks as the block that it makes")
 	CHECK(peak == Approx(expected).epsilon(bound));
 }
 
+void turn(RigidBody<Plane>& body, double angle) { body.pose.setAngle(-angle); }
+void turn(RigidBody<Space>& body, double angle) { body.pose.orientation = Eigen::AngleAxisd(angle, Vector3::UnitY()); }
+double turned(const RigidBody<Plane>& body) { return -body.pose.angle; }
+double turned(const RigidBody<Space>& body) { return 2 * body.pose.orientation.y(); }
+
+// Squat blocks, whose old pivot presses while normal impulses and friction at the new one have not found each other: C^2 of the energy is
+// left wherever in a step they land. Bounds: twice what is measured (2.8e-3 and 1.7e-3), of the first order of the step. With one sweep
+// before and after the move C is up to 0.38 for 0.25; in space, where an impact was looked for only while the old pivot carried, one of
+// eight landings was that of the shape instead of the one asked for.
+TEMPLATE_TEST_CASE("a squat block lands with the restitution of its shape, or the one that is asked", "", Plane, Space)
+{
+	const double restitution = GENERATE(0.9, double(NAN)), slenderness = GENERATE(1., 1.2);
+	const double width = 0.15, height = width * slenderness, radius = std::hypot(width, height), critical = std::atan(1 / slenderness);
+	const double C = std::isnan(restitution) ? 1 - 1.5 * std::pow(std::sin(critical), 2) : restitution;
+	constexpr int landings = 24;
+	for (int k = 0; k < landings; ++k) {
+		const double start = (0.3 + 0.03 * k / landings) * critical;
+		SceneOf<TestType> scene(1.0, restitution);
+		addBlock(scene.system, sizeOf(scene.system, width, height),
+		         placeOf(scene.system, -radius * std::sin(critical - start), radius * std::cos(critical - start)));
+		auto& block = scene.system.bodies[1];
+		turn(block, start);
+		const auto left = [&] { return energy(scene.system) - block.mass * g * height; };
+		const double before = left();
+		size_t impacts = 0;
+		for (int past = 0; past < 8; past += turned(block) < 0) {
+			scene.advance(1e-3);
+			impacts += scene.system.impacts.size();
+		}
+		CHECK(std::sqrt(left() / before) == Approx(C).margin(std::isnan(restitution) ? 5.6e-3 : 3.4e-3));
+		CHECK(impacts == (std::isnan(restitution) ? 0 : 1));
+	}
+}
+
 // A block lands plastically with the restitution of its shape, near 1 where it is slender: a smaller one must be asked for and given, none
 // too. Bound: after the landing nothing turns by a hundredth of the start angle; it would by nine tenths.
 TEST_CASE("without restitution a landing ends the rocking")
@@ -331,6 +365,29 @@ TEST_CASE("the top of a wall at 1 g goes as far as with sixteen times the subste
 	const double fine = shift(4e-6);
 	CHECK(std::abs(fine) > 0.02);
 	CHECK(shift(1e-3) == Approx(fine).epsilon(0.02));
+}
+
+// A finer tolerance goes to the answer of Gauss-Seidel with thousands of sweeps (validation/walls/shaking/gauss_seidel.json: 10 courses of
+// 10 at 1 g), which is known to 2 % and for the corner in +x to 5 %. Measured: 0.2, 0.2 and 1 %; with as many sweeps in finer substeps as
+// in coarse ones 5, 1 and 10 %.
+TEST_CASE("with a fine tolerance a wall goes as far as by Gauss-Seidel")
+{
+	Scene scene;
+	scene.addWall(10, 10);
+	Harmonic motion(g, 2, 0.005);
+	scene.drive(motion);
+	scene.step.settings.tolerance = 1e-5;
+	const int count = int(scene.system.bodies.size()), perCourse = 11; // of the top course, half blocks at its ends first
+	double mean = 0, thrown = 0, follows = 0;
+	for (int k = 0; k < 505; ++k) {
+		scene.advance(1e-3);
+		mean = std::max(mean, std::abs(topShift(scene, perCourse)));
+		thrown = std::max(thrown, std::abs(scene.shift(count - perCourse).x()));
+		follows = std::max(follows, std::abs(scene.shift(count - perCourse + 1).x()));
+	}
+	CHECK(mean == Approx(0.0445151).epsilon(0.02));
+	CHECK(thrown == Approx(0.0735984).epsilon(0.02));
+	CHECK(follows == Approx(0.0486202).epsilon(0.05));
 }
 
 // Loads that bounce in the sweeps can let the upper half of a high wall slide where it should not, in one of two motions that are nearly
