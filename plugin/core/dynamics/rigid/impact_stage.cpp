@@ -44,6 +44,8 @@ namespace {
 	template <class K> Vector3 normalOf(const ContactPoint<K>& point) { return inSpace(typename K::Vector(point.frame.axes.row(0).transpose())); }
 	template <class K> Vector3 positionOf(const ContactPoint<K>& point) { return inSpace(point.frame.position); }
 
+	template <class K> bool isLoaded(const ContactPoint<K>& point) { return point.closed && point.force[0] > 0; }
+
 	// A joint is all that touches one face of a block from below; upright faces (head joints) do not rock.
 	struct JointKey {
 		int  block { -1 }, face { -1 };
@@ -91,11 +93,20 @@ template <class K> struct ImpactStage<K>::Builder {
 		stage.impact.points.push_back({ pair.body1, pair.body2, positionOf(point), normalOf(point), pair.friction });
 	}
 
+	// Of four corners three carry, and round-off may have opened the fourth.
+	bool touches(const ContactPair<K>& pair, const ContactPoint<K>& point) const
+	{
+		if (point.closed || point.gap > s.settings.merged * scale::length(s)) return point.closed;
+		const auto &body1 = s.bodies[pair.body1], &body2 = s.bodies[pair.body2];
+		const double rate = relativeVelocity(point.frame, body1.pose.position, body1.velocity, body2.pose.position, body2.velocity)[0];
+		return std::abs(rate) <= tolerance::restSpeed * std::sqrt(scale::acceleration(s) * scale::length(s));
+	}
+
 	template <class Take> void forTouching(Take take)
 	{
 		for (int c = 0; c < int(s.pairs.size()); ++c)
 			for (int i = 0; i < s.pairs[c].size; ++i)
-				if (s.pairs[c].points[i].closed) take(PointRef { c, i });
+				if (touches(s.pairs[c], s.pairs[c].points[i])) take(PointRef { c, i });
 	}
 
 	void addJoint(const JointKey& key, const std::vector<PointRef>& closing)
@@ -112,7 +123,7 @@ template <class K> struct ImpactStage<K>::Builder {
 			}
 		joint.oldBegin = int(stage.refs.size());
 		forTouching([&](PointRef ref) {
-			if (!(s.pairs[ref.pair].points[ref.point].force[0] > 0) || !(jointOf(s, ref) == key)) return;
+			if (!isLoaded(s.pairs[ref.pair].points[ref.point]) || !(jointOf(s, ref) == key)) return;
 			add(ref);
 			stage.oldPositions.push_back(positionOf(s.pairs[ref.pair].points[ref.point]));
 		});
@@ -190,7 +201,7 @@ template <class K> void ImpactStage<K>::holdPivots(RigidSystem<K>& s)
 	gather(s, {});
 	const auto loaded = [&](size_t k) -> const ContactPoint<K>* {
 		const ContactPoint<K>& point = s.pairs[refs[k].pair].points[refs[k].point];
-		return point.force[0] > 0 ? &point : nullptr;
+		return isLoaded(point) ? &point : nullptr;
 	};
 	double stray = 0, heaviest = 0;
 	for (const masonry::Body& body : bodies)

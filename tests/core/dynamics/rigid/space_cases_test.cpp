@@ -205,3 +205,37 @@ TEST_CASE("a square base pushed along its diagonal stays in the upright plane of
 			CHECK(std::abs(axes(2, 0) - axes(2, 1)) < 1e-11);
 		}
 }
+
+// Both corners of an edge land at once. Bounds: as asked of the energies of impacts; round-off of velocities of 1 m/s, grown. Where a corner of
+// the joint above that round-off had opened took no part in the impact, one landing in three was another, with up to half of the loss and
+// with 0.05 m/s out of the plane.
+TEST_CASE("a stack that lands flat in space lands as in the plane")
+{
+	constexpr double b = 0.3, a = 0.35, depth = 0.4, friction = 0.684;
+	const int n = GENERATE(2, 3, 5);
+	const double restitution = GENERATE(0.8, double(NAN));
+	for (double angle = 0.01; angle < 0.055; angle += 0.005) {
+		CAPTURE(n, restitution, angle);
+		auto flat = emptyScene<Plane>();
+		System s = emptyScene<Space>();
+		const Quaternion turned = turn(angle, Vector3::UnitY());
+		for (int k = 0; k < n; ++k) {
+			const Vector3 place = turned * Vector3(-b, 0, (2 * k + 1) * a);
+			const int block = addBox(s, {b, depth, a}, {place, turned});
+			addBlock(flat, b, a, {place.x(), place.z()}, -angle, s.bodies[block].mass);
+			addPair(s, k, k + 1, restitution, friction);
+			addPair(flat, k, k + 1, restitution, friction);
+		}
+		RigidStep<Plane> planar;
+		RigidStep<Space> spatial;
+		while (flat.impacts.empty()) {
+			planar.advance(flat, 1e-3);
+			REQUIRE(spatial.advance(s, 1e-3).converged);
+		}
+		REQUIRE(s.impacts.size() == flat.impacts.size());
+		CHECK(s.impactDissip == Approx(flat.impactDissip).epsilon(1e-6));
+		for (int k = 1; k <= n; ++k)
+			for (int row : {1, 3, 5})
+				CHECK(std::abs(s.bodies[k].velocity[row]) < 1e-9);
+	}
+}
