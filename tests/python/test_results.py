@@ -157,6 +157,19 @@ def test_drift_is_that_of_the_top():
     assert abs(h.drift()[1] - math.hypot(0.01, 0.02) / 0.8) < ROUND
 
 
+@pytest.mark.parametrize("posture", [UPRIGHT, turn(math.pi, (1, 0, 0)), turn(math.pi / 2, (0, 1, 0))])
+def test_a_pier_drifts_as_a_block_that_turns_alike(posture):
+    """Width w and height 1; about its lower edge by an angle t the middle of its top goes sin(t) + w (1 - cos(t)) / 2 sideways."""
+    width, angles = 0.25, (0, 0.1, -0.3)
+    for blocks in (1, 4):
+        size = np.abs(_pose.matrices(posture).T @ [width, 0.5, 1 / blocks])  # along the block's own axes, whichever is upright
+        centers = [[0, 0, (k + 0.5) / blocks] for k in range(blocks)]
+        place = [[about_edge(c, [math.copysign(width / 2, t), 0, 0], turn(t, (0, 1, 0))) for c in centers] for t in angles]
+        turned = [[_pose.product(turn(t, (0, 1, 0)), posture)] * blocks for t in angles]
+        drift = history([size] * blocks, place, np.array(turned), free=[True] * blocks).drift()
+        assert np.allclose(drift, [math.sin(abs(t)) + width / 2 * (1 - math.cos(t)) for t in angles], rtol=0, atol=ROUND)
+
+
 def test_energy_error_is_what_the_balance_lacks():
     energies = np.array([[0, 10, 0, 0, 0, 0, 0], [3, 11, 0.5, 1, 0.25, 2, 8.0], [1, 10, 0, 2, 1, 3, 6.5]])
     h = rocking([0, 0.1, 0], )

@@ -152,11 +152,16 @@ class WallHistory:
 
     def drift(self):
         """(s,) horizontal displacement of the top relative to the base over the height of the structure, 0 or positive, dimensionless. The
-        top: the block that is farthest away among those whose upper end is at first within half their height of the highest one. The
-        height: from the lowest point of the free blocks to the highest, at first."""
+        top: the middle of the upper face (of the face that is the upper one at first), of the block where it is farthest away among those whose
+        upper end is at first within half their height of the highest one. The height: from the lowest point of the free blocks to the highest,
+        at first. A block and a pier of the same shape that turn alike have the same drift."""
         low, high = self.extent
-        top = self.free & (high > high[self.free].max() - (high - low) / 2)
-        moved = np.linalg.norm(self.displacement[:, top, :2], axis=2)
+        top = np.flatnonzero(self.free & (high > high[self.free].max() - (high - low) / 2))
+        rows, up, turned = np.arange(len(top)), self.upright[top], _pose.matrices(self.relative_orientation[:, top])
+        arms = np.zeros((len(top), 3))
+        arms[rows, up] = np.sign(turned[0, rows, 2, up]) * self.sizes[top, up] / 2
+        middles = self.relative_position[:, top] + np.einsum("snab,nb->sna", turned, arms)
+        moved = np.linalg.norm((middles - middles[0])[..., :2], axis=2)
         return np.fmax.reduce(moved, axis=1) / (high[self.free].max() - low[self.free].min())
 
     @cached_property
