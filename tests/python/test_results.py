@@ -221,6 +221,22 @@ def test_the_view_is_across_the_plane_of_motion():
     assert view.View(both, (0, -2, 0)).label() == "x (m)"
 
 
+def facade(move, blocks=1, samples=2):
+    """Blocks 2 x 0.3 x 3 side by side along x on a base; move: (n, 3) of the blocks in all samples but the first."""
+    place = np.array([[0, 0, -0.1]] + [[2.0 * k, 0, 1.5] for k in range(blocks)])
+    return history([[40, 20, 0.2]] + [[2, 0.3, 3]] * blocks, [place, *[place + np.vstack([[0, 0, 0], np.broadcast_to(move, (blocks, 3))])] * (samples - 1)])
+
+
+@pytest.mark.parametrize("move", [(0, 0, 0), (1e-7, 0, 0), (0, 1e-7, 0), (1e-7, 2e-7, -1e-7), (0, 0, 0.01)])
+def test_a_facade_that_has_not_moved_sideways_is_seen_from_its_front(move):
+    # 1e-7 m is less than 1e-6 of its size, 3 m.
+    h = facade(move)
+    assert np.allclose(view.View(h).towards, [0, -1, 0])
+    quarter = turn(math.pi / 2, (0, 0, 1))
+    turned = history(h.sizes, h.position @ _pose.matrices(quarter).T, np.tile(quarter, (2, 2, 1)))
+    assert np.allclose(view.View(turned).towards, [1, 0, 0])
+
+
 def test_blocks_behind_are_drawn_first():
     """Boxes of a regular pattern, in any order: along a ray towards the viewer the last face drawn is that of the nearest box."""
     rng = np.random.default_rng(3)
@@ -264,6 +280,34 @@ def test_pictures_show_the_movement_enlarged(tmp_path):
     for name, act in (("shape", results.draw), ("joints", results.draw_joints)):
         act(h, tmp_path / f"{name}.png")
         assert (tmp_path / f"{name}.png").read_bytes()[:4] == b"\x89PNG"
+
+
+def test_what_solvers_leave_is_no_movement(tmp_path):
+    from masonry.results import pictures
+
+    for way, moved in ((2e-6, False), (4e-6, True)):  # 1e-6 of the size is 3e-6 m
+        h = facade((way, 0, 0))
+        painter = pictures._Painter(h, [1], None, "displacement", None, "")
+        painter.paint(1)
+        assert ("nothing moved" in painter.figure.axes[0].get_title()) != moved
+        assert abs(painter._enlarge * (way / 0.15 if moved else 1) - 1) < 1e-9  # round-off of 1 m in 4e-6 m
+        assert len(painter.figure.axes) == 1 + moved  # the scale
+        results.draw_joints(h, tmp_path / "joints.png")
+
+
+@pytest.mark.parametrize("moves, end, beyond", [([0.01, 0.02, 0.03, 0.02], 0.03, False),  # all stand
+                                                ([0.01, 0.02, 0.03, 9.0], 0.03, True),  # one has fallen
+                                                ([0.01, 7.0, 8.0, 9.0], 9.0, False),  # most have
+                                                ([1e-7, 1e-7, 1e-7, 9.0], 9.0, False)])  # what stands has not moved
+def test_colours_are_left_to_what_stands_and_to_a_heap(moves, end, beyond):
+    from masonry.results import pictures
+
+    # Those that have gone metres also lie by 2 m lower, which is more than half of their height.
+    h = facade([[0, math.sqrt(m**2 - 4) if m > 1 else m, -2 if m > 1 else 0] for m in moves], blocks=4)
+    assert results.fallen(h)[1, 1:].tolist() == [m > 1 for m in moves]
+    painter = pictures._Painter(h, [1], 1.0, "displacement", None, "")
+    label = painter.figure.axes[1].get_ylabel()
+    assert abs(painter._map.norm.vmax - end) < 1e-12 and ("fallen" in label) == beyond
 
 
 def test_a_film_has_the_frames_asked_for(tmp_path):
