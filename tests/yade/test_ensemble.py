@@ -97,20 +97,32 @@ with tempfile.TemporaryDirectory() as folder:
     assert computed == [[-1, 0.1]]
     refuses(lambda: study([{"scale": -1}, {"scale": 0.1}], script, out), "1 of 2 cases failed", kind=RuntimeError)
     assert computed == [[-1]]
-    refuses(lambda: ensemble.run(script, [{"scale": 0.3}], out, time_limit=0.05, progress=False), "stopped after 0.05 s", kind=RuntimeError)
+    refuses(lambda: ensemble.run(script, [{"scale": 0.3}], out, time_limit=0.05, progress=False), "stopped after 0.05 s", "none is kept", kind=RuntimeError)
     refuses(lambda: ensemble.result(script, {"scale": 0.3}, out), "no result", kind=KeyError)
+    # All that failed are named, and the others are in the table of the error and of the folder. 10 s are enough for one that fails at once.
+    slow = Path(folder) / "slow.py"
+    slow.write_text("import time\ndef run(case):\n\ttime.sleep(case['scale'])\n\treturn {'twice': 2 * case['scale']} if case['scale'] else {}\n")
+    try:
+        ensemble.run(slow, [{"scale": w} for w in (0.25, 100, 0, 0.5)], out, processes=2, time_limit=10, progress=False)
+        raise AssertionError("cases that failed are not told")
+    except RuntimeError as error:
+        for words in ("2 of 4 cases failed", "2 are kept", "{'scale': 100}: it was stopped after 10 s", "{'scale': 0}: it ended with status 1", "returned {}"):
+            assert words in str(error), (words, str(error))
+        assert error.table["twice"].tolist() == [0.5, 1] and np.load(out / "ensemble.npz")["table"].tobytes() == error.table.tobytes()
     # What ends the program ends its cases: Ctrl-C, and what a queue sends.
     for number in (signal.SIGINT, signal.SIGTERM):
-        waiting, started = Path(folder) / "waiting.py", Path(folder) / f"started_{number}"
+        waiting, started, ended = Path(folder) / "waiting.py", Path(folder) / f"started_{number}", Path(folder) / f"ended_{number}"
         waiting.write_text("import os, pathlib, time\ndef run(case):\n\tpathlib.Path(case['to']).write_text(str(os.getpid()))\n\ttime.sleep(60)\n")
-        program = f"from masonry import ensemble\nensemble.run({str(waiting)!r}, [{{'to': {str(started)!r}}}], {str(out)!r}, progress=False)"
-        process = subprocess.Popen(["/usr/bin/python3", "-c", program], stderr=subprocess.DEVNULL,
+        program = f"from masonry import ensemble\nensemble.run({str(waiting)!r}, [{{'to': {str(started)!r}}}], {str(ended)!r}, progress=False)"
+        process = subprocess.Popen(["/usr/bin/python3", "-c", program], stderr=subprocess.PIPE, text=True,
                                    env={**os.environ, "PYTHONPATH": str(Path(masonry.__file__).parents[1])})
         while not (started.exists() and started.read_text()):
             assert process.poll() is None
             time.sleep(0.05)
         process.send_signal(number)
-        assert process.wait(30) != 0
+        said = process.communicate(timeout=30)[1]
+        assert process.returncode != 0 and not list(ended.iterdir())
+        assert number != signal.SIGINT or f"KeyboardInterrupt: interrupted: 0 of 1 cases are kept in {ended}; run again" in said, said
         try:
             os.kill(int(started.read_text()), 0)
             raise AssertionError(f"the case goes on after signal {number}")
