@@ -204,6 +204,12 @@ def test_a_csv_has_a_line_a_sample(tmp_path):
     table = np.genfromtxt(tmp_path / "h.csv", delimiter=",", skip_header=1)
     assert (tmp_path / "h.csv").read_text().startswith("time (s),drift,kinetic (J),potential (J),") and np.array_equal(table[:, 2:9], energies)
     assert np.array_equal(table[:, 9], h.energy["error"])
+    h.to_csv(tmp_path / "h.csv", ids=h.ids)
+    table = np.genfromtxt(tmp_path / "h.csv", delimiter=",", names=True, deletechars="")
+    assert len(table.dtype.names) == 10 + 2 * 5 and not any(table[f"{name}_of_10_({unit})"].any() for name, unit in (("displacement_x", "m"), ("rotation", "rad")))
+    # About its edge by 0.1: the centre 0.3 inwards and 1 above.
+    assert abs(table["displacement_x_of_11_(m)"][1] - (math.sin(0.1) + 0.3 * (1 - math.cos(0.1)))) < ROUND
+    assert abs(table["rotation_of_11_(rad)"][1] - 0.1) < ROUND and abs(table["lean_of_11_(rad)"][2] - 0.05) < ROUND
 
 
 # --- seen from the side and from afar ---
@@ -383,7 +389,7 @@ def test_bad_input_is_refused(tmp_path):
                       (lambda: results.collapse(h, blocks=math.nan), "blocks = nan: must be"),
                       (lambda: results.collapse(h, blocks="two"), "blocks = 'two'"), (lambda: results.collapse(h, excursion="a"), "excursion = 'a'"),
                       (lambda: results.draw(h, path, view="front"), "view = 'front'"), (lambda: results.draw(h, path, view=(1, 0)), r"view = \(1, 0\): must be three"),
-                      (lambda: h.to_csv("h.txt"), "must end in .csv"), (lambda: results.collapse(h, excursion=0), "excursion = 0"), (lambda: h.save("h.txt"), "must end in .npz"),
+                      (lambda: h.to_csv("h.txt"), "must end in .csv"), (lambda: h.to_csv(tmp_path / "h.csv", ids=12), r"ids: 12 is no block .* among \[10, 11\]"), (lambda: results.collapse(h, excursion=0), "excursion = 0"), (lambda: h.save("h.txt"), "must end in .npz"),
                       (lambda: results.draw(h, path, color="red"), "color = 'red'"), (lambda: results.draw(h, path, enlarge=-1), "enlarge = -1"),
                       (lambda: results.draw(h, path, view=(0, 0, 0)), "view"), (lambda: results.draw_energy(h, path), "no energies"),
                       (lambda: results.film(h, "h.avi"), "must end in .gif or .mp4"), (lambda: results.film(h, path, frames_per_second=100), "frames_per_second"),

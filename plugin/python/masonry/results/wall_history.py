@@ -1,5 +1,6 @@
 """The recorded motion of a structure: what the other files of this folder draw, count and export."""
 
+import reprlib
 from functools import cached_property
 
 import numpy as np
@@ -65,14 +66,21 @@ class WallHistory:
             raise ValueError(f"path = {path}: is no WallHistory: {', '.join(sorted(set(_SAVED) - found.keys()))} is missing")
         return cls(**found)
 
-    def to_csv(self, path):
-        """Writes a .csv file, a line a sample, with a header: time (s), drift (of the height), and the columns of energy (J) where they were
-        recorded. Motion of single blocks: save()."""
+    def to_csv(self, path, ids=()):
+        """Writes a .csv file, a line a sample, with a header: time (s), drift (of the height), the columns of energy (J) where they were
+        recorded, and of each block of `ids` (history.ids: all) displacement x, y, z (m) of its centre and rotation (rad), relative to the base and
+        since the first sample, and its lean (rad) from the vertical."""
         if not str(path).endswith(".csv"):
             raise ValueError(f"path = {path}: must end in .csv")
         columns = {"time (s)": self.time, "drift": self.drift()}
         if not np.isnan(self._energies).all():
             columns.update({f"{name} (J)": self.energy[name] for name in self.energy.dtype.names[1:]})
+        for id in np.atleast_1d(ids).tolist():
+            if id not in self.ids.tolist():
+                raise ValueError(f"ids: {id} is no block of the history: must be among {reprlib.repr(self.ids.tolist())}")
+            row = int(np.flatnonzero(self.ids == id)[0])
+            columns.update({f"displacement {axis} of {id} (m)": self.displacement[:, row, k] for k, axis in enumerate("xyz")})
+            columns.update({f"{name} of {id} (rad)": values[:, row] for name, values in (("rotation", self.rotation), ("lean", self.lean))})
         np.savetxt(path, np.column_stack(list(columns.values())), delimiter=",", header=",".join(columns), comments="")
 
     def sample(self, time=None):
