@@ -55,6 +55,17 @@ def test_collapsed_cases_have_no_largest_drift():
     assert whole["cases"][0] == 12 and whole["fraction"][0] == 0.5 and "scale" not in whole.dtype.names
 
 
+def test_groups_of_several_columns_are_the_combinations_that_occur():
+    table = np.array([(0.4, "wall", True, 9), (0.2, "pier", False, 0.1), (0.2, "wall", False, 0.2), (0.2, "pier", True, 9), (0.4, "wall", False, 0.3)],
+                     dtype=[("scale", float), ("kind", "U4"), ("collapsed", bool), ("peak_drift", float)])
+    found = ensemble.statistics(table, by=["scale", "kind"], probabilities=(0.5,))
+    assert found[["scale", "kind", "cases", "fraction"]].tolist() == [(0.2, "pier", 2, 0.5), (0.2, "wall", 1, 0), (0.4, "wall", 2, 0.5)]
+    for row in found:
+        part = table[(table["scale"] == row["scale"]) & (table["kind"] == row["kind"])]
+        assert row["quantile_0.5_low"] == ensemble.statistics(part, probabilities=(0.5,))["quantile_0.5_low"][0]
+    assert found.dtype.names[:2] == ("scale", "kind") and ensemble.statistics(table, by=["scale"]).tolist() == ensemble.statistics(table, by="scale").tolist()
+
+
 def test_artificial_records_are_those_of_their_seed():
     record = masonry.artificial_record(3, peak=2.5, duration=8, dt=0.01)
     assert record.samples.max() == 2.5 or -record.samples.min() == 2.5
@@ -100,6 +111,8 @@ def test_bad_input_is_refused(tmp_path):
                       (lambda: ensemble.run(script, [1, 2], tmp_path), "case = 1: must be a dict"),
                       (lambda: ensemble.statistics(gaps), "column 'peak_drift': 1 of 3 cases are NaN"),
                       (lambda: ensemble.statistics(gaps, by="scale"), "column 'peak_drift': 1 of 2 cases with scale = 0.4"),
+                      (lambda: ensemble.statistics(gaps, by=("scale", "collapsed")), "1 of 1 cases with scale = 0.4, collapsed = False"),
+                      (lambda: ensemble.statistics(gaps, by=["scale", "kind"]), "'kind': is no column"),
                       (lambda: masonry.artificial_record(1, "3"), "peak = '3'"), (lambda: masonry.artificial_record(1, 1, dt="a"), "dt = 'a'"),
                       (lambda: masonry.artificial_record(-1, 1), "seed = -1"), (lambda: masonry.artificial_record(1, 0), "peak = 0"),
                       (lambda: masonry.artificial_record(1, 1, dt=0.1), "dt = 0.1"), (lambda: masonry.artificial_record(1, 1, cutoff=3), "cutoff = 3"),

@@ -157,6 +157,19 @@ def test_drift_is_that_of_the_top():
     assert abs(h.drift()[1] - math.hypot(0.01, 0.02) / 0.8) < ROUND
 
 
+@pytest.mark.parametrize("posture", [UPRIGHT, turn(math.pi, (1, 0, 0)), turn(math.pi / 2, (0, 1, 0))])
+def test_a_pier_drifts_as_a_block_that_turns_alike(posture):
+    """Width w and height 1; about its lower edge by an angle t the middle of its top goes sin(t) + w (1 - cos(t)) / 2 sideways."""
+    width, angles = 0.25, (0, 0.1, -0.3)
+    for blocks in (1, 4):
+        size = np.abs(_pose.matrices(posture).T @ [width, 0.5, 1 / blocks])  # along the block's own axes, whichever is upright
+        centers = [[0, 0, (k + 0.5) / blocks] for k in range(blocks)]
+        place = [[about_edge(c, [math.copysign(width / 2, t), 0, 0], turn(t, (0, 1, 0))) for c in centers] for t in angles]
+        turned = [[_pose.product(turn(t, (0, 1, 0)), posture)] * blocks for t in angles]
+        drift = history([size] * blocks, place, np.array(turned), free=[True] * blocks).drift()
+        assert np.allclose(drift, [math.sin(abs(t)) + width / 2 * (1 - math.cos(t)) for t in angles], rtol=0, atol=ROUND)
+
+
 def test_energy_error_is_what_the_balance_lacks():
     energies = np.array([[0, 10, 0, 0, 0, 0, 0], [3, 11, 0.5, 1, 0.25, 2, 8.0], [1, 10, 0, 2, 1, 3, 6.5]])
     h = rocking([0, 0.1, 0], )
@@ -191,6 +204,12 @@ def test_a_csv_has_a_line_a_sample(tmp_path):
     table = np.genfromtxt(tmp_path / "h.csv", delimiter=",", skip_header=1)
     assert (tmp_path / "h.csv").read_text().startswith("time (s),drift,kinetic (J),potential (J),") and np.array_equal(table[:, 2:9], energies)
     assert np.array_equal(table[:, 9], h.energy["error"])
+    h.to_csv(tmp_path / "h.csv", ids=h.ids)
+    table = np.genfromtxt(tmp_path / "h.csv", delimiter=",", names=True, deletechars="")
+    assert len(table.dtype.names) == 10 + 2 * 5 and not any(table[f"{name}_of_10_({unit})"].any() for name, unit in (("displacement_x", "m"), ("rotation", "rad")))
+    # About its edge by 0.1: the centre 0.3 inwards and 1 above.
+    assert abs(table["displacement_x_of_11_(m)"][1] - (math.sin(0.1) + 0.3 * (1 - math.cos(0.1)))) < ROUND
+    assert abs(table["rotation_of_11_(rad)"][1] - 0.1) < ROUND and abs(table["lean_of_11_(rad)"][2] - 0.05) < ROUND
 
 
 # --- seen from the side and from afar ---
@@ -206,6 +225,22 @@ def test_the_view_is_across_the_plane_of_motion():
     both.position[1, 1, 1] += 0.01
     assert view.plane_normal(both) is None and not view.View(both).from_side
     assert view.View(both, (0, -2, 0)).label() == "x (m)"
+
+
+def facade(move, blocks=1, samples=2):
+    """Blocks 2 x 0.3 x 3 side by side along x on a base; move: (n, 3) of the blocks in all samples but the first."""
+    place = np.array([[0, 0, -0.1]] + [[2.0 * k, 0, 1.5] for k in range(blocks)])
+    return history([[40, 20, 0.2]] + [[2, 0.3, 3]] * blocks, [place, *[place + np.vstack([[0, 0, 0], np.broadcast_to(move, (blocks, 3))])] * (samples - 1)])
+
+
+@pytest.mark.parametrize("move", [(0, 0, 0), (1e-7, 0, 0), (0, 1e-7, 0), (1e-7, 2e-7, -1e-7), (0, 0, 0.01)])
+def test_a_facade_that_has_not_moved_sideways_is_seen_from_its_front(move):
+    # 1e-7 m is less than 1e-6 of its size, 3 m.
+    h = facade(move)
+    assert np.allclose(view.View(h).towards, [0, -1, 0])
+    quarter = turn(math.pi / 2, (0, 0, 1))
+    turned = history(h.sizes, h.position @ _pose.matrices(quarter).T, np.tile(quarter, (2, 2, 1)))
+    assert np.allclose(view.View(turned).towards, [1, 0, 0])
 
 
 def test_blocks_behind_are_drawn_first():
@@ -251,6 +286,49 @@ def test_pictures_show_the_movement_enlarged(tmp_path):
     for name, act in (("shape", results.draw), ("joints", results.draw_joints)):
         act(h, tmp_path / f"{name}.png")
         assert (tmp_path / f"{name}.png").read_bytes()[:4] == b"\x89PNG"
+
+
+def test_what_solvers_leave_is_no_movement(tmp_path):
+    from masonry.results import pictures
+
+    for way, moved in ((2e-6, False), (4e-6, True)):  # 1e-6 of the size is 3e-6 m
+        h = facade((way, 0, 0))
+        painter = pictures._Painter(h, [1], None, "displacement", None, "")
+        painter.paint(1)
+        assert ("nothing moved" in painter.figure.axes[0].get_title()) != moved
+        assert abs(painter._enlarge * (way / 0.15 if moved else 1) - 1) < 1e-9  # round-off of 1 m in 4e-6 m
+        assert len(painter.figure.axes) == 1 + moved  # the scale
+        results.draw_joints(h, tmp_path / "joints.png")
+
+
+@pytest.mark.parametrize("moves, end, beyond", [([0.01, 0.02, 0.03, 0.02], 0.03, False),  # all stand
+                                                ([0.01, 0.02, 0.03, 9.0], 0.03, True),  # one has fallen
+                                                ([0.01, 7.0, 8.0, 9.0], 9.0, False),  # most have
+                                                ([1e-7, 1e-7, 1e-7, 9.0], 9.0, False)])  # what stands has not moved
+def test_colours_are_left_to_what_stands_and_to_a_heap(moves, end, beyond):
+    from masonry.results import pictures
+
+    # Those that have gone metres also lie by 2 m lower, which is more than half of their height.
+    h = facade([[0, math.sqrt(m**2 - 4) if m > 1 else m, -2 if m > 1 else 0] for m in moves], blocks=4)
+    assert results.fallen(h)[1, 1:].tolist() == [m > 1 for m in moves]
+    painter = pictures._Painter(h, [1], 1.0, "displacement", None, "")
+    label = painter.figure.axes[1].get_ylabel()
+    assert abs(painter._map.norm.vmax - end) < 1e-12 and ("fallen" in label) == beyond
+
+
+@pytest.mark.parametrize("lacking, panels", [(0, 1), (1e-10, 1), (1e-3, 2)])
+def test_a_balance_that_closes_by_definition_is_not_shown_as_its_error(monkeypatch, lacking, panels):
+    """What is lost is booked as the impacts' but for `lacking` J; 1e-10 J is round-off of a potential energy of 1e6 J."""
+    from matplotlib.figure import Figure
+
+    drawn = []
+    monkeypatch.setattr(Figure, "savefig", lambda figure, path, **given: drawn.append(figure))
+    h = rocking([0, 0.1, 0])
+    energies = np.array([[0, 1e6, 0, 0, 0, 0, 0], [3, 1e6 + 5, 0, 1, 0, 2, 11], [0, 1e6, 0, 2, 0, 5 + lacking, 7]])
+    results.draw_energy(history(h.sizes, h.position, h.orientation, energies=energies), "energy.png")
+    texts = [text.get_text() for text in drawn[0].axes[0].get_legend().get_texts()]
+    assert len(drawn[0].axes) == panels and ("dissipated by impacts and numerically" in texts) == (panels == 1)
+    assert drawn[0].axes[-1].get_xlabel() == "time (s)"
 
 
 def test_a_film_has_the_frames_asked_for(tmp_path):
@@ -311,7 +389,7 @@ def test_bad_input_is_refused(tmp_path):
                       (lambda: results.collapse(h, blocks=math.nan), "blocks = nan: must be"),
                       (lambda: results.collapse(h, blocks="two"), "blocks = 'two'"), (lambda: results.collapse(h, excursion="a"), "excursion = 'a'"),
                       (lambda: results.draw(h, path, view="front"), "view = 'front'"), (lambda: results.draw(h, path, view=(1, 0)), r"view = \(1, 0\): must be three"),
-                      (lambda: h.to_csv("h.txt"), "must end in .csv"), (lambda: results.collapse(h, excursion=0), "excursion = 0"), (lambda: h.save("h.txt"), "must end in .npz"),
+                      (lambda: h.to_csv("h.txt"), "must end in .csv"), (lambda: h.to_csv(tmp_path / "h.csv", ids=12), r"ids: 12 is no block .* among \[10, 11\]"), (lambda: results.collapse(h, excursion=0), "excursion = 0"), (lambda: h.save("h.txt"), "must end in .npz"),
                       (lambda: results.draw(h, path, color="red"), "color = 'red'"), (lambda: results.draw(h, path, enlarge=-1), "enlarge = -1"),
                       (lambda: results.draw(h, path, view=(0, 0, 0)), "view"), (lambda: results.draw_energy(h, path), "no energies"),
                       (lambda: results.film(h, "h.avi"), "must end in .gif or .mp4"), (lambda: results.film(h, path, frames_per_second=100), "frames_per_second"),

@@ -43,7 +43,8 @@ with tempfile.TemporaryDirectory() as folder:
     table = study(cases, script, out)
     assert computed == [scales] and table["scale"].tolist() == scales and table["name"][1] == "sine 0.1"
 
-    # The exact block: whether it overturns; drift of the centre, R (sin(alpha) - sin(alpha - |angle|)) over the height.
+    # The exact block: whether it overturns. The middle of its top is b inwards of the pivot and 2a above it: turned by an angle t it has moved by
+    # 2a sin(t) + b (1 - cos(t)), which grows with t up to beyond the critical angle; the drift is that over the height 2a.
     block = masonry.RockingBlock(ensemble_scene.HALF_WIDTH, ensemble_scene.HALF_WIDTH * ensemble_scene.SLENDERNESS)
     alpha = block.critical_angle
     for row in table:
@@ -51,9 +52,9 @@ with tempfile.TemporaryDirectory() as folder:
         falls = bool(exact.overturned) or abs(exact.sample(2.0)[0]) > alpha
         assert row["collapsed"] == falls and row["fallen"] == row["collapsed"], row
         if not row["collapsed"]:
-            angle = np.abs(exact.sample(np.arange(0, 2, 0.001))[0])
-            drift = np.max(block.radius * (math.sin(alpha) - np.sin(alpha - angle))) / (2 * block.half_height)
-            # Samples 5 ms apart miss a peak by (2.5e-3 s)^2 / 2 of the acceleration there, below g: 3e-5 m; the step by 1e-4 (README).
+            angle = np.max(np.abs(exact.sample(np.arange(0, 2, 0.001))[0]))
+            drift = math.sin(angle) + (1 - math.cos(angle)) / (2 * block.slenderness)
+            # Samples 5 ms apart miss a peak by (2.5e-3 s)^2 / 2 of the acceleration there, below g: 3e-5 m of 2 m; the step by 1e-4 (README).
             assert abs(row["peak_drift"] - drift) < 2e-5 + 1e-4 * drift, (row["peak_drift"], drift)
     assert table["collapsed"].tolist() == [False, False, True] and table["peak_drift"][1] < 1e-6 < table["peak_drift"][0]
     found = ensemble.statistics(table)
@@ -96,20 +97,32 @@ with tempfile.TemporaryDirectory() as folder:
     assert computed == [[-1, 0.1]]
     refuses(lambda: study([{"scale": -1}, {"scale": 0.1}], script, out), "1 of 2 cases failed", kind=RuntimeError)
     assert computed == [[-1]]
-    refuses(lambda: ensemble.run(script, [{"scale": 0.3}], out, time_limit=0.05, progress=False), "stopped after 0.05 s", kind=RuntimeError)
+    refuses(lambda: ensemble.run(script, [{"scale": 0.3}], out, time_limit=0.05, progress=False), "stopped after 0.05 s", "none is kept", kind=RuntimeError)
     refuses(lambda: ensemble.result(script, {"scale": 0.3}, out), "no result", kind=KeyError)
+    # All that failed are named, and the others are in the table of the error and of the folder. 10 s are enough for one that fails at once.
+    slow = Path(folder) / "slow.py"
+    slow.write_text("import time\ndef run(case):\n\ttime.sleep(case['scale'])\n\treturn {'twice': 2 * case['scale']} if case['scale'] else {}\n")
+    try:
+        ensemble.run(slow, [{"scale": w} for w in (0.25, 100, 0, 0.5)], out, processes=2, time_limit=10, progress=False)
+        raise AssertionError("cases that failed are not told")
+    except RuntimeError as error:
+        for words in ("2 of 4 cases failed", "2 are kept", "{'scale': 100}: it was stopped after 10 s", "{'scale': 0}: it ended with status 1", "returned {}"):
+            assert words in str(error), (words, str(error))
+        assert error.table["twice"].tolist() == [0.5, 1] and np.load(out / "ensemble.npz")["table"].tobytes() == error.table.tobytes()
     # What ends the program ends its cases: Ctrl-C, and what a queue sends.
     for number in (signal.SIGINT, signal.SIGTERM):
-        waiting, started = Path(folder) / "waiting.py", Path(folder) / f"started_{number}"
+        waiting, started, ended = Path(folder) / "waiting.py", Path(folder) / f"started_{number}", Path(folder) / f"ended_{number}"
         waiting.write_text("import os, pathlib, time\ndef run(case):\n\tpathlib.Path(case['to']).write_text(str(os.getpid()))\n\ttime.sleep(60)\n")
-        program = f"from masonry import ensemble\nensemble.run({str(waiting)!r}, [{{'to': {str(started)!r}}}], {str(out)!r}, progress=False)"
-        process = subprocess.Popen(["/usr/bin/python3", "-c", program], stderr=subprocess.DEVNULL,
+        program = f"from masonry import ensemble\nensemble.run({str(waiting)!r}, [{{'to': {str(started)!r}}}], {str(ended)!r}, progress=False)"
+        process = subprocess.Popen(["/usr/bin/python3", "-c", program], stderr=subprocess.PIPE, text=True,
                                    env={**os.environ, "PYTHONPATH": str(Path(masonry.__file__).parents[1])})
         while not (started.exists() and started.read_text()):
             assert process.poll() is None
             time.sleep(0.05)
         process.send_signal(number)
-        assert process.wait(30) != 0
+        said = process.communicate(timeout=30)[1]
+        assert process.returncode != 0 and not list(ended.iterdir())
+        assert number != signal.SIGINT or f"KeyboardInterrupt: interrupted: 0 of 1 cases are kept in {ended}; run again" in said, said
         try:
             os.kill(int(started.read_text()), 0)
             raise AssertionError(f"the case goes on after signal {number}")

@@ -32,8 +32,8 @@ import numpy as np
 from ._given import is_whole, number_given
 
 _RUN_CASE = Path(__file__).with_name("_run_case.py")
-# Lines of what a failed case has said that the error repeats.
-_TAIL = 15
+# Lines of what a failed case has said that the error repeats, and failed cases that it names.
+_TAIL, _NAMED = 15, 10
 
 
 def _plain(case):
@@ -76,7 +76,7 @@ def run(script, cases, folder, function="run", processes=None, time_limit=None, 
     """Calls the function `function(case)` of a Python file inside YADE, one process a case, and returns the table of what came out.
 
     script        path of the file; importing it must not run anything
-    cases         dicts of numbers and strings, all with the same keys: what the function is given
+    cases         dicts of numbers, strings, and lists of them (which the table has as text), all with the same keys: what the function is given
     folder        one .npz file a finished case, and the tables ensemble.csv and ensemble.npz; made if it is not there
     processes     how many run at once; None: one a core. Each has one thread.
     time_limit    s of wall clock after which a case is stopped and counts as failed; None: no limit
@@ -87,8 +87,9 @@ def run(script, cases, folder, function="run", processes=None, time_limit=None, 
     have changed since, or whose file is damaged, which a line tells. Other files that the function reads, and modules beside the script, are not looked into.
 
     Table: a structured array, one row a case in the order of `cases`: what the case says, then what its numbers are.
-    Raises ValueError for cases that cannot be told apart or written down, RuntimeError, after all the others have run, for cases that failed
-    (their output is in the folder as .log); FileNotFoundError where there is no script or no YADE.
+    Raises ValueError for cases that cannot be told apart or written down; RuntimeError, after all the others have run, for cases that failed (their
+    output is in the folder as .log): its attribute `table` has the others, as have the tables in the folder; FileNotFoundError where there is no
+    script or no YADE. What is finished when it is interrupted (Ctrl-C) is kept.
     """
     script, folder = Path(script).resolve(strict=True), Path(folder)
     if not isinstance(cases, Iterable):
@@ -113,16 +114,30 @@ def run(script, cases, folder, function="run", processes=None, time_limit=None, 
     missing = [(case, key) for case, key in zip(cases, keys) if outcomes[key] is None]
     for _, key in missing:
         _path(folder, key).unlink(missing_ok=True)  # a damaged one
-    failures = _run_missing(script, function, missing, len(cases), folder, int(processes or os.cpu_count()), time_limit, progress) if missing else []
-    if failures:
-        raise RuntimeError(f"{len(failures)} of {len(cases)} cases failed; {len(cases) - len(failures)} are kept in {folder}. The first, "
-                           f"{failures[0][0]}:\n{failures[0][1]}")
+    try:
+        failures = _run_missing(script, function, missing, len(cases), folder, int(processes or os.cpu_count()), time_limit, progress) if missing else []
+    except KeyboardInterrupt:
+        kept = sum(_path(folder, key).exists() for key in keys)
+        raise KeyboardInterrupt(f"interrupted: {kept} of {len(cases)} cases are kept in {folder}; run again to go on") from None
     outcomes.update({key: _load(_path(folder, key)) for _, key in missing})
-    table = _table(cases, [outcomes[key] for key in keys])
-    np.savez(folder / "ensemble.npz", table=table)
-    with open(folder / "ensemble.csv", "w", newline="", encoding="utf-8") as file:
-        csv.writer(file).writerows([table.dtype.names, *table.tolist()])
+    finished = [(case, outcomes[key]) for case, key in zip(cases, keys) if outcomes[key] is not None]
+    table = _table(*zip(*finished)) if finished else None
+    if finished:
+        np.savez(folder / "ensemble.npz", table=table)
+        with open(folder / "ensemble.csv", "w", newline="", encoding="utf-8") as file:
+            csv.writer(file).writerows([table.dtype.names, *table.tolist()])
+    if failures:
+        raise _failed(failures, table, len(cases), folder)
     return table
+
+
+def _failed(failures, table, total, folder):
+    kept = f"none is kept in {folder}" if table is None else \
+        f"{len(table)} are kept in {folder}: their table is ensemble.csv and ensemble.npz there, and the attribute `table` of this error"
+    named = [f"{case}: {why}" for case, why, _ in failures[:_NAMED]] + ([f"and {len(failures) - _NAMED} more"] if len(failures) > _NAMED else [])
+    error = RuntimeError("\n".join([f"{len(failures)} of {total} cases failed; {kept}", *named, "The first said:", failures[0][2]]))
+    error.table = table
+    return error
 
 
 def result(script, case, folder, function="run"):
@@ -165,7 +180,7 @@ def _termination():
 
 
 def _run_missing(script, function, missing, total, folder, processes, time_limit, progress):
-    """[(case, last lines of its output)] of those that failed."""
+    """[(case, why, last lines of its output)] of those that failed."""
     from tqdm import tqdm
 
     yade = shutil.which("yade")
@@ -179,11 +194,12 @@ def _run_missing(script, function, missing, total, folder, processes, time_limit
     def one(case, key, bar):
         log, path = folder / f"case_{key}.log", _path(folder, key)
         arguments = json.dumps({"script": str(script), "function": function, "case": json.loads(_plain(case)), "path": str(path.resolve())})
-        with open(log, "w", encoding="utf-8") as output, lock:
+        with lock:
             if stopped.is_set():
                 return
-            process = subprocess.Popen([yade, "-j1", "-n", "-x", str(_RUN_CASE), arguments], env=environment, stdin=subprocess.DEVNULL,
-                                       stdout=output, stderr=subprocess.STDOUT)
+            with open(log, "w", encoding="utf-8") as output:
+                process = subprocess.Popen([yade, "-j1", "-n", "-x", str(_RUN_CASE), arguments], env=environment, stdin=subprocess.DEVNULL,
+                                           stdout=output, stderr=subprocess.STDOUT)
             running.add(process)
         try:
             process.wait(time_limit)
@@ -194,12 +210,13 @@ def _run_missing(script, function, missing, total, folder, processes, time_limit
             why = f"it was stopped after {time_limit:g} s"
         with lock:
             running.discard(process)
-            if not why:
-                log.unlink()
-            elif not stopped.is_set():
+            if why and not stopped.is_set():
                 said = log.read_text(encoding="utf-8", errors="replace").splitlines()[-_TAIL:]
-                failures.append((case, "\n".join([*said, f"{why}: {log}"])))
-            bar.update()
+                failures.append((case, f"{why}: {log}", "\n".join(said)))
+                bar.set_postfix(failed=len(failures))
+            else:
+                log.unlink()
+            bar.update(not stopped.is_set())
 
     with _termination(), tqdm(total=total, initial=total - len(missing), desc="ensemble", unit="case", disable=not progress) as bar, \
             ThreadPoolExecutor(processes) as pool:
@@ -283,32 +300,33 @@ def quantile(values, probability, confidence=0.95):
 
 
 def statistics(table, by=None, probabilities=(0.16, 0.5, 0.84), confidence=0.95, event="collapsed", value="peak_drift"):
-    """How often the event happened and how large the value was: a structured array, one row for each value of the column `by`, or one for
-    the whole table. Columns: that of `by`; cases; fraction, fraction_low, fraction_high (fraction()); and for each probability
-    quantile_0.5, quantile_0.5_low, quantile_0.5_high (quantile()), where cases with the event count as infinite: quantiles are those of all
-    cases, and infinite where more than that share has collapsed.
+    """How often the event happened and how large the value was: a structured array, one row for each value of the column `by` (of a list of
+    columns: for each combination of their values that occurs), or one for the whole table. Columns: those of `by`; cases; fraction, fraction_low,
+    fraction_high (fraction()); and for each probability quantile_0.5, quantile_0.5_low, quantile_0.5_high (quantile()), where cases with the event
+    count as infinite: quantiles are those of all cases, and infinite where more than that share has collapsed.
 
     table         of run(); its columns `event` (bool) and `value` (numbers) are those of results.CollapseReport.numbers()
     """
-    for name in (by, event, value):
-        if name is not None and name not in table.dtype.names:
+    by = [] if by is None else list(by) if isinstance(by, (list, tuple)) else [by]
+    for name in (*by, event, value):
+        if name not in table.dtype.names:
             raise ValueError(f"{name!r}: is no column of the table, which has {', '.join(table.dtype.names)}")
-    groups = [None] if by is None else np.unique(table[by])
+    groups, member = np.unique(table[by], return_inverse=True) if by else ([()], np.zeros(len(table), dtype=int))
     rows = []
-    for group in groups:
-        part = table if by is None else table[table[by] == group]
+    for number, group in enumerate(groups):
+        part = table[member == number]
         happened = part[event].astype(bool)
         numbers = np.where(happened, np.inf, part[value])
         for name, column in ((event, part[event]), (value, numbers)):
             if np.isnan(column).any():
-                raise ValueError(f"column {name!r}: {int(np.isnan(column).sum())} of {len(part)} cases{'' if by is None else f' with {by} = {group}'} are NaN: "
+                which = " with " + ", ".join(f"{n} = {v}" for n, v in zip(by, group)) if by else ""
+                raise ValueError(f"column {name!r}: {int(np.isnan(column).sum())} of {len(part)} cases{which} are NaN: "
                                  f"must be numbers{f', but where {event} is True' if name == value else ''}")
-        row = [] if by is None else [group]
-        row += [len(part), *fraction(happened, confidence)]
+        row = [*group, len(part), *fraction(happened, confidence)]
         for probability in probabilities:
             row += quantile(numbers, probability, confidence)
         rows.append(tuple(row))
-    fields = [] if by is None else [(by, table.dtype[by])]
+    fields = [(name, table.dtype[name]) for name in by]
     fields += [("cases", int)] + [(f"fraction{end}", float) for end in ("", "_low", "_high")]
     fields += [(f"quantile_{p:g}{end}", float) for p in probabilities for end in ("", "_low", "_high")]
     return np.array(rows, dtype=fields)

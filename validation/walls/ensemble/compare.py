@@ -18,7 +18,7 @@ def main():
     table = ensemble.run(str(HERE / "pier.py"), cases, str(FOLDER))
     motions = {law: table[table["law"] == law] for law in LAWS}
     rows = {law: ensemble.statistics(motions[law], by="peak", probabilities=(0.5,))[0] for law in LAWS}
-    print("| law | collapsed of 30 | 95 % interval of the share | median of the peak drift (m) | 95 % interval | moves earlier |\n" + "| --- " * 6 + "|")
+    print("| law | collapsed of 30 | 95 % interval of the share | median of the peak drift, of the height | 95 % interval | moves earlier |\n" + "| --- " * 6 + "|")
     for law, row in rows.items():
         early = np.sum(motions["localised"]["first_excursion"] - motions[law]["first_excursion"] > EARLY)
         print(f"| {law} | {motions[law]['collapsed'].sum()} | {row['fraction_low']:.2f} to {row['fraction_high']:.2f} | {row['quantile_0.5']:.4f} | "
@@ -44,7 +44,7 @@ def draw(motions):
         drift = np.sort(np.where(table["collapsed"], np.inf, table["peak_drift"]))
         axis.step(np.append(drift[np.isfinite(drift)], 0.5), np.append(np.arange(1, np.isfinite(drift).sum() + 1), np.isfinite(drift).sum()) / len(drift),
                   line, where="post", label=law)
-    axis.set(xlabel="peak drift, m", ylabel="share of the motions that stay below", xlim=(0, 0.5), ylim=(0, 1), title=f"Pier of four blocks, {MOTIONS} motions of {PEAK} g")
+    axis.set(xlabel="peak drift, of the height", ylabel="share of the motions that stay below", xlim=(0, 0.5), ylim=(0, 1), title=f"Pier of four blocks, {MOTIONS} motions of {PEAK} g")
     axis.grid(alpha=0.3)
     axis.legend(loc="lower right", title="the rest collapse", fontsize=8)
     picture.savefig(FOLDER / "drift.png", dpi=110)

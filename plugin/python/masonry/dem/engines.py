@@ -295,7 +295,7 @@ def history(recorder):
 
 def save_history(recorder, path):
     """Writes dem.history() to a file: .npz (NumPy), or .csv with one column per number and a header line (pandas, ParaView). Of a WallRecorder:
-    dem.wall_history(recorder).save("wall.npz"), or .to_csv("wall.csv") (time, drift, energies)."""
+    dem.wall_history(recorder).save("wall.npz"), or .to_csv("wall.csv") (time, drift, energies; ids=... adds the motion of blocks)."""
     table = history(recorder)
     if str(path).endswith(".npz"):
         np.savez(path, ids=recorder.ids, **{name: table[name] for name in table.dtype.names})

@@ -9,19 +9,32 @@ from masonry._given import is_whole, number_given
 
 @dataclass
 class CollapseReport:
-    """What collapse() found. Times are those of samples, s."""
+    """What collapse() found. Times are those of samples, s; drifts are those of WallHistory.drift(), relative to the height.
+
+    collapsed          whether as many blocks as were asked for have fallen by the end of the history
+    time               of collapse; NaN: none
+    fallen             ids of the blocks that have fallen by the end of the history, in the order in which they fell
+    fall_times         theirs
+    free               how many blocks could fall
+    peak_drift         the largest before collapse; where there is none, of the whole history
+    peak_drift_time    when
+    residual_drift     in the last sample, also after collapse
+    excursion          the level of the drift that was asked for
+    first_excursion    when the drift first reached it, also after collapse; NaN: never
+    from_base          False: the history has no prescribed block; drifts and falls are then those in the world
+    """
 
     collapsed: bool
-    time: float  # of collapse; NaN: none
-    fallen: np.ndarray  # ids of the blocks that have fallen by the end of the history, in the order in which they fell
-    fall_times: np.ndarray  # theirs
-    free: int  # blocks that could fall
-    peak_drift: float  # largest drift before collapse, relative to the height
+    time: float
+    fallen: np.ndarray
+    fall_times: np.ndarray
+    free: int
+    peak_drift: float
     peak_drift_time: float
-    residual_drift: float  # in the last sample
-    excursion: float  # the level asked for
-    first_excursion: float  # when the drift first reached it, also after collapse; NaN: never
-    from_base: bool  # False: the history has no prescribed block; drifts and falls are then those in the world
+    residual_drift: float
+    excursion: float
+    first_excursion: float
+    from_base: bool
 
     def __str__(self):
         fate = f"collapsed at {self.time:.4g} s: {len(self.fallen)} of {self.free} blocks have fallen" if self.collapsed else \

@@ -5,12 +5,25 @@ import math
 import numpy as np
 from masonry.results.collapse import fallen
 from masonry.results.joints import joint_rows, joints, patches
-from masonry.results.view import View, enlargement, largest, nice
+from masonry.results.view import STILL, View, enlargement, largest, movement, nice, still
+from masonry.results.wall_history import ENERGIES
 
 # Movement of the farthest moved block in a picture, relative to the smallest block, where no factor is given.
 _DRAWN = 0.5
+# Error of a balance that closes by its definition, relative to the largest energy in it: round-off of 1e6 steps
+# leaves 2e-13.
+_CLOSED = 1e-12
 _COLOURS = {"displacement": "displacement relative to the base (m)", "rotation": "rotation (rad)"}
-_PRESCRIBED, _UNMOVED = "0.62", "0.85"
+_PRESCRIBED, _UNMOVED, _BEYOND = "0.62", "0.85", "tab:purple"
+
+
+def _scale(values, stands, least):
+    """(end of a scale, whether what has fallen goes beyond it). The end: the largest value of what stands, or of all where most has fallen or what stands
+    has not moved; at least `least`."""
+    most, every = largest(values[stands]), largest(values)
+    if most <= least or 2 * np.count_nonzero(stands) < np.size(stands):
+        most = every
+    return max(most, least), every > most
 
 
 def _shades(name, most):
@@ -19,7 +32,11 @@ def _shades(name, most):
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import ListedColormap, Normalize
 
-    return ScalarMappable(Normalize(0, most or 1.0), ListedColormap(colormaps[name](np.linspace(0.12, 1, 256))))
+    return ScalarMappable(Normalize(0, most), ListedColormap(colormaps[name](np.linspace(0.12, 1, 256))).with_extremes(over=_BEYOND))
+
+
+def _colorbar(figure, axes, shades, label, beyond):
+    figure.colorbar(shades, ax=axes, label=f"{label}; purple: fallen" if beyond else label, shrink=0.8, pad=0.02, extend="max" if beyond else "neither")
 
 
 def _check(color, enlarge):
@@ -66,42 +83,44 @@ class _Painter:
         self._history, self._view, self._title = history, View(history, view), title
         self._enlarge = enlargement(history, samples, _DRAWN) if enlarge is None else float(enlarge)
         self._values = np.linalg.norm(history.displacement, axis=2) if color == "displacement" else history.rotation
-        # Of the blocks that have not fallen: one on the floor would leave no colours to the others.
-        values, stands = self._values[samples], history.free & ~fallen(history)[samples]
-        most = largest(values[stands]) or largest(values[:, history.free])
+        self._moved = movement(history, samples) > still(history)
+        # One block on the floor would leave no colours to the others.
+        values, stands = self._values[samples][:, history.free], ~fallen(history)[samples][:, history.free]
+        most, beyond = _scale(values, stands, still(history) if color == "displacement" else STILL)
         self._map = _shades("YlOrRd", most)
-        self._grey = np.array(to_rgb(_PRESCRIBED))
+        self._prescribed, self._unmoved = np.array(to_rgb(_PRESCRIBED)), np.array(to_rgb(_UNMOVED))
         start, free = history.corners(0), history.free
         shown = np.concatenate([self._view.place(history.corners(k, self._enlarge)[free]).reshape(-1, 2) for k in {0, *samples}])
         self.figure, (self._axes,) = _figure(self._view, shown[np.isfinite(shown).all(axis=1)], " ")
         self._axes.add_collection(LineCollection(self._view.outlines(start[free]), colors="0.6", linewidths=0.6, linestyles="--", zorder=1))
         self._blocks = PolyCollection([], edgecolors="0.2", linewidths=0.5 if len(start) < 300 else 0.25, zorder=2)
         self._axes.add_collection(self._blocks)
-        self.figure.colorbar(self._map, ax=self._axes, label=_COLOURS[color], shrink=0.8, pad=0.02,
-                             extend="max" if largest(values[:, history.free]) > most else "neither")
+        if self._moved:
+            _colorbar(self.figure, self._axes, self._map, _COLOURS[color], beyond)
 
     def paint(self, sample):
         corners = self._history.corners(sample, self._enlarge)
         there = np.flatnonzero(np.isfinite(corners).all(axis=(1, 2)))
         polygons, rows, bright = self._view.faces(corners[there])
         rows = there[rows]
-        colors = np.where(self._history.free[rows, None], self._map.to_rgba(self._values[sample, rows])[:, :3], self._grey)
+        colors = self._map.to_rgba(self._values[sample, rows])[:, :3] if self._moved else self._unmoved
+        colors = np.where(self._history.free[rows, None], colors, self._prescribed)
         self._blocks.set_verts(polygons)
         self._blocks.set_facecolor(np.clip(colors * bright[:, None], 0, 1))
-        drawn = "" if self._enlarge == 1 else f", movement drawn {self._enlarge:.3g} times"
+        drawn = ("" if self._moved else ", nothing moved") + ("" if self._enlarge == 1 else f", movement drawn {self._enlarge:.3g} times")
         self._axes.set_title(f"{self._title + ': ' if self._title else ''}t = {self._history.time[sample]:.3f} s{drawn}", fontsize="small")
 
 
 def draw(history, path, time=None, enlarge=None, color="displacement", view=None, title=""):
     """Writes a picture (.png, .pdf, .svg) of the displaced structure: relative to its base, with the blocks as they were at first dashed
-    behind it.
+    behind it. Where no corner has moved by more than 1e-6 of the structure's size, blocks are grey and the title says so.
 
     time       the sample nearest to it is drawn, s; None: the one in which the drift (WallHistory.drift) is largest
-    enlarge    factor on the movement, positive; None: so that the largest is drawn as half of the smallest block, at least 1
+    enlarge    factor on the movement, positive; None: so that the largest is drawn as half of the smallest block, at least 1; 1 where nothing moved
     color      'displacement' (of the centre, m) or 'rotation' (rad), since the first sample and relative to the base; the scale ends at the
-               largest of the blocks that have not fallen
-    view       direction from the scene to the viewer (x, y, z); None: across the plane in which all blocks move, else from
-               the right, the front and above
+               largest of the blocks that have not fallen, and those beyond it are purple; at the largest of all where most have fallen
+    view       direction from the scene to the viewer (x, y, z); None: across the plane in which all blocks move (of two, the one across which the
+               structure is thinner), else from the right, the front and above
     """
     sample = int(np.nanargmax(history.drift())) if time is None else history.sample(time)
     painter = _Painter(history, [sample], enlarge, color, view, title)
@@ -147,7 +166,8 @@ def film(history, path, start=None, end=None, frames_per_second=20, speed=1.0, e
 
 def draw_joints(history, path, time=None, view=None, title=""):
     """Writes a picture with two maps on the undisplaced structure: opening and slip of each joint (joints()), in mm. time: the sample nearest
-    to it, s; None: the largest of each joint in the whole history. view: as in draw()."""
+    to it, s; None: the largest of each joint in the whole history. view: as in draw(). The scales end as in draw(), for the joints between blocks that
+    have not fallen; where nothing opened, or slid, by more than 1e-6 of the structure's size, the map is grey and its title says so."""
     from matplotlib.collections import LineCollection, PolyCollection
     from matplotlib.colors import to_rgba
 
@@ -155,39 +175,48 @@ def draw_joints(history, path, time=None, view=None, title=""):
     corners = history.corners(0)
     flat = view.place(polygons)
     when = "largest" if time is None else f"at {history.time[history.sample(time)]:.3f} s"
-    # The scale ends at the largest joint of two blocks that have not fallen.
     stands = ~fallen(history)[history.sample(time)][joint_rows(history)].any(axis=1)
+    least = 1e3 * still(history)
     figure, panels = _figure(view, view.place(corners[history.free]).reshape(-1, 2), "", columns=2)
-    for axes, name, colours in zip(panels, ("opening", "slip"), ("YlOrRd", "YlGnBu")):
+    for axes, name, colours, none in zip(panels, ("opening", "slip"), ("YlOrRd", "YlGnBu"), ("nothing opened", "nothing slid")):
         values = 1e3 * table[name]
-        most = largest(values[stands]) or largest(values)
+        most, beyond = _scale(values, stands, least)
         shades = _shades(colours, most)
         order = np.argsort(np.nan_to_num(values))
         # What opens or slides by less than a hundredth of the most is left grey and thin. Edge on, the line of a joint is its outline.
-        moves = np.nan_to_num(values) > 0.01 * most
+        moves = np.nan_to_num(values) > max(0.01 * most, least)
         axes.add_collection(LineCollection(view.outlines(corners[history.free]), colors="0.8", linewidths=0.4, zorder=1))
         width = np.where(moves, 3.0 if view.from_side else 0.8, 0.8)
         colors = np.where(moves[:, None], shades.to_rgba(np.nan_to_num(values), alpha=1.0 if view.from_side else 0.6), to_rgba(_UNMOVED, 0.3))
         axes.add_collection(PolyCollection(flat[order], facecolors=colors[order], edgecolors=colors[order], linewidths=width[order], zorder=2))
-        axes.set_title(f"{title + ': ' if title else ''}{name}, {when}", fontsize="small")
-        figure.colorbar(shades, ax=axes, label=f"{name} (mm)", shrink=0.8, pad=0.02, extend="max" if largest(values) > most else "neither")
+        axes.set_title(f"{title + ': ' if title else ''}{name}, {when}{'' if moves.any() else f': {none}'}", fontsize="small")
+        if moves.any():
+            _colorbar(figure, axes, shades, f"{name} (mm)", beyond)
     figure.savefig(path, dpi=150)
 
 
 def draw_energy(history, path, title=""):
     """Writes a picture of WallHistory.energy over time: kinetic, potential (since the first sample), what friction, impacts and dashpots have
-    dissipated and the work of the base; below, the error of their balance."""
+    dissipated and the work of the base; below, the error of their balance. Where the balance closes to round-off (method='wall' books what is left
+    over as dissipated by impacts) there is no such error to show, and the curve of impacts says that it holds numerical losses."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
     energy = history.energy
     if np.isnan(energy["kinetic"]).all():
         raise ValueError("history: it has no energies: record with a WallRecorder while engines of dem.engines() run")
-    figure = Figure(figsize=(7.5, 6), layout="constrained")
+    closed = largest(np.abs(energy["error"])) <= _CLOSED * max(largest(np.abs(energy[key])) for key in ENERGIES)
+    figure = Figure(figsize=(7.5, 4.7 if closed else 6), layout="constrained")
     FigureCanvasAgg(figure)
-    upper, lower = figure.subplots(2, 1, sharex=True, gridspec_kw={"height_ratios": (3, 1)})
+    if closed:
+        upper = lower = figure.subplots()
+    else:
+        upper, lower = figure.subplots(2, 1, sharex=True, gridspec_kw={"height_ratios": (3, 1)})
+        lower.plot(energy["time"], energy["error"], color="C3", linewidth=1)
+        lower.set(ylabel="error of the\nbalance (J)")
     names = {"baseWork": "work of the base", "kinetic": "kinetic", "potential": "potential, since the start", "elastPotential": "elastic",
-             "frictDissip": "dissipated by friction", "impactDissip": "dissipated by impacts", "dampDissip": "dissipated by dashpots"}
+             "frictDissip": "dissipated by friction", "impactDissip": f"dissipated by impacts{' and numerically' if closed else ''}",
+             "dampDissip": "dissipated by dashpots"}
     for k, (key, name) in enumerate(names.items()):
         values = energy[key] - (energy[key][0] if key == "potential" else 0)
         if values.any() or key in ("baseWork", "kinetic"):
@@ -196,6 +225,5 @@ def draw_energy(history, path, title=""):
     upper.legend(fontsize="small")
     if title:
         upper.set_title(title, fontsize="small")
-    lower.plot(energy["time"], energy["error"], color="C3", linewidth=1)
-    lower.set(xlabel="time (s)", ylabel="error of the\nbalance (J)")
+    lower.set(xlabel="time (s)")
     figure.savefig(path, dpi=150)

@@ -9,24 +9,33 @@ from masonry.results import _pose
 
 # From the scene towards the viewer of a structure that moves in space: from the right, the front, above.
 OBLIQUE = (0.45, -1.0, 0.4)
-# Movement out of a plane, relative to the largest size of a block or in rad, that still counts as motion in it.
-_PLANAR = 1e-6
+# Share of 1, or rad, by which axes that are parallel or level may miss.
+_PARALLEL = 1e-6
+# Movement that is none, but what solvers leave: of lengths relative to the size of the structure, of angles in rad.
+STILL = 1e-6
 # Corners (of _pose.corners) around the face on the least side of an axis and on the other one, counterclockwise from outside.
 _FACES = np.array([[[0, 4, 6, 2], [1, 3, 7, 5]], [[0, 1, 5, 4], [2, 6, 7, 3]], [[0, 2, 3, 1], [4, 5, 7, 6]]])
 _EDGES = np.array([[0, 1], [2, 3], [4, 5], [6, 7], [0, 2], [1, 3], [4, 6], [5, 7], [0, 4], [1, 5], [2, 6], [3, 7]])
 
 
+def still(history):
+    """Movement of a point that is none, m."""
+    return STILL * np.ptp(history.corners(0)[history.free].reshape(-1, 3), axis=0).max()
+
+
 def plane_normal(history):
-    """Horizontal unit vector, an axis of every free block, across which nothing moves, towards the viewer who has x to the right, or y; None: there is none."""
-    axes = _pose.matrices(history.orientation[0])[history.free]
-    moved, turned = history.displacement[:, history.free], history.relative_orientation[:, history.free]
+    """Horizontal unit vector, an axis of every free block, along which nothing moves, towards the viewer who has x to the right, or y; of two, that along
+    which the structure is thinner. None: there is none."""
+    axes, half = _pose.matrices(history.orientation[0])[history.free], history.sizes[history.free] / 2
+    moved, turned = history.displacement[:, history.free], _pose.matrices(history.relative_orientation[:, history.free])
+    normals = []
     for normal in axes[0].T:
-        if abs(normal[2]) > _PLANAR or (np.abs(np.einsum("a,nab->nb", normal, axes)).max(axis=1) < 1 - _PLANAR).any():
+        if abs(normal[2]) > _PARALLEL or (np.abs(np.einsum("a,nab->nb", normal, axes)).max(axis=1) < 1 - _PARALLEL).any():
             continue
-        across = np.abs(_pose.matrices(turned).swapaxes(-1, -2) @ normal - axes.swapaxes(-1, -2) @ normal)
-        if largest(np.abs(moved @ normal)) <= _PLANAR * history.sizes[history.free].max() and largest(across) <= _PLANAR:
-            return normal if normal[1] < -_PLANAR or (normal[1] <= _PLANAR and normal[0] > 0) else -normal
-    return None
+        farthest = np.abs(moved @ normal) + (np.abs((turned - axes).swapaxes(-1, -2) @ normal) * half).sum(axis=2)  # corner of each block
+        if largest(farthest) <= still(history):
+            normals.append(normal if normal[1] < -_PARALLEL or (normal[1] <= _PARALLEL and normal[0] > 0) else -normal)
+    return min(normals, key=lambda normal: np.ptp(history.corners(0)[history.free] @ normal), default=None)
 
 
 class View:
@@ -132,10 +141,15 @@ def largest(values):
     return float(np.max(np.nan_to_num(values), initial=0))
 
 
+def movement(history, samples):
+    """The largest of a corner in those samples, m."""
+    return max(largest(np.linalg.norm(history.corners(k) - history.corners(0), axis=2)[history.free]) for k in samples)
+
+
 def enlargement(history, samples, share):
-    """Factor at which the largest movement of those samples is drawn as `share` of the smallest block; at least 1."""
-    most = max(largest(np.linalg.norm(history.corners(k) - history.corners(0), axis=2)[history.free]) for k in samples)
-    return max(1.0, share * history.sizes[history.free].min() / most) if most > 0 else 1.0
+    """Factor at which the largest movement of those samples is drawn as `share` of the smallest block; at least 1, and 1 where nothing moved."""
+    most = movement(history, samples)
+    return max(1.0, share * history.sizes[history.free].min() / most) if most > still(history) else 1.0
 
 
 def nice(value):

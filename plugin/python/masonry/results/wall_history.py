@@ -1,5 +1,6 @@
 """The recorded motion of a structure: what the other files of this folder draw, count and export."""
 
+import reprlib
 from functools import cached_property
 
 import numpy as np
@@ -65,14 +66,21 @@ class WallHistory:
             raise ValueError(f"path = {path}: is no WallHistory: {', '.join(sorted(set(_SAVED) - found.keys()))} is missing")
         return cls(**found)
 
-    def to_csv(self, path):
-        """Writes a .csv file, a line a sample, with a header: time (s), drift (of the height), and the columns of energy (J) where they were
-        recorded. Motion of single blocks: save()."""
+    def to_csv(self, path, ids=()):
+        """Writes a .csv file, a line a sample, with a header: time (s), drift (of the height), the columns of energy (J) where they were
+        recorded, and of each block of `ids` (history.ids: all) displacement x, y, z (m) of its centre and rotation (rad), relative to the base and
+        since the first sample, and its lean (rad) from the vertical."""
         if not str(path).endswith(".csv"):
             raise ValueError(f"path = {path}: must end in .csv")
         columns = {"time (s)": self.time, "drift": self.drift()}
         if not np.isnan(self._energies).all():
             columns.update({f"{name} (J)": self.energy[name] for name in self.energy.dtype.names[1:]})
+        for id in np.atleast_1d(ids).tolist():
+            if id not in self.ids.tolist():
+                raise ValueError(f"ids: {id} is no block of the history: must be among {reprlib.repr(self.ids.tolist())}")
+            row = int(np.flatnonzero(self.ids == id)[0])
+            columns.update({f"displacement {axis} of {id} (m)": self.displacement[:, row, k] for k, axis in enumerate("xyz")})
+            columns.update({f"{name} of {id} (rad)": values[:, row] for name, values in (("rotation", self.rotation), ("lean", self.lean))})
         np.savetxt(path, np.column_stack(list(columns.values())), delimiter=",", header=",".join(columns), comments="")
 
     def sample(self, time=None):
@@ -140,8 +148,9 @@ class WallHistory:
     @cached_property
     def energy(self):
         """(s,) structured array, J: kinetic, potential and elastPotential now; frictDissip, dampDissip, impactDissip and baseWork since the
-        start of the run, over all lists of engines that the recorder has been in; error: by how much the sum of all others less baseWork has grown since the first sample. NaN where it
-        was not recorded."""
+        start of the run, over all lists of engines that the recorder has been in; error: by how much the sum of all others less baseWork has
+        grown since the first sample (with method='wall' round-off: impactDissip is there what is left over, numerical losses included). NaN
+        where it was not recorded."""
         table = np.zeros(len(self.time), dtype=[("time", float)] + [(name, float) for name in ENERGIES] + [("error", float)])
         table["time"] = self.time
         for name, column in zip(ENERGIES, self._energies.T):
@@ -152,11 +161,16 @@ class WallHistory:
 
     def drift(self):
         """(s,) horizontal displacement of the top relative to the base over the height of the structure, 0 or positive, dimensionless. The
-        top: the block that is farthest away among those whose upper end is at first within half their height of the highest one. The
-        height: from the lowest point of the free blocks to the highest, at first."""
+        top: the middle of the upper face (of the face that is the upper one at first), of the block where it is farthest away among those whose
+        upper end is at first within half their height of the highest one. The height: from the lowest point of the free blocks to the highest,
+        at first. A block and a pier of the same shape that turn alike have the same drift."""
         low, high = self.extent
-        top = self.free & (high > high[self.free].max() - (high - low) / 2)
-        moved = np.linalg.norm(self.displacement[:, top, :2], axis=2)
+        top = np.flatnonzero(self.free & (high > high[self.free].max() - (high - low) / 2))
+        rows, up, turned = np.arange(len(top)), self.upright[top], _pose.matrices(self.relative_orientation[:, top])
+        arms = np.zeros((len(top), 3))
+        arms[rows, up] = np.sign(turned[0, rows, 2, up]) * self.sizes[top, up] / 2
+        middles = self.relative_position[:, top] + np.einsum("snab,nb->sna", turned, arms)
+        moved = np.linalg.norm((middles - middles[0])[..., :2], axis=2)
         return np.fmax.reduce(moved, axis=1) / (high[self.free].max() - low[self.free].min())
 
     @cached_property
