@@ -9,6 +9,7 @@ from masonry import dem
 from rocking_scene import one_block, quiet_engines, refuses, refuses_to_run, stone
 from yade import O, Quaternion, RockingJointEngine, utils
 
+import masonry
 
 nan, inf = math.nan, math.inf
 
@@ -78,6 +79,11 @@ for make, words in ((lambda: dem.WallRecorder(), ("WallRecorder.iterPeriod = 0",
 
 # Motions.
 base, block, _ = one_block(5)
+for motion, words in ((masonry.Record(0.01, [0, 1]), "dem.record_motion(record, ids=[base])"), (masonry.PulseTrain(0.1), "dem.PulseTrainEngine(ids=[base], impulse=0.1, resonantBlock=block)"),
+                      (masonry.PulseTrain(0.1, times=[0]), "times=..."), (masonry.HalfSine(1.0, 0.1), "dem.record_motion(masonry.Record(dt, motion.acceleration(times)), ids=[base])")):
+    refuses(lambda: quiet_engines(motion), f"motion = {motion}", words)
+refuses(lambda: dem.record_motion([0, 1], ids=[base]), "record = [0, 1]", "masonry.Record")
+refuses(lambda: dem.record_motion(masonry.Record(0.01, [0, 1], scale=[1, 2]), ids=[base]), "record.scale = [1, 2]", "one number")
 for name, bad, why in (("impulse", inf, "finite"), ("times", [0, 2, 1], "increasing"), ("times", [1, 1], "increasing"), ("times", [-1, 1], ">= 0"),
                        ("times", [0, nan], "finite"), ("halfCycles", -2, ">= 1"), ("halfCycles", 0, ">= 1"), ("duration", -1, ">= 0"), ("duration", nan, ">= 0"), ("shape", "square", "square")):
     refuses(lambda: dem.PulseTrainEngine(**{name: bad}), name, why)
@@ -111,6 +117,19 @@ with contextlib.redirect_stdout(io.StringIO()) as printed:
 assert "BlockRecorder records nothing until its iterPeriod or virtPeriod is set\n" in printed.getvalue()
 base, block, _ = one_block(5)
 refuses(lambda: dem.RockingJointEngine(impactOrder="random"), "impactOrder", "'random'", "simultaneous")
+
+# Misspelled attributes, in the constructor and set later; those of YADE's base classes are there, those of classes that a script derives too.
+for thing, wrong, near in ((dem.BlockMat(), "restitutoin", "restitution"), (dem.RecordMotionEngine(), "scal", "scale"), (dem.MoreauJeanIntegrator(), "onTruble", "onTrouble"),
+                           (dem.WallRecorder(), "virtperiod", "virtPeriod"), (dem.BlockPhys(), "restitution_", "restitution")):
+    for act in (lambda: setattr(thing, wrong, 1), lambda: type(thing)(**{wrong: 1})):
+        refuses(act, f"{type(thing).__name__} has no attribute '{wrong}': did you mean {near}", kind=AttributeError)
+refuses(lambda: dem.BlockMat(xyzzy=1), "see help(dem.BlockMat)", kind=AttributeError)
+motion = dem.RecordMotionEngine(dead=True)
+motion.label, motion.dead = "quake", False
+assert motion.label == "quake" and not motion.dead
+derived = type("Derived", (dem.PulseTrainEngine,), {})()
+derived.note = 1
+assert derived.note == 1
 
 if "MASONRY_YADE_TREE" not in os.environ:  # YADE's own attribute macros do not name the attribute
     for make, name in ((dem.BlockMat, "density"), (dem.BlockMat, "restitution"), (dem.PulseTrainEngine, "impulse"), (dem.PulseTrainEngine, "ids"),

@@ -1,7 +1,8 @@
 """The engines of a scene, chosen and explained."""
 
 import numpy as np
-from yade import O, wrapper
+from masonry.motions import Motion, PulseTrain, Record
+from yade import O, Vector3, wrapper
 
 from masonry.dem.scene import check_blocks, check_material, check_recorder, listed, structures
 from masonry.dem.walls import number_given
@@ -72,6 +73,29 @@ def _landing_step(body):
     area = 4 * half[0] * half[1] * half[2] / min(half)
     stiffness = max(body.mat.normalStiffness, body.mat.shearStiffness)
     return 2 / np.sqrt(stiffness * area * (1 / state.mass + half.squaredNorm() / min(state.inertia)))
+
+
+def record_motion(record, ids, direction=(1, 0, 0), start=0.0):
+    """The RecordMotionEngine of a masonry.Record: its samples (with the record's scale in them), interval and baseline.
+
+    ids          of the bodies that move, a list
+    direction    unit vector along which they do
+    start        when, s
+    """
+    if not isinstance(record, Record):
+        raise ValueError(f"record = {record!r}: must be a masonry.Record")
+    if record.shape:
+        raise ValueError(f"record.scale = {record.scale}: must be one number, a scene has one motion (record.scaled() makes another)")
+    return wrapper.RecordMotionEngine(ids=ids, samples=record.samples.tolist(), interval=record.dt, baseline=record.baseline, direction=Vector3(direction), start=start)
+
+
+def _in_yade(motion):
+    """How a script gives a motion of the theory to YADE."""
+    if isinstance(motion, Record):
+        return "dem.record_motion(record, ids=[base])"
+    if isinstance(motion, PulseTrain):
+        return f"dem.PulseTrainEngine(ids=[base], impulse={motion.impulse}, {'resonantBlock=block' if motion.times is None else 'times=...'})"
+    return "dem.record_motion(masonry.Record(dt, motion.acceleration(times)), ids=[base])"
 
 
 def _records(motions):
@@ -147,6 +171,8 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
         raise ValueError(f"gravity = {gravity}: must be 0, or from {_GRAVITIES[0]:g} to {_GRAVITIES[1]:g}, in m/s^2")
     motions = [] if motion is None else list(motion) if isinstance(motion, (list, tuple)) else [motion]
     for item in motions:
+        if isinstance(item, Motion):
+            raise ValueError(f"motion = {item!r}: is of the theory, without a body that it moves: must be {_in_yade(item)}")
         if not isinstance(item, wrapper.BaseMotionEngine):
             raise ValueError(f"motion = {item!r}: must be a PulseTrainEngine, a RecordMotionEngine, or a list of them")
         item.check()
