@@ -2,7 +2,6 @@
 process of its own; a second call computes only what is missing. Run with
 `PYTHONPATH=build/python /usr/bin/python3 scripts/07_ensemble.py [records for each size]`."""
 import math
-import sys
 
 
 def run(case):
@@ -22,9 +21,13 @@ def run(case):
 
 
 if __name__ == "__main__":
+    import argparse
+
     from masonry import ensemble
 
-    records = int(sys.argv[1]) if len(sys.argv) > 1 else 10
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("records", nargs="?", type=int, default=10, help="for each size (10)")
+    records = parser.parse_args().records
     cases = [{"peak": peak, "seed": seed} for peak in (0.8, 1.0, 1.2) for seed in range(records)]  # peak acceleration in g
     table = ensemble.run(__file__, cases, "results/07_ensemble")
     print("peak (g)  cases  collapsed, 95 % interval    median of the peak drift, 95 % interval")

@@ -72,9 +72,9 @@ def test_csv(tmp_path):
         masonry.Record.from_csv(path, "g")
     path.write_text("0,1\n0.02,-2\n", encoding="utf-8-sig")  # as spreadsheets write it
     np.testing.assert_allclose(masonry.Record.from_csv(path, "m/s^2").samples, [1, -2])
-    for text in ("0,1\n0.02\n", "0;1\n0.02;2\n0.04;3\n", "time,a\ns,g\n0,1\n"):
+    for text, line in (("0,1\n0.02\n", 2), ("0;1\n0.02;2\n0.04;3\n", 2), ("# of a laboratory\n\ntime,a\ns,g\n0,1\n", 4)):
         path.write_text(text)
-        with pytest.raises(ValueError, match="record.csv: .*must be as many numbers"):
+        with pytest.raises(ValueError, match=f"record.csv: line {line} is .*must be as many numbers"):
             masonry.Record.from_csv(path, "m/s^2")
     with pytest.raises(ValueError, match="unit = 'gal'"):
         masonry.Record.from_csv(path, "gal", dt=0.01)

@@ -44,9 +44,11 @@ for name, bads, allowed in (("density", (0, -2000, nan, inf, 1e300, 1e40, 1e-300
         setattr(O.bodies[1].mat, name, bad)
         refuses(quiet_engines, name, str(bad), allowed)
 O.reset()
+refuses(lambda: dem.block((1, 1, 1), stone(), on=77), "on = 77", "O.bodies is empty")
 dem.base((1, 1, 1), stone())
 
 # Ids.
+refuses(lambda: dem.tilt(0, 0.1), "id = 0", "prescribed", "free block")
 sphere = O.bodies.append(utils.sphere((9, 9, 9), 1))
 for bad, why in ((-1, "no such body"), (77, "no such body"), (True, "no such body"), (1.5, "no such body"), (sphere, "must be a Box")):
     refuses(lambda: dem.block((1, 1, 1), stone(), on=bad), "on = ", str(bad), why)
@@ -103,18 +105,25 @@ for bad, words in ((dict(samples=[0, nan]), ("samples", "nan")), (dict(samples=[
     refuses(lambda: dem.RecordMotionEngine(**bad), *words)
 refuses(lambda: quiet_engines(dem.RecordMotionEngine(ids=[base])), "samples", "empty")
 refuses(lambda: quiet_engines(dem.RecordMotionEngine(ids=[base], samples=[0, 3], scale=1e300)), "samples has 3", "scale = 1e+300", "at most 1e6 m/s^2")
-with contextlib.redirect_stdout(io.StringIO()) as printed:
-    dem.engines(dem.RecordMotionEngine(ids=[base], samples=[0, 0.3, -0.2], interval=200, scale=9.81))
-assert "; record of 400 s, at most 2.94 m/s^2\n" in printed.getvalue()
+
+
+def printed_by(*arguments, **options):
+    with contextlib.redirect_stdout(io.StringIO()) as printed:
+        dem.engines(*arguments, **options)
+    return printed.getvalue()
+
+
+assert "; record of 400 s, at most 2.94 m/s^2\n" in printed_by(dem.RecordMotionEngine(ids=[base], samples=[0, 0.3, -0.2], interval=200, scale=9.81))
+for peak, said in ((343.0, True), (0.035, True), (50.0, False), (0.1, False), (0.0, False)):
+    assert (f"a record reaches {peak:g}: in g or cm/s^2? Accelerations are in m/s^2\n" in printed_by(dem.RecordMotionEngine(ids=[base], samples=[0, -peak]))) == said, peak
+for density, said in ((2.0, True), (2000.0, False), (2e6, True)):
+    O.bodies[1].mat.density = density
+    assert (f"a density is {density:g}: densities are in kg/m^3\n" in printed_by()) == said, density
 O.reset()
 dem.block((400, 200, 200), stone(), on=dem.base((4000, 1000, 100), stone()))
-with contextlib.redirect_stdout(io.StringIO()) as printed:
-    dem.engines()
-assert "the longest block measures 400 m: sizes are in m\n" in printed.getvalue()
+assert "the longest block measures 400 m: sizes are in m\n" in printed_by()
 base, block, _ = one_block(5)
-with contextlib.redirect_stdout(io.StringIO()) as printed:
-    dem.engines(recorder=dem.BlockRecorder(ids=[block]))
-assert "BlockRecorder records nothing until its iterPeriod or virtPeriod is set\n" in printed.getvalue()
+assert "BlockRecorder records nothing until its iterPeriod or virtPeriod is set\n" in printed_by(recorder=dem.BlockRecorder(ids=[block]))
 base, block, _ = one_block(5)
 refuses(lambda: dem.RockingJointEngine(impactOrder="random"), "impactOrder", "'random'", "simultaneous")
 
