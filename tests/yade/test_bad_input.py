@@ -44,7 +44,7 @@ for name, bads, allowed in (("density", (0, -2000, nan, inf, 1e300, 1e40, 1e-300
         setattr(O.bodies[1].mat, name, bad)
         refuses(quiet_engines, name, str(bad), allowed)
 O.reset()
-refuses(lambda: dem.block((1, 1, 1), stone(), on=77), "on = 77", "O.bodies is empty")
+refuses(lambda: dem.block((1, 1, 1), stone(), on=77), "on = 77", "it is empty", "dem.base()")
 dem.base((1, 1, 1), stone())
 
 # Ids.

@@ -374,6 +374,7 @@ for rows, words in (([{**good, "material": ["tuff"]}], ("row 0", "material = ['t
     refuses(lambda: dem.blocks_from_table(rows, unused), *words)
 for ending, text, words in (("csv", "x,y,z,size_x,size_y,size_z,x\n0,0,1,1,1,1,5\n", ("line 2", "'x' = '5'", "twice", "'0'")),
                             ("csv", "x,y,z,size_x,size_y,size_z\n0,0,1,1,1,1\n\n0,0,far,1,1,1\n", ("line 4", "z = 'far'")),
+                            ("csv", "x,y,z,size_x,size_y,sizez\n\n0,0,1,1,1,1\n", ("line 1", "'sizez'", "size_z")),
                             ("csv", "x;y;z;size_x;size_y;size_z\n0;0;1;1;1;1\n", ("'x;y;z;size_x;size_y;size_z'", "separated by commas")),
                             ("csv", "x,y,z,size_x,size_y,size_z,material\n0,0,1,1,1,1,tuff\n", ("line 2", "'tuff'", "must be one of")),
                             ("json", '[{"x": 0, "y": 0, "z": true, "size_x": 1, "size_y": 1, "size_z": 1}]', ("row 0", "z = True")),

@@ -2,7 +2,7 @@
 
 import numpy as np
 from masonry.motions import Motion, PulseTrain, Record
-from yade import O, Vector3, wrapper
+from yade import O, wrapper
 
 from masonry.dem.scene import check_blocks, check_material, check_recorder, listed, structures
 from masonry.dem.walls import number_given
@@ -88,7 +88,7 @@ def record_motion(record, ids, direction=(1, 0, 0), start=0.0):
         raise ValueError(f"record = {record!r}: must be a masonry.Record")
     if record.shape:
         raise ValueError(f"record.scale = {record.scale}: must be one number, a scene has one motion (record.scaled() makes another)")
-    return wrapper.RecordMotionEngine(ids=ids, samples=record.samples.tolist(), interval=record.dt, baseline=record.baseline, direction=Vector3(direction), start=start)
+    return wrapper.RecordMotionEngine(ids=ids, samples=record.samples.tolist(), interval=record.dt, baseline=record.baseline, direction=direction, start=start)
 
 
 def _in_yade(motion):

@@ -38,8 +38,8 @@ def _block_material(material):
 def _box(id, name="id"):
     """The body of that id, which the script gave as `name`; ValueError unless it exists and is a Box."""
     if not isinstance(id, (int, np.integer)) or isinstance(id, bool) or not 0 <= id < len(O.bodies) or O.bodies[int(id)] is None:
-        allowed = f"a whole number from 0 to {len(O.bodies) - 1}" if len(O.bodies) else "O.bodies is empty: dem.base() makes the first"
-        raise ValueError(f"{name} = {id!r}: there is no such body in O.bodies: must be an id, {allowed}")
+        allowed = f"must be an id, a whole number from 0 to {len(O.bodies) - 1}" if len(O.bodies) else "it is empty, dem.base() makes the first one"
+        raise ValueError(f"{name} = {id!r}: there is no such body in O.bodies: {allowed}")
     body = O.bodies[int(id)]
     if not isinstance(body.shape, wrapper.Box):
         raise ValueError(f"{name} = {id}: that body is a {type(body.shape).__name__}, it must be a Box")

@@ -325,7 +325,8 @@ def _named(cells, place):
             raise ValueError(f"{place}: has more values than there are columns")
         name = str(column).strip().lower()
         if name not in COLUMNS + _IGNORED:
-            raise ValueError(f"{place}: column {column!r}: must be one of {', '.join(COLUMNS + _IGNORED)}")
+            header = "line 1" if place.startswith("line") else place
+            raise ValueError(f"{header}: column {column!r}: must be one of {', '.join(COLUMNS + _IGNORED)}")
         if name in row:
             raise ValueError(f"{place}: column {column!r} = {value!r}: stands there twice, first with {row[name]!r}")
         row[name] = value
