@@ -17,7 +17,7 @@ else:
 stone = dem.BlockMat(density=2000, frictionAngle=0.6)  # natural restitution
 base = dem.base((4, 2, 0.2), stone)
 lower, upper = dem.stack(2, (0.6, 1.0, 1.5), stone, on=base)
-motion = dem.RecordMotionEngine(ids=[base], samples=list(record.samples), interval=record.dt, baseline=record.baseline)
+motion = dem.record_motion(record, ids=[base])
 O.engines = dem.engines(motion)
 print("time (s)  base (m)    angle of the lower and the upper block (rad)")
 while O.time < record.duration + 1:

@@ -19,7 +19,7 @@ else:
 stone = dem.BlockMat(density=2000, frictionAngle=math.atan(0.65))  # natural restitution
 base = dem.base((6, 3, 0.2), stone)
 dem.wall(courses=10, per_course=5, size=(0.40, 0.20, 0.175), material=stone, on=base, openings=[(0.6, 0.525, 0.8, 0.7)])
-motion = dem.RecordMotionEngine(ids=[base], samples=list(record.samples), interval=record.dt, baseline=record.baseline)
+motion = dem.record_motion(record, ids=[base])
 recorder = dem.WallRecorder(virtPeriod=0.01)  # a sample every 0.01 s of simulated time
 O.engines = dem.engines(motion, recorder=recorder)
 O.run(math.ceil((record.duration + 1) / O.dt), True)

@@ -2,7 +2,6 @@
 process of its own; a second call computes only what is missing. Run with
 `PYTHONPATH=build/python /usr/bin/python3 scripts/07_ensemble.py [records for each size]`."""
 import math
-import sys
 
 
 def run(case):
@@ -14,7 +13,7 @@ def run(case):
     stone = dem.BlockMat(density=2000, frictionAngle=math.atan(0.65))  # natural restitution
     base = dem.base((6, 2, 0.2), stone)
     dem.wall(courses=10, per_course=5, size=(0.40, 0.20, 0.175), material=stone, on=base, openings=[(0.6, 0.525, 0.8, 0.7)])
-    motion = dem.RecordMotionEngine(ids=[base], samples=list(record.samples), interval=record.dt, baseline=record.baseline)
+    motion = dem.record_motion(record, ids=[base])
     recorder = dem.WallRecorder(virtPeriod=0.02)
     O.engines = dem.engines(motion, recorder=recorder)
     O.run(math.ceil((record.duration + 1) / O.dt), True)
@@ -22,9 +21,13 @@ def run(case):
 
 
 if __name__ == "__main__":
+    import argparse
+
     from masonry import ensemble
 
-    records = int(sys.argv[1]) if len(sys.argv) > 1 else 10
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("records", nargs="?", type=int, default=10, help="for each size (10)")
+    records = parser.parse_args().records
     cases = [{"peak": peak, "seed": seed} for peak in (0.8, 1.0, 1.2) for seed in range(records)]  # peak acceleration in g
     table = ensemble.run(__file__, cases, "results/07_ensemble")
     print("peak (g)  cases  collapsed, 95 % interval    median of the peak drift, 95 % interval")

@@ -34,6 +34,17 @@ def test_baselines_by_name():
     assert np.trapz(left.velocity(fine) * fine, fine) == pytest.approx(0, abs=1e-5)
 
 
+def test_samples_have_the_scale():
+    record = masonry.Record(0.1, [0, 1, -2], scale=3.0, name="a quake")
+    np.testing.assert_array_equal(record.samples[:2], record.acceleration([0, 0.1]))  # after the last sample it is zero
+    np.testing.assert_array_equal(record.scaled([1, 2]).samples, [[0, 3, -6], [0, 6, -12]])
+    with pytest.raises(ValueError, match="read-only"):
+        record.samples[0] = 1
+    assert repr(record) == "Record(a quake: 3 samples, dt=0.1 s, at most 6 m/s^2, baseline='none')"
+    assert repr(masonry.PulseTrain(0.2, [0, 1], assembly=True)) == "PulseTrain(impulse=0.2, times=[0.0, 1.0], assembly=True)"
+    assert repr(masonry.PulseTrain(0.2, half_cycles=3)) == "PulseTrain(impulse=0.2, half_cycles=3)"
+
+
 @pytest.mark.parametrize("text", [
     "PEER\nA QUAKE\nACCELERATION TIME SERIES IN UNITS OF G\nNPTS=   5, DT=   .0050 SEC,\n  .1E-01 -.2E-01  .3E-01\n .1-.25E+00\n",
     "PEER\nA QUAKE\nACCELERATION TIME HISTORY IN UNITS OF G\n    5   0.0050  NPTS, DT\n  .1E-01 -.2E-01  .3E-01\n .1-.25E+00\n",
@@ -61,9 +72,9 @@ def test_csv(tmp_path):
         masonry.Record.from_csv(path, "g")
     path.write_text("0,1\n0.02,-2\n", encoding="utf-8-sig")  # as spreadsheets write it
     np.testing.assert_allclose(masonry.Record.from_csv(path, "m/s^2").samples, [1, -2])
-    for text in ("0,1\n0.02\n", "0;1\n0.02;2\n0.04;3\n", "time,a\ns,g\n0,1\n"):
+    for text, line in (("0,1\n0.02\n", 2), ("0;1\n0.02;2\n0.04;3\n", 2), ("# of a laboratory\n\ntime,a\ns,g\n0,1\n", 4)):
         path.write_text(text)
-        with pytest.raises(ValueError, match="record.csv: .*must be as many numbers"):
+        with pytest.raises(ValueError, match=f"record.csv: line {line} is .*must be as many numbers"):
             masonry.Record.from_csv(path, "m/s^2")
     with pytest.raises(ValueError, match="unit = 'gal'"):
         masonry.Record.from_csv(path, "gal", dt=0.01)

@@ -42,6 +42,17 @@ def test_full_sine_has_a_safe_window():
     assert abs(thresholds[0.8][0] / thresholds[0.9][0] - 1) > 1e-2
 
 
+# Oracle: plain histories at 2e-4 of the threshold apart. Seven in a row that overturn would be a window wider than the promised thousandth.
+# The thresholds are those that 400 equally spaced amplitudes of the default bracket miss by 22 and 15 %.
+@pytest.mark.parametrize("seed", [0, 2])
+def test_first_threshold_under_a_record(seed):
+    record = masonry.artificial_record(seed, 3.0, duration=4, frequency=1.5)
+    first = masonry.overturning_amplitude(BLOCK, record)[0]
+    below = masonry.simulate(BLOCK, record.scaled(np.arange(0.3, 1, 2e-4) * first)).overturned
+    assert np.convolve(below, np.ones(7), "valid").max() < 7
+    assert masonry.simulate(BLOCK, record.scaled(np.array([1 - 1e-9, 1 + 1e-9]) * first)).overturned.tolist() == [False, True]
+
+
 def test_no_threshold_in_a_safe_bracket_and_bad_brackets():
     assert len(masonry.overturning_amplitude(BLOCK, masonry.PulseTrain(1.0, times=[0.0]), bracket=(0.1 * V1, 0.9 * V1))) == 0
     with pytest.raises(ValueError, match="bracket = "):

@@ -57,7 +57,9 @@ def compare_shapes(engines, times, bound):
 
 
 def compare_record(engines, bound):
-    compare("record", engines, lambda ids: dem.RecordMotionEngine(ids=ids, samples=list(RECORD), interval=0.01), masonry.Record(0.01, RECORD), 4.0, bound)
+    """With a scale and a baseline of its own, which the engine must take over."""
+    record = masonry.Record(0.01, RECORD / 2, baseline="constant").scaled(2)
+    compare("record", engines, lambda ids: dem.record_motion(record, ids), record, 4.0, bound)
 
 
 def keep_place(engines):

@@ -24,8 +24,7 @@ def run(case):
     base = dem.base((6, 6, 0.2), stone)
     dem.block((2 * HALF_WIDTH, 1, 2 * HALF_WIDTH * SLENDERNESS), stone, on=base)
     recorder = dem.WallRecorder(virtPeriod=0.005)
-    O.engines = dem.engines(dem.RecordMotionEngine(ids=[base], samples=list(motion.samples), interval=motion.dt, baseline=motion.baseline),
-                            recorder=recorder)
+    O.engines = dem.engines(dem.record_motion(motion, ids=[base]), recorder=recorder)
     O.run(math.ceil(2 / O.dt), True)
     history = dem.wall_history(recorder)
     return {**results.collapse(history).numbers(), "drift": history.drift()}

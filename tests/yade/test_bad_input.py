@@ -9,6 +9,7 @@ from masonry import dem
 from rocking_scene import one_block, quiet_engines, refuses, refuses_to_run, stone
 from yade import O, Quaternion, RockingJointEngine, utils
 
+import masonry
 
 nan, inf = math.nan, math.inf
 
@@ -43,9 +44,11 @@ for name, bads, allowed in (("density", (0, -2000, nan, inf, 1e300, 1e40, 1e-300
         setattr(O.bodies[1].mat, name, bad)
         refuses(quiet_engines, name, str(bad), allowed)
 O.reset()
+refuses(lambda: dem.block((1, 1, 1), stone(), on=77), "on = 77", "it is empty", "dem.base()")
 dem.base((1, 1, 1), stone())
 
 # Ids.
+refuses(lambda: dem.tilt(0, 0.1), "id = 0", "prescribed", "free block")
 sphere = O.bodies.append(utils.sphere((9, 9, 9), 1))
 for bad, why in ((-1, "no such body"), (77, "no such body"), (True, "no such body"), (1.5, "no such body"), (sphere, "must be a Box")):
     refuses(lambda: dem.block((1, 1, 1), stone(), on=bad), "on = ", str(bad), why)
@@ -78,6 +81,11 @@ for make, words in ((lambda: dem.WallRecorder(), ("WallRecorder.iterPeriod = 0",
 
 # Motions.
 base, block, _ = one_block(5)
+for motion, words in ((masonry.Record(0.01, [0, 1]), "dem.record_motion(record, ids=[base])"), (masonry.PulseTrain(0.1), "dem.PulseTrainEngine(ids=[base], impulse=0.1, resonantBlock=block)"),
+                      (masonry.PulseTrain(0.1, times=[0]), "times=..."), (masonry.HalfSine(1.0, 0.1), "dem.record_motion(masonry.Record(dt, motion.acceleration(times)), ids=[base])")):
+    refuses(lambda: quiet_engines(motion), f"motion = {motion}", words)
+refuses(lambda: dem.record_motion([0, 1], ids=[base]), "record = [0, 1]", "masonry.Record")
+refuses(lambda: dem.record_motion(masonry.Record(0.01, [0, 1], scale=[1, 2]), ids=[base]), "record.scale = [1, 2]", "one number")
 for name, bad, why in (("impulse", inf, "finite"), ("times", [0, 2, 1], "increasing"), ("times", [1, 1], "increasing"), ("times", [-1, 1], ">= 0"),
                        ("times", [0, nan], "finite"), ("halfCycles", -2, ">= 1"), ("halfCycles", 0, ">= 1"), ("duration", -1, ">= 0"), ("duration", nan, ">= 0"), ("shape", "square", "square")):
     refuses(lambda: dem.PulseTrainEngine(**{name: bad}), name, why)
@@ -97,20 +105,40 @@ for bad, words in ((dict(samples=[0, nan]), ("samples", "nan")), (dict(samples=[
     refuses(lambda: dem.RecordMotionEngine(**bad), *words)
 refuses(lambda: quiet_engines(dem.RecordMotionEngine(ids=[base])), "samples", "empty")
 refuses(lambda: quiet_engines(dem.RecordMotionEngine(ids=[base], samples=[0, 3], scale=1e300)), "samples has 3", "scale = 1e+300", "at most 1e6 m/s^2")
-with contextlib.redirect_stdout(io.StringIO()) as printed:
-    dem.engines(dem.RecordMotionEngine(ids=[base], samples=[0, 0.3, -0.2], interval=200, scale=9.81))
-assert "; record of 400 s, at most 2.94 m/s^2\n" in printed.getvalue()
+
+
+def printed_by(*arguments, **options):
+    with contextlib.redirect_stdout(io.StringIO()) as printed:
+        dem.engines(*arguments, **options)
+    return printed.getvalue()
+
+
+assert "; record of 400 s, at most 2.94 m/s^2\n" in printed_by(dem.RecordMotionEngine(ids=[base], samples=[0, 0.3, -0.2], interval=200, scale=9.81))
+for peak, said in ((343.0, True), (0.035, True), (50.0, False), (0.1, False), (0.0, False)):
+    assert (f"a record reaches {peak:g}: in g or cm/s^2? Accelerations are in m/s^2\n" in printed_by(dem.RecordMotionEngine(ids=[base], samples=[0, -peak]))) == said, peak
+for density, said in ((2.0, True), (2000.0, False), (2e6, True)):
+    O.bodies[1].mat.density = density
+    assert (f"a density is {density:g}: densities are in kg/m^3\n" in printed_by()) == said, density
 O.reset()
 dem.block((400, 200, 200), stone(), on=dem.base((4000, 1000, 100), stone()))
-with contextlib.redirect_stdout(io.StringIO()) as printed:
-    dem.engines()
-assert "the longest block measures 400 m: sizes are in m\n" in printed.getvalue()
+assert "the longest block measures 400 m: sizes are in m\n" in printed_by()
 base, block, _ = one_block(5)
-with contextlib.redirect_stdout(io.StringIO()) as printed:
-    dem.engines(recorder=dem.BlockRecorder(ids=[block]))
-assert "BlockRecorder records nothing until its iterPeriod or virtPeriod is set\n" in printed.getvalue()
+assert "BlockRecorder records nothing until its iterPeriod or virtPeriod is set\n" in printed_by(recorder=dem.BlockRecorder(ids=[block]))
 base, block, _ = one_block(5)
 refuses(lambda: dem.RockingJointEngine(impactOrder="random"), "impactOrder", "'random'", "simultaneous")
+
+# Misspelled attributes, in the constructor and set later; those of YADE's base classes are there, those of classes that a script derives too.
+for thing, wrong, near in ((dem.BlockMat(), "restitutoin", "restitution"), (dem.RecordMotionEngine(), "scal", "scale"), (dem.MoreauJeanIntegrator(), "onTruble", "onTrouble"),
+                           (dem.WallRecorder(), "virtperiod", "virtPeriod"), (dem.BlockPhys(), "restitution_", "restitution")):
+    for act in (lambda: setattr(thing, wrong, 1), lambda: type(thing)(**{wrong: 1})):
+        refuses(act, f"{type(thing).__name__} has no attribute '{wrong}': did you mean {near}", kind=AttributeError)
+refuses(lambda: dem.BlockMat(xyzzy=1), "see help(dem.BlockMat)", kind=AttributeError)
+motion = dem.RecordMotionEngine(dead=True)
+motion.label, motion.dead = "quake", False
+assert motion.label == "quake" and not motion.dead
+derived = type("Derived", (dem.PulseTrainEngine,), {})()
+derived.note = 1
+assert derived.note == 1
 
 if "MASONRY_YADE_TREE" not in os.environ:  # YADE's own attribute macros do not name the attribute
     for make, name in ((dem.BlockMat, "density"), (dem.BlockMat, "restitution"), (dem.PulseTrainEngine, "impulse"), (dem.PulseTrainEngine, "ids"),

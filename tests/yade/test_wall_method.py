@@ -49,6 +49,7 @@ for per_course, method in ((2, "localised"), (3, "wall")):  # 5 and 7 blocks
 
 # What the choice says of sizes.
 for options, words in (({}, "; 26 blocks: method 'wall'"),
+                       ({"piers": 2}, ", localised impacts for 1 structure of 1 block beside"),
                        ({"piers": 3}, "; largest structure 27 of 29 blocks: method 'wall', localised impacts for 2 structures of 2 blocks beside")):
     base, ids = wall(4, 6, 0.1, **options)
     with contextlib.redirect_stdout(io.StringIO()) as said:

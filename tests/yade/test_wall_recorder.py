@@ -62,7 +62,7 @@ for model in MODELS:
 for model in MODELS:
     base, block, theory = one_block(4, restitution=0.8, noSlip=False, frictionAngle=0.6)
     wave = masonry.Record(0.01, 6 * np.sin(2 * np.pi * np.arange(0, 1.005, 0.01)), baseline="constant")
-    motion = dem.RecordMotionEngine(ids=[base], samples=list(wave.samples), interval=wave.dt, baseline=wave.baseline)
+    motion = dem.record_motion(wave, ids=[base])
     recorder, h = recorded(1.5, model, motion)
     energy = h.energy
     print(model, "balance:", np.max(np.abs(energy["error"])) / barrier(block, theory))
@@ -112,7 +112,7 @@ wave = masonry.Record(0.01, 6 * np.sin(2 * np.pi * np.arange(0, 1.005, 0.01)), b
 
 
 def shock(base, start, recorder, model):
-    motion = dem.RecordMotionEngine(ids=[base], samples=list(wave.samples), interval=wave.dt, baseline=wave.baseline, start=start)
+    motion = dem.record_motion(wave, ids=[base], start=start)
     O.engines = quiet_engines(motion, model=model, recorder=recorder)
     O.run(int(1.2 / O.dt), True)
 

@@ -364,7 +364,7 @@ for arguments, options, words in (((0, ok), {}, ("courses = 0",)), ((2, ok), dic
 good = dict(x=0, y=0, z=1, size_x=1, size_y=1, size_z=1)
 for rows, words in (([], ("at least one row",)), ([good, {**good, "size_x": 0}], ("row 1", "size_x = 0", "positive")), ([{**good, "x": "far"}], ("row 0", "x = 'far'")),
                     ([{**good, "y": nan}], ("y = nan", "finite")), ([{**good, "size_x": 1e300}], ("size_x = 1e+300", "1e+06")), ([(0, 0, 0, 1, 1)], ("size_z = None",)),
-                    ([(0, 0, 0, 1, 1, 1, 0, 0, "", "", "", "", "", 5)], ("row 0", "more values")), ([{**good, "rotation_y": 90}], ("rotation_y = 90", "rad")), (None, ("table = None", "rows")), ([{**good, "sizex": 1}], ("row 0", "'sizex'", "size_x")),
+                    ([(0, 0, 0, 1, 1, 1, 0, 0, "", "", "", "", "", 5)], ("row 0", "more values")), ([{**good, "rotation_y": 90}], ("rotation_y = 90", "rad")), (None, ("table = None", "rows")), ([{**good, "sizex": 1}], ("row 0", "'sizex'", "size_x", "id, name")),
                     ([{**good, "rotation_z": inf}], ("rotation_z = inf",)), ([{**good, "qw": 1}], ("qx = None",)),
                     ([{**good, "qw": 1, "qx": 1, "qy": 0, "qz": 0}], ("qw, qx, qy, qz", "length 1")), ([{**good, "material": "tuff"}], ("row 0", "'tuff'", "must be one of"))):
     refuses(lambda: dem.blocks_from_table(rows, unused), *words)
@@ -372,7 +372,11 @@ for rows, words in (([{**good, "material": ["tuff"]}], ("row 0", "material = ['t
                     ([{**good, "y": True}], ("row 0", "y = True", "finite number")), ([{**good, "rotation_y": False}], ("row 0", "rotation_y = False")),
                     ([{**good, " X": 1}], ("row 0", "' X' = 1", "twice"))):
     refuses(lambda: dem.blocks_from_table(rows, unused), *words)
-for ending, text, words in (("csv", "x,y,z,size_x,size_y,size_z,x\n0,0,1,1,1,1,5\n", ("row 0", "'x' = '5'", "twice", "'0'")),
+for ending, text, words in (("csv", "x,y,z,size_x,size_y,size_z,x\n0,0,1,1,1,1,5\n", ("line 2", "'x' = '5'", "twice", "'0'")),
+                            ("csv", "x,y,z,size_x,size_y,size_z\n0,0,1,1,1,1\n\n0,0,far,1,1,1\n", ("line 4", "z = 'far'")),
+                            ("csv", "x,y,z,size_x,size_y,sizez\n\n0,0,1,1,1,1\n", ("line 1", "'sizez'", "size_z")),
+                            ("csv", "x;y;z;size_x;size_y;size_z\n0;0;1;1;1;1\n", ("'x;y;z;size_x;size_y;size_z'", "separated by commas")),
+                            ("csv", "x,y,z,size_x,size_y,size_z,material\n0,0,1,1,1,1,tuff\n", ("line 2", "'tuff'", "must be one of")),
                             ("json", '[{"x": 0, "y": 0, "z": true, "size_x": 1, "size_y": 1, "size_z": 1}]', ("row 0", "z = True")),
                             ("json", '[{"x": 0, "y": 0, "z": 0, "size_x": 1, "size_y": 1, "size_z": 1, "z": 3}]', ("row 0", "'z' = 3", "twice"))):
     with open(path := os.path.join(folder, f"bad.{ending}"), "w") as file:

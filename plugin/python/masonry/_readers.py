@@ -41,13 +41,14 @@ def read_csv(path, unit, dt=None, gravity=9.80665):
     if unit not in factors:
         raise ValueError(f"unit = {unit!r}: must be one of {', '.join(factors)}")
     with open(path, encoding="utf-8-sig") as file:
-        lines = [line.replace(",", " ").split() for line in file if line.strip() and not line.startswith("#")]
-    if lines and not _is_number(lines[0][0]):
+        lines = [(number, line.replace(",", " ").split()) for number, line in enumerate(file, 1) if line.strip() and not line.startswith("#")]
+    if lines and not _is_number(lines[0][1][0]):
         lines = lines[1:]
-    for line in lines:
-        if not all(map(_is_number, line)) or len(line) != len(lines[0]):
-            raise ValueError(f"{path}: {' '.join(line)!r}: must be as many numbers as in the other lines, parted by commas or blanks")
-    table = np.array(lines, dtype=float)
+    for number, line in lines:
+        if not all(map(_is_number, line)) or len(line) != len(lines[0][1]):
+            raise ValueError(f"{path}: line {number} is {' '.join(line)!r}: must be as many numbers as in the other lines, parted by commas or blanks; "
+                             "lines of words must start with #, but for the first")
+    table = np.array([line for _, line in lines], dtype=float)
     if table.ndim != 2 or table.shape[1] not in (1, 2) or len(table) < 2:
         raise ValueError(f"{path}: table of shape {table.shape}: must have one or two columns and at least two rows")
     if table.shape[1] == 1:

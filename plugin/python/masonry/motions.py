@@ -64,6 +64,12 @@ class PulseTrain(Motion):
         if self.times is not None:
             self.velocity(0.0)  # refuses bad input here
 
+    def __repr__(self):
+        times = None if self.times is None else self.times.tolist()
+        given = (("times", times, None), ("half_cycles", self.half_cycles, None), ("assembly", self.assembly, False), ("shape", self.pulse_shape, "dirac"),
+                 ("duration", self.duration, 0))
+        return f"PulseTrain(impulse={self.impulse}{''.join(f', {name}={value!r}' for name, value, default in given if value != default)})"
+
     def scaled(self, factor):
         return PulseTrain(np.multiply(self.impulse, factor), self.times, self.half_cycles, self.assembly, self.pulse_shape, self.duration)
 
@@ -117,8 +123,8 @@ class Sine(_Shaped):
 
 
 class Record(Motion):
-    """Accelerogram: samples (m/s^2) `dt` (s) apart, the first at t = 0, linear between them, zero after the last. Velocity and
-    displacement are its exact integrals. `scale` may be an array: one case each.
+    """Accelerogram: `scale` times the accelerations (m/s^2), `dt` (s) apart, the first at t = 0, linear between them, zero after the last.
+    Velocity and displacement are its exact integrals. `scale` may be an array: one case each. In YADE: dem.record_motion(record, ids).
 
     baseline: 'none'; 'constant': the mean acceleration is subtracted, so that the last velocity is zero; 'linear': the slope
     of the straight line through the origin that fits the velocity best (least squares) is subtracted.
@@ -126,9 +132,9 @@ class Record(Motion):
 
     def __init__(self, dt, acceleration, scale=1.0, baseline="none", name="", source="", unit="m/s^2"):
         self.dt = float(number_given("dt", dt))
-        self.samples = np.ascontiguousarray(array_given("acceleration", acceleration))
-        if self.samples.ndim != 1:
-            raise ValueError(f"acceleration has the shape {self.samples.shape}: must be one row of samples, at least two")
+        self._unscaled = np.ascontiguousarray(array_given("acceleration", acceleration))
+        if self._unscaled.ndim != 1:
+            raise ValueError(f"acceleration has the shape {self._unscaled.shape}: must be one row of samples, at least two")
         self.scale = self.amplitude = scale
         self.baseline = baseline
         self.name, self.source, self.unit = name, source, unit
@@ -136,25 +142,37 @@ class Record(Motion):
         self.velocity(0.0)  # refuses bad input here
 
     @property
+    def samples(self):
+        """The accelerations with the scale in them, before the baseline is subtracted, m/s^2: a new array, the shape of `scale` in front."""
+        samples = np.multiply.outer(self.scale, self._unscaled)
+        samples.flags.writeable = False  # writing into it would change nothing
+        return samples
+
+    @property
     def duration(self):
         """Time of the last sample, s."""
-        return self.dt * (len(self.samples) - 1)
+        return self.dt * (len(self._unscaled) - 1)
 
     def scaled(self, factor):
-        return Record(self.dt, self.samples, np.multiply(self.scale, factor), self.baseline, self.name, self.source, self.unit)
+        return Record(self.dt, self._unscaled, np.multiply(self.scale, factor), self.baseline, self.name, self.source, self.unit)
 
     def _motions(self, shape):
         scale, = columns(shape if np.ndim(self.scale) else (), self.scale)
-        return _core.record(self.dt, self.samples, scale, self.baseline)
+        return _core.record(self.dt, self._unscaled, scale, self.baseline)
+
+    def __repr__(self):
+        return (f"Record({self.name + ': ' if self.name else ''}{len(self._unscaled)} samples, dt={self.dt:g} s, "
+                f"at most {np.abs(self.samples).max():.3g} m/s^2, baseline={self.baseline!r})")
 
     @classmethod
     def from_at2(cls, path, scale=1.0, baseline="none", gravity=9.80665):
-        """PEER NGA file (.AT2), accelerations in units of `gravity` (m/s^2)."""
+        """PEER NGA file (.AT2), accelerations in units of `gravity` (m/s^2): the standard one, whatever the blocks weigh (9.81 elsewhere)."""
         name, dt, samples = read_at2(path)
         return cls(dt, gravity * samples, scale, baseline, name=name, source=str(path), unit="g")
 
     @classmethod
     def from_csv(cls, path, unit, dt=None, scale=1.0, baseline="none", gravity=9.80665):
-        """Columns time, acceleration; or one column of acceleration with `dt` (s). unit: 'm/s^2', 'cm/s^2', 'mm/s^2' or 'g'."""
+        """Columns time, acceleration; or one column of acceleration with `dt` (s). unit: 'm/s^2', 'cm/s^2', 'mm/s^2' or 'g' (that is
+        `gravity`, m/s^2: the standard one, whatever the blocks weigh, 9.81 elsewhere)."""
         dt, samples = read_csv(path, unit, dt, gravity)
         return cls(dt, samples, scale, baseline, name=str(path), source=str(path), unit=unit)

@@ -6,6 +6,9 @@ from . import _core
 from .history import _arguments
 from .motions import PulseTrain, Record
 
+# Below its first threshold the bracket is scanned in steps of this share of it.
+_FINE = 1e-3
+
 
 def overturning_amplitude(block, shape, restitution=None, restoring="exact", bracket=None, samples=400, half_cycles=None, initial_angle=0.0,
                           initial_velocity=0.0):
@@ -15,10 +18,15 @@ def overturning_amplitude(block, shape, restitution=None, restoring="exact", bra
     block          one block
     shape          a motion; its amplitude (impulse of a PulseTrain, scale of a Record) is what is varied and returned
     bracket        (lower, upper) of that amplitude, lower >= 0. None: from half the amplitude that lifts the block to 40 times
-                   that (acceleration), or 0.01 to 2 times the single velocity jump that overturns (PulseTrain)
-    samples        the bracket is scanned at so many equally spaced amplitudes, and every change is bisected to 1e-12 relative:
-                   a window narrower than (upper - lower)/(samples - 1) can be missed
+                   that (acceleration), or 0.01 to 2 times the single velocity jump that overturns (PulseTrain): for a block that
+                   starts upright and at rest
+    samples        the bracket is scanned at so many amplitudes, each larger than the one before by the same factor (from lower = 0:
+                   by the same difference), and up to the first change again in steps of a thousandth of it. Every change is
+                   bisected to 1e-12 relative.
     half_cycles    for a resonant train without end: how many to wait for; None: 200
+
+    So the first threshold is right unless a window narrower than a thousandth of it, in which the block overturns (or stands), lies below.
+    Beyond it windows narrower than a step of the scan can be missed. Under long records there are windows of every width.
     """
     unit = shape.scaled(1 / shape.amplitude)
     lower, upper = _default_bracket(block, unit) if bracket is None else bracket
@@ -33,8 +41,11 @@ def overturning_amplitude(block, shape, restitution=None, restoring="exact", bra
         _, arguments = _arguments(block, unit.scaled(amplitudes), restitution, restoring, initial_angle, initial_velocity, None, half_cycles)
         return _core.overturns(*arguments).astype(bool)
 
-    scan = np.linspace(lower, upper, samples)
+    scan = np.geomspace(lower, upper, samples) if lower > 0 else np.linspace(lower, upper, samples)
     result = overturns(scan)
+    first = upper if np.all(result == result[0]) else scan[np.argmax(result != result[0])]
+    fine, beyond = np.linspace(lower, first, 2 + int((first - lower) / (_FINE * first))), scan > first
+    scan, result = np.append(fine, scan[beyond]), np.append(overturns(fine), result[beyond])
     change = np.flatnonzero(result[1:] != result[:-1])
     low, high, at_low = scan[change], scan[change + 1], result[change]
     while np.any(high - low > 1e-12 * high):

@@ -18,7 +18,7 @@ def run(case):
     stone = dem.BlockMat(density=2000, frictionAngle=math.atan(0.7), restitution=case["restitution"])
     base = dem.base((6, 2, 0.2), stone)
     dem.pier(4, (0.40, 0.50, 0.40), stone, on=base)
-    motion = dem.RecordMotionEngine(ids=[base], samples=list(record.samples), interval=record.dt, baseline=record.baseline)
+    motion = dem.record_motion(record, ids=[base])
     recorder = dem.WallRecorder(virtPeriod=0.02)
     O.engines = dem.engines(motion, recorder=recorder, **LAWS[case["law"]])
     O.run(math.ceil(6 / O.dt), True)

@@ -1,5 +1,6 @@
 """Loads the plugin into YADE, once YADE itself is up."""
 
+import difflib
 import importlib
 
 _HOW = "run the script with `yade -n -x script.py` (Debian 12: `apt install yade`)"
@@ -12,6 +13,34 @@ def _import_yade():
         return importlib.import_module("yade")
     except ImportError as error:
         raise ImportError(f"masonry.dem works inside YADE only: {_HOW}. ({error})") from None
+
+
+def _no_such_attribute(cls, name):
+    near = difflib.get_close_matches(name, [known for known in dir(cls) if not known.startswith("_")])
+    hint = f"did you mean {' or '.join(near)}?" if near else f"see help(dem.{cls.__name__})"
+    return AttributeError(f"{cls.__name__} has no attribute {name!r}: {hint}")
+
+
+def _guard_attributes(cls):
+    """A misspelled attribute of an object of the class is an error with the names that are near, in the constructor and where it is set: a
+    Boost.Python class would take it as a new one."""
+    make, assign = cls.__init__, cls.__setattr__
+
+    def __init__(self, *arguments, **attributes):
+        try:
+            make(self, *arguments, **attributes)
+        except AttributeError:
+            for name in attributes:
+                if not hasattr(cls, name):
+                    raise _no_such_attribute(cls, name) from None
+            raise
+
+    def __setattr__(self, name, value):
+        if type(self) is cls and not hasattr(cls, name):  # classes that a script derives may have their own
+            raise _no_such_attribute(cls, name)
+        assign(self, name, value)
+
+    cls.__init__, cls.__setattr__ = __init__, __setattr__
 
 
 def load_classes():
@@ -33,6 +62,8 @@ def load_classes():
 
     classes = {name: getattr(wrapper, name) for name in plugin.setup()}
     for name, cls in classes.items():
+        if "__setattr__" not in vars(cls):
+            _guard_attributes(cls)
         setattr(yade, name, cls)
         if hasattr(yade, "__all__") and name not in yade.__all__:
             yade.__all__.append(name)

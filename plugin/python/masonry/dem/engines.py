@@ -1,6 +1,7 @@
 """The engines of a scene, chosen and explained."""
 
 import numpy as np
+from masonry.motions import Motion, PulseTrain, Record
 from yade import O, wrapper
 
 from masonry.dem.scene import check_blocks, check_material, check_recorder, listed, structures
@@ -24,8 +25,10 @@ _LEAST_PENETRATION = 1e-10
 _GRAVITIES = 1e-6, 1e6
 # Overlap of rigid blocks relative to their smallest size: what MoreauJeanIntegrator accepts, relative to half of it.
 _MOST_OVERLAP = 5e-5
-# Longest free block that is no slip of units (mm for m), m.
+# What is no slip of units: the longest free block (mm for m), m; densities (g/cm^3), kg/m^3; peaks of records (g, cm/s^2), m/s^2.
 _LONGEST = 50
+_DENSITIES = 10, 20000
+_PEAKS = 0.1, 50
 # Share of the critical time step: peaks of a rocking block at the default penetration change by 1 % of their error below it.
 _STEP_FRACTION = 0.2
 
@@ -74,13 +77,44 @@ def _landing_step(body):
     return 2 / np.sqrt(stiffness * area * (1 / state.mass + half.squaredNorm() / min(state.inertia)))
 
 
+def record_motion(record, ids, direction=(1, 0, 0), start=0.0):
+    """The RecordMotionEngine of a masonry.Record: its samples (with the record's scale in them), interval and baseline.
+
+    ids          of the bodies that move, a list
+    direction    unit vector along which they do
+    start        when, s
+    """
+    if not isinstance(record, Record):
+        raise ValueError(f"record = {record!r}: must be a masonry.Record")
+    if record.shape:
+        raise ValueError(f"record.scale = {record.scale}: must be one number, a scene has one motion (record.scaled() makes another)")
+    return wrapper.RecordMotionEngine(ids=ids, samples=record.samples.tolist(), interval=record.dt, baseline=record.baseline, direction=direction, start=start)
+
+
+def _in_yade(motion):
+    """How a script gives a motion of the theory to YADE."""
+    if isinstance(motion, Record):
+        return "dem.record_motion(record, ids=[base])"
+    if isinstance(motion, PulseTrain):
+        return f"dem.PulseTrainEngine(ids=[base], impulse={motion.impulse}, {'resonantBlock=block' if motion.times is None else 'times=...'})"
+    return "dem.record_motion(masonry.Record(dt, motion.acceleration(times)), ids=[base])"
+
+
+def _counted(number, word):
+    return f"{number} {word}{'s' if number != 1 else ''}"
+
+
+def _peak(record):
+    """m/s^2, before the baseline."""
+    return max(map(abs, record.samples)) * abs(record.scale)
+
+
 def _records(motions):
     """Length and peak of each record, so that slips of units (g for m/s^2, samples a second for the interval) are seen."""
     said = ""
     for record in motions:
         if isinstance(record, wrapper.RecordMotionEngine):
-            peak = max(map(abs, record.samples)) * abs(record.scale)
-            said += f"; record of {(len(record.samples) - 1) * record.interval:g} s, at most {peak:.3g} m/s^2"
+            said += f"; record of {(len(record.samples) - 1) * record.interval:g} s, at most {_peak(record):.3g} m/s^2"
     return said
 
 
@@ -103,7 +137,7 @@ def _pivots_that_slip():
 
 def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None, impact_order=None, gravity=9.81, recorder=None, others=(), method="auto"):
     """The list for O.engines; sets O.dt and prints the choice and its reason, the blocks that stand on nothing or whose
-    landings slip, length and peak of records.
+    landings slip, length and peak of records, and numbers that look like a slip of units.
 
     motion        a motion engine (PulseTrainEngine, RecordMotionEngine), a list of them, or None
     model         'planar' or 'spatial': rigid blocks in a plane or in space (MoreauJeanIntegrator). 'compliant': joints with
@@ -147,6 +181,8 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
         raise ValueError(f"gravity = {gravity}: must be 0, or from {_GRAVITIES[0]:g} to {_GRAVITIES[1]:g}, in m/s^2")
     motions = [] if motion is None else list(motion) if isinstance(motion, (list, tuple)) else [motion]
     for item in motions:
+        if isinstance(item, Motion):
+            raise ValueError(f"motion = {item!r}: is of the theory, without a body that it moves: must be {_in_yade(item)}")
         if not isinstance(item, wrapper.BaseMotionEngine):
             raise ValueError(f"motion = {item!r}: must be a PulseTrainEngine, a RecordMotionEngine, or a list of them")
         item.check()
@@ -160,6 +196,12 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
     slips = _pivots_that_slip()
     if slips:
         print(slips)
+    for density in sorted({b.mat.density for b in _blocks()}):
+        if not _DENSITIES[0] <= density <= _DENSITIES[1]:
+            print(f"masonry.dem: a density is {density:g}: densities are in kg/m^3")
+    for peak in (_peak(m) for m in motions if isinstance(m, wrapper.RecordMotionEngine)):
+        if 0 < peak and not _PEAKS[0] <= peak <= _PEAKS[1]:
+            print(f"masonry.dem: a record reaches {peak:.3g}: in g or cm/s^2? Accelerations are in m/s^2")
     longest = max(2 * max(b.shape.extents) for b in _blocks() if b.dynamic)
     if longest > _LONGEST:
         print(f"masonry.dem: the longest block measures {longest:g} m: sizes are in m")
@@ -201,7 +243,7 @@ def _rigid(motions, model, method, dt, tolerance, impact_order, gravity, recorde
             whole = f"{blocks} blocks" if pulses or len(joined) == 1 else f"largest structure {blocks} of {sum(joined)} blocks"
             choice += f"; {whole}: method 'wall'"
             if beside and not pulses:
-                choice += f", localised impacts for {len(beside)} structures of {sum(beside)} blocks beside"
+                choice += f", localised impacts for {_counted(len(beside), 'structure')} of {_counted(sum(beside), 'block')} beside"
         elif len(joined) > 1 and not pulses:
             choice += f"; {len(joined)} structures apart, each stepped by itself"
     wall = method == "wall"

@@ -38,7 +38,8 @@ def _block_material(material):
 def _box(id, name="id"):
     """The body of that id, which the script gave as `name`; ValueError unless it exists and is a Box."""
     if not isinstance(id, (int, np.integer)) or isinstance(id, bool) or not 0 <= id < len(O.bodies) or O.bodies[int(id)] is None:
-        raise ValueError(f"{name} = {id!r}: there is no such body in O.bodies: must be an id, a whole number from 0 to {len(O.bodies) - 1}")
+        allowed = f"must be an id, a whole number from 0 to {len(O.bodies) - 1}" if len(O.bodies) else "it is empty, dem.base() makes the first one"
+        raise ValueError(f"{name} = {id!r}: there is no such body in O.bodies: {allowed}")
     body = O.bodies[int(id)]
     if not isinstance(body.shape, wrapper.Box):
         raise ValueError(f"{name} = {id}: that body is a {type(body.shape).__name__}, it must be a Box")
@@ -219,15 +220,15 @@ def blocks_from_table(table, materials, on=None):
 
     Columns may be written in capitals and with blanks around them.
     """
-    centers, sizes, quaternions, names = walls.read_table(table)
+    centers, sizes, quaternions, names, places = walls.read_table(table)
     if not isinstance(materials, dict):
         check_material(materials)
         materials = {materials.label: materials, "": materials}
     for material in materials.values():
         check_material(material)
-    for index, name in enumerate(names):
+    for place, name in zip(places, names):
         if name not in materials:
-            raise ValueError(f"row {index}: material = {name!r}: must be one of {', '.join(repr(key) for key in materials)}")
+            raise ValueError(f"{place}: material = {name!r}: must be one of {', '.join(repr(key) for key in materials)}")
     orientations = [Quaternion(*q) for q in quaternions.tolist()]
     # A block rests upright: its turn about z alone. Lying on its side it has none.
     norms = np.hypot(quaternions[:, 0], quaternions[:, 3]).tolist()
@@ -301,11 +302,13 @@ def structures(gap=0.1):
 
 
 def tilt(id, angle, axis="y"):
-    """Turns a standing block by `angle` (rad) about its own axis 'x' or 'y', so that it rests on its lower edge. A positive
+    """Turns a standing free block by `angle` (rad) about its own axis 'x' or 'y', so that it rests on its lower edge. A positive
     turn about y leans towards +x."""
     body, row = _box(id), _axis(axis)
     if not -math.pi / 2 < walls.number_given("angle", angle) < math.pi / 2:
         raise ValueError(f"angle = {angle}: must be between -pi/2 and pi/2, in rad")
+    if not body.dynamic:
+        raise ValueError(f"id = {id}: that body is prescribed (a base): must be a free block")
     half, state = body.shape.extents, body.state
     side = math.copysign(1, angle) if angle else 0
     edge = Vector3(side * half[0], 0, -half[2]) if axis == "y" else Vector3(0, -side * half[1], -half[2])

@@ -6,8 +6,8 @@ import math
 from dataclasses import dataclass, field
 
 import numpy as np
-from masonry.dem.engines import engines
-from masonry.dem.scene import _boxes, _layout
+from masonry.dem.engines import _FEW_BLOCKS, _METHODS, engines
+from masonry.dem.scene import _boxes, _layout, structures
 from masonry.dem.walls import axes_of, number_given
 from tqdm import tqdm
 from yade import O, Vector3
@@ -15,6 +15,8 @@ from yade import O, Vector3
 _DIRECTIONS = {"x": (1, 0, 0), "-x": (-1, 0, 0), "y": (0, 1, 0), "-y": (0, -1, 0)}
 # Time step of a trial relative to sqrt(R/g) of the smallest block. Blocks that stand still or begin to move ask for no small one.
 _STEP = 0.02
+# Residual of the contact laws of a step: with 'wall' the least that it takes, so that rests are told from slow movements.
+_TOLERANCES = {"localised": 1e-9, "wall": 1e-6}
 # Impacts found inside a step; later ones close at its end, plastically. They do not matter where collapse begins, and cost most.
 _EVENTS = 1
 # Steps between two looks at the blocks.
@@ -95,21 +97,33 @@ class TiltTable:
     share        movement of a block, relative to the smallest size of any, that is collapse: more than the gaps
                  that the joints may close, and little, since blocks that fall apart take long
     gravity      m/s^2
+    method       'localised' or 'wall', as in dem.engines(). 'auto': 'wall' in space where more than 6 blocks stand together: of walls with
+                 corners 'localised' misses the contact laws there, and takes minutes
 
     A trial starts from rest and ends when a block has moved by `share`; collapse is also when blocks still gain speed at the end of the
     hold. Rigid blocks that carry a load do not move at all, and have no spring to overshoot, so a stair of the load is put on at once: with
     bisect() upon the largest load that the blocks have stood, with the forces in their joints that it has left, since with friction these
     depend on what came before. Of its trials that collapse only the first and the last move the blocks by `share`; the others end when
     these gain speed steadily. Restitution hardly matters, but 0 is fastest. The scene is put back afterwards; O.engines is left to the last trial.
+
+    The bar shows the multiplier of the last trial and its verdict:
+        rest        the blocks stand, and the load grows from here
+        collapse    a block has moved by `share`, or blocks gain speed steadily
+        unclear     blocks still moved, slowing down, when five times `hold` had passed: taken for collapse, and named in `doubts`
+        missed      a step missed the contact laws: half the stair is tried, unless it is down to the tolerance
+    Warnings of the integrator in between are of such steps; of each it seeks one impact (mostEvents = 1), since what follows where blocks
+    begin to move does not matter. Whether the multiplier can be trusted stands in Collapse.doubts.
     """
 
-    def __init__(self, direction="x", load="force", model="auto", hold=3.0, share=2e-3, gravity=9.81):
+    def __init__(self, direction="x", load="force", model="auto", hold=3.0, share=2e-3, gravity=9.81, method="auto"):
         if direction not in tuple(_DIRECTIONS):
             raise ValueError(f"direction = {direction!r}: must be one of {', '.join(map(repr, _DIRECTIONS))}")
         if load not in ("force", "turned"):
             raise ValueError(f"load = {load!r}: must be 'force' or 'turned'")
         if model not in ("auto", "planar", "spatial"):
             raise ValueError(f"model = {model!r}: must be 'auto', 'planar' or 'spatial'")
+        if method not in _METHODS:
+            raise ValueError(f"method = {method!r}: must be one of {', '.join(_METHODS)}")
         for name, value in (("hold", hold), ("share", share), ("gravity", gravity)):
             if not 0 < number_given(name, value) < math.inf:
                 raise ValueError(f"{name} = {value}: must be positive and finite")
@@ -127,9 +141,11 @@ class TiltTable:
         self._unit = math.sqrt(np.ptp(np.concatenate([centers[:, 2] - reach, centers[:, 2] + reach])) / gravity)
         self._hold = hold * self._unit
         self._dt = _STEP * math.sqrt(self._reach.min() / gravity)
-        self._model = model
+        self._model, self._method = model, "localised" if method == "auto" else method
         if model == "auto":
             self._model = self._begin(1.0).choice().split(":")[0]  # of the pulled blocks, not of those that only stand
+        if method == "auto" and self._model == "spatial" and max(map(len, structures())) > _FEW_BLOCKS["spatial"]:
+            self._method = "wall"
         self._joints = self._find_joints()
 
     # --- the two ways to the multiplier ---
@@ -269,7 +285,7 @@ class TiltTable:
     def _begin(self, multiplier):
         self._put_back()
         with contextlib.redirect_stdout(io.StringIO()):
-            O.engines = engines(model=self._model, method="localised", dt=self._dt, gravity=self.gravity)
+            O.engines = engines(model=self._model, method=self._method, tolerance=_TOLERANCES[self._method], dt=self._dt, gravity=self.gravity)
         integrator = O.engines[-1]
         integrator.mostEvents = _EVENTS
         integrator.along = Vector3(_DIRECTIONS[self.direction])  # the plane, before there is a pull
@@ -303,10 +319,12 @@ class TiltTable:
 
     def _collapse(self, multiplier, bracket, trials, mechanism):
         failures = sum(t.failures for t in trials if t.multiplier in bracket)
-        doubts = [f"the integrator missed its tolerance or left out impacts in {failures} steps of the trials that decide"] if failures else []
+        other = "localised" if self._method == "wall" else "wall"
+        doubts = [f"the integrator missed its tolerance or left out impacts in {failures} steps of the trials that decide: compare with "
+                  f"TiltTable(method={other!r})"] if failures else []
         unclear = [f"{t.multiplier:.5g}" for t in trials if t.verdict == "unclear"]
         if unclear:
-            doubts.append(f"blocks still moved, slowing down, when the trials of {', '.join(unclear)} were ended; taken for collapse")
+            doubts.append(f"blocks still moved, slowing down, when the trials of {', '.join(unclear)} were ended; taken for collapse: a larger hold decides them")
         return Collapse(multiplier, bracket, trials, mechanism.joints(), mechanism.moving(), doubts, mechanism)
 
 

@@ -8,6 +8,7 @@ import csv
 import itertools
 import json
 import math
+import re
 
 import numpy as np
 from masonry._given import is_whole, number_given
@@ -243,48 +244,57 @@ COLUMNS = _PLACE + _TURN + ("material",) + _QUATERNION
 _IGNORED = ("id", "name")
 
 
-def _number(row, index, column, default=None):
+def _number(row, place, column, default=None):
     value = row.get(column, default)
     try:
         number = math.nan if isinstance(value, (bool, np.bool_)) else float(value)
     except (TypeError, ValueError, OverflowError):
         number = math.nan
     if not math.isfinite(number):
-        raise ValueError(f"row {index}: {column} = {value!r}: must be a finite number")
+        raise ValueError(f"{place}: {column} = {value!r}: must be a finite number")
     if column.startswith("size") and not _SIZES[0] <= number <= _SIZES[1]:
-        raise ValueError(f"row {index}: {column} = {value!r}: must be positive, from {_SIZES[0]:g} to {_SIZES[1]:g}, in m")
+        raise ValueError(f"{place}: {column} = {value!r}: must be positive, from {_SIZES[0]:g} to {_SIZES[1]:g}, in m")
     if column in _TURN and abs(number) > 2 * math.pi:
-        raise ValueError(f"row {index}: {column} = {value!r}: must be from -2 pi to 2 pi, in rad")
+        raise ValueError(f"{place}: {column} = {value!r}: must be from -2 pi to 2 pi, in rad")
     return number
 
 
-def _quaternion(row, index):
+def _quaternion(row, place):
     """(w, x, y, z): a turn about z, then a lean about the block's own y axis; or as it stands in the row."""
     turned = [c for c in _QUATERNION if row.get(c) not in (None, "")]
     if turned:
-        q = [_number(row, index, c) for c in _QUATERNION]
+        q = [_number(row, place, c) for c in _QUATERNION]
         if not abs(math.hypot(*q) - 1) < 1e-9:
-            raise ValueError(f"row {index}: {', '.join(_QUATERNION)} = {tuple(q)}: must be a quaternion of length 1")
+            raise ValueError(f"{place}: {', '.join(_QUATERNION)} = {tuple(q)}: must be a quaternion of length 1")
         return q
-    y, z = (_number({c: 0 if row.get(c) in (None, "") else row[c]}, index, c) / 2 for c in _TURN)
+    y, z = (_number({c: 0 if row.get(c) in (None, "") else row[c]}, place, c) / 2 for c in _TURN)
     return [math.cos(z) * math.cos(y), -math.sin(z) * math.sin(y), math.cos(z) * math.sin(y), math.sin(z) * math.cos(y)]
 
 
-def _material(row, index):
+def _material(row, place):
     name = row.get("material")
     if name is not None and not isinstance(name, str):
-        raise ValueError(f"row {index}: material = {name!r}: must be a name")
+        raise ValueError(f"{place}: material = {name!r}: must be a name")
     return name or ""
 
 
 class _Cells(list):
-    """The (column, value) pairs of a row as they stand in a file, where a column may stand twice."""
+    """The (column, value) pairs of a row as they stand in a file, where a column may stand twice. line: its number in a .csv file."""
+
+    line = None
 
 
 def _csv_rows(file):
     lines = csv.reader(file, skipinitialspace=True)
     header = next(lines, [])
-    return [_Cells(itertools.zip_longest(header, line)) for line in lines if line]
+    if len(header) == 1 and re.search("[;\t]", header[0]):
+        raise ValueError(f"its first line is {header[0]!r}: columns must be separated by commas, and numbers be written with a point")
+    rows = []
+    for line in lines:
+        if line:
+            rows.append(_Cells(itertools.zip_longest(header, line)))
+            rows[-1].line = lines.line_num
+    return rows
 
 
 def _rows(table):
@@ -307,28 +317,32 @@ def _rows(table):
     return rows
 
 
-def _named(cells, index):
+def _named(cells, place):
     """The row as a dict: columns in small letters, without blanks around them."""
     row = {}
     for column, value in cells:
         if column is None:
-            raise ValueError(f"row {index}: has more values than there are columns")
+            raise ValueError(f"{place}: has more values than there are columns")
         name = str(column).strip().lower()
         if name not in COLUMNS + _IGNORED:
-            raise ValueError(f"row {index}: column {column!r}: must be one of {', '.join(COLUMNS)}")
+            header = "line 1" if place.startswith("line") else place
+            raise ValueError(f"{header}: column {column!r}: must be one of {', '.join(COLUMNS + _IGNORED)}")
         if name in row:
-            raise ValueError(f"row {index}: column {column!r} = {value!r}: stands there twice, first with {row[name]!r}")
+            raise ValueError(f"{place}: column {column!r} = {value!r}: stands there twice, first with {row[name]!r}")
         row[name] = value
     return row
 
 
 def read_table(table):
-    """(centers (n, 3), sizes (n, 3), quaternions (n, 4) as w, x, y, z, material names) of a table, see dem.blocks_from_table."""
-    rows = [_named(cells, index) for index, cells in enumerate(_rows(table))]
-    if not rows:
+    """(centers (n, 3), sizes (n, 3), quaternions (n, 4) as w, x, y, z, material names, where each row stands) of a table, see
+    dem.blocks_from_table."""
+    cells = _rows(table)
+    if not cells:
         raise ValueError("table: must have at least one row")
-    place = np.array([[_number(row, k, c) for c in _PLACE] for k, row in enumerate(rows)])
-    return place[:, :3], place[:, 3:], np.array([_quaternion(row, k) for k, row in enumerate(rows)]), [_material(row, k) for k, row in enumerate(rows)]
+    places = [f"row {k}" if getattr(row, "line", None) is None else f"line {row.line}" for k, row in enumerate(cells)]
+    rows = [(_named(row, place), place) for row, place in zip(cells, places)]
+    boxes = np.array([[_number(row, place, c) for c in _PLACE] for row, place in rows])
+    return boxes[:, :3], boxes[:, 3:], np.array([_quaternion(*row) for row in rows]), [_material(*row) for row in rows], places
 
 
 def write_table(path, centers, sizes, quaternions, names):
