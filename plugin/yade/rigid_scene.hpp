@@ -13,6 +13,7 @@
 #include "tolerances.hpp"
 #include <algorithm>
 #include <core/Scene.hpp>
+#include <utility>
 
 namespace yade {
 
@@ -277,14 +278,14 @@ private:
 		}
 	}
 
-	/// Pairs of blocks that are still there.
+	/// Pairs of blocks that are still there, and as large as they were: others meet anew.
 	void addPairs(const Remembered<K>& before, const vector<int>& inBefore)
 	{
 		const auto now = [&](int k) { return int(std::find(inBefore.begin(), inBefore.end(), k) - inBefore.begin()); };
+		const auto stays = [&](int b, int k) { return b < int(links.size()) && system.bodies[b].halfSize == before.bodies[k].halfSize; };
 		for (Pair pair : before.pairs) {
-			pair.body1 = now(pair.body1);
-			pair.body2 = now(pair.body2);
-			if (std::max(pair.body1, pair.body2) < int(links.size())) system.pairs.push_back(pair);
+			const int then1 = std::exchange(pair.body1, now(pair.body1)), then2 = std::exchange(pair.body2, now(pair.body2));
+			if (stays(pair.body1, then1) && stays(pair.body2, then2)) system.pairs.push_back(pair);
 		}
 	}
 

@@ -108,6 +108,17 @@ O.bodies[block].state.pos += Vector3(0, 0, 1e-3)
 O.run(10, True)
 assert abs(O.bodies[block].state.pos[2] - 1.5) < 1e-9
 
+# A block that a script makes larger in a run.
+for method in ("localised", "wall"):
+    base, block, _ = one_block(2)
+    O.engines = rigid_engines(method=method, dt=1e-3)
+    O.run(5, True)
+    O.bodies[block].shape.extents += Vector3(0, 0, 0.01)
+    refuses_to_run(f"Blocks {base} and {block}", "0.01", "overlap")
+    O.bodies[block].shape.extents -= Vector3(0, 0, 0.01)
+    O.run(5, True)
+    assert O.engines[-1].failures == 0
+
 # A place that is none, given by a script on the way: the block is in touch with nothing there and would fall for ever.
 for method in ("localised", "wall"):
     O.reset()
