@@ -12,7 +12,7 @@ namespace yade {
 
 /// The row begins with the number of its layout, to be changed with any list of members. Rows of old have none: they begin with how many blocks
 /// there are.
-constexpr Real layout = -4;
+constexpr Real layout = -5;
 
 /// Numbers, enumerations and matrices go into the row, or come out of it, by the same list of members.
 struct Packer {
@@ -77,10 +77,11 @@ namespace memory {
 	template <class Flow> void pass(Flow& f, Seat<Plane>& s) { f(s.across), f(s.upright), f(s.lengthwise), f(s.depth), f(s.reference.coeffs()); }
 	template <class Flow> void pass(Flow&, Seat<Space>&) { }
 
-	// Sizes, masses and laws belong to the scene; gaps are measured anew. By their places points are known again that go to other features.
+	// Masses and laws belong to the scene, and so do sizes, but for knowing whether they have changed; gaps are measured anew. By their places
+	// points are known again that go to other features.
 	template <class Flow, class K> void pass(Flow& f, RigidBody<K>& b)
 	{
-		pass(f, b.pose), f(b.velocity), f(b.increment), f(b.fresh), f(b.prescribed), f(b.drive), f(b.origin);
+		f(b.halfSize), pass(f, b.pose), f(b.velocity), f(b.increment), f(b.fresh), f(b.prescribed), f(b.drive), f(b.origin);
 	}
 	template <class Flow, class K> void pass(Flow& f, ContactPair<K>& p)
 	{
