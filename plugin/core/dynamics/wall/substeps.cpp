@@ -7,17 +7,14 @@ namespace masonry::rigid::wall {
 
 namespace {
 
-// Of the difference of an impulse from its mean over the last substeps: what all sweeps before the move take off, and all after it, in a
-// structure of many courses (a load on one course does not lag). More: joints give way by it, and many of them upon another sway (with
-// 0.09 the first peak of a column of 48 is 2.5 % too low); less: loads that lag bounce, and what stands on them loses friction: with 0.05
-// the top of walls of 28 to 34 courses goes 40 to 60 % too far in 4 of 48 motions near 1 g. And what a substep takes into the mean, where
-// there is one course and where there are many. More: loads bounce longer than the mean, which then follows them; with 0.06 walls of 32
-// courses go half as far again.
-constexpr double damping = 0.075, inMeanOfOne = 0.06, leastInMean = 0.02;
+// What a substep takes into the mean of an impulse where there is one course, whose loads do not lag.
+constexpr double inMeanOfOne = 0.06;
 
-// Of a load, where there are fewer sweeps than courses: how far friction's may be from it (frictionBound()). More: what slides is slow to
-// notice that its load changes; less: friction is lost where loads bounce, and walls of 32 courses go 30 to 40 % too far.
-constexpr double mostLumps = 0.1;
+// Of a load, where there are fewer sweeps than courses: how far friction's may be from it (frictionBound()), in a wall of so many courses
+// and more; in lower ones as their square, since what lags grows so. More: what slides is slow to notice that its load changes; with as
+// much in all walls those of 10 to 24 courses go 9 % too far at 0.8 g, and 5 at 1 g, for 7 and 1. Less: friction is lost where loads
+// bounce, and walls of 32 courses go 30 to 40 % too far.
+constexpr double mostLumps = 0.1, coursesOfLumps = 32;
 
 // Sweeps before the move, and after it, as the square of the courses asks; but a few (Effort), since what blocks that land together have
 // not been told of each other is lost, and in one alone normal impulses and friction do not find each other: squat blocks would rock on
@@ -106,12 +103,12 @@ void Substeps<K>::begin(WallContacts<K>& c, const Structures<K>& structures, dou
 	                 {double(effort.fewestSweeps), c.spread / (courses * courses), std::min(c.burden, mostBurden) / burdenOfSweep});
 	sweeps = int(std::ceil(asked * std::max(1., finer)));
 	const bool lags = sweeps < c.depth;
-	lumps = lags ? float(mostLumps) : 0;
+	lumps = lags ? float(mostLumps * std::min(1., std::pow(c.depth / coursesOfLumps, 2))) : 0;
 	if (!lags)
 		effort.relaxationBefore = effort.relaxationAfter = 1;
 	const double lagging = 1 - 1. / std::max(1, c.depth);
-	damped = float(damping * lagging * std::min(1., pace) / sweeps);
-	inMean = float(std::max(leastInMean, inMeanOfOne / std::max(1, c.depth)));
+	damped = float(effort.damping * lagging * std::min(1., pace) / sweeps);
+	inMean = float(std::max(effort.inMean, inMeanOfOne / std::max(1, c.depth)));
 	arrange(c);
 	loss.assign(c.parts.size(), all(0));
 	velocity.resize(c.velocity.size());
