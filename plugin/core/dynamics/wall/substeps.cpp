@@ -94,7 +94,7 @@ template <class K>
 void Substeps<K>::begin(WallContacts<K>& c, const Structures<K>& structures, double finer, double givenFall)
 {
 	fall = givenFall;
-	effort = effortFor(c.broad);
+	effort = effortFor<K>(c.broad);
 	double pace = 0;
 	for (const Structure& one : structures.all)
 		pace = std::max(pace, one.pace);

@@ -379,7 +379,7 @@ double WallStep<K>::finer() const
 template <class K>
 int WallStep<K>::substepCount() const
 {
-	return int(std::lround(std::max(1., wall::effortFor(sets[1 - stillSet].broad).substeps * finer())));
+	return int(std::lround(std::max(1., wall::effortFor<K>(sets[1 - stillSet].broad).substeps * finer())));
 }
 
 // Rocking impacts, and the base pulses that answer them.
