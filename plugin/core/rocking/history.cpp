@@ -90,6 +90,8 @@ void HistoryRun::start()
 		state_ = {side, std::abs(angle), side * velocity};
 		energy_ = law_.energy(state_.angle, state_.velocity);
 		beginHalfCycle();
+		if (state_.angle >= law_.lostAngle())
+			overturn();
 	}
 	if (train_) {
 		history_.motion.appendPulse(0, train_->impulse);
@@ -117,7 +119,11 @@ void HistoryRun::followPiece(const BaseMotion::Piece& piece, double until)
 // True if the block does not move until then; otherwise it starts to rock at time_.
 bool HistoryRun::staysAtRest(const BaseMotion::Piece& piece, double until)
 {
-	const auto uplift = piece.firstAbove(law_.upliftAcceleration(), time_, until);
+	const double level = law_.upliftAcceleration();
+	auto uplift = piece.firstAbove(level, time_, until);
+	// Where the acceleration has only just reached the level, round-off decides whether the block falls back.
+	if (uplift && std::abs(piece.accelerationAt(*uplift)) <= (1 + tolerance::oneInstant) * level)
+		*uplift += tolerance::oneInstant * std::max(*uplift, 1 / law_.p);
 	if (!uplift || *uplift >= until) {
 		if (until == infinity)
 			done_ = true;
@@ -151,9 +157,10 @@ bool HistoryRun::flyFreely(double until)
 	if (impactTime > until + tolerance::oneInstant * std::max(until, 1 / law_.p))
 		return false;
 	if (state_.velocity > 0) {
-		notePeak(law_.peakAngle(energy_), peakTime);
+		const double peak = law_.peakAngle(energy_); // of this flight; the half cycle may have had a larger one
+		notePeak(peak, peakTime);
 		if (options_.keepStates)
-			history_.knots_.push_back({peakTime, {state_.side, peakAngle_, 0}});
+			history_.knots_.push_back({peakTime, {state_.side, peak, 0}});
 	}
 	impact(std::max(impactTime, time_), law_.impactVelocity(energy_), true);
 	return true;
@@ -176,6 +183,8 @@ void HistoryRun::flyForced(const BaseMotion::Piece& piece, double until)
 				rising /= 2;
 			above = root(velocity, rising, length);
 			notePeak(step.angle(above), time_ + above);
+			if (peakAngle_ >= law_.lostAngle())
+				return overturn();
 		} else if (step.firstChange() < 0 && endVelocity > 0) {
 			const double lowest = root(velocity, 0, length);
 			if (step.angle(lowest) <= 0)
@@ -187,7 +196,7 @@ void HistoryRun::flyForced(const BaseMotion::Piece& piece, double until)
 		}
 		time_ = length == until - time_ ? until : time_ + length;
 		state_ = {side, end, endVelocity};
-		if (std::max(end, peakAngle_) >= law_.lostAngle())
+		if (end >= law_.lostAngle())
 			return overturn();
 	}
 	energy_ = law_.energy(state_.angle, state_.velocity);
