@@ -62,21 +62,30 @@ namespace {
 		return { block, up > 0 ? pair.face2 : pair.face1 };
 	}
 
-	// Whether the old support is a pivot, an edge or a corner, that the new support lies beside.
-	bool isPivot(const std::vector<Vector3>& old, const std::vector<Vector3>& closing)
-	{
-		Vector3 edge = Vector3::Zero();
-		for (const Vector3& p : old)
-			if ((p - old.front()).norm() > edge.norm()) edge = p - old.front();
-		double reach = 0;
-		for (const Vector3& p : closing)
-			reach = std::max(reach, (p - old.front()).norm());
-		const bool    isEdge = edge.norm() > tolerance::pivotEdge * reach;
-		const Vector3 along = isEdge ? Vector3(edge.normalized()) : Vector3(Vector3::Zero());
-		const auto    beside = [&](const Vector3& p) { return Vector3(p - old.front() - along * along.dot(p - old.front())).norm(); };
-		const auto    onPivot = [&](const Vector3& p) { return beside(p) <= tolerance::pivotEdge * reach; };
-		return std::all_of(old.begin(), old.end(), onPivot) && std::none_of(closing.begin(), closing.end(), onPivot);
-	}
+	// The old support, if it is a pivot: an edge or a corner.
+	class OldPivot {
+	public:
+		OldPivot(const std::vector<Vector3>& old, const std::vector<Vector3>& closing)
+		{
+			if (old.empty()) return;
+			place = old.front();
+			for (const Vector3& p : old)
+				if ((p - place).norm() > along.norm()) along = p - place;
+			double reach = 0;
+			for (const Vector3& p : closing)
+				reach = std::max(reach, (p - place).norm());
+			narrow = tolerance::pivotEdge * reach;
+			along = along.norm() > narrow ? Vector3(along.normalized()) : Vector3(Vector3::Zero());
+			holds = std::all_of(old.begin(), old.end(), [this](const Vector3& p) { return has(p); });
+		}
+		bool has(const Vector3& p) const { return Vector3(p - place - along * along.dot(p - place)).norm() <= narrow; }
+
+		bool holds { false };
+
+	private:
+		Vector3 place, along { Vector3::Zero() };
+		double  narrow { 0 };
+	};
 
 } // namespace
 
@@ -111,24 +120,29 @@ template <class K> struct ImpactStage<K>::Builder {
 
 	void addJoint(const JointKey& key, const std::vector<PointRef>& closing)
 	{
+		stage.oldRefs.clear();
+		stage.newPositions.clear();
+		stage.oldPositions.clear();
+		const auto position = [&](PointRef ref) { return positionOf(s.pairs[ref.pair].points[ref.point]); };
+		for (PointRef ref : closing)
+			if (jointOf(s, ref) == key) stage.newPositions.push_back(position(ref));
+		forTouching([&](PointRef ref) {
+			if (!isLoaded(s.pairs[ref.pair].points[ref.point]) || !(jointOf(s, ref) == key)) return;
+			stage.oldRefs.push_back(ref);
+			stage.oldPositions.push_back(position(ref));
+		});
+		const OldPivot pivot(stage.oldPositions, stage.newPositions);
+		// Beside the pivot; on it, where two supports share it, round-off may open and close a point.
 		ClosingJoint joint {};
 		joint.block = key.block;
 		joint.newBegin = int(stage.refs.size());
-		stage.newPositions.clear();
-		stage.oldPositions.clear();
 		for (PointRef ref : closing)
-			if (jointOf(s, ref) == key) {
-				add(ref);
-				stage.newPositions.push_back(positionOf(s.pairs[ref.pair].points[ref.point]));
-			}
+			if (jointOf(s, ref) == key && !(pivot.holds && pivot.has(position(ref)))) add(ref);
 		joint.oldBegin = int(stage.refs.size());
-		forTouching([&](PointRef ref) {
-			if (!isLoaded(s.pairs[ref.pair].points[ref.point]) || !(jointOf(s, ref) == key)) return;
+		for (PointRef ref : stage.oldRefs)
 			add(ref);
-			stage.oldPositions.push_back(positionOf(s.pairs[ref.pair].points[ref.point]));
-		});
 		joint.oldEnd = int(stage.refs.size());
-		if (stage.oldPositions.empty() || !isPivot(stage.oldPositions, stage.newPositions)) return;
+		if (!pivot.holds || joint.newBegin == joint.oldBegin) return;
 
 		// Of several supports, the one under the point farthest from the old pivot names the joint's law.
 		double farthest = -1;

@@ -24,7 +24,8 @@ private:
 	RockingImpact              impact;
 	std::vector<masonry::Body> bodies;
 	std::vector<PointRef>      refs; // of impact.points
-	std::vector<Vector3>       newPositions, oldPositions;
+	std::vector<Vector3>       newPositions, oldPositions; // of a joint
+	std::vector<PointRef>      oldRefs;
 };
 
 } // namespace masonry::rigid

@@ -239,3 +239,37 @@ TEST_CASE("a stack that lands flat in space lands as in the plane")
 				CHECK(std::abs(s.bodies[k].velocity[row]) < 1e-9);
 	}
 }
+
+// The two give way differently, and at the landing points on the old edge close that round-off had opened: they are no new support. Where they
+// were taken for one the law was dropped, in two landings of three, and 0.55 of the energy was left. With it what is asked of the joint leaves
+// C^2, and more where the supports give way (0.92 if they are one, in the plane).
+TEST_CASE("a block that lands on two unequal supports has the restitution that is asked")
+{
+	constexpr double restitution = 0.9, friction = 0.8;
+	for (double angle = 0.14; angle < 0.2; angle += 0.005) {
+		CAPTURE(angle);
+		System s = emptyScene<Space>();
+		for (const auto& [y, half] : {std::pair(-0.35, 0.15), std::pair(0.15, 0.35)})
+			addBox(s, {0.15, half, 0.15}, {Vector3(0, y, 0.15), Quaternion::Identity()});
+		const int block = addBox(s, {0.15, 0.5, 0.3}, placed(turn(angle, Vector3::UnitY()), {0.15, 0, -0.3}, {0.15, 0, 0.3}));
+		for (const auto& [a, b] : {std::pair(0, 1), std::pair(0, 2), std::pair(1, 2), std::pair(1, block), std::pair(2, block)})
+			addPair(s, a, b, restitution, friction);
+		double rest = 0; // energy of the blocks on their faces
+		for (const auto& body : s.bodies)
+			if (!body.prescribed)
+				rest += body.mass * g * body.halfSize.z();
+		rest += s.bodies[block].mass * g * 0.3;
+		const double before = energyOf(s) - rest;
+		RigidStep<Space> step;
+		bool landed = false;
+		for (double end = 0.5; s.time < end;) {
+			step.advance(s, 1e-3);
+			if (!landed && std::any_of(s.impacts.begin(), s.impacts.end(), [&](const Impact& i) { return i.block == block && i.joint.before > 0.5; })) {
+				landed = true;
+				end = s.time + 0.02; // the supports have settled, the block has not come back
+			}
+		}
+		REQUIRE(landed);
+		CHECK(energyOf(s) - rest > restitution * restitution * before);
+	}
+}
