@@ -282,7 +282,7 @@ def main():
     parser.add_argument("--quick", action="store_true", help="105 blocks in the plane only")
     parser.add_argument("--from", dest="old", type=Path, help="tables and figure of a file written before")
     parser.add_argument("--other-walls", action="store_true", help="first excursions of other walls against Gauss-Seidel only, no CPU times")
-    parser.add_argument("--reference", action="store_true", help="compute first excursions by Gauss-Seidel that its file lacks, two hours for all; no CPU times")
+    parser.add_argument("--reference", action="store_true", help="compute first excursions by Gauss-Seidel that its file lacks, an hour or two for all; no CPU times")
     parser.add_argument("--rest", action="store_true", help="whether walls that have been shaken rest, no CPU times")
     arguments = parser.parse_args()
     if arguments.other_walls:
