@@ -300,6 +300,16 @@ for x, z in ((1 - 1e-5, 1.5), (1, 0.7), (-1, 0.7)):  # over an edge that laps by
         base, material = ground()
         ids = [dem.block((1, 1, 1), material, center=place) for place in ((0, 0, 0.5), (x, 0, z))[::order]]
         refuses(dem.check_blocks, f": {ids[::order][1]};")
+# Tilts add up about the resting pose, whatever their signs: the pose is that of their sum, to round-off, and the lowest corner touches.
+for axis in "xy":
+    for turns in ((0.1, -0.2), (-0.1, 0.05), (0.2, 0.1), (0.1, -0.1), (-0.1, 0.3, -0.1)):
+        base, material = ground()
+        steps, once = dem.block((0.6, 0.5, 2), material, on=base), dem.block((0.6, 0.5, 2), material, center=(0, 0, 1))
+        for angle in turns:
+            dem.tilt(steps, angle, axis)
+        dem.tilt(once, sum(turns), axis)
+        one, other = O.bodies[steps].state, O.bodies[once].state
+        assert (one.pos - other.pos).norm() < 1e-14 and (one.ori - other.ori).norm() < 1e-14, (axis, turns, one.pos, other.pos)
 base, material = ground()
 pair = dem.stack(2, (0.6, 0.5, 1), material, base)
 dem.tilt(pair[1], 0.3)

@@ -306,25 +306,30 @@ def structures(gap=0.1):
 
 def tilt(id, angle, axis="y"):
     """Turns a standing free block by `angle` (rad) about its own axis 'x' or 'y', so that it rests on its lower edge. A positive
-    turn about y leans towards +x."""
+    turn about y leans towards +x. Turns about one axis add up: one that leans already comes back to its resting pose, then leans the other way."""
     body, row = _box(id), _axis(axis)
     if not -math.pi / 2 < walls.number_given("angle", angle) < math.pi / 2:
         raise ValueError(f"angle = {angle}: must be between -pi/2 and pi/2, in rad")
     if not body.dynamic:
         raise ValueError(f"id = {id}: that body is prescribed (a base): must be a free block")
-    half, state = body.shape.extents, body.state
-    side = math.copysign(1, angle) if angle else 0
-    edge = Vector3(side * half[0], 0, -half[2]) if axis == "y" else Vector3(0, -side * half[1], -half[2])
-    pivot = state.pos + state.ori * edge
-    state.ori = state.ori * Quaternion(Vector3.Unit(row), angle)
-    state.pos = pivot - state.ori * edge
+    half, state, lean = body.shape.extents, body.state, _angle(body.state, row)
+    back = min(max(angle, min(-lean, 0)), max(-lean, 0))  # about the edge on which it leans
+    for turn, side in ((back, math.copysign(1, lean)), (angle - back, math.copysign(1, angle))):
+        if turn:
+            edge = Vector3(side * half[0], 0, -half[2]) if axis == "y" else Vector3(0, -side * half[1], -half[2])
+            pivot = state.pos + state.ori * edge
+            state.ori = state.ori * Quaternion(Vector3.Unit(row), turn)
+            state.pos = pivot - state.ori * edge
+
+
+def _angle(state, row):
+    turn = state.refOri.conjugate() * state.ori
+    return 2 * math.atan2(turn[row], turn[3])
 
 
 def angle(id, axis="y"):
     """Rotation of a block from its resting pose about its own axis 'x' or 'y', signed, rad."""
-    state, row = _box(id).state, _axis(axis)
-    turn = state.refOri.conjugate() * state.ori
-    return 2 * math.atan2(turn[row], turn[3])
+    return _angle(_box(id).state, _axis(axis))
 
 
 def overturned():
