@@ -74,6 +74,7 @@ def test_time_to_stabilise_needs_and_obeys_its_tolerance():
     (lambda: masonry.closed_form.single_pulse(masonry.RockingBlock(1, 1), -1), "impulse = -1"),
     (lambda: masonry.closed_form.stabilised(masonry.RockingBlock(1, 1), 1, 1.5), r"restitution = 1.5: must be in \[0, 1\]"),
     (lambda: masonry.closed_form.pulse_sequence(masonry.RockingBlock(1, 1), 1, 0.5, 0), "n = 0"),
+    (lambda: masonry.closed_form.pulse_sequence(masonry.RockingBlock(1, 1), 1, 0.5, 2.5), "n = 2.5: must be a whole number, at least 1"),
     (lambda: masonry.closed_form.time_to_stabilise(masonry.RockingBlock(1, 1), 1, 0.5, 0), "tolerance = 0"),
 ])
 def test_bad_input(call, words):

@@ -60,6 +60,28 @@ def test_at2(tmp_path, text):
         masonry.Record.from_at2(path)
 
 
+@pytest.mark.parametrize("line", ["NPTS= 1,000, DT= 1.0D-02 SEC", "DT= 0.1d-1SEC, NPTS=1000", "NPTS=1000,DT=.01", "1000 1.0E-02 NPTS, DT", "1000, 10.D-03 NPTS, DT"])
+def test_at2_headers(tmp_path, line):
+    path = tmp_path / "record.AT2"
+    path.write_text(f"PEER\nA QUAKE\nACCELERATION IN UNITS OF G\n{line}\n" + "1.0D-01 " * 1000 + "\x1a")
+    record = masonry.Record.from_at2(path, gravity=1)
+    assert record.dt == pytest.approx(0.01, rel=1e-15) and len(record.samples) == 1000 and np.all(record.samples == 0.1)
+
+
+@pytest.mark.parametrize("line, values, words", [
+    ("NPTS= 5, DT= .01", ".1 .2 NaN .4 .5 .6", "'NaN' stands among the values: must be numbers"),
+    ("NPTS= 5, DT= .01", ".1 .2 ***** .4 .5 .6", r"'\*\*\*\*\*' stands among"),
+    ("NPTS= 5, DT= .01.5", ".1 .2 .3 .4 .5", "line 4 .* must give NPTS and DT"),
+    ("NPTS= 5, DT= 1.0D-", ".1 .2 .3 .4 .5", "line 4 .* must give NPTS and DT"),
+    ("NPTS= 5,000, DT= .01", ".1 .2 .3 .4 .5", "5 values: must be NPTS = 5000"),
+])
+def test_bad_at2(tmp_path, line, values, words):
+    path = tmp_path / "record.AT2"
+    path.write_text(f"PEER\nA QUAKE\nACCELERATION IN UNITS OF G\n{line}\n{values}\n")
+    with pytest.raises(ValueError, match=words):
+        masonry.Record.from_at2(path)
+
+
 def test_csv(tmp_path):
     path = tmp_path / "record.csv"
     path.write_text("# a laboratory\ntime,acceleration\n0.00,1\n0.02,-2\n0.04,3\n")
@@ -85,6 +107,12 @@ def test_csv(tmp_path):
     (lambda: masonry.PulseTrain(np.nan, [0]), "impulse = nan"),
     (lambda: masonry.PulseTrain(1.0, [0], shape="triangle"), "shape = 'triangle'"),
     (lambda: masonry.PulseTrain(1.0, half_cycles=0), "half_cycles = 0"),
+    (lambda: masonry.PulseTrain(1.0, half_cycles=2.7), "half_cycles = 2.7: must be a whole number, at least 1"),
+    (lambda: masonry.PulseTrain(1.0, [0], half_cycles=2), "half_cycles = 2: must be left out with times"),
+    (lambda: masonry.PulseTrain(1.0, [0], duration=0.2), "duration = 0.2: must be left out .* for dirac"),
+    (lambda: masonry.PulseTrain(1.0, duration=0.2), "duration = 0.2: must be left out .* for dirac"),
+    (lambda: masonry.PulseTrain("a"), "impulse = 'a': must be a number"),
+    (lambda: masonry.Record(0.01, [1.0, 2.0], scale="2"), "scale = '2': must be a number"),
     (lambda: masonry.Rectangular(1.0, 0.0), "duration = 0"),
     (lambda: masonry.Sine(1.0, -1.0), "frequency = -1"),
     (lambda: masonry.Sine("a", 1.0), "amplitude = 'a': must be a number"),

@@ -59,3 +59,15 @@ def test_no_threshold_in_a_safe_bracket_and_bad_brackets():
         masonry.overturning_amplitude(BLOCK, masonry.Rectangular(1.0, 0.1), bracket=(2, 1))
     with pytest.raises(ValueError, match="samples = 1"):
         masonry.overturning_amplitude(BLOCK, masonry.Rectangular(1.0, 0.1), samples=1)
+
+
+@pytest.mark.parametrize("block, shape, words", [
+    (BLOCK, masonry.HalfSine(0.0, 1.0), r"shape = HalfSine\(amplitude=0.0, .*must be one motion .* not 0"),
+    (BLOCK, masonry.HalfSine([1.0, 2.0], 1.0), r"shape = HalfSine\(amplitude=\[1.0, 2.0\], .*single numbers"),
+    (BLOCK, masonry.Record(0.01, [0, 0, 0]), r"shape = Record\(3 samples, .*moves the base"),
+    (BLOCK, 1.0, "shape = 1.0: must be one motion"),
+    (masonry.RockingBlock([0.3, 0.4], 1.5), masonry.HalfSine(1.0, 1.0), r"block = RockingBlock\(half_width=\[0.3, 0.4\].*one block"),
+])
+def test_bad_input(block, shape, words):
+    with pytest.raises(ValueError, match=words):
+        masonry.overturning_amplitude(block, shape)

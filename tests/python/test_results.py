@@ -345,6 +345,24 @@ def test_a_film_has_the_frames_asked_for(tmp_path):
     results.film(h, tmp_path / "slow.gif", start=0.5, end=1.0, frames_per_second=2, speed=0.5, progress=False)
     with Image.open(tmp_path / "slow.gif") as gif:
         assert gif.n_frames == 2
+    results.film(h, tmp_path / "end.gif", frames_per_second=11, speed=0.4, progress=False)  # 55 times 0.4/11 s is 2 s and round-off
+    for window in ((0.5, 0.5), (None, 0.0), (2.0, None), (0.4, 0.6)):  # one sample
+        results.film(h, tmp_path / "still.gif", *window, progress=False)
+        with Image.open(tmp_path / "still.gif") as gif:
+            assert gif.n_frames == 1
+
+
+@pytest.mark.parametrize("angles", [[0.1, 0.2], [0, 0], [0, 0.1]])
+def test_a_map_without_joints_says_so(monkeypatch, angles):
+    """A block that leans in the first sample has no joint with the base: that nothing opened would be wrong."""
+    from matplotlib.figure import Figure
+
+    drawn = []
+    monkeypatch.setattr(Figure, "savefig", lambda figure, path, **given: drawn.append(figure))
+    results.draw_joints(rocking(angles), "joints.png")
+    titles = [axes.get_title() for axes in drawn[0].axes[:2]]
+    assert [("no blocks touch at first" in t) for t in titles] == [angles[0] != 0] * 2
+    assert ["nothing" in t for t in titles] == [angles == [0, 0], angles[0] == 0]
 
 
 # --- ParaView ---
@@ -394,6 +412,7 @@ def test_bad_input_is_refused(tmp_path):
                       (lambda: results.draw(h, path, view=(0, 0, 0)), "view"), (lambda: results.draw_energy(h, path), "no energies"),
                       (lambda: results.film(h, "h.avi"), "must end in .gif or .mp4"), (lambda: results.film(h, path, frames_per_second=100), "frames_per_second"),
                       (lambda: results.film(h, path, speed=0), "speed = 0"), (lambda: results.film(h, path, start=0.5, end=0.0), "start"),
-                      (lambda: results.write_paraview(h, "h.vtu"), "must end in .pvd"), (lambda: results.write_paraview(h, tmp_path / "h.pvd", every=0), "every = 0")):
+                      (lambda: results.write_paraview(h, "h.vtu"), "must end in .pvd"), (lambda: results.write_paraview(h, tmp_path / "h.pvd", every=0), "every = 0"),
+                      (lambda: results.write_paraview(h, tmp_path / "h.pvd", every="a"), "every = 'a'")):
         with pytest.raises(ValueError, match=word):
             act()

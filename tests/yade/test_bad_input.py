@@ -5,6 +5,7 @@ import io
 import math
 import os
 
+import numpy as np
 from masonry import dem
 from rocking_scene import one_block, quiet_engines, refuses, refuses_to_run, stone
 from yade import O, Quaternion, RockingJointEngine, utils
@@ -85,6 +86,9 @@ for motion, words in ((masonry.Record(0.01, [0, 1]), "dem.record_motion(record, 
                       (masonry.PulseTrain(0.1, times=[0]), "times=..."), (masonry.HalfSine(1.0, 0.1), "dem.record_motion(masonry.Record(dt, motion.acceleration(times)), ids=[base])")):
     refuses(lambda: quiet_engines(motion), f"motion = {motion}", words)
 refuses(lambda: dem.record_motion([0, 1], ids=[base]), "record = [0, 1]", "masonry.Record")
+for bad in (0, "0", [0.5], [-1]):
+    refuses(lambda: dem.record_motion(masonry.Record(0.01, [0, 1]), ids=bad), f"ids = {bad!r}", "a list of ids")
+assert dem.record_motion(masonry.Record(0.01, [0, 1]), ids=np.array([base])).ids == [base]
 refuses(lambda: dem.record_motion(masonry.Record(0.01, [0, 1], scale=[1, 2]), ids=[base]), "record.scale = [1, 2]", "one number")
 for name, bad, why in (("impulse", inf, "finite"), ("times", [0, 2, 1], "increasing"), ("times", [1, 1], "increasing"), ("times", [-1, 1], ">= 0"),
                        ("times", [0, nan], "finite"), ("halfCycles", -2, ">= 1"), ("halfCycles", 0, ">= 1"), ("duration", -1, ">= 0"), ("duration", nan, ">= 0"), ("shape", "square", "square")):

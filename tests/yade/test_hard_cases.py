@@ -168,7 +168,6 @@ def yawed():
     for yaw in (0, 17, 45):
         base, material = ground(size=(8, 8, 0.4), restitution=0.8)
         block = dem.block((0.6, 1, 1.8), material, on=base, orientation=Quaternion(Vector3(0, 0, 1), math.radians(yaw)))
-        O.bodies[block].state.refOri = O.bodies[block].state.ori
         dem.tilt(block, 0.2)
         O.engines = quiet_engines()
         histories.append(run_impacts(6, 5)["time"][:6])

@@ -62,10 +62,13 @@ assert choice(motion=dem.RecordMotionEngine(ids=[base], samples=[0, 1], directio
 assert integrator().along == Vector3(0, 1, 0)
 base, block, _ = one_block(5)
 assert choice(motion=dem.RecordMotionEngine(ids=[base], samples=[0, 1], direction=(0.6, 0.8, 0))) == "spatial"
-base, block, _ = one_block(5, normalStiffness=1e9)
-with contextlib.redirect_stdout(io.StringIO()) as said:
-    engines = dem.engines()
-assert "compliant" in said.getvalue() and "joint stiffness" in said.getvalue() and engines[-1].__class__ is NewtonIntegrator
+for direction in ("normalStiffness", "shearStiffness"):  # in one: the other is chosen
+    base, block, _ = one_block(5, **{direction: 1e9})
+    with contextlib.redirect_stdout(io.StringIO()) as said:
+        engines = dem.engines()
+    assert "compliant" in said.getvalue() and "joint stiffness" in said.getvalue() and engines[-1].__class__ is NewtonIntegrator
+    material = O.bodies[block].mat
+    assert getattr(material, direction) == 1e9 and material.normalStiffness > 0 and material.shearStiffness > 0
 
 # --- forces of others ---
 # mu = tan(0.6) = 0.68: pushed with 0.8 of its weight at its centre a flat block slides with (0.8 - 0.68) g.

@@ -189,6 +189,20 @@ dem.check_blocks(tolerance=1e-9)
 assert all(dem.angle(i) == 0 and (O.bodies[i].state.ori - turn).norm() < 1e-15 for i in ids)
 assert (O.bodies[ids[1]].state.pos - Vector3(math.cos(0.7), math.sin(0.7), 0.1)).norm() < 1e-12
 
+# A block that is turned about z counts its angles as a table's does, about its own axes from where it stands: 0, then what it is tilted by. Beyond pi
+# too, and on a base that is turned itself. 1e-12: round-off.
+for yaw in (0.3, math.pi / 2, 3.5, -3.5):
+    base, material = ground()
+    O.bodies[base].state.ori = Quaternion(Vector3(0, 0, 1), 0.7)
+    about_z = Quaternion(Vector3(0, 0, 1), yaw)
+    ids = [dem.block((0.5, 0.8, 2), material, on=base, orientation=about_z), dem.block((0.5, 0.8, 2), material, center=(3, 0, 1), orientation=about_z),
+           *dem.blocks_from_table([dict(x=-1, y=0, z=1, size_x=0.5, size_y=0.8, size_z=2, rotation_z=yaw)], material, on=base)]
+    assert all(dem.angle(i, axis) == 0 for i in ids for axis in "xy")
+    for i in ids:
+        dem.tilt(i, 0.1)
+        assert abs(dem.angle(i) - 0.1) < 1e-12 and abs(dem.angle(i, "x")) < 1e-12, (yaw, i)
+    assert abs(dem.angle(dem.block((1, 1, 1), material, center=(9, 9, 9), orientation=about_z * Quaternion(Vector3(0, 1, 0), 0.2))) - 0.2) < 1e-12
+
 # Tables. Round trip: the same bits, turned or not, by CSV and by JSON; a fallen block too.
 folder = tempfile.mkdtemp()
 random = np.random.default_rng(5)
@@ -286,6 +300,16 @@ for x, z in ((1 - 1e-5, 1.5), (1, 0.7), (-1, 0.7)):  # over an edge that laps by
         base, material = ground()
         ids = [dem.block((1, 1, 1), material, center=place) for place in ((0, 0, 0.5), (x, 0, z))[::order]]
         refuses(dem.check_blocks, f": {ids[::order][1]};")
+# Tilts add up about the resting pose, whatever their signs: the pose is that of their sum, to round-off, and the lowest corner touches.
+for axis in "xy":
+    for turns in ((0.1, -0.2), (-0.1, 0.05), (0.2, 0.1), (0.1, -0.1), (-0.1, 0.3, -0.1)):
+        base, material = ground()
+        steps, once = dem.block((0.6, 0.5, 2), material, on=base), dem.block((0.6, 0.5, 2), material, center=(0, 0, 1))
+        for angle in turns:
+            dem.tilt(steps, angle, axis)
+        dem.tilt(once, sum(turns), axis)
+        one, other = O.bodies[steps].state, O.bodies[once].state
+        assert (one.pos - other.pos).norm() < 1e-14 and (one.ori - other.ori).norm() < 1e-14, (axis, turns, one.pos, other.pos)
 base, material = ground()
 pair = dem.stack(2, (0.6, 0.5, 1), material, base)
 dem.tilt(pair[1], 0.3)

@@ -19,6 +19,13 @@ def is_whole(value, least, most=math.inf):
     return isinstance(value, numbers.Real) and not isinstance(value, bool) and least <= value <= most and value < math.inf and value == int(value)
 
 
+def whole_given(name, value, least):
+    """The value as an int; ValueError unless it is a whole number (2.0 is one), at least `least`."""
+    if not is_whole(value, least):
+        raise ValueError(f"{name} = {value!r}: must be a whole number, at least {least}")
+    return int(value)
+
+
 def array_given(name, values):
     """The values, numbers of any shape, as an array of floats; ValueError unless they are that."""
     try:

@@ -6,24 +6,34 @@ import numpy as np
 
 # "stuck" negatives (1.2-3.4) are two numbers; an exponent sign is not a separator
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][-+]?\d+)?")
+# NPTS and DT of line 4, as they are named or, in older files, in this order before their names. Thousands may be parted by commas.
+_COUNT, _STEP = r"(\d{1,3}(?:,\d{3})+|\d+)", rf"({_NUMBER.pattern})(?![-+.\d]|[A-Z][-+\d])"
+_NAMED = re.compile(rf"(?=.*NPTS\s*=\s*{_COUNT})(?=.*DT\s*=\s*{_STEP})", re.IGNORECASE)
+_COUNTED = re.compile(rf"\s*{_COUNT}[\s,]+{_STEP}\s*NPTS", re.IGNORECASE)
+
+
+def _number(text):
+    return float(text.upper().replace("D", "E"))
 
 
 def read_at2(path):
-    """(title, dt, samples in g) of a PEER NGA file: title in line 2, unit in line 3, NPTS and DT in line 4, in either order
-    (NPTS= 4000, DT= .0050 SEC; older files: 4000 .0050 NPTS, DT)."""
+    """(title, dt, samples in g) of a PEER NGA file: title in line 2, unit in line 3, NPTS and DT in line 4
+    (NPTS= 4000, DT= .0050 SEC, in either order; older files: 4000 .0050 NPTS, DT). Exponents may be Fortran's (1.0D-02)."""
     with open(path, encoding="latin-1") as file:
         header = [file.readline().strip() for _ in range(4)]
         body = file.read()
     if not re.search(r"\bG\b", header[2].upper()):
         raise ValueError(f"{path}: line 3 is {header[2]!r}: must state ACCELERATION in units of G")
-    labelled = re.search(r"NPTS\s*=\s*(\d+).*?DT\s*=\s*([\d.eE+-]+)", header[3], re.IGNORECASE)
-    counted = labelled or re.match(r"\s*(\d+)\s+([\d.eE+-]+)\s+NPTS", header[3], re.IGNORECASE)
+    counted = _NAMED.match(header[3]) or _COUNTED.match(header[3])
     if not counted:
         raise ValueError(f"{path}: line 4 is {header[3]!r}: must give NPTS and DT")
-    samples = np.array([float(number.replace("D", "E").replace("d", "e")) for number in _NUMBER.findall(body)])
-    if len(samples) != int(counted[1]):
-        raise ValueError(f"{path}: {len(samples)} values: must be NPTS = {counted[1]}")
-    return header[1], float(counted[2]), samples
+    words = re.findall(r"[^\s,\x1a]+", _NUMBER.sub(" ", body))  # files from DOS end with \x1a
+    if words:
+        raise ValueError(f"{path}: {words[0]!r} stands among the values: must be numbers")
+    samples, count = np.array([_number(text) for text in _NUMBER.findall(body)]), int(counted[1].replace(",", ""))
+    if len(samples) != count:
+        raise ValueError(f"{path}: {len(samples)} values: must be NPTS = {count}")
+    return header[1], _number(counted[2]), samples
 
 
 def _is_number(text):

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from . import _core
+from ._given import whole_given
 from ._arrays import columns, restore, shape_of
 
 
@@ -47,9 +48,9 @@ def single_pulse(block, impulse):
 
 
 def pulse_sequence(block, impulse, restitution, n):
-    """The first n half cycles."""
+    """The first n half cycles, n >= 1."""
     shape = shape_of(np.empty(block.shape), impulse, restitution)
-    result = _core.pulse_sequence(block._columns(shape), *columns(shape, impulse, restitution), n)
+    result = _core.pulse_sequence(block._columns(shape), *columns(shape, impulse, restitution), whole_given("n", n, 1))
     return PulseSequence(*(restore(x, shape) for x in result))
 
 

@@ -29,7 +29,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ._given import is_whole, number_given
+from ._given import array_given, is_whole, number_given
 
 _RUN_CASE = Path(__file__).with_name("_run_case.py")
 # Lines of what a failed case has said that the error repeats, and failed cases that it names.
@@ -311,6 +311,13 @@ def statistics(table, by=None, probabilities=(0.16, 0.5, 0.84), confidence=0.95,
     for name in (*by, event, value):
         if name not in table.dtype.names:
             raise ValueError(f"{name!r}: is no column of the table, which has {', '.join(table.dtype.names)}")
+    chances = array_given("probabilities", probabilities)
+    if chances.ndim != 1:
+        raise ValueError(f"probabilities = {probabilities!r}: must be a list of numbers above 0 and below 1")
+    made = [*by, "cases", *(f"fraction{end}" for end in ("", "_low", "_high")), *(f"quantile_{p:g}{end}" for p in chances for end in ("", "_low", "_high"))]
+    twice = [name for name in dict.fromkeys(made) if made.count(name) > 1]
+    if twice:
+        raise ValueError(f"by = {by}, probabilities = {probabilities}: would make two columns {twice[0]!r}: must all differ")
     groups, member = np.unique(table[by], return_inverse=True) if by else ([()], np.zeros(len(table), dtype=int))
     rows = []
     for number, group in enumerate(groups):
@@ -323,10 +330,8 @@ def statistics(table, by=None, probabilities=(0.16, 0.5, 0.84), confidence=0.95,
                 raise ValueError(f"column {name!r}: {int(np.isnan(column).sum())} of {len(part)} cases{which} are NaN: "
                                  f"must be numbers{f', but where {event} is True' if name == value else ''}")
         row = [*group, len(part), *fraction(happened, confidence)]
-        for probability in probabilities:
+        for probability in chances:
             row += quantile(numbers, probability, confidence)
         rows.append(tuple(row))
-    fields = [(name, table.dtype[name]) for name in by]
-    fields += [("cases", int)] + [(f"fraction{end}", float) for end in ("", "_low", "_high")]
-    fields += [(f"quantile_{p:g}{end}", float) for p in probabilities for end in ("", "_low", "_high")]
-    return np.array(rows, dtype=fields)
+    kinds = [table.dtype[name] for name in by] + [int] + [float] * (len(made) - len(by) - 1)
+    return np.array(rows, dtype=list(zip(made, kinds)))

@@ -4,7 +4,8 @@ import numpy as np
 
 from . import _core
 from ._arrays import columns, restore, shape_of
-from .motions import Still
+from ._given import whole_given
+from .motions import Motion, Still
 
 
 class History:
@@ -47,13 +48,14 @@ class History:
 def _arguments(block, motion, restitution, restoring, initial_angle, initial_velocity, t_end, half_cycles):
     """(shape of the cases, arguments of the compiled functions)"""
     motion = Still() if motion is None else motion
+    if not isinstance(motion, Motion):
+        raise ValueError(f"motion = {motion!r}: must be a motion of masonry (PulseTrain, Sine, Record, ...) or None")
     restitution = block.natural_restitution if restitution is None else restitution
     t_end = np.inf if t_end is None else t_end
-    if half_cycles is not None and half_cycles < 1:
-        raise ValueError(f"half_cycles = {half_cycles}: must be >= 1")
+    half_cycles = -1 if half_cycles is None else whole_given("half_cycles", half_cycles, 1)
     shape = np.broadcast_shapes(block.shape, motion.shape, shape_of(restitution, initial_angle, initial_velocity, t_end))
     state = columns(shape, restitution, initial_angle, initial_velocity, t_end)
-    return shape, (block._columns(shape), motion._motions(shape), state, restoring, -1 if half_cycles is None else int(half_cycles))
+    return shape, (block._columns(shape), motion._motions(shape), state, restoring, half_cycles)
 
 
 def simulate(block, motion=None, restitution=None, restoring="exact", initial_angle=0.0, initial_velocity=0.0, t_end=None, half_cycles=None):

@@ -6,7 +6,7 @@ Every motion with a known course has .acceleration(t), .velocity(t), .displaceme
 import numpy as np
 
 from . import _core
-from ._given import array_given, number_given
+from ._given import array_given, number_given, whole_given
 from ._arrays import columns, restore, shape_of
 from ._readers import read_at2, read_csv
 
@@ -51,11 +51,15 @@ class PulseTrain(Motion):
     """
 
     def __init__(self, impulse, times=None, half_cycles=None, assembly=False, shape="dirac", duration=0.0):
-        if half_cycles is not None and (times is not None or half_cycles < 1):
-            raise ValueError(f"half_cycles = {half_cycles}: must be >= 1, and only for a resonant train (times=None)")
+        array_given("impulse", impulse)
+        half_cycles = half_cycles if half_cycles is None else whole_given("half_cycles", half_cycles, 1)
+        if half_cycles is not None and times is not None:
+            raise ValueError(f"half_cycles = {half_cycles}: must be left out with times, it is for a resonant train (times=None)")
         if times is None and (assembly or shape != "dirac"):
             raise ValueError(f"shape = {shape!r}, assembly = {assembly}: a resonant train (times=None) has dirac pulses; give half_cycles "
                              "to bring the base to rest")
+        if shape == "dirac" and duration != 0:
+            raise ValueError(f"duration = {duration!r}: must be left out (0) for dirac pulses; shape='rectangular' or 'half-sine' has one")
         self.impulse = self.amplitude = impulse
         self.times = None if times is None else np.atleast_1d(np.asarray(times, dtype=float))
         self.half_cycles, self.assembly = half_cycles, assembly
@@ -76,7 +80,7 @@ class PulseTrain(Motion):
     def _motions(self, shape):
         impulse, = columns(shape, self.impulse)
         if self.times is None:
-            return _core.resonant(impulse, -1 if self.half_cycles is None else int(self.half_cycles))
+            return _core.resonant(impulse, self.half_cycles or -1)
         return _core.pulses(impulse, self.times, self.assembly, self.pulse_shape, float(self.duration))
 
 
@@ -135,6 +139,7 @@ class Record(Motion):
         self._unscaled = np.ascontiguousarray(array_given("acceleration", acceleration))
         if self._unscaled.ndim != 1:
             raise ValueError(f"acceleration has the shape {self._unscaled.shape}: must be one row of samples, at least two")
+        array_given("scale", scale)
         self.scale = self.amplitude = scale
         self.baseline = baseline
         self.name, self.source, self.unit = name, source, unit

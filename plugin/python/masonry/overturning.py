@@ -3,8 +3,9 @@
 import numpy as np
 
 from . import _core
+from ._given import whole_given
 from .history import _arguments
-from .motions import PulseTrain, Record
+from .motions import Motion, PulseTrain, Record
 
 # Below its first threshold the bracket is scanned in steps of this share of it.
 _FINE = 1e-3
@@ -28,12 +29,15 @@ def overturning_amplitude(block, shape, restitution=None, restoring="exact", bra
     So the first threshold is right unless a window narrower than a thousandth of it, in which the block overturns (or stands), lies below.
     Beyond it windows narrower than a step of the scan can be missed. Under long records there are windows of every width.
     """
+    if block.shape:
+        raise ValueError(f"block = {block}: must be one block, of single numbers")
+    if not isinstance(shape, Motion) or shape.shape or not getattr(shape, "amplitude", 0) or (isinstance(shape, Record) and not shape.samples.any()):
+        raise ValueError(f"shape = {shape!r}: must be one motion of single numbers that moves the base: its amplitude, impulse or scale is not 0")
+    samples = whole_given("samples", samples, 2)
     unit = shape.scaled(1 / shape.amplitude)
     lower, upper = _default_bracket(block, unit) if bracket is None else bracket
     if not 0 <= lower < upper < np.inf:
         raise ValueError(f"bracket = ({lower}, {upper}): must be 0 <= lower < upper, finite")
-    if samples < 2:
-        raise ValueError(f"samples = {samples}: must be >= 2")
     endless = isinstance(shape, PulseTrain) and shape.times is None and shape.half_cycles is None
     half_cycles = 200 if endless and half_cycles is None else half_cycles
 

@@ -1,6 +1,7 @@
 """The engines of a scene, chosen and explained."""
 
 import numpy as np
+from masonry._given import is_whole
 from masonry.motions import Motion, PulseTrain, Record
 from yade import O, wrapper
 
@@ -35,6 +36,11 @@ _STEP_FRACTION = 0.2
 
 def _blocks():
     return [b for b in O.bodies if isinstance(b.mat, wrapper.BlockMat) and isinstance(b.shape, wrapper.Box)]
+
+
+def has_stiffness(material):
+    """Whether a script has given the BlockMat a joint stiffness, in either direction."""
+    return not (np.isnan(material.normalStiffness) and np.isnan(material.shearStiffness))
 
 
 def _column_pressure(body, free, gravity):
@@ -86,9 +92,11 @@ def record_motion(record, ids, direction=(1, 0, 0), start=0.0):
     """
     if not isinstance(record, Record):
         raise ValueError(f"record = {record!r}: must be a masonry.Record")
+    if not np.iterable(ids) or not all(is_whole(id, 0) for id in ids):
+        raise ValueError(f"ids = {ids!r}: must be a list of ids of bodies, whole numbers from 0 on")
     if record.shape:
         raise ValueError(f"record.scale = {record.scale}: must be one number, a scene has one motion (record.scaled() makes another)")
-    return wrapper.RecordMotionEngine(ids=ids, samples=record.samples.tolist(), interval=record.dt, baseline=record.baseline, direction=direction, start=start)
+    return wrapper.RecordMotionEngine(ids=[int(id) for id in ids], samples=record.samples.tolist(), interval=record.dt, baseline=record.baseline, direction=direction, start=start)
 
 
 def _in_yade(motion):
@@ -209,7 +217,7 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
     if model == "auto":
         if penetration is not None:
             model, reason = "compliant", "penetration is given"
-        elif any(not np.isnan(b.mat.normalStiffness) for b in _blocks()):
+        elif any(has_stiffness(b.mat) for b in _blocks()):
             model, reason = "compliant", "a BlockMat has a joint stiffness"
     recorders = [] if recorder is None else list(recorder) if isinstance(recorder, (list, tuple)) else [recorder]
     if not all(isinstance(one, (wrapper.BlockRecorder, wrapper.WallRecorder)) for one in recorders):

@@ -70,10 +70,10 @@ def _axis(name):
     return _AXES[name]
 
 
-def _append(center, size, material, orientation=None, fixed=False):
-    body = utils.box(center, size / 2, orientation or Quaternion.Identity, material=_block_material(material), fixed=fixed)
-    body.aspherical = True
-    return O.bodies.append(body)
+def _turn_about_z(turn):
+    """The share of a turn that is about z: a block that it leans over rests like this. Where there is none (it lies on its side): no turn."""
+    norm = math.hypot(turn[3], turn[2])
+    return Quaternion(turn[3] / norm, 0, 0, turn[2] / norm) if norm else Quaternion.Identity
 
 
 def _append_all(centers, sizes, material, orientations, resting):
@@ -122,25 +122,30 @@ def base(size, material):
     """A body that does not move by itself, with its top face at z = 0, centred on the z axis. size: full sizes (x, y, z), m.
     A motion engine (PulseTrainEngine, RecordMotionEngine) moves it. Returns its id."""
     size = _positive_size("size", size)
-    return _append(Vector3(0, 0, -size[2] / 2), size, material, fixed=True)
+    body = utils.box(Vector3(0, 0, -size[2] / 2), size / 2, Quaternion.Identity, material=_block_material(material), fixed=True)
+    body.aspherical = True
+    return O.bodies.append(body)
 
 
 def block(size, material, on=None, center=None, orientation=None):
     """A free block. size: full sizes (x, y, z), m. It stands centred on the body `on`, or has its centre at `center` (m).
-    orientation: a Quaternion; with `on`, a turn about z at most. Returns its id."""
+    orientation: a Quaternion; with `on`, a turn about z at most. dem.angle counts from that turn about z, not from the world's axes.
+    Returns its id."""
     size = _positive_size("size", size)
     if (on is None) == (center is None):
         raise ValueError(f"on = {on}, center = {center}: give one of the two")
     orientation = Quaternion.Identity if orientation is None else orientation
     if not isinstance(orientation, Quaternion) or not abs(orientation.norm() - 1) < 1e-9:
         raise ValueError(f"orientation = {orientation!r}: must be a Quaternion of length 1")
+    resting = _turn_about_z(orientation)
     if on is not None:
         below = _box(on, "on")
         if not (orientation * Vector3.UnitZ)[2] > 1 - 1e-12:
             raise ValueError(f"orientation = {orientation!r}: must be a turn about z where the block stands on a body")
         center = below.state.pos + below.state.ori * Vector3(0, 0, below.shape.extents[2] + size[2] / 2)
-        orientation = below.state.ori * orientation
-    return _append(Vector3(walls.finite_numbers("center", center, 3, "three finite numbers, in m")), size, material, orientation)
+        orientation = resting = below.state.ori * orientation
+    center = walls.finite_numbers("center", center, 3, "three finite numbers, in m")
+    return _append_all(np.array([center]), np.array([size]), _block_material(material), orientation, resting)[0]
 
 
 def stack(n, size, material, on):
@@ -230,9 +235,7 @@ def blocks_from_table(table, materials, on=None):
         if name not in materials:
             raise ValueError(f"{place}: material = {name!r}: must be one of {', '.join(repr(key) for key in materials)}")
     orientations = [Quaternion(*q) for q in quaternions.tolist()]
-    # A block rests upright: its turn about z alone. Lying on its side it has none.
-    norms = np.hypot(quaternions[:, 0], quaternions[:, 3]).tolist()
-    resting = [Quaternion(q[3] / norm, 0, 0, q[2] / norm) if norm else Quaternion.Identity for q, norm in zip(orientations, norms)]
+    resting = [_turn_about_z(q) for q in orientations]
     if on is not None:
         foot, turn = _top(on)
         centers = _placed(centers, foot, turn)
@@ -303,25 +306,30 @@ def structures(gap=0.1):
 
 def tilt(id, angle, axis="y"):
     """Turns a standing free block by `angle` (rad) about its own axis 'x' or 'y', so that it rests on its lower edge. A positive
-    turn about y leans towards +x."""
+    turn about y leans towards +x. Turns about one axis add up: one that leans already comes back to its resting pose, then leans the other way."""
     body, row = _box(id), _axis(axis)
     if not -math.pi / 2 < walls.number_given("angle", angle) < math.pi / 2:
         raise ValueError(f"angle = {angle}: must be between -pi/2 and pi/2, in rad")
     if not body.dynamic:
         raise ValueError(f"id = {id}: that body is prescribed (a base): must be a free block")
-    half, state = body.shape.extents, body.state
-    side = math.copysign(1, angle) if angle else 0
-    edge = Vector3(side * half[0], 0, -half[2]) if axis == "y" else Vector3(0, -side * half[1], -half[2])
-    pivot = state.pos + state.ori * edge
-    state.ori = state.ori * Quaternion(Vector3.Unit(row), angle)
-    state.pos = pivot - state.ori * edge
+    half, state, lean = body.shape.extents, body.state, _angle(body.state, row)
+    back = min(max(angle, min(-lean, 0)), max(-lean, 0))  # about the edge on which it leans
+    for turn, side in ((back, math.copysign(1, lean)), (angle - back, math.copysign(1, angle))):
+        if turn:
+            edge = Vector3(side * half[0], 0, -half[2]) if axis == "y" else Vector3(0, -side * half[1], -half[2])
+            pivot = state.pos + state.ori * edge
+            state.ori = state.ori * Quaternion(Vector3.Unit(row), turn)
+            state.pos = pivot - state.ori * edge
+
+
+def _angle(state, row):
+    turn = state.refOri.conjugate() * state.ori
+    return 2 * math.atan2(turn[row], turn[3])
 
 
 def angle(id, axis="y"):
     """Rotation of a block from its resting pose about its own axis 'x' or 'y', signed, rad."""
-    state, row = _box(id).state, _axis(axis)
-    turn = state.refOri.conjugate() * state.ori
-    return 2 * math.atan2(turn[row], turn[3])
+    return _angle(_box(id).state, _axis(axis))
 
 
 def overturned():

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass, field
 
 import numpy as np
-from masonry.dem.engines import _FEW_BLOCKS, _METHODS, engines
+from masonry.dem.engines import _FEW_BLOCKS, _METHODS, engines, has_stiffness
 from masonry.dem.scene import _boxes, _layout, structures
 from masonry.dem.walls import axes_of, number_given
 from tqdm import tqdm
@@ -132,7 +132,7 @@ class TiltTable:
         self._free = [b for b in self._blocks if b.dynamic]
         if not self._free:
             raise ValueError("there is no free block in O.bodies: add one with dem.block() before dem.TiltTable()")
-        if model == "auto" and any(not math.isnan(b.mat.normalStiffness) for b in self._blocks):
+        if model == "auto" and any(has_stiffness(b.mat) for b in self._blocks):
             raise ValueError("model = 'auto': must be 'planar' or 'spatial' where a BlockMat has a joint stiffness: TiltTable is for rigid blocks")
         self._start = [(b.state.pos, b.state.ori) for b in self._blocks]
         centers, sizes, quaternions = _layout(self._free)
@@ -155,8 +155,8 @@ class TiltTable:
         collapse; the nearer below, the faster."""
         if not 0 < number_given("tolerance", tolerance) < 1:
             raise ValueError(f"tolerance = {tolerance}: must be above 0 and below 1")
-        if not 0 < number_given("lower", lower) < math.inf:
-            raise ValueError(f"lower = {lower}: must be positive and finite")
+        if not 0 < number_given("lower", lower) < _MOST:
+            raise ValueError(f"lower = {lower}: must be above 0 and below {_MOST}")
         trials, rest, mechanism = [], None, None
 
         def hold(multiplier, **ends):
@@ -202,8 +202,8 @@ class TiltTable:
         blocks last rested to where one had moved by `share`; the multiplier is its lower end: what follows is delay."""
         if not 0 < number_given("rate", rate) < math.inf:
             raise ValueError(f"rate = {rate}: must be positive and finite")
-        if not 0 <= number_given("start", start) < math.inf:
-            raise ValueError(f"start = {start}: must be 0 or positive")
+        if not 0 <= number_given("start", start) < _MOST:
+            raise ValueError(f"start = {start}: must be from 0 to below {_MOST}")
         multiplier = rested = start
         with self._trials("stair", progress) as bar:
             integrator = self._begin(start)

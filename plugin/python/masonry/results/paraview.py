@@ -4,6 +4,7 @@ import base64
 from pathlib import Path
 
 import numpy as np
+from masonry._given import whole_given
 from masonry.results import _pose
 
 # VTK's order of the corners of a hexahedron, from ours (x fastest, then y).
@@ -44,13 +45,12 @@ def write_paraview(history, path, every=1, relative=False):
     path = Path(path)
     if path.suffix != ".pvd":
         raise ValueError(f"path = {path}: must end in .pvd")
-    if not (every == int(every) and every >= 1):
-        raise ValueError(f"every = {every}: must be a whole number, at least 1")
+    every = whole_given("every", every, 1)
     folder = path.with_suffix("")
     folder.mkdir(parents=True, exist_ok=True)
     position, orientation = (history.relative_position, history.relative_orientation) if relative else (history.position, history.orientation)
     start, sets = history.corners(0), []
-    for sample in range(0, len(history.time), int(every)):
+    for sample in range(0, len(history.time), every):
         there = np.isfinite(position[sample]).all(axis=1)
         points = _pose.corners(position[sample], orientation[sample], history.sizes)
         cells = {"id": history.ids, "free": history.free.astype(np.uint8), "displacement": history.displacement[sample],

@@ -131,7 +131,7 @@ def draw(history, path, time=None, enlarge=None, color="displacement", view=None
 def film(history, path, start=None, end=None, frames_per_second=20, speed=1.0, enlarge=1.0, color="displacement", view=None, title="", progress=True):
     """Writes a film of the recorded motion, relative to the base: .gif, or .mp4 where ffmpeg is installed.
 
-    start, end           part of the history, s; None: all of it
+    start, end           part of the history, s; None: all of it. One picture where it holds a single sample.
     frames_per_second    of the film, above 0 and at most 60; a frame is the sample nearest to its instant, so more than were
                          recorded show nothing new
     speed                seconds of motion in a second of the film, positive
@@ -155,7 +155,8 @@ def film(history, path, start=None, end=None, frames_per_second=20, speed=1.0, e
     first, last = (history.time[history.sample(t)] if t is not None else history.time[k] for t, k in ((start, 0), (end, -1)))
     if not first <= last:
         raise ValueError(f"start = {start}, end = {end}: start must not come after end")
-    samples = [history.sample(t) for t in np.arange(first, last + 1e-9 * (last - first), speed / frames_per_second)]
+    step = speed / frames_per_second
+    samples = [history.sample(min(first + k * step, last)) for k in range(int((last - first) / step + 1e-9) + 1)]
     painter = _Painter(history, samples, enlarge, color, view, title)
     with writer.saving(painter.figure, path, dpi=100):
         for sample in tqdm(samples, desc="film", unit="frame", disable=not progress):
@@ -167,7 +168,8 @@ def film(history, path, start=None, end=None, frames_per_second=20, speed=1.0, e
 def draw_joints(history, path, time=None, view=None, title=""):
     """Writes a picture with two maps on the undisplaced structure: opening and slip of each joint (joints()), in mm. time: the sample nearest
     to it, s; None: the largest of each joint in the whole history. view: as in draw(). The scales end as in draw(), for the joints between blocks that
-    have not fallen; where nothing opened, or slid, by more than 1e-6 of the structure's size, the map is grey and its title says so."""
+    have not fallen; where nothing opened, or slid, by more than 1e-6 of the structure's size, the map is grey and its title says so, as where no blocks
+    touch in the first sample (a run that starts with a tilted block)."""
     from matplotlib.collections import LineCollection, PolyCollection
     from matplotlib.colors import to_rgba
 
@@ -189,7 +191,7 @@ def draw_joints(history, path, time=None, view=None, title=""):
         width = np.where(moves, 3.0 if view.from_side else 0.8, 0.8)
         colors = np.where(moves[:, None], shades.to_rgba(np.nan_to_num(values), alpha=1.0 if view.from_side else 0.6), to_rgba(_UNMOVED, 0.3))
         axes.add_collection(PolyCollection(flat[order], facecolors=colors[order], edgecolors=colors[order], linewidths=width[order], zorder=2))
-        axes.set_title(f"{title + ': ' if title else ''}{name}, {when}{'' if moves.any() else f': {none}'}", fontsize="small")
+        axes.set_title(f"{title + ': ' if title else ''}{name}, {when}{'' if moves.any() else f': {none}' if len(table) else ': no blocks touch at first'}", fontsize="small")
         if moves.any():
             _colorbar(figure, axes, shades, f"{name} (mm)", beyond)
     figure.savefig(path, dpi=150)
