@@ -156,7 +156,8 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
     tolerance     rigid: residual of the contact laws relative to the speed that gravity gives in a step (above 0, at most 1e-3;
                   None: 1e-9). With method='wall' from 1e-6 to 1e-2, None: 1e-3 (MoreauJeanIntegrator.tolerance)
     penetration   compliant, where BlockMat gives no stiffness: how far the weight presses the most loaded joint in, relative to
-                  the smallest width (1e-10 to 1e-2; None: 1e-5). The error of rocking angles is about ten times this;
+                  the smallest width (1e-10 to 1e-2; None: 1e-5). The error of rocking angles is about ten times this, and more where
+                  the base's acceleration jumps (README, Limits);
                   the cost grows as its inverse square root.
     impact_order  'simultaneous' or 'sequential': how an impact acts on a structure (impactOrder of the engine). None: 'sequential'
                   with method='wall', which has no other; else 'simultaneous'
@@ -308,8 +309,10 @@ _IMPACT_FIELDS = [("time", float), ("body", int), ("support", int), ("restitutio
 def impacts():
     """The rocking impacts so far, a structured array: time (s), body, support, restitution_asked (NaN: natural), restitution
     (realised), velocity (relative angular velocity before, rad/s), energy_lost (J), friction_demand (the friction coefficient that it
-    takes; where that is the joint's own, the pivot has slipped and more was asked for), application (distance of the resultant from the new pivot, m), switched (False: the impact stopped the rotation; a pivot that has slipped may set it off again), capped (the
-    restitution was lowered so that no energy appears)."""
+    takes; where that is the joint's own, the pivot has slipped and more was asked for), application (distance of the resultant from the
+    new pivot, m), switched (False: the impact stopped the rotation; a pivot that has slipped may set it off again), capped (the
+    restitution was lowered so that no energy appears). With method='wall' those where a restitution is given, and of the joint alone:
+    what its neighbours answer afterwards is in energy()['impactDissip']."""
     e = _joint_engine()
     table = np.zeros(len(e.impactTimes), dtype=_IMPACT_FIELDS)
     before, after = np.array(e.impactBefore), np.array(e.impactAfter)
