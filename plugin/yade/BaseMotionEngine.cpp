@@ -1,6 +1,7 @@
 #include "BaseMotionEngine.hpp"
 #include "python_lock.hpp"
 
+#include <algorithm>
 #include <core/Scene.hpp>
 #include <lib/factory/ClassFactory.hpp>
 #include <limits>
@@ -67,7 +68,11 @@ bool BaseMotionEngine::wasLeftOut() const
 	return lastStep >= 0 && now != lastStep && now != lastStep + 1;
 }
 
-bool BaseMotionEngine::goesOn() const { return !begun.empty() && hasBegun() && ids == begunIds && !wasLeftOut(); }
+bool BaseMotionEngine::goesOn() const
+{
+	const auto exists = [](int id) { return presentScene()->bodies->exists(id); };
+	return !begun.empty() && hasBegun() && ids == begunIds && !wasLeftOut() && std::all_of(ids.begin(), ids.end(), exists);
+}
 
 void BaseMotionEngine::haveStepped() { lastStep = presentScene()->iter; }
 

@@ -78,3 +78,9 @@ def keep_place(engines):
     O.run(10, True)
     O.engines = kept
     refuses_to_run("RecordMotionEngine.start = 0 s has passed", "start=O.time")
+    # Nor is one missed that is no longer there.
+    base, _, _ = one_block(2)
+    O.engines = engines(dem.RecordMotionEngine(ids=[base], samples=[1.0] * 201, interval=0.01))
+    O.run(5, True)
+    O.bodies.erase(base)
+    refuses_to_run(f"RecordMotionEngine.ids has {base}", "no such body")
