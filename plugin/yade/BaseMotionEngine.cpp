@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <core/Scene.hpp>
 #include <lib/factory/ClassFactory.hpp>
+#include <iterator>
 #include <limits>
+#include <set>
 #include <sstream>
 #include <stdexcept>
 
@@ -17,6 +19,8 @@ namespace {
 	constexpr Real lateStart = 1e-3;
 	/// Relative to where a body is, what rounding leaves of its place. Larger: it may jump by so much.
 	constexpr Real samePlace = 1e-9;
+	/// Cosine of the angle between the directions of motions of one body. Larger: what one does is not left alone by the other.
+	constexpr Real perpendicular = 1e-9;
 
 	const shared_ptr<Scene>& presentScene() { return Omega::instance().getScene(); }
 
@@ -51,9 +55,66 @@ void BaseMotionEngine::check() const
 	require(std::abs(direction.norm() - 1) < 1e-9, "direction", direction.transpose(), "a unit vector");
 	require(std::isfinite(start), "start", start, "a finite time in s");
 	if (hasBegun())
-		checkPlaces();
+		checkPlaces({});
 	else
 		checkStart();
+}
+
+// --- motions of the same bodies ---
+
+BaseMotionEngine::Motions BaseMotionEngine::inEngines(const Scene& scene)
+{
+	Motions result;
+	for (const auto& engine : scene.engines)
+		if (auto* motion = dynamic_cast<BaseMotionEngine*>(engine.get()); motion && !motion->dead) result.push_back(motion);
+	return result;
+}
+
+bool BaseMotionEngine::shares(const BaseMotionEngine& other) const
+{
+	return std::any_of(ids.begin(), ids.end(), [&](int id) { return std::count(other.ids.begin(), other.ids.end(), id); });
+}
+
+void BaseMotionEngine::checkTogether(const Motions& all)
+{
+	const auto refuse = [](const BaseMotionEngine& one, const BaseMotionEngine& other, const char* attribute, const char* allowed) {
+		throw std::invalid_argument(one.getClassName() + '.' + attribute + " = " + one.settings().at(attribute) + " is not allowed beside a "
+			+ other.getClassName() + " with " + other.settings().at(attribute) + ": motions of the same body must " + allowed + '.');
+	};
+	for (size_t k = 0; k < all.size(); ++k)
+		for (size_t before = 0; before < k; ++before) {
+			const BaseMotionEngine &one = *all[k], &other = *all[before];
+			if (!one.shares(other)) continue;
+			if (std::set(one.ids.begin(), one.ids.end()) != std::set(other.ids.begin(), other.ids.end()))
+				refuse(one, other, "ids", "have all their bodies in common");
+			if (std::abs(one.direction.dot(other.direction)) > perpendicular) refuse(one, other, "direction", "be perpendicular to each other");
+		}
+}
+
+BaseMotionEngine::Motions BaseMotionEngine::together(const Motions& all) const
+{
+	Motions result;
+	std::copy_if(all.begin(), all.end(), std::back_inserter(result), [this](const auto* other) { return other == this || shares(*other); });
+	return result;
+}
+
+Vector3r BaseMotionEngine::origin(size_t k, const Motions& all) const
+{
+	Vector3r result = origins[k];
+	for (const BaseMotionEngine* other : together(all)) {
+		if (other == this) continue;
+		const size_t its = size_t(std::find(other->ids.begin(), other->ids.end(), ids[k]) - other->ids.begin());
+		if (its < other->origins.size()) result += other->direction * other->direction.dot(other->origins[its] - origins[k]);
+	}
+	return result;
+}
+
+void BaseMotionEngine::takeOrigins()
+{
+	origins.clear();
+	begunAt = scene->time;
+	const Vector3r moved = direction * displacement(scene->time - start);
+	for (int id : ids) origins.push_back((*scene->bodies)[id]->state->pos - moved);
 }
 
 // --- from its start on, a motion goes on as it is ---
@@ -82,26 +143,35 @@ void BaseMotionEngine::forget()
 {
 	origins.clear();
 	begun.clear();
+	begunWith.clear();
 	lastStep = -1;
 }
 
-void BaseMotionEngine::begin()
+void BaseMotionEngine::begin(const Motions& all)
 {
-	if (goesOn()) return;
+	const Motions others = together(all);
+	if (goesOn() && others == begunWith) return;
+	checkTogether(others);
+	if (goesOn()) { // where the bodies are across its direction has been another's
+		begunWith = others;
+		return takeOrigins();
+	}
 	const bool saved = begun.empty() && !origins.empty();
 	if (!begun.empty() && (!underWay() || wasLeftOut())) forget();
 	check();
 	begun = settings();
 	begunIds = ids;
 	begunStart = start;
+	begunWith = others;
 	home = presentScene();
-	if (saved) return;
-	begunAt = scene->time;
+	if (saved) return checkPlaces(all);
+	takeOrigins();
 	const Real speed = velocity(scene->time - start);
 	for (int id : ids) {
 		const State& state = *(*scene->bodies)[id]->state;
-		origins.push_back(state.pos - direction * displacement(scene->time - start));
-		if ((state.vel - direction * speed).norm() * scene->dt > samePlace * state.pos.norm())
+		Vector3r     change = state.vel - direction * speed;
+		if (others.size() > 1) change = direction * direction.dot(change);
+		if (change.norm() * scene->dt > samePlace * state.pos.norm())
 			LOG_WARN("body " << id << " moves at " << state.vel.transpose() << " m/s when " << getClassName() << " takes it over at t = " << scene->time
 				<< " s: it goes on at " << speed << " m/s, at once.");
 	}
@@ -123,12 +193,15 @@ void BaseMotionEngine::checkStart() const
 }
 
 /// A motion that was left out for a while would put its bodies back.
-void BaseMotionEngine::checkPlaces() const
+void BaseMotionEngine::checkPlaces(const Motions& all) const
 {
-	const Vector3r moved = direction * displacement(scene->time - start);
+	Vector3r moved = direction * displacement(scene->time - start);
+	for (const BaseMotionEngine* other : together(all))
+		if (other != this) moved += other->direction * other->displacement(scene->time - other->start);
 	for (size_t k = 0; k < std::min(ids.size(), origins.size()); ++k) {
-		const Vector3r &pos = (*scene->bodies)[ids[k]]->state->pos, to = origins[k] + moved;
-		if ((pos - to).norm() <= samePlace * (pos.norm() + moved.norm())) continue;
+		const Vector3r &pos = (*scene->bodies)[ids[k]]->state->pos, to = origin(k, all) + moved;
+		const Real off = all.empty() ? std::abs(direction.dot(pos - to)) : (pos - to).norm();
+		if (off <= samePlace * (pos.norm() + moved.norm())) continue;
 		std::ostringstream text;
 		text << getClassName() << ", which has begun at start = " << start << " s, would put body " << ids[k] << " from " << pos.transpose() << " m to "
 		     << to.transpose() << " m at once: give dem.engines() a new " << getClassName() << " with start=O.time.";
@@ -169,14 +242,19 @@ BaseMotionEngine::Settings BaseMotionEngine::settings() const
 
 void BaseMotionEngine::action()
 {
-	begin();
-	takeJumps(scene->time, {}); // those that no joint has asked for
-	const Real now = scene->time - start, next = now + scene->dt;
-	const Real here = displacement(now);
-	const Vector3r mean = direction * meanVelocity(now, next);
+	const Motions all = together(inEngines(*scene));
+	Vector3r here = Vector3r::Zero(), mean = Vector3r::Zero();
+	for (BaseMotionEngine* motion : all) {
+		motion->scene = scene;
+		motion->begin(all);
+		motion->takeJumps(scene->time, {}); // those that no joint has asked for
+		const Real now = scene->time - motion->start;
+		here += motion->direction * motion->displacement(now);
+		mean += motion->direction * motion->meanVelocity(now, now + scene->dt);
+	}
 	for (size_t k = 0; k < ids.size(); ++k) {
 		State& state = *(*scene->bodies)[ids[k]]->state;
-		state.pos = origins[k] + direction * here;
+		state.pos = origin(k, all) + here;
 		state.vel = mean;
 	}
 	haveStepped();

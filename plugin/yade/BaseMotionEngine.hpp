@@ -19,8 +19,8 @@ struct StepImpact {
 };
 
 /// Base class of prescribed base motions along one direction. The bodies `ids` move by origin + direction displacement(t)
-/// exactly at every step; between steps with the mean velocity, so that nothing drifts. Goes after RockingJointEngine and
-/// before NewtonIntegrator in O.engines; MoreauJeanIntegrator has a list of its own.
+/// exactly at every step; between steps with the mean velocity, so that nothing drifts. Motions of the same bodies in perpendicular
+/// directions add up. Goes after RockingJointEngine and before NewtonIntegrator in O.engines; MoreauJeanIntegrator has a list of its own.
 class BaseMotionEngine : public PartialEngine {
 public:
 	void action() override;
@@ -36,9 +36,19 @@ public:
 	/// First instant in (after, until) at which velocity or acceleration jumps, as far as it is known by now; else infinity.
 	virtual Real nextKink(Real after, Real until) const;
 
-	/// Finds where the bodies stand when the motion begins; called before every step. Once its time has come it goes on as it is:
-	/// changed attributes are refused, as they would put the bodies elsewhere at once.
-	void begin();
+	using Motions = vector<BaseMotionEngine*>;
+	/// Those of O.engines that are not dead.
+	static Motions inEngines(const Scene&);
+	/// Throws std::invalid_argument for motions of a body that do not have all their bodies in common or are not perpendicular.
+	static void checkTogether(const Motions& all);
+	/// Bodies of the other move with it.
+	bool shares(const BaseMotionEngine& other) const;
+
+	/// Finds where the bodies stand when the motion begins; called before every step, with all motions of the scene. Once its time has come
+	/// it goes on as it is: changed attributes are refused, as they would put the bodies elsewhere at once.
+	void begin(const Motions& all);
+	/// Where body number k of ids is without any displacement. A motion knows that along its direction, of the others' theirs.
+	Vector3r origin(size_t k, const Motions& all) const;
 	/// begin() has nothing to do.
 	bool goesOn() const;
 	/// The bodies are where they are at the end of the present step. One that does not in each step of the scene (it was taken out of O.engines
@@ -64,7 +74,7 @@ public:
 
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(BaseMotionEngine, PartialEngine,
-		"Base class of prescribed motions of the base; does not move anything by itself.",
+		"Base class of prescribed motions of the base; does not move anything by itself. Motions of the same bodies in perpendicular directions add up.",
 		((Vector3r, direction, Vector3r(1, 0, 0), Attr::triggerPostLoad, "Unit vector along which the base moves."))
 		((Real, start, 0, Attr::triggerPostLoad, "Time at which the motion begins [s]; from then on its attributes cannot be changed. In a run that has gone on already: start=O.time."))
 		((vector<Vector3r>, origins, , Attr::readonly, "Positions of the bodies when the motion began [m].")),
@@ -84,13 +94,18 @@ private:
 	/// As a script asks: in the present scene.
 	void checkNow();
 	void checkStart() const;
-	void checkPlaces() const;
+	/// `all` empty: not known, along its own direction.
+	void checkPlaces(const Motions& all) const;
+	/// Those of `all` that move the same bodies, itself included.
+	Motions together(const Motions& all) const;
+	void takeOrigins();
 	[[noreturn]] void refuseChange(const string& attribute, const string& value, const string& before) const;
 
 	// Of the motion that has begun; nothing yet after loading.
 	boost::weak_ptr<Scene> home;
 	Settings               begun;
 	vector<int>            begunIds;
+	Motions                begunWith; // to be compared only
 	Real                   begunStart = NaN, begunAt = NaN;
 	long                   lastStep = -1; // not known
 };

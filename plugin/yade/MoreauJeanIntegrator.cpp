@@ -8,6 +8,7 @@
 #include <core/Scene.hpp>
 #include <pkg/common/PeriodicEngines.hpp>
 #include <lib/factory/ClassFactory.hpp>
+#include <set>
 #include <sstream>
 #include <stdexcept>
 
@@ -113,9 +114,10 @@ void MoreauJeanIntegrator::start()
 
 void MoreauJeanIntegrator::beginMotions()
 {
-	for (BaseMotionEngine* motion : motionEngines()) {
+	const vector<BaseMotionEngine*> all = motionEngines();
+	for (BaseMotionEngine* motion : all) {
 		motion->scene = scene;
-		motion->begin();
+		motion->begin(all);
 	}
 }
 
@@ -166,10 +168,10 @@ void MoreauJeanIntegrator::build(const vector<Real>& remembered)
 
 void MoreauJeanIntegrator::checkBlocks() const
 {
-	std::map<int, int> moved;
-	for (const BaseMotionEngine* motion : motionEngines())
-		for (int id : motion->ids)
-			if (moved[id]++) throw std::invalid_argument(sentence("Body ", id, " is in the ids of two motions: one body follows one motion."));
+	const vector<BaseMotionEngine*> motions = motionEngines();
+	BaseMotionEngine::checkTogether(motions);
+	std::set<int> moved;
+	for (const BaseMotionEngine* motion : motions) moved.insert(motion->ids.begin(), motion->ids.end());
 	const unsigned unused = chosenModel == "planar" ? unusedInPlane(Coordinates<Plane>(along).normal) : 0;
 	bool free = false;
 	for (const Body* body : blocks()) {

@@ -237,7 +237,7 @@ bool RockingJointEngine::applyJumps(const vector<BaseMotionEngine*>& motions, co
 	bool acted = false;
 	for (BaseMotionEngine* motion : motions) {
 		motion->scene = scene;
-		motion->begin();
+		motion->begin(motions);
 		for (const BaseJump& jump : motion->takeJumps(scene->time, impacts)) {
 			vector<int> moved;
 			for (int id : motion->ids)
@@ -346,15 +346,11 @@ void RockingJointEngine::action()
 	system.unsolved = 0;
 	system.order = impactOrder == "sequential" ? masonry::ImpactOrder::sequential : masonry::ImpactOrder::simultaneous;
 	addExternalForces();
-	vector<BaseMotionEngine*> motions;
-	for (const auto& engine : scene->engines) {
-		auto* motion = dynamic_cast<BaseMotionEngine*>(engine.get());
-		if (!motion || motion->dead) continue;
-		motions.push_back(motion);
+	const vector<BaseMotionEngine*> motions = BaseMotionEngine::inEngines(*scene);
+	for (const BaseMotionEngine* motion : motions)
 		for (int id : motion->ids)
 			if (size_t(id) < index.size() && index[id] >= 0)
-				system.bodies[index[id]].acceleration = motion->direction * motion->acceleration(scene->time - motion->start);
-	}
+				system.bodies[index[id]].acceleration += motion->direction * motion->acceleration(scene->time - motion->start);
 	for (const auto& contact : system.contacts) {
 		frictDissip += contact.energy.friction;
 		dampDissip += contact.energy.damping;

@@ -198,7 +198,7 @@ public:
 
 	void setInstant(Real instant) override
 	{
-		for (MotionDrive& drive : drives) drive.instant = instant;
+		for (MotionDrive& motion : motions) motion.instant = instant;
 	}
 
 	void dropErased() override { joints.dropErased(); }
@@ -257,24 +257,35 @@ private:
 		return inBefore;
 	}
 
-	void addDrives(const vector<BaseMotionEngine*>& motions, const vector<int>& inBefore)
+	/// Motions of the same bodies are one drive.
+	void addDrives(const vector<BaseMotionEngine*>& engines, const vector<int>& inBefore)
 	{
-		drives.reserve(motions.size());
-		for (BaseMotionEngine* motion : motions) {
-			changed |= motion->beginsNow();
-			drives.emplace_back(*motion, kept.ids);
-			system.driveDirections.push_back(coordinates.direction(motion->direction));
-			for (size_t k = 0; k < motion->ids.size(); ++k) {
-				const auto found = std::find(kept.ids.begin(), kept.ids.end(), motion->ids[k]);
+		motions.reserve(engines.size());
+		vector<const BaseMotionEngine*> first; // of each drive
+		vector<char> begins;
+		for (BaseMotionEngine* engine : engines) {
+			const auto other = std::find_if(first.begin(), first.end(), [&](const auto* one) { return one->shares(*engine); });
+			const size_t d = size_t(other - first.begin());
+			if (other == first.end()) {
+				first.push_back(engine);
+				begins.push_back(0);
+				system.drives.emplace_back();
+			}
+			motions.emplace_back(*engine, kept.ids);
+			system.drives[d].components.push_back({ &motions.back(), coordinates.direction(engine->direction) });
+			begins[d] |= engine->beginsNow();
+		}
+		for (size_t d = 0; d < first.size(); ++d) {
+			changed |= begins[d];
+			for (size_t k = 0; k < first[d]->ids.size(); ++k) {
+				const auto found = std::find(kept.ids.begin(), kept.ids.end(), first[d]->ids[k]);
 				if (found == kept.ids.end()) continue; // moved, but no block
 				const size_t b = size_t(found - kept.ids.begin());
 				auto&        block = system.bodies[b];
-				block.drive = int(system.drives.size());
-				block.origin = coordinates.in(motion->origins[k]);
-				if (inBefore[b] < 0 || motion->beginsNow())
-					block.velocity.template head<K::dimension>() = system.driveDirections.back() * drives.back().velocity(scene.time);
+				block.drive = int(d);
+				block.origin = coordinates.in(first[d]->origin(k, engines));
+				if (inBefore[b] < 0 || begins[d]) block.velocity.template head<K::dimension>() = system.drives[d].velocity(scene.time);
 			}
-			system.drives.push_back(&drives.back());
 		}
 	}
 
@@ -494,7 +505,7 @@ private:
 	bool byWalls = false, lawsChanged = false, warnedOfCourses = false, warnedOfPlace = false;
 	int unshown = 1; // steps since the interactions were written
 	std::unique_ptr<masonry::rigid::Neighbours<K>> neighbours;
-	vector<MotionDrive> drives;
+	vector<MotionDrive> motions;
 	vector<Link> links;
 	vector<char> others; // by link, 1: somebody else has written the state since the last step; elsewhere: and has moved the body
 	static constexpr char elsewhere = 2;

@@ -24,7 +24,7 @@ for option, bad, words in (("model", "magic", ("planar",)), ("dt", 1.0, ("at mos
 refuses(lambda: rigid_engines(gravity=0), "dt = None", "gravity is 0")
 refuses(lambda: rigid_engines(model="compliant", tolerance=1e-9), "tolerance", "rigid")
 refuses(lambda: rigid_engines(dem.PulseTrainEngine(ids=[block], impulse=0.1, times=[0])), "ids", str(block), "prescribed")
-refuses(lambda: rigid_engines([dem.PulseTrainEngine(ids=[base], impulse=0.1, times=[0])] * 2), f"Body {base}", "two motions")
+refuses(lambda: rigid_engines([dem.PulseTrainEngine(ids=[base], impulse=0.1, times=[0])] * 2), "PulseTrainEngine.direction", "beside a PulseTrainEngine", "perpendicular")
 O.reset()
 dem.base((1, 1, 1), stone())
 refuses(rigid_engines, "no free block", "dem.block()")

@@ -136,10 +136,10 @@ for method in ("localised", "wall"):
     motion.ids = [0, other]
     refuses_to_run("RecordMotionEngine.ids = [0, 2]", "once the motion has begun with [0]")
     motion.ids = [0]
-    integrator.motions = [motion, record(0, 1.0)]
+    integrator.motions = [motion, record(0, 1.0, direction=(0, 0, 1))]
     refuses_to_run("RecordMotionEngine.start = 0 s has passed", "start=O.time")
     integrator.motions = [motion, record(0, 1.0, start=O.time)]
-    refuses_to_run("Body 0", "two motions")
+    refuses_to_run("RecordMotionEngine.direction = ", "beside a RecordMotionEngine", "perpendicular")
     integrator.motions = [motion]
     O.bodies[0].dynamic = True
     refuses_to_run("Body 0 is free, and in the ids of a motion", "O.bodies[0].dynamic = False")

@@ -46,6 +46,13 @@ def stack_on_record(model):
     O.engines = rigid_engines(dem.RecordMotionEngine(ids=[base], samples=samples, interval=0.01), model=model, dt=1e-3)
 
 
+def stack_both_ways(model):
+    stack_on_record(model)
+    integrator = O.engines[-1]
+    upwards = list(3 * np.sin(np.arange(0, 2, 0.01) * 11))
+    integrator.motions = [*integrator.motions, dem.RecordMotionEngine(ids=[0], samples=upwards, interval=0.01, direction=(0, 0, 1))]
+
+
 def apart_on_record(model):
     O.reset()
     base = dem.base((9, 2, 0.2), stone(restitution=0.8))
@@ -56,7 +63,7 @@ def apart_on_record(model):
 
 
 with tempfile.TemporaryDirectory() as folder:
-    for make in (free, yawed, train, stack_on_record, apart_on_record):
+    for make in (free, yawed, train, stack_on_record, stack_both_ways, apart_on_record):
         for model in ("planar", "spatial"):
             make(model)
             O.engines[1].onTrouble = "continue"

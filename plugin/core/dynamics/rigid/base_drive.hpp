@@ -1,6 +1,8 @@
 #pragma once
 // Prescribed motion of bodies, as the step asks for it: at any instant inside the step.
+#include <algorithm>
 #include <limits>
+#include <vector>
 
 namespace masonry::rigid {
 
@@ -21,5 +23,61 @@ public:
 	// Whether instants must be asked for in order of time: velocities jump, or impacts are answered.
 	virtual bool ordered() const { return true; }
 };
+
+// All that moves a body: motions along directions of their own, which add up.
+template <class K> struct Drive {
+	using Vector = typename K::Vector;
+	struct Component {
+		BaseDrive* motion;
+		Vector     direction; // unit vector
+	};
+	std::vector<Component> components;
+
+	Vector displacement(double t) const
+	{
+		return sum([t](const BaseDrive& motion) { return motion.displacement(t); });
+	}
+	Vector velocity(double t) const
+	{
+		return sum([t](const BaseDrive& motion) { return motion.velocity(t); });
+	}
+	Vector meanVelocity(double from, double h) const
+	{
+		return sum([=](const BaseDrive& motion) { return (motion.displacement(from + h) - motion.displacement(from)) / h; });
+	}
+	Vector jumpAt(double t) const
+	{
+		return sum([t](BaseDrive& motion) { return motion.jumpAt(t); });
+	}
+	Vector respond(int block, double t) const
+	{
+		return sum([=](BaseDrive& motion) { return motion.respond(block, t); });
+	}
+	double nextKink(double after, double until) const
+	{
+		double first = std::numeric_limits<double>::infinity();
+		for (const Component& one : components)
+			first = std::min(first, one.motion->nextKink(after, until));
+		return first;
+	}
+
+private:
+	template <class Of> Vector sum(Of of) const
+	{
+		Vector result = Vector::Zero();
+		for (const Component& one : components)
+			result += of(*one.motion) * one.direction;
+		return result;
+	}
+};
+
+// Whether any motion must be asked in order of time.
+template <class K> bool areOrdered(const std::vector<Drive<K>>& drives)
+{
+	const auto isOrdered = [](const auto& one) { return one.motion->ordered(); };
+	return std::any_of(drives.begin(), drives.end(), [&](const Drive<K>& drive) {
+		return std::any_of(drive.components.begin(), drive.components.end(), isOrdered);
+	});
+}
 
 } // namespace masonry::rigid

@@ -269,11 +269,10 @@ template <class K> double ImpactStage<K>::land(RigidSystem<K>& s, const std::vec
 	return result.residual;
 }
 
-template <class K> double ImpactStage<K>::pulse(RigidSystem<K>& s, int drive, double jump)
+template <class K> double ImpactStage<K>::pulse(RigidSystem<K>& s, int drive, const typename K::Vector& jump)
 {
-	const typename K::Vector change = jump * s.driveDirections[drive];
 	for (auto& body : s.bodies)
-		if (body.drive == drive) body.velocity.template head<K::dimension>() += change;
+		if (body.drive == drive) body.velocity.template head<K::dimension>() += jump;
 	gather(s, {});
 	const auto result = applyRockingImpact(bodies, impact);
 	settle(s);
@@ -281,7 +280,7 @@ template <class K> double ImpactStage<K>::pulse(RigidSystem<K>& s, int drive, do
 	double work = result.work;
 	for (const ImpulsePoint& point : impact.points)
 		for (const auto& [b, sign] : { std::pair(point.body1, 1.), std::pair(point.body2, -1.) })
-			if (s.bodies[b].drive == drive) work -= 0.5 * sign * point.impulse.dot(inSpace(change));
+			if (s.bodies[b].drive == drive) work -= 0.5 * sign * point.impulse.dot(inSpace(jump));
 	s.baseWork += work;
 	s.impactDissip += result.energyLost + work - result.work;
 	return result.residual;

@@ -11,8 +11,8 @@ public:
 	// part afterwards are open. Impacts are appended to system.impacts. Returns the residual, m/s.
 	double land(RigidSystem<K>& system, const std::vector<PointRef>& closing);
 
-	// The bodies moved by a drive change their velocity by `jump` (m/s along its direction) at this instant. Returns the residual, m/s.
-	double pulse(RigidSystem<K>& system, int drive, double jump);
+	// The bodies moved by a drive change their velocity by `jump` (m/s) at this instant. Returns the residual, m/s.
+	double pulse(RigidSystem<K>& system, int drive, const typename K::Vector& jump);
 
 private:
 	struct Builder;

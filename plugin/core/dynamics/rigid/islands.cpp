@@ -9,7 +9,7 @@ StepReport Islands<K>::advance(RigidSystem<K>& s, double dt)
 {
 	if (s.lists != list || s.bodies.size() != bodies)
 		divide(s, std::vector<char>(s.bodies.size(), 1));
-	if (islands.size() < 2 || std::any_of(s.drives.begin(), s.drives.end(), [](const BaseDrive* drive) { return drive->ordered(); }))
+	if (islands.size() < 2 || areOrdered(s.drives))
 		return step.advance(s, dt);
 	s.impacts.clear();
 	take(s);
@@ -84,7 +84,6 @@ void Islands<K>::take(const RigidSystem<K>& s, Island& island) const
 	own.time = s.time;
 	own.gravity = s.gravity;
 	own.drives = s.drives;
-	own.driveDirections = s.driveDirections;
 	own.settings = s.settings;
 	own.moved = s.moved;
 	own.frictDissip = own.impactDissip = own.baseWork = 0;

@@ -137,14 +137,14 @@ template <class K> void RigidStep<K>::answerImpacts(RigidSystem<K>& s, size_t kn
 {
 	for (size_t k = known; k < s.impacts.size(); ++k)
 		for (size_t d = 0; d < s.drives.size(); ++d)
-			if (const double jump = s.drives[d]->respond(s.impacts[k].block, s.time)) report.residual = std::max(report.residual, impacts.pulse(s, int(d), jump));
+			if (const auto jump = s.drives[d].respond(s.impacts[k].block, s.time); !jump.isZero(0)) report.residual = std::max(report.residual, impacts.pulse(s, int(d), jump));
 }
 
 // An impact at the same instant comes before the pulse.
 template <class K> void RigidStep<K>::takeJumps(RigidSystem<K>& s)
 {
 	for (size_t d = 0; d < s.drives.size(); ++d)
-		if (const double jump = s.drives[d]->jumpAt(s.time)) {
+		if (const auto jump = s.drives[d].jumpAt(s.time); !jump.isZero(0)) {
 			land(s);
 			report.residual = std::max(report.residual, impacts.pulse(s, int(d), jump));
 		}
@@ -154,8 +154,8 @@ template <class K> double RigidStep<K>::untilKink(const RigidSystem<K>& s, doubl
 {
 	const double tiny = tolerance::rigid::instant * dt;
 	double       first = s.time + left;
-	for (const BaseDrive* drive : s.drives)
-		first = std::min(first, drive->nextKink(s.time + tiny, s.time + left - tiny));
+	for (const Drive<K>& drive : s.drives)
+		first = std::min(first, drive.nextKink(s.time + tiny, s.time + left - tiny));
 	return first < s.time + left ? first - s.time : left;
 }
 

@@ -19,7 +19,7 @@ template <class K> struct RigidBody {
 	typename K::Velocity force { K::Velocity::Zero() };    // external force (weight included) and moment about the centre
 	typename K::Velocity increment { K::Velocity::Zero() }; // change of velocity per second in the last smooth step: predicts the middle of the next
 	bool                 fresh { true };                   // the velocity has just jumped, or a stray one is left: the next step looks for those
-	int                  drive { -1 };                     // index of the base drive that moves it; -1: it keeps its velocity
+	int                  drive { -1 };                     // index of the drive that moves it; -1: it keeps its velocity
 	typename K::Vector   origin { K::Vector::Zero() };     // position at zero displacement of its drive
 
 	double kineticEnergy() const
@@ -103,8 +103,7 @@ template <class K> struct RigidSystem {
 	std::vector<ContactPair<K>> pairs;      // of boxes that are near each other, in a fixed order
 	int                         lists { 0 }; // of pairs that there have been
 	typename K::Vector          gravity { K::Vector::Zero() }; // which way is down, and the scale of tolerances; the weight itself is in `force`
-	std::vector<BaseDrive*>     drives;
-	std::vector<typename K::Vector> driveDirections;
+	std::vector<Drive<K>>       drives;     // of the bases
 	Settings                    settings;
 	bool                        moved { true }; // poses were set from outside: gaps are to be measured anew
 

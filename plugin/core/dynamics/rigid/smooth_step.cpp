@@ -9,7 +9,7 @@ namespace {
 	template <class K> typename K::Velocity prescribedVelocity(const RigidSystem<K>& s, const RigidBody<K>& body, double t)
 	{
 		typename K::Velocity v = body.velocity;
-		if (body.drive >= 0) v.template head<K::dimension>() = s.driveDirections[body.drive] * s.drives[body.drive]->velocity(t);
+		if (body.drive >= 0) v.template head<K::dimension>() = s.drives[body.drive].velocity(t);
 		return v;
 	}
 
@@ -17,7 +17,7 @@ namespace {
 	{
 		typename K::Pose pose = body.pose;
 		if (!body.velocity.isZero(0)) K::advance(pose, body.velocity, h);
-		if (body.drive >= 0) pose.position = body.origin + s.driveDirections[body.drive] * s.drives[body.drive]->displacement(s.time + h);
+		if (body.drive >= 0) pose.position = body.origin + s.drives[body.drive].displacement(s.time + h);
 		return pose;
 	}
 

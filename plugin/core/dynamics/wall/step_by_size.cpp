@@ -47,7 +47,7 @@ void StepBySize<K>::divide(const RigidSystem<K>& s)
 				few.push_back(int(b));
 		}
 	const bool noWalls = std::none_of(ofWall.begin(), ofWall.end(), [](char is) { return is; });
-	if (noWalls || std::any_of(s.drives.begin(), s.drives.end(), [](const BaseDrive* drive) { return drive->ordered(); }))
+	if (noWalls || areOrdered(s.drives))
 		few.clear();
 	for (const int b : few)
 		isFew[b] = 1;

@@ -31,7 +31,7 @@ template <class K>
 void Structures<K>::regroup(const RigidSystem<K>& s)
 {
 	std::vector<int> now = islandNumbers<K>(s, [this](const ContactPair<K>& pair) { return !isCut(pair); });
-	if (std::any_of(s.drives.begin(), s.drives.end(), [](const BaseDrive* drive) { return drive->ordered(); }))
+	if (areOrdered(s.drives))
 		for (int& number : now)
 			number = std::min(number, 0);
 	std::vector<Structure> next(now.empty() ? 0 : 1 + *std::max_element(now.begin(), now.end()));

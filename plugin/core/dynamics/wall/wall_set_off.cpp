@@ -220,8 +220,7 @@ bool WallStep<K>::setOff(RigidSystem<K>& s, const Bodies& move)
 			setOffEnergy += body.kineticEnergy() - before;
 			if (drive < 0 || jumped || structures.all[structures.of[b]].stay == 0 || speeds.size() != s.drives.size())
 				continue;
-			const Vector change =
-			    (1 - 1. / substepCount()) * (s.drives[drive]->velocity(s.time) - speeds[drive]) * s.driveDirections[drive];
+			const Vector change = (1 - 1. / substepCount()) * (s.drives[drive].velocity(s.time) - speeds[drive]);
 			const double work = body.mass * change.dot(body.velocity.template head<K::dimension>() + change / 2);
 			s.baseWork += work;
 			setOffEnergy += work;

@@ -19,8 +19,8 @@ double untilKink(const RigidSystem<K>& s, double left, double dt)
 	const double half = dt / 2;
 	if (left <= half)
 		return left;
-	for (const BaseDrive* drive : s.drives)
-		if (drive->nextKink(s.time + tolerance::rigid::instant * dt, s.time + half) <= s.time + half)
+	for (const Drive<K>& drive : s.drives)
+		if (drive.nextKink(s.time + tolerance::rigid::instant * dt, s.time + half) <= s.time + half)
 			return half;
 	return left;
 }
@@ -31,21 +31,19 @@ bool takeJumps(RigidSystem<K>& s)
 {
 	bool some = false;
 	for (size_t d = 0; d < s.drives.size(); ++d)
-		if (const double jump = s.drives[d]->jumpAt(s.time)) {
+		if (const auto jump = s.drives[d].jumpAt(s.time); !jump.isZero(0)) {
 			some = true;
 			for (auto& body : s.bodies)
 				if (body.drive == int(d))
-					body.velocity.template head<K::dimension>() += jump * s.driveDirections[d];
+					body.velocity.template head<K::dimension>() += jump;
 		}
 	return some;
 }
 
-double meanSpeed(const BaseDrive& drive, double t, double h) { return (drive.displacement(t + h) - drive.displacement(t)) / h; }
-
 template <class K>
 typename K::Vector driven(const RigidSystem<K>& s, const RigidBody<K>& body, double t)
 {
-	return body.origin + s.driveDirections[body.drive] * s.drives[body.drive]->displacement(t);
+	return body.origin + s.drives[body.drive].displacement(t);
 }
 
 // Moves a free body by what its velocities of the step add up to; its momentum stays. In space the spin follows from it in the new pose,
@@ -127,8 +125,8 @@ void WallStep<K>::advancePart(RigidSystem<K>& s, double h)
 	report.moved = report.mode == WallMode::moving ? int(std::count(moving().own.begin(), moving().own.end(), 1)) : 0;
 	started = true;
 	speeds.clear();
-	for (const BaseDrive* drive : s.drives)
-		speeds.push_back(meanSpeed(*drive, s.time, h));
+	for (const Drive<K>& drive : s.drives)
+		speeds.push_back(drive.meanVelocity(s.time, h));
 	takeMotion(s, h, workBefore);
 	choose(h);
 	s.time += h;
@@ -198,8 +196,7 @@ template <class K>
 void WallStep<K>::setBase(const RigidSystem<K>& s, Contacts& contacts, double h)
 {
 	const auto set = [&](int b, int d) {
-		const double speed = h > 0 ? meanSpeed(*s.drives[d], s.time, h) : s.drives[d]->velocity(s.time);
-		contacts.setLinearVelocity(b, s.driveDirections[d] * speed);
+		contacts.setLinearVelocity(b, h > 0 ? s.drives[d].meanVelocity(s.time, h) : s.drives[d].velocity(s.time));
 	};
 	for (const int b : onDrives)
 		set(b, s.bodies[b].drive);
@@ -235,7 +232,7 @@ double WallStep<K>::stirred(const RigidSystem<K>& s, double h) const
 		push = std::max({push, change.template head<K::dimension>().norm(), change.template tail<K::spins>().norm() / scales.length});
 	}
 	for (size_t d = 0; d < speeds.size() && d < s.drives.size(); ++d)
-		speedUp = std::max(speedUp, std::abs(meanSpeed(*s.drives[d], s.time, h) - speeds[d]));
+		speedUp = std::max(speedUp, (s.drives[d].meanVelocity(s.time, h) - speeds[d]).norm());
 	return std::min(
 	    1., std::max(speedUp / (tolerance::wall::stirred * scales.stepSpeed(h)), push / (tolerance::wall::pushed * scales.acceleration)));
 }
@@ -389,8 +386,8 @@ int WallStep<K>::land(RigidSystem<K>& s, double part)
 	const size_t known = s.impacts.size();
 	s.baseWork += joints.land(s, moving(), sweeps, part);
 	for (size_t k = known; k < s.impacts.size(); ++k)
-		for (BaseDrive* drive : s.drives)
-			drive->respond(s.impacts[k].block, s.time);
+		for (const Drive<K>& drive : s.drives)
+			drive.respond(s.impacts[k].block, s.time);
 	return int(s.impacts.size() - known);
 }
 
@@ -399,7 +396,7 @@ typename K::Velocity WallStep<K>::startVelocity(const RigidSystem<K>& s, int b) 
 {
 	typename K::Velocity velocity = s.bodies[b].velocity;
 	if (const int drive = s.bodies[b].drive; drive >= 0)
-		velocity.template head<K::dimension>() = s.driveDirections[drive] * s.drives[drive]->velocity(s.time);
+		velocity.template head<K::dimension>() = s.drives[drive].velocity(s.time);
 	return velocity;
 }
 
@@ -465,7 +462,7 @@ double WallStep<K>::takeBody(RigidSystem<K>& s, size_t b, double h)
 	auto& body = s.bodies[b];
 	if (body.prescribed && body.drive >= 0) {
 		body.pose.position = driven(s, body, s.time + h);
-		body.velocity.template head<K::dimension>() = s.driveDirections[body.drive] * s.drives[body.drive]->velocity(s.time + h);
+		body.velocity.template head<K::dimension>() = s.drives[body.drive].velocity(s.time + h);
 		return 0;
 	}
 	const bool stands = isStill(int(b)) || report.mode == WallMode::still;

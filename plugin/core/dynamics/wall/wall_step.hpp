@@ -72,7 +72,7 @@ public:
 		size_t count = speeds.size();
 		f(count);
 		speeds.resize(count);
-		for (double& speed : speeds)
+		for (auto& speed : speeds)
 			f(speed);
 		count = forces.size();
 		f(count);
@@ -150,7 +150,7 @@ private:
 	std::vector<typename K::Pose> middle;     // of a step that moves
 	std::vector<int> onDrives;                // prescribed bodies with a drive
 	std::vector<std::array<int, 2>> carried;  // supports of what moves, and the drive that they go with
-	std::vector<double> speeds;               // of the drives, mean of the last part of a step, m/s
+	std::vector<typename K::Vector> speeds;   // of the drives, mean velocity in the last part of a step, m/s
 	std::vector<typename K::Velocity> forces; // on the bodies, of the last step, N and N m
 	double frictionLoss {0};                  // J, of the part of the step
 	double setOffEnergy {0};                  // J, that structures which begin to move have been given

@@ -147,7 +147,8 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
     """The list for O.engines; sets O.dt and prints the choice and its reason, the blocks that stand on nothing or whose
     landings slip, length and peak of records, and numbers that look like a slip of units.
 
-    motion        a motion engine (PulseTrainEngine, RecordMotionEngine), a list of them, or None
+    motion        a motion engine (PulseTrainEngine, RecordMotionEngine), a list of them, or None. Those of the same bodies, in perpendicular directions
+                  (two or three components of a record), add up
     model         'planar' or 'spatial': rigid blocks in a plane or in space (MoreauJeanIntegrator). 'compliant': joints with
                   stiffness, YADE's usual loop with NewtonIntegrator. 'auto': compliant where a BlockMat has a stiffness or
                   `penetration` is given; else planar where the scene lies in one upright plane; else spatial.

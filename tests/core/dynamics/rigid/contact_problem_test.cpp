@@ -336,9 +336,7 @@ TEST_CASE("contact problem: a wall that stands in slow shaking needs few factori
 	constexpr double h = 1e-3, frequency = 4 * M_PI;
 	auto             s = wall(6, 6);
 	rig::Sine        motion(0.3 * rig::g, frequency);
-	s.drives.push_back(&motion);
-	s.driveDirections.push_back(Vector2::UnitX());
-	s.bodies[0].drive = 0;
+	rig::moveBase(s, motion);
 	RigidStep<Plane> step;
 	int              factorisations = 0;
 	for (int k = 0; k < steps; ++k) {

@@ -96,8 +96,7 @@ inline double overturningEnergy(const RigidBody<Plane>& block) { return block.ma
 // The drive moves the base along x, or along `direction`.
 template <class K> void moveBase(RigidSystem<K>& s, BaseDrive& drive, const typename K::Vector& direction = K::Vector::Unit(0))
 {
-	s.drives.push_back(&drive);
-	s.driveDirections.push_back(direction);
+	s.drives.push_back({{{&drive, direction}}});
 	s.bodies[0].drive = 0;
 }
 

@@ -355,9 +355,7 @@ TEST_CASE("a stack shaken along its faces is the stack of the plane under both i
 			addPair(flat, k, k + 1, 0.7, 0.7);
 		}
 		Jump jump(0.6);
-		flat.drives.push_back(&jump);
-		flat.driveDirections.push_back({1, 0});
-		flat.bodies[0].drive = 0;
+		moveBase(flat, jump);
 		flat.settings.order = order;
 		RigidStep<Plane> planar;
 		while (flat.time < 0.5 - 5e-4)

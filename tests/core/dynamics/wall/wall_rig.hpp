@@ -121,8 +121,7 @@ struct SceneOf {
 
 	void drive(BaseDrive& motion, const typename K::Vector& direction = K::Vector::Unit(0))
 	{
-		system.drives = {&motion};
-		system.driveDirections = {direction};
+		system.drives = {{{{&motion, direction}}}};
 		system.bodies[0].drive = 0;
 	}
 
