@@ -141,6 +141,21 @@ at = state.pos[2]
 O.run(until, True)
 assert abs(state.pos[0] - O.time**2 / 2) <= 1e-12 and abs(at + 0.15 - (O.time - until * O.dt - joined) ** 2) <= 1e-12 and abs(state.pos[2] - at) <= 1e-12
 
+# A slab on two bases that part: friction leaves open how much each carries, and a scene that is its own mirror image stays so, to 1 % of the way.
+apart = 1.5 * np.sin(2 * math.pi * np.arange(0, 1.001, DT)) ** 3
+for model in ("planar", "spatial"):
+    O.reset()
+    material = stone(noSlip=False, frictionAngle=0.5)
+    bases = [dem.base((1.5, 2, 1), material) for _ in range(2)]
+    for id, side in zip(bases, (-1, 1)):
+        O.bodies[id].state.pos = (1.25 * side, 0, -0.5)
+    slab = dem.block((4.2, 1, 0.4), material, center=(0, 0, 0.2))
+    O.engines = rigid_engines([component(id, side * apart) for id, side in zip(bases, (-1, 1))], model=model)
+    O.run(int(1 / O.dt), True)
+    way = O.bodies[bases[1]].state.pos[0] - 1.25
+    print(f"{model}: bases go {way:.3f} m to either side, the slab between them {O.bodies[slab].state.pos[0]:.1e} m")
+    assert way > 0.05 and abs(O.bodies[slab].state.pos[0]) < 0.01 * way and O.engines[-1].failures == 0
+
 # What does not go together is refused before anything moves.
 for model in ("planar", "compliant"):
     for samples, direction, bodies, words in (

@@ -72,6 +72,18 @@ namespace {
 		return rigid::relativeVelocity(pair.points[ref.point].frame, body1.pose.position, body1.velocity, body2.pose.position, body2.velocity);
 	}
 
+	// Whether prescribed bodies move against each other.
+	template <class K> bool basesPart(const RigidSystem<K>& s)
+	{
+		const RigidBody<K>* first = nullptr;
+		for (const RigidBody<K>& body : s.bodies) {
+			if (!body.prescribed) continue;
+			if (!first) first = &body;
+			if (body.drive != first->drive || (body.drive < 0 && body.velocity != first->velocity)) return true;
+		}
+		return false;
+	}
+
 	// The forces of more than three points on a face are not determined by its motion, but where it spins as it slides the friction couple
 	// hangs on them: they start from linear pressure, that is from the least sum of squares with the same resultant and moments, so that the
 	// solver's path does not decide. Points that would have to pull, or stick, are left as they are.
@@ -104,6 +116,7 @@ template <class K> void SmoothStep<K>::begin(const RigidSystem<K>& s, double dt)
 	solver.forget();
 	shifts.reserve(s.bodies.size()); // a step that closes gaps may be the first to
 	scales = Scales(s);
+	partBases = basesPart(s);
 	weight = 0;
 	for (const RigidBody<K>& body : s.bodies)
 		if (!body.prescribed) weight += body.mass * scales.acceleration * scales.length;
@@ -225,7 +238,7 @@ template <class K> void SmoothStep<K>::assemble(const RigidSystem<K>& s, double 
 			rows.J1 = jacobian(frame, next1.middle.position, chord<K>(next1.mean, h), -1);
 			rows.J2 = jacobian(frame, next2.middle.position, chord<K>(next2.mean, h), 1);
 			rows.friction = pair.friction;
-			rows.impulse = guesses.empty() ? Impulse(h * point.force) : guesses[last.rows.size() - 1];
+			rows.impulse = !guesses.empty() ? guesses[last.rows.size() - 1] : partBases ? Impulse::Zero() : Impulse(h * point.force);
 			if (body1.prescribed) rows.offset += rows.J1 * next1.velocity;
 			if (body2.prescribed) rows.offset += rows.J2 * next2.velocity;
 			auto now = (rows.J1 * body1.velocity + rows.J2 * body2.velocity).eval();

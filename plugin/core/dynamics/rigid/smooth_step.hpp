@@ -92,6 +92,7 @@ private:
 	double whole { 0 };                  // s, the step that is being done in parts
 	double weight { 0 };                 // of the free bodies times the scene's length, J
 	bool   unsteady { false };            // the stray velocities were left
+	bool   partBases { false };           // how much each of two bases that move apart carries is not determined: the last step's share grows
 	std::vector<typename K::Vector> positions; // of the rows of one pair
 	ContactSolver<K> solver;
 };
