@@ -13,7 +13,6 @@ public:
 
 	double displacement(double t) const override { return motion.displacement(t - motion.start); }
 	double velocity(double t) const override { return motion.velocity(t - motion.start); }
-	double acceleration(double t) const override { return motion.acceleration(t - motion.start); }
 	double nextKink(double after, double until) const override { return motion.start + motion.nextKink(after - motion.start, until - motion.start); }
 	double jumpAt(double t) override { return sum(motion.takeJumps(t + instant, {})); }
 	double respond(int block, double t) override { return sum(motion.takeJumps(t, { { blocks[block], 0 } })); }

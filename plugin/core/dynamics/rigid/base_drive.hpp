@@ -13,7 +13,6 @@ public:
 	virtual ~BaseDrive() = default;
 	virtual double displacement(double t) const = 0; // m
 	virtual double velocity(double t) const = 0;     // m/s
-	virtual double acceleration(double t) const = 0; // m/s^2, right of a kink
 	// First instant in (after, until) at which velocity or acceleration jumps, else infinity. The step is split there.
 	virtual double nextKink(double after, double until) const = 0;
 	// Velocity jump at the instant t, m/s (0: none); the step asks at its start and at each kink.

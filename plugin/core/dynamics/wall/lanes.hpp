@@ -135,7 +135,6 @@ MASONRY_INLINE Floats joined(const FloatPack& low, const FloatPack& high)
 }
 MASONRY_INLINE FloatPack lowOf(const Floats& a) { return __builtin_shufflevector(a, a, 0, 1, 2, 3); }
 MASONRY_INLINE FloatPack highOf(const Floats& a) { return __builtin_shufflevector(a, a, 4, 5, 6, 7); }
-MASONRY_INLINE FloatPack halfOf(const Floats& a, int half) { return half == 0 ? lowOf(a) : highOf(a); }
 MASONRY_INLINE FloatPack narrow(const Lanes& a) { return __builtin_convertvector(a, FloatPack); }
 MASONRY_INLINE Lanes widen(const FloatPack& a) { return __builtin_convertvector(a, Lanes); }
 

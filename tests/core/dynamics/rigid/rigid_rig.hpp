@@ -123,11 +123,6 @@ public:
 		        + q.amplitude / q.frequency * (std::cos(q.phase) * x - (std::sin(q.frequency * x + q.phase) - std::sin(q.phase)) / q.frequency);
 	}
 	double velocity(double t) const override { return velocityAt(t, taken); }
-	double acceleration(double t) const override
-	{
-		const auto [p, x] = at(t, pieces.size());
-		return p ? p->law.constant + x * p->law.slope + p->law.amplitude * std::sin(p->law.frequency * x + p->law.phase) : 0;
-	}
 	double nextKink(double after, double until) const override
 	{
 		for (const auto& piece : pieces)
@@ -180,7 +175,6 @@ public:
 
 	double displacement(double t) const override { return a / w * (t - std::sin(w * t) / w); }
 	double velocity(double t) const override { return a / w * (1 - std::cos(w * t)); }
-	double acceleration(double t) const override { return a * std::sin(w * t); }
 	double nextKink(double, double) const override { return std::numeric_limits<double>::infinity(); }
 	double jumpAt(double) override { return 0; }
 	double respond(int, double) override { return 0; }
@@ -198,7 +192,6 @@ public:
 
 	double displacement(double t) const override { return moved + speed * (t - since); }
 	double velocity(double) const override { return speed; }
-	double acceleration(double) const override { return 0; }
 	double nextKink(double, double) const override { return std::numeric_limits<double>::infinity(); }
 	double jumpAt(double t) override { return speed == 0 ? jump(impulse, t) : 0; }
 	double respond(int, double t) override { return jump(-2 * speed, t); }

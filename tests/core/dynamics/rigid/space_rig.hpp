@@ -96,7 +96,6 @@ struct Jump : BaseDrive {
 	explicit Jump(double v) : speed(v) {}
 	double displacement(double t) const override { return taken ? speed * t : 0; }
 	double velocity(double) const override { return taken ? speed : 0; }
-	double acceleration(double) const override { return 0; }
 	double nextKink(double, double) const override { return std::numeric_limits<double>::infinity(); }
 	double jumpAt(double) override { return std::exchange(taken, true) ? 0 : speed; }
 	double respond(int, double) override { return 0; }

@@ -237,7 +237,6 @@ TEST_CASE("a pulse of the base sets a block rocking as it must")
 		bool taken = false;
 		double displacement(double t) const override { return speed * std::max(0., t - at); }
 		double velocity(double) const override { return taken ? speed : 0; }
-		double acceleration(double) const override { return 0; }
 		double nextKink(double after, double until) const override { return after < at && at < until ? at : INFINITY; }
 		double jumpAt(double t) override
 		{

@@ -136,7 +136,6 @@ TEST_CASE("a wall in space that has been shaken comes to rest")
 		double held(double t) const { return std::min(t, begin + 2 * M_PI / frequency); }
 		double displacement(double t) const override { return Harmonic::displacement(held(t)); }
 		double velocity(double t) const override { return Harmonic::velocity(held(t)); }
-		double acceleration(double t) const override { return Harmonic::acceleration(held(t)); }
 	};
 	const double amplitude = GENERATE(0.7, 0.8, 0.95);
 	SpaceScene scene;

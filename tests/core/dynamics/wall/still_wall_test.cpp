@@ -33,7 +33,6 @@ struct Ramp : BaseDrive {
 	explicit Ramp(double most) : most(most) {}
 	double displacement(double t) const override { return most * (t < 1 ? t * t * t / 6 : (t * t - t) / 2 + 1. / 6); }
 	double velocity(double t) const override { return most * (t < 1 ? t * t / 2 : t - 0.5); }
-	double acceleration(double t) const override { return most * std::min(t, 1.); }
 	double nextKink(double after, double until) const override { return after < 1 && 1 <= until ? 1 : INFINITY; }
 	double jumpAt(double) override { return 0; }
 	double respond(int, double) override { return 0; }

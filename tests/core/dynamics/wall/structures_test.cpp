@@ -47,7 +47,6 @@ struct Stopped : Harmonic {
 	static constexpr double end = 0.8;
 	double displacement(double t) const override { return Harmonic::displacement(std::min(t, end)); }
 	double velocity(double t) const override { return t < end ? Harmonic::velocity(t) : 0; }
-	double acceleration(double t) const override { return t < end ? Harmonic::acceleration(t) : 0; }
 };
 
 struct Ordered : Harmonic {

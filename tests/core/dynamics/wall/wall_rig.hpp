@@ -19,7 +19,6 @@ struct Harmonic : BaseDrive {
 	double since(double t) const { return std::max(0., t - begin); }
 	double displacement(double t) const override { return amplitude / frequency * (since(t) - std::sin(frequency * since(t)) / frequency); }
 	double velocity(double t) const override { return amplitude / frequency * (1 - std::cos(frequency * since(t))); }
-	double acceleration(double t) const override { return amplitude * std::sin(frequency * since(t)); }
 	double nextKink(double after, double until) const override { return after < begin && begin <= until ? begin : INFINITY; }
 	double jumpAt(double) override { return 0; }
 	double respond(int, double) override { return 0; }
