@@ -3,7 +3,7 @@
 import math
 
 from masonry import dem
-from rocking_scene import rigid_engines
+from rocking_scene import one_block, rigid_engines
 from yade import O, Vector3
 
 STEP = 1e-3
@@ -38,6 +38,32 @@ for spin in (0.1, 0.2):
     assert moved < 1.1 * outwards
     assert abs(O.engines[-1].kinetic / kinetic - 1) < 1.1 * spin * STEP
     assert O.engines[-1].failures == 0 and O.engines[-1].movingSteps == 0
+
+# --- one that turns about a level axis lowers what stands on it: its work is what the energy of the blocks changes by, to second order of the step ---
+for model in ("planar", "spatial"):
+    base, ids = wall(3, 2, model=model)
+    spin = Vector3(0, 0.2, 0)
+    for id in [base, *ids]:
+        state = O.bodies[id].state
+        state.angVel, state.vel = spin, spin.cross(state.pos - O.bodies[base].state.pos)
+    before = O.engines[-1].kinetic + O.engines[-1].potential
+    O.run(500, True)
+    change = O.engines[-1].kinetic + O.engines[-1].potential - before
+    print(f"{model}, on a base that turns: energy {change:.2f} J, work {dem.energy()['baseWork'] / change - 1:.1e} off")
+    assert change < -50 and O.engines[-1].movingSteps == 0 and abs(dem.energy()["baseWork"] / change - 1) < 1e-4
+
+# --- pulses that answer the impacts of a block, also one with the natural restitution: the train goes on, as with localised impacts ---
+for restitution in (0.9, None):
+    ends = []
+    for method in ("localised", "wall"):
+        base, id, block = one_block(5, restitution=restitution)
+        train = dem.PulseTrainEngine(ids=[base], impulse=0.0125 * 9.81, resonantBlock=id)
+        O.engines = rigid_engines(train, method=method)
+        O.run(int(3 / O.dt), True)
+        ends.append(train.pulseTimes)
+    print(f"restitution {restitution}: {len(ends[0])} pulses, times apart by {max(abs(a - b) for a, b in zip(*ends)):.1e} s")
+    # Half cycles take 0.4 to 1.1 s, of which peaks and impacts of first order miss a hundredth each.
+    assert len(ends[0]) == len(ends[1]) == 5 and all(abs(a - b) < 0.03 for a, b in zip(*ends)), ends
 
 # --- a base that hits a wall from below, and in the next step slides under it: the impact is over, and throws nothing up. A step that hands on at
 # most eight times what a point has carried may give eight times what gravity does in it ---

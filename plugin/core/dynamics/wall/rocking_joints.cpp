@@ -47,8 +47,8 @@ template <class K>
 void RockingJoints<K>::gather(const RigidSystem<K>& s, const WallContacts<K>& c)
 {
 	points.clear();
-	anyLaw = std::any_of(s.pairs.begin(), s.pairs.end(), [](const auto& pair) { return !std::isnan(pair.restitution); });
-	if (!anyLaw)
+	const auto hasLaw = [](const auto& pair) { return !std::isnan(pair.restitution); };
+	if (!areOrdered(s.drives) && std::none_of(s.pairs.begin(), s.pairs.end(), hasLaw))
 		return;
 	const double g = s.gravity.norm();
 	for (int group = 0; group < int(c.groups.size()); ++group)
@@ -204,8 +204,6 @@ void RockingJoints<Space>::answer(RigidSystem<Space>& s, WallContacts<Space>& c,
 {
 	const Contact<Space> at = contact(c, where);
 	const double restitution = s.pairs[c.features[where.group].pair[where.lane]].restitution;
-	if (std::isnan(restitution))
-		return;
 	numbers.clear();
 	impact.bodies.clear();
 	impact.points.clear();
@@ -250,6 +248,10 @@ void RockingJoints<Space>::answer(RigidSystem<Space>& s, WallContacts<Space>& c,
 	             leastSpin = tolerance::restSpeed * std::sqrt(scale::acceleration(s) / s.bodies[at.block].halfSize.norm());
 	if (!(spin >= leastSpin))
 		return;
+	if (std::isnan(restitution)) {
+		natural.push_back(at.block);
+		return;
+	}
 	const auto result = impact.apply();
 	for (size_t i = 0; i < numbers.size(); ++i)
 		if (!impact.bodies[i].prescribed) {
@@ -294,8 +296,12 @@ void RockingJoints<Plane>::answer(RigidSystem<Plane>& s, WallContacts<Plane>& c,
 	const Matrix3 G = J * W;
 	const Vector3 u = J * velocity;
 	const double before = u[2], leastSpin = tolerance::restSpeed * std::sqrt(scale::acceleration(s) / s.bodies[at.block].halfSize.norm());
-	if (std::isnan(pair.restitution) || !(std::abs(before) >= leastSpin))
+	if (!(std::abs(before) >= leastSpin))
 		return;
+	if (std::isnan(pair.restitution)) {
+		natural.push_back(at.block);
+		return;
+	}
 
 	// The impulse x for the couple's target; friction at its limit where sticking asks for more.
 	const double friction = c.groups[where.group].friction[i];
@@ -358,6 +364,7 @@ template <class K>
 double RockingJoints<K>::land(RigidSystem<K>& s, WallContacts<K>& c, Substeps<K>& sweeps, double substep)
 {
 	double baseWork = 0;
+	natural.clear();
 	for (size_t j = 0; j < rocking.size();) {
 		const JointPoint* at = landing(c, rocking[j], substep);
 		if (!at) {

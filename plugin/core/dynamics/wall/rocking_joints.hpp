@@ -10,7 +10,8 @@
 //
 // Other neighbours feel it in the sweeps that follow: the sequential law of impact/rocking_restitution.hpp. Kinetic energy does not
 // grow: where it would, the couple is reduced until it does not. Without a restitution, or when the joint lands as slowly as if at rest
-// (tolerance::restSpeed), nothing is done here: the sweeps are plastic, as which it rocks on where the other pivot takes the weight.
+// (tolerance::restSpeed), nothing is done here: the sweeps are plastic, as which it rocks on where the other pivot takes the weight. Such
+// impacts are found only where a base pulse may answer them.
 //
 // In space all points that close together are the new pivot and the loaded ones the old, and there is one row, along the old edge or across
 // the lever (joint_impact.hpp).
@@ -40,12 +41,13 @@ public:
 	void outdate() { gathered = false; }
 	// Impacts of the substep s that comes, into the contacts' velocities and system.impacts. Returns the work of the base, J.
 	double land(RigidSystem<K>& system, WallContacts<K>& contacts, Substeps<K>& sweeps, double s);
+	std::vector<int> natural; // blocks that have landed there without a restitution
 
 	template <class Flow>
 	void pass(Flow& f)
 	{
 		size_t count = points.size();
-		f(gathered), f(anyLaw), f(count);
+		f(gathered), f(count);
 		points.resize(count);
 		for (JointPoint& p : points)
 			f(p.block), f(p.face), f(p.group), f(p.lane), f(p.point);
@@ -68,7 +70,7 @@ private:
 	const JointPoint* landing(const WallContacts<K>& contacts, const Joint& joint, double s) const;
 	void answer(RigidSystem<K>& system, WallContacts<K>& contacts, const Joint& joint, const JointPoint& at, double s, double& baseWork);
 
-	bool gathered {false}, anyLaw {false};
+	bool gathered {false};
 	std::vector<JointPoint> points; // joint by joint
 	std::vector<char> aside;        // points that the sweeps do not see
 	std::vector<Joint> rocking;

@@ -9,7 +9,6 @@ namespace masonry::rigid {
 namespace {
 
 constexpr int quickSolves = 8, quickRounds = 20;
-constexpr int unknown = -2, several = -3; // drives; -1: none
 // Of a structure that goes on standing when the rest begins to move: more is not worth two steps, and where so much goes, more will.
 constexpr double largestPart = 0.25;
 

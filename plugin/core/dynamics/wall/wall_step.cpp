@@ -95,6 +95,8 @@ void WallStep<K>::advancePart(RigidSystem<K>& s, double h)
 	const bool found = structures.find(s);
 	if (structures.letReturn() || found)
 		arrange(s, still(), moving());
+	if (const std::vector<int> drives = found ? drivesUnder(s) : std::vector<int>(); !drives.empty())
+		report.partBases |= std::find(drives.begin(), drives.end(), several) != drives.end();
 	const auto some = [](const auto& chosen) { return std::find(chosen.begin(), chosen.end(), 1) != chosen.end(); };
 	bool hasMoved = false;
 	for (bool again = false, done = false; !done; again = true) {
@@ -273,7 +275,7 @@ void WallStep<K>::keepStill(RigidSystem<K>& s, double h)
 	frictionLoss += kept.keepSlip();
 	if (started)
 		kept.handOn(scales.stepSpeed(h), !moving().onStill.empty());
-	s.baseWork += baseWorkWhenStill(s);
+	s.baseWork += baseWorkWhenStill(s, h);
 	contacts.velocity = kept.velocity;
 	contacts.shift.resize(kept.velocity.size());
 	for (size_t b = 0; b < contacts.shift.size(); ++b)
@@ -385,9 +387,12 @@ int WallStep<K>::land(RigidSystem<K>& s, double part)
 {
 	const size_t known = s.impacts.size();
 	s.baseWork += joints.land(s, moving(), sweeps, part);
-	for (size_t k = known; k < s.impacts.size(); ++k)
-		for (const Drive<K>& drive : s.drives)
+	for (const Drive<K>& drive : s.drives) {
+		for (size_t k = known; k < s.impacts.size(); ++k)
 			drive.respond(s.impacts[k].block, s.time);
+		for (const int block : joints.natural)
+			drive.respond(block, s.time);
+	}
 	return int(s.impacts.size() - known);
 }
 
@@ -427,7 +432,7 @@ double WallStep<K>::baseWork(const RigidSystem<K>& s, Contacts& contacts)
 // The same from the momentum that the blocks have taken up: of a few iterations, impulses are less right than velocities. Where prescribed
 // bodies move differently, from the impulses.
 template <class K>
-double WallStep<K>::baseWorkWhenStill(const RigidSystem<K>& s)
+double WallStep<K>::baseWorkWhenStill(const RigidSystem<K>& s, double h)
 {
 	using Vector = typename K::Vector;
 	Contacts& contacts = still();
@@ -439,12 +444,13 @@ double WallStep<K>::baseWorkWhenStill(const RigidSystem<K>& s)
 		if (base < 0)
 			base = b;
 		const typename K::Velocity v = startVelocity(s, b);
-		if (v.template head<K::dimension>() != startVelocity(s, base).template head<K::dimension>() ||
-		    !v.template tail<K::spins>().isZero(0))
+		if (b != base && (v != startVelocity(s, base) || !v.template tail<K::spins>().isZero(0)))
 			return baseWork(s, contacts);
 	}
 	if (base < 0)
 		return 0;
+	if (!s.bodies[base].velocity.template tail<K::spins>().isZero(0))
+		return baseWorkWhenTurning(s, base, h);
 	Vector impulse = Vector::Zero();
 	for (size_t b = 0; b < s.bodies.size(); ++b)
 		if (isStill(int(b))) {
@@ -453,6 +459,28 @@ double WallStep<K>::baseWorkWhenStill(const RigidSystem<K>& s)
 				impulse[i] += s.bodies[b].mass * change[i];
 		}
 	return impulse.dot(startVelocity(s, base).template head<K::dimension>());
+}
+
+// The same of a base that turns: with the moment about its centre, of arms in the middle of the step.
+template <class K>
+double WallStep<K>::baseWorkWhenTurning(const RigidSystem<K>& s, int base, double h)
+{
+	const Contacts& contacts = still();
+	typename K::Velocity impulse = K::Velocity::Zero();
+	for (size_t b = 0; b < s.bodies.size(); ++b) {
+		if (!isStill(int(b)))
+			continue;
+		const auto& body = s.bodies[b];
+		const typename K::Velocity change =
+		    contacts.inGlobal(kept.velocity, b) - contacts.inGlobal(contacts.velocity, b) - contacts.inGlobal(loads, b);
+		const typename K::Vector own = body.mass * change.template head<K::dimension>();
+		impulse.template head<K::dimension>() += own;
+		const typename K::Velocity apart = body.velocity - s.bodies[base].velocity;
+		const typename K::Vector arm = body.pose.position - s.bodies[base].pose.position + h / 2 * apart.template head<K::dimension>();
+		impulse.template tail<K::spins>() += K::moment(arm, own) +
+		                                     K::angularMomentum(body.inertia, body.pose, change.template tail<K::spins>());
+	}
+	return impulse.dot(startVelocity(s, base));
 }
 
 // A body's pose and velocity back into the system. Returns the work of the force on it, J.

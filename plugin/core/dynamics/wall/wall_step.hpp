@@ -31,6 +31,7 @@ struct WallReport : StepReport {
 	int moved {0};                   // blocks of structures that moved
 	bool switched {false};           // some structure has begun to
 	int courses {0};                 // blocks one upon another, at most, of those that moved if any did
+	bool partBases {false};          // structures are new, and one stands on bases that move in different ways
 	int solves {0};                  // of the still mode
 	double velocityResidual {0};     // m/s
 	double forceResidual {0};        // error of impulses, as the velocity that it gives the point, m/s
@@ -115,6 +116,7 @@ private:
 	wall::LaneBits findMoving(double h, bool again);
 	void letGo(double h, double share);
 	Bodies carriedBy(const RigidSystem<K>& system, const wall::LaneBits& lanes, bool whole) const;
+	static constexpr int unknown = -2, several = -3; // drives; -1: none
 	std::vector<int> drivesUnder(const RigidSystem<K>& system) const;
 	bool setOff(RigidSystem<K>& system, const Bodies& move);
 	void stepMoving(RigidSystem<K>& system, double h);
@@ -125,7 +127,8 @@ private:
 	double finer() const;
 	typename K::Velocity startVelocity(const RigidSystem<K>& system, int body) const;
 	double baseWork(const RigidSystem<K>& system, Contacts& contacts);
-	double baseWorkWhenStill(const RigidSystem<K>& system);
+	double baseWorkWhenStill(const RigidSystem<K>& system, double h);
+	double baseWorkWhenTurning(const RigidSystem<K>& system, int base, double h);
 	void setBase(const RigidSystem<K>& system, Contacts& contacts, double h);
 	void setLoads(const RigidSystem<K>& system, Contacts& contacts, double h);
 	double takeBody(RigidSystem<K>& system, size_t body, double h);
