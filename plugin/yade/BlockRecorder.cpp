@@ -2,6 +2,7 @@
 #include "BlockGeom.hpp"
 #include "BlockPhys.hpp"
 #include "MoreauJeanIntegrator.hpp"
+#include "tolerances.hpp"
 
 #include <algorithm>
 #include <core/Scene.hpp>
@@ -33,8 +34,9 @@ void BlockRecorder::action()
 			if (!interaction->isReal()) continue;
 			const auto* geom = dynamic_cast<const BlockGeom*>(interaction->geom.get());
 			const auto* phys = dynamic_cast<const BlockPhys*>(interaction->phys.get());
-			if (!geom || !phys || geom->contactPoint.z() > state.pos.z()) continue;
-			force += (interaction->getId2() == id ? 1 : -1) * (phys->normalForce + phys->shearForce);
+			const int side = interaction->getId2() == id ? 1 : -1;
+			if (!geom || !phys || side * geom->normal.z() < masonry::tolerance::uprightJoint) continue;
+			force += side * (phys->normalForce + phys->shearForce);
 			for (Real gap : geom->gaps()) uplift = std::isnan(uplift) ? std::max(gap, Real(0)) : std::max(gap, uplift);
 		}
 		const Real angle = turn.angle() > M_PI ? turn.angle() - 2 * M_PI : turn.angle();

@@ -51,7 +51,7 @@ namespace {
 	{
 		if (values.empty()) return std::make_shared<RigidScene<K>>(engine, motions, Remembered<K>());
 		Remembered<K> before;
-		Unpacker unpacker(values);
+		Unpacker unpacker(values, K::dimension);
 		before.pass(unpacker);
 		const auto result = std::make_shared<RigidScene<K>>(engine, motions, before);
 		result->unpackStepper(unpacker, before);
@@ -149,6 +149,8 @@ void MoreauJeanIntegrator::renew()
 {
 	beginMotions();
 	sceneOf(memory).dropErased();
+	const string obstacle = chosenModel == "planar" ? whyNotPlanar(Coordinates<Plane>(along).normal) : "";
+	if (!obstacle.empty()) throw LeavesPlane(obstacle);
 	build(memory.run->pack());
 }
 
@@ -183,7 +185,6 @@ void MoreauJeanIntegrator::checkBlocks() const
 		if (body->isDynamic() && (body->state->blockedDOFs & ~unused))
 			throw std::invalid_argument(sentence("O.bodies[", body->id, "].state.blockedDOFs = '", body->state->blockedDOFs_vec_get(),
 				"' is not allowed for a rigid block: all six degrees of freedom are blocked ('xyzXYZ') or none."));
-		if (body->isClumpMember()) throw std::invalid_argument(sentence("O.bodies[", body->id, "] is a member of a clump: rigid blocks cannot be clumped."));
 	}
 	if (!free) throw std::invalid_argument("There is no free block in O.bodies: add one with dem.block().");
 	for (const auto& body : scene->bodies->body)
@@ -193,6 +194,7 @@ void MoreauJeanIntegrator::checkBlocks() const
 
 void MoreauJeanIntegrator::checkEngines() const
 {
+	if (scene->isPeriodic) throw std::invalid_argument("O.periodic = True is not allowed: rigid blocks know no periodic cell.");
 	const auto isOne = [](const auto& engine) { return !engine->dead && dynamic_cast<MoreauJeanIntegrator*>(engine.get()); };
 	if (std::count_if(scene->engines.begin(), scene->engines.end(), isOne) > 1)
 		throw std::invalid_argument("O.engines has more than one MoreauJeanIntegrator: each moves all blocks; there must be one.");
@@ -210,6 +212,13 @@ void MoreauJeanIntegrator::checkEngines() const
 				throw std::invalid_argument(sentence("NewtonIntegrator would move block ", body->id,
 					" as well: give the other bodies mask=3 and NewtonIntegrator mask=2, which the blocks (groupMask ", body->groupMask, ") must not have."));
 	}
+}
+
+vector<const Engine*> MoreauJeanIntegrator::enginesNow() const
+{
+	vector<const Engine*> result;
+	for (const auto& engine : scene->engines) result.push_back(engine.get());
+	return result;
 }
 
 // --- plane or space ---
@@ -320,6 +329,7 @@ void MoreauJeanIntegrator::checkTimeStep()
 			coarsestStep, " of sqrt(R/g) of the smallest block); dem.engines() chooses one."));
 	sceneOf(memory).setInstant(masonry::tolerance::rigid::instant * scene->dt);
 	checkedTimeStep = scene->dt;
+	checkedGravity = gravity;
 }
 
 // --- the step ---
@@ -362,7 +372,10 @@ masonry::rigid::StepReport MoreauJeanIntegrator::stepRun()
 			start();
 		else if (outdated())
 			renew();
-		if (scene->dt != checkedTimeStep) checkTimeStep();
+		else if (enginesNow() != checkedEngines)
+			checkEngines();
+		checkedEngines = enginesNow();
+		if (scene->dt != checkedTimeStep || gravity != checkedGravity) checkTimeStep();
 		return sceneOf(memory).step();
 	} catch (const LeavesPlane& obstacle) {
 		if (model == "planar") throw std::runtime_error(sentence("MoreauJeanIntegrator.model = 'planar', but ", obstacle.what(), " at t = ", scene->time, " s."));

@@ -104,11 +104,14 @@ private:
 	void showEnergy();
 	vector<shared_ptr<Engine>> livingMotions() const; // those that are not dead
 	vector<BaseMotionEngine*> motionEngines() const;  // the same
+	vector<const Engine*> enginesNow() const;
 	vector<const Body*> blocks() const;
 	string whyNotPlanar(const Vector3r& normal) const;
 
 	vector<shared_ptr<Engine>> taken; // motions that the run has taken over
 	Real checkedTimeStep = NaN;
+	Vector3r checkedGravity = Vector3r::Zero();
+	vector<const Engine*> checkedEngines; // to be compared only
 	bool sequential = false, wall = false;
 };
 REGISTER_SERIALIZABLE(MoreauJeanIntegrator);

@@ -27,9 +27,9 @@ public:
 		"Pulse train of the base (Casapulla and Maione): jumps of the base velocity by I, -2I, +2I, ..., so that the base moves at +I, -I, +I, ... Scheduled (times) or resonant (resonantBlock: each pulse right after an impact of that block). A Dirac pulse acts at its instant inside the step.",
 		((Real, impulse, NaN, Attr::triggerPostLoad, "Pulse impulse I: jump of the base velocity [m/s]."))
 		((vector<Real>, times, , Attr::triggerPostLoad, "Scheduled pulses: their times after start [s], increasing."))
-		((int, resonantBlock, -1, , "Resonant pulses: the block whose impacts release them. The first pulse comes at start."))
+		((int, resonantBlock, -1, Attr::triggerPostLoad, "Resonant pulses: the block whose impacts release them. The first pulse comes at start."))
 		((int, halfCycles, -1, Attr::triggerPostLoad, "Resonant pulses: number of half cycles after which a last pulse of size I brings the base to rest; -1: the train does not end."))
-		((bool, assembly, false, , "Scheduled pulses: the last one has the size I and brings the base to rest (assembly units I, -2I, I)."))
+		((bool, assembly, false, Attr::triggerPostLoad, "Scheduled pulses: the last one has the size I and brings the base to rest (assembly units I, -2I, I)."))
 		((string, shape, "dirac", Attr::triggerPostLoad, "How a jump is spread over `duration`: 'dirac', 'rectangular' (constant acceleration) or 'half-sine'."))
 		((Real, duration, 0, Attr::triggerPostLoad, "Duration of a pulse [s]; positive unless shape is 'dirac'."))
 		((vector<Real>, pulseTimes, , Attr::readonly, "Pulses so far: their times after start [s]."))

@@ -36,7 +36,7 @@ namespace {
 	{
 		Integrator result;
 		for (const auto& engine : scene.engines) {
-			if (engine->getClassName() != "NewtonIntegrator") continue;
+			if (engine->dead || engine->getClassName() != "NewtonIntegrator") continue;
 			const PythonLock lock;
 			const boost::python::dict attributes = engine->pyDict();
 			result.gravity = boost::python::extract<Vector3r>(attributes["gravity"])();
@@ -62,6 +62,7 @@ void RockingJointEngine::checkScene()
 	const auto isOne = [](const auto& engine) { return !engine->dead && dynamic_cast<RockingJointEngine*>(engine.get()); };
 	if (std::count_if(scene->engines.begin(), scene->engines.end(), isOne) > 1)
 		throw std::runtime_error("O.engines has more than one RockingJointEngine: each acts on all blocks; there must be one.");
+	if (scene->isPeriodic) throw std::runtime_error("O.periodic = True is not allowed: blocks know no periodic cell.");
 	const Integrator integrator = findIntegrator(*scene);
 	gravity = integrator.gravity;
 	for (int id : ids) {

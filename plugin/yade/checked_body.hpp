@@ -5,10 +5,11 @@
 #include <pkg/common/Box.hpp>
 #include <sstream>
 #include <stdexcept>
+#include <string>
 
 namespace yade {
 
-/// Throws unless half sizes, mass and moments of inertia are numbers whose squares, and those of their inverses, single precision holds.
+/// Throws for a member of a clump, and unless half sizes, mass and moments of inertia are numbers whose squares, and those of their inverses, single precision holds.
 inline void checkBody(const Body& body)
 {
 	constexpr Real least = 1e-18, most = 1e18;
@@ -22,6 +23,7 @@ inline void checkBody(const Body& body)
 			throw std::invalid_argument(text.str());
 		}
 	};
+	if (body.isClumpMember()) throw std::invalid_argument("O.bodies[" + std::to_string(body.id) + "] is a member of a clump: blocks cannot be clumped.");
 	if (const auto* box = dynamic_cast<const Box*>(body.shape.get())) check("shape.extents", box->extents, "m");
 	if (!body.isDynamic()) return;
 	check("state.mass", Eigen::Matrix<Real, 1, 1>(body.state->mass), "kg");

@@ -10,13 +10,17 @@
 
 namespace yade {
 
-/// The row begins with the number of its layout, to be changed with any list of members. Rows of old have none: they begin with how many blocks
+/// The row begins with the number of its layout and model, to be changed with any list of members. Rows of old have none: they begin with how many blocks
 /// there are.
 constexpr Real layout = -6;
 
 /// Numbers, enumerations and matrices go into the row, or come out of it, by the same list of members.
 struct Packer {
-	vector<Real> values { layout };
+	explicit Packer(int dimension)
+	        : values { layout, Real(dimension) }
+	{
+	}
+	vector<Real> values;
 	template <class T> void operator()(const T& value)
 	{
 		if constexpr (std::is_arithmetic_v<T> || std::is_enum_v<T>)
@@ -28,10 +32,12 @@ struct Packer {
 
 class Unpacker {
 public:
-	explicit Unpacker(const vector<Real>& row)
+	Unpacker(const vector<Real>& row, int dimension)
 	        : values(row)
 	{
 		if (take() != layout) refuse();
+		if (take() != dimension)
+			throw std::runtime_error("MoreauJeanIntegrator.remembered is of a run in the plane and this one is in space, or the other way round.");
 	}
 	template <class T> void operator()(T& value)
 	{

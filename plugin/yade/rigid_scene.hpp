@@ -42,6 +42,22 @@ struct Properties {
 	}
 };
 
+/// A body of the scene, or a place without one, as the core has taken it over.
+struct Seen {
+	shared_ptr<Body> body;
+	shared_ptr<Material> material;
+	shared_ptr<Shape> shape;
+
+	explicit Seen(const shared_ptr<Body>& b)
+	        : body(b)
+	{
+		if (!body) return;
+		material = body->material;
+		shape = body->shape;
+	}
+	bool isStill(const shared_ptr<Body>& now) const { return now == body && (!now || (now->material == material && now->shape == shape)); }
+};
+
 class AnyRigidScene : public RigidRun {
 public:
 	virtual bool isOf(const Scene&) const = 0;
@@ -94,10 +110,13 @@ public:
 	{
 		showPoints();
 		readLaws();
-		Packer packer;
+		Packer packer(K::dimension);
 		kept.bodies = system.bodies;
 		kept.pairs = system.pairs;
-		kept.pass(packer);
+		Remembered<K> told = kept;
+		for (size_t b = 0; b < links.size(); ++b)
+			if (!isThere(b)) told.ids[b] = -1;
+		told.pass(packer);
 		packer(byWalls);
 		packer(lawsChanged);
 		if (byWalls) {
@@ -127,11 +146,12 @@ public:
 	bool outdated() const override
 	{
 		const auto& all = scene.bodies->body;
-		if (all.size() != bodyCount) return true;
+		if (all.size() != seen.size()) return true;
 		if (!mayHaveChanged()) return false;
-		for (const Link& link : links)
-			if (all[link.body->id].get() != link.body.get() || link.body->state != link.state || !(Properties(*link.body) == link.properties)) return true;
-		return false;
+		for (size_t id = 0; id < seen.size(); ++id)
+			if (!seen[id].isStill(all[id])) return true;
+		return std::any_of(links.begin(), links.end(),
+		                   [](const Link& link) { return link.body->state != link.state || !(Properties(*link.body) == link.properties); });
 	}
 
 	masonry::rigid::StepReport step() override
@@ -222,6 +242,11 @@ private:
 			LOG_WARN("blocks of a wall of " << ofWalls.courses << " courses move from t = " << scene.time << " s on: walls of more than " << mostCourses
 				<< " courses may go some tenths too far; see what a smaller MoreauJeanIntegrator.tolerance or O.dt changes.");
 		}
+		if (ofWalls.partBases && !warnedOfBases) {
+			warnedOfBases = true;
+			LOG_WARN("t = " << scene.time << " s: blocks of a structure stand on bodies that move in different ways. Friction leaves open how much each of these carries, and "
+				"method='wall' may let one take along what should slide on both: compare with method='localised' or compliant joints.");
+		}
 		return report;
 	}
 
@@ -231,8 +256,8 @@ private:
 	vector<int> addBlocks(const Remembered<K>& before)
 	{
 		vector<int> inBefore;
-		bodyCount = scene.bodies->body.size();
 		for (const auto& body : scene.bodies->body) {
+			seen.emplace_back(body);
 			if (!body || !isBlock(*body)) continue;
 			const auto old = std::find(before.ids.begin(), before.ids.end(), body->id);
 			const int  k = old == before.ids.end() ? -1 : int(old - before.ids.begin());
@@ -321,6 +346,13 @@ private:
 
 	// --- scene to core ---
 
+	/// Neither erased nor replaced by another of the same id; an erased body has no id.
+	bool isThere(size_t b) const
+	{
+		const auto& all = scene.bodies->body;
+		return size_t(kept.ids[b]) < all.size() && all[kept.ids[b]] == links[b].body;
+	}
+
 	/// Other engines act in steps that are watched, before or after the blocks move; their loads are taken back in the step after. What another
 	/// thread changes meanwhile is met some steps late.
 	bool mayHaveChanged() const { return unshown <= 1; }
@@ -344,11 +376,16 @@ private:
 		bySize.walls.eachShare(links.size(), [&](size_t begin, size_t end) {
 			for (size_t b = begin; b < end; ++b) {
 				fetch(b + 6);
-				others[b] = !links[b].written.isOf(*links[b].state) && system.bodies[b].drive < 0;
+				others[b] = links[b].written.isOf(*links[b].state) ? 0 : system.bodies[b].drive < 0 ? 1 : driven;
 			}
 		});
 		bool touched = false, placed = false;
-		for (size_t b = size_t(std::find(others.begin(), others.end(), 1) - others.begin()); b < links.size(); ++b) {
+		const auto isTouched = [](char other) { return other != 0; };
+		for (size_t b = size_t(std::find_if(others.begin(), others.end(), isTouched) - others.begin()); b < links.size(); ++b) {
+			if (others[b] == driven) {
+				others[b] = 0;
+				warnOfMotion(b);
+			}
 			if (!others[b]) continue;
 			Link&        link = links[b];
 			auto&        block = system.bodies[b];
@@ -370,6 +407,14 @@ private:
 		}
 		system.moved |= placed;
 		system.startAnew();
+	}
+
+	void warnOfMotion(size_t b)
+	{
+		if (warnedOfMotion) return;
+		warnedOfMotion = true;
+		LOG_WARN("a script has changed the state of body " << kept.ids[b] << " at t = " << scene.time
+			<< " s: it goes where its motion says all the same. A motion in another direction may move it besides.");
 	}
 
 	void warnOfPlace(size_t b)
@@ -502,16 +547,16 @@ private:
 	masonry::rigid::Islands<K> islands;
 	masonry::rigid::StepBySize<K> bySize; // method='wall'
 	bool changed = false; // what is moved, and how, is not as it was
-	bool byWalls = false, lawsChanged = false, warnedOfCourses = false, warnedOfPlace = false;
+	bool byWalls = false, lawsChanged = false, warnedOfCourses = false, warnedOfBases = false, warnedOfPlace = false, warnedOfMotion = false;
 	int unshown = 1; // steps since the interactions were written
 	std::unique_ptr<masonry::rigid::Neighbours<K>> neighbours;
 	vector<MotionDrive> motions;
 	vector<Link> links;
-	vector<char> others; // by link, 1: somebody else has written the state since the last step; elsewhere: and has moved the body
-	static constexpr char elsewhere = 2;
+	vector<char> others; // by link, 1: somebody else has written the state since the last step; elsewhere: and has moved the body; driven: it goes where its motion says
+	static constexpr char elsewhere = 2, driven = 3; // by a motion
 	ShownJoints<K> joints;
 	Remembered<K> kept; // ids and seats; bodies and pairs are filled in when it is packed
-	size_t bodyCount = 0;
+	vector<Seen> seen; // by id
 	Real length = 0; // smallest half size, m
 };
 

@@ -4,7 +4,7 @@ import tempfile
 
 import numpy as np
 from masonry import dem
-from rocking_scene import one_block, quiet_engines
+from rocking_scene import one_block, quiet_engines, rigid_engines, stone
 from yade import O
 
 import masonry
@@ -50,4 +50,17 @@ try:
     raise AssertionError("a file of unknown kind was accepted")
 except ValueError as error:
     assert "h.txt" in str(error)
+
+# In a wall with head joints of 1 mm a block stands on what is below it, not on what is beside it.
+O.reset()
+base = dem.base((4, 1, 0.2), stone())
+ids = dem.wall(courses=2, per_course=4, size=(0.4, 0.2, 0.2), material=O.bodies[base].mat, on=base, gap=0.001)
+recorder = dem.BlockRecorder(ids=ids, iterPeriod=10)
+O.engines = rigid_engines(recorder=recorder)
+O.run(100, True)
+last = dem.history(recorder)[-1]
+assert np.max(np.abs(last["uplift"])) < 1e-12, last["uplift"]
+weights = np.array([O.bodies[id].state.mass * 9.81 for id in ids])
+lower = [O.bodies[id].state.pos[2] < 0.2 for id in ids]
+assert abs(last["force"][lower, 2].sum() / weights.sum() - 1) < 1e-6 and np.all(np.abs(last["force"][~np.array(lower), 2] / weights[~np.array(lower)] - 1) < 1e-6)
 print("recorder: angle, uplift, force, files, loading")

@@ -1,0 +1,127 @@
+"""What a script changes between steps is met with the next: bodies that go, come and are replaced, engines, gravity; what rigid or compliant blocks
+cannot do is refused then as it is before the first step."""
+
+import numpy as np
+from masonry import dem
+from rocking_scene import quiet_engines, refuses, refuses_to_run, rigid_engines, stone
+from yade import FrictMat, NewtonIntegrator, O, utils
+
+
+def scene(engines=rigid_engines):
+    """(base, a block that stands on it, one in the air beside it), after some steps."""
+    O.reset()
+    base = dem.base((4, 1, 0.2), stone(0.7))
+    standing = dem.block((0.6, 1, 1), O.bodies[base].mat, on=base)
+    falling = dem.block((0.6, 1, 1), O.bodies[base].mat, center=(1, 0, 1e3))
+    O.engines = engines(dt=1e-3) if engines is rigid_engines else engines()
+    O.run(10, True)
+    return base, standing, falling
+
+
+def box(center, material):
+    body = utils.box(center, (0.3, 0.5, 0.5), material=material)
+    body.aspherical = True
+    return body
+
+
+def falls(id, since):
+    """From rest in the step that ended at `since`, freely."""
+    state, time = O.bodies[id].state, O.time - since
+    return abs(state.pos[2] - state.refPos[2] + 9.81 * time**2 / 2) < 1e-9 * 9.81 * time**2 + 1e-9
+
+
+# Erased bodies: the place in memory before the first must not tell whether there is one (66 blocks, the last of them erased, stopped YADE).
+for apart in (0, 10, 25):
+    O.reset()
+    base = dem.base((60, 1, 0.2), stone(noSlip=False, frictionAngle=0.6))
+    wall = dem.wall(10, 5, (0.4, 0.2, 0.2), O.bodies[base].mat, on=base)
+    others = [dem.block((0.4, 0.2, 0.2), O.bodies[base].mat, center=(6 + k, 0, 0.1)) for k in range(apart)]
+    O.engines = rigid_engines(method="wall")
+    O.run(50, True)
+    last = (wall + others)[-1]
+    beside = [i for i in O.interactions if last in (i.id1, i.id2)]
+    assert beside
+    O.bodies.erase(last)
+    O.run(3, True)
+    assert not [i for i in O.interactions if last in (i.id1, i.id2)] and O.engines[-1].failures == 0
+
+# A body at the place of one that was erased is another; its shape is its own.
+base, standing, falling = scene()
+O.bodies.erase(falling)
+O.run(10, True)
+begin = O.time
+O.bodies.insertAtId(box((1, 0, 900), O.bodies[base].mat), falling)
+O.run(100, True)
+assert falls(falling, begin)
+O.bodies.erase(falling)
+O.bodies.insertAtId(box((1, 0, 800), O.bodies[base].mat), falling)
+begin = O.time
+O.run(100, True)
+assert falls(falling, begin) and O.engines[-1].chosenModel == "planar"
+
+# A material that makes a block of a box, and one that makes none of it.
+base, standing, falling = scene()
+other = O.bodies.append(box((-1, 0, 700), FrictMat()))
+O.run(10, True)
+O.bodies[other].mat = O.bodies[base].mat
+begin = O.time
+O.run(100, True)
+assert falls(other, begin)
+O.bodies[other].mat = FrictMat()
+at = O.bodies[other].state.pos
+O.run(100, True)
+assert O.bodies[other].state.pos == at and O.engines[-1].failures == 0
+
+# What comes out of the plane: the run goes on in space. Beside a base that is 1 m deep nothing carries a block that is 3 m away.
+base, standing, falling = scene()
+beside = dem.block((0.6, 1, 1), O.bodies[base].mat, center=(0, 3, 1.7))
+begin = O.time
+O.run(800, True)
+assert O.engines[-1].chosenModel == "spatial" and falls(beside, begin)
+
+# Engines and gravity.
+base, standing, falling = scene()
+kept = O.engines
+O.engines = kept + [NewtonIntegrator(gravity=(0, 0, -9.81))]
+refuses_to_run("NewtonIntegrator would move block")
+O.engines = kept
+O.engines[-1].gravity = (0, 0, -9.81e6)
+refuses_to_run("O.dt = 0.001 s is not allowed")
+O.engines[-1].gravity = (0, 0, -9.81)
+O.run(10, True)
+
+# No clumps, no periodic cells, with neither model.
+for model in ("planar", "compliant"):
+    O.reset()
+    base = dem.base((4, 1, 0.2), stone(0.7))
+    ids = dem.stack(2, (0.6, 1, 1), O.bodies[base].mat, base)
+    O.engines = quiet_engines(model=model)
+    O.periodic = True
+    O.cell.setBox(50, 50, 50)
+    refuses_to_run("O.periodic = True", "no periodic cell")
+    O.periodic = False
+    O.bodies.clump(ids)
+    refuses_to_run(f"O.bodies[{ids[0]}] is a member of a clump")
+
+# Compliant: an integrator that is dead integrates nothing, and its gravity and damping are nobody's.
+base, standing, falling = scene(quiet_engines)
+O.engines = O.engines + [NewtonIntegrator(gravity=(0, 0, 0), damping=0.2, dead=True)]
+O.run(1, True)
+assert abs(dem.energy()["potential"] / (O.bodies[standing].state.mass * 9.81 * (0.5 + 1e3)) - 1) < 1e-6
+
+# What the step remembers in the plane is of no use in space.
+base, standing, falling = scene()
+kept = O.engines[-1].remembered
+O.bodies[falling].state.vel = (0, 1, 0)
+O.run(10, True)
+O.engines[-1].remembered = kept
+refuses_to_run("remembered is of a run in the plane")
+
+# A train that has begun goes on as it is.
+base, standing, falling = scene()
+train = dem.PulseTrainEngine(ids=[base], impulse=0.1, resonantBlock=standing, start=O.time)
+O.engines[-1].motions = [train]
+O.run(10, True)
+for name, value in (("resonantBlock", falling), ("assembly", True)):
+    refuses(lambda: setattr(train, name, value), f"PulseTrainEngine.{name} = ", "once the motion has begun")
+assert np.isfinite(O.bodies[standing].state.pos).all()
