@@ -5,7 +5,7 @@ from masonry._given import is_whole
 from masonry.motions import Motion, PulseTrain, Record
 from yade import O, wrapper
 
-from masonry.dem.scene import check_blocks, check_material, check_recorder, listed, structures
+from masonry.dem.scene import _boxes, check_blocks, check_material, check_recorder, listed, structures
 from masonry.dem.walls import number_given
 
 _MODELS = ("auto", "planar", "spatial", "compliant")
@@ -34,10 +34,6 @@ _PEAKS = 0.1, 50
 _STEP_FRACTION = 0.2
 
 
-def _blocks():
-    return [b for b in O.bodies if isinstance(b.mat, wrapper.BlockMat) and isinstance(b.shape, wrapper.Box)]
-
-
 def has_stiffness(material):
     """Whether a script has given the BlockMat a joint stiffness, in either direction."""
     return not (np.isnan(material.normalStiffness) and np.isnan(material.shearStiffness))
@@ -59,7 +55,7 @@ def _column_pressure(body, free, gravity):
 def _choose_stiffness(penetration, gravity):
     """Fills in the stiffness per area of every BlockMat that has none: the most loaded joint gets in by `penetration` times the
     smallest width. Returns a sentence, or None when nothing was chosen."""
-    blocks = _blocks()
+    blocks = _boxes()
     missing = {b.mat.id: b.mat for b in blocks if np.isnan(b.mat.normalStiffness)}
     for material in missing.values():
         free = [b for b in blocks if b.dynamic]
@@ -129,7 +125,7 @@ def _records(motions):
 def _pivots_that_slip():
     """A sentence on the block whose landings slip most: without slip, one that obeys C asks for a friction of slenderness (1 - C)/(1 + C)."""
     slip = []
-    for body in _blocks():
+    for body in _boxes():
         material, half = body.mat, body.shape.extents
         if body.dynamic and not material.noSlip and not np.isnan(material.restitution):
             asked = half[2] / min(half[0], half[1]) * (1 - material.restitution) / (1 + material.restitution)
@@ -196,9 +192,9 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
         if not isinstance(item, wrapper.BaseMotionEngine):
             raise ValueError(f"motion = {item!r}: must be a PulseTrainEngine, a RecordMotionEngine, or a list of them")
         item.check()
-    if not any(b.dynamic for b in _blocks()):
+    if not any(b.dynamic for b in _boxes()):
         raise ValueError("there is no free block in O.bodies: add one with dem.block() before dem.engines()")
-    for body in _blocks():
+    for body in _boxes():
         check_material(body.mat)
     floating = check_blocks(floating=False)
     if floating and gravity > 0:
@@ -206,20 +202,20 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
     slips = _pivots_that_slip()
     if slips:
         print(slips)
-    for density in sorted({b.mat.density for b in _blocks()}):
+    for density in sorted({b.mat.density for b in _boxes()}):
         if not _DENSITIES[0] <= density <= _DENSITIES[1]:
             print(f"masonry.dem: a density is {density:g}: densities are in kg/m^3")
     for peak in (_peak(m) for m in motions if isinstance(m, wrapper.RecordMotionEngine)):
         if 0 < peak and not _PEAKS[0] <= peak <= _PEAKS[1]:
             print(f"masonry.dem: a record reaches {peak:.3g}: in g or cm/s^2? Accelerations are in m/s^2")
-    longest = max(2 * max(b.shape.extents) for b in _blocks() if b.dynamic)
+    longest = max(2 * max(b.shape.extents) for b in _boxes() if b.dynamic)
     if longest > _LONGEST:
         print(f"masonry.dem: the longest block measures {longest:g} m: sizes are in m")
     reason = "asked for"
     if model == "auto":
         if penetration is not None:
             model, reason = "compliant", "penetration is given"
-        elif any(has_stiffness(b.mat) for b in _blocks()):
+        elif any(has_stiffness(b.mat) for b in _boxes()):
             model, reason = "compliant", "a BlockMat has a joint stiffness"
     recorders = [] if recorder is None else list(recorder) if isinstance(recorder, (list, tuple)) else [recorder]
     if not all(isinstance(one, (wrapper.BlockRecorder, wrapper.WallRecorder)) for one in recorders):
@@ -277,14 +273,14 @@ def _compliant(motions, reason, dt, penetration, impact_order, gravity, recorder
     joints = wrapper.RockingJointEngine(impactOrder=impact_order)
     critical = joints.criticalTimeStep()
     if not np.isfinite(critical):  # nothing touches yet
-        critical = min(_landing_step(b) for b in _blocks() if b.dynamic)
+        critical = min(_landing_step(b) for b in _boxes() if b.dynamic)
     if dt is not None and not dt < critical:
         raise ValueError(f"dt = {dt}: must be below {critical:.3g} s, the critical step of joints this stiff")
     O.dt = dt if dt is not None else _STEP_FRACTION * critical
     reasons.append(f"dt = {O.dt:.3g} s ({O.dt / critical:.2g} of the critical step)" if np.isfinite(critical) else f"dt = {O.dt:.3g} s")
     print("masonry.dem:", "; ".join(reasons) + _records(motions))
 
-    smallest = min(min(b.shape.extents) for b in _blocks())
+    smallest = min(min(b.shape.extents) for b in _boxes())
     return [
         wrapper.ForceResetter(),
         wrapper.InsertionSortCollider([wrapper.Bo1_Box_Aabb()], verletDist=0.05 * smallest),

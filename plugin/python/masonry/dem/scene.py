@@ -336,9 +336,7 @@ def overturned():
     """Ids of the free blocks that lean so far that their weight no longer acts through their base, the face that was below in the
     resting pose: a single block that does will not come back."""
     found = []
-    for body in O.bodies:
-        if not (isinstance(body.mat, wrapper.BlockMat) and isinstance(body.shape, wrapper.Box) and body.dynamic):
-            continue
+    for body in (b for b in _boxes() if b.dynamic):
         half = body.shape.extents
         rest, up = (list(turn.conjugate() * Vector3.UnitZ) for turn in (body.state.refOri, body.state.ori))  # upwards, in the block's axes
         upright = max(range(3), key=lambda axis: abs(rest[axis]))
