@@ -1,11 +1,13 @@
 """The engines of a scene, chosen and explained."""
 
+import math
+
 import numpy as np
 from masonry._given import is_whole
 from masonry.motions import Motion, PulseTrain, Record
 from yade import O, wrapper
 
-from masonry.dem.scene import _boxes, check_blocks, check_material, check_recorder, listed, structures
+from masonry.dem.scene import _boxes, check_blocks, check_material, check_recorder, floating_and_supports, listed, structures
 from masonry.dem.walls import number_given
 
 _MODELS = ("auto", "planar", "spatial", "compliant")
@@ -122,21 +124,23 @@ def _records(motions):
     return said
 
 
-def _pivots_that_slip():
-    """A sentence on the block whose landings slip most: without slip, one that obeys C asks for a friction of slenderness (1 - C)/(1 + C)."""
+def _pivots_that_slip(supports):
+    """A sentence on the block whose landings slip most: without slip, one that obeys C asks for a friction of slenderness (1 - C)/(1 + C).
+    supports: (body below, body on it). Joints as Ip2_BlockMat_BlockMat_BlockPhys makes them of two materials."""
     slip = []
-    for body in _boxes():
-        material, half = body.mat, body.shape.extents
-        if body.dynamic and not material.noSlip and not np.isnan(material.restitution):
-            asked = half[2] / min(half[0], half[1]) * (1 - material.restitution) / (1 + material.restitution)
-            if asked > np.tan(material.frictionAngle):
-                slip.append((asked, body.id))
+    for below, body in supports:
+        materials, half = (below.mat, body.mat), body.shape.extents
+        given = [m.restitution for m in materials if not math.isnan(m.restitution)]
+        if body.dynamic and given and not any(m.noSlip for m in materials):
+            restitution, friction = sum(given) / len(given), math.tan(min(m.frictionAngle for m in materials))
+            asked = half[2] / min(half[0], half[1]) * (1 - restitution) / (1 + restitution)
+            if asked > friction:
+                slip.append((asked - friction, body.id, below.id, asked, restitution, friction))
     if not slip:
         return None
-    asked, id = max(slip)
-    body = O.bodies[id]
-    return (f"masonry.dem: where block {body.id} rocks about its narrow side it asks for a friction coefficient of {asked:.2g} to land with restitution "
-            f"{body.mat.restitution:g} and has {np.tan(body.mat.frictionAngle):.2g}: pivots slip, and what slips rocks on farther (noSlip=True: it does not slip)")
+    _, id, on, asked, restitution, friction = max(slip)
+    return (f"masonry.dem: where block {id} rocks on body {on} about its narrow side it asks for a friction coefficient of {asked:.2g} to land "
+            f"with restitution {restitution:g} and has {friction:.2g}: pivots slip, and what slips rocks on farther (noSlip=True: it does not slip)")
 
 
 def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None, impact_order=None, gravity=9.81, recorder=None, others=(), method="auto"):
@@ -196,10 +200,10 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
         raise ValueError("there is no free block in O.bodies: add one with dem.block() before dem.engines()")
     for body in _boxes():
         check_material(body.mat)
-    floating = check_blocks(floating=False)
+    floating, supports = floating_and_supports(floating=False)
     if floating and gravity > 0:
         print(f"masonry.dem: no chain of supports joins these blocks to a prescribed body, they will fall: {listed(floating)}")
-    slips = _pivots_that_slip()
+    slips = _pivots_that_slip(supports)
     if slips:
         print(slips)
     for density in sorted({b.mat.density for b in _boxes()}):
