@@ -8,7 +8,7 @@ import os
 import numpy as np
 from masonry import dem
 from rocking_scene import one_block, quiet_engines, refuses, refuses_to_run, stone
-from yade import O, Quaternion, RockingJointEngine, utils
+from yade import O, Quaternion, RockingJointEngine, Vector3, utils
 
 import masonry
 
@@ -89,6 +89,10 @@ refuses(lambda: dem.record_motion([0, 1], ids=[base]), "record = [0, 1]", "mason
 for bad in (0, "0", [0.5], [-1]):
     refuses(lambda: dem.record_motion(masonry.Record(0.01, [0, 1]), ids=bad), f"ids = {bad!r}", "a list of ids")
 assert dem.record_motion(masonry.Record(0.01, [0, 1]), ids=np.array([base])).ids == [base]
+for bad in ("x", (2, 0, 0), (1, 0), (nan, 0, 1), 1, None):
+    refuses(lambda: dem.record_motion(masonry.Record(0.01, [0, 1]), ids=[base], direction=bad), f"direction = {bad!r}: must be a unit vector of three numbers")
+for good in ([0, 0, 1], np.array([0, 0, 1.0]), Vector3(0, 0, 1)):
+    assert dem.record_motion(masonry.Record(0.01, [0, 1]), ids=[base], direction=good).direction == Vector3(0, 0, 1)
 refuses(lambda: dem.record_motion(masonry.Record(0.01, [0, 1], scale=[1, 2]), ids=[base]), "record.scale = [1, 2]", "one number")
 for name, bad, why in (("impulse", inf, "finite"), ("times", [0, 2, 1], "increasing"), ("times", [1, 1], "increasing"), ("times", [-1, 1], ">= 0"),
                        ("times", [0, nan], "finite"), ("halfCycles", -2, ">= 1"), ("halfCycles", 0, ">= 1"), ("duration", -1, ">= 0"), ("duration", nan, ">= 0"), ("shape", "square", "square")):

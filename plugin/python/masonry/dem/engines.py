@@ -8,7 +8,7 @@ from masonry.motions import Motion, PulseTrain, Record
 from yade import O, wrapper
 
 from masonry.dem.scene import _boxes, check_blocks, check_material, check_recorder, floating_and_supports, listed, structures
-from masonry.dem.walls import number_given
+from masonry.dem.walls import finite_numbers, number_given
 
 _MODELS = ("auto", "planar", "spatial", "compliant")
 _METHODS = ("auto", "localised", "wall")
@@ -94,7 +94,12 @@ def record_motion(record, ids, direction=(1, 0, 0), start=0.0):
         raise ValueError(f"ids = {ids!r}: must be a list of ids of bodies, whole numbers from 0 on")
     if record.shape:
         raise ValueError(f"record.scale = {record.scale}: must be one number, a scene has one motion (record.scaled() makes another)")
-    return wrapper.RecordMotionEngine(ids=[int(id) for id in ids], samples=record.samples.tolist(), interval=record.dt, baseline=record.baseline, direction=direction, start=start)
+    what = "a unit vector of three numbers"
+    unit = finite_numbers("direction", direction, 3, what)
+    if not abs(math.hypot(*unit) - 1) < 1e-9:
+        raise ValueError(f"direction = {direction!r}: must be {what}")
+    return wrapper.RecordMotionEngine(ids=[int(id) for id in ids], samples=record.samples.tolist(), interval=record.dt, baseline=record.baseline,
+                                      direction=unit, start=start)
 
 
 def _in_yade(motion):

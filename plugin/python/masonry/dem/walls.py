@@ -30,7 +30,7 @@ def finite_numbers(name, values, count, what):
     except (TypeError, ValueError, OverflowError):
         found = []
     if len(found) != count or not all(math.isfinite(v) for v in found):
-        raise ValueError(f"{name} = {tuple(values) if isinstance(values, (list, np.ndarray)) else values}: must be {what}")
+        raise ValueError(f"{name} = {tuple(values) if isinstance(values, (list, np.ndarray)) else repr(values)}: must be {what}")
     return found
 
 
