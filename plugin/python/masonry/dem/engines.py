@@ -331,7 +331,8 @@ def impacts():
 
 def energy():
     """Energies in J: kinetic and potential now; frictDissip, impactDissip and baseWork since dem.engines() made the engines; compliant joints: also elastPotential
-    now and dampDissip so far. The sum of all others less baseWork is constant, but for RockingJointEngine.madeEnergy and the errors of steps."""
+    now and dampDissip so far; kinetic, potential and elastPotential are 0 before the first step. The sum of all others less baseWork is
+    constant, but for RockingJointEngine.madeEnergy and the errors of steps."""
     e = _joint_engine()
     keys = ("kinetic", "potential", "elastPotential", "frictDissip", "dampDissip", "impactDissip", "baseWork")
     return {key: getattr(e, key) for key in keys if hasattr(e, key)}
