@@ -86,11 +86,12 @@ with tempfile.TemporaryDirectory() as folder:
     script.write_text(script.read_text() + "# changed\n")
     assert not set(keys) & set(ensemble._keys(script, "run", cases))
     record = Path(folder) / "record.txt"
-    names = []
-    for text in ("0 1 0", "0 2 0"):
-        record.write_text(text)
-        names.append(ensemble._keys(script, "run", [{"scale": 1, "record": str(record)}]))
-    assert names[0] != names[1]
+    for given in (str(record), [str(record)], [[0.5, "x"], {"x": str(record)}]):
+        names = []
+        for text in ("0 1 0", "0 2 0", "0 1 0"):
+            record.write_text(text)
+            names += ensemble._keys(script, "run", [{"scale": 1, "record": given}])
+        assert names[0] != names[1] and names[0] == names[2], given
 
     # A case that fails is told, with what it said; the others are kept.
     refuses(lambda: study([{"scale": -1}, {"scale": 0.1}], script, out), "1 of 2 cases failed", "{'scale': -1}", "this case is made to fail", kind=RuntimeError)

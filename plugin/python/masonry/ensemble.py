@@ -56,19 +56,24 @@ def _contents(paths):
     return digest.hexdigest()
 
 
+def _texts(value):
+    """The strings in a plain value, those in lists too."""
+    if isinstance(value, dict):
+        value = list(value.values())
+    if isinstance(value, list):
+        return [text for item in value for text in _texts(item)]
+    return [value] if isinstance(value, str) else []
+
+
 def _keys(script, function, cases):
     """A name for each case: of its values, of the files that they name, of the script and of this package as it is installed."""
     package = Path(__file__).parent
     code = _contents([script, *sorted(f for f in package.rglob("*") if f.suffix in (".py", ".so") and f != Path(__file__))])
-    named = {}
-    for case in cases:
-        for value in case.values():
-            if isinstance(value, (str, os.PathLike)) and value not in named and os.path.isfile(value):
-                named[value] = _contents([value])
-    keys = []
-    for case in cases:
-        files = [named[v] for v in case.values() if isinstance(v, (str, os.PathLike)) and v in named]
-        keys.append(hashlib.sha256(json.dumps([code, function, _plain(case), files]).encode()).hexdigest()[:20])
+    keys, named = [], {}
+    for case in map(_plain, cases):
+        files = [text for text in _texts(json.loads(case)) if os.path.isfile(text)]
+        named.update({file: _contents([file]) for file in files if file not in named})
+        keys.append(hashlib.sha256(json.dumps([code, function, case, [named[file] for file in files]]).encode()).hexdigest()[:20])
     return keys
 
 
