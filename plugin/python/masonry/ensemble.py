@@ -84,7 +84,7 @@ def run(script, cases, folder, function="run", processes=None, time_limit=None, 
     cases         dicts of numbers, strings, and lists of them (which the table has as text), all with the same keys: what the function is given
     folder        one .npz file a finished case, and the tables ensemble.csv and ensemble.npz; made if it is not there
     processes     how many run at once; None: one a core. Each has one thread.
-    time_limit    s of wall clock after which a case is stopped and counts as failed; None: no limit
+    time_limit    s of wall clock after which a case is stopped, and counts as failed unless its result is there; None: no limit
     progress      a progress bar (tqdm)
 
     The function returns a dict of numbers (and, if it likes, arrays: ensemble.result() reads them), the same keys for every case.
@@ -208,11 +208,13 @@ def _run_missing(script, function, missing, total, folder, processes, time_limit
             running.add(process)
         try:
             process.wait(time_limit)
-            why = "" if path.exists() else f"it ended with status {process.returncode}"
+            why = f"it ended with status {process.returncode}"
         except subprocess.TimeoutExpired:
             process.kill()
             process.wait()
             why = f"it was stopped after {time_limit:g} s"
+        if path.exists():  # it is done, however it ended
+            why = ""
         with lock:
             running.discard(process)
             if why and not stopped.is_set():
