@@ -142,6 +142,16 @@ def test_an_erased_block_has_fallen_and_is_drawn_no_more(tmp_path):
     assert b'NumberOfCells="1"' in (results.write_paraview(h, tmp_path / "h.pvd").parent / "h/h_000002.vtu").read_bytes()
 
 
+@pytest.mark.parametrize("frame", [UPRIGHT, turn(0.2, (1, 0, 0))])
+def test_a_base_that_is_erased_stays_where_it_was(frame, tmp_path):
+    h, kept = (rocking([0, 0.1, 0.1, 0.1], frame=np.asarray(frame)) for _ in range(2))
+    h.position[2:, 0] = h.orientation[2:, 0] = np.nan
+    report = results.collapse(h)
+    assert np.array_equal(h.drift(), kept.drift()) and np.array_equal(h.displacement[:, 1], kept.displacement[:, 1])
+    assert not report.collapsed and report.residual_drift == kept.drift()[-1]
+    results.draw(h, tmp_path / "shape.png")
+
+
 def test_a_wall_without_its_base_says_so():
     h = rocking([0, 0.1], shift=(0.4, 0, 0))
     whole, alone = results.collapse(h), results.collapse(results.WallHistory(h.time, h.ids[1:], h.sizes[1:], h.free[1:], h.position[:, 1:], h.orientation[:, 1:]))

@@ -8,7 +8,7 @@ import os
 import numpy as np
 from masonry import dem
 from rocking_scene import one_block, quiet_engines, refuses, refuses_to_run, stone
-from yade import O, Quaternion, RockingJointEngine, utils
+from yade import O, Quaternion, RockingJointEngine, Vector3, utils
 
 import masonry
 
@@ -89,6 +89,10 @@ refuses(lambda: dem.record_motion([0, 1], ids=[base]), "record = [0, 1]", "mason
 for bad in (0, "0", [0.5], [-1]):
     refuses(lambda: dem.record_motion(masonry.Record(0.01, [0, 1]), ids=bad), f"ids = {bad!r}", "a list of ids")
 assert dem.record_motion(masonry.Record(0.01, [0, 1]), ids=np.array([base])).ids == [base]
+for bad in ("x", (2, 0, 0), (1, 0), (nan, 0, 1), 1, None):
+    refuses(lambda: dem.record_motion(masonry.Record(0.01, [0, 1]), ids=[base], direction=bad), f"direction = {bad!r}: must be a unit vector of three numbers")
+for good in ([0, 0, 1], np.array([0, 0, 1.0]), Vector3(0, 0, 1)):
+    assert dem.record_motion(masonry.Record(0.01, [0, 1]), ids=[base], direction=good).direction == Vector3(0, 0, 1)
 refuses(lambda: dem.record_motion(masonry.Record(0.01, [0, 1], scale=[1, 2]), ids=[base]), "record.scale = [1, 2]", "one number")
 for name, bad, why in (("impulse", inf, "finite"), ("times", [0, 2, 1], "increasing"), ("times", [1, 1], "increasing"), ("times", [-1, 1], ">= 0"),
                        ("times", [0, nan], "finite"), ("halfCycles", -2, ">= 1"), ("halfCycles", 0, ">= 1"), ("duration", -1, ">= 0"), ("duration", nan, ">= 0"), ("shape", "square", "square")):
@@ -126,6 +130,17 @@ for density, said in ((2.0, True), (2000.0, False), (2e6, True)):
 O.reset()
 dem.block((400, 200, 200), stone(), on=dem.base((4000, 1000, 100), stone()))
 assert "the longest block measures 400 m: sizes are in m\n" in printed_by()
+# Landings that slip, of a block of slenderness 5 that asks for 5 (1 - C)/(1 + C): the joint's law counts, not that of the block's own material.
+for below, above, said in ((dict(frictionAngle=0.2), dict(frictionAngle=1.2, restitution=0.6), "of 1.2 to land with restitution 0.6 and has 0.2:"),
+                           (dict(frictionAngle=1.2), dict(frictionAngle=1.2, restitution=0.6), None),
+                           (dict(restitution=0.6), {}, "of 1.2 to land with restitution 0.6 and has 0.55:"),
+                           (dict(restitution=0.2), dict(restitution=0.6), "of 2.1 to land with restitution 0.4 and has 0.55:"), ({}, {}, None),
+                           (dict(noSlip=True), dict(restitution=0.6), None)):
+    O.reset()
+    ground, other = (dem.BlockMat(**{"density": 2000, "frictionAngle": 0.5, **given}) for given in (below, above))
+    block = dem.block((0.6, 1, 3), other, on=dem.base((4, 2, 0.2), ground))
+    text = printed_by()
+    assert f"block {block} rocks on body 0 about its narrow side it asks for a friction coefficient {said}" in text if said else "pivots slip" not in text, text
 base, block, _ = one_block(5)
 assert "BlockRecorder records nothing until its iterPeriod or virtPeriod is set\n" in printed_by(recorder=dem.BlockRecorder(ids=[block]))
 base, block, _ = one_block(5)

@@ -86,11 +86,12 @@ with tempfile.TemporaryDirectory() as folder:
     script.write_text(script.read_text() + "# changed\n")
     assert not set(keys) & set(ensemble._keys(script, "run", cases))
     record = Path(folder) / "record.txt"
-    names = []
-    for text in ("0 1 0", "0 2 0"):
-        record.write_text(text)
-        names.append(ensemble._keys(script, "run", [{"scale": 1, "record": str(record)}]))
-    assert names[0] != names[1]
+    for given in (str(record), [str(record)], [[0.5, "x"], {"x": str(record)}]):
+        names = []
+        for text in ("0 1 0", "0 2 0", "0 1 0"):
+            record.write_text(text)
+            names += ensemble._keys(script, "run", [{"scale": 1, "record": given}])
+        assert names[0] != names[1] and names[0] == names[2], given
 
     # A case that fails is told, with what it said; the others are kept.
     refuses(lambda: study([{"scale": -1}, {"scale": 0.1}], script, out), "1 of 2 cases failed", "{'scale': -1}", "this case is made to fail", kind=RuntimeError)
@@ -100,9 +101,10 @@ with tempfile.TemporaryDirectory() as folder:
     refuses(lambda: ensemble.run(script, [{"scale": 0.3}], out, time_limit=0.05, progress=False), "stopped after 0.05 s", "none is kept", kind=RuntimeError)
     refuses(lambda: ensemble.result(script, {"scale": 0.3}, out), "no result", kind=KeyError)
     # All that failed are named, and the others are in the table of the error and of the folder. What fails at once
-    # begins with the one that is stopped: 20 s are enough for it on a busy machine.
+    # begins with the one that is stopped: 20 s are enough for it on a busy machine. The last one hangs when its result is there: it is done.
     slow = Path(folder) / "slow.py"
-    slow.write_text("import time\ndef run(case):\n\ttime.sleep(case['scale'])\n\treturn {'twice': 2 * case['scale']} if case['scale'] else {}\n")
+    slow.write_text("import atexit, time\ndef run(case):\n\ttime.sleep(case['scale'])\n\tif case['scale'] == 0.5: atexit.register(time.sleep, 100)\n"
+                    "\treturn {'twice': 2 * case['scale']} if case['scale'] else {}\n")
     try:
         ensemble.run(slow, [{"scale": w} for w in (0, 100, 0.25, 0.5)], out, processes=2, time_limit=20, progress=False)
         raise AssertionError("cases that failed are not told")

@@ -56,19 +56,24 @@ def _contents(paths):
     return digest.hexdigest()
 
 
+def _texts(value):
+    """The strings in a plain value, those in lists too."""
+    if isinstance(value, dict):
+        value = list(value.values())
+    if isinstance(value, list):
+        return [text for item in value for text in _texts(item)]
+    return [value] if isinstance(value, str) else []
+
+
 def _keys(script, function, cases):
     """A name for each case: of its values, of the files that they name, of the script and of this package as it is installed."""
     package = Path(__file__).parent
     code = _contents([script, *sorted(f for f in package.rglob("*") if f.suffix in (".py", ".so") and f != Path(__file__))])
-    named = {}
-    for case in cases:
-        for value in case.values():
-            if isinstance(value, (str, os.PathLike)) and value not in named and os.path.isfile(value):
-                named[value] = _contents([value])
-    keys = []
-    for case in cases:
-        files = [named[v] for v in case.values() if isinstance(v, (str, os.PathLike)) and v in named]
-        keys.append(hashlib.sha256(json.dumps([code, function, _plain(case), files]).encode()).hexdigest()[:20])
+    keys, named = [], {}
+    for case in map(_plain, cases):
+        files = [text for text in _texts(json.loads(case)) if os.path.isfile(text)]
+        named.update({file: _contents([file]) for file in files if file not in named})
+        keys.append(hashlib.sha256(json.dumps([code, function, case, [named[file] for file in files]]).encode()).hexdigest()[:20])
     return keys
 
 
@@ -79,7 +84,7 @@ def run(script, cases, folder, function="run", processes=None, time_limit=None, 
     cases         dicts of numbers, strings, and lists of them (which the table has as text), all with the same keys: what the function is given
     folder        one .npz file a finished case, and the tables ensemble.csv and ensemble.npz; made if it is not there
     processes     how many run at once; None: one a core. Each has one thread.
-    time_limit    s of wall clock after which a case is stopped and counts as failed; None: no limit
+    time_limit    s of wall clock after which a case is stopped, and counts as failed unless its result is there; None: no limit
     progress      a progress bar (tqdm)
 
     The function returns a dict of numbers (and, if it likes, arrays: ensemble.result() reads them), the same keys for every case.
@@ -203,11 +208,13 @@ def _run_missing(script, function, missing, total, folder, processes, time_limit
             running.add(process)
         try:
             process.wait(time_limit)
-            why = "" if path.exists() else f"it ended with status {process.returncode}"
+            why = f"it ended with status {process.returncode}"
         except subprocess.TimeoutExpired:
             process.kill()
             process.wait()
             why = f"it was stopped after {time_limit:g} s"
+        if path.exists():  # it is done, however it ended
+            why = ""
         with lock:
             running.discard(process)
             if why and not stopped.is_set():

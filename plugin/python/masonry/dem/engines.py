@@ -1,12 +1,14 @@
 """The engines of a scene, chosen and explained."""
 
+import math
+
 import numpy as np
 from masonry._given import is_whole
 from masonry.motions import Motion, PulseTrain, Record
 from yade import O, wrapper
 
-from masonry.dem.scene import check_blocks, check_material, check_recorder, listed, structures
-from masonry.dem.walls import number_given
+from masonry.dem.scene import _boxes, check_blocks, check_material, check_recorder, floating_and_supports, listed, structures
+from masonry.dem.walls import finite_numbers, number_given
 
 _MODELS = ("auto", "planar", "spatial", "compliant")
 _METHODS = ("auto", "localised", "wall")
@@ -34,10 +36,6 @@ _PEAKS = 0.1, 50
 _STEP_FRACTION = 0.2
 
 
-def _blocks():
-    return [b for b in O.bodies if isinstance(b.mat, wrapper.BlockMat) and isinstance(b.shape, wrapper.Box)]
-
-
 def has_stiffness(material):
     """Whether a script has given the BlockMat a joint stiffness, in either direction."""
     return not (np.isnan(material.normalStiffness) and np.isnan(material.shearStiffness))
@@ -59,7 +57,7 @@ def _column_pressure(body, free, gravity):
 def _choose_stiffness(penetration, gravity):
     """Fills in the stiffness per area of every BlockMat that has none: the most loaded joint gets in by `penetration` times the
     smallest width. Returns a sentence, or None when nothing was chosen."""
-    blocks = _blocks()
+    blocks = _boxes()
     missing = {b.mat.id: b.mat for b in blocks if np.isnan(b.mat.normalStiffness)}
     for material in missing.values():
         free = [b for b in blocks if b.dynamic]
@@ -96,7 +94,12 @@ def record_motion(record, ids, direction=(1, 0, 0), start=0.0):
         raise ValueError(f"ids = {ids!r}: must be a list of ids of bodies, whole numbers from 0 on")
     if record.shape:
         raise ValueError(f"record.scale = {record.scale}: must be one number, a scene has one motion (record.scaled() makes another)")
-    return wrapper.RecordMotionEngine(ids=[int(id) for id in ids], samples=record.samples.tolist(), interval=record.dt, baseline=record.baseline, direction=direction, start=start)
+    what = "a unit vector of three numbers"
+    unit = finite_numbers("direction", direction, 3, what)
+    if not abs(math.hypot(*unit) - 1) < 1e-9:
+        raise ValueError(f"direction = {direction!r}: must be {what}")
+    return wrapper.RecordMotionEngine(ids=[int(id) for id in ids], samples=record.samples.tolist(), interval=record.dt, baseline=record.baseline,
+                                      direction=unit, start=start)
 
 
 def _in_yade(motion):
@@ -126,21 +129,23 @@ def _records(motions):
     return said
 
 
-def _pivots_that_slip():
-    """A sentence on the block whose landings slip most: without slip, one that obeys C asks for a friction of slenderness (1 - C)/(1 + C)."""
+def _pivots_that_slip(supports):
+    """A sentence on the block whose landings slip most: without slip, one that obeys C asks for a friction of slenderness (1 - C)/(1 + C).
+    supports: (body below, body on it). Joints as Ip2_BlockMat_BlockMat_BlockPhys makes them of two materials."""
     slip = []
-    for body in _blocks():
-        material, half = body.mat, body.shape.extents
-        if body.dynamic and not material.noSlip and not np.isnan(material.restitution):
-            asked = half[2] / min(half[0], half[1]) * (1 - material.restitution) / (1 + material.restitution)
-            if asked > np.tan(material.frictionAngle):
-                slip.append((asked, body.id))
+    for below, body in supports:
+        materials, half = (below.mat, body.mat), body.shape.extents
+        given = [m.restitution for m in materials if not math.isnan(m.restitution)]
+        if body.dynamic and given and not any(m.noSlip for m in materials):
+            restitution, friction = sum(given) / len(given), math.tan(min(m.frictionAngle for m in materials))
+            asked = half[2] / min(half[0], half[1]) * (1 - restitution) / (1 + restitution)
+            if asked > friction:
+                slip.append((asked - friction, body.id, below.id, asked, restitution, friction))
     if not slip:
         return None
-    asked, id = max(slip)
-    body = O.bodies[id]
-    return (f"masonry.dem: where block {body.id} rocks about its narrow side it asks for a friction coefficient of {asked:.2g} to land with restitution "
-            f"{body.mat.restitution:g} and has {np.tan(body.mat.frictionAngle):.2g}: pivots slip, and what slips rocks on farther (noSlip=True: it does not slip)")
+    _, id, on, asked, restitution, friction = max(slip)
+    return (f"masonry.dem: where block {id} rocks on body {on} about its narrow side it asks for a friction coefficient of {asked:.2g} to land "
+            f"with restitution {restitution:g} and has {friction:.2g}: pivots slip, and what slips rocks on farther (noSlip=True: it does not slip)")
 
 
 def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None, impact_order=None, gravity=9.81, recorder=None, others=(), method="auto"):
@@ -172,6 +177,7 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
                   impact_order 'simultaneous' or a tolerance below 1e-6 is asked for. Smaller structures beside such a one go on with
                   localised impacts (MoreauJeanIntegrator.localisedBlocks)
 
+    A joint of two BlockMats has the smaller friction angle, the mean restitution (the given one where only one is), and noSlip if either has it.
     A BlockMat is read when two blocks come near each other. Changed during a run, it acts on pairs that come later; for those that are there
     already set phys.tangensOfFrictionAngle and phys.restitution of the interactions in O.interactions.
     """
@@ -196,30 +202,30 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
         if not isinstance(item, wrapper.BaseMotionEngine):
             raise ValueError(f"motion = {item!r}: must be a PulseTrainEngine, a RecordMotionEngine, or a list of them")
         item.check()
-    if not any(b.dynamic for b in _blocks()):
+    if not any(b.dynamic for b in _boxes()):
         raise ValueError("there is no free block in O.bodies: add one with dem.block() before dem.engines()")
-    for body in _blocks():
+    for body in _boxes():
         check_material(body.mat)
-    floating = check_blocks(floating=False)
+    floating, supports = floating_and_supports(floating=False)
     if floating and gravity > 0:
         print(f"masonry.dem: no chain of supports joins these blocks to a prescribed body, they will fall: {listed(floating)}")
-    slips = _pivots_that_slip()
+    slips = _pivots_that_slip(supports)
     if slips:
         print(slips)
-    for density in sorted({b.mat.density for b in _blocks()}):
+    for density in sorted({b.mat.density for b in _boxes()}):
         if not _DENSITIES[0] <= density <= _DENSITIES[1]:
             print(f"masonry.dem: a density is {density:g}: densities are in kg/m^3")
     for peak in (_peak(m) for m in motions if isinstance(m, wrapper.RecordMotionEngine)):
         if 0 < peak and not _PEAKS[0] <= peak <= _PEAKS[1]:
             print(f"masonry.dem: a record reaches {peak:.3g}: in g or cm/s^2? Accelerations are in m/s^2")
-    longest = max(2 * max(b.shape.extents) for b in _blocks() if b.dynamic)
+    longest = max(2 * max(b.shape.extents) for b in _boxes() if b.dynamic)
     if longest > _LONGEST:
         print(f"masonry.dem: the longest block measures {longest:g} m: sizes are in m")
     reason = "asked for"
     if model == "auto":
         if penetration is not None:
             model, reason = "compliant", "penetration is given"
-        elif any(has_stiffness(b.mat) for b in _blocks()):
+        elif any(has_stiffness(b.mat) for b in _boxes()):
             model, reason = "compliant", "a BlockMat has a joint stiffness"
     recorders = [] if recorder is None else list(recorder) if isinstance(recorder, (list, tuple)) else [recorder]
     if not all(isinstance(one, (wrapper.BlockRecorder, wrapper.WallRecorder)) for one in recorders):
@@ -277,14 +283,14 @@ def _compliant(motions, reason, dt, penetration, impact_order, gravity, recorder
     joints = wrapper.RockingJointEngine(impactOrder=impact_order)
     critical = joints.criticalTimeStep()
     if not np.isfinite(critical):  # nothing touches yet
-        critical = min(_landing_step(b) for b in _blocks() if b.dynamic)
+        critical = min(_landing_step(b) for b in _boxes() if b.dynamic)
     if dt is not None and not dt < critical:
         raise ValueError(f"dt = {dt}: must be below {critical:.3g} s, the critical step of joints this stiff")
     O.dt = dt if dt is not None else _STEP_FRACTION * critical
     reasons.append(f"dt = {O.dt:.3g} s ({O.dt / critical:.2g} of the critical step)" if np.isfinite(critical) else f"dt = {O.dt:.3g} s")
     print("masonry.dem:", "; ".join(reasons) + _records(motions))
 
-    smallest = min(min(b.shape.extents) for b in _blocks())
+    smallest = min(min(b.shape.extents) for b in _boxes())
     return [
         wrapper.ForceResetter(),
         wrapper.InsertionSortCollider([wrapper.Bo1_Box_Aabb()], verletDist=0.05 * smallest),
@@ -326,7 +332,8 @@ def impacts():
 
 def energy():
     """Energies in J: kinetic and potential now; frictDissip, impactDissip and baseWork since dem.engines() made the engines; compliant joints: also elastPotential
-    now and dampDissip so far. The sum of all others less baseWork is constant, but for RockingJointEngine.madeEnergy and the errors of steps."""
+    now and dampDissip so far; kinetic, potential and elastPotential are 0 before the first step. The sum of all others less baseWork is
+    constant, but for RockingJointEngine.madeEnergy and the errors of steps."""
     e = _joint_engine()
     keys = ("kinetic", "potential", "elastPotential", "frictDissip", "dampDissip", "impactDissip", "baseWork")
     return {key: getattr(e, key) for key in keys if hasattr(e, key)}

@@ -270,14 +270,19 @@ def check_blocks(tolerance=1e-3, floating=True):
     """Raises a ValueError that names the ids of overlapping blocks and, with `floating`, of those that no chain of supports joins to
     a prescribed body (head joints do not carry). tolerance: depth of an overlap, or gap in a joint, that is still accepted, relative to
     the smallest size of the two blocks; 0 < tolerance <= 0.1. Returns the ids of the floating blocks."""
+    return floating_and_supports(tolerance, floating)[0]
+
+
+def floating_and_supports(tolerance=1e-3, floating=True):
+    """What check_blocks() does and returns, and the pairs (body below, body on it) of blocks that touch."""
     if not 0 < walls.number_given("tolerance", tolerance) <= 0.1:
         raise ValueError(f"tolerance = {tolerance}: must be above 0 and at most 0.1")
     bodies = _boxes()
     if not bodies:
-        return []
+        return [], []
     centers, sizes, quaternions = _layout(bodies)
     prescribed = np.array([not b.dynamic for b in bodies])
-    pairs, depths, loose = walls.faults(centers, sizes, walls.axes_of(quaternions), prescribed, tolerance)
+    pairs, depths, loose, supports = walls.faults(centers, sizes, walls.axes_of(quaternions), prescribed, tolerance)
     ids, found = [b.id for b in bodies], []
     loose = [ids[i] for i in loose]
     if len(pairs):
@@ -287,7 +292,7 @@ def check_blocks(tolerance=1e-3, floating=True):
         found.append("floating blocks, which no chain of supports joins to a prescribed body: " + listed(loose))
     if found:
         raise ValueError(f"{'; '.join(found)}; overlaps and gaps must be at most {tolerance:g} of the smallest size (tolerance)")
-    return loose
+    return loose, [(bodies[lower], bodies[upper]) for lower, upper in supports.tolist()]
 
 
 def structures(gap=0.1):
@@ -336,9 +341,7 @@ def overturned():
     """Ids of the free blocks that lean so far that their weight no longer acts through their base, the face that was below in the
     resting pose: a single block that does will not come back."""
     found = []
-    for body in O.bodies:
-        if not (isinstance(body.mat, wrapper.BlockMat) and isinstance(body.shape, wrapper.Box) and body.dynamic):
-            continue
+    for body in (b for b in _boxes() if b.dynamic):
         half = body.shape.extents
         rest, up = (list(turn.conjugate() * Vector3.UnitZ) for turn in (body.state.refOri, body.state.ori))  # upwards, in the block's axes
         upright = max(range(3), key=lambda axis: abs(rest[axis]))

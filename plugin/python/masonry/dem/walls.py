@@ -30,7 +30,7 @@ def finite_numbers(name, values, count, what):
     except (TypeError, ValueError, OverflowError):
         found = []
     if len(found) != count or not all(math.isfinite(v) for v in found):
-        raise ValueError(f"{name} = {tuple(values) if isinstance(values, (list, np.ndarray)) else values}: must be {what}")
+        raise ValueError(f"{name} = {tuple(values) if isinstance(values, (list, np.ndarray)) else repr(values)}: must be {what}")
     return found
 
 
@@ -456,8 +456,8 @@ def _carried(supports, prescribed):
 
 
 def faults(centers, sizes, axes, prescribed, tolerance):
-    """(overlapping pairs (m, 2), their depths in m, floating blocks), by row. axes: (n, 3, 3), rows are the axes of a block; prescribed:
-    (n,) bool, blocks that carry by themselves. Blocks overlap where no separating axis keeps their depth within `tolerance` of the
+    """(overlapping pairs (m, 2), their depths in m, floating blocks, supports (k, 2): lower, upper), by row. axes: (n, 3, 3), rows are the
+    axes of a block; prescribed: (n,) bool, blocks that carry by themselves. Blocks overlap where no separating axis keeps their depth within `tolerance` of the
     smallest size of the two. A block is supported by one that it touches within the same from above, over more than an edge."""
     smallest = sizes.min(axis=1)
     pairs = _near_pairs(*_bounds(centers, sizes, axes, tolerance * smallest[:, None]))
@@ -475,5 +475,5 @@ def faults(centers, sizes, axes, prescribed, tolerance):
         supports.append(np.where(up_best[:, None] > 0, np.stack([i, j], axis=1), np.stack([j, i], axis=1))[joined])
         depth[part] = -widest
     deep = depth > tolerance * np.minimum(smallest[pairs[:, 0]], smallest[pairs[:, 1]])
-    floating = np.flatnonzero(~_carried(np.concatenate(supports), prescribed))
-    return np.sort(pairs[deep], axis=1), depth[deep], floating
+    supports = np.concatenate(supports)
+    return np.sort(pairs[deep], axis=1), depth[deep], np.flatnonzero(~_carried(supports, prescribed)), supports

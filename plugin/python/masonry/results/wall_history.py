@@ -22,7 +22,8 @@ class WallHistory:
     energies       (s, 7) kinetic, potential, elastPotential, frictDissip, dampDissip, impactDissip, baseWork, J; None: not recorded
 
     Displacements and rotations are relative to the base, which is the first prescribed block, and to the first sample. Without
-    a prescribed block they are those in the world. dem.wall_history(recorder) makes one; save and load keep it in a file, to_csv writes a table.
+    a prescribed block they are those in the world; a base that is erased counts as staying where it was. dem.wall_history(recorder) makes one;
+    save and load keep it in a file, to_csv writes a table.
     Raises ValueError when shapes do not fit, times do not increase or a block that is there at first is nowhere.
     """
 
@@ -101,7 +102,9 @@ class WallHistory:
         """Positions and orientations as one sees them from the base, put back where it was at first."""
         if self.base is None:
             return self.position, self.orientation
-        place, turned = self.position[:, self.base], self.orientation[:, self.base]
+        here = np.isfinite(self.position[:, self.base]).all(axis=1)
+        last = np.maximum.accumulate(np.where(here, np.arange(len(here)), 0))
+        place, turned = self.position[last, self.base], self.orientation[last, self.base]
         if (turned == turned[0]).all():
             return self.position - (place - place[0])[:, None], self.orientation
         back = _pose.product(turned[0], _pose.inverse(turned))
