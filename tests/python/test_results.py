@@ -131,6 +131,8 @@ def test_fallen_is_lower_by_half_a_height_or_beyond_the_critical_angle():
     h = history([[2, 2, 0.2]] + [[0.6, 0.5, 0.4]] * 3, [[[0, 0, -0.1], *([0.1 * k, 0, v] for v in row)] for k, row in enumerate(z)])
     assert results.collapse(h).time == 0.5 and results.collapse(h, blocks=2).time == 1.0 and not results.collapse(h, blocks=3).collapsed
     assert results.collapse(h).fallen.tolist() == [13, 12]
+    # The peak drift is that before the collapse: by the second sample the top has moved by 0.1 of a height of 1.2.
+    assert results.collapse(h).peak_drift == 0 and abs(results.collapse(h, blocks=2).peak_drift - 0.1 / 1.2) < ROUND
 
 
 def test_an_erased_block_has_fallen_and_is_drawn_no_more(tmp_path):
@@ -155,6 +157,11 @@ def test_drift_is_that_of_the_top():
     assert abs(h.drift()[1] - 0.05) < ROUND
     h = history([[2, 2, 0.2], [0.6, 0.5, 0.4], [0.6, 0.5, 0.4]], np.array(place)[:, :3])
     assert abs(h.drift()[1] - math.hypot(0.01, 0.02) / 0.8) < ROUND
+    # Higher by 0.05 it is, though the pillar alone is the highest: it ends 0.15 below, and half its height is 0.2.
+    raised = np.array(place)
+    raised[:, 2] += [[0, 0, 0.05], [0.06, 0, 0.05]]
+    h = history([[2, 2, 0.2], [0.6, 0.5, 0.4], [0.6, 0.5, 0.4], [0.3, 0.5, 1.0]], raised)
+    assert abs(h.drift()[1] - math.hypot(0.07, 0.02)) < ROUND
 
 
 @pytest.mark.parametrize("posture", [UPRIGHT, turn(math.pi, (1, 0, 0)), turn(math.pi / 2, (0, 1, 0))])
