@@ -95,9 +95,10 @@ def test_joints_are_the_faces_that_touch():
     assert len(results.joints(corner)) == 2
 
 
-def test_movement_is_relative_to_the_base_also_where_it_turns():
+@pytest.mark.parametrize("posture", [UPRIGHT, turn(0.4, (1, 0, 0))])
+def test_movement_is_relative_to_the_base_also_where_it_turns(posture):
     frame = turn(0.3, (0, 0, 1))
-    start = rocking([0.0, 0.1])
+    start = rocking([0.0, 0.1], frame=np.asarray(posture))
     moved = np.stack([start.position[0], start.position[1] @ _pose.matrices(frame).T + [3, 2, 1]])
     turned = np.stack([start.orientation[0], _pose.product(frame, start.orientation[1])])
     h = history(start.sizes, moved, turned)
