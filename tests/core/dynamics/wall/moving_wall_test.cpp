@@ -306,6 +306,23 @@ TEST_CASE("a step says what energy it has made of nothing")
 	CHECK(created == Approx(block.mass * g * deep).epsilon(1e-2));
 }
 
+// A heavy block upon light ones: its course times the ratio of the masses, where that is more than the sweeps carry (4e4).
+TEST_CASE("a step says which burden its sweeps do not carry")
+{
+	const int courses = GENERATE(1, 3); // light ones
+	const double ratio = 1.5e4;
+	Scene scene;
+	for (int k = 0; k <= courses; ++k)
+		addBlock(scene.system, {0.5, 0.25}, {0, 0.25 + 0.5 * k});
+	RigidBody<Plane>& heavy = scene.system.bodies.back();
+	for (double* scaled : {&heavy.mass, &heavy.inertia[0], &heavy.force[1]})
+		*scaled *= ratio;
+	heavy.velocity[0] = 0.1;
+	scene.advance(1e-3);
+	CHECK(scene.step.report.mode == WallMode::moving);
+	CHECK(scene.step.report.burden == Approx(courses == 1 ? 0 : (courses + 1) * ratio).epsilon(1e-12));
+}
+
 // The law acts between two substeps: the ratio is the one asked, and the spin that goes on is that of the law up to what gravity and one
 // sweep change in a substep.
 TEST_CASE("a rocking joint has the restitution that is asked")
