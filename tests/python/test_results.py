@@ -397,6 +397,11 @@ def test_paraview_files_hold_the_boxes(tmp_path):
         # VTK's hexahedron: a face around, then the opposite one.
         assert np.allclose(local, [[-1, -1, -1], [1, -1, -1], [1, 1, -1], [-1, 1, -1], [-1, -1, 1], [1, -1, 1], [1, 1, 1], [-1, 1, 1]], rtol=0, atol=1e-12)
     assert np.allclose(arrays["rotation"].ravel(), [0, 0.05], rtol=0, atol=1e-12)
+    # Corners have the way from the first sample, less that of the base.
+    results.write_paraview(h, tmp_path / "all.pvd")
+    first, last = (ElementTree.parse(tmp_path / f"all/all_{k:06d}.vtu").getroot().find(".//Piece") for k in (0, 2))
+    way = decoded(last.find("Points/DataArray")) - decoded(first.find("Points/DataArray")) - [0.8, 0, 0]
+    assert np.allclose(decoded(last.find("PointData/DataArray")), way, rtol=0, atol=ROUND) and np.abs(way).max() > 0.09
 
 
 # --- input that cannot be meant ---
