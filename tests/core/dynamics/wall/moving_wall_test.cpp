@@ -347,6 +347,29 @@ TEST_CASE("a rocking joint has the restitution that is asked")
 	CHECK(impacts == 1);
 }
 
+// Two blocks side by side in one register, that land in the same step.
+TEST_CASE("each joint has the restitution of its own pair")
+{
+	const double asked[] {0.9, 0.3};
+	Scene scene(noSlip);
+	addTilted(scene);
+	addTilted(scene);
+	scene.system.bodies[2].pose.position.x() += 5;
+	int impacts[] {0, 0};
+	for (int k = 0; k < 1500; ++k) {
+		scene.near.update(scene.system);
+		for (auto& pair : scene.system.pairs)
+			pair.restitution = asked[pair.body2 - 1];
+		scene.step.advance(scene.system, 1e-3);
+		for (const Impact& impact : scene.system.impacts) {
+			++impacts[impact.block - 1];
+			CHECK(impact.joint.restitution() == Approx(asked[impact.block - 1]).epsilon(1e-9));
+		}
+	}
+	CHECK(impacts[0] > 0);
+	CHECK(impacts[1] > 0);
+}
+
 // Onset of sliding and rocking in a pier of eight courses. The reference is the step itself, with sixteen times as many substeps; that it
 // rocks as it should is checked against localised impacts above.
 TEST_CASE("the first excursion of a pier does not depend on the substep")
