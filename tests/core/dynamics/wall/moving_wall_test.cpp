@@ -370,6 +370,29 @@ TEST_CASE("each joint has the restitution of its own pair")
 	CHECK(impacts[1] > 0);
 }
 
+// A resonant train is told of the block, not of what it lands on: of the upper of two, which rocks on the lower.
+TEST_CASE("a base motion is told which block has landed")
+{
+	struct : Harmonic {
+		using Harmonic::Harmonic;
+		std::vector<int> landed;
+		double respond(int block, double) override { return landed.push_back(block), 0; }
+	} motion(0, 1, 0);
+	Scene scene(noSlip, 0.7);
+	addBlock(scene.system, {1.5, 0.5}, {0, 0.5});
+	addTilted(scene);
+	scene.system.bodies[2].pose.position.y() += 1;
+	scene.drive(motion);
+	std::vector<int> blocks;
+	for (int k = 0; k < 1500; ++k) {
+		scene.advance(1e-3);
+		for (const Impact& impact : scene.system.impacts)
+			blocks.push_back(impact.block);
+	}
+	CHECK(std::count(blocks.begin(), blocks.end(), 2) > 0);
+	CHECK(motion.landed == blocks);
+}
+
 // Onset of sliding and rocking in a pier of eight courses. The reference is the step itself, with sixteen times as many substeps; that it
 // rocks as it should is checked against localised impacts above.
 TEST_CASE("the first excursion of a pier does not depend on the substep")
