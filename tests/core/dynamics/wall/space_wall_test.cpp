@@ -172,6 +172,25 @@ TEST_CASE("a sliding block is slowed down by friction, whatever the direction")
 	CHECK(scene.system.bodies[1].velocity.norm() < 1e-4);
 }
 
+// Forces as they are shown, in the axes of their points: those of the base bear the weight and hold against the pull, to what is asked of those of a
+// wall in the plane.
+TEST_CASE("the base holds a wall in space against what pulls it")
+{
+	const Vector3 along(0.8, 0.6, 0);
+	SpaceScene scene;
+	scene.addWall(2, 3);
+	pull(scene, 0.2, along);
+	scene.run(0.1, 1e-3);
+	Vector3 held = Vector3::Zero(), pulled = Vector3::Zero();
+	for (const auto& pair : scene.system.pairs)
+		for (int k = 0; pair.body1 == 0 && k < pair.size; ++k)
+			held += pair.points[k].frame.axes.transpose() * pair.points[k].force;
+	for (size_t b = 1; b < scene.system.bodies.size(); ++b)
+		pulled += scene.system.bodies[b].force.head<3>();
+	CHECK(scene.step.report.mode == WallMode::still);
+	CHECK((held + pulled).norm() < 1e-3 * pulled.norm());
+}
+
 // Out of plane a stack of n blocks turns about its lowest edge at thickness / height of the whole.
 TEST_CASE("a thin wall turns over at thickness to height")
 {
