@@ -205,6 +205,26 @@ TEMPLATE_TEST_CASE("a pillar rocks on a wall that stands as on its base", "", Pl
 	CHECK(std::abs(low.system.baseWork) > 1e-3 * energy);
 }
 
+// A block on a wall lifts off at b/a = 0.25 g; the wall stands at 0.3 g. There are two factors, the kept one and that which tells what moves, each
+// of the wall with the block and without it. Which points touch does not change on the way: no more.
+TEST_CASE("a wall that goes on standing keeps its factors")
+{
+	Scene scene(0.7, 0.8);
+	scene.addWall(4, 5);
+	addBlock(scene.system, {0.15, 0.6}, {2.3, 2.6});
+	Harmonic motion(0.3 * g, 2, 0.01);
+	scene.drive(motion);
+	int factorisations = 0, moved = 0;
+	for (int k = 0; k < 600; ++k) {
+		scene.advance(h);
+		REQUIRE(scene.step.report.moved <= 1);
+		moved += scene.step.report.moved;
+		factorisations += scene.step.report.factorisations;
+	}
+	CHECK(moved > 0);
+	CHECK(factorisations <= 4);
+}
+
 // A pier rocks on the base, a block on a wall that stands, until the wall begins to move under it: the step in which it does is made twice, and
 // counts once. In every step the base works by what it gives to the momentum of the blocks, with a velocity between those at the ends of the
 // step: to half of what that changes by, times the friction that all blocks can pass on.
