@@ -95,9 +95,10 @@ def test_joints_are_the_faces_that_touch():
     assert len(results.joints(corner)) == 2
 
 
-def test_movement_is_relative_to_the_base_also_where_it_turns():
+@pytest.mark.parametrize("posture", [UPRIGHT, turn(0.4, (1, 0, 0))])
+def test_movement_is_relative_to_the_base_also_where_it_turns(posture):
     frame = turn(0.3, (0, 0, 1))
-    start = rocking([0.0, 0.1])
+    start = rocking([0.0, 0.1], frame=np.asarray(posture))
     moved = np.stack([start.position[0], start.position[1] @ _pose.matrices(frame).T + [3, 2, 1]])
     turned = np.stack([start.orientation[0], _pose.product(frame, start.orientation[1])])
     h = history(start.sizes, moved, turned)
@@ -131,6 +132,8 @@ def test_fallen_is_lower_by_half_a_height_or_beyond_the_critical_angle():
     h = history([[2, 2, 0.2]] + [[0.6, 0.5, 0.4]] * 3, [[[0, 0, -0.1], *([0.1 * k, 0, v] for v in row)] for k, row in enumerate(z)])
     assert results.collapse(h).time == 0.5 and results.collapse(h, blocks=2).time == 1.0 and not results.collapse(h, blocks=3).collapsed
     assert results.collapse(h).fallen.tolist() == [13, 12]
+    # The peak drift is that before the collapse: by the second sample the top has moved by 0.1 of a height of 1.2.
+    assert results.collapse(h).peak_drift == 0 and abs(results.collapse(h, blocks=2).peak_drift - 0.1 / 1.2) < ROUND
 
 
 def test_an_erased_block_has_fallen_and_is_drawn_no_more(tmp_path):
@@ -165,6 +168,11 @@ def test_drift_is_that_of_the_top():
     assert abs(h.drift()[1] - 0.05) < ROUND
     h = history([[2, 2, 0.2], [0.6, 0.5, 0.4], [0.6, 0.5, 0.4]], np.array(place)[:, :3])
     assert abs(h.drift()[1] - math.hypot(0.01, 0.02) / 0.8) < ROUND
+    # Higher by 0.05 it is, though the pillar alone is the highest: it ends 0.15 below, and half its height is 0.2.
+    raised = np.array(place)
+    raised[:, 2] += [[0, 0, 0.05], [0.06, 0, 0.05]]
+    h = history([[2, 2, 0.2], [0.6, 0.5, 0.4], [0.6, 0.5, 0.4], [0.3, 0.5, 1.0]], raised)
+    assert abs(h.drift()[1] - math.hypot(0.07, 0.02)) < ROUND
 
 
 @pytest.mark.parametrize("posture", [UPRIGHT, turn(math.pi, (1, 0, 0)), turn(math.pi / 2, (0, 1, 0))])
@@ -399,6 +407,11 @@ def test_paraview_files_hold_the_boxes(tmp_path):
         # VTK's hexahedron: a face around, then the opposite one.
         assert np.allclose(local, [[-1, -1, -1], [1, -1, -1], [1, 1, -1], [-1, 1, -1], [-1, -1, 1], [1, -1, 1], [1, 1, 1], [-1, 1, 1]], rtol=0, atol=1e-12)
     assert np.allclose(arrays["rotation"].ravel(), [0, 0.05], rtol=0, atol=1e-12)
+    # Corners have the way from the first sample, less that of the base.
+    results.write_paraview(h, tmp_path / "all.pvd")
+    first, last = (ElementTree.parse(tmp_path / f"all/all_{k:06d}.vtu").getroot().find(".//Piece") for k in (0, 2))
+    way = decoded(last.find("Points/DataArray")) - decoded(first.find("Points/DataArray")) - [0.8, 0, 0]
+    assert np.allclose(decoded(last.find("PointData/DataArray")), way, rtol=0, atol=ROUND) and np.abs(way).max() > 0.09
 
 
 # --- input that cannot be meant ---

@@ -1,10 +1,11 @@
-"""BlockMat: defaults, and bad values refused where they are given."""
+"""BlockMat: defaults, bad values refused where they are given, and the stiffness that is chosen where none is."""
 
 import math
 import os
 
 from masonry import dem
-from rocking_scene import refuses
+from rocking_scene import quiet_engines, refuses
+from yade import O
 
 stone = dem.BlockMat()
 assert all(math.isnan(getattr(stone, name)) for name in ("restitution", "normalStiffness", "shearStiffness"))
@@ -32,3 +33,15 @@ for attribute, bad, allowed in [
         assert getattr(stone, attribute) == old, "a refused value must not stay"
     refuses(lambda: stone.updateAttrs({attribute: bad}), attribute, allowed)
     setattr(stone, attribute, old)
+
+# The weight presses the most loaded joint in by the penetration times the smallest width. Half of a block bears on each of the two below it: their
+# joints with the base carry one and a half weights.
+for above, weights in ((0, 1.0), (1, 1.5)):
+    O.reset()
+    stone = dem.BlockMat(density=2000, frictionAngle=0.6)
+    base = dem.base((4, 2, 0.2), stone)
+    for place in [(-0.5, 0, 0.2), (0.5, 0, 0.2), (0, 0, 0.6)][: 2 + above]:
+        dem.block((1, 0.5, 0.4), stone, center=place)
+    O.engines = quiet_engines(penetration=1e-4)
+    pressure = weights * 2000 * 0.4 * 9.81
+    assert abs(stone.normalStiffness * 1e-4 * 0.5 / pressure - 1) < 1e-9 and stone.shearStiffness == stone.normalStiffness, (weights, stone.normalStiffness)

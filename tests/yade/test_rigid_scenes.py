@@ -177,6 +177,17 @@ O.engines = rigid_engines(dt=1e-3)
 O.run(100, True)
 assert O.bodies[block].state.vel.norm() < 1e-9 and abs(O.bodies[block].state.pos[2] - 0.2) < 1e-12
 
+# What other integrators of YADE go on from: the angular momentum, R I R^T w. Round-off of a few products.
+base = ground()
+block = dem.block((0.6, 0.5, 0.4), O.bodies[base].mat, center=(0, 0, 9), orientation=Quaternion(Vector3(1, 2, 3).normalized(), 0.7))
+state = O.bodies[block].state
+state.angVel = (1, -2, 3)
+O.engines = rigid_engines(dt=1e-3, model="spatial")
+O.run(50, True)
+spin = state.ori.conjugate() * state.angVel
+momentum = state.ori * Vector3(*(i * w for i, w in zip(state.inertia, spin)))
+assert (state.angMom - momentum).norm() < 1e-12 * momentum.norm() and momentum.norm() > 0
+
 # The engines of one scene in another.
 engines = O.engines
 _, block, theory = one_block(5, restitution=0.9)

@@ -135,6 +135,16 @@ dem.return_wall(4, 2, 2, (0.4, 0.2, 0.2), stone, base)
 result = found(direction="y")
 assert abs(result.multiplier / 0.2 - 1) < CLOSE and not any(result.joints["opens"]), result
 
+# --- how far a trial has moved the blocks: no corner has gone farther, and of a block that turns about its edge one has gone as far, but for what half
+# its depth adds to its reach: 1 % of that, which is half of the way ---
+base, stone = ground(5.0)
+block = dem.block((0.6, 0.1, 0.4), stone, on=base)
+corners = [Vector3(x, y, z) for x in (-0.3, 0.3) for y in (-0.05, 0.05) for z in (-0.2, 0.2)]
+state, start = O.bodies[block].state, O.bodies[block].state.pos
+moved = dem.TiltTable().trial(2.0).moved
+way = max((state.pos + state.ori * corner - start - corner).norm() for corner in corners)
+assert 1e-3 * 0.1 < way <= moved < 1.01 * way, (moved, way)
+
 # --- one block, a stack, a column: two planes would do, and the pull's is taken; also with gravity that turns and on the slow ramp ---
 for count in (1, 3):
     for options in ({"direction": "y"}, {"direction": "-y", "load": "turned"}, {"direction": "y", "model": "planar"}):

@@ -315,6 +315,13 @@ pair = dem.stack(2, (0.6, 0.5, 1), material, base)
 dem.tilt(pair[1], 0.3)
 dem.tilt(dem.block((0.6, 0.5, 1), material, center=(3, 0, 0.5)), -0.2)
 dem.check_blocks(tolerance=1e-9)
+# A block has overturned beyond atan(half width / half height), about either of its axes and however it stands in the plan.
+for axis, critical in (("y", math.atan(0.3)), ("x", math.atan(0.25))):
+    for share in (-0.99, 0.99, -1.01, 1.01):
+        base, material = ground()
+        block = dem.block((0.6, 0.5, 2), material, on=base, orientation=Quaternion((0, 0, 1), 0.4))
+        dem.tilt(block, share * critical, axis)
+        assert dem.overturned() == ([block] if abs(share) > 1 else []), (axis, share)
 # Bodies of other materials and shapes are none of the plugin's blocks.
 O.bodies.append(utils.box((0, 0, 0.5), (1, 1, 1), material=utils.defaultMaterial()))
 O.bodies.append(utils.sphere((0, 0, 9), 1))

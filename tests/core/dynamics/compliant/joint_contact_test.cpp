@@ -110,3 +110,15 @@ TEST_CASE("A point that stays keeps its shear when the patch is renewed")
 	CHECK(blocks.contact.points[2].identity == before.identity);
 	CHECK((blocks.contact.points[2].shear - before.shear).norm() < 1e-20);
 }
+
+TEST_CASE("The shear of a joint that turns with its blocks turns with it, at its length")
+{
+	PressedBlocks blocks(0, 1e-6, law);
+	blocks.move({ 3e-7, 0, 0 });
+	const Vector3   before = blocks.contact.points[2].shear;
+	const Quaternion turn(Eigen::AngleAxisd(0.3, Vector3::UnitY()));
+	for (Body* body : { &blocks.lower, &blocks.upper })
+		body->pose = { turn * body->pose.position, turn * body->pose.orientation };
+	blocks.look();
+	CHECK((blocks.contact.points[2].shear - turn * before).norm() < 1e-12 * before.norm()); // round-off
+}

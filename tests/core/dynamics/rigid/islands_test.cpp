@@ -117,3 +117,20 @@ TEST_CASE("blocks that come near each other are one structure from then on, and 
 	CHECK(s.bodies[left].pose.position.x() == Approx(-0.5).margin(1e-9));
 	CHECK(s.bodies.back().pose.position.x() == Approx(0.25).epsilon(1e-12));
 }
+
+TEST_CASE("impacts of structures apart come in order of time")
+{
+	// Two blocks fall back from nearly the same angle; the first has farther to go and lands in the same step after the second.
+	auto s = emptyScene<Plane>();
+	const double b = 0.3, a = 1.5, angles[] = {0.1, 0.1 * (1 - 1e-4)};
+	for (int k : {0, 1}) {
+		addBlock(s, b, a, onEdge(b, a, angles[k], {3. * k - b, 0}), angles[k]);
+		addPair(s, 0, k + 1, 0.8);
+	}
+	Islands<Plane> step;
+	while (s.impacts.empty() && s.time < 1)
+		step.advance(s, 1e-3);
+	REQUIRE(s.impacts.size() == 2);
+	CHECK((s.impacts[0].block == 2 && s.impacts[1].block == 1));
+	CHECK(s.impacts[0].time < s.impacts[1].time);
+}

@@ -193,3 +193,18 @@ TEMPLATE_TEST_CASE("bodies that meet within a step are near before it", "", Plan
 	}
 	CHECK((speed < 1 || met > 10));
 }
+
+// A bar 4 m long turns by half a radian in the step, and its end goes up by 2 sin(0.5) m = 0.96 m: to a block that begins at 0.5 m.
+TEST_CASE("what a bar hits as it turns is near before the step")
+{
+	const double step = 1e-2, spin = GENERATE(50., -50.);
+	RigidSystem<Plane> system;
+	system.bodies.resize(2);
+	system.bodies[0].halfSize << 2, 0.05;
+	system.bodies[0].velocity[2] = spin;
+	system.bodies[1].halfSize << 0.1, 0.1;
+	system.bodies[1].pose.position << std::copysign(1.7, spin), 0.6;
+	Neighbours<Plane> neighbours(0.02, [](ContactPair<Plane>&) {});
+	neighbours.update(system, step);
+	CHECK(system.pairs.size() == 1);
+}

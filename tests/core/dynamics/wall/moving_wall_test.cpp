@@ -305,6 +305,23 @@ TEST_CASE("a step says what energy it has made of nothing")
 	CHECK(created == Approx(block.mass * g * deep).epsilon(1e-2));
 }
 
+// A heavy block upon light ones: its course times the ratio of the masses, where that is more than the sweeps carry (4e4).
+TEST_CASE("a step says which burden its sweeps do not carry")
+{
+	const int courses = GENERATE(1, 3); // light ones
+	const double ratio = 1.5e4;
+	Scene scene;
+	for (int k = 0; k <= courses; ++k)
+		addBlock(scene.system, {0.5, 0.25}, {0, 0.25 + 0.5 * k});
+	RigidBody<Plane>& heavy = scene.system.bodies.back();
+	for (double* scaled : {&heavy.mass, &heavy.inertia[0], &heavy.force[1]})
+		*scaled *= ratio;
+	heavy.velocity[0] = 0.1;
+	scene.advance(1e-3);
+	CHECK(scene.step.report.mode == WallMode::moving);
+	CHECK(scene.step.report.burden == Approx(courses == 1 ? 0 : (courses + 1) * ratio).epsilon(1e-12));
+}
+
 // The law acts between two substeps: the ratio is the one asked, and the spin that goes on is that of the law up to what gravity and one
 // sweep change in a substep.
 TEST_CASE("a rocking joint has the restitution that is asked")
@@ -327,6 +344,52 @@ TEST_CASE("a rocking joint has the restitution that is asked")
 		}
 	}
 	CHECK(impacts == 1);
+}
+
+// Two blocks side by side in one register, that land in the same step.
+TEST_CASE("each joint has the restitution of its own pair")
+{
+	const double asked[] {0.9, 0.3};
+	Scene scene(noSlip);
+	addTilted(scene);
+	addTilted(scene);
+	scene.system.bodies[2].pose.position.x() += 5;
+	int impacts[] {0, 0};
+	for (int k = 0; k < 1500; ++k) {
+		scene.near.update(scene.system);
+		for (auto& pair : scene.system.pairs)
+			pair.restitution = asked[pair.body2 - 1];
+		scene.step.advance(scene.system, 1e-3);
+		for (const Impact& impact : scene.system.impacts) {
+			++impacts[impact.block - 1];
+			CHECK(impact.joint.restitution() == Approx(asked[impact.block - 1]).epsilon(1e-9));
+		}
+	}
+	CHECK(impacts[0] > 0);
+	CHECK(impacts[1] > 0);
+}
+
+// A resonant train is told of the block, not of what it lands on: of the upper of two, which rocks on the lower.
+TEST_CASE("a base motion is told which block has landed")
+{
+	struct : Harmonic {
+		using Harmonic::Harmonic;
+		std::vector<int> landed;
+		double respond(int block, double) override { return landed.push_back(block), 0; }
+	} motion(0, 1, 0);
+	Scene scene(noSlip, 0.7);
+	addBlock(scene.system, {1.5, 0.5}, {0, 0.5});
+	addTilted(scene);
+	scene.system.bodies[2].pose.position.y() += 1;
+	scene.drive(motion);
+	std::vector<int> blocks;
+	for (int k = 0; k < 1500; ++k) {
+		scene.advance(1e-3);
+		for (const Impact& impact : scene.system.impacts)
+			blocks.push_back(impact.block);
+	}
+	CHECK(std::count(blocks.begin(), blocks.end(), 2) > 0);
+	CHECK(motion.landed == blocks);
 }
 
 // Onset of sliding and rocking in a pier of eight courses. The reference is the step itself, with sixteen times as many substeps; that it
