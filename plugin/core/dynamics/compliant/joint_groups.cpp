@@ -272,7 +272,7 @@ namespace {
 		double largest = 0;
 		for (const NormalRow& row : rows)
 			largest = std::max(largest, std::abs(row.wanted));
-		constexpr int maxSweeps = 2000;
+		constexpr int maxSweeps = 200; // rows whose normals lean never come to agree, and the turns that they ask for grow with the sweeps
 		double        miss = largest;
 		for (int sweep = 0; sweep < maxSweeps && miss > tolerance::settle * largest; ++sweep) {
 			miss = 0;
