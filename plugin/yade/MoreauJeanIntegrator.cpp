@@ -346,7 +346,7 @@ void MoreauJeanIntegrator::action()
 
 bool MoreauJeanIntegrator::isWatched() const
 {
-	// Scripts look when the run has stopped: O.step(), the end of O.run(), O.pause().
+	// Scripts look when the run has stopped: O.step(), the end of O.run(). When O.pause() will stop it is not known.
 	const bool stops = (scene->stopAtIter > 0 && scene->iter + 1 >= scene->stopAtIter) || (scene->stopAtTime > 0 && scene->time + 1.5 * scene->dt >= scene->stopAtTime);
 	if (stops || !Omega::instance().isRunning()) return true;
 	const auto looks = [this](const Engine& engine) {
@@ -362,7 +362,7 @@ bool MoreauJeanIntegrator::isWatched() const
 
 void MoreauJeanIntegrator::writeInteractions()
 {
-	if (memory.run) sceneOf(memory).writeJoints();
+	if (memory.run && sceneOf(memory).isOf(*Omega::instance().getScene())) sceneOf(memory).writeJoints();
 }
 
 masonry::rigid::StepReport MoreauJeanIntegrator::stepRun()
