@@ -192,8 +192,9 @@ void MoreauJeanIntegrator::checkBlocks() const
 			throw std::invalid_argument(sentence("O.bodies[", body->id, "] has a BlockMat and is no Box: rigid blocks touch boxes only."));
 }
 
-void MoreauJeanIntegrator::checkEngines() const
+void MoreauJeanIntegrator::checkEngines()
 {
+	checkedEngines.clear();
 	if (scene->isPeriodic) throw std::invalid_argument("O.periodic = True is not allowed: rigid blocks know no periodic cell.");
 	const auto isOne = [](const auto& engine) { return !engine->dead && dynamic_cast<MoreauJeanIntegrator*>(engine.get()); };
 	if (std::count_if(scene->engines.begin(), scene->engines.end(), isOne) > 1)
@@ -212,13 +213,7 @@ void MoreauJeanIntegrator::checkEngines() const
 				throw std::invalid_argument(sentence("NewtonIntegrator would move block ", body->id,
 					" as well: give the other bodies mask=3 and NewtonIntegrator mask=2, which the blocks (groupMask ", body->groupMask, ") must not have."));
 	}
-}
-
-vector<const Engine*> MoreauJeanIntegrator::enginesNow() const
-{
-	vector<const Engine*> result;
-	for (const auto& engine : scene->engines) result.push_back(engine.get());
-	return result;
+	for (const auto& engine : scene->engines) checkedEngines.push_back(engine.get());
 }
 
 // --- plane or space ---
@@ -228,6 +223,7 @@ string MoreauJeanIntegrator::whyNotPlanar(const Vector3r& normal) const
 	const auto across = [&](const Vector3r& v) { return std::abs(normal.dot(v)) > outOfPlane * v.norm(); };
 	const auto all = blocks();
 	const auto first = std::find_if(all.begin(), all.end(), [](const Body* body) { return body->isDynamic(); });
+	if (first == all.end()) return "";
 	if (across(gravity)) return "gravity points out of the plane";
 	const Real depth = normal.dot((*first)->state->pos);
 	Real front = depth, back = depth; // of the free blocks
@@ -367,14 +363,14 @@ void MoreauJeanIntegrator::writeInteractions()
 
 masonry::rigid::StepReport MoreauJeanIntegrator::stepRun()
 {
+	const auto isSame = [](const auto& engine, const Engine* checked) { return engine.get() == checked; };
 	try {
 		if (!memory.run)
 			start();
 		else if (outdated())
 			renew();
-		else if (enginesNow() != checkedEngines)
+		else if (!std::equal(scene->engines.begin(), scene->engines.end(), checkedEngines.begin(), checkedEngines.end(), isSame))
 			checkEngines();
-		checkedEngines = enginesNow();
 		if (scene->dt != checkedTimeStep || gravity != checkedGravity) checkTimeStep();
 		return sceneOf(memory).step();
 	} catch (const LeavesPlane& obstacle) {

@@ -97,14 +97,13 @@ private:
 	void choose();
 	void build(const vector<Real>& remembered);
 	void checkBlocks() const;
-	void checkEngines() const;
+	void checkEngines();
 	void checkTimeStep();
 	masonry::rigid::StepReport stepRun();
 	void count(const masonry::rigid::StepReport&);
 	void showEnergy();
 	vector<shared_ptr<Engine>> livingMotions() const; // those that are not dead
 	vector<BaseMotionEngine*> motionEngines() const;  // the same
-	vector<const Engine*> enginesNow() const;
 	vector<const Body*> blocks() const;
 	string whyNotPlanar(const Vector3r& normal) const;
 

@@ -79,6 +79,12 @@ begin = O.time
 O.run(800, True)
 assert O.engines[-1].chosenModel == "spatial" and falls(beside, begin)
 
+# The last free block goes.
+base, standing, falling = scene()
+O.bodies.erase(falling)
+O.bodies.erase(standing)
+refuses_to_run("There is no free block")
+
 # Engines and gravity.
 base, standing, falling = scene()
 kept = O.engines
