@@ -42,6 +42,7 @@ void BaseMotionEngine::check() const
 	if (underWay() && ids != begunIds) refuseChange("ids", settings().at("ids"), begun.at("ids"));
 	if (ids.empty()) throw std::invalid_argument(getClassName() + ".ids is empty: it must name at least one body to move.");
 	for (int id : ids) {
+		if (std::count(ids.begin(), ids.end(), id) > 1) reject(id, "it must stand there once.");
 		if (!scene->bodies->exists(id)) reject(id, "there is no such body in O.bodies.");
 		if ((*scene->bodies)[id]->isDynamic())
 			reject(id, "a moved base must have all degrees of freedom prescribed (blockedDOFs='xyzXYZ'; dem.base() does that).");
@@ -55,7 +56,7 @@ void BaseMotionEngine::check() const
 	require(std::abs(direction.norm() - 1) < 1e-9, "direction", direction.transpose(), "a unit vector");
 	require(std::isfinite(start), "start", start, "a finite time in s");
 	if (hasBegun())
-		checkPlaces({});
+		checkPlaces();
 	else
 		checkStart();
 }
@@ -131,8 +132,8 @@ bool BaseMotionEngine::wasLeftOut() const
 
 bool BaseMotionEngine::goesOn() const
 {
-	const auto exists = [](int id) { return presentScene()->bodies->exists(id); };
-	return !begun.empty() && hasBegun() && ids == begunIds && !wasLeftOut() && std::all_of(ids.begin(), ids.end(), exists);
+	const auto isThere = [](int id, const Body* body) { return presentScene()->bodies->exists(id) && (*presentScene()->bodies)[id].get() == body; };
+	return !begun.empty() && hasBegun() && ids == begunIds && !wasLeftOut() && std::equal(ids.begin(), ids.end(), begunBodies.begin(), begunBodies.end(), isThere);
 }
 
 void BaseMotionEngine::haveStepped() { lastStep = presentScene()->iter; }
@@ -154,7 +155,8 @@ void BaseMotionEngine::begin(const Motions& all)
 	checkTogether(others);
 	if (goesOn()) { // where the bodies are across its direction has been another's
 		begunWith = others;
-		return takeOrigins();
+		takeOrigins();
+		return warnOfSpeeds(others);
 	}
 	const bool saved = begun.empty() && !origins.empty();
 	if (!begun.empty() && (!underWay() || wasLeftOut())) forget();
@@ -164,16 +166,27 @@ void BaseMotionEngine::begin(const Motions& all)
 	begunStart = start;
 	begunWith = others;
 	home = presentScene();
-	if (saved) return checkPlaces(all);
+	begunBodies.clear();
+	for (int id : ids) begunBodies.push_back((*scene->bodies)[id].get());
+	if (saved && isInPlace(all)) return;
 	takeOrigins();
-	const Real speed = velocity(scene->time - start);
+	if (!saved) warnOfSpeeds(others);
+}
+
+void BaseMotionEngine::warnOfSpeeds(const Motions& others) const
+{
+	if (others.front() != this) return; // one warning for all
+	Vector3r speed = Vector3r::Zero();
+	Real     withinStep = 0; // with compliant joints a body has the mean velocity of the last step
+	for (const BaseMotionEngine* motion : others) {
+		speed += motion->direction * motion->velocity(scene->time - motion->start);
+		withinStep += std::abs(motion->acceleration(scene->time - motion->start)) * scene->dt;
+	}
 	for (int id : ids) {
 		const State& state = *(*scene->bodies)[id]->state;
-		Vector3r     change = state.vel - direction * speed;
-		if (others.size() > 1) change = direction * direction.dot(change);
-		if (change.norm() * scene->dt > samePlace * state.pos.norm())
-			LOG_WARN("body " << id << " moves at " << state.vel.transpose() << " m/s when " << getClassName() << " takes it over at t = " << scene->time
-				<< " s: it goes on at " << speed << " m/s, at once.");
+		if (((state.vel - speed).norm() - withinStep) * scene->dt > samePlace * state.pos.norm())
+			LOG_WARN("body " << id << " moves at " << state.vel.transpose() << " m/s when its motions begin or change at t = " << scene->time
+				<< " s: it goes on at " << speed.transpose() << " m/s, at once.");
 	}
 }
 
@@ -192,16 +205,24 @@ void BaseMotionEngine::checkStart() const
 	throw std::invalid_argument(text.str());
 }
 
-/// A motion that was left out for a while would put its bodies back.
-void BaseMotionEngine::checkPlaces(const Motions& all) const
+bool BaseMotionEngine::isInPlace(const Motions& all) const
 {
-	Vector3r moved = direction * displacement(scene->time - start);
-	for (const BaseMotionEngine* other : together(all))
-		if (other != this) moved += other->direction * other->displacement(scene->time - other->start);
+	Vector3r moved = Vector3r::Zero();
+	for (const BaseMotionEngine* motion : together(all)) moved += motion->direction * motion->displacement(scene->time - motion->start);
 	for (size_t k = 0; k < std::min(ids.size(), origins.size()); ++k) {
-		const Vector3r &pos = (*scene->bodies)[ids[k]]->state->pos, to = origin(k, all) + moved;
-		const Real off = all.empty() ? std::abs(direction.dot(pos - to)) : (pos - to).norm();
-		if (off <= samePlace * (pos.norm() + moved.norm())) continue;
+		const Vector3r& pos = (*scene->bodies)[ids[k]]->state->pos;
+		if ((pos - origin(k, all) - moved).norm() > samePlace * (pos.norm() + moved.norm())) return false;
+	}
+	return true;
+}
+
+/// A motion that was left out for a while, or whose body was replaced, would put its bodies back along its direction.
+void BaseMotionEngine::checkPlaces() const
+{
+	const Vector3r moved = direction * displacement(scene->time - start);
+	for (size_t k = 0; k < std::min(ids.size(), origins.size()); ++k) {
+		const Vector3r &pos = (*scene->bodies)[ids[k]]->state->pos, to = pos + direction * direction.dot(origins[k] + moved - pos);
+		if ((pos - to).norm() <= samePlace * (pos.norm() + moved.norm())) continue;
 		std::ostringstream text;
 		text << getClassName() << ", which has begun at start = " << start << " s, would put body " << ids[k] << " from " << pos.transpose() << " m to "
 		     << to.transpose() << " m at once: give dem.engines() a new " << getClassName() << " with start=O.time.";
@@ -242,7 +263,8 @@ BaseMotionEngine::Settings BaseMotionEngine::settings() const
 
 void BaseMotionEngine::action()
 {
-	const Motions all = together(inEngines(*scene));
+	Motions all = together(inEngines(*scene));
+	if (std::find(all.begin(), all.end(), this) == all.end()) all.push_back(this); // in a ParallelEngine, or called by a script
 	Vector3r here = Vector3r::Zero(), mean = Vector3r::Zero();
 	for (BaseMotionEngine* motion : all) {
 		motion->scene = scene;

@@ -77,7 +77,7 @@ public:
 		"Base class of prescribed motions of the base; does not move anything by itself. Motions of the same bodies in perpendicular directions add up.",
 		((Vector3r, direction, Vector3r(1, 0, 0), Attr::triggerPostLoad, "Unit vector along which the base moves."))
 		((Real, start, 0, Attr::triggerPostLoad, "Time at which the motion begins [s]; from then on its attributes cannot be changed. In a run that has gone on already: start=O.time."))
-		((vector<Vector3r>, origins, , Attr::readonly, "Positions of the bodies when the motion began [m].")),
+		((vector<Vector3r>, origins, , Attr::readonly, "Positions of the bodies without the displacement of this motion [m].")),
 		/* ctor */,
 		.def("check", &BaseMotionEngine::checkNow, "Raises ValueError unless the attributes are complete and every body of ids exists and is prescribed; done before the first step.")
 	);
@@ -94,8 +94,11 @@ private:
 	/// As a script asks: in the present scene.
 	void checkNow();
 	void checkStart() const;
-	/// `all` empty: not known, along its own direction.
-	void checkPlaces(const Motions& all) const;
+	void checkPlaces() const;
+	/// The bodies are where `all` motions have brought them.
+	bool isInPlace(const Motions& all) const;
+	/// Bodies that would change their velocity at once. `others`: those that move the same bodies, itself included.
+	void warnOfSpeeds(const Motions& others) const;
 	/// Those of `all` that move the same bodies, itself included.
 	Motions together(const Motions& all) const;
 	void takeOrigins();
@@ -105,7 +108,8 @@ private:
 	boost::weak_ptr<Scene> home;
 	Settings               begun;
 	vector<int>            begunIds;
-	Motions                begunWith; // to be compared only
+	Motions                begunWith;   // to be compared only
+	vector<const Body*>    begunBodies; // the same
 	Real                   begunStart = NaN, begunAt = NaN;
 	long                   lastStep = -1; // not known
 };

@@ -109,6 +109,7 @@ void MoreauJeanIntegrator::start()
 {
 	beginMotions();
 	if (chosenModel.empty()) choose();
+	checkPlane();
 	build(memory.values);
 }
 
@@ -149,9 +150,14 @@ void MoreauJeanIntegrator::renew()
 {
 	beginMotions();
 	sceneOf(memory).dropErased();
+	checkPlane();
+	build(memory.run->pack());
+}
+
+void MoreauJeanIntegrator::checkPlane() const
+{
 	const string obstacle = chosenModel == "planar" ? whyNotPlanar(Coordinates<Plane>(along).normal) : "";
 	if (!obstacle.empty()) throw LeavesPlane(obstacle);
-	build(memory.run->pack());
 }
 
 void MoreauJeanIntegrator::build(const vector<Real>& remembered)
@@ -195,7 +201,6 @@ void MoreauJeanIntegrator::checkBlocks() const
 void MoreauJeanIntegrator::checkEngines()
 {
 	checkedEngines.clear();
-	if (scene->isPeriodic) throw std::invalid_argument("O.periodic = True is not allowed: rigid blocks know no periodic cell.");
 	const auto isOne = [](const auto& engine) { return !engine->dead && dynamic_cast<MoreauJeanIntegrator*>(engine.get()); };
 	if (std::count_if(scene->engines.begin(), scene->engines.end(), isOne) > 1)
 		throw std::invalid_argument("O.engines has more than one MoreauJeanIntegrator: each moves all blocks; there must be one.");
@@ -213,7 +218,7 @@ void MoreauJeanIntegrator::checkEngines()
 				throw std::invalid_argument(sentence("NewtonIntegrator would move block ", body->id,
 					" as well: give the other bodies mask=3 and NewtonIntegrator mask=2, which the blocks (groupMask ", body->groupMask, ") must not have."));
 	}
-	for (const auto& engine : scene->engines) checkedEngines.push_back(engine.get());
+	for (const auto& engine : scene->engines) checkedEngines.emplace_back(engine.get(), engine->dead);
 }
 
 // --- plane or space ---
@@ -250,7 +255,7 @@ string MoreauJeanIntegrator::whyNotPlanar(const Vector3r& normal) const
 		if (across(motion->direction)) return "a motion points out of the plane";
 	scene->forces.sync();
 	for (const Body* body : all)
-		if (across(scene->forces.getForce(body->id)) || scene->forces.getTorque(body->id).cross(normal).norm() > outOfPlane * scene->forces.getTorque(body->id).norm())
+		if (body->isDynamic() && (across(scene->forces.getForce(body->id)) || scene->forces.getTorque(body->id).cross(normal).norm() > outOfPlane * scene->forces.getTorque(body->id).norm()))
 			return sentence("a force or torque acts on block ", body->id, " out of the plane");
 	return "";
 }
@@ -325,7 +330,7 @@ void MoreauJeanIntegrator::checkTimeStep()
 			coarsestStep, " of sqrt(R/g) of the smallest block); dem.engines() chooses one."));
 	sceneOf(memory).setInstant(masonry::tolerance::rigid::instant * scene->dt);
 	checkedTimeStep = scene->dt;
-	checkedGravity = gravity;
+	checkedGravity = gravity.norm();
 }
 
 // --- the step ---
@@ -363,7 +368,8 @@ void MoreauJeanIntegrator::writeInteractions()
 
 masonry::rigid::StepReport MoreauJeanIntegrator::stepRun()
 {
-	const auto isSame = [](const auto& engine, const Engine* checked) { return engine.get() == checked; };
+	const auto isSame = [](const auto& engine, const auto& checked) { return engine.get() == checked.first && engine->dead == checked.second; };
+	if (scene->isPeriodic) throw std::invalid_argument("O.periodic = True is not allowed: rigid blocks know no periodic cell.");
 	try {
 		if (!memory.run)
 			start();
@@ -371,7 +377,7 @@ masonry::rigid::StepReport MoreauJeanIntegrator::stepRun()
 			renew();
 		else if (!std::equal(scene->engines.begin(), scene->engines.end(), checkedEngines.begin(), checkedEngines.end(), isSame))
 			checkEngines();
-		if (scene->dt != checkedTimeStep || gravity != checkedGravity) checkTimeStep();
+		if (scene->dt != checkedTimeStep || gravity.norm() > checkedGravity) checkTimeStep();
 		return sceneOf(memory).step();
 	} catch (const LeavesPlane& obstacle) {
 		if (model == "planar") throw std::runtime_error(sentence("MoreauJeanIntegrator.model = 'planar', but ", obstacle.what(), " at t = ", scene->time, " s."));

@@ -99,6 +99,7 @@ private:
 	void checkBlocks() const;
 	void checkEngines();
 	void checkTimeStep();
+	void checkPlane() const;
 	masonry::rigid::StepReport stepRun();
 	void count(const masonry::rigid::StepReport&);
 	void showEnergy();
@@ -109,8 +110,11 @@ private:
 
 	vector<shared_ptr<Engine>> taken; // motions that the run has taken over
 	Real checkedTimeStep = NaN;
-	Vector3r checkedGravity = Vector3r::Zero();
-	vector<const Engine*> checkedEngines; // to be compared only
+	Real checkedGravity = 0;
+	vector<std::pair<const Engine*, bool>> checkedEngines; // and whether they are dead; to be compared only
+	struct {
+		bool courses = false, bases = false, place = false, motion = false;
+	} warnedOf; // once in a run
 	bool sequential = false, wall = false;
 };
 REGISTER_SERIALIZABLE(MoreauJeanIntegrator);

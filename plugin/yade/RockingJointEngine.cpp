@@ -58,11 +58,11 @@ void RockingJointEngine::postLoad(RockingJointEngine&)
 void RockingJointEngine::checkScene()
 {
 	constexpr int period = 50; // steps between two looks at the integrator, whose gravity a script may turn slowly
+	if (scene->isPeriodic) throw std::runtime_error("O.periodic = True is not allowed: blocks know no periodic cell.");
 	if (checkedTimeStep > 0 && scene->iter % period != 0) return;
 	const auto isOne = [](const auto& engine) { return !engine->dead && dynamic_cast<RockingJointEngine*>(engine.get()); };
 	if (std::count_if(scene->engines.begin(), scene->engines.end(), isOne) > 1)
 		throw std::runtime_error("O.engines has more than one RockingJointEngine: each acts on all blocks; there must be one.");
-	if (scene->isPeriodic) throw std::runtime_error("O.periodic = True is not allowed: blocks know no periodic cell.");
 	const Integrator integrator = findIntegrator(*scene);
 	gravity = integrator.gravity;
 	for (int id : ids) {

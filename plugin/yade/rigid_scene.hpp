@@ -237,13 +237,13 @@ private:
 		++(still ? integrator.stillSteps : integrator.movingSteps);
 		integrator.velocityResidual = ofWalls.velocityResidual;
 		integrator.forceResidual = ofWalls.forceResidual;
-		if (!still && ofWalls.courses > mostCourses && !warnedOfCourses) {
-			warnedOfCourses = true;
+		if (!still && ofWalls.courses > mostCourses && !integrator.warnedOf.courses) {
+			integrator.warnedOf.courses = true;
 			LOG_WARN("blocks of a wall of " << ofWalls.courses << " courses move from t = " << scene.time << " s on: walls of more than " << mostCourses
 				<< " courses may go some tenths too far; see what a smaller MoreauJeanIntegrator.tolerance or O.dt changes.");
 		}
-		if (ofWalls.partBases && !warnedOfBases) {
-			warnedOfBases = true;
+		if (ofWalls.partBases && !integrator.warnedOf.bases) {
+			integrator.warnedOf.bases = true;
 			LOG_WARN("t = " << scene.time << " s: blocks of a structure stand on bodies that move in different ways. Friction leaves open how much each of these carries, and "
 				"method='wall' may let one take along what should slide on both: compare with method='localised' or compliant joints.");
 		}
@@ -308,6 +308,8 @@ private:
 				const size_t b = size_t(found - kept.ids.begin());
 				auto&        block = system.bodies[b];
 				block.drive = int(d);
+				const State& state = *links[b].state;
+				links[b].written = { state.pos, state.vel, state.angVel, state.ori };
 				block.origin = coordinates.in(first[d]->origin(k, engines));
 				if (inBefore[b] < 0 || begins[d]) block.velocity.template head<K::dimension>() = system.drives[d].velocity(scene.time);
 			}
@@ -346,7 +348,7 @@ private:
 
 	// --- scene to core ---
 
-	/// Neither erased nor replaced by another of the same id; an erased body has no id.
+	/// Neither erased nor replaced by another of the same id. An erased body has lost its own.
 	bool isThere(size_t b) const
 	{
 		const auto& all = scene.bodies->body;
@@ -384,7 +386,7 @@ private:
 		for (size_t b = size_t(std::find_if(others.begin(), others.end(), isTouched) - others.begin()); b < links.size(); ++b) {
 			if (others[b] == driven) {
 				others[b] = 0;
-				warnOfMotion(b);
+				if (links[b].written.pos.allFinite()) warnOfMotion(b);
 			}
 			if (!others[b]) continue;
 			Link&        link = links[b];
@@ -411,16 +413,16 @@ private:
 
 	void warnOfMotion(size_t b)
 	{
-		if (warnedOfMotion) return;
-		warnedOfMotion = true;
+		if (integrator.warnedOf.motion) return;
+		integrator.warnedOf.motion = true;
 		LOG_WARN("a script has changed the state of body " << kept.ids[b] << " at t = " << scene.time
 			<< " s: it goes where its motion says all the same. A motion in another direction may move it besides.");
 	}
 
 	void warnOfPlace(size_t b)
 	{
-		if (warnedOfPlace) return;
-		warnedOfPlace = true;
+		if (integrator.warnedOf.place) return;
+		integrator.warnedOf.place = true;
 		LOG_WARN("a script has moved body " << kept.ids[b] << " by its state.pos at t = " << scene.time
 			<< " s, with state.vel = 0: blocks on it do not feel that it moves. Set state.vel, by which it goes on, or give it a RecordMotionEngine.");
 	}
@@ -547,13 +549,13 @@ private:
 	masonry::rigid::Islands<K> islands;
 	masonry::rigid::StepBySize<K> bySize; // method='wall'
 	bool changed = false; // what is moved, and how, is not as it was
-	bool byWalls = false, lawsChanged = false, warnedOfCourses = false, warnedOfBases = false, warnedOfPlace = false, warnedOfMotion = false;
+	bool byWalls = false, lawsChanged = false;
 	int unshown = 1; // steps since the interactions were written
 	std::unique_ptr<masonry::rigid::Neighbours<K>> neighbours;
 	vector<MotionDrive> motions;
 	vector<Link> links;
 	vector<char> others; // by link, 1: somebody else has written the state since the last step; elsewhere: and has moved the body; driven: it goes where its motion says
-	static constexpr char elsewhere = 2, driven = 3; // by a motion
+	static constexpr char elsewhere = 2, driven = 3;
 	ShownJoints<K> joints;
 	Remembered<K> kept; // ids and seats; bodies and pairs are filled in when it is packed
 	vector<Seen> seen; // by id

@@ -85,12 +85,46 @@ O.bodies.erase(falling)
 O.bodies.erase(standing)
 refuses_to_run("There is no free block")
 
+# The same after loading, and after a first step that was refused.
+for how in ("loaded", "refused"):
+    base, standing, falling = scene()
+    if how == "loaded":
+        O.saveTmp()
+        O.loadTmp()
+    else:
+        O.engines = rigid_engines(dt=1e-3)
+        O.bodies[falling].state.blockedDOFs = "x"
+        refuses_to_run("blockedDOFs")
+        O.bodies[falling].state.blockedDOFs = ""
+    beside = dem.block((0.6, 1, 1), O.bodies[base].mat, center=(0, 3, 1.7))
+    begin = O.time
+    O.run(800, True)
+    assert O.engines[-1].chosenModel == "spatial" and falls(beside, begin), how
+
+# A base that is replaced while a motion moves it is not put where the other was; what scripts give a base that is not moved is its own.
+base, standing, falling = scene()
+O.engines[-1].motions = [dem.RecordMotionEngine(ids=[base], samples=[1.0] * 200, interval=0.01, start=O.time)]
+O.run(100, True)
+O.bodies.erase(base)
+another = utils.box((5, 0, -9), (2, 0.5, 0.1), material=O.bodies[standing].mat)
+another.dynamic = False
+O.bodies.insertAtId(another, base)
+refuses_to_run("would put body 0", "start=O.time")
+
 # Engines and gravity.
 base, standing, falling = scene()
 kept = O.engines
 O.engines = kept + [NewtonIntegrator(gravity=(0, 0, -9.81))]
 refuses_to_run("NewtonIntegrator would move block")
+sleeping = NewtonIntegrator(gravity=(0, 0, -9.81), dead=True)
+O.engines = kept + [sleeping]
+O.run(10, True)
+sleeping.dead = False
+refuses_to_run("NewtonIntegrator would move block")
 O.engines = kept
+O.periodic = True
+refuses_to_run("O.periodic = True")
+O.periodic = False
 O.engines[-1].gravity = (0, 0, -9.81e6)
 refuses_to_run("O.dt = 0.001 s is not allowed")
 O.engines[-1].gravity = (0, 0, -9.81)

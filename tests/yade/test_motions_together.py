@@ -6,7 +6,7 @@ import numpy as np
 from masonry import dem
 from rocking_scene import Balance, Samples, one_block, quiet_engines, refuses, refuses_to_run, rigid_engines, stone
 from scipy.integrate import solve_ivp
-from yade import O
+from yade import O, ParallelEngine
 
 import masonry
 
@@ -155,6 +155,44 @@ for model in ("planar", "spatial"):
     way = O.bodies[bases[1]].state.pos[0] - 1.25
     print(f"{model}: bases go {way:.3f} m to either side, the slab between them {O.bodies[slab].state.pos[0]:.1e} m")
     assert way > 0.05 and abs(O.bodies[slab].state.pos[0]) < 0.01 * way and O.engines[-1].failures == 0
+
+# The same after loading.
+for method in ("localised", "wall"):
+    base, id, block = one_block(2)
+    O.engines = rigid_engines([component(base, np.full(200, 1.0)), component(base, np.full(200, 2.0), (0, 0, 1))], method=method, dt=1e-3)
+    O.run(300, True)
+    O.saveTmp()
+    O.loadTmp()
+    O.engines[-1].motions = O.engines[-1].motions[:1]
+    O.run(200, True)
+    state = O.bodies[base].state
+    assert np.allclose(state.pos, [0.125, 0, 0.09 - 0.15], rtol=0, atol=1e-12) and np.allclose(state.vel, [0.5, 0, 0], rtol=0, atol=1e-12), (state.pos, state.vel)
+
+# A base that nobody touches, far away, is no reason to solve anew what is known.
+counts = []
+for far in (False, True):
+    O.reset()
+    base = dem.base((6, 6, 0.2), stone(0.7, noSlip=False, frictionAngle=0.6))
+    dem.stack(4, (0.5, 0.5, 0.5), O.bodies[base].mat, base)
+    if far:
+        O.bodies[dem.base((1, 1, 0.2), O.bodies[base].mat)].state.pos = (50, 0, 0)
+    O.engines = rigid_engines(component(base, 0.3 * SIDEWAYS), dt=1e-3)
+    O.run(500, True)
+    counts.append(O.engines[-1].sweeps)
+assert counts[0] == counts[1], counts
+
+# A motion that acts from within another engine, or by hand.
+for act in ("within", "by hand"):
+    base, id, block = one_block(2)
+    motion = component(base, np.full(200, 1.0))
+    O.engines = quiet_engines(motion)
+    if act == "within":
+        O.engines = [ParallelEngine([[e]]) if isinstance(e, dem.RecordMotionEngine) else e for e in O.engines]
+        O.run(100, True)
+        assert abs(O.bodies[base].state.pos[0] - O.time**2 / 2) < 1e-12
+    else:
+        motion()
+        assert O.bodies[base].state.vel[0] > 0 and O.bodies[base].state.pos[0] == 0
 
 # What does not go together is refused before anything moves.
 for model in ("planar", "compliant"):

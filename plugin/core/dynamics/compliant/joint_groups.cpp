@@ -272,7 +272,8 @@ namespace {
 		double largest = 0;
 		for (const NormalRow& row : rows)
 			largest = std::max(largest, std::abs(row.wanted));
-		constexpr int maxSweeps = 200; // rows whose normals lean never come to agree, and the turns that they ask for grow with the sweeps
+		// Rows whose normals lean never come to agree, and the turns that they ask for grow with the sweeps.
+		constexpr int maxSweeps = 200;
 		double        miss = largest;
 		for (int sweep = 0; sweep < maxSweeps && miss > tolerance::settle * largest; ++sweep) {
 			miss = 0;

@@ -72,14 +72,24 @@ namespace {
 		return rigid::relativeVelocity(pair.points[ref.point].frame, body1.pose.position, body1.velocity, body2.pose.position, body2.velocity);
 	}
 
-	// Whether prescribed bodies move against each other.
-	template <class K> bool basesPart(const RigidSystem<K>& s)
+	// Whether prescribed bodies that free ones touch move against each other in a step.
+	template <class K> bool basesPart(const RigidSystem<K>& s, double dt)
 	{
+		const auto mean = [&](const RigidBody<K>& body) {
+			typename K::Velocity v = body.velocity;
+			if (body.drive >= 0) v.template head<K::dimension>() = s.drives[body.drive].meanVelocity(s.time, dt);
+			return v;
+		};
 		const RigidBody<K>* first = nullptr;
-		for (const RigidBody<K>& body : s.bodies) {
-			if (!body.prescribed) continue;
-			if (!first) first = &body;
-			if (body.drive != first->drive || (body.drive < 0 && body.velocity != first->velocity)) return true;
+		for (const ContactPair<K>& pair : s.pairs) {
+			const auto &body1 = s.bodies[pair.body1], &body2 = s.bodies[pair.body2];
+			if (body1.prescribed == body2.prescribed) continue;
+			const RigidBody<K>& base = body1.prescribed ? body1 : body2;
+			const bool touches = std::any_of(pair.points.begin(), pair.points.begin() + pair.size, [](const auto& point) { return point.closed; });
+			if (!touches || &base == first) continue;
+			if (!first) first = &base;
+			if (base.drive != first->drive || base.drive < 0) // one drive moves all its bodies alike
+				if (mean(base) != mean(*first)) return true;
 		}
 		return false;
 	}
@@ -116,7 +126,7 @@ template <class K> void SmoothStep<K>::begin(const RigidSystem<K>& s, double dt)
 	solver.forget();
 	shifts.reserve(s.bodies.size()); // a step that closes gaps may be the first to
 	scales = Scales(s);
-	partBases = basesPart(s);
+	partBases = basesPart(s, dt);
 	weight = 0;
 	for (const RigidBody<K>& body : s.bodies)
 		if (!body.prescribed) weight += body.mass * scales.acceleration * scales.length;

@@ -171,6 +171,8 @@ MASONRY_INLINE L friction(const PointLanes<Plane, L>& p, const L& slipRate, cons
 	return clip(p.pt - p.massT * slipRate, bound);
 }
 
+inline Vector2 normal(const PointLanes<Plane>& p, int lane) { return {p.nx[lane], p.ny[lane]}; }
+
 // Along a row (0 normal, 1 tangential) what one lane's point takes of a body's pack.
 MASONRY_INLINE Vector3 partOf(const PointLanes<Plane>& p, int row, int lane, int body, int)
 {

@@ -9,9 +9,6 @@ namespace masonry::rigid::wall {
 
 namespace {
 
-Vector2 normal(const PointLanes<Plane>& p, int lane) { return {p.nx[lane], p.ny[lane]}; }
-Vector3 normal(const PointLanes<Space>& p, int lane) { return p.normal.axis.lane(lane); }
-
 // One lane of a point, as seen from the block: relative velocities are the block's minus the support's.
 template <class K>
 struct Contact {

@@ -319,6 +319,8 @@ MASONRY_INLINE Two<L> friction(const PointLanes<Space, L>& p, const Two<L>& slip
 	return select(dot(stick, stick) <= bound * bound, stick, clip(p.pt - p.massT * slipRate, bound));
 }
 
+inline Vector3 normal(const PointLanes<Space>& p, int lane) { return p.normal.axis.lane(lane); }
+
 // Along a row (0 normal, then tangential) what one lane's point takes of a body's pack (0 velocity, 1 spin).
 MASONRY_INLINE Vector3 partOf(const PointLanes<Space>& p, int row, int lane, int body, int pack)
 {

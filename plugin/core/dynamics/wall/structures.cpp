@@ -145,7 +145,7 @@ void Structures<K>::endStep(const std::vector<double>& motion, double rest, doub
 			one.stay += h;
 			continue;
 		}
-		if (one.stay >= 0) { // has just left
+		if (one.stay >= 0) {             // has just left
 			if (std::isfinite(shortest)) // there is gravity
 				one.patience = std::max(one.stay < 10 * one.patience ? 2 * one.patience : 0., shortest);
 			one.stay = -1;

@@ -9,6 +9,7 @@ namespace masonry::rigid {
 namespace {
 
 constexpr int quickSolves = 8, quickRounds = 20;
+constexpr int unknown = -2, several = -3; // drives; -1: none
 // Of a structure that goes on standing when the rest begins to move: more is not worth two steps, and where so much goes, more will.
 constexpr double largestPart = 0.25;
 
@@ -200,6 +201,30 @@ std::vector<int> WallStep<K>::drivesUnder(const RigidSystem<K>& s) const
 	return drives;
 }
 
+// Whether a structure stands on prescribed bodies that move in different ways, as far as drives and velocities tell.
+template <class K>
+bool WallStep<K>::basesPart(const RigidSystem<K>& s) const
+{
+	const Contacts& contacts = sets[stillSet];
+	const double leastUp = tolerance::uprightJoint * s.gravity.norm(), touching = tolerance::mergedClosing * contacts.length;
+	std::vector<const RigidBody<K>*> bases(structures.all.size(), nullptr);
+	for (const auto& [g, i] : contacts.onBase) {
+		const wall::Group<K>& group = contacts.groups[g];
+		const auto stands = [&, lane = i](const wall::PointLanes<K>& p) {
+			return p.gap[lane] <= touching && std::abs(wall::normal(p, lane).dot(s.gravity)) >= leastUp;
+		};
+		if (std::none_of(group.point, group.point + group.count, stands))
+			continue;
+		const RigidBody<K>& base = s.bodies[s.bodies[group.body1[i]].prescribed ? group.body1[i] : group.body2[i]];
+		const RigidBody<K>*& first = bases[structures.of[contacts.freeBody(g, i)]];
+		if (!first)
+			first = &base;
+		if (base.drive != first->drive || (base.drive < 0 && base.velocity != first->velocity))
+			return true;
+	}
+	return false;
+}
+
 // Velocities of bodies that begin to move. While they stand, they have the mean velocity of their base over a step, which is late by
 // half of it: now by half a substep (a jump of the base is for the sweeps). And what has gone has what it was kept from. True: others
 // beside them go on standing.
@@ -243,6 +268,7 @@ bool WallStep<K>::setOff(RigidSystem<K>& s, const Bodies& move)
 	template wall::LaneBits WallStep<K>::findMoving(double, bool);                                                                         \
 	template WallStep<K>::Bodies WallStep<K>::carriedBy(const RigidSystem<K>&, const wall::LaneBits&, bool) const;                         \
 	template std::vector<int> WallStep<K>::drivesUnder(const RigidSystem<K>&) const;                                                       \
+	template bool WallStep<K>::basesPart(const RigidSystem<K>&) const;                                                                     \
 	template bool WallStep<K>::setOff(RigidSystem<K>&, const Bodies&);
 MASONRY_OF(Plane)
 MASONRY_OF(Space)

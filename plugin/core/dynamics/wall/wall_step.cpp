@@ -95,8 +95,7 @@ void WallStep<K>::advancePart(RigidSystem<K>& s, double h)
 	const bool found = structures.find(s);
 	if (structures.letReturn() || found)
 		arrange(s, still(), moving());
-	if (const std::vector<int> drives = found ? drivesUnder(s) : std::vector<int>(); !drives.empty())
-		report.partBases |= std::find(drives.begin(), drives.end(), several) != drives.end();
+	report.partBases |= found && basesPart(s);
 	const auto some = [](const auto& chosen) { return std::find(chosen.begin(), chosen.end(), 1) != chosen.end(); };
 	bool hasMoved = false;
 	for (bool again = false, done = false; !done; again = true) {
@@ -358,10 +357,9 @@ void WallStep<K>::lean(RigidSystem<K>& s, Contacts& contacts, double h)
 		for (size_t b = begin; b < end; ++b) {
 			const auto& body = s.bodies[b];
 			middle[b] = body.pose;
+			K::advance(middle[b], body.velocity, h / 2);
 			if (body.drive >= 0)
 				middle[b].position = driven(s, body, s.time + h / 2);
-			else
-				K::advance(middle[b], body.velocity, h / 2);
 		}
 	});
 	contacts.lean(s, middle);
@@ -477,8 +475,8 @@ double WallStep<K>::baseWorkWhenTurning(const RigidSystem<K>& s, int base, doubl
 		impulse.template head<K::dimension>() += own;
 		const typename K::Velocity apart = body.velocity - s.bodies[base].velocity;
 		const typename K::Vector arm = body.pose.position - s.bodies[base].pose.position + h / 2 * apart.template head<K::dimension>();
-		impulse.template tail<K::spins>() += K::moment(arm, own) +
-		                                     K::angularMomentum(body.inertia, body.pose, change.template tail<K::spins>());
+		impulse.template tail<K::spins>() +=
+		    K::moment(arm, own) + K::angularMomentum(body.inertia, body.pose, change.template tail<K::spins>());
 	}
 	return impulse.dot(startVelocity(s, base));
 }
@@ -489,6 +487,8 @@ double WallStep<K>::takeBody(RigidSystem<K>& s, size_t b, double h)
 {
 	auto& body = s.bodies[b];
 	if (body.prescribed && body.drive >= 0) {
+		if (!body.velocity.template tail<K::spins>().isZero(0))
+			K::advance(body.pose, body.velocity, h);
 		body.pose.position = driven(s, body, s.time + h);
 		body.velocity.template head<K::dimension>() = s.drives[body.drive].velocity(s.time + h);
 		return 0;

@@ -116,8 +116,8 @@ private:
 	wall::LaneBits findMoving(double h, bool again);
 	void letGo(double h, double share);
 	Bodies carriedBy(const RigidSystem<K>& system, const wall::LaneBits& lanes, bool whole) const;
-	static constexpr int unknown = -2, several = -3; // drives; -1: none
 	std::vector<int> drivesUnder(const RigidSystem<K>& system) const;
+	bool basesPart(const RigidSystem<K>& system) const;
 	bool setOff(RigidSystem<K>& system, const Bodies& move);
 	void stepMoving(RigidSystem<K>& system, double h);
 	void press(wall::LaneArray& sum) const;

@@ -271,7 +271,7 @@ def _rigid(motions, model, method, dt, tolerance, impact_order, gravity, recorde
         raise ValueError(f"dt = {dt}: must be at most {integrator.largestTimeStep:.3g} s, 0.15 sqrt(R/g) of the smallest block")
     O.dt = step
     print(f"masonry.dem: rigid blocks, {choice}; dt = {O.dt:.3g} s{_records(motions)}")
-    if wall and choice.startswith("spatial") and any(isinstance(m, wrapper.PulseTrainEngine) and m.resonantBlock >= 0 for m in motions):
+    if wall and choice.startswith("spatial") and any(isinstance(m, wrapper.PulseTrainEngine) and m.resonantBlock >= 0 and m.shape == "dirac" for m in motions):
         print("masonry.dem: method 'wall' in space: corners that land one after the other each release a pulse of the resonant train, method='localised' finds them at once")
     return [wrapper.ForceResetter(), *others, *recorders, integrator]
 
@@ -334,7 +334,7 @@ def impacts():
 
 def energy():
     """Energies in J: kinetic and potential now; frictDissip, impactDissip and baseWork since dem.engines() made the engines; compliant joints: also elastPotential
-    now and dampDissip so far; kinetic, potential and elastPotential are 0 before the first step. The sum of all others less baseWork is
+    now and dampDissip so far, and all of them 0 before the first step. The sum of all others less baseWork is
     constant, but for RockingJointEngine.madeEnergy and the errors of steps."""
     e = _joint_engine()
     keys = ("kinetic", "potential", "elastPotential", "frictDissip", "dampDissip", "impactDissip", "baseWork")

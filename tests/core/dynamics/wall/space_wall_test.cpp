@@ -171,8 +171,8 @@ TEST_CASE("a sliding block is slowed down by friction, whatever the direction")
 	CHECK(scene.system.bodies[1].velocity.norm() < 1e-4);
 }
 
-// Forces as they are shown, in the axes of their points: those of the base bear the weight and hold against the pull, to what is asked of those of a
-// wall in the plane.
+// Forces as they are shown, in the axes of their points: those of the base bear the weight and hold against the pull, to what is asked of
+// those of a wall in the plane.
 TEST_CASE("the base holds a wall in space against what pulls it")
 {
 	const Vector3 along(0.8, 0.6, 0);
@@ -314,8 +314,8 @@ TEST_CASE("a base that turns works on the wall that stands on it")
 	CHECK(scene.system.baseWork == Approx(scene.system.kineticEnergy()).epsilon(2. / 300));
 }
 
-// A constant moment adds itself times the time to the momentum, in the axes of the world, however the block lies in them. The step's poses are
-// of the first order, and the block turns by 1e-3 rad in one.
+// A constant moment adds itself times the time to the momentum, in the axes of the world, however the block lies in them. The step's poses
+// are of the first order, and the block turns by 1e-3 rad in one.
 TEST_CASE("a moment turns a block about the axis that it has in the world")
 {
 	SpaceScene scene;

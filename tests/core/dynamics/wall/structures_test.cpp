@@ -204,8 +204,8 @@ TEMPLATE_TEST_CASE("a pillar rocks on a wall that stands as on its base", "", Pl
 	CHECK(std::abs(low.system.baseWork) > 1e-3 * energy);
 }
 
-// A block on a wall lifts off at b/a = 0.25 g; the wall stands at 0.3 g. There are two factors, the kept one and that which tells what moves, each
-// of the wall with the block and without it. Which points touch does not change on the way: no more.
+// A block on a wall lifts off at b/a = 0.25 g; the wall stands at 0.3 g. There are two factors, the kept one and that which tells what
+// moves, each of the wall with the block and without it. Which points touch does not change on the way: no more.
 TEST_CASE("a wall that goes on standing keeps its factors")
 {
 	Scene scene(0.7, 0.8);
@@ -224,9 +224,9 @@ TEST_CASE("a wall that goes on standing keeps its factors")
 	CHECK(factorisations <= 4);
 }
 
-// A pier rocks on the base, a block on a wall that stands, until the wall begins to move under it: the step in which it does is made twice, and
-// counts once. In every step the base works by what it gives to the momentum of the blocks, with a velocity between those at the ends of the
-// step: to half of what that changes by, times the friction that all blocks can pass on.
+// A pier rocks on the base, a block on a wall that stands, until the wall begins to move under it: the step in which it does is made twice,
+// and counts once. In every step the base works by what it gives to the momentum of the blocks, with a velocity between those at the ends
+// of the step: to half of what that changes by, times the friction that all blocks can pass on.
 TEST_CASE("the base works once in a step that is taken back")
 {
 	const double friction = 0.8983, amplitude = 0.4001 * g;
@@ -304,8 +304,8 @@ int whenSetOff(double restitution)
 
 } // namespace
 
-// What a landing gives to a wall that stands is the same in space as in the plane, which solve it each in its own way: impulses and the couple
-// of the law. With the couple that a low restitution asks for the wall does not bear it.
+// What a landing gives to a wall that stands is the same in space as in the plane, which solve it each in its own way: impulses and the
+// couple of the law. With the couple that a low restitution asks for the wall does not bear it.
 TEST_CASE("a landing sets off the wall below it in space as in the plane")
 {
 	const double restitution = GENERATE(0.7, 0.85);
