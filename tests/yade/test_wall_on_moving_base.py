@@ -2,6 +2,7 @@
 
 import math
 
+import numpy as np
 from masonry import dem
 from rocking_scene import one_block, rigid_engines
 from yade import O, Vector3
@@ -64,6 +65,18 @@ for restitution in (0.9, None):
     print(f"restitution {restitution}: {len(ends[0])} pulses, times apart by {max(abs(a - b) for a, b in zip(*ends)):.1e} s")
     # Half cycles take 0.4 to 1.1 s, of which peaks and impacts of first order miss a hundredth each.
     assert len(ends[0]) == len(ends[1]) == 5 and all(abs(a - b) < 0.03 for a, b in zip(*ends)), ends
+
+# --- landings that begin a step within rounding of the joint are met with their restitution, however short the substeps ---
+for tolerance in (1e-3, 1e-4, 1e-5):
+    times = []
+    for method in ("localised", "wall"):
+        base, id, block = one_block(5, restitution=0.9)
+        options = {"tolerance": tolerance} if method == "wall" else {}
+        O.engines = rigid_engines(dem.PulseTrainEngine(ids=[base], impulse=0.05, times=[0]), method=method, dt=STEP, **options)
+        O.run(200, True)
+        times.append(dem.impacts()["time"][:3])
+    assert len(times[0]) == len(times[1]) == 3 and max(abs(times[0] - times[1])) < 2 * STEP, (tolerance, times)
+    assert np.allclose(dem.impacts()["restitution"], 0.9, rtol=0, atol=1e-6), dem.impacts()["restitution"]
 
 # --- a base that hits a wall from below, and in the next step slides under it: the impact is over, and throws nothing up. A step that hands on at
 # most eight times what a point has carried may give eight times what gravity does in it ---

@@ -142,14 +142,17 @@ void RockingJoints<K>::find(const RigidSystem<K>& s, const WallContacts<K>& c, S
 	gathered = true;
 	rocking.clear();
 	aside.assign(points.size(), 0);
-	const double open = tolerance::mergedClosing * c.length;
+	const double open = tolerance::mergedClosing * c.length, fast = tolerance::restSpeed * std::sqrt(scale::acceleration(s) * c.length);
+	// Also one that was open before the last substep: an impact nearer to its end than to its begin is met in the next.
+	const auto gapes = [&](const Contact<K>& at) {
+		const double gap = at.gap(c), approach = -at.normalRate(c);
+		return !(at.impulse() > 0) && (gap > open || (approach > fast && gap + substep * approach > 0));
+	};
 	for (int begin = 0, end = 0; begin < int(points.size()); begin = end) {
 		int gaping = 0;
 		for (end = begin; end < int(points.size()) && points[end].block == points[begin].block && points[end].face == points[begin].face;
 		     ++end) {
-			const Contact<K> at = contact(c, points[end]);
-			// Also one that was open before the last substep: an impact nearer to its end than to its begin is met in the next.
-			gaping += !(at.impulse() > 0) && at.gap(c) + substep * std::max(0., -at.normalRate(c)) > open;
+			gaping += gapes(contact(c, points[end]));
 		}
 		Pivot<K> pivot;
 		if (gaping > 0 && findPivot(c, begin, end, pivot))
@@ -157,7 +160,8 @@ void RockingJoints<K>::find(const RigidSystem<K>& s, const WallContacts<K>& c, S
 	}
 	for (const Joint& joint : rocking)
 		for (int i = joint.begin; i < joint.end; ++i)
-			if (const Contact<K> at = contact(c, points[i]); !(at.impulse() > 0) && at.gap(c) > open) {
+			if (const Contact<K> at = contact(c, points[i]);
+			    gapes(at) && (at.gap(c) > open || away(c, points[i], joint.pivot) > tolerance::wall::pivot * c.length)) {
 				aside[i] = true;
 				sweeps.setGap(points[i].group, points[i].lane, points[i].point, farAway);
 			}
