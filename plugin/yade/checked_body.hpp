@@ -9,7 +9,8 @@
 
 namespace yade {
 
-/// Throws for a member of a clump, and unless half sizes, mass and moments of inertia are numbers whose squares, and those of their inverses, single precision holds.
+/// Throws for a member of a clump, and unless half sizes, mass and moments of inertia are numbers whose squares, and those of their
+/// inverses, single precision holds.
 inline void checkBody(const Body& body)
 {
 	constexpr Real least = 1e-18, most = 1e18;
