@@ -364,8 +364,8 @@ class _Mechanism:
         for k, (id1, id2, normal, points) in enumerate(self._joints):
             apart = self._movement(self._row[id2], points) - self._movement(self._row[id1], points)
             gap = apart @ normal
-            slip = np.linalg.norm(apart - gap[:, None] * normal, axis=1)[gap.argmin()]  # where it is closed, or nearest to it
             least = _MOVED * self._moved.max()
+            slip = np.linalg.norm(apart - gap[:, None] * normal, axis=1)[gap <= gap.min() + least].max()  # where it is closed, or nearest to it
             table[k] = id1, id2, max(gap.max(), 0), slip, gap.max() > least, slip > least
         return table
 

@@ -11,6 +11,9 @@ _TOUCH = 1e-3
 _LEAST_AREA = 1e-6
 # A joint is closed somewhere, so that its slip means something, when its points are within this share of the smallest size of the two.
 _CLOSED = 1e-2
+# Points of a joint are as closed as its least open one within this share of the smallest size of the two: more than solvers leave of gaps and overlaps. A
+# point that only turns about the closed edge moves along the joint by less than this times half of the turn.
+_LEVEL = 1e-4
 # Two faces of boxes overlap in a polygon of at most eight corners.
 _CORNERS = 8
 
@@ -95,19 +98,20 @@ class _Joints:
 
     def movement(self, history, sample):
         """(opening, slip, closed) of each joint at a sample: the largest gap of the points of the patch, 0 where all touch; how far the least open
-        point of block 2 has moved along the joint, over block 1 as it stands now; whether that point is closed, and the blocks still lie against each other."""
+        point of block 2, of several the one that went farthest, has moved along the joint, over block 1 as it stands now; whether it is closed, and the
+        blocks still lie against each other."""
         axes, place = _pose.matrices(history.orientation[sample]), history.position[sample]
         first, second = (place[row][:, None] + np.einsum("jab,jkb->jka", axes[row], arm) for row, arm in zip(self.rows.T, self._arms))
         one, two = self.rows.T
         apart = np.einsum("jab,jcb,jkc->jka", self._start[one], axes[one], second - first)  # seen from block 1
         gaps = np.einsum("jka,ja->jk", apart, self.normals)
-        least = gaps.argmin(axis=1)[:, None]
-        along = np.take_along_axis(apart, least[..., None], 1)[:, 0] - np.take_along_axis(gaps, least, 1) * self.normals
+        least = gaps.min(axis=1)
+        along = np.linalg.norm(apart - gaps[..., None] * self.normals[:, None], axis=2)
+        slip = np.where(gaps <= (least + _LEVEL * self.smallest)[:, None], along, 0).max(axis=1)
         beside = np.einsum("jab,ja->jb", axes[one], place[two] - place[one])
         reach = self._half[one] + np.einsum("jbc,jc->jb", np.abs(np.einsum("jab,jac->jbc", axes[one], axes[two])), self._half[two])
         over = ((np.abs(beside) <= reach) | self._across).all(axis=1)
-        least = np.take_along_axis(gaps, least, 1)[:, 0]
-        return np.maximum(gaps.max(axis=1), 0), np.linalg.norm(along, axis=1), over & (np.abs(least) <= _CLOSED * self.smallest)
+        return np.maximum(gaps.max(axis=1), 0), slip, over & (np.abs(least) <= _CLOSED * self.smallest)
 
 
 def _joints_of(history):
@@ -125,8 +129,9 @@ def joints(history, time=None):
     id1, id2                the blocks; id2 is the later one of the history
     center, normal, area    of the patch in the first sample: mean of its corners (m), from block 1 to block 2, m^2
     opening                 the largest distance of the two sides, m: of a block that rocks by an angle a on a joint of width 2b, 2b sin(a)
-    slip                    sliding of block 2 over block 1 where the joint is closed, or nearest to it, m. Of the largest: samples in which it is
-                            open all over, or the blocks have parted, are left out; NaN where that is all of them
+    slip                    sliding of block 2 over block 1 where the joint is closed, or nearest to it, m: of the corner of the patch that slid farthest
+                            where a block turns on it. Of the largest: samples in which it is open all over, or the blocks have parted, are left out;
+                            NaN where that is all of them
     opening_time, slip_time when, s
     """
     found = _joints_of(history)
