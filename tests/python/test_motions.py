@@ -100,6 +100,20 @@ def test_csv(tmp_path):
             masonry.Record.from_csv(path, "m/s^2")
     with pytest.raises(ValueError, match="unit = 'gal'"):
         masonry.Record.from_csv(path, "gal", dt=0.01)
+    path.write_bytes("time (s),Beschleunigung (m/s²)\n0,1\n0.02,-2\n".encode("latin-1"))
+    np.testing.assert_allclose(masonry.Record.from_csv(path, "m/s^2").samples, [1, -2])
+    path.write_text("0.02,1\n0.01,-2\n0,3\n")
+    with pytest.raises(ValueError, match="record.csv: steps of time from -0.01 to -0.01 s: must be positive"):
+        masonry.Record.from_csv(path, "m/s^2")
+    for name, value, words in (("dt", np.nan, "must be positive and finite"), ("dt", "0.01", "must be a number"), ("gravity", "9.81", "must be a number"),
+                               ("gravity", -9.81, "must be positive and finite")):
+        with pytest.raises(ValueError, match=f"{name} = {value!r}: {words}"):
+            masonry.Record.from_csv(path, "g", **{name: value})
+
+
+def test_the_unit_g_of_a_peer_file_is_positive(tmp_path):
+    with pytest.raises(ValueError, match="gravity = -9.81: must be positive and finite, in m/s"):
+        masonry.Record.from_at2(tmp_path / "none.AT2", gravity=-9.81)
 
 
 @pytest.mark.parametrize("make, words", [

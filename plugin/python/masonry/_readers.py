@@ -1,8 +1,11 @@
 """Files of accelerograms. Each reader says what it expected when it cannot read a file."""
 
+import math
 import re
 
 import numpy as np
+
+from ._given import number_given
 
 # "stuck" negatives (1.2-3.4) are two numbers; an exponent sign is not a separator
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][-+]?\d+)?")
@@ -44,13 +47,22 @@ def _is_number(text):
     return True
 
 
+def check_gravity(gravity):
+    """What the unit g stands for."""
+    if not 0 < number_given("gravity", gravity) < math.inf:
+        raise ValueError(f"gravity = {gravity}: must be positive and finite, in m/s^2")
+
+
 def read_csv(path, unit, dt=None, gravity=9.80665):
     """(dt, samples in m/s^2) of a text file with comma or blank separated columns; lines starting with # and a first line of
     words are skipped. Two columns are time and acceleration, equally spaced; one column needs dt."""
     factors = {"m/s^2": 1.0, "cm/s^2": 1e-2, "mm/s^2": 1e-3, "g": gravity}
     if unit not in factors:
         raise ValueError(f"unit = {unit!r}: must be one of {', '.join(factors)}")
-    with open(path, encoding="utf-8-sig") as file:
+    check_gravity(gravity)
+    if dt is not None and not 0 < number_given("dt", dt) < math.inf:
+        raise ValueError(f"dt = {dt}: must be positive and finite, in s")
+    with open(path, encoding="utf-8-sig", errors="replace") as file:  # words may be of any encoding, numbers are not
         lines = [(number, line.replace(",", " ").split()) for number, line in enumerate(file, 1) if line.strip() and not line.startswith("#")]
     if lines and not _is_number(lines[0][1][0]):
         lines = lines[1:]
@@ -67,8 +79,8 @@ def read_csv(path, unit, dt=None, gravity=9.80665):
         return float(dt), factors[unit] * table[:, 0]
     time = table[:, 0]
     step = (time[-1] - time[0]) / (len(time) - 1)
-    if not np.allclose(np.diff(time), step, rtol=1e-3, atol=0):
-        raise ValueError(f"{path}: steps of time from {np.diff(time).min()} to {np.diff(time).max()} s: must be equal to 1 in 1000")
+    if not (step > 0 and np.allclose(np.diff(time), step, rtol=1e-3, atol=0)):
+        raise ValueError(f"{path}: steps of time from {np.diff(time).min():g} to {np.diff(time).max():g} s: must be positive, and equal to 1 in 1000")
     if dt is not None and abs(dt / step - 1) > 1e-3:
         raise ValueError(f"dt = {dt}: must be the step of the file, {step} s")
     return step, factors[unit] * table[:, 1]
