@@ -124,3 +124,11 @@ def test_bad_input_is_refused(tmp_path):
             act()
     with pytest.raises(FileNotFoundError):
         ensemble.run(tmp_path / "none.py", [{"a": 1}], tmp_path)
+
+
+def test_tables_have_lists_arrays_and_none_as_text(tmp_path):
+    cases = [{"kind": None, "speeds": np.arange(2), "seed": np.int64(1)}, {"kind": "wall", "speeds": [0, 1, 2], "seed": 2}]
+    table = ensemble._table(cases, [{"peak_drift": 0.1}, {"peak_drift": 0.2}])
+    assert table.tolist() == [("None", "[0, 1]", 1, 0.1), ("wall", "[0, 1, 2]", 2, 0.2)]
+    np.savez(tmp_path / "ensemble.npz", table=table)
+    assert np.load(tmp_path / "ensemble.npz")["table"].tolist() == table.tolist()  # no objects, which NumPy does not load

@@ -46,7 +46,7 @@ def _plain(case):
     try:
         return json.dumps(case, sort_keys=True, default=convert)
     except TypeError:
-        raise ValueError(f"case = {case!r}: must be a dict of numbers, strings, and lists of them") from None
+        raise ValueError(f"case = {case!r}: must be a dict of numbers, strings, None, and lists of them") from None
 
 
 def _contents(paths):
@@ -81,7 +81,8 @@ def run(script, cases, folder, function="run", processes=None, time_limit=None, 
     """Calls the function `function(case)` of a Python file inside YADE, one process a case, and returns the table of what came out.
 
     script        path of the file; importing it must not run anything
-    cases         dicts of numbers, strings, and lists of them (which the table has as text), all with the same keys: what the function is given
+    cases         dicts of numbers, strings, None, and lists of them (which the table has as text, as it has None), all with the same keys: what the
+                  function is given
     folder        one .npz file a finished case, and the tables ensemble.csv and ensemble.npz; made if it is not there
     processes     how many run at once; None: one a core. Each has one thread.
     time_limit    s of wall clock after which a case is stopped, and counts as failed unless its result is there; None: no limit
@@ -104,7 +105,7 @@ def run(script, cases, folder, function="run", processes=None, time_limit=None, 
         raise ValueError("cases: must have at least one")
     for case in cases:
         if not isinstance(case, dict):
-            raise ValueError(f"case = {case!r}: must be a dict of numbers, strings, and lists of them")
+            raise ValueError(f"case = {case!r}: must be a dict of numbers, strings, None, and lists of them")
         if case.keys() != cases[0].keys():
             raise ValueError(f"case = {case}: must have the same keys as the first, {', '.join(cases[0])}")
     if processes is not None and not is_whole(processes, 1):
@@ -242,6 +243,12 @@ def _run_missing(script, function, missing, total, folder, processes, time_limit
     return failures
 
 
+def _cell(value):
+    """A value of a case as the table has it: a number or text."""
+    value = value.tolist() if isinstance(value, (np.generic, np.ndarray)) else value
+    return str(value) if value is None or isinstance(value, (list, tuple, dict)) else value
+
+
 def _table(cases, outcomes):
     for case, outcome in zip(cases, outcomes):
         if outcome.keys() != outcomes[0].keys():
@@ -250,7 +257,7 @@ def _table(cases, outcomes):
     both = set(cases[0]) & set(numbers)
     if both:
         raise ValueError(f"{', '.join(sorted(both))}: must not be a key of the case and of what the function returns")
-    columns = {name: np.array([str(c[name]) if isinstance(c[name], (list, dict, tuple)) else c[name] for c in cases]) for name in cases[0]}
+    columns = {name: np.array([_cell(case[name]) for case in cases]) for name in cases[0]}
     columns.update({name: np.array([outcome[name] for outcome in outcomes]) for name in numbers})
     table = np.zeros(len(cases), dtype=[(name, column.dtype) for name, column in columns.items()])
     for name, column in columns.items():
