@@ -426,6 +426,13 @@ def test_paraview_files_hold_the_boxes(tmp_path):
     assert np.allclose(decoded(last.find("PointData/DataArray")), way, rtol=0, atol=ROUND) and np.abs(way).max() > 0.09
 
 
+def test_names_of_paraview_files_may_have_any_letters(tmp_path):
+    h = rocking([0, 0.1])
+    path = results.write_paraview(h, tmp_path / 'pier "A" & <é>.pvd')
+    listed = ElementTree.fromstring(path.read_bytes()).findall(".//DataSet")
+    assert len(listed) == 2 and all((tmp_path / one.get("file")).is_file() for one in listed)
+
+
 # --- input that cannot be meant ---
 
 

@@ -2,6 +2,7 @@
 
 import base64
 from pathlib import Path
+from xml.sax.saxutils import quoteattr
 
 import numpy as np
 from masonry._given import whole_given
@@ -59,7 +60,7 @@ def write_paraview(history, path, every=1, relative=False):
         file = folder / f"{path.stem}_{sample:06d}.vtu"
         file.write_text(_vtu(points[there].reshape(-1, 3), {name: values[there] for name, values in cells.items()},
                              {"displacement": moved[there].reshape(-1, 3)}))
-        sets.append(f'<DataSet timestep="{float(history.time[sample])!r}" file="{folder.name}/{file.name}"/>\n')
+        sets.append(f'<DataSet timestep="{float(history.time[sample])!r}" file={quoteattr(f"{folder.name}/{file.name}")}/>\n')
     path.write_text('<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1" byte_order="LittleEndian">\n<Collection>\n'
-                    f'{"".join(sets)}</Collection>\n</VTKFile>\n')
+                    f'{"".join(sets)}</Collection>\n</VTKFile>\n', encoding="utf-8")
     return path
