@@ -455,6 +455,13 @@ def test_bad_input_is_refused(tmp_path):
                       (lambda: results.film(h, "h.avi"), "must end in .gif or .mp4"), (lambda: results.film(h, path, frames_per_second=100), "frames_per_second"),
                       (lambda: results.film(h, path, speed=0), "speed = 0"), (lambda: results.film(h, path, start=0.5, end=0.0), "start"),
                       (lambda: results.write_paraview(h, "h.vtu"), "must end in .pvd"), (lambda: results.write_paraview(h, tmp_path / "h.pvd", every=0), "every = 0"),
-                      (lambda: results.write_paraview(h, tmp_path / "h.pvd", every="a"), "every = 'a'")):
+                      (lambda: results.write_paraview(h, tmp_path / "h.pvd", every="a"), "every = 'a'"),
+                      (lambda: h.sample("1"), "time = '1': must be a number"), (lambda: results.draw(h, path, enlarge="a"), "enlarge = 'a': must be a number"),
+                      (lambda: results.film(h, path, frames_per_second="a"), "frames_per_second = 'a': must be a number"),
+                      (lambda: results.film(h, path, speed="a"), "speed = 'a': must be a number")):
         with pytest.raises(ValueError, match=word):
             act()
+    for act in (results.collapse, results.fallen, results.joints, lambda h: results.draw(h, path), lambda h: results.draw_joints(h, path),
+                lambda h: results.draw_energy(h, path), lambda h: results.film(h, path), lambda h: results.write_paraview(h, tmp_path / "h.pvd")):
+        with pytest.raises(ValueError, match="history = 'recorder': must be a WallHistory"):
+            act("recorder")

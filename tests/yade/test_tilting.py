@@ -9,7 +9,7 @@ from masonry import dem
 from masonry.dem import tilting
 from rocking_scene import refuses
 from scipy.optimize import linprog
-from yade import O, Vector3
+from yade import O, Quaternion, Vector3
 
 # Bisection ends within 1e-3 of the multiplier; the mean of the bracket is off by at most half of that, and a trial by _REST.
 CLOSE = 1e-3
@@ -173,6 +173,16 @@ trial = table.trial(0.5)
 doubtful = table._collapse(0.5, (0.4, 0.5), [tilting.Trial(0.4, "unclear", 0, 0, 0), tilting.Trial(0.5, "collapse", 0, 0, 3)], table._mechanism())
 assert trial.verdict == "collapse" and str(doubtful).count("NOT TO BE TRUSTED") == 2 and "in 3 steps" in str(doubtful) and "method='wall'" in str(doubtful), doubtful
 
+# --- of a joint on which a block turns, the corner that goes farthest has the slip, whatever gaps of 1e-9 m its corners have ---
+base, stone = ground(0.5)
+block = dem.block((0.6, 0.5, 0.4), stone, on=base)
+table = dem.TiltTable(model="spatial")
+for lean in (Vector3(1, 0, 0), Vector3(-1, 0, 0), Vector3(0, 1, 0), Vector3(0, -1, 0)):
+    turned, corner = Quaternion(lean, 1e-8) * Quaternion(Vector3(0, 0, 1), 1e-3), Vector3(0.3, 0.25, 0)
+    O.bodies[block].state.ori, O.bodies[block].state.pos = turned, corner + turned * (Vector3(0, 0, 0.2) - corner)
+    slip = table._mechanism().joints()["slip"][0]
+    assert abs(slip / (1e-3 * math.hypot(0.6, 0.5)) - 1) < 1e-3, (lean, slip)
+
 # --- input that cannot be meant ---
 refuses(lambda: dem.TiltTable(direction="z"), "direction", "'z'")
 refuses(lambda: dem.TiltTable(load="angle"), "load", "'turned'")
@@ -184,6 +194,8 @@ for bad in (-1, 30, 40):
     refuses(lambda: table.bisect(lower=bad), f"lower = {bad}", "above 0 and below 30")
 refuses(lambda: table.ramp(start=40), "start = 40", "from 0 to below 30")
 refuses(lambda: table.ramp(rate=0), "rate = 0")
+refuses(lambda: table.trial("a"), "multiplier = 'a'", "number")
+refuses(lambda: table.trial(math.nan), "multiplier = nan", "finite")
 base, stone = ground(0.5)
 refuses(lambda: dem.TiltTable(), "no free block")
 block = dem.block((0.6, 0.5, 0.4), stone, on=base)

@@ -224,7 +224,9 @@ class TiltTable:
         return self._collapse(rested, (rested, multiplier), [trial], mechanism)
 
     def trial(self, multiplier):
-        """Holds one multiplier from rest. The scene is left as it is at the end."""
+        """Holds one multiplier (finite) from rest. The scene is left as it is at the end."""
+        if not math.isfinite(number_given("multiplier", multiplier)):
+            raise ValueError(f"multiplier = {multiplier}: must be finite")
         return self._hold_load(self._begin(multiplier), multiplier)
 
     # --- a trial ---

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from masonry._given import is_whole, number_given
+from masonry.results.wall_history import history_given
 
 
 @dataclass
@@ -60,7 +61,7 @@ def fallen(history):
     That critical lean is atan((b |cos f| + d |sin f|) / a) for half widths b, d, half height a and a lean in the direction f of the
     block's own plan: atan(b / a) about an edge, atan(sqrt(b^2 + d^2) / a) over a corner.
     """
-    half, blocks = history.sizes / 2, np.arange(len(history.ids))
+    half, blocks = history_given(history).sizes / 2, np.arange(len(history.ids))
     # Of the lean: sine times (cos f, sin f), and cosine, from the vertical in the block's axes.
     sideways = np.abs(history.vertical)
     sideways[:, blocks, history.upright] = 0
@@ -82,7 +83,7 @@ def collapse(history, blocks=1, excursion=0.01):
     The time of collapse is that at which `blocks` of them have fallen, right within the time between two samples. Drift is
     WallHistory.drift(). Raises ValueError for input out of its range.
     """
-    free = int(history.free.sum())
+    free = int(history_given(history).free.sum())
     if not is_whole(blocks, 1, free):
         raise ValueError(f"blocks = {blocks!r}: must be a whole number from 1 to {free}, the number of free blocks")
     if not 0 < number_given("excursion", excursion) < math.inf:

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 from masonry.results import _pose
+from masonry.results.wall_history import history_given
 
 # Blocks touch at first where their faces are within this share of the smallest size of the two, and opposite within this angle (rad).
 _TOUCH = 1e-3
@@ -115,7 +116,7 @@ class _Joints:
 
 
 def _joints_of(history):
-    if not hasattr(history, "_joints"):  # found once
+    if not hasattr(history_given(history), "_joints"):  # found once
         history._joints = _Joints(history)
     return history._joints
 

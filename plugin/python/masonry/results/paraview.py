@@ -7,6 +7,7 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 from masonry._given import whole_given
 from masonry.results import _pose
+from masonry.results.wall_history import history_given
 
 # VTK's order of the corners of a hexahedron, from ours (x fastest, then y).
 _HEXAHEDRON = [0, 1, 3, 2, 4, 5, 7, 6]
@@ -43,7 +44,7 @@ def write_paraview(history, path, every=1, relative=False):
     the filter "Warp By Vector" on the first file. Displacements and rotations are relative to the base and the first sample. Erased blocks are
     left out.
     """
-    path = Path(path)
+    history, path = history_given(history), Path(path)
     if path.suffix != ".pvd":
         raise ValueError(f"path = {path}: must end in .pvd")
     every = whole_given("every", every, 1)

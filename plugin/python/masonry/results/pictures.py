@@ -3,10 +3,11 @@
 import math
 
 import numpy as np
+from masonry._given import number_given
 from masonry.results.collapse import fallen
 from masonry.results.joints import joint_rows, joints, patches
 from masonry.results.view import STILL, View, enlargement, largest, movement, nice, still
-from masonry.results.wall_history import ENERGIES
+from masonry.results.wall_history import ENERGIES, history_given
 
 # Movement of the farthest moved block in a picture, relative to the smallest block, where no factor is given.
 _DRAWN = 0.5
@@ -42,7 +43,7 @@ def _colorbar(figure, axes, shades, label, beyond):
 def _check(color, enlarge):
     if color not in _COLOURS:
         raise ValueError(f"color = {color!r}: must be one of {', '.join(map(repr, _COLOURS))}")
-    if enlarge is not None and not 0 < enlarge < math.inf:
+    if enlarge is not None and not 0 < number_given("enlarge", enlarge) < math.inf:
         raise ValueError(f"enlarge = {enlarge}: must be positive and finite, or None")
 
 
@@ -122,7 +123,7 @@ def draw(history, path, time=None, enlarge=None, color="displacement", view=None
     view       direction from the scene to the viewer (x, y, z); None: across the plane in which all blocks move (of two, the one across which the
                structure is thinner), else from the right, the front and above
     """
-    sample = int(np.nanargmax(history.drift())) if time is None else history.sample(time)
+    sample = int(np.nanargmax(history_given(history).drift())) if time is None else history.sample(time)
     painter = _Painter(history, [sample], enlarge, color, view, title)
     painter.paint(sample)
     painter.figure.savefig(path, dpi=150)
@@ -140,6 +141,11 @@ def film(history, path, start=None, end=None, frames_per_second=20, speed=1.0, e
     from matplotlib import animation
     from tqdm import tqdm
 
+    history_given(history)
+    if not 0 < number_given("frames_per_second", frames_per_second) <= 60:
+        raise ValueError(f"frames_per_second = {frames_per_second}: must be above 0 and at most 60")
+    if not 0 < number_given("speed", speed) < math.inf:
+        raise ValueError(f"speed = {speed}: must be positive and finite")
     if str(path).endswith(".mp4"):
         if not animation.FFMpegWriter.isAvailable():
             raise ValueError(f"path = {path}: .mp4 needs ffmpeg (Debian: apt install ffmpeg); a path that ends in .gif needs nothing")
@@ -148,10 +154,6 @@ def film(history, path, start=None, end=None, frames_per_second=20, speed=1.0, e
         writer = animation.PillowWriter(fps=frames_per_second)
     else:
         raise ValueError(f"path = {path}: must end in .gif or .mp4")
-    if not 0 < frames_per_second <= 60:
-        raise ValueError(f"frames_per_second = {frames_per_second}: must be above 0 and at most 60")
-    if not 0 < speed < math.inf:
-        raise ValueError(f"speed = {speed}: must be positive and finite")
     first, last = (history.time[history.sample(t)] if t is not None else history.time[k] for t, k in ((start, 0), (end, -1)))
     if not first <= last:
         raise ValueError(f"start = {start}, end = {end}: start must not come after end")
@@ -204,7 +206,7 @@ def draw_energy(history, path, title=""):
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    energy = history.energy
+    energy = history_given(history).energy
     if np.isnan(energy["kinetic"]).all():
         raise ValueError("history: it has no energies: record with a WallRecorder while engines of dem.engines() run")
     closed = largest(np.abs(energy["error"])) <= _CLOSED * max(largest(np.abs(energy[key])) for key in ENERGIES)

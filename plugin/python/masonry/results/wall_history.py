@@ -4,6 +4,7 @@ import reprlib
 from functools import cached_property
 
 import numpy as np
+from masonry._given import number_given
 from masonry.results import _pose
 
 ENERGIES = ("kinetic", "potential", "elastPotential", "frictDissip", "dampDissip", "impactDissip", "baseWork")
@@ -88,7 +89,7 @@ class WallHistory:
         """Number of the sample nearest to `time` (s, within the history); None: the last."""
         if time is None:
             return len(self.time) - 1
-        if not self.time[0] <= time <= self.time[-1]:
+        if not self.time[0] <= number_given("time", time) <= self.time[-1]:
             raise ValueError(f"time = {time}: must be from {self.time[0]:g} to {self.time[-1]:g} s")
         return int(np.abs(self.time - time).argmin())
 
@@ -186,3 +187,10 @@ class WallHistory:
         """(n, 8, 3) corners of the blocks, seen from the base, their movement since the first sample taken `enlarge` times, m."""
         start = _pose.corners(self.relative_position[0], self.orientation[0], self.sizes)
         return start + enlarge * (_pose.corners(self.relative_position[sample], self.relative_orientation[sample], self.sizes) - start)
+
+
+def history_given(history):
+    """The value; ValueError unless it is a WallHistory."""
+    if not isinstance(history, WallHistory):
+        raise ValueError(f"history = {history!r}: must be a WallHistory: dem.wall_history(recorder) in YADE, or results.WallHistory.load()")
+    return history
