@@ -344,6 +344,10 @@ def test_colours_are_left_to_what_stands_and_to_a_heap(moves, end, beyond):
     painter = pictures._Painter(h, [1], 1.0, "displacement", None, "")
     label = painter.figure.axes[1].get_ylabel()
     assert abs(painter._map.norm.vmax - end) < 1e-12 and ("fallen" in label) == beyond
+    painter = pictures._Painter(h, [1], 1.0, "displacement", (0, 0, 1), "")  # low: from above
+    painter.figure.canvas.draw()
+    label, canvas = painter.figure.axes[1].yaxis.label.get_window_extent(), painter.figure.bbox
+    assert canvas.y0 <= label.y0 and label.y1 <= canvas.y1 and label.x1 <= canvas.x1, (label, canvas)  # nothing of it is cut off
 
 
 @pytest.mark.parametrize("lacking, panels", [(0, 1), (1e-10, 1), (1e-3, 2)])

@@ -173,6 +173,27 @@ trial = table.trial(0.5)
 doubtful = table._collapse(0.5, (0.4, 0.5), [tilting.Trial(0.4, "unclear", 0, 0, 0), tilting.Trial(0.5, "collapse", 0, 0, 3)], table._mechanism())
 assert trial.verdict == "collapse" and str(doubtful).count("NOT TO BE TRUSTED") == 2 and "in 3 steps" in str(doubtful) and "method='wall'" in str(doubtful), doubtful
 
+# --- a picture leaves no more room than a tenth beside the blocks, however long one is; its legend hides none; a joint seen face on is an outline ---
+from matplotlib.figure import Figure
+figures, save = [], Figure.savefig
+Figure.savefig = lambda figure, *path, **options: figures.append(figure) or save(figure, *path, **options)
+base, stone = ground(0.9)
+for place in (-0.8, 0.8):
+    dem.block((0.2, 0.3, 1.0), stone, center=(place, 0, 0.5))
+dem.block((1.8, 0.3, 0.2), stone, center=(0, 0, 1.1))
+back = dem.block((0.2, 0.3, 1.0), stone, center=(0.8, 0.3, 0.5))  # behind a column: their joint is seen face on
+table = dem.TiltTable(model="spatial")
+O.bodies[back].state.pos += Vector3(0, 0.001, 0)
+with tempfile.TemporaryDirectory() as folder:
+    table._collapse(0.5, (0.4, 0.5), [], table._mechanism()).draw(os.path.join(folder, "portal.png"))
+Figure.savefig = save
+axes, = figures[0].axes
+assert axes.get_legend().get_window_extent().x0 >= axes.get_window_extent().x1 - 1
+assert np.allclose(axes.get_xlim(), (-0.9 - 0.144, 0.9 + 0.144), atol=1e-6) and np.allclose(axes.get_ylim(), (-0.144, 1.2 + 0.144), atol=1e-6), axes.get_ylim()
+outline = max((patch.get_xy() for patch in axes.patches), key=lambda corners: np.ptp(corners[:, 1]))
+assert np.allclose([outline.min(axis=0), outline.max(axis=0)], [[0.7, 0], [0.9, 1.0]], atol=1e-6) and len(outline) == 5, outline
+assert all(np.abs(np.diff(outline, axis=0)).min(axis=1) < 1e-6), outline  # four upright and level sides
+
 # --- of a joint on which a block turns, the corner that goes farthest has the slip, whatever gaps of 1e-9 m its corners have ---
 base, stone = ground(0.5)
 block = dem.block((0.6, 0.5, 0.4), stone, on=base)

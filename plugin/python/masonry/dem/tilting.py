@@ -82,7 +82,7 @@ class Collapse:
         return "\n".join(lines + [f"NOT TO BE TRUSTED: {doubt}" for doubt in self.doubts])
 
     def draw(self, path, title=None):
-        """Writes a picture (.png, .pdf, ...): the blocks, their movement magnified; open joints red, sliding ones blue."""
+        """Writes a picture (.png, .pdf, ...): the blocks, their movement magnified; open joints red, sliding ones blue, those seen face on as outlines."""
         self._mechanism.draw(path, self, title or str(self))
 
 
@@ -373,6 +373,7 @@ class _Mechanism:
 
     def draw(self, path, collapse, title):
         from matplotlib.collections import PolyCollection
+        from matplotlib.colors import to_rgba
         from matplotlib.figure import Figure
 
         plane, scale = [self._axis, 2], _DRAWN * self._sizes[self._free].min() / self._moved.max()
@@ -381,21 +382,31 @@ class _Mechanism:
             return (points + scale * self._movement(row, points))[:, plane]
 
         outlines = [place(k, self._before[k] + _section(self._sizes[k], self._axes[k], 1 - self._axis)) for k in range(len(self._ids))]
-        figure = Figure(figsize=(7, 6), layout="constrained")
+        # From behind to the front, with x or y to the right.
+        order = np.lexsort((self._before[:, 1 - self._axis] * (1 if self._axis else -1), self._free))
+        figure = Figure(figsize=(7.5, 6), layout="constrained")
         axes = figure.add_subplot(aspect="equal")
-        axes.add_collection(PolyCollection(outlines, facecolors=np.where(self._free, "0.85", "0.6"), edgecolors="0.3", linewidths=0.6))
-        for joint, (id1, id2, _, points) in zip(collapse.joints, self._joints):
-            ends = points[[np.lexsort(points[:, plane].T)[k] for k in (0, -1)]]
-            sides = [place(self._row[id], ends) for id in (id1, id2)]
+        axes.add_collection(PolyCollection([outlines[k] for k in order], facecolors=np.where(self._free[order], "0.85", "0.6"), edgecolors="0.3", linewidths=0.6))
+        for joint, (id1, id2, normal, points) in zip(collapse.joints, self._joints):
+            if not (joint["opens"] or joint["slides"]):
+                continue
+            colour, (across, up) = "C3" if joint["opens"] else "C0", normal[plane]
+            if math.hypot(across, up) < 0.5:  # seen face on
+                middle = (points - points.mean(axis=0))[:, plane]
+                around = np.argsort(np.arctan2(middle[:, 1], middle[:, 0]))
+                axes.fill(*place(self._row[id1], points[around]).T, facecolor=to_rgba(colour, 0.25), edgecolor=colour, linewidth=0.8)
+                continue
+            along = points[:, plane] @ [-up, across]
+            sides = [place(self._row[id], points[[along.argmin(), along.argmax()]]) for id in (id1, id2)]
             if joint["opens"]:
-                axes.fill(*np.concatenate([sides[0], sides[1][::-1]]).T, facecolor="C3", edgecolor="C3", linewidth=1.2)
-            elif joint["slides"]:
-                axes.plot(*sides[0].T, color="C0", linewidth=1.8)
+                axes.fill(*np.concatenate([sides[0], sides[1][::-1]]).T, facecolor=colour, edgecolor=colour, linewidth=1.2)
+            else:
+                axes.plot(*sides[0].T, color=colour, linewidth=1.8)
         axes.plot([], [], color="C3", linewidth=4, label="opens")
         axes.plot([], [], color="C0", linewidth=1.8, label="slides, closed")
-        axes.legend(loc="upper left", fontsize="small")
+        axes.legend(loc="upper left", bbox_to_anchor=(1, 1), fontsize="small")
         shown = np.concatenate([outline for outline, free in zip(outlines, self._free) if free])
-        (left, low), (right, high), margin = shown.min(axis=0), shown.max(axis=0), self._sizes[self._free].max()
+        (left, low), (right, high), margin = shown.min(axis=0), shown.max(axis=0), 0.08 * np.ptp(shown, axis=0).max()
         axes.set(xlim=(left - margin, right + margin), ylim=(low - margin, high + margin))
         axes.set(xlabel=f"{'xy'[self._axis]} (m)", ylabel="z (m)")
         axes.set_title(f"{title}\nmovement drawn {scale:.3g} times", fontsize="small")

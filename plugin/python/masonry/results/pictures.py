@@ -14,7 +14,7 @@ _DRAWN = 0.5
 # Error of a balance that closes by its definition, relative to the largest energy in it: round-off of 1e6 steps
 # leaves 2e-13.
 _CLOSED = 1e-12
-_COLOURS = {"displacement": "displacement relative to the base (m)", "rotation": "rotation (rad)"}
+_COLOURS = {"displacement": "displacement relative\nto the base (m)", "rotation": "rotation (rad)"}
 _PRESCRIBED, _UNMOVED, _BEYOND = "0.62", "0.85", "tab:purple"
 
 
@@ -37,7 +37,7 @@ def _shades(name, most):
 
 
 def _colorbar(figure, axes, shades, label, beyond):
-    figure.colorbar(shades, ax=axes, label=f"{label}; purple: fallen" if beyond else label, shrink=0.8, pad=0.02, extend="max" if beyond else "neither")
+    figure.colorbar(shades, ax=axes, label=f"{label}\npurple: fallen" if beyond else label, shrink=0.8, pad=0.02, extend="max" if beyond else "neither")
 
 
 def _check(color, enlarge):
