@@ -198,4 +198,17 @@ O.run(3, True)
 refuses(lambda: dem.wall_history(recorder), "must increase")
 recorder.ids = [block]
 refuses(O.step, "changed after the first sample")
+# --- what has no energy of its own stands in the error: a velocity that a script gives, a change of gravity ---
+for method in ("localised", "wall"):
+    base, block, theory = one_block(0.5)
+    recorder, mass = dem.WallRecorder(iterPeriod=1), O.bodies[block].state.mass
+    O.engines = quiet_engines(model="auto", recorder=recorder, method=method)
+    O.run(10, True)
+    O.bodies[block].state.vel = Vector3(0.01, 0, 0)
+    O.run(10, True)
+    given, height = dem.wall_history(recorder).energy["error"][-1], O.bodies[block].state.pos[2]
+    assert abs(given / (mass * 0.01**2 / 2) - 1) < 1e-6, (method, given)
+    O.engines[-1].gravity = Vector3(0, 0, -5)
+    O.run(2, True)
+    assert abs((dem.wall_history(recorder).energy["error"][-1] - given) / (mass * (5 - 9.81) * height) - 1) < 1e-6, method
 print("wall recorder: openings, slips, energies, falls, files")

@@ -335,7 +335,8 @@ def impacts():
 def energy():
     """Energies in J: kinetic and potential now; frictDissip, impactDissip and baseWork since dem.engines() made the engines; compliant joints: also elastPotential
     now and dampDissip so far, and all of them 0 before the first step. The sum of all others less baseWork is
-    constant, but for RockingJointEngine.madeEnergy and the errors of steps."""
+    constant, but for RockingJointEngine.madeEnergy and the errors of steps, and for what has no column: the work of other engines' forces, a change of
+    gravity or of velocities by a script, an erased block."""
     e = _joint_engine()
     keys = ("kinetic", "potential", "elastPotential", "frictDissip", "dampDissip", "impactDissip", "baseWork")
     return {key: getattr(e, key) for key in keys if hasattr(e, key)}

@@ -201,8 +201,9 @@ def draw_joints(history, path, time=None, view=None, title=""):
 
 def draw_energy(history, path, title=""):
     """Writes a picture of WallHistory.energy over time: kinetic, potential (since the first sample), what friction, impacts and dashpots have
-    dissipated and the work of the base; below, the error of their balance. Where the balance closes to round-off (method='wall' books what is left
-    over as dissipated by impacts) there is no such error to show, and the curve of impacts says that it holds numerical losses."""
+    dissipated and the work of the base; below, the error of their balance, in which the work of other engines' forces stands too
+    (WallHistory.energy). Where the balance closes to round-off (method='wall' books what is left over as dissipated by impacts) there is no such error
+    to show, and the curve of impacts says that it holds numerical losses."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 

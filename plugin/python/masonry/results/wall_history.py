@@ -153,8 +153,9 @@ class WallHistory:
     def energy(self):
         """(s,) structured array, J: kinetic, potential and elastPotential now; frictDissip, dampDissip, impactDissip and baseWork since the
         start of the run, over all lists of engines that the recorder has been in; error: by how much the sum of all others less baseWork has
-        grown since the first sample (with method='wall' round-off: impactDissip is there what is left over, numerical losses included). NaN
-        where it was not recorded."""
+        grown since the first sample (with method='wall' round-off: impactDissip is there what is left over, numerical losses included), and what
+        has no column of its own: the work of other engines' forces, a change of gravity or of velocities by a script, an erased block. NaN where it was
+        not recorded."""
         table = np.zeros(len(self.time), dtype=[("time", float)] + [(name, float) for name in ENERGIES] + [("error", float)])
         table["time"] = self.time
         for name, column in zip(ENERGIES, self._energies.T):
