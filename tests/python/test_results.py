@@ -462,7 +462,8 @@ def test_bad_input_is_refused(tmp_path):
                       (lambda: results.write_paraview(h, tmp_path / "h.pvd", every="a"), "every = 'a'"),
                       (lambda: h.sample("1"), "time = '1': must be a number"), (lambda: results.draw(h, path, enlarge="a"), "enlarge = 'a': must be a number"),
                       (lambda: results.film(h, path, frames_per_second="a"), "frames_per_second = 'a': must be a number"),
-                      (lambda: results.film(h, path, speed="a"), "speed = 'a': must be a number")):
+                      (lambda: results.film(h, path, speed="a"), "speed = 'a': must be a number"),
+                      (lambda: results.film(h, path, start=-2), "^start = -2: must be from 0 to 0.5 s"), (lambda: results.film(h, path, end="x"), "^end = 'x'")):
         with pytest.raises(ValueError, match=word):
             act()
     for act in (results.collapse, results.fallen, results.joints, lambda h: results.draw(h, path), lambda h: results.draw_joints(h, path),

@@ -394,9 +394,10 @@ for arguments, options, words in (((0, ok), {}, ("courses = 0",)), ((2, ok), dic
     refuses(lambda: dem.pier(*arguments, unused, base, **options), *words)
 good = dict(x=0, y=0, z=1, size_x=1, size_y=1, size_z=1)
 for rows, words in (([], ("at least one row",)), ([good, {**good, "size_x": 0}], ("row 1", "size_x = 0", "positive")), ([{**good, "x": "far"}], ("row 0", "x = 'far'")),
-                    ([{**good, "y": nan}], ("y = nan", "finite")), ([{**good, "size_x": 1e300}], ("size_x = 1e+300", "1e+06")), ([(0, 0, 0, 1, 1)], ("size_z = None",)),
+                    ([{**good, "y": nan}], ("y = nan", "finite")), ([{**good, "size_x": 1e300}], ("size_x = 1e+300", "1e+06")),
+                    ([{k: v for k, v in good.items() if k != "size_z"}], ("row 0", "there is no column size_z")), ([(0, 0, 0, 1, 1)], ("size_z = None",)),
                     ([(0, 0, 0, 1, 1, 1, 0, 0, "", "", "", "", "", 5)], ("row 0", "more values")), ([{**good, "rotation_y": 90}], ("rotation_y = 90", "rad")), (None, ("table = None", "rows")), ([{**good, "sizex": 1}], ("row 0", "'sizex'", "size_x", "id, name")),
-                    ([{**good, "rotation_z": inf}], ("rotation_z = inf",)), ([{**good, "qw": 1}], ("qx = None",)),
+                    ([{**good, "rotation_z": inf}], ("rotation_z = inf",)), ([{**good, "qw": 1}], ("there is no column qx",)),
                     ([{**good, "qw": 1, "qx": 1, "qy": 0, "qz": 0}], ("qw, qx, qy, qz", "length 1")), ([{**good, "material": "tuff"}], ("row 0", "'tuff'", "must be one of"))):
     refuses(lambda: dem.blocks_from_table(rows, unused), *words)
 for rows, words in (([{**good, "material": ["tuff"]}], ("row 0", "material = ['tuff']", "a name")), ([good, {**good, "x": 10**400}], ("row 1", "x = 1000", "finite")),

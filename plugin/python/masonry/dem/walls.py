@@ -244,8 +244,10 @@ COLUMNS = _PLACE + _TURN + ("material",) + _QUATERNION
 _IGNORED = ("id", "name")
 
 
-def _number(row, place, column, default=None):
-    value = row.get(column, default)
+def _number(row, place, column):
+    if column not in row:
+        raise ValueError(f"{place}: there is no column {column}: must be a finite number")
+    value = row[column]
     try:
         number = math.nan if isinstance(value, (bool, np.bool_)) else float(value)
     except (TypeError, ValueError, OverflowError):

@@ -154,7 +154,7 @@ def film(history, path, start=None, end=None, frames_per_second=20, speed=1.0, e
         writer = animation.PillowWriter(fps=frames_per_second)
     else:
         raise ValueError(f"path = {path}: must end in .gif or .mp4")
-    first, last = (history.time[history.sample(t)] if t is not None else history.time[k] for t, k in ((start, 0), (end, -1)))
+    first, last = (history.time[history.sample(t, name) if t is not None else k] for t, name, k in ((start, "start", 0), (end, "end", -1)))
     if not first <= last:
         raise ValueError(f"start = {start}, end = {end}: start must not come after end")
     step = speed / frames_per_second

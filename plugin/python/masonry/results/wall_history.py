@@ -85,12 +85,12 @@ class WallHistory:
             columns.update({f"{name} of {id} (rad)": values[:, row] for name, values in (("rotation", self.rotation), ("lean", self.lean))})
         np.savetxt(path, np.column_stack(list(columns.values())), delimiter=",", header=",".join(columns), comments="")
 
-    def sample(self, time=None):
-        """Number of the sample nearest to `time` (s, within the history); None: the last."""
+    def sample(self, time=None, name="time"):
+        """Number of the sample nearest to `time` (s, within the history); None: the last. name: what an error calls it."""
         if time is None:
             return len(self.time) - 1
-        if not self.time[0] <= number_given("time", time) <= self.time[-1]:
-            raise ValueError(f"time = {time}: must be from {self.time[0]:g} to {self.time[-1]:g} s")
+        if not self.time[0] <= number_given(name, time) <= self.time[-1]:
+            raise ValueError(f"{name} = {time}: must be from {self.time[0]:g} to {self.time[-1]:g} s")
         return int(np.abs(self.time - time).argmin())
 
     @property
