@@ -107,7 +107,8 @@ class TiltTable:
     these gain speed steadily. Restitution hardly matters, but 0 is fastest. The scene is put back afterwards; O.engines is left to the last trial.
 
     With friction the multiplier need not be unique, and the two methods may find different ones (a wall of ten courses with a window: 0.471 by
-    'localised', 0.512 by 'wall'; validation/walls/tilting). The larger is no safer: compare both.
+    'localised', 0.512 by 'wall'; validation/walls/tilting), and so may 'localised' of a symmetric wall towards x and -x, or of the same blocks in another
+    order. The larger is no safer: compare both methods, and both directions.
 
     The bar shows the multiplier of the last trial and its verdict:
         rest        the blocks stand, and the load grows from here
