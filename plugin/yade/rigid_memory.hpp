@@ -12,7 +12,7 @@ namespace yade {
 
 /// The row begins with the number of its layout and model, to be changed with any list of members. Rows of old have none: they begin with how many blocks
 /// there are.
-constexpr Real layout = -6;
+constexpr Real layout = -7;
 
 /// Numbers, enumerations and matrices go into the row, or come out of it, by the same list of members.
 struct Packer {

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 from masonry import dem
-from rocking_scene import rigid_engines
+from rocking_scene import one_block, rigid_engines
 from yade import O, Vector3
 
 
@@ -53,6 +53,21 @@ for name, build, amplitude, direction, begin in (("return wall", lambda *of: dem
     assert moving > 15
     assert (O.engines[-1].localisedBlocks > 0) == ("few" in name)
 
+
+# --- saved between a landing and the pulse that answers it, at the end of the same step ---
+for restitution in (0.9, None):
+    base, id, _ = one_block(5, restitution=restitution)
+    train = dem.PulseTrainEngine(ids=[base], impulse=0.1, resonantBlock=id)
+    O.engines = rigid_engines(train, model="spatial", method="wall", dt=1e-3)
+    while O.bodies[id].state.angVel[1] < 0 or dem.angle(id) < 0:  # it has landed when it leans to the other side
+        O.step()
+    pulses = len(train.pulseTimes)
+    O.saveTmp()
+    O.run(5, True)
+    wanted = state()
+    O.loadTmp()
+    O.run(5, True)
+    assert len(O.engines[-1].motions[0].pulseTimes) == pulses + 1 and state() == wanted
 
 # --- changed by a script, then saved ---
 def move(ids):

@@ -199,6 +199,9 @@ const typename RockingJoints<K>::JointPoint* RockingJoints<K>::landing(const Wal
 	return lands ? farthest : nullptr;
 }
 
+// The corners of an edge that the sweeps land one after the other are one landing: the second is about another axis than the block's.
+constexpr double mostly = 0.5;
+
 template <>
 void RockingJoints<Space>::answer(RigidSystem<Space>& s, WallContacts<Space>& c, const Joint& joint, const JointPoint& where,
                                   double substep, double& baseWork)
@@ -245,14 +248,15 @@ void RockingJoints<Space>::answer(RigidSystem<Space>& s, WallContacts<Space>& c,
 			add(points[i]);
 	law.oldEnd = int(impact.points.size());
 	const Vector3 axis = rockingAxis(impact.bodies, law, impact.points);
-	const double spin = axis.dot(impact.bodies[law.block].angularVelocity - impact.bodies[law.support].angularVelocity),
+	const Vector3 turning = impact.bodies[law.block].angularVelocity - impact.bodies[law.support].angularVelocity;
+	const double spin = axis.dot(turning),
 	             leastSpin = tolerance::restSpeed * std::sqrt(scale::acceleration(s) / s.bodies[at.block].halfSize.norm());
 	if (!(spin >= leastSpin))
 		return;
-	if (std::isnan(restitution)) {
-		natural.push_back(at.block);
+	if (spin >= mostly * turning.norm())
+		landed.push_back(at.block);
+	if (std::isnan(restitution))
 		return;
-	}
 	const auto result = impact.apply();
 	for (size_t i = 0; i < numbers.size(); ++i)
 		if (!impact.bodies[i].prescribed) {
@@ -299,10 +303,9 @@ void RockingJoints<Plane>::answer(RigidSystem<Plane>& s, WallContacts<Plane>& c,
 	const double before = u[2], leastSpin = tolerance::restSpeed * std::sqrt(scale::acceleration(s) / s.bodies[at.block].halfSize.norm());
 	if (!(std::abs(before) >= leastSpin))
 		return;
-	if (std::isnan(pair.restitution)) {
-		natural.push_back(at.block);
+	landed.push_back(at.block);
+	if (std::isnan(pair.restitution))
 		return;
-	}
 
 	// The impulse x for the couple's target; friction at its limit where sticking asks for more.
 	const double friction = c.groups[where.group].friction[i];
@@ -365,7 +368,7 @@ template <class K>
 double RockingJoints<K>::land(RigidSystem<K>& s, WallContacts<K>& c, Substeps<K>& sweeps, double substep)
 {
 	double baseWork = 0;
-	natural.clear();
+	landed.clear();
 	for (size_t j = 0; j < rocking.size();) {
 		const JointPoint* at = landing(c, rocking[j], substep);
 		if (!at) {

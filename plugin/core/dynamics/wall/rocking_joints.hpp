@@ -41,7 +41,8 @@ public:
 	void outdate() { gathered = false; }
 	// Impacts of the substep s that comes, into the contacts' velocities and system.impacts. Returns the work of the base, J.
 	double land(RigidSystem<K>& system, WallContacts<K>& contacts, Substeps<K>& sweeps, double s);
-	std::vector<int> natural; // blocks that have landed there without a restitution
+	// Blocks that have landed there, with a restitution or without: what a base pulse may answer.
+	std::vector<int> landed;
 
 	template <class Flow>
 	void pass(Flow& f)

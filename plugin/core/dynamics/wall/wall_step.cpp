@@ -10,6 +10,8 @@ using wall::Lanes;
 namespace {
 
 constexpr int coldSolves = 3000, mostSolves = 300;
+// Blocks of a structure up to which a base pulse is an impulse problem of all points: it then takes some ten milliseconds.
+constexpr int mostPulsed = 40;
 // A step is divided once at most, into halves: the impulses of a part are where those of the next start, and one that is much shorter
 // would hand on an impact's as many times too large. Displacements of the base are exact anyway; a pulse of the first half acts at the
 // middle, one of the second at the end.
@@ -25,19 +27,15 @@ double untilKink(const RigidSystem<K>& s, double left, double dt)
 	return left;
 }
 
-// True: there are some.
 template <class K>
-bool takeJumps(RigidSystem<K>& s)
+int largestStructure(const RigidSystem<K>& s)
 {
-	bool some = false;
-	for (size_t d = 0; d < s.drives.size(); ++d)
-		if (const auto jump = s.drives[d].jumpAt(s.time); !jump.isZero(0)) {
-			some = true;
-			for (auto& body : s.bodies)
-				if (body.drive == int(d))
-					body.velocity.template head<K::dimension>() += jump;
-		}
-	return some;
+	std::vector<int> blocks(s.bodies.size(), 0);
+	int most = 0;
+	for (const int number : islandNumbers(s))
+		if (number >= 0)
+			most = std::max(most, ++blocks[number]);
+	return most;
 }
 
 template <class K>
@@ -67,13 +65,10 @@ StepReport WallStep<K>::advance(RigidSystem<K>& s, double dt)
 {
 	report = {};
 	s.impacts.clear();
-	jumped = takeJumps(s);
 	for (double left = dt; left > 0 && !report.diverged;) {
 		const double h = untilKink(s, left, dt);
 		advancePart(s, h);
 		left = h == left ? 0 : left - h;
-		if (left > 0)
-			jumped = takeJumps(s);
 	}
 	report.residual = std::max(report.velocityResidual, report.forceResidual);
 	report.sweeps = report.solves;
@@ -84,7 +79,6 @@ StepReport WallStep<K>::advance(RigidSystem<K>& s, double dt)
 template <class K>
 void WallStep<K>::advancePart(RigidSystem<K>& s, double h)
 {
-	const double workBefore = s.baseWork;
 	frictionLoss = setOffEnergy = 0;
 	scales = Scales(s);
 	team.setThreads(settings.threads);
@@ -96,6 +90,8 @@ void WallStep<K>::advancePart(RigidSystem<K>& s, double h)
 	if (structures.letReturn() || found)
 		arrange(s, still(), moving());
 	report.partBases |= found && basesPart(s);
+	takeJumps(s);
+	const double workBefore = s.baseWork;
 	const auto some = [](const auto& chosen) { return std::find(chosen.begin(), chosen.end(), 1) != chosen.end(); };
 	bool hasMoved = false;
 	for (bool again = false, done = false; !done; again = true) {
@@ -132,6 +128,49 @@ void WallStep<K>::advancePart(RigidSystem<K>& s, double h)
 	choose(h);
 	s.time += h;
 	s.moved = false;
+}
+
+// Base pulses of this instant, and those that answer the landings of the last part of the step.
+template <class K>
+void WallStep<K>::takeJumps(RigidSystem<K>& s)
+{
+	jumped = false;
+	for (size_t d = 0; d < s.drives.size(); ++d) {
+		typename K::Vector jump = s.drives[d].jumpAt(s.time);
+		for (const int block : landed)
+			jump += s.drives[d].respond(block, s.time);
+		if (!jump.isZero(0))
+			pulse(s, int(d), jump);
+	}
+	landed.clear();
+}
+
+// As the impulse problem of all points in touch: the sweeps find their friction one after the other, and of an edge one corner may take
+// all, by which the block turns about it. Where there are too many, or the problem is not solved, the base alone jumps, and the sweeps see
+// to the rest.
+template <class K>
+void WallStep<K>::pulse(RigidSystem<K>& s, int drive, const typename K::Vector& jump)
+{
+	jumped = true;
+	if (largestStructure(s) <= mostPulsed) {
+		for (Contacts* set : {&still(), &moving()}) {
+			measure(s, *set);
+			set->showPoints(s);
+		}
+		for (auto& pair : s.pairs) // in touch, as far as a wall tells
+			for (int k = 0; k < pair.size; ++k)
+				pair.points[k].closed |= pair.points[k].gap <= tolerance::wall::lifted * scales.length;
+		const auto bodies = s.bodies;
+		const double work = s.baseWork, dissipated = s.impactDissip;
+		if (pulses.pulse(s, drive, jump) <= tolerance::impulseEnough * jump.norm())
+			return;
+		s.bodies = bodies;
+		s.baseWork = work;
+		s.impactDissip = dissipated;
+	}
+	for (auto& body : s.bodies)
+		if (body.drive == drive)
+			body.velocity.template head<K::dimension>() += jump;
 }
 
 // Every pair into the set of its structure's mode; the taker takes from the giver.
@@ -296,6 +335,7 @@ void WallStep<K>::stepMoving(RigidSystem<K>& s, double h)
 			carried.push_back({int(b), drives[structures.of[b]]});
 	const int count = substepCount();
 	const double part = h / count, start = s.time;
+	landed.clear();
 	lean(s, contacts, h);
 	contacts.setUnit(part);
 	setLoads(s, contacts, part);
@@ -379,18 +419,13 @@ int WallStep<K>::substepCount() const
 	return int(std::lround(std::max(1., wall::effortFor<K>(sets[1 - stillSet].broad).substeps * finer())));
 }
 
-// Rocking impacts, and the base pulses that answer them.
+// Rocking impacts: how many.
 template <class K>
 int WallStep<K>::land(RigidSystem<K>& s, double part)
 {
 	const size_t known = s.impacts.size();
 	s.baseWork += joints.land(s, moving(), sweeps, part);
-	for (const Drive<K>& drive : s.drives) {
-		for (size_t k = known; k < s.impacts.size(); ++k)
-			drive.respond(s.impacts[k].block, s.time);
-		for (const int block : joints.natural)
-			drive.respond(block, s.time);
-	}
+	landed.insert(landed.end(), joints.landed.begin(), joints.landed.end());
 	return int(s.impacts.size() - known);
 }
 

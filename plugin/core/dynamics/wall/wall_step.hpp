@@ -9,6 +9,7 @@
 // one mode share its solves or sweeps.
 //
 // Positions are first order in the step; impacts are met at the end of a substep. Few blocks: rigid_step.hpp.
+#include "dynamics/rigid/impact_stage.hpp"
 #include "dynamics/rigid/scales.hpp"
 #include "dynamics/wall/kept_factor.hpp"
 #include "dynamics/wall/lift.hpp"
@@ -86,6 +87,11 @@ public:
 		kept.pass(f, sets, system);
 		quick.pass(f, sets, system);
 		joints.pass(f);
+		count = landed.size();
+		f(count);
+		landed.resize(count);
+		for (int& block : landed)
+			f(block);
 	}
 
 private:
@@ -102,6 +108,8 @@ private:
 	Contacts& still() { return sets[stillSet]; }
 	Contacts& moving() { return sets[1 - stillSet]; }
 	void advancePart(RigidSystem<K>& system, double h);
+	void takeJumps(RigidSystem<K>& system);
+	void pulse(RigidSystem<K>& system, int drive, const typename K::Vector& jump);
 	State state(const RigidSystem<K>& system, const Contacts& contacts) const;
 	void takeBack(const State& state, RigidSystem<K>& system, Contacts& contacts);
 	void arrange(const RigidSystem<K>& system, Contacts& taker, Contacts& giver);
@@ -148,6 +156,8 @@ private:
 	wall::Substeps<K> sweeps;
 	wall::Lift<K> lift;
 	wall::RockingJoints<K> joints;
+	ImpactStage<K> pulses;
+	std::vector<int> landed; // blocks that have in the last part of a step
 	wall::LaneArray loads;
 	wall::LaneBits gone;                      // pairs of the still set that have been let go in this step and have gone
 	std::vector<typename K::Pose> middle;     // of a step that moves

@@ -271,8 +271,6 @@ def _rigid(motions, model, method, dt, tolerance, impact_order, gravity, recorde
         raise ValueError(f"dt = {dt}: must be at most {integrator.largestTimeStep:.3g} s, 0.15 sqrt(R/g) of the smallest block")
     O.dt = step
     print(f"masonry.dem: rigid blocks, {choice}; dt = {O.dt:.3g} s{_records(motions)}")
-    if wall and choice.startswith("spatial") and any(isinstance(m, wrapper.PulseTrainEngine) and m.resonantBlock >= 0 and m.shape == "dirac" for m in motions):
-        print("masonry.dem: method 'wall' in space: corners that land one after the other each release a pulse of the resonant train, method='localised' finds them at once")
     return [wrapper.ForceResetter(), *others, *recorders, integrator]
 
 
