@@ -91,9 +91,13 @@ SolveReport ContactSolver<K>::solve(double tolerance, double enough)
 		if (report.residual <= tolerance)
 			return report;
 	}
-	if (useNewton && w.startsClose(tolerance, report))
+	constexpr bool inSpace = K::dimension == 3;
+	if (useNewton && !(inSpace && guessed) && w.startsClose(tolerance, report))
 		return report;
-	report.residual = gaussSeidel(w.s, tolerance, useNewton ? maxSweeps : lastSweeps, !useNewton, report);
+	if (!(inSpace && useNewton))
+		report.residual = gaussSeidel(w.s, tolerance, useNewton ? maxSweeps : lastSweeps, !useNewton, report);
+	else
+		report.residual = w.s.residual();
 	if (useNewton && report.residual > tolerance)
 		report.residual = w.alternate(tolerance, enough, lastSweeps, report);
 	report.converged = report.residual <= std::max(tolerance, enough);

@@ -22,6 +22,10 @@
 // open), and with the factor of the last solve while the points are the same: one back-substitution where no state changes. From
 // impulses far from the solution: block Gauss-Seidel, and where its rate tells that it will not converge, Newton with a large R that
 // falls as the centres converge, each going on along its move while that does no harm.
+// Friction leaves several solutions where points share what they carry: all of an edge's load at one corner, which turns the block about
+// it, is one where nothing slips. Newton with a large R that falls ends near the impulses given, and leaves a scene that is its own mirror
+// image so; sweeps, which take the points in their order, and a small R at once from far away do not. So in space there are no sweeps
+// before it, and impulses that are only a `guess` are not resumed from.
 // Impulses that still miss the laws are returned with their residual, and made to add no energy (seen from the offsets).
 #include "dynamics/rigid/kinematics.hpp"
 #include "impact/impulse_problem.hpp" // noSlip
@@ -77,7 +81,8 @@ public:
 	double      residual(); // of the present velocities and impulses
 	void        forget();   // the next solve starts without the factor of the last: its bits depend on its input alone
 
-	int  maxSweeps { 40 };    // of Gauss-Seidel before Newton takes over
+	bool guessed { false };   // the impulses given are not those of the last solve
+	int  maxSweeps { 40 };    // in the plane, of Gauss-Seidel before Newton takes over
 	bool useNewton { true };  // false: Gauss-Seidel alone, up to `lastSweeps`
 	int  lastSweeps { 2000 };
 

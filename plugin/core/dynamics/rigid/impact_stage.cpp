@@ -204,7 +204,27 @@ template <class K> void ImpactStage<K>::settle(RigidSystem<K>& s)
 		point.closed = u[0] <= still;
 		point.sliding = point.closed && u.template tail<K::rows - 1>().norm() > still;
 	}
+	shareWeights(s);
 	s.startAnew();
+}
+
+// Points that carry from now on: a first guess of their forces, in proportion to their impulses. From none, sweeps give all to the first
+// corner of an edge, which is a solution too where it does not slip, but one that turns the block about that corner.
+template <class K> void ImpactStage<K>::shareWeights(RigidSystem<K>& s)
+{
+	weights.assign(s.pairs.size(), 0.);
+	const auto normal = [this](size_t k) { return std::max(0., impact.points[k].impulse.dot(impact.points[k].normal)); };
+	for (size_t k = 0; k < refs.size(); ++k)
+		weights[refs[k].pair] += normal(k);
+	for (size_t k = 0; k < refs.size(); ++k) {
+		const ContactPair<K>& pair = s.pairs[refs[k].pair];
+		ContactPoint<K>&      point = s.pairs[refs[k].pair].points[refs[k].point];
+		const auto &          body1 = s.bodies[pair.body1], &body2 = s.bodies[pair.body2];
+		if (!point.closed || isLoaded(point) || !(normal(k) > 0)) continue;
+		const double lighter = body1.prescribed ? body2.mass : body2.prescribed ? body1.mass : std::min(body1.mass, body2.mass);
+		point.force.setZero();
+		point.force[0] = lighter * scale::acceleration(s) * normal(k) / weights[refs[k].pair];
+	}
 }
 
 // The smooth step leaves velocities of the order h^2 at the points in touch, of either sign; the law's w- is that of bodies that hold on to

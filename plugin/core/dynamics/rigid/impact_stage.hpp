@@ -19,6 +19,7 @@ private:
 	void gather(const RigidSystem<K>& system, const std::vector<PointRef>& closing);
 	void holdPivots(RigidSystem<K>& system);
 	void settle(RigidSystem<K>& system);
+	void shareWeights(RigidSystem<K>& system);
 
 	SparseImpulses<K>          impulses;
 	RockingImpact              impact;
@@ -26,6 +27,7 @@ private:
 	std::vector<PointRef>      refs; // of impact.points
 	std::vector<Vector3>       newPositions, oldPositions; // of a joint
 	std::vector<PointRef>      oldRefs;
+	std::vector<double>        weights; // of the pairs: their normal impulses
 };
 
 } // namespace masonry::rigid

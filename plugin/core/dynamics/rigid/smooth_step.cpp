@@ -13,11 +13,11 @@ namespace {
 		return v;
 	}
 
-	template <class K> typename K::Pose prescribedPose(const RigidSystem<K>& s, const RigidBody<K>& body, double h)
+	template <class K> typename K::Pose prescribedPose(const RigidSystem<K>& s, const RigidBody<K>& body, double h, double t)
 	{
 		typename K::Pose pose = body.pose;
 		if (!body.velocity.isZero(0)) K::advance(pose, body.velocity, h);
-		if (body.drive >= 0) pose.position = body.origin + s.drives[body.drive].displacement(s.time + h);
+		if (body.drive >= 0) pose.position = body.origin + s.drives[body.drive].displacement(t);
 		return pose;
 	}
 
@@ -123,6 +123,7 @@ namespace {
 template <class K> void SmoothStep<K>::begin(const RigidSystem<K>& s, double dt)
 {
 	whole = dt;
+	end = s.time + dt;
 	solver.forget();
 	shifts.reserve(s.bodies.size()); // a step that closes gaps may be the first to
 	scales = Scales(s);
@@ -130,6 +131,13 @@ template <class K> void SmoothStep<K>::begin(const RigidSystem<K>& s, double dt)
 	weight = 0;
 	for (const RigidBody<K>& body : s.bodies)
 		if (!body.prescribed) weight += body.mass * scales.acceleration * scales.length;
+}
+
+// Parts of a step add up to its end but for round-off, which would depend on the events in it.
+template <class K> double SmoothStep<K>::timeAfter(const RigidSystem<K>& s, double h) const
+{
+	const double t = s.time + h;
+	return std::abs(t - end) <= tolerance::rigid::instant * whole ? end : t;
 }
 
 template <class K> void SmoothStep<K>::predict(const RigidSystem<K>& s, double h, bool again)
@@ -141,9 +149,9 @@ template <class K> void SmoothStep<K>::predict(const RigidSystem<K>& s, double h
 		auto&               next = last.bodies[b];
 		if (body.prescribed) {
 			next.unknown = -1;
-			next.middle = prescribedPose(s, body, h / 2);
-			next.end = prescribedPose(s, body, h);
-			next.velocity = prescribedVelocity(s, body, s.time + h);
+			next.middle = prescribedPose(s, body, h / 2, s.time + h / 2);
+			next.end = prescribedPose(s, body, h, timeAfter(s, h));
+			next.velocity = prescribedVelocity(s, body, timeAfter(s, h));
 			next.mean = 0.5 * (body.velocity + next.velocity);
 			continue;
 		}
@@ -324,6 +332,7 @@ template <class K> void SmoothStep<K>::attempt(const RigidSystem<K>& s, double h
 	for (int pass = 0; pass < mostPasses; ++pass) {
 		predict(s, h, pass > 0);
 		assemble(s, h);
+		solver.guessed = fresh && pass == 0;
 		last.solved = solver.solve(s.settings.tolerance * scales.stepSpeed(h), s.settings.tolerance * scales.stepSpeed(whole));
 		const bool   surprised = pass == 0 && surprises(s, last, solver.bodies, scales);
 		const double gain = finish(s, h);
@@ -430,7 +439,7 @@ template <class K> void SmoothStep<K>::accept(RigidSystem<K>& s)
 		body.pose = next.end;
 		body.velocity = next.velocity;
 	}
-	s.time += last.h;
+	s.time = timeAfter(s, last.h);
 	s.setFresh(unsteady || (isShort && s.isFresh()));
 
 	const double still = tolerance::rigid::parting * scales.stepSpeed(last.h);

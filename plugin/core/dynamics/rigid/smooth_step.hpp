@@ -73,6 +73,7 @@ public:
 
 private:
 	using Impulse = Eigen::Matrix<double, K::rows, 1>;
+	double timeAfter(const RigidSystem<K>& system, double h) const; // s
 	void   predict(const RigidSystem<K>& system, double h, bool again);
 	void   assemble(const RigidSystem<K>& system, double h);
 	bool   acts(const RigidSystem<K>& system, PointRef ref) const;
@@ -89,7 +90,7 @@ private:
 	std::vector<typename K::Velocity> shifts;
 	std::vector<double> misses;
 	std::vector<Impulse> guesses, stray; // of the rows: impulses of the last pass; velocities that the step takes off (none: empty)
-	double whole { 0 };                  // s, the step that is being done in parts
+	double whole { 0 }, end { 0 };       // s, the step that is being done in parts, and when it ends
 	double weight { 0 };                 // of the free bodies times the scene's length, J
 	bool   unsteady { false };            // the stray velocities were left
 	bool   partBases { false };           // how much each of two bases that move apart carries is not determined: the last step's share grows

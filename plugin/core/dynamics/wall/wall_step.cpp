@@ -135,6 +135,8 @@ template <class K>
 void WallStep<K>::takeJumps(RigidSystem<K>& s)
 {
 	jumped = false;
+	jumpTime = s.time;
+	jumps.assign(s.drives.size(), K::Vector::Zero());
 	for (size_t d = 0; d < s.drives.size(); ++d) {
 		typename K::Vector jump = s.drives[d].jumpAt(s.time);
 		for (const int block : landed)
@@ -168,6 +170,7 @@ void WallStep<K>::pulse(RigidSystem<K>& s, int drive, const typename K::Vector& 
 		s.baseWork = work;
 		s.impactDissip = dissipated;
 	}
+	jumps[drive] += jump;
 	for (auto& body : s.bodies)
 		if (body.drive == drive)
 			body.velocity.template head<K::dimension>() += jump;
@@ -231,12 +234,12 @@ void WallStep<K>::measure(RigidSystem<K>& s, Contacts& contacts)
 	joints.outdate();
 }
 
-// Velocities of the prescribed bodies that bring them where they belong after h, and of supports with them; 0: those that they have now.
+// Velocities of the prescribed bodies that bring them where they belong after h, and of supports with them; 0: those that they start with.
 template <class K>
 void WallStep<K>::setBase(const RigidSystem<K>& s, Contacts& contacts, double h)
 {
 	const auto set = [&](int b, int d) {
-		contacts.setLinearVelocity(b, h > 0 ? s.drives[d].meanVelocity(s.time, h) : s.drives[d].velocity(s.time));
+		contacts.setLinearVelocity(b, h > 0 ? s.drives[d].meanVelocity(s.time, h) : startVelocity(s, d));
 	};
 	for (const int b : onDrives)
 		set(b, s.bodies[b].drive);
@@ -429,12 +432,20 @@ int WallStep<K>::land(RigidSystem<K>& s, double part)
 	return int(s.impacts.size() - known);
 }
 
+// While a base jumps, its impulse works on the mean of the velocities before and after.
 template <class K>
-typename K::Velocity WallStep<K>::startVelocity(const RigidSystem<K>& s, int b) const
+typename K::Vector WallStep<K>::startVelocity(const RigidSystem<K>& s, int drive) const
+{
+	const typename K::Vector velocity = s.drives[drive].velocity(s.time);
+	return s.time == jumpTime ? typename K::Vector(velocity - jumps[drive] / 2) : velocity;
+}
+
+template <class K>
+typename K::Velocity WallStep<K>::startVelocityOf(const RigidSystem<K>& s, int b) const
 {
 	typename K::Velocity velocity = s.bodies[b].velocity;
 	if (const int drive = s.bodies[b].drive; drive >= 0)
-		velocity.template head<K::dimension>() = s.drives[drive].velocity(s.time);
+		velocity.template head<K::dimension>() = startVelocity(s, drive);
 	return velocity;
 }
 
@@ -476,8 +487,8 @@ double WallStep<K>::baseWorkWhenStill(const RigidSystem<K>& s, double h)
 		const int b = s.bodies[contacts.groups[g].body1[i]].prescribed ? contacts.groups[g].body1[i] : contacts.groups[g].body2[i];
 		if (base < 0)
 			base = b;
-		const typename K::Velocity v = startVelocity(s, b);
-		if (b != base && (v != startVelocity(s, base) || !v.template tail<K::spins>().isZero(0)))
+		const typename K::Velocity v = startVelocityOf(s, b);
+		if (b != base && (v != startVelocityOf(s, base) || !v.template tail<K::spins>().isZero(0)))
 			return baseWork(s, contacts);
 	}
 	if (base < 0)
@@ -491,7 +502,7 @@ double WallStep<K>::baseWorkWhenStill(const RigidSystem<K>& s, double h)
 			for (int i = 0; i < K::dimension; ++i)
 				impulse[i] += s.bodies[b].mass * change[i];
 		}
-	return impulse.dot(startVelocity(s, base).template head<K::dimension>());
+	return impulse.dot(startVelocityOf(s, base).template head<K::dimension>());
 }
 
 // The same of a base that turns: with the moment about its centre, of arms in the middle of the step.
@@ -513,7 +524,7 @@ double WallStep<K>::baseWorkWhenTurning(const RigidSystem<K>& s, int base, doubl
 		impulse.template tail<K::spins>() +=
 		    K::moment(arm, own) + K::angularMomentum(body.inertia, body.pose, change.template tail<K::spins>());
 	}
-	return impulse.dot(startVelocity(s, base));
+	return impulse.dot(startVelocityOf(s, base));
 }
 
 // A body's pose and velocity back into the system. Returns the work of the force on it, J.
