@@ -3,14 +3,13 @@
 #include "checked_body.hpp"
 #include "python_lock.hpp"
 #include "rigid_scene.hpp"
+#include "sentence.hpp"
 
 #include <boost/python/extract.hpp>
 #include <core/Scene.hpp>
 #include <pkg/common/PeriodicEngines.hpp>
 #include <lib/factory/ClassFactory.hpp>
 #include <set>
-#include <sstream>
-#include <stdexcept>
 
 namespace yade {
 
@@ -20,18 +19,6 @@ namespace {
 
 	/// Largest time step relative to sqrt(R/g) of the smallest block: there, peaks of one block are off by up to 0.3 %.
 	constexpr Real coarsestStep = 0.15;
-
-	template <class... Parts> string sentence(const Parts&... parts)
-	{
-		std::ostringstream text;
-		(text << ... << parts);
-		return text.str();
-	}
-
-	template <class Value> [[noreturn]] void reject(const char* attribute, const Value& value, const char* allowed)
-	{
-		throw std::invalid_argument(sentence("MoreauJeanIntegrator.", attribute, " = ", value, " is not allowed: it must be ", allowed, "."));
-	}
 
 	/// Degrees of freedom, as in State::blockedDOFs, that a planar motion never uses.
 	unsigned unusedInPlane(const Vector3r& normal)
@@ -64,19 +51,19 @@ void MoreauJeanIntegrator::postLoad(MoreauJeanIntegrator&)
 {
 	for (const auto& motion : motions)
 		if (!dynamic_cast<BaseMotionEngine*>(motion.get()))
-			reject("motions", motion ? motion->getClassName() : "None", "a list of motions (PulseTrainEngine, RecordMotionEngine)");
-	if (model != "auto" && model != "planar" && model != "spatial") reject("model", "'" + model + "'", "'auto', 'planar' or 'spatial'");
-	if (impactOrder != "simultaneous" && impactOrder != "sequential") reject("impactOrder", "'" + impactOrder + "'", "'simultaneous' or 'sequential'");
-	if (onTrouble != "stop" && onTrouble != "continue") reject("onTrouble", "'" + onTrouble + "'", "'stop' or 'continue'");
-	if (method != "localised" && method != "wall") reject("method", "'" + method + "'", "'localised' or 'wall'");
+			reject(*this, "motions", motion ? motion->getClassName() : "None", "a list of motions (PulseTrainEngine, RecordMotionEngine)");
+	if (model != "auto" && model != "planar" && model != "spatial") reject(*this, "model", "'" + model + "'", "'auto', 'planar' or 'spatial'");
+	if (impactOrder != "simultaneous" && impactOrder != "sequential") reject(*this, "impactOrder", "'" + impactOrder + "'", "'simultaneous' or 'sequential'");
+	if (onTrouble != "stop" && onTrouble != "continue") reject(*this, "onTrouble", "'" + onTrouble + "'", "'stop' or 'continue'");
+	if (method != "localised" && method != "wall") reject(*this, "method", "'" + method + "'", "'localised' or 'wall'");
 	if (method == "wall") {
-		if (impactOrder != "sequential") reject("impactOrder", "'" + impactOrder + "'", "'sequential' with method='wall', whose impacts act joint by joint");
-		if (!(tolerance >= 1e-6 && tolerance <= 1e-2)) reject("tolerance", tolerance, "from 1e-6 to 1e-2 with method='wall'");
+		if (impactOrder != "sequential") reject(*this, "impactOrder", "'" + impactOrder + "'", "'sequential' with method='wall', whose impacts act joint by joint");
+		if (!(tolerance >= 1e-6 && tolerance <= 1e-2)) reject(*this, "tolerance", tolerance, "from 1e-6 to 1e-2 with method='wall'");
 	} else if (!(tolerance > 0 && tolerance <= 1e-3)) {
-		reject("tolerance", tolerance, "above 0 and at most 1e-3");
+		reject(*this, "tolerance", tolerance, "above 0 and at most 1e-3");
 	}
-	if (!(mergedClosing >= 0 && mergedClosing <= 1e-3)) reject("mergedClosing", mergedClosing, "from 0 to 1e-3");
-	if (mostEvents < 1) reject("mostEvents", mostEvents, "at least 1");
+	if (!(mergedClosing >= 0 && mergedClosing <= 1e-3)) reject(*this, "mergedClosing", mergedClosing, "from 0 to 1e-3");
+	if (mostEvents < 1) reject(*this, "mostEvents", mostEvents, "at least 1");
 	sequential = impactOrder == "sequential";
 	wall = method == "wall";
 }
@@ -337,7 +324,7 @@ void MoreauJeanIntegrator::checkTimeStep()
 
 void MoreauJeanIntegrator::action()
 {
-	if (!gravity.allFinite()) reject("gravity", gravity.transpose(), "three finite numbers in m/s^2");
+	if (!gravity.allFinite()) reject(*this, "gravity", gravity.transpose(), "three finite numbers in m/s^2");
 	if (memory.run && !sceneOf(memory).isOf(*scene)) leaveScene();
 	const masonry::rigid::StepReport report = stepRun();
 	for (const auto& motion : taken) static_cast<BaseMotionEngine&>(*motion).haveStepped();

@@ -456,10 +456,8 @@ private:
 
 	[[noreturn]] void refuseOverlap(const Pair& pair, Real depth) const
 	{
-		std::ostringstream text;
-		text << "Blocks " << kept.ids[pair.body1] << " and " << kept.ids[pair.body2] << " overlap by " << depth
-		     << " m: rigid blocks must be apart or just touch when the run starts or a script moves them.";
-		throw std::runtime_error(text.str());
+		throw std::runtime_error(sentence("Blocks ", kept.ids[pair.body1], " and ", kept.ids[pair.body2], " overlap by ", depth,
+			" m: rigid blocks must be apart or just touch when the run starts or a script moves them."));
 	}
 
 	void takeLaws()
