@@ -122,8 +122,9 @@ void RockingJointEngine::addExternalForces()
 
 Real RockingJointEngine::criticalTimeStep()
 {
-	if (started) return masonry::criticalTimeStep(system.bodies, system.contacts);
-	// Before the first step there are no interactions yet: every pair of boxes is looked at.
+	if (checkedTimeStep > 0) return masonry::criticalTimeStep(system.bodies, system.contacts);
+	// Before the first step there are no interactions yet, and after loading they have no patches: every pair of boxes is looked at.
+	scene = Omega::instance().getScene().get();
 	vector<masonry::JointContact> contacts;
 	gather();
 	Ip2_BlockMat_BlockMat_BlockPhys law;
