@@ -435,19 +435,17 @@ private:
 	{
 		const auto &body1 = system.bodies[pair.body1], &body2 = system.bodies[pair.body2];
 		const Real  rest = masonry::tolerance::restSpeed * std::sqrt(integrator.gravity.norm() * length);
-		masonry::rigid::FoundPoints<K> found;
 		pair.memory = {};
-		pair.size = 0;
-		if (!K::findPoints(body1.halfSize, body1.pose, body2.halfSize, body2.pose, std::numeric_limits<double>::infinity(), pair.memory, found)) return;
+		const auto found = masonry::rigid::findPoints(body1, body2, pair.memory);
 		pair.size = found.size;
+		if (found.size == 0) return;
 		pair.face1 = found.face1;
 		pair.face2 = found.face2;
 		for (int i = 0; i < found.size; ++i) {
 			auto& point = pair.points[i];
 			point = {};
 			point.feature = found.features[i];
-			point.frame = K::frame(point.feature, body1.halfSize, body1.pose, body2.halfSize, body2.pose);
-			point.gap = point.frame.gap;
+			masonry::rigid::locate(point, body1, body2);
 			const auto speed = masonry::rigid::relativeVelocity(point.frame, body1.pose.position, body1.velocity, body2.pose.position, body2.velocity);
 			point.closed = point.gap <= integrator.mergedClosing * length && speed[0] >= -rest;
 			if (placed && point.gap < -mostOverlap * length) refuseOverlap(pair, -point.gap);

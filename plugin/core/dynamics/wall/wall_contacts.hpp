@@ -309,6 +309,7 @@ private:
 	void showPair(RigidSystem<K>& system, int pair) const;
 	void countPoints(const RigidSystem<K>& system, int group);
 	void findCourses(const RigidSystem<K>& system);
+	bool inherit(const ContactPair<K>& before, const State* states, ContactPoint<K>& point, State& now) const;
 	void orderUpwards();
 	void countFrom(const std::vector<int>& through, std::vector<int>& count) const;
 	void takeBodies(const RigidSystem<K>& system);
