@@ -40,17 +40,6 @@ constexpr double mostOfMean = 8, mostOfFall = 2;
 inline double turned(const PlanePose& from, const PlanePose& to) { return std::abs(to.angle - from.angle); }
 inline double turned(const Pose& from, const Pose& to) { return 2 * (to.orientation.coeffs() - from.orientation.coeffs()).norm(); }
 
-template <class Flow>
-void passPose(Flow& f, PlanePose& pose)
-{
-	f(pose.position), f(pose.angle), f(pose.cosine), f(pose.sine);
-}
-template <class Flow>
-void passPose(Flow& f, Pose& pose)
-{
-	f(pose.position), f(pose.orientation.coeffs());
-}
-
 // Of the points of a group, how many there are at most in a lane: in the plane all of them are always gone through, together.
 template <class K>
 struct PointSet;
