@@ -134,8 +134,6 @@ struct Members {
 template <class K>
 class WallContacts {
 public:
-	using Tangent = typename PointLanes<K>::Tangent;
-
 	explicit WallContacts(Team& team) : team(team) {}
 
 	// work(part, number) for each part but the seam, the last number.
@@ -298,7 +296,6 @@ private:
 	void showPair(RigidSystem<K>& system, int pair) const;
 	void countPoints(const RigidSystem<K>& system, int group);
 	void findCourses(const RigidSystem<K>& system);
-	bool inherit(const ContactPair<K>& before, const State* states, ContactPoint<K>& point, State& now) const;
 	void orderUpwards();
 	void countFrom(const std::vector<int>& through, std::vector<int>& count) const;
 	void takeBodies(const RigidSystem<K>& system);
@@ -312,6 +309,7 @@ private:
 	void lookUpStale(RigidSystem<K>& system);
 	bool lookUpStale(RigidSystem<K>& system, const Part& part);
 	bool lookUp(RigidSystem<K>& system, int pair);
+	bool inherit(const ContactPair<K>& before, const State* states, ContactPoint<K>& point, State& now) const;
 	State state(int pair, int point) const;
 	void setState(const State& state, int pair, int point);
 	void takePoint(const RigidSystem<K>& system, int pair, int point);
