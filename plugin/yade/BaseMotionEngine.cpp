@@ -1,5 +1,6 @@
 #include "BaseMotionEngine.hpp"
 #include "python_lock.hpp"
+#include "sentence.hpp"
 
 #include <algorithm>
 #include <core/Scene.hpp>
@@ -7,8 +8,6 @@
 #include <iterator>
 #include <limits>
 #include <set>
-#include <sstream>
-#include <stdexcept>
 
 namespace yade {
 
@@ -34,27 +33,17 @@ Real BaseMotionEngine::nextKink(Real, Real) const { return std::numeric_limits<R
 
 void BaseMotionEngine::check() const
 {
-	const auto reject = [&](int id, const char* why) {
-		std::ostringstream text;
-		text << getClassName() << ".ids has " << id << ": " << why;
-		throw std::invalid_argument(text.str());
-	};
+	const auto refuse = [&](int id, const char* why) { throw std::invalid_argument(sentence(getClassName(), ".ids has ", id, ": ", why)); };
 	if (underWay() && ids != begunIds) refuseChange("ids", settings().at("ids"), begun.at("ids"));
 	if (ids.empty()) throw std::invalid_argument(getClassName() + ".ids is empty: it must name at least one body to move.");
 	for (int id : ids) {
-		if (std::count(ids.begin(), ids.end(), id) > 1) reject(id, "it must stand there once.");
-		if (!scene->bodies->exists(id)) reject(id, "there is no such body in O.bodies.");
+		if (std::count(ids.begin(), ids.end(), id) > 1) refuse(id, "it must stand there once.");
+		if (!scene->bodies->exists(id)) refuse(id, "there is no such body in O.bodies.");
 		if ((*scene->bodies)[id]->isDynamic())
-			reject(id, "a moved base must have all degrees of freedom prescribed (blockedDOFs='xyzXYZ'; dem.base() does that).");
+			refuse(id, "a moved base must have all degrees of freedom prescribed (blockedDOFs='xyzXYZ'; dem.base() does that).");
 	}
-	const auto require = [&](bool holds, const char* attribute, const auto& value, const char* allowed) {
-		if (holds) return;
-		std::ostringstream text;
-		text << getClassName() << '.' << attribute << " = " << value << " is not allowed: it must be " << allowed << '.';
-		throw std::invalid_argument(text.str());
-	};
-	require(std::abs(direction.norm() - 1) < 1e-9, "direction", direction.transpose(), "a unit vector");
-	require(std::isfinite(start), "start", start, "a finite time in s");
+	if (!(std::abs(direction.norm() - 1) < 1e-9)) reject(*this, "direction", direction.transpose(), "a unit vector");
+	if (!std::isfinite(start)) reject(*this, "start", start, "a finite time in s");
 	if (hasBegun())
 		checkPlaces();
 	else
@@ -199,10 +188,8 @@ void BaseMotionEngine::checkNow()
 void BaseMotionEngine::checkStart() const
 {
 	if (scene->time - start <= lateStart * scene->dt) return;
-	std::ostringstream text;
-	text << getClassName() << ".start = " << start << " s has passed, O.time = " << scene->time
-	     << " s: the base would jump into the middle of the motion; give start=O.time.";
-	throw std::invalid_argument(text.str());
+	throw std::invalid_argument(sentence(getClassName(), ".start = ", start, " s has passed, O.time = ", scene->time,
+		" s: the base would jump into the middle of the motion; give start=O.time."));
 }
 
 bool BaseMotionEngine::isInPlace(const Motions& all) const
@@ -223,10 +210,8 @@ void BaseMotionEngine::checkPlaces() const
 	for (size_t k = 0; k < std::min(ids.size(), origins.size()); ++k) {
 		const Vector3r &pos = (*scene->bodies)[ids[k]]->state->pos, to = pos + direction * direction.dot(origins[k] + moved - pos);
 		if ((pos - to).norm() <= samePlace * (pos.norm() + moved.norm())) continue;
-		std::ostringstream text;
-		text << getClassName() << ", which has begun at start = " << start << " s, would put body " << ids[k] << " from " << pos.transpose() << " m to "
-		     << to.transpose() << " m at once: give dem.engines() a new " << getClassName() << " with start=O.time.";
-		throw std::invalid_argument(text.str());
+		throw std::invalid_argument(sentence(getClassName(), ", which has begun at start = ", start, " s, would put body ", ids[k], " from ", pos.transpose(),
+			" m to ", to.transpose(), " m at once: give dem.engines() a new ", getClassName(), " with start=O.time."));
 	}
 }
 

@@ -5,6 +5,8 @@
 
 namespace yade {
 
+class Body;
+
 /// A jump of the base velocity inside the step that ends now.
 struct BaseJump {
 	Vector3r velocity; // change of velocity, m/s

@@ -1,9 +1,8 @@
 #include "BlockPhys.hpp"
+#include "sentence.hpp"
 
 #include "impact/impulse_problem.hpp"
 #include <lib/factory/ClassFactory.hpp>
-#include <sstream>
-#include <stdexcept>
 
 namespace yade {
 
@@ -16,15 +15,12 @@ masonry::JointLaw BlockPhys::law(Real dampingRatio) const
 
 void BlockPhys::check(int id1, int id2) const
 {
-	std::ostringstream text;
-	text << "The joint of bodies " << id1 << " and " << id2 << " has ";
+	const auto refuse = [&](const char* attribute, Real value, const char* allowed) {
+		throw std::runtime_error(sentence("The joint of bodies ", id1, " and ", id2, " has ", attribute, " = ", value, ": it must be ", allowed, '.'));
+	};
 	if (!(noSlip || tangensOfFrictionAngle >= 0))
-		text << "tangensOfFrictionAngle = " << tangensOfFrictionAngle << ": it must be 0 or positive, BlockMat.frictionAngle from 0 to below pi/2, in rad.";
-	else if (restitution < 0 || restitution > 1)
-		text << "restitution = " << restitution << ": it must be from 0 to 1, or NaN for the natural restitution.";
-	else
-		return;
-	throw std::runtime_error(text.str());
+		refuse("tangensOfFrictionAngle", tangensOfFrictionAngle, "0 or positive, BlockMat.frictionAngle from 0 to below pi/2, in rad");
+	if (restitution < 0 || restitution > 1) refuse("restitution", restitution, "from 0 to 1, or NaN for the natural restitution");
 }
 
 void BlockPhys::readPoints(masonry::JointContact& contact) const

@@ -2,13 +2,12 @@
 #include "BlockGeom.hpp"
 #include "BlockPhys.hpp"
 #include "MoreauJeanIntegrator.hpp"
+#include "sentence.hpp"
 #include "tolerances.hpp"
 
 #include <algorithm>
 #include <core/Scene.hpp>
 #include <lib/factory/ClassFactory.hpp>
-#include <sstream>
-#include <stdexcept>
 
 namespace yade {
 
@@ -20,11 +19,7 @@ void BlockRecorder::action()
 		if (auto* integrator = dynamic_cast<MoreauJeanIntegrator*>(engine.get())) integrator->writeInteractions();
 	times.push_back(scene->time);
 	for (int id : ids) {
-		if (!scene->bodies->exists(id)) {
-			std::ostringstream text;
-			text << "BlockRecorder.ids has " << id << ": there is no such body in O.bodies.";
-			throw std::invalid_argument(text.str());
-		}
+		if (!scene->bodies->exists(id)) throw std::invalid_argument(sentence("BlockRecorder.ids has ", id, ": there is no such body in O.bodies."));
 		const Body& body = *(*scene->bodies)[id];
 		const State& state = *body.state;
 		const AngleAxisr turn(state.refOri.conjugate() * state.ori);

@@ -3,14 +3,13 @@
 #include "checked_body.hpp"
 #include "python_lock.hpp"
 #include "rigid_scene.hpp"
+#include "sentence.hpp"
 
 #include <boost/python/extract.hpp>
 #include <core/Scene.hpp>
 #include <pkg/common/PeriodicEngines.hpp>
 #include <lib/factory/ClassFactory.hpp>
 #include <set>
-#include <sstream>
-#include <stdexcept>
 
 namespace yade {
 
@@ -20,18 +19,6 @@ namespace {
 
 	/// Largest time step relative to sqrt(R/g) of the smallest block: there, peaks of one block are off by up to 0.3 %.
 	constexpr Real coarsestStep = 0.15;
-
-	template <class... Parts> string sentence(const Parts&... parts)
-	{
-		std::ostringstream text;
-		(text << ... << parts);
-		return text.str();
-	}
-
-	template <class Value> [[noreturn]] void reject(const char* attribute, const Value& value, const char* allowed)
-	{
-		throw std::invalid_argument(sentence("MoreauJeanIntegrator.", attribute, " = ", value, " is not allowed: it must be ", allowed, "."));
-	}
 
 	/// Degrees of freedom, as in State::blockedDOFs, that a planar motion never uses.
 	unsigned unusedInPlane(const Vector3r& normal)
@@ -64,19 +51,19 @@ void MoreauJeanIntegrator::postLoad(MoreauJeanIntegrator&)
 {
 	for (const auto& motion : motions)
 		if (!dynamic_cast<BaseMotionEngine*>(motion.get()))
-			reject("motions", motion ? motion->getClassName() : "None", "a list of motions (PulseTrainEngine, RecordMotionEngine)");
-	if (model != "auto" && model != "planar" && model != "spatial") reject("model", "'" + model + "'", "'auto', 'planar' or 'spatial'");
-	if (impactOrder != "simultaneous" && impactOrder != "sequential") reject("impactOrder", "'" + impactOrder + "'", "'simultaneous' or 'sequential'");
-	if (onTrouble != "stop" && onTrouble != "continue") reject("onTrouble", "'" + onTrouble + "'", "'stop' or 'continue'");
-	if (method != "localised" && method != "wall") reject("method", "'" + method + "'", "'localised' or 'wall'");
+			reject(*this, "motions", motion ? motion->getClassName() : "None", "a list of motions (PulseTrainEngine, RecordMotionEngine)");
+	if (model != "auto" && model != "planar" && model != "spatial") reject(*this, "model", "'" + model + "'", "'auto', 'planar' or 'spatial'");
+	if (impactOrder != "simultaneous" && impactOrder != "sequential") reject(*this, "impactOrder", "'" + impactOrder + "'", "'simultaneous' or 'sequential'");
+	if (onTrouble != "stop" && onTrouble != "continue") reject(*this, "onTrouble", "'" + onTrouble + "'", "'stop' or 'continue'");
+	if (method != "localised" && method != "wall") reject(*this, "method", "'" + method + "'", "'localised' or 'wall'");
 	if (method == "wall") {
-		if (impactOrder != "sequential") reject("impactOrder", "'" + impactOrder + "'", "'sequential' with method='wall', whose impacts act joint by joint");
-		if (!(tolerance >= 1e-6 && tolerance <= 1e-2)) reject("tolerance", tolerance, "from 1e-6 to 1e-2 with method='wall'");
+		if (impactOrder != "sequential") reject(*this, "impactOrder", "'" + impactOrder + "'", "'sequential' with method='wall', whose impacts act joint by joint");
+		if (!(tolerance >= 1e-6 && tolerance <= 1e-2)) reject(*this, "tolerance", tolerance, "from 1e-6 to 1e-2 with method='wall'");
 	} else if (!(tolerance > 0 && tolerance <= 1e-3)) {
-		reject("tolerance", tolerance, "above 0 and at most 1e-3");
+		reject(*this, "tolerance", tolerance, "above 0 and at most 1e-3");
 	}
-	if (!(mergedClosing >= 0 && mergedClosing <= 1e-3)) reject("mergedClosing", mergedClosing, "from 0 to 1e-3");
-	if (mostEvents < 1) reject("mostEvents", mostEvents, "at least 1");
+	if (!(mergedClosing >= 0 && mergedClosing <= 1e-3)) reject(*this, "mergedClosing", mergedClosing, "from 0 to 1e-3");
+	if (mostEvents < 1) reject(*this, "mostEvents", mostEvents, "at least 1");
 	sequential = impactOrder == "sequential";
 	wall = method == "wall";
 }
@@ -108,9 +95,15 @@ vector<const Body*> MoreauJeanIntegrator::blocks() const
 void MoreauJeanIntegrator::start()
 {
 	beginMotions();
-	if (chosenModel.empty()) choose();
-	checkPlane();
-	build(memory.values);
+	const Choice before { chosenModel, reason, along };
+	take(chosen());
+	if (chosenModel == "planar") checkPlane(along);
+	try {
+		build(memory.values);
+	} catch (const std::invalid_argument&) { // a script may put the scene right
+		take(before);
+		throw;
+	}
 }
 
 void MoreauJeanIntegrator::beginMotions()
@@ -150,19 +143,13 @@ void MoreauJeanIntegrator::renew()
 {
 	beginMotions();
 	sceneOf(memory).dropErased();
-	checkPlane();
+	if (chosenModel == "planar") checkPlane(along);
 	build(memory.run->pack());
-}
-
-void MoreauJeanIntegrator::checkPlane() const
-{
-	const string obstacle = chosenModel == "planar" ? whyNotPlanar(Coordinates<Plane>(along).normal) : "";
-	if (!obstacle.empty()) throw LeavesPlane(obstacle);
 }
 
 void MoreauJeanIntegrator::build(const vector<Real>& remembered)
 {
-	checkBlocks();
+	checkBlocks(chosen());
 	checkEngines();
 	const PythonLock lock; // the last hold on an erased body may be given up, which Python has made
 	memory.run = chosenModel == "planar" ? makeScene<Plane>(*this, motionEngines(), remembered) : makeScene<Space>(*this, motionEngines(), remembered);
@@ -174,13 +161,13 @@ void MoreauJeanIntegrator::build(const vector<Real>& remembered)
 	taken = living;
 }
 
-void MoreauJeanIntegrator::checkBlocks() const
+void MoreauJeanIntegrator::checkBlocks(const Choice& choice) const
 {
 	const vector<BaseMotionEngine*> motions = motionEngines();
 	BaseMotionEngine::checkTogether(motions);
 	std::set<int> moved;
 	for (const BaseMotionEngine* motion : motions) moved.insert(motion->ids.begin(), motion->ids.end());
-	const unsigned unused = chosenModel == "planar" ? unusedInPlane(Coordinates<Plane>(along).normal) : 0;
+	const unsigned unused = choice.planar() ? unusedInPlane(Coordinates<Plane>(choice.along).normal) : 0;
 	bool free = false;
 	for (const Body* body : blocks()) {
 		checkBody(*body);
@@ -223,13 +210,14 @@ void MoreauJeanIntegrator::checkEngines()
 
 // --- plane or space ---
 
-string MoreauJeanIntegrator::whyNotPlanar(const Vector3r& normal) const
+void MoreauJeanIntegrator::checkPlane(const Vector3r& horizontal) const
 {
-	const auto across = [&](const Vector3r& v) { return std::abs(normal.dot(v)) > outOfPlane * v.norm(); };
+	const Coordinates<Plane> plane(horizontal);
+	const Vector3r& normal = plane.normal;
 	const auto all = blocks();
 	const auto first = std::find_if(all.begin(), all.end(), [](const Body* body) { return body->isDynamic(); });
-	if (first == all.end()) return "";
-	if (across(gravity)) return "gravity points out of the plane";
+	if (first == all.end()) return;
+	plane.gravity(gravity);
 	const Real depth = normal.dot((*first)->state->pos);
 	Real front = depth, back = depth; // of the free blocks
 	for (int pass : { 0, 1 }) // free blocks, then the others
@@ -240,67 +228,67 @@ string MoreauJeanIntegrator::whyNotPlanar(const Vector3r& normal) const
 			int axis;
 			local.cwiseAbs().maxCoeff(&axis);
 			const Real half = size[axis], here = normal.dot(state.pos), rounding = outOfPlane * size.minCoeff();
-			if (local.cwiseAbs().sum() - std::abs(local[axis]) > outOfPlane) return sentence("block ", body->id, " has no axis across the plane");
+			if (local.cwiseAbs().sum() - std::abs(local[axis]) > outOfPlane) throw LeavesPlane(sentence("block ", body->id, " has no axis across the plane"));
 			const bool shares = std::abs(here - depth) <= rounding;
 			if (body->isDynamic()) {
-				if (!shares) return sentence("blocks ", (*first)->id, " and ", body->id, " have different mid-planes");
+				if (!shares) throw LeavesPlane(sentence("blocks ", (*first)->id, " and ", body->id, " have different mid-planes"));
 				front = std::max(front, here + half);
 				back = std::min(back, here - half);
 			} else if (!shares && !(here + half >= front - rounding && here - half <= back + rounding)) {
-				return sentence("body ", body->id, " lies under a part of the depth only");
+				throw LeavesPlane(sentence("body ", body->id, " lies under a part of the depth only"));
 			}
-			if (across(state.vel) || state.angVel.cross(normal).norm() > outOfPlane * state.angVel.norm()) return sentence("block ", body->id, " moves out of the plane");
+			plane.velocity(state, body->id);
 		}
-	for (const BaseMotionEngine* motion : motionEngines())
-		if (across(motion->direction)) return "a motion points out of the plane";
+	for (const BaseMotionEngine* motion : motionEngines()) plane.direction(motion->direction);
 	scene->forces.sync();
 	for (const Body* body : all)
-		if (body->isDynamic() && (across(scene->forces.getForce(body->id)) || scene->forces.getTorque(body->id).cross(normal).norm() > outOfPlane * scene->forces.getTorque(body->id).norm()))
-			return sentence("a force or torque acts on block ", body->id, " out of the plane");
-	return "";
+		if (body->isDynamic()) plane.load(scene->forces.getForce(body->id), scene->forces.getTorque(body->id), body->id);
 }
 
-/// The plane is upright; its normal is an axis of every block. Of two that will do, the one nearest to `along` is taken, without one nearest to x.
-void MoreauJeanIntegrator::choose()
+void MoreauJeanIntegrator::take(const Choice& choice)
 {
-	chosenModel = "spatial";
-	reason = "asked for";
-	if (model == "spatial") return;
+	chosenModel = choice.model;
+	reason = choice.reason;
+	along = choice.along;
+}
+
+MoreauJeanIntegrator::Choice MoreauJeanIntegrator::chosen() const { return chosenModel.empty() ? choose() : Choice { chosenModel, reason, along }; }
+
+/// The plane is upright; its normal is an axis of every block. Of two that will do, the one nearest to `along` is taken, without one nearest to x.
+MoreauJeanIntegrator::Choice MoreauJeanIntegrator::choose() const
+{
+	if (model == "spatial") return { "spatial", "asked for", along };
 	const auto all = blocks();
 	const auto first = std::find_if(all.begin(), all.end(), [](const Body* body) { return body->isDynamic(); });
-	reason = "no block has a horizontal axis";
+	vector<Vector3r> normals;
 	if (first != all.end()) {
 		const Matrix3r axes = (*first)->state->ori.toRotationMatrix();
-		vector<Vector3r> normals;
 		for (int axis = 0; axis < 3; ++axis)
 			if (std::abs(axes(2, axis)) <= outOfPlane) normals.push_back(Vector3r(axes(0, axis), axes(1, axis), 0).normalized());
-		const Vector3r ahead = along.allFinite() && along.head<2>().norm() > 0 ? along : Vector3r(Vector3r::UnitX());
-		std::sort(normals.begin(), normals.end(), [&](const Vector3r& a, const Vector3r& b) { return std::abs(a.dot(ahead)) < std::abs(b.dot(ahead)); });
-		for (size_t k = 0; k < normals.size() && chosenModel != "planar"; ++k) {
-			const string obstacle = whyNotPlanar(normals[k]);
-			if (k == 0 || obstacle.empty()) reason = obstacle;
-			if (!obstacle.empty()) continue;
-			chosenModel = "planar";
-			reason = "blocks, motions and loads lie in one upright plane";
-			along = Vector3r::UnitZ().cross(normals[k]);
-			if (along.x() < 0 || (along.x() == 0 && along.y() < 0)) along = Vector3r::Zero() - along; // no -0
+	}
+	const Vector3r ahead = along.allFinite() && along.head<2>().norm() > 0 ? along : Vector3r(Vector3r::UnitX());
+	std::sort(normals.begin(), normals.end(), [&](const Vector3r& a, const Vector3r& b) { return std::abs(a.dot(ahead)) < std::abs(b.dot(ahead)); });
+	string whyNot = "no block has a horizontal axis";
+	for (size_t k = 0; k < normals.size(); ++k) {
+		Vector3r horizontal = Vector3r::UnitZ().cross(normals[k]);
+		if (horizontal.x() < 0 || (horizontal.x() == 0 && horizontal.y() < 0)) horizontal = Vector3r::Zero() - horizontal; // no -0
+		try {
+			checkPlane(horizontal);
+			return { "planar", "blocks, motions and loads lie in one upright plane", horizontal };
+		} catch (const LeavesPlane& obstacle) {
+			if (k == 0) whyNot = obstacle.what();
 		}
 	}
-	if (model == "planar" && chosenModel != "planar") {
-		chosenModel.clear();
-		throw std::invalid_argument("MoreauJeanIntegrator.model = 'planar' is not allowed for this scene: " + reason + ".");
-	}
+	if (model == "planar") throw std::invalid_argument("MoreauJeanIntegrator.model = 'planar' is not allowed for this scene: " + whyNot + ".");
+	return { "spatial", whyNot, along };
 }
 
 string MoreauJeanIntegrator::choice()
 {
 	scene = Omega::instance().getScene().get();
-	const std::tuple before(chosenModel, reason, along);
-	choose();
-	checkBlocks();
-	const string result = chosenModel + ": " + reason;
-	std::tie(chosenModel, reason, along) = before;
-	return result;
+	const Choice choice = choose();
+	checkBlocks(choice);
+	return choice.model + ": " + choice.reason;
 }
 
 // --- time step ---
@@ -308,10 +296,8 @@ string MoreauJeanIntegrator::choice()
 Real MoreauJeanIntegrator::largestTimeStep()
 {
 	scene = Omega::instance().getScene().get();
-	const std::tuple before(chosenModel, reason, along);
-	if (chosenModel.empty()) choose();
-	const Vector3r across = chosenModel == "planar" ? Coordinates<Plane>(along).normal : Vector3r(Vector3r::Zero());
-	std::tie(chosenModel, reason, along) = before;
+	const Choice choice = chosen();
+	const Vector3r across = choice.planar() ? Coordinates<Plane>(choice.along).normal : Vector3r(Vector3r::Zero());
 	Real smallest = std::numeric_limits<Real>::infinity(); // R^2, in the plane without the depth
 	for (const Body* body : blocks()) {
 		if (!body->isDynamic()) continue;
@@ -337,7 +323,7 @@ void MoreauJeanIntegrator::checkTimeStep()
 
 void MoreauJeanIntegrator::action()
 {
-	if (!gravity.allFinite()) reject("gravity", gravity.transpose(), "three finite numbers in m/s^2");
+	if (!gravity.allFinite()) reject(*this, "gravity", gravity.transpose(), "three finite numbers in m/s^2");
 	if (memory.run && !sceneOf(memory).isOf(*scene)) leaveScene();
 	const masonry::rigid::StepReport report = stepRun();
 	for (const auto& motion : taken) static_cast<BaseMotionEngine&>(*motion).haveStepped();

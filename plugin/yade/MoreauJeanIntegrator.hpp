@@ -89,24 +89,34 @@ public:
 private:
 	template <class K> friend class RigidScene;
 
+	struct Choice {
+		string   model, reason;
+		Vector3r along;
+
+		bool planar() const { return model == "planar"; }
+	};
+
 	void start();
 	void renew();
 	bool outdated() const;
 	void beginMotions();
 	void leaveScene();
-	void choose();
+	/// What the run has; before the first step, what that would choose. Throws std::invalid_argument where `model` does not fit the scene.
+	Choice chosen() const;
+	Choice choose() const;
+	void take(const Choice&);
 	void build(const vector<Real>& remembered);
-	void checkBlocks() const;
+	void checkBlocks(const Choice&) const;
 	void checkEngines();
 	void checkTimeStep();
-	void checkPlane() const;
+	/// Throws LeavesPlane unless blocks, motions and loads lie in the plane along this horizontal direction.
+	void checkPlane(const Vector3r& horizontal) const;
 	masonry::rigid::StepReport stepRun();
 	void count(const masonry::rigid::StepReport&);
 	void showEnergy();
 	vector<shared_ptr<Engine>> livingMotions() const; // those that are not dead
 	vector<BaseMotionEngine*> motionEngines() const;  // the same
 	vector<const Body*> blocks() const;
-	string whyNotPlanar(const Vector3r& normal) const;
 
 	vector<shared_ptr<Engine>> taken; // motions that the run has taken over
 	Real checkedTimeStep = NaN;

@@ -1,35 +1,25 @@
 #include "PulseTrainEngine.hpp"
+#include "sentence.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <core/Scene.hpp>
 #include <lib/factory/ClassFactory.hpp>
 #include <limits>
-#include <sstream>
-#include <stdexcept>
 
 namespace yade {
 
 YADE_PLUGIN((PulseTrainEngine));
 
-namespace {
-	template <class Value> [[noreturn]] void reject(const char* attribute, const Value& value, const char* allowed)
-	{
-		std::ostringstream text;
-		text << "PulseTrainEngine." << attribute << " = " << value << " is not allowed: it must be " << allowed << ".";
-		throw std::invalid_argument(text.str());
-	}
-} // namespace
-
 void PulseTrainEngine::postLoad(PulseTrainEngine&)
 {
-	if (std::isinf(impulse)) reject("impulse", impulse, "a finite velocity jump in m/s");
+	if (std::isinf(impulse)) reject(*this, "impulse", impulse, "a finite velocity jump in m/s");
 	for (size_t i = 0; i < times.size(); ++i) {
-		if (!(std::isfinite(times[i]) && times[i] >= 0)) reject("times", times[i], "a list of finite times >= 0 in s");
-		if (i > 0 && !(times[i] > times[i - 1])) reject("times", times[i], "a list of increasing times");
+		if (!(std::isfinite(times[i]) && times[i] >= 0)) reject(*this, "times", times[i], "a list of finite times >= 0 in s");
+		if (i > 0 && !(times[i] > times[i - 1])) reject(*this, "times", times[i], "a list of increasing times");
 	}
-	if (halfCycles < -1 || halfCycles == 0) reject("halfCycles", halfCycles, "a number >= 1, or -1 for a train without end");
-	if (!(duration >= 0) || std::isinf(duration)) reject("duration", duration, "a finite time >= 0 in s");
+	if (halfCycles < -1 || halfCycles == 0) reject(*this, "halfCycles", halfCycles, "a number >= 1, or -1 for a train without end");
+	if (!(duration >= 0) || std::isinf(duration)) reject(*this, "duration", duration, "a finite time >= 0 in s");
 	unit = { masonry::pulseShapeFromName(shape), duration };
 	past.clear();
 	for (size_t k = 0; k < pulseTimes.size(); ++k) addPast(k);
@@ -133,16 +123,13 @@ vector<BaseJump> PulseTrainEngine::takeJumps(Real sceneTime, const vector<StepIm
 void PulseTrainEngine::check() const
 {
 	BaseMotionEngine::check();
-	if (!(std::abs(impulse) <= 1e6)) reject("impulse", impulse, "given: the velocity jump I, at most 1e6 m/s");
-	if (resonant() == !times.empty()) {
-		std::ostringstream text;
-		text << "PulseTrainEngine.times has " << times.size() << " entries and resonantBlock = " << resonantBlock
-		     << ": times must be given for a scheduled train, or resonantBlock for a resonant one, not both and not neither.";
-		throw std::invalid_argument(text.str());
-	}
-	if ((shape != "dirac") != (duration > 0)) reject("duration", duration, "positive for a finite shape and 0 for 'dirac'");
+	if (!(std::abs(impulse) <= 1e6)) reject(*this, "impulse", impulse, "given: the velocity jump I, at most 1e6 m/s");
+	if (resonant() == !times.empty())
+		throw std::invalid_argument(sentence("PulseTrainEngine.times has ", times.size(), " entries and resonantBlock = ", resonantBlock,
+			": times must be given for a scheduled train, or resonantBlock for a resonant one, not both and not neither."));
+	if ((shape != "dirac") != (duration > 0)) reject(*this, "duration", duration, "positive for a finite shape and 0 for 'dirac'");
 	if (resonant() && !(scene->bodies->exists(resonantBlock) && (*scene->bodies)[resonantBlock]->isDynamic()))
-		reject("resonantBlock", resonantBlock, "the id of a free block in O.bodies");
+		reject(*this, "resonantBlock", resonantBlock, "the id of a free block in O.bodies");
 }
 
 Real PulseTrainEngine::residualDisplacement() const { return displacement(Omega::instance().getScene()->time - start); }

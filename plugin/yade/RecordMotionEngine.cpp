@@ -1,10 +1,9 @@
 #include "RecordMotionEngine.hpp"
+#include "sentence.hpp"
 
 #include <cmath>
 #include <lib/factory/ClassFactory.hpp>
 #include <limits>
-#include <sstream>
-#include <stdexcept>
 
 namespace yade {
 
@@ -14,9 +13,7 @@ namespace {
 	void requireFinite(const char* attribute, Real value, bool positive)
 	{
 		if (std::isfinite(value) && (value > 0 || !positive)) return;
-		std::ostringstream text;
-		text << "RecordMotionEngine." << attribute << " has " << value << ": it must be finite" << (positive ? " and positive." : ".");
-		throw std::invalid_argument(text.str());
+		throw std::invalid_argument(sentence("RecordMotionEngine.", attribute, " has ", value, ": it must be finite", positive ? " and positive." : "."));
 	}
 } // namespace
 
@@ -41,11 +38,8 @@ void RecordMotionEngine::check() const
 	BaseMotionEngine::check();
 	if (samples.empty()) throw std::invalid_argument("RecordMotionEngine.samples is empty: it must hold at least two accelerations in m/s^2.");
 	for (Real sample : samples)
-		if (!(std::abs(sample * scale) <= 1e6)) {
-			std::ostringstream text;
-			text << "RecordMotionEngine.samples has " << sample << ", times scale = " << scale << ": accelerations must be at most 1e6 m/s^2.";
-			throw std::invalid_argument(text.str());
-		}
+		if (!(std::abs(sample * scale) <= 1e6))
+			throw std::invalid_argument(sentence("RecordMotionEngine.samples has ", sample, ", times scale = ", scale, ": accelerations must be at most 1e6 m/s^2."));
 }
 
 } // namespace yade

@@ -6,6 +6,7 @@
 #include "checked_body.hpp"
 #include "core_state.hpp"
 #include "python_lock.hpp"
+#include "sentence.hpp"
 
 #include "contact/box_box.hpp"
 #include "dynamics/compliant/time_step.hpp"
@@ -17,8 +18,6 @@
 #include <core/Scene.hpp>
 #include <lib/factory/ClassFactory.hpp>
 #include <pkg/common/Box.hpp>
-#include <sstream>
-#include <stdexcept>
 
 namespace yade {
 
@@ -45,14 +44,11 @@ namespace {
 		return result;
 	}
 
-	[[noreturn]] void fail(const std::ostringstream& text) { throw std::runtime_error(text.str()); }
-
 } // namespace
 
 void RockingJointEngine::postLoad(RockingJointEngine&)
 {
-	if (impactOrder != "simultaneous" && impactOrder != "sequential")
-		throw std::invalid_argument("RockingJointEngine.impactOrder = '" + impactOrder + "' is not allowed: it must be 'simultaneous' or 'sequential'.");
+	if (impactOrder != "simultaneous" && impactOrder != "sequential") reject(*this, "impactOrder", "'" + impactOrder + "'", "'simultaneous' or 'sequential'");
 }
 
 void RockingJointEngine::checkScene()
@@ -67,17 +63,13 @@ void RockingJointEngine::checkScene()
 	gravity = integrator.gravity;
 	for (int id : ids) {
 		const Body& body = *(*scene->bodies)[id];
-		std::ostringstream text;
-		if (body.isDynamic() && body.state->isDamped && integrator.damping != 0) {
-			text << "NewtonIntegrator.damping = " << integrator.damping << " would damp the rocking of block " << id
-			     << " behind the back of its restitution: it must be 0 (or set O.bodies[" << id << "].state.isDamped=False).";
-			fail(text);
-		}
+		if (!body.isDynamic()) continue;
+		if (body.state->isDamped && integrator.damping != 0)
+			throw std::runtime_error(sentence("NewtonIntegrator.damping = ", integrator.damping, " would damp the rocking of block ", id,
+				" behind the back of its restitution: it must be 0 (or set O.bodies[", id, "].state.isDamped=False)."));
 		const Vector3r& inertia = body.state->inertia;
-		if (body.isDynamic() && !(body.flags & Body::FLAG_ASPHERICAL) && inertia.maxCoeff() > inertia.minCoeff()) {
-			text << "O.bodies[" << id << "].aspherical = False is not allowed for a block: set it to True (dem.block() does).";
-			fail(text);
-		}
+		if (!(body.flags & Body::FLAG_ASPHERICAL) && inertia.maxCoeff() > inertia.minCoeff())
+			throw std::runtime_error(sentence("O.bodies[", id, "].aspherical = False is not allowed for a block: set it to True (dem.block() does)."));
 	}
 }
 
@@ -104,13 +96,9 @@ vector<RockingJointEngine::Pair> RockingJointEngine::gather()
 	for (const Interaction* interaction : found) {
 		auto& geom = static_cast<BlockGeom&>(*interaction->geom);
 		auto& phys = static_cast<BlockPhys&>(*interaction->phys);
-		if (!(phys.normalStiffness > 0 && phys.shearStiffness > 0)) {
-			std::ostringstream text;
-			text << "The joint of bodies " << interaction->id1 << " and " << interaction->id2 << " has normalStiffness = " << phys.normalStiffness
-			     << ", shearStiffness = " << phys.shearStiffness
-			     << ": both must be positive, in Pa/m. Give them to BlockMat, or let dem.engines(model='compliant') choose.";
-			fail(text);
-		}
+		if (!(phys.normalStiffness > 0 && phys.shearStiffness > 0))
+			throw std::runtime_error(sentence("The joint of bodies ", interaction->id1, " and ", interaction->id2, " has normalStiffness = ", phys.normalStiffness,
+				", shearStiffness = ", phys.shearStiffness, ": both must be positive, in Pa/m. Give them to BlockMat, or let dem.engines(model='compliant') choose."));
 		phys.check(interaction->id1, interaction->id2);
 		masonry::JointContact contact = coreContact(*interaction, geom, phys, 0);
 		contact.body1 = index[contact.body1];
@@ -134,8 +122,9 @@ void RockingJointEngine::addExternalForces()
 
 Real RockingJointEngine::criticalTimeStep()
 {
-	if (started) return masonry::criticalTimeStep(system.bodies, system.contacts);
-	// Before the first step there are no interactions yet: every pair of boxes is looked at.
+	if (checkedTimeStep > 0) return masonry::criticalTimeStep(system.bodies, system.contacts);
+	// Before the first step there are no interactions yet, and after loading they have no patches: every pair of boxes is looked at.
+	scene = Omega::instance().getScene().get();
 	vector<masonry::JointContact> contacts;
 	gather();
 	Ip2_BlockMat_BlockMat_BlockPhys law;
@@ -165,10 +154,8 @@ void RockingJointEngine::checkTimeStep()
 {
 	const Real critical = masonry::criticalTimeStep(system.bodies, system.contacts);
 	if (scene->dt > 0 && scene->dt < critical) return;
-	std::ostringstream text;
-	text << "O.dt = " << scene->dt << " s is not allowed with these joint stiffnesses: it must be positive and below " << critical
-	     << " s (a tenth of that is accurate); dem.engines() chooses one.";
-	fail(text);
+	throw std::runtime_error(sentence("O.dt = ", scene->dt, " s is not allowed with these joint stiffnesses: it must be positive and below ", critical,
+		" s (a tenth of that is accurate); dem.engines() chooses one."));
 }
 
 void RockingJointEngine::recordImpact(const masonry::ImpactRecord& record)
@@ -288,11 +275,9 @@ void RockingJointEngine::measureEnergy()
 		potential -= body.mass * gravity.dot(body.pose.position);
 	}
 	for (const auto& contact : system.contacts) elastPotential += contact.energy.elastic;
-	if (!std::isfinite(kinetic + potential + elastPotential)) {
-		std::ostringstream text;
-		text << "The simulation has diverged at t = " << scene->time << " s (kinetic energy " << kinetic << " J): take a smaller O.dt, or look for blocks that overlap.";
-		fail(text);
-	}
+	if (!std::isfinite(kinetic + potential + elastPotential))
+		throw std::runtime_error(sentence("The simulation has diverged at t = ", scene->time, " s (kinetic energy ", kinetic,
+			" J): take a smaller O.dt, or look for blocks that overlap."));
 	if (!scene->trackEnergy) return;
 	const std::pair<const char*, Real> keys[] = { { "elastPotential", elastPotential }, { "frictDissip", frictDissip },
 		{ "dampDissip", dampDissip }, { "impactDissip", impactDissip }, { "baseWork", -baseWork } };

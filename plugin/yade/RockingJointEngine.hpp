@@ -16,7 +16,7 @@ public:
 	/// Throws std::invalid_argument naming attribute, value and allowed range.
 	void postLoad(RockingJointEngine&);
 
-	/// Of the present contacts; before the first step, of all boxes that are in touch.
+	/// Of the present contacts; before the first step, and after loading, of all boxes that are in touch. s
 	Real criticalTimeStep();
 
 	// clang-format off

@@ -2,14 +2,13 @@
 #include "BlockMat.hpp"
 #include "MoreauJeanIntegrator.hpp"
 #include "RockingJointEngine.hpp"
+#include "sentence.hpp"
 
 #include <algorithm>
 #include <boost/python/handle.hpp>
 #include <core/Scene.hpp>
 #include <lib/factory/ClassFactory.hpp>
 #include <pkg/common/Box.hpp>
-#include <sstream>
-#include <stdexcept>
 
 namespace yade {
 
@@ -35,11 +34,8 @@ void WallRecorder::begin()
 			if (body && boxOf(*body) && dynamic_cast<const BlockMat*>(body->material.get())) ids.push_back(body->id);
 	blocks.clear();
 	for (int id : ids) {
-		if (!scene->bodies->exists(id) || !boxOf(*(*scene->bodies)[id])) {
-			std::ostringstream text;
-			text << "WallRecorder.ids has " << id << ": there is no such box in O.bodies.";
-			throw std::invalid_argument(text.str());
-		}
+		if (!scene->bodies->exists(id) || !boxOf(*(*scene->bodies)[id]))
+			throw std::invalid_argument(sentence("WallRecorder.ids has ", id, ": there is no such box in O.bodies."));
 		const Body& body = *(*scene->bodies)[id];
 		const Vector3r& half = boxOf(body)->extents;
 		add(blocks, half.x(), half.y(), half.z(), Real(body.isDynamic()));

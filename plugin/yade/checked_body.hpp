@@ -1,11 +1,9 @@
 #pragma once
 // What a block must be made of, for rigid and compliant joints alike.
 
+#include "sentence.hpp"
 #include <core/Body.hpp>
 #include <pkg/common/Box.hpp>
-#include <sstream>
-#include <stdexcept>
-#include <string>
 
 namespace yade {
 
@@ -17,14 +15,12 @@ inline void checkBody(const Body& body)
 	const auto check = [&](const char* attribute, const auto& values, const char* unit) {
 		for (int k = 0; k < int(values.size()); ++k) {
 			if (values[k] >= least && values[k] <= most) continue;
-			std::ostringstream text;
-			text << "O.bodies[" << body.id << "]." << attribute;
-			if (values.size() > 1) text << '[' << k << ']';
-			text << " = " << values[k] << " is not allowed for a block: it must be from " << least << " to " << most << ' ' << unit << '.';
-			throw std::invalid_argument(text.str());
+			const std::string place = values.size() > 1 ? sentence('[', k, ']') : "";
+			throw std::invalid_argument(sentence("O.bodies[", body.id, "].", attribute, place, " = ", values[k],
+				" is not allowed for a block: it must be from ", least, " to ", most, ' ', unit, '.'));
 		}
 	};
-	if (body.isClumpMember()) throw std::invalid_argument("O.bodies[" + std::to_string(body.id) + "] is a member of a clump: blocks cannot be clumped.");
+	if (body.isClumpMember()) throw std::invalid_argument(sentence("O.bodies[", body.id, "] is a member of a clump: blocks cannot be clumped."));
 	if (const auto* box = dynamic_cast<const Box*>(body.shape.get())) check("shape.extents", box->extents, "m");
 	if (!body.isDynamic()) return;
 	check("state.mass", Eigen::Matrix<Real, 1, 1>(body.state->mass), "kg");

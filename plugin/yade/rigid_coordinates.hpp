@@ -2,10 +2,9 @@
 // Where the core's plane or space lies in the scene, and how a body sits in it. No physics here.
 
 #include "dynamics/rigid/rigid_system.hpp"
+#include "sentence.hpp"
 #include <core/Body.hpp>
 #include <pkg/common/Box.hpp>
-#include <sstream>
-#include <stdexcept>
 
 namespace yade {
 
@@ -53,17 +52,30 @@ template <> struct Coordinates<Plane> {
 		return in(d);
 	}
 	Vector3r out(const masonry::Vector2& v) const { return v.x() * along + v.y() * up; }
+	/// Of block `id`. Throws LeavesPlane.
 	Plane::Velocity load(const Vector3r& force, const Vector3r& torque, int id) const
 	{
+		if (leaves(force, torque)) throw LeavesPlane(sentence("a force or torque acts on block ", id, " out of the plane"));
+		return in(force, torque);
+	}
+	/// Of block `id`. Throws LeavesPlane.
+	Plane::Velocity velocity(const State& state, int id) const
+	{
+		if (leaves(state.vel, state.angVel)) throw LeavesPlane(sentence("block ", id, " moves out of the plane"));
+		return in(state.vel, state.angVel);
+	}
+
+private:
+	bool leaves(const Vector3r& linear, const Vector3r& angular) const
+	{
 		const auto share = [](Real square, const Vector3r& of) { return square > outOfPlane * outOfPlane * of.squaredNorm(); };
-		const Real across = normal.dot(force);
-		if (share(across * across, force) || share(torque.cross(normal).squaredNorm(), torque)) {
-			std::ostringstream text;
-			text << "a force or torque acts on block " << id << " out of the plane";
-			throw LeavesPlane(text.str());
-		}
+		const Real across = normal.dot(linear);
+		return share(across * across, linear) || share(angular.cross(normal).squaredNorm(), angular);
+	}
+	Plane::Velocity in(const Vector3r& linear, const Vector3r& angular) const
+	{
 		Plane::Velocity result;
-		result << in(force), normal.dot(torque);
+		result << in(linear), normal.dot(angular);
 		return result;
 	}
 };
@@ -114,15 +126,11 @@ template <> struct Seat<Plane> {
 		const Quaternionr turn = state.ori * reference.conjugate();
 		const Real        about = turn.vec().dot(c.normal);
 		const Vector3r    astray = turn.vec() - about * c.normal;
-		const bool        moved = std::abs(c.normal.dot(state.pos) - depth) > outOfPlane * size || astray.norm() > outOfPlane;
-		if (moved || std::abs(c.normal.dot(state.vel)) > outOfPlane * state.vel.norm() || state.angVel.cross(c.normal).norm() > outOfPlane * state.angVel.norm()) {
-			std::ostringstream text;
-			text << "block " << id << (moved ? " has been moved" : " moves") << " out of the plane";
-			throw LeavesPlane(text.str());
-		}
+		if (std::abs(c.normal.dot(state.pos) - depth) > outOfPlane * size || astray.norm() > outOfPlane)
+			throw LeavesPlane(sentence("block ", id, " has been moved out of the plane"));
+		body.velocity = c.velocity(state, id);
 		body.pose.position = c.in(state.pos);
 		body.pose.setAngle(2 * (turn.w() < 0 ? std::atan2(-about, -turn.w()) : std::atan2(about, turn.w())));
-		body.velocity << c.in(state.vel), c.normal.dot(state.angVel);
 	}
 	/// To all at once: read back while it is still being written, a number keeps the processor waiting.
 	template <class... To> void tell(const Coordinates<Plane>& c, const masonry::rigid::RigidBody<Plane>& body, To&... to) const

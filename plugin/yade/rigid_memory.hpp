@@ -70,8 +70,6 @@ private:
 namespace memory {
 	using namespace masonry::rigid;
 
-	template <class Flow> void pass(Flow& f, PlanePose& p) { f(p.position), f(p.angle), f(p.cosine), f(p.sine); }
-	template <class Flow> void pass(Flow& f, masonry::Pose& p) { f(p.position), f(p.orientation.coeffs()); }
 	template <class Flow> void pass(Flow& f, PlaneFeature& p) { f(p.vertexBody), f(p.vertex), f(p.face); }
 	template <class Flow> void pass(Flow& f, SpaceFeature& p) { f(p.kind), f(p.first), f(p.second); }
 	template <class Flow> void pass(Flow& f, PlaneMemory& m)
@@ -87,7 +85,7 @@ namespace memory {
 	// points are known again that go to other features.
 	template <class Flow, class K> void pass(Flow& f, RigidBody<K>& b)
 	{
-		f(b.halfSize), pass(f, b.pose), f(b.velocity), f(b.increment), f(b.fresh), f(b.prescribed), f(b.drive), f(b.origin);
+		f(b.halfSize), passPose(f, b.pose), f(b.velocity), f(b.increment), f(b.fresh), f(b.prescribed), f(b.drive), f(b.origin);
 	}
 	template <class Flow, class K> void pass(Flow& f, ContactPair<K>& p)
 	{

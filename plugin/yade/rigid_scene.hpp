@@ -435,19 +435,17 @@ private:
 	{
 		const auto &body1 = system.bodies[pair.body1], &body2 = system.bodies[pair.body2];
 		const Real  rest = masonry::tolerance::restSpeed * std::sqrt(integrator.gravity.norm() * length);
-		masonry::rigid::FoundPoints<K> found;
 		pair.memory = {};
-		pair.size = 0;
-		if (!K::findPoints(body1.halfSize, body1.pose, body2.halfSize, body2.pose, std::numeric_limits<double>::infinity(), pair.memory, found)) return;
+		const auto found = masonry::rigid::findPoints(body1, body2, pair.memory);
 		pair.size = found.size;
+		if (found.size == 0) return;
 		pair.face1 = found.face1;
 		pair.face2 = found.face2;
 		for (int i = 0; i < found.size; ++i) {
 			auto& point = pair.points[i];
 			point = {};
 			point.feature = found.features[i];
-			point.frame = K::frame(point.feature, body1.halfSize, body1.pose, body2.halfSize, body2.pose);
-			point.gap = point.frame.gap;
+			masonry::rigid::locate(point, body1, body2);
 			const auto speed = masonry::rigid::relativeVelocity(point.frame, body1.pose.position, body1.velocity, body2.pose.position, body2.velocity);
 			point.closed = point.gap <= integrator.mergedClosing * length && speed[0] >= -rest;
 			if (placed && point.gap < -mostOverlap * length) refuseOverlap(pair, -point.gap);
@@ -456,10 +454,8 @@ private:
 
 	[[noreturn]] void refuseOverlap(const Pair& pair, Real depth) const
 	{
-		std::ostringstream text;
-		text << "Blocks " << kept.ids[pair.body1] << " and " << kept.ids[pair.body2] << " overlap by " << depth
-		     << " m: rigid blocks must be apart or just touch when the run starts or a script moves them.";
-		throw std::runtime_error(text.str());
+		throw std::runtime_error(sentence("Blocks ", kept.ids[pair.body1], " and ", kept.ids[pair.body2], " overlap by ", depth,
+			" m: rigid blocks must be apart or just touch when the run starts or a script moves them."));
 	}
 
 	void takeLaws()

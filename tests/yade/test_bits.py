@@ -89,6 +89,18 @@ with tempfile.TemporaryDirectory() as folder:
             run_to(impact + 5000)
             assert bits() == wanted, (ending, stop - impact)
 
+# The critical time step of the joints is known after loading, before the first step, too.
+def critical_step():
+    return next(e for e in O.engines if isinstance(e, dem.RockingJointEngine)).criticalTimeStep()
+
+
+pulsed()
+run_to(impact)
+known = critical_step()
+O.saveTmp()
+O.loadTmp()
+assert np.isclose(critical_step(), known, rtol=1e-6), (critical_step(), known)
+
 # Any number of threads; here, after other scenes, one.
 own = wall_hash()
 output = subprocess.run(["yade", "-j2", "-n", "-x", os.path.abspath(sys.argv[0])], env={**os.environ, "MASONRY_WALL_HASH": "1"},

@@ -29,6 +29,19 @@ O.reset()
 dem.base((1, 1, 1), stone())
 refuses(rigid_engines, "no free block", "dem.block()")
 
+# What has been refused leaves no choice of the model behind.
+for ask in (dem.MoreauJeanIntegrator.choice, lambda _: O.step()):
+    O.reset()
+    dem.base((1, 1, 1), stone())
+    engine = dem.MoreauJeanIntegrator()
+    O.engines = [engine]
+    refuses(lambda: ask(engine), "no free block", kind=(RuntimeError, ValueError))
+    one_block(5)
+    O.engines = [engine]
+    O.dt = 0.2 * engine.largestTimeStep
+    O.step()
+    assert engine.chosenModel == "planar", engine.reason
+
 
 def scene(**options):
     ids = one_block(5)

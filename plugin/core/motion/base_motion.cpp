@@ -72,14 +72,6 @@ const BaseMotion::Piece& BaseMotion::pieceAt(double t) const
 	return *(next - 1);
 }
 
-std::vector<double> BaseMotion::kinks() const
-{
-	std::vector<double> times;
-	for (auto piece = pieces_.begin() + 1; piece != pieces_.end(); ++piece)
-		times.push_back(piece->start);
-	return times;
-}
-
 void BaseMotion::append(Piece piece)
 {
 	const Piece& last = pieces_.back();

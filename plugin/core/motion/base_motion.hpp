@@ -46,7 +46,6 @@ public:
 	// In order of time; the first starts at -infinity, the last never ends.
 	const std::vector<Piece>& pieces() const { return pieces_; }
 	const Piece& pieceAt(double t) const;
-	std::vector<double> kinks() const;
 
 	// Adds the next piece (its velocity and displacement are computed here). Its start must not precede the last one's.
 	void append(Piece piece);

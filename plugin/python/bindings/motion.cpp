@@ -72,13 +72,16 @@ void exposeMotion()
 	py::class_<Motions>("Motions", "Base motions, one a case or one for all", py::no_init)
 	    .def("values", values, args("t"), "acceleration, velocity, displacement at times t, one row a motion")
 	    .def_readonly("size", &Motions::size);
-	py::def("none", none);
-	py::def("resonant", resonant, args("impulse", "half_cycles"));
-	py::def("pulses", pulses, args("impulse", "times", "assembly", "shape", "duration"));
-	py::def("rectangular", rectangular, args("amplitude", "duration"));
-	py::def("half_sine", halfSine, args("amplitude", "duration"));
-	py::def("sine", sine, args("amplitude", "frequency", "cycles"));
-	py::def("record", record, args("dt", "acceleration", "scale", "baseline"));
+	py::def("none", none, "a base at rest");
+	py::def("resonant", resonant, args("impulse", "half_cycles"),
+	        "jumps I, -2I, +2I, ... (m/s), each right after an impact; half_cycles -1: without end");
+	py::def("pulses", pulses, args("impulse", "times", "assembly", "shape", "duration"),
+	        "jumps I, -2I, +2I, ... (m/s) at times (s), each spread as the shape says over the duration (s); assembly: the last is I");
+	py::def("rectangular", rectangular, args("amplitude", "duration"), "constant acceleration (m/s^2) over the duration (s)");
+	py::def("half_sine", halfSine, args("amplitude", "duration"), "half a sine (m/s^2) over the duration (s)");
+	py::def("sine", sine, args("amplitude", "frequency", "cycles"), "sine (m/s^2, Hz); cycles need not be whole");
+	py::def("record", record, args("dt", "acceleration", "scale", "baseline"),
+	        "samples (m/s^2) dt (s) apart, times scale, less the baseline");
 }
 
 } // namespace masonry::python

@@ -65,7 +65,7 @@ void postLoad(T&)
 }
 
 namespace abi {
-/// One attribute, as handed to the visitors of Plugin.hpp. The flags are part of the type: what is not saved
+/// One attribute, as handed to the visitors of plugin_class.hpp. The flags are part of the type: what is not saved
 /// needs no archive, and what is hidden no converter.
 template <class Class, class T, int Flags>
 struct Attribute {
@@ -157,7 +157,7 @@ public:
 
 namespace yade {
 namespace abi {
-/// Writes or reads the base object and the attributes (Plugin.hpp).
+/// Writes or reads the base object and the attributes (plugin_class.hpp).
 template <class Archive, class Class>
 void archiveObject(Archive&, Class&);
 } // namespace abi

@@ -95,10 +95,8 @@ namespace {
 	std::vector<ImpulsePoint> impulsePoints(const JointSystem& s, const std::vector<HeldPoint>& points)
 	{
 		std::vector<ImpulsePoint> rows;
-		for (const HeldPoint& p : points) {
-			const JointContact& contact = s.contacts[p.contact];
-			rows.push_back({ contact.body1, contact.body2, contact.position(p.point), contact.patch.normal, contact.law.friction });
-		}
+		for (const HeldPoint& p : points)
+			rows.push_back(impulsePoint(s.contacts[p.contact], p.point));
 		return rows;
 	}
 
@@ -111,10 +109,7 @@ namespace {
 	RockingImpact closingImpact(const JointSystem& s, const Joint& joint, const Closing& closing, const std::vector<HeldPoint>& loadedPoints)
 	{
 		RockingImpact impact;
-		const auto    add = [&](int c, int i) {
-            const JointContact& contact = s.contacts[c];
-            impact.points.push_back({ contact.body1, contact.body2, contact.position(i), contact.patch.normal, contact.law.friction });
-		};
+		const auto    add = [&](int c, int i) { impact.points.push_back(impulsePoint(s.contacts[c], i)); };
 		for (const PointRef& p : closing.points)
 			add(p.contact, p.point);
 		for (const HeldPoint& p : loadedPoints)

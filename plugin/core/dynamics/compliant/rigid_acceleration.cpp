@@ -25,7 +25,7 @@ RigidAcceleration rigidAcceleration(const std::vector<Body>& bodies, const std::
             const Vector3& w = bodies[b].angularVelocity;
             return Vector3(w.cross(w.cross(contact.position(held.point) - bodies[b].pose.position)));
 		};
-		ImpulsePoint row { contact.body1, contact.body2, contact.position(held.point), contact.patch.normal, contact.law.friction };
+		ImpulsePoint row = impulsePoint(contact, held.point);
 		row.bias = centripetal(contact.body2) - centripetal(contact.body1);
 		rows.push_back(row);
 	}

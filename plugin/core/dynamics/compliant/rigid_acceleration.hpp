@@ -17,6 +17,12 @@ struct HeldPoint {
 	Vector3 force;          // on body 2, N
 };
 
+// Of a contact at its point i.
+inline ImpulsePoint impulsePoint(const JointContact& contact, int i)
+{
+	return { contact.body1, contact.body2, contact.position(i), contact.patch.normal, contact.law.friction };
+}
+
 struct RigidAcceleration {
 	std::vector<Vector3>   linear, angular; // per body, m/s^2 and rad/s^2
 	std::vector<HeldPoint> points;

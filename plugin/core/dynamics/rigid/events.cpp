@@ -29,10 +29,8 @@ namespace {
 
 	template <class K> Relative<K> atStart(const RigidSystem<K>& s, PointRef ref)
 	{
-		const auto& pair = s.pairs[ref.pair];
-		const auto &body1 = s.bodies[pair.body1], &body2 = s.bodies[pair.body2];
-		const auto  u = relativeVelocity(pair.points[ref.point].frame, body1.pose.position, body1.velocity, body2.pose.position, body2.velocity);
-		return { pair.points[ref.point].gap, u[0], u.template tail<K::rows - 1>() };
+		const auto u = relativeVelocity(s, ref);
+		return { s.pairs[ref.pair].points[ref.point].gap, u[0], u.template tail<K::rows - 1>() };
 	}
 
 	template <class K> Relative<K> atEnd(const RigidSystem<K>& s, const SmoothStep<K>& step, PointRef ref)
@@ -45,11 +43,6 @@ namespace {
 	template <class K> double slipOn(const RigidSystem<K>& s, const SmoothStep<K>& step, PointRef ref)
 	{
 		return atStart(s, ref).slip.normalized().dot(atEnd(s, step, ref).slip);
-	}
-
-	bool contains(const std::vector<PointRef>& list, PointRef ref)
-	{
-		return std::any_of(list.begin(), list.end(), [&](const PointRef& p) { return p.pair == ref.pair && p.point == ref.point; });
 	}
 
 } // namespace

@@ -103,19 +103,18 @@ template <class K> struct ImpactStage<K>::Builder {
 	}
 
 	// Of four corners three carry, and round-off may have opened the fourth.
-	bool touches(const ContactPair<K>& pair, const ContactPoint<K>& point) const
+	bool touches(PointRef ref) const
 	{
+		const ContactPoint<K>& point = s.pairs[ref.pair].points[ref.point];
 		if (point.closed || point.gap > s.settings.merged * scale::length(s)) return point.closed;
-		const auto &body1 = s.bodies[pair.body1], &body2 = s.bodies[pair.body2];
-		const double rate = relativeVelocity(point.frame, body1.pose.position, body1.velocity, body2.pose.position, body2.velocity)[0];
-		return std::abs(rate) <= tolerance::restSpeed * std::sqrt(scale::acceleration(s) * scale::length(s));
+		return std::abs(relativeVelocity(s, ref)[0]) <= tolerance::restSpeed * std::sqrt(scale::acceleration(s) * scale::length(s));
 	}
 
 	template <class Take> void forTouching(Take take)
 	{
 		for (int c = 0; c < int(s.pairs.size()); ++c)
 			for (int i = 0; i < s.pairs[c].size; ++i)
-				if (touches(s.pairs[c], s.pairs[c].points[i])) take(PointRef { c, i });
+				if (touches({ c, i })) take(PointRef { c, i });
 	}
 
 	void addJoint(const JointKey& key, const std::vector<PointRef>& closing)
@@ -158,11 +157,6 @@ template <class K> struct ImpactStage<K>::Builder {
 		}
 		stage.impact.joints.push_back(joint);
 	}
-
-	bool has(PointRef ref) const
-	{
-		return std::any_of(stage.refs.begin(), stage.refs.end(), [&](const PointRef& p) { return p.pair == ref.pair && p.point == ref.point; });
-	}
 };
 
 template <class K> void ImpactStage<K>::gather(const RigidSystem<K>& s, const std::vector<PointRef>& closing)
@@ -184,9 +178,9 @@ template <class K> void ImpactStage<K>::gather(const RigidSystem<K>& s, const st
 		if (first && key.block >= 0) builder.addJoint(key, closing);
 	}
 	for (PointRef ref : closing) // head joints
-		if (!builder.has(ref)) builder.add(ref);
+		if (!contains(refs, ref)) builder.add(ref);
 	builder.forTouching([&](PointRef ref) {
-		if (!builder.has(ref)) builder.add(ref);
+		if (!contains(refs, ref)) builder.add(ref);
 	});
 }
 
@@ -197,10 +191,8 @@ template <class K> void ImpactStage<K>::settle(RigidSystem<K>& s)
 		if (!s.bodies[b].prescribed) takeVelocity(bodies[b], s.bodies[b]);
 	const double still = tolerance::rigid::parting * std::sqrt(scale::acceleration(s) * scale::length(s)) * tolerance::restSpeed;
 	for (size_t k = 0; k < refs.size(); ++k) {
-		ContactPair<K>&  pair = s.pairs[refs[k].pair];
-		ContactPoint<K>& point = pair.points[refs[k].point];
-		const auto &     body1 = s.bodies[pair.body1], &body2 = s.bodies[pair.body2];
-		const auto       u = relativeVelocity(point.frame, body1.pose.position, body1.velocity, body2.pose.position, body2.velocity);
+		ContactPoint<K>& point = s.pairs[refs[k].pair].points[refs[k].point];
+		const auto       u = relativeVelocity(s, refs[k]);
 		point.closed = u[0] <= still;
 		point.sliding = point.closed && u.template tail<K::rows - 1>().norm() > still;
 	}

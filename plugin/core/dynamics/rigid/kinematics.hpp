@@ -51,6 +51,18 @@ struct PlanePose {
 	Vector2 toLocal(const Vector2& global) const { return rotateBack(global - position); }
 };
 
+// Number by number, to be kept or found again: f(number).
+template <class Flow>
+void passPose(Flow& f, PlanePose& pose)
+{
+	f(pose.position), f(pose.angle), f(pose.cosine), f(pose.sine);
+}
+template <class Flow>
+void passPose(Flow& f, Pose& pose)
+{
+	f(pose.position), f(pose.orientation.coeffs());
+}
+
 // Where a vertex of one body meets a face of the other. Vertex: bits 0, 1 set where along, up is positive; face = 2 axis +
 // (1 if it looks along +axis).
 struct PlaneFeature {

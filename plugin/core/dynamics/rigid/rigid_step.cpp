@@ -37,12 +37,6 @@ template <class K> StepReport RigidStep<K>::advance(RigidSystem<K>& s, double dt
 
 namespace {
 
-	template <class K> bool sameFeatures(const ContactPair<K>& pair, const FoundPoints<K>& found)
-	{
-		const auto same = [](const auto& feature, const ContactPoint<K>& point) { return feature == point.feature; };
-		return found.size == pair.size && std::equal(found.features.begin(), found.features.begin() + found.size, pair.points.begin(), same);
-	}
-
 	// A point that was there before keeps its state, and so does one that another feature of the same place takes over from.
 	template <class K> void takeOver(const ContactPair<K>& before, double samePlace, ContactPoint<K>& point)
 	{
@@ -64,11 +58,9 @@ template <class K> void RigidStep<K>::findContacts(RigidSystem<K>& s)
 {
 	const double touching = s.settings.merged * step.scales.length, samePlace = 2 * tolerance::contact::vertexReach * step.scales.length;
 	for (ContactPair<K>& pair : s.pairs) {
-		const auto &   body1 = s.bodies[pair.body1], &body2 = s.bodies[pair.body2];
-		FoundPoints<K> found;
-		const double   margin = std::numeric_limits<double>::infinity(); // the list of pairs holds only boxes that are near
-		if (!K::findPoints(body1.halfSize, body1.pose, body2.halfSize, body2.pose, margin, pair.memory, found)) found.size = 0;
-		const bool same = sameFeatures(pair, found);
+		const auto &         body1 = s.bodies[pair.body1], &body2 = s.bodies[pair.body2];
+		const FoundPoints<K> found = findPoints(body1, body2, pair.memory);
+		const bool           same = sameFeatures(pair, found);
 		if (same && !s.moved) continue;
 		const ContactPair<K> before = pair;
 		pair.size = found.size;
@@ -78,8 +70,7 @@ template <class K> void RigidStep<K>::findContacts(RigidSystem<K>& s)
 			ContactPoint<K>& point = pair.points[i];
 			if (!same) point = {};
 			point.feature = found.features[i];
-			point.frame = K::frame(point.feature, body1.halfSize, body1.pose, body2.halfSize, body2.pose);
-			point.gap = point.frame.gap;
+			locate(point, body1, body2);
 			if (same) continue;
 			point.closed = point.gap <= touching;
 			takeOver(before, samePlace, point);

@@ -5,6 +5,7 @@
 #include "impact/rocking_restitution.hpp"
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 namespace masonry::rigid {
@@ -47,6 +48,27 @@ template <class K> struct ContactPair {
 	int                size { 0 };
 	std::array<ContactPoint<K>, K::maxPoints> points;
 };
+
+// Where the features of a point are, for these bodies.
+template <class K> void locate(ContactPoint<K>& point, const RigidBody<K>& body1, const RigidBody<K>& body2)
+{
+	point.frame = K::frame(point.feature, body1.halfSize, body1.pose, body2.halfSize, body2.pose);
+	point.gap = point.frame.gap;
+}
+
+// The points of a pair of these bodies, none if there are none; without a margin, since lists of pairs hold only boxes that are near.
+template <class K> FoundPoints<K> findPoints(const RigidBody<K>& body1, const RigidBody<K>& body2, typename K::Memory& memory)
+{
+	FoundPoints<K> found;
+	if (!K::findPoints(body1.halfSize, body1.pose, body2.halfSize, body2.pose, std::numeric_limits<double>::infinity(), memory, found)) found.size = 0;
+	return found;
+}
+
+template <class K> bool sameFeatures(const ContactPair<K>& pair, const FoundPoints<K>& found)
+{
+	const auto same = [](const auto& feature, const ContactPoint<K>& point) { return feature == point.feature; };
+	return found.size == pair.size && std::equal(found.features.begin(), found.features.begin() + found.size, pair.points.begin(), same);
+}
 
 enum class ImpactOrder { simultaneous, sequential };
 

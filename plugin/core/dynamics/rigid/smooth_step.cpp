@@ -65,13 +65,6 @@ namespace {
 		return normal > 0 && rows.impulse.template tail<K::rows - 1>().norm() >= (1 - tolerance::rigid::cone) * rows.friction * normal;
 	}
 
-	template <class K> Eigen::Matrix<double, K::rows, 1> velocityAtStart(const RigidSystem<K>& s, const PointRef& ref)
-	{
-		const auto& pair = s.pairs[ref.pair];
-		const auto &body1 = s.bodies[pair.body1], &body2 = s.bodies[pair.body2];
-		return rigid::relativeVelocity(pair.points[ref.point].frame, body1.pose.position, body1.velocity, body2.pose.position, body2.velocity);
-	}
-
 	// Whether prescribed bodies that free ones touch move against each other in a step.
 	template <class K> bool basesPart(const RigidSystem<K>& s, double dt)
 	{
@@ -184,8 +177,7 @@ template <class K> void SmoothStep<K>::predict(const RigidSystem<K>& s, double h
 
 template <class K> bool SmoothStep<K>::acts(const RigidSystem<K>& s, PointRef ref) const
 {
-	return s.pairs[ref.pair].points[ref.point].closed
-	        || std::any_of(anticipated.begin(), anticipated.end(), [&](const PointRef& p) { return p.pair == ref.pair && p.point == ref.point; });
+	return s.pairs[ref.pair].points[ref.point].closed || contains(anticipated, ref);
 }
 
 // A share of the stray velocities, where the forces of the last step would do no work on it.
@@ -198,7 +190,7 @@ template <class K> void SmoothStep<K>::dampStray(const RigidSystem<K>& s, double
 			const ContactPoint<K>& point = s.pairs[c].points[i];
 			stray.push_back(Impulse::Zero());
 			if (!point.closed) continue;
-			stray.back() = tolerance::rigid::damping * velocityAtStart(s, PointRef { c, i });
+			stray.back() = tolerance::rigid::damping * rigid::relativeVelocity(s, PointRef { c, i });
 			if (point.sliding) stray.back().template tail<K::rows - 1>().setZero();
 			work += 0.5 * h * point.force.dot(stray.back());
 		}
@@ -214,7 +206,7 @@ template <class K> void SmoothStep<K>::findStray(const RigidSystem<K>& s)
 		const ContactPoint<K>& point = s.pairs[ref.pair].points[ref.point];
 		stray.push_back(Impulse::Zero());
 		if (!point.closed) continue;
-		stray.back() = 0.5 * (velocityAtStart(s, ref) - relativeVelocity(s, ref.pair, ref.point));
+		stray.back() = 0.5 * (rigid::relativeVelocity(s, ref) - relativeVelocity(s, ref.pair, ref.point));
 		if (point.sliding || slides(solver.points[r])) stray.back().template tail<K::rows - 1>().setZero();
 	}
 }

@@ -33,8 +33,10 @@ namespace masonry::rigid {
 
 // A contact point of the system: its pair and its number there.
 struct PointRef {
-	int pair, point;
+	int  pair, point;
+	bool operator==(const PointRef& o) const { return pair == o.pair && point == o.point; }
 };
+inline bool contains(const std::vector<PointRef>& list, PointRef ref) { return std::find(list.begin(), list.end(), ref) != list.end(); }
 
 // End of a step of which nothing has been accepted yet.
 template <class K> struct Trial {
@@ -107,6 +109,13 @@ Eigen::Matrix<double, K::rows, 1> relativeVelocity(const ContactFrame<K>& frame,
 		return typename K::Vector(v.template head<K::dimension>() + K::cross(v.template tail<K::spins>(), frame.position - center));
 	};
 	return frame.axes * (at(center2, v2) - at(center1, v1));
+}
+// At a point of the system, in its present state.
+template <class K> Eigen::Matrix<double, K::rows, 1> relativeVelocity(const RigidSystem<K>& s, PointRef ref)
+{
+	const ContactPair<K>& pair = s.pairs[ref.pair];
+	const auto &          body1 = s.bodies[pair.body1], &body2 = s.bodies[pair.body2];
+	return relativeVelocity(pair.points[ref.point].frame, body1.pose.position, body1.velocity, body2.pose.position, body2.velocity);
 }
 
 } // namespace masonry::rigid

@@ -155,7 +155,6 @@ MASONRY_INLINE void addSlip(Group<K>* groups, StillGroup<K>* still, const Rows<K
 
 MASONRY_LANES void addTo(const std::vector<int>& members, const Lanes* change, Lanes* velocity)
 {
-	constexpr Lanes noMass {1, 1, 1, 0};
 	for (const int b : members)
 		velocity[b] += noMass * change[b];
 }

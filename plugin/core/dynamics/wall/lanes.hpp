@@ -39,6 +39,7 @@ using MaskOf = decltype(L {} < L {});
 using FloatPack = float __attribute__((vector_size(16)));
 template <class L>
 using PackOf = std::conditional_t<std::is_same_v<L, Lanes>, Lanes, FloatPack>;
+constexpr Lanes noMass {1, 1, 1, 0}; // times a pack: its components alone
 // Where the packs of a body are: for doubles its number, for floats bytes from the first pack of all to its own.
 template <class L>
 using PlaceOf = std::conditional_t<std::is_same_v<L, Lanes>, int, unsigned>;

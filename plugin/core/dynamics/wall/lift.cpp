@@ -138,7 +138,6 @@ double Lift<K>::settle(WallContacts<K>& c)
 	});
 	if (std::none_of(deep.begin(), deep.end(), [](bool is) { return is; }))
 		return tolerance::wall::penetration * c.length; // or less
-	const Lanes noMass {1, 1, 1, 0};
 	const double enough = (tolerance::wall::penetration - tolerance::wall::lifted) * c.length;
 	last.assign(c.course.size() + 1, 0);
 	for (int k = 0; k < mostSweeps; ++k) {

@@ -36,8 +36,6 @@ constexpr double parted = 0.4;
 // across their plane. With 1 eight of eighteen walls of 16 and 20 courses creep on two seconds after they were shaken, with 10 one.
 constexpr double fadesBelow = 30;
 
-constexpr Lanes noMass {1, 1, 1, 0};
-
 // A substep's loads, and the impulses that it starts from.
 MASONRY_LANES void accelerate(const std::vector<int>& members, const Lanes* load, const FloatPack* contactPart, Lanes* start,
                               FloatPack* velocity)

@@ -54,23 +54,54 @@ void WallContacts<K>::setState(const State& state, int pair, int point)
 	}
 }
 
-// A point that was there before keeps its state, and so does one that another feature of the same place takes over from.
+// A point that was there before keeps its state (true), and so does one that another feature of the same place takes over from.
+template <class K>
+bool WallContacts<K>::inherit(const ContactPair<K>& before, const State* states, ContactPoint<K>& point, State& now) const
+{
+	const double samePlace = 2 * tolerance::wall::search * length;
+	for (int j = 0; j < before.size; ++j) {
+		const ContactPoint<K>& old = before.points[j];
+		const State& then = states[j];
+		const bool same = old.feature == point.feature;
+		if (!same && !((old.frame.position - point.frame.position).norm() <= samePlace))
+			continue;
+		point.closed = old.closed;
+		point.sliding = old.sliding;
+		point.force = old.force;
+		now.pn = then.present ? then.pn : unit * old.force[0];
+		now.pt = then.present ? then.pt : unit * old.force.template tail<K::rows - 1>();
+		now.steady = then.present ? then.steady : now.pn;
+		now.zn = then.zn;
+		now.zt = then.zt;
+		now.slip = then.slip;
+		now.heldN = then.heldN;
+		now.heldT = then.heldT;
+		now.zero = std::min(now.zero, then.zero);
+		if (same)
+			return true;
+		if constexpr (K::rows == 3) { // along the tangents of another face
+			const Eigen::Matrix2d turn = point.frame.axes.template bottomRows<2>() * old.frame.axes.template bottomRows<2>().transpose();
+			point.force.template tail<2>() = (turn * old.force.template tail<2>()).eval();
+			for (auto* tangential : {&now.pt, &now.zt, &now.slip, &now.heldT})
+				*tangential = (turn * *tangential).eval();
+		}
+	}
+	return false;
+}
+
+// True: it has other points than before.
 template <class K>
 bool WallContacts<K>::lookUp(RigidSystem<K>& s, int c)
 {
-	const double samePlace = 2 * tolerance::wall::search * length, touching = tolerance::mergedClosing * length;
+	const double touching = tolerance::mergedClosing * length;
 	bool changed = s.moved;
 	ContactPair<K>& pair = s.pairs[c];
 	const auto &body1 = s.bodies[pair.body1], &body2 = s.bodies[pair.body2];
-	FoundPoints<K> found;
-	if (!K::findPoints(body1.halfSize, body1.pose, body2.halfSize, body2.pose, std::numeric_limits<double>::infinity(), pair.memory, found))
-		found.size = 0;
+	const FoundPoints<K> found = findPoints(body1, body2, pair.memory);
 	pair.face1 = found.face1;
 	pair.face2 = found.face2;
 	// Of bodies that have been moved the pair may know other points than the lanes.
-	bool same = known[c] && !s.moved && found.size == pair.size;
-	for (int k = 0; same && k < found.size; ++k)
-		same = found.features[k] == pair.points[k].feature;
+	const bool same = known[c] && !s.moved && sameFeatures(pair, found);
 	for (const auto [group, lane] : slots[c])
 		if (group >= 0)
 			groups[group].friction[lane] = std::min(pair.friction, mostFriction);
@@ -95,41 +126,10 @@ bool WallContacts<K>::lookUp(RigidSystem<K>& s, int c)
 		if (k < found.size) {
 			ContactPoint<K> point;
 			point.feature = found.features[k];
-			point.frame = K::frame(point.feature, body1.halfSize, body1.pose, body2.halfSize, body2.pose);
-			point.gap = point.frame.gap;
+			locate(point, body1, body2);
 			point.closed = point.gap <= touching;
 			now.zero = std::min(0., point.gap);
-			bool known = false, same = false;
-			for (int j = 0; j < before.size && !same; ++j) {
-				const ContactPoint<K>& old = before.points[j];
-				same = old.feature == point.feature;
-				if (!same && !((old.frame.position - point.frame.position).norm() <= samePlace))
-					continue;
-				known = true;
-				point.closed = old.closed;
-				point.sliding = old.sliding;
-				point.force = old.force;
-				now.pn = states[j].present ? states[j].pn : unit * old.force[0];
-				now.pt = states[j].present ? states[j].pt : unit * old.force.template tail<K::rows - 1>();
-				now.steady = states[j].present ? states[j].steady : now.pn;
-				now.zn = states[j].zn;
-				now.zt = states[j].zt;
-				now.slip = states[j].slip;
-				now.heldN = states[j].heldN;
-				now.heldT = states[j].heldT;
-				now.zero = std::min(now.zero, states[j].zero);
-				if constexpr (K::rows == 3)
-					if (!same) { // along the tangents of another face
-						const Eigen::Matrix2d turn =
-						    point.frame.axes.template bottomRows<2>() * old.frame.axes.template bottomRows<2>().transpose();
-						point.force.template tail<2>() = (turn * old.force.template tail<2>()).eval();
-						now.pt = (turn * now.pt).eval();
-						now.zt = (turn * now.zt).eval();
-						now.slip = (turn * now.slip).eval();
-						now.heldT = (turn * now.heldT).eval();
-					}
-			}
-			changed |= !known || !same;
+			changed |= !inherit(before, states, point, now);
 			pair.points[k] = point;
 		}
 		const auto [group, lane] = slots[c][k / lanePoints<K>];

@@ -40,17 +40,6 @@ constexpr double mostOfMean = 8, mostOfFall = 2;
 inline double turned(const PlanePose& from, const PlanePose& to) { return std::abs(to.angle - from.angle); }
 inline double turned(const Pose& from, const Pose& to) { return 2 * (to.orientation.coeffs() - from.orientation.coeffs()).norm(); }
 
-template <class Flow>
-void passPose(Flow& f, PlanePose& pose)
-{
-	f(pose.position), f(pose.angle), f(pose.cosine), f(pose.sine);
-}
-template <class Flow>
-void passPose(Flow& f, Pose& pose)
-{
-	f(pose.position), f(pose.orientation.coeffs());
-}
-
 // Of the points of a group, how many there are at most in a lane: in the plane all of them are always gone through, together.
 template <class K>
 struct PointSet;
@@ -145,8 +134,6 @@ struct Members {
 template <class K>
 class WallContacts {
 public:
-	using Tangent = typename PointLanes<K>::Tangent;
-
 	explicit WallContacts(Team& team) : team(team) {}
 
 	// work(part, number) for each part but the seam, the last number.
@@ -322,6 +309,7 @@ private:
 	void lookUpStale(RigidSystem<K>& system);
 	bool lookUpStale(RigidSystem<K>& system, const Part& part);
 	bool lookUp(RigidSystem<K>& system, int pair);
+	bool inherit(const ContactPair<K>& before, const State* states, ContactPoint<K>& point, State& now) const;
 	State state(int pair, int point) const;
 	void setState(const State& state, int pair, int point);
 	void takePoint(const RigidSystem<K>& system, int pair, int point);

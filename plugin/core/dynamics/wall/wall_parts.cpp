@@ -19,6 +19,35 @@ constexpr double slender = 1, mostOfSlender = 7;
 // Blocks in a course, on average, from which on a structure does not rock as a column.
 constexpr double blocksOfBroad = 6;
 
+struct Lane {
+	int pair, part; // of the pair's points
+};
+
+// Lanes of these pairs by colour, greedy in their order: no two of a colour share a body that is `own`.
+template <int lanesOfWide>
+std::vector<std::vector<Lane>> coloured(const std::vector<int>& numbers, const std::vector<std::array<int, 2>>& pairs,
+                                        const std::vector<unsigned char>& wide, const std::vector<char>& own)
+{
+	std::vector<std::vector<Lane>> colours;
+	std::vector<std::vector<char>> used; // by colour, whether a body has a pair of it
+	for (const int c : numbers)
+		for (int part = 0; part < (wide[c] ? lanesOfWide : 1); ++part) {
+			size_t k = 0;
+			for (;; ++k) {
+				if (k == colours.size()) {
+					colours.emplace_back();
+					used.emplace_back(own.size(), 0);
+				}
+				const auto taken = [&](int body) { return own[body] && used[k][body]; };
+				if (!taken(pairs[c][0]) && !taken(pairs[c][1]))
+					break;
+			}
+			colours[k].push_back({c, part});
+			used[k][pairs[c][0]] = used[k][pairs[c][1]] = 1;
+		}
+	return colours;
+}
+
 } // namespace
 
 // By number: blocks of one part are neighbours in memory, which threads then do not share; of walls numbered course by course the seams are
@@ -47,13 +76,10 @@ int WallContacts<K>::divide()
 	}
 }
 
-// In each part greedy in the order of the pairs, then packed by four.
+// In each part by colour, then packed by four.
 template <class K>
 void WallContacts<K>::colour(const RigidSystem<K>& s)
 {
-	struct Lane {
-		int pair, part;
-	};
 	const int none = int(s.bodies.size()), seam = divide();
 	const auto isFixed = [&](int body) { return !own[body]; };
 	std::vector<std::vector<int>> pairsOf(seam + 1);
@@ -78,25 +104,8 @@ void WallContacts<K>::colour(const RigidSystem<K>& s)
 	features.clear();
 	slots.assign(pairs.size(), {});
 	for (int p = 0; p <= seam; ++p) {
-		std::vector<std::vector<Lane>> ofColour;
-		std::vector<std::vector<char>> used; // by colour, whether a body has a pair of it
-		for (const int c : pairsOf[p])
-			for (int part = 0; part < (wide[c] ? lanesOfPair<K> : 1); ++part) {
-				size_t k = 0;
-				for (;; ++k) {
-					if (k == ofColour.size()) {
-						ofColour.emplace_back();
-						used.emplace_back(s.bodies.size(), 0);
-					}
-					const auto taken = [&](int body) { return !isFixed(body) && used[k][body]; };
-					if (!taken(pairs[c][0]) && !taken(pairs[c][1]))
-						break;
-				}
-				ofColour[k].push_back({c, part});
-				used[k][pairs[c][0]] = used[k][pairs[c][1]] = 1;
-			}
 		parts[p].begin = int(groups.size());
-		for (const auto& members : ofColour) {
+		for (const auto& members : coloured<lanesOfPair<K>>(pairsOf[p], pairs, wide, own)) {
 			for (size_t first = 0; first < members.size(); first += width) {
 				Group<K> group {};
 				FeatureGroup<K> feature {};
