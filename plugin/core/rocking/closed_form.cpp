@@ -1,5 +1,6 @@
 #include "rocking/closed_form.hpp"
 #include "validation.hpp"
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -58,12 +59,15 @@ double timeToStabilise(const RockingBlock& block, double impulse, double restitu
 	require("tolerance", tolerance, tolerance > 0 && tolerance < 1, "must be in (0, 1)");
 	if (restitution == 1)
 		return std::numeric_limits<double>::infinity();
-	double distance = (1 + restitution) / 2, s = 1, sum = 1; // s_i = w_i/w1
-	while (distance > tolerance) {
-		distance *= restitution;
-		s = restitution * s + 2;
-		sum += s;
-	}
+	// s_i = w_i/w1 is limit - (limit - 1) C^(i - 1): (1 + C)/2 C^(i - 1) of the limit is missing.
+	const double C = restitution, limit = 2 / (1 - C), first = (1 + C) / 2;
+	const auto isNear = [=](double halfCycle) { return first * std::pow(C, halfCycle - 1) <= tolerance; };
+	double n = C > 0 ? std::max(1., 1 + std::ceil(std::log(tolerance / first) / std::log(C))) : 1;
+	if (n > 1 && isNear(n - 1)) // the logarithms are rounded
+		--n;
+	else if (!isNear(n))
+		++n;
+	const double sum = n * limit - (limit - 1) * (1 - std::pow(C, n)) / (1 - C);
 	return singlePulse(block, impulse).duration * sum;
 }
 

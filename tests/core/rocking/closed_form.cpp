@@ -59,6 +59,17 @@ TEST_CASE("time to stabilise: the first half cycle within the tolerance")
 		}
 }
 
+// As 1 - C -> 0, 1 - C^i is 1 - exp(-x) with x = i (1 - C), and the sum over half cycles an integral: 2 (x - 1 + exp(-x))/(1 - C)^2, where
+// exp(-x) is the tolerance. Of first order in 1 - C; more than 1e9 half cycles, one by one, would take seconds.
+TEST_CASE("time to stabilise where hardly anything is lost")
+{
+	const RockingBlock block(0.3, 1.5);
+	const double lost = 1e-9, tolerance = 0.01;
+	const double sum = 2 * (std::log(1 / tolerance) - 1 + tolerance) / (lost * lost), first = closed_form::singlePulse(block, 0.1).duration;
+	REQUIRE(closed_form::timeToStabilise(block, 0.1, 1 - lost, tolerance) == Approx(first * sum).epsilon(1e-7)); // 1 - C is rounded to 1e-7 of it
+	REQUIRE(std::isfinite(closed_form::timeToStabilise(block, 0.1, 1 - std::numeric_limits<double>::epsilon() / 2, tolerance)));
+}
+
 // The event-driven history is the second method; its constant model is the paper's equation of motion.
 TEST_CASE("the history under a constant moment is the closed form, base displacement included")
 {
