@@ -93,7 +93,9 @@ vector<RockingJointEngine::Pair> RockingJointEngine::gather()
 	});
 	vector<Pair> pairs;
 	system.contacts.clear();
+	const auto moved = [&](int id) { return system.bodies[index[id]].prescribed; };
 	for (const Interaction* interaction : found) {
+		if (moved(interaction->id1) && moved(interaction->id2)) continue; // bases that touch do not push each other
 		auto& geom = static_cast<BlockGeom&>(*interaction->geom);
 		auto& phys = static_cast<BlockPhys&>(*interaction->phys);
 		if (!(phys.normalStiffness > 0 && phys.shearStiffness > 0))
@@ -284,15 +286,19 @@ void RockingJointEngine::measureEnergy()
 	for (const auto& [key, value] : keys) scene->energy->setItem_py(key, value);
 }
 
-/// Force of the joints on each moved body, by index.
-std::map<int, Vector3r> RockingJointEngine::baseReactions() const
+/// Of the joints on each moved body, by index.
+std::map<int, RockingJointEngine::Reaction> RockingJointEngine::baseReactions() const
 {
-	std::map<int, Vector3r> result;
+	std::map<int, Reaction> result;
 	for (const auto& contact : system.contacts)
-		for (int i = 0; i < contact.size; ++i) {
-			if (system.bodies[contact.body1].prescribed) result.emplace(contact.body1, Vector3r::Zero()).first->second -= contact.force(i);
-			if (system.bodies[contact.body2].prescribed) result.emplace(contact.body2, Vector3r::Zero()).first->second += contact.force(i);
-		}
+		for (int i = 0; i < contact.size; ++i)
+			for (const auto& [b, sign] : { std::pair(contact.body1, -1.), std::pair(contact.body2, 1.) }) {
+				if (!system.bodies[b].prescribed) continue;
+				Reaction& sum = result[b];
+				const Vector3r force = sign * contact.force(i);
+				sum.force += force;
+				sum.moment += (contact.position(i) - system.bodies[b].pose.position).cross(force);
+			}
 	return result;
 }
 
@@ -300,12 +306,14 @@ std::map<int, Vector3r> RockingJointEngine::baseReactions() const
 /// impacts and jumps then add what they change.
 void RockingJointEngine::addBaseWork()
 {
-	std::map<int, Vector3r> before;
-	for (size_t k = 0; k < reactionIds.size(); ++k) before[reactionIds[k]] = reactions[k];
-	for (const auto& [b, force] : baseReactions()) {
-		const auto old = before.find(ids[b]);
-		const Vector3r mean = old == before.end() ? force : Vector3r(0.5 * (force + old->second));
-		baseWork -= mean.dot(system.bodies[b].velocity) * scene->dt;
+	for (auto& [b, now] : baseReactions()) {
+		const auto& body = system.bodies[b];
+		Reaction mean = now;
+		if (const auto old = std::find(reactionIds.begin(), reactionIds.end(), ids[b]); old != reactionIds.end()) {
+			mean.force = 0.5 * (now.force + reactions[old - reactionIds.begin()]);
+			mean.moment = 0.5 * (now.moment + reactionMoments[old - reactionIds.begin()]);
+		}
+		baseWork -= (mean.force.dot(body.velocity) + mean.moment.dot(body.angularVelocity)) * scene->dt;
 	}
 }
 
@@ -313,9 +321,11 @@ void RockingJointEngine::keepReactions()
 {
 	reactionIds.clear();
 	reactions.clear();
-	for (const auto& [b, force] : baseReactions()) {
+	reactionMoments.clear();
+	for (const auto& [b, reaction] : baseReactions()) {
 		reactionIds.push_back(ids[b]);
-		reactions.push_back(force);
+		reactions.push_back(reaction.force);
+		reactionMoments.push_back(reaction.moment);
 	}
 }
 

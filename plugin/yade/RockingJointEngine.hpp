@@ -46,7 +46,8 @@ public:
 		((Real, impactDissip, 0, Attr::readonly, "Dissipated by impacts so far [J]."))
 		((Real, baseWork, 0, Attr::readonly, "Work of the moved base on the blocks so far [J]."))
 		((vector<int>, reactionIds, , Attr::readonly, "Bodies that are moved ..."))
-		((vector<Vector3r>, reactions, , Attr::readonly, "... and the force of the joints on them in the last step [N].")),
+		((vector<Vector3r>, reactions, , Attr::readonly, "... the force of the joints on them in the last step [N] ..."))
+		((vector<Vector3r>, reactionMoments, , Attr::readonly, "... and its moment about their centres [N m].")),
 		/* ctor */,
 		.def("criticalTimeStep", &RockingJointEngine::criticalTimeStep, "Largest stable time step of the joints [s].")
 	);
@@ -55,6 +56,9 @@ private:
 	struct Pair {
 		BlockGeom* geom;
 		BlockPhys* phys;
+	};
+	struct Reaction {
+		Vector3r force = Vector3r::Zero(), moment = Vector3r::Zero(); // about the body's centre
 	};
 	struct BoundPose { // of a body when the collider last looked
 		long iteration = -1;
@@ -72,7 +76,7 @@ private:
 	bool applyJumps(const vector<BaseMotionEngine*>& motions, const vector<StepImpact>& impacts);
 	void applyForces(const vector<Pair>& pairs);
 	void measureEnergy();
-	std::map<int, Vector3r> baseReactions() const;
+	std::map<int, Reaction> baseReactions() const;
 	void addBaseWork();
 	void keepReactions();
 

@@ -85,3 +85,22 @@ for blocks, slenderness, restitution in ((3, 2, 0.5), (4, 1.5, None)):
     error = abs(balance.error()) / dem.energy()["impactDissip"]
     print(f"{blocks} blocks: {len(dem.impacts())} impacts, energy {error:.1e} of what they take")
     assert error < 6e-4, (blocks, error)
+
+# A base that turns lifts what stands on it: its work is what the blocks gain; and bases that touch each other do not push each other. Energies of the springs
+# are of second order of the penetration.
+for touching in (False, True):
+    O.reset()
+    base = dem.base((6, 1, 0.2), stone())
+    block = dem.block((0.6, 1, 0.6), stone(), on=base, center=None)
+    O.bodies[block].state.pos += (2, 0, 0)
+    O.bodies[block].state.refPos = O.bodies[block].state.pos
+    if touching:
+        O.bodies[dem.block((1, 1, 1), stone(), center=(-3.5, 0, 0.3))].dynamic = False
+    O.engines = quiet_engines()
+    O.run(10, True)
+    balance = Balance()
+    O.bodies[base].state.angVel = (0, -0.02, 0)
+    O.run(int(0.5 / O.dt), True)
+    work = dem.energy()["baseWork"]
+    print(f"on a base that turns{', beside another' if touching else ''}: work {work:.2f} J, energy {balance.error() / work:.1e} of it")
+    assert work > 100 and abs(balance.error() / work) < 1e-3

@@ -207,7 +207,7 @@ double supportPower(const JointSystem& s)
 	for (const JointContact& contact : s.contacts)
 		for (int i = 0; i < contact.size; ++i)
 			for (const auto& [b, sign] : { std::pair(contact.body1, 1.), std::pair(contact.body2, -1.) })
-				if (moved(b)) power += sign * contact.force(i).dot(s.bodies[b].velocity);
+				if (moved(b)) power += sign * contact.force(i).dot(s.bodies[b].velocityAt(contact.position(i)));
 	return power;
 }
 
