@@ -123,6 +123,10 @@ void MoreauJeanIntegrator::leaveScene()
 	taken.clear();
 	chosenModel.clear();
 	along = Vector3r::Zero();
+	const auto forget = [](auto&... results) { ((results = {}), ...); };
+	forget(impactTimes, impactBlocks, impactSupports, impactAsked, impactBefore, impactAfter, impactEnergy, impactApplication, impactFriction,
+		impactSwitched, impactCapped, frictDissip, impactDissip, baseWork, worstResidual, substeps, events, unlocalised, sweeps, factorisations,
+		stillSteps, movingSteps, failures, firstFailure, warnedOf);
 }
 
 vector<Real> MoreauJeanIntegrator::remembered() { return memory.run ? memory.run->pack() : memory.values; }

@@ -51,16 +51,17 @@ public:
 		if (next != values.size()) refuse();
 	}
 
+	[[noreturn]] static void refuse()
+	{
+		throw std::runtime_error("MoreauJeanIntegrator cannot go on with this simulation: it was saved by another version of yade-masonry. "
+		                         "Go on with that version, or build the scene anew.");
+	}
+
 private:
 	Real take()
 	{
 		if (next == values.size()) refuse();
 		return values[next++];
-	}
-	[[noreturn]] static void refuse()
-	{
-		throw std::runtime_error("MoreauJeanIntegrator cannot go on with this simulation: it was saved by another version of yade-masonry. "
-		                         "Go on with that version, or build the scene anew.");
 	}
 
 	const vector<Real>& values;
@@ -90,6 +91,7 @@ namespace memory {
 	template <class Flow, class K> void pass(Flow& f, ContactPair<K>& p)
 	{
 		f(p.body1), f(p.body2), f(p.face1), f(p.face2), f(p.size);
+		if (!(p.size >= 0 && p.size <= K::maxPoints)) Unpacker::refuse();
 		pass(f, p.memory);
 		for (int i = 0; i < p.size; ++i) {
 			ContactPoint<K>& point = p.points[i];

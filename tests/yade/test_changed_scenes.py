@@ -165,3 +165,14 @@ O.run(10, True)
 for name, value in (("resonantBlock", falling), ("assembly", True)):
     refuses(lambda: setattr(train, name, value), f"PulseTrainEngine.{name} = ", "once the motion has begun")
 assert np.isfinite(O.bodies[standing].state.pos).all()
+
+# An integrator that is used in a second scene has nothing of the first.
+seen, integrator = [], None
+for _ in range(2):
+    base, standing, falling = scene()
+    integrator = integrator or O.engines[-1]
+    O.engines = O.engines[:-1] + [integrator]
+    dem.tilt(standing, 0.05)
+    O.run(1000, True)
+    seen.append((len(integrator.impactTimes), round(integrator.impactDissip, 6)))
+assert seen[0][0] > 10 and seen[0] == seen[1], seen
