@@ -67,8 +67,8 @@ for model in ("planar", "spatial"):
                 ends.append(train.pulseTimes)
             apart = max(abs(a - b) for a, b in zip(*ends))
             print(f"{model}, restitution {restitution}, {friction}: {len(ends[0])} pulses, times apart by {apart:.1e} s")
-            # Peaks and impacts of first order miss a hundredth each of a half cycle.
-            assert len(ends[0]) == len(ends[1]) == 5 and apart < 0.02 * ends[0][-1], (model, restitution, friction, ends)
+            # Half cycles take 0.4 to 1.1 s, of which peaks and impacts of first order miss a hundredth each.
+            assert len(ends[0]) == len(ends[1]) == 5 and apart < 0.03, (model, restitution, friction, ends)
 
 # --- a pulse in space turns a block about its edge and not about the vertical. Its spin is that of the momentum about the edge, (4/3) m R^2 w = m v R cos(a),
 # less what its weight takes away in the step: p^2 sin(a), of which the tilt of some 1e-4 rad changes a thousandth (a = 0.2), in the middle of the step ---
@@ -80,6 +80,19 @@ for friction in (dict(noSlip=True), dict(noSlip=False, frictionAngle=1.2)):
     wanted = 0.75 * 0.1 * math.cos(block.critical_angle) / block.radius - block.frequency_parameter**2 * math.sin(block.critical_angle) * STEP
     print(f"pulse in space: spin {spin}, of the momentum {-wanted}")
     assert abs(spin[1] + wanted) < 1e-3 * wanted and math.hypot(spin[0], spin[2]) < 1e-3 * wanted
+
+# --- in space a block that is pulled steadily lands on both corners of an edge, and keeps its plane: with fine substeps but for the rounding of floats, 1e-7 of
+# some 0.3 rad/s in each of a thousand substeps ---
+base, id, block = one_block(4, noSlip=False, frictionAngle=math.atan(0.7), depth=0.6)
+dem.tilt(id, -0.5 * block.critical_angle)
+O.engines = rigid_engines(model="spatial", method="wall", tolerance=1e-5)
+O.engines[-1].gravity = (0.3 * 9.81, 0, -9.81)
+spin = 0
+while O.time < 0.5:
+    O.step()
+    spin = max(spin, abs(O.bodies[id].state.angVel[2]))
+print(f"pulled steadily in space: angle {dem.angle(id):.4f}, about the vertical {spin:.1e} rad/s")
+assert dem.angle(id) > 0.5 * block.critical_angle and spin < 3e-5
 
 # --- what goes along with a pulse gains m v^2/2, and that is the work of the base: also where a wall, on a base that stands, leaves the pulse to the sweeps. The
 # block is so flat that hardly a thousandth goes into its turning, (3/4) sin(a)^2 of the whole ---

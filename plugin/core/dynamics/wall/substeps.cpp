@@ -101,6 +101,7 @@ void Substeps<K>::begin(WallContacts<K>& c, const Structures<K>& structures, dou
 	                 {double(effort.fewestSweeps), c.spread / (courses * courses), std::min(c.burden, mostBurden) / burdenOfSweep});
 	sweeps = int(std::ceil(asked * std::max(1., finer)));
 	const bool lags = sweeps < c.depth;
+	edges = !lags;
 	lumps = lags ? float(mostLumps * std::min(1., std::pow(c.depth / coursesOfLumps, 2))) : 0;
 	if (!lags)
 		effort.relaxationBefore = effort.relaxationAfter = 1;
@@ -157,6 +158,7 @@ void Substeps<K>::substep(WallContacts<K>& c, const LaneArray& load, double s, b
 		                 float(-tolerance::wall::lifted * c.length),
 		                 float(isMoved ? 0 : 1 / s),
 		                 float(fall),
+		                 edges,
 		                 watched};
 		parts[number].byColour([&](int first, int last) { points->sweep(first, last, velocity.data(), how); });
 	};

@@ -120,7 +120,8 @@ private:
 	L un[lanePoints<Plane>], dn[lanePoints<Plane>], dt[lanePoints<Plane>];
 };
 
-// First the normal impulses, all four at once where all of them press, else point by point; then friction.
+// First the normal impulses: all four at once where all of them press, or two where those alone do and loads do not lag (Sweep::edges),
+// else point by point. Then friction.
 template <class L>
 class Visit<Space, L> {
 public:
@@ -157,7 +158,8 @@ private:
 			for (int j = 0; j < points; ++j)
 				needed[i] -= w.inverse[w.place(i, j)] * un[j];
 		}
-		const MaskOf<L> press = (needed[0] >= 0) & (needed[1] >= 0) & (needed[2] >= 0) & (needed[3] >= 0);
+		const MaskOf<L> all4 = (needed[0] >= 0) & (needed[1] >= 0) & (needed[2] >= 0) & (needed[3] >= 0),
+		                press = sweep.edges ? all4 | edge(all4, needed) : all4;
 		for (int i = 0; i < group.count; ++i) {
 			PointLanes<Space, L>& p = group.point[i];
 			const L pn = normalImpulse(p, select(press, needed[i], p.pn - p.massN * un[i]), sweep);
@@ -167,6 +169,47 @@ private:
 			for (int j = i + 1; j < points; ++j)
 				un[j] += w.response[w.place(i, j)] * dn[i];
 		}
+	}
+	// Of those that would press if all four did, two alone where they press and the others part; into `needed`. Returns where that fits.
+	MASONRY_INLINE MaskOf<L> edge(const MaskOf<L>& all4, L* needed) const
+	{
+		constexpr float regular = 1e-4f; // of the determinant: points that coincide share what they carry
+		const L none = all<L>(0), one = all<L>(1);
+		MaskOf<L> carries[points];
+		L count = none, rate[points], impulse[points];
+		for (int i = 0; i < points; ++i) {
+			carries[i] = (needed[i] >= 0) & (group.point[i].massN > 0);
+			count += select(carries[i], one, none);
+		}
+		for (int i = 0; i < points; ++i) { // without what the others give
+			rate[i] = un[i];
+			for (int j = 0; j < points; ++j)
+				rate[i] -= w.response[w.place(i, j)] * select(carries[j], none, group.point[j].pn);
+		}
+		MaskOf<L> fits = (count == all<L>(2)) & ~all4;
+		for (int i = 0; i < points; ++i) {
+			L other = none, across = none, own = w.response[w.place(i, i)], otherRate = none; // of the second of the two
+			for (int j = 0; j < points; ++j)
+				if (j != i) {
+					other += select(carries[j], w.response[w.place(j, j)], none);
+					across += select(carries[j], w.response[w.place(i, j)], none);
+					otherRate += select(carries[j], rate[j], none);
+				}
+			const L det = own * other - across * across;
+			const MaskOf<L> isRegular = det > regular * own * other;
+			const L change = (other * rate[i] - across * otherRate) / select(isRegular, det, one);
+			impulse[i] = select(carries[i], group.point[i].pn - change, none);
+			fits = fits & (isRegular | ~carries[i]) & (impulse[i] >= 0);
+		}
+		for (int i = 0; i < points; ++i) {
+			L after = rate[i];
+			for (int j = 0; j < points; ++j)
+				after += w.response[w.place(i, j)] * select(carries[j], impulse[j] - group.point[j].pn, none);
+			fits = fits & (carries[i] | (after >= 0) | ~(group.point[i].massN > 0));
+		}
+		for (int i = 0; i < points; ++i)
+			needed[i] = select(fits, impulse[i], needed[i]);
+		return fits;
 	}
 	MASONRY_INLINE void tangential(int k, const Sweep& sweep)
 	{
