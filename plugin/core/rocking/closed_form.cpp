@@ -67,7 +67,13 @@ double timeToStabilise(const RockingBlock& block, double impulse, double restitu
 		--n;
 	else if (!isNear(n))
 		++n;
-	const double sum = n * limit - (limit - 1) * (1 - std::pow(C, n)) / (1 - C);
+	constexpr double few = 1e6; // below, the closed sum may lose its digits, where C and the tolerance are near 1
+	double sum = n * limit - (limit - 1) * (1 - std::pow(C, n)) / (1 - C);
+	if (n <= few) {
+		sum = 0;
+		for (double i = 1, s = 1; i <= n; ++i, s = C * s + 2)
+			sum += s;
+	}
 	return singlePulse(block, impulse).duration * sum;
 }
 

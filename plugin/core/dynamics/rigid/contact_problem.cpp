@@ -1,6 +1,7 @@
 #include "dynamics/rigid/contact_problem.hpp"
 #include "dynamics/rigid/contact_newton.hpp"
 #include "dynamics/rigid/contact_sweeps.hpp"
+#include <algorithm>
 #include <utility>
 
 namespace masonry::rigid {
@@ -94,7 +95,8 @@ SolveReport ContactSolver<K>::solve(double tolerance, double enough)
 	constexpr bool inSpace = K::dimension == 3;
 	if (useNewton && !(inSpace && guessed) && w.startsClose(tolerance, report))
 		return report;
-	if (!(inSpace && useNewton))
+	const bool sticks = std::any_of(points.begin(), points.end(), [](const ContactRows<K>& row) { return row.friction == noSlip; });
+	if (!inSpace || !useNewton || sticks)
 		report.residual = gaussSeidel(w.s, tolerance, useNewton ? maxSweeps : lastSweeps, !useNewton, report);
 	else
 		report.residual = w.s.residual();

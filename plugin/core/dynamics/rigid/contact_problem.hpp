@@ -25,7 +25,7 @@
 // Friction leaves several solutions where points share what they carry: all of an edge's load at one corner, which turns the block about
 // it, is one where nothing slips. Newton with a large R that falls ends near the impulses given, and leaves a scene that is its own mirror
 // image so; sweeps, which take the points in their order, and a small R at once from far away do not. So in space there are no sweeps
-// before it, and impulses that are only a `guess` are not resumed from.
+// before it but where points cannot slip, whose jams they avoid, and impulses that are only a guess are not resumed from.
 // Impulses that still miss the laws are returned with their residual, and made to add no energy (seen from the offsets).
 #include "dynamics/rigid/kinematics.hpp"
 #include "impact/impulse_problem.hpp" // noSlip

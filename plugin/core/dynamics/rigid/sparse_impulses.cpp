@@ -78,6 +78,23 @@ namespace {
 		return { tolerance::impulse * speed + roundOff * (terms + speed * sum / lightest), tolerance::impulseEnough * speed };
 	}
 
+	// A first guess of its state alone. Where nothing slips no impulse at all would do if nothing approaches, and the point would slip: there it
+	// is more than what rounding of an approach asks for.
+	template <class K> double leastImpulse(const ContactSolver<K>& solver, size_t point)
+	{
+		constexpr double share = 1e-6; // of what stops the slip
+		const ContactRows<K>& row = solver.points[point];
+		double                lightest = std::numeric_limits<double>::infinity();
+		auto                  u = row.offset;
+		for (const auto& [b, J] : { std::pair(row.body1, &row.J1), std::pair(row.body2, &row.J2) }) {
+			if (b < 0) continue;
+			u += *J * solver.bodies[b].free;
+			lightest = std::min(lightest, 1 / solver.bodies[b].inverseMass.linear);
+		}
+		const double slip = row.friction == noSlip && std::isfinite(lightest) ? u.template tail<K::rows - 1>().norm() * lightest : 0;
+		return std::max(share * slip, std::numeric_limits<double>::min());
+	}
+
 } // namespace
 
 template <class K> void SparseImpulses<K>::addPoint(const std::vector<masonry::Body>& bodies, const ImpulsePoint& point)
@@ -153,10 +170,10 @@ SolveReport SparseImpulses<K>::solveRows(const std::vector<masonry::Body>& bodie
 	for (const CoupleRow& couple : couples)
 		addCouple(bodies, couple, length);
 	const auto [zero, enough] = speeds(solver);
+	for (size_t i = 0; i < points.size(); ++i)
+		if (points[i].holds) solver.points[i].impulse[0] = leastImpulse(solver, i);
 	const double without = solver.residual();
 	if (without <= zero) return { 0, 0, without };
-	for (size_t i = 0; i < points.size(); ++i)
-		if (points[i].holds) solver.points[i].impulse[0] = std::numeric_limits<double>::min(); // a first guess of its state alone
 	return solver.solve(zero, enough);
 }
 

@@ -239,7 +239,7 @@ template <class K>
 void WallStep<K>::setBase(const RigidSystem<K>& s, Contacts& contacts, double h)
 {
 	const auto set = [&](int b, int d) {
-		contacts.setLinearVelocity(b, h > 0 ? s.drives[d].meanVelocity(s.time, h) : startVelocity(s, d));
+		contacts.setLinearVelocity(b, h > 0 ? s.drives[d].meanVelocity(s.time, h) : s.drives[d].velocity(s.time));
 	};
 	for (const int b : onDrives)
 		set(b, s.bodies[b].drive);
@@ -428,25 +428,30 @@ int WallStep<K>::land(RigidSystem<K>& s, double part)
 {
 	const size_t known = s.impacts.size();
 	s.baseWork += joints.land(s, moving(), sweeps, part);
-	landed.insert(landed.end(), joints.landed.begin(), joints.landed.end());
+	for (const int block : joints.landed)
+		if (std::find(landed.begin(), landed.end(), block) == landed.end())
+			landed.push_back(block);
 	return int(s.impacts.size() - known);
 }
 
-// While a base jumps, its impulse works on the mean of the velocities before and after.
 template <class K>
-typename K::Vector WallStep<K>::startVelocity(const RigidSystem<K>& s, int drive) const
-{
-	const typename K::Vector velocity = s.drives[drive].velocity(s.time);
-	return s.time == jumpTime ? typename K::Vector(velocity - jumps[drive] / 2) : velocity;
-}
-
-template <class K>
-typename K::Velocity WallStep<K>::startVelocityOf(const RigidSystem<K>& s, int b) const
+typename K::Velocity WallStep<K>::startVelocity(const RigidSystem<K>& s, int b) const
 {
 	typename K::Velocity velocity = s.bodies[b].velocity;
 	if (const int drive = s.bodies[b].drive; drive >= 0)
-		velocity.template head<K::dimension>() = startVelocity(s, drive);
+		velocity.template head<K::dimension>() = s.drives[drive].velocity(s.time);
 	return velocity;
+}
+
+// What a jump of the base gives to what cannot slip works on the mean of the velocities before and after, not on the last.
+template <class K>
+typename K::Vector WallStep<K>::halfJump(const RigidSystem<K>& s, const wall::WallContacts<K>& contacts, int group, int lane) const
+{
+	const ContactPair<K>& pair = s.pairs[contacts.features[group].pair[lane]];
+	const int drive = s.bodies[s.bodies[pair.body1].prescribed ? pair.body1 : pair.body2].drive;
+	if (s.time != jumpTime || drive < 0 || pair.friction != noSlip)
+		return K::Vector::Zero();
+	return jumps[drive] / 2;
 }
 
 // Of the impulses that the prescribed bodies give, J, with their velocities at the start of the substep: the mean of those that blocks
@@ -462,7 +467,11 @@ double WallStep<K>::baseWork(const RigidSystem<K>& s, Contacts& contacts)
 		const bool first = s.bodies[group.body1[i]].prescribed;
 		if (isStill(first ? group.body2[i] : group.body1[i]) == ofSweeps)
 			continue;
-		const Lanes* v = &contacts.velocity[wall::packs<K> * (first ? group.body1 : group.body2)[i]];
+		Lanes v[wall::packs<K>];
+		std::copy_n(&contacts.velocity[wall::packs<K> * (first ? group.body1 : group.body2)[i]], wall::packs<K>, v);
+		const typename K::Vector half = halfJump(s, contacts, g, i);
+		for (int k = 0; k < K::dimension; ++k)
+			v[0][k] -= half[k];
 		for (int k = 0; k < group.count; ++k) {
 			const wall::PointLanes<K>& p = group.point[k];
 			const auto impulse = ofSweeps ? sweeps.impulse(g, i, k) : wall::impulseOf(p, i);
@@ -481,14 +490,17 @@ double WallStep<K>::baseWorkWhenStill(const RigidSystem<K>& s, double h)
 	using Vector = typename K::Vector;
 	Contacts& contacts = still();
 	int base = -1;
+	Vector half = Vector::Zero();
 	for (const auto& [g, i] : contacts.onBase) {
 		if (!isStill(contacts.freeBody(g, i)))
 			continue;
 		const int b = s.bodies[contacts.groups[g].body1[i]].prescribed ? contacts.groups[g].body1[i] : contacts.groups[g].body2[i];
-		if (base < 0)
+		if (base < 0) {
 			base = b;
-		const typename K::Velocity v = startVelocityOf(s, b);
-		if (b != base && (v != startVelocityOf(s, base) || !v.template tail<K::spins>().isZero(0)))
+			half = halfJump(s, contacts, g, i);
+		}
+		const typename K::Velocity v = startVelocity(s, b);
+		if (b != base && (v != startVelocity(s, base) || !v.template tail<K::spins>().isZero(0)))
 			return baseWork(s, contacts);
 	}
 	if (base < 0)
@@ -502,7 +514,7 @@ double WallStep<K>::baseWorkWhenStill(const RigidSystem<K>& s, double h)
 			for (int i = 0; i < K::dimension; ++i)
 				impulse[i] += s.bodies[b].mass * change[i];
 		}
-	return impulse.dot(startVelocityOf(s, base).template head<K::dimension>());
+	return impulse.dot(startVelocity(s, base).template head<K::dimension>() - half);
 }
 
 // The same of a base that turns: with the moment about its centre, of arms in the middle of the step.
@@ -524,7 +536,7 @@ double WallStep<K>::baseWorkWhenTurning(const RigidSystem<K>& s, int base, doubl
 		impulse.template tail<K::spins>() +=
 		    K::moment(arm, own) + K::angularMomentum(body.inertia, body.pose, change.template tail<K::spins>());
 	}
-	return impulse.dot(startVelocityOf(s, base));
+	return impulse.dot(startVelocity(s, base));
 }
 
 // A body's pose and velocity back into the system. Returns the work of the force on it, J.

@@ -133,8 +133,8 @@ private:
 	int land(RigidSystem<K>& system, double part);
 	int substepCount() const;
 	double finer() const;
-	typename K::Vector startVelocity(const RigidSystem<K>& system, int drive) const;
-	typename K::Velocity startVelocityOf(const RigidSystem<K>& system, int body) const;
+	typename K::Velocity startVelocity(const RigidSystem<K>& system, int body) const;
+	typename K::Vector halfJump(const RigidSystem<K>& system, const Contacts& contacts, int group, int lane) const;
 	double baseWork(const RigidSystem<K>& system, Contacts& contacts);
 	double baseWorkWhenStill(const RigidSystem<K>& system, double h);
 	double baseWorkWhenTurning(const RigidSystem<K>& system, int base, double h);
@@ -147,10 +147,10 @@ private:
 
 	static constexpr double quickSoftness = 0.1; // velocities follow their laws within some ten solves
 
-	bool started {false}, jumped {false};   // the base, at this instant
-	double jumpTime {0};                    // s
-	std::vector<typename K::Vector> jumps;  // then, of drives, that are for the sweeps, m/s
-	Scales scales;                        // of the step
+	bool started {false}, jumped {false};  // the base, at this instant
+	double jumpTime {0};                   // s
+	std::vector<typename K::Vector> jumps; // then, of drives, that are for the sweeps, m/s
+	Scales scales;                         // of the step
 	wall::Structures<K> structures;
 	wall::Team team;
 	Contacts sets[2] {Contacts(team), Contacts(team)};

@@ -368,7 +368,7 @@ class _Mechanism:
             apart = self._movement(self._row[id2], points) - self._movement(self._row[id1], points)
             gap = apart @ normal
             least = _MOVED * self._moved.max()
-            slip = np.linalg.norm(apart - gap[:, None] * normal, axis=1)[gap <= gap.min() + least].max()  # where it is closed, or nearest to it
+            slip = np.where(gap <= gap.min() + least, np.linalg.norm(apart - gap[:, None] * normal, axis=1), 0).max()  # where it is closed, or nearest to it
             table[k] = id1, id2, max(gap.max(), 0), slip, gap.max() > least, slip > least
         return table
 
