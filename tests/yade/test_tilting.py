@@ -173,7 +173,7 @@ trial = table.trial(0.5)
 doubtful = table._collapse(0.5, (0.4, 0.5), [tilting.Trial(0.4, "unclear", 0, 0, 0), tilting.Trial(0.5, "collapse", 0, 0, 3)], table._mechanism())
 assert trial.verdict == "collapse" and str(doubtful).count("NOT TO BE TRUSTED") == 2 and "in 3 steps" in str(doubtful) and "method='wall'" in str(doubtful), doubtful
 
-# --- a picture leaves no more room than a tenth beside the blocks, however long one is; its legend hides none; a joint seen face on is an outline ---
+# --- a picture leaves little room beside the blocks, 0.15 of their extent, however long one is; its legend hides none; a joint seen face on is an outline ---
 from matplotlib.figure import Figure
 figures, save = [], Figure.savefig
 Figure.savefig = lambda figure, *path, **options: figures.append(figure) or save(figure, *path, **options)
@@ -189,7 +189,7 @@ with tempfile.TemporaryDirectory() as folder:
 Figure.savefig = save
 axes, = figures[0].axes
 assert axes.get_legend().get_window_extent().x0 >= axes.get_window_extent().x1 - 1
-assert np.allclose(axes.get_xlim(), (-0.9 - 0.144, 0.9 + 0.144), atol=1e-6) and np.allclose(axes.get_ylim(), (-0.144, 1.2 + 0.144), atol=1e-6), axes.get_ylim()
+assert np.allclose(axes.get_xlim(), (-0.9 - 0.27, 0.9 + 0.27), atol=1e-6) and np.allclose(axes.get_ylim(), (-0.27, 1.2 + 0.27), atol=1e-6), axes.get_ylim()
 outline = max((patch.get_xy() for patch in axes.patches), key=lambda corners: np.ptp(corners[:, 1]))
 assert np.allclose([outline.min(axis=0), outline.max(axis=0)], [[0.7, 0], [0.9, 1.0]], atol=1e-6) and len(outline) == 5, outline
 assert all(np.abs(np.diff(outline, axis=0)).min(axis=1) < 1e-6), outline  # four upright and level sides
