@@ -107,6 +107,15 @@ for courses in (3, 8):
     print(f"beside {len(ids)} blocks, work of a pulse {dem.energy()['baseWork']:.4f} J, of what goes along {wanted:.4f} J")
     assert abs(dem.energy()["baseWork"] / wanted - 1) < 0.01
 
+# --- of a wall that a pulse slides under, all that the base does is friction's, at the velocity after the pulse, but for what the blocks gain in the step. As an
+# impulse's, at the mean of the velocities, it would be a twentieth too little ---
+base, ids = wall(7, 7)
+O.engines = rigid_engines(dem.PulseTrainEngine(ids=[base], impulse=0.4, times=[0.01]), method="wall", dt=STEP)
+O.run(11, True)
+energy = dem.energy()
+print(f"a pulse under {len(ids)} blocks that slide: work {energy['baseWork']:.3f} J, friction {energy['frictDissip']:.3f} J, left over {energy['impactDissip']:.3f} J")
+assert energy["frictDissip"] > 0.9 * energy["baseWork"] and abs(energy["impactDissip"]) < 0.02 * energy["baseWork"]
+
 # --- the blocks of a wall that cannot slip are set turning by a pulse that approaches none of their joints, in space as in the plane, and lose nothing to it. What
 # they gain and lose in the step after it is of its first order, g STEP / 0.4 m/s; of second order with localised impacts ---
 kinetic, first_order = [], 9.81 * STEP / 0.4

@@ -67,13 +67,13 @@ double timeToStabilise(const RockingBlock& block, double impulse, double restitu
 		--n;
 	else if (!isNear(n))
 		++n;
-	constexpr double few = 1e6; // below, the closed sum may lose its digits, where C and the tolerance are near 1
-	double sum = n * limit - (limit - 1) * (1 - std::pow(C, n)) / (1 - C);
-	if (n <= few) {
-		sum = 0;
+	constexpr double few = 1e6; // up to so many are added up: the closed sum may lose its digits, where C and the tolerance are near 1
+	double sum = 0;
+	if (n > few)
+		sum = n * limit - (limit - 1) * (1 - std::pow(C, n)) / (1 - C);
+	else
 		for (double i = 1, s = 1; i <= n; ++i, s = C * s + 2)
 			sum += s;
-	}
 	return singlePulse(block, impulse).duration * sum;
 }
 

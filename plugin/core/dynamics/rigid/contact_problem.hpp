@@ -82,7 +82,7 @@ public:
 	void        forget();   // the next solve starts without the factor of the last: its bits depend on its input alone
 
 	bool guessed { false };   // the impulses given are not those of the last solve
-	int  maxSweeps { 40 };    // in the plane, of Gauss-Seidel before Newton takes over
+	int  maxSweeps { 40 };    // of Gauss-Seidel before Newton takes over, where it comes first
 	bool useNewton { true };  // false: Gauss-Seidel alone, up to `lastSweeps`
 	int  lastSweeps { 2000 };
 

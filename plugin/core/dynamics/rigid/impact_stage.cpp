@@ -209,9 +209,9 @@ template <class K> void ImpactStage<K>::shareWeights(RigidSystem<K>& s)
 	for (size_t k = 0; k < refs.size(); ++k)
 		weights[refs[k].pair] += normal(k);
 	for (size_t k = 0; k < refs.size(); ++k) {
-		const ContactPair<K>& pair = s.pairs[refs[k].pair];
-		ContactPoint<K>&      point = s.pairs[refs[k].pair].points[refs[k].point];
-		const auto &          body1 = s.bodies[pair.body1], &body2 = s.bodies[pair.body2];
+		ContactPair<K>&  pair = s.pairs[refs[k].pair];
+		ContactPoint<K>& point = pair.points[refs[k].point];
+		const auto &     body1 = s.bodies[pair.body1], &body2 = s.bodies[pair.body2];
 		if (!point.closed || isLoaded(point) || !(normal(k) > 0)) continue;
 		const double lighter = body1.prescribed ? body2.mass : body2.prescribed ? body1.mass : std::min(body1.mass, body2.mass);
 		point.force.setZero();

@@ -15,8 +15,8 @@ struct Sweep {
 	float parting;    // how fast, of the share of what it is deeper that its bodies part by in a substep, 1/s, but
 	float fastest;    // not faster than this, m/s
 	// In space, two points that press alone are found at once: both corners of an edge, since one after the other they would turn the block
-	// about the first. Where loads lag, walls that have been shaken creep on by it: of fifteen of 20 courses three, by 50 to 200 J in half
-	// a second, which without lose at most 10.
+	// about the first. Where loads lag, walls that have been shaken creep on by it: of fifteen of 20 courses three lose 50 to 200 J in
+	// half a second, and without it none more than 10.
 	bool edges;
 	bool watched; // the last of a step, of which residual() and motion() tell
 };

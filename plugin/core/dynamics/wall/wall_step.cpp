@@ -234,7 +234,7 @@ void WallStep<K>::measure(RigidSystem<K>& s, Contacts& contacts)
 	joints.outdate();
 }
 
-// Velocities of the prescribed bodies that bring them where they belong after h, and of supports with them; 0: those that they start with.
+// Velocities of the prescribed bodies that bring them where they belong after h, and of supports with them; 0: those that they have now.
 template <class K>
 void WallStep<K>::setBase(const RigidSystem<K>& s, Contacts& contacts, double h)
 {
