@@ -41,6 +41,7 @@ MASONRY_INLINE Mask takePoint(PointLanes<K>& p, const StillLanes<K>& f, typename
 	const Lanes stiffness = stiffnessOf(p, step.softness), gap = p.gap - f.zero;
 	row.stiffness = touches ? stiffness : none;
 	row.resistance = touches ? all(1) / stiffness : none;
+	row.perMass = touches ? all(1) / p.massN : none;
 	row.bn = touches ? gap * (gap > 0 ? all(-step.perH) : all(-step.pullBack)) : none;
 	p.pn = touches ? p.pn : none;
 	p.pt = select(touches, p.pt, typename PointLanes<K>::Tangent {});
@@ -49,9 +50,9 @@ MASONRY_INLINE Mask takePoint(PointLanes<K>& p, const StillLanes<K>& f, typename
 
 // Normal part of the nearest impulse that friction allows, of one with a normal part and the length of a tangential one. Infinite friction
 // holds nothing that parts.
-MASONRY_INLINE Lanes nearestNormal(const Lanes& normal, const Lanes& tangential, const Lanes& friction)
+MASONRY_INLINE Lanes nearestNormal(const Lanes& normal, const Lanes& tangential, const Lanes& friction, const Lanes& share)
 {
-	const Lanes onRim = (normal + friction * tangential) / (1 + friction * friction);
+	const Lanes onRim = (normal + friction * tangential) * share;
 	const Mask inside = (tangential <= friction * normal) | (friction >= mostFriction);
 	return larger(inside ? normal : onRim, all(0));
 }
@@ -63,6 +64,7 @@ MASONRY_INLINE void passGroup(Group<K>& group, StillGroup<K>& still, Rows<K>& ro
 {
 	const Bodies<K> v1(velocity, group.body1), v2(velocity, group.body2);
 	Bodies<K> f1(force, group.body1), f2(force, group.body2);
+	const Lanes share = all(1) / (1 + group.friction * group.friction);
 	for (int k = 0; k < group.count; ++k) {
 		PointLanes<K>& p = group.point[k];
 		StillLanes<K>& f = still[k];
@@ -72,13 +74,12 @@ MASONRY_INLINE void passGroup(Group<K>& group, StillGroup<K>& still, Rows<K>& ro
 		if constexpr (laws) {
 			const Lanes yn = p.pn - (relaxation * wn - (relaxation - 1) * f.zn) * row.stiffness;
 			const auto yt = p.pt - (relaxation * wt - (relaxation - 1) * f.zt) * row.stiffness;
-			p.pn = nearestNormal(yn, length(yt), group.friction);
+			p.pn = nearestNormal(yn, length(yt), group.friction, share);
 			p.pt = clip(yt, group.friction * p.pn);
 			const Lanes zn = (p.pn - yn) * row.resistance;
 			const auto zt = (p.pt - yt) * row.resistance;
 			const Lanes errorN = (zn - (2 - relaxation) * f.zn - (relaxation - 1) * wn) * row.stiffness;
 			const auto errorT = (zt - (2 - relaxation) * f.zt - (relaxation - 1) * wt) * row.stiffness;
-			const Lanes perMass = row.stiffness > 0 ? all(1) / p.massN : all(0);
 			f.zn = zn;
 			f.zt = zt;
 			row.un = un;
@@ -87,7 +88,7 @@ MASONRY_INLINE void passGroup(Group<K>& group, StillGroup<K>& still, Rows<K>& ro
 			const Lanes miss = larger(size(wn - zn), size(wt - zt)), motion = larger(size(un), size(ut));
 			worst.velocity = larger(worst.velocity, touches ? miss : all(0));
 			worst.motion = larger(worst.motion, p.massN > 0 ? motion : all(0));
-			worst.force = larger(worst.force, larger(size(errorN), size(errorT)) * perMass);
+			worst.force = larger(worst.force, larger(size(errorN), size(errorT)) * row.perMass);
 		}
 		if constexpr (!laws) { // a point without an impulse is free to move as it does
 			f.zn = p.pn > 0 ? f.zn : larger(wn, all(0));
@@ -117,7 +118,8 @@ MASONRY_INLINE bool startGroups(Group<K>* groups, StillGroup<K>* still, Rows<K>*
 	return any(different);
 }
 
-// (z - w)/R is the impulse that V lacks; over the mass, the velocity. The largest by group.
+// (z - w)/R is the impulse that V lacks; over the mass, the velocity. The largest by group. A joint of which a point sticks, in space two,
+// does not slide, though at others friction gives all that it can.
 template <class K>
 MASONRY_INLINE void addHeld(const Group<K>* groups, StillGroup<K>* still, const Rows<K>* rows, int begin, int end, double pullBack,
                             Lanes* most)
@@ -125,13 +127,20 @@ MASONRY_INLINE void addHeld(const Group<K>* groups, StillGroup<K>* still, const 
 	const Lanes none = all(0);
 	for (int g = begin; g < end; ++g) {
 		most[g] = none;
+		Mask atRim[lanePoints<K>];
+		Lanes sticking = none;
+		for (int k = 0; k < groups[g].count; ++k) {
+			const PointLanes<K>& p = groups[g].point[k];
+			atRim[k] = slides(p.pt, groups[g].friction * p.pn);
+			sticking += (p.pn > 0) & ~atRim[k] ? all(1) : none;
+		}
 		for (int k = 0; k < groups[g].count; ++k) {
 			const PointLanes<K>& p = groups[g].point[k];
 			StillLanes<K>& f = still[g][k];
 			const auto& row = rows[g][k];
 			const Mask touches = row.stiffness > 0, loaded = p.pn > 0, parts = touches & ~loaded,
-			           glides = touches & loaded & slides(p.pt, groups[g].friction * p.pn);
-			const Lanes perMass = touches ? row.stiffness / p.massN : none;
+			           glides = touches & loaded & atRim[k] & (sticking < K::dimension - 1);
+			const Lanes perMass = row.stiffness * row.perMass;
 			f.heldN = parts ? larger(f.heldN + (f.zn - row.un + row.bn) * perMass, none) : none;
 			f.heldT = select(glides, f.heldT + perMass * (f.zt - row.ut - pullBack * f.slip), typename PointLanes<K>::Tangent {});
 			most[g] = larger(most[g], larger(f.heldN, size(f.heldT)));
@@ -139,9 +148,19 @@ MASONRY_INLINE void addHeld(const Group<K>* groups, StillGroup<K>* still, const 
 	}
 }
 
+// An impulse to hand on, at most.
 template <class K>
-MASONRY_INLINE void addSlip(Group<K>* groups, StillGroup<K>* still, const Rows<K>* rows, int begin, int end, double h, Lanes& loss)
+MASONRY_INLINE Lanes mostToHandOn(const PointLanes<K>& p, const typename KeptFactor<K>::Before& before, double ofFall)
 {
+	return larger(mostOfMean * before.pn, mostOfFall * ofFall * p.massN);
+}
+
+// Returns whether an impact gives some point more than what it had, and more than courses that gravity gives `ofColumn` in a step weigh.
+template <class K>
+MASONRY_INLINE bool addSlip(Group<K>* groups, StillGroup<K>* still, const Rows<K>* rows, const Befores<K>* before, int begin, int end,
+                            double h, double ofColumn, Lanes& loss)
+{
+	Mask hit {};
 	for (int g = begin; g < end; ++g)
 		for (int k = 0; k < groups[g].count; ++k) {
 			PointLanes<K>& p = groups[g].point[k];
@@ -150,7 +169,9 @@ MASONRY_INLINE void addSlip(Group<K>* groups, StillGroup<K>* still, const Rows<K
 			const Mask glides = slides(p.pt, groups[g].friction * p.pn);
 			slip = select(glides, typename PointLanes<K>::Tangent {}, slip + h * rows[g][k].ut);
 			loss -= select(glides, dot(p.pt, rows[g][k].ut), all(0));
+			hit |= p.pn > mostToHandOn(p, before[g][k], ofColumn);
 		}
+	return any(hit);
 }
 
 MASONRY_LANES void addTo(const std::vector<int>& members, const Lanes* change, Lanes* velocity)
@@ -183,9 +204,10 @@ MASONRY_LANES void inertia(const std::vector<int>& members, const Lanes* velocit
 	{                                                                                                                                      \
 		addHeld<K>(groups, still, rows, begin, end, pullBack, most);                                                                       \
 	}                                                                                                                                      \
-	MASONRY_LANES void slipPass(Group<K>* groups, StillGroup<K>* still, const Rows<K>* rows, int begin, int end, double h, Lanes& loss)    \
+	MASONRY_LANES bool slipPass(Group<K>* groups, StillGroup<K>* still, const Rows<K>* rows, const Befores<K>* before, int begin, int end, \
+	                            double h, double ofColumn, Lanes& loss)                                                                    \
 	{                                                                                                                                      \
-		addSlip<K>(groups, still, rows, begin, end, h, loss);                                                                              \
+		return addSlip<K>(groups, still, rows, before, begin, end, h, ofColumn, loss);                                                     \
 	}
 MASONRY_PASSES(Plane)
 MASONRY_PASSES(Space)
@@ -419,13 +441,16 @@ void KeptFactor<K>::giveHeld(const LaneBits& lanes)
 }
 
 template <class K>
-double KeptFactor<K>::keepSlip()
+double KeptFactor<K>::keepSlip(double fall)
 {
 	auto& c = *contacts;
 	LaneArray loss(c.parts.size(), all(0));
+	bool hits[Team::mostParts + 1] {};
 	c.allParts([&](const Part& part, int number) {
-		slipPass(c.groups.data(), c.still.data(), rows.data(), part.begin, part.end, h, loss[number]);
+		hits[number] = slipPass(c.groups.data(), c.still.data(), rows.data(), before.data(), part.begin, part.end, h,
+		                        fall * std::max(1, c.depth), loss[number]);
 	});
+	hit = std::any_of(std::begin(hits), std::end(hits), [](bool is) { return is; });
 	double sum = 0;
 	for (const Lanes& here : loss)
 		sum += here[0] + here[1] + here[2] + here[3];
@@ -436,18 +461,10 @@ template <class K>
 void KeptFactor<K>::handOn(double fall, bool always)
 {
 	auto& c = *contacts;
-	const double ofColumn = fall * std::max(1, c.depth);
-	const auto most = [&](int g, int k, double ofFall) {
-		return larger(mostOfMean * before[g][k].pn, mostOfFall * ofFall * c.groups[g].point[k].massN);
-	};
-	const auto hits = [&](int g, int k, Mask& some) { some |= c.groups[g].point[k].pn > most(g, k, ofColumn); };
-	const LaneBits hit = where(hits);
-	if (!always && std::all_of(hit.begin(), hit.end(), [](unsigned char bits) { return bits == 0; }))
-		return;
-	for (int g = 0; g < int(c.groups.size()); ++g)
+	for (int g = 0; (hit || always) && g < int(c.groups.size()); ++g)
 		for (int k = 0; k < c.groups[g].count; ++k) {
 			PointLanes<K>& p = c.groups[g].point[k];
-			const Lanes pn = smaller(p.pn, most(g, k, fall));
+			const Lanes pn = smaller(p.pn, mostToHandOn(p, before[g][k], fall));
 			p.pt = select(pn < p.pn, clip(p.pt, c.groups[g].friction * pn), p.pt);
 			p.pn = pn;
 		}

@@ -56,6 +56,7 @@ public:
 	struct alignas(alignment) Row { // of a point
 		Lanes bn;
 		Lanes resistance, stiffness; // R and 1/R; zero: does not touch
+		Lanes perMass;               // 1 / p.massN
 		Lanes un;                    // J V, m/s
 		Tangent ut;
 	};
@@ -92,9 +93,10 @@ public:
 	void forgetHeld(const LaneBits& lanes);
 	// What these pairs have been kept from in the steps before this one, into the contacts' velocities.
 	void giveHeld(const LaneBits& lanes);
-	double keepSlip(); // of the step that ends, in which gaps have moved. Returns what friction has taken, J
-	// What the next step starts from, where there has been an impact, or `always`: `fall` is what gravity gives in a step, m/s. An impact
-	// gives some point more than what it had, and more than the courses upon it weigh.
+	// Of the step that ends, in which gaps have moved. Returns what friction has taken, J. `fall` is what gravity gives in a step, m/s.
+	double keepSlip(double fall);
+	// What the next step starts from, where there has been an impact, or `always`. An impact gives some point more than what it had, and
+	// more than the courses upon it weigh.
 	void handOn(double fall, bool always);
 	// Impulses as they were at the beginning, of all pairs or of these, which then have not moved in this step.
 	void giveUp();
@@ -155,6 +157,7 @@ private:
 	const double given;
 	double h {0}, softness {0}, backPerSecond {0};
 	bool outdated {true};
+	bool hit {false}; // a point, by an impact in the last step
 	std::vector<typename K::Pose> factored; // poses that the factor is of
 };
 

@@ -313,9 +313,10 @@ void WallStep<K>::keepStill(RigidSystem<K>& s, double h)
 	Contacts& contacts = still();
 	report.velocityResidual = std::max(report.velocityResidual, kept.report.velocity);
 	report.forceResidual = std::max(report.forceResidual, kept.report.force);
-	frictionLoss += kept.keepSlip();
+	const double fall = scales.stepSpeed(h);
+	frictionLoss += kept.keepSlip(fall);
 	if (started)
-		kept.handOn(scales.stepSpeed(h), !moving().onStill.empty());
+		kept.handOn(fall, !moving().onStill.empty());
 	s.baseWork += baseWorkWhenStill(s, h);
 	contacts.velocity = kept.velocity;
 	contacts.shift.resize(kept.velocity.size());
