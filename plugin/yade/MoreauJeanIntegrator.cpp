@@ -115,7 +115,7 @@ void MoreauJeanIntegrator::beginMotions()
 	}
 }
 
-/// A script has put this engine into another scene.
+/// A script has put this engine into another scene, or saved it there before its first step.
 void MoreauJeanIntegrator::leaveScene()
 {
 	const PythonLock lock;
@@ -129,7 +129,11 @@ void MoreauJeanIntegrator::leaveScene()
 		stillSteps, movingSteps, failures, firstFailure, warnedOf);
 }
 
-vector<Real> MoreauJeanIntegrator::remembered() { return memory.run ? memory.run->pack() : memory.values; }
+vector<Real> MoreauJeanIntegrator::remembered()
+{
+	if (memory.run) return memory.run->isPresent() ? memory.run->pack() : vector<Real>();
+	return memory.values;
+}
 
 void MoreauJeanIntegrator::goOnFrom(const vector<Real>& values)
 {
@@ -328,7 +332,7 @@ void MoreauJeanIntegrator::checkTimeStep()
 void MoreauJeanIntegrator::action()
 {
 	if (!gravity.allFinite()) reject(*this, "gravity", gravity.transpose(), "three finite numbers in m/s^2");
-	if (memory.run && !sceneOf(memory).isOf(*scene)) leaveScene();
+	if (memory.run ? !memory.run->isPresent() : memory.values.empty() && !chosenModel.empty()) leaveScene();
 	const masonry::rigid::StepReport report = stepRun();
 	for (const auto& motion : taken) static_cast<BaseMotionEngine&>(*motion).haveStepped();
 	count(report);
@@ -353,7 +357,7 @@ bool MoreauJeanIntegrator::isWatched() const
 
 void MoreauJeanIntegrator::writeInteractions()
 {
-	if (memory.run && sceneOf(memory).isOf(*Omega::instance().getScene())) sceneOf(memory).writeJoints();
+	if (memory.run && memory.run->isPresent()) sceneOf(memory).writeJoints();
 }
 
 masonry::rigid::StepReport MoreauJeanIntegrator::stepRun()

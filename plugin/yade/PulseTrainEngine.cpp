@@ -127,6 +127,8 @@ void PulseTrainEngine::check() const
 	if (resonant() == !times.empty())
 		throw std::invalid_argument(sentence("PulseTrainEngine.times has ", times.size(), " entries and resonantBlock = ", resonantBlock,
 			": times must be given for a scheduled train, or resonantBlock for a resonant one, not both and not neither."));
+	if (halfCycles > 0 && !resonant()) reject(*this, "halfCycles", halfCycles, "left out (-1) where times are given: it ends a resonant train");
+	if (assembly && resonant()) reject(*this, "assembly", "True", "left out (False) with resonantBlock: it ends scheduled pulses");
 	if ((shape != "dirac") != (duration > 0)) reject(*this, "duration", duration, "positive for a finite shape and 0 for 'dirac'");
 	if (resonant() && !(scene->bodies->exists(resonantBlock) && (*scene->bodies)[resonantBlock]->isDynamic()))
 		reject(*this, "resonantBlock", resonantBlock, "the id of a free block in O.bodies");

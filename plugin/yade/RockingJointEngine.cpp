@@ -51,6 +51,15 @@ void RockingJointEngine::postLoad(RockingJointEngine&)
 	if (impactOrder != "simultaneous" && impactOrder != "sequential") reject(*this, "impactOrder", "'" + impactOrder + "'", "'simultaneous' or 'sequential'");
 }
 
+/// A script has put this engine into another scene.
+void RockingJointEngine::leaveScene()
+{
+	const auto forget = [](auto&... results) { ((results = {}), ...); };
+	forget(started, impactTimes, impactBlocks, impactSupports, impactAsked, impactBefore, impactAfter, impactEnergy, impactApplication, impactFriction,
+		impactSwitched, impactCapped, worstResidual, failures, madeEnergy, kinetic, potential, elastPotential, frictDissip, dampDissip, impactDissip,
+		baseWork, reactionIds, reactions, reactionMoments, checkedTimeStep, boundAt);
+}
+
 void RockingJointEngine::checkScene()
 {
 	constexpr int period = 50; // steps between two looks at the integrator, whose gravity a script may turn slowly
@@ -124,9 +133,10 @@ void RockingJointEngine::addExternalForces()
 
 Real RockingJointEngine::criticalTimeStep()
 {
-	if (checkedTimeStep > 0) return masonry::criticalTimeStep(system.bodies, system.contacts);
+	const shared_ptr<Scene>& present = Omega::instance().getScene();
+	if (checkedTimeStep > 0 && home.lock() == present) return masonry::criticalTimeStep(system.bodies, system.contacts);
 	// Before the first step there are no interactions yet, and after loading they have no patches: every pair of boxes is looked at.
-	scene = Omega::instance().getScene().get();
+	scene = present.get();
 	vector<masonry::JointContact> contacts;
 	gather();
 	Ip2_BlockMat_BlockMat_BlockPhys law;
@@ -331,6 +341,9 @@ void RockingJointEngine::keepReactions()
 
 void RockingJointEngine::action()
 {
+	const shared_ptr<Scene>& present = Omega::instance().getScene();
+	if (checkedTimeStep > 0 && home.lock() != present) leaveScene();
+	home = present;
 	const vector<Pair> pairs = gather();
 	boundTurns();
 	checkScene();

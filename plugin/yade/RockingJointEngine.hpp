@@ -65,6 +65,7 @@ private:
 		Quaternionr orientation = Quaternionr::Identity();
 	};
 
+	void leaveScene();
 	void checkScene();
 	vector<Pair> gather();
 	void addExternalForces();
@@ -82,7 +83,8 @@ private:
 
 	// Of the running process, found again after loading.
 	Vector3r gravity = Vector3r::Zero();
-	Real checkedTimeStep = 0;
+	boost::weak_ptr<Scene> home;
+	Real checkedTimeStep = 0; // 0: no step yet
 	masonry::JointSystem system;
 	vector<int> ids;   // index in system.bodies -> body id
 	vector<int> index; // body id -> index in system.bodies, or -1

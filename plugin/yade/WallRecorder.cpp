@@ -46,7 +46,7 @@ void WallRecorder::begin()
 void WallRecorder::addEnergies()
 {
 	const auto integrates = [](const auto& engine) {
-		return dynamic_cast<MoreauJeanIntegrator*>(engine.get()) || dynamic_cast<RockingJointEngine*>(engine.get());
+		return !engine->dead && (dynamic_cast<MoreauJeanIntegrator*>(engine.get()) || dynamic_cast<RockingJointEngine*>(engine.get()));
 	};
 	const auto present = std::find_if(scene->engines.begin(), scene->engines.end(), integrates);
 	if (present == scene->engines.end()) return add(energies, NaN, NaN, NaN, NaN, NaN, NaN, NaN);

@@ -129,6 +129,8 @@ template <class K> struct Remembered {
 struct RigidRun {
 	virtual ~RigidRun() = default;
 	virtual vector<Real> pack() = 0;
+	/// Its scene is the one that YADE runs.
+	virtual bool isPresent() const = 0;
 };
 
 /// Attribute of the integrator: the blocks while it runs, numbers in a file.
@@ -139,7 +141,7 @@ struct RigidMemory {
 	template <class Archive> void serialize(Archive& archive, unsigned)
 	{
 		if constexpr (Archive::is_saving::value) {
-			if (run) values = run->pack();
+			if (run) values = run->isPresent() ? run->pack() : vector<Real>();
 		} else {
 			run.reset();
 		}

@@ -60,7 +60,6 @@ struct Seen {
 
 class AnyRigidScene : public RigidRun {
 public:
-	virtual bool isOf(const Scene&) const = 0;
 	/// Blocks have come, gone or changed: build it anew, with what this one remembers.
 	virtual bool outdated() const = 0;
 	/// Throws LeavesPlane before anything has moved.
@@ -88,6 +87,7 @@ public:
 	RigidScene(MoreauJeanIntegrator& engine, const vector<BaseMotionEngine*>& motions, const Remembered<K>& before)
 	        : integrator(engine)
 	        , scene(*engine.scene)
+	        , home(Omega::instance().getScene())
 	        , coordinates(engine.along)
 	        , joints(scene, coordinates, engine.pairLaw)
 	{
@@ -141,7 +141,7 @@ public:
 		lawsChanged = laws;
 	}
 
-	bool isOf(const Scene& other) const override { return &other == &scene; }
+	bool isPresent() const override { return home.lock() == Omega::instance().getScene(); }
 
 	bool outdated() const override
 	{
@@ -540,6 +540,7 @@ private:
 
 	MoreauJeanIntegrator& integrator;
 	Scene& scene;
+	const boost::weak_ptr<Scene> home; // the same; another may come to lie in its place
 	const Coordinates<K> coordinates;
 	System system;
 	masonry::rigid::Islands<K> islands;

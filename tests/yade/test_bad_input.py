@@ -106,7 +106,8 @@ for bad in (nan, inf):
     refuses(lambda: quiet_engines(dem.RecordMotionEngine(ids=[base], samples=[0, 1], start=bad)), f"RecordMotionEngine.start = {bad}", "finite")
 for bad, words in ((dict(times=[0]), ("impulse", "nan")), (dict(impulse=1e300, times=[0]), ("impulse = 1e+300", "at most 1e6")), (dict(impulse=0.1), ("times has 0 entries", "resonantBlock = -1")),
                    (dict(impulse=0.1, times=[0], resonantBlock=block), ("times has 1 entries", f"resonantBlock = {block}")), (dict(impulse=0.1, resonantBlock=77), ("resonantBlock", "77")), (dict(impulse=0.1, resonantBlock=base), ("resonantBlock = 0", "free block")),
-                   (dict(impulse=0.1, times=[0], duration=1), ("duration", "1", "dirac")), (dict(impulse=0.1, times=[0], shape="half-sine"), ("duration", "0"))):
+                   (dict(impulse=0.1, times=[0], halfCycles=1), ("halfCycles = 1", "where times are given")),
+                   (dict(impulse=0.1, resonantBlock=block, assembly=True), ("assembly = True", "with resonantBlock")), (dict(impulse=0.1, times=[0], duration=1), ("duration", "1", "dirac")), (dict(impulse=0.1, times=[0], shape="half-sine"), ("duration", "0"))):
     refuses(lambda: quiet_engines(dem.PulseTrainEngine(ids=[base], **bad)), *words)
 for bad, words in ((dict(samples=[0, nan]), ("samples", "nan")), (dict(samples=[1]), ("samples has 1 value", "at least two")), (dict(samples=[0, 1], interval=0), ("interval", "0")), (dict(samples=[0, 1], scale=inf), ("scale", "inf")),
                    (dict(samples=[0, 1], baseline="wavy"), ("baseline", "wavy"))):

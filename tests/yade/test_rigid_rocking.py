@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 from masonry import dem
-from rocking_scene import Balance, Samples, barrier, one_block, rigid_engines, steps, stone
+from rocking_scene import Balance, Samples, barrier, one_block, quiet_engines, rigid_engines, steps, stone
 from yade import O, Quaternion, Vector3
 
 import masonry
@@ -98,3 +98,20 @@ for blocks, height, time in ((3, 0.8, 2), (4, 0.7, 0.6)):
     out = max(max(abs(state.vel[1]), abs(state.angVel[0]), abs(state.angVel[2])) for state in (O.bodies[id].state for id in ids))
     print(f"stack of {blocks} in space: {len(dem.impacts())} impacts, out of plane {out:.1e}")
     assert len(dem.impacts()) > 0 and out < 1e-6
+
+# On two supports, the joint has the restitution of the pair where it lands, and says so, whichever support was made first.
+for model in ("planar", "spatial", "compliant"):
+    for order in (("left", "right"), ("right", "left")):
+        O.reset()
+        given = {"left": 0.9, "right": 0.3}
+        for side in order:
+            under = dem.base((1, 1, 0.2), stone(given[side]))
+            O.bodies[under].state.pos = (-0.5 if side == "left" else 0.5, 0, -0.1)
+        block = dem.block((0.6, 1, 3), stone(None), center=(0, 0, 1.5))
+        dem.tilt(block, -0.05)  # rocks on its left corner, lands on the right one, and back
+        O.engines = rigid_engines(model=model) if model != "compliant" else quiet_engines(model=model)
+        while len(dem.impacts()) < 2:
+            O.step()
+        landed = dem.impacts()[:2]
+        assert [order[support] for support in landed["support"]] == ["right", "left"], (model, order, landed)
+        assert np.array_equal(landed["restitution_asked"], [0.3, 0.9]) and np.allclose(landed["restitution"], [0.3, 0.9], rtol=0, atol=1e-9), (model, order, landed)

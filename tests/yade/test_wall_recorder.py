@@ -58,6 +58,17 @@ for model in MODELS:
     assert most["opening"] == opening.max() and (most["id1"], most["id2"]) == (base, block)
     assert not results.collapse(h).collapsed
 
+# --- an integrator that is dead integrates nothing: impacts and energies are those of the living one ---
+base, block, theory = one_block(5, restitution=0.9)
+dem.tilt(block, 0.05)
+recorder = dem.WallRecorder(iterPeriod=1)
+dead = quiet_engines(model="planar")[-1]
+dead.dead = True
+O.engines = [dead] + quiet_engines(model="planar", recorder=recorder)
+O.run(1500, True)
+assert len(dem.impacts()) == len(O.engines[-1].impactTimes) >= 2 and dem.energy()["impactDissip"] == O.engines[-1].impactDissip > 0
+assert dem.wall_history(recorder).energy["impactDissip"][-2] == O.engines[-1].impactDissip  # the recorder comes before the step
+
 # --- energies: those of dem.energy(), and their balance ---
 for model in MODELS:
     base, block, theory = one_block(4, restitution=0.8, noSlip=False, frictionAngle=0.6)

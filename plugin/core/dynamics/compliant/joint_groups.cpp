@@ -217,9 +217,15 @@ Closing findClosing(const JointSystem& s, const Joint& joint)
 	}
 	if (!crossed) return result;
 	result.points = candidates;
-	for (const PointRef& p : candidates)
-		result.lever = std::max(result.lever, (positionOf(s, p) - pivot).norm());
-	const JointContact& contact = s.contacts[candidates.front().contact];
+	int landing = candidates.front().contact;
+	for (const PointRef& p : candidates) {
+		const double lever = (positionOf(s, p) - pivot).norm();
+		if (lever > result.lever) {
+			result.lever = lever;
+			landing = p.contact;
+		}
+	}
+	const JointContact& contact = s.contacts[landing];
 	result.support = contact.body1 == joint.block ? contact.body2 : contact.body1;
 	result.restitution = contact.law.restitution;
 	return result;

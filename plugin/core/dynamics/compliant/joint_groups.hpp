@@ -23,7 +23,7 @@ struct Joint {
 // The muted points of a joint that reach the rotation zero at one instant of the step.
 struct Closing {
 	std::vector<PointRef> points;
-	int                   support { -1 };     // body under the first of them
+	int                   support { -1 };     // body under the one farthest from the pivot
 	double                restitution { 0 };  // of their pair
 	double                before { 0 };       // tau: the instant lies this long before the end of the step, s
 	double                lever { 0 };        // distance of the closing points from the pivot, m

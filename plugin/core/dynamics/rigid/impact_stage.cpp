@@ -258,12 +258,14 @@ template <class K> void ImpactStage<K>::holdPivots(RigidSystem<K>& s)
 	s.baseWork += work;
 }
 
-template <class K> double ImpactStage<K>::land(RigidSystem<K>& s, const std::vector<PointRef>& closing)
+template <class K> RockingImpactResult ImpactStage<K>::land(RigidSystem<K>& s, const std::vector<PointRef>& closing)
 {
 	holdPivots(s);
 	gather(s, closing);
 	const auto leastSpin = [&](const ClosingJoint& joint) { return tolerance::restSpeed * std::sqrt(scale::acceleration(s) / s.bodies[joint.block].halfSize.norm()); };
+	asked.clear();
 	for (ClosingJoint& joint : impact.joints) {
+		asked.push_back(joint.restitution);
 		const Vector3 axis = rockingAxis(bodies, joint, impact.points);
 		const double  spin = axis.dot(bodies[joint.block].angularVelocity - bodies[joint.support].angularVelocity);
 		if (spin * (std::isnan(joint.restitution) ? 1 : joint.restitution) < leastSpin(joint)) joint.restitution = 0;
@@ -273,15 +275,15 @@ template <class K> double ImpactStage<K>::land(RigidSystem<K>& s, const std::vec
 	s.impactDissip += result.energyLost;
 	s.baseWork += result.work;
 	double energy = result.energyLost;
-	for (const ClosingJoint& joint : impact.joints) {
-		const double asked = s.pairs[refs[joint.newBegin].pair].restitution;
-		s.impacts.push_back({ s.time, joint.block, joint.support, asked, joint.result.after >= leastSpin(joint), joint.result, energy, result.capped, result.residual });
+	for (size_t k = 0; k < asked.size(); ++k) {
+		const ClosingJoint& joint = impact.joints[k];
+		s.impacts.push_back({ s.time, joint.block, joint.support, asked[k], joint.result.after >= leastSpin(joint), joint.result, energy, result.capped, result.residual });
 		energy = 0;
 	}
-	return result.residual;
+	return result;
 }
 
-template <class K> double ImpactStage<K>::pulse(RigidSystem<K>& s, int drive, const typename K::Vector& jump)
+template <class K> RockingImpactResult ImpactStage<K>::pulse(RigidSystem<K>& s, int drive, const typename K::Vector& jump)
 {
 	for (auto& body : s.bodies)
 		if (body.drive == drive) body.velocity.template head<K::dimension>() += jump;
@@ -295,7 +297,7 @@ template <class K> double ImpactStage<K>::pulse(RigidSystem<K>& s, int drive, co
 			if (s.bodies[b].drive == drive) work -= 0.5 * sign * point.impulse.dot(inSpace(jump));
 	s.baseWork += work;
 	s.impactDissip += result.energyLost + work - result.work;
-	return result.residual;
+	return result;
 }
 
 template class ImpactStage<Plane>;

@@ -8,11 +8,11 @@ namespace masonry::rigid {
 template <class K> class ImpactStage {
 public:
 	// The open points `closing` land now. A joint that rocks on another pivot obeys its restitution; all others are plastic. Points that
-	// part afterwards are open. Impacts are appended to system.impacts. Returns the residual, m/s.
-	double land(RigidSystem<K>& system, const std::vector<PointRef>& closing);
+	// part afterwards are open. Impacts are appended to system.impacts.
+	RockingImpactResult land(RigidSystem<K>& system, const std::vector<PointRef>& closing);
 
-	// The bodies moved by a drive change their velocity by `jump` (m/s) at this instant. Returns the residual, m/s.
-	double pulse(RigidSystem<K>& system, int drive, const typename K::Vector& jump);
+	// The bodies moved by a drive change their velocity by `jump` (m/s) at this instant.
+	RockingImpactResult pulse(RigidSystem<K>& system, int drive, const typename K::Vector& jump);
 
 private:
 	struct Builder;
@@ -28,6 +28,7 @@ private:
 	std::vector<Vector3>       newPositions, oldPositions; // of a joint
 	std::vector<PointRef>      oldRefs;
 	std::vector<double>        weights; // of the pairs: their normal impulses
+	std::vector<double>        asked;   // restitution of the joints
 };
 
 } // namespace masonry::rigid

@@ -100,16 +100,23 @@ template <class K> Event RigidStep<K>::tryStep(RigidSystem<K>& s, double h)
 	} else if (!localised) {
 		report.unlocalised += int(step.anticipated.size());
 	}
-	note(step.trial().solved);
+	const SolveReport& solved = step.trial().solved;
+	report.sweeps += solved.sweeps;
+	report.factorisations += solved.factorisations;
+	note(solved.residual, solved.converged);
 	return event;
 }
 
-template <class K> void RigidStep<K>::note(const SolveReport& solved)
+template <class K> void RigidStep<K>::note(double residual, bool solved)
 {
-	report.sweeps += solved.sweeps;
-	report.factorisations += solved.factorisations;
-	report.residual = std::max(report.residual, solved.residual);
-	report.converged &= solved.converged;
+	report.residual = std::max(report.residual, residual);
+	report.converged &= solved;
+}
+
+template <class K> void RigidStep<K>::pulse(RigidSystem<K>& s, int drive, const typename K::Vector& jump)
+{
+	const RockingImpactResult result = impacts.pulse(s, drive, jump);
+	note(result.residual, result.solved);
 }
 
 // Points that touch and approach each other land; false: there are none.
@@ -118,7 +125,8 @@ template <class K> bool RigidStep<K>::land(RigidSystem<K>& s)
 	touchingPoints(s, closing);
 	if (closing.empty()) return false;
 	const size_t known = s.impacts.size();
-	report.residual = std::max(report.residual, impacts.land(s, closing));
+	const RockingImpactResult result = impacts.land(s, closing);
+	note(result.residual, result.solved);
 	answerImpacts(s, known);
 	return true;
 }
@@ -128,7 +136,7 @@ template <class K> void RigidStep<K>::answerImpacts(RigidSystem<K>& s, size_t kn
 {
 	for (size_t k = known; k < s.impacts.size(); ++k)
 		for (size_t d = 0; d < s.drives.size(); ++d)
-			if (const auto jump = s.drives[d].respond(s.impacts[k].block, s.time); !jump.isZero(0)) report.residual = std::max(report.residual, impacts.pulse(s, int(d), jump));
+			if (const auto jump = s.drives[d].respond(s.impacts[k].block, s.time); !jump.isZero(0)) pulse(s, int(d), jump);
 }
 
 // An impact at the same instant comes before the pulse.
@@ -137,7 +145,7 @@ template <class K> void RigidStep<K>::takeJumps(RigidSystem<K>& s)
 	for (size_t d = 0; d < s.drives.size(); ++d)
 		if (const auto jump = s.drives[d].jumpAt(s.time); !jump.isZero(0)) {
 			land(s);
-			report.residual = std::max(report.residual, impacts.pulse(s, int(d), jump));
+			pulse(s, int(d), jump);
 		}
 }
 

@@ -17,7 +17,8 @@ private:
 	void   answerImpacts(RigidSystem<K>& system, size_t known);
 	void   takeJumps(RigidSystem<K>& system);
 	double untilKink(const RigidSystem<K>& system, double left, double dt) const;
-	void   note(const SolveReport& solved);
+	void   note(double residual, bool solved);
+	void   pulse(RigidSystem<K>& system, int drive, const typename K::Vector& jump);
 
 	SmoothStep<K>         step;
 	ImpactStage<K>        impacts;

@@ -164,7 +164,7 @@ void WallStep<K>::pulse(RigidSystem<K>& s, int drive, const typename K::Vector& 
 				pair.points[k].closed |= pair.points[k].gap <= tolerance::wall::lifted * scales.length;
 		const auto bodies = s.bodies;
 		const double work = s.baseWork, dissipated = s.impactDissip;
-		if (pulses.pulse(s, drive, jump) <= tolerance::impulseEnough * jump.norm())
+		if (pulses.pulse(s, drive, jump).residual <= tolerance::impulseEnough * jump.norm())
 			return;
 		s.bodies = bodies;
 		s.baseWork = work;

@@ -7,8 +7,8 @@ from masonry._given import is_whole
 from masonry.motions import Motion, PulseTrain, Record
 from yade import O, wrapper
 
-from masonry.dem.scene import _boxes, check_blocks, check_material, check_recorder, floating_and_supports, listed, structures
-from masonry.dem.walls import finite_numbers, number_given
+from masonry.dem.scene import _boxes, _layout, check_blocks, check_material, check_recorder, floating_and_supports, listed, structures
+from masonry.dem.walls import axes_of, finite_numbers, number_given
 
 _MODELS = ("auto", "planar", "spatial", "compliant")
 _METHODS = ("auto", "localised", "wall")
@@ -36,41 +36,56 @@ _PEAKS = 0.1, 50
 _STEP_FRACTION = 0.2
 
 
+# Stiffnesses that _choose_stiffness has given to materials, which outlive their scenes.
+_chosen = set()
+
+
+def _is_given(stiffness):
+    """By a script, not by the `penetration` of a call before."""
+    return not np.isnan(stiffness) and stiffness not in _chosen
+
+
 def has_stiffness(material):
     """Whether a script has given the BlockMat a joint stiffness, in either direction."""
-    return not (np.isnan(material.normalStiffness) and np.isnan(material.shearStiffness))
+    return _is_given(material.normalStiffness) or _is_given(material.shearStiffness)
 
 
-def _column_pressure(body, free, gravity):
-    """Weight of the block and of what stands above it, over its lower face, Pa."""
-    half, pos = body.shape.extents, body.state.pos
-    load = body.state.mass
-    for other in free:
-        if other.state.pos[2] <= pos[2] or other.id == body.id:
-            continue
+def _half_sizes(bodies):
+    """(n, 3), m: along the axis of each that is nearest to x of those that are not upright, along the other, and along the upright one."""
+    _, sizes, quaternions = _layout(bodies)
+    axes = np.abs(axes_of(quaternions))
+    order = [sorted(range(3), key=lambda k: (k == own[:, 2].argmax(), -own[k, 0])) for own in axes]
+    return np.take_along_axis(sizes / 2, np.array(order), axis=1)
+
+
+def _largest_pressure(free, gravity):
+    """Of the weight of a block and of what stands above it, over its lower face, Pa."""
+    half = _half_sizes(free)
+    pos, mass = np.array([tuple(b.state.pos) for b in free]), np.array([b.state.mass for b in free])
+    pressures = []
+    for k in range(len(free)):
         # Half of the overlap of the two intervals over half the other's length, along x and y.
-        shares = [np.clip((half[i] + other.shape.extents[i] - abs(pos[i] - other.state.pos[i])) / (2 * other.shape.extents[i]), 0, 1) for i in (0, 1)]
-        load += other.state.mass * shares[0] * shares[1]
-    return load * gravity / (4 * half[0] * half[1])
+        shares = np.clip((half[k] + half - np.abs(pos[k] - pos))[:, :2] / (2 * half[:, :2]), 0, 1).prod(axis=1)
+        load = mass[k] + (mass * shares)[pos[:, 2] > pos[k, 2]].sum()
+        pressures.append(load * gravity / (4 * half[k, 0] * half[k, 1]))
+    return max(pressures)
 
 
 def _choose_stiffness(penetration, gravity):
     """Fills in the stiffness per area of every BlockMat that has none: the most loaded joint gets in by `penetration` times the
     smallest width. Returns a sentence, or None when nothing was chosen."""
     blocks = _boxes()
-    missing = {b.mat.id: b.mat for b in blocks if np.isnan(b.mat.normalStiffness)}
-    for material in missing.values():
+    normal = [b.mat for b in blocks if not _is_given(b.mat.normalStiffness)]
+    shear = [b.mat for b in blocks if not _is_given(b.mat.shearStiffness)]
+    if normal:
         free = [b for b in blocks if b.dynamic]
-        pressure = max(_column_pressure(b, free, gravity) for b in free)
-        width = min(2 * min(b.shape.extents[0], b.shape.extents[1]) for b in free)
-        material.normalStiffness = pressure / (penetration * width)
-    for body in blocks:
-        if np.isnan(body.mat.shearStiffness):
-            body.mat.shearStiffness = body.mat.normalStiffness
-    if missing:
-        stiffness = max(m.normalStiffness for m in missing.values())
-        return f"stiffness {stiffness:.3g} Pa/m (the weight presses the joints in by {penetration:g} of the width)"
-    return None
+        stiffness = _largest_pressure(free, gravity) / (penetration * 2 * _half_sizes(free)[:, :2].min())
+        _chosen.add(stiffness)
+        for material in normal:
+            material.normalStiffness = stiffness
+    for material in shear:
+        material.shearStiffness = material.normalStiffness
+    return f"stiffness {stiffness:.3g} Pa/m (the weight presses the joints in by {penetration:g} of the width)" if normal else None
 
 
 def _landing_step(body):
@@ -134,7 +149,7 @@ def _pivots_that_slip(supports):
     supports: (body below, body on it). Joints as Ip2_BlockMat_BlockMat_BlockPhys makes them of two materials."""
     slip = []
     for below, body in supports:
-        materials, half = (below.mat, body.mat), body.shape.extents
+        materials, half = (below.mat, body.mat), _half_sizes([body])[0]
         given = [m.restitution for m in materials if not math.isnan(m.restitution)]
         if body.dynamic and given and not any(m.noSlip for m in materials):
             restitution, friction = sum(given) / len(given), math.tan(min(m.frictionAngle for m in materials))
@@ -227,6 +242,8 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
             model, reason = "compliant", "penetration is given"
         elif any(has_stiffness(b.mat) for b in _boxes()):
             model, reason = "compliant", "a BlockMat has a joint stiffness"
+    if penetration is not None and all(_is_given(b.mat.normalStiffness) for b in _boxes()):
+        raise ValueError(f"penetration = {penetration}: must be left out where every BlockMat has a normalStiffness, it chooses one")
     recorders = [] if recorder is None else list(recorder) if isinstance(recorder, (list, tuple)) else [recorder]
     if not all(isinstance(one, (wrapper.BlockRecorder, wrapper.WallRecorder)) for one in recorders):
         raise ValueError(f"recorder = {recorder!r}: must be a BlockRecorder, a WallRecorder or a list of them")
@@ -304,7 +321,7 @@ def _compliant(motions, reason, dt, penetration, impact_order, gravity, recorder
 
 def _joint_engine():
     for engine in O.engines:
-        if isinstance(engine, (wrapper.MoreauJeanIntegrator, wrapper.RockingJointEngine)):
+        if isinstance(engine, (wrapper.MoreauJeanIntegrator, wrapper.RockingJointEngine)) and not engine.dead:
             return engine
     raise ValueError("O.engines has no MoreauJeanIntegrator and no RockingJointEngine: set O.engines = dem.engines(...)")
 
