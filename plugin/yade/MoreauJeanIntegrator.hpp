@@ -43,7 +43,7 @@ public:
 		((bool, strictForces, false, , "method='wall', while the wall stands: `tolerance` holds for contact forces as well. Otherwise forces are right to some hundred times the tolerance of a block's weight, motions to the tolerance."))
 		((Real, mergedClosing, 1e-6, Attr::triggerPostLoad, "Points that close within this gap of each other, relative to the smallest half size, close in one impact (0 to 1e-3). A parameter of the model: which corner of a nearly flat landing comes first is decided by it."))
 		((int, mostEvents, 50, Attr::triggerPostLoad, "Impacts and stops of sliding that are found inside one step, at least 1. Points that close later in it do so at its end, plastically."))
-		((string, onTrouble, "continue", Attr::triggerPostLoad, "What happens after a step that misses the tolerance, has more events than mostEvents or makes energy: 'continue' (one warning; failures counts them) or 'stop' (an error)."))
+		((string, onTrouble, "continue", Attr::triggerPostLoad, "What happens after a step that is counted in failures: 'continue' (one warning; failures counts them) or 'stop' (an error)."))
 		((shared_ptr<Ip2_BlockMat_BlockMat_BlockPhys>, pairLaw, shared_ptr<Ip2_BlockMat_BlockMat_BlockPhys>(new Ip2_BlockMat_BlockMat_BlockPhys), , "Restitution and friction of a pair of blocks from their materials."))
 		((string, mode, "", Attr::readonly, "method='wall': how the last step was done, 'still' (all contacts at once, as long as nothing moves against its neighbour) or 'moving' (substeps, for movingBlocks)."))
 		((int, movingBlocks, 0, Attr::readonly, "method='wall': blocks that the last step did in substeps: those of structures that move, and those that move on top of others while these stand."))
@@ -75,7 +75,7 @@ public:
 		((long, unlocalised, 0, Attr::readonly, "Points that closed at the end of a step because mostEvents was reached, so far."))
 		((long, sweeps, 0, Attr::readonly, "Sweeps of the contact solver so far; with method='wall' solves of the mode 'still'."))
 		((long, factorisations, 0, Attr::readonly, "Factorisations of the contact solver so far."))
-		((long, failures, 0, Attr::readonly, "Steps so far that missed the tolerance, had too many events or, with method='wall', made more energy than the error of a sound step."))
+		((long, failures, 0, Attr::readonly, "Steps so far that missed the tolerance, an impact's laws or a pulse's, had more events than mostEvents or, with method='wall', made more energy than the error of a sound step, left blocks deep in each other, or had a block too heavy for those below it."))
 		((string, firstFailure, "", Attr::readonly, "What the first of them was, with time, blocks and residual."))
 		((RigidMemory, memory, , Attr::hidden, "")),
 		/* ctor */,

@@ -93,14 +93,12 @@ SolveReport ContactSolver<K>::solve(double tolerance, double enough)
 			return report;
 	}
 	constexpr bool inSpace = K::dimension == 3;
-	if (useNewton && !(inSpace && guessed) && w.startsClose(tolerance, report))
+	if (!(inSpace && guessed) && w.startsClose(tolerance, report))
 		return report;
 	const bool sticks = std::any_of(points.begin(), points.end(), [](const ContactRows<K>& row) { return row.friction == noSlip; });
-	if (!inSpace || !useNewton || sticks)
-		report.residual = gaussSeidel(w.s, tolerance, useNewton ? maxSweeps : lastSweeps, !useNewton, report);
-	else
-		report.residual = w.s.residual();
-	if (useNewton && report.residual > tolerance)
+	constexpr int firstSweeps = 40;
+	report.residual = !inSpace || sticks ? gaussSeidel(w.s, tolerance, firstSweeps, false, report) : w.s.residual();
+	if (report.residual > tolerance)
 		report.residual = w.alternate(tolerance, enough, lastSweeps, report);
 	report.converged = report.residual <= std::max(tolerance, enough);
 	if (!report.converged) {

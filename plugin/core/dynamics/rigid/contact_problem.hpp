@@ -25,7 +25,7 @@
 // Friction leaves several solutions where points share what they carry: all of an edge's load at one corner, which turns the block about
 // it, is one where nothing slips. Newton with a large R that falls ends near the impulses given, and leaves a scene that is its own mirror
 // image so; sweeps, which take the points in their order, and a small R at once from far away do not. So in space there are no sweeps
-// before it but where points cannot slip, whose jams they avoid, and impulses that are only a guess are not resumed from.
+// before it but where points cannot slip, whose jams they avoid, and impulses that an impact lets expect are not resumed from.
 // Impulses that still miss the laws are returned with their residual, and made to add no energy (seen from the offsets).
 #include "dynamics/rigid/kinematics.hpp"
 #include "impact/impulse_problem.hpp" // noSlip
@@ -81,10 +81,8 @@ public:
 	double      residual(); // of the present velocities and impulses
 	void        forget();   // the next solve starts without the factor of the last: its bits depend on its input alone
 
-	bool guessed { false };   // the impulses given are not those of the last solve
-	int  maxSweeps { 40 };    // of Gauss-Seidel before Newton takes over, where it comes first
-	bool useNewton { true };  // false: Gauss-Seidel alone, up to `lastSweeps`
-	int  lastSweeps { 2000 };
+	bool guessed { false };   // the impulses given are what an impact lets expect, not those of the last solve
+	int  lastSweeps { 2000 }; // of Gauss-Seidel, between the attempts of Newton
 
 private:
 	struct Workspace;

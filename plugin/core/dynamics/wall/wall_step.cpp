@@ -10,8 +10,9 @@ using wall::Lanes;
 namespace {
 
 constexpr int coldSolves = 3000, mostSolves = 300;
-// Blocks of a structure up to which a base pulse is an impulse problem of all points: it then takes some ten milliseconds.
-constexpr int mostPulsed = 40;
+// Blocks of a structure up to which a base pulse is an impulse problem of all points: it then takes some ten milliseconds. And where joints
+// cannot slip, which matters more: some tenths of a second.
+constexpr int mostPulsed = 40, mostStuck = 200;
 // A step is divided once at most, into halves: the impulses of a part are where those of the next start, and one that is much shorter
 // would hand on an impact's as many times too large. Displacements of the base are exact anyway; a pulse of the first half acts at the
 // middle, one of the second at the end.
@@ -149,12 +150,14 @@ void WallStep<K>::takeJumps(RigidSystem<K>& s)
 
 // As the impulse problem of all points in touch: the sweeps find their friction one after the other, and of an edge one corner may take
 // all, by which the block turns about it. Where there are too many, or the problem is not solved, the base alone jumps, and the sweeps see
-// to the rest.
+// to the rest. What cannot slip may have energy of nothing from them, which is a failure: a problem without a solution is left as it is, if it
+// has none.
 template <class K>
 void WallStep<K>::pulse(RigidSystem<K>& s, int drive, const typename K::Vector& jump)
 {
 	jumped = true;
-	if (largestStructure(s) <= mostPulsed) {
+	const bool sticks = std::any_of(s.pairs.begin(), s.pairs.end(), [](const auto& pair) { return pair.friction == noSlip; });
+	if (largestStructure(s) <= (sticks ? mostStuck : mostPulsed)) {
 		for (Contacts* set : {&still(), &moving()}) {
 			measure(s, *set);
 			set->showPoints(s);
@@ -164,12 +167,18 @@ void WallStep<K>::pulse(RigidSystem<K>& s, int drive, const typename K::Vector& 
 				pair.points[k].closed |= pair.points[k].gap <= tolerance::wall::lifted * scales.length;
 		const auto bodies = s.bodies;
 		const double work = s.baseWork, dissipated = s.impactDissip;
-		if (pulses.pulse(s, drive, jump).residual <= tolerance::impulseEnough * jump.norm())
+		const RockingImpactResult result = pulses.pulse(s, drive, jump);
+		const bool solved = result.residual <= tolerance::impulseEnough * jump.norm();
+		if (solved || (sticks && result.energyLost >= 0)) {
+			report.converged &= solved;
+			report.velocityResidual = std::max(report.velocityResidual, result.residual);
 			return;
+		}
 		s.bodies = bodies;
 		s.baseWork = work;
 		s.impactDissip = dissipated;
 	}
+	report.converged &= !sticks;
 	jumps[drive] += jump;
 	for (auto& body : s.bodies)
 		if (body.drive == drive)
