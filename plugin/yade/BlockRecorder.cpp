@@ -17,9 +17,21 @@ void BlockRecorder::action()
 {
 	for (const auto& engine : scene->engines)
 		if (auto* integrator = dynamic_cast<MoreauJeanIntegrator*>(engine.get())) integrator->writeInteractions();
+	if (positions.size() != times.size() * ids.size())
+		throw std::invalid_argument("BlockRecorder.ids has been changed after the first sample: make a new BlockRecorder.");
+	if (times.empty())
+		for (int id : ids)
+			if (!scene->bodies->exists(id)) throw std::invalid_argument(sentence("BlockRecorder.ids has ", id, ": there is no such body in O.bodies."));
 	times.push_back(scene->time);
 	for (int id : ids) {
-		if (!scene->bodies->exists(id)) throw std::invalid_argument(sentence("BlockRecorder.ids has ", id, ": there is no such body in O.bodies."));
+		if (!scene->bodies->exists(id)) { // erased since
+			const Vector3r none = Vector3r::Constant(NaN);
+			rotations.push_back(none);
+			positions.push_back(none);
+			uplifts.push_back(NaN);
+			forces.push_back(none);
+			continue;
+		}
 		const Body& body = *(*scene->bodies)[id];
 		const State& state = *body.state;
 		const AngleAxisr turn(state.refOri.conjugate() * state.ori);

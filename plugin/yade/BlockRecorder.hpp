@@ -12,7 +12,7 @@ public:
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS(BlockRecorder, PeriodicEngine,
 		"Histories of blocks: rotation, position, uplift and the force of what they stand on, every iterPeriod steps. Goes between RockingJointEngine and NewtonIntegrator, or before MoreauJeanIntegrator (dem.engines(recorder=...) does that), where positions, forces and O.time belong together. dem.history() gives arrays, dem.save_history() a file.",
-		((vector<int>, ids, , , "The blocks."))
+		((vector<int>, ids, , , "The blocks, fixed by the first sample. A block erased later has NaN from then on."))
 		((vector<Real>, times, , Attr::readonly, "Times of the rows [s]."))
 		((vector<Vector3r>, rotations, , Attr::readonly, "Rotation vectors from the resting pose in the block's own axes [rad], row by row, one a block."))
 		((vector<Vector3r>, positions, , Attr::readonly, "Positions of the centres [m], as rotations."))

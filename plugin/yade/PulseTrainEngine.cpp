@@ -128,6 +128,7 @@ void PulseTrainEngine::check() const
 		throw std::invalid_argument(sentence("PulseTrainEngine.times has ", times.size(), " entries and resonantBlock = ", resonantBlock,
 			": times must be given for a scheduled train, or resonantBlock for a resonant one, not both and not neither."));
 	if (halfCycles > 0 && !resonant()) reject(*this, "halfCycles", halfCycles, "left out (-1) where times are given: it ends a resonant train");
+	if (assembly && times.size() == 1) reject(*this, "assembly", "True", "left out (False) for a single pulse: nothing brings the base to rest");
 	if (assembly && resonant()) reject(*this, "assembly", "True", "left out (False) with resonantBlock: it ends scheduled pulses");
 	if ((shape != "dirac") != (duration > 0)) reject(*this, "duration", duration, "positive for a finite shape and 0 for 'dirac'");
 	if (resonant() && !(scene->bodies->exists(resonantBlock) && (*scene->bodies)[resonantBlock]->isDynamic()))

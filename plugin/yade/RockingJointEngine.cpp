@@ -89,6 +89,8 @@ vector<RockingJointEngine::Pair> RockingJointEngine::gather()
 	index.assign(scene->bodies->size(), -1);
 	for (const auto& body : scene->bodies->body) {
 		if (!body || !dynamic_cast<BlockMat*>(body->material.get())) continue;
+		if (!dynamic_cast<Box*>(body->shape.get()))
+			throw std::invalid_argument(sentence("O.bodies[", body->id, "] has a BlockMat and is no Box: blocks touch boxes only."));
 		checkBody(*body);
 		index[body->id] = int(ids.size());
 		ids.push_back(body->id);
@@ -144,9 +146,8 @@ Real RockingJointEngine::criticalTimeStep()
 		for (size_t b = a + 1; b < ids.size(); ++b) {
 			if (system.bodies[a].prescribed && system.bodies[b].prescribed) continue;
 			const Body &body1 = *(*scene->bodies)[ids[a]], &body2 = *(*scene->bodies)[ids[b]];
-			const auto *box1 = dynamic_cast<Box*>(body1.shape.get()), *box2 = dynamic_cast<Box*>(body2.shape.get());
+			const auto *box1 = static_cast<Box*>(body1.shape.get()), *box2 = static_cast<Box*>(body2.shape.get());
 			masonry::ContactPatch patch;
-			if (!box1 || !box2) continue;
 			if ((body1.state->pos - body2.state->pos).norm() > box1->extents.norm() + box2->extents.norm()) continue;
 			const Real near = 1e-2 * std::min(box1->extents.minCoeff(), box2->extents.minCoeff());
 			if (!masonry::collide({ box1->extents }, system.bodies[a].pose, { box2->extents }, system.bodies[b].pose, near, {}, patch)) continue;

@@ -28,7 +28,7 @@ namespace {
 void WallRecorder::begin()
 {
 	if (iterPeriod <= 0 && virtPeriod <= 0 && realPeriod <= 0)
-		throw std::invalid_argument("WallRecorder.iterPeriod = 0, virtPeriod = 0: one of them must be positive.");
+		throw std::invalid_argument(sentence("WallRecorder.iterPeriod = ", iterPeriod, ", virtPeriod = ", virtPeriod, ": one of them must be positive."));
 	if (ids.empty())
 		for (const auto& body : scene->bodies->body)
 			if (body && boxOf(*body) && dynamic_cast<const BlockMat*>(body->material.get())) ids.push_back(body->id);
@@ -71,8 +71,10 @@ void WallRecorder::action()
 	if (blocks.size() != blockNumbers * ids.size()) throw std::invalid_argument("WallRecorder.ids has been changed after the first sample: make a new WallRecorder.");
 	times.push_back(scene->time);
 	addEnergies();
-	for (int id : ids) {
-		if (!scene->bodies->exists(id)) {
+	for (size_t k = 0; k < ids.size(); ++k) {
+		const int id = ids[k];
+		const Box* box = scene->bodies->exists(id) ? boxOf(*(*scene->bodies)[id]) : nullptr;
+		if (!box || box->extents != Vector3r(blocks[blockNumbers * k], blocks[blockNumbers * k + 1], blocks[blockNumbers * k + 2])) { // erased, or another in its place
 			poses.insert(poses.end(), poseNumbers, NaN);
 			continue;
 		}

@@ -41,6 +41,8 @@ def test_samples_have_the_scale():
     with pytest.raises(ValueError, match="read-only"):
         record.samples[0] = 1
     assert repr(record) == "Record(a quake: 3 samples, dt=0.1 s, at most 6 m/s^2, baseline='none')"
+    with pytest.raises(ValueError, match="assembly = True: must be left out with 1 pulses"):
+        masonry.PulseTrain(0.2, [0], assembly=True)
     assert repr(masonry.PulseTrain(0.2, [0, 1], assembly=True)) == "PulseTrain(impulse=0.2, times=[0.0, 1.0], assembly=True)"
     assert repr(masonry.PulseTrain(0.2, half_cycles=3)) == "PulseTrain(impulse=0.2, half_cycles=3)"
 

@@ -60,6 +60,9 @@ for bad in (2.0, nan, -inf):
 for act in (lambda: dem.tilt(0, "0.1"), lambda: dem.check_blocks("0.1"), lambda: dem.structures("0.1")):
     refuses(act, "= '0.1': must be a number")
 refuses(lambda: dem.history(None), "recorder = None", "BlockRecorder")
+lying = dem.block((1, 1, 0.2), stone(), center=(9, 0, 0.5), orientation=Quaternion(Vector3(1, 0, 0), math.pi / 2))
+refuses(lambda: dem.tilt(lying, 0.1), f"id = {lying}", "does not stand")
+O.bodies.erase(lying)
 refuses(lambda: dem.tilt(0, 0.1, axis="z"), "axis", "'z'", "'x' or 'y'")
 refuses(lambda: dem.angle(0, axis="z"), "axis", "'z'", "'x' or 'y'")
 
@@ -75,6 +78,8 @@ refuses(quiet_engines, "no free block", "dem.block()")
 one_block(5)
 refuses(lambda: quiet_engines("pulse"), "motion", "'pulse'", "PulseTrainEngine")
 refuses(lambda: quiet_engines(dt=1.0), "dt", "1", "below")
+refuses(lambda: quiet_engines(gravity=0), "gravity = 0", "normalStiffness")
+quiet_engines(dt=np.float32(1e-5), gravity=np.float32(9.81))
 for make, words in ((lambda: dem.WallRecorder(), ("WallRecorder.iterPeriod = 0", "positive")), (lambda: dem.WallRecorder(virtPeriod=nan), ("virtPeriod = nan", "positive")),
                     (lambda: dem.WallRecorder(iterPeriod=1, ids=[99]), ("id = 99", "no such body")), (lambda: dem.BlockRecorder(iterPeriod=1), ("BlockRecorder.ids", "empty")),
                     (lambda: dem.BlockRecorder(ids=[1], iterPeriod=-1), ("BlockRecorder.iterPeriod = -1", "positive"))):
@@ -107,6 +112,7 @@ for bad in (nan, inf):
 for bad, words in ((dict(times=[0]), ("impulse", "nan")), (dict(impulse=1e300, times=[0]), ("impulse = 1e+300", "at most 1e6")), (dict(impulse=0.1), ("times has 0 entries", "resonantBlock = -1")),
                    (dict(impulse=0.1, times=[0], resonantBlock=block), ("times has 1 entries", f"resonantBlock = {block}")), (dict(impulse=0.1, resonantBlock=77), ("resonantBlock", "77")), (dict(impulse=0.1, resonantBlock=base), ("resonantBlock = 0", "free block")),
                    (dict(impulse=0.1, times=[0], halfCycles=1), ("halfCycles = 1", "where times are given")),
+                   (dict(impulse=0.1, times=[0], assembly=True), ("assembly = True", "a single pulse")),
                    (dict(impulse=0.1, resonantBlock=block, assembly=True), ("assembly = True", "with resonantBlock")), (dict(impulse=0.1, times=[0], duration=1), ("duration", "1", "dirac")), (dict(impulse=0.1, times=[0], shape="half-sine"), ("duration", "0"))):
     refuses(lambda: quiet_engines(dem.PulseTrainEngine(ids=[base], **bad)), *words)
 for bad, words in ((dict(samples=[0, nan]), ("samples", "nan")), (dict(samples=[1]), ("samples has 1 value", "at least two")), (dict(samples=[0, 1], interval=0), ("interval", "0")), (dict(samples=[0, 1], scale=inf), ("scale", "inf")),

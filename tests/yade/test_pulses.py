@@ -48,3 +48,21 @@ compare_schedules(engines, TIMES, 1e-3)
 compare_shapes(engines, TIMES, 8e-4 / 6e-2)
 compare_record(engines, 1e-3)
 keep_place(engines)
+
+
+# A base whose acceleration jumps: the block lifts then, as the rigid one does, and lands when that does; nothing lands before. What stands elsewhere changes
+# nothing (10 penetrations are the bound of one half cycle; the second is as much longer as its start was wrong).
+for shape, duration, impulse in (("rectangular", 0.05, 0.2), ("rectangular", 0.1, 0.4), ("half-sine", 0.05, 0.2)):
+    seen = []
+    for model, far in (("planar", False), ("compliant", False), ("compliant", True)):
+        base, id, block = one_block(5, restitution=0.7)
+        if far:
+            dem.block((0.6, 1, 3), O.bodies[base].mat, center=(0, 3, 1.5))
+        train = dem.PulseTrainEngine(ids=[base], impulse=impulse, resonantBlock=id, shape=shape, duration=duration)
+        O.engines = quiet_engines(train, model=model)
+        O.run(int(1 / O.dt), True)
+        seen.append(list(train.pulseTimes))
+        assert len(dem.impacts()) == len(train.pulseTimes) - 1, (model, shape, len(dem.impacts()))
+    assert [len(times) for times in seen] == 3 * [len(seen[0])] and len(seen[0]) >= 2, seen
+    print(f"resonant {shape} pulses of {duration} s at", *seen)
+    assert np.allclose(seen[1], seen[0], rtol=3e-3, atol=0) and np.allclose(seen[2], seen[1], rtol=1e-3, atol=0), seen

@@ -4,7 +4,7 @@ import tempfile
 
 import numpy as np
 from masonry import dem
-from rocking_scene import one_block, quiet_engines, rigid_engines, stone
+from rocking_scene import one_block, quiet_engines, refuses, rigid_engines, stone
 from yade import O
 
 import masonry
@@ -64,3 +64,39 @@ weights = np.array([O.bodies[id].state.mass * 9.81 for id in ids])
 lower = [O.bodies[id].state.pos[2] < 0.2 for id in ids]
 assert abs(last["force"][lower, 2].sum() / weights.sum() - 1) < 1e-6 and np.all(np.abs(last["force"][~np.array(lower), 2] / weights[~np.array(lower)] - 1) < 1e-6)
 print("recorder: angle, uplift, force, files, loading")
+
+# A block that is erased has NaN from then on, and what was recorded stays; blocks are fixed by the first sample, and a recorder is of one run.
+for model in ("planar", "compliant"):
+    O.reset()
+    base = dem.base((4, 1, 0.2), stone())
+    first, second = (dem.block((0.4, 0.4, 0.4), O.bodies[base].mat, center=(x, 0, 0.2)) for x in (-1, 1))
+    recorder = dem.BlockRecorder(ids=[first, second], iterPeriod=1)
+    wall = dem.WallRecorder(iterPeriod=1)
+    O.engines = quiet_engines(model=model, recorder=[recorder, wall])
+    O.run(5, True)
+    before = len(recorder.times)
+    O.bodies.erase(first)
+    O.run(5, True)
+    table = dem.history(recorder)["position"]
+    assert len(table) == before + 5 > 5 and np.isfinite(table[:before]).all() and np.isnan(table[before:, 0]).all() and np.isfinite(table[before:, 1]).all()
+    recorder.ids = [second]
+    refuses(O.step, "BlockRecorder.ids has been changed after the first sample", kind=(RuntimeError, ValueError))
+    O.reset()
+    dem.block((0.4, 0.4, 0.4), stone(), on=dem.base((4, 1, 0.2), stone()))
+    for old in (recorder, wall):
+        refuses(lambda: quiet_engines(model=model, recorder=old), f"{type(old).__name__}.times ends at", "make a new")
+
+# Another body in the place of an erased one is not recorded for it.
+O.reset()
+base = dem.base((4, 1, 0.2), stone())
+block = dem.block((0.4, 0.4, 0.4), O.bodies[base].mat, on=base)
+wall = dem.WallRecorder(iterPeriod=1)
+O.engines = quiet_engines(model="planar", recorder=wall)
+O.run(2, True)
+other = dem.block((0.2, 0.4, 0.4), O.bodies[base].mat, center=(1, 0, 0.2))
+taken = O.bodies[other]
+O.bodies.erase(other)
+O.bodies.erase(block)
+O.bodies.insertAtId(taken, block)
+O.run(2, True)
+assert np.isnan(dem.wall_history(wall).position[2:, 1]).all() and np.isfinite(dem.wall_history(wall).position[:, 0]).all()

@@ -42,3 +42,17 @@ O.saveTmp()
 O.reset()
 O.loadTmp()
 check("memory")
+
+# A material that outlives its scene is one of the next scene's: with an id of its own, saved and loaded with it.
+kept = dem.BlockMat(density=2000, restitution=0.7, label="kept")
+with tempfile.TemporaryDirectory() as folder:
+    for ending in ("xml", "yade.gz"):
+        for _ in range(2):
+            O.reset()
+            own = dem.BlockMat(density=1000)
+            base = dem.base((4, 2, 0.2), own)
+            block = dem.block((0.6, 1, 3), kept, on=base)
+            assert len({O.bodies[base].mat.id, O.bodies[block].mat.id}) == len(O.materials) == 2
+            O.save(os.path.join(folder, "kept." + ending))
+            O.load(os.path.join(folder, "kept." + ending))
+            assert O.bodies[block].mat.restitution == 0.7 and O.bodies[block].mat.id == O.materials["kept"].id

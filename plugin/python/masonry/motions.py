@@ -65,6 +65,8 @@ class PulseTrain(Motion):
         self.half_cycles, self.assembly = half_cycles, assembly
         self.pulse_shape, self.duration = shape, duration
         self.shape = np.shape(impulse)
+        if assembly and self.times.size < 2:
+            raise ValueError(f"assembly = True: must be left out with {self.times.size} pulses, of which none brings the base to rest")
         if self.times is not None:
             self.velocity(0.0)  # refuses bad input here
 

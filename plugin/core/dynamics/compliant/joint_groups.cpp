@@ -78,9 +78,8 @@ std::vector<Joint> groupJoints(const JointSystem& s)
 	return joints;
 }
 
-Neighbourhood neighbourhood(const JointSystem& s, const Joint& joint)
+Neighbourhood neighbourhood(const JointSystem& s, const Joint& joint, size_t small)
 {
-	constexpr size_t  small = 16; // contacts that the dense impulse solver takes as a whole
 	std::vector<bool> near(s.bodies.size(), s.contacts.size() <= small);
 	near[joint.block] = true;
 	for (const JointContact& contact : s.contacts)
@@ -336,7 +335,7 @@ namespace {
 
 } // namespace
 
-double settle(JointSystem& s, const std::vector<HeldPoint>& held, double stored)
+double settle(JointSystem& s, const std::vector<HeldPoint>& held, double stored, double gain)
 {
 	std::vector<HeldPoint> loaded;
 	std::vector<NormalRow> rows;
@@ -377,7 +376,7 @@ double settle(JointSystem& s, const std::vector<HeldPoint>& held, double stored)
 	hold();
 	double given = stored + work - storedEnergy(s);
 	// Bodies on their way over an edge, or that hit hard, may have no such equilibrium near: then they stay where they are.
-	const double most = tolerance::settlingGain * stored;
+	const double most = gain * stored;
 	if (given < -most || pressedEnergy(s.contacts) - pressedEnergy(contactsBefore) > most
 	    || largestChange(s.contacts, contactsBefore) > tolerance::settlingReach * compression(before, contactsBefore)) {
 		s.bodies = before;

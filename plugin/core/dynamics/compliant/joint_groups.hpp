@@ -2,6 +2,7 @@
 // Joints: which contact points belong to one joint, which of them are muted, which are about to close.
 #include "dynamics/compliant/pivot_handoff.hpp"
 #include "dynamics/compliant/rigid_acceleration.hpp"
+#include "tolerances.hpp"
 
 namespace masonry {
 
@@ -32,15 +33,15 @@ struct Closing {
 
 std::vector<Joint> groupJoints(const JointSystem& system);
 
-// What an impact of a joint is solved on: the whole system while it is small, else the block, its neighbours and their
-// contacts, with the bodies beyond them as its rim.
+// What an impact of a joint is solved on: the whole system while it has at most `small` contacts, which the dense impulse solver
+// takes, else the block, its neighbours and their contacts, with the bodies beyond them as its rim.
 struct Neighbourhood {
 	JointSystem      system;
 	Joint            joint;            // in its numbers
 	std::vector<int> bodies, contacts; // its numbers -> those of the whole
 };
 
-Neighbourhood neighbourhood(const JointSystem& system, const Joint& joint);
+Neighbourhood neighbourhood(const JointSystem& system, const Joint& joint, size_t small = 16);
 void          putBack(const Neighbourhood& part, JointSystem& system);
 
 // A joint whose loaded points are an edge or a corner rocks: its open points are muted. One without any load flies:
@@ -63,7 +64,7 @@ double storedEnergy(const JointSystem& system);
 
 // Gives the held points the compression and shear that carry their forces: bodies move along the normals (least motion,
 // whatever the masses), shears are set, forces updated. Returns the energy that this takes from loads and springs, which
-// held `stored` before (J, of either sign).
-double settle(JointSystem& system, const std::vector<HeldPoint>& held, double stored);
+// held `stored` before (J, of either sign). Nothing is done where the springs would take more than `gain` times that.
+double settle(JointSystem& system, const std::vector<HeldPoint>& held, double stored, double gain = tolerance::settlingGain);
 
 } // namespace masonry

@@ -213,16 +213,19 @@ double supportPower(const JointSystem& s)
 
 namespace {
 
-	// A single block that stands on an accelerating base with all its points, but for what its swaying springs have just
-	// opened: less than their compression.
-	bool closedOnMovingBase(const JointSystem& s)
+	// A block that touches nothing but an accelerating base and stands on it with all its points, but for what its swaying springs
+	// have just opened: less than their compression.
+	bool closedOnMovingBase(const JointSystem& s, const Joint& joint)
 	{
-		const bool shaken = std::any_of(s.bodies.begin(), s.bodies.end(), [](const Body& body) { return body.prescribed && !body.acceleration.isZero(0); });
-		if (!shaken || s.contacts.size() != 1 || s.contacts.front().rocking()) return false;
+		const JointContact& contact = s.contacts[joint.contacts.front()];
+		const Body&         support = s.bodies[contact.body1 == joint.block ? contact.body2 : contact.body1];
+		if (!support.prescribed || support.acceleration.isZero(0) || contact.rocking()) return false;
+		const auto isIts = [&](const JointContact& other) { return other.body1 == joint.block || other.body2 == joint.block; };
+		if (std::count_if(s.contacts.begin(), s.contacts.end(), isIts) != 1) return false;
 		double lowest = 0, highest = 0;
-		for (int i = 0; i < s.contacts.front().size; ++i) {
-			lowest = std::min(lowest, s.contacts.front().patch.points[i].gap);
-			highest = std::max(highest, s.contacts.front().patch.points[i].gap);
+		for (int i = 0; i < contact.size; ++i) {
+			lowest = std::min(lowest, contact.patch.points[i].gap);
+			highest = std::max(highest, contact.patch.points[i].gap);
 		}
 		return lowest < 0 && highest < -lowest;
 	}
@@ -253,7 +256,7 @@ namespace {
 		for (const HeldPoint& p : parting)
 			s.contacts[p.contact].points[p.point].muted = true;
 		const RigidAcceleration rates = accelerations(s, selectPoints(s.contacts, loaded));
-		const double            settled = settle(s, rates.points, stored);
+		const double            settled = settle(s, rates.points, stored, tolerance::liftingGain);
 		goForth(s, rates, 0.); // velocities go half a step back
 		return stopped + settled;
 	}
@@ -262,12 +265,14 @@ namespace {
 
 double liftJoints(JointSystem& s)
 {
-	if (!closedOnMovingBase(s)) return 0;
 	double given = 0;
-	for (const Joint& joint : groupJoints(s)) { // one at most
-		const auto all = selectPoints(s.contacts, [](const JointContact&, int) { return true; });
-		const auto parting = partingPoints(accelerations(s, all), s.contacts);
-		if (!parting.empty()) given += lift(s, joint, parting);
+	for (const Joint& joint : groupJoints(s)) {
+		if (!closedOnMovingBase(s, joint)) continue;
+		Neighbourhood part = neighbourhood(s, joint, 0);
+		const auto    all = selectPoints(part.system.contacts, [](const JointContact&, int) { return true; });
+		const auto    parting = partingPoints(accelerations(part.system, all), part.system.contacts);
+		if (!parting.empty()) given += lift(part.system, part.joint, parting);
+		putBack(part, s);
 	}
 	return given;
 }
@@ -278,7 +283,7 @@ std::vector<ImpactRecord> handOffPivots(JointSystem& s)
 	const auto joints = groupJoints(s);
 	unmuteUpright(s, joints);
 	for (const Joint& joint : joints) {
-		if (!closedOnMovingBase(s)) muteOpenPoints(s, joint); // else liftJoints decides
+		if (!closedOnMovingBase(s, joint)) muteOpenPoints(s, joint); // else liftJoints decides
 		if (findClosing(s, joint).points.empty()) continue;
 		Neighbourhood part = neighbourhood(s, joint);
 		ImpactRecord  record = switchPivot(part.system, part.joint, findClosing(part.system, part.joint));

@@ -60,11 +60,11 @@ void startAtEquilibrium(JointSystem& system);
 // Power of the prescribed bodies on the others, W.
 double supportPower(const JointSystem& system);
 
-// A single block on an accelerating base starts to rock as soon as the rigid block would: some of its points then carry
+// A block alone on an accelerating base starts to rock as soon as the rigid block would: some of its points then carry
 // nothing any more. Waiting for the springs to let go would cost an error of the order of the square root of the penetration.
 // Not localised: it is found at the end of the step. Structures of several joints do wait for their springs: the rigid
 // accelerations of every step would cost too much there.
-// Returns the energy that settling on the new pivot takes, J; 0 when the block does not lift.
+// Returns the energy that settling on the new pivots takes, J; 0 when no block lifts.
 double liftJoints(JointSystem& system);
 
 // Finds the joints whose rotation crossed zero in this step and hands their pivots over. Forces must be up to date.

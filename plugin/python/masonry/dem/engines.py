@@ -37,17 +37,17 @@ _STEP_FRACTION = 0.2
 
 
 # Stiffnesses that _choose_stiffness has given to materials, which outlive their scenes.
-_chosen = set()
+_chosen = {"normalStiffness": set(), "shearStiffness": set()}
 
 
-def _is_given(stiffness):
-    """By a script, not by the `penetration` of a call before."""
-    return not np.isnan(stiffness) and stiffness not in _chosen
+def _is_given(material, name):
+    """By a script, not by a call before."""
+    return not np.isnan(getattr(material, name)) and getattr(material, name) not in _chosen[name]
 
 
 def has_stiffness(material):
     """Whether a script has given the BlockMat a joint stiffness, in either direction."""
-    return _is_given(material.normalStiffness) or _is_given(material.shearStiffness)
+    return any(_is_given(material, name) for name in _chosen)
 
 
 def _half_sizes(bodies):
@@ -75,16 +75,18 @@ def _choose_stiffness(penetration, gravity):
     """Fills in the stiffness per area of every BlockMat that has none: the most loaded joint gets in by `penetration` times the
     smallest width. Returns a sentence, or None when nothing was chosen."""
     blocks = _boxes()
-    normal = [b.mat for b in blocks if not _is_given(b.mat.normalStiffness)]
-    shear = [b.mat for b in blocks if not _is_given(b.mat.shearStiffness)]
+    normal, shear = ([b.mat for b in blocks if not _is_given(b.mat, name)] for name in _chosen)
     if normal:
+        if gravity == 0:
+            raise ValueError("gravity = 0: every BlockMat must have a normalStiffness, there is no weight to choose one by")
         free = [b for b in blocks if b.dynamic]
         stiffness = _largest_pressure(free, gravity) / (penetration * 2 * _half_sizes(free)[:, :2].min())
-        _chosen.add(stiffness)
+        _chosen["normalStiffness"].add(stiffness)
         for material in normal:
             material.normalStiffness = stiffness
     for material in shear:
         material.shearStiffness = material.normalStiffness
+        _chosen["shearStiffness"].add(material.shearStiffness)
     return f"stiffness {stiffness:.3g} Pa/m (the weight presses the joints in by {penetration:g} of the width)" if normal else None
 
 
@@ -210,6 +212,7 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
         raise ValueError(f"dt = {dt}: must be positive, in s")
     if not (number_given("gravity", gravity) == 0 or _GRAVITIES[0] <= gravity <= _GRAVITIES[1]):
         raise ValueError(f"gravity = {gravity}: must be 0, or from {_GRAVITIES[0]:g} to {_GRAVITIES[1]:g}, in m/s^2")
+    gravity = float(gravity)
     motions = [] if motion is None else list(motion) if isinstance(motion, (list, tuple)) else [motion]
     for item in motions:
         if isinstance(item, Motion):
@@ -242,7 +245,7 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
             model, reason = "compliant", "penetration is given"
         elif any(has_stiffness(b.mat) for b in _boxes()):
             model, reason = "compliant", "a BlockMat has a joint stiffness"
-    if penetration is not None and all(_is_given(b.mat.normalStiffness) for b in _boxes()):
+    if penetration is not None and all(_is_given(b.mat, "normalStiffness") for b in _boxes()):
         raise ValueError(f"penetration = {penetration}: must be left out where every BlockMat has a normalStiffness, it chooses one")
     recorders = [] if recorder is None else list(recorder) if isinstance(recorder, (list, tuple)) else [recorder]
     if not all(isinstance(one, (wrapper.BlockRecorder, wrapper.WallRecorder)) for one in recorders):
@@ -286,7 +289,7 @@ def _rigid(motions, model, method, dt, tolerance, impact_order, gravity, recorde
     step = dt if dt is not None else (_WALL_STEP if wall else _RIGID_STEP) * integrator.largestTimeStep
     if not step <= integrator.largestTimeStep:
         raise ValueError(f"dt = {dt}: must be at most {integrator.largestTimeStep:.3g} s, 0.15 sqrt(R/g) of the smallest block")
-    O.dt = step
+    O.dt = float(step)
     print(f"masonry.dem: rigid blocks, {choice}; dt = {O.dt:.3g} s{_records(motions)}")
     return [wrapper.ForceResetter(), *others, *recorders, integrator]
 
@@ -303,7 +306,7 @@ def _compliant(motions, reason, dt, penetration, impact_order, gravity, recorder
         critical = min(_landing_step(b) for b in _boxes() if b.dynamic)
     if dt is not None and not dt < critical:
         raise ValueError(f"dt = {dt}: must be below {critical:.3g} s, the critical step of joints this stiff")
-    O.dt = dt if dt is not None else _STEP_FRACTION * critical
+    O.dt = float(dt if dt is not None else _STEP_FRACTION * critical)
     reasons.append(f"dt = {O.dt:.3g} s ({O.dt / critical:.2g} of the critical step)" if np.isfinite(critical) else f"dt = {O.dt:.3g} s")
     print("masonry.dem:", "; ".join(reasons) + _records(motions))
 
