@@ -65,7 +65,7 @@ public:
 		((vector<Real>, impactApplication, , Attr::readonly, "Distance of the resultant impulse from the new pivot, inward positive [m]."))
 		((vector<Real>, impactFriction, , Attr::readonly, "Friction coefficient that the impact takes: tangential over normal impulse. Where it is the joint's own, the pivot has slipped, and an impact without slip asks for more."))
 		((vector<int>, impactSwitched, , Attr::readonly, "1: the pivot was handed over; 0: the joint came to rest."))
-		((vector<int>, impactCapped, , Attr::readonly, "1: the restitution was lowered so that the energy does not grow."))
+		((vector<int>, impactCapped, , Attr::readonly, "1: the restitution does not come out: lowered so that the energy does not grow, or there is none with which the laws hold."))
 		((Real, frictDissip, 0, Attr::readonly, "Dissipated by friction so far [J]."))
 		((Real, impactDissip, 0, Attr::readonly, "Dissipated by impacts so far [J]; method='wall': all that is left over, numerical losses included."))
 		((Real, baseWork, 0, Attr::readonly, "Work of the moved base on the blocks so far [J]."))

@@ -269,8 +269,14 @@ double liftJoints(JointSystem& s)
 	for (const Joint& joint : groupJoints(s)) {
 		if (!closedOnMovingBase(s, joint)) continue;
 		Neighbourhood part = neighbourhood(s, joint, 0);
-		const auto    all = selectPoints(part.system.contacts, [](const JointContact&, int) { return true; });
-		const auto    parting = partingPoints(accelerations(part.system, all), part.system.contacts);
+		// While the joint is closed its springs sway, and no rigid body has the centripetal accelerations of all points of a face.
+		JointSystem calm = part.system;
+		for (Body& body : calm.bodies)
+			body.angularVelocity.setZero();
+		const auto all = selectPoints(calm.contacts, [](const JointContact&, int) { return true; });
+		const auto parting = partingPoints(accelerations(calm, all), calm.contacts);
+		part.system.residual = calm.residual;
+		part.system.unsolved = calm.unsolved;
 		if (!parting.empty()) given += lift(part.system, part.joint, parting);
 		putBack(part, s);
 	}

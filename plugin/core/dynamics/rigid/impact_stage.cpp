@@ -277,6 +277,7 @@ template <class K> RockingImpactResult ImpactStage<K>::land(RigidSystem<K>& s, c
 	double energy = result.energyLost;
 	for (size_t k = 0; k < asked.size(); ++k) {
 		const ClosingJoint& joint = impact.joints[k];
+		if (joint.result.before < leastSpin(joint)) continue; // it did not rock
 		s.impacts.push_back({ s.time, joint.block, joint.support, asked[k], joint.result.after >= leastSpin(joint), joint.result, energy, result.capped, result.residual });
 		energy = 0;
 	}

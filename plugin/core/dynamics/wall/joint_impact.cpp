@@ -95,6 +95,7 @@ RockingImpactResult JointImpact::apply()
 		}
 		take(plastic, asked, safe, taken);
 		result.residual = plastic.residual;
+		result.solved = plastic.residual <= tolerance::noSolution * speed;
 		end = &taken;
 	}
 	couple = end->couple;

@@ -74,10 +74,6 @@ Contact<K> contact(const WallContacts<K>& c, const JointPoint& at)
 	return {group.point[at.point], at.lane, at.block, second ? group.body1[at.lane] : group.body2[at.lane], second};
 }
 
-} // namespace
-
-namespace {
-
 template <class JointPoint>
 Vector3 position(const WallContacts<Space>& c, const JointPoint& at)
 {
@@ -258,6 +254,11 @@ void RockingJoints<Space>::answer(RigidSystem<Space>& s, WallContacts<Space>& c,
 	if (std::isnan(restitution))
 		return;
 	const auto result = impact.apply();
+	if (!result.solved)
+		missed = std::max(missed, result.residual);
+	const auto acts = [](const ImpulsePoint& point) { return !point.impulse.isZero(0); };
+	if (std::none_of(impact.points.begin(), impact.points.end(), acts))
+		return;
 	for (size_t i = 0; i < numbers.size(); ++i)
 		if (!impact.bodies[i].prescribed) {
 			Space::Velocity v;
@@ -369,6 +370,7 @@ double RockingJoints<K>::land(RigidSystem<K>& s, WallContacts<K>& c, Substeps<K>
 {
 	double baseWork = 0;
 	landed.clear();
+	missed = 0;
 	for (size_t j = 0; j < rocking.size();) {
 		const JointPoint* at = landing(c, rocking[j], substep);
 		if (!at) {

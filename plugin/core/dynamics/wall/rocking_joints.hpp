@@ -43,6 +43,7 @@ public:
 	double land(RigidSystem<K>& system, WallContacts<K>& contacts, Substeps<K>& sweeps, double s);
 	// Blocks that have landed there, with a restitution or without: what a base pulse may answer.
 	std::vector<int> landed;
+	double missed {0}; // m/s, by impacts there without a solution, as some are where nothing slips
 
 	template <class Flow>
 	void pass(Flow& f)

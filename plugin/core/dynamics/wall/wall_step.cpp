@@ -438,6 +438,8 @@ int WallStep<K>::land(RigidSystem<K>& s, double part)
 {
 	const size_t known = s.impacts.size();
 	s.baseWork += joints.land(s, moving(), sweeps, part);
+	report.converged &= joints.missed == 0;
+	report.velocityResidual = std::max(report.velocityResidual, joints.missed);
 	for (const int block : joints.landed)
 		if (std::find(landed.begin(), landed.end(), block) == landed.end())
 			landed.push_back(block);
@@ -517,14 +519,17 @@ double WallStep<K>::baseWorkWhenStill(const RigidSystem<K>& s, double h)
 		return 0;
 	if (!s.bodies[base].velocity.template tail<K::spins>().isZero(0))
 		return baseWorkWhenTurning(s, base, h);
-	Vector impulse = Vector::Zero();
+	Vector momentum = Vector::Zero(), load = Vector::Zero(); // that the blocks have taken up, and that other forces have given
 	for (size_t b = 0; b < s.bodies.size(); ++b)
-		if (isStill(int(b))) {
-			const Lanes change = kept.velocity[wall::packs<K> * b] - contacts.velocity[wall::packs<K> * b] - loads[wall::packs<K> * b];
-			for (int i = 0; i < K::dimension; ++i)
-				impulse[i] += s.bodies[b].mass * change[i];
-		}
-	return impulse.dot(startVelocity(s, base).template head<K::dimension>() - half);
+		if (isStill(int(b)))
+			for (int i = 0; i < K::dimension; ++i) {
+				momentum[i] += s.bodies[b].mass * (kept.velocity[wall::packs<K> * b] - contacts.velocity[wall::packs<K> * b])[i];
+				load[i] += s.bodies[b].mass * loads[wall::packs<K> * b][i];
+			}
+	// What changes velocities works on their mean, which the base has at the start; what carries a load goes with it all the way.
+	const Vector start = startVelocity(s, base).template head<K::dimension>();
+	const int drive = s.bodies[base].drive;
+	return (momentum - load).dot(start - half) - load.dot(drive < 0 ? Vector(Vector::Zero()) : Vector(s.drives[drive].meanVelocity(s.time, h) - start));
 }
 
 // The same of a base that turns: with the moment about its centre, of arms in the middle of the step.

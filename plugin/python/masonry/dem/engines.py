@@ -37,17 +37,17 @@ _STEP_FRACTION = 0.2
 
 
 # Stiffnesses that _choose_stiffness has given to materials, which outlive their scenes.
-_chosen = {"normalStiffness": set(), "shearStiffness": set()}
+_chosen = set()
 
 
-def _is_given(material, name):
+def _is_given(stiffness):
     """By a script, not by a call before."""
-    return not np.isnan(getattr(material, name)) and getattr(material, name) not in _chosen[name]
+    return not np.isnan(stiffness) and stiffness not in _chosen
 
 
 def has_stiffness(material):
     """Whether a script has given the BlockMat a joint stiffness, in either direction."""
-    return any(_is_given(material, name) for name in _chosen)
+    return _is_given(material.normalStiffness) or _is_given(material.shearStiffness)
 
 
 def _half_sizes(bodies):
@@ -75,18 +75,18 @@ def _choose_stiffness(penetration, gravity):
     """Fills in the stiffness per area of every BlockMat that has none: the most loaded joint gets in by `penetration` times the
     smallest width. Returns a sentence, or None when nothing was chosen."""
     blocks = _boxes()
-    normal, shear = ([b.mat for b in blocks if not _is_given(b.mat, name)] for name in _chosen)
+    normal = [b.mat for b in blocks if not _is_given(b.mat.normalStiffness)]
+    shear = [b.mat for b in blocks if not _is_given(b.mat.shearStiffness)]
     if normal:
         if gravity == 0:
             raise ValueError("gravity = 0: every BlockMat must have a normalStiffness, there is no weight to choose one by")
         free = [b for b in blocks if b.dynamic]
         stiffness = _largest_pressure(free, gravity) / (penetration * 2 * _half_sizes(free)[:, :2].min())
-        _chosen["normalStiffness"].add(stiffness)
+        _chosen.add(stiffness)
         for material in normal:
             material.normalStiffness = stiffness
     for material in shear:
         material.shearStiffness = material.normalStiffness
-        _chosen["shearStiffness"].add(material.shearStiffness)
     return f"stiffness {stiffness:.3g} Pa/m (the weight presses the joints in by {penetration:g} of the width)" if normal else None
 
 
@@ -245,7 +245,7 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
             model, reason = "compliant", "penetration is given"
         elif any(has_stiffness(b.mat) for b in _boxes()):
             model, reason = "compliant", "a BlockMat has a joint stiffness"
-    if penetration is not None and all(_is_given(b.mat, "normalStiffness") for b in _boxes()):
+    if penetration is not None and all(_is_given(b.mat.normalStiffness) for b in _boxes()):
         raise ValueError(f"penetration = {penetration}: must be left out where every BlockMat has a normalStiffness, it chooses one")
     recorders = [] if recorder is None else list(recorder) if isinstance(recorder, (list, tuple)) else [recorder]
     if not all(isinstance(one, (wrapper.BlockRecorder, wrapper.WallRecorder)) for one in recorders):
@@ -338,7 +338,7 @@ def impacts():
     (realised), velocity (relative angular velocity before, rad/s), energy_lost (J), friction_demand (the friction coefficient that it
     takes; where that is the joint's own, the pivot has slipped and more was asked for), application (distance of the resultant from the
     new pivot, m), switched (False: the impact stopped the rotation; a pivot that has slipped may set it off again), capped (the
-    restitution was lowered so that no energy appears). With method='wall' those where a restitution is given, and of the joint alone:
+    restitution does not come out: lowered so that no energy appears, or there is none with which the laws hold, a failure of its step). With method='wall' those where a restitution is given, and of the joint alone:
     what its neighbours answer afterwards is in energy()['impactDissip']."""
     e = _joint_engine()
     table = np.zeros(len(e.impactTimes), dtype=_IMPACT_FIELDS)
