@@ -23,19 +23,6 @@ namespace {
 
 	bool hasRow(const ClosingJoint& joint) { return !std::isnan(joint.restitution) && !joint.result.axis.isZero(0); }
 
-	// Work of the prescribed bodies' impulses: they keep their velocities.
-	double supportWork(const std::vector<Body>& bodies, const std::vector<ImpulsePoint>& points, const std::vector<CoupleRow>& rows)
-	{
-		double sum = 0;
-		for (const ImpulsePoint& point : points)
-			for (const auto& [b, sign] : { std::pair(point.body1, 1.), std::pair(point.body2, -1.) })
-				if (bodies[b].prescribed) sum += sign * point.impulse.dot(bodies[b].velocityAt(point.position));
-		for (const CoupleRow& row : rows)
-			for (const auto& [b, sign] : { std::pair(row.body1, 1.), std::pair(row.body2, -1.) })
-				if (bodies[b].prescribed) sum += sign * row.couple * row.axis.dot(bodies[b].angularVelocity);
-		return sum;
-	}
-
 	// One impulse problem under the cap: solved as often as the cap asks, always from the velocities at its start.
 	struct CappedProblem {
 		std::vector<CoupleRow>                   rows, none;
@@ -121,19 +108,31 @@ namespace {
 		}
 	}
 
-	void report(const std::vector<Body>& bodies, const std::vector<ImpulsePoint>& points, ClosingJoint& joint, double couple)
-	{
-		joint.result.after = spin(bodies, joint);
-		Vector3 resultant = Vector3::Zero(); // on the block, at the new support
-		for (int i = joint.newBegin; i < joint.oldBegin; ++i)
-			resultant += points[i].body2 == joint.block ? points[i].impulse : Vector3(-points[i].impulse);
-		const double normal = joint.normal.dot(resultant);
-		if (!(normal > 0)) return;
-		joint.result.application = couple / normal;
-		joint.result.frictionDemand = (resultant - normal * joint.normal).norm() / normal;
-	}
-
 } // namespace
+
+double supportWork(const std::vector<Body>& bodies, const std::vector<ImpulsePoint>& points, const std::vector<CoupleRow>& rows)
+{
+	double sum = 0;
+	for (const ImpulsePoint& point : points)
+		for (const auto& [b, sign] : { std::pair(point.body1, 1.), std::pair(point.body2, -1.) })
+			if (bodies[b].prescribed) sum += sign * point.impulse.dot(bodies[b].velocityAt(point.position));
+	for (const CoupleRow& row : rows)
+		for (const auto& [b, sign] : { std::pair(row.body1, 1.), std::pair(row.body2, -1.) })
+			if (bodies[b].prescribed) sum += sign * row.couple * row.axis.dot(bodies[b].angularVelocity);
+	return sum;
+}
+
+void report(const std::vector<Body>& bodies, const std::vector<ImpulsePoint>& points, ClosingJoint& joint, double couple)
+{
+	joint.result.after = spin(bodies, joint);
+	Vector3 resultant = Vector3::Zero(); // on the block, at the new support
+	for (int i = joint.newBegin; i < joint.oldBegin; ++i)
+		resultant += points[i].body2 == joint.block ? points[i].impulse : Vector3(-points[i].impulse);
+	const double normal = joint.normal.dot(resultant);
+	if (!(normal > 0)) return;
+	joint.result.application = couple / normal;
+	joint.result.frictionDemand = (resultant - normal * joint.normal).norm() / normal;
+}
 
 Vector3 rockingAxis(const std::vector<Body>& bodies, const ClosingJoint& joint, const std::vector<ImpulsePoint>& points)
 {

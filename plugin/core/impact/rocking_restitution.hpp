@@ -72,6 +72,12 @@ struct RockingImpactResult {
 // Zero where there is no old support, or where it is a corner and no closing point approaches.
 Vector3 rockingAxis(const std::vector<Body>& bodies, const ClosingJoint& joint, const std::vector<ImpulsePoint>& points);
 
+// Work of the prescribed bodies' impulses, which keep their velocities, J.
+double supportWork(const std::vector<Body>& bodies, const std::vector<ImpulsePoint>& points, const std::vector<CoupleRow>& rows);
+
+// What has come out, after the impulses and the row's couple, into joint.result.
+void report(const std::vector<Body>& bodies, const std::vector<ImpulsePoint>& points, ClosingJoint& joint, double couple);
+
 // The two laws, simultaneous and sequential: they change the bodies' velocities, the points' impulses and the joints' results.
 RockingImpactResult applyRockingImpact(std::vector<Body>& bodies, RockingImpact& impact);
 RockingImpactResult applySequentially(std::vector<Body>& bodies, RockingImpact& impact);

@@ -279,9 +279,10 @@ def fraction(events, confidence=0.95):
     from scipy.stats import binomtest
 
     _check_confidence(confidence)
-    events = np.asarray(events, dtype=bool).ravel()
-    if not len(events):
-        raise ValueError("events: must have at least one")
+    events = np.asarray(events).ravel()
+    if not len(events) or not np.isin(events, (0, 1)).all():
+        raise ValueError("events: must be True or False, at least one")
+    events = events.astype(bool)
     interval = binomtest(int(events.sum()), len(events)).proportion_ci(confidence, method="exact")
     return float(events.mean()), float(interval.low), float(interval.high)
 

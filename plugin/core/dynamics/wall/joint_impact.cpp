@@ -32,18 +32,10 @@ void JointImpact::solve(const std::vector<CoupleRow>& rows, Outcome& outcome)
 	auto solved = rows;
 	outcome.residual = solveImpulses(bodies, points, solved).residual;
 	outcome.couple = solved.empty() ? 0 : solved[0].couple;
-	outcome.work = 0; // of the prescribed bodies, which keep their velocities
+	outcome.work = supportWork(bodies, points, solved);
 	outcome.impulses.clear();
-	for (const ImpulsePoint& point : points) {
+	for (const ImpulsePoint& point : points)
 		outcome.impulses.push_back(point.impulse);
-		for (const auto& [b, sign] : {std::pair(point.body1, 1.), std::pair(point.body2, -1.)})
-			if (bodies[b].prescribed)
-				outcome.work += sign * point.impulse.dot(bodies[b].velocityAt(point.position));
-	}
-	for (const CoupleRow& couple : solved)
-		for (const auto& [b, sign] : {std::pair(couple.body1, 1.), std::pair(couple.body2, -1.)})
-			if (bodies[b].prescribed)
-				outcome.work += sign * couple.couple * couple.axis.dot(bodies[b].angularVelocity);
 	wall::take(bodies, outcome.velocities);
 }
 
@@ -65,8 +57,7 @@ RockingImpactResult JointImpact::apply()
 {
 	joint.result = {};
 	joint.result.axis = rockingAxis(bodies, joint, points);
-	const auto spin = [this] { return joint.result.axis.dot(bodies[joint.block].angularVelocity - bodies[joint.support].angularVelocity); };
-	joint.result.before = spin();
+	joint.result.before = joint.result.axis.dot(bodies[joint.block].angularVelocity - bodies[joint.support].angularVelocity);
 	points.erase(points.begin() + joint.oldBegin, points.end());
 	wall::take(bodies, start);
 	double speed = 0;
@@ -102,16 +93,9 @@ RockingImpactResult JointImpact::apply()
 	result.work = end->work;
 	result.energyLost = before + result.work - kineticEnergy(bodies);
 
-	joint.result.after = spin();
-	Vector3 resultant = Vector3::Zero(); // on the block, at the new support
-	for (size_t i = 0; i < points.size(); ++i) {
+	for (size_t i = 0; i < points.size(); ++i)
 		points[i].impulse = end->impulses[i];
-		resultant += points[i].body2 == joint.block ? points[i].impulse : Vector3(-points[i].impulse);
-	}
-	if (const double normal = joint.normal.dot(resultant); normal > 0) {
-		joint.result.application = end->couple / normal;
-		joint.result.frictionDemand = (resultant - normal * joint.normal).norm() / normal;
-	}
+	report(bodies, points, joint, couple);
 	return result;
 }
 

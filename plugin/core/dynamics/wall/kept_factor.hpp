@@ -157,7 +157,7 @@ private:
 	const double given;
 	double h {0}, softness {0}, backPerSecond {0};
 	bool outdated {true};
-	bool hit {false};     // a point, by an impact in the last step
+	bool hit {false};                       // a point, by an impact in the last step
 	std::vector<typename K::Pose> factored; // poses that the factor is of
 };
 

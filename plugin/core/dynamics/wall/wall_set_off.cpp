@@ -226,8 +226,8 @@ bool WallStep<K>::basesPart(const RigidSystem<K>& s) const
 }
 
 // Velocities of bodies that begin to move. While they stand, they have the mean velocity of their base over a step, which is late by
-// half of it: now by half a substep (a jump of the base is for the sweeps, or has been met). And what has gone has what it was kept from. True: others
-// beside them go on standing.
+// half of it: now by half a substep (a jump of the base is for the sweeps, or has been met). And what has gone has what it was kept from.
+// True: others beside them go on standing.
 template <class K>
 bool WallStep<K>::setOff(RigidSystem<K>& s, const Bodies& move)
 {

@@ -150,8 +150,8 @@ void WallStep<K>::takeJumps(RigidSystem<K>& s)
 
 // As the impulse problem of all points in touch: the sweeps find their friction one after the other, and of an edge one corner may take
 // all, by which the block turns about it. Where there are too many, or the problem is not solved, the base alone jumps, and the sweeps see
-// to the rest. What cannot slip may have energy of nothing from them, which is a failure: a problem without a solution is left as it is, if it
-// has none.
+// to the rest. What cannot slip may have energy of nothing from them, which is a failure: a problem without a solution is left as it is, if
+// it has none.
 template <class K>
 void WallStep<K>::pulse(RigidSystem<K>& s, int drive, const typename K::Vector& jump)
 {
@@ -529,7 +529,8 @@ double WallStep<K>::baseWorkWhenStill(const RigidSystem<K>& s, double h)
 	// What changes velocities works on their mean, which the base has at the start; what carries a load goes with it all the way.
 	const Vector start = startVelocity(s, base).template head<K::dimension>();
 	const int drive = s.bodies[base].drive;
-	return (momentum - load).dot(start - half) - load.dot(drive < 0 ? Vector(Vector::Zero()) : Vector(s.drives[drive].meanVelocity(s.time, h) - start));
+	return (momentum - load).dot(start - half) -
+	       load.dot(drive < 0 ? Vector(Vector::Zero()) : Vector(s.drives[drive].meanVelocity(s.time, h) - start));
 }
 
 // The same of a base that turns: with the moment about its centre, of arms in the middle of the step.

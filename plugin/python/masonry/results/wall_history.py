@@ -41,7 +41,7 @@ class WallHistory:
         if samples == 0 or not self.free.any():
             raise ValueError(f"{samples} samples of {int(self.free.sum())} free blocks: there must be at least one of each")
         if not (np.diff(self.time) > 0).all():
-            raise ValueError(f"time: must increase, and does not after {self.time[:-1][np.diff(self.time) <= 0][0]:g} s: record each run with a recorder of its own")
+            raise ValueError(f"time: must increase, and does not after {self.time[:-1][~(np.diff(self.time) > 0)][0]:g} s: record each run with a recorder of its own")
         if not (np.isfinite(self.position[0]).all() and np.isfinite(self.orientation[0]).all()):
             raise ValueError("position, orientation: must be finite in the first sample")
 
