@@ -51,7 +51,7 @@ void RockingJointEngine::postLoad(RockingJointEngine&)
 	if (impactOrder != "simultaneous" && impactOrder != "sequential") reject(*this, "impactOrder", "'" + impactOrder + "'", "'simultaneous' or 'sequential'");
 }
 
-/// A script has put this engine into another scene.
+/// A script has put this engine into another scene, or saved it there before its first step.
 void RockingJointEngine::leaveScene()
 {
 	const auto forget = [](auto&... results) { ((results = {}), ...); };
@@ -343,8 +343,10 @@ void RockingJointEngine::keepReactions()
 void RockingJointEngine::action()
 {
 	const shared_ptr<Scene>& present = Omega::instance().getScene();
-	if (checkedTimeStep > 0 && home.lock() != present) leaveScene();
+	const bool loaded = checkedTimeStep == 0;
+	if (loaded ? scene->iter < lastStep : home.lock() != present) leaveScene();
 	home = present;
+	lastStep = scene->iter;
 	const vector<Pair> pairs = gather();
 	boundTurns();
 	checkScene();

@@ -47,7 +47,8 @@ public:
 		((Real, baseWork, 0, Attr::readonly, "Work of the moved base on the blocks so far [J]."))
 		((vector<int>, reactionIds, , Attr::readonly, "Bodies that are moved ..."))
 		((vector<Vector3r>, reactions, , Attr::readonly, "... the force of the joints on them in the last step [N] ..."))
-		((vector<Vector3r>, reactionMoments, , Attr::readonly, "... and its moment about their centres [N m].")),
+		((vector<Vector3r>, reactionMoments, , Attr::readonly, "... and its moment about their centres [N m]."))
+		((long, lastStep, -1, Attr::hidden, "")),
 		/* ctor */,
 		.def("criticalTimeStep", &RockingJointEngine::criticalTimeStep, "Largest stable time step of the joints [s].")
 	);

@@ -18,7 +18,7 @@ private:
 	void   takeJumps(RigidSystem<K>& system);
 	double untilKink(const RigidSystem<K>& system, double left, double dt) const;
 	void   note(double residual, bool solved);
-	void   pulse(RigidSystem<K>& system, int drive, const typename K::Vector& jump);
+	void   note(const RockingImpactResult& impact);
 
 	SmoothStep<K>         step;
 	ImpactStage<K>        impacts;

@@ -28,15 +28,20 @@ double untilKink(const RigidSystem<K>& s, double left, double dt)
 	return left;
 }
 
+// Blocks of the largest structure, and of the largest in which some joint cannot slip.
 template <class K>
-int largestStructure(const RigidSystem<K>& s)
+std::pair<int, int> largestStructures(const RigidSystem<K>& s)
 {
 	std::vector<int> blocks(s.bodies.size(), 0);
-	int most = 0;
-	for (const int number : islandNumbers(s))
+	int most = 0, stuck = 0;
+	const auto numbers = islandNumbers(s);
+	for (const int number : numbers)
 		if (number >= 0)
 			most = std::max(most, ++blocks[number]);
-	return most;
+	for (const auto& pair : s.pairs)
+		if (const int number = std::max(numbers[pair.body1], numbers[pair.body2]); number >= 0 && pair.friction == noSlip)
+			stuck = std::max(stuck, blocks[number]);
+	return {most, stuck};
 }
 
 template <class K>
@@ -156,8 +161,9 @@ template <class K>
 void WallStep<K>::pulse(RigidSystem<K>& s, int drive, const typename K::Vector& jump)
 {
 	jumped = true;
-	const bool sticks = std::any_of(s.pairs.begin(), s.pairs.end(), [](const auto& pair) { return pair.friction == noSlip; });
-	if (largestStructure(s) <= (sticks ? mostStuck : mostPulsed)) {
+	const auto [most, stuck] = largestStructures(s);
+	const bool sticks = stuck > 1; // one block alone has solutions, and the sweeps find them
+	if (most <= (sticks ? mostStuck : mostPulsed)) {
 		for (Contacts* set : {&still(), &moving()}) {
 			measure(s, *set);
 			set->showPoints(s);

@@ -36,18 +36,19 @@ _PEAKS = 0.1, 50
 _STEP_FRACTION = 0.2
 
 
-# Stiffnesses that _choose_stiffness has given to materials, which outlive their scenes.
-_chosen = set()
+# (material, stiffness) that _choose_stiffness has given: materials may outlive their scenes.
+_chosen = []
 
 
-def _is_given(stiffness):
-    """By a script, not by a call before."""
-    return not np.isnan(stiffness) and stiffness not in _chosen
+def _is_given(material, name):
+    """By a script, or for a run that goes on; what was chosen for another scene, or before the first step, is chosen anew."""
+    stiffness = getattr(material, name)
+    return not np.isnan(stiffness) and not (O.iter == 0 and any(material is one and stiffness == value for one, value in _chosen))
 
 
 def has_stiffness(material):
     """Whether a script has given the BlockMat a joint stiffness, in either direction."""
-    return _is_given(material.normalStiffness) or _is_given(material.shearStiffness)
+    return _is_given(material, "normalStiffness") or _is_given(material, "shearStiffness")
 
 
 def _half_sizes(bodies):
@@ -75,16 +76,15 @@ def _choose_stiffness(penetration, gravity):
     """Fills in the stiffness per area of every BlockMat that has none: the most loaded joint gets in by `penetration` times the
     smallest width. Returns a sentence, or None when nothing was chosen."""
     blocks = _boxes()
-    normal = [b.mat for b in blocks if not _is_given(b.mat.normalStiffness)]
-    shear = [b.mat for b in blocks if not _is_given(b.mat.shearStiffness)]
+    normal, shear = ([b.mat for b in blocks if not _is_given(b.mat, name)] for name in ("normalStiffness", "shearStiffness"))
     if normal:
         if gravity == 0:
             raise ValueError("gravity = 0: every BlockMat must have a normalStiffness, there is no weight to choose one by")
         free = [b for b in blocks if b.dynamic]
         stiffness = _largest_pressure(free, gravity) / (penetration * 2 * _half_sizes(free)[:, :2].min())
-        _chosen.add(stiffness)
         for material in normal:
             material.normalStiffness = stiffness
+            _chosen.append((material, stiffness))
     for material in shear:
         material.shearStiffness = material.normalStiffness
     return f"stiffness {stiffness:.3g} Pa/m (the weight presses the joints in by {penetration:g} of the width)" if normal else None
@@ -245,8 +245,8 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
             model, reason = "compliant", "penetration is given"
         elif any(has_stiffness(b.mat) for b in _boxes()):
             model, reason = "compliant", "a BlockMat has a joint stiffness"
-    if penetration is not None and all(_is_given(b.mat.normalStiffness) for b in _boxes()):
-        raise ValueError(f"penetration = {penetration}: must be left out where every BlockMat has a normalStiffness, it chooses one")
+    if penetration is not None and all(_is_given(b.mat, "normalStiffness") for b in _boxes()):
+        print(f"masonry.dem: penetration = {penetration:g} is not used: every BlockMat has its normalStiffness")
     recorders = [] if recorder is None else list(recorder) if isinstance(recorder, (list, tuple)) else [recorder]
     if not all(isinstance(one, (wrapper.BlockRecorder, wrapper.WallRecorder)) for one in recorders):
         raise ValueError(f"recorder = {recorder!r}: must be a BlockRecorder, a WallRecorder or a list of them")

@@ -13,8 +13,8 @@ _NAMED = 10
 _DENSITIES = 1e-12, 1e12
 # Share of a half size by which a block's centre must be inside its support: a centre above the edge is off, whatever the round-off.
 _INSIDE = 1e-9
-# Upward part of a block's own z axis from which on it stands, and leans about its own x or y.
-_STANDS = 0.7
+# Upward part of a block's own x or y axis up to which it may lean about it.
+_LEVEL = 0.7
 
 
 def _positive_size(name, size):
@@ -60,7 +60,7 @@ def check_recorder(recorder):
         raise ValueError(f"{name}.ids is empty: it must name at least one block")
     wall = isinstance(recorder, wrapper.WallRecorder)
     if recorder.times and recorder.times[-1] > O.time:
-        raise ValueError(f"{name}.times ends at {recorder.times[-1]:g} s, after O.time = {O.time:g} s: it holds an earlier run: make a new {name}")
+        raise ValueError(f"{name}.times ends at {recorder.times[-1]:g} s, after O.time = {O.time:g} s: it holds an earlier run: make a new {name} (after loading, O.engines has the one of the run)")
     if recorder.times:  # it goes on, also without blocks that have been erased since
         return
     bodies = [_box(id) for id in recorder.ids]
@@ -322,8 +322,8 @@ def tilt(id, angle, axis="y"):
     if not body.dynamic:
         raise ValueError(f"id = {id}: that body is prescribed (a base): must be a free block")
     half, state, lean = body.shape.extents, body.state, _angle(body.state, row)
-    if (state.ori * Quaternion(Vector3.Unit(row), -lean) * Vector3.UnitZ)[2] < _STANDS:
-        raise ValueError(f"id = {id}: that block does not stand: its own z axis must point upwards, but for what it leans about {axis}")
+    if abs((state.ori * Vector3.Unit(row))[2]) > _LEVEL:
+        raise ValueError(f"id = {id}: that block does not stand: its own {axis} axis, about which it is to lean, must be level")
     back = min(max(angle, min(-lean, 0)), max(-lean, 0))  # about the edge on which it leans
     for turn, side in ((back, math.copysign(1, lean)), (angle - back, math.copysign(1, angle))):
         if turn:
