@@ -48,8 +48,8 @@ MASONRY_INLINE Mask takePoint(PointLanes<K>& p, const StillLanes<K>& f, typename
 	return touches ^ was;
 }
 
-// Normal part of the nearest impulse that friction allows, of one with a normal part and the length of a tangential one. Infinite friction
-// holds nothing that parts.
+// Normal part of the nearest impulse that friction allows, of one with a normal part and the length of a tangential one; `share` is
+// 1/(1 + friction^2). Infinite friction holds nothing that parts.
 MASONRY_INLINE Lanes nearestNormal(const Lanes& normal, const Lanes& tangential, const Lanes& friction, const Lanes& share)
 {
 	const Lanes onRim = (normal + friction * tangential) * share;

@@ -76,7 +76,8 @@ def _choose_stiffness(penetration, gravity):
     """Fills in the stiffness per area of every BlockMat that has none: the most loaded joint gets in by `penetration` times the
     smallest width. Returns a sentence, or None when nothing was chosen."""
     blocks = _boxes()
-    normal, shear = ([b.mat for b in blocks if not _is_given(b.mat, name)] for name in ("normalStiffness", "shearStiffness"))
+    materials = {b.mat.id: b.mat for b in blocks}.values()
+    normal, shear = ([m for m in materials if not _is_given(m, name)] for name in ("normalStiffness", "shearStiffness"))
     if normal:
         if gravity == 0:
             raise ValueError("gravity = 0: every BlockMat must have a normalStiffness, there is no weight to choose one by")
@@ -338,7 +339,8 @@ def impacts():
     (realised), velocity (relative angular velocity before, rad/s), energy_lost (J), friction_demand (the friction coefficient that it
     takes; where that is the joint's own, the pivot has slipped and more was asked for), application (distance of the resultant from the
     new pivot, m), switched (False: the impact stopped the rotation; a pivot that has slipped may set it off again), capped (the
-    restitution does not come out: lowered so that no energy appears, or there is none with which the laws hold, a failure of its step). With method='wall' those where a restitution is given, and of the joint alone:
+    restitution does not come out: lowered so that no energy appears, or there is none with which the laws hold, a failure of its step).
+    With method='wall' those where a restitution is given, and of the joint alone:
     what its neighbours answer afterwards is in energy()['impactDissip']."""
     e = _joint_engine()
     table = np.zeros(len(e.impactTimes), dtype=_IMPACT_FIELDS)
