@@ -136,7 +136,7 @@ for model in ("planar", "spatial"):
 assert abs(kinetic[2] / kinetic[0] - 1) < first_order**2 and max(kinetic) / min(kinetic) - 1 < 2 * first_order, kinetic
 
 # --- a base that moves up and down bears what stands on it all the way: nothing is lost, or made. Taken with the velocity at the start of each step, the work on
-# the weight would be off by m g v STEP / 2 ---
+# the weight would be off by m g v STEP / 2. What is left is of second order, by STEP times 4 pi, the pulsation, of that ---
 motion = masonry.Record(0.005, 3 * np.sin(4 * math.pi * np.arange(0, 0.505, 0.005)), baseline="none")
 base, ids = wall(8, 4)
 O.engines = rigid_engines(dem.record_motion(motion, [base], direction=(0, 0, 1)), method="wall", dt=STEP)
@@ -167,7 +167,7 @@ print(f"a block that cannot slip, in space: {failures} steps without a solution,
 assert failures > 0
 
 # --- larger ones have no solution without slip, and say so. What is done instead has no energy of nothing: as the base sees it, what the pulse has left never
-# grows, and by both methods it is the same within a tenth (they find impulses that miss the laws, not the same) ---
+# grows, and by both methods, in the plane and in space, it is the same within a tenth (they find impulses that miss the laws, not the same) ---
 jump = 0.2
 for courses in (4, 6):
     left = {}
@@ -185,8 +185,8 @@ for courses in (4, 6):
             energy, momentum = dem.energy(), sum(O.bodies[id].state.mass * O.bodies[id].state.vel[0] for id in ids)
             seen.append((energy["kinetic"] - jump * momentum + energy["potential"] - before) / (mass * jump**2 / 2) + 1)
         print(f"{len(ids)} blocks that cannot slip, {model}, {method}: left of a pulse {seen[0]:.4f}, then {seen[-1]:.4f}; failures {O.engines[-1].failures}")
-        assert O.engines[-1].failures > 0 and np.all(np.diff(seen) < 1e-6) and seen[0] < 0.5, seen
-    assert abs(left["planar", "wall"][0] / left["planar", "localised"][0] - 1) < 0.1, left
+        assert O.engines[-1].failures > 0 and np.all(np.diff(seen) < 1e-6), seen
+    assert all(abs(one[0] / left["planar", "localised"][0] - 1) < 0.1 for one in left.values()), left
 
 # --- landings that begin a step within rounding of the joint are met with their restitution, however short the substeps ---
 for tolerance in (1e-3, 1e-4, 1e-5):
