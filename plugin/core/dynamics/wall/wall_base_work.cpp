@@ -1,0 +1,125 @@
+// What the prescribed bodies do to a wall in a step, J.
+#include "dynamics/wall/wall_step.hpp"
+#include <algorithm>
+
+namespace masonry::rigid {
+
+using wall::Lanes;
+
+template <class K>
+typename K::Velocity WallStep<K>::startVelocity(const RigidSystem<K>& s, int b) const
+{
+	typename K::Velocity velocity = s.bodies[b].velocity;
+	if (const int drive = s.bodies[b].drive; drive >= 0)
+		velocity.template head<K::dimension>() = s.drives[drive].velocity(s.time);
+	return velocity;
+}
+
+// What a jump of the base gives to what cannot slip works on the mean of the velocities before and after, not on the last.
+template <class K>
+typename K::Vector WallStep<K>::halfJump(const RigidSystem<K>& s, const wall::WallContacts<K>& contacts, int group, int lane) const
+{
+	const ContactPair<K>& pair = s.pairs[contacts.features[group].pair[lane]];
+	const int drive = s.bodies[s.bodies[pair.body1].prescribed ? pair.body1 : pair.body2].drive;
+	if (s.time != jumpTime || drive < 0 || pair.friction != noSlip)
+		return K::Vector::Zero();
+	return jumps[drive] / 2;
+}
+
+// Of the impulses that the prescribed bodies give, J, with their velocities at the start of the substep: the mean of those that blocks
+// which go with them have before and after it.
+template <class K>
+double WallStep<K>::baseWork(const RigidSystem<K>& s, Contacts& contacts)
+{
+	double work = 0;
+	const bool ofSweeps = &contacts == &moving();
+	setBase(s, contacts, 0);
+	for (const auto& [g, i] : contacts.onBase) {
+		const wall::Group<K>& group = contacts.groups[g];
+		const bool first = s.bodies[group.body1[i]].prescribed;
+		if (isStill(first ? group.body2[i] : group.body1[i]) == ofSweeps)
+			continue;
+		Lanes v[wall::packs<K>];
+		std::copy_n(&contacts.velocity[wall::packs<K> * (first ? group.body1 : group.body2)[i]], wall::packs<K>, v);
+		const typename K::Vector half = halfJump(s, contacts, g, i);
+		for (int k = 0; k < K::dimension; ++k)
+			v[0][k] -= half[k];
+		for (int k = 0; k < group.count; ++k) {
+			const wall::PointLanes<K>& p = group.point[k];
+			const auto impulse = ofSweeps ? sweeps.impulse(g, i, k) : wall::impulseOf(p, i);
+			for (int row = 0; row < K::rows; ++row)
+				work += (first ? impulse[row] : -impulse[row]) * wall::rateOf(p, row, i, first ? 1 : 2, v);
+		}
+	}
+	return work;
+}
+
+// The same from the momentum that the blocks have taken up: of a few iterations, impulses are less right than velocities. Where prescribed
+// bodies move differently, from the impulses.
+template <class K>
+double WallStep<K>::baseWorkWhenStill(const RigidSystem<K>& s, double h)
+{
+	using Vector = typename K::Vector;
+	Contacts& contacts = still();
+	int base = -1;
+	Vector half = Vector::Zero();
+	for (const auto& [g, i] : contacts.onBase) {
+		if (!isStill(contacts.freeBody(g, i)))
+			continue;
+		const int b = s.bodies[contacts.groups[g].body1[i]].prescribed ? contacts.groups[g].body1[i] : contacts.groups[g].body2[i];
+		if (base < 0) {
+			base = b;
+			half = halfJump(s, contacts, g, i);
+		}
+		const typename K::Velocity v = startVelocity(s, b);
+		if (b != base && (v != startVelocity(s, base) || !v.template tail<K::spins>().isZero(0)))
+			return baseWork(s, contacts);
+	}
+	if (base < 0)
+		return 0;
+	if (!s.bodies[base].velocity.template tail<K::spins>().isZero(0))
+		return baseWorkWhenTurning(s, base, h);
+	Vector momentum = Vector::Zero(), load = Vector::Zero(); // that the blocks have taken up, and that other forces have given
+	for (size_t b = 0; b < s.bodies.size(); ++b)
+		if (isStill(int(b)))
+			for (int i = 0; i < K::dimension; ++i) {
+				momentum[i] += s.bodies[b].mass * (kept.velocity[wall::packs<K> * b] - contacts.velocity[wall::packs<K> * b])[i];
+				load[i] += s.bodies[b].mass * loads[wall::packs<K> * b][i];
+			}
+	// What changes velocities works on their mean, which the base has at the start; what carries a load goes with it all the way.
+	const Vector start = startVelocity(s, base).template head<K::dimension>();
+	const int drive = s.bodies[base].drive;
+	return (momentum - load).dot(start - half) -
+	       load.dot(drive < 0 ? Vector(Vector::Zero()) : Vector(s.drives[drive].meanVelocity(s.time, h) - start));
+}
+
+// The same of a base that turns: with the moment about its centre, of arms in the middle of the step.
+template <class K>
+double WallStep<K>::baseWorkWhenTurning(const RigidSystem<K>& s, int base, double h)
+{
+	const Contacts& contacts = still();
+	typename K::Velocity impulse = K::Velocity::Zero();
+	for (size_t b = 0; b < s.bodies.size(); ++b) {
+		if (!isStill(int(b)))
+			continue;
+		const auto& body = s.bodies[b];
+		const typename K::Velocity change =
+		    contacts.inGlobal(kept.velocity, b) - contacts.inGlobal(contacts.velocity, b) - contacts.inGlobal(loads, b);
+		const typename K::Vector own = body.mass * change.template head<K::dimension>();
+		impulse.template head<K::dimension>() += own;
+		const typename K::Velocity apart = body.velocity - s.bodies[base].velocity;
+		const typename K::Vector arm = body.pose.position - s.bodies[base].pose.position + h / 2 * apart.template head<K::dimension>();
+		impulse.template tail<K::spins>() +=
+		    K::moment(arm, own) + K::angularMomentum(body.inertia, body.pose, change.template tail<K::spins>());
+	}
+	return impulse.dot(startVelocity(s, base));
+}
+
+#define MASONRY_OF(K)                                                                                                                      \
+	template double WallStep<K>::baseWork(const RigidSystem<K>&, Contacts&);                                                               \
+	template double WallStep<K>::baseWorkWhenStill(const RigidSystem<K>&, double);
+MASONRY_OF(Plane)
+MASONRY_OF(Space)
+#undef MASONRY_OF
+
+} // namespace masonry::rigid
