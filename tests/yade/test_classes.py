@@ -4,6 +4,7 @@ import copy
 import importlib
 import pickle
 
+import numpy as np
 import yade
 from masonry import dem
 from yade import O
@@ -51,6 +52,17 @@ for name in names:
         assert "noSuchAttribute" in str(error), error
     else:
         raise AssertionError(f"{name} took an attribute that it does not have")
+
+# Numbers out of arrays are numbers; what does not fit, or is none, still has its error.
+train = dem.PulseTrainEngine(ids=np.array([3, 4]), impulse=np.float32(0.5), resonantBlock=np.int64(7), times=np.array([0, 1]))
+assert (train.ids, train.impulse, train.resonantBlock, train.times) == ([3, 4], 0.5, 7, [0, 1])
+for value, error in ((np.int64(2**40), OverflowError), (np.float64(1.5), TypeError), (np.array([1, 2]), TypeError), ("1", TypeError)):
+    try:
+        train.resonantBlock = value
+    except error:
+        assert train.resonantBlock == 7
+    else:
+        raise AssertionError(f"resonantBlock took {value!r}")
 
 # Loading again changes nothing: neither the classes nor what is made of them.
 before = dem.BlockMat
