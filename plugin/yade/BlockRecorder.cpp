@@ -22,9 +22,12 @@ void BlockRecorder::action()
 	if (times.empty())
 		for (int id : ids)
 			if (!scene->bodies->exists(id)) throw std::invalid_argument(sentence("BlockRecorder.ids has ", id, ": there is no such body in O.bodies."));
+	bodies.begin(*scene, ids, [&](size_t k) { return !times.empty() && std::isnan(positions[positions.size() - ids.size() + k].x()); });
 	times.push_back(scene->time);
-	for (int id : ids) {
-		if (!scene->bodies->exists(id)) { // erased since
+	for (size_t k = 0; k < ids.size(); ++k) {
+		const int id = ids[k];
+		const Body* recorded = bodies.find(*scene, ids, k);
+		if (!recorded) {
 			const Vector3r none = Vector3r::Constant(NaN);
 			rotations.push_back(none);
 			positions.push_back(none);
@@ -32,7 +35,7 @@ void BlockRecorder::action()
 			forces.push_back(none);
 			continue;
 		}
-		const Body& body = *(*scene->bodies)[id];
+		const Body& body = *recorded;
 		const State& state = *body.state;
 		const AngleAxisr turn(state.refOri.conjugate() * state.ori);
 		Vector3r force = Vector3r::Zero();

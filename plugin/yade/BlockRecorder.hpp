@@ -1,5 +1,6 @@
 #pragma once
 
+#include "recorded_bodies.hpp"
 #include <pkg/common/PeriodicEngines.hpp>
 
 namespace yade {
@@ -20,6 +21,9 @@ public:
 		((vector<Vector3r>, forces, , Attr::readonly, "Force of what is below on the block [N], as rotations."))
 	);
 	// clang-format on
+
+private:
+	RecordedBodies bodies;
 };
 REGISTER_SERIALIZABLE(BlockRecorder);
 

@@ -69,16 +69,16 @@ void WallRecorder::action()
 {
 	if (times.empty()) begin();
 	if (blocks.size() != blockNumbers * ids.size()) throw std::invalid_argument("WallRecorder.ids has been changed after the first sample: make a new WallRecorder.");
+	bodies.begin(*scene, ids, [&](size_t k) { return !times.empty() && std::isnan(poses[poses.size() - poseNumbers * (ids.size() - k)]); });
 	times.push_back(scene->time);
 	addEnergies();
 	for (size_t k = 0; k < ids.size(); ++k) {
-		const int id = ids[k];
-		const Box* box = scene->bodies->exists(id) ? boxOf(*(*scene->bodies)[id]) : nullptr;
-		if (!box || box->extents != Vector3r(blocks[blockNumbers * k], blocks[blockNumbers * k + 1], blocks[blockNumbers * k + 2])) { // erased, or another in its place
+		const Body* body = bodies.find(*scene, ids, k);
+		if (!body) {
 			poses.insert(poses.end(), poseNumbers, NaN);
 			continue;
 		}
-		const State& state = *(*scene->bodies)[id]->state;
+		const State& state = *body->state;
 		add(poses, state.pos.x(), state.pos.y(), state.pos.z(), state.ori.w(), state.ori.x(), state.ori.y(), state.ori.z());
 	}
 }

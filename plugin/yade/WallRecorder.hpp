@@ -1,5 +1,6 @@
 #pragma once
 
+#include "recorded_bodies.hpp"
 #include <boost/python/object.hpp>
 #include <pkg/common/PeriodicEngines.hpp>
 
@@ -31,6 +32,8 @@ public:
 private:
 	void begin();
 	void addEnergies();
+
+	RecordedBodies bodies;
 };
 REGISTER_SERIALIZABLE(WallRecorder);
 

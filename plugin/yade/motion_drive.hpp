@@ -8,7 +8,7 @@ namespace yade {
 
 class MotionDrive final : public masonry::rigid::BaseDrive {
 public:
-	/// `ids`: of the blocks, by their number in the system. Instants nearer than `instant` (s) are one.
+	/// `ids`: of the blocks, by their number in the system.
 	MotionDrive(BaseMotionEngine& engine, const vector<int>& ids) : motion(engine), blocks(ids) { }
 
 	double displacement(double t) const override { return motion.displacement(t - motion.start); }
@@ -19,7 +19,7 @@ public:
 
 	bool ordered() const override { return motion.ordered(); }
 
-	Real instant = 0;
+	Real instant = 0; // s: instants nearer to each other than that are one
 
 private:
 	static double sum(const vector<BaseJump>& jumps)

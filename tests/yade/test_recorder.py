@@ -90,13 +90,21 @@ for model in ("planar", "compliant"):
 O.reset()
 base = dem.base((4, 1, 0.2), stone())
 block = dem.block((0.4, 0.4, 0.4), O.bodies[base].mat, on=base)
-wall = dem.WallRecorder(iterPeriod=1)
-O.engines = quiet_engines(model="planar", recorder=wall)
+wall, few = dem.WallRecorder(iterPeriod=1), dem.BlockRecorder(iterPeriod=1, ids=[base, block])
+O.engines = quiet_engines(model="planar", recorder=[wall, few])
 O.run(2, True)
-other = dem.block((0.2, 0.4, 0.4), O.bodies[base].mat, center=(1, 0, 0.2))
-taken = O.bodies[other]
+other = dem.block((0.4, 0.4, 0.4), O.bodies[base].mat, center=(1, 0, 0.2))  # as large
+taken, replaced = O.bodies[other], O.time - O.dt / 2
 O.bodies.erase(other)
 O.bodies.erase(block)
 O.bodies.insertAtId(taken, block)
 O.run(2, True)
-assert np.isnan(dem.wall_history(wall).position[2:, 1]).all() and np.isfinite(dem.wall_history(wall).position[:, 0]).all()
+file = tempfile.NamedTemporaryFile(suffix=".yade.gz")
+O.save(file.name)
+O.load(file.name)
+O.run(2, True)
+wall, few = (next(e for e in O.engines if type(e) is kind) for kind in (dem.WallRecorder, dem.BlockRecorder))
+for times, positions in ((dem.wall_history(wall).time, dem.wall_history(wall).position), (dem.history(few)["time"], dem.history(few)["position"])):
+    before = times < replaced
+    assert before.sum() > 0 and (~before).sum() == 4 and np.isfinite(positions[before]).all()
+    assert np.isnan(positions[~before, 1]).all() and np.isfinite(positions[:, 0]).all()

@@ -14,7 +14,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 double BaseMotion::Piece::accelerationAt(double t) const
 {
 	const double s = t - start;
-	return amplitude != 0 ? amplitude * std::sin(frequency * s + phase) : slope != 0 ? constant + slope * s : constant;
+	return amplitude != 0 ? amplitude * std::sin(frequency * s) : slope != 0 ? constant + slope * s : constant;
 }
 
 double BaseMotion::Piece::velocityAt(double t) const
@@ -22,9 +22,9 @@ double BaseMotion::Piece::velocityAt(double t) const
 	if (isFree())
 		return velocity;
 	const double s = t - start;
-	// cos(phase) - cos(frequency s + phase), without the difference of near-equal numbers
+	// 1 - cos(frequency s), without the difference of near-equal numbers
 	if (amplitude != 0)
-		return velocity + 2 * amplitude / frequency * std::sin(frequency * s / 2 + phase) * std::sin(frequency * s / 2);
+		return velocity + 2 * amplitude / frequency * std::sin(frequency * s / 2) * std::sin(frequency * s / 2);
 	return velocity + s * (constant + s * slope / 2);
 }
 
@@ -34,8 +34,7 @@ double BaseMotion::Piece::displacementAt(double t) const
 		return velocity == 0 ? displacement : displacement + velocity * (t - start);
 	const double s = t - start;
 	if (amplitude != 0)
-		return displacement + (velocity + amplitude / frequency * std::cos(phase)) * s -
-		       amplitude / (frequency * frequency) * (std::sin(frequency * s + phase) - std::sin(phase));
+		return displacement + (velocity + amplitude / frequency) * s - amplitude / (frequency * frequency) * std::sin(frequency * s);
 	return displacement + s * (velocity + s * (constant / 2 + s * slope / 6));
 }
 
@@ -50,8 +49,8 @@ std::optional<double> BaseMotion::Piece::firstAbove(double level, double from, d
 		if (std::abs(amplitude) <= level)
 			return std::nullopt;
 		// |sin| rises above the ratio at angle asin(ratio), then every half turn
-		const double angle = std::asin(level / std::abs(amplitude)), now = frequency * (from - start) + phase;
-		first = start + (angle + pi * std::ceil((now - angle) / pi) - phase) / frequency;
+		const double angle = std::asin(level / std::abs(amplitude)), now = frequency * (from - start);
+		first = start + (angle + pi * std::ceil((now - angle) / pi)) / frequency;
 	} else if (slope != 0) {
 		first = start + (std::copysign(level, slope) - constant) / slope;
 	}

@@ -15,7 +15,7 @@ namespace masonry {
 class BaseMotion {
 public:
 	// From `start` to the start of the next piece, with s = t - start:
-	//   acceleration(s) = constant + slope s + amplitude sin(frequency s + phase)
+	//   acceleration(s) = constant + slope s + amplitude sin(frequency s)
 	// A piece has either the linear or the sine part, not both.
 	struct Piece {
 		double start {0};        // s
@@ -24,7 +24,6 @@ public:
 		double slope {0};        // m/s^3
 		double amplitude {0};    // m/s^2
 		double frequency {0};    // rad/s
-		double phase {0};        // rad
 		double velocity {0};     // m/s, at the start, after the jump
 		double displacement {0}; // m, at the start
 

@@ -27,7 +27,7 @@ private:
 	void followPiece(const BaseMotion::Piece&, double until);
 	bool staysAtRest(const BaseMotion::Piece&, double until);
 	bool flyFreely(double until);
-	bool cannotReturn() const;
+	bool cannotReturn();
 	void flyForced(const BaseMotion::Piece&, double until);
 	void beginHalfCycle();
 	void notePeak(double angle, double time);
@@ -39,6 +39,18 @@ private:
 	void keepState();
 
 	bool atRest() const { return state_.side == 0; }
+	const FreeEnergy& energy()
+	{
+		if (!isEnergyKnown_)
+			energy_ = law_.energy(state_.angle, state_.velocity);
+		isEnergyKnown_ = true;
+		return energy_;
+	}
+	void take(const RockingState& state)
+	{
+		state_ = state;
+		isEnergyKnown_ = false;
+	}
 	int impacts() const { return int(history_.impactTimes.size()); }
 
 	const HistoryOptions& options_;
@@ -50,7 +62,8 @@ private:
 	History history_;
 	double time_ {0};
 	RockingState state_;
-	FreeEnergy energy_ {0, 0}; // of state_, valid in free flight
+	FreeEnergy energy_ {0, 0}; // of state_, where that is known: energy()
+	bool isEnergyKnown_ {false};
 	double peakAngle_ {0}, peakTime_ {0};
 	bool done_ {false};
 };
@@ -87,8 +100,7 @@ void HistoryRun::start()
 		restAt(0);
 	} else {
 		const int side = (angle != 0 ? angle : velocity) > 0 ? 1 : -1;
-		state_ = {side, std::abs(angle), side * velocity};
-		energy_ = law_.energy(state_.angle, state_.velocity);
+		take({side, std::abs(angle), side * velocity});
 		beginHalfCycle();
 		if (state_.angle >= law_.lostAngle())
 			overturn();
@@ -131,7 +143,7 @@ bool HistoryRun::staysAtRest(const BaseMotion::Piece& piece, double until)
 		return true;
 	}
 	time_ = *uplift;
-	state_ = {piece.accelerationAt(time_) > 0 ? -1 : 1, 0, 0};
+	take({piece.accelerationAt(time_) > 0 ? -1 : 1, 0, 0});
 	beginHalfCycle();
 	keepState();
 	return false;
@@ -139,30 +151,32 @@ bool HistoryRun::staysAtRest(const BaseMotion::Piece& piece, double until)
 
 // Free flight with no motion to come that ends beyond the critical angle: outwards with too much energy to be stopped
 // before it, or beyond it with too little to come back over it.
-bool HistoryRun::cannotReturn() const
+bool HistoryRun::cannotReturn()
 {
 	const bool outwards = state_.velocity >= 0;
-	return state_.angle < law_.alpha ? outwards && energy_.deficit <= 0 : outwards || energy_.deficit >= 0;
+	const double deficit = energy().deficit;
+	return state_.angle < law_.alpha ? outwards && deficit <= 0 : outwards || deficit >= 0;
 }
 
 // The rest of a free half cycle in closed form, if it ends by an impact before `until`.
 bool HistoryRun::flyFreely(double until)
 {
-	if (energy_.deficit <= 0 || state_.angle >= law_.alpha)
+	const FreeEnergy& now = energy();
+	if (now.deficit <= 0 || state_.angle >= law_.alpha)
 		return false;
-	const double fall = law_.timeFromPeakToImpact(energy_);
-	const double sincePeak = state_.angle == 0 ? fall : law_.timeFromPeak(energy_, state_.angle, state_.velocity);
+	const double fall = law_.timeFromPeakToImpact(now);
+	const double sincePeak = state_.angle == 0 ? fall : law_.timeFromPeak(now, state_.angle, state_.velocity);
 	const double peakTime = state_.velocity > 0 ? time_ + sincePeak : time_ - sincePeak;
 	const double impactTime = peakTime + fall;
 	if (impactTime > until + tolerance::oneInstant * std::max(until, 1 / law_.p))
 		return false;
 	if (state_.velocity > 0) {
-		const double peak = law_.peakAngle(energy_); // of this flight; the half cycle may have had a larger one
+		const double peak = law_.peakAngle(now); // of this flight; the half cycle may have had a larger one
 		notePeak(peak, peakTime);
 		if (options_.keepStates)
 			history_.knots_.push_back({peakTime, {state_.side, peak, 0}});
 	}
-	impact(std::max(impactTime, time_), law_.impactVelocity(energy_), true);
+	impact(std::max(impactTime, time_), law_.impactVelocity(now), true);
 	return true;
 }
 
@@ -172,34 +186,44 @@ void HistoryRun::flyForced(const BaseMotion::Piece& piece, double until)
 	while (time_ < until) {
 		keepState();
 		const TaylorStep step(law_, state_, piece, time_, std::min(until - time_, 2 / law_.p));
-		const double length = step.length(), end = step.angle(length), endVelocity = step.velocity(length);
-		const auto angle = [&step](double s) { return step.angle(s); };
-		const auto velocity = [&step](double s) { return step.velocity(s); };
+		const double length = step.length();
+		const auto end = step.at(length);
+		const auto angle = [&step](double s) {
+			const auto at = step.at(s);
+			return std::pair(at.angle, at.velocity);
+		};
+		const auto velocity = [&step](double s) {
+			const auto at = step.at(s);
+			return std::pair(at.velocity, at.acceleration);
+		};
 
-		double above = 0, below = end <= 0 ? length : 0; // a bracket of the impact, if there is one
-		if (step.firstChange() > 0 && endVelocity < 0) {
-			double rising = length / 2;
-			while (step.velocity(rising) <= 0)
+		double above = 0, below = end.angle <= 0 ? length : 0; // a bracket of the impact, if there is one
+		double landing = below;                                // about where
+		if (step.firstChange() > 0 && end.velocity < 0) {
+			double rising = state_.velocity > 0 ? 0 : length / 2;
+			while (velocity(rising).first <= 0)
 				rising /= 2;
-			above = root(velocity, rising, length);
-			notePeak(step.angle(above), time_ + above);
+			const double speed = velocity(rising).first;
+			above = root(velocity, rising, length, rising + (length - rising) * speed / (speed - end.velocity));
+			notePeak(step.at(above).angle, time_ + above);
 			if (peakAngle_ >= law_.lostAngle())
 				return overturn();
-		} else if (step.firstChange() < 0 && endVelocity > 0) {
-			const double lowest = root(velocity, 0, length);
-			if (step.angle(lowest) <= 0)
-				below = lowest;
+			if (state_.angle == 0)
+				landing = std::min(2 * above, below);
+		} else if (step.firstChange() < 0 && end.velocity > 0) {
+			const double lowest = root(velocity, 0, length, length / 2);
+			if (step.at(lowest).angle <= 0)
+				landing = below = lowest;
 		}
 		if (below > above) {
-			const double s = root(angle, above, below);
-			return impact(std::max(time_ + s, std::nextafter(time_, infinity)), -step.velocity(s), piece.isFree());
+			const double s = root(angle, above, below, landing);
+			return impact(std::max(time_ + s, std::nextafter(time_, infinity)), -step.at(s).velocity, piece.isFree());
 		}
 		time_ = length == until - time_ ? until : time_ + length;
-		state_ = {side, end, endVelocity};
-		if (end >= law_.lostAngle())
+		take({side, end.angle, end.velocity});
+		if (end.angle >= law_.lostAngle())
 			return overturn();
 	}
-	energy_ = law_.energy(state_.angle, state_.velocity);
 }
 
 void HistoryRun::beginHalfCycle()
@@ -232,8 +256,10 @@ void HistoryRun::impact(double time, double speed, bool free)
 		throw std::runtime_error("more than a million impacts: give half_cycles or an earlier t_end");
 
 	time_ = time;
-	energy_ = law_.afterImpact(free ? energy_ : law_.energy(0, speed), options_.restitution);
+	if (free)
+		energy_ = law_.afterImpact(energy(), options_.restitution);
 	state_ = {-state_.side, 0, options_.restitution * speed};
+	isEnergyKnown_ = free;
 	done_ = impacts() >= options_.halfCycles;
 
 	if (impacts() <= lastJump_) {
@@ -247,7 +273,7 @@ void HistoryRun::impact(double time, double speed, bool free)
 	if (state_.velocity <= (counted ? 0 : restSpeed_)) {
 		// the hops left: each takes C times the time of the one before
 		const bool hops = free && options_.restitution < 1;
-		return restAt(time + (hops ? 2 * law_.timeFromPeakToImpact(energy_) / (1 - options_.restitution) : 0));
+		return restAt(time + (hops ? 2 * law_.timeFromPeakToImpact(energy()) / (1 - options_.restitution) : 0));
 	}
 	beginHalfCycle();
 	keepState();
@@ -259,18 +285,17 @@ void HistoryRun::jumpBase(double velocityJump)
 	if (state_.angle == 0) {
 		if (omega == 0)
 			return restAt(time_);
-		state_ = {omega > 0 ? 1 : -1, 0, std::abs(omega)};
+		take({omega > 0 ? 1 : -1, 0, std::abs(omega)});
 		beginHalfCycle();
 	} else {
-		state_.velocity = state_.side * omega;
+		take({state_.side, state_.angle, state_.side * omega});
 	}
-	energy_ = law_.energy(state_.angle, state_.velocity);
 	keepState();
 }
 
 void HistoryRun::restAt(double since)
 {
-	state_ = {};
+	take({});
 	history_.restTime = since;
 	keepState();
 }
@@ -302,7 +327,8 @@ std::pair<double, double> History::sample(double t) const
 	for (double time = knot.time; time < t && state.angle < law.lostAngle();) {
 		const TaylorStep step(law, state, piece, time, std::min(t - time, 2 / law.p));
 		time = step.length() == t - time ? t : time + step.length();
-		state = {state.side, step.angle(step.length()), step.velocity(step.length())};
+		const auto end = step.at(step.length());
+		state = {state.side, end.angle, end.velocity};
 	}
 	if (!(state.angle < law.lostAngle()))
 		return {nan, nan};

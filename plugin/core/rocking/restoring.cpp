@@ -33,6 +33,8 @@ RockingLaw::RockingLaw(const RockingBlock& block, Restoring restoring_)
 FreeEnergy RockingLaw::energy(double u, double velocity) const
 {
 	const double kinetic = square(velocity / (2 * p)), phi = alpha - u;
+	if (u == 0)
+		return {kinetic, maximumEnergy_ - kinetic};
 	switch (restoring) {
 	case Restoring::Constant:
 		return {kinetic + u * sinAlpha / 2, phi * sinAlpha / 2 - kinetic};

@@ -16,6 +16,7 @@ std::array<double, size> reciprocals()
 	return result;
 }
 const auto inverse = reciprocals<32>();
+using Pair = double __attribute__((vector_size(16)));
 } // namespace
 
 TaylorStep::TaylorStep(const RockingLaw& law, const RockingState& state, const BaseMotion::Piece& piece, double t, double longest)
@@ -24,8 +25,8 @@ TaylorStep::TaylorStep(const RockingLaw& law, const RockingState& state, const B
 	int terms = 0;
 	const auto s = t - piece.start;
 	if (piece.amplitude != 0) {
-		a[0] = piece.amplitude * std::sin(piece.frequency * s + piece.phase);
-		a[1] = piece.amplitude * piece.frequency * std::cos(piece.frequency * s + piece.phase);
+		a[0] = piece.amplitude * std::sin(piece.frequency * s);
+		a[1] = piece.amplitude * piece.frequency * std::cos(piece.frequency * s);
 		for (int k = 2; k <= highestOrder; k++)
 			a[k] = -piece.frequency * piece.frequency * a[k - 2] / (k * (k - 1));
 		terms = highestOrder + 1;
@@ -41,47 +42,48 @@ TaylorStep::TaylorStep(const RockingLaw& law, const RockingState& state, const B
 		length_ /= 2;
 }
 
-// With S = sin(phi), C = cos(phi), phi = alpha - u and X_k the k-th Taylor coefficient of X:
-//   (k+2)(k+1) u_{k+2} = -p^2 (S_k + s/g sum_j a_j C_{k-j})
-//   (k+1) S_{k+1} = -sum_j (j+1) u_{j+1} C_{k-j},   (k+1) C_{k+1} = sum_j (j+1) u_{j+1} S_{k-j}
+// With S = sin(phi), C = cos(phi), phi = alpha - u, r = u' and X_k the k-th Taylor coefficient of X:
+//   (k+1) r_{k+1} = -p^2 (S_k + s/g sum_j a_j C_{k-j}),   (k+2) u_{k+2} = r_{k+1}
+//   (k+1) S_{k+1} = -sum_j r_j C_{k-j},   (k+1) C_{k+1} = sum_j r_j S_{k-j}
+// Sums end with the terms that are known last: the others are done while those are waited for.
 void TaylorStep::expand(const RockingLaw& law, int side, const Series& a, int terms, double longest)
 {
-	const double p2 = law.p * law.p, push = side / law.gravity;
+	const double p2 = law.p * law.p, push = side / law.gravity, phi = law.alpha - c_[0];
 	const bool exact = law.restoring == Restoring::Exact;
-	Series S, C, rate;
-	S[0] = exact ? std::sin(law.alpha - c_[0]) : law.restoring == Restoring::Constant ? law.sinAlpha : law.alpha - c_[0];
-	C[0] = exact ? std::cos(law.alpha - c_[0]) : law.restoring == Restoring::Constant ? law.cosAlpha : 1;
+	std::array<Pair, highestOrder> turned; // (-C, S)
+	Series rate;
+	if (law.restoring == Restoring::Linear)
+		turned[0] = Pair {-1, phi};
+	else if (law.restoring == Restoring::Constant || c_[0] == 0)
+		turned[0] = Pair {-law.cosAlpha, law.sinAlpha};
+	else
+		turned[0] = Pair {-std::cos(phi), std::sin(phi)};
 	rate[0] = c_[1];
 	// a small hop needs no more than a few terms: its length is about -2 u'/u''
-	const double lift = -p2 * (S[0] + push * (terms > 0 ? a[0] : 0) * C[0]);
+	const double lift = -p2 * (turned[0][1] - push * (terms > 0 ? a[0] : 0) * turned[0][0]);
 	if (c_[0] == 0 && c_[1] > 0 && lift < 0)
 		longest = std::min(longest, -2.5 * c_[1] / lift);
 	length_ = longest;
 	double power = longest; // longest^(k+1)
 	for (int k = 0;; k++, power *= longest) {
 		double force = 0;
-		if (exact)
-			for (int j = 0, last = std::min(k, terms - 1); j <= last; j++)
-				force += a[j] * C[k - j];
-		else if (k < terms)
-			force = a[k] * C[0];
-		c_[k + 2] = -p2 * (S[k] + push * force) * inverse[k + 1] * inverse[k + 2];
-		rate[k + 1] = (k + 2) * c_[k + 2];
+		for (int j = std::min(k, terms - 1), last = exact ? 0 : k; j >= last; j--)
+			force -= a[j] * turned[k - j][0];
+		rate[k + 1] = -p2 * inverse[k + 1] * (turned[k][1] + push * force);
+		c_[k + 2] = rate[k + 1] * inverse[k + 2];
 		order_ = k + 2;
 		if (order_ >= 5 && convergesAt(longest, power))
 			return;
 		if (order_ == highestOrder)
 			break;
 		if (exact) {
-			double sine = 0, cosine = 0;
-			for (int j = 0; j <= k; j++) {
-				sine -= rate[j] * C[k - j];
-				cosine += rate[j] * S[k - j];
-			}
-			S[k + 1] = sine * inverse[k + 1];
-			C[k + 1] = cosine * inverse[k + 1];
+			Pair sum {}; // (S', C')
+			for (int j = k; j >= 0; j--)
+				sum += rate[j] * turned[k - j];
+			sum *= inverse[k + 1];
+			turned[k + 1] = Pair {-sum[1], sum[0]};
 		} else {
-			S[k + 1] = law.restoring == Restoring::Constant ? 0 : -c_[k + 1];
+			turned[k + 1][1] = law.restoring == Restoring::Constant ? 0 : -c_[k + 1];
 		}
 	}
 	while (!convergesAt(length_, std::pow(length_, order_ - 1)))
@@ -131,20 +133,15 @@ bool TaylorStep::turnsOnce(double s) const
 	return changes <= 1;
 }
 
-double TaylorStep::angle(double s) const
+TaylorStep::Point TaylorStep::at(double s) const
 {
-	double sum = c_[order_];
-	for (int k = order_ - 1; k >= 0; k--)
-		sum = sum * s + c_[k];
-	return sum;
-}
-
-double TaylorStep::velocity(double s) const
-{
-	double sum = order_ * c_[order_];
-	for (int k = order_ - 1; k >= 1; k--)
-		sum = sum * s + k * c_[k];
-	return sum;
+	double angle = c_[order_], velocity = 0, half = 0;
+	for (int k = order_ - 1; k >= 0; k--) {
+		half = half * s + velocity;
+		velocity = velocity * s + angle;
+		angle = angle * s + c_[k];
+	}
+	return {angle, velocity, 2 * half};
 }
 
 double TaylorStep::firstChange() const { return c_[1] != 0 ? c_[1] : c_[2] != 0 ? c_[2] : c_[3]; }

@@ -22,9 +22,11 @@ public:
 
 	// s, <= longest. Up to here the polynomial is exact to round-off, and the velocity changes its sign once at most.
 	double length() const { return length_; }
-	double angle(double s) const;    // u, s seconds after t
-	double velocity(double s) const; // u'
-	double firstChange() const;      // sign of the motion just after t: u', or u'' where u' = 0, or u'''
+	struct Point {
+		double angle, velocity, acceleration; // u, u', u''
+	};
+	Point at(double s) const;   // s seconds after t
+	double firstChange() const; // sign of the motion just after t: u', or u'' where u' = 0, or u'''
 
 private:
 	static constexpr int highestOrder = 24;

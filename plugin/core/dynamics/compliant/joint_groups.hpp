@@ -33,8 +33,8 @@ struct Closing {
 
 std::vector<Joint> groupJoints(const JointSystem& system);
 
-// What an impact of a joint is solved on: the whole system while it has at most `small` contacts, which the dense impulse solver
-// takes, else the block, its neighbours and their contacts, with the bodies beyond them as its rim.
+// What an impact of a joint is solved on: the whole system while it has at most `small` contacts, else
+// the block, its neighbours and their contacts, with the bodies beyond them as its rim.
 struct Neighbourhood {
 	JointSystem      system;
 	Joint            joint;            // in its numbers

@@ -36,7 +36,7 @@ double solveAlone(ContactState<K>& s)
 	return s.violation(0, s.relativeVelocity(row));
 }
 
-// Sweeps until solved, up to `limit`; impatient: or until the rate of convergence tells that `limit` will not do.
+// Sweeps until solved, up to `limit`; not `patient`: or until the rate of convergence tells that `limit` will not do.
 template <class K>
 double gaussSeidel(ContactState<K>& s, double tolerance, int limit, bool patient, SolveReport& report)
 {
