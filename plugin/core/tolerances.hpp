@@ -13,8 +13,6 @@ constexpr double impulse = 1e-11;
 // The same where the solver of many points gets no nearer: with friction the redundant points of many faces leave it little but
 // round-off to go by. Larger: blocks of a wall creep into each other by this share of their speed.
 constexpr double impulseEnough = 1e-8;
-// Change of any velocity in a sweep, relative to the largest approach speed, at which a large problem counts as solved.
-constexpr double sweeps = 1e-8;
 // Gain of kinetic energy relative to the kinetic energy before an impact that is round-off, not physics. Smaller: the
 // energy cap acts on C = 1 impacts that only round off.
 constexpr double energyGain = 1e-11;

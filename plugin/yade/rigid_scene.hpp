@@ -176,7 +176,7 @@ public:
 		system.settings.tolerance = integrator.tolerance;
 		system.settings.merged = integrator.mergedClosing;
 		system.settings.mostEvents = integrator.mostEvents;
-		system.settings.order = integrator.sequential ? masonry::rigid::ImpactOrder::sequential : masonry::rigid::ImpactOrder::simultaneous;
+		system.settings.order = integrator.sequential ? masonry::ImpactOrder::sequential : masonry::ImpactOrder::simultaneous;
 		if (integrator.isWall() != byWalls) {
 			system.moved = true;
 			system.startAnew();
@@ -506,11 +506,6 @@ private:
 				state.angMom = kept.seats[b].spin(coordinates, block);
 			}
 		});
-	}
-
-	static bool touches(const Pair& pair)
-	{
-		return std::any_of(pair.points.begin(), pair.points.begin() + pair.size, [](const auto& point) { return point.closed; });
 	}
 
 	void record(const masonry::rigid::Impact& impact)

@@ -60,11 +60,6 @@ namespace {
 		Vector velocity() const { return G * p + free; }
 	};
 
-	Vector3 relativeVelocity(const std::vector<Body>& bodies, const ImpulsePoint& point)
-	{
-		return bodies[point.body2].velocityAt(point.position) - bodies[point.body1].velocityAt(point.position) + point.bias;
-	}
-
 	void addSides(Row* rows, const std::vector<Body>& bodies, const ImpulsePoint& point, const Matrix3& axes)
 	{
 		for (const auto& [b, sign] : { std::pair(point.body1, -1.), std::pair(point.body2, 1.) }) {
@@ -116,7 +111,7 @@ namespace {
 		for (int i = 0; i < nPoints; ++i) {
 			points.push_back({ given[i].friction, given[i].holds ? State::stick : State::open, axesAlong(given[i].normal) });
 			addSides(&rows[3 * i], bodies, given[i], points[i].axes);
-			free.template segment<3>(3 * i) = points[i].axes * relativeVelocity(bodies, given[i]);
+			free.template segment<3>(3 * i) = points[i].axes * (relativeVelocity(bodies, given[i]) + given[i].bias);
 		}
 		for (int c = 0; c < nCouples; ++c) {
 			const CoupleRow& couple = couples[c];
@@ -244,63 +239,6 @@ namespace {
 		return s.noise + roundOff;
 	}
 
-	// The same laws point by point on the bodies' velocities, without any matrix: for more points than the dense solver can
-	// bear. Stops when a sweep changes no velocity by more than the tolerance.
-	ImpulseReport solveBySweeps(std::vector<Body>& bodies, std::vector<ImpulsePoint>& points, std::vector<CoupleRow>& couples)
-	{
-		std::vector<Matrix3> inverseInertia;
-		for (const Body& body : bodies)
-			inverseInertia.push_back(body.inverseInertia());
-		const auto push = [&](int b, const Vector3& impulse, const Vector3& point) {
-			bodies[b].velocity += bodies[b].inverseMass() * impulse;
-			bodies[b].angularVelocity += inverseInertia[b] * (point - bodies[b].pose.position).cross(impulse);
-		};
-		std::vector<double> response; // trace of each point's own 3x3 block
-		double              scale = 0;
-		for (const ImpulsePoint& p : points) {
-			double sum = 0;
-			for (int b : { p.body1, p.body2 }) {
-				const Vector3 arm = p.position - bodies[b].pose.position;
-				const Matrix3 cross = (Matrix3() << 0, -arm.z(), arm.y(), arm.z(), 0, -arm.x(), -arm.y(), arm.x(), 0).finished();
-				sum += 3 * bodies[b].inverseMass() - (cross * inverseInertia[b] * cross).trace();
-			}
-			response.push_back(sum);
-			scale = std::max(scale, relativeVelocity(bodies, p).norm());
-		}
-		constexpr int maxSweeps = 20000;
-		ImpulseReport report { 0, 0. };
-		for (; report.iterations < maxSweeps; ++report.iterations) {
-			report.residual = 0;
-			for (size_t i = 0; i < points.size(); ++i) {
-				ImpulsePoint& p = points[i];
-				const Vector3 trial = p.impulse - relativeVelocity(bodies, p) / response[i];
-				const double  normal = p.normal.dot(trial);
-				Vector3       next = Vector3::Zero();
-				if (normal > 0) {
-					const Vector3 tangential = trial - normal * p.normal;
-					const double  size = tangential.norm(), bound = p.friction * normal;
-					next = normal * p.normal + (size > bound ? Vector3(tangential * (bound / size)) : tangential);
-				}
-				const Vector3 change = next - p.impulse;
-				p.impulse = next;
-				push(p.body1, -change, p.position);
-				push(p.body2, change, p.position);
-				report.residual = std::max(report.residual, change.norm() * response[i]);
-			}
-			for (CoupleRow& row : couples) {
-				const double softness = row.axis.dot((inverseInertia[row.body1] + inverseInertia[row.body2]) * row.axis);
-				const double spin = row.axis.dot(bodies[row.body2].angularVelocity - bodies[row.body1].angularVelocity);
-				const double change = (row.target - spin) / softness;
-				row.couple += change;
-				bodies[row.body1].angularVelocity -= inverseInertia[row.body1] * row.axis * change;
-				bodies[row.body2].angularVelocity += inverseInertia[row.body2] * row.axis * change;
-			}
-			if (report.residual <= tolerance::sweeps * scale) return report;
-		}
-		report.solved = false;
-		return report;
-	}
-
 	// G is symmetric, and its columns, not its rows, lie together in memory.
 	template <int most> int gaussSeidel(System<most>& s)
 	{
@@ -373,6 +311,11 @@ namespace {
 
 } // namespace
 
+Vector3 relativeVelocity(const std::vector<Body>& bodies, const ImpulsePoint& point)
+{
+	return bodies[point.body2].velocityAt(point.position) - bodies[point.body1].velocityAt(point.position);
+}
+
 Matrix3 axesAlong(const Vector3& normal)
 {
 	int smallest;
@@ -396,8 +339,6 @@ double longestArm(const std::vector<Body>& bodies, const std::vector<ImpulsePoin
 ImpulseReport solveImpulses(std::vector<Body>& bodies, std::vector<ImpulsePoint>& points, std::vector<CoupleRow>& couples)
 {
 	if (points.empty() && couples.empty()) return { 0, 0. };
-	constexpr size_t mostDense = 100; // points; the dense solver's cost grows with their cube
-	if (points.size() > mostDense) return solveBySweeps(bodies, points, couples);
 	const bool few = points.size() <= fewPoints && 3 * points.size() + couples.size() <= fewRows;
 	return few ? solveDense<fewRows>(bodies, points, couples) : solveDense<Eigen::Dynamic>(bodies, points, couples);
 }

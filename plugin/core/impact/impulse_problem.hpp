@@ -50,12 +50,14 @@ struct ImpulseReport {
 // Finds the impulses and changes the bodies' velocities. Prescribed bodies keep theirs.
 using ImpulseSolver = std::function<ImpulseReport(std::vector<Body>&, std::vector<ImpulsePoint>&, std::vector<CoupleRow>&)>;
 
+// Of body 2 against body 1 at the point, m/s.
+Vector3 relativeVelocity(const std::vector<Body>& bodies, const ImpulsePoint& point);
 // Rows: the unit normal, then two unit tangents.
 Matrix3 axesAlong(const Vector3& normal);
 // Of a point about a free body, m: the length that makes velocities of spins.
 double longestArm(const std::vector<Body>& bodies, const std::vector<ImpulsePoint>& points);
 
-// One dense problem of all points: for few.
+// One dense problem of all points: for few, since its cost grows with their cube.
 ImpulseReport solveImpulses(std::vector<Body>& bodies, std::vector<ImpulsePoint>& points, std::vector<CoupleRow>& couples);
 // The way out alone, for problems without slip that are known to have no solution.
 ImpulseReport letPullingPointsGo(std::vector<Body>& bodies, std::vector<ImpulsePoint>& points, std::vector<CoupleRow>& couples);

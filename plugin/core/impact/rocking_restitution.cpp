@@ -11,11 +11,6 @@ namespace masonry {
 
 namespace {
 
-	Vector3 relativeVelocity(const std::vector<Body>& bodies, const ImpulsePoint& point)
-	{
-		return bodies[point.body2].velocityAt(point.position) - bodies[point.body1].velocityAt(point.position);
-	}
-
 	double spin(const std::vector<Body>& bodies, const ClosingJoint& joint)
 	{
 		return joint.result.axis.dot(bodies[joint.block].angularVelocity - bodies[joint.support].angularVelocity);

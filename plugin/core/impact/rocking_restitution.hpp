@@ -47,6 +47,8 @@ struct JointResult {
 	double  restitution() const { return before > 0 ? after / before : 0; }
 };
 
+enum class ImpactOrder { simultaneous, sequential };
+
 struct ClosingJoint {
 	int         block, support;            // indices into the list of bodies
 	Vector3     normal;                    // from the support to the block

@@ -21,17 +21,12 @@
 
 namespace masonry {
 
-enum class ImpactOrder {
-	simultaneous, // the closing joint and every loaded point elsewhere in one impulse problem
-	sequential    // the closing joint alone; its neighbours feel the changed velocities afterwards, through their springs
-};
-
 struct JointSystem {
 	std::vector<Body>         bodies;
 	std::vector<JointContact> contacts; // sorted by body pair: the order of every sum
 	Vector3                   gravity { Vector3::Zero() };
 	double                    dt { 0 };
-	ImpactOrder               order { ImpactOrder::simultaneous };
+	ImpactOrder               order { ImpactOrder::simultaneous }; // sequential: the springs of the neighbours are the second stage
 	// Bodies at the rim of a part cut out of a larger structure: they take impulses, but what else stands on them is not
 	// here, so between impulses they keep their velocity (they are marked as prescribed). Empty: none.
 	std::vector<int> rim;

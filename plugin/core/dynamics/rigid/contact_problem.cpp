@@ -48,6 +48,33 @@ struct ContactSolver<K>::Workspace {
 		s.restoreBest();
 		return s.bestResidual;
 	}
+
+	// Impulses and velocities that meet the laws, or the best found.
+	SolveReport find(const ContactSolver<K>& given, double tolerance, double enough)
+	{
+		SolveReport report;
+		if (s.nPoints == 1) {
+			report.residual = solveAlone(s);
+			if (report.residual <= tolerance)
+				return report;
+		}
+		s.applyImpulses();
+		constexpr int fewSweeps = 4;
+		if (K::dimension == 2 && s.nPoints <= K::maxPoints) { // a block on its face: dearer to factorise than to sweep
+			report.residual = gaussSeidel(s, tolerance, fewSweeps, true, report);
+			if (report.residual <= tolerance)
+				return report;
+		}
+		constexpr bool inSpace = K::dimension == 3;
+		if (!(inSpace && given.guessed) && startsClose(tolerance, report))
+			return report;
+		const bool sticks = std::any_of(given.points.begin(), given.points.end(), [](const ContactRows<K>& row) { return row.friction == noSlip; });
+		constexpr int firstSweeps = 40;
+		report.residual = !inSpace || sticks ? gaussSeidel(s, tolerance, firstSweeps, false, report) : s.residual();
+		if (report.residual > tolerance)
+			report.residual = alternate(tolerance, enough, given.lastSweeps, report);
+		return report;
+	}
 };
 
 template <class K>
@@ -78,30 +105,12 @@ SolveReport ContactSolver<K>::solve(double tolerance, double enough)
 	if (!workspace)
 		workspace.reset(new Workspace);
 	Workspace& w = *workspace;
-	SolveReport report;
 	w.s.begin(*this);
-	if (w.s.nPoints == 1) {
-		report.residual = solveAlone(w.s);
-		if (report.residual <= tolerance)
-			return report;
-	}
-	w.s.applyImpulses();
-	constexpr int fewSweeps = 4;
-	if (K::dimension == 2 && w.s.nPoints <= K::maxPoints) { // a block on its face: dearer to factorise than to sweep
-		report.residual = gaussSeidel(w.s, tolerance, fewSweeps, true, report);
-		if (report.residual <= tolerance)
-			return report;
-	}
-	constexpr bool inSpace = K::dimension == 3;
-	if (!(inSpace && guessed) && w.startsClose(tolerance, report))
-		return report;
-	const bool sticks = std::any_of(points.begin(), points.end(), [](const ContactRows<K>& row) { return row.friction == noSlip; });
-	constexpr int firstSweeps = 40;
-	report.residual = !inSpace || sticks ? gaussSeidel(w.s, tolerance, firstSweeps, false, report) : w.s.residual();
-	if (report.residual > tolerance)
-		report.residual = w.alternate(tolerance, enough, lastSweeps, report);
+	SolveReport report = w.find(*this, tolerance, enough);
 	report.converged = report.residual <= std::max(tolerance, enough);
-	if (!report.converged) {
+	if (report.converged) {
+		w.s.letPartingGo(report.residual);
+	} else {
 		w.s.addNoEnergy();
 		report.residual = w.s.residual();
 	}

@@ -116,6 +116,18 @@ struct ContactState {
 		applyImpulses();
 	}
 
+	// A point that parts may keep an impulse of the last step that is too small for its law to tell, `missed` (m/s) or less: it does not press.
+	void letPartingGo(double missed)
+	{
+		for (int i = 0; i < nPoints; ++i) {
+			const double trace = points[i].alone.trace, pressing = rows[i].impulse[0] * trace;
+			if (rows[i].friction == bilateral || !(pressing > 0) || pressing > missed || relativeVelocity(rows[i])[0] < pressing)
+				continue;
+			push(i, -rows[i].impulse);
+			rows[i].impulse.setZero();
+		}
+	}
+
 	void restoreBest()
 	{
 		for (int i = 0; i < nPoints; ++i)

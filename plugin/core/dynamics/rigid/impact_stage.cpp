@@ -235,7 +235,7 @@ template <class K> void ImpactStage<K>::holdPivots(RigidSystem<K>& s)
 	for (size_t k = 0; k < refs.size(); ++k)
 		if (const ContactPoint<K>* held = loaded(k)) {
 			ImpulsePoint& point = impact.points[k];
-			const Vector3 u = bodies[point.body2].velocityAt(point.position) - bodies[point.body1].velocityAt(point.position);
+			const Vector3 u = masonry::relativeVelocity(bodies, point);
 			if (held->sliding) point.friction = 0;
 			stray = std::max(stray, held->sliding ? std::abs(point.normal.dot(u)) : u.norm());
 		}
@@ -262,13 +262,12 @@ template <class K> RockingImpactResult ImpactStage<K>::land(RigidSystem<K>& s, c
 {
 	holdPivots(s);
 	gather(s, closing);
-	const auto leastSpin = [&](const ClosingJoint& joint) { return tolerance::restSpeed * std::sqrt(scale::acceleration(s) / s.bodies[joint.block].halfSize.norm()); };
 	asked.clear();
 	for (ClosingJoint& joint : impact.joints) {
 		asked.push_back(joint.restitution);
 		const Vector3 axis = rockingAxis(bodies, joint, impact.points);
 		const double  spin = axis.dot(bodies[joint.block].angularVelocity - bodies[joint.support].angularVelocity);
-		if (spin * (std::isnan(joint.restitution) ? 1 : joint.restitution) < leastSpin(joint)) joint.restitution = 0;
+		if (spin * (std::isnan(joint.restitution) ? 1 : joint.restitution) < scale::leastSpin(s, joint.block)) joint.restitution = 0;
 	}
 	const auto result = s.settings.order == ImpactOrder::simultaneous ? applyRockingImpact(bodies, impact) : applySequentially(bodies, impact);
 	settle(s);
@@ -277,8 +276,8 @@ template <class K> RockingImpactResult ImpactStage<K>::land(RigidSystem<K>& s, c
 	double energy = result.energyLost;
 	for (size_t k = 0; k < asked.size(); ++k) {
 		const ClosingJoint& joint = impact.joints[k];
-		if (joint.result.before < leastSpin(joint)) continue; // it did not rock
-		s.impacts.push_back({ s.time, joint.block, joint.support, asked[k], joint.result.after >= leastSpin(joint), joint.result, energy, result.capped, result.residual });
+		if (joint.result.before < scale::leastSpin(s, joint.block)) continue; // it did not rock
+		s.impacts.push_back({ s.time, joint.block, joint.support, asked[k], joint.result.after >= scale::leastSpin(s, joint.block), joint.result, energy, result.capped, result.residual });
 		energy = 0;
 	}
 	return result;

@@ -64,13 +64,16 @@ template <class K> FoundPoints<K> findPoints(const RigidBody<K>& body1, const Ri
 	return found;
 }
 
+template <class K> bool touches(const ContactPair<K>& pair)
+{
+	return std::any_of(pair.points.begin(), pair.points.begin() + pair.size, [](const ContactPoint<K>& point) { return point.closed; });
+}
+
 template <class K> bool sameFeatures(const ContactPair<K>& pair, const FoundPoints<K>& found)
 {
 	const auto same = [](const auto& feature, const ContactPoint<K>& point) { return feature == point.feature; };
 	return found.size == pair.size && std::equal(found.features.begin(), found.features.begin() + found.size, pair.points.begin(), same);
 }
-
-enum class ImpactOrder { simultaneous, sequential };
 
 struct Settings {
 	double      tolerance { 1e-9 };   // residual of a step's contact laws relative to the speed that gravity gives in that step; its parts aim at theirs

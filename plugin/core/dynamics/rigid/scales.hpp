@@ -1,6 +1,7 @@
 #pragma once
 // What tolerances are relative to: a length, an acceleration and a speed of the scene.
 #include "dynamics/rigid/rigid_system.hpp"
+#include "tolerances.hpp"
 #include <algorithm>
 #include <cmath>
 
@@ -26,6 +27,12 @@ template <class K> double acceleration(const RigidSystem<K>& s)
 		speed = std::max(speed, body.velocity.norm());
 	}
 	return force > 0 ? force : speed * speed / length(s);
+}
+
+// Spin of a block below which it does not rock, rad/s.
+template <class K> double leastSpin(const RigidSystem<K>& s, int block)
+{
+	return tolerance::restSpeed * std::sqrt(acceleration(s) / s.bodies[block].halfSize.norm());
 }
 
 } // namespace masonry::rigid::scale

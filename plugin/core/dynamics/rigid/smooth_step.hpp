@@ -90,7 +90,7 @@ private:
 	Trial<K>         last;
 	std::vector<int> first; // index in last.frames of a pair's first point
 	std::vector<typename K::Velocity> shifts;
-	std::vector<double> misses;
+	std::vector<double> misses, partings; // of the rows: m; normal velocities at the start of a part of a step, m/s
 	std::vector<Impulse> guesses, stray; // of the rows: impulses of the last pass; velocities that the step takes off (none: empty)
 	double whole { 0 }, end { 0 };       // s, the step that is being done in parts, and when it ends
 	double weight { 0 };                 // of the free bodies times the scene's length, J

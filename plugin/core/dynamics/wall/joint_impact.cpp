@@ -62,7 +62,7 @@ RockingImpactResult JointImpact::apply()
 	wall::take(bodies, start);
 	double speed = 0;
 	for (const ImpulsePoint& point : points)
-		speed = std::max(speed, (bodies[point.body2].velocityAt(point.position) - bodies[point.body1].velocityAt(point.position)).norm());
+		speed = std::max(speed, relativeVelocity(bodies, point).norm());
 	const double before = kineticEnergy(bodies);
 	const auto gains = [&](const Outcome& outcome) {
 		return kineticEnergy(bodies) - before - outcome.work > tolerance::energyGain * (before + std::abs(outcome.work));

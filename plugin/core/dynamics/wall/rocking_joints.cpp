@@ -245,8 +245,7 @@ void RockingJoints<Space>::answer(RigidSystem<Space>& s, WallContacts<Space>& c,
 	law.oldEnd = int(impact.points.size());
 	const Vector3 axis = rockingAxis(impact.bodies, law, impact.points);
 	const Vector3 turning = impact.bodies[law.block].angularVelocity - impact.bodies[law.support].angularVelocity;
-	const double spin = axis.dot(turning),
-	             leastSpin = tolerance::restSpeed * std::sqrt(scale::acceleration(s) / s.bodies[at.block].halfSize.norm());
+	const double spin = axis.dot(turning), leastSpin = scale::leastSpin(s, at.block);
 	if (!(spin >= leastSpin))
 		return;
 	if (spin >= mostly * turning.norm())
@@ -301,7 +300,7 @@ void RockingJoints<Plane>::answer(RigidSystem<Plane>& s, WallContacts<Plane>& c,
 	const Eigen::Matrix<double, 6, 3> W = inverseMass.asDiagonal() * J.transpose();
 	const Matrix3 G = J * W;
 	const Vector3 u = J * velocity;
-	const double before = u[2], leastSpin = tolerance::restSpeed * std::sqrt(scale::acceleration(s) / s.bodies[at.block].halfSize.norm());
+	const double before = u[2], leastSpin = scale::leastSpin(s, at.block);
 	if (!(std::abs(before) >= leastSpin))
 		return;
 	landed.push_back(at.block);

@@ -19,9 +19,8 @@ typename K::Velocity WallStep<K>::startVelocity(const RigidSystem<K>& s, int b) 
 template <class K>
 typename K::Vector WallStep<K>::halfJump(const RigidSystem<K>& s, const wall::WallContacts<K>& contacts, int group, int lane) const
 {
-	const ContactPair<K>& pair = s.pairs[contacts.features[group].pair[lane]];
-	const int drive = s.bodies[s.bodies[pair.body1].prescribed ? pair.body1 : pair.body2].drive;
-	if (s.time != jumpTime || drive < 0 || pair.friction != noSlip)
+	const int drive = s.bodies[contacts.base(s, group, lane)].drive;
+	if (s.time != jumpTime || drive < 0 || s.pairs[contacts.features[group].pair[lane]].friction != noSlip)
 		return K::Vector::Zero();
 	return jumps[drive] / 2;
 }
@@ -66,7 +65,7 @@ double WallStep<K>::baseWorkWhenStill(const RigidSystem<K>& s, double h)
 	for (const auto& [g, i] : contacts.onBase) {
 		if (!isStill(contacts.freeBody(g, i)))
 			continue;
-		const int b = s.bodies[contacts.groups[g].body1[i]].prescribed ? contacts.groups[g].body1[i] : contacts.groups[g].body2[i];
+		const int b = contacts.base(s, g, i);
 		if (base < 0) {
 			base = b;
 			half = halfJump(s, contacts, g, i);

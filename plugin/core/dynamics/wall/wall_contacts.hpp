@@ -36,6 +36,9 @@ constexpr double farAway = 1e30; // m, gap of a lane without a point
 // times the mean the peaks of columns are 0.5 % too high at a tenth of a step, with 12 times 0.4 % too low at a whole one.
 constexpr double mostOfMean = 8, mostOfFall = 2;
 
+// Of flags, one each of bodies or structures.
+inline bool any(const std::vector<char>& chosen) { return std::find(chosen.begin(), chosen.end(), 1) != chosen.end(); }
+
 // Angle between two poses near each other, rad.
 inline double turned(const PlanePose& from, const PlanePose& to) { return std::abs(to.angle - from.angle); }
 inline double turned(const Pose& from, const Pose& to) { return 2 * (to.orientation.coeffs() - from.orientation.coeffs()).norm(); }
@@ -89,8 +92,8 @@ MASONRY_INLINE double rateOf(const PointLanes<K>& p, int row, int lane, int body
 }
 
 // Of one lane's point, N s: normal and tangential.
-template <class K, class L>
-MASONRY_INLINE Eigen::Matrix<double, K::rows, 1> impulseOf(const PointLanes<K, L>& p, int lane)
+template <class K>
+MASONRY_INLINE Eigen::Matrix<double, K::rows, 1> impulseOf(const PointLanes<K>& p, int lane)
 {
 	Eigen::Matrix<double, K::rows, 1> impulse;
 	impulse[0] = p.pn[lane];
@@ -222,12 +225,18 @@ public:
 		features = featuresNow;
 	}
 
-	bool isEmpty() const { return std::find(own.begin(), own.end(), 1) == own.end(); }
+	bool isEmpty() const { return !any(own); }
 	// A body of a lane's pair that is of the structures here.
 	int freeBody(int group, int lane) const
 	{
 		const int first = groups[group].body1[lane];
 		return own[first] ? first : groups[group].body2[lane];
+	}
+	// The prescribed body of a lane's pair.
+	int base(const RigidSystem<K>& s, int group, int lane) const
+	{
+		const int first = groups[group].body1[lane];
+		return s.bodies[first].prescribed ? first : groups[group].body2[lane];
 	}
 	// Points of a lane.
 	int points(const RigidSystem<K>& s, int group, int lane) const

@@ -106,7 +106,7 @@ void WallStep<K>::letGo(double h, double share)
 	Chosen asked = structuresOf(contacts, kept.held(held)), go;
 	for (size_t k = 0; k < asked.size(); ++k)
 		asked[k] &= structures.all[k].mayHold == share;
-	if (std::find(asked.begin(), asked.end(), 1) == asked.end())
+	if (!wall::any(asked))
 		return;
 	const auto lanes = lanesOf(contacts, bodiesOf(asked));
 	wall::LaneBits here;
@@ -118,7 +118,7 @@ void WallStep<K>::letGo(double h, double share)
 		for (size_t g = 0; g < here.size(); ++g)
 			here[g] &= lanes[g];
 		go = structuresOf(contacts, here);
-		some = std::find(go.begin(), go.end(), 1) != go.end();
+		some = wall::any(go);
 	}
 	gone.resize(here.size(), 0);
 	for (size_t g = 0; g < here.size(); ++g)
@@ -193,8 +193,7 @@ std::vector<int> WallStep<K>::drivesUnder(const RigidSystem<K>& s) const
 	const Contacts& contacts = sets[stillSet];
 	std::vector<int> drives(structures.all.size(), unknown);
 	for (const auto& [g, i] : contacts.onBase) {
-		const wall::Group<K>& group = contacts.groups[g];
-		const int its = s.bodies[s.bodies[group.body1[i]].prescribed ? group.body1[i] : group.body2[i]].drive;
+		const int its = s.bodies[contacts.base(s, g, i)].drive;
 		int& drive = drives[structures.of[contacts.freeBody(g, i)]];
 		drive = drive == unknown || drive == its ? its : several;
 	}
@@ -215,7 +214,7 @@ bool WallStep<K>::basesPart(const RigidSystem<K>& s) const
 		};
 		if (std::none_of(group.point, group.point + group.count, stands))
 			continue;
-		const RigidBody<K>& base = s.bodies[s.bodies[group.body1[i]].prescribed ? group.body1[i] : group.body2[i]];
+		const RigidBody<K>& base = s.bodies[contacts.base(s, g, i)];
 		const RigidBody<K>*& first = bases[structures.of[contacts.freeBody(g, i)]];
 		if (!first)
 			first = &base;

@@ -98,7 +98,6 @@ void WallStep<K>::advancePart(RigidSystem<K>& s, double h)
 	report.partBases |= found && basesPart(s);
 	takeJumps(s);
 	const double workBefore = s.baseWork;
-	const auto some = [](const auto& chosen) { return std::find(chosen.begin(), chosen.end(), 1) != chosen.end(); };
 	bool hasMoved = false;
 	for (bool again = false, done = false; !done; again = true) {
 		hasMoved = !moving().onStill.empty(); // before the others, which it presses on
@@ -108,7 +107,7 @@ void WallStep<K>::advancePart(RigidSystem<K>& s, double h)
 		if (!structures.any(WallMode::still) && structures.any(WallMode::moving))
 			break;
 		const Bodies move = solveStill(s, h, again);
-		if (!some(move)) {
+		if (!wall::any(move)) {
 			keepStill(s, h);
 			break;
 		}
@@ -311,7 +310,7 @@ typename WallStep<K>::Bodies WallStep<K>::solveStill(RigidSystem<K>& s, double h
 	Chosen returned;
 	for (const auto& one : structures.all)
 		returned.push_back(one.stay == 0);
-	if (std::find(returned.begin(), returned.end(), 1) != returned.end())
+	if (wall::any(returned))
 		kept.forget(contacts, lanesOf(contacts, bodiesOf(returned)));
 	kept.begin(contacts, loads, h, stirred(s, h));
 	kept.iterate(settings.strictForces || !started ? coldSolves : mostSolves, enough, settings.strictForces ? enough : INFINITY);

@@ -211,7 +211,7 @@ RigidSystem<Plane> wall(int courses, int perCourse)
 	return s;
 }
 
-constexpr double tolerance = 1e-11; // m/s; speeds are of the order of one
+constexpr double solved = 1e-11; // m/s; speeds are of the order of one
 
 } // namespace
 
@@ -226,11 +226,11 @@ TEST_CASE("contact problem: velocities are those of the dense solver")
 	for (int k = 0; k < 100; ++k) {
 		Column column = randomColumn(random, friction, false);
 		set(solver, column);
-		const SolveReport      report = solver.solve(tolerance);
+		const SolveReport      report = solver.solve(solved);
 		std::vector<CoupleRow> none;
 		const ImpulseReport    dense = solveImpulses(column.bodies, column.points, none);
 		if (friction < noSlip) CHECK(report.converged);
-		if (!report.converged || dense.residual > tolerance) continue;
+		if (!report.converged || dense.residual > solved) continue;
 		++compared;
 		double worst = 0;
 		for (size_t b = 0; b < solver.bodies.size(); ++b) {
@@ -251,7 +251,7 @@ TEST_CASE("contact problem: random columns with friction are solved and lose ene
 	const auto check = [&](auto solver, bool planar) {
 		for (int k = 0; k < 2000; ++k) {
 			set(solver, randomColumn(random, number(random, 0, 1), planar));
-			const SolveReport report = solver.solve(tolerance);
+			const SolveReport report = solver.solve(solved);
 			CHECK(report.converged);
 			CHECK(report.residual == Approx(solver.residual()).margin(1e-14));
 			CHECK(gain(solver) <= 1e-9);
@@ -270,8 +270,8 @@ TEST_CASE("contact problem: plane and space agree on planar motion")
 		const Column column = randomColumn(random, 0.5, true);
 		set(plane, column);
 		set(space, column);
-		REQUIRE(plane.solve(tolerance).converged);
-		REQUIRE(space.solve(tolerance).converged);
+		REQUIRE(plane.solve(solved).converged);
+		REQUIRE(space.solve(solved).converged);
 		for (size_t b = 0; b < plane.bodies.size(); ++b) {
 			const auto& v = space.bodies[b].velocity;
 			CHECK((plane.bodies[b].velocity - Vector3(v[0], v[2], -v[4])).norm() < 1e-8);
@@ -305,7 +305,7 @@ TEST_CASE("contact problem: a factor kept from another problem does not change t
 	set(solver, standing(5, 1., 0.01, false));
 	for (auto& point : solver.points)
 		point.friction = 0;
-	REQUIRE(solver.solve(tolerance).converged);
+	REQUIRE(solver.solve(solved).converged);
 	const auto first = solver.bodies;
 	for (int k = 0; k < 100; ++k) {
 		for (size_t b = 0; b < first.size(); ++b) {
@@ -320,8 +320,8 @@ TEST_CASE("contact problem: a factor kept from another problem does not change t
 		anew.points = solver.points;
 		for (auto& point : anew.points)
 			point.impulse.setZero();
-		REQUIRE(solver.solve(tolerance).converged);
-		REQUIRE(anew.solve(tolerance).converged);
+		REQUIRE(solver.solve(solved).converged);
+		REQUIRE(anew.solve(solved).converged);
 		for (size_t b = 0; b < solver.bodies.size(); ++b)
 			CHECK((solver.bodies[b].velocity - anew.bodies[b].velocity).norm() < 1e-9);
 	}
@@ -493,7 +493,7 @@ TEST_CASE("contact problem: without slip an unsolvable problem gains no energy, 
 	int unsolved = 0;
 	for (int k = 0; k < 300; ++k) {
 		set(solver, randomColumn(random, noSlip, false));
-		const bool converged = solver.solve(tolerance).converged;
+		const bool converged = solver.solve(solved).converged;
 		unsolved += !converged;
 		CHECK(gain(solver) <= 1e-9);
 		if (!converged) CHECK(gainOfStep(solver) <= 1e-9);
