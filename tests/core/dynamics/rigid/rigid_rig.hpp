@@ -100,12 +100,12 @@ template <class K> void moveBase(RigidSystem<K>& s, BaseDrive& drive, const type
 	s.bodies[0].drive = 0;
 }
 
-// Motion in pieces: velocity jumps at the start of a piece, then acceleration(x) = constant + slope x + amplitude sin(frequency x + phase),
+// Motion in pieces: velocity jumps at the start of a piece, then acceleration(x) = constant + slope x + amplitude sin(frequency x),
 // x the time since.
 class ScheduledMotion : public BaseDrive {
 public:
 	struct Piece {
-		double start, jump { 0 }, constant { 0 }, slope { 0 }, amplitude { 0 }, frequency { 1 }, phase { 0 };
+		double start, jump { 0 }, constant { 0 }, slope { 0 }, amplitude { 0 }, frequency { 1 };
 	};
 
 	void append(Piece piece)
@@ -120,7 +120,7 @@ public:
 		if (!p) return 0;
 		const auto& q = p->law;
 		return p->displacement + x * (p->velocity + x * (q.constant / 2 + x * q.slope / 6))
-		        + q.amplitude / q.frequency * (std::cos(q.phase) * x - (std::sin(q.frequency * x + q.phase) - std::sin(q.phase)) / q.frequency);
+		        + q.amplitude / q.frequency * (x - std::sin(q.frequency * x) / q.frequency);
 	}
 	double velocity(double t) const override { return velocityAt(t, taken); }
 	double nextKink(double after, double until) const override
@@ -160,8 +160,7 @@ private:
 		const auto [p, x] = at(t, count);
 		if (!p) return 0;
 		const auto& q = p->law;
-		return p->velocity + x * (q.constant + x * q.slope / 2)
-		        + q.amplitude / q.frequency * (std::cos(q.phase) - std::cos(q.frequency * x + q.phase));
+		return p->velocity + x * (q.constant + x * q.slope / 2) + q.amplitude / q.frequency * (1 - std::cos(q.frequency * x));
 	}
 
 	std::vector<Placed> pieces;
