@@ -33,7 +33,7 @@ RigidSystem<Plane> scene(const std::vector<int>& which)
 template <class Stepper>
 std::vector<Impact> shake(RigidSystem<Plane>& s, bool ordered = false)
 {
-	Sine drive(0.5 * g, 10, ordered);
+	Harmonic drive(0.5 * g, 10 / (2 * M_PI), 0, ordered);
 	moveBase(s, drive);
 	Stepper step;
 	std::vector<Impact> impacts;

@@ -13,13 +13,15 @@ using namespace masonry::rigid;
 constexpr double g = 9.81, density = 2000;
 
 // A base whose top face is at height 0, and its gravity.
-template <class K> RigidSystem<K> emptyScene()
+template <class K> RigidSystem<K> emptyScene(double halfLength = 5, double halfHeight = 5)
 {
+	constexpr int  up = K::dimension - 1;
 	RigidSystem<K> s;
-	s.gravity[K::dimension - 1] = -g;
+	s.gravity[up] = -g;
 	RigidBody<K> base;
-	base.halfSize.setConstant(5.);
-	base.pose.position[K::dimension - 1] = -5;
+	base.halfSize.setConstant(halfLength);
+	base.halfSize[up] = halfHeight;
+	base.pose.position[up] = -halfHeight;
 	base.origin = base.pose.position;
 	base.prescribed = true;
 	s.bodies.push_back(base);
@@ -167,21 +169,22 @@ private:
 	size_t              taken { 0 }; // pieces whose jump has been
 };
 
-// Acceleration a sin(w t) from rest, asked in any order of time unless `inOrder`.
-class Sine : public BaseDrive {
-public:
-	Sine(double amplitude, double frequency, bool inOrder = true) : a(amplitude), w(frequency), inOrder(inOrder) {}
+// Acceleration amplitude * sin(2 pi f (t - begin)), from rest, asked in any order of time unless `inOrder`.
+struct Harmonic : BaseDrive {
+	double amplitude, frequency, begin; // m/s^2, rad/s, s
+	bool   inOrder;
 
-	double displacement(double t) const override { return a / w * (t - std::sin(w * t) / w); }
-	double velocity(double t) const override { return a / w * (1 - std::cos(w * t)); }
-	double nextKink(double, double) const override { return std::numeric_limits<double>::infinity(); }
+	Harmonic(double amplitude, double hertz, double begin, bool inOrder = false)
+	        : amplitude(amplitude), frequency(2 * M_PI * hertz), begin(begin), inOrder(inOrder)
+	{
+	}
+	double since(double t) const { return std::max(0., t - begin); }
+	double displacement(double t) const override { return amplitude / frequency * (since(t) - std::sin(frequency * since(t)) / frequency); }
+	double velocity(double t) const override { return amplitude / frequency * (1 - std::cos(frequency * since(t))); }
+	double nextKink(double after, double until) const override { return after < begin && begin <= until ? begin : INFINITY; }
 	double jumpAt(double) override { return 0; }
 	double respond(int, double) override { return 0; }
 	bool   ordered() const override { return inOrder; }
-
-private:
-	double a, w; // m/s^2, rad/s
-	bool   inOrder;
 };
 
 // The paper's train: +I at once, then -2I, +2I ... each right after an impact of a block.

@@ -32,14 +32,6 @@ double topShift(const Scene& scene, int count)
 	return sum / count;
 }
 
-// Shaken at 1 g until `end`, then held.
-struct Stopped : Harmonic {
-	double end;
-	Stopped(double amplitude, double hertz, double end) : Harmonic(amplitude, hertz, 0), end(end) {}
-	double displacement(double t) const override { return Harmonic::displacement(std::min(t, end)); }
-	double velocity(double t) const override { return t < end ? Harmonic::velocity(t) : 0; }
-};
-
 // No motion; kinks that much after the start of every step of a millisecond.
 struct Kinked : Harmonic {
 	double late;
@@ -557,7 +549,7 @@ TEST_CASE("a wall that was shaken loses energy and comes to rest")
 	const double restitution = GENERATE(double(NAN), 0.5);
 	Scene scene(0.7, restitution);
 	scene.addWall(6, 6);
-	Stopped motion(g, 2, 0.5);
+	Stopped motion(g, 2, 0, 0.5);
 	scene.drive(motion);
 	scene.run(0.5, 1e-3);
 	const double height = energy(scene.system);
@@ -584,7 +576,7 @@ TEST_CASE("a wall that was shaken rests for good")
 {
 	Scene scene;
 	scene.addWall(12, 12);
-	Stopped motion(0.9 * g, 2, 0.5);
+	Stopped motion(0.9 * g, 2, 0, 0.5);
 	scene.drive(motion);
 	scene.run(2, 1e-3);
 	REQUIRE(scene.drift() > 1e-2);

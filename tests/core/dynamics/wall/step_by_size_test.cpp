@@ -78,19 +78,14 @@ TEST_CASE("a wall moves as by the walls' method alone, a pier beside it as with 
 // Where all are of few blocks the walls' method has been asked for, and has them.
 TEST_CASE("without a wall and with motions in order of time the walls' method has all")
 {
-	struct Ordered : Harmonic {
-		using Harmonic::Harmonic;
-		bool ordered() const override { return true; }
-	};
-	Harmonic alone(0.4 * g, 2, 0.005);
-	Ordered ordered(0.4 * g, 2, 0.005);
 	const bool withWall = GENERATE(false, true);
+	Harmonic motion(0.4 * g, 2, 0.005, withWall);
 	Scene bySizes, byWalls;
 	for (Scene* scene : {&bySizes, &byWalls}) {
 		if (withWall)
 			scene->addWall(4, 8);
 		addPier(*scene, 3);
-		scene->drive(withWall ? ordered : alone);
+		scene->drive(motion);
 		scene->system.settings.tolerance = 1e-3;
 	}
 	StepBySize<Plane> bySize;

@@ -41,19 +41,6 @@ double weight(const RigidSystem<K>& s, int first, int last)
 	return sum;
 }
 
-// Until the base has come to rest at `end`.
-struct Stopped : Harmonic {
-	using Harmonic::Harmonic;
-	static constexpr double end = 0.8;
-	double displacement(double t) const override { return Harmonic::displacement(std::min(t, end)); }
-	double velocity(double t) const override { return t < end ? Harmonic::velocity(t) : 0; }
-};
-
-struct Ordered : Harmonic {
-	using Harmonic::Harmonic;
-	bool ordered() const override { return true; }
-};
-
 } // namespace
 
 // The pier is left by the still mode in the first step, and alone in its mode from then on: its bits are those of the pier alone. Walls are
@@ -336,14 +323,14 @@ TEMPLATE_TEST_CASE("loose blocks on a wall lose energy", "", Plane, Space)
 		}
 		x += 2 * half;
 	}
-	Stopped motion(from(0, 0.9) * g, from(1, 4), 0.05);
+	Stopped motion(from(0, 0.9) * g, from(1, 4), 0.05, 0.8);
 	scene.drive(motion);
 	double created = 0, deepest = 0, rises = 0, last = INFINITY;
 	for (int k = 0; k < 1500; ++k) {
 		scene.advance(h);
 		created += scene.step.report.created;
 		deepest = std::max(deepest, scene.step.report.deepest);
-		if (scene.system.time < Stopped::end + h)
+		if (scene.system.time < motion.end + h)
 			continue;
 		const double now = energy(scene.system);
 		rises += std::max(0., now - last);
@@ -365,10 +352,7 @@ TEMPLATE_TEST_CASE("loose blocks on a wall lose energy", "", Plane, Space)
 TEST_CASE("an overhang falls off a wall that stands as off one that moves")
 {
 	Scene part, whole;
-	struct : Harmonic {
-		using Harmonic::Harmonic;
-		bool ordered() const override { return true; }
-	} none(0, 1, 0);
+	Harmonic none(0, 1, 0, true);
 	whole.drive(none);
 	double most = 0, back = 0;
 	for (Scene* scene : {&part, &whole})
@@ -411,7 +395,7 @@ TEST_CASE("any number of threads gives the bits of one where some structures sta
 TEST_CASE("a motion that must be asked in order of time makes one structure of all")
 {
 	Scene scene;
-	Ordered motion(0.3 * g, 2, 0);
+	Harmonic motion(0.3 * g, 2, 0, true);
 	addPier(scene);
 	scene.addWall(2, 3);
 	scene.drive(motion);

@@ -1,65 +1,30 @@
 #pragma once
 // Walls for the tests: running bond with half blocks at the ends, touching head joints, on a base that may shake.
+#include "core/dynamics/rigid/space_rig.hpp"
 #include "dynamics/rigid/neighbours.hpp"
 #include "dynamics/wall/wall_step.hpp"
-#include <cmath>
 
 namespace rig {
 
-using namespace masonry;
-using namespace masonry::rigid;
+// Shaken until `end`, then held.
+struct Stopped : Harmonic {
+	double end;
 
-constexpr double g = 9.81, density = 2000;
-
-// Acceleration amplitude * sin(2 pi f (t - begin)), from rest.
-struct Harmonic : BaseDrive {
-	double amplitude, frequency, begin;
-
-	Harmonic(double amplitude, double hertz, double begin) : amplitude(amplitude), frequency(2 * M_PI * hertz), begin(begin) {}
-	double since(double t) const { return std::max(0., t - begin); }
-	double displacement(double t) const override { return amplitude / frequency * (since(t) - std::sin(frequency * since(t)) / frequency); }
-	double velocity(double t) const override { return amplitude / frequency * (1 - std::cos(frequency * since(t))); }
-	double nextKink(double after, double until) const override { return after < begin && begin <= until ? begin : INFINITY; }
-	double jumpAt(double) override { return 0; }
-	double respond(int, double) override { return 0; }
-	bool ordered() const override { return false; }
+	Stopped(double amplitude, double hertz, double begin, double end) : Harmonic(amplitude, hertz, begin), end(end) {}
+	double displacement(double t) const override { return Harmonic::displacement(std::min(t, end)); }
+	double velocity(double t) const override { return t < end ? Harmonic::velocity(t) : 0; }
 };
 
+// 0.5 m deep.
 inline int addBlock(RigidSystem<Plane>& s, const Vector2& half, const Vector2& center, double angle = 0)
 {
-	RigidBody<Plane> block;
-	block.halfSize = half;
-	block.mass = density * 4 * half.x() * half.y() * 0.5;
-	block.inertia[0] = block.mass * half.squaredNorm() / 3;
-	block.pose.position = center;
-	block.pose.setAngle(angle);
-	block.force << 0, -block.mass * g, 0;
-	s.bodies.push_back(block);
-	return int(s.bodies.size()) - 1;
+	return addBlock(s, half.x(), half.y(), center, angle, density * 4 * half.x() * half.y() * 0.5);
 }
 
 inline int addBlock(RigidSystem<Space>& s, const Vector3& half, const Vector3& center,
                     const Quaternion& orientation = Quaternion::Identity())
 {
-	RigidBody<Space> block;
-	block.halfSize = half;
-	block.mass = density * 8 * half.prod();
-	block.inertia = block.mass / 3 * (Vector3::Constant(half.squaredNorm()) - half.cwiseAbs2());
-	block.pose = {center, orientation};
-	block.force << 0, 0, -block.mass * g, 0, 0, 0;
-	s.bodies.push_back(block);
-	return int(s.bodies.size()) - 1;
-}
-
-// Kinetic, and of the weights, J.
-template <class K>
-double energy(const RigidSystem<K>& s)
-{
-	constexpr int up = K::dimension - 1;
-	double sum = s.kineticEnergy();
-	for (size_t b = 1; b < s.bodies.size(); ++b)
-		sum -= s.bodies[b].force[up] * s.bodies[b].pose.position[up];
-	return sum;
+	return addBox(s, half, {center, orientation});
 }
 
 // Energies, places and velocities, to compare bit by bit.
@@ -82,7 +47,7 @@ inline Vector3 placeOf(const RigidSystem<Space>&, double x, double z) { return {
 template <class K>
 struct SceneOf {
 	static constexpr int up = K::dimension - 1;
-	RigidSystem<K> system;
+	RigidSystem<K> system = emptyScene<K>(50, 1);
 	Neighbours<K> near;
 	WallStep<K> step;
 	std::vector<RigidBody<K>> start;
@@ -93,14 +58,6 @@ struct SceneOf {
 		      pair.restitution = restitution;
 	      })
 	{
-		system.gravity[up] = -g;
-		RigidBody<K> base;
-		base.halfSize.setConstant(50);
-		base.halfSize[up] = 1;
-		base.pose.position[up] = -1;
-		base.origin = base.pose.position;
-		base.prescribed = true;
-		system.bodies.push_back(base);
 	}
 	SceneOf(const SceneOf&) = delete;
 
@@ -118,11 +75,7 @@ struct SceneOf {
 		}
 	}
 
-	void drive(BaseDrive& motion, const typename K::Vector& direction = K::Vector::Unit(0))
-	{
-		system.drives = {{{{&motion, direction}}}};
-		system.bodies[0].drive = 0;
-	}
+	void drive(BaseDrive& motion, const typename K::Vector& direction = K::Vector::Unit(0)) { moveBase(system, motion, direction); }
 
 	void advance(double h)
 	{
