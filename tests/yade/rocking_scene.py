@@ -25,6 +25,13 @@ def rigid_engines(*arguments, model="auto", **options):
     return quiet_engines(*arguments, model=model, **options)
 
 
+def said_by(act, *arguments, **options):
+    """What act(*arguments, **options) prints."""
+    with contextlib.redirect_stdout(io.StringIO()) as said:
+        act(*arguments, **options)
+    return said.getvalue()
+
+
 class Samples:
     """(time, value) every few steps, taken inside O.run()."""
 
@@ -72,6 +79,17 @@ def one_block(slenderness, half_width=0.3, restitution=None, depth=1.0, **attrib
     base = dem.base((6 * b + 4 * a, 2 * depth, b), material)
     block = dem.block((2 * b, depth, 2 * a), material, on=base)
     return base, block, masonry.RockingBlock(b, a)
+
+
+def bits():
+    """All that the physics leaves behind, each number by its bits: state of the bodies first."""
+    engine = next(e for e in O.engines if hasattr(e, "impactTimes"))
+    vectors = [v for b in O.bodies for v in (b.state.pos, b.state.ori, b.state.vel, b.state.angVel, b.state.angMom)]
+    for i in sorted(O.interactions, key=lambda i: (i.id1, i.id2)):
+        vectors += [(i.id1, i.id2), *i.phys.forces, *getattr(i.phys, "shears", ())]
+    vectors += [value for name, value in sorted(engine.dict().items()) if name.startswith("impact") and isinstance(value, list)]
+    counters = [getattr(engine, name) for name in ("sweeps", "events", "stillSteps", "movingSteps") if hasattr(engine, name)]
+    return np.array([*(x for v in vectors for x in v), *dem.energy().values(), *counters, O.time], dtype=float).view(np.int64)
 
 
 def barrier(id, block):

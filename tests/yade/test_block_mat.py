@@ -1,12 +1,10 @@
 """BlockMat: defaults, bad values refused where they are given, and the stiffness that is chosen where none is."""
 
-import contextlib
-import io
 import math
 import os
 
 from masonry import dem
-from rocking_scene import quiet_engines, refuses
+from rocking_scene import quiet_engines, refuses, said_by
 from yade import O, Quaternion, Vector3
 
 stone = dem.BlockMat()
@@ -71,7 +69,5 @@ O.reset()
 dem.block((0.5, 0.6, 1.5), stone, on=dem.base((4, 2, 0.2), stone))
 stone.normalStiffness *= 2
 given = stone.normalStiffness
-with contextlib.redirect_stdout(io.StringIO()) as said:
-    dem.engines(penetration=1e-4)
-assert "penetration = 0.0001 is not used" in said.getvalue() and stone.normalStiffness == given
+assert "penetration = 0.0001 is not used" in said_by(dem.engines, penetration=1e-4) and stone.normalStiffness == given
 assert not isinstance(quiet_engines(model="auto")[-1], dem.MoreauJeanIntegrator) and stone.normalStiffness == given

@@ -7,16 +7,8 @@ import tempfile
 
 import numpy as np
 from masonry import dem
-from rocking_scene import one_block, refuses_to_run, rigid_engines, stone
+from rocking_scene import bits, one_block, refuses_to_run, rigid_engines, stone
 from yade import O, Quaternion, Vector3
-
-
-def bits():
-    e = dem.energy()
-    state = [x for b in O.bodies for v in (b.state.pos, b.state.ori, b.state.vel, b.state.angVel) for x in v]
-    impacts = [v for name in ("time", "velocity", "energy_lost") for v in dem.impacts()[name]]
-    forces = [x for i in O.interactions for f in i.phys.forces for x in f]
-    return np.array(state + list(e.values()) + impacts + forces + [O.time, O.engines[1].sweeps, O.engines[1].events])
 
 
 def free(model):
@@ -78,10 +70,12 @@ with tempfile.TemporaryDirectory() as folder:
                 saved = bits()
                 O.reset()
                 O.load(path)
-                assert np.array_equal(saved, bits(), equal_nan=True), (make.__name__, model, ending)
+                assert np.array_equal(saved, bits()), (make.__name__, model, ending)
                 O.run(1200 - 457, True)
-                assert np.array_equal(wanted, bits(), equal_nan=True), (make.__name__, model, ending)
-            assert np.any(np.abs(wanted[:20]) > 0.01) and np.all(np.isfinite(wanted))
+                assert np.array_equal(wanted, bits()), (make.__name__, model, ending)
+            numbers = wanted.view(float)
+            natural = np.isnan(dem.impacts()["restitution_asked"])
+            assert np.any(np.abs(numbers[:20]) > 0.01) and np.sum(~np.isfinite(numbers)) == np.sum(natural)
             print(make.__name__, model, len(dem.impacts()), "impacts")
 
     # --- what another version has saved is not taken for ours: a row of another layout, or one that is too long for it ---
@@ -125,7 +119,7 @@ with tempfile.TemporaryDirectory() as folder:
             O.engines[1].method = after
             O.run(300, True)
             ends.append(bits())
-        assert np.array_equal(*ends, equal_nan=True), (before, after)
+        assert np.array_equal(*ends), (before, after)
 
     # --- so may what is free and what is prescribed, and the motions ---
     def same_when_saved(build, change):
@@ -143,7 +137,7 @@ with tempfile.TemporaryDirectory() as folder:
                     change()
             O.run(300, True)
             ends.append(bits())
-        return all(np.array_equal(ends[0], end, equal_nan=True) for end in ends)
+        return all(np.array_equal(ends[0], end) for end in ends)
 
     def stack_that_rests():
         O.reset()

@@ -1,12 +1,10 @@
 """What a scene may hold beside blocks that rock: choice of the model, forces, spheres, bodies that come and go, other states."""
 
-import contextlib
-import io
 import math
 
 import numpy as np
 from masonry import dem
-from rocking_scene import Balance, Samples, barrier, one_block, rigid_engines, stone
+from rocking_scene import Samples, barrier, one_block, rigid_engines, said_by, stone
 from yade import (Bo1_Box_Aabb, Bo1_Sphere_Aabb, FrictMat, Ig2_Box_Sphere_ScGeom, Ig2_Sphere_Sphere_ScGeom, InsertionSortCollider, InteractionLoop,
                   Ip2_FrictMat_FrictMat_FrictPhys, Law2_ScGeom_FrictPhys_CundallStrack, NewtonIntegrator, O, PyRunner, Quaternion, Vector3, utils)
 
@@ -23,11 +21,9 @@ def ground(**attributes):
 
 
 def choice(**options):
-    said = io.StringIO()
-    with contextlib.redirect_stdout(said):
-        O.engines = dem.engines(**options)
+    said = said_by(lambda: setattr(O, "engines", dem.engines(**options)))
     O.step()
-    assert integrator().chosenModel + ": " + integrator().reason in said.getvalue() and said.getvalue().count("\n") == 1, said.getvalue()
+    assert integrator().chosenModel + ": " + integrator().reason in said and said.count("\n") == 1, said
     return integrator().chosenModel
 
 
@@ -54,9 +50,8 @@ assert choice() == "planar" and integrator().along == Vector3(0, 1, 0)  # side b
 for friction, told in ((0.61, True), (1.22, False)):  # 5 (1 - 0.3)/(1 + 0.3) = 2.69 = tan(1.215)
     base = ground(restitution=0.3, noSlip=False, frictionAngle=friction)
     block = dem.block((0.6, 1, 3), O.bodies[base].mat, on=base)
-    with contextlib.redirect_stdout(io.StringIO()) as said:
-        dem.engines()
-    assert (f"block {block}" in said.getvalue() and "2.7" in said.getvalue()) == told, said.getvalue()
+    said = said_by(dem.engines)
+    assert (f"block {block}" in said and "2.7" in said) == told, said
 base, block, _ = one_block(5)
 assert choice(motion=dem.RecordMotionEngine(ids=[base], samples=[0, 1], direction=(0, 1, 0))) == "planar"  # the other way round
 assert integrator().along == Vector3(0, 1, 0)
@@ -64,9 +59,8 @@ base, block, _ = one_block(5)
 assert choice(motion=dem.RecordMotionEngine(ids=[base], samples=[0, 1], direction=(0.6, 0.8, 0))) == "spatial"
 for direction in ("normalStiffness", "shearStiffness"):  # in one: the other is chosen
     base, block, _ = one_block(5, **{direction: 1e9})
-    with contextlib.redirect_stdout(io.StringIO()) as said:
-        engines = dem.engines()
-    assert "compliant" in said.getvalue() and "joint stiffness" in said.getvalue() and engines[-1].__class__ is NewtonIntegrator
+    said = said_by(lambda: setattr(O, "engines", dem.engines()))
+    assert "compliant" in said and "joint stiffness" in said and O.engines[-1].__class__ is NewtonIntegrator
     material = O.bodies[block].mat
     assert getattr(material, direction) == 1e9 and material.normalStiffness > 0 and material.shearStiffness > 0
 
