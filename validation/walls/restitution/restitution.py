@@ -79,7 +79,7 @@ def left(restitution, order):
 
 
 def final(restitution):
-    """State of a rocking block after a second under a sine that it survives."""
+    """State of a rocking block 3 s after the start of one cycle of a sine that it survives."""
     ids = scene(1, 1.2 * LIFTS, restitution, "simultaneous")
     O.run(3000, True)
     state = O.bodies[ids[0]].state

@@ -1,8 +1,9 @@
 """The shaken wall in every program that is there: CPU time, drift, sink, first excursion, energy; what was asked for and whether it holds.
 
-    compare.py <build folder> [--quick | --other-walls | --rest | --reference]
+    compare.py <build folder> [--quick | --from <json> | --other-walls | --rest | --reference]
 
-Writes results/shaken_walls.csv, .json and .png; prints the tables. Ends with status 1 when something that must hold does not.
+Prints the tables; without an option and with --from, writes results/shaken_walls.csv, .json and .png. Ends with status 1 when something
+that must hold does not.
 """
 import argparse
 import concurrent.futures
@@ -285,7 +286,7 @@ def figure(path, rows):
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("build", type=Path)
-    parser.add_argument("--quick", action="store_true", help="105 blocks in the plane only")
+    parser.add_argument("--quick", action="store_true", help="105 blocks in the plane only, writes nothing")
     parser.add_argument("--from", dest="old", type=Path, help="tables and figure of a file written before")
     parser.add_argument("--other-walls", action="store_true", help="first excursions of other walls against Gauss-Seidel only, no CPU times")
     parser.add_argument("--reference", action="store_true", help="compute first excursions by Gauss-Seidel that its file lacks, an hour or two for all; no CPU times")
