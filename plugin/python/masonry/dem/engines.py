@@ -308,7 +308,7 @@ def _compliant(motions, reason, dt, penetration, impact_order, gravity, recorder
     if dt is not None and not dt < critical:
         raise ValueError(f"dt = {dt}: must be below {critical:.3g} s, the critical step of joints this stiff")
     O.dt = float(dt if dt is not None else _STEP_FRACTION * critical)
-    reasons.append(f"dt = {O.dt:.3g} s ({O.dt / critical:.2g} of the critical step)" if np.isfinite(critical) else f"dt = {O.dt:.3g} s")
+    reasons.append(f"dt = {O.dt:.3g} s ({O.dt / critical:.2g} of the critical step)")
     print("masonry.dem:", "; ".join(reasons) + _records(motions))
 
     smallest = min(min(b.shape.extents) for b in _boxes())
