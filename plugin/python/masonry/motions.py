@@ -136,7 +136,7 @@ class Record(Motion):
     of the straight line through the origin that fits the velocity best (least squares) is subtracted.
     """
 
-    def __init__(self, dt, acceleration, scale=1.0, baseline="none", name="", source="", unit="m/s^2"):
+    def __init__(self, dt, acceleration, scale=1.0, baseline="none", name=""):
         self.dt = float(number_given("dt", dt))
         self._unscaled = np.ascontiguousarray(array_given("acceleration", acceleration))
         if self._unscaled.ndim != 1:
@@ -144,7 +144,7 @@ class Record(Motion):
         array_given("scale", scale)
         self.scale = self.amplitude = scale
         self.baseline = baseline
-        self.name, self.source, self.unit = name, source, unit
+        self.name = name
         self.shape = np.shape(scale)
         self.velocity(0.0)  # refuses bad input here
 
@@ -161,7 +161,7 @@ class Record(Motion):
         return self.dt * (len(self._unscaled) - 1)
 
     def scaled(self, factor):
-        return Record(self.dt, self._unscaled, np.multiply(self.scale, factor), self.baseline, self.name, self.source, self.unit)
+        return Record(self.dt, self._unscaled, np.multiply(self.scale, factor), self.baseline, self.name)
 
     def _motions(self, shape):
         scale, = columns(shape if np.ndim(self.scale) else (), self.scale)
@@ -176,11 +176,11 @@ class Record(Motion):
         """PEER NGA file (.AT2), accelerations in units of `gravity` (m/s^2): the standard one, whatever the blocks weigh (9.81 elsewhere)."""
         check_gravity(gravity)
         name, dt, samples = read_at2(path)
-        return cls(dt, gravity * samples, scale, baseline, name=name, source=str(path), unit="g")
+        return cls(dt, gravity * samples, scale, baseline, name=name)
 
     @classmethod
     def from_csv(cls, path, unit, dt=None, scale=1.0, baseline="none", gravity=9.80665):
         """Columns time, acceleration; or one column of acceleration with `dt` (s). unit: 'm/s^2', 'cm/s^2', 'mm/s^2' or 'g' (that is
         `gravity`, m/s^2: the standard one, whatever the blocks weigh, 9.81 elsewhere)."""
         dt, samples = read_csv(path, unit, dt, gravity)
-        return cls(dt, samples, scale, baseline, name=str(path), source=str(path), unit=unit)
+        return cls(dt, samples, scale, baseline, name=str(path))
