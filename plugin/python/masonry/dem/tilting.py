@@ -46,7 +46,7 @@ _DRAWN = 0.4
 _JOINT_FIELDS = [("id1", int), ("id2", int), ("opening", float), ("slip", float), ("opens", bool), ("slides", bool)]
 
 
-def _is_plausible(multiplier):
+def _check_multiplier(multiplier):
     if multiplier > _MOST:
         raise ValueError(f"the blocks stand at any multiplier up to {_MOST:g}: they are held on all sides")
 
@@ -139,6 +139,7 @@ class TiltTable:
         if model == "auto" and any(has_stiffness(b.mat) for b in self._blocks):
             raise ValueError("model = 'auto': must be 'planar' or 'spatial' where a BlockMat has a joint stiffness: TiltTable is for rigid blocks")
         self._start = [(b.state.pos, b.state.ori) for b in self._blocks]
+        self._free_start = [start for b, start in zip(self._blocks, self._start) if b.dynamic]
         centers, sizes, quaternions = _layout(self._free)
         reach = (np.abs(axes_of(quaternions)) * sizes[:, :, None]).sum(axis=1)[:, 2] / 2
         self._size, self._reach = sizes.min(), np.linalg.norm(sizes, axis=1) / 2
@@ -186,7 +187,7 @@ class TiltTable:
                     height = low or lower / _GROWTH
                     stair = min(growth * height, (high - low) / 2)
                     tried = low + stair
-                    _is_plausible(tried)
+                    _check_multiplier(tried)
                     early = math.isfinite(high) and not careful
                     verdict = hold(tried, early=early, again=stair > tolerance * tried)
                     if verdict == "rest":
@@ -213,7 +214,7 @@ class TiltTable:
             integrator = self._begin(start)
             while self._moved() <= self.share * self._size:
                 multiplier = start + rate * O.time / self._unit
-                _is_plausible(multiplier)
+                _check_multiplier(multiplier)
                 self._pull(integrator, multiplier)
                 for _ in range(_LOOK):
                     O.step()
@@ -306,9 +307,8 @@ class TiltTable:
         return max(b.state.vel.norm() + r * b.state.angVel.norm() for b, r in zip(self._free, self._reach))
 
     def _moved(self):
-        start = (s for b, s in zip(self._blocks, self._start) if b.dynamic)
         return max((b.state.pos - pos).norm() + reach * (b.state.ori * ori.conjugate()).toAxisAngle()[1]
-                   for b, (pos, ori), reach in zip(self._free, start, self._reach))
+                   for b, (pos, ori), reach in zip(self._free, self._free_start, self._reach))
 
     # --- what is reported ---
 
