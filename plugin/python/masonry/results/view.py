@@ -85,7 +85,8 @@ class View:
 
     def back_to_front(self, corners):
         """Order of the blocks in which each is drawn after those behind it: of two that overlap in the picture, the face of either that
-        separates them best tells. Where that goes around in a circle, and from the side, the middle's depth does."""
+        separates them best tells. Where that goes around in a circle, the middle's depth does. From the side, with all middles at one depth: the
+        order given."""
         center = corners.mean(axis=1)
         depth = center @ self.towards
         if self.from_side and np.ptp(depth) < 1e-9 * np.ptp(corners):
