@@ -6,8 +6,8 @@ import xml.etree.ElementTree as ElementTree
 
 import numpy as np
 import pytest
-from masonry import results
-from masonry.results import _pose, view
+from masonry import _pose, results
+from masonry.results import view
 
 UPRIGHT = [1.0, 0, 0, 0]
 # Of sums of a few numbers of order one.

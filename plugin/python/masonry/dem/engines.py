@@ -3,12 +3,13 @@
 import math
 
 import numpy as np
-from masonry._given import is_whole
+from masonry._given import is_whole, number_given
+from masonry._pose import axes_of
 from masonry.motions import Motion, PulseTrain, Record
 from yade import O, wrapper
 
 from masonry.dem.scene import _boxes, _layout, check_blocks, check_material, check_recorder, floating_and_supports, listed, structures
-from masonry.dem.walls import axes_of, finite_numbers, number_given
+from masonry.dem.walls import finite_numbers
 
 _MODELS = ("auto", "planar", "spatial", "compliant")
 _METHODS = ("auto", "localised", "wall")

@@ -3,6 +3,8 @@
 import math
 
 import numpy as np
+from masonry._given import number_given
+from masonry._pose import axes_of
 from masonry.dem import walls
 from yade import O, Quaternion, Vector3, utils, wrapper
 
@@ -279,14 +281,14 @@ def check_blocks(tolerance=1e-3, floating=True):
 
 def floating_and_supports(tolerance=1e-3, floating=True):
     """What check_blocks() does and returns, and the pairs (body below, body on it) of blocks that touch."""
-    if not 0 < walls.number_given("tolerance", tolerance) <= 0.1:
+    if not 0 < number_given("tolerance", tolerance) <= 0.1:
         raise ValueError(f"tolerance = {tolerance}: must be above 0 and at most 0.1")
     bodies = _boxes()
     if not bodies:
         return [], []
     centers, sizes, quaternions = _layout(bodies)
     prescribed = np.array([not b.dynamic for b in bodies])
-    pairs, depths, loose, supports = walls.faults(centers, sizes, walls.axes_of(quaternions), prescribed, tolerance)
+    pairs, depths, loose, supports = walls.faults(centers, sizes, axes_of(quaternions), prescribed, tolerance)
     ids, found = [b.id for b in bodies], []
     loose = [ids[i] for i in loose]
     if len(pairs):
@@ -303,13 +305,13 @@ def structures(gap=0.1):
     """Ids of the free blocks, a list for each structure: blocks that are joined by others that are near each other. gap: how far apart the
     bounding boxes of two that are near may be, relative to the smallest size of a free block; 0 < gap <= 1. Rigid structures of their own
     are stepped as if the others were not there, unless pulses move the base."""
-    if not 0 < walls.number_given("gap", gap) <= 1:
+    if not 0 < number_given("gap", gap) <= 1:
         raise ValueError(f"gap = {gap}: must be above 0 and at most 1")
     bodies = [b for b in _boxes() if b.dynamic]
     if not bodies:
         return []
     centers, sizes, quaternions = _layout(bodies)
-    found = walls.structures(centers, sizes, walls.axes_of(quaternions), gap)
+    found = walls.structures(centers, sizes, axes_of(quaternions), gap)
     return [[bodies[k].id for k in members] for members in found]
 
 
@@ -317,7 +319,7 @@ def tilt(id, angle, axis="y"):
     """Turns a standing free block by `angle` (rad) about its own axis 'x' or 'y', so that it rests on its lower edge. A positive
     turn about y leans towards +x. Turns about one axis add up: one that leans already comes back to its resting pose, then leans the other way."""
     body, row = _box(id), _axis(axis)
-    if not -math.pi / 2 < walls.number_given("angle", angle) < math.pi / 2:
+    if not -math.pi / 2 < number_given("angle", angle) < math.pi / 2:
         raise ValueError(f"angle = {angle}: must be between -pi/2 and pi/2, in rad")
     if not body.dynamic:
         raise ValueError(f"id = {id}: that body is prescribed (a base): must be a free block")

@@ -6,9 +6,10 @@ import math
 from dataclasses import dataclass, field
 
 import numpy as np
+from masonry._given import number_given
+from masonry._pose import axes_of
 from masonry.dem.engines import _FEW_BLOCKS, _METHODS, engines, has_stiffness
 from masonry.dem.scene import _boxes, _layout, structures
-from masonry.dem.walls import axes_of, number_given
 from tqdm import tqdm
 from yade import O, Vector3
 

@@ -432,16 +432,6 @@ def _separations(i, j, centers, sizes, axes):
     return np.where(parallel, -np.inf, np.abs(along) - reach), np.where(along < 0, -1, 1) * n[..., 2]
 
 
-def axes_of(quaternions):
-    """(n, 3, 3): rows are the axes of the bodies turned by the quaternions (n, 4), w, x, y, z."""
-    w, x, y, z = quaternions.T
-    return np.stack([
-        np.stack([1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)], axis=1),
-        np.stack([2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)], axis=1),
-        np.stack([2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)], axis=1),
-    ], axis=1)
-
-
 def _carried(supports, prescribed):
     """Which blocks a chain of supports (rows: lower, upper) joins to a prescribed one."""
     supports = supports[np.argsort(supports[:, 0], kind="stable")]

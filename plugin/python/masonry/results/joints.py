@@ -3,7 +3,7 @@
 import math
 
 import numpy as np
-from masonry.results import _pose
+from masonry import _pose
 from masonry.results.wall_history import history_given
 
 # Blocks touch at first where their faces are within this share of the smallest size of the two, and opposite within this angle (rad).

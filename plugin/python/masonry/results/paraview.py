@@ -5,8 +5,8 @@ from pathlib import Path
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
+from masonry import _pose
 from masonry._given import whole_given
-from masonry.results import _pose
 from masonry.results.wall_history import history_given
 
 # VTK's order of the corners of a hexahedron, from ours (x fastest, then y).

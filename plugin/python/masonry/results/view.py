@@ -4,8 +4,8 @@ import heapq
 import math
 
 import numpy as np
+from masonry import _pose
 from masonry._given import array_given
-from masonry.results import _pose
 
 # From the scene towards the viewer of a structure that moves in space: from the right, the front, above.
 OBLIQUE = (0.45, -1.0, 0.4)

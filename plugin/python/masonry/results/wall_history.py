@@ -4,8 +4,8 @@ import reprlib
 from functools import cached_property
 
 import numpy as np
+from masonry import _pose
 from masonry._given import number_given
-from masonry.results import _pose
 
 ENERGIES = ("kinetic", "potential", "elastPotential", "frictDissip", "dampDissip", "impactDissip", "baseWork")
 _SAVED = ("time", "ids", "sizes", "free", "position", "orientation", "energies")

@@ -14,6 +14,11 @@ def matrices(quaternions):
     return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
 
 
+def axes_of(quaternions):
+    """(..., 3, 3): rows are the axes of the turned bodies."""
+    return matrices(quaternions).swapaxes(-1, -2)
+
+
 def inverse(quaternions):
     return quaternions * [1, -1, -1, -1]
 
