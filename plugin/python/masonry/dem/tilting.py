@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass, field
 
 import numpy as np
+from masonry._boxes import bounds
 from masonry._given import number_given
 from masonry._pose import axes_of
 from masonry.dem.engines import _FEW_BLOCKS, _METHODS, engines, has_stiffness
@@ -142,9 +143,9 @@ class TiltTable:
         self._start = [(b.state.pos, b.state.ori) for b in self._blocks]
         self._free_start = [start for b, start in zip(self._blocks, self._start) if b.dynamic]
         centers, sizes, quaternions = _layout(self._free)
-        reach = (np.abs(axes_of(quaternions)) * sizes[:, :, None]).sum(axis=1)[:, 2] / 2
+        low, high = bounds(centers, sizes, axes_of(quaternions))
         self._size, self._reach = sizes.min(), np.linalg.norm(sizes, axis=1) / 2
-        self._unit = math.sqrt(np.ptp(np.concatenate([centers[:, 2] - reach, centers[:, 2] + reach])) / gravity)
+        self._unit = math.sqrt((high[:, 2].max() - low[:, 2].min()) / gravity)
         self._hold = hold * self._unit
         self._dt = _STEP * math.sqrt(self._reach.min() / gravity)
         self._model, self._method = model, "localised" if method == "auto" else method

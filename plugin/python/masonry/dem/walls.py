@@ -11,6 +11,7 @@ import math
 import re
 
 import numpy as np
+from masonry._boxes import bounds, near_pairs
 from masonry._given import is_whole, number_given
 
 # A length fits the modules of a wall when it is off by less than this share of a module: far above round-off, far below a cut.
@@ -369,50 +370,13 @@ def write_table(path, centers, sizes, quaternions, names):
 # Overlapping and floating blocks.
 
 
-def _ranges(starts, ends):
-    """All integers of the half-open ranges, one range after the other, and the range each comes from."""
-    counts = ends - starts
-    owner = np.repeat(np.arange(len(starts)), counts)
-    return np.arange(len(owner)) + (starts - np.cumsum(counts) + counts)[owner], owner
-
-
-def _near_pairs(low, high):
-    """Pairs (i, j) of axis-aligned boxes that meet, each once. A box lies by its centre in a grid whose cell, a power of two, is at least
-    as large as the box; it is looked for from all boxes of the same or a smaller cell, in 3 x 3 x 3 cells: the cost is
-    proportional to the number of boxes, however different their sizes."""
-    level = np.frexp((high - low).max(axis=1))[1]
-    center = (low + high) / 2
-    center = center - center.min(axis=0)
-    pairs = []
-    for top in np.unique(level):
-        cell = np.floor(center / 2.0**top).astype(np.int64) + 1
-        shape = cell.max(axis=0) + 2
-        key = (cell[:, 0] * shape[1] + cell[:, 1]) * shape[2] + cell[:, 2]
-        members, asking = np.flatnonzero(level == top), np.flatnonzero(level <= top)
-        members = members[np.argsort(key[members], kind="stable")]
-        for dx in (-1, 0, 1):
-            for dy in (-1, 0, 1):
-                wanted = key[asking] + (dx * shape[1] + dy) * shape[2]
-                found, owner = _ranges(np.searchsorted(key[members], wanted - 1, "left"), np.searchsorted(key[members], wanted + 1, "right"))
-                i, j = asking[owner], members[found]
-                keep = ((level[i] < top) | (i < j)) & (low[i] <= high[j]).all(axis=1) & (low[j] <= high[i]).all(axis=1)
-                pairs.append(np.stack([i[keep], j[keep]], axis=1))
-    return np.concatenate(pairs)
-
-
-def _bounds(centers, sizes, axes, margins):
-    reach = np.einsum("nka,nk->na", np.abs(axes), sizes / 2) + margins
-    return centers - reach, centers + reach
-
-
 def structures(centers, sizes, axes, gap):
     """Rows of blocks that are joined by others whose bounding boxes are at most `gap` of the smallest size apart, a list for each structure, in
     the order of their first rows."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
-    low, high = _bounds(centers, sizes, axes, gap / 2 * sizes.min())
-    i, j = _near_pairs(low, high).T
+    i, j = near_pairs(*bounds(centers, sizes, axes, gap / 2 * sizes.min())).T
     near = coo_array((np.ones(len(i)), (i, j)), shape=(len(centers), len(centers)))
     count, label = connected_components(near, directed=False)
     return [np.flatnonzero(label == k).tolist() for k in range(count)]
@@ -452,9 +416,8 @@ def faults(centers, sizes, axes, prescribed, tolerance):
     axes of a block; prescribed: (n,) bool, blocks that carry by themselves. Blocks overlap where no separating axis keeps their depth within `tolerance` of the
     smallest size of the two. A block is supported by one that it touches within the same from above, over more than an edge."""
     smallest = sizes.min(axis=1)
-    pairs = _near_pairs(*_bounds(centers, sizes, axes, tolerance * smallest[:, None]))
+    pairs = near_pairs(*bounds(centers, sizes, axes, tolerance * smallest[:, None]))
     pairs = pairs[~(prescribed[pairs[:, 0]] & prescribed[pairs[:, 1]])]
-    pairs = pairs[np.lexsort((pairs.max(axis=1), pairs.min(axis=1)))]
     depth, supports = np.empty(len(pairs)), [np.empty((0, 2), dtype=int)]
     for start in range(0, len(pairs), 20000):  # bounds the memory: about 1 kB a pair
         part = slice(start, start + 20000)
@@ -468,4 +431,4 @@ def faults(centers, sizes, axes, prescribed, tolerance):
         depth[part] = -widest
     deep = depth > tolerance * np.minimum(smallest[pairs[:, 0]], smallest[pairs[:, 1]])
     supports = np.concatenate(supports)
-    return np.sort(pairs[deep], axis=1), depth[deep], np.flatnonzero(~_carried(supports, prescribed)), supports
+    return pairs[deep], depth[deep], np.flatnonzero(~_carried(supports, prescribed)), supports

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 from masonry import _pose
+from masonry._boxes import bounds, near_pairs
 from masonry.results.wall_history import history_given
 
 # Blocks touch at first where their faces are within this share of the smallest size of the two, and opposite within this angle (rad).
@@ -72,23 +73,18 @@ class _Joints:
 
     def __init__(self, history):
         center, axes, half = history.position[0], _pose.matrices(history.orientation[0]), history.sizes / 2
-        reach = np.einsum("nak,nk->na", np.abs(axes), half)
         smallest = history.sizes.min(axis=1)
-        low, high = center - reach, center + reach
         pairs, normals, polygons, centers, areas = [], [], [], [], []
-        for i in range(len(center)):
-            margin = _TOUCH * np.minimum(smallest[i], smallest[i + 1:])[:, None]
-            near = ((low[i + 1:] <= high[i] + margin) & (low[i] <= high[i + 1:] + margin)).all(axis=1)
-            for j in i + 1 + np.flatnonzero(near):
-                if not (history.free[i] or history.free[j]):
-                    continue
-                patch = _patch((center[i], axes[i], half[i]), (center[j], axes[j], half[j]), margin[j - i - 1, 0])
-                if patch is not None:
-                    pairs.append((i, j))
-                    normals.append(patch[0])
-                    polygons.append(np.concatenate([patch[1], np.repeat(patch[1][-1:], _CORNERS - len(patch[1]), axis=0)]))
-                    centers.append(patch[1].mean(axis=0))
-                    areas.append(patch[2])
+        for i, j in near_pairs(*bounds(center, history.sizes, axes.swapaxes(1, 2), _TOUCH / 2 * smallest[:, None])).tolist():
+            if not (history.free[i] or history.free[j]):
+                continue
+            patch = _patch((center[i], axes[i], half[i]), (center[j], axes[j], half[j]), _TOUCH * min(smallest[i], smallest[j]))
+            if patch is not None:
+                pairs.append((i, j))
+                normals.append(patch[0])
+                polygons.append(np.concatenate([patch[1], np.repeat(patch[1][-1:], _CORNERS - len(patch[1]), axis=0)]))
+                centers.append(patch[1].mean(axis=0))
+                areas.append(patch[2])
         self.rows = np.array(pairs, dtype=int).reshape(-1, 2)
         self.normals, self.polygons = np.array(normals).reshape(-1, 3), np.array(polygons).reshape(-1, _CORNERS, 3)
         self.centers = np.array(centers).reshape(-1, 3)

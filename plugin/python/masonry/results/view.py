@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 from masonry import _pose
+from masonry._boxes import near_pairs
 from masonry._given import array_given
 
 # From the scene towards the viewer of a structure that moves in space: from the right, the front, above.
@@ -89,18 +90,15 @@ class View:
         order given."""
         center = corners.mean(axis=1)
         depth = center @ self.towards
-        if self.from_side and np.ptp(depth) < 1e-9 * np.ptp(corners):
+        if len(corners) < 2 or (self.from_side and np.ptp(depth) < 1e-9 * np.ptp(corners)):
             return np.arange(len(corners))
         flat = self.place(corners)
-        low, high = flat.min(axis=1), flat.max(axis=1)
+        # In the picture, all at one depth. Those that only touch there do not overlap.
+        low, high = (np.pad(ends, ((0, 0), (0, 1))) for ends in (np.nextafter(flat.min(axis=1), np.inf), flat.max(axis=1)))
         axes = corners[:, [1, 2, 4]] - corners[:, :1]  # rows
         half = np.linalg.norm(axes, axis=2) / 2
         axes = axes / np.maximum(2 * half, 1e-300)[..., None]
-        pairs = [np.empty((0, 2), dtype=int)]
-        for i in range(len(corners) - 1):
-            near = i + 1 + np.flatnonzero(((low[i + 1:] < high[i]) & (low[i] < high[i + 1:])).all(axis=1))
-            pairs.append(np.stack([np.full(len(near), i), near], axis=1))
-        i, j = np.concatenate(pairs).T
+        i, j = near_pairs(low, high).T
         normals = np.concatenate([axes[i], axes[j]], axis=1)
         along = np.einsum("pka,pa->pk", normals, center[j] - center[i])
         reach = sum(np.abs(np.einsum("pka,pma->pkm", normals, axes[k])) @ half[k][..., None] for k in (i, j))[..., 0]
