@@ -14,15 +14,22 @@ def number_given(name, value):
     return value
 
 
+def positive_given(name, value, more=""):
+    """The value; ValueError unless it is a positive and finite number. more: what the message says of it besides."""
+    if not 0 < number_given(name, value) < math.inf:
+        raise ValueError(f"{name} = {value}: must be positive and finite{more}")
+    return value
+
+
 def is_whole(value, least, most=math.inf):
     """Whether it is a whole number (2.0 is one) from `least` to `most`."""
     return isinstance(value, numbers.Real) and not isinstance(value, bool) and least <= value <= most and value < math.inf and value == int(value)
 
 
-def whole_given(name, value, least):
-    """The value as an int; ValueError unless it is a whole number (2.0 is one), at least `least`."""
-    if not is_whole(value, least):
-        raise ValueError(f"{name} = {value!r}: must be a whole number, at least {least}")
+def whole_given(name, value, least, most=math.inf):
+    """The value as an int; ValueError unless it is a whole number (2.0 is one) from `least` to `most`."""
+    if not is_whole(value, least, most):
+        raise ValueError(f"{name} = {value!r}: must be a whole number, at least {least}" + (f" and at most {most}" if most < math.inf else ""))
     return int(value)
 
 

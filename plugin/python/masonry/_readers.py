@@ -1,11 +1,10 @@
 """Files of accelerograms. Each reader says what it expected when it cannot read a file."""
 
-import math
 import re
 
 import numpy as np
 
-from ._given import number_given
+from ._given import positive_given
 
 # "stuck" negatives (1.2-3.4) are two numbers; an exponent sign is not a separator
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][-+]?\d+)?")
@@ -47,21 +46,15 @@ def _is_number(text):
     return True
 
 
-def check_gravity(gravity):
-    """What the unit g stands for."""
-    if not 0 < number_given("gravity", gravity) < math.inf:
-        raise ValueError(f"gravity = {gravity}: must be positive and finite, in m/s^2")
-
-
 def read_csv(path, unit, dt=None, gravity=9.80665):
     """(dt, samples in m/s^2) of a text file with comma or blank separated columns; lines starting with # and a first line of
     words are skipped. Two columns are time and acceleration, equally spaced; one column needs dt."""
     factors = {"m/s^2": 1.0, "cm/s^2": 1e-2, "mm/s^2": 1e-3, "g": gravity}
     if unit not in factors:
         raise ValueError(f"unit = {unit!r}: must be one of {', '.join(factors)}")
-    check_gravity(gravity)
-    if dt is not None and not 0 < number_given("dt", dt) < math.inf:
-        raise ValueError(f"dt = {dt}: must be positive and finite, in s")
+    positive_given("gravity", gravity, ", in m/s^2")
+    if dt is not None:
+        positive_given("dt", dt, ", in s")
     with open(path, encoding="utf-8-sig", errors="replace") as file:  # words may be of any encoding, numbers are not
         lines = [(number, line.replace(",", " ").split()) for number, line in enumerate(file, 1) if line.strip() and not line.startswith("#")]
     if lines and not _is_number(lines[0][1][0]):

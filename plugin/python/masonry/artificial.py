@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from ._given import number_given
+from ._given import number_given, positive_given
 from .motions import Record
 
 
@@ -24,8 +24,7 @@ def artificial_record(seed, peak, duration=10.0, dt=0.01, frequency=2.5, damping
     if not (isinstance(seed, (int, np.integer)) and seed >= 0):
         raise ValueError(f"seed = {seed!r}: must be a whole number, 0 or larger")
     for name, value in (("peak", peak), ("duration", duration), ("frequency", frequency), ("damping", damping), ("cutoff", cutoff)):
-        if not 0 < number_given(name, value) < math.inf:
-            raise ValueError(f"{name} = {value}: must be positive and finite")
+        positive_given(name, value)
     if not cutoff < frequency:
         raise ValueError(f"cutoff = {cutoff}: must be below frequency = {frequency}")
     if not 0 < number_given("dt", dt) <= 1 / (8 * frequency):

@@ -29,7 +29,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ._given import array_given, is_whole, number_given
+from ._given import array_given, is_whole, positive_given
 
 _RUN_CASE = Path(__file__).with_name("_run_case.py")
 # Lines of what a failed case has said that the error repeats, and failed cases that it names.
@@ -110,8 +110,8 @@ def run(script, cases, folder, function="run", processes=None, time_limit=None, 
             raise ValueError(f"case = {case}: must have the same keys as the first, {', '.join(cases[0])}")
     if processes is not None and not is_whole(processes, 1):
         raise ValueError(f"processes = {processes!r}: must be a whole number, at least 1, or None")
-    if time_limit is not None and not 0 < number_given("time_limit", time_limit) < math.inf:
-        raise ValueError(f"time_limit = {time_limit}: must be positive and finite, in s, or None")
+    if time_limit is not None:
+        positive_given("time_limit", time_limit, ", in s, or None")
     keys = _keys(script, function, cases)
     if len(set(keys)) < len(keys):
         raise ValueError(f"case = {next(c for c, k in zip(cases, keys) if keys.count(k) > 1)}: stands there twice")

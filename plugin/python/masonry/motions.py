@@ -6,9 +6,9 @@ Every motion with a known course has .acceleration(t), .velocity(t), .displaceme
 import numpy as np
 
 from . import _core
-from ._given import array_given, number_given, whole_given
+from ._given import array_given, number_given, positive_given, whole_given
 from ._arrays import columns, restore, shape_of
-from ._readers import check_gravity, read_at2, read_csv
+from ._readers import read_at2, read_csv
 
 
 class Motion:
@@ -174,7 +174,7 @@ class Record(Motion):
     @classmethod
     def from_at2(cls, path, scale=1.0, baseline="none", gravity=9.80665):
         """PEER NGA file (.AT2), accelerations in units of `gravity` (m/s^2): the standard one, whatever the blocks weigh (9.81 elsewhere)."""
-        check_gravity(gravity)
+        positive_given("gravity", gravity, ", in m/s^2")
         name, dt, samples = read_at2(path)
         return cls(dt, gravity * samples, scale, baseline, name=name)
 

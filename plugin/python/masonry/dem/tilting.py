@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from masonry._boxes import bounds
-from masonry._given import number_given
+from masonry._given import number_given, positive_given
 from masonry._pose import axes_of
 from masonry.dem.engines import _FEW_BLOCKS, _METHODS, engines, has_stiffness
 from masonry.dem.scene import _boxes, _layout, structures
@@ -131,8 +131,7 @@ class TiltTable:
         if method not in _METHODS:
             raise ValueError(f"method = {method!r}: must be one of {', '.join(_METHODS)}")
         for name, value in (("hold", hold), ("share", share), ("gravity", gravity)):
-            if not 0 < number_given(name, value) < math.inf:
-                raise ValueError(f"{name} = {value}: must be positive and finite")
+            positive_given(name, value)
         self.direction, self.load, self.model, self.share, self.gravity = direction, load, model, share, gravity
         self._blocks = _boxes()
         self._free = [b for b in self._blocks if b.dynamic]
@@ -207,8 +206,7 @@ class TiltTable:
     def ramp(self, rate=0.02, start=0.0, progress=True):
         """The Collapse of a multiplier that grows slowly. rate: per sqrt(height / gravity) of the scene. The bracket is from where the
         blocks last rested to where one had moved by `share`; the multiplier is its lower end: what follows is delay."""
-        if not 0 < number_given("rate", rate) < math.inf:
-            raise ValueError(f"rate = {rate}: must be positive and finite")
+        positive_given("rate", rate)
         if not 0 <= number_given("start", start) < _MOST:
             raise ValueError(f"start = {start}: must be from 0 to below {_MOST}")
         multiplier = rested = start

@@ -12,7 +12,7 @@ import re
 
 import numpy as np
 from masonry._boxes import bounds, near_pairs
-from masonry._given import is_whole, number_given
+from masonry._given import number_given, whole_given
 
 # A length fits the modules of a wall when it is off by less than this share of a module: far above round-off, far below a cut.
 _FIT = 1e-6
@@ -46,9 +46,7 @@ def positive_size(name, size):
 
 def whole(name, value, least):
     """The value as an integer; ValueError unless it is one, at least `least` and at most _MOST."""
-    if not is_whole(number_given(name, value), least, _MOST):
-        raise ValueError(f"{name} = {value}: must be a whole number, at least {least} and at most {_MOST}")
-    return int(value)
+    return whole_given(name, value, least, _MOST)
 
 
 def _head_joint(gap, size, shortest):

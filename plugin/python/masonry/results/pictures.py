@@ -1,9 +1,7 @@
 """Pictures and films of a WallHistory. Files are written without a screen; matplotlib is imported where it is needed."""
 
-import math
-
 import numpy as np
-from masonry._given import number_given
+from masonry._given import number_given, positive_given
 from masonry.results.collapse import fallen
 from masonry.results.joints import joint_rows, joints, patches
 from masonry.results.view import STILL, View, enlargement, largest, movement, nice, still
@@ -43,8 +41,8 @@ def _colorbar(figure, axes, shades, label, beyond):
 def _check(color, enlarge):
     if color not in _COLOURS:
         raise ValueError(f"color = {color!r}: must be one of {', '.join(map(repr, _COLOURS))}")
-    if enlarge is not None and not 0 < number_given("enlarge", enlarge) < math.inf:
-        raise ValueError(f"enlarge = {enlarge}: must be positive and finite, or None")
+    if enlarge is not None:
+        positive_given("enlarge", enlarge, ", or None")
 
 
 def _figure(view, shown, title, columns=1):
@@ -144,8 +142,7 @@ def film(history, path, start=None, end=None, frames_per_second=20, speed=1.0, e
     history_given(history)
     if not 0 < number_given("frames_per_second", frames_per_second) <= 60:
         raise ValueError(f"frames_per_second = {frames_per_second}: must be above 0 and at most 60")
-    if not 0 < number_given("speed", speed) < math.inf:
-        raise ValueError(f"speed = {speed}: must be positive and finite")
+    positive_given("speed", speed)
     if str(path).endswith(".mp4"):
         if not animation.FFMpegWriter.isAvailable():
             raise ValueError(f"path = {path}: .mp4 needs ffmpeg (Debian: apt install ffmpeg); a path that ends in .gif needs nothing")
