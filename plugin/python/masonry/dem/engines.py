@@ -73,10 +73,9 @@ def _largest_pressure(free, gravity):
     return max(pressures)
 
 
-def _choose_stiffness(penetration, gravity):
+def _choose_stiffness(blocks, penetration, gravity):
     """Fills in the stiffness per area of every BlockMat that has none: the most loaded joint gets in by `penetration` times the
     smallest width. Returns a sentence, or None when nothing was chosen."""
-    blocks = _boxes()
     materials = {b.mat.id: b.mat for b in blocks}.values()
     normal, shear = ([m for m in materials if not _is_given(m, name)] for name in ("normalStiffness", "shearStiffness"))
     if normal:
@@ -167,6 +166,64 @@ def _pivots_that_slip(supports):
             f"with restitution {restitution:g} and has {friction:.2g}: pivots slip, and what slips rocks on farther (noSlip=True: it does not slip)")
 
 
+def _several(value):
+    """What a script gave as one, a list or None, as a list."""
+    return [] if value is None else list(value) if isinstance(value, (list, tuple)) else [value]
+
+
+def _check_arguments(model, method, impact_order, penetration, tolerance, dt, gravity):
+    if model not in _MODELS:
+        raise ValueError(f"model = {model!r}: must be one of {', '.join(_MODELS)}")
+    if method not in _METHODS:
+        raise ValueError(f"method = {method!r}: must be one of {', '.join(_METHODS)}")
+    if impact_order not in _ORDERS:
+        raise ValueError(f"impact_order = {impact_order!r}: must be 'simultaneous', 'sequential' or None")
+    if penetration is not None and not _LEAST_PENETRATION <= number_given("penetration", penetration) <= 1e-2:
+        raise ValueError(f"penetration = {penetration}: must be from {_LEAST_PENETRATION:g} to 0.01")
+    if tolerance is not None and not 0 < number_given("tolerance", tolerance) <= 1e-2:
+        raise ValueError(f"tolerance = {tolerance}: must be above 0 and at most 0.001, with method='wall' 0.01")
+    if dt is not None and not number_given("dt", dt) > 0:
+        raise ValueError(f"dt = {dt}: must be positive, in s")
+    if not (number_given("gravity", gravity) == 0 or _GRAVITIES[0] <= gravity <= _GRAVITIES[1]):
+        raise ValueError(f"gravity = {gravity}: must be 0, or from {_GRAVITIES[0]:g} to {_GRAVITIES[1]:g}, in m/s^2")
+
+
+def _check_engines(motions, recorders, others):
+    for item in motions:
+        if isinstance(item, Motion):
+            raise ValueError(f"motion = {item!r}: is of the theory, without a body that it moves: must be {_in_yade(item)}")
+        if not isinstance(item, wrapper.BaseMotionEngine):
+            raise ValueError(f"motion = {item!r}: must be a PulseTrainEngine, a RecordMotionEngine, or a list of them")
+        item.check()
+    for item in recorders:
+        if not isinstance(item, (wrapper.BlockRecorder, wrapper.WallRecorder)):
+            raise ValueError(f"recorder = {item!r}: must be a BlockRecorder, a WallRecorder or a list of them")
+        check_recorder(item)
+    if not isinstance(others, (list, tuple)) or not all(isinstance(one, wrapper.Engine) for one in others):
+        raise ValueError(f"others = {others!r}: must be a list of engines")
+
+
+def _say_what_looks_odd(blocks, motions, penetration, gravity):
+    """Prints a line for each; overlapping blocks are a ValueError."""
+    floating, supports = floating_and_supports(floating=False)
+    if floating and gravity > 0:
+        print(f"masonry.dem: no chain of supports joins these blocks to a prescribed body, they will fall: {listed(floating)}")
+    slips = _pivots_that_slip(supports)
+    if slips:
+        print(slips)
+    for density in sorted({b.mat.density for b in blocks}):
+        if not _DENSITIES[0] <= density <= _DENSITIES[1]:
+            print(f"masonry.dem: a density is {density:g}: densities are in kg/m^3")
+    for peak in (_peak(m) for m in motions if isinstance(m, wrapper.RecordMotionEngine)):
+        if 0 < peak and not _PEAKS[0] <= peak <= _PEAKS[1]:
+            print(f"masonry.dem: a record reaches {peak:.3g}: in g or cm/s^2? Accelerations are in m/s^2")
+    longest = max(2 * max(b.shape.extents) for b in blocks if b.dynamic)
+    if longest > _LONGEST:
+        print(f"masonry.dem: the longest block measures {longest:g} m: sizes are in m")
+    if penetration is not None and all(_is_given(b.mat, "normalStiffness") for b in blocks):
+        print(f"masonry.dem: penetration = {penetration:g} is not used: every BlockMat has its normalStiffness")
+
+
 def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None, impact_order=None, gravity=9.81, recorder=None, others=(), method="auto"):
     """The list for O.engines; sets O.dt and prints the choice and its reason, the blocks that stand on nothing or whose
     landings slip, length and peak of records, and numbers that look like a slip of units.
@@ -200,66 +257,24 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
     A BlockMat is read when two blocks come near each other. Changed during a run, it acts on pairs that come later; for those that are there
     already set phys.tangensOfFrictionAngle and phys.restitution of the interactions in O.interactions.
     """
-    if model not in _MODELS:
-        raise ValueError(f"model = {model!r}: must be one of {', '.join(_MODELS)}")
-    if method not in _METHODS:
-        raise ValueError(f"method = {method!r}: must be one of {', '.join(_METHODS)}")
-    if impact_order not in _ORDERS:
-        raise ValueError(f"impact_order = {impact_order!r}: must be 'simultaneous', 'sequential' or None")
-    if penetration is not None and not _LEAST_PENETRATION <= number_given("penetration", penetration) <= 1e-2:
-        raise ValueError(f"penetration = {penetration}: must be from {_LEAST_PENETRATION:g} to 0.01")
-    if tolerance is not None and not 0 < number_given("tolerance", tolerance) <= 1e-2:
-        raise ValueError(f"tolerance = {tolerance}: must be above 0 and at most 0.001, with method='wall' 0.01")
-    if dt is not None and not number_given("dt", dt) > 0:
-        raise ValueError(f"dt = {dt}: must be positive, in s")
-    if not (number_given("gravity", gravity) == 0 or _GRAVITIES[0] <= gravity <= _GRAVITIES[1]):
-        raise ValueError(f"gravity = {gravity}: must be 0, or from {_GRAVITIES[0]:g} to {_GRAVITIES[1]:g}, in m/s^2")
-    gravity = float(gravity)
-    motions = [] if motion is None else list(motion) if isinstance(motion, (list, tuple)) else [motion]
-    for item in motions:
-        if isinstance(item, Motion):
-            raise ValueError(f"motion = {item!r}: is of the theory, without a body that it moves: must be {_in_yade(item)}")
-        if not isinstance(item, wrapper.BaseMotionEngine):
-            raise ValueError(f"motion = {item!r}: must be a PulseTrainEngine, a RecordMotionEngine, or a list of them")
-        item.check()
-    if not any(b.dynamic for b in _boxes()):
+    _check_arguments(model, method, impact_order, penetration, tolerance, dt, gravity)
+    gravity, motions, recorders, blocks = float(gravity), _several(motion), _several(recorder), _boxes()
+    _check_engines(motions, recorders, others)
+    if not any(b.dynamic for b in blocks):
         raise ValueError("there is no free block in O.bodies: add one with dem.block() before dem.engines()")
-    for body in _boxes():
+    for body in blocks:
         check_material(body.mat)
-    floating, supports = floating_and_supports(floating=False)
-    if floating and gravity > 0:
-        print(f"masonry.dem: no chain of supports joins these blocks to a prescribed body, they will fall: {listed(floating)}")
-    slips = _pivots_that_slip(supports)
-    if slips:
-        print(slips)
-    for density in sorted({b.mat.density for b in _boxes()}):
-        if not _DENSITIES[0] <= density <= _DENSITIES[1]:
-            print(f"masonry.dem: a density is {density:g}: densities are in kg/m^3")
-    for peak in (_peak(m) for m in motions if isinstance(m, wrapper.RecordMotionEngine)):
-        if 0 < peak and not _PEAKS[0] <= peak <= _PEAKS[1]:
-            print(f"masonry.dem: a record reaches {peak:.3g}: in g or cm/s^2? Accelerations are in m/s^2")
-    longest = max(2 * max(b.shape.extents) for b in _boxes() if b.dynamic)
-    if longest > _LONGEST:
-        print(f"masonry.dem: the longest block measures {longest:g} m: sizes are in m")
+    _say_what_looks_odd(blocks, motions, penetration, gravity)
     reason = "asked for"
     if model == "auto":
         if penetration is not None:
             model, reason = "compliant", "penetration is given"
-        elif any(has_stiffness(b.mat) for b in _boxes()):
+        elif any(has_stiffness(b.mat) for b in blocks):
             model, reason = "compliant", "a BlockMat has a joint stiffness"
-    if penetration is not None and all(_is_given(b.mat, "normalStiffness") for b in _boxes()):
-        print(f"masonry.dem: penetration = {penetration:g} is not used: every BlockMat has its normalStiffness")
-    recorders = [] if recorder is None else list(recorder) if isinstance(recorder, (list, tuple)) else [recorder]
-    if not all(isinstance(one, (wrapper.BlockRecorder, wrapper.WallRecorder)) for one in recorders):
-        raise ValueError(f"recorder = {recorder!r}: must be a BlockRecorder, a WallRecorder or a list of them")
-    for one in recorders:
-        check_recorder(one)
-    if not isinstance(others, (list, tuple)) or not all(isinstance(one, wrapper.Engine) for one in others):
-        raise ValueError(f"others = {others!r}: must be a list of engines")
     if model == "compliant":
         if tolerance is not None or others or method != "auto":
             raise ValueError("tolerance, others and method are for rigid blocks: they must be left out with model='compliant'")
-        return _compliant(motions, reason, dt, penetration or _PENETRATION, impact_order or "simultaneous", gravity, recorders)
+        return _compliant(blocks, motions, reason, dt, penetration or _PENETRATION, impact_order or "simultaneous", gravity, recorders)
     if penetration is not None:
         raise ValueError(f"penetration = {penetration}: must be left out with model={model!r}, it is for compliant joints")
     check_blocks(_MOST_OVERLAP, floating=False)
@@ -296,23 +311,23 @@ def _rigid(motions, model, method, dt, tolerance, impact_order, gravity, recorde
     return [wrapper.ForceResetter(), *others, *recorders, integrator]
 
 
-def _compliant(motions, reason, dt, penetration, impact_order, gravity, recorders):
+def _compliant(blocks, motions, reason, dt, penetration, impact_order, gravity, recorders):
     reasons = [f"compliant joints, YADE's usual loop: {reason}"]
-    chosen = _choose_stiffness(penetration, gravity)
+    chosen = _choose_stiffness(blocks, penetration, gravity)
     if chosen:
         reasons.append(chosen)
 
     joints = wrapper.RockingJointEngine(impactOrder=impact_order)
     critical = joints.criticalTimeStep()
     if not np.isfinite(critical):  # nothing touches yet
-        critical = min(_landing_step(b) for b in _boxes() if b.dynamic)
+        critical = min(_landing_step(b) for b in blocks if b.dynamic)
     if dt is not None and not dt < critical:
         raise ValueError(f"dt = {dt}: must be below {critical:.3g} s, the critical step of joints this stiff")
     O.dt = float(dt if dt is not None else _STEP_FRACTION * critical)
     reasons.append(f"dt = {O.dt:.3g} s ({O.dt / critical:.2g} of the critical step)")
     print("masonry.dem:", "; ".join(reasons) + _records(motions))
 
-    smallest = min(min(b.shape.extents) for b in _boxes())
+    smallest = min(min(b.shape.extents) for b in blocks)
     return [
         wrapper.ForceResetter(),
         wrapper.InsertionSortCollider([wrapper.Bo1_Box_Aabb()], verletDist=0.05 * smallest),
