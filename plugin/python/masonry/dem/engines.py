@@ -57,7 +57,7 @@ def _half_sizes(bodies):
     _, sizes, quaternions = _layout(bodies)
     axes = np.abs(axes_of(quaternions))
     order = [sorted(range(3), key=lambda k: (k == own[:, 2].argmax(), -own[k, 0])) for own in axes]
-    return np.take_along_axis(sizes / 2, np.array(order), axis=1)
+    return np.take_along_axis(sizes / 2, np.array(order, dtype=int).reshape(-1, 3), axis=1)
 
 
 def _largest_pressure(free, gravity):
@@ -151,8 +151,8 @@ def _pivots_that_slip(supports):
     """A sentence on the block whose landings slip most: without slip, one that obeys C asks for a friction of slenderness (1 - C)/(1 + C).
     supports: (body below, body on it). Joints as Ip2_BlockMat_BlockMat_BlockPhys makes them of two materials."""
     slip = []
-    for below, body in supports:
-        materials, half = (below.mat, body.mat), _half_sizes([body])[0]
+    for (below, body), half in zip(supports, _half_sizes([body for _, body in supports])):
+        materials = below.mat, body.mat
         given = [m.restitution for m in materials if not math.isnan(m.restitution)]
         if body.dynamic and given and not any(m.noSlip for m in materials):
             restitution, friction = sum(given) / len(given), math.tan(min(m.frictionAngle for m in materials))
