@@ -282,6 +282,8 @@ def test_blocks_behind_are_drawn_first():
     seen = view.View(h, (0.5, -1, 0.4))
     polygons, rows, _ = seen.faces(h.corners(0))
     assert all(np.cross(p[1] - p[0], p[2] - p[1]) > 0 for p in polygons)  # counterclockwise: outsides
+    for towards in ((0.5, -1, 0.4), (0, -1, 0)):  # of no blocks, no faces
+        assert not any(map(len, view.View(h, towards).faces(h.corners(0)[:0])))
     depth = h.position[0] @ seen.towards
     checked = 0
     for point in rng.uniform(*np.quantile(polygons.reshape(-1, 2), (0.2, 0.8), axis=0), size=(500, 2)):

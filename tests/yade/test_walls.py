@@ -272,9 +272,10 @@ for turn_a, turn_b, direction, contact in ((None, (0, 0, 1), (1, 0, 0), 0.5 + di
             if depth > tolerance:
                 refuses(lambda: dem.check_blocks(tolerance=tolerance, floating=False), f"overlapping blocks: 1 and 2 (by {depth:.3g} m)", "tolerance")
 
-# Pairs that meet, by the grid and by trying all of them: boxes of very different sizes.
+# Pairs that meet, by the grid and by trying all of them: boxes of very different sizes, some of none.
 low = random.uniform(-3, 3, (300, 3))
 high = low + 10.0 ** random.uniform(-3, 1, (300, 1)) * random.uniform(0.2, 1, (300, 3))
+high[:20] = low[:20] + [[0], [1e-300]] * 10
 found = [tuple(pair) for pair in near_pairs(low, high).tolist()]
 wanted = {(i, j) for i, j in itertools.combinations(range(300), 2) if np.all((low[i] <= high[j]) & (low[j] <= high[i]))}
 assert found == sorted(wanted) and len(wanted) > 300
