@@ -1,13 +1,13 @@
 #pragma once
 
-#include "recorded_bodies.hpp"
-#include <pkg/common/PeriodicEngines.hpp>
+#include "recording.hpp"
 
 namespace yade {
 
 /// Histories of blocks, kept as attributes: saved and loaded with the simulation.
 class BlockRecorder : public PeriodicEngine {
 public:
+	bool isActivated() override { return isDue(*this); }
 	void action() override;
 
 	// clang-format off

@@ -1,8 +1,7 @@
 #pragma once
 
-#include "recorded_bodies.hpp"
+#include "recording.hpp"
 #include <boost/python/object.hpp>
-#include <pkg/common/PeriodicEngines.hpp>
 
 namespace yade {
 
@@ -11,6 +10,7 @@ class Body;
 /// Motion of all blocks of a structure and its energies, sampled; kept as attributes: saved and loaded with the simulation.
 class WallRecorder : public PeriodicEngine {
 public:
+	bool isActivated() override { return isDue(*this); }
 	void action() override;
 
 	/// As rows of doubles in one piece of memory: thousands of blocks give too many numbers for a list.

@@ -97,7 +97,7 @@ def test_bad_input_is_refused(tmp_path):
     script.write_text("def run(case): return {}")
     table = np.zeros(2, dtype=[("collapsed", bool), ("peak_drift", float)])
     gaps = np.array([(0.2, False, 0.1), (0.4, False, np.nan), (0.4, True, np.nan)], dtype=[("scale", float), ("collapsed", bool), ("peak_drift", float)])
-    for act, word in ((lambda: ensemble.fraction([]), "events"), (lambda: ensemble.fraction([True], 1), "confidence = 1"),
+    for act, word in ((lambda: ensemble.fraction([]), "events"), (lambda: ensemble.fraction([True], 1), "confidence = 1"), (lambda: ensemble.fraction([True], "0.9"), "confidence = '0.9'"),
                       (lambda: ensemble.quantile([1, math.nan], 0.5), "NaN"), (lambda: ensemble.quantile([], 0.5), "values"),
                       (lambda: ensemble.quantile([1], 1.0), "probability = 1"), (lambda: ensemble.statistics(table, by="scale"), "scale"),
                       (lambda: ensemble.run(script, [], tmp_path), "at least one"), (lambda: ensemble.run(script, [{"a": 1}, {"b": 1}], tmp_path), "same keys"),

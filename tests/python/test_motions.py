@@ -23,6 +23,7 @@ def test_values_have_the_shape_of_the_motions_then_of_the_times():
     t = np.linspace(0, 0.2, 5)
     np.testing.assert_allclose(motion.acceleration(t)[1, 2], 2 * np.sin(6 * np.pi * t), rtol=1e-13, atol=1e-15)
     assert isinstance(masonry.Sine(1.0, 1.0).velocity(0.1), float)
+    assert motion.displacement([]).shape == (2, 3, 0) and masonry.Sine(1.0, 1.0).displacement([]).shape == (0,)
 
 
 def test_baselines_by_name():

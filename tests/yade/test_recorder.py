@@ -65,6 +65,14 @@ lower = [O.bodies[id].state.pos[2] < 0.2 for id in ids]
 assert abs(last["force"][lower, 2].sum() / weights.sum() - 1) < 1e-6 and np.all(np.abs(last["force"][~np.array(lower), 2] / weights[~np.array(lower)] - 1) < 1e-6)
 print("recorder: angle, uplift, force, files, loading")
 
+# Samples are a period apart, though O.time is a sum of steps.
+base, block, _ = one_block(5)
+recorders = [dem.BlockRecorder(ids=[block], virtPeriod=0.01), dem.WallRecorder(virtPeriod=0.01)]
+O.engines = rigid_engines(recorder=recorders, dt=1e-3)
+O.run(3000, True)
+for times in (dem.history(recorders[0])["time"], dem.wall_history(recorders[1]).time):
+    assert len(times) >= 299 and np.allclose(np.diff(times), 0.01, rtol=0, atol=1e-9), (len(times), np.diff(times).max())
+
 # A block that is erased has NaN from then on, and what was recorded stays; blocks are fixed by the first sample, and a recorder is of one run.
 for model in ("planar", "compliant"):
     O.reset()

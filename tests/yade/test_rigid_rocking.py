@@ -115,3 +115,16 @@ for model in ("planar", "spatial", "compliant"):
         landed = dem.impacts()[:2]
         assert [order[support] for support in landed["support"]] == ["right", "left"], (model, order, landed)
         assert np.array_equal(landed["restitution_asked"], [0.3, 0.9]) and np.allclose(landed["restitution"], [0.3, 0.9], rtol=0, atol=1e-9), (model, order, landed)
+
+# The lower of two blocks slides on the base as it turns, and the pivot of the upper one on it: velocity errors of the pivot, of either sign, do not
+# decide whether it still carries when the other corner lands.
+for model in ("planar", "spatial"):
+    for dt in (None, 4.793e-4, 4.8e-4, 4e-4, 3e-4, 2e-4):
+        O.reset()
+        base = dem.base((4, 2, 0.3), dem.BlockMat(density=2000, frictionAngle=math.atan(0.65)))
+        upper = dem.stack(2, (0.4, 0.3, 0.6), dem.BlockMat(density=1300, frictionAngle=0.5, restitution=0.6), base)[1]
+        O.engines = rigid_engines(dem.PulseTrainEngine(ids=[base], impulse=0.4, times=[0.0511, 0.3, 0.6], shape="half-sine", duration=0.1), model=model, dt=dt)
+        while O.time < 0.735:
+            O.step()
+        last = dem.impacts()[-1]
+        assert last["body"] == upper and 0.73 < last["time"] and abs(last["restitution"] - 0.6) < 1e-9, (model, dt, last)

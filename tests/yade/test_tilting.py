@@ -216,7 +216,8 @@ for bad in (-1, 30, 40):
 refuses(lambda: table.ramp(start=40), "start = 40", "from 0 to below 30")
 refuses(lambda: table.ramp(rate=0), "rate = 0")
 refuses(lambda: table.trial("a"), "multiplier = 'a'", "number")
-refuses(lambda: table.trial(math.nan), "multiplier = nan", "finite")
+refuses(lambda: table.trial(math.nan), "multiplier = nan", "from -30 to 30")
+refuses(lambda: table.trial(54), "multiplier = 54", "from -30 to 30")
 base, stone = ground(0.5)
 refuses(lambda: dem.TiltTable(), "no free block")
 block = dem.block((0.6, 0.5, 0.4), stone, on=base)
@@ -228,6 +229,13 @@ for side in (-1, 1):
     O.bodies[held].dynamic = False
 refuses(lambda: dem.TiltTable().bisect(progress=False), "held on all sides")
 refuses(lambda: dem.TiltTable().ramp(rate=2, progress=False), "held on all sides")
+base, stone = ground(0.5)
+dem.block((0.6, 0.5, 0.4), stone, on=base)
+refuses(lambda: dem.TiltTable().ramp(start=0.6, progress=False), "start = 0.6", "do not stand")
+fast, slow = (dem.TiltTable().ramp(rate=rate, progress=False) for rate in (20, 0.02))
+assert fast.bracket[0] < 0.5 < fast.bracket[1] and "smaller rate" in fast.doubts[0] and not slow.doubts, (fast, slow)
+for hold in (0.01, 0.03):  # shorter than a look
+    assert abs(dem.TiltTable(hold=hold).bisect(progress=False).multiplier / 0.5 - 1) < CLOSE, hold
 base, stone = ground(0.5, normalStiffness=1e9)
 dem.block((0.6, 0.5, 0.4), stone, on=base)
 refuses(lambda: dem.TiltTable(), "rigid", "stiffness")

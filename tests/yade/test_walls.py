@@ -1,5 +1,6 @@
 """Builders of walls: numbers of blocks, volumes, bond and openings from formulas of their own; tables; overlapping and floating blocks."""
 
+import collections
 import csv
 import itertools
 import json
@@ -231,6 +232,17 @@ before = np.hstack(boxes(ids))
 base, material = ground()
 assert np.array_equal(np.hstack(boxes(dem.blocks_from_table(path, material, on=base))), before)
 
+Row = collections.namedtuple("Row", ("size_y", "size_z", "size_x", "y", "x", "z"))
+
+
+class Frame(list):
+    """What a table of pandas has of a list of mappings."""
+
+    def to_dict(self, orient):
+        assert orient == "records"
+        return list(self)
+
+
 # Rows, rotations and `on`: a block leans by 0.1 rad, turned by 0.5 about z; rotated points by the plain rotation matrices.
 base, material = ground()
 O.bodies[base].state.pos += Vector3(1, 2, 3)
@@ -238,6 +250,10 @@ row = dict(x=0.5, y=0, z=1, size_x=0.6, size_y=0.5, size_z=2, rotation_y=0.1, ro
 leaning, upright = dem.blocks_from_table([row, (4, 0, 0.5, 1, 1, 1)], material, on=base)
 about_z = np.array([[math.cos(0.5), -math.sin(0.5), 0], [math.sin(0.5), math.cos(0.5), 0], [0, 0, 1]])
 about_y = np.array([[math.cos(0.1), 0, math.sin(0.1)], [0, 1, 0], [-math.sin(0.1), 0, math.cos(0.1)]])
+named = np.array([(0.5, 2.0, 0.6, 0.0, 0.5, 1.0)], dtype=[(column, float) for column in ("size_y", "size_z", "size_x", "y", "x", "z")])
+for table in (named, [Row(*named[0])], Frame([dict(zip(named.dtype.names, named[0]))])):  # named, so in any order
+    made = O.bodies[dem.blocks_from_table(table, material, on=base)[0]]
+    assert made.state.pos == O.bodies[leaning].state.pos and made.shape.extents == Vector3(0.3, 0.25, 1), table
 state = O.bodies[leaning].state
 assert np.allclose(np.array(state.ori.toRotationMatrix()).reshape(3, 3), about_z @ about_y, atol=1e-15)
 assert math.isclose(dem.angle(leaning), 0.1, rel_tol=1e-12) and dem.angle(upright) == 0 and (state.pos - Vector3(1.5, 2, 4)).norm() < 1e-15

@@ -29,7 +29,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ._given import array_given, is_whole, positive_given
+from ._given import array_given, is_whole, number_given, positive_given
 
 _RUN_CASE = Path(__file__).with_name("_run_case.py")
 # Lines of what a failed case has said that the error repeats, and failed cases that it names.
@@ -269,7 +269,7 @@ def _table(cases, outcomes):
 
 
 def _check_confidence(confidence):
-    if not 0 < confidence < 1:
+    if not 0 < number_given("confidence", confidence) < 1:
         raise ValueError(f"confidence = {confidence}: must be above 0 and below 1")
 
 
@@ -298,7 +298,7 @@ def quantile(values, probability, confidence=0.95):
     from scipy.stats import binom
 
     _check_confidence(confidence)
-    if not 0 < probability < 1:
+    if not 0 < number_given("probability", probability) < 1:
         raise ValueError(f"probability = {probability}: must be above 0 and below 1")
     values = np.sort(np.asarray(values, dtype=float).ravel())
     if not len(values) or np.isnan(values).any():

@@ -3,6 +3,8 @@
 Every motion with a known course has .acceleration(t), .velocity(t), .displacement(t) (m/s^2, m/s, m; values right of a jump).
 """
 
+import math
+
 import numpy as np
 
 from . import _core
@@ -22,7 +24,7 @@ class Motion:
 
     def _values(self, t, which):
         table = self._motions(self.shape).values(np.ravel(np.asarray(t, dtype=float)))[which]
-        return restore(table.reshape((-1,) + np.shape(t)), self.shape)
+        return restore(table.reshape((math.prod(self.shape),) + np.shape(t)), self.shape)
 
     def acceleration(self, t):
         return self._values(t, 0)

@@ -217,8 +217,8 @@ def pier(courses, size, material, on, per_course=1, at=(0.0, 0.0)):
 
 
 def blocks_from_table(table, materials, on=None):
-    """Free blocks from a table: a path that ends in .csv (a header line names the columns) or .json (a list of objects), or rows (mappings,
-    or sequences in the order below). Returns the ids in the order of the rows.
+    """Free blocks from a table: a path that ends in .csv (a header line names the columns) or .json (a list of objects), a pandas
+    DataFrame, a structured array, or rows (mappings, named tuples, or sequences in the order below). Returns the ids in the order of the rows.
 
     x, y, z                   centre, m: of the world, or from the middle of the upper face of the body `on`, in its axes
     size_x, size_y, size_z    full sizes, m, positive

@@ -106,7 +106,8 @@ class TiltTable:
     hold. Rigid blocks that carry a load do not move at all, and have no spring to overshoot, so a stair of the load is put on at once: with
     bisect() upon the largest load that the blocks have stood, with the forces in their joints that it has left, since with friction these
     depend on what came before. Of its trials that collapse only the first and the last move the blocks by `share`; the others end when
-    these gain speed steadily. Restitution hardly matters, but 0 is fastest. The scene is put back afterwards; O.engines is left to the last trial.
+    these gain speed steadily. Restitution hardly matters, but 0 is fastest. Afterwards the blocks are put back, at rest, with O.time 0; O.engines and O.dt
+    are left as in the last trial.
 
     With friction the multiplier need not be unique, and the two methods may find different ones (a wall of ten courses with a window: 0.471 by
     'localised', 0.512 by 'wall'; validation/walls/tilting), and so may 'localised' of a symmetric wall towards x and -x, or of the same blocks in another
@@ -209,7 +210,7 @@ class TiltTable:
         positive_given("rate", rate)
         if not 0 <= number_given("start", start) < _MOST:
             raise ValueError(f"start = {start}: must be from 0 to below {_MOST}")
-        multiplier = rested = start
+        multiplier, rested = start, None
         with self._trials("stair", progress) as bar:
             integrator = self._begin(start)
             while self._moved() <= self.share * self._size:
@@ -223,12 +224,17 @@ class TiltTable:
                 bar.set_postfix_str(f"{multiplier:.5g}")
                 bar.update()
             trial, mechanism = Trial(multiplier, "collapse", self._moved(), O.time, integrator.failures), self._mechanism()
-        return self._collapse(rested, (rested, multiplier), [trial], mechanism)
+        if rested is None:
+            raise ValueError(f"start = {start}: the blocks do not stand under it: must be below the multiplier of collapse")
+        result = self._collapse(rested, (rested, multiplier), [trial], mechanism)
+        if rested < multiplier / 2:
+            result.doubts.append("the load has more than doubled since the blocks rested: a smaller rate tells what they stand")
+        return result
 
     def trial(self, multiplier):
-        """Holds one multiplier (finite) from rest. The scene is left as it is at the end."""
-        if not math.isfinite(number_given("multiplier", multiplier)):
-            raise ValueError(f"multiplier = {multiplier}: must be finite")
+        """Holds one multiplier, of 30 at most in size, from rest. The scene is left as it is at the end."""
+        if not abs(number_given("multiplier", multiplier)) <= _MOST:
+            raise ValueError(f"multiplier = {multiplier}: must be from -{_MOST} to {_MOST}")
         return self._hold_load(self._begin(multiplier), multiplier)
 
     # --- a trial ---
@@ -257,7 +263,7 @@ class TiltTable:
                 verdict = "collapse"
             elif quiet >= 2 and (not moving or O.time >= moving + _QUIET * self._hold):
                 verdict = "rest"
-            elif O.time >= self._hold:
+            elif O.time >= self._hold and not quiet:
                 if speed >= fastest:
                     verdict = "collapse"
                 elif O.time >= _LONGEST * self._hold:

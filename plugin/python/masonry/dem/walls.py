@@ -298,11 +298,18 @@ def _csv_rows(file):
     return rows
 
 
+def _pairs(row):
+    if hasattr(row, "items"):
+        return list(row.items())
+    names = getattr(getattr(row, "dtype", None), "names", None) or getattr(row, "_fields", None)  # of a structured array, a named tuple
+    return list(zip(names, row) if names else itertools.zip_longest(COLUMNS, row))
+
+
 def _rows(table):
     """[(column, value) pairs of a block]."""
     if not isinstance(table, str) and not hasattr(table, "__fspath__"):
         try:
-            return [list(row.items()) if hasattr(row, "items") else list(itertools.zip_longest(COLUMNS, row)) for row in table]
+            return [_pairs(row) for row in (table.to_dict("records") if hasattr(table, "to_dict") else table)]
         except TypeError:
             raise ValueError(f"table = {table!r}: must be a path, or rows: mappings or sequences") from None
     path = str(table)

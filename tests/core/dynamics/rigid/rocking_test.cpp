@@ -109,3 +109,26 @@ TEST_CASE("Without a value the restitution is the natural one")
 	for (const Impact& impact : history.impacts)
 		if (impact.switched) CHECK(std::abs(impact.joint.restitution() - (1 - 1.5 * sine * sine)) < 1e-12);
 }
+
+// Under a sideways force of `share` of its weight it turns about its corner: (2/3) R^2 w^2 = g (share dx - dz), of the centre that moves by dx
+// and dz. Loaded to its limit b/a and not beyond, all of the weight is on that corner and the other one parts at any load more.
+TEST_CASE("A block that has stood at its very limit turns when the load grows")
+{
+	const double miss = GENERATE(-1e-9, -1e-10, -1e-12, 0., 1e-12, 1e-9), a = 5 * b, share = 0.3, h = 1e-3;
+	CAPTURE(miss);
+	auto              s = rockingBlock(b, a, 0, 0.5);
+	RigidStep<Plane>  step;
+	const RigidBody<Plane>& block = s.bodies[1];
+	const auto        hold = [&](double load, int steps) {
+		s.bodies[1].force[0] = load * block.mass * g;
+		for (int k = 0; k < steps; ++k)
+			REQUIRE(step.advance(s, h).converged);
+	};
+	hold(b / a * (1 + miss), 100);
+	CHECK(std::abs(block.pose.angle) < 1e-8);
+	hold(share, 500);
+	const double R = std::hypot(a, b), alpha = std::atan(b / a), turned = -block.pose.angle;
+	REQUIRE(turned > 0.05);
+	const double dx = R * (std::sin(alpha) - std::sin(alpha - turned)), dz = R * (std::cos(alpha - turned) - std::cos(alpha));
+	CHECK(std::abs(2. / 3 * R * R * std::pow(block.velocity[2], 2) / (g * (share * dx - dz)) - 1) < 1e-5); // of the order h^2
+}

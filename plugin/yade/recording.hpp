@@ -1,9 +1,21 @@
 #pragma once
-// Which bodies a recorder began with.
+// What recorders have in common: when they are due, and which bodies they began with.
 
 #include <core/Scene.hpp>
+#include <pkg/common/PeriodicEngines.hpp>
 
 namespace yade {
+
+/// Whether a period has elapsed. O.time is a sum of steps, whose round-off must not put a sample off by a step.
+inline bool isDue(PeriodicEngine& recorder)
+{
+	constexpr Real roundOff = 1e-6; // of the period
+	const Real     given = recorder.virtPeriod;
+	recorder.virtPeriod = (1 - roundOff) * given;
+	const bool is = recorder.PeriodicEngine::isActivated();
+	recorder.virtPeriod = given;
+	return is;
+}
 
 /// Another body that has come in the place of an erased one is not recorded for it.
 class RecordedBodies {
