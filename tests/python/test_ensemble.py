@@ -132,3 +132,34 @@ def test_tables_have_lists_arrays_and_none_as_text(tmp_path):
     assert table.tolist() == [("None", "[0, 1]", 1, 0.1), ("wall", "[0, 1, 2]", 2, 0.2)]
     np.savez(tmp_path / "ensemble.npz", table=table)
     assert np.load(tmp_path / "ensemble.npz")["table"].tolist() == table.tolist()  # no objects, which NumPy does not load
+
+
+def test_statistics_have_the_confidence_asked():
+    table = np.array([(k < 12, 0.1 * k) for k in range(40)], dtype=[("collapsed", bool), ("peak_drift", float)])
+    row, = ensemble.statistics(table, probabilities=(0.5,), confidence=0.6)
+    assert (row["fraction"], row["fraction_low"], row["fraction_high"]) == ensemble.fraction(table["collapsed"], 0.6)
+    values = np.where(table["collapsed"], np.inf, table["peak_drift"])
+    assert (row["quantile_0.5"], row["quantile_0.5_low"], row["quantile_0.5_high"]) == ensemble.quantile(values, 0.5, 0.6)
+
+
+@pytest.mark.parametrize("count, probability, rank", [(25, 0.56, 14), (50, 0.14, 7), (100, 0.07, 7)])
+def test_the_rank_of_a_quantile_is_not_one_more_by_round_off(count, probability, rank):
+    assert count * probability > rank  # in floating point; the product is whole
+    assert ensemble.quantile(np.arange(1.0, count + 1), probability)[0] == rank
+
+
+def test_results_of_another_function_are_not_taken(tmp_path):
+    script = tmp_path / "scene.py"
+    script.write_text("")
+    assert ensemble._keys(script, "run", [{}]) != ensemble._keys(script, "other", [{}])
+
+
+def test_artificial_records_grow_and_decay_by_their_envelope():
+    # 400 records of 10 s; the mean square over a window of 0.2 s and more scatters by some 10 %.
+    t = 0.02 * np.arange(501)
+    envelope = np.select([t < 2, t < 6], [(t / 2) ** 2, 1.0], 0.05 ** ((t - 6) / 4))
+    samples = [masonry.artificial_record(seed, 1.0, 10.0, 0.02).samples for seed in range(400)]
+    square = np.mean([(s / s[100:300].std()) ** 2 for s in samples], axis=0)
+    for low, high in ((0.9, 1.1), (1.4, 1.6), (3, 5), (7.9, 8.1), (9.4, 9.6)):
+        part = (t >= low) & (t <= high)
+        assert abs(square[part].mean() / (envelope[part] ** 2).mean() - 1) < 0.25, (low, high)

@@ -184,3 +184,10 @@ def test_import_is_light():
     script = "import sys, numpy; before = set(sys.modules); import masonry; print(sorted(set(sys.modules) - before))"
     added = subprocess.run([sys.executable, "-c", script], check=True, capture_output=True, text=True).stdout
     assert not any(heavy in added for heavy in ("matplotlib", "scipy", "h5py", "pandas", "yade", "masonry.dem"))
+
+
+def test_without_a_value_the_restitution_is_the_natural_one():
+    block = masonry.RockingBlock(0.3, 1.5)
+    found = masonry.simulate(block, initial_angle=0.1, half_cycles=2)
+    given = masonry.simulate(block, initial_angle=0.1, half_cycles=2, restitution=1 - 1.5 * np.sin(np.arctan(0.2)) ** 2)
+    np.testing.assert_allclose(found.peak_angles, given.peak_angles, rtol=1e-14)

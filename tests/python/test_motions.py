@@ -143,3 +143,26 @@ def test_the_unit_g_of_a_peer_file_is_positive(tmp_path):
 def test_bad_input(make, words):
     with pytest.raises(ValueError, match=words):
         make()
+
+
+def test_units_of_a_text_file(tmp_path):
+    path = tmp_path / "record.csv"
+    path.write_text("1\n-2\n")
+    for unit, factor in (("m/s^2", 1), ("cm/s^2", 0.01), ("mm/s^2", 0.001), ("g", 9.80665)):
+        np.testing.assert_allclose(masonry.Record.from_csv(path, unit, dt=0.01).samples, factor * np.array([1, -2]), rtol=1e-15)
+
+
+def test_steps_of_a_text_file(tmp_path):
+    path = tmp_path / "record.csv"
+    path.write_text("0,1\n0.01,-2\n0.03,3\n0.04,1\n")
+    with pytest.raises(ValueError, match="equal to 1 in 1000"):
+        masonry.Record.from_csv(path, "m/s^2")
+    path.write_text("0,1\n0.01,-2\n0.02,3\n")
+    with pytest.raises(ValueError, match="dt = 0.02: must be the step of the file"):
+        masonry.Record.from_csv(path, "m/s^2", dt=0.02)
+
+
+def test_a_scaled_train_is_the_train_times_the_factor():
+    t = np.linspace(0, 3, 7)
+    for train in (masonry.PulseTrain(0.2, [0, 1, 2], assembly=True), masonry.PulseTrain(0.2, [0, 1, 2], shape="half-sine", duration=0.3)):
+        np.testing.assert_allclose(train.scaled(3).velocity(t), 3 * train.velocity(t), rtol=1e-14)

@@ -71,3 +71,11 @@ def test_no_threshold_in_a_safe_bracket_and_bad_brackets():
 def test_bad_input(block, shape, words):
     with pytest.raises(ValueError, match=words):
         masonry.overturning_amplitude(block, shape)
+
+
+def test_the_scale_of_a_record_does_not_matter():
+    record = masonry.artificial_record(0, 3.0, duration=4, frequency=1.5)
+    first = masonry.overturning_amplitude(BLOCK, record)[0]
+    for factor in (10, 100):
+        scaled = masonry.Record(record.dt, factor * record.samples, baseline="constant")
+        assert abs(factor * masonry.overturning_amplitude(BLOCK, scaled)[0] / first - 1) < 1e-9

@@ -472,3 +472,35 @@ def test_bad_input_is_refused(tmp_path):
                 lambda h: results.draw_energy(h, path), lambda h: results.film(h, path), lambda h: results.write_paraview(h, tmp_path / "h.pvd")):
         with pytest.raises(ValueError, match="history = 'recorder': must be a WallHistory"):
             act("recorder")
+
+
+def test_an_erased_block_on_top_leaves_the_drift_of_the_others():
+    place = [[[0, 0, -0.1], [0, 0, 0.2], [1, 0, 0.2]], [[0, 0, -0.1], [0.04, 0, 0.2], [1, 0, 0.2]]]
+    h = history([[9, 9, 0.2], [0.6, 0.5, 0.4], [0.6, 0.5, 0.4]], place)
+    h.position[1, 2] = h.orientation[1, 2] = np.nan
+    assert abs(h.drift()[1] - 0.04 / 0.4) < ROUND
+
+
+def test_a_quaternion_and_its_negative_are_one_rotation():
+    h, other = rocking([0, 0.1, 0.2]), rocking([0, 0.1, 0.2])
+    other.orientation[1:, 1] *= -1
+    assert np.allclose(other.rotation, h.rotation, rtol=0, atol=ROUND)
+
+
+def test_paraview_relative_to_the_base(tmp_path):
+    h = rocking([0, 0.1, -0.05], shift=(0.4, 0, 0))
+    results.write_paraview(h, tmp_path / "h.pvd", relative=True)
+    points = decoded(ElementTree.parse(tmp_path / "h/h_000002.vtu").getroot().find(".//Points/DataArray"))
+    assert np.allclose(points.reshape(2, 8, 3), h.corners(2), rtol=0, atol=ROUND)
+
+
+def test_an_excursion_may_be_first_exceeded_after_collapse():
+    critical = math.atan(0.3)
+    h = rocking([0, 0.99 * critical, 1.2 * critical, 1.4 * critical])
+    report = results.collapse(h, excursion=(h.drift()[2] + h.drift()[3]) / 2)
+    assert report.collapsed and report.time == 1.0 and report.first_excursion == 1.5
+
+
+def test_bases_that_touch_have_no_joint():
+    h = history([[2, 2, 0.2], [2, 2, 0.2], [1, 1, 1]], [[[0, 0, -0.3], [0, 0, -0.1], [0, 0, 0.5]]], free=[False, False, True])
+    assert [(j["id1"], j["id2"]) for j in results.joints(h)] == [(11, 12)]

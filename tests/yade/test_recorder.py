@@ -65,6 +65,25 @@ lower = [O.bodies[id].state.pos[2] < 0.2 for id in ids]
 assert abs(last["force"][lower, 2].sum() / weights.sum() - 1) < 1e-6 and np.all(np.abs(last["force"][~np.array(lower), 2] / weights[~np.array(lower)] - 1) < 1e-6)
 print("recorder: angle, uplift, force, files, loading")
 
+# Of several blocks each has its own columns in a file.
+O.reset()
+base = dem.base((8, 2, 0.3), stone())
+ids = [dem.block((0.6, 1, height), O.bodies[base].mat, center=(x, 0, height / 2)) for x, height in ((-2, 3), (2, 2))]
+for id, angle in zip(ids, (0.05, -0.08)):
+    dem.tilt(id, angle)
+recorder = dem.BlockRecorder(ids=ids, iterPeriod=5)
+O.engines = rigid_engines(recorder=recorder)
+O.run(100, True)
+table = dem.history(recorder)
+with tempfile.TemporaryDirectory() as folder:
+    dem.save_history(recorder, path := os.path.join(folder, "two.csv"))
+    read = np.genfromtxt(path, delimiter=",", names=True)
+for k, id in enumerate(ids):
+    for name, unit in (("rotation", "rad"), ("position", "m"), ("force", "N")):
+        for axis, letter in enumerate("xyz"):
+            assert np.array_equal(read[f"{name}_{letter}_of_{id}_{unit}"], table[name][:, k, axis]), (name, letter, id)
+    assert np.array_equal(read[f"uplift_of_{id}_m"], table["uplift"][:, k]), id
+
 # Samples are a period apart, though O.time is a sum of steps.
 base, block, _ = one_block(5)
 recorders = [dem.BlockRecorder(ids=[block], virtPeriod=0.01), dem.WallRecorder(virtPeriod=0.01)]

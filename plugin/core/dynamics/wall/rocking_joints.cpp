@@ -352,7 +352,7 @@ void RockingJoints<Plane>::answer(RigidSystem<Plane>& s, WallContacts<Plane>& c,
 	result.axis = Vector3(0, 0, at.second ? side : -side);
 	result.before = side * before;
 	result.after = side * after;
-	result.application = std::abs(x[2]) / x[0];
+	result.application = side * x[2] / x[0];
 	result.frictionDemand = std::abs(x[1]) / x[0];
 	const double lost = -gain(x);
 	for (const auto& [b, impulse, speed] : {std::tuple(b1, Vector3(J.leftCols<3>().transpose() * x), Vector3(velocity.head<3>())),

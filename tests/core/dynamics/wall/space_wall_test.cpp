@@ -242,6 +242,7 @@ TEST_CASE("a block rocks in space as in the plane, whatever its direction")
 		CHECK(inSpace[k].time == Approx(inPlane[k].time).margin((k + 1.5) * 1.25e-4)); // a substep, and one for each that was before
 		CHECK(inSpace[k].joint.restitution() == Approx(restitution).epsilon(1e-9));
 		CHECK(inSpace[k].joint.frictionDemand == Approx(inPlane[k].joint.frictionDemand).epsilon(1e-2));
+		CHECK(inSpace[k].joint.application == Approx(inPlane[k].joint.application).epsilon(1e-2));
 		CHECK(inSpace[k].energyLost == Approx(2 * slender.y() / 0.5 * inPlane[k].energyLost).epsilon(1e-2)); // depths 0.8 and 0.5 m
 	}
 }
