@@ -9,15 +9,9 @@
 #include <core/Scene.hpp>
 #include <core/TimeStepper.hpp>
 #include <pkg/common/Box.hpp>
-#include <pkg/common/Collider.hpp>
 #include <pkg/common/ElastMat.hpp>
-#include <pkg/common/Facet.hpp>
-#include <pkg/common/FieldApplier.hpp>
-#include <pkg/common/GLDrawFunctors.hpp>
 #include <pkg/common/MatchMaker.hpp>
 #include <pkg/common/PeriodicEngines.hpp>
-#include <pkg/common/Sphere.hpp>
-#include <pkg/common/Wall.hpp>
 #include <pkg/dem/FrictPhys.hpp>
 #include <pkg/dem/ScGeom.hpp>
 
@@ -32,7 +26,6 @@ SIZE(Indexable, 8);
 SIZE(TimingInfo, 16);
 SIZE(TimingDeltas, 64);
 SIZE(Se3r, 56);
-SIZE(GLViewInfo, 32);
 
 SIZE(Engine, 104);
 AT(Engine, scene, 24);
@@ -44,8 +37,6 @@ AT(Engine, label, 72);
 SIZE(GlobalEngine, 104);
 SIZE(PartialEngine, 128);
 AT(PartialEngine, ids, 104);
-SIZE(FieldApplier, 112);
-AT(FieldApplier, fieldWorkIx, 104);
 SIZE(PeriodicEngine, 184);
 AT(PeriodicEngine, virtPeriod, 104);
 AT(PeriodicEngine, realPeriod, 112);
@@ -60,9 +51,6 @@ AT(PeriodicEngine, nDone, 176);
 SIZE(TimeStepper, 112);
 AT(TimeStepper, active, 104);
 AT(TimeStepper, timeStepUpdateInterval, 108);
-SIZE(Collider, 128);
-AT(Collider, boundDispatcher, 104);
-AT(Collider, avoidSelfInteractionMask, 120);
 SIZE(InteractionLoop, 216);
 AT(InteractionLoop, alreadyWarnedNoCollider, 104);
 AT(InteractionLoop, eraseAfterLoopIds, 112);
@@ -133,19 +121,6 @@ AT(Shape, wire, 88);
 AT(Shape, highlight, 89);
 SIZE(Box, 120);
 AT(Box, extents, 96);
-SIZE(Sphere, 104);
-AT(Sphere, radius, 96);
-SIZE(Wall, 104);
-AT(Wall, sense, 92); // in the tail of Shape
-AT(Wall, axis, 96);
-SIZE(Facet, 328);
-AT(Facet, ne, 96);
-AT(Facet, icr, 168);
-AT(Facet, vl, 176);
-AT(Facet, vu, 200);
-AT(Facet, vertices, 272);
-AT(Facet, normal, 296);
-AT(Facet, area, 320);
 
 SIZE(Material, 80);
 AT(Material, id, 32);
@@ -308,8 +283,5 @@ SIZE(BoundFunctor, 88);
 SIZE(IGeomFunctor, 88);
 SIZE(IPhysFunctor, 88);
 SIZE(LawFunctor, 88);
-SIZE(GlShapeFunctor, 88);
-SIZE(GlIGeomFunctor, 88);
-SIZE(GlIPhysFunctor, 88);
 
 } // namespace yade

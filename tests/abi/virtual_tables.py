@@ -89,7 +89,7 @@ def main(dump, folder):
                 wrong.append(f"{name} at {at}: declared {ours}, YADE has {theirs}")
     print(f"{len(declared)} tables compared, {sum(map(len, declared.values()))} slots, {len(wrong)} differences")
     print("\n".join(wrong))
-    return bool(wrong) or len(declared) < 40
+    return bool(wrong) or len(declared) < 37  # as many as there are: with fewer the dump has not been read
 
 
 if __name__ == "__main__":

@@ -1,5 +1,4 @@
 #include "contact/face_clip.hpp"
-#include <cmath>
 
 namespace masonry {
 

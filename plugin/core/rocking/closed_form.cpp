@@ -49,7 +49,6 @@ Stabilised stabilised(const RockingBlock& block, double impulse, double restitut
 	limit.amplification = 4 / ((1 - restitution) * (1 - restitution));
 	limit.peakAngle = limit.amplification * first.peakAngle;
 	limit.ratio = limit.peakAngle / block.criticalAngle;
-	limit.overturns = limit.ratio >= 1;
 	return limit;
 }
 

@@ -31,8 +31,7 @@ struct Stabilised {
 	double period;          // T* = 2 durations, s
 	double peakAngle;       // theta* = 2 w1^2/(A (1-C)^2), rad (Eq. 12)
 	double amplification;   // xi = theta*/theta1 = 4/(1-C)^2 (Eq. 13)
-	double ratio;           // theta*/alpha
-	bool overturns;         // ratio >= 1
+	double ratio;           // theta*/alpha; 1 or more overturns
 };
 Stabilised stabilised(const RockingBlock&, double impulse, double restitution);
 

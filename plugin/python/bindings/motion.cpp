@@ -70,8 +70,7 @@ void exposeMotion()
 {
 	using py::args;
 	py::class_<Motions>("Motions", "Base motions, one a case or one for all", py::no_init)
-	    .def("values", values, args("t"), "acceleration, velocity, displacement at times t, one row a motion")
-	    .def_readonly("size", &Motions::size);
+	    .def("values", values, args("t"), "acceleration, velocity, displacement at times t, one row a motion");
 	py::def("none", none, "a base at rest");
 	py::def("resonant", resonant, args("impulse", "half_cycles"),
 	        "jumps I, -2I, +2I, ... (m/s), each right after an impact; half_cycles -1: without end");

@@ -1,7 +1,6 @@
 // Contact points in space: what wall_contacts.cpp asks of it.
 #include "contact/features.hpp"
 #include "dynamics/wall/wall_contacts.hpp"
-#include <cmath>
 
 namespace masonry::rigid::wall {
 

@@ -1,6 +1,5 @@
 #include "dynamics/wall/symmetric_factor.hpp"
 #include <Eigen/LU>
-#include <algorithm>
 
 namespace masonry::rigid::wall {
 

@@ -1,5 +1,6 @@
 #include "dynamics/wall/team.hpp"
 #include <algorithm>
+#include <atomic>
 #include <condition_variable>
 #include <cstdint>
 #include <mutex>

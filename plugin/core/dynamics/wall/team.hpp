@@ -5,7 +5,6 @@
 // is taken by another program is missed, not waited for. One that is interrupted at work is, and then the caller goes on alone for a while:
 // longer each time that this happens again soon.
 // Between two calls a helper spins, then lets others go first, then sleeps.
-#include <atomic>
 #include <memory>
 
 namespace masonry::rigid::wall {

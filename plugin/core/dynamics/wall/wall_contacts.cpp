@@ -1,7 +1,6 @@
 #include "dynamics/wall/wall_contacts.hpp"
 #include "tolerances.hpp"
 #include <algorithm>
-#include <cmath>
 
 namespace masonry::rigid::wall {
 

@@ -18,6 +18,7 @@
 #include "dynamics/rigid/rigid_system.hpp"
 #include "dynamics/wall/space_lanes.hpp"
 #include "dynamics/wall/team.hpp"
+#include <atomic>
 
 namespace masonry::rigid::wall {
 
