@@ -49,8 +49,7 @@ void BlockRecorder::action()
 			force += side * (phys->normalForce + phys->shearForce);
 			for (Real gap : geom->gaps()) uplift = std::isnan(uplift) ? std::max(gap, Real(0)) : std::max(gap, uplift);
 		}
-		const Real angle = turn.angle() > M_PI ? turn.angle() - 2 * M_PI : turn.angle();
-		rotations.push_back(angle * turn.axis());
+		rotations.push_back(turn.angle() * turn.axis());
 		positions.push_back(state.pos);
 		uplifts.push_back(uplift);
 		forces.push_back(force);

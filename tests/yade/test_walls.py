@@ -438,6 +438,12 @@ with open(path, "w") as file:
     file.write("[{")
 refuses(lambda: dem.blocks_from_table(path, unused), "no_list.json", "cannot be read")
 refuses(lambda: dem.save_blocks("wall.txt"), "path = wall.txt", ".csv or .json")
+base, material = ground()
+for restitution in (None, 0.5, 0.5):
+    dem.block((1, 1, 1), dem.BlockMat(**({} if restitution is None else {"restitution": restitution})), on=base)
+refuses(lambda: dem.save_blocks("wall.csv"), f"O.materials[{O.bodies[2].mat.id}].label = ''", f"O.materials[{O.bodies[1].mat.id}]")
+O.bodies[1].mat.label = "natural"
+dem.save_blocks(os.path.join(folder, "alike.csv"))
 for bad in (0, -1, 0.2, nan):
     refuses(lambda: dem.check_blocks(tolerance=bad), f"tolerance = {bad}", "at most 0.1")
 

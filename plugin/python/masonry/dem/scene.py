@@ -263,8 +263,14 @@ def _layout(bodies):
 
 def save_blocks(path):
     """Writes the free blocks as they are now (centre, size, orientation, label of the material) to a .csv or .json table, in the order of their
-    ids: dem.blocks_from_table(path, ...) makes the same bits of them again. Velocities are not kept: O.save does that."""
+    ids: dem.blocks_from_table(path, ...) makes the same bits of them again. Velocities are not kept: O.save does that. Raises ValueError
+    where materials of blocks that are not the same have the same label, or none."""
     bodies = [b for b in _boxes() if b.dynamic]
+    labelled = {}
+    for material in {b.mat.id: b.mat for b in bodies}.values():
+        known = labelled.setdefault(material.label, material)
+        if any(repr(value) != repr(getattr(known, name)) for name, value in material.dict().items() if name != "id"):
+            raise ValueError(f"O.materials[{material.id}].label = {material.label!r}: must be another than that of O.materials[{known.id}], which is not the same")
     walls.write_table(path, *_layout(bodies), [b.mat.label for b in bodies])
 
 
