@@ -295,6 +295,12 @@ TEST_CASE("Sequential law: the pair alone, then a plastic problem of everything,
 			CHECK((scene.bodies[b].velocity - other.bodies[b].velocity).norm() < 1e-10);
 			CHECK((scene.bodies[b].angularVelocity - other.bodies[b].angularVelocity).norm() < 1e-10);
 		}
+		// What a joint has carried and asked for is of both stages: the lower one's new edge, points 0 and 1.
+		const Vector3 pressed = own[0].impulse + own[1].impulse + other.impact.points[0].impulse + other.impact.points[1].impulse;
+		CHECK(other.impact.points[0].impulse.norm() > 0.01 * own[0].impulse.norm());
+		CHECK((scene.impact.points[0].impulse + scene.impact.points[1].impulse - pressed).norm() < 1e-10 * pressed.norm());
+		CHECK(scene.joint().frictionDemand == Approx(std::hypot(pressed.x(), pressed.y()) / pressed.z()).epsilon(1e-10));
+		CHECK(scene.joint().application == Approx(row[0].couple / pressed.z()).epsilon(1e-10));
 		CHECK(scene.joint().after == Approx(scene.bodies[1].angularVelocity.y()).epsilon(1e-12));
 		CHECK(result.energyLost == Approx(energy - kineticEnergy(scene.bodies)).epsilon(1e-9));
 		CHECK(result.energyLost > 0);
