@@ -211,6 +211,7 @@ with tempfile.TemporaryDirectory() as folder:
         if "piers" in options:
             assert modes[1] > 200 and 0 < beside <= options["piers"] and len(dem.impacts()) >= options["piers"]  # each has landed
             assert integrator().localisedBlocks == options["piers"] - 1  # those beside the wall
+            assert integrator().events >= len(dem.impacts())  # of both ways: each listed impact is one, and few are the wall's
         else:
             assert (modes[1] == 0) if shaking < MU else (modes[1] > 200 and len(dem.impacts()) > 10)
 
