@@ -99,14 +99,16 @@ for blocks, height, time in ((3, 0.8, 2), (4, 0.7, 0.6)):
     print(f"stack of {blocks} in space: {len(dem.impacts())} impacts, out of plane {out:.1e}")
     assert len(dem.impacts()) > 0 and out < 1e-6
 
-# On two supports, the joint has the restitution of the pair where it lands, and says so, whichever support was made first.
+# On several supports, the joint has the restitution of the pair where it lands farthest from its pivot, and says so, whichever support was made first; the
+# one in the middle, which it meets at the same instant, is nearer.
 for model in ("planar", "spatial", "compliant"):
-    for order in (("left", "right"), ("right", "left")):
+    for order in (("left", "middle", "right"), ("middle", "right", "left"), ("right", "left", "middle")):
         O.reset()
-        given = {"left": 0.9, "right": 0.3}
+        given, place = {"left": 0.9, "middle": 0.6, "right": 0.3}, {"left": (-0.6, 1), "middle": (0, 0.2), "right": (0.6, 1)}
         for side in order:
-            under = dem.base((1, 1, 0.2), stone(given[side]))
-            O.bodies[under].state.pos = (-0.5 if side == "left" else 0.5, 0, -0.1)
+            center, width = place[side]
+            under = dem.base((width, 1, 0.2), stone(given[side]))
+            O.bodies[under].state.pos = (center, 0, -0.1)
         block = dem.block((0.6, 1, 3), stone(None), center=(0, 0, 1.5))
         dem.tilt(block, -0.05)  # rocks on its left corner, lands on the right one, and back
         O.engines = rigid_engines(model=model) if model != "compliant" else quiet_engines(model=model)
