@@ -71,3 +71,13 @@ stone.normalStiffness *= 2
 given = stone.normalStiffness
 assert "penetration = 0.0001 is not used" in said_by(dem.engines, penetration=1e-4) and stone.normalStiffness == given
 assert not isinstance(quiet_engines(model="auto")[-1], dem.MoreauJeanIntegrator) and stone.normalStiffness == given
+
+# Of two stiffnesses a joint has the harmonic mean: two layers of half the thickness, one on the other.
+O.reset()
+below, above = dem.BlockMat(density=2000, normalStiffness=1e9, shearStiffness=4e8), dem.BlockMat(density=2000, normalStiffness=3e9, shearStiffness=1e9)
+block = dem.block((0.5, 0.6, 1.5), above, on=dem.base((4, 2, 0.2), below))
+O.engines = quiet_engines()
+O.step()
+joint = O.interactions[0, block].phys
+normal, shear = joint.normalStiffness, joint.shearStiffness
+assert math.isclose(normal, 2 / (1 / 1e9 + 1 / 3e9)) and math.isclose(shear, 2 / (1 / 4e8 + 1 / 1e9)), (normal, shear)
