@@ -6,7 +6,7 @@ import tempfile
 import numpy as np
 from masonry import dem
 from rocking_scene import quiet_engines, refuses, refuses_to_run, rigid_engines, stone
-from yade import FrictMat, NewtonIntegrator, O, utils
+from yade import FrictMat, NewtonIntegrator, O, State, utils
 
 
 def scene(engines=rigid_engines):
@@ -60,6 +60,22 @@ O.bodies.insertAtId(box((1, 0, 800), O.bodies[base].mat), falling)
 begin = O.time
 O.run(100, True)
 assert falls(falling, begin) and O.engines[-1].chosenModel == "planar"
+
+# A state that a script puts in the place of another like it is the block's from then on: it falls back and rocks as it would have.
+for method in ("localised", "wall"):
+    angles = []
+    for replaced in (False, True):
+        base, standing, falling = scene(lambda: rigid_engines(dt=1e-3, method=method))
+        dem.tilt(standing, 0.2)
+        O.run(50, True)
+        if replaced:
+            copied = State()
+            copied.updateAttrs(O.bodies[standing].state.dict())
+            O.bodies[standing].state = copied
+        start = dem.angle(standing)
+        O.run(50, True)
+        angles.append(dem.angle(standing))
+    assert angles[0] < start - 0.01 and abs(angles[1] - angles[0]) < 1e-12, (method, start, angles)
 
 # A material that makes a block of a box, and one that makes none of it.
 base, standing, falling = scene()
