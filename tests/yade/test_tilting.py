@@ -141,9 +141,17 @@ base, stone = ground(5.0)
 block = dem.block((0.6, 0.1, 0.4), stone, on=base)
 corners = [Vector3(x, y, z) for x in (-0.3, 0.3) for y in (-0.05, 0.05) for z in (-0.2, 0.2)]
 state, start = O.bodies[block].state, O.bodies[block].state.pos
-moved = dem.TiltTable().trial(2.0).moved
+table = dem.TiltTable()
+moved = table.trial(2.0).moved
 way = max((state.pos + state.ori * corner - start - corner).norm() for corner in corners)
 assert 1e-3 * 0.1 < way <= moved < 1.01 * way, (moved, way)
+
+# --- where the load is too large by 2e-5 the same block does not move by `share` within the hold of 3 sqrt(height / gravity), and is told by its speed at the
+# first look after it: five steps of a twentieth of the time. Where it is too small by that the block stands, which is seen before ---
+hold = 3 * math.sqrt(0.4 / 9.81)
+falls, stands = (table.trial(0.6 / 0.4 * (1 + excess)) for excess in (2e-5, -2e-5))
+assert falls.verdict == "collapse" and falls.moved < 2e-3 * 0.1 and hold <= falls.time < (1 + tilting._LOOK * tilting._SHARE_OF_TIME) * hold, falls
+assert stands.verdict == "rest" and stands.time < hold, stands
 
 # --- one block, a stack, a column: two planes would do, and the pull's is taken; also with gravity that turns and on the slow ramp ---
 for count in (1, 3):
