@@ -53,7 +53,7 @@ private:
 	}
 	static void construct(PyObject* object, py::converter::rvalue_from_python_stage1_data* data)
 	{
-		const py::object number { py::handle<>(plain(object)) };
+		const py::object number {py::handle<>(plain(object))};
 		void* place = reinterpret_cast<py::converter::rvalue_from_python_storage<T>*>(data)->storage.bytes;
 		data->convertible = new (place) T(py::extract<T>(number));
 	}

@@ -10,7 +10,7 @@ namespace yade {
 inline bool isDue(PeriodicEngine& recorder)
 {
 	constexpr Real roundOff = 1e-6; // of the period
-	const Real     given = recorder.virtPeriod;
+	const Real given = recorder.virtPeriod;
 	recorder.virtPeriod = (1 - roundOff) * given;
 	const bool is = recorder.PeriodicEngine::isActivated();
 	recorder.virtPeriod = given;
@@ -21,7 +21,8 @@ inline bool isDue(PeriodicEngine& recorder)
 class RecordedBodies {
 public:
 	/// Those of `ids` that are there now; `isGone(k)`: the k-th had been erased before, in what a file had. Does nothing a second time.
-	template <class IsGone> void begin(const Scene& scene, const vector<int>& ids, IsGone isGone)
+	template <class IsGone>
+	void begin(const Scene& scene, const vector<int>& ids, IsGone isGone)
 	{
 		for (size_t k = bodies.size(); k < ids.size(); ++k)
 			bodies.push_back(isGone(k) || !scene.bodies->exists(ids[k]) ? nullptr : (*scene.bodies)[ids[k]]);

@@ -68,7 +68,8 @@ struct ContactSolver<K>::Workspace {
 		constexpr bool inSpace = K::dimension == 3;
 		if (!(inSpace && given.guessed) && startsClose(tolerance, report))
 			return report;
-		const bool sticks = std::any_of(given.points.begin(), given.points.end(), [](const ContactRows<K>& row) { return row.friction == noSlip; });
+		const bool sticks =
+		    std::any_of(given.points.begin(), given.points.end(), [](const ContactRows<K>& row) { return row.friction == noSlip; });
 		constexpr int firstSweeps = 40;
 		report.residual = !inSpace || sticks ? gaussSeidel(s, tolerance, firstSweeps, false, report) : s.residual();
 		if (report.residual > tolerance)
