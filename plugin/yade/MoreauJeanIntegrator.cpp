@@ -1,6 +1,7 @@
 #include "MoreauJeanIntegrator.hpp"
 #include "RockingJointEngine.hpp"
 #include "checked_body.hpp"
+#include "impact_lists.hpp"
 #include "python_lock.hpp"
 #include "rigid_scene.hpp"
 #include "sentence.hpp"
@@ -123,10 +124,9 @@ void MoreauJeanIntegrator::leaveScene()
 	taken.clear();
 	chosenModel.clear();
 	along = Vector3r::Zero();
-	const auto forget = [](auto&... results) { ((results = {}), ...); };
-	forget(impactTimes, impactBlocks, impactSupports, impactAsked, impactBefore, impactAfter, impactEnergy, impactApplication, impactFriction,
-		impactSwitched, impactCapped, frictDissip, impactDissip, baseWork, worstResidual, substeps, events, unlocalised, sweeps, factorisations,
-		stillSteps, movingSteps, failures, firstFailure, warnedOf);
+	forgetImpacts(*this);
+	forget(frictDissip, impactDissip, baseWork, worstResidual, substeps, events, unlocalised, sweeps, factorisations, stillSteps, movingSteps,
+		failures, firstFailure, warnedOf);
 }
 
 vector<Real> MoreauJeanIntegrator::remembered()

@@ -5,6 +5,7 @@
 #include "Ip2_BlockMat_BlockMat_BlockPhys.hpp"
 #include "checked_body.hpp"
 #include "core_state.hpp"
+#include "impact_lists.hpp"
 #include "python_lock.hpp"
 #include "sentence.hpp"
 
@@ -54,10 +55,9 @@ void RockingJointEngine::postLoad(RockingJointEngine&)
 /// A script has put this engine into another scene, or saved it there before its first step.
 void RockingJointEngine::leaveScene()
 {
-	const auto forget = [](auto&... results) { ((results = {}), ...); };
-	forget(started, impactTimes, impactBlocks, impactSupports, impactAsked, impactBefore, impactAfter, impactEnergy, impactApplication, impactFriction,
-		impactSwitched, impactCapped, worstResidual, failures, madeEnergy, kinetic, potential, elastPotential, frictDissip, dampDissip, impactDissip,
-		baseWork, reactionIds, reactions, reactionMoments, checkedTimeStep, boundAt);
+	forgetImpacts(*this);
+	forget(started, worstResidual, failures, madeEnergy, kinetic, potential, elastPotential, frictDissip, dampDissip, impactDissip, baseWork,
+		reactionIds, reactions, reactionMoments, checkedTimeStep, boundAt);
 }
 
 void RockingJointEngine::checkScene()
@@ -173,17 +173,8 @@ void RockingJointEngine::checkTimeStep()
 
 void RockingJointEngine::recordImpact(const masonry::ImpactRecord& record)
 {
-	impactTimes.push_back(scene->time - record.before);
-	impactBlocks.push_back(ids[record.block]);
-	impactSupports.push_back(ids[record.support]);
-	impactAsked.push_back(record.restitutionAsked);
-	impactBefore.push_back(record.result.before);
-	impactAfter.push_back(record.result.after);
-	impactEnergy.push_back(record.result.energyLost);
-	impactApplication.push_back(record.result.application);
-	impactFriction.push_back(record.result.frictionDemand);
-	impactSwitched.push_back(record.switched);
-	impactCapped.push_back(record.result.capped);
+	addImpact(*this, scene->time - record.before, ids[record.block], ids[record.support], record.restitutionAsked, record.result,
+		record.result.energyLost, record.switched, record.result.capped);
 	impactDissip += record.result.energyLost + record.settled;
 	baseWork += record.work;
 }

@@ -3,6 +3,7 @@
 
 #include "BlockMat.hpp"
 #include "MoreauJeanIntegrator.hpp"
+#include "impact_lists.hpp"
 #include "motion_drive.hpp"
 #include "shown_joints.hpp"
 
@@ -510,17 +511,7 @@ private:
 
 	void record(const masonry::rigid::Impact& impact)
 	{
-		integrator.impactTimes.push_back(impact.time);
-		integrator.impactBlocks.push_back(kept.ids[impact.block]);
-		integrator.impactSupports.push_back(kept.ids[impact.support]);
-		integrator.impactAsked.push_back(impact.asked);
-		integrator.impactBefore.push_back(impact.joint.before);
-		integrator.impactAfter.push_back(impact.joint.after);
-		integrator.impactEnergy.push_back(impact.energyLost);
-		integrator.impactApplication.push_back(impact.joint.application);
-		integrator.impactFriction.push_back(impact.joint.frictionDemand);
-		integrator.impactSwitched.push_back(impact.switched);
-		integrator.impactCapped.push_back(impact.capped);
+		addImpact(integrator, impact.time, kept.ids[impact.block], kept.ids[impact.support], impact.asked, impact.joint, impact.energyLost, impact.switched, impact.capped);
 	}
 
 	/// Overlap, relative to the smallest half size, that is no rounding of coordinates and nothing that a wall has left (some 1e-5), but a mistake.
