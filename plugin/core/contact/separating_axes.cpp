@@ -10,14 +10,6 @@ using feature::signOf;
 
 namespace {
 
-// Separation that another axis must gain before the previous one is given up. In a compressed joint that rocks about an
-// edge above an edge, the separations of the two faces differ by a part of the penetration; the reference must not
-// change with it, hence the second term.
-double lead(double separation, double length)
-{
-	return std::max(tolerance::contact::reference * length, tolerance::contact::depthShare * -separation);
-}
-
 // Best face of the box in whose frame `other` is given; the previous reference face, if it is one of this box, leads.
 FaceAxis bestFaceOf(int body, const Box& box, const Box& otherBox, const RelativePose& other, int previousFace, double length)
 {
@@ -62,13 +54,8 @@ FaceAxis bestFace(const Box& box1, const Box& box2, const RelativePose& second, 
 	const RelativePose first = second.reversed();
 	const FaceAxis face1 = bestFaceOf(1, box1, box2, second, held1 ? previous.feature1 : -1, length);
 	const FaceAxis face2 = bestFaceOf(2, box2, box1, first, held2 ? previous.feature2 : -1, length);
-	if (held1)
-		return face2.separation > face1.separation + lead(face1.separation, length) ? face2 : face1;
-	if (held2)
-		return face1.separation > face2.separation + lead(face2.separation, length) ? face1 : face2;
 	const bool larger2 = box2.faceArea(face2.axis) > box1.faceArea(face1.axis) * (1 + tolerance::contact::reference);
-	const double tie = tolerance::contact::reference * length;
-	return face2.separation > face1.separation + (larger2 ? -tie : tie) ? face2 : face1;
+	return reference(face1, face2, held1 ? 1 : held2 ? 2 : 0, larger2, length);
 }
 
 // The nine axes e_i x c_j, e_i the axes of box 1 and c_j those of box 2 in the frame of box 1. With i, k, l cyclic,

@@ -2,6 +2,7 @@
 // Separation of two boxes along the axes that can separate them: the face normals of both and the products of an edge
 // of one with an edge of the other. Positive: gap; negative: penetration; in m.
 #include "contact/box_box.hpp"
+#include "contact/reference_face.hpp"
 #include "math.hpp"
 
 namespace masonry {
@@ -12,14 +13,6 @@ struct RelativePose {
 	Vector3 offset;   // the other box's centre in that frame
 
 	RelativePose reversed() const { return {rotation.transpose(), -(rotation.transpose() * offset)}; }
-};
-
-// Face of box `body` (1, 2) with outward normal `sign` times its axis.
-struct FaceAxis {
-	int body;
-	int axis;
-	double sign;
-	double separation;
 };
 
 struct EdgeAxis {

@@ -1,5 +1,6 @@
 // Contact points of two rectangles in the plane.
 #include "contact/features.hpp"
+#include "contact/reference_face.hpp"
 #include "dynamics/rigid/kinematics.hpp"
 #include "tolerances.hpp"
 #include <algorithm>
@@ -37,14 +38,6 @@ RelativePose relative(const PlanePose& from, const PlanePose& seen)
 	return {from.cosine * seen.cosine + from.sine * seen.sine, from.cosine * seen.sine - from.sine * seen.cosine,
 	        from.toLocal(seen.position)};
 }
-
-struct FaceAxis {
-	int body, axis;
-	double sign, separation;
-};
-
-// Separation that another face must gain before the previous one is given up.
-double lead(double separation, double length) { return std::max(limits::reference * length, -limits::depthShare * separation); }
 
 FaceAxis bestFaceOf(int body, const Vector2& half, const Vector2& otherHalf, const RelativePose& other, int held, double length)
 {
@@ -109,19 +102,13 @@ struct FacePair {
 	int incidentFace() const { return faceNumber(incidentAxis, incidentSign); }
 };
 
-// The face of the largest separation. The one that was the reference before leads; a tie goes to the larger face, then to body 1.
 FaceAxis referenceFace(const Vector2& half1, const Vector2& half2, const RelativePose& second, const RelativePose& first, double length,
                        const PlaneMemory& memory)
 {
 	const FaceAxis face1 = bestFaceOf(1, half1, half2, second, memory.reference == 1 ? memory.face1 : -1, length);
 	const FaceAxis face2 = bestFaceOf(2, half2, half1, first, memory.reference == 2 ? memory.face2 : -1, length);
-	if (memory.reference == 1)
-		return face2.separation > face1.separation + lead(face1.separation, length) ? face2 : face1;
-	if (memory.reference == 2)
-		return face1.separation > face2.separation + lead(face2.separation, length) ? face1 : face2;
 	const bool larger2 = half2[1 - face2.axis] > half1[1 - face1.axis] * (1 + limits::reference);
-	const double tie = limits::reference * length;
-	return face2.separation > face1.separation + (larger2 ? -tie : tie) ? face2 : face1;
+	return reference(face1, face2, memory.reference, larger2, length);
 }
 
 // The face that looks most against the reference face.
