@@ -357,7 +357,7 @@ bool MoreauJeanIntegrator::isWatched() const
 
 void MoreauJeanIntegrator::writeInteractions()
 {
-	if (memory.run && memory.run->isPresent()) sceneOf(memory).writeJoints();
+	if (memory.run && memory.run->isPresent()) sceneOf(memory).writeContacts();
 }
 
 masonry::rigid::StepReport MoreauJeanIntegrator::stepRun()

@@ -110,12 +110,12 @@ template <class K> struct Remembered {
 
 	template <class Flow> void pass(Flow& f)
 	{
-		size_t blocks = ids.size(), joints = pairs.size();
-		f(blocks), f(joints);
+		size_t blocks = ids.size(), count = pairs.size();
+		f(blocks), f(count);
 		ids.resize(blocks);
 		seats.resize(blocks);
 		bodies.resize(blocks);
-		pairs.resize(joints);
+		pairs.resize(count);
 		for (size_t b = 0; b < blocks; ++b) {
 			f(ids[b]);
 			memory::pass(f, seats[b]);

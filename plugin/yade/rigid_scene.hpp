@@ -5,7 +5,7 @@
 #include "MoreauJeanIntegrator.hpp"
 #include "impact_lists.hpp"
 #include "motion_drive.hpp"
-#include "shown_joints.hpp"
+#include "shown_contacts.hpp"
 
 #include "dynamics/rigid/islands.hpp"
 #include "dynamics/rigid/neighbours.hpp"
@@ -66,7 +66,7 @@ public:
 	/// Throws LeavesPlane before anything has moved.
 	virtual masonry::rigid::StepReport step() = 0;
 	/// O.interactions as they are after the last step: they are left behind while nobody looks.
-	virtual void writeJoints() = 0;
+	virtual void writeContacts() = 0;
 	virtual vector<int> touching() = 0;
 	virtual void setInstant(Real) = 0;
 	/// Takes the interactions of erased bodies out of O.interactions.
@@ -90,7 +90,7 @@ public:
 	        , scene(*engine.scene)
 	        , home(Omega::instance().getScene())
 	        , coordinates(engine.along)
-	        , joints(scene, coordinates, engine.pairLaw)
+	        , contacts(scene, coordinates, engine.pairLaw)
 	{
 		system.frictDissip = engine.frictDissip;
 		system.impactDissip = engine.impactDissip;
@@ -134,7 +134,7 @@ public:
 		bool laws = false;
 		unpacker(laws);
 		if (!byWalls || changed || before.ids != kept.ids || before.pairs.size() != system.pairs.size()) return;
-		renewJoints();
+		renewContacts();
 		neighbours->pass(unpacker);
 		bySize.pass(unpacker, system);
 		unpacker.end();
@@ -167,7 +167,7 @@ public:
 			if (!neighbours->isValid(system, scene.dt)) {
 				showPoints();
 				neighbours->update(system, scene.dt);
-				renewJoints();
+				renewContacts();
 			}
 		} catch (...) {
 			forgetStates();
@@ -187,7 +187,7 @@ public:
 		byWalls = integrator.isWall();
 		const auto report = byWalls ? advanceWall() : islands.advance(system, scene.dt);
 		writeStates();
-		if (++unshown >= mostUnshown || integrator.isWatched()) writeJoints();
+		if (++unshown >= mostUnshown || integrator.isWatched()) writeContacts();
 		for (const auto& impact : system.impacts) record(impact);
 		integrator.frictDissip = system.frictDissip;
 		integrator.impactDissip = system.impactDissip;
@@ -195,11 +195,11 @@ public:
 		return report;
 	}
 
-	void writeJoints() override
+	void writeContacts() override
 	{
 		if (unshown == 0) return;
 		showPoints();
-		joints.write(system, kept);
+		contacts.write(system, kept);
 		unshown = 0;
 	}
 
@@ -222,7 +222,7 @@ public:
 		for (MotionDrive& motion : motions) motion.instant = instant;
 	}
 
-	void dropErased() override { joints.dropErased(); }
+	void dropErased() override { contacts.dropErased(); }
 
 private:
 	masonry::rigid::StepReport advanceWall()
@@ -341,9 +341,9 @@ private:
 		forgetNeighbours();
 	}
 
-	void renewJoints()
+	void renewContacts()
 	{
-		joints.renew(system.pairs, kept.ids);
+		contacts.renew(system.pairs, kept.ids);
 		takeLaws();
 	}
 
@@ -461,8 +461,8 @@ private:
 
 	void takeLaws()
 	{
-		for (size_t c = 0; c < joints.size(); ++c) {
-			const BlockPhys& law = joints.law(c);
+		for (size_t c = 0; c < contacts.size(); ++c) {
+			const BlockPhys& law = contacts.law(c);
 			Pair& pair = system.pairs[c];
 			const Real friction = law.noSlip ? masonry::noSlip : law.tangensOfFrictionAngle, restitution = law.restitution;
 			if (pair.friction == friction && (pair.restitution == restitution || (std::isnan(pair.restitution) && std::isnan(restitution)))) continue;
@@ -539,7 +539,7 @@ private:
 	vector<Link> links;
 	vector<char> others; // by link, 1: somebody else has written the state since the last step; elsewhere: and has moved the body; driven: it goes where its motion says
 	static constexpr char elsewhere = 2, driven = 3;
-	ShownJoints<K> joints;
+	ShownContacts<K> contacts;
 	Remembered<K> kept; // ids and seats; bodies and pairs are filled in when it is packed
 	vector<Seen> seen; // by id
 	Real length = 0; // smallest half size, m

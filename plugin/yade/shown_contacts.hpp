@@ -10,29 +10,29 @@
 
 namespace yade {
 
-template <class K> class ShownJoints {
+template <class K> class ShownContacts {
 	using System = masonry::rigid::RigidSystem<K>;
 	using Pair = masonry::rigid::ContactPair<K>;
 	using PairLaw = shared_ptr<Ip2_BlockMat_BlockMat_BlockPhys>;
 
 public:
-	ShownJoints(Scene& s, const Coordinates<K>& c, const PairLaw& law)
+	ShownContacts(Scene& s, const Coordinates<K>& c, const PairLaw& law)
 	        : scene(s)
 	        , coordinates(c)
 	        , pairLaw(law)
 	{
 	}
 
-	size_t size() const { return joints.size(); }
+	size_t size() const { return contacts.size(); }
 	/// The law of a pair, which scripts may change through its interaction.
-	const BlockPhys& law(size_t pair) const { return *joints[pair].phys; }
+	const BlockPhys& law(size_t pair) const { return *contacts[pair].phys; }
 
-	/// Both lists are in the order of the ids. Joints that are no longer near leave the scene.
+	/// Both lists are in the order of the ids. Contacts that are no longer near leave the scene.
 	void renew(const vector<Pair>& pairs, const vector<Body::id_t>& ids)
 	{
-		const auto idsOf = [](const Joint& joint) { return std::pair(joint.interaction->id1, joint.interaction->id2); };
-		vector<Joint> old;
-		old.swap(joints);
+		const auto idsOf = [](const Contact& contact) { return std::pair(contact.interaction->id1, contact.interaction->id2); };
+		vector<Contact> old;
+		old.swap(contacts);
 		auto before = old.begin();
 		const auto drop = [&] {
 			if (isListed(*before)) erase(*before);
@@ -41,7 +41,7 @@ public:
 		for (const Pair& pair : pairs) {
 			const std::pair wanted(ids[pair.body1], ids[pair.body2]);
 			while (before != old.end() && idsOf(*before) < wanted) drop();
-			joints.push_back(before != old.end() && idsOf(*before) == wanted ? *before++ : jointOf(wanted));
+			contacts.push_back(before != old.end() && idsOf(*before) == wanted ? *before++ : contactOf(wanted));
 		}
 		while (before != old.end()) drop();
 	}
@@ -49,62 +49,62 @@ public:
 	/// O.interactions as the system is.
 	void write(const System& system, const Remembered<K>& kept)
 	{
-		for (size_t c = 0; c < joints.size(); ++c) {
-			Joint& joint = joints[c];
+		for (size_t c = 0; c < contacts.size(); ++c) {
+			Contact& contact = contacts[c];
 			const Pair& pair = system.pairs[c];
-			const bool listed = isListed(joint) && joint.interaction->isReal();
+			const bool listed = isListed(contact) && contact.interaction->isReal();
 			if (apart(system, pair)) { // not whether they have touched: what nobody saw must not decide
-				if (listed) erase(joint);
+				if (listed) erase(contact);
 				continue;
 			}
-			if (!listed) list(joint);
-			writeGeom(*joint.geom, pair, kept.seats[pair.body2].depth);
-			writePhys(*joint.phys, pair);
+			if (!listed) list(contact);
+			writeGeom(*contact.geom, pair, kept.seats[pair.body2].depth);
+			writePhys(*contact.phys, pair);
 		}
 	}
 
 	/// Takes the interactions of erased bodies out of O.interactions.
 	void dropErased()
 	{
-		for (const Joint& joint : joints)
-			if (!(scene.bodies->exists(joint.interaction->id1) && scene.bodies->exists(joint.interaction->id2)) && isListed(joint)) erase(joint);
+		for (const Contact& contact : contacts)
+			if (!(scene.bodies->exists(contact.interaction->id1) && scene.bodies->exists(contact.interaction->id2)) && isListed(contact)) erase(contact);
 	}
 
 private:
-	struct Joint {
+	struct Contact {
 		shared_ptr<Interaction> interaction;
 		shared_ptr<BlockGeom>   geom;
 		shared_ptr<BlockPhys>   phys;
 	};
 
-	Joint jointOf(std::pair<Body::id_t, Body::id_t> ids)
+	Contact contactOf(std::pair<Body::id_t, Body::id_t> ids)
 	{
-		Joint joint;
-		joint.interaction = scene.interactions->find(ids.first, ids.second);
-		if (joint.interaction) {
-			joint.geom = boost::dynamic_pointer_cast<BlockGeom>(joint.interaction->geom);
-			joint.phys = boost::dynamic_pointer_cast<BlockPhys>(joint.interaction->phys);
-			if (joint.geom && joint.phys) {
-				keepStill(*joint.interaction, pairLaw);
-				return joint;
+		Contact contact;
+		contact.interaction = scene.interactions->find(ids.first, ids.second);
+		if (contact.interaction) {
+			contact.geom = boost::dynamic_pointer_cast<BlockGeom>(contact.interaction->geom);
+			contact.phys = boost::dynamic_pointer_cast<BlockPhys>(contact.interaction->phys);
+			if (contact.geom && contact.phys) {
+				keepStill(*contact.interaction, pairLaw);
+				return contact;
 			}
 		}
-		return newJoint(ids.first, ids.second);
+		return newContact(ids.first, ids.second);
 	}
 
-	Joint newJoint(Body::id_t id1, Body::id_t id2)
+	Contact newContact(Body::id_t id1, Body::id_t id2)
 	{
 		const Body &body1 = *scene.bodies->body[id1], &body2 = *scene.bodies->body[id2];
-		Joint joint;
-		joint.interaction.reset(new Interaction(id1, id2));
-		pairLaw->go(body1.material, body2.material, joint.interaction);
-		joint.phys = boost::static_pointer_cast<BlockPhys>(joint.interaction->phys);
-		joint.geom.reset(new BlockGeom);
-		joint.geom->refR1 = static_cast<const Box&>(*body1.shape).extents.minCoeff();
-		joint.geom->refR2 = static_cast<const Box&>(*body2.shape).extents.minCoeff();
-		joint.interaction->geom = joint.geom;
-		keepStill(*joint.interaction, pairLaw);
-		return joint;
+		Contact contact;
+		contact.interaction.reset(new Interaction(id1, id2));
+		pairLaw->go(body1.material, body2.material, contact.interaction);
+		contact.phys = boost::static_pointer_cast<BlockPhys>(contact.interaction->phys);
+		contact.geom.reset(new BlockGeom);
+		contact.geom->refR1 = static_cast<const Box&>(*body1.shape).extents.minCoeff();
+		contact.geom->refR2 = static_cast<const Box&>(*body2.shape).extents.minCoeff();
+		contact.interaction->geom = contact.geom;
+		keepStill(*contact.interaction, pairLaw);
+		return contact;
 	}
 
 	static bool apart(const System& system, const Pair& pair)
@@ -114,22 +114,22 @@ private:
 	}
 
 	/// Not so before the blocks are near, and when a script or the end of a body has erased it.
-	bool isListed(const Joint& joint) const
+	bool isListed(const Contact& contact) const
 	{
-		const int place = joint.interaction->linIx;
-		return place >= 0 && size_t(place) < scene.interactions->size() && (*scene.interactions)[place] == joint.interaction;
+		const int place = contact.interaction->linIx;
+		return place >= 0 && size_t(place) < scene.interactions->size() && (*scene.interactions)[place] == contact.interaction;
 	}
 
-	void list(Joint& joint)
+	void list(Contact& contact)
 	{
-		if (!joint.interaction->isReal()) joint = newJoint(joint.interaction->id1, joint.interaction->id2);
-		const auto other = scene.interactions->find(joint.interaction->id1, joint.interaction->id2); // a collider's
+		if (!contact.interaction->isReal()) contact = newContact(contact.interaction->id1, contact.interaction->id2);
+		const auto other = scene.interactions->find(contact.interaction->id1, contact.interaction->id2); // a collider's
 		if (other) scene.interactions->erase(other->id1, other->id2, other->linIx);
-		joint.interaction->iterMadeReal = joint.interaction->iterBorn = scene.iter;
-		scene.interactions->insert(joint.interaction);
+		contact.interaction->iterMadeReal = contact.interaction->iterBorn = scene.iter;
+		scene.interactions->insert(contact.interaction);
 	}
 
-	void erase(const Joint& joint) { scene.interactions->erase(joint.interaction->id1, joint.interaction->id2, joint.interaction->linIx); }
+	void erase(const Contact& contact) { scene.interactions->erase(contact.interaction->id1, contact.interaction->id2, contact.interaction->linIx); }
 
 	void writeGeom(BlockGeom& geom, const Pair& pair, Real depth) const
 	{
@@ -167,7 +167,7 @@ private:
 	Scene&                scene;
 	const Coordinates<K>& coordinates;
 	const PairLaw&        pairLaw; // the integrator's: a script may give another
-	vector<Joint>         joints;  // of the core's pairs
+	vector<Contact>         contacts;  // of the core's pairs
 };
 
 } // namespace yade
