@@ -25,10 +25,25 @@ typename K::Vector WallStep<K>::halfJump(const RigidSystem<K>& s, const wall::Wa
 	return jumps[drive] / 2;
 }
 
-// Of the impulses that the prescribed bodies give, J, with their velocities at the start of the substep: the mean of those that blocks
+// What carries a weight works on the way of the base in the substep h, not at the velocity at its start: of a base that moves up and down the
+// difference, where it carries what goes along with it, whose impulse is that of gravity and of the base's own acceleration.
+template <class K>
+typename K::Vector WallStep<K>::carries(const RigidSystem<K>& s, int drive, double h) const
+{
+	using Vector = typename K::Vector;
+	const double weight = s.gravity.norm() * h;
+	if (drive < 0 || !(weight > 0))
+		return Vector::Zero();
+	const Vector up = -s.gravity.normalized();
+	const double change = up.dot(s.drives[drive].meanVelocity(s.time, h) - s.drives[drive].velocity(s.time)), given = 2 * change;
+	constexpr double most = 3; // of the share: near free fall what lands on the base has no weight to carry
+	return weight / std::max(weight + given, weight / most) * change * up;
+}
+
+// Of the impulses that the prescribed bodies give in a substep h, J, with their velocities at its start: the mean of those that blocks
 // which go with them have before and after it.
 template <class K>
-double WallStep<K>::baseWork(const RigidSystem<K>& s, Contacts& contacts)
+double WallStep<K>::baseWork(const RigidSystem<K>& s, Contacts& contacts, double h)
 {
 	double work = 0;
 	const bool ofSweeps = &contacts == &moving();
@@ -40,9 +55,9 @@ double WallStep<K>::baseWork(const RigidSystem<K>& s, Contacts& contacts)
 			continue;
 		Lanes v[wall::packs<K>];
 		std::copy_n(&contacts.velocity[wall::packs<K> * (first ? group.body1 : group.body2)[i]], wall::packs<K>, v);
-		const typename K::Vector half = halfJump(s, contacts, g, i);
+		const typename K::Vector other = carries(s, s.bodies[contacts.base(s, g, i)].drive, h) - halfJump(s, contacts, g, i);
 		for (int k = 0; k < K::dimension; ++k)
-			v[0][k] -= half[k];
+			v[0][k] += other[k];
 		for (int k = 0; k < group.count; ++k) {
 			const wall::PointLanes<K>& p = group.point[k];
 			const auto impulse = ofSweeps ? sweeps.impulse(g, i, k) : wall::impulseOf(p, i);
@@ -72,7 +87,7 @@ double WallStep<K>::baseWorkWhenStill(const RigidSystem<K>& s, double h)
 		}
 		const typename K::Velocity v = startVelocity(s, b);
 		if (b != base && (v != startVelocity(s, base) || !v.template tail<K::spins>().isZero(0)))
-			return baseWork(s, contacts);
+			return baseWork(s, contacts, h);
 	}
 	if (base < 0)
 		return 0;
@@ -115,7 +130,7 @@ double WallStep<K>::baseWorkWhenTurning(const RigidSystem<K>& s, int base, doubl
 }
 
 #define MASONRY_OF(K)                                                                                                                      \
-	template double WallStep<K>::baseWork(const RigidSystem<K>&, Contacts&);                                                               \
+	template double WallStep<K>::baseWork(const RigidSystem<K>&, Contacts&, double);                                                       \
 	template double WallStep<K>::baseWorkWhenStill(const RigidSystem<K>&, double);
 MASONRY_OF(Plane)
 MASONRY_OF(Space)

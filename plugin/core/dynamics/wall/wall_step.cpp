@@ -364,7 +364,7 @@ void WallStep<K>::stepMoving(RigidSystem<K>& s, double h)
 		setBase(s, contacts, part);
 		report.events += land(s, part);
 		sweeps.substep(contacts, loads, part, k + 1 == count);
-		s.baseWork += baseWork(s, contacts);
+		s.baseWork += baseWork(s, contacts, part);
 		press(pressed);
 		setBase(s, contacts, part);
 		sweeps.handOn(contacts);

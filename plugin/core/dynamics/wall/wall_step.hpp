@@ -135,7 +135,8 @@ private:
 	double finer() const;
 	typename K::Velocity startVelocity(const RigidSystem<K>& system, int body) const;
 	typename K::Vector halfJump(const RigidSystem<K>& system, const Contacts& contacts, int group, int lane) const;
-	double baseWork(const RigidSystem<K>& system, Contacts& contacts);
+	typename K::Vector carries(const RigidSystem<K>& system, int drive, double h) const;
+	double baseWork(const RigidSystem<K>& system, Contacts& contacts, double h);
 	double baseWorkWhenStill(const RigidSystem<K>& system, double h);
 	double baseWorkWhenTurning(const RigidSystem<K>& system, int base, double h);
 	void setBase(const RigidSystem<K>& system, Contacts& contacts, double h);
