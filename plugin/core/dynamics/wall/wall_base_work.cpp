@@ -25,8 +25,8 @@ typename K::Vector WallStep<K>::halfJump(const RigidSystem<K>& s, const wall::Wa
 	return jumps[drive] / 2;
 }
 
-// What carries a weight works on the way of the base in the substep h, not at the velocity at its start: of a base that moves up and down the
-// difference, where it carries what goes along with it, whose impulse is that of gravity and of the base's own acceleration.
+// What carries a weight works on the way of the base in the substep h, not at the velocity at its start: of a base that moves up and down
+// the difference, where it carries what goes along with it, whose impulse is that of gravity and of the base's own acceleration.
 template <class K>
 typename K::Vector WallStep<K>::carries(const RigidSystem<K>& s, int drive, double h) const
 {
@@ -48,6 +48,8 @@ double WallStep<K>::baseWork(const RigidSystem<K>& s, Contacts& contacts, double
 	double work = 0;
 	const bool ofSweeps = &contacts == &moving();
 	setBase(s, contacts, 0);
+	int under = -1; // drive
+	typename K::Vector bears = K::Vector::Zero();
 	for (const auto& [g, i] : contacts.onBase) {
 		const wall::Group<K>& group = contacts.groups[g];
 		const bool first = s.bodies[group.body1[i]].prescribed;
@@ -55,7 +57,9 @@ double WallStep<K>::baseWork(const RigidSystem<K>& s, Contacts& contacts, double
 			continue;
 		Lanes v[wall::packs<K>];
 		std::copy_n(&contacts.velocity[wall::packs<K> * (first ? group.body1 : group.body2)[i]], wall::packs<K>, v);
-		const typename K::Vector other = carries(s, s.bodies[contacts.base(s, g, i)].drive, h) - halfJump(s, contacts, g, i);
+		if (const int drive = s.bodies[contacts.base(s, g, i)].drive; drive != under)
+			bears = carries(s, under = drive, h);
+		const typename K::Vector other = bears - halfJump(s, contacts, g, i);
 		for (int k = 0; k < K::dimension; ++k)
 			v[0][k] += other[k];
 		for (int k = 0; k < group.count; ++k) {
