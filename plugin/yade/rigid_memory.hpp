@@ -12,7 +12,7 @@ namespace yade {
 
 /// The row begins with the number of its layout and model, to be changed with any list of members. Rows of old have none: they begin with how many blocks
 /// there are.
-constexpr Real layout = -7;
+constexpr Real layout = -8;
 
 /// Numbers, enumerations and matrices go into the row, or come out of it, by the same list of members.
 struct Packer {
@@ -90,7 +90,7 @@ namespace memory {
 	}
 	template <class Flow, class K> void pass(Flow& f, ContactPair<K>& p)
 	{
-		f(p.body1), f(p.body2), f(p.face1), f(p.face2), f(p.size);
+		f(p.body1), f(p.body2), f(p.face1), f(p.face2), f(p.beside), f(p.size);
 		if (!(p.size >= 0 && p.size <= K::maxPoints)) Unpacker::refuse();
 		pass(f, p.memory);
 		for (int i = 0; i < p.size; ++i) {

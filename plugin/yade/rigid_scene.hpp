@@ -439,6 +439,7 @@ private:
 		pair.memory = {};
 		const auto found = masonry::rigid::findPoints(body1, body2, pair.memory);
 		pair.size = found.size;
+		pair.beside = found.size > 0;
 		if (found.size == 0) return;
 		pair.face1 = found.face1;
 		pair.face2 = found.face2;
@@ -449,6 +450,7 @@ private:
 			masonry::rigid::locate(point, body1, body2);
 			const auto speed = masonry::rigid::relativeVelocity(point.frame, body1.pose.position, body1.velocity, body2.pose.position, body2.velocity);
 			point.closed = point.gap <= integrator.mergedClosing * length && speed[0] >= -rest;
+			pair.beside &= std::abs(point.frame.axes.row(0).dot(system.gravity)) < masonry::tolerance::uprightJoint * system.gravity.norm();
 			if (placed && point.gap < -mostOverlap * length) refuseOverlap(pair, -point.gap);
 		}
 	}

@@ -45,6 +45,7 @@ template <class K> struct ContactPair {
 	double             restitution { NAN }; // NaN: natural
 	typename K::Memory memory;
 	int                face1 { -1 }, face2 { -1 };
+	bool               beside { false };    // upright when the pair was found: neither bears the other
 	int                size { 0 };
 	std::array<ContactPoint<K>, K::maxPoints> points;
 };

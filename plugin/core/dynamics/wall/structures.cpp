@@ -60,7 +60,7 @@ bool Structures<K>::joinUnborne(const RigidSystem<K>& s)
 		if (a < 0 && b < 0)
 			continue;
 		if (a < 0 || b < 0)
-			borne[std::max(a, b)] = 1;
+			borne[std::max(a, b)] |= !pair.beside;
 		else if (isCut(pair))
 			beside[all[a].mode == WallMode::still ? a : b] = 1;
 	}

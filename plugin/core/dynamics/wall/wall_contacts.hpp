@@ -307,7 +307,7 @@ private:
 	void countPoints(const RigidSystem<K>& system, int group);
 	void findCourses(const RigidSystem<K>& system);
 	void orderUpwards();
-	void countFrom(const std::vector<int>& through, std::vector<int>& count) const;
+	void countFrom(const RigidSystem<K>& system, const std::vector<int>& through, std::vector<int>& count) const;
 	void takeBodies(const RigidSystem<K>& system);
 	void place(size_t body, const typename K::Pose& pose);
 	void placeAll(const RigidSystem<K>& system, const std::vector<typename K::Pose>& poses);

@@ -154,20 +154,17 @@ void WallContacts<K>::orderUpwards()
 		std::stable_sort(upwards.begin() + part.begin, upwards.begin() + part.end, [&](int a, int b) { return highest[a] < highest[b]; });
 }
 
-// Breadth first through these pairs: how many are between a body and the nearest one that has 0; -1 stays where there is no way.
+// Breadth first through these pairs: how many are between a body and the nearest one that has 0; -1 stays where there is no way. What
+// stands beside a wall does not bear it: through such pairs only on from what has its number, to what else has none.
 template <class K>
-void WallContacts<K>::countFrom(const std::vector<int>& through, std::vector<int>& count) const
+void WallContacts<K>::countFrom(const RigidSystem<K>& s, const std::vector<int>& through, std::vector<int>& count) const
 {
-	bool grew = true;
-	for (int reached = 0; grew; ++reached) {
-		grew = false;
-		for (const int c : through)
-			for (const auto& [from, to] : {std::pair(pairs[c][0], pairs[c][1]), std::pair(pairs[c][1], pairs[c][0])})
-				if (count[from] == reached && count[to] < 0) {
-					count[to] = reached + 1;
-					grew = true;
-				}
-	}
+	for (const bool all : {false, true})
+		for (int reached = 0, most = *std::max_element(count.begin(), count.end()); reached <= most; ++reached)
+			for (const int c : through)
+				for (const auto& [from, to] : {std::pair(pairs[c][0], pairs[c][1]), std::pair(pairs[c][1], pairs[c][0])})
+					if ((all || !s.pairs[c].beside) && count[from] == reached && count[to] < 0)
+						most = std::max(most, count[to] = reached + 1);
 }
 
 template <class K>
@@ -182,8 +179,8 @@ void WallContacts<K>::findCourses(const RigidSystem<K>& s)
 		if (s.bodies[b].prescribed || supports[b])
 			above[b] = 0;
 	}
-	countFrom(everyPair, course);
-	countFrom(numbers, above);
+	countFrom(s, everyPair, course);
+	countFrom(s, numbers, above);
 	depth = std::max(0, *std::max_element(above.begin(), above.end()));
 	const auto joins = [this](const ContactPair<K>& pair) { return own[pair.body1] && own[pair.body2]; };
 	const std::vector<int> structure = islandNumbers<K>(s, joins);

@@ -37,6 +37,17 @@ UprightPair uprightPair(const RigidSystem<K>& s, const wall::WallContacts<K>& co
 
 } // namespace
 
+// A prescribed body beside a wall, and clear of it by more than may close in a step, m: it does not move in a joint of the wall.
+template <class K>
+bool WallStep<K>::passesBy(const RigidSystem<K>& s, const Contacts& contacts, int g, int lane, double closing) const
+{
+	const double clear = 2 * closing + tolerance::wall::search * contacts.length;
+	const auto isClear = [=](const wall::PointLanes<K>& p) { return p.pn[lane] <= 0 && p.gap[lane] > clear; };
+	const auto* points = contacts.groups[g].point;
+	return s.bodies[contacts.base(s, g, lane)].prescribed && s.pairs[contacts.features[g].pair[lane]].beside &&
+	       std::all_of(points, points + contacts.points(s, g, lane), isClear);
+}
+
 template <class K>
 typename WallStep<K>::Chosen WallStep<K>::structuresOf(const Contacts& contacts, const wall::LaneBits& lanes) const
 {
@@ -71,7 +82,7 @@ wall::LaneBits WallStep<K>::lanesOf(const Contacts& contacts, const Bodies& bodi
 
 // Pairs that the step of the still mode cannot solve. What they hold is looked at once in a step.
 template <class K>
-wall::LaneBits WallStep<K>::findMoving(double h, bool again)
+wall::LaneBits WallStep<K>::findMoving(const RigidSystem<K>& s, double h, bool again)
 {
 	const double stepSpeed = scales.stepSpeed(h), residual = tolerance::wall::still * stepSpeed,
 	             motion = tolerance::wall::motion * tolerance::restSpeed * scales.speed;
@@ -89,7 +100,9 @@ wall::LaneBits WallStep<K>::findMoving(double h, bool again)
 	if (kept.report.velocity > residual || kept.report.motion > motion) {
 		const wall::LaneBits unsolved = kept.unsolved(residual, motion);
 		for (size_t g = 0; g < lanes.size(); ++g)
-			lanes[g] |= unsolved[g];
+			for (int i = 0; i < wall::width; ++i)
+				if (unsolved[g] >> i & 1 && !passesBy(s, still(), int(g), i, h * kept.report.motion))
+					lanes[g] |= 1 << i;
 	}
 	return lanes;
 }
@@ -193,6 +206,8 @@ std::vector<int> WallStep<K>::drivesUnder(const RigidSystem<K>& s) const
 	const Contacts& contacts = sets[stillSet];
 	std::vector<int> drives(structures.all.size(), unknown);
 	for (const auto& [g, i] : contacts.onBase) {
+		if (s.pairs[contacts.features[g].pair[i]].beside && !uprightPair(s, contacts, g, i).loaded)
+			continue;
 		const int its = s.bodies[contacts.base(s, g, i)].drive;
 		int& drive = drives[structures.of[contacts.freeBody(g, i)]];
 		drive = drive == unknown || drive == its ? its : several;
@@ -264,7 +279,8 @@ bool WallStep<K>::setOff(RigidSystem<K>& s, const Bodies& move)
 #define MASONRY_OF(K)                                                                                                                      \
 	template WallStep<K>::Bodies WallStep<K>::bodiesOf(const Chosen&) const;                                                               \
 	template wall::LaneBits WallStep<K>::lanesOf(const Contacts&, const Bodies&) const;                                                    \
-	template wall::LaneBits WallStep<K>::findMoving(double, bool);                                                                         \
+	template bool WallStep<K>::passesBy(const RigidSystem<K>&, const Contacts&, int, int, double) const;                                   \
+	template wall::LaneBits WallStep<K>::findMoving(const RigidSystem<K>&, double, bool);                                                  \
 	template WallStep<K>::Bodies WallStep<K>::carriedBy(const RigidSystem<K>&, const wall::LaneBits&, bool) const;                         \
 	template std::vector<int> WallStep<K>::drivesUnder(const RigidSystem<K>&) const;                                                       \
 	template bool WallStep<K>::basesPart(const RigidSystem<K>&) const;                                                                     \

@@ -130,7 +130,7 @@ void WallStep<K>::advancePart(RigidSystem<K>& s, double h)
 	for (const Drive<K>& drive : s.drives)
 		speeds.push_back(drive.meanVelocity(s.time, h));
 	takeMotion(s, h, workBefore);
-	choose(h);
+	choose(s, h);
 	s.time += h;
 	s.moved = false;
 }
@@ -316,7 +316,7 @@ typename WallStep<K>::Bodies WallStep<K>::solveStill(RigidSystem<K>& s, double h
 	kept.iterate(settings.strictForces || !started ? coldSolves : mostSolves, enough, settings.strictForces ? enough : INFINITY);
 	report.solves += kept.report.solves;
 	report.factorisations += kept.report.factorisations;
-	return carriedBy(s, findMoving(h, again), again);
+	return carriedBy(s, findMoving(s, h, again), again);
 }
 
 template <class K>
@@ -517,7 +517,7 @@ void WallStep<K>::takeMotion(RigidSystem<K>& s, double h, double workBefore)
 }
 
 template <class K>
-void WallStep<K>::choose(double h)
+void WallStep<K>::choose(const RigidSystem<K>& s, double h)
 {
 	const double shortest = tolerance::wall::patience * scales.length / scales.speed;
 	std::vector<double> motion(structures.all.size(), 0);
@@ -525,7 +525,8 @@ void WallStep<K>::choose(double h)
 	for (int g = 0; report.mode == WallMode::moving && g < int(contacts.groups.size()); ++g)
 		for (int i = 0; i < wall::width && contacts.features[g].pair[i] >= 0; ++i) {
 			double& most = motion[structures.of[contacts.freeBody(g, i)]];
-			most = std::max(most, sweeps.report.motion[g][i]);
+			if (const double here = sweeps.report.motion[g][i]; here > most && !passesBy(s, contacts, g, i, h * here))
+				most = here;
 		}
 	const double rest = tolerance::restSpeed * scales.speed;
 	structures.endStep(motion, rest, shortest, h);

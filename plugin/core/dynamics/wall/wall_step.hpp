@@ -121,7 +121,8 @@ private:
 	double stirred(const RigidSystem<K>& system, double h) const;
 	Bodies solveStill(RigidSystem<K>& system, double h, bool again);
 	void keepStill(RigidSystem<K>& system, double h);
-	wall::LaneBits findMoving(double h, bool again);
+	wall::LaneBits findMoving(const RigidSystem<K>& system, double h, bool again);
+	bool passesBy(const RigidSystem<K>& system, const Contacts& contacts, int group, int lane, double closing) const;
 	void letGo(double h, double share);
 	Bodies carriedBy(const RigidSystem<K>& system, const wall::LaneBits& lanes, bool whole) const;
 	std::vector<int> drivesUnder(const RigidSystem<K>& system) const;
@@ -144,7 +145,7 @@ private:
 	double takeBody(RigidSystem<K>& system, size_t body, double h);
 	void takeMotion(RigidSystem<K>& system, double h, double workBefore);
 	bool isStill(int body) const { return structures.of[body] >= 0 && structures.all[structures.of[body]].mode == WallMode::still; }
-	void choose(double h);
+	void choose(const RigidSystem<K>& system, double h);
 
 	static constexpr double quickSoftness = 0.1; // velocities follow their laws within some ten solves
 
