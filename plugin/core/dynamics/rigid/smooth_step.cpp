@@ -407,7 +407,19 @@ template <class K> void SmoothStep<K>::project(const RigidSystem<K>& s, double l
 
 template <class K> void SmoothStep<K>::accept(RigidSystem<K>& s)
 {
-	double impact = 0, friction = 0; // lost in this step: not a difference of what has been lost since the start
+	const double lost = book(s);
+	project(s, lost);
+	partings.clear();
+	for (size_t r = 0; last.h < whole && r < last.rows.size(); ++r)
+		partings.push_back(rigid::relativeVelocity(s, last.rows[r])[0]);
+	takeBodies(s);
+	if (takePoints(s)) s.startAnew();
+}
+
+// Energies of the step. Returns what the contacts have lost, J: not as a difference of what has been lost since the start.
+template <class K> double SmoothStep<K>::book(RigidSystem<K>& s) const
+{
+	double impact = 0, friction = 0;
 	for (size_t r = 0; r < last.rows.size(); ++r) {
 		const ContactRows<K>& rows = solver.points[r];
 		const PointRef        ref = last.rows[r];
@@ -421,21 +433,25 @@ template <class K> void SmoothStep<K>::accept(RigidSystem<K>& s)
 	}
 	s.impactDissip += impact;
 	s.frictDissip += friction;
-	project(s, impact + friction);
-	const bool isPart = last.h < whole, isShort = last.h < tolerance::rigid::shortPart * whole;
-	partings.clear();
-	for (size_t r = 0; isPart && r < last.rows.size(); ++r)
-		partings.push_back(rigid::relativeVelocity(s, last.rows[r])[0]);
+	return impact + friction;
+}
+
+template <class K> void SmoothStep<K>::takeBodies(RigidSystem<K>& s) const
+{
 	for (size_t b = 0; b < s.bodies.size(); ++b) {
 		RigidBody<K>& body = s.bodies[b];
 		const auto&   next = last.bodies[b];
-		if (!body.prescribed && !isShort) body.increment = (next.velocity - body.velocity) / last.h;
+		if (!body.prescribed && !isShort()) body.increment = (next.velocity - body.velocity) / last.h;
 		body.pose = next.end;
 		body.velocity = next.velocity;
 	}
 	s.time = timeAfter(s, last.h);
-	s.setFresh(unsteady || (isShort && s.isFresh()));
+	s.setFresh(unsteady || (isShort() && s.isFresh()));
+}
 
+// What points carry, and whether they are in touch. True: some have landed.
+template <class K> bool SmoothStep<K>::takePoints(RigidSystem<K>& s) const
+{
 	const double still = tolerance::rigid::parting * scales.stepSpeed(last.h);
 	size_t       row = 0;
 	bool         landed = false;
@@ -454,7 +470,8 @@ template <class K> void SmoothStep<K>::accept(RigidSystem<K>& s)
 			point.closed = rows.impulse[0] > 0 || u[0] <= still;
 			landed |= wasOpen && point.closed;
 			// A loaded point has velocity errors of either sign, and parts where it parts ever faster.
-			const bool lostByError = isPart && (u[0] <= partings[row - 1] || (isShort && std::abs(u[0]) <= tolerance::rigid::stray * scales.stepSpeed(whole)));
+			const bool lostByError =
+			    last.h < whole && (u[0] <= partings[row - 1] || (isShort() && std::abs(u[0]) <= tolerance::rigid::stray * scales.stepSpeed(whole)));
 			if (lostByError && !wasOpen && before[0] > 0 && !(rows.impulse[0] > 0)) {
 				point.closed = true;
 				point.force = before;
@@ -464,7 +481,7 @@ template <class K> void SmoothStep<K>::accept(RigidSystem<K>& s)
 			point.force = rows.impulse / last.h;
 			point.sliding = u.template tail<K::rows - 1>().norm() > still && slides(rows);
 		}
-	if (landed) s.startAnew();
+	return landed;
 }
 
 template <class K> Eigen::Matrix<double, K::rows, 1> SmoothStep<K>::relativeVelocity(const RigidSystem<K>& s, int pair, int point) const

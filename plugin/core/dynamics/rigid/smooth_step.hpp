@@ -86,6 +86,11 @@ private:
 	void   findFrames(const RigidSystem<K>& system);
 	double findShifts(const RigidSystem<K>& system, double most);
 	void   project(const RigidSystem<K>& system, double lost);
+	double book(RigidSystem<K>& system) const;
+	void   takeBodies(RigidSystem<K>& system) const;
+	bool   takePoints(RigidSystem<K>& system) const;
+	// A part of a step that tells nothing of how velocities change.
+	bool isShort() const { return last.h < tolerance::rigid::shortPart * whole; }
 
 	Trial<K>         last;
 	std::vector<int> first; // index in last.frames of a pair's first point

@@ -141,7 +141,10 @@ private:
 	using Touches = std::vector<std::array<Mask, lanePoints<K>>>; // which points touch, by group
 
 	bool takeSoftness();
+	using Block = SymmetricFactor::Block;
 	void factorise();
+	void setGraph();
+	void addPair(int group, int lane, int& edge);
 	void refactorise(RigidSystem<K>& system, const Touches& touches);
 	template <class Mark>
 	LaneBits where(const Mark& mark) const;
@@ -149,6 +152,7 @@ private:
 	WallContacts<K>* contacts {nullptr};
 	SymmetricFactor factor;  // a node for each pack of the bodies here
 	std::vector<int> places; // of the nodes
+	std::vector<int> node;   // of a body, its first; -1: none
 	size_t nodes {0};        // of the factor, those of bodies that have gone included
 	std::vector<SymmetricFactor::Edge> edges;
 	LaneArray free, force;
