@@ -96,71 +96,101 @@ double RockingJoints<Space>::away(const WallContacts<Space>& c, const JointPoint
 }
 
 template <>
-bool RockingJoints<Plane>::findPivot(const WallContacts<Plane>& c, int begin, int end, Pivot<Plane>& pivot) const
+bool RockingJoints<Plane>::findPivot(const WallContacts<Plane>& c, Pivot<Plane>& pivot) const
 {
 	double low = INFINITY, high = -INFINITY;
-	for (int i = begin; i < end; ++i)
-		if (const Contact<Plane> at = contact(c, points[i]); at.impulse() > 0) {
-			low = std::min(low, at.along(c));
-			high = std::max(high, at.along(c));
-		}
+	for (const int i : bearing) {
+		const double along = contact(c, points[i]).along(c);
+		low = std::min(low, along);
+		high = std::max(high, along);
+	}
 	pivot.place = low;
 	return high >= low && high - low <= tolerance::wall::pivot * c.length;
 }
 
 template <>
-bool RockingJoints<Space>::findPivot(const WallContacts<Space>& c, int begin, int end, Pivot<Space>& pivot) const
+bool RockingJoints<Space>::findPivot(const WallContacts<Space>& c, Pivot<Space>& pivot) const
 {
+	if (bearing.empty())
+		return false;
 	const double narrow = tolerance::wall::pivot * c.length;
-	bool loaded = false;
+	pivot.place = position(c, points[bearing.front()]);
 	Vector3 edge = Vector3::Zero();
-	for (int i = begin; i < end; ++i)
-		if (contact(c, points[i]).impulse() > 0) {
-			const Vector3 place = position(c, points[i]);
-			if (!loaded)
-				pivot.place = place;
-			if ((place - pivot.place).norm() > edge.norm())
-				edge = place - pivot.place;
-			loaded = true;
-		}
+	for (const int i : bearing)
+		if (const Vector3 from = position(c, points[i]) - pivot.place; from.norm() > edge.norm())
+			edge = from;
 	pivot.direction = edge.norm() > narrow ? Vector3(edge.normalized()) : Vector3(Vector3::Zero());
-	for (int i = begin; i < end; ++i)
-		if (contact(c, points[i]).impulse() > 0 && away(c, points[i], pivot) > narrow)
-			return false;
-	return loaded;
+	return std::all_of(bearing.begin(), bearing.end(), [&](int i) { return away(c, points[i], pivot) <= narrow; });
+}
+
+// Of a block's point, away from the support, by its turning against that: m/s^2.
+template <>
+double RockingJoints<Plane>::centripetal(const WallContacts<Plane>& c, const JointPoint& point) const
+{
+	const Contact<Plane> at = contact(c, point);
+	const double spin = (c.inGlobal(c.velocity, at.block) - c.inGlobal(c.velocity, at.support))[2];
+	return spin * spin * c.gyration[at.block][0] * (at.second ? -at.p.a2t[at.lane] : at.p.a1t[at.lane]);
+}
+
+template <>
+double RockingJoints<Space>::centripetal(const WallContacts<Space>& c, const JointPoint& point) const
+{
+	const Contact<Space> at = contact(c, point);
+	const Vector3 spin = (c.inGlobal(c.velocity, at.block) - c.inGlobal(c.velocity, at.support)).tail<3>();
+	const Vector3 up = (at.second ? 1 : -1) * normal(at.p, at.lane), arm = position(c, point) - c.position(at.block);
+	return up.dot(spin.cross(spin.cross(arm)));
+}
+
+// Normals and arms stand still in a step: the centripetal acceleration a of a pivot comes as a jump a h of its velocity where a step
+// begins, and gravity brings it back, from a = g/2 on not within the step (earlier where the support falls). So it hops, and nothing
+// presses it for many steps: since it falls at g - a over them, it rises to (a h)^2 / 2(g - a), and as far as joints in touch are apart.
+// With a >= g it leaves its support.
+template <class K>
+bool RockingJoints<K>::hops(const WallContacts<K>& c, const JointPoint& point, double g, double h) const
+{
+	const Contact<K> at = contact(c, point);
+	if (at.impulse() > 0 || std::abs(at.normalRate(c)) > 2 * g * h) // one jump, and what it was before
+		return false;
+	const double a = centripetal(c, point);
+	return a > g / 4 && a < g && at.gap(c) <= tolerance::wall::touching * c.length + a * a * h * h / (2 * (g - a));
 }
 
 template <class K>
-void RockingJoints<K>::find(const RigidSystem<K>& s, const WallContacts<K>& c, Substeps<K>& sweeps, double substep)
+void RockingJoints<K>::find(const RigidSystem<K>& s, const WallContacts<K>& c, Substeps<K>& sweeps, double step, double substep)
 {
 	if (!gathered)
 		gather(s, c);
 	gathered = true;
 	rocking.clear();
 	aside.assign(points.size(), 0);
-	const double open = tolerance::mergedClosing * c.length, fast = tolerance::restSpeed * std::sqrt(scale::acceleration(s) * c.length);
+	const double g = scale::acceleration(s), open = tolerance::mergedClosing * c.length,
+	             fast = tolerance::restSpeed * std::sqrt(g * c.length), narrow = tolerance::wall::pivot * c.length;
 	// Also one that was open before the last substep: an impact nearer to its end than to its begin is met in the next.
 	const auto gapes = [&](const Contact<K>& at) {
 		const double gap = at.gap(c), approach = -at.normalRate(c);
 		return !(at.impulse() > 0) && (gap > open || (approach > fast && gap + substep * approach > 0));
 	};
 	for (int begin = 0, end = 0; begin < int(points.size()); begin = end) {
-		int gaping = 0;
-		for (end = begin; end < int(points.size()) && points[end].block == points[begin].block && points[end].face == points[begin].face;
-		     ++end) {
-			gaping += gapes(contact(c, points[end]));
+		const auto isOfJoint = [&](const JointPoint& p) { return p.block == points[begin].block && p.face == points[begin].face; };
+		gaping.clear();
+		bearing.clear();
+		for (end = begin; end < int(points.size()) && isOfJoint(points[end]); ++end) {
+			const Contact<K> at = contact(c, points[end]);
+			if (at.impulse() > 0 || hops(c, points[end], g, step))
+				bearing.push_back(end);
+			else if (gapes(at))
+				gaping.push_back(end);
 		}
 		Pivot<K> pivot;
-		if (gaping > 0 && findPivot(c, begin, end, pivot))
-			rocking.push_back({begin, end, pivot});
-	}
-	for (const Joint& joint : rocking)
-		for (int i = joint.begin; i < joint.end; ++i)
-			if (const Contact<K> at = contact(c, points[i]);
-			    gapes(at) && (at.gap(c) > open || away(c, points[i], joint.pivot) > tolerance::wall::pivot * c.length)) {
+		if (gaping.empty() || !findPivot(c, pivot))
+			continue;
+		rocking.push_back({begin, end, pivot});
+		for (const int i : gaping)
+			if (const Contact<K> at = contact(c, points[i]); at.gap(c) > open || away(c, points[i], pivot) > narrow) {
 				aside[i] = true;
 				sweeps.setGap(points[i].group, points[i].lane, points[i].point, farAway);
 			}
+	}
 }
 
 template <class K>

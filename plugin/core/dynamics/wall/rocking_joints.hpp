@@ -36,7 +36,7 @@ template <class K>
 class RockingJoints {
 public:
 	// Finds the joints that rock, for a step in such substeps that has begun.
-	void find(const RigidSystem<K>& system, const WallContacts<K>& contacts, Substeps<K>& sweeps, double substep);
+	void find(const RigidSystem<K>& system, const WallContacts<K>& contacts, Substeps<K>& sweeps, double step, double substep);
 	// There are other points than before.
 	void outdate() { gathered = false; }
 	// Impacts of the substep s that comes, into the contacts' velocities and system.impacts. Returns the work of the base, J.
@@ -65,8 +65,11 @@ private:
 		Pivot<K> pivot;
 	};
 	void gather(const RigidSystem<K>& system, const WallContacts<K>& contacts);
-	// False: loaded at more than one place, or not at all.
-	bool findPivot(const WallContacts<K>& contacts, int begin, int end, Pivot<K>& pivot) const;
+	// Of the joint whose points bear. False: they do at more than one place, or none does.
+	bool findPivot(const WallContacts<K>& contacts, Pivot<K>& pivot) const;
+	// Is off its support for a moment alone; g, m/s^2: what brings it back.
+	bool hops(const WallContacts<K>& contacts, const JointPoint& point, double g, double step) const;
+	double centripetal(const WallContacts<K>& contacts, const JointPoint& point) const;                 // m/s^2
 	double away(const WallContacts<K>& contacts, const JointPoint& point, const Pivot<K>& pivot) const; // m
 	bool closes(const WallContacts<K>& contacts, const JointPoint& point, double time) const;           // within it
 	const JointPoint* landing(const WallContacts<K>& contacts, const Joint& joint, double s) const;
@@ -76,6 +79,7 @@ private:
 	std::vector<JointPoint> points; // joint by joint
 	std::vector<char> aside;        // points that the sweeps do not see
 	std::vector<Joint> rocking;
+	std::vector<int> bearing, gaping; // points of a joint that is looked at
 
 	JointImpact impact;       // in space
 	std::vector<int> numbers; // of its bodies in the system

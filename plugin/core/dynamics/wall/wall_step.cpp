@@ -358,7 +358,7 @@ void WallStep<K>::stepMoving(RigidSystem<K>& s, double h)
 	contacts.setUnit(part);
 	setLoads(s, contacts, part);
 	sweeps.begin(contacts, structures, finer(), scales.stepSpeed(part));
-	joints.find(s, contacts, sweeps, part);
+	joints.find(s, contacts, sweeps, h, part);
 	for (int k = 0; k < count; ++k) {
 		s.time = start + k * part;
 		setBase(s, contacts, part);
