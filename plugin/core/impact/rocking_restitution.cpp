@@ -92,15 +92,13 @@ namespace {
 	};
 	thread_local Workspace workspace;
 
-	void begin(const std::vector<Body>& bodies, RockingImpact& impact)
+	void begin(const std::vector<Body>& bodies, ClosingJoint& joint, std::vector<ImpulsePoint>& points)
 	{
-		for (ClosingJoint& joint : impact.joints) {
-			joint.result = {};
-			joint.result.axis = rockingAxis(bodies, joint, impact.points);
-			joint.result.before = spin(bodies, joint);
-			for (int i = joint.oldBegin; i < joint.oldEnd; ++i)
-				impact.points[i].holds = false;
-		}
+		joint.result = {};
+		joint.result.axis = rockingAxis(bodies, joint, points);
+		joint.result.before = spin(bodies, joint);
+		for (int i = joint.oldBegin; i < joint.oldEnd; ++i)
+			points[i].holds = false;
 	}
 
 } // namespace
@@ -162,7 +160,8 @@ RockingImpactResult applyRockingImpact(std::vector<Body>& bodies, RockingImpact&
 {
 	CappedProblem& problem = workspace.problem;
 	problem.rows.clear();
-	begin(bodies, impact);
+	for (ClosingJoint& joint : impact.joints)
+		begin(bodies, joint, impact.points);
 	for (const ClosingJoint& joint : impact.joints)
 		problem.add(bodies, joint);
 	const RockingImpactResult result = problem.solve(impact.solve, bodies, impact.points);
@@ -191,7 +190,8 @@ RockingImpactResult applySequentially(std::vector<Body>& bodies, RockingImpact& 
 	RockingImpactResult result;
 	couples.clear();
 	impulses.assign(impact.points.size(), Vector3::Zero()); // of the first stage
-	begin(bodies, impact);
+	for (ClosingJoint& joint : impact.joints)
+		begin(bodies, joint, impact.points);
 	for (const ClosingJoint& joint : impact.joints) {
 		own.assign(impact.points.begin() + joint.newBegin, impact.points.begin() + joint.oldEnd);
 		problem.rows.clear();
@@ -207,6 +207,19 @@ RockingImpactResult applySequentially(std::vector<Body>& bodies, RockingImpact& 
 		impact.points[i].impulse += impulses[i];
 	for (size_t j = 0; j < couples.size(); ++j)
 		report(bodies, impact.points, impact.joints[j], couples[j]);
+	return result;
+}
+
+RockingImpactResult applyToNewSupport(std::vector<Body>& bodies, ClosingJoint& joint, std::vector<ImpulsePoint>& points, double& couple)
+{
+	CappedProblem& problem = workspace.problem;
+	problem.rows.clear();
+	begin(bodies, joint, points);
+	problem.add(bodies, joint);
+	points.erase(points.begin() + joint.oldBegin, points.begin() + joint.oldEnd);
+	const RockingImpactResult result = problem.solve(solveImpulses, bodies, points);
+	couple = problem.rows.empty() ? 0 : problem.rows.front().couple;
+	report(bodies, points, joint, couple);
 	return result;
 }
 

@@ -84,4 +84,8 @@ void report(const std::vector<Body>& bodies, const std::vector<ImpulsePoint>& po
 RockingImpactResult applyRockingImpact(std::vector<Body>& bodies, RockingImpact& impact);
 RockingImpactResult applySequentially(std::vector<Body>& bodies, RockingImpact& impact);
 
+// One joint alone, the old support giving the axis and no impulse: nearly always it opens. Takes its points away, and keeps the couple about
+// the joint's axis, N m s.
+RockingImpactResult applyToNewSupport(std::vector<Body>& bodies, ClosingJoint& joint, std::vector<ImpulsePoint>& points, double& couple);
+
 } // namespace masonry

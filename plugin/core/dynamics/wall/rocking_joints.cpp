@@ -282,8 +282,9 @@ void RockingJoints<Space>::answer(RigidSystem<Space>& s, WallContacts<Space>& c,
 		landed.push_back(at.block);
 	if (std::isnan(restitution))
 		return;
-	const auto result = impact.apply();
-	if (!result.solved)
+	double couple = 0;
+	const RockingImpactResult result = applyToNewSupport(impact.bodies, law, impact.points, couple);
+	if (!result.solved && result.residual > leastSpin * s.bodies[at.block].halfSize.norm())
 		missed = std::max(missed, result.residual);
 	const auto acts = [](const ImpulsePoint& point) { return !point.impulse.isZero(0); };
 	if (std::none_of(impact.points.begin(), impact.points.end(), acts))
@@ -301,9 +302,9 @@ void RockingJoints<Space>::answer(RigidSystem<Space>& s, WallContacts<Space>& c,
 			impulse << sign * point.impulse, sign * (point.position - impact.bodies[k].pose.position).cross(point.impulse);
 			baseWork += press(c, numbers[k], impulse);
 		}
-	Space::Velocity couple;
-	couple << Vector3::Zero(), -impact.couple * law.result.axis;
-	baseWork += press(c, at.support, couple);
+	Space::Velocity back;
+	back << Vector3::Zero(), -couple * law.result.axis;
+	baseWork += press(c, at.support, back);
 	const JointResult& after = law.result;
 	s.impacts.push_back(
 	    {s.time, at.block, at.support, restitution, after.after >= leastSpin, after, result.energyLost, result.capped, result.residual});
@@ -350,26 +351,31 @@ void RockingJoints<Plane>::answer(RigidSystem<Plane>& s, WallContacts<Plane>& c,
 		const Vector3 slip = H.inverse() * (target - u);
 		return Vector3(slip[0], slope * slip[0], slip[2]);
 	};
-	const Vector3 wanted = impulse({0, 0, pair.restitution * before});
-	const Eigen::Matrix2d G2 = G.topLeftCorner<2, 2>();
-	Vector3 plastic = Vector3::Zero(); // no couple
-	plastic.head<2>() = -G2.inverse() * u.head<2>();
-	if (std::abs(plastic[1]) > friction * plastic[0]) {
-		const double slope = std::copysign(friction, plastic[1]);
-		plastic[0] = -u[0] / (G(0, 0) + slope * G(0, 1));
-		plastic[1] = slope * plastic[0];
-	}
+	const double asked = pair.restitution * before;
+	Vector3 x = impulse({0, 0, asked});
 	const auto gain = [&](const Vector3& x) { return x.dot(u) + 0.5 * x.dot(G * x); };
-	Vector3 x = wanted;
-	const bool capped = gain(wanted) > 0;
-	if (capped) {
+	const bool capped = gain(x) > 0;
+	if (capped) { // targets between the plastic one, without a couple, and the one asked: each impulse obeys Coulomb
+		const Eigen::Matrix2d G2 = G.topLeftCorner<2, 2>();
+		x << -G2.inverse() * u.head<2>(), 0;
+		if (std::abs(x[1]) > friction * x[0]) {
+			const double slope = std::copysign(friction, x[1]);
+			x[0] = -u[0] / (G(0, 0) + slope * G(0, 1));
+			x[1] = slope * x[0];
+		}
+		const double plastic = (u + G * x)[2];
 		double low = 0, high = 1;
 		constexpr int bisections = 40;
 		for (int k = 0; k < bisections; ++k) {
 			const double middle = 0.5 * (low + high);
-			(gain(plastic + middle * (wanted - plastic)) > 0 ? high : low) = middle;
+			const Vector3 tried = impulse({0, 0, plastic + middle * (asked - plastic)});
+			if (gain(tried) > 0) {
+				high = middle;
+			} else {
+				low = middle;
+				x = tried;
+			}
 		}
-		x = plastic + low * (wanted - plastic);
 	}
 	if (!(x[0] > 0) || gain(x) > 0)
 		return;

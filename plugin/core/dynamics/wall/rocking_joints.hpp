@@ -9,14 +9,14 @@
 //     u_n+ = 0,   u_t+ = 0 or |p_t| = mu p_n,   w+ = C w-         w = w_block - w_support
 //
 // Other neighbours feel it in the sweeps that follow: the sequential law of impact/rocking_restitution.hpp. Kinetic energy does not
-// grow: where it would, the couple is reduced until it does not. Without a restitution, or when the joint lands as slowly as if at rest
-// (tolerance::restSpeed), nothing is done here: the sweeps are plastic, as which it rocks on where the other pivot takes the weight. Such
-// impacts are found only where a base pulse may answer them.
+// grow: where it would, w+ is moved towards what the plastic impact gives until it does not. Without a restitution, or when the joint lands
+// as slowly as if at rest (tolerance::restSpeed), nothing is done here: the sweeps are plastic, as which it rocks on where the other pivot
+// takes the weight. Such impacts are found only where a base pulse may answer them.
 //
 // In space all points that close together are the new pivot and the loaded ones the old, and there is one row, along the old edge or across
-// the lever (joint_impact.hpp).
-#include "dynamics/wall/joint_impact.hpp"
+// the lever.
 #include "dynamics/wall/substeps.hpp"
+#include "impact/rocking_restitution.hpp"
 
 namespace masonry::rigid::wall {
 
@@ -81,7 +81,11 @@ private:
 	std::vector<Joint> rocking;
 	std::vector<int> bearing, gaping; // points of a joint that is looked at
 
-	JointImpact impact;       // in space
+	struct { // in space
+		std::vector<masonry::Body> bodies;
+		std::vector<ImpulsePoint> points; // new support, then old
+		ClosingJoint joint;
+	} impact;
 	std::vector<int> numbers; // of its bodies in the system
 };
 
