@@ -247,6 +247,8 @@ MASONRY_INLINE void sweepThrough(Group<K, L>* groups, const Coupling<K, L>* coup
 {
 	const auto visit = [&](int g) __attribute__((always_inline))
 	{
+		if constexpr (watch)
+			watched[g] = {all<L>(0), all<L>(0)};
 		return Visit<K, L>(groups[g], couplings[g], watch ? &watched[g] : nullptr, velocity);
 	};
 	int g = begin;
