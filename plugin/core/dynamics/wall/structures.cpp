@@ -1,6 +1,5 @@
 #include "dynamics/wall/structures.hpp"
 #include <algorithm>
-#include <cmath>
 
 namespace masonry::rigid::wall {
 
@@ -117,7 +116,7 @@ template <class K>
 bool Structures<K>::letReturn()
 {
 	const auto moves = [](const Structure& one) { return one.mode == WallMode::moving; };
-	const auto isReady = [=](const Structure& one) { return moves(one) && one.quiet >= std::max(one.patience, shortest); };
+	const auto isReady = [=](const Structure& one) { return moves(one) && one.quiet >= std::max(one.patience, 1.) * shortest; };
 	const long ready = std::count_if(all.begin(), all.end(), isReady);
 	if (ready == 0 || (sinceReturn < shortest && ready < std::count_if(all.begin(), all.end(), moves)))
 		return false;
@@ -145,9 +144,8 @@ void Structures<K>::endStep(const std::vector<double>& motion, double rest, doub
 			one.stay += h;
 			continue;
 		}
-		if (one.stay >= 0) {             // has just left
-			if (std::isfinite(shortest)) // there is gravity
-				one.patience = std::max(one.stay < 10 * one.patience ? 2 * one.patience : 0., shortest);
+		if (one.stay >= 0) { // has just left
+			one.patience = one.stay < 10 * one.patience * shortest ? 2 * one.patience : 1;
 			one.stay = -1;
 		}
 		one.quiet = motion[k] <= rest && !inFlight[k] ? one.quiet + h : 0;

@@ -18,7 +18,7 @@ namespace wall {
 struct Structure {
 	WallMode mode {WallMode::still};
 	double quiet {0};                            // s, how long nothing has moved
-	double patience {0};                         // s, for how long it must not
+	double patience {0};                         // for how many of the shortest times it must not
 	double stay {0};                             // s, in the still mode; -1: has left it
 	double whole {INFINITY};                     // s, since a part of it has left the still mode
 	double mayHold {tolerance::wall::leastHeld}; // as tolerance::wall::held
