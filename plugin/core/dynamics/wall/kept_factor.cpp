@@ -139,7 +139,7 @@ MASONRY_INLINE void addHeld(const Group<K>* groups, StillGroup<K>* still, const 
 			StillLanes<K>& f = still[g][k];
 			const auto& row = rows[g][k];
 			const Mask touches = row.stiffness > 0, loaded = p.pn > 0, parts = touches & ~loaded,
-			           glides = touches & loaded & atRim[k] & (sticking < K::dimension - 1);
+			           glides = touches & atRim[k] & (sticking < K::dimension - 1);
 			const Lanes perMass = row.stiffness * row.perMass;
 			f.heldN = parts ? larger(f.heldN + (f.zn - row.un + row.bn) * perMass, none) : none;
 			f.heldT = select(glides, f.heldT + perMass * (f.zt - row.ut - pullBack * f.slip), typename PointLanes<K>::Tangent {});

@@ -57,6 +57,21 @@ TEST_CASE("a wall in space at rest does not drift")
 	CHECK(scene.sink() / 10 < 1e-8);
 }
 
+// Nothing holds it: it falls, and what the step of a wall that stands may keep from it is less than what gravity gives in two steps. Points
+// that do not press and slide are not held either: else the block hangs for 49 ms.
+TEST_CASE("a block without friction falls between two plates that it touches")
+{
+	SpaceScene scene(0.);
+	for (const double side : {-1., 1.}) {
+		const int plate = addBlock(scene.system, {0.25, 1, 4}, {0.75 * side, 0, 4});
+		scene.system.bodies[plate].prescribed = true;
+	}
+	const int block = addBlock(scene.system, {0.5, 0.25, 0.25}, {0, 0, 2.25});
+	const double h = 1e-3, time = 0.1;
+	scene.run(time, h);
+	CHECK(scene.system.bodies[block].velocity[2] == Approx(-g * time).margin(2 * g * h));
+}
+
 // As in the plane (moving_wall_test.cpp): all four corners land at once.
 TEST_CASE("a block in space that lands flat stays upright")
 {
