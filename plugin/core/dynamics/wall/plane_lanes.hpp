@@ -172,6 +172,12 @@ MASONRY_INLINE L friction(const PointLanes<Plane, L>& p, const L& slipRate, cons
 }
 
 inline Vector2 normal(const PointLanes<Plane>& p, int lane) { return {p.nx[lane], p.ny[lane]}; }
+// Cosine between the normal and a direction.
+template <class L>
+MASONRY_INLINE L along(const PointLanes<Plane, L>& p, const FloatPack& direction)
+{
+	return direction[0] * p.nx + direction[1] * p.ny;
+}
 
 // Along a row (0 normal, 1 tangential) what one lane's point takes of a body's pack.
 MASONRY_INLINE Vector3 partOf(const PointLanes<Plane>& p, int row, int lane, int body, int)

@@ -320,6 +320,12 @@ MASONRY_INLINE Two<L> friction(const PointLanes<Space, L>& p, const Two<L>& slip
 }
 
 inline Vector3 normal(const PointLanes<Space>& p, int lane) { return p.normal.axis.lane(lane); }
+template <class L>
+MASONRY_INLINE L along(const PointLanes<Space, L>& p, const FloatPack& direction)
+{
+	const Three<L>& n = p.normal.axis;
+	return direction[0] * n.x + direction[1] * n.y + direction[2] * n.z;
+}
 
 // Along a row (0 normal, then tangential) what one lane's point takes of a body's pack (0 velocity, 1 spin).
 MASONRY_INLINE Vector3 partOf(const PointLanes<Space>& p, int row, int lane, int body, int pack)

@@ -66,8 +66,8 @@ template <class K>
 class Substeps {
 public:
 	// From the contacts' velocities and impulses. `structures`: that their bodies are of; `finer`: how many times more substeps than at the
-	// default tolerance; `fall`: what gravity gives in a substep, m/s.
-	void begin(WallContacts<K>& contacts, const Structures<K>& structures, double finer, double fall);
+	// default tolerance; `fall`: what gravity gives in a substep, m/s; `gravity`: its direction.
+	void begin(WallContacts<K>& contacts, const Structures<K>& structures, double finer, double fall, const typename K::Vector& gravity);
 	// `load` is the change of velocity in a substep by external forces, per body. Into the contacts' velocities and shift.
 	void substep(WallContacts<K>& contacts, const LaneArray& load, double s, bool isLast);
 	// After each substep: what friction has taken, and the impulses that the next one starts from.
@@ -103,6 +103,7 @@ private:
 	float damped {0}; // damping of this step
 	double fall {0};  // what gravity gives in a substep, m/s
 	float inMean {0}; // what a substep takes into the mean of an impulse
+	FloatPack up {};  // direction
 	std::unique_ptr<SweepGroups<K>> points {sweepGroups<K>()};
 	std::vector<Quarters> quarters; // of their groups
 	std::vector<Place> places;      // of the contacts' groups

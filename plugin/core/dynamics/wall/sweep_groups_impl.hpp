@@ -1,6 +1,7 @@
 #pragma once
 // What sweep_groups.hpp promises, with the vectors `Wide` of the file that includes it.
 #include "dynamics/wall/sweep.hpp"
+#include "tolerances.hpp"
 
 namespace masonry::rigid::wall {
 
@@ -34,7 +35,9 @@ MASONRY_INLINE void addLoss(const Group<K, L>& group, const FloatPack* velocity,
 			loss -= widen(quarterOf(power[k], quarter)) + widen(quarterOf(power[k], quarter + 1));
 }
 
-// An impact is over, and is not what the next substep starts from.
+// An impact is over, and is not what the next substep starts from. One that travels along a row, from head joint to head joint, lasts for
+// many substeps, and the mean would grow in each by up to inMean (mostIntoMean mostOfMean - 1) of itself: what a stop has stopped would
+// start with what pushes it back. So it leaves the mean of an upright joint as it is.
 template <class K>
 MASONRY_INLINE void trim(Group<K, L>& group, const HandOn& how, FloatPack* contactPart)
 {
@@ -45,7 +48,8 @@ MASONRY_INLINE void trim(Group<K, L>& group, const HandOn& how, FloatPack* conta
 	MaskOf<L> some {};
 	for (int k = 0; k < group.count; ++k) {
 		PointLanes<K, L>& p = group.point[k];
-		p.steady += how.inMean * (smaller(p.pn, float(mostIntoMean) * most(p)) - p.steady);
+		const MaskOf<L> hit = (size(along(p, how.up)) < all<L>(tolerance::uprightJoint)) & (p.pn > how.impact * p.massN);
+		p.steady += how.inMean * (select(hit, p.steady, smaller(p.pn, float(mostIntoMean) * most(p))) - p.steady);
 		some |= p.pn > most(p);
 	}
 	if (!any(some))

@@ -357,7 +357,7 @@ void WallStep<K>::stepMoving(RigidSystem<K>& s, double h)
 	lean(s, contacts, h);
 	contacts.setUnit(part);
 	setLoads(s, contacts, part);
-	sweeps.begin(contacts, structures, finer(), scales.stepSpeed(part));
+	sweeps.begin(contacts, structures, finer(), scales.stepSpeed(part), s.gravity);
 	joints.find(s, contacts, sweeps, h, part);
 	for (int k = 0; k < count; ++k) {
 		s.time = start + k * part;

@@ -73,7 +73,7 @@ std::vector<double> substep(SweepGroups<K>& points)
 	points.moveGaps(0, count, scene.velocity.data(), 1.25e-4f);
 	points.sum(0, count, contactPart.data());
 	Lanes loss = all(0);
-	points.handOn(0, count, scene.velocity.data(), {0.1f, 0.02f, 1e-3f}, contactPart.data(), loss);
+	points.handOn(0, count, scene.velocity.data(), {0.1f, 0.02f, 1e-3f, 0.1f, FloatPack {1, -1, 0, 0}}, contactPart.data(), loss);
 	const LaneArray shift(packs<K> * (bodyCount + 1), all(1e-3));
 	points.giveBack(0, count, which.data(), shift.data(), scene.groups.data());
 
