@@ -99,11 +99,12 @@ private:
 	Effort effort {effortFor<K>(false)};
 	int sweeps {1}; // before the move, and after it
 	bool edges {false};
-	float lumps {0};  // frictionBound()
-	float damped {0}; // damping of this step
-	double fall {0};  // what gravity gives in a substep, m/s
-	float inMean {0}; // what a substep takes into the mean of an impulse
-	FloatPack up {};  // direction
+	float lumps {0};   // frictionBound()
+	float damped {0};  // damping of this step
+	double fall {0};   // what gravity gives in a substep, m/s
+	float inMean {0};  // what a substep takes into the mean of an impulse
+	double impact {0}; // of an upright joint (HandOn), m/s; without gravity none is upright
+	FloatPack up {};   // direction
 	std::unique_ptr<SweepGroups<K>> points {sweepGroups<K>()};
 	std::vector<Quarters> quarters; // of their groups
 	std::vector<Place> places;      // of the contacts' groups

@@ -26,7 +26,7 @@ struct HandOn {
 	float inMean; // what a substep takes into the mean of an impulse
 	float fall;   // what gravity gives in a substep, m/s
 	float impact; // of an upright joint, an impulse that is none of loads, as the velocity that it gives its point, m/s
-	FloatPack up; // direction; none without gravity
+	FloatPack up; // direction
 };
 
 constexpr int mostQuarters = 4;
