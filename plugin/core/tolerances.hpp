@@ -136,6 +136,15 @@ namespace masonry::tolerance::rigid {
 // to the wrong side; larger: yawed blocks lose corners while they rock.
 constexpr double crossing = 0.2;
 
+// Sine of the angle between two faces from which on one leans on the border of the other. Larger: a vertex that slides over that border is
+// kicked by it; smaller: vertices of flat joints, which slide to and fro across their borders, come and go.
+constexpr double leans = 1e-3;
+
+// Distance, relative to the smallest half size, up to which two points of a pair are at one place: one takes over what the other carries,
+// and where the one touches the other does not land. Smaller: vertices, up to vertexReach beyond an edge, and crossings miss each other;
+// larger: a vertex that lands so near to the end of a face that another one leans on does so in the next step, plastically.
+constexpr double samePlace = 2 * contact::vertexReach;
+
 } // namespace masonry::tolerance::rigid
 
 // --- contact problem (dynamics/rigid/) ---

@@ -122,6 +122,16 @@ void takeCorners(const ContactPatch& patch, const Vector3& half1, const Pose& po
 		out.features[out.size++] = blunt;
 }
 
+// Whether these faces are no longer one upon the other. A vertex then leaves the face that it is over as soon as it is past its border: up
+// to vertexReach beyond, it would be held by that face's normal where the edge holds it by its own face's.
+bool leans(const PatchFeature& faces, const Pose& pose1, const Pose& pose2)
+{
+	if (faces.kind != PatchKind::Face1 && faces.kind != PatchKind::Face2)
+		return false;
+	const Vector3 normal1 = pose1.orientation * Vector3::Unit(faces.feature1 / 2), normal2 = pose2.orientation * Vector3::Unit(faces.feature2 / 2);
+	return normal1.cross(normal2).norm() > tolerance::rigid::leans;
+}
+
 int faceNearest(const Vector3& direction, const Pose& pose)
 {
 	const Vector3 local = pose.orientation.conjugate() * direction;
@@ -155,7 +165,9 @@ Frame Space::frame(const Feature& feature, const Vector& half1, const Pose& pose
 bool Space::findPoints(const Vector& half1, const Pose& pose1, const Vector& half2, const Pose& pose2, double margin, Memory& memory,
                        FoundPoints<Space>& out)
 {
-	const Memory before = memory;
+	Memory before = memory;
+	if (leans(before, pose1, pose2))
+		before.vertices = 0;
 	memory = {};
 	out.size = 0;
 	out.face1 = out.face2 = -1;
