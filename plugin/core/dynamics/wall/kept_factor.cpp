@@ -120,6 +120,7 @@ MASONRY_INLINE bool startGroups(Group<K>* groups, StillGroup<K>* still, Rows<K>*
 
 // (z - w)/R is the impulse that V lacks; over the mass, the velocity. The largest by group. A joint of which a point sticks, in space two,
 // does not slide, though at others friction gives all that it can.
+// A point that slides by this law presses, unless it has no friction.
 template <class K>
 MASONRY_INLINE void addHeld(const Group<K>* groups, StillGroup<K>* still, const Rows<K>* rows, int begin, int end, double pullBack,
                             Lanes* most)
@@ -139,7 +140,7 @@ MASONRY_INLINE void addHeld(const Group<K>* groups, StillGroup<K>* still, const 
 			StillLanes<K>& f = still[g][k];
 			const auto& row = rows[g][k];
 			const Mask touches = row.stiffness > 0, loaded = p.pn > 0, parts = touches & ~loaded,
-			           glides = touches & atRim[k] & (sticking < K::dimension - 1);
+			           glides = touches & (loaded | (groups[g].friction == 0)) & atRim[k] & (sticking < K::dimension - 1);
 			const Lanes perMass = row.stiffness * row.perMass;
 			f.heldN = parts ? larger(f.heldN + (f.zn - row.un + row.bn) * perMass, none) : none;
 			f.heldT = select(glides, f.heldT + perMass * (f.zt - row.ut - pullBack * f.slip), typename PointLanes<K>::Tangent {});

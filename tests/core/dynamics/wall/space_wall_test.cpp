@@ -57,8 +57,8 @@ TEST_CASE("a wall in space at rest does not drift")
 	CHECK(scene.sink() / 10 < 1e-8);
 }
 
-// Nothing holds it: it falls, and what the step of a wall that stands may keep from it is less than what gravity gives in two steps. Points
-// that do not press and slide are not held either: else the block hangs for 49 ms.
+// Nothing holds it: it falls, and what the step of a wall that stands may keep from it is less than what gravity gives in two steps. Where
+// only points that press are looked at it hangs for 49 ms.
 TEST_CASE("a block without friction falls between two plates that it touches")
 {
 	SpaceScene scene(0.);
