@@ -128,6 +128,8 @@ def test_the_unit_g_of_a_peer_file_is_positive(tmp_path):
     (lambda: masonry.PulseTrain(1.0, [0], half_cycles=2), "half_cycles = 2: must be left out with times"),
     (lambda: masonry.PulseTrain(1.0, [0], duration=0.2), "duration = 0.2: must be left out .* for dirac"),
     (lambda: masonry.PulseTrain(1.0, duration=0.2), "duration = 0.2: must be left out .* for dirac"),
+    (lambda: masonry.PulseTrain(1.0, [0], shape="rectangular", duration="0.2"), "duration = '0.2': must be a number"),
+    (lambda: masonry.PulseTrain(1.0, ["0", "1"]), r"times = \['0', '1'\]: must be a number or an array"),
     (lambda: masonry.PulseTrain("a"), "impulse = 'a': must be a number"),
     (lambda: masonry.Record(0.01, [1.0, 2.0], scale="2"), "scale = '2': must be a number"),
     (lambda: masonry.Rectangular(1.0, 0.0), "duration = 0"),

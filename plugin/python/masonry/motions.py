@@ -60,10 +60,10 @@ class PulseTrain(Motion):
         if times is None and (assembly or shape != "dirac"):
             raise ValueError(f"shape = {shape!r}, assembly = {assembly}: a resonant train (times=None) has dirac pulses; give half_cycles "
                              "to bring the base to rest")
-        if shape == "dirac" and duration != 0:
+        if number_given("duration", duration) != 0 and shape == "dirac":
             raise ValueError(f"duration = {duration!r}: must be left out (0) for dirac pulses; shape='rectangular' or 'half-sine' has one")
         self.impulse = self.amplitude = impulse
-        self.times = None if times is None else np.atleast_1d(np.asarray(times, dtype=float))
+        self.times = None if times is None else np.atleast_1d(array_given("times", times))
         self.half_cycles, self.assembly = half_cycles, assembly
         self.pulse_shape, self.duration = shape, duration
         self.shape = np.shape(impulse)
