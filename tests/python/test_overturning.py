@@ -22,6 +22,25 @@ def test_resonant_train():
         np.testing.assert_allclose(thresholds, [(1 - C) * V1 / 2], rtol=1e-11)
 
 
+# The n-th half cycle begins with (2 - (1 + C) C^(n-1)) / (1 - C) times the first jump. Without end: 200 half cycles, of which the last lacks 1.8 % of the limit.
+@pytest.mark.parametrize("half_cycles, n", [(None, 200), (3, 3), (1, 1)])
+def test_resonant_train_of_so_many_half_cycles(half_cycles, n):
+    thresholds = masonry.overturning_amplitude(BLOCK, masonry.PulseTrain(0.3), restitution=0.98, half_cycles=half_cycles)
+    np.testing.assert_allclose(thresholds, [0.02 * V1 / (2 - 1.98 * 0.98**(n - 1))], rtol=1e-11)
+
+
+# From half of what lifts the block, g b/a, to 40 times that; of a jump from 0.01 to 2 times the one that overturns.
+@pytest.mark.parametrize("shape, bracket, lower, upper", [(masonry.HalfSine(3.0, 0.2), None, 0.1 * G, 8 * G), (masonry.PulseTrain(3.0, [0]), None, 0.01 * V1, 2 * V1),
+                                                          (masonry.PulseTrain(3.0, [0]), (0.1, 2), 0.1, 2), (masonry.PulseTrain(3.0, [0]), (0, 2), 0, 2)])
+def test_a_bracket_is_scanned_at_equal_factors_or_from_0_at_equal_differences(monkeypatch, shape, bracket, lower, upper):
+    from masonry import overturning
+
+    seen, arguments = [], overturning._arguments
+    monkeypatch.setattr(overturning, "_arguments", lambda block, motion, *rest: seen.append(motion.amplitude) or arguments(block, motion, *rest))
+    masonry.overturning_amplitude(BLOCK, shape, bracket=bracket, samples=50)
+    np.testing.assert_allclose(seen[0], np.geomspace(lower, upper, 50) if lower else np.linspace(lower, upper, 50), rtol=1e-12)
+
+
 def test_rectangle_of_the_linear_equation():
     for duration in (0.1, 0.5):
         thresholds = masonry.overturning_amplitude(BLOCK, masonry.Rectangular(2.0, duration), restitution=0.9, restoring="linear")
