@@ -44,6 +44,14 @@ def test_quantiles_are_values_of_the_sample_and_so_are_their_bounds(count, proba
     assert above(first) <= 0.025 < above(first + 1) and 1 - above(last) <= 0.025 < 1 - above(last - 1)
 
 
+def test_an_end_may_leave_out_just_what_it_is_allowed_to():
+    # All of n values are on one side of the median with probability 2^-n, in floating point too: with a confidence of 1 - 2 2^-n the ends are the first and
+    # the last one, and with any larger one there are none.
+    for count in (2, 3, 5):
+        assert ensemble.quantile(np.arange(count), 0.5, 1 - 2 * 0.5**count)[1:] == (0, count - 1)
+        assert ensemble.quantile(np.arange(count), 0.5, 1 - 1.99 * 0.5**count)[1:] == (-math.inf, math.inf)
+
+
 def test_collapsed_cases_have_no_largest_drift():
     table = np.array([(s, c, v) for s, row in ((0.2, [0.1, 0.2, 0.3, 0.4]), (0.4, [0.5, np.nan, 0.6, np.nan]), (0.8, [np.nan] * 4))
                       for v in row for c in [math.isnan(v)]], dtype=[("scale", float), ("collapsed", bool), ("peak_drift", float)])
@@ -52,7 +60,10 @@ def test_collapsed_cases_have_no_largest_drift():
     assert found["quantile_0.5"].tolist() == [0.2, 0.6, math.inf] and found["quantile_0.75"].tolist() == [0.3, math.inf, math.inf]
     assert found["fraction_high"][0] == ensemble.fraction([False] * 4)[2]
     whole = ensemble.statistics(table)
-    assert whole["cases"][0] == 12 and whole["fraction"][0] == 0.5 and "scale" not in whole.dtype.names
+    assert whole["cases"][0] == 12 and whole["fraction"][0] == 0.5
+    # Without `by` and `probabilities`: the median, and the mean less and plus a standard deviation of a normal distribution.
+    assert whole.dtype.names == ("cases", "fraction", "fraction_low", "fraction_high",
+                                 *(f"quantile_{p}{end}" for p in (0.16, 0.5, 0.84) for end in ("", "_low", "_high")))
 
 
 def test_groups_of_several_columns_are_the_combinations_that_occur():
@@ -152,6 +163,7 @@ def test_results_of_another_function_are_not_taken(tmp_path):
     script = tmp_path / "scene.py"
     script.write_text("")
     assert ensemble._keys(script, "run", [{}]) != ensemble._keys(script, "other", [{}])
+    assert len(set(ensemble._keys(script, "run", [{"a": 1, "b": 2}, {"b": 2, "a": 1}]))) == 1  # the order of the keys says nothing
 
 
 def test_artificial_records_grow_and_decay_by_their_envelope():
