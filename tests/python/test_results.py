@@ -102,9 +102,11 @@ def test_joints_are_the_faces_that_touch():
     table = results.joints(history(size, place, turned))
     assert [(j["id1"], j["id2"]) for j in table] == [(10, 11), (10, 12), (10, 13), (11, 12), (13, 14)]
     assert np.allclose(table["area"], [1, 1, 1, 1, 2 * (math.sqrt(2) - 1)], rtol=0, atol=1e-12)
-    assert np.allclose(table["normal"][[0, 3]], [[0, 0, 1], [1, 0, 0]]) and np.allclose(table["center"][3], [-1, 0, 0.5])
-    corner = history(size[:3], [[[0, 0, -0.1], [-1, 0, 0.5], [0, 1, 0.5]]])  # the two blocks share an edge: no joint
-    assert len(results.joints(corner)) == 2
+    assert np.allclose(table["normal"], [[0, 0, 1]] * 3 + [[1, 0, 0], [0, 0, 1]], rtol=0, atol=1e-12)
+    assert np.allclose(table["center"], [[-1.5, 0, 0], [-0.5, 0, 0], [1, 0, 0], [-1, 0, 0.5], [1, 0, 1]], rtol=0, atol=1e-12)
+    for lap, count in ((0, 2), (0.9e-6, 2), (1.1e-6, 3)):  # the two blocks share an edge: no joint; nor is less than a millionth of a face
+        corner = history(size[:3], [[[0, 0, -0.1], [-1, 0, 0.5], [0, 1 - lap, 0.5]]])
+        assert len(results.joints(corner)) == count, lap
 
 
 @pytest.mark.parametrize("posture", [UPRIGHT, turn(0.4, (1, 0, 0))])
@@ -127,13 +129,16 @@ def test_fallen_is_lower_by_half_a_height_or_beyond_the_critical_angle():
     assert report.collapsed and report.time == 2.0 and report.fallen.tolist() == [11]  # it came back from the first excursion
     assert report.peak_drift == h.drift()[2] and report.peak_drift_time == 1.0 and report.first_excursion == h.time[h.drift() >= 0.1][0]
     assert report.residual_drift == h.drift()[-1]
+    assert results.collapse(h, excursion=h.drift()[2]).first_excursion == 1.0  # reached, not exceeded
     assert "collapsed at 2 s" in str(report) and report.numbers()["fallen"] == 1
     assert np.allclose(h.lean[:, 1], h.rotation[:, 1], rtol=0, atol=1e-12)
     for axis, critical in (((1, 0, 0), math.atan(0.5 / 2)), (np.array([-0.5, 0.6, 0]) / math.hypot(0.5, 0.6), math.atan(math.hypot(0.5, 0.6) / 2))):
         assert results.fallen(rocking([0, 0.999 * critical, 1.001 * critical, 3.0], axis))[:, 1].tolist() == [False, False, True, True]
-    # A slab that lies on its side from the start: its height is the size that stands upright.
-    lying = history([[9, 9, 0.2], [0.6, 0.5, 0.2]], [[[0, 0, -0.1], [0, 0, 0.3]]] * 2, np.array([[UPRIGHT, turn(math.pi / 2, (0, 1, 0))]] * 2))
-    assert not results.fallen(lying).any() and (lying.lean < 1e-7).all()
+    # A slab that lies on its side from the start: its height is the size that stands upright; whatever the round-off of its quaternion.
+    for yaw in range(50):
+        turned = _pose.product(turn(yaw, (0, 0, 1)), turn(math.pi / 2, (0, 1, 0)))
+        lying = history([[9, 9, 0.2], [0.6, 0.5, 0.2]], [[[0, 0, -0.1], [0, 0, 0.3]]] * 2, np.array([[UPRIGHT, turned]] * 2))
+        assert not results.fallen(lying).any() and (lying.lean < 1e-7).all(), yaw
     stands = results.collapse(rocking([0, 0.1, 0.05]))
     assert not stands.collapsed and math.isnan(stands.time) and len(stands.fallen) == 0 and "stands" in str(stands)
     for drop, lies in ((0.19, False), (0.21, True)):
@@ -282,6 +287,12 @@ def test_blocks_behind_are_drawn_first():
     seen = view.View(h, (0.5, -1, 0.4))
     polygons, rows, _ = seen.faces(h.corners(0))
     assert all(np.cross(p[1] - p[0], p[2] - p[1]) > 0 for p in polygons)  # counterclockwise: outsides
+    assert np.allclose(np.column_stack([seen.frame, seen.towards]).T @ np.column_stack([seen.frame, seen.towards]), np.eye(3), rtol=0, atol=1e-12)
+    assert np.array_equal(view.View(h, (0, 0, 1)).frame, np.eye(3)[:, :2])
+    # Parallelograms; of a box three faces show, each as large as its part across the view.
+    assert np.allclose(polygons[:, 0] + polygons[:, 2], polygons[:, 1] + polygons[:, 3], rtol=0, atol=1e-12)
+    areas = np.bincount(rows, np.cross(polygons[:, 1] - polygons[:, 0], polygons[:, 2] - polygons[:, 1]))
+    assert np.allclose(areas, (np.roll(h.sizes, 1, axis=1) * np.roll(h.sizes, 2, axis=1)) @ np.abs(seen.towards), rtol=1e-12)
     for towards in ((0.5, -1, 0.4), (0, -1, 0)):  # of no blocks, no faces
         assert not any(map(len, view.View(h, towards).faces(h.corners(0)[:0])))
     depth = h.position[0] @ seen.towards
@@ -303,8 +314,17 @@ def test_blocks_behind_are_drawn_first():
     assert checked > 300 and len(np.unique(depth)) > 1
 
 
-def test_pictures_show_the_movement_enlarged(tmp_path):
+@pytest.mark.parametrize("pairs, depth, order", [([], [3, 1, 2], [1, 2, 0]),  # the deepest first
+                                                 ([(2, 0), (0, 1)], [1, 2, 3], [2, 0, 1]),  # but behind comes before in front
+                                                 ([(0, 1), (1, 2), (2, 0), (0, 3)], [3, 1, 2, 4], [1, 2, 0, 3])])  # of a circle too
+def test_the_order_of_drawing(pairs, depth, order):
+    behind, before = np.array(pairs, dtype=int).reshape(-1, 2).T
+    assert view._sorted(behind, before, np.array(depth, dtype=float)).tolist() == order
+
+
+def test_pictures_show_the_movement_enlarged(monkeypatch, tmp_path):
     from masonry.results import pictures
+    from matplotlib.figure import Figure
 
     h = rocking([0, 0.1, -0.05], shift=(0.4, 0, 0))
     painter = pictures._Painter(h, [1], 3.0, "rotation", None, "")
@@ -314,10 +334,18 @@ def test_pictures_show_the_movement_enlarged(tmp_path):
     # The upper right corner of the block: movement times three. Half of the smallest block where no factor is given.
     start, moved = h.corners(0)[1], h.corners(1)[1]
     assert np.allclose(h.corners(1, 3.0)[1] - start, 3 * (moved - start), rtol=0, atol=ROUND)
-    assert abs(view.enlargement(h, [1], 0.5) * np.linalg.norm(moved - start, axis=1).max() - 0.25) < 0.25 or view.enlargement(h, [1], 0.5) == 1
+    for samples in ([1], [0, 1, 2]):
+        assert abs(view.enlargement(h, samples, 0.5) * np.linalg.norm(moved - start, axis=1).max() - 0.25) < ROUND
+    assert view.enlargement(rocking([0, 0.2]), [1], 0.5) == 1  # its top moves by 0.4 m
     for name, act in (("shape", results.draw), ("joints", results.draw_joints)):
         act(h, tmp_path / f"{name}.png")
         assert (tmp_path / f"{name}.png").read_bytes()[:4] == b"\x89PNG"
+    # Where no time is given, the sample of the largest drift.
+    drawn = []
+    monkeypatch.setattr(Figure, "savefig", lambda figure, path, **given: drawn.append(figure))
+    results.draw(h, "shape.png", enlarge=1)
+    drawn = np.concatenate([path.vertices for path in drawn[0].axes[0].collections[-1].get_paths()])
+    assert abs(drawn[:, 0].max() - h.corners(1)[:, :, 0].max()) < ROUND
 
 
 def test_what_solvers_leave_is_no_movement(tmp_path):
@@ -361,7 +389,11 @@ def test_a_balance_that_closes_by_definition_is_not_shown_as_its_error(monkeypat
     monkeypatch.setattr(Figure, "savefig", lambda figure, path, **given: drawn.append(figure))
     h = rocking([0, 0.1, 0])
     energies = np.array([[0, 1e6, 0, 0, 0, 0, 0], [3, 1e6 + 5, 0, 1, 0, 2, 11], [0, 1e6, 0, 2, 0, 5 + lacking, 7]])
-    results.draw_energy(history(h.sizes, h.position, h.orientation, energies=energies), "energy.png")
+    h = history(h.sizes, h.position, h.orientation, energies=energies)
+    results.draw_energy(h, "energy.png")
+    lines = {line.get_label(): line.get_ydata().tolist() for line in drawn[0].axes[0].lines}
+    assert lines["work of the base"] == [0, 11, 7] and lines["potential, since the start"] == [0, 5, 0] and lines["dissipated by friction"] == [0, 1, 2]
+    assert panels == 1 or drawn[0].axes[1].lines[0].get_ydata().tolist() == h.energy["error"].tolist()
     texts = [text.get_text() for text in drawn[0].axes[0].get_legend().get_texts()]
     assert len(drawn[0].axes) == panels and ("dissipated by impacts and numerically" in texts) == (panels == 1)
     assert drawn[0].axes[-1].get_xlabel() == "time (s)"
@@ -378,7 +410,7 @@ def test_a_film_has_the_frames_asked_for(tmp_path):
             gif.seek(k)
             durations.append(gif.info["duration"])
     assert len(durations) == 5 and sum(durations) == 9 * 250  # frames of one sample are one, shown longer
-    results.film(h, tmp_path / "slow.gif", start=0.5, end=1.0, frames_per_second=2, speed=0.5, progress=False)
+    results.film(h, tmp_path / "slow.gif", start=0.5, end=1.0, frames_per_second=1, speed=0.5, progress=False)
     with Image.open(tmp_path / "slow.gif") as gif:
         assert gif.n_frames == 2
     results.film(h, tmp_path / "end.gif", frames_per_second=11, speed=0.4, progress=False)  # 55 times 0.4/11 s is 2 s and round-off
