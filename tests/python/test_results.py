@@ -285,7 +285,8 @@ def test_blocks_behind_are_drawn_first():
     sizes = np.where(rng.random((27, 1)) < 0.5, [1.0, 0.4, 0.9], [0.3, 1.0, 1.0])
     h = history(np.vstack([[9, 9, 1], sizes]), [np.vstack([[1, 1, -1], center])])
     seen = view.View(h, (0.5, -1, 0.4))
-    polygons, rows, _ = seen.faces(h.corners(0))
+    polygons, rows, bright = seen.faces(h.corners(0))
+    assert np.allclose(np.unique(bright.round(9)), [0.7, 0.9, 1])  # flanks, fronts, tops
     assert all(np.cross(p[1] - p[0], p[2] - p[1]) > 0 for p in polygons)  # counterclockwise: outsides
     assert np.allclose(np.column_stack([seen.frame, seen.towards]).T @ np.column_stack([seen.frame, seen.towards]), np.eye(3), rtol=0, atol=1e-12)
     assert np.array_equal(view.View(h, (0, 0, 1)).frame, np.eye(3)[:, :2])
@@ -320,6 +321,13 @@ def test_blocks_behind_are_drawn_first():
 def test_the_order_of_drawing(pairs, depth, order):
     behind, before = np.array(pairs, dtype=int).reshape(-1, 2).T
     assert view._sorted(behind, before, np.array(depth, dtype=float)).tolist() == order
+
+
+@pytest.mark.parametrize("side", [1, -1])
+def test_a_small_block_at_the_end_of_a_long_one_hides_it_or_is_hidden(side):
+    """In front its middle is the deeper one, behind the nearer one."""
+    h = history([[9, 9, 1], [4, 0.3, 0.3], [0.3, 0.3, 0.3]], [[[0, 0, -5], [0, 0, 0], [1.9 * side, -0.35 * side, 0]]])
+    assert view.View(h, (-0.8, -1, 0.4)).faces(h.corners(0)[1:])[1].tolist() == [0, 0, 0, 1, 1, 1][::side]
 
 
 def test_pictures_show_the_movement_enlarged(monkeypatch, tmp_path):

@@ -305,7 +305,8 @@ lifted = dem.block((1, 1, 1), material, center=(5, 0, 0.508))
 refuses(dem.check_blocks, f"floating blocks, which no chain of supports joins to a prescribed body: {beside}, {above}, {lifted};")
 refuses(lambda: dem.check_blocks(tolerance=0.02), f": {beside}, {above};")
 assert dem.check_blocks(floating=False) == [beside, above, lifted]
-assert f"they will fall: {beside}, {above}, {lifted}\n" in said_by(dem.engines)
+for gravity in (0, 1e-3, 9.81):
+    assert (f"they will fall: {beside}, {above}, {lifted}\n" in said_by(dem.engines, gravity=gravity, dt=1e-3)) == (gravity > 0)
 O.bodies[beside].state.blockedDOFs = "xyzXYZ"
 refuses(dem.check_blocks, f": {lifted};")
 for x, z in ((1 - 1e-5, 1.5), (1, 0.7), (-1, 0.7)):  # over an edge that laps by less than the tolerance; by a head joint
@@ -313,6 +314,14 @@ for x, z in ((1 - 1e-5, 1.5), (1, 0.7), (-1, 0.7)):  # over an edge that laps by
         base, material = ground()
         ids = [dem.block((1, 1, 1), material, center=place) for place in ((0, 0, 0.5), (x, 0, z))[::order]]
         refuses(dem.check_blocks, f": {ids[::order][1]};")
+# Made in any order: a stack from the top down, and the base last.
+O.reset()
+material = stone()
+ids = [dem.block((1, 1, 1), material, center=(0, 0, k + 0.5)) for k in (2, 1, 0)]
+base = dem.base((2, 2, 1), material)
+assert dem.check_blocks() == []
+O.bodies[base].state.pos += Vector3(0, 0, 0.1)
+refuses(dem.check_blocks, f"overlapping blocks: {ids[2]} and {base} (by 0.1 m)")
 # Tilts add up about the resting pose, whatever their signs: the pose is that of their sum, to round-off, and the lowest corner touches.
 for axis in "xy":
     for turns in ((0.1, -0.2), (-0.1, 0.05), (0.2, 0.1), (0.1, -0.1), (-0.1, 0.3, -0.1)):
@@ -383,6 +392,7 @@ for opening, words in (
     (0.4, ("openings[0] = 0.4", "(x0, z0, width, height)")),
     (("0.4", 0, 0.4, 0.4), ("x0 = '0.4'", "number")),
     ((0.5, 0, 0.4, 0.4), ("openings[0]", "x0 = 0.5", "multiple of 0.2")),
+    ((0.55, 0, 0.4, 0.4), ("openings[0]", "x0 = 0.55", "multiple of 0.2")),
     ((0.4, 0.1, 0.4, 0.4), ("z0 = 0.1", "multiple of 0.2")),
     ((0.4, 0, nan, 0.4), ("width = nan",)),
     ((0.4, 0, 0.4, 0), ("positive width and height",)),
@@ -400,7 +410,7 @@ for bad, words in ((dict(header_every=1), ("header_every = 1", "at least 2")), (
                    (dict(collar=-1), ("collar = -1", "0 or positive")), (dict(gap=0.2), ("gap = 0.2", "below 0.133333 m"))):
     refuses(lambda: dem.two_wythe_wall(6, 4, ok, unused, base, **{"header_every": 3, **bad}), *words)
 for arguments, words in (((0, 3, 3, ok), ("courses = 0",)), ((2, 1, 3, ok), ("along_x = 1", "at least 2")), ((2, 3, 2.5, ok), ("along_y = 2.5", "whole number")),
-                         ((2, 3, 3, (0.4, 0.05, 0.2)), ("size = (0.4, 0.05, 0.2)", "1/4 to 3/4"))):
+                         *(((2, 3, 3, (0.4, y, 0.2)), (f"size = (0.4, {y}, 0.2)", "1/4 to 3/4")) for y in (0.05, 0.099, 0.301, 0.4))):
     refuses(lambda: dem.return_wall(*arguments, unused, base), *words)
 for arguments, options, words in (((0, ok), {}, ("courses = 0",)), ((2, ok), dict(per_course=3), ("per_course = 3", "1 or 2")),
                                   ((2, (0.4, 0.3, 0.2)), dict(per_course=2), ("size = (0.4, 0.3, 0.2)", "twice its y")), ((2, (1, nan, 1)), {}, ("size", "nan"))):
