@@ -92,7 +92,7 @@ refuses(lambda: dem.record_motion([0, 1], ids=[base]), "record = [0, 1]", "mason
 for bad in (0, "0", [0.5], [-1]):
     refuses(lambda: dem.record_motion(masonry.Record(0.01, [0, 1]), ids=bad), f"ids = {bad!r}", "a list of ids")
 assert dem.record_motion(masonry.Record(0.01, [0, 1]), ids=np.array([base])).ids == [base]
-for bad in ("x", (2, 0, 0), (1, 0), (nan, 0, 1), 1, None):
+for bad in ("x", (2, 0, 0), (0.6, 0, 0), (1, 0), (nan, 0, 1), 1, None):
     refuses(lambda: dem.record_motion(masonry.Record(0.01, [0, 1]), ids=[base], direction=bad), f"direction = {bad!r}: must be a unit vector of three numbers")
 for good in ([0, 0, 1], np.array([0, 0, 1.0]), Vector3(0, 0, 1)):
     assert dem.record_motion(masonry.Record(0.01, [0, 1]), ids=[base], direction=good).direction == Vector3(0, 0, 1)
@@ -141,6 +141,11 @@ for below, above, said in ((dict(frictionAngle=0.2), dict(frictionAngle=1.2, res
     block = dem.block((0.6, 1, 3), other, on=dem.base((4, 2, 0.2), ground))
     text = said_by(dem.engines)
     assert f"block {block} rocks on body 0 about its narrow side it asks for a friction coefficient {said}" in text if said else "pivots slip" not in text, text
+for heights in ((3, 2.4), (2.4, 3)):  # the worst of several
+    O.reset()
+    base = dem.base((9, 2, 0.2), material := stone(0.3, noSlip=False, frictionAngle=0.5))
+    ids = [dem.block((0.6, 1, height), material, center=(x, 0, height / 2)) for x, height in zip((-2, 2), heights)]
+    assert f"block {ids[heights.index(3)]} rocks on body {base} about its narrow side it asks for a friction coefficient of 2.7 " in said_by(dem.engines)
 base, block, _ = one_block(5)
 assert "BlockRecorder records nothing until its iterPeriod or virtPeriod is set\n" in said_by(dem.engines, recorder=dem.BlockRecorder(ids=[block]))
 base, block, _ = one_block(5)

@@ -3,10 +3,12 @@
 import copy
 import importlib
 import pickle
+import sys
 
 import numpy as np
 import yade
 from masonry import dem
+from rocking_scene import refuses
 from yade import O
 
 import masonry._yade
@@ -70,3 +72,8 @@ importlib.reload(dem)
 assert dem.BlockMat is before and masonry._yade.setup() == names
 O.materials.append(dem.BlockMat(label="stone"))
 assert O.materials["stone"].dispHierarchy() == ["BlockMat", "FrictMat", "ElastMat", "Material"]
+
+# Where the plugin has not been built the import says what to do.
+sys.modules["masonry._yade"] = None
+refuses(dem._load.load_classes, "build it with `cmake -B build", "PYTHONPATH", kind=ImportError)
+sys.modules["masonry._yade"] = masonry._yade

@@ -76,8 +76,9 @@ def after(ids):
 
 sizes = [(0.3 + 0.01 * k, 0.5, 1 + 0.02 * k) for k in range(24)]
 ids = row(sizes, shaking)
-assert integrator().method == "localised" and dem.structures() == [[i] for i in ids]
+assert (integrator().method, integrator().tolerance) == ("localised", 1e-9) and dem.structures() == [[i] for i in ids]
 refuses(lambda: dem.structures(gap=0), "gap", "at most 1")
+assert "; 24 structures apart, each stepped by itself; dt" in said_by(dem.engines, dt=1e-3)
 assert dem.structures(gap=1) == [[i] for i in ids]  # 2.4 to 2.7 m apart, the smallest size is 0.3 m
 many = after(ids)
 assert len(integrator().impactTimes) > 24 and integrator().failures == 0
@@ -85,7 +86,7 @@ for k in (0, 7, 23):
     alone = after(row([size if j == k else None for j, size in enumerate(sizes)], shaking))
     assert np.abs(alone - many[k]).max() < 1e-9, k  # round-off of the instants of impacts, which the base's velocity takes over
 row(sizes, lambda base, ids: dem.PulseTrainEngine(ids=[base], impulse=0.1, times=[0.1]))
-assert integrator().method == "wall"
+assert (integrator().method, integrator().tolerance) == ("wall", 1e-3)
 
 for options, words in (({"impact_order": "simultaneous"}, ("impactOrder", "'sequential'")), ({"tolerance": 1e-9}, ("tolerance", "1e-6 to 1e-2")),
                        ({"model": "compliant"}, ("method", "rigid")), ({"method": "fast"}, ("method", "'fast'"))):
