@@ -42,7 +42,8 @@ for above, weights in ((0, 1.0), (1, 1.5)):
     base = dem.base((4, 2, 0.2), stone)
     for place in [(-0.5, 0, 0.2), (0.5, 0, 0.2), (0, 0, 0.6)][: 2 + above]:
         dem.block((1, 0.5, 0.4), stone, center=place)
-    O.engines = quiet_engines(penetration=1e-4)
+    said = said_by(lambda: setattr(O, "engines", dem.engines(model="compliant", penetration=1e-4)))
+    assert f"; stiffness {stone.normalStiffness:.3g} Pa/m (the weight presses the joints in by 0.0001 of the width); dt" in said, said
     pressure = weights * 2000 * 0.4 * 9.81
     assert abs(stone.normalStiffness * 1e-4 * 0.5 / pressure - 1) < 1e-9 and stone.shearStiffness == stone.normalStiffness, (weights, stone.normalStiffness)
 
@@ -81,3 +82,14 @@ O.step()
 joint = O.interactions[0, block].phys
 normal, shear = joint.normalStiffness, joint.shearStiffness
 assert math.isclose(normal, 2 / (1 / 1e9 + 1 / 3e9)) and math.isclose(shear, 2 / (1 / 4e8 + 1 / 1e9)), (normal, shear)
+
+# Where nothing touches yet the critical step is that of a landing with all springs of the largest face at a corner, (2/step)^2 = k A (1/m + r^2/I). The
+# base, thin and light, does not move.
+O.reset()
+stone = dem.BlockMat(density=2000, normalStiffness=1e9, shearStiffness=4e8)
+dem.base((1, 1, 0.01), stone)
+dem.block((0.5, 0.6, 1.5), stone, center=(0, 0, 9))
+quiet_engines()
+mass = 2000 * 0.5 * 0.6 * 1.5
+stiffness = 1e9 * 0.6 * 1.5 * (1 / mass + (0.5**2 + 0.6**2 + 1.5**2) / 4 / (mass * (0.5**2 + 0.6**2) / 12))
+assert math.isclose(O.dt, 0.2 * 2 / math.sqrt(stiffness)), O.dt

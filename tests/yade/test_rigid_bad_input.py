@@ -1,5 +1,6 @@
 """Bad input to rigid blocks: one clear error that names attribute, value and what is allowed, before anything has moved."""
 
+import itertools
 import math
 
 from masonry import dem
@@ -109,7 +110,15 @@ scene()
 O.bodies.append(utils.sphere((9, 9, 9), 1, material=O.bodies[block].mat))
 refuses_to_run("BlockMat", "no Box")
 
-# Overlap: at the start, and where a script puts a block; right again, the run goes on.
+# Overlap by more than 5e-5 of the smallest size, which is the 0.3 m of the base; then at the start, and where a script puts a block; right again, the run goes on.
+for share, model in itertools.product((4e-5, 6e-5), ("planar", "spatial")):
+    base, block, _ = one_block(5)
+    O.bodies[block].state.pos -= Vector3(0, 0, share * 0.3)
+    if share > 5e-5:
+        refuses(lambda: rigid_engines(model=model), f"overlapping blocks: {base} and {block} (by 1.8e-05 m)")
+    else:
+        O.engines = rigid_engines(model=model)
+        O.step()
 scene()
 O.bodies[block].state.pos -= Vector3(0, 0, 1e-3)
 refuses_to_run(f"Blocks {base} and {block}", "0.001", "overlap")

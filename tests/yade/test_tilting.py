@@ -33,7 +33,7 @@ def found(**options):
     result = dem.TiltTable(**options).bisect(progress=False)
     low, high = result.bracket
     assert low <= result.multiplier <= high and high - low <= CLOSE * high, result
-    assert not result.doubts, result
+    assert not result.doubts and (result.joints["opening"] >= 0).all(), result
     return result
 
 
@@ -150,6 +150,8 @@ assert 1e-3 * 0.1 < way <= moved < 1.01 * way, (moved, way)
 # first look after it: five steps of a twentieth of the time. Where it is too small by that the block stands, which is seen before ---
 hold = 3 * math.sqrt(0.4 / 9.81)
 falls, stands = (table.trial(0.6 / 0.4 * (1 + excess)) for excess in (2e-5, -2e-5))
+soon = table.trial(0.6 / 0.4 * (1 + 1e-3))  # by `share`, 2e-3 of 0.1 m, well before: with the square of the time, which grows by a twentieth five times in a look
+assert soon.verdict == "collapse" and soon.time < hold / 2 and 2e-4 < soon.moved < 2 * 2e-4, soon
 assert falls.verdict == "collapse" and falls.moved < 2e-3 * 0.1 and hold <= falls.time < (1 + tilting._LOOK * tilting._SHARE_OF_TIME) * hold, falls
 assert stands.verdict == "rest" and stands.time < hold, stands
 
@@ -173,28 +175,42 @@ assert first.bracket == again.bracket and np.array_equal(first.joints, again.joi
 assert start == [(b.state.pos, b.state.ori) for b in O.bodies] and all(b.state.vel.norm() == 0 == b.state.angVel.norm() for b in O.bodies)
 
 # --- the picture; the words of a doubt ---
+from matplotlib.figure import Figure
+figures, save = [], Figure.savefig
+Figure.savefig = lambda figure, *path, **options: figures.append(figure) or save(figure, *path, **options)
 with tempfile.TemporaryDirectory() as folder:
     path = os.path.join(folder, "mechanism.png")
     first.draw(path)
     assert open(path, "rb").read(8) == b"\x89PNG\r\n\x1a\n"
+# The farthest moved corner is drawn 0.4 of the smallest size, 0.3, away; the joint below, 0.3 wide, as the triangle that its opening makes.
+wedge, = figures.pop().axes[0].patches
+across, up = wedge.get_xy().T
+drawn = 0.4 * 0.3 / first._mechanism._moved.max() * first.joints["opening"].max()
+assert abs(abs(across[1:] @ up[:-1] - across[:-1] @ up[1:]) / (0.3 * drawn) - 1) < 1e-2
 trial = table.trial(0.5)
 doubtful = table._collapse(0.5, (0.4, 0.5), [tilting.Trial(0.4, "unclear", 0, 0, 0), tilting.Trial(0.5, "collapse", 0, 0, 3)], table._mechanism())
 assert trial.verdict == "collapse" and str(doubtful).count("NOT TO BE TRUSTED") == 2 and "in 3 steps" in str(doubtful) and "method='wall'" in str(doubtful), doubtful
 
 # --- a picture leaves little room beside the blocks, 0.15 of their extent, however long one is; its legend hides none; a joint seen face on is an outline ---
-from matplotlib.figure import Figure
-figures, save = [], Figure.savefig
-Figure.savefig = lambda figure, *path, **options: figures.append(figure) or save(figure, *path, **options)
 base, stone = ground(0.9)
 for place in (-0.8, 0.8):
     dem.block((0.2, 0.3, 1.0), stone, center=(place, 0, 0.5))
 dem.block((1.8, 0.3, 0.2), stone, center=(0, 0, 1.1))
 back = dem.block((0.2, 0.3, 1.0), stone, center=(0.8, 0.3, 0.5))  # behind a column: their joint is seen face on
-table = dem.TiltTable(model="spatial")
+table, end_on = dem.TiltTable(model="spatial"), dem.TiltTable(direction="y", model="spatial")
 O.bodies[back].state.pos += Vector3(0, 0.001, 0)
 with tempfile.TemporaryDirectory() as folder:
-    table._collapse(0.5, (0.4, 0.5), [], table._mechanism()).draw(os.path.join(folder, "portal.png"))
+    for one in (table, end_on):
+        one._collapse(0.5, (0.4, 0.5), [], one._mechanism()).draw(os.path.join(folder, "portal.png"))
 Figure.savefig = save
+# Along x: the base, the far column, the beam, the near columns, of which the one that has moved is drawn 0.4 of 0.2 m away.
+paths = [path.vertices for path in figures[1].axes[0].collections[0].get_paths()]
+assert np.allclose([path[:, 1].max() for path in paths], [0, 1, 1.2, 1, 1], atol=1e-6), paths
+assert np.allclose([paths[-1][:, 0].min(), paths[-1][:, 0].max()], np.array([0.15, 0.45]) + 0.4 * 0.2, atol=1e-6), paths[-1]
+O.bodies[1].state.pos += Vector3(0, 4e-5, 0)  # a 25th of that
+assert table._mechanism().moving() == [back]
+O.bodies[1].state.pos += Vector3(0, 2e-5, 0)
+assert table._mechanism().moving() == [1, back]
 axes, = figures[0].axes
 assert axes.get_legend().get_window_extent().x0 >= axes.get_window_extent().x1 - 1
 assert np.allclose(axes.get_xlim(), (-0.9 - 0.27, 0.9 + 0.27), atol=1e-6) and np.allclose(axes.get_ylim(), (-0.27, 1.2 + 0.27), atol=1e-6), axes.get_ylim()
