@@ -96,7 +96,7 @@ with tempfile.TemporaryDirectory() as folder:
     assert computed == [[-1, 0.1]]
     refuses(lambda: study([{"scale": -1}, {"scale": 0.1}], script, out), "1 of 2 cases failed", kind=RuntimeError)
     assert computed == [[-1]]
-    refuses(lambda: ensemble.run(script, [{"scale": 0.3}], out, time_limit=0.05, progress=False), "stopped after 0.05 s", "none is kept", kind=RuntimeError)
+    refuses(lambda: ensemble.run(script, [{"scale": 0.3}], out, processes=1, time_limit=0.05, progress=False), "stopped after 0.05 s", "none is kept", kind=RuntimeError)
     refuses(lambda: ensemble.result(script, {"scale": 0.3}, out), "no result", kind=KeyError)
     # All that failed are named, and the others are in the table of the error and of the folder. What fails at once
     # begins with the one that is stopped: 20 s are enough for it on a busy machine. The last one hangs when its result is there: it is done.
@@ -114,7 +114,8 @@ with tempfile.TemporaryDirectory() as folder:
     for number in (signal.SIGINT, signal.SIGTERM):
         waiting, started, ended = Path(folder) / "waiting.py", Path(folder) / f"started_{number}", Path(folder) / f"ended_{number}"
         waiting.write_text("import os, pathlib, time\ndef run(case):\n\tpathlib.Path(case['to']).write_text(str(os.getpid()))\n\ttime.sleep(60)\n")
-        program = f"from masonry import ensemble\nensemble.run({str(waiting)!r}, [{{'to': {str(started)!r}}}], {str(ended)!r}, progress=False)"
+        program = "import signal\nsignal.signal(signal.SIGINT, signal.default_int_handler)\n"  # a shell may have started the tests without it
+        program += f"from masonry import ensemble\nensemble.run({str(waiting)!r}, [{{'to': {str(started)!r}}}], {str(ended)!r}, progress=False)"
         process = subprocess.Popen(["/usr/bin/python3", "-c", program], stderr=subprocess.PIPE, text=True,
                                    env={**os.environ, "PYTHONPATH": str(Path(masonry.__file__).parents[1])})
         while not (started.exists() and started.read_text()):

@@ -59,6 +59,8 @@ for mu in (0.2, 0.6):
     result = found()
     assert abs(result.multiplier / mu - 1) < CLOSE, result
     assert marks(result, "slides") == [(base, block)] and marks(result, "opens") == [], result.joints
+    # Each trial has a time of its own, and what does not move at all is at rest after two looks.
+    assert all(abs(t.time - 2 * tilting._LOOK * dem.TiltTable()._dt) < 1e-12 for t in result.trials if t.verdict == "rest"), result.trials
 
 # --- the slow ramp: the same multiplier, from below by at most the stairs between two looks ---
 base, stone = ground(2.0)

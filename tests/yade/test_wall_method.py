@@ -88,6 +88,15 @@ for k in (0, 7, 23):
 row(sizes, lambda base, ids: dem.PulseTrainEngine(ids=[base], impulse=0.1, times=[0.1]))
 assert (integrator().method, integrator().tolerance) == ("wall", 1e-3)
 
+# Up to 20 blocks that are near each other, in space 6, have localised impacts, and any number of those farther apart than a tenth of their size.
+for model, few in (("planar", 20), ("spatial", 6)):
+    for count, pitch, method in ((few, 1, "localised"), (few + 1, 1.09, "wall"), (few + 1, 1.11, "localised")):
+        O.reset()
+        base = dem.base((60, 2, 0.4), stone())
+        for k in range(count):
+            dem.block((1, 1, 1), O.bodies[base].mat, center=(pitch * (k - few / 2), 0, 0.5))
+        assert rigid_engines(model=model)[-1].method == method, (model, count, pitch)
+
 for options, words in (({"impact_order": "simultaneous"}, ("impactOrder", "'sequential'")), ({"tolerance": 1e-9}, ("tolerance", "1e-6 to 1e-2")),
                        ({"model": "compliant"}, ("method", "rigid")), ({"method": "fast"}, ("method", "'fast'"))):
     refuses(lambda: wall(4, 6, 0.1, **{"method": "wall", **options}), *words)
