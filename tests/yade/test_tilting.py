@@ -204,7 +204,6 @@ O.bodies[back].state.pos += Vector3(0, 0.001, 0)
 with tempfile.TemporaryDirectory() as folder:
     for one in (table, end_on):
         one._collapse(0.5, (0.4, 0.5), [], one._mechanism()).draw(os.path.join(folder, "portal.png"))
-Figure.savefig = save
 # Along x: the base, the far column, the beam, the near columns, of which the one that has moved is drawn 0.4 of 0.2 m away.
 paths = [path.vertices for path in figures[1].axes[0].collections[0].get_paths()]
 assert np.allclose([path[:, 1].max() for path in paths], [0, 1, 1.2, 1, 1], atol=1e-6), paths
@@ -219,6 +218,17 @@ assert np.allclose(axes.get_xlim(), (-0.9 - 0.27, 0.9 + 0.27), atol=1e-6) and np
 outline = max((patch.get_xy() for patch in axes.patches), key=lambda corners: np.ptp(corners[:, 1]))
 assert np.allclose([outline.min(axis=0), outline.max(axis=0)], [[0.7, 0], [0.9, 1.0]], atol=1e-6) and len(outline) == 5, outline
 assert all(np.abs(np.diff(outline, axis=0)).min(axis=1) < 1e-6), outline  # four upright and level sides
+
+# A joint that slides is a line on the side of its first block.
+base, stone = ground(0.3)
+block = dem.block((0.6, 0.5, 0.4), stone, on=base)
+table = dem.TiltTable()
+O.bodies[block].state.pos += Vector3(0.001, 0, 0)
+with tempfile.TemporaryDirectory() as folder:
+    table._collapse(0.3, (0.3, 0.3), [], table._mechanism()).draw(os.path.join(folder, "slides.png"))
+Figure.savefig = save
+line, = (line.get_xydata() for line in figures[-1].axes[0].lines if len(line.get_xydata()))
+assert np.allclose(np.sort(line[:, 0]), [-0.3, 0.3], atol=1e-6) and np.allclose(line[:, 1], 0, atol=1e-6) and not figures[-1].axes[0].patches, line
 
 # --- of a joint on which a block turns, the corner that goes farthest has the slip, whatever gaps of 1e-9 m its corners have ---
 base, stone = ground(0.5)
