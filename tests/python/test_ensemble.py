@@ -1,6 +1,8 @@
 """Statistics of ensembles against closed forms and SciPy, artificial records against their spectrum."""
 
 import math
+import signal
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -175,3 +177,17 @@ def test_artificial_records_grow_and_decay_by_their_envelope():
     for low, high in ((0.9, 1.1), (1.4, 1.6), (3, 5), (7.9, 8.1), (9.4, 9.6)):
         part = (t >= low) & (t <= high)
         assert abs(square[part].mean() / (envelope[part] ** 2).mean() - 1) < 0.25, (low, high)
+
+
+def test_what_ends_a_program_stays_its_own():
+    before, own = signal.getsignal(signal.SIGTERM), lambda number, frame: None
+    try:
+        for handler in (own, signal.SIG_DFL):
+            signal.signal(signal.SIGTERM, handler)
+            with ensemble._termination():
+                assert (signal.getsignal(signal.SIGTERM) is handler) == (handler is own)
+            assert signal.getsignal(signal.SIGTERM) is handler
+        with ThreadPoolExecutor() as pool:  # where signals cannot be set
+            pool.submit(ensemble._termination().__enter__).result()
+    finally:
+        signal.signal(signal.SIGTERM, before)

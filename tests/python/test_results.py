@@ -287,6 +287,8 @@ def test_blocks_behind_are_drawn_first():
     seen = view.View(h, (0.5, -1, 0.4))
     polygons, rows, bright = seen.faces(h.corners(0))
     assert np.allclose(np.unique(bright.round(9)), [0.7, 0.9, 1])  # flanks, fronts, tops
+    turned = history([[9, 9, 1], [1, 0.4, 0.9]], [[[1, 1, -1], [0, 0, 0]]], np.array([[UPRIGHT, turn(math.pi / 6, (0, 0, 1))]]))
+    assert np.allclose(np.sort(seen.faces(turned.corners(0)[1:])[2]), [0.9 - 0.2 * math.cos(math.pi / 6), 0.9 - 0.2 / 2, 1], rtol=0, atol=1e-12)
     assert all(np.cross(p[1] - p[0], p[2] - p[1]) > 0 for p in polygons)  # counterclockwise: outsides
     assert np.allclose(np.column_stack([seen.frame, seen.towards]).T @ np.column_stack([seen.frame, seen.towards]), np.eye(3), rtol=0, atol=1e-12)
     assert np.array_equal(view.View(h, (0, 0, 1)).frame, np.eye(3)[:, :2])
@@ -316,7 +318,7 @@ def test_blocks_behind_are_drawn_first():
 
 
 @pytest.mark.parametrize("pairs, depth, order", [([], [3, 1, 2], [1, 2, 0]),  # the deepest first
-                                                 ([(2, 0), (0, 1)], [1, 2, 3], [2, 0, 1]),  # but behind comes before in front
+                                                 ([(2, 1), (1, 0)], [1, 2, 3], [2, 1, 0]),  # but behind comes before in front
                                                  ([(0, 1), (1, 2), (2, 0), (0, 3)], [3, 1, 2, 4], [1, 2, 0, 3])])  # of a circle too
 def test_the_order_of_drawing(pairs, depth, order):
     behind, before = np.array(pairs, dtype=int).reshape(-1, 2).T

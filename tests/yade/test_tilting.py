@@ -52,6 +52,14 @@ for n in (1, 2, 4):
         assert marks(result, "opens") == [(base, ids[0])] and marks(result, "slides") == [], (n, result.joints)
         assert result.blocks == ids
 
+# --- two blocks, the upper one 0.1 aside: both turn about the edge that their common centre, 0.05 aside and 0.4 above it, is farther from or nearer to ---
+for direction, aside, half in (("x", 0.05, 0.3), ("-x", -0.05, 0.3), ("y", 0.05, 0.25), ("-y", -0.05, 0.25)):
+    base, stone = ground(2.0)
+    lower = dem.block((0.6, 0.5, 0.4), stone, on=base)
+    dem.block((0.6, 0.5, 0.4), stone, center=(0.1, 0, 0.6) if "x" in direction else (0, 0.1, 0.6))
+    result = found(direction=direction)
+    assert abs(result.multiplier / ((half - aside) / 0.4) - 1) < CLOSE and marks(result, "opens") == [(base, lower)], (direction, result)
+
 # --- a block that slides does so at mu; the joint slides and stays closed ---
 for mu in (0.2, 0.6):
     base, stone = ground(mu)
