@@ -319,7 +319,7 @@ def test_blocks_behind_are_drawn_first():
 
 @pytest.mark.parametrize("pairs, depth, order", [([], [3, 1, 2], [1, 2, 0]),  # the deepest first
                                                  ([(2, 1), (1, 0)], [1, 2, 3], [2, 1, 0]),  # but behind comes before in front
-                                                 ([(0, 1), (1, 2), (2, 0), (0, 3)], [3, 1, 2, 4], [1, 2, 0, 3])])  # of a circle too
+                                                 ([(0, 1), (1, 2), (2, 0), (0, 3)], [3, 1, 2, 0], [1, 2, 0, 3])])  # of a circle too, not of what is before it
 def test_the_order_of_drawing(pairs, depth, order):
     behind, before = np.array(pairs, dtype=int).reshape(-1, 2).T
     assert view._sorted(behind, before, np.array(depth, dtype=float)).tolist() == order

@@ -86,7 +86,7 @@ class View:
 
     def back_to_front(self, corners):
         """Order of the blocks in which each is drawn after those behind it: of two that overlap in the picture, the face of either that
-        separates them best tells. Where that goes around in a circle, the middle's depth does. From the side, with all middles at one depth: the
+        separates them best tells. Of those that go around in a circle the one whose middle is the deepest comes first. From the side, with all middles at one depth: the
         order given."""
         center = corners.mean(axis=1)
         depth = center @ self.towards
@@ -109,26 +109,34 @@ class View:
         return _sorted(behind[told], before[told], depth)
 
 
+def _grouped(keys, values, count):
+    """The values of each key 0, 1, ..., count - 1: lists."""
+    order = np.argsort(keys, kind="stable")
+    return [part.tolist() for part in np.split(values[order], np.searchsorted(keys[order], np.arange(1, count)))]
+
+
 def _sorted(behind, before, depth):
-    """Topological order by the pairs; among those that are free the deepest first."""
-    order = np.argsort(behind, kind="stable")
-    first = np.searchsorted(behind[order], np.arange(len(depth) + 1)).tolist()
-    hides, waits = before[order].tolist(), np.bincount(before, minlength=len(depth)).tolist()
-    by_depth = np.argsort(depth, kind="stable").tolist()
+    """Topological order by the pairs; among those that are free the deepest first, as in a circle."""
+    hides, awaits = _grouped(behind, before, len(depth)), _grouped(before, behind, len(depth))
+    waits, by_depth = [len(those) for those in awaits], np.argsort(depth, kind="stable").tolist()
     rank = {block: k for k, block in enumerate(by_depth)}
     ready, done, result, next_stuck = [rank[b] for b in range(len(depth)) if not waits[b]], set(), [], 0
     heapq.heapify(ready)
     while len(result) < len(depth):
-        if not ready:  # a circle
+        if not ready:  # from one that waits to one that it waits for, until that comes again: a circle
             while by_depth[next_stuck] in done:
                 next_stuck += 1
-            ready.append(next_stuck)
+            block, trail = by_depth[next_stuck], []
+            while block not in trail:
+                trail.append(block)
+                block = next(b for b in awaits[block] if b not in done)
+            ready.append(min(rank[b] for b in trail[trail.index(block):]))
         block = by_depth[heapq.heappop(ready)]
         if block in done:
             continue
         done.add(block)
         result.append(block)
-        for other in hides[first[block]:first[block + 1]]:
+        for other in hides[block]:
             waits[other] -= 1
             if waits[other] == 0:
                 heapq.heappush(ready, rank[other])
