@@ -77,6 +77,8 @@ table = dem.TiltTable()
 result = table.ramp(progress=False)
 stair = 0.02 * tilting._LOOK * table._dt / table._unit
 assert -2 * stair < result.multiplier - 0.75 <= 1e-9 and result.bracket[1] > 0.75, result
+before = result.trials[0].time - tilting._LOOK * table._dt  # the last stair was put on; by 0.02 in sqrt(height / gravity), 0.8 m
+assert math.isclose(result.bracket[1], 0.02 * before / math.sqrt(0.8 / 9.81), rel_tol=1e-9), result
 assert marks(result, "opens") == [(0, 1)], result.joints
 
 # --- a block that slides at 0.3 over a gap of half a millimetre, then leans on one as heavy that slides at 0.6: the two stand up to 0.45,
