@@ -157,6 +157,7 @@ for thing, wrong, near in ((dem.BlockMat(), "restitutoin", "restitution"), (dem.
     for act in (lambda: setattr(thing, wrong, 1), lambda: type(thing)(**{wrong: 1})):
         refuses(act, f"{type(thing).__name__} has no attribute '{wrong}': did you mean {near}", kind=AttributeError)
 refuses(lambda: dem.BlockMat(xyzzy=1), "see help(dem.BlockMat)", kind=AttributeError)
+refuses(lambda: dem.MoreauJeanIntegrator(largestTimeStep=1), "largestTimeStep", kind=AttributeError)  # it is there, to be read
 motion = dem.RecordMotionEngine(dead=True)
 motion.label, motion.dead = "quake", False
 assert motion.label == "quake" and not motion.dead

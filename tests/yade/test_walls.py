@@ -422,7 +422,7 @@ good = dict(x=0, y=0, z=1, size_x=1, size_y=1, size_z=1)
 for rows, words in (([], ("at least one row",)), ([good, {**good, "size_x": 0}], ("row 1", "size_x = 0", "positive")), ([{**good, "x": "far"}], ("row 0", "x = 'far'")),
                     ([{**good, "y": nan}], ("y = nan", "finite")), ([{**good, "size_x": 1e300}], ("size_x = 1e+300", "1e+06")),
                     ([{k: v for k, v in good.items() if k != "size_z"}], ("row 0", "there is no column size_z")), ([(0, 0, 0, 1, 1)], ("size_z = None",)),
-                    ([(0, 0, 0, 1, 1, 1, 0, 0, "", "", "", "", "", 5)], ("row 0", "more values")), ([{**good, "rotation_y": 90}], ("rotation_y = 90", "rad")), (None, ("table = None", "rows")), ([{**good, "sizex": 1}], ("row 0", "'sizex'", "size_x", "id, name")),
+                    ([(0, 0, 0, 1, 1, 1, 0, 0, "", "", "", "", "", 5)], ("row 0", "more values")), *(([{**good, "rotation_y": turn}], (f"rotation_y = {turn}", "rad")) for turn in (90, 6.3, -6.3)), (None, ("table = None", "rows")), ([{**good, "sizex": 1}], ("row 0", "'sizex'", "size_x", "id, name")),
                     ([{**good, "rotation_z": inf}], ("rotation_z = inf",)), ([{**good, "qw": 1}], ("there is no column qx",)),
                     ([{**good, "qw": 1, "qx": 1, "qy": 0, "qz": 0}], ("qw, qx, qy, qz", "length 1")), ([{**good, "material": "tuff"}], ("row 0", "'tuff'", "must be one of"))):
     refuses(lambda: dem.blocks_from_table(rows, unused), *words)

@@ -45,7 +45,7 @@ def _check(color, enlarge):
         positive_given("enlarge", enlarge, ", or None")
 
 
-def _figure(view, shown, title, columns=1):
+def _figure(view, shown, columns=1):
     """Axes for a wall that fills `shown` (points in the picture)."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
@@ -66,8 +66,6 @@ def _figure(view, shown, title, columns=1):
             bar = nice(width / 4)
             axes.plot([left, left + bar], [low - margin / 2] * 2, color="k", linewidth=2, zorder=3)
             axes.text(left + 1.1 * bar, low - margin / 2, f"{bar:g} m", va="center", fontsize="small", zorder=3)
-    if title:
-        all_axes[0].set_title(title, fontsize="small")
     return figure, all_axes
 
 
@@ -90,7 +88,7 @@ class _Painter:
         self._prescribed, self._unmoved = np.array(to_rgb(_PRESCRIBED)), np.array(to_rgb(_UNMOVED))
         start, free = history.corners(0), history.free
         shown = np.concatenate([self._view.place(history.corners(k, self._enlarge)[free]).reshape(-1, 2) for k in {0, *samples}])
-        self.figure, (self._axes,) = _figure(self._view, shown[np.isfinite(shown).all(axis=1)], " ")
+        self.figure, (self._axes,) = _figure(self._view, shown[np.isfinite(shown).all(axis=1)])
         self._axes.add_collection(LineCollection(self._view.outlines(start[free]), colors="0.6", linewidths=0.6, linestyles="--", zorder=1))
         self._blocks = PolyCollection([], edgecolors="0.2", linewidths=0.5 if len(start) < 300 else 0.25, zorder=2)
         self._axes.add_collection(self._blocks)
@@ -178,7 +176,7 @@ def draw_joints(history, path, time=None, view=None, title=""):
     when = "largest" if time is None else f"at {history.time[history.sample(time)]:.3f} s"
     stands = ~fallen(history)[history.sample(time)][joint_rows(history)].any(axis=1)
     least = 1e3 * still(history)
-    figure, panels = _figure(view, view.place(corners[history.free]).reshape(-1, 2), "", columns=2)
+    figure, panels = _figure(view, view.place(corners[history.free]).reshape(-1, 2), columns=2)
     for axes, name, colours, none in zip(panels, ("opening", "slip"), ("YlOrRd", "YlGnBu"), ("nothing opened", "nothing slid")):
         values = 1e3 * table[name]
         most, beyond = _scale(values, stands, least)
