@@ -139,11 +139,9 @@ constexpr double crossing = 0.2;
 // Sine of the angle between two faces from which on one leans on the border of the other. Larger: a vertex that slides over that border is
 // kicked by it; smaller: vertices of flat joints, which slide to and fro across their borders, come and go.
 constexpr double leans = 1e-3;
-
-// Distance, relative to the smallest half size, up to which two points of a pair are at one place: one takes over what the other carries,
-// and where the one touches the other does not land. Smaller: vertices, up to vertexReach beyond an edge, and crossings miss each other;
-// larger: a vertex that lands so near to the end of a face that another one leans on does so in the next step, plastically.
-constexpr double samePlace = 2 * contact::vertexReach;
+// Distance from that border, relative to the smallest half size, within which such a vertex is none of the contact. Larger: where the block
+// falls back on its face, that carries it so far from its end; smaller: what slides farther in a step is kicked.
+constexpr double passing = 0.02;
 
 } // namespace masonry::tolerance::rigid
 

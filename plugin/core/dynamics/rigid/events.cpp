@@ -47,7 +47,7 @@ namespace {
 
 } // namespace
 
-template <class K> Event findEvent(const RigidSystem<K>& s, SmoothStep<K>& step, double slow, const std::vector<PointRef>& passing)
+template <class K> Event findEvent(const RigidSystem<K>& s, SmoothStep<K>& step, double slow)
 {
 	Event        first;
 	const double h = step.trial().h, tiny = tolerance::rigid::gap * step.scales.length, still = tolerance::rigid::parting * step.scales.stepSpeed(h);
@@ -60,7 +60,7 @@ template <class K> Event findEvent(const RigidSystem<K>& s, SmoothStep<K>& step,
 			const PointRef         ref { c, i };
 			if (!point.closed) {
 				const double zero = zeroOf(s, ref), gap = step.frame(c, i).gap - zero;
-				if (gap >= -tiny || contains(step.anticipated, ref) || contains(passing, ref)) continue;
+				if (gap >= -tiny || contains(step.anticipated, ref)) continue;
 				const Crossing crossing = downCrossing(point.gap - zero, atStart(s, ref).rate, gap, h);
 				if (crossing.speed < slow)
 					step.anticipated.push_back(ref);
@@ -107,15 +107,6 @@ template <class K> Event localise(const RigidSystem<K>& s, SmoothStep<K>& step, 
 	return event;
 }
 
-template <class K> bool passes(const RigidSystem<K>& s, const SmoothStep<K>& step, PointRef ref, bool now)
-{
-	const ContactPair<K>& pair = s.pairs[ref.pair];
-	const auto            place = [&](int point) { return (now ? pair.points[point].frame : step.frame(ref.pair, point)).position; };
-	for (int i = 0; i < pair.size; ++i)
-		if (pair.points[i].closed && (place(i) - place(ref.point)).norm() <= tolerance::rigid::samePlace * step.scales.length) return true;
-	return false;
-}
-
 template <class K> void touchingPoints(const RigidSystem<K>& s, std::vector<PointRef>& out)
 {
 	out.clear();
@@ -127,10 +118,8 @@ template <class K> void touchingPoints(const RigidSystem<K>& s, std::vector<Poin
 		}
 }
 
-template Event findEvent(const RigidSystem<Plane>&, SmoothStep<Plane>&, double, const std::vector<PointRef>&);
-template Event findEvent(const RigidSystem<Space>&, SmoothStep<Space>&, double, const std::vector<PointRef>&);
-template bool  passes(const RigidSystem<Plane>&, const SmoothStep<Plane>&, PointRef, bool);
-template bool  passes(const RigidSystem<Space>&, const SmoothStep<Space>&, PointRef, bool);
+template Event findEvent(const RigidSystem<Plane>&, SmoothStep<Plane>&, double);
+template Event findEvent(const RigidSystem<Space>&, SmoothStep<Space>&, double);
 template Event localise(const RigidSystem<Plane>&, SmoothStep<Plane>&, Event);
 template Event localise(const RigidSystem<Space>&, SmoothStep<Space>&, Event);
 template void  touchingPoints(const RigidSystem<Plane>&, std::vector<PointRef>&);

@@ -15,17 +15,11 @@ struct Event {
 };
 
 // The earliest event of the trial; `slow` closings, below that speed (m/s), are left out and added to the step's anticipated points.
-// Points in `passing` do not close.
-template <class K> Event findEvent(const RigidSystem<K>& system, SmoothStep<K>& step, double slow, const std::vector<PointRef>& passing);
+template <class K> Event findEvent(const RigidSystem<K>& system, SmoothStep<K>& step, double slow);
 
 // Shortens the trial until the event lies at its end, or another one that comes before it. Returns it; its time is the trial's
 // length, or 0 when it is now and no time passes.
 template <class K> Event localise(const RigidSystem<K>& system, SmoothStep<K>& step, Event event);
-
-// Whether another point of its pair touches where this one closes at the end of the trial (`now`: at its start). Then it passes: a face leans
-// on the border of another one, and a corner of it goes over that border. Its gap ends there, at a speed that is all of the sliding, and so
-// does its face: nothing lands. The crossing on the next side goes on from there.
-template <class K> bool passes(const RigidSystem<K>& system, const SmoothStep<K>& step, PointRef ref, bool now);
 
 // Open points that touch in the system's present state and approach each other faster than round-off.
 template <class K> void touchingPoints(const RigidSystem<K>& system, std::vector<PointRef>& out);

@@ -10,7 +10,6 @@ template <class K> StepReport RigidStep<K>::advance(RigidSystem<K>& s, double dt
 	s.impacts.clear();
 	step.begin(s, dt);
 	findContacts(s);
-	passing.clear();
 	takeJumps(s);
 	for (double left = dt; left > 0;) {
 		const double h = untilKink(s, left, dt);
@@ -57,7 +56,7 @@ namespace {
 // Points of all pairs, as features.
 template <class K> void RigidStep<K>::findContacts(RigidSystem<K>& s)
 {
-	const double touching = s.settings.merged * step.scales.length, samePlace = tolerance::rigid::samePlace * step.scales.length;
+	const double touching = s.settings.merged * step.scales.length, samePlace = 2 * tolerance::contact::vertexReach * step.scales.length;
 	for (ContactPair<K>& pair : s.pairs) {
 		const auto &         body1 = s.bodies[pair.body1], &body2 = s.bodies[pair.body2];
 		const FoundPoints<K> found = findPoints(body1, body2, pair.memory);
@@ -92,15 +91,11 @@ template <class K> Event RigidStep<K>::tryStep(RigidSystem<K>& s, double h)
 	do { // until no point closes that the trial did not know of
 		known = step.anticipated.size();
 		step.attempt(s, h);
-		event = findEvent(s, step, localised ? rest : std::numeric_limits<double>::infinity(), passing);
+		event = findEvent(s, step, localised ? rest : std::numeric_limits<double>::infinity());
 	} while (step.anticipated.size() > known);
 	++report.substeps;
 	if (event.kind != Event::none) {
 		event = localise(s, step, event);
-		if (event.kind == Event::closing && passes(s, step, event.point, event.at == 0)) {
-			passing.push_back(event.point);
-			return tryStep(s, h);
-		}
 		++report.events;
 	} else if (!localised) {
 		report.unlocalised += int(step.anticipated.size());

@@ -22,7 +22,7 @@ private:
 
 	SmoothStep<K>         step;
 	ImpactStage<K>        impacts;
-	std::vector<PointRef> closing, passing; // points that land; that go over the border of the other face in this step
+	std::vector<PointRef> closing;
 	StepReport            report;
 };
 

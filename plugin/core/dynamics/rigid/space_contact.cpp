@@ -5,6 +5,7 @@
 #include "tolerances.hpp"
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace masonry::rigid {
 
@@ -122,6 +123,31 @@ void takeCorners(const ContactPatch& patch, const Vector3& half1, const Pose& po
 		out.features[out.size++] = blunt;
 }
 
+// Where a face leans on the border of another one, a vertex of it that slides over that border lands nowhere: its gap ends there, at a speed
+// that is all of the sliding, and so does the face that it is over. So it is no corner where a crossing close to it is nearer, and has not its
+// normal, which is that of the other face.
+void dropPassing(const Vector3& half1, const Pose& pose1, const Vector3& half2, const Pose& pose2, FoundPoints<Space>& out)
+{
+	const double nearby = tolerance::rigid::passing * std::min(half1.minCoeff(), half2.minCoeff());
+	std::array<Frame, Space::maxPoints> frames;
+	for (int i = 0; i < out.size; ++i)
+		frames[i] = Space::frame(out.features[i], half1, pose1, half2, pose2);
+	const auto features = out.features;
+	const int before = std::exchange(out.size, 0);
+	for (int i = 0; i < before; ++i) {
+		const auto hides = [&, i](int j) {
+			const Vector3 normal = frames[i].axes.row(0), other = frames[j].axes.row(0);
+			return features[j].kind == SpaceFeature::Edges && frames[j].gap < frames[i].gap &&
+			       (frames[j].position - frames[i].position).norm() < nearby && normal.cross(other).norm() > tolerance::rigid::leans / 2;
+		};
+		bool passes = false;
+		for (int j = 0; j < before && features[i].kind != SpaceFeature::Edges; ++j)
+			passes |= hides(j);
+		if (!passes)
+			out.features[out.size++] = features[i];
+	}
+}
+
 // Whether these faces are no longer one upon the other. A vertex then leaves the face that it is over as soon as it is past its border: up
 // to vertexReach beyond, it would be held by that face's normal where the edge holds it by its own face's.
 bool leans(const PatchFeature& faces, const Pose& pose1, const Pose& pose2)
@@ -180,6 +206,8 @@ bool Space::findPoints(const Vector& half1, const Pose& pose1, const Vector& hal
 	out.face1 = faces ? patch.feature.feature1 : faceNearest(patch.normal, pose1);
 	out.face2 = faces ? patch.feature.feature2 : faceNearest(-patch.normal, pose2);
 	takeCorners(patch, half1, pose1, half2, pose2, out);
+	if (leans(memory, pose1, pose2))
+		dropPassing(half1, pose1, half2, pose2, out);
 	return true;
 }
 
