@@ -76,6 +76,7 @@ Frame edgeAcrossEdge(const Edge& edge1, const Vector3& centre1, const Edge& edge
 }
 
 bool isCrossing(int identity) { return identity >= 16; }
+bool isCrossing(const SpaceFeature& feature) { return feature.kind == SpaceFeature::Edges; }
 
 SpaceFeature featureOf(const PatchPoint& point, const PatchFeature& faces)
 {
@@ -110,8 +111,7 @@ void takeCorners(const ContactPatch& patch, const Vector3& half1, const Pose& po
 	for (int i = 0; i < patch.size; ++i) {
 		const PatchPoint& point = patch.points[i];
 		const SpaceFeature feature = featureOf(point, patch.feature);
-		if (feature.kind != SpaceFeature::Edges ||
-		    isSharp(Edge(feature.first, half1, pose1), Edge(feature.second, half2, pose2), patch.normal)) {
+		if (!isCrossing(feature) || isSharp(Edge(feature.first, half1, pose1), Edge(feature.second, half2, pose2), patch.normal)) {
 			nearest = std::min(nearest, point.gap);
 			out.features[out.size++] = feature;
 		} else if (point.gap < nearestBlunt) {
@@ -123,11 +123,15 @@ void takeCorners(const ContactPatch& patch, const Vector3& half1, const Pose& po
 		out.features[out.size++] = blunt;
 }
 
-// Where a face leans on the border of another one, a vertex of it that slides over that border lands nowhere: its gap ends there, at a speed
-// that is all of the sliding, and so does the face that it is over. So it is no corner where a crossing close to it is nearer, and has not its
-// normal, which is that of the other face.
-void dropPassing(const Vector3& half1, const Pose& pose1, const Vector3& half2, const Pose& pose2, FoundPoints<Space>& out)
+// Where a face leans on the border of another one, a vertex of it that slides over that border lands nowhere: its gap ends there, at a
+// speed that is all of the sliding, and so does the face that it is over. So it is no corner where a crossing close to it is nearer, and
+// has not its normal, which is that of the other face; and past the border it is none at once, not only vertexReach beyond it, up to where
+// the face that it has left would hold it.
+void dropPassing(const Vector3& half1, const Pose& pose1, const Vector3& half2, const Pose& pose2, PatchFeature& memory,
+                 FoundPoints<Space>& out)
 {
+	if (std::none_of(out.features.begin(), out.features.begin() + out.size, [](const SpaceFeature& one) { return isCrossing(one); }))
+		return;
 	const double nearby = tolerance::rigid::passing * std::min(half1.minCoeff(), half2.minCoeff());
 	std::array<Frame, Space::maxPoints> frames;
 	for (int i = 0; i < out.size; ++i)
@@ -137,24 +141,26 @@ void dropPassing(const Vector3& half1, const Pose& pose1, const Vector3& half2, 
 	for (int i = 0; i < before; ++i) {
 		const auto hides = [&, i](int j) {
 			const Vector3 normal = frames[i].axes.row(0), other = frames[j].axes.row(0);
-			return features[j].kind == SpaceFeature::Edges && frames[j].gap < frames[i].gap &&
-			       (frames[j].position - frames[i].position).norm() < nearby && normal.cross(other).norm() > tolerance::rigid::leans / 2;
+			return isCrossing(features[j]) && frames[j].gap < frames[i].gap && (frames[j].position - frames[i].position).norm() < nearby &&
+			       normal.cross(other).norm() > tolerance::rigid::leans / 2;
 		};
 		bool passes = false;
-		for (int j = 0; j < before && features[i].kind != SpaceFeature::Edges; ++j)
+		for (int j = 0; j < before && !isCrossing(features[i]); ++j)
 			passes |= hides(j);
 		if (!passes)
 			out.features[out.size++] = features[i];
+		else
+			memory.vertices &= ~(1 << (features[i].kind == SpaceFeature::Vertex1 ? features[i].first : 8 + features[i].second));
 	}
 }
 
-// Whether these faces are no longer one upon the other. A vertex then leaves the face that it is over as soon as it is past its border: up
-// to vertexReach beyond, it would be held by that face's normal where the edge holds it by its own face's.
+// Whether these faces are no longer one upon the other.
 bool leans(const PatchFeature& faces, const Pose& pose1, const Pose& pose2)
 {
 	if (faces.kind != PatchKind::Face1 && faces.kind != PatchKind::Face2)
 		return false;
-	const Vector3 normal1 = pose1.orientation * Vector3::Unit(faces.feature1 / 2), normal2 = pose2.orientation * Vector3::Unit(faces.feature2 / 2);
+	const Vector3 normal1 = pose1.orientation * Vector3::Unit(faces.feature1 / 2),
+	              normal2 = pose2.orientation * Vector3::Unit(faces.feature2 / 2);
 	return normal1.cross(normal2).norm() > tolerance::rigid::leans;
 }
 
@@ -191,9 +197,7 @@ Frame Space::frame(const Feature& feature, const Vector& half1, const Pose& pose
 bool Space::findPoints(const Vector& half1, const Pose& pose1, const Vector& half2, const Pose& pose2, double margin, Memory& memory,
                        FoundPoints<Space>& out)
 {
-	Memory before = memory;
-	if (leans(before, pose1, pose2))
-		before.vertices = 0;
+	const Memory before = memory;
 	memory = {};
 	out.size = 0;
 	out.face1 = out.face2 = -1;
@@ -207,7 +211,7 @@ bool Space::findPoints(const Vector& half1, const Pose& pose1, const Vector& hal
 	out.face2 = faces ? patch.feature.feature2 : faceNearest(-patch.normal, pose2);
 	takeCorners(patch, half1, pose1, half2, pose2, out);
 	if (leans(memory, pose1, pose2))
-		dropPassing(half1, pose1, half2, pose2, out);
+		dropPassing(half1, pose1, half2, pose2, memory, out);
 	return true;
 }
 
