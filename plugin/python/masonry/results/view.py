@@ -86,8 +86,8 @@ class View:
 
     def back_to_front(self, corners):
         """Order of the blocks in which each is drawn after those behind it: of two that overlap in the picture, the face of either that
-        separates them best tells. Of those that go around in a circle the one whose middle is the deepest comes first. From the side, with all middles at one depth: the
-        order given."""
+        separates them best tells. Of those that go around in a circle the one whose middle is the deepest comes first. From the side, with all middles
+        at one depth: the order given."""
         center = corners.mean(axis=1)
         depth = center @ self.towards
         if len(corners) < 2 or (self.from_side and np.ptp(depth) < 1e-9 * np.ptp(corners)):
