@@ -1,4 +1,4 @@
-"""What stands beside a wall, smooth and clear of it, changes nothing for the wall, however near: neither a fixed body, nor one that is free and as high."""
+"""What stands beside a wall, smooth and clear of it, does not bear it, however near: a fixed body changes nothing, nor a free one how loads cross the courses."""
 
 import math
 

@@ -72,7 +72,7 @@ TEST_CASE("a block without friction falls between two plates that it touches")
 	CHECK(scene.system.bodies[block].velocity[2] == Approx(-g * time).margin(2 * g * h));
 }
 
-// As in the plane (moving_wall_test.cpp): all four corners land at once.
+// As in the plane (rocking_block_test.cpp): all four corners land at once.
 TEST_CASE("a block in space that lands flat stays upright")
 {
 	const double h = GENERATE(1e-3, 1e-4), height = 1, gravityStep = g * h;
