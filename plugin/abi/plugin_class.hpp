@@ -122,7 +122,7 @@ inline void nameAttribute(const string& className, const string& name, const pyt
 {
 	PyObject *type, *error, *trace;
 	PyErr_Fetch(&type, &error, &trace);
-	const python::str text{error ? python::object(python::handle<>(python::borrowed(error))) : python::object()};
+	const python::str text {error ? python::object(python::handle<>(python::borrowed(error))) : python::object()};
 	if (!text.startswith("No registered converter"))
 		return PyErr_Restore(type, error, trace);
 	PyErr_Format(type, "%s.%s = %R is not allowed: %S", className.c_str(), name.c_str(), value.ptr(), text.ptr());

@@ -6,29 +6,31 @@
 namespace masonry {
 
 struct Body {
-	Pose    pose;
-	Vector3 velocity { Vector3::Zero() };        // of the centre, m/s
-	Vector3 angularVelocity { Vector3::Zero() }; // global axes, rad/s
-	double  mass { 0 };                          // kg; not used when prescribed
-	Vector3 inertia { Vector3::Zero() };         // principal moments in body axes, kg m^2
-	bool    prescribed { false };                // moved by the user: acts as an infinite mass
-	Vector3 acceleration { Vector3::Zero() };    // of a prescribed body, m/s^2
-	Vector3 force { Vector3::Zero() };           // external force on the centre, weight included, N
-	Vector3 torque { Vector3::Zero() };          // external moment about the centre, N m
+	Pose pose;
+	Vector3 velocity {Vector3::Zero()};        // of the centre, m/s
+	Vector3 angularVelocity {Vector3::Zero()}; // global axes, rad/s
+	double mass {0};                           // kg; not used when prescribed
+	Vector3 inertia {Vector3::Zero()};         // principal moments in body axes, kg m^2
+	bool prescribed {false};                   // moved by the user: acts as an infinite mass
+	Vector3 acceleration {Vector3::Zero()};    // of a prescribed body, m/s^2
+	Vector3 force {Vector3::Zero()};           // external force on the centre, weight included, N
+	Vector3 torque {Vector3::Zero()};          // external moment about the centre, N m
 
 	Vector3 velocityAt(const Vector3& point) const { return velocity + angularVelocity.cross(point - pose.position); }
-	double  inverseMass() const { return prescribed ? 0. : 1. / mass; }
+	double inverseMass() const { return prescribed ? 0. : 1. / mass; }
 
 	Matrix3 inverseInertia() const // global axes
 	{
-		if (prescribed) return Matrix3::Zero();
+		if (prescribed)
+			return Matrix3::Zero();
 		const Matrix3 axes = pose.orientation.toRotationMatrix();
 		return axes * inertia.cwiseInverse().asDiagonal() * axes.transpose();
 	}
 
 	double kineticEnergy() const // of a free body, J
 	{
-		if (prescribed) return 0;
+		if (prescribed)
+			return 0;
 		const Vector3 local = pose.orientation.conjugate() * angularVelocity;
 		return 0.5 * mass * velocity.squaredNorm() + 0.5 * local.dot(inertia.cwiseProduct(local));
 	}

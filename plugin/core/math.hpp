@@ -12,8 +12,8 @@ using Quaternion = Eigen::Quaterniond;
 
 // Position of the centre and orientation (body axes -> global axes) of a rigid body.
 struct Pose {
-	Vector3    position { Vector3::Zero() };
-	Quaternion orientation { Quaternion::Identity() };
+	Vector3 position {Vector3::Zero()};
+	Quaternion orientation {Quaternion::Identity()};
 
 	Vector3 toGlobal(const Vector3& local) const { return position + orientation * local; }
 	Vector3 toLocal(const Vector3& global) const { return orientation.conjugate() * (global - position); }

@@ -171,8 +171,8 @@ namespace masonry::tolerance::wall {
 constexpr double search = 1e-3;
 // Angle, rad, by which a block may turn in still steps before normals and arms follow. Larger: forces and gaps are so much askew.
 constexpr double turned = 1e-7;
-// And by which it may have turned since the factorisation that is kept. Larger: on a base that turns the solves of a wall that stands do not
-// converge, at some 0.3 rad; smaller: one that turns costs a factorisation more often.
+// And by which it may have turned since the factorisation that is kept. Larger: on a base that turns the solves of a wall that stands do
+// not converge, at some 0.3 rad; smaller: one that turns costs a factorisation more often.
 constexpr double leant = 1e-2;
 // Gap relative to the smallest half size up to which a point takes part in the still mode. Larger: open joints slow its convergence;
 // smaller: joints that close change the factorisation.
@@ -207,8 +207,8 @@ constexpr double lifted = 5.75e-6;
 // That above which a step cannot be trusted. Larger: blocks that sink into each other are not told of; smaller: those that hit hard are.
 constexpr double sunk = 1e-3;
 // Energy that a step may seem to make: share of what moves and what the forces do in it, and of what lifts all blocks by the smallest half
-// size. And, where neither is, that of a speed: of blocks that go so far in a step, relative to the smallest half size. Smaller: the errors of
-// sound steps, 1e-3 of what is lost, or rounding, are reported; larger: a wall that flies apart is not.
+// size. And, where neither is, that of a speed: of blocks that go so far in a step, relative to the smallest half size. Smaller: the errors
+// of sound steps, 1e-3 of what is lost, or rounding, are reported; larger: a wall that flies apart is not.
 constexpr double createdShare = 0.1, createdLift = 1e-4, createdTravel = 1e-9;
 // Extent of the loaded part of a joint, relative to the smallest half size, up to which it is a pivot. Larger: narrow patches rock.
 constexpr double pivot = 1e-3;

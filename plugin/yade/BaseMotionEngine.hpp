@@ -53,8 +53,8 @@ public:
 	Vector3r origin(size_t k, const Motions& all) const;
 	/// begin() has nothing to do.
 	bool goesOn() const;
-	/// The bodies are where they are at the end of the present step. One that does not in each step of the scene (it was taken out of O.engines
-	/// for a while, or O.resetTime() was called) begins anew: it would put them back.
+	/// The bodies are where they are at the end of the present step. One that does not in each step of the scene (it was taken out of
+	/// O.engines for a while, or O.resetTime() was called) begins anew: it would put them back.
 	void haveStepped();
 	/// It has begun with the present step.
 	bool beginsNow() const;
@@ -108,12 +108,12 @@ private:
 
 	// Of the motion that has begun; nothing yet after loading.
 	boost::weak_ptr<Scene> home;
-	Settings               begun;
-	vector<int>            begunIds;
-	Motions                begunWith;   // to be compared only
-	vector<const Body*>    begunBodies; // the same
-	Real                   begunStart = NaN, begunAt = NaN;
-	long                   lastStep = -1; // not known
+	Settings begun;
+	vector<int> begunIds;
+	Motions begunWith;               // to be compared only
+	vector<const Body*> begunBodies; // the same
+	Real begunStart = NaN, begunAt = NaN;
+	long lastStep = -1; // not known
 };
 REGISTER_SERIALIZABLE(BaseMotionEngine);
 

@@ -6,7 +6,7 @@ namespace yade {
 
 YADE_PLUGIN((BlockGeom));
 
-masonry::PatchFeature BlockGeom::feature() const { return { masonry::PatchKind(kind), feature1, feature2, vertices }; }
+masonry::PatchFeature BlockGeom::feature() const { return {masonry::PatchKind(kind), feature1, feature2, vertices}; }
 
 void BlockGeom::setPatch(const masonry::ContactPatch& found)
 {
@@ -25,14 +25,16 @@ void BlockGeom::setPatch(const masonry::ContactPatch& found)
 vector<Real> BlockGeom::gaps() const
 {
 	vector<Real> result;
-	for (int i = 0; i < patch.size; ++i) result.push_back(patch.points[i].gap);
+	for (int i = 0; i < patch.size; ++i)
+		result.push_back(patch.points[i].gap);
 	return result;
 }
 
 vector<Vector3r> BlockGeom::points() const
 {
 	vector<Vector3r> result;
-	for (int i = 0; i < patch.size; ++i) result.push_back(0.5 * (patch.points[i].position1 + patch.points[i].position2));
+	for (int i = 0; i < patch.size; ++i)
+		result.push_back(0.5 * (patch.points[i].position1 + patch.points[i].position2));
 	return result;
 }
 

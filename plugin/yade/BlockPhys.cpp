@@ -10,17 +10,19 @@ YADE_PLUGIN((BlockPhys));
 
 masonry::JointLaw BlockPhys::law(Real dampingRatio) const
 {
-	return { normalStiffness, shearStiffness, dampingRatio, noSlip ? masonry::noSlip : tangensOfFrictionAngle, restitution };
+	return {normalStiffness, shearStiffness, dampingRatio, noSlip ? masonry::noSlip : tangensOfFrictionAngle, restitution};
 }
 
 void BlockPhys::check(int id1, int id2) const
 {
 	const auto refuse = [&](const char* attribute, Real value, const char* allowed) {
-		throw std::runtime_error(sentence("The joint of bodies ", id1, " and ", id2, " has ", attribute, " = ", value, ": it must be ", allowed, '.'));
+		throw std::runtime_error(
+		    sentence("The joint of bodies ", id1, " and ", id2, " has ", attribute, " = ", value, ": it must be ", allowed, '.'));
 	};
 	if (!(noSlip || tangensOfFrictionAngle >= 0))
 		refuse("tangensOfFrictionAngle", tangensOfFrictionAngle, "0 or positive, BlockMat.frictionAngle from 0 to below pi/2, in rad");
-	if (restitution < 0 || restitution > 1) refuse("restitution", restitution, "from 0 to 1, or NaN for the natural restitution");
+	if (restitution < 0 || restitution > 1)
+		refuse("restitution", restitution, "from 0 to 1, or NaN for the natural restitution");
 }
 
 void BlockPhys::readPoints(masonry::JointContact& contact) const
@@ -29,7 +31,7 @@ void BlockPhys::readPoints(masonry::JointContact& contact) const
 	const Vector3r& n = contact.patch.normal;
 	for (int i = 0; i < contact.size; ++i) {
 		const Real normal = n.dot(forces[i]);
-		contact.points[i] = { identities[i], muted[i] != 0, shears[i], normal, forces[i] - n * normal };
+		contact.points[i] = {identities[i], muted[i] != 0, shears[i], normal, forces[i] - n * normal};
 	}
 	contact.energy = energy;
 }
@@ -61,7 +63,8 @@ vector<Real> BlockPhys::normalForces() const
 {
 	const Vector3r direction = normalForce.norm() > 0 ? Vector3r(normalForce.normalized()) : Vector3r(Vector3r::Zero());
 	vector<Real> result;
-	for (const Vector3r& force : forces) result.push_back(force.dot(direction));
+	for (const Vector3r& force : forces)
+		result.push_back(force.dot(direction));
 	return result;
 }
 

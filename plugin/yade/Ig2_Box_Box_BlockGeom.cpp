@@ -11,7 +11,7 @@ namespace yade {
 YADE_PLUGIN((Ig2_Box_Box_BlockGeom));
 
 bool Ig2_Box_Box_BlockGeom::go(const shared_ptr<Shape>& shape1, const shared_ptr<Shape>& shape2, const State& state1, const State& state2,
-	const Vector3r& shift2, const bool& force, const shared_ptr<Interaction>& interaction)
+                               const Vector3r& shift2, const bool& force, const shared_ptr<Interaction>& interaction)
 {
 	const Vector3r& half1 = static_cast<const Box&>(*shape1).extents;
 	const Vector3r& half2 = static_cast<const Box&>(*shape2).extents;
@@ -21,13 +21,15 @@ bool Ig2_Box_Box_BlockGeom::go(const shared_ptr<Shape>& shape1, const shared_ptr
 	const auto old = interaction->geom ? static_cast<const BlockGeom&>(*interaction->geom).feature() : masonry::PatchFeature();
 
 	masonry::ContactPatch patch;
-	const masonry::Pose pose1 { state1.pos, state1.ori }, pose2 { state2.pos + shift2, state2.ori };
-	if (!masonry::collide({ half1 }, pose1, { half2 }, pose2, distance, old, patch)) {
-		if (!keep) return false;
+	const masonry::Pose pose1 {state1.pos, state1.ori}, pose2 {state2.pos + shift2, state2.ori};
+	if (!masonry::collide({half1}, pose1, {half2}, pose2, distance, old, patch)) {
+		if (!keep)
+			return false;
 		patch.size = 0; // no overlap seen along any normal: no point, no force
 		patch.normal = (pose2.position - pose1.position).normalized();
 	}
-	if (!interaction->geom) interaction->geom = shared_ptr<BlockGeom>(new BlockGeom);
+	if (!interaction->geom)
+		interaction->geom = shared_ptr<BlockGeom>(new BlockGeom);
 	auto& geom = static_cast<BlockGeom&>(*interaction->geom);
 	geom.setPatch(patch);
 	geom.refR1 = half1.minCoeff();

@@ -8,7 +8,7 @@ namespace yade {
 class Ig2_Box_Box_BlockGeom : public IGeomFunctor {
 public:
 	bool go(const shared_ptr<Shape>&, const shared_ptr<Shape>&, const State&, const State&, const Vector3r& shift2, const bool& force,
-		const shared_ptr<Interaction>&) override;
+	        const shared_ptr<Interaction>&) override;
 
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS(Ig2_Box_Box_BlockGeom, IGeomFunctor,

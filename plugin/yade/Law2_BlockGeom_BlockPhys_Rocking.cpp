@@ -16,27 +16,30 @@ YADE_PLUGIN((Law2_BlockGeom_BlockPhys_Rocking));
 
 namespace {
 
-	std::atomic<bool> raising { false };
+std::atomic<bool> raising {false};
 
-	int raiseInPython(void*)
-	{
-		raising = false;
-		PyErr_SetString(PyExc_RuntimeError, "O.engines has Law2_BlockGeom_BlockPhys_Rocking but no living RockingJointEngine after its InteractionLoop: "
-			"the joints would carry no force. Add one, or let dem.engines() make the list.");
-		return -1;
-	}
+int raiseInPython(void*)
+{
+	raising = false;
+	PyErr_SetString(PyExc_RuntimeError,
+	                "O.engines has Law2_BlockGeom_BlockPhys_Rocking but no living RockingJointEngine after its InteractionLoop: "
+	                "the joints would carry no force. Add one, or let dem.engines() make the list.");
+	return -1;
+}
 
-	/// No error may leave the parallel loop of the functors: the run stops after this step, and Python's main thread raises.
-	void requireJointEngine(Scene& scene)
-	{
-		const auto& engines = scene.engines;
-		const bool  found = std::any_of(engines.begin(), engines.end(), [](const shared_ptr<Engine>& engine) {
-            return !engine->dead && dynamic_cast<RockingJointEngine*>(engine.get());
-        });
-		if (found) return;
-		scene.stopAtIter = scene.iter + 1;
-		if (!raising.exchange(true)) Py_AddPendingCall(raiseInPython, nullptr);
-	}
+/// No error may leave the parallel loop of the functors: the run stops after this step, and Python's main thread raises.
+void requireJointEngine(Scene& scene)
+{
+	const auto& engines = scene.engines;
+	const bool found = std::any_of(engines.begin(), engines.end(), [](const shared_ptr<Engine>& engine) {
+		return !engine->dead && dynamic_cast<RockingJointEngine*>(engine.get());
+	});
+	if (found)
+		return;
+	scene.stopAtIter = scene.iter + 1;
+	if (!raising.exchange(true))
+		Py_AddPendingCall(raiseInPython, nullptr);
+}
 
 } // namespace
 
@@ -47,9 +50,11 @@ bool Law2_BlockGeom_BlockPhys_Rocking::go(shared_ptr<IGeom>& ig, shared_ptr<IPhy
 	bool near = false;
 	for (int i = 0; i < geom.patch.size; ++i)
 		near |= geom.patch.points[i].gap <= margin * std::min(geom.refR1, geom.refR2);
-	if (!near) return false;
+	if (!near)
+		return false;
 
-	if (!phys.applied) requireJointEngine(*scene);
+	if (!phys.applied)
+		requireJointEngine(*scene);
 	phys.applied = false;
 	masonry::JointContact contact = coreContact(*interaction, geom, phys, dampingRatio);
 	renewPatch(contact, geom.patch);

@@ -8,8 +8,8 @@
 
 #include <boost/python/extract.hpp>
 #include <core/Scene.hpp>
-#include <pkg/common/PeriodicEngines.hpp>
 #include <lib/factory/ClassFactory.hpp>
+#include <pkg/common/PeriodicEngines.hpp>
 #include <set>
 
 namespace yade {
@@ -18,33 +18,36 @@ YADE_PLUGIN((MoreauJeanIntegrator));
 
 namespace {
 
-	/// Largest time step relative to sqrt(R/g) of the smallest block: there, peaks of one block are off by up to 0.3 %.
-	constexpr Real coarsestStep = 0.15;
+/// Largest time step relative to sqrt(R/g) of the smallest block: there, peaks of one block are off by up to 0.3 %.
+constexpr Real coarsestStep = 0.15;
 
-	/// Degrees of freedom, as in State::blockedDOFs, that a planar motion never uses.
-	unsigned unusedInPlane(const Vector3r& normal)
-	{
-		unsigned result = 0;
-		for (int axis = 0; axis < 3; ++axis) {
-			if (std::abs(normal[axis]) == 1) result |= State::DOF_X << axis;
-			if (normal[axis] == 0) result |= State::DOF_RX << axis;
-		}
-		return result;
+/// Degrees of freedom, as in State::blockedDOFs, that a planar motion never uses.
+unsigned unusedInPlane(const Vector3r& normal)
+{
+	unsigned result = 0;
+	for (int axis = 0; axis < 3; ++axis) {
+		if (std::abs(normal[axis]) == 1)
+			result |= State::DOF_X << axis;
+		if (normal[axis] == 0)
+			result |= State::DOF_RX << axis;
 	}
+	return result;
+}
 
-	AnyRigidScene& sceneOf(const RigidMemory& memory) { return static_cast<AnyRigidScene&>(*memory.run); }
+AnyRigidScene& sceneOf(const RigidMemory& memory) { return static_cast<AnyRigidScene&>(*memory.run); }
 
-	template <class K>
-	std::shared_ptr<RigidRun> makeScene(MoreauJeanIntegrator& engine, const vector<BaseMotionEngine*>& motions, const vector<Real>& values)
-	{
-		if (values.empty()) return std::make_shared<RigidScene<K>>(engine, motions, Remembered<K>());
-		Remembered<K> before;
-		Unpacker unpacker(values, K::dimension);
-		before.pass(unpacker);
-		const auto result = std::make_shared<RigidScene<K>>(engine, motions, before);
-		result->unpackStepper(unpacker, before);
-		return result;
-	}
+template <class K>
+std::shared_ptr<RigidRun> makeScene(MoreauJeanIntegrator& engine, const vector<BaseMotionEngine*>& motions, const vector<Real>& values)
+{
+	if (values.empty())
+		return std::make_shared<RigidScene<K>>(engine, motions, Remembered<K>());
+	Remembered<K> before;
+	Unpacker unpacker(values, K::dimension);
+	before.pass(unpacker);
+	const auto result = std::make_shared<RigidScene<K>>(engine, motions, before);
+	result->unpackStepper(unpacker, before);
+	return result;
+}
 
 } // namespace
 
@@ -53,18 +56,26 @@ void MoreauJeanIntegrator::postLoad(MoreauJeanIntegrator&)
 	for (const auto& motion : motions)
 		if (!dynamic_cast<BaseMotionEngine*>(motion.get()))
 			reject(*this, "motions", motion ? motion->getClassName() : "None", "a list of motions (PulseTrainEngine, RecordMotionEngine)");
-	if (model != "auto" && model != "planar" && model != "spatial") reject(*this, "model", "'" + model + "'", "'auto', 'planar' or 'spatial'");
-	if (impactOrder != "simultaneous" && impactOrder != "sequential") reject(*this, "impactOrder", "'" + impactOrder + "'", "'simultaneous' or 'sequential'");
-	if (onTrouble != "stop" && onTrouble != "continue") reject(*this, "onTrouble", "'" + onTrouble + "'", "'stop' or 'continue'");
-	if (method != "localised" && method != "wall") reject(*this, "method", "'" + method + "'", "'localised' or 'wall'");
+	if (model != "auto" && model != "planar" && model != "spatial")
+		reject(*this, "model", "'" + model + "'", "'auto', 'planar' or 'spatial'");
+	if (impactOrder != "simultaneous" && impactOrder != "sequential")
+		reject(*this, "impactOrder", "'" + impactOrder + "'", "'simultaneous' or 'sequential'");
+	if (onTrouble != "stop" && onTrouble != "continue")
+		reject(*this, "onTrouble", "'" + onTrouble + "'", "'stop' or 'continue'");
+	if (method != "localised" && method != "wall")
+		reject(*this, "method", "'" + method + "'", "'localised' or 'wall'");
 	if (method == "wall") {
-		if (impactOrder != "sequential") reject(*this, "impactOrder", "'" + impactOrder + "'", "'sequential' with method='wall', whose impacts act joint by joint");
-		if (!(tolerance >= 1e-6 && tolerance <= 1e-2)) reject(*this, "tolerance", tolerance, "from 1e-6 to 1e-2 with method='wall'");
+		if (impactOrder != "sequential")
+			reject(*this, "impactOrder", "'" + impactOrder + "'", "'sequential' with method='wall', whose impacts act joint by joint");
+		if (!(tolerance >= 1e-6 && tolerance <= 1e-2))
+			reject(*this, "tolerance", tolerance, "from 1e-6 to 1e-2 with method='wall'");
 	} else if (!(tolerance > 0 && tolerance <= 1e-3)) {
 		reject(*this, "tolerance", tolerance, "above 0 and at most 1e-3");
 	}
-	if (!(mergedClosing >= 0 && mergedClosing <= 1e-3)) reject(*this, "mergedClosing", mergedClosing, "from 0 to 1e-3");
-	if (mostEvents < 1) reject(*this, "mostEvents", mostEvents, "at least 1");
+	if (!(mergedClosing >= 0 && mergedClosing <= 1e-3))
+		reject(*this, "mergedClosing", mergedClosing, "from 0 to 1e-3");
+	if (mostEvents < 1)
+		reject(*this, "mostEvents", mostEvents, "at least 1");
 	sequential = impactOrder == "sequential";
 	wall = method == "wall";
 }
@@ -79,7 +90,8 @@ vector<shared_ptr<Engine>> MoreauJeanIntegrator::livingMotions() const
 vector<BaseMotionEngine*> MoreauJeanIntegrator::motionEngines() const
 {
 	vector<BaseMotionEngine*> result;
-	for (const auto& motion : livingMotions()) result.push_back(static_cast<BaseMotionEngine*>(motion.get()));
+	for (const auto& motion : livingMotions())
+		result.push_back(static_cast<BaseMotionEngine*>(motion.get()));
 	return result;
 }
 
@@ -87,7 +99,8 @@ vector<const Body*> MoreauJeanIntegrator::blocks() const
 {
 	vector<const Body*> result;
 	for (const auto& body : scene->bodies->body)
-		if (body && isBlock(*body)) result.push_back(body.get());
+		if (body && isBlock(*body))
+			result.push_back(body.get());
 	return result;
 }
 
@@ -96,9 +109,10 @@ vector<const Body*> MoreauJeanIntegrator::blocks() const
 void MoreauJeanIntegrator::start()
 {
 	beginMotions();
-	const Choice before { chosenModel, reason, along };
+	const Choice before {chosenModel, reason, along};
 	take(chosen());
-	if (chosenModel == "planar") checkPlane(along);
+	if (chosenModel == "planar")
+		checkPlane(along);
 	try {
 		build(memory.values);
 	} catch (const std::invalid_argument&) { // a script may put the scene right
@@ -125,13 +139,14 @@ void MoreauJeanIntegrator::leaveScene()
 	chosenModel.clear();
 	along = Vector3r::Zero();
 	forgetImpacts(*this);
-	forget(frictDissip, impactDissip, baseWork, worstResidual, substeps, events, unlocalised, sweeps, factorisations, stillSteps, movingSteps,
-		failures, firstFailure, warnedOf);
+	forget(frictDissip, impactDissip, baseWork, worstResidual, substeps, events, unlocalised, sweeps, factorisations, stillSteps,
+	       movingSteps, failures, firstFailure, warnedOf);
 }
 
 vector<Real> MoreauJeanIntegrator::remembered()
 {
-	if (memory.run) return memory.run->isPresent() ? memory.run->pack() : vector<Real>();
+	if (memory.run)
+		return memory.run->isPresent() ? memory.run->pack() : vector<Real>();
 	return memory.values;
 }
 
@@ -151,7 +166,8 @@ void MoreauJeanIntegrator::renew()
 {
 	beginMotions();
 	sceneOf(memory).dropErased();
-	if (chosenModel == "planar") checkPlane(along);
+	if (chosenModel == "planar")
+		checkPlane(along);
 	build(memory.run->pack());
 }
 
@@ -160,12 +176,14 @@ void MoreauJeanIntegrator::build(const vector<Real>& remembered)
 	checkBlocks(chosen());
 	checkEngines();
 	const PythonLock lock; // the last hold on an erased body may be given up, which Python has made
-	memory.run = chosenModel == "planar" ? makeScene<Plane>(*this, motionEngines(), remembered) : makeScene<Space>(*this, motionEngines(), remembered);
+	memory.run = chosenModel == "planar" ? makeScene<Plane>(*this, motionEngines(), remembered)
+	                                     : makeScene<Space>(*this, motionEngines(), remembered);
 	checkedTimeStep = NaN;
 	// Those that are gone begin anew when they come back.
 	const vector<shared_ptr<Engine>> living = livingMotions();
 	for (const auto& motion : taken)
-		if (std::find(living.begin(), living.end(), motion) == living.end()) static_cast<BaseMotionEngine&>(*motion).forget();
+		if (std::find(living.begin(), living.end(), motion) == living.end())
+			static_cast<BaseMotionEngine&>(*motion).forget();
 	taken = living;
 }
 
@@ -174,20 +192,26 @@ void MoreauJeanIntegrator::checkBlocks(const Choice& choice) const
 	const vector<BaseMotionEngine*> motions = motionEngines();
 	BaseMotionEngine::checkTogether(motions);
 	std::set<int> moved;
-	for (const BaseMotionEngine* motion : motions) moved.insert(motion->ids.begin(), motion->ids.end());
+	for (const BaseMotionEngine* motion : motions)
+		moved.insert(motion->ids.begin(), motion->ids.end());
 	const unsigned unused = choice.planar() ? unusedInPlane(Coordinates<Plane>(choice.along).normal) : 0;
 	bool free = false;
 	for (const Body* body : blocks()) {
 		checkBody(*body);
 		free |= body->isDynamic();
 		if (body->isDynamic() && moved.count(body->id))
-			throw std::invalid_argument(sentence("Body ", body->id, " is free, and in the ids of a motion: what a motion moves must have all degrees of freedom "
-				"prescribed (O.bodies[", body->id, "].dynamic = False)."));
+			throw std::invalid_argument(
+			    sentence("Body ", body->id,
+			             " is free, and in the ids of a motion: what a motion moves must have all degrees of freedom "
+			             "prescribed (O.bodies[",
+			             body->id, "].dynamic = False)."));
 		if (body->isDynamic() && (body->state->blockedDOFs & ~unused))
-			throw std::invalid_argument(sentence("O.bodies[", body->id, "].state.blockedDOFs = '", body->state->blockedDOFs_vec_get(),
-				"' is not allowed for a rigid block: all six degrees of freedom are blocked ('xyzXYZ') or none."));
+			throw std::invalid_argument(
+			    sentence("O.bodies[", body->id, "].state.blockedDOFs = '", body->state->blockedDOFs_vec_get(),
+			             "' is not allowed for a rigid block: all six degrees of freedom are blocked ('xyzXYZ') or none."));
 	}
-	if (!free) throw std::invalid_argument("There is no free block in O.bodies: add one with dem.block().");
+	if (!free)
+		throw std::invalid_argument("There is no free block in O.bodies: add one with dem.block().");
 	for (const auto& body : scene->bodies->body)
 		if (body && dynamic_cast<BlockMat*>(body->material.get()) && !isBlock(*body))
 			throw std::invalid_argument(sentence("O.bodies[", body->id, "] has a BlockMat and is no Box: rigid blocks touch boxes only."));
@@ -200,20 +224,27 @@ void MoreauJeanIntegrator::checkEngines()
 	if (std::count_if(scene->engines.begin(), scene->engines.end(), isOne) > 1)
 		throw std::invalid_argument("O.engines has more than one MoreauJeanIntegrator: each moves all blocks; there must be one.");
 	for (const auto& engine : scene->engines) {
-		if (engine->dead) continue;
+		if (engine->dead)
+			continue;
 		if (dynamic_cast<BaseMotionEngine*>(engine.get()))
-			throw std::invalid_argument(engine->getClassName() + " is in O.engines: rigid blocks need it in MoreauJeanIntegrator.motions instead.");
+			throw std::invalid_argument(engine->getClassName() +
+			                            " is in O.engines: rigid blocks need it in MoreauJeanIntegrator.motions instead.");
 		if (dynamic_cast<RockingJointEngine*>(engine.get()))
-			throw std::invalid_argument("O.engines has a RockingJointEngine and a MoreauJeanIntegrator: blocks are compliant or rigid, not both.");
-		if (engine->getClassName() != "NewtonIntegrator") continue;
+			throw std::invalid_argument(
+			    "O.engines has a RockingJointEngine and a MoreauJeanIntegrator: blocks are compliant or rigid, not both.");
+		if (engine->getClassName() != "NewtonIntegrator")
+			continue;
 		const PythonLock lock;
 		const int mask = boost::python::extract<int>(engine->pyDict()["mask"])();
 		for (const Body* body : blocks())
 			if (mask == 0 || (body->groupMask & mask) != 0)
-				throw std::invalid_argument(sentence("NewtonIntegrator would move block ", body->id,
-					" as well: give the other bodies mask=3 and NewtonIntegrator mask=2, which the blocks (groupMask ", body->groupMask, ") must not have."));
+				throw std::invalid_argument(
+				    sentence("NewtonIntegrator would move block ", body->id,
+				             " as well: give the other bodies mask=3 and NewtonIntegrator mask=2, which the blocks (groupMask ",
+				             body->groupMask, ") must not have."));
 	}
-	for (const auto& engine : scene->engines) checkedEngines.emplace_back(engine.get(), engine->dead);
+	for (const auto& engine : scene->engines)
+		checkedEngines.emplace_back(engine.get(), engine->dead);
 }
 
 // --- plane or space ---
@@ -224,22 +255,26 @@ void MoreauJeanIntegrator::checkPlane(const Vector3r& horizontal) const
 	const Vector3r& normal = plane.normal;
 	const auto all = blocks();
 	const auto first = std::find_if(all.begin(), all.end(), [](const Body* body) { return body->isDynamic(); });
-	if (first == all.end()) return;
+	if (first == all.end())
+		return;
 	plane.gravity(gravity);
 	const Real depth = normal.dot((*first)->state->pos);
 	Real front = depth, back = depth; // of the free blocks
-	for (int pass : { 0, 1 }) // free blocks, then the others
+	for (int pass : {0, 1})           // free blocks, then the others
 		for (const Body* body : all) {
-			if (body->isDynamic() != (pass == 0)) continue;
-			const State&   state = *body->state;
+			if (body->isDynamic() != (pass == 0))
+				continue;
+			const State& state = *body->state;
 			const Vector3r local = state.ori.conjugate() * normal, size = static_cast<const Box&>(*body->shape).extents;
 			int axis;
 			local.cwiseAbs().maxCoeff(&axis);
 			const Real half = size[axis], here = normal.dot(state.pos), rounding = outOfPlane * size.minCoeff();
-			if (local.cwiseAbs().sum() - std::abs(local[axis]) > outOfPlane) throw LeavesPlane(sentence("block ", body->id, " has no axis across the plane"));
+			if (local.cwiseAbs().sum() - std::abs(local[axis]) > outOfPlane)
+				throw LeavesPlane(sentence("block ", body->id, " has no axis across the plane"));
 			const bool shares = std::abs(here - depth) <= rounding;
 			if (body->isDynamic()) {
-				if (!shares) throw LeavesPlane(sentence("blocks ", (*first)->id, " and ", body->id, " have different mid-planes"));
+				if (!shares)
+					throw LeavesPlane(sentence("blocks ", (*first)->id, " and ", body->id, " have different mid-planes"));
 				front = std::max(front, here + half);
 				back = std::min(back, here - half);
 			} else if (!shares && !(here + half >= front - rounding && here - half <= back + rounding)) {
@@ -247,10 +282,12 @@ void MoreauJeanIntegrator::checkPlane(const Vector3r& horizontal) const
 			}
 			plane.velocity(state, body->id);
 		}
-	for (const BaseMotionEngine* motion : motionEngines()) plane.direction(motion->direction);
+	for (const BaseMotionEngine* motion : motionEngines())
+		plane.direction(motion->direction);
 	scene->forces.sync();
 	for (const Body* body : all)
-		if (body->isDynamic()) plane.load(scene->forces.getForce(body->id), scene->forces.getTorque(body->id), body->id);
+		if (body->isDynamic())
+			plane.load(scene->forces.getForce(body->id), scene->forces.getTorque(body->id), body->id);
 }
 
 void MoreauJeanIntegrator::take(const Choice& choice)
@@ -260,35 +297,45 @@ void MoreauJeanIntegrator::take(const Choice& choice)
 	along = choice.along;
 }
 
-MoreauJeanIntegrator::Choice MoreauJeanIntegrator::chosen() const { return chosenModel.empty() ? choose() : Choice { chosenModel, reason, along }; }
+MoreauJeanIntegrator::Choice MoreauJeanIntegrator::chosen() const
+{
+	return chosenModel.empty() ? choose() : Choice {chosenModel, reason, along};
+}
 
-/// The plane is upright; its normal is an axis of every block. Of two that will do, the one nearest to `along` is taken, without one nearest to x.
+/// The plane is upright; its normal is an axis of every block. Of two that will do, the one nearest to `along` is taken, without one
+/// nearest to x.
 MoreauJeanIntegrator::Choice MoreauJeanIntegrator::choose() const
 {
-	if (model == "spatial") return { "spatial", "asked for", along };
+	if (model == "spatial")
+		return {"spatial", "asked for", along};
 	const auto all = blocks();
 	const auto first = std::find_if(all.begin(), all.end(), [](const Body* body) { return body->isDynamic(); });
 	vector<Vector3r> normals;
 	if (first != all.end()) {
 		const Matrix3r axes = (*first)->state->ori.toRotationMatrix();
 		for (int axis = 0; axis < 3; ++axis)
-			if (std::abs(axes(2, axis)) <= outOfPlane) normals.push_back(Vector3r(axes(0, axis), axes(1, axis), 0).normalized());
+			if (std::abs(axes(2, axis)) <= outOfPlane)
+				normals.push_back(Vector3r(axes(0, axis), axes(1, axis), 0).normalized());
 	}
 	const Vector3r ahead = along.allFinite() && along.head<2>().norm() > 0 ? along : Vector3r(Vector3r::UnitX());
-	std::sort(normals.begin(), normals.end(), [&](const Vector3r& a, const Vector3r& b) { return std::abs(a.dot(ahead)) < std::abs(b.dot(ahead)); });
+	std::sort(normals.begin(), normals.end(),
+	          [&](const Vector3r& a, const Vector3r& b) { return std::abs(a.dot(ahead)) < std::abs(b.dot(ahead)); });
 	string whyNot = "no block has a horizontal axis";
 	for (size_t k = 0; k < normals.size(); ++k) {
 		Vector3r horizontal = Vector3r::UnitZ().cross(normals[k]);
-		if (horizontal.x() < 0 || (horizontal.x() == 0 && horizontal.y() < 0)) horizontal = Vector3r::Zero() - horizontal; // no -0
+		if (horizontal.x() < 0 || (horizontal.x() == 0 && horizontal.y() < 0))
+			horizontal = Vector3r::Zero() - horizontal; // no -0
 		try {
 			checkPlane(horizontal);
-			return { "planar", "blocks, motions and loads lie in one upright plane", horizontal };
+			return {"planar", "blocks, motions and loads lie in one upright plane", horizontal};
 		} catch (const LeavesPlane& obstacle) {
-			if (k == 0) whyNot = obstacle.what();
+			if (k == 0)
+				whyNot = obstacle.what();
 		}
 	}
-	if (model == "planar") throw std::invalid_argument("MoreauJeanIntegrator.model = 'planar' is not allowed for this scene: " + whyNot + ".");
-	return { "spatial", whyNot, along };
+	if (model == "planar")
+		throw std::invalid_argument("MoreauJeanIntegrator.model = 'planar' is not allowed for this scene: " + whyNot + ".");
+	return {"spatial", whyNot, along};
 }
 
 string MoreauJeanIntegrator::choice()
@@ -308,7 +355,8 @@ Real MoreauJeanIntegrator::largestTimeStep()
 	const Vector3r across = choice.planar() ? Coordinates<Plane>(choice.along).normal : Vector3r(Vector3r::Zero());
 	Real smallest = std::numeric_limits<Real>::infinity(); // R^2, in the plane without the depth
 	for (const Body* body : blocks()) {
-		if (!body->isDynamic()) continue;
+		if (!body->isDynamic())
+			continue;
 		const Vector3r& extents = static_cast<const Box&>(*body->shape).extents;
 		const Real depth = (body->state->ori.conjugate() * across).cwiseAbs().dot(extents);
 		smallest = std::min(smallest, extents.squaredNorm() - depth * depth);
@@ -320,8 +368,9 @@ void MoreauJeanIntegrator::checkTimeStep()
 {
 	const Real largest = largestTimeStep();
 	if (!(scene->dt > 0 && scene->dt <= largest))
-		throw std::runtime_error(sentence("O.dt = ", scene->dt, " s is not allowed for these blocks: it must be positive and at most ", largest, " s (",
-			coarsestStep, " of sqrt(R/g) of the smallest block); dem.engines() chooses one."));
+		throw std::runtime_error(sentence("O.dt = ", scene->dt, " s is not allowed for these blocks: it must be positive and at most ",
+		                                  largest, " s (", coarsestStep,
+		                                  " of sqrt(R/g) of the smallest block); dem.engines() chooses one."));
 	sceneOf(memory).setInstant(masonry::tolerance::rigid::instant * scene->dt);
 	checkedTimeStep = scene->dt;
 	checkedGravity = gravity.norm();
@@ -331,39 +380,52 @@ void MoreauJeanIntegrator::checkTimeStep()
 
 void MoreauJeanIntegrator::action()
 {
-	if (!gravity.allFinite()) reject(*this, "gravity", gravity.transpose(), "three finite numbers in m/s^2");
-	if (memory.run ? !memory.run->isPresent() : memory.values.empty() && !chosenModel.empty()) leaveScene();
+	if (!gravity.allFinite())
+		reject(*this, "gravity", gravity.transpose(), "three finite numbers in m/s^2");
+	if (memory.run ? !memory.run->isPresent() : memory.values.empty() && !chosenModel.empty())
+		leaveScene();
 	const masonry::rigid::StepReport report = stepRun();
-	for (const auto& motion : taken) static_cast<BaseMotionEngine&>(*motion).haveStepped();
+	for (const auto& motion : taken)
+		static_cast<BaseMotionEngine&>(*motion).haveStepped();
 	count(report);
-	if (scene->trackEnergy) showEnergy();
+	if (scene->trackEnergy)
+		showEnergy();
 }
 
 bool MoreauJeanIntegrator::isWatched() const
 {
 	// Scripts look when the run has stopped: O.step(), the end of O.run(). When O.pause() will stop it is not known.
-	const bool stops = (scene->stopAtIter > 0 && scene->iter + 1 >= scene->stopAtIter) || (scene->stopAtTime > 0 && scene->time + 1.5 * scene->dt >= scene->stopAtTime);
-	if (stops || !Omega::instance().isRunning()) return true;
+	const bool stops = (scene->stopAtIter > 0 && scene->iter + 1 >= scene->stopAtIter) ||
+	                   (scene->stopAtTime > 0 && scene->time + 1.5 * scene->dt >= scene->stopAtTime);
+	if (stops || !Omega::instance().isRunning())
+		return true;
 	const auto looks = [this](const Engine& engine) {
-		if (engine.dead || &engine == this || engine.getClassName() == "ForceResetter" || engine.getClassName() == "BlockRecorder") return false;
+		if (engine.dead || &engine == this || engine.getClassName() == "ForceResetter" || engine.getClassName() == "BlockRecorder")
+			return false;
 		const auto* periodic = dynamic_cast<const PeriodicEngine*>(&engine);
-		if (!periodic) return true;
+		if (!periodic)
+			return true;
 		// Now, if it comes after this engine, or in the next step.
-		return periodic->realPeriod > 0 || (periodic->iterPeriod > 0 && scene->iter + 1 - periodic->iterLast >= periodic->iterPeriod)
-		        || (periodic->virtPeriod > 0 && scene->time + 1.5 * scene->dt - periodic->virtLast >= periodic->virtPeriod) || periodic->nDone == 0;
+		return periodic->realPeriod > 0 || (periodic->iterPeriod > 0 && scene->iter + 1 - periodic->iterLast >= periodic->iterPeriod) ||
+		       (periodic->virtPeriod > 0 && scene->time + 1.5 * scene->dt - periodic->virtLast >= periodic->virtPeriod) ||
+		       periodic->nDone == 0;
 	};
 	return std::any_of(scene->engines.begin(), scene->engines.end(), [&](const auto& engine) { return looks(*engine); });
 }
 
 void MoreauJeanIntegrator::writeInteractions()
 {
-	if (memory.run && memory.run->isPresent()) sceneOf(memory).writeContacts();
+	if (memory.run && memory.run->isPresent())
+		sceneOf(memory).writeContacts();
 }
 
 masonry::rigid::StepReport MoreauJeanIntegrator::stepRun()
 {
-	const auto isSame = [](const auto& engine, const auto& checked) { return engine.get() == checked.first && engine->dead == checked.second; };
-	if (scene->isPeriodic) throw std::invalid_argument("O.periodic = True is not allowed: rigid blocks know no periodic cell.");
+	const auto isSame = [](const auto& engine, const auto& checked) {
+		return engine.get() == checked.first && engine->dead == checked.second;
+	};
+	if (scene->isPeriodic)
+		throw std::invalid_argument("O.periodic = True is not allowed: rigid blocks know no periodic cell.");
 	try {
 		if (!memory.run)
 			start();
@@ -371,10 +433,13 @@ masonry::rigid::StepReport MoreauJeanIntegrator::stepRun()
 			renew();
 		else if (!std::equal(scene->engines.begin(), scene->engines.end(), checkedEngines.begin(), checkedEngines.end(), isSame))
 			checkEngines();
-		if (scene->dt != checkedTimeStep || gravity.norm() > checkedGravity) checkTimeStep();
+		if (scene->dt != checkedTimeStep || gravity.norm() > checkedGravity)
+			checkTimeStep();
 		return sceneOf(memory).step();
 	} catch (const LeavesPlane& obstacle) {
-		if (model == "planar") throw std::runtime_error(sentence("MoreauJeanIntegrator.model = 'planar', but ", obstacle.what(), " at t = ", scene->time, " s."));
+		if (model == "planar")
+			throw std::runtime_error(
+			    sentence("MoreauJeanIntegrator.model = 'planar', but ", obstacle.what(), " at t = ", scene->time, " s."));
 		LOG_WARN("the scene is no longer planar at t = " << scene->time << " s: " << obstacle.what() << "; it goes on in space.");
 		chosenModel = "spatial";
 		reason = obstacle.what();
@@ -393,31 +458,41 @@ void MoreauJeanIntegrator::count(const masonry::rigid::StepReport& report)
 	unlocalised += report.unlocalised;
 	worstResidual = std::max(worstResidual, report.residual);
 	if (report.diverged)
-		throw std::runtime_error(sentence("The simulation has diverged in the step from t = ", scene->time, " s: positions or velocities are no longer finite.",
-			method == "localised" ? " Structures of more than some twenty blocks are for method='wall'." : ""));
+		throw std::runtime_error(
+		    sentence("The simulation has diverged in the step from t = ", scene->time, " s: positions or velocities are no longer finite.",
+		             method == "localised" ? " Structures of more than some twenty blocks are for method='wall'." : ""));
 	const bool crowded = report.unlocalised > 0;
-	if (report.converged && !crowded && !(report.created > 0) && !(report.deepest > 0) && !(report.burden > 0)) return;
+	if (report.converged && !crowded && !(report.created > 0) && !(report.deepest > 0) && !(report.burden > 0))
+		return;
 
 	std::ostringstream text;
 	text << "In the step from t = " << scene->time << " s ";
-	if (!report.converged) text << "the contact laws are missed: residual " << report.residual << " m/s. ";
-	if (crowded) text << report.unlocalised << " points closed after mostEvents = " << mostEvents << " events, plastically at its end. ";
-	if (report.created > 0) text << report.created << " J of energy come from nowhere. ";
-	if (report.deepest > 0) text << "blocks are " << report.deepest << " m deep in each other. ";
+	if (!report.converged)
+		text << "the contact laws are missed: residual " << report.residual << " m/s. ";
+	if (crowded)
+		text << report.unlocalised << " points closed after mostEvents = " << mostEvents << " events, plastically at its end. ";
+	if (report.created > 0)
+		text << report.created << " J of energy come from nowhere. ";
+	if (report.deepest > 0)
+		text << "blocks are " << report.deepest << " m deep in each other. ";
 	if (report.burden > 0)
-		text << "a block is too heavy for a lighter one below it: its course times the ratio of their masses is " << report.burden << ", for method='wall' at most "
-		     << masonry::rigid::wall::mostBurden << ". Few blocks: method='localised'. ";
+		text << "a block is too heavy for a lighter one below it: its course times the ratio of their masses is " << report.burden
+		     << ", for method='wall' at most " << masonry::rigid::wall::mostBurden << ". Few blocks: method='localised'. ";
 	constexpr size_t mostNamed = 30;
 	const vector<int> touching = sceneOf(memory).touching();
 	text << "Blocks in touch:";
-	for (size_t k = 0; k < std::min(mostNamed, touching.size()); ++k) text << ' ' << touching[k];
-	if (touching.size() > mostNamed) text << " and " << touching.size() - mostNamed << " more";
+	for (size_t k = 0; k < std::min(mostNamed, touching.size()); ++k)
+		text << ' ' << touching[k];
+	if (touching.size() > mostNamed)
+		text << " and " << touching.size() - mostNamed << " more";
 	text << '.';
 	if (failures++ == 0) {
 		firstFailure = text.str();
-		if (onTrouble == "continue") LOG_WARN(firstFailure << " The run goes on; MoreauJeanIntegrator.failures counts such steps.");
+		if (onTrouble == "continue")
+			LOG_WARN(firstFailure << " The run goes on; MoreauJeanIntegrator.failures counts such steps.");
 	}
-	if (onTrouble == "stop") throw std::runtime_error(text.str() + " Take a smaller O.dt, or set MoreauJeanIntegrator.onTrouble='continue'.");
+	if (onTrouble == "stop")
+		throw std::runtime_error(text.str() + " Take a smaller O.dt, or set MoreauJeanIntegrator.onTrouble='continue'.");
 }
 
 // --- energy ---
@@ -427,8 +502,9 @@ Real MoreauJeanIntegrator::kinetic()
 	scene = Omega::instance().getScene().get();
 	Real sum = 0;
 	for (const Body* body : blocks()) {
-		if (!body->isDynamic()) continue;
-		const State&   state = *body->state;
+		if (!body->isDynamic())
+			continue;
+		const State& state = *body->state;
 		const Vector3r spin = state.ori.conjugate() * state.angVel;
 		sum += 0.5 * (state.mass * state.vel.squaredNorm() + spin.dot(state.inertia.cwiseProduct(spin)));
 	}
@@ -440,15 +516,20 @@ Real MoreauJeanIntegrator::potential()
 	scene = Omega::instance().getScene().get();
 	Real sum = 0;
 	for (const Body* body : blocks())
-		if (body->isDynamic()) sum -= body->state->mass * gravity.dot(body->state->pos);
+		if (body->isDynamic())
+			sum -= body->state->mass * gravity.dot(body->state->pos);
 	return sum;
 }
 
 void MoreauJeanIntegrator::showEnergy()
 {
-	const std::pair<const char*, Real> keys[] = { { "kinetic", kinetic() }, { "potential", potential() }, { "frictDissip", frictDissip },
-		{ "impactDissip", impactDissip }, { "baseWork", -baseWork } };
-	for (const auto& [key, value] : keys) scene->energy->setItem_py(key, value);
+	const std::pair<const char*, Real> keys[] = {{"kinetic", kinetic()},
+	                                             {"potential", potential()},
+	                                             {"frictDissip", frictDissip},
+	                                             {"impactDissip", impactDissip},
+	                                             {"baseWork", -baseWork}};
+	for (const auto& [key, value] : keys)
+		scene->energy->setItem_py(key, value);
 }
 
 } // namespace yade

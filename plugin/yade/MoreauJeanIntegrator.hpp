@@ -87,10 +87,11 @@ public:
 	);
 	// clang-format on
 private:
-	template <class K> friend class RigidScene;
+	template <class K>
+	friend class RigidScene;
 
 	struct Choice {
-		string   model, reason;
+		string model, reason;
 		Vector3r along;
 
 		bool planar() const { return model == "planar"; }

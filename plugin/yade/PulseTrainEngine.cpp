@@ -13,16 +13,22 @@ YADE_PLUGIN((PulseTrainEngine));
 
 void PulseTrainEngine::postLoad(PulseTrainEngine&)
 {
-	if (std::isinf(impulse)) reject(*this, "impulse", impulse, "a finite velocity jump in m/s");
+	if (std::isinf(impulse))
+		reject(*this, "impulse", impulse, "a finite velocity jump in m/s");
 	for (size_t i = 0; i < times.size(); ++i) {
-		if (!(std::isfinite(times[i]) && times[i] >= 0)) reject(*this, "times", times[i], "a list of finite times >= 0 in s");
-		if (i > 0 && !(times[i] > times[i - 1])) reject(*this, "times", times[i], "a list of increasing times");
+		if (!(std::isfinite(times[i]) && times[i] >= 0))
+			reject(*this, "times", times[i], "a list of finite times >= 0 in s");
+		if (i > 0 && !(times[i] > times[i - 1]))
+			reject(*this, "times", times[i], "a list of increasing times");
 	}
-	if (halfCycles < -1 || halfCycles == 0) reject(*this, "halfCycles", halfCycles, "a number >= 1, or -1 for a train without end");
-	if (!(duration >= 0) || std::isinf(duration)) reject(*this, "duration", duration, "a finite time >= 0 in s");
-	unit = { masonry::pulseShapeFromName(shape), duration };
+	if (halfCycles < -1 || halfCycles == 0)
+		reject(*this, "halfCycles", halfCycles, "a number >= 1, or -1 for a train without end");
+	if (!(duration >= 0) || std::isinf(duration))
+		reject(*this, "duration", duration, "a finite time >= 0 in s");
+	unit = {masonry::pulseShapeFromName(shape), duration};
 	past.clear();
-	for (size_t k = 0; k < pulseTimes.size(); ++k) addPast(k);
+	for (size_t k = 0; k < pulseTimes.size(); ++k)
+		addPast(k);
 }
 
 void PulseTrainEngine::forget()
@@ -36,8 +42,8 @@ void PulseTrainEngine::forget()
 void PulseTrainEngine::addPast(size_t k)
 {
 	const Real end = pulseTimes[k] + unit.duration, moved = pulseJumps[k] * unit.displacement(unit.duration);
-	const Past before = past.empty() ? Past { end, 0, 0 } : past.back();
-	past.push_back({ end, before.velocity + pulseJumps[k], before.displacement + before.velocity * (end - before.end) + moved });
+	const Past before = past.empty() ? Past {end, 0, 0} : past.back();
+	past.push_back({end, before.velocity + pulseJumps[k], before.displacement + before.velocity * (end - before.end) + moved});
 }
 
 size_t PulseTrainEngine::ended(Real t) const
@@ -49,14 +55,15 @@ size_t PulseTrainEngine::ended(Real t) const
 Real PulseTrainEngine::acting(Real t, Real (masonry::UnitPulse::*part)(double) const) const
 {
 	Real result = 0;
-	for (size_t k = ended(t); k < pulseTimes.size() && pulseTimes[k] <= t; ++k) result += pulseJumps[k] * (unit.*part)(t - pulseTimes[k]);
+	for (size_t k = ended(t); k < pulseTimes.size() && pulseTimes[k] <= t; ++k)
+		result += pulseJumps[k] * (unit.*part)(t - pulseTimes[k]);
 	return result;
 }
 
 Real PulseTrainEngine::displacement(Real t) const
 {
 	const size_t k = ended(t);
-	const Real   before = k == 0 ? 0 : past[k - 1].displacement + past[k - 1].velocity * (t - past[k - 1].end);
+	const Real before = k == 0 ? 0 : past[k - 1].displacement + past[k - 1].velocity * (t - past[k - 1].end);
 	return before + acting(t, &masonry::UnitPulse::displacement);
 }
 
@@ -70,14 +77,17 @@ Real PulseTrainEngine::acceleration(Real t) const { return acting(t, &masonry::U
 
 Real PulseTrainEngine::nextKink(Real after, Real until) const
 {
-	Real       first = until;
+	Real first = until;
 	const auto consider = [&](const vector<Real>& instants, Real shift) {
 		const auto next = std::upper_bound(instants.begin(), instants.end(), after - shift);
-		if (next != instants.end()) first = std::min(first, *next + shift);
+		if (next != instants.end())
+			first = std::min(first, *next + shift);
 	};
 	consider(times, 0);
-	if (resonant() && pulseTimes.empty() && after < 0) first = std::min(first, Real(0));
-	if (!dirac()) consider(pulseTimes, duration);
+	if (resonant() && pulseTimes.empty() && after < 0)
+		first = std::min(first, Real(0));
+	if (!dirac())
+		consider(pulseTimes, duration);
 	return first < until ? first : std::numeric_limits<Real>::infinity();
 }
 
@@ -98,7 +108,8 @@ void PulseTrainEngine::addPulse(Real time, vector<BaseJump>& jumps, Real now)
 	pulseTimes.push_back(time);
 	pulseJumps.push_back(jump);
 	addPast(count);
-	if (dirac()) jumps.push_back({ direction * jump, jump, now - time });
+	if (dirac())
+		jumps.push_back({direction * jump, jump, now - time});
 }
 
 vector<BaseJump> PulseTrainEngine::takeJumps(Real sceneTime, const vector<StepImpact>& impacts)
@@ -107,11 +118,13 @@ vector<BaseJump> PulseTrainEngine::takeJumps(Real sceneTime, const vector<StepIm
 	const Real now = sceneTime - start;
 	if (!resonant()) {
 		// Finite pulses are known ahead, so that the mean velocity of a step holds a pulse that starts inside it.
-		while (pulseTimes.size() < times.size() && (!dirac() || times[pulseTimes.size()] <= now)) addPulse(times[pulseTimes.size()], jumps, now);
+		while (pulseTimes.size() < times.size() && (!dirac() || times[pulseTimes.size()] <= now))
+			addPulse(times[pulseTimes.size()], jumps, now);
 		return jumps;
 	}
 	if (pulseTimes.empty()) {
-		if (now >= 0) addPulse(0, jumps, now);
+		if (now >= 0)
+			addPulse(0, jumps, now);
 		return jumps;
 	}
 	for (const StepImpact& impact : impacts)
@@ -123,14 +136,20 @@ vector<BaseJump> PulseTrainEngine::takeJumps(Real sceneTime, const vector<StepIm
 void PulseTrainEngine::check() const
 {
 	BaseMotionEngine::check();
-	if (!(std::abs(impulse) <= 1e6)) reject(*this, "impulse", impulse, "given: the velocity jump I, at most 1e6 m/s");
+	if (!(std::abs(impulse) <= 1e6))
+		reject(*this, "impulse", impulse, "given: the velocity jump I, at most 1e6 m/s");
 	if (resonant() == !times.empty())
-		throw std::invalid_argument(sentence("PulseTrainEngine.times has ", times.size(), " entries and resonantBlock = ", resonantBlock,
-			": times must be given for a scheduled train, or resonantBlock for a resonant one, not both and not neither."));
-	if (halfCycles > 0 && !resonant()) reject(*this, "halfCycles", halfCycles, "left out (-1) where times are given: it ends a resonant train");
-	if (assembly && times.size() == 1) reject(*this, "assembly", "True", "left out (False) for a single pulse: nothing brings the base to rest");
-	if (assembly && resonant()) reject(*this, "assembly", "True", "left out (False) with resonantBlock: it ends scheduled pulses");
-	if ((shape != "dirac") != (duration > 0)) reject(*this, "duration", duration, "positive for a finite shape and 0 for 'dirac'");
+		throw std::invalid_argument(
+		    sentence("PulseTrainEngine.times has ", times.size(), " entries and resonantBlock = ", resonantBlock,
+		             ": times must be given for a scheduled train, or resonantBlock for a resonant one, not both and not neither."));
+	if (halfCycles > 0 && !resonant())
+		reject(*this, "halfCycles", halfCycles, "left out (-1) where times are given: it ends a resonant train");
+	if (assembly && times.size() == 1)
+		reject(*this, "assembly", "True", "left out (False) for a single pulse: nothing brings the base to rest");
+	if (assembly && resonant())
+		reject(*this, "assembly", "True", "left out (False) with resonantBlock: it ends scheduled pulses");
+	if ((shape != "dirac") != (duration > 0))
+		reject(*this, "duration", duration, "positive for a finite shape and 0 for 'dirac'");
 	if (resonant() && !(scene->bodies->exists(resonantBlock) && (*scene->bodies)[resonantBlock]->isDynamic()))
 		reject(*this, "resonantBlock", resonantBlock, "the id of a free block in O.bodies");
 }

@@ -26,45 +26,49 @@ YADE_PLUGIN((RockingJointEngine));
 
 namespace {
 
-	/// NewtonIntegrator is read through its Python attributes, as a script would.
-	struct Integrator {
-		Vector3r gravity = Vector3r::Zero();
-		Real damping = 0;
-	};
+/// NewtonIntegrator is read through its Python attributes, as a script would.
+struct Integrator {
+	Vector3r gravity = Vector3r::Zero();
+	Real damping = 0;
+};
 
-	Integrator findIntegrator(const Scene& scene)
-	{
-		Integrator result;
-		for (const auto& engine : scene.engines) {
-			if (engine->dead || engine->getClassName() != "NewtonIntegrator") continue;
-			const PythonLock lock;
-			const boost::python::dict attributes = engine->pyDict();
-			result.gravity = boost::python::extract<Vector3r>(attributes["gravity"])();
-			result.damping = boost::python::extract<Real>(attributes["damping"])();
-		}
-		return result;
+Integrator findIntegrator(const Scene& scene)
+{
+	Integrator result;
+	for (const auto& engine : scene.engines) {
+		if (engine->dead || engine->getClassName() != "NewtonIntegrator")
+			continue;
+		const PythonLock lock;
+		const boost::python::dict attributes = engine->pyDict();
+		result.gravity = boost::python::extract<Vector3r>(attributes["gravity"])();
+		result.damping = boost::python::extract<Real>(attributes["damping"])();
 	}
+	return result;
+}
 
 } // namespace
 
 void RockingJointEngine::postLoad(RockingJointEngine&)
 {
-	if (impactOrder != "simultaneous" && impactOrder != "sequential") reject(*this, "impactOrder", "'" + impactOrder + "'", "'simultaneous' or 'sequential'");
+	if (impactOrder != "simultaneous" && impactOrder != "sequential")
+		reject(*this, "impactOrder", "'" + impactOrder + "'", "'simultaneous' or 'sequential'");
 }
 
 /// A script has put this engine into another scene, or saved it there before its first step.
 void RockingJointEngine::leaveScene()
 {
 	forgetImpacts(*this);
-	forget(started, worstResidual, failures, madeEnergy, kinetic, potential, elastPotential, frictDissip, dampDissip, impactDissip, baseWork,
-		reactionIds, reactions, reactionMoments, checkedTimeStep, boundAt);
+	forget(started, worstResidual, failures, madeEnergy, kinetic, potential, elastPotential, frictDissip, dampDissip, impactDissip,
+	       baseWork, reactionIds, reactions, reactionMoments, checkedTimeStep, boundAt);
 }
 
 void RockingJointEngine::checkScene()
 {
 	constexpr int period = 50; // steps between two looks at the integrator, whose gravity a script may turn slowly
-	if (scene->isPeriodic) throw std::runtime_error("O.periodic = True is not allowed: blocks know no periodic cell.");
-	if (checkedTimeStep > 0 && scene->iter % period != 0) return;
+	if (scene->isPeriodic)
+		throw std::runtime_error("O.periodic = True is not allowed: blocks know no periodic cell.");
+	if (checkedTimeStep > 0 && scene->iter % period != 0)
+		return;
 	const auto isOne = [](const auto& engine) { return !engine->dead && dynamic_cast<RockingJointEngine*>(engine.get()); };
 	if (std::count_if(scene->engines.begin(), scene->engines.end(), isOne) > 1)
 		throw std::runtime_error("O.engines has more than one RockingJointEngine: each acts on all blocks; there must be one.");
@@ -72,13 +76,16 @@ void RockingJointEngine::checkScene()
 	gravity = integrator.gravity;
 	for (int id : ids) {
 		const Body& body = *(*scene->bodies)[id];
-		if (!body.isDynamic()) continue;
+		if (!body.isDynamic())
+			continue;
 		if (body.state->isDamped && integrator.damping != 0)
 			throw std::runtime_error(sentence("NewtonIntegrator.damping = ", integrator.damping, " would damp the rocking of block ", id,
-				" behind the back of its restitution: it must be 0 (or set O.bodies[", id, "].state.isDamped=False)."));
+			                                  " behind the back of its restitution: it must be 0 (or set O.bodies[", id,
+			                                  "].state.isDamped=False)."));
 		const Vector3r& inertia = body.state->inertia;
 		if (!(body.flags & Body::FLAG_ASPHERICAL) && inertia.maxCoeff() > inertia.minCoeff())
-			throw std::runtime_error(sentence("O.bodies[", id, "].aspherical = False is not allowed for a block: set it to True (dem.block() does)."));
+			throw std::runtime_error(
+			    sentence("O.bodies[", id, "].aspherical = False is not allowed for a block: set it to True (dem.block() does)."));
 	}
 }
 
@@ -88,7 +95,8 @@ vector<RockingJointEngine::Pair> RockingJointEngine::gather()
 	system.bodies.clear();
 	index.assign(scene->bodies->size(), -1);
 	for (const auto& body : scene->bodies->body) {
-		if (!body || !dynamic_cast<BlockMat*>(body->material.get())) continue;
+		if (!body || !dynamic_cast<BlockMat*>(body->material.get()))
+			continue;
 		if (!dynamic_cast<Box*>(body->shape.get()))
 			throw std::invalid_argument(sentence("O.bodies[", body->id, "] has a BlockMat and is no Box: blocks touch boxes only."));
 		checkBody(*body);
@@ -98,26 +106,29 @@ vector<RockingJointEngine::Pair> RockingJointEngine::gather()
 	}
 	vector<Interaction*> found;
 	for (const auto& interaction : *scene->interactions)
-		if (interaction->isReal() && dynamic_cast<BlockPhys*>(interaction->phys.get())) found.push_back(interaction.get());
-	std::sort(found.begin(), found.end(), [](const Interaction* a, const Interaction* b) {
-		return std::minmax(a->id1, a->id2) < std::minmax(b->id1, b->id2);
-	});
+		if (interaction->isReal() && dynamic_cast<BlockPhys*>(interaction->phys.get()))
+			found.push_back(interaction.get());
+	std::sort(found.begin(), found.end(),
+	          [](const Interaction* a, const Interaction* b) { return std::minmax(a->id1, a->id2) < std::minmax(b->id1, b->id2); });
 	vector<Pair> pairs;
 	system.contacts.clear();
 	const auto moved = [&](int id) { return system.bodies[index[id]].prescribed; };
 	for (const Interaction* interaction : found) {
-		if (moved(interaction->id1) && moved(interaction->id2)) continue; // bases that touch do not push each other
+		if (moved(interaction->id1) && moved(interaction->id2))
+			continue; // bases that touch do not push each other
 		auto& geom = static_cast<BlockGeom&>(*interaction->geom);
 		auto& phys = static_cast<BlockPhys&>(*interaction->phys);
 		if (!(phys.normalStiffness > 0 && phys.shearStiffness > 0))
-			throw std::runtime_error(sentence("The joint of bodies ", interaction->id1, " and ", interaction->id2, " has normalStiffness = ", phys.normalStiffness,
-				", shearStiffness = ", phys.shearStiffness, ": both must be positive, in Pa/m. Give them to BlockMat, or let dem.engines(model='compliant') choose."));
+			throw std::runtime_error(
+			    sentence("The joint of bodies ", interaction->id1, " and ", interaction->id2,
+			             " has normalStiffness = ", phys.normalStiffness, ", shearStiffness = ", phys.shearStiffness,
+			             ": both must be positive, in Pa/m. Give them to BlockMat, or let dem.engines(model='compliant') choose."));
 		phys.check(interaction->id1, interaction->id2);
 		masonry::JointContact contact = coreContact(*interaction, geom, phys, 0);
 		contact.body1 = index[contact.body1];
 		contact.body2 = index[contact.body2];
 		system.contacts.push_back(contact);
-		pairs.push_back({ &geom, &phys });
+		pairs.push_back({&geom, &phys});
 	}
 	return pairs;
 }
@@ -127,7 +138,8 @@ void RockingJointEngine::addExternalForces()
 	scene->forces.sync();
 	for (size_t b = 0; b < ids.size(); ++b) {
 		masonry::Body& body = system.bodies[b];
-		if (body.prescribed) continue;
+		if (body.prescribed)
+			continue;
 		body.force = scene->forces.getForce(ids[b]) + body.mass * gravity;
 		body.torque = scene->forces.getTorque(ids[b]);
 	}
@@ -136,7 +148,8 @@ void RockingJointEngine::addExternalForces()
 Real RockingJointEngine::criticalTimeStep()
 {
 	const shared_ptr<Scene>& present = Omega::instance().getScene();
-	if (checkedTimeStep > 0 && home.lock() == present) return masonry::criticalTimeStep(system.bodies, system.contacts);
+	if (checkedTimeStep > 0 && home.lock() == present)
+		return masonry::criticalTimeStep(system.bodies, system.contacts);
 	// Before the first step there are no interactions yet, and after loading they have no patches: every pair of boxes is looked at.
 	scene = present.get();
 	vector<masonry::JointContact> contacts;
@@ -144,13 +157,16 @@ Real RockingJointEngine::criticalTimeStep()
 	Ip2_BlockMat_BlockMat_BlockPhys law;
 	for (size_t a = 0; a < ids.size(); ++a)
 		for (size_t b = a + 1; b < ids.size(); ++b) {
-			if (system.bodies[a].prescribed && system.bodies[b].prescribed) continue;
+			if (system.bodies[a].prescribed && system.bodies[b].prescribed)
+				continue;
 			const Body &body1 = *(*scene->bodies)[ids[a]], &body2 = *(*scene->bodies)[ids[b]];
 			const auto *box1 = static_cast<Box*>(body1.shape.get()), *box2 = static_cast<Box*>(body2.shape.get());
 			masonry::ContactPatch patch;
-			if ((body1.state->pos - body2.state->pos).norm() > box1->extents.norm() + box2->extents.norm()) continue;
+			if ((body1.state->pos - body2.state->pos).norm() > box1->extents.norm() + box2->extents.norm())
+				continue;
 			const Real near = 1e-2 * std::min(box1->extents.minCoeff(), box2->extents.minCoeff());
-			if (!masonry::collide({ box1->extents }, system.bodies[a].pose, { box2->extents }, system.bodies[b].pose, near, {}, patch)) continue;
+			if (!masonry::collide({box1->extents}, system.bodies[a].pose, {box2->extents}, system.bodies[b].pose, near, {}, patch))
+				continue;
 			const shared_ptr<Interaction> interaction(new Interaction(ids[a], ids[b]));
 			law.go(body1.material, body2.material, interaction);
 			masonry::JointContact contact;
@@ -166,15 +182,17 @@ Real RockingJointEngine::criticalTimeStep()
 void RockingJointEngine::checkTimeStep()
 {
 	const Real critical = masonry::criticalTimeStep(system.bodies, system.contacts);
-	if (scene->dt > 0 && scene->dt < critical) return;
-	throw std::runtime_error(sentence("O.dt = ", scene->dt, " s is not allowed with these joint stiffnesses: it must be positive and below ", critical,
-		" s (a tenth of that is accurate); dem.engines() chooses one."));
+	if (scene->dt > 0 && scene->dt < critical)
+		return;
+	throw std::runtime_error(sentence("O.dt = ", scene->dt,
+	                                  " s is not allowed with these joint stiffnesses: it must be positive and below ", critical,
+	                                  " s (a tenth of that is accurate); dem.engines() chooses one."));
 }
 
 void RockingJointEngine::recordImpact(const masonry::ImpactRecord& record)
 {
 	addImpact(*this, scene->time - record.before, ids[record.block], ids[record.support], record.restitutionAsked, record.result,
-		record.result.energyLost, record.switched, record.result.capped);
+	          record.result.energyLost, record.switched, record.result.capped);
 	impactDissip += record.result.energyLost + record.settled;
 	baseWork += record.work;
 }
@@ -183,8 +201,9 @@ void RockingJointEngine::reportUnsolved()
 {
 	worstResidual = std::max(worstResidual, system.residual);
 	if (system.unsolved > 0 && failures == 0)
-		LOG_WARN("at t = " << scene->time << " s the impulses at the joints miss their laws by " << system.residual << " m/s"
-		         << " (without slip they may have no solution). The run goes on; RockingJointEngine.failures counts such problems.");
+		LOG_WARN(
+		    "at t = " << scene->time << " s the impulses at the joints miss their laws by " << system.residual << " m/s"
+		              << " (without slip they may have no solution). The run goes on; RockingJointEngine.failures counts such problems.");
 	failures += system.unsolved;
 }
 
@@ -195,13 +214,16 @@ void RockingJointEngine::boundTurns()
 	boundAt.resize(scene->bodies->size());
 	for (int id : ids) {
 		const Body& body = *(*scene->bodies)[id];
-		if (!body.bound || !body.isDynamic()) continue;
-		Bound&    bound = *body.bound;
+		if (!body.bound || !body.isDynamic())
+			continue;
+		Bound& bound = *body.bound;
 		BoundPose& seen = boundAt[id];
-		if (seen.iteration != bound.lastUpdateIter) seen = { bound.lastUpdateIter, body.state->ori };
+		if (seen.iteration != bound.lastUpdateIter)
+			seen = {bound.lastUpdateIter, body.state->ori};
 		const Real radius = static_cast<const Box&>(*body.shape).extents.norm();
 		const Real way = (body.state->pos - bound.refPos).norm() + radius * seen.orientation.angularDistance(body.state->ori);
-		if (way > bound.sweepLength) bound.refPos = body.state->pos - way * Vector3r::UnitX();
+		if (way > bound.sweepLength)
+			bound.refPos = body.state->pos - way * Vector3r::UnitX();
 	}
 }
 
@@ -211,16 +233,20 @@ void RockingJointEngine::addMade()
 {
 	Real lifted = 0;
 	for (const masonry::Body& body : system.bodies)
-		if (!body.prescribed) lifted += body.mass * gravity.norm() * std::sqrt(body.inertia.minCoeff() / body.mass);
+		if (!body.prescribed)
+			lifted += body.mass * gravity.norm() * std::sqrt(body.inertia.minCoeff() / body.mass);
 	const Real turnedOver = kinetic + elastPotential + frictDissip + dampDissip + impactDissip;
 	const Real most = masonry::tolerance::madeShare * turnedOver + masonry::tolerance::madeLift * lifted;
 	const bool known = madeEnergy > most;
 	madeEnergy -= elastPotential;
-	for (const auto& contact : system.contacts) madeEnergy += contact.energy.elastic - contact.energy.taken;
-	if (known || !(madeEnergy > most)) return;
+	for (const auto& contact : system.contacts)
+		madeEnergy += contact.energy.elastic - contact.energy.taken;
+	if (known || !(madeEnergy > most))
+		return;
 	if (failures == 0)
-		LOG_WARN("at t = " << scene->time << " s the joints have had " << madeEnergy << " J of nothing: blocks hit so hard that their corners are deep in others. "
-		         << "The run goes on; RockingJointEngine.failures counts it. Give a smaller penetration, or take rigid blocks.");
+		LOG_WARN("at t = " << scene->time << " s the joints have had " << madeEnergy
+		                   << " J of nothing: blocks hit so hard that their corners are deep in others. "
+		                   << "The run goes on; RockingJointEngine.failures counts it. Give a smaller penetration, or take rigid blocks.");
 	++failures;
 }
 
@@ -233,7 +259,8 @@ bool RockingJointEngine::applyJumps(const vector<BaseMotionEngine*>& motions, co
 		for (const BaseJump& jump : motion->takeJumps(scene->time, impacts)) {
 			vector<int> moved;
 			for (int id : motion->ids)
-				if (size_t(id) < index.size() && index[id] >= 0) moved.push_back(index[id]);
+				if (size_t(id) < index.size() && index[id] >= 0)
+					moved.push_back(index[id]);
 			const auto response = masonry::applyBaseJump(system, moved, jump.velocity, jump.before);
 			baseWork += response.work;
 			acted = true;
@@ -271,21 +298,28 @@ void RockingJointEngine::measureEnergy()
 	kinetic = potential = elastPotential = 0;
 	for (size_t b = 0; b < ids.size(); ++b) {
 		masonry::Body body = system.bodies[b];
-		if (body.prescribed) continue;
+		if (body.prescribed)
+			continue;
 		// Velocities are half a step behind the positions: bring them up with the forces of now.
 		body.velocity += 0.5 * scene->dt / body.mass * (body.force + bodyForce[b]);
 		body.angularVelocity += 0.5 * scene->dt * body.inverseInertia() * (body.torque + bodyTorque[b]);
 		kinetic += body.kineticEnergy();
 		potential -= body.mass * gravity.dot(body.pose.position);
 	}
-	for (const auto& contact : system.contacts) elastPotential += contact.energy.elastic;
+	for (const auto& contact : system.contacts)
+		elastPotential += contact.energy.elastic;
 	if (!std::isfinite(kinetic + potential + elastPotential))
 		throw std::runtime_error(sentence("The simulation has diverged at t = ", scene->time, " s (kinetic energy ", kinetic,
-			" J): take a smaller O.dt, or look for blocks that overlap."));
-	if (!scene->trackEnergy) return;
-	const std::pair<const char*, Real> keys[] = { { "elastPotential", elastPotential }, { "frictDissip", frictDissip },
-		{ "dampDissip", dampDissip }, { "impactDissip", impactDissip }, { "baseWork", -baseWork } };
-	for (const auto& [key, value] : keys) scene->energy->setItem_py(key, value);
+		                                  " J): take a smaller O.dt, or look for blocks that overlap."));
+	if (!scene->trackEnergy)
+		return;
+	const std::pair<const char*, Real> keys[] = {{"elastPotential", elastPotential},
+	                                             {"frictDissip", frictDissip},
+	                                             {"dampDissip", dampDissip},
+	                                             {"impactDissip", impactDissip},
+	                                             {"baseWork", -baseWork}};
+	for (const auto& [key, value] : keys)
+		scene->energy->setItem_py(key, value);
 }
 
 /// Of the joints on each moved body, by index.
@@ -294,8 +328,9 @@ std::map<int, RockingJointEngine::Reaction> RockingJointEngine::baseReactions() 
 	std::map<int, Reaction> result;
 	for (const auto& contact : system.contacts)
 		for (int i = 0; i < contact.size; ++i)
-			for (const auto& [b, sign] : { std::pair(contact.body1, -1.), std::pair(contact.body2, 1.) }) {
-				if (!system.bodies[b].prescribed) continue;
+			for (const auto& [b, sign] : {std::pair(contact.body1, -1.), std::pair(contact.body2, 1.)}) {
+				if (!system.bodies[b].prescribed)
+					continue;
 				Reaction& sum = result[b];
 				const Vector3r force = sign * contact.force(i);
 				sum.force += force;
@@ -335,13 +370,15 @@ void RockingJointEngine::action()
 {
 	const shared_ptr<Scene>& present = Omega::instance().getScene();
 	const bool loaded = checkedTimeStep == 0;
-	if (loaded ? scene->iter < lastStep : home.lock() != present) leaveScene();
+	if (loaded ? scene->iter < lastStep : home.lock() != present)
+		leaveScene();
 	home = present;
 	lastStep = scene->iter;
 	const vector<Pair> pairs = gather();
 	boundTurns();
 	checkScene();
-	if (scene->dt != checkedTimeStep) checkTimeStep();
+	if (scene->dt != checkedTimeStep)
+		checkTimeStep();
 	checkedTimeStep = scene->dt;
 	system.gravity = gravity;
 	system.dt = scene->dt;
@@ -365,14 +402,15 @@ void RockingJointEngine::action()
 	else
 		addMade();
 	started = true;
-	if (!starting) addBaseWork();
+	if (!starting)
+		addBaseWork();
 	vector<StepImpact> impacts;
 	const Real lifted = liftJoints(system);
 	impactDissip += lifted;
 	const auto records = handOffPivots(system);
 	for (const auto& record : records) {
 		recordImpact(record);
-		impacts.push_back({ ids[record.block], record.before });
+		impacts.push_back({ids[record.block], record.before});
 	}
 	const bool jumped = applyJumps(motions, impacts);
 	reportUnsolved();

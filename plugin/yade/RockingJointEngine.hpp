@@ -87,9 +87,9 @@ private:
 	boost::weak_ptr<Scene> home;
 	Real checkedTimeStep = 0; // 0: no step yet
 	masonry::JointSystem system;
-	vector<int> ids;   // index in system.bodies -> body id
-	vector<int> index; // body id -> index in system.bodies, or -1
-	vector<BoundPose> boundAt; // by body id
+	vector<int> ids;                        // index in system.bodies -> body id
+	vector<int> index;                      // body id -> index in system.bodies, or -1
+	vector<BoundPose> boundAt;              // by body id
 	vector<Vector3r> bodyForce, bodyTorque; // joint forces on each body
 };
 REGISTER_SERIALIZABLE(RockingJointEngine);

@@ -16,11 +16,15 @@ YADE_PLUGIN((WallRecorder));
 
 namespace {
 
-	constexpr size_t blockNumbers = 4, poseNumbers = 7;
+constexpr size_t blockNumbers = 4, poseNumbers = 7;
 
-	template <class... Numbers> void add(vector<Real>& row, Numbers... numbers) { (row.push_back(numbers), ...); }
+template <class... Numbers>
+void add(vector<Real>& row, Numbers... numbers)
+{
+	(row.push_back(numbers), ...);
+}
 
-	const Box* boxOf(const Body& body) { return dynamic_cast<const Box*>(body.shape.get()); }
+const Box* boxOf(const Body& body) { return dynamic_cast<const Box*>(body.shape.get()); }
 
 } // namespace
 
@@ -28,10 +32,12 @@ namespace {
 void WallRecorder::begin()
 {
 	if (iterPeriod <= 0 && virtPeriod <= 0 && realPeriod <= 0)
-		throw std::invalid_argument(sentence("WallRecorder.iterPeriod = ", iterPeriod, ", virtPeriod = ", virtPeriod, ": one of them must be positive."));
+		throw std::invalid_argument(
+		    sentence("WallRecorder.iterPeriod = ", iterPeriod, ", virtPeriod = ", virtPeriod, ": one of them must be positive."));
 	if (ids.empty())
 		for (const auto& body : scene->bodies->body)
-			if (body && boxOf(*body) && dynamic_cast<const BlockMat*>(body->material.get())) ids.push_back(body->id);
+			if (body && boxOf(*body) && dynamic_cast<const BlockMat*>(body->material.get()))
+				ids.push_back(body->id);
 	blocks.clear();
 	for (int id : ids) {
 		if (!scene->bodies->exists(id) || !boxOf(*(*scene->bodies)[id]))
@@ -49,8 +55,10 @@ void WallRecorder::addEnergies()
 		return !engine->dead && (dynamic_cast<MoreauJeanIntegrator*>(engine.get()) || dynamic_cast<RockingJointEngine*>(engine.get()));
 	};
 	const auto present = std::find_if(scene->engines.begin(), scene->engines.end(), integrates);
-	if (present == scene->engines.end()) return add(energies, NaN, NaN, NaN, NaN, NaN, NaN, NaN);
-	if (std::find(integrators.begin(), integrators.end(), *present) == integrators.end()) integrators.push_back(*present);
+	if (present == scene->engines.end())
+		return add(energies, NaN, NaN, NaN, NaN, NaN, NaN, NaN);
+	if (std::find(integrators.begin(), integrators.end(), *present) == integrators.end())
+		integrators.push_back(*present);
 	Real friction = 0, dashpots = 0, impacts = 0, work = 0;
 	for (const auto& engine : integrators) {
 		if (const auto* rigid = dynamic_cast<MoreauJeanIntegrator*>(engine.get()))
@@ -67,8 +75,10 @@ void WallRecorder::addEnergies()
 
 void WallRecorder::action()
 {
-	if (times.empty()) begin();
-	if (blocks.size() != blockNumbers * ids.size()) throw std::invalid_argument("WallRecorder.ids has been changed after the first sample: make a new WallRecorder.");
+	if (times.empty())
+		begin();
+	if (blocks.size() != blockNumbers * ids.size())
+		throw std::invalid_argument("WallRecorder.ids has been changed after the first sample: make a new WallRecorder.");
 	bodies.begin(*scene, ids, [&](size_t k) { return !times.empty() && std::isnan(poses[poses.size() - poseNumbers * (ids.size() - k)]); });
 	times.push_back(scene->time);
 	addEnergies();

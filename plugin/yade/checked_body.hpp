@@ -14,15 +14,19 @@ inline void checkBody(const Body& body)
 	constexpr Real least = 1e-18, most = 1e18;
 	const auto check = [&](const char* attribute, const auto& values, const char* unit) {
 		for (int k = 0; k < int(values.size()); ++k) {
-			if (values[k] >= least && values[k] <= most) continue;
+			if (values[k] >= least && values[k] <= most)
+				continue;
 			const std::string place = values.size() > 1 ? sentence('[', k, ']') : "";
 			throw std::invalid_argument(sentence("O.bodies[", body.id, "].", attribute, place, " = ", values[k],
-				" is not allowed for a block: it must be from ", least, " to ", most, ' ', unit, '.'));
+			                                     " is not allowed for a block: it must be from ", least, " to ", most, ' ', unit, '.'));
 		}
 	};
-	if (body.isClumpMember()) throw std::invalid_argument(sentence("O.bodies[", body.id, "] is a member of a clump: blocks cannot be clumped."));
-	if (const auto* box = dynamic_cast<const Box*>(body.shape.get())) check("shape.extents", box->extents, "m");
-	if (!body.isDynamic()) return;
+	if (body.isClumpMember())
+		throw std::invalid_argument(sentence("O.bodies[", body.id, "] is a member of a clump: blocks cannot be clumped."));
+	if (const auto* box = dynamic_cast<const Box*>(body.shape.get()))
+		check("shape.extents", box->extents, "m");
+	if (!body.isDynamic())
+		return;
 	check("state.mass", Eigen::Matrix<Real, 1, 1>(body.state->mass), "kg");
 	check("state.inertia", body.state->inertia, "kg m^2");
 }

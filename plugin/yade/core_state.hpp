@@ -13,7 +13,7 @@ inline masonry::Body coreBody(const Body& body)
 {
 	const State& state = *body.state;
 	masonry::Body result;
-	result.pose = { state.pos, state.ori };
+	result.pose = {state.pos, state.ori};
 	result.velocity = state.vel;
 	result.angularVelocity = state.angVel;
 	result.mass = state.mass;
@@ -28,8 +28,10 @@ inline void writeState(const masonry::Body& from, State& state)
 	state.pos = from.pose.position;
 	state.ori = from.pose.orientation;
 	for (int axis = 0; axis < 3; ++axis) {
-		if (!(state.blockedDOFs & (State::DOF_X << axis))) state.vel[axis] = from.velocity[axis];
-		if (!(state.blockedDOFs & (State::DOF_RX << axis))) state.angVel[axis] = from.angularVelocity[axis];
+		if (!(state.blockedDOFs & (State::DOF_X << axis)))
+			state.vel[axis] = from.velocity[axis];
+		if (!(state.blockedDOFs & (State::DOF_RX << axis)))
+			state.angVel[axis] = from.angularVelocity[axis];
 	}
 	// NewtonIntegrator carries the angular momentum of aspherical bodies.
 	state.angMom = state.ori * state.inertia.cwiseProduct(state.ori.conjugate() * state.angVel);

@@ -9,13 +9,16 @@ namespace yade {
 class MotionDrive final : public masonry::rigid::BaseDrive {
 public:
 	/// `ids`: of the blocks, by their number in the system.
-	MotionDrive(BaseMotionEngine& engine, const vector<int>& ids) : motion(engine), blocks(ids) { }
+	MotionDrive(BaseMotionEngine& engine, const vector<int>& ids) : motion(engine), blocks(ids) {}
 
 	double displacement(double t) const override { return motion.displacement(t - motion.start); }
 	double velocity(double t) const override { return motion.velocity(t - motion.start); }
-	double nextKink(double after, double until) const override { return motion.start + motion.nextKink(after - motion.start, until - motion.start); }
+	double nextKink(double after, double until) const override
+	{
+		return motion.start + motion.nextKink(after - motion.start, until - motion.start);
+	}
 	double jumpAt(double t) override { return sum(motion.takeJumps(t + instant, {})); }
-	double respond(int block, double t) override { return sum(motion.takeJumps(t, { { blocks[block], 0 } })); }
+	double respond(int block, double t) override { return sum(motion.takeJumps(t, {{blocks[block], 0}})); }
 
 	bool ordered() const override { return motion.ordered(); }
 
@@ -25,7 +28,8 @@ private:
 	static double sum(const vector<BaseJump>& jumps)
 	{
 		double result = 0;
-		for (const BaseJump& jump : jumps) result += jump.size;
+		for (const BaseJump& jump : jumps)
+			result += jump.size;
 		return result;
 	}
 

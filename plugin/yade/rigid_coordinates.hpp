@@ -30,38 +30,45 @@ struct Motion {
 	bool isOf(const State& state) const { return isPlaceOf(state) && vel == state.vel && angVel == state.angVel; }
 };
 
-template <class K> struct Coordinates;
-template <class K> struct Seat;
+template <class K>
+struct Coordinates;
+template <class K>
+struct Seat;
 
-template <> struct Coordinates<Plane> {
+template <>
+struct Coordinates<Plane> {
 	Vector3r along, up, normal; // angles count from along to up, about the normal
 
-	explicit Coordinates(const Vector3r& horizontal) : along(horizontal), up(Vector3r::UnitZ()), normal(horizontal.cross(up)) { }
+	explicit Coordinates(const Vector3r& horizontal) : along(horizontal), up(Vector3r::UnitZ()), normal(horizontal.cross(up)) {}
 
-	masonry::Vector2 in(const Vector3r& v) const { return { along.dot(v), up.dot(v) }; }
+	masonry::Vector2 in(const Vector3r& v) const { return {along.dot(v), up.dot(v)}; }
 	/// Throws LeavesPlane.
 	masonry::Vector2 gravity(const Vector3r& g) const
 	{
-		if (std::abs(normal.dot(g)) > outOfPlane * g.norm()) throw LeavesPlane("gravity points out of the plane");
+		if (std::abs(normal.dot(g)) > outOfPlane * g.norm())
+			throw LeavesPlane("gravity points out of the plane");
 		return in(g);
 	}
 	/// Of a motion, a unit vector. Throws LeavesPlane.
 	masonry::Vector2 direction(const Vector3r& d) const
 	{
-		if (std::abs(normal.dot(d)) > outOfPlane) throw LeavesPlane("a motion points out of the plane");
+		if (std::abs(normal.dot(d)) > outOfPlane)
+			throw LeavesPlane("a motion points out of the plane");
 		return in(d);
 	}
 	Vector3r out(const masonry::Vector2& v) const { return v.x() * along + v.y() * up; }
 	/// Of block `id`. Throws LeavesPlane.
 	Plane::Velocity load(const Vector3r& force, const Vector3r& torque, int id) const
 	{
-		if (leaves(force, torque)) throw LeavesPlane(sentence("a force or torque acts on block ", id, " out of the plane"));
+		if (leaves(force, torque))
+			throw LeavesPlane(sentence("a force or torque acts on block ", id, " out of the plane"));
 		return in(force, torque);
 	}
 	/// Of block `id`. Throws LeavesPlane.
 	Plane::Velocity velocity(const State& state, int id) const
 	{
-		if (leaves(state.vel, state.angVel)) throw LeavesPlane(sentence("block ", id, " moves out of the plane"));
+		if (leaves(state.vel, state.angVel))
+			throw LeavesPlane(sentence("block ", id, " moves out of the plane"));
 		return in(state.vel, state.angVel);
 	}
 
@@ -80,8 +87,9 @@ private:
 	}
 };
 
-template <> struct Coordinates<Space> {
-	explicit Coordinates(const Vector3r&) { }
+template <>
+struct Coordinates<Space> {
+	explicit Coordinates(const Vector3r&) {}
 
 	const Vector3r& in(const Vector3r& v) const { return v; }
 	const Vector3r& gravity(const Vector3r& g) const { return g; }
@@ -96,7 +104,8 @@ template <> struct Coordinates<Space> {
 };
 
 /// A box in the plane: which of its axes lies across, which upright, how deep it is, how it stands at angle zero.
-template <> struct Seat<Plane> {
+template <>
+struct Seat<Plane> {
 	int across = 0, upright = 0, lengthwise = 0;
 	Real depth = 0; // along the normal
 	Quaternionr reference = Quaternionr::Identity();
@@ -108,7 +117,8 @@ template <> struct Seat<Plane> {
 		(c.normal.transpose() * axes).cwiseAbs().maxCoeff(&across);
 		lengthwise = (across + 1) % 3;
 		upright = (across + 2) % 3;
-		if (std::abs(c.along.dot(axes.col(lengthwise))) < std::abs(c.along.dot(axes.col(upright)))) std::swap(lengthwise, upright);
+		if (std::abs(c.along.dot(axes.col(lengthwise))) < std::abs(c.along.dot(axes.col(upright))))
+			std::swap(lengthwise, upright);
 		Matrix3r standing;
 		standing.col(across) = std::copysign(1, c.normal.dot(axes.col(across))) * c.normal;
 		standing.col(lengthwise) = std::copysign(1, c.along.dot(axes.col(lengthwise))) * c.along;
@@ -117,15 +127,15 @@ template <> struct Seat<Plane> {
 		depth = c.normal.dot(state.pos);
 	}
 
-	masonry::Vector2 halfSize(const Vector3r& extents) const { return { extents[lengthwise], extents[upright] }; }
+	masonry::Vector2 halfSize(const Vector3r& extents) const { return {extents[lengthwise], extents[upright]}; }
 	Plane::Inertia inertia(const Vector3r& principal) const { return Plane::Inertia(principal[across]); }
 
 	/// Angles within half a turn. Throws LeavesPlane.
 	void read(const Coordinates<Plane>& c, const State& state, Real size, int id, masonry::rigid::RigidBody<Plane>& body) const
 	{
 		const Quaternionr turn = state.ori * reference.conjugate();
-		const Real        about = turn.vec().dot(c.normal);
-		const Vector3r    astray = turn.vec() - about * c.normal;
+		const Real about = turn.vec().dot(c.normal);
+		const Vector3r astray = turn.vec() - about * c.normal;
 		if (std::abs(c.normal.dot(state.pos) - depth) > outOfPlane * size || astray.norm() > outOfPlane)
 			throw LeavesPlane(sentence("block ", id, " has been moved out of the plane"));
 		body.velocity = c.velocity(state, id);
@@ -133,16 +143,18 @@ template <> struct Seat<Plane> {
 		body.pose.setAngle(2 * (turn.w() < 0 ? std::atan2(-about, -turn.w()) : std::atan2(about, turn.w())));
 	}
 	/// To all at once: read back while it is still being written, a number keeps the processor waiting.
-	template <class... To> void tell(const Coordinates<Plane>& c, const masonry::rigid::RigidBody<Plane>& body, To&... to) const
+	template <class... To>
+	void tell(const Coordinates<Plane>& c, const masonry::rigid::RigidBody<Plane>& body, To&... to) const
 	{
 		// Half the angle, within a quarter turn, from its cosine and sine.
 		const auto& pose = body.pose;
-		const Real  w = pose.cosine >= 0 ? std::sqrt((1 + pose.cosine) / 2) : std::abs(pose.sine) / std::sqrt(2 * (1 - pose.cosine));
-		const Real  s = pose.cosine >= 0 ? pose.sine / (2 * w) : std::copysign(std::sqrt((1 - pose.cosine) / 2), pose.sine);
+		const Real w = pose.cosine >= 0 ? std::sqrt((1 + pose.cosine) / 2) : std::abs(pose.sine) / std::sqrt(2 * (1 - pose.cosine));
+		const Real s = pose.cosine >= 0 ? pose.sine / (2 * w) : std::copysign(std::sqrt((1 - pose.cosine) / 2), pose.sine);
 		Quaternionr turn;
 		turn.w() = w;
 		turn.vec() = s * c.normal;
-		const Vector3r    pos = c.out(pose.position) + depth * c.normal, vel = c.out(body.velocity.head<2>()), angVel = body.velocity[2] * c.normal;
+		const Vector3r pos = c.out(pose.position) + depth * c.normal, vel = c.out(body.velocity.head<2>()),
+		               angVel = body.velocity[2] * c.normal;
 		const Quaternionr ori = turn * reference;
 		((to.pos = pos, to.vel = vel, to.angVel = angVel, to.ori = ori), ...);
 	}
@@ -152,22 +164,26 @@ template <> struct Seat<Plane> {
 	}
 };
 
-template <> struct Seat<Space> {
+template <>
+struct Seat<Space> {
 	static constexpr Real depth = 0;
 
 	Seat() = default;
-	Seat(const Coordinates<Space>&, const State&) { }
+	Seat(const Coordinates<Space>&, const State&) {}
 
 	const Vector3r& halfSize(const Vector3r& extents) const { return extents; }
 	const Vector3r& inertia(const Vector3r& principal) const { return principal; }
 	void read(const Coordinates<Space>&, const State& state, Real, int, masonry::rigid::RigidBody<Space>& body) const
 	{
-		body.pose = { state.pos, state.ori };
+		body.pose = {state.pos, state.ori};
 		body.velocity << state.vel, state.angVel;
 	}
-	template <class... To> void tell(const Coordinates<Space>&, const masonry::rigid::RigidBody<Space>& body, To&... to) const
+	template <class... To>
+	void tell(const Coordinates<Space>&, const masonry::rigid::RigidBody<Space>& body, To&... to) const
 	{
-		((to.pos = body.pose.position, to.vel = body.velocity.head<3>(), to.angVel = body.velocity.tail<3>(), to.ori = body.pose.orientation), ...);
+		((to.pos = body.pose.position, to.vel = body.velocity.head<3>(), to.angVel = body.velocity.tail<3>(),
+		  to.ori = body.pose.orientation),
+		 ...);
 	}
 	Vector3r spin(const Coordinates<Space>&, const masonry::rigid::RigidBody<Space>& body) const
 	{

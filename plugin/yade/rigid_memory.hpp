@@ -10,45 +10,48 @@
 
 namespace yade {
 
-/// The row begins with the number of its layout and model, to be changed with any list of members. Rows of old have none: they begin with how many blocks
-/// there are.
+/// The row begins with the number of its layout and model, to be changed with any list of members. Rows of old have none: they begin with
+/// how many blocks there are.
 constexpr Real layout = -8;
 
 /// Numbers, enumerations and matrices go into the row, or come out of it, by the same list of members.
 struct Packer {
-	explicit Packer(int dimension)
-	        : values { layout, Real(dimension) }
-	{
-	}
+	explicit Packer(int dimension) : values {layout, Real(dimension)} {}
 	vector<Real> values;
-	template <class T> void operator()(const T& value)
+	template <class T>
+	void operator()(const T& value)
 	{
 		if constexpr (std::is_arithmetic_v<T> || std::is_enum_v<T>)
 			values.push_back(Real(value));
 		else
-			for (int i = 0; i < value.size(); ++i) values.push_back(value(i));
+			for (int i = 0; i < value.size(); ++i)
+				values.push_back(value(i));
 	}
 };
 
 class Unpacker {
 public:
-	Unpacker(const vector<Real>& row, int dimension)
-	        : values(row)
+	Unpacker(const vector<Real>& row, int dimension) : values(row)
 	{
-		if (take() != layout) refuse();
+		if (take() != layout)
+			refuse();
 		if (take() != dimension)
-			throw std::runtime_error("MoreauJeanIntegrator.remembered is of a run in the plane and this one is in space, or the other way round.");
+			throw std::runtime_error(
+			    "MoreauJeanIntegrator.remembered is of a run in the plane and this one is in space, or the other way round.");
 	}
-	template <class T> void operator()(T& value)
+	template <class T>
+	void operator()(T& value)
 	{
 		if constexpr (std::is_arithmetic_v<T> || std::is_enum_v<T>)
 			value = T(take());
 		else
-			for (int i = 0; i < value.size(); ++i) value(i) = take();
+			for (int i = 0; i < value.size(); ++i)
+				value(i) = take();
 	}
 	void end() const
 	{
-		if (next != values.size()) refuse();
+		if (next != values.size())
+			refuse();
 	}
 
 	[[noreturn]] static void refuse()
@@ -60,55 +63,82 @@ public:
 private:
 	Real take()
 	{
-		if (next == values.size()) refuse();
+		if (next == values.size())
+			refuse();
 		return values[next++];
 	}
 
 	const vector<Real>& values;
-	size_t              next = 0;
+	size_t next = 0;
 };
 
 namespace memory {
-	using namespace masonry::rigid;
+using namespace masonry::rigid;
 
-	template <class Flow> void pass(Flow& f, PlaneFeature& p) { f(p.vertexBody), f(p.vertex), f(p.face); }
-	template <class Flow> void pass(Flow& f, SpaceFeature& p) { f(p.kind), f(p.first), f(p.second); }
-	template <class Flow> void pass(Flow& f, PlaneMemory& m)
-	{
-		f(m.reference), f(m.face1), f(m.face2);
-		for (PlaneFeature& feature : m.features) pass(f, feature);
-	}
-	template <class Flow> void pass(Flow& f, masonry::PatchFeature& m) { f(m.kind), f(m.feature1), f(m.feature2), f(m.vertices); }
-	template <class Flow> void pass(Flow& f, Seat<Plane>& s) { f(s.across), f(s.upright), f(s.lengthwise), f(s.depth), f(s.reference.coeffs()); }
-	template <class Flow> void pass(Flow&, Seat<Space>&) { }
+template <class Flow>
+void pass(Flow& f, PlaneFeature& p)
+{
+	f(p.vertexBody), f(p.vertex), f(p.face);
+}
+template <class Flow>
+void pass(Flow& f, SpaceFeature& p)
+{
+	f(p.kind), f(p.first), f(p.second);
+}
+template <class Flow>
+void pass(Flow& f, PlaneMemory& m)
+{
+	f(m.reference), f(m.face1), f(m.face2);
+	for (PlaneFeature& feature : m.features)
+		pass(f, feature);
+}
+template <class Flow>
+void pass(Flow& f, masonry::PatchFeature& m)
+{
+	f(m.kind), f(m.feature1), f(m.feature2), f(m.vertices);
+}
+template <class Flow>
+void pass(Flow& f, Seat<Plane>& s)
+{
+	f(s.across), f(s.upright), f(s.lengthwise), f(s.depth), f(s.reference.coeffs());
+}
+template <class Flow>
+void pass(Flow&, Seat<Space>&)
+{
+}
 
-	// Masses and laws belong to the scene, and so do sizes, but for knowing whether they have changed; gaps are measured anew. By their places
-	// points are known again that go to other features.
-	template <class Flow, class K> void pass(Flow& f, RigidBody<K>& b)
-	{
-		f(b.halfSize), passPose(f, b.pose), f(b.velocity), f(b.increment), f(b.fresh), f(b.prescribed), f(b.drive), f(b.origin);
+// Masses and laws belong to the scene, and so do sizes, but for knowing whether they have changed; gaps are measured anew. By their places
+// points are known again that go to other features.
+template <class Flow, class K>
+void pass(Flow& f, RigidBody<K>& b)
+{
+	f(b.halfSize), passPose(f, b.pose), f(b.velocity), f(b.increment), f(b.fresh), f(b.prescribed), f(b.drive), f(b.origin);
+}
+template <class Flow, class K>
+void pass(Flow& f, ContactPair<K>& p)
+{
+	f(p.body1), f(p.body2), f(p.face1), f(p.face2), f(p.beside), f(p.size);
+	if (!(p.size >= 0 && p.size <= K::maxPoints))
+		Unpacker::refuse();
+	pass(f, p.memory);
+	for (int i = 0; i < p.size; ++i) {
+		ContactPoint<K>& point = p.points[i];
+		pass(f, point.feature);
+		f(point.closed), f(point.sliding), f(point.force), f(point.frame.position);
 	}
-	template <class Flow, class K> void pass(Flow& f, ContactPair<K>& p)
-	{
-		f(p.body1), f(p.body2), f(p.face1), f(p.face2), f(p.beside), f(p.size);
-		if (!(p.size >= 0 && p.size <= K::maxPoints)) Unpacker::refuse();
-		pass(f, p.memory);
-		for (int i = 0; i < p.size; ++i) {
-			ContactPoint<K>& point = p.points[i];
-			pass(f, point.feature);
-			f(point.closed), f(point.sliding), f(point.force), f(point.frame.position);
-		}
-	}
+}
 } // namespace memory
 
 /// Blocks by their ids, pairs by the numbers of their blocks.
-template <class K> struct Remembered {
-	vector<int>                            ids;
-	vector<Seat<K>>                        seats;
-	vector<masonry::rigid::RigidBody<K>>   bodies;
+template <class K>
+struct Remembered {
+	vector<int> ids;
+	vector<Seat<K>> seats;
+	vector<masonry::rigid::RigidBody<K>> bodies;
 	vector<masonry::rigid::ContactPair<K>> pairs;
 
-	template <class Flow> void pass(Flow& f)
+	template <class Flow>
+	void pass(Flow& f)
 	{
 		size_t blocks = ids.size(), count = pairs.size();
 		f(blocks), f(count);
@@ -121,7 +151,8 @@ template <class K> struct Remembered {
 			memory::pass(f, seats[b]);
 			memory::pass(f, bodies[b]);
 		}
-		for (auto& pair : pairs) memory::pass(f, pair);
+		for (auto& pair : pairs)
+			memory::pass(f, pair);
 	}
 };
 
@@ -136,12 +167,14 @@ struct RigidRun {
 /// Attribute of the integrator: the blocks while it runs, numbers in a file.
 struct RigidMemory {
 	std::shared_ptr<RigidRun> run;
-	vector<Real>              values;
+	vector<Real> values;
 
-	template <class Archive> void serialize(Archive& archive, unsigned)
+	template <class Archive>
+	void serialize(Archive& archive, unsigned)
 	{
 		if constexpr (Archive::is_saving::value) {
-			if (run) values = run->isPresent() ? run->pack() : vector<Real>();
+			if (run)
+				values = run->isPresent() ? run->pack() : vector<Real>();
 		} else {
 			run.reset();
 		}

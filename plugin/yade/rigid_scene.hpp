@@ -27,14 +27,12 @@ inline bool isBlock(const Body& body)
 /// What a script may change between steps and the core has taken over.
 struct Properties {
 	Vector3r extents, inertia;
-	Real     mass;
+	Real mass;
 	unsigned blockedDOFs;
 
 	explicit Properties(const Body& body)
-	        : extents(static_cast<const Box&>(*body.shape).extents)
-	        , inertia(body.state->inertia)
-	        , mass(body.state->mass)
-	        , blockedDOFs(body.state->blockedDOFs)
+	    : extents(static_cast<const Box&>(*body.shape).extents), inertia(body.state->inertia), mass(body.state->mass),
+	      blockedDOFs(body.state->blockedDOFs)
 	{
 	}
 	bool operator==(const Properties& o) const
@@ -49,10 +47,10 @@ struct Seen {
 	shared_ptr<Material> material;
 	shared_ptr<Shape> shape;
 
-	explicit Seen(const shared_ptr<Body>& b)
-	        : body(b)
+	explicit Seen(const shared_ptr<Body>& b) : body(b)
 	{
-		if (!body) return;
+		if (!body)
+			return;
 		material = body->material;
 		shape = body->shape;
 	}
@@ -73,24 +71,22 @@ public:
 	virtual void dropErased() = 0;
 };
 
-template <class K> class RigidScene final : public AnyRigidScene {
+template <class K>
+class RigidScene final : public AnyRigidScene {
 	using System = masonry::rigid::RigidSystem<K>;
 	using Pair = masonry::rigid::ContactPair<K>;
 
 	struct Link {
-		shared_ptr<Body>  body;
+		shared_ptr<Body> body;
 		shared_ptr<State> state; // the body's
-		Properties        properties;
-		Motion            written;
+		Properties properties;
+		Motion written;
 	};
 
 public:
 	RigidScene(MoreauJeanIntegrator& engine, const vector<BaseMotionEngine*>& motions, const Remembered<K>& before)
-	        : integrator(engine)
-	        , scene(*engine.scene)
-	        , home(Omega::instance().getScene())
-	        , coordinates(engine.along)
-	        , contacts(scene, coordinates, engine.pairLaw)
+	    : integrator(engine), scene(*engine.scene), home(Omega::instance().getScene()), coordinates(engine.along),
+	      contacts(scene, coordinates, engine.pairLaw)
 	{
 		system.frictDissip = engine.frictDissip;
 		system.impactDissip = engine.impactDissip;
@@ -99,11 +95,13 @@ public:
 		addDrives(motions, inBefore);
 		addPairs(before, inBefore);
 		for (size_t b = 0; b < inBefore.size(); ++b) {
-			if (inBefore[b] < 0) continue;
+			if (inBefore[b] < 0)
+				continue;
 			const auto &now = system.bodies[b], &then = before.bodies[inBefore[b]];
 			changed |= now.prescribed != then.prescribed || now.drive != then.drive;
 		}
-		if (changed) system.startAnew();
+		if (changed)
+			system.startAnew();
 		forgetNeighbours();
 	}
 
@@ -116,7 +114,8 @@ public:
 		kept.pairs = system.pairs;
 		Remembered<K> told = kept;
 		for (size_t b = 0; b < links.size(); ++b)
-			if (!isThere(b)) told.ids[b] = -1;
+			if (!isThere(b))
+				told.ids[b] = -1;
 		told.pass(packer);
 		packer(byWalls);
 		packer(lawsChanged);
@@ -133,7 +132,8 @@ public:
 		unpacker(byWalls);
 		bool laws = false;
 		unpacker(laws);
-		if (!byWalls || changed || before.ids != kept.ids || before.pairs.size() != system.pairs.size()) return;
+		if (!byWalls || changed || before.ids != kept.ids || before.pairs.size() != system.pairs.size())
+			return;
 		renewContacts();
 		neighbours->pass(unpacker);
 		bySize.pass(unpacker, system);
@@ -147,10 +147,13 @@ public:
 	bool outdated() const override
 	{
 		const auto& all = scene.bodies->body;
-		if (all.size() != seen.size()) return true;
-		if (!mayHaveChanged()) return false;
+		if (all.size() != seen.size())
+			return true;
+		if (!mayHaveChanged())
+			return false;
 		for (size_t id = 0; id < seen.size(); ++id)
-			if (!seen[id].isStill(all[id])) return true;
+			if (!seen[id].isStill(all[id]))
+				return true;
 		return std::any_of(links.begin(), links.end(),
 		                   [](const Link& link) { return link.body->state != link.state || !(Properties(*link.body) == link.properties); });
 	}
@@ -182,13 +185,16 @@ public:
 			system.moved = true;
 			system.startAnew();
 		}
-		if (integrator.isWall() && lawsChanged) system.moved = true;
+		if (integrator.isWall() && lawsChanged)
+			system.moved = true;
 		lawsChanged = false;
 		byWalls = integrator.isWall();
 		const auto report = byWalls ? advanceWall() : islands.advance(system, scene.dt);
 		writeStates();
-		if (++unshown >= mostUnshown || integrator.isWatched()) writeContacts();
-		for (const auto& impact : system.impacts) record(impact);
+		if (++unshown >= mostUnshown || integrator.isWatched())
+			writeContacts();
+		for (const auto& impact : system.impacts)
+			record(impact);
 		integrator.frictDissip = system.frictDissip;
 		integrator.impactDissip = system.impactDissip;
 		integrator.baseWork = system.baseWork;
@@ -197,7 +203,8 @@ public:
 
 	void writeContacts() override
 	{
-		if (unshown == 0) return;
+		if (unshown == 0)
+			return;
 		showPoints();
 		contacts.write(system, kept);
 		unshown = 0;
@@ -219,7 +226,8 @@ public:
 
 	void setInstant(Real instant) override
 	{
-		for (MotionDrive& motion : motions) motion.instant = instant;
+		for (MotionDrive& motion : motions)
+			motion.instant = instant;
 	}
 
 	void dropErased() override { contacts.dropErased(); }
@@ -228,7 +236,7 @@ private:
 	masonry::rigid::StepReport advanceWall()
 	{
 		masonry::rigid::WallStep<K>& walls = bySize.walls;
-		walls.settings = { integrator.tolerance, integrator.strictForces, std::max(1, integrator.ompThreads) };
+		walls.settings = {integrator.tolerance, integrator.strictForces, std::max(1, integrator.ompThreads)};
 		const auto report = bySize.advance(system, scene.dt);
 		const masonry::rigid::WallReport& ofWalls = walls.report;
 		const bool still = ofWalls.mode == masonry::rigid::WallMode::still;
@@ -240,13 +248,18 @@ private:
 		integrator.forceResidual = ofWalls.forceResidual;
 		if (!still && ofWalls.courses > mostCourses && !integrator.warnedOf.courses) {
 			integrator.warnedOf.courses = true;
-			LOG_WARN("blocks of a wall of " << ofWalls.courses << " courses move from t = " << scene.time << " s on: walls of more than " << mostCourses
-				<< " courses may go some tenths too far; see what a smaller MoreauJeanIntegrator.tolerance or O.dt changes.");
+			LOG_WARN("blocks of a wall of "
+			         << ofWalls.courses << " courses move from t = " << scene.time << " s on: walls of more than " << mostCourses
+			         << " courses may go some tenths too far; see what a smaller MoreauJeanIntegrator.tolerance or O.dt changes.");
 		}
 		if (ofWalls.partBases && !integrator.warnedOf.bases) {
 			integrator.warnedOf.bases = true;
-			LOG_WARN("t = " << scene.time << " s: blocks of a structure stand on bodies that move in different ways. Friction leaves open how much each of these carries, and "
-				"method='wall' may let one take along what should slide on both: compare with method='localised' or compliant joints.");
+			LOG_WARN(
+			    "t = "
+			    << scene.time
+			    << " s: blocks of a structure stand on bodies that move in different ways. Friction leaves open how much each of these "
+			       "carries, and "
+			       "method='wall' may let one take along what should slide on both: compare with method='localised' or compliant joints.");
 		}
 		return report;
 	}
@@ -259,9 +272,10 @@ private:
 		vector<int> inBefore;
 		for (const auto& body : scene.bodies->body) {
 			seen.emplace_back(body);
-			if (!body || !isBlock(*body)) continue;
+			if (!body || !isBlock(*body))
+				continue;
 			const auto old = std::find(before.ids.begin(), before.ids.end(), body->id);
-			const int  k = old == before.ids.end() ? -1 : int(old - before.ids.begin());
+			const int k = old == before.ids.end() ? -1 : int(old - before.ids.begin());
 			inBefore.push_back(k);
 			const State& state = *body->state;
 			const Properties properties(*body);
@@ -273,9 +287,11 @@ private:
 			block.inertia = seat.inertia(properties.inertia);
 			block.prescribed = !body->isDynamic();
 			block.drive = -1;
-			if (k < 0) seat.read(coordinates, state, properties.extents.minCoeff(), body->id, block);
-			links.push_back({ body, body->state, properties, { state.pos, state.vel, state.angVel, state.ori } });
-			if (k >= 0) seat.tell(coordinates, block, links.back().written);
+			if (k < 0)
+				seat.read(coordinates, state, properties.extents.minCoeff(), body->id, block);
+			links.push_back({body, body->state, properties, {state.pos, state.vel, state.angVel, state.ori}});
+			if (k >= 0)
+				seat.tell(coordinates, block, links.back().written);
 			kept.ids.push_back(body->id);
 			kept.seats.push_back(seat);
 			system.bodies.push_back(block);
@@ -298,21 +314,23 @@ private:
 				system.drives.emplace_back();
 			}
 			motions.emplace_back(*engine, kept.ids);
-			system.drives[d].components.push_back({ &motions.back(), coordinates.direction(engine->direction) });
+			system.drives[d].components.push_back({&motions.back(), coordinates.direction(engine->direction)});
 			begins[d] |= engine->beginsNow();
 		}
 		for (size_t d = 0; d < first.size(); ++d) {
 			changed |= begins[d];
 			for (size_t k = 0; k < first[d]->ids.size(); ++k) {
 				const auto found = std::find(kept.ids.begin(), kept.ids.end(), first[d]->ids[k]);
-				if (found == kept.ids.end()) continue; // moved, but no block
+				if (found == kept.ids.end())
+					continue; // moved, but no block
 				const size_t b = size_t(found - kept.ids.begin());
-				auto&        block = system.bodies[b];
+				auto& block = system.bodies[b];
 				block.drive = int(d);
 				const State& state = *links[b].state;
-				links[b].written = { state.pos, state.vel, state.angVel, state.ori };
+				links[b].written = {state.pos, state.vel, state.angVel, state.ori};
 				block.origin = coordinates.in(first[d]->origin(k, engines));
-				if (inBefore[b] < 0 || begins[d]) block.velocity.template head<K::dimension>() = system.drives[d].velocity(scene.time);
+				if (inBefore[b] < 0 || begins[d])
+					block.velocity.template head<K::dimension>() = system.drives[d].velocity(scene.time);
 			}
 		}
 	}
@@ -324,7 +342,8 @@ private:
 		const auto stays = [&](int b, int k) { return b < int(links.size()) && system.bodies[b].halfSize == before.bodies[k].halfSize; };
 		for (Pair pair : before.pairs) {
 			const int then1 = std::exchange(pair.body1, now(pair.body1)), then2 = std::exchange(pair.body2, now(pair.body2));
-			if (stays(pair.body1, then1) && stays(pair.body2, then2)) system.pairs.push_back(pair);
+			if (stays(pair.body1, then1) && stays(pair.body2, then2))
+				system.pairs.push_back(pair);
 		}
 	}
 
@@ -337,7 +356,8 @@ private:
 	/// After a scene has been refused: all is read again when a script has put it right.
 	void forgetStates()
 	{
-		for (Link& link : links) link.written.pos.setConstant(NaN);
+		for (Link& link : links)
+			link.written.pos.setConstant(NaN);
 		forgetNeighbours();
 	}
 
@@ -356,8 +376,8 @@ private:
 		return size_t(kept.ids[b]) < all.size() && all[kept.ids[b]] == links[b].body;
 	}
 
-	/// Other engines act in steps that are watched, before or after the blocks move; their loads are taken back in the step after. What another
-	/// thread changes meanwhile is met some steps late.
+	/// Other engines act in steps that are watched, before or after the blocks move; their loads are taken back in the step after. What
+	/// another thread changes meanwhile is met some steps late.
 	bool mayHaveChanged() const { return unshown <= 1; }
 
 	void readLoads()
@@ -365,7 +385,8 @@ private:
 		scene.forces.sync();
 		for (size_t b = 0; b < links.size(); ++b) {
 			auto& block = system.bodies[b];
-			if (block.prescribed) continue;
+			if (block.prescribed)
+				continue;
 			const int id = kept.ids[b];
 			block.force = coordinates.load(scene.forces.getForce(id), scene.forces.getTorque(id), id);
 			block.force.template head<K::dimension>() += block.mass * system.gravity;
@@ -387,26 +408,31 @@ private:
 		for (size_t b = size_t(std::find_if(others.begin(), others.end(), isTouched) - others.begin()); b < links.size(); ++b) {
 			if (others[b] == driven) {
 				others[b] = 0;
-				if (links[b].written.pos.allFinite()) warnOfMotion(b);
+				if (links[b].written.pos.allFinite())
+					warnOfMotion(b);
 			}
-			if (!others[b]) continue;
-			Link&        link = links[b];
-			auto&        block = system.bodies[b];
+			if (!others[b])
+				continue;
+			Link& link = links[b];
+			auto& block = system.bodies[b];
 			const State& state = *link.state;
-			if (block.prescribed && scene.time > 0 && state.vel == Vector3r::Zero() && (state.pos - link.written.pos).norm() > 0) warnOfPlace(b);
+			if (block.prescribed && scene.time > 0 && state.vel == Vector3r::Zero() && (state.pos - link.written.pos).norm() > 0)
+				warnOfPlace(b);
 			kept.seats[b].read(coordinates, state, link.properties.extents.minCoeff(), kept.ids[b], block);
 			block.increment.setZero();
 			if (!link.written.isPlaceOf(state)) {
 				others[b] = elsewhere;
 				placed = true;
 			}
-			link.written = { state.pos, state.vel, state.angVel, state.ori };
+			link.written = {state.pos, state.vel, state.angVel, state.ori};
 			touched = true;
 		}
-		if (!touched) return;
+		if (!touched)
+			return;
 		for (Pair& pair : system.pairs) {
 			const auto is = std::max(others[pair.body1], others[pair.body2]);
-			if (is == elsewhere || (is && !isOfWall(pair))) meet(pair, is == elsewhere);
+			if (is == elsewhere || (is && !isOfWall(pair)))
+				meet(pair, is == elsewhere);
 		}
 		system.moved |= placed;
 		system.startAnew();
@@ -414,33 +440,39 @@ private:
 
 	void warnOfMotion(size_t b)
 	{
-		if (integrator.warnedOf.motion) return;
+		if (integrator.warnedOf.motion)
+			return;
 		integrator.warnedOf.motion = true;
-		LOG_WARN("a script has changed the state of body " << kept.ids[b] << " at t = " << scene.time
-			<< " s: it goes where its motion says all the same. A motion in another direction may move it besides.");
+		LOG_WARN("a script has changed the state of body "
+		         << kept.ids[b] << " at t = " << scene.time
+		         << " s: it goes where its motion says all the same. A motion in another direction may move it besides.");
 	}
 
 	void warnOfPlace(size_t b)
 	{
-		if (integrator.warnedOf.place) return;
+		if (integrator.warnedOf.place)
+			return;
 		integrator.warnedOf.place = true;
 		LOG_WARN("a script has moved body " << kept.ids[b] << " by its state.pos at t = " << scene.time
-			<< " s, with state.vel = 0: blocks on it do not feel that it moves. Set state.vel, by which it goes on, or give it a RecordMotionEngine.");
+		                                    << " s, with state.vel = 0: blocks on it do not feel that it moves. Set state.vel, by which it "
+		                                       "goes on, or give it a RecordMotionEngine.");
 	}
 
 	/// What walls know of a pair is of places alone.
 	bool isOfWall(const Pair& pair) const { return byWalls && !bySize.isLocalised(pair.body1) && !bySize.isLocalised(pair.body2); }
 
-	/// The points of a pair that nothing is known of: in touch where they are, and do not approach each other. `placed`: by a script, not by a step.
+	/// The points of a pair that nothing is known of: in touch where they are, and do not approach each other. `placed`: by a script, not
+	/// by a step.
 	void meet(Pair& pair, bool placed)
 	{
 		const auto &body1 = system.bodies[pair.body1], &body2 = system.bodies[pair.body2];
-		const Real  rest = masonry::tolerance::restSpeed * std::sqrt(integrator.gravity.norm() * length);
+		const Real rest = masonry::tolerance::restSpeed * std::sqrt(integrator.gravity.norm() * length);
 		pair.memory = {};
 		const auto found = masonry::rigid::findPoints(body1, body2, pair.memory);
 		pair.size = found.size;
 		pair.beside = found.size > 0;
-		if (found.size == 0) return;
+		if (found.size == 0)
+			return;
 		pair.face1 = found.face1;
 		pair.face2 = found.face2;
 		for (int i = 0; i < found.size; ++i) {
@@ -448,17 +480,19 @@ private:
 			point = {};
 			point.feature = found.features[i];
 			masonry::rigid::locate(point, body1, body2);
-			const auto speed = masonry::rigid::relativeVelocity(point.frame, body1.pose.position, body1.velocity, body2.pose.position, body2.velocity);
+			const auto speed =
+			    masonry::rigid::relativeVelocity(point.frame, body1.pose.position, body1.velocity, body2.pose.position, body2.velocity);
 			point.closed = point.gap <= integrator.mergedClosing * length && speed[0] >= -rest;
 			pair.beside &= std::abs(point.frame.axes.row(0).dot(system.gravity)) < masonry::tolerance::uprightJoint * system.gravity.norm();
-			if (placed && point.gap < -mostOverlap * length) refuseOverlap(pair, -point.gap);
+			if (placed && point.gap < -mostOverlap * length)
+				refuseOverlap(pair, -point.gap);
 		}
 	}
 
 	[[noreturn]] void refuseOverlap(const Pair& pair, Real depth) const
 	{
 		throw std::runtime_error(sentence("Blocks ", kept.ids[pair.body1], " and ", kept.ids[pair.body2], " overlap by ", depth,
-			" m: rigid blocks must be apart or just touch when the run starts or a script moves them."));
+		                                  " m: rigid blocks must be apart or just touch when the run starts or a script moves them."));
 	}
 
 	void takeLaws()
@@ -467,7 +501,8 @@ private:
 			const BlockPhys& law = contacts.law(c);
 			Pair& pair = system.pairs[c];
 			const Real friction = law.noSlip ? masonry::noSlip : law.tangensOfFrictionAngle, restitution = law.restitution;
-			if (pair.friction == friction && (pair.restitution == restitution || (std::isnan(pair.restitution) && std::isnan(restitution)))) continue;
+			if (pair.friction == friction && (pair.restitution == restitution || (std::isnan(pair.restitution) && std::isnan(restitution))))
+				continue;
 			law.check(kept.ids[pair.body1], kept.ids[pair.body2]);
 			pair.friction = friction;
 			pair.restitution = restitution;
@@ -478,22 +513,26 @@ private:
 	/// The laws may be changed by scripts through the interactions, after they have been shown.
 	void readLaws()
 	{
-		if (unshown == 0) takeLaws();
+		if (unshown == 0)
+			takeLaws();
 	}
 
 	// --- core to scene ---
 
 	void showPoints()
 	{
-		if (byWalls) bySize.walls.showPoints(system);
+		if (byWalls)
+			bySize.walls.showPoints(system);
 	}
 
 	/// YADE's states lie scattered in memory.
 	void fetch(size_t b) const
 	{
-		if (b >= links.size()) return;
+		if (b >= links.size())
+			return;
 		const char* state = reinterpret_cast<const char*>(links[b].state.get());
-		for (size_t line = 0; line < sizeof(State); line += 64) __builtin_prefetch(state + line);
+		for (size_t line = 0; line < sizeof(State); line += 64)
+			__builtin_prefetch(state + line);
 	}
 
 	/// Bodies that stand still by prescription are as they were.
@@ -502,7 +541,8 @@ private:
 		bySize.walls.eachShare(links.size(), [&](size_t begin, size_t end) {
 			for (size_t b = begin; b < end; ++b) {
 				const auto& block = system.bodies[b];
-				if (block.prescribed && block.drive < 0 && block.velocity.isZero(0)) continue;
+				if (block.prescribed && block.drive < 0 && block.velocity.isZero(0))
+					continue;
 				State& state = *links[b].state;
 				fetch(b + 6);
 				kept.seats[b].tell(coordinates, block, links[b].written, state);
@@ -513,11 +553,12 @@ private:
 
 	void record(const masonry::rigid::Impact& impact)
 	{
-		addImpact(integrator, impact.time, kept.ids[impact.block], kept.ids[impact.support], impact.asked, impact.joint, impact.energyLost, impact.switched, impact.capped);
+		addImpact(integrator, impact.time, kept.ids[impact.block], kept.ids[impact.support], impact.asked, impact.joint, impact.energyLost,
+		          impact.switched, impact.capped);
 	}
 
-	/// Overlap, relative to the smallest half size, that is no rounding of coordinates and nothing that a wall has left (some 1e-5), but a mistake.
-	/// Larger: blocks are lifted by as much, with energy of nothing.
+	/// Overlap, relative to the smallest half size, that is no rounding of coordinates and nothing that a wall has left (some 1e-5), but a
+	/// mistake. Larger: blocks are lifted by as much, with energy of nothing.
 	static constexpr Real mostOverlap = 1e-4;
 	/// Margin of the list of pairs, relative to the smallest half size. Larger: more pairs; smaller: the list is made anew more often.
 	static constexpr Real searchMargin = 0.1;
@@ -533,18 +574,19 @@ private:
 	System system;
 	masonry::rigid::Islands<K> islands;
 	masonry::rigid::StepBySize<K> bySize; // method='wall'
-	bool changed = false; // what is moved, and how, is not as it was
+	bool changed = false;                 // what is moved, and how, is not as it was
 	bool byWalls = false, lawsChanged = false;
 	int unshown = 1; // steps since the interactions were written
 	std::unique_ptr<masonry::rigid::Neighbours<K>> neighbours;
 	vector<MotionDrive> motions;
 	vector<Link> links;
-	vector<char> others; // by link, 1: somebody else has written the state since the last step; elsewhere: and has moved the body; driven: it goes where its motion says
+	vector<char> others; // by link, 1: somebody else has written the state since the last step; elsewhere: and has moved the body; driven:
+	                     // it goes where its motion says
 	static constexpr char elsewhere = 2, driven = 3;
 	ShownContacts<K> contacts;
 	Remembered<K> kept; // ids and seats; bodies and pairs are filled in when it is packed
-	vector<Seen> seen; // by id
-	Real length = 0; // smallest half size, m
+	vector<Seen> seen;  // by id
+	Real length = 0;    // smallest half size, m
 };
 
 } // namespace yade

@@ -1,5 +1,6 @@
 #pragma once
-// The interactions of rigid blocks: one for each pair of the core, in O.interactions as soon as the blocks are near, until they are clearly apart.
+// The interactions of rigid blocks: one for each pair of the core, in O.interactions as soon as the blocks are near, until they are clearly
+// apart.
 
 #include "BlockGeom.hpp"
 #include "BlockPhys.hpp"
@@ -10,18 +11,14 @@
 
 namespace yade {
 
-template <class K> class ShownContacts {
+template <class K>
+class ShownContacts {
 	using System = masonry::rigid::RigidSystem<K>;
 	using Pair = masonry::rigid::ContactPair<K>;
 	using PairLaw = shared_ptr<Ip2_BlockMat_BlockMat_BlockPhys>;
 
 public:
-	ShownContacts(Scene& s, const Coordinates<K>& c, const PairLaw& law)
-	        : scene(s)
-	        , coordinates(c)
-	        , pairLaw(law)
-	{
-	}
+	ShownContacts(Scene& s, const Coordinates<K>& c, const PairLaw& law) : scene(s), coordinates(c), pairLaw(law) {}
 
 	size_t size() const { return contacts.size(); }
 	/// The law of a pair, which scripts may change through its interaction.
@@ -35,15 +32,18 @@ public:
 		old.swap(contacts);
 		auto before = old.begin();
 		const auto drop = [&] {
-			if (isListed(*before)) erase(*before);
+			if (isListed(*before))
+				erase(*before);
 			++before;
 		};
 		for (const Pair& pair : pairs) {
 			const std::pair wanted(ids[pair.body1], ids[pair.body2]);
-			while (before != old.end() && idsOf(*before) < wanted) drop();
+			while (before != old.end() && idsOf(*before) < wanted)
+				drop();
 			contacts.push_back(before != old.end() && idsOf(*before) == wanted ? *before++ : contactOf(wanted));
 		}
-		while (before != old.end()) drop();
+		while (before != old.end())
+			drop();
 	}
 
 	/// O.interactions as the system is.
@@ -54,10 +54,12 @@ public:
 			const Pair& pair = system.pairs[c];
 			const bool listed = isListed(contact) && contact.interaction->isReal();
 			if (apart(system, pair)) { // not whether they have touched: what nobody saw must not decide
-				if (listed) erase(contact);
+				if (listed)
+					erase(contact);
 				continue;
 			}
-			if (!listed) list(contact);
+			if (!listed)
+				list(contact);
 			writeGeom(*contact.geom, pair, kept.seats[pair.body2].depth);
 			writePhys(*contact.phys, pair);
 		}
@@ -67,14 +69,15 @@ public:
 	void dropErased()
 	{
 		for (const Contact& contact : contacts)
-			if (!(scene.bodies->exists(contact.interaction->id1) && scene.bodies->exists(contact.interaction->id2)) && isListed(contact)) erase(contact);
+			if (!(scene.bodies->exists(contact.interaction->id1) && scene.bodies->exists(contact.interaction->id2)) && isListed(contact))
+				erase(contact);
 	}
 
 private:
 	struct Contact {
 		shared_ptr<Interaction> interaction;
-		shared_ptr<BlockGeom>   geom;
-		shared_ptr<BlockPhys>   phys;
+		shared_ptr<BlockGeom> geom;
+		shared_ptr<BlockPhys> phys;
 	};
 
 	Contact contactOf(std::pair<Body::id_t, Body::id_t> ids)
@@ -109,7 +112,8 @@ private:
 
 	static bool apart(const System& system, const Pair& pair)
 	{
-		const Real far = clearlyApart * std::min(system.bodies[pair.body1].halfSize.minCoeff(), system.bodies[pair.body2].halfSize.minCoeff());
+		const Real far =
+		    clearlyApart * std::min(system.bodies[pair.body1].halfSize.minCoeff(), system.bodies[pair.body2].halfSize.minCoeff());
 		return std::none_of(pair.points.begin(), pair.points.begin() + pair.size, [&](const auto& point) { return point.gap <= far; });
 	}
 
@@ -122,14 +126,19 @@ private:
 
 	void list(Contact& contact)
 	{
-		if (!contact.interaction->isReal()) contact = newContact(contact.interaction->id1, contact.interaction->id2);
+		if (!contact.interaction->isReal())
+			contact = newContact(contact.interaction->id1, contact.interaction->id2);
 		const auto other = scene.interactions->find(contact.interaction->id1, contact.interaction->id2); // a collider's
-		if (other) scene.interactions->erase(other->id1, other->id2, other->linIx);
+		if (other)
+			scene.interactions->erase(other->id1, other->id2, other->linIx);
 		contact.interaction->iterMadeReal = contact.interaction->iterBorn = scene.iter;
 		scene.interactions->insert(contact.interaction);
 	}
 
-	void erase(const Contact& contact) { scene.interactions->erase(contact.interaction->id1, contact.interaction->id2, contact.interaction->linIx); }
+	void erase(const Contact& contact)
+	{
+		scene.interactions->erase(contact.interaction->id1, contact.interaction->id2, contact.interaction->linIx);
+	}
 
 	void writeGeom(BlockGeom& geom, const Pair& pair, Real depth) const
 	{
@@ -139,11 +148,12 @@ private:
 		geom.contactPoint.setZero();
 		for (int i = 0; i < pair.size; ++i) {
 			const auto& point = pair.points[i];
-			auto&       to = geom.patch.points[i];
+			auto& to = geom.patch.points[i];
 			to.position1 = to.position2 = pointInScene(coordinates, point.frame.position, depth);
 			to.gap = point.gap;
 			geom.contactPoint += to.position1 / pair.size;
-			if (i == 0) geom.normal = coordinates.out(point.frame.axes.row(0).transpose());
+			if (i == 0)
+				geom.normal = coordinates.out(point.frame.axes.row(0).transpose());
 		}
 	}
 
@@ -153,7 +163,7 @@ private:
 		phys.normalForce.setZero();
 		phys.shearForce.setZero();
 		for (int i = 0; i < pair.size; ++i) {
-			const auto&    point = pair.points[i];
+			const auto& point = pair.points[i];
 			const Vector3r normal = coordinates.out(point.frame.axes.row(0).transpose() * point.force[0]);
 			phys.forces[i] = coordinates.out(point.frame.axes.transpose() * point.force);
 			phys.normalForce += normal;
@@ -164,10 +174,10 @@ private:
 	/// Gap, relative to the smaller block, at which an interaction ends; as for compliant joints.
 	static constexpr Real clearlyApart = 2e-2;
 
-	Scene&                scene;
+	Scene& scene;
 	const Coordinates<K>& coordinates;
-	const PairLaw&        pairLaw; // the integrator's: a script may give another
-	vector<Contact>         contacts;  // of the core's pairs
+	const PairLaw& pairLaw;   // the integrator's: a script may give another
+	vector<Contact> contacts; // of the core's pairs
 };
 
 } // namespace yade

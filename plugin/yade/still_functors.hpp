@@ -6,7 +6,8 @@
 namespace yade {
 
 struct StillGeometry final : IGeomFunctor {
-	bool go(const shared_ptr<Shape>&, const shared_ptr<Shape>&, const State&, const State&, const Vector3r&, const bool&, const shared_ptr<Interaction>&) override
+	bool go(const shared_ptr<Shape>&, const shared_ptr<Shape>&, const State&, const State&, const Vector3r&, const bool&,
+	        const shared_ptr<Interaction>&) override
 	{
 		return true;
 	}

@@ -8,10 +8,10 @@ namespace masonry {
 // One corner of the patch, with a point on each body; position2 - position1 = gap * normal. A vertex is a material point of
 // its body, its partner and the crossings of two edges move over theirs.
 struct PatchPoint {
-	Vector3 position1 { Vector3::Zero() }, position2 { Vector3::Zero() }; // global, m: on body 1 and on body 2
-	double gap {0};               // m, along the normal; negative = penetration
-	double weight {0};            // share of the patch; the weights sum to 1, sum of weight * position = centroid of the patch
-	int identity {-1};            // which features meet here, independent of the reference: see features.hpp
+	Vector3 position1 {Vector3::Zero()}, position2 {Vector3::Zero()}; // global, m: on body 1 and on body 2
+	double gap {0};                                                   // m, along the normal; negative = penetration
+	double weight {0}; // share of the patch; the weights sum to 1, sum of weight * position = centroid of the patch
+	int identity {-1}; // which features meet here, independent of the reference: see features.hpp
 };
 
 enum class PatchKind { None = 0, Face1 = 1, Face2 = 2, Edges = 3 };
@@ -33,9 +33,9 @@ inline bool operator==(const PatchFeature& a, const PatchFeature& b)
 // corners are there, those with an open gap too: the far edge of a rocking block keeps its points while it is up.
 // Edge across edge: one point.
 struct ContactPatch {
-	Vector3 normal { Vector3::Zero() }; // unit, from body 1 to body 2; of the reference face, or normal to both edges
-	double area {0};        // of the overlap in the reference plane, m^2; 0 for edge across edge
-	double nominalArea {0}; // the smaller of the two faces' areas, m^2; for edges, of the faces nearest to the normal
+	Vector3 normal {Vector3::Zero()}; // unit, from body 1 to body 2; of the reference face, or normal to both edges
+	double area {0};                  // of the overlap in the reference plane, m^2; 0 for edge across edge
+	double nominalArea {0};           // the smaller of the two faces' areas, m^2; for edges, of the faces nearest to the normal
 	int size {0};
 	std::array<PatchPoint, 8> points; // the first `size`, counter-clockwise about the normal
 	PatchFeature feature;

@@ -21,8 +21,8 @@ inline double lead(double separation, double length)
 	return std::max(tolerance::contact::reference * length, tolerance::contact::depthShare * -separation);
 }
 
-// Of the best faces of both boxes that of the larger separation. The one of box `held`, the reference before (0: none), leads; a tie goes to
-// the larger face, then to box 1.
+// Of the best faces of both boxes that of the larger separation. The one of box `held`, the reference before (0: none), leads; a tie goes
+// to the larger face, then to box 1.
 inline const FaceAxis& reference(const FaceAxis& face1, const FaceAxis& face2, int held, bool larger2, double length)
 {
 	if (held == 1)

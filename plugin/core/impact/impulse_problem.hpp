@@ -25,26 +25,26 @@ namespace masonry {
 constexpr double noSlip = std::numeric_limits<double>::infinity();
 
 struct ImpulsePoint {
-	int     body1, body2; // indices into the list of bodies
-	Vector3 position;     // global, m
-	Vector3 normal;       // unit, from body 1 to body 2
-	double  friction;     // mu >= 0, or noSlip
-	bool    holds { true };              // first guess: sticks (true) or parts (false)
-	Vector3 bias { Vector3::Zero() };    // added to the relative velocity u, m/s (see rigid_acceleration.hpp)
-	Vector3 impulse { Vector3::Zero() }; // result: on body 2, global, N s
+	int body1, body2;                  // indices into the list of bodies
+	Vector3 position;                  // global, m
+	Vector3 normal;                    // unit, from body 1 to body 2
+	double friction;                   // mu >= 0, or noSlip
+	bool holds {true};                 // first guess: sticks (true) or parts (false)
+	Vector3 bias {Vector3::Zero()};    // added to the relative velocity u, m/s (see rigid_acceleration.hpp)
+	Vector3 impulse {Vector3::Zero()}; // result: on body 2, global, N s
 };
 
 struct CoupleRow {
-	int     body1, body2;
-	Vector3 axis;   // unit, global
-	double  target; // axis.(w2 - w1) after the instant, rad/s
-	double  couple { 0 }; // result: on body 2, N m s
+	int body1, body2;
+	Vector3 axis;      // unit, global
+	double target;     // axis.(w2 - w1) after the instant, rad/s
+	double couple {0}; // result: on body 2, N m s
 };
 
 struct ImpulseReport {
-	int    iterations;
-	double residual; // largest violation of the laws above, as a velocity, m/s (natural map)
-	bool   solved { true }; // the residual is what counts as zero
+	int iterations;
+	double residual;    // largest violation of the laws above, as a velocity, m/s (natural map)
+	bool solved {true}; // the residual is what counts as zero
 };
 
 // Finds the impulses and changes the bodies' velocities. Prescribed bodies keep theirs.

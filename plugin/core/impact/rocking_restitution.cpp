@@ -11,95 +11,97 @@ namespace masonry {
 
 namespace {
 
-	double spin(const std::vector<Body>& bodies, const ClosingJoint& joint)
+double spin(const std::vector<Body>& bodies, const ClosingJoint& joint)
+{
+	return joint.result.axis.dot(bodies[joint.block].angularVelocity - bodies[joint.support].angularVelocity);
+}
+
+bool hasRow(const ClosingJoint& joint) { return !std::isnan(joint.restitution) && !joint.result.axis.isZero(0); }
+
+// One impulse problem under the cap: solved as often as the cap asks, always from the velocities at its start.
+struct CappedProblem {
+	std::vector<CoupleRow> rows, none;
+	std::vector<double> asked, plastic;             // targets
+	std::vector<std::pair<Vector3, Vector3>> start; // velocity and angular velocity of each body
+
+	void add(const std::vector<Body>& bodies, const ClosingJoint& joint)
 	{
-		return joint.result.axis.dot(bodies[joint.block].angularVelocity - bodies[joint.support].angularVelocity);
+		if (hasRow(joint))
+			rows.push_back({joint.support, joint.block, joint.result.axis, joint.restitution * spin(bodies, joint)});
 	}
 
-	bool hasRow(const ClosingJoint& joint) { return !std::isnan(joint.restitution) && !joint.result.axis.isZero(0); }
-
-	// One impulse problem under the cap: solved as often as the cap asks, always from the velocities at its start.
-	struct CappedProblem {
-		std::vector<CoupleRow>                   rows, none;
-		std::vector<double>                      asked, plastic; // targets
-		std::vector<std::pair<Vector3, Vector3>> start;          // velocity and angular velocity of each body
-
-		void add(const std::vector<Body>& bodies, const ClosingJoint& joint)
-		{
-			if (hasRow(joint)) rows.push_back({ joint.support, joint.block, joint.result.axis, joint.restitution * spin(bodies, joint) });
-		}
-
-		RockingImpactResult solve(const ImpulseSolver& solver, std::vector<Body>& bodies, std::vector<ImpulsePoint>& points)
-		{
-			start.clear();
-			for (const Body& body : bodies)
-				start.emplace_back(body.velocity, body.angularVelocity);
-			double speed = 0;
-			for (const ImpulsePoint& point : points)
-				speed = std::max(speed, relativeVelocity(bodies, point).norm());
-			const bool          maySlip = std::all_of(points.begin(), points.end(), [](const ImpulsePoint& point) { return point.friction < noSlip; });
-			const double        before = kineticEnergy(bodies);
-			RockingImpactResult result;
-			// Energy that is left, J; negative: the laws cannot be met, or energy has grown.
-			const auto spare = [&](bool withRows) {
-				for (size_t i = 0; i < bodies.size(); ++i)
-					std::tie(bodies[i].velocity, bodies[i].angularVelocity) = start[i];
-				for (CoupleRow& row : rows)
-					row.couple = 0;
-				const ImpulseReport report = solver(bodies, points, withRows ? rows : none);
-				result.residual = report.residual;
-				result.solved = report.solved;
-				result.work = supportWork(bodies, points, rows);
-				result.energyLost = before + result.work - kineticEnergy(bodies);
-				const double scale = before + std::abs(result.work);
-				const bool   unsolvable = !maySlip && result.residual > tolerance::noSolution * speed;
-				return unsolvable ? -scale : result.energyLost + tolerance::energyGain * scale;
-			};
-			const double asAsked = spare(true);
-			if (!(asAsked < 0) || rows.empty()) return result;
-
-			result.capped = true;
-			const double withoutRows = spare(false);
-			asked.clear();
-			plastic.clear();
-			for (const CoupleRow& row : rows) {
-				asked.push_back(row.target);
-				plastic.push_back(row.axis.dot(bodies[row.body2].angularVelocity - bodies[row.body1].angularVelocity));
-			}
-			const auto spareAt = [&](double fraction) { // of the way from the plastic to the asked targets
-				for (size_t i = 0; i < rows.size(); ++i)
-					rows[i].target = plastic[i] + fraction * (asked[i] - plastic[i]);
-				return spare(fraction > 0);
-			};
-			double safe = 0;
-			if (withoutRows > 0) {
-				constexpr double   narrow = 1e-12;
-				std::uintmax_t     iterations = 100;
-				const auto         enough = [](double low, double high) { return high - low <= narrow; };
-				safe = boost::math::tools::toms748_solve(spareAt, 0., 1., withoutRows, asAsked, enough, iterations).first;
-			}
-			spareAt(safe);
+	RockingImpactResult solve(const ImpulseSolver& solver, std::vector<Body>& bodies, std::vector<ImpulsePoint>& points)
+	{
+		start.clear();
+		for (const Body& body : bodies)
+			start.emplace_back(body.velocity, body.angularVelocity);
+		double speed = 0;
+		for (const ImpulsePoint& point : points)
+			speed = std::max(speed, relativeVelocity(bodies, point).norm());
+		const bool maySlip = std::all_of(points.begin(), points.end(), [](const ImpulsePoint& point) { return point.friction < noSlip; });
+		const double before = kineticEnergy(bodies);
+		RockingImpactResult result;
+		// Energy that is left, J; negative: the laws cannot be met, or energy has grown.
+		const auto spare = [&](bool withRows) {
+			for (size_t i = 0; i < bodies.size(); ++i)
+				std::tie(bodies[i].velocity, bodies[i].angularVelocity) = start[i];
+			for (CoupleRow& row : rows)
+				row.couple = 0;
+			const ImpulseReport report = solver(bodies, points, withRows ? rows : none);
+			result.residual = report.residual;
+			result.solved = report.solved;
+			result.work = supportWork(bodies, points, rows);
+			result.energyLost = before + result.work - kineticEnergy(bodies);
+			const double scale = before + std::abs(result.work);
+			const bool unsolvable = !maySlip && result.residual > tolerance::noSolution * speed;
+			return unsolvable ? -scale : result.energyLost + tolerance::energyGain * scale;
+		};
+		const double asAsked = spare(true);
+		if (!(asAsked < 0) || rows.empty())
 			return result;
+
+		result.capped = true;
+		const double withoutRows = spare(false);
+		asked.clear();
+		plastic.clear();
+		for (const CoupleRow& row : rows) {
+			asked.push_back(row.target);
+			plastic.push_back(row.axis.dot(bodies[row.body2].angularVelocity - bodies[row.body1].angularVelocity));
 		}
-	};
-
-	// Kept between impacts for its memory only.
-	struct Workspace {
-		CappedProblem             problem;
-		std::vector<ImpulsePoint> own;
-		std::vector<double>       couples;
-		std::vector<Vector3>      impulses;
-	};
-	thread_local Workspace workspace;
-
-	void begin(const std::vector<Body>& bodies, ClosingJoint& joint, std::vector<ImpulsePoint>& points)
-	{
-		joint.result = {};
-		joint.result.axis = rockingAxis(bodies, joint, points);
-		joint.result.before = spin(bodies, joint);
-		for (int i = joint.oldBegin; i < joint.oldEnd; ++i)
-			points[i].holds = false;
+		const auto spareAt = [&](double fraction) { // of the way from the plastic to the asked targets
+			for (size_t i = 0; i < rows.size(); ++i)
+				rows[i].target = plastic[i] + fraction * (asked[i] - plastic[i]);
+			return spare(fraction > 0);
+		};
+		double safe = 0;
+		if (withoutRows > 0) {
+			constexpr double narrow = 1e-12;
+			std::uintmax_t iterations = 100;
+			const auto enough = [](double low, double high) { return high - low <= narrow; };
+			safe = boost::math::tools::toms748_solve(spareAt, 0., 1., withoutRows, asAsked, enough, iterations).first;
+		}
+		spareAt(safe);
+		return result;
 	}
+};
+
+// Kept between impacts for its memory only.
+struct Workspace {
+	CappedProblem problem;
+	std::vector<ImpulsePoint> own;
+	std::vector<double> couples;
+	std::vector<Vector3> impulses;
+};
+thread_local Workspace workspace;
+
+void begin(const std::vector<Body>& bodies, ClosingJoint& joint, std::vector<ImpulsePoint>& points)
+{
+	joint.result = {};
+	joint.result.axis = rockingAxis(bodies, joint, points);
+	joint.result.before = spin(bodies, joint);
+	for (int i = joint.oldBegin; i < joint.oldEnd; ++i)
+		points[i].holds = false;
+}
 
 } // namespace
 
@@ -107,11 +109,13 @@ double supportWork(const std::vector<Body>& bodies, const std::vector<ImpulsePoi
 {
 	double sum = 0;
 	for (const ImpulsePoint& point : points)
-		for (const auto& [b, sign] : { std::pair(point.body1, 1.), std::pair(point.body2, -1.) })
-			if (bodies[b].prescribed) sum += sign * point.impulse.dot(bodies[b].velocityAt(point.position));
+		for (const auto& [b, sign] : {std::pair(point.body1, 1.), std::pair(point.body2, -1.)})
+			if (bodies[b].prescribed)
+				sum += sign * point.impulse.dot(bodies[b].velocityAt(point.position));
 	for (const CoupleRow& row : rows)
-		for (const auto& [b, sign] : { std::pair(row.body1, 1.), std::pair(row.body2, -1.) })
-			if (bodies[b].prescribed) sum += sign * row.couple * row.axis.dot(bodies[b].angularVelocity);
+		for (const auto& [b, sign] : {std::pair(row.body1, 1.), std::pair(row.body2, -1.)})
+			if (bodies[b].prescribed)
+				sum += sign * row.couple * row.axis.dot(bodies[b].angularVelocity);
 	return sum;
 }
 
@@ -122,35 +126,39 @@ void report(const std::vector<Body>& bodies, const std::vector<ImpulsePoint>& po
 	for (int i = joint.newBegin; i < joint.oldBegin; ++i)
 		resultant += points[i].body2 == joint.block ? points[i].impulse : Vector3(-points[i].impulse);
 	const double normal = joint.normal.dot(resultant);
-	if (!(normal > 0)) return;
+	if (!(normal > 0))
+		return;
 	joint.result.application = couple / normal;
 	joint.result.frictionDemand = (resultant - normal * joint.normal).norm() / normal;
 }
 
 Vector3 rockingAxis(const std::vector<Body>& bodies, const ClosingJoint& joint, const std::vector<ImpulsePoint>& points)
 {
-	if (joint.oldBegin == joint.oldEnd) return Vector3::Zero();
+	if (joint.oldBegin == joint.oldEnd)
+		return Vector3::Zero();
 	const Vector3& n = joint.normal;
 	const Vector3& old = points[joint.oldBegin].position;
-	const auto     inPlane = [&](const Vector3& v) { return Vector3(v - n * n.dot(v)); };
-	// The old support is an edge when its points are apart by more than round-off of their distance from the new ones, and beside that line.
+	const auto inPlane = [&](const Vector3& v) { return Vector3(v - n * n.dot(v)); };
+	// The old support is an edge when its points are apart by more than round-off of their distance from the new ones, and beside that
+	// line.
 	Vector3 edge = Vector3::Zero();
 	for (int i = joint.oldBegin; i < joint.oldEnd; ++i) {
 		const Vector3 span = inPlane(points[i].position - old);
-		if (span.norm() > edge.norm()) edge = span;
+		if (span.norm() > edge.norm())
+			edge = span;
 	}
 	Vector3 lever = Vector3::Zero(); // from the old support to the new, weighted by the approach speeds
-	double  reach = 0, beside = 0; // of the edge's length times the distance from its line
+	double reach = 0, beside = 0;    // of the edge's length times the distance from its line
 	for (int i = joint.newBegin; i < joint.oldBegin; ++i) {
 		const Vector3 d = inPlane(points[i].position - old);
-		const double  side = points[i].body2 == joint.block ? 1 : -1;
-		const double  approach = -side * n.dot(relativeVelocity(bodies, points[i]));
+		const double side = points[i].body2 == joint.block ? 1 : -1;
+		const double approach = -side * n.dot(relativeVelocity(bodies, points[i]));
 		lever += std::max(approach, 0.) * d;
 		reach = std::max(reach, d.norm());
 		beside = std::max(beside, edge.cross(d).norm());
 	}
 	const bool isEdge = edge.norm() > tolerance::pivotEdge * reach && beside > tolerance::pivotEdge * edge.norm() * reach;
-	Vector3    axis = isEdge ? edge : Vector3(n.cross(lever));
+	Vector3 axis = isEdge ? edge : Vector3(n.cross(lever));
 	axis.normalize();
 	const Vector3 spin = bodies[joint.block].angularVelocity - bodies[joint.support].angularVelocity;
 	return axis.dot(spin) < 0 ? Vector3(-axis) : axis;
@@ -165,7 +173,7 @@ RockingImpactResult applyRockingImpact(std::vector<Body>& bodies, RockingImpact&
 	for (const ClosingJoint& joint : impact.joints)
 		problem.add(bodies, joint);
 	const RockingImpactResult result = problem.solve(impact.solve, bodies, impact.points);
-	auto                      row = problem.rows.begin();
+	auto row = problem.rows.begin();
 	for (ClosingJoint& joint : impact.joints)
 		report(bodies, impact.points, joint, hasRow(joint) ? (row++)->couple : 0);
 	return result;
@@ -173,14 +181,14 @@ RockingImpactResult applyRockingImpact(std::vector<Body>& bodies, RockingImpact&
 
 namespace {
 
-	void addTo(RockingImpactResult& sum, const RockingImpactResult& stage)
-	{
-		sum.work += stage.work;
-		sum.energyLost += stage.energyLost;
-		sum.capped |= stage.capped;
-		sum.residual = std::max(sum.residual, stage.residual);
-		sum.solved &= stage.solved;
-	}
+void addTo(RockingImpactResult& sum, const RockingImpactResult& stage)
+{
+	sum.work += stage.work;
+	sum.energyLost += stage.energyLost;
+	sum.capped |= stage.capped;
+	sum.residual = std::max(sum.residual, stage.residual);
+	sum.solved &= stage.solved;
+}
 
 } // namespace
 

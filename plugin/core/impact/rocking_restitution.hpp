@@ -40,35 +40,35 @@
 namespace masonry {
 
 struct JointResult {
-	Vector3 axis { Vector3::Zero() }; // e, directed so that `before` is not negative; zero: the joint had no row
-	double  before { 0 }, after { 0 }; // e.w- and e.w+, rad/s
-	double  application { 0 };        // x, m: couple / normal impulse (0 without a row)
-	double  frictionDemand { 0 };     // |p_t|/p_n of the closing points' resultant
-	double  restitution() const { return before > 0 ? after / before : 0; }
+	Vector3 axis {Vector3::Zero()}; // e, directed so that `before` is not negative; zero: the joint had no row
+	double before {0}, after {0};   // e.w- and e.w+, rad/s
+	double application {0};         // x, m: couple / normal impulse (0 without a row)
+	double frictionDemand {0};      // |p_t|/p_n of the closing points' resultant
+	double restitution() const { return before > 0 ? after / before : 0; }
 };
 
 enum class ImpactOrder { simultaneous, sequential };
 
 struct ClosingJoint {
-	int         block, support;            // indices into the list of bodies
-	Vector3     normal;                    // from the support to the block
-	double      restitution;               // C in [0, 1], or NaN: natural
-	int         newBegin, oldBegin, oldEnd; // points [newBegin, oldBegin) are the new support, [oldBegin, oldEnd) the old
+	int block, support;             // indices into the list of bodies
+	Vector3 normal;                 // from the support to the block
+	double restitution;             // C in [0, 1], or NaN: natural
+	int newBegin, oldBegin, oldEnd; // points [newBegin, oldBegin) are the new support, [oldBegin, oldEnd) the old
 	JointResult result {};
 };
 
 struct RockingImpact {
 	std::vector<ClosingJoint> joints;
 	std::vector<ImpulsePoint> points; // all that may act: new and old supports, and what else touches
-	ImpulseSolver solve { solveImpulses };
+	ImpulseSolver solve {solveImpulses};
 };
 
 struct RockingImpactResult {
-	double work { 0 };       // of the prescribed bodies, J
-	double energyLost { 0 }; // kinetic energy before + work - after, J, not negative but for round-off
-	bool   capped { false }; // the targets were moved: C is not realised
-	double residual { 0 };   // of the impulse problem, m/s
-	bool   solved { true };  // it counts as zero
+	double work {0};       // of the prescribed bodies, J
+	double energyLost {0}; // kinetic energy before + work - after, J, not negative but for round-off
+	bool capped {false};   // the targets were moved: C is not realised
+	double residual {0};   // of the impulse problem, m/s
+	bool solved {true};    // it counts as zero
 };
 
 // Zero where there is no old support, or where it is a corner and no closing point approaches.
@@ -84,8 +84,8 @@ void report(const std::vector<Body>& bodies, const std::vector<ImpulsePoint>& po
 RockingImpactResult applyRockingImpact(std::vector<Body>& bodies, RockingImpact& impact);
 RockingImpactResult applySequentially(std::vector<Body>& bodies, RockingImpact& impact);
 
-// One joint alone, the old support giving the axis and no impulse: nearly always it opens. Takes its points away, and keeps the couple about
-// the joint's axis, N m s.
+// One joint alone, the old support giving the axis and no impulse: nearly always it opens. Takes its points away, and keeps the couple
+// about the joint's axis, N m s.
 RockingImpactResult applyToNewSupport(std::vector<Body>& bodies, ClosingJoint& joint, std::vector<ImpulsePoint>& points, double& couple);
 
 } // namespace masonry

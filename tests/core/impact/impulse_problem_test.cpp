@@ -9,7 +9,7 @@ using namespace masonry;
 namespace {
 
 struct Scene {
-	std::vector<Body>         bodies;
+	std::vector<Body> bodies;
 	std::vector<ImpulsePoint> points;
 };
 
@@ -19,26 +19,28 @@ Scene randomColumn(std::mt19937& random, double friction)
 {
 	const auto number = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); };
 	const auto vector = [&](double size) { return Vector3(number(-size, size), number(-size, size), number(-size, size)); };
-	Scene      scene;
-	const int  bodies = 2 + int(number(0, 3));
-	double     top = 0;
-	Vector3    below(2, 2, 2); // half sizes
+	Scene scene;
+	const int bodies = 2 + int(number(0, 3));
+	double top = 0;
+	Vector3 below(2, 2, 2); // half sizes
 	for (int b = 0; b < bodies; ++b) {
-		const Vector3    half(number(0.1, 0.5), number(0.1, 0.5), number(0.1, 1.5));
+		const Vector3 half(number(0.1, 0.5), number(0.1, 0.5), number(0.1, 1.5));
 		const Quaternion turn(Eigen::AngleAxisd(number(0, 0.2), Vector3::UnitZ()));
-		Body             body;
+		Body body;
 		body.prescribed = b == 0;
-		body.pose = { Vector3(0, 0, b ? top + half.z() : 0), turn };
+		body.pose = {Vector3(0, 0, b ? top + half.z() : 0), turn};
 		body.mass = std::pow(10., number(2, 4)) * half.prod();
-		body.inertia = body.mass / 3 * Vector3(half.y() * half.y() + half.z() * half.z(), half.x() * half.x() + half.z() * half.z(), half.x() * half.x() + half.y() * half.y());
+		body.inertia = body.mass / 3 *
+		               Vector3(half.y() * half.y() + half.z() * half.z(), half.x() * half.x() + half.z() * half.z(),
+		                       half.x() * half.x() + half.y() * half.y());
 		if (b > 0) {
 			body.velocity = vector(1);
 			body.angularVelocity = vector(2);
 			const Vector3 face = half.cwiseMin(below);
-			const int     touching = int(number(0, 3)); // all four, an edge, a corner
+			const int touching = int(number(0, 3)); // all four, an edge, a corner
 			for (int corner = 0; corner < 4 >> touching; ++corner) {
 				const Vector3 x(corner & 1 ? -face.x() : face.x(), corner & 2 ? -face.y() : face.y(), top);
-				scene.points.push_back({ b - 1, b, turn * x, Vector3::UnitZ(), friction });
+				scene.points.push_back({b - 1, b, turn * x, Vector3::UnitZ(), friction});
 			}
 			top += 2 * half.z();
 			below = half;
@@ -69,22 +71,23 @@ void pointByPoint(Scene& scene)
 		double change = 0;
 		for (size_t i = 0; i < scene.points.size(); ++i) {
 			const ImpulsePoint& p = scene.points[i];
-			Body &              b1 = scene.bodies[p.body1], &b2 = scene.bodies[p.body2];
-			double              response = 0; // normal velocity per unit normal impulse
-			for (Body* b : { &b1, &b2 }) {
+			Body &b1 = scene.bodies[p.body1], &b2 = scene.bodies[p.body2];
+			double response = 0; // normal velocity per unit normal impulse
+			for (Body* b : {&b1, &b2}) {
 				const Vector3 turn = (p.position - b->pose.position).cross(p.normal);
 				response += b->inverseMass() + turn.dot(b->inverseInertia() * turn);
 			}
 			const double next = std::max(0., impulse[i] - p.normal.dot(relativeVelocity(scene, p)) / response);
 			const double step = next - impulse[i];
 			impulse[i] = next;
-			for (const auto& [b, sign] : { std::pair(&b1, -1.), std::pair(&b2, 1.) }) {
+			for (const auto& [b, sign] : {std::pair(&b1, -1.), std::pair(&b2, 1.)}) {
 				b->velocity += sign * step * b->inverseMass() * p.normal;
 				b->angularVelocity += sign * step * (b->inverseInertia() * (p.position - b->pose.position).cross(p.normal));
 			}
 			change = std::max(change, std::abs(step) * response);
 		}
-		if (change < 1e-14) return;
+		if (change < 1e-14)
+			return;
 	}
 }
 
@@ -93,18 +96,18 @@ void pointByPoint(Scene& scene)
 TEST_CASE("The laws hold at every point, and energy is never gained")
 {
 	std::mt19937 random(7);
-	for (double friction : { 0., 0.3, 0.7, 1. })
+	for (double friction : {0., 0.3, 0.7, 1.})
 		for (int trial = 0; trial < 100; ++trial) {
-			Scene                  scene = randomColumn(random, friction);
-			const double           before = kinetic(scene.bodies);
+			Scene scene = randomColumn(random, friction);
+			const double before = kinetic(scene.bodies);
 			std::vector<CoupleRow> none;
-			const auto             report = solveImpulses(scene.bodies, scene.points, none);
+			const auto report = solveImpulses(scene.bodies, scene.points, none);
 			INFO("friction " << friction << " trial " << trial << " iterations " << report.iterations);
 			CHECK(report.residual < 1e-8); // m/s, of velocities of order 1; Gauss-Seidel's stop where Newton cycles
 			CHECK(kinetic(scene.bodies) <= before * (1 + 1e-9));
 			for (const ImpulsePoint& p : scene.points) {
 				const Vector3 u = relativeVelocity(scene, p);
-				const double  normal = p.normal.dot(p.impulse), opening = p.normal.dot(u);
+				const double normal = p.normal.dot(p.impulse), opening = p.normal.dot(u);
 				const Vector3 tangential = p.impulse - normal * p.normal, slide = u - opening * p.normal;
 				// Impulses are bounded by mass times speed; response per impulse lies between 1e-2 and 1e3.
 				CHECK(normal >= -1e-9);
@@ -119,21 +122,23 @@ TEST_CASE("The laws hold at every point, and energy is never gained")
 TEST_CASE("Without slip no point pulls and energy is never gained, and where the residual is small the laws hold")
 {
 	std::mt19937 random(7);
-	int          solved = 0;
+	int solved = 0;
 	for (int trial = 0; trial < 200; ++trial) {
-		Scene                  scene = randomColumn(random, noSlip);
-		const double           before = kinetic(scene.bodies);
+		Scene scene = randomColumn(random, noSlip);
+		const double before = kinetic(scene.bodies);
 		std::vector<CoupleRow> none;
-		const auto             report = solveImpulses(scene.bodies, scene.points, none);
+		const auto report = solveImpulses(scene.bodies, scene.points, none);
 		INFO("trial " << trial << " residual " << report.residual);
 		CHECK(kinetic(scene.bodies) <= before * (1 + 1e-9));
 		solved += report.residual < 1e-8;
 		for (const ImpulsePoint& p : scene.points) {
 			const Vector3 u = relativeVelocity(scene, p);
-			const double  normal = p.normal.dot(p.impulse), opening = p.normal.dot(u);
+			const double normal = p.normal.dot(p.impulse), opening = p.normal.dot(u);
 			CHECK(normal >= -1e-9);
-			if (normal > 1e-9) CHECK(u.norm() < 1e-7); // a point that carries an impulse is held
-			if (report.residual < 1e-8) CHECK(opening > -1e-7);
+			if (normal > 1e-9)
+				CHECK(u.norm() < 1e-7); // a point that carries an impulse is held
+			if (report.residual < 1e-8)
+				CHECK(opening > -1e-7);
 		}
 	}
 	CHECK(solved > 100); // most random columns have a solution
@@ -144,7 +149,7 @@ TEST_CASE("Without friction the velocities equal those of the point-by-point met
 	// A convex problem: impulses may differ where points are redundant, velocities are unique.
 	std::mt19937 random(11);
 	for (int trial = 0; trial < 60; ++trial) {
-		Scene                  ours = randomColumn(random, 0.), other = ours;
+		Scene ours = randomColumn(random, 0.), other = ours;
 		std::vector<CoupleRow> none;
 		solveImpulses(ours.bodies, ours.points, none);
 		pointByPoint(other);
@@ -159,9 +164,9 @@ TEST_CASE("Without friction the velocities equal those of the point-by-point met
 TEST_CASE("A couple row is met, whatever its sign")
 {
 	std::mt19937 random(3);
-	for (double target : { -0.7, 0., 0.4 }) {
-		Scene                  scene = randomColumn(random, 0.5);
-		std::vector<CoupleRow> rows { { 0, 1, Vector3(1, 2, 2) / 3, target } };
+	for (double target : {-0.7, 0., 0.4}) {
+		Scene scene = randomColumn(random, 0.5);
+		std::vector<CoupleRow> rows {{0, 1, Vector3(1, 2, 2) / 3, target}};
 		solveImpulses(scene.bodies, scene.points, rows);
 		CHECK(rows.front().axis.dot(scene.bodies[1].angularVelocity) == Approx(target).margin(1e-9));
 	}

@@ -66,7 +66,8 @@ TEST_CASE("time to stabilise where hardly anything is lost")
 	const RockingBlock block(0.3, 1.5);
 	const double lost = 1e-9, tolerance = 0.01;
 	const double sum = 2 * (std::log(1 / tolerance) - 1 + tolerance) / (lost * lost), first = closed_form::singlePulse(block, 0.1).duration;
-	REQUIRE(closed_form::timeToStabilise(block, 0.1, 1 - lost, tolerance) == Approx(first * sum).epsilon(1e-7)); // 1 - C is rounded to 1e-7 of it
+	REQUIRE(closed_form::timeToStabilise(block, 0.1, 1 - lost, tolerance) ==
+	        Approx(first * sum).epsilon(1e-7)); // 1 - C is rounded to 1e-7 of it
 	REQUIRE(std::isfinite(closed_form::timeToStabilise(block, 0.1, 1 - std::numeric_limits<double>::epsilon() / 2, tolerance)));
 	// Two half cycles, of w1 and of (2 + C) w1, where that is near enough.
 	const auto sequence = closed_form::pulseSequence(block, 0.1, 1 - 1e-12, 2);

@@ -1,4 +1,5 @@
-// The wall in Bullet (double precision): btBoxShape, 10 iterations as it comes, or as many as the environment's ITERATIONS says; no sleeping.
+// The wall in Bullet (double precision): btBoxShape, 10 iterations as it comes, or as many as the environment's ITERATIONS says; no
+// sleeping.
 #include "wall.hpp"
 #include <btBulletDynamicsCommon.h>
 #include <memory>
@@ -32,7 +33,8 @@ struct BulletWall {
 		btVector3 inertia(0, 0, 0);
 		if (mass > 0)
 			shapes.back()->calculateLocalInertia(mass, inertia);
-		bodies.push_back(std::make_unique<btRigidBody>(btRigidBody::btRigidBodyConstructionInfo(mass, nullptr, shapes.back().get(), inertia)));
+		bodies.push_back(
+		    std::make_unique<btRigidBody>(btRigidBody::btRigidBodyConstructionInfo(mass, nullptr, shapes.back().get(), inertia)));
 		btRigidBody& body = *bodies.back();
 		body.setWorldTransform(btTransform(btQuaternion::getIdentity(), place));
 		body.setInterpolationWorldTransform(body.getWorldTransform());

@@ -15,83 +15,83 @@ bool JointContact::rocking() const
 void renewPatch(JointContact& contact, const ContactPatch& patch)
 {
 	const auto old = contact.points;
-	const int  oldSize = contact.size;
+	const int oldSize = contact.size;
 	const bool rocking = contact.rocking();
 	contact.patch = patch;
 	contact.size = patch.size;
 	for (int i = 0; i < patch.size; ++i) {
-		const int  identity = patch.points[i].identity;
+		const int identity = patch.points[i].identity;
 		const auto found = std::find_if(old.begin(), old.begin() + oldSize, [&](const JointPoint& p) { return p.identity == identity; });
-		contact.points[i] = found != old.begin() + oldSize ? *found : JointPoint { identity, rocking };
+		contact.points[i] = found != old.begin() + oldSize ? *found : JointPoint {identity, rocking};
 		// The joint's plane has turned with the bodies: keep the shear in it, at its length.
-		Vector3&     shear = contact.points[i].shear;
+		Vector3& shear = contact.points[i].shear;
 		const double length = shear.norm();
 		shear -= patch.normal * patch.normal.dot(shear);
-		if (length > 0 && shear.norm() > 0) shear *= length / shear.norm();
+		if (length > 0 && shear.norm() > 0)
+			shear *= length / shear.norm();
 	}
 }
 
 namespace {
 
-	double reducedMass(const Body& body1, const Body& body2)
+double reducedMass(const Body& body1, const Body& body2)
+{
+	const double inverse = body1.inverseMass() + body2.inverseMass();
+	return inverse > 0 ? 1 / inverse : 0;
+}
+
+double squared(double depth) { return depth > 0 ? depth * depth : 0; }
+
+double storedEnergy(const JointContact& contact, int i)
+{
+	return 0.5 * contact.normalStiffness(i) * squared(-contact.patch.points[i].gap) +
+	       0.5 * contact.shearStiffness(i) * contact.points[i].shear.squaredNorm();
+}
+
+// Mean velocity of material points over the step dt that ends now. Leapfrog velocities belong to the middle of the
+// step and arms to its end: v + w x r would creep by w^2 r dt/2.
+class StepMotion {
+public:
+	StepMotion(const Body& body, double dt) : end(body.pose), dt(dt)
 	{
-		const double inverse = body1.inverseMass() + body2.inverseMass();
-		return inverse > 0 ? 1 / inverse : 0;
+		Body earlier = body;
+		earlier.advance(-dt);
+		start = earlier.pose;
 	}
+	Vector3 velocityAt(const Vector3& point) const { return (point - start.toGlobal(end.toLocal(point))) / dt; }
 
-	double squared(double depth) { return depth > 0 ? depth * depth : 0; }
+private:
+	Pose end, start;
+	double dt;
+};
 
-	double storedEnergy(const JointContact& contact, int i)
-	{
-		return 0.5 * contact.normalStiffness(i) * squared(-contact.patch.points[i].gap) + 0.5 * contact.shearStiffness(i) * contact.points[i].shear.squaredNorm();
-	}
-
-	// Mean velocity of material points over the step dt that ends now. Leapfrog velocities belong to the middle of the
-	// step and arms to its end: v + w x r would creep by w^2 r dt/2.
-	class StepMotion {
-	public:
-		StepMotion(const Body& body, double dt)
-		        : end(body.pose)
-		        , dt(dt)
-		{
-			Body earlier = body;
-			earlier.advance(-dt);
-			start = earlier.pose;
-		}
-		Vector3 velocityAt(const Vector3& point) const { return (point - start.toGlobal(end.toLocal(point))) / dt; }
-
-	private:
-		Pose   end, start;
-		double dt;
-	};
-
-	void release(JointPoint& point)
-	{
-		point.normalForce = 0;
-		point.shearForce.setZero();
-		point.shear.setZero();
-	}
+void release(JointPoint& point)
+{
+	point.normalForce = 0;
+	point.shearForce.setZero();
+	point.shear.setZero();
+}
 
 } // namespace
 
 void updateForces(JointContact& contact, const Body& body1, const Body& body2, double dt)
 {
 	const JointLaw& law = contact.law;
-	const Vector3&  n = contact.patch.normal;
-	const double    mass = reducedMass(body1, body2), area = contact.stiffnessArea();
-	const double    dampingNormal = 2 * law.dampingRatio * std::sqrt(law.normalStiffness * area * mass);
-	const double    dampingShear = 2 * law.dampingRatio * std::sqrt(law.shearStiffness * area * mass);
+	const Vector3& n = contact.patch.normal;
+	const double mass = reducedMass(body1, body2), area = contact.stiffnessArea();
+	const double dampingNormal = 2 * law.dampingRatio * std::sqrt(law.normalStiffness * area * mass);
+	const double dampingShear = 2 * law.dampingRatio * std::sqrt(law.shearStiffness * area * mass);
 	const StepMotion motion1(body1, dt), motion2(body2, dt);
 	contact.energy = {};
 	for (int i = 0; i < contact.size; ++i) {
-		JointPoint&      point = contact.points[i];
+		JointPoint& point = contact.points[i];
 		const JointPoint old = point;
-		const double     depth = -contact.patch.points[i].gap, weight = contact.patch.points[i].weight;
-		const double     stiffness = contact.shearStiffness(i);
-		const Vector3    velocity = motion2.velocityAt(contact.position(i)) - motion1.velocityAt(contact.position(i));
-		const double     normalVelocity = n.dot(velocity);
-		const Vector3    slideVelocity = velocity - n * normalVelocity;
-		double           slipped = 0; // J
+		const double depth = -contact.patch.points[i].gap, weight = contact.patch.points[i].weight;
+		const double stiffness = contact.shearStiffness(i);
+		const Vector3 velocity = motion2.velocityAt(contact.position(i)) - motion1.velocityAt(contact.position(i));
+		const double normalVelocity = n.dot(velocity);
+		const Vector3 slideVelocity = velocity - n * normalVelocity;
+		double slipped = 0; // J
 		if (point.muted || depth <= 0) {
 			release(point);
 		} else {
@@ -105,7 +105,7 @@ void updateForces(JointContact& contact, const Body& body1, const Body& body2, d
 				point.shearForce = -stiffness * point.shear;
 			} else {
 				const Vector3 total = -stiffness * point.shear - dampingShear * weight * slideVelocity;
-				const double  size = total.norm();
+				const double size = total.norm();
 				point.shearForce = size > bound ? Vector3(total * (bound / size)) : total;
 			}
 		}
@@ -119,7 +119,8 @@ void updateForces(JointContact& contact, const Body& body1, const Body& body2, d
 		contact.energy.taken += storedNormal + storedShear;
 		contact.energy.friction += slipped;
 		contact.energy.damping += takenNormal - storedNormal + takenShear - storedShear - slipped;
-		if (!point.muted) contact.energy.elastic += storedEnergy(contact, i);
+		if (!point.muted)
+			contact.energy.elastic += storedEnergy(contact, i);
 	}
 }
 
@@ -127,7 +128,7 @@ void holdForces(JointContact& contact)
 {
 	contact.energy.elastic = 0;
 	for (int i = 0; i < contact.size; ++i) {
-		JointPoint&  point = contact.points[i];
+		JointPoint& point = contact.points[i];
 		const double depth = -contact.patch.points[i].gap;
 		if (point.muted || depth <= 0) {
 			release(point);

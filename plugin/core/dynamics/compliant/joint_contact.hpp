@@ -15,42 +15,42 @@
 namespace masonry {
 
 struct JointLaw {
-	double normalStiffness { 0 }; // N/m^3
-	double shearStiffness { 0 };  // N/m^3
-	double dampingRatio { 0 };    // zeta, of the contact springs
-	double friction { 0 };        // mu, or noSlip
-	double restitution { 0 };     // C in [0, 1], or NaN: natural
+	double normalStiffness {0}; // N/m^3
+	double shearStiffness {0};  // N/m^3
+	double dampingRatio {0};    // zeta, of the contact springs
+	double friction {0};        // mu, or noSlip
+	double restitution {0};     // C in [0, 1], or NaN: natural
 };
 
 struct JointPoint {
-	int     identity { -1 };
-	bool    muted { false };
-	Vector3 shear { Vector3::Zero() };      // s_i, of body 2 relative to body 1, m
-	double  normalForce { 0 };              // N_i on body 2 along the normal, N
-	Vector3 shearForce { Vector3::Zero() }; // T_i on body 2, N
+	int identity {-1};
+	bool muted {false};
+	Vector3 shear {Vector3::Zero()};      // s_i, of body 2 relative to body 1, m
+	double normalForce {0};               // N_i on body 2 along the normal, N
+	Vector3 shearForce {Vector3::Zero()}; // T_i on body 2, N
 };
 
 struct JointEnergy {
-	double elastic { 0 };  // stored now, J
-	double taken { 0 };    // of it: what the motion of this step has put in, J
-	double friction { 0 }; // dissipated in this step, J
-	double damping { 0 };  // dissipated in this step, J
+	double elastic {0};  // stored now, J
+	double taken {0};    // of it: what the motion of this step has put in, J
+	double friction {0}; // dissipated in this step, J
+	double damping {0};  // dissipated in this step, J
 };
 
 struct JointContact {
-	int                       body1 { -1 }, body2 { -1 };
-	ContactPatch              patch;
-	JointLaw                  law;
-	int                       size { 0 };
+	int body1 {-1}, body2 {-1};
+	ContactPatch patch;
+	JointLaw law;
+	int size {0};
 	std::array<JointPoint, 8> points; // parallel to patch.points
-	JointEnergy               energy;
+	JointEnergy energy;
 
-	double  stiffnessArea() const;                               // m^2, what the stiffness per area is multiplied with
-	double  normalStiffness(int i) const { return law.normalStiffness * stiffnessArea() * patch.points[i].weight; }
-	double  shearStiffness(int i) const { return law.shearStiffness * stiffnessArea() * patch.points[i].weight; }
+	double stiffnessArea() const; // m^2, what the stiffness per area is multiplied with
+	double normalStiffness(int i) const { return law.normalStiffness * stiffnessArea() * patch.points[i].weight; }
+	double shearStiffness(int i) const { return law.shearStiffness * stiffnessArea() * patch.points[i].weight; }
 	Vector3 position(int i) const { return 0.5 * (patch.points[i].position1 + patch.points[i].position2); }
 	Vector3 force(int i) const { return points[i].normalForce * patch.normal + points[i].shearForce; } // on body 2
-	bool    rocking() const;                                     // some point is muted
+	bool rocking() const;                                                                              // some point is muted
 };
 
 // Carries the points' state over to a new patch, by identity. A point without a past is muted when the joint rocks.

@@ -8,49 +8,51 @@ namespace masonry {
 
 namespace {
 
-	int faceOf(const Body& body, const Vector3& normal)
-	{
-		const Vector3 local = body.pose.orientation.conjugate() * normal;
-		int           axis;
-		local.cwiseAbs().maxCoeff(&axis);
-		return 2 * axis + (local[axis] > 0);
-	}
+int faceOf(const Body& body, const Vector3& normal)
+{
+	const Vector3 local = body.pose.orientation.conjugate() * normal;
+	int axis;
+	local.cwiseAbs().maxCoeff(&axis);
+	return 2 * axis + (local[axis] > 0);
+}
 
-	double gapOf(const JointSystem& s, const PointRef& p) { return s.contacts[p.contact].patch.points[p.point].gap; }
-	JointPoint& stateOf(JointSystem& s, const PointRef& p) { return s.contacts[p.contact].points[p.point]; }
-	const JointPoint& stateOf(const JointSystem& s, const PointRef& p) { return s.contacts[p.contact].points[p.point]; }
-	Vector3 positionOf(const JointSystem& s, const PointRef& p) { return s.contacts[p.contact].position(p.point); }
+double gapOf(const JointSystem& s, const PointRef& p) { return s.contacts[p.contact].patch.points[p.point].gap; }
+JointPoint& stateOf(JointSystem& s, const PointRef& p) { return s.contacts[p.contact].points[p.point]; }
+const JointPoint& stateOf(const JointSystem& s, const PointRef& p) { return s.contacts[p.contact].points[p.point]; }
+Vector3 positionOf(const JointSystem& s, const PointRef& p) { return s.contacts[p.contact].position(p.point); }
 
-	// An edge or a corner: all points on one line, as against a face.
-	bool isPivot(const JointSystem& s, const std::vector<PointRef>& points, const Vector3& normal, double size)
-	{
-		Vector3 line = Vector3::Zero();
-		for (const PointRef& p : points) {
-			const Vector3 d = positionOf(s, p) - positionOf(s, points.front());
-			if (d.norm() > line.norm()) line = d;
-		}
-		for (const PointRef& p : points) {
-			const Vector3 d = positionOf(s, p) - positionOf(s, points.front());
-			const Vector3 across = line.norm() > 0 ? Vector3(d - line * (line.dot(d) / line.squaredNorm())) : d;
-			if ((across - normal * normal.dot(across)).norm() > tolerance::pivotEdge * size) return false;
-		}
-		return true;
+// An edge or a corner: all points on one line, as against a face.
+bool isPivot(const JointSystem& s, const std::vector<PointRef>& points, const Vector3& normal, double size)
+{
+	Vector3 line = Vector3::Zero();
+	for (const PointRef& p : points) {
+		const Vector3 d = positionOf(s, p) - positionOf(s, points.front());
+		if (d.norm() > line.norm())
+			line = d;
 	}
+	for (const PointRef& p : points) {
+		const Vector3 d = positionOf(s, p) - positionOf(s, points.front());
+		const Vector3 across = line.norm() > 0 ? Vector3(d - line * (line.dot(d) / line.squaredNorm())) : d;
+		if ((across - normal * normal.dot(across)).norm() > tolerance::pivotEdge * size)
+			return false;
+	}
+	return true;
+}
 
-	double sizeOf(const JointSystem& s, const Joint& joint)
-	{
-		double size = 0;
-		for (const PointRef& p : joint.points)
-			size = std::max(size, (positionOf(s, p) - positionOf(s, joint.points.front())).norm());
-		return size;
-	}
+double sizeOf(const JointSystem& s, const Joint& joint)
+{
+	double size = 0;
+	for (const PointRef& p : joint.points)
+		size = std::max(size, (positionOf(s, p) - positionOf(s, joint.points.front())).norm());
+	return size;
+}
 
 } // namespace
 
 double gapRate(const JointSystem& s, const PointRef& p)
 {
 	const JointContact& contact = s.contacts[p.contact];
-	const Vector3       x = positionOf(s, p);
+	const Vector3 x = positionOf(s, p);
 	return contact.patch.normal.dot(s.bodies[contact.body2].velocityAt(x) - s.bodies[contact.body1].velocityAt(x));
 }
 
@@ -58,22 +60,25 @@ bool Joint::has(int contact) const { return std::find(contacts.begin(), contacts
 
 std::vector<Joint> groupJoints(const JointSystem& s)
 {
-	std::vector<Joint>                 joints;
+	std::vector<Joint> joints;
 	std::map<std::pair<int, int>, int> byFace; // block and face -> index of the joint
-	const double                       g = s.gravity.norm();
+	const double g = s.gravity.norm();
 	for (int c = 0; c < int(s.contacts.size()); ++c) {
 		const JointContact& contact = s.contacts[c];
-		const Vector3&      n = contact.patch.normal;
-		const double        up = g > 0 ? -n.dot(s.gravity) / g : 1;
-		if (std::abs(up) < tolerance::uprightJoint) continue;
+		const Vector3& n = contact.patch.normal;
+		const double up = g > 0 ? -n.dot(s.gravity) / g : 1;
+		if (std::abs(up) < tolerance::uprightJoint)
+			continue;
 		const int block = up > 0 ? contact.body2 : contact.body1;
-		if (s.bodies[block].prescribed) continue;
+		if (s.bodies[block].prescribed)
+			continue;
 		const Vector3 normal = up > 0 ? n : Vector3(-n);
-		const int     index = byFace.emplace(std::make_pair(block, faceOf(s.bodies[block], normal)), int(joints.size())).first->second;
-		if (index == int(joints.size())) joints.push_back({ block, normal, {}, {} });
+		const int index = byFace.emplace(std::make_pair(block, faceOf(s.bodies[block], normal)), int(joints.size())).first->second;
+		if (index == int(joints.size()))
+			joints.push_back({block, normal, {}, {}});
 		joints[index].contacts.push_back(c);
 		for (int i = 0; i < contact.size; ++i)
-			joints[index].points.push_back({ c, i });
+			joints[index].points.push_back({c, i});
 	}
 	return joints;
 }
@@ -83,28 +88,31 @@ Neighbourhood neighbourhood(const JointSystem& s, const Joint& joint, size_t sma
 	std::vector<bool> near(s.bodies.size(), s.contacts.size() <= small);
 	near[joint.block] = true;
 	for (const JointContact& contact : s.contacts)
-		if (contact.body1 == joint.block || contact.body2 == joint.block) near[contact.body1] = near[contact.body2] = true;
+		if (contact.body1 == joint.block || contact.body2 == joint.block)
+			near[contact.body1] = near[contact.body2] = true;
 
 	Neighbourhood part;
 	part.system.gravity = s.gravity;
 	part.system.dt = s.dt;
 	part.system.order = s.order;
 	std::vector<int> local(s.bodies.size(), -1);
-	const auto       take = [&](int b) {
-        if (local[b] >= 0) return local[b];
-        local[b] = int(part.bodies.size());
-        part.bodies.push_back(b);
-        part.system.bodies.push_back(s.bodies[b]);
-        if (!near[b] && !s.bodies[b].prescribed) {
-            part.system.bodies.back().prescribed = true;
-            part.system.rim.push_back(local[b]);
-        }
-        return local[b];
+	const auto take = [&](int b) {
+		if (local[b] >= 0)
+			return local[b];
+		local[b] = int(part.bodies.size());
+		part.bodies.push_back(b);
+		part.system.bodies.push_back(s.bodies[b]);
+		if (!near[b] && !s.bodies[b].prescribed) {
+			part.system.bodies.back().prescribed = true;
+			part.system.rim.push_back(local[b]);
+		}
+		return local[b];
 	};
 	std::vector<int> localContact(s.contacts.size(), -1);
 	for (size_t c = 0; c < s.contacts.size(); ++c) {
 		const auto moves = [&](int b) { return near[b] && !s.bodies[b].prescribed; };
-		if (!moves(s.contacts[c].body1) && !moves(s.contacts[c].body2)) continue;
+		if (!moves(s.contacts[c].body1) && !moves(s.contacts[c].body2))
+			continue;
 		localContact[c] = int(part.contacts.size());
 		part.contacts.push_back(int(c));
 		part.system.contacts.push_back(s.contacts[c]);
@@ -125,14 +133,15 @@ void putBack(const Neighbourhood& part, JointSystem& s)
 	s.residual = std::max(s.residual, part.system.residual);
 	s.unsolved += part.system.unsolved;
 	for (size_t k = 0; k < part.bodies.size(); ++k)
-		if (!part.system.bodies[k].prescribed) s.bodies[part.bodies[k]] = part.system.bodies[k];
+		if (!part.system.bodies[k].prescribed)
+			s.bodies[part.bodies[k]] = part.system.bodies[k];
 	for (int k : part.system.rim) { // the pose has only gone back and forth
 		s.bodies[part.bodies[k]].velocity = part.system.bodies[k].velocity;
 		s.bodies[part.bodies[k]].angularVelocity = part.system.bodies[k].angularVelocity;
 	}
 	for (size_t k = 0; k < part.contacts.size(); ++k) {
-		JointContact&   contact = s.contacts[part.contacts[k]];
-		const int       body1 = contact.body1, body2 = contact.body2;
+		JointContact& contact = s.contacts[part.contacts[k]];
+		const int body1 = contact.body1, body2 = contact.body2;
 		contact = part.system.contacts[k];
 		contact.body1 = body1;
 		contact.body2 = body2;
@@ -142,7 +151,8 @@ void putBack(const Neighbourhood& part, JointSystem& s)
 void unmuteInFlight(JointSystem& s, const Joint& joint)
 {
 	const auto carries = [&](const PointRef& p) { return !stateOf(s, p).muted && gapOf(s, p) < 0; };
-	if (std::any_of(joint.points.begin(), joint.points.end(), carries)) return;
+	if (std::any_of(joint.points.begin(), joint.points.end(), carries))
+		return;
 	// An old pivot on its way out, whose spring has been written off with the impact, would push again.
 	for (const PointRef& p : joint.points)
 		stateOf(s, p).muted = stateOf(s, p).muted && gapOf(s, p) < 0 && gapRate(s, p) > 0;
@@ -163,7 +173,7 @@ void muteOpenPoints(JointSystem& s, const Joint& joint)
 {
 	unmuteInFlight(s, joint);
 	std::vector<PointRef> loaded, open;
-	bool                  rocks = false;
+	bool rocks = false;
 	for (const PointRef& p : joint.points) {
 		rocks |= stateOf(s, p).muted;
 		(gapOf(s, p) > 0 ? open : loaded).push_back(p);
@@ -171,14 +181,17 @@ void muteOpenPoints(JointSystem& s, const Joint& joint)
 	if (rocks) { // a support that has come into reach since
 		for (int c : joint.contacts) {
 			JointContact& contact = s.contacts[c];
-			const auto    first = contact.points.begin();
-			const bool    unused = std::none_of(joint.points.begin(), joint.points.end(),
-			        [&](const PointRef& p) { return p.contact == c && (stateOf(s, p).muted || !(gapOf(s, p) > 0)); });
-			if (unused) std::for_each(first, first + contact.size, [](JointPoint& p) { p.muted = true; });
+			const auto first = contact.points.begin();
+			const bool unused = std::none_of(joint.points.begin(), joint.points.end(), [&](const PointRef& p) {
+				return p.contact == c && (stateOf(s, p).muted || !(gapOf(s, p) > 0));
+			});
+			if (unused)
+				std::for_each(first, first + contact.size, [](JointPoint& p) { p.muted = true; });
 		}
 		return;
 	}
-	if (loaded.empty() || open.empty() || !isPivot(s, loaded, joint.normal, sizeOf(s, joint))) return;
+	if (loaded.empty() || open.empty() || !isPivot(s, loaded, joint.normal, sizeOf(s, joint)))
+		return;
 	for (const PointRef& p : open)
 		stateOf(s, p).muted = true;
 }
@@ -186,35 +199,41 @@ void muteOpenPoints(JointSystem& s, const Joint& joint)
 Closing findClosing(const JointSystem& s, const Joint& joint)
 {
 	Closing result;
-	double  pivotGap = 0, pivotRate = 0;
-	int     pivots = 0;
+	double pivotGap = 0, pivotRate = 0;
+	int pivots = 0;
 	Vector3 pivot = Vector3::Zero();
 	for (const PointRef& p : joint.points) {
-		if (stateOf(s, p).muted || !(gapOf(s, p) < 0)) continue;
+		if (stateOf(s, p).muted || !(gapOf(s, p) < 0))
+			continue;
 		pivotGap += gapOf(s, p);
 		pivotRate += gapRate(s, p);
 		pivot += positionOf(s, p);
 		++pivots;
 	}
-	if (pivots == 0) return result;
+	if (pivots == 0)
+		return result;
 	pivotGap /= pivots;
 	pivotRate /= pivots;
 	pivot /= pivots;
 	result.depth = -pivotGap;
 
 	std::vector<PointRef> candidates;
-	const double          merged = tolerance::mergedClosing * sizeOf(s, joint);
-	bool                  crossed = false;
+	const double merged = tolerance::mergedClosing * sizeOf(s, joint);
+	bool crossed = false;
 	for (const PointRef& p : joint.points) {
-		if (!stateOf(s, p).muted) continue;
+		if (!stateOf(s, p).muted)
+			continue;
 		const double lift = gapOf(s, p) - pivotGap, rate = gapRate(s, p) - pivotRate;
-		if (lift > merged || !(rate < 0)) continue;
+		if (lift > merged || !(rate < 0))
+			continue;
 		candidates.push_back(p);
-		if (lift > 0) continue;
+		if (lift > 0)
+			continue;
 		crossed = true;
 		result.before = std::clamp(lift / rate, result.before, s.dt);
 	}
-	if (!crossed) return result;
+	if (!crossed)
+		return result;
 	result.points = candidates;
 	int landing = candidates.front().contact;
 	for (const PointRef& p : candidates) {
@@ -235,7 +254,7 @@ void moveContacts(JointSystem& s, const std::vector<Body>& before)
 	for (JointContact& contact : s.contacts) {
 		const auto carry = [&](int b, const Vector3& point) { return s.bodies[b].pose.toGlobal(before[b].pose.toLocal(point)); };
 		for (int i = 0; i < contact.size; ++i) {
-			PatchPoint&   point = contact.patch.points[i];
+			PatchPoint& point = contact.patch.points[i];
 			const Vector3 old = point.position2 - point.position1;
 			point.position1 = carry(contact.body1, point.position1);
 			point.position2 = carry(contact.body2, point.position2);
@@ -257,81 +276,82 @@ double storedEnergy(const JointSystem& s)
 
 namespace {
 
-	struct NormalRow {
-		int     body1, body2;
-		Vector3 normal, turn1, turn2; // displacement along the normal per displacement and turn of each body
-		double  wanted;               // change of the gap, m
-	};
+struct NormalRow {
+	int body1, body2;
+	Vector3 normal, turn1, turn2; // displacement along the normal per displacement and turn of each body
+	double wanted;                // change of the gap, m
+};
 
-	// Displacements (position, turn) that change the gaps as wanted: least motion, each turn weighted by the radius of gyration. Row by row, since the
-	// rows are few per body; consistent redundant rows do no harm.
-	std::vector<std::pair<Vector3, Vector3>> leastMotion(const std::vector<Body>& bodies, const std::vector<NormalRow>& rows)
-	{
-		std::vector<std::pair<Vector3, Vector3>> motion(bodies.size(), { Vector3::Zero(), Vector3::Zero() });
-		std::vector<double>  inverseMass;
-		std::vector<Matrix3> inverseInertia;
-		for (const Body& body : bodies) { // as if all had the mass 1: the sweeps converge whatever stands on what
-			inverseMass.push_back(body.prescribed ? 0. : 1.);
-			inverseInertia.push_back(body.prescribed ? Matrix3(Matrix3::Zero()) : Matrix3(body.mass * body.inverseInertia()));
+// Displacements (position, turn) that change the gaps as wanted: least motion, each turn weighted by the radius of gyration. Row by row,
+// since the rows are few per body; consistent redundant rows do no harm.
+std::vector<std::pair<Vector3, Vector3>> leastMotion(const std::vector<Body>& bodies, const std::vector<NormalRow>& rows)
+{
+	std::vector<std::pair<Vector3, Vector3>> motion(bodies.size(), {Vector3::Zero(), Vector3::Zero()});
+	std::vector<double> inverseMass;
+	std::vector<Matrix3> inverseInertia;
+	for (const Body& body : bodies) { // as if all had the mass 1: the sweeps converge whatever stands on what
+		inverseMass.push_back(body.prescribed ? 0. : 1.);
+		inverseInertia.push_back(body.prescribed ? Matrix3(Matrix3::Zero()) : Matrix3(body.mass * body.inverseInertia()));
+	}
+	double largest = 0;
+	for (const NormalRow& row : rows)
+		largest = std::max(largest, std::abs(row.wanted));
+	// Rows whose normals lean never come to agree, and the turns that they ask for grow with the sweeps.
+	constexpr int maxSweeps = 200;
+	double miss = largest;
+	for (int sweep = 0; sweep < maxSweeps && miss > tolerance::settle * largest; ++sweep) {
+		miss = 0;
+		for (const NormalRow& row : rows) {
+			auto &m1 = motion[row.body1], &m2 = motion[row.body2];
+			const double now = row.normal.dot(m2.first - m1.first) + row.turn2.dot(m2.second) - row.turn1.dot(m1.second);
+			const double softness = inverseMass[row.body1] + inverseMass[row.body2] + row.turn1.dot(inverseInertia[row.body1] * row.turn1) +
+			                        row.turn2.dot(inverseInertia[row.body2] * row.turn2);
+			const double push = (row.wanted - now) / softness;
+			m1.first -= inverseMass[row.body1] * push * row.normal;
+			m1.second -= inverseInertia[row.body1] * row.turn1 * push;
+			m2.first += inverseMass[row.body2] * push * row.normal;
+			m2.second += inverseInertia[row.body2] * row.turn2 * push;
+			miss = std::max(miss, std::abs(row.wanted - now));
 		}
-		double largest = 0;
-		for (const NormalRow& row : rows)
-			largest = std::max(largest, std::abs(row.wanted));
-		// Rows whose normals lean never come to agree, and the turns that they ask for grow with the sweeps.
-		constexpr int maxSweeps = 200;
-		double        miss = largest;
-		for (int sweep = 0; sweep < maxSweeps && miss > tolerance::settle * largest; ++sweep) {
-			miss = 0;
-			for (const NormalRow& row : rows) {
-				auto &       m1 = motion[row.body1], &m2 = motion[row.body2];
-				const double now = row.normal.dot(m2.first - m1.first) + row.turn2.dot(m2.second) - row.turn1.dot(m1.second);
-				const double softness = inverseMass[row.body1] + inverseMass[row.body2]
-				        + row.turn1.dot(inverseInertia[row.body1] * row.turn1) + row.turn2.dot(inverseInertia[row.body2] * row.turn2);
-				const double push = (row.wanted - now) / softness;
-				m1.first -= inverseMass[row.body1] * push * row.normal;
-				m1.second -= inverseInertia[row.body1] * row.turn1 * push;
-				m2.first += inverseMass[row.body2] * push * row.normal;
-				m2.second += inverseInertia[row.body2] * row.turn2 * push;
-				miss = std::max(miss, std::abs(row.wanted - now));
-			}
+	}
+	return motion;
+}
+
+// What the normal springs would store if no point were muted.
+double pressedEnergy(const std::vector<JointContact>& contacts)
+{
+	double sum = 0;
+	for (const JointContact& contact : contacts)
+		for (int i = 0; i < contact.size; ++i) {
+			const double depth = std::max(0., -contact.patch.points[i].gap);
+			sum += 0.5 * contact.normalStiffness(i) * depth * depth;
 		}
-		return motion;
-	}
+	return sum;
+}
 
-	// What the normal springs would store if no point were muted.
-	double pressedEnergy(const std::vector<JointContact>& contacts)
-	{
-		double sum = 0;
-		for (const JointContact& contact : contacts)
-			for (int i = 0; i < contact.size; ++i) {
-				const double depth = std::max(0., -contact.patch.points[i].gap);
-				sum += 0.5 * contact.normalStiffness(i) * depth * depth;
-			}
-		return sum;
-	}
+double largestChange(const std::vector<JointContact>& contacts, const std::vector<JointContact>& before)
+{
+	double largest = 0;
+	for (size_t c = 0; c < contacts.size(); ++c)
+		for (int i = 0; i < contacts[c].size; ++i)
+			largest = std::max(largest, std::abs(contacts[c].patch.points[i].gap - before[c].patch.points[i].gap));
+	return largest;
+}
 
-	double largestChange(const std::vector<JointContact>& contacts, const std::vector<JointContact>& before)
-	{
-		double largest = 0;
-		for (size_t c = 0; c < contacts.size(); ++c)
-			for (int i = 0; i < contacts[c].size; ++i)
-				largest = std::max(largest, std::abs(contacts[c].patch.points[i].gap - before[c].patch.points[i].gap));
-		return largest;
+// How deep the springs are pressed, or would be if one of them bore all.
+double compression(const std::vector<Body>& bodies, const std::vector<JointContact>& contacts)
+{
+	double load = 0, deepest = 0;
+	for (const Body& body : bodies)
+		if (!body.prescribed)
+			load += body.force.norm();
+	for (const JointContact& contact : contacts) {
+		deepest = std::max(deepest, load / (contact.law.normalStiffness * contact.stiffnessArea()));
+		for (int i = 0; i < contact.size; ++i)
+			deepest = std::max(deepest, -contact.patch.points[i].gap);
 	}
-
-	// How deep the springs are pressed, or would be if one of them bore all.
-	double compression(const std::vector<Body>& bodies, const std::vector<JointContact>& contacts)
-	{
-		double load = 0, deepest = 0;
-		for (const Body& body : bodies)
-			if (!body.prescribed) load += body.force.norm();
-		for (const JointContact& contact : contacts) {
-			deepest = std::max(deepest, load / (contact.law.normalStiffness * contact.stiffnessArea()));
-			for (int i = 0; i < contact.size; ++i)
-				deepest = std::max(deepest, -contact.patch.points[i].gap);
-		}
-		return deepest;
-	}
+	return deepest;
+}
 
 } // namespace
 
@@ -341,19 +361,22 @@ double settle(JointSystem& s, const std::vector<HeldPoint>& held, double stored,
 	std::vector<NormalRow> rows;
 	for (const HeldPoint& p : held) {
 		const JointContact& contact = s.contacts[p.contact];
-		const Vector3&      n = contact.patch.normal;
-		if (!(n.dot(p.force) > 0)) continue;
+		const Vector3& n = contact.patch.normal;
+		if (!(n.dot(p.force) > 0))
+			continue;
 		loaded.push_back(p);
 		const Vector3 x = contact.position(p.point);
-		rows.push_back({ contact.body1, contact.body2, n, (x - s.bodies[contact.body1].pose.position).cross(n), (x - s.bodies[contact.body2].pose.position).cross(n),
-		                 -n.dot(p.force) / contact.normalStiffness(p.point) - contact.patch.points[p.point].gap });
+		rows.push_back({contact.body1, contact.body2, n, (x - s.bodies[contact.body1].pose.position).cross(n),
+		                (x - s.bodies[contact.body2].pose.position).cross(n),
+		                -n.dot(p.force) / contact.normalStiffness(p.point) - contact.patch.points[p.point].gap});
 	}
-	const std::vector<Body>         before = s.bodies;
+	const std::vector<Body> before = s.bodies;
 	const std::vector<JointContact> contactsBefore = s.contacts;
-	const auto                      motion = leastMotion(s.bodies, rows);
+	const auto motion = leastMotion(s.bodies, rows);
 	for (size_t b = 0; b < s.bodies.size(); ++b) {
 		Body& body = s.bodies[b];
-		if (body.prescribed) continue;
+		if (body.prescribed)
+			continue;
 		Body moving = body; // displacement over unit time
 		moving.velocity = motion[b].first;
 		moving.angularVelocity = motion[b].second;
@@ -362,7 +385,7 @@ double settle(JointSystem& s, const std::vector<HeldPoint>& held, double stored,
 	}
 	moveContacts(s, before);
 	for (const HeldPoint& p : loaded) {
-		JointContact&  contact = s.contacts[p.contact];
+		JointContact& contact = s.contacts[p.contact];
 		const Vector3& n = contact.patch.normal;
 		contact.points[p.point].shear = -(p.force - n * n.dot(p.force)) / contact.shearStiffness(p.point);
 	}
@@ -377,8 +400,8 @@ double settle(JointSystem& s, const std::vector<HeldPoint>& held, double stored,
 	double given = stored + work - storedEnergy(s);
 	// Bodies on their way over an edge, or that hit hard, may have no such equilibrium near: then they stay where they are.
 	const double most = gain * stored;
-	if (given < -most || pressedEnergy(s.contacts) - pressedEnergy(contactsBefore) > most
-	    || largestChange(s.contacts, contactsBefore) > tolerance::settlingReach * compression(before, contactsBefore)) {
+	if (given < -most || pressedEnergy(s.contacts) - pressedEnergy(contactsBefore) > most ||
+	    largestChange(s.contacts, contactsBefore) > tolerance::settlingReach * compression(before, contactsBefore)) {
 		s.bodies = before;
 		s.contacts = contactsBefore;
 		hold();

@@ -13,9 +13,9 @@ struct PointRef {
 // All patches under one face of a block: the block above, seen along gravity. Joints that stand upright do not rock and are
 // left out; without gravity the block is body 2.
 struct Joint {
-	int                   block;
-	Vector3               normal; // from the supports to the block
-	std::vector<int>      contacts;
+	int block;
+	Vector3 normal; // from the supports to the block
+	std::vector<int> contacts;
 	std::vector<PointRef> points;
 
 	bool has(int contact) const;
@@ -24,11 +24,11 @@ struct Joint {
 // The muted points of a joint that reach the rotation zero at one instant of the step.
 struct Closing {
 	std::vector<PointRef> points;
-	int                   support { -1 };     // body under the one farthest from the pivot
-	double                restitution { 0 };  // of their pair
-	double                before { 0 };       // tau: the instant lies this long before the end of the step, s
-	double                lever { 0 };        // distance of the closing points from the pivot, m
-	double                depth { 0 };        // compression of the pivot, m
+	int support {-1};       // body under the one farthest from the pivot
+	double restitution {0}; // of their pair
+	double before {0};      // tau: the instant lies this long before the end of the step, s
+	double lever {0};       // distance of the closing points from the pivot, m
+	double depth {0};       // compression of the pivot, m
 };
 
 std::vector<Joint> groupJoints(const JointSystem& system);
@@ -36,13 +36,13 @@ std::vector<Joint> groupJoints(const JointSystem& system);
 // What an impact of a joint is solved on: the whole system while it has at most `small` contacts, else
 // the block, its neighbours and their contacts, with the bodies beyond them as its rim.
 struct Neighbourhood {
-	JointSystem      system;
-	Joint            joint;            // in its numbers
+	JointSystem system;
+	Joint joint;                       // in its numbers
 	std::vector<int> bodies, contacts; // its numbers -> those of the whole
 };
 
 Neighbourhood neighbourhood(const JointSystem& system, const Joint& joint, size_t small = 16);
-void          putBack(const Neighbourhood& part, JointSystem& system);
+void putBack(const Neighbourhood& part, JointSystem& system);
 
 // A joint whose loaded points are an edge or a corner rocks: its open points are muted. One without any load flies:
 // nothing is muted, so that it may land on any point.

@@ -12,176 +12,184 @@ namespace masonry {
 
 namespace {
 
-	void note(JointSystem& s, double residual, bool solved)
-	{
-		s.residual = std::max(s.residual, residual);
-		s.unsolved += !solved;
-	}
+void note(JointSystem& s, double residual, bool solved)
+{
+	s.residual = std::max(s.residual, residual);
+	s.unsolved += !solved;
+}
 
-	RigidAcceleration accelerations(JointSystem& s, std::vector<HeldPoint> points, const ImpulseSolver& solve = rigid::solveSparsely)
-	{
-		RigidAcceleration rates = rigidAcceleration(s.bodies, s.contacts, std::move(points), solve);
-		note(s, rates.report.residual * s.dt, rates.report.solved);
-		return rates;
-	}
+RigidAcceleration accelerations(JointSystem& s, std::vector<HeldPoint> points, const ImpulseSolver& solve = rigid::solveSparsely)
+{
+	RigidAcceleration rates = rigidAcceleration(s.bodies, s.contacts, std::move(points), solve);
+	note(s, rates.report.residual * s.dt, rates.report.solved);
+	return rates;
+}
 
-	// The state at an instant inside the step, and the way back to its end. Leapfrog: positions are those of the end of
-	// the step, velocities those of its middle. Contact points follow.
-	void goBack(JointSystem& s, const RigidAcceleration& rates, double before)
-	{
-		const std::vector<Body> end = s.bodies;
-		for (size_t i = 0; i < s.bodies.size(); ++i) {
-			Body& body = s.bodies[i];
-			body.advance(-before);
-			if (body.prescribed) continue;
-			body.velocity += rates.linear[i] * (0.5 * s.dt - before);
-			body.angularVelocity += rates.angular[i] * (0.5 * s.dt - before);
+// The state at an instant inside the step, and the way back to its end. Leapfrog: positions are those of the end of
+// the step, velocities those of its middle. Contact points follow.
+void goBack(JointSystem& s, const RigidAcceleration& rates, double before)
+{
+	const std::vector<Body> end = s.bodies;
+	for (size_t i = 0; i < s.bodies.size(); ++i) {
+		Body& body = s.bodies[i];
+		body.advance(-before);
+		if (body.prescribed)
+			continue;
+		body.velocity += rates.linear[i] * (0.5 * s.dt - before);
+		body.angularVelocity += rates.angular[i] * (0.5 * s.dt - before);
+	}
+	moveContacts(s, end);
+}
+
+void goForth(JointSystem& s, const RigidAcceleration& rates, double before)
+{
+	const std::vector<Body> instant = s.bodies;
+	for (size_t i = 0; i < s.bodies.size(); ++i) {
+		Body& body = s.bodies[i];
+		if (!body.prescribed) { // mean velocity of the rest of the step
+			body.velocity += 0.5 * before * rates.linear[i];
+			body.angularVelocity += 0.5 * before * rates.angular[i];
 		}
-		moveContacts(s, end);
+		body.advance(before);
+		if (body.prescribed)
+			continue;
+		body.velocity += 0.5 * (before - s.dt) * rates.linear[i];
+		body.angularVelocity += 0.5 * (before - s.dt) * rates.angular[i];
 	}
+	moveContacts(s, instant);
+}
 
-	void goForth(JointSystem& s, const RigidAcceleration& rates, double before)
-	{
-		const std::vector<Body> instant = s.bodies;
-		for (size_t i = 0; i < s.bodies.size(); ++i) {
-			Body& body = s.bodies[i];
-			if (!body.prescribed) { // mean velocity of the rest of the step
-				body.velocity += 0.5 * before * rates.linear[i];
-				body.angularVelocity += 0.5 * before * rates.angular[i];
+// Kinetic energy at the end of the step by the forces of the springs, less that by the rigid accelerations: the springs' own
+// motion, which the hand-off leaves out.
+double springMotion(const JointSystem& s, const RigidAcceleration& rates)
+{
+	std::vector<Body> sprung = s.bodies, rigid = s.bodies;
+	for (size_t i = 0; i < s.bodies.size(); ++i) {
+		sprung[i].velocity += 0.5 * s.dt * s.bodies[i].inverseMass() * s.bodies[i].force;
+		sprung[i].angularVelocity += 0.5 * s.dt * s.bodies[i].inverseInertia() * s.bodies[i].torque;
+		rigid[i].velocity += 0.5 * s.dt * rates.linear[i];
+		rigid[i].angularVelocity += 0.5 * s.dt * rates.angular[i];
+	}
+	for (const JointContact& contact : s.contacts)
+		for (int i = 0; i < contact.size; ++i)
+			for (const auto& [b, sign] : {std::pair(contact.body1, -1.), std::pair(contact.body2, 1.)}) {
+				Body& body = sprung[b];
+				const Vector3 push = 0.5 * s.dt * sign * contact.force(i);
+				body.velocity += body.inverseMass() * push;
+				body.angularVelocity += body.inverseInertia() * (contact.position(i) - body.pose.position).cross(push);
 			}
-			body.advance(before);
-			if (body.prescribed) continue;
-			body.velocity += 0.5 * (before - s.dt) * rates.linear[i];
-			body.angularVelocity += 0.5 * (before - s.dt) * rates.angular[i];
-		}
-		moveContacts(s, instant);
-	}
+	return kineticEnergy(sprung) - kineticEnergy(rigid);
+}
 
-	// Kinetic energy at the end of the step by the forces of the springs, less that by the rigid accelerations: the springs' own
-	// motion, which the hand-off leaves out.
-	double springMotion(const JointSystem& s, const RigidAcceleration& rates)
-	{
-		std::vector<Body> sprung = s.bodies, rigid = s.bodies;
-		for (size_t i = 0; i < s.bodies.size(); ++i) {
-			sprung[i].velocity += 0.5 * s.dt * s.bodies[i].inverseMass() * s.bodies[i].force;
-			sprung[i].angularVelocity += 0.5 * s.dt * s.bodies[i].inverseInertia() * s.bodies[i].torque;
-			rigid[i].velocity += 0.5 * s.dt * rates.linear[i];
-			rigid[i].angularVelocity += 0.5 * s.dt * rates.angular[i];
-		}
-		for (const JointContact& contact : s.contacts)
-			for (int i = 0; i < contact.size; ++i)
-				for (const auto& [b, sign] : { std::pair(contact.body1, -1.), std::pair(contact.body2, 1.) }) {
-					Body&         body = sprung[b];
-					const Vector3 push = 0.5 * s.dt * sign * contact.force(i);
-					body.velocity += body.inverseMass() * push;
-					body.angularVelocity += body.inverseInertia() * (contact.position(i) - body.pose.position).cross(push);
-				}
-		return kineticEnergy(sprung) - kineticEnergy(rigid);
-	}
+bool loaded(const JointContact& contact, int i) { return !contact.points[i].muted && contact.patch.points[i].gap < 0; }
 
-	bool loaded(const JointContact& contact, int i) { return !contact.points[i].muted && contact.patch.points[i].gap < 0; }
+// Smallest angular velocity of a rocking impact that starts another half cycle: the next peak must exceed the angle by
+// which the springs alone turn the block, and the speed the Zeno threshold. Half cycle: peak = w^2/(2A), A = g l/(2 I/m),
+// with lever l from pivot to pivot and I/m = 4/3 R^2 of a rectangle (physics of the single block).
+double leastRockingSpeed(const JointSystem& s, const Joint& joint, const Vector3& pivot, double lever, double depth)
+{
+	const double radius = (s.bodies[joint.block].pose.position - pivot).norm();
+	const double gravity = std::abs(s.gravity.dot(joint.normal));
+	const double A = gravity * 0.5 * lever / (4. / 3 * radius * radius);
+	return std::max(tolerance::restSpeed * std::sqrt(gravity / radius), std::sqrt(2 * A * depth / lever));
+}
 
-	// Smallest angular velocity of a rocking impact that starts another half cycle: the next peak must exceed the angle by
-	// which the springs alone turn the block, and the speed the Zeno threshold. Half cycle: peak = w^2/(2A), A = g l/(2 I/m),
-	// with lever l from pivot to pivot and I/m = 4/3 R^2 of a rectangle (physics of the single block).
-	double leastRockingSpeed(const JointSystem& s, const Joint& joint, const Vector3& pivot, double lever, double depth)
-	{
-		const double radius = (s.bodies[joint.block].pose.position - pivot).norm();
-		const double gravity = std::abs(s.gravity.dot(joint.normal));
-		const double A = gravity * 0.5 * lever / (4. / 3 * radius * radius);
-		return std::max(tolerance::restSpeed * std::sqrt(gravity / radius), std::sqrt(2 * A * depth / lever));
-	}
+std::vector<ImpulsePoint> impulsePoints(const JointSystem& s, const std::vector<HeldPoint>& points)
+{
+	std::vector<ImpulsePoint> rows;
+	for (const HeldPoint& p : points)
+		rows.push_back(impulsePoint(s.contacts[p.contact], p.point));
+	return rows;
+}
 
-	std::vector<ImpulsePoint> impulsePoints(const JointSystem& s, const std::vector<HeldPoint>& points)
-	{
-		std::vector<ImpulsePoint> rows;
-		for (const HeldPoint& p : points)
-			rows.push_back(impulsePoint(s.contacts[p.contact], p.point));
-		return rows;
-	}
+template <class Points>
+bool among(const Points& points, int contact, int i)
+{
+	return std::any_of(points.begin(), points.end(), [&](const auto& p) { return p.contact == contact && p.point == i; });
+}
 
-	template <class Points> bool among(const Points& points, int contact, int i)
-	{
-		return std::any_of(points.begin(), points.end(), [&](const auto& p) { return p.contact == contact && p.point == i; });
-	}
-
-	// The impact of a closing joint, at the instant: new support, old support and, for the simultaneous law, the rest.
-	RockingImpact closingImpact(const JointSystem& s, const Joint& joint, const Closing& closing, const std::vector<HeldPoint>& loadedPoints)
-	{
-		RockingImpact impact;
-		const auto    add = [&](int c, int i) { impact.points.push_back(impulsePoint(s.contacts[c], i)); };
-		for (const PointRef& p : closing.points)
+// The impact of a closing joint, at the instant: new support, old support and, for the simultaneous law, the rest.
+RockingImpact closingImpact(const JointSystem& s, const Joint& joint, const Closing& closing, const std::vector<HeldPoint>& loadedPoints)
+{
+	RockingImpact impact;
+	const auto add = [&](int c, int i) { impact.points.push_back(impulsePoint(s.contacts[c], i)); };
+	for (const PointRef& p : closing.points)
+		add(p.contact, p.point);
+	for (const HeldPoint& p : loadedPoints)
+		if (joint.has(p.contact))
 			add(p.contact, p.point);
+	const int newSupport = int(closing.points.size()), supports = int(impact.points.size());
+	impact.joints = {{joint.block, closing.support, joint.normal, closing.restitution, 0, newSupport, supports}};
+	if (s.order == ImpactOrder::simultaneous)
 		for (const HeldPoint& p : loadedPoints)
-			if (joint.has(p.contact)) add(p.contact, p.point);
-		const int newSupport = int(closing.points.size()), supports = int(impact.points.size());
-		impact.joints = { { joint.block, closing.support, joint.normal, closing.restitution, 0, newSupport, supports } };
-		if (s.order == ImpactOrder::simultaneous)
-			for (const HeldPoint& p : loadedPoints)
-				if (!joint.has(p.contact)) add(p.contact, p.point);
-		return impact;
+			if (!joint.has(p.contact))
+				add(p.contact, p.point);
+	return impact;
+}
+
+ImpactRecord::Result applyWithRim(JointSystem& s, RockingImpact& impact)
+{
+	for (int b : s.rim)
+		s.bodies[b].prescribed = false;
+	impact.solve = rigid::solveSparsely;
+	const RockingImpactResult result = applyRockingImpact(s.bodies, impact);
+	note(s, result.residual, result.solved);
+	for (int b : s.rim)
+		s.bodies[b].prescribed = true;
+	return {impact.joints.front().result, result};
+}
+
+// Who carries the next phase: the closing points, with the old pivot too when the joint stops. Of the closing points,
+// those between the pivots part again at once (a face on two supports).
+std::vector<HeldPoint> passPivot(JointSystem& s, const Joint& joint, const Closing& closing, const std::vector<HeldPoint>& loadedPoints,
+                                 bool stops, double parting)
+{
+	for (const PointRef& p : joint.points) {
+		const bool stays = among(closing.points, p.contact, p.point) && gapRate(s, p) <= parting;
+		s.contacts[p.contact].points[p.point].muted = !stops && !stays;
 	}
+	return selectPoints(s.contacts, [&](const JointContact& contact, int i) {
+		const int c = int(&contact - s.contacts.data());
+		if (!joint.has(c))
+			return s.order == ImpactOrder::simultaneous && among(loadedPoints, c, i);
+		return !contact.points[i].muted && (among(closing.points, c, i) || (stops && among(loadedPoints, c, i)));
+	});
+}
 
-	ImpactRecord::Result applyWithRim(JointSystem& s, RockingImpact& impact)
-	{
-		for (int b : s.rim)
-			s.bodies[b].prescribed = false;
-		impact.solve = rigid::solveSparsely;
-		const RockingImpactResult result = applyRockingImpact(s.bodies, impact);
-		note(s, result.residual, result.solved);
-		for (int b : s.rim)
-			s.bodies[b].prescribed = true;
-		return { impact.joints.front().result, result };
-	}
+ImpactRecord switchPivot(JointSystem& s, const Joint& joint, const Closing& closing)
+{
+	const double stored = storedEnergy(s), power = supportPower(s);
+	const auto loadedPoints = selectPoints(s.contacts, loaded);
+	const auto old = accelerations(s, loadedPoints);
+	const double sprung = springMotion(s, old);
+	goBack(s, old, closing.before);
 
-	// Who carries the next phase: the closing points, with the old pivot too when the joint stops. Of the closing points,
-	// those between the pivots part again at once (a face on two supports).
-	std::vector<HeldPoint> passPivot(JointSystem& s, const Joint& joint, const Closing& closing, const std::vector<HeldPoint>& loadedPoints, bool stops, double parting)
-	{
-		for (const PointRef& p : joint.points) {
-			const bool stays = among(closing.points, p.contact, p.point) && gapRate(s, p) <= parting;
-			s.contacts[p.contact].points[p.point].muted = !stops && !stays;
-		}
-		return selectPoints(s.contacts, [&](const JointContact& contact, int i) {
-			const int c = int(&contact - s.contacts.data());
-			if (!joint.has(c)) return s.order == ImpactOrder::simultaneous && among(loadedPoints, c, i);
-			return !contact.points[i].muted && (among(closing.points, c, i) || (stops && among(loadedPoints, c, i)));
-		});
-	}
+	RockingImpact impact = closingImpact(s, joint, closing, loadedPoints);
+	const Vector3 axis = rockingAxis(s.bodies, impact.joints.front(), impact.points);
+	const double speed = axis.dot(s.bodies[joint.block].angularVelocity - s.bodies[closing.support].angularVelocity);
+	const double least = leastRockingSpeed(s, joint, impact.points.front().position, closing.lever, closing.depth);
+	const bool rests = speed * (std::isnan(closing.restitution) ? 1 : closing.restitution) < least;
+	if (rests)
+		impact.joints.front().restitution = 0;
+	const ImpactRecord::Result result = applyWithRim(s, impact);
+	const bool stops = rests || result.after < least;
 
-	ImpactRecord switchPivot(JointSystem& s, const Joint& joint, const Closing& closing)
-	{
-		const double stored = storedEnergy(s), power = supportPower(s);
-		const auto   loadedPoints = selectPoints(s.contacts, loaded);
-		const auto   old = accelerations(s, loadedPoints);
-		const double sprung = springMotion(s, old);
-		goBack(s, old, closing.before);
+	const auto held = passPivot(s, joint, closing, loadedPoints, stops, tolerance::parting * closing.lever * result.before);
+	const RigidAcceleration rates = accelerations(s, held);
+	goForth(s, rates, closing.before);
 
-		RockingImpact impact = closingImpact(s, joint, closing, loadedPoints);
-		const Vector3 axis = rockingAxis(s.bodies, impact.joints.front(), impact.points);
-		const double  speed = axis.dot(s.bodies[joint.block].angularVelocity - s.bodies[closing.support].angularVelocity);
-		const double  least = leastRockingSpeed(s, joint, impact.points.front().position, closing.lever, closing.depth);
-		const bool    rests = speed * (std::isnan(closing.restitution) ? 1 : closing.restitution) < least;
-		if (rests) impact.joints.front().restitution = 0;
-		const ImpactRecord::Result result = applyWithRim(s, impact);
-		const bool                 stops = rests || result.after < least;
-
-		const auto held = passPivot(s, joint, closing, loadedPoints, stops, tolerance::parting * closing.lever * result.before);
-		const RigidAcceleration rates = accelerations(s, held);
-		goForth(s, rates, closing.before);
-
-		ImpactRecord record;
-		record.block = joint.block;
-		record.support = closing.support;
-		record.before = closing.before;
-		record.restitutionAsked = closing.restitution;
-		record.switched = !stops;
-		record.result = result;
-		record.settled = sprung + settle(s, rates.points, stored);
-		record.settled -= springMotion(s, rates);
-		record.work = result.work + closing.before * (supportPower(s) - power);
-		return record;
-	}
+	ImpactRecord record;
+	record.block = joint.block;
+	record.support = closing.support;
+	record.before = closing.before;
+	record.restitutionAsked = closing.restitution;
+	record.switched = !stops;
+	record.result = result;
+	record.settled = sprung + settle(s, rates.points, stored);
+	record.settled -= springMotion(s, rates);
+	record.work = result.work + closing.before * (supportPower(s) - power);
+	return record;
+}
 
 } // namespace
 
@@ -192,74 +200,78 @@ void startAtEquilibrium(JointSystem& s)
 		size = std::max(size, std::sqrt(contact.patch.nominalArea));
 	const auto near = [&](const JointContact& contact, int i) { return contact.patch.points[i].gap <= tolerance::mergedClosing * size; };
 	// The dense solver's forces are those of least norm: without self-stress, and symmetric where the scene is.
-	constexpr size_t        mostDense = 100;
-	std::vector<HeldPoint>  held = selectPoints(s.contacts, near);
-	const ImpulseSolver     solve = held.size() <= mostDense ? solveImpulses : rigid::solveSparsely;
+	constexpr size_t mostDense = 100;
+	std::vector<HeldPoint> held = selectPoints(s.contacts, near);
+	const ImpulseSolver solve = held.size() <= mostDense ? solveImpulses : rigid::solveSparsely;
 	const RigidAcceleration rates = accelerations(s, std::move(held), solve);
 	settle(s, rates.points, std::numeric_limits<double>::infinity()); // whatever it takes
-	goForth(s, rates, 0.); // velocities go half a step back
+	goForth(s, rates, 0.);                                            // velocities go half a step back
 }
 
 double supportPower(const JointSystem& s)
 {
-	double     power = 0;
+	double power = 0;
 	const auto moved = [&](int b) { return s.bodies[b].prescribed && std::find(s.rim.begin(), s.rim.end(), b) == s.rim.end(); };
 	for (const JointContact& contact : s.contacts)
 		for (int i = 0; i < contact.size; ++i)
-			for (const auto& [b, sign] : { std::pair(contact.body1, 1.), std::pair(contact.body2, -1.) })
-				if (moved(b)) power += sign * contact.force(i).dot(s.bodies[b].velocityAt(contact.position(i)));
+			for (const auto& [b, sign] : {std::pair(contact.body1, 1.), std::pair(contact.body2, -1.)})
+				if (moved(b))
+					power += sign * contact.force(i).dot(s.bodies[b].velocityAt(contact.position(i)));
 	return power;
 }
 
 namespace {
 
-	// A block that touches nothing but an accelerating base and stands on it with all its points, but for what its swaying springs
-	// have just opened: less than their compression.
-	bool closedOnMovingBase(const JointSystem& s, const Joint& joint)
-	{
-		const JointContact& contact = s.contacts[joint.contacts.front()];
-		const Body&         support = s.bodies[contact.body1 == joint.block ? contact.body2 : contact.body1];
-		if (!support.prescribed || support.acceleration.isZero(0) || contact.rocking()) return false;
-		const auto isIts = [&](const JointContact& other) { return other.body1 == joint.block || other.body2 == joint.block; };
-		if (std::count_if(s.contacts.begin(), s.contacts.end(), isIts) != 1) return false;
-		double lowest = 0, highest = 0;
-		for (int i = 0; i < contact.size; ++i) {
-			lowest = std::min(lowest, contact.patch.points[i].gap);
-			highest = std::max(highest, contact.patch.points[i].gap);
-		}
-		return lowest < 0 && highest < -lowest;
+// A block that touches nothing but an accelerating base and stands on it with all its points, but for what its swaying springs
+// have just opened: less than their compression.
+bool closedOnMovingBase(const JointSystem& s, const Joint& joint)
+{
+	const JointContact& contact = s.contacts[joint.contacts.front()];
+	const Body& support = s.bodies[contact.body1 == joint.block ? contact.body2 : contact.body1];
+	if (!support.prescribed || support.acceleration.isZero(0) || contact.rocking())
+		return false;
+	const auto isIts = [&](const JointContact& other) { return other.body1 == joint.block || other.body2 == joint.block; };
+	if (std::count_if(s.contacts.begin(), s.contacts.end(), isIts) != 1)
+		return false;
+	double lowest = 0, highest = 0;
+	for (int i = 0; i < contact.size; ++i) {
+		lowest = std::min(lowest, contact.patch.points[i].gap);
+		highest = std::max(highest, contact.patch.points[i].gap);
 	}
+	return lowest < 0 && highest < -lowest;
+}
 
-	// The points that part in the rigid accelerations while others carry the block; empty: the joint stays closed.
-	std::vector<HeldPoint> partingPoints(const RigidAcceleration& rates, const std::vector<JointContact>& contacts)
-	{
-		std::vector<HeldPoint> parting;
-		for (const HeldPoint& p : rates.points)
-			if (!(contacts[p.contact].patch.normal.dot(p.force) > 0)) parting.push_back(p);
-		return parting.size() < rates.points.size() ? parting : std::vector<HeldPoint>();
-	}
+// The points that part in the rigid accelerations while others carry the block; empty: the joint stays closed.
+std::vector<HeldPoint> partingPoints(const RigidAcceleration& rates, const std::vector<JointContact>& contacts)
+{
+	std::vector<HeldPoint> parting;
+	for (const HeldPoint& p : rates.points)
+		if (!(contacts[p.contact].patch.normal.dot(p.force) > 0))
+			parting.push_back(p);
+	return parting.size() < rates.points.size() ? parting : std::vector<HeldPoint>();
+}
 
-	// A closed joint becomes a rocking one: its springs' own swaying ends, the parting points are muted, the others take the
-	// pivot forces. Returns the energy that this takes.
-	double lift(JointSystem& s, const Joint& joint, const std::vector<HeldPoint>& parting)
-	{
-		const double stored = storedEnergy(s), moving = kineticEnergy(s.bodies);
-		auto         rows = impulsePoints(s, selectPoints(s.contacts, loaded));
-		const auto&  contact = s.contacts[joint.contacts.front()];
-		const int    support = contact.body1 == joint.block ? contact.body2 : contact.body1;
-		std::vector<CoupleRow> noTurn;
-		for (int axis = 0; axis < 3; ++axis)
-			noTurn.push_back({ support, joint.block, Vector3::Unit(axis), 0. });
-		const ImpulseReport report = solveImpulses(s.bodies, rows, noTurn); // one block: few points
-		note(s, report.residual, report.solved);
-		const double stopped = moving - kineticEnergy(s.bodies);
-		for (const HeldPoint& p : parting)
-			s.contacts[p.contact].points[p.point].muted = true;
-		const RigidAcceleration rates = accelerations(s, selectPoints(s.contacts, loaded));
-		const double            settled = settle(s, rates.points, stored, tolerance::liftingGain);
-		goForth(s, rates, 0.); // velocities go half a step back
-		return stopped + settled;
-	}
+// A closed joint becomes a rocking one: its springs' own swaying ends, the parting points are muted, the others take the
+// pivot forces. Returns the energy that this takes.
+double lift(JointSystem& s, const Joint& joint, const std::vector<HeldPoint>& parting)
+{
+	const double stored = storedEnergy(s), moving = kineticEnergy(s.bodies);
+	auto rows = impulsePoints(s, selectPoints(s.contacts, loaded));
+	const auto& contact = s.contacts[joint.contacts.front()];
+	const int support = contact.body1 == joint.block ? contact.body2 : contact.body1;
+	std::vector<CoupleRow> noTurn;
+	for (int axis = 0; axis < 3; ++axis)
+		noTurn.push_back({support, joint.block, Vector3::Unit(axis), 0.});
+	const ImpulseReport report = solveImpulses(s.bodies, rows, noTurn); // one block: few points
+	note(s, report.residual, report.solved);
+	const double stopped = moving - kineticEnergy(s.bodies);
+	for (const HeldPoint& p : parting)
+		s.contacts[p.contact].points[p.point].muted = true;
+	const RigidAcceleration rates = accelerations(s, selectPoints(s.contacts, loaded));
+	const double settled = settle(s, rates.points, stored, tolerance::liftingGain);
+	goForth(s, rates, 0.); // velocities go half a step back
+	return stopped + settled;
+}
 
 } // namespace
 
@@ -267,7 +279,8 @@ double liftJoints(JointSystem& s)
 {
 	double given = 0;
 	for (const Joint& joint : groupJoints(s)) {
-		if (!closedOnMovingBase(s, joint)) continue;
+		if (!closedOnMovingBase(s, joint))
+			continue;
 		Neighbourhood part = neighbourhood(s, joint, 0);
 		// While the joint is closed its springs sway, and no rigid body has the centripetal accelerations of all points of a face.
 		JointSystem calm = part.system;
@@ -277,7 +290,8 @@ double liftJoints(JointSystem& s)
 		const auto parting = partingPoints(accelerations(calm, all), calm.contacts);
 		part.system.residual = calm.residual;
 		part.system.unsolved = calm.unsolved;
-		if (!parting.empty()) given += lift(part.system, part.joint, parting);
+		if (!parting.empty())
+			given += lift(part.system, part.joint, parting);
 		putBack(part, s);
 	}
 	return given;
@@ -289,10 +303,12 @@ std::vector<ImpactRecord> handOffPivots(JointSystem& s)
 	const auto joints = groupJoints(s);
 	unmuteUpright(s, joints);
 	for (const Joint& joint : joints) {
-		if (!closedOnMovingBase(s, joint)) muteOpenPoints(s, joint); // else liftJoints decides
-		if (findClosing(s, joint).points.empty()) continue;
+		if (!closedOnMovingBase(s, joint))
+			muteOpenPoints(s, joint); // else liftJoints decides
+		if (findClosing(s, joint).points.empty())
+			continue;
 		Neighbourhood part = neighbourhood(s, joint);
-		ImpactRecord  record = switchPivot(part.system, part.joint, findClosing(part.system, part.joint));
+		ImpactRecord record = switchPivot(part.system, part.joint, findClosing(part.system, part.joint));
 		record.block = part.bodies[record.block];
 		record.support = part.bodies[record.support];
 		records.push_back(record);
@@ -303,30 +319,31 @@ std::vector<ImpactRecord> handOffPivots(JointSystem& s)
 
 namespace {
 
-	// The impulses of a base whose velocity has just jumped. Points that part are muted where their joint keeps a pivot (it
-	// rocks from this instant on); those that stay are returned.
-	std::vector<HeldPoint> respondToJump(JointSystem& s, const std::vector<int>& moved, const Vector3& jump, JumpResponse& response)
-	{
-		const auto touching = selectPoints(s.contacts, [](const JointContact& contact, int i) { return !contact.points[i].muted && contact.patch.points[i].gap <= 0; });
-		auto       rows = impulsePoints(s, touching);
-		std::vector<CoupleRow> none;
-		const double           energyBefore = kineticEnergy(s.bodies);
-		const ImpulseReport    report = rigid::solveSparsely(s.bodies, rows, none);
-		note(s, report.residual, report.solved);
-		for (const ImpulsePoint& row : rows)
-			for (int b : moved) // impulse times the mean of the base's velocities before and after
-				response.work += (row.body1 == b ? 1 : row.body2 == b ? -1 : 0) * row.impulse.dot(s.bodies[b].velocity - 0.5 * jump);
-		response.dissipated = energyBefore + response.work - kineticEnergy(s.bodies);
+// The impulses of a base whose velocity has just jumped. Points that part are muted where their joint keeps a pivot (it
+// rocks from this instant on); those that stay are returned.
+std::vector<HeldPoint> respondToJump(JointSystem& s, const std::vector<int>& moved, const Vector3& jump, JumpResponse& response)
+{
+	const auto touching = selectPoints(
+	    s.contacts, [](const JointContact& contact, int i) { return !contact.points[i].muted && contact.patch.points[i].gap <= 0; });
+	auto rows = impulsePoints(s, touching);
+	std::vector<CoupleRow> none;
+	const double energyBefore = kineticEnergy(s.bodies);
+	const ImpulseReport report = rigid::solveSparsely(s.bodies, rows, none);
+	note(s, report.residual, report.solved);
+	for (const ImpulsePoint& row : rows)
+		for (int b : moved) // impulse times the mean of the base's velocities before and after
+			response.work += (row.body1 == b ? 1 : row.body2 == b ? -1 : 0) * row.impulse.dot(s.bodies[b].velocity - 0.5 * jump);
+	response.dissipated = energyBefore + response.work - kineticEnergy(s.bodies);
 
-		std::vector<HeldPoint> held;
-		for (const HeldPoint& p : touching) {
-			if (gapRate(s, { p.contact, p.point }) > tolerance::parting * jump.norm())
-				s.contacts[p.contact].points[p.point].muted = true;
-			else
-				held.push_back(p);
-		}
-		return held;
+	std::vector<HeldPoint> held;
+	for (const HeldPoint& p : touching) {
+		if (gapRate(s, {p.contact, p.point}) > tolerance::parting * jump.norm())
+			s.contacts[p.contact].points[p.point].muted = true;
+		else
+			held.push_back(p);
 	}
+	return held;
+}
 
 } // namespace
 
@@ -336,9 +353,9 @@ JumpResponse applyBaseJump(JointSystem& s, const std::vector<int>& moved, const 
 	goBack(s, accelerations(s, selectPoints(s.contacts, loaded)), before);
 	for (int b : moved)
 		s.bodies[b].velocity += jump;
-	JumpResponse            response;
-	const auto              held = respondToJump(s, moved, jump, response);
-	const auto              joints = groupJoints(s);
+	JumpResponse response;
+	const auto held = respondToJump(s, moved, jump, response);
+	const auto joints = groupJoints(s);
 	unmuteUpright(s, joints);
 	const RigidAcceleration rates = accelerations(s, held);
 	goForth(s, rates, before);

@@ -22,30 +22,29 @@
 namespace masonry {
 
 struct JointSystem {
-	std::vector<Body>         bodies;
+	std::vector<Body> bodies;
 	std::vector<JointContact> contacts; // sorted by body pair: the order of every sum
-	Vector3                   gravity { Vector3::Zero() };
-	double                    dt { 0 };
-	ImpactOrder               order { ImpactOrder::simultaneous }; // sequential: the springs of the neighbours are the second stage
+	Vector3 gravity {Vector3::Zero()};
+	double dt {0};
+	ImpactOrder order {ImpactOrder::simultaneous}; // sequential: the springs of the neighbours are the second stage
 	// Bodies at the rim of a part cut out of a larger structure: they take impulses, but what else stands on them is not
 	// here, so between impulses they keep their velocity (they are marked as prescribed). Empty: none.
 	std::vector<int> rim;
 	// Impulse problems since these were last set to zero: their largest residual (of accelerations: times dt, the velocity that they
 	// are used for), m/s, and how many miss their laws by more than counts as zero.
-	double residual { 0 };
-	int    unsolved { 0 };
+	double residual {0};
+	int unsolved {0};
 };
 
 struct ImpactRecord {
-	struct Result : JointResult, RockingImpactResult {
-	};
-	int                 block { -1 }, support { -1 }; // indices into the list of bodies
-	double              before { 0 };                 // tau: how long before the end of the step, s
-	double              restitutionAsked { 0 };       // C, NaN: natural
-	bool                switched { false };           // false: the joint came to rest
-	Result result {};                                 // of the restitution law
-	double              work { 0 };                   // of the moved bodies: their impulses, and the changed forces up to the end of the step, J
-	double              settled { 0 };                // given up as the springs stop and take the pivot forces of the new phase (of either sign), J
+	struct Result : JointResult, RockingImpactResult {};
+	int block {-1}, support {-1}; // indices into the list of bodies
+	double before {0};            // tau: how long before the end of the step, s
+	double restitutionAsked {0};  // C, NaN: natural
+	bool switched {false};        // false: the joint came to rest
+	Result result {};             // of the restitution law
+	double work {0};              // of the moved bodies: their impulses, and the changed forces up to the end of the step, J
+	double settled {0};           // given up as the springs stop and take the pivot forces of the new phase (of either sign), J
 };
 
 // Puts bodies at rest in their equilibrium: compressions and shears that carry the weight (or, for a block that is let
@@ -66,8 +65,8 @@ double liftJoints(JointSystem& system);
 std::vector<ImpactRecord> handOffPivots(JointSystem& system);
 
 struct JumpResponse {
-	double work { 0 };       // of the moved bodies: their impulses, and the changed forces up to the end of the step, J
-	double dissipated { 0 }; // by the plastic, frictional response, J
+	double work {0};       // of the moved bodies: their impulses, and the changed forces up to the end of the step, J
+	double dissipated {0}; // by the plastic, frictional response, J
 };
 
 // The prescribed bodies listed change their velocity by `jump` at the instant `before` seconds ago. Their own state in

@@ -2,8 +2,8 @@
 
 namespace masonry {
 
-RigidAcceleration rigidAcceleration(const std::vector<Body>& bodies, const std::vector<JointContact>& contacts, std::vector<HeldPoint> points,
-                                    const ImpulseSolver& solve)
+RigidAcceleration rigidAcceleration(const std::vector<Body>& bodies, const std::vector<JointContact>& contacts,
+                                    std::vector<HeldPoint> points, const ImpulseSolver& solve)
 {
 	std::vector<Body> rates = bodies; // velocities stand for accelerations
 	for (size_t i = 0; i < bodies.size(); ++i) {
@@ -14,16 +14,16 @@ RigidAcceleration rigidAcceleration(const std::vector<Body>& bodies, const std::
 			continue;
 		}
 		const Quaternion& q = body.pose.orientation;
-		const Vector3     momentum = q * body.inertia.cwiseProduct(q.conjugate() * body.angularVelocity);
+		const Vector3 momentum = q * body.inertia.cwiseProduct(q.conjugate() * body.angularVelocity);
 		rates[i].velocity = body.force / body.mass;
 		rates[i].angularVelocity = body.inverseInertia() * (body.torque - body.angularVelocity.cross(momentum));
 	}
 	std::vector<ImpulsePoint> rows;
 	for (const HeldPoint& held : points) {
 		const JointContact& contact = contacts[held.contact];
-		const auto          centripetal = [&](int b) {
-            const Vector3& w = bodies[b].angularVelocity;
-            return Vector3(w.cross(w.cross(contact.position(held.point) - bodies[b].pose.position)));
+		const auto centripetal = [&](int b) {
+			const Vector3& w = bodies[b].angularVelocity;
+			return Vector3(w.cross(w.cross(contact.position(held.point) - bodies[b].pose.position)));
 		};
 		ImpulsePoint row = impulsePoint(contact, held.point);
 		row.bias = centripetal(contact.body2) - centripetal(contact.body1);

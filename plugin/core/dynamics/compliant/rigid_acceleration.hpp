@@ -13,33 +13,35 @@
 namespace masonry {
 
 struct HeldPoint {
-	int     contact, point; // indices
-	Vector3 force;          // on body 2, N
+	int contact, point; // indices
+	Vector3 force;      // on body 2, N
 };
 
 // Of a contact at its point i.
 inline ImpulsePoint impulsePoint(const JointContact& contact, int i)
 {
-	return { contact.body1, contact.body2, contact.position(i), contact.patch.normal, contact.law.friction };
+	return {contact.body1, contact.body2, contact.position(i), contact.patch.normal, contact.law.friction};
 }
 
 struct RigidAcceleration {
-	std::vector<Vector3>   linear, angular; // per body, m/s^2 and rad/s^2
+	std::vector<Vector3> linear, angular; // per body, m/s^2 and rad/s^2
 	std::vector<HeldPoint> points;
-	ImpulseReport          report; // of the impulse problem: m/s^2
+	ImpulseReport report; // of the impulse problem: m/s^2
 };
 
 // `held(contact, point)` selects the points.
-template <class Held> std::vector<HeldPoint> selectPoints(const std::vector<JointContact>& contacts, Held held)
+template <class Held>
+std::vector<HeldPoint> selectPoints(const std::vector<JointContact>& contacts, Held held)
 {
 	std::vector<HeldPoint> result;
 	for (size_t c = 0; c < contacts.size(); ++c)
 		for (int i = 0; i < contacts[c].size; ++i)
-			if (held(contacts[c], i)) result.push_back({ int(c), i, Vector3::Zero() });
+			if (held(contacts[c], i))
+				result.push_back({int(c), i, Vector3::Zero()});
 	return result;
 }
 
-RigidAcceleration rigidAcceleration(const std::vector<Body>& bodies, const std::vector<JointContact>& contacts, std::vector<HeldPoint> points,
-                                    const ImpulseSolver& solve);
+RigidAcceleration rigidAcceleration(const std::vector<Body>& bodies, const std::vector<JointContact>& contacts,
+                                    std::vector<HeldPoint> points, const ImpulseSolver& solve);
 
 } // namespace masonry

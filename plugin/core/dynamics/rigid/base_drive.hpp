@@ -24,11 +24,12 @@ public:
 };
 
 // All that moves a body: motions along directions of their own, which add up.
-template <class K> struct Drive {
+template <class K>
+struct Drive {
 	using Vector = typename K::Vector;
 	struct Component {
 		BaseDrive* motion;
-		Vector     direction; // unit vector
+		Vector direction; // unit vector
 	};
 	std::vector<Component> components;
 
@@ -61,7 +62,8 @@ template <class K> struct Drive {
 	}
 
 private:
-	template <class Of> Vector sum(Of of) const
+	template <class Of>
+	Vector sum(Of of) const
 	{
 		Vector result = Vector::Zero();
 		for (const Component& one : components)
@@ -71,12 +73,12 @@ private:
 };
 
 // Whether any motion must be asked in order of time.
-template <class K> bool areOrdered(const std::vector<Drive<K>>& drives)
+template <class K>
+bool areOrdered(const std::vector<Drive<K>>& drives)
 {
 	const auto isOrdered = [](const auto& one) { return one.motion->ordered(); };
-	return std::any_of(drives.begin(), drives.end(), [&](const Drive<K>& drive) {
-		return std::any_of(drive.components.begin(), drive.components.end(), isOrdered);
-	});
+	return std::any_of(drives.begin(), drives.end(),
+	                   [&](const Drive<K>& drive) { return std::any_of(drive.components.begin(), drive.components.end(), isOrdered); });
 }
 
 } // namespace masonry::rigid

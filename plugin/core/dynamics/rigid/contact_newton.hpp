@@ -52,11 +52,12 @@ public:
 	}
 
 	// Centre after centre. R falls while roots are found, so that the centres converge faster than linearly; where one is not it grows, and
-	// falls in smaller steps from there on, until roots come easily again. As the load on springs of stiffness 1/R, a centre moves the forces
-	// by what the points still move, over R: forces that have far to go need a small R, and a path of many changes of state small steps.
+	// falls in smaller steps from there on, until roots come easily again. As the load on springs of stiffness 1/R, a centre moves the
+	// forces by what the points still move, over R: forces that have far to go need a small R, and a path of many changes of state small
+	// steps.
 	double converge(double target, SolveReport& report)
 	{
-		constexpr int maxCentres = 40, maxSteps = 30, easy = 3; // factorisations
+		constexpr int maxCentres = 40, maxSteps = 30, easy = 3;  // factorisations
 		constexpr double growth = 10, most = 1, steepest = 1e-2; // of the softness
 		double fall = steepest;
 		begin(target);
@@ -98,7 +99,7 @@ private:
 	using Edge = typename BlockFactor<K::dof>::Edge;
 
 	struct Point {
-		Rows centre, next, move;                                  // u at the centre, P(y), last change of the centre
+		Rows centre, next, move;                              // u at the centre, P(y), last change of the centre
 		Block rate {Block::Zero()}, factored {Block::Zero()}; // derivative of P(y), and the one that is in the factor
 		int edge;                                             // between its bodies; -1: one of them is prescribed
 	};
@@ -305,8 +306,9 @@ private:
 
 	bool factorIsKept() const
 	{
-		return int(kept.size()) == s.nPoints && s.nBodies == int(bodies.size())
-		    && std::equal(kept.begin(), kept.end(), s.rows, [](const auto& k, const ContactRows<K>& c) { return k[0] == c.body1 && k[1] == c.body2; });
+		return int(kept.size()) == s.nPoints && s.nBodies == int(bodies.size()) &&
+		       std::equal(kept.begin(), kept.end(), s.rows,
+		                  [](const auto& k, const ContactRows<K>& c) { return k[0] == c.body1 && k[1] == c.body2; });
 	}
 
 	void keepFactor()

@@ -34,10 +34,11 @@
 
 namespace masonry::rigid {
 
-template <class K> struct InverseMass {
-	double                     linear { 0 };                                       // 1/kg
-	typename K::InverseInertia angular { K::InverseInertia::Zero() }; // global axes
-	typename K::Velocity       operator*(const typename K::Velocity& impulse) const
+template <class K>
+struct InverseMass {
+	double linear {0};                                              // 1/kg
+	typename K::InverseInertia angular {K::InverseInertia::Zero()}; // global axes
+	typename K::Velocity operator*(const typename K::Velocity& impulse) const
 	{
 		typename K::Velocity v;
 		v.template head<K::dimension>() = linear * impulse.template head<K::dimension>();
@@ -46,47 +47,52 @@ template <class K> struct InverseMass {
 	}
 };
 
-template <class K> struct FreeBody {
-	InverseMass<K>       inverseMass;
-	typename K::Velocity free { K::Velocity::Zero() };     // without contact
-	typename K::Velocity velocity { K::Velocity::Zero() }; // result
+template <class K>
+struct FreeBody {
+	InverseMass<K> inverseMass;
+	typename K::Velocity free {K::Velocity::Zero()};     // without contact
+	typename K::Velocity velocity {K::Velocity::Zero()}; // result
 };
 
-template <class K> struct ContactRows {
+template <class K>
+struct ContactRows {
 	using Rows = Eigen::Matrix<double, K::rows, 1>;
 	using Jacobian = Eigen::Matrix<double, K::rows, K::dof>;
-	int      body1 { -1 }, body2 { -1 }; // indices of free bodies; -1: prescribed, its motion is in the offset
-	Jacobian J1, J2;                     // of body 1 with its minus sign
-	Rows     offset { Rows::Zero() };    // m/s
-	double   friction { 0 };             // mu >= 0, noSlip, or bilateral (point_law.hpp)
-	Rows     impulse { Rows::Zero() };   // in: first guess; out: result. N s, on body 2 along the rows
+	int body1 {-1}, body2 {-1};  // indices of free bodies; -1: prescribed, its motion is in the offset
+	Jacobian J1, J2;             // of body 1 with its minus sign
+	Rows offset {Rows::Zero()};  // m/s
+	double friction {0};         // mu >= 0, noSlip, or bilateral (point_law.hpp)
+	Rows impulse {Rows::Zero()}; // in: first guess; out: result. N s, on body 2 along the rows
 };
 
 struct SolveReport {
-	int    sweeps { 0 }, factorisations { 0 };
-	double residual { 0 }; // m/s
-	bool   converged { true };
+	int sweeps {0}, factorisations {0};
+	double residual {0}; // m/s
+	bool converged {true};
 };
 
 // Owns its workspace: no heap allocation once it has seen a problem of this size.
-template <class K> class ContactSolver {
+template <class K>
+class ContactSolver {
 public:
-	std::vector<FreeBody<K>>    bodies;
+	std::vector<FreeBody<K>> bodies;
 	std::vector<ContactRows<K>> points;
 	// Pairs of free bodies that may meet, if known: the order of elimination then stays while points come and go.
 	std::vector<std::array<int, 2>> near;
 
 	// Until the residual is at most `tolerance` (m/s); where Newton stops short of that, `enough` will do.
 	SolveReport solve(double tolerance, double enough = 0);
-	double      residual(); // of the present velocities and impulses
-	void        forget();   // the next solve starts without the factor of the last: its bits depend on its input alone
+	double residual(); // of the present velocities and impulses
+	void forget();     // the next solve starts without the factor of the last: its bits depend on its input alone
 
-	bool guessed { false };   // the impulses given are what an impact lets expect, not those of the last solve
-	int  lastSweeps { 2000 }; // of Gauss-Seidel, between the attempts of Newton
+	bool guessed {false};  // the impulses given are what an impact lets expect, not those of the last solve
+	int lastSweeps {2000}; // of Gauss-Seidel, between the attempts of Newton
 
 private:
 	struct Workspace;
-	struct Deleter { void operator()(Workspace*) const; };
+	struct Deleter {
+		void operator()(Workspace*) const;
+	};
 	std::unique_ptr<Workspace, Deleter> workspace;
 };
 

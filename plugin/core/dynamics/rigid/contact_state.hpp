@@ -94,8 +94,9 @@ struct ContactState {
 		return worst;
 	}
 
-	// Impulses that miss the laws may have p.u > 0, which the laws exclude. In a step, whose u is the sum of the velocities before and after,
-	// that is twice the energy that they give. Then they are scaled until it is zero: with u0 the free velocities, s p.u0 + s^2 p.Gp = 0.
+	// Impulses that miss the laws may have p.u > 0, which the laws exclude. In a step, whose u is the sum of the velocities before and
+	// after, that is twice the energy that they give. Then they are scaled until it is zero: with u0 the free velocities, s p.u0 + s^2 p.Gp
+	// = 0.
 	void addNoEnergy()
 	{
 		const auto power = [&] {
@@ -116,7 +117,8 @@ struct ContactState {
 		applyImpulses();
 	}
 
-	// A point that parts may keep an impulse of the last step that is too small for its law to tell, `missed` (m/s) or less: it does not press.
+	// A point that parts may keep an impulse of the last step that is too small for its law to tell, `missed` (m/s) or less: it does not
+	// press.
 	void letPartingGo(double missed)
 	{
 		for (int i = 0; i < nPoints; ++i) {

@@ -10,8 +10,8 @@ struct EliminationOrder {
 	using Edge = std::array<int, 2>; // two different nodes; the same pair may come more than once
 
 	std::vector<int> position, nodeAt; // of a node in the order of elimination, and back
-	std::vector<int> first, row;       // columns of L: entries first[k] .. first[k + 1] at rows `row`, sorted; the diagonal is not among them
-	std::vector<int> slot;             // entry of an edge
+	std::vector<int> first, row; // columns of L: entries first[k] .. first[k + 1] at rows `row`, sorted; the diagonal is not among them
+	std::vector<int> slot;       // entry of an edge
 
 	// False: it is the graph that it was.
 	bool setGraph(int nodeCount, const std::vector<Edge>& graph);

@@ -6,61 +6,73 @@ namespace masonry::rigid {
 
 namespace {
 
-	struct Crossing {
-		double at, speed;
-	};
+struct Crossing {
+	double at, speed;
+};
 
-	// Where a gap with the value g0 and rate r0 at the start and g1 < 0 after h falls through zero (parabola through the three).
-	Crossing downCrossing(double g0, double r0, double g1, double h)
-	{
-		const double c = (g1 - g0 - r0 * h) / (h * h);
-		const double root = std::sqrt(std::max(0., r0 * r0 - 4 * c * g0));
-		const double t = c < 0 ? (r0 + root) / (-2 * c) : 2 * g0 / (root - r0);
-		return { std::isfinite(t) ? std::clamp(t, 0., h) : 0., root };
-	}
+// Where a gap with the value g0 and rate r0 at the start and g1 < 0 after h falls through zero (parabola through the three).
+Crossing downCrossing(double g0, double r0, double g1, double h)
+{
+	const double c = (g1 - g0 - r0 * h) / (h * h);
+	const double root = std::sqrt(std::max(0., r0 * r0 - 4 * c * g0));
+	const double t = c < 0 ? (r0 + root) / (-2 * c) : 2 * g0 / (root - r0);
+	return {std::isfinite(t) ? std::clamp(t, 0., h) : 0., root};
+}
 
-	// Gap of an open point that counts as closed: zero, or the penetration that it parted with.
-	template <class K> double zeroOf(const RigidSystem<K>& s, PointRef ref) { return std::min(s.pairs[ref.pair].points[ref.point].gap, 0.); }
+// Gap of an open point that counts as closed: zero, or the penetration that it parted with.
+template <class K>
+double zeroOf(const RigidSystem<K>& s, PointRef ref)
+{
+	return std::min(s.pairs[ref.pair].points[ref.point].gap, 0.);
+}
 
-	template <class K> struct Relative {
-		double                                gap, rate;
-		Eigen::Matrix<double, K::rows - 1, 1> slip;
-	};
+template <class K>
+struct Relative {
+	double gap, rate;
+	Eigen::Matrix<double, K::rows - 1, 1> slip;
+};
 
-	template <class K> Relative<K> atStart(const RigidSystem<K>& s, PointRef ref)
-	{
-		const auto u = relativeVelocity(s, ref);
-		return { s.pairs[ref.pair].points[ref.point].gap, u[0], u.template tail<K::rows - 1>() };
-	}
+template <class K>
+Relative<K> atStart(const RigidSystem<K>& s, PointRef ref)
+{
+	const auto u = relativeVelocity(s, ref);
+	return {s.pairs[ref.pair].points[ref.point].gap, u[0], u.template tail<K::rows - 1>()};
+}
 
-	template <class K> Relative<K> atEnd(const RigidSystem<K>& s, const SmoothStep<K>& step, PointRef ref)
-	{
-		const auto u = step.relativeVelocity(s, ref.pair, ref.point);
-		return { step.frame(ref.pair, ref.point).gap, u[0], u.template tail<K::rows - 1>() };
-	}
+template <class K>
+Relative<K> atEnd(const RigidSystem<K>& s, const SmoothStep<K>& step, PointRef ref)
+{
+	const auto u = step.relativeVelocity(s, ref.pair, ref.point);
+	return {step.frame(ref.pair, ref.point).gap, u[0], u.template tail<K::rows - 1>()};
+}
 
-	// Slip speed at the end of the trial along the direction of slip at its start.
-	template <class K> double slipOn(const RigidSystem<K>& s, const SmoothStep<K>& step, PointRef ref)
-	{
-		return atStart(s, ref).slip.normalized().dot(atEnd(s, step, ref).slip);
-	}
+// Slip speed at the end of the trial along the direction of slip at its start.
+template <class K>
+double slipOn(const RigidSystem<K>& s, const SmoothStep<K>& step, PointRef ref)
+{
+	return atStart(s, ref).slip.normalized().dot(atEnd(s, step, ref).slip);
+}
 
 } // namespace
 
-template <class K> Event findEvent(const RigidSystem<K>& s, SmoothStep<K>& step, double slow)
+template <class K>
+Event findEvent(const RigidSystem<K>& s, SmoothStep<K>& step, double slow)
 {
-	Event        first;
-	const double h = step.trial().h, tiny = tolerance::rigid::gap * step.scales.length, still = tolerance::rigid::parting * step.scales.stepSpeed(h);
-	const auto   consider = [&](Event::Kind kind, PointRef ref, double at) {
-        if (first.kind == Event::none || at < first.at) first = { kind, ref, at };
+	Event first;
+	const double h = step.trial().h, tiny = tolerance::rigid::gap * step.scales.length,
+	             still = tolerance::rigid::parting * step.scales.stepSpeed(h);
+	const auto consider = [&](Event::Kind kind, PointRef ref, double at) {
+		if (first.kind == Event::none || at < first.at)
+			first = {kind, ref, at};
 	};
 	for (int c = 0; c < int(s.pairs.size()); ++c)
 		for (int i = 0; i < s.pairs[c].size; ++i) {
 			const ContactPoint<K>& point = s.pairs[c].points[i];
-			const PointRef         ref { c, i };
+			const PointRef ref {c, i};
 			if (!point.closed) {
 				const double zero = zeroOf(s, ref), gap = step.frame(c, i).gap - zero;
-				if (gap >= -tiny || contains(step.anticipated, ref)) continue;
+				if (gap >= -tiny || contains(step.anticipated, ref))
+					continue;
 				const Crossing crossing = downCrossing(point.gap - zero, atStart(s, ref).rate, gap, h);
 				if (crossing.speed < slow)
 					step.anticipated.push_back(ref);
@@ -68,17 +80,20 @@ template <class K> Event findEvent(const RigidSystem<K>& s, SmoothStep<K>& step,
 					consider(Event::closing, ref, crossing.at);
 			} else if (point.sliding && !step.stopsInside) {
 				const double before = atStart(s, ref).slip.norm(), after = slipOn(s, step, ref);
-				if (after < -still && before > still) consider(Event::stop, ref, h * before / (before - after));
+				if (after < -still && before > still)
+					consider(Event::stop, ref, h * before / (before - after));
 			}
 		}
 	return first;
 }
 
-template <class K> Event localise(const RigidSystem<K>& s, SmoothStep<K>& step, Event event)
+template <class K>
+Event localise(const RigidSystem<K>& s, SmoothStep<K>& step, Event event)
 {
-	const double  tiny = tolerance::rigid::gap * step.scales.length, still = tolerance::rigid::parting * step.scales.stepSpeed(step.trial().h);
-	double        early = 0, late = step.trial().h; // the event lies between
-	const double  instant = tolerance::rigid::instant * late;
+	const double tiny = tolerance::rigid::gap * step.scales.length,
+	             still = tolerance::rigid::parting * step.scales.stepSpeed(step.trial().h);
+	double early = 0, late = step.trial().h; // the event lies between
+	const double instant = tolerance::rigid::instant * late;
 	constexpr int most = 40;
 	for (int k = 0; k < most; ++k) {
 		const double h = event.at;
@@ -88,33 +103,40 @@ template <class K> Event localise(const RigidSystem<K>& s, SmoothStep<K>& step, 
 		}
 		step.attempt(s, h, true);
 		if (event.kind == Event::closing) {
-			const auto   end = atEnd(s, step, event.point);
+			const auto end = atEnd(s, step, event.point);
 			const double gap = end.gap - zeroOf(s, event.point);
-			if (std::abs(gap) <= tiny) break;
+			if (std::abs(gap) <= tiny)
+				break;
 			(gap > 0 ? early : late) = h;
 			event.at = h - gap / end.rate; // Newton
-			if (!(end.rate < 0) || !(event.at > early && event.at < late)) event.at = 0.5 * (early + late);
+			if (!(end.rate < 0) || !(event.at > early && event.at < late))
+				event.at = 0.5 * (early + late);
 		} else {
 			const double before = atStart(s, event.point).slip.norm(), after = slipOn(s, step, event.point);
-			if (std::abs(after) <= still) break;
+			if (std::abs(after) <= still)
+				break;
 			(after > 0 ? early : late) = h;
 			event.at = after > 0 ? h * before / (before - after) : 0.5 * (early + h); // secant; past the stop the slip tells nothing
-			if (!(event.at > early && event.at < late)) event.at = 0.5 * (early + late);
+			if (!(event.at > early && event.at < late))
+				event.at = 0.5 * (early + late);
 		}
-		if (late - early <= tolerance::rigid::instant * instant) break;
+		if (late - early <= tolerance::rigid::instant * instant)
+			break;
 	}
 	event.at = step.trial().h;
 	return event;
 }
 
-template <class K> void touchingPoints(const RigidSystem<K>& s, std::vector<PointRef>& out)
+template <class K>
+void touchingPoints(const RigidSystem<K>& s, std::vector<PointRef>& out)
 {
 	out.clear();
 	const double merged = s.settings.merged * scale::length(s);
 	for (int c = 0; c < int(s.pairs.size()); ++c)
 		for (int i = 0; i < s.pairs[c].size; ++i) {
 			const ContactPoint<K>& point = s.pairs[c].points[i];
-			if (!point.closed && point.gap <= merged && atStart(s, PointRef { c, i }).rate < 0) out.push_back({ c, i });
+			if (!point.closed && point.gap <= merged && atStart(s, PointRef {c, i}).rate < 0)
+				out.push_back({c, i});
 		}
 }
 
@@ -122,7 +144,7 @@ template Event findEvent(const RigidSystem<Plane>&, SmoothStep<Plane>&, double);
 template Event findEvent(const RigidSystem<Space>&, SmoothStep<Space>&, double);
 template Event localise(const RigidSystem<Plane>&, SmoothStep<Plane>&, Event);
 template Event localise(const RigidSystem<Space>&, SmoothStep<Space>&, Event);
-template void  touchingPoints(const RigidSystem<Plane>&, std::vector<PointRef>&);
-template void  touchingPoints(const RigidSystem<Space>&, std::vector<PointRef>&);
+template void touchingPoints(const RigidSystem<Plane>&, std::vector<PointRef>&);
+template void touchingPoints(const RigidSystem<Space>&, std::vector<PointRef>&);
 
 } // namespace masonry::rigid

@@ -5,7 +5,8 @@
 
 namespace masonry::rigid {
 
-template <class K> class ImpactStage {
+template <class K>
+class ImpactStage {
 public:
 	// The open points `closing` land now. A joint that rocks on another pivot obeys its restitution; all others are plastic. Points that
 	// part afterwards are open. Impacts are appended to system.impacts.
@@ -21,14 +22,14 @@ private:
 	void settle(RigidSystem<K>& system);
 	void shareWeights(RigidSystem<K>& system);
 
-	SparseImpulses<K>          impulses;
-	RockingImpact              impact;
+	SparseImpulses<K> impulses;
+	RockingImpact impact;
 	std::vector<masonry::Body> bodies;
-	std::vector<PointRef>      refs; // of impact.points
-	std::vector<Vector3>       newPositions, oldPositions; // of a joint
-	std::vector<PointRef>      oldRefs;
-	std::vector<double>        weights; // of the pairs: their normal impulses
-	std::vector<double>        asked;   // restitution of the joints
+	std::vector<PointRef> refs;                      // of impact.points
+	std::vector<Vector3> newPositions, oldPositions; // of a joint
+	std::vector<PointRef> oldRefs;
+	std::vector<double> weights; // of the pairs: their normal impulses
+	std::vector<double> asked;   // restitution of the joints
 };
 
 } // namespace masonry::rigid

@@ -91,7 +91,9 @@ void Islands<K>::take(const RigidSystem<K>& s, Island& island) const
 	own.pairs.clear();
 	for (const int b : island.bodies)
 		own.bodies.push_back(s.bodies[b]);
-	const auto numberOf = [&](int body) { return int(std::lower_bound(island.bodies.begin(), island.bodies.end(), body) - island.bodies.begin()); };
+	const auto numberOf = [&](int body) {
+		return int(std::lower_bound(island.bodies.begin(), island.bodies.end(), body) - island.bodies.begin());
+	};
 	for (const int c : island.pairs) {
 		ContactPair<K>& pair = own.pairs.emplace_back(s.pairs[c]);
 		pair.body1 = numberOf(pair.body1);

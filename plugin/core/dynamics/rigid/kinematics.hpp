@@ -36,7 +36,8 @@ struct PlanePose {
 		constexpr double small = 0.05; // the first terms left out are below 1e-17
 		if (std::abs(by) > small)
 			return setAngle(angle + by);
-		const double x = by * by, s = by * (1 - x / 6 * (1 - x / 20 * (1 - x / 42))), less = x / 2 * (1 - x / 12 * (1 - x / 30 * (1 - x / 56)));
+		const double x = by * by, s = by * (1 - x / 6 * (1 - x / 20 * (1 - x / 42))),
+		             less = x / 2 * (1 - x / 12 * (1 - x / 30 * (1 - x / 56)));
 		const double before = cosine;
 		angle += by;
 		cosine -= less * cosine + s * sine;

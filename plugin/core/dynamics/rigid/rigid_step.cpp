@@ -4,7 +4,8 @@
 namespace masonry::rigid {
 
 // The stages of a step. All but the first repeat for each part of the step that ends with an event.
-template <class K> StepReport RigidStep<K>::advance(RigidSystem<K>& s, double dt)
+template <class K>
+StepReport RigidStep<K>::advance(RigidSystem<K>& s, double dt)
 {
 	report = {};
 	s.impacts.clear();
@@ -13,7 +14,7 @@ template <class K> StepReport RigidStep<K>::advance(RigidSystem<K>& s, double dt
 	takeJumps(s);
 	for (double left = dt; left > 0;) {
 		const double h = untilKink(s, left, dt);
-		const Event  event = tryStep(s, h);
+		const Event event = tryStep(s, h);
 		if (event.kind == Event::none || event.at > 0) {
 			step.accept(s);
 			left = event.kind == Event::none && h == left ? 0 : left - step.trial().h;
@@ -28,7 +29,8 @@ template <class K> StepReport RigidStep<K>::advance(RigidSystem<K>& s, double dt
 		} else if (event.kind == Event::stop) {
 			s.pairs[event.point.pair].points[event.point.point].sliding = false;
 		}
-		if (event.kind == Event::none && left == 0) break;
+		if (event.kind == Event::none && left == 0)
+			break;
 		takeJumps(s);
 		s.startAnew();
 	}
@@ -37,41 +39,48 @@ template <class K> StepReport RigidStep<K>::advance(RigidSystem<K>& s, double dt
 
 namespace {
 
-	// A point that was there before keeps its state, and so does one that another feature of the same place takes over from.
-	template <class K> void takeOver(const ContactPair<K>& before, double samePlace, ContactPoint<K>& point)
-	{
-		for (int k = 0; k < before.size; ++k) {
-			const ContactPoint<K>& old = before.points[k];
-			const bool             same = old.feature == point.feature;
-			if (!same && !((old.frame.position - point.frame.position).norm() <= samePlace)) continue;
-			point.closed = old.closed;
-			point.sliding = old.sliding;
-			point.force = old.force;
-			if (same) return;
-		}
+// A point that was there before keeps its state, and so does one that another feature of the same place takes over from.
+template <class K>
+void takeOver(const ContactPair<K>& before, double samePlace, ContactPoint<K>& point)
+{
+	for (int k = 0; k < before.size; ++k) {
+		const ContactPoint<K>& old = before.points[k];
+		const bool same = old.feature == point.feature;
+		if (!same && !((old.frame.position - point.frame.position).norm() <= samePlace))
+			continue;
+		point.closed = old.closed;
+		point.sliding = old.sliding;
+		point.force = old.force;
+		if (same)
+			return;
 	}
+}
 
 } // namespace
 
 // Points of all pairs, as features.
-template <class K> void RigidStep<K>::findContacts(RigidSystem<K>& s)
+template <class K>
+void RigidStep<K>::findContacts(RigidSystem<K>& s)
 {
 	const double touching = s.settings.merged * step.scales.length, samePlace = 2 * tolerance::contact::vertexReach * step.scales.length;
 	for (ContactPair<K>& pair : s.pairs) {
-		const auto &         body1 = s.bodies[pair.body1], &body2 = s.bodies[pair.body2];
+		const auto &body1 = s.bodies[pair.body1], &body2 = s.bodies[pair.body2];
 		const FoundPoints<K> found = findPoints(body1, body2, pair.memory);
-		const bool           same = sameFeatures(pair, found);
-		if (same && !s.moved) continue;
+		const bool same = sameFeatures(pair, found);
+		if (same && !s.moved)
+			continue;
 		const ContactPair<K> before = pair;
 		pair.size = found.size;
 		pair.face1 = found.face1;
 		pair.face2 = found.face2;
 		for (int i = 0; i < found.size; ++i) {
 			ContactPoint<K>& point = pair.points[i];
-			if (!same) point = {};
+			if (!same)
+				point = {};
 			point.feature = found.features[i];
 			locate(point, body1, body2);
-			if (same) continue;
+			if (same)
+				continue;
 			point.closed = point.gap <= touching;
 			takeOver(before, samePlace, point);
 		}
@@ -80,9 +89,10 @@ template <class K> void RigidStep<K>::findContacts(RigidSystem<K>& s)
 }
 
 // A trial that ends with the first event, or without one after h.
-template <class K> Event RigidStep<K>::tryStep(RigidSystem<K>& s, double h)
+template <class K>
+Event RigidStep<K>::tryStep(RigidSystem<K>& s, double h)
 {
-	const bool   localised = report.events < s.settings.mostEvents;
+	const bool localised = report.events < s.settings.mostEvents;
 	const double rest = tolerance::restSpeed * step.scales.speed;
 	step.anticipated.clear();
 	step.stopsInside = !localised;
@@ -107,23 +117,27 @@ template <class K> Event RigidStep<K>::tryStep(RigidSystem<K>& s, double h)
 	return event;
 }
 
-template <class K> void RigidStep<K>::note(double residual, bool solved)
+template <class K>
+void RigidStep<K>::note(double residual, bool solved)
 {
 	report.residual = std::max(report.residual, residual);
 	report.converged &= solved;
 }
 
 // Impulses that miss their laws by what counts as rest will do.
-template <class K> void RigidStep<K>::note(const RockingImpactResult& impact)
+template <class K>
+void RigidStep<K>::note(const RockingImpactResult& impact)
 {
 	note(impact.residual, impact.solved || impact.residual <= tolerance::restSpeed * step.scales.speed);
 }
 
 // Points that touch and approach each other land; false: there are none.
-template <class K> bool RigidStep<K>::land(RigidSystem<K>& s)
+template <class K>
+bool RigidStep<K>::land(RigidSystem<K>& s)
 {
 	touchingPoints(s, closing);
-	if (closing.empty()) return false;
+	if (closing.empty())
+		return false;
 	const size_t known = s.impacts.size();
 	note(impacts.land(s, closing));
 	answerImpacts(s, known);
@@ -131,15 +145,18 @@ template <class K> bool RigidStep<K>::land(RigidSystem<K>& s)
 }
 
 // Resonant pulses act right after the impact that releases them.
-template <class K> void RigidStep<K>::answerImpacts(RigidSystem<K>& s, size_t known)
+template <class K>
+void RigidStep<K>::answerImpacts(RigidSystem<K>& s, size_t known)
 {
 	for (size_t k = known; k < s.impacts.size(); ++k)
 		for (size_t d = 0; d < s.drives.size(); ++d)
-			if (const auto jump = s.drives[d].respond(s.impacts[k].block, s.time); !jump.isZero(0)) note(impacts.pulse(s, int(d), jump));
+			if (const auto jump = s.drives[d].respond(s.impacts[k].block, s.time); !jump.isZero(0))
+				note(impacts.pulse(s, int(d), jump));
 }
 
 // An impact at the same instant comes before the pulse.
-template <class K> void RigidStep<K>::takeJumps(RigidSystem<K>& s)
+template <class K>
+void RigidStep<K>::takeJumps(RigidSystem<K>& s)
 {
 	for (size_t d = 0; d < s.drives.size(); ++d)
 		if (const auto jump = s.drives[d].jumpAt(s.time); !jump.isZero(0)) {
@@ -148,10 +165,11 @@ template <class K> void RigidStep<K>::takeJumps(RigidSystem<K>& s)
 		}
 }
 
-template <class K> double RigidStep<K>::untilKink(const RigidSystem<K>& s, double left, double dt) const
+template <class K>
+double RigidStep<K>::untilKink(const RigidSystem<K>& s, double left, double dt) const
 {
 	const double tiny = tolerance::rigid::instant * dt;
-	double       first = s.time + left;
+	double first = s.time + left;
 	for (const Drive<K>& drive : s.drives)
 		first = std::min(first, drive.nextKink(s.time + tiny, s.time + left - tiny));
 	return first < s.time + left ? first - s.time : left;

@@ -6,24 +6,25 @@
 namespace masonry::rigid {
 
 // Owns the workspace, no state: the same system steps to the same bits with any RigidStep.
-template <class K> class RigidStep {
+template <class K>
+class RigidStep {
 public:
 	StepReport advance(RigidSystem<K>& system, double dt);
 
 private:
-	void   findContacts(RigidSystem<K>& system);
-	Event  tryStep(RigidSystem<K>& system, double h);
-	bool   land(RigidSystem<K>& system);
-	void   answerImpacts(RigidSystem<K>& system, size_t known);
-	void   takeJumps(RigidSystem<K>& system);
+	void findContacts(RigidSystem<K>& system);
+	Event tryStep(RigidSystem<K>& system, double h);
+	bool land(RigidSystem<K>& system);
+	void answerImpacts(RigidSystem<K>& system, size_t known);
+	void takeJumps(RigidSystem<K>& system);
 	double untilKink(const RigidSystem<K>& system, double left, double dt) const;
-	void   note(double residual, bool solved);
-	void   note(const RockingImpactResult& impact);
+	void note(double residual, bool solved);
+	void note(const RockingImpactResult& impact);
 
-	SmoothStep<K>         step;
-	ImpactStage<K>        impacts;
+	SmoothStep<K> step;
+	ImpactStage<K> impacts;
 	std::vector<PointRef> closing;
-	StepReport            report;
+	StepReport report;
 };
 
 } // namespace masonry::rigid

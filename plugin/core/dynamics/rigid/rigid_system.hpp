@@ -10,100 +10,113 @@
 
 namespace masonry::rigid {
 
-template <class K> struct RigidBody {
-	typename K::Vector   halfSize { K::Vector::Zero() };   // m
-	double               mass { 0 };                       // kg; not used when prescribed
-	typename K::Inertia  inertia { K::Inertia::Zero() };   // about the centre, kg m^2
-	bool                 prescribed { false };             // moved by the user: an infinite mass
-	typename K::Pose     pose;
-	typename K::Velocity velocity { K::Velocity::Zero() }; // linear, then spin
-	typename K::Velocity force { K::Velocity::Zero() };    // external force (weight included) and moment about the centre
-	typename K::Velocity increment { K::Velocity::Zero() }; // change of velocity per second in the last smooth step: predicts the middle of the next
-	bool                 fresh { true };                   // the velocity has just jumped, or a stray one is left: the next step looks for those
-	int                  drive { -1 };                     // index of the drive that moves it; -1: it keeps its velocity
-	typename K::Vector   origin { K::Vector::Zero() };     // position at zero displacement of its drive
+template <class K>
+struct RigidBody {
+	typename K::Vector halfSize {K::Vector::Zero()};  // m
+	double mass {0};                                  // kg; not used when prescribed
+	typename K::Inertia inertia {K::Inertia::Zero()}; // about the centre, kg m^2
+	bool prescribed {false};                          // moved by the user: an infinite mass
+	typename K::Pose pose;
+	typename K::Velocity velocity {K::Velocity::Zero()}; // linear, then spin
+	typename K::Velocity force {K::Velocity::Zero()};    // external force (weight included) and moment about the centre
+	typename K::Velocity increment {
+	    K::Velocity::Zero()};                      // change of velocity per second in the last smooth step: predicts the middle of the next
+	bool fresh {true};                             // the velocity has just jumped, or a stray one is left: the next step looks for those
+	int drive {-1};                                // index of the drive that moves it; -1: it keeps its velocity
+	typename K::Vector origin {K::Vector::Zero()}; // position at zero displacement of its drive
 
 	double kineticEnergy() const
 	{
 		const auto w = velocity.template tail<K::spins>();
-		return prescribed ? 0 : 0.5 * (mass * velocity.template head<K::dimension>().squaredNorm() + w.dot(K::angularMomentum(inertia, pose, w)));
+		return prescribed
+		           ? 0
+		           : 0.5 * (mass * velocity.template head<K::dimension>().squaredNorm() + w.dot(K::angularMomentum(inertia, pose, w)));
 	}
 };
 
-template <class K> struct ContactPoint {
+template <class K>
+struct ContactPoint {
 	typename K::Feature feature;
-	bool                closed { false };  // in touch: may carry force
-	bool                sliding { false };
-	double              gap { 0 };         // m, at the end of the last step
-	Eigen::Matrix<double, K::rows, 1> force { Eigen::Matrix<double, K::rows, 1>::Zero() }; // N, mean of the last smooth step; on body 2, normal then tangents
-	ContactFrame<K>     frame;             // at the end of the last step
+	bool closed {false}; // in touch: may carry force
+	bool sliding {false};
+	double gap {0}; // m, at the end of the last step
+	Eigen::Matrix<double, K::rows, 1> force {
+	    Eigen::Matrix<double, K::rows, 1>::Zero()}; // N, mean of the last smooth step; on body 2, normal then tangents
+	ContactFrame<K> frame;                          // at the end of the last step
 };
 
-template <class K> struct ContactPair {
-	int                body1 { -1 }, body2 { -1 };
-	double             friction { noSlip };
-	double             restitution { NAN }; // NaN: natural
+template <class K>
+struct ContactPair {
+	int body1 {-1}, body2 {-1};
+	double friction {noSlip};
+	double restitution {NAN}; // NaN: natural
 	typename K::Memory memory;
-	int                face1 { -1 }, face2 { -1 };
-	bool               beside { false };    // upright when the pair was found: neither bears the other
-	int                size { 0 };
+	int face1 {-1}, face2 {-1};
+	bool beside {false}; // upright when the pair was found: neither bears the other
+	int size {0};
 	std::array<ContactPoint<K>, K::maxPoints> points;
 };
 
 // Where the features of a point are, for these bodies.
-template <class K> void locate(ContactPoint<K>& point, const RigidBody<K>& body1, const RigidBody<K>& body2)
+template <class K>
+void locate(ContactPoint<K>& point, const RigidBody<K>& body1, const RigidBody<K>& body2)
 {
 	point.frame = K::frame(point.feature, body1.halfSize, body1.pose, body2.halfSize, body2.pose);
 	point.gap = point.frame.gap;
 }
 
 // The points of a pair of these bodies, none if there are none; without a margin, since lists of pairs hold only boxes that are near.
-template <class K> FoundPoints<K> findPoints(const RigidBody<K>& body1, const RigidBody<K>& body2, typename K::Memory& memory)
+template <class K>
+FoundPoints<K> findPoints(const RigidBody<K>& body1, const RigidBody<K>& body2, typename K::Memory& memory)
 {
 	FoundPoints<K> found;
-	if (!K::findPoints(body1.halfSize, body1.pose, body2.halfSize, body2.pose, std::numeric_limits<double>::infinity(), memory, found)) found.size = 0;
+	if (!K::findPoints(body1.halfSize, body1.pose, body2.halfSize, body2.pose, std::numeric_limits<double>::infinity(), memory, found))
+		found.size = 0;
 	return found;
 }
 
-template <class K> bool touches(const ContactPair<K>& pair)
+template <class K>
+bool touches(const ContactPair<K>& pair)
 {
 	return std::any_of(pair.points.begin(), pair.points.begin() + pair.size, [](const ContactPoint<K>& point) { return point.closed; });
 }
 
-template <class K> bool sameFeatures(const ContactPair<K>& pair, const FoundPoints<K>& found)
+template <class K>
+bool sameFeatures(const ContactPair<K>& pair, const FoundPoints<K>& found)
 {
 	const auto same = [](const auto& feature, const ContactPoint<K>& point) { return feature == point.feature; };
 	return found.size == pair.size && std::equal(found.features.begin(), found.features.begin() + found.size, pair.points.begin(), same);
 }
 
 struct Settings {
-	double      tolerance { 1e-9 };   // residual of a step's contact laws relative to the speed that gravity gives in that step; its parts aim at theirs
-	ImpactOrder order { ImpactOrder::simultaneous };
-	double      merged { 1e-6 };      // closings within this gap, relative to the smallest half size, are one impact: a model parameter
-	int         mostEvents { 50 };    // found inside one step; points that close later in it do so at its end, plastically
+	double tolerance {
+	    1e-9}; // residual of a step's contact laws relative to the speed that gravity gives in that step; its parts aim at theirs
+	ImpactOrder order {ImpactOrder::simultaneous};
+	double merged {1e-6}; // closings within this gap, relative to the smallest half size, are one impact: a model parameter
+	int mostEvents {50};  // found inside one step; points that close later in it do so at its end, plastically
 };
 
 // A rocking impact as it came out.
 struct Impact {
-	double      time;        // s
-	int         block, support;
-	double      asked;       // restitution; NaN: natural
-	bool        switched;    // the pivot was handed over; false: the joint came to rest
+	double time; // s
+	int block, support;
+	double asked;  // restitution; NaN: natural
+	bool switched; // the pivot was handed over; false: the joint came to rest
 	JointResult joint;
-	double      energyLost;  // J; of all joints that closed at this instant, kept with the first
-	bool        capped;
-	double      residual;    // m/s
+	double energyLost; // J; of all joints that closed at this instant, kept with the first
+	bool capped;
+	double residual; // m/s
 };
 
 struct StepReport {
-	int    substeps { 0 }, events { 0 }, sweeps { 0 }, factorisations { 0 };
-	int    unlocalised { 0 }; // points that closed beyond mostEvents
-	double residual { 0 };    // largest of the solves, m/s
-	double created { 0 };     // J, more than round-off and the error of a sound step can make of nothing
-	double deepest { 0 };     // m, of a block in another, where no sound step leaves it so deep
-	double burden { 0 };      // course times ratio of masses of a block upon a lighter one, where it is more than a wall's sweeps carry
-	bool   converged { true };
-	bool   diverged { false }; // the state is no longer finite
+	int substeps {0}, events {0}, sweeps {0}, factorisations {0};
+	int unlocalised {0}; // points that closed beyond mostEvents
+	double residual {0}; // largest of the solves, m/s
+	double created {0};  // J, more than round-off and the error of a sound step can make of nothing
+	double deepest {0};  // m, of a block in another, where no sound step leaves it so deep
+	double burden {0};   // course times ratio of masses of a block upon a lighter one, where it is more than a wall's sweeps carry
+	bool converged {true};
+	bool diverged {false}; // the state is no longer finite
 
 	// Of structures that are stepped apart.
 	StepReport& operator+=(const StepReport& other)
@@ -123,19 +136,20 @@ struct StepReport {
 	}
 };
 
-template <class K> struct RigidSystem {
-	double                      time { 0 }; // s
-	std::vector<RigidBody<K>>   bodies;
-	std::vector<ContactPair<K>> pairs;      // of boxes that are near each other, in a fixed order
-	int                         lists { 0 }; // of pairs that there have been
-	typename K::Vector          gravity { K::Vector::Zero() }; // which way is down, and the scale of tolerances; the weight itself is in `force`
-	std::vector<Drive<K>>       drives;     // of the bases
-	Settings                    settings;
-	bool                        moved { true }; // poses were set from outside: gaps are to be measured anew
+template <class K>
+struct RigidSystem {
+	double time {0}; // s
+	std::vector<RigidBody<K>> bodies;
+	std::vector<ContactPair<K>> pairs;              // of boxes that are near each other, in a fixed order
+	int lists {0};                                  // of pairs that there have been
+	typename K::Vector gravity {K::Vector::Zero()}; // which way is down, and the scale of tolerances; the weight itself is in `force`
+	std::vector<Drive<K>> drives;                   // of the bases
+	Settings settings;
+	bool moved {true}; // poses were set from outside: gaps are to be measured anew
 
 	std::vector<Impact> impacts; // of the last step
 	// Since the start of the run.
-	double              frictDissip { 0 }, impactDissip { 0 }, baseWork { 0 }; // J
+	double frictDissip {0}, impactDissip {0}, baseWork {0}; // J
 
 	// Velocities have jumped, or forces: the last accelerations predict nothing.
 	void startAnew()

@@ -6,113 +6,135 @@ namespace masonry::rigid {
 
 namespace {
 
-	template <class K> typename K::Velocity prescribedVelocity(const RigidSystem<K>& s, const RigidBody<K>& body, double t)
-	{
+template <class K>
+typename K::Velocity prescribedVelocity(const RigidSystem<K>& s, const RigidBody<K>& body, double t)
+{
+	typename K::Velocity v = body.velocity;
+	if (body.drive >= 0)
+		v.template head<K::dimension>() = s.drives[body.drive].velocity(t);
+	return v;
+}
+
+template <class K>
+typename K::Pose prescribedPose(const RigidSystem<K>& s, const RigidBody<K>& body, double h, double t)
+{
+	typename K::Pose pose = body.pose;
+	if (!body.velocity.isZero(0))
+		K::advance(pose, body.velocity, h);
+	if (body.drive >= 0)
+		pose.position = body.origin + s.drives[body.drive].displacement(t);
+	return pose;
+}
+
+template <class K>
+InverseMass<K> inverseMass(const RigidBody<K>& body, const typename K::Pose& pose)
+{
+	return {1 / body.mass, K::inverseInertia(body.inertia, pose)};
+}
+
+// Turned by phi about the middle of the step, an arm r there moves by 2 sin(phi/2) (phi/|phi|) x r: the rows act on this chord, so that a
+// point at rest on average does not move at all.
+template <class K>
+double chord(const typename K::Velocity& mean, double h)
+{
+	return 1 - mean.template tail<K::spins>().squaredNorm() * h * h / 24;
+}
+
+template <class K>
+Eigen::Matrix<double, K::rows, K::dof> jacobian(const ContactFrame<K>& frame, const typename K::Vector& center, double chord, double sign)
+{
+	Eigen::Matrix<double, K::rows, K::dof> J;
+	const typename K::Vector arm = chord * (frame.position - center);
+	for (int k = 0; k < K::rows; ++k) {
+		const typename K::Vector axis = sign * frame.axes.row(k).transpose();
+		J.row(k).template head<K::dimension>() = axis.transpose();
+		J.row(k).template tail<K::spins>() = K::moment(arm, axis).transpose();
+	}
+	return J;
+}
+
+// Whether velocities have come out otherwise than the middle was predicted with, by more than gravity gives in the step: a sliding block
+// has jammed, or had in the last step.
+template <class K>
+bool surprises(const RigidSystem<K>& s, const Trial<K>& trial, const std::vector<FreeBody<K>>& solved, const Scales& scales)
+{
+	const double enough = scales.stepSpeed(trial.h) * scales.stepSpeed(trial.h), square = scales.length * scales.length;
+	for (size_t b = 0; b < s.bodies.size(); ++b) {
+		if (trial.bodies[b].unknown < 0)
+			continue;
+		const typename K::Velocity miss = 0.5 * (s.bodies[b].velocity + solved[trial.bodies[b].unknown].velocity) - trial.bodies[b].mean;
+		if (miss.template head<K::dimension>().squaredNorm() + square * miss.template tail<K::spins>().squaredNorm() > enough)
+			return true;
+	}
+	return false;
+}
+
+// Whether the impulse has reached the friction cone.
+template <class K>
+bool slides(const ContactRows<K>& rows)
+{
+	const double normal = rows.impulse[0];
+	return normal > 0 && rows.impulse.template tail<K::rows - 1>().norm() >= (1 - tolerance::rigid::cone) * rows.friction * normal;
+}
+
+// Whether prescribed bodies that free ones touch move against each other in a step.
+template <class K>
+bool basesPart(const RigidSystem<K>& s, double dt)
+{
+	const auto mean = [&](const RigidBody<K>& body) {
 		typename K::Velocity v = body.velocity;
-		if (body.drive >= 0) v.template head<K::dimension>() = s.drives[body.drive].velocity(t);
+		if (body.drive >= 0)
+			v.template head<K::dimension>() = s.drives[body.drive].meanVelocity(s.time, dt);
 		return v;
+	};
+	const RigidBody<K>* first = nullptr;
+	for (const ContactPair<K>& pair : s.pairs) {
+		const auto &body1 = s.bodies[pair.body1], &body2 = s.bodies[pair.body2];
+		if (body1.prescribed == body2.prescribed)
+			continue;
+		const RigidBody<K>& base = body1.prescribed ? body1 : body2;
+		if (!touches(pair) || &base == first)
+			continue;
+		if (!first)
+			first = &base;
+		if (base.drive != first->drive || base.drive < 0) // one drive moves all its bodies alike
+			if (mean(base) != mean(*first))
+				return true;
 	}
+	return false;
+}
 
-	template <class K> typename K::Pose prescribedPose(const RigidSystem<K>& s, const RigidBody<K>& body, double h, double t)
-	{
-		typename K::Pose pose = body.pose;
-		if (!body.velocity.isZero(0)) K::advance(pose, body.velocity, h);
-		if (body.drive >= 0) pose.position = body.origin + s.drives[body.drive].displacement(t);
-		return pose;
+// The forces of more than three points on a face are not determined by its motion, but where it spins as it slides the friction couple
+// hangs on them: they start from linear pressure, that is from the least sum of squares with the same resultant and moments, so that the
+// solver's path does not decide. Points that would have to pull, or stick, are left as they are.
+template <class Rows>
+void spreadLinearly(Rows* begin, Rows* end, const std::vector<Vector3>& positions)
+{
+	const int n = int(end - begin);
+	Matrix3 squares = Matrix3::Zero();
+	Vector3 sums = Vector3::Zero(), middle = Vector3::Zero();
+	for (const Vector3& x : positions)
+		middle += x / n;
+	const Vector3 across = begin->J2.row(1).template head<3>(), beside = begin->J2.row(2).template head<3>();
+	const auto shape = [&](int i) { return Vector3(1, across.dot(positions[i] - middle), beside.dot(positions[i] - middle)); };
+	for (int i = 0; i < n; ++i) {
+		squares += shape(i) * shape(i).transpose();
+		sums += begin[i].impulse[0] * shape(i);
 	}
-
-	template <class K> InverseMass<K> inverseMass(const RigidBody<K>& body, const typename K::Pose& pose)
-	{
-		return { 1 / body.mass, K::inverseInertia(body.inertia, pose) };
-	}
-
-	// Turned by phi about the middle of the step, an arm r there moves by 2 sin(phi/2) (phi/|phi|) x r: the rows act on this chord, so that a
-	// point at rest on average does not move at all.
-	template <class K> double chord(const typename K::Velocity& mean, double h)
-	{
-		return 1 - mean.template tail<K::spins>().squaredNorm() * h * h / 24;
-	}
-
-	template <class K> Eigen::Matrix<double, K::rows, K::dof> jacobian(const ContactFrame<K>& frame, const typename K::Vector& center, double chord, double sign)
-	{
-		Eigen::Matrix<double, K::rows, K::dof> J;
-		const typename K::Vector               arm = chord * (frame.position - center);
-		for (int k = 0; k < K::rows; ++k) {
-			const typename K::Vector axis = sign * frame.axes.row(k).transpose();
-			J.row(k).template head<K::dimension>() = axis.transpose();
-			J.row(k).template tail<K::spins>() = K::moment(arm, axis).transpose();
-		}
-		return J;
-	}
-
-	// Whether velocities have come out otherwise than the middle was predicted with, by more than gravity gives in the step: a sliding block
-	// has jammed, or had in the last step.
-	template <class K> bool surprises(const RigidSystem<K>& s, const Trial<K>& trial, const std::vector<FreeBody<K>>& solved, const Scales& scales)
-	{
-		const double enough = scales.stepSpeed(trial.h) * scales.stepSpeed(trial.h), square = scales.length * scales.length;
-		for (size_t b = 0; b < s.bodies.size(); ++b) {
-			if (trial.bodies[b].unknown < 0) continue;
-			const typename K::Velocity miss = 0.5 * (s.bodies[b].velocity + solved[trial.bodies[b].unknown].velocity) - trial.bodies[b].mean;
-			if (miss.template head<K::dimension>().squaredNorm() + square * miss.template tail<K::spins>().squaredNorm() > enough) return true;
-		}
-		return false;
-	}
-
-	// Whether the impulse has reached the friction cone.
-	template <class K> bool slides(const ContactRows<K>& rows)
-	{
-		const double normal = rows.impulse[0];
-		return normal > 0 && rows.impulse.template tail<K::rows - 1>().norm() >= (1 - tolerance::rigid::cone) * rows.friction * normal;
-	}
-
-	// Whether prescribed bodies that free ones touch move against each other in a step.
-	template <class K> bool basesPart(const RigidSystem<K>& s, double dt)
-	{
-		const auto mean = [&](const RigidBody<K>& body) {
-			typename K::Velocity v = body.velocity;
-			if (body.drive >= 0) v.template head<K::dimension>() = s.drives[body.drive].meanVelocity(s.time, dt);
-			return v;
-		};
-		const RigidBody<K>* first = nullptr;
-		for (const ContactPair<K>& pair : s.pairs) {
-			const auto &body1 = s.bodies[pair.body1], &body2 = s.bodies[pair.body2];
-			if (body1.prescribed == body2.prescribed) continue;
-			const RigidBody<K>& base = body1.prescribed ? body1 : body2;
-			if (!touches(pair) || &base == first) continue;
-			if (!first) first = &base;
-			if (base.drive != first->drive || base.drive < 0) // one drive moves all its bodies alike
-				if (mean(base) != mean(*first)) return true;
-		}
-		return false;
-	}
-
-	// The forces of more than three points on a face are not determined by its motion, but where it spins as it slides the friction couple
-	// hangs on them: they start from linear pressure, that is from the least sum of squares with the same resultant and moments, so that the
-	// solver's path does not decide. Points that would have to pull, or stick, are left as they are.
-	template <class Rows> void spreadLinearly(Rows* begin, Rows* end, const std::vector<Vector3>& positions)
-	{
-		const int n = int(end - begin);
-		Matrix3   squares = Matrix3::Zero();
-		Vector3   sums = Vector3::Zero(), middle = Vector3::Zero();
-		for (const Vector3& x : positions)
-			middle += x / n;
-		const Vector3 across = begin->J2.row(1).template head<3>(), beside = begin->J2.row(2).template head<3>();
-		const auto    shape = [&](int i) { return Vector3(1, across.dot(positions[i] - middle), beside.dot(positions[i] - middle)); };
-		for (int i = 0; i < n; ++i) {
-			squares += shape(i) * shape(i).transpose();
-			sums += begin[i].impulse[0] * shape(i);
-		}
-		if (!(squares.bottomRightCorner<2, 2>().determinant() > tolerance::rank * squares.bottomRightCorner<2, 2>().squaredNorm())) return;
-		const Vector3 pressure = squares.ldlt().solve(sums);
-		for (int i = 0; i < n; ++i)
-			if (!(pressure.dot(shape(i)) > 0)) return;
-		for (int i = 0; i < n; ++i)
-			begin[i].impulse *= pressure.dot(shape(i)) / begin[i].impulse[0];
-	}
+	if (!(squares.bottomRightCorner<2, 2>().determinant() > tolerance::rank * squares.bottomRightCorner<2, 2>().squaredNorm()))
+		return;
+	const Vector3 pressure = squares.ldlt().solve(sums);
+	for (int i = 0; i < n; ++i)
+		if (!(pressure.dot(shape(i)) > 0))
+			return;
+	for (int i = 0; i < n; ++i)
+		begin[i].impulse *= pressure.dot(shape(i)) / begin[i].impulse[0];
+}
 
 } // namespace
 
-template <class K> void SmoothStep<K>::begin(const RigidSystem<K>& s, double dt)
+template <class K>
+void SmoothStep<K>::begin(const RigidSystem<K>& s, double dt)
 {
 	whole = dt;
 	end = s.time + dt;
@@ -122,23 +144,26 @@ template <class K> void SmoothStep<K>::begin(const RigidSystem<K>& s, double dt)
 	partBases = basesPart(s, dt);
 	weight = 0;
 	for (const RigidBody<K>& body : s.bodies)
-		if (!body.prescribed) weight += body.mass * scales.acceleration * scales.length;
+		if (!body.prescribed)
+			weight += body.mass * scales.acceleration * scales.length;
 }
 
 // Parts of a step add up to its end but for round-off, which would depend on the events in it.
-template <class K> double SmoothStep<K>::timeAfter(const RigidSystem<K>& s, double h) const
+template <class K>
+double SmoothStep<K>::timeAfter(const RigidSystem<K>& s, double h) const
 {
 	const double t = s.time + h;
 	return std::abs(t - end) <= tolerance::rigid::instant * whole ? end : t;
 }
 
-template <class K> void SmoothStep<K>::predict(const RigidSystem<K>& s, double h, bool again)
+template <class K>
+void SmoothStep<K>::predict(const RigidSystem<K>& s, double h, bool again)
 {
 	last.bodies.resize(s.bodies.size());
 	solver.bodies.clear();
 	for (size_t b = 0; b < s.bodies.size(); ++b) {
 		const RigidBody<K>& body = s.bodies[b];
-		auto&               next = last.bodies[b];
+		auto& next = last.bodies[b];
 		if (body.prescribed) {
 			next.unknown = -1;
 			next.middle = prescribedPose(s, body, h / 2, s.time + h / 2);
@@ -166,52 +191,63 @@ template <class K> void SmoothStep<K>::predict(const RigidSystem<K>& s, double h
 		unknown.free = body.velocity + h * (unknown.inverseMass * body.force);
 		if constexpr (K::spins == 3) {
 			const Quaternion half = next.middle.orientation * body.pose.orientation.conjugate();
-			const Vector3    spin = body.velocity.template tail<3>(), momentum = K::angularMomentum(body.inertia, body.pose, spin);
-			const Vector3    back = half.conjugate() * next.momentum - next.momentum;
-			unknown.free.template tail<3>() = half * spin - spin + unknown.inverseMass.angular * (momentum + h * body.force.template tail<3>() + back);
+			const Vector3 spin = body.velocity.template tail<3>(), momentum = K::angularMomentum(body.inertia, body.pose, spin);
+			const Vector3 back = half.conjugate() * next.momentum - next.momentum;
+			unknown.free.template tail<3>() =
+			    half * spin - spin + unknown.inverseMass.angular * (momentum + h * body.force.template tail<3>() + back);
 		}
 		solver.bodies.push_back(unknown);
 	}
 }
 
-template <class K> bool SmoothStep<K>::acts(const RigidSystem<K>& s, PointRef ref) const
+template <class K>
+bool SmoothStep<K>::acts(const RigidSystem<K>& s, PointRef ref) const
 {
 	return s.pairs[ref.pair].points[ref.point].closed || contains(anticipated, ref);
 }
 
 // A share of the stray velocities, where the forces of the last step would do no work on it.
-template <class K> void SmoothStep<K>::dampStray(const RigidSystem<K>& s, double h)
+template <class K>
+void SmoothStep<K>::dampStray(const RigidSystem<K>& s, double h)
 {
 	double work = 0;
 	for (int c = 0; c < int(s.pairs.size()); ++c)
 		for (int i = 0; i < s.pairs[c].size; ++i) {
-			if (!acts(s, { c, i })) continue;
+			if (!acts(s, {c, i}))
+				continue;
 			const ContactPoint<K>& point = s.pairs[c].points[i];
 			stray.push_back(Impulse::Zero());
-			if (!point.closed) continue;
-			stray.back() = tolerance::rigid::damping * rigid::relativeVelocity(s, PointRef { c, i });
-			if (point.sliding) stray.back().template tail<K::rows - 1>().setZero();
+			if (!point.closed)
+				continue;
+			stray.back() = tolerance::rigid::damping * rigid::relativeVelocity(s, PointRef {c, i});
+			if (point.sliding)
+				stray.back().template tail<K::rows - 1>().setZero();
 			work += 0.5 * h * point.force.dot(stray.back());
 		}
-	if (std::abs(work) > tolerance::rigid::strayEnergy * weight) stray.clear();
+	if (std::abs(work) > tolerance::rigid::strayEnergy * weight)
+		stray.clear();
 }
 
 // The stray velocity of the closed points that alternates from step to step, seen from a pass that took nothing off: half of what it
 // changes by.
-template <class K> void SmoothStep<K>::findStray(const RigidSystem<K>& s)
+template <class K>
+void SmoothStep<K>::findStray(const RigidSystem<K>& s)
 {
 	for (size_t r = 0; r < last.rows.size(); ++r) {
-		const PointRef         ref = last.rows[r];
+		const PointRef ref = last.rows[r];
 		const ContactPoint<K>& point = s.pairs[ref.pair].points[ref.point];
 		stray.push_back(Impulse::Zero());
-		if (!point.closed) continue;
+		if (!point.closed)
+			continue;
 		stray.back() = 0.5 * (rigid::relativeVelocity(s, ref) - relativeVelocity(s, ref.pair, ref.point));
-		if (point.sliding || slides(solver.points[r])) stray.back().template tail<K::rows - 1>().setZero();
+		if (point.sliding || slides(solver.points[r]))
+			stray.back().template tail<K::rows - 1>().setZero();
 	}
 }
 
 // Work of the impulses where the stray velocities are taken off, J.
-template <class K> double SmoothStep<K>::strayWork() const
+template <class K>
+double SmoothStep<K>::strayWork() const
 {
 	double work = 0;
 	for (size_t r = 0; r < stray.size(); ++r)
@@ -219,7 +255,8 @@ template <class K> double SmoothStep<K>::strayWork() const
 	return work;
 }
 
-template <class K> void SmoothStep<K>::assemble(const RigidSystem<K>& s, double h)
+template <class K>
+void SmoothStep<K>::assemble(const RigidSystem<K>& s, double h)
 {
 	solver.points.clear();
 	solver.near.clear();
@@ -227,19 +264,20 @@ template <class K> void SmoothStep<K>::assemble(const RigidSystem<K>& s, double 
 	for (int c = 0; c < int(s.pairs.size()); ++c) {
 		const ContactPair<K>& pair = s.pairs[c];
 		if (last.bodies[pair.body1].unknown >= 0 && last.bodies[pair.body2].unknown >= 0)
-			solver.near.push_back({ last.bodies[pair.body1].unknown, last.bodies[pair.body2].unknown });
-		const size_t          begin = solver.points.size();
-		bool                  slides = true;
+			solver.near.push_back({last.bodies[pair.body1].unknown, last.bodies[pair.body2].unknown});
+		const size_t begin = solver.points.size();
+		bool slides = true;
 		positions.clear();
 		for (int i = 0; i < pair.size; ++i) {
 			const ContactPoint<K>& point = pair.points[i];
-			if (!acts(s, { c, i })) continue;
-			const RigidBody<K>&   body1 = s.bodies[pair.body1];
-			const RigidBody<K>&   body2 = s.bodies[pair.body2];
-			const auto&           next1 = last.bodies[pair.body1];
-			const auto&           next2 = last.bodies[pair.body2];
+			if (!acts(s, {c, i}))
+				continue;
+			const RigidBody<K>& body1 = s.bodies[pair.body1];
+			const RigidBody<K>& body2 = s.bodies[pair.body2];
+			const auto& next1 = last.bodies[pair.body1];
+			const auto& next2 = last.bodies[pair.body2];
 			const ContactFrame<K> frame = K::frame(point.feature, body1.halfSize, next1.middle, body2.halfSize, next2.middle);
-			last.rows.push_back({ c, i });
+			last.rows.push_back({c, i});
 
 			ContactRows<K> rows;
 			rows.body1 = next1.unknown;
@@ -248,14 +286,17 @@ template <class K> void SmoothStep<K>::assemble(const RigidSystem<K>& s, double 
 			rows.J2 = jacobian(frame, next2.middle.position, chord<K>(next2.mean, h), 1);
 			rows.friction = pair.friction;
 			rows.impulse = !guesses.empty() ? guesses[last.rows.size() - 1] : partBases ? Impulse::Zero() : Impulse(h * point.force);
-			if (body1.prescribed) rows.offset += rows.J1 * next1.velocity;
-			if (body2.prescribed) rows.offset += rows.J2 * next2.velocity;
+			if (body1.prescribed)
+				rows.offset += rows.J1 * next1.velocity;
+			if (body2.prescribed)
+				rows.offset += rows.J2 * next2.velocity;
 			auto now = (rows.J1 * body1.velocity + rows.J2 * body2.velocity).eval();
 			if (!point.closed)
 				now[0] = std::max(now[0] + 2 * std::max(point.gap, 0.) / h, 0.);
 			else if (!stray.empty())
 				now -= stray[last.rows.size() - 1];
-			if (point.sliding && stopsInside) now.template tail<K::rows - 1>().setZero();
+			if (point.sliding && stopsInside)
+				now.template tail<K::rows - 1>().setZero();
 			rows.offset += now;
 			solver.points.push_back(rows);
 			if constexpr (K::maxPoints > 3) {
@@ -264,18 +305,21 @@ template <class K> void SmoothStep<K>::assemble(const RigidSystem<K>& s, double 
 			}
 		}
 		if constexpr (K::maxPoints > 3)
-			if (slides && positions.size() > 3) spreadLinearly(solver.points.data() + begin, solver.points.data() + solver.points.size(), positions);
+			if (slides && positions.size() > 3)
+				spreadLinearly(solver.points.data() + begin, solver.points.data() + solver.points.size(), positions);
 	}
 }
 
 // Returns what the spins gain over the work on them, of all bodies, J.
-template <class K> double SmoothStep<K>::finish(const RigidSystem<K>& s, double h)
+template <class K>
+double SmoothStep<K>::finish(const RigidSystem<K>& s, double h)
 {
 	double gain = 0;
 	for (size_t b = 0; b < s.bodies.size(); ++b) {
 		const RigidBody<K>& body = s.bodies[b];
-		auto&               next = last.bodies[b];
-		if (body.prescribed) continue;
+		auto& next = last.bodies[b];
+		if (body.prescribed)
+			continue;
 		const FreeBody<K>& solved = solver.bodies[next.unknown];
 		next.velocity = solved.velocity;
 		next.mean = 0.5 * (body.velocity + next.velocity);
@@ -287,13 +331,15 @@ template <class K> double SmoothStep<K>::finish(const RigidSystem<K>& s, double 
 			const Vector3 contact = K::angularMomentum(body.inertia, next.middle, (solved.velocity - solved.free).template tail<3>());
 			next.momentum = before + h * body.force.template tail<3>() + contact;
 			next.velocity.template tail<3>() = K::inverseInertia(body.inertia, next.end) * next.momentum;
-			gain += std::abs(0.5 * (next.velocity.template tail<3>().dot(next.momentum) - spin.dot(before)) - mean.dot(next.momentum - before));
+			gain +=
+			    std::abs(0.5 * (next.velocity.template tail<3>().dot(next.momentum) - spin.dot(before)) - mean.dot(next.momentum - before));
 		}
 	}
 	return gain;
 }
 
-template <class K> void SmoothStep<K>::findFrames(const RigidSystem<K>& s)
+template <class K>
+void SmoothStep<K>::findFrames(const RigidSystem<K>& s)
 {
 	first.resize(s.pairs.size());
 	last.frames.clear();
@@ -301,12 +347,13 @@ template <class K> void SmoothStep<K>::findFrames(const RigidSystem<K>& s)
 		const ContactPair<K>& pair = s.pairs[c];
 		first[c] = int(last.frames.size());
 		for (int i = 0; i < pair.size; ++i)
-			last.frames.push_back(K::frame(pair.points[i].feature, s.bodies[pair.body1].halfSize, last.bodies[pair.body1].end, s.bodies[pair.body2].halfSize,
-			                               last.bodies[pair.body2].end));
+			last.frames.push_back(K::frame(pair.points[i].feature, s.bodies[pair.body1].halfSize, last.bodies[pair.body1].end,
+			                               s.bodies[pair.body2].halfSize, last.bodies[pair.body2].end));
 	}
 }
 
-template <class K> void SmoothStep<K>::attempt(const RigidSystem<K>& s, double h, bool again)
+template <class K>
+void SmoothStep<K>::attempt(const RigidSystem<K>& s, double h, bool again)
 {
 	// After an event the change of velocity in the last step, which can have been of any length, tells nothing: a second pass takes that
 	// of the first.
@@ -319,25 +366,28 @@ template <class K> void SmoothStep<K>::attempt(const RigidSystem<K>& s, double h
 	stray.clear();
 	unsteady = false;
 	const bool fresh = s.isFresh();
-	if (!fresh) dampStray(s, h);
+	if (!fresh)
+		dampStray(s, h);
 	for (int pass = 0; pass < mostPasses; ++pass) {
 		predict(s, h, pass > 0);
 		assemble(s, h);
 		solver.guessed = fresh && pass == 0;
 		last.solved = solver.solve(s.settings.tolerance * scales.stepSpeed(h), s.settings.tolerance * scales.stepSpeed(whole));
-		const bool   surprised = pass == 0 && surprises(s, last, solver.bodies, scales);
+		const bool surprised = pass == 0 && surprises(s, last, solver.bodies, scales);
 		const double gain = finish(s, h);
-		const bool   first = pass == 0 && fresh;
+		const bool first = pass == 0 && fresh;
 		if (first) {
 			findFrames(s);
 			findStray(s);
 		}
-		const bool gives = strayWork() > tolerance::rigid::strayEnergy * weight; // then they stay: in the next step they have the other sign
+		const bool gives =
+		    strayWork() > tolerance::rigid::strayEnergy * weight; // then they stay: in the next step they have the other sign
 		if (gives) {
 			stray.clear();
 			unsteady = true;
 		}
-		if (!first && !surprised && !gives && gain <= tolerance::rigid::spinEnergy * weight) break;
+		if (!first && !surprised && !gives && gain <= tolerance::rigid::spinEnergy * weight)
+			break;
 		guesses.clear();
 		for (const ContactRows<K>& rows : solver.points)
 			guesses.push_back(rows.impulse);
@@ -348,31 +398,34 @@ template <class K> void SmoothStep<K>::attempt(const RigidSystem<K>& s, double h
 // Movements that close the gaps of loaded points and take penetrations off, both up to `most` (m), and all that arose in the step. Sweeps
 // over the points, each moved back along its normal row (least motion, weighted by mass); the gaps follow linearly. Returns the work
 // against the forces on the bodies, J.
-template <class K> double SmoothStep<K>::findShifts(const RigidSystem<K>& s, double most)
+template <class K>
+double SmoothStep<K>::findShifts(const RigidSystem<K>& s, double most)
 {
 	const double enough = tolerance::rigid::gap * scales.length;
-	double       largest = 0;
+	double largest = 0;
 	misses.clear();
 	for (size_t r = 0; r < last.rows.size(); ++r) {
 		const ContactPoint<K>& point = s.pairs[last.rows[r].pair].points[last.rows[r].point];
-		const double           gap = frame(last.rows[r].pair, last.rows[r].point).gap;
-		const bool             loaded = solver.points[r].impulse[0] > 0;
-		const double           sunk = stray.empty() ? 0. : 0.5 * last.h * stray[r][0];
-		const double           meant = point.closed ? point.gap + sunk : std::min(gap, 0.);
-		const double           kept = meant - std::clamp(meant, -most, most);
+		const double gap = frame(last.rows[r].pair, last.rows[r].point).gap;
+		const bool loaded = solver.points[r].impulse[0] > 0;
+		const double sunk = stray.empty() ? 0. : 0.5 * last.h * stray[r][0];
+		const double meant = point.closed ? point.gap + sunk : std::min(gap, 0.);
+		const double kept = meant - std::clamp(meant, -most, most);
 		misses.push_back(gap - (loaded ? kept : std::min(kept, 0.)));
-		if (loaded || misses.back() < 0) largest = std::max(largest, std::abs(misses.back()));
+		if (loaded || misses.back() < 0)
+			largest = std::max(largest, std::abs(misses.back()));
 	}
 	shifts.clear();
-	if (!(largest > enough)) return 0;
+	if (!(largest > enough))
+		return 0;
 	shifts.assign(solver.bodies.size(), K::Velocity::Zero());
 	const int maxSweeps = last.rows.size() == 1 ? 1 : 20;
 	for (int sweep = 0; sweep < maxSweeps && largest > enough; ++sweep) {
 		largest = 0;
 		for (size_t r = 0; r < last.rows.size(); ++r) {
 			const ContactRows<K>& rows = solver.points[r];
-			double                miss = misses[r], softness = 0;
-			typename K::Velocity  move1 = K::Velocity::Zero(), move2 = K::Velocity::Zero();
+			double miss = misses[r], softness = 0;
+			typename K::Velocity move1 = K::Velocity::Zero(), move2 = K::Velocity::Zero();
 			if (rows.body1 >= 0) {
 				move1 = solver.bodies[rows.body1].inverseMass * rows.J1.row(0).transpose();
 				softness += rows.J1.row(0).dot(move1);
@@ -383,29 +436,38 @@ template <class K> double SmoothStep<K>::findShifts(const RigidSystem<K>& s, dou
 				softness += rows.J2.row(0).dot(move2);
 				miss += rows.J2.row(0).dot(shifts[rows.body2]);
 			}
-			if (!(rows.impulse[0] > 0) && miss >= 0) continue;
+			if (!(rows.impulse[0] > 0) && miss >= 0)
+				continue;
 			largest = std::max(largest, std::abs(miss));
-			if (rows.body1 >= 0) shifts[rows.body1] -= miss / softness * move1;
-			if (rows.body2 >= 0) shifts[rows.body2] -= miss / softness * move2;
+			if (rows.body1 >= 0)
+				shifts[rows.body1] -= miss / softness * move1;
+			if (rows.body2 >= 0)
+				shifts[rows.body2] -= miss / softness * move2;
 		}
 	}
 	double work = 0;
 	for (size_t b = 0; b < s.bodies.size(); ++b)
-		if (last.bodies[b].unknown >= 0) work -= s.bodies[b].force.dot(shifts[last.bodies[b].unknown]);
+		if (last.bodies[b].unknown >= 0)
+			work -= s.bodies[b].force.dot(shifts[last.bodies[b].unknown]);
 	return work;
 }
 
 // Closes gaps and penetrations: at once where that costs no more energy than the contacts have lost in the step, else little by little.
-template <class K> void SmoothStep<K>::project(const RigidSystem<K>& s, double lost)
+template <class K>
+void SmoothStep<K>::project(const RigidSystem<K>& s, double lost)
 {
-	if (findShifts(s, std::numeric_limits<double>::infinity()) > lost) findShifts(s, tolerance::rigid::closingSpeed * scales.speed * last.h);
-	if (shifts.empty()) return;
+	if (findShifts(s, std::numeric_limits<double>::infinity()) > lost)
+		findShifts(s, tolerance::rigid::closingSpeed * scales.speed * last.h);
+	if (shifts.empty())
+		return;
 	for (size_t b = 0; b < s.bodies.size(); ++b)
-		if (last.bodies[b].unknown >= 0) K::advance(last.bodies[b].end, shifts[last.bodies[b].unknown], 1.);
+		if (last.bodies[b].unknown >= 0)
+			K::advance(last.bodies[b].end, shifts[last.bodies[b].unknown], 1.);
 	findFrames(s);
 }
 
-template <class K> void SmoothStep<K>::accept(RigidSystem<K>& s)
+template <class K>
+void SmoothStep<K>::accept(RigidSystem<K>& s)
 {
 	const double lost = book(s);
 	project(s, lost);
@@ -413,35 +475,41 @@ template <class K> void SmoothStep<K>::accept(RigidSystem<K>& s)
 	for (size_t r = 0; last.h < whole && r < last.rows.size(); ++r)
 		partings.push_back(rigid::relativeVelocity(s, last.rows[r])[0]);
 	takeBodies(s);
-	if (takePoints(s)) s.startAnew();
+	if (takePoints(s))
+		s.startAnew();
 }
 
 // Energies of the step. Returns what the contacts have lost, J: not as a difference of what has been lost since the start.
-template <class K> double SmoothStep<K>::book(RigidSystem<K>& s) const
+template <class K>
+double SmoothStep<K>::book(RigidSystem<K>& s) const
 {
 	double impact = 0, friction = 0;
 	for (size_t r = 0; r < last.rows.size(); ++r) {
 		const ContactRows<K>& rows = solver.points[r];
-		const PointRef        ref = last.rows[r];
-		const auto&           next1 = last.bodies[s.pairs[ref.pair].body1];
-		const auto&           next2 = last.bodies[s.pairs[ref.pair].body2];
-		const auto            mean1 = (rows.J1 * next1.mean).eval(), mean2 = (rows.J2 * next2.mean).eval(), slip = (mean1 + mean2).eval();
+		const PointRef ref = last.rows[r];
+		const auto& next1 = last.bodies[s.pairs[ref.pair].body1];
+		const auto& next2 = last.bodies[s.pairs[ref.pair].body2];
+		const auto mean1 = (rows.J1 * next1.mean).eval(), mean2 = (rows.J2 * next2.mean).eval(), slip = (mean1 + mean2).eval();
 		impact -= rows.impulse[0] * slip[0];
 		friction -= rows.impulse.template tail<K::rows - 1>().dot(slip.template tail<K::rows - 1>());
-		if (next1.unknown < 0) s.baseWork -= rows.impulse.dot(mean1);
-		if (next2.unknown < 0) s.baseWork -= rows.impulse.dot(mean2);
+		if (next1.unknown < 0)
+			s.baseWork -= rows.impulse.dot(mean1);
+		if (next2.unknown < 0)
+			s.baseWork -= rows.impulse.dot(mean2);
 	}
 	s.impactDissip += impact;
 	s.frictDissip += friction;
 	return impact + friction;
 }
 
-template <class K> void SmoothStep<K>::takeBodies(RigidSystem<K>& s) const
+template <class K>
+void SmoothStep<K>::takeBodies(RigidSystem<K>& s) const
 {
 	for (size_t b = 0; b < s.bodies.size(); ++b) {
 		RigidBody<K>& body = s.bodies[b];
-		const auto&   next = last.bodies[b];
-		if (!body.prescribed && !isShort()) body.increment = (next.velocity - body.velocity) / last.h;
+		const auto& next = last.bodies[b];
+		if (!body.prescribed && !isShort())
+			body.increment = (next.velocity - body.velocity) / last.h;
 		body.pose = next.end;
 		body.velocity = next.velocity;
 	}
@@ -450,11 +518,12 @@ template <class K> void SmoothStep<K>::takeBodies(RigidSystem<K>& s) const
 }
 
 // What points carry, and whether they are in touch. True: some have landed.
-template <class K> bool SmoothStep<K>::takePoints(RigidSystem<K>& s) const
+template <class K>
+bool SmoothStep<K>::takePoints(RigidSystem<K>& s) const
 {
 	const double still = tolerance::rigid::parting * scales.stepSpeed(last.h);
-	size_t       row = 0;
-	bool         landed = false;
+	size_t row = 0;
+	bool landed = false;
 	for (size_t c = 0; c < s.pairs.size(); ++c)
 		for (int i = 0; i < s.pairs[c].size; ++i) {
 			ContactPoint<K>& point = s.pairs[c].points[i];
@@ -463,32 +532,36 @@ template <class K> bool SmoothStep<K>::takePoints(RigidSystem<K>& s) const
 			const auto before = point.force;
 			point.force.setZero();
 			const bool acted = row < last.rows.size() && last.rows[row].pair == int(c) && last.rows[row].point == i;
-			if (!acted) continue;
+			if (!acted)
+				continue;
 			const auto& rows = solver.points[row++];
-			const auto  u = relativeVelocity(s, int(c), i);
-			const bool  wasOpen = !point.closed;
+			const auto u = relativeVelocity(s, int(c), i);
+			const bool wasOpen = !point.closed;
 			point.closed = rows.impulse[0] > 0 || u[0] <= still;
 			landed |= wasOpen && point.closed;
 			// A loaded point has velocity errors of either sign, and parts where it parts ever faster.
-			const bool lostByError =
-			    last.h < whole && (u[0] <= partings[row - 1] || (isShort() && std::abs(u[0]) <= tolerance::rigid::stray * scales.stepSpeed(whole)));
+			const bool lostByError = last.h < whole && (u[0] <= partings[row - 1] ||
+			                                            (isShort() && std::abs(u[0]) <= tolerance::rigid::stray * scales.stepSpeed(whole)));
 			if (lostByError && !wasOpen && before[0] > 0 && !(rows.impulse[0] > 0)) {
 				point.closed = true;
 				point.force = before;
 				continue;
 			}
-			if (!point.closed) continue;
+			if (!point.closed)
+				continue;
 			point.force = rows.impulse / last.h;
 			point.sliding = u.template tail<K::rows - 1>().norm() > still && slides(rows);
 		}
 	return landed;
 }
 
-template <class K> Eigen::Matrix<double, K::rows, 1> SmoothStep<K>::relativeVelocity(const RigidSystem<K>& s, int pair, int point) const
+template <class K>
+Eigen::Matrix<double, K::rows, 1> SmoothStep<K>::relativeVelocity(const RigidSystem<K>& s, int pair, int point) const
 {
 	const auto& next1 = last.bodies[s.pairs[pair].body1];
 	const auto& next2 = last.bodies[s.pairs[pair].body2];
-	return rigid::relativeVelocity(last.frames[first[pair] + point], next1.end.position, next1.velocity, next2.end.position, next2.velocity);
+	return rigid::relativeVelocity(last.frames[first[pair] + point], next1.end.position, next1.velocity, next2.end.position,
+	                               next2.velocity);
 }
 
 template class SmoothStep<Plane>;

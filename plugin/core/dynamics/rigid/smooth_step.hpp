@@ -21,9 +21,9 @@
 // where D and the small part (D^T - 1) L+ are those of the last pass: passes are repeated until the energies agree.
 //
 // Stray velocities. J(q+) V+ = -J(q) V + r: an error at the start changes its sign each step, about r/2, of the order h^2. The part that
-// alternates is c = (J(q) V - J(q+) V+)/2 of a pass with c = 0. A step after an event takes it off, a landing's approach speed with it, where
-// that gives no energy; else the next one does, when it has the other sign. All points or none: redundant points would otherwise be asked
-// for motions that no rigid body makes. Steady steps take off a share, which only damps round-off.
+// alternates is c = (J(q) V - J(q+) V+)/2 of a pass with c = 0. A step after an event takes it off, a landing's approach speed with it,
+// where that gives no energy; else the next one does, when it has the other sign. All points or none: redundant points would otherwise be
+// asked for motions that no rigid body makes. Steady steps take off a share, which only damps round-off.
 //
 // The middle is predicted with the acceleration of the last step, V + h/2 dV/dt: then gaps of points in touch drift by O(h^4) a step, and
 // `project` closes them without a change of velocity.
@@ -33,82 +33,85 @@ namespace masonry::rigid {
 
 // A contact point of the system: its pair and its number there.
 struct PointRef {
-	int  pair, point;
+	int pair, point;
 	bool operator==(const PointRef& o) const { return pair == o.pair && point == o.point; }
 };
 inline bool contains(const std::vector<PointRef>& list, PointRef ref) { return std::find(list.begin(), list.end(), ref) != list.end(); }
 
 // End of a step of which nothing has been accepted yet.
-template <class K> struct Trial {
+template <class K>
+struct Trial {
 	struct BodyEnd {
-		typename K::Pose     middle, end;
+		typename K::Pose middle, end;
 		typename K::Velocity velocity, mean; // at the end; over the step
-		typename K::Spin     momentum;       // angular, at the end
-		int                  unknown; // index in the solver; -1: prescribed
+		typename K::Spin momentum;           // angular, at the end
+		int unknown;                         // index in the solver; -1: prescribed
 	};
-	double               h { 0 };
+	double h {0};
 	std::vector<BodyEnd> bodies;
-	std::vector<PointRef> rows; // as in solver.points
+	std::vector<PointRef> rows;          // as in solver.points
 	std::vector<ContactFrame<K>> frames; // at the end, of all points, pair by pair
-	SolveReport          solved;
+	SolveReport solved;
 };
 
-template <class K> class SmoothStep {
+template <class K>
+class SmoothStep {
 public:
 	// Forgets earlier steps: a run that was saved goes on with the same bits.
 	void begin(const RigidSystem<K>& system, double dt);
-	// Computes the trial of length h from the system's state. Open points do not act, but for those in `anticipated`. `again`: the last trial
-	// was of the same step and points; its forces are the first guess, which decides where a sliding point stops by a jam (an impulse
+	// Computes the trial of length h from the system's state. Open points do not act, but for those in `anticipated`. `again`: the last
+	// trial was of the same step and points; its forces are the first guess, which decides where a sliding point stops by a jam (an impulse
 	// however short the step).
 	void attempt(const RigidSystem<K>& system, double h, bool again = false);
 	// Makes it the system's state: poses, velocities, forces, energies; gaps of loaded points closed.
 	void accept(RigidSystem<K>& system);
 
-	const Trial<K>&       trial() const { return last; }
-	Scales                scales;              // of this step
-	std::vector<PointRef> anticipated;         // open points that are about to close and are not localised
-	bool                  stopsInside { false }; // sliding points may stop inside the step: friction opposes their last velocity, not the mean
+	const Trial<K>& trial() const { return last; }
+	Scales scales;                     // of this step
+	std::vector<PointRef> anticipated; // open points that are about to close and are not localised
+	bool stopsInside {false};          // sliding points may stop inside the step: friction opposes their last velocity, not the mean
 
 	// Normal rate of a point's gap, and its tangential velocity, at the end of the trial.
 	Eigen::Matrix<double, K::rows, 1> relativeVelocity(const RigidSystem<K>& system, int pair, int point) const;
-	const ContactFrame<K>&            frame(int pair, int point) const { return last.frames[first[pair] + point]; }
+	const ContactFrame<K>& frame(int pair, int point) const { return last.frames[first[pair] + point]; }
 
 private:
 	using Impulse = Eigen::Matrix<double, K::rows, 1>;
 	double timeAfter(const RigidSystem<K>& system, double h) const; // s
-	void   predict(const RigidSystem<K>& system, double h, bool again);
-	void   assemble(const RigidSystem<K>& system, double h);
-	bool   acts(const RigidSystem<K>& system, PointRef ref) const;
-	void   dampStray(const RigidSystem<K>& system, double h);
-	void   findStray(const RigidSystem<K>& system);
+	void predict(const RigidSystem<K>& system, double h, bool again);
+	void assemble(const RigidSystem<K>& system, double h);
+	bool acts(const RigidSystem<K>& system, PointRef ref) const;
+	void dampStray(const RigidSystem<K>& system, double h);
+	void findStray(const RigidSystem<K>& system);
 	double strayWork() const;
 	double finish(const RigidSystem<K>& system, double h);
-	void   findFrames(const RigidSystem<K>& system);
+	void findFrames(const RigidSystem<K>& system);
 	double findShifts(const RigidSystem<K>& system, double most);
-	void   project(const RigidSystem<K>& system, double lost);
+	void project(const RigidSystem<K>& system, double lost);
 	double book(RigidSystem<K>& system) const;
-	void   takeBodies(RigidSystem<K>& system) const;
-	bool   takePoints(RigidSystem<K>& system) const;
+	void takeBodies(RigidSystem<K>& system) const;
+	bool takePoints(RigidSystem<K>& system) const;
 	// A part of a step that tells nothing of how velocities change.
 	bool isShort() const { return last.h < tolerance::rigid::shortPart * whole; }
 
-	Trial<K>         last;
+	Trial<K> last;
 	std::vector<int> first; // index in last.frames of a pair's first point
 	std::vector<typename K::Velocity> shifts;
 	std::vector<double> misses, partings; // of the rows: m; normal velocities at the start of a part of a step, m/s
-	std::vector<Impulse> guesses, stray; // of the rows: impulses of the last pass; velocities that the step takes off (none: empty)
-	double whole { 0 }, end { 0 };       // s, the step that is being done in parts, and when it ends
-	double weight { 0 };                 // of the free bodies times the scene's length, J
-	bool   unsteady { false };            // the stray velocities were left
-	bool   partBases { false };           // how much each of two bases that move apart carries is not determined: the last step's share grows
+	std::vector<Impulse> guesses, stray;  // of the rows: impulses of the last pass; velocities that the step takes off (none: empty)
+	double whole {0}, end {0};            // s, the step that is being done in parts, and when it ends
+	double weight {0};                    // of the free bodies times the scene's length, J
+	bool unsteady {false};                // the stray velocities were left
+	bool partBases {false}; // how much each of two bases that move apart carries is not determined: the last step's share grows
 	std::vector<typename K::Vector> positions; // of the rows of one pair
 	ContactSolver<K> solver;
 };
 
 // Relative velocity (body 2 minus body 1) at a point of a frame, along its axes.
 template <class K>
-Eigen::Matrix<double, K::rows, 1> relativeVelocity(const ContactFrame<K>& frame, const typename K::Vector& center1, const typename K::Velocity& v1,
-                                                   const typename K::Vector& center2, const typename K::Velocity& v2)
+Eigen::Matrix<double, K::rows, 1> relativeVelocity(const ContactFrame<K>& frame, const typename K::Vector& center1,
+                                                   const typename K::Velocity& v1, const typename K::Vector& center2,
+                                                   const typename K::Velocity& v2)
 {
 	const auto at = [&](const typename K::Vector& center, const typename K::Velocity& v) {
 		return typename K::Vector(v.template head<K::dimension>() + K::cross(v.template tail<K::spins>(), frame.position - center));
@@ -116,10 +119,11 @@ Eigen::Matrix<double, K::rows, 1> relativeVelocity(const ContactFrame<K>& frame,
 	return frame.axes * (at(center2, v2) - at(center1, v1));
 }
 // At a point of the system, in its present state.
-template <class K> Eigen::Matrix<double, K::rows, 1> relativeVelocity(const RigidSystem<K>& s, PointRef ref)
+template <class K>
+Eigen::Matrix<double, K::rows, 1> relativeVelocity(const RigidSystem<K>& s, PointRef ref)
 {
 	const ContactPair<K>& pair = s.pairs[ref.pair];
-	const auto &          body1 = s.bodies[pair.body1], &body2 = s.bodies[pair.body2];
+	const auto &body1 = s.bodies[pair.body1], &body2 = s.bodies[pair.body2];
 	return relativeVelocity(pair.points[ref.point].frame, body1.pose.position, body1.velocity, body2.pose.position, body2.velocity);
 }
 

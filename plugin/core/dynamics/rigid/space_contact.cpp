@@ -125,8 +125,8 @@ void takeCorners(const ContactPatch& patch, const Vector3& half1, const Pose& po
 
 // Where a face leans on the border of another one, a vertex of it that slides over that border lands nowhere: its gap ends there, at a
 // speed that is all of the sliding, and so does the face that it is over. So it is no corner where a crossing close to it is nearer, and
-// has not its normal, which is that of the other face. And past the border it is none at once: up to vertexReach beyond it, the face that it
-// has left would hold it.
+// has not its normal, which is that of the other face. And past the border it is none at once: up to vertexReach beyond it, the face that
+// it has left would hold it.
 void dropPassing(const Vector3& half1, const Pose& pose1, const Vector3& half2, const Pose& pose2, PatchFeature& memory,
                  FoundPoints<Space>& out)
 {

@@ -5,7 +5,8 @@
 namespace masonry::rigid {
 
 // Velocities instead of forces, the same laws: plastic and unilateral with friction; a couple is a row that pulls as well as pushes.
-template <class K> class SparseImpulses {
+template <class K>
+class SparseImpulses {
 public:
 	std::vector<std::array<int, 2>> near; // bodies that may meet, if known: as in the contact solver
 
@@ -13,9 +14,10 @@ public:
 	ImpulseReport solve(std::vector<Body>& bodies, std::vector<ImpulsePoint>& points, std::vector<CoupleRow>& couples);
 
 private:
-	void        addPoint(const std::vector<Body>& bodies, const ImpulsePoint& point);
-	void        addCouple(const std::vector<Body>& bodies, const CoupleRow& couple, double length);
-	SolveReport solveRows(const std::vector<Body>& bodies, const std::vector<ImpulsePoint>& points, const std::vector<CoupleRow>& couples, double length);
+	void addPoint(const std::vector<Body>& bodies, const ImpulsePoint& point);
+	void addCouple(const std::vector<Body>& bodies, const CoupleRow& couple, double length);
+	SolveReport solveRows(const std::vector<Body>& bodies, const std::vector<ImpulsePoint>& points, const std::vector<CoupleRow>& couples,
+	                      double length);
 
 	ContactSolver<K> solver;
 	std::vector<int> unknown; // of a body in the solver; -1: prescribed

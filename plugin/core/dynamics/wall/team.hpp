@@ -41,7 +41,7 @@ private:
 
 	std::shared_ptr<Board> board; // helpers may outlive the team, and a fork of the process has none
 	int helpers {0};
-	int alone {0};                           // calls to come without helpers
+	int alone {0};                            // calls to come without helpers
 	int rest {shortestRest}, undisturbed {0}; // calls without helpers the next time; calls since the last
 };
 

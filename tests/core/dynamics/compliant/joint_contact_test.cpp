@@ -11,7 +11,7 @@ namespace {
 
 // A block of 1 x 1 x 1 m on another, turned by `yaw`, pressed in by `depth`; moved by `step` in the last dt = 1e-3 s.
 struct PressedBlocks {
-	Body         lower, upper;
+	Body lower, upper;
 	JointContact contact;
 	ContactPatch patch;
 
@@ -19,8 +19,8 @@ struct PressedBlocks {
 	{
 		lower.prescribed = true;
 		upper.mass = 1000;
-		upper.inertia = { 160, 160, 160 };
-		upper.pose.position = { 0, 0, 1 - depth };
+		upper.inertia = {160, 160, 160};
+		upper.pose.position = {0, 0, 1 - depth};
 		upper.pose.orientation = Eigen::AngleAxisd(yaw, Vector3::UnitZ());
 		contact.body1 = 0;
 		contact.body2 = 1;
@@ -29,7 +29,7 @@ struct PressedBlocks {
 	}
 	void look()
 	{
-		const Box cube { Vector3::Constant(0.5) };
+		const Box cube {Vector3::Constant(0.5)};
 		REQUIRE(collide(cube, lower.pose, cube, upper.pose, 0, contact.patch.feature, patch));
 		renewPatch(contact, patch);
 	}
@@ -49,13 +49,13 @@ struct PressedBlocks {
 	}
 };
 
-const JointLaw law { 1e9, 5e8, 0, 0.5, 1 };
+const JointLaw law {1e9, 5e8, 0, 0.5, 1};
 
 } // namespace
 
 TEST_CASE("The stiffness of a joint does not depend on the number of its points")
 {
-	for (double yaw : { 0., 0.1, 0.5, 0.785 }) {
+	for (double yaw : {0., 0.1, 0.5, 0.785}) {
 		PressedBlocks blocks(yaw, 1e-6, law);
 		blocks.move(Vector3::Zero());
 		INFO("yaw " << yaw << ", " << blocks.contact.size << " points");
@@ -69,10 +69,10 @@ TEST_CASE("Shear is elastic up to mu N and slips beyond, and the work done goes 
 	PressedBlocks blocks(0, 1e-6, law);
 	blocks.move(Vector3::Zero());
 	const double N = 1e9 * 1e-6, k = 5e8; // area 1 m^2
-	blocks.move({ 5e-7, 0, 0 });
+	blocks.move({5e-7, 0, 0});
 	CHECK(blocks.total().x() == Approx(-k * 5e-7).epsilon(1e-9)); // 250 N of 500 N
 	CHECK(blocks.contact.energy.friction == 0);
-	blocks.move({ 2e-6, 0, 0 });
+	blocks.move({2e-6, 0, 0});
 	CHECK(blocks.total().x() == Approx(-0.5 * N).epsilon(1e-9));
 	// Elastic limit 1e-6 m: 1.5e-6 of the 2.5e-6 m has slipped, under the limit force.
 	CHECK(blocks.contact.energy.friction == Approx(0.5 * N * 1.5e-6).epsilon(1e-9));
@@ -83,7 +83,7 @@ TEST_CASE("No slip is a law of its own")
 	JointLaw stuck = law;
 	stuck.friction = noSlip;
 	PressedBlocks blocks(0, 1e-6, stuck);
-	blocks.move({ 1e-4, 0, 0 });
+	blocks.move({1e-4, 0, 0});
 	CHECK(blocks.total().x() == Approx(-5e8 * blocks.patch.area * 1e-4).epsilon(1e-9));
 }
 
@@ -96,7 +96,7 @@ TEST_CASE("A muted point carries nothing, an open one neither, and no joint pull
 	blocks.move(Vector3::Zero());
 	CHECK(blocks.contact.force(0).norm() == 0);
 	CHECK(blocks.total().z() == Approx(0.75 * 1e9 * 1e-6).epsilon(1e-9));
-	blocks.move({ 0, 0, 0.9e-6 }); // leaves fast: the dashpot would pull
+	blocks.move({0, 0, 0.9e-6}); // leaves fast: the dashpot would pull
 	for (int i = 0; i < blocks.contact.size; ++i)
 		CHECK(blocks.contact.points[i].normalForce >= 0);
 }
@@ -104,7 +104,7 @@ TEST_CASE("A muted point carries nothing, an open one neither, and no joint pull
 TEST_CASE("A point that stays keeps its shear when the patch is renewed")
 {
 	PressedBlocks blocks(0, 1e-6, law);
-	blocks.move({ 3e-7, 0, 0 });
+	blocks.move({3e-7, 0, 0});
 	const auto before = blocks.contact.points[2];
 	blocks.look();
 	CHECK(blocks.contact.points[2].identity == before.identity);
@@ -114,11 +114,11 @@ TEST_CASE("A point that stays keeps its shear when the patch is renewed")
 TEST_CASE("The shear of a joint that turns with its blocks turns with it, at its length")
 {
 	PressedBlocks blocks(0, 1e-6, law);
-	blocks.move({ 3e-7, 0, 0 });
-	const Vector3   before = blocks.contact.points[2].shear;
+	blocks.move({3e-7, 0, 0});
+	const Vector3 before = blocks.contact.points[2].shear;
 	const Quaternion turn(Eigen::AngleAxisd(0.3, Vector3::UnitY()));
-	for (Body* body : { &blocks.lower, &blocks.upper })
-		body->pose = { turn * body->pose.position, turn * body->pose.orientation };
+	for (Body* body : {&blocks.lower, &blocks.upper})
+		body->pose = {turn * body->pose.position, turn * body->pose.orientation};
 	blocks.look();
 	CHECK((blocks.contact.points[2].shear - turn * before).norm() < 1e-12 * before.norm()); // round-off
 }

@@ -7,19 +7,19 @@
 #include <vector>
 
 struct LeapfrogRig {
-	masonry::JointSystem                 system;
-	std::vector<masonry::Box>            boxes;
-	std::vector<std::pair<int, int>>     pairs; // who may touch whom
-	std::vector<masonry::JointContact>   known; // per pair
-	std::vector<masonry::PatchFeature>   features;
-	masonry::JointLaw                    law;
-	std::vector<masonry::Vector3>        angularMomentum;
-	std::vector<masonry::ImpactRecord>   impacts;
-	std::vector<double>                  impactTimes;
-	double                               time { 0 };
-	bool                                 started { false };
-	std::function<void()>                              onStart = [] {};
-	std::function<void(const masonry::ImpactRecord&)>  onImpact = [](const masonry::ImpactRecord&) {};
+	masonry::JointSystem system;
+	std::vector<masonry::Box> boxes;
+	std::vector<std::pair<int, int>> pairs;   // who may touch whom
+	std::vector<masonry::JointContact> known; // per pair
+	std::vector<masonry::PatchFeature> features;
+	masonry::JointLaw law;
+	std::vector<masonry::Vector3> angularMomentum;
+	std::vector<masonry::ImpactRecord> impacts;
+	std::vector<double> impactTimes;
+	double time {0};
+	bool started {false};
+	std::function<void()> onStart = [] {};
+	std::function<void(const masonry::ImpactRecord&)> onImpact = [](const masonry::ImpactRecord&) {};
 
 	int addBox(const masonry::Vector3& size, const masonry::Vector3& centre, double density, bool prescribed)
 	{
@@ -29,10 +29,11 @@ struct LeapfrogRig {
 		const masonry::Vector3 s = size.cwiseAbs2();
 		body.inertia = body.mass / 12 * masonry::Vector3(s.y() + s.z(), s.x() + s.z(), s.x() + s.y());
 		body.prescribed = prescribed;
-		boxes.push_back({ size / 2 });
+		boxes.push_back({size / 2});
 		system.bodies.push_back(body);
 		for (int other = 0; other + 1 < int(boxes.size()); ++other)
-			if (!prescribed || !system.bodies[other].prescribed) pairs.push_back({ other, int(boxes.size()) - 1 });
+			if (!prescribed || !system.bodies[other].prescribed)
+				pairs.push_back({other, int(boxes.size()) - 1});
 		return int(boxes.size()) - 1;
 	}
 
@@ -45,7 +46,7 @@ struct LeapfrogRig {
 		for (size_t k = 0; k < pairs.size(); ++k) {
 			const auto [a, b] = pairs[k];
 			masonry::ContactPatch patch;
-			const double          margin = 1e-3 * boxes[b].halfSize.minCoeff();
+			const double margin = 1e-3 * boxes[b].halfSize.minCoeff();
 			if (!masonry::collide(boxes[a], system.bodies[a].pose, boxes[b], system.bodies[b].pose, margin, features[k], patch)) {
 				known[k] = {};
 				features[k] = {};
@@ -92,7 +93,7 @@ struct LeapfrogRig {
 			known[index[c]] = contact;
 			for (int i = 0; i < contact.size; ++i) {
 				const Vector3 f = contact.force(i), x = contact.position(i);
-				Body &        b1 = system.bodies[contact.body1], &b2 = system.bodies[contact.body2];
+				Body &b1 = system.bodies[contact.body1], &b2 = system.bodies[contact.body2];
 				b1.force -= f;
 				b1.torque -= (x - b1.pose.position).cross(f);
 				b2.force += f;

@@ -9,14 +9,14 @@ TEST_CASE("A spinning body accelerates so that its momentum follows the torque")
 {
 	Body body;
 	body.mass = 10;
-	body.inertia = { 1, 2, 4 };
+	body.inertia = {1, 2, 4};
 	body.pose.orientation = Eigen::AngleAxisd(0.7, Vector3(1, 2, 3).normalized());
-	body.angularVelocity = { 3, -1, 2 };
-	body.force = { 5, 6, 7 };
-	body.torque = { 1, -2, 0.5 };
-	const RigidAcceleration rates = rigidAcceleration({ body }, {}, {}, solveImpulses);
+	body.angularVelocity = {3, -1, 2};
+	body.force = {5, 6, 7};
+	body.torque = {1, -2, 0.5};
+	const RigidAcceleration rates = rigidAcceleration({body}, {}, {}, solveImpulses);
 	const auto momentum = [&](double t) {
-		const Vector3    mean = body.angularVelocity + 0.5 * t * rates.angular[0], spin = body.angularVelocity + t * rates.angular[0];
+		const Vector3 mean = body.angularVelocity + 0.5 * t * rates.angular[0], spin = body.angularVelocity + t * rates.angular[0];
 		const Quaternion turned = Quaternion(Eigen::AngleAxisd(mean.norm() * t, mean.normalized())) * body.pose.orientation;
 		return Vector3(turned * body.inertia.cwiseProduct(turned.conjugate() * spin));
 	};

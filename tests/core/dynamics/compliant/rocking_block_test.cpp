@@ -11,20 +11,19 @@ namespace {
 constexpr double g = 9.81, density = 2000, depth = 1;
 
 struct RockingScene {
-	double      b, a, alpha;
+	double b, a, alpha;
 	LeapfrogRig rig;
-	int         base, block; // the lowest block
+	int base, block; // the lowest block
 
 	// `blocks` equal blocks make the outline 2b x 2a; turned about the edge x = +b by `angle`.
-	RockingScene(double halfWidth, double slenderness, double restitution, double penetration, double angle, int blocks = 1, double stepFraction = 0.2)
-	        : b(halfWidth)
-	        , a(slenderness * halfWidth)
-	        , alpha(std::atan(1 / slenderness))
+	RockingScene(double halfWidth, double slenderness, double restitution, double penetration, double angle, int blocks = 1,
+	             double stepFraction = 0.2)
+	    : b(halfWidth), a(slenderness * halfWidth), alpha(std::atan(1 / slenderness))
 	{
-		rig.system.gravity = { 0, 0, -g };
-		base = rig.addBox({ 6 * a, 2 * depth, 1 }, { 0, 0, -0.5 }, density, true);
+		rig.system.gravity = {0, 0, -g};
+		base = rig.addBox({6 * a, 2 * depth, 1}, {0, 0, -0.5}, density, true);
 		for (int k = 0; k < blocks; ++k)
-			block = rig.addBox({ 2 * b, depth, 2 * a / blocks }, { 0, 0, (2 * k + 1) * a / blocks }, density, false);
+			block = rig.addBox({2 * b, depth, 2 * a / blocks}, {0, 0, (2 * k + 1) * a / blocks}, density, false);
 		block = 1;
 		const Quaternion turn(Eigen::AngleAxisd(angle, Vector3::UnitY()));
 		for (int k = 0; k < blocks; ++k) {
@@ -50,7 +49,7 @@ struct RockingScene {
 	std::vector<double> peaks(int count)
 	{
 		std::vector<double> found;
-		double              before = std::abs(angle()), here = before;
+		double before = std::abs(angle()), here = before;
 		while (int(found.size()) < count && rig.time < 60) {
 			rig.step();
 			const double next = std::abs(angle());
@@ -64,18 +63,23 @@ struct RockingScene {
 
 	// Energy over weight times radius: cos(alpha - angle) - cos(alpha); an impact multiplies it by C^2.
 	double potential(double theta) const { return std::cos(alpha - theta) - std::cos(alpha); }
-	double peakAfter(int impacts, double start, double C) const { return alpha - std::acos(std::cos(alpha) + std::pow(C, 2 * impacts) * potential(start)); }
+	double peakAfter(int impacts, double start, double C) const
+	{
+		return alpha - std::acos(std::cos(alpha) + std::pow(C, 2 * impacts) * potential(start));
+	}
 
 	// Time from a peak to the impact: the quadrature of d(theta)/w, singular at the peak.
 	double quarterPeriod(double peak) const
 	{
-		const double                                  p = std::sqrt(3 * g / (4 * std::hypot(a, b)));
+		const double p = std::sqrt(3 * g / (4 * std::hypot(a, b)));
 		boost::math::quadrature::tanh_sinh<double> integrate;
 		// w^2 = 2 p^2 (cos(alpha - peak) - cos(alpha - theta)), written as a product: no cancellation at the peak.
-		return integrate.integrate([&](double theta, double toEnd) {
-            const double fall = toEnd > 0 ? toEnd : peak - theta; // peak - theta; exact near the peak
-            return 1 / (2 * p * std::sqrt(std::sin(alpha - peak + fall / 2) * std::sin(fall / 2)));
-		}, 0., peak);
+		return integrate.integrate(
+		    [&](double theta, double toEnd) {
+			    const double fall = toEnd > 0 ? toEnd : peak - theta; // peak - theta; exact near the peak
+			    return 1 / (2 * p * std::sqrt(std::sin(alpha - peak + fall / 2) * std::sin(fall / 2)));
+		    },
+		    0., peak);
 	}
 };
 
@@ -85,10 +89,10 @@ TEST_CASE("15 half cycles of a block, slenderness 5, C = 0.9, from 0.9 alpha")
 {
 	// Rigid-block error of a joint that is pressed in by 1e-5 (1e-6) of the width: the elastic angle, twice the
 	// penetration, against the last peak of 0.04 alpha is 2e-3 (2e-4); the hand-off removes its leading part.
-	for (const auto& [penetration, bound] : { std::pair(1e-5, 3e-4), std::pair(1e-6, 3e-5) })
-		for (double stepFraction : { 0.2, 0.1 }) {
+	for (const auto& [penetration, bound] : {std::pair(1e-5, 3e-4), std::pair(1e-6, 3e-5)})
+		for (double stepFraction : {0.2, 0.1}) {
 			RockingScene scene(0.3, 5, 0.9, penetration, 0.9 * std::atan(0.2), 1, stepFraction);
-			const auto   peaks = scene.peaks(15);
+			const auto peaks = scene.peaks(15);
 			REQUIRE(peaks.size() == 15);
 			for (int n = 0; n < 15; ++n) {
 				INFO("penetration " << penetration << " peak " << n + 1);
@@ -115,8 +119,8 @@ TEST_CASE("Impact times equal the quadrature of the rigid block")
 
 TEST_CASE("The restitution that the peaks show is the one asked for")
 {
-	for (double slenderness : { 1., 3., 5., 8., 12. })
-		for (double C : { 0.5, 0.7, 0.9, 1. }) {
+	for (double slenderness : {1., 3., 5., 8., 12.})
+		for (double C : {0.5, 0.7, 0.9, 1.}) {
 			RockingScene scene(0.3, slenderness, C, 1e-5, 0.9 * std::atan(1 / slenderness));
 			// Peaks below a hundred elastic angles (2e-5 each) say little of the rigid block.
 			int count = 0;
@@ -136,11 +140,11 @@ TEST_CASE("A resonant pulse train gives the velocities of Eq. 7")
 	const double I = 0.0125 * g, C = 0.7;
 	RockingScene scene(0.3, 5, C, 1e-5, 0);
 	const double w1 = 0.75 * I * scene.a / (scene.a * scene.a + scene.b * scene.b); // Eq. 1: I M a / (4 M R^2 / 3)
-	auto&        rig = scene.rig;
-	double       sign = 1;
-	const auto   pulse = [&](double size, double before) {
-        applyBaseJump(rig.system, { scene.base }, Vector3(sign * size, 0, 0), before);
-        sign = -sign;
+	auto& rig = scene.rig;
+	double sign = 1;
+	const auto pulse = [&](double size, double before) {
+		applyBaseJump(rig.system, {scene.base}, Vector3(sign * size, 0, 0), before);
+		sign = -sign;
 	};
 	rig.onImpact = [&](const ImpactRecord& impact) { pulse(2 * I, impact.before); };
 	rig.onStart = [&] { pulse(I, 0); };
@@ -148,7 +152,8 @@ TEST_CASE("A resonant pulse train gives the velocities of Eq. 7")
 	while (rig.impacts.size() < 20 && rig.time < 60) {
 		const size_t known = rig.impacts.size();
 		rig.step();
-		if (rig.impacts.size() == known) continue;
+		if (rig.impacts.size() == known)
+			continue;
 		INFO("half cycle " << known + 1);
 		CHECK(std::abs(rig.impacts.back().result.before / (s * w1) - 1) < 1e-3);
 		s = C * s + 2;
@@ -173,12 +178,12 @@ TEST_CASE("A stack that rocks as one body has the single block's impacts under t
 TEST_CASE("The critical time step is where the leapfrog scheme turns unstable")
 {
 	// Undamped, knocked a little: below the step the motion stays bounded, above it grows without bound.
-	for (const auto& [fraction, stable] : { std::pair(0.95, true), std::pair(1.05, false) }) {
+	for (const auto& [fraction, stable] : {std::pair(0.95, true), std::pair(1.05, false)}) {
 		RockingScene scene(0.3, 1.5, 0., 1e-4, 0, 1, fraction);
 		scene.rig.law.dampingRatio = 0;
 		Body& body = scene.rig.system.bodies[scene.block];
 		const double depth = 1e-4 * 2 * scene.b;
-		double       furthest = 0;
+		double furthest = 0;
 		scene.rig.step();
 		body.velocity += Vector3(1e-3, 0, 1e-3) * depth / scene.rig.system.dt;
 		for (int n = 0; n < 2000 && furthest < depth; ++n) {
@@ -192,18 +197,19 @@ TEST_CASE("The critical time step is where the leapfrog scheme turns unstable")
 
 TEST_CASE("Free blocks upon each other are stable below the critical time step")
 {
-	// Of two equal masses on two equal springs the highest omega^2 is 2.618 k/m: above the 2 k/m of the lower one while the other is held, and
-	// below twice that.
+	// Of two equal masses on two equal springs the highest omega^2 is 2.618 k/m: above the 2 k/m of the lower one while the other is held,
+	// and below twice that.
 	RockingScene scene(0.3, 1.5, 0., 1e-4, 0, 2, 0.95);
 	scene.rig.law.dampingRatio = 0;
 	const double depth = 1e-4 * 2 * scene.b;
-	double       furthest = 0;
+	double furthest = 0;
 	scene.rig.step();
 	scene.rig.system.bodies[scene.block].velocity += Vector3(1e-3, 0, 1e-3) * depth / scene.rig.system.dt;
 	for (int n = 0; n < 2000 && furthest < depth; ++n) {
 		scene.rig.step();
 		for (int k = 0; k < 2; ++k)
-			furthest = std::max(furthest, (scene.rig.system.bodies[scene.block + k].pose.position - Vector3(0, 0, (k + 0.5) * scene.a)).norm() - 2 * depth);
+			furthest = std::max(
+			    furthest, (scene.rig.system.bodies[scene.block + k].pose.position - Vector3(0, 0, (k + 0.5) * scene.a)).norm() - 2 * depth);
 	}
 	CHECK(furthest < depth);
 }

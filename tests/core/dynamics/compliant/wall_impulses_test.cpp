@@ -10,30 +10,32 @@ using namespace masonry;
 namespace {
 
 constexpr double g = 9.81, density = 2000;
-const Vector3    size(0.2, 0.2, 0.175); // of a block, m
+const Vector3 size(0.2, 0.2, 0.175); // of a block, m
 
 struct Problem {
-	std::vector<Body>         bodies;
+	std::vector<Body> bodies;
 	std::vector<ImpulsePoint> points;
-	std::vector<CoupleRow>    couples;
+	std::vector<CoupleRow> couples;
 };
 
 // Two blocks, a block between halves, two blocks, on a base that jumps twice.
 struct Wall {
 	LeapfrogRig rig;
-	int         steps { 0 };
+	int steps {0};
 
 	explicit Wall(double friction)
 	{
-		rig.system.gravity = { 0, 0, -g };
-		rig.addBox({ 2, 1, 0.2 }, { 0, 0, -0.1 }, density, true);
+		rig.system.gravity = {0, 0, -g};
+		rig.addBox({2, 1, 0.2}, {0, 0, -0.1}, density, true);
 		for (int course = 0; course < 3; ++course) {
 			const double z = (course + 0.5) * size.z();
 			const Vector3 half(0.5 * size.x(), size.y(), size.z());
-			if (course == 1) rig.addBox(half, { -0.75 * size.x(), 0, z }, density, false);
-			for (double x : course == 1 ? std::vector<double> { 0. } : std::vector<double> { -0.5, 0.5 })
-				rig.addBox(size, { x * size.x(), 0, z }, density, false);
-			if (course == 1) rig.addBox(half, { 0.75 * size.x(), 0, z }, density, false);
+			if (course == 1)
+				rig.addBox(half, {-0.75 * size.x(), 0, z}, density, false);
+			for (double x : course == 1 ? std::vector<double> {0.} : std::vector<double> {-0.5, 0.5})
+				rig.addBox(size, {x * size.x(), 0, z}, density, false);
+			if (course == 1)
+				rig.addBox(half, {0.75 * size.x(), 0, z}, density, false);
 		}
 		constexpr double penetration = 1e-4; // of the width
 		rig.law.normalStiffness = rig.law.shearStiffness = density * g * 3 * size.z() / (penetration * size.x());
@@ -46,13 +48,14 @@ struct Wall {
 		jump(1);
 	}
 
-	void jump(double sign) { applyBaseJump(rig.system, { 0 }, Vector3(sign * 0.3, 0.1 * sign, 0), 0); }
+	void jump(double sign) { applyBaseJump(rig.system, {0}, Vector3(sign * 0.3, 0.1 * sign, 0), 0); }
 
 	void run(int count)
 	{
 		for (int k = 0; k < count; ++k) {
 			rig.step();
-			if (++steps == 600) jump(-1);
+			if (++steps == 600)
+				jump(-1);
 		}
 	}
 
@@ -60,17 +63,19 @@ struct Wall {
 	Problem problem(double friction, bool withCouple) const
 	{
 		const JointSystem& s = rig.system;
-		Problem            p { s.bodies, {}, {} };
+		Problem p {s.bodies, {}, {}};
 		for (Body& body : p.bodies) // seen from the base, which then does no work
 			body.velocity -= s.bodies.front().velocity;
 		for (const JointContact& c : s.contacts)
 			for (int i = 0; i < c.size; ++i)
-				if (c.patch.points[i].gap < 0) p.points.push_back({ c.body1, c.body2, c.position(i), c.patch.normal, friction });
-		const int     block = 1 + steps % 7;
+				if (c.patch.points[i].gap < 0)
+					p.points.push_back({c.body1, c.body2, c.position(i), c.patch.normal, friction});
+		const int block = 1 + steps % 7;
 		const Vector3 axis = Vector3::UnitY();
 		for (const JointContact& c : s.contacts)
 			if (withCouple && c.body2 == block && std::abs(c.patch.normal.z()) > 0.9 && p.couples.empty())
-				p.couples.push_back({ c.body1, block, axis, 0.7 * axis.dot(s.bodies[block].angularVelocity - s.bodies[c.body1].angularVelocity) });
+				p.couples.push_back(
+				    {c.body1, block, axis, 0.7 * axis.dot(s.bodies[block].angularVelocity - s.bodies[c.body1].angularVelocity)});
 		return p;
 	}
 };
@@ -84,23 +89,27 @@ double speed(const Problem& p)
 }
 
 // By how much a solution misses the laws as impulse_problem.hpp states them, m/s: approach, pull, product of the two, slip inside the cone
-// and slip that is not against the impulse. An impulse counts as the velocity that it gives to a whole block. The bound of 1e-6 below: 1e-8 of
-// the solver, times what the response of a point is above 1/mass, at most a hundred.
+// and slip that is not against the impulse. An impulse counts as the velocity that it gives to a whole block. The bound of 1e-6 below: 1e-8
+// of the solver, times what the response of a point is above 1/mass, at most a hundred.
 double missed(const Problem& p)
 {
 	double worst = 0, mass = 0;
 	for (const Body& body : p.bodies)
-		if (!body.prescribed) mass = std::max(mass, body.mass);
+		if (!body.prescribed)
+			mass = std::max(mass, body.mass);
 	for (const ImpulsePoint& q : p.points) {
 		const Vector3 u = p.bodies[q.body2].velocityAt(q.position) - p.bodies[q.body1].velocityAt(q.position);
-		const double  un = q.normal.dot(u), pn = q.normal.dot(q.impulse) / mass;
+		const double un = q.normal.dot(u), pn = q.normal.dot(q.impulse) / mass;
 		const Vector3 ut = u - un * q.normal, pt = q.impulse / mass - pn * q.normal;
-		const double  room = q.friction * pn - pt.norm(); // inside the cone, m/s
-		worst = std::max({ worst, -un, -pn, std::min(un, pn), -room, std::min(room, ut.norm()) });
-		if (ut.norm() > 0 && pt.norm() > 0) worst = std::max(worst, std::min(ut.norm(), pt.norm()) * (ut.normalized() + pt.normalized()).norm());
+		const double room = q.friction * pn - pt.norm(); // inside the cone, m/s
+		worst = std::max({worst, -un, -pn, std::min(un, pn), -room, std::min(room, ut.norm())});
+		if (ut.norm() > 0 && pt.norm() > 0)
+			worst = std::max(worst, std::min(ut.norm(), pt.norm()) * (ut.normalized() + pt.normalized()).norm());
 	}
 	for (const CoupleRow& row : p.couples)
-		worst = std::max(worst, size.x() * std::abs(row.axis.dot(p.bodies[row.body2].angularVelocity - p.bodies[row.body1].angularVelocity) - row.target));
+		worst =
+		    std::max(worst, size.x() * std::abs(row.axis.dot(p.bodies[row.body2].angularVelocity - p.bodies[row.body1].angularVelocity) -
+		                                        row.target));
 	return worst;
 }
 
@@ -108,8 +117,8 @@ double apart(const Problem& one, const Problem& other)
 {
 	double most = 0;
 	for (size_t b = 0; b < one.bodies.size(); ++b)
-		most = std::max({ most, (one.bodies[b].velocity - other.bodies[b].velocity).norm(),
-		                  size.z() * (one.bodies[b].angularVelocity - other.bodies[b].angularVelocity).norm() });
+		most = std::max({most, (one.bodies[b].velocity - other.bodies[b].velocity).norm(),
+		                 size.z() * (one.bodies[b].angularVelocity - other.bodies[b].angularVelocity).norm()});
 	return most;
 }
 
@@ -119,23 +128,27 @@ double apart(const Problem& one, const Problem& other)
 // patches, at most a hundred. With friction there may be several solutions: each meets the laws.
 TEST_CASE("Impulses of a moving wall: the sparse solver's velocities are the dense one's")
 {
-	for (const double friction : { 0., 0.65 }) {
+	for (const double friction : {0., 0.65}) {
 		Wall wall(0.65);
-		int  problems = 0, solved = 0, compared = 0;
+		int problems = 0, solved = 0, compared = 0;
 		for (int k = 0; k < 16; ++k) {
 			wall.run(100);
 			Problem sparse = wall.problem(friction, k % 2), dense = sparse;
-			if (sparse.points.size() <= 8) continue;
+			if (sparse.points.size() <= 8)
+				continue;
 			++problems;
 			const double fastest = speed(sparse);
 			INFO("friction " << friction << " state " << k << " points " << sparse.points.size());
-			if (!rigid::solveSparsely(sparse.bodies, sparse.points, sparse.couples).solved) continue;
+			if (!rigid::solveSparsely(sparse.bodies, sparse.points, sparse.couples).solved)
+				continue;
 			++solved;
 			CHECK(missed(sparse) <= 1e-6 * fastest);
-			if (!solveImpulses(dense.bodies, dense.points, dense.couples).solved) continue;
+			if (!solveImpulses(dense.bodies, dense.points, dense.couples).solved)
+				continue;
 			++compared;
 			CHECK(missed(dense) <= 1e-6 * fastest);
-			if (friction == 0) CHECK(apart(sparse, dense) <= 1e-6 * fastest);
+			if (friction == 0)
+				CHECK(apart(sparse, dense) <= 1e-6 * fastest);
 		}
 		CAPTURE(friction, problems, solved, compared);
 		CHECK(problems > 10);
@@ -147,12 +160,12 @@ TEST_CASE("Impulses of a moving wall: the sparse solver's velocities are the den
 // Solved or not (without slip there may be no solution), and the report says which.
 TEST_CASE("Impulses of a moving wall add no energy")
 {
-	for (const double friction : { 0.2, 0.65, noSlip }) {
+	for (const double friction : {0.2, 0.65, noSlip}) {
 		Wall wall(0.65);
 		for (int k = 0; k < 7; ++k) {
 			wall.run(200);
-			Problem             p = wall.problem(friction, false);
-			const double        fastest = speed(p), before = kineticEnergy(p.bodies);
+			Problem p = wall.problem(friction, false);
+			const double fastest = speed(p), before = kineticEnergy(p.bodies);
 			const ImpulseReport report = rigid::solveSparsely(p.bodies, p.points, p.couples);
 			INFO("friction " << friction << " state " << k << " points " << p.points.size() << " residual " << report.residual / fastest);
 			CHECK(kineticEnergy(p.bodies) <= before * (1 + 1e-7)); // round-off and the residual, 1e-8 of the speed
@@ -164,9 +177,9 @@ TEST_CASE("Impulses of a moving wall add no energy")
 // A rocking wall hands over pivots: each impact keeps its restitution, adds no energy, and what was not solved is told.
 TEST_CASE("Impacts of a moving wall take energy away and tell what they miss")
 {
-	Wall   wall(0.65);
+	Wall wall(0.65);
 	double speed = 0;
-	int    told = 0;
+	int told = 0;
 	wall.rig.onImpact = [&](const ImpactRecord& impact) {
 		CHECK(impact.result.energyLost >= -1e-9 * kineticEnergy(wall.rig.system.bodies));
 		if (impact.switched && !impact.result.capped && impact.result.solved)

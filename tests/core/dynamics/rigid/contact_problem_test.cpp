@@ -3,8 +3,8 @@
 #include "dynamics/rigid/rigid_step.hpp"
 #include "dynamics/rigid/sparse_impulses.hpp"
 #include "space_rig.hpp"
-#include <catch2/catch.hpp>
 #include <atomic>
+#include <catch2/catch.hpp>
 #include <cstdlib>
 #include <new>
 #include <random>
@@ -14,14 +14,15 @@ using namespace masonry::rigid;
 
 namespace {
 
-std::atomic<long> allocations { 0 };
+std::atomic<long> allocations {0};
 
 } // namespace
 
 void* operator new(std::size_t size)
 {
 	++allocations;
-	if (void* p = std::malloc(size ? size : 1)) return p;
+	if (void* p = std::malloc(size ? size : 1))
+		return p;
 	throw std::bad_alloc();
 }
 void* operator new(std::size_t size, const std::nothrow_t&) noexcept // the sanitizer pairs it with the delete below
@@ -38,11 +39,14 @@ using Random = std::mt19937;
 
 double number(Random& random, double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); }
 
-Vector3 vector(Random& random, double size) { return { number(random, -size, size), number(random, -size, size), number(random, -size, size) }; }
+Vector3 vector(Random& random, double size)
+{
+	return {number(random, -size, size), number(random, -size, size), number(random, -size, size)};
+}
 
 // A column of boxes on a base (body 0), normals up. Planar: motion in x, z alone.
 struct Column {
-	std::vector<Body>         bodies;
+	std::vector<Body> bodies;
 	std::vector<ImpulsePoint> points;
 };
 
@@ -58,28 +62,28 @@ Body boxBody(const Vector3& centre, const Vector3& half, double density)
 
 Column randomColumn(Random& random, double friction, bool planar, int most = 3)
 {
-	Column    column;
+	Column column;
 	const int blocks = 1 + int(number(random, 0, most));
-	Body      base;
+	Body base;
 	base.prescribed = true;
 	column.bodies.push_back(base);
-	double  top = 0;
+	double top = 0;
 	Vector3 below(2, 2, 2);
 	for (int b = 1; b <= blocks; ++b) {
 		const Vector3 half(number(random, 0.1, 0.5), number(random, 0.1, 0.5), number(random, 0.1, 1.));
-		Body          body = boxBody({ 0, 0, top + half.z() }, half, std::pow(10., number(random, 2, 4)));
+		Body body = boxBody({0, 0, top + half.z()}, half, std::pow(10., number(random, 2, 4)));
 		body.velocity = vector(random, 1);
 		body.angularVelocity = vector(random, 2);
 		if (planar) {
 			body.velocity.y() = 0;
 			body.angularVelocity = Vector3(0, body.angularVelocity.y(), 0);
 		}
-		const Vector3    face = half.cwiseMin(below);
+		const Vector3 face = half.cwiseMin(below);
 		const Quaternion turn(Eigen::AngleAxisd(planar ? 0. : number(random, 0, 0.2), Vector3::UnitZ()));
-		const int        touching = int(number(random, 0, 3)); // all four, an edge, a corner
+		const int touching = int(number(random, 0, 3)); // all four, an edge, a corner
 		for (int corner = 0; corner < (planar ? 2 : 4) >> (planar ? std::min(touching, 1) : touching); ++corner) {
 			const double y = planar ? 0 : corner & 2 ? -face.y() : face.y();
-			column.points.push_back({ b - 1, b, turn * Vector3(corner & 1 ? -face.x() : face.x(), y, top), Vector3::UnitZ(), friction });
+			column.points.push_back({b - 1, b, turn * Vector3(corner & 1 ? -face.x() : face.x(), y, top), Vector3::UnitZ(), friction});
 		}
 		top += 2 * half.z();
 		below = half;
@@ -92,7 +96,7 @@ Column randomColumn(Random& random, double friction, bool planar, int most = 3)
 void addPoint(ContactSolver<Space>& solver, const Column& column, const ImpulsePoint& point)
 {
 	ContactRows<Space> row;
-	Matrix3            axes;
+	Matrix3 axes;
 	axes << 0, 0, 1, 1, 0, 0, 0, 1, 0;
 	row.body1 = point.body1 - 1;
 	row.body2 = point.body2 - 1;
@@ -111,7 +115,8 @@ void addPoint(ContactSolver<Plane>& solver, const Column& column, const ImpulseP
 	ContactRows<Plane> row;
 	row.body1 = point.body1 - 1;
 	row.body2 = point.body2 - 1;
-	const Vector3 r1 = point.position - column.bodies[point.body1].pose.position, r2 = point.position - column.bodies[point.body2].pose.position;
+	const Vector3 r1 = point.position - column.bodies[point.body1].pose.position,
+	              r2 = point.position - column.bodies[point.body2].pose.position;
 	row.J1 << 0, -1, -r1.x(), -1, 0, r1.z();
 	row.J2 << 0, 1, r2.x(), 1, 0, -r2.z();
 	row.friction = point.friction;
@@ -136,7 +141,8 @@ FreeBody<Plane> freeBody(Plane, const Body& body)
 	return result;
 }
 
-template <class K> void set(ContactSolver<K>& solver, const Column& column)
+template <class K>
+void set(ContactSolver<K>& solver, const Column& column)
 {
 	solver.bodies.clear();
 	solver.points.clear();
@@ -147,13 +153,16 @@ template <class K> void set(ContactSolver<K>& solver, const Column& column)
 }
 
 // Impulses times the relative velocities of their points, those of the bodies as they are (velocity) or without impulses (free).
-template <class K> double power(const ContactSolver<K>& solver, typename K::Velocity FreeBody<K>::*of)
+template <class K>
+double power(const ContactSolver<K>& solver, typename K::Velocity FreeBody<K>::*of)
 {
 	double sum = 0;
 	for (const ContactRows<K>& c : solver.points) {
 		typename ContactRows<K>::Rows u = c.offset;
-		if (c.body1 >= 0) u += c.J1 * (solver.bodies[c.body1].*of);
-		if (c.body2 >= 0) u += c.J2 * (solver.bodies[c.body2].*of);
+		if (c.body1 >= 0)
+			u += c.J1 * (solver.bodies[c.body1].*of);
+		if (c.body2 >= 0)
+			u += c.J2 * (solver.bodies[c.body2].*of);
 		sum += c.impulse.dot(u);
 	}
 	return sum;
@@ -161,24 +170,37 @@ template <class K> double power(const ContactSolver<K>& solver, typename K::Velo
 
 // Twice the gain of kinetic energy seen from the base: impulses times the sum of the velocities before and after. In a step the relative
 // velocities are that sum themselves.
-template <class K> double gain(const ContactSolver<K>& solver) { return power(solver, &FreeBody<K>::free) + power(solver, &FreeBody<K>::velocity); }
-template <class K> double gainOfStep(const ContactSolver<K>& solver) { return power(solver, &FreeBody<K>::velocity); }
+template <class K>
+double gain(const ContactSolver<K>& solver)
+{
+	return power(solver, &FreeBody<K>::free) + power(solver, &FreeBody<K>::velocity);
+}
+template <class K>
+double gainOfStep(const ContactSolver<K>& solver)
+{
+	return power(solver, &FreeBody<K>::velocity);
+}
 
 // Blocks 1.0 x 0.8 x 0.5 m at rest on each other, every second one `ratio` times as dense; free velocity: one step of gravity.
 Column standing(int blocks, double ratio, double speed, bool planar)
 {
 	Column column;
-	Body   base;
+	Body base;
 	base.prescribed = true;
 	column.bodies.push_back(base);
 	const Vector3 half(0.5, 0.4, 0.25);
 	for (int b = 1; b <= blocks; ++b) {
-		Body body = boxBody({ 0, 0, half.z() * (2 * b - 1) }, half, b % 2 ? 2000 : 2000 * ratio);
+		Body body = boxBody({0, 0, half.z() * (2 * b - 1)}, half, b % 2 ? 2000 : 2000 * ratio);
 		body.velocity.z() = -speed;
 		column.bodies.push_back(body);
 		for (int corner = 0; corner < (planar ? 2 : 4); ++corner)
-			column.points.push_back({ b - 1, b,
-			        Vector3(corner & 1 ? -half.x() : half.x(), planar ? 0. : corner & 2 ? -half.y() : half.y(), 2 * half.z() * (b - 1)), Vector3::UnitZ(), 0.7 });
+			column.points.push_back({b - 1, b,
+			                         Vector3(corner & 1 ? -half.x() : half.x(),
+			                                 planar       ? 0.
+			                                 : corner & 2 ? -half.y()
+			                                              : half.y(),
+			                                 2 * half.z() * (b - 1)),
+			                         Vector3::UnitZ(), 0.7});
 	}
 	return column;
 }
@@ -186,23 +208,26 @@ Column standing(int blocks, double ratio, double speed, bool planar)
 // Running bond: blocks 1.0 x 0.5 m, half blocks at the ends of every second course; head joints touch.
 RigidSystem<Plane> wall(int courses, int perCourse)
 {
-	auto             s = rig::emptyScene<Plane>();
+	auto s = rig::emptyScene<Plane>();
 	std::vector<int> course, below;
 	for (int c = 0; c < courses; ++c) {
 		course.clear();
 		const int blocks = perCourse + c % 2;
-		double    end = -0.5 * perCourse;
+		double end = -0.5 * perCourse;
 		for (int k = 0; k < blocks; ++k) {
 			const double half = c % 2 && (k == 0 || k == blocks - 1) ? 0.25 : 0.5;
-			const int    block = rig::addBlock(s, half, 0.25, { end + half, 0.25 + 0.5 * c });
-			const auto   over = [&](int other) {
-                                const auto& b = s.bodies[other];
-                                return std::abs(b.pose.position.x() - end - half) < b.halfSize.x() + half - 0.1;
+			const int block = rig::addBlock(s, half, 0.25, {end + half, 0.25 + 0.5 * c});
+			const auto over = [&](int other) {
+				const auto& b = s.bodies[other];
+				return std::abs(b.pose.position.x() - end - half) < b.halfSize.x() + half - 0.1;
 			};
-			if (c == 0) rig::addPair(s, 0, block, 0., 0.7);
+			if (c == 0)
+				rig::addPair(s, 0, block, 0., 0.7);
 			for (const int other : below)
-				if (over(other)) rig::addPair(s, other, block, 0., 0.7);
-			if (k > 0) rig::addPair(s, course.back(), block, 0., 0.7);
+				if (over(other))
+					rig::addPair(s, other, block, 0., 0.7);
+			if (k > 0)
+				rig::addPair(s, course.back(), block, 0., 0.7);
 			course.push_back(block);
 			end += 2 * half;
 		}
@@ -218,25 +243,28 @@ constexpr double solved = 1e-11; // m/s; speeds are of the order of one
 TEST_CASE("contact problem: velocities are those of the dense solver")
 {
 	// Without friction velocities are unique. With it the laws can have several solutions (redundant points share the friction
-	// in different ways), without slip too; about nine problems in ten have one. Bound: both residuals 1e-11, divided by the smallest response of a box (spins: and by its smallest size).
-	Random               random(1);
+	// in different ways), without slip too; about nine problems in ten have one. Bound: both residuals 1e-11, divided by the smallest
+	// response of a box (spins: and by its smallest size).
+	Random random(1);
 	ContactSolver<Space> solver;
-	const auto           friction = GENERATE(0., 0.3, 0.7, noSlip);
-	int                  compared = 0, equal = 0;
+	const auto friction = GENERATE(0., 0.3, 0.7, noSlip);
+	int compared = 0, equal = 0;
 	for (int k = 0; k < 100; ++k) {
 		Column column = randomColumn(random, friction, false);
 		set(solver, column);
-		const SolveReport      report = solver.solve(solved);
+		const SolveReport report = solver.solve(solved);
 		std::vector<CoupleRow> none;
-		const ImpulseReport    dense = solveImpulses(column.bodies, column.points, none);
-		if (friction < noSlip) CHECK(report.converged);
-		if (!report.converged || dense.residual > solved) continue;
+		const ImpulseReport dense = solveImpulses(column.bodies, column.points, none);
+		if (friction < noSlip)
+			CHECK(report.converged);
+		if (!report.converged || dense.residual > solved)
+			continue;
 		++compared;
 		double worst = 0;
 		for (size_t b = 0; b < solver.bodies.size(); ++b) {
 			const Body& body = column.bodies[b + 1];
-			worst = std::max({ worst, (solver.bodies[b].velocity.head<3>() - body.velocity).norm(),
-			                   0.1 * (solver.bodies[b].velocity.tail<3>() - body.angularVelocity).norm() });
+			worst = std::max({worst, (solver.bodies[b].velocity.head<3>() - body.velocity).norm(),
+			                  0.1 * (solver.bodies[b].velocity.tail<3>() - body.angularVelocity).norm()});
 		}
 		equal += worst < 1e-9;
 	}
@@ -247,7 +275,7 @@ TEST_CASE("contact problem: velocities are those of the dense solver")
 
 TEST_CASE("contact problem: random columns with friction are solved and lose energy")
 {
-	Random     random(2);
+	Random random(2);
 	const auto check = [&](auto solver, bool planar) {
 		for (int k = 0; k < 2000; ++k) {
 			set(solver, randomColumn(random, number(random, 0, 1), planar));
@@ -263,7 +291,7 @@ TEST_CASE("contact problem: random columns with friction are solved and lose ene
 
 TEST_CASE("contact problem: plane and space agree on planar motion")
 {
-	Random               random(3);
+	Random random(3);
 	ContactSolver<Plane> plane;
 	ContactSolver<Space> space;
 	for (int k = 0; k < 300; ++k) {
@@ -282,8 +310,8 @@ TEST_CASE("contact problem: plane and space agree on planar motion")
 TEMPLATE_TEST_CASE("contact problem: stacks stand whatever their masses", "", Plane, Space)
 {
 	const double speed = 9.81e-3; // g h
-	for (const double ratio : { 1., 1e3, 1e-3 })
-		for (const int blocks : { 2, 5, 20 }) {
+	for (const double ratio : {1., 1e3, 1e-3})
+		for (const int blocks : {2, 5, 20}) {
 			ContactSolver<TestType> solver;
 			set(solver, standing(blocks, ratio, speed, TestType::dimension == 2));
 			const SolveReport report = solver.solve(1e-11 * speed);
@@ -300,7 +328,7 @@ TEMPLATE_TEST_CASE("contact problem: stacks stand whatever their masses", "", Pl
 TEST_CASE("contact problem: a factor kept from another problem does not change the solution")
 {
 	// The same points, other masses and velocities; without friction velocities are unique. Bound: as for the dense solver.
-	Random               random(5);
+	Random random(5);
 	ContactSolver<Space> solver;
 	set(solver, standing(5, 1., 0.01, false));
 	for (auto& point : solver.points)
@@ -309,7 +337,7 @@ TEST_CASE("contact problem: a factor kept from another problem does not change t
 	const auto first = solver.bodies;
 	for (int k = 0; k < 100; ++k) {
 		for (size_t b = 0; b < first.size(); ++b) {
-			auto&        body = solver.bodies[b] = first[b];
+			auto& body = solver.bodies[b] = first[b];
 			const double factor = std::pow(10., number(random, -1, 1));
 			body.inverseMass.linear *= factor;
 			body.inverseMass.angular *= factor;
@@ -329,16 +357,16 @@ TEST_CASE("contact problem: a factor kept from another problem does not change t
 
 TEST_CASE("contact problem: a wall that stands in slow shaking needs few factorisations")
 {
-	// 0.3 g at 2 Hz: nothing moves (mu 0.7, and too low to rock), forces change by 0.4 % of the weight a step. Three factorisations a step at
-	// most: no factor is kept from one step to the next, and states that flip need another. Blocks stay on the base: their velocities miss its by the residual, 1e-9 of
-	// g h, times the courses, and a head joint more for each column.
-	constexpr int    steps = 250;
+	// 0.3 g at 2 Hz: nothing moves (mu 0.7, and too low to rock), forces change by 0.4 % of the weight a step. Three factorisations a step
+	// at most: no factor is kept from one step to the next, and states that flip need another. Blocks stay on the base: their velocities
+	// miss its by the residual, 1e-9 of g h, times the courses, and a head joint more for each column.
+	constexpr int steps = 250;
 	constexpr double h = 1e-3;
-	auto             s = wall(6, 6);
-	rig::Harmonic    motion(0.3 * rig::g, 2, 0);
+	auto s = wall(6, 6);
+	rig::Harmonic motion(0.3 * rig::g, 2, 0);
 	rig::moveBase(s, motion);
 	RigidStep<Plane> step;
-	int              factorisations = 0;
+	int factorisations = 0;
 	for (int k = 0; k < steps; ++k) {
 		const StepReport report = step.advance(s, h);
 		factorisations += report.factorisations;
@@ -487,7 +515,7 @@ TEST_CASE("sparse impulses: velocities and couples are those of the dense solver
 
 TEST_CASE("contact problem: without slip an unsolvable problem gains no energy, in an impact or in a step")
 {
-	Random               random(4);
+	Random random(4);
 	ContactSolver<Space> solver;
 	solver.lastSweeps = 200; // those without a solution take them all
 	int unsolved = 0;
@@ -496,7 +524,8 @@ TEST_CASE("contact problem: without slip an unsolvable problem gains no energy, 
 		const bool converged = solver.solve(solved).converged;
 		unsolved += !converged;
 		CHECK(gain(solver) <= 1e-9);
-		if (!converged) CHECK(gainOfStep(solver) <= 1e-9);
+		if (!converged)
+			CHECK(gainOfStep(solver) <= 1e-9);
 	}
 	INFO(unsolved);
 	CHECK(unsolved < 150);

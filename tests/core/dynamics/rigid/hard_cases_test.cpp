@@ -11,7 +11,7 @@ constexpr double b = 0.3, a = 1.5;
 int run(RigidSystem<Plane>& s, double h, double end)
 {
 	RigidStep<Plane> step;
-	int              impacts = 0;
+	int impacts = 0;
 	while (s.time < end - h / 2) {
 		const StepReport report = step.advance(s, h);
 		REQUIRE((report.converged && !report.diverged));
@@ -34,7 +34,7 @@ TEST_CASE("A mirrored input gives the mirrored answer")
 TEST_CASE("Similar blocks turn alike in time scaled by the root of the size")
 {
 	const double size = GENERATE(1e-3 / a, 30 / a), root = std::sqrt(size);
-	auto         one = rockingBlock(b, a, 0.1, 0.8, 0.9), similar = rockingBlock(size * b, size * a, 0.1, 0.8, 0.9);
+	auto one = rockingBlock(b, a, 0.1, 0.8, 0.9), similar = rockingBlock(size * b, size * a, 0.1, 0.8, 0.9);
 	similar.bodies[0].halfSize *= size;
 	similar.bodies[0].pose.position *= size;
 	run(one, 1e-3, 2);
@@ -45,8 +45,8 @@ TEST_CASE("Similar blocks turn alike in time scaled by the root of the size")
 TEST_CASE("Two piers that land at one instant, mirrored")
 {
 	auto s = emptyScene<Plane>();
-	for (double side : { -1., 1. }) {
-		addBlock(s, b, a, onEdge(b, a, side * 0.1, { side * 2 - side * b, 0 }), side * 0.1);
+	for (double side : {-1., 1.}) {
+		addBlock(s, b, a, onEdge(b, a, side * 0.1, {side * 2 - side * b, 0}), side * 0.1);
 		addPair(s, 0, int(s.bodies.size()) - 1, 0.8, 0.9);
 	}
 	const int impacts = run(s, 1e-3, 2);
@@ -58,21 +58,22 @@ TEST_CASE("Two piers that land at one instant, mirrored")
 TEST_CASE("A block flush on two others rocks with its restitution")
 {
 	auto s = emptyScene<Plane>();
-	addBlock(s, b, a, { -b, a });
-	addBlock(s, b, a, { b, a });
-	for (int k : { 1, 2 })
+	addBlock(s, b, a, {-b, a});
+	addBlock(s, b, a, {b, a});
+	for (int k : {1, 2})
 		s.bodies[k].prescribed = true;
 	const Vector2 pivot(-b, 2 * a);
 	addBlock(s, b, a, onEdge(b, a, 0.1, pivot), 0.1);
 	addPair(s, 1, 3, 0.8);
 	addPair(s, 2, 3, 0.8);
 	RigidStep<Plane> step;
-	int              switched = 0;
+	int switched = 0;
 	while (s.time < 2) {
 		REQUIRE(step.advance(s, 1e-3).converged);
 		for (const Impact& impact : s.impacts) {
 			switched += impact.switched;
-			if (impact.switched) CHECK(std::abs(impact.joint.restitution() - 0.8) < 1e-9);
+			if (impact.switched)
+				CHECK(std::abs(impact.joint.restitution() - 0.8) < 1e-9);
 		}
 	}
 	CHECK(switched >= 2);
@@ -82,7 +83,7 @@ TEST_CASE("Head joints that touch exactly at rest do not drift")
 {
 	auto s = emptyScene<Plane>();
 	for (int k = 0; k < 3; ++k) {
-		addBlock(s, 0.5, 0.25, { k - 1., 0.25 });
+		addBlock(s, 0.5, 0.25, {k - 1., 0.25});
 		addPair(s, 0, k + 1, 0.7, 0.7);
 	}
 	addPair(s, 1, 2, 0.7, 0.7);
@@ -95,7 +96,7 @@ TEST_CASE("Head joints that touch exactly at rest do not drift")
 TEST_CASE("A block that falls lands flat and stays")
 {
 	auto s = emptyScene<Plane>();
-	addBlock(s, b, a, { 0, a + 0.2 });
+	addBlock(s, b, a, {0, a + 0.2});
 	addPair(s, 0, 1, 0.8, 0.7);
 	run(s, 1e-3, 1);
 	CHECK(std::abs(s.bodies[1].pose.position.y() - a) < 1e-9 * a);
@@ -139,10 +140,11 @@ TEST_CASE("The same bits on another run, and with another step object half way")
 {
 	const auto history = [](bool change) {
 		ScheduledMotion motion;
-		motion.append({ 0, 0.6 });
+		motion.append({0, 0.6});
 		auto s = stack(2, 0.25, 0.5, 0.7, 0.7);
 		moveBase(s, motion);
-		if (change) run(s, 1e-3, 0.5);
+		if (change)
+			run(s, 1e-3, 0.5);
 		run(s, 1e-3, 1);
 		return s.bodies[2].pose.position;
 	};
@@ -153,13 +155,13 @@ TEST_CASE("The same bits on another run, and with another step object half way")
 
 TEST_CASE("A pulse at the very instant of an impact comes after it")
 {
-	auto             free = rockingBlock(b, a, 0.1, 0.8);
+	auto free = rockingBlock(b, a, 0.1, 0.8);
 	RigidStep<Plane> step;
 	while (free.impacts.empty())
 		step.advance(free, 1e-3);
-	const double    at = free.impacts[0].time, after = free.impacts[0].joint.after, jump = 0.05;
+	const double at = free.impacts[0].time, after = free.impacts[0].joint.after, jump = 0.05;
 	ScheduledMotion motion;
-	motion.append({ at, -jump });
+	motion.append({at, -jump});
 	auto s = rockingBlock(b, a, 0.1, 0.8);
 	moveBase(s, motion);
 	while (s.time + 1e-3 < at)
@@ -167,4 +169,3 @@ TEST_CASE("A pulse at the very instant of an impact comes after it")
 	step.advance(s, at - s.time + 1e-6);
 	CHECK(-s.bodies[1].velocity[2] == Approx(after + 3 * a / (4 * (a * a + b * b)) * jump).epsilon(1e-5));
 }
-

@@ -25,13 +25,14 @@ RigidSystem<Plane> scene(const std::vector<int>& which)
 			addPair(s, n == 0 ? 0 : block - 1, block, 0.8, 0.6);
 		}
 	}
-	std::sort(s.pairs.begin(), s.pairs.end(), [](const auto& p, const auto& q) { return std::pair(p.body1, p.body2) < std::pair(q.body1, q.body2); });
+	std::sort(s.pairs.begin(), s.pairs.end(),
+	          [](const auto& p, const auto& q) { return std::pair(p.body1, p.body2) < std::pair(q.body1, q.body2); });
 	return s;
 }
 
 struct Shaken {
 	std::vector<Impact> impacts;
-	int events { 0 }; // as the steps report them
+	int events {0}; // as the steps report them
 };
 
 // A second of shaking.

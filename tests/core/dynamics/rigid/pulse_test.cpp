@@ -14,15 +14,15 @@ constexpr double b = 0.3, a = 1.5; // half sizes, m
 struct History {
 	std::vector<double> peaks; // largest |angle| before each impact
 	std::vector<Impact> impacts;
-	double              angle;
+	double angle;
 };
 
 History shake(RigidSystem<Plane>& s, double h, double end)
 {
 	RigidStep<Plane> step;
-	History          history;
-	Peaks            peaks;
-	double           largest = 0;
+	History history;
+	Peaks peaks;
+	double largest = 0;
 	while (s.time < end - h / 2) {
 		const StepReport report = step.advance(s, h);
 		REQUIRE((report.converged && !report.diverged && report.unlocalised == 0));
@@ -44,10 +44,10 @@ History shake(RigidSystem<Plane>& s, double h, double end)
 TEST_CASE("The resonant pulse train gives the exact peaks, and the velocities of Eq. 7")
 {
 	const double restitution = 0.7, impulse = 0.0125 * g;
-	const int    n = 30;
-	const auto   exact = oracle::pulseTrain({ b, a, g }, oracle::Moment::Exact, restitution, impulse, n);
+	const int n = 30;
+	const auto exact = oracle::pulseTrain({b, a, g}, oracle::Moment::Exact, restitution, impulse, n);
 	ResonantTrain train(impulse);
-	auto          s = rockingBlock(b, a, 0, restitution);
+	auto s = rockingBlock(b, a, 0, restitution);
 	moveBase(s, train);
 	const double atStart = balance(s);
 	const auto history = shake(s, 1e-3, double(exact.times[n - 1]) + 0.1);
@@ -86,8 +86,8 @@ public:
 		const oracle::Long step = 1e-3L;
 		while (time < end) {
 			const oracle::Long length = std::min(step, end - time);
-			oracle::State      next = advanced(length);
-			oracle::Long       taken = length;
+			oracle::State next = advanced(length);
+			oracle::Long taken = length;
 			if (next[0] * side < 0) {
 				oracle::Long low = 0, high = length;
 				for (int k = 0; k < 80; ++k) {
@@ -95,7 +95,7 @@ public:
 					(advanced(middle)[0] * side < 0 ? high : low) = middle;
 				}
 				taken = low;
-				next = { 0, advanced(low)[1] * restitution };
+				next = {0, advanced(low)[1] * restitution};
 				side = -side;
 				impactTimes.push_back(double(time + low));
 			}
@@ -107,14 +107,16 @@ public:
 private:
 	oracle::State advanced(oracle::Long length) const
 	{
-		const auto equation = [this](const oracle::State& y, oracle::State& rate, oracle::Long) { rate = { y[1], -p2 * std::sin(side * alpha - y[0]) }; };
+		const auto equation = [this](const oracle::State& y, oracle::State& rate, oracle::Long) {
+			rate = {y[1], -p2 * std::sin(side * alpha - y[0])};
+		};
 		return oracle::rungeKutta(equation, state, 0, length);
 	}
 
 	const oracle::Long restitution, R = std::sqrt(oracle::Long(a) * a + oracle::Long(b) * b), p2 = 3 * oracle::Long(g) / (4 * R),
 	                                alpha = std::atan(oracle::Long(b) / a);
 	oracle::State state {};
-	oracle::Long  side { 1 }, time { 0 };
+	oracle::Long side {1}, time {0};
 };
 
 } // namespace
@@ -122,20 +124,21 @@ private:
 TEST_CASE("Dirac pulses at given instants, inside steps and at their ends")
 {
 	// m/s, along x towards the side to which the block is turned
-	const std::vector<std::pair<double, double>> pulses { { 0, 0.3 }, { 0.1, 0.1 }, { 0.20037, 0.15 }, { 0.92, 0.05 }, { 1.2003, 0.06 }, { 1.60013, 0.08 } };
-	const double                                 restitution = 0.9, end = 1.8;
-	PulsedRocking                                exact(restitution);
-	ScheduledMotion                              motion;
+	const std::vector<std::pair<double, double>> pulses {{0, 0.3},     {0.1, 0.1},     {0.20037, 0.15},
+	                                                     {0.92, 0.05}, {1.2003, 0.06}, {1.60013, 0.08}};
+	const double restitution = 0.9, end = 1.8;
+	PulsedRocking exact(restitution);
+	ScheduledMotion motion;
 	for (const auto& [t, size] : pulses) {
 		exact.run(t);
 		exact.jump(size * exact.turnsTo());
-		motion.append({ t, size * double(exact.turnsTo()) });
+		motion.append({t, size * double(exact.turnsTo())});
 	}
 	exact.run(end);
 	auto s = rockingBlock(b, a, 0, restitution);
 	moveBase(s, motion);
 	const double atStart = balance(s);
-	const auto   history = shake(s, 1e-3, end);
+	const auto history = shake(s, 1e-3, end);
 	REQUIRE(history.impacts.size() == exact.impactTimes.size());
 	double times = 0;
 	for (size_t i = 0; i < exact.impactTimes.size(); ++i)
@@ -150,7 +153,7 @@ TEST_CASE("Dirac pulses at given instants, inside steps and at their ends")
 namespace {
 
 struct Difference {
-	double times { 0 }, peaks { 0 }; // s; relative to the largest peak
+	double times {0}, peaks {0}; // s; relative to the largest peak
 	size_t impacts;
 };
 
@@ -173,17 +176,18 @@ Difference underPulse(bool halfSine, double h)
 	const double amplitude = (halfSine ? 0.45 : 0.3) * g, duration = 0.35, restitution = 0.9, end = 4;
 	ScheduledMotion motion;
 	if (halfSine)
-		motion.append({ 0, 0, 0, 0, amplitude, M_PI / duration });
+		motion.append({0, 0, 0, 0, amplitude, M_PI / duration});
 	else
-		motion.append({ 0, 0, amplitude });
-	motion.append({ duration });
+		motion.append({0, 0, amplitude});
+	motion.append({duration});
 	const auto acceleration = [&](size_t interval, oracle::Long t) -> oracle::Long {
-		if (interval > 0) return 0;
+		if (interval > 0)
+			return 0;
 		return halfSine ? amplitude * std::sin(oracle::Long(M_PI / duration) * t) : oracle::Long(amplitude);
 	};
 	const oracle::Long lifted = halfSine ? std::asin(oracle::Long(g) * b / a / amplitude) / oracle::Long(M_PI / duration) : 0;
-	const auto         exact = oracle::ForcedRocking(b, a, g, restitution, acceleration, 2000).run({ lifted, duration, end }, 1e-3L);
-	auto               s = rockingBlock(b, a, 0, restitution);
+	const auto exact = oracle::ForcedRocking(b, a, g, restitution, acceleration, 2000).run({lifted, duration, end}, 1e-3L);
+	auto s = rockingBlock(b, a, 0, restitution);
 	moveBase(s, motion);
 	return differenceFrom(exact, shake(s, h, end));
 }
@@ -192,7 +196,7 @@ Difference underPulse(bool halfSine, double h)
 
 TEST_CASE("Half-sine and rectangular pulses")
 {
-	const bool       halfSine = GENERATE(true, false);
+	const bool halfSine = GENERATE(true, false);
 	const Difference difference = underPulse(halfSine, 1e-3), fine = underPulse(halfSine, 1e-4);
 	CAPTURE(halfSine, difference.impacts, difference.times, difference.peaks, fine.times, fine.peaks);
 	CHECK(difference.impacts >= 5);
@@ -207,15 +211,15 @@ TEST_CASE("Half-sine and rectangular pulses")
 TEST_CASE("A record that is linear between samples")
 {
 	const oracle::ArtificialRecord record(5, 0.35 * g, 600, 0.01);
-	const double                   restitution = 0.9;
-	const auto                     exact = record.rocking(b, a, g, restitution, 1e-2L);
-	ScheduledMotion                motion;
+	const double restitution = 0.9;
+	const auto exact = record.rocking(b, a, g, restitution, 1e-2L);
+	ScheduledMotion motion;
 	for (size_t i = 0; i + 1 < record.samples.size(); ++i)
-		motion.append({ double(i) * record.dt, 0, record.samples[i], (record.samples[i + 1] - record.samples[i]) / record.dt });
-	motion.append({ double(record.samples.size() - 1) * record.dt });
+		motion.append({double(i) * record.dt, 0, record.samples[i], (record.samples[i + 1] - record.samples[i]) / record.dt});
+	motion.append({double(record.samples.size() - 1) * record.dt});
 	auto s = rockingBlock(b, a, 0, restitution);
 	moveBase(s, motion);
-	const auto       history = shake(s, 1e-3, double(exact.impactTimes.back()) + 0.05);
+	const auto history = shake(s, 1e-3, double(exact.impactTimes.back()) + 0.05);
 	const Difference difference = differenceFrom(exact, history);
 	CAPTURE(difference.impacts, difference.times, difference.peaks, history.impacts.size());
 	CHECK(difference.impacts >= 5);

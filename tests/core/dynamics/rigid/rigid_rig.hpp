@@ -13,9 +13,10 @@ using namespace masonry::rigid;
 constexpr double g = 9.81, density = 2000;
 
 // A base whose top face is at height 0, and its gravity.
-template <class K> RigidSystem<K> emptyScene(double halfLength = 5, double halfHeight = 5)
+template <class K>
+RigidSystem<K> emptyScene(double halfLength = 5, double halfHeight = 5)
 {
-	constexpr int  up = K::dimension - 1;
+	constexpr int up = K::dimension - 1;
 	RigidSystem<K> s;
 	s.gravity[up] = -g;
 	RigidBody<K> base;
@@ -41,7 +42,8 @@ inline int addBlock(RigidSystem<Plane>& s, double b, double a, const Vector2& ce
 	return int(s.bodies.size()) - 1;
 }
 
-template <class K> void addPair(RigidSystem<K>& s, int body1, int body2, double restitution, double friction = noSlip)
+template <class K>
+void addPair(RigidSystem<K>& s, int body1, int body2, double restitution, double friction = noSlip)
 {
 	ContactPair<K> pair;
 	pair.body1 = body1;
@@ -63,7 +65,7 @@ inline Vector2 onEdge(double b, double a, double angle, const Vector2& pivot)
 inline RigidSystem<Plane> rockingBlock(double b, double a, double angle, double restitution, double friction = noSlip)
 {
 	auto s = emptyScene<Plane>();
-	addBlock(s, b, a, onEdge(b, a, angle, { angle > 0 ? -b : b, 0 }), angle);
+	addBlock(s, b, a, onEdge(b, a, angle, {angle > 0 ? -b : b, 0}), angle);
 	addPair(s, 0, 1, restitution, friction);
 	return s;
 }
@@ -73,30 +75,41 @@ inline RigidSystem<Plane> stack(int n, double b, double a, double restitution, d
 {
 	auto s = emptyScene<Plane>();
 	for (int k = 0; k < n; ++k) {
-		addBlock(s, b, a, { 0, (2 * k + 1) * a });
+		addBlock(s, b, a, {0, (2 * k + 1) * a});
 		addPair(s, k, k + 1, restitution, friction);
 	}
 	return s;
 }
 
-template <class K> double potentialEnergy(const RigidSystem<K>& s)
+template <class K>
+double potentialEnergy(const RigidSystem<K>& s)
 {
 	double sum = 0;
 	for (const auto& body : s.bodies)
-		if (!body.prescribed) sum -= body.mass * s.gravity.dot(body.pose.position);
+		if (!body.prescribed)
+			sum -= body.mass * s.gravity.dot(body.pose.position);
 	return sum;
 }
 
-template <class K> double energy(const RigidSystem<K>& s) { return s.kineticEnergy() + potentialEnergy(s); }
+template <class K>
+double energy(const RigidSystem<K>& s)
+{
+	return s.kineticEnergy() + potentialEnergy(s);
+}
 
 // Constant through a run.
-template <class K> double balance(const RigidSystem<K>& s) { return energy(s) + s.frictDissip + s.impactDissip - s.baseWork; }
+template <class K>
+double balance(const RigidSystem<K>& s)
+{
+	return energy(s) + s.frictDissip + s.impactDissip - s.baseWork;
+}
 
 // What takes a block from its base onto its corner.
 inline double overturningEnergy(const RigidBody<Plane>& block) { return block.mass * g * (block.halfSize.norm() - block.halfSize.y()); }
 
 // The drive moves the base along x, or along `direction`.
-template <class K> void moveBase(RigidSystem<K>& s, BaseDrive& drive, const typename K::Vector& direction = K::Vector::Unit(0))
+template <class K>
+void moveBase(RigidSystem<K>& s, BaseDrive& drive, const typename K::Vector& direction = K::Vector::Unit(0))
 {
 	s.drives.push_back({{{&drive, direction}}});
 	s.bodies[0].drive = 0;
@@ -107,28 +120,30 @@ template <class K> void moveBase(RigidSystem<K>& s, BaseDrive& drive, const type
 class ScheduledMotion : public BaseDrive {
 public:
 	struct Piece {
-		double start, jump { 0 }, constant { 0 }, slope { 0 }, amplitude { 0 }, frequency { 1 };
+		double start, jump {0}, constant {0}, slope {0}, amplitude {0}, frequency {1};
 	};
 
 	void append(Piece piece)
 	{
 		const double u = displacement(piece.start), v = velocityAt(piece.start, pieces.size());
-		pieces.push_back({ piece, u, v + piece.jump });
+		pieces.push_back({piece, u, v + piece.jump});
 	}
 
 	double displacement(double t) const override
 	{
 		const auto [p, x] = at(t, pieces.size());
-		if (!p) return 0;
+		if (!p)
+			return 0;
 		const auto& q = p->law;
-		return p->displacement + x * (p->velocity + x * (q.constant / 2 + x * q.slope / 6))
-		        + q.amplitude / q.frequency * (x - std::sin(q.frequency * x) / q.frequency);
+		return p->displacement + x * (p->velocity + x * (q.constant / 2 + x * q.slope / 6)) +
+		       q.amplitude / q.frequency * (x - std::sin(q.frequency * x) / q.frequency);
 	}
 	double velocity(double t) const override { return velocityAt(t, taken); }
 	double nextKink(double after, double until) const override
 	{
 		for (const auto& piece : pieces)
-			if (piece.law.start > after) return piece.law.start <= until ? piece.law.start : infinity;
+			if (piece.law.start > after)
+				return piece.law.start <= until ? piece.law.start : infinity;
 		return infinity;
 	}
 	double jumpAt(double t) override
@@ -145,7 +160,7 @@ private:
 	static constexpr double roundOff = 1e-12; // s
 
 	struct Placed {
-		Piece  law;
+		Piece law;
 		double displacement, velocity; // at its start, after the jump
 	};
 
@@ -155,27 +170,28 @@ private:
 		const Placed* found = nullptr;
 		for (size_t k = 0; k < count && pieces[k].law.start <= t + roundOff; ++k)
 			found = &pieces[k];
-		return { found, found ? t - found->law.start : 0 };
+		return {found, found ? t - found->law.start : 0};
 	}
 	double velocityAt(double t, size_t count) const
 	{
 		const auto [p, x] = at(t, count);
-		if (!p) return 0;
+		if (!p)
+			return 0;
 		const auto& q = p->law;
 		return p->velocity + x * (q.constant + x * q.slope / 2) + q.amplitude / q.frequency * (1 - std::cos(q.frequency * x));
 	}
 
 	std::vector<Placed> pieces;
-	size_t              taken { 0 }; // pieces whose jump has been
+	size_t taken {0}; // pieces whose jump has been
 };
 
 // Acceleration amplitude * sin(2 pi f (t - begin)), from rest, asked in any order of time unless `inOrder`.
 struct Harmonic : BaseDrive {
 	double amplitude, frequency, begin; // m/s^2, rad/s, s
-	bool   inOrder;
+	bool inOrder;
 
 	Harmonic(double amplitude, double hertz, double begin, bool inOrder = false)
-	        : amplitude(amplitude), frequency(2 * M_PI * hertz), begin(begin), inOrder(inOrder)
+	    : amplitude(amplitude), frequency(2 * M_PI * hertz), begin(begin), inOrder(inOrder)
 	{
 	}
 	double since(double t) const { return std::max(0., t - begin); }
@@ -184,7 +200,7 @@ struct Harmonic : BaseDrive {
 	double nextKink(double after, double until) const override { return after < begin && begin <= until ? begin : INFINITY; }
 	double jumpAt(double) override { return 0; }
 	double respond(int, double) override { return 0; }
-	bool   ordered() const override { return inOrder; }
+	bool ordered() const override { return inOrder; }
 };
 
 // The paper's train: +I at once, then -2I, +2I ... each right after an impact of a block.
@@ -206,19 +222,20 @@ private:
 		speed += size;
 		return size;
 	}
-	double impulse, speed { 0 }, moved { 0 }, since { 0 };
+	double impulse, speed {0}, moved {0}, since {0};
 };
 
 // Peaks of |angle| between impacts, each from the step in which the spin changes sign: cubic through angle and spin at both ends.
 struct Peaks {
 	std::vector<double> found;
-	double              angle { NAN }, spin { 0 }, time { 0 };
+	double angle {NAN}, spin {0}, time {0};
 
 	void take(double t, double newAngle, double newSpin)
 	{
 		if (!std::isnan(angle) && spin * newSpin < 0 && newAngle * spin > 0) {
 			const double h = t - time, u = spin / (spin - newSpin);
-			found.push_back((1 - u) * (1 - u) * (1 + 2 * u) * angle + u * u * (3 - 2 * u) * newAngle + h * u * (1 - u) * ((1 - u) * spin - u * newSpin));
+			found.push_back((1 - u) * (1 - u) * (1 + 2 * u) * angle + u * u * (3 - 2 * u) * newAngle +
+			                h * u * (1 - u) * ((1 - u) * spin - u * newSpin));
 		}
 		angle = newAngle;
 		spin = newSpin;

@@ -12,16 +12,16 @@ constexpr double b = 0.3;
 struct History {
 	std::vector<double> peaks;
 	std::vector<Impact> impacts;
-	double              largestRise { 0 }; // of the energy in a step, relative to the overturning energy
-	bool                sound { true };
+	double largestRise {0}; // of the energy in a step, relative to the overturning energy
+	bool sound {true};
 };
 
 History rock(RigidSystem<Plane>& s, double h, double end)
 {
 	RigidStep<Plane> step;
-	History          history;
-	Peaks            peaks;
-	double           before = energy(s);
+	History history;
+	Peaks peaks;
+	double before = energy(s);
 	while (s.time < end) {
 		const StepReport report = step.advance(s, h);
 		history.sound = history.sound && report.converged && !report.diverged && report.unlocalised == 0;
@@ -43,9 +43,9 @@ struct Error {
 Error freeRockingError(double h)
 {
 	const double a = 5 * b, start = 0.9 * std::atan(b / a);
-	const auto   exact = oracle::freeRocking({ b, a, g }, oracle::Moment::Exact, 0.9, start, 16);
-	auto         s = rockingBlock(b, a, start, 0.9);
-	const auto   history = rock(s, h, double(exact.times[15]) + 0.1);
+	const auto exact = oracle::freeRocking({b, a, g}, oracle::Moment::Exact, 0.9, start, 16);
+	auto s = rockingBlock(b, a, start, 0.9);
+	const auto history = rock(s, h, double(exact.times[15]) + 0.1);
 	REQUIRE(history.peaks.size() >= 15);
 	Error error {};
 	for (int i = 0; i < 15; ++i) {
@@ -72,21 +72,23 @@ TEST_CASE("Free rocking is stable, with the restitution asked, for any slenderne
 	const double slenderness = GENERATE(1., 2., 3., 5., 8., 12.), restitution = GENERATE(0., 0.3, 0.7, 0.95, 1.);
 	CAPTURE(slenderness, restitution);
 	const double a = slenderness * b, alpha = std::atan(b / a);
-	auto         s = rockingBlock(b, a, 0.9 * alpha, restitution);
-	const auto   history = rock(s, 1e-3, 5);
+	auto s = rockingBlock(b, a, 0.9 * alpha, restitution);
+	const auto history = rock(s, 1e-3, 5);
 	CHECK(history.sound);
 	CHECK(history.largestRise < 1e-9);
 	REQUIRE(!history.impacts.empty());
 	double worst = 0;
 	for (const Impact& impact : history.impacts)
-		if (impact.switched) worst = std::max(worst, std::abs(impact.joint.restitution() - restitution));
+		if (impact.switched)
+			worst = std::max(worst, std::abs(impact.joint.restitution() - restitution));
 	CHECK(worst < 1e-9);
 	// No slip: what the pivots drift by (7e-8 b for the squattest block) is an error of the step.
-	const auto&  pose = s.bodies[1].pose;
+	const auto& pose = s.bodies[1].pose;
 	const double edge = pose.angle > 0 ? -b : b;
-	CHECK((pose.toGlobal({ edge, -a }) - Vector2(edge, 0)).norm() < 1e-6 * b);
+	CHECK((pose.toGlobal({edge, -a}) - Vector2(edge, 0)).norm() < 1e-6 * b);
 
-	if (restitution == 0) { // stops at once and stays; what is left is below the solver's tolerance, 1e-9 of the speed that gravity gives in a step
+	if (restitution ==
+	    0) { // stops at once and stays; what is left is below the solver's tolerance, 1e-9 of the speed that gravity gives in a step
 		CHECK(history.impacts.size() == 1);
 		CHECK(!history.impacts[0].switched);
 		CHECK(s.bodies[1].velocity.norm() < 1e-8 * g * 1e-3);
@@ -101,18 +103,19 @@ TEST_CASE("Without a value the restitution is the natural one")
 {
 	const double slenderness = GENERATE(1., 1.5, 2., 3., 5., 8., 12.);
 	const double a = slenderness * b, alpha = std::atan(b / a);
-	auto         s = rockingBlock(b, a, 0.5 * alpha, NAN);
-	const auto   history = rock(s, 1e-3, 2);
+	auto s = rockingBlock(b, a, 0.5 * alpha, NAN);
+	const auto history = rock(s, 1e-3, 2);
 	REQUIRE(history.sound);
 	REQUIRE(!history.impacts.empty());
 	const double sine = std::sin(alpha);
 	for (const Impact& impact : history.impacts)
-		if (impact.switched) CHECK(std::abs(impact.joint.restitution() - (1 - 1.5 * sine * sine)) < 1e-12);
+		if (impact.switched)
+			CHECK(std::abs(impact.joint.restitution() - (1 - 1.5 * sine * sine)) < 1e-12);
 }
 
-// On a base that speeds up by `share` of g it turns about its corner: (2/3) R^2 w^2 changes by g (share dx - dz), where its centre moves by dx and
-// dz against the base. At its limit b/a and not beyond, all of the weight is on that corner, and the other one parts at any load more, however
-// slowly that grows.
+// On a base that speeds up by `share` of g it turns about its corner: (2/3) R^2 w^2 changes by g (share dx - dz), where its centre moves by
+// dx and dz against the base. At its limit b/a and not beyond, all of the weight is on that corner, and the other one parts at any load
+// more, however slowly that grows.
 TEST_CASE("A block that has stood at its very limit turns when the base speeds up more")
 {
 	const double miss = GENERATE(-1e-9, -1e-10, -1e-11, -1e-13, 0., 1e-13, 1e-12, 1e-11), friction = GENERATE(0.9, noSlip);
@@ -120,9 +123,9 @@ TEST_CASE("A block that has stood at its very limit turns when the base speeds u
 	const double a = 5 * b, limit = g * b / a * (1 + miss), share = 0.3, h = GENERATE(1e-3, 9.87e-4);
 	auto s = rockingBlock(b, a, 0, 0.5, friction);
 	ScheduledMotion motion;
-	motion.append({ 0.1, 0, -limit });
-	motion.append({ 0.2, 0, -limit, (limit - share * g) / 0.1 });
-	motion.append({ 0.3, 0, -share * g });
+	motion.append({0.1, 0, -limit});
+	motion.append({0.2, 0, -limit, (limit - share * g) / 0.1});
+	motion.append({0.3, 0, -share * g});
 	moveBase(s, motion);
 	RigidStep<Plane> step;
 	const RigidBody<Plane>& block = s.bodies[1];

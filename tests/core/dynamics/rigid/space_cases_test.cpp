@@ -102,8 +102,8 @@ TEST_CASE("a box that lands flat out of free flight stays where it lands")
 }
 
 // A cube that stands on its corner in the air falls on a corner of one that stands on the base, where no normal is the right one. With the
-// corner off by round-off it comes to balance there (p t = 8: what is off grows by 3e3), farther off it tumbles. The run goes on to the end,
-// tells where it could not meet the laws, and energy never grows.
+// corner off by round-off it comes to balance there (p t = 8: what is off grows by 3e3), farther off it tumbles. The run goes on to the
+// end, tells where it could not meet the laws, and energy never grows.
 TEST_CASE("corner on corner: no failure, no energy")
 {
 	for (double friction : {noSlip, 0.7})
@@ -166,7 +166,8 @@ TEST_CASE("an oblique base pulse lifts a box about the corner of the theory")
 			const Vector3 jump = 0.3 * Vector3(std::cos(direction), std::sin(direction), 0);
 			const Vector3 corner(std::copysign(halves.x(), -jump.x()), std::copysign(halves.y(), -jump.y()), -halves.z()), r = -corner;
 			const double moment = r.squaredNorm() + halves.squaredNorm() / 3;
-			const Matrix3 inertia = moment * Matrix3::Identity() - r * r.transpose() - Matrix3(halves.cwiseAbs2().asDiagonal()) / 3; // per mass
+			const Matrix3 inertia =
+			    moment * Matrix3::Identity() - r * r.transpose() - Matrix3(halves.cwiseAbs2().asDiagonal()) / 3; // per mass
 			const Vector3 spin = inertia.inverse() * r.cross(-jump);
 			for (double x : {-halves.x(), halves.x()}) // the oracle itself: the other corners lift
 				for (double y : {-halves.y(), halves.y()})
@@ -212,9 +213,9 @@ TEST_CASE("a square base pushed along its diagonal stays in the upright plane of
 		}
 }
 
-// Both corners of an edge land at once. Bounds: as asked of the energies of impacts; round-off of velocities of 1 m/s, grown. Where a corner of
-// the joint above that round-off had opened took no part in the impact, one landing in three was another, with up to half of the loss and
-// with 0.05 m/s out of the plane.
+// Both corners of an edge land at once. Bounds: as asked of the energies of impacts; round-off of velocities of 1 m/s, grown. Where a
+// corner of the joint above that round-off had opened took no part in the impact, one landing in three was another, with up to half of the
+// loss and with 0.05 m/s out of the plane.
 TEST_CASE("a stack that lands flat in space lands as in the plane")
 {
 	constexpr double b = 0.3, a = 0.35, depth = 0.4, friction = 0.684;
@@ -247,9 +248,9 @@ TEST_CASE("a stack that lands flat in space lands as in the plane")
 	}
 }
 
-// The two give way differently, and at the landing points on the old edge close that round-off had opened: they are no new support. Where they
-// were taken for one the law was dropped, in two landings of three, and 0.55 of the energy was left. With it what is asked of the joint leaves
-// C^2, and more where the supports give way (0.92 if they are one, in the plane).
+// The two give way differently, and at the landing points on the old edge close that round-off had opened: they are no new support. Where
+// they were taken for one the law was dropped, in two landings of three, and 0.55 of the energy was left. With it what is asked of the
+// joint leaves C^2, and more where the supports give way (0.92 if they are one, in the plane).
 TEST_CASE("a block that lands on two unequal supports has the restitution that is asked")
 {
 	constexpr double restitution = 0.9, friction = 0.8;
@@ -271,7 +272,8 @@ TEST_CASE("a block that lands on two unequal supports has the restitution that i
 		bool landed = false;
 		for (double end = 0.5; s.time < end;) {
 			step.advance(s, 1e-3);
-			if (!landed && std::any_of(s.impacts.begin(), s.impacts.end(), [&](const Impact& i) { return i.block == block && i.joint.before > 0.5; })) {
+			if (!landed && std::any_of(s.impacts.begin(), s.impacts.end(),
+			                           [&](const Impact& i) { return i.block == block && i.joint.before > 0.5; })) {
 				landed = true;
 				end = s.time + 0.02; // the supports have settled, the block has not come back
 			}

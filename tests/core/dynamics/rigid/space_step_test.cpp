@@ -48,7 +48,8 @@ TEST_CASE("a box pinned at a corner by friction turns with second order")
 		return s;
 	};
 	const RigidBody<Space> box = scene().bodies[1];
-	const Matrix3 inertia = Matrix3(box.inertia.asDiagonal()) + box.mass * (corner.squaredNorm() * Matrix3::Identity() - corner * corner.transpose());
+	const Matrix3 inertia =
+	    Matrix3(box.inertia.asDiagonal()) + box.mass * (corner.squaredNorm() * Matrix3::Identity() - corner * corner.transpose());
 	const Matrix3 inverse = inertia.inverse();
 	using State = Eigen::Matrix<double, 7, 1>; // quaternion, angular momentum about the corner
 	const auto rate = [&](const State& x) {
@@ -204,8 +205,8 @@ TEST_CASE("a millimetre and thirty metres are the same motion")
 	CHECK((run(30) - one).norm() < 1e-9);
 }
 
-// From numerics: 600 runs of 10 s, of which these are a few. The rise, by drifts of closed gaps, is of third order in the step; its bound was
-// set after 1.4e-9 was seen.
+// From numerics: 600 runs of 10 s, of which these are a few. The rise, by drifts of closed gaps, is of third order in the step; its bound
+// was set after 1.4e-9 was seen.
 TEST_CASE("random starts on a corner end in no trouble")
 {
 	std::mt19937 random(5);
@@ -253,7 +254,10 @@ struct TurnedStack {
 	RigidStep<Space> step;
 	Watch watch;
 
-	TurnedStack(double angle, double direction, ImpactOrder order) : s(turnedStack(2, angle, jump, direction)), watch(s) { s.settings.order = order; }
+	TurnedStack(double angle, double direction, ImpactOrder order) : s(turnedStack(2, angle, jump, direction)), watch(s)
+	{
+		s.settings.order = order;
+	}
 	Vector3 top(double time, double h)
 	{
 		while (s.time < time - h / 2)

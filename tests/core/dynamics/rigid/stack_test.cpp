@@ -10,7 +10,7 @@ namespace {
 StepReport run(RigidSystem<Plane>& s, double h, double end)
 {
 	RigidStep<Plane> step;
-	StepReport       worst;
+	StepReport worst;
 	while (s.time < end - h / 2) {
 		const StepReport report = step.advance(s, h);
 		worst.converged = worst.converged && report.converged && !report.diverged;
@@ -30,9 +30,9 @@ TEST_CASE("Stacks at rest stay")
 	constexpr double end = 60;
 #endif
 	CAPTURE(n);
-	auto         s = stack(n, 0.5, 0.25, 0.7, 0.7);
+	auto s = stack(n, 0.5, 0.25, 0.7, 0.7);
 	const double atStart = energy(s);
-	const auto   report = run(s, 1e-3, end);
+	const auto report = run(s, 1e-3, end);
 	CHECK(report.converged);
 	double drift = 0, turn = 0;
 	for (int k = 1; k <= n; ++k) {
@@ -65,13 +65,13 @@ namespace {
 Vector2 afterPulse(ImpactOrder order, double h)
 {
 	ScheduledMotion motion;
-	motion.append({ 0, 0.6 });
+	motion.append({0, 0.6});
 	auto s = stack(2, 0.25, 0.5, 0.7, 0.7);
 	moveBase(s, motion);
 	s.settings.order = order;
 	const double atStart = balance(s);
-	Vector2      result;
-	const auto   top = [&] { return s.bodies[2].pose.position.x() - s.bodies[0].pose.position.x(); };
+	Vector2 result;
+	const auto top = [&] { return s.bodies[2].pose.position.x() - s.bodies[0].pose.position.x(); };
 	REQUIRE(run(s, h, 0.75).converged);
 	result[0] = top();
 	REQUIRE(run(s, h, 1).converged);
@@ -85,8 +85,8 @@ Vector2 afterPulse(ImpactOrder order, double h)
 // Values: an independent code of the same laws (simultaneous), and one with penalty springs besides (sequential), base moved the other way.
 TEST_CASE("Two blocks after a base pulse, simultaneous and sequential impacts")
 {
-	const bool    together = GENERATE(true, false);
-	const auto    order = together ? ImpactOrder::simultaneous : ImpactOrder::sequential;
+	const bool together = GENERATE(true, false);
+	const auto order = together ? ImpactOrder::simultaneous : ImpactOrder::sequential;
 	const Vector2 step = afterPulse(order, 5e-4), fine = afterPulse(order, 1.25e-4);
 	const Vector2 known = together ? Vector2(0.0442432, -0.0149744) : Vector2(0.05599, 0.01356);
 	CAPTURE(together, (step - fine).norm() * 1e6, fine.x(), fine.y());
@@ -100,15 +100,15 @@ TEST_CASE("Columns under a base pulse come apart without a failure or a gain of 
 	const auto [n, pulse, end] = GENERATE(std::tuple(5, 0., 1.5), std::tuple(10, 0.01, 0.3), std::tuple(20, 0.01, 0.04));
 	CAPTURE(n);
 	ScheduledMotion motion;
-	motion.append({ pulse, 0.6 });
+	motion.append({pulse, 0.6});
 	auto s = stack(n, 0.25, 0.5, 0.7, 0.7);
 	moveBase(s, motion);
 	RigidStep<Plane> step;
-	double           before = energy(s), rise = 0;
-	bool             sound = true;
+	double before = energy(s), rise = 0;
+	bool sound = true;
 	while (s.time < end) {
 		const double work = s.baseWork;
-		const auto   report = step.advance(s, 1e-3);
+		const auto report = step.advance(s, 1e-3);
 		sound = sound && !report.diverged && report.converged;
 		rise = std::max(rise, energy(s) - before - (s.baseWork - work));
 		before = energy(s);
@@ -123,7 +123,7 @@ namespace {
 bool moves(int n, double friction, double acceleration)
 {
 	ScheduledMotion motion;
-	motion.append({ 0, 0, acceleration });
+	motion.append({0, 0, acceleration});
 	auto s = stack(n, 0.25, 0.5, 0.7, friction);
 	moveBase(s, motion);
 	run(s, 1e-3, 0.05);
@@ -147,7 +147,7 @@ double threshold(int n, double friction)
 
 TEST_CASE("A stack lifts at g b/(n a) and slides at mu g")
 {
-	for (int n : { 1, 2, 3 })
+	for (int n : {1, 2, 3})
 		CHECK(threshold(n, 0.8) == Approx(0.5 / n).epsilon(1e-4));
 	CHECK(threshold(1, 0.3) == Approx(0.3).epsilon(1e-4));
 	CHECK(threshold(3, 0.1) == Approx(0.1).epsilon(2e-4));
@@ -157,13 +157,13 @@ TEST_CASE("A stack lifts at g b/(n a) and slides at mu g")
 TEST_CASE("Two halves that rock as one follow the single block; at low restitution their joint opens")
 {
 	const double b = 0.3, a = 1.5, alpha = std::atan(b / a), start = 0.5 * alpha;
-	const auto   halves = [&](double restitution) {
-        auto s = emptyScene<Plane>();
-        addBlock(s, b, a / 2, onEdge(b, a / 2, start, { -b, 0 }), start);
-        addBlock(s, b, a / 2, s.bodies[1].pose.toGlobal({ 0, a }), start);
-        addPair(s, 0, 1, restitution);
-        addPair(s, 1, 2, restitution);
-        return s;
+	const auto halves = [&](double restitution) {
+		auto s = emptyScene<Plane>();
+		addBlock(s, b, a / 2, onEdge(b, a / 2, start, {-b, 0}), start);
+		addBlock(s, b, a / 2, s.bodies[1].pose.toGlobal({0, a}), start);
+		addPair(s, 0, 1, restitution);
+		addPair(s, 1, 2, restitution);
+		return s;
 	};
 	auto one = rockingBlock(b, a, start, NAN), two = halves(NAN);
 	CHECK(run(two, 1e-3, 3).converged);
