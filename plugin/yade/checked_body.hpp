@@ -1,11 +1,18 @@
 #pragma once
 // What a block must be made of, for rigid and compliant joints alike.
 
+#include "BlockMat.hpp"
 #include "sentence.hpp"
 #include <core/Body.hpp>
 #include <pkg/common/Box.hpp>
 
 namespace yade {
+
+/// What MoreauJeanIntegrator handles.
+inline bool isBlock(const Body& body)
+{
+	return dynamic_cast<const BlockMat*>(body.material.get()) && dynamic_cast<const Box*>(body.shape.get());
+}
 
 /// Throws for a member of a clump, and unless half sizes, mass and moments of inertia are numbers whose squares, and those of their
 /// inverses, single precision holds.

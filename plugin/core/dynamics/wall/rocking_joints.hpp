@@ -73,20 +73,19 @@ private:
 	double away(const WallContacts<K>& contacts, const JointPoint& point, const Pivot<K>& pivot) const; // m
 	bool closes(const WallContacts<K>& contacts, const JointPoint& point, double time) const;           // within it
 	const JointPoint* landing(const WallContacts<K>& contacts, const Joint& joint, double s) const;
-	void answer(RigidSystem<K>& system, WallContacts<K>& contacts, const Joint& joint, const JointPoint& at, double s, double& baseWork);
+	// The impact of a joint at a point of it, and at all that close within the time where there may be several.
+	void answer(RigidSystem<K>& system, WallContacts<K>& contacts, const Joint& joint, const JointPoint& at, double time, double& baseWork);
 
 	bool gathered {false};
 	std::vector<JointPoint> points; // joint by joint
 	std::vector<char> aside;        // points that the sweeps do not see
 	std::vector<Joint> rocking;
 	std::vector<int> bearing, gaping; // points of a joint that is looked at
-
-	struct { // in space
-		std::vector<masonry::Body> bodies;
-		std::vector<ImpulsePoint> points; // new support, then old
-		ClosingJoint joint;
-	} impact;
-	std::vector<int> numbers; // of its bodies in the system
 };
+
+template <>
+void RockingJoints<Plane>::answer(RigidSystem<Plane>&, WallContacts<Plane>&, const Joint&, const JointPoint&, double, double&);
+template <>
+void RockingJoints<Space>::answer(RigidSystem<Space>&, WallContacts<Space>&, const Joint&, const JointPoint&, double, double&);
 
 } // namespace masonry::rigid::wall

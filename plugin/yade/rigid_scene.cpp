@@ -1,0 +1,337 @@
+#include "rigid_scene.hpp"
+
+#include "impact_lists.hpp"
+#include <algorithm>
+
+namespace yade {
+
+namespace {
+
+/// Courses of a wall above which a warning tells that it may go too far, or not far enough, as it moves (validation/walls/shaking).
+constexpr int mostCourses = 24;
+/// Steps after which O.interactions are written even if nobody seems to look.
+constexpr int mostUnshown = 64;
+
+} // namespace
+
+template <class K>
+bool RigidScene<K>::outdated() const
+{
+	const auto& all = scene.bodies->body;
+	if (all.size() != seen.size())
+		return true;
+	if (!mayHaveChanged())
+		return false;
+	for (size_t id = 0; id < seen.size(); ++id)
+		if (!seen[id].isStill(all[id]))
+			return true;
+	return std::any_of(links.begin(), links.end(),
+	                   [](const Link& link) { return link.body->state != link.state || !(Properties(*link.body) == link.properties); });
+}
+
+template <class K>
+masonry::rigid::StepReport RigidScene<K>::step()
+{
+	try {
+		if (mayHaveChanged()) {
+			system.gravity = coordinates.gravity(integrator.gravity);
+			readLoads();
+		}
+		readStates();
+		readLaws();
+		if (!neighbours->isValid(system, scene.dt)) {
+			showPoints();
+			neighbours->update(system, scene.dt);
+			renewContacts();
+		}
+	} catch (...) {
+		forgetStates();
+		throw;
+	}
+	takeSettings();
+	if (integrator.isWall() != byWalls) {
+		system.moved = true;
+		system.startAnew();
+	}
+	if (integrator.isWall() && lawsChanged)
+		system.moved = true;
+	lawsChanged = false;
+	byWalls = integrator.isWall();
+	const auto report = byWalls ? advanceWall() : islands.advance(system, scene.dt);
+	writeStates();
+	if (++unshown >= mostUnshown || integrator.isWatched())
+		writeContacts();
+	for (const auto& impact : system.impacts)
+		record(impact);
+	integrator.frictDissip = system.frictDissip;
+	integrator.impactDissip = system.impactDissip;
+	integrator.baseWork = system.baseWork;
+	return report;
+}
+
+template <class K>
+void RigidScene<K>::takeSettings()
+{
+	system.time = scene.time;
+	system.settings.tolerance = integrator.tolerance;
+	system.settings.merged = integrator.mergedClosing;
+	system.settings.mostEvents = integrator.mostEvents;
+	system.settings.order = integrator.sequential ? masonry::ImpactOrder::sequential : masonry::ImpactOrder::simultaneous;
+}
+
+template <class K>
+masonry::rigid::StepReport RigidScene<K>::advanceWall()
+{
+	masonry::rigid::WallStep<K>& walls = bySize.walls;
+	walls.settings = {integrator.tolerance, integrator.strictForces, std::max(1, integrator.ompThreads)};
+	const auto report = bySize.advance(system, scene.dt);
+	const masonry::rigid::WallReport& ofWalls = walls.report;
+	const bool still = ofWalls.mode == masonry::rigid::WallMode::still;
+	integrator.mode = still ? "still" : "moving";
+	integrator.movingBlocks = ofWalls.moved;
+	integrator.localisedBlocks = bySize.localised();
+	++(still ? integrator.stillSteps : integrator.movingSteps);
+	integrator.velocityResidual = ofWalls.velocityResidual;
+	integrator.forceResidual = ofWalls.forceResidual;
+	if (!still && ofWalls.courses > mostCourses && !integrator.warnedOf.courses) {
+		integrator.warnedOf.courses = true;
+		LOG_WARN("blocks of a wall of "
+		         << ofWalls.courses << " courses move from t = " << scene.time << " s on: walls of more than " << mostCourses
+		         << " courses may go some tenths too far; see what a smaller MoreauJeanIntegrator.tolerance or O.dt changes.");
+	}
+	if (ofWalls.partBases && !integrator.warnedOf.bases) {
+		integrator.warnedOf.bases = true;
+		LOG_WARN(
+		    "t = " << scene.time
+		           << " s: blocks of a structure stand on bodies that move in different ways. Friction leaves open how much each of these "
+		              "carries, and method='wall' may let one take along what should slide on both: compare with method='localised' or "
+		              "compliant joints.");
+	}
+	return report;
+}
+
+template <class K>
+bool RigidScene<K>::isThere(size_t b) const
+{
+	const auto& all = scene.bodies->body;
+	return size_t(kept.ids[b]) < all.size() && all[kept.ids[b]] == links[b].body;
+}
+
+template <class K>
+void RigidScene<K>::readLoads()
+{
+	scene.forces.sync();
+	for (size_t b = 0; b < links.size(); ++b) {
+		auto& block = system.bodies[b];
+		if (block.prescribed)
+			continue;
+		const int id = kept.ids[b];
+		block.force = coordinates.load(scene.forces.getForce(id), scene.forces.getTorque(id), id);
+		block.force.template head<K::dimension>() += block.mass * system.gravity;
+	}
+}
+
+template <class K>
+void RigidScene<K>::readStates()
+{
+	others.resize(links.size());
+	bySize.walls.eachShare(links.size(), [&](size_t begin, size_t end) {
+		for (size_t b = begin; b < end; ++b) {
+			fetch(b + 6);
+			others[b] = links[b].written.isOf(*links[b].state) ? 0 : system.bodies[b].drive < 0 ? 1 : driven;
+		}
+	});
+	bool touched = false, placed = false;
+	const auto isTouched = [](char other) { return other != 0; };
+	for (size_t b = size_t(std::find_if(others.begin(), others.end(), isTouched) - others.begin()); b < links.size(); ++b) {
+		if (others[b] == driven) {
+			others[b] = 0;
+			if (links[b].written.pos.allFinite())
+				warnOfMotion(b);
+		}
+		if (!others[b])
+			continue;
+		Link& link = links[b];
+		auto& block = system.bodies[b];
+		const State& state = *link.state;
+		if (block.prescribed && scene.time > 0 && state.vel == Vector3r::Zero() && (state.pos - link.written.pos).norm() > 0)
+			warnOfPlace(b);
+		kept.seats[b].read(coordinates, state, link.properties.extents.minCoeff(), kept.ids[b], block);
+		block.increment.setZero();
+		if (!link.written.isPlaceOf(state)) {
+			others[b] = elsewhere;
+			placed = true;
+		}
+		link.written = {state.pos, state.vel, state.angVel, state.ori};
+		touched = true;
+	}
+	if (!touched)
+		return;
+	for (Pair& pair : system.pairs) {
+		const auto is = std::max(others[pair.body1], others[pair.body2]);
+		if (is == elsewhere || (is && !isOfWall(pair)))
+			meet(pair, is == elsewhere);
+	}
+	system.moved |= placed;
+	system.startAnew();
+}
+
+template <class K>
+void RigidScene<K>::warnOfMotion(size_t b)
+{
+	if (integrator.warnedOf.motion)
+		return;
+	integrator.warnedOf.motion = true;
+	LOG_WARN("a script has changed the state of body "
+	         << kept.ids[b] << " at t = " << scene.time
+	         << " s: it goes where its motion says all the same. A motion in another direction may move it besides.");
+}
+
+template <class K>
+void RigidScene<K>::warnOfPlace(size_t b)
+{
+	if (integrator.warnedOf.place)
+		return;
+	integrator.warnedOf.place = true;
+	LOG_WARN("a script has moved body " << kept.ids[b] << " by its state.pos at t = " << scene.time
+	                                    << " s, with state.vel = 0: blocks on it do not feel that it moves. Set state.vel, by which it "
+	                                       "goes on, or give it a RecordMotionEngine.");
+}
+
+template <class K>
+void RigidScene<K>::takeLaws()
+{
+	for (size_t c = 0; c < contacts.size(); ++c) {
+		const BlockPhys& law = contacts.law(c);
+		Pair& pair = system.pairs[c];
+		const Real friction = law.noSlip ? masonry::noSlip : law.tangensOfFrictionAngle, restitution = law.restitution;
+		if (pair.friction == friction && (pair.restitution == restitution || (std::isnan(pair.restitution) && std::isnan(restitution))))
+			continue;
+		law.check(kept.ids[pair.body1], kept.ids[pair.body2]);
+		pair.friction = friction;
+		pair.restitution = restitution;
+		lawsChanged = true;
+	}
+}
+
+template <class K>
+void RigidScene<K>::readLaws()
+{
+	if (unshown == 0)
+		takeLaws();
+}
+
+template <class K>
+void RigidScene<K>::showPoints()
+{
+	if (byWalls)
+		bySize.walls.showPoints(system);
+}
+
+template <class K>
+void RigidScene<K>::fetch(size_t b) const
+{
+	if (b >= links.size())
+		return;
+	const char* state = reinterpret_cast<const char*>(links[b].state.get());
+	for (size_t line = 0; line < sizeof(State); line += 64)
+		__builtin_prefetch(state + line);
+}
+
+template <class K>
+void RigidScene<K>::writeStates()
+{
+	bySize.walls.eachShare(links.size(), [&](size_t begin, size_t end) {
+		for (size_t b = begin; b < end; ++b) {
+			const auto& block = system.bodies[b];
+			if (block.prescribed && block.drive < 0 && block.velocity.isZero(0))
+				continue;
+			State& state = *links[b].state;
+			fetch(b + 6);
+			kept.seats[b].tell(coordinates, block, links[b].written, state);
+			state.angMom = kept.seats[b].spin(coordinates, block);
+		}
+	});
+}
+
+template <class K>
+void RigidScene<K>::record(const masonry::rigid::Impact& impact)
+{
+	addImpact(integrator, impact.time, kept.ids[impact.block], kept.ids[impact.support], impact.asked, impact.joint, impact.energyLost,
+	          impact.switched, impact.capped);
+}
+
+template <class K>
+void RigidScene<K>::writeContacts()
+{
+	if (unshown == 0)
+		return;
+	showPoints();
+	contacts.write(system, kept);
+	unshown = 0;
+}
+
+template <class K>
+vector<int> RigidScene<K>::touching()
+{
+	showPoints();
+	vector<int> result;
+	for (const Pair& pair : system.pairs)
+		if (touches(pair)) {
+			result.push_back(kept.ids[pair.body1]);
+			result.push_back(kept.ids[pair.body2]);
+		}
+	std::sort(result.begin(), result.end());
+	result.erase(std::unique(result.begin(), result.end()), result.end());
+	return result;
+}
+
+template <class K>
+void RigidScene<K>::setInstant(Real instant)
+{
+	for (MotionDrive& motion : motions)
+		motion.instant = instant;
+}
+
+template <class K>
+vector<Real> RigidScene<K>::pack()
+{
+	showPoints();
+	readLaws();
+	Packer packer(K::dimension);
+	kept.bodies = system.bodies;
+	kept.pairs = system.pairs;
+	Remembered<K> told = kept;
+	for (size_t b = 0; b < links.size(); ++b)
+		if (!isThere(b))
+			told.ids[b] = -1;
+	told.pass(packer);
+	packer(byWalls);
+	packer(lawsChanged);
+	if (byWalls) {
+		neighbours->pass(packer);
+		bySize.pass(packer, system);
+	}
+	return packer.values;
+}
+
+template <class K>
+void RigidScene<K>::unpackStepper(Unpacker& unpacker, const Remembered<K>& before)
+{
+	unpacker(byWalls);
+	bool laws = false;
+	unpacker(laws);
+	if (!byWalls || changed || before.ids != kept.ids || before.pairs.size() != system.pairs.size())
+		return;
+	renewContacts();
+	neighbours->pass(unpacker);
+	bySize.pass(unpacker, system);
+	unpacker.end();
+	system.moved = false;
+	lawsChanged = laws;
+}
+
+template class RigidScene<Plane>;
+template class RigidScene<Space>;
+
+} // namespace yade

@@ -1,0 +1,191 @@
+// A scene becomes the core's, and pairs of blocks meet in it.
+
+#include "checked_body.hpp"
+#include "rigid_scene.hpp"
+
+#include "dynamics/rigid/scales.hpp"
+#include "tolerances.hpp"
+#include <algorithm>
+#include <utility>
+
+namespace yade {
+
+namespace {
+
+/// Overlap, relative to the smallest half size, that is no rounding of coordinates and nothing that a wall has left (some 1e-5), but a
+/// mistake. Larger: blocks are lifted by as much, with energy of nothing.
+constexpr Real mostOverlap = 1e-4;
+/// Margin of the list of pairs, relative to the smallest half size. Larger: more pairs; smaller: the list is made anew more often.
+constexpr Real searchMargin = 0.1;
+
+} // namespace
+
+template <class K>
+RigidScene<K>::RigidScene(MoreauJeanIntegrator& engine, const vector<BaseMotionEngine*>& motions, const Remembered<K>& before)
+    : integrator(engine), scene(*engine.scene), home(Omega::instance().getScene()), coordinates(engine.along),
+      contacts(scene, coordinates, engine.pairLaw)
+{
+	system.frictDissip = engine.frictDissip;
+	system.impactDissip = engine.impactDissip;
+	system.baseWork = engine.baseWork;
+	const vector<int> inBefore = addBlocks(before);
+	addDrives(motions, inBefore);
+	addPairs(before, inBefore);
+	for (size_t b = 0; b < inBefore.size(); ++b) {
+		if (inBefore[b] < 0)
+			continue;
+		const auto &now = system.bodies[b], &then = before.bodies[inBefore[b]];
+		changed |= now.prescribed != then.prescribed || now.drive != then.drive;
+	}
+	if (changed)
+		system.startAnew();
+	forgetNeighbours();
+}
+
+template <class K>
+vector<int> RigidScene<K>::addBlocks(const Remembered<K>& before)
+{
+	vector<int> inBefore;
+	for (const auto& body : scene.bodies->body) {
+		seen.emplace_back(body);
+		if (!body || !isBlock(*body))
+			continue;
+		const auto old = std::find(before.ids.begin(), before.ids.end(), body->id);
+		const int k = old == before.ids.end() ? -1 : int(old - before.ids.begin());
+		inBefore.push_back(k);
+		const State& state = *body->state;
+		const Properties properties(*body);
+		const Seat<K> seat = k < 0 ? Seat<K>(coordinates, state) : before.seats[k];
+
+		masonry::rigid::RigidBody<K> block = k < 0 ? masonry::rigid::RigidBody<K>() : before.bodies[k];
+		block.halfSize = seat.halfSize(properties.extents);
+		block.mass = properties.mass;
+		block.inertia = seat.inertia(properties.inertia);
+		block.prescribed = !body->isDynamic();
+		block.drive = -1;
+		if (k < 0)
+			seat.read(coordinates, state, properties.extents.minCoeff(), body->id, block);
+		links.push_back({body, body->state, properties, {state.pos, state.vel, state.angVel, state.ori}});
+		if (k >= 0)
+			seat.tell(coordinates, block, links.back().written);
+		kept.ids.push_back(body->id);
+		kept.seats.push_back(seat);
+		system.bodies.push_back(block);
+	}
+	return inBefore;
+}
+
+template <class K>
+void RigidScene<K>::addDrives(const vector<BaseMotionEngine*>& engines, const vector<int>& inBefore)
+{
+	motions.reserve(engines.size());
+	vector<const BaseMotionEngine*> first; // of each drive
+	vector<char> begins;
+	for (BaseMotionEngine* engine : engines) {
+		const auto other = std::find_if(first.begin(), first.end(), [&](const auto* one) { return one->shares(*engine); });
+		const size_t d = size_t(other - first.begin());
+		if (other == first.end()) {
+			first.push_back(engine);
+			begins.push_back(0);
+			system.drives.emplace_back();
+		}
+		motions.emplace_back(*engine, kept.ids);
+		system.drives[d].components.push_back({&motions.back(), coordinates.direction(engine->direction)});
+		begins[d] |= engine->beginsNow();
+	}
+	for (size_t d = 0; d < first.size(); ++d) {
+		changed |= begins[d];
+		for (size_t k = 0; k < first[d]->ids.size(); ++k) {
+			const auto found = std::find(kept.ids.begin(), kept.ids.end(), first[d]->ids[k]);
+			if (found == kept.ids.end())
+				continue; // moved, but no block
+			const size_t b = size_t(found - kept.ids.begin());
+			auto& block = system.bodies[b];
+			block.drive = int(d);
+			const State& state = *links[b].state;
+			links[b].written = {state.pos, state.vel, state.angVel, state.ori};
+			block.origin = coordinates.in(first[d]->origin(k, engines));
+			if (inBefore[b] < 0 || begins[d])
+				block.velocity.template head<K::dimension>() = system.drives[d].velocity(scene.time);
+		}
+	}
+}
+
+template <class K>
+void RigidScene<K>::addPairs(const Remembered<K>& before, const vector<int>& inBefore)
+{
+	const auto now = [&](int k) { return int(std::find(inBefore.begin(), inBefore.end(), k) - inBefore.begin()); };
+	const auto stays = [&](int b, int k) { return b < int(links.size()) && system.bodies[b].halfSize == before.bodies[k].halfSize; };
+	for (Pair pair : before.pairs) {
+		const int then1 = std::exchange(pair.body1, now(pair.body1)), then2 = std::exchange(pair.body2, now(pair.body2));
+		if (stays(pair.body1, then1) && stays(pair.body2, then2))
+			system.pairs.push_back(pair);
+	}
+}
+
+template <class K>
+void RigidScene<K>::forgetNeighbours()
+{
+	length = masonry::rigid::scale::length(system);
+	neighbours = std::make_unique<masonry::rigid::Neighbours<K>>(searchMargin * length, [this](Pair& pair) { meet(pair, true); });
+}
+
+template <class K>
+void RigidScene<K>::forgetStates()
+{
+	for (Link& link : links)
+		link.written.pos.setConstant(NaN);
+	forgetNeighbours();
+}
+
+template <class K>
+void RigidScene<K>::renewContacts()
+{
+	contacts.renew(system.pairs, kept.ids);
+	takeLaws();
+}
+
+template <class K>
+void RigidScene<K>::meet(Pair& pair, bool placed)
+{
+	const auto &body1 = system.bodies[pair.body1], &body2 = system.bodies[pair.body2];
+	const Real rest = masonry::tolerance::restSpeed * std::sqrt(integrator.gravity.norm() * length);
+	pair.memory = {};
+	const auto found = masonry::rigid::findPoints(body1, body2, pair.memory);
+	pair.size = found.size;
+	pair.beside = found.size > 0;
+	if (found.size == 0)
+		return;
+	pair.face1 = found.face1;
+	pair.face2 = found.face2;
+	for (int i = 0; i < found.size; ++i) {
+		auto& point = pair.points[i];
+		point = {};
+		point.feature = found.features[i];
+		masonry::rigid::locate(point, body1, body2);
+		const auto speed =
+		    masonry::rigid::relativeVelocity(point.frame, body1.pose.position, body1.velocity, body2.pose.position, body2.velocity);
+		point.closed = point.gap <= integrator.mergedClosing * length && speed[0] >= -rest;
+		pair.beside &= std::abs(point.frame.axes.row(0).dot(system.gravity)) < masonry::tolerance::uprightJoint * system.gravity.norm();
+		if (placed && point.gap < -mostOverlap * length)
+			refuseOverlap(pair, -point.gap);
+	}
+}
+
+template <class K>
+void RigidScene<K>::refuseOverlap(const Pair& pair, Real depth) const
+{
+	throw std::runtime_error(sentence("Blocks ", kept.ids[pair.body1], " and ", kept.ids[pair.body2], " overlap by ", depth,
+	                                  " m: rigid blocks must be apart or just touch when the run starts or a script moves them."));
+}
+
+template RigidScene<Plane>::RigidScene(MoreauJeanIntegrator&, const vector<BaseMotionEngine*>&, const Remembered<Plane>&);
+template RigidScene<Space>::RigidScene(MoreauJeanIntegrator&, const vector<BaseMotionEngine*>&, const Remembered<Space>&);
+template void RigidScene<Plane>::forgetStates();
+template void RigidScene<Space>::forgetStates();
+template void RigidScene<Plane>::renewContacts();
+template void RigidScene<Space>::renewContacts();
+template void RigidScene<Plane>::meet(Pair&, bool);
+template void RigidScene<Space>::meet(Pair&, bool);
+
+} // namespace yade
