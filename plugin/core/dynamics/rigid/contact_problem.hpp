@@ -29,6 +29,7 @@
 // Impulses that still miss the laws are returned with their residual, and made to add no energy (seen from the offsets).
 #include "dynamics/rigid/kinematics.hpp"
 #include "impact/impulse_problem.hpp" // noSlip
+#include "tolerances.hpp"
 #include <memory>
 #include <vector>
 
@@ -63,6 +64,12 @@ struct ContactRows {
 	Rows offset {Rows::Zero()};  // m/s
 	double friction {0};         // mu >= 0, noSlip, or bilateral (point_law.hpp)
 	Rows impulse {Rows::Zero()}; // in: first guess; out: result. N s, on body 2 along the rows
+
+	// Whether the impulse has reached the friction cone.
+	bool slides() const
+	{
+		return impulse[0] > 0 && impulse.template tail<K::rows - 1>().norm() >= (1 - tolerance::rigid::cone) * friction * impulse[0];
+	}
 };
 
 struct SolveReport {

@@ -89,8 +89,7 @@ bool sameFeatures(const ContactPair<K>& pair, const FoundPoints<K>& found)
 }
 
 struct Settings {
-	double tolerance {
-	    1e-9}; // residual of a step's contact laws relative to the speed that gravity gives in that step; its parts aim at theirs
+	double tolerance {1e-9}; // residual of a step's contact laws, as a share of the speed that gravity gives in it; its parts aim at theirs
 	ImpactOrder order {ImpactOrder::simultaneous};
 	double merged {1e-6}; // closings within this gap, relative to the smallest half size, are one impact: a model parameter
 	int mostEvents {50};  // found inside one step; points that close later in it do so at its end, plastically
@@ -150,6 +149,9 @@ struct RigidSystem {
 	std::vector<Impact> impacts; // of the last step
 	// Since the start of the run.
 	double frictDissip {0}, impactDissip {0}, baseWork {0}; // J
+
+	// Of a body that a drive moves, at a time of the step.
+	typename K::Vector driven(const RigidBody<K>& body, double t) const { return body.origin + drives[body.drive].displacement(t); }
 
 	// Velocities have jumped, or forces: the last accelerations predict nothing.
 	void startAnew()

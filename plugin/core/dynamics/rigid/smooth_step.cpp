@@ -22,7 +22,7 @@ typename K::Pose prescribedPose(const RigidSystem<K>& s, const RigidBody<K>& bod
 	if (!body.velocity.isZero(0))
 		K::advance(pose, body.velocity, h);
 	if (body.drive >= 0)
-		pose.position = body.origin + s.drives[body.drive].displacement(t);
+		pose.position = s.driven(body, t);
 	return pose;
 }
 
@@ -30,27 +30,6 @@ template <class K>
 InverseMass<K> inverseMass(const RigidBody<K>& body, const typename K::Pose& pose)
 {
 	return {1 / body.mass, K::inverseInertia(body.inertia, pose)};
-}
-
-// Turned by phi about the middle of the step, an arm r there moves by 2 sin(phi/2) (phi/|phi|) x r: the rows act on this chord, so that a
-// point at rest on average does not move at all.
-template <class K>
-double chord(const typename K::Velocity& mean, double h)
-{
-	return 1 - mean.template tail<K::spins>().squaredNorm() * h * h / 24;
-}
-
-template <class K>
-Eigen::Matrix<double, K::rows, K::dof> jacobian(const ContactFrame<K>& frame, const typename K::Vector& center, double chord, double sign)
-{
-	Eigen::Matrix<double, K::rows, K::dof> J;
-	const typename K::Vector arm = chord * (frame.position - center);
-	for (int k = 0; k < K::rows; ++k) {
-		const typename K::Vector axis = sign * frame.axes.row(k).transpose();
-		J.row(k).template head<K::dimension>() = axis.transpose();
-		J.row(k).template tail<K::spins>() = K::moment(arm, axis).transpose();
-	}
-	return J;
 }
 
 // Whether velocities have come out otherwise than the middle was predicted with, by more than gravity gives in the step: a sliding block
@@ -67,14 +46,6 @@ bool surprises(const RigidSystem<K>& s, const Trial<K>& trial, const std::vector
 			return true;
 	}
 	return false;
-}
-
-// Whether the impulse has reached the friction cone.
-template <class K>
-bool slides(const ContactRows<K>& rows)
-{
-	const double normal = rows.impulse[0];
-	return normal > 0 && rows.impulse.template tail<K::rows - 1>().norm() >= (1 - tolerance::rigid::cone) * rows.friction * normal;
 }
 
 // Whether prescribed bodies that free ones touch move against each other in a step.
@@ -102,33 +73,6 @@ bool basesPart(const RigidSystem<K>& s, double dt)
 				return true;
 	}
 	return false;
-}
-
-// The forces of more than three points on a face are not determined by its motion, but where it spins as it slides the friction couple
-// hangs on them: they start from linear pressure, that is from the least sum of squares with the same resultant and moments, so that the
-// solver's path does not decide. Points that would have to pull, or stick, are left as they are.
-template <class Rows>
-void spreadLinearly(Rows* begin, Rows* end, const std::vector<Vector3>& positions)
-{
-	const int n = int(end - begin);
-	Matrix3 squares = Matrix3::Zero();
-	Vector3 sums = Vector3::Zero(), middle = Vector3::Zero();
-	for (const Vector3& x : positions)
-		middle += x / n;
-	const Vector3 across = begin->J2.row(1).template head<3>(), beside = begin->J2.row(2).template head<3>();
-	const auto shape = [&](int i) { return Vector3(1, across.dot(positions[i] - middle), beside.dot(positions[i] - middle)); };
-	for (int i = 0; i < n; ++i) {
-		squares += shape(i) * shape(i).transpose();
-		sums += begin[i].impulse[0] * shape(i);
-	}
-	if (!(squares.bottomRightCorner<2, 2>().determinant() > tolerance::rank * squares.bottomRightCorner<2, 2>().squaredNorm()))
-		return;
-	const Vector3 pressure = squares.ldlt().solve(sums);
-	for (int i = 0; i < n; ++i)
-		if (!(pressure.dot(shape(i)) > 0))
-			return;
-	for (int i = 0; i < n; ++i)
-		begin[i].impulse *= pressure.dot(shape(i)) / begin[i].impulse[0];
 }
 
 } // namespace
@@ -197,116 +141,6 @@ void SmoothStep<K>::predict(const RigidSystem<K>& s, double h, bool again)
 			    half * spin - spin + unknown.inverseMass.angular * (momentum + h * body.force.template tail<3>() + back);
 		}
 		solver.bodies.push_back(unknown);
-	}
-}
-
-template <class K>
-bool SmoothStep<K>::acts(const RigidSystem<K>& s, PointRef ref) const
-{
-	return s.pairs[ref.pair].points[ref.point].closed || contains(anticipated, ref);
-}
-
-// A share of the stray velocities, where the forces of the last step would do no work on it.
-template <class K>
-void SmoothStep<K>::dampStray(const RigidSystem<K>& s, double h)
-{
-	double work = 0;
-	for (int c = 0; c < int(s.pairs.size()); ++c)
-		for (int i = 0; i < s.pairs[c].size; ++i) {
-			if (!acts(s, {c, i}))
-				continue;
-			const ContactPoint<K>& point = s.pairs[c].points[i];
-			stray.push_back(Impulse::Zero());
-			if (!point.closed)
-				continue;
-			stray.back() = tolerance::rigid::damping * rigid::relativeVelocity(s, PointRef {c, i});
-			if (point.sliding)
-				stray.back().template tail<K::rows - 1>().setZero();
-			work += 0.5 * h * point.force.dot(stray.back());
-		}
-	if (std::abs(work) > tolerance::rigid::strayEnergy * weight)
-		stray.clear();
-}
-
-// The stray velocity of the closed points that alternates from step to step, seen from a pass that took nothing off: half of what it
-// changes by.
-template <class K>
-void SmoothStep<K>::findStray(const RigidSystem<K>& s)
-{
-	for (size_t r = 0; r < last.rows.size(); ++r) {
-		const PointRef ref = last.rows[r];
-		const ContactPoint<K>& point = s.pairs[ref.pair].points[ref.point];
-		stray.push_back(Impulse::Zero());
-		if (!point.closed)
-			continue;
-		stray.back() = 0.5 * (rigid::relativeVelocity(s, ref) - relativeVelocity(s, ref.pair, ref.point));
-		if (point.sliding || slides(solver.points[r]))
-			stray.back().template tail<K::rows - 1>().setZero();
-	}
-}
-
-// Work of the impulses where the stray velocities are taken off, J.
-template <class K>
-double SmoothStep<K>::strayWork() const
-{
-	double work = 0;
-	for (size_t r = 0; r < stray.size(); ++r)
-		work += 0.5 * solver.points[r].impulse.dot(stray[r]);
-	return work;
-}
-
-template <class K>
-void SmoothStep<K>::assemble(const RigidSystem<K>& s, double h)
-{
-	solver.points.clear();
-	solver.near.clear();
-	last.rows.clear();
-	for (int c = 0; c < int(s.pairs.size()); ++c) {
-		const ContactPair<K>& pair = s.pairs[c];
-		if (last.bodies[pair.body1].unknown >= 0 && last.bodies[pair.body2].unknown >= 0)
-			solver.near.push_back({last.bodies[pair.body1].unknown, last.bodies[pair.body2].unknown});
-		const size_t begin = solver.points.size();
-		bool slides = true;
-		positions.clear();
-		for (int i = 0; i < pair.size; ++i) {
-			const ContactPoint<K>& point = pair.points[i];
-			if (!acts(s, {c, i}))
-				continue;
-			const RigidBody<K>& body1 = s.bodies[pair.body1];
-			const RigidBody<K>& body2 = s.bodies[pair.body2];
-			const auto& next1 = last.bodies[pair.body1];
-			const auto& next2 = last.bodies[pair.body2];
-			const ContactFrame<K> frame = K::frame(point.feature, body1.halfSize, next1.middle, body2.halfSize, next2.middle);
-			last.rows.push_back({c, i});
-
-			ContactRows<K> rows;
-			rows.body1 = next1.unknown;
-			rows.body2 = next2.unknown;
-			rows.J1 = jacobian(frame, next1.middle.position, chord<K>(next1.mean, h), -1);
-			rows.J2 = jacobian(frame, next2.middle.position, chord<K>(next2.mean, h), 1);
-			rows.friction = pair.friction;
-			rows.impulse = !guesses.empty() ? guesses[last.rows.size() - 1] : partBases ? Impulse::Zero() : Impulse(h * point.force);
-			if (body1.prescribed)
-				rows.offset += rows.J1 * next1.velocity;
-			if (body2.prescribed)
-				rows.offset += rows.J2 * next2.velocity;
-			auto now = (rows.J1 * body1.velocity + rows.J2 * body2.velocity).eval();
-			if (!point.closed)
-				now[0] = std::max(now[0] + 2 * std::max(point.gap, 0.) / h, 0.);
-			else if (!stray.empty())
-				now -= stray[last.rows.size() - 1];
-			if (point.sliding && stopsInside)
-				now.template tail<K::rows - 1>().setZero();
-			rows.offset += now;
-			solver.points.push_back(rows);
-			if constexpr (K::maxPoints > 3) {
-				positions.push_back(frame.position);
-				slides &= point.sliding && rows.impulse[0] > 0;
-			}
-		}
-		if constexpr (K::maxPoints > 3)
-			if (slides && positions.size() > 3)
-				spreadLinearly(solver.points.data() + begin, solver.points.data() + solver.points.size(), positions);
 	}
 }
 
@@ -395,77 +229,6 @@ void SmoothStep<K>::attempt(const RigidSystem<K>& s, double h, bool again)
 	findFrames(s);
 }
 
-// Movements that close the gaps of loaded points and take penetrations off, both up to `most` (m), and all that arose in the step. Sweeps
-// over the points, each moved back along its normal row (least motion, weighted by mass); the gaps follow linearly. Returns the work
-// against the forces on the bodies, J.
-template <class K>
-double SmoothStep<K>::findShifts(const RigidSystem<K>& s, double most)
-{
-	const double enough = tolerance::rigid::gap * scales.length;
-	double largest = 0;
-	misses.clear();
-	for (size_t r = 0; r < last.rows.size(); ++r) {
-		const ContactPoint<K>& point = s.pairs[last.rows[r].pair].points[last.rows[r].point];
-		const double gap = frame(last.rows[r].pair, last.rows[r].point).gap;
-		const bool loaded = solver.points[r].impulse[0] > 0;
-		const double sunk = stray.empty() ? 0. : 0.5 * last.h * stray[r][0];
-		const double meant = point.closed ? point.gap + sunk : std::min(gap, 0.);
-		const double kept = meant - std::clamp(meant, -most, most);
-		misses.push_back(gap - (loaded ? kept : std::min(kept, 0.)));
-		if (loaded || misses.back() < 0)
-			largest = std::max(largest, std::abs(misses.back()));
-	}
-	shifts.clear();
-	if (!(largest > enough))
-		return 0;
-	shifts.assign(solver.bodies.size(), K::Velocity::Zero());
-	const int maxSweeps = last.rows.size() == 1 ? 1 : 20;
-	for (int sweep = 0; sweep < maxSweeps && largest > enough; ++sweep) {
-		largest = 0;
-		for (size_t r = 0; r < last.rows.size(); ++r) {
-			const ContactRows<K>& rows = solver.points[r];
-			double miss = misses[r], softness = 0;
-			typename K::Velocity move1 = K::Velocity::Zero(), move2 = K::Velocity::Zero();
-			if (rows.body1 >= 0) {
-				move1 = solver.bodies[rows.body1].inverseMass * rows.J1.row(0).transpose();
-				softness += rows.J1.row(0).dot(move1);
-				miss += rows.J1.row(0).dot(shifts[rows.body1]);
-			}
-			if (rows.body2 >= 0) {
-				move2 = solver.bodies[rows.body2].inverseMass * rows.J2.row(0).transpose();
-				softness += rows.J2.row(0).dot(move2);
-				miss += rows.J2.row(0).dot(shifts[rows.body2]);
-			}
-			if (!(rows.impulse[0] > 0) && miss >= 0)
-				continue;
-			largest = std::max(largest, std::abs(miss));
-			if (rows.body1 >= 0)
-				shifts[rows.body1] -= miss / softness * move1;
-			if (rows.body2 >= 0)
-				shifts[rows.body2] -= miss / softness * move2;
-		}
-	}
-	double work = 0;
-	for (size_t b = 0; b < s.bodies.size(); ++b)
-		if (last.bodies[b].unknown >= 0)
-			work -= s.bodies[b].force.dot(shifts[last.bodies[b].unknown]);
-	return work;
-}
-
-// Closes gaps and penetrations: at once where that costs no more energy than the contacts have lost in the step, else little by little.
-template <class K>
-void SmoothStep<K>::project(const RigidSystem<K>& s, double lost)
-{
-	if (findShifts(s, std::numeric_limits<double>::infinity()) > lost)
-		findShifts(s, tolerance::rigid::closingSpeed * scales.speed * last.h);
-	if (shifts.empty())
-		return;
-	for (size_t b = 0; b < s.bodies.size(); ++b)
-		if (last.bodies[b].unknown >= 0)
-			K::advance(last.bodies[b].end, shifts[last.bodies[b].unknown], 1.);
-	findFrames(s);
-}
-
 template <class K>
 void SmoothStep<K>::accept(RigidSystem<K>& s)
 {
@@ -550,7 +313,7 @@ bool SmoothStep<K>::takePoints(RigidSystem<K>& s) const
 			if (!point.closed)
 				continue;
 			point.force = rows.impulse / last.h;
-			point.sliding = u.template tail<K::rows - 1>().norm() > still && slides(rows);
+			point.sliding = u.template tail<K::rows - 1>().norm() > still && rows.slides();
 		}
 	return landed;
 }

@@ -1,0 +1,179 @@
+// The contact problem of a step: its rows, and stray velocities, which alternate from step to step.
+#include "dynamics/rigid/smooth_step.hpp"
+#include "tolerances.hpp"
+#include <algorithm>
+
+namespace masonry::rigid {
+
+namespace {
+
+// Turned by phi about the middle of the step, an arm r there moves by 2 sin(phi/2) (phi/|phi|) x r: the rows act on this chord, so that a
+// point at rest on average does not move at all.
+template <class K>
+double chord(const typename K::Velocity& mean, double h)
+{
+	return 1 - mean.template tail<K::spins>().squaredNorm() * h * h / 24;
+}
+
+template <class K>
+Eigen::Matrix<double, K::rows, K::dof> jacobian(const ContactFrame<K>& frame, const typename K::Vector& center, double chord, double sign)
+{
+	Eigen::Matrix<double, K::rows, K::dof> J;
+	const typename K::Vector arm = chord * (frame.position - center);
+	for (int k = 0; k < K::rows; ++k) {
+		const typename K::Vector axis = sign * frame.axes.row(k).transpose();
+		J.row(k).template head<K::dimension>() = axis.transpose();
+		J.row(k).template tail<K::spins>() = K::moment(arm, axis).transpose();
+	}
+	return J;
+}
+
+// The forces of more than three points on a face are not determined by its motion, but where it spins as it slides the friction couple
+// hangs on them: they start from linear pressure, that is from the least sum of squares with the same resultant and moments, so that the
+// solver's path does not decide. Points that would have to pull, or stick, are left as they are.
+template <class Rows>
+void spreadLinearly(Rows* begin, Rows* end, const std::vector<Vector3>& positions)
+{
+	const int n = int(end - begin);
+	Matrix3 squares = Matrix3::Zero();
+	Vector3 sums = Vector3::Zero(), middle = Vector3::Zero();
+	for (const Vector3& x : positions)
+		middle += x / n;
+	const Vector3 across = begin->J2.row(1).template head<3>(), beside = begin->J2.row(2).template head<3>();
+	const auto shape = [&](int i) { return Vector3(1, across.dot(positions[i] - middle), beside.dot(positions[i] - middle)); };
+	for (int i = 0; i < n; ++i) {
+		squares += shape(i) * shape(i).transpose();
+		sums += begin[i].impulse[0] * shape(i);
+	}
+	if (!(squares.bottomRightCorner<2, 2>().determinant() > tolerance::rank * squares.bottomRightCorner<2, 2>().squaredNorm()))
+		return;
+	const Vector3 pressure = squares.ldlt().solve(sums);
+	for (int i = 0; i < n; ++i)
+		if (!(pressure.dot(shape(i)) > 0))
+			return;
+	for (int i = 0; i < n; ++i)
+		begin[i].impulse *= pressure.dot(shape(i)) / begin[i].impulse[0];
+}
+
+} // namespace
+
+template <class K>
+bool SmoothStep<K>::acts(const RigidSystem<K>& s, PointRef ref) const
+{
+	return s.pairs[ref.pair].points[ref.point].closed || contains(anticipated, ref);
+}
+
+// A share of the stray velocities, where the forces of the last step would do no work on it.
+template <class K>
+void SmoothStep<K>::dampStray(const RigidSystem<K>& s, double h)
+{
+	double work = 0;
+	for (int c = 0; c < int(s.pairs.size()); ++c)
+		for (int i = 0; i < s.pairs[c].size; ++i) {
+			if (!acts(s, {c, i}))
+				continue;
+			const ContactPoint<K>& point = s.pairs[c].points[i];
+			stray.push_back(Impulse::Zero());
+			if (!point.closed)
+				continue;
+			stray.back() = tolerance::rigid::damping * rigid::relativeVelocity(s, PointRef {c, i});
+			if (point.sliding)
+				stray.back().template tail<K::rows - 1>().setZero();
+			work += 0.5 * h * point.force.dot(stray.back());
+		}
+	if (std::abs(work) > tolerance::rigid::strayEnergy * weight)
+		stray.clear();
+}
+
+// The stray velocity of the closed points that alternates from step to step, seen from a pass that took nothing off: half of what it
+// changes by.
+template <class K>
+void SmoothStep<K>::findStray(const RigidSystem<K>& s)
+{
+	for (size_t r = 0; r < last.rows.size(); ++r) {
+		const PointRef ref = last.rows[r];
+		const ContactPoint<K>& point = s.pairs[ref.pair].points[ref.point];
+		stray.push_back(Impulse::Zero());
+		if (!point.closed)
+			continue;
+		stray.back() = 0.5 * (rigid::relativeVelocity(s, ref) - relativeVelocity(s, ref.pair, ref.point));
+		if (point.sliding || solver.points[r].slides())
+			stray.back().template tail<K::rows - 1>().setZero();
+	}
+}
+
+// Work of the impulses where the stray velocities are taken off, J.
+template <class K>
+double SmoothStep<K>::strayWork() const
+{
+	double work = 0;
+	for (size_t r = 0; r < stray.size(); ++r)
+		work += 0.5 * solver.points[r].impulse.dot(stray[r]);
+	return work;
+}
+
+template <class K>
+void SmoothStep<K>::assemble(const RigidSystem<K>& s, double h)
+{
+	solver.points.clear();
+	solver.near.clear();
+	last.rows.clear();
+	for (int c = 0; c < int(s.pairs.size()); ++c) {
+		const ContactPair<K>& pair = s.pairs[c];
+		if (last.bodies[pair.body1].unknown >= 0 && last.bodies[pair.body2].unknown >= 0)
+			solver.near.push_back({last.bodies[pair.body1].unknown, last.bodies[pair.body2].unknown});
+		const size_t begin = solver.points.size();
+		bool slides = true;
+		positions.clear();
+		for (int i = 0; i < pair.size; ++i) {
+			const ContactPoint<K>& point = pair.points[i];
+			if (!acts(s, {c, i}))
+				continue;
+			const RigidBody<K>& body1 = s.bodies[pair.body1];
+			const RigidBody<K>& body2 = s.bodies[pair.body2];
+			const auto& next1 = last.bodies[pair.body1];
+			const auto& next2 = last.bodies[pair.body2];
+			const ContactFrame<K> frame = K::frame(point.feature, body1.halfSize, next1.middle, body2.halfSize, next2.middle);
+			last.rows.push_back({c, i});
+
+			ContactRows<K> rows;
+			rows.body1 = next1.unknown;
+			rows.body2 = next2.unknown;
+			rows.J1 = jacobian(frame, next1.middle.position, chord<K>(next1.mean, h), -1);
+			rows.J2 = jacobian(frame, next2.middle.position, chord<K>(next2.mean, h), 1);
+			rows.friction = pair.friction;
+			rows.impulse = !guesses.empty() ? guesses[last.rows.size() - 1] : partBases ? Impulse::Zero() : Impulse(h * point.force);
+			if (body1.prescribed)
+				rows.offset += rows.J1 * next1.velocity;
+			if (body2.prescribed)
+				rows.offset += rows.J2 * next2.velocity;
+			auto now = (rows.J1 * body1.velocity + rows.J2 * body2.velocity).eval();
+			if (!point.closed)
+				now[0] = std::max(now[0] + 2 * std::max(point.gap, 0.) / h, 0.);
+			else if (!stray.empty())
+				now -= stray[last.rows.size() - 1];
+			if (point.sliding && stopsInside)
+				now.template tail<K::rows - 1>().setZero();
+			rows.offset += now;
+			solver.points.push_back(rows);
+			if constexpr (K::maxPoints > 3) {
+				positions.push_back(frame.position);
+				slides &= point.sliding && rows.impulse[0] > 0;
+			}
+		}
+		if constexpr (K::maxPoints > 3)
+			if (slides && positions.size() > 3)
+				spreadLinearly(solver.points.data() + begin, solver.points.data() + solver.points.size(), positions);
+	}
+}
+
+template void SmoothStep<Plane>::dampStray(const RigidSystem<Plane>&, double);
+template void SmoothStep<Space>::dampStray(const RigidSystem<Space>&, double);
+template void SmoothStep<Plane>::findStray(const RigidSystem<Plane>&);
+template void SmoothStep<Space>::findStray(const RigidSystem<Space>&);
+template double SmoothStep<Plane>::strayWork() const;
+template double SmoothStep<Space>::strayWork() const;
+template void SmoothStep<Plane>::assemble(const RigidSystem<Plane>&, double);
+template void SmoothStep<Space>::assemble(const RigidSystem<Space>&, double);
+
+} // namespace masonry::rigid
