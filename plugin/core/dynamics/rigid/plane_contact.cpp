@@ -4,6 +4,8 @@
 #include "dynamics/rigid/kinematics.hpp"
 #include "tolerances.hpp"
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace masonry::rigid {
 
@@ -98,6 +100,12 @@ struct FacePair {
 		const double reach = std::abs(span);
 		return std::min(referenceEnd(), middle + reach) - std::max(-referenceEnd(), middle - reach) > limits::sliver * length;
 	}
+	// Whether this place on the reference face lies over the incident face.
+	bool meetsIncident(double place) const
+	{
+		const double half = std::hypot(span, rise);
+		return std::abs((place - middle) * span - height * rise) <= half * (half + limits::slack * length);
+	}
 	int referenceFace() const { return faceNumber(face.axis, face.sign); }
 	int incidentFace() const { return faceNumber(incidentAxis, incidentSign); }
 };
@@ -122,7 +130,7 @@ void chooseIncident(FacePair& pair, const PlaneMemory& memory)
 
 struct End {
 	PlaneFeature feature;
-	double gap;
+	double gap, place; // place: along the reference face
 };
 
 // What meets at one end (-1 or +1 along the tangent) of the overlap: the incident vertex where it lies over the reference face,
@@ -141,8 +149,16 @@ End endOfOverlap(const FacePair& pair, double end, const PlaneMemory& memory)
 		return held(ofIncident) || (!held(ofReference) && inside >= -limits::slack * pair.length);
 	};
 	if (takesIncident())
-		return {ofIncident, pair.height + corner * pair.rise};
-	return {ofReference, pair.normalAlong * (end * pair.referenceEnd() - pair.middle) - pair.normalOver * pair.height};
+		return {ofIncident, pair.height + corner * pair.rise, pair.middle + corner * pair.span};
+	const double place = end * pair.referenceEnd();
+	return {ofReference, pair.normalAlong * (place - pair.middle) - pair.normalOver * pair.height, place};
+}
+
+// Where a face leans on the border of another one, a vertex of it that slides over that border lands nowhere: its gap ends there, at a
+// speed that is all of the sliding, and so does the face that it is over. So it is no end of the overlap where the border is so near.
+bool passes(const FacePair& pair, const End& low, const End& high)
+{
+	return std::abs(pair.normalAlong) > tolerance::rigid::leans && high.place - low.place < tolerance::rigid::passing * pair.length;
 }
 
 } // namespace
@@ -190,14 +206,20 @@ bool Plane::findPoints(const Vector& half1, const Pose& pose1, const Vector& hal
 			return false;
 	}
 
-	const End low = endOfOverlap(pair, -1, before), high = endOfOverlap(pair, 1, before);
+	End low = endOfOverlap(pair, -1, before), high = endOfOverlap(pair, 1, before);
+	for (End* end : {&low, &high})
+		if (beyondFace && end->feature.vertexBody == face.body && !pair.meetsIncident(end->place))
+			end->gap = std::numeric_limits<double>::infinity();
 	const End& nearer = high.gap < low.gap ? high : low;
-	if (nearer.gap > margin)
+	if (!(nearer.gap <= margin) || std::isinf(nearer.gap))
 		return false;
-	out.size = beyondFace ? 1 : 2;
-	out.features[0] = beyondFace ? nearer.feature : low.feature;
-	if (!beyondFace)
-		out.features[1] = high.feature;
+	if (beyondFace || passes(pair, low, high)) {
+		out.size = 1;
+		out.features[0] = nearer.feature;
+	} else {
+		out.size = 2;
+		out.features = {low.feature, high.feature};
+	}
 	out.face1 = on1 ? pair.referenceFace() : pair.incidentFace();
 	out.face2 = on1 ? pair.incidentFace() : pair.referenceFace();
 	memory = {face.body, out.face1, out.face2, out.features};

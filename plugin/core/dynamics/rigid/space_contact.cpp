@@ -124,32 +124,34 @@ void takeCorners(const ContactPatch& patch, const Vector3& half1, const Pose& po
 }
 
 // Where a face leans on the border of another one, a vertex of it that slides over that border lands nowhere: its gap ends there, at a
-// speed that is all of the sliding, and so does the face that it is over. So it is no corner where a crossing close to it is nearer, and
-// has not its normal, which is that of the other face. And past the border it is none at once: up to vertexReach beyond it, the face that
-// it has left would hold it.
-void dropPassing(const Vector3& half1, const Pose& pose1, const Vector3& half2, const Pose& pose2, PatchFeature& memory,
-                 FoundPoints<Space>& out)
+// speed that is all of the sliding, and so does the face that it is over. So of two corners of the patch that are so near each other, and
+// have not the same normal, only the nearer to touch is one. And past the border the vertex is none at once: up to vertexReach beyond it,
+// the face that it has left would hold it.
+void dropPassing(const ContactPatch& patch, const Vector3& half1, const Pose& pose1, const Vector3& half2, const Pose& pose2,
+                 PatchFeature& memory, FoundPoints<Space>& out)
 {
-	if (std::none_of(out.features.begin(), out.features.begin() + out.size, [](const SpaceFeature& one) { return isCrossing(one); }))
-		return;
 	const double nearby = tolerance::rigid::passing * std::min(half1.minCoeff(), half2.minCoeff());
+	const auto corner = [&](int i) -> const Vector3& { return patch.points[i].position1; };
+	bool some = false;
+	for (int i = 1; i < patch.size; ++i)
+		for (int j = 0; j < i; ++j)
+			some |= (corner(i) - corner(j)).squaredNorm() < nearby * nearby;
+	if (!some)
+		return;
 	std::array<Frame, Space::maxPoints> frames;
 	for (int i = 0; i < out.size; ++i)
 		frames[i] = Space::frame(out.features[i], half1, pose1, half2, pose2);
 	const auto features = out.features;
 	const int before = std::exchange(out.size, 0);
 	for (int i = 0; i < before; ++i) {
-		const auto hides = [&, i](int j) {
-			const Vector3 normal = frames[i].axes.row(0), other = frames[j].axes.row(0);
-			return isCrossing(features[j]) && frames[j].gap < frames[i].gap && (frames[j].position - frames[i].position).norm() < nearby &&
-			       normal.cross(other).norm() > tolerance::rigid::leans / 2;
+		const auto hides = [&, i](const Frame& other) {
+			const Vector3 normal = frames[i].axes.row(0), otherNormal = other.axes.row(0);
+			return other.gap < frames[i].gap && (other.position - frames[i].position).norm() < nearby &&
+			       normal.cross(otherNormal).norm() > tolerance::rigid::leans / 2;
 		};
-		bool passes = false;
-		for (int j = 0; j < before && !isCrossing(features[i]); ++j)
-			passes |= hides(j);
-		if (!passes)
+		if (std::none_of(frames.begin(), frames.begin() + before, hides))
 			out.features[out.size++] = features[i];
-		else
+		else if (!isCrossing(features[i]))
 			memory.vertices &= ~(1 << (features[i].kind == SpaceFeature::Vertex1 ? features[i].first : 8 + features[i].second));
 	}
 }
@@ -211,7 +213,7 @@ bool Space::findPoints(const Vector& half1, const Pose& pose1, const Vector& hal
 	out.face2 = faces ? patch.feature.feature2 : faceNearest(-patch.normal, pose2);
 	takeCorners(patch, half1, pose1, half2, pose2, out);
 	if (leans(memory, pose1, pose2))
-		dropPassing(half1, pose1, half2, pose2, memory, out);
+		dropPassing(patch, half1, pose1, half2, pose2, memory, out);
 	return true;
 }
 
