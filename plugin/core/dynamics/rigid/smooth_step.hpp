@@ -80,6 +80,8 @@ private:
 	double timeAfter(const RigidSystem<K>& system, double h) const; // s
 	void predict(const RigidSystem<K>& system, double h, bool again);
 	void assemble(const RigidSystem<K>& system, double h);
+	int leader(const RigidSystem<K>& system, int pair) const;
+	ContactRows<K> rowsOf(const RigidSystem<K>& system, PointRef ref, const ContactFrame<K>& frame, double h, Impulse astray) const;
 	bool acts(const RigidSystem<K>& system, PointRef ref) const;
 	void dampStray(const RigidSystem<K>& system, double h);
 	void findStray(const RigidSystem<K>& system);
@@ -103,7 +105,7 @@ private:
 	double weight {0};                    // of the free bodies times the scene's length, J
 	bool unsteady {false};                // the stray velocities were left
 	bool partBases {false}; // how much each of two bases that move apart carries is not determined: the last step's share grows
-	std::vector<typename K::Vector> positions; // of the rows of one pair
+	std::vector<ContactFrame<K>> middles; // of the rows of one pair
 	ContactSolver<K> solver;
 };
 

@@ -31,19 +31,21 @@ Eigen::Matrix<double, K::rows, K::dof> jacobian(const ContactFrame<K>& frame, co
 // The forces of more than three points on a face are not determined by its motion, but where it spins as it slides the friction couple
 // hangs on them: they start from linear pressure, that is from the least sum of squares with the same resultant and moments, so that the
 // solver's path does not decide. Points that would have to pull, or stick, are left as they are.
-template <class Rows>
-void spreadLinearly(Rows* begin, Rows* end, const std::vector<Vector3>& positions)
+void spreadLinearly(ContactRows<Space>* rows, const std::vector<ContactFrame<Space>>& frames)
 {
-	const int n = int(end - begin);
+	const int n = int(frames.size());
 	Matrix3 squares = Matrix3::Zero();
 	Vector3 sums = Vector3::Zero(), middle = Vector3::Zero();
-	for (const Vector3& x : positions)
-		middle += x / n;
-	const Vector3 across = begin->J2.row(1).template head<3>(), beside = begin->J2.row(2).template head<3>();
-	const auto shape = [&](int i) { return Vector3(1, across.dot(positions[i] - middle), beside.dot(positions[i] - middle)); };
+	for (const auto& frame : frames)
+		middle += frame.position / n;
+	const Vector3 across = rows->J2.row(1).head<3>(), beside = rows->J2.row(2).head<3>();
+	const auto shape = [&](int i) {
+		const Vector3 from = frames[i].position - middle;
+		return Vector3(1, across.dot(from), beside.dot(from));
+	};
 	for (int i = 0; i < n; ++i) {
 		squares += shape(i) * shape(i).transpose();
-		sums += begin[i].impulse[0] * shape(i);
+		sums += rows[i].impulse[0] * shape(i);
 	}
 	if (!(squares.bottomRightCorner<2, 2>().determinant() > tolerance::rank * squares.bottomRightCorner<2, 2>().squaredNorm()))
 		return;
@@ -52,7 +54,7 @@ void spreadLinearly(Rows* begin, Rows* end, const std::vector<Vector3>& position
 		if (!(pressure.dot(shape(i)) > 0))
 			return;
 	for (int i = 0; i < n; ++i)
-		begin[i].impulse *= pressure.dot(shape(i)) / begin[i].impulse[0];
+		rows[i].impulse *= pressure.dot(shape(i)) / rows[i].impulse[0];
 }
 
 } // namespace
@@ -112,6 +114,26 @@ double SmoothStep<K>::strayWork() const
 	return work;
 }
 
+// What lands in a step does so as a point of its pair that sticks, or as another that lands: at the height of that, and with its stray
+// velocity. Otherwise the turn that lands it would have it slip, by more than the tolerance, and two points of a face that must not slip in
+// different ways take any impulse. Returns that point's row, or -1.
+template <class K>
+int SmoothStep<K>::leader(const RigidSystem<K>& s, int pair) const
+{
+	int row = int(last.rows.size()), landing = -1;
+	for (int i = 0; i < s.pairs[pair].size; ++i) {
+		if (!acts(s, {pair, i}))
+			continue;
+		const ContactPoint<K>& point = s.pairs[pair].points[i];
+		if (point.closed && !point.sliding)
+			return row;
+		if (!point.closed && landing < 0)
+			landing = row;
+		++row;
+	}
+	return landing;
+}
+
 template <class K>
 void SmoothStep<K>::assemble(const RigidSystem<K>& s, double h)
 {
@@ -123,48 +145,62 @@ void SmoothStep<K>::assemble(const RigidSystem<K>& s, double h)
 		if (last.bodies[pair.body1].unknown >= 0 && last.bodies[pair.body2].unknown >= 0)
 			solver.near.push_back({last.bodies[pair.body1].unknown, last.bodies[pair.body2].unknown});
 		const size_t begin = solver.points.size();
-		bool slides = true;
-		positions.clear();
-		for (int i = 0; i < pair.size; ++i) {
-			const ContactPoint<K>& point = pair.points[i];
-			if (!acts(s, {c, i}))
-				continue;
-			const RigidBody<K>& body1 = s.bodies[pair.body1];
-			const RigidBody<K>& body2 = s.bodies[pair.body2];
-			const auto& next1 = last.bodies[pair.body1];
-			const auto& next2 = last.bodies[pair.body2];
-			const ContactFrame<K> frame = K::frame(point.feature, body1.halfSize, next1.middle, body2.halfSize, next2.middle);
-			last.rows.push_back({c, i});
-
-			ContactRows<K> rows;
-			rows.body1 = next1.unknown;
-			rows.body2 = next2.unknown;
-			rows.J1 = jacobian(frame, next1.middle.position, chord<K>(next1.mean, h), -1);
-			rows.J2 = jacobian(frame, next2.middle.position, chord<K>(next2.mean, h), 1);
-			rows.friction = pair.friction;
-			rows.impulse = !guesses.empty() ? guesses[last.rows.size() - 1] : partBases ? Impulse::Zero() : Impulse(h * point.force);
-			if (body1.prescribed)
-				rows.offset += rows.J1 * next1.velocity;
-			if (body2.prescribed)
-				rows.offset += rows.J2 * next2.velocity;
-			auto now = (rows.J1 * body1.velocity + rows.J2 * body2.velocity).eval();
-			if (!point.closed)
-				now[0] = std::max(now[0] + 2 * std::max(point.gap, 0.) / h, 0.);
-			else if (!stray.empty())
-				now -= stray[last.rows.size() - 1];
-			if (point.sliding && stopsInside)
-				now.template tail<K::rows - 1>().setZero();
-			rows.offset += now;
-			solver.points.push_back(rows);
-			if constexpr (K::maxPoints > 3) {
-				positions.push_back(frame.position);
-				slides &= point.sliding && rows.impulse[0] > 0;
+		const int leads = leader(s, c);
+		middles.clear();
+		for (int i = 0; i < pair.size; ++i)
+			if (acts(s, {c, i})) {
+				last.rows.push_back({c, i});
+				middles.push_back(K::frame(pair.points[i].feature, s.bodies[pair.body1].halfSize, last.bodies[pair.body1].middle,
+				                           s.bodies[pair.body2].halfSize, last.bodies[pair.body2].middle));
 			}
+		bool slides = true;
+		for (size_t k = 0; k < middles.size(); ++k) {
+			const ContactPoint<K>& point = pair.points[last.rows[begin + k].point];
+			ContactFrame<K> frame = middles[k];
+			Impulse astray = stray.empty() ? Impulse::Zero() : stray[begin + k];
+			if (!point.closed) {
+				const ContactFrame<K>& other = middles[leads - begin];
+				const typename K::Vector normal = frame.axes.row(0).transpose();
+				frame.position -= normal * normal.dot(frame.position - other.position);
+				if (!stray.empty())
+					astray = frame.axes * (other.axes.transpose() * stray[leads]);
+			}
+			solver.points.push_back(rowsOf(s, last.rows[begin + k], frame, h, astray));
+			slides &= point.sliding && solver.points.back().impulse[0] > 0;
 		}
 		if constexpr (K::maxPoints > 3)
-			if (slides && positions.size() > 3)
-				spreadLinearly(solver.points.data() + begin, solver.points.data() + solver.points.size(), positions);
+			if (slides && middles.size() > 3)
+				spreadLinearly(solver.points.data() + begin, middles);
 	}
+}
+
+// Of a point in the middle of the step. The law holds for the mean velocity: offset is the relative velocity now, but for what is astray.
+template <class K>
+ContactRows<K> SmoothStep<K>::rowsOf(const RigidSystem<K>& s, PointRef ref, const ContactFrame<K>& frame, double h, Impulse astray) const
+{
+	const ContactPair<K>& pair = s.pairs[ref.pair];
+	const ContactPoint<K>& point = pair.points[ref.point];
+	const RigidBody<K>&body1 = s.bodies[pair.body1], &body2 = s.bodies[pair.body2];
+	const auto &next1 = last.bodies[pair.body1], &next2 = last.bodies[pair.body2];
+	const size_t row = solver.points.size();
+	ContactRows<K> rows;
+	rows.body1 = next1.unknown;
+	rows.body2 = next2.unknown;
+	rows.J1 = jacobian(frame, next1.middle.position, chord<K>(next1.mean, h), -1);
+	rows.J2 = jacobian(frame, next2.middle.position, chord<K>(next2.mean, h), 1);
+	rows.friction = pair.friction;
+	rows.impulse = !guesses.empty() ? guesses[row] : partBases ? Impulse::Zero() : Impulse(h * point.force);
+	if (body1.prescribed)
+		rows.offset += rows.J1 * next1.velocity;
+	if (body2.prescribed)
+		rows.offset += rows.J2 * next2.velocity;
+	Impulse now = rows.J1 * body1.velocity + rows.J2 * body2.velocity - astray;
+	if (!point.closed)
+		now[0] = std::max(now[0] + astray[0] + 2 * std::max(point.gap, 0.) / h, 0.);
+	if (point.sliding && stopsInside)
+		now.template tail<K::rows - 1>().setZero();
+	rows.offset += now;
+	return rows;
 }
 
 template void SmoothStep<Plane>::dampStray(const RigidSystem<Plane>&, double);
