@@ -126,7 +126,7 @@ void MoreauJeanIntegrator::checkPlane(const Vector3r& horizontal) const
 			local.cwiseAbs().maxCoeff(&axis);
 			const Real half = size[axis], here = normal.dot(state.pos), rounding = outOfPlane * size.minCoeff();
 			if (local.cwiseAbs().sum() - std::abs(local[axis]) > outOfPlane)
-				throw LeavesPlane(sentence("block ", body->id, " has no axis across the plane"));
+				throw LeavesPlane(sentence("body ", body->id, " has no axis across the plane"));
 			const bool shares = std::abs(here - depth) <= rounding;
 			if (body->isDynamic()) {
 				if (!shares)
