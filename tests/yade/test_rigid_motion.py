@@ -117,7 +117,10 @@ for method in ("localised", "wall"):
     integrator.motions[0].dead = True
     O.run(1000, True)
     assert abs(base.vel[0] - 1) < 1e-9 and abs(base.pos[0] - 1.5) < 1e-9, (base.vel, base.pos)
-    integrator.motions[0].dead = False
+    O.engines = engines(integrator.motions, method=method)  # which a script may make anew
+    O.run(100, True)
+    assert abs(base.vel[0] - 1) < 1e-9
+    O.engines[-1].motions[0].dead = False
     refuses_to_run("RecordMotionEngine.start = 0 s has passed", "start=O.time")
     base, _, _ = one_block(2)
     O.engines = engines([record(base, 1.0, dead=True), record(base, -1.0)], method=method)

@@ -194,7 +194,8 @@ def _check_engines(motions, recorders, others):
             raise ValueError(f"motion = {item!r}: is of the theory, without a body that it moves: must be {_in_yade(item)}")
         if not isinstance(item, wrapper.BaseMotionEngine):
             raise ValueError(f"motion = {item!r}: must be a PulseTrainEngine, a RecordMotionEngine, or a list of them")
-        item.check()
+        if not item.dead:  # as if it were not there
+            item.check()
     for item in recorders:
         if not isinstance(item, (wrapper.BlockRecorder, wrapper.WallRecorder)):
             raise ValueError(f"recorder = {item!r}: must be a BlockRecorder, a WallRecorder or a list of them")
