@@ -42,7 +42,7 @@ for yaw in (0, 17, 45, 90):
 base = ground()
 upper = dem.stack(2, (0.6, 1, 1.5), O.bodies[base].mat, base)[1]
 O.bodies[upper].state.ori = Quaternion(Vector3(0, 0, 1), math.radians(30))
-assert choice() == "spatial" and f"block {upper} has no axis" in integrator().reason
+assert choice() == "spatial" and f"body {upper} has no axis" in integrator().reason
 base = ground()
 for y in (-1, 1):
     dem.block((0.6, 1, 1.5), O.bodies[base].mat, center=(0, y, 0.75))
