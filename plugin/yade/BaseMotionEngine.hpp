@@ -84,12 +84,14 @@ public:
 		.def("check", &BaseMotionEngine::checkNow, "Raises ValueError unless the attributes are complete and every body of ids exists and is prescribed; done before the first step.")
 	);
 	// clang-format on
+protected:
+	/// Now, in the present scene or in the one it was saved from.
+	bool hasBegun() const;
+
 private:
 	using Settings = std::map<string, string>; // attributes that scripts may set, as Python prints them
 
 	Settings settings() const;
-	/// Now, in the present scene or in the one it was saved from.
-	bool hasBegun() const;
 	/// Its time has come in the present scene.
 	bool underWay() const;
 	bool wasLeftOut() const;

@@ -25,6 +25,14 @@ void BlockPhys::check(int id1, int id2) const
 		refuse("restitution", restitution, "from 0 to 1, or NaN for the natural restitution");
 }
 
+void BlockPhys::takeLaw(Real friction, Real c)
+{
+	noSlip = friction == masonry::noSlip;
+	if (!noSlip)
+		tangensOfFrictionAngle = friction;
+	restitution = c;
+}
+
 void BlockPhys::readPoints(masonry::JointContact& contact) const
 {
 	contact.size = int(identities.size());

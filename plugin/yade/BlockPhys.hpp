@@ -11,6 +11,8 @@ public:
 	masonry::JointLaw law(Real dampingRatio) const;
 	/// Throws unless friction and restitution of the joint of these bodies are possible.
 	void check(int id1, int id2) const;
+	/// Friction and restitution as the core has them.
+	void takeLaw(Real friction, Real restitution);
 	/// The state of the points, as the core sees it, and back.
 	void readPoints(masonry::JointContact&) const;
 	void writePoints(const masonry::JointContact&);

@@ -150,7 +150,7 @@ void PulseTrainEngine::check() const
 		reject(*this, "assembly", "True", "left out (False) with resonantBlock: it ends scheduled pulses");
 	if ((shape != "dirac") != (duration > 0))
 		reject(*this, "duration", duration, "positive for a finite shape and 0 for 'dirac'");
-	if (resonant() && !(scene->bodies->exists(resonantBlock) && (*scene->bodies)[resonantBlock]->isDynamic()))
+	if (resonant() && !hasBegun() && !(scene->bodies->exists(resonantBlock) && (*scene->bodies)[resonantBlock]->isDynamic()))
 		reject(*this, "resonantBlock", resonantBlock, "the id of a free block in O.bodies");
 }
 

@@ -140,7 +140,7 @@ void MoreauJeanIntegrator::checkPlane(const Vector3r& horizontal) const
 		}
 	for (const BaseMotionEngine* motion : motionEngines())
 		plane.direction(motion->direction);
-	scene->forces.sync();
+	addUp(scene->forces, (*first)->id);
 	for (const Body* body : all)
 		if (body->isDynamic())
 			plane.load(scene->forces.getForce(body->id), scene->forces.getTorque(body->id), body->id);

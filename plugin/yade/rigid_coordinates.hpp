@@ -20,6 +20,15 @@ struct LeavesPlane : std::runtime_error {
 /// a yawed scene. Larger: a real push out of the plane is lost.
 constexpr Real outOfPlane = 1e-9;
 
+inline bool isSame(const masonry::rigid::PlanePose& a, const masonry::rigid::PlanePose& b)
+{
+	return a.position == b.position && a.angle == b.angle;
+}
+inline bool isSame(const masonry::Pose& a, const masonry::Pose& b)
+{
+	return a.position == b.position && a.orientation.coeffs() == b.orientation.coeffs();
+}
+
 /// What a body's State says, as it was written last.
 struct Motion {
 	Vector3r pos, vel, angVel;

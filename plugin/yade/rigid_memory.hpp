@@ -12,7 +12,7 @@ namespace yade {
 
 /// The row begins with the number of its layout and model, to be changed with any list of members. Rows of old have none: they begin with
 /// how many blocks there are.
-constexpr Real layout = -8;
+constexpr Real layout = -9;
 
 /// Numbers, enumerations and matrices go into the row, or come out of it, by the same list of members.
 struct Packer {
@@ -107,7 +107,8 @@ void pass(Flow&, Seat<Space>&)
 {
 }
 
-// Masses and laws belong to the scene, and so do sizes, but for knowing whether they have changed; gaps are measured anew. By their places
+// Masses belong to the scene, and so do sizes, but for knowing whether they have changed; and laws, but for those that no interaction shows
+// yet; gaps are measured anew. By their places
 // points are known again that go to other features.
 template <class Flow, class K>
 void pass(Flow& f, RigidBody<K>& b)
@@ -117,7 +118,7 @@ void pass(Flow& f, RigidBody<K>& b)
 template <class Flow, class K>
 void pass(Flow& f, ContactPair<K>& p)
 {
-	f(p.body1), f(p.body2), f(p.face1), f(p.face2), f(p.beside), f(p.size);
+	f(p.body1), f(p.body2), f(p.face1), f(p.face2), f(p.friction), f(p.restitution), f(p.beside), f(p.size);
 	if (!(p.size >= 0 && p.size <= K::maxPoints))
 		Unpacker::refuse();
 	pass(f, p.memory);

@@ -12,6 +12,19 @@ constexpr int mostCourses = 24;
 /// Steps after which O.interactions are written even if nobody seems to look.
 constexpr int mostUnshown = 64;
 
+void checkFinite(const State& state, int id)
+{
+	const auto check = [id](const char* attribute, const auto& value) {
+		if (!value.allFinite())
+			throw std::invalid_argument(
+			    sentence("O.bodies[", id, "].state.", attribute, " = (", value.transpose(), ") is not allowed: it must be finite."));
+	};
+	check("pos", state.pos);
+	check("ori", state.ori.coeffs());
+	check("vel", state.vel);
+	check("angVel", state.angVel);
+}
+
 } // namespace
 
 template <class K>
@@ -52,6 +65,8 @@ masonry::rigid::StepReport RigidScene<K>::step()
 	if (integrator.isWall() != byWalls) {
 		system.moved = true;
 		system.startAnew();
+		showPoints();
+		bySize.emplace(); // what it remembers would be of steps long ago
 	}
 	if (integrator.isWall() && lawsChanged)
 		system.moved = true;
@@ -82,14 +97,14 @@ void RigidScene<K>::takeSettings()
 template <class K>
 masonry::rigid::StepReport RigidScene<K>::advanceWall()
 {
-	masonry::rigid::WallStep<K>& walls = bySize.walls;
+	masonry::rigid::WallStep<K>& walls = bySize->walls;
 	walls.settings = {integrator.tolerance, integrator.strictForces, std::max(1, integrator.ompThreads)};
-	const auto report = bySize.advance(system, scene.dt);
+	const auto report = bySize->advance(system, scene.dt);
 	const masonry::rigid::WallReport& ofWalls = walls.report;
 	const bool still = ofWalls.mode == masonry::rigid::WallMode::still;
 	integrator.mode = still ? "still" : "moving";
 	integrator.movingBlocks = ofWalls.moved;
-	integrator.localisedBlocks = bySize.localised();
+	integrator.localisedBlocks = bySize->localised();
 	++(still ? integrator.stillSteps : integrator.movingSteps);
 	integrator.velocityResidual = ofWalls.velocityResidual;
 	integrator.forceResidual = ofWalls.forceResidual;
@@ -120,7 +135,7 @@ bool RigidScene<K>::isThere(size_t b) const
 template <class K>
 void RigidScene<K>::readLoads()
 {
-	scene.forces.sync();
+	addUp(scene.forces, kept.ids.front());
 	for (size_t b = 0; b < links.size(); ++b) {
 		auto& block = system.bodies[b];
 		if (block.prescribed)
@@ -128,6 +143,10 @@ void RigidScene<K>::readLoads()
 		const int id = kept.ids[b];
 		block.force = coordinates.load(scene.forces.getForce(id), scene.forces.getTorque(id), id);
 		block.force.template head<K::dimension>() += block.mass * system.gravity;
+		if (!block.force.allFinite())
+			throw std::invalid_argument(sentence("O.forces of body ", id,
+			                                     " are no finite numbers: f = ", scene.forces.getForce(id).transpose(),
+			                                     ", t = ", scene.forces.getTorque(id).transpose(), '.'));
 	}
 }
 
@@ -135,7 +154,7 @@ template <class K>
 void RigidScene<K>::readStates()
 {
 	others.resize(links.size());
-	bySize.walls.eachShare(links.size(), [&](size_t begin, size_t end) {
+	bySize->walls.eachShare(links.size(), [&](size_t begin, size_t end) {
 		for (size_t b = begin; b < end; ++b) {
 			fetch(b + 6);
 			others[b] = links[b].written.isOf(*links[b].state) ? 0 : system.bodies[b].drive < 0 ? 1 : driven;
@@ -154,6 +173,7 @@ void RigidScene<K>::readStates()
 		Link& link = links[b];
 		auto& block = system.bodies[b];
 		const State& state = *link.state;
+		checkFinite(state, kept.ids[b]);
 		if (block.prescribed && scene.time > 0 && state.vel == Vector3r::Zero() && (state.pos - link.written.pos).norm() > 0)
 			warnOfPlace(b);
 		kept.seats[b].read(coordinates, state, link.properties.extents.minCoeff(), kept.ids[b], block);
@@ -225,7 +245,7 @@ template <class K>
 void RigidScene<K>::showPoints()
 {
 	if (byWalls)
-		bySize.walls.showPoints(system);
+		bySize->walls.showPoints(system);
 }
 
 template <class K>
@@ -241,7 +261,7 @@ void RigidScene<K>::fetch(size_t b) const
 template <class K>
 void RigidScene<K>::writeStates()
 {
-	bySize.walls.eachShare(links.size(), [&](size_t begin, size_t end) {
+	bySize->walls.eachShare(links.size(), [&](size_t begin, size_t end) {
 		for (size_t b = begin; b < end; ++b) {
 			const auto& block = system.bodies[b];
 			if (block.prescribed && block.drive < 0 && block.velocity.isZero(0))
@@ -308,10 +328,9 @@ vector<Real> RigidScene<K>::pack()
 	told.pass(packer);
 	packer(byWalls);
 	packer(lawsChanged);
-	if (byWalls) {
-		neighbours->pass(packer);
-		bySize.pass(packer, system);
-	}
+	neighbours->pass(packer);
+	if (byWalls)
+		bySize->pass(packer, system);
 	return packer.values;
 }
 
@@ -321,14 +340,16 @@ void RigidScene<K>::unpackStepper(Unpacker& unpacker, const Remembered<K>& befor
 	unpacker(byWalls);
 	bool laws = false;
 	unpacker(laws);
-	if (!byWalls || changed || before.ids != kept.ids || before.pairs.size() != system.pairs.size())
+	if (changed || before.ids != kept.ids || before.pairs.size() != system.pairs.size())
 		return;
 	renewContacts();
+	lawsChanged |= laws;
 	neighbours->pass(unpacker);
-	bySize.pass(unpacker, system);
+	if (byWalls) {
+		bySize->pass(unpacker, system);
+		system.moved = false;
+	}
 	unpacker.end();
-	system.moved = false;
-	lawsChanged = laws;
 }
 
 template class RigidScene<Plane>;

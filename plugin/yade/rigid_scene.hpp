@@ -9,6 +9,7 @@
 #include "dynamics/rigid/neighbours.hpp"
 #include "dynamics/wall/step_by_size.hpp"
 #include <core/Scene.hpp>
+#include <optional>
 
 namespace yade {
 
@@ -59,6 +60,13 @@ public:
 	virtual void dropErased() = 0;
 };
 
+/// Adds up O.forces for these bodies: a script's addF() between two steps does not tell YADE that there is something to add up.
+inline void addUp(ForceContainer& forces, Body::id_t some)
+{
+	forces.addForce(some, Vector3r::Zero());
+	forces.sync();
+}
+
 inline AnyRigidScene& sceneOf(const RigidMemory& memory) { return static_cast<AnyRigidScene&>(*memory.run); }
 
 template <class K>
@@ -95,6 +103,9 @@ private:
 
 	// --- building ---
 
+	bool says(const Seat<K>& seat, const State& state, const Properties& properties, int id,
+	          const masonry::rigid::RigidBody<K>& block) const;
+
 	/// Returns each block's number in `before`, or -1.
 	vector<int> addBlocks(const Remembered<K>& before);
 
@@ -127,7 +138,7 @@ private:
 	void warnOfPlace(size_t b);
 
 	/// What walls know of a pair is of places alone.
-	bool isOfWall(const Pair& pair) const { return byWalls && !bySize.isLocalised(pair.body1) && !bySize.isLocalised(pair.body2); }
+	bool isOfWall(const Pair& pair) const { return byWalls && !bySize->isLocalised(pair.body1) && !bySize->isLocalised(pair.body2); }
 
 	/// The points of a pair that nothing is known of: in touch where they are, and do not approach each other. `placed`: by a script, not
 	/// by a step.
@@ -156,10 +167,11 @@ private:
 	const Coordinates<K> coordinates;
 	System system;
 	masonry::rigid::Islands<K> islands;
-	masonry::rigid::StepBySize<K> bySize; // method='wall'
-	bool changed = false;                 // what is moved, and how, is not as it was
+	std::optional<masonry::rigid::StepBySize<K>> bySize {std::in_place}; // method='wall'
+	bool changed = false;                                                // what is moved, and how, is not as it was
 	bool byWalls = false, lawsChanged = false;
-	int unshown = 1; // steps since the interactions were written
+	bool ownsContacts = false; // what O.interactions shows of blocks is of this object
+	int unshown = 1;           // steps since the interactions were written
 	std::unique_ptr<masonry::rigid::Neighbours<K>> neighbours;
 	vector<MotionDrive> motions;
 	vector<Link> links;

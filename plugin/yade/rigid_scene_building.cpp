@@ -31,6 +31,7 @@ RigidScene<K>::RigidScene(MoreauJeanIntegrator& engine, const vector<BaseMotionE
 	const vector<int> inBefore = addBlocks(before);
 	addDrives(motions, inBefore);
 	addPairs(before, inBefore);
+	contacts.recall(system.pairs, kept.ids);
 	for (size_t b = 0; b < inBefore.size(); ++b) {
 		if (inBefore[b] < 0)
 			continue;
@@ -40,6 +41,17 @@ RigidScene<K>::RigidScene(MoreauJeanIntegrator& engine, const vector<BaseMotionE
 	if (changed)
 		system.startAnew();
 	forgetNeighbours();
+}
+
+/// Whether the state, which nobody has written, is still that of the block: a base that stands still keeps its own, which is not in all
+/// bits what the plane gives back.
+template <class K>
+bool RigidScene<K>::says(const Seat<K>& seat, const State& state, const Properties& properties, int id,
+                         const masonry::rigid::RigidBody<K>& block) const
+{
+	masonry::rigid::RigidBody<K> read = block;
+	seat.read(coordinates, state, properties.extents.minCoeff(), id, read);
+	return isSame(read.pose, block.pose) && read.velocity == block.velocity;
 }
 
 template <class K>
@@ -66,7 +78,7 @@ vector<int> RigidScene<K>::addBlocks(const Remembered<K>& before)
 		if (k < 0)
 			seat.read(coordinates, state, properties.extents.minCoeff(), body->id, block);
 		links.push_back({body, body->state, properties, {state.pos, state.vel, state.angVel, state.ori}});
-		if (k >= 0)
+		if (k >= 0 && !(block.prescribed && says(seat, state, properties, body->id, block)))
 			seat.tell(coordinates, block, links.back().written);
 		kept.ids.push_back(body->id);
 		kept.seats.push_back(seat);
@@ -142,6 +154,8 @@ template <class K>
 void RigidScene<K>::renewContacts()
 {
 	contacts.renew(system.pairs, kept.ids);
+	if (!std::exchange(ownsContacts, true))
+		contacts.dropStrangers();
 	takeLaws();
 }
 

@@ -24,6 +24,28 @@ public:
 	/// The law of a pair, which scripts may change through its interaction.
 	const BlockPhys& law(size_t pair) const { return *contacts[pair].phys; }
 
+	/// The pairs of a run that goes on: what no interaction shows yet has the law that it had.
+	void recall(const vector<Pair>& pairs, const vector<Body::id_t>& ids)
+	{
+		renew(pairs, ids);
+		for (size_t c = 0; c < contacts.size(); ++c)
+			if (!isListed(contacts[c]))
+				contacts[c].phys->takeLaw(pairs[c].friction, pairs[c].restitution);
+	}
+
+	/// Of blocks that another engine had near each other.
+	void dropStrangers()
+	{
+		vector<shared_ptr<Interaction>> strangers;
+		for (const auto& interaction : *scene.interactions) {
+			const auto isIt = [&](const Contact& contact) { return contact.interaction == interaction; };
+			if (dynamic_cast<const BlockGeom*>(interaction->geom.get()) && std::none_of(contacts.begin(), contacts.end(), isIt))
+				strangers.push_back(interaction);
+		}
+		for (const auto& interaction : strangers)
+			scene.interactions->erase(interaction->id1, interaction->id2, interaction->linIx);
+	}
+
 	/// Both lists are in the order of the ids. Contacts that are no longer near leave the scene.
 	void renew(const vector<Pair>& pairs, const vector<Body::id_t>& ids)
 	{

@@ -6,7 +6,7 @@ import tempfile
 import numpy as np
 from masonry import dem
 from rocking_scene import quiet_engines, refuses, refuses_to_run, rigid_engines, stone
-from yade import FrictMat, NewtonIntegrator, O, State, utils
+from yade import FrictMat, NewtonIntegrator, O, State, Vector3, utils
 
 
 def scene(engines=rigid_engines):
@@ -46,6 +46,47 @@ for apart in (0, 10, 25):
     O.bodies.erase(last)
     O.run(3, True)
     assert not [i for i in O.interactions if last in (i.id1, i.id2)] and O.engines[-1].failures == 0
+
+# Forces that no longer act are not shown: blocks moved, frozen or erased between loading, or new engines, and the first step.
+def lift(ids):
+    O.bodies[ids[-1]].state.pos += Vector3(0, 0, 1)
+
+
+def erase(ids):
+    O.bodies.erase(ids[-1])
+
+
+def freeze(ids):
+    O.bodies[ids[1]].dynamic = O.bodies[ids[2]].dynamic = False
+
+
+for act in (lift, erase, freeze):
+    for loaded, renewed in ((True, False), (False, True), (True, True)):
+        O.reset()
+        material = stone(0.7, noSlip=False, frictionAngle=0.5)
+        ids = dem.stack(3, (0.5, 0.6, 0.4), material, dem.base((8, 8, 0.2), material))
+        O.engines = rigid_engines()
+        O.run(20, True)
+        if loaded:
+            O.saveTmp()
+            O.loadTmp()
+        if renewed:
+            O.engines = rigid_engines()
+        act(ids)
+        O.run(100, True)
+        assert sorted((i.id1, i.id2) for i in O.interactions) == [(0, ids[0]), (ids[0], ids[1])], (act, loaded, renewed)
+
+# A force that a script adds between two steps acts in the next, alone.
+for engines in (rigid_engines, quiet_engines):
+    O.reset()
+    dem.base((8, 8, 0.2), stone(0.7))
+    block = dem.block((0.5, 0.5, 0.5), O.bodies[0].mat, center=(0, 0, 5))
+    O.engines = engines(model="planar" if engines is rigid_engines else "compliant")
+    for step, wanted in enumerate((0, 1, 1, 2, 2)):
+        if step in (1, 3):
+            O.forces.addF(block, Vector3(O.bodies[block].state.mass, 0, 0))
+        O.step()
+        assert abs(O.bodies[block].state.vel[0] - wanted * O.dt) < 1e-12 * O.dt
 
 # A body at the place of one that was erased is another; its shape is its own.
 base, standing, falling = scene()

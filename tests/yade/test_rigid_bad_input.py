@@ -141,10 +141,19 @@ for method in ("localised", "wall"):
     O.run(5, True)
     assert O.engines[-1].failures == 0
 
-# A place that is none, given by a script on the way: the block is in touch with nothing there and would fall for ever.
+# Numbers that are none, given by a script on the way.
 for method in ("localised", "wall"):
     O.reset()
     _, block, _ = scene(method=method)
     O.step()
-    O.bodies[block].state.pos = (nan, 0, 1)
-    refuses(O.step, "diverged", "no longer finite", kind=RuntimeError)
+    state = O.bodies[block].state
+    for attribute in ("pos", "vel", "angVel"):
+        before = Vector3(getattr(state, attribute))
+        setattr(state, attribute, (nan, 0, math.inf))
+        refuses(O.step, f"O.bodies[{block}].state.{attribute} = (nan   0 inf)", "must be finite")
+        setattr(state, attribute, before)
+    O.forces.setPermF(block, (0, nan, 0))
+    refuses(O.step, f"O.forces of body {block}", "f =   0 nan   0")
+    O.forces.setPermF(block, (0, 0, 0))
+    O.step()
+    assert state.pos.norm() < 10 and not O.engines[-1].failures

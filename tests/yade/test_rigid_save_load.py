@@ -107,10 +107,13 @@ with tempfile.TemporaryDirectory() as folder:
         refuses_to_run("saved by another version of yade-masonry")
 
     # --- the method may change in between, as it may without saving ---
-    for before, after in (("localised", "wall"), ("wall", "localised")):
+    for earlier, before, after in ((None, "localised", "wall"), (None, "wall", "localised"), ("wall", "localised", "wall")):
         ends = []
         for save in (False, True):
-            stack_by(before)
+            stack_by(earlier or before)
+            if earlier:
+                O.engines[1].method = before
+                O.run(20, True)
             if save:
                 path = os.path.join(folder, "scene.xml")
                 O.save(path)
@@ -164,3 +167,52 @@ with tempfile.TemporaryDirectory() as folder:
         assert abs(O.bodies[0].state.vel[2] + 0.3 * 9.81) < 1e-6, method  # all fall
         assert same_when_saved(stack_that_is_shaken, leave_motion), method
         assert same_when_saved(stack_that_is_shaken, take_other_motion), method
+
+    # --- what is not in O.bodies and O.interactions goes with the run: how long the list of pairs holds, the law of blocks that are near and have not met, a base that
+    # stands still beside the plane's axes, a train whose block is gone ---
+    def falls_on_wall():
+        O.reset()
+        material = dem.BlockMat(density=2000, frictionAngle=0.5, restitution=0.5)
+        base = dem.base((20, 8, 0.2), material)
+        dem.wall(3, 3, (0.4, 0.2, 0.2), material, base)
+        dem.block((0.2, 0.2, 0.2), material, center=(0.05, 0, 0.75))
+        samples = list(0.3 * 9.81 * np.sin(np.arange(0, 4, 0.01) * 4 * np.pi))
+        O.engines = rigid_engines(dem.RecordMotionEngine(ids=[base], samples=samples, interval=0.01), method="localised", model="planar", tolerance=1e-4)
+        O.run(100, True)
+
+    def near_another():
+        O.reset()
+        material = dem.BlockMat(density=2000, frictionAngle=0.5, restitution=0.9)
+        base = dem.base((20, 8, 0.2), material)
+        dem.block((0.4, 0.4, 0.8), material, on=base)
+        upper = dem.block((0.2, 0.2, 0.2), material, center=(0, 0, 0.9121))
+        O.engines = rigid_engines(model="planar")
+        O.bodies[upper].state.angVel = (0, 0.5, 0)
+        O.run(20, True)
+
+    def other_stone():
+        O.bodies[2].mat.restitution = 0.1
+
+    def turned():
+        O.reset()
+        material = dem.BlockMat(density=2000, frictionAngle=0.5, restitution=0.7)
+        base = dem.base((8, 8, 0.2), material)
+        first = dem.block((0.5, 0.6, 0.4), material, on=base, orientation=Quaternion(Vector3(0, 0, 1), math.pi / 2))
+        dem.tilt(dem.block((0.5, 0.6, 0.4), material, on=first), 0.05)
+        O.engines = rigid_engines(model="planar")
+        O.run(50, True)
+
+    def two_on_train():
+        O.reset()
+        material = dem.BlockMat(density=2000, frictionAngle=0.6, restitution=0.7)
+        base = dem.base((20, 8, 0.2), material)
+        ids = [dem.block((0.5, 0.6, 2.4), material, center=(x, 0, 1.2)) for x in (0, 2)]
+        O.engines = rigid_engines(dem.PulseTrainEngine(ids=[base], impulse=0.15, resonantBlock=ids[0]))
+        O.run(30, True)
+
+    for build, change in ((falls_on_wall, lambda: None), (near_another, other_stone), (turned, lambda: None), (two_on_train, lambda: O.bodies.erase(1))):
+        assert same_when_saved(build, change), build.__name__
+    near_another()
+    other_stone()
+    O.run(2000, True)
+    assert set(dem.impacts()["restitution_asked"]) == {0.9}  # they were near each other when the stone changed
