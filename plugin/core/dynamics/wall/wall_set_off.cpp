@@ -254,8 +254,11 @@ bool WallStep<K>::setOff(RigidSystem<K>& s, const Bodies& move)
 			const int drive = drives[structures.of[b]];
 			auto& body = s.bodies[b];
 			const double before = body.kineticEnergy();
-			body.velocity = contacts.inGlobal(contacts.velocity, b);
+			const typename K::Velocity given = contacts.inGlobal(contacts.velocity, b) - body.velocity;
+			body.velocity += given;
 			setOffEnergy += body.kineticEnergy() - before;
+			if (drive >= 0) // the impulses are what the base has held too much with
+				s.baseWork += body.mass * s.drives[drive].velocity(s.time).dot(given.template head<K::dimension>());
 			if (drive < 0 || jumped || structures.all[structures.of[b]].stay == 0 || speeds.size() != s.drives.size())
 				continue;
 			const Vector change = (1 - 1. / substepCount()) * (s.drives[drive].velocity(s.time) - speeds[drive]);
