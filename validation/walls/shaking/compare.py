@@ -1,6 +1,6 @@
 """The shaken wall in every program that is there: CPU time, drift, sink, first excursion, energy; what was asked for and whether it holds.
 
-    compare.py <build folder> [--quick | --from <json> | --other-walls | --rest | --reference]
+    compare.py <build folder> [--quick | --from <json> | --other-walls | --space | --rest | --reference]
 
 Prints the tables; without an option and with --from, writes results/shaken_walls.csv, .json and .png. Ends with status 1 when something
 that must hold does not.
@@ -15,7 +15,12 @@ import os
 import statistics
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
+
+import numpy as np
+import scipy.integrate
+import scipy.optimize
 
 HERE = Path(__file__).resolve().parent
 RESULTS = HERE.parents[2] / "results"
@@ -26,6 +31,12 @@ OTHERS = [(courses, per_course, amplitude) for courses in (12, 16, 20, 24, 32) f
 OTHERS += [(40, 20, 0.8), (40, 20, 1.0), (14, 14, 0.9), (14, 14, 1.2), (18, 9, 0.9), (18, 9, 1.2), (22, 22, 0.9), (28, 14, 0.9), (28, 14, 1.1), (28, 28, 0.9), (28, 28, 1.1),
            (24, 8, 0.7)]
 REFERENCE = HERE / "gauss_seidel.json"  # first excursions as gauss_seidel.cpp finds them: written by --reference
+# Structure (of yade_space.py), motion: g, angle from x, s; of --space.
+STRUCTURES = [("wall", 1.0, 0, 0.6), ("wall", 0.5, 90, 0.6), ("wall", 0.8, 45, 0.6), ("return wall", 0.9, 0, 0.6), ("return wall", 0.9, 90, 0.6), ("return wall", 0.9, 45, 0.6),
+              ("two wythes", 0.9, 0, 0.6), ("two wythes", 0.6, 90, 0.6), ("wall with an opening", 0.4, 90, 0.6), ("pier", 0.6, 45, 0.6), ("column", 0.6, 45, 0.8),
+              ("wall of three densities", 0.5, 90, 0.6)]
+IN_SPACE = dict(dt=5e-4, sweeps=1000)  # of gauss_seidel_space.cpp
+REFERENCE_SPACE = HERE / "gauss_seidel_space.json"  # of these, as gauss_seidel_space.cpp finds them: written by --reference
 EXCURSIONS = {"excursion": "top course's mean", "thrown": "corner that is thrown out", "follows": "corner that follows"}
 # CPU s per simulated s, drift and sink per joint in mm, of programs measured elsewhere (another machine; 2 Hz, 0.3 g): rest / shaken.
 ELSEWHERE = [("Box2D 3, 8 substeps", 105, 0.069, 0.08, 1.9e-3), ("Box2D 3, 8 substeps", 1040, 0.65, 1.5, 5.2e-3), ("LMGC90 NLGS 1e-4", 105, 3.1, 0.011, 3e-4),
@@ -125,24 +136,30 @@ def run(build, quick):
 
 
 def reference(build):
-    """Adds to REFERENCE what is missing there: half the step and as many sweeps as the courses ask, which grow as their square."""
-    found = json.loads(REFERENCE.read_text()) if REFERENCE.exists() else []
+    """Adds to REFERENCE what is missing there: half the step and as many sweeps as the courses ask, which grow as their square. Then to REFERENCE_SPACE."""
     cases = [dict(courses=courses, per_course=per_course, amplitude=amplitude, dt=5e-4, sweeps=max(1000, math.ceil(3000 * (courses / 32)**2)))
              for courses, per_course, amplitude in OTHERS]
     cases += [dict(courses=size[0], per_course=size[1], amplitude=amplitude, dt=dt, sweeps=sweeps)
               for size, dt, sweeps in ((LARGE, 5e-4, 3000), (SMALL, 2.5e-4, 2000)) for amplitude in ALIKE]
-    missing = [case for case in cases if not any(case.items() <= row.items() for row in found)]
 
     def result(case):
         command = [build / "validation/wall_gauss_seidel", *map(str, (case["courses"], case["per_course"], case["amplitude"], 0.005, 0.5, case["dt"], case["sweeps"]))]
         numbers = map(float, subprocess.run(command, capture_output=True, text=True, check=True).stdout.split(","))
         return case | dict(zip((*EXCURSIONS, "deepest"), numbers))
 
+    add_missing(REFERENCE, cases, result)
+    add_missing(REFERENCE_SPACE, [case | IN_SPACE for case in cases_in_space()], lambda case: in_space_by_gauss_seidel(build, case))
+
+
+def add_missing(path, cases, result):
+    """Adds to a file of rows those of the cases that it lacks."""
+    found = json.loads(path.read_text()) if path.exists() else []
+    missing = [case for case in cases if not any(case.items() <= row.items() for row in found)]
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         for done in concurrent.futures.as_completed([pool.submit(result, case) for case in missing]):
             found.append(done.result())
             print(found[-1], flush=True)
-            REFERENCE.write_text("[\n" + ",\n".join(map(json.dumps, found)) + "\n]\n")
+            path.write_text("[\n" + ",\n".join(map(json.dumps, found)) + "\n]\n")
 
 
 def by_gauss_seidel(size, amplitudes):
@@ -164,6 +181,90 @@ def other_walls(build):
         differences.append(here / wanted - 1)
         print(f"| {courses} | {per_course} | {amplitude:g} g | {1e3 * here:.1f} | {1e3 * wanted:.1f} | {differences[-1]:+.1%} |")
     print(f"\nroot of the mean square: {math.sqrt(statistics.mean(d**2 for d in differences)):.1%}")
+
+
+def cases_in_space():
+    return [dict(structure=structure, amplitude=round(alike * amplitude, 6), angle=angle, seconds=seconds) for structure, amplitude, angle, seconds in STRUCTURES for alike in ALIKE]
+
+
+def excursions_in_space(places, heights):
+    """Largest horizontal move, m, of the mean of the blocks whose tops are highest, and of a block; places: of every look and block, on the base."""
+    places = np.array(places)
+    tops = places[0, :, 2] + np.array(heights) / 2
+    moves = (places - places[0])[:, :, :2]
+    return dict(top=float(np.linalg.norm(moves[:, tops > tops.max() - 1e-6].mean(axis=1), axis=1).max()), largest=float(np.linalg.norm(moves, axis=2).max()))
+
+
+def looks_by_gauss_seidel(build, scene, case):
+    """What gauss_seidel_space.cpp prints, a row each 10 ms, of a scene in a file."""
+    command = [build / "validation/wall_gauss_seidel_space", scene, *(str(case[key]) for key in ("amplitude", "angle", "seconds", "dt", "sweeps"))]
+    return np.array([line.split() for line in subprocess.run(command, capture_output=True, text=True, check=True).stdout.splitlines()], float)
+
+
+def in_space_by_gauss_seidel(build, case):
+    """The case, with what its structure does by gauss_seidel_space.cpp."""
+    with tempfile.TemporaryDirectory() as folder:
+        scene = Path(folder) / "scene.txt"
+        by_yade(build, "yade_space.py", dict(structure=case["structure"], scene=str(scene)))
+        looks, heights = looks_by_gauss_seidel(build, scene, case), np.loadtxt(scene)[1:, 5]
+    reached = excursions_in_space(looks[:, 3:].reshape(len(looks), -1, 3), heights) | dict(work=looks[-1, 1], deepest=looks[-1, 2])
+    return case | {what: float(f"{value:.6g}") for what, value in reached.items()}
+
+
+def closed_forms(build):
+    """Table: one block by gauss_seidel_space.cpp: how far it slides in a sine of 1 g, and its natural restitution from its first two peaks."""
+    def looks(block, **case):
+        with tempfile.TemporaryDirectory() as folder:
+            scene = Path(folder) / "scene.txt"
+            np.savetxt(scene, [(0, 0, -0.5, 20, 20, 1, 1, 0, 0, 0, 0), block])
+            return looks_by_gauss_seidel(build, scene, case | IN_SPACE)
+
+    friction, omega = 0.7, 4 * math.pi  # the base's velocity is g/omega (1 - cos omega t)
+    begins = math.asin(friction) / omega
+    faster = lambda t: 9.81 * ((math.cos(omega * begins) - math.cos(omega * t)) / omega - friction * (t - begins))  # base than block, m/s
+    ends = scipy.optimize.brentq(faster, 0.2, 0.4)
+    slides = looks((0, 0, 0.1, 1, 1, 0.2, 1, 0, 0, 0, 2000), amplitude=1, angle=30, seconds=0.4)
+    width, height = 0.4, 1.0
+    critical, radius = math.atan(width / height), math.hypot(width, height) / 2
+    tilt = critical / 2
+    rocks = looks((0, 0, radius * math.cos(critical - tilt), width, 0.5, height, math.cos(tilt / 2), 0, math.sin(tilt / 2), 0, 2000), amplitude=0, angle=0, seconds=1)
+    z = rocks[:, 5] - 0.5 - height / 2
+    peak = next(k for k in range(1, len(z)) if z[k - 1] < z[k] >= z[k + 1])
+    a, b, c = z[peak - 1:peak + 2]
+    rows = [("a block slides (mm)", 1e3 * np.linalg.norm(slides[:, 3:5], axis=1).max(), 1e3 * scipy.integrate.quad(faster, begins, ends)[0]),
+            ("a block rocks: natural restitution", math.sqrt((b - (a - c)**2 / (8 * (a - 2 * b + c))) / z[0]), 1 - 1.5 * math.sin(critical)**2)]
+    print("\n| one block by Gauss-Seidel | reached | closed form | difference |\n" + "| --- " * 4 + "|")
+    for what, reached, wanted in rows:
+        print(f"| {what} | {reached:.5g} | {wanted:.5g} | {reached / wanted - 1:+.3%} |")
+
+
+def space(build):
+    """Table: structures in space at 1 ms, at the default tolerance and at 1e-5, against Gauss-Seidel; before it Gauss-Seidel against closed forms."""
+    closed_forms(build)
+    known, cases = json.loads(REFERENCE_SPACE.read_text()), cases_in_space()
+    tolerances = {"1 ms": None, "`tolerance` 1e-5": 1e-5}
+    measured = {"top": ("top course's mean", "mm", 1e3), "largest": ("block that goes farthest", "mm", 1e3), "work": ("work of the base", "J", 1)}
+
+    def ours(case, tolerance):
+        row = by_yade(build, "yade_space.py", case | dict(tolerance=tolerance))[0]
+        return row | excursions_in_space(row["places"], row["heights"])
+
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        rows = {name: list(pool.map(ours, cases, [tolerance] * len(cases))) for name, tolerance in tolerances.items()}
+    print("\n| structure | motion | " + " | ".join(f"{what} ({unit}) | " + " | ".join(tolerances) for what, unit, _ in measured.values()) + " |\n" + "| --- " * 11 + "|")
+    differences = {(key, name): [] for key in measured for name in tolerances}
+    for structure, amplitude, angle, _ in STRUCTURES:
+        same = [k for k, case in enumerate(cases) if (case["structure"], case["angle"]) == (structure, angle)]
+        cells = []
+        for key, (_, _, scale) in measured.items():
+            wanted = statistics.mean(next(row[key] for row in known if cases[k].items() <= row.items()) for k in same)
+            cells.append(f"{scale * wanted:.1f}")
+            for name in tolerances:
+                differences[key, name].append(statistics.mean(rows[name][k][key] for k in same) / wanted - 1)
+                cells.append(f"{differences[key, name][-1]:+.1%}")
+        print(f"| {structure} | {amplitude:g} g {({0: 'along x', 90: 'along y', 45: 'diagonal'})[angle]} | " + " | ".join(cells) + " |")
+    spread = [f"{math.sqrt(statistics.mean(d**2 for d in found)):.1%}" for found in differences.values()]
+    print("| root of the mean square | | " + " | ".join(f"| {one} | {two}" for one, two in zip(spread[::2], spread[1::2])) + " |")
 
 
 def walls_at_rest(build):
@@ -289,13 +390,16 @@ def main():
     parser.add_argument("--quick", action="store_true", help="105 blocks in the plane only, writes nothing")
     parser.add_argument("--from", dest="old", type=Path, help="tables and figure of a file written before")
     parser.add_argument("--other-walls", action="store_true", help="first excursions of other walls against Gauss-Seidel only, no CPU times")
-    parser.add_argument("--reference", action="store_true", help="compute first excursions by Gauss-Seidel that its file lacks, an hour or two for all; no CPU times")
+    parser.add_argument("--reference", action="store_true", help="compute what the files of Gauss-Seidel lack, an hour or two for all; no CPU times")
+    parser.add_argument("--space", action="store_true", help="structures in space against Gauss-Seidel only, no CPU times")
     parser.add_argument("--rest", action="store_true", help="whether walls that have been shaken rest, no CPU times")
     arguments = parser.parse_args()
     if arguments.other_walls:
         return other_walls(arguments.build)
     if arguments.reference:
         return reference(arguments.build)
+    if arguments.space:
+        return space(arguments.build)
     if arguments.rest:
         return walls_at_rest(arguments.build)
     rows = json.loads(arguments.old.read_text()) if arguments.old else run(arguments.build, arguments.quick)

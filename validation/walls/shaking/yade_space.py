@@ -1,0 +1,62 @@
+"""A structure in space in this plugin: `yade -n -x yade_space.py '<JSON>'`; prints one JSON line: where its blocks are.
+
+structure (a key of BUILDERS); scene: a file to write it to, as gauss_seidel_space.cpp reads it, and no more; else amplitude (g, at 2 Hz), angle (of the motion from x,
+degrees), seconds, tolerance (null: as dem.engines() chooses).
+"""
+import json
+import math
+import sys
+
+import numpy as np
+from masonry import dem
+from yade import O
+
+case = json.loads(sys.argv[1])
+stone, heavy, light = (dem.BlockMat(density=density, frictionAngle=math.atan(0.7)) for density in (2000, 8000, 500))
+base = dem.base((20, 20, 1), stone)
+WHOLE = (1.0, 0.5, 0.5)
+
+
+def wall_of_three_densities():
+    """Running bond of 6 courses of 4 blocks; each block's density drawn."""
+    draw, rows = np.random.RandomState(3), []
+    for course in range(6):
+        ends = np.array([-2, *np.arange(-2 + (0.5 if course % 2 else 1), 2), 2])
+        for x, length in zip((ends[1:] + ends[:-1]) / 2, np.diff(ends)):
+            rows.append(dict(x=x, y=0, z=0.25 + 0.5 * course, size_x=length, size_y=0.5, size_z=0.5, material="shl"[draw.randint(3)]))
+    return dem.blocks_from_table(rows, {"s": stone, "h": heavy, "l": light}, on=base)
+
+
+BUILDERS = {"wall": lambda: dem.wall(6, 4, WHOLE, stone, on=base),
+            "return wall": lambda: dem.return_wall(6, 3, 3, WHOLE, stone, on=base),
+            "two wythes": lambda: dem.two_wythe_wall(6, 3, (0.8, 0.3, 0.3), stone, on=base, header_every=3),
+            "wall with an opening": lambda: dem.wall(8, 4, WHOLE, stone, on=base, openings=[(1.5, 1.0, 1.0, 1.5)]),
+            "pier": lambda: dem.pier(8, (0.6, 0.3, 0.3), stone, on=base, per_course=2),
+            "column": lambda: dem.stack(5, (0.6, 0.4, 0.5), stone, base),
+            "wall of three densities": wall_of_three_densities}
+ids = BUILDERS[case["structure"]]()
+if "scene" in case:
+    with open(case["scene"], "w") as out:
+        for body in (O.bodies[i] for i in [base, *ids]):
+            turn = body.state.ori
+            print(*body.state.pos, *(2 * body.shape.extents), turn[3], turn[0], turn[1], turn[2], body.mat.density if body.dynamic else 0, file=out)
+    raise SystemExit
+
+LOOK, interval = 0.01, 1e-3  # s
+samples = case["amplitude"] * 9.81 * np.sin(4 * math.pi * np.arange(0, case["seconds"] + 0.01, interval))
+angle = math.radians(case["angle"])
+motion = dem.RecordMotionEngine(ids=[base], samples=list(samples), interval=interval, direction=(math.cos(angle), math.sin(angle), 0))
+O.engines = dem.engines(motion, model="spatial", method="wall", dt=1e-3, tolerance=case["tolerance"])
+integrator = O.engines[-1]
+
+
+def places():
+    return [[float(x) for x in O.bodies[i].state.pos - O.bodies[base].state.pos] for i in ids]
+
+
+looks = [places()]
+for k in range(round(case["seconds"] / LOOK)):
+    O.run(round(LOOK / O.dt), True)
+    looks.append(places())
+print(json.dumps(dict(case, blocks=len(ids), work=integrator.baseWork, heights=[2 * O.bodies[i].shape.extents[2] for i in ids],
+                      places=looks)), flush=True)
