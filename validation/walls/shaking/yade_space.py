@@ -12,28 +12,15 @@ from masonry import dem
 from yade import O
 
 case = json.loads(sys.argv[1])
-stone, heavy, light = (dem.BlockMat(density=density, frictionAngle=math.atan(0.7)) for density in (2000, 8000, 500))
+stone = dem.BlockMat(density=2000, frictionAngle=math.atan(0.7))
 base = dem.base((20, 20, 1), stone)
 WHOLE = (1.0, 0.5, 0.5)
-
-
-def wall_of_three_densities():
-    """Running bond of 6 courses of 4 blocks; each block's density drawn."""
-    draw, rows = np.random.RandomState(3), []
-    for course in range(6):
-        ends = np.array([-2, *np.arange(-2 + (0.5 if course % 2 else 1), 2), 2])
-        for x, length in zip((ends[1:] + ends[:-1]) / 2, np.diff(ends)):
-            rows.append(dict(x=x, y=0, z=0.25 + 0.5 * course, size_x=length, size_y=0.5, size_z=0.5, material="shl"[draw.randint(3)]))
-    return dem.blocks_from_table(rows, {"s": stone, "h": heavy, "l": light}, on=base)
-
-
 BUILDERS = {"wall": lambda: dem.wall(6, 4, WHOLE, stone, on=base),
             "return wall": lambda: dem.return_wall(6, 3, 3, WHOLE, stone, on=base),
             "two wythes": lambda: dem.two_wythe_wall(6, 3, (0.8, 0.3, 0.3), stone, on=base, header_every=3),
             "wall with an opening": lambda: dem.wall(8, 4, WHOLE, stone, on=base, openings=[(1.5, 1.0, 1.0, 1.5)]),
             "pier": lambda: dem.pier(8, (0.6, 0.3, 0.3), stone, on=base, per_course=2),
-            "column": lambda: dem.stack(5, (0.6, 0.4, 0.5), stone, base),
-            "wall of three densities": wall_of_three_densities}
+            "column": lambda: dem.stack(5, (0.6, 0.4, 0.5), stone, base)}
 ids = BUILDERS[case["structure"]]()
 if "scene" in case:
     with open(case["scene"], "w") as out:

@@ -42,8 +42,8 @@ constexpr double parted = 0.4;
 constexpr double fadesBelow = 30;
 
 // In space damping grows as the square of the courses, up to so many, since what lags does: with as much in all walls those of six courses
-// that turn a corner, have two wythes or blocks of several densities go 13 to 18 % astray at half to 0.9 g, with this 6 to 16. Up to 32:
-// straight walls of twelve courses go 14 % astray, not 3; in the plane they need all of it.
+// that turn a corner or have two wythes go 15 to 18 % astray at 0.9 g, with this 5 to 16. Up to 32: straight walls of twelve courses go
+// 14 % astray, not 3; in the plane they need all of it.
 constexpr double coursesOfDamping = 12;
 
 // Head joints carry what friction gives along a row: the weight of all courses upon it times its blocks, which in a wall are some as many.
