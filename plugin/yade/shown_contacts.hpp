@@ -8,6 +8,7 @@
 #include "rigid_memory.hpp"
 #include "still_functors.hpp"
 #include <core/Scene.hpp>
+#include <unordered_set>
 
 namespace yade {
 
@@ -36,12 +37,13 @@ public:
 	/// Of blocks that another engine had near each other.
 	void dropStrangers()
 	{
+		std::unordered_set<const Interaction*> own;
+		for (const Contact& contact : contacts)
+			own.insert(contact.interaction.get());
 		vector<shared_ptr<Interaction>> strangers;
-		for (const auto& interaction : *scene.interactions) {
-			const auto isIt = [&](const Contact& contact) { return contact.interaction == interaction; };
-			if (dynamic_cast<const BlockGeom*>(interaction->geom.get()) && std::none_of(contacts.begin(), contacts.end(), isIt))
+		for (const auto& interaction : *scene.interactions)
+			if (dynamic_cast<const BlockGeom*>(interaction->geom.get()) && own.count(interaction.get()) == 0)
 				strangers.push_back(interaction);
-		}
 		for (const auto& interaction : strangers)
 			scene.interactions->erase(interaction->id1, interaction->id2, interaction->linIx);
 	}
