@@ -157,3 +157,6 @@ for method in ("localised", "wall"):
     O.forces.setPermF(block, (0, 0, 0))
     O.step()
     assert state.pos.norm() < 10 and not O.engines[-1].failures
+    # A speed whose square is none: what the step itself makes of it.
+    state.vel = (1e300, 0, 0)
+    refuses(O.step, "diverged", "no longer finite", kind=RuntimeError)
