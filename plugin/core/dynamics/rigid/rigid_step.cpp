@@ -37,28 +37,8 @@ StepReport RigidStep<K>::advance(RigidSystem<K>& s, double dt)
 	return report;
 }
 
-namespace {
-
-// A point that was there before keeps its state, and so does one that another feature of the same place takes over from.
-template <class K>
-void takeOver(const ContactPair<K>& before, double samePlace, ContactPoint<K>& point)
-{
-	for (int k = 0; k < before.size; ++k) {
-		const ContactPoint<K>& old = before.points[k];
-		const bool same = old.feature == point.feature;
-		if (!same && !((old.frame.position - point.frame.position).norm() <= samePlace))
-			continue;
-		point.closed = old.closed;
-		point.sliding = old.sliding;
-		point.force = old.force;
-		if (same)
-			return;
-	}
-}
-
-} // namespace
-
-// Points of all pairs, as features.
+// Points of all pairs, as features. One that was there before keeps its state, and so does one that another feature of the same place takes
+// over from.
 template <class K>
 void RigidStep<K>::findContacts(RigidSystem<K>& s)
 {
@@ -82,7 +62,9 @@ void RigidStep<K>::findContacts(RigidSystem<K>& s)
 			if (same)
 				continue;
 			point.closed = point.gap <= touching;
-			takeOver(before, samePlace, point);
+			for (int k = 0; k < before.size; ++k)
+				if (takeState(before.points[k], samePlace, point) && before.points[k].feature == point.feature)
+					break;
 		}
 	}
 	s.moved = false;

@@ -65,6 +65,18 @@ void locate(ContactPoint<K>& point, const RigidBody<K>& body1, const RigidBody<K
 	point.gap = point.frame.gap;
 }
 
+// The state of an old point into one of the same feature, or of the same place. False: it is neither.
+template <class K>
+bool takeState(const ContactPoint<K>& old, double samePlace, ContactPoint<K>& point)
+{
+	if (!(old.feature == point.feature) && !((old.frame.position - point.frame.position).norm() <= samePlace))
+		return false;
+	point.closed = old.closed;
+	point.sliding = old.sliding;
+	point.force = old.force;
+	return true;
+}
+
 // The points of a pair of these bodies, none if there are none; without a margin, since lists of pairs hold only boxes that are near.
 template <class K>
 FoundPoints<K> findPoints(const RigidBody<K>& body1, const RigidBody<K>& body2, typename K::Memory& memory)

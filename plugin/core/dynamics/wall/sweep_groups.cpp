@@ -1,4 +1,8 @@
+#if defined(MASONRY_WIDE_SWEEPS) && !defined(__SANITIZE_ADDRESS__) // processors with AVX-512 take sweep_groups_wide.cpp
+#define MASONRY_LOOP __attribute__((target_clones("avx2", "default")))
+#else
 #define MASONRY_LOOP MASONRY_LANES
+#endif
 #include "dynamics/wall/sweep_groups_impl.hpp"
 
 namespace masonry::rigid::wall {

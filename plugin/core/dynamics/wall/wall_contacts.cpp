@@ -61,12 +61,8 @@ bool WallContacts<K>::inherit(const ContactPair<K>& before, const State* states,
 	for (int j = 0; j < before.size; ++j) {
 		const ContactPoint<K>& old = before.points[j];
 		const State& then = states[j];
-		const bool same = old.feature == point.feature;
-		if (!same && !((old.frame.position - point.frame.position).norm() <= samePlace))
+		if (!takeState(old, samePlace, point))
 			continue;
-		point.closed = old.closed;
-		point.sliding = old.sliding;
-		point.force = old.force;
 		now.pn = then.present ? then.pn : unit * old.force[0];
 		now.pt = then.present ? then.pt : unit * old.force.template tail<K::rows - 1>();
 		now.steady = then.present ? then.steady : now.pn;
@@ -76,7 +72,7 @@ bool WallContacts<K>::inherit(const ContactPair<K>& before, const State* states,
 		now.heldN = then.heldN;
 		now.heldT = then.heldT;
 		now.zero = std::min(now.zero, then.zero);
-		if (same)
+		if (old.feature == point.feature)
 			return true;
 		if constexpr (K::rows == 3) { // along the tangents of another face
 			const Eigen::Matrix2d turn = point.frame.axes.template bottomRows<2>() * old.frame.axes.template bottomRows<2>().transpose();

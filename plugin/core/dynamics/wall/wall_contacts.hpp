@@ -130,6 +130,10 @@ struct Part {
 	}
 };
 
+struct PairLane {
+	int pair, part; // of the pair's points
+};
+
 // By body: 1 for a free body that is of the structures here; for one that is not and stands, on which those here press.
 struct Members {
 	std::vector<char> own, supports;
@@ -303,6 +307,7 @@ private:
 	void takeOver(const RigidSystem<K>& system);
 	int divide();
 	void colour(const RigidSystem<K>& system);
+	void addGroup(const PairLane* lanes, int count, int none); // `none`: the body of empty lanes
 	void showPair(RigidSystem<K>& system, int pair) const;
 	void countPoints(const RigidSystem<K>& system, int group);
 	void findCourses(const RigidSystem<K>& system);

@@ -19,16 +19,12 @@ constexpr double slender = 1, mostOfSlender = 7;
 // Blocks in a course, on average, from which on a structure does not rock as a column.
 constexpr double blocksOfBroad = 6;
 
-struct Lane {
-	int pair, part; // of the pair's points
-};
-
 // Lanes of these pairs by colour, greedy in their order: no two of a colour share a body that is `own`.
 template <int lanesOfWide>
-std::vector<std::vector<Lane>> coloured(const std::vector<int>& numbers, const std::vector<std::array<int, 2>>& pairs,
-                                        const std::vector<unsigned char>& wide, const std::vector<char>& own)
+std::vector<std::vector<PairLane>> coloured(const std::vector<int>& numbers, const std::vector<std::array<int, 2>>& pairs,
+                                            const std::vector<unsigned char>& wide, const std::vector<char>& own)
 {
-	std::vector<std::vector<Lane>> colours;
+	std::vector<std::vector<PairLane>> colours;
 	std::vector<std::vector<char>> used; // by colour, whether a body has a pair of it
 	for (const int c : numbers)
 		for (int part = 0; part < (wide[c] ? lanesOfWide : 1); ++part) {
@@ -105,26 +101,9 @@ void WallContacts<K>::colour(const RigidSystem<K>& s)
 	slots.assign(pairs.size(), {});
 	for (int p = 0; p <= seam; ++p) {
 		parts[p].begin = int(groups.size());
-		for (const auto& members : coloured<lanesOfPair<K>>(pairsOf[p], pairs, wide, own)) {
-			for (size_t first = 0; first < members.size(); first += width) {
-				Group<K> group {};
-				FeatureGroup<K> feature {};
-				group.setCount(lanePoints<K>);
-				for (PointLanes<K>& p : group.point)
-					p.gap = all(farAway);
-				for (int i = 0; i < width; ++i) {
-					const bool filled = first + i < members.size();
-					const Lane lane = filled ? members[first + i] : Lane {-1, 0};
-					feature.pair[i] = lane.pair;
-					feature.first[i] = lane.part * lanePoints<K>;
-					group.body1[i] = filled ? pairs[lane.pair][0] : none;
-					group.body2[i] = filled ? pairs[lane.pair][1] : none;
-					if (filled)
-						slots[lane.pair][lane.part] = {int(groups.size()), i};
-				}
-				groups.push_back(group);
-				features.push_back(feature);
-			}
+		for (const auto& lanes : coloured<lanesOfPair<K>>(pairsOf[p], pairs, wide, own)) {
+			for (size_t first = 0; first < lanes.size(); first += width)
+				addGroup(&lanes[first], int(std::min<size_t>(width, lanes.size() - first)), none);
 			parts[p].colourEnd.push_back(int(groups.size()));
 		}
 		parts[p].end = int(groups.size());
@@ -139,6 +118,28 @@ void WallContacts<K>::colour(const RigidSystem<K>& s)
 			if (const int a = groups[g].body1[i], b = groups[g].body2[i]; isFixed(a) || isFixed(b))
 				(supports[a] || supports[b] ? onStill : onBase).push_back({g, i});
 	orderUpwards();
+}
+
+template <class K>
+void WallContacts<K>::addGroup(const PairLane* lanes, int count, int none)
+{
+	Group<K> group {};
+	FeatureGroup<K> feature {};
+	group.setCount(lanePoints<K>);
+	for (PointLanes<K>& p : group.point)
+		p.gap = all(farAway);
+	for (int i = 0; i < width; ++i) {
+		const bool filled = i < count;
+		const auto [pair, part] = filled ? lanes[i] : PairLane {-1, 0};
+		feature.pair[i] = pair;
+		feature.first[i] = part * lanePoints<K>;
+		group.body1[i] = filled ? pairs[pair][0] : none;
+		group.body2[i] = filled ? pairs[pair][1] : none;
+		if (filled)
+			slots[pair][part] = {int(groups.size()), i};
+	}
+	groups.push_back(group);
+	features.push_back(feature);
 }
 
 template <class K>
