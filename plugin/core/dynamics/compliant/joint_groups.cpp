@@ -2,6 +2,7 @@
 #include "tolerances.hpp"
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 
 namespace masonry {
@@ -274,6 +275,28 @@ double storedEnergy(const JointSystem& s)
 	return sum;
 }
 
+double mechanicalEnergy(const JointSystem& s)
+{
+	std::vector<Body> bodies = s.bodies; // velocities are half a step behind
+	const auto push = [&](int b, const Vector3& force, const Vector3& moment) {
+		bodies[b].velocity += 0.5 * s.dt * bodies[b].inverseMass() * force;
+		bodies[b].angularVelocity += 0.5 * s.dt * (bodies[b].inverseInertia() * moment);
+	};
+	for (size_t b = 0; b < bodies.size(); ++b)
+		push(b, bodies[b].force, bodies[b].torque);
+	for (const JointContact& contact : s.contacts)
+		for (int i = 0; i < contact.size; ++i)
+			for (const auto& [b, sign] : {std::pair(contact.body1, -1.), std::pair(contact.body2, 1.)}) {
+				const Vector3 force = sign * contact.force(i);
+				push(b, force, (contact.position(i) - bodies[b].pose.position).cross(force));
+			}
+	double energy = kineticEnergy(bodies) + storedEnergy(s);
+	for (const Body& body : bodies)
+		if (!body.prescribed)
+			energy -= body.force.dot(body.pose.position);
+	return energy;
+}
+
 namespace {
 
 struct NormalRow {
@@ -338,40 +361,26 @@ double largestChange(const std::vector<JointContact>& contacts, const std::vecto
 	return largest;
 }
 
-// How deep the springs are pressed, or would be if one of them bore all.
-double compression(const std::vector<Body>& bodies, const std::vector<JointContact>& contacts)
+void hold(JointSystem& s)
 {
-	double load = 0, deepest = 0;
-	for (const Body& body : bodies)
-		if (!body.prescribed)
-			load += body.force.norm();
-	for (const JointContact& contact : contacts) {
-		deepest = std::max(deepest, load / (contact.law.normalStiffness * contact.stiffnessArea()));
-		for (int i = 0; i < contact.size; ++i)
-			deepest = std::max(deepest, -contact.patch.points[i].gap);
-	}
-	return deepest;
+	for (JointContact& contact : s.contacts)
+		holdForces(contact);
 }
 
-} // namespace
-
-double settle(JointSystem& s, const std::vector<HeldPoint>& held, double stored, double gain)
+// Bodies move (least motion, whatever the masses) until the springs of the points bear their forces. Returns the deepest compression.
+double press(JointSystem& s, const std::vector<HeldPoint>& points)
 {
-	std::vector<HeldPoint> loaded;
 	std::vector<NormalRow> rows;
-	for (const HeldPoint& p : held) {
+	double deepest = 0;
+	for (const HeldPoint& p : points) {
 		const JointContact& contact = s.contacts[p.contact];
-		const Vector3& n = contact.patch.normal;
-		if (!(n.dot(p.force) > 0))
-			continue;
-		loaded.push_back(p);
-		const Vector3 x = contact.position(p.point);
+		const Vector3 &n = contact.patch.normal, x = contact.position(p.point);
+		const double depth = n.dot(p.force) / contact.normalStiffness(p.point);
+		deepest = std::max(deepest, depth);
 		rows.push_back({contact.body1, contact.body2, n, (x - s.bodies[contact.body1].pose.position).cross(n),
-		                (x - s.bodies[contact.body2].pose.position).cross(n),
-		                -n.dot(p.force) / contact.normalStiffness(p.point) - contact.patch.points[p.point].gap});
+		                (x - s.bodies[contact.body2].pose.position).cross(n), -depth - contact.patch.points[p.point].gap});
 	}
 	const std::vector<Body> before = s.bodies;
-	const std::vector<JointContact> contactsBefore = s.contacts;
 	const auto motion = leastMotion(s.bodies, rows);
 	for (size_t b = 0; b < s.bodies.size(); ++b) {
 		Body& body = s.bodies[b];
@@ -384,30 +393,44 @@ double settle(JointSystem& s, const std::vector<HeldPoint>& held, double stored,
 		body.pose = moving.pose;
 	}
 	moveContacts(s, before);
-	for (const HeldPoint& p : loaded) {
+	for (const HeldPoint& p : points) {
 		JointContact& contact = s.contacts[p.contact];
 		const Vector3& n = contact.patch.normal;
 		contact.points[p.point].shear = -(p.force - n * n.dot(p.force)) / contact.shearStiffness(p.point);
 	}
+	hold(s);
+	return deepest;
+}
+
+} // namespace
+
+void settle(JointSystem& s, const std::vector<HeldPoint>& held, double most)
+{
+	const double stored = storedEnergy(s);
+	const std::vector<Body> before = s.bodies;
+	const std::vector<JointContact> contactsBefore = s.contacts;
+	std::vector<HeldPoint> points;
+	std::copy_if(held.begin(), held.end(), std::back_inserter(points),
+	             [&](const HeldPoint& p) { return s.contacts[p.contact].patch.normal.dot(p.force) > 0; });
+	const double deepest = press(s, points);
 	double work = 0; // of the loads
 	for (size_t b = 0; b < s.bodies.size(); ++b)
 		work += s.bodies[b].force.dot(s.bodies[b].pose.position - before[b].pose.position);
-	const auto hold = [&] {
-		for (JointContact& contact : s.contacts)
-			holdForces(contact);
-	};
-	hold();
-	double given = stored + work - storedEnergy(s);
-	// Bodies on their way over an edge, or that hit hard, may have no such equilibrium near: then they stay where they are.
-	const double most = gain * stored;
-	if (given < -most || pressedEnergy(s.contacts) - pressedEnergy(contactsBefore) > most ||
-	    largestChange(s.contacts, contactsBefore) > tolerance::settlingReach * compression(before, contactsBefore)) {
-		s.bodies = before;
-		s.contacts = contactsBefore;
-		hold();
-		given = stored - storedEnergy(s);
-	}
-	return given;
+	// Bodies on their way over an edge, or that hit hard, may have no such equilibrium near.
+	if (storedEnergy(s) - stored - work <= most && pressedEnergy(s.contacts) - pressedEnergy(contactsBefore) <= most &&
+	    largestChange(s.contacts, contactsBefore) <= tolerance::settlingReach * deepest)
+		return;
+	s.bodies = before;
+	s.contacts = contactsBefore;
+	hold(s);
+	const double share = std::sqrt(stored / storedEnergy(s));
+	if (!(share < 1))
+		return;
+	// The points that carry now are more, or deeper. The energy of springs goes with the square of their force.
+	points = selectPoints(s.contacts, [](const JointContact& contact, int i) { return contact.points[i].normalForce > 0; });
+	for (HeldPoint& p : points)
+		p.force = share * s.contacts[p.contact].force(p.point);
+	press(s, points);
 }
 
 } // namespace masonry

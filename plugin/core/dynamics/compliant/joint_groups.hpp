@@ -62,9 +62,12 @@ void moveContacts(JointSystem& system, const std::vector<Body>& before);
 // Energy stored in all joints, as of their last forces, J.
 double storedEnergy(const JointSystem& system);
 
+// Kinetic energy at the end of the step by the present forces, energy stored, and that of the loads, J.
+double mechanicalEnergy(const JointSystem& system);
+
 // Gives the held points the compression and shear that carry their forces: bodies move along the normals (least motion,
-// whatever the masses), shears are set, forces updated. Returns the energy that this takes from loads and springs, which
-// held `stored` before (J, of either sign). Nothing is done where the springs would take more than `gain` times that.
-double settle(JointSystem& system, const std::vector<HeldPoint>& held, double stored, double gain = tolerance::settlingGain);
+// whatever the masses), shears are set, forces updated. Where that takes more energy than `most` (J), or more motion than those forces
+// may press springs in, springs stay as they are; if they then hold more than before, they give way until they do not.
+void settle(JointSystem& system, const std::vector<HeldPoint>& held, double most);
 
 } // namespace masonry

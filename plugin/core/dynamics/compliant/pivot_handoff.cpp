@@ -59,28 +59,6 @@ void goForth(JointSystem& s, const RigidAcceleration& rates, double before)
 	moveContacts(s, instant);
 }
 
-// Kinetic energy at the end of the step by the forces of the springs, less that by the rigid accelerations: the springs' own
-// motion, which the hand-off leaves out.
-double springMotion(const JointSystem& s, const RigidAcceleration& rates)
-{
-	std::vector<Body> sprung = s.bodies, rigid = s.bodies;
-	for (size_t i = 0; i < s.bodies.size(); ++i) {
-		sprung[i].velocity += 0.5 * s.dt * s.bodies[i].inverseMass() * s.bodies[i].force;
-		sprung[i].angularVelocity += 0.5 * s.dt * s.bodies[i].inverseInertia() * s.bodies[i].torque;
-		rigid[i].velocity += 0.5 * s.dt * rates.linear[i];
-		rigid[i].angularVelocity += 0.5 * s.dt * rates.angular[i];
-	}
-	for (const JointContact& contact : s.contacts)
-		for (int i = 0; i < contact.size; ++i)
-			for (const auto& [b, sign] : {std::pair(contact.body1, -1.), std::pair(contact.body2, 1.)}) {
-				Body& body = sprung[b];
-				const Vector3 push = 0.5 * s.dt * sign * contact.force(i);
-				body.velocity += body.inverseMass() * push;
-				body.angularVelocity += body.inverseInertia() * (contact.position(i) - body.pose.position).cross(push);
-			}
-	return kineticEnergy(sprung) - kineticEnergy(rigid);
-}
-
 bool loaded(const JointContact& contact, int i) { return !contact.points[i].muted && contact.patch.points[i].gap < 0; }
 
 // Smallest angular velocity of a rocking impact that starts another half cycle: the next peak must exceed the angle by
@@ -140,14 +118,15 @@ ImpactRecord::Result applyWithRim(JointSystem& s, RockingImpact& impact)
 }
 
 // Who carries the next phase: the closing points, with the old pivot too when the joint stops. Of the closing points,
-// those between the pivots part again at once (a face on two supports).
+// those between the pivots part again at once (a face on two supports). Where all part, springs throw the block off, and all carry: if
+// nobody did, the block, back before its points have come out, would be pressed by springs that have been written off.
 std::vector<HeldPoint> passPivot(JointSystem& s, const Joint& joint, const Closing& closing, const std::vector<HeldPoint>& loadedPoints,
                                  bool stops, double parting)
 {
-	for (const PointRef& p : joint.points) {
-		const bool stays = among(closing.points, p.contact, p.point) && gapRate(s, p) <= parting;
-		s.contacts[p.contact].points[p.point].muted = !stops && !stays;
-	}
+	const auto stays = [&](const PointRef& p) { return gapRate(s, p) <= parting; };
+	const bool rebounds = std::none_of(closing.points.begin(), closing.points.end(), stays);
+	for (const PointRef& p : joint.points)
+		s.contacts[p.contact].points[p.point].muted = !stops && !(among(closing.points, p.contact, p.point) && (rebounds || stays(p)));
 	return selectPoints(s.contacts, [&](const JointContact& contact, int i) {
 		const int c = int(&contact - s.contacts.data());
 		if (!joint.has(c))
@@ -160,9 +139,7 @@ ImpactRecord switchPivot(JointSystem& s, const Joint& joint, const Closing& clos
 {
 	const double stored = storedEnergy(s), power = supportPower(s);
 	const auto loadedPoints = selectPoints(s.contacts, loaded);
-	const auto old = accelerations(s, loadedPoints);
-	const double sprung = springMotion(s, old);
-	goBack(s, old, closing.before);
+	goBack(s, accelerations(s, loadedPoints), closing.before);
 
 	RockingImpact impact = closingImpact(s, joint, closing, loadedPoints);
 	const Vector3 axis = rockingAxis(s.bodies, impact.joints.front(), impact.points);
@@ -177,6 +154,7 @@ ImpactRecord switchPivot(JointSystem& s, const Joint& joint, const Closing& clos
 	const auto held = passPivot(s, joint, closing, loadedPoints, stops, tolerance::parting * closing.lever * result.before);
 	const RigidAcceleration rates = accelerations(s, held);
 	goForth(s, rates, closing.before);
+	settle(s, rates.points, tolerance::settlingGain * stored);
 
 	ImpactRecord record;
 	record.block = joint.block;
@@ -185,8 +163,6 @@ ImpactRecord switchPivot(JointSystem& s, const Joint& joint, const Closing& clos
 	record.restitutionAsked = closing.restitution;
 	record.switched = !stops;
 	record.result = result;
-	record.settled = sprung + settle(s, rates.points, stored);
-	record.settled -= springMotion(s, rates);
 	record.work = result.work + closing.before * (supportPower(s) - power);
 	return record;
 }
@@ -204,7 +180,7 @@ void startAtEquilibrium(JointSystem& s)
 	std::vector<HeldPoint> held = selectPoints(s.contacts, near);
 	const ImpulseSolver solve = held.size() <= mostDense ? solveImpulses : rigid::solveSparsely;
 	const RigidAcceleration rates = accelerations(s, std::move(held), solve);
-	settle(s, rates.points, std::numeric_limits<double>::infinity()); // whatever it takes
+	settle(s, rates.points, std::numeric_limits<double>::infinity()); // whatever energy it takes
 	goForth(s, rates, 0.);                                            // velocities go half a step back
 }
 
@@ -255,7 +231,7 @@ std::vector<HeldPoint> partingPoints(const RigidAcceleration& rates, const std::
 // pivot forces. Returns the energy that this takes.
 double lift(JointSystem& s, const Joint& joint, const std::vector<HeldPoint>& parting)
 {
-	const double stored = storedEnergy(s), moving = kineticEnergy(s.bodies);
+	const double energy = mechanicalEnergy(s), stored = storedEnergy(s);
 	auto rows = impulsePoints(s, selectPoints(s.contacts, loaded));
 	const auto& contact = s.contacts[joint.contacts.front()];
 	const int support = contact.body1 == joint.block ? contact.body2 : contact.body1;
@@ -264,13 +240,12 @@ double lift(JointSystem& s, const Joint& joint, const std::vector<HeldPoint>& pa
 		noTurn.push_back({support, joint.block, Vector3::Unit(axis), 0.});
 	const ImpulseReport report = solveImpulses(s.bodies, rows, noTurn); // one block: few points
 	note(s, report.residual, report.solved);
-	const double stopped = moving - kineticEnergy(s.bodies);
 	for (const HeldPoint& p : parting)
 		s.contacts[p.contact].points[p.point].muted = true;
 	const RigidAcceleration rates = accelerations(s, selectPoints(s.contacts, loaded));
-	const double settled = settle(s, rates.points, stored, tolerance::liftingGain);
+	settle(s, rates.points, tolerance::liftingGain * stored);
 	goForth(s, rates, 0.); // velocities go half a step back
-	return stopped + settled;
+	return energy - mechanicalEnergy(s);
 }
 
 } // namespace
@@ -307,12 +282,14 @@ std::vector<ImpactRecord> handOffPivots(JointSystem& s)
 			muteOpenPoints(s, joint); // else liftJoints decides
 		if (findClosing(s, joint).points.empty())
 			continue;
+		const double energy = mechanicalEnergy(s);
 		Neighbourhood part = neighbourhood(s, joint);
 		ImpactRecord record = switchPivot(part.system, part.joint, findClosing(part.system, part.joint));
 		record.block = part.bodies[record.block];
 		record.support = part.bodies[record.support];
-		records.push_back(record);
 		putBack(part, s);
+		record.settled = energy + record.work - mechanicalEnergy(s) - record.result.energyLost;
+		records.push_back(record);
 	}
 	return records;
 }
@@ -327,13 +304,11 @@ std::vector<HeldPoint> respondToJump(JointSystem& s, const std::vector<int>& mov
 	    s.contacts, [](const JointContact& contact, int i) { return !contact.points[i].muted && contact.patch.points[i].gap <= 0; });
 	auto rows = impulsePoints(s, touching);
 	std::vector<CoupleRow> none;
-	const double energyBefore = kineticEnergy(s.bodies);
 	const ImpulseReport report = rigid::solveSparsely(s.bodies, rows, none);
 	note(s, report.residual, report.solved);
 	for (const ImpulsePoint& row : rows)
 		for (int b : moved) // impulse times the mean of the base's velocities before and after
 			response.work += (row.body1 == b ? 1 : row.body2 == b ? -1 : 0) * row.impulse.dot(s.bodies[b].velocity - 0.5 * jump);
-	response.dissipated = energyBefore + response.work - kineticEnergy(s.bodies);
 
 	std::vector<HeldPoint> held;
 	for (const HeldPoint& p : touching) {
@@ -349,7 +324,7 @@ std::vector<HeldPoint> respondToJump(JointSystem& s, const std::vector<int>& mov
 
 JumpResponse applyBaseJump(JointSystem& s, const std::vector<int>& moved, const Vector3& jump, double before)
 {
-	const double stored = storedEnergy(s), power = supportPower(s);
+	const double energy = mechanicalEnergy(s), stored = storedEnergy(s), power = supportPower(s);
 	goBack(s, accelerations(s, selectPoints(s.contacts, loaded)), before);
 	for (int b : moved)
 		s.bodies[b].velocity += jump;
@@ -359,8 +334,9 @@ JumpResponse applyBaseJump(JointSystem& s, const std::vector<int>& moved, const 
 	unmuteUpright(s, joints);
 	const RigidAcceleration rates = accelerations(s, held);
 	goForth(s, rates, before);
-	response.dissipated += settle(s, rates.points, stored);
+	settle(s, rates.points, tolerance::settlingGain * stored);
 	response.work += before * (supportPower(s) - power);
+	response.dissipated = energy + response.work - mechanicalEnergy(s);
 	for (const Joint& joint : joints)
 		unmuteInFlight(s, joint);
 	return response;

@@ -7,7 +7,8 @@
 //   1. bodies go back to t_c (positions, and velocities by the rigid accelerations about the old pivot),
 //   2. the rocking restitution law is applied (impact/rocking_restitution.hpp),
 //   3. the closing points take over as pivot, with the compression and shear that carry the pivot forces of the new
-//      phase, so that no vibration of the springs is excited; the old pivot is muted,
+//      phase, so that no vibration of the springs is excited; the old pivot is muted. After a hard hit, which has pressed the old
+//      pivot much deeper, they take over its compression and its energy instead,
 //   4. bodies return to the end of the step with the new velocities and the rigid accelerations about the new pivot.
 // The correction makes the error of order dt^2 although the impact falls inside the step.
 //
@@ -44,7 +45,7 @@ struct ImpactRecord {
 	bool switched {false};        // false: the joint came to rest
 	Result result {};             // of the restitution law
 	double work {0};              // of the moved bodies: their impulses, and the changed forces up to the end of the step, J
-	double settled {0};           // given up as the springs stop and take the pivot forces of the new phase (of either sign), J
+	double settled {0}; // what else it takes, by the balance: springs stop and take the pivot forces of the new phase (of either sign), J
 };
 
 // Puts bodies at rest in their equilibrium: compressions and shears that carry the weight (or, for a block that is let

@@ -17,6 +17,7 @@ struct LeapfrogRig {
 	std::vector<masonry::ImpactRecord> impacts;
 	std::vector<double> impactTimes;
 	double time {0};
+	double dissipated {0}; // by friction and dashpots, J
 	bool started {false};
 	std::function<void()> onStart = [] {};
 	std::function<void(const masonry::ImpactRecord&)> onImpact = [](const masonry::ImpactRecord&) {};
@@ -59,6 +60,7 @@ struct LeapfrogRig {
 			contact.law = law;
 			renewPatch(contact, patch);
 			updateForces(contact, system.bodies[a], system.bodies[b], system.dt);
+			dissipated += contact.energy.friction + contact.energy.damping;
 			system.contacts.push_back(contact);
 			index.push_back(k);
 		}
