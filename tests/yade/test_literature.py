@@ -5,7 +5,8 @@ import math
 import numpy as np
 from masonry import dem
 from rocking_scene import rigid_engines
-from yade import O, Vector3
+from scipy.integrate import solve_ivp
+from yade import O, Quaternion, Vector3
 
 import masonry
 
@@ -69,3 +70,70 @@ for sides, even in (((0.8, 0.8), 1 / 1.848), ((1.6, 0.4), 1 / 1.943)):
         assert abs(np.hypot(along, across).mean() / arm / even - 1) < 1e-3
         slowed = (3 - O.bodies[block].state.angVel[2]) / O.time
         assert abs(slowed * inertia / (friction * G * arm) - 1) < 1e-6, (sides, method, slowed)
+
+# --- a stack that lands as one body, its top heavier by far, goes on with 1 - 2 M b^2/I of its speed (angular momentum about the new edge; M, I: mass and moment of
+# inertia about that of the whole), until the next peak; squat alike blocks too. `localised` is of second order, `wall` of first, where pivots stay where they are ---
+for ratio, count, mu, half, tilt in ((20, 1, 0.6, (0.4, 0.4, 0.6), 0.04), (500, 1, 0.6, (0.4, 0.4, 0.6), 0.04), (1.5, 2, 0.8, (0.4, 0.2, 0.3), 0.02)):
+    for method, model, error in (("localised", "planar", 1e-4), ("wall", "planar", 0.02), ("wall", "spatial", 0.02)):
+        O.reset()
+        stone, heavy = (dem.BlockMat(density=density, frictionAngle=math.atan(mu)) for density in (2000, 2000 * ratio * half[1] / half[2]))
+        base = dem.base((10, 4, 0.2), stone)
+        b, heights = half[0], [half[1]] * count + [half[2]]
+        centers = 2 * np.cumsum(heights) - heights
+        ids = [dem.block((2 * b, 1, 2 * a), material, orientation=Quaternion((0, 1, 0), tilt),
+                         center=(b - b * math.cos(tilt) + z * math.sin(tilt), 0, b * math.sin(tilt) + z * math.cos(tilt)))
+               for a, z, material in zip(heights, centers, [stone] * count + [heavy])]
+        O.engines = rigid_engines(model=model, method=method, dt=1e-3)
+        masses = np.array([O.bodies[id].state.mass for id in ids])
+        mass, inertia = masses.sum(), (masses * ((b**2 + np.square(heights)) / 3 + b**2 + centers**2)).sum()
+        middle = (masses * centers).sum() / mass
+        alike = 0.75 * inertia / (mass * (b**2 + middle**2))  # one block so many times as large has the same equation of motion
+        exact = masonry.simulate(masonry.RockingBlock(alike * b, alike * middle), restitution=1 - 2 * mass * b**2 / inertia, initial_angle=tilt, half_cycles=2)
+        peak = 0
+        while O.time < exact.impact_times[0] + 0.6 * (exact.impact_times[1] - exact.impact_times[0]):
+            O.step()
+            peak = max(peak, -dem.angle(ids[-1]))
+        state = O.bodies[ids[0]].state
+        pivot = (state.pos + state.ori * Vector3(-b, 0, -half[1]))[0]
+        assert abs(peak / abs(exact.peak_angles[1]) - 1) < error and abs(pivot + b) < 1e-4, (ratio, method, model, peak, exact.peak_angles, pivot)
+
+# --- a block that wobbles from corner to corner (Chatzis and Smyth 2012): Euler's equations about the corner c that it stands on; one that lands becomes the pivot, with
+# the angular momentum about it. In the block's axes, per mass; R turns them into the world's ---
+half = np.array([0.3, 0.3, 0.9])
+corners = half * [(x, y, -1) for x in (-1, 1) for y in (-1, 1)]
+central = np.diag((half @ half - half**2) / 3)
+about = [central + c @ c * np.eye(3) - np.outer(c, c) for c in corners]
+axis = np.array([1, 0.8, 0]) / math.hypot(1, 0.8)
+turn = Quaternion(tuple(axis), 0.1)
+matrix, spin, now, sampled = np.array(turn.toRotationMatrix()).reshape(3, 3), np.zeros(3), 0.0, []
+pivot = int(np.argmin(corners @ matrix[2]))
+start = -corners[pivot] @ matrix.T
+while now < 1.2:
+    def rates(_, y):
+        turned, w = y[:9].reshape(3, 3), y[9:]
+        moment = np.cross(-corners[pivot], -G * turned[2]) - np.cross(w, about[pivot] @ w)
+        return np.concatenate([np.cross(turned, w).ravel(), np.linalg.solve(about[pivot], moment)])
+
+    others = [k for k in range(4) if k != pivot]
+    events = [lambda _, y, k=k: y[6:9] @ (corners[k] - corners[pivot]) for k in others]
+    for event in events:
+        event.terminal, event.direction = True, -1
+    part = solve_ivp(rates, (now, 1.2), np.concatenate([matrix.ravel(), spin]), method="DOP853", rtol=1e-11, atol=1e-12, events=events, dense_output=True)
+    sampled += [(t, part.sol(t)[:9].reshape(3, 3)) for t in np.arange(0.05, 1.2, 0.05) if now < t <= part.t[-1]]
+    now, matrix, spin = part.t[-1], part.y[:9, -1].reshape(3, 3), part.y[9:, -1]
+    for k, times in zip(others, part.t_events):
+        if len(times):
+            momentum = central @ spin + np.cross(-corners[k], np.cross(spin, -corners[pivot]))
+            pivot, spin = k, np.linalg.solve(about[k], momentum)
+for method, bound in (("localised", 1e-6), ("wall", 3e-3)):
+    O.reset()
+    stone = dem.BlockMat(density=2000, noSlip=True)
+    dem.base((8, 8, 0.2), stone)
+    id = dem.block(tuple(2 * half), stone, center=tuple(start), orientation=turn)
+    O.engines = rigid_engines(model="spatial", method=method, dt=1e-3)
+    worst = 0
+    for t, wanted in sampled:
+        while O.time < t - 1e-6:
+            O.step()
+        worst = max(worst, np.abs(np.array(O.bodies[id].state.ori.toRotationMatrix()).reshape(3, 3) - wanted).max())
+    assert worst < bound, (method, worst)

@@ -21,11 +21,16 @@ constexpr double mostLumps = 0.1, coursesOfLumps = 32;
 // with up to twice the energy. And as many times more as substeps are finer: finer substeps alone leave tall walls where their lag is, and
 // of two blocks that carry a third across the plane of their wall one is left behind.
 constexpr double coursesOfSweep = 18.5;
-// Where they are as many as courses, in the plane, sweeps go on while an impulse changes by more than gravity gives its point in a substep,
-// up to so many: of a block that lands flat, moving sideways, normal impulses and friction have not found each other in three. With six,
-// one landing of sixteen still turns the block wrong by over 5 %; low walls that move hard take up to a tenth longer. (In space, where
-// corner after corner is without slip, the base would do 4 % more work on a wall that a pulse has set turning.)
-constexpr int mostSweeps = 12;
+// Where they are as many as courses, sweeps go on while an impulse changes by more than gravity gives its point in a substep, up to so
+// many: of a block that lands flat, moving sideways, normal impulses and friction have not found each other in three. With six, one landing
+// of sixteen still turns the block wrong by over 5 %; low walls that move hard take up to a tenth longer. (In space, where corner after
+// corner is without slip, the base would do 4 % more work on a wall that a pulse has set turning: there only under heavy blocks.)
+constexpr int sweepsOfLanding = 12;
+// And as many more as this burden per sweep: where both land, a block of 100 times the mass of one that carries it would rock on 3 % too
+// low, one of 500 times 40 %, and their pivot slide.
+constexpr double burdenOfLanding = 4;
+// So many times the mass of one that carries it, and a block is heavy. Without slip, too, the two would rock on 4 % too low at 20 times.
+constexpr double heavy = 3;
 // In space four times as many in slow motion, or walls creep on. In the plane they would only cost: what has been shaken rests as soon
 // without, and the tops of walls are as right.
 template <class K>
@@ -77,6 +82,13 @@ MASONRY_LANES void putOn(const std::vector<int>& members, Lanes* velocity, const
 		velocity[b] += noMass * widen(contactPart[b]);
 }
 
+// Whether no joint is without slip.
+template <class K>
+bool slips(const WallContacts<K>& c)
+{
+	return std::none_of(c.groups.begin(), c.groups.end(), [](const Group<K>& group) { return any(group.friction >= mostFriction); });
+}
+
 } // namespace
 
 // Groups of a colour so many together.
@@ -122,6 +134,8 @@ void Substeps<K>::begin(WallContacts<K>& c, const Structures<K>& structures, dou
 	sweeps = int(std::ceil(asked * std::max(1., finer)));
 	const bool lags = sweeps < c.depth;
 	edges = !lags;
+	const bool mayGoOn = edges && (K::dimension == 2 || c.burden > heavy * c.depth || slips(c));
+	mostSweeps = mayGoOn ? std::max({sweeps, sweepsOfLanding, int(std::min(c.burden, mostBurden) / burdenOfLanding)}) : sweeps;
 	lumps = lags ? float(mostLumps * std::min(1., std::pow(c.depth / coursesOfLumps, 2))) : 0;
 	if (!lags)
 		effort.relaxationBefore = effort.relaxationAfter = 1;
@@ -191,8 +205,8 @@ void Substeps<K>::substep(WallContacts<K>& c, const LaneArray& load, double s, b
 		sumImpulses(number);
 		putOn(c.parts[number].members, c.velocity.data(), contactPart.data());
 	};
-	const bool mayGoOn = edges && K::dimension == 2;
-	const auto goesOn = [&](int k) { return k < sweeps || (mayGoOn && k < mostSweeps && points->residual() > fall); };
+	const bool mayGoOn = mostSweeps > sweeps;
+	const auto goesOn = [&](int k) { return k < sweeps || (k < mostSweeps && points->residual() > fall); };
 	const auto isWatched = [&](int k) { return mayGoOn && k + 1 >= sweeps; };
 	begin(seam);
 	for (int k = 0; goesOn(k); ++k) {

@@ -97,7 +97,8 @@ private:
 	void sumImpulses(int part);
 
 	Effort effort {effortFor<K>(false)};
-	int sweeps {1}; // before the move, and after it
+	int sweeps {1};     // before the move, and after it
+	int mostSweeps {1}; // where they go on
 	bool edges {false};
 	float lumps {0};   // frictionBound()
 	float damped {0};  // damping of this step
