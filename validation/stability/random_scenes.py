@@ -1,0 +1,140 @@
+"""Random scenes, one seed each, judged by invariants alone; appends one JSON line a scene. Run by `run --long`."""
+
+import json
+import math
+import os
+import random
+import time
+import warnings
+
+from boxes import depth, layout, near_pairs, separations
+from masonry import dem
+from measures import MODELS, MOST_DEPTH, MOST_GAIN, OTHER_DEPTH, Energies, engine, quiet_engines
+from yade import O, Quaternion, Vector3
+
+import numpy as np
+
+SECONDS = 0.4
+# In flight: how much the total momentum may change beside gravity, and the angular momentum of one body, relative to the largest of the run.
+FLIGHT = 1e-9
+NAMES = tuple(MODELS)
+
+
+def build(seed):
+    """One to five boxes above or on a base, in any pose, thrown or resting; the model follows from the seed."""
+    r = random.Random(seed)
+    model = NAMES[seed % len(NAMES)]
+    O.reset()
+    plane = model in ("planar", "wall")
+    law = {} if r.random() < 0.4 else {"restitution": r.choice((0, 0.3, 0.7, 1, r.random()))}
+    material = dem.BlockMat(density=10 ** r.uniform(2.5, 4), frictionAngle=math.atan(r.choice((0, 0.3, 0.7, 1.5))), **law)
+    base = dem.base((8, 8, 0.4), material)
+    z = 0.0
+    for k in range(r.randint(1, 5)):
+        size = [10 ** r.uniform(-1.2, 0) for _ in range(3)]
+        if r.random() < 0.5:  # stands on what is below
+            z += size[2] / 2
+            dem.block(tuple(size), material, center=(r.uniform(-0.02, 0.02), 0, z))
+            z += size[2] / 2
+            continue
+        reach = math.hypot(*size) / 2 * 1.01
+        if plane:
+            q = Quaternion(Vector3.UnitY, r.uniform(-math.pi, math.pi))
+        else:
+            q = Quaternion(*[r.gauss(0, 1) for _ in range(4)])
+            q.normalize()
+        z += reach
+        state = O.bodies[dem.block(tuple(size), material, center=(r.uniform(-0.2, 0.2), 0 if plane else r.uniform(-0.2, 0.2), z), orientation=q)].state
+        z += reach
+        state.vel = (r.gauss(0, 1), 0 if plane else r.gauss(0, 1), r.gauss(0, 1))
+        state.angVel = (0 if plane else r.gauss(0, 3), r.gauss(0, 3), 0 if plane else r.gauss(0, 3))
+        turned = state.ori.conjugate() * state.angVel
+        state.angMom = state.ori * Vector3(*(state.inertia[k] * turned[k] for k in range(3)))
+    motion = dem.PulseTrainEngine(ids=[base], impulse=r.uniform(0.1, 1), times=[0.05, 0.15]) if r.random() < 0.3 else None
+    O.engines = quiet_engines(motion, **MODELS[model])
+    return model
+
+
+class Flight:
+    """Bodies whose distance from all others is more than they go in a step get nothing but gravity."""
+
+    def __init__(self):
+        self.worst = 0.0
+        self.before = None
+
+    def look(self):
+        ids, centres, axes, half = layout()
+        free = np.array([O.bodies[i].dynamic for i in ids])
+        first, second = near_pairs(centres, 1.05 * half, free)
+        apart = np.full(len(ids), np.inf)
+        if len(first):
+            gap = separations(centres, axes, half, first, second)
+            np.minimum.at(apart, first, gap)
+            np.minimum.at(apart, second, gap)
+        velocity = np.array([tuple(O.bodies[i].state.vel) for i in ids])
+        spin = np.array([tuple(O.bodies[i].state.angVel) for i in ids])
+        reach = O.dt * (np.linalg.norm(velocity, axis=1) + np.linalg.norm(spin, axis=1) * np.linalg.norm(half, axis=1) + 9.81 * O.dt)
+        flies = free & (apart > 4 * reach.max())
+        if self.before is not None:
+            was, speed = self.before
+            both = flies & was
+            if both.any():
+                change = velocity[both] - speed[both] + np.array([0, 0, 9.81 * O.dt])
+                self.worst = max(self.worst, float(np.abs(change).max() / max(1.0, np.abs(velocity).max())))
+        self.before = flies, velocity
+
+
+def run(seed):
+    row = {"seed": seed, "gain": math.nan, "depth": math.nan, "flight": math.nan, "bits": True, "said": ""}
+    begin = time.process_time()
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        try:
+            row["model"] = build(seed)
+            steps = math.ceil(SECONDS / O.dt)
+            saves = seed % 10 == 0 and steps < 5000
+            energies, flight, deepest = Energies(lambda: 0.0), Flight(), 0.0
+            look = max(1, steps // 100)
+            for k in range(steps):
+                O.step()
+                energies.look()
+                if row["model"] != "compliant":
+                    flight.look()
+                if k % look == 0:
+                    deepest = max(deepest, depth())
+            row.update(gain=energies.relative_gain(), depth=deepest, flight=flight.worst, failures=engine().failures)
+            if saves:
+                end = [tuple(b.state.pos) for b in O.bodies]
+                build(seed)
+                for k in range(steps):
+                    O.step()
+                    if k % 7 == 0:
+                        O.saveTmp("random")
+                        O.loadTmp("random")
+                row["bits"] = end == [tuple(b.state.pos) for b in O.bodies]
+            row["said"] = (["failures"] * bool(row["failures"]) + [str(w.message) for w in caught] + [""])[0][:200]
+        except (RuntimeError, ValueError) as refused:
+            row["said"] = f"refused: {refused}"[:200]
+    row["cpu"] = time.process_time() - begin
+    most = MOST_DEPTH.get(row.get("model"), OTHER_DEPTH)
+    row["broken"] = [name for name, bad in (("energy", not row["gain"] <= MOST_GAIN), ("depth", not row["depth"] <= most),
+                                            ("flight", not row["flight"] <= FLIGHT), ("bits", not row["bits"])) if bad]
+    return row
+
+
+def main(path, scenes, part, parts):
+    done = set()
+    if os.path.exists(path):
+        with open(path) as file:
+            done = {json.loads(line)["seed"] for line in file}
+    for seed in range(part, scenes, parts):
+        if seed in done:
+            continue
+        row = run(seed)
+        with open(path, "a") as file:
+            file.write(json.dumps(row) + "\n")
+        if row["broken"]:
+            print(f"seed {seed}, {row.get('model')}: {', '.join(row['broken'])}: gain {row['gain']:.1e}, depth {row['depth']:.1e}, flight {row['flight']:.1e} {row['said'][:80] or 'SILENT'}", flush=True)
+
+
+main(os.environ["STABILITY_ROWS"], int(os.environ["STABILITY_SCENES"]), *map(int, os.environ.get("STABILITY_PART", "0/1").split("/")))
