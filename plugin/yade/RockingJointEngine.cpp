@@ -207,23 +207,30 @@ void RockingJointEngine::reportUnsolved()
 	failures += system.unsolved;
 }
 
-/// YADE's collider looks anew when the centre of a body has gone as far as its bounds allow. The corners of one that turns have left
-/// them sooner: it is told that the centre has gone as far as they have.
+/// YADE's collider looks for new pairs when a coordinate of a body's centre has moved by its sweep length; it is told here where turning
+/// has carried the corners, at the end of this step, that far. The reference is set back by twice the way, along the axis of the largest
+/// displacement and against it, so that the motion of this step cannot bring the body back within its sweep length of it.
 void RockingJointEngine::boundTurns()
 {
 	boundAt.resize(scene->bodies->size());
 	for (int id : ids) {
 		const Body& body = *(*scene->bodies)[id];
-		if (!body.bound || !body.isDynamic())
+		if (!body.bound)
 			continue;
 		Bound& bound = *body.bound;
+		const State& state = *body.state;
 		BoundPose& seen = boundAt[id];
 		if (seen.iteration != bound.lastUpdateIter)
-			seen = {bound.lastUpdateIter, body.state->ori};
+			seen = {bound.lastUpdateIter, state.ori};
 		const Real radius = static_cast<const Box&>(*body.shape).extents.norm();
-		const Real way = (body.state->pos - bound.refPos).norm() + radius * seen.orientation.angularDistance(body.state->ori);
-		if (way > bound.sweepLength)
-			bound.refPos = body.state->pos - way * Vector3r::UnitX();
+		const Vector3r displacement = state.pos - bound.refPos;
+		const Real turn = seen.orientation.angularDistance(state.ori) + state.angVel.norm() * scene->dt;
+		const Real way = displacement.norm() + radius * turn;
+		if (!(radius * turn > 0 && way > bound.sweepLength))
+			continue; // the collider sees translations by itself
+		int axis;
+		displacement.cwiseAbs().maxCoeff(&axis);
+		bound.refPos = state.pos - 2 * way * (displacement[axis] < 0 ? -1 : 1) * Vector3r::Unit(axis);
 	}
 }
 
