@@ -210,6 +210,30 @@ with tempfile.TemporaryDirectory() as folder:
         O.engines = rigid_engines(dem.PulseTrainEngine(ids=[base], impulse=0.15, resonantBlock=ids[0]))
         O.run(30, True)
 
+    def tumbling(seed):
+        """Two blocks fall on a base that a script turns and, at first far from each other, divide their steps in different ways."""
+        O.reset()
+        random = np.random.default_rng(seed)
+        material = dem.BlockMat(density=2000, frictionAngle=0.9, restitution=0.6)
+        base = dem.base((20, 20, 1), material)
+        for k in range(2):
+            q = random.normal(size=4)
+            dem.block((0.2, 0.3, 0.4), material, center=(1.5 * k, 0.1 * k, 0.4), orientation=Quaternion(*(q / np.linalg.norm(q))))
+        O.bodies[base].state.vel, O.bodies[base].state.angVel = (0.1, 0, 0), (0, 0.3, 0.2)
+        O.engines = rigid_engines(model="spatial", dt=5e-3)
+
+    for seed in range(4):
+        ends = []
+        for save in (False, True):
+            tumbling(seed)
+            for _ in range(300):
+                O.step()
+                if save:
+                    O.saveTmp("between")
+                    O.loadTmp("between")
+            ends.append(bits())
+        assert np.array_equal(*ends), seed
+
     for build, change in ((falls_on_wall, lambda: None), (near_another, other_stone), (turned, lambda: None), (two_on_train, lambda: O.bodies.erase(1))):
         assert same_when_saved(build, change), build.__name__
     near_another()

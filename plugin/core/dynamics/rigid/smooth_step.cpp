@@ -15,12 +15,13 @@ typename K::Velocity prescribedVelocity(const RigidSystem<K>& s, const RigidBody
 	return v;
 }
 
+// At the time t of a step, `passed` after its start, where the body was at `start`.
 template <class K>
-typename K::Pose prescribedPose(const RigidSystem<K>& s, const RigidBody<K>& body, double h, double t)
+typename K::Pose prescribedPose(const RigidSystem<K>& s, const RigidBody<K>& body, const typename K::Pose& start, double passed, double t)
 {
-	typename K::Pose pose = body.pose;
+	typename K::Pose pose = start;
 	if (!body.velocity.isZero(0))
-		K::advance(pose, body.velocity, h);
+		K::advance(pose, body.velocity, passed);
 	if (body.drive >= 0)
 		pose.position = s.driven(body, t);
 	return pose;
@@ -82,6 +83,11 @@ void SmoothStep<K>::begin(const RigidSystem<K>& s, double dt)
 {
 	whole = dt;
 	end = s.time + dt;
+	passed = 0;
+	starts.resize(s.bodies.size());
+	for (size_t b = 0; b < s.bodies.size(); ++b)
+		if (s.bodies[b].prescribed)
+			starts[b] = s.bodies[b].pose;
 	solver.forget();
 	shifts.reserve(s.bodies.size()); // a step that closes gaps may be the first to
 	scales = Scales(s);
@@ -105,14 +111,15 @@ void SmoothStep<K>::predict(const RigidSystem<K>& s, double h, bool again)
 {
 	last.bodies.resize(s.bodies.size());
 	solver.bodies.clear();
+	const double after = timeAfter(s, h);
 	for (size_t b = 0; b < s.bodies.size(); ++b) {
 		const RigidBody<K>& body = s.bodies[b];
 		auto& next = last.bodies[b];
 		if (body.prescribed) {
 			next.unknown = -1;
-			next.middle = prescribedPose(s, body, h / 2, s.time + h / 2);
-			next.end = prescribedPose(s, body, h, timeAfter(s, h));
-			next.velocity = prescribedVelocity(s, body, timeAfter(s, h));
+			next.middle = prescribedPose(s, body, starts[b], passed + h / 2, s.time + h / 2);
+			next.end = prescribedPose(s, body, starts[b], after == end ? whole : passed + h, after);
+			next.velocity = prescribedVelocity(s, body, after);
 			next.mean = 0.5 * (body.velocity + next.velocity);
 			continue;
 		}
@@ -266,7 +273,7 @@ double SmoothStep<K>::book(RigidSystem<K>& s) const
 }
 
 template <class K>
-void SmoothStep<K>::takeBodies(RigidSystem<K>& s) const
+void SmoothStep<K>::takeBodies(RigidSystem<K>& s)
 {
 	for (size_t b = 0; b < s.bodies.size(); ++b) {
 		RigidBody<K>& body = s.bodies[b];
@@ -277,6 +284,7 @@ void SmoothStep<K>::takeBodies(RigidSystem<K>& s) const
 		body.velocity = next.velocity;
 	}
 	s.time = timeAfter(s, last.h);
+	passed += last.h;
 	s.setFresh(unsteady || (isShort() && s.isFresh()));
 }
 

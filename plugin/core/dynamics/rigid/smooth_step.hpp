@@ -91,7 +91,7 @@ private:
 	double findShifts(const RigidSystem<K>& system, double most);
 	void project(const RigidSystem<K>& system, double lost);
 	double book(RigidSystem<K>& system) const;
-	void takeBodies(RigidSystem<K>& system) const;
+	void takeBodies(RigidSystem<K>& system);
 	bool takePoints(RigidSystem<K>& system) const;
 	// A part of a step that tells nothing of how velocities change.
 	bool isShort() const { return last.h < tolerance::rigid::shortPart * whole; }
@@ -102,6 +102,8 @@ private:
 	std::vector<double> misses, partings; // of the rows: m; normal velocities at the start of a part of a step, m/s
 	std::vector<Impulse> guesses, stray;  // of the rows: impulses of the last pass; velocities that the step takes off (none: empty)
 	double whole {0}, end {0};            // s, the step that is being done in parts, and when it ends
+	double passed {0};                    // s, of it
+	std::vector<typename K::Pose> starts; // of the prescribed bodies, of it: where they go does not depend on how a structure divides it
 	double weight {0};                    // of the free bodies times the scene's length, J
 	bool unsteady {false};                // the stray velocities were left
 	bool partBases {false}; // how much each of two bases that move apart carries is not determined: the last step's share grows
