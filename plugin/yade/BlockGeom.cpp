@@ -17,6 +17,7 @@ void BlockGeom::setPatch(const masonry::ContactPatch& found)
 	vertices = patch.feature.vertices;
 	area = patch.area;
 	normal = patch.normal;
+	pointNormals.fill(patch.normal);
 	contactPoint.setZero();
 	for (int i = 0; i < patch.size; ++i)
 		contactPoint += patch.points[i].weight * 0.5 * (patch.points[i].position1 + patch.points[i].position2);
@@ -37,5 +38,7 @@ vector<Vector3r> BlockGeom::points() const
 		result.push_back(0.5 * (patch.points[i].position1 + patch.points[i].position2));
 	return result;
 }
+
+vector<Vector3r> BlockGeom::normals() const { return {pointNormals.begin(), pointNormals.begin() + patch.size}; }
 
 } // namespace yade

@@ -10,24 +10,27 @@ namespace yade {
 class BlockGeom : public GenericSpheresContact {
 public:
 	masonry::ContactPatch patch;
+	std::array<Vector3r, 8> pointNormals; // of the patch's points, unit, from body 1 to body 2
 
 	masonry::PatchFeature feature() const;
 	void setPatch(const masonry::ContactPatch&);
 
 	vector<Real> gaps() const;
 	vector<Vector3r> points() const;
+	vector<Vector3r> normals() const;
 
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(BlockGeom, GenericSpheresContact,
-		"Contact patch of two boxes: up to eight points with gaps. normal points from body 1 to body 2, contactPoint is the centroid of the patch.",
+		"Contact patch of two boxes: up to eight points, each with a gap and a normal (gaps, points and normals are parallel lists, empty after loading until the next step). normal points from body 1 to body 2: for rigid blocks, whose points can have different normals, it is the direction of the resultant of the normal forces or, without load, the normal of the point with the smallest gap; for compliant joints it is the normal of the patch, which all points share. contactPoint is the centroid of the patch.",
 		((int, kind, 0, Attr::readonly, "What meets, of compliant joints: 0 nothing yet, 1 or 2 face on face (the number names the reference body), 3 edge across edge."))
 		((int, feature1, -1, Attr::readonly, "Face (0 to 5) or edge (0 to 11) of body 1."))
 		((int, feature2, -1, Attr::readonly, "Face or edge of body 2."))
 		((int, vertices, 0, Attr::readonly, "Of compliant joints: bit mask of the vertices that are corners of the patch."))
 		((Real, area, 0, Attr::readonly, "Area of the overlap of compliant joints [m^2]; 0 for edge across edge, and for rigid blocks, whose points bear.")),
 		normal = contactPoint = Vector3r::Zero(); createIndex();,
-		.add_property("gaps", &BlockGeom::gaps, "Distance at each point along the normal [m], negative where the bodies overlap.")
+		.add_property("gaps", &BlockGeom::gaps, "Distance at each point along its normal [m], negative where the bodies overlap.")
 		.add_property("points", &BlockGeom::points, "The points, between the two bodies [m].")
+		.add_property("normals", &BlockGeom::normals, "Unit normal at each point, from body 1 to body 2: that of the face which a vertex meets, or the common normal of two edges.")
 	);
 	// clang-format on
 	REGISTER_CLASS_INDEX(BlockGeom, GenericSpheresContact);

@@ -51,6 +51,7 @@ void BlockPhys::writePoints(const masonry::JointContact& contact)
 	muted.resize(size);
 	shears.resize(size);
 	forces.resize(size);
+	normalForces.resize(size);
 	kn = contact.law.normalStiffness * contact.stiffnessArea();
 	ks = contact.law.shearStiffness * contact.stiffnessArea();
 	normalForce.setZero();
@@ -61,19 +62,11 @@ void BlockPhys::writePoints(const masonry::JointContact& contact)
 		muted[i] = point.muted;
 		shears[i] = point.shear;
 		forces[i] = contact.force(i);
+		normalForces[i] = point.normalForce;
 		normalForce += point.normalForce * contact.patch.normal;
 		shearForce += point.shearForce;
 	}
 	energy = contact.energy;
-}
-
-vector<Real> BlockPhys::normalForces() const
-{
-	const Vector3r direction = normalForce.norm() > 0 ? Vector3r(normalForce.normalized()) : Vector3r(Vector3r::Zero());
-	vector<Real> result;
-	for (const Vector3r& force : forces)
-		result.push_back(force.dot(direction));
-	return result;
 }
 
 } // namespace yade

@@ -18,13 +18,12 @@ public:
 	void writePoints(const masonry::JointContact&);
 
 	masonry::JointEnergy energy; // of this step
+	vector<Real> normalForces;   // of the points, N; not saved
 	bool applied = false;        // RockingJointEngine has put the last forces on the bodies
-
-	vector<Real> normalForces() const;
 
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(BlockPhys, FrictPhys,
-		"Joint of two blocks; rigid ones use the law (restitution, friction, noSlip) and forces only. kn and ks are the stiffness of the whole patch [N/m]; normalForce and shearForce act on body 2.",
+		"Joint of two blocks; rigid ones use the law (restitution, friction, noSlip) and forces only. kn and ks are the stiffness of the whole patch [N/m]; normalForce and shearForce act on body 2: the sums of the normal and of the tangential forces of the points.",
 		((Real, normalStiffness, NaN, , "Normal stiffness per area [Pa/m]."))
 		((Real, shearStiffness, NaN, , "Shear stiffness per area [Pa/m]."))
 		((Real, restitution, NaN, , "Rocking restitution of the pair, 0 to 1; NaN: natural."))
@@ -34,7 +33,7 @@ public:
 		((vector<Vector3r>, shears, , Attr::readonly, "Elastic tangential displacement of each point, of body 2 relative to body 1 [m]."))
 		((vector<Vector3r>, forces, , Attr::readonly, "Force on body 2 at each point [N].")),
 		createIndex();,
-		.add_property("normalForces", &BlockPhys::normalForces, "Normal force at each point [N], compression positive.")
+		.add_property("normalForces", +[](const BlockPhys& phys) { return phys.normalForces; }, "Force along the normal of each point (geom.normals) [N], compression positive; empty after loading until the next step.")
 	);
 	// clang-format on
 	REGISTER_CLASS_INDEX(BlockPhys, FrictPhys);

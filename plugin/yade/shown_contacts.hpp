@@ -84,8 +84,8 @@ public:
 			}
 			if (!listed)
 				list(contact);
-			writeGeom(*contact.geom, pair, kept.seats[pair.body2].depth);
 			writePhys(*contact.phys, pair);
+			writeGeom(*contact.geom, pair, kept.seats[pair.body2].depth, contact.phys->normalForce);
 		}
 	}
 
@@ -164,31 +164,40 @@ private:
 		scene.interactions->erase(contact.interaction->id1, contact.interaction->id2, contact.interaction->linIx);
 	}
 
-	void writeGeom(BlockGeom& geom, const Pair& pair, Real depth) const
+	Vector3r normalOf(const masonry::rigid::ContactPoint<K>& point) const { return coordinates.out(point.frame.axes.row(0).transpose()); }
+
+	/// The points of one pair can have normals in different directions: their common one is that of the resultant of their forces or,
+	/// without load, that of the point which is nearest to touching.
+	void writeGeom(BlockGeom& geom, const Pair& pair, Real depth, const Vector3r& normalForce) const
 	{
 		geom.feature1 = pair.face1;
 		geom.feature2 = pair.face2;
 		geom.patch.size = pair.size;
 		geom.contactPoint.setZero();
+		int nearest = 0;
 		for (int i = 0; i < pair.size; ++i) {
 			const auto& point = pair.points[i];
 			auto& to = geom.patch.points[i];
 			to.position1 = to.position2 = pointInScene(coordinates, point.frame.position, depth);
 			to.gap = point.gap;
 			geom.contactPoint += to.position1 / pair.size;
-			if (i == 0)
-				geom.normal = coordinates.out(point.frame.axes.row(0).transpose());
+			geom.pointNormals[i] = normalOf(point);
+			if (point.gap < pair.points[nearest].gap)
+				nearest = i;
 		}
+		geom.normal = normalForce.isZero(0) ? geom.pointNormals[nearest] : Vector3r(normalForce.normalized());
 	}
 
 	void writePhys(BlockPhys& phys, const Pair& pair) const
 	{
 		phys.forces.resize(pair.size);
+		phys.normalForces.resize(pair.size);
 		phys.normalForce.setZero();
 		phys.shearForce.setZero();
 		for (int i = 0; i < pair.size; ++i) {
 			const auto& point = pair.points[i];
-			const Vector3r normal = coordinates.out(point.frame.axes.row(0).transpose() * point.force[0]);
+			const Vector3r normal = normalOf(point) * point.force[0];
+			phys.normalForces[i] = point.force[0];
 			phys.forces[i] = coordinates.out(point.frame.axes.transpose() * point.force);
 			phys.normalForce += normal;
 			phys.shearForce += phys.forces[i] - normal;
