@@ -98,10 +98,8 @@ def _table(path):
     with open(path, encoding="utf-8-sig", errors="replace") as file:  # words may be of any encoding, numbers are not
         lines = [(number, line.strip()) for number, line in enumerate(file, 1) if line.strip() and line.lstrip()[0] not in "#%"]
     names = None
-    if lines and not _NUMBER.match(lines[0][1]):
+    if lines and not _NUMBER.fullmatch(re.split(r"[\s,]", lines[0][1])[0]):
         names = [name.strip(" \"'") for name in re.split(r"," if "," in lines[0][1] else r"\s+", lines[0][1])]
-    elif lines and not all(map(_NUMBER.fullmatch, _fields(lines[0][1]) or [""])) and len(lines) > 1:
-        names = [lines[0][1]]  # a title that begins with a number
     rows = [(number, line, _fields(line)) for number, line in (lines if names is None else lines[1:])]
     for number, line, fields in rows:
         if not fields or not all(map(_NUMBER.fullmatch, fields)) or len(fields) != len(rows[0][2]):
