@@ -235,7 +235,7 @@ def test_text_files_that_are_read(tmp_path, text, arguments):
 
 
 @pytest.mark.parametrize("text, arguments, words", [
-    ("0,00 1,5\n0,01 -2,0\n", {}, "line 1 is .*decimal points"), ("0,00;1,5\n0,01;-2,0\n", {}, "line 2 is .*decimal points"),
+    ("0,00 1,5\n0,01 -2,0\n", {}, "line 1 is .*decimal points"), ("0,00;1,5\n0,01;-2,0\n", {}, "line 1 is .*decimal points"),
     ("0,00\t1,5\n0,01\t-2,0\n", {}, "line 1 is .*decimal points"), ("1,25\n1,5\n2,125\n", {}, "line 2 is 0 s after"),
     ("t,x,a\n0,7,1\n.01,8,-2\n", {}, r"line 2 has 3 columns: columns=\(time, acceleration\) must say which.*'t', 'x', 'a'"),
     ("0,7,1\n.01,8,-2\n", dict(columns="a"), "columns = 'a': must be .*which has none"), ("0,7,1\n.01,8,-2\n", dict(columns=3), r"columns = 3: .*0 to 2"),
