@@ -191,3 +191,17 @@ def test_without_a_value_the_restitution_is_the_natural_one():
     found = masonry.simulate(block, initial_angle=0.1, half_cycles=2)
     given = masonry.simulate(block, initial_angle=0.1, half_cycles=2, restitution=1 - 1.5 * np.sin(np.arctan(0.2)) ** 2)
     np.testing.assert_allclose(found.peak_angles, given.peak_angles, rtol=1e-14)
+
+
+@pytest.mark.parametrize("restoring", ["exact", "linear", "constant"])
+def test_samples_after_overturning_are_nan(restoring):
+    alpha = np.arctan(0.2)
+    block = masonry.RockingBlock(0.1 * np.sin(alpha), 0.1 * np.cos(alpha))
+    motion = masonry.Record(0.02, 8 * np.random.default_rng(16).normal(size=50))
+    for t_end in (None, 2.0):
+        history = masonry.simulate(block, motion, restoring=restoring, t_end=t_end)
+        angle, velocity = history.sample(np.array([0.1, 0.6, 1.0, 1.5, 1e9, np.inf]))
+        assert history.overturned and abs(angle[0]) < np.pi / 2
+        assert np.all(np.isnan(angle[1:])) and np.all(np.isnan(velocity[1:]))
+    free = masonry.simulate(block, initial_angle=0.9 * alpha, initial_velocity=5.0, restoring=restoring)
+    assert np.isnan(free.sample([1e3, np.inf])[0]).all()

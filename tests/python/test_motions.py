@@ -168,3 +168,93 @@ def test_a_scaled_train_is_the_train_times_the_factor():
     t = np.linspace(0, 3, 7)
     for train in (masonry.PulseTrain(0.2, [0, 1, 2], assembly=True), masonry.PulseTrain(0.2, [0, 1, 2], shape="half-sine", duration=0.3)):
         np.testing.assert_allclose(train.scaled(3).velocity(t), 3 * train.velocity(t), rtol=1e-14)
+
+
+def test_records_have_a_unit_and_a_peak(recwarn):
+    block = masonry.RockingBlock(0.3, 1.5)
+    plain = masonry.Record(0.01, [0, -0.35, 0.2])
+    assert plain.peak == 0.35 and not plain.unit_given
+    for unit, factor in (("m/s^2", 1), ("cm/s^2", 0.01), ("mm/s^2", 0.001), ("g", 9.80665)):
+        record = masonry.Record(0.01, [0, -0.35, 0.2], unit=unit)
+        assert record.unit_given and record.peak == pytest.approx(factor * 0.35, rel=1e-15)
+        assert record.scaled(2).unit_given and record.scaled(-2).peak == pytest.approx(factor * 0.7, rel=1e-15)
+    assert masonry.Record(0.01, [0, 1], unit="g", gravity=10).peak == 10
+    assert masonry.Record(0.01, [0, 3], scale=[1, -2]).peak.tolist() == [3, 6]
+    for quiet in (masonry.Record(0.01, [0, -0.35], unit="g"), masonry.Record(0.01, [0, -0.09]), masonry.Record(0.01, [0, 1.6]), masonry.artificial_record(1, 1.0)):
+        masonry.simulate(block, quiet)
+    assert not recwarn.list
+    masonry.simulate(block, plain)
+    assert [str(warning.message) for warning in recwarn.list] == [
+        "The record has no unit and a peak of 0.35: is it in g? It is taken in m/s^2, 0.036 g. Give unit='g' or unit='m/s^2' to Record."]
+    with pytest.raises(ValueError, match="unit = 'gal': must be one of"):
+        masonry.Record(0.01, [0, 1], unit="gal")
+
+
+AT2 = "PEER\nA QUAKE\n{unit}\nNPTS= 2, DT= {dt}\n .5 -.25\n"
+
+
+@pytest.mark.parametrize("line, factor", [
+    ("ACCELERATION TIME SERIES IN UNITS OF G", 9.80665), ("ACCELERATION TIME HISTORY IN UNITS OF G.  FILTER POINTS: HP=0.1 Hz LP=20.0 Hz", 9.80665),
+    ("ACCELERATION (G)", 9.80665), ("Acceleration in g's", 9.80665), ("ACCELERATION TIME SERIES IN UNITS OF G/10", 0.980665), ("ACCELERATION, UNITS: %G", 0.0980665),
+    ("ACCELERATION IN UNITS OF % OF G", 0.0980665), ("ACCELERATION TIME SERIES IN UNITS OF CM/SEC/SEC", 0.01), ("ACCELERATION IN CM/S**2", 0.01),
+    ("ACCELERATION IN UNITS OF CM/SEC2", 0.01), ("ACCELERATION (GAL)", 0.01), ("ACCELERATION TIME SERIES IN UNITS OF M/S^2", 1), ("ACCELERATION (M/SEC^2)", 1),
+    ("ACCELERATION IN UNITS OF M/S/S", 1), ("ACCELERATION IN METERS", None), ("VELOCITY TIME SERIES IN UNITS OF CM/S", None), ("VELOCITY IN UNITS OF G", None),
+    ("DISPLACEMENT TIME SERIES IN UNITS OF CM", None), ("ACCELERATION IN UNITS OF G*1000", None), ("ACCELERATION IN UNITS OF CM/S^2 (NOT G)", None),
+    ("ACCELERATION IN UNITS OF G/20", None), ("ACCELERATION", None), ("", None)])
+def test_units_of_at2(tmp_path, line, factor):
+    path = tmp_path / "record.AT2"
+    path.write_text(AT2.format(unit=line, dt=".01 SEC"))
+    if factor:
+        np.testing.assert_allclose(masonry.Record.from_at2(path).samples, factor * np.array([0.5, -0.25]), rtol=1e-15)
+    else:
+        with pytest.raises(ValueError, match="line 3 is .*must state ACCELERATION in units of G, "):
+            masonry.Record.from_at2(path)
+
+
+@pytest.mark.parametrize("text, dt", [("5 MSEC", 0.005), ("5 ms,", 0.005), (".005 SEC", 0.005), (".005", 0.005), ("5 MIN", None), (".005 HZ", None), ("5 USEC", None)])
+def test_steps_of_at2(tmp_path, text, dt):
+    path = tmp_path / "record.AT2"
+    path.write_text(AT2.format(unit="ACCELERATION IN UNITS OF G", dt=text))
+    if dt:
+        assert masonry.Record.from_at2(path).dt == pytest.approx(dt, rel=1e-15)
+    else:
+        with pytest.raises(ValueError, match="line 4 is .*must give DT in SEC or MSEC"):
+            masonry.Record.from_at2(path)
+
+
+@pytest.mark.parametrize("text, arguments", [
+    ("0.00, 1.5D0\n0.01, -2.0D+0\n0.02, 3d0\n", {}), ("% matlab\n# numpy\n 0 1.5\n 0.01\t-2\n 0.02 3\n", {}),
+    ("t,x,a\n0,7,1.5\n.01,8,-2\n.02,9,3\n", dict(columns=("t", "a"))), ("t,x,a\n0,7,1.5\n.01,8,-2\n.02,9,3\n", dict(columns=[0, 2])),
+    ("t,x,a\n0,7,1.5\n.01,8,-2\n.02,9,3\n", dict(columns="a", dt=0.01)), ("0.00,1.5,\n0.01,-2,\n0.02,3,\n", {}), ("t (s), a\n0, 1.5\n1E-2, -2\n2E-2, 3\n", {})])
+def test_text_files_that_are_read(tmp_path, text, arguments):
+    path = tmp_path / "record.csv"
+    path.write_text(text)
+    record = masonry.Record.from_csv(path, "m/s^2", **arguments)
+    assert record.dt == pytest.approx(0.01, rel=1e-12)
+    np.testing.assert_array_equal(record.samples, [1.5, -2, 3])
+
+
+@pytest.mark.parametrize("text, arguments, words", [
+    ("0,00 1,5\n0,01 -2,0\n", {}, "line 1 is .*decimal points"), ("0,00;1,5\n0,01;-2,0\n", {}, "line 1 is .*decimal points"),
+    ("0,00\t1,5\n0,01\t-2,0\n", {}, "line 1 is .*decimal points"), ("1,25\n1,5\n2,125\n", {}, "line 2 is 0 s after"),
+    ("t,x,a\n0,7,1\n.01,8,-2\n", {}, r"line 2 has 3 columns: columns=\(time, acceleration\) must say which.*'t', 'x', 'a'"),
+    ("0,7,1\n.01,8,-2\n", dict(columns="a"), "columns = 'a': must be .*which has none"), ("0,7,1\n.01,8,-2\n", dict(columns=3), r"columns = 3: .*0 to 2"),
+    ("0,1\n.01,,2\n", {}, "line 2 is '.01,,2'"), ("0,nan\n.01,2\n", {}, "line 1 is '0,nan'"), ("0,1\n.01,nan\n", {}, "line 2 is '.01,nan'"), ("time,a\ns,g\n0,1\n.01,2\n", {}, "line 2 is 's,g'")])
+def test_text_files_that_are_refused(tmp_path, text, arguments, words):
+    path = tmp_path / "record.csv"
+    path.write_text(text)
+    with pytest.raises(ValueError, match=words) as refused:
+        masonry.Record.from_csv(path, "m/s^2", **arguments)
+    assert len(str(refused.value)) < 300 + len(str(path))
+
+
+# The times are those of equal steps, written with so many digits: the step is known to the last digit over their number.
+@pytest.mark.parametrize("step, form", [(1 / 256, "{:.3f}"), (1 / 300, "{:.4f}"), (0.01 / 3, "{:.6g}"), (1 / 128, "{:.5e}")])
+def test_rounded_times(tmp_path, step, form):
+    path = tmp_path / "record.csv"
+    times = [form.format(k * step) for k in range(20001)]
+    path.write_text("".join(f"{t},1\n" for t in times))
+    assert masonry.Record.from_csv(path, "m/s^2").dt == pytest.approx(step, rel=1e-4)
+    path.write_text("".join(f"{t},1\n" for t in times[:12000] + times[12001:]))
+    with pytest.raises(ValueError, match="line 12001 is .* s after"):
+        masonry.Record.from_csv(path, "m/s^2")

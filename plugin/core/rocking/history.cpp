@@ -10,6 +10,25 @@ namespace masonry {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr int mostImpacts = 1000000;
 
+namespace {
+// For root(): value and derivative, `above` is subtracted from the value.
+auto angleOf(const TaylorStep& step, double above = 0)
+{
+	return [&step, above](double s) {
+		const auto at = step.at(s);
+		return std::pair(at.angle - above, at.velocity);
+	};
+}
+
+auto velocityOf(const TaylorStep& step)
+{
+	return [&step](double s) {
+		const auto at = step.at(s);
+		return std::pair(at.velocity, at.acceleration);
+	};
+}
+} // namespace
+
 class HistoryRun {
 public:
 	HistoryRun(const RockingBlock& block, const HistoryOptions& options, const ResonantTrain* train)
@@ -35,7 +54,10 @@ private:
 	void impact(double time, double speed, bool free);
 	void jumpBase(double velocityJump);
 	void restAt(double since);
-	void overturn();
+	void fallFreely(const BaseMotion::Piece&);
+	// When the block reaches its lost angle, which it has reached `before` seconds after the step began.
+	double timeOfLoss(const TaylorStep& step, double before) const { return root(angleOf(step, law_.lostAngle()), 0, before, before); }
+	void overturn(double time);
 	void keepState();
 
 	bool atRest() const { return state_.side == 0; }
@@ -103,7 +125,7 @@ void HistoryRun::start()
 		take({side, std::abs(angle), side * velocity});
 		beginHalfCycle();
 		if (state_.angle >= law_.lostAngle())
-			overturn();
+			overturn(0);
 	}
 	if (train_) {
 		history_.motion.appendPulse(0, train_->impulse);
@@ -119,7 +141,7 @@ void HistoryRun::followPiece(const BaseMotion::Piece& piece, double until)
 			return;
 		if (piece.isFree() && until == infinity) {
 			if (cannotReturn())
-				return overturn();
+				return fallFreely(piece);
 			if (options_.onlyOverturning && impacts() >= lastJump_)
 				done_ = true;
 		}
@@ -188,14 +210,8 @@ void HistoryRun::flyForced(const BaseMotion::Piece& piece, double until)
 		const TaylorStep step(law_, state_, piece, time_, std::min(until - time_, 2 / law_.p));
 		const double length = step.length();
 		const auto end = step.at(length);
-		const auto angle = [&step](double s) {
-			const auto at = step.at(s);
-			return std::pair(at.angle, at.velocity);
-		};
-		const auto velocity = [&step](double s) {
-			const auto at = step.at(s);
-			return std::pair(at.velocity, at.acceleration);
-		};
+		const auto angle = angleOf(step);
+		const auto velocity = velocityOf(step);
 
 		double above = 0, below = end.angle <= 0 ? length : 0; // a bracket of the impact, if there is one
 		double landing = below;                                // about where
@@ -207,7 +223,7 @@ void HistoryRun::flyForced(const BaseMotion::Piece& piece, double until)
 			above = root(velocity, rising, length, rising + (length - rising) * speed / (speed - end.velocity));
 			notePeak(step.at(above).angle, time_ + above);
 			if (peakAngle_ >= law_.lostAngle())
-				return overturn();
+				return overturn(time_ + timeOfLoss(step, above));
 			if (state_.angle == 0)
 				landing = std::min(2 * above, below);
 		} else if (step.firstChange() < 0 && end.velocity > 0) {
@@ -219,10 +235,36 @@ void HistoryRun::flyForced(const BaseMotion::Piece& piece, double until)
 			const double s = root(angle, above, below, landing);
 			return impact(std::max(time_ + s, std::nextafter(time_, infinity)), -step.at(s).velocity, piece.isFree());
 		}
+		if (end.angle >= law_.lostAngle())
+			return overturn(time_ + timeOfLoss(step, length));
 		time_ = length == until - time_ ? until : time_ + length;
 		take({side, end.angle, end.velocity});
+	}
+}
+
+// Follows a block that cannot return until it lies on its side. Where round-off lets it turn back short of the critical angle, or pass that
+// inwards, it cannot be told from one that ends in balance there.
+void HistoryRun::fallFreely(const BaseMotion::Piece& piece)
+{
+	const bool beyond = state_.angle >= law_.alpha;
+	history_.overturnHalfCycle = impacts() + 1;
+	done_ = true;
+	while (options_.keepStates) {
+		if (state_.angle >= law_.lostAngle())
+			return overturn(time_);
+		keepState();
+		const TaylorStep step(law_, state_, piece, time_, 2 / law_.p);
+		if (step.firstChange() == 0)
+			return; // in balance
+		const auto velocity = velocityOf(step);
+		const bool turns = !beyond && velocity(step.length()).first < 0;
+		const double length = turns ? root(velocity, 0, step.length(), step.length()) : step.length();
+		const auto end = step.at(length);
 		if (end.angle >= law_.lostAngle())
-			return overturn();
+			return overturn(time_ + timeOfLoss(step, length));
+		time_ += length;
+		const bool balanced = turns || (beyond && end.angle < law_.alpha);
+		take(balanced ? RockingState {state_.side, law_.alpha, 0} : RockingState {state_.side, end.angle, end.velocity});
 	}
 }
 
@@ -300,9 +342,10 @@ void HistoryRun::restAt(double since)
 	keepState();
 }
 
-void HistoryRun::overturn()
+void HistoryRun::overturn(double time)
 {
 	history_.overturnHalfCycle = impacts() + 1;
+	history_.lostTime_ = time_ = time;
 	done_ = true;
 }
 
@@ -316,7 +359,7 @@ std::pair<double, double> History::sample(double t) const
 {
 	constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 	const auto next = std::upper_bound(knots_.begin(), knots_.end(), t, [](double time, const Knot& knot) { return time < knot.time; });
-	if (next == knots_.begin() || !(t <= endTime))
+	if (next == knots_.begin() || !(t <= endTime) || (overturned() && t >= lostTime_))
 		return {nan, nan};
 	const Knot& knot = *(next - 1);
 	const RockingLaw& law = *law_;
@@ -324,14 +367,14 @@ std::pair<double, double> History::sample(double t) const
 	RockingState state = knot.state;
 	if (state.side == 0)
 		return {0, 0};
-	for (double time = knot.time; time < t && state.angle < law.lostAngle();) {
+	for (double time = knot.time; time < t;) {
 		const TaylorStep step(law, state, piece, time, std::min(t - time, 2 / law.p));
+		if (step.firstChange() == 0)
+			break; // in balance
 		time = step.length() == t - time ? t : time + step.length();
 		const auto end = step.at(step.length());
 		state = {state.side, end.angle, end.velocity};
 	}
-	if (!(state.angle < law.lostAngle()))
-		return {nan, nan};
 	return {state.side * state.angle, state.side * state.velocity};
 }
 

@@ -65,6 +65,7 @@ private:
 		RockingState state;
 	};
 	std::vector<Knot> knots_;
+	double lostTime_ {std::numeric_limits<double>::infinity()}; // s, when the overturned block reaches its lost angle
 	std::optional<RockingLaw> law_;
 };
 

@@ -37,7 +37,7 @@ def artificial_record(seed, peak, duration=10.0, dt=0.01, frequency=2.5, damping
     share = np.linspace(0, 1, count)
     samples = samples * np.select([share < 0.2, share < 0.6], [(share / 0.2)**2, 1.0], np.exp(math.log(0.05) * (share - 0.6) / 0.4))
     samples = samples - np.trapz(samples) / (count - 1)  # what the baseline would take off
-    return Record(dt, peak / np.abs(samples).max() * samples, baseline="constant", name=f"artificial, seed {seed}")
+    return Record(dt, peak / np.abs(samples).max() * samples, baseline="constant", name=f"artificial, seed {seed}", unit="m/s^2")
 
 
 def power(f, frequency, damping, cutoff):

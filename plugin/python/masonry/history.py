@@ -1,11 +1,13 @@
 """Exact histories of rocking blocks."""
 
+import warnings
+
 import numpy as np
 
 from . import _core
 from ._arrays import columns, restore, shape_of
 from ._given import whole_given
-from .motions import Motion, Still
+from .motions import Motion, Record, Still
 
 
 class History:
@@ -66,4 +68,6 @@ def simulate(block, motion=None, restitution=None, restoring="exact", initial_an
     or overturned. A block is overturned when it cannot come back (free), lies on its side (moved base), or has reached the
     critical angle (constant moment)."""
     shape, arguments = _arguments(block, motion, restitution, restoring, initial_angle, initial_velocity, t_end, half_cycles)
+    if isinstance(motion, Record) and motion.doubt():
+        warnings.warn(motion.doubt(), stacklevel=2)
     return History(shape, arguments, _core.simulate(*arguments))

@@ -10,7 +10,7 @@ import numpy as np
 from . import _core
 from ._given import array_given, number_given, positive_given, whole_given
 from ._arrays import columns, restore, shape_of
-from ._readers import read_at2, read_csv
+from ._readers import STANDARD_GRAVITY, read_at2, read_csv, unit_factor
 
 
 class Motion:
@@ -131,16 +131,21 @@ class Sine(_Shaped):
 
 
 class Record(Motion):
-    """Accelerogram: `scale` times the accelerations (m/s^2), `dt` (s) apart, the first at t = 0, linear between them, zero after the last.
+    """Accelerogram: `scale` times the accelerations, `dt` (s) apart, the first at t = 0, linear between them, zero after the last.
     Velocity and displacement are its exact integrals. `scale` may be an array: one case each. In YADE: dem.record_motion(record, ids).
 
     baseline: 'none'; 'constant': the mean acceleration is subtracted, so that the last velocity is zero; 'linear': the slope
     of the straight line through the origin that fits the velocity best (least squares) is subtracted.
+    unit: of the accelerations: 'm/s^2', 'cm/s^2', 'mm/s^2' or 'g' (that is `gravity`, m/s^2: the standard one, whatever the blocks weigh).
+    None: m/s^2, and a run under a record whose peak is 0.1 to 1.5 asks whether it is in g.
     """
 
-    def __init__(self, dt, acceleration, scale=1.0, baseline="none", name=""):
+    def __init__(self, dt, acceleration, scale=1.0, baseline="none", name="", unit=None, gravity=STANDARD_GRAVITY):
         self.dt = float(number_given("dt", dt))
         self._unscaled = np.ascontiguousarray(array_given("acceleration", acceleration))
+        if unit != "m/s^2" and unit is not None:
+            self._unscaled = unit_factor(unit, gravity) * self._unscaled
+        self.unit_given = unit is not None
         if self._unscaled.ndim != 1:
             raise ValueError(f"acceleration has the shape {self._unscaled.shape}: must be one row of samples, at least two")
         array_given("scale", scale)
@@ -158,12 +163,25 @@ class Record(Motion):
         return samples
 
     @property
+    def peak(self):
+        """The largest of the samples, without sign, m/s^2: the shape of `scale`."""
+        return restore(np.abs(np.ravel(self.scale)) * np.abs(self._unscaled).max(), self.shape)
+
+    @property
     def duration(self):
         """Time of the last sample, s."""
         return self.dt * (len(self._unscaled) - 1)
 
     def scaled(self, factor):
-        return Record(self.dt, self._unscaled, np.multiply(self.scale, factor), self.baseline, self.name)
+        return Record(self.dt, self._unscaled, np.multiply(self.scale, factor), self.baseline, self.name, "m/s^2" if self.unit_given else None)
+
+    def doubt(self):
+        """A sentence that asks whether the record is in g, where it has no unit and its peak is one of strong motion in g; else ''."""
+        peak = np.max(self.peak)
+        if self.unit_given or not 0.1 <= peak <= 1.5:
+            return ""
+        return (f"The record{' ' + repr(self.name[:60]) if self.name else ''} has no unit and a peak of {peak:.3g}: is it in g? It is taken in m/s^2, "
+                f"{peak / STANDARD_GRAVITY:.2g} g. Give unit='g' or unit='m/s^2' to Record.")
 
     def _motions(self, shape):
         scale, = columns(shape if np.ndim(self.scale) else (), self.scale)
@@ -174,15 +192,20 @@ class Record(Motion):
                 f"at most {np.abs(self.samples).max():.3g} m/s^2, baseline={self.baseline!r})")
 
     @classmethod
-    def from_at2(cls, path, scale=1.0, baseline="none", gravity=9.80665):
-        """PEER NGA file (.AT2), accelerations in units of `gravity` (m/s^2): the standard one, whatever the blocks weigh (9.81 elsewhere)."""
+    def from_at2(cls, path, scale=1.0, baseline="none", gravity=STANDARD_GRAVITY):
+        """PEER NGA file (.AT2). The unit is the one that line 3 states: G (that is `gravity`, m/s^2: the standard one, whatever the blocks weigh,
+        9.81 elsewhere), G/10, %G, CM/S^2, GAL or M/S^2; DT is in SEC or MSEC. Another unit, a velocity or a displacement is refused."""
         positive_given("gravity", gravity, ", in m/s^2")
-        name, dt, samples = read_at2(path)
-        return cls(dt, gravity * samples, scale, baseline, name=name)
+        name, dt, samples = read_at2(path, gravity)
+        return cls(dt, samples, scale, baseline, name=name, unit="m/s^2")
 
     @classmethod
-    def from_csv(cls, path, unit, dt=None, scale=1.0, baseline="none", gravity=9.80665):
+    def from_csv(cls, path, unit, dt=None, scale=1.0, baseline="none", gravity=STANDARD_GRAVITY, columns=None):
         """Columns time, acceleration; or one column of acceleration with `dt` (s). unit: 'm/s^2', 'cm/s^2', 'mm/s^2' or 'g' (that is
-        `gravity`, m/s^2: the standard one, whatever the blocks weigh, 9.81 elsewhere)."""
-        dt, samples = read_csv(path, unit, dt, gravity)
-        return cls(dt, samples, scale, baseline, name=str(path))
+        `gravity`, m/s^2: the standard one, whatever the blocks weigh, 9.81 elsewhere).
+
+        columns: which ones of a file with more, (time, acceleration) or acceleration, by number (from 0) or by their names in the first line.
+        Columns are parted by commas or by blanks, numbers have decimal points and may have Fortran's exponents (1.2D-3). Lines that start with
+        # or % and one first line of words are skipped. Times may be rounded to their last digit."""
+        dt, samples = read_csv(path, unit, dt, gravity, columns)
+        return cls(dt, samples, scale, baseline, name=str(path), unit="m/s^2")

@@ -233,3 +233,68 @@ TEST_CASE("short finite pulses tend to the Dirac pulse")
 		error = now;
 	}
 }
+
+// Invariant: the block lies on its side once it has reached the lost angle, and every sample up to then is a tilt. The angle just before is
+// within the last step's travel of the lost angle.
+TEST_CASE("samples end when the overturned block lies on its side, for every restoring law")
+{
+	const double infinity = std::numeric_limits<double>::infinity();
+	for (const Restoring restoring : {Restoring::Constant, Restoring::Linear, Restoring::Exact})
+		for (const double endTime : {30.0, infinity})
+			for (const unsigned seed : {1u, 2u, 3u, 16u}) {
+				const RockingBlock block(0.02, 0.1);
+				HistoryOptions options = with(0.9, restoring);
+				options.endTime = endTime;
+				options.keepStates = true;
+				const auto motion = motion::record(0.02, oracle::ArtificialRecord(seed, 2 * block.gravity, 100, 0.02).samples);
+				const auto history = simulate(block, motion, options);
+				CAPTURE(int(restoring), endTime, seed);
+				REQUIRE(history.overturned());
+				const double lost = RockingLaw(block, restoring).lostAngle();
+				double fallen = infinity, last = 0;
+				for (int i = 0; i <= 30000; i++) {
+					const double angle = history.sample(1e-3 * i).first;
+					if (std::isnan(angle)) {
+						fallen = std::min(fallen, 1e-3 * i);
+						continue;
+					}
+					REQUIRE(1e-3 * i < fallen);
+					REQUIRE(std::abs(angle) < lost);
+					last = std::abs(angle);
+				}
+				REQUIRE(fallen < 10);
+				REQUIRE(last > 0.9 * lost);
+				for (const double t : {fallen, 1e3, 1e300, infinity})
+					REQUIRE(std::isnan(history.sample(t).first));
+			}
+}
+
+// A block on its separatrix ends in balance on its edge, where round-off may decide: samples never leave [0, pi/2) and never turn back.
+TEST_CASE("samples of a block that is released in balance or on its separatrix")
+{
+	const RockingBlock block(0.3, 1.5);
+	for (const Restoring restoring : {Restoring::Constant, Restoring::Linear, Restoring::Exact})
+		for (const double share : {0.0, 0.3, 0.999, 1.0, 1.2})
+			for (const double factor : {-1.0, -1 + 1e-15, 1.0, 1 + 1e-15, 1.5}) {
+				const double alpha = block.criticalAngle, angle = share * alpha, phi = alpha - angle, p = block.frequencyParameter;
+				const double speed = restoring == Restoring::Constant ? p * std::sqrt(2 * std::max(0.0, phi) * std::sin(alpha))
+				                     : restoring == Restoring::Linear ? p * std::abs(phi)
+				                                                      : 2 * p * std::abs(std::sin(phi / 2));
+				HistoryOptions options = with(0.9, restoring);
+				options.initialAngle = angle;
+				options.initialVelocity = factor * speed;
+				options.keepStates = true;
+				const auto history = simulate(block, BaseMotion(), options);
+				CAPTURE(int(restoring), share, factor);
+				if (!history.overturned())
+					continue;
+				for (const double t : {0.1, 1.0, 7.0, 20.0, 100.0, 1e6, 1e300}) {
+					const double tilt = history.sample(t).first;
+					if (!std::isnan(tilt))
+						REQUIRE((std::abs(tilt) >= std::min(angle, alpha) * (1 - 1e-12) || factor < 0));
+					if (!std::isnan(tilt))
+						REQUIRE(std::abs(tilt) < std::asin(1));
+				}
+				REQUIRE(std::isnan(history.sample(std::numeric_limits<double>::infinity()).first));
+			}
+}
