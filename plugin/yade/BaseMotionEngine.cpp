@@ -29,6 +29,8 @@ string inShort(const string& value) { return value.size() <= 60 ? value : value.
 
 vector<BaseJump> BaseMotionEngine::takeJumps(Real, const vector<StepImpact>&) { return {}; }
 
+Real BaseMotionEngine::end() const { return std::numeric_limits<Real>::infinity(); }
+
 Real BaseMotionEngine::nextKink(Real, Real) const { return std::numeric_limits<Real>::infinity(); }
 
 void BaseMotionEngine::check() const

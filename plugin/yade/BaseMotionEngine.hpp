@@ -35,6 +35,9 @@ public:
 	/// Mean velocity over [from, to].
 	virtual Real meanVelocity(Real from, Real to) const { return (displacement(to) - displacement(from)) / (to - from); }
 
+	/// Instant of the scene at which the motion is over [s]; infinity where it goes on for ever, or its end is not known yet.
+	virtual Real end() const;
+
 	/// First instant in (after, until) at which velocity or acceleration jumps, as far as it is known by now; else infinity.
 	virtual Real nextKink(Real after, Real until) const;
 
@@ -81,6 +84,7 @@ public:
 		((Real, start, 0, Attr::triggerPostLoad, "Time at which the motion begins [s]; from then on its attributes cannot be changed. In a run that has gone on already: start=O.time."))
 		((vector<Vector3r>, origins, , Attr::readonly, "Positions of the bodies without the displacement of this motion [m].")),
 		/* ctor */,
+		.add_property("end", &BaseMotionEngine::end, "Time at which the motion is over [s]; infinite where it goes on for ever, or its end is not known yet (a resonant train).")
 		.def("check", &BaseMotionEngine::checkNow, "Raises ValueError unless the attributes are complete and every body of ids exists and is prescribed; done before the first step.")
 	);
 	// clang-format on

@@ -75,6 +75,12 @@ Real PulseTrainEngine::velocity(Real t) const
 
 Real PulseTrainEngine::acceleration(Real t) const { return acting(t, &masonry::UnitPulse::acceleration); }
 
+Real PulseTrainEngine::end() const
+{
+	const bool over = resonant() ? halfCycles > 0 && int(pulseTimes.size()) > halfCycles : !times.empty();
+	return over ? start + (resonant() ? pulseTimes : times).back() + duration : BaseMotionEngine::end();
+}
+
 Real PulseTrainEngine::nextKink(Real after, Real until) const
 {
 	Real first = until;

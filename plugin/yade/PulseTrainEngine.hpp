@@ -14,6 +14,7 @@ public:
 	Real velocity(Real) const override;
 	Real acceleration(Real) const override;
 	Real meanVelocity(Real from, Real to) const override;
+	Real end() const override;
 	Real nextKink(Real after, Real until) const override;
 	vector<BaseJump> takeJumps(Real now, const vector<StepImpact>& impacts) override;
 	bool ordered() const override { return true; }

@@ -31,6 +31,8 @@ void RecordMotionEngine::postLoad(RecordMotionEngine&)
 		motion = masonry::motion::record(interval, samples, scale, masonry::motion::baselineFromName(baseline));
 }
 
+Real RecordMotionEngine::end() const { return samples.empty() ? BaseMotionEngine::end() : start + interval * Real(samples.size() - 1); }
+
 Real RecordMotionEngine::nextKink(Real after, Real until) const
 {
 	for (Real end : {Real(0), interval * Real(samples.size() - 1)})

@@ -12,6 +12,7 @@ public:
 	Real displacement(Real t) const override { return motion.displacement(t); }
 	Real velocity(Real t) const override { return motion.velocity(t); }
 	Real acceleration(Real t) const override { return motion.acceleration(t); }
+	Real end() const override;
 	Real nextKink(Real after, Real until) const override;
 	/// Throws std::invalid_argument naming attribute, value and allowed range.
 	void postLoad(RecordMotionEngine&);

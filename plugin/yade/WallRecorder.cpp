@@ -1,4 +1,5 @@
 #include "WallRecorder.hpp"
+#include "BaseMotionEngine.hpp"
 #include "BlockMat.hpp"
 #include "MoreauJeanIntegrator.hpp"
 #include "RockingJointEngine.hpp"
@@ -73,6 +74,20 @@ void WallRecorder::addEnergies()
 	add(energies, friction, dashpots, impacts, work);
 }
 
+void WallRecorder::addMotions()
+{
+	const auto add = [this](const shared_ptr<Engine>& engine) {
+		if (dynamic_cast<BaseMotionEngine*>(engine.get()) && !engine->dead &&
+		    std::find(motions.begin(), motions.end(), engine) == motions.end())
+			motions.push_back(engine);
+	};
+	for (const auto& engine : scene->engines) {
+		add(engine);
+		if (const auto* rigid = dynamic_cast<MoreauJeanIntegrator*>(engine.get()); rigid && !rigid->dead)
+			std::for_each(rigid->motions.begin(), rigid->motions.end(), add);
+	}
+}
+
 void WallRecorder::action()
 {
 	if (times.empty())
@@ -82,6 +97,7 @@ void WallRecorder::action()
 	bodies.begin(*scene, ids, [&](size_t k) { return !times.empty() && std::isnan(poses[poses.size() - poseNumbers * (ids.size() - k)]); });
 	times.push_back(scene->time);
 	addEnergies();
+	addMotions();
 	for (size_t k = 0; k < ids.size(); ++k) {
 		const Body* body = bodies.find(*scene, ids, k);
 		if (!body) {

@@ -23,6 +23,7 @@ public:
 		((vector<Real>, times, , Attr::readonly, "Times of the samples [s]."))
 		((vector<Real>, blocks, , Attr::readonly, "At the first sample, block by block: half sizes x, y, z [m], 1 for a free block or 0."))
 		((vector<Real>, energies, , Attr::readonly, "Sample by sample: kinetic, potential, elastPotential, frictDissip, dampDissip, impactDissip, baseWork, as dem.energy() [J]; NaN without an engine of the joints. Of several lists of engines, one after the other, what was dissipated and done is summed up."))
+		((vector<shared_ptr<Engine>>, motions, , Attr::readonly, "Motion engines that have moved bodies while it recorded."))
 		((vector<shared_ptr<Engine>>, integrators, , Attr::hidden, ""))
 		((vector<Real>, poses, , Attr::hidden, "")),
 		initRun = true;,
@@ -32,6 +33,7 @@ public:
 private:
 	void begin();
 	void addEnergies();
+	void addMotions();
 
 	RecordedBodies bodies;
 };

@@ -547,3 +547,35 @@ def test_an_excursion_may_be_first_exceeded_after_collapse():
 def test_bases_that_touch_have_no_joint():
     h = history([[2, 2, 0.2], [2, 2, 0.2], [1, 1, 1]], [[[0, 0, -0.3], [0, 0, -0.1], [0, 0, 0.5]]], free=[False, False, True])
     assert [(j["id1"], j["id2"]) for j in results.joints(h)] == [(11, 12)]
+
+
+def test_a_report_says_how_much_of_the_motion_has_been_run(tmp_path):
+    """Samples at 0, 0.5, 1 s; the motion lasts from `start` to `last`; the run has come to `end`."""
+    def upright(**given):
+        return history([[2, 2, 0.2], [0.6, 0.5, 2]], [[[0, 0, -0.1], [0, 0, 1.0]]] * 3, **given)
+
+    for motion, end, share, verdict, words in (
+            ((0, 10), None, 0.1, "unfinished", "1 of 10 s of the motion"), ((0.5, 10.5), 1.43, 0.093, "unfinished", "0.93 of 10 s of the motion"),
+            ((0, 10), 9.98, 0.998, "unfinished", "9.98 of 10 s"), ((0, 10), 9.9995, 1, "stands", "all 10 s of the motion"), ((0, 10), 12, 1, "stands", "all 10 s"),
+            ((0, math.inf), 5, 0, "unfinished", "5 s of a motion without a known end"), ((math.nan, math.nan), 5, 1, "stands", "until 5 s, without a motion"),
+            ((20, 30), 5, 0, "unfinished", "0 of 10 s"), (None, None, math.nan, "unknown", "not known")):
+        report = results.collapse(upright(motion=motion, end=end))
+        assert np.isclose(report.motion_run, share, rtol=1e-12, equal_nan=True) and report.verdict == verdict, (motion, end)
+        assert words in str(report) and ("stands: " in str(report)) == (verdict == "stands"), str(report)
+        assert np.isclose(report.numbers()["motion_run"], share, rtol=1e-12, equal_nan=True)
+    # A file has it; one without it does not say.
+    path = tmp_path / "wall.npz"
+    upright(motion=(0, 10), end=1.5).save(path)
+    loaded = results.WallHistory.load(path)
+    assert loaded.motion.tolist() == [0, 10] and loaded.end == 1.5
+    with np.load(path) as file:
+        np.savez(path, **{name: file[name] for name in file.files if name not in ("motion", "end")})
+    old = results.WallHistory.load(path)
+    assert old.motion is None and old.end == 1.0 and results.collapse(old).verdict == "unknown"
+    upright().save(path)
+    assert results.WallHistory.load(path).motion is None
+    fallen = history([[2, 2, 0.2], [0.6, 0.5, 2]], [[[0, 0, -0.1], [0, 0, z]] for z in (1.0, -0.2)], motion=(0, 10))
+    assert results.collapse(fallen).verdict == "collapsed" and "0.5 of 10 s" in str(results.collapse(fallen))
+    for given in ({"motion": [1, 2, 3]}, {"end": 0.9}, {"end": math.nan}):
+        with pytest.raises(ValueError, match=next(iter(given))):
+            upright(**given)

@@ -2,7 +2,7 @@
 
 import numpy as np
 from masonry.results import WallHistory
-from yade import wrapper
+from yade import O, wrapper
 
 
 def wall_history(recorder):
@@ -14,5 +14,9 @@ def wall_history(recorder):
         raise ValueError("recorder: has recorded nothing yet: give it to dem.engines(recorder=...) and run")
     blocks = np.array(recorder.blocks).reshape(-1, 4)
     poses = np.frombuffer(recorder.posesAsBytes()).reshape(len(recorder.times), -1, 7)
+    motions = [motion for motion in recorder.motions if not motion.dead]
+    motion = (min(m.start for m in motions), max(m.end for m in motions)) if motions else (np.nan, np.nan)
+    # The last sample is up to a period older than the run, whose time is O.time while the recorder takes part in it.
+    end = max(O.time, recorder.times[-1]) if recorder in O.engines else None
     return WallHistory(recorder.times, recorder.ids, 2 * blocks[:, :3], blocks[:, 3] > 0, poses[..., :3], poses[..., 3:],
-                       np.array(recorder.energies).reshape(len(recorder.times), -1))
+                       np.array(recorder.energies).reshape(len(recorder.times), -1), motion, end)

@@ -22,6 +22,8 @@ class CollapseReport:
     residual_drift     in the last sample, also after collapse
     excursion          the level of the drift that was asked for
     first_excursion    when the drift first reached it, also after collapse; NaN: never
+    motion_run         share of the motion that has been run, WallHistory.motion_run: below 1, nobody knows yet whether the structure stands
+    run                the same in words
     from_base          False: the history has no prescribed block; drifts and falls are then those in the world
     """
 
@@ -36,10 +38,21 @@ class CollapseReport:
     excursion: float
     first_excursion: float
     from_base: bool
+    motion_run: float
+    run: str
+
+    @property
+    def verdict(self):
+        """'collapsed'; 'stands': not, and the motion is over; 'unfinished': not yet, and the motion goes on; 'unknown': not by the end of a history
+        that does not say how long the motion lasts."""
+        if self.collapsed:
+            return "collapsed"
+        return "unknown" if math.isnan(self.motion_run) else "unfinished" if self.motion_run < 1 else "stands"
 
     def __str__(self):
-        fate = f"collapsed at {self.time:.4g} s: {len(self.fallen)} of {self.free} blocks have fallen" if self.collapsed else \
-            f"stands: {len(self.fallen)} of {self.free} blocks have fallen"
+        fate = {"collapsed": f"collapsed at {self.time:.4g} s", "stands": "stands", "unknown": "stands in the last sample",
+                "unfinished": "NOT FINISHED, no collapse so far"}[self.verdict]
+        fate += f": {len(self.fallen)} of {self.free} blocks have fallen; {self.run}"
         first = "never" if math.isnan(self.first_excursion) else f"first at {self.first_excursion:.4g} s"
         return (f"{fate}\npeak drift {'before collapse ' if self.collapsed else ''}{self.peak_drift:.3g} of the height, at {self.peak_drift_time:.4g} s; "
                 f"{self.residual_drift:.3g} at the end\n"
@@ -48,9 +61,9 @@ class CollapseReport:
 
     def numbers(self):
         """A dict of plain numbers, for tables: collapsed, collapse_time, fallen (how many), peak_drift, peak_drift_time, residual_drift,
-        first_excursion."""
+        first_excursion, motion_run (where it is below 1 and collapsed is False, the answer is not known yet)."""
         return {"collapsed": self.collapsed, "collapse_time": self.time, "fallen": len(self.fallen), "peak_drift": self.peak_drift,
-                "peak_drift_time": self.peak_drift_time, "residual_drift": self.residual_drift, "first_excursion": self.first_excursion}
+                "peak_drift_time": self.peak_drift_time, "residual_drift": self.residual_drift, "first_excursion": self.first_excursion, "motion_run": self.motion_run}
 
 
 def fallen(history):
@@ -100,4 +113,4 @@ def collapse(history, blocks=1, excursion=0.01):
     beyond = np.flatnonzero(drift >= excursion)
     return CollapseReport(collapsed, float(times[int(blocks) - 1]) if collapsed else math.nan, history.ids[rows[order]], times, free, float(drift[peak]),
                           float(history.time[peak]), float(drift[-1]), excursion, float(history.time[beyond[0]]) if len(beyond) else math.nan,
-                          history.base is not None)
+                          history.base is not None, history.motion_run, history.run_in_words())

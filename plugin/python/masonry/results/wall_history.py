@@ -9,6 +9,10 @@ from masonry._given import number_given
 
 ENERGIES = ("kinetic", "potential", "elastPotential", "frictDissip", "dampDissip", "impactDissip", "baseWork")
 _SAVED = ("time", "ids", "sizes", "free", "position", "orientation", "energies")
+# What files have that know how long the motion of the base lasts.
+_OPTIONAL = ("motion", "end")
+# Share of the motion that may be missing from a run to its end, whose last step or sample may come a little earlier.
+_FINISHED = 1e-3
 
 
 class WallHistory:
@@ -21,6 +25,9 @@ class WallHistory:
     position       (s, n, 3) of the centres, m
     orientation    (s, n, 4) quaternions w, x, y, z
     energies       (s, 7) kinetic, potential, elastPotential, frictDissip, dampDissip, impactDissip, baseWork, J; None: not recorded
+    motion         (2,) s: when the motion of the base begins and ends (infinite: its end is not known); NaN: it has none; None: not known, as in files
+                   that do not say it
+    end            s: how far the run has come; None: to the last sample
 
     Displacements and rotations are relative to the base, which is the first prescribed block, and to the first sample. Without
     a prescribed block they are those in the world; a base that is erased counts as staying where it was. dem.wall_history(recorder) makes one;
@@ -28,22 +35,28 @@ class WallHistory:
     Raises ValueError when shapes do not fit, times do not increase or a block that is there at first is nowhere.
     """
 
-    def __init__(self, time, ids, sizes, free, position, orientation, energies=None):
+    def __init__(self, time, ids, sizes, free, position, orientation, energies=None, motion=None, end=None):
         self.time, self.ids, self.sizes = np.asarray(time, dtype=float), np.asarray(ids, dtype=int), np.asarray(sizes, dtype=float)
         self.free, self.position, self.orientation = np.asarray(free, dtype=bool), np.asarray(position, dtype=float), np.asarray(orientation, dtype=float)
         samples, blocks = len(self.time), len(self.ids)
         self._energies = np.full((samples, len(ENERGIES)), np.nan) if energies is None else np.asarray(energies, dtype=float)
+        self.motion = None if motion is None else np.asarray(motion, dtype=float)
         shapes = {"sizes": (blocks, 3), "free": (blocks,), "position": (samples, blocks, 3), "orientation": (samples, blocks, 4),
                   "_energies": (samples, len(ENERGIES))}
         for name, shape in shapes.items():
             if getattr(self, name).shape != shape:
                 raise ValueError(f"{name.strip('_')} has the shape {getattr(self, name).shape}: must be {shape} for {samples} times and {blocks} ids")
+        if self.motion is not None and self.motion.shape != (2,):
+            raise ValueError(f"motion = {motion!r}: must be two times, of its begin and its end, or None")
         if samples == 0 or not self.free.any():
             raise ValueError(f"{samples} samples of {int(self.free.sum())} free blocks: there must be at least one of each")
         if not (np.diff(self.time) > 0).all():
             raise ValueError(f"time: must increase, and does not after {self.time[:-1][~(np.diff(self.time) > 0)][0]:g} s: record each run with a recorder of its own")
         if not (np.isfinite(self.position[0]).all() and np.isfinite(self.orientation[0]).all()):
             raise ValueError("position, orientation: must be finite in the first sample")
+        self.end = float(self.time[-1] if end is None else end)
+        if not self.end >= self.time[-1]:
+            raise ValueError(f"end = {end}: must not come before the last sample, at {self.time[-1]:g} s")
 
     def __repr__(self):
         return f"WallHistory({len(self.ids)} blocks, {self.time[0]:g} to {self.time[-1]:g} s, {len(self.time)} samples)"
@@ -52,14 +65,15 @@ class WallHistory:
         """Writes a compressed .npz file, which WallHistory.load reads back bit by bit."""
         if not str(path).endswith(".npz"):
             raise ValueError(f"path = {path}: must end in .npz")
-        np.savez_compressed(path, **{name: getattr(self, "_energies" if name == "energies" else name) for name in _SAVED})
+        names = [name for name in (*_SAVED, *_OPTIONAL) if name != "motion" or self.motion is not None]
+        np.savez_compressed(path, **{name: getattr(self, "_energies" if name == "energies" else name) for name in names})
 
     @classmethod
     def load(cls, path):
         """The WallHistory of a file that save() has written."""
         try:
             with np.load(path) as file:
-                found = {name: file[name] for name in _SAVED if name in file.files}
+                found = {name: file[name] for name in (*_SAVED, *_OPTIONAL) if name in file.files}
         except OSError:
             raise
         except Exception as error:  # whatever zipfile, zlib and NumPy say of another file, or of one that was cut off
@@ -92,6 +106,29 @@ class WallHistory:
         if not self.time[0] <= number_given(name, time) <= self.time[-1]:
             raise ValueError(f"{name} = {time}: must be from {self.time[0]:g} to {self.time[-1]:g} s")
         return int(np.abs(self.time - time).argmin())
+
+    @property
+    def motion_run(self):
+        """Share of the motion of the base that has been run, 0 to 1; 1 where there is none, 0 where it has no end, NaN where it is not known."""
+        if self.motion is None:
+            return np.nan
+        start, end = self.motion.tolist()
+        if np.isnan(end):
+            return 1.0
+        lasts, run = end - start, min(self.end, end) - start
+        return 1.0 if run >= (1 - _FINISHED) * lasts else max(0.0, run / lasts)
+
+    def run_in_words(self):
+        """How much of the motion of the base has been run, as a report says it."""
+        if self.motion is None:
+            return f"run until {self.end:.4g} s; whether the motion was over by then is not known"
+        start, end = self.motion.tolist()
+        if np.isnan(end):
+            return f"run until {self.end:.4g} s, without a motion"
+        run = max(0.0, min(self.end, end) - start)
+        if np.isinf(end):
+            return f"{run:.4g} s of a motion without a known end have been run"
+        return f"all {end - start:.4g} s of the motion have been run" if self.motion_run == 1 else f"{run:.4g} of {end - start:.4g} s of the motion have been run"
 
     @property
     def base(self):

@@ -1,0 +1,64 @@
+"""Running a scene for so many seconds, or to the end of its motion."""
+
+import math
+import sys
+import time
+
+from masonry._given import number_given
+from yade import O, wrapper
+
+# Wall clock between two looks at the bar, s.
+_SHOWN = 0.1
+# Share of a step by which O.time may miss the end: it is a sum of steps.
+_ROUND_OFF = 1e-3
+
+
+def motion_end(motion, name="until"):
+    """When a motion engine, or the last one of a list, is over, s."""
+    several = list(motion) if isinstance(motion, (list, tuple)) else [motion]
+    for one in several:
+        if not isinstance(one, wrapper.BaseMotionEngine):
+            raise ValueError(f"{name} = {one!r}: must be a motion engine (RecordMotionEngine, PulseTrainEngine), or a list of them")
+        if not one.end < math.inf:
+            raise ValueError(f"{name}: the end of this {type(one).__name__} is not known (a resonant train ends with impacts to come): give seconds")
+    if not several:
+        raise ValueError(f"{name} = []: must name a motion engine")
+    return max(one.end for one in several)
+
+
+def run(seconds=None, until=None, progress=None):
+    """Runs the scene and returns when that is done.
+
+    seconds     how much simulated time from now on, s, positive
+    until       instead of seconds: a motion engine, or a list of them: to the end of the last one
+    progress    a progress bar; None: where stderr is a terminal
+
+    The last step is the first one that reaches the end. What goes wrong in the run is raised as it comes out of O.step(), which
+    this calls; Ctrl-C stops between two steps. O.pause() does not stop it, nor do O.stopAtIter and O.stopAtTime: a script that is to stop earlier
+    calls it in pieces. Raises ValueError where there are no engines, O runs already, or the motion is over.
+    """
+    from tqdm import tqdm
+
+    if (seconds is None) == (until is None):
+        raise ValueError(f"seconds = {seconds}, until = {until}: give one of the two")
+    if seconds is not None and not 0 < number_given("seconds", seconds) < math.inf:
+        raise ValueError(f"seconds = {seconds}: must be positive and finite")
+    if not O.engines:
+        raise ValueError("O.engines is empty: set O.engines = dem.engines(...)")
+    if O.running:
+        raise ValueError("O is running already: call O.pause() or O.wait() first")
+    if not 0 < O.dt < math.inf:
+        raise ValueError(f"O.dt = {O.dt}: must be positive and finite; dem.engines() chooses one")
+    start = O.time
+    end = start + seconds if until is None else motion_end(until)
+    if not end > start:
+        raise ValueError(f"until: that motion is over at {end:g} s and O.time = {start:g} s: give seconds")
+    shown = sys.stderr is not None and sys.stderr.isatty() if progress is None else progress
+    with tqdm(total=float(f"{end - start:.4g}"), desc="run", disable=not shown, bar_format="{desc}: {percentage:3.0f}%|{bar}| {n:.3g} of {total:g} s [{elapsed}<{remaining}]") as bar:
+        look = time.monotonic() + _SHOWN
+        while O.time < end - _ROUND_OFF * O.dt:
+            O.step()
+            if time.monotonic() >= look:
+                look = time.monotonic() + _SHOWN
+                bar.update(min(O.time - start, bar.total) - bar.n)
+        bar.update(bar.total - bar.n)
