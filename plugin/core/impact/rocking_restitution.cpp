@@ -4,6 +4,7 @@
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <tuple>
 #include <utility>
 
@@ -13,21 +14,44 @@ namespace {
 
 double spin(const std::vector<Body>& bodies, const ClosingJoint& joint)
 {
-	return joint.result.axis.dot(bodies[joint.block].angularVelocity - bodies[joint.support].angularVelocity);
+	return joint.result.axis.dot(bodies[joint.block].angularVelocity - bodies[joint.support].angularVelocity) - joint.carry;
 }
+
+int supportUnder(const ClosingJoint& joint, const ImpulsePoint& point) { return point.body2 == joint.block ? point.body1 : point.body2; }
 
 bool hasRow(const ClosingJoint& joint) { return !std::isnan(joint.restitution) && !joint.result.axis.isZero(0); }
 
 // One impulse problem under the cap: solved as often as the cap asks, always from the velocities at its start.
 struct CappedProblem {
 	std::vector<CoupleRow> rows, none;
+	std::vector<double> carried;                    // spin of the prescribed supports of each row against its body 1, rad/s
 	std::vector<double> asked, plastic;             // targets
 	std::vector<std::pair<Vector3, Vector3>> start; // velocity and angular velocity of each body
 
-	void add(const std::vector<Body>& bodies, const ClosingJoint& joint)
+	void clear()
 	{
-		if (hasRow(joint))
-			rows.push_back({joint.support, joint.block, joint.result.axis, joint.restitution * spin(bodies, joint)});
+		rows.clear();
+		carried.clear();
+	}
+
+	void add(const std::vector<Body>& bodies, const ClosingJoint& joint, const std::vector<ImpulsePoint>& points)
+	{
+		if (!hasRow(joint))
+			return;
+		rows.push_back({joint.support, joint.block, joint.result.axis, joint.restitution * spin(bodies, joint) + joint.carry});
+		const bool prescribed = std::all_of(points.begin() + joint.newBegin, points.begin() + joint.oldEnd,
+		                                    [&](const ImpulsePoint& point) { return bodies[supportUnder(joint, point)].prescribed; });
+		carried.push_back(prescribed ? joint.carry : 0);
+	}
+
+	// The couple of a row stands for normal impulses at its old and its new support. Where both are prescribed, these work on the block
+	// with the couple times its whole carrying spin.
+	double work(const std::vector<Body>& bodies, const std::vector<ImpulsePoint>& points) const
+	{
+		double sum = supportWork(bodies, points, rows);
+		for (size_t i = 0; i < rows.size(); ++i)
+			sum += rows[i].couple * carried[i];
+		return sum;
 	}
 
 	RockingImpactResult solve(const ImpulseSolver& solver, std::vector<Body>& bodies, std::vector<ImpulsePoint>& points)
@@ -50,7 +74,7 @@ struct CappedProblem {
 			const ImpulseReport report = solver(bodies, points, withRows ? rows : none);
 			result.residual = report.residual;
 			result.solved = report.solved;
-			result.work = supportWork(bodies, points, rows);
+			result.work = work(bodies, points);
 			result.energyLost = before + result.work - kineticEnergy(bodies);
 			const double scale = before + std::abs(result.work);
 			const bool unsolvable = !maySlip && result.residual > tolerance::noSolution * speed;
@@ -96,9 +120,7 @@ thread_local Workspace workspace;
 
 void begin(const std::vector<Body>& bodies, ClosingJoint& joint, std::vector<ImpulsePoint>& points)
 {
-	joint.result = {};
-	joint.result.axis = rockingAxis(bodies, joint, points);
-	joint.result.before = spin(bodies, joint);
+	findRocking(bodies, joint, points);
 	for (int i = joint.oldBegin; i < joint.oldEnd; ++i)
 		points[i].holds = false;
 }
@@ -164,14 +186,76 @@ Vector3 rockingAxis(const std::vector<Body>& bodies, const ClosingJoint& joint, 
 	return axis.dot(spin) < 0 ? Vector3(-axis) : axis;
 }
 
+namespace {
+
+// e.(w_carry - w_support). Velocities of the supports are taken against that under the new pivot, so that of one support alone it is zero
+// without round-off.
+double carryingSpin(const std::vector<Body>& bodies, const ClosingJoint& joint, const std::vector<ImpulsePoint>& points)
+{
+	const Vector3 &n = joint.normal, &axis = joint.result.axis;
+	const auto rise = [&](const ImpulsePoint& point) { // m/s
+		const int b = supportUnder(joint, point);
+		return b == joint.support ? 0. : n.dot(bodies[b].velocityAt(point.position) - bodies[joint.support].velocityAt(point.position));
+	};
+	const ImpulsePoint& old = points[joint.oldBegin];
+	const auto across = [&](const ImpulsePoint& point) { return axis.dot(n.cross(point.position - old.position)); }; // m
+	const auto along = [&](const ImpulsePoint& point) { return axis.dot(point.position - old.position); };
+
+	double reach = 0, length = 0;
+	for (int i = joint.newBegin; i < joint.oldBegin; ++i)
+		reach = std::max(reach, std::abs(across(points[i])));
+	for (int i = joint.oldBegin; i < joint.oldEnd; ++i)
+		if (std::abs(along(points[i])) > std::abs(length))
+			length = along(points[i]);
+	// The velocity of the old support is linear along an edge; of several supports at one place, the one that rises fastest carries.
+	const bool isEdge = std::abs(length) > tolerance::pivotEdge * reach;
+	double nearRise = rise(old), farRise = -std::numeric_limits<double>::infinity();
+	for (int i = joint.oldBegin; i < joint.oldEnd; ++i) {
+		double& end = isEdge && std::abs(along(points[i])) > std::abs(length) / 2 ? farRise : nearRise;
+		end = std::max(end, rise(points[i]));
+	}
+	const double turn = isEdge ? (farRise - nearRise) / length : 0;
+	double carry = std::numeric_limits<double>::infinity();
+	for (int i = joint.newBegin; i < joint.oldBegin; ++i) {
+		const double lever = across(points[i]);
+		if (lever > tolerance::pivotEdge * reach)
+			carry = std::min(carry, (nearRise + turn * along(points[i]) - rise(points[i])) / lever);
+	}
+	return std::isinf(carry) ? 0 : carry;
+}
+
+} // namespace
+
+void findRocking(const std::vector<Body>& bodies, ClosingJoint& joint, const std::vector<ImpulsePoint>& points)
+{
+	joint.result = {};
+	joint.carry = 0;
+	joint.result.axis = rockingAxis(bodies, joint, points);
+	if (joint.result.axis.isZero(0))
+		return;
+	Vector3 lever = Vector3::Zero();
+	for (int i = joint.newBegin; i < joint.oldBegin; ++i)
+		lever += points[i].position - points[joint.oldBegin].position;
+	Vector3& axis = joint.result.axis;
+	if (axis.dot(joint.normal.cross(lever)) < 0) // to turn the closing points towards their support
+		axis = -axis;
+	joint.carry = carryingSpin(bodies, joint, points);
+	joint.result.before = spin(bodies, joint);
+	if (joint.result.before < 0) {
+		axis = -axis;
+		joint.carry = -joint.carry;
+		joint.result.before = -joint.result.before;
+	}
+}
+
 RockingImpactResult applyRockingImpact(std::vector<Body>& bodies, RockingImpact& impact)
 {
 	CappedProblem& problem = workspace.problem;
-	problem.rows.clear();
+	problem.clear();
 	for (ClosingJoint& joint : impact.joints)
 		begin(bodies, joint, impact.points);
 	for (const ClosingJoint& joint : impact.joints)
-		problem.add(bodies, joint);
+		problem.add(bodies, joint, impact.points);
 	const RockingImpactResult result = problem.solve(impact.solve, bodies, impact.points);
 	auto row = problem.rows.begin();
 	for (ClosingJoint& joint : impact.joints)
@@ -202,14 +286,14 @@ RockingImpactResult applySequentially(std::vector<Body>& bodies, RockingImpact& 
 		begin(bodies, joint, impact.points);
 	for (const ClosingJoint& joint : impact.joints) {
 		own.assign(impact.points.begin() + joint.newBegin, impact.points.begin() + joint.oldEnd);
-		problem.rows.clear();
-		problem.add(bodies, joint);
+		problem.clear();
+		problem.add(bodies, joint, impact.points);
 		addTo(result, problem.solve(impact.solve, bodies, own));
 		for (size_t i = 0; i < own.size(); ++i)
 			impulses[joint.newBegin + i] = own[i].impulse;
 		couples.push_back(problem.rows.empty() ? 0 : problem.rows.front().couple);
 	}
-	problem.rows.clear();
+	problem.clear();
 	addTo(result, problem.solve(impact.solve, bodies, impact.points));
 	for (size_t i = 0; i < impulses.size(); ++i)
 		impact.points[i].impulse += impulses[i];
@@ -221,9 +305,9 @@ RockingImpactResult applySequentially(std::vector<Body>& bodies, RockingImpact& 
 RockingImpactResult applyToNewSupport(std::vector<Body>& bodies, ClosingJoint& joint, std::vector<ImpulsePoint>& points, double& couple)
 {
 	CappedProblem& problem = workspace.problem;
-	problem.rows.clear();
+	problem.clear();
 	begin(bodies, joint, points);
-	problem.add(bodies, joint);
+	problem.add(bodies, joint, points);
 	points.erase(points.begin() + joint.oldBegin, points.begin() + joint.oldEnd);
 	const RockingImpactResult result = problem.solve(solveImpulses, bodies, points);
 	couple = problem.rows.empty() ? 0 : problem.rows.front().couple;

@@ -4,7 +4,7 @@
 // A joint rocks about its pivot (an edge or a corner, the old support) with relative angular velocity w- and closes: the
 // pivot passes to the closing points (the new support). With e the axis of rocking,
 //
-//     e.w+ = C e.w-       0 <= C <= 1       w = w_block - w_support
+//     e.w+ = C e.w-       0 <= C <= 1       w = w_block - w_carry
 //
 // while every point stays unilateral, plastic in the normal direction and within its friction cone. The row e is
 // bilateral: it carries the couple that the impulses distributed over the face would make. Without a value for C no row
@@ -12,6 +12,18 @@
 // (Housner 1963)
 //
 //     C_H = 1 - 1.5 sin^2(critical angle) = (2 slenderness^2 - 1) / (2 slenderness^2 + 2)
+//
+// w_carry is the spin with which the block would stay in touch with its old and its new support, which move with their velocities just
+// before the impact. Where both are one body, or move as one, it is that body's spin. Else, with n the normal, O on the old support, P a
+// closing point at the distance L from it across the axis (e turns P towards its support), touch at both asks for
+//
+//     n.v_old(O) - e.w_carry L = n.v_new(P)       e.w_carry = n.(v_old(O) - v_new(P)) / L
+//
+// For a pivot that is an edge, O is the point of its line abreast of P. Of several closing points, the one that would touch first counts:
+// the smallest e.w_carry, with which the block enters no support. Measured from the carrying motion, supports stand still: the impact is
+// that of a block on fixed supports, so C = 0 leaves the block on both, and the natural restitution is that of a fixed base. The approach
+// of the one P is u_n-(P) = -L e.w-. The velocities of free supports change during the impact; w_carry - w_support stays what it was
+// before, where w_support is the spin of the support under the new pivot, which bears the couple.
 //
 // Axis: the old support is an edge: e is its direction. It is a corner O: e = n x d, where d sums over the closing points
 // their approach speed times their lever from O in the plane of the joint, so that for one closing point P the old
@@ -41,7 +53,7 @@ namespace masonry {
 
 struct JointResult {
 	Vector3 axis {Vector3::Zero()}; // e, directed so that `before` is not negative; zero: the joint had no row
-	double before {0}, after {0};   // e.w- and e.w+, rad/s
+	double before {0}, after {0};   // e.w- and e.w+, rad/s, against the carrying motion
 	double application {0};         // x, m: couple / normal impulse (0 without a row)
 	double frictionDemand {0};      // |p_t|/p_n of the closing points' resultant
 	double restitution() const { return before > 0 ? after / before : 0; }
@@ -54,6 +66,7 @@ struct ClosingJoint {
 	Vector3 normal;                 // from the support to the block
 	double restitution;             // C in [0, 1], or NaN: natural
 	int newBegin, oldBegin, oldEnd; // points [newBegin, oldBegin) are the new support, [oldBegin, oldEnd) the old
+	double carry {0};               // e.(w_carry - w_support), rad/s: found at the impact
 	JointResult result {};
 };
 
@@ -73,6 +86,9 @@ struct RockingImpactResult {
 
 // Zero where there is no old support, or where it is a corner and no closing point approaches.
 Vector3 rockingAxis(const std::vector<Body>& bodies, const ClosingJoint& joint, const std::vector<ImpulsePoint>& points);
+
+// How the joint rocks at this instant: joint.carry, and of joint.result the axis and `before`.
+void findRocking(const std::vector<Body>& bodies, ClosingJoint& joint, const std::vector<ImpulsePoint>& points);
 
 // Work of the prescribed bodies' impulses, which keep their velocities, J.
 double supportWork(const std::vector<Body>& bodies, const std::vector<ImpulsePoint>& points, const std::vector<CoupleRow>& rows);

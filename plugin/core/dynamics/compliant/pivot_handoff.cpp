@@ -142,12 +142,12 @@ ImpactRecord switchPivot(JointSystem& s, const Joint& joint, const Closing& clos
 	goBack(s, accelerations(s, loadedPoints), closing.before);
 
 	RockingImpact impact = closingImpact(s, joint, closing, loadedPoints);
-	const Vector3 axis = rockingAxis(s.bodies, impact.joints.front(), impact.points);
-	const double speed = axis.dot(s.bodies[joint.block].angularVelocity - s.bodies[closing.support].angularVelocity);
+	ClosingJoint& law = impact.joints.front();
+	findRocking(s.bodies, law, impact.points);
 	const double least = leastRockingSpeed(s, joint, impact.points.front().position, closing.lever, closing.depth);
-	const bool rests = speed * (std::isnan(closing.restitution) ? 1 : closing.restitution) < least;
+	const bool rests = law.result.before * (std::isnan(closing.restitution) ? 1 : closing.restitution) < least;
 	if (rests)
-		impact.joints.front().restitution = 0;
+		law.restitution = 0;
 	const ImpactRecord::Result result = applyWithRim(s, impact);
 	const bool stops = rests || result.after < least;
 

@@ -305,9 +305,8 @@ RockingImpactResult ImpactStage<K>::land(RigidSystem<K>& s, const std::vector<Po
 	asked.clear();
 	for (ClosingJoint& joint : impact.joints) {
 		asked.push_back(joint.restitution);
-		const Vector3 axis = rockingAxis(bodies, joint, impact.points);
-		const double spin = axis.dot(bodies[joint.block].angularVelocity - bodies[joint.support].angularVelocity);
-		if (spin * (std::isnan(joint.restitution) ? 1 : joint.restitution) < scale::leastSpin(s, joint.block))
+		findRocking(bodies, joint, impact.points);
+		if (joint.result.before * (std::isnan(joint.restitution) ? 1 : joint.restitution) < scale::leastSpin(s, joint.block))
 			joint.restitution = 0;
 	}
 	const auto result =

@@ -357,6 +357,8 @@ def impacts():
     takes; where that is the joint's own, the pivot has slipped and more was asked for), application (distance of the resultant from the
     new pivot, m), switched (False: the impact stopped the rotation; a pivot that has slipped may set it off again), capped (the
     restitution does not come out: lowered so that no energy appears, or there is none with which the laws hold, a failure of its step).
+    Restitution and velocity are relative to the motion with which the block would stay on its old and its new support: on supports that
+    move in different ways, a block with restitution 0 follows both. With method='wall' in the plane they are relative to the new support.
     With method='wall' those where a restitution is given, and of the joint alone:
     what its neighbours answer afterwards is in energy()['impactDissip']."""
     e = _joint_engine()
