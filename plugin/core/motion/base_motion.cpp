@@ -17,6 +17,11 @@ double BaseMotion::Piece::accelerationAt(double t) const
 	return amplitude != 0 ? amplitude * std::sin(frequency * s) : slope != 0 ? constant + slope * s : constant;
 }
 
+double BaseMotion::Piece::jerkAt(double t) const
+{
+	return amplitude != 0 ? amplitude * frequency * std::cos(frequency * (t - start)) : slope;
+}
+
 double BaseMotion::Piece::velocityAt(double t) const
 {
 	if (isFree())
@@ -102,20 +107,24 @@ void BaseMotion::appendPulse(double t, double jump, PulseShape shape, double dur
 
 namespace motion {
 
-BaseMotion pulseTrain(double impulse, const std::vector<double>& times, bool assembly, PulseShape shape, double duration)
+BaseMotion pulseTrain(double impulse, const std::vector<double>& times, bool assembly, PulseShape shape, double duration,
+                      SingleKeeps singleKeeps)
 {
 	requireFinite("impulse", impulse);
 	if (shape != PulseShape::Dirac)
 		requirePositive("duration", duration);
+	const UnitPulse twice {shape, duration}, once = singlePulse(twice, singleKeeps);
 	BaseMotion train;
+	double earliest = 0;
 	for (size_t i = 0; i < times.size(); i++) {
-		const double earliest = i == 0 ? 0 : times[i - 1] + (shape == PulseShape::Dirac ? 0 : duration);
 		require("times[" + std::to_string(i) + "]", times[i],
 		        times[i] >= earliest && (i == 0 || times[i] > times[i - 1]) && times[i] < infinity,
 		        i == 0 ? "must be >= 0 s" : "must be increasing, each pulse ended before the next");
 		const bool single = i == 0 || (assembly && i + 1 == times.size());
+		const UnitPulse& pulse = single ? once : twice;
 		const double sign = i % 2 == 0 ? 1 : -1;
-		train.appendPulse(times[i], sign * (single ? 1 : 2) * impulse, shape, duration);
+		train.appendPulse(times[i], sign * (single ? 1 : 2) * impulse, shape, pulse.duration);
+		earliest = times[i] + (shape == PulseShape::Dirac ? 0 : pulse.duration);
 	}
 	return train;
 }

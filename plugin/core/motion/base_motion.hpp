@@ -6,6 +6,7 @@
 // velocity jumps. After the last kink the acceleration is zero. Before t = 0 the base is at rest at displacement 0.
 
 #include "motion/pulse_shape.hpp"
+#include <cmath>
 #include <optional>
 #include <string>
 #include <vector>
@@ -31,6 +32,8 @@ public:
 		double accelerationAt(double t) const;
 		double velocityAt(double t) const;
 		double displacementAt(double t) const;
+		double jerkAt(double t) const;                                                          // m/s^3, of the acceleration
+		double largestCurvature() const { return std::abs(amplitude) * frequency * frequency; } // bound of |jerk'|, m/s^4
 
 		// First t in [from, until] at which |acceleration| exceeds `level` (m/s^2, >= 0), if there is one.
 		std::optional<double> firstAbove(double level, double from, double until) const;
@@ -61,8 +64,9 @@ namespace motion {
 
 // Velocity jumps +I, -2I, +2I, ... at increasing times >= 0: the base moves at +I, -I, +I...
 // With `assembly` the last jump is I, which brings the base to rest (the paper's units: I, -2I, ..., I).
+// duration: of a pulse of 2I; those of I are as long or as strong.
 BaseMotion pulseTrain(double impulse, const std::vector<double>& times, bool assembly = false, PulseShape shape = PulseShape::Dirac,
-                      double duration = 0);
+                      double duration = 0, SingleKeeps singleKeeps = SingleKeeps::Duration);
 BaseMotion rectangular(double amplitude, double duration);
 BaseMotion halfSine(double amplitude, double duration);
 // `cycles` (> 0, need not be whole) of amplitude sin(2 pi frequency t); frequency in Hz.

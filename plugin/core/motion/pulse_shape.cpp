@@ -19,6 +19,15 @@ PulseShape pulseShapeFromName(const std::string& name)
 	throw std::invalid_argument("shape = '" + name + "': must be 'dirac', 'rectangular' or 'half-sine'");
 }
 
+SingleKeeps singleKeepsFromName(const std::string& name)
+{
+	if (name == "amplitude")
+		return SingleKeeps::Amplitude;
+	if (name == "duration")
+		return SingleKeeps::Duration;
+	throw std::invalid_argument("what pulses of size I keep = '" + name + "': must be 'amplitude' or 'duration'");
+}
+
 double UnitPulse::acceleration(double t) const
 {
 	if (shape == PulseShape::Dirac || t < 0 || t > duration)

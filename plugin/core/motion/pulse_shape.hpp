@@ -26,4 +26,14 @@ struct UnitPulse {
 	double displacement(double t) const; // s; integral of velocity
 };
 
+// A train of pulses I, -2I, +2I, ..., I is stated by those of 2I. What a pulse of I shares with them: the amplitude, for half their
+// duration (a Dirac pulse has neither), or the duration, at half their amplitude.
+enum class SingleKeeps { Amplitude, Duration };
+SingleKeeps singleKeepsFromName(const std::string& name); // "amplitude" or "duration"; anything else: std::invalid_argument
+
+inline UnitPulse singlePulse(const UnitPulse& twice, SingleKeeps keeps)
+{
+	return {twice.shape, keeps == SingleKeeps::Amplitude ? twice.duration / 2 : twice.duration};
+}
+
 } // namespace masonry

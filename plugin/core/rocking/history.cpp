@@ -39,22 +39,23 @@ public:
 	{
 	}
 
-	History run(const BaseMotion& motion);
+	History run(const BaseMotion& motion, const BaseMotion& vertical);
 
 private:
 	void start();
-	void followPiece(const BaseMotion::Piece&, double until);
-	bool staysAtRest(const BaseMotion::Piece&, double until);
+	void followPiece(const Shaking&, double until);
+	bool staysAtRest(const Shaking&, double until);
 	bool flyFreely(double until);
 	bool cannotReturn();
-	void flyForced(const BaseMotion::Piece&, double until);
+	void flyForced(const Shaking&, double until);
 	void beginHalfCycle();
 	void notePeak(double angle, double time);
 	void endHalfCycle();
 	void impact(double time, double speed, bool free);
+	void release(double time, double jump, bool single);
 	void jumpBase(double velocityJump);
 	void restAt(double since);
-	void fallFreely(const BaseMotion::Piece&);
+	void fallFreely(const Shaking&);
 	// When the block reaches its lost angle, which it has reached `before` seconds after the step began.
 	double timeOfLoss(const TaylorStep& step, double before) const { return root(angleOf(step, law_.lostAngle()), 0, before, before); }
 	void overturn(double time);
@@ -87,28 +88,39 @@ private:
 	FreeEnergy energy_ {0, 0}; // of state_, where that is known: energy()
 	bool isEnergyKnown_ {false};
 	double peakAngle_ {0}, peakTime_ {0};
+	bool released_ {false}; // a pulse of the train, which begins a new piece of the motion
 	bool done_ {false};
 };
 
-History HistoryRun::run(const BaseMotion& motion)
+History HistoryRun::run(const BaseMotion& motion, const BaseMotion& vertical)
 {
-	if (options_.keepStates)
+	if (options_.keepStates) {
 		history_.motion = motion;
+		history_.vertical = vertical;
+	}
 	start();
-	const auto& pieces = motion.pieces();
-	for (size_t i = 0; i < pieces.size() && !done_; i++) {
-		if (pieces[i].velocityJump != 0)
-			jumpBase(pieces[i].velocityJump);
-		const double end = i + 1 < pieces.size() ? pieces[i + 1].start : infinity;
-		if (end > time_)
-			followPiece(pieces[i], std::min(end, options_.endTime));
-		if (time_ >= options_.endTime)
-			done_ = true;
+	const BaseMotion& moved = train_ ? history_.motion : motion;
+	const auto &sideways = moved.pieces(), &upwards = vertical.pieces();
+	size_t i = 0, j = 0;
+	const auto startAfter = [](const std::vector<BaseMotion::Piece>& pieces, size_t k) {
+		return k + 1 < pieces.size() ? pieces[k + 1].start : infinity;
+	};
+	const auto kink = [&] { return std::min(startAfter(sideways, i), startAfter(upwards, j)); };
+	while (!done_) {
+		if (kink() > time_)
+			followPiece({sideways[i], upwards[j]}, std::min(kink(), options_.endTime));
+		if (done_ || time_ >= options_.endTime)
+			break;
+		if (startAfter(upwards, j) < startAfter(sideways, i))
+			j++;
+		else if (sideways[++i].velocityJump != 0)
+			jumpBase(sideways[i].velocityJump);
+		released_ = false;
+		done_ = impacts() >= options_.halfCycles;
 	}
 	if (!atRest() && !history_.overturned() && state_.velocity < 0 && state_.angle > 0)
 		endHalfCycle();
 	history_.endTime = std::isinf(options_.endTime) && (atRest() || history_.overturned()) ? infinity : time_;
-	const BaseMotion& moved = train_ ? history_.motion : motion;
 	history_.baseDisplacement =
 	    moved.displacement(std::isfinite(history_.endTime) ? history_.endTime : std::max(moved.pieces().back().start, 0.0));
 	history_.law_.emplace(law_);
@@ -127,36 +139,34 @@ void HistoryRun::start()
 		if (state_.angle >= law_.lostAngle())
 			overturn(0);
 	}
-	if (train_) {
-		history_.motion.appendPulse(0, train_->impulse);
-		jumpBase(train_->impulse);
-	}
+	if (train_)
+		release(0, train_->impulse, true);
 }
 
-void HistoryRun::followPiece(const BaseMotion::Piece& piece, double until)
+void HistoryRun::followPiece(const Shaking& shaking, double until)
 {
 	keepState();
-	while (!done_ && time_ < until) {
-		if (atRest() && staysAtRest(piece, until))
+	while (!done_ && !released_ && time_ < until) {
+		if (atRest() && staysAtRest(shaking, until))
 			return;
-		if (piece.isFree() && until == infinity) {
+		if (shaking.isFree() && until == infinity) {
 			if (cannotReturn())
-				return fallFreely(piece);
+				return fallFreely(shaking);
 			if (options_.onlyOverturning && impacts() >= lastJump_)
 				done_ = true;
 		}
-		if (!piece.isFree() || !flyFreely(until))
-			flyForced(piece, until);
+		if (!shaking.isFree() || !flyFreely(until))
+			flyForced(shaking, until);
 	}
 }
 
 // True if the block does not move until then; otherwise it starts to rock at time_.
-bool HistoryRun::staysAtRest(const BaseMotion::Piece& piece, double until)
+bool HistoryRun::staysAtRest(const Shaking& shaking, double until)
 {
 	const double level = law_.upliftAcceleration();
-	auto uplift = piece.firstAbove(level, time_, until);
+	auto uplift = shaking.firstExcess(level, law_.gravity, time_, until);
 	// Where the acceleration has only just reached the level, round-off decides whether the block falls back.
-	if (uplift && std::abs(piece.accelerationAt(*uplift)) <= (1 + tolerance::oneInstant) * level)
+	if (uplift && shaking.excessAt(*uplift, level, law_.gravity) <= tolerance::oneInstant * level)
 		*uplift += tolerance::oneInstant * std::max(*uplift, 1 / law_.p);
 	if (!uplift || *uplift >= until) {
 		if (until == infinity)
@@ -165,7 +175,7 @@ bool HistoryRun::staysAtRest(const BaseMotion::Piece& piece, double until)
 		return true;
 	}
 	time_ = *uplift;
-	take({piece.accelerationAt(time_) > 0 ? -1 : 1, 0, 0});
+	take({shaking.horizontal.accelerationAt(time_) > 0 ? -1 : 1, 0, 0});
 	beginHalfCycle();
 	keepState();
 	return false;
@@ -202,12 +212,12 @@ bool HistoryRun::flyFreely(double until)
 	return true;
 }
 
-void HistoryRun::flyForced(const BaseMotion::Piece& piece, double until)
+void HistoryRun::flyForced(const Shaking& shaking, double until)
 {
 	const int side = state_.side;
 	while (time_ < until) {
 		keepState();
-		const TaylorStep step(law_, state_, piece, time_, std::min(until - time_, 2 / law_.p));
+		const TaylorStep step(law_, state_, shaking, time_, std::min(until - time_, 2 / law_.p));
 		const double length = step.length();
 		const auto end = step.at(length);
 		const auto angle = angleOf(step);
@@ -233,7 +243,7 @@ void HistoryRun::flyForced(const BaseMotion::Piece& piece, double until)
 		}
 		if (below > above) {
 			const double s = root(angle, above, below, landing);
-			return impact(std::max(time_ + s, std::nextafter(time_, infinity)), -step.at(s).velocity, piece.isFree());
+			return impact(std::max(time_ + s, std::nextafter(time_, infinity)), -step.at(s).velocity, shaking.isFree());
 		}
 		if (end.angle >= law_.lostAngle())
 			return overturn(time_ + timeOfLoss(step, length));
@@ -244,7 +254,7 @@ void HistoryRun::flyForced(const BaseMotion::Piece& piece, double until)
 
 // Follows a block that cannot return until it lies on its side. Where round-off lets it turn back short of the critical angle, or pass that
 // inwards, it cannot be told from one that ends in balance there.
-void HistoryRun::fallFreely(const BaseMotion::Piece& piece)
+void HistoryRun::fallFreely(const Shaking& shaking)
 {
 	const bool beyond = state_.angle >= law_.alpha;
 	history_.overturnHalfCycle = impacts() + 1;
@@ -253,7 +263,7 @@ void HistoryRun::fallFreely(const BaseMotion::Piece& piece)
 		if (state_.angle >= law_.lostAngle())
 			return overturn(time_);
 		keepState();
-		const TaylorStep step(law_, state_, piece, time_, 2 / law_.p);
+		const TaylorStep step(law_, state_, shaking, time_, 2 / law_.p);
 		if (step.firstChange() == 0)
 			return; // in balance
 		const auto velocity = velocityOf(step);
@@ -302,13 +312,13 @@ void HistoryRun::impact(double time, double speed, bool free)
 		energy_ = law_.afterImpact(energy(), options_.restitution);
 	state_ = {-state_.side, 0, options_.restitution * speed};
 	isEnergyKnown_ = free;
-	done_ = impacts() >= options_.halfCycles;
+	done_ = impacts() > lastJump_ && impacts() >= options_.halfCycles;
 
 	if (impacts() <= lastJump_) {
-		const double jump = (impacts() % 2 == 0 ? 1 : -1) * (impacts() == lastJump_ ? 1 : 2) * train_->impulse;
-		history_.motion.appendPulse(time, jump);
-		jumpBase(jump);
-		return;
+		const bool last = impacts() == lastJump_;
+		release(time, (impacts() % 2 == 0 ? 1 : -1) * (last ? 1 : 2) * train_->impulse, last);
+		if (train_->pulse.shape == PulseShape::Dirac)
+			return; // the jump comes before all else
 	}
 	// with a number of half cycles to reach, free rocking needs no threshold to end
 	const bool counted = free && options_.halfCycles < std::numeric_limits<int>::max();
@@ -319,6 +329,19 @@ void HistoryRun::impact(double time, double speed, bool free)
 	}
 	beginHalfCycle();
 	keepState();
+}
+
+// Adds a pulse of the resonant train, which ends the piece of motion that is being followed.
+void HistoryRun::release(double time, double jump, bool single)
+{
+	const double ended = history_.motion.pieces().back().start;
+	if (time < ended)
+		throw std::runtime_error("impact " + std::to_string(impacts()) + " at " + std::to_string(time) +
+		                         " s: the pulse before acts until " + std::to_string(ended) +
+		                         " s; finite pulses of a resonant train must be shorter");
+	history_.motion.appendPulse(time, jump, train_->pulse.shape,
+	                            (single ? singlePulse(train_->pulse, train_->singleKeeps) : train_->pulse).duration);
+	released_ = true;
 }
 
 void HistoryRun::jumpBase(double velocityJump)
@@ -363,12 +386,12 @@ std::pair<double, double> History::sample(double t) const
 		return {nan, nan};
 	const Knot& knot = *(next - 1);
 	const RockingLaw& law = *law_;
-	const auto& piece = motion.pieceAt(knot.time);
+	const Shaking shaking {motion.pieceAt(knot.time), vertical.pieceAt(knot.time)};
 	RockingState state = knot.state;
 	if (state.side == 0)
 		return {0, 0};
 	for (double time = knot.time; time < t;) {
-		const TaylorStep step(law, state, piece, time, std::min(t - time, 2 / law.p));
+		const TaylorStep step(law, state, shaking, time, std::min(t - time, 2 / law.p));
 		if (step.firstChange() == 0)
 			break; // in balance
 		time = step.length() == t - time ? t : time + step.length();
@@ -390,24 +413,41 @@ void check(const HistoryOptions& options, bool endless)
 	if (endless && !bounded)
 		throw std::invalid_argument("t_end and half_cycles are not given: one is needed, this rocking never ends");
 }
+
+void checkVertical(const BaseMotion& vertical, double gravity)
+{
+	const auto& pieces = vertical.pieces();
+	for (size_t i = 1; i < pieces.size(); i++) {
+		require("velocity jump of vertical", pieces[i].velocityJump, pieces[i].velocityJump == 0,
+		        "must be 0: vertical pulses must be of finite shape");
+		const double last = i + 1 < pieces.size() ? pieces[i].accelerationAt(pieces[i + 1].start) : 0;
+		const double least =
+		    pieces[i].amplitude != 0 ? -std::abs(pieces[i].amplitude) : std::min(pieces[i].accelerationAt(pieces[i].start), last);
+		require("vertical acceleration", least, least > -gravity, "must stay above -gravity, or the block leaves its base");
+	}
+}
 } // namespace
 
-History simulate(const RockingBlock& block, const BaseMotion& motion, const HistoryOptions& options)
+History simulate(const RockingBlock& block, const BaseMotion& motion, const HistoryOptions& options, const BaseMotion& vertical)
 {
 	check(options, options.restitution == 1);
-	return HistoryRun(block, options, nullptr).run(motion);
+	checkVertical(vertical, block.gravity);
+	return HistoryRun(block, options, nullptr).run(motion, vertical);
 }
 
-History simulate(const RockingBlock& block, const ResonantTrain& train, const HistoryOptions& options)
+History simulate(const RockingBlock& block, const ResonantTrain& train, const HistoryOptions& options, const BaseMotion& vertical)
 {
 	requireFinite("impulse", train.impulse);
+	if (train.pulse.shape != PulseShape::Dirac)
+		requirePositive("duration", train.pulse.duration);
 	require("half_cycles of the train", train.halfCycles, train.halfCycles >= 1 || train.halfCycles == -1,
 	        "must be >= 1, or -1 for no end");
 	HistoryOptions bounded = options;
 	if (train.halfCycles < 0)
 		bounded.onlyOverturning = false; // its pulses never end: not certain at any time
 	check(bounded, train.halfCycles < 0 || options.restitution == 1);
-	return HistoryRun(block, options, &train).run(BaseMotion());
+	checkVertical(vertical, block.gravity);
+	return HistoryRun(block, options, &train).run(BaseMotion(), vertical);
 }
 
 } // namespace masonry

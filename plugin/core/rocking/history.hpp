@@ -1,5 +1,5 @@
 #pragma once
-// Exact history of one block: free rocking, base pulses, any base motion, three restoring moments.
+// Exact history of one block: free rocking, base pulses, any base motion, horizontal and vertical, three restoring moments.
 //
 // Signs: the angle is positive when the block is tilted towards +x (about its +x edge); a base acceleration towards +x tips
 // it towards -x. An impact multiplies the angular velocity by the restitution C. A block at rest starts to rock when the
@@ -10,6 +10,7 @@
 // at every kink of the motion, the impact being the root of the solution itself.
 
 #include "motion/base_motion.hpp"
+#include "motion/pulse_shape.hpp"
 #include "rocking/restoring.hpp"
 #include "rocking/taylor_step.hpp"
 #include <limits>
@@ -24,6 +25,9 @@ namespace masonry {
 struct ResonantTrain {
 	double impulse;      // I, m/s
 	int halfCycles {-1}; // -1: without end
+	// How a jump of 2I is spread, and what those of I share with it. A pulse must have ended at the next impact.
+	UnitPulse pulse {};
+	SingleKeeps singleKeeps {SingleKeeps::Amplitude};
 };
 
 struct HistoryOptions {
@@ -51,8 +55,8 @@ public:
 	double endTime {0};                                         // s, infinite if nothing more will happen
 	// Displacement of the base (m) at endTime, or where the motion leaves it if the run has no end.
 	double baseDisplacement {0};
-	// Of the base; a resonant train becomes known here. Another motion is copied only with keepStates.
-	BaseMotion motion;
+	// Of the base; a resonant train becomes known here. Other motions are copied only with keepStates.
+	BaseMotion motion, vertical;
 
 	bool overturned() const { return overturnHalfCycle > 0; }
 	// Signed angle (rad) and angular velocity (rad/s) at time t >= 0; NaN after endTime and once the block lies on its side.
@@ -69,10 +73,11 @@ private:
 	std::optional<RockingLaw> law_;
 };
 
-// std::invalid_argument: restitution outside [0, 1], angle outside (-pi/2, pi/2), anything not finite, or a run without end
-// (no endTime and no halfCycles, while the pulses never end, or C = 1).
-// std::runtime_error: more than a million impacts.
-History simulate(const RockingBlock&, const BaseMotion&, const HistoryOptions&);
-History simulate(const RockingBlock&, const ResonantTrain&, const HistoryOptions&);
+// vertical: the base's motion upwards, without velocity jumps and with an acceleration above -g (the block stays on its base).
+// std::invalid_argument: restitution outside [0, 1], angle outside (-pi/2, pi/2), anything not finite, such a vertical motion, or a run
+// without end (no endTime and no halfCycles, while the pulses never end, or C = 1).
+// std::runtime_error: more than a million impacts, or an impact while a finite pulse of a resonant train acts.
+History simulate(const RockingBlock&, const BaseMotion&, const HistoryOptions&, const BaseMotion& vertical = BaseMotion());
+History simulate(const RockingBlock&, const ResonantTrain&, const HistoryOptions&, const BaseMotion& vertical = BaseMotion());
 
 } // namespace masonry

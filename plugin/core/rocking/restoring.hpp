@@ -7,6 +7,8 @@
 //   linear     u'' = -p^2 (phi + s a/g)                          Housner 1963
 //   exact      u'' = -p^2 (sin(phi) + s (a/g) cos(phi))
 //
+// An upward acceleration z of the base adds to gravity: the first term of each is (1 + z/g) times as large.
+//
 // Free motion (a = 0) keeps the energy. With w the angular velocity at u = 0 that belongs to the state, write
 //
 //   energy  D = w^2/(4p^2),    deficit  K = D_max - D,    D_max: just reaches the critical angle

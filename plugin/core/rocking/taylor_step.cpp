@@ -19,10 +19,9 @@ const auto inverse = reciprocals<32>();
 using Pair = double __attribute__((vector_size(16)));
 } // namespace
 
-TaylorStep::TaylorStep(const RockingLaw& law, const RockingState& state, const BaseMotion::Piece& piece, double t, double longest)
+TaylorStep::Acceleration::Acceleration(const BaseMotion::Piece& piece, double t)
 {
-	Series a;
-	int terms = 0;
+	terms = 0;
 	const auto s = t - piece.start;
 	if (piece.amplitude != 0) {
 		a[0] = piece.amplitude * std::sin(piece.frequency * s);
@@ -35,19 +34,26 @@ TaylorStep::TaylorStep(const RockingLaw& law, const RockingState& state, const B
 		a[1] = piece.slope;
 		terms = 2;
 	}
+}
+
+TaylorStep::TaylorStep(const RockingLaw& law, const RockingState& state, const Shaking& shaking, double t, double longest)
+{
 	c_[0] = state.angle;
 	c_[1] = state.velocity;
-	expand(law, state.side, a, terms, longest);
+	expand(law, state.side, Acceleration(shaking.horizontal, t), Acceleration(shaking.vertical, t), longest);
 	while (!turnsOnce(length_))
 		length_ /= 2;
 }
 
-// With S = sin(phi), C = cos(phi), phi = alpha - u, r = u' and X_k the k-th Taylor coefficient of X:
-//   (k+1) r_{k+1} = -p^2 (S_k + s/g sum_j a_j C_{k-j}),   (k+2) u_{k+2} = r_{k+1}
+// With S = sin(phi), C = cos(phi), phi = alpha - u, r = u' and X_k the k-th Taylor coefficient of X, a and z the base's acceleration along
+// x and upwards:
+//   (k+1) r_{k+1} = -p^2 (S_k + s/g sum_j a_j C_{k-j} + 1/g sum_j z_j S_{k-j}),   (k+2) u_{k+2} = r_{k+1}
 //   (k+1) S_{k+1} = -sum_j r_j C_{k-j},   (k+1) C_{k+1} = sum_j r_j S_{k-j}
 // Sums end with the terms that are known last: the others are done while those are waited for.
-void TaylorStep::expand(const RockingLaw& law, int side, const Series& a, int terms, double longest)
+void TaylorStep::expand(const RockingLaw& law, int side, const Acceleration& horizontal, const Acceleration& vertical, double longest)
 {
+	const auto& [a, terms] = horizontal;
+	const auto& [z, verticalTerms] = vertical;
 	const double p2 = law.p * law.p, push = side / law.gravity, phi = law.alpha - c_[0];
 	const bool exact = law.restoring == Restoring::Exact;
 	std::array<Pair, highestOrder> turned; // (-C, S)
@@ -60,7 +66,8 @@ void TaylorStep::expand(const RockingLaw& law, int side, const Series& a, int te
 		turned[0] = Pair {-std::cos(phi), std::sin(phi)};
 	rate[0] = c_[1];
 	// a small hop needs no more than a few terms: its length is about -2 u'/u''
-	const double lift = -p2 * (turned[0][1] - push * (terms > 0 ? a[0] : 0) * turned[0][0]);
+	const double weight = verticalTerms > 0 ? 1 + z[0] / law.gravity : 1;
+	const double lift = -p2 * (weight * turned[0][1] - push * (terms > 0 ? a[0] : 0) * turned[0][0]);
 	if (c_[0] == 0 && c_[1] > 0 && lift < 0)
 		longest = std::min(longest, -2.5 * c_[1] / lift);
 	length_ = longest;
@@ -69,7 +76,10 @@ void TaylorStep::expand(const RockingLaw& law, int side, const Series& a, int te
 		double force = 0;
 		for (int j = std::min(k, terms - 1), last = exact ? 0 : k; j >= last; j--)
 			force -= a[j] * turned[k - j][0];
-		rate[k + 1] = -p2 * inverse[k + 1] * (turned[k][1] + push * force);
+		double weighed = turned[k][1];
+		for (int j = std::min(k, verticalTerms - 1); j >= 0; j--)
+			weighed += z[j] / law.gravity * turned[k - j][1];
+		rate[k + 1] = -p2 * inverse[k + 1] * (weighed + push * force);
 		c_[k + 2] = rate[k + 1] * inverse[k + 2];
 		order_ = k + 2;
 		if (order_ >= 5 && convergesAt(longest, power))

@@ -2,7 +2,7 @@
 // One step of the rocking block under base motion: the Taylor polynomial of u(t), by recurrence to the order at which its
 // terms drop below round-off. The polynomial is the solution inside the step, so events are its roots.
 
-#include "motion/base_motion.hpp"
+#include "motion/shaking.hpp"
 #include "rocking/restoring.hpp"
 #include <array>
 
@@ -18,7 +18,7 @@ struct RockingState {
 class TaylorStep {
 public:
 	// Expands about time t, valid for at most `longest` seconds (finite). No kink of the motion may lie inside.
-	TaylorStep(const RockingLaw&, const RockingState&, const BaseMotion::Piece&, double t, double longest);
+	TaylorStep(const RockingLaw&, const RockingState&, const Shaking&, double t, double longest);
 
 	// s, <= longest. Up to here the polynomial is exact to round-off, and the velocity changes its sign once at most.
 	double length() const { return length_; }
@@ -31,8 +31,13 @@ public:
 private:
 	static constexpr int highestOrder = 24;
 	using Series = std::array<double, highestOrder + 1>;
+	struct Acceleration { // its Taylor coefficients
+		Series a;
+		int terms;
+		Acceleration(const BaseMotion::Piece&, double t);
+	};
 
-	void expand(const RockingLaw&, int side, const Series& acceleration, int accelerationTerms, double longest);
+	void expand(const RockingLaw&, int side, const Acceleration& horizontal, const Acceleration& vertical, double longest);
 	bool convergesAt(double s, double power) const; // power = s^(order - 1)
 	bool turnsOnce(double s) const;                 // at most
 	Series c_;

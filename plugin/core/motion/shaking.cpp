@@ -1,0 +1,45 @@
+#include "motion/shaking.hpp"
+#include "tolerances.hpp"
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace masonry {
+
+double Shaking::excessAt(double t, double level, double gravity) const
+{
+	return std::abs(horizontal.accelerationAt(t)) - level * (1 + vertical.accelerationAt(t) / gravity);
+}
+
+// f(t) = sign a_x - level (1 + a_z/g) is followed from below: with the bound M of |f''| it stays below the parabola f + f' s + M s^2/2, so
+// it has no root before that has. The steps become quadratically smaller towards a root, and pass a maximum below zero.
+std::optional<double> Shaking::firstExcess(double level, double gravity, double from, double until) const
+{
+	if (vertical.isFree())
+		return horizontal.firstAbove(level, from, until);
+	constexpr double infinity = std::numeric_limits<double>::infinity();
+	const double share = level / gravity, bound = horizontal.largestCurvature() + share * vertical.largestCurvature();
+	double first = infinity;
+	for (const int sign : {1, -1})
+		for (double t = from; t <= std::min(first, until);) {
+			const double f = sign * horizontal.accelerationAt(t) - level - share * vertical.accelerationAt(t);
+			const double rate = sign * horizontal.jerkAt(t) - share * vertical.jerkAt(t);
+			if (f > 0) {
+				first = t;
+				break;
+			}
+			const double speed = std::sqrt(rate * rate - 2 * bound * f);
+			const double step = rate > 0 ? -2 * f / (rate + speed) : bound > 0 ? (speed - rate) / bound : infinity;
+			const double next = t + step;
+			if (next <= t + tolerance::oneInstant * t && rate > 0) {
+				first = std::min(first, next);
+				break;
+			}
+			t = std::max(next, std::nextafter(t, infinity));
+		}
+	if (!(first <= until))
+		return std::nullopt;
+	return first;
+}
+
+} // namespace masonry
