@@ -120,7 +120,7 @@ refuses(lambda: quiet_engines(dem.RecordMotionEngine(ids=[base])), "samples", "e
 refuses(lambda: quiet_engines(dem.RecordMotionEngine(ids=[base], samples=[0, 3], scale=1e300)), "samples has 3", "scale = 1e+300", "at most 1e6 m/s^2")
 
 
-assert "; record of 400 s, at most 2.94 m/s^2\n" in said_by(dem.engines, dem.RecordMotionEngine(ids=[base], samples=[0, 0.3, -0.2], interval=200, scale=9.81))
+assert "; record of 400 s, at most 2.94 m/s^2 (0.3 g)\n" in said_by(dem.engines, dem.RecordMotionEngine(ids=[base], samples=[0, 0.3, -0.2], interval=200, scale=9.81))
 for peak, said in ((343.0, True), (0.035, True), (50.0, False), (0.1, False), (0.0, False)):
     text = said_by(dem.engines, dem.RecordMotionEngine(ids=[base], samples=[0, -peak]))
     assert (f"a record reaches {peak:g}: in g or cm/s^2? Accelerations are in m/s^2\n" in text) == said, peak

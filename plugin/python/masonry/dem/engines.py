@@ -4,11 +4,11 @@ import math
 
 import numpy as np
 from masonry._given import is_whole, number_given
-from masonry._pose import axes_of
 from masonry.motions import Motion, PulseTrain, Record
 from yade import O, wrapper
 
-from masonry.dem.scene import _boxes, _layout, check_blocks, check_material, check_recorder, floating_and_supports, listed, structures
+from masonry.dem import notes
+from masonry.dem.scene import _boxes, _half_sizes, check_blocks, check_material, check_recorder, structures
 from masonry.dem.walls import finite_numbers
 
 _MODELS = ("auto", "planar", "spatial", "compliant")
@@ -29,10 +29,6 @@ _LEAST_PENETRATION = 1e-10
 _GRAVITIES = 1e-6, 1e6
 # Overlap of rigid blocks relative to their smallest size: what MoreauJeanIntegrator accepts, relative to half of it.
 _MOST_OVERLAP = 5e-5
-# What is no slip of units: the longest free block (mm for m), m; densities (g/cm^3), kg/m^3; peaks of records (g, cm/s^2), m/s^2.
-_LONGEST = 50
-_DENSITIES = 10, 20000
-_PEAKS = 0.1, 50
 # Share of the critical time step: peaks of a rocking block at the default penetration change by 1 % of their error below it.
 _STEP_FRACTION = 0.2
 
@@ -50,14 +46,6 @@ def _is_given(material, name):
 def has_stiffness(material):
     """Whether a script has given the BlockMat a joint stiffness, in either direction."""
     return _is_given(material, "normalStiffness") or _is_given(material, "shearStiffness")
-
-
-def _half_sizes(bodies):
-    """(n, 3), m: along the axis of each that is nearest to x of those that are not upright, along the other, and along the upright one."""
-    _, sizes, quaternions = _layout(bodies)
-    axes = np.abs(axes_of(quaternions))
-    order = [sorted(range(3), key=lambda k: (k == own[:, 2].argmax(), -own[k, 0])) for own in axes]
-    return np.take_along_axis(sizes / 2, np.array(order, dtype=int).reshape(-1, 3), axis=1)
 
 
 def _largest_pressure(free, gravity):
@@ -116,8 +104,11 @@ def record_motion(record, ids, direction=(1, 0, 0), start=0.0):
     unit = finite_numbers("direction", direction, 3, what)
     if not abs(math.hypot(*unit) - 1) < 1e-9:
         raise ValueError(f"direction = {direction!r}: must be {what}")
-    return wrapper.RecordMotionEngine(ids=[int(id) for id in ids], samples=record.samples.tolist(), interval=record.dt, baseline=record.baseline,
-                                      direction=unit, start=start)
+    engine = wrapper.RecordMotionEngine(ids=[int(id) for id in ids], samples=record.samples.tolist(), interval=record.dt, baseline=record.baseline,
+                                        direction=unit, start=start)
+    if getattr(record, "unit_given", True):
+        notes.has_unit(engine)
+    return engine
 
 
 def _in_yade(motion):
@@ -131,39 +122,6 @@ def _in_yade(motion):
 
 def _counted(number, word):
     return f"{number} {word}{'s' if number != 1 else ''}"
-
-
-def _peak(record):
-    """m/s^2, before the baseline."""
-    return max(map(abs, record.samples)) * abs(record.scale)
-
-
-def _records(motions):
-    """Length and peak of each record, so that slips of units (g for m/s^2, samples a second for the interval) are seen."""
-    said = ""
-    for record in motions:
-        if isinstance(record, wrapper.RecordMotionEngine):
-            said += f"; record of {(len(record.samples) - 1) * record.interval:g} s, at most {_peak(record):.3g} m/s^2"
-    return said
-
-
-def _pivots_that_slip(supports):
-    """A sentence on the block whose landings slip most: without slip, one that obeys C asks for a friction of slenderness (1 - C)/(1 + C).
-    supports: (body below, body on it). Joints as Ip2_BlockMat_BlockMat_BlockPhys makes them of two materials."""
-    slip = []
-    for (below, body), half in zip(supports, _half_sizes([body for _, body in supports])):
-        materials = below.mat, body.mat
-        given = [m.restitution for m in materials if not math.isnan(m.restitution)]
-        if body.dynamic and given and not any(m.noSlip for m in materials):
-            restitution, friction = sum(given) / len(given), math.tan(min(m.frictionAngle for m in materials))
-            asked = half[2] / min(half[0], half[1]) * (1 - restitution) / (1 + restitution)
-            if asked > friction:
-                slip.append((asked - friction, body.id, below.id, asked, restitution, friction))
-    if not slip:
-        return None
-    _, id, on, asked, restitution, friction = max(slip)
-    return (f"masonry.dem: where block {id} rocks on body {on} about its narrow side it asks for a friction coefficient of {asked:.2g} to land "
-            f"with restitution {restitution:g} and has {friction:.2g}: pivots slip, and what slips rocks on farther (noSlip=True: it does not slip)")
 
 
 def _several(value):
@@ -204,30 +162,10 @@ def _check_engines(motions, recorders, others):
         raise ValueError(f"others = {others!r}: must be a list of engines")
 
 
-def _say_what_looks_odd(blocks, motions, penetration, gravity):
-    """Prints a line for each; overlapping blocks are a ValueError."""
-    floating, supports = floating_and_supports(floating=False)
-    if floating and gravity > 0:
-        print(f"masonry.dem: no chain of supports joins these blocks to a prescribed body, they will fall: {listed(floating)}")
-    slips = _pivots_that_slip(supports)
-    if slips:
-        print(slips)
-    for density in sorted({b.mat.density for b in blocks}):
-        if not _DENSITIES[0] <= density <= _DENSITIES[1]:
-            print(f"masonry.dem: a density is {density:g}: densities are in kg/m^3")
-    for peak in (_peak(m) for m in motions if isinstance(m, wrapper.RecordMotionEngine)):
-        if 0 < peak and not _PEAKS[0] <= peak <= _PEAKS[1]:
-            print(f"masonry.dem: a record reaches {peak:.3g}: in g or cm/s^2? Accelerations are in m/s^2")
-    longest = max(2 * max(b.shape.extents) for b in blocks if b.dynamic)
-    if longest > _LONGEST:
-        print(f"masonry.dem: the longest block measures {longest:g} m: sizes are in m")
-    if penetration is not None and all(_is_given(b.mat, "normalStiffness") for b in blocks):
-        print(f"masonry.dem: penetration = {penetration:g} is not used: every BlockMat has its normalStiffness")
-
-
 def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None, impact_order=None, gravity=9.81, recorder=None, others=(), method="auto"):
-    """The list for O.engines; sets O.dt and prints the choice and its reason, the blocks that stand on nothing or whose
-    landings slip, length and peak of records, and numbers that look like a slip of units.
+    """The list for O.engines; sets O.dt and prints the choice and its reason, length and peak of records, and a line each on what may not be
+    meant: blocks that stand on nothing, bodies that no block touches, pivots that slip, a base that goes on when its record ends, a motion that was
+    made and not given, attributes that the model does not read, numbers that look like a slip of units.
 
     motion        a motion engine (PulseTrainEngine, RecordMotionEngine), a list of them, or None. Those of the same bodies, in perpendicular directions
                   (two or three components of a record), add up
@@ -265,13 +203,17 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
         raise ValueError("there is no free block in O.bodies: add one with dem.block() before dem.engines()")
     for body in blocks:
         check_material(body.mat)
-    _say_what_looks_odd(blocks, motions, penetration, gravity)
+    notes.say_what_looks_odd(blocks, motions, gravity, others)
     reason = "asked for"
     if model == "auto":
         if penetration is not None:
             model, reason = "compliant", "penetration is given"
         elif any(has_stiffness(b.mat) for b in blocks):
             model, reason = "compliant", "a BlockMat has a joint stiffness"
+    stiff = [name for name in ("normalStiffness", "shearStiffness") if any(_is_given(b.mat, name) for b in blocks)]
+    notes.say_what_is_unused(blocks, model, stiff)
+    if penetration is not None and all(_is_given(b.mat, "normalStiffness") for b in blocks):
+        print(f"masonry.dem: penetration = {penetration:g} is not used: every BlockMat has its normalStiffness")
     if model == "compliant":
         if tolerance is not None or others or method != "auto":
             raise ValueError("tolerance, others and method are for rigid blocks: they must be left out with model='compliant'")
@@ -308,7 +250,7 @@ def _rigid(motions, model, method, dt, tolerance, impact_order, gravity, recorde
     if not step <= integrator.largestTimeStep:
         raise ValueError(f"dt = {dt}: must be at most {integrator.largestTimeStep:.3g} s, 0.15 sqrt(R/g) of the smallest block")
     O.dt = float(step)
-    print(f"masonry.dem: rigid blocks, {choice}; dt = {O.dt:.3g} s{_records(motions)}")
+    print(f"masonry.dem: rigid blocks, {choice}; dt = {O.dt:.3g} s{notes.of_records(motions)}")
     return [wrapper.ForceResetter(), *others, *recorders, integrator]
 
 
@@ -326,7 +268,7 @@ def _compliant(blocks, motions, reason, dt, penetration, impact_order, gravity, 
         raise ValueError(f"dt = {dt}: must be below {critical:.3g} s, the critical step of joints this stiff")
     O.dt = float(dt if dt is not None else _STEP_FRACTION * critical)
     reasons.append(f"dt = {O.dt:.3g} s ({O.dt / critical:.2g} of the critical step)")
-    print("masonry.dem:", "; ".join(reasons) + _records(motions))
+    print("masonry.dem:", "; ".join(reasons) + notes.of_records(motions))
 
     smallest = min(min(b.shape.extents) for b in blocks)
     return [

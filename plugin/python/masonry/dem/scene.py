@@ -261,6 +261,14 @@ def _layout(bodies):
     return np.array([tuple(s.pos) for s in states]).reshape(-1, 3), sizes, quaternions
 
 
+def _half_sizes(bodies):
+    """(n, 3), m: along the axis of each that is nearest to x of those that are not upright, along the other, and along the upright one."""
+    _, sizes, quaternions = _layout(bodies)
+    axes = np.abs(axes_of(quaternions))
+    order = [sorted(range(3), key=lambda k: (k == own[:, 2].argmax(), -own[k, 0])) for own in axes]
+    return np.take_along_axis(sizes / 2, np.array(order, dtype=int).reshape(-1, 3), axis=1)
+
+
 def save_blocks(path):
     """Writes the free blocks as they are now (centre, size, orientation, label of the material) to a .csv or .json table, in the order of their
     ids: dem.blocks_from_table(path, ...) makes the same bits of them again. Velocities are not kept: O.save does that. Raises ValueError

@@ -1,0 +1,183 @@
+"""What dem.engines() says of a scene in which a number or a body may not be what the script means: a line each, and the run goes on."""
+
+import math
+import weakref
+
+import masonry
+import numpy as np
+from masonry.dem.scene import _half_sizes, floating_and_supports, listed
+from yade import O, wrapper
+
+# What is no slip of units: the longest free block (mm for m), m; densities (g/cm^3) and those of masonry, kg/m^3; peaks of records (g, cm/s^2), m/s^2.
+_LONGEST = 50
+_DENSITIES = 500, 20000
+_PEAKS = 0.1, 50
+# Peaks that would be usual in g, of a record whose unit the script has not named.
+_PEAKS_IN_G = 0.1, 1.5
+_STANDARD_GRAVITY = 9.80665  # m/s^2, as records are given in g
+# A base goes on when its record ends if it has more than this share of its largest speed.
+_STILL = 1e-3
+
+_made = []  # weak references to the motion engines that a script has made and not yet given to dem.engines()
+_with_unit = []  # weak references to those whose record knows its unit
+
+
+def _watch(cls):
+    make = cls.__init__
+
+    def __init__(self, *arguments, **attributes):
+        make(self, *arguments, **attributes)
+        _made.append(weakref.ref(self))
+
+    cls.__init__ = __init__
+
+
+for _cls in (wrapper.RecordMotionEngine, wrapper.PulseTrainEngine):
+    _watch(_cls)
+
+
+def has_unit(engine):
+    """The script has said in which unit the engine's record is."""
+    _with_unit.append(weakref.ref(engine))
+
+
+def _peak(record):
+    """m/s^2, before the baseline."""
+    return max(map(abs, record.samples)) * abs(record.scale)
+
+
+def _records(motions):
+    return [motion for motion in motions if isinstance(motion, wrapper.RecordMotionEngine)]
+
+
+def of_records(motions):
+    """Length and peak of each record, so that slips of units (g for m/s^2, samples a second for the interval) are seen."""
+    said = ""
+    for record in _records(motions):
+        peak = _peak(record)
+        said += f"; record of {(len(record.samples) - 1) * record.interval:g} s, at most {peak:.3g} m/s^2 ({peak / _STANDARD_GRAVITY:.3g} g)"
+    return said
+
+
+def say_what_looks_odd(blocks, motions, gravity, others):
+    """Prints a line for each; overlapping blocks are a ValueError."""
+    floating, supports = floating_and_supports(floating=False)
+    if floating and gravity > 0:
+        print(f"masonry.dem: no chain of supports joins these blocks to a prescribed body, they will fall: {listed(floating)}")
+    motions = [motion for motion in motions if not motion.dead]
+    for said in (_untouched(others), _motion_left_out(motions), _pivots_that_slip(supports), _pulses_that_slip(supports, motions), *map(_end_of, _records(motions))):
+        if said:
+            print(f"masonry.dem: {said}")
+    for density in sorted({b.mat.density for b in blocks}):
+        if not _DENSITIES[0] <= density <= _DENSITIES[1]:
+            print(f"masonry.dem: a density is {density:g}: densities are in kg/m^3")
+    for record in _records(motions):
+        peak = _peak(record)
+        if 0 < peak and not _PEAKS[0] <= peak <= _PEAKS[1]:
+            print(f"masonry.dem: a record reaches {peak:.3g}: in g or cm/s^2? Accelerations are in m/s^2")
+        elif _PEAKS_IN_G[0] <= peak <= _PEAKS_IN_G[1] and not any(known() is record for known in _with_unit):
+            print(f"masonry.dem: a record given without a unit reaches {peak:.3g} m/s^2: is it in g? Then multiply it by {_STANDARD_GRAVITY:g}; else name its unit")
+    longest = max(2 * max(b.shape.extents) for b in blocks if b.dynamic)
+    if longest > _LONGEST:
+        print(f"masonry.dem: the longest block measures {longest:g} m: sizes are in m")
+
+
+def say_what_is_unused(blocks, model, stiff):
+    """Prints a line on attributes of the materials that the model does not read. stiff: names of the stiffnesses that the script has given."""
+    default = wrapper.BlockMat()
+    unused = [name for name in ("young", "poisson") if any(getattr(b.mat, name) != getattr(default, name) for b in blocks)]
+    if unused:
+        print(f"masonry.dem: {' and '.join(unused)} of a BlockMat have no effect: blocks are rigid, and joints as stiff as normalStiffness and shearStiffness "
+              "(Pa/m, model='compliant') say")
+    if stiff and model != "compliant":
+        print(f"masonry.dem: {' and '.join(stiff)} of a BlockMat have no effect with model={model!r}: model='compliant' takes them")
+
+
+def _untouched(others):
+    """Blocks touch boxes with a BlockMat; what else there is needs `others`, engines of its own."""
+    untouched, unmoved = [], False
+    interact, move = (any(one.__class__.__name__ == name for one in others) for name in ("InteractionLoop", "NewtonIntegrator"))
+    for body in O.bodies:
+        box = isinstance(body.shape, wrapper.Box)
+        if box and isinstance(body.mat, wrapper.BlockMat) or body.isClump:
+            continue
+        loose = body.dynamic and not move
+        if box or not interact or loose:
+            untouched.append(f"{body.id} ({type(body.shape).__name__ if body.shape else 'no shape'})")
+            unmoved |= loose
+    if not untouched:
+        return None
+    return (f"no block touches these bodies, which are no boxes with a BlockMat: {listed(untouched)}"
+            + ("; no engine of `others` moves those that are free" if unmoved else ""))
+
+
+def _motion_left_out(motions):
+    """Sentence on a motion engine that the script has made and given to no dem.engines()."""
+    waiting = [(known, known()) for known in _made]
+    _made[:] = [known for known, motion in waiting if motion is not None and not any(motion is given for given in motions)]
+    present = [motion for motion in (known() for known in _made) if not motion.dead and motion.ids and all(id < len(O.bodies) for id in motion.ids)]
+    if motions or not present:
+        return None
+    return f"no motion: the {type(present[-1]).__name__} of body {listed(present[-1].ids)} does nothing unless it is given, dem.engines(motion=...)"
+
+
+def _end_of(record):
+    """Sentence on a base that goes on when its record ends."""
+    theory = masonry.Record(record.interval, list(record.samples), record.scale, record.baseline)
+    times = record.interval * np.arange(len(record.samples))
+    speeds = theory.velocity(times)
+    if abs(speeds[-1]) <= _STILL * np.abs(speeds).max():
+        return None
+    return (f"when the record ends, at {record.end:g} s, the base is {theory.displacement(times[-1]):.3g} m from where it was and goes on at {speeds[-1]:.3g} m/s "
+            f"(baseline={record.baseline!r}; 'constant' brings it to rest)")
+
+
+# --- friction that pivots ask for ---
+
+
+def _law(below, body):
+    """(restitution or None, friction coefficient or infinity) of a joint, as Ip2_BlockMat_BlockMat_BlockPhys makes it of two materials."""
+    materials = below.mat, body.mat
+    given = [m.restitution for m in materials if not math.isnan(m.restitution)]
+    friction = math.inf if any(m.noSlip for m in materials) else math.tan(min(m.frictionAngle for m in materials))
+    return sum(given) / len(given) if given else None, friction
+
+
+def _pivots_that_slip(supports):
+    """Sentence on the block whose landings slip most: without slip, one that obeys C asks for a friction of slenderness (1 - C)/(1 + C).
+    supports: (body below, body on it)."""
+    slip = []
+    for (below, body), half in zip(supports, _half_sizes([body for _, body in supports])):
+        restitution, friction = _law(below, body)
+        if body.dynamic and restitution is not None:
+            asked = half[2] / min(half[0], half[1]) * (1 - restitution) / (1 + restitution)
+            if asked > friction:
+                slip.append((asked - friction, body.id, below.id, asked, restitution, friction))
+    if not slip:
+        return None
+    _, id, on, asked, restitution, friction = max(slip)
+    return (f"where block {id} rocks on body {on} about its narrow side it asks for a friction coefficient of {asked:.2g} to land "
+            f"with restitution {restitution:g} and has {friction:.2g}: pivots slip, and what slips rocks on farther (noSlip=True: it does not slip)")
+
+
+def _pulses_that_slip(supports, motions):
+    """Sentence on the block at rest that a Dirac pulse of its base would need most friction to tip without slip.
+
+    The base jumps by I: about the edge, (4/3) m R^2 w = m I a (a, b: half height and half width). The edge gives the impulses m (I - w a) sideways and
+    m w b upwards, whose ratio is (s^2 + 4)/(3 s) with the slenderness s = a/b: 4/3 at least. A block that carries others asks for something
+    else: only those that carry none are looked at."""
+    slip, carrying = [], {below.id for below, _ in supports}
+    for motion in motions:
+        if not isinstance(motion, wrapper.PulseTrainEngine) or motion.shape != "dirac" or motion.direction[2] != 0:
+            continue
+        along = 0 if abs(motion.direction[0]) >= abs(motion.direction[1]) else 1
+        for (below, body), half in zip(supports, _half_sizes([body for _, body in supports])):
+            friction, slenderness = _law(below, body)[1], half[2] / half[along]
+            asked = (slenderness**2 + 4) / (3 * slenderness)
+            if body.dynamic and body.id not in carrying and below.id in motion.ids and asked > friction:
+                slip.append((asked - friction, body.id, below.id, asked, friction))
+    if not slip:
+        return None
+    _, id, on, asked, friction = max(slip)
+    return (f"a Dirac pulse of body {on} asks for a friction coefficient of {asked:.3g} to tip block {id} without slip, which has {friction:.3g}: it slips, "
+            "and rocks less (noSlip=True: it does not slip)")

@@ -1,0 +1,95 @@
+"""What dem.engines() says of scenes that may not be what the script means, and of those that are: nothing."""
+import math
+
+import numpy as np
+from masonry import dem
+from rocking_scene import refuses, said_by
+from yade import FrictMat, NewtonIntegrator, O, utils
+
+import masonry
+
+
+def scene(size=(0.5, 0.5, 1.5), friction=0.8, **material):
+    O.reset()
+    stone = dem.BlockMat(**{"density": 2000, "frictionAngle": math.atan(friction), **material})
+    base = dem.base((4, 2, 0.2), stone)
+    return base, dem.block(size, stone, on=base), stone
+
+
+def lines(*arguments, **options):
+    return [line for line in said_by(dem.engines, *arguments, **options).splitlines() if line]
+
+
+# A sound scene: the choice and no more.
+base, block, _ = scene()
+assert len(lines()) == 1
+motion = dem.record_motion(masonry.Record(0.01, 2 * np.sin(2 * np.pi * np.arange(0, 1.005, 0.01))), ids=[base])
+assert len(lines(motion)) == 1 and "at most 2 m/s^2 (0.204 g)" in lines(motion)[0]  # 2/9.80665
+
+# Bodies that no block touches.
+for add, said in ((lambda: O.bodies.append(utils.sphere((0, 0, 5), 0.1, material=FrictMat())), "2 (Sphere); no engine of `others` moves those that are free"),
+                  (lambda: O.bodies.append(utils.box((0, 0, 5), (1, 1, 1), fixed=True, material=FrictMat())), "2 (Box)"),
+                  (lambda: O.bodies.append(utils.facet([(0, 0, 5), (1, 0, 5), (0, 1, 5)], fixed=True, material=FrictMat())), "2 (Facet)")):
+    scene()
+    add()
+    said_here = [line for line in lines() if "no block touches" in line]
+    assert len(said_here) == 1 and said_here[0].endswith(said), said_here
+scene()
+O.bodies.append(utils.sphere((0, 0, 5), 0.1, material=FrictMat()))
+assert "no engine of" not in "".join(lines(others=[NewtonIntegrator(mask=2)])) and "2 (Sphere)" in "".join(lines(others=[NewtonIntegrator(mask=2)]))
+
+# A motion that was made and not given; once it has been, it is the script's choice to go on without it.
+base, block, _ = scene()
+motion = dem.PulseTrainEngine(ids=[base], impulse=0.05, times=[0])
+assert sum("no motion: the PulseTrainEngine of body 0" in line for line in lines()) == 1
+motion.dead = True
+assert len(lines()) == 1
+motion.dead = False
+lines(motion)
+assert len(lines()) == 1
+
+# A base that goes on: a constant acceleration a for T leaves it at a T^2/2 with a T.
+scene()
+for baseline, said in (("none", True), ("constant", False)):
+    motion = dem.record_motion(masonry.Record(0.1, [2.0] * 11, baseline=baseline), ids=[0], start=0.5)
+    found = [line for line in lines(motion) if "when the record ends" in line]
+    assert len(found) == said, (baseline, found)
+    assert not said or "at 1.5 s, the base is 1 m from where it was and goes on at 2 m/s" in found[0]
+
+# Dirac pulses ask for (s^2 + 4)/(3 s): 13/9 for s = 3, 8/6 for s = 2; with less, the block slips (measured in the run), with more it does not.
+for size, asked in (((0.5, 0.5, 1.5), 13 / 9), ((0.5, 0.5, 1.0), 4 / 3)):
+    for factor in (0.98, 1.02):
+        base, block, _ = scene(size, factor * asked)
+        said = "".join(lines(motion := dem.PulseTrainEngine(ids=[base], impulse=0.2, times=[0])))
+        assert (f"Dirac pulse of body 0 asks for a friction coefficient of {asked:.3g} to tip block 1" in said) == (factor < 1), said
+        O.engines = dem.engines(motion)
+        O.dt /= 10
+        dem.run(0.05)
+        b, pivot = size[0] / 2, O.bodies[block].state
+        # The lower corner that it turns about, relative to the base: the one that is on the floor.
+        corner = pivot.pos + pivot.ori * type(pivot.pos)(-b, 0, -size[2] / 2)
+        slip = abs(corner[0] - O.bodies[base].state.pos[0] + b)
+        assert (slip > 1e-6 * b) == (factor < 1), (size, factor, slip)
+base, block, stone = scene((0.5, 0.5, 0.5), 0.7)
+dem.block((0.5, 0.5, 0.5), stone, on=block)
+assert "Dirac" not in "".join(lines(dem.PulseTrainEngine(ids=[base], impulse=0.2, times=[0])))  # stacks ask for something else
+base, *_ = scene(noSlip=True)
+assert "Dirac" not in "".join(lines(dem.PulseTrainEngine(ids=[base], impulse=0.2, times=[0])))
+
+# Units and attributes without effect.
+for density, said in ((499, True), (500, False), (20001, True)):
+    scene(density=density)
+    assert (f"a density is {density:g}: densities are in kg/m^3" in "".join(lines())) == said
+for peak, unit, said in ((0.3, False, True), (0.3, True, False), (0.3, None, False), (1.6, False, False), (0.099, False, False)):
+    base, *_ = scene()
+    record = masonry.Record(0.01, peak * np.sin(2 * np.pi * np.arange(0, 1.005, 0.01)))
+    if unit is not None:
+        record.unit_given = unit
+    found = [line for line in lines(dem.record_motion(record, ids=[base])) if "without a unit" in line]
+    assert len(found) == said and (not said or "is it in g?" in found[0]), (peak, unit)
+for model, given, said in (("planar", dict(young=1e10), "young of a BlockMat have no effect"), ("compliant", dict(young=1e10, poisson=0.1), "young and poisson of"),
+                           ("planar", dict(normalStiffness=1e9), "normalStiffness of a BlockMat have no effect with model='planar'"),
+                           ("compliant", dict(normalStiffness=1e9), None), ("planar", {}, None)):
+    scene(**given)
+    found = [line for line in lines(model=model) if "no effect" in line]
+    assert len(found) == (said is not None) and (said is None or said in found[0]), (model, given, found)
