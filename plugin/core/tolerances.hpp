@@ -142,6 +142,10 @@ constexpr double leans = 1e-3;
 // Distance from that border, relative to the smallest half size, within which such a vertex is none of the contact. Larger: where the block
 // falls back on its face, that carries it so far from its end; smaller: what slides farther in a step is kicked.
 constexpr double passing = 0.02;
+// Penetration, relative to the smallest half size, by features that a pair did not have at the start of a step, from which on the step is
+// done in parts. Larger: boxes are so deep in each other where a corner passes another; smaller: features that change within the reach of
+// vertices (contact::vertexReach) divide steps.
+constexpr double unseen = contact::vertexReach;
 
 } // namespace masonry::tolerance::rigid
 

@@ -53,6 +53,28 @@ double slipOn(const RigidSystem<K>& s, const SmoothStep<K>& step, PointRef ref)
 	return atStart(s, ref).slip.normalized().dot(atEnd(s, step, ref).slip);
 }
 
+// The features that a pair has at the end of the trial.
+template <class K>
+FoundPoints<K> featuresAtEnd(const RigidSystem<K>& s, const SmoothStep<K>& step, const ContactPair<K>& pair)
+{
+	typename K::Memory memory = pair.memory;
+	return findPoints(s.bodies[pair.body1], step.trial().bodies[pair.body1].end, s.bodies[pair.body2], step.trial().bodies[pair.body2].end,
+	                  memory);
+}
+
+// No point of either body goes farther than this relative to the other one in the trial.
+template <class K>
+double relativeTravel(const RigidSystem<K>& s, const SmoothStep<K>& step, const ContactPair<K>& pair)
+{
+	const RigidBody<K>&body1 = s.bodies[pair.body1], &body2 = s.bodies[pair.body2];
+	const auto &end1 = step.trial().bodies[pair.body1], &end2 = step.trial().bodies[pair.body2];
+	const typename K::Velocity difference = end2.mean - end1.mean;
+	const typename K::Spin spin1 = end1.mean.template tail<K::spins>();
+	const typename K::Vector apart = body2.pose.position - body1.pose.position;
+	return step.trial().h * ((difference.template head<K::dimension>() - K::cross(spin1, apart)).norm() +
+	                         difference.template tail<K::spins>().norm() * (body1.prescribed ? body2 : body1).halfSize.norm());
+}
+
 } // namespace
 
 template <class K>
@@ -128,6 +150,38 @@ Event localise(const RigidSystem<K>& s, SmoothStep<K>& step, Event event)
 }
 
 template <class K>
+bool isContact(const RigidSystem<K>& s, const SmoothStep<K>& step, const Event& event)
+{
+	if (event.kind != Event::closing)
+		return true;
+	const ContactPair<K>& pair = s.pairs[event.point.pair];
+	const auto found = featuresAtEnd(s, step, pair);
+	const auto last = found.features.begin() + found.size;
+	return std::find(found.features.begin(), last, pair.points[event.point.point].feature) != last;
+}
+
+template <class K>
+int unseenPenetration(const RigidSystem<K>& s, const SmoothStep<K>& step)
+{
+	const double bound = tolerance::rigid::unseen * step.scales.length;
+	for (int c = 0; c < int(s.pairs.size()); ++c) {
+		const ContactPair<K>& pair = s.pairs[c];
+		if (relativeTravel(s, step, pair) < bound)
+			continue;
+		double deepest = 0;
+		for (int i = 0; i < pair.size; ++i)
+			deepest = std::min(deepest, step.frame(c, i).gap);
+		const auto &body1 = s.bodies[pair.body1], &body2 = s.bodies[pair.body2];
+		const auto &end1 = step.trial().bodies[pair.body1].end, &end2 = step.trial().bodies[pair.body2].end;
+		const auto found = featuresAtEnd(s, step, pair);
+		for (int i = 0; i < found.size; ++i)
+			if (K::frame(found.features[i], body1.halfSize, end1, body2.halfSize, end2).gap < deepest - bound)
+				return c;
+	}
+	return -1;
+}
+
+template <class K>
 void touchingPoints(const RigidSystem<K>& s, std::vector<PointRef>& out)
 {
 	out.clear();
@@ -144,6 +198,10 @@ template Event findEvent(const RigidSystem<Plane>&, SmoothStep<Plane>&, double);
 template Event findEvent(const RigidSystem<Space>&, SmoothStep<Space>&, double);
 template Event localise(const RigidSystem<Plane>&, SmoothStep<Plane>&, Event);
 template Event localise(const RigidSystem<Space>&, SmoothStep<Space>&, Event);
+template bool isContact(const RigidSystem<Plane>&, const SmoothStep<Plane>&, const Event&);
+template bool isContact(const RigidSystem<Space>&, const SmoothStep<Space>&, const Event&);
+template int unseenPenetration(const RigidSystem<Plane>&, const SmoothStep<Plane>&);
+template int unseenPenetration(const RigidSystem<Space>&, const SmoothStep<Space>&);
 template void touchingPoints(const RigidSystem<Plane>&, std::vector<PointRef>&);
 template void touchingPoints(const RigidSystem<Space>&, std::vector<PointRef>&);
 

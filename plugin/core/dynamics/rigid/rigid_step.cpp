@@ -28,6 +28,9 @@ StepReport RigidStep<K>::advance(RigidSystem<K>& s, double dt)
 				s.pairs[event.point.pair].points[event.point.point].closed = true;
 		} else if (event.kind == Event::stop) {
 			s.pairs[event.point.pair].points[event.point.point].sliding = false;
+		} else if (event.kind == Event::change) {
+			findContacts(s, s.pairs[event.point.pair], true);
+			land(s);
 		}
 		if (event.kind == Event::none && left == 0)
 			break;
@@ -37,42 +40,72 @@ StepReport RigidStep<K>::advance(RigidSystem<K>& s, double dt)
 	return report;
 }
 
-// Points of all pairs, as features. One that was there before keeps its state, and so does one that another feature of the same place takes
-// over from.
 template <class K>
 void RigidStep<K>::findContacts(RigidSystem<K>& s)
 {
-	const double touching = s.settings.merged * step.scales.length, samePlace = 2 * tolerance::contact::vertexReach * step.scales.length;
-	for (ContactPair<K>& pair : s.pairs) {
-		const auto &body1 = s.bodies[pair.body1], &body2 = s.bodies[pair.body2];
-		const FoundPoints<K> found = findPoints(body1, body2, pair.memory);
-		const bool same = sameFeatures(pair, found);
-		if (same && !s.moved)
-			continue;
-		const ContactPair<K> before = pair;
-		pair.size = found.size;
-		pair.face1 = found.face1;
-		pair.face2 = found.face2;
-		for (int i = 0; i < found.size; ++i) {
-			ContactPoint<K>& point = pair.points[i];
-			if (!same)
-				point = {};
-			point.feature = found.features[i];
-			locate(point, body1, body2);
-			if (same)
-				continue;
-			point.closed = point.gap <= touching;
-			for (int k = 0; k < before.size; ++k)
-				if (takeState(before.points[k], samePlace, point) && before.points[k].feature == point.feature)
-					break;
-		}
-	}
+	for (ContactPair<K>& pair : s.pairs)
+		findContacts(s, pair, false);
 	s.moved = false;
 }
 
-// A trial that ends with the first event, or without one after h.
+// Points of a pair, as features. One that was there before keeps its state, and so does one that another feature of the same place takes
+// over from. Others are closed where they touch; those found within a step may be about to strike, and are open.
+template <class K>
+void RigidStep<K>::findContacts(RigidSystem<K>& s, ContactPair<K>& pair, bool within)
+{
+	const double touching = s.settings.merged * step.scales.length, samePlace = 2 * tolerance::contact::vertexReach * step.scales.length;
+	const auto &body1 = s.bodies[pair.body1], &body2 = s.bodies[pair.body2];
+	const FoundPoints<K> found = findPoints(body1, body2, pair.memory);
+	const bool same = sameFeatures(pair, found);
+	if (same && !s.moved)
+		return;
+	const ContactPair<K> before = pair;
+	pair.size = found.size;
+	pair.face1 = found.face1;
+	pair.face2 = found.face2;
+	for (int i = 0; i < found.size; ++i) {
+		ContactPoint<K>& point = pair.points[i];
+		if (!same)
+			point = {};
+		point.feature = found.features[i];
+		locate(point, body1, body2);
+		if (same)
+			continue;
+		point.closed = point.gap <= touching && !within;
+		for (int k = 0; k < before.size; ++k)
+			if (takeState(before.points[k], samePlace, point) && before.points[k].feature == point.feature)
+				break;
+	}
+}
+
+// A trial that ends with the first event, or without one after h. Where boxes would penetrate each other unseen, it is halved until they
+// do not, and their features are searched again at its end.
 template <class K>
 Event RigidStep<K>::tryStep(RigidSystem<K>& s, double h)
+{
+	constexpr int mostHalvings = 12;
+	Event event = tryUpTo(s, h);
+	if (report.events >= s.settings.mostEvents)
+		return event;
+	int unseen = -1;
+	for (int k = 0; k < mostHalvings; ++k) {
+		const int pair = unseenPenetration(s, step);
+		if (pair < 0)
+			break;
+		unseen = pair;
+		event = tryUpTo(s, step.trial().h / 2);
+	}
+	if (unseen >= 0 && event.kind == Event::none) {
+		++report.events;
+		return {Event::change, {unseen, -1}, step.trial().h};
+	}
+	if (!isContact(s, step, event))
+		event.kind = Event::change;
+	return event;
+}
+
+template <class K>
+Event RigidStep<K>::tryUpTo(RigidSystem<K>& s, double h)
 {
 	const bool localised = report.events < s.settings.mostEvents;
 	const double rest = tolerance::restSpeed * step.scales.speed;

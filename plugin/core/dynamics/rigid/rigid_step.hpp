@@ -13,7 +13,9 @@ public:
 
 private:
 	void findContacts(RigidSystem<K>& system);
+	void findContacts(RigidSystem<K>& system, ContactPair<K>& pair, bool within);
 	Event tryStep(RigidSystem<K>& system, double h);
+	Event tryUpTo(RigidSystem<K>& system, double h);
 	bool land(RigidSystem<K>& system);
 	void answerImpacts(RigidSystem<K>& system, size_t known);
 	void takeJumps(RigidSystem<K>& system);

@@ -79,12 +79,18 @@ bool takeState(const ContactPoint<K>& old, double samePlace, ContactPoint<K>& po
 
 // The points of a pair of these bodies, none if there are none; without a margin, since lists of pairs hold only boxes that are near.
 template <class K>
-FoundPoints<K> findPoints(const RigidBody<K>& body1, const RigidBody<K>& body2, typename K::Memory& memory)
+FoundPoints<K> findPoints(const RigidBody<K>& body1, const typename K::Pose& pose1, const RigidBody<K>& body2,
+                          const typename K::Pose& pose2, typename K::Memory& memory)
 {
 	FoundPoints<K> found;
-	if (!K::findPoints(body1.halfSize, body1.pose, body2.halfSize, body2.pose, std::numeric_limits<double>::infinity(), memory, found))
+	if (!K::findPoints(body1.halfSize, pose1, body2.halfSize, pose2, std::numeric_limits<double>::infinity(), memory, found))
 		found.size = 0;
 	return found;
+}
+template <class K>
+FoundPoints<K> findPoints(const RigidBody<K>& body1, const RigidBody<K>& body2, typename K::Memory& memory)
+{
+	return findPoints(body1, body1.pose, body2, body2.pose, memory);
 }
 
 template <class K>
