@@ -59,7 +59,7 @@ private:
 	const masonry::UnitPulse& shapeOf(size_t k) const { return isSingle(k) ? singleUnit : unit; }
 
 	masonry::UnitPulse unit, singleUnit; // shape and duration of pulses of 2I and of I
-	vector<Past> past;       // pulse by pulse, from pulseTimes and pulseJumps
+	vector<Past> past;                   // pulse by pulse, from pulseTimes and pulseJumps
 };
 REGISTER_SERIALIZABLE(PulseTrainEngine);
 

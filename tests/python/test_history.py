@@ -163,7 +163,7 @@ def test_with_constant_moment_what_reaches_the_critical_angle_has_overturned():
 
 @pytest.mark.parametrize("arguments, words", [
     (dict(restitution=-0.1), "restitution = -0.1"),
-    (dict(restitution=np.nan), "restitution = nan"),
+    (dict(restitution="a"), "restitution = 'a': must be a number"),
     (dict(initial_angle=2.0), "initial_angle = 2"),
     (dict(initial_velocity=np.inf), "initial_velocity = inf"),
     (dict(t_end=-1), "t_end = -1"),
@@ -324,3 +324,12 @@ def test_bad_vertical_motions():
                             (1.0, "vertical = 1.0: must be a motion")):
         with pytest.raises(ValueError, match=words):
             masonry.simulate(block, masonry.Sine(3.0, 1.0), vertical=vertical)
+
+
+def test_nan_is_the_natural_restitution_and_sizes_are_whole():
+    block = masonry.RockingBlock.from_size(0.6, np.array([3.0, 4.0]))
+    assert block.half_width == 0.3 and block.half_height.tolist() == [1.5, 2]
+    assert isinstance(masonry.RockingBlock.from_size(0.6, 3.0).slenderness, float)
+    natural, mixed = (masonry.simulate(block, initial_angle=0.1, restitution=C, half_cycles=3) for C in (None, [np.nan, 0.5]))
+    np.testing.assert_array_equal(natural.peak_angles[0], mixed.peak_angles[0])
+    assert np.abs(natural.peak_angles[1, 1]) > np.abs(mixed.peak_angles[1, 1])

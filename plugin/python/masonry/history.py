@@ -7,7 +7,7 @@ import numpy as np
 
 from . import _core
 from ._arrays import columns, restore, shape_of
-from ._given import whole_given
+from ._given import array_given, whole_given
 from .motions import Motion, PulseTrain, Record, Still
 
 
@@ -60,7 +60,8 @@ def _arguments(block, motion, restitution, restoring, initial_angle, initial_vel
     motion, vertical = _motion_given("motion", motion), _motion_given("vertical", vertical)
     if isinstance(vertical, PulseTrain) and vertical.times is None:
         raise ValueError(f"vertical = {vertical!r}: must be a motion with a known course, not a resonant train")
-    restitution = block.natural_restitution if restitution is None else restitution
+    given = array_given("restitution", np.nan if restitution is None else restitution)
+    restitution = np.where(np.isnan(given), block.natural_restitution, given)
     t_end = np.inf if t_end is None else t_end
     half_cycles = -1 if half_cycles is None else whole_given("half_cycles", half_cycles, 1)
     shape = np.broadcast_shapes(block.shape, motion.shape, vertical.shape, shape_of(restitution, initial_angle, initial_velocity, t_end))
@@ -72,7 +73,7 @@ def simulate(block, motion=None, restitution=None, restoring="exact", initial_an
              vertical=None):
     """History of the block(s) from the given state under the motion of the base; all arguments but the names broadcast.
 
-    restitution: C in [0, 1]; None: the block's natural one. restoring: 'exact' (gravity as it is), 'linear' (Housner), 'constant'
+    restitution: C in [0, 1]; None or NaN: the block's natural one. restoring: 'exact' (gravity as it is), 'linear' (Housner), 'constant'
     (Casapulla and Maione). The run ends at t_end (s), after so many half_cycles, or when the motion is over and the block at rest
     or overturned. A block is overturned when it cannot come back (free), lies on its side (moved base), or has reached the
     critical angle (constant moment).
