@@ -25,7 +25,10 @@ void PulseTrainEngine::postLoad(PulseTrainEngine&)
 		reject(*this, "halfCycles", halfCycles, "a number >= 1, or -1 for a train without end");
 	if (!(duration >= 0) || std::isinf(duration))
 		reject(*this, "duration", duration, "a finite time >= 0 in s");
+	if (singleKeeps != "amplitude" && singleKeeps != "duration")
+		reject(*this, "singleKeeps", singleKeeps, "'amplitude' or 'duration'");
 	unit = {masonry::pulseShapeFromName(shape), duration};
+	singleUnit = masonry::singlePulse(unit, masonry::singleKeepsFromName(singleKeeps));
 	past.clear();
 	for (size_t k = 0; k < pulseTimes.size(); ++k)
 		addPast(k);
@@ -41,9 +44,16 @@ void PulseTrainEngine::forget()
 
 void PulseTrainEngine::addPast(size_t k)
 {
-	const Real end = pulseTimes[k] + unit.duration, moved = pulseJumps[k] * unit.displacement(unit.duration);
-	const Past before = past.empty() ? Past {end, 0, 0} : past.back();
+	const masonry::UnitPulse& pulse = shapeOf(k);
+	const Real ownEnd = pulseTimes[k] + pulse.duration;
+	const Past before = past.empty() ? Past {ownEnd, 0, 0} : past.back();
+	const Real end = std::max(ownEnd, before.end), moved = pulseJumps[k] * pulse.displacement(end - pulseTimes[k]);
 	past.push_back({end, before.velocity + pulseJumps[k], before.displacement + before.velocity * (end - before.end) + moved});
+}
+
+bool PulseTrainEngine::isSingle(size_t k) const
+{
+	return k == 0 || (resonant() ? int(k) == halfCycles : assembly && k + 1 == times.size());
 }
 
 size_t PulseTrainEngine::ended(Real t) const
@@ -56,7 +66,7 @@ Real PulseTrainEngine::acting(Real t, Real (masonry::UnitPulse::*part)(double) c
 {
 	Real result = 0;
 	for (size_t k = ended(t); k < pulseTimes.size() && pulseTimes[k] <= t; ++k)
-		result += pulseJumps[k] * (unit.*part)(t - pulseTimes[k]);
+		result += pulseJumps[k] * (shapeOf(k).*part)(t - pulseTimes[k]);
 	return result;
 }
 
@@ -84,16 +94,14 @@ Real PulseTrainEngine::end() const
 Real PulseTrainEngine::nextKink(Real after, Real until) const
 {
 	Real first = until;
-	const auto consider = [&](const vector<Real>& instants, Real shift) {
-		const auto next = std::upper_bound(instants.begin(), instants.end(), after - shift);
-		if (next != instants.end())
-			first = std::min(first, *next + shift);
-	};
-	consider(times, 0);
+	const auto next = std::upper_bound(times.begin(), times.end(), after);
+	if (next != times.end())
+		first = std::min(first, *next);
 	if (resonant() && pulseTimes.empty() && after < 0)
 		first = std::min(first, Real(0));
-	if (!dirac())
-		consider(pulseTimes, duration);
+	for (size_t k = dirac() ? pulseTimes.size() : ended(after); k < pulseTimes.size() && pulseTimes[k] < first; ++k)
+		if (const Real end = pulseTimes[k] + shapeOf(k).duration; end > after)
+			first = std::min(first, end);
 	return first < until ? first : std::numeric_limits<Real>::infinity();
 }
 
@@ -101,15 +109,14 @@ Real PulseTrainEngine::meanVelocity(Real from, Real to) const
 {
 	// Between pulses the velocity is a sum of jumps, exactly zero after a train that ends; a difference of displacements
 	// would leave its round-off, divided by the step.
-	const bool acting = !pulseTimes.empty() && pulseTimes.back() + duration > from;
+	const bool acting = !past.empty() && past.back().end > from;
 	return acting ? BaseMotionEngine::meanVelocity(from, to) : velocity(from);
 }
 
 void PulseTrainEngine::addPulse(Real time, vector<BaseJump>& jumps, Real now)
 {
 	const size_t count = pulseTimes.size();
-	const bool last = resonant() ? int(count) == halfCycles : assembly && count + 1 == times.size();
-	const Real size = count == 0 || last ? impulse : 2 * impulse;
+	const Real size = isSingle(count) ? impulse : 2 * impulse;
 	const Real jump = count % 2 == 0 ? size : -size;
 	pulseTimes.push_back(time);
 	pulseJumps.push_back(jump);

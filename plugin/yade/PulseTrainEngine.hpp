@@ -32,7 +32,8 @@ public:
 		((int, halfCycles, -1, Attr::triggerPostLoad, "Resonant pulses: number of half cycles after which a last pulse of size I brings the base to rest; -1: the train does not end."))
 		((bool, assembly, false, Attr::triggerPostLoad, "Scheduled pulses: the last one has the size I and brings the base to rest (assembly units I, -2I, I)."))
 		((string, shape, "dirac", Attr::triggerPostLoad, "How a jump is spread over `duration`: 'dirac', 'rectangular' (constant acceleration) or 'half-sine'."))
-		((Real, duration, 0, Attr::triggerPostLoad, "Duration of a pulse [s]; positive unless shape is 'dirac'."))
+		((Real, duration, 0, Attr::triggerPostLoad, "Duration of a pulse of 2I [s]; positive unless shape is 'dirac'."))
+		((string, singleKeeps, "amplitude", Attr::triggerPostLoad, "What pulses of size I (the first; the last, if that brings the base to rest) share with those of 2I: 'amplitude' (they take half the duration) or 'duration' (they have half the amplitude)."))
 		((vector<Real>, pulseTimes, , Attr::readonly, "Pulses so far: their times after start [s]."))
 		((vector<Real>, pulseJumps, , Attr::readonly, "Pulses so far: their velocity jumps [m/s].")),
 		/* ctor */,
@@ -40,7 +41,7 @@ public:
 	);
 	// clang-format on
 private:
-	/// The base when a pulse and all before it have ended.
+	/// State of the base when a pulse and all before it have ended.
 	struct Past {
 		Real end, velocity, displacement;
 	};
@@ -54,8 +55,12 @@ private:
 	void addPulse(Real time, vector<BaseJump>& jumps, Real now);
 	void addPast(size_t pulse);
 
-	masonry::UnitPulse unit; // shape and duration
-	vector<Past> past;       // pulse by pulse, from pulseTimes and pulseJumps
+	/// Whether pulse k has the size I.
+	bool isSingle(size_t k) const;
+	const masonry::UnitPulse& shapeOf(size_t k) const { return isSingle(k) ? singleUnit : unit; }
+
+	masonry::UnitPulse unit, singleUnit; // shape and duration of pulses of 2I and of I
+	vector<Past> past;                   // pulse by pulse, from pulseTimes and pulseJumps
 };
 REGISTER_SERIALIZABLE(PulseTrainEngine);
 

@@ -46,7 +46,7 @@ def simulate(case):
     # Square in plan: the choices of dem.engines go by the half diagonal of the box (time step) and its smaller width (stiffness).
     base = dem.base((4 * case.two_b, 2 * case.two_b, 0.2), stone)
     block = dem.block((case.two_b, case.two_b, case.two_b * case.slenderness), stone, on=base)
-    shape = dict(shape="rectangular", duration=case.duration) if case.duration else {}
+    shape = dict(shape="rectangular", duration=case.duration, singleKeeps="duration") if case.duration else {}
     train = dem.PulseTrainEngine(ids=[base], impulse=case.impulse, resonantBlock=block, halfCycles=case.half_cycles, **shape)
     recorder = dem.BlockRecorder(ids=[block])
     engines = dem.engines(train, model=case.model, recorder=recorder)

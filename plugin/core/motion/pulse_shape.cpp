@@ -25,7 +25,7 @@ SingleKeeps singleKeepsFromName(const std::string& name)
 		return SingleKeeps::Amplitude;
 	if (name == "duration")
 		return SingleKeeps::Duration;
-	throw std::invalid_argument("what pulses of size I keep = '" + name + "': must be 'amplitude' or 'duration'");
+	throw std::invalid_argument("single_keeps = '" + name + "': must be 'amplitude' or 'duration'");
 }
 
 double UnitPulse::acceleration(double t) const

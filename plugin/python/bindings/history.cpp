@@ -9,7 +9,7 @@ using Table = std::vector<Column>;
 // Everything that one run of a case needs, as Python hands it over.
 struct Cases {
 	Blocks blocks;
-	const Motions& motions;
+	const Motions &motions, &vertical;
 	Column restitution, initialAngle, initialVelocity, endTime;
 	HistoryOptions common;
 
@@ -21,7 +21,9 @@ struct Cases {
 		options.initialVelocity = initialVelocity[i];
 		options.endTime = endTime[i];
 		const size_t place = motions.place(i);
-		return motions.train ? simulate(blocks[i], motions.train(place), options) : simulate(blocks[i], motions.motion(place), options);
+		const BaseMotion upwards = vertical.motion(vertical.place(i));
+		return motions.train ? simulate(blocks[i], motions.train(place), options, upwards)
+		                     : simulate(blocks[i], motions.motion(place), options, upwards);
 	}
 };
 
@@ -36,19 +38,21 @@ Restoring restoringFromName(const std::string& name)
 	throw std::invalid_argument("restoring = '" + name + "': must be 'exact', 'linear' or 'constant'");
 }
 
-Cases toCases(const py::object& blocks, const Motions& motions, const py::object& columns, const std::string& restoring, int halfCycles)
+Cases toCases(const py::object& blocks, const Motions& motions, const Motions& vertical, const py::object& columns,
+              const std::string& restoring, int halfCycles)
 {
-	Cases cases {toBlocks(blocks), motions, toVector(columns[0]), toVector(columns[1]), toVector(columns[2]), toVector(columns[3]), {}};
+	Cases cases {toBlocks(blocks),     motions, vertical, toVector(columns[0]), toVector(columns[1]), toVector(columns[2]),
+	             toVector(columns[3]), {}};
 	cases.common.restoring = restoringFromName(restoring);
 	if (halfCycles >= 0)
 		cases.common.halfCycles = halfCycles;
 	return cases;
 }
 
-py::dict simulateCases(const py::object& blocks, const Motions& motions, const py::object& columns, const std::string& restoring,
-                       int halfCycles)
+py::dict simulateCases(const py::object& blocks, const Motions& motions, const Motions& vertical, const py::object& columns,
+                       const std::string& restoring, int halfCycles)
 {
-	const Cases cases = toCases(blocks, motions, columns, restoring, halfCycles);
+	const Cases cases = toCases(blocks, motions, vertical, columns, restoring, halfCycles);
 	const size_t n = cases.blocks.size();
 	Table impactTimes(n), impactVelocities(n), peakAngles(n), peakTimes(n);
 	std::vector<int> overturnHalfCycle(n);
@@ -76,20 +80,20 @@ py::dict simulateCases(const py::object& blocks, const Motions& motions, const p
 	return result;
 }
 
-np::ndarray overturns(const py::object& blocks, const Motions& motions, const py::object& columns, const std::string& restoring,
-                      int halfCycles)
+np::ndarray overturns(const py::object& blocks, const Motions& motions, const Motions& vertical, const py::object& columns,
+                      const std::string& restoring, int halfCycles)
 {
-	Cases cases = toCases(blocks, motions, columns, restoring, halfCycles);
+	Cases cases = toCases(blocks, motions, vertical, columns, restoring, halfCycles);
 	cases.common.onlyOverturning = true;
 	std::vector<int> result(cases.blocks.size());
 	forEachCase(result.size(), [&](size_t i) { result[i] = cases.run(i).overturned(); });
 	return toArray(result);
 }
 
-py::tuple sampleCases(const py::object& blocks, const Motions& motions, const py::object& columns, const std::string& restoring,
-                      int halfCycles, const py::object& timesObject)
+py::tuple sampleCases(const py::object& blocks, const Motions& motions, const Motions& vertical, const py::object& columns,
+                      const std::string& restoring, int halfCycles, const py::object& timesObject)
 {
-	Cases cases = toCases(blocks, motions, columns, restoring, halfCycles);
+	Cases cases = toCases(blocks, motions, vertical, columns, restoring, halfCycles);
 	cases.common.keepStates = true;
 	const Column times = toVector(timesObject);
 	Table angle(cases.blocks.size(), Column(times.size())), velocity = angle, displacement = angle;
@@ -108,9 +112,11 @@ void exposeHistory()
 {
 	using py::args;
 	// columns = (restitution, initial angle, initial velocity, end time); half_cycles < 0: no limit
-	py::def("simulate", simulateCases, args("blocks", "motions", "columns", "restoring", "half_cycles"), "histories as a dict of arrays");
-	py::def("overturns", overturns, args("blocks", "motions", "columns", "restoring", "half_cycles"), "1 where the block overturns");
-	py::def("sample", sampleCases, args("blocks", "motions", "columns", "restoring", "half_cycles", "t"),
+	py::def("simulate", simulateCases, args("blocks", "motions", "vertical", "columns", "restoring", "half_cycles"),
+	        "histories as a dict of arrays");
+	py::def("overturns", overturns, args("blocks", "motions", "vertical", "columns", "restoring", "half_cycles"),
+	        "1 where the block overturns");
+	py::def("sample", sampleCases, args("blocks", "motions", "vertical", "columns", "restoring", "half_cycles", "t"),
 	        "angle, angular velocity, base displacement at times t, one row a case");
 }
 

@@ -10,17 +10,21 @@ Motions none()
 	return {1, [](size_t) { return BaseMotion(); }, {}};
 }
 
-Motions resonant(const py::object& impulses, int halfCycles)
+Motions resonant(const py::object& impulses, int halfCycles, const std::string& shape, double duration, const std::string& singleKeeps)
 {
 	const Column impulse = toVector(impulses);
-	return {impulse.size(), {}, [=](size_t i) { return ResonantTrain {impulse[i], halfCycles}; }};
+	const UnitPulse pulse {pulseShapeFromName(shape), duration};
+	const SingleKeeps keeps = singleKeepsFromName(singleKeeps);
+	return {impulse.size(), {}, [=](size_t i) { return ResonantTrain {impulse[i], halfCycles, pulse, keeps}; }};
 }
 
-Motions pulses(const py::object& impulses, const py::object& times, bool assembly, const std::string& shape, double duration)
+Motions pulses(const py::object& impulses, const py::object& times, bool assembly, const std::string& shape, double duration,
+               const std::string& singleKeeps)
 {
 	const Column impulse = toVector(impulses), at = toVector(times);
 	const PulseShape form = pulseShapeFromName(shape);
-	return {impulse.size(), [=](size_t i) { return motion::pulseTrain(impulse[i], at, assembly, form, duration); }, {}};
+	const SingleKeeps keeps = singleKeepsFromName(singleKeeps);
+	return {impulse.size(), [=](size_t i) { return motion::pulseTrain(impulse[i], at, assembly, form, duration, keeps); }, {}};
 }
 
 Motions rectangular(const py::object& amplitudes, const py::object& durations)
@@ -72,9 +76,9 @@ void exposeMotion()
 	py::class_<Motions>("Motions", "Base motions, one a case or one for all", py::no_init)
 	    .def("values", values, args("t"), "acceleration, velocity, displacement at times t, one row a motion");
 	py::def("none", none, "a base at rest");
-	py::def("resonant", resonant, args("impulse", "half_cycles"),
-	        "jumps I, -2I, +2I, ... (m/s), each right after an impact; half_cycles -1: without end");
-	py::def("pulses", pulses, args("impulse", "times", "assembly", "shape", "duration"),
+	py::def("resonant", resonant, args("impulse", "half_cycles", "shape", "duration", "single_keeps"),
+	        "jumps I, -2I, +2I, ... (m/s), each right after an impact, spread as the shape says; half_cycles -1: without end");
+	py::def("pulses", pulses, args("impulse", "times", "assembly", "shape", "duration", "single_keeps"),
 	        "jumps I, -2I, +2I, ... (m/s) at times (s), each spread as the shape says over the duration (s); assembly: the last is I");
 	py::def("rectangular", rectangular, args("amplitude", "duration"), "constant acceleration (m/s^2) over the duration (s)");
 	py::def("half_sine", halfSine, args("amplitude", "duration"), "half a sine (m/s^2) over the duration (s)");

@@ -29,6 +29,11 @@ class RockingBlock:
         (self.slenderness, self.radius, self.critical_angle, self.frequency_parameter, self.angular_acceleration,
          self.natural_restitution) = (restore(value, self.shape) for value in _core.block_properties(self._columns(self.shape)))
 
+    @classmethod
+    def from_size(cls, width, height, gravity=9.81):
+        """The block of that whole width (2b) and height (2a), m."""
+        return cls(array_given("width", width) / 2, array_given("height", height) / 2, gravity)
+
     def _columns(self, shape):
         return columns(shape, self.half_width, self.half_height, self.gravity)
 

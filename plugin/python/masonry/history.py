@@ -1,13 +1,14 @@
 """Exact histories of rocking blocks."""
 
+import reprlib
 import warnings
 
 import numpy as np
 
 from . import _core
 from ._arrays import columns, restore, shape_of
-from ._given import whole_given
-from .motions import Motion, Record, Still
+from ._given import array_given, whole_given
+from .motions import Motion, PulseTrain, Record, Still
 
 
 class History:
@@ -47,27 +48,39 @@ class History:
         return self._sample(t)[2]
 
 
-def _arguments(block, motion, restitution, restoring, initial_angle, initial_velocity, t_end, half_cycles):
-    """(shape of the cases, arguments of the compiled functions)"""
+def _motion_given(name, motion):
     motion = Still() if motion is None else motion
     if not isinstance(motion, Motion):
-        raise ValueError(f"motion = {motion!r}: must be a motion of masonry (PulseTrain, Sine, Record, ...) or None")
-    restitution = block.natural_restitution if restitution is None else restitution
+        raise ValueError(f"{name} = {reprlib.repr(motion)}: must be a motion of masonry (PulseTrain, Sine, Record, ...) or None")
+    return motion
+
+
+def _arguments(block, motion, restitution, restoring, initial_angle, initial_velocity, t_end, half_cycles, vertical=None):
+    """(shape of the cases, arguments of the compiled functions)"""
+    motion, vertical = _motion_given("motion", motion), _motion_given("vertical", vertical)
+    if isinstance(vertical, PulseTrain) and vertical.times is None:
+        raise ValueError(f"vertical = {vertical!r}: must be a motion with a known course, not a resonant train")
+    given = array_given("restitution", np.nan if restitution is None else restitution)
+    restitution = np.where(np.isnan(given), block.natural_restitution, given)
     t_end = np.inf if t_end is None else t_end
     half_cycles = -1 if half_cycles is None else whole_given("half_cycles", half_cycles, 1)
-    shape = np.broadcast_shapes(block.shape, motion.shape, shape_of(restitution, initial_angle, initial_velocity, t_end))
+    shape = np.broadcast_shapes(block.shape, motion.shape, vertical.shape, shape_of(restitution, initial_angle, initial_velocity, t_end))
     state = columns(shape, restitution, initial_angle, initial_velocity, t_end)
-    return shape, (block._columns(shape), motion._motions(shape), state, restoring, half_cycles)
+    return shape, (block._columns(shape), motion._motions(shape), vertical._motions(shape), state, restoring, half_cycles)
 
 
-def simulate(block, motion=None, restitution=None, restoring="exact", initial_angle=0.0, initial_velocity=0.0, t_end=None, half_cycles=None):
+def simulate(block, motion=None, restitution=None, restoring="exact", initial_angle=0.0, initial_velocity=0.0, t_end=None, half_cycles=None,
+             vertical=None):
     """History of the block(s) from the given state under the motion of the base; all arguments but the names broadcast.
 
-    restitution: C in [0, 1]; None: the block's natural one. restoring: 'exact' (gravity as it is), 'linear' (Housner), 'constant'
+    restitution: C in [0, 1]; None or NaN: the block's natural one. restoring: 'exact' (gravity as it is), 'linear' (Housner), 'constant'
     (Casapulla and Maione). The run ends at t_end (s), after so many half_cycles, or when the motion is over and the block at rest
     or overturned. A block is overturned when it cannot come back (free), lies on its side (moved base), or has reached the
-    critical angle (constant moment)."""
-    shape, arguments = _arguments(block, motion, restitution, restoring, initial_angle, initial_velocity, t_end, half_cycles)
-    if isinstance(motion, Record) and motion.doubt():
-        warnings.warn(motion.doubt(), stacklevel=2)
+    critical angle (constant moment).
+
+    vertical: the base's motion upwards, whose acceleration adds to gravity; it must stay above -gravity, because the block keeps to its base."""
+    shape, arguments = _arguments(block, motion, restitution, restoring, initial_angle, initial_velocity, t_end, half_cycles, vertical)
+    for record in (motion, vertical):
+        if isinstance(record, Record) and record.doubt():
+            warnings.warn(record.doubt(), stacklevel=2)
     return History(shape, arguments, _core.simulate(*arguments))

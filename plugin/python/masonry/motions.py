@@ -49,43 +49,49 @@ class PulseTrain(Motion):
     times=None     resonant: the first at t = 0, each other right after an impact of the block. With half_cycles=n the jump
                    after impact n is I and brings the base to rest; without, the train has no end.
     times=[...]    at these times (s, increasing); with assembly=True the last jump is I and brings the base to rest.
-                   shape: 'dirac', or 'rectangular' or 'half-sine' with a duration (s).
+
+    shape: 'dirac', or 'rectangular' or 'half-sine' with a duration (s), that of a pulse of 2I. single_keeps says what the pulses of I (the first,
+    and the last one where that brings the base to rest) share with it: 'amplitude', for half the duration, or 'duration', at half the amplitude.
+    A pulse of a resonant train must have ended at the next impact.
     """
 
-    def __init__(self, impulse, times=None, half_cycles=None, assembly=False, shape="dirac", duration=0.0):
+    def __init__(self, impulse, times=None, half_cycles=None, assembly=False, shape="dirac", duration=0.0, single_keeps="amplitude"):
         array_given("impulse", impulse)
         half_cycles = half_cycles if half_cycles is None else whole_given("half_cycles", half_cycles, 1)
         if half_cycles is not None and times is not None:
             raise ValueError(f"half_cycles = {half_cycles}: must be left out with times, it is for a resonant train (times=None)")
-        if times is None and (assembly or shape != "dirac"):
-            raise ValueError(f"shape = {shape!r}, assembly = {assembly}: a resonant train (times=None) has dirac pulses; give half_cycles "
-                             "to bring the base to rest")
+        if times is None and assembly:
+            raise ValueError(f"assembly = {assembly}: must be left out for a resonant train (times=None); half_cycles brings its base to rest")
         if number_given("duration", duration) != 0 and shape == "dirac":
             raise ValueError(f"duration = {duration!r}: must be left out (0) for dirac pulses; shape='rectangular' or 'half-sine' has one")
         self.impulse = self.amplitude = impulse
         self.times = None if times is None else np.atleast_1d(array_given("times", times))
         self.half_cycles, self.assembly = half_cycles, assembly
-        self.pulse_shape, self.duration = shape, duration
+        self.pulse_shape, self.duration, self.single_keeps = shape, duration, single_keeps
         self.shape = np.shape(impulse)
         if assembly and self.times.size < 2:
             raise ValueError(f"assembly = True: must be left out with {self.times.size} pulses, of which none brings the base to rest")
+        motions = self._motions(self.shape)
+        if shape != "dirac":
+            positive_given("duration", duration, ", in s")
         if self.times is not None:
-            self.velocity(0.0)  # refuses bad input here
+            motions.values(np.zeros(1))  # refuses bad input here
 
     def __repr__(self):
         times = None if self.times is None else self.times.tolist()
         given = (("times", times, None), ("half_cycles", self.half_cycles, None), ("assembly", self.assembly, False), ("shape", self.pulse_shape, "dirac"),
-                 ("duration", self.duration, 0))
+                 ("duration", self.duration, 0), ("single_keeps", self.single_keeps, "amplitude"))
         return f"PulseTrain(impulse={self.impulse}{''.join(f', {name}={value!r}' for name, value, default in given if value != default)})"
 
     def scaled(self, factor):
-        return PulseTrain(np.multiply(self.impulse, factor), self.times, self.half_cycles, self.assembly, self.pulse_shape, self.duration)
+        return PulseTrain(np.multiply(self.impulse, factor), self.times, self.half_cycles, self.assembly, self.pulse_shape, self.duration, self.single_keeps)
 
     def _motions(self, shape):
         impulse, = columns(shape, self.impulse)
+        form = (self.pulse_shape, float(self.duration), self.single_keeps)
         if self.times is None:
-            return _core.resonant(impulse, self.half_cycles or -1)
-        return _core.pulses(impulse, self.times, self.assembly, self.pulse_shape, float(self.duration))
+            return _core.resonant(impulse, self.half_cycles or -1, *form)
+        return _core.pulses(impulse, self.times, self.assembly, *form)
 
 
 class _Shaped(Motion):
