@@ -3,6 +3,7 @@
 #include "BlockMat.hpp"
 #include "BlockPhys.hpp"
 #include "Ip2_BlockMat_BlockMat_BlockPhys.hpp"
+#include "Law2_BlockGeom_BlockPhys_Rocking.hpp"
 #include "checked_body.hpp"
 #include "core_state.hpp"
 #include "impact_lists.hpp"
@@ -26,20 +27,30 @@ YADE_PLUGIN((RockingJointEngine));
 
 namespace {
 
-/// NewtonIntegrator is read through its Python attributes, as a script would.
+/// NewtonIntegrator and InteractionLoop are read through their Python attributes, as a script would.
 struct Integrator {
 	Vector3r gravity = Vector3r::Zero();
 	Real damping = 0;
+	Real contactDampingRatio = 0; // of the joint law in the InteractionLoop
 };
 
 Integrator findIntegrator(const Scene& scene)
 {
 	Integrator result;
 	for (const auto& engine : scene.engines) {
-		if (engine->dead || engine->getClassName() != "NewtonIntegrator")
+		if (engine->dead || (engine->getClassName() != "NewtonIntegrator" && engine->getClassName() != "InteractionLoop"))
 			continue;
 		const PythonLock lock;
 		const boost::python::dict attributes = engine->pyDict();
+		if (engine->getClassName() == "InteractionLoop") {
+			const boost::python::object functors = attributes["lawDispatcher"].attr("functors");
+			for (boost::python::ssize_t k = 0; k < boost::python::len(functors); ++k) {
+				const boost::python::extract<Law2_BlockGeom_BlockPhys_Rocking&> law(functors[k]);
+				if (law.check())
+					result.contactDampingRatio = law().dampingRatio;
+			}
+			continue;
+		}
 		result.gravity = boost::python::extract<Vector3r>(attributes["gravity"])();
 		result.damping = boost::python::extract<Real>(attributes["damping"])();
 	}
@@ -74,6 +85,7 @@ void RockingJointEngine::checkScene()
 		throw std::runtime_error("O.engines has more than one RockingJointEngine: each acts on all blocks; there must be one.");
 	const Integrator integrator = findIntegrator(*scene);
 	gravity = integrator.gravity;
+	dampingRatio = integrator.contactDampingRatio;
 	for (int id : ids) {
 		const Body& body = *(*scene->bodies)[id];
 		if (!body.isDynamic())
@@ -179,14 +191,55 @@ Real RockingJointEngine::criticalTimeStep()
 	return masonry::criticalTimeStep(system.bodies, contacts);
 }
 
+/// A given step is refused where the present contacts make it unstable. A chosen one is lowered before, to the share of their critical step
+/// that it was chosen by; the velocities, half a step behind, go to where the shorter step wants them.
 void RockingJointEngine::checkTimeStep()
 {
-	const Real critical = masonry::criticalTimeStep(system.bodies, system.contacts);
-	if (scene->dt > 0 && scene->dt < critical)
+	const bool positive = scene->dt > 0;
+	if (checkedTimeStep > 0 && scene->dt != checkedTimeStep)
+		stepFraction = 0; // a script has given another
+	if (positive && stepFraction > 0 && started) {
+		constexpr Real slack = 1.25;
+		if (isStableTimeStep(system.bodies, system.contacts, scene->dt / (slack * stepFraction)))
+			return;
+		const Real shorter = stepFraction * masonry::criticalTimeStep(system.bodies, system.contacts);
+		LOG_WARN("at t = " << scene->time << " s blocks touch in stiffer joints than so far: O.dt is lowered from " << scene->dt << " to "
+		                   << shorter << " s. Run until a time, not for a number of steps.");
+		lowered = scene->dt - shorter;
 		return;
-	throw std::runtime_error(sentence("O.dt = ", scene->dt,
-	                                  " s is not allowed with these joint stiffnesses: it must be positive and below ", critical,
-	                                  " s (a tenth of that is accurate); dem.engines() chooses one."));
+	}
+	auto damped = system.contacts;
+	for (auto& contact : damped)
+		contact.law.dampingRatio = dampingRatio;
+	if (positive && isStableTimeStep(system.bodies, damped, scene->dt))
+		return;
+	Real refused = masonry::criticalTimeStep(system.bodies, damped); // without dashpots: above what is stable
+	Real allowed = std::isfinite(refused) ? 0 : refused;
+	for (int k = 0; k < 10 && allowed < refused; ++k) {
+		const Real middle = 0.5 * (allowed + refused);
+		(isStableTimeStep(system.bodies, damped, middle) ? allowed : refused) = middle;
+	}
+	throw std::runtime_error(sentence(
+	    "O.dt = ", scene->dt, " s is not allowed with these joint stiffnesses at t = ", scene->time, " s: it must be positive and below ",
+	    allowed, " s (half of that is accurate); dem.engines() chooses one and lowers it where blocks come to lie on larger faces."));
+}
+
+/// At the end of the step: from here on steps are shorter.
+void RockingJointEngine::lowerTimeStep()
+{
+	if (!(lowered > 0))
+		return;
+	for (size_t b = 0; b < ids.size(); ++b) {
+		masonry::Body& body = system.bodies[b];
+		if (body.prescribed)
+			continue;
+		body.velocity += 0.5 * lowered / body.mass * (body.force + bodyForce[b]);
+		body.angularVelocity += 0.5 * lowered * body.inverseInertia() * (body.torque + bodyTorque[b]);
+		writeState(body, *(*scene->bodies)[ids[b]]->state);
+	}
+	scene->dt -= lowered;
+	checkedTimeStep = scene->dt;
+	lowered = 0;
 }
 
 void RockingJointEngine::recordImpact(const masonry::ImpactRecord& record)
@@ -384,8 +437,7 @@ void RockingJointEngine::action()
 	const vector<Pair> pairs = gather();
 	boundTurns();
 	checkScene();
-	if (scene->dt != checkedTimeStep)
-		checkTimeStep();
+	checkTimeStep();
 	checkedTimeStep = scene->dt;
 	system.gravity = gravity;
 	system.dt = scene->dt;
@@ -427,6 +479,7 @@ void RockingJointEngine::action()
 	applyForces(pairs);
 	keepReactions();
 	measureEnergy();
+	lowerTimeStep();
 }
 
 } // namespace yade

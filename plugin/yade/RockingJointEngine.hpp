@@ -23,6 +23,7 @@ public:
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(RockingJointEngine, GlobalEngine,
 		"Joints of compliant blocks: groups the patches under each block into joints, hands pivots over when the rotation of a block crosses zero, applies the rocking restitution, lets base pulses act at their instant, and puts the joint forces on the bodies. All in a fixed order: the same bits for any number of threads. Goes right after InteractionLoop.",
 		((string, impactOrder, "simultaneous", Attr::triggerPostLoad, "How an impact acts on a structure: 'simultaneous' (the closing joint and all loaded joints in one impulse problem) or 'sequential' (the closing joint first; the others feel it afterwards through their springs)."))
+		((Real, stepFraction, 0, , "Share of the critical time step that O.dt has been chosen by: O.dt is lowered to it, with a warning, where blocks come to touch in stiffer joints. 0: O.dt is given, and refused where it is unstable."))
 		((bool, started, false, Attr::readonly, "The bodies have been put in equilibrium on their joints."))
 		((vector<Real>, impactTimes, , Attr::readonly, "Time of each impact [s], inside the step."))
 		((vector<int>, impactBlocks, , Attr::readonly, "The block that rocks."))
@@ -71,6 +72,7 @@ private:
 	vector<Pair> gather();
 	void addExternalForces();
 	void checkTimeStep();
+	void lowerTimeStep();
 	void reportUnsolved();
 	void boundTurns();
 	void addMade();
@@ -86,6 +88,8 @@ private:
 	Vector3r gravity = Vector3r::Zero();
 	boost::weak_ptr<Scene> home;
 	Real checkedTimeStep = 0; // 0: no step yet
+	Real dampingRatio = 0;    // of the contact springs
+	Real lowered = 0;         // by how much the steps after this one are shorter, s
 	masonry::JointSystem system;
 	vector<int> ids;                        // index in system.bodies -> body id
 	vector<int> index;                      // body id -> index in system.bodies, or -1

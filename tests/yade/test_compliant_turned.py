@@ -66,7 +66,7 @@ def fallen(material):
 
 # A contact that is met a step of 2e-4 m later changes where the blocks are by as much. Rounding is 1e-16 m a step; 1,000 steps, and the
 # impacts of corners, which magnify an error some hundred times, leave less than 1e-8 m.
-for build, time, dt, restitution in ((pushed, 0.04, 1.4e-4, None), (spun, 0.1, 5e-5, 0.6), (fallen, 0.15, 5e-5, 0.6)):
+for build, time, dt, restitution in ((pushed, 0.04, None, None), (spun, 0.1, 5e-5, 0.6), (fallen, 0.15, 5e-5, 0.6)):
     wanted, most = run(build, np.eye(3), time, dt, restitution)
     worst = 0
     for q in TURNS[1:]:

@@ -7,9 +7,25 @@ namespace masonry {
 
 double JointContact::stiffnessArea() const { return std::max(patch.area, tolerance::leastPatchArea * patch.nominalArea); }
 
+double JointContact::dampingNormal(double mass) const
+{
+	return 2 * law.dampingRatio * std::sqrt(law.normalStiffness * stiffnessArea() * mass);
+}
+
+double JointContact::dampingShear(double mass) const
+{
+	return 2 * law.dampingRatio * std::sqrt(law.shearStiffness * stiffnessArea() * mass);
+}
+
 bool JointContact::rocking() const
 {
 	return std::any_of(points.begin(), points.begin() + size, [](const JointPoint& p) { return p.muted; });
+}
+
+double reducedMass(const Body& body1, const Body& body2)
+{
+	const double inverse = body1.inverseMass() + body2.inverseMass();
+	return inverse > 0 ? 1 / inverse : 0;
 }
 
 void renewPatch(JointContact& contact, const ContactPatch& patch)
@@ -33,12 +49,6 @@ void renewPatch(JointContact& contact, const ContactPatch& patch)
 }
 
 namespace {
-
-double reducedMass(const Body& body1, const Body& body2)
-{
-	const double inverse = body1.inverseMass() + body2.inverseMass();
-	return inverse > 0 ? 1 / inverse : 0;
-}
 
 double squared(double depth) { return depth > 0 ? depth * depth : 0; }
 
@@ -78,9 +88,8 @@ void updateForces(JointContact& contact, const Body& body1, const Body& body2, d
 {
 	const JointLaw& law = contact.law;
 	const Vector3& n = contact.patch.normal;
-	const double mass = reducedMass(body1, body2), area = contact.stiffnessArea();
-	const double dampingNormal = 2 * law.dampingRatio * std::sqrt(law.normalStiffness * area * mass);
-	const double dampingShear = 2 * law.dampingRatio * std::sqrt(law.shearStiffness * area * mass);
+	const double mass = reducedMass(body1, body2);
+	const double dampingNormal = contact.dampingNormal(mass), dampingShear = contact.dampingShear(mass);
 	const StepMotion motion1(body1, dt), motion2(body2, dt);
 	contact.energy = {};
 	for (int i = 0; i < contact.size; ++i) {

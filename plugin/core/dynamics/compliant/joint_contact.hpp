@@ -48,10 +48,15 @@ struct JointContact {
 	double stiffnessArea() const; // m^2, what the stiffness per area is multiplied with
 	double normalStiffness(int i) const { return law.normalStiffness * stiffnessArea() * patch.points[i].weight; }
 	double shearStiffness(int i) const { return law.shearStiffness * stiffnessArea() * patch.points[i].weight; }
+	double dampingNormal(double mass) const; // c_n of a pair of that reduced mass, N s/m
+	double dampingShear(double mass) const;
 	Vector3 position(int i) const { return 0.5 * (patch.points[i].position1 + patch.points[i].position2); }
 	Vector3 force(int i) const { return points[i].normalForce * patch.normal + points[i].shearForce; } // on body 2
 	bool rocking() const;                                                                              // some point is muted
 };
+
+// 0 where neither body is free, kg
+double reducedMass(const Body& body1, const Body& body2);
 
 // Carries the points' state over to a new patch, by identity. A point without a past is muted when the joint rocks.
 void renewPatch(JointContact& contact, const ContactPatch& patch);

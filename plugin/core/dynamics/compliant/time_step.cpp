@@ -1,44 +1,97 @@
 #include "dynamics/compliant/time_step.hpp"
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <cmath>
 #include <limits>
 
 namespace masonry {
 
-double criticalTimeStep(const std::vector<Body>& bodies, const std::vector<JointContact>& contacts)
+namespace {
+
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+
+struct BodyMatrices {
+	Matrix6 stiffness = Matrix6::Zero(), damping = Matrix6::Zero(); // about the centre, global axes
+};
+
+// Those of a body whose neighbours move freely are doubled.
+std::vector<BodyMatrices> bodyMatrices(const std::vector<Body>& bodies, const std::vector<JointContact>& contacts)
 {
-	using Matrix6 = Eigen::Matrix<double, 6, 6>;
-	std::vector<Matrix6> stiffness(bodies.size(), Matrix6::Zero());
-	std::vector<double> factor(bodies.size(), 1.);
+	std::vector<BodyMatrices> result(bodies.size());
+	std::vector<bool> freeNeighbour(bodies.size(), false);
 	for (const JointContact& contact : contacts) {
 		const bool bothFree = !bodies[contact.body1].prescribed && !bodies[contact.body2].prescribed;
+		const double mass = reducedMass(bodies[contact.body1], bodies[contact.body2]), area = contact.stiffnessArea();
+		const Vector3& n = contact.patch.normal;
+		const auto tensor = [&n](double normal, double shear) -> Matrix3 {
+			return (normal - shear) * n * n.transpose() + shear * Matrix3::Identity();
+		};
+		const Matrix3 stiffness = tensor(contact.law.normalStiffness * area, contact.law.shearStiffness * area);
+		const Matrix3 damping = tensor(contact.dampingNormal(mass), contact.dampingShear(mass));
 		for (int b : {contact.body1, contact.body2}) {
-			if (bothFree)
-				factor[b] = 2;
+			if (bodies[b].prescribed)
+				continue;
+			freeNeighbour[b] = freeNeighbour[b] || bothFree;
 			for (int i = 0; i < contact.size; ++i) {
-				const Vector3& n = contact.patch.normal;
 				const Vector3 arm = contact.position(i) - bodies[b].pose.position;
-				Eigen::Matrix<double, 3, 6> J;
-				J.leftCols<3>().setIdentity();
-				for (int k = 0; k < 3; ++k)
-					J.block<1, 3>(k, 3) = arm.cross(Vector3(Vector3::Unit(k))).transpose();
-				const double kn = contact.normalStiffness(i), ks = contact.shearStiffness(i);
-				const Matrix3 point = (kn - ks) * n * n.transpose() + ks * Matrix3::Identity();
-				stiffness[b] += J.transpose() * point * J;
+				Matrix3 cross; // velocity at the point: v - cross w
+				cross << 0, -arm.z(), arm.y(), arm.z(), 0, -arm.x(), -arm.y(), arm.x(), 0;
+				const auto add = [&](Matrix6& sum, const Matrix3& point) {
+					const Matrix3 turned = point * cross;
+					sum.topLeftCorner<3, 3>() += point;
+					sum.topRightCorner<3, 3>() -= turned;
+					sum.bottomLeftCorner<3, 3>() -= turned.transpose();
+					sum.bottomRightCorner<3, 3>() += cross.transpose() * turned;
+				};
+				add(result[b].stiffness, contact.patch.points[i].weight * stiffness);
+				add(result[b].damping, contact.patch.points[i].weight * damping);
 			}
 		}
 	}
+	for (size_t b = 0; b < bodies.size(); ++b)
+		if (freeNeighbour[b]) {
+			result[b].stiffness *= 2;
+			result[b].damping *= 2;
+		}
+	return result;
+}
+
+Matrix6 massMatrix(const Body& body)
+{
+	const Matrix3 axes = body.pose.orientation.toRotationMatrix();
+	Matrix6 mass = Matrix6::Zero();
+	mass.topLeftCorner<3, 3>() = body.mass * Matrix3::Identity();
+	mass.bottomRightCorner<3, 3>() = axes * body.inertia.asDiagonal() * axes.transpose();
+	return mass;
+}
+
+} // namespace
+
+double criticalTimeStep(const std::vector<Body>& bodies, const std::vector<JointContact>& contacts)
+{
+	const auto matrices = bodyMatrices(bodies, contacts);
 	double highest = 0; // omega^2
 	for (size_t b = 0; b < bodies.size(); ++b) {
 		if (bodies[b].prescribed)
 			continue;
-		Matrix6 mass = Matrix6::Zero();
-		mass.topLeftCorner<3, 3>() = bodies[b].mass * Matrix3::Identity();
-		mass.bottomRightCorner<3, 3>() = bodies[b].inverseInertia().inverse();
-		const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix6> solver(stiffness[b], mass, Eigen::EigenvaluesOnly);
-		highest = std::max(highest, factor[b] * solver.eigenvalues().maxCoeff());
+		const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix6> solver(matrices[b].stiffness, massMatrix(bodies[b]),
+		                                                               Eigen::EigenvaluesOnly);
+		highest = std::max(highest, solver.eigenvalues().maxCoeff());
 	}
 	return highest > 0 ? 2 / std::sqrt(highest) : std::numeric_limits<double>::infinity();
+}
+
+bool isStableTimeStep(const std::vector<Body>& bodies, const std::vector<JointContact>& contacts, double dt)
+{
+	const auto matrices = bodyMatrices(bodies, contacts);
+	for (size_t b = 0; b < bodies.size(); ++b) {
+		if (bodies[b].prescribed)
+			continue;
+		const Matrix6 rest = 4 * massMatrix(bodies[b]) - 2 * dt * matrices[b].damping - dt * dt * matrices[b].stiffness;
+		if (Eigen::LLT<Matrix6>(rest).info() != Eigen::Success)
+			return false;
+	}
+	return true;
 }
 
 } // namespace masonry

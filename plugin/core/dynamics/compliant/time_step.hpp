@@ -1,15 +1,19 @@
 #pragma once
 // Largest stable time step of compliant joints under the leapfrog scheme.
 //
-// dt_critical = 2/omega, omega the highest frequency. Each body alone on its springs (its neighbours held) has the 6x6
-// stiffness K = sum over points of J^T k J and omega^2 = largest eigenvalue of M^-1 K; two free neighbours that swing
-// against each other at most double it.
+// Each body alone on its springs (its neighbours held) has the 6x6 stiffness K = sum over points of J^T k J. Without dashpots the scheme is
+// stable up to dt = 2/omega, omega^2 = largest eigenvalue of M^-1 K; two free neighbours that swing against each other at most double
+// omega^2. Dashpots, C = sum of J^T c J, see the velocity of half a step ago, so that 4 M - 2 dt C - dt^2 K must be positive definite:
+// for one mode, dt < 2/omega (sqrt(1 + zeta^2) - zeta), zeta its damping ratio.
 #include "dynamics/compliant/joint_contact.hpp"
 #include <vector>
 
 namespace masonry {
 
-// All points of every contact are counted as loaded. Infinite without a contact, s.
+// Without dashpots, s. All points of every contact are counted as loaded. Infinite without a contact.
 double criticalTimeStep(const std::vector<Body>& bodies, const std::vector<JointContact>& contacts);
+
+// Whether the scheme is stable with the step dt, s, dashpots included, and all points loaded. Much cheaper than the critical step.
+bool isStableTimeStep(const std::vector<Body>& bodies, const std::vector<JointContact>& contacts, double dt);
 
 } // namespace masonry
