@@ -76,7 +76,7 @@ public:
 		((long, sweeps, 0, Attr::readonly, "Sweeps of the contact solver so far; with method='wall' solves of the mode 'still'."))
 		((long, factorisations, 0, Attr::readonly, "Factorisations of the contact solver so far."))
 		((long, failures, 0, Attr::readonly, "Steps so far that missed the tolerance, an impact's laws or a pulse's, had more events than mostEvents or, with method='wall', made more energy than the error of a sound step, left blocks deep in each other, or had a block too heavy for those below it."))
-		((string, firstFailure, "", Attr::readonly, "What the first of them was, with time, blocks and residual."))
+		((string, firstFailure, "", Attr::readonly, "What the first of them was, with time, blocks and residual; steps whose residual is below 1e-6 of the speed that gravity gives in a step are counted and not described."))
 		((RigidMemory, memory, , Attr::hidden, "")),
 		/* ctor */,
 		.add_property("kinetic", &MoreauJeanIntegrator::kinetic, "Kinetic energy now [J].")

@@ -256,7 +256,8 @@ void RockingJointEngine::reportUnsolved()
 	if (system.unsolved > 0 && failures == 0)
 		LOG_WARN(
 		    "at t = " << scene->time << " s the impulses at the joints miss their laws by " << system.residual << " m/s"
-		              << " (without slip they may have no solution). The run goes on; RockingJointEngine.failures counts such problems.");
+		              << " (without slip they may have no solution: give materials a frictionAngle instead of noSlip). The run goes on; "
+		                 "RockingJointEngine.failures counts such problems; dem.compare() tells whether they matter.");
 	failures += system.unsolved;
 }
 
@@ -370,7 +371,7 @@ void RockingJointEngine::measureEnergy()
 		elastPotential += contact.energy.elastic;
 	if (!std::isfinite(kinetic + potential + elastPotential))
 		throw std::runtime_error(sentence("The simulation has diverged at t = ", scene->time, " s (kinetic energy ", kinetic,
-		                                  " J): take a smaller O.dt, or look for blocks that overlap."));
+		                                  " J): give dem.engines() a smaller dt, or look for blocks that overlap (dem.check_blocks())."));
 	if (!scene->trackEnergy)
 		return;
 	const std::pair<const char*, Real> keys[] = {{"elastPotential", elastPotential},

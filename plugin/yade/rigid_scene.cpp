@@ -112,15 +112,16 @@ masonry::rigid::StepReport RigidScene<K>::advanceWall()
 		integrator.warnedOf.courses = true;
 		LOG_WARN("blocks of a wall of "
 		         << ofWalls.courses << " courses move from t = " << scene.time << " s on: walls of more than " << mostCourses
-		         << " courses may go some tenths too far; see what a smaller MoreauJeanIntegrator.tolerance or O.dt changes.");
+		         << " courses may go some tenths too far; see by dem.compare() what a smaller dt or tolerance of dem.engines() changes.");
 	}
 	if (ofWalls.partBases && !integrator.warnedOf.bases) {
 		integrator.warnedOf.bases = true;
 		LOG_WARN(
 		    "t = " << scene.time
 		           << " s: blocks of a structure stand on bodies that move in different ways. Friction leaves open how much each of these "
-		              "carries, and method='wall' may let one take along what should slide on both: compare with method='localised' or "
-		              "compliant joints.");
+		              "carries, and method='wall' may let one take along what should slide on both: compare with "
+		              "dem.engines(method='localised') or "
+		              "dem.engines(model='compliant').");
 	}
 	return report;
 }

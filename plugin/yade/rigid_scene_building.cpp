@@ -189,8 +189,12 @@ void RigidScene<K>::meet(Pair& pair, bool placed)
 template <class K>
 void RigidScene<K>::refuseOverlap(const Pair& pair, Real depth) const
 {
-	throw std::runtime_error(sentence("Blocks ", kept.ids[pair.body1], " and ", kept.ids[pair.body2], " overlap by ", depth,
-	                                  " m: rigid blocks must be apart or just touch when the run starts or a script moves them."));
+	const bool starts = integrator.substeps == 0;
+	throw std::runtime_error(sentence(
+	    "Blocks ", kept.ids[pair.body1], " and ", kept.ids[pair.body2], " overlap by ", depth, " m at t = ", scene.time, " s: ",
+	    starts ? "rigid blocks must be apart or just touch when their engines begin; dem.check_blocks() lists all that do not."
+	           : "they have come near each other only now. Either a script has put one into the other, or they move too far in a step: "
+	             "give dem.engines() a smaller dt."));
 }
 
 template RigidScene<Plane>::RigidScene(MoreauJeanIntegrator&, const vector<BaseMotionEngine*>&, const Remembered<Plane>&);

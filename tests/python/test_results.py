@@ -579,3 +579,68 @@ def test_a_report_says_how_much_of_the_motion_has_been_run(tmp_path):
     for given in ({"motion": [1, 2, 3]}, {"end": 0.9}, {"end": math.nan}):
         with pytest.raises(ValueError, match=next(iter(given))):
             upright(**given)
+
+
+def test_a_file_is_written_whole_or_not_at_all(tmp_path):
+    from masonry._files import written
+
+    path = tmp_path / "some.txt"
+    path.write_text("old")
+    with pytest.raises(ZeroDivisionError):
+        with written(path) as beside:
+            with open(beside, "w") as file:
+                file.write("half of the new")
+            assert path.read_text() == "old"
+            1 / 0
+    assert path.read_text() == "old" and [p.name for p in tmp_path.iterdir()] == ["some.txt"]
+    with written(path) as first, written(path) as second:  # two at the same time do not meet
+        assert first != second
+        for name, text in ((first, "first"), (second, "second")):
+            with open(name, "w") as file:
+                file.write(text)
+    assert path.read_text() == "first" and len(list(tmp_path.iterdir())) == 1  # the last to end
+    plain = tmp_path / "plain"
+    plain.write_text("")
+    assert path.stat().st_mode == plain.stat().st_mode  # as any file that is opened
+    with pytest.raises(FileNotFoundError):
+        with written(tmp_path / "nowhere" / "some.txt"):
+            pass
+
+
+def test_writers_that_fail_leave_the_old_file(tmp_path, monkeypatch):
+    h = rocking([0, 0.1, 0.05])
+    calls = {"wall.npz": h.save, "wall.csv": h.to_csv, "shape.png": lambda path: results.draw(h, path), "joints.png": lambda path: results.draw_joints(h, path),
+             "film.gif": lambda path: results.film(h, path, progress=False), "wall.pvd": lambda path: results.write_paraview(h, path)}
+    for name, write in calls.items():
+        write(tmp_path / name)
+    before = {path.name: path.read_bytes() for path in tmp_path.iterdir() if path.is_file()}
+    assert set(before) == set(calls)
+    from masonry import _files
+
+    def full(*_):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(_files.os, "replace", full)  # the last that can fail
+    for name, write in calls.items():
+        with pytest.raises(OSError, match="No space left"):
+            write(tmp_path / name)
+    assert {path.name: path.read_bytes() for path in tmp_path.iterdir() if path.is_file()} == before
+    assert not [path.name for path in tmp_path.rglob(".*")]
+
+
+def test_any_damage_of_a_saved_history_is_told_in_our_words(tmp_path):
+    path = tmp_path / "wall.npz"
+    rocking([0, 0.1, 0.05]).save(path)
+    whole, random = path.read_bytes(), np.random.default_rng(43)
+    told = 0
+    for _ in range(300):
+        damaged = bytearray(whole[:random.integers(0, len(whole) + 1)])
+        for at in random.integers(0, max(len(damaged), 1), 20) if damaged else ():
+            damaged[at] = random.integers(0, 256)
+        path.write_bytes(damaged)
+        try:
+            results.WallHistory.load(path)
+        except ValueError as error:  # nothing else comes out
+            assert str(error).startswith(f"path = {path}: is no WallHistory"), error
+            told += 1
+    assert told > 250

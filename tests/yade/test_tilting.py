@@ -236,6 +236,19 @@ table = dem.TiltTable()
 O.bodies[block].state.pos += Vector3(0.001, 0, 0)
 with tempfile.TemporaryDirectory() as folder:
     table._collapse(0.3, (0.3, 0.3), [], table._mechanism()).draw(os.path.join(folder, "slides.png"))
+# The title counts what is drawn: a joint that opens and slides is one red patch and no line.
+base, stone = ground(0.3)
+lower = dem.block((0.6, 0.5, 0.4), stone, on=base)
+upper = dem.block((0.6, 0.5, 0.4), stone, on=lower)
+table = dem.TiltTable()
+dem.tilt(upper, 0.01)
+for id, way in ((lower, 0.002), (upper, 0.006)):
+    O.bodies[id].state.pos += Vector3(way, 0, 0)
+with tempfile.TemporaryDirectory() as folder:
+    table._collapse(0.3, (0.3, 0.3), [], table._mechanism()).draw(os.path.join(folder, "both.png"))
+both = figures.pop().axes[0]
+assert len(both.patches) == 1 and sum(len(line.get_xydata()) > 0 for line in both.lines) == 1
+assert "2 blocks move; 1 joints open (1 of them slide too), 1 slide closed" in both.get_title(), both.get_title()
 Figure.savefig = save
 line, = (line.get_xydata() for line in figures[-1].axes[0].lines if len(line.get_xydata()))
 assert np.allclose(np.sort(line[:, 0]), [-0.3, 0.3], atol=1e-6) and np.allclose(line[:, 1], 0, atol=1e-6) and not figures[-1].axes[0].patches, line

@@ -1,14 +1,26 @@
 """One case of masonry.ensemble inside YADE: yade -j1 -n -x _run_case.py '{"script": ..., "function": ..., "case": ..., "path": ...}'."""
 
+import ctypes
 import importlib.util
 import json
 import os
+import signal
 import sys
 
 import numpy as np
+from masonry._files import written
 
 
-def main(script, function, case, path):
+def end_with(parent):
+    """Ends this process when the one that has started it ends, killed or not."""
+    PR_SET_PDEATHSIG = 1  # of Linux
+    ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
+    if os.getppid() != parent:  # it has ended already
+        sys.exit("the ensemble that this case is of has ended")
+
+
+def main(script, function, case, path, parent):
+    end_with(parent)
     spec = importlib.util.spec_from_file_location("ensemble_scene", script)
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
@@ -19,9 +31,8 @@ def main(script, function, case, path):
     for name, value in values.items():
         if value.dtype.kind not in "biufU" or name == "case":
             raise ValueError(f"{function}() of {script} returned {name} = {outcome[name]!r}: must be a number, a string or an array of them, and not named case")
-    unfinished = path[:-len(".npz")] + ".part.npz"
-    np.savez_compressed(unfinished, case=json.dumps(case), **values)
-    os.replace(unfinished, path)  # a file that is there is whole
+    with written(path) as beside:
+        np.savez_compressed(beside, case=json.dumps(case), **values)
 
 
 main(**json.loads(sys.argv[1]))

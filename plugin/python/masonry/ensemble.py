@@ -29,6 +29,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ._files import read_npz, written
 from ._given import array_given, is_whole, number_given, positive_given
 
 _RUN_CASE = Path(__file__).with_name("_run_case.py")
@@ -118,19 +119,20 @@ def run(script, cases, folder, function="run", processes=None, time_limit=None, 
     folder.mkdir(parents=True, exist_ok=True)
     outcomes = {key: _load(_path(folder, key)) for key in keys}
     missing = [(case, key) for case, key in zip(cases, keys) if outcomes[key] is None]
-    for _, key in missing:
-        _path(folder, key).unlink(missing_ok=True)  # a damaged one
     try:
         failures = _run_missing(script, function, missing, len(cases), folder, int(processes or os.cpu_count()), time_limit, progress) if missing else []
     except KeyboardInterrupt:
-        kept = sum(_path(folder, key).exists() for key in keys)
+        kept = sum(_read(_path(folder, key)) is not None for key in keys)
         raise KeyboardInterrupt(f"interrupted: {kept} of {len(cases)} cases are kept in {folder}; run again to go on") from None
     outcomes.update({key: _load(_path(folder, key)) for _, key in missing})
+    told = [case for case, *_ in failures]
+    failures += [(case, "its result has vanished since it was computed", "") for case, key in missing if outcomes[key] is None and case not in told]
     finished = [(case, outcomes[key]) for case, key in zip(cases, keys) if outcomes[key] is not None]
     table = _table(*zip(*finished)) if finished else None
     if finished:
-        np.savez(folder / "ensemble.npz", table=table)
-        with open(folder / "ensemble.csv", "w", newline="", encoding="utf-8") as file:
+        with written(folder / "ensemble.npz") as beside:
+            np.savez(beside, table=table)
+        with written(folder / "ensemble.csv") as beside, open(beside, "w", newline="", encoding="utf-8") as file:
             csv.writer(file).writerows([table.dtype.names, *table.tolist()])
     if failures:
         raise _failed(failures, table, len(cases), folder)
@@ -160,29 +162,34 @@ def _path(folder, key):
 
 def _load(path):
     """What a case returned; None where it has no file, or a damaged one, which a line tells."""
-    try:
-        with np.load(path) as file:
-            return {name: file[name] if file[name].ndim else file[name].item() for name in file.files if name != "case"}
-    except FileNotFoundError:
-        return None
-    except OSError:
-        raise
-    except Exception:  # whatever zipfile, zlib and NumPy say of one that was cut off
+    outcome = _read(path)
+    if outcome is None and path.exists():
         print(f"masonry.ensemble: {path} is damaged: its case counts as not yet computed")
+    return outcome
+
+
+def _read(path):
+    """What a case returned; None where it has no file, or a damaged one."""
+    try:
+        found = read_npz(path, "result")
+    except (FileNotFoundError, ValueError):
         return None
+    return {name: value if value.ndim else value.item() for name, value in found.items() if name != "case"}
 
 
 @contextmanager
 def _termination():
-    """What a queue sends before it kills (SIGTERM) ends the run as Ctrl-C does, unless the program has a way of its own."""
-    if threading.current_thread() is not threading.main_thread() or signal.getsignal(signal.SIGTERM) is not signal.SIG_DFL:
-        yield
-        return
-    signal.signal(signal.SIGTERM, lambda number, frame: sys.exit(128 + number))
+    """What a queue sends before it kills (SIGTERM), and a terminal that closes (SIGHUP), end the run as Ctrl-C does, unless the program has a way
+    of its own."""
+    main = threading.current_thread() is threading.main_thread()
+    taken = [number for number in (signal.SIGTERM, signal.SIGHUP) if main and signal.getsignal(number) is signal.SIG_DFL]
+    for number in taken:
+        signal.signal(number, lambda number, frame: sys.exit(128 + number))
     try:
         yield
     finally:
-        signal.signal(signal.SIGTERM, signal.SIG_DFL)
+        for number in taken:
+            signal.signal(number, signal.SIG_DFL)
 
 
 def _run_missing(script, function, missing, total, folder, processes, time_limit, progress):
@@ -199,11 +206,13 @@ def _run_missing(script, function, missing, total, folder, processes, time_limit
 
     def one(case, key, bar):
         log, path = folder / f"case_{key}.log", _path(folder, key)
-        arguments = json.dumps({"script": str(script), "function": function, "case": json.loads(_plain(case)), "path": str(path.resolve())})
+        own = log.with_suffix(f".{os.getpid()}.log")  # another run of the same case may be at work in the folder
+        arguments = json.dumps({"script": str(script), "function": function, "case": json.loads(_plain(case)), "path": str(path.resolve()),
+                                "parent": os.getpid()})
         with lock:
             if stopped.is_set():
                 return
-            with open(log, "w", encoding="utf-8") as output:
+            with open(own, "w", encoding="utf-8") as output:
                 process = subprocess.Popen([yade, "-j1", "-n", "-x", str(_RUN_CASE), arguments], env=environment, stdin=subprocess.DEVNULL,
                                            stdout=output, stderr=subprocess.STDOUT)
             running.add(process)
@@ -214,16 +223,19 @@ def _run_missing(script, function, missing, total, folder, processes, time_limit
             process.kill()
             process.wait()
             why = f"it was stopped after {time_limit:g} s"
-        if path.exists():  # it is done, however it ended
+        if _read(path) is not None:  # it is done, however it ended
             why = ""
+        elif path.exists():
+            why += ", and its result cannot be read"
         with lock:
             running.discard(process)
             if why and not stopped.is_set():
+                os.replace(own, log)
                 said = log.read_text(encoding="utf-8", errors="replace").splitlines()[-_TAIL:]
                 failures.append((case, f"{why}: {log}", "\n".join(said)))
                 bar.set_postfix(failed=len(failures))
             else:
-                log.unlink()
+                own.unlink()
             bar.update(not stopped.is_set())
 
     with _termination(), tqdm(total=total, initial=total - len(missing), desc="ensemble", unit="case", disable=not progress) as bar, \

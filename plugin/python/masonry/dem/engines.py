@@ -3,6 +3,7 @@
 import math
 
 import numpy as np
+from masonry._files import written
 from masonry._given import is_whole, number_given
 from masonry.motions import Motion, PulseTrain, Record
 from yade import O, wrapper
@@ -345,7 +346,8 @@ def save_history(recorder, path):
     dem.wall_history(recorder).save("wall.npz"), or .to_csv("wall.csv") (time, drift, energies; ids=... adds the motion of blocks)."""
     table = history(recorder)
     if str(path).endswith(".npz"):
-        np.savez(path, ids=recorder.ids, **{name: table[name] for name in table.dtype.names})
+        with written(path) as beside:
+            np.savez(beside, ids=recorder.ids, **{name: table[name] for name in table.dtype.names})
     elif str(path).endswith(".csv"):
         header, columns = ["time (s)"], [table["time"]]
         for k, id in enumerate(recorder.ids):
@@ -355,6 +357,7 @@ def save_history(recorder, path):
                     columns.append(table[name][:, k, axis])
             header.append(f"uplift of {id} (m)")
             columns.append(table["uplift"][:, k])
-        np.savetxt(path, np.column_stack(columns), delimiter=",", header=",".join(header), comments="")
+        with written(path) as beside:
+            np.savetxt(beside, np.column_stack(columns), delimiter=",", header=",".join(header), comments="")
     else:
         raise ValueError(f"path = {path}: must end in .npz or .csv")

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from masonry._boxes import bounds
+from masonry._files import written
 from masonry._given import number_given, positive_given
 from masonry._pose import axes_of
 from masonry.dem.engines import _FEW_BLOCKS, _METHODS, engines, has_stiffness
@@ -78,9 +79,10 @@ class Collapse:
     _mechanism: object = field(repr=False)
 
     def __str__(self):
-        opens, slides = int(self.joints["opens"].sum()), int(self.joints["slides"].sum())
+        opens, slides = self.joints["opens"], self.joints["slides"]
+        both = f" ({(opens & slides).sum()} of them slide too)" if (opens & slides).any() else ""
         lines = [f"collapse multiplier {self.multiplier:.5g} (stands {self.bracket[0]:.5g}, collapses {self.bracket[1]:.5g})",
-                 f"{len(self.blocks)} blocks move; {opens} joints open, {slides} slide"]
+                 f"{len(self.blocks)} blocks move; {opens.sum()} joints open{both}, {(slides & ~opens).sum()} slide closed"]
         return "\n".join(lines + [f"NOT TO BE TRUSTED: {doubt}" for doubt in self.doubts])
 
     def draw(self, path, title=None):
@@ -417,4 +419,5 @@ class _Mechanism:
         axes.set(xlim=(left - margin, right + margin), ylim=(low - margin, high + margin))
         axes.set(xlabel=f"{'xy'[self._axis]} (m)", ylabel="z (m)")
         axes.set_title(f"{title}\nmovement drawn {scale:.3g} times", fontsize="small")
-        figure.savefig(path, dpi=150, bbox_inches="tight")
+        with written(path) as beside:
+            figure.savefig(beside, dpi=150, bbox_inches="tight")

@@ -12,6 +12,7 @@ import re
 
 import numpy as np
 from masonry._boxes import bounds, near_pairs
+from masonry._files import written
 from masonry._given import number_given, whole_given
 
 # A length fits the modules of a wall when it is off by less than this share of a module: far above round-off, far below a cut.
@@ -365,7 +366,7 @@ def write_table(path, centers, sizes, quaternions, names):
     if any(names):
         columns.append("material")
         values = [row + [name] for row, name in zip(values, names)]
-    with open(path, "w", newline="", encoding="utf-8") as file:
+    with written(path) as beside, open(beside, "w", newline="", encoding="utf-8") as file:
         if path.endswith(".json"):
             file.write("[\n" + ",\n".join(json.dumps(dict(zip(columns, row))) for row in values) + "\n]\n")
         else:

@@ -6,6 +6,7 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 from masonry import _pose
+from masonry._files import written
 from masonry._given import whole_given
 from masonry.results.wall_history import history_given
 
@@ -59,9 +60,11 @@ def write_paraview(history, path, every=1, relative=False):
                  "rotation": history.rotation[sample], "lean": history.lean[sample]}
         moved = history.corners(sample) - start
         file = folder / f"{path.stem}_{sample:06d}.vtu"
-        file.write_text(_vtu(points[there].reshape(-1, 3), {name: values[there] for name, values in cells.items()},
-                             {"displacement": moved[there].reshape(-1, 3)}))
+        text = _vtu(points[there].reshape(-1, 3), {name: values[there] for name, values in cells.items()}, {"displacement": moved[there].reshape(-1, 3)})
+        with written(file) as beside:
+            Path(beside).write_text(text, encoding="utf-8")
         sets.append(f'<DataSet timestep="{float(history.time[sample])!r}" file={quoteattr(f"{folder.name}/{file.name}")}/>\n')
-    path.write_text('<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1" byte_order="LittleEndian">\n<Collection>\n'
-                    f'{"".join(sets)}</Collection>\n</VTKFile>\n', encoding="utf-8")
+    with written(path) as beside:
+        Path(beside).write_text('<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1" byte_order="LittleEndian">\n<Collection>\n'
+                                f'{"".join(sets)}</Collection>\n</VTKFile>\n', encoding="utf-8")
     return path

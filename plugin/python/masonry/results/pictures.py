@@ -1,6 +1,7 @@
 """Pictures and films of a WallHistory. Files are written without a screen; matplotlib is imported where it is needed."""
 
 import numpy as np
+from masonry._files import written
 from masonry._given import number_given, positive_given
 from masonry.results.collapse import fallen
 from masonry.results.joints import joint_rows, joints, patches
@@ -122,7 +123,8 @@ def draw(history, path, time=None, enlarge=None, color="displacement", view=None
     sample = int(np.nanargmax(history_given(history).drift())) if time is None else history.sample(time)
     painter = _Painter(history, [sample], enlarge, color, view, title)
     painter.paint(sample)
-    painter.figure.savefig(path, dpi=150)
+    with written(path) as beside:
+        painter.figure.savefig(beside, dpi=150)
 
 
 def film(history, path, start=None, end=None, frames_per_second=20, speed=1.0, enlarge=1.0, color="displacement", view=None, title="", progress=True):
@@ -155,7 +157,7 @@ def film(history, path, start=None, end=None, frames_per_second=20, speed=1.0, e
     step = speed / frames_per_second
     samples = [history.sample(min(first + k * step, last)) for k in range(int((last - first) / step + 1e-9) + 1)]
     painter = _Painter(history, samples, enlarge, color, view, title)
-    with writer.saving(painter.figure, path, dpi=100):
+    with written(path) as beside, writer.saving(painter.figure, beside, dpi=100):
         for sample in tqdm(samples, desc="film", unit="frame", disable=not progress):
             painter.paint(sample)
             writer.grab_frame()
@@ -191,7 +193,8 @@ def draw_joints(history, path, time=None, view=None, title=""):
         axes.set_title(f"{title + ': ' if title else ''}{name}, {when}{'' if moves.any() else f': {none}' if len(table) else ': no blocks touch at first'}", fontsize="small")
         if moves.any():
             _colorbar(figure, axes, shades, f"{name} (mm)", beyond)
-    figure.savefig(path, dpi=150)
+    with written(path) as beside:
+        figure.savefig(beside, dpi=150)
 
 
 def draw_energy(history, path, title=""):
@@ -226,4 +229,5 @@ def draw_energy(history, path, title=""):
     if title:
         upper.set_title(title, fontsize="small")
     lower.set(xlabel="time (s)")
-    figure.savefig(path, dpi=150)
+    with written(path) as beside:
+        figure.savefig(beside, dpi=150)

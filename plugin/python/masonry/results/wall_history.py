@@ -5,6 +5,7 @@ from functools import cached_property
 
 import numpy as np
 from masonry import _pose
+from masonry._files import read_npz, written
 from masonry._given import number_given
 
 ENERGIES = ("kinetic", "potential", "elastPotential", "frictDissip", "dampDissip", "impactDissip", "baseWork")
@@ -66,21 +67,20 @@ class WallHistory:
         if not str(path).endswith(".npz"):
             raise ValueError(f"path = {path}: must end in .npz")
         names = [name for name in (*_SAVED, *_OPTIONAL) if name != "motion" or self.motion is not None]
-        np.savez_compressed(path, **{name: getattr(self, "_energies" if name == "energies" else name) for name in names})
+        with written(path) as beside:
+            np.savez_compressed(beside, **{name: getattr(self, "_energies" if name == "energies" else name) for name in names})
 
     @classmethod
     def load(cls, path):
         """The WallHistory of a file that save() has written."""
-        try:
-            with np.load(path) as file:
-                found = {name: file[name] for name in (*_SAVED, *_OPTIONAL) if name in file.files}
-        except OSError:
-            raise
-        except Exception as error:  # whatever zipfile, zlib and NumPy say of another file, or of one that was cut off
-            raise ValueError(f"path = {path}: is no WallHistory, or a damaged one: must be a file that save() has written ({error})") from None
+        file = read_npz(path, "WallHistory")
+        found = {name: file[name] for name in (*_SAVED, *_OPTIONAL) if name in file}
         if set(_SAVED) - found.keys():
             raise ValueError(f"path = {path}: is no WallHistory: {', '.join(sorted(set(_SAVED) - found.keys()))} is missing")
-        return cls(**found)
+        try:
+            return cls(**found)
+        except ValueError as error:
+            raise ValueError(f"path = {path}: is no WallHistory, or a damaged one: {error}") from None
 
     def to_csv(self, path, ids=()):
         """Writes a .csv file, a line a sample, with a header: time (s), drift (of the height), the columns of energy (J) where they were
@@ -97,7 +97,8 @@ class WallHistory:
             row = int(np.flatnonzero(self.ids == id)[0])
             columns.update({f"displacement {axis} of {id} (m)": self.displacement[:, row, k] for k, axis in enumerate("xyz")})
             columns.update({f"{name} of {id} (rad)": values[:, row] for name, values in (("rotation", self.rotation), ("lean", self.lean))})
-        np.savetxt(path, np.column_stack(list(columns.values())), delimiter=",", header=",".join(columns), comments="")
+        with written(path) as beside:
+            np.savetxt(beside, np.column_stack(list(columns.values())), delimiter=",", header=",".join(columns), comments="")
 
     def sample(self, time=None, name="time"):
         """Number of the sample nearest to `time` (s, within the history); None: the last. name: what an error calls it."""

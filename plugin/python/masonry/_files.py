@@ -1,0 +1,37 @@
+"""Files that are whole or not there: they are written beside, under a name of their own, and renamed."""
+
+import os
+import tempfile
+from contextlib import contextmanager
+from pathlib import Path
+
+import numpy as np
+
+
+@contextmanager
+def written(path):
+    """Path to write to in a `with` block, of the same ending and in the same folder; it gets the name `path` when the block has ended, in one step
+    of the file system, and vanishes when the block raises. Writers at the same time do not meet: the last one stays."""
+    path = Path(path)
+    handle, beside = tempfile.mkstemp(prefix=f".{path.stem}.", suffix=f".part{path.suffix}", dir=path.parent)
+    os.close(handle)
+    try:
+        yield beside
+        mask = os.umask(0)
+        os.umask(mask)
+        os.chmod(beside, 0o666 & ~mask)  # mkstemp makes files for their owner alone
+        os.replace(beside, path)
+    except BaseException:
+        Path(beside).unlink(missing_ok=True)
+        raise
+
+
+def read_npz(path, what):
+    """{name: array} of an .npz file. FileNotFoundError and the like where it cannot be opened; ValueError where it is damaged. what: what a message calls
+    the file."""
+    with open(path, "rb") as file:
+        try:
+            with np.load(file) as arrays:
+                return {name: arrays[name] for name in arrays.files}
+        except Exception as error:  # whatever zipfile, zlib and NumPy say of another file, or of one that was cut off
+            raise ValueError(f"path = {path}: is no {what}, or a damaged one: must be a file that masonry has written ({str(error)[:100]})") from None
