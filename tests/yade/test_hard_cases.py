@@ -360,7 +360,7 @@ def energy_of_nothing():
     base, material = ground(noSlip=False, frictionAngle=math.atan(1.0))
     dem.block((1, 0.5, 0.5), material, on=base)
     dem.block((1, 0.5, 0.5), material, center=(0.45, 0, 2.75))
-    O.engines = quiet_engines(penetration=1e-2)
+    O.engines = quiet_engines(penetration=1e-2, dt=2e-3)
     balance = Balance()
     O.run(int(1.2 / O.dt), True)
     error, made = balance.error() / turned_over(), joint_engine().madeEnergy / turned_over()
