@@ -81,6 +81,13 @@ constexpr double shortPart = 0.02;
 constexpr double stray = 0.01;
 // Share of the friction limit within which a point counts as sliding.
 constexpr double cone = 1e-9;
+// Angle, rad, by which a block may turn, and way relative to the smaller half size by which blocks near each other may pass, in a part of a
+// step; and how many parts a step may have at most. Larger angle: fast spins gain energy; larger way: blocks meet with the wrong features;
+// smaller: ordinary steps are divided, at the cost of so many steps. More parts: steps beyond all reason take long before they are told of.
+constexpr double partTurn = 0.25, partWay = 1, mostParts = 1000;
+// Energy that a step may make or lose: share of what moves and of what acts in it, and of what lifts all blocks by the smallest half size.
+// Smaller: sound steps are told of; larger: wrong ones are not.
+constexpr double madeShare = 0.05, madeLift = 1e-4;
 // Share of the step within which two instants are one.
 constexpr double instant = 1e-9;
 } // namespace rigid

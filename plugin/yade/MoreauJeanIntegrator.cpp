@@ -258,7 +258,7 @@ void MoreauJeanIntegrator::count(const masonry::rigid::StepReport& report)
 		    sentence("The simulation has diverged in the step from t = ", scene->time, " s: positions or velocities are no longer finite.",
 		             method == "localised" ? " Structures of more than some twenty blocks are for method='wall'." : ""));
 	const bool crowded = report.unlocalised > 0;
-	if (report.converged && !crowded && !(report.created > 0) && !(report.deepest > 0) && !(report.burden > 0))
+	if (report.converged && !crowded && report.created == 0 && !(report.deepest > 0) && !(report.burden > 0))
 		return;
 
 	const Real ofStep = gravity.norm() * scene->dt; // the speed that gravity gives
@@ -273,6 +273,8 @@ void MoreauJeanIntegrator::count(const masonry::rigid::StepReport& report)
 		text << report.unlocalised << " points closed after mostEvents = " << mostEvents << " events, plastically at its end. ";
 	if (report.created > 0)
 		text << report.created << " J of energy come from nowhere. ";
+	if (report.created < 0)
+		text << -report.created << " J of energy vanish. ";
 	if (report.deepest > 0)
 		text << "blocks are " << report.deepest << " m deep in each other. ";
 	if (report.burden > 0)

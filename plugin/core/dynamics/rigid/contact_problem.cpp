@@ -40,7 +40,7 @@ struct ContactSolver<K>::Workspace {
 			s.restoreBest();
 			if (s.bestResidual <= std::max(tolerance, enough))
 				return s.bestResidual;
-			if (sweep(s, tolerance, lastSweeps * round / shares, true, report) <= tolerance)
+			if (gaussSeidel(s, tolerance, lastSweeps * round / shares, true, report) <= tolerance)
 				return s.residual();
 		}
 		s.applyImpulses();
@@ -61,15 +61,17 @@ struct ContactSolver<K>::Workspace {
 		s.applyImpulses();
 		constexpr int fewSweeps = 4;
 		if (K::dimension == 2 && s.nPoints <= K::maxPoints) { // a block on its face: dearer to factorise than to sweep
-			report.residual = sweep(s, tolerance, fewSweeps, true, report);
+			report.residual = gaussSeidel(s, tolerance, fewSweeps, true, report);
 			if (report.residual <= tolerance)
 				return report;
 		}
 		constexpr bool inSpace = K::dimension == 3;
 		if (!(inSpace && given.guessed) && startsClose(tolerance, report))
 			return report;
+		const bool sticks =
+		    std::any_of(given.points.begin(), given.points.end(), [](const ContactRows<K>& row) { return row.friction == noSlip; });
 		constexpr int firstSweeps = 40;
-		report.residual = !inSpace ? sweep(s, tolerance, firstSweeps, false, report) : s.residual();
+		report.residual = !inSpace || sticks ? gaussSeidel(s, tolerance, firstSweeps, false, report) : s.residual();
 		if (report.residual > tolerance)
 			report.residual = alternate(tolerance, enough, given.lastSweeps, report);
 		return report;

@@ -20,13 +20,12 @@
 // factorised over the graph of bodies (block_factor.hpp). Redundant points and any mass ratio are harmless to it.
 // A point alone is solved by its law at once. Else, first, Newton with a small R from the states of the impulses given (stick, slip,
 // open), and with the factor of the last solve while the points are the same: one back-substitution where no state changes. From
-// impulses far from the solution: in the plane block Gauss-Seidel, and where its rate tells that it will not converge, as in space at once,
-// Newton with a large R that falls as the centres converge, each going on along its move while that does no harm. Where that stops, sweeps
-// over the points find another start for it.
+// impulses far from the solution: block Gauss-Seidel, and where its rate tells that it will not converge, Newton with a large R that
+// falls as the centres converge, each going on along its move while that does no harm.
 // Friction leaves several solutions where points share what they carry: all of an edge's load at one corner, which turns the block about
-// it, is one where no loaded point slips. Newton with a large R that falls ends near the impulses given, and leaves a scene that is its own
-// mirror image so; a small R at once from far away does not, nor do sweeps that take the points in their order. So in space all points of a
-// sweep move at once, and impulses that an impact lets expect are not resumed from.
+// it, is one where nothing slips. Newton with a large R that falls ends near the impulses given, and leaves a scene that is its own mirror
+// image so; sweeps, which take the points in their order, and a small R at once from far away do not. So in space there are no sweeps
+// before it but where points cannot slip, whose jams they avoid, and impulses that an impact lets expect are not resumed from.
 // Impulses that still miss the laws are returned with their residual, and made to add no energy (seen from the offsets).
 #include "dynamics/rigid/kinematics.hpp"
 #include "impact/impulse_problem.hpp" // noSlip
@@ -94,7 +93,7 @@ public:
 	void forget();     // the next solve starts without the factor of the last: its bits depend on its input alone
 
 	bool guessed {false};  // the impulses given are what an impact lets expect, not those of the last solve
-	int lastSweeps {2000}; // over the points, between the attempts of Newton
+	int lastSweeps {2000}; // of Gauss-Seidel, between the attempts of Newton
 
 private:
 	struct Workspace;

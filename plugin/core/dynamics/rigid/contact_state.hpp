@@ -14,7 +14,6 @@ struct ContactState {
 	struct Response {
 		OnePoint<K::rows> alone;
 		Velocities W1, W2; // M^-1 J^T: velocities per impulse
-		Rows change;       // of the impulse, in a sweep over all points at once
 	};
 
 	FreeBody<K>* bodies {nullptr}; // the solver's own, as of this call
@@ -22,8 +21,7 @@ struct ContactState {
 	const std::vector<std::array<int, 2>>* near {nullptr};
 	int nBodies {0}, nPoints {0};
 	std::vector<Response> points;
-	std::vector<int> pushes; // of each body: points that push it in a sweep
-	std::vector<Rows> best;  // impulses
+	std::vector<Rows> best; // impulses
 	double bestResidual {0};
 
 	void begin(ContactSolver<K>& solver)
@@ -34,7 +32,6 @@ struct ContactState {
 		nBodies = int(solver.bodies.size());
 		nPoints = int(solver.points.size());
 		points.resize(nPoints);
-		pushes.resize(nBodies);
 		for (int i = 0; i < nPoints; ++i) {
 			const ContactRows<K>& c = rows[i];
 			Response& p = points[i];
@@ -67,13 +64,6 @@ struct ContactState {
 			bodies[rows[i].body1].velocity += points[i].W1 * impulse;
 		if (rows[i].body2 >= 0)
 			bodies[rows[i].body2].velocity += points[i].W2 * impulse;
-	}
-
-	// What the law of a point asks for at its present velocity u while the others keep their impulses.
-	Rows impulseAlone(int i, const Rows& u) const
-	{
-		const OnePoint<K::rows>& alone = points[i].alone;
-		return alone.impulse(u - alone.G * rows[i].impulse, rows[i].friction);
 	}
 
 	// The velocities that the impulses give by the momentum equation.

@@ -3,17 +3,62 @@
 
 namespace masonry::rigid {
 
-// The stages of a step. All but the first repeat for each part of the step that ends with an event.
+// Bodies that turn or pass each other too far for one step share it out among several.
 template <class K>
 StepReport RigidStep<K>::advance(RigidSystem<K>& s, double dt)
 {
 	report = {};
 	s.impacts.clear();
+	const Energies before(s);
 	step.begin(s, dt);
+	for (int parts = partsOf(s, dt); parts > 0 && !report.diverged; parts = parts > 1 ? partsOf(s, step.left()) : 0)
+		advancePart(s, step.beginPart(s, parts));
+	balance(s, before);
+	return report;
+}
+
+// Tells of energy that the step has made or lost over what the forces, the base, friction and impacts account for, where it is more than a
+// share of what is at stake in the step, and of what lifts all blocks by the smallest half size.
+template <class K>
+void RigidStep<K>::balance(const RigidSystem<K>& s, const Energies& before)
+{
+	const Energies now(s);
+	const double friction = now.friction - before.friction, impact = now.impact - before.impact, base = now.base - before.base;
+	const double made = now.kinetic - before.kinetic - step.work - base + friction + impact;
+	const double atStake = before.kinetic + std::abs(step.work) + std::abs(base) + std::abs(friction) + std::abs(impact);
+	double lifted = 0;
+	for (const RigidBody<K>& body : s.bodies)
+		if (!body.prescribed)
+			lifted += body.mass * s.gravity.norm() * step.scales.length;
+	if (std::abs(made) > tolerance::rigid::madeShare * atStake + tolerance::rigid::madeLift * lifted)
+		report.created += made;
+}
+
+// How many parts what is left of a step needs: small turns, for the passes over the spins to converge, and ways shorter than a block, for
+// contacts to be those that the part begins with.
+template <class K>
+int RigidStep<K>::partsOf(const RigidSystem<K>& s, double left) const
+{
+	double parts = 1;
+	for (const RigidBody<K>& body : s.bodies)
+		if (!body.prescribed)
+			parts = std::max(parts, left * body.velocity.template tail<K::spins>().norm() / tolerance::rigid::partTurn);
+	for (const ContactPair<K>& pair : s.pairs) {
+		const auto &body1 = s.bodies[pair.body1], &body2 = s.bodies[pair.body2];
+		const double way = left * (body2.velocity - body1.velocity).template head<K::dimension>().norm();
+		parts = std::max(parts, way / (tolerance::rigid::partWay * std::min(body1.halfSize.minCoeff(), body2.halfSize.minCoeff())));
+	}
+	return int(std::ceil(std::min(parts, tolerance::rigid::mostParts)));
+}
+
+// The stages of a step. All but the first repeat for each part of the step that ends with an event.
+template <class K>
+void RigidStep<K>::advancePart(RigidSystem<K>& s, double part)
+{
 	findContacts(s);
 	takeJumps(s);
-	for (double left = dt; left > 0;) {
-		const double h = untilKink(s, left, dt);
+	for (double left = part; left > 0;) {
+		const double h = untilKink(s, left, part);
 		const Event event = tryStep(s, h);
 		if (event.kind == Event::none || event.at > 0) {
 			step.accept(s);
@@ -21,7 +66,7 @@ StepReport RigidStep<K>::advance(RigidSystem<K>& s, double dt)
 		}
 		if (!s.isFinite()) {
 			report.diverged = true;
-			return report;
+			return;
 		}
 		if (event.kind == Event::closing) {
 			if (!land(s)) // the point parts and would be back at once: it stays
@@ -37,7 +82,6 @@ StepReport RigidStep<K>::advance(RigidSystem<K>& s, double dt)
 		takeJumps(s);
 		s.startAnew();
 	}
-	return report;
 }
 
 template <class K>

@@ -12,6 +12,16 @@ public:
 	StepReport advance(RigidSystem<K>& system, double dt);
 
 private:
+	struct Energies { // J
+		double kinetic, friction, impact, base;
+		explicit Energies(const RigidSystem<K>& s)
+		    : kinetic(s.kineticEnergy()), friction(s.frictDissip), impact(s.impactDissip), base(s.baseWork)
+		{
+		}
+	};
+	void advancePart(RigidSystem<K>& system, double part);
+	int partsOf(const RigidSystem<K>& system, double left) const;
+	void balance(const RigidSystem<K>& system, const Energies& before);
 	void findContacts(RigidSystem<K>& system);
 	void findContacts(RigidSystem<K>& system, ContactPair<K>& pair, bool within);
 	Event tryStep(RigidSystem<K>& system, double h);

@@ -81,21 +81,30 @@ bool basesPart(const RigidSystem<K>& s, double dt)
 template <class K>
 void SmoothStep<K>::begin(const RigidSystem<K>& s, double dt)
 {
-	whole = dt;
-	end = s.time + dt;
-	passed = 0;
+	full = dt;
+	end = s.time;
+	stepEnd = s.time + dt;
+	passed = work = 0;
 	starts.resize(s.bodies.size());
 	for (size_t b = 0; b < s.bodies.size(); ++b)
 		if (s.bodies[b].prescribed)
 			starts[b] = s.bodies[b].pose;
+}
+
+template <class K>
+double SmoothStep<K>::beginPart(const RigidSystem<K>& s, int parts)
+{
+	whole = parts == 1 && passed == 0 ? full : left() / parts;
+	end = parts == 1 ? stepEnd : s.time + whole;
 	solver.forget();
 	shifts.reserve(s.bodies.size()); // a step that closes gaps may be the first to
 	scales = Scales(s);
-	partBases = basesPart(s, dt);
+	partBases = basesPart(s, whole);
 	weight = 0;
 	for (const RigidBody<K>& body : s.bodies)
 		if (!body.prescribed)
 			weight += body.mass * scales.acceleration * scales.length;
+	return whole;
 }
 
 // Parts of a step add up to its end but for round-off, which would depend on the events in it.
@@ -118,7 +127,7 @@ void SmoothStep<K>::predict(const RigidSystem<K>& s, double h, bool again)
 		if (body.prescribed) {
 			next.unknown = -1;
 			next.middle = prescribedPose(s, body, starts[b], passed + h / 2, s.time + h / 2);
-			next.end = prescribedPose(s, body, starts[b], after == end ? whole : passed + h, after);
+			next.end = prescribedPose(s, body, starts[b], after == stepEnd ? full : passed + h, after);
 			next.velocity = prescribedVelocity(s, body, after);
 			next.mean = 0.5 * (body.velocity + next.velocity);
 			continue;
@@ -278,6 +287,9 @@ void SmoothStep<K>::takeBodies(RigidSystem<K>& s)
 	for (size_t b = 0; b < s.bodies.size(); ++b) {
 		RigidBody<K>& body = s.bodies[b];
 		const auto& next = last.bodies[b];
+		if (!body.prescribed)
+			work += body.force.template head<K::dimension>().dot(next.end.position - body.pose.position) +
+			        last.h * body.force.template tail<K::spins>().dot(next.mean.template tail<K::spins>());
 		if (!body.prescribed && !isShort())
 			body.increment = (next.velocity - body.velocity) / last.h;
 		body.pose = next.end;

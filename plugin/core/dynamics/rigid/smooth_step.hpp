@@ -59,6 +59,9 @@ class SmoothStep {
 public:
 	// Forgets earlier steps: a run that was saved goes on with the same bits.
 	void begin(const RigidSystem<K>& system, double dt);
+	// The next of so many equal parts of what is left of the step: a step of its own, but for the prescribed bodies. Returns its length, s.
+	double beginPart(const RigidSystem<K>& system, int parts);
+	double left() const { return stepEnd - end; } // s, of the step after the part
 	// Computes the trial of length h from the system's state. Open points do not act, but for those in `anticipated`. `again`: the last
 	// trial was of the same step and points; its forces are the first guess, which decides where a sliding point stops by a jam (an impulse
 	// however short the step).
@@ -68,6 +71,7 @@ public:
 
 	const Trial<K>& trial() const { return last; }
 	Scales scales;                     // of this step
+	double work {0};                   // of the forces on the bodies in this step so far, J
 	std::vector<PointRef> anticipated; // open points that are about to close and are not localised
 	bool stopsInside {false};          // sliding points may stop inside the step: friction opposes their last velocity, not the mean
 
@@ -101,9 +105,10 @@ private:
 	std::vector<typename K::Velocity> shifts;
 	std::vector<double> misses, partings; // of the rows: m; normal velocities at the start of a part of a step, m/s
 	std::vector<Impulse> guesses, stray;  // of the rows: impulses of the last pass; velocities that the step takes off (none: empty)
-	double whole {0}, end {0};            // s, the step that is being done in parts, and when it ends
-	double passed {0};                    // s, of it
-	std::vector<typename K::Pose> starts; // of the prescribed bodies, of it: where they go does not depend on how a structure divides it
+	double whole {0}, end {0};            // s, the part of the step that is being done up to its events, and when it ends
+	double full {0}, stepEnd {0};         // s, the whole step, and when it ends
+	double passed {0};                    // s, of the whole step
+	std::vector<typename K::Pose> starts; // of the prescribed bodies: where they go does not depend on how a structure divides the step
 	double weight {0};                    // of the free bodies times the scene's length, J
 	bool unsteady {false};                // the stray velocities were left
 	bool partBases {false}; // how much each of two bases that move apart carries is not determined: the last step's share grows

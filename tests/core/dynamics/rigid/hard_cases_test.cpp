@@ -115,6 +115,7 @@ TEST_CASE("A part of a step however short leaves no trace")
 		auto parted = s;
 		SmoothStep<Plane> step;
 		step.begin(parted, h);
+		step.beginPart(parted, 1);
 		step.attempt(parted, part);
 		step.accept(parted);
 		run(s, h, until + 10 * h);
