@@ -52,8 +52,8 @@ def compare_schedules(engines, times, bound):
 def compare_shapes(engines, times, bound, rectangular=None):
     """Pulses of finite duration; rectangular ones with a bound of their own, if given."""
     for shape, least in (("rectangular", rectangular or bound), ("half-sine", bound)):
-        compare(shape, engines, lambda ids: dem.PulseTrainEngine(ids=ids, impulse=2 * IMPULSE, times=times, shape=shape, duration=0.06),
-                masonry.PulseTrain(2 * IMPULSE, times=times, shape=shape, duration=0.06), 1.0, least)
+        compare(shape, engines, lambda ids: dem.PulseTrainEngine(ids=ids, impulse=2 * IMPULSE, times=times, shape=shape, duration=0.06, singleKeeps="duration"),
+                masonry.PulseTrain(2 * IMPULSE, times=times, shape=shape, duration=0.06, single_keeps="duration"), 1.0, least)
 
 
 def compare_record(engines, bound):

@@ -80,7 +80,7 @@ assert "Dirac" not in "".join(lines(dem.PulseTrainEngine(ids=[base], impulse=0.2
 for density, said in ((499, True), (500, False), (20001, True)):
     scene(density=density)
     assert (f"a density is {density:g}: densities are in kg/m^3" in "".join(lines())) == said
-for peak, unit, said in ((0.3, False, True), (0.3, True, False), (0.3, None, False), (1.6, False, False), (0.099, False, False)):
+for peak, unit, said in ((0.3, False, True), (0.3, True, False), (0.3, None, True), (1.6, False, False), (0.099, False, False)):
     base, *_ = scene()
     record = masonry.Record(0.01, peak * np.sin(2 * np.pi * np.arange(0, 1.005, 0.01)))
     if unit is not None:

@@ -179,7 +179,7 @@ for method in ("localised", "wall"):
 
 # What waits for its time may still be changed, finite pulses among it.
 base, block, _ = one_block(2)
-train = dem.PulseTrainEngine(ids=[base], impulse=0.1, times=[0, 1], shape="half-sine", duration=0.1, start=1e9)
+train = dem.PulseTrainEngine(ids=[base], impulse=0.1, times=[0, 1], shape="half-sine", duration=0.1, singleKeeps="duration", start=1e9)
 O.engines = engines(train)
 O.run(500, True)
 train.start = O.time

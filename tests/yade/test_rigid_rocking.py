@@ -126,7 +126,7 @@ for model in ("planar", "spatial"):
         O.reset()
         base = dem.base((4, 2, 0.3), dem.BlockMat(density=2000, frictionAngle=math.atan(0.65)))
         upper = dem.stack(2, (0.4, 0.3, 0.6), dem.BlockMat(density=1300, frictionAngle=0.5, restitution=0.6), base)[1]
-        O.engines = rigid_engines(dem.PulseTrainEngine(ids=[base], impulse=0.4, times=[0.0511, 0.3, 0.6], shape="half-sine", duration=0.1), model=model, dt=dt)
+        O.engines = rigid_engines(dem.PulseTrainEngine(ids=[base], impulse=0.4, times=[0.0511, 0.3, 0.6], shape="half-sine", duration=0.1, singleKeeps="duration"), model=model, dt=dt)
         while O.time < 0.735:
             O.step()
         last = dem.impacts()[-1]
