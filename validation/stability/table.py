@@ -34,7 +34,7 @@ def figure(path, rows, names):
     import matplotlib.pyplot as plt
 
     columns = 5
-    lines = math.ceil(len(names) / columns)
+    lines = math.ceil((len(names) + 1) / columns)  # the legend has a place of its own
     drawn, axes = plt.subplots(lines, columns, figsize=(3.1 * columns, 2.3 * lines), layout="constrained", squeeze=False)
     for axis, name in zip(axes.flat, names):
         of_case = [r for r in rows if r["case"] == name and r["verdict"] != "not run"]
@@ -59,7 +59,7 @@ def figure(path, rows, names):
         axis.axis("off")
     handles = [plt.Line2D([], [], color=COLOURS[m], label=m) for m in MODELS]
     handles += [plt.Line2D([], [], color="k", marker=k, linestyle="none", label=text) for k, text in (("o", "right"), ("s", "wrong, and the run says so (shaded)"), ("X", "wrong without a word"))]
-    drawn.legend(handles=handles, loc="outside upper center", ncols=len(handles), fontsize=8)
+    axes.flat[-1].legend(handles=handles, loc="center", fontsize=7)
     drawn.supxlabel("time step, s", fontsize=9)
     drawn.supylabel("larger of error and energy gained, relative", fontsize=9)
     drawn.savefig(path, dpi=80)
