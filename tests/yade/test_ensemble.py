@@ -110,7 +110,7 @@ with tempfile.TemporaryDirectory() as folder:
         for words in ("2 of 4 cases failed", "2 are kept", "{'scale': 100}: it was stopped after 20 s", "{'scale': 0}: it ended with status 1", "returned {}"):
             assert words in str(error), (words, str(error))
         assert error.table["twice"].tolist() == [0.5, 1] and np.load(out / "ensemble.npz")["table"].tobytes() == error.table.tobytes()
-    # What ends the program ends its cases: Ctrl-C, what a queue and a closing terminal send, and what nothing can catch.
+    # Whatever ends the program also ends its cases: Ctrl-C, the signals of a queue or a closing terminal, and a kill that nothing can catch.
     def lives(pid):  # a zombie does not
         try:
             return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"

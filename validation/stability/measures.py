@@ -10,8 +10,8 @@ from boxes import depth
 from masonry import dem
 from yade import O
 
-# What a run at the default step or below may do and count as right: energy that appears, of what is turned over, and depth, of the smaller
-# half size. Compliant joints are deeper by what their springs give way under a landing.
+# A run at the default step or below counts as right up to these limits: energy that appears, relative to the energy turned over, and depth, relative
+# to the smaller half size. Compliant joints are deeper by what their springs give way under a landing.
 MOST_GAIN, MOST_DEPTH = 1e-3, {"compliant": 2e-2}
 OTHER_DEPTH = 1e-2
 # Above the default step a run is less exact by the user's choice: it is wrong where any of the three is more than this.

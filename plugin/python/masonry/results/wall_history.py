@@ -10,7 +10,7 @@ from masonry._given import number_given
 
 ENERGIES = ("kinetic", "potential", "elastPotential", "frictDissip", "dampDissip", "impactDissip", "baseWork")
 _SAVED = ("time", "ids", "sizes", "free", "position", "orientation", "energies")
-# What files have that know how long the motion of the base lasts.
+# Files that know how long the motion of the base lasts have these.
 _OPTIONAL = ("motion", "end")
 # Share of the motion that may be missing from a run to its end, whose last step or sample may come a little earlier.
 _FINISHED = 1e-3
