@@ -1,5 +1,10 @@
 """Closed form of the paper: numbers recomputed here from its equations with NumPy."""
 
+import os
+import shutil
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 
@@ -80,3 +85,20 @@ def test_time_to_stabilise_needs_and_obeys_its_tolerance():
 def test_bad_input(call, words):
     with pytest.raises(ValueError, match=words):
         call()
+
+
+def test_restitution_left_out_is_the_natural_one():
+    block = masonry.RockingBlock(0.1, np.array([0.4, 0.6]))
+    natural = 1 - 1.5 * np.sin(np.arctan(block.half_width / block.half_height))**2
+    for given in (None, np.nan, [np.nan, natural[1]]):
+        np.testing.assert_allclose(masonry.closed_form.stabilised(block, 0.05, given).amplification, 4 / (1 - natural)**2, rtol=1e-12)
+        np.testing.assert_allclose(masonry.closed_form.pulse_sequence(block, 0.05, given, 3).angular_velocity,
+                                   masonry.closed_form.pulse_sequence(block, 0.05, natural, 3).angular_velocity, rtol=1e-12)
+        assert masonry.closed_form.time_to_stabilise(block, 0.05, given, 0.01).shape == (2,)
+
+
+def test_a_package_without_its_compiled_module_says_how_to_build_it(tmp_path):
+    shutil.copytree(os.path.dirname(masonry.__file__), tmp_path / "masonry", ignore=shutil.ignore_patterns("*.so", "__pycache__"))
+    done = subprocess.run([sys.executable, "-c", "import masonry"], env={**os.environ, "PYTHONPATH": str(tmp_path)}, capture_output=True, text=True)
+    assert done.returncode == 1
+    assert "ImportError: masonry needs its compiled module masonry/_core.so: build it with `cmake --preset release" in done.stderr.splitlines()[-1]

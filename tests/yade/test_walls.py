@@ -266,6 +266,12 @@ for made, wanted in zip(dem.blocks_from_table(path, material, on=base), (leaning
     made, wanted = O.bodies[made].state, O.bodies[wanted].state
     assert made.pos == wanted.pos and made.ori == wanted.ori and made.refOri == wanted.refOri
 
+# A file without a line of names.
+for text in ("0,0,0.5,1,1,1\n0,0,1.5,1,1,1\n", "0 0 0.5 1 1 1\n", "0;0;0,5;1;1;1\n"):
+    with open(path := os.path.join(folder, "bare.csv"), "w") as file:
+        file.write(text)
+    refuses(lambda: dem.blocks_from_table(path, material), "bare.csv: cannot be read: its first line is", "must name the columns")
+
 # Endings and headers in capitals, blanks around headers; id and name say nothing.
 for ending, text in (("CSV", "ID, X ,Y,Z ,Size_X,SIZE_Y,size_z,Name\n7,4,0,0.5,1,1,1,corner\n"),
                      ("JSON", '[{"id": 7, "X": 4, "Y": 0, "z ": 0.5, "Size_X": 1, "size_y": 1, "size_z": 1}]')):

@@ -6,6 +6,12 @@ restitutions and motion parameters may be NumPy arrays that broadcast against ea
 Signs: an angle is positive when the block is tilted towards +x; a base acceleration towards +x tips it towards -x.
 """
 
+try:
+    from . import _core as _core
+except ImportError as _error:
+    raise ImportError("masonry needs its compiled module masonry/_core.so: build it with `cmake --preset release && cmake --build build`, put build/python "
+                      f"on PYTHONPATH, and use /usr/bin/python3. ({_error})") from None
+
 from . import closed_form
 from .artificial import artificial_record
 from .block import RockingBlock

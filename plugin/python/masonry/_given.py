@@ -6,11 +6,19 @@ import reprlib
 
 import numpy as np
 
+_SHORT = reprlib.Repr()
+_SHORT.maxstring, _SHORT.maxother, _SHORT.maxlong = 60, 200, 60
+
+
+def shown(value):
+    """The value as a message names it: long ones are cut."""
+    return _SHORT.repr(value)
+
 
 def number_given(name, value):
     """The value; ValueError unless it is a number (NaN is one)."""
     if not isinstance(value, numbers.Real) or isinstance(value, bool):
-        raise ValueError(f"{name} = {value!r}: must be a number")
+        raise ValueError(f"{name} = {shown(value)}: must be a number")
     return value
 
 
@@ -29,7 +37,7 @@ def is_whole(value, least, most=math.inf):
 def whole_given(name, value, least, most=math.inf):
     """The value as an int; ValueError unless it is a whole number (2.0 is one) from `least` to `most`."""
     if not is_whole(value, least, most):
-        raise ValueError(f"{name} = {value!r}: must be a whole number, at least {least}" + (f" and at most {most}" if most < math.inf else ""))
+        raise ValueError(f"{name} = {shown(value)}: must be a whole number, at least {least}" + (f" and at most {most}" if most < math.inf else ""))
     return int(value)
 
 
@@ -41,4 +49,4 @@ def array_given(name, values):
             return array.astype(float, copy=False)
     except (TypeError, ValueError, OverflowError):
         pass
-    raise ValueError(f"{name} = {reprlib.repr(values)}: must be a number or an array of numbers")
+    raise ValueError(f"{name} = {shown(values)}: must be a number or an array of numbers")

@@ -2,11 +2,10 @@
 
 import math
 import re
-import reprlib
 
 import numpy as np
 
-from ._given import positive_given
+from ._given import positive_given, shown
 
 STANDARD_GRAVITY = 9.80665  # m/s^2
 UNITS = ("m/s^2", "cm/s^2", "mm/s^2", "g")
@@ -34,7 +33,7 @@ def unit_factor(unit, gravity=STANDARD_GRAVITY):
     """What an acceleration in that unit is multiplied by, to have it in m/s^2."""
     factors = dict(zip(UNITS, (1.0, 1e-2, 1e-3, positive_given("gravity", gravity, ", in m/s^2"))))
     if unit not in UNITS:
-        raise ValueError(f"unit = {reprlib.repr(unit)}: must be one of {', '.join(UNITS)}")
+        raise ValueError(f"unit = {shown(unit)}: must be one of {', '.join(UNITS)}")
     return factors[unit]
 
 
@@ -115,13 +114,13 @@ def _chosen(path, names, count, first, columns):
     if columns is None:
         if count > 2:
             raise ValueError(f"{path}: line {first} has {count} columns: columns=(time, acceleration) must say which, by number (from 0) or by name"
-                             + (f" ({reprlib.repr(names)})" if names and len(names) == count else ""))
+                             + (f" ({shown(names)})" if names and len(names) == count else ""))
         return tuple(range(count))
     chosen = tuple(columns) if isinstance(columns, (tuple, list)) else (columns,)
     places = [names.index(column) if names and column in names else column for column in chosen]
     if len(places) not in (1, 2) or not all(isinstance(place, (int, np.integer)) and 0 <= place < count for place in places):
-        raise ValueError(f"columns = {reprlib.repr(columns)}: must be acceleration or (time, acceleration), by number (0 to {count - 1}) or by the names in the "
-                         f"first line of {path}" + (f", {reprlib.repr(names)}" if names else ", which has none"))
+        raise ValueError(f"columns = {shown(columns)}: must be acceleration or (time, acceleration), by number (0 to {count - 1}) or by the names in the "
+                         f"first line of {path}" + (f", {shown(names)}" if names else ", which has none"))
     return tuple(places)
 
 

@@ -9,6 +9,7 @@ import sys
 
 import numpy as np
 from masonry._files import written
+from masonry._given import shown
 
 
 def end_with(parent):
@@ -26,11 +27,11 @@ def main(script, function, case, path, parent):
     spec.loader.exec_module(module)
     outcome = getattr(module, function)(case)
     if not isinstance(outcome, dict) or not outcome:
-        raise ValueError(f"{function}() of {script} returned {outcome!r}: must be a dict of numbers and arrays")
+        raise ValueError(f"{function}() of {script} returned {shown(outcome)}: must be a dict of numbers and arrays")
     values = {name: np.asarray(value) for name, value in outcome.items()}
     for name, value in values.items():
         if value.dtype.kind not in "biufU" or name == "case":
-            raise ValueError(f"{function}() of {script} returned {name} = {outcome[name]!r}: must be a number, a string or an array of them, and not named case")
+            raise ValueError(f"{function}() of {script} returned {name} = {shown(outcome[name])}: must be a number, a string or an array of them, and not named case")
     with written(path) as beside:
         np.savez_compressed(beside, case=json.dumps(case), **values)
 

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from ._given import number_given, positive_given
+from ._given import number_given, positive_given, shown
 from .motions import Record
 
 
@@ -22,7 +22,7 @@ def artificial_record(seed, peak, duration=10.0, dt=0.01, frequency=2.5, damping
     q^4/((1 - q^2)^2 + 4 z^2 q^2), z the damping ratio in both. The mean acceleration is taken off (baseline 'constant').
     """
     if not (isinstance(seed, (int, np.integer)) and seed >= 0):
-        raise ValueError(f"seed = {seed!r}: must be a whole number, 0 or larger")
+        raise ValueError(f"seed = {shown(seed)}: must be a whole number, 0 or larger")
     for name, value in (("peak", peak), ("duration", duration), ("frequency", frequency), ("damping", damping), ("cutoff", cutoff)):
         positive_given(name, value)
     if not cutoff < frequency:

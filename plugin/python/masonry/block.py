@@ -1,5 +1,7 @@
 """The rocking block."""
 
+import numpy as np
+
 from . import _core
 from ._given import array_given
 from ._arrays import columns, restore, shape_of
@@ -33,6 +35,11 @@ class RockingBlock:
     def from_size(cls, width, height, gravity=9.81):
         """The block of that whole width (2b) and height (2a), m."""
         return cls(array_given("width", width) / 2, array_given("height", height) / 2, gravity)
+
+    def _restitution(self, given):
+        """C as given; the natural one where it is None or NaN."""
+        given = array_given("restitution", np.nan if given is None else given)
+        return np.where(np.isnan(given), self.natural_restitution, given)
 
     def _columns(self, shape):
         return columns(shape, self.half_width, self.half_height, self.gravity)

@@ -1,7 +1,7 @@
 """Closed form of Casapulla and Maione, Eqs 1-13: constant restoring moment, resonant train of base velocity jumps
 I, -2I, +2I, ..., each just after an impact.
 
-block: RockingBlock; impulse: I > 0, m/s; restitution: C in [0, 1]. Arrays broadcast.
+block: RockingBlock; impulse: I > 0, m/s; restitution: C in [0, 1]; None or NaN: the block's natural one. Arrays broadcast.
 """
 
 from dataclasses import dataclass
@@ -49,6 +49,7 @@ def single_pulse(block, impulse):
 
 def pulse_sequence(block, impulse, restitution, n):
     """The first n half cycles, n >= 1."""
+    restitution = block._restitution(restitution)
     shape = shape_of(np.empty(block.shape), impulse, restitution)
     result = _core.pulse_sequence(block._columns(shape), *columns(shape, impulse, restitution), whole_given("n", n, 1))
     return PulseSequence(*(restore(x, shape) for x in result))
@@ -56,6 +57,7 @@ def pulse_sequence(block, impulse, restitution, n):
 
 def stabilised(block, impulse, restitution):
     """The phase that the sequence tends to."""
+    restitution = block._restitution(restitution)
     shape = shape_of(np.empty(block.shape), impulse, restitution)
     result = [restore(x, shape) for x in _core.stabilised(block._columns(shape), *columns(shape, impulse, restitution))]
     return Stabilised(*result, overturns=result[-1] >= 1)
@@ -64,5 +66,6 @@ def stabilised(block, impulse, restitution):
 def time_to_stabilise(block, impulse, restitution, tolerance):
     """End time (Eq. 8, s) of the first half cycle whose angular velocity is within `tolerance` (relative, in (0, 1)) of the
     stabilised one: 1 - w_i/w* = (1+C)/2 C^(i-1). The limit itself is never reached, so the tolerance is part of the answer."""
+    restitution = block._restitution(restitution)
     shape = shape_of(np.empty(block.shape), impulse, restitution, tolerance)
     return restore(_core.time_to_stabilise(block._columns(shape), *columns(shape, impulse, restitution, tolerance)), shape)

@@ -30,7 +30,7 @@ from pathlib import Path
 import numpy as np
 
 from ._files import read_npz, written
-from ._given import array_given, is_whole, number_given, positive_given
+from ._given import array_given, is_whole, number_given, positive_given, shown
 
 _RUN_CASE = Path(__file__).with_name("_run_case.py")
 # Lines of what a failed case has said that the error repeats, and failed cases that it names.
@@ -47,7 +47,7 @@ def _plain(case):
     try:
         return json.dumps(case, sort_keys=True, default=convert)
     except TypeError:
-        raise ValueError(f"case = {case!r}: must be a dict of numbers, strings, None, and lists of them") from None
+        raise ValueError(f"case = {shown(case)}: must be a dict of numbers, strings, None, and lists of them") from None
 
 
 def _contents(paths):
@@ -100,17 +100,17 @@ def run(script, cases, folder, function="run", processes=None, time_limit=None, 
     """
     script, folder = Path(script).resolve(strict=True), Path(folder)
     if not isinstance(cases, Iterable):
-        raise ValueError(f"cases = {cases!r}: must be a list of dicts")
+        raise ValueError(f"cases = {shown(cases)}: must be a list of dicts")
     cases = list(cases)
     if not cases:
         raise ValueError("cases: must have at least one")
     for case in cases:
         if not isinstance(case, dict):
-            raise ValueError(f"case = {case!r}: must be a dict of numbers, strings, None, and lists of them")
+            raise ValueError(f"case = {shown(case)}: must be a dict of numbers, strings, None, and lists of them")
         if case.keys() != cases[0].keys():
             raise ValueError(f"case = {case}: must have the same keys as the first, {', '.join(cases[0])}")
     if processes is not None and not is_whole(processes, 1):
-        raise ValueError(f"processes = {processes!r}: must be a whole number, at least 1, or None")
+        raise ValueError(f"processes = {shown(processes)}: must be a whole number, at least 1, or None")
     if time_limit is not None:
         positive_given("time_limit", time_limit, ", in s, or None")
     keys = _keys(script, function, cases)
@@ -337,14 +337,14 @@ def statistics(table, by=None, probabilities=(0.16, 0.5, 0.84), confidence=0.95,
     by = [] if by is None else list(by) if isinstance(by, (list, tuple)) else [by]
     for name in (*by, event, value):
         if name not in table.dtype.names:
-            raise ValueError(f"{name!r}: is no column of the table, which has {', '.join(table.dtype.names)}")
+            raise ValueError(f"{shown(name)}: is no column of the table, which has {', '.join(table.dtype.names)}")
     chances = array_given("probabilities", probabilities)
     if chances.ndim != 1:
-        raise ValueError(f"probabilities = {probabilities!r}: must be a list of numbers above 0 and below 1")
+        raise ValueError(f"probabilities = {shown(probabilities)}: must be a list of numbers above 0 and below 1")
     made = [*by, "cases", *(f"fraction{end}" for end in ("", "_low", "_high")), *(f"quantile_{p:g}{end}" for p in chances for end in ("", "_low", "_high"))]
     twice = [name for name in dict.fromkeys(made) if made.count(name) > 1]
     if twice:
-        raise ValueError(f"by = {by}, probabilities = {probabilities}: would make two columns {twice[0]!r}: must all differ")
+        raise ValueError(f"by = {by}, probabilities = {probabilities}: would make two columns {shown(twice[0])}: must all differ")
     groups, member = np.unique(table[by], return_inverse=True) if by else ([()], np.zeros(len(table), dtype=int))
     rows = []
     for number, group in enumerate(groups):
@@ -354,7 +354,7 @@ def statistics(table, by=None, probabilities=(0.16, 0.5, 0.84), confidence=0.95,
         for name, column in ((event, part[event]), (value, numbers)):
             if np.isnan(column).any():
                 which = " with " + ", ".join(f"{n} = {v}" for n, v in zip(by, group)) if by else ""
-                raise ValueError(f"column {name!r}: {int(np.isnan(column).sum())} of {len(part)} cases{which} are NaN: "
+                raise ValueError(f"column {shown(name)}: {int(np.isnan(column).sum())} of {len(part)} cases{which} are NaN: "
                                  f"must be numbers{f', but where {event} is True' if name == value else ''}")
         row = [*group, len(part), *fraction(happened, confidence)]
         for probability in chances:

@@ -1,13 +1,12 @@
 """Exact histories of rocking blocks."""
 
-import reprlib
 import warnings
 
 import numpy as np
 
 from . import _core
 from ._arrays import columns, restore, shape_of
-from ._given import array_given, whole_given
+from ._given import array_given, shown, whole_given
 from .motions import Motion, PulseTrain, Record, Still
 
 
@@ -51,7 +50,7 @@ class History:
 def _motion_given(name, motion):
     motion = Still() if motion is None else motion
     if not isinstance(motion, Motion):
-        raise ValueError(f"{name} = {reprlib.repr(motion)}: must be a motion of masonry (PulseTrain, Sine, Record, ...) or None")
+        raise ValueError(f"{name} = {shown(motion)}: must be a motion of masonry (PulseTrain, Sine, Record, ...) or None")
     return motion
 
 
@@ -59,9 +58,8 @@ def _arguments(block, motion, restitution, restoring, initial_angle, initial_vel
     """(shape of the cases, arguments of the compiled functions)"""
     motion, vertical = _motion_given("motion", motion), _motion_given("vertical", vertical)
     if isinstance(vertical, PulseTrain) and vertical.times is None:
-        raise ValueError(f"vertical = {vertical!r}: must be a motion with a known course, not a resonant train")
-    given = array_given("restitution", np.nan if restitution is None else restitution)
-    restitution = np.where(np.isnan(given), block.natural_restitution, given)
+        raise ValueError(f"vertical = {shown(vertical)}: must be a motion with a known course, not a resonant train")
+    restitution = block._restitution(restitution)
     t_end = np.inf if t_end is None else t_end
     half_cycles = -1 if half_cycles is None else whole_given("half_cycles", half_cycles, 1)
     shape = np.broadcast_shapes(block.shape, motion.shape, vertical.shape, shape_of(restitution, initial_angle, initial_velocity, t_end))

@@ -8,7 +8,7 @@ import math
 import numpy as np
 
 from . import _core
-from ._given import array_given, number_given, positive_given, whole_given
+from ._given import array_given, number_given, positive_given, shown, whole_given
 from ._arrays import columns, restore, shape_of
 from ._readers import STANDARD_GRAVITY, read_at2, read_csv, unit_factor
 
@@ -63,7 +63,7 @@ class PulseTrain(Motion):
         if times is None and assembly:
             raise ValueError(f"assembly = {assembly}: must be left out for a resonant train (times=None); half_cycles brings its base to rest")
         if number_given("duration", duration) != 0 and shape == "dirac":
-            raise ValueError(f"duration = {duration!r}: must be left out (0) for dirac pulses; shape='rectangular' or 'half-sine' has one")
+            raise ValueError(f"duration = {shown(duration)}: must be left out (0) for dirac pulses; shape='rectangular' or 'half-sine' has one")
         self.impulse = self.amplitude = impulse
         self.times = None if times is None else np.atleast_1d(array_given("times", times))
         self.half_cycles, self.assembly = half_cycles, assembly

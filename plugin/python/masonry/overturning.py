@@ -3,7 +3,7 @@
 import numpy as np
 
 from . import _core
-from ._given import whole_given
+from ._given import shown, whole_given
 from .history import _arguments
 from .motions import Motion, PulseTrain, Record
 
@@ -32,7 +32,7 @@ def overturning_amplitude(block, shape, restitution=None, restoring="exact", bra
     if block.shape:
         raise ValueError(f"block = {block}: must be one block, of single numbers")
     if not isinstance(shape, Motion) or shape.shape or not getattr(shape, "amplitude", 0) or (isinstance(shape, Record) and not shape.samples.any()):
-        raise ValueError(f"shape = {shape!r}: must be one motion of single numbers that moves the base: its amplitude, impulse or scale is not 0")
+        raise ValueError(f"shape = {shown(shape)}: must be one motion of single numbers that moves the base: its amplitude, impulse or scale is not 0")
     samples = whole_given("samples", samples, 2)
     unit = shape.scaled(1 / shape.amplitude)
     lower, upper = _default_bracket(block, unit) if bracket is None else bracket

@@ -2,6 +2,9 @@
 
 import difflib
 import importlib
+import math
+
+from masonry._given import shown
 
 _HOW = "run the script with `yade -n -x script.py` (Debian 12: `apt install yade`)"
 
@@ -21,12 +24,35 @@ def _no_such_attribute(cls, name):
     return AttributeError(f"{cls.__name__} has no attribute {name!r}: {hint}")
 
 
+def _wrong_kind(thing, name, value):
+    """The error of an attribute that was given a value of another kind than it has."""
+    known = getattr(thing, name, None)
+    if isinstance(known, bool):
+        kind = "True or False"
+    elif isinstance(known, (int, float)):
+        kind = "a number"
+    elif isinstance(known, str):
+        kind = "a text"
+    elif type(known).__name__ == "Vector3":
+        kind = "three numbers (x, y, z)"
+    elif isinstance(known, list):
+        kind = f"a list, see help(dem.{type(thing).__name__})"
+    else:
+        kind = "of the kind " + type(known).__name__
+    return TypeError(f"{type(thing).__name__}.{name} = {shown(value)}: must be {kind}")
+
+
 def _guard_attributes(cls):
     """A misspelled attribute of an object of the class is an error with the names that are near, in the constructor and where it is set: a
-    Boost.Python class would take it as a new one."""
+    Boost.Python class would take it as a new one. A value of another kind is an error that names the attribute and its kind. The restitution
+    None is NaN, the natural one, as in the theory."""
     make, assign = cls.__init__, cls.__setattr__
 
+    def taken(name, value):
+        return math.nan if name == "restitution" and value is None else value
+
     def __init__(self, *arguments, **attributes):
+        attributes = {name: taken(name, value) for name, value in attributes.items()}
         try:
             make(self, *arguments, **attributes)
         except AttributeError:
@@ -34,11 +60,19 @@ def _guard_attributes(cls):
                 if not hasattr(cls, name):
                     raise _no_such_attribute(cls, name) from None
             raise
+        except TypeError:
+            plain = cls()
+            for name, value in attributes.items():
+                setattr(plain, name, value)
+            raise
 
     def __setattr__(self, name, value):
         if type(self) is cls and not hasattr(cls, name):  # classes that a script derives may have their own
             raise _no_such_attribute(cls, name)
-        assign(self, name, value)
+        try:
+            assign(self, name, taken(name, value))
+        except TypeError:
+            raise _wrong_kind(self, name, value) from None
 
     cls.__init__, cls.__setattr__ = __init__, __setattr__
 

@@ -5,7 +5,7 @@ import io
 import time
 from dataclasses import dataclass
 
-from masonry._given import positive_given
+from masonry._given import positive_given, shown
 from masonry.dem.recording import wall_history
 from masonry.dem.running import motion_end, run
 from masonry.results import CollapseReport, collapse
@@ -75,7 +75,7 @@ def compare(scene_function, seconds=None, share=0.1, blocks=1, progress=None):
     as it is after the last run.
     """
     if not callable(scene_function):
-        raise ValueError(f"scene_function = {scene_function!r}: must be a function that builds the scene and returns dem.engines(...)")
+        raise ValueError(f"scene_function = {shown(scene_function)}: must be a function that builds the scene and returns dem.engines(...)")
     if seconds is not None:
         positive_given("seconds", seconds)
     if not positive_given("share", share) < 1:

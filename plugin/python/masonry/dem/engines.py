@@ -1,10 +1,11 @@
 """The engines of a scene, chosen and explained."""
 
 import math
+import numbers
 
 import numpy as np
 from masonry._files import written
-from masonry._given import is_whole, number_given
+from masonry._given import is_whole, number_given, shown
 from masonry.motions import Motion, PulseTrain, Record
 from yade import O, wrapper
 
@@ -96,15 +97,15 @@ def record_motion(record, ids, direction=(1, 0, 0), start=0.0):
     start        when, s
     """
     if not isinstance(record, Record):
-        raise ValueError(f"record = {record!r}: must be a masonry.Record")
+        raise ValueError(f"record = {shown(record)}: must be a masonry.Record")
     if not np.iterable(ids) or not all(is_whole(id, 0) for id in ids):
-        raise ValueError(f"ids = {ids!r}: must be a list of ids of bodies, whole numbers from 0 on")
+        raise ValueError(f"ids = {shown(ids)}: must be a list of ids of bodies, whole numbers from 0 on")
     if record.shape:
         raise ValueError(f"record.scale = {record.scale}: must be one number, a scene has one motion (record.scaled() makes another)")
     what = "a unit vector of three numbers"
     unit = finite_numbers("direction", direction, 3, what)
     if not abs(math.hypot(*unit) - 1) < 1e-9:
-        raise ValueError(f"direction = {direction!r}: must be {what}")
+        raise ValueError(f"direction = {shown(direction)}: must be {what}")
     engine = wrapper.RecordMotionEngine(ids=[int(id) for id in ids], samples=record.samples.tolist(), interval=record.dt, baseline=record.baseline,
                                         direction=unit, start=start)
     if getattr(record, "unit_given", True):
@@ -132,35 +133,37 @@ def _several(value):
 
 def _check_arguments(model, method, impact_order, penetration, tolerance, dt, gravity):
     if model not in _MODELS:
-        raise ValueError(f"model = {model!r}: must be one of {', '.join(_MODELS)}")
+        raise ValueError(f"model = {shown(model)}: must be one of {', '.join(_MODELS)}")
     if method not in _METHODS:
-        raise ValueError(f"method = {method!r}: must be one of {', '.join(_METHODS)}")
+        raise ValueError(f"method = {shown(method)}: must be one of {', '.join(_METHODS)}")
     if impact_order not in _ORDERS:
-        raise ValueError(f"impact_order = {impact_order!r}: must be 'simultaneous', 'sequential' or None")
+        raise ValueError(f"impact_order = {shown(impact_order)}: must be 'simultaneous', 'sequential' or None")
     if penetration is not None and not _LEAST_PENETRATION <= number_given("penetration", penetration) <= 1e-2:
         raise ValueError(f"penetration = {penetration}: must be from {_LEAST_PENETRATION:g} to 0.01")
     if tolerance is not None and not 0 < number_given("tolerance", tolerance) <= 1e-2:
         raise ValueError(f"tolerance = {tolerance}: must be above 0 and at most 0.001, with method='wall' 0.01")
     if dt is not None and not number_given("dt", dt) > 0:
         raise ValueError(f"dt = {dt}: must be positive, in s")
-    if not (number_given("gravity", gravity) == 0 or _GRAVITIES[0] <= gravity <= _GRAVITIES[1]):
+    if not isinstance(gravity, numbers.Real) or isinstance(gravity, bool):
+        raise ValueError(f"gravity = {shown(gravity)}: must be one number in m/s^2, which acts along -z")
+    if not (gravity == 0 or _GRAVITIES[0] <= gravity <= _GRAVITIES[1]):
         raise ValueError(f"gravity = {gravity}: must be 0, or from {_GRAVITIES[0]:g} to {_GRAVITIES[1]:g}, in m/s^2")
 
 
 def _check_engines(motions, recorders, others):
     for item in motions:
         if isinstance(item, Motion):
-            raise ValueError(f"motion = {item!r}: is of the theory, without a body that it moves: must be {_in_yade(item)}")
+            raise ValueError(f"motion = {shown(item)}: is of the theory, without a body that it moves: must be {_in_yade(item)}")
         if not isinstance(item, wrapper.BaseMotionEngine):
-            raise ValueError(f"motion = {item!r}: must be a PulseTrainEngine, a RecordMotionEngine, or a list of them")
+            raise ValueError(f"motion = {shown(item)}: must be a PulseTrainEngine, a RecordMotionEngine, or a list of them")
         if not item.dead:  # as if it were not there
             item.check()
     for item in recorders:
         if not isinstance(item, (wrapper.BlockRecorder, wrapper.WallRecorder)):
-            raise ValueError(f"recorder = {item!r}: must be a BlockRecorder, a WallRecorder or a list of them")
+            raise ValueError(f"recorder = {shown(item)}: must be a BlockRecorder, a WallRecorder or a list of them")
         check_recorder(item)
     if not isinstance(others, (list, tuple)) or not all(isinstance(one, wrapper.Engine) for one in others):
-        raise ValueError(f"others = {others!r}: must be a list of engines")
+        raise ValueError(f"others = {shown(others)}: must be a list of engines")
 
 
 def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None, impact_order=None, gravity=9.81, recorder=None, others=(), method="auto"):
@@ -221,7 +224,7 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
             raise ValueError("tolerance, others and method are for rigid blocks: they must be left out with model='compliant'")
         return _compliant(blocks, motions, reason, dt, penetration or _PENETRATION, impact_order or "simultaneous", gravity, recorders)
     if penetration is not None:
-        raise ValueError(f"penetration = {penetration}: must be left out with model={model!r}, it is for compliant joints")
+        raise ValueError(f"penetration = {penetration}: must be left out with model={shown(model)}, it is for compliant joints")
     check_blocks(_MOST_OVERLAP, floating=False)
     return _rigid(motions, model, method, dt, tolerance, impact_order, gravity, recorders, list(others))
 
@@ -331,7 +334,7 @@ def history(recorder):
     rotation (rad, vector in the block's own axes; the y component is dem.angle), position (m), uplift (m, largest gap of the joint
     below, NaN in flight) and force (N, of what is below)."""
     if not isinstance(recorder, wrapper.BlockRecorder):
-        raise ValueError(f"recorder = {recorder!r}: must be a BlockRecorder (a WallRecorder: dem.wall_history)")
+        raise ValueError(f"recorder = {shown(recorder)}: must be a BlockRecorder (a WallRecorder: dem.wall_history)")
     rows, blocks = len(recorder.times), len(recorder.ids)
     fields = [("time", float), ("rotation", float, (blocks, 3)), ("position", float, (blocks, 3)), ("uplift", float, (blocks,)), ("force", float, (blocks, 3))]
     table = np.zeros(rows, dtype=fields)

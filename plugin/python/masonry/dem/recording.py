@@ -1,6 +1,7 @@
 """What a WallRecorder has kept, as arrays."""
 
 import numpy as np
+from masonry._given import shown
 from masonry.results import WallHistory
 from yade import O, wrapper
 
@@ -9,7 +10,7 @@ def wall_history(recorder):
     """The masonry.results.WallHistory of a WallRecorder that has run: motion and energies of its blocks, apart from YADE, to be
     saved, drawn, counted (masonry.results). Raises ValueError where it has recorded nothing, or no free block."""
     if not isinstance(recorder, wrapper.WallRecorder):
-        raise ValueError(f"recorder = {recorder!r}: must be a WallRecorder")
+        raise ValueError(f"recorder = {shown(recorder)}: must be a WallRecorder")
     if not recorder.times:
         raise ValueError("recorder: has recorded nothing yet: give it to dem.engines(recorder=...) and run")
     blocks = np.array(recorder.blocks).reshape(-1, 4)

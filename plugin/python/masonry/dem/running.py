@@ -4,7 +4,7 @@ import math
 import sys
 import time
 
-from masonry._given import number_given
+from masonry._given import number_given, shown
 from yade import O, wrapper
 
 # Wall clock between two looks at the bar, s.
@@ -18,7 +18,7 @@ def motion_end(motion, name="until"):
     several = list(motion) if isinstance(motion, (list, tuple)) else [motion]
     for one in several:
         if not isinstance(one, wrapper.BaseMotionEngine):
-            raise ValueError(f"{name} = {one!r}: must be a motion engine (RecordMotionEngine, PulseTrainEngine), or a list of them")
+            raise ValueError(f"{name} = {shown(one)}: must be a motion engine (RecordMotionEngine, PulseTrainEngine), or a list of them")
         if not one.end < math.inf:
             raise ValueError(f"{name}: the end of this {type(one).__name__} is not known (a resonant train ends with impacts to come): give seconds")
     if not several:

@@ -3,7 +3,7 @@
 import math
 
 import numpy as np
-from masonry._given import number_given
+from masonry._given import number_given, shown
 from masonry._pose import axes_of
 from masonry.dem import walls
 from yade import O, Quaternion, Vector3, utils, wrapper
@@ -25,7 +25,7 @@ def _positive_size(name, size):
 
 def check_material(material):
     if not isinstance(material, wrapper.BlockMat):
-        raise ValueError(f"material = {material!r}: must be a BlockMat")
+        raise ValueError(f"material = {shown(material)}: must be a BlockMat")
     if not _DENSITIES[0] <= material.density <= _DENSITIES[1]:
         raise ValueError(f"density = {material.density}: must be positive, from {_DENSITIES[0]:g} to {_DENSITIES[1]:g}, in kg/m^3")
     if not 0 <= material.frictionAngle < math.pi / 2:
@@ -43,7 +43,7 @@ def _box(id, name="id"):
     """The body of that id, which the script gave as `name`; ValueError unless it exists and is a Box."""
     if not isinstance(id, (int, np.integer)) or isinstance(id, bool) or not 0 <= id < len(O.bodies) or O.bodies[int(id)] is None:
         allowed = f"must be an id, a whole number from 0 to {len(O.bodies) - 1}" if len(O.bodies) else "it is empty, dem.base() makes the first one"
-        raise ValueError(f"{name} = {id!r}: there is no such body in O.bodies: {allowed}")
+        raise ValueError(f"{name} = {shown(id)}: there is no such body in O.bodies: {allowed}")
     body = O.bodies[int(id)]
     if not isinstance(body.shape, wrapper.Box):
         raise ValueError(f"{name} = {id}: that body is a {type(body.shape).__name__}, it must be a Box")
@@ -72,7 +72,7 @@ def check_recorder(recorder):
 
 def _axis(name):
     if name not in tuple(_AXES):
-        raise ValueError(f"axis = {name!r}: must be 'x' or 'y'")
+        raise ValueError(f"axis = {shown(name)}: must be 'x' or 'y'")
     return _AXES[name]
 
 
@@ -142,12 +142,12 @@ def block(size, material, on=None, center=None, orientation=None):
         raise ValueError(f"on = {on}, center = {center}: give one of the two")
     orientation = Quaternion.Identity if orientation is None else orientation
     if not isinstance(orientation, Quaternion) or not abs(orientation.norm() - 1) < 1e-9:
-        raise ValueError(f"orientation = {orientation!r}: must be a Quaternion of length 1")
+        raise ValueError(f"orientation = {shown(orientation)}: must be a Quaternion of length 1")
     resting = _turn_about_z(orientation)
     if on is not None:
         below = _box(on, "on")
         if not (orientation * Vector3.UnitZ)[2] > 1 - 1e-12:
-            raise ValueError(f"orientation = {orientation!r}: must be a turn about z where the block stands on a body")
+            raise ValueError(f"orientation = {shown(orientation)}: must be a turn about z where the block stands on a body")
         center = below.state.pos + below.state.ori * Vector3(0, 0, below.shape.extents[2] + size[2] / 2)
         orientation = resting = below.state.ori * orientation
     center = walls.finite_numbers("center", center, 3, "three finite numbers, in m")
@@ -239,7 +239,7 @@ def blocks_from_table(table, materials, on=None):
         check_material(material)
     for place, name in zip(places, names):
         if name not in materials:
-            raise ValueError(f"{place}: material = {name!r}: must be one of {', '.join(repr(key) for key in materials)}")
+            raise ValueError(f"{place}: material = {shown(name)}: must be one of {', '.join(repr(key) for key in materials)}")
     orientations = [Quaternion(*q) for q in quaternions.tolist()]
     resting = [_turn_about_z(q) for q in orientations]
     if on is not None:
@@ -278,7 +278,7 @@ def save_blocks(path):
     for material in {b.mat.id: b.mat for b in bodies}.values():
         known = labelled.setdefault(material.label, material)
         if any(repr(value) != repr(getattr(known, name)) for name, value in material.dict().items() if name != "id"):
-            raise ValueError(f"O.materials[{material.id}].label = {material.label!r}: must be another than that of O.materials[{known.id}], which is not the same")
+            raise ValueError(f"O.materials[{material.id}].label = {shown(material.label)}: must be another than that of O.materials[{known.id}], which is not the same")
     walls.write_table(path, *_layout(bodies), [b.mat.label for b in bodies])
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from masonry._boxes import bounds
 from masonry._files import written
-from masonry._given import number_given, positive_given
+from masonry._given import number_given, positive_given, shown
 from masonry._pose import axes_of
 from masonry.dem.engines import _FEW_BLOCKS, _METHODS, engines, has_stiffness
 from masonry.dem.scene import _boxes, _layout, structures
@@ -126,13 +126,13 @@ class TiltTable:
 
     def __init__(self, direction="x", load="force", model="auto", hold=3.0, share=2e-3, gravity=9.81, method="auto"):
         if direction not in tuple(_DIRECTIONS):
-            raise ValueError(f"direction = {direction!r}: must be one of {', '.join(map(repr, _DIRECTIONS))}")
+            raise ValueError(f"direction = {shown(direction)}: must be one of {', '.join(map(repr, _DIRECTIONS))}")
         if load not in ("force", "turned"):
-            raise ValueError(f"load = {load!r}: must be 'force' or 'turned'")
+            raise ValueError(f"load = {shown(load)}: must be 'force' or 'turned'")
         if model not in ("auto", "planar", "spatial"):
-            raise ValueError(f"model = {model!r}: must be 'auto', 'planar' or 'spatial'")
+            raise ValueError(f"model = {shown(model)}: must be 'auto', 'planar' or 'spatial'")
         if method not in _METHODS:
-            raise ValueError(f"method = {method!r}: must be one of {', '.join(_METHODS)}")
+            raise ValueError(f"method = {shown(method)}: must be one of {', '.join(_METHODS)}")
         for name, value in (("hold", hold), ("share", share), ("gravity", gravity)):
             positive_given(name, value)
         self.direction, self.load, self.model, self.share, self.gravity = direction, load, model, share, gravity

@@ -13,7 +13,7 @@ import re
 import numpy as np
 from masonry._boxes import bounds, near_pairs
 from masonry._files import written
-from masonry._given import number_given, whole_given
+from masonry._given import number_given, shown, whole_given
 
 # A length fits the modules of a wall when it is off by less than this share of a module: far above round-off, far below a cut.
 _FIT = 1e-6
@@ -32,7 +32,7 @@ def finite_numbers(name, values, count, what):
     except (TypeError, ValueError, OverflowError):
         found = []
     if len(found) != count or not all(math.isfinite(v) for v in found):
-        raise ValueError(f"{name} = {tuple(values) if isinstance(values, (list, np.ndarray)) else repr(values)}: must be {what}")
+        raise ValueError(f"{name} = {shown(tuple(values) if isinstance(values, (list, np.ndarray)) else values)}: must be {what}")
     return found
 
 
@@ -114,7 +114,7 @@ def wall_modules(courses=None, per_course=None, size=None, length=None, height=N
 
 def _opening_cells(index, opening, unit, shape):
     """Half blocks [x0, x1) and courses [z0, z1) of an opening; unit: (block, course) in the unit of the opening."""
-    name = f"openings[{index}] = {opening}"
+    name = f"openings[{index}] = {shown(opening)}"
     if not isinstance(opening, (tuple, list, np.ndarray)) or len(opening) != 4:
         raise ValueError(f"{name}: must be (x0, z0, width, height)")
     cells = []
@@ -135,7 +135,7 @@ def _openings(openings, unit, shape):
     """Grid of half blocks by courses: 0 masonry, -(k+1) opening k, k+1 its lintel. A lintel bears on half a block at least and ends
     where its course has a joint anyway, so that no joint runs through. Above an opening that reaches the top there is none."""
     if not isinstance(openings, (tuple, list, np.ndarray)):
-        raise ValueError(f"openings = {openings!r}: must be a list of (x0, z0, width, height)")
+        raise ValueError(f"openings = {shown(openings)}: must be a list of (x0, z0, width, height)")
     grid = np.zeros(shape, dtype=int)
     for k, opening in enumerate(openings):
         x0, x1, z0, z1 = _opening_cells(k, opening, unit, shape)
@@ -156,7 +156,7 @@ def wall_layout(courses, per_course, size, gap=0.0, openings=(), openings_in="m"
     courses along z); over each one a lintel, a single block."""
     pitch, halves = size[0] + gap, round(2 * per_course)
     if openings_in not in ("m", "blocks"):
-        raise ValueError(f"openings_in = {openings_in!r}: must be 'm' or 'blocks'")
+        raise ValueError(f"openings_in = {shown(openings_in)}: must be 'm' or 'blocks'")
     grid = _openings(openings, (pitch, size[2]) if openings_in == "m" else (1, 1), (courses, halves))
     joint = np.ones((courses, halves + 1), dtype=bool)
     bond = (np.arange(1, halves) + np.arange(courses)[:, None]) % 2 == 0
@@ -253,11 +253,11 @@ def _number(row, place, column):
     except (TypeError, ValueError, OverflowError):
         number = math.nan
     if not math.isfinite(number):
-        raise ValueError(f"{place}: {column} = {value!r}: must be a finite number")
+        raise ValueError(f"{place}: {column} = {shown(value)}: must be a finite number")
     if column.startswith("size") and not _SIZES[0] <= number <= _SIZES[1]:
-        raise ValueError(f"{place}: {column} = {value!r}: must be positive, from {_SIZES[0]:g} to {_SIZES[1]:g}, in m")
+        raise ValueError(f"{place}: {column} = {shown(value)}: must be positive, from {_SIZES[0]:g} to {_SIZES[1]:g}, in m")
     if column in _TURN and abs(number) > 2 * math.pi:
-        raise ValueError(f"{place}: {column} = {value!r}: must be from -2 pi to 2 pi, in rad")
+        raise ValueError(f"{place}: {column} = {shown(value)}: must be from -2 pi to 2 pi, in rad")
     return number
 
 
@@ -276,7 +276,7 @@ def _quaternion(row, place):
 def _material(row, place):
     name = row.get("material")
     if name is not None and not isinstance(name, str):
-        raise ValueError(f"{place}: material = {name!r}: must be a name")
+        raise ValueError(f"{place}: material = {shown(name)}: must be a name")
     return name or ""
 
 
@@ -286,11 +286,20 @@ class _Cells(list):
     line = None
 
 
+def _is_number(text):
+    try:
+        return all(math.isfinite(float(word)) for word in re.split(r"[\s;]+", text.strip()))
+    except ValueError:
+        return False
+
+
 def _csv_rows(file):
     lines = csv.reader(file, skipinitialspace=True)
     header = next(lines, [])
+    if header and all(_is_number(cell) for cell in header):
+        raise ValueError(f"its first line is {shown(', '.join(header))}, numbers: must name the columns, x, y, z, size_x, size_y, size_z first")
     if len(header) == 1 and re.search("[;\t]", header[0]):
-        raise ValueError(f"its first line is {header[0]!r}: columns must be separated by commas, and numbers be written with a point")
+        raise ValueError(f"its first line is {shown(header[0])}: columns must be separated by commas, and numbers be written with a point")
     rows = []
     for line in lines:
         if line:
@@ -312,7 +321,7 @@ def _rows(table):
         try:
             return [_pairs(row) for row in (table.to_dict("records") if hasattr(table, "to_dict") else table)]
         except TypeError:
-            raise ValueError(f"table = {table!r}: must be a path, or rows: mappings or sequences") from None
+            raise ValueError(f"table = {shown(table)}: must be a path, or rows: mappings or sequences") from None
     path = str(table)
     if not path.lower().endswith((".csv", ".json")):
         raise ValueError(f"table = {path}: must end in .csv or .json, or be rows")
@@ -335,9 +344,9 @@ def _named(cells, place):
         name = str(column).strip().lower()
         if name not in COLUMNS + _IGNORED:
             header = "line 1" if place.startswith("line") else place
-            raise ValueError(f"{header}: column {column!r}: must be one of {', '.join(COLUMNS + _IGNORED)}")
+            raise ValueError(f"{header}: column {shown(column)}: must be one of {', '.join(COLUMNS + _IGNORED)}")
         if name in row:
-            raise ValueError(f"{place}: column {column!r} = {value!r}: stands there twice, first with {row[name]!r}")
+            raise ValueError(f"{place}: column {shown(column)} = {shown(value)}: stands there twice, first with {shown(row[name])}")
         row[name] = value
     return row
 

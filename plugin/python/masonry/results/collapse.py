@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from masonry._given import is_whole, positive_given
+from masonry._given import is_whole, positive_given, shown
 from masonry.results.wall_history import history_given
 
 
@@ -98,7 +98,7 @@ def collapse(history, blocks=1, excursion=0.01):
     """
     free = int(history_given(history).free.sum())
     if not is_whole(blocks, 1, free):
-        raise ValueError(f"blocks = {blocks!r}: must be a whole number from 1 to {free}, the number of free blocks")
+        raise ValueError(f"blocks = {shown(blocks)}: must be a whole number from 1 to {free}, the number of free blocks")
     positive_given("excursion", excursion)
     # From the last sample backwards: True as long as the block lies.
     lies = np.logical_and.accumulate(fallen(history)[::-1])[::-1]

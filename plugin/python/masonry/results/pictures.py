@@ -2,7 +2,7 @@
 
 import numpy as np
 from masonry._files import written
-from masonry._given import number_given, positive_given
+from masonry._given import number_given, positive_given, shown
 from masonry.results.collapse import fallen
 from masonry.results.joints import joint_rows, joints, patches
 from masonry.results.view import STILL, View, enlargement, largest, movement, nice, still
@@ -41,7 +41,7 @@ def _colorbar(figure, axes, shades, label, beyond):
 
 def _check(color, enlarge):
     if color not in _COLOURS:
-        raise ValueError(f"color = {color!r}: must be one of {', '.join(map(repr, _COLOURS))}")
+        raise ValueError(f"color = {shown(color)}: must be one of {', '.join(map(repr, _COLOURS))}")
     if enlarge is not None:
         positive_given("enlarge", enlarge, ", or None")
 

@@ -1,12 +1,11 @@
 """The recorded motion of a structure: what the other files of this folder draw, count and export."""
 
-import reprlib
 from functools import cached_property
 
 import numpy as np
 from masonry import _pose
 from masonry._files import read_npz, written
-from masonry._given import number_given
+from masonry._given import number_given, shown
 
 ENERGIES = ("kinetic", "potential", "elastPotential", "frictDissip", "dampDissip", "impactDissip", "baseWork")
 _SAVED = ("time", "ids", "sizes", "free", "position", "orientation", "energies")
@@ -48,7 +47,7 @@ class WallHistory:
             if getattr(self, name).shape != shape:
                 raise ValueError(f"{name.strip('_')} has the shape {getattr(self, name).shape}: must be {shape} for {samples} times and {blocks} ids")
         if self.motion is not None and self.motion.shape != (2,):
-            raise ValueError(f"motion = {motion!r}: must be two times, of its begin and its end, or None")
+            raise ValueError(f"motion = {shown(motion)}: must be two times, of its begin and its end, or None")
         if samples == 0 or not self.free.any():
             raise ValueError(f"{samples} samples of {int(self.free.sum())} free blocks: there must be at least one of each")
         if not (np.diff(self.time) > 0).all():
@@ -93,7 +92,7 @@ class WallHistory:
             columns.update({f"{name} (J)": self.energy[name] for name in self.energy.dtype.names[1:]})
         for id in np.atleast_1d(ids).tolist():
             if id not in self.ids.tolist():
-                raise ValueError(f"ids: {id} is no block of the history: must be among {reprlib.repr(self.ids.tolist())}")
+                raise ValueError(f"ids: {id} is no block of the history: must be among {shown(self.ids.tolist())}")
             row = int(np.flatnonzero(self.ids == id)[0])
             columns.update({f"displacement {axis} of {id} (m)": self.displacement[:, row, k] for k, axis in enumerate("xyz")})
             columns.update({f"{name} of {id} (rad)": values[:, row] for name, values in (("rotation", self.rotation), ("lean", self.lean))})
@@ -231,5 +230,5 @@ class WallHistory:
 def history_given(history):
     """The value; ValueError unless it is a WallHistory."""
     if not isinstance(history, WallHistory):
-        raise ValueError(f"history = {history!r}: must be a WallHistory: dem.wall_history(recorder) in YADE, or results.WallHistory.load()")
+        raise ValueError(f"history = {shown(history)}: must be a WallHistory: dem.wall_history(recorder) in YADE, or results.WallHistory.load()")
     return history
