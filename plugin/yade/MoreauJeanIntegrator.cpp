@@ -258,13 +258,13 @@ void MoreauJeanIntegrator::count(const masonry::rigid::StepReport& report)
 		    sentence("The simulation has diverged in the step from t = ", scene->time, " s: positions or velocities are no longer finite.",
 		             method == "localised" ? " Structures of more than some twenty blocks are for method='wall'." : ""));
 	const bool crowded = report.unlocalised > 0;
-	if (report.converged && !crowded && report.created == 0 && !(report.deepest > 0) && !(report.burden > 0))
+	if (report.converged && !crowded && report.created == 0 && !(report.deepest > 0) && !(report.burden > 0) && !(report.turn > 0))
 		return;
 
 	const Real ofStep = gravity.norm() * scene->dt; // the speed that gravity gives
 	// A residual this small moves nothing that anybody could measure: it is counted, without a word.
-	const bool matters =
-	    crowded || report.created > 0 || report.deepest > 0 || report.burden > 0 || !(report.residual <= negligible * ofStep);
+	const bool matters = crowded || report.created > 0 || report.deepest > 0 || report.burden > 0 || report.turn > 0 ||
+	                     !(report.residual <= negligible * ofStep);
 	std::ostringstream text;
 	text << "In the step from t = " << scene->time << " s ";
 	if (!report.converged)
@@ -280,6 +280,9 @@ void MoreauJeanIntegrator::count(const masonry::rigid::StepReport& report)
 	if (report.burden > 0)
 		text << "a block is too heavy for a lighter one below it: its course times the ratio of their masses is " << report.burden
 		     << ", for method='wall' at most " << masonry::rigid::wall::mostBurden << ". Few blocks: method='localised'. ";
+	if (report.turn > 0)
+		text << "a block turns by " << report.turn
+		     << " rad in the step, which method='wall' does not resolve; method='localised' divides such steps. ";
 	constexpr size_t mostNamed = 30;
 	const vector<int> touching = sceneOf(memory).touching();
 	text << "Blocks in touch:";

@@ -149,6 +149,14 @@ for density in (20, 2e4):
 slab(2e6, "wall")
 assert integrator().failures > 0 and "too heavy" in integrator().firstFailure
 
+# A block that turns by 0.3 rad in a step is none of the wall's.
+O.reset()
+dem.base((4, 4, 0.2), stone())
+O.bodies[dem.block((1, 0.5, 0.5), stone(), center=(0, 0, 9))].state.angVel = (0, 300, 0)
+O.engines = rigid_engines(dt=1e-3, method="wall")
+O.step()
+assert integrator().failures == 1 and "turns by 0.3" in integrator().firstFailure and "localised" in integrator().firstFailure
+
 # --- O.interactions: what one step after the other shows, a run shows where somebody looks ---
 
 

@@ -38,6 +38,9 @@ StepReport WallStep<K>::advance(RigidSystem<K>& s, double dt)
 		advancePart(s, h);
 		left = h == left ? 0 : left - h;
 	}
+	for (const RigidBody<K>& body : s.bodies)
+		if (const double turn = dt * body.velocity.template tail<K::spins>().norm(); !body.prescribed && turn > tolerance::rigid::partTurn)
+			report.turn = std::max(report.turn, turn);
 	report.residual = std::max(report.velocityResidual, report.forceResidual);
 	report.sweeps = report.solves;
 	report.courses = (report.mode == WallMode::still ? still() : moving()).depth;

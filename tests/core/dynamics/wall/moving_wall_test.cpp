@@ -117,6 +117,17 @@ TEST_CASE("a step says which burden its sweeps do not carry")
 	CHECK(scene.step.report.burden == Approx(courses == 1 ? 0 : (courses + 1) * ratio).epsilon(1e-12));
 }
 
+// The wall's step takes the spin of its end: a quarter of a radian is what tolerance::rigid::partTurn allows a step.
+TEST_CASE("a step says by how much a block turns that turns too far for it")
+{
+	const double spin = GENERATE(200.0, 300.0), h = 1e-3;
+	Scene scene;
+	addBlock(scene.system, {0.5, 0.25}, {0, 10});
+	scene.system.bodies.back().velocity[2] = spin;
+	scene.advance(h);
+	CHECK(scene.step.report.turn == Approx(spin < 250 ? 0 : spin * h).epsilon(1e-12));
+}
+
 // Onset of sliding and rocking in a pier of eight courses. The reference is the step itself, with sixteen times as many substeps; that it
 // rocks as it should is checked against localised impacts above.
 TEST_CASE("the first excursion of a pier does not depend on the substep")
