@@ -41,7 +41,8 @@ def quiet_engines(*arguments, **options):
 def largest_step(default):
     """The largest step that dem.engines() accepts for the scene whose default step is given, s."""
     e = engine()
-    return e.largestTimeStep if hasattr(e, "largestTimeStep") else 0.99 * e.criticalTimeStep() if math.isfinite(e.criticalTimeStep()) else 4.9 * default
+    largest = e.largestTimeStep if hasattr(e, "largestTimeStep") else 0.99 * e.criticalTimeStep()
+    return largest if math.isfinite(largest) else 4.9 * default
 
 
 class Energies:
