@@ -156,6 +156,12 @@ bool isContact(const RigidSystem<K>& s, const SmoothStep<K>& step, const Event& 
 		return true;
 	const ContactPair<K>& pair = s.pairs[event.point.pair];
 	const auto found = featuresAtEnd(s, step, pair);
+	const auto isKnown = [&pair](const auto& feature) {
+		return std::any_of(pair.points.begin(), pair.points.begin() + pair.size, [&](const auto& point) { return point.feature == feature; });
+	};
+	for (int i = found.places; i < found.size; ++i) // a corner meets a corner, with both normals
+		if (!isKnown(found.features[i]) || !isKnown(found.features[found.corner[i]]))
+			return false;
 	const auto last = found.features.begin() + found.size;
 	return std::find(found.features.begin(), last, pair.points[event.point.point].feature) != last;
 }

@@ -99,7 +99,7 @@ void RigidStep<K>::findContacts(RigidSystem<K>& s, ContactPair<K>& pair, bool wi
 {
 	const double touching = s.settings.merged * step.scales.length, samePlace = 2 * tolerance::contact::vertexReach * step.scales.length;
 	const auto &body1 = s.bodies[pair.body1], &body2 = s.bodies[pair.body2];
-	const FoundPoints<K> found = findPoints(body1, body2, pair.memory);
+	const FoundPoints<K> found = findPoints(body1, body2, tolerance::restSpeed * step.scales.speed, pair.memory);
 	const bool same = sameFeatures(pair, found);
 	if (same && !s.moved)
 		return;

@@ -2,6 +2,7 @@
 // Rigid blocks in unilateral contact: model, state and settings. rigid_step.hpp moves them.
 #include "dynamics/rigid/base_drive.hpp"
 #include "dynamics/rigid/contact_problem.hpp"
+#include "dynamics/rigid/corner_normals.hpp"
 #include "impact/rocking_restitution.hpp"
 #include <algorithm>
 #include <cmath>
@@ -57,6 +58,18 @@ struct ContactPair {
 	std::array<ContactPoint<K>, K::maxPoints> points;
 };
 
+// Relative velocity (body 2 minus body 1) at a point of a frame, along its axes.
+template <class K>
+Eigen::Matrix<double, K::rows, 1> relativeVelocity(const ContactFrame<K>& frame, const typename K::Vector& center1,
+                                                   const typename K::Velocity& v1, const typename K::Vector& center2,
+                                                   const typename K::Velocity& v2)
+{
+	const auto at = [&](const typename K::Vector& center, const typename K::Velocity& v) {
+		return typename K::Vector(v.template head<K::dimension>() + K::cross(v.template tail<K::spins>(), frame.position - center));
+	};
+	return frame.axes * (at(center2, v2) - at(center1, v1));
+}
+
 // Where the features of a point are, for these bodies.
 template <class K>
 void locate(ContactPoint<K>& point, const RigidBody<K>& body1, const RigidBody<K>& body2)
@@ -91,6 +104,18 @@ template <class K>
 FoundPoints<K> findPoints(const RigidBody<K>& body1, const RigidBody<K>& body2, typename K::Memory& memory)
 {
 	return findPoints(body1, body1.pose, body2, body2.pose, memory);
+}
+// Of bodies that move: a corner that moves over a face of the other one faster than `rest` (m/s) has that face's normal alone.
+template <class K>
+FoundPoints<K> findPoints(const RigidBody<K>& body1, const RigidBody<K>& body2, double rest, typename K::Memory& memory)
+{
+	FoundPoints<K> found = findPoints(body1, body2, memory);
+	const auto rate = [&](const typename K::Feature& feature) {
+		const auto frame = K::frame(feature, body1.halfSize, body1.pose, body2.halfSize, body2.pose);
+		return relativeVelocity<K>(frame, body1.pose.position, body1.velocity, body2.pose.position, body2.velocity)[0];
+	};
+	dropPassed(found, rate, rest);
+	return found;
 }
 
 template <class K>

@@ -1,7 +1,7 @@
 // Contact points of two boxes in space, and how a box turns.
 #include "contact/box_box.hpp"
 #include "contact/features.hpp"
-#include "dynamics/rigid/kinematics.hpp"
+#include "dynamics/rigid/corner_normals.hpp"
 #include "tolerances.hpp"
 #include <algorithm>
 #include <limits>
@@ -156,6 +156,85 @@ void dropPassing(const ContactPatch& patch, const Vector3& half1, const Pose& po
 	}
 }
 
+// Second normals of a vertex of one body on a face of the other, if it lies on edges of that (corner_normals.hpp).
+class VertexOnEdge {
+public:
+	VertexOnEdge(int vertex, const Vector3& vertexHalf, const Pose& vertexPose, int face, const Vector3& faceHalf, const Pose& facePose)
+	    : vertex(vertex), vertexSigns(vertexOf(vertex, {1, 1, 1})), axis(face / 2), faceSigns(Vector3::Zero()), half(faceHalf),
+	      turn((facePose.orientation.conjugate() * vertexPose.orientation).toRotationMatrix()),
+	      place(facePose.orientation.conjugate() * (vertexPose.position - facePose.position) +
+	            turn * vertexSigns.cwiseProduct(vertexHalf))
+	{
+		faceSigns = place.unaryExpr(&feature::signOf);
+		faceSigns[axis] = face % 2 ? 1 : -1;
+	}
+
+	// Calls found(edge of the face's body, edge of the vertex) or found(other face of that edge) for each edge within `reach`.
+	template <class Edges, class Face>
+	void forSecondNormals(double reach, Edges edges, Face face) const
+	{
+		if (!isNear(axis, reach))
+			return;
+		for (const int side : {nextAxis(axis), nextAxis(nextAxis(axis))})
+			if (isNear(side, reach))
+				findOn(side, edges, face);
+	}
+
+private:
+	bool isNear(int k, double reach) const { return std::abs(faceSigns[k] * place[k] - half[k]) <= reach; }
+
+	// Of the edge between the face and its neighbour that looks along the axis `side`.
+	template <class Edges, class Face>
+	void findOn(int side, Edges edges, Face face) const
+	{
+		double tangent = std::numeric_limits<double>::infinity(); // of the angle of the last admissible normal
+		int bound = -1;
+		for (int k = 0; k < 3; ++k) {
+			const double first = vertexSigns[k] * faceSigns[axis] * turn(axis, k), second = vertexSigns[k] * faceSigns[side] * turn(side, k);
+			if (std::hypot(first, second) < tolerance::contact::parallelEdges)
+				continue;
+			if (second > 0 && -first < tangent * second) {
+				tangent = -first / second;
+				bound = k;
+			} else if (second <= 0 && first > 0) {
+				return;
+			}
+		}
+		if (tangent < tolerance::rigid::cornerSpread)
+			return;
+		if (bound < 0)
+			return face(feature::faceNumber(side, faceSigns[side]));
+		edges(feature::edgeNumber(3 - axis - side, faceSigns), feature::edgeNumber(bound, vertexSigns));
+	}
+
+	const int vertex;
+	const Vector3 vertexSigns;
+	const int axis;
+	Vector3 faceSigns;
+	const Vector3& half;
+	const Matrix3 turn; // axes of the vertex's body in those of the face's
+	const Vector3 place;
+};
+
+void addSecondNormals(const Vector3& half1, const Pose& pose1, const Vector3& half2, const Pose& pose2, FoundPoints<Space>& out)
+{
+	const double reach = tolerance::contact::vertexReach * std::min(half1.minCoeff(), half2.minCoeff());
+	for (int i = 0; i < out.places; ++i) {
+		const SpaceFeature point = out.features[i];
+		const auto add = [&](SpaceFeature::Kind kind, int first, int second) { out.addSecondNormal({kind, first, second}, i); };
+		if (point.kind == SpaceFeature::Vertex1)
+			VertexOnEdge(point.first, half1, pose1, point.second, half2, pose2)
+			    .forSecondNormals(
+			        reach, [&](int edge2, int edge1) { add(SpaceFeature::Edges, edge1, edge2); },
+			        [&](int face2) { add(SpaceFeature::Vertex1, point.first, face2); });
+		else if (point.kind == SpaceFeature::Vertex2)
+			VertexOnEdge(point.second, half2, pose2, point.first, half1, pose1)
+			    .forSecondNormals(
+			        reach, [&](int edge1, int edge2) { add(SpaceFeature::Edges, edge1, edge2); },
+			        [&](int face1) { add(SpaceFeature::Vertex2, face1, point.second); });
+	}
+}
+
 // Whether these faces are no longer one upon the other.
 bool leans(const PatchFeature& faces, const Pose& pose1, const Pose& pose2)
 {
@@ -212,8 +291,12 @@ bool Space::findPoints(const Vector& half1, const Pose& pose1, const Vector& hal
 	out.face1 = faces ? patch.feature.feature1 : faceNearest(patch.normal, pose1);
 	out.face2 = faces ? patch.feature.feature2 : faceNearest(-patch.normal, pose2);
 	takeCorners(patch, half1, pose1, half2, pose2, out);
-	if (leans(memory, pose1, pose2))
+	const bool leaning = leans(memory, pose1, pose2);
+	if (leaning)
 		dropPassing(patch, half1, pose1, half2, pose2, memory, out);
+	out.places = out.size;
+	if (leaning)
+		addSecondNormals(half1, pose1, half2, pose2, out);
 	return true;
 }
 
