@@ -16,10 +16,10 @@
 // A corner at rest on a corner can stay there or leave over one of the faces, and both obey the laws. The two rows make it stay as long as
 // the reaction can be in the cone. A corner that moves over one of the faces already stays with that face: see dropPassed.
 //
-// In space the second normals belong to vertices that lie on an edge (of two parallel edges, the ends of what they share). With w1, w2 the
-// outward normals beside the edge and v_k those of the vertex, the normals are w1 cos a + w2 sin a with non-positive components along all
-// v_k: from 0, where the vertex lies on the first face, to 90 degrees, where it lies on the second one, or to the first angle at which a
-// component vanishes: this normal is perpendicular to the edge and to the vertex's own edge along v_k.
+// In space the second normals belong to vertices on edges (contact/vertex_on_edge.hpp): of parallel edges, the ends of what they share.
+//
+// A corner is at a corner within tolerance::contact::vertexReach. Faces that enclose less than tolerance::rigid::cornerSpread have one normal:
+// a block on its bed carries no second rows, and what is lost is that angle of the friction on one side.
 #include "dynamics/rigid/kinematics.hpp"
 #include <algorithm>
 

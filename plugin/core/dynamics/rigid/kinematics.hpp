@@ -145,9 +145,11 @@ struct Plane {
 
 	static ContactFrame<Plane> frame(const Feature&, const Vector& half1, const Pose&, const Vector& half2, const Pose&);
 	// The vertices that meet a face at the ends of the two faces' overlap; of a corner that stands past the end of a face, only that
-	// vertex; then the second normal of a corner on a corner. Points keep their features by the memory until another choice is clearly
-	// better (tolerance::contact). False, with nothing found, when the boxes are farther apart than `margin` (m) or only meet corner beside corner (overlap below ::sliver).
+	// vertex. Points keep their features by the memory until another choice is clearly better (tolerance::contact). False, with
+	// nothing found, when the boxes are farther apart than `margin` (m) or only meet corner beside corner (overlap below ::sliver).
 	static bool findPoints(const Vector& half1, const Pose&, const Vector& half2, const Pose&, double margin, Memory&, FoundPoints<Plane>&);
+	// The second normals of points that are corners on corners (corner_normals.hpp).
+	static void addSecondNormals(const Vector& half1, const Pose&, const Vector& half2, const Pose&, FoundPoints<Plane>&);
 };
 
 struct Space {
@@ -176,9 +178,10 @@ struct Space {
 	}
 
 	static ContactFrame<Space> frame(const Feature&, const Vector& half1, const Pose&, const Vector& half2, const Pose&);
-	// The corners of the contact patch (contact/contact_patch.hpp), without the crossings of nearly parallel edges; then the second normals
-	// of vertices that are on edges. False as in the plane.
+	// The corners of the contact patch (contact/contact_patch.hpp), without the crossings of nearly parallel edges. False as in the plane.
 	static bool findPoints(const Vector& half1, const Pose&, const Vector& half2, const Pose&, double margin, Memory&, FoundPoints<Space>&);
+	// The second normals of vertices that are on edges (corner_normals.hpp).
+	static void addSecondNormals(const Vector& half1, const Pose&, const Vector& half2, const Pose&, FoundPoints<Space>&);
 };
 
 } // namespace masonry::rigid

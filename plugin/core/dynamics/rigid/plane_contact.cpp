@@ -202,19 +202,6 @@ private:
 	double end, apart;
 };
 
-void addSecondNormals(const Vector2& half1, const PlanePose& pose1, const Vector2& half2, const PlanePose& pose2, double length,
-                      FoundPoints<Plane>& out)
-{
-	for (int i = 0; i < out.places; ++i) {
-		const PlaneFeature& point = out.features[i];
-		const bool on1 = point.vertexBody == 1;
-		PlaneFeature second;
-		if (Corner(point, on1 ? half1 : half2, on1 ? pose1 : pose2, on1 ? half2 : half1, on1 ? pose2 : pose1)
-		        .secondNormal(limits::vertexReach * length, second))
-			out.addSecondNormal(second, i);
-	}
-}
-
 } // namespace
 
 // Vertex P of body V, face of body F with outward normal m at the distance h from its centre x: gap = m.(P - x) - h. Its rate
@@ -275,12 +262,25 @@ bool Plane::findPoints(const Vector& half1, const Pose& pose1, const Vector& hal
 		out.features[0] = low.feature;
 		out.features[1] = high.feature;
 	}
-	out.places = out.size;
 	out.face1 = on1 ? pair.referenceFace() : pair.incidentFace();
 	out.face2 = on1 ? pair.incidentFace() : pair.referenceFace();
 	memory = {face.body, out.face1, out.face2, {out.features[0], out.features[1]}};
-	addSecondNormals(half1, pose1, half2, pose2, length, out);
 	return true;
+}
+
+void Plane::addSecondNormals(const Vector& half1, const Pose& pose1, const Vector& half2, const Pose& pose2, FoundPoints<Plane>& out)
+{
+	out.places = out.size;
+	if (std::abs(pose1.cosine * pose2.sine - pose1.sine * pose2.cosine) < tolerance::rigid::cornerSpread)
+		return; // parallel
+	const double reach = limits::vertexReach * std::min(half1.minCoeff(), half2.minCoeff());
+	for (int i = 0; i < out.places; ++i) {
+		const PlaneFeature& point = out.features[i];
+		const bool on1 = point.vertexBody == 1;
+		PlaneFeature second;
+		if (Corner(point, on1 ? half1 : half2, on1 ? pose1 : pose2, on1 ? half2 : half1, on1 ? pose2 : pose1).secondNormal(reach, second))
+			out.addSecondNormal(second, i);
+	}
 }
 
 } // namespace masonry::rigid

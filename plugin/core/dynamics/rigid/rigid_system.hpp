@@ -90,6 +90,27 @@ bool takeState(const ContactPoint<K>& old, double samePlace, ContactPoint<K>& po
 	return true;
 }
 
+// The state of the points before into one of those found. One that was there keeps its own, with the load of those at its place that have
+// gone; another takes over from what was at its place.
+template <class K>
+void takeStates(const ContactPair<K>& before, const FoundPoints<K>& found, double samePlace, ContactPoint<K>& point)
+{
+	const auto begin = before.points.begin(), end = begin + before.size;
+	const auto same = std::find_if(begin, end, [&](const ContactPoint<K>& old) { return old.feature == point.feature; });
+	if (same == end) {
+		for (auto old = begin; old != end; ++old)
+			takeState(*old, samePlace, point);
+		return;
+	}
+	takeState(*same, samePlace, point);
+	const auto last = found.features.begin() + found.size;
+	for (auto old = begin; old != end; ++old)
+		if ((old->frame.position - point.frame.position).norm() <= samePlace && std::find(found.features.begin(), last, old->feature) == last) {
+			point.closed |= old->closed;
+			point.force += old->force;
+		}
+}
+
 // The points of a pair of these bodies, none if there are none; without a margin, since lists of pairs hold only boxes that are near.
 template <class K>
 FoundPoints<K> findPoints(const RigidBody<K>& body1, const typename K::Pose& pose1, const RigidBody<K>& body2,
@@ -105,11 +126,21 @@ FoundPoints<K> findPoints(const RigidBody<K>& body1, const RigidBody<K>& body2, 
 {
 	return findPoints(body1, body1.pose, body2, body2.pose, memory);
 }
-// Of bodies that move: a corner that moves over a face of the other one faster than `rest` (m/s) has that face's normal alone.
+
+// And the second normals of corners that meet corners.
 template <class K>
-FoundPoints<K> findPoints(const RigidBody<K>& body1, const RigidBody<K>& body2, double rest, typename K::Memory& memory)
+FoundPoints<K> findRows(const RigidBody<K>& body1, const typename K::Pose& pose1, const RigidBody<K>& body2, const typename K::Pose& pose2,
+                        typename K::Memory& memory)
 {
-	FoundPoints<K> found = findPoints(body1, body2, memory);
+	FoundPoints<K> found = findPoints(body1, pose1, body2, pose2, memory);
+	K::addSecondNormals(body1.halfSize, pose1, body2.halfSize, pose2, found);
+	return found;
+}
+// As they move: a corner that moves over a face of the other body faster than `rest` (m/s) has that face's normal alone.
+template <class K>
+FoundPoints<K> findRows(const RigidBody<K>& body1, const RigidBody<K>& body2, double rest, typename K::Memory& memory)
+{
+	FoundPoints<K> found = findRows(body1, body1.pose, body2, body2.pose, memory);
 	const auto rate = [&](const typename K::Feature& feature) {
 		const auto frame = K::frame(feature, body1.halfSize, body1.pose, body2.halfSize, body2.pose);
 		return relativeVelocity<K>(frame, body1.pose.position, body1.velocity, body2.pose.position, body2.velocity)[0];

@@ -1,6 +1,7 @@
 // Contact points of two boxes in space, and how a box turns.
 #include "contact/box_box.hpp"
 #include "contact/features.hpp"
+#include "contact/vertex_on_edge.hpp"
 #include "dynamics/rigid/corner_normals.hpp"
 #include "tolerances.hpp"
 #include <algorithm>
@@ -15,10 +16,7 @@ namespace {
 
 using Frame = ContactFrame<Space>;
 
-Vector3 vertexOf(int number, const Vector3& half)
-{
-	return {number & 1 ? half.x() : -half.x(), number & 2 ? half.y() : -half.y(), number & 4 ? half.z() : -half.z()};
-}
+Vector3 vertexOf(int number, const Vector3& half) { return feature::vertexSigns(number).cwiseProduct(half); }
 
 // Vertex P of one body, face of the other with outward normal m at the distance h from its centre x: gap = m.(P - x) - h. Its rate
 // m.(v_P - v_F) + (w_F x m).(P - x) = m.(v_P - v_F - w_F x (P - x)) is the relative velocity along m at P.
@@ -156,93 +154,17 @@ void dropPassing(const ContactPatch& patch, const Vector3& half1, const Pose& po
 	}
 }
 
-// Second normals of a vertex of one body on a face of the other, if it lies on edges of that (corner_normals.hpp).
-class VertexOnEdge {
-public:
-	VertexOnEdge(int vertex, const Vector3& vertexHalf, const Pose& vertexPose, int face, const Vector3& faceHalf, const Pose& facePose)
-	    : vertex(vertex), vertexSigns(vertexOf(vertex, {1, 1, 1})), axis(face / 2), faceSigns(Vector3::Zero()), half(faceHalf),
-	      turn((facePose.orientation.conjugate() * vertexPose.orientation).toRotationMatrix()),
-	      place(facePose.orientation.conjugate() * (vertexPose.position - facePose.position) +
-	            turn * vertexSigns.cwiseProduct(vertexHalf))
-	{
-		faceSigns = place.unaryExpr(&feature::signOf);
-		faceSigns[axis] = face % 2 ? 1 : -1;
-	}
-
-	// Calls found(edge of the face's body, edge of the vertex) or found(other face of that edge) for each edge within `reach`.
-	template <class Edges, class Face>
-	void forSecondNormals(double reach, Edges edges, Face face) const
-	{
-		if (!isNear(axis, reach))
-			return;
-		for (const int side : {nextAxis(axis), nextAxis(nextAxis(axis))})
-			if (isNear(side, reach))
-				findOn(side, edges, face);
-	}
-
-private:
-	bool isNear(int k, double reach) const { return std::abs(faceSigns[k] * place[k] - half[k]) <= reach; }
-
-	// Of the edge between the face and its neighbour that looks along the axis `side`.
-	template <class Edges, class Face>
-	void findOn(int side, Edges edges, Face face) const
-	{
-		double tangent = std::numeric_limits<double>::infinity(); // of the angle of the last admissible normal
-		int bound = -1;
-		for (int k = 0; k < 3; ++k) {
-			const double first = vertexSigns[k] * faceSigns[axis] * turn(axis, k), second = vertexSigns[k] * faceSigns[side] * turn(side, k);
-			if (std::hypot(first, second) < tolerance::contact::parallelEdges)
-				continue;
-			if (second > 0 && -first < tangent * second) {
-				tangent = -first / second;
-				bound = k;
-			} else if (second <= 0 && first > 0) {
-				return;
-			}
-		}
-		if (tangent < tolerance::rigid::cornerSpread)
-			return;
-		if (bound < 0)
-			return face(feature::faceNumber(side, faceSigns[side]));
-		edges(feature::edgeNumber(3 - axis - side, faceSigns), feature::edgeNumber(bound, vertexSigns));
-	}
-
-	const int vertex;
-	const Vector3 vertexSigns;
-	const int axis;
-	Vector3 faceSigns;
-	const Vector3& half;
-	const Matrix3 turn; // axes of the vertex's body in those of the face's
-	const Vector3 place;
-};
-
-void addSecondNormals(const Vector3& half1, const Pose& pose1, const Vector3& half2, const Pose& pose2, FoundPoints<Space>& out)
+double sineBetween(int face1, const Pose& pose1, int face2, const Pose& pose2)
 {
-	const double reach = tolerance::contact::vertexReach * std::min(half1.minCoeff(), half2.minCoeff());
-	for (int i = 0; i < out.places; ++i) {
-		const SpaceFeature point = out.features[i];
-		const auto add = [&](SpaceFeature::Kind kind, int first, int second) { out.addSecondNormal({kind, first, second}, i); };
-		if (point.kind == SpaceFeature::Vertex1)
-			VertexOnEdge(point.first, half1, pose1, point.second, half2, pose2)
-			    .forSecondNormals(
-			        reach, [&](int edge2, int edge1) { add(SpaceFeature::Edges, edge1, edge2); },
-			        [&](int face2) { add(SpaceFeature::Vertex1, point.first, face2); });
-		else if (point.kind == SpaceFeature::Vertex2)
-			VertexOnEdge(point.second, half2, pose2, point.first, half1, pose1)
-			    .forSecondNormals(
-			        reach, [&](int edge1, int edge2) { add(SpaceFeature::Edges, edge1, edge2); },
-			        [&](int face1) { add(SpaceFeature::Vertex2, face1, point.second); });
-	}
+	const Vector3 normal1 = pose1.orientation * Vector3::Unit(face1 / 2), normal2 = pose2.orientation * Vector3::Unit(face2 / 2);
+	return normal1.cross(normal2).norm();
 }
 
 // Whether these faces are no longer one upon the other.
 bool leans(const PatchFeature& faces, const Pose& pose1, const Pose& pose2)
 {
-	if (faces.kind != PatchKind::Face1 && faces.kind != PatchKind::Face2)
-		return false;
-	const Vector3 normal1 = pose1.orientation * Vector3::Unit(faces.feature1 / 2),
-	              normal2 = pose2.orientation * Vector3::Unit(faces.feature2 / 2);
-	return normal1.cross(normal2).norm() > tolerance::rigid::leans;
+	return (faces.kind == PatchKind::Face1 || faces.kind == PatchKind::Face2) &&
+	       sineBetween(faces.feature1, pose1, faces.feature2, pose2) > tolerance::rigid::leans;
 }
 
 int faceNearest(const Vector3& direction, const Pose& pose)
@@ -291,13 +213,33 @@ bool Space::findPoints(const Vector& half1, const Pose& pose1, const Vector& hal
 	out.face1 = faces ? patch.feature.feature1 : faceNearest(patch.normal, pose1);
 	out.face2 = faces ? patch.feature.feature2 : faceNearest(-patch.normal, pose2);
 	takeCorners(patch, half1, pose1, half2, pose2, out);
-	const bool leaning = leans(memory, pose1, pose2);
-	if (leaning)
+	if (leans(memory, pose1, pose2))
 		dropPassing(patch, half1, pose1, half2, pose2, memory, out);
-	out.places = out.size;
-	if (leaning)
-		addSecondNormals(half1, pose1, half2, pose2, out);
 	return true;
+}
+
+void Space::addSecondNormals(const Vector& half1, const Pose& pose1, const Vector& half2, const Pose& pose2, FoundPoints<Space>& out)
+{
+	out.places = out.size;
+	if (out.size == 0 || sineBetween(out.face1, pose1, out.face2, pose2) < tolerance::rigid::cornerSpread)
+		return;
+	const double reach = tolerance::contact::vertexReach * std::min(half1.minCoeff(), half2.minCoeff());
+	for (int i = 0; i < out.places; ++i) {
+		const SpaceFeature point = out.features[i];
+		if (isCrossing(point))
+			continue;
+		const bool on1 = point.kind == SpaceFeature::Vertex1;
+		const int vertex = on1 ? point.first : point.second, face = on1 ? point.second : point.first;
+		const VertexOnEdge corner(vertex, on1 ? half1 : half2, on1 ? pose1 : pose2, face, on1 ? half2 : half1, on1 ? pose2 : pose1);
+		corner.forEdges(reach, reach, [&](const NormalsOnEdge& normals) {
+			if (normals.tangent < tolerance::rigid::cornerSpread)
+				return;
+			if (normals.vertexEdge < 0)
+				out.addSecondNormal({point.kind, on1 ? vertex : normals.otherFace, on1 ? normals.otherFace : vertex}, i);
+			else
+				out.addSecondNormal({SpaceFeature::Edges, on1 ? normals.vertexEdge : normals.edge, on1 ? normals.edge : normals.vertexEdge}, i);
+		});
+	}
 }
 
 } // namespace masonry::rigid
