@@ -146,6 +146,9 @@ constexpr double crossing = 0.2;
 // Sine of the angle between two faces from which on one leans on the border of the other. Larger: a vertex that slides over that border is
 // kicked by it; smaller: vertices of flat joints come and go.
 constexpr double leans = 1e-3;
+// Sine of the angle between two faces from which on a corner on a corner has both normals. Larger: the friction of corners is one-sided by
+// this angle; smaller: a flat joint carries more rows.
+constexpr double cornerSpread = 0.02;
 // Distance from that border, relative to the smallest half size, within which such a vertex is none of the contact. Larger: where the block
 // falls back on its face, that carries it so far from its end; smaller: what slides farther in a step is kicked.
 constexpr double passing = 0.02;

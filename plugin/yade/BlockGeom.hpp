@@ -1,6 +1,6 @@
 #pragma once
 
-#include "contact/contact_patch.hpp"
+#include "contact/corner_patch.hpp"
 #include <pkg/dem/DemXDofGeom.hpp>
 
 namespace yade {
@@ -10,6 +10,7 @@ namespace yade {
 class BlockGeom : public GenericSpheresContact {
 public:
 	masonry::ContactPatch patch;
+	masonry::CornerNormals corner; // of compliant joints
 	std::array<Vector3r, 8> pointNormals; // of the patch's points, unit, from body 1 to body 2
 
 	masonry::PatchFeature feature() const;
@@ -30,7 +31,7 @@ public:
 		normal = contactPoint = Vector3r::Zero(); createIndex();,
 		.add_property("gaps", &BlockGeom::gaps, "Distance at each point along its normal [m], negative where the bodies overlap.")
 		.add_property("points", &BlockGeom::points, "The points, between the two bodies [m].")
-		.add_property("normals", &BlockGeom::normals, "Unit normal at each point, from body 1 to body 2: that of the face which a vertex meets, or the common normal of two edges.")
+		.add_property("normals", &BlockGeom::normals, "Unit normal at each point, from body 1 to body 2: that of the face which a vertex meets, or the common normal of two edges. A corner that meets a corner is two points of rigid blocks, with the normals of both faces; a compliant joint has their mean.")
 	);
 	// clang-format on
 	REGISTER_CLASS_INDEX(BlockGeom, GenericSpheresContact);

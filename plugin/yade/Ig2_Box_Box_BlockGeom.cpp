@@ -31,6 +31,7 @@ bool Ig2_Box_Box_BlockGeom::go(const shared_ptr<Shape>& shape1, const shared_ptr
 	if (!interaction->geom)
 		interaction->geom = shared_ptr<BlockGeom>(new BlockGeom);
 	auto& geom = static_cast<BlockGeom&>(*interaction->geom);
+	geom.corner = takeMeanNormal({half1}, pose1, {half2}, pose2, patch);
 	geom.setPatch(patch);
 	geom.refR1 = half1.minCoeff();
 	geom.refR2 = half2.minCoeff();

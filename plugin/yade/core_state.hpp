@@ -45,6 +45,7 @@ inline masonry::JointContact coreContact(const Interaction& interaction, const B
 	contact.body2 = interaction.getId2();
 	contact.law = phys.law(dampingRatio);
 	contact.patch = geom.patch;
+	contact.corner = geom.corner;
 	phys.readPoints(contact);
 	return contact;
 }

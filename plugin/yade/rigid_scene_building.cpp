@@ -165,7 +165,7 @@ void RigidScene<K>::meet(Pair& pair, bool placed)
 	const auto &body1 = system.bodies[pair.body1], &body2 = system.bodies[pair.body2];
 	const Real rest = masonry::tolerance::restSpeed * std::sqrt(integrator.gravity.norm() * length);
 	pair.memory = {};
-	const auto found = masonry::rigid::findPoints(body1, body2, pair.memory);
+	const auto found = masonry::rigid::findRows(body1, body2, rest, pair.memory);
 	pair.size = found.size;
 	pair.beside = found.size > 0;
 	if (found.size == 0)

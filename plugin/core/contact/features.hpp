@@ -15,6 +15,7 @@ inline int bit(double sign) { return sign > 0 ? 1 : 0; }
 
 inline int faceNumber(int axis, double sign) { return 2 * axis + bit(sign); }
 inline int vertexNumber(const Vector3& signs) { return bit(signs[0]) + 2 * bit(signs[1]) + 4 * bit(signs[2]); }
+inline Vector3 vertexSigns(int vertex) { return {vertex & 1 ? 1. : -1., vertex & 2 ? 1. : -1., vertex & 4 ? 1. : -1.}; }
 inline int edgeNumber(int axis, const Vector3& signs)
 {
 	const int next = nextAxis(axis);

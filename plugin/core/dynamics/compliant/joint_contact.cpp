@@ -75,6 +75,20 @@ private:
 	double dt;
 };
 
+// The part of a shear force that friction can bear.
+Vector3 withinFriction(const JointContact& contact, const Vector3& force, double normalForce)
+{
+	const double friction = contact.law.friction;
+	const auto excess = [normalForce](const Vector3& part, double bound) -> Vector3 {
+		const double size = part.norm(), most = std::isinf(bound) ? bound : bound * normalForce;
+		return size > most ? Vector3(part * (1 - most / size)) : Vector3(Vector3::Zero());
+	};
+	if (contact.corner.halfAngle == 0)
+		return force - excess(force, friction);
+	const Vector3 along = contact.corner.edge * contact.corner.edge.dot(force);
+	return force - excess(along, friction) - excess(force - along, contact.corner.frictionAcross(friction));
+}
+
 void release(JointPoint& point)
 {
 	point.normalForce = 0;
@@ -86,7 +100,6 @@ void release(JointPoint& point)
 
 void updateForces(JointContact& contact, const Body& body1, const Body& body2, double dt)
 {
-	const JointLaw& law = contact.law;
 	const Vector3& n = contact.patch.normal;
 	const double mass = reducedMass(body1, body2);
 	const double dampingNormal = contact.dampingNormal(mass), dampingShear = contact.dampingShear(mass);
@@ -106,16 +119,13 @@ void updateForces(JointContact& contact, const Body& body1, const Body& body2, d
 		} else {
 			point.normalForce = std::max(0., contact.normalStiffness(i) * depth - dampingNormal * weight * normalVelocity);
 			point.shear += slideVelocity * dt;
-			const double bound = std::isinf(law.friction) ? law.friction : law.friction * point.normalForce;
-			const double pull = stiffness * point.shear.norm();
-			if (pull > bound) {
-				slipped = bound * (pull - bound) / stiffness;
-				point.shear *= bound / pull;
-				point.shearForce = -stiffness * point.shear;
+			const Vector3 pull = -stiffness * point.shear, held = withinFriction(contact, pull, point.normalForce);
+			if (held != pull) {
+				slipped = held.dot(pull - held) / stiffness;
+				point.shear = -held / stiffness;
+				point.shearForce = held;
 			} else {
-				const Vector3 total = -stiffness * point.shear - dampingShear * weight * slideVelocity;
-				const double size = total.norm();
-				point.shearForce = size > bound ? Vector3(total * (bound / size)) : total;
+				point.shearForce = withinFriction(contact, pull - dampingShear * weight * slideVelocity, point.normalForce);
 			}
 		}
 		// What the forces took from the bodies, less what the springs have stored of it. The leapfrog scheme's own work of a

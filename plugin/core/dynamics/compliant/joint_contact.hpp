@@ -8,9 +8,10 @@
 //     T_i = -(k_s A w_i s_i + c_s w_i u_t,i),       |T_i| <= mu N_i
 //
 // s_i is the elastic tangential displacement, which slips as far as Coulomb's bound asks; c = 2 zeta sqrt(k A m) with m the
-// reduced mass of the pair. A muted point carries no force (see pivot_handoff.hpp).
+// reduced mass of the pair. Where corners meet corners the bound is mu N_i along their edge and tan(half angle + atan mu) N_i across it
+// (contact/corner_patch.hpp). A muted point carries no force (see pivot_handoff.hpp).
 #include "body.hpp"
-#include "contact/contact_patch.hpp"
+#include "contact/corner_patch.hpp"
 
 namespace masonry {
 
@@ -40,6 +41,7 @@ struct JointEnergy {
 struct JointContact {
 	int body1 {-1}, body2 {-1};
 	ContactPatch patch;
+	CornerNormals corner;
 	JointLaw law;
 	int size {0};
 	std::array<JointPoint, 8> points; // parallel to patch.points

@@ -60,7 +60,8 @@ struct ContactSolver<K>::Workspace {
 		}
 		s.applyImpulses();
 		constexpr int fewSweeps = 4;
-		if (K::dimension == 2 && s.nPoints <= K::maxPoints) { // a block on its face: dearer to factorise than to sweep
+		constexpr int ofFace = 2;
+		if (K::dimension == 2 && s.nPoints <= ofFace) { // a block on its face: dearer to factorise than to sweep
 			report.residual = gaussSeidel(s, tolerance, fewSweeps, true, report);
 			if (report.residual <= tolerance)
 				return report;

@@ -58,7 +58,7 @@ template <class K>
 FoundPoints<K> featuresAtEnd(const RigidSystem<K>& s, const SmoothStep<K>& step, const ContactPair<K>& pair)
 {
 	typename K::Memory memory = pair.memory;
-	return findPoints(s.bodies[pair.body1], step.trial().bodies[pair.body1].end, s.bodies[pair.body2], step.trial().bodies[pair.body2].end,
+	return findRows(s.bodies[pair.body1], step.trial().bodies[pair.body1].end, s.bodies[pair.body2], step.trial().bodies[pair.body2].end,
 	                  memory);
 }
 
@@ -156,8 +156,17 @@ bool isContact(const RigidSystem<K>& s, const SmoothStep<K>& step, const Event& 
 		return true;
 	const ContactPair<K>& pair = s.pairs[event.point.pair];
 	const auto found = featuresAtEnd(s, step, pair);
+	const auto isKnown = [&pair](const auto& feature) {
+		return std::any_of(pair.points.begin(), pair.points.begin() + pair.size, [&](const auto& point) { return point.feature == feature; });
+	};
+	const auto& closing = pair.points[event.point.point].feature;
+	for (int i = found.places; i < found.size; ++i) { // a corner meets a corner, with both normals
+		const auto &first = found.features[found.corner[i]], &second = found.features[i];
+		if ((closing == first && !isKnown(second)) || (closing == second && !isKnown(first)))
+			return false;
+	}
 	const auto last = found.features.begin() + found.size;
-	return std::find(found.features.begin(), last, pair.points[event.point.point].feature) != last;
+	return std::find(found.features.begin(), last, closing) != last;
 }
 
 template <class K>

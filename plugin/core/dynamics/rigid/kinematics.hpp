@@ -5,6 +5,7 @@
 // A velocity holds the linear part, then the spin; a force likewise the force, then the moment about the centre.
 #include "contact/contact_patch.hpp"
 #include "math.hpp"
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -97,16 +98,27 @@ struct ContactFrame {
 	double gap {0};
 };
 
-// The contact points of a pair of boxes.
+// The contact points of a pair of boxes. Those from number `places` on are second normals, at corners that meet corners
+// (corner_normals.hpp), and `corner` is the point whose place they share.
 template <class K>
 struct FoundPoints {
-	int size {0};
+	int size {0}, places {0};
 	std::array<typename K::Feature, K::maxPoints> features;
+	std::array<int, K::maxPoints> corner {};
 	int face1 {-1}, face2 {-1}; // the faces that meet (edges: those nearest to the normal)
+
+	void addSecondNormal(const typename K::Feature& feature, int place)
+	{
+		const auto last = features.begin() + size;
+		if (size == K::maxPoints || std::find(features.begin(), last, feature) != last)
+			return;
+		corner[size] = place;
+		features[size++] = feature;
+	}
 };
 
 struct Plane {
-	static constexpr int dimension = 2, spins = 1, dof = 3, rows = 2, maxPoints = 2;
+	static constexpr int dimension = 2, spins = 1, dof = 3, rows = 2, maxPoints = 3;
 	using Vector = Vector2;
 	using Spin = Eigen::Matrix<double, 1, 1>;
 	using Velocity = Eigen::Matrix<double, 3, 1>;
@@ -136,6 +148,8 @@ struct Plane {
 	// vertex. Points keep their features by the memory until another choice is clearly better (tolerance::contact). False, with
 	// nothing found, when the boxes are farther apart than `margin` (m) or only meet corner beside corner (overlap below ::sliver).
 	static bool findPoints(const Vector& half1, const Pose&, const Vector& half2, const Pose&, double margin, Memory&, FoundPoints<Plane>&);
+	// The second normals of points that are corners on corners (corner_normals.hpp).
+	static void addSecondNormals(const Vector& half1, const Pose&, const Vector& half2, const Pose&, FoundPoints<Plane>&);
 };
 
 struct Space {
@@ -166,6 +180,8 @@ struct Space {
 	static ContactFrame<Space> frame(const Feature&, const Vector& half1, const Pose&, const Vector& half2, const Pose&);
 	// The corners of the contact patch (contact/contact_patch.hpp), without the crossings of nearly parallel edges. False as in the plane.
 	static bool findPoints(const Vector& half1, const Pose&, const Vector& half2, const Pose&, double margin, Memory&, FoundPoints<Space>&);
+	// The second normals of vertices that are on edges (corner_normals.hpp).
+	static void addSecondNormals(const Vector& half1, const Pose&, const Vector& half2, const Pose&, FoundPoints<Space>&);
 };
 
 } // namespace masonry::rigid

@@ -1,7 +1,7 @@
 // Contact points of two rectangles in the plane.
 #include "contact/features.hpp"
 #include "contact/reference_face.hpp"
-#include "dynamics/rigid/kinematics.hpp"
+#include "dynamics/rigid/corner_normals.hpp"
 #include "tolerances.hpp"
 #include <algorithm>
 #include <cmath>
@@ -161,6 +161,47 @@ bool passes(const FacePair& pair, const End& low, const End& high)
 	return std::abs(pair.normalAlong) > tolerance::rigid::leans && high.place - low.place < tolerance::rigid::passing * pair.length;
 }
 
+// A vertex on a face of the other body, near a vertex of that. Columns of `axes`: those of the body with the vertex, in the other one's.
+class Corner {
+public:
+	Corner(const PlaneFeature& feature, const Vector2& vertexHalf, const PlanePose& vertexPose, const Vector2& faceHalf,
+	       const PlanePose& facePose)
+	    : point(feature), vertexSigns(vertexOf(feature.vertex, {1, 1})), pose(relative(facePose, vertexPose))
+	{
+		const Vector2 arm = vertexOf(feature.vertex, vertexHalf);
+		const int along = 1 - axis();
+		for (int row : {0, 1})
+			place[row] = pose.offset[row] + pose.axes[row][0] * arm.x() + pose.axes[row][1] * arm.y();
+		end = signOf(place[along]);
+		apart = std::max(std::abs(sign() * place[axis()] - faceHalf[axis()]), std::abs(end * place[along] - faceHalf[along]));
+	}
+	// The other bound of the admissible normals (corner_normals.hpp): of the two faces beside the vertex, the one that looks against those
+	// beside the other body's. False: the corners do not meet, or their faces are nearly parallel.
+	bool secondNormal(double reach, PlaneFeature& second) const
+	{
+		if (apart > reach)
+			return false;
+		for (int k : {0, 1}) {
+			const double along = vertexSigns[k] * pose.axes[1 - axis()][k] * end;
+			if (vertexSigns[k] * pose.axes[axis()][k] * sign() > 0)
+				return false;
+			if (along < -tolerance::rigid::cornerSpread)
+				second = {3 - point.vertexBody, vertexNumber(axis(), sign(), end), faceNumber(k, vertexSigns[k])};
+		}
+		return second.vertexBody != 0;
+	}
+
+private:
+	int axis() const { return point.face / 2; }
+	double sign() const { return point.face % 2 ? 1 : -1; }
+
+	const PlaneFeature point;
+	const Vector2 vertexSigns;
+	const RelativePose pose;
+	Vector2 place;
+	double end, apart;
+};
+
 } // namespace
 
 // Vertex P of body V, face of body F with outward normal m at the distance h from its centre x: gap = m.(P - x) - h. Its rate
@@ -218,12 +259,28 @@ bool Plane::findPoints(const Vector& half1, const Pose& pose1, const Vector& hal
 		out.features[0] = nearer.feature;
 	} else {
 		out.size = 2;
-		out.features = {low.feature, high.feature};
+		out.features[0] = low.feature;
+		out.features[1] = high.feature;
 	}
 	out.face1 = on1 ? pair.referenceFace() : pair.incidentFace();
 	out.face2 = on1 ? pair.incidentFace() : pair.referenceFace();
-	memory = {face.body, out.face1, out.face2, out.features};
+	memory = {face.body, out.face1, out.face2, {out.features[0], out.features[1]}};
 	return true;
+}
+
+void Plane::addSecondNormals(const Vector& half1, const Pose& pose1, const Vector& half2, const Pose& pose2, FoundPoints<Plane>& out)
+{
+	out.places = out.size;
+	if (std::abs(pose1.cosine * pose2.sine - pose1.sine * pose2.cosine) < tolerance::rigid::cornerSpread)
+		return; // parallel
+	const double reach = limits::vertexReach * std::min(half1.minCoeff(), half2.minCoeff());
+	for (int i = 0; i < out.places; ++i) {
+		const PlaneFeature& point = out.features[i];
+		const bool on1 = point.vertexBody == 1;
+		PlaneFeature second;
+		if (Corner(point, on1 ? half1 : half2, on1 ? pose1 : pose2, on1 ? half2 : half1, on1 ? pose2 : pose1).secondNormal(reach, second))
+			out.addSecondNormal(second, i);
+	}
 }
 
 } // namespace masonry::rigid

@@ -3,6 +3,34 @@
 
 namespace masonry::rigid {
 
+namespace {
+
+// A corner does without its second normal while its reaction is well inside the friction cone of the first: the motion is the same, and a
+// block that rocks about a corner above a corner carries one row. Where the reaction is not known, it has both.
+template <class K>
+void dropIdle(FoundPoints<K>& found, const ContactPair<K>& before, const RigidBody<K>& body1, const RigidBody<K>& body2, double samePlace)
+{
+	constexpr double inside = 0.8; // of the friction limit
+	const auto reaction = [&](const ContactFrame<K>& frame) {
+		typename K::Vector sum = K::Vector::Zero();
+		for (int k = 0; k < before.size; ++k)
+			if ((before.points[k].frame.position - frame.position).norm() <= samePlace)
+				sum += before.points[k].frame.axes.transpose() * before.points[k].force;
+		return typename ContactRows<K>::Rows(frame.axes * sum);
+	};
+	const auto isIdle = [&](int place) {
+		const auto p = reaction(K::frame(found.features[place], body1.halfSize, body1.pose, body2.halfSize, body2.pose));
+		return p[0] > 0 && p.template tail<K::rows - 1>().norm() <= inside * before.friction * p[0];
+	};
+	const FoundPoints<K> all = found;
+	found.size = found.places;
+	for (int i = all.places; i < all.size; ++i)
+		if (!isIdle(all.corner[i]))
+			found.addSecondNormal(all.features[i], all.corner[i]);
+}
+
+} // namespace
+
 // Bodies that turn or pass each other too far for one step share it out among several.
 template <class K>
 StepReport RigidStep<K>::advance(RigidSystem<K>& s, double dt)
@@ -99,7 +127,8 @@ void RigidStep<K>::findContacts(RigidSystem<K>& s, ContactPair<K>& pair, bool wi
 {
 	const double touching = s.settings.merged * step.scales.length, samePlace = 2 * tolerance::contact::vertexReach * step.scales.length;
 	const auto &body1 = s.bodies[pair.body1], &body2 = s.bodies[pair.body2];
-	const FoundPoints<K> found = findPoints(body1, body2, pair.memory);
+	FoundPoints<K> found = findRows(body1, body2, tolerance::restSpeed * step.scales.speed, pair.memory);
+	dropIdle(found, pair, body1, body2, samePlace);
 	const bool same = sameFeatures(pair, found);
 	if (same && !s.moved)
 		return;
@@ -116,9 +145,7 @@ void RigidStep<K>::findContacts(RigidSystem<K>& s, ContactPair<K>& pair, bool wi
 		if (same)
 			continue;
 		point.closed = point.gap <= touching && !within;
-		for (int k = 0; k < before.size; ++k)
-			if (takeState(before.points[k], samePlace, point) && before.points[k].feature == point.feature)
-				break;
+		takeStates(before, found, samePlace, point);
 	}
 }
 

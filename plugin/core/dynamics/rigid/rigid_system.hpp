@@ -2,6 +2,7 @@
 // Rigid blocks in unilateral contact: model, state and settings. rigid_step.hpp moves them.
 #include "dynamics/rigid/base_drive.hpp"
 #include "dynamics/rigid/contact_problem.hpp"
+#include "dynamics/rigid/corner_normals.hpp"
 #include "impact/rocking_restitution.hpp"
 #include <algorithm>
 #include <cmath>
@@ -57,6 +58,18 @@ struct ContactPair {
 	std::array<ContactPoint<K>, K::maxPoints> points;
 };
 
+// Relative velocity (body 2 minus body 1) at a point of a frame, along its axes.
+template <class K>
+Eigen::Matrix<double, K::rows, 1> relativeVelocity(const ContactFrame<K>& frame, const typename K::Vector& center1,
+                                                   const typename K::Velocity& v1, const typename K::Vector& center2,
+                                                   const typename K::Velocity& v2)
+{
+	const auto at = [&](const typename K::Vector& center, const typename K::Velocity& v) {
+		return typename K::Vector(v.template head<K::dimension>() + K::cross(v.template tail<K::spins>(), frame.position - center));
+	};
+	return frame.axes * (at(center2, v2) - at(center1, v1));
+}
+
 // Where the features of a point are, for these bodies.
 template <class K>
 void locate(ContactPoint<K>& point, const RigidBody<K>& body1, const RigidBody<K>& body2)
@@ -77,6 +90,27 @@ bool takeState(const ContactPoint<K>& old, double samePlace, ContactPoint<K>& po
 	return true;
 }
 
+// The state of the points before into one of those found. One that was there keeps its own, with the load of those at its place that have
+// gone; another takes over from what was at its place.
+template <class K>
+void takeStates(const ContactPair<K>& before, const FoundPoints<K>& found, double samePlace, ContactPoint<K>& point)
+{
+	const auto begin = before.points.begin(), end = begin + before.size;
+	const auto same = std::find_if(begin, end, [&](const ContactPoint<K>& old) { return old.feature == point.feature; });
+	if (same == end) {
+		for (auto old = begin; old != end; ++old)
+			takeState(*old, samePlace, point);
+		return;
+	}
+	takeState(*same, samePlace, point);
+	const auto last = found.features.begin() + found.size;
+	for (auto old = begin; old != end; ++old)
+		if ((old->frame.position - point.frame.position).norm() <= samePlace && std::find(found.features.begin(), last, old->feature) == last) {
+			point.closed |= old->closed;
+			point.force += old->force;
+		}
+}
+
 // The points of a pair of these bodies, none if there are none; without a margin, since lists of pairs hold only boxes that are near.
 template <class K>
 FoundPoints<K> findPoints(const RigidBody<K>& body1, const typename K::Pose& pose1, const RigidBody<K>& body2,
@@ -91,6 +125,28 @@ template <class K>
 FoundPoints<K> findPoints(const RigidBody<K>& body1, const RigidBody<K>& body2, typename K::Memory& memory)
 {
 	return findPoints(body1, body1.pose, body2, body2.pose, memory);
+}
+
+// And the second normals of corners that meet corners.
+template <class K>
+FoundPoints<K> findRows(const RigidBody<K>& body1, const typename K::Pose& pose1, const RigidBody<K>& body2, const typename K::Pose& pose2,
+                        typename K::Memory& memory)
+{
+	FoundPoints<K> found = findPoints(body1, pose1, body2, pose2, memory);
+	K::addSecondNormals(body1.halfSize, pose1, body2.halfSize, pose2, found);
+	return found;
+}
+// As they move: a corner that moves over a face of the other body faster than `rest` (m/s) has that face's normal alone.
+template <class K>
+FoundPoints<K> findRows(const RigidBody<K>& body1, const RigidBody<K>& body2, double rest, typename K::Memory& memory)
+{
+	FoundPoints<K> found = findRows(body1, body1.pose, body2, body2.pose, memory);
+	const auto rate = [&](const typename K::Feature& feature) {
+		const auto frame = K::frame(feature, body1.halfSize, body1.pose, body2.halfSize, body2.pose);
+		return relativeVelocity<K>(frame, body1.pose.position, body1.velocity, body2.pose.position, body2.velocity)[0];
+	};
+	dropPassed(found, rate, rest);
+	return found;
 }
 
 template <class K>

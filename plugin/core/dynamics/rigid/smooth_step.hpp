@@ -116,18 +116,7 @@ private:
 	ContactSolver<K> solver;
 };
 
-// Relative velocity (body 2 minus body 1) at a point of a frame, along its axes.
-template <class K>
-Eigen::Matrix<double, K::rows, 1> relativeVelocity(const ContactFrame<K>& frame, const typename K::Vector& center1,
-                                                   const typename K::Velocity& v1, const typename K::Vector& center2,
-                                                   const typename K::Velocity& v2)
-{
-	const auto at = [&](const typename K::Vector& center, const typename K::Velocity& v) {
-		return typename K::Vector(v.template head<K::dimension>() + K::cross(v.template tail<K::spins>(), frame.position - center));
-	};
-	return frame.axes * (at(center2, v2) - at(center1, v1));
-}
-// At a point of the system, in its present state.
+// Relative velocity at a point of the system, in its present state.
 template <class K>
 Eigen::Matrix<double, K::rows, 1> relativeVelocity(const RigidSystem<K>& s, PointRef ref)
 {

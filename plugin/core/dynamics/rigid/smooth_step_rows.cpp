@@ -30,10 +30,16 @@ Eigen::Matrix<double, K::rows, K::dof> jacobian(const ContactFrame<K>& frame, co
 
 // The forces of more than three points on a face are not determined by its motion, but where it spins as it slides the friction couple
 // hangs on them: they start from linear pressure, that is from the least sum of squares with the same resultant and moments, so that the
-// solver's path does not decide. Points that would have to pull, or stick, are left as they are.
+// solver's path does not decide. Points that would have to pull, or stick, are left as they are, and so are those of corners, whose normals
+// differ.
 void spreadLinearly(ContactRows<Space>* rows, const std::vector<ContactFrame<Space>>& frames)
 {
 	const int n = int(frames.size());
+	const auto turned = [&](const ContactFrame<Space>& frame) {
+		return frame.axes.row(0).cross(frames.front().axes.row(0)).norm() > tolerance::rigid::cornerSpread;
+	};
+	if (std::any_of(frames.begin(), frames.end(), turned))
+		return;
 	Matrix3 squares = Matrix3::Zero();
 	Vector3 sums = Vector3::Zero(), middle = Vector3::Zero();
 	for (const auto& frame : frames)
@@ -168,7 +174,7 @@ void SmoothStep<K>::assemble(const RigidSystem<K>& s, double h)
 			solver.points.push_back(rowsOf(s, last.rows[begin + k], frame, h, astray));
 			slides &= point.sliding && solver.points.back().impulse[0] > 0;
 		}
-		if constexpr (K::maxPoints > 3)
+		if constexpr (K::dimension == 3)
 			if (slides && middles.size() > 3)
 				spreadLinearly(solver.points.data() + begin, middles);
 	}

@@ -1,7 +1,8 @@
 // Contact points of two boxes in space, and how a box turns.
 #include "contact/box_box.hpp"
 #include "contact/features.hpp"
-#include "dynamics/rigid/kinematics.hpp"
+#include "contact/vertex_on_edge.hpp"
+#include "dynamics/rigid/corner_normals.hpp"
 #include "tolerances.hpp"
 #include <algorithm>
 #include <limits>
@@ -15,10 +16,7 @@ namespace {
 
 using Frame = ContactFrame<Space>;
 
-Vector3 vertexOf(int number, const Vector3& half)
-{
-	return {number & 1 ? half.x() : -half.x(), number & 2 ? half.y() : -half.y(), number & 4 ? half.z() : -half.z()};
-}
+Vector3 vertexOf(int number, const Vector3& half) { return feature::vertexSigns(number).cwiseProduct(half); }
 
 // Vertex P of one body, face of the other with outward normal m at the distance h from its centre x: gap = m.(P - x) - h. Its rate
 // m.(v_P - v_F) + (w_F x m).(P - x) = m.(v_P - v_F - w_F x (P - x)) is the relative velocity along m at P.
@@ -156,14 +154,17 @@ void dropPassing(const ContactPatch& patch, const Vector3& half1, const Pose& po
 	}
 }
 
+double sineBetween(int face1, const Pose& pose1, int face2, const Pose& pose2)
+{
+	const Vector3 normal1 = pose1.orientation * Vector3::Unit(face1 / 2), normal2 = pose2.orientation * Vector3::Unit(face2 / 2);
+	return normal1.cross(normal2).norm();
+}
+
 // Whether these faces are no longer one upon the other.
 bool leans(const PatchFeature& faces, const Pose& pose1, const Pose& pose2)
 {
-	if (faces.kind != PatchKind::Face1 && faces.kind != PatchKind::Face2)
-		return false;
-	const Vector3 normal1 = pose1.orientation * Vector3::Unit(faces.feature1 / 2),
-	              normal2 = pose2.orientation * Vector3::Unit(faces.feature2 / 2);
-	return normal1.cross(normal2).norm() > tolerance::rigid::leans;
+	return (faces.kind == PatchKind::Face1 || faces.kind == PatchKind::Face2) &&
+	       sineBetween(faces.feature1, pose1, faces.feature2, pose2) > tolerance::rigid::leans;
 }
 
 int faceNearest(const Vector3& direction, const Pose& pose)
@@ -215,6 +216,30 @@ bool Space::findPoints(const Vector& half1, const Pose& pose1, const Vector& hal
 	if (leans(memory, pose1, pose2))
 		dropPassing(patch, half1, pose1, half2, pose2, memory, out);
 	return true;
+}
+
+void Space::addSecondNormals(const Vector& half1, const Pose& pose1, const Vector& half2, const Pose& pose2, FoundPoints<Space>& out)
+{
+	out.places = out.size;
+	if (out.size == 0 || sineBetween(out.face1, pose1, out.face2, pose2) < tolerance::rigid::cornerSpread)
+		return;
+	const double reach = tolerance::contact::vertexReach * std::min(half1.minCoeff(), half2.minCoeff());
+	for (int i = 0; i < out.places; ++i) {
+		const SpaceFeature point = out.features[i];
+		if (isCrossing(point))
+			continue;
+		const bool on1 = point.kind == SpaceFeature::Vertex1;
+		const int vertex = on1 ? point.first : point.second, face = on1 ? point.second : point.first;
+		const VertexOnEdge corner(vertex, on1 ? half1 : half2, on1 ? pose1 : pose2, face, on1 ? half2 : half1, on1 ? pose2 : pose1);
+		corner.forEdges(reach, reach, [&](const NormalsOnEdge& normals) {
+			if (normals.tangent < tolerance::rigid::cornerSpread)
+				return;
+			if (normals.vertexEdge < 0)
+				out.addSecondNormal({point.kind, on1 ? vertex : normals.otherFace, on1 ? normals.otherFace : vertex}, i);
+			else
+				out.addSecondNormal({SpaceFeature::Edges, on1 ? normals.vertexEdge : normals.edge, on1 ? normals.edge : normals.vertexEdge}, i);
+		});
+	}
 }
 
 } // namespace masonry::rigid

@@ -92,7 +92,8 @@ bool WallContacts<K>::lookUp(RigidSystem<K>& s, int c)
 	bool changed = s.moved;
 	ContactPair<K>& pair = s.pairs[c];
 	const auto &body1 = s.bodies[pair.body1], &body2 = s.bodies[pair.body2];
-	const FoundPoints<K> found = findPoints(body1, body2, pair.memory);
+	FoundPoints<K> found = findPoints(body1, body2, pair.memory);
+	found.size = std::min(found.size, pairPoints<K>);
 	pair.face1 = found.face1;
 	pair.face2 = found.face2;
 	// Of bodies that have been moved the pair may know other points than the lanes.
@@ -110,13 +111,13 @@ bool WallContacts<K>::lookUp(RigidSystem<K>& s, int c)
 	}
 	known[c] = true;
 	const ContactPair<K> before = pair;
-	State states[K::maxPoints];
-	for (int k = 0; k < K::maxPoints; ++k)
+	State states[pairPoints<K>];
+	for (int k = 0; k < pairPoints<K>; ++k)
 		states[k] = state(c, k);
 	pair.size = found.size;
 	if (found.size > lanePoints<K> && !wide[c])
 		wide[c] = wider = true;
-	for (int k = 0; k < K::maxPoints; ++k) {
+	for (int k = 0; k < pairPoints<K>; ++k) {
 		State now;
 		if (k < found.size) {
 			ContactPoint<K> point;
@@ -192,7 +193,7 @@ void WallContacts<K>::takeOver(const RigidSystem<K>& s)
 	std::fill(stale.begin(), stale.end(), 0);
 	std::fill(known.begin(), known.end(), 1);
 	for (const int c : numbers)
-		for (int k = 0; k < K::maxPoints && slots[c][k / lanePoints<K>].group >= 0; ++k) {
+		for (int k = 0; k < pairPoints<K> && slots[c][k / lanePoints<K>].group >= 0; ++k) {
 			const auto [group, lane] = slots[c][k / lanePoints<K>];
 			takePoint(s, c, k);
 			groups[group].friction[lane] = std::min(s.pairs[c].friction, mostFriction);
@@ -206,7 +207,7 @@ void WallContacts<K>::showPair(RigidSystem<K>& s, int c) const
 {
 	const double touching = tolerance::mergedClosing * length, perUnit = unit > 0 ? 1 / unit : 0;
 	ContactPair<K>& pair = s.pairs[c];
-	for (int k = 0; k < pair.size; ++k) {
+	for (int k = 0; k < std::min(pair.size, pairPoints<K>); ++k) {
 		const auto [group, lane] = slots[c][k / lanePoints<K>];
 		if (group < 0)
 			return;

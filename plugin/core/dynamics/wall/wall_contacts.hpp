@@ -26,9 +26,11 @@ constexpr double mostFriction = 1e12; // stands for noSlip: infinity times a zer
 template <class K>
 constexpr int packs = K::dof / 3; // of a body
 template <class K>
-constexpr int lanePoints = K::maxPoints == 2 ? 2 : 4;
+constexpr int lanePoints = K::dimension == 2 ? 2 : 4;
 template <class K>
-constexpr int lanesOfPair = K::maxPoints / lanePoints<K>;
+constexpr int lanesOfPair = K::dimension == 2 ? 1 : 2;
+template <class K>
+constexpr int pairPoints = lanePoints<K> * lanesOfPair<K>; // in the plane without the second normal of a corner
 constexpr double farAway = 1e30; // m, gap of a lane without a point
 
 // What a step or substep hands on of an impulse at most: so many times its mean, or so many times what stops a point alone after its fall,
@@ -201,7 +203,7 @@ public:
 				placeAt(system, located);
 		}
 		for (const int c : numbers)
-			for (int k = 0; k < K::maxPoints && slots[c][k / lanePoints<K>].group >= 0; ++k) {
+			for (int k = 0; k < pairPoints<K> && slots[c][k / lanePoints<K>].group >= 0; ++k) {
 				const auto [group, lane] = slots[c][k / lanePoints<K>];
 				State now = state(c, k);
 				Lanes& gaps = groups[group].point[k % lanePoints<K>].gap;

@@ -31,7 +31,7 @@ void WallContacts<K>::takePairs(const RigidSystem<K>& s)
 		if ((own[pair.body1] && isHere(pair.body2)) || (own[pair.body2] && isHere(pair.body1)))
 			numbers.push_back(int(pairs.size()));
 		pairs.push_back({pair.body1, pair.body2});
-		wide.push_back(pair.size > lanePoints<K>);
+		wide.push_back(std::min(pair.size, pairPoints<K>) > lanePoints<K>);
 	}
 }
 

@@ -1,0 +1,93 @@
+#include "contact/corner_patch.hpp"
+#include "contact/vertex_on_edge.hpp"
+#include <algorithm>
+
+namespace masonry {
+
+double CornerNormals::frictionAcross(double friction) const
+{
+	const double angle = halfAngle + std::atan(friction);
+	return angle < M_PI / 2 ? std::tan(angle) : std::numeric_limits<double>::infinity();
+}
+
+namespace {
+
+// Angle between two faces, rad, below which a corner keeps the normal of one. Smaller: a block that rocks about a corner above a corner
+// changes its normal in the middle of its swing, which shakes the springs; larger: frames that lean less need that much friction.
+constexpr double leastAngle = 0.2;
+const double leastTangent = std::tan(leastAngle);
+
+struct Mean {
+	Vector3 normal; // from box 1 to box 2
+	double gap;     // m, along it
+	CornerNormals corner;
+};
+
+// Of a point; false: it is no corner on a corner, or on two edges.
+bool meanNormal(const PatchPoint& point, const PatchFeature& faces, const Box& box1, const Pose& pose1, const Box& box2, const Pose& pose2,
+                Mean& mean)
+{
+	if (point.identity >= 16)
+		return false;
+	const bool on1 = point.identity < 8;
+	const Box &vertexBox = on1 ? box1 : box2, &faceBox = on1 ? box2 : box1;
+	const Pose &vertexPose = on1 ? pose1 : pose2, &facePose = on1 ? pose2 : pose1;
+	const int vertex = point.identity % 8, face = on1 ? faces.feature2 : faces.feature1;
+	const VertexOnEdge corner(vertex, vertexBox.halfSize, vertexPose, face, faceBox.halfSize, facePose);
+	const double reach = tolerance::contact::vertexReach * std::min(box1.halfSize.minCoeff(), box2.halfSize.minCoeff());
+	int found = 0;
+	corner.forEdges(std::numeric_limits<double>::infinity(), reach + std::max(0., -point.gap), [&](const NormalsOnEdge& normals) {
+		if (normals.tangent < leastTangent)
+			return;
+		++found;
+		const Matrix3 axes = facePose.orientation.toRotationMatrix();
+		const auto outward = [&](int number) -> Vector3 { return (number % 2 ? 1 : -1) * axes.col(number / 2); };
+		const double half = std::atan(normals.tangent) / 2;
+		const Vector3 away = std::cos(half) * outward(face) + std::sin(half) * outward(normals.otherFace);
+		mean.normal = on1 ? Vector3(-away) : away;
+		mean.gap = std::cos(half) * normals.outside1 + std::sin(half) * normals.outside2;
+		mean.corner = {half, axes.col(normals.edge / 4)};
+	});
+	return found == 1;
+}
+
+} // namespace
+
+CornerNormals takeMeanNormal(const Box& box1, const Pose& pose1, const Box& box2, const Pose& pose2, ContactPatch& patch)
+{
+	if (patch.feature.kind != PatchKind::Face1 && patch.feature.kind != PatchKind::Face2)
+		return {};
+	const auto normal = [](int face, const Pose& pose) -> Vector3 { return pose.orientation * Vector3::Unit(face / 2); };
+	const double sine = normal(patch.feature.feature1, pose1).cross(normal(patch.feature.feature2, pose2)).norm();
+	if (sine < std::sin(leastAngle))
+		return {};
+	constexpr double same = 1e-3; // rad, of the normals at the ends of an edge
+	const double touching = tolerance::contact::vertexReach * std::min(box1.halfSize.minCoeff(), box2.halfSize.minCoeff());
+	std::array<Mean, 8> means;
+	int first = -1;
+	for (int i = 0; i < patch.size; ++i) {
+		if (patch.points[i].gap > touching)
+			continue;
+		if (!meanNormal(patch.points[i], patch.feature, box1, pose1, box2, pose2, means[i]))
+			return {};
+		if (first < 0)
+			first = i;
+		if ((means[i].normal - means[first].normal).norm() > same)
+			return {};
+	}
+	if (first < 0)
+		return {};
+	patch.normal = means[first].normal;
+	for (int i = 0; i < patch.size; ++i) {
+		PatchPoint& point = patch.points[i];
+		if (point.gap > touching)
+			continue;
+		Vector3& partner = point.identity < 8 ? point.position2 : point.position1;
+		const Vector3& vertex = point.identity < 8 ? point.position1 : point.position2;
+		point.gap = means[i].gap;
+		partner = vertex + (point.identity < 8 ? point.gap : -point.gap) * patch.normal;
+	}
+	return means[first].corner;
+}
+
+} // namespace masonry

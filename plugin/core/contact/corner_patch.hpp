@@ -1,0 +1,22 @@
+#pragma once
+// The one normal of a patch whose corners meet corners.
+//
+// Where two parallel edges meet, every normal between those of two faces, one of each box, is admissible (dynamics/rigid/corner_normals.hpp).
+// A patch has one normal for all its points. It takes the mean of the two and tells how far they are from it: the reaction may turn about
+// the edge by this angle besides the friction angle.
+#include "contact/box_box.hpp"
+
+namespace masonry {
+
+struct CornerNormals {
+	double halfAngle {0};           // rad, between either face's normal and the mean; 0: the patch is no corner on a corner
+	Vector3 edge {Vector3::Zero()}; // unit, global
+
+	double frictionAcross(double friction) const; // coefficient across the edge; infinite where every direction is admissible
+};
+
+// Gives the patch of two boxes (as `collide` finds it) the mean normal, and its touching points their gaps along it, if all that touches
+// are corners on corners. Points touch below a gap of tolerance::contact::vertexReach; compression widens the reach of a corner by as much.
+CornerNormals takeMeanNormal(const Box& box1, const Pose& pose1, const Box& box2, const Pose& pose2, ContactPatch& patch);
+
+} // namespace masonry
