@@ -49,9 +49,8 @@ constexpr double liftingGain = 4;
 // How far settling may move a point, relative to the compression of the springs: points that lie nearly in a line ask for turns of
 // any size. Smaller: half cycles of stacks start with a vibration; larger: blocks jump.
 constexpr double settlingReach = 10;
-// Energy that springs may have of nothing, from points that are not where those of the last step were: share of what is turned over, and of
-// what lifts all blocks by their radius of gyration. Smaller: scenes whose corners change faces are reported; larger: blocks that hit so
-// hard that their corners jump to another face, deep in it, are not.
+// Energy that all steps of a run may make, or lose, though nothing accounts for it: share of what is turned over, and of what lifts all
+// blocks by their size. Smaller: coarse but sound runs are reported; larger: a run may be wrong by so much in silence.
 constexpr double madeShare = 0.05, madeLift = 1e-4;
 
 // --- rigid blocks (dynamics/rigid/) ---

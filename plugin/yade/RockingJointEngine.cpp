@@ -12,6 +12,7 @@
 
 #include "contact/box_box.hpp"
 #include "dynamics/compliant/time_step.hpp"
+#include "dynamics/energy_errors.hpp"
 #include "tolerances.hpp"
 #include <algorithm>
 #include <boost/python/extract.hpp>
@@ -69,8 +70,8 @@ void RockingJointEngine::postLoad(RockingJointEngine&)
 void RockingJointEngine::leaveScene()
 {
 	forgetImpacts(*this);
-	forget(started, worstResidual, failures, madeEnergy, kinetic, potential, elastPotential, frictDissip, dampDissip, impactDissip,
-	       baseWork, reactionIds, reactions, reactionMoments, checkedTimeStep, boundAt);
+	forget(started, worstResidual, failures, madeEnergy, lostEnergy, turnedOver, toldMade, toldLost, kinetic, potential, elastPotential,
+	       frictDissip, dampDissip, impactDissip, baseWork, reactionIds, reactions, reactionMoments, checkedTimeStep, boundAt);
 }
 
 void RockingJointEngine::checkScene()
@@ -247,6 +248,7 @@ void RockingJointEngine::recordImpact(const masonry::ImpactRecord& record)
 	addImpact(*this, scene->time - record.before, ids[record.block], ids[record.support], record.restitutionAsked, record.result,
 	          record.result.energyLost, record.switched, record.result.capped);
 	impactDissip += record.result.energyLost + record.settled;
+	addUnexplained(std::max(0., -record.result.energyLost - record.settled));
 	baseWork += record.work;
 }
 
@@ -288,27 +290,40 @@ void RockingJointEngine::boundTurns()
 	}
 }
 
-/// Springs that hold more than before without having been pressed: points that are not where those of the last step were, or share
-/// the stiffness differently.
-void RockingJointEngine::addMade()
+/// Springs that hold more or less than what the bodies have put in, as their points meet or part within a step, are not where those of the
+/// last step were, or share the stiffness differently.
+void RockingJointEngine::addErrors()
 {
+	Real unexplained = -elastPotential;
+	for (const auto& contact : system.contacts)
+		unexplained += contact.energy.elastic - contact.energy.taken;
+	addUnexplained(unexplained);
+}
+
+void RockingJointEngine::addUnexplained(Real energy) { (energy > 0 ? madeEnergy : lostEnergy) += std::abs(energy); }
+
+void RockingJointEngine::reportErrors()
+{
+	turnedOver = std::max(turnedOver, kinetic + elastPotential + frictDissip + dampDissip + impactDissip);
 	Real lifted = 0;
 	for (const masonry::Body& body : system.bodies)
 		if (!body.prescribed)
 			lifted += body.mass * gravity.norm() * std::sqrt(body.inertia.minCoeff() / body.mass);
-	const Real turnedOver = kinetic + elastPotential + frictDissip + dampDissip + impactDissip;
-	const Real most = masonry::tolerance::madeShare * turnedOver + masonry::tolerance::madeLift * lifted;
-	const bool known = madeEnergy > most;
-	madeEnergy -= elastPotential;
-	for (const auto& contact : system.contacts)
-		madeEnergy += contact.energy.elastic - contact.energy.taken;
-	if (known || !(madeEnergy > most))
+	const Real most = masonry::mostUnexplained(turnedOver, lifted);
+	report(madeEnergy, most, "come from nothing", toldMade);
+	report(lostEnergy, most, "vanished", toldLost);
+}
+
+void RockingJointEngine::report(Real energy, Real most, const char* what, bool& told)
+{
+	if (told || !(energy > most))
 		return;
-	if (failures == 0)
-		LOG_WARN("at t = " << scene->time << " s the joints have had " << madeEnergy
-		                   << " J of nothing: blocks hit so hard that their corners are deep in others. "
-		                   << "The run goes on; RockingJointEngine.failures counts it. Give a smaller penetration, or take rigid blocks.");
+	told = true;
 	++failures;
+	LOG_WARN("at t = " << scene->time << " s " << energy << " J of energy have " << what << " in the steps so far, "
+	                   << 100 * energy / turnedOver << " % of what the scene has turned over: do not trust what follows. "
+	                   << "Give dem.engines() a smaller dt or a smaller penetration, or take rigid blocks. The run goes on; "
+	                   << "RockingJointEngine.madeEnergy and lostEnergy sum up such errors.");
 }
 
 bool RockingJointEngine::applyJumps(const vector<BaseMotionEngine*>& motions, const vector<StepImpact>& impacts)
@@ -326,6 +341,7 @@ bool RockingJointEngine::applyJumps(const vector<BaseMotionEngine*>& motions, co
 			baseWork += response.work;
 			acted = true;
 			impactDissip += response.dissipated;
+			addUnexplained(std::max(0., -response.dissipated));
 		}
 	}
 	return acted;
@@ -460,13 +476,14 @@ void RockingJointEngine::action()
 	if (starting)
 		startAtEquilibrium(system);
 	else
-		addMade();
+		addErrors();
 	started = true;
 	if (!starting)
 		addBaseWork();
 	vector<StepImpact> impacts;
 	const Real lifted = liftJoints(system);
 	impactDissip += lifted;
+	addUnexplained(std::max(0., -lifted));
 	const auto records = handOffPivots(system);
 	for (const auto& record : records) {
 		recordImpact(record);
@@ -480,6 +497,7 @@ void RockingJointEngine::action()
 	applyForces(pairs);
 	keepReactions();
 	measureEnergy();
+	reportErrors();
 	lowerTimeStep();
 }
 

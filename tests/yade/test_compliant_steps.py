@@ -50,3 +50,40 @@ def run():
 print("   ", refuses(run, "O.dt", "below", kind=RuntimeError))
 # What has been made until then is no more than what was there: the board has fallen by half of its height.
 assert dem.energy()["kinetic"] < 1.02 * O.bodies[1].state.mass * 9.81 * 0.5
+
+
+def bounce(step, seconds=2):
+    """Joints without dashpots under a block that falls flat and bounces; `step` relative to the critical one. Returns the joint engine, the error of the
+    sum of energies, and the share of the kinetic energy at the landing that one step may take at a landing, or give at a take-off."""
+    O.reset()
+    material = dem.BlockMat(density=2000, frictionAngle=0.6)
+    base = dem.base((6, 4, 0.4), material)
+    dem.block((0.6, 0.6, 0.4), material, center=(0, 0, 0.3))
+    O.engines = quiet_engines(penetration=1e-3)
+    critical = O.dt / joints_of().stepFraction
+    O.engines = quiet_engines(penetration=1e-3, dt=step * critical)
+    O.engines[2].lawDispatcher.functors[0].dampingRatio = 0
+    block = O.bodies[1]
+    stiffness = block.mat.normalStiffness * 0.6 * 0.6
+    balance = Balance()
+    while O.time < seconds or any(i.isReal for i in O.interactions):
+        O.step()
+    return joints_of(), balance.error(), stiffness / block.state.mass * O.dt**2 / 4
+
+
+def joints_of():
+    return next(e for e in O.engines if isinstance(e, dem.RockingJointEngine))
+
+
+# Springs act from the start of the step in which their points land: the bodies lose k d (v dt - d)/2 over what is stored, at most (w dt)^2/4 of the
+# kinetic energy, and get as much back where they part. The sum of energies, in flight, knows the difference to rounding.
+for step in (0.3, 0.1, 0.03):
+    joints, error, most = bounce(step)
+    made, lost = joints.madeEnergy, joints.lostEnergy
+    fall = O.bodies[1].state.mass * 9.81 * 0.1
+    landings = 2 / 0.28  # of 0.1 m: one each 0.29 s
+    print(f"    bounces at {step:g} of the critical step: made {made / fall:.1e}, lost {lost / fall:.1e} of the fall, failures {joints.failures}")
+    assert abs(error - (made - lost)) < 1e-9 * fall, (error, made, lost)
+    assert 0.2 * landings * most * fall < min(made, lost) and max(made, lost) < 1.1 * (landings + 1) * most * fall, (made, lost, most * fall)
+    told = (made > 0.05 * joints.turnedOver) + (lost > 0.05 * joints.turnedOver)
+    assert joints.failures == told and (step > 0.1) == (told > 0), (joints.failures, told)

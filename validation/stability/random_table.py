@@ -6,7 +6,7 @@ import sys
 path, scenes = sys.argv[1], int(sys.argv[2])
 with open(path) as file:
     rows = [r for r in map(json.loads, file) if r["seed"] < scenes]
-kinds = ("energy", "depth", "flight", "cone", "bits")
+kinds = ("energy", "depth", "flight", "cone", "off", "bits")
 print(f"\nSeeds 0 to {scenes - 1}.\n\n| model | scenes | {' | '.join(kinds)} | broken without a word | CPU s |\n" + "| --- " * (len(kinds) + 4) + "|")
 for model in dict.fromkeys(r.get("model", "refused") for r in sorted(rows, key=lambda r: r["seed"])):
     mine = [r for r in rows if r.get("model", "refused") == model]

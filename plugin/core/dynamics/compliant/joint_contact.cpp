@@ -114,13 +114,15 @@ void updateForces(JointContact& contact, const Body& body1, const Body& body2, d
 		const double normalVelocity = n.dot(velocity);
 		const Vector3 slideVelocity = velocity - n * normalVelocity;
 		double slipped = 0; // J
+		bool slips = true;
 		if (point.muted || depth <= 0) {
 			release(point);
 		} else {
 			point.normalForce = std::max(0., contact.normalStiffness(i) * depth - dampingNormal * weight * normalVelocity);
 			point.shear += slideVelocity * dt;
 			const Vector3 pull = -stiffness * point.shear, held = withinFriction(contact, pull, point.normalForce);
-			if (held != pull) {
+			slips = held != pull;
+			if (slips) {
 				slipped = held.dot(pull - held) / stiffness;
 				point.shear = -held / stiffness;
 				point.shearForce = held;
@@ -128,16 +130,26 @@ void updateForces(JointContact& contact, const Body& body1, const Body& body2, d
 				point.shearForce = withinFriction(contact, pull - dampingShear * weight * slideVelocity, point.normalForce);
 			}
 		}
-		// What the forces took from the bodies, less what the springs have stored of it. The leapfrog scheme's own work of a
-		// force over a step is that of the mean of its values at the two ends.
+		// What the forces take from the bodies goes to the springs, but for what dashpots and slip dissipate, who never give. A spring
+		// without any force comes back by its dashpot. The leapfrog scheme's own work of a force over a step is that of the mean of its
+		// values at the two ends: where points meet or part within the step, springs do not store what they take.
 		const double oldDepth = depth + normalVelocity * dt;
 		const double takenNormal = -0.5 * (old.normalForce + point.normalForce) * normalVelocity * dt;
 		const double takenShear = -0.5 * (old.shearForce + point.shearForce).dot(slideVelocity) * dt;
 		const double storedNormal = old.muted ? 0 : 0.5 * contact.normalStiffness(i) * (squared(depth) - squared(oldDepth));
 		const double storedShear = 0.5 * stiffness * (point.shear.squaredNorm() - old.shear.squaredNorm());
-		contact.energy.taken += storedNormal + storedShear;
+		const auto dashpot = [&](const JointPoint& p, double d) {
+			return p.muted ? 0. : contact.normalStiffness(i) * std::max(0., d) - p.normalForce;
+		};
+		const double slowed = std::max(0., 0.5 * (dashpot(old, oldDepth) + dashpot(point, depth)) * normalVelocity * dt);
+		const bool unloaded = old.normalForce == 0 && point.normalForce == 0;
+		const Vector3 drag = -stiffness * (old.shear + point.shear) - old.shearForce - point.shearForce;
+		const double elasticShear = takenShear - std::max(0., 0.5 * drag.dot(slideVelocity) * dt);
+		const double taken =
+		    (unloaded ? storedNormal : takenNormal - slowed) + (slips ? std::min(elasticShear, storedShear) : elasticShear);
+		contact.energy.taken += taken;
 		contact.energy.friction += slipped;
-		contact.energy.damping += takenNormal - storedNormal + takenShear - storedShear - slipped;
+		contact.energy.damping += takenNormal + takenShear - taken - slipped;
 		if (!point.muted)
 			contact.energy.elastic += storedEnergy(contact, i);
 	}

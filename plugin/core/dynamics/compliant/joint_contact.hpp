@@ -33,7 +33,7 @@ struct JointPoint {
 
 struct JointEnergy {
 	double elastic {0};  // stored now, J
-	double taken {0};    // of it: what the motion of this step has put in, J
+	double taken {0};    // work of the bodies on the springs in this step, J: elastic energy that changes otherwise is made or lost
 	double friction {0}; // dissipated in this step, J
 	double damping {0};  // dissipated in this step, J
 };

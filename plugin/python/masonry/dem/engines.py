@@ -81,12 +81,13 @@ def _choose_stiffness(blocks, penetration, gravity):
     return f"stiffness {stiffness:.3g} Pa/m (the weight presses the joints in by {penetration:g} of the width)" if normal else None
 
 
-def _landing_step(body):
-    """Critical time step of a block on its largest face, s. Above the frequency of any of its joints: all springs at the corner."""
+def _landing_step(body, alone):
+    """Critical time step of a block on its largest face, s. Above the frequency of any of its joints: all springs at the corner, and twice as stiff
+    where it may land on another free block, which swings against it."""
     half, state = body.shape.extents, body.state
     area = 4 * half[0] * half[1] * half[2] / min(half)
     stiffness = max(body.mat.normalStiffness, body.mat.shearStiffness)
-    return 2 / np.sqrt(stiffness * area * (1 / state.mass + half.squaredNorm() / min(state.inertia)))
+    return 2 / np.sqrt((1 if alone else 2) * stiffness * area * (1 / state.mass + half.squaredNorm() / min(state.inertia)))
 
 
 def record_motion(record, ids, direction=(1, 0, 0), start=0.0):
@@ -268,7 +269,8 @@ def _compliant(blocks, motions, reason, dt, penetration, impact_order, gravity, 
     joints = wrapper.RockingJointEngine(impactOrder=impact_order)
     critical = joints.criticalTimeStep()
     if not np.isfinite(critical):  # nothing touches yet
-        critical = min(_landing_step(b) for b in blocks if b.dynamic)
+        free = [b for b in blocks if b.dynamic]
+        critical = min(_landing_step(b, alone=len(free) == 1) for b in free)
     if dt is not None and not dt < critical:
         raise ValueError(f"dt = {dt}: must be below {critical:.3g} s, the critical step of joints this stiff")
     O.dt = float(dt if dt is not None else _STEP_FRACTION * critical)
@@ -322,7 +324,7 @@ def impacts():
 def energy():
     """Energies in J: kinetic and potential now; frictDissip, impactDissip and baseWork since dem.engines() made the engines; compliant joints: also elastPotential
     now and dampDissip so far, and all of them 0 before the first step. The sum of all others less baseWork is
-    constant, but for RockingJointEngine.madeEnergy and the errors of steps, and for what has no column: the work of other engines' forces, a change of
+    constant, but for madeEnergy less lostEnergy of the engine, and for what has no column: the work of other engines' forces, a change of
     gravity or of velocities by a script, an erased block."""
     e = _joint_engine()
     keys = ("kinetic", "potential", "elastPotential", "frictDissip", "dampDissip", "impactDissip", "baseWork")

@@ -30,7 +30,7 @@ struct PressedBlocks {
 	void look()
 	{
 		const Box cube {Vector3::Constant(0.5)};
-		REQUIRE(collide(cube, lower.pose, cube, upper.pose, 0, contact.patch.feature, patch));
+		REQUIRE(collide(cube, lower.pose, cube, upper.pose, 1e-3, contact.patch.feature, patch));
 		renewPatch(contact, patch);
 	}
 	void move(const Vector3& step, double dt = 1e-3)
@@ -121,4 +121,46 @@ TEST_CASE("The shear of a joint that turns with its blocks turns with it, at its
 		body->pose = {turn * body->pose.position, turn * body->pose.orientation};
 	blocks.look();
 	CHECK((blocks.contact.points[2].shear - turn * before).norm() < 1e-12 * before.norm()); // round-off
+}
+
+TEST_CASE("What springs take beyond what they store, where points land within a step, is no damping")
+{
+	for (double damping : {0., 0.5}) {
+		JointLaw damped = law;
+		damped.dampingRatio = damping;
+		PressedBlocks blocks(0, -1e-6, damped);
+		const double way = 3e-6, depth = 2e-6, k = law.normalStiffness, dt = 1e-3;
+		blocks.move({0, 0, -way}, dt);
+		const double c = 2 * damping * std::sqrt(k * blocks.upper.mass); // area 1 m^2, on a base
+		INFO("damping ratio " << damping);
+		// Leapfrog: the mean of the forces at the ends of the step, the first of them 0, on the way.
+		CHECK(blocks.contact.energy.elastic == Approx(0.5 * k * depth * depth).epsilon(1e-9));
+		CHECK(blocks.contact.energy.taken == Approx(0.5 * k * depth * way).epsilon(1e-9));
+		CHECK(blocks.contact.energy.damping == Approx(0.5 * c * way / dt * way).epsilon(1e-9).margin(1e-15));
+		// And as it parts: what the spring has stored comes back, and more.
+		blocks.move({0, 0, way}, dt);
+		const double last = std::max(0., k * depth - c * -way / dt); // the force at the start of this step
+		CHECK(blocks.contact.energy.elastic == 0);
+		CHECK(blocks.contact.energy.taken + blocks.contact.energy.damping == Approx(-0.5 * last * way).epsilon(1e-9));
+		CHECK(blocks.contact.energy.damping >= 0);
+	}
+}
+
+TEST_CASE("Slip and dashpots only dissipate, in joints that move to and fro")
+{
+	JointLaw damped = law;
+	damped.dampingRatio = 0.5;
+	PressedBlocks blocks(0.3, 1e-6, damped);
+	blocks.move(Vector3::Zero());
+	double elastic = blocks.contact.energy.elastic, unexplained = 0, dissipated = 0;
+	for (int k = 0; k < 400; ++k) { // steps of a small part of the cycles: the points stay loaded, and slip
+		blocks.move({2e-8 * std::cos(0.02 * k), 1e-8 * std::sin(0.03 * k), 4e-9 * std::cos(0.05 * k)});
+		const JointEnergy& energy = blocks.contact.energy;
+		CHECK(energy.friction >= 0);
+		dissipated += energy.friction + energy.damping;
+		unexplained += std::abs(energy.elastic - elastic - energy.taken);
+		elastic = energy.elastic;
+	}
+	CHECK(dissipated > 0);
+	CHECK(unexplained < 1e-6 * dissipated); // no point meets or parts
 }

@@ -1,0 +1,12 @@
+#pragma once
+// Energy that the steps of a run make or lose and nothing accounts for. Gains and losses are summed apart: a run that gives in one step and
+// takes in another is wrong in both.
+#include "tolerances.hpp"
+
+namespace masonry {
+
+// What either sum may come to, J. `turnedOver`: the largest kinetic and elastic energy so far and all that has been dissipated; `lift`:
+// what lifts all blocks by their size.
+inline double mostUnexplained(double turnedOver, double lift) { return tolerance::madeShare * turnedOver + tolerance::madeLift * lift; }
+
+} // namespace masonry
