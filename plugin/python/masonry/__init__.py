@@ -6,12 +6,16 @@ restitutions and motion parameters may be NumPy arrays that broadcast against ea
 Signs: an angle is positive when the block is tilted towards +x; a base acceleration towards +x tips it towards -x.
 """
 
-from . import closed_form
-from .artificial import artificial_record
-from .block import RockingBlock
-from .history import History, simulate
-from .motions import HalfSine, PulseTrain, Record, Rectangular, Sine
-from .overturning import overturning_amplitude
+from . import _fit
+
+_fit.require_python()  # before the compiled modules, which need that Python's libraries
+
+from . import closed_form  # noqa: E402
+from .artificial import artificial_record  # noqa: E402
+from .block import RockingBlock  # noqa: E402
+from .history import History, simulate  # noqa: E402
+from .motions import HalfSine, PulseTrain, Record, Rectangular, Sine  # noqa: E402
+from .overturning import overturning_amplitude  # noqa: E402
 
 __all__ = ["HalfSine", "History", "PulseTrain", "Record", "Rectangular", "RockingBlock", "Sine", "artificial_record",
            "closed_form", "overturning_amplitude", "simulate"]

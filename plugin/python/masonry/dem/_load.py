@@ -3,7 +3,9 @@
 import difflib
 import importlib
 
-_HOW = "run the script with `yade -n -x script.py` (Debian 12: `apt install yade`)"
+from masonry import _fit
+
+_HOW = "run the script with `yade -n -x script.py` (`apt install yade`)"
 
 
 def _import_yade():
@@ -21,9 +23,23 @@ def _no_such_attribute(cls, name):
     return AttributeError(f"{cls.__name__} has no attribute {name!r}: {hint}")
 
 
+def _assign(assign, thing, name, value):
+    """Sets the attribute. A value of the wrong type is refused by the attribute's name, and one that the object refuses does not stay."""
+    old = getattr(thing, name, None)
+    if type(old).__module__.endswith("minieigenHP"):
+        old = type(old)(old)  # it was part of the object
+    try:
+        assign(thing, name, value)
+    except TypeError:
+        raise TypeError(f"{type(thing).__name__}.{name} = {value!r} is not allowed: the attribute is a {type(old).__name__}") from None
+    except ValueError:
+        assign(thing, name, old)
+        raise
+
+
 def _guard_attributes(cls):
     """A misspelled attribute of an object of the class is an error with the names that are near, in the constructor and where it is set: a
-    Boost.Python class would take it as a new one."""
+    Boost.Python class would take it as a new one. A wrong value is an error that names the attribute."""
     make, assign = cls.__init__, cls.__setattr__
 
     def __init__(self, *arguments, **attributes):
@@ -34,11 +50,17 @@ def _guard_attributes(cls):
                 if not hasattr(cls, name):
                     raise _no_such_attribute(cls, name) from None
             raise
+        except TypeError:
+            blank = cls.__new__(cls)
+            make(blank)
+            for name, value in attributes.items():
+                _assign(assign, blank, name, value)
+            raise
 
     def __setattr__(self, name, value):
         if type(self) is cls and not hasattr(cls, name):  # classes that a script derives may have their own
             raise _no_such_attribute(cls, name)
-        assign(self, name, value)
+        _assign(assign, self, name, value)
 
     cls.__init__, cls.__setattr__ = __init__, __setattr__
 
@@ -47,11 +69,12 @@ def load_classes():
     """Registers the plugin's classes (again: harmless) and returns them by name.
 
     Raises ImportError outside YADE or when the plugin is not built, RuntimeError when this YADE is not the one that
-    the plugin was built for.
+    the plugin was built for; YADE is then as it was.
     """
     yade = _import_yade()
     try:
         # Only now: opened before yade, the libraries of YADE lack symbols that yade itself brings in.
+        _fit.require_yade()
         plugin = importlib.import_module("masonry._yade")
     except ImportError as error:
         raise ImportError(
