@@ -117,20 +117,6 @@ void archiveObject(Archive& archive, Class& object)
 		object.abiPostLoad();
 }
 
-/// Boost's error about a value of the wrong type says neither whose value it is nor which: the Python error at hand then does.
-inline void nameAttribute(const string& className, const string& name, const python::object& value)
-{
-	PyObject *type, *error, *trace;
-	PyErr_Fetch(&type, &error, &trace);
-	const python::str text {error ? python::object(python::handle<>(python::borrowed(error))) : python::object()};
-	if (!text.startswith("No registered converter"))
-		return PyErr_Restore(type, error, trace);
-	PyErr_Format(type, "%s.%s = %R is not allowed: %S", className.c_str(), name.c_str(), value.ptr(), text.ptr());
-	Py_XDECREF(type);
-	Py_XDECREF(error);
-	Py_XDECREF(trace);
-}
-
 /// Attributes of this class alone; false if the name is not one of them.
 template <class Class>
 bool setAttribute(Class& object, const string& name, const python::object& value)
@@ -172,19 +158,13 @@ template <class S, int O>
 struct IsEigen<Eigen::Quaternion<S, O>> : std::true_type {
 };
 
-/// Assigns, then lets the object judge the value: when it throws, the old value is back.
+/// Assigns, then lets the object judge the value.
 template <class Class, class T>
 python::object checkedSetter(T Class::*member)
 {
 	auto set = [member](Class& object, const T& value) {
-		T old = object.*member;
 		object.*member = value;
-		try {
-			object.callPostLoad();
-		} catch (...) {
-			object.*member = old;
-			throw;
-		}
+		object.callPostLoad();
 	};
 	return python::make_function(set, python::default_call_policies(), boost::mpl::vector<void, Class&, const T&>());
 }

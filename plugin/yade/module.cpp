@@ -4,25 +4,7 @@
 #include <string>
 #include <vector>
 
-#ifdef MASONRY_YADE_TREE
-#include <core/Omega.hpp>
-#else
-#include <guard.hpp>
 #include <registry.hpp>
-#endif
-
-#ifdef MASONRY_YADE_TREE
-namespace {
-void enterClasses(yade::Omega&, const std::vector<std::string>&);
-
-// The function is private in YADE's header, meant for its own start-up; an explicit instantiation may name it.
-template <void (yade::Omega::*function)(const std::vector<std::string>&)>
-struct Reach {
-	friend void enterClasses(yade::Omega& omega, const std::vector<std::string>& names) { (omega.*function)(names); }
-};
-template struct Reach<&yade::Omega::buildDynlibDatabase>;
-} // namespace
-#endif
 
 namespace {
 
@@ -59,25 +41,13 @@ private:
 	}
 };
 
-/// Makes the plugin's classes known to the running YADE, once; returns their names. Raises RuntimeError, and leaves
-/// YADE as it was, when the plugin does not fit.
+/// Makes the plugin's classes known to the running YADE, once; returns their names. The guard has found before that they fit.
 py::list setup()
 {
 	AnyNumber<int, PyNumber_Index>::accept("Integral");
 	AnyNumber<double, PyNumber_Float>::accept("Real");
-#ifdef MASONRY_YADE_TREE
-	// YADE's own macros have entered the classes in its factory; they are the source files of this folder.
-	static const std::vector<std::string> names = {MASONRY_YADE_CLASSES};
-	static bool done = false;
-	if (!done)
-		enterClasses(yade::Omega::instance(), names);
-	done = true;
-#else
-	yade::abi::requireBuild(yade::abi::declaredBuild());
-	const std::vector<std::string> names = yade::abi::registerClasses();
-#endif
 	py::list all;
-	for (const std::string& name : names)
+	for (const std::string& name : yade::abi::registerClasses())
 		all.append(name);
 	return all;
 }

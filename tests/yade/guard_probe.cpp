@@ -1,34 +1,27 @@
-// The guard with an expectation that Python can alter: a list of (kind, name, value) laid over the shipped one.
+// The guard with sizes that Python can alter: a list of (class, bytes) laid over those that are compiled in. Built twice: as the plugin is,
+// and with a wrong definition, which shifts State.
 #include <boost/python.hpp>
 
 #include <guard.hpp>
 
 namespace {
 
-template <class Pairs, class Value>
-void alter(Pairs& pairs, const std::string& name, const Value& value)
-{
-	for (auto& pair : pairs)
-		if (pair.first == name)
-			pair.second = value;
-}
-
 void require(boost::python::list changes)
 {
-	yade::abi::Build build = yade::abi::declaredBuild();
+	yade::guard::Sizes sizes = yade::guard::compiledSizes();
 	for (long i = 0; i < boost::python::len(changes); i++) {
-		const std::string kind = boost::python::extract<std::string>(changes[i][0]);
-		const std::string name = boost::python::extract<std::string>(changes[i][1]);
-		if (kind == "version")
-			build.version = name;
-		if (kind == "build id")
-			alter(build.buildIds, name, boost::python::extract<std::string>(changes[i][2])());
-		if (kind == "size")
-			alter(build.sizes, name, boost::python::extract<size_t>(changes[i][2])());
+		const std::string name = boost::python::extract<std::string>(changes[i][0]);
+		for (auto& size : sizes)
+			if (size.first == name)
+				size.second = boost::python::extract<size_t>(changes[i][1]);
 	}
-	yade::abi::requireBuild(build);
+	yade::guard::requireFit(sizes);
 }
 
 } // namespace
 
-BOOST_PYTHON_MODULE(guard_probe) { boost::python::def("require", require); }
+BOOST_PYTHON_MODULE(GUARD_PROBE)
+{
+	boost::python::def("require", require, (boost::python::arg("changes") = boost::python::list()));
+	boost::python::def("build_id", yade::guard::loadedBuildId);
+}

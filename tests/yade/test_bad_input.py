@@ -168,6 +168,7 @@ for make, name in ((dem.BlockMat, "density"), (dem.BlockMat, "restitution"), (de
                    (dem.PulseTrainEngine, "direction"), (dem.RecordMotionEngine, "samples"), (dem.MoreauJeanIntegrator, "tolerance")):
     for bad in ("1e-3", None) if name != "restitution" else ("1e-3",):
         refuses(lambda: make(**{name: bad}), f"{make.__name__}.{name} = {bad!r}: must be", kind=TypeError)
+        refuses(lambda: setattr(make(), name, bad), f"{make.__name__}.{name} = {bad!r}: must be", kind=TypeError)
 material = dem.BlockMat(restitution=None)
 assert math.isnan(material.restitution)
 material.restitution = 0.5

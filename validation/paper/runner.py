@@ -48,7 +48,7 @@ def run(cases, store, fresh):
         return runs
     yade = shutil.which("yade")
     if yade is None:
-        sys.exit("validation/paper needs YADE 2023.02a: install it with `apt install yade`.")
+        sys.exit("validation/paper needs YADE: install it with `apt install yade`.")
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(HERE), os.environ.get("PYTHONPATH", "")])}
     lock, failures = threading.Lock(), []
 

@@ -35,6 +35,9 @@ class State : public Serializable, public Indexable {
 	unsigned blockedDOFs;
 	bool isDamped;
 	Real densityScaling;
+#ifdef YADE_DEFORM // Debian's YADE is without
+	Real dR;
+#endif
 };
 
 } // namespace yade

@@ -7,17 +7,22 @@ Signs: an angle is positive when the block is tilted towards +x; a base accelera
 """
 
 try:
+    from . import _fit
+
+    _fit.require_python()  # before the compiled modules, which need that Python's libraries
     from . import _core as _core
 except ImportError as _error:
+    if _error.name is None:  # the sentence of require_python
+        raise
     raise ImportError("masonry needs its compiled module masonry/_core.so: build it with `cmake --preset release && cmake --build build`, put build/python "
-                      f"on PYTHONPATH, and use /usr/bin/python3. ({_error})") from None
+                      f"on PYTHONPATH, and use the system's Python. ({_error})") from None
 
-from . import closed_form
-from .artificial import artificial_record
-from .block import RockingBlock
-from .history import History, simulate
-from .motions import HalfSine, PulseTrain, Record, Rectangular, Sine
-from .overturning import overturning_amplitude
+from . import closed_form  # noqa: E402
+from .artificial import artificial_record  # noqa: E402
+from .block import RockingBlock  # noqa: E402
+from .history import History, simulate  # noqa: E402
+from .motions import HalfSine, PulseTrain, Record, Rectangular, Sine  # noqa: E402
+from .overturning import overturning_amplitude  # noqa: E402
 
 __all__ = ["HalfSine", "History", "PulseTrain", "Record", "Rectangular", "RockingBlock", "Sine", "artificial_record",
            "closed_form", "overturning_amplitude", "simulate"]

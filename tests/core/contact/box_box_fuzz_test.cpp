@@ -1,7 +1,7 @@
 // Random boxes judged by the hull of their Minkowski difference and by invariants that any patch must fulfil.
 #include "contact/box_box.hpp"
 #include "oracle/minkowski.hpp"
-#include <catch2/catch.hpp>
+#include <catch.hpp>
 #include <functional>
 #include <random>
 

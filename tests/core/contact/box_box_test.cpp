@@ -1,6 +1,6 @@
 // Patches known beforehand, and the hard cases: faces that coincide, head joints, rocking.
 #include "contact/box_box.hpp"
-#include <catch2/catch.hpp>
+#include <catch.hpp>
 #include <random>
 #include <set>
 

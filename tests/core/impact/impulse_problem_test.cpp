@@ -1,6 +1,6 @@
 // Random problems of several bodies, judged by the laws themselves and, without friction, by a second method.
 #include "impact/impulse_problem.hpp"
-#include <catch2/catch.hpp>
+#include <catch.hpp>
 #include <cmath>
 #include <random>
 

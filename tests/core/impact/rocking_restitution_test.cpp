@@ -1,6 +1,6 @@
 // The restitution law on one block that stands on a fixed base, against the closed forms of its plane motion.
 #include "impact/rocking_restitution.hpp"
-#include <catch2/catch.hpp>
+#include <catch.hpp>
 #include <cmath>
 
 using namespace masonry;

@@ -2,7 +2,7 @@
 // conservation laws.
 #include "impact/rocking_restitution.hpp"
 #include <array>
-#include <catch2/catch.hpp>
+#include <catch.hpp>
 #include <cmath>
 #include <cstdlib>
 #include <new>

@@ -4,7 +4,7 @@
 #include "impact/rocking_restitution.hpp"
 #include <algorithm>
 #include <array>
-#include <catch2/catch.hpp>
+#include <catch.hpp>
 #include <cmath>
 #include <random>
 

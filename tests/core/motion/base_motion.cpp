@@ -1,13 +1,12 @@
 #include "motion/base_motion.hpp"
 #include <boost/math/constants/constants.hpp>
 #include <boost/math/quadrature/gauss_kronrod.hpp>
-#include <catch2/catch.hpp>
+#include <catch.hpp>
 #include <cmath>
 #include <limits>
 
 using namespace masonry;
 using boost::math::double_constants::pi;
-using Catch::Contains;
 
 namespace {
 std::vector<double> kinks(const BaseMotion& motion)
@@ -113,12 +112,12 @@ TEST_CASE("first time above a level")
 TEST_CASE("bad motions are refused by name")
 {
 	const double nan = std::numeric_limits<double>::quiet_NaN();
-	REQUIRE_THROWS_WITH(motion::pulseTrain(1, {0, 1, 1}), Contains("times[2] = 1") && Contains("increasing"));
-	REQUIRE_THROWS_WITH(motion::pulseTrain(1, {-0.1}), Contains("times[0] = -0.1"));
-	REQUIRE_THROWS_WITH(motion::pulseTrain(1, {0, 0.1}, false, PulseShape::HalfSine, 0.2), Contains("times[1]"));
-	REQUIRE_THROWS_WITH(motion::rectangular(1, 0), Contains("duration = 0"));
-	REQUIRE_THROWS_WITH(motion::sine(nan, 1), Contains("amplitude = nan"));
-	REQUIRE_THROWS_WITH(motion::record(0.01, {1}), Contains("1 samples"));
-	REQUIRE_THROWS_WITH(motion::record(0.01, {1, nan, 2}), Contains("acceleration[1]"));
-	REQUIRE_THROWS_WITH(motion::record(-1, {1, 2}), Contains("dt = -1"));
+	REQUIRE_THROWS_WITH(motion::pulseTrain(1, {0, 1, 1}), containsText("times[2] = 1") && containsText("increasing"));
+	REQUIRE_THROWS_WITH(motion::pulseTrain(1, {-0.1}), containsText("times[0] = -0.1"));
+	REQUIRE_THROWS_WITH(motion::pulseTrain(1, {0, 0.1}, false, PulseShape::HalfSine, 0.2), containsText("times[1]"));
+	REQUIRE_THROWS_WITH(motion::rectangular(1, 0), containsText("duration = 0"));
+	REQUIRE_THROWS_WITH(motion::sine(nan, 1), containsText("amplitude = nan"));
+	REQUIRE_THROWS_WITH(motion::record(0.01, {1}), containsText("1 samples"));
+	REQUIRE_THROWS_WITH(motion::record(0.01, {1, nan, 2}), containsText("acceleration[1]"));
+	REQUIRE_THROWS_WITH(motion::record(-1, {1, 2}), containsText("dt = -1"));
 }

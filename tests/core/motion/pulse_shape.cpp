@@ -1,6 +1,6 @@
 #include "motion/pulse_shape.hpp"
 #include <boost/math/quadrature/gauss_kronrod.hpp>
-#include <catch2/catch.hpp>
+#include <catch.hpp>
 
 using namespace masonry;
 

@@ -1,11 +1,10 @@
 #include "rocking/closed_form.hpp"
 #include "rocking/history.hpp"
-#include <catch2/catch.hpp>
+#include <catch.hpp>
 #include <cmath>
 #include <limits>
 
 using namespace masonry;
-using Catch::Contains;
 
 // The closed forms of the paper as printed there: s_i = [2 - (1+C) C^(i-1)]/(1-C) and Eq. 8.
 TEST_CASE("the sequence agrees with the paper's sums")
@@ -117,9 +116,9 @@ TEST_CASE("real gravity tends to the closed form as the impulse tends to zero")
 TEST_CASE("bad input of the closed form is refused by name")
 {
 	const RockingBlock block(0.3, 1.5);
-	REQUIRE_THROWS_WITH(closed_form::singlePulse(block, 0), Contains("impulse = 0"));
-	REQUIRE_THROWS_WITH(closed_form::stabilised(block, 0.1, -0.1), Contains("restitution = -0.1") && Contains("[0, 1]"));
-	REQUIRE_THROWS_WITH(closed_form::pulseSequence(block, 0.1, 0.5, 0), Contains("n = 0"));
-	REQUIRE_THROWS_WITH(closed_form::timeToStabilise(block, 0.1, 0.5, 1), Contains("tolerance = 1"));
-	REQUIRE_THROWS_WITH(closed_form::stabilised(block, std::numeric_limits<double>::quiet_NaN(), 0.5), Contains("impulse"));
+	REQUIRE_THROWS_WITH(closed_form::singlePulse(block, 0), containsText("impulse = 0"));
+	REQUIRE_THROWS_WITH(closed_form::stabilised(block, 0.1, -0.1), containsText("restitution = -0.1") && containsText("[0, 1]"));
+	REQUIRE_THROWS_WITH(closed_form::pulseSequence(block, 0.1, 0.5, 0), containsText("n = 0"));
+	REQUIRE_THROWS_WITH(closed_form::timeToStabilise(block, 0.1, 0.5, 1), containsText("tolerance = 1"));
+	REQUIRE_THROWS_WITH(closed_form::stabilised(block, std::numeric_limits<double>::quiet_NaN(), 0.5), containsText("impulse"));
 }

@@ -2,7 +2,7 @@
 #include "oracle/forced_rocking.hpp"
 #include "rocking/history.hpp"
 #include <boost/math/constants/constants.hpp>
-#include <catch2/catch.hpp>
+#include <catch.hpp>
 #include <cmath>
 
 using namespace masonry;

@@ -1,7 +1,7 @@
 #include "oracle/free_rocking.hpp"
 #include "rocking/history.hpp"
 #include "tolerances.hpp"
-#include <catch2/catch.hpp>
+#include <catch.hpp>
 #include <cmath>
 
 using namespace masonry;
@@ -188,8 +188,8 @@ TEST_CASE("bad options are refused by name")
 {
 	const RockingBlock block(0.3, 1.5);
 	const double nan = std::numeric_limits<double>::quiet_NaN();
-	REQUIRE_THROWS_WITH(simulate(block, BaseMotion(), released(0.1, 1.01, Restoring::Exact, 5)), Catch::Contains("restitution = 1.01"));
-	REQUIRE_THROWS_WITH(simulate(block, BaseMotion(), released(nan, 1, Restoring::Exact, 5)), Catch::Contains("initial_angle"));
-	REQUIRE_THROWS_WITH(simulate(block, BaseMotion(), released(0.1, 1, Restoring::Exact, 0)), Catch::Contains("half_cycles = 0"));
-	REQUIRE_THROWS_WITH(simulate(block, ResonantTrain {0.1}, HistoryOptions()), Catch::Contains("never ends"));
+	REQUIRE_THROWS_WITH(simulate(block, BaseMotion(), released(0.1, 1.01, Restoring::Exact, 5)), containsText("restitution = 1.01"));
+	REQUIRE_THROWS_WITH(simulate(block, BaseMotion(), released(nan, 1, Restoring::Exact, 5)), containsText("initial_angle"));
+	REQUIRE_THROWS_WITH(simulate(block, BaseMotion(), released(0.1, 1, Restoring::Exact, 0)), containsText("half_cycles = 0"));
+	REQUIRE_THROWS_WITH(simulate(block, ResonantTrain {0.1}, HistoryOptions()), containsText("never ends"));
 }

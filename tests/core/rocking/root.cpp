@@ -1,5 +1,5 @@
 #include "rocking/root.hpp"
-#include <catch2/catch.hpp>
+#include <catch.hpp>
 #include <cmath>
 #include <limits>
 

@@ -23,13 +23,8 @@ public:
 	string Class::getClassName() const { return AbiTraits::name(); }                                                                       \
 	void Class::pySetAttr(const string& name, const ::boost::python::object& value)                                                        \
 	{                                                                                                                                      \
-		try {                                                                                                                              \
-			if (!abi::setAttribute(*this, name, value))                                                                                    \
-				AbiTraits::BaseClass::pySetAttr(name, value);                                                                              \
-		} catch (const ::boost::python::error_already_set&) {                                                                              \
-			abi::nameAttribute(getClassName(), name, value);                                                                               \
-			throw;                                                                                                                         \
-		}                                                                                                                                  \
+		if (!abi::setAttribute(*this, name, value))                                                                                        \
+			AbiTraits::BaseClass::pySetAttr(name, value);                                                                                  \
 	}                                                                                                                                      \
 	::boost::python::dict Class::pyDict() const                                                                                            \
 	{                                                                                                                                      \

@@ -37,7 +37,7 @@ def main():
     sys.argv = sys.argv[1:]
     yade = shutil.which("yade")
     if yade is None:
-        sys.exit("yade-masonry needs YADE 2023.02a: install it with `apt install yade`.")
+        sys.exit("yade-masonry needs YADE: install it with `apt install yade`.")
     sys.path[0] = yade.rpartition("/")[0]  # as when yade is started; this file's folder would shadow modules
     sys.meta_path.insert(0, _AfterYade())
     # YADE binds labels of engines as __builtins__.label: in the main module of an interpreter that is the module.

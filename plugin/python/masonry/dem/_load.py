@@ -6,7 +6,9 @@ import math
 
 from masonry._given import shown
 
-_HOW = "run the script with `yade -n -x script.py` (Debian 12: `apt install yade`)"
+from masonry import _fit
+
+_HOW = "run the script with `yade -n -x script.py` (`apt install yade`)"
 
 
 def _import_yade():
@@ -24,9 +26,8 @@ def _no_such_attribute(cls, name):
     return AttributeError(f"{cls.__name__} has no attribute {name!r}: {hint}")
 
 
-def _wrong_kind(thing, name, value):
-    """The error of an attribute that was given a value of another kind than it has."""
-    known = getattr(thing, name, None)
+def _wrong_kind(thing, name, known, value):
+    """The error of an attribute that was given a value of another kind than the known one."""
     if isinstance(known, bool):
         kind = "True or False"
     elif isinstance(known, (int, float)):
@@ -42,17 +43,31 @@ def _wrong_kind(thing, name, value):
     return TypeError(f"{type(thing).__name__}.{name} = {shown(value)}: must be {kind}")
 
 
+def _assign(assign, thing, name, value):
+    """Sets the attribute. A value of the wrong type is refused by the attribute's name, and one that the object refuses does not stay."""
+    old = getattr(thing, name, None)
+    if name == "restitution" and value is None:
+        value = math.nan
+    if type(old).__module__.endswith("minieigenHP"):
+        old = type(old)(old)  # it was part of the object
+    try:
+        assign(thing, name, value)
+    except TypeError:
+        raise _wrong_kind(thing, name, old, value) from None
+    except ValueError:
+        assign(thing, name, old)
+        raise
+
+
 def _guard_attributes(cls):
     """A misspelled attribute of an object of the class is an error with the names that are near, in the constructor and where it is set: a
     Boost.Python class would take it as a new one. A value of another kind is an error that names the attribute and its kind. The restitution
     None is NaN, the natural one, as in the theory."""
     make, assign = cls.__init__, cls.__setattr__
 
-    def taken(name, value):
-        return math.nan if name == "restitution" and value is None else value
-
     def __init__(self, *arguments, **attributes):
-        attributes = {name: taken(name, value) for name, value in attributes.items()}
+        if attributes.get("restitution", 0) is None:
+            attributes["restitution"] = math.nan
         try:
             make(self, *arguments, **attributes)
         except AttributeError:
@@ -61,18 +76,16 @@ def _guard_attributes(cls):
                     raise _no_such_attribute(cls, name) from None
             raise
         except TypeError:
-            plain = cls()
+            blank = cls.__new__(cls)
+            make(blank)
             for name, value in attributes.items():
-                setattr(plain, name, value)
+                _assign(assign, blank, name, value)
             raise
 
     def __setattr__(self, name, value):
         if type(self) is cls and not hasattr(cls, name):  # classes that a script derives may have their own
             raise _no_such_attribute(cls, name)
-        try:
-            assign(self, name, taken(name, value))
-        except TypeError:
-            raise _wrong_kind(self, name, value) from None
+        _assign(assign, self, name, value)
 
     cls.__init__, cls.__setattr__ = __init__, __setattr__
 
@@ -81,11 +94,12 @@ def load_classes():
     """Registers the plugin's classes (again: harmless) and returns them by name.
 
     Raises ImportError outside YADE or when the plugin is not built, RuntimeError when this YADE is not the one that
-    the plugin was built for.
+    the plugin was built for; YADE is then as it was.
     """
     yade = _import_yade()
     try:
         # Only now: opened before yade, the libraries of YADE lack symbols that yade itself brings in.
+        _fit.require_yade()
         plugin = importlib.import_module("masonry._yade")
     except ImportError as error:
         raise ImportError(

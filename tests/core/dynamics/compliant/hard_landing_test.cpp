@@ -1,7 +1,7 @@
 // Blocks that drop nearly flat: the edge that lands first is deep in its support when the other one takes over.
 #include "leapfrog_rig.hpp"
 #include <algorithm>
-#include <catch2/catch.hpp>
+#include <catch.hpp>
 #include <cmath>
 
 using namespace masonry;

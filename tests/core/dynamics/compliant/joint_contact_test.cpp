@@ -2,7 +2,7 @@
 #include "contact/box_box.hpp"
 #include "dynamics/compliant/joint_contact.hpp"
 #include "impact/impulse_problem.hpp"
-#include <catch2/catch.hpp>
+#include <catch.hpp>
 #include <cmath>
 
 using namespace masonry;

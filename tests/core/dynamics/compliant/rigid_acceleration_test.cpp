@@ -1,6 +1,6 @@
 // Accelerations of rigid bodies.
 #include "dynamics/compliant/rigid_acceleration.hpp"
-#include <catch2/catch.hpp>
+#include <catch.hpp>
 
 using namespace masonry;
 

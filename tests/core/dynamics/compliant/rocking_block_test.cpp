@@ -1,7 +1,7 @@
 // Blocks on compliant joints, stepped as YADE steps them, against the rigid block's closed forms.
 #include "leapfrog_rig.hpp"
 #include <boost/math/quadrature/tanh_sinh.hpp>
-#include <catch2/catch.hpp>
+#include <catch.hpp>
 #include <cmath>
 
 using namespace masonry;

@@ -2,7 +2,7 @@
 #include "dynamics/rigid/sparse_impulses.hpp"
 #include "leapfrog_rig.hpp"
 #include "tolerances.hpp"
-#include <catch2/catch.hpp>
+#include <catch.hpp>
 #include <cmath>
 
 using namespace masonry;

@@ -4,7 +4,7 @@
 #include "dynamics/rigid/sparse_impulses.hpp"
 #include "space_rig.hpp"
 #include <atomic>
-#include <catch2/catch.hpp>
+#include <catch.hpp>
 #include <cstdlib>
 #include <new>
 #include <random>

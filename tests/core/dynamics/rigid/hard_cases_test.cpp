@@ -1,6 +1,6 @@
 // Hard cases in the plane: symmetry, scale, coincidences, several joints, free flight, repeated runs.
 #include "core/dynamics/rigid/rigid_rig.hpp"
-#include <catch2/catch.hpp>
+#include <catch.hpp>
 
 using namespace rig;
 

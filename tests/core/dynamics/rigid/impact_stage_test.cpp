@@ -1,7 +1,7 @@
 // What an impact does with the energy of the blocks.
 #include "dynamics/rigid/impact_stage.hpp"
 #include "rigid_rig.hpp"
-#include <catch2/catch.hpp>
+#include <catch.hpp>
 
 using namespace rig;
 

@@ -1,7 +1,7 @@
 // Structures apart from each other: each moves as if it were alone.
 #include "dynamics/rigid/islands.hpp"
 #include "rigid_rig.hpp"
-#include <catch2/catch.hpp>
+#include <catch.hpp>
 
 using namespace rig;
 

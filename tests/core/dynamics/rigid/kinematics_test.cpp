@@ -1,6 +1,6 @@
 // The plane and space agree on what both know.
 #include "dynamics/rigid/kinematics.hpp"
-#include <catch2/catch.hpp>
+#include <catch.hpp>
 
 using namespace masonry::rigid;
 

@@ -3,7 +3,7 @@
 #include "dynamics/rigid/rigid_step.hpp"
 #include "oracle/minkowski.hpp"
 #include <algorithm>
-#include <catch2/catch.hpp>
+#include <catch.hpp>
 #include <cstdlib>
 #include <random>
 

@@ -1,6 +1,6 @@
 // The list of near pairs against a search through all pairs.
 #include "dynamics/rigid/neighbours.hpp"
-#include <catch2/catch.hpp>
+#include <catch.hpp>
 #include <random>
 #include <set>
 

@@ -1,6 +1,6 @@
 // Contact points of two rectangles: features, gaps, and that round-off chooses neither.
 #include "dynamics/rigid/kinematics.hpp"
-#include <catch2/catch.hpp>
+#include <catch.hpp>
 #include <limits>
 #include <random>
 #include <vector>

@@ -2,7 +2,7 @@
 #include "core/dynamics/rigid/rigid_rig.hpp"
 #include "oracle/artificial_record.hpp"
 #include "oracle/free_rocking.hpp"
-#include <catch2/catch.hpp>
+#include <catch.hpp>
 #include <utility>
 
 using namespace rig;

@@ -1,7 +1,7 @@
 // One block that rocks freely, against the exact solution of the rocking equation.
 #include "core/dynamics/rigid/rigid_rig.hpp"
 #include "oracle/free_rocking.hpp"
-#include <catch2/catch.hpp>
+#include <catch.hpp>
 
 using namespace rig;
 

@@ -1,6 +1,6 @@
 // Sliding: stops and reversals found inside the step, against closed forms; friction that a rocking impact asks for.
 #include "core/dynamics/rigid/rigid_rig.hpp"
-#include <catch2/catch.hpp>
+#include <catch.hpp>
 
 using namespace rig;
 

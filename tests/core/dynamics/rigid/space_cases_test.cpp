@@ -1,6 +1,6 @@
 // Hard cases in space: perfect cubes and square bases, corner on corner, base pulses at an angle to the faces.
 #include "core/dynamics/rigid/space_rig.hpp"
-#include <catch2/catch.hpp>
+#include <catch.hpp>
 
 using namespace rig;
 

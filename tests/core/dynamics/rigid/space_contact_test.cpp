@@ -2,7 +2,7 @@
 #include "contact/box_box.hpp"
 #include "dynamics/rigid/kinematics.hpp"
 #include <algorithm>
-#include <catch2/catch.hpp>
+#include <catch.hpp>
 #include <random>
 #include <vector>
 

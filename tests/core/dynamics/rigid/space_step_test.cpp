@@ -1,6 +1,6 @@
 // The step in space: against the plane, against a Runge-Kutta solution, against itself turned, mirrored and scaled, and under energy.
 #include "core/dynamics/rigid/space_rig.hpp"
-#include <catch2/catch.hpp>
+#include <catch.hpp>
 #include <random>
 
 using namespace rig;

@@ -1,6 +1,6 @@
 // Stacks: rest, mass ratios, a base pulse under both impact laws, thresholds of uplift and sliding.
 #include "core/dynamics/rigid/rigid_rig.hpp"
-#include <catch2/catch.hpp>
+#include <catch.hpp>
 #include <tuple>
 
 using namespace rig;

@@ -2,7 +2,7 @@
 #include "dynamics/rigid/rigid_step.hpp"
 #include "tolerances.hpp"
 #include "wall_rig.hpp"
-#include <catch2/catch.hpp>
+#include <catch.hpp>
 #include <cstring>
 
 using namespace rig;

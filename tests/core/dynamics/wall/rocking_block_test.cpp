@@ -1,7 +1,7 @@
 // Blocks and columns that land, rock and are set off by their base: against the localised step of few blocks, closed forms and the law.
 #include "dynamics/rigid/rigid_step.hpp"
 #include "wall_rig.hpp"
-#include <catch2/catch.hpp>
+#include <catch.hpp>
 
 using namespace rig;
 

@@ -1,6 +1,6 @@
 // Walls in space: against the planar step, statics, free flight and invariants.
 #include "wall_rig.hpp"
-#include <catch2/catch.hpp>
+#include <catch.hpp>
 #include <cstring>
 
 using namespace rig;

@@ -1,7 +1,7 @@
 // Walls beside structures of few blocks: each moves as by its own method alone.
 #include "dynamics/wall/step_by_size.hpp"
 #include "wall_rig.hpp"
-#include <catch2/catch.hpp>
+#include <catch.hpp>
 
 using namespace rig;
 

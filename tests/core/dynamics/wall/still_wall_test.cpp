@@ -1,6 +1,6 @@
 // A wall that stands: it neither drifts nor sinks, and its forces are those of statics.
 #include "wall_rig.hpp"
-#include <catch2/catch.hpp>
+#include <catch.hpp>
 
 using namespace rig;
 

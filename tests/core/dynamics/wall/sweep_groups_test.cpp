@@ -1,6 +1,6 @@
 // Sweeps with the widest vectors of this processor against those with narrow ones.
 #include "dynamics/wall/sweep_groups.hpp"
-#include <catch2/catch.hpp>
+#include <catch.hpp>
 #include <random>
 
 using namespace masonry::rigid;

@@ -1,6 +1,6 @@
 #include "dynamics/wall/symmetric_factor.hpp"
 #include <Eigen/Dense>
-#include <catch2/catch.hpp>
+#include <catch.hpp>
 #include <random>
 
 using namespace masonry::rigid;

@@ -1,7 +1,7 @@
 // Parts of a call: each is done once and before the call returns, whoever does it and however often helpers are interrupted.
 #include "dynamics/wall/team.hpp"
 #include <array>
-#include <catch2/catch.hpp>
+#include <catch.hpp>
 #include <chrono>
 #include <thread>
 

@@ -18,18 +18,10 @@
 #include <pkg/dem/ScGeom.hpp>
 
 namespace yade {
-namespace abi {
+namespace guard {
 
 namespace {
 namespace python = ::boost::python;
-
-[[noreturn]] void refuse(const string& found)
-{
-	throw std::runtime_error("masonry does not fit this YADE: " + found +
-	                         ", but it needs Debian 12's own build of YADE 2023.02a (package yade 2023.02a-1, amd64, double "
-	                         "precision); install that with `apt install yade` and start it as `yade`, or build masonry against "
-	                         "your YADE's sources with -DYADE_SOURCE_DIR=<tree>.");
-}
 
 string hex(const unsigned char* bytes, size_t count)
 {
@@ -61,27 +53,8 @@ string buildIdOf(const dl_phdr_info& object)
 	return "";
 }
 
-/// Build id of the loaded library of that file name; empty when it is not loaded.
-string loadedBuildId(const string& library)
-{
-	struct Search {
-		string library, id;
-	} search {library, ""};
-	dl_iterate_phdr(
-	    [](dl_phdr_info* object, size_t, void* data) {
-		    auto& wanted = *static_cast<Search*>(data);
-		    const char* file = std::strrchr(object->dlpi_name, '/');
-		    if (!file || wanted.library != file + 1)
-			    return 0;
-		    wanted.id = buildIdOf(*object);
-		    return 1;
-	    },
-	    &search);
-	return search.id;
-}
-
-/// Every class has an exported maker that begins by asking operator new for the object's size: the operand of
-/// its first `mov edi, imm32`. Zero when there is none.
+/// Every class has an exported maker that begins by asking operator new for the object's size, in the register of the first argument: the
+/// operand of the first instruction that puts a constant there. Zero when there is none.
 size_t sizeInYade(const string& className)
 {
 	const string maker = "CreatePureCustom" + className;
@@ -89,19 +62,27 @@ size_t sizeInYade(const string& className)
 	auto code = static_cast<const unsigned char*>(dlsym(RTLD_DEFAULT, symbol.c_str()));
 	if (!code)
 		return 0;
-	for (int i = 0; i < 48; i++)
-		if (code[i] == 0xBF) {
-			unsigned size;
-			std::memcpy(&size, code + i + 1, sizeof size);
-			return size;
-		}
+	for (int i = 0; i < 64; i++) {
+		unsigned word;
+#ifdef __aarch64__
+		if (i % 4)
+			continue;
+		std::memcpy(&word, code + i, sizeof word); // mov w0 or x0, 16 bits
+		if ((word & 0x7FE0001F) == 0x52800000)
+			return word >> 5 & 0xFFFF;
+#else
+		std::memcpy(&word, code + i + 1, sizeof word); // mov edi, 32 bits
+		if (code[i] == 0xBF)
+			return word;
+#endif
+	}
 	return 0;
 }
 
 void require(bool fits, const char* what)
 {
 	if (!fits)
-		refuse(string("its ") + what + " is laid out differently");
+		throw std::runtime_error(string("its ") + what + " is laid out differently");
 }
 
 python::object make(const char* className) { return python::import("yade.wrapper").attr(className)(); }
@@ -168,49 +149,52 @@ void requireVirtualFunctions()
 }
 } // namespace
 
-Build declaredBuild()
+Sizes compiledSizes()
 {
-	return {"2023.02a",
-	        {{"libyade.so", "ab5587ac78af12fe3854492b492477acfe3232cf"},
-	         {"libpkg_common.so", "19a40f7f0ca11dea152744a6c7e37f281b0ae033"},
-	         {"libpkg_dem.so", "7762461858975c1ded391bce08efb28114fa3f2d"}},
-	        {{"State", sizeof(State)},
-	         {"Body", sizeof(Body)},
-	         {"Scene", sizeof(Scene)},
-	         {"Box", sizeof(Box)},
-	         {"FrictMat", sizeof(FrictMat)},
-	         {"Aabb", sizeof(Aabb)},
-	         {"ScGeom", sizeof(ScGeom)},
-	         {"FrictPhys", sizeof(FrictPhys)},
-	         {"Interaction", sizeof(Interaction)},
-	         {"InteractionContainer", sizeof(InteractionContainer)},
-	         {"BodyContainer", sizeof(BodyContainer)},
-	         {"Cell", sizeof(Cell)},
-	         {"EnergyTracker", sizeof(EnergyTracker)},
-	         {"MatchMaker", sizeof(MatchMaker)},
-	         {"GlobalEngine", sizeof(GlobalEngine)},
-	         {"PartialEngine", sizeof(PartialEngine)},
-	         {"PeriodicEngine", sizeof(PeriodicEngine)},
-	         {"TimeStepper", sizeof(TimeStepper)},
-	         {"InteractionLoop", sizeof(InteractionLoop)},
-	         {"IGeomFunctor", sizeof(IGeomFunctor)},
-	         {"LawFunctor", sizeof(LawFunctor)}}};
+#define SIZE(Class)                                                                                                                        \
+	{                                                                                                                                      \
+#Class, sizeof(Class)                                                                                                              \
+	}
+	return {SIZE(State),           SIZE(Body),
+	        SIZE(Scene),           SIZE(Box),
+	        SIZE(FrictMat),        SIZE(Aabb),
+	        SIZE(ScGeom),          SIZE(FrictPhys),
+	        SIZE(Interaction),     SIZE(InteractionContainer),
+	        SIZE(BodyContainer),   SIZE(Cell),
+	        SIZE(EnergyTracker),   SIZE(MatchMaker),
+	        SIZE(GlobalEngine),    SIZE(PartialEngine),
+	        SIZE(PeriodicEngine),  SIZE(TimeStepper),
+	        SIZE(InteractionLoop), SIZE(IGeomFunctor),
+	        SIZE(LawFunctor)};
+#undef SIZE
 }
 
-void requireBuild(const Build& needed)
+void requireFit(const Sizes& needed)
 {
-	const string version = python::extract<string>(python::import("yade.config").attr("version"))();
-	if (version != needed.version)
-		refuse("this is YADE " + version);
-	for (const auto& [library, id] : needed.buildIds)
-		if (const string found = loadedBuildId(library); found != id)
-			refuse(library + " has build id " + (found.empty() ? "none" : found) + " instead of " + id);
-	for (const auto& [name, size] : needed.sizes)
+	for (const auto& [name, size] : needed)
 		if (const size_t found = sizeInYade(name); found != size)
-			refuse("its " + name + " takes " + std::to_string(found) + " bytes instead of " + std::to_string(size));
+			throw std::runtime_error("its " + name + " takes " + std::to_string(found) + " bytes instead of " + std::to_string(size));
 	requireMembers();
 	requireVirtualFunctions();
 }
 
-} // namespace abi
+string loadedBuildId(const string& library)
+{
+	struct Search {
+		string library, id;
+	} search {library, ""};
+	dl_iterate_phdr(
+	    [](dl_phdr_info* object, size_t, void* data) {
+		    auto& wanted = *static_cast<Search*>(data);
+		    const char* file = std::strrchr(object->dlpi_name, '/');
+		    if (!file || wanted.library != file + 1)
+			    return 0;
+		    wanted.id = buildIdOf(*object);
+		    return 1;
+	    },
+	    &search);
+	return search.id;
+}
+
+} // namespace guard
 } // namespace yade

@@ -1,0 +1,40 @@
+# cpack: the Debian package python3-masonry of the distribution that it is built on: plugin, package, commands, examples, documentation.
+if(NOT MASONRY_YADE)
+  return()
+endif()
+execute_process(COMMAND dpkg-query -W -f "\${source:Version}" yade OUTPUT_VARIABLE yade_package ERROR_QUIET)
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME python3-masonry)
+set(CPACK_PACKAGE_CONTACT "yade-masonry contributors <yade-masonry@packages.debian.org>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "rocking masonry blocks in YADE")
+set(CPACK_PACKAGE_DESCRIPTION "Blocks, stacks and walls of stone that touch, rock with a given
+restitution and stand on a base which moves by pulses, pulse trains
+or earthquake records: a plugin for the discrete element code YADE,
+with the exact theory of the rocking block.")
+set(CPACK_PACKAGE_VERSION "${PROJECT_VERSION}+yade${YADE_VERSION}")
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+# This very version of YADE, whatever rebuild (+b1) of it: the guard looks at sizes and tables.
+set(CPACK_DEBIAN_PACKAGE_DEPENDS "yade (>= ${yade_package}), yade (<< ${yade_package}.~), python3 (>= ${Python3_VERSION_MAJOR}.${Python3_VERSION_MINOR}~), python3-numpy")
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "python3-matplotlib, python3-scipy, python3-tqdm")
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${MASONRY_YADE_LIBRARY_DIR})
+set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA ${CMAKE_CURRENT_LIST_DIR}/postinst ${CMAKE_CURRENT_LIST_DIR}/prerm)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_INSTALL_CMAKE_PROJECTS "${CMAKE_BINARY_DIR};${PROJECT_NAME};package;/")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+include(CPack)
+
+set(package COMPONENT package EXCLUDE_FROM_ALL)
+set(documentation share/doc/python3-masonry)
+install_masonry(lib/python3/dist-packages ${package})
+string(TIMESTAMP date "%a, %d %b %Y %H:%M:%S +0000" UTC)
+configure_file(${CMAKE_CURRENT_LIST_DIR}/changelog.in ${CMAKE_BINARY_DIR}/package/changelog @ONLY)
+execute_process(COMMAND gzip -9nf ${CMAKE_BINARY_DIR}/package/changelog)
+install(FILES ${CMAKE_BINARY_DIR}/package/changelog.gz ${CMAKE_CURRENT_LIST_DIR}/copyright ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/CITATION.cff
+  DESTINATION ${documentation} ${package})
+file(GLOB documents ${PROJECT_SOURCE_DIR}/docs/*.md)
+install(FILES ${documents} DESTINATION ${documentation} ${package})
+file(GLOB examples ${PROJECT_SOURCE_DIR}/scripts/0*.py)
+install(FILES ${examples} DESTINATION ${documentation}/examples ${package})

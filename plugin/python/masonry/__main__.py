@@ -1,0 +1,31 @@
+"""The command masonry (python3 -m masonry)."""
+
+import argparse
+import platform
+
+from . import _build
+
+
+def versions():
+    """What a report of a fault needs."""
+    yade = f"{_build.YADE} ({_build.HEADERS} headers; libyade.so {_build.YADE_BUILD_ID})" if _build.YADE else "none: the theory alone"
+    return "\n".join((
+        f"masonry {_build.VERSION}",
+        f"YADE          {yade}",
+        f"features      {' '.join(_build.YADE_FEATURES)}",
+        f"built on      {_build.DISTRIBUTION}, {_build.PROCESSOR}, Python {_build.PYTHON}",
+        f"built with    {_build.COMPILER}; {_build.LIBRARIES}",
+        f"running on    {platform.freedesktop_os_release().get('PRETTY_NAME', '?')}, {platform.machine()}, Python {platform.python_version()}",
+    ))
+
+
+def main():
+    parser = argparse.ArgumentParser(prog="masonry", description="Rocking masonry blocks in YADE: `from masonry import dem` in a script that yade runs.")
+    parser.add_argument("--version", action="version", version=versions(), help="print all that a report of a fault needs")
+    parser.formatter_class = argparse.RawDescriptionHelpFormatter
+    parser.parse_args()
+    parser.print_help()
+
+
+if __name__ == "__main__":
+    main()
