@@ -170,6 +170,7 @@ def wall(courses=None, per_course=None, size=None, material=None, on=None, gap=0
         courses, per_course, size                          size: of a whole block (x along the wall, y through it, z up), m
         length, height, size                               outer length and height, m: a multiple of half a block, of a course
         courses, per_course, length, height, thickness     outer sizes, m, divided evenly
+
     per_course    blocks in a course, a multiple of one half
     gap           width of the head joints, m; half a gap is left free at both ends of the wall
     openings      (x0, z0, width, height) of each one, from the lower left corner of the wall, in m (a multiple of half a block and of a

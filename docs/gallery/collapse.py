@@ -1,0 +1,37 @@
+"""The film at the top of README and the pictures of the same run: a dry wall with a window collapses under a sine of growing amplitude. Run with
+`PYTHONPATH=build/python yade -n -x docs/gallery/collapse.py` in the root of the project; the pictures are written beside this file."""
+import math
+import os
+
+import numpy as np
+from PIL import Image, ImageSequence
+from yade import O
+
+import masonry
+from masonry import dem, results
+
+folder = "docs/gallery"
+time = np.arange(0, 2.505, 0.01)
+record = masonry.Record(0.01, 1.4 * np.sin(2 * np.pi * 1.0 * time) * time / 2.5, baseline="constant", unit="g")
+
+stone = dem.BlockMat(density=2000, frictionAngle=math.atan(0.65))  # natural restitution
+base = dem.base((8, 3, 0.2), stone)
+dem.wall(courses=10, per_course=6, size=(0.40, 0.20, 0.175), material=stone, on=base, openings=[(0.8, 0.525, 0.8, 0.7)])
+motion = dem.record_motion(record, ids=[base])
+recorder = dem.WallRecorder(virtPeriod=0.01)
+O.engines = dem.engines(motion, recorder=recorder)
+dem.run(3.2)
+
+history = dem.wall_history(recorder)
+print(results.collapse(history))
+results.draw_joints(history, f"{folder}/joints.png", time=1.6)
+results.draw_energy(history, f"{folder}/energy.png")
+film = f"{folder}/collapse.gif"
+results.film(history, film, start=0.6, frames_per_second=12.5, speed=0.5, color="rotation")
+
+# Half the size in pixels and 64 colours: the film loads quickly.
+frames = [frame.convert("RGB").resize((frame.width * 2 // 3, frame.height * 2 // 3), Image.LANCZOS) for frame in ImageSequence.Iterator(Image.open(film))]
+palette = frames[-1].quantize(64)
+frames = [frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in frames]
+frames[0].save(film, save_all=True, append_images=frames[1:], duration=[80] * (len(frames) - 1) + [1500], loop=0, optimize=True)
+print(f"wrote {film}: {len(frames)} frames, {os.path.getsize(film) / 1e6:.2f} MB")
