@@ -230,22 +230,26 @@ void updateStates(System<most>& s)
 	}
 }
 
-// Without slip some problems have no solution. The way out keeps every promise on energy: all points held, then the one
-// that pulls most let go, until none pulls. A point let go may still approach, which the residual tells.
+// Without slip some problems have no solution. The way out keeps every promise on energy: all points held, then those
+// that pull most let go, until none pulls: all that pull alike, so that their order decides nothing. A point let go may still approach,
+// which the residual tells.
 template <int most>
 void letPullingPointsGo(System<most>& s)
 {
+	// Share of the largest pull. Smaller: round-off chooses between the two corners of an edge; larger: points go that would not pull.
+	constexpr double alike = 1e-6;
 	for (PointState& point : s.points)
 		point.state = State::stick;
 	for (int left = s.nPoints; left >= 0; --left) {
 		solveForStates(s);
-		int worst = -1;
+		double pull = 0;
 		for (int i = 0; i < s.nPoints; ++i)
-			if (s.p[3 * i] < 0 && (worst < 0 || s.p[3 * i] < s.p[3 * worst]))
-				worst = i;
-		if (worst < 0)
+			pull = std::max(pull, -s.p[3 * i]);
+		if (pull == 0)
 			return;
-		s.points[worst].state = State::open;
+		for (int i = 0; i < s.nPoints; ++i)
+			if (-s.p[3 * i] >= (1 - alike) * pull)
+				s.points[i].state = State::open;
 	}
 }
 

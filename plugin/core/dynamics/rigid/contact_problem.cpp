@@ -1,4 +1,5 @@
 #include "dynamics/rigid/contact_problem.hpp"
+#include "dynamics/rigid/contact_approach.hpp"
 #include "dynamics/rigid/contact_newton.hpp"
 #include "dynamics/rigid/contact_sweeps.hpp"
 #include <algorithm>
@@ -10,6 +11,7 @@ template <class K>
 struct ContactSolver<K>::Workspace {
 	ContactState<K> s;
 	ContactNewton<K> newton {s};
+	ContactApproach<K> fromAfar {s, newton};
 
 	// Whether the impulses given meet the laws, or lead to those that do.
 	bool startsClose(double tolerance, SolveReport& report)
@@ -68,6 +70,8 @@ struct ContactSolver<K>::Workspace {
 		}
 		constexpr bool inSpace = K::dimension == 3;
 		if (!(inSpace && given.guessed) && startsClose(tolerance, report))
+			return report;
+		if (inSpace && fromAfar.find(tolerance, report))
 			return report;
 		const bool sticks =
 		    std::any_of(given.points.begin(), given.points.end(), [](const ContactRows<K>& row) { return row.friction == noSlip; });

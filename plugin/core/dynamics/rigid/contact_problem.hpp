@@ -20,13 +20,14 @@
 // factorised over the graph of bodies (block_factor.hpp). Redundant points and any mass ratio are harmless to it.
 // A point alone is solved by its law at once. Else, first, Newton with a small R from the states of the impulses given (stick, slip,
 // open), and with the factor of the last solve while the points are the same: one back-substitution where no state changes. From
-// impulses far from the solution: block Gauss-Seidel, and where its rate tells that it will not converge, Newton with a large R that
-// falls as the centres converge, each going on along its move while that does no harm.
-// Friction leaves several solutions where points share what they carry: all of an edge's load at one corner, which turns the block about
-// it, is one where nothing slips. Newton with a large R that falls ends near the impulses given, and leaves a scene that is its own mirror
-// image so; sweeps, which take the points in their order, and a small R at once from far away do not. So in space there are no sweeps
-// before it but where points cannot slip, whose jams they avoid, and impulses that an impact lets expect are not resumed from.
-// Impulses that still miss the laws are returned with their residual, and made to add no energy (seen from the offsets).
+// impulses far from the solution: in space the impulses given stay the centre while R falls (contact_approach.hpp); in the plane, and where
+// that fails without slip, block Gauss-Seidel. Where that does not converge, Newton with a large R that falls as the centres move, each
+// going on along its move while that does no harm, in turns with Gauss-Seidel. Redundant points, and friction, leave several solutions: all
+// of an edge's load at one corner, which turns the block about it, is one where no loaded point slips. With the centre kept, the solution
+// is that nearest to the impulses given, weighted with R. It does not depend on the order of the points, and a scene that is its own mirror
+// image stays so. Gauss-Seidel, which takes the points in their order, and a small R at once from far away do not find it: so impulses that
+// an impact lets expect are not resumed from in space. Impulses that still miss the laws are returned with their residual, and made to add
+// no energy (seen from the offsets).
 #include "dynamics/rigid/kinematics.hpp"
 #include "impact/impulse_problem.hpp" // noSlip
 #include "tolerances.hpp"

@@ -9,6 +9,8 @@ namespace masonry::rigid {
 
 // In the place of a friction coefficient: the first row alone acts, pulling as well as pushing.
 constexpr double bilateral = -1;
+// In the same place: presses or parts, and slips in neither case. With it a problem of points without slip has one motion that solves it.
+constexpr double tied = -2;
 
 // P: the normal part on p_n >= 0, then the tangential part on the disc of radius mu p_n.
 template <class Rows>
@@ -16,9 +18,13 @@ Rows project(const Rows& y, double friction)
 {
 	if (friction == bilateral)
 		return Rows(y[0] * Rows::Unit(0));
+	Rows p = y;
+	if (friction == tied) {
+		p[0] = std::max(0., y[0]);
+		return p;
+	}
 	if (!(y[0] > 0))
 		return Rows::Zero();
-	Rows p = y;
 	auto tangential = p.template tail<Rows::RowsAtCompileTime - 1>();
 	const double bound = friction * y[0], square = tangential.squaredNorm();
 	if (square > bound * bound)
@@ -32,6 +38,11 @@ auto projectionRate(const Rows& y, double friction)
 {
 	constexpr int tangents = Rows::RowsAtCompileTime - 1;
 	Eigen::Matrix<double, tangents + 1, tangents + 1> rate;
+	if (friction == tied) {
+		rate.setIdentity();
+		rate(0, 0) = y[0] > 0;
+		return rate;
+	}
 	rate.setZero();
 	if (friction == bilateral)
 		rate(0, 0) = 1;
