@@ -10,7 +10,6 @@ extensions = ["myst_parser", "sphinx.ext.autodoc"]
 root_doc = "docs/index"
 include_patterns = ["docs/**.md", "validation/README.md", "validation/**/README.md", "CHANGELOG.md"]
 myst_heading_anchors = 3
-myst_enable_extensions = ["dollarmath"]
 html_theme = "furo"
 html_title = "yade-masonry"
 html_copy_source = False

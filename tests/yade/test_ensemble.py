@@ -52,7 +52,7 @@ with tempfile.TemporaryDirectory() as folder:
         if not row["collapsed"]:
             angle = np.max(np.abs(exact.sample(np.arange(0, 2, 0.001))[0]))
             drift = math.sin(angle) + (1 - math.cos(angle)) / (2 * block.slenderness)
-            # Samples 5 ms apart miss a peak by (2.5e-3 s)^2 / 2 of the acceleration there, below g: 3e-5 m of 2 m; the step by 1e-4 (README).
+            # Samples 5 ms apart miss a peak by (2.5e-3 s)^2 / 2 of the acceleration there, below g: 3e-5 m of 2 m; the step by 1e-4 (validation/README.md).
             assert abs(row["peak_drift"] - drift) < 2e-5 + 1e-4 * drift, (row["peak_drift"], drift)
     assert table["collapsed"].tolist() == [False, False, True] and table["peak_drift"][1] < 1e-6 < table["peak_drift"][0]
     found = ensemble.statistics(table)

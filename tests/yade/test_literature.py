@@ -56,7 +56,7 @@ for method in ("localised", "wall"):
     speed = (O.bodies[block].state.vel - O.bodies[base].state.vel).norm()
     assert abs(speed / (acceleration / radians * math.sqrt(1 - (friction * G / acceleration) ** 2)) - 1) < 5e-5, (method, speed)
 
-# --- friction acts at the corners of a patch: a face that turns on its bed has the arm of its corners, not that of an even pressure (README, Limits) ---
+# --- friction acts at the corners of a patch: a face that turns on its bed has the arm of its corners, not that of an even pressure (docs/limits.md) ---
 for sides, even in (((0.8, 0.8), 1 / 1.848), ((1.6, 0.4), 1 / 1.943)):
     for method in ("localised", "wall"):
         O.reset()

@@ -101,7 +101,7 @@ for options, words in (({"impact_order": "simultaneous"}, ("impactOrder", "'sequ
                        ({"model": "compliant"}, ("method", "rigid")), ({"method": "fast"}, ("method", "'fast'"))):
     refuses(lambda: wall(4, 6, 0.1, **{"method": "wall", **options}), *words)
 
-# --- high walls that move: a warning, where the README says so ---
+# --- high walls that move: a warning, where docs/limits.md says so ---
 
 
 def printed(work):

@@ -77,7 +77,7 @@ for model in MODELS:
     energy = h.energy
     print(model, "balance:", np.max(np.abs(energy["error"])) / barrier(block, theory))
     assert energy["baseWork"][-1] > 1 and energy["impactDissip"][-1] > 0, model
-    # Of the energy that overturns: 1e-6, and 1e-4 for compliant joints (README; they reach 3e-6 without a moving base, 5e-5 here).
+    # Of the energy that overturns: 1e-6, and 1e-4 for compliant joints (validation/README.md; they reach 3e-6 without a moving base, 5e-5 here).
     assert np.max(np.abs(energy["error"])) < (1e-4 if model == "compliant" else 1e-6) * barrier(block, theory), model
     assert np.allclose([energy[key][-1] for key in ("impactDissip", "baseWork")], [dem.energy()[key] for key in ("impactDissip", "baseWork")], rtol=1e-2)
     # Step by step, each column: the recorder comes before the step of rigid blocks, and behind the joints of compliant ones.

@@ -184,7 +184,7 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
                   None: 1e-9). With method='wall' from 1e-6 to 1e-2, None: 1e-3 (MoreauJeanIntegrator.tolerance)
     penetration   compliant, where BlockMat gives no stiffness: how far the weight presses the most loaded joint in, relative to
                   the smallest width (1e-10 to 1e-2; None: 1e-5). The error of rocking angles is about ten times this, and more where
-                  the base's acceleration jumps (README, Limits);
+                  the base's acceleration jumps (docs/limits.md);
                   the cost grows as its inverse square root.
     impact_order  'simultaneous' or 'sequential': how an impact acts on a structure (impactOrder of the engine). None: 'sequential'
                   with method='wall', which has no other; else 'simultaneous'
