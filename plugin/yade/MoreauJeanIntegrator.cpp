@@ -125,7 +125,7 @@ void MoreauJeanIntegrator::leaveScene()
 	along = Vector3r::Zero();
 	forgetImpacts(*this);
 	forget(frictDissip, impactDissip, baseWork, worstResidual, substeps, events, unlocalised, sweeps, factorisations, stillSteps,
-	       movingSteps, failures, firstFailure, warnedOf);
+	       movingSteps, madeEnergy, lostEnergy, turnedOver, toldMade, toldLost, failures, firstFailure, warnedOf);
 }
 
 vector<Real> MoreauJeanIntegrator::remembered()
@@ -245,6 +245,26 @@ masonry::rigid::StepReport MoreauJeanIntegrator::stepRun()
 	}
 }
 
+/// Sums up what steps make and lose. Returns a sentence where either has come to matter: once.
+string MoreauJeanIntegrator::addErrors()
+{
+	turnedOver = std::max(turnedOver, stepErrors.kinetic + frictDissip + impactDissip);
+	madeEnergy += stepErrors.made;
+	lostEnergy += stepErrors.lost;
+	const Real most = masonry::mostUnexplained(turnedOver, stepErrors.lift);
+	string text;
+	const auto look = [&](Real energy, const char* what, bool& told) {
+		if (told || !(energy > most))
+			return;
+		told = true;
+		text += sentence("the energy that has ", what, " since the start comes to ", energy, " J, ", 100 * energy / turnedOver,
+		                 " % of what the scene has turned over: do not trust what follows. ");
+	};
+	look(madeEnergy, "come from nothing", toldMade);
+	look(lostEnergy, "vanished", toldLost);
+	return text;
+}
+
 void MoreauJeanIntegrator::count(const masonry::rigid::StepReport& report)
 {
 	substeps += report.substeps;
@@ -257,13 +277,15 @@ void MoreauJeanIntegrator::count(const masonry::rigid::StepReport& report)
 		throw std::runtime_error(
 		    sentence("The simulation has diverged in the step from t = ", scene->time, " s: positions or velocities are no longer finite.",
 		             method == "localised" ? " Structures of more than some twenty blocks are for method='wall'." : ""));
+	const string sums = addErrors();
 	const bool crowded = report.unlocalised > 0;
-	if (report.converged && !crowded && report.created == 0 && !(report.deepest > 0) && !(report.burden > 0) && !(report.turn > 0))
+	if (report.converged && !crowded && sums.empty() && report.created == 0 && !(report.deepest > 0) && !(report.burden > 0) &&
+	    !(report.turn > 0))
 		return;
 
 	const Real ofStep = gravity.norm() * scene->dt; // the speed that gravity gives
 	// A residual this small moves nothing that anybody could measure: it is counted, without a word.
-	const bool matters = crowded || report.created > 0 || report.deepest > 0 || report.burden > 0 || report.turn > 0 ||
+	const bool matters = crowded || !sums.empty() || report.created != 0 || report.deepest > 0 || report.burden > 0 || report.turn > 0 ||
 	                     !(report.residual <= negligible * ofStep);
 	std::ostringstream text;
 	text << "In the step from t = " << scene->time << " s ";
@@ -275,6 +297,7 @@ void MoreauJeanIntegrator::count(const masonry::rigid::StepReport& report)
 		text << report.created << " J of energy come from nowhere. ";
 	if (report.created < 0)
 		text << -report.created << " J of energy vanish. ";
+	text << sums;
 	if (report.deepest > 0)
 		text << "blocks are " << report.deepest << " m deep in each other. ";
 	if (report.burden > 0)

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "Ip2_BlockMat_BlockMat_BlockPhys.hpp"
+#include "dynamics/energy_errors.hpp"
 #include "rigid_memory.hpp"
 
 #include <core/GlobalEngine.hpp>
@@ -69,14 +70,19 @@ public:
 		((Real, frictDissip, 0, Attr::readonly, "Dissipated by friction so far [J]."))
 		((Real, impactDissip, 0, Attr::readonly, "Dissipated by impacts so far [J]; method='wall': all that is left over, numerical losses included."))
 		((Real, baseWork, 0, Attr::readonly, "Work of the moved base on the blocks so far [J]."))
+		((Real, madeEnergy, 0, Attr::readonly, "method='localised': energy that steps have made of nothing so far [J]; losses are not taken off."))
+		((Real, lostEnergy, 0, Attr::readonly, "method='localised': energy that has vanished in steps so far, neither by friction nor by impacts [J]."))
+		((Real, turnedOver, 0, Attr::readonly, "method='localised': kinetic energy and all that has been dissipated: the largest sum so far [J]."))
 		((Real, worstResidual, 0, Attr::readonly, "Largest residual of a step so far [m/s]."))
 		((long, substeps, 0, Attr::readonly, "Parts of steps so far; one a step where nothing happens."))
 		((long, events, 0, Attr::readonly, "Impacts and stops of sliding found inside steps so far."))
 		((long, unlocalised, 0, Attr::readonly, "Points that closed at the end of a step because mostEvents was reached, so far."))
 		((long, sweeps, 0, Attr::readonly, "Sweeps of the contact solver so far; with method='wall' solves of the mode 'still'."))
 		((long, factorisations, 0, Attr::readonly, "Factorisations of the contact solver so far."))
-		((long, failures, 0, Attr::readonly, "Steps so far that missed the tolerance, an impact's laws or a pulse's, had more events than mostEvents or, with method='wall', made more energy than the error of a sound step, left blocks deep in each other, or had a block too heavy for those below it."))
+		((long, failures, 0, Attr::readonly, "Steps so far that missed the tolerance, an impact's laws or a pulse's, had more events than mostEvents, made or lost more energy than the error of a sound step or, with method='wall', left blocks deep in each other, or had a block too heavy for those below it; and one each where madeEnergy and lostEnergy have come to be a twentieth of turnedOver."))
 		((string, firstFailure, "", Attr::readonly, "What the first of them was, with time, blocks and residual; steps whose residual is below 1e-6 of the speed that gravity gives in a step are counted and not described."))
+		((bool, toldMade, false, Attr::hidden, ""))
+		((bool, toldLost, false, Attr::hidden, ""))
 		((RigidMemory, memory, , Attr::hidden, "")),
 		/* ctor */,
 		.add_property("kinetic", &MoreauJeanIntegrator::kinetic, "Kinetic energy now [J].")
@@ -101,6 +107,7 @@ private:
 	void renew();
 	bool outdated() const;
 	void beginMotions();
+	string addErrors();
 	void leaveScene();
 	/// What the run has; before the first step, what that would choose. Throws std::invalid_argument where `model` does not fit the scene.
 	Choice chosen() const;
@@ -126,6 +133,7 @@ private:
 	struct {
 		bool courses = false, bases = false, place = false, motion = false;
 	} warnedOf; // once in a run
+	masonry::StepErrors stepErrors; // of the last step
 	bool sequential = false, wall = false;
 };
 REGISTER_SERIALIZABLE(MoreauJeanIntegrator);

@@ -73,6 +73,7 @@ masonry::rigid::StepReport RigidScene<K>::step()
 	lawsChanged = false;
 	byWalls = integrator.isWall();
 	const auto report = byWalls ? advanceWall() : islands.advance(system, scene.dt);
+	integrator.stepErrors = byWalls ? masonry::StepErrors() : islands.lastErrors();
 	writeStates();
 	if (++unshown >= mostUnshown || integrator.isWatched())
 		writeContacts();

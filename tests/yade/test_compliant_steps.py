@@ -77,7 +77,7 @@ def joints_of():
 
 # Springs act from the start of the step in which their points land: the bodies lose k d (v dt - d)/2 over what is stored, at most (w dt)^2/4 of the
 # kinetic energy, and get as much back where they part. The sum of energies, in flight, knows the difference to rounding.
-for step in (0.3, 0.1, 0.03):
+for step in (0.5, 0.1, 0.03):
     joints, error, most = bounce(step)
     made, lost = joints.madeEnergy, joints.lostEnergy
     fall = O.bodies[1].state.mass * 9.81 * 0.1

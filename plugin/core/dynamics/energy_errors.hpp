@@ -9,4 +9,19 @@ namespace masonry {
 // what lifts all blocks by their size.
 inline double mostUnexplained(double turnedOver, double lift) { return tolerance::madeShare * turnedOver + tolerance::madeLift * lift; }
 
+// Of one step of rigid blocks, J: kinetic energy at its start; `lift` as above.
+struct StepErrors {
+	double made {0}, lost {0}, kinetic {0}, lift {0};
+
+	// Of structures that are stepped apart.
+	StepErrors& operator+=(const StepErrors& other)
+	{
+		made += other.made;
+		lost += other.lost;
+		kinetic += other.kinetic;
+		lift += other.lift;
+		return *this;
+	}
+};
+
 } // namespace masonry

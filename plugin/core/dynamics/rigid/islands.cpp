@@ -9,8 +9,11 @@ StepReport Islands<K>::advance(RigidSystem<K>& s, double dt)
 {
 	if (s.lists != list || s.bodies.size() != bodies)
 		divide(s, std::vector<char>(s.bodies.size(), 1));
-	if (islands.size() < 2 || areOrdered(s.drives))
-		return step.advance(s, dt);
+	if (islands.size() < 2 || areOrdered(s.drives)) {
+		const StepReport report = step.advance(s, dt);
+		errors = step.lastErrors();
+		return report;
+	}
 	s.impacts.clear();
 	take(s);
 	const StepReport report = advanceTaken(s, dt);
@@ -30,8 +33,10 @@ template <class K>
 StepReport Islands<K>::advanceTaken(RigidSystem<K>& s, double dt)
 {
 	StepReport report;
+	errors = {};
 	for (Island& island : islands) {
 		report += step.advance(island.system, dt);
+		errors += step.lastErrors();
 		giveBack(s, island);
 	}
 	const auto earlier = [](const Impact& a, const Impact& b) { return a.time < b.time; };

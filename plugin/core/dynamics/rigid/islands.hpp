@@ -9,6 +9,8 @@ template <class K>
 class Islands {
 public:
 	StepReport advance(RigidSystem<K>& system, double dt);
+	// Of the last step.
+	const StepErrors& lastErrors() const { return errors; }
 
 	// The same for the islands of these bodies alone: what they are made of, and a step of them, which starts from where they were taken.
 	// Time and the system's other bodies are left to others.
@@ -26,6 +28,7 @@ private:
 	void giveBack(RigidSystem<K>& system, Island& island) const;
 
 	RigidStep<K> step;
+	StepErrors errors;
 	std::vector<Island> islands;
 	int list {-1}; // of the system's pairs, that the islands are of
 	size_t bodies {0};

@@ -54,11 +54,11 @@ void RigidStep<K>::balance(const RigidSystem<K>& s, const Energies& before)
 	const double friction = now.friction - before.friction, impact = now.impact - before.impact, base = now.base - before.base;
 	const double made = now.kinetic - before.kinetic - step.work - base + friction + impact;
 	const double atStake = before.kinetic + std::abs(step.work) + std::abs(base) + std::abs(friction) + std::abs(impact);
-	double lifted = 0;
+	errors = {std::max(0., made), std::max(0., -made), before.kinetic, 0};
 	for (const RigidBody<K>& body : s.bodies)
 		if (!body.prescribed)
-			lifted += body.mass * s.gravity.norm() * step.scales.length;
-	if (std::abs(made) > tolerance::rigid::madeShare * atStake + tolerance::rigid::madeLift * lifted)
+			errors.lift += body.mass * s.gravity.norm() * step.scales.length;
+	if (std::abs(made) > tolerance::rigid::madeShare * atStake + tolerance::rigid::madeLift * errors.lift)
 		report.created += made;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 // The step of rigid blocks: Moreau-Jean time stepping with events found inside the step.
+#include "dynamics/energy_errors.hpp"
 #include "dynamics/rigid/events.hpp"
 #include "dynamics/rigid/impact_stage.hpp"
 
@@ -10,6 +11,8 @@ template <class K>
 class RigidStep {
 public:
 	StepReport advance(RigidSystem<K>& system, double dt);
+	// Of the last step.
+	const StepErrors& lastErrors() const { return errors; }
 
 private:
 	struct Energies { // J
@@ -37,6 +40,7 @@ private:
 	ImpactStage<K> impacts;
 	std::vector<PointRef> closing;
 	StepReport report;
+	StepErrors errors;
 };
 
 } // namespace masonry::rigid
