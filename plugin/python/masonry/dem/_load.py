@@ -46,7 +46,7 @@ def _wrong_kind(thing, name, known, value):
 def _assign(assign, thing, name, value):
     """Sets the attribute. A value of the wrong type is refused by the attribute's name, and one that the object refuses does not stay."""
     old = getattr(thing, name, None)
-    if name == "restitution" and value is None:
+    if name == "restitution" and value is None and isinstance(old, float):
         value = math.nan
     if type(old).__module__.endswith("minieigenHP"):
         old = type(old)(old)  # it was part of the object
@@ -66,7 +66,7 @@ def _guard_attributes(cls):
     make, assign = cls.__init__, cls.__setattr__
 
     def __init__(self, *arguments, **attributes):
-        if attributes.get("restitution", 0) is None:
+        if cls.__name__ == "BlockMat" and attributes.get("restitution", 0) is None:
             attributes["restitution"] = math.nan
         try:
             make(self, *arguments, **attributes)
