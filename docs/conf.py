@@ -13,6 +13,7 @@ myst_heading_anchors = 3
 html_theme = "furo"
 html_title = "yade-masonry"
 html_copy_source = False
+smartquotes = False
 html_static_path = ["_static"]
 html_css_files = ["pages.css"]
 pygments_style = "friendly"

@@ -302,15 +302,24 @@ _IMPACT_FIELDS = [("time", float), ("body", int), ("support", int), ("restitutio
 
 
 def impacts():
-    """The rocking impacts so far, a structured array: time (s), body, support, restitution_asked (NaN: natural), restitution
-    (realised), velocity (relative angular velocity before, rad/s), energy_lost (J), friction_demand (the friction coefficient that it
-    takes; where that is the joint's own, the pivot has slipped and more was asked for), application (distance of the resultant from the
-    new pivot, m), switched (False: the impact stopped the rotation; a pivot that has slipped may set it off again), capped (the
-    restitution does not come out: lowered so that no energy appears, or there is none with which the laws hold, a failure of its step).
-    Restitution and velocity are relative to the motion with which the block would stay on its old and its new support: on supports that
-    move in different ways, a block with restitution 0 follows both. With method='wall' in the plane they are relative to the new support.
-    With method='wall' those where a restitution is given, and of the joint alone:
-    what its neighbours answer afterwards is in energy()['impactDissip']."""
+    """The rocking impacts so far: a structured array, one row an impact.
+
+    time                  s
+    body, support         ids of the block and of what it lands on
+    restitution_asked     C; NaN: the natural one
+    restitution           C that came out
+    velocity              relative angular velocity before, rad/s
+    energy_lost           J
+    friction_demand       friction coefficient that the impact takes; where it is the joint's own, the pivot has slipped and more was asked for
+    application           distance of the resultant impulse from the new pivot, m
+    switched              False: the impact stopped the rotation; a pivot that has slipped may start it again
+    capped                True: the restitution asked for did not come out, because energy would have appeared, or because no impulses obey all laws (a
+                          failure of the step)
+
+    Restitution and velocity are relative to the motion with which the block would stay on its old and its new support: on supports that move in
+    different ways, a block with restitution 0 follows both. With method='wall' in the plane they are relative to the new support. With method='wall' only
+    impacts with a given restitution are listed, and their values are those of the joint alone: what its neighbours answer afterwards is in
+    energy()['impactDissip']."""
     e = _joint_engine()
     table = np.zeros(len(e.impactTimes), dtype=_IMPACT_FIELDS)
     before, after = np.array(e.impactBefore), np.array(e.impactAfter)
@@ -322,10 +331,14 @@ def impacts():
 
 
 def energy():
-    """Energies in J: kinetic and potential now; frictDissip, impactDissip and baseWork since dem.engines() made the engines; compliant joints: also elastPotential
-    now and dampDissip so far, and all of them 0 before the first step. The sum of all others less baseWork is
-    constant, but for madeEnergy less lostEnergy of the engine, and for what has no column: the work of other engines' forces, a change of
-    gravity or of velocities by a script, an erased block."""
+    """Energies in J, a dict.
+
+    kinetic, potential                       now
+    frictDissip, impactDissip, baseWork      since dem.engines() made the engines: dissipated by friction and by impacts, and the work of the base
+    elastPotential, dampDissip               compliant joints: elastic energy now, dissipated by dashpots so far
+
+    The sum of all others less baseWork is constant, except for madeEnergy less lostEnergy of the engine, and for the work of other
+    engines' forces, a change of gravity or velocities by a script, and erased blocks. With compliant joints all energies are 0 before the first step."""
     e = _joint_engine()
     keys = ("kinetic", "potential", "elastPotential", "frictDissip", "dampDissip", "impactDissip", "baseWork")
     return {key: getattr(e, key) for key in keys if hasattr(e, key)}
