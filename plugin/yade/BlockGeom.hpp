@@ -10,7 +10,7 @@ namespace yade {
 class BlockGeom : public GenericSpheresContact {
 public:
 	masonry::ContactPatch patch;
-	masonry::CornerNormals corner; // of compliant joints
+	masonry::CornerNormals corner;        // of compliant joints
 	std::array<Vector3r, 8> pointNormals; // of the patch's points, unit, from body 1 to body 2
 
 	masonry::PatchFeature feature() const;

@@ -3,8 +3,8 @@
 //
 // With w1, w2 the outward normals of the faces beside the edge and v_k those beside the vertex, the common normals are w1 cos a + w2 sin a
 // with non-positive components along all v_k: from a = 0, where the vertex lies on the first face, to the first angle at which a component
-// vanishes, whose normal is perpendicular to the edge and to the vertex's own edge along v_k, or to 90 degrees, where the vertex lies on the
-// second face.
+// vanishes, whose normal is perpendicular to the edge and to the vertex's own edge along v_k, or to 90 degrees, where the vertex lies on
+// the second face.
 #include "contact/features.hpp"
 #include "tolerances.hpp"
 #include <cmath>
@@ -25,8 +25,8 @@ public:
 	    : vertexSigns(feature::vertexSigns(vertex)), axis(face / 2),
 	      turn((facePose.orientation.conjugate() * vertexPose.orientation).toRotationMatrix())
 	{
-		const Vector3 place = facePose.orientation.conjugate() * (vertexPose.position - facePose.position) +
-		                      turn * vertexSigns.cwiseProduct(vertexHalf);
+		const Vector3 place =
+		    facePose.orientation.conjugate() * (vertexPose.position - facePose.position) + turn * vertexSigns.cwiseProduct(vertexHalf);
 		faceSigns = place.unaryExpr(&feature::signOf);
 		faceSigns[axis] = face % 2 ? 1 : -1;
 		outside = faceSigns.cwiseProduct(place) - faceHalf;
@@ -55,7 +55,8 @@ private:
 		normals.outside1 = outside[axis];
 		normals.outside2 = outside[side];
 		for (int k = 0; k < 3; ++k) {
-			const double first = vertexSigns[k] * faceSigns[axis] * turn(axis, k), second = vertexSigns[k] * faceSigns[side] * turn(side, k);
+			const double first = vertexSigns[k] * faceSigns[axis] * turn(axis, k),
+			             second = vertexSigns[k] * faceSigns[side] * turn(side, k);
 			if (std::hypot(first, second) < tolerance::contact::parallelEdges) // v_k along the edge
 				continue;
 			if (first > 0) {

@@ -3,7 +3,8 @@
 //
 // Let d be the place of the corner of body 2 seen from that of body 1, and N1, N2 the cones of the outward normals of the faces that meet
 // there. The corners overlap where d is inside the Minkowski sum of corner 1 and the mirror image of corner 2. That sum is a cone whose
-// normals are N1 and -N2 in common; in the plane it is bounded by two faces, one of each body, with normals n1 and n2 from body 1 to body 2:
+// normals are N1 and -N2 in common; in the plane it is bounded by two faces, one of each body, with normals n1 and n2 from body 1 to body
+// 2:
 //
 //     gap(d) = max(n1.d, n2.d)
 //
@@ -18,8 +19,8 @@
 //
 // In space the second normals belong to vertices on edges (contact/vertex_on_edge.hpp): of parallel edges, the ends of what they share.
 //
-// A corner is at a corner within tolerance::contact::vertexReach. Faces that enclose less than tolerance::rigid::cornerSpread have one normal:
-// a block on its bed carries no second rows, and what is lost is that angle of the friction on one side.
+// A corner is at a corner within tolerance::contact::vertexReach. Faces that enclose less than tolerance::rigid::cornerSpread have one
+// normal: a block on its bed carries no second rows, and what is lost is that angle of the friction on one side.
 #include "dynamics/rigid/kinematics.hpp"
 #include <algorithm>
 

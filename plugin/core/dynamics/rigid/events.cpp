@@ -59,7 +59,7 @@ FoundPoints<K> featuresAtEnd(const RigidSystem<K>& s, const SmoothStep<K>& step,
 {
 	typename K::Memory memory = pair.memory;
 	return findRows(s.bodies[pair.body1], step.trial().bodies[pair.body1].end, s.bodies[pair.body2], step.trial().bodies[pair.body2].end,
-	                  memory);
+	                memory);
 }
 
 // No point of either body goes farther than this relative to the other one in the trial.
@@ -157,7 +157,8 @@ bool isContact(const RigidSystem<K>& s, const SmoothStep<K>& step, const Event& 
 	const ContactPair<K>& pair = s.pairs[event.point.pair];
 	const auto found = featuresAtEnd(s, step, pair);
 	const auto isKnown = [&pair](const auto& feature) {
-		return std::any_of(pair.points.begin(), pair.points.begin() + pair.size, [&](const auto& point) { return point.feature == feature; });
+		return std::any_of(pair.points.begin(), pair.points.begin() + pair.size,
+		                   [&](const auto& point) { return point.feature == feature; });
 	};
 	const auto& closing = pair.points[event.point.point].feature;
 	for (int i = found.places; i < found.size; ++i) { // a corner meets a corner, with both normals

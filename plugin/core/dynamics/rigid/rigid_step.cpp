@@ -11,17 +11,20 @@ template <class K>
 void dropIdle(FoundPoints<K>& found, const ContactPair<K>& before, const RigidBody<K>& body1, const RigidBody<K>& body2, double samePlace)
 {
 	constexpr double inside = 0.8; // of the friction limit
-	const auto reaction = [&](const ContactFrame<K>& frame) {
-		typename K::Vector sum = K::Vector::Zero();
-		for (int k = 0; k < before.size; ++k)
-			if ((before.points[k].frame.position - frame.position).norm() <= samePlace)
-				sum += before.points[k].frame.axes.transpose() * before.points[k].force;
-		return typename ContactRows<K>::Rows(frame.axes * sum);
+	const auto frameOf = [&](const typename K::Feature& feature) {
+		return K::frame(feature, body1.halfSize, body1.pose, body2.halfSize, body2.pose);
 	};
 	const auto isIdle = [&](int place) {
-		const auto p = reaction(K::frame(found.features[place], body1.halfSize, body1.pose, body2.halfSize, body2.pose));
+		const ContactFrame<K> frame = frameOf(found.features[place]);
+		typename K::Vector reaction = K::Vector::Zero();
+		for (int k = 0; k < before.size; ++k)
+			if (const auto old = frameOf(before.points[k].feature); (old.position - frame.position).norm() <= samePlace)
+				reaction += old.axes.transpose() * before.points[k].force;
+		const typename ContactRows<K>::Rows p = frame.axes * reaction;
 		return p[0] > 0 && p.template tail<K::rows - 1>().norm() <= inside * before.friction * p[0];
 	};
+	if (found.size == found.places)
+		return;
 	const FoundPoints<K> all = found;
 	found.size = found.places;
 	for (int i = all.places; i < all.size; ++i)

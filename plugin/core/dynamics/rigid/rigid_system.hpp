@@ -105,7 +105,8 @@ void takeStates(const ContactPair<K>& before, const FoundPoints<K>& found, doubl
 	takeState(*same, samePlace, point);
 	const auto last = found.features.begin() + found.size;
 	for (auto old = begin; old != end; ++old)
-		if ((old->frame.position - point.frame.position).norm() <= samePlace && std::find(found.features.begin(), last, old->feature) == last) {
+		if ((old->frame.position - point.frame.position).norm() <= samePlace &&
+		    std::find(found.features.begin(), last, old->feature) == last) {
 			point.closed |= old->closed;
 			point.force += old->force;
 		}

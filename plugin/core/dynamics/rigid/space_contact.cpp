@@ -237,7 +237,8 @@ void Space::addSecondNormals(const Vector& half1, const Pose& pose1, const Vecto
 			if (normals.vertexEdge < 0)
 				out.addSecondNormal({point.kind, on1 ? vertex : normals.otherFace, on1 ? normals.otherFace : vertex}, i);
 			else
-				out.addSecondNormal({SpaceFeature::Edges, on1 ? normals.vertexEdge : normals.edge, on1 ? normals.edge : normals.vertexEdge}, i);
+				out.addSecondNormal({SpaceFeature::Edges, on1 ? normals.vertexEdge : normals.edge, on1 ? normals.edge : normals.vertexEdge},
+				                    i);
 		});
 	}
 }

@@ -30,8 +30,8 @@ constexpr int lanePoints = K::dimension == 2 ? 2 : 4;
 template <class K>
 constexpr int lanesOfPair = K::dimension == 2 ? 1 : 2;
 template <class K>
-constexpr int pairPoints = lanePoints<K> * lanesOfPair<K>; // in the plane without the second normal of a corner
-constexpr double farAway = 1e30; // m, gap of a lane without a point
+constexpr int pairPoints = lanePoints<K>* lanesOfPair<K>; // in the plane without the second normal of a corner
+constexpr double farAway = 1e30;                          // m, gap of a lane without a point
 
 // What a step or substep hands on of an impulse at most: so many times its mean, or so many times what stops a point alone after its fall,
 // which is how a block that begins to turn about it presses. Larger: what has stopped a block pushes it up before the sweep takes it off;

@@ -1,7 +1,7 @@
 // Corners that meet corners: frames that lean on each other, in the plane and in space.
 #include "core/dynamics/rigid/space_rig.hpp"
-#include <catch2/catch.hpp>
 #include <algorithm>
+#include <catch2/catch.hpp>
 
 using namespace rig;
 
@@ -11,10 +11,7 @@ namespace {
 // height z: its foot is at x + side L sin th, its upper inner corner at (x, z + L cos th).
 struct Leaning {
 	double t, L, th, side {1}, x {0}, z {0}, weight {1}; // weight: relative to that of its density
-	Vector2 center() const
-	{
-		return {x + side * (std::cos(th) * t + std::sin(th) * L) / 2, z + (std::sin(th) * t + std::cos(th) * L) / 2};
-	}
+	Vector2 center() const { return {x + side * (std::cos(th) * t + std::sin(th) * L) / 2, z + (std::sin(th) * t + std::cos(th) * L) / 2}; }
 };
 
 constexpr double depth = 0.4; // m, half size across the plane, in space
@@ -95,9 +92,9 @@ Frames<K> aFrame(double th, double slender, double friction, double atTop, bool 
 	return f;
 }
 
-constexpr double margin = 0.02;    // of the friction: what the criteria are tested with
-constexpr double stands = 1e-6;    // m, a block of 1 m that stands
-constexpr double falls = 1e-4;     // m, one that falls: of the least friction, 0.013, 2 % are 2.6e-4 g, which is 3e-4 m in half a second
+constexpr double margin = 0.02; // of the friction: what the criteria are tested with
+constexpr double stands = 1e-6; // m, a block of 1 m that stands
+constexpr double falls = 1e-4;  // m, one that falls: of the least friction, 0.013, 2 % are 2.6e-4 g, which is 3e-4 m in half a second
 // The solver's residual of 1e-9 of what gravity gives in a step leaves 1e-9 g t^2/2 = 1.2e-9 m, and a frame that falls increases it.
 constexpr double symmetric = 1e-8; // m
 
@@ -117,8 +114,8 @@ void requireFrame(double th, double slender, double atTop, bool swapped, double 
 }
 
 // Two frames upon each other: the upper one stands on a plate on the upper outer corners of the lower one, at t cos th from its middle. The
-// plate is smooth below. With W, W' the weights of a lower and an upper block and P = (plate + 2 W')/2 that on one corner, moments about the
-// foot give H L cos th = (W/2 + P)(L sin th - t cos th), and the foot carries W + P. The upper frame is one on its own.
+// plate is smooth below. With W, W' the weights of a lower and an upper block and P = (plate + 2 W')/2 that on one corner, moments about
+// the foot give H L cos th = (W/2 + P)(L sin th - t cos th), and the foot carries W + P. The upper frame is one on its own.
 template <class K>
 Frames<K> cardHouse(double th, double upperTh, double factor, double upperFactor)
 {
