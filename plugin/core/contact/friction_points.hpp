@@ -4,33 +4,35 @@
 // The normal forces N_i act at the corners x_i of the patch. Friction at the corners would resist a turn about the normal with the torque
 // mu sum N_i |x_i - c|, c the centre of the normal forces. That is too much: an even pressure has the mean distance of its area in the
 // place of the distance of the corners. So friction acts nearer to c. It remains in the plane of the patch and its resultant in a slide
-// remains at c, so only the turn about the normal is affected. An edge or a corner (fewer than three points that carry) keeps its friction
-// where it is.
+// remains at c, so only the turn about the normal is affected. Where an edge or a corner carries all, its friction acts at its points.
 //
-// Even pressure. A rectangle with half sides a >= b has the mean distance from its centre (1/ab) times the integral of r over 0 < x < a,
-// 0 < y < b. In polar coordinates, the triangle below the diagonal gives
-//     integral of (a/cos phi)^3/3 over 0 < phi < atan(b/a)  =  (a b D + a^3 asinh(b/a))/6,    D^2 = a^2 + b^2,
-// and the other one the same with a and b exchanged. So, with r = b/a, the ratio of the mean distance to that of the corners, D, is
-//     s0(r) = 1/3 + (asinh(r)/r + r^2 asinh(1/r))/(6 sqrt(1 + r^2)):    0.5411 for a square, 0.5146 for 1:4, 1/2 in the limit of a line.
-// Patches of another shape take the a and b of the rectangle whose corners have the same second moments Q = sum w_i (x_i - g)(x_i - g)^T,
-// w_i the shares of the patch and g its centroid: a^2 and b^2 are the eigenvalues of Q. A regular octagon is given 0.86 of its torque so.
+// Even pressure. The mean distance of the polygon's points from its centroid g is the sum over the triangles between g and its sides: with
+// the side at the distance h from g and s along it from the foot of h, each has the integral h/6 (s r + h^2 asinh(s/h)) between the ends
+// of the side. The ratio of the mean distance to that of the corners is s0: 0.5411 for a square, 0.5146 for 1:4, 1/2 for a line. The
+// second moments Q = sum w_i (x_i - g)(x_i - g)^T, w_i the shares of the patch, have the eigenvalues a^2 >= b^2; a rectangle has the half
+// sides a and b, D^2 = a^2 + b^2.
 //
 // Eccentric normal force. Its corner forces are those of a pressure that is linear, w_i (1 + d.Q^-1 (x_i - g)), d = c - g. The second
 // moments of this pressure about c are Q - d d^T: along the eccentricity it is narrower. The friction points follow it by
-//     y_i = c + s0 (1 - d d^T Q^-1)(x_i - c).
+//     y_i = c + s0 z_i,   z_i = (1 - d d^T Q^-1)(x_i - c).
 // A line with d = a e then has the torque mu N a (1 - e^2)^2/2. The linear pressure has the same for e = 0 and for e = 1/3 (a triangle,
-// 32/81 a) and nearly the same between. Measured (tests/core/contact/friction_points_test.cpp): the torque is that of the linear pressure
-// within 2 % as long as this presses everywhere. Four points have an interaction curve of shear and torque inside that of the even
-// pressure: by 9 % at most for a square, 10 % for 1:2, 13 % for 1:4 (on the safe side); with an eccentric force by 10 % for a square, 18 %
-// for 1:4.
+// 32/81 a) and nearly the same between.
+//
+// Shear and torsion together. Of a narrow face, points on the lines from c to the corners have an interaction curve of shear across the
+// face and torque that is a straight line, where that of the pressure is round. It is rounder where the points are farther across. So their
+// direction goes from that of the corners, atan(b/a), 0.6 of the way towards that of a square's, phi, at the same torque:
+//     y_i = c + s0 l B z_i,   B = (D cos phi/a along, D sin phi/b across),   l = sum N_i |z_i| / sum N_i |B z_i|.
+// They may lie beside the face.
+//
+// Measured (tests/core/contact/friction_points_test.cpp): the torque is that of the linear pressure within 2 % as long as this presses
+// everywhere. The interaction curve is inside that of the even pressure by 10 % at most and outside by 4 % from 1:1 to 1:4. With an
+// eccentric force it is inside that of the linear pressure by 11 % at most for a square and by 15 % for 1:4, outside by 5 %: four points
+// have corners of their curve where the pressure has none, which errs on the safe side.
 #include "math.hpp"
 
 namespace masonry {
 
 constexpr int maxFrictionPoints = 8;
-
-// Ratio s0 of the mean distance of a rectangle's points from its centre to that of its corners; b/a = `ratio` <= 1.
-double meanOverCornerDistance(double ratio);
 
 struct PatchCorner {
 	Vector2 position; // in the plane of the patch, m

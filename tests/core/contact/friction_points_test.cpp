@@ -117,12 +117,18 @@ TEST_CASE("Friction resists a turn with the torque of an even pressure")
 	for (double b : {1., 0.7, 0.5, 0.25, 0.1, 1e-3}) {
 		CAPTURE(b);
 		const double even = pressed(1, b).torque();
-		CHECK(meanOverCornerDistance(b) == Approx(even / std::hypot(1, b)).epsilon(2e-4)); // squares of 1/80
-		CHECK(friction(corners(1, b)).torque() == Approx(even).epsilon(2e-4));
+		CHECK(friction(corners(1, b)).torque() == Approx(even).epsilon(2e-4)); // squares of 1/80
 		CHECK(friction(corners(b, 1)).torque() == Approx(even).epsilon(2e-4));
 	}
-	CHECK(meanOverCornerDistance(1) == Approx((std::sqrt(2.) + std::log(1 + std::sqrt(2.))) / (3 * std::sqrt(2.))));
-	CHECK(meanOverCornerDistance(0) == 0.5);
+	CHECK(friction(corners(1, 1)).torque() == Approx((std::sqrt(2.) + std::log(1 + std::sqrt(2.))) / 3));
+	// The patch of a face on an equal one that is turned a little: corners, and crossings in the middle of the sides.
+	for (double b : {1., 0.25}) {
+		std::vector<PatchCorner> patch;
+		for (int k = 0; k < 9; ++k)
+			if (k != 4)
+				patch.push_back({{k % 3 - 1., b * (k / 3 - 1.)}, 0.125, 1});
+		CHECK(friction(patch).torque() / 8 == Approx(pressed(1, b).torque()).epsilon(2e-4));
+	}
 }
 
 TEST_CASE("Friction stays where an edge or a corner carries all, and its resultant is where that of the normal forces is")
@@ -160,8 +166,9 @@ TEST_CASE("An eccentric force is held against a turn as by a linear pressure")
 		}
 }
 
-// The curve of four points lies inside that of the pressure: it has edges where the pressure's is round.
-TEST_CASE("Shear and torsion together stay near the interaction curve of the pressure, on the safe side")
+// Bounds: 10 % for even pressures. The curve of four points has edges where that of the pressure is round: for eccentric forces up to the
+// border of the kern it misses the 10 % on the safe side.
+TEST_CASE("Shear and torsion together stay near the interaction curve of the pressure")
 {
 	const auto within = [](double b, const Vector2& e, double low, double high) {
 		CAPTURE(b, e.transpose());
@@ -169,11 +176,10 @@ TEST_CASE("Shear and torsion together stay near the interaction curve of the pre
 		CHECK(least > low);
 		CHECK(most < high);
 	};
-	within(1, Vector2::Zero(), 0.9, 1.001);
-	within(0.5, Vector2::Zero(), 0.9, 1.001);
-	within(0.25, Vector2::Zero(), 0.87, 1.001);
+	for (double b : {1., 0.5, 0.25})
+		within(b, Vector2::Zero(), 0.9, 1.04);
 	for (const Vector2& e : {Vector2(0.2, 0), Vector2(0.15, 0.15), Vector2(1. / 3, 0)}) {
-		within(1, e, 0.9, 1.03);
-		within(0.25, e, 0.82, 1.03);
+		within(1, e, 0.89, 1.03);
+		within(0.25, e, 0.85, 1.055);
 	}
 }
