@@ -64,8 +64,9 @@ public:
 	double left() const { return stepEnd - end; } // s, of the step after the part
 	// Computes the trial of length h from the system's state. Open points do not act, but for those in `anticipated`. `again`: the last
 	// trial was of the same step and points; its forces are the first guess, which decides where a sliding point stops by a jam (an impulse
-	// however short the step).
-	void attempt(const RigidSystem<K>& system, double h, bool again = false);
+	// however short the step). The friction of the system's points is placed by the forces of the last step, and by those of the first pass
+	// where these tell nothing (grip.hpp).
+	void attempt(RigidSystem<K>& system, double h, bool again = false);
 	// Makes it the system's state: poses, velocities, forces, energies; gaps of loaded points closed.
 	void accept(RigidSystem<K>& system);
 
@@ -91,6 +92,7 @@ private:
 	void findStray(const RigidSystem<K>& system);
 	double strayWork() const;
 	double finish(const RigidSystem<K>& system, double h);
+	void moveFriction(RigidSystem<K>& system) const;
 	void findFrames(const RigidSystem<K>& system);
 	double findShifts(const RigidSystem<K>& system, double most);
 	void project(const RigidSystem<K>& system, double lost);
@@ -125,7 +127,10 @@ Eigen::Matrix<double, K::rows, 1> relativeVelocity(const ContactFrame<K>& frame,
 	const auto at = [&](const typename K::Vector& center, const typename K::Velocity& v) {
 		return typename K::Vector(v.template head<K::dimension>() + K::cross(v.template tail<K::spins>(), frame.position - center));
 	};
-	return frame.axes * (at(center2, v2) - at(center1, v1));
+	Eigen::Matrix<double, K::rows, 1> u = frame.axes * (at(center2, v2) - at(center1, v1));
+	if constexpr (K::dimension == 3)
+		u.template tail<2>() += frame.axes.template bottomRows<2>() * K::cross(v2.template tail<3>() - v1.template tail<3>(), frame.grip);
+	return u;
 }
 // At a point of the system, in its present state.
 template <class K>
