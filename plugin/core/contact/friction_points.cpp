@@ -23,7 +23,8 @@ Vector2 distanceAndArea(const Vector2& p, const Vector2& q)
 	const double h = std::abs(twice) / length;
 	const auto upTo = [&](const Vector2& end) {
 		const double s = end.dot(q - p) / length;
-		return s * end.norm() + (h > 0 ? h * h * std::asinh(s / h) : 0.);
+		const double r = end.norm();
+		return s * r + (h > 0 ? h * h * std::copysign(std::log((std::abs(s) + r) / h), s) : 0.); // the logarithm is asinh(s/h)
 	};
 	return {h / 6 * (upTo(q) - upTo(p)), h * length / 2};
 }
@@ -34,8 +35,11 @@ double meanDistance(const PatchCorner* corners, int size, const Vector2& centroi
 	std::array<Vector2, maxFrictionPoints> around;
 	for (int i = 0; i < size; ++i)
 		around[i] = corners[i].position - centroid;
-	std::sort(around.begin(), around.begin() + size,
-	          [](const Vector2& p, const Vector2& q) { return std::atan2(p.y(), p.x()) < std::atan2(q.y(), q.x()); });
+	const auto turn = [](const Vector2& p) { // grows with the angle, -2 to 2
+		const double x = p.x() / std::max(std::abs(p.x()) + std::abs(p.y()), std::numeric_limits<double>::min());
+		return p.y() < 0 ? x - 1 : 1 - x;
+	};
+	std::sort(around.begin(), around.begin() + size, [&](const Vector2& p, const Vector2& q) { return turn(p) < turn(q); });
 	Vector2 sum = Vector2::Zero();
 	for (int i = 0; i < size; ++i)
 		sum += distanceAndArea(around[i], around[(i + 1) % size]);
