@@ -31,7 +31,8 @@ public:
 		((vector<int>, identities, , Attr::readonly, "Which features make each point; the same in the next step for the same features."))
 		((vector<int>, muted, , Attr::readonly, "1 for a point that carries no force until the rotation of the block has crossed zero."))
 		((vector<Vector3r>, shears, , Attr::readonly, "Elastic tangential displacement of each point, of body 2 relative to body 1 [m]."))
-		((vector<Vector3r>, forces, , Attr::readonly, "Force on body 2 at each point [N].")),
+		((vector<Vector3r>, forces, , Attr::readonly, "Force on body 2 at each point [N]; its tangential part acts at the point's place plus frictionOffsets."))
+		((vector<Vector3r>, frictionOffsets, , Attr::readonly, "From each point (geom.points) to where its tangential force acts [m]: a face that turns on its bed is held with the torque of an even pressure.")),
 		createIndex();,
 		.add_property("normalForces", +[](const BlockPhys& phys) { return phys.normalForces; }, "Force along the normal of each point (geom.normals) [N], compression positive; empty after loading until the next step.")
 	);

@@ -357,11 +357,11 @@ void RockingJointEngine::applyForces(const vector<Pair>& pairs)
 		pairs[c].phys->writePoints(contact);
 		pairs[c].phys->applied = true;
 		for (int i = 0; i < contact.size; ++i) {
-			const Vector3r force = contact.force(i), point = contact.position(i);
+			const Vector3r force = contact.force(i);
 			bodyForce[contact.body1] -= force;
-			bodyTorque[contact.body1] -= (point - system.bodies[contact.body1].pose.position).cross(force);
+			bodyTorque[contact.body1] -= contact.moment(i, system.bodies[contact.body1].pose.position);
 			bodyForce[contact.body2] += force;
-			bodyTorque[contact.body2] += (point - system.bodies[contact.body2].pose.position).cross(force);
+			bodyTorque[contact.body2] += contact.moment(i, system.bodies[contact.body2].pose.position);
 		}
 	}
 	for (size_t b = 0; b < ids.size(); ++b) {
@@ -409,9 +409,8 @@ std::map<int, RockingJointEngine::Reaction> RockingJointEngine::baseReactions() 
 				if (!system.bodies[b].prescribed)
 					continue;
 				Reaction& sum = result[b];
-				const Vector3r force = sign * contact.force(i);
-				sum.force += force;
-				sum.moment += (contact.position(i) - system.bodies[b].pose.position).cross(force);
+				sum.force += sign * contact.force(i);
+				sum.moment += sign * contact.moment(i, system.bodies[b].pose.position);
 			}
 	return result;
 }

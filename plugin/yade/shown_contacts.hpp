@@ -192,12 +192,14 @@ private:
 	{
 		phys.forces.resize(pair.size);
 		phys.normalForces.resize(pair.size);
+		phys.frictionOffsets.resize(pair.size);
 		phys.normalForce.setZero();
 		phys.shearForce.setZero();
 		for (int i = 0; i < pair.size; ++i) {
 			const auto& point = pair.points[i];
 			const Vector3r normal = normalOf(point) * point.force[0];
 			phys.normalForces[i] = point.force[0];
+			phys.frictionOffsets[i] = coordinates.out(point.frame.grip);
 			phys.forces[i] = coordinates.out(point.frame.axes.transpose() * point.force);
 			phys.normalForce += normal;
 			phys.shearForce += phys.forces[i] - normal;

@@ -69,12 +69,12 @@ void addSides(Row* rows, const std::vector<Body>& bodies, const ImpulsePoint& po
 		const Body& body = bodies[b];
 		if (body.prescribed)
 			continue;
-		const Vector3 arm = point.position - body.pose.position;
+		const Vector3 pressed = point.position - body.pose.position, gripped = pressed + point.grip;
 		const Matrix3 inverseInertia = body.inverseInertia();
 		for (int k = 0; k < 3; ++k) {
 			Side& side = rows[k].side[rows[k].sides++];
 			side.body = b;
-			const Vector3 axis = sign * axes.row(k).transpose(), turn = arm.cross(axis);
+			const Vector3 axis = sign * axes.row(k).transpose(), turn = (k == 0 ? pressed : gripped).cross(axis);
 			side.direction << axis, turn;
 			side.response << body.inverseMass() * axis, inverseInertia * turn;
 		}
@@ -341,9 +341,14 @@ ImpulseReport solveDense(std::vector<Body>& bodies, std::vector<ImpulsePoint>& p
 
 } // namespace
 
+Vector3 velocityAt(const Body& body, const ImpulsePoint& point)
+{
+	return body.velocityAt(point.position) + point.normal.dot(body.angularVelocity) * point.normal.cross(point.grip);
+}
+
 Vector3 relativeVelocity(const std::vector<Body>& bodies, const ImpulsePoint& point)
 {
-	return bodies[point.body2].velocityAt(point.position) - bodies[point.body1].velocityAt(point.position);
+	return velocityAt(bodies[point.body2], point) - velocityAt(bodies[point.body1], point);
 }
 
 Matrix3 axesAlong(const Vector3& normal)

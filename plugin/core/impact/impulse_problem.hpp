@@ -32,6 +32,7 @@ struct ImpulsePoint {
 	bool holds {true};                 // first guess: sticks (true) or parts (false)
 	Vector3 bias {Vector3::Zero()};    // added to the relative velocity u, m/s (see rigid_acceleration.hpp)
 	Vector3 impulse {Vector3::Zero()}; // result: on body 2, global, N s
+	Vector3 grip {Vector3::Zero()};    // across the normal: p_t acts, and u_t is measured, at position + grip (contact/friction_points.hpp)
 };
 
 struct CoupleRow {
@@ -50,6 +51,8 @@ struct ImpulseReport {
 // Finds the impulses and changes the bodies' velocities. Prescribed bodies keep theirs.
 using ImpulseSolver = std::function<ImpulseReport(std::vector<Body>&, std::vector<ImpulsePoint>&, std::vector<CoupleRow>&)>;
 
+// Of the body: along the normal at the point's position, across it where its friction acts. m/s
+Vector3 velocityAt(const Body& body, const ImpulsePoint& point);
 // Of body 2 against body 1 at the point, m/s.
 Vector3 relativeVelocity(const std::vector<Body>& bodies, const ImpulsePoint& point);
 // Rows: the unit normal, then two unit tangents.

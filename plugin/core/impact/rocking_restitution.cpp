@@ -133,7 +133,7 @@ double supportWork(const std::vector<Body>& bodies, const std::vector<ImpulsePoi
 	for (const ImpulsePoint& point : points)
 		for (const auto& [b, sign] : {std::pair(point.body1, 1.), std::pair(point.body2, -1.)})
 			if (bodies[b].prescribed)
-				sum += sign * point.impulse.dot(bodies[b].velocityAt(point.position));
+				sum += sign * point.impulse.dot(velocityAt(bodies[b], point));
 	for (const CoupleRow& row : rows)
 		for (const auto& [b, sign] : {std::pair(row.body1, 1.), std::pair(row.body2, -1.)})
 			if (bodies[b].prescribed)

@@ -1,4 +1,5 @@
 #include "dynamics/compliant/joint_contact.hpp"
+#include "impact/impulse_problem.hpp" // axesAlong
 #include "tolerances.hpp"
 #include <algorithm>
 #include <cmath>
@@ -15,6 +16,33 @@ double JointContact::dampingNormal(double mass) const
 double JointContact::dampingShear(double mass) const
 {
 	return 2 * law.dampingRatio * std::sqrt(law.shearStiffness * stiffnessArea() * mass);
+}
+
+Vector3 JointContact::moment(int i, const Vector3& center) const
+{
+	return (position(i) - center).cross(force(i)) + points[i].grip.cross(points[i].shearForce);
+}
+
+double JointContact::power(int i, const Body& body) const
+{
+	return force(i).dot(body.velocityAt(position(i))) + points[i].shearForce.dot(gripMotion(i, body.angularVelocity));
+}
+
+std::array<Vector3, maxFrictionPoints> JointContact::gripsFor(const std::array<double, maxFrictionPoints>& forces) const
+{
+	std::array<Vector3, maxFrictionPoints> grips;
+	grips.fill(Vector3::Zero());
+	if (std::isinf(law.friction)) // no torque to limit
+		return grips;
+	std::array<PatchCorner, maxFrictionPoints> corners;
+	std::array<Vector2, maxFrictionPoints> offsets;
+	const Eigen::Matrix<double, 2, 3> tangents = axesAlong(patch.normal).bottomRows<2>();
+	for (int i = 0; i < size; ++i)
+		corners[i] = {tangents * (position(i) - position(0)), patch.points[i].weight, forces[i]};
+	frictionOffsets(corners.data(), size, offsets.data());
+	for (int i = 0; i < size; ++i)
+		grips[i] = tangents.transpose() * offsets[i];
+	return grips;
 }
 
 bool JointContact::rocking() const
@@ -89,6 +117,16 @@ Vector3 withinFriction(const JointContact& contact, const Vector3& force, double
 	return force - excess(along, friction) - excess(force - along, contact.corner.frictionAcross(friction));
 }
 
+void placeFriction(JointContact& contact)
+{
+	std::array<double, maxFrictionPoints> forces {};
+	for (int i = 0; i < contact.size; ++i)
+		forces[i] = contact.points[i].normalForce;
+	const auto grips = contact.gripsFor(forces);
+	for (int i = 0; i < contact.size; ++i)
+		contact.points[i].grip = grips[i];
+}
+
 void release(JointPoint& point)
 {
 	point.normalForce = 0;
@@ -105,20 +143,29 @@ void updateForces(JointContact& contact, const Body& body1, const Body& body2, d
 	const double dampingNormal = contact.dampingNormal(mass), dampingShear = contact.dampingShear(mass);
 	const StepMotion motion1(body1, dt), motion2(body2, dt);
 	contact.energy = {};
+	const auto before = contact.points;
+	std::array<Vector3, maxFrictionPoints> velocities; // at the points, of body 2 relative to body 1
 	for (int i = 0; i < contact.size; ++i) {
 		JointPoint& point = contact.points[i];
-		const JointPoint old = point;
+		const double depth = -contact.patch.points[i].gap, weight = contact.patch.points[i].weight;
+		velocities[i] = motion2.velocityAt(contact.position(i)) - motion1.velocityAt(contact.position(i));
+		if (point.muted || depth <= 0)
+			release(point);
+		else
+			point.normalForce = std::max(0., contact.normalStiffness(i) * depth - dampingNormal * weight * n.dot(velocities[i]));
+	}
+	placeFriction(contact);
+	const Vector3 spin = body2.angularVelocity - body1.angularVelocity;
+	for (int i = 0; i < contact.size; ++i) {
+		JointPoint& point = contact.points[i];
+		const JointPoint& old = before[i];
 		const double depth = -contact.patch.points[i].gap, weight = contact.patch.points[i].weight;
 		const double stiffness = contact.shearStiffness(i);
-		const Vector3 velocity = motion2.velocityAt(contact.position(i)) - motion1.velocityAt(contact.position(i));
-		const double normalVelocity = n.dot(velocity);
-		const Vector3 slideVelocity = velocity - n * normalVelocity;
+		const double normalVelocity = n.dot(velocities[i]);
+		const Vector3 acrossPoint = velocities[i] - n * normalVelocity, slideVelocity = acrossPoint + contact.gripMotion(i, spin);
 		double slipped = 0; // J
 		bool slips = true;
-		if (point.muted || depth <= 0) {
-			release(point);
-		} else {
-			point.normalForce = std::max(0., contact.normalStiffness(i) * depth - dampingNormal * weight * normalVelocity);
+		if (!point.muted && depth > 0) {
 			point.shear += slideVelocity * dt;
 			const Vector3 pull = -stiffness * point.shear, held = withinFriction(contact, pull, point.normalForce);
 			slips = held != pull;
@@ -135,7 +182,8 @@ void updateForces(JointContact& contact, const Body& body1, const Body& body2, d
 		// values at the two ends: where points meet or part within the step, springs do not store what they take.
 		const double oldDepth = depth + normalVelocity * dt;
 		const double takenNormal = -0.5 * (old.normalForce + point.normalForce) * normalVelocity * dt;
-		const double takenShear = -0.5 * (old.shearForce + point.shearForce).dot(slideVelocity) * dt;
+		const Vector3 oldSlideVelocity = acrossPoint + n.dot(spin) * n.cross(old.grip);
+		const double takenShear = -0.5 * (old.shearForce.dot(oldSlideVelocity) + point.shearForce.dot(slideVelocity)) * dt;
 		const double storedNormal = old.muted ? 0 : 0.5 * contact.normalStiffness(i) * (squared(depth) - squared(oldDepth));
 		const double storedShear = 0.5 * stiffness * (point.shear.squaredNorm() - old.shear.squaredNorm());
 		const auto dashpot = [&](const JointPoint& p, double d) {
@@ -169,6 +217,7 @@ void holdForces(JointContact& contact)
 		point.shearForce = -contact.shearStiffness(i) * point.shear;
 		contact.energy.elastic += storedEnergy(contact, i);
 	}
+	placeFriction(contact);
 }
 
 } // namespace masonry

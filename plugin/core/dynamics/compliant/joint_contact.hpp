@@ -9,9 +9,12 @@
 //
 // s_i is the elastic tangential displacement, which slips as far as Coulomb's bound asks; c = 2 zeta sqrt(k A m) with m the
 // reduced mass of the pair. Where corners meet corners the bound is mu N_i along their edge and tan(half angle + atan mu) N_i across it
-// (contact/corner_patch.hpp). A muted point carries no force (see pivot_handoff.hpp).
+// (contact/corner_patch.hpp). N_i acts at the point, and T_i at the point's share of an even friction (contact/friction_points.hpp), where
+// s_i and u_t,i are measured too: wherever it moves to, the power of T_i is that of its spring, dashpot and slip. A muted point carries no
+// force (see pivot_handoff.hpp).
 #include "body.hpp"
 #include "contact/corner_patch.hpp"
+#include "contact/friction_points.hpp"
 
 namespace masonry {
 
@@ -29,6 +32,7 @@ struct JointPoint {
 	Vector3 shear {Vector3::Zero()};      // s_i, of body 2 relative to body 1, m
 	double normalForce {0};               // N_i on body 2 along the normal, N
 	Vector3 shearForce {Vector3::Zero()}; // T_i on body 2, N
+	Vector3 grip {Vector3::Zero()};       // from the point to where T_i acts, in the plane of the joint, m
 };
 
 struct JointEnergy {
@@ -53,8 +57,14 @@ struct JointContact {
 	double dampingNormal(double mass) const; // c_n of a pair of that reduced mass, N s/m
 	double dampingShear(double mass) const;
 	Vector3 position(int i) const { return 0.5 * (patch.points[i].position1 + patch.points[i].position2); }
+	// How a turn (or spin) moves the friction point across the normal, relative to the point.
+	Vector3 gripMotion(int i, const Vector3& turn) const { return patch.normal.dot(turn) * patch.normal.cross(points[i].grip); }
 	Vector3 force(int i) const { return points[i].normalForce * patch.normal + points[i].shearForce; } // on body 2
-	bool rocking() const;                                                                              // some point is muted
+	Vector3 moment(int i, const Vector3& center) const;                                                // of the same, about `center`
+	double power(int i, const Body& body) const;                                                       // of the same, on points of the body
+	// From the points to where their friction acts if their normal forces are these, m.
+	std::array<Vector3, maxFrictionPoints> gripsFor(const std::array<double, maxFrictionPoints>& forces) const;
+	bool rocking() const; // some point is muted
 };
 
 // 0 where neither body is free, kg

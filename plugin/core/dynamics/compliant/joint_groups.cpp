@@ -254,6 +254,10 @@ void moveContacts(JointSystem& s, const std::vector<Body>& before)
 {
 	for (JointContact& contact : s.contacts) {
 		const auto carry = [&](int b, const Vector3& point) { return s.bodies[b].pose.toGlobal(before[b].pose.toLocal(point)); };
+		const auto turned = [&](int b) { // a small turn
+			return Vector3(2 * (s.bodies[b].pose.orientation * before[b].pose.orientation.conjugate()).vec());
+		};
+		const Vector3 turn = turned(contact.body2) - turned(contact.body1);
 		for (int i = 0; i < contact.size; ++i) {
 			PatchPoint& point = contact.patch.points[i];
 			const Vector3 old = point.position2 - point.position1;
@@ -262,7 +266,7 @@ void moveContacts(JointSystem& s, const std::vector<Body>& before)
 			const Vector3 moved = point.position2 - point.position1 - old;
 			const Vector3& n = contact.patch.normal;
 			point.gap += n.dot(moved);
-			contact.points[i].shear += moved - n * n.dot(moved);
+			contact.points[i].shear += moved - n * n.dot(moved) + contact.gripMotion(i, turn);
 		}
 	}
 }
@@ -288,7 +292,7 @@ double mechanicalEnergy(const JointSystem& s)
 		for (int i = 0; i < contact.size; ++i)
 			for (const auto& [b, sign] : {std::pair(contact.body1, -1.), std::pair(contact.body2, 1.)}) {
 				const Vector3 force = sign * contact.force(i);
-				push(b, force, (contact.position(i) - bodies[b].pose.position).cross(force));
+				push(b, force, sign * contact.moment(i, bodies[b].pose.position));
 			}
 	double energy = kineticEnergy(bodies) + storedEnergy(s);
 	for (const Body& body : bodies)

@@ -72,14 +72,6 @@ double leastRockingSpeed(const JointSystem& s, const Joint& joint, const Vector3
 	return std::max(tolerance::restSpeed * std::sqrt(gravity / radius), std::sqrt(2 * A * depth / lever));
 }
 
-std::vector<ImpulsePoint> impulsePoints(const JointSystem& s, const std::vector<HeldPoint>& points)
-{
-	std::vector<ImpulsePoint> rows;
-	for (const HeldPoint& p : points)
-		rows.push_back(impulsePoint(s.contacts[p.contact], p.point));
-	return rows;
-}
-
 template <class Points>
 bool among(const Points& points, int contact, int i)
 {
@@ -90,18 +82,20 @@ bool among(const Points& points, int contact, int i)
 RockingImpact closingImpact(const JointSystem& s, const Joint& joint, const Closing& closing, const std::vector<HeldPoint>& loadedPoints)
 {
 	RockingImpact impact;
-	const auto add = [&](int c, int i) { impact.points.push_back(impulsePoint(s.contacts[c], i)); };
+	const auto add = [&](const std::vector<HeldPoint>& points) {
+		for (const ImpulsePoint& point : impulsePoints(s.contacts, points))
+			impact.points.push_back(point);
+		return int(impact.points.size());
+	};
+	std::vector<HeldPoint> landing, old, others;
 	for (const PointRef& p : closing.points)
-		add(p.contact, p.point);
+		landing.push_back({p.contact, p.point, Vector3::Zero()});
 	for (const HeldPoint& p : loadedPoints)
-		if (joint.has(p.contact))
-			add(p.contact, p.point);
-	const int newSupport = int(closing.points.size()), supports = int(impact.points.size());
+		(joint.has(p.contact) ? old : others).push_back(p);
+	const int newSupport = add(landing), supports = add(old);
 	impact.joints = {{joint.block, closing.support, joint.normal, closing.restitution, 0, newSupport, supports}};
 	if (s.order == ImpactOrder::simultaneous)
-		for (const HeldPoint& p : loadedPoints)
-			if (!joint.has(p.contact))
-				add(p.contact, p.point);
+		add(others);
 	return impact;
 }
 
@@ -192,7 +186,7 @@ double supportPower(const JointSystem& s)
 		for (int i = 0; i < contact.size; ++i)
 			for (const auto& [b, sign] : {std::pair(contact.body1, 1.), std::pair(contact.body2, -1.)})
 				if (moved(b))
-					power += sign * contact.force(i).dot(s.bodies[b].velocityAt(contact.position(i)));
+					power += sign * contact.power(i, s.bodies[b]);
 	return power;
 }
 
@@ -232,7 +226,7 @@ std::vector<HeldPoint> partingPoints(const RigidAcceleration& rates, const std::
 double lift(JointSystem& s, const Joint& joint, const std::vector<HeldPoint>& parting)
 {
 	const double energy = mechanicalEnergy(s), stored = storedEnergy(s);
-	auto rows = impulsePoints(s, selectPoints(s.contacts, loaded));
+	auto rows = impulsePoints(s.contacts, selectPoints(s.contacts, loaded));
 	const auto& contact = s.contacts[joint.contacts.front()];
 	const int support = contact.body1 == joint.block ? contact.body2 : contact.body1;
 	std::vector<CoupleRow> noTurn;
@@ -302,7 +296,7 @@ std::vector<HeldPoint> respondToJump(JointSystem& s, const std::vector<int>& mov
 {
 	const auto touching = selectPoints(
 	    s.contacts, [](const JointContact& contact, int i) { return !contact.points[i].muted && contact.patch.points[i].gap <= 0; });
-	auto rows = impulsePoints(s, touching);
+	auto rows = impulsePoints(s.contacts, touching);
 	std::vector<CoupleRow> none;
 	const ImpulseReport report = rigid::solveSparsely(s.bodies, rows, none);
 	note(s, report.residual, report.solved);

@@ -1,6 +1,29 @@
 #include "dynamics/compliant/rigid_acceleration.hpp"
+#include <algorithm>
 
 namespace masonry {
+
+std::vector<ImpulsePoint> impulsePoints(const std::vector<JointContact>& contacts, const std::vector<HeldPoint>& points)
+{
+	std::vector<ImpulsePoint> rows;
+	for (auto first = points.begin(); first != points.end();) {
+		const auto last = std::find_if(first, points.end(), [&](const HeldPoint& p) { return p.contact != first->contact; });
+		const JointContact& contact = contacts[first->contact];
+		std::array<double, maxFrictionPoints> forces {}, even {};
+		double sum = 0;
+		for (auto p = first; p != last; ++p) {
+			even[p->point] = 1;
+			sum += forces[p->point] = contact.points[p->point].normalForce;
+		}
+		const auto grips = contact.gripsFor(sum > 0 ? forces : even);
+		for (; first != last; ++first) {
+			const int i = first->point;
+			rows.push_back({contact.body1, contact.body2, contact.position(i), contact.patch.normal, contact.law.friction});
+			rows.back().grip = grips[i];
+		}
+	}
+	return rows;
+}
 
 RigidAcceleration rigidAcceleration(const std::vector<Body>& bodies, const std::vector<JointContact>& contacts,
                                     std::vector<HeldPoint> points, const ImpulseSolver& solve)
@@ -18,16 +41,14 @@ RigidAcceleration rigidAcceleration(const std::vector<Body>& bodies, const std::
 		rates[i].velocity = body.force / body.mass;
 		rates[i].angularVelocity = body.inverseInertia() * (body.torque - body.angularVelocity.cross(momentum));
 	}
-	std::vector<ImpulsePoint> rows;
-	for (const HeldPoint& held : points) {
-		const JointContact& contact = contacts[held.contact];
-		const auto centripetal = [&](int b) {
+	std::vector<ImpulsePoint> rows = impulsePoints(contacts, points);
+	for (ImpulsePoint& row : rows) {
+		const auto centripetal = [&](int b) { // of the friction point relative to the point: by the spin about the normal
 			const Vector3& w = bodies[b].angularVelocity;
-			return Vector3(w.cross(w.cross(contact.position(held.point) - bodies[b].pose.position)));
+			const double spin = row.normal.dot(w);
+			return Vector3(w.cross(w.cross(row.position - bodies[b].pose.position)) - spin * spin * row.grip);
 		};
-		ImpulsePoint row = impulsePoint(contact, held.point);
-		row.bias = centripetal(contact.body2) - centripetal(contact.body1);
-		rows.push_back(row);
+		row.bias = centripetal(row.body2) - centripetal(row.body1);
 	}
 	std::vector<CoupleRow> none;
 	RigidAcceleration result;

@@ -17,11 +17,9 @@ struct HeldPoint {
 	Vector3 force;      // on body 2, N
 };
 
-// Of a contact at its point i.
-inline ImpulsePoint impulsePoint(const JointContact& contact, int i)
-{
-	return {contact.body1, contact.body2, contact.position(i), contact.patch.normal, contact.law.friction};
-}
+// Of points that act together, contact by contact. Their friction acts by their normal forces; points of a contact that have none yet share
+// alike.
+std::vector<ImpulsePoint> impulsePoints(const std::vector<JointContact>& contacts, const std::vector<HeldPoint>& points);
 
 struct RigidAcceleration {
 	std::vector<Vector3> linear, angular; // per body, m/s^2 and rad/s^2

@@ -110,7 +110,7 @@ Event findEvent(const RigidSystem<K>& s, SmoothStep<K>& step, double slow)
 }
 
 template <class K>
-Event localise(const RigidSystem<K>& s, SmoothStep<K>& step, Event event)
+Event localise(RigidSystem<K>& s, SmoothStep<K>& step, Event event)
 {
 	const double tiny = tolerance::rigid::gap * step.scales.length,
 	             still = tolerance::rigid::parting * step.scales.stepSpeed(step.trial().h);
@@ -206,8 +206,8 @@ void touchingPoints(const RigidSystem<K>& s, std::vector<PointRef>& out)
 
 template Event findEvent(const RigidSystem<Plane>&, SmoothStep<Plane>&, double);
 template Event findEvent(const RigidSystem<Space>&, SmoothStep<Space>&, double);
-template Event localise(const RigidSystem<Plane>&, SmoothStep<Plane>&, Event);
-template Event localise(const RigidSystem<Space>&, SmoothStep<Space>&, Event);
+template Event localise(RigidSystem<Plane>&, SmoothStep<Plane>&, Event);
+template Event localise(RigidSystem<Space>&, SmoothStep<Space>&, Event);
 template bool isContact(const RigidSystem<Plane>&, const SmoothStep<Plane>&, const Event&);
 template bool isContact(const RigidSystem<Space>&, const SmoothStep<Space>&, const Event&);
 template int unseenPenetration(const RigidSystem<Plane>&, const SmoothStep<Plane>&);

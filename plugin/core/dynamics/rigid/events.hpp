@@ -25,7 +25,7 @@ Event findEvent(const RigidSystem<K>& system, SmoothStep<K>& step, double slow);
 // Shortens the trial until the event lies at its end, or another one that comes before it. Returns it; its time is the trial's
 // length, or 0 when it is now and no time passes.
 template <class K>
-Event localise(const RigidSystem<K>& system, SmoothStep<K>& step, Event event);
+Event localise(RigidSystem<K>& system, SmoothStep<K>& step, Event event);
 
 // Whether the event of the trial is a contact that the boxes have at its end: any but a closing beyond the ends of the features.
 template <class K>

@@ -117,6 +117,7 @@ struct ImpactStage<K>::Builder {
 		const ContactPoint<K>& point = pair.points[ref.point];
 		stage.refs.push_back(ref);
 		stage.impact.points.push_back({pair.body1, pair.body2, positionOf(point), normalOf(point), pair.friction});
+		stage.impact.points.back().grip = inSpace(point.frame.grip);
 	}
 
 	// Of four corners three carry, and round-off may have opened the fourth.

@@ -1,4 +1,5 @@
 #include "dynamics/rigid/rigid_step.hpp"
+#include "dynamics/rigid/grip.hpp"
 #include "tolerances.hpp"
 
 namespace masonry::rigid {
@@ -228,6 +229,8 @@ bool RigidStep<K>::land(RigidSystem<K>& s)
 	if (closing.empty())
 		return false;
 	const size_t known = s.impacts.size();
+	placeFriction(s);
+	placeFriction(s, closing);
 	note(impacts.land(s, closing));
 	answerImpacts(s, known);
 	return true;
@@ -239,8 +242,10 @@ void RigidStep<K>::answerImpacts(RigidSystem<K>& s, size_t known)
 {
 	for (size_t k = known; k < s.impacts.size(); ++k)
 		for (size_t d = 0; d < s.drives.size(); ++d)
-			if (const auto jump = s.drives[d].respond(s.impacts[k].block, s.time); !jump.isZero(0))
+			if (const auto jump = s.drives[d].respond(s.impacts[k].block, s.time); !jump.isZero(0)) {
+				placeFriction(s);
 				note(impacts.pulse(s, int(d), jump));
+			}
 }
 
 // An impact at the same instant comes before the pulse.
@@ -250,6 +255,7 @@ void RigidStep<K>::takeJumps(RigidSystem<K>& s)
 	for (size_t d = 0; d < s.drives.size(); ++d)
 		if (const auto jump = s.drives[d].jumpAt(s.time); !jump.isZero(0)) {
 			land(s);
+			placeFriction(s);
 			note(impacts.pulse(s, int(d), jump));
 		}
 }

@@ -43,8 +43,27 @@ struct ContactPoint {
 	double gap {0}; // m, at the end of the last step
 	Eigen::Matrix<double, K::rows, 1> force {
 	    Eigen::Matrix<double, K::rows, 1>::Zero()}; // N, mean of the last smooth step; on body 2, normal then tangents
-	ContactFrame<K> frame;                          // at the end of the last step
+	Eigen::Matrix<double, K::rows - 1, 1> grip {
+	    Eigen::Matrix<double, K::rows - 1, 1>::Zero()}; // from the point to where its friction acts, along the tangents, m (grip.hpp)
+	ContactFrame<K> frame;                              // at the end of the last step
+
+	// From the point to where its friction acts, global: the part along its tangents.
+	void setGrip(const typename K::Vector& offset)
+	{
+		grip = frame.axes.template bottomRows<K::rows - 1>() * offset;
+		frame.grip = frame.axes.template bottomRows<K::rows - 1>().transpose() * grip;
+	}
 };
+
+// Of a point when the bodies are there.
+template <class K>
+ContactFrame<K> frameOf(const ContactPoint<K>& point, const typename K::Vector& half1, const typename K::Pose& pose1,
+                        const typename K::Vector& half2, const typename K::Pose& pose2)
+{
+	ContactFrame<K> frame = K::frame(point.feature, half1, pose1, half2, pose2);
+	frame.grip = frame.axes.template bottomRows<K::rows - 1>().transpose() * point.grip;
+	return frame;
+}
 
 template <class K>
 struct ContactPair {
@@ -67,14 +86,17 @@ Eigen::Matrix<double, K::rows, 1> relativeVelocity(const ContactFrame<K>& frame,
 	const auto at = [&](const typename K::Vector& center, const typename K::Velocity& v) {
 		return typename K::Vector(v.template head<K::dimension>() + K::cross(v.template tail<K::spins>(), frame.position - center));
 	};
-	return frame.axes * (at(center2, v2) - at(center1, v1));
+	Eigen::Matrix<double, K::rows, 1> u = frame.axes * (at(center2, v2) - at(center1, v1));
+	if constexpr (K::dimension == 3)
+		u.template tail<2>() += frame.axes.template bottomRows<2>() * K::cross(v2.template tail<3>() - v1.template tail<3>(), frame.grip);
+	return u;
 }
 
 // Where the features of a point are, for these bodies.
 template <class K>
 void locate(ContactPoint<K>& point, const RigidBody<K>& body1, const RigidBody<K>& body2)
 {
-	point.frame = K::frame(point.feature, body1.halfSize, body1.pose, body2.halfSize, body2.pose);
+	point.frame = frameOf(point, body1.halfSize, body1.pose, body2.halfSize, body2.pose);
 	point.gap = point.frame.gap;
 }
 

@@ -1,4 +1,5 @@
 #include "dynamics/rigid/smooth_step.hpp"
+#include "dynamics/rigid/grip.hpp"
 #include "tolerances.hpp"
 #include <algorithm>
 
@@ -197,13 +198,26 @@ void SmoothStep<K>::findFrames(const RigidSystem<K>& s)
 		const ContactPair<K>& pair = s.pairs[c];
 		first[c] = int(last.frames.size());
 		for (int i = 0; i < pair.size; ++i)
-			last.frames.push_back(K::frame(pair.points[i].feature, s.bodies[pair.body1].halfSize, last.bodies[pair.body1].end,
-			                               s.bodies[pair.body2].halfSize, last.bodies[pair.body2].end));
+			last.frames.push_back(frameOf(pair.points[i], s.bodies[pair.body1].halfSize, last.bodies[pair.body1].end,
+			                              s.bodies[pair.body2].halfSize, last.bodies[pair.body2].end));
+	}
+}
+
+// By the impulses of the pass.
+template <class K>
+void SmoothStep<K>::moveFriction(RigidSystem<K>& s) const
+{
+	if constexpr (K::dimension == 3) {
+		size_t row = 0;
+		placeFriction(s, [&](int c, int i) {
+			const bool acted = row < last.rows.size() && last.rows[row] == PointRef {c, i};
+			return acted ? solver.points[row++].impulse[0] : 0.;
+		});
 	}
 }
 
 template <class K>
-void SmoothStep<K>::attempt(const RigidSystem<K>& s, double h, bool again)
+void SmoothStep<K>::attempt(RigidSystem<K>& s, double h, bool again)
 {
 	// After an event the change of velocity in the last step, which can have been of any length, tells nothing: a second pass takes that
 	// of the first.
@@ -216,6 +230,7 @@ void SmoothStep<K>::attempt(const RigidSystem<K>& s, double h, bool again)
 	stray.clear();
 	unsteady = false;
 	const bool fresh = s.isFresh();
+	placeFriction(s);
 	if (!fresh)
 		dampStray(s, h);
 	for (int pass = 0; pass < mostPasses; ++pass) {
@@ -227,6 +242,7 @@ void SmoothStep<K>::attempt(const RigidSystem<K>& s, double h, bool again)
 		const double gain = finish(s, h);
 		const bool first = pass == 0 && fresh;
 		if (first) {
+			moveFriction(s);
 			findFrames(s);
 			findStray(s);
 		}

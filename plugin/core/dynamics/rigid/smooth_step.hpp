@@ -64,8 +64,9 @@ public:
 	double left() const { return stepEnd - end; } // s, of the step after the part
 	// Computes the trial of length h from the system's state. Open points do not act, but for those in `anticipated`. `again`: the last
 	// trial was of the same step and points; its forces are the first guess, which decides where a sliding point stops by a jam (an impulse
-	// however short the step).
-	void attempt(const RigidSystem<K>& system, double h, bool again = false);
+	// however short the step). The friction of the system's points is placed by the forces of the last step, and by those of the first pass
+	// where these tell nothing (grip.hpp).
+	void attempt(RigidSystem<K>& system, double h, bool again = false);
 	// Makes it the system's state: poses, velocities, forces, energies; gaps of loaded points closed.
 	void accept(RigidSystem<K>& system);
 
@@ -91,6 +92,7 @@ private:
 	void findStray(const RigidSystem<K>& system);
 	double strayWork() const;
 	double finish(const RigidSystem<K>& system, double h);
+	void moveFriction(RigidSystem<K>& system) const;
 	void findFrames(const RigidSystem<K>& system);
 	double findShifts(const RigidSystem<K>& system, double most);
 	void project(const RigidSystem<K>& system, double lost);

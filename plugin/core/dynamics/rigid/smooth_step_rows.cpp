@@ -19,11 +19,11 @@ template <class K>
 Eigen::Matrix<double, K::rows, K::dof> jacobian(const ContactFrame<K>& frame, const typename K::Vector& center, double chord, double sign)
 {
 	Eigen::Matrix<double, K::rows, K::dof> J;
-	const typename K::Vector arm = chord * (frame.position - center);
+	const typename K::Vector pressed = chord * (frame.position - center), gripped = pressed + chord * frame.grip;
 	for (int k = 0; k < K::rows; ++k) {
 		const typename K::Vector axis = sign * frame.axes.row(k).transpose();
 		J.row(k).template head<K::dimension>() = axis.transpose();
-		J.row(k).template tail<K::spins>() = K::moment(arm, axis).transpose();
+		J.row(k).template tail<K::spins>() = K::moment(k == 0 ? pressed : gripped, axis).transpose();
 	}
 	return J;
 }
@@ -156,8 +156,8 @@ void SmoothStep<K>::assemble(const RigidSystem<K>& s, double h)
 		for (int i = 0; i < pair.size; ++i)
 			if (acts(s, {c, i})) {
 				last.rows.push_back({c, i});
-				middles.push_back(K::frame(pair.points[i].feature, s.bodies[pair.body1].halfSize, last.bodies[pair.body1].middle,
-				                           s.bodies[pair.body2].halfSize, last.bodies[pair.body2].middle));
+				middles.push_back(frameOf(pair.points[i], s.bodies[pair.body1].halfSize, last.bodies[pair.body1].middle,
+				                          s.bodies[pair.body2].halfSize, last.bodies[pair.body2].middle));
 			}
 		bool slides = true;
 		for (size_t k = 0; k < middles.size(); ++k) {

@@ -114,10 +114,10 @@ void SparseImpulses<K>::addPoint(const std::vector<masonry::Body>& bodies, const
 	rows.body1 = unknown[point.body1];
 	rows.body2 = unknown[point.body2];
 	for (const auto& [b, sign, J] : {std::tuple(point.body1, -1., &rows.J1), std::tuple(point.body2, 1., &rows.J2)}) {
-		const typename K::Vector arm = linear<K>(point.position - bodies[b].pose.position);
+		const typename K::Vector pressed = linear<K>(point.position - bodies[b].pose.position), gripped = pressed + linear<K>(point.grip);
 		for (int k = 0; k < K::rows; ++k) {
 			const typename K::Vector axis = sign * axes.row(k).transpose();
-			J->row(k) << axis.transpose(), K::moment(arm, axis).transpose();
+			J->row(k) << axis.transpose(), K::moment(k == 0 ? pressed : gripped, axis).transpose();
 		}
 		if (bodies[b].prescribed)
 			rows.offset += *J * velocityOf<K>(bodies[b]);

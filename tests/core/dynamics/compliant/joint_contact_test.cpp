@@ -14,13 +14,14 @@ struct PressedBlocks {
 	Body lower, upper;
 	JointContact contact;
 	ContactPatch patch;
+	Box box;
 
-	PressedBlocks(double yaw, double depth, const JointLaw& law)
+	PressedBlocks(double yaw, double depth, const JointLaw& law, const Vector3& half = Vector3::Constant(0.5)) : box {half}
 	{
 		lower.prescribed = true;
 		upper.mass = 1000;
 		upper.inertia = {160, 160, 160};
-		upper.pose.position = {0, 0, 1 - depth};
+		upper.pose.position = {0, 0, 2 * half.z() - depth};
 		upper.pose.orientation = Eigen::AngleAxisd(yaw, Vector3::UnitZ());
 		contact.body1 = 0;
 		contact.body2 = 1;
@@ -29,8 +30,7 @@ struct PressedBlocks {
 	}
 	void look()
 	{
-		const Box cube {Vector3::Constant(0.5)};
-		REQUIRE(collide(cube, lower.pose, cube, upper.pose, 1e-3, contact.patch.feature, patch));
+		REQUIRE(collide(box, lower.pose, box, upper.pose, 1e-3, contact.patch.feature, patch));
 		renewPatch(contact, patch);
 	}
 	void move(const Vector3& step, double dt = 1e-3)
@@ -39,6 +39,21 @@ struct PressedBlocks {
 		upper.pose.position += step;
 		look();
 		updateForces(contact, lower, upper, dt);
+	}
+	void turn(double angle, double dt = 1e-3)
+	{
+		upper.velocity.setZero();
+		upper.angularVelocity = {0, 0, angle / dt};
+		upper.pose.orientation = Eigen::AngleAxisd(angle, Vector3::UnitZ()) * upper.pose.orientation;
+		look();
+		updateForces(contact, lower, upper, dt);
+	}
+	double torque() const
+	{
+		double sum = 0;
+		for (int i = 0; i < contact.size; ++i)
+			sum += contact.moment(i, upper.pose.position).z();
+		return sum;
 	}
 	Vector3 total() const
 	{
@@ -76,6 +91,60 @@ TEST_CASE("Shear is elastic up to mu N and slips beyond, and the work done goes 
 	CHECK(blocks.total().x() == Approx(-0.5 * N).epsilon(1e-9));
 	// Elastic limit 1e-6 m: 1.5e-6 of the 2.5e-6 m has slipped, under the limit force.
 	CHECK(blocks.contact.energy.friction == Approx(0.5 * N * 1.5e-6).epsilon(1e-9));
+}
+
+// Against the pressure, integrated over the face. Bound of the energy: the elastic part of the turn, by even springs 2 % of it.
+TEST_CASE("A face that turns on its bed is held with the torque of an even pressure")
+{
+	for (const Vector3& half : {Vector3(0.5, 0.5, 0.5), Vector3(0.8, 0.2, 0.3), Vector3(0.2, 0.8, 0.3)}) {
+		CAPTURE(half.transpose());
+		constexpr int n = 200;
+		double distance = 0; // mean, from the centre
+		for (int i = 0; i < n; ++i)
+			for (int j = 0; j < n; ++j)
+				distance += std::hypot(half.x() * (2 * i + 1. - n) / n, half.y() * (2 * j + 1. - n) / n) / (n * n);
+		PressedBlocks blocks(0, 1e-6, law, half);
+		blocks.move(Vector3::Zero());
+		const double N = blocks.total().z(), angle = 2e-4;
+		blocks.turn(angle);
+		CHECK(blocks.torque() == Approx(-0.5 * N * distance).epsilon(1e-3));
+		CHECK(blocks.total().head<2>().norm() < 1e-6 * N);
+		CHECK(blocks.contact.energy.friction == Approx(0.5 * N * distance * angle).epsilon(0.03));
+	}
+}
+
+// What the motion takes from the bodies is stored or dissipated, wherever the friction points go while the load moves over the face. Bound:
+// a step's work is that of the mean force on its motion, but for arms that change by the motion of 1e-8 m in 0.2 m.
+TEST_CASE("Friction points that move give no energy")
+{
+	PressedBlocks blocks(0, 1e-6, law, {0.8, 0.2, 0.3});
+	blocks.move(Vector3::Zero());
+	using Load = Eigen::Matrix<double, 6, 1>;
+	const auto load = [&] {
+		Load sum = Load::Zero();
+		for (int i = 0; i < blocks.contact.size; ++i) {
+			sum.head<3>() += blocks.contact.force(i);
+			sum.tail<3>() += blocks.contact.moment(i, blocks.upper.pose.position);
+		}
+		return sum;
+	};
+	const double stored = blocks.contact.energy.elastic;
+	double taken = 0, dissipated = 0;
+	for (int k = 0; k < 400; ++k) {
+		Load step;
+		step << 2e-8 * std::cos(0.05 * k), 1e-8, 0, 0, 3e-8 * std::sin(0.1 * k), 3e-8;
+		const Load before = load();
+		blocks.upper.velocity = step.head<3>() / 1e-3;
+		blocks.upper.angularVelocity = step.tail<3>() / 1e-3;
+		blocks.upper.advance(1e-3);
+		blocks.look();
+		updateForces(blocks.contact, blocks.lower, blocks.upper, 1e-3);
+		taken -= 0.5 * (before + load()).dot(step);
+		CHECK(blocks.contact.energy.friction >= 0);
+		dissipated += blocks.contact.energy.friction + blocks.contact.energy.damping;
+	}
+	CHECK(dissipated > stored);
+	CHECK(blocks.contact.energy.elastic - stored + dissipated == Approx(taken).epsilon(1e-5));
 }
 
 TEST_CASE("No slip is a law of its own")

@@ -94,12 +94,12 @@ struct LeapfrogRig {
 			const JointContact& contact = system.contacts[c];
 			known[index[c]] = contact;
 			for (int i = 0; i < contact.size; ++i) {
-				const Vector3 f = contact.force(i), x = contact.position(i);
+				const Vector3 f = contact.force(i);
 				Body &b1 = system.bodies[contact.body1], &b2 = system.bodies[contact.body2];
 				b1.force -= f;
-				b1.torque -= (x - b1.pose.position).cross(f);
+				b1.torque -= contact.moment(i, b1.pose.position);
 				b2.force += f;
-				b2.torque += (x - b2.pose.position).cross(f);
+				b2.torque += contact.moment(i, b2.pose.position);
 			}
 		}
 		for (Body& body : system.bodies) {
