@@ -32,14 +32,15 @@ Vector2 distanceAndArea(const Vector2& p, const Vector2& q)
 // Mean distance of the patch from its centroid. Its corners come in any order.
 double meanDistance(const PatchCorner* corners, int size, const Vector2& centroid)
 {
-	std::array<Vector2, maxFrictionPoints> around;
+	std::array<Vector2, maxFrictionPoints> around {};
 	for (int i = 0; i < size; ++i)
 		around[i] = corners[i].position - centroid;
 	const auto turn = [](const Vector2& p) { // grows with the angle, -2 to 2
 		const double x = p.x() / std::max(std::abs(p.x()) + std::abs(p.y()), std::numeric_limits<double>::min());
 		return p.y() < 0 ? x - 1 : 1 - x;
 	};
-	std::sort(around.begin(), around.begin() + size, [&](const Vector2& p, const Vector2& q) { return turn(p) < turn(q); });
+	std::sort(around.begin(), around.begin() + std::min(size, maxFrictionPoints),
+	          [&](const Vector2& p, const Vector2& q) { return turn(p) < turn(q); });
 	Vector2 sum = Vector2::Zero();
 	for (int i = 0; i < size; ++i)
 		sum += distanceAndArea(around[i], around[(i + 1) % size]);
