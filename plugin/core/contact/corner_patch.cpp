@@ -23,20 +23,40 @@ struct Mean {
 	CornerNormals corner;
 };
 
-// Of a point; false: it is no corner on a corner, or on two edges.
-bool meanNormal(const PatchPoint& point, const PatchFeature& faces, const Box& box1, const Pose& pose1, const Box& box2, const Pose& pose2,
-                Mean& mean)
+struct Vertex {
+	bool on1;
+	int number;
+	Vector3 position; // global
+};
+
+// The vertex that a point of the patch stands for: its own, or the end of the incident edge that compression has pushed past the border.
+Vertex vertexOf(const PatchPoint& point, const PatchFeature& faces, const Box& box1, const Pose& pose1, const Box& box2, const Pose& pose2)
 {
-	if (point.identity >= 16)
-		return false;
-	const bool on1 = point.identity < 8;
+	const auto vertex = [&](bool on1, int number) -> Vertex {
+		const Vector3& half = on1 ? box1.halfSize : box2.halfSize;
+		return {on1, number, (on1 ? pose1 : pose2).toGlobal(feature::vertexSigns(number).cwiseProduct(half))};
+	};
+	if (point.identity < 16)
+		return vertex(point.identity < 8, point.identity % 8);
+	const bool on1 = faces.kind == PatchKind::Face2;
+	const int edge = on1 ? (point.identity - 16) / 12 : (point.identity - 16) % 12, axis = edge / 4, next = feature::nextAxis(axis);
+	const int low = ((edge & 1) << next) + ((edge >> 1 & 1) << feature::nextAxis(next));
+	const Vertex first = vertex(on1, low), second = vertex(on1, low + (1 << axis));
+	return (first.position - point.position1).norm() < (second.position - point.position1).norm() ? first : second;
+}
+
+// Of a vertex; false: it is no corner on a corner, or on two edges.
+bool meanNormal(const Vertex& vertex, double depth, const PatchFeature& faces, const Box& box1, const Pose& pose1, const Box& box2,
+                const Pose& pose2, Mean& mean)
+{
+	const bool on1 = vertex.on1;
 	const Box &vertexBox = on1 ? box1 : box2, &faceBox = on1 ? box2 : box1;
 	const Pose &vertexPose = on1 ? pose1 : pose2, &facePose = on1 ? pose2 : pose1;
-	const int vertex = point.identity % 8, face = on1 ? faces.feature2 : faces.feature1;
-	const VertexOnEdge corner(vertex, vertexBox.halfSize, vertexPose, face, faceBox.halfSize, facePose);
+	const int face = on1 ? faces.feature2 : faces.feature1;
+	const VertexOnEdge corner(vertex.number, vertexBox.halfSize, vertexPose, face, faceBox.halfSize, facePose);
 	const double reach = tolerance::contact::vertexReach * std::min(box1.halfSize.minCoeff(), box2.halfSize.minCoeff());
 	int found = 0;
-	corner.forEdges(std::numeric_limits<double>::infinity(), reach + std::max(0., -point.gap), [&](const NormalsOnEdge& normals) {
+	corner.forEdges(std::numeric_limits<double>::infinity(), reach + std::max(0., depth), [&](const NormalsOnEdge& normals) {
 		if (normals.tangent < leastTangent)
 			return;
 		++found;
@@ -64,11 +84,13 @@ CornerNormals takeMeanNormal(const Box& box1, const Pose& pose1, const Box& box2
 	constexpr double same = 1e-3; // rad, of the normals at the ends of an edge
 	const double touching = tolerance::contact::vertexReach * std::min(box1.halfSize.minCoeff(), box2.halfSize.minCoeff());
 	std::array<Mean, 8> means;
+	std::array<Vertex, 8> vertices;
 	int first = -1;
 	for (int i = 0; i < patch.size; ++i) {
 		if (patch.points[i].gap > touching)
 			continue;
-		if (!meanNormal(patch.points[i], patch.feature, box1, pose1, box2, pose2, means[i]))
+		vertices[i] = vertexOf(patch.points[i], patch.feature, box1, pose1, box2, pose2);
+		if (!meanNormal(vertices[i], -patch.points[i].gap, patch.feature, box1, pose1, box2, pose2, means[i]))
 			return {};
 		if (first < 0)
 			first = i;
@@ -82,10 +104,10 @@ CornerNormals takeMeanNormal(const Box& box1, const Pose& pose1, const Box& box2
 		PatchPoint& point = patch.points[i];
 		if (point.gap > touching)
 			continue;
-		Vector3& partner = point.identity < 8 ? point.position2 : point.position1;
-		const Vector3& vertex = point.identity < 8 ? point.position1 : point.position2;
 		point.gap = means[i].gap;
-		partner = vertex + (point.identity < 8 ? point.gap : -point.gap) * patch.normal;
+		(vertices[i].on1 ? point.position1 : point.position2) = vertices[i].position;
+		(vertices[i].on1 ? point.position2 : point.position1) =
+		    vertices[i].position + (vertices[i].on1 ? point.gap : -point.gap) * patch.normal;
 	}
 	return means[first].corner;
 }

@@ -39,6 +39,8 @@ TEST_CASE("corner patches: the mean normal is midway between the faces', and gap
 				for (const double shift : {0., 0.1})
 					for (const bool swapped : {false, true}) {
 						CAPTURE(th1, th2, gap, depth2, shift, swapped);
+						if (gap < -1e-5 && th1 + th2 > M_PI / 4) // deep enough for a patch of an upper face
+							continue;
 						Frame f(th1, th2, gap, 0, depth2, shift, turned);
 						if (swapped) {
 							std::swap(f.box1, f.box2);
