@@ -1,6 +1,6 @@
 // The mean normal of a patch whose corners meet corners, against the plane's geometry in any orientation.
 #include "contact/corner_patch.hpp"
-#include <catch2/catch.hpp>
+#include <catch.hpp>
 #include <utility>
 
 using namespace masonry;

@@ -1,7 +1,7 @@
 // Friction points of a patch against pressures that are integrated over it.
 #include "contact/friction_points.hpp"
 #include <algorithm>
-#include <catch2/catch.hpp>
+#include <catch.hpp>
 #include <cmath>
 #include <random>
 #include <vector>

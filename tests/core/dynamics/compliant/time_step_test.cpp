@@ -1,7 +1,7 @@
 // The stable time step of assembled blocks against the eigenvalues of one step of the whole scheme, by dense matrices.
 #include "dynamics/compliant/time_step.hpp"
 #include <Eigen/Eigenvalues>
-#include <catch2/catch.hpp>
+#include <catch.hpp>
 #include <cmath>
 #include <random>
 

@@ -1,7 +1,7 @@
 // Corners that meet corners: frames that lean on each other, in the plane and in space.
 #include "core/dynamics/rigid/space_rig.hpp"
 #include <algorithm>
-#include <catch2/catch.hpp>
+#include <catch.hpp>
 
 using namespace rig;
 

@@ -1,6 +1,6 @@
 // Scenes that are their own mirror images in the vertical plane along which their base moves: so must be their motion.
 #include "core/dynamics/rigid/space_rig.hpp"
-#include <catch2/catch.hpp>
+#include <catch.hpp>
 #include <numeric>
 #include <random>
 

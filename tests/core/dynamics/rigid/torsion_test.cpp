@@ -1,6 +1,6 @@
 // Faces that turn about their normal on their bed: friction against pressures that are integrated over the face.
 #include "core/dynamics/rigid/space_rig.hpp"
-#include <catch2/catch.hpp>
+#include <catch.hpp>
 
 using namespace rig;
 
