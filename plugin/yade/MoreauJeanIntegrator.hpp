@@ -132,7 +132,7 @@ private:
 	vector<std::pair<const Engine*, bool>> checkedEngines; // and whether they are dead; to be compared only
 	struct {
 		bool courses = false, bases = false, place = false, motion = false;
-	} warnedOf; // once in a run
+	} warnedOf;                     // once in a run
 	masonry::StepErrors stepErrors; // of the last step
 	bool sequential = false, wall = false;
 };

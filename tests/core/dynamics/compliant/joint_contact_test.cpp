@@ -113,8 +113,9 @@ TEST_CASE("A face that turns on its bed is held with the torque of an even press
 	}
 }
 
-// What the motion takes from the bodies is stored or dissipated, wherever the friction points go while the load moves over the face. Bound:
-// a step's work is that of the mean force on its motion, but for arms that change by the motion of 1e-8 m in 0.2 m.
+// The motion takes from the bodies what the springs are given and what is dissipated, wherever the friction points go while the load moves
+// over the face, and the springs hold no more than they were given. Bound: a step's work is that of the mean force on its motion, but for
+// arms that change by the motion of 1e-8 m in 0.2 m.
 TEST_CASE("Friction points that move give no energy")
 {
 	PressedBlocks blocks(0, 1e-6, law, {0.8, 0.2, 0.3});
@@ -129,7 +130,7 @@ TEST_CASE("Friction points that move give no energy")
 		return sum;
 	};
 	const double stored = blocks.contact.energy.elastic;
-	double taken = 0, dissipated = 0;
+	double taken = 0, given = 0, dissipated = 0;
 	for (int k = 0; k < 400; ++k) {
 		Load step;
 		step << 2e-8 * std::cos(0.05 * k), 1e-8, 0, 0, 3e-8 * std::sin(0.1 * k), 3e-8;
@@ -141,10 +142,12 @@ TEST_CASE("Friction points that move give no energy")
 		updateForces(blocks.contact, blocks.lower, blocks.upper, 1e-3);
 		taken -= 0.5 * (before + load()).dot(step);
 		CHECK(blocks.contact.energy.friction >= 0);
+		given += blocks.contact.energy.taken;
 		dissipated += blocks.contact.energy.friction + blocks.contact.energy.damping;
 	}
 	CHECK(dissipated > stored);
-	CHECK(blocks.contact.energy.elastic - stored + dissipated == Approx(taken).epsilon(1e-5));
+	CHECK(given + dissipated == Approx(taken).epsilon(1e-5));
+	CHECK(blocks.contact.energy.elastic - stored <= given + 1e-5 * taken);
 }
 
 TEST_CASE("No slip is a law of its own")
