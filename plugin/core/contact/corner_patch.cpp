@@ -45,7 +45,7 @@ Vertex vertexOf(const PatchPoint& point, const PatchFeature& faces, const Box& b
 	return (first.position - point.position1).norm() < (second.position - point.position1).norm() ? first : second;
 }
 
-// Of a vertex; false: it is no corner on a corner, or on two edges.
+// Finds the mean normal at a vertex. Returns false if the vertex is no corner on a corner, or touches two edges.
 bool meanNormal(const Vertex& vertex, double depth, const PatchFeature& faces, const Box& box1, const Pose& pose1, const Box& box2,
                 const Pose& pose2, Mean& mean)
 {

@@ -1,5 +1,5 @@
 #pragma once
-// Where the friction of a contact patch acts.
+// This file says where the friction of a contact patch acts.
 //
 // The normal forces N_i act at the corners x_i of the patch. Friction at the corners would resist a turn about the normal with the torque
 // mu sum N_i |x_i - c|, c the centre of the normal forces. That is too much: an even pressure has the mean distance of its area in the

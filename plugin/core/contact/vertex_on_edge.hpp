@@ -46,7 +46,7 @@ public:
 	}
 
 private:
-	// Of the edge between the face and its neighbour along the axis `side`.
+	// Returns the normals at the edge between the face and its neighbour along the axis `side`.
 	NormalsOnEdge normalsBeside(int side) const
 	{
 		NormalsOnEdge normals;

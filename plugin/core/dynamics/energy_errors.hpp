@@ -5,15 +5,15 @@
 
 namespace masonry {
 
-// What either sum may come to, J. `turnedOver`: the largest kinetic and elastic energy so far and all that has been dissipated; `lift`:
-// what lifts all blocks by their size.
+// Returns the bound of either sum, J. `turnedOver` is the largest kinetic and elastic energy so far plus all that has been dissipated.
+// `lift` is the energy that lifts all blocks by their size.
 inline double mostUnexplained(double turnedOver, double lift) { return tolerance::madeShare * turnedOver + tolerance::madeLift * lift; }
 
-// Of one step of rigid blocks, J: kinetic energy at its start; `lift` as above.
+// The errors of one step of rigid blocks, J. `kinetic` belongs to its start.
 struct StepErrors {
 	double made {0}, lost {0}, kinetic {0}, lift {0};
 
-	// Of structures that are stepped apart.
+	// Adds the errors of a structure that is stepped apart.
 	StepErrors& operator+=(const StepErrors& other)
 	{
 		made += other.made;

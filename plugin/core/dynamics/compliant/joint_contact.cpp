@@ -177,9 +177,9 @@ void updateForces(JointContact& contact, const Body& body1, const Body& body2, d
 				point.shearForce = withinFriction(contact, pull - dampingShear * weight * slideVelocity, point.normalForce);
 			}
 		}
-		// What the forces take from the bodies goes to the springs, but for what dashpots and slip dissipate, who never give. A spring
-		// without any force comes back by its dashpot. The leapfrog scheme's own work of a force over a step is that of the mean of its
-		// values at the two ends: where points meet or part within the step, springs do not store what they take.
+		// The forces take energy from the bodies: dashpots and slip dissipate a part and never give it back, and the springs take the rest.
+		// A spring without any force comes back by its dashpot. The leapfrog scheme's own work of a force over a step is that of the mean
+		// of its values at the two ends: springs do not store all that they take where points meet or part within the step.
 		const double oldDepth = depth + normalVelocity * dt;
 		const double takenNormal = -0.5 * (old.normalForce + point.normalForce) * normalVelocity * dt;
 		const Vector3 oldSlideVelocity = acrossPoint + n.dot(spin) * n.cross(old.grip);

@@ -17,8 +17,8 @@ struct HeldPoint {
 	Vector3 force;      // on body 2, N
 };
 
-// Of points that act together, contact by contact. Their friction acts by their normal forces; points of a contact that have none yet share
-// alike.
+// Returns the impulse points of points that act together, contact by contact. Friction is placed by their normal forces; the points of a
+// contact without normal forces share alike.
 std::vector<ImpulsePoint> impulsePoints(const std::vector<JointContact>& contacts, const std::vector<HeldPoint>& points);
 
 struct RigidAcceleration {

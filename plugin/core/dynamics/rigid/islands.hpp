@@ -9,7 +9,7 @@ template <class K>
 class Islands {
 public:
 	StepReport advance(RigidSystem<K>& system, double dt);
-	// Of the last step.
+	// Returns what the last step has made and lost of energy.
 	const StepErrors& lastErrors() const { return errors; }
 
 	// The same for the islands of these bodies alone: what they are made of, and a step of them, which starts from where they were taken.

@@ -11,7 +11,7 @@ template <class K>
 class RigidStep {
 public:
 	StepReport advance(RigidSystem<K>& system, double dt);
-	// Of the last step.
+	// Returns what the last step has made and lost of energy.
 	const StepErrors& lastErrors() const { return errors; }
 
 private:

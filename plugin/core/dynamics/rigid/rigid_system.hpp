@@ -215,7 +215,7 @@ struct StepReport {
 	bool converged {true};
 	bool diverged {false}; // the state is no longer finite
 
-	// Of structures that are stepped apart.
+	// Adds the report of a structure that is stepped apart.
 	StepReport& operator+=(const StepReport& other)
 	{
 		substeps = std::max(substeps, other.substeps);
