@@ -1,19 +1,21 @@
 """Sphinx: the pages of docs/ and validation/, and the API from the docstrings. Run by docs/build."""
 import re
+from pathlib import Path
 
 project = "yade-masonry"
 author = "The yade-masonry contributors"
 copyright = author
 version = release = "0.1.0"
 
-extensions = ["myst_parser", "sphinx.ext.autodoc"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.autosummary"]
 root_doc = "docs/index"
-include_patterns = ["docs/**.md", "validation/README.md", "validation/**/README.md", "CHANGELOG.md"]
+include_patterns = ["docs/**.md", "docs/api/classes/*.rst", "validation/README.md", "validation/**/README.md", "CHANGELOG.md"]
 myst_heading_anchors = 3
 html_theme = "furo"
 html_title = "yade-masonry"
 html_copy_source = False
 smartquotes = False
+templates_path = [str(Path(__file__).parent / "_templates")]
 html_static_path = ["_static"]
 html_css_files = ["pages.css"]
 pygments_style = "friendly"
@@ -59,7 +61,8 @@ def _paragraphs(lines):
 def _as_rst(app, what, name, obj, options, lines):
     """Docstrings are plain text. Text stays text, with the signs escaped that are markup in RST; tables and code keep their columns."""
     text = "\n".join(lines)
-    default = re.search(r":ydefault:`([^`]*)`", text)
+    default, flags = re.search(r":ydefault:`([^`]*)`", text), re.search(r":yattrflags:`\s*(\d+)`", text)
+    given = default and not (flags and int(flags[1]) & 2)  # YADE's flag of attributes that only the engine sets
     lines[:] = re.sub(r"\s*:y\w+:`[^`]*`", "", text).split("\n")
     result = []
     for paragraph in _paragraphs(lines):
@@ -70,8 +73,8 @@ def _as_rst(app, what, name, obj, options, lines):
             result += [line for name, text in entries for line in (f"``{name}``", "    " + _escaped(text), "")]
         else:
             result += ["::", ""] + ["    " + line for line in paragraph] + [""]
-    if default and default[1].strip():
-        result += [f"Default: ``{default[1].strip()}``", ""]
+    if given and default[1].strip():
+        result += [f"Default: ``{default[1].strip().replace('Vector3r::Zero()', '(0, 0, 0)')}``", ""]
     lines[:] = result
 
 
