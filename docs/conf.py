@@ -1,4 +1,5 @@
 """Sphinx: the pages of docs/ and validation/, and the API from the docstrings. Run by docs/build."""
+import importlib
 import re
 from pathlib import Path
 
@@ -48,6 +49,17 @@ def _escaped(text):
     return "".join(f"``{piece}``" if k % 2 else re.sub(r"([*|\\]|_(?=\W|$))", r"\\\1", piece) for k, piece in enumerate(pieces) if piece)
 
 
+def _default(name, doc):
+    """The value of an attribute in a new object of its YADE class, as Python writes it; "" for attributes that only the engine sets (YADE's flag 2)."""
+    flags = re.search(r":yattrflags:`\s*(\d+)`", doc)
+    if not flags or int(flags[1]) & 2:
+        return ""
+    module, cls, attribute = name.rsplit(".", 2)
+    value = getattr(getattr(importlib.import_module(module), cls)(), attribute)
+    text = str(tuple(value)) if type(value).__name__ == "Vector3" else repr(value)
+    return "" if text.startswith("<") else text
+
+
 def _paragraphs(lines):
     paragraph = []
     for line in [*lines, ""]:
@@ -61,8 +73,6 @@ def _paragraphs(lines):
 def _as_rst(app, what, name, obj, options, lines):
     """Docstrings are plain text. Text stays text, with the signs escaped that are markup in RST; tables and code keep their columns."""
     text = "\n".join(lines)
-    default, flags = re.search(r":ydefault:`([^`]*)`", text), re.search(r":yattrflags:`\s*(\d+)`", text)
-    given = default and not (flags and int(flags[1]) & 2)  # YADE's flag of attributes that only the engine sets
     lines[:] = re.sub(r"\s*:y\w+:`[^`]*`", "", text).split("\n")
     result = []
     for paragraph in _paragraphs(lines):
@@ -73,8 +83,9 @@ def _as_rst(app, what, name, obj, options, lines):
             result += [line for name, text in entries for line in (f"``{name}``", "    " + _escaped(text), "")]
         else:
             result += ["::", ""] + ["    " + line for line in paragraph] + [""]
-    if given and default[1].strip():
-        result += [f"Default: ``{default[1].strip().replace('Vector3r::Zero()', '(0, 0, 0)')}``", ""]
+    default = _default(name, text)
+    if default:
+        result += [f"Default: ``{default}``", ""]
     lines[:] = result
 
 
