@@ -79,13 +79,13 @@ public:
 
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(BaseMotionEngine, PartialEngine,
-		"Base class of prescribed motions of the base; does not move anything by itself. Motions of the same bodies in perpendicular directions add up.",
+		"Base class of prescribed motions of the base; it moves nothing by itself. Motions of the same bodies in perpendicular directions add up.",
 		((Vector3r, direction, Vector3r(1, 0, 0), Attr::triggerPostLoad, "Unit vector along which the base moves."))
-		((Real, start, 0, Attr::triggerPostLoad, "Time at which the motion begins [s]; from then on its attributes cannot be changed. In a run that has gone on already: start=O.time."))
+		((Real, start, 0, Attr::triggerPostLoad, "Time at which the motion begins [s]; from then on its attributes cannot be changed. Use start=O.time for a motion that is added during a run."))
 		((vector<Vector3r>, origins, , Attr::readonly, "Positions of the bodies without the displacement of this motion [m].")),
 		/* ctor */,
-		.add_property("end", &BaseMotionEngine::end, "Time at which the motion is over [s]; infinite where it goes on for ever, or its end is not known yet (a resonant train).")
-		.def("check", &BaseMotionEngine::checkNow, "Raises ValueError unless the attributes are complete and every body of ids exists and is prescribed; done before the first step.")
+		.add_property("end", &BaseMotionEngine::end, "Time at which the motion is over [s]; infinite if it never ends or its end is not known yet (a resonant train).")
+		.def("check", &BaseMotionEngine::checkNow, "Raises ValueError unless the attributes are complete and every body of ids exists and is prescribed. It is called before the first step.")
 	);
 	// clang-format on
 protected:

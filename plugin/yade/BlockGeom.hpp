@@ -23,15 +23,15 @@ public:
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(BlockGeom, GenericSpheresContact,
 		"Contact patch of two boxes: up to eight points, each with a gap and a normal (gaps, points and normals are parallel lists, empty after loading until the next step). normal points from body 1 to body 2: for rigid blocks, whose points can have different normals, it is the direction of the resultant of the normal forces or, without load, the normal of the point with the smallest gap; for compliant joints it is the normal of the patch, which all points share. contactPoint is the centroid of the patch.",
-		((int, kind, 0, Attr::readonly, "What meets, of compliant joints: 0 nothing yet, 1 or 2 face on face (the number names the reference body), 3 edge across edge."))
+		((int, kind, 0, Attr::readonly, "Kind of contact of a compliant joint: 0 none yet, 1 or 2 face on face (the number names the reference body), 3 edge across edge."))
 		((int, feature1, -1, Attr::readonly, "Face (0 to 5) or edge (0 to 11) of body 1."))
 		((int, feature2, -1, Attr::readonly, "Face or edge of body 2."))
-		((int, vertices, 0, Attr::readonly, "Of compliant joints: bit mask of the vertices that are corners of the patch."))
-		((Real, area, 0, Attr::readonly, "Area of the overlap of compliant joints [m^2]; 0 for edge across edge, and for rigid blocks, whose points bear.")),
+		((int, vertices, 0, Attr::readonly, "Compliant joints: bit mask of the vertices that are corners of the patch."))
+		((Real, area, 0, Attr::readonly, "Area of the overlap of a compliant joint [m^2]; 0 for edge across edge and for rigid blocks, which have points only.")),
 		normal = contactPoint = Vector3r::Zero(); createIndex();,
 		.add_property("gaps", &BlockGeom::gaps, "Distance at each point along its normal [m], negative where the bodies overlap.")
-		.add_property("points", &BlockGeom::points, "The points, between the two bodies [m].")
-		.add_property("normals", &BlockGeom::normals, "Unit normal at each point, from body 1 to body 2: that of the face which a vertex meets, or the common normal of two edges. A corner that meets a corner is two points of rigid blocks, with the normals of both faces; a compliant joint has their mean.")
+		.add_property("points", &BlockGeom::points, "Contact points, between the two bodies [m].")
+		.add_property("normals", &BlockGeom::normals, "Unit normal at each point, from body 1 to body 2: that of the face which a vertex meets, or the common normal of two edges. Where two corners meet, rigid blocks have two points, one with the normal of each face; a compliant joint has the mean normal.")
 	);
 	// clang-format on
 	REGISTER_CLASS_INDEX(BlockGeom, GenericSpheresContact);

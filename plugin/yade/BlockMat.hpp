@@ -12,11 +12,11 @@ public:
 
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR(BlockMat, FrictMat,
-		"Material of a block that rocks: friction, a rocking restitution and, for compliant joints, stiffness per area. Read when two blocks come near each other: what changes during a run reaches pairs that come later.",
+		"Material of a rocking block: friction, a rocking restitution and, for compliant joints, stiffness per area. It is read when two blocks come near each other; a change during a run affects only pairs that meet later.",
 		((Real, restitution, NaN, Attr::triggerPostLoad, "Rocking restitution: angular velocity after / before an impact, 0 to 1. NaN (default): the natural restitution of the block, 1 - 1.5 sin^2(critical angle)."))
 		((Real, normalStiffness, NaN, Attr::triggerPostLoad, "Normal stiffness of a joint per unit of area [Pa/m], positive. NaN (default): chosen by dem.engines()."))
 		((Real, shearStiffness, NaN, Attr::triggerPostLoad, "Shear stiffness of a joint per unit of area [Pa/m], positive. NaN (default): chosen by dem.engines()."))
-		((bool, noSlip, false, , "The contact never slips, whatever the friction angle: the hypothesis of closed-form rocking.")),
+		((bool, noSlip, false, , "If true, the contact never slips, whatever the friction angle: the hypothesis of closed-form rocking.")),
 		createIndex();
 	);
 	// clang-format on

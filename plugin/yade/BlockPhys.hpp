@@ -23,16 +23,16 @@ public:
 
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(BlockPhys, FrictPhys,
-		"Joint of two blocks; rigid ones use the law (restitution, friction, noSlip) and forces only. kn and ks are the stiffness of the whole patch [N/m]; normalForce and shearForce act on body 2: the sums of the normal and of the tangential forces of the points.",
+		"Joint of two blocks; rigid blocks use only the law (restitution, friction, noSlip) and the forces. kn and ks are the stiffness of the whole patch [N/m]; normalForce and shearForce act on body 2 and are the sums of the normal and of the tangential forces of the points.",
 		((Real, normalStiffness, NaN, , "Normal stiffness per area [Pa/m]."))
 		((Real, shearStiffness, NaN, , "Shear stiffness per area [Pa/m]."))
 		((Real, restitution, NaN, , "Rocking restitution of the pair, 0 to 1; NaN: natural."))
-		((bool, noSlip, false, , "The points never slip."))
-		((vector<int>, identities, , Attr::readonly, "Which features make each point; the same in the next step for the same features."))
+		((bool, noSlip, false, , "Whether the points never slip."))
+		((vector<int>, identities, , Attr::readonly, "Number that identifies the two features that make each point; it stays the same from step to step."))
 		((vector<int>, muted, , Attr::readonly, "1 for a point that carries no force until the rotation of the block has crossed zero."))
 		((vector<Vector3r>, shears, , Attr::readonly, "Elastic tangential displacement of each point, of body 2 relative to body 1 [m]."))
 		((vector<Vector3r>, forces, , Attr::readonly, "Force on body 2 at each point [N]; its tangential part acts at the point's place plus frictionOffsets."))
-		((vector<Vector3r>, frictionOffsets, , Attr::readonly, "From each point (geom.points) to where its tangential force acts [m]: a face that turns on its bed is held with the torque of an even pressure.")),
+		((vector<Vector3r>, frictionOffsets, , Attr::readonly, "Vector from each point (geom.points) to where its tangential force acts [m]. With these offsets a face that turns on its bed has the torque of an even pressure.")),
 		createIndex();,
 		.add_property("normalForces", +[](const BlockPhys& phys) { return phys.normalForces; }, "Force along the normal of each point (geom.normals) [N], compression positive; empty after loading until the next step.")
 	);

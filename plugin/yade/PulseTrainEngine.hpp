@@ -33,11 +33,11 @@ public:
 		((bool, assembly, false, Attr::triggerPostLoad, "Scheduled pulses: the last one has the size I and brings the base to rest (assembly units I, -2I, I)."))
 		((string, shape, "dirac", Attr::triggerPostLoad, "How a jump is spread over `duration`: 'dirac', 'rectangular' (constant acceleration) or 'half-sine'."))
 		((Real, duration, 0, Attr::triggerPostLoad, "Duration of a pulse of 2I [s]; positive unless shape is 'dirac'."))
-		((string, singleKeeps, "amplitude", Attr::triggerPostLoad, "What pulses of size I (the first; the last, if that brings the base to rest) share with those of 2I: 'amplitude' (they take half the duration) or 'duration' (they have half the amplitude)."))
-		((vector<Real>, pulseTimes, , Attr::readonly, "Pulses so far: their times after start [s]."))
-		((vector<Real>, pulseJumps, , Attr::readonly, "Pulses so far: their velocity jumps [m/s].")),
+		((string, singleKeeps, "amplitude", Attr::triggerPostLoad, "What pulses of size I (the first; the last, if it brings the base to rest) have in common with those of size 2I: 'amplitude' (they take half the duration) or 'duration' (they have half the amplitude)."))
+		((vector<Real>, pulseTimes, , Attr::readonly, "Times of the pulses so far, after start [s]."))
+		((vector<Real>, pulseJumps, , Attr::readonly, "Velocity jumps of the pulses so far [m/s].")),
 		/* ctor */,
-		.add_property("residualDisplacement", &PulseTrainEngine::residualDisplacement, "Displacement of the base along `direction` [m]; after the last pulse of a train that ends, what it leaves behind.")
+		.add_property("residualDisplacement", &PulseTrainEngine::residualDisplacement, "Displacement of the base along `direction` [m]; after the last pulse of a train that ends, the displacement that remains.")
 	);
 	// clang-format on
 private:

@@ -18,12 +18,12 @@ public:
 
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(WallRecorder, PeriodicEngine,
-		"Motion of a structure: positions and orientations of blocks and the energies, every virtPeriod seconds of simulated time or every iterPeriod steps, from the first step on. Seven numbers a block and sample; joints are not looked at (BlockRecorder does that). dem.engines(recorder=...) puts it where positions and O.time belong together; dem.wall_history() gives a masonry.results.WallHistory.",
-		((vector<int>, ids, , , "The blocks, fixed by the first sample; none given: all boxes with a BlockMat, prescribed ones too. A block erased later has NaN from then on."))
+		"Motion of a structure: positions and orientations of blocks and the energies, every virtPeriod seconds of simulated time or every iterPeriod steps, from the first step on. It stores seven numbers per block and sample and no joints (BlockRecorder does). dem.engines(recorder=...) puts it where positions and O.time belong together; dem.wall_history() returns a masonry.results.WallHistory.",
+		((vector<int>, ids, , , "Blocks to record, fixed by the first sample; empty: all boxes with a BlockMat, prescribed ones too. A block that is erased later has NaN from then on."))
 		((vector<Real>, times, , Attr::readonly, "Times of the samples [s]."))
 		((vector<Real>, blocks, , Attr::readonly, "At the first sample, block by block: half sizes x, y, z [m], 1 for a free block or 0."))
-		((vector<Real>, energies, , Attr::readonly, "Sample by sample: kinetic, potential, elastPotential, frictDissip, dampDissip, impactDissip, baseWork, as dem.energy() [J]; NaN without an engine of the joints. Of several lists of engines, one after the other, what was dissipated and done is summed up."))
-		((vector<shared_ptr<Engine>>, motions, , Attr::readonly, "Motion engines that have moved bodies while it recorded."))
+		((vector<Real>, energies, , Attr::readonly, "Sample by sample: kinetic, potential, elastPotential, frictDissip, dampDissip, impactDissip, baseWork, as dem.energy() [J]; NaN without an engine of the joints. If O.engines is replaced during a run, dissipated energies and work are summed over the lists."))
+		((vector<shared_ptr<Engine>>, motions, , Attr::readonly, "Motion engines that have moved bodies during the recording."))
 		((vector<shared_ptr<Engine>>, integrators, , Attr::hidden, ""))
 		((vector<Real>, poses, , Attr::hidden, "")),
 		initRun = true;,
