@@ -16,7 +16,7 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 # This very version of YADE, whatever rebuild (+b1) of it: the guard looks at sizes and tables.
 set(CPACK_DEBIAN_PACKAGE_DEPENDS "yade (>= ${yade_package}), yade (<< ${yade_package}.~), python3 (>= ${Python3_VERSION_MAJOR}.${Python3_VERSION_MINOR}~), python3-numpy")
-set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "python3-matplotlib, python3-scipy, python3-tqdm")
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "python3-matplotlib, python3-scipy, python3-tqdm, python3-jinja2, libjs-three")
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${MASONRY_YADE_LIBRARY_DIR})
 set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA ${CMAKE_CURRENT_LIST_DIR}/postinst ${CMAKE_CURRENT_LIST_DIR}/prerm)

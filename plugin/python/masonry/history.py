@@ -23,10 +23,13 @@ class History:
     rest_time            s, since when it has been at rest; NaN: it was rocking (or had overturned) when the run ended
     end_time             s; infinite: nothing more will happen
     base_displacement    of the base at the end of the run, m
+
+    block, motion, vertical, restitution, restoring    as simulate() was given them; motions None: none, restitution None: the natural one
     """
 
-    def __init__(self, shape, arguments, result):
+    def __init__(self, shape, arguments, result, given):
         self.shape = shape
+        self.block, self.motion, self.vertical, self.restitution, self.restoring = given
         self._arguments = arguments
         for name, value in result.items():
             setattr(self, name, restore(value, shape))
@@ -81,4 +84,4 @@ def simulate(block, motion=None, restitution=None, restoring="exact", initial_an
     for record in (motion, vertical):
         if isinstance(record, Record) and record.doubt():
             warnings.warn(record.doubt(), stacklevel=2)
-    return History(shape, arguments, _core.simulate(*arguments))
+    return History(shape, arguments, _core.simulate(*arguments), (block, motion, vertical, restitution, restoring))

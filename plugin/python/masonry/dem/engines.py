@@ -109,8 +109,7 @@ def record_motion(record, ids, direction=(1, 0, 0), start=0.0):
         raise ValueError(f"direction = {shown(direction)}: must be {what}")
     engine = wrapper.RecordMotionEngine(ids=[int(id) for id in ids], samples=record.samples.tolist(), interval=record.dt, baseline=record.baseline,
                                         direction=unit, start=start)
-    if getattr(record, "unit_given", True):
-        notes.has_unit(engine)
+    notes.has_record(engine, record)
     return engine
 
 
@@ -202,6 +201,7 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
     A BlockMat is read when two blocks come near each other. Changed during a run, it acts on pairs that come later; for those that are there
     already set phys.tangensOfFrictionAngle and phys.restitution of the interactions in O.interactions.
     """
+    notes.said.clear()
     _check_arguments(model, method, impact_order, penetration, tolerance, dt, gravity)
     gravity, motions, recorders, blocks = float(gravity), _several(motion), _several(recorder), _boxes()
     _check_engines(motions, recorders, others)
@@ -219,7 +219,7 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
     stiff = [name for name in ("normalStiffness", "shearStiffness") if any(_is_given(b.mat, name) for b in blocks)]
     notes.say_what_is_unused(blocks, model, stiff)
     if penetration is not None and all(_is_given(b.mat, "normalStiffness") for b in blocks):
-        print(f"masonry.dem: penetration = {penetration:g} is not used: every BlockMat has its normalStiffness")
+        notes.say(f"penetration = {penetration:g} is not used: every BlockMat has its normalStiffness")
     if model == "compliant":
         if tolerance is not None or others or method != "auto":
             raise ValueError("tolerance, others and method are for rigid blocks: they must be left out with model='compliant'")
@@ -290,10 +290,15 @@ def _compliant(blocks, motions, reason, dt, penetration, impact_order, gravity, 
     ]
 
 
+def joint_engine():
+    """The engine of the joints, or None."""
+    return next((one for one in O.engines if isinstance(one, (wrapper.MoreauJeanIntegrator, wrapper.RockingJointEngine)) and not one.dead), None)
+
+
 def _joint_engine():
-    for engine in O.engines:
-        if isinstance(engine, (wrapper.MoreauJeanIntegrator, wrapper.RockingJointEngine)) and not engine.dead:
-            return engine
+    engine = joint_engine()
+    if engine is not None:
+        return engine
     raise ValueError("O.engines has no MoreauJeanIntegrator and no RockingJointEngine: set O.engines = dem.engines(...)")
 
 

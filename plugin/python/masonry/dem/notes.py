@@ -18,8 +18,15 @@ _STANDARD_GRAVITY = 9.80665  # m/s^2, as records are given in g
 # A base goes on when its record ends if it has more than this share of its largest speed.
 _STILL = 1e-3
 
+said = []  # the lines that the last dem.engines() has printed on what may not be meant
+
 _made = []  # weak references to the motion engines that a script has made and not yet given to dem.engines()
-_with_unit = []  # weak references to those whose record knows its unit
+_given = []  # (weak reference to a motion engine, the masonry.Record that it was made of)
+
+
+def say(text):
+    said.append(text)
+    print(f"masonry.dem: {text}")
 
 
 def _watch(cls):
@@ -36,12 +43,22 @@ for _cls in (wrapper.RecordMotionEngine, wrapper.PulseTrainEngine):
     _watch(_cls)
 
 
-def has_unit(engine):
-    """The script has said in which unit the engine's record is."""
-    _with_unit.append(weakref.ref(engine))
+def has_record(engine, record):
+    """The script has made the engine of this masonry.Record."""
+    _given[:] = [(known, one) for known, one in _given if known() is not None]
+    _given.append((weakref.ref(engine), record))
 
 
-def _peak(record):
+def _record_of(engine):
+    return next((record for known, record in _given if known() is engine), None)
+
+
+def name_of(engine):
+    """What the record of a motion engine is called; empty where it is not known."""
+    return getattr(_record_of(engine), "name", None) or ""
+
+
+def peak_of(record):
     """m/s^2, before the baseline."""
     return max(map(abs, record.samples)) * abs(record.scale)
 
@@ -52,34 +69,34 @@ def _records(motions):
 
 def of_records(motions):
     """Length and peak of each record, so that slips of units (g for m/s^2, samples a second for the interval) are seen."""
-    said = ""
+    text = ""
     for record in _records(motions):
-        peak = _peak(record)
-        said += f"; record of {(len(record.samples) - 1) * record.interval:g} s, at most {peak:.3g} m/s^2 ({peak / _STANDARD_GRAVITY:.3g} g)"
-    return said
+        peak = peak_of(record)
+        text += f"; record of {(len(record.samples) - 1) * record.interval:g} s, at most {peak:.3g} m/s^2 ({peak / _STANDARD_GRAVITY:.3g} g)"
+    return text
 
 
 def say_what_looks_odd(blocks, motions, gravity, others):
     """Prints a line for each; overlapping blocks are a ValueError."""
     floating, supports = floating_and_supports(floating=False)
     if floating and gravity > 0:
-        print(f"masonry.dem: no chain of supports joins these blocks to a prescribed body, they will fall: {listed(floating)}")
+        say(f"no chain of supports joins these blocks to a prescribed body, they will fall: {listed(floating)}")
     motions = [motion for motion in motions if not motion.dead]
-    for said in (_untouched(others), _motion_left_out(motions), _pivots_that_slip(supports), _pulses_that_slip(supports, motions), *map(_end_of, _records(motions))):
-        if said:
-            print(f"masonry.dem: {said}")
+    for text in (_untouched(others), _motion_left_out(motions), _pivots_that_slip(supports), _pulses_that_slip(supports, motions), *map(_end_of, _records(motions))):
+        if text:
+            say(text)
     for density in sorted({b.mat.density for b in blocks}):
         if not _DENSITIES[0] <= density <= _DENSITIES[1]:
-            print(f"masonry.dem: a density is {density:g}: densities are in kg/m^3")
+            say(f"a density is {density:g}: densities are in kg/m^3")
     for record in _records(motions):
-        peak = _peak(record)
+        peak = peak_of(record)
         if 0 < peak and not _PEAKS[0] <= peak <= _PEAKS[1]:
-            print(f"masonry.dem: a record reaches {peak:.3g}: in g or cm/s^2? Accelerations are in m/s^2")
-        elif _PEAKS_IN_G[0] <= peak <= _PEAKS_IN_G[1] and not any(known() is record for known in _with_unit):
-            print(f"masonry.dem: a record given without a unit reaches {peak:.3g} m/s^2: is it in g? Then multiply it by {_STANDARD_GRAVITY:g}; else name its unit")
+            say(f"a record reaches {peak:.3g}: in g or cm/s^2? Accelerations are in m/s^2")
+        elif _PEAKS_IN_G[0] <= peak <= _PEAKS_IN_G[1] and not getattr(_record_of(record), "unit_given", False):
+            say(f"a record given without a unit reaches {peak:.3g} m/s^2: is it in g? Then multiply it by {_STANDARD_GRAVITY:g}; else name its unit")
     longest = max(2 * max(b.shape.extents) for b in blocks if b.dynamic)
     if longest > _LONGEST:
-        print(f"masonry.dem: the longest block measures {longest:g} m: sizes are in m")
+        say(f"the longest block measures {longest:g} m: sizes are in m")
 
 
 def say_what_is_unused(blocks, model, stiff):
@@ -87,10 +104,10 @@ def say_what_is_unused(blocks, model, stiff):
     default = wrapper.BlockMat()
     unused = [name for name in ("young", "poisson") if any(getattr(b.mat, name) != getattr(default, name) for b in blocks)]
     if unused:
-        print(f"masonry.dem: {' and '.join(unused)} of a BlockMat have no effect: blocks are rigid, and joints as stiff as normalStiffness and shearStiffness "
-              "(Pa/m, model='compliant') say")
+        say(f"{' and '.join(unused)} of a BlockMat have no effect: blocks are rigid, and joints as stiff as normalStiffness and shearStiffness "
+            "(Pa/m, model='compliant') say")
     if stiff and model != "compliant":
-        print(f"masonry.dem: {' and '.join(stiff)} of a BlockMat have no effect with model={model!r}: model='compliant' takes them")
+        say(f"{' and '.join(stiff)} of a BlockMat have no effect with model={model!r}: model='compliant' takes them")
 
 
 def _untouched(others):

@@ -2,13 +2,16 @@
 
 import numpy as np
 from masonry._given import shown
+from masonry.dem.describing import about
+from masonry.dem.engines import impacts, joint_engine
 from masonry.results import WallHistory
 from yade import O, wrapper
 
 
 def wall_history(recorder):
     """The masonry.results.WallHistory of a WallRecorder that has run: motion and energies of its blocks, apart from YADE, to be
-    saved, drawn, counted (masonry.results). Raises ValueError where it has recorded nothing, or no free block."""
+    saved, drawn, counted (masonry.results), with the impacts so far and what it was run with (WallHistory.about: the models, materials and steps that are
+    in the scene now). Raises ValueError where it has recorded nothing, or no free block."""
     if not isinstance(recorder, wrapper.WallRecorder):
         raise ValueError(f"recorder = {shown(recorder)}: must be a WallRecorder")
     if not recorder.times:
@@ -18,6 +21,8 @@ def wall_history(recorder):
     motions = [motion for motion in recorder.motions if not motion.dead]
     motion = (min(m.start for m in motions), max(m.end for m in motions)) if motions else (np.nan, np.nan)
     # The last sample is up to a period older than the run, whose time is O.time while the recorder takes part in it.
-    end = max(O.time, recorder.times[-1]) if recorder in O.engines else None
+    present = recorder in O.engines
+    end = max(O.time, recorder.times[-1]) if present else None
     return WallHistory(recorder.times, recorder.ids, 2 * blocks[:, :3], blocks[:, 3] > 0, poses[..., :3], poses[..., 3:],
-                       np.array(recorder.energies).reshape(len(recorder.times), -1), motion, end)
+                       np.array(recorder.energies).reshape(len(recorder.times), -1), motion, end,
+                       about(recorder.ids, motions) if present else None, impacts() if present and joint_engine() else None)

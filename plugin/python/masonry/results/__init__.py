@@ -4,12 +4,15 @@ ParaView. Needs no YADE: a history saved by one script is drawn by another.
     history = dem.wall_history(recorder)            # in YADE; or results.WallHistory.load("wall.npz")
     print(results.collapse(history))
     results.draw(history, "wall.png")
+    results.report(history, "wall.html")
 """
 
 from .collapse import CollapseReport, collapse, fallen
 from .joints import joints, patches
 from .paraview import write_paraview
 from .pictures import draw, draw_energy, draw_joints, film
+from .reporting import report
 from .wall_history import WallHistory
 
-__all__ = ["CollapseReport", "WallHistory", "collapse", "draw", "draw_energy", "draw_joints", "fallen", "film", "joints", "patches", "write_paraview"]
+__all__ = ["CollapseReport", "WallHistory", "collapse", "draw", "draw_energy", "draw_joints", "fallen", "film", "joints", "patches", "report",
+           "write_paraview"]

@@ -154,3 +154,10 @@ def patches(history):
 def joint_rows(history):
     """(j, 2) rows in the history of the blocks of joints(history)."""
     return _joints_of(history).rows
+
+
+def movement(history, samples):
+    """(rows in the history (j, 2), openings (s, j), slips (s, j), m) of joints(history) in some samples; a slip is NaN where the joint is open all over."""
+    found = _joints_of(history)
+    opening, slip, closed = (np.array(values).reshape(len(samples), len(found.rows)) for values in zip(*(found.movement(history, k) for k in samples)))
+    return found.rows, opening, np.where(closed, slip, np.nan)

@@ -17,7 +17,7 @@ _COLOURS = {"displacement": "displacement relative\nto the base (m)", "rotation"
 _PRESCRIBED, _UNMOVED, _BEYOND = "0.62", "0.85", "tab:purple"
 
 
-def _scale(values, stands, least):
+def scale_end(values, stands, least):
     """(end of a scale, whether what has fallen goes beyond it). The end: the largest value of what stands, or of all where most has fallen or what stands
     has not moved; at least `least`."""
     most, every = largest(values[stands]), largest(values)
@@ -26,7 +26,7 @@ def _scale(values, stands, least):
     return max(most, least), every > most
 
 
-def _shades(name, most):
+def shades(name, most):
     """Colour map from 0 to `most`, without the palest colours, which are lost on white."""
     from matplotlib import colormaps
     from matplotlib.cm import ScalarMappable
@@ -35,8 +35,8 @@ def _shades(name, most):
     return ScalarMappable(Normalize(0, most), ListedColormap(colormaps[name](np.linspace(0.12, 1, 256))).with_extremes(over=_BEYOND))
 
 
-def _colorbar(figure, axes, shades, label, beyond):
-    figure.colorbar(shades, ax=axes, label=f"{label}\npurple: fallen" if beyond else label, shrink=0.8, pad=0.02, extend="max" if beyond else "neither")
+def _colorbar(figure, axes, colours, label, beyond):
+    figure.colorbar(colours, ax=axes, label=f"{label}\npurple: fallen" if beyond else label, shrink=0.8, pad=0.02, extend="max" if beyond else "neither")
 
 
 def _check(color, enlarge):
@@ -84,8 +84,8 @@ class _Painter:
         self._moved = movement(history, samples) > still(history)
         # One block on the floor would leave no colours to the others.
         values, stands = self._values[samples][:, history.free], ~fallen(history)[samples][:, history.free]
-        most, beyond = _scale(values, stands, still(history) if color == "displacement" else STILL)
-        self._map = _shades("YlOrRd", most)
+        most, beyond = scale_end(values, stands, still(history) if color == "displacement" else STILL)
+        self._map = shades("YlOrRd", most)
         self._prescribed, self._unmoved = np.array(to_rgb(_PRESCRIBED)), np.array(to_rgb(_UNMOVED))
         start, free = history.corners(0), history.free
         shown = np.concatenate([self._view.place(history.corners(k, self._enlarge)[free]).reshape(-1, 2) for k in {0, *samples}])
@@ -109,6 +109,19 @@ class _Painter:
         self._axes.set_title(f"{self._title + ': ' if self._title else ''}t = {self._history.time[sample]:.3f} s{drawn}", fontsize="small")
 
 
+def _save(figure, path):
+    with written(path) as beside:
+        figure.savefig(beside, dpi=150)
+
+
+def shape_figure(history, time=None, enlarge=None, color="displacement", view=None, title=""):
+    """The matplotlib figure of draw()."""
+    sample = int(np.nanargmax(history_given(history).drift())) if time is None else history.sample(time)
+    painter = _Painter(history, [sample], enlarge, color, view, title)
+    painter.paint(sample)
+    return painter.figure
+
+
 def draw(history, path, time=None, enlarge=None, color="displacement", view=None, title=""):
     """Writes a picture (.png, .pdf, .svg) of the displaced structure: relative to its base, with the blocks as they were at first dashed
     behind it. Where no corner has moved by more than 1e-6 of the structure's size, blocks are grey and the title says so.
@@ -120,11 +133,7 @@ def draw(history, path, time=None, enlarge=None, color="displacement", view=None
     view       direction from the scene to the viewer (x, y, z); None: across the plane in which all blocks move (of two, the one across which the
                structure is thinner), else from the right, the front and above
     """
-    sample = int(np.nanargmax(history_given(history).drift())) if time is None else history.sample(time)
-    painter = _Painter(history, [sample], enlarge, color, view, title)
-    painter.paint(sample)
-    with written(path) as beside:
-        painter.figure.savefig(beside, dpi=150)
+    _save(shape_figure(history, time, enlarge, color, view, title), path)
 
 
 def film(history, path, start=None, end=None, frames_per_second=20, speed=1.0, enlarge=1.0, color="displacement", view=None, title="", progress=True):
@@ -164,11 +173,8 @@ def film(history, path, start=None, end=None, frames_per_second=20, speed=1.0, e
             painter.figure.set_layout_engine("none")  # the first frame has laid it out
 
 
-def draw_joints(history, path, time=None, view=None, title=""):
-    """Writes a picture with two maps on the undisplaced structure: opening and slip of each joint (joints()), in mm. time: the sample nearest
-    to it, s; None: the largest of each joint in the whole history. view: as in draw(). The scales end as in draw(), for the joints between blocks that
-    have not fallen; where nothing opened, or slid, by more than 1e-6 of the structure's size, the map is grey and its title says so, as where no blocks
-    touch in the first sample (a run that starts with a tilted block)."""
+def joints_figure(history, time=None, view=None, title=""):
+    """The matplotlib figure of draw_joints()."""
     from matplotlib.collections import LineCollection, PolyCollection
     from matplotlib.colors import to_rgba
 
@@ -181,27 +187,31 @@ def draw_joints(history, path, time=None, view=None, title=""):
     figure, panels = _figure(view, view.place(corners[history.free]).reshape(-1, 2), columns=2)
     for axes, name, colours, none in zip(panels, ("opening", "slip"), ("YlOrRd", "YlGnBu"), ("nothing opened", "nothing slid")):
         values = 1e3 * table[name]
-        most, beyond = _scale(values, stands, least)
-        shades = _shades(colours, most)
+        most, beyond = scale_end(values, stands, least)
+        colours = shades(colours, most)
         order = np.argsort(np.nan_to_num(values))
         # What opens or slides by less than a hundredth of the most is left grey and thin. Edge on, the line of a joint is its outline.
         moves = np.nan_to_num(values) > max(0.01 * most, least)
         axes.add_collection(LineCollection(view.outlines(corners[history.free]), colors="0.8", linewidths=0.4, zorder=1))
         width = np.where(moves, 3.0 if view.from_side else 0.8, 0.8)
-        colors = np.where(moves[:, None], shades.to_rgba(np.nan_to_num(values), alpha=1.0 if view.from_side else 0.6), to_rgba(_UNMOVED, 0.3))
+        colors = np.where(moves[:, None], colours.to_rgba(np.nan_to_num(values), alpha=1.0 if view.from_side else 0.6), to_rgba(_UNMOVED, 0.3))
         axes.add_collection(PolyCollection(flat[order], facecolors=colors[order], edgecolors=colors[order], linewidths=width[order], zorder=2))
         axes.set_title(f"{title + ': ' if title else ''}{name}, {when}{'' if moves.any() else f': {none}' if len(table) else ': no blocks touch at first'}", fontsize="small")
         if moves.any():
-            _colorbar(figure, axes, shades, f"{name} (mm)", beyond)
-    with written(path) as beside:
-        figure.savefig(beside, dpi=150)
+            _colorbar(figure, axes, colours, f"{name} (mm)", beyond)
+    return figure
 
 
-def draw_energy(history, path, title=""):
-    """Writes a picture of WallHistory.energy over time: kinetic, potential (since the first sample), what friction, impacts and dashpots have
-    dissipated and the work of the base; below, the error of their balance, in which the work of other engines' forces stands too
-    (WallHistory.energy). Where the balance closes to round-off (method='wall' books what is left over as dissipated by impacts) there is no such error
-    to show, and the curve of impacts says that it holds numerical losses."""
+def draw_joints(history, path, time=None, view=None, title=""):
+    """Writes a picture with two maps on the undisplaced structure: opening and slip of each joint (joints()), in mm. time: the sample nearest
+    to it, s; None: the largest of each joint in the whole history. view: as in draw(). The scales end as in draw(), for the joints between blocks that
+    have not fallen; where nothing opened, or slid, by more than 1e-6 of the structure's size, the map is grey and its title says so, as where no blocks
+    touch in the first sample (a run that starts with a tilted block)."""
+    _save(joints_figure(history, time, view, title), path)
+
+
+def energy_figure(history, title=""):
+    """The matplotlib figure of draw_energy()."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
@@ -229,5 +239,12 @@ def draw_energy(history, path, title=""):
     if title:
         upper.set_title(title, fontsize="small")
     lower.set(xlabel="time (s)")
-    with written(path) as beside:
-        figure.savefig(beside, dpi=150)
+    return figure
+
+
+def draw_energy(history, path, title=""):
+    """Writes a picture of WallHistory.energy over time: kinetic, potential (since the first sample), what friction, impacts and dashpots have
+    dissipated and the work of the base; below, the error of their balance, in which the work of other engines' forces stands too
+    (WallHistory.energy). Where the balance closes to round-off (method='wall' books what is left over as dissipated by impacts) there is no such error
+    to show, and the curve of impacts says that it holds numerical losses."""
+    _save(energy_figure(history, title), path)

@@ -1,5 +1,6 @@
 """The recorded motion of a structure: what the other files of this folder draw, count and export."""
 
+import json
 from functools import cached_property
 
 import numpy as np
@@ -9,8 +10,8 @@ from masonry._given import number_given, shown
 
 ENERGIES = ("kinetic", "potential", "elastPotential", "frictDissip", "dampDissip", "impactDissip", "baseWork")
 _SAVED = ("time", "ids", "sizes", "free", "position", "orientation", "energies")
-# Files that know how long the motion of the base lasts have these.
-_OPTIONAL = ("motion", "end")
+# Files have these where they are known.
+_OPTIONAL = ("motion", "end", "about", "impacts")
 # Share of the motion that may be missing from a run to its end, whose last step or sample may come a little earlier.
 _FINISHED = 1e-3
 
@@ -28,6 +29,9 @@ class WallHistory:
     motion         (2,) s: when the motion of the base begins and ends (infinite: its end is not known); NaN: it has none; None: not known, as in files
                    that do not say it
     end            s: how far the run has come; None: to the last sample
+    about          dict that JSON can hold: script, versions, model, materials, motions, solver, notes, and what a script adds (about["seed"] = 7); empty:
+                   not known
+    impacts        structured array of dem.impacts(); None: not known
 
     Displacements and rotations are relative to the base, which is the first prescribed block, and to the first sample. Without
     a prescribed block they are those in the world; a base that is erased counts as staying where it was. dem.wall_history(recorder) makes one;
@@ -35,12 +39,13 @@ class WallHistory:
     Raises ValueError when shapes do not fit, times do not increase or a block that is there at first is nowhere.
     """
 
-    def __init__(self, time, ids, sizes, free, position, orientation, energies=None, motion=None, end=None):
+    def __init__(self, time, ids, sizes, free, position, orientation, energies=None, motion=None, end=None, about=None, impacts=None):
         self.time, self.ids, self.sizes = np.asarray(time, dtype=float), np.asarray(ids, dtype=int), np.asarray(sizes, dtype=float)
         self.free, self.position, self.orientation = np.asarray(free, dtype=bool), np.asarray(position, dtype=float), np.asarray(orientation, dtype=float)
         samples, blocks = len(self.time), len(self.ids)
         self._energies = np.full((samples, len(ENERGIES)), np.nan) if energies is None else np.asarray(energies, dtype=float)
         self.motion = None if motion is None else np.asarray(motion, dtype=float)
+        self.about, self.impacts = dict(about or {}), impacts
         shapes = {"sizes": (blocks, 3), "free": (blocks,), "position": (samples, blocks, 3), "orientation": (samples, blocks, 4),
                   "_energies": (samples, len(ENERGIES))}
         for name, shape in shapes.items():
@@ -65,9 +70,10 @@ class WallHistory:
         """Writes a compressed .npz file, which WallHistory.load reads back bit by bit."""
         if not str(path).endswith(".npz"):
             raise ValueError(f"path = {path}: must end in .npz")
-        names = [name for name in (*_SAVED, *_OPTIONAL) if name != "motion" or self.motion is not None]
+        values = {name: getattr(self, "_energies" if name == "energies" else name) for name in (*_SAVED, *_OPTIONAL)}
+        values["about"] = np.array(json.dumps(self.about))
         with written(path) as beside:
-            np.savez_compressed(beside, **{name: getattr(self, "_energies" if name == "energies" else name) for name in names})
+            np.savez_compressed(beside, **{name: value for name, value in values.items() if value is not None})
 
     @classmethod
     def load(cls, path):
@@ -77,6 +83,8 @@ class WallHistory:
         if set(_SAVED) - found.keys():
             raise ValueError(f"path = {path}: is no WallHistory: {', '.join(sorted(set(_SAVED) - found.keys()))} is missing")
         try:
+            if "about" in found:
+                found["about"] = json.loads(str(found["about"]))
             return cls(**found)
         except ValueError as error:
             raise ValueError(f"path = {path}: is no WallHistory, or a damaged one: {error}") from None

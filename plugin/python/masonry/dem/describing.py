@@ -1,0 +1,70 @@
+"""What a scene was run with, in words and plain numbers: WallHistory.about."""
+
+import math
+import os
+import platform
+import sys
+
+from masonry import _build
+from masonry.dem import notes
+from masonry.dem.engines import joint_engine
+from yade import O, config, wrapper
+
+_MATERIAL = ("density", "frictionAngle", "restitution", "noSlip", "normalStiffness", "shearStiffness")
+_INTEGRATOR = {"chosenModel": "model", "reason": "reason", "method": "method", "impactOrder": "impact order", "tolerance": "tolerance",
+               "gravity": "gravity"}
+_SOLVER = ("worstResidual", "failures", "firstFailure", "madeEnergy", "lostEnergy", "turnedOver", "stillSteps", "movingSteps", "substeps", "events")
+
+
+def about(ids, motions):
+    """A dict that JSON can hold: script, versions, model, materials (with the ids that they have among `ids`), motions, solver and notes."""
+    engine = joint_engine()
+    return _plain({"script": os.path.basename(sys.argv[0]) if sys.argv else "", "versions": _versions(), "model": _model(engine),
+                   "materials": _materials(ids), "motions": [_motion(one) for one in motions],
+                   "solver": {name: getattr(engine, name) for name in _SOLVER if hasattr(engine, name)}, "notes": list(notes.said)})
+
+
+def _plain(value):
+    """For JSON, which has no number that is not finite: None."""
+    if isinstance(value, dict):
+        return {name: _plain(one) for name, one in value.items()}
+    if isinstance(value, list):
+        return [_plain(one) for one in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def _versions():
+    return {"masonry": _build.VERSION, "YADE": config.version, "Python": platform.python_version(),
+            "system": platform.freedesktop_os_release().get("PRETTY_NAME", "") + f", {platform.machine()}"}
+
+
+def _model(engine):
+    given = {"dt": O.dt, "steps": O.iter}
+    if isinstance(engine, wrapper.RockingJointEngine):
+        newton = next((one for one in O.engines if isinstance(one, wrapper.NewtonIntegrator)), None)
+        return {"model": "compliant", "impact order": engine.impactOrder, **given, **({"gravity": list(newton.gravity)} if newton else {})}
+    for name, word in _INTEGRATOR.items():
+        if hasattr(engine, name):
+            value = getattr(engine, name)
+            given[word] = list(value) if word == "gravity" else value
+    return given
+
+
+def _materials(ids):
+    found = {}
+    for id in ids:
+        body = O.bodies[id] if id < len(O.bodies) else None
+        if body is not None and isinstance(body.mat, wrapper.BlockMat):
+            values = {name: getattr(body.mat, name) for name in _MATERIAL}
+            found.setdefault(repr(values), {**values, "ids": []})["ids"].append(id)
+    return list(found.values())
+
+
+def _motion(engine):
+    said = {"kind": type(engine).__name__, "ids": list(engine.ids), "direction": list(engine.direction), "start": engine.start, "end": engine.end}
+    if isinstance(engine, wrapper.RecordMotionEngine):
+        said.update(record=notes.name_of(engine), interval=engine.interval, samples=len(engine.samples), peak=notes.peak_of(engine), scale=engine.scale,
+                    baseline=engine.baseline)
+    else:
+        said.update(impulse=engine.impulse, shape=engine.shape, duration=engine.duration, pulses=len(engine.pulseTimes))
+    return said

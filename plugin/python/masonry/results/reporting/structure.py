@@ -1,0 +1,192 @@
+"""Content of the report of a WallHistory."""
+
+import math
+
+import numpy as np
+from masonry import _pose
+from masonry.results.collapse import collapse, fallen
+from masonry.results.joints import joints
+from masonry.results.view import largest, movement, still
+
+from . import curves, view3d, words
+
+# Rows of tables: of joints, and of impacts (those that lost most).
+_JOINTS, _IMPACTS = 12, 200
+# Error of the energy balance that is named among the warnings, relative to the largest energy in it.
+_UNBALANCED = 0.05
+
+
+def content(history, exact):
+    """What report.html is filled with."""
+    verdict, table = collapse(history), joints(history)
+    single = history.free.sum() == 1
+    shown_first = verdict.peak_drift_time
+    sections = [section for section in (
+        _section("drift", "Drift", curves.drift(history, verdict),
+                 "Horizontal displacement of the top relative to the base, over the height." + _shaded(verdict)),
+        *(_of_one_block(history, exact) if single else [
+            _section("excursions", "Excursions", curves.excursions(history, verdict),
+                     "Largest horizontal displacement in a course, relative to the base; the curve of a block ends when it falls." + _shaded(verdict))]),
+        _section("shape", "Shape at the largest drift", curves.shape(history, shown_first),
+                 "The sample of the largest drift" + (" before the collapse" if verdict.collapsed else "") + "; dashed: the first sample."),
+        _joints_section(history, verdict, table),
+        _energy_section(history), _impact_section(history)) if section]
+    return {"title": history.about.get("script") or "Rocking masonry", "kind": verdict.verdict, "headline": _headline(verdict), "sentences": _sentences(history, verdict),
+            "warnings": _warnings(history, verdict), "scene": view3d.scene(history, shown_first), "numbers": _numbers(history, verdict, table), "sections": sections,
+            "facts": [("Structure", _structure(history)), *words.facts(history.about)], "solver": words.solver(history.about), "known": bool(history.about)}
+
+
+def _section(name, heading, figure="", caption="", **more):
+    return {"name": name, "heading": heading, "figure": figure, "caption": caption, **more}
+
+
+def _shaded(verdict):
+    return f" Shaded: after the collapse at {verdict.time:.4g} s, where the curve may leave the picture." if verdict.collapsed else ""
+
+
+def _headline(verdict):
+    return {"collapsed": f"Collapsed at {verdict.time:.4g} s", "stands": "Stands", "unknown": "Stands in the last sample",
+            "unfinished": "Not finished: no collapse so far"}[verdict.verdict]
+
+
+def _counted(number, word):
+    return f"{number} {word}{'s' if number != 1 else ''}"
+
+
+def _sentences(history, verdict):
+    run = verdict.run
+    fell = f"{len(verdict.fallen)} of {_counted(verdict.free, 'block')} {'has' if len(verdict.fallen) == 1 else 'have'} fallen."
+    return [f"{run[0].upper()}{run[1:]}.", fell]
+
+
+def _warnings(history, verdict):
+    said = []
+    if verdict.verdict == "unfinished":
+        said.append("The motion of the base is not over: whether the structure stands is not known yet.")
+    if verdict.verdict == "unknown":
+        said.append("The history does not say how long the motion lasts: whether it was over by the last sample is not known.")
+    if not verdict.from_base:
+        said.append("The base was not recorded: its own motion is in every drift, excursion and fall.")
+    said += words.failures(history.about)
+    said += [f"{note[0].upper()}{note[1:]}." for note in history.about.get("notes", [])]
+    energy = history.energy
+    if not np.isnan(energy["kinetic"]).all() and not np.isnan(energy["error"]).all():
+        turned = max(largest(np.abs(energy[name])) for name in ("kinetic", "frictDissip", "dampDissip", "impactDissip", "baseWork"))
+        error = largest(np.abs(energy["error"]))
+        if turned > 0 and error > _UNBALANCED * turned:
+            said.append(f"The energies miss their balance by {error:.3g} J, {100 * error / turned:.2g} % of the largest of them: other engines' forces, erased "
+                        "blocks, velocities set by a script, or an error of the computation.")
+    if movement(history, range(len(history.time))) <= still(history):
+        said.append("Nothing moved.")
+    if not np.isfinite(history.position).all():
+        said.append("Blocks were erased during the run; they count as fallen.")
+    return said
+
+
+def _numbers(history, verdict, table):
+    """Rows (name, value, when)."""
+    before = " before the collapse" if verdict.collapsed else ""
+    rows = [("Largest drift" + before, f"{100 * verdict.peak_drift:.3g} % of the height", f"{verdict.peak_drift_time:.4g} s"),
+            ("Drift in the last sample", f"{100 * verdict.residual_drift:.3g} % of the height", f"{history.time[-1]:.4g} s"),
+            (f"First drift of {100 * verdict.excursion:g} %", "never" if math.isnan(verdict.first_excursion) else "reached",
+             "" if math.isnan(verdict.first_excursion) else f"{verdict.first_excursion:.4g} s")]
+    for id, time in list(zip(verdict.fallen, verdict.fall_times))[:1]:
+        rows.append(("First block to fall", f"block {id}", f"{time:.4g} s"))
+    # Those of blocks that lie on the floor say nothing.
+    stands = ~np.isin(table["id1"], verdict.fallen) & ~np.isin(table["id2"], verdict.fallen)
+    for name, verb in (("opening", "opened"), ("slip", "slid")):
+        values = np.where(stands, np.nan_to_num(table[name]), 0)
+        if len(values) and values.max() > still(history):
+            k = int(values.argmax())
+            rows.append((f"Joint that {verb} most", f"{1e3 * values[k]:.4g} mm, blocks {table['id1'][k]} and {table['id2'][k]}", f"{table[name + '_time'][k]:.4g} s"))
+    energy = history.energy[-1]
+    for name, word in (("baseWork", "Work of the base"), ("frictDissip", "Dissipated by friction"), ("impactDissip", "Dissipated by impacts"),
+                       ("dampDissip", "Dissipated by dashpots")):
+        if np.isfinite(energy[name]) and (energy[name] != 0 or name == "baseWork"):
+            rows.append((word, f"{energy[name]:.4g} J", "in all"))
+    return rows
+
+
+def _structure(history):
+    free, sizes = history.free, history.sizes[history.free]
+    low, high = history.extent
+    box = np.ptp(history.corners(0)[free].reshape(-1, 3), axis=0)
+    same = np.ptp(sizes, axis=0).max() < 1e-9 * sizes.max()
+    of = f" of {' × '.join(f'{x:.3g}' for x in sizes[0])} m" if same else f" of {len(np.unique(sizes.round(9), axis=0))} sizes"
+    return (f"{_counted(int(free.sum()), 'free block')}{of}, {_counted(int((~free).sum()), 'prescribed body') if free.all() or (~free).sum() == 1 else f'{(~free).sum()} prescribed bodies'}; "
+            f"{box[0]:.3g} × {box[1]:.3g} × {box[2]:.3g} m in all; {len(history.time)} samples from {history.time[0]:.4g} to {history.time[-1]:.4g} s")
+
+
+def _joints_section(history, verdict, table):
+    if not len(table):
+        return None
+    rank = np.argsort(-np.nan_to_num(table["opening"]), kind="stable")
+    ids = dict(zip(history.ids.tolist(), fallen(history)[-1].tolist()))
+    rows = [(f"{r['id1']} – {r['id2']}", _mm(r["opening"]), f"{r['opening_time']:.3f}", _mm(r["slip"]), "" if math.isnan(r["slip"]) else f"{r['slip_time']:.3f}",
+             "fallen" if ids[r["id1"]] or ids[r["id2"]] else "") for r in table[rank[:_JOINTS]]]
+    return _section("joints", "Opening and slip of the joints", curves.joints(history, verdict, table),
+                    "The joints that opened, and slid, most before one of their blocks fell; slip only while the joint is closed." + _shaded(verdict),
+                    second=curves.joint_map(history), second_caption="Largest values of all samples, on the structure as it was at first.",
+                    columns=["Blocks", "Opening (mm)", "at (s)", "Slip (mm)", "at (s)", ""], rows=rows,
+                    more=f"The {len(rows)} joints of {len(table)} that opened most, blocks that fell included.", fold="Table of joints")
+
+
+def _mm(value):
+    return "" if math.isnan(value) else f"{1e3 * value:.3f}"
+
+
+def _energy_section(history):
+    if np.isnan(history.energy["kinetic"]).all():
+        return None
+    return _section("energies", "Energies", curves.energies(history),
+                    "Kinetic and potential energy, what was dissipated, and the work of the base. With method='wall' what impacts dissipated is what is left over of "
+                    "the balance, numerical losses included; with other methods the error of the balance is drawn below.")
+
+
+def _impact_section(history):
+    table = history.impacts
+    if table is None:
+        return None
+    if not len(table):
+        why = (" With method='wall' only impacts with a given restitution are listed." if history.about.get("model", {}).get("method") == "wall" else "")
+        return _section("impacts", "Impacts", caption="No impact is in the list." + why)
+    kept = np.sort(np.argsort(-table["energy_lost"], kind="stable")[:_IMPACTS])
+    rows = [(f"{r['time']:.4f}", str(r["body"]), str(r["support"]), "natural" if math.isnan(r["restitution_asked"]) else f"{r['restitution_asked']:.3f}",
+             f"{r['restitution']:.3f}", f"{r['velocity']:.3g}", f"{r['energy_lost']:.3g}", f"{r['friction_demand']:.2f}", "capped" if r["capped"] else "")
+            for r in table[kept]]
+    return _section("impacts", "Impacts", curves.impacts(table, history.time),
+                    f"{_counted(len(table), 'impact')}, which lost {table['energy_lost'].sum():.4g} J.",
+                    columns=["Time (s)", "Block", "on", "C asked", "C", "Velocity before (rad/s)", "Energy lost (J)", "Friction needed", ""], rows=rows,
+                    more="All of them." if len(rows) == len(table) else f"The {len(rows)} that lost most.", fold="List of impacts")
+
+
+def _of_one_block(history, exact):
+    """Signed rotation of the block, beside the exact one, and its phase plane."""
+    row = int(np.flatnonzero(history.free)[0])
+    angles = _signed(_from_upright(history, row))
+    known = np.isfinite(angles)
+    time, angles = history.time[known], np.unwrap(angles[known])
+    other = exact.sample(time) if exact is not None else None
+    caption = "Rotation relative to the base." + ("" if exact is None else f" Dashed: the exact solution; largest difference {largest(np.abs(angles - other[0])):.3g} rad.")
+    speed = np.gradient(angles, time) if len(time) > 1 else np.zeros(len(time))
+    return [_section("rotation", "Rotation", curves.rotation(time, angles, None if other is None else other[0]), caption),
+            _section("phase-plane", "Phase plane", curves.phase_plane(angles, speed, None, other),
+                     "Angular velocity over rotation, from differences of the samples." + ("" if exact is None else " Dashed: the exact solution."))]
+
+
+def _from_upright(history, row):
+    """(s, 4) how a block is turned from where its upright axis is vertical, seen from the base."""
+    start, up = history.relative_orientation[0, row], history.upright[row]
+    axis = _pose.matrices(start)[:, up]
+    axis = axis * (1 if axis[2] >= 0 else -1)
+    lean = np.array([1 + axis[2], -axis[1], axis[0], 0])  # the shortest way from the vertical to the axis
+    stood = _pose.product(_pose.inverse(lean / np.linalg.norm(lean)), start)
+    turn = _pose.product(history.relative_orientation[:, row], _pose.inverse(stood))
+    return turn * np.where(turn[:, :1] < 0, -1, 1)
+
+
+def _signed(turn):
+    """Angle about the axis of the scene that the block turns about most."""
+    sine = np.linalg.norm(turn[:, 1:], axis=1)
+    vector = (2 * np.arctan2(sine, turn[:, 0]) / np.maximum(sine, 1e-300))[:, None] * turn[:, 1:]
+    return vector[:, np.nan_to_num(np.abs(vector)).max(axis=0).argmax()]

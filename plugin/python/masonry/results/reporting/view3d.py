@@ -1,0 +1,72 @@
+"""What the 3D view of a report needs: the motion of the blocks in a few hundred frames, and the library that draws them."""
+
+import base64
+import json
+from pathlib import Path
+
+import numpy as np
+from masonry import _pose
+from masonry.results.collapse import fallen
+from masonry.results.pictures import scale_end, shades
+from masonry.results.view import STILL, enlargement, plane_normal, still
+
+# Where Debian's package libjs-three has it. It is MIT-licensed, which asks for the notice in copies: report.html has it.
+_LIBRARY = Path("/usr/share/javascript/three/three.min.js")
+# Frames, and numbers in all of them: 4 MB of the file.
+_FRAMES, _NUMBERS = 300, 1_000_000
+_POSE = 7
+# Movement of the farthest moved block, relative to the smallest block, that is shown enlarged where all of it is smaller.
+_DRAWN = 0.5
+_STOPS = 16
+
+
+def library():
+    """{"library": text of three.js, or None}."""
+    try:
+        return {"library": _LIBRARY.read_text(encoding="utf-8").replace("</script", "<\\/script")}
+    except OSError:
+        return {"library": None}
+
+
+def frames(history):
+    """Samples that are shown: spread evenly, with the first, the last and that of the largest drift."""
+    count = min(len(history.time), max(2, min(_FRAMES, _NUMBERS // (_POSE * len(history.ids)))))
+    even = np.linspace(0, len(history.time) - 1, count).round().astype(int)
+    return np.unique([*even, int(np.nanargmax(history.drift()))])
+
+
+def _packed(values):
+    return base64.b64encode(np.ascontiguousarray(values, dtype="<f4").tobytes()).decode()
+
+
+def _base_motion(history, samples):
+    """(frames, 7): where the base has gone since the first sample, a turn about the origin and then a shift."""
+    if history.base is None:
+        return np.tile([0.0, 0, 0, 1, 0, 0, 0], (len(samples), 1))
+    place, turned = history.position[samples, history.base], history.orientation[samples, history.base]
+    turn = _pose.product(turned, _pose.inverse(history.orientation[0, history.base]))
+    shift = place - np.einsum("sab,b->sa", _pose.matrices(turn), history.position[0, history.base])
+    motion = np.concatenate([shift, turn], axis=1)
+    motion[~np.isfinite(motion).all(axis=1)] = 0, 0, 0, 1, 0, 0, 0  # erased
+    return motion
+
+
+def scene(history, start):
+    """The JSON text that viewer.js reads. start: the instant that it shows first, s."""
+    from matplotlib.colors import to_hex
+
+    samples = frames(history)
+    poses = np.concatenate([history.relative_position[samples], history.relative_orientation[samples]], axis=2)
+    stands = ~fallen(history)[samples][:, history.free]
+    quantities = []
+    for name, unit, factor, values, least in (("displacement", "mm", 1e3, np.linalg.norm(history.displacement[samples], axis=2), still(history)),
+                                              ("rotation", "mrad", 1e3, history.rotation[samples], STILL)):
+        most, beyond = scale_end(values[:, history.free], stands, least)
+        quantities.append({"name": name, "unit": unit, "factor": factor, "most": most, "beyond": beyond})
+    normal = plane_normal(history)
+    return json.dumps({
+        "time": [round(float(t), 6) for t in history.time[samples]], "ids": history.ids.tolist(), "free": history.free.tolist(),
+        "sizes": history.sizes.round(9).tolist(), "poses": _packed(poses), "base": _packed(_base_motion(history, samples)), "quantities": quantities,
+        "palette": [to_hex(shades("YlOrRd", 1).to_rgba(k / (_STOPS - 1))) for k in range(_STOPS)],
+        "enlarge": float(f"{enlargement(history, samples, _DRAWN):.2g}"), "front": (normal if normal is not None else np.array([0.0, -1, 0])).tolist(),
+        "start": float(start)}).replace("</", "<\\/")

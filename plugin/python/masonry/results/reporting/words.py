@@ -1,0 +1,77 @@
+"""WallHistory.about in words."""
+
+import math
+
+_GRAVITY = 9.80665  # m/s^2, as records are given in g
+
+
+def quantity(value, unit=""):
+    return "not known" if value is None else f"{value:.4g}{' ' if unit else ''}{unit}"
+
+
+def material(given):
+    """One sentence on a BlockMat of WallHistory.about."""
+    friction = "no slip" if given["noSlip"] else f"friction coefficient {math.tan(given['frictionAngle']):.3g}"
+    restitution = "natural restitution" if given["restitution"] is None else f"restitution {given['restitution']:.3g}"
+    stiffness = [f"{word} stiffness {given[name]:.3g} Pa/m" for name, word in (("normalStiffness", "normal"), ("shearStiffness", "shear"))
+                 if given[name] is not None]
+    return ", ".join([f"{len(given['ids'])} blocks: density {given['density']:g} kg/m³", friction, restitution, *stiffness])
+
+
+def motion(given):
+    """One sentence on a motion engine of WallHistory.about."""
+    direction = ", ".join(f"{x:g}" for x in given["direction"])
+    start = f", from {given['start']:g} s" if given["start"] else ""
+    if given["kind"] == "RecordMotionEngine":
+        name = f" “{given['record']}”" if given["record"] else ""
+        return (f"record{name}: {given['samples']} samples every {given['interval']:g} s, peak {given['peak']:.3g} m/s² ({given['peak'] / _GRAVITY:.3g} g), "
+                f"baseline {given['baseline']}, along ({direction}){start}")
+    return f"{given['pulses']} pulses ({given['shape']}) of impulse {quantity(given['impulse'], 'm/s')}, along ({direction}){start}"
+
+
+def facts(about):
+    """Rows (name, value) of the table of what was run."""
+    rows = [("Script", about["script"])] if about.get("script") else []
+    rows += [("Material" if len(about["materials"]) == 1 else f"Material {k + 1}", material(one)) for k, one in enumerate(about.get("materials", []))]
+    rows += [("Motion of the base", motion(one)) for one in about.get("motions", [])] or ([("Motion of the base", "none")] if "motions" in about else [])
+    model = about.get("model", {})
+    if "model" in model:
+        rows.append(("Model", f"{model['model']}{': ' + model['reason'] if model.get('reason') else ''}"))
+    for name in ("method", "impact order", "tolerance"):
+        if name in model:
+            rows.append((name.capitalize(), f"{model[name]:g}" if name == "tolerance" else model[name]))
+    if "dt" in model:
+        rows.append(("Time step", f"{model['dt']:.4g} s in the last of {model['steps']} steps"))
+    if "gravity" in model:
+        rows.append(("Gravity", f"({', '.join(f'{x:g}' for x in model['gravity'])}) m/s²"))
+    rows += [(name[0].upper() + name[1:], value if isinstance(value, str) else f"{value!r}") for name, value in about.items()
+             if name not in ("script", "materials", "motions", "model", "solver", "notes", "versions")]
+    if "versions" in about:
+        rows.append(("Versions", ", ".join(f"{name} {value}" for name, value in about["versions"].items())))
+    return rows
+
+
+def solver(about):
+    """Rows (name, value, meaning) on how well the laws were met."""
+    given, model = about.get("solver", {}), about.get("model", {})
+    rows = []
+    if "worstResidual" in given:
+        step = (math.hypot(*model["gravity"]) * model["dt"]) if "gravity" in model else 0
+        share = f"{given['worstResidual'] / step:.2g} of the speed that gravity gives in a step" if step > 0 else ""
+        rows.append(("Largest residual of the contact laws", quantity(given["worstResidual"], "m/s"), share))
+    if "failures" in given:
+        rows.append(("Steps that missed a law or the tolerance", str(given["failures"]), f"of {model['steps']} steps" if "steps" in model else ""))
+    for name, word in (("madeEnergy", "Energy made of nothing"), ("lostEnergy", "Energy that vanished")):
+        if name in given and model.get("method") != "wall":
+            turned = given.get("turnedOver") or 0
+            rows.append((word, quantity(given[name], "J"), f"{100 * given[name] / turned:.2g} % of what was turned over" if turned > 0 else ""))
+    return rows
+
+
+def failures(about):
+    """Sentences on failures of the solver."""
+    given = about.get("solver", {})
+    if not given.get("failures"):
+        return []
+    count = f"{given['failures']} step{'s' if given['failures'] != 1 else ''} missed the contact laws or the tolerance"
+    return [f"{count}. The first: {given['firstFailure']}"] if given.get("firstFailure") else []
