@@ -30,11 +30,7 @@ def oscillator_peak(motion, period, damping=0.05):
     and damping (ratio, 0 <= damping < 1) broadcast.
 
     motion: one Record, Sine, HalfSine, Rectangular or PulseTrain with times and Dirac pulses."""
-    period, damping = array_given("period", period), array_given("damping", damping)
-    if not (np.all(period > 0) and np.all(np.isfinite(period))):
-        raise ValueError(f"period = {shown(period)}: must be positive and finite, in s")
-    if not (np.all(damping >= 0) and np.all(damping < 1)):
-        raise ValueError(f"damping = {shown(damping)}: must be at least 0 and below 1")
+    period, damping = _oscillators_given(period, damping)
     shape = np.broadcast_shapes(period.shape, damping.shape)
     largest = _peak_under_record if isinstance(motion, Record) else _peak_under_pieces
     source = _samples(motion) if isinstance(motion, Record) else _pieces(motion)
@@ -51,6 +47,7 @@ def response(motion, period, damping=0.05, progress=False):
     progress   a progress bar (tqdm)
 
     The response to a record is exact for accelerations that are linear between its samples, also between samples and after the end of the record."""
+    _oscillators_given(period, damping)
     many = isinstance(motion, (list, tuple))
     motions = list(motion) if many else [motion]
     dims, coords, arrays = outer(period=period, damping=damping)
@@ -63,6 +60,16 @@ def response(motion, period, damping=0.05, progress=False):
     w = 2 * math.pi / arrays["period"]
     values = {"displacement": u, "pseudo_velocity": w * u, "pseudo_acceleration": w**2 * u}
     return Spectrum(dims, coords, values, {**UNITS, "displacement": "m", "pseudo_velocity": "m/s", "pseudo_acceleration": "m/s^2"}, fixed)
+
+
+def _oscillators_given(period, damping):
+    """Both as arrays; ValueError unless they are those of oscillators."""
+    periods, ratios = array_given("period", period), array_given("damping", damping)
+    if not (np.all(periods > 0) and np.all(np.isfinite(periods))):
+        raise ValueError(f"period = {shown(period)}: must be positive and finite, in s")
+    if not (np.all(ratios >= 0) and np.all(ratios < 1)):
+        raise ValueError(f"damping = {shown(damping)}: must be at least 0 and below 1")
+    return periods, ratios
 
 
 def _name(motion, k):
