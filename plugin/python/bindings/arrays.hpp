@@ -67,7 +67,8 @@ void forEachCase(size_t cases, const Body& body)
 	std::mutex mutex;
 	{
 		WithoutGil nogil;
-#pragma omp parallel for schedule(dynamic, 16) if (cases > 16)
+		const int together = int(std::clamp<size_t>(cases / 64, 1, 16)); // few cases are long ones: they are dealt out singly
+#pragma omp parallel for schedule(dynamic, together) if (cases > 16)
 		for (size_t i = 0; i < cases; i++) {
 			try {
 				body(i);

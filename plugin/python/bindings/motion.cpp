@@ -52,6 +52,17 @@ Motions record(double dt, const py::object& accelerations, const py::object& sca
 	return {scale.size(), [=](size_t i) { return motion::record(dt, acceleration, scale[i], correction); }, {}};
 }
 
+Motions part(const Motions& motions, size_t begin, size_t end)
+{
+	if (motions.size == 1)
+		return motions;
+	if (end > motions.size || begin > end)
+		throw std::invalid_argument("part: must lie within the motions");
+	if (motions.train)
+		return {end - begin, {}, [=](size_t i) { return motions.train(begin + i); }};
+	return {end - begin, [=](size_t i) { return motions.motion(begin + i); }, {}};
+}
+
 py::tuple values(const Motions& motions, const py::object& timesObject)
 {
 	if (motions.train)
@@ -74,6 +85,7 @@ void exposeMotion()
 {
 	using py::args;
 	py::class_<Motions>("Motions", "Base motions, one a case or one for all", py::no_init)
+	    .def("part", part, args("begin", "end"), "the motions from begin to before end; one for all stays one for all")
 	    .def("values", values, args("t"), "acceleration, velocity, displacement at times t, one row a motion");
 	py::def("none", none, "a base at rest");
 	py::def("resonant", resonant, args("impulse", "half_cycles", "shape", "duration", "single_keeps"),

@@ -17,12 +17,13 @@ except ImportError as _error:
     raise ImportError("masonry needs its compiled module masonry/_core.so: build it with `cmake --preset release && cmake --build build`, put build/python "
                       f"on PYTHONPATH, and use the system's Python. ({_error})") from None
 
-from . import closed_form  # noqa: E402
+from . import closed_form, spectra  # noqa: E402
+from ._fragility import Fragility, fragility, fragility_of_table  # noqa: E402
 from .artificial import artificial_record  # noqa: E402
 from .block import RockingBlock  # noqa: E402
 from .history import History, simulate  # noqa: E402
 from .motions import HalfSine, PulseTrain, Record, Rectangular, Sine  # noqa: E402
 from .overturning import overturning_amplitude  # noqa: E402
 
-__all__ = ["HalfSine", "History", "PulseTrain", "Record", "Rectangular", "RockingBlock", "Sine", "artificial_record",
-           "closed_form", "overturning_amplitude", "simulate"]
+__all__ = ["Fragility", "HalfSine", "History", "PulseTrain", "Record", "Rectangular", "RockingBlock", "Sine", "artificial_record",
+           "closed_form", "fragility", "fragility_of_table", "overturning_amplitude", "simulate", "spectra"]

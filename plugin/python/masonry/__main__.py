@@ -2,7 +2,6 @@
 
 import argparse
 import platform
-import sys
 
 from . import _build, commands
 
@@ -20,9 +19,14 @@ def versions():
     ))
 
 
+class _Parser(argparse.ArgumentParser):
+    def error(self, message):
+        self.exit(2, f"{self.prog}: {message}; {self.prog} --help says more\n")
+
+
 def main():
-    parser = argparse.ArgumentParser(prog="masonry", description="Rocking masonry blocks in YADE: `from masonry import dem` in a script that yade runs.",
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = _Parser(prog="masonry", description="Rocking masonry blocks in YADE: `from masonry import dem` in a script that yade runs.",
+                     formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--version", action="version", version=versions(), help="print all that a report of a fault needs")
     parser.set_defaults(run=lambda given: parser.print_help())
     subcommands = parser.add_subparsers(title="commands", metavar="COMMAND")
@@ -32,7 +36,7 @@ def main():
     try:
         given.run(given)
     except (OSError, ValueError, ImportError) as error:  # input that is wrong, or a package that is missing: their message says which
-        sys.exit(f"masonry: {error}")
+        parser.exit(2, f"masonry: {error}\n")
 
 
 if __name__ == "__main__":

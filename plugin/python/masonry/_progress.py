@@ -1,0 +1,27 @@
+"""Long loops: parts of many cases, and a progress bar that is drawn only where it was asked for."""
+
+# Cases of one call of the compiled functions: enough for all cores, few enough for the tables of their impacts to stay small.
+_TOGETHER = 1024
+
+
+def steps(items, progress, name, unit="case"):
+    """The items, with a progress bar if it is wanted. Needs tqdm only then."""
+    if not progress:
+        return items
+    from tqdm import tqdm
+
+    return tqdm(items, desc=name, unit=unit)
+
+
+def chunks(cases, progress, name):
+    """(begin, end) of parts of so many cases, with a progress bar if it is wanted."""
+    parts = [(begin, min(begin + _TOGETHER, cases)) for begin in range(0, cases, _TOGETHER)]
+    if not progress:
+        yield from parts
+        return
+    from tqdm import tqdm
+
+    with tqdm(total=cases, desc=name, unit="case") as bar:
+        for begin, end in parts:
+            yield begin, end
+            bar.update(end - begin)

@@ -1,0 +1,57 @@
+"""What several commands read and write: lists of numbers, records, sizes of a block."""
+
+import argparse
+from pathlib import Path
+
+import numpy as np
+
+NUMBERS = "numbers: 0.5, or 0.4,0.6,1.2, or 0.5:4:20 (20 from 0.5 to 4 at equal steps), or 0.1:10:20:log (at equal factors)"
+
+
+def numbers(text):
+    """A number, or an array of the numbers that the text lists."""
+    try:
+        if ":" in text:
+            first, last, count, *log = text.split(":")
+            if log not in ([], ["log"]) or int(count) < 2:
+                raise ValueError
+            return (np.geomspace if log else np.linspace)(float(first), float(last), int(count))
+        values = [float(word) for word in text.split(",")]
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is no list of numbers: write 0.5, or 0.4,0.6,1.2, or 0.5:4:20, or 0.1:10:20:log") from None
+    return values[0] if len(values) == 1 else np.array(values)
+
+
+def add_records(parser, nargs, more=""):
+    parser.add_argument("records", nargs=nargs, type=Path, metavar="RECORD", help=f"accelerogram: a PEER file (.AT2), or a text file of columns{more}")
+    parser.add_argument("--unit", choices=("m/s^2", "cm/s^2", "mm/s^2", "g"), help="of text files of columns")
+    parser.add_argument("--dt", type=float, help="s between the samples of text files without times")
+    parser.add_argument("--baseline", default="constant", choices=("none", "constant", "linear"),
+                        help="what is subtracted from the accelerations (constant: their mean, so that the base comes to rest)")
+
+
+def read_records(given):
+    from masonry import Record
+
+    records = []
+    for path in given.records:
+        if path.suffix.lower() == ".at2":
+            records.append(Record.from_at2(path, baseline=given.baseline))
+        elif given.unit is None:
+            raise ValueError(f"{path}: a text file of columns needs --unit m/s^2, cm/s^2, mm/s^2 or g")
+        else:
+            records.append(Record.from_csv(path, given.unit, given.dt, baseline=given.baseline))
+    return records
+
+
+def add_output(parser, name):
+    parser.add_argument("-o", "--output", type=Path, default=Path(name), metavar="NAME", help=f"NAME.csv and NAME.png are written (default: {name})")
+    parser.add_argument("--quiet", action="store_true", help="no progress bar")
+
+
+def write(result, given, **picture):
+    """CSV and PNG of a result, and a line that names them."""
+    table, image = (given.output.with_name(given.output.name + ending) for ending in (".csv", ".png"))
+    result.to_csv(table)
+    result.plot(image, **picture)
+    print(f"masonry: wrote {table} and {image}")
