@@ -140,6 +140,7 @@ class Sine(_Shaped):
         super().__init__(_core.sine, amplitude=amplitude, frequency=frequency, cycles=cycles)
 
 
+_BASELINES = "none", "constant", "linear", "high-pass"
 # m/s^2: no motion of the ground, so the unit is another.
 _FASTEST = 50
 
@@ -185,6 +186,8 @@ class Record(Motion):
         self._unscaled, self.deviation = self._accelerations(samples, factor, resolution, baseline)
         array_given("scale", scale)
         self.scale = self.amplitude = scale
+        if baseline not in _BASELINES:
+            raise ValueError(f"baseline = {shown(baseline)}: must be one of {', '.join(map(repr, _BASELINES))}")
         self.baseline, self.padding = baseline, 0.0
         self.name = name
         self.shape = np.shape(scale)

@@ -44,12 +44,16 @@ def read(path, component=None, quantity=None, unit=None, dt=None, columns=None):
     """(series, name of the format) of a file. Arguments as those of masonry.read_record."""
     if quantity is not None and quantity not in QUANTITIES:
         raise ValueError(f"quantity = {shown(quantity)}: must be one of {', '.join(QUANTITIES)}, or None")
+    path = os.fspath(path)
     text = open_text(path)
     if text is None:
         return _one(path, obspy_files.read(path, unit), component, quantity), obspy_files.NAME
     reader = next((reader for reader in _READERS if reader.recognises(text)), None)
     if reader is None:
-        series = table.read(text, unit, dt, _columns(text, component, columns))
+        try:
+            series = table.read(text, unit, dt, _columns(text, component, columns))
+        except ValueError as error:
+            raise ValueError(f"{error}. (It is read as columns, because it has the header of no other format.)") from None
         return _one(path, series, None, quantity), table.NAME
     for name, value in (("unit", unit), ("dt", dt), ("columns", columns)):
         if value is not None:
@@ -63,8 +67,10 @@ def _columns(text, component, columns):
         return columns
     if columns is not None:
         raise ValueError(f"component = {shown(component)}: must be left out where columns are given")
-    names = table.names_of(text)
-    return (0, component) if names and names[0].lower().startswith("t") else component
+    names = table.names_of(text) or []
+    if component not in names:
+        raise ValueError(f"component = {shown(component)}: must be the name of a column in the first line of {text.path}" + (f", {shown(names)}" if names else ", which has none"))
+    return (0, component) if names[0].lower().startswith("t") else component
 
 
 def _matches(series, component):
