@@ -6,6 +6,7 @@ import numpy as np
 
 from . import _core
 from ._arrays import columns, restore, shape_of
+from ._files import written
 from ._given import array_given, shown, whole_given
 from .motions import Motion, PulseTrain, Record, Still
 
@@ -48,6 +49,34 @@ class History:
     def sample_base(self, t):
         """Displacement of the base at times t, m; of a resonant train too."""
         return self._sample(t)[2]
+
+    def draw(self, path):
+        """Writes a picture (.png, .pdf or .svg) of one block: its angle relative to the critical one, and the motion of the base below it."""
+        from matplotlib.backends.backend_agg import FigureCanvasAgg
+        from matplotlib.figure import Figure
+
+        if self.shape:
+            raise ValueError(f"the history is of {self.shape} cases: must be of one block and one motion to be drawn")
+        ends = [self.motion.duration if isinstance(self.motion, Record) else 0.0, *np.ravel(self.impact_times)[-1:], self.rest_time, self.end_time]
+        times = np.linspace(0, 1.02 * max((end for end in ends if np.isfinite(end) and end > 0), default=1.0), 4000)
+        figure = Figure(figsize=(8, 5), layout="constrained")
+        FigureCanvasAgg(figure)
+        above, below = figure.subplots(2, 1, sharex=True, height_ratios=(2, 1))
+        angles = self.sample(times)[0] / self.block.critical_angle
+        above.plot(times, angles, color="tab:blue")
+        for level in (-1, 1):
+            above.axhline(level, color="0.6", linestyle="--", linewidth=0.8)
+        verdict = f"overturns in half cycle {self.overturn_half_cycle}" if self.overturned else f"stands, {len(self.impact_times)} impacts"
+        above.set(ylabel="angle / critical angle", title=verdict, ylim=1.1 * np.array([-1, 1]) * np.clip(np.nanmax(np.abs(angles)), 1, 1.5))
+        if isinstance(self.motion, Record):
+            below.plot(times, self.motion.acceleration(times), color="tab:red", linewidth=0.8)
+            below.set(ylabel="base (m/s$^2$)")
+        else:
+            below.plot(times, self.sample_base(times), color="tab:red")
+            below.set(ylabel="base (m)")
+        below.set(xlabel="time (s)", xlim=(0, times[-1]))
+        with written(path) as beside:
+            figure.savefig(beside, dpi=150)
 
 
 def _motion_given(name, motion):
