@@ -279,6 +279,11 @@ def test_a_facade_that_has_not_moved_sideways_is_seen_from_its_front(move):
     assert np.allclose(view.View(turned).towards, [1, 0, 0])
 
 
+def cross(a, b):
+    """Of vectors of the plane, which np.cross does not take in every version of NumPy."""
+    return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
+
+
 def test_blocks_behind_are_drawn_first():
     """Boxes of a regular pattern, in any order: along a ray towards the viewer the last face drawn is that of the nearest box."""
     rng = np.random.default_rng(3)
@@ -290,12 +295,12 @@ def test_blocks_behind_are_drawn_first():
     assert np.allclose(np.unique(bright.round(9)), [0.7, 0.9, 1])  # flanks, fronts, tops
     turned = history([[9, 9, 1], [1, 0.4, 0.9]], [[[1, 1, -1], [0, 0, 0]]], np.array([[UPRIGHT, turn(math.pi / 6, (0, 0, 1))]]))
     assert np.allclose(np.sort(seen.faces(turned.corners(0)[1:])[2]), [0.9 - 0.2 * math.cos(math.pi / 6), 0.9 - 0.2 / 2, 1], rtol=0, atol=1e-12)
-    assert all(np.cross(p[1] - p[0], p[2] - p[1]) > 0 for p in polygons)  # counterclockwise: outsides
+    assert all(cross(p[1] - p[0], p[2] - p[1]) > 0 for p in polygons)  # counterclockwise: outsides
     assert np.allclose(np.column_stack([seen.frame, seen.towards]).T @ np.column_stack([seen.frame, seen.towards]), np.eye(3), rtol=0, atol=1e-12)
     assert np.array_equal(view.View(h, (0, 0, 1)).frame, np.eye(3)[:, :2])
     # Parallelograms; of a box three faces show, each as large as its part across the view.
     assert np.allclose(polygons[:, 0] + polygons[:, 2], polygons[:, 1] + polygons[:, 3], rtol=0, atol=1e-12)
-    areas = np.bincount(rows, np.cross(polygons[:, 1] - polygons[:, 0], polygons[:, 2] - polygons[:, 1]))
+    areas = np.bincount(rows, cross(polygons[:, 1] - polygons[:, 0], polygons[:, 2] - polygons[:, 1]))
     assert np.allclose(areas, (np.roll(h.sizes, 1, axis=1) * np.roll(h.sizes, 2, axis=1)) @ np.abs(seen.towards), rtol=1e-12)
     for towards in ((0.5, -1, 0.4), (0, -1, 0)):  # of no blocks, no faces
         assert not any(map(len, view.View(h, towards).faces(h.corners(0)[:0])))
@@ -303,7 +308,7 @@ def test_blocks_behind_are_drawn_first():
     checked = 0
     for point in rng.uniform(*np.quantile(polygons.reshape(-1, 2), (0.2, 0.8), axis=0), size=(500, 2)):
         edges = np.roll(polygons, -1, axis=1) - polygons
-        inside = (np.cross(edges, point - polygons) > 1e-9).all(axis=1)
+        inside = (cross(edges, point - polygons) > 1e-9).all(axis=1)
         if not inside.any():
             continue
         # How near the box is where the ray leaves it: the least over its three slabs.

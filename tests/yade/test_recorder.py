@@ -5,6 +5,7 @@ import tempfile
 import numpy as np
 from masonry import dem
 from rocking_scene import one_block, quiet_engines, refuses, rigid_engines, stone
+from scipy.integrate import trapezoid
 from yade import O
 
 import masonry
@@ -27,7 +28,7 @@ assert np.max(np.abs(table["uplift"][:, 0] - 0.6 * np.sin(np.abs(angle)))) < 2e-
 # Newton's law, averaged: the mean force carries the weight but for the change of momentum.
 weight = O.bodies[block].state.mass * 9.81
 velocity = np.gradient(table["position"][:, 0, 2], table["time"])
-mean = np.trapz(table["force"][:, 0, 2], table["time"]) / (table["time"][-1] - table["time"][0])
+mean = trapezoid(table["force"][:, 0, 2], table["time"]) / (table["time"][-1] - table["time"][0])
 # Each impact turns the centre of the block from down (b w) to up (b C w).
 impulses = sum(im["velocity"] * (1 + im["restitution"]) for im in dem.impacts()) * exact_block.half_width * O.bodies[block].state.mass
 change = O.bodies[block].state.mass * (velocity[-2] - velocity[1])
