@@ -11,6 +11,11 @@ using feature::signOf;
 
 namespace {
 
+bool isNearlyParallel(const FacePair& pair, double cosineLimit)
+{
+	return std::abs(pair.incident.rotation(pair.face.axis, pair.incidentAxis)) > cosineLimit;
+}
+
 // The reference face is the right normal without a look at the edges if the faces are nearly parallel or if the deepest
 // incident vertex lies over the reference face: then its distance is the separation of the boxes. Both hold for boxes that
 // touch; one box deep beside the edge of another can have a shorter way out across its edges.
@@ -18,7 +23,7 @@ bool isFaceContact(const FacePair& pair, const ClipTask& task, double cosineLimi
 {
 	if (pair.face.separation < -tolerance::contact::shallow * pair.length)
 		return false;
-	if (std::abs(pair.incident.rotation(pair.face.axis, pair.incidentAxis)) > cosineLimit)
+	if (isNearlyParallel(pair, cosineLimit))
 		return true;
 	const auto lower = [](const ClipPoint& a, const ClipPoint& b) { return a.height < b.height; };
 	const auto deepest = *std::min_element(task.incident.begin(), task.incident.end(), lower);
@@ -73,22 +78,20 @@ void edgePatch(const Box& box1, const Box& box2, const RelativePose& second, con
 	out.feature = {PatchKind::Edges, edge1, edge2, 0};
 }
 
-bool patchOn(const FacePair& pair, const ClipTask& task, const Pose& pose1, const Pose& pose2, const PatchFeature& previous,
-             ContactPatch& out)
-{
-	const Pose& referencePose = pair.face.body == 1 ? pose1 : pose2;
-	if (facePatch(pair, task, referencePose, previous, out))
-		return true;
-	const FacePair next = withNextIncident(pair);
-	return facePatch(next, clipTask(next, previous), referencePose, previous, out);
-}
-
 double smallestGap(const ContactPatch& patch)
 {
 	double gap = patch.points[0].gap;
 	for (int i = 1; i < patch.size; ++i)
 		gap = std::min(gap, patch.points[i].gap);
 	return gap;
+}
+
+// Whether the nearest points of the edges lie so far from their ends that more than a sliver of the boxes crosses there.
+bool crossWidely(const EdgeAxis& edges, const Box& box1, const Box& box2, const RelativePose& second, double length)
+{
+	const double along1 = edges.point1[edges.axis1], along2 = second.rotation.col(edges.axis2).dot(edges.point2 - second.offset);
+	return std::min(box1.halfSize[edges.axis1] - std::abs(along1), box2.halfSize[edges.axis2] - std::abs(along2)) >
+	       tolerance::contact::sliver * length;
 }
 
 } // namespace
@@ -105,21 +108,37 @@ bool collide(const Box& box1, const Pose& pose1, const Box& box2, const Pose& po
 
 	const FacePair pair = facePair(box1, box2, second, reference, previous);
 	const ClipTask task = clipTask(pair, previous);
+	const auto patchOn = [&](const FacePair& faces, const ClipTask& clipped) {
+		return facePatch(faces, clipped, faces.face.body == 1 ? pose1 : pose2, previous, out);
+	};
 	const bool edgesBefore = previous.kind == PatchKind::Edges;
 	const double cosineLimit = std::cos(edgesBefore ? tolerance::contact::faceAngle / 2 : tolerance::contact::faceAngle);
 	EdgeAxis edges;
-	if (!isFaceContact(pair, task, cosineLimit) && bestEdges(box1, box2, second, edges) &&
-	    edges.separation > reference.separation + gainOfEdges(reference.separation, pair.length, previous)) {
+	const auto edgesCross = [&] { return bestEdges(box1, box2, second, edges) && edges.separation > reference.separation; };
+	bool crossing = !isFaceContact(pair, task, cosineLimit) && edgesCross();
+	if (!crossing || edges.separation <= reference.separation + gainOfEdges(reference.separation, pair.length, previous)) {
+		// Where the deepest vertex lies beyond the border of the face, the patch lacks it, and the edges beside it may be nearer.
+		const bool found = patchOn(pair, task);
+		if (found && !(crossing && smallestGap(out) > edges.separation + tolerance::contact::edge * pair.length))
+			return smallestGap(out) <= margin;
+		if (!found)
+			crossing = (crossing || edgesCross()) && crossWidely(edges, box1, box2, second, pair.length);
+	}
+	if (crossing) {
 		if (edges.separation > margin)
 			return false;
-		if (!nearbyFace(edges, second, cosineLimit, reference)) {
-			edgePatch(box1, box2, second, pose1, edges, out);
-			return true;
+		if (nearbyFace(edges, second, cosineLimit, reference)) {
+			const FacePair nearby = facePair(box1, box2, second, reference, previous);
+			if (patchOn(nearby, clipTask(nearby, previous)))
+				return smallestGap(out) <= margin;
 		}
-		const FacePair nearby = facePair(box1, box2, second, reference, previous);
-		return patchOn(nearby, clipTask(nearby, previous), pose1, pose2, previous, out) && smallestGap(out) <= margin;
+		edgePatch(box1, box2, second, pose1, edges, out);
+		return true;
 	}
-	return patchOn(pair, task, pose1, pose2, previous, out) && smallestGap(out) <= margin;
+	if (isNearlyParallel(pair, cosineLimit))
+		return false;
+	const FacePair next = withNextIncident(pair);
+	return patchOn(next, clipTask(next, previous)) && smallestGap(out) <= margin;
 }
 
 } // namespace masonry

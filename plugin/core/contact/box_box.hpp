@@ -15,7 +15,8 @@ struct Box {
 // Normal. Of the separating axes, the face normals of both boxes come first: the face with the largest separation is
 // the reference. Faces that tie (parallel faces; an edge exactly above an edge) are decided by `previous`, else by the
 // larger face, else body 1. An edge across an edge gives the normal only where it separates better and its normal is
-// not close to any face's: two faces that are nearly parallel keep their patch and its points.
+// not close to any face's: two faces that are nearly parallel keep their patch and its points. It also gives the normal where faces that
+// would meet do not overlap, or where all of their patch is farther away than the edges.
 //
 // Points. A vertex of the incident face keeps its own position, its partner is the projection on the reference face; a
 // vertex of the reference face likewise; elsewhere two edges cross. `previous` is the feature of the last call for this
