@@ -10,7 +10,7 @@ endif()
 
 # install_masonry(<folder of Python packages> <option of install()>...)
 function(install_masonry folder)
-  install(DIRECTORY ${PROJECT_SOURCE_DIR}/plugin/python/masonry DESTINATION ${folder} ${ARGN} FILES_MATCHING PATTERN "*.py" PATTERN __pycache__ EXCLUDE)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/plugin/python/masonry DESTINATION ${folder} ${ARGN} FILES_MATCHING REGEX "\\.(py|html|js|css)$" PATTERN __pycache__ EXCLUDE)
   install(FILES ${MASONRY_PACKAGE_DIR}/_build.py DESTINATION ${folder}/masonry ${ARGN})
   install(TARGETS ${modules} DESTINATION ${folder}/masonry ${ARGN})
   foreach(command ${commands})

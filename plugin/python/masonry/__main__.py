@@ -2,8 +2,9 @@
 
 import argparse
 import platform
+import sys
 
-from . import _build
+from . import _build, commands
 
 
 def versions():
@@ -20,11 +21,18 @@ def versions():
 
 
 def main():
-    parser = argparse.ArgumentParser(prog="masonry", description="Rocking masonry blocks in YADE: `from masonry import dem` in a script that yade runs.")
+    parser = argparse.ArgumentParser(prog="masonry", description="Rocking masonry blocks in YADE: `from masonry import dem` in a script that yade runs.",
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--version", action="version", version=versions(), help="print all that a report of a fault needs")
-    parser.formatter_class = argparse.RawDescriptionHelpFormatter
-    parser.parse_args()
-    parser.print_help()
+    parser.set_defaults(run=lambda given: parser.print_help())
+    subcommands = parser.add_subparsers(title="commands", metavar="COMMAND")
+    for command in commands.ALL:
+        command.add(subcommands)
+    given = parser.parse_args()
+    try:
+        given.run(given)
+    except (OSError, ValueError, ImportError) as error:  # input that is wrong, or a package that is missing: their message says which
+        sys.exit(f"masonry: {error}")
 
 
 if __name__ == "__main__":
