@@ -1,4 +1,6 @@
 """Subcommands of the command masonry, a module each. Its add(subcommands) declares the arguments and sets `run`, a function of the parsed arguments;
 it imports what it computes with inside `run`, so that `masonry --help` starts at once."""
 
-ALL = ()  # the modules
+from . import ensemble
+
+ALL = (ensemble,)  # the modules

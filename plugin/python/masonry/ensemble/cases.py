@@ -36,7 +36,8 @@ def contents(paths):
 def code(script):
     """A digest of what computes a case: the script, and this package as it is installed but for what only starts cases and collects results."""
     package = Path(__file__).parents[1]
-    return contents([script, *sorted(f for f in package.rglob("*") if f.suffix in (".py", ".so") and (f.parent != RUN_CASE.parent or f == RUN_CASE))])
+    return contents([script, *sorted(f for f in package.rglob("*") if f.suffix in (".py", ".so")
+                               and (f.parent.name not in ("ensemble", "commands") or f == RUN_CASE))])
 
 
 def _texts(value):

@@ -15,6 +15,14 @@ from .table import make_table, write_tables
 _NAMED = 10
 
 
+class CasesFailed(RuntimeError):
+    """Some cases have no result. Its attribute `table` has the others; None: there are none."""
+
+    def __init__(self, message, table):
+        super().__init__(message)
+        self.table = table
+
+
 def run(script, cases, folder, function="run", processes=None, time_limit=None, progress=True, executor=None, slice=None, gather=False, units=None,
         dimensions=None):
     """Calls the function `function(case)` of a Python file inside YADE, one process a case, and returns the table of what came out.
@@ -23,7 +31,7 @@ def run(script, cases, folder, function="run", processes=None, time_limit=None, 
     cases         dicts of numbers, strings, None, and lists of them (which the table has as text, as it has None), all with the same keys: what the
                   function is given
     folder        one .npz file a finished case, and the tables ensemble.nc, ensemble.csv and ensemble.npz; made if it is not there
-    processes     how many run at once on this machine; None: one a core. Each has one thread.
+    processes     how many run at once on this machine; None: one for each core that this process may use. Each has one thread.
     time_limit    s of wall clock after which a case is stopped, and counts as failed unless its result is there; None: no limit
     progress      a progress bar (tqdm)
     executor      where the cases run: any executor of concurrent.futures, for instance mpi4py.futures.MPIPoolExecutor() or the get_executor() of a Dask
@@ -31,7 +39,7 @@ def run(script, cases, folder, function="run", processes=None, time_limit=None, 
     slice         'k/n' or (k, n): computes only the cases k, k + n, k + 2n, ... and returns their table, without writing tables. Several slices may run
                   in one folder at a time. 'slurm': the slice of the Slurm array job that this is, or all cases outside of one.
     gather        True: computes nothing and makes the tables of what is there; cases without a result count as failed
-    units         {name: unit} for the columns in ensemble.nc; those of results.CollapseReport.numbers() are known
+    units         {name: unit} for the columns and arrays in ensemble.nc; those of results.CollapseReport.numbers() are known
     dimensions    {array: name of its dimension, or a list of them} for arrays that the function returns; see ensemble.dataset()
 
     The function returns a dict of numbers (and, if it likes, arrays: ensemble.result() and ensemble.dataset() read them), the same keys for every case.
@@ -69,7 +77,7 @@ def run(script, cases, folder, function="run", processes=None, time_limit=None, 
     failures = []
     if missing and not gather:
         try:
-            failures = run_missing(script, function, missing, len(cases), folder, executor, int(processes or os.cpu_count()), time_limit, progress)
+            failures = run_missing(script, function, missing, len(cases), folder, executor, int(processes or len(os.sched_getaffinity(0))), time_limit, progress)
         except KeyboardInterrupt:
             kept = sum(read(path_of(folder, key)) is not None for key in found)
             raise KeyboardInterrupt(f"interrupted: {kept} of {len(cases)} cases are kept in {folder}; run again to go on") from None
@@ -108,9 +116,7 @@ def _failed(failures, table, total, folder, part):
     kept = f"none is kept in {folder}" if table is None else f"{len(table)} are kept in {folder}: their table is {where}"
     named = [f"{case}: {why}" for case, why, _ in failures[:_NAMED]] + ([f"and {len(failures) - _NAMED} more"] if len(failures) > _NAMED else [])
     said = ["The first said:", failures[0][2]] if failures[0][2] else []
-    error = RuntimeError("\n".join([f"{len(failures)} of {total} cases {'of the slice ' if part else ''}failed; {kept}", *named, *said]))
-    error.table = table
-    return error
+    return CasesFailed("\n".join([f"{len(failures)} of {total} cases {'of the slice ' if part else ''}failed; {kept}", *named, *said]), table)
 
 
 def result(script, case, folder, function="run"):
