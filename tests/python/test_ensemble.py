@@ -8,6 +8,9 @@ import numpy as np
 import pytest
 from masonry import ensemble
 from masonry.artificial import power
+from masonry.ensemble.cases import keys
+from masonry.ensemble.submitting import termination
+from masonry.ensemble.table import make_table
 from scipy import stats
 
 import masonry
@@ -141,7 +144,7 @@ def test_bad_input_is_refused(tmp_path):
 
 def test_tables_have_lists_arrays_and_none_as_text(tmp_path):
     cases = [{"kind": None, "speeds": np.arange(2), "seed": np.int64(1)}, {"kind": "wall", "speeds": [0, 1, 2], "seed": 2}]
-    table = ensemble._table(cases, [{"peak_drift": 0.1}, {"peak_drift": 0.2}])
+    table = make_table(cases, [{"peak_drift": 0.1}, {"peak_drift": 0.2}])
     assert table.tolist() == [("None", "[0, 1]", 1, 0.1), ("wall", "[0, 1, 2]", 2, 0.2)]
     np.savez(tmp_path / "ensemble.npz", table=table)
     assert np.load(tmp_path / "ensemble.npz")["table"].tolist() == table.tolist()  # no objects, which NumPy does not load
@@ -164,8 +167,8 @@ def test_the_rank_of_a_quantile_is_not_one_more_by_round_off(count, probability,
 def test_results_of_another_function_are_not_taken(tmp_path):
     script = tmp_path / "scene.py"
     script.write_text("")
-    assert ensemble._keys(script, "run", [{}]) != ensemble._keys(script, "other", [{}])
-    assert len(set(ensemble._keys(script, "run", [{"a": 1, "b": 2}, {"b": 2, "a": 1}]))) == 1  # the order of the keys says nothing
+    assert keys(script, "run", [{}]) != keys(script, "other", [{}])
+    assert len(set(keys(script, "run", [{"a": 1, "b": 2}, {"b": 2, "a": 1}]))) == 1  # the order of the keys says nothing
 
 
 def test_artificial_records_grow_and_decay_by_their_envelope():
@@ -184,10 +187,10 @@ def test_what_ends_a_program_stays_its_own():
     try:
         for handler in (own, signal.SIG_DFL):
             signal.signal(signal.SIGTERM, handler)
-            with ensemble._termination():
+            with termination():
                 assert (signal.getsignal(signal.SIGTERM) is handler) == (handler is own)
             assert signal.getsignal(signal.SIGTERM) is handler
         with ThreadPoolExecutor() as pool:  # where signals cannot be set
-            pool.submit(ensemble._termination().__enter__).result()
+            pool.submit(termination().__enter__).result()
     finally:
         signal.signal(signal.SIGTERM, before)

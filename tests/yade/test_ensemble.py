@@ -12,12 +12,14 @@ from pathlib import Path
 import ensemble_scene
 import numpy as np
 from masonry import ensemble
+from masonry.ensemble import cases as of_cases
+from masonry.ensemble import study as driver
 from rocking_scene import refuses, said_by
 
 import masonry
 
 computed = []
-run_missing = ensemble._run_missing
+run_missing = driver.run_missing
 
 
 def watched(script, function, missing, *rest):
@@ -25,7 +27,7 @@ def watched(script, function, missing, *rest):
     return run_missing(script, function, missing, *rest)
 
 
-ensemble._run_missing = watched
+driver.run_missing = watched
 
 
 def study(cases, script, folder):
@@ -67,10 +69,10 @@ with tempfile.TemporaryDirectory() as folder:
 
     # Nothing is missing; one is; the order is another and one case new; a case with another value is another case.
     assert study(cases, script, out).tobytes() == table.tobytes() and computed == []
-    next(out.glob(f"case_{ensemble._keys(script.resolve(), 'run', cases)[0]}.npz")).unlink()
+    next(out.glob(f"case_{of_cases.keys(script.resolve(), 'run', cases)[0]}.npz")).unlink()
     assert study(cases, script, out).tobytes() == table.tobytes() and computed == [[0.32]]
-    for damage in (b"", b"PK", b"a line of text\n", (out / f"case_{ensemble._keys(script.resolve(), 'run', cases)[0]}.npz").read_bytes()[:-200]):
-        damaged = out / f"case_{ensemble._keys(script.resolve(), 'run', cases)[0]}.npz"
+    for damage in (b"", b"PK", b"a line of text\n", (out / f"case_{of_cases.keys(script.resolve(), 'run', cases)[0]}.npz").read_bytes()[:-200]):
+        damaged = out / f"case_{of_cases.keys(script.resolve(), 'run', cases)[0]}.npz"
         damaged.write_bytes(damage)
         refuses(lambda: ensemble.result(script, cases[0], out), "no result", kind=KeyError)
         again = []
@@ -80,15 +82,15 @@ with tempfile.TemporaryDirectory() as folder:
     assert computed == [[0.2]] and changed["peak_drift"].tolist()[::2] == table["peak_drift"].tolist()[::-2]
 
     # Another script, another package or another file that a case names: another result.
-    keys = ensemble._keys(script, "run", cases)
+    keys = of_cases.keys(script, "run", cases)
     script.write_text(script.read_text() + "# changed\n")
-    assert not set(keys) & set(ensemble._keys(script, "run", cases))
+    assert not set(keys) & set(of_cases.keys(script, "run", cases))
     record = Path(folder) / "record.txt"
     for given in (str(record), [str(record)], [[0.5, "x"], {"x": str(record)}]):
         names = []
         for text in ("0 1 0", "0 2 0", "0 1 0"):
             record.write_text(text)
-            names += ensemble._keys(script, "run", [{"scale": 1, "record": given}])
+            names += of_cases.keys(script, "run", [{"scale": 1, "record": given}])
         assert names[0] != names[1] and names[0] == names[2], given
 
     # A case that fails is told, with what it said; the others are kept.
@@ -147,5 +149,5 @@ with tempfile.TemporaryDirectory() as folder:
     for process in runs:
         printed, said = process.communicate(timeout=200)
         assert process.returncode == 0 and printed.strip() == "[0, 2, 4, 6]", (printed, said)
-    assert np.load(both / "ensemble.npz")["table"]["twice"].tolist() == [0, 2, 4, 6] and len(list(both.iterdir())) == 4 + 2, list(both.iterdir())
+    assert np.load(both / "ensemble.npz")["table"]["twice"].tolist() == [0, 2, 4, 6] and len(list(both.iterdir())) == 4 + 3, list(both.iterdir())
 print("ensemble: exact blocks, resuming, failures, ends")

@@ -7,6 +7,9 @@ import numpy as np
 from masonry._given import is_whole, positive_given, shown
 from masonry.results.wall_history import history_given
 
+# The units of CollapseReport.numbers(); `collapsed` is a bool.
+UNITS = {"collapse_time": "s", "fallen": "1", "peak_drift": "1", "peak_drift_time": "s", "residual_drift": "1", "first_excursion": "s", "motion_run": "1"}
+
 
 @dataclass
 class CollapseReport:
