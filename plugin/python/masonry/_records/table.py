@@ -58,7 +58,8 @@ def _chosen(path, names, count, first, columns):
     if columns is None:
         if count > 2:
             raise ValueError(f"{path}: line {first} has {count} columns: columns=(time, acceleration) must say which, by number (from 0) or by name"
-                             + (f" ({shown(names)})" if names and len(names) == count else "") + ", or component= the name of one; columns='all' where values run on from line to line")
+                             + (f" ({shown(names)})" if names and len(names) == count else "")
+                             + ", or component= the name of one; columns='all' where values run on from line to line")
         return tuple(range(count))
     chosen = tuple(columns) if isinstance(columns, (tuple, list)) else (columns,)
     places = [names.index(column) if names and column in names else column for column in chosen]

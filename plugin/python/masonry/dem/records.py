@@ -13,8 +13,9 @@ def _from_motions(cls):
     def __init__(self, *arguments, displacement=None, velocity=None, unit=None, resolution=None, **attributes):
         moved = displacement is not None or velocity is not None
         if moved or unit is not None:
-            record = masonry.Record(attributes.get("interval", default), attributes.get("samples"), baseline=attributes.get("baseline", "none") if moved else "none",
-                                    unit=unit, velocity=velocity, displacement=displacement, resolution=resolution)
+            baseline = attributes.get("baseline", "none") if moved else "none"
+            record = masonry.Record(attributes.get("interval", default), attributes.get("samples"), baseline=baseline, unit=unit, velocity=velocity,
+                                    displacement=displacement, resolution=resolution)
             attributes["samples"] = record.samples.tolist()
         make(self, *arguments, **attributes)
         if moved or unit is not None:
