@@ -61,7 +61,8 @@ def smc(values, kind="2 CORRECTED ACCELEROGRAM", unknown=(-32768, 1.7e38), comme
             "epicentral dist =     63.0       pk     =     84.5", "inst type=SMA-1      data source = XXXX", "*", "*", "*"]
     body = rows(integers, lambda value: f"{value:10d}", 8) + rows(reals, lambda value: f"{value:15.7E}", 5)
     body += "".join(f"|{comment}\n" for comment in comments)
-    return "\n".join(line.ljust(80) for line in text) + "\n" + body + rows(values, form or (lambda value: f"{value:10.4E}".replace("E+0", "E+").replace("E-0", "E-").rjust(10)), 8)
+    short = form or (lambda value: f"{value:10.4E}".replace("E+0", "E+").replace("E-0", "E-").rjust(10))
+    return "\n".join(line.ljust(80) for line in text) + "\n" + body + rows(values, short, 8)
 
 
 def csmip_2(channels, unit=", in cm/sec2. (8f10.3)", quantities=("accel", "veloc", "displ"), count=None, form=fortran(10, 3)):
@@ -88,16 +89,19 @@ def csmip_1(values, unit="in units of g .", direction="360 Deg"):
             + "/&  ----------  End of data for channel  1  ----------\n")
 
 
-def cosmos(values, kind="acceleration", units="cm/sec2(04)", reals=(), count=None, direction=" 90 deg", channel="1", scnl="", first="Corrected", form=None, seconds=None):
+def cosmos(values, kind="acceleration", units="cm/sec2(04)", reals=(), count=None, direction=" 90 deg", channel="1", scnl="", first="Corrected", form=None,
+           seconds=None):
     """reals: {number of the real-header value: value}; others are unknown."""
     header = [-999.0] * 100
     for place, value in dict(reals or {62: 1e3 * DT, 63: DT * len(values)}).items():
         header[place - 1] = value
     seconds = int(DT * len(values)) if seconds is None else seconds
-    lines = [f"{first} {kind}    (Format v01.20 with 13 text lines)", "Record of Somewhere Earthquake", "Hypocenter: 61.3 -149.9 H= 46km Mw=7.0", "Origin: 1990/01/01",
-             "Statn No: 37-000011 Code:XX-ABC     XXX  Some River", "Coords: 60.9 -144.6", "Recorder: (see cmnt)      ( ? Chns of   3 at Sta)", "Rcrd start time: 1990/01/01",
-             f"Sta Chan   {channel}:{direction} (Rcrdr Chan  {channel}) Location:", "Raw record length = 210.000 sec", "Processed:1990-01-01", "Record filtered below  0.03 Hz",
-             "Values used when parameter or data value is unknown/unspecified:   -999, -999.00", " 100 Integer-header values follow on  10 lines, Format= (10I8)"]
+    lines = [f"{first} {kind}    (Format v01.20 with 13 text lines)", "Record of Somewhere Earthquake", "Hypocenter: 61.3 -149.9 H= 46km Mw=7.0",
+             "Origin: 1990/01/01", "Statn No: 37-000011 Code:XX-ABC     XXX  Some River", "Coords: 60.9 -144.6",
+             "Recorder: (see cmnt)      ( ? Chns of   3 at Sta)", "Rcrd start time: 1990/01/01",
+             f"Sta Chan   {channel}:{direction} (Rcrdr Chan  {channel}) Location:", "Raw record length = 210.000 sec", "Processed:1990-01-01",
+             "Record filtered below  0.03 Hz", "Values used when parameter or data value is unknown/unspecified:   -999, -999.00",
+             " 100 Integer-header values follow on  10 lines, Format= (10I8)"]
     text = "\n".join(lines) + "\n" + rows([-999] * 100, lambda value: f"{value:8d}", 10) + " 100 Real-header values follow on  20 lines, Format= (5F15.6)\n"
     text += rows(header, lambda value: f"{value:15.6f}", 5)
     text += f"   1 Comment line(s) follow, each starting with a \"|\":\n|{'<SCNL>' + scnl if scnl else ' nothing'}\n"

@@ -45,7 +45,8 @@ def same(record, values, rounding=0.0):
     ({}, G), (dict(before=["a line", "CORRECTED BY SOMEBODY", ""]), G), (dict(after=["COLUMNS 5"]), G), (dict(per_line=1), G), (dict(per_line=8), G),
     (dict(points="{count:5d}   {dt:.4f}  NPTS, DT"), G), (dict(points="DT= {dt:.4f}SEC, NPTS= {count}"), G), (dict(points="NPTS={count}, DT=10 MSEC"), G),
     (dict(points="NPTS={count}, DT=.1000D-01 SEC"), G), (dict(unit="ACCELERATION IN UNITS OF CM/S^2"), 0.01), (dict(unit="ACCELERATION (GAL)"), 0.01),
-    (dict(unit="ACCELERATION TIME HISTORY IN UNITS OF G.  FILTER POINTS: HP=0.1 Hz"), G), (dict(form=fortran(15, 7, "D")), G), (dict(form=fortran(14, 7, "E")), G)])
+    (dict(unit="ACCELERATION TIME HISTORY IN UNITS OF G.  FILTER POINTS: HP=0.1 Hz"), G), (dict(form=fortran(15, 7, "D")), G),
+    (dict(form=fortran(14, 7, "E")), G)])
 def test_peer(path, options, factor):
     file = path(at2(A / factor, **options), "RSN6_180.AT2")
     record = masonry.read_record(file)
@@ -171,8 +172,10 @@ V = np.gradient(U, DT)
 
 @pytest.mark.parametrize("text, quantity", [
     (at2(100 * U, "DISPLACEMENT TIME SERIES IN UNITS OF CM"), "displacement"), (at2(100 * V, "VELOCITY TIME SERIES IN UNITS OF CM/S"), "velocity"),
-    (esm(100 * U, "cm", kind="DISPLACEMENT"), "displacement"), (esm(100 * V, "cm/s", kind="VELOCITY"), "velocity"), (smc(100 * U, "4 DISPLACEMENT"), "displacement"),
-    (smc(100 * V, "3 VELOCITY"), "velocity"), (cosmos(100 * U, "displacement", "cm(06)"), "displacement"), ("".join(f"{1000 * u:.2f}\n" for u in U), "displacement")], ids=brief)
+    (esm(100 * U, "cm", kind="DISPLACEMENT"), "displacement"), (esm(100 * V, "cm/s", kind="VELOCITY"), "velocity"),
+    (smc(100 * U, "4 DISPLACEMENT"), "displacement"),
+    (smc(100 * V, "3 VELOCITY"), "velocity"), (cosmos(100 * U, "displacement", "cm(06)"), "displacement"),
+    ("".join(f"{1000 * u:.2f}\n" for u in U), "displacement")], ids=brief)
 def test_velocities_and_displacements_of_files(path, text, quantity):
     record = masonry.read_record(path(text), **(dict(unit="mm", dt=DT) if text[0] in "-0" else {}))
     assert record.quantity == quantity
@@ -203,29 +206,44 @@ def cut(text, lines):
 
 @pytest.mark.parametrize("text, words", [
     (cut(at2(A / G), 2), "lines 5 to 13 hold 40 values: must be NPTS = 50"), (at2(A / G, points="NPTS= 51, DT= .01 SEC"), "hold 50 values: must be NPTS = 51"),
-    (at2(A / G, points="NPTS= 49, DT= .01 SEC"), "hold 50 values: must be NPTS = 49"), (at2(A / G, "ACCELERATION IN UNITS OF M"), "line 3 is .* must state ACCELERATION, VELOCITY"),
+    (at2(A / G, points="NPTS= 49, DT= .01 SEC"), "hold 50 values: must be NPTS = 49"),
+    (at2(A / G, "ACCELERATION IN UNITS OF M"), "line 3 is .* must state ACCELERATION, VELOCITY"),
     (at2(A / G, "VELOCITY IN UNITS OF G"), "line 3 is .* must state"), (at2(A / G, before=["a"], unit="ACCELERATION"), "line 4 is 'ACCELERATION': must state"),
     (at2(A / G).replace("0", "NaN", 1).replace("E-01", "*****", 1), "line .* stands among the values: must be numbers, NPTS = 50 of them"),
-    (cut(esm(GAL), 7), "hold 43 values: must be NDATA = 50"), (esm(GAL, count=49), "hold 50 values: must be NDATA = 49"), (esm(GAL, "counts"), "line 12 is 'UNITS: counts': must give a unit"),
-    (esm(GAL, ""), "line 12 is 'UNITS:': must give a unit"), (esm(GAL, skip=["UNITS"]), "the header, in which UNITS is missing"), (esm(GAL, "cm"), "line 16 is 'DATA_TYPE: ACCELERATION': must be DISPLACEMENT"),
-    (esm(GAL, count="many"), "line 9 is 'NDATA: many': must give a whole number"), (esm(GAL).replace("\n" + f"{GAL[9]:.6f}\n", "\nNULL\n"), "line 28: 'NULL' stands among the values"),
-    (knet([1] * 40, seconds=0.5), "hold 40 values: must be the rate times Duration Time = 50"), (knet([1] * 50, factor="3920/6182761"), "line 14 is 'Scale Factor      3920/6182761': must be"),
-    (knet([1] * 50, factor="3920(mgal)/6182761"), r"line 14 is .*must give a unit of acceleration in brackets, such as 3920\(gal\)"), (knet([1] * 50, factor="3920(gal)/0"), "must have a divisor above 0"),
+    (cut(esm(GAL), 7), "hold 43 values: must be NDATA = 50"), (esm(GAL, count=49), "hold 50 values: must be NDATA = 49"),
+    (esm(GAL, "counts"), "line 12 is 'UNITS: counts': must give a unit"),
+    (esm(GAL, ""), "line 12 is 'UNITS:': must give a unit"), (esm(GAL, skip=["UNITS"]), "the header, in which UNITS is missing"),
+    (esm(GAL, "cm"), "line 16 is 'DATA_TYPE: ACCELERATION': must be DISPLACEMENT"),
+    (esm(GAL, count="many"), "line 9 is 'NDATA: many': must give a whole number"),
+    (esm(GAL).replace("\n" + f"{GAL[9]:.6f}\n", "\nNULL\n"), "line 28: 'NULL' stands among the values"),
+    (knet([1] * 40, seconds=0.5), "hold 40 values: must be the rate times Duration Time = 50"),
+    (knet([1] * 50, factor="3920/6182761"), "line 14 is 'Scale Factor      3920/6182761': must be"),
+    (knet([1] * 50, factor="3920(mgal)/6182761"), r"line 14 is .*must give a unit of acceleration in brackets, such as 3920\(gal\)"),
+    (knet([1] * 50, factor="3920(gal)/0"), "must have a divisor above 0"),
     (knet([1] * 50, rate="fast"), "line 11 is 'Sampling Freq.*fast': must be"), (knet([1] * 50, memo=""), "Memo"),
-    (smc(GAL, count=51), "hold 50 values: must be the number in line 14 = 51"), (smc(GAL, count=48), "hold 50 values"), (smc(GAL, kind="5 RESPONSE SPECTRA"), "line 1 is '5 RESPONSE SPECTRA': must be 1 UNC"),
-    (smc(GAL, rate=1.7e38), "line 18 is .*must give the values a second"), (smc(GAL, comments=["a"]).replace("|a", "a"), r"line 28 is 'a': must be one of 1 comments"),
-    (smc(np.where(np.arange(50) == 20, 1.7e38, GAL), comments=(), form=lambda value: f"{value:10.3E}"), "line 30 is .*must hold values that are known"), (smc(GAL, count=-32768), "line 14 is .*must begin with the number of values"),
-    (csmip_1(A / G, "in units of counts"), "line 8 is .*must give a unit of acceleration"), (csmip_1(A / G, ""), "line 8 is .*must give a unit of acceleration"),
+    (smc(GAL, count=51), "hold 50 values: must be the number in line 14 = 51"), (smc(GAL, count=48), "hold 50 values"),
+    (smc(GAL, kind="5 RESPONSE SPECTRA"), "line 1 is '5 RESPONSE SPECTRA': must be 1 UNC"),
+    (smc(GAL, rate=1.7e38), "line 18 is .*must give the values a second"),
+    (smc(GAL, comments=["a"]).replace("|a", "a"), r"line 28 is 'a': must be one of 1 comments"),
+    (smc(np.where(np.arange(50) == 20, 1.7e38, GAL), comments=(), form=lambda value: f"{value:10.3E}"), "line 30 is .*must hold values that are known"),
+    (smc(GAL, count=-32768), "line 14 is .*must begin with the number of values"),
+    (csmip_1(A / G, "in units of counts"), "line 8 is .*must give a unit of acceleration"),
+    (csmip_1(A / G, ""), "line 8 is .*must give a unit of acceleration"),
     (csmip_2({(1, "Up"): (GAL, GAL, GAL)}, count=51), "line 18: 'points' stands among the values: must be numbers, points = 51 of them, and comes after 50"),
-    (cut(csmip_2({(1, "Up"): (GAL, GAL, GAL)}), 3), "hold 40 values: must be points = 50"), (csmip_2({(1, "Up"): (GAL, GAL, GAL)}, ", in cm/sec. (8f10.3)"), "line 10 is .*must give a unit of acceleration"),
-    (cosmos(GAL, units="counts (50)", first="Raw"), "line .*units=counts.*not counts, which only the network can convert"), (cosmos(GAL, units="g (04)"), "line .*must give values in a unit of acceleration"),
-    (cosmos(GAL, units="cm/s^2 (05)"), "must give values in a unit"), (cosmos(GAL, units="cm/s (05)"), "must give values in a unit"), (cosmos(GAL, reals={1: 0.0}), "must agree with the step of the header, which gives none"),
+    (cut(csmip_2({(1, "Up"): (GAL, GAL, GAL)}), 3), "hold 40 values: must be points = 50"),
+    (csmip_2({(1, "Up"): (GAL, GAL, GAL)}, ", in cm/sec. (8f10.3)"), "line 10 is .*must give a unit of acceleration"),
+    (cosmos(GAL, units="counts (50)", first="Raw"), "line .*units=counts.*not counts, which only the network can convert"),
+    (cosmos(GAL, units="g (04)"), "line .*must give values in a unit of acceleration"),
+    (cosmos(GAL, units="cm/s^2 (05)"), "must give values in a unit"), (cosmos(GAL, units="cm/s (05)"), "must give values in a unit"),
+    (cosmos(GAL, reals={1: 0.0}), "must agree with the step of the header, which gives none"),
     (cosmos(GAL, count=51), "'End-of-data' stands among the values: must be numbers, pts = 51 of them, and comes after 50"),
     (cosmos(np.tile(GAL, 20), reals={62: 0.01}), r"must agree with the step of the header, real-header value 62 \(1e-05 s\)"),
-    (afad([GAL] * 3, unit="counts"), r"line 8 is .*must give its unit in brackets, such as \(gal\)"), (afad([GAL] * 3, count=51), "hold 150 values: must be three times NUMBER OF DATA = 153"),
+    (afad([GAL] * 3, unit="counts"), r"line 8 is .*must give its unit in brackets, such as \(gal\)"),
+    (afad([GAL] * 3, count=51), "hold 150 values: must be three times NUMBER OF DATA = 153"),
     (afad([GAL] * 3).replace("SAMPLING", "SIMPLING"), "line 1 is .*must be followed by a line `SAMPLING INTERVAL"),
     ("0,1\n0.01,2\n", "unit = None: must be given for a text file of columns"), ("time,acceleration [furlongs]\n0,1\n0.01,2\n", "unit = None: must be given"),
-    ("a report\nof something\nelse\n", "line 2 is 'of something': must be as many numbers.* read as columns, because it has the header of no other format"), ("", "0 lines of numbers: must be at least two")], ids=brief)
+    ("a report\nof something\nelse\n", "line 2 is 'of something': must be as many numbers.* read as columns, because it has the header of no other format"),
+    ("", "0 lines of numbers: must be at least two")], ids=brief)
 def test_refused(path, text, words):
     with pytest.raises(ValueError, match=words) as refused:
         masonry.read_record(path(text))
@@ -275,154 +293,41 @@ def test_obspy(path, monkeypatch):
         masonry.read_record(file, unit="m/s^2")
 
 
-# --- baselines ---
-
-def test_end_of_a_record(path):
-    record = masonry.Record(0.5, [1.0, 1.0, 1.0])
-    assert record.final_velocity == pytest.approx(1, rel=1e-15) and record.final_displacement == pytest.approx(0.5, rel=1e-15)
-    assert str(record).endswith("the base ends 0.5 m from where it begins, at 1 m/s")
-    assert masonry.Record(0.5, [1.0, 1.0, 1.0], scale=[1, 2]).final_velocity.tolist() == [1, 2]
-    read = masonry.read_record(path(at2(A / G), "some.AT2"), baseline="constant", scale=2)
-    assert read.final_velocity == pytest.approx(0, abs=1e-15) and read.scale == 2
-    assert str(read).split("\n")[1:] == ["  PEER file some.AT2: SOME STATION 090, unit G",
-                                         f"  the base ends {read.final_displacement:.3g} m from where it begins, at 0 m/s"]
-
-
-@pytest.mark.parametrize("corner, order", [(0.1, 4), (0.2, 2), (0.5, 4)])
-def test_high_pass(corner, order):
-    """Of two sines, far above and far below the corner, the fast one stays as the amplitude of the filter says: 1/(1 + (corner/f)^(2 order)) for both passes. The
-    drift of an offset goes, and base and filter come to rest: what the end of the padding cuts off is 1e-6 of the largest, with a margin of 100."""
-    dt, fast, slow = 0.01, 10 * corner, corner / 10
-    t = np.arange(0, 40 / corner, dt)
-    bell = np.sin(np.pi * t / t[-1]) ** 2
-    kept, lost = bell * np.sin(2 * np.pi * fast * t), 2 * bell * np.sin(2 * np.pi * slow * t) + 0.3
-    record = masonry.Record(dt, kept + lost, baseline="high-pass", corner=corner, order=order)
-    first = round(record.padding / dt)
-    middle = slice(len(t) // 4, 3 * len(t) // 4)  # away from the ends, at which an offset is a step
-    amplitudes = [1 / (1 + (corner / f) ** (2 * order)) for f in (fast, slow)]
-    inside = record.samples[first:first + len(t)][middle]
-    assert len(record.samples) == len(t) + 2 * first and record.padding == pytest.approx(1.5 * order / corner, abs=dt)
-    assert np.abs(inside - kept[middle]).max() <= (1 - amplitudes[0]) + 2.5 * amplitudes[1] + 2e-3
-    times = np.arange(len(record.samples)) * dt
-    assert abs(record.final_velocity) <= 1e-4 * np.abs(record.velocity(times)).max()
-    assert abs(record.final_displacement) <= 1e-4 * np.abs(record.displacement(times)).max()
-    assert f"Butterworth filter of order {order} at {corner:g} Hz, forwards and backwards" in str(record)
-    np.testing.assert_array_equal(record.scaled(2).samples, 2 * record.samples)  # not filtered twice
-
-
-@pytest.mark.parametrize("options, words", [
-    (dict(baseline="high-pass"), "corner = None: must be given"), (dict(baseline="high-pass", corner=-1.0), "corner = -1.0: must be positive"),
-    (dict(baseline="high-pass", corner=60.0), "corner = 60.0: must be below 50 Hz"), (dict(baseline="high-pass", corner=0.1, order=0), "order = 0: must be a whole number"),
-    (dict(corner=0.1), "corner = 0.1: must be left out with baseline='none'"), (dict(baseline="highpass"), "baseline = 'highpass': must be one of 'none', 'constant', 'linear', 'high-pass'"), (dict(resolution=0.1), "resolution = 0.1: must be left out"),
-    (dict(displacement=A), "acceleration and displacement of acceleration, velocity and displacement is given: must be one of them")])
-def test_bad_baselines(options, words):
-    with pytest.raises(ValueError, match=words):
-        masonry.Record(DT, A, **options)
-
-
-# --- velocities and displacements as base motion ---
-
-SHAKEN = 6.0  # s
-
-
-def exact_displacement(t):
-    """m, smooth, at rest at both ends; its accelerations reach 4 m/s^2."""
-    return np.sin(np.pi * t / SHAKEN) ** 4 * (0.12 * np.sin(6 * t) + 0.01 * np.sin(14 * t + 1))
-
-
-def exact_acceleration(t):
-    h = 2e-4
-    return (-exact_displacement(t - 2 * h) + 16 * exact_displacement(t - h) - 30 * exact_displacement(t) + 16 * exact_displacement(t + h)
-            - exact_displacement(t + 2 * h)) / (12 * h * h)
-
-
-FINE = np.arange(0, SHAKEN, 1e-3)
-EXACT = masonry.Record(1e-3, exact_acceleration(FINE), unit="m/s^2")
-
-
-def difference(block, record):
-    """Largest difference of the block's angle from that under the exact acceleration, relative to its largest angle."""
-    wanted, angles = (masonry.simulate(block, motion, t_end=SHAKEN).sample(FINE)[0] for motion in (EXACT, record))
-    return np.nanmax(np.abs(angles - wanted)) / np.nanmax(np.abs(wanted))
-
-
-@pytest.mark.parametrize("dt", [0.005, 0.01, 0.02])
-@pytest.mark.parametrize("decimals", [3, 4, 5])
-@pytest.mark.parametrize("half_width, half_height", [(0.35, 1.0), (0.3, 1.4)])
-def test_rounded_displacements(dt, decimals, half_width, half_height):
-    """Rounded to q = 1e-4 m and the like, a displacement moves the base nowhere farther than q from the exact one. The block's angle changes by what such an error
-    must be expected to change: five times what the exact record does when it is scaled so that its largest displacement is q larger."""
-    t = np.arange(0, SHAKEN + dt / 2, dt)
-    q, rounded = 10.0**-decimals, np.round(exact_displacement(t), decimals)
-    record = masonry.Record(dt, displacement=rounded, unit="m")
-    assert np.abs(record.displacement(FINE) - exact_displacement(FINE)).max() <= q and record.deviation <= q
-    assert abs(record.displacement(SHAKEN) - rounded[-1] + rounded[0]) < 1e-12 and abs(record.final_velocity) < 1e-12
-    assert record.displacement(SHAKEN + 10) == pytest.approx(record.final_displacement, abs=1e-11)
-    block = masonry.RockingBlock(half_width, half_height)
-    history = masonry.simulate(block, EXACT, t_end=SHAKEN)
-    assert len(history.impact_times) > 5 and np.abs(history.peak_angles).max() > 0.7 * block.critical_angle
-    larger = difference(block, EXACT.scaled(1 + q / np.abs(exact_displacement(FINE)).max()))
-    found = difference(block, record)
-    errors = [np.abs(one.samples - exact_acceleration(t)).max() for one in (record, masonry.Record(dt, displacement=rounded, unit="m", resolution=0))]
-    print(f"dt {dt} s, {decimals} decimals: angle off by {found:.4f}, scaled record {larger:.4f}; acceleration by {errors[0]:.3f}, interpolated {errors[1]:.3f} m/s^2")
-    assert found <= 5 * larger
-    # The interpolated displacement has accelerations of the order q/dt^2, up to 170 m/s^2, of which less than 2 % of the peak of 6 m/s^2 is left.
-    assert errors[0] <= 0.12
-
-
-@pytest.mark.parametrize("quantity", ["velocity", "displacement"])
-def test_samples_without_rounding_are_met(quantity):
-    t = np.arange(0, SHAKEN + DT / 2, DT)
-    values = exact_displacement(t) - exact_displacement(0.0)
-    if quantity == "velocity":
-        values = (exact_displacement(t + 1e-5) - exact_displacement(t - 1e-5)) / 2e-5
-    record = masonry.Record(DT, **{quantity: values})
-    met = record.velocity(t) if quantity == "velocity" else record.displacement(t)
-    # Round-off of a sum over 600 samples, of numbers below 1.
-    assert np.abs(met[:-1] - values[:-1]).max() < 1e-10 and record.deviation < 1e-10
-    # The spline's own error, of third or second order in dt: 1e-3 of the peak.
-    assert np.abs(record.samples - exact_acceleration(t)).max() < 0.01
-
-
-def test_resolutions_and_units():
-    t = np.arange(0, SHAKEN + DT / 2, DT)
-    u = exact_displacement(t)
-    wanted = masonry.Record(DT, displacement=np.round(u, 4), unit="m")
-    for factor, unit in ((100, "cm"), (1000, "mm")):
-        record = masonry.Record(DT, displacement=factor * np.round(u, 4), unit=unit)
-        np.testing.assert_allclose(record.samples, wanted.samples, atol=1e-6)
-    counts = np.round(u / 3.1e-5)  # a converter's steps
-    given, found = (masonry.Record(DT, displacement=3.1e-5 * counts, resolution=resolution) for resolution in (3.1e-5, None))
-    np.testing.assert_allclose(given.samples, found.samples, atol=1e-6)
-    double = masonry.Record(DT, displacement=np.round(u, 4)).scaled(2)
-    assert double.final_displacement == pytest.approx(0, abs=1e-12) and double.deviation == 2 * wanted.deviation
-
-
-@pytest.mark.parametrize("make, words", [
-    (lambda: masonry.Record(DT, displacement=U, baseline="constant"), "baseline = 'constant': must be 'none' for a displacement"),
-    (lambda: masonry.Record(DT, displacement=U, unit="g"), "unit = 'g': must be one of m, cm, mm"), (lambda: masonry.Record(DT, U, unit="m"), "unit = 'm': must be one of m/s"),
-    (lambda: masonry.Record(DT, velocity=U + 1), r"velocity\[0\] = 1: must be 0, because the base starts from rest"),
-    (lambda: masonry.Record(DT, displacement=U[:5]), "displacement has 5 samples: must be at least 8"), (lambda: masonry.Record(DT, displacement=np.ones((2, 9))), "has the shape"),
-    (lambda: masonry.Record(DT, displacement=np.where(T == 1, np.nan, U)), r"displacement\[100\] = nan: must be finite"), (lambda: masonry.Record(0.0, displacement=U), "dt = 0.0"),
-    (lambda: masonry.Record(DT, displacement=U, resolution=-1), "resolution = -1: must be 0 or positive"), (lambda: masonry.Record(DT), "nothing of acceleration")])
-def test_bad_motions(make, words):
-    with pytest.raises(ValueError, match=words):
-        make()
-
-
-def test_displacements_in_millimetres_are_asked_for(recwarn):
-    masonry.simulate(masonry.RockingBlock(0.2, 1.0), masonry.Record(DT, displacement=1000 * U))
-    assert "of a displacement has no unit and reaches" in str(recwarn.list[0].message) and "is it in m? Give unit= to Record." in str(recwarn.list[0].message)
-
-
 def test_long_files_are_read_at_once(path):
-    """20,000 lines: no more than some microseconds for a number. No bound in seconds is asserted here; the largest of the formats must not cost ten times the least."""
+    """20,000 lines: the time is printed, and not asserted."""
     long = signal(20000)
     files = [path(text, f"{k}.txt") for k, text in enumerate([at2(long / G, per_line=1), esm(100 * long), smc(100 * long), knet(np.round(1e4 * long).astype(int)),
                                                              "".join(f"{k * DT:.2f},{value}\n" for k, value in enumerate(long))])]
     seconds = []
     for file in files:
-        begun = time.perf_counter()
+        begun = time.process_time()
         assert len(masonry.read_record(file, unit="m/s^2" if file.name.startswith("4") else None).samples) == 20000
-        seconds.append(time.perf_counter() - begun)
-    print("seconds to read 20,000 values:", [f"{s:.2f}" for s in seconds])
+        seconds.append(time.process_time() - begun)
+    print("CPU seconds to read 20,000 values:", [f"{s:.2f}" for s in seconds])
+
+
+def test_damaged_files(path):
+    """A file with a line missing, doubled or cut, or with a wrong letter, is read or refused with a sentence; no reader fails otherwise."""
+    random = np.random.default_rng(1)
+    texts = [at2(A / G), esm(GAL), knet(np.round(1e3 * A).astype(int)), smc(GAL), csmip_1(A / G), csmip_2({(1, "Up"): (GAL, GAL, GAL)}), cosmos(GAL),
+             afad([GAL, GAL, GAL]), "time,a (g)\n" + "".join(f"{k * DT:.2f},{value}\n" for k, value in enumerate(A))]
+    refused = 0
+    for text in texts:
+        for k in range(60):
+            lines = text.split("\n")
+            at = random.integers(len(lines))
+            if k % 4 == 0:
+                del lines[at]
+            elif k % 4 == 1:
+                lines.insert(at, lines[at])
+            elif k % 4 == 2:
+                lines[at] = lines[at][: random.integers(len(lines[at]) + 1)]
+            else:
+                place = random.integers(len(lines[at]) + 1)
+                lines[at] = lines[at][:place] + random.choice(list("x-.9 :")) + lines[at][place + 1:]
+            try:
+                masonry.read_record(path("\n".join(lines)), **(dict(component="N-S") if text.startswith("STRONG") else {}))
+            except ValueError as error:
+                refused += 1
+                assert "record.txt" in str(error) and "\n" not in str(error)
+    assert refused > 100

@@ -62,7 +62,8 @@ plain = dem.RecordMotionEngine(ids=[0], samples=[0.0, 0.5, 0.0], unit="g")
 assert plain.samples[1] == 0.5 * 9.80665
 
 # What it does not take.
-for options, words in ((dict(displacement=[0.0, 1.0]), "displacement has 2 samples: must be at least 8"), (dict(displacement=rounded, unit="g"), "unit = 'g': must be one of m, cm, mm"),
+for options, words in ((dict(displacement=[0.0, 1.0]), "displacement has 2 samples: must be at least 8"),
+                       (dict(displacement=rounded, unit="g"), "unit = 'g': must be one of m, cm, mm"),
                        (dict(displacement=rounded, baseline="constant"), "baseline = 'constant': must be 'none' for a displacement"),
                        (dict(velocity=speeds, samples=[1.0, 2.0]), "acceleration and velocity of acceleration, velocity and displacement is given"),
                        (dict(velocity=speeds + 1), "velocity[0] = 1: must be 0")):

@@ -18,6 +18,8 @@ import math
 
 import numpy as np
 
+from ._optional import needs
+
 # Weight of the roughness against the sum of squared residuals: the least interpolates; the largest smooths over 30 samples, beyond which the normal
 # equations lose their digits.
 _LEAST, _MOST = 1e-12, 1e12
@@ -60,8 +62,8 @@ class _Spline:
     derivatives of which are the accelerations."""
 
     def __init__(self, values, order):
-        from scipy import sparse
-
+        with needs("python3-scipy", "a record of velocities or displacements"):
+            from scipy import sparse
         count = len(values)
         size = count + order
         sampled = sparse.diags(_STENCILS[order], range(order + 1), shape=(count, size), format="csr")

@@ -3,6 +3,7 @@
 import numpy as np
 
 from ._given import positive_given, whole_given
+from ._optional import needs
 
 
 def padding(dt, corner, order):
@@ -13,8 +14,8 @@ def padding(dt, corner, order):
 
 def high_pass(samples, dt, corner, order):
     """The samples with zeros before and after them, filtered. The sum of the two passes has twice the order: half the amplitude is left at the corner."""
-    from scipy.signal import butter, sosfiltfilt
-
+    with needs("python3-scipy", "baseline='high-pass'"):
+        from scipy.signal import butter, sosfiltfilt
     positive_given("corner", corner, ", in Hz")
     order = whole_given("order", order, 1, 10)
     if not corner < 0.5 / dt:

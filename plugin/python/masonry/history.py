@@ -8,6 +8,7 @@ from . import _core
 from ._arrays import columns, restore, shape_of
 from ._files import written
 from ._given import array_given, shown, whole_given
+from ._optional import needs
 from .motions import Motion, PulseTrain, Record, Still
 
 
@@ -52,9 +53,9 @@ class History:
 
     def draw(self, path):
         """Writes a picture (.png, .pdf or .svg) of one block: its angle relative to the critical one, and the motion of the base below it."""
-        from matplotlib.backends.backend_agg import FigureCanvasAgg
-        from matplotlib.figure import Figure
-
+        with needs("python3-matplotlib", "a picture of a history"):
+            from matplotlib.backends.backend_agg import FigureCanvasAgg
+            from matplotlib.figure import Figure
         if self.shape:
             raise ValueError(f"the history is of {self.shape} cases: must be of one block and one motion to be drawn")
         ends = [self.motion.duration if isinstance(self.motion, Record) else 0.0, *np.ravel(self.impact_times)[-1:], self.rest_time, self.end_time]

@@ -143,6 +143,8 @@ class Sine(_Shaped):
 _BASELINES = "none", "constant", "linear", "high-pass"
 # m/s^2: no motion of the ground, so the unit is another.
 _FASTEST = 50
+# Steps at the ends of a displacement or velocity in which a way to or from rest shows.
+_EDGE = 10
 
 
 class Record(Motion):
@@ -257,15 +259,20 @@ class Record(Motion):
         return result
 
     def doubt(self):
-        """A sentence that asks for the unit, where the record has none and its peak is one of strong motion in g, or its displacements are too fast; else ''."""
+        """A sentence on what may not be meant: a record without a unit whose peak is one of strong motion in g; displacements or velocities that are too fast, or
+        that do not begin or end at rest. '' otherwise."""
         peak = np.max(self.peak)
         name = f" {self.name[:60]!r}" if self.name else ""
-        if self.unit_given:
-            return ""
         if self.quantity != "acceleration":
-            return "" if peak <= _FASTEST else (f"The record{name} of a {self.quantity} has no unit and reaches {peak:.3g} m/s^2: is it in m"
-                                                f"{'/s' if self.quantity == 'velocity' else ''}? Give unit= to Record.")
-        if not 0.1 <= peak <= 1.5:
+            inside = np.abs(self._unscaled[_EDGE:-_EDGE]).max(initial=0) * np.abs(self.scale).max()
+            if not self.unit_given and peak > _FASTEST:
+                return (f"The record{name} of a {self.quantity} has no unit and reaches {peak:.3g} m/s^2: is it in {QUANTITIES[self.quantity]}? "
+                        "Give unit= to Record.")
+            if peak > 3 * inside:
+                return (f"The record{name} of a {self.quantity} does not begin or end at rest, as the base does: it reaches {peak:.3g} m/s^2 in its first or "
+                        f"last {_EDGE} steps, and {inside:.3g} m/s^2 in between.")
+            return ""
+        if self.unit_given or not 0.1 <= peak <= 1.5:
             return ""
         return (f"The record{name} has no unit and a peak of {peak:.3g}: is it in g? It is taken in m/s^2, "
                 f"{peak / STANDARD_GRAVITY:.2g} g. Give unit='g' or unit='m/s^2' to Record.")

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from masonry._given import shown
 from masonry._records import afad, cosmos, csmip, esm, knet, obspy_files, peer, smc, table
-from masonry._records.text import Series, Text, shortened
+from masonry._records.text import Text, shortened
 from masonry._records.units import QUANTITIES
 
 # In this order: the first that recognises a file reads it.
@@ -69,7 +69,8 @@ def _columns(text, component, columns):
         raise ValueError(f"component = {shown(component)}: must be left out where columns are given")
     names = table.names_of(text) or []
     if component not in names:
-        raise ValueError(f"component = {shown(component)}: must be the name of a column in the first line of {text.path}" + (f", {shown(names)}" if names else ", which has none"))
+        raise ValueError(f"component = {shown(component)}: must be the name of a column in the first line of {text.path}, "
+                         + (shown(names) if names else "which has none"))
     return (0, component) if names[0].lower().startswith("t") else component
 
 
@@ -105,6 +106,3 @@ def _listed(found):
 
 def source_of(path, series, name):
     return Source(os.path.basename(path), name, series.station, shortened(series.component), series.spelled, series.title)
-
-
-__all__ = ["Series", "Source", "open_text", "read", "source_of"]

@@ -6,7 +6,7 @@ the recorder in s; the line above the values gives their number and their length
 
 import re
 
-from masonry._records.text import Series, column_width, number_of, shortened
+from masonry._records.text import Series, column_width, shortened
 from masonry._records.units import spelled_unit
 
 NAME = "COSMOS"

@@ -13,7 +13,8 @@ def read(path, unit=None):
     try:
         import obspy
     except ImportError:
-        raise ValueError(f"{path}: is no text file: must be unpacked, if it is compressed, or read by ObsPy, which is not installed (python3 -m pip install obspy)") from None
+        raise ValueError(f"{path}: is no text file: must be unpacked, if it is compressed, or read by ObsPy, which is not installed "
+                         "(python3 -m pip install obspy)") from None
     try:
         stream = obspy.read(str(path))
     except Exception as error:  # ObsPy's readers raise whatever they meet

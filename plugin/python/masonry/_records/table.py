@@ -13,12 +13,17 @@ from masonry._records.units import named_unit, spelled_unit
 NAME = "text"
 
 
+# Commas part some columns and blanks others.
+_MIXED = re.compile(r"[^\s,]\s+[^\s,]")
+_PARTS = re.compile(r"[-+]?(\d*)\.?(\d*)(?:[ED]([-+]?\d+))?")
+
+
 def _fields(line):
     """The columns of a line; None where commas part some of them and blanks others: then the commas may be decimal ones."""
-    line = line.strip().rstrip(",").strip()
-    if "," in line and re.search(r"[^\s,]\s+[^\s,]", line):
-        return None
-    return re.split(r"\s*,\s*|\s+", line)
+    if "," not in line:
+        return line.split()
+    line = line.rstrip(",").strip()
+    return None if _MIXED.search(line) else [field.strip() for field in line.split(",")]
 
 
 def _lines(text):
@@ -53,7 +58,8 @@ def _chosen(path, names, count, first, columns):
     if columns is None:
         if count > 2:
             raise ValueError(f"{path}: line {first} has {count} columns: columns=(time, acceleration) must say which, by number (from 0) or by name"
-                             + (f" ({shown(names)})" if names and len(names) == count else "") + ", or component= the name of one; columns='all' where values run on from line to line")
+                             + (f" ({shown(names)})" if names and len(names) == count else "")
+                             + ", or component= the name of one; columns='all' where values run on from line to line")
         return tuple(range(count))
     chosen = tuple(columns) if isinstance(columns, (tuple, list)) else (columns,)
     places = [names.index(column) if names and column in names else column for column in chosen]
@@ -63,12 +69,12 @@ def _chosen(path, names, count, first, columns):
     return tuple(places)
 
 
-def last_digits(texts):
+def last_digits(texts, values):
     """The unit of the last digit of each number, all written with as many significant digits as the longest."""
-    parts = [re.fullmatch(r"[-+]?(\d*)\.?(\d*)(?:[ED]([-+]?\d+))?", text.upper()).groups() for text in texts]
+    parts = [_PARTS.fullmatch(text.upper()).groups() for text in texts]
     longest = max(len((whole + decimals).lstrip("0")) for whole, decimals, _ in parts)
     finest = 10.0 ** min(int(exponent or 0) - len(decimals) for _, decimals, exponent in parts)
-    return [max(finest, 10.0 ** (math.floor(math.log10(abs(t))) + 1 - longest) if t else 0) for t in map(number_of, texts)]
+    return [max(finest, 10.0 ** (math.floor(math.log10(abs(t))) + 1 - longest) if t else 0) for t in values]
 
 
 def _step(path, texts, lines):
@@ -77,7 +83,7 @@ def _step(path, texts, lines):
     time = np.array([number_of(text) for text in texts])
     steps = np.diff(time)
     step = (time[-1] - time[0]) / len(steps)
-    digit = max(last_digits(texts))
+    digit = max(last_digits(texts, time))
     rounded = np.abs(time - time[0] - step * np.arange(len(time))).max() <= digit and 3 * digit <= step and digit <= 1e-3 * step * len(steps)
     if not (step > 0 and (rounded or np.allclose(steps, step, rtol=1e-3, atol=0))):
         worst = np.argmax(np.abs(steps - np.median(steps))) if np.median(steps) > 0 else 0

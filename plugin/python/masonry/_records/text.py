@@ -30,7 +30,10 @@ class Series:
 
 def number_of(text):
     """The number that the text spells, with an exponent of Fortran (1.2D-3) or of C."""
-    return float(text.upper().replace("D", "E"))
+    try:
+        return float(text)
+    except ValueError:
+        return float(text.upper().replace("D", "E"))
 
 
 def quoted(line):

@@ -110,6 +110,8 @@ def record_motion(record, ids, direction=(1, 0, 0), start=0.0):
     engine = wrapper.RecordMotionEngine(ids=[int(id) for id in ids], samples=record.samples.tolist(), interval=record.dt, baseline=record.subtracted,
                                         direction=unit, start=start)
     notes.has_record(engine, record)
+    if record.quantity != "acceleration" and record.doubt():
+        print(f"masonry.dem: {record.doubt()}")
     return engine
 
 

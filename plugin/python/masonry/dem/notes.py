@@ -58,6 +58,12 @@ def name_of(engine):
     return getattr(_record_of(engine), "name", None) or ""
 
 
+def _has_unit(engine):
+    """Whether the record's unit is known: the script has named it, or the accelerations come from displacements or velocities."""
+    record = _record_of(engine)
+    return record is not None and (record.unit_given or record.quantity != "acceleration")
+
+
 def peak_of(record):
     """m/s^2, before the baseline."""
     return max(map(abs, record.samples)) * abs(record.scale)
@@ -92,7 +98,7 @@ def say_what_looks_odd(blocks, motions, gravity, others):
         peak = peak_of(record)
         if 0 < peak and not _PEAKS[0] <= peak <= _PEAKS[1]:
             say(f"a record reaches {peak:.3g}: in g or cm/s^2? Accelerations are in m/s^2")
-        elif _PEAKS_IN_G[0] <= peak <= _PEAKS_IN_G[1] and not getattr(_record_of(record), "unit_given", False):
+        elif _PEAKS_IN_G[0] <= peak <= _PEAKS_IN_G[1] and not _has_unit(record):
             say(f"a record given without a unit reaches {peak:.3g} m/s^2: is it in g? Then multiply it by {_STANDARD_GRAVITY:g}; else name its unit")
     longest = max(2 * max(b.shape.extents) for b in blocks if b.dynamic)
     if longest > _LONGEST:

@@ -11,14 +11,17 @@ def _from_motions(cls):
     default, make = cls().interval, cls.__init__
 
     def __init__(self, *arguments, displacement=None, velocity=None, unit=None, resolution=None, **attributes):
-        if displacement is not None or velocity is not None or unit is not None:
-            baseline = attributes.get("baseline", "none") if displacement is not None or velocity is not None else "none"
-            record = masonry.Record(attributes.get("interval", default), attributes.get("samples"), baseline=baseline, unit=unit,
-                                    velocity=velocity, displacement=displacement, resolution=resolution)
+        moved = displacement is not None or velocity is not None
+        if moved or unit is not None:
+            baseline = attributes.get("baseline", "none") if moved else "none"
+            record = masonry.Record(attributes.get("interval", default), attributes.get("samples"), baseline=baseline, unit=unit, velocity=velocity,
+                                    displacement=displacement, resolution=resolution)
             attributes["samples"] = record.samples.tolist()
         make(self, *arguments, **attributes)
-        if unit is not None:
+        if moved or unit is not None:
             notes.has_unit(self)
+        if moved and record.doubt():
+            print(f"masonry.dem: {record.doubt()}")
 
     cls.__init__ = __init__
 
