@@ -3,6 +3,7 @@
 #include "BlockMat.hpp"
 #include "MoreauJeanIntegrator.hpp"
 #include "RockingJointEngine.hpp"
+#include "joint_forces.hpp"
 #include "sentence.hpp"
 
 #include <algorithm>
@@ -10,6 +11,7 @@
 #include <core/Scene.hpp>
 #include <lib/factory/ClassFactory.hpp>
 #include <pkg/common/Box.hpp>
+#include <unordered_set>
 
 namespace yade {
 
@@ -23,6 +25,18 @@ template <class... Numbers>
 void add(vector<Real>& row, Numbers... numbers)
 {
 	(row.push_back(numbers), ...);
+}
+
+void addRow(vector<Real>& row, const JointForce& joint)
+{
+	add(row, Real(joint.id1), Real(joint.id2), joint.force.x(), joint.force.y(), joint.force.z(), joint.point.x(), joint.point.y(),
+	    joint.point.z());
+}
+
+boost::python::object asBytes(const vector<Real>& numbers)
+{
+	const char* first = reinterpret_cast<const char*>(numbers.data());
+	return boost::python::object(boost::python::handle<>(PyBytes_FromStringAndSize(first, Py_ssize_t(numbers.size() * sizeof(Real)))));
 }
 
 const Box* boxOf(const Body& body) { return dynamic_cast<const Box*>(body.shape.get()); }
@@ -88,16 +102,34 @@ void WallRecorder::addMotions()
 	}
 }
 
+void WallRecorder::addJointForces()
+{
+	const std::unordered_set<int> recorded(ids.begin(), ids.end());
+	const auto isRecorded = [&](int id) { return recorded.count(id) > 0; };
+	int count = 0;
+	for (const JointForce& joint : jointForces(*scene)) {
+		if (!isRecorded(joint.id1) || !isRecorded(joint.id2))
+			continue;
+		addRow(joints, joint);
+		++count;
+	}
+	jointCounts.push_back(count);
+}
+
 void WallRecorder::action()
 {
 	if (times.empty())
 		begin();
 	if (blocks.size() != blockNumbers * ids.size())
 		throw std::invalid_argument("WallRecorder.ids has been changed after the first sample: make a new WallRecorder.");
+	if (recordForces != (jointCounts.size() == times.size()) && !times.empty())
+		throw std::invalid_argument("WallRecorder.recordForces has been changed after the first sample: make a new WallRecorder.");
 	bodies.begin(*scene, ids, [&](size_t k) { return !times.empty() && std::isnan(poses[poses.size() - poseNumbers * (ids.size() - k)]); });
 	times.push_back(scene->time);
 	addEnergies();
 	addMotions();
+	if (recordForces)
+		addJointForces();
 	for (size_t k = 0; k < ids.size(); ++k) {
 		const Body* body = bodies.find(*scene, ids, k);
 		if (!body) {
@@ -109,10 +141,16 @@ void WallRecorder::action()
 	}
 }
 
-boost::python::object WallRecorder::posesAsBytes() const
+boost::python::object WallRecorder::posesAsBytes() const { return asBytes(poses); }
+
+boost::python::object WallRecorder::jointForcesAsBytes() const { return asBytes(joints); }
+
+boost::python::object WallRecorder::jointForcesNow() const
 {
-	const char* first = reinterpret_cast<const char*>(poses.data());
-	return boost::python::object(boost::python::handle<>(PyBytes_FromStringAndSize(first, Py_ssize_t(poses.size() * sizeof(Real)))));
+	vector<Real> rows;
+	for (const JointForce& joint : jointForces(*Omega::instance().getScene()))
+		addRow(rows, joint);
+	return asBytes(rows);
 }
 
 } // namespace yade

@@ -15,25 +15,34 @@ public:
 
 	/// As rows of doubles in one piece of memory: thousands of blocks give too many numbers for a list.
 	boost::python::object posesAsBytes() const;
+	boost::python::object jointForcesAsBytes() const;
+	/// The same rows for the present scene, whether this engine takes part in it or not.
+	boost::python::object jointForcesNow() const;
 
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(WallRecorder, PeriodicEngine,
-		"Motion of a structure: positions and orientations of blocks and the energies, every virtPeriod seconds of simulated time or every iterPeriod steps, from the first step on. It stores seven numbers per block and sample and no joints (BlockRecorder does). dem.engines(recorder=...) puts it where positions and O.time belong together; dem.wall_history() returns a masonry.results.WallHistory.",
+		"Motion of a structure: positions and orientations of blocks and the energies, every virtPeriod seconds of simulated time or every iterPeriod steps, from the first step on. It stores seven numbers per block and sample and, with recordForces, eight more per joint. dem.engines(recorder=...) puts it where positions and O.time belong together; dem.wall_history() returns a masonry.results.WallHistory.",
 		((vector<int>, ids, , , "Blocks to record, fixed by the first sample; empty: all boxes with a BlockMat, prescribed ones too. A block that is erased later has NaN from then on."))
+		((bool, recordForces, false, , "Whether the resultant force of every loaded joint between these blocks, and the point where it acts, are stored too."))
 		((vector<Real>, times, , Attr::readonly, "Times of the samples [s]."))
 		((vector<Real>, blocks, , Attr::readonly, "At the first sample, block by block: half sizes x, y, z [m], 1 for a free block or 0."))
 		((vector<Real>, energies, , Attr::readonly, "Sample by sample: kinetic, potential, elastPotential, frictDissip, dampDissip, impactDissip, baseWork, as dem.energy() [J]; NaN without an engine of the joints. If O.engines is replaced during a run, dissipated energies and work are summed over the lists."))
 		((vector<shared_ptr<Engine>>, motions, , Attr::readonly, "Motion engines that have moved bodies during the recording."))
 		((vector<shared_ptr<Engine>>, integrators, , Attr::hidden, ""))
-		((vector<Real>, poses, , Attr::hidden, "")),
+		((vector<Real>, poses, , Attr::hidden, ""))
+		((vector<int>, jointCounts, , Attr::readonly, "Number of loaded joints in each sample; empty without recordForces."))
+		((vector<Real>, joints, , Attr::hidden, "")),
 		initRun = true;,
 		.def("posesAsBytes", &WallRecorder::posesAsBytes, "Sample by sample and block by block x, y, z [m], w, x, y, z, as doubles in memory: numpy.frombuffer(...).")
+		.def("jointForcesAsBytes", &WallRecorder::jointForcesAsBytes, "Sample by sample and joint by joint (jointCounts) id1, id2, force x, y, z on body 2 [N], point x, y, z where it acts [m], as doubles in memory.")
+		.def("jointForcesNow", &WallRecorder::jointForcesNow, "Returns the same rows for all joints of the scene now.")
 	);
 	// clang-format on
 private:
 	void begin();
 	void addEnergies();
 	void addMotions();
+	void addJointForces();
 
 	RecordedBodies bodies;
 };

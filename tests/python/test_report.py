@@ -225,3 +225,11 @@ def test_a_browser_draws_the_blocks_and_says_nothing_on_its_console(tmp_path):
     base = (np.ptp(picture, axis=2) < 30) & (picture.max(axis=2) < 200) & (picture.min(axis=2) > 90)  # grey, darker than the background
     block = picture[..., 0] - picture[..., 2] > 60  # yellow to red
     assert len(colours) > 30 and base.sum() > 5000 and block.sum() > 2000, (len(colours), base.sum(), block.sum())
+
+
+def test_recorded_forces_are_shown(tmp_path):
+    from test_forces import two_blocks
+
+    found, _ = page(two_blocks(), tmp_path)
+    assert "Base shear, overturning moment and thrust" in found.texts["forces"] and "base shear x" in found.texts["forces"] and "thrust, at" in found.texts["forces"]
+    assert "forces" not in page(toppling(), tmp_path)[0].ids

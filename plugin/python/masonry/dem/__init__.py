@@ -15,6 +15,7 @@ globals().update(_load_classes())
 from masonry.dem import records as _records  # noqa: E402, F401  (YADE's classes must be registered first)
 from masonry.dem.comparing import compare  # noqa: E402
 from masonry.dem.engines import energy, engines, history, impacts, record_motion, save_history  # noqa: E402
+from masonry.dem.reactions import joint_forces, reactions  # noqa: E402
 from masonry.dem.recording import wall_history  # noqa: E402
 from masonry.dem.running import run  # noqa: E402
 from masonry.dem.scene import (angle, base, block, blocks_from_table, check_blocks, overturned, pier,  # noqa: E402

@@ -5,6 +5,7 @@ from masonry._given import shown
 from masonry.dem.describing import about
 from masonry.dem.engines import impacts, joint_engine
 from masonry.results import WallHistory
+from masonry.results.wall_history import JOINT_FORCES
 from yade import O, wrapper
 
 
@@ -25,4 +26,15 @@ def wall_history(recorder):
     end = max(O.time, recorder.times[-1]) if present else None
     return WallHistory(recorder.times, recorder.ids, 2 * blocks[:, :3], blocks[:, 3] > 0, poses[..., :3], poses[..., 3:],
                        np.array(recorder.energies).reshape(len(recorder.times), -1), motion, end,
-                       about(recorder.ids, motions) if present else None, impacts() if present and joint_engine() else None)
+                       about(recorder.ids, motions) if present else None, impacts() if present and joint_engine() else None, _forces(recorder))
+
+
+def _forces(recorder):
+    """WallHistory.forces, or None where they were not recorded."""
+    if not recorder.recordForces:
+        return None
+    rows = np.frombuffer(recorder.jointForcesAsBytes()).reshape(-1, 8)
+    table = np.zeros(len(rows), dtype=[("sample", int)] + JOINT_FORCES)
+    table["sample"] = np.repeat(np.arange(len(recorder.times)), recorder.jointCounts)
+    table["id1"], table["id2"], table["force"], table["point"] = rows[:, 0], rows[:, 1], rows[:, 2:5], rows[:, 5:]
+    return table

@@ -8,11 +8,12 @@ ParaView. Needs no YADE: a history saved by one script is drawn by another.
 """
 
 from .collapse import CollapseReport, collapse, fallen
+from .forces import base_reactions, thrust
 from .joints import joints, patches
 from .paraview import write_paraview
 from .pictures import draw, draw_energy, draw_joints, film
 from .reporting import report
 from .wall_history import WallHistory
 
-__all__ = ["CollapseReport", "WallHistory", "collapse", "draw", "draw_energy", "draw_joints", "fallen", "film", "joints", "patches", "report",
-           "write_paraview"]
+__all__ = ["CollapseReport", "WallHistory", "base_reactions", "collapse", "draw", "draw_energy", "draw_joints", "fallen", "film", "joints", "patches",
+           "report", "thrust", "write_paraview"]

@@ -3,7 +3,8 @@
 import numpy as np
 from masonry._files import written
 from masonry._given import number_given, positive_given, shown
-from masonry.results.collapse import fallen
+from masonry.results.collapse import collapse, fallen
+from masonry.results.forces import has_forces, thrust_at_first
 from masonry.results.joints import joint_rows, joints, patches
 from masonry.results.view import STILL, View, enlargement, largest, movement, nice, still
 from masonry.results.wall_history import ENERGIES, history_given
@@ -13,7 +14,15 @@ _DRAWN = 0.5
 # Error of a balance that closes by its definition, relative to the largest energy in it: round-off of 1e6 steps
 # leaves 2e-13.
 _CLOSED = 1e-12
-_COLOURS = {"displacement": "displacement relative\nto the base (m)", "rotation": "rotation (rad)"}
+_COLOURS = {"displacement": ("displacement relative\nto the base", "m"), "rotation": ("rotation", "rad")}
+# Scales that end below this, m or rad, have their numbers in thousandths: mm, mrad.
+_SMALL = 0.1
+# Longest resultant of a joint, relative to the smallest height of a block.
+_THRUST = 2.0
+# Resultants smaller than this share of the largest are left out.
+_FAINT = 0.02
+# Inches of an axis for each of its numbers.
+_TICK = 0.5
 _PRESCRIBED, _UNMOVED, _BEYOND = "0.62", "0.85", "tab:purple"
 
 
@@ -35,8 +44,14 @@ def shades(name, most):
     return ScalarMappable(Normalize(0, most), ListedColormap(colormaps[name](np.linspace(0.12, 1, 256))).with_extremes(over=_BEYOND))
 
 
-def _colorbar(figure, axes, colours, label, beyond):
-    figure.colorbar(colours, ax=axes, label=f"{label}\npurple: fallen" if beyond else label, shrink=0.8, pad=0.02, extend="max" if beyond else "neither")
+def _colorbar(figure, axes, colours, label, unit, beyond):
+    from matplotlib.ticker import FuncFormatter
+
+    thousandths = unit in ("m", "rad") and colours.norm.vmax < _SMALL
+    label = f"{label} ({'m' if thousandths else ''}{unit})"
+    bar = figure.colorbar(colours, ax=axes, label=f"{label}\npurple: fallen" if beyond else label, shrink=0.8, pad=0.02, extend="max" if beyond else "neither")
+    if thousandths:
+        bar.formatter = FuncFormatter(lambda value, _: f"{1e3 * value:g}")
 
 
 def _check(color, enlarge):
@@ -62,6 +77,7 @@ def _figure(view, shown, columns=1):
         axes.set(aspect="equal", xlim=(left - margin, right + margin), ylim=(low - margin, high + margin))
         if view.from_side:
             axes.set(xlabel=view.label(), ylabel="z (m)")
+            axes.locator_params(axis="x", nbins=max(2, int(width * scale / _TICK)))
         else:
             axes.axis("off")
             bar = nice(width / 4)
@@ -94,7 +110,7 @@ class _Painter:
         self._blocks = PolyCollection([], edgecolors="0.2", linewidths=0.5 if len(start) < 300 else 0.25, zorder=2)
         self._axes.add_collection(self._blocks)
         if self._moved:
-            _colorbar(self.figure, self._axes, self._map, _COLOURS[color], beyond)
+            _colorbar(self.figure, self._axes, self._map, *_COLOURS[color], beyond)
 
     def paint(self, sample):
         corners = self._history.corners(sample, self._enlarge)
@@ -116,7 +132,7 @@ def _save(figure, path):
 
 def shape_figure(history, time=None, enlarge=None, color="displacement", view=None, title=""):
     """The matplotlib figure of draw()."""
-    sample = int(np.nanargmax(history_given(history).drift())) if time is None else history.sample(time)
+    sample = history_given(history).sample(collapse(history).peak_drift_time if time is None else time)
     painter = _Painter(history, [sample], enlarge, color, view, title)
     painter.paint(sample)
     return painter.figure
@@ -126,7 +142,8 @@ def draw(history, path, time=None, enlarge=None, color="displacement", view=None
     """Writes a picture (.png, .pdf, .svg) of the displaced structure: relative to its base, with the blocks as they were at first dashed
     behind it. Where no corner has moved by more than 1e-6 of the structure's size, blocks are grey and the title says so.
 
-    time       the sample nearest to it is drawn, s; None: the one in which the drift (WallHistory.drift) is largest
+    time       the sample nearest to it is drawn, s; None: the one in which the drift (WallHistory.drift) is largest, before the first block falls where
+               one does
     enlarge    factor on the movement, positive; None: so that the largest is drawn as half of the smallest block, at least 1; 1 where nothing moved
     color      'displacement' (of the centre, m) or 'rotation' (rad), since the first sample and relative to the base; the scale ends at the
                largest of the blocks that have not fallen, and those beyond it are purple; at the largest of all where most have fallen
@@ -173,8 +190,8 @@ def film(history, path, start=None, end=None, frames_per_second=20, speed=1.0, e
             painter.figure.set_layout_engine("none")  # the first frame has laid it out
 
 
-def joints_figure(history, time=None, view=None, title=""):
-    """The matplotlib figure of draw_joints()."""
+def joints_figure(history, time=None, view=None, title="", thrust=True):
+    """The matplotlib figure of draw_joints(). thrust: False leaves the third map out."""
     from matplotlib.collections import LineCollection, PolyCollection
     from matplotlib.colors import to_rgba
 
@@ -184,7 +201,10 @@ def joints_figure(history, time=None, view=None, title=""):
     when = "largest" if time is None else f"at {history.time[history.sample(time)]:.3f} s"
     stands = ~fallen(history)[history.sample(time)][joint_rows(history)].any(axis=1)
     least = 1e3 * still(history)
-    figure, panels = _figure(view, view.place(corners[history.free]).reshape(-1, 2), columns=2)
+    thrust = thrust and has_forces(history)
+    figure, panels = _figure(view, view.place(corners[history.free]).reshape(-1, 2), columns=3 if thrust else 2)
+    if thrust:
+        _thrust_panel(history, panels[2], view, collapse(history).peak_drift_time if time is None else time, title)
     for axes, name, colours, none in zip(panels, ("opening", "slip"), ("YlOrRd", "YlGnBu"), ("nothing opened", "nothing slid")):
         values = 1e3 * table[name]
         most, beyond = scale_end(values, stands, least)
@@ -198,15 +218,44 @@ def joints_figure(history, time=None, view=None, title=""):
         axes.add_collection(PolyCollection(flat[order], facecolors=colors[order], edgecolors=colors[order], linewidths=width[order], zorder=2))
         axes.set_title(f"{title + ': ' if title else ''}{name}, {when}{'' if moves.any() else f': {none}' if len(table) else ': no blocks touch at first'}", fontsize="small")
         if moves.any():
-            _colorbar(figure, axes, colours, f"{name} (mm)", beyond)
+            _colorbar(figure, axes, colours, name, "mm", beyond)
     return figure
+
+
+def thrust_figure(history, time, view=None):
+    """The third map of draw_joints() alone."""
+    view = View(history, view)
+    figure, (axes,) = _figure(view, view.place(history.corners(0)[history.free]).reshape(-1, 2))
+    _thrust_panel(history, axes, view, time, "")
+    return figure
+
+
+def _thrust_panel(history, axes, view, time, title):
+    """The resultant of every joint: a line through the point where it crosses the joint, in its direction, as long as it is large."""
+    from matplotlib.collections import LineCollection
+
+    points, forces = thrust_at_first(history, time)
+    sizes = np.linalg.norm(forces, axis=1)
+    most = largest(sizes)
+    shown = sizes > _FAINT * most
+    corners = history.corners(0)[history.free]
+    longest = np.ptp(corners[..., 2], axis=1).min() * _THRUST
+    half, flat = view.place(forces[shown]) * longest / 2 / max(most, 1e-300), view.place(points[shown])
+    axes.add_collection(LineCollection(view.outlines(corners), colors="0.8", linewidths=0.4, zorder=1))
+    axes.add_collection(LineCollection(np.stack([flat - half, flat + half], axis=1), colors="tab:blue", linewidths=1 + 1.5 * sizes[shown] / max(most, 1e-300), zorder=2))
+    axes.plot(*flat.T, ".", color="tab:red", markersize=2.5, zorder=3)
+    said = f", at most {most / 1e3:.3g} kN" if len(forces) else ": no joint carries load"
+    axes.set_title(f"{title + ': ' if title else ''}thrust, at {history.time[history.sample(time)]:.3f} s{said}", fontsize="small")
 
 
 def draw_joints(history, path, time=None, view=None, title=""):
     """Writes a picture with two maps on the undisplaced structure: opening and slip of each joint (joints()), in mm. time: the sample nearest
     to it, s; None: the largest of each joint in the whole history. view: as in draw(). The scales end as in draw(), for the joints between blocks that
     have not fallen; where nothing opened, or slid, by more than 1e-6 of the structure's size, the map is grey and its title says so, as where no blocks
-    touch in the first sample (a run that starts with a tilted block)."""
+    touch in the first sample (a run that starts with a tilted block).
+
+    Where the forces of the joints were recorded (WallRecorder.recordForces), a third map has the lines of thrust: the resultant of each joint at `time` (None:
+    at the largest drift before the first block falls), as a line in its direction whose length is its size, and a dot where it crosses the joint; those below 2 % of the largest are left out."""
     _save(joints_figure(history, time, view, title), path)
 
 

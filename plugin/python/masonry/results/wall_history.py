@@ -11,7 +11,9 @@ from masonry._given import number_given, shown
 ENERGIES = ("kinetic", "potential", "elastPotential", "frictDissip", "dampDissip", "impactDissip", "baseWork")
 _SAVED = ("time", "ids", "sizes", "free", "position", "orientation", "energies")
 # Files have these where they are known.
-_OPTIONAL = ("motion", "end", "about", "impacts")
+_OPTIONAL = ("motion", "end", "about", "impacts", "forces")
+# Rows of the forces of joints: force on block 2, N, and where it acts, m.
+JOINT_FORCES = [("id1", int), ("id2", int), ("force", float, 3), ("point", float, 3)]
 # Share of the motion that may be missing from a run to its end, whose last step or sample may come a little earlier.
 _FINISHED = 1e-3
 
@@ -32,6 +34,8 @@ class WallHistory:
     about          dict that JSON can hold: script, versions, model, materials, motions, solver, notes, and what a script adds (about["seed"] = 7); empty:
                    not known
     impacts        structured array of dem.impacts(); None: not known
+    forces         structured array, one row for each joint that carries load in a sample: sample (its number), id1, id2, force on block 2 (N), point
+                   where it acts (m); None: not recorded (WallRecorder.recordForces)
 
     Displacements and rotations are relative to the base, which is the first prescribed block, and to the first sample. Without
     a prescribed block they are those in the world; a base that is erased counts as staying where it was. dem.wall_history(recorder) makes one;
@@ -39,13 +43,13 @@ class WallHistory:
     Raises ValueError when shapes do not fit, times do not increase or a block that is there at first is nowhere.
     """
 
-    def __init__(self, time, ids, sizes, free, position, orientation, energies=None, motion=None, end=None, about=None, impacts=None):
+    def __init__(self, time, ids, sizes, free, position, orientation, energies=None, motion=None, end=None, about=None, impacts=None, forces=None):
         self.time, self.ids, self.sizes = np.asarray(time, dtype=float), np.asarray(ids, dtype=int), np.asarray(sizes, dtype=float)
         self.free, self.position, self.orientation = np.asarray(free, dtype=bool), np.asarray(position, dtype=float), np.asarray(orientation, dtype=float)
         samples, blocks = len(self.time), len(self.ids)
         self._energies = np.full((samples, len(ENERGIES)), np.nan) if energies is None else np.asarray(energies, dtype=float)
         self.motion = None if motion is None else np.asarray(motion, dtype=float)
-        self.about, self.impacts = dict(about or {}), impacts
+        self.about, self.impacts, self.forces = dict(about or {}), impacts, forces
         shapes = {"sizes": (blocks, 3), "free": (blocks,), "position": (samples, blocks, 3), "orientation": (samples, blocks, 4),
                   "_energies": (samples, len(ENERGIES))}
         for name, shape in shapes.items():

@@ -6,8 +6,9 @@ import re
 
 import numpy as np
 from masonry.results.collapse import fallen
+from masonry.results.forces import base_reactions
 from masonry.results.joints import movement
-from masonry.results.pictures import energy_figure, joints_figure, shape_figure
+from masonry.results.pictures import energy_figure, joints_figure, shape_figure, thrust_figure
 from masonry.results.view import largest
 
 _STYLE = {"svg.fonttype": "none", "svg.hashsalt": "masonry", "font.size": 9, "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True,
@@ -19,6 +20,10 @@ _LINES = 6
 _SAMPLES = 400
 # Room above the largest value that stands, relative to it.
 _ROOM = 0.15
+# Axes of forces end at so many times what 95 of 100 samples stay below: impacts are far above.
+_USUAL = 1.5
+# Components below this share of the largest are left out.
+_FAINT = 1e-3
 
 
 def styled(build):
@@ -147,6 +152,27 @@ def joints(history, verdict, table):
 
 
 @styled
+def base_forces(history, verdict):
+    """Base shear, vertical force and overturning moment about the horizontal axis that it is largest about."""
+    table = base_reactions(history)
+    figure, axes = axes_of(2, 3.6)
+    for one, values, names in ((axes[0], 1e-3 * table["force"], ("base shear x", "base shear y", "vertical force")),
+                               (axes[1], 1e-3 * table["moment"], ("about x", "about y", "about z"))):
+        most = largest(np.abs(values))
+        for k, name in enumerate(names):
+            if largest(np.abs(values[:, k])) > _FAINT * most:
+                one.plot(history.time, values[:, k], color=f"C{k}", linewidth=1, label=name)
+        usual = _USUAL * float(np.nanpercentile(np.abs(values).max(axis=1), 95))
+        if 0 < usual < most:
+            one.set_ylim(-usual if np.nanmin(values) < -_FAINT * usual else 0, usual)
+        one.legend(fontsize="small", loc="upper right")
+    axes[0].set_ylabel("force (kN)")
+    axes[1].set_ylabel("moment (kN m)")
+    time_axis(axes, history.time, verdict.time)
+    return svg(figure)
+
+
+@styled
 def energies(history):
     figure = energy_figure(history)
     figure.set_size_inches(_WIDTH, 4.2)
@@ -173,7 +199,12 @@ def shape(history, time):
 
 @styled
 def joint_map(history):
-    return svg(joints_figure(history), over_time=False)
+    return svg(joints_figure(history, thrust=False), over_time=False)
+
+
+@styled
+def thrust_map(history, time):
+    return svg(thrust_figure(history, time), over_time=False)
 
 
 @styled

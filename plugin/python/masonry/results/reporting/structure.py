@@ -5,6 +5,7 @@ import math
 import numpy as np
 from masonry import _pose
 from masonry.results.collapse import collapse, fallen
+from masonry.results.forces import has_forces
 from masonry.results.joints import joints
 from masonry.results.view import largest, movement, still
 
@@ -29,7 +30,7 @@ def content(history, exact):
                      "Largest horizontal displacement in a course, relative to the base; the curve of a block ends when it falls." + _shaded(verdict))]),
         _section("shape", "Shape at the largest drift", curves.shape(history, shown_first),
                  "The sample of the largest drift" + (" before the collapse" if verdict.collapsed else "") + "; dashed: the first sample."),
-        _joints_section(history, verdict, table),
+        _joints_section(history, verdict, table), _force_section(history, verdict),
         _energy_section(history), _impact_section(history)) if section]
     return {"title": history.about.get("script") or "Rocking masonry", "kind": verdict.verdict, "headline": _headline(verdict), "sentences": _sentences(history, verdict),
             "warnings": _warnings(history, verdict), "scene": view3d.scene(history, shown_first), "numbers": _numbers(history, verdict, table), "sections": sections,
@@ -133,6 +134,16 @@ def _joints_section(history, verdict, table):
 
 def _mm(value):
     return "" if math.isnan(value) else f"{1e3 * value:.3f}"
+
+
+def _force_section(history, verdict):
+    if not has_forces(history):
+        return None
+    return _section("forces", "Base shear, overturning moment and thrust", curves.base_forces(history, verdict),
+                    "Forces of the base on the structure, and their moment about the middle of its foot, at the instants of the samples; peaks of impacts may leave "
+                    "the picture." + _shaded(verdict), second=curves.thrust_map(history, verdict.peak_drift_time),
+                    second_caption="Lines of thrust at the largest drift" + (" before the collapse" if verdict.collapsed else "") + ": the resultant of each joint, as "
+                    "long as it is large, and a dot where it crosses the joint; on the structure as it was at first.")
 
 
 def _energy_section(history):

@@ -1,0 +1,43 @@
+"""The forces of the joints as they are now."""
+
+import numpy as np
+from masonry._given import is_whole, shown
+from masonry.results.wall_history import JOINT_FORCES
+from yade import O, wrapper
+
+_FIELDS = [("id", int), ("force", float, 3), ("point", float, 3)]
+
+
+def joint_forces():
+    """The forces of all joints that carry load, after the last step: a structured array, one row for each pair of blocks.
+
+    id1, id2    the blocks
+    force       on block 2, N: pressure and friction of all points of the joint
+    point       centre of the pressure, where the resultant crosses the joint, m
+
+    In a step in which an impact happened, rigid blocks show the force after it. Pressure and friction of a joint have no other moment about `point` than
+    one about its normal. Empty before the first step."""
+    rows = np.frombuffer(wrapper.WallRecorder().jointForcesNow()).reshape(-1, 8)
+    table = np.zeros(len(rows), dtype=JOINT_FORCES)
+    table["id1"], table["id2"], table["force"], table["point"] = rows[:, 0], rows[:, 1], rows[:, 2:5], rows[:, 5:]
+    return table
+
+
+def reactions(id):
+    """The forces with which a body carries, or holds, the blocks that touch it, after the last step: a structured array, one row for each of them.
+
+    id       the block that is carried
+    force    on it, N
+    point    where it acts: centre of the pressure of the joint, m
+
+    dem.reactions(base)["force"].sum(axis=0) is the reaction of the base: for blocks at rest their weight, else m (a - g). For rigid blocks O.forces holds only
+    the loads of other engines; these are the forces of the joints for every model."""
+    if not (is_whole(id, 0) and id < len(O.bodies) and O.bodies[int(id)] is not None):
+        raise ValueError(f"id = {shown(id)}: must be the id of a body in O.bodies")
+    joints = joint_forces()
+    table = np.zeros(np.count_nonzero((joints["id1"] == id) | (joints["id2"] == id)), dtype=_FIELDS)
+    own, other = joints[joints["id1"] == id], joints[joints["id2"] == id]
+    table["id"] = [*own["id2"], *other["id1"]]
+    table["force"] = [*own["force"], *-other["force"]]
+    table["point"] = [*own["point"], *other["point"]]
+    return table
