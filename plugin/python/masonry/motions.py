@@ -265,12 +265,12 @@ class Record(Motion):
         name = f" {self.name[:60]!r}" if self.name else ""
         if self.quantity != "acceleration":
             inside = np.abs(self._unscaled[_EDGE:-_EDGE]).max(initial=0) * np.abs(self.scale).max()
-            if not self.unit_given and peak > _FASTEST:
-                return (f"The record{name} of a {self.quantity} has no unit and reaches {peak:.3g} m/s^2: is it in {QUANTITIES[self.quantity]}? "
-                        "Give unit= to Record.")
             if peak > 3 * inside:
                 return (f"The record{name} of a {self.quantity} does not begin or end at rest, as the base does: it reaches {peak:.3g} m/s^2 in its first or "
                         f"last {_EDGE} steps, and {inside:.3g} m/s^2 in between.")
+            if not self.unit_given and peak > _FASTEST:
+                return (f"The record{name} of a {self.quantity} has no unit and reaches {peak:.3g} m/s^2: is it in {QUANTITIES[self.quantity]}? "
+                        "Give unit= to Record.")
             return ""
         if self.unit_given or not 0.1 <= peak <= 1.5:
             return ""
