@@ -276,12 +276,13 @@ class Trace:
 def test_obspy(path, monkeypatch):
     file = path(b"000001D \0\0\0", "record.mseed")
     monkeypatch.setitem(sys.modules, "obspy", None)
-    with pytest.raises(ValueError, match=r"must be unpacked, if it is compressed, or read by ObsPy, which is not installed \(python3 -m pip install obspy\)"):
+    with pytest.raises(ValueError, match=r"must be unpacked, if it is compressed, or be one that ObsPy reads, where it is installed \(python3 -m pip install obspy\)"):
         masonry.read_record(file, unit="m/s^2")
     stream = [Trace("HNE", A), Trace("HNN", 2 * A)]
     monkeypatch.setitem(sys.modules, "obspy", types.SimpleNamespace(read=lambda name: stream))
     same(masonry.read_record(file, "HNN", unit="m/s^2"), 2 * A)
     assert masonry.read_record(file, "HNE", unit="m/s^2").source.station == "XX.ABC"
+    same(masonry.read_record(path("TIMESERIES XX_ABC\n1 2\n3\n"), "HNE", unit="m/s^2"), A)  # a text that only ObsPy knows
     for arguments, words in ((dict(), "unit = None: must be given for what ObsPy reads"), (dict(unit="m/s^2"), "2 components: component= must say which: 'HNE', 'HNN'")):
         with pytest.raises(ValueError, match=words):
             masonry.read_record(file, **arguments)

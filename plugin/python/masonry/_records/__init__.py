@@ -47,13 +47,16 @@ def read(path, component=None, quantity=None, unit=None, dt=None, columns=None):
     path = os.fspath(path)
     text = open_text(path)
     if text is None:
-        return _one(path, obspy_files.read(path, unit), component, quantity), obspy_files.NAME
+        return _one(path, obspy_files.read(path, obspy_files.stream_of(path), unit), component, quantity), obspy_files.NAME
     reader = next((reader for reader in _READERS if reader.recognises(text)), None)
     if reader is None:
         try:
             series = table.read(text, unit, dt, _columns(text, component, columns))
         except ValueError as error:
-            raise ValueError(f"{error}. (It is read as columns, because it has the header of no other format.)") from None
+            stream = obspy_files.stream_of(path)
+            if stream is None:
+                raise ValueError(f"{error}. (It is read as columns, because it has the header of no other format.)") from None
+            return _one(path, obspy_files.read(path, stream, unit), component, quantity), obspy_files.NAME
         return _one(path, series, None, quantity), table.NAME
     for name, value in (("unit", unit), ("dt", dt), ("columns", columns)):
         if value is not None:
