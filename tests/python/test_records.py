@@ -156,7 +156,7 @@ def test_cosmos_forms_and_channels(path):
     ("".join(f"{k * DT:.2f},{value}\n" for k, value in enumerate(A)), dict(unit="m/s^2")),
     ("time (s),acceleration (m/s^2)\n" + "".join(f"{k * DT:.2f},{value}\n" for k, value in enumerate(A)), {}),
     ("t a[g] b[gal]\n" + "".join(f"{k * DT:.2f} {7} {100 * value:.3f}\n" for k, value in enumerate(A)), dict(component="b[gal]")),
-    ("a[g] b[gal]\n" + "".join(f"{7} {100 * value:.3f}\n" for value in A), dict(component="b[gal]", dt=DT)),
+    ("a[g],b[gal]\n" + "".join(f"{7},{100 * value:.3f}\n" for value in A), dict(component="b[gal]", dt=DT)),
     ("# comment\n" + "".join(f"{value:.5f}{' ' if (k + 1) % 8 else chr(10)}" for k, value in enumerate(A)), dict(unit="m/s^2", dt=DT, columns="all")),
     ("time (s),N-S (gal),E-W (gal)\n" + "".join(f"{k * DT:.2f},{100 * value:.3f},1\n" for k, value in enumerate(A)), dict(columns=(0, 1)))], ids=brief)
 def test_text_files(path, text, options):
@@ -271,6 +271,15 @@ class Trace:
 
     def __init__(self, channel, data):
         self.data, self.stats = data, types.SimpleNamespace(channel=channel, delta=DT, network="XX", station="ABC", starttime="1990-01-01")
+
+
+def test_encodings(path):
+    text = "time (s),a (m/s²)\n" + "".join(f"{k * DT:.2f},{value}\n" for k, value in enumerate(A))
+    for encoding in ("utf-8", "utf-8-sig", "latin-1", "utf-16"):
+        same(masonry.read_record(path(text, encoding=encoding)), A)
+    for read in (masonry.Record.from_at2, lambda file: masonry.Record.from_csv(file, "g")):
+        with pytest.raises(ValueError, match="record.txt: must be a text file"):
+            read(path(b"1\0\0\0"))
 
 
 def test_obspy(path, monkeypatch):
