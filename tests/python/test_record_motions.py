@@ -135,6 +135,9 @@ def test_resolutions_and_units():
     counts = np.round(u / 3.1e-5)  # a converter's steps
     given, found = (masonry.Record(DT, displacement=3.1e-5 * counts, resolution=resolution) for resolution in (3.1e-5, None))
     np.testing.assert_allclose(given.samples, found.samples, atol=1e-6)
+    # Steps of half a millimetre, and a few values that have a common divisor only by chance.
+    halves, few = (masonry.Record(DT, displacement=values) for values in (np.round(u / 5e-4) * 5e-4, [0, 0, 0.05, 0.15, 0.1, 0.05, 0, 0, 0]))
+    assert 2e-4 < halves.deviation <= 5e-4 and few.deviation <= 0.01
     double = masonry.Record(DT, displacement=np.round(u, 4)).scaled(2)
     assert double.final_displacement == pytest.approx(0, abs=1e-12) and double.deviation == 2 * wanted.deviation
 

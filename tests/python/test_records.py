@@ -156,7 +156,7 @@ def test_cosmos_forms_and_channels(path):
     ("".join(f"{k * DT:.2f},{value}\n" for k, value in enumerate(A)), dict(unit="m/s^2")),
     ("time (s),acceleration (m/s^2)\n" + "".join(f"{k * DT:.2f},{value}\n" for k, value in enumerate(A)), {}),
     ("t a[g] b[gal]\n" + "".join(f"{k * DT:.2f} {7} {100 * value:.3f}\n" for k, value in enumerate(A)), dict(component="b[gal]")),
-    ("a[g] b[gal]\n" + "".join(f"{7} {100 * value:.3f}\n" for value in A), dict(component="b[gal]", dt=DT)),
+    ("a[g],b[gal]\n" + "".join(f"{7},{100 * value:.3f}\n" for value in A), dict(component="b[gal]", dt=DT)),
     ("# comment\n" + "".join(f"{value:.5f}{' ' if (k + 1) % 8 else chr(10)}" for k, value in enumerate(A)), dict(unit="m/s^2", dt=DT, columns="all")),
     ("time (s),N-S (gal),E-W (gal)\n" + "".join(f"{k * DT:.2f},{100 * value:.3f},1\n" for k, value in enumerate(A)), dict(columns=(0, 1)))], ids=brief)
 def test_text_files(path, text, options):
@@ -273,15 +273,25 @@ class Trace:
         self.data, self.stats = data, types.SimpleNamespace(channel=channel, delta=DT, network="XX", station="ABC", starttime="1990-01-01")
 
 
+def test_encodings(path):
+    text = "time (s),a (m/s²)\n" + "".join(f"{k * DT:.2f},{value}\n" for k, value in enumerate(A))
+    for encoding in ("utf-8", "utf-8-sig", "latin-1", "utf-16"):
+        same(masonry.read_record(path(text, encoding=encoding)), A)
+    for read in (masonry.Record.from_at2, lambda file: masonry.Record.from_csv(file, "g")):
+        with pytest.raises(ValueError, match="record.txt: must be a text file"):
+            read(path(b"1\0\0\0"))
+
+
 def test_obspy(path, monkeypatch):
     file = path(b"000001D \0\0\0", "record.mseed")
     monkeypatch.setitem(sys.modules, "obspy", None)
-    with pytest.raises(ValueError, match=r"must be unpacked, if it is compressed, or read by ObsPy, which is not installed \(python3 -m pip install obspy\)"):
+    with pytest.raises(ValueError, match=r"must be unpacked, if it is compressed, or be one that ObsPy reads, where it is installed \(python3 -m pip install obspy\)"):
         masonry.read_record(file, unit="m/s^2")
     stream = [Trace("HNE", A), Trace("HNN", 2 * A)]
     monkeypatch.setitem(sys.modules, "obspy", types.SimpleNamespace(read=lambda name: stream))
     same(masonry.read_record(file, "HNN", unit="m/s^2"), 2 * A)
     assert masonry.read_record(file, "HNE", unit="m/s^2").source.station == "XX.ABC"
+    same(masonry.read_record(path("TIMESERIES XX_ABC\n1 2\n3\n"), "HNE", unit="m/s^2"), A)  # a text that only ObsPy knows
     for arguments, words in ((dict(), "unit = None: must be given for what ObsPy reads"), (dict(unit="m/s^2"), "2 components: component= must say which: 'HNE', 'HNN'")):
         with pytest.raises(ValueError, match=words):
             masonry.read_record(file, **arguments)

@@ -1,5 +1,8 @@
 """Displacements and velocities as base motion: where the base is, how a block rocks on it, and what of it a saved run keeps."""
 
+import contextlib
+import io
+
 import numpy as np
 from masonry import dem
 from rocking_scene import Samples, one_block, refuses, rigid_engines
@@ -68,6 +71,14 @@ for options, words in ((dict(displacement=[0.0, 1.0]), "displacement has 2 sampl
                        (dict(velocity=speeds, samples=[1.0, 2.0]), "acceleration and velocity of acceleration, velocity and displacement is given"),
                        (dict(velocity=speeds + 1), "velocity[0] = 1: must be 0")):
     refuses(lambda options=options: dem.RecordMotionEngine(ids=[0], **options), words)
+
+# A motion that is cut off while it is under way is named, once.
+for make in (lambda: dem.RecordMotionEngine(ids=[0], displacement=rounded[:150]), lambda: dem.record_motion(masonry.Record(INTERVAL, displacement=rounded[:150]), ids=[0])):
+    said = io.StringIO()
+    with contextlib.redirect_stdout(said):
+        make()
+    assert said.getvalue().startswith("masonry.dem: The record of a displacement does not begin or end at rest"), said.getvalue()
+    assert said.getvalue().count("\n") == 1
 
 # Filtered records are given as they are filtered; their padding is part of the motion.
 filtered = masonry.Record(INTERVAL, np.sin(7 * T) + 0.2, baseline="high-pass", corner=0.5)

@@ -29,6 +29,8 @@ _ROUGHNESS = 4
 _STENCILS = {2: (1 / 6, 4 / 6, 1 / 6), 1: (1 / 2, 1 / 2)}
 # Relative to the range of the samples, the finest step between values that counts as their resolution: finer ones are those of double precision.
 _FINEST = 1e-12
+# Different values that show a step: fewer may have a common divisor by chance.
+_LEVELS = 32
 # A velocity that does not begin at rest: relative to the largest.
 _AT_REST = 1e-3
 
@@ -42,11 +44,12 @@ def resolution_of(values):
     for power in range(math.ceil(math.log10(extent)), math.floor(math.log10(_FINEST * extent)), -1):
         multiples = values / 10.0**power
         if np.abs(multiples).max() < 1e15 and np.all(np.abs(multiples - np.round(multiples)) < 1e-3):
-            return float(np.gcd.reduce(np.round(multiples).astype(np.int64))) * 10.0**power
+            whole = np.unique(np.round(multiples).astype(np.int64))
+            return float(np.gcd.reduce(whole) if len(whole) >= _LEVELS else 1) * 10.0**power
     gaps = np.diff(np.unique(values))
     gaps = gaps[gaps > 1e-9 * extent]
     step = gaps.min()
-    return float(step) if len(gaps) > 1 and np.all(np.abs(gaps / step - np.round(gaps / step)) < 1e-3) else 0.0
+    return float(step) if len(gaps) >= _LEVELS and np.all(np.abs(gaps / step - np.round(gaps / step)) < 1e-3) else 0.0
 
 
 def _bands(matrix):

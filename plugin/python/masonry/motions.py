@@ -265,12 +265,12 @@ class Record(Motion):
         name = f" {self.name[:60]!r}" if self.name else ""
         if self.quantity != "acceleration":
             inside = np.abs(self._unscaled[_EDGE:-_EDGE]).max(initial=0) * np.abs(self.scale).max()
-            if not self.unit_given and peak > _FASTEST:
-                return (f"The record{name} of a {self.quantity} has no unit and reaches {peak:.3g} m/s^2: is it in {QUANTITIES[self.quantity]}? "
-                        "Give unit= to Record.")
             if peak > 3 * inside:
                 return (f"The record{name} of a {self.quantity} does not begin or end at rest, as the base does: it reaches {peak:.3g} m/s^2 in its first or "
                         f"last {_EDGE} steps, and {inside:.3g} m/s^2 in between.")
+            if not self.unit_given and peak > _FASTEST:
+                return (f"The record{name} of a {self.quantity} has no unit and reaches {peak:.3g} m/s^2: is it in {QUANTITIES[self.quantity]}? "
+                        "Give unit= to Record.")
             return ""
         if self.unit_given or not 0.1 <= peak <= 1.5:
             return ""
@@ -302,14 +302,14 @@ class Record(Motion):
     def from_at2(cls, path, scale=1.0, baseline="none", gravity=STANDARD_GRAVITY):
         """The record of a PEER file of accelerations (.AT2); masonry.read_record reads it too, and other formats."""
         positive_given("gravity", gravity, ", in m/s^2")
-        series, = _records.peer.read(_records.open_text(path), "acceleration")
+        series, = _records.peer.read(_records.text_given(path), "acceleration")
         return cls.from_series(path, series, _records.peer.NAME, gravity, scale=scale, baseline=baseline)
 
     @classmethod
     def from_csv(cls, path, unit, dt=None, scale=1.0, baseline="none", gravity=STANDARD_GRAVITY, columns=None):
         """The record of a text file of columns, whose unit is named; masonry.read_record reads it too, and other formats."""
         unit_factor(unit, gravity)
-        series, = _records.table.read(_records.open_text(path), unit, dt, columns)
+        series, = _records.table.read(_records.text_given(path), unit, dt, columns)
         return cls.from_series(path, series, _records.table.NAME, gravity, scale=scale, baseline=baseline)
 
     @classmethod

@@ -1,6 +1,8 @@
 """Files of ground motions. Each reader says what it expected when it cannot read a file, and none guesses a unit."""
 
+import codecs
 import os
+import re
 from dataclasses import dataclass
 
 from masonry._given import shown
@@ -32,12 +34,22 @@ def open_text(path):
     """The file's lines; None where it is no text."""
     with open(path, "rb") as file:
         content = file.read()
+    if content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):  # as spreadsheets write it
+        return Text(path, content.decode("utf-16", errors="replace"))
     if b"\0" in content:
         return None
     try:
         return Text(path, content.decode("utf-8-sig"))
     except UnicodeDecodeError:  # words may be of any encoding, numbers are not
         return Text(path, content.decode("latin-1"))
+
+
+def text_given(path):
+    """The file's lines; ValueError where it is no text."""
+    text = open_text(path)
+    if text is None:
+        raise ValueError(f"{path}: must be a text file")
+    return text
 
 
 def read(path, component=None, quantity=None, unit=None, dt=None, columns=None):
@@ -47,13 +59,16 @@ def read(path, component=None, quantity=None, unit=None, dt=None, columns=None):
     path = os.fspath(path)
     text = open_text(path)
     if text is None:
-        return _one(path, obspy_files.read(path, unit), component, quantity), obspy_files.NAME
+        return _one(path, obspy_files.read(path, obspy_files.stream_of(path), unit), component, quantity), obspy_files.NAME
     reader = next((reader for reader in _READERS if reader.recognises(text)), None)
     if reader is None:
         try:
             series = table.read(text, unit, dt, _columns(text, component, columns))
         except ValueError as error:
-            raise ValueError(f"{error}. (It is read as columns, because it has the header of no other format.)") from None
+            stream = obspy_files.stream_of(path)
+            if stream is None:
+                raise ValueError(f"{error}. (It is read as columns, because it has the header of no other format.)") from None
+            return _one(path, obspy_files.read(path, stream, unit), component, quantity), obspy_files.NAME
         return _one(path, series, None, quantity), table.NAME
     for name, value in (("unit", unit), ("dt", dt), ("columns", columns)):
         if value is not None:
@@ -71,7 +86,7 @@ def _columns(text, component, columns):
     if component not in names:
         raise ValueError(f"component = {shown(component)}: must be the name of a column in the first line of {text.path}, "
                          + (shown(names) if names else "which has none"))
-    return (0, component) if names[0].lower().startswith("t") else component
+    return (0, component) if re.match(r"t(ime)?\b", names[0], re.IGNORECASE) else component
 
 
 def _matches(series, component):

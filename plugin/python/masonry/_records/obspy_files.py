@@ -8,17 +8,23 @@ from masonry._records.units import named_unit
 NAME = "ObsPy"
 
 
-def read(path, unit=None):
-    """One series for each trace."""
+def stream_of(path):
+    """What ObsPy reads of the file; None where ObsPy is not installed or cannot read it."""
     try:
         import obspy
     except ImportError:
-        raise ValueError(f"{path}: is no text file: must be unpacked, if it is compressed, or read by ObsPy, which is not installed "
-                         "(python3 -m pip install obspy)") from None
+        return None
     try:
-        stream = obspy.read(str(path))
-    except Exception as error:  # ObsPy's readers raise whatever they meet
-        raise ValueError(f"{path}: ObsPy cannot read it ({str(error)[:100]}): must be a file of a format that masonry or ObsPy knows") from None
+        return obspy.read(str(path))
+    except Exception:  # ObsPy's readers raise whatever they meet
+        return None
+
+
+def read(path, stream, unit=None):
+    """One series for each trace of the stream."""
+    if stream is None:
+        raise ValueError(f"{path}: is no text file: must be unpacked, if it is compressed, or be one that ObsPy reads, where it is installed "
+                         "(python3 -m pip install obspy)")
     if unit is None:
         raise ValueError(f"{path}: unit = None: must be given for what ObsPy reads ('m/s^2', ...), once its samples have a unit and are not counts of the "
                          "recorder (obspy.Stream.remove_response)")
