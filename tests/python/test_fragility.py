@@ -211,6 +211,13 @@ def test_measures(measure):
     assert np.array_equal(by_level.collapsed, by_scale.collapsed) and by_level.collapsed[0].tolist() == [False, False, True]
 
 
+def test_a_record_that_may_be_in_g_is_asked_about():
+    record = masonry.Record(0.1, [0, 0.3, -0.1, 0, 0])
+    with pytest.warns(UserWarning, match="is it in g") as warned:
+        masonry.fragility(BLOCK, [record, record], scales=[1.0])
+    assert all(warning.filename == __file__ for warning in warned)
+
+
 def test_vertical_motion_is_scaled_alike():
     up = [masonry.artificial_record(100 + seed, 0.8, duration=4) for seed in range(3)]
     curve = masonry.fragility(BLOCK, RECORDS[:3], scales=LEVELS, vertical=up)

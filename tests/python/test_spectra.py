@@ -220,6 +220,14 @@ def test_bad_input(call, words):
         call()
 
 
+def test_a_record_that_may_be_in_g_is_asked_about():
+    record = masonry.Record(0.1, [0, 0.3, -0.1, 0, 0])
+    for call in (lambda: spectra.oscillator_peak(record, 1.0), lambda: spectra.peak_ratio(BLOCK, record)):
+        with pytest.warns(UserWarning, match="is it in g") as warned:
+            call()
+        assert warned[0].filename == __file__
+
+
 # --- resonance ---
 
 

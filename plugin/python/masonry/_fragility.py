@@ -13,7 +13,7 @@ from ._lognormal import LognormalFit, wilson
 from ._progress import steps
 from ._readers import STANDARD_GRAVITY
 from .block import RockingBlock
-from .history import _arguments
+from .history import _arguments, warn_of_doubt
 from .motions import Record
 
 # Distinct measures up to which each is a level of its own, and bins of as many histories each beyond that.
@@ -165,6 +165,7 @@ def fragility(block, records, scales=None, levels=None, measure="PGA", restituti
     records = _records("records", records)
     if len(records) < 2:
         raise ValueError(f"records = {shown(records)}: must be at least two, for one does not show the scatter between records")
+    warn_of_doubt(*records)
     vertical = [None] * len(records) if vertical is None else _records("vertical", vertical)
     if len(vertical) != len(records):
         raise ValueError(f"vertical has {len(vertical)} records: must have one for each of the {len(records)} records")
