@@ -9,7 +9,7 @@ import masonry
 from masonry import dem
 
 if len(sys.argv) > 1:
-    record = masonry.Record.from_at2(sys.argv[1], baseline="constant")
+    record = masonry.read_record(sys.argv[1], baseline="constant")
 else:
     time = np.arange(0, 2.005, 0.01)
     record = masonry.Record(0.01, 0.3 * 9.81 * np.sin(2 * np.pi * time) * np.sin(np.pi * time / 2) ** 2, baseline="constant")

@@ -11,7 +11,7 @@ import masonry
 from masonry import dem, results
 
 if len(sys.argv) > 1:
-    record = masonry.Record.from_at2(sys.argv[1], baseline="constant")
+    record = masonry.read_record(sys.argv[1], baseline="constant")
 else:
     time = np.arange(0, 2.005, 0.01)
     record = masonry.Record(0.01, 0.9 * 9.81 * np.sin(2 * np.pi * 1.2 * time) * np.sin(np.pi * time / 2), baseline="constant")

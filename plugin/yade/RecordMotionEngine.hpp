@@ -21,7 +21,7 @@ public:
 
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS(RecordMotionEngine, BaseMotionEngine,
-		"Accelerogram as base motion: linear between its samples, zero after the last, integrated exactly.",
+		"Accelerogram as base motion: linear between its samples, zero after the last, integrated exactly. The constructor also takes displacement=[...] (m) or velocity=[...] (m/s) instead of samples, and unit='g', 'mm', ...: a smooth motion that ends exactly where they end, as masonry.Record makes it.",
 		((vector<Real>, samples, , Attr::triggerPostLoad, "Accelerations [m/s^2], the first at `start`."))
 		((Real, interval, 0.01, Attr::triggerPostLoad, "Time between samples [s]."))
 		((Real, scale, 1, Attr::triggerPostLoad, "Factor on the samples."))

@@ -333,3 +333,15 @@ def test_nan_is_the_natural_restitution_and_sizes_are_whole():
     natural, mixed = (masonry.simulate(block, initial_angle=0.1, restitution=C, half_cycles=3) for C in (None, [np.nan, 0.5]))
     np.testing.assert_array_equal(natural.peak_angles[0], mixed.peak_angles[0])
     assert np.abs(natural.peak_angles[1, 1]) > np.abs(mixed.peak_angles[1, 1])
+
+
+def test_picture_of_a_history(tmp_path):
+    block = masonry.RockingBlock(0.2, 1.0)
+    record = masonry.Record(0.01, 3 * np.sin(2 * np.pi * 0.01 * np.arange(300)), unit="m/s^2")
+    histories = [masonry.simulate(block, record), masonry.simulate(block, record.scaled(10)), masonry.simulate(block, masonry.PulseTrain(0.1), half_cycles=3),
+                 masonry.simulate(block, initial_angle=0.1), masonry.simulate(block)]
+    for k, history in enumerate(histories):
+        history.draw(tmp_path / f"{k}.png")
+        assert (tmp_path / f"{k}.png").stat().st_size > 10000
+    with pytest.raises(ValueError, match=r"the history is of \(2,\) cases: must be of one block"):
+        masonry.simulate(block, record.scaled([1, 2])).draw(tmp_path / "two.png")

@@ -86,7 +86,7 @@ for make, words in ((lambda: dem.WallRecorder(), ("WallRecorder.iterPeriod = 0",
 base, block, _ = one_block(5)
 for motion, words in ((masonry.Record(0.01, [0, 1]), "dem.record_motion(record, ids=[base])"), (masonry.PulseTrain(0.1), "dem.PulseTrainEngine(ids=[base], impulse=0.1, resonantBlock=block)"),
                       (masonry.PulseTrain(0.1, times=[0]), "times=..."), (masonry.HalfSine(1.0, 0.1), "dem.record_motion(masonry.Record(dt, motion.acceleration(times)), ids=[base])")):
-    refuses(lambda: quiet_engines(motion), f"motion = {motion}", words)
+    refuses(lambda: quiet_engines(motion), f"motion = {motion!r}", words)
 refuses(lambda: dem.record_motion([0, 1], ids=[base]), "record = [0, 1]", "masonry.Record")
 for bad in (0, "0", [0.5], [-1]):
     refuses(lambda: dem.record_motion(masonry.Record(0.01, [0, 1]), ids=bad), f"ids = {bad!r}", "a list of ids")

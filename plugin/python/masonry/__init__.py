@@ -24,6 +24,7 @@ from .block import RockingBlock  # noqa: E402
 from .history import History, simulate  # noqa: E402
 from .motions import HalfSine, PulseTrain, Record, Rectangular, Sine  # noqa: E402
 from .overturning import overturning_amplitude  # noqa: E402
+from .records import read_record  # noqa: E402
 
 __all__ = ["Fragility", "HalfSine", "History", "PulseTrain", "Record", "Rectangular", "RockingBlock", "Sine", "artificial_record",
-           "closed_form", "fragility", "fragility_of_table", "overturning_amplitude", "simulate", "spectra"]
+           "closed_form", "fragility", "fragility_of_table", "overturning_amplitude", "read_record", "simulate", "spectra"]

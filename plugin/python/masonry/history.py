@@ -6,7 +6,9 @@ import numpy as np
 
 from . import _core
 from ._arrays import columns, restore, shape_of
+from ._files import written
 from ._given import array_given, shown, whole_given
+from ._optional import needs
 from .motions import Motion, PulseTrain, Record, Still
 
 
@@ -25,9 +27,9 @@ class History:
     base_displacement    of the base at the end of the run, m
     """
 
-    def __init__(self, shape, arguments, result):
+    def __init__(self, shape, arguments, result, block, motion):
         self.shape = shape
-        self._arguments = arguments
+        self._arguments, self._block, self._motion = arguments, block, motion
         for name, value in result.items():
             setattr(self, name, restore(value, shape))
         self.overturned = self.overturn_half_cycle > 0
@@ -45,6 +47,34 @@ class History:
     def sample_base(self, t):
         """Displacement of the base at times t, m; of a resonant train too."""
         return self._sample(t)[2]
+
+    def draw(self, path):
+        """Writes a picture (.png, .pdf or .svg) of one block: its angle relative to the critical one, and the motion of the base below it."""
+        with needs("python3-matplotlib", "a picture of a history"):
+            from matplotlib.backends.backend_agg import FigureCanvasAgg
+            from matplotlib.figure import Figure
+        if self.shape:
+            raise ValueError(f"the history is of {self.shape} cases: must be of one block and one motion to be drawn")
+        ends = [self._motion.duration if isinstance(self._motion, Record) else 0.0, *np.ravel(self.impact_times)[-1:], self.rest_time, self.end_time]
+        times = np.linspace(0, 1.02 * max((end for end in ends if np.isfinite(end) and end > 0), default=1.0), 4000)
+        figure = Figure(figsize=(8, 5), layout="constrained")
+        FigureCanvasAgg(figure)
+        above, below = figure.subplots(2, 1, sharex=True, height_ratios=(2, 1))
+        angles = self.sample(times)[0] / self._block.critical_angle
+        above.plot(times, angles, color="tab:blue")
+        for level in (-1, 1):
+            above.axhline(level, color="0.6", linestyle="--", linewidth=0.8)
+        verdict = f"overturns in half cycle {self.overturn_half_cycle}" if self.overturned else f"stands, {len(self.impact_times)} impacts"
+        above.set(ylabel="angle / critical angle", title=verdict, ylim=1.1 * np.array([-1, 1]) * np.clip(np.nanmax(np.abs(angles)), 1, 1.5))
+        if isinstance(self._motion, Record):
+            below.plot(times, self._motion.acceleration(times), color="tab:red", linewidth=0.8)
+            below.set(ylabel="base (m/s$^2$)")
+        else:
+            below.plot(times, self.sample_base(times), color="tab:red")
+            below.set(ylabel="base (m)")
+        below.set(xlabel="time (s)", xlim=(0, times[-1]))
+        with written(path) as beside:
+            figure.savefig(beside, dpi=150)
 
 
 def warn_of_doubt(*motions):
@@ -86,4 +116,4 @@ def simulate(block, motion=None, restitution=None, restoring="exact", initial_an
     vertical: the base's motion upwards, whose acceleration adds to gravity; it must stay above -gravity, because the block keeps to its base."""
     shape, arguments = _arguments(block, motion, restitution, restoring, initial_angle, initial_velocity, t_end, half_cycles, vertical)
     warn_of_doubt(motion, vertical)
-    return History(shape, arguments, _core.simulate(*arguments))
+    return History(shape, arguments, _core.simulate(*arguments), block, motion)

@@ -3,14 +3,18 @@
 Every motion with a known course has .acceleration(t), .velocity(t), .displacement(t) (m/s^2, m/s, m; values right of a jump).
 """
 
+import copy
 import math
 
 import numpy as np
 
 from . import _core
-from ._given import array_given, number_given, positive_given, shown, whole_given
+from . import _records
 from ._arrays import columns, restore, shape_of
-from ._readers import STANDARD_GRAVITY, read_at2, read_csv, unit_factor
+from ._from_motion import accelerations, resolution_of
+from ._given import array_given, number_given, positive_given, shown, whole_given
+from ._high_pass import high_pass, padding
+from ._records.units import QUANTITIES, STANDARD_GRAVITY, unit_factor
 
 
 class Motion:
@@ -136,37 +140,97 @@ class Sine(_Shaped):
         super().__init__(_core.sine, amplitude=amplitude, frequency=frequency, cycles=cycles)
 
 
-class Record(Motion):
-    """Accelerogram: `scale` times the accelerations, `dt` (s) apart, the first at t = 0, linear between them, zero after the last.
-    Velocity and displacement are its exact integrals. `scale` may be an array: one case each. In YADE: dem.record_motion(record, ids).
+_BASELINES = "none", "constant", "linear", "high-pass"
+# m/s^2: no motion of the ground, so the unit is another.
+_FASTEST = 50
+# Steps at the ends of a displacement or velocity in which a way to or from rest shows.
+_EDGE = 10
 
-    baseline: 'none'; 'constant': the mean acceleration is subtracted, so that the last velocity is zero; 'linear': the slope
-    of the straight line through the origin that fits the velocity best (least squares) is subtracted.
-    unit: of the accelerations: 'm/s^2', 'cm/s^2', 'mm/s^2' or 'g' (that is `gravity`, m/s^2: the standard one, whatever the blocks weigh).
-    None: m/s^2, and a run under a record whose peak is 0.1 to 1.5 asks whether it is in g.
+
+class Record(Motion):
+    """Motion of a base that was recorded: accelerations `dt` (s) apart, times `scale`, the first at t = 0, linear between them, zero after the last.
+    Velocity and displacement are their exact integrals. `scale` may be an array: one case each. In YADE: dem.record_motion(record, ids).
+
+    acceleration, velocity, displacement: one of them is given. Velocities and displacements become the accelerations of a smooth motion. It differs from the
+    samples by what their rounding leaves, so that four decimals do not become noise; samples without rounding are met. The base starts from rest, at the
+    place of the first displacement; it ends exactly at the last displacement, at rest, or with exactly the last velocity.
+
+    unit: of the samples: 'm/s^2', 'cm/s^2', 'mm/s^2' or 'g' (that is `gravity`, m/s^2: the standard one, whatever the blocks weigh); 'm/s', 'cm/s', 'mm/s';
+    'm', 'cm', 'mm'. None: SI units, and a run under a record whose peak may be one in g, or one of displacements in mm, asks.
+
+    baseline: what is subtracted from accelerations. 'none'. 'constant': the mean, so that the last velocity is zero. 'linear': the slope of the straight line
+    through the origin that fits the velocity best (least squares). 'high-pass': what is slower than `corner` (Hz), by a Butterworth filter of that `order`
+    which runs forwards and backwards; the record gets `padding` seconds of zeros before and after it, without which base and filter would not come to rest.
+
+    resolution: step between values of velocity or displacement, in their unit, that rounding has left; None: it is found from the values.
+
+    final_velocity       of the base after the last sample, m/s
+    final_displacement   of the base at the last sample, m
+    padding              s before the first sample and after the last, added by 'high-pass'
+    deviation            largest difference between the motion and the given velocities (m/s) or displacements (m); 0 for accelerations
+    source               file, format, station, component, title and unit of a record that was read; else None
     """
 
-    def __init__(self, dt, acceleration, scale=1.0, baseline="none", name="", unit=None, gravity=STANDARD_GRAVITY):
+    source = None
+
+    def __init__(self, dt, acceleration=None, scale=1.0, baseline="none", name="", unit=None, gravity=STANDARD_GRAVITY, *, velocity=None, displacement=None,
+                 resolution=None, corner=None, order=2):
+        given = {quantity: values for quantity, values in zip(QUANTITIES, (acceleration, velocity, displacement)) if values is not None}
+        if len(given) != 1:
+            raise ValueError(f"{' and '.join(given) or 'nothing'} of acceleration, velocity and displacement is given: must be one of them")
+        (self.quantity, samples), = given.items()
         self.dt = float(number_given("dt", dt))
-        self._unscaled = np.ascontiguousarray(array_given("acceleration", acceleration))
-        if unit != "m/s^2" and unit is not None:
-            self._unscaled = unit_factor(unit, gravity) * self._unscaled
+        samples = np.ascontiguousarray(array_given(self.quantity, samples))
+        if samples.ndim != 1:
+            raise ValueError(f"{self.quantity} has the shape {samples.shape}: must be one row of samples, at least two")
         self.unit_given = unit is not None
-        if self._unscaled.ndim != 1:
-            raise ValueError(f"acceleration has the shape {self._unscaled.shape}: must be one row of samples, at least two")
+        factor = unit_factor(unit, gravity, self.quantity) if self.unit_given else 1.0
+        self._unscaled, self.deviation = self._accelerations(samples, factor, resolution, baseline)
         array_given("scale", scale)
         self.scale = self.amplitude = scale
-        self.baseline = baseline
+        if baseline not in _BASELINES:
+            raise ValueError(f"baseline = {shown(baseline)}: must be one of {', '.join(map(repr, _BASELINES))}")
+        self.baseline, self.padding = baseline, 0.0
         self.name = name
         self.shape = np.shape(scale)
+        self._filter(corner, order)
         self.velocity(0.0)  # refuses bad input here
+
+    def _accelerations(self, samples, factor, resolution, baseline):
+        """(accelerations in m/s^2, deviation from the samples in SI units)"""
+        if self.quantity == "acceleration":
+            if resolution is not None:
+                raise ValueError(f"resolution = {shown(resolution)}: must be left out for accelerations, which are not smoothed")
+            return (samples if factor == 1 else factor * samples), 0.0
+        if baseline != "none":
+            raise ValueError(f"baseline = {shown(baseline)}: must be 'none' for a {self.quantity}, which says where the base ends")
+        if resolution is not None and not number_given("resolution", resolution) >= 0:
+            raise ValueError(f"resolution = {shown(resolution)}: must be 0 or positive, in the unit of the samples")
+        positive_given("dt", self.dt, ", in s")
+        values, deviation = accelerations(samples, self.dt, self.quantity, resolution)
+        return factor * values, factor * deviation
+
+    def _filter(self, corner, order):
+        if self.baseline == "high-pass":
+            if corner is None:
+                raise ValueError("corner = None: must be given (Hz) for baseline='high-pass'")
+            positive_given("dt", self.dt, ", in s")
+            self._unscaled = high_pass(self._unscaled, self.dt, corner, order)
+            self.padding, self.corner, self.order = padding(self.dt, corner, order) * self.dt, corner, order
+        elif corner is not None:
+            raise ValueError(f"corner = {shown(corner)}: must be left out with baseline={self.baseline!r}, it is for 'high-pass'")
 
     @property
     def samples(self):
-        """The accelerations with the scale in them, before the baseline is subtracted, m/s^2: a new array, the shape of `scale` in front."""
+        """The accelerations with the scale in them, before a constant or linear baseline is subtracted, m/s^2: a new array, the shape of `scale` in front."""
         samples = np.multiply.outer(self.scale, self._unscaled)
         samples.flags.writeable = False  # writing into it would change nothing
         return samples
+
+    @property
+    def subtracted(self):
+        """The baseline that the motion of the samples still subtracts: 'none', 'constant' or 'linear'."""
+        return "none" if self.baseline == "high-pass" else self.baseline
 
     @property
     def peak(self):
@@ -178,40 +242,89 @@ class Record(Motion):
         """Time of the last sample, s."""
         return self.dt * (len(self._unscaled) - 1)
 
+    @property
+    def final_velocity(self):
+        return self.velocity(self.duration)
+
+    @property
+    def final_displacement(self):
+        return self.displacement(self.duration)
+
     def scaled(self, factor):
-        return Record(self.dt, self._unscaled, np.multiply(self.scale, factor), self.baseline, self.name, "m/s^2" if self.unit_given else None)
+        result = copy.copy(self)
+        result.scale = result.amplitude = np.multiply(self.scale, array_given("factor", factor))
+        result.shape = np.shape(result.scale)
+        result.deviation = np.multiply(self.deviation, np.abs(factor).max())
+        result.velocity(0.0)  # refuses bad input here
+        return result
 
     def doubt(self):
-        """A sentence that asks whether the record is in g, where it has no unit and its peak is one of strong motion in g; else ''."""
+        """A sentence on what may not be meant: a record without a unit whose peak is one of strong motion in g; displacements or velocities that are too fast, or
+        that do not begin or end at rest. '' otherwise."""
         peak = np.max(self.peak)
+        name = f" {self.name[:60]!r}" if self.name else ""
+        if self.quantity != "acceleration":
+            inside = np.abs(self._unscaled[_EDGE:-_EDGE]).max(initial=0) * np.abs(self.scale).max()
+            if peak > 3 * inside:
+                return (f"The record{name} of a {self.quantity} does not begin or end at rest, as the base does: it reaches {peak:.3g} m/s^2 in its first or "
+                        f"last {_EDGE} steps, and {inside:.3g} m/s^2 in between.")
+            if not self.unit_given and peak > _FASTEST:
+                return (f"The record{name} of a {self.quantity} has no unit and reaches {peak:.3g} m/s^2: is it in {QUANTITIES[self.quantity]}? "
+                        "Give unit= to Record.")
+            return ""
         if self.unit_given or not 0.1 <= peak <= 1.5:
             return ""
-        return (f"The record{' ' + repr(self.name[:60]) if self.name else ''} has no unit and a peak of {peak:.3g}: is it in g? It is taken in m/s^2, "
+        return (f"The record{name} has no unit and a peak of {peak:.3g}: is it in g? It is taken in m/s^2, "
                 f"{peak / STANDARD_GRAVITY:.2g} g. Give unit='g' or unit='m/s^2' to Record.")
 
     def _motions(self, shape):
         scale, = columns(shape if np.ndim(self.scale) else (), self.scale)
-        return _core.record(self.dt, self._unscaled, scale, self.baseline)
+        return _core.record(self.dt, self._unscaled, scale, self.subtracted)
 
     def __repr__(self):
+        of = f"baseline={self.baseline!r}" if self.quantity == "acceleration" else f"from its {self.quantity}"
         return (f"Record({self.name + ': ' if self.name else ''}{len(self._unscaled)} samples, dt={self.dt:g} s, "
-                f"at most {np.abs(self.samples).max():.3g} m/s^2, baseline={self.baseline!r})")
+                f"at most {np.abs(self.samples).max():.3g} m/s^2, {of})")
+
+    def __str__(self):
+        lines = [repr(self)]
+        if self.source:
+            lines.append(str(self.source))
+        if not self.shape:
+            lines.append(f"the base ends {_rounded(self.final_displacement)} m from where it begins, at {_rounded(self.final_velocity)} m/s")
+        if self.padding:
+            lines.append(f"Butterworth filter of order {self.order} at {self.corner:g} Hz, forwards and backwards; {self.padding:g} s were added before and after")
+        if self.deviation:
+            lines.append(f"the base differs from the given {self.quantity} by at most {self.deviation:.2g} m{'/s' if self.quantity == 'velocity' else ''}")
+        return "\n  ".join(lines)
 
     @classmethod
     def from_at2(cls, path, scale=1.0, baseline="none", gravity=STANDARD_GRAVITY):
-        """PEER NGA file (.AT2). The unit is the one that line 3 states: G (that is `gravity`, m/s^2: the standard one, whatever the blocks weigh,
-        9.81 elsewhere), G/10, %G, CM/S^2, GAL or M/S^2; DT is in SEC or MSEC. Another unit, a velocity or a displacement is refused."""
+        """The record of a PEER file of accelerations (.AT2); masonry.read_record reads it too, and other formats."""
         positive_given("gravity", gravity, ", in m/s^2")
-        name, dt, samples = read_at2(path, gravity)
-        return cls(dt, samples, scale, baseline, name=name, unit="m/s^2")
+        series, = _records.peer.read(_records.open_text(path), "acceleration")
+        return cls.from_series(path, series, _records.peer.NAME, gravity, scale=scale, baseline=baseline)
 
     @classmethod
     def from_csv(cls, path, unit, dt=None, scale=1.0, baseline="none", gravity=STANDARD_GRAVITY, columns=None):
-        """Columns time, acceleration; or one column of acceleration with `dt` (s). unit: 'm/s^2', 'cm/s^2', 'mm/s^2' or 'g' (that is
-        `gravity`, m/s^2: the standard one, whatever the blocks weigh, 9.81 elsewhere).
+        """The record of a text file of columns, whose unit is named; masonry.read_record reads it too, and other formats."""
+        unit_factor(unit, gravity)
+        series, = _records.table.read(_records.open_text(path), unit, dt, columns)
+        return cls.from_series(path, series, _records.table.NAME, gravity, scale=scale, baseline=baseline)
 
-        columns: which ones of a file with more, (time, acceleration) or acceleration, by number (from 0) or by their names in the first line.
-        Columns are parted by commas or by blanks, numbers have decimal points and may have Fortran's exponents (1.2D-3). Lines that start with
-        # or % and one first line of words are skipped. Times may be rounded to their last digit."""
-        dt, samples = read_csv(path, unit, dt, gravity, columns)
-        return cls(dt, samples, scale, baseline, name=str(path), unit="m/s^2")
+    @classmethod
+    def from_series(cls, path, series, format, gravity=STANDARD_GRAVITY, **options):
+        """The record of what a reader has found in a file."""
+        quantity = series.unit.quantity
+        factor = series.unit.factor(positive_given("gravity", gravity, ", in m/s^2"))
+        options[quantity] = factor * series.values
+        if quantity != "acceleration":
+            options["resolution"] = factor * resolution_of(series.values)  # of the digits in the file
+        result = cls(series.dt, name=series.title or str(path), unit=QUANTITIES[quantity], **options)
+        result.source = _records.source_of(path, series, format)
+        return result
+
+
+def _rounded(value):
+    """A number for a text: what is round-off is 0."""
+    return f"{value:.3g}" if abs(value) >= 1e-9 else "0"

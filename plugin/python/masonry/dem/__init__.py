@@ -12,7 +12,8 @@ from masonry.dem._load import load_classes as _load_classes
 # Bound by name here: BlockMat, ...
 globals().update(_load_classes())
 
-from masonry.dem.comparing import compare  # noqa: E402  (YADE's classes must be registered first)
+from masonry.dem import records as _records  # noqa: E402, F401  (YADE's classes must be registered first)
+from masonry.dem.comparing import compare  # noqa: E402
 from masonry.dem.engines import energy, engines, history, impacts, record_motion, save_history  # noqa: E402
 from masonry.dem.recording import wall_history  # noqa: E402
 from masonry.dem.running import run  # noqa: E402

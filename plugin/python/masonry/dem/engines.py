@@ -107,10 +107,12 @@ def record_motion(record, ids, direction=(1, 0, 0), start=0.0):
     unit = finite_numbers("direction", direction, 3, what)
     if not abs(math.hypot(*unit) - 1) < 1e-9:
         raise ValueError(f"direction = {shown(direction)}: must be {what}")
-    engine = wrapper.RecordMotionEngine(ids=[int(id) for id in ids], samples=record.samples.tolist(), interval=record.dt, baseline=record.baseline,
+    engine = wrapper.RecordMotionEngine(ids=[int(id) for id in ids], samples=record.samples.tolist(), interval=record.dt, baseline=record.subtracted,
                                         direction=unit, start=start)
-    if getattr(record, "unit_given", True):
+    if record.unit_given or record.quantity != "acceleration":
         notes.has_unit(engine)
+    if record.quantity != "acceleration" and record.doubt():
+        print(f"masonry.dem: {record.doubt()}")
     return engine
 
 

@@ -16,6 +16,7 @@ import numpy as np
 
 from .._arrays import restore
 from .._given import array_given, shown
+from .._optional import needs
 from .._progress import steps
 from ..history import warn_of_doubt
 from ..motions import HalfSine, PulseTrain, Record, Rectangular, Sine
@@ -179,7 +180,8 @@ def _samples(record):
 
 
 def _peak_under_record(source, oscillator):
-    from scipy.signal import lfilter
+    with needs("python3-scipy", "a response spectrum"):
+        from scipy.signal import lfilter
 
     dt, a = source
     parts = max(1, math.ceil(_SAMPLES * dt / oscillator.period))

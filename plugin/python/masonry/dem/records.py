@@ -1,0 +1,29 @@
+"""RecordMotionEngine from velocities and displacements."""
+
+import masonry
+from yade import wrapper
+
+from masonry.dem import notes
+
+
+def _from_motions(cls):
+    """The constructor also takes displacement=[...] or velocity=[...] instead of samples, and the unit of either; masonry.Record turns them into samples."""
+    default, make = cls().interval, cls.__init__
+
+    def __init__(self, *arguments, displacement=None, velocity=None, unit=None, resolution=None, **attributes):
+        moved = displacement is not None or velocity is not None
+        if moved or unit is not None:
+            baseline = attributes.get("baseline", "none") if moved else "none"
+            record = masonry.Record(attributes.get("interval", default), attributes.get("samples"), baseline=baseline, unit=unit, velocity=velocity,
+                                    displacement=displacement, resolution=resolution)
+            attributes["samples"] = record.samples.tolist()
+        make(self, *arguments, **attributes)
+        if moved or unit is not None:
+            notes.has_unit(self)
+        if moved and record.doubt():
+            print(f"masonry.dem: {record.doubt()}")
+
+    cls.__init__ = __init__
+
+
+_from_motions(wrapper.RecordMotionEngine)
