@@ -51,7 +51,7 @@ def table(path):
     lines = [line for line in path.read_text().splitlines() if not line.startswith("#")]
     names = [re.sub(r" \(.*\)$", "", name) for name in next(csv.reader(lines[:1]))]
     columns = zip(*csv.reader(lines[1:]))
-    return {name: [{"True": 1.0, "False": 0.0}.get(value) if value in ("True", "False") else float(value) for value in column] for name, column in zip(names, columns)}
+    return {name: [float({"True": 1, "False": 0}.get(value, value)) for value in column] for name, column in zip(names, columns)}
 
 
 def picture(path):
@@ -112,7 +112,7 @@ def test_fragility_of_a_table(command, folder):
 
 @pytest.mark.parametrize("line, words", [
     ("fragility none.AT2 r1.csv --width 0.4 --height 2 --scales 1:2:3", "none.AT2"),
-    ("fragility r0.csv r1.csv --width 0.4 --height 2 --scales 1:2:3", "r0.csv: a text file of columns needs --unit"),
+    ("fragility r0.csv r1.csv --width 0.4 --height 2 --scales 1:2:3", "r0.csv: unit = None: must be given for a text file of columns"),
     ("fragility r0.csv --unit m/s^2 --width 0.4 --height 2 --scales 1:2:3", "must be at least two"),
     ("fragility r0.csv r1.csv --unit m/s^2 --width 0.4 --height 2", "scales, levels: must give one"),
     ("fragility r0.csv r1.csv --unit m/s^2 --scales 1:2:3", "give records, --width and --height, or --table"),
@@ -154,6 +154,7 @@ def test_examples_of_the_help_work(command, folder, help):
 
 
 def test_a_progress_bar_is_drawn(folder):
-    run = subprocess.run([sys.executable, "-m", "masonry", *shlex.split("spectrum rocking --motion sine --amplitude 1:3:3 --frequency 2 --width 0.4 --slenderness 5")],
+    line = "spectrum rocking --motion sine --amplitude 1:3:3 --frequency 2 --width 0.4 --slenderness 5"
+    run = subprocess.run([sys.executable, "-m", "masonry", *shlex.split(line)],
                          capture_output=True, text=True, env={**os.environ, "PYTHONPATH": str(Path(masonry.__file__).parents[1])})
     assert run.returncode == 0 and "rocking: 100%" in run.stderr

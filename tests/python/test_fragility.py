@@ -162,13 +162,29 @@ def test_few_histories_have_infinite_ends_and_say_so():
 
 
 # The likelihood of nearly separated data is steep: the fit must not stop short of its maximum.
-@pytest.mark.parametrize("overlap", [1e-2, 1e-4])
+@pytest.mark.parametrize("overlap", [1e-2, 1e-4, 1e-6, 1e-8])
 def test_nearly_separated_data(overlap):
     x = np.array([1, 1.5, 2, 2 + overlap, 3, 4.0])
     curve = masonry.Fragility(x, [0, 0, 1, 0, 1, 1])
     expected, _ = other_fit(x, np.array([0, 0, 1, 0, 1, 1], dtype=bool))
     value = minus_likelihood(np.log([curve.median, curve.dispersion]), x, np.array([0, 0, 1, 0, 1, 1], dtype=bool))
     assert value <= minus_likelihood(expected, x, np.array([0, 0, 1, 0, 1, 1], dtype=bool)) + 1e-9
+
+
+def test_measures_that_differ_by_round_off_are_one_level():
+    curve = masonry.Fragility(np.array([1, 1, 2, 2, 3, 3]) * (1 + 1e-15 * np.array([0, 3, -2, 1, 2, 0])), [0, 0, 0, 1, 1, 1])
+    assert curve.levels["cases"].tolist() == [2, 2, 2] and "complete separation" in str(curve)
+
+
+# All that overlaps is one record, which says nothing of the scatter between records. Its score is nearly 0 at the best fit, as the sum of all is 0: without the
+# correction for its own part in the fit the interval would be narrower than for independent histories.
+def test_a_record_that_holds_all_the_information_widens_the_interval():
+    x = np.array([0.01] * 5 + [100.0] * 5 + [1.5, 2.5])
+    collapsed = np.array([0] * 5 + [1] * 5 + [1, 0])
+    curve = masonry.Fragility(x, collapsed, records=[*range(5), *range(5), 5, 5])
+    alone = masonry.Fragility(x, collapsed)
+    assert curve.fitted and curve.median == alone.median
+    assert curve.median_interval[0] < alone.median_interval[0] and curve.median_interval[1] > alone.median_interval[1]
 
 
 # --- histories ---
@@ -185,6 +201,14 @@ def test_collapses_are_those_of_simulate():
     assert curve.fitted and curve.median_interval[0] < curve.median < curve.median_interval[1]
     low, high = curve.band(LEVELS)
     assert np.all(low < curve.probability(LEVELS)) and np.all(curve.probability(LEVELS) < high)
+
+
+def test_scales_multiply_the_scale_that_a_record_has():
+    halves = [masonry.Record(record.dt, 2 * record.samples, scale=0.5, baseline="constant", unit="m/s^2") for record in RECORDS]
+    curve = masonry.fragility(BLOCK, halves, scales=LEVELS, vertical=[record.scaled(0.1) for record in halves])
+    expected = [masonry.simulate(BLOCK, record.scaled(LEVELS), vertical=record.scaled(0.1).scaled(LEVELS)).overturned.tolist() for record in RECORDS]
+    assert curve.collapsed.tolist() == expected and 0.2 < curve.collapsed.mean() < 0.8
+    assert curve.collapsed.tolist() != masonry.fragility(BLOCK, halves, scales=np.multiply(0.5, LEVELS)).collapsed.tolist()
 
 
 def test_populations_and_restitutions_broadcast():
@@ -209,6 +233,13 @@ def test_measures(measure):
     np.testing.assert_allclose(by_scale.values, np.tile(expected * scales, (2, 1)), rtol=1e-12)
     by_level = masonry.fragility(BLOCK, [record, record], levels=expected * scales, measure=measure)
     assert np.array_equal(by_level.collapsed, by_scale.collapsed) and by_level.collapsed[0].tolist() == [False, False, True]
+
+
+def test_a_record_that_may_be_in_g_is_asked_about():
+    record = masonry.Record(0.1, [0, 0.3, -0.1, 0, 0])
+    with pytest.warns(UserWarning, match="is it in g") as warned:
+        masonry.fragility(BLOCK, [record, record], scales=[1.0])
+    assert all(warning.filename == __file__ for warning in warned)
 
 
 def test_vertical_motion_is_scaled_alike():
@@ -257,7 +288,8 @@ def test_bad_input(change, words):
 
 
 @pytest.mark.parametrize("given, words", [
-    ({"measure": "pga"}, "'pga': is no column"), ({"measure": "zero"}, "column 'zero': must be positive"), ({"event": "peak"}, "column 'peak': must be True or False"),
+    ({"measure": "pga"}, "'pga': is no column"), ({"measure": "zero"}, "column 'zero': must be positive"),
+    ({"event": "peak"}, "column 'peak': must be True or False"),
     ({"record": "one"}, "column 'one': must name at least two records"),
 ])
 def test_bad_tables(given, words):

@@ -38,8 +38,8 @@ def integrated(acceleration, end, period, damping, kinks=()):
 
 @pytest.mark.parametrize("period", [0.04, 0.31, 1.0, 7.0])
 @pytest.mark.parametrize("damping", [0.0, 0.05, 0.7])
-@pytest.mark.parametrize("motion, kinks", [(masonry.Sine(2.0, 1.0, cycles=4.25), [4.25]), (masonry.HalfSine(3.0, 0.4), [0.4]), (masonry.Rectangular(2.0, 0.3), [0.3])],
-                         ids=["sine", "half-sine", "rectangle"])
+@pytest.mark.parametrize("motion, kinks", [(masonry.Sine(2.0, 1.0, cycles=4.25), [4.25]), (masonry.HalfSine(3.0, 0.4), [0.4]),
+                                           (masonry.Rectangular(2.0, 0.3), [0.3])], ids=["sine", "half-sine", "rectangle"])
 def test_oscillator_under_shaped_motions(motion, kinks, period, damping):
     expected = integrated(motion.acceleration, kinks[-1] + 1.1 * period, period, damping, kinks)
     # DOP853 at 1e-11 for each step, over some thousand steps at most
@@ -172,8 +172,8 @@ def test_peak_ratio_against_another_integration():
 
 
 def test_rocking_spectrum_is_a_grid_with_names():
-    spectrum = spectra.rocking(masonry.Sine, amplitude=[2.0, 4.0, 6.0], frequency=[1.0, 2.0], width=0.4, slenderness=[4.0, 5.0], restitution=[0.7, 0.8, 0.9, 1.0],
-                               t_end=3.0)
+    spectrum = spectra.rocking(masonry.Sine, amplitude=[2.0, 4.0, 6.0], frequency=[1.0, 2.0], width=0.4, slenderness=[4.0, 5.0],
+                               restitution=[0.7, 0.8, 0.9, 1.0], t_end=3.0)
     assert spectrum.dims == ("amplitude", "frequency", "slenderness", "restitution") and spectrum.shape == (3, 2, 2, 4)
     one = spectra.peak_ratio(masonry.RockingBlock.from_size(0.4, 2.0), masonry.Sine(4.0, 2.0), 0.8, t_end=3.0)
     assert spectrum["ratio"][1, 1, 1, 1] == one and spectrum["overturned"].dtype == bool
@@ -218,6 +218,14 @@ def test_overturning_scale_of_a_motion():
 def test_bad_input(call, words):
     with pytest.raises(ValueError, match=words):
         call()
+
+
+def test_a_record_that_may_be_in_g_is_asked_about():
+    record = masonry.Record(0.1, [0, 0.3, -0.1, 0, 0])
+    for call in (lambda: spectra.oscillator_peak(record, 1.0), lambda: spectra.peak_ratio(BLOCK, record)):
+        with pytest.warns(UserWarning, match="is it in g") as warned:
+            call()
+        assert warned[0].filename == __file__
 
 
 # --- resonance ---

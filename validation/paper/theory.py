@@ -5,7 +5,6 @@ from dataclasses import dataclass
 import masonry
 import numpy as np
 from scipy.optimize import brentq
-from scipy.special import elliprf
 
 from cases import GRAVITY, IMPULSE, TIME_TOLERANCE, half_cycles
 
@@ -26,19 +25,10 @@ class Stabilised:
 
 
 def exact(two_b, slenderness, restitution, impulse=IMPULSE):
-    """The stabilised phase under real gravity: the speed w* of Eq. 10 is exact, peak and duration follow from energy.
-    With D = (w*/2p)^2 and kc^2 = sin^2(alpha/2) - D: peak = alpha - 2 asin kc; it overturns where kc^2 <= 0. The duration of a half
-    cycle is (2/p) S R_F(1 - S^2, 1 - (1 - kc^2) S^2, 1), S^2 = D/(sin^2(alpha/2) (1 - kc^2)) (Carlson's R_F)."""
+    """The stabilised phase under real gravity: the speed w* of Eq. 10 is exact, peak and duration follow from energy."""
     b = block(two_b, slenderness)
-    speed = masonry.closed_form.stabilised(b, impulse, restitution).angular_velocity
-    d = (speed / (2 * b.frequency_parameter)) ** 2
-    lift = np.sin(b.critical_angle / 2) ** 2
-    kc2 = np.where(lift > d, lift - d, np.nan)
-    s2 = d / (lift * (1 - kc2))
-    # alpha - 2 asin kc, without the difference: tan of half of it from sin(alpha/2) and kc.
-    peak = 2 * np.arcsin(d / (np.sqrt(lift * (1 - kc2)) + np.sqrt(kc2 * (1 - lift))))
-    duration = 2 / b.frequency_parameter * np.sqrt(s2) * elliprf(1 - s2, 1 - (1 - kc2) * s2, 1.0)
-    return Stabilised(2 * duration, peak / b.critical_angle)
+    peak, duration = masonry.spectra.half_cycle(b, masonry.closed_form.stabilised(b, impulse, restitution).angular_velocity)
+    return Stabilised(2 * duration, np.where(np.isfinite(peak), peak / b.critical_angle, np.nan))
 
 
 def history(case, restoring="exact"):

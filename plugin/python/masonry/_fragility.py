@@ -9,15 +9,18 @@ import numpy as np
 from . import _core
 from ._files import written
 from ._given import array_given, number_given, positive_given, shown
-from ._lognormal import LognormalFit, wilson
+from ._lognormal import LognormalFit, NoMaximum, wilson
+from ._optional import needs
 from ._progress import steps
-from ._readers import STANDARD_GRAVITY
+from ._records.units import STANDARD_GRAVITY
 from .block import RockingBlock
-from .history import _arguments
+from .history import _arguments, warn_of_doubt
 from .motions import Record
 
 # Distinct measures up to which each is a level of its own, and bins of as many histories each beyond that.
 _LEVELS, _BINS = 50, 12
+# Relative difference of measures that are the same: sums over a record have round-off.
+_SAME = 1e-9
 _SA = re.compile(r"Sa\(([\d.]+)\)")
 _MEASURES = {
     "PGA": ("m/s^2", lambda record: _pga(record), lambda block: 1.0),
@@ -42,8 +45,10 @@ class Fragility:
     """
 
     def __init__(self, values, collapsed, measure="measure", unit="", records=None, confidence=0.95):
+        with needs("python3-scipy", "a fragility curve"):
+            import scipy.special  # noqa: F401
         self.measure, self.unit, self.confidence = measure, unit, confidence
-        self.values, self.collapsed = np.asarray(values, dtype=float), np.asarray(collapsed, dtype=bool)
+        self.values, self.collapsed = _merged(np.asarray(values, dtype=float)), np.asarray(collapsed, dtype=bool)
         self._many = None if records is None else len(np.unique(records))
         self.levels = _levels(self.values.ravel(), self.collapsed.ravel(), confidence)
         self._fit = None
@@ -75,10 +80,11 @@ class Fragility:
 
     def plot(self, path):
         """Picture: fractions with Wilson's intervals, and the curve with its band. path: the file, whose ending says its kind."""
-        import matplotlib
+        with needs("python3-matplotlib", "a picture of a fragility curve"):
+            import matplotlib
 
-        matplotlib.use("Agg")
-        import matplotlib.pyplot as plt
+            matplotlib.use("Agg")
+            import matplotlib.pyplot as plt
 
         figure, axes = plt.subplots(figsize=(6.4, 4), layout="constrained")
         rows = self.levels
@@ -88,7 +94,8 @@ class Fragility:
         if self.fitted:
             low, high = self.band(x)
             axes.fill_between(x, low, high, color="C0", alpha=0.2, linewidth=0, label=f"{self.confidence:.0%} band of the fit")
-            axes.plot(x, self.probability(x), color="C0", label=f"lognormal: median {self.median:.3g} {self.unit}".rstrip() + f", dispersion {self.dispersion:.2f}")
+            axes.plot(x, self.probability(x), color="C0",
+                      label=f"lognormal: median {self.median:.3g} {self.unit}".rstrip() + f", dispersion {self.dispersion:.2f}")
         axes.set(xlabel=self.measure + (f" ({self.unit})" if self.unit else ""), ylabel="probability of collapse", ylim=(-0.03, 1.03), xlim=(0, x[-1]))
         if not self.fitted:
             import textwrap
@@ -118,8 +125,8 @@ class Fragility:
                     f"collapse is at most {last['high']:.2g} ({percent} interval, {last['cases']} histories).")
         if collapsed.all():
             first = self.levels[0]
-            return (f"All {len(values)} histories collapsed, so there is no curve: take smaller measures. At {self._shown(first['measure'])} the probability of "
-                    f"collapse is at least {first['low']:.2g} ({percent} interval, {first['cases']} histories).")
+            return (f"All {len(values)} histories collapsed, so there is no curve: take smaller measures. At {self._shown(first['measure'])} the probability "
+                    f"of collapse is at least {first['low']:.2g} ({percent} interval, {first['cases']} histories).")
         stands, falls = values[~collapsed], values[collapsed]
         if stands.max() <= falls.min():
             if stands.min() == falls.max():
@@ -134,7 +141,12 @@ class Fragility:
 
     def _with_fit(self, records):
         groups = None if records is None else np.unique(records, return_inverse=True)[1]
-        fit = LognormalFit(self.values.ravel(), self.collapsed.ravel(), groups)
+        try:
+            fit = LognormalFit(self.values.ravel(), self.collapsed.ravel(), groups)
+        except NoMaximum:
+            stands, falls = self.values[~self.collapsed].max(), self.values[self.collapsed].min()
+            return (f"All histories below {self._shown(falls)} stand and all above {self._shown(stands)} collapse (nearly complete separation), so the dispersion "
+                    "cannot be estimated: take more records, or levels closer to each other in between.")
         if not fit.rises:
             return f"The fraction that collapses does not rise with {self.measure}, so there is no curve: take another measure."
         self._fit, self.median, self.dispersion = fit, fit.median, fit.dispersion
@@ -143,7 +155,8 @@ class Fragility:
                    f"{self.median_interval[1]:.4g}), dispersion {self.dispersion:.3g} ({self.dispersion_interval[0]:.3g} to {self.dispersion_interval[1]:.3g})")
         of = f"{self.values.size} histories" + (f" under {self._many} records" if self._many else "")
         ends = (*self.median_interval, self.dispersion_interval[1])
-        unsure = "" if fit.significant(self.confidence) and np.all(np.isfinite(ends)) else "; these are too few to show that the fraction rises, so that some ends are infinite"
+        sure = fit.significant(self.confidence) and np.all(np.isfinite(ends))
+        unsure = "" if sure else "; these are too few to show that the fraction rises, so that some ends are infinite"
         return f"{numbers}, from {of}{unsure}."
 
 
@@ -165,6 +178,7 @@ def fragility(block, records, scales=None, levels=None, measure="PGA", restituti
     records = _records("records", records)
     if len(records) < 2:
         raise ValueError(f"records = {shown(records)}: must be at least two, for one does not show the scatter between records")
+    warn_of_doubt(*records)
     vertical = [None] * len(records) if vertical is None else _records("vertical", vertical)
     if len(vertical) != len(records):
         raise ValueError(f"vertical has {len(vertical)} records: must have one for each of the {len(records)} records")
@@ -187,8 +201,8 @@ def fragility(block, records, scales=None, levels=None, measure="PGA", restituti
         if not np.all(unscaled > 0):
             raise ValueError(f"records: number {k + 1}, {shown(records[k])}, does not move the base")
         scale = given if levels is None else given / unscaled
-        _, arguments = _arguments(wide, records[k].scaled(scale * records[k].scale), np.broadcast_to(restitution, shape)[..., None], restoring, 0.0, 0.0, None, None,
-                                  None if vertical[k] is None else vertical[k].scaled(scale * vertical[k].scale))
+        upwards = None if vertical[k] is None else vertical[k].scaled(scale)
+        _, arguments = _arguments(wide, records[k].scaled(scale), np.broadcast_to(restitution, shape)[..., None], restoring, 0.0, 0.0, None, None, upwards)
         collapsed[..., k, :] = np.reshape(_core.overturns(*arguments), (*shape, given.size)) > 0
         values[..., k, :] = given if levels is not None else scale * unscaled
     number = np.broadcast_to(np.arange(len(records))[:, None], collapsed.shape).ravel()
@@ -258,6 +272,13 @@ def _pgv(record):
     times, a = _samples(record)
     k = np.flatnonzero(a[1:] * a[:-1] < 0)
     return np.abs(record.velocity(np.concatenate([times, times[k] + record.dt * a[k] / (a[k] - a[k + 1])]))).max()
+
+
+def _merged(values):
+    """The values, of which those that differ by round-off are made equal: they are one level."""
+    distinct, place = np.unique(values, return_inverse=True)
+    first = np.concatenate([[True], distinct[1:] > distinct[:-1] * (1 + _SAME)])
+    return distinct[first][np.cumsum(first) - 1][place].reshape(values.shape)
 
 
 def _levels(values, collapsed, confidence):

@@ -18,6 +18,10 @@ import numpy as np
 _STEPS = 100
 
 
+class NoMaximum(Exception):
+    """The likelihood has no maximum that can be told from none."""
+
+
 class LognormalFit:
     """x > 0: measures; collapsed: bools; groups: whole numbers 0, 1, ... of what belongs together, or None. All of one length, with overlap."""
 
@@ -115,15 +119,22 @@ class LognormalFit:
         t = self._t[place]
         sums = np.array([np.bincount(groups, score * t**k) for k in (0, 1)]).T
         own = np.array([np.bincount(groups, information * t**k) for k in (0, 1, 1, 2)]).T.reshape(-1, 2, 2)
-        corrected = np.linalg.solve(np.eye(2) - own @ self._stated, sums[..., None])[..., 0]
-        return corrected.T @ corrected
+        # symmetric: with I^-1 = L L' it is L'^-1 (1 - L' I_g L)^-1 L'; a group that holds all the information says nothing of the scatter: no bound
+        root = np.linalg.cholesky(self._stated)
+        part, axes = np.linalg.eigh(root.T @ own @ root)
+        scaled = np.einsum("gij,gi->gj", axes, sums @ root) / np.maximum(1 - part, 1e-9)
+        corrected = np.linalg.solve(root.T, np.einsum("gij,gj->gi", axes, scaled).T)
+        return corrected @ corrected.T
 
     def _best(self):
         b = np.zeros(2)
         design = np.array([np.ones_like(self._t), self._t])
         value, slope, curvature = self._likelihood(b @ design)
         for _ in range(_STEPS):
-            step = np.linalg.solve(-(design * curvature) @ design.T, design @ slope)
+            try:
+                step = np.linalg.solve(-(design * curvature) @ design.T, design @ slope)
+            except np.linalg.LinAlgError:
+                break
             while True:
                 there = self._likelihood((b + step) @ design)
                 if there[0] >= value or np.abs(step).max() < 1e-14 * (1 + np.abs(b).max()):
@@ -133,7 +144,7 @@ class LognormalFit:
             value, slope, curvature = there
             if np.abs(step).max() <= 1e-12 * (1 + np.abs(b).max()):
                 return b
-        raise RuntimeError("the likelihood has not converged: the measures of standing and collapsed histories hardly overlap")
+        raise NoMaximum
 
     def _along(self, offset, direction, start):
         """Largest log-likelihood of eta = offset + s direction over the number s."""

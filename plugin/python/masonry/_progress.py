@@ -1,16 +1,22 @@
 """Long loops: parts of many cases, and a progress bar that is drawn only where it was asked for."""
 
+from ._optional import needs
+
 # Cases of one call of the compiled functions: enough for all cores, few enough for the tables of their impacts to stay small.
 _TOGETHER = 1024
 
 
+def _bar():
+    with needs("python3-tqdm", "a progress bar"):
+        from tqdm import tqdm
+    return tqdm
+
+
 def steps(items, progress, name, unit="case"):
-    """The items, with a progress bar if it is wanted. Needs tqdm only then."""
+    """The items, with a progress bar if it is wanted."""
     if not progress:
         return items
-    from tqdm import tqdm
-
-    return tqdm(items, desc=name, unit=unit)
+    return _bar()(items, desc=name, unit=unit)
 
 
 def chunks(cases, progress, name):
@@ -19,9 +25,7 @@ def chunks(cases, progress, name):
     if not progress:
         yield from parts
         return
-    from tqdm import tqdm
-
-    with tqdm(total=cases, desc=name, unit="case") as bar:
+    with _bar()(total=cases, desc=name, unit="case") as bar:
         for begin, end in parts:
             yield begin, end
             bar.update(end - begin)

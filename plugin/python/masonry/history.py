@@ -80,6 +80,13 @@ class History:
             figure.savefig(beside, dpi=150)
 
 
+def warn_of_doubt(*motions):
+    """A warning for each record among them whose unit is in doubt, at the line that called the caller."""
+    for record in motions:
+        if isinstance(record, Record) and record.doubt():
+            warnings.warn(record.doubt(), stacklevel=3)
+
+
 def _motion_given(name, motion):
     motion = Still() if motion is None else motion
     if not isinstance(motion, Motion):
@@ -111,7 +118,5 @@ def simulate(block, motion=None, restitution=None, restoring="exact", initial_an
 
     vertical: the base's motion upwards, whose acceleration adds to gravity; it must stay above -gravity, because the block keeps to its base."""
     shape, arguments = _arguments(block, motion, restitution, restoring, initial_angle, initial_velocity, t_end, half_cycles, vertical)
-    for record in (motion, vertical):
-        if isinstance(record, Record) and record.doubt():
-            warnings.warn(record.doubt(), stacklevel=2)
+    warn_of_doubt(motion, vertical)
     return History(shape, arguments, _core.simulate(*arguments), (block, motion, vertical, restitution, restoring))

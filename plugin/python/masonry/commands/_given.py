@@ -23,25 +23,21 @@ def numbers(text):
 
 
 def add_records(parser, nargs, more=""):
-    parser.add_argument("records", nargs=nargs, type=Path, metavar="RECORD", help=f"accelerogram: a PEER file (.AT2), or a text file of columns{more}")
-    parser.add_argument("--unit", choices=("m/s^2", "cm/s^2", "mm/s^2", "g"), help="of text files of columns")
+    parser.add_argument("records", nargs=nargs, type=Path, metavar="RECORD", help=f"file of a record, of any format that masonry.read_record knows{more}")
+    parser.add_argument("--component", help="of files with several: its name, direction or number")
+    parser.add_argument("--unit", help="of text files of columns: m/s^2, cm/s^2, mm/s^2 or g")
     parser.add_argument("--dt", type=float, help="s between the samples of text files without times")
+    parser.add_argument("--quantity", default="acceleration", choices=("acceleration", "velocity", "displacement"),
+                        help="what is read (default: acceleration)")
     parser.add_argument("--baseline", default="constant", choices=("none", "constant", "linear"),
-                        help="what is subtracted from the accelerations (constant: their mean, so that the base comes to rest)")
+                        help="what is subtracted from accelerations (default: constant, their mean, so that the base comes to rest)")
 
 
 def read_records(given):
-    from masonry import Record
+    from masonry import read_record
 
-    records = []
-    for path in given.records:
-        if path.suffix.lower() == ".at2":
-            records.append(Record.from_at2(path, baseline=given.baseline))
-        elif given.unit is None:
-            raise ValueError(f"{path}: a text file of columns needs --unit m/s^2, cm/s^2, mm/s^2 or g")
-        else:
-            records.append(Record.from_csv(path, given.unit, given.dt, baseline=given.baseline))
-    return records
+    baseline = given.baseline if given.quantity == "acceleration" else "none"
+    return [read_record(path, given.component, given.quantity, unit=given.unit, dt=given.dt, baseline=baseline) for path in given.records]
 
 
 def add_output(parser, name):

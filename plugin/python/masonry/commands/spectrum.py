@@ -26,7 +26,8 @@ def add(subcommands):
     _given.add_output(one, "overturning")
     one.set_defaults(run=_overturning)
 
-    one = _kind(kinds, "response", "response spectra of elastic oscillators under records", "masonry spectrum response quake.AT2 --period 0.05:4:200 --damping 0.02,0.05")
+    one = _kind(kinds, "response", "response spectra of elastic oscillators under records",
+                "masonry spectrum response quake.AT2 --period 0.05:4:200 --damping 0.02,0.05")
     _given.add_records(one, "+")
     one.add_argument("--period", type=_given.numbers, default=_given.numbers("0.05:4:200:log"), help="s (default: 0.05:4:200:log)")
     one.add_argument("--damping", type=_given.numbers, default=0.05, help="ratio (default: 0.05)")
@@ -50,8 +51,8 @@ def _kind(kinds, name, help, example):
 def _add_motion(parser):
     _given.add_records(parser, "*", "; in place of --motion")
     parser.add_argument("--motion", choices=tuple(_MOTIONS))
-    for name, unit in (("amplitude", "m/s^2"), ("frequency", "Hz, of a sine"), ("cycles", "of a sine (default: 1)"), ("duration", "s, of a half sine or rectangle"),
-                       ("scale", "factors of a record")):
+    for name, unit in (("amplitude", "m/s^2"), ("frequency", "Hz, of a sine"), ("cycles", "of a sine (default: 1)"),
+                       ("duration", "s, of a half sine or rectangle"), ("scale", "factors of a record")):
         parser.add_argument(f"--{name}", type=_given.numbers, help=unit)
 
 

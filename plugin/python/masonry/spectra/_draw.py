@@ -7,17 +7,20 @@ import numpy as np
 
 from .._files import written
 from .._given import shown
+from .._optional import needs
 
 _CURVES, _MAPS = 12, 6
 _WORDS = {"ratio": "rotation over critical angle", "gravity_ratio": "rotation over critical angle (gravity)", "overturned": "overturned",
-          "amplitude_over_uplift": "amplitude over that of uplift", "scale_over_uplift": "peak acceleration over that of uplift", "gravity_period": "period (gravity)"}
+          "amplitude_over_uplift": "amplitude over that of uplift", "scale_over_uplift": "peak acceleration over that of uplift",
+          "gravity_period": "period (gravity)"}
 
 
 def draw(spectrum, path, value=None, x=None, y=None):
-    import matplotlib
+    with needs("python3-matplotlib", "a picture of a spectrum"):
+        import matplotlib
 
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
+        matplotlib.use("Agg")
+        import matplotlib.pyplot as plt
 
     value = next(iter(spectrum.values)) if value is None else value
     if value not in spectrum.values:

@@ -6,6 +6,7 @@ import numpy as np
 
 from .._files import written
 from .._given import array_given, shown
+from .._optional import needs
 
 UNITS = {"amplitude": "m/s^2", "duration": "s", "frequency": "Hz", "cycles": "", "impulse": "m/s", "scale": "", "width": "m", "slenderness": "",
          "restitution": "", "period": "s", "damping": "", "record": ""}
@@ -71,10 +72,8 @@ class Spectrum:
 
     def to_xarray(self):
         """An xarray.Dataset with the same dimensions, coordinates and units. Needs the package python3-xarray."""
-        try:
+        with needs("python3-xarray", "to_xarray()"):
             import xarray
-        except ImportError:
-            raise ImportError("to_xarray() needs xarray: install the package python3-xarray") from None
         unit = {name: {"units": self.units.get(name, "") or "1"} for name in (*self.dims, *self.values)}
         return xarray.Dataset({name: (self.dims, value, unit[name]) for name, value in self.values.items()},
                               {name: (name, value, unit[name]) for name, value in self.coords.items()}, self.fixed)

@@ -16,7 +16,9 @@ import numpy as np
 
 from .._arrays import restore
 from .._given import array_given, shown
+from .._optional import needs
 from .._progress import steps
+from ..history import warn_of_doubt
 from ..motions import HalfSine, PulseTrain, Record, Rectangular, Sine
 from ._grid import UNITS, Spectrum, outer
 
@@ -30,6 +32,7 @@ def oscillator_peak(motion, period, damping=0.05):
     and damping (ratio, 0 <= damping < 1) broadcast.
 
     motion: one Record, Sine, HalfSine, Rectangular or PulseTrain with times and Dirac pulses."""
+    warn_of_doubt(motion)
     period, damping = _oscillators_given(period, damping)
     shape = np.broadcast_shapes(period.shape, damping.shape)
     largest = _peak_under_record if isinstance(motion, Record) else _peak_under_pieces
@@ -177,7 +180,8 @@ def _samples(record):
 
 
 def _peak_under_record(source, oscillator):
-    from scipy.signal import lfilter
+    with needs("python3-scipy", "a response spectrum"):
+        from scipy.signal import lfilter
 
     dt, a = source
     parts = max(1, math.ceil(_SAMPLES * dt / oscillator.period))

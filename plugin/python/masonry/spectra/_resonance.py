@@ -11,6 +11,7 @@ import numpy as np
 
 from .. import closed_form
 from .._given import array_given, shown
+from .._optional import needs
 from ..block import RockingBlock
 from ._grid import UNITS, Spectrum, outer
 
@@ -21,7 +22,8 @@ def half_cycle(block, speed):
 
     With D = (w/2p)^2 and k^2 = sin^2(alpha/2) - D: peak = alpha - 2 asin k; the duration is (2/p) S R_F(1 - S^2, 1 - (1 - k^2) S^2, 1),
     S^2 = D/(sin^2(alpha/2) (1 - k^2)), R_F being Carlson's integral; the block overturns where k^2 <= 0."""
-    from scipy.special import elliprf
+    with needs("python3-scipy", "a half cycle"):
+        from scipy.special import elliprf
 
     d = (np.asarray(speed) / (2 * block.frequency_parameter)) ** 2
     lift = np.sin(np.divide(block.critical_angle, 2)) ** 2
