@@ -18,20 +18,24 @@ double length(const RigidSystem<K>& s)
 	return smallest;
 }
 
-// Gravity; without it, the largest acceleration by external forces or, bodies in free flight, v^2 / length. m/s^2
+// Gravity; without it, the largest acceleration that external forces and moments give a corner of a block or, bodies in free flight,
+// v^2 / length, v the largest speed of a corner. m/s^2
 template <class K>
 double acceleration(const RigidSystem<K>& s)
 {
 	const double gravity = s.gravity.norm();
 	if (gravity > 0)
 		return gravity;
-	double force = 0, speed = 0;
+	const auto linear = [](const typename K::Velocity& of) { return of.template head<K::dimension>().norm(); };
+	const auto angular = [](const typename K::Velocity& of) { return of.template tail<K::spins>().norm(); };
+	double forced = 0, speed = 0;
 	for (const auto& body : s.bodies) {
+		const double reach = body.halfSize.norm();
 		if (!body.prescribed)
-			force = std::max(force, body.force.template head<K::dimension>().norm() / body.mass);
-		speed = std::max(speed, body.velocity.norm());
+			forced = std::max(forced, linear(body.force) / body.mass + angular(body.force) / body.inertia.minCoeff() * reach);
+		speed = std::max(speed, linear(body.velocity) + angular(body.velocity) * reach);
 	}
-	return force > 0 ? force : speed * speed / length(s);
+	return forced > 0 ? forced : speed * speed / length(s);
 }
 
 // Spin of a block below which it does not rock, rad/s.

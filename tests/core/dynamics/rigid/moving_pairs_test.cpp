@@ -240,3 +240,37 @@ TEST_CASE("Boxes whose edges cross near the end of a face strike each other ther
 		CHECK(worst.overlap < 2e-4);
 	}
 }
+
+// Sizes and velocities scaled by a power of two, spins and times as they are: every tolerance is relative, so that the speeds scale too, up
+// to the solver's tolerance and the round-off of squares and roots.
+TEMPLATE_TEST_CASE("Without gravity a pair of boxes and the same a thousand times larger or smaller move alike", "", Plane, Space)
+{
+	using K = TestType;
+	std::mt19937 random(5);
+	for (int n = 0; n < 100; ++n) {
+		const MovingPair<K> pair(random);
+		const auto run = [&pair](double size) {
+			RigidSystem<K> s = pair.system;
+			for (auto& body : s.bodies) {
+				body.halfSize *= size;
+				body.inertia *= size * size;
+				body.pose.position *= size;
+				body.velocity.template head<K::dimension>() *= size;
+			}
+			RigidStep<K> step;
+			for (int k = 0; k < 40; ++k)
+				step.advance(s, 1);
+			return s.bodies;
+		};
+		const auto one = run(1);
+		for (double size : {1. / 1024, 1024.}) {
+			const auto other = run(size);
+			for (int b = 0; b < 2; ++b) {
+				typename K::Velocity velocity = other[b].velocity;
+				velocity.template head<K::dimension>() /= size;
+				CHECK((velocity - one[b].velocity).norm() < 1e-8 * pair.travel / pair.length);
+				CHECK((other[b].pose.position / size - one[b].pose.position).norm() < 1e-6 * pair.length);
+			}
+		}
+	}
+}
