@@ -139,7 +139,11 @@ def test_damaged_files_are_told_in_a_sentence(tmp_path, damage):
             read(folder)
 
 
-def test_a_package_that_is_missing_is_named(tmp_path, monkeypatch):
+def test_a_package_that_is_missing_is_named(tmp_path, monkeypatch, capsys):
+    with monkeypatch.context() as without:
+        without.setitem(sys.modules, "scipy.io", None)
+        table, folder = gathered(tmp_path)
+    assert "apt install python3-scipy" in capsys.readouterr().out and sorted(f.name for f in folder.glob("*ensemble*")) == ["ensemble.csv", "ensemble.npz"]
     monkeypatch.setitem(sys.modules, "xarray", None)
     with pytest.raises(ImportError, match="apt install python3-xarray"):
         ensemble.dataset(tmp_path)

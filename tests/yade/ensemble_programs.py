@@ -23,7 +23,10 @@ def start(*command, **more):
 def end(*command, **more):
     """What a program has said; an AssertionError unless it ends well."""
     process = start(*command, **more)
-    said = process.communicate(timeout=250)[0]
+    try:
+        said = process.communicate(timeout=280)[0]
+    finally:
+        process.kill()
     assert process.returncode == 0, said
     return said
 

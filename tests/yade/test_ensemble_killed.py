@@ -59,4 +59,5 @@ with tempfile.TemporaryDirectory() as root:
         print(f"{name}: killed {kills} times")
         assert kills > 0
         assert tables(folder) == expected, name
+        assert not list(folder.glob(".case_*")), list(folder.iterdir())
 print("ensemble: killed")

@@ -82,3 +82,10 @@ def read(path):
     except (FileNotFoundError, ValueError):
         return None
     return {name: value if value.ndim else value.item() for name, value in found.items() if name != "case"}
+
+
+def clear(folder, keys):
+    """Removes what killed workers have left of cases that have a result now. Another run that is at work on such a case finds its result instead."""
+    for name in os.listdir(folder):
+        if name.startswith(".case_") and name.split(".")[1][len("case_"):] in keys:
+            (folder / name).unlink(missing_ok=True)

@@ -5,7 +5,6 @@ double where that is exact, or text; bools are bytes with the attribute dtype = 
 """
 
 import numpy as np
-from scipy.io import netcdf_file
 
 from ..results.collapse import UNITS
 
@@ -72,6 +71,8 @@ def _axes(name, arrays, dimensions):
 
 def write(path, table, given, arrays, units, dimensions, attributes):
     """table: of make_table, its first `given` columns those of the cases; arrays: {name: [the array of each case]}; attributes: texts."""
+    from scipy.io import netcdf_file
+
     unknown = sorted(set(dimensions) - set(arrays))
     if unknown:
         raise ValueError(f"dimensions: {', '.join(unknown)} is no array that the function returns")

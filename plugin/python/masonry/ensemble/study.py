@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from .._given import is_whole, positive_given, shown
-from .cases import keys, load_all, path_of, read
+from .cases import clear, keys, load_all, path_of, read
 from .slices import asked, slice_given
 from .submitting import run_missing
 from .table import make_table, write_tables
@@ -47,7 +47,7 @@ def run(script, cases, folder, function="run", processes=None, time_limit=None, 
     have changed since, or whose file is damaged, which a line tells. Other files that the function reads, and modules beside the script, are not looked into.
     The tables have the same bytes wherever and in whatever order the cases ran.
 
-    Table: a structured array, one row a case in the order of `cases`: what the case says, then what its numbers are.
+    Table: a structured array, one row a case in the order of `cases`: what the case says, then what its numbers are. None for a slice without a case.
     Raises ValueError for cases that cannot be told apart or written down; RuntimeError, after all the others have run, for cases that failed (their
     output is in the folder as .log): its attribute `table` has the others, as have the tables in the folder; FileNotFoundError where there is no
     script or no YADE. What is finished when it is interrupted (Ctrl-C) is kept.
@@ -89,6 +89,7 @@ def run(script, cases, folder, function="run", processes=None, time_limit=None, 
     table = make_table(*zip(*finished)) if finished else None
     if finished and not part:
         write_tables(folder, table, [outcome for _, outcome in finished], len(cases[0]), script, function, units or {}, dimensions or {})
+        clear(folder, {key for key in found if outcomes[key] is not None})
     if failures:
         raise _failed(failures, table, len(cases), folder, part)
     if part and part is asked.slice:

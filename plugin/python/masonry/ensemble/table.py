@@ -44,8 +44,11 @@ def write_tables(folder, table, outcomes, given, script, function, units, dimens
     text = script.read_bytes()
     attributes = {"title": "masonry.ensemble", "masonry": _build.VERSION, "yade": _build.YADE or "none", "python": platform.python_version(), "numpy": np.__version__,
                   "script": script.name, "script_sha256": hashlib.sha256(text).hexdigest(), "function": function, "source": text.decode(errors="replace")}
-    with written(folder / "ensemble.nc") as beside:
-        netcdf.write(beside, table, given, arrays, units, dimensions, attributes)
+    try:
+        with written(folder / "ensemble.nc") as beside:
+            netcdf.write(beside, table, given, arrays, units, dimensions, attributes)
+    except ImportError:
+        print("masonry.ensemble: ensemble.nc is not written, which needs SciPy: install it with `apt install python3-scipy` and run this again")
 
 
 def load(folder):
