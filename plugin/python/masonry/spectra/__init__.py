@@ -1,12 +1,9 @@
-"""Spectra: how one block after another, or one oscillator after another, answers the same kind of motion.
+"""Spectra: how blocks of many sizes, or oscillators of many periods, answer motions of the same kind.
 
-    rocking              largest rotation over the critical angle, on a grid of motions and blocks
-    overturning          least amplitude that overturns, on a grid of motions and blocks
-    response             response spectra of the elastic oscillator, exact for records and other motions
-    resonance            stabilised phase under the resonant train of Casapulla and Maione, beside that of the elastic oscillator
-    peak_ratio, oscillator_peak, half_cycle   the pieces, for arrays that broadcast
-
-The first four return a Spectrum: arrays whose dimensions have names, coordinates and units; to_csv(), to_xarray() and plot().
+rocking() gives the largest rotation over the critical angle and overturning() the least amplitude that overturns, both on a grid of motions and blocks;
+response() gives response spectra of the elastic oscillator, exact for records and other motions; resonance() gives the stabilised phase under the
+resonant train of Casapulla and Maione, beside that of the elastic oscillator. They return a Spectrum: arrays whose dimensions have names, coordinates and
+units, with to_csv(), to_xarray() and plot(). peak_ratio(), oscillator_peak() and half_cycle() are the pieces, for arrays that broadcast.
 """
 
 from ._grid import Spectrum
