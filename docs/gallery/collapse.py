@@ -1,7 +1,9 @@
-"""The film at the top of README and the pictures of the same run: a dry wall with a window collapses under a sine of growing amplitude. Run with
+"""The film at the top of README, the pictures and the report of the same run: a dry wall with a window collapses under a sine of growing amplitude. Run with
 `PYTHONPATH=build/python yade -n -x docs/gallery/collapse.py` in the root of the project; the pictures are written beside this file."""
 import math
 import os
+import shutil
+import subprocess
 
 import numpy as np
 from PIL import Image, ImageSequence
@@ -18,7 +20,7 @@ stone = dem.BlockMat(density=2000, frictionAngle=math.atan(0.65))  # natural res
 base = dem.base((8, 3, 0.2), stone)
 dem.wall(courses=10, per_course=6, size=(0.40, 0.20, 0.175), material=stone, on=base, openings=[(0.8, 0.525, 0.8, 0.7)])
 motion = dem.record_motion(record, ids=[base])
-recorder = dem.WallRecorder(virtPeriod=0.01)
+recorder = dem.WallRecorder(virtPeriod=0.01, recordForces=True)
 O.engines = dem.engines(motion, recorder=recorder)
 dem.run(3.2)
 
@@ -26,6 +28,12 @@ history = dem.wall_history(recorder)
 print(results.collapse(history))
 results.draw_joints(history, f"{folder}/joints.png", time=1.6)
 results.draw_energy(history, f"{folder}/energy.png")
+report = os.path.abspath("results/gallery/report.html")
+os.makedirs(os.path.dirname(report), exist_ok=True)
+results.report(history, report, title="A wall with a window under a growing sine")
+if shutil.which("chromium"):  # Debian: apt install chromium
+    subprocess.run(["chromium", "--headless", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--hide-scrollbars", "--window-size=1000,1560",
+                    "--virtual-time-budget=3000", f"--screenshot={os.path.abspath(folder)}/report.png", f"file://{report}"], check=True, capture_output=True)
 film = f"{folder}/collapse.gif"
 results.film(history, film, start=0.6, frames_per_second=12.5, speed=0.5, color="rotation")
 
