@@ -47,6 +47,11 @@ assert len(lines()) == 1
 motion.dead = False
 lines(motion)
 assert len(lines()) == 1
+# Nor is one of a scene that is gone named, though the script still has it.
+base, block, _ = scene()
+motion = dem.PulseTrainEngine(ids=[base], impulse=0.05, times=[0])
+scene()
+assert len(lines()) == 1, lines()
 
 # A base that goes on: a constant acceleration a for T leaves it at a T^2/2 with a T.
 scene()

@@ -20,7 +20,7 @@ _STILL = 1e-3
 
 said = []  # the lines that the last dem.engines() has printed on what may not be meant
 
-_made = []  # weak references to the motion engines that a script has made and not yet given to dem.engines()
+_made = []  # weak references to the motion engines that a script has made and not yet given to dem.engines(), each with that of _scene_mark()
 _given = []  # (weak reference to a motion engine, the masonry.Record that it was made of)
 
 
@@ -29,12 +29,17 @@ def say(text):
     print(f"masonry.dem: {text}")
 
 
+def _scene_mark():
+    """Of the present scene: a weak reference to its first body, for O.reset() makes other bodies. Without bodies: None."""
+    return weakref.ref(O.bodies[0]) if len(O.bodies) and O.bodies[0] else None
+
+
 def _watch(cls):
     make = cls.__init__
 
     def __init__(self, *arguments, **attributes):
         make(self, *arguments, **attributes)
-        _made.append(weakref.ref(self))
+        _made.append((weakref.ref(self), _scene_mark()))
 
     cls.__init__ = __init__
 
@@ -135,10 +140,11 @@ def _untouched(others):
 
 
 def _motion_left_out(motions):
-    """Sentence on a motion engine that the script has made and given to no dem.engines()."""
-    waiting = [(known, known()) for known in _made]
-    _made[:] = [known for known, motion in waiting if motion is not None and not any(motion is given for given in motions)]
-    present = [motion for motion in (known() for known in _made) if not motion.dead and motion.ids and all(id < len(O.bodies) for id in motion.ids)]
+    """Sentence on a motion engine that the script has made in this scene and given to no dem.engines()."""
+    _made[:] = [(known, mark) for known, mark in _made if known() is not None and not any(known() is given for given in motions)]
+    here = _scene_mark()
+    present = [known() for known, mark in _made if mark in (here, None)]
+    present = [motion for motion in present if not motion.dead and motion.ids and all(id < len(O.bodies) for id in motion.ids)]
     if motions or not present:
         return None
     return f"no motion: the {type(present[-1]).__name__} of body {listed(present[-1].ids)} does nothing unless it is given, dem.engines(motion=...)"
