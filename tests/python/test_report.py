@@ -205,7 +205,7 @@ def test_the_command_writes_it_beside_the_history(tmp_path):
     assert run(tmp_path / "wall.npz").returncode == 0 and "Collapsed at" in (tmp_path / "wall.html").read_text()
     assert run(tmp_path / "wall.npz", "-o", tmp_path / "other.html", "--title", "Mine").returncode == 0 and "Mine" in (tmp_path / "other.html").read_text()
     missing = run(tmp_path / "none.npz")
-    assert missing.returncode == 1 and "none.npz" in missing.stderr and "Traceback" not in missing.stderr
+    assert missing.returncode == 2 and "none.npz" in missing.stderr and "Traceback" not in missing.stderr
 
 
 @pytest.mark.skipif(CHROMIUM is None, reason="no chromium here (Debian: apt install chromium): what a browser draws of the report is not looked at")
