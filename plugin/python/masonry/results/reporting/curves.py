@@ -9,11 +9,13 @@ from masonry.results.collapse import fallen
 from masonry.results.forces import base_reactions
 from masonry.results.joints import movement
 from masonry.results.pictures import energy_figure, joints_figure, shape_figure, thrust_figure
-from masonry.results.view import largest
+from masonry.results.view import largest, still
 
 _STYLE = {"svg.fonttype": "none", "svg.hashsalt": "masonry", "font.size": 9, "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True,
-          "grid.color": "0.9", "axes.edgecolor": "0.5", "legend.frameon": False, "lines.linewidth": 1.3}
+          "grid.color": "0.9", "axes.edgecolor": "0.5", "legend.frameon": True, "legend.framealpha": 0.8, "legend.edgecolor": "none", "lines.linewidth": 1.3}
 _WIDTH = 7.4  # inches
+# Collections of more paths are drawn as pictures, of so many dots an inch.
+_PATHS, _DPI = 1500, 200
 # Courses, blocks or joints in one set of axes.
 _LINES = 6
 # Samples of curves that are computed sample by sample.
@@ -50,8 +52,10 @@ def svg(figure, over_time=True):
     """SVG text of a figure. over_time: its axes have the time (s) to the right; a line in each then follows the 3D view."""
     for axes in figure.axes if over_time else ():
         axes.axvline(axes.get_xlim()[0], color="0.35", linewidth=1, gid="cursor")
+    for many in (one for axes in figure.axes for one in axes.collections if len(one.get_paths()) > _PATHS):
+        many.set_rasterized(True)  # as a picture it is smaller
     data = io.BytesIO()
-    figure.savefig(data, format="svg", metadata={"Date": None, "Creator": None})
+    figure.savefig(data, format="svg", dpi=_DPI, metadata={"Date": None, "Creator": None})
     text = data.getvalue().decode()
     text = text[text.index("<svg"):].replace('id="cursor"', 'class="cursor"')
     text = re.sub(r'<metadata>.*?</metadata>', "", text, flags=re.S)
@@ -141,11 +145,15 @@ def joints(history, verdict, table):
     figure, axes = axes_of(2, 4.2)
     for one, name, values in zip(axes, ("opening", "slip"), (opening, slip)):
         values = np.where(gone, np.nan, 1e3 * values)
+        one.set_ylabel(f"{name} (mm)")
+        if largest(values) <= 1e3 * still(history):  # round-off
+            one.plot(history.time[[0, -1]], [0, 0], color="0.5", label="none")
+            one.set_ylim(0, 1)
+            continue
         order = np.argsort(-np.nan_to_num(np.fmax.reduce(values, axis=0)), kind="stable")[:_LINES]
         for k in order:
             one.plot(history.time[samples], values[:, k], label=f"{table['id1'][k]} – {table['id2'][k]}")
         _limit(one, values)
-        one.set_ylabel(f"{name} (mm)")
         one.legend(title="blocks", loc="upper left", fontsize="small", title_fontsize="small", ncol=2)
     time_axis(axes, history.time, verdict.time)
     return svg(figure)
