@@ -158,13 +158,27 @@ void RockingJointEngine::addExternalForces()
 	}
 }
 
-Real RockingJointEngine::criticalTimeStep()
+Real RockingJointEngine::criticalTimeStep() { return masonry::criticalTimeStep(system.bodies, damped(presentContacts())); }
+
+Real RockingJointEngine::largestTimeStep() { return masonry::largestTimeStep(system.bodies, damped(presentContacts())); }
+
+vector<masonry::JointContact> RockingJointEngine::damped(vector<masonry::JointContact> contacts) const
+{
+	for (auto& contact : contacts)
+		contact.law.dampingRatio = dampingRatio;
+	return contacts;
+}
+
+vector<masonry::JointContact> RockingJointEngine::presentContacts()
 {
 	const shared_ptr<Scene>& present = Omega::instance().getScene();
 	if (checkedTimeStep > 0 && home.lock() == present)
-		return masonry::criticalTimeStep(system.bodies, system.contacts);
+		return system.contacts;
 	// Before the first step there are no interactions yet, and after loading they have no patches: every pair of boxes is looked at.
 	scene = present.get();
+	const bool inScene =
+	    std::any_of(scene->engines.begin(), scene->engines.end(), [this](const auto& engine) { return engine.get() == this; });
+	dampingRatio = inScene ? findIntegrator(*scene).contactDampingRatio : Law2_BlockGeom_BlockPhys_Rocking().dampingRatio;
 	vector<masonry::JointContact> contacts;
 	gather();
 	Ip2_BlockMat_BlockMat_BlockPhys law;
@@ -189,7 +203,7 @@ Real RockingJointEngine::criticalTimeStep()
 			renewPatch(contact, patch);
 			contacts.push_back(contact);
 		}
-	return masonry::criticalTimeStep(system.bodies, contacts);
+	return contacts;
 }
 
 /// A given step is refused where the present contacts make it unstable. A chosen one is lowered before, to the share of their critical step
@@ -209,20 +223,13 @@ void RockingJointEngine::checkTimeStep()
 		lowered = scene->dt - shorter;
 		return;
 	}
-	auto damped = system.contacts;
-	for (auto& contact : damped)
-		contact.law.dampingRatio = dampingRatio;
-	if (positive && isStableTimeStep(system.bodies, damped, scene->dt))
+	const auto contacts = damped(system.contacts);
+	if (positive && isStableTimeStep(system.bodies, contacts, scene->dt))
 		return;
-	Real refused = masonry::criticalTimeStep(system.bodies, damped); // without dashpots: above what is stable
-	Real allowed = std::isfinite(refused) ? 0 : refused;
-	for (int k = 0; k < 10 && allowed < refused; ++k) {
-		const Real middle = 0.5 * (allowed + refused);
-		(isStableTimeStep(system.bodies, damped, middle) ? allowed : refused) = middle;
-	}
-	throw std::runtime_error(sentence(
-	    "O.dt = ", scene->dt, " s is not allowed with these joint stiffnesses at t = ", scene->time, " s: it must be positive and below ",
-	    allowed, " s (half of that is accurate); dem.engines() chooses one and lowers it where blocks come to lie on larger faces."));
+	throw std::runtime_error(
+	    sentence("O.dt = ", scene->dt, " s is not allowed with these joint stiffnesses at t = ", scene->time,
+	             " s: it must be positive and below ", masonry::largestTimeStep(system.bodies, contacts),
+	             " s (half of that is accurate); dem.engines() chooses one and lowers it where blocks come to lie on larger faces."));
 }
 
 /// At the end of the step: from here on steps are shorter.

@@ -87,3 +87,22 @@ for step in (0.5, 0.1, 0.03):
     assert 0.2 * landings * most * fall < min(made, lost) and max(made, lost) < 1.1 * (landings + 1) * most * fall, (made, lost, most * fall)
     told = (made > 0.05 * joints.turnedOver) + (lost > 0.05 * joints.turnedOver)
     assert joints.failures == told and (step > 0.1) == (told > 0), (joints.failures, told)
+
+# dem.engines() refuses a given step where the run would, with the same number in the message, and nowhere else: the dashpots count in both.
+for make in (lambda: dem.block((0.5, 0.5, 1), stone, on=0), lambda: dem.stack(3, (0.3, 0.3, 0.6), stone, on=0), lambda: dem.tilt(dem.block((0.3, 0.6, 1), stone, on=0), 0.05)):
+
+    def scene(dt=None):
+        O.reset()
+        dem.base((4, 4, 0.4), stone)
+        make()
+        O.engines = quiet_engines(dt=dt, model="compliant")
+
+    stone = dem.BlockMat(density=2000, frictionAngle=0.6)
+    scene()
+    largest, critical = joints_of().largestTimeStep, joints_of().criticalTimeStep()
+    assert 0.3 * critical < largest < 0.75 * critical, (largest, critical)  # one mode of the damping ratio 0.5: 0.62
+    said = refuses(lambda: scene(1.001 * largest), "dt", "below")
+    scene(largest)
+    O.step()
+    O.dt *= 1.01
+    print("   ", said, "|", refuses(O.step, "O.dt", "below", kind=RuntimeError))

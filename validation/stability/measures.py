@@ -40,8 +40,7 @@ def quiet_engines(*arguments, **options):
 
 def largest_step(default):
     """The largest step that dem.engines() accepts for the scene whose default step is given, s."""
-    e = engine()
-    largest = e.largestTimeStep if hasattr(e, "largestTimeStep") else 0.99 * e.criticalTimeStep()
+    largest = engine().largestTimeStep
     return largest if math.isfinite(largest) else 4.9 * default
 
 

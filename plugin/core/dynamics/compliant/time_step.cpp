@@ -81,6 +81,18 @@ double criticalTimeStep(const std::vector<Body>& bodies, const std::vector<Joint
 	return highest > 0 ? 2 / std::sqrt(highest) : std::numeric_limits<double>::infinity();
 }
 
+double largestTimeStep(const std::vector<Body>& bodies, const std::vector<JointContact>& contacts)
+{
+	constexpr int halvings = 10;
+	double refused = criticalTimeStep(bodies, contacts); // without dashpots: above what is stable
+	double accepted = std::isfinite(refused) ? 0 : refused;
+	for (int k = 0; k < halvings && accepted < refused; ++k) {
+		const double middle = 0.5 * (accepted + refused);
+		(isStableTimeStep(bodies, contacts, middle) ? accepted : refused) = middle;
+	}
+	return accepted;
+}
+
 bool isStableTimeStep(const std::vector<Body>& bodies, const std::vector<JointContact>& contacts, double dt)
 {
 	const auto matrices = bodyMatrices(bodies, contacts);

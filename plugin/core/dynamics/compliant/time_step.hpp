@@ -13,7 +13,10 @@ namespace masonry {
 // Without dashpots, s. All points of every contact are counted as loaded. Infinite without a contact.
 double criticalTimeStep(const std::vector<Body>& bodies, const std::vector<JointContact>& contacts);
 
-// Whether the scheme is stable with the step dt, s, dashpots included, and all points loaded. Much cheaper than the critical step.
+// With them, s: the largest step that isStableTimeStep() accepts, to 1e-3 of the critical one. Infinite without a contact.
+double largestTimeStep(const std::vector<Body>& bodies, const std::vector<JointContact>& contacts);
+
+// Whether the scheme is stable with the step dt, s, dashpots included, and all points loaded. Much cheaper than the two above.
 bool isStableTimeStep(const std::vector<Body>& bodies, const std::vector<JointContact>& contacts, double dt);
 
 } // namespace masonry

@@ -269,12 +269,12 @@ def _compliant(blocks, motions, reason, dt, penetration, impact_order, gravity, 
         reasons.append(chosen)
 
     joints = wrapper.RockingJointEngine(impactOrder=impact_order)
-    critical = joints.criticalTimeStep()
+    critical, largest = joints.criticalTimeStep(), joints.largestTimeStep
     if not np.isfinite(critical):  # nothing touches yet
         free = [b for b in blocks if b.dynamic]
-        critical = min(_landing_step(b, alone=len(free) == 1) for b in free)
-    if dt is not None and not dt < critical:
-        raise ValueError(f"dt = {dt}: must be below {critical:.3g} s, the critical step of joints this stiff")
+        critical = largest = min(_landing_step(b, alone=len(free) == 1) for b in free)
+    if dt is not None and not dt <= largest:
+        raise ValueError(f"dt = {dt}: must be below {largest:.3g} s, the largest stable step of joints this stiff, dashpots included")
     O.dt = float(dt if dt is not None else _STEP_FRACTION * critical)
     joints.stepFraction = _STEP_FRACTION if dt is None else 0
     reasons.append(f"dt = {O.dt:.3g} s ({O.dt / critical:.2g} of the critical step)")
