@@ -82,14 +82,16 @@ def one_block(slenderness, half_width=0.3, restitution=None, depth=1.0, **attrib
 
 
 def bits():
-    """All that the physics leaves behind, each number by its bits: state of the bodies first."""
+    """All that the physics leaves behind, each number by its bits: state of the bodies first. NaN is one value: its sign means nothing, depends
+    on the compiler, and XML does not keep it."""
     engine = next(e for e in O.engines if hasattr(e, "impactTimes"))
     vectors = [v for b in O.bodies for v in (b.state.pos, b.state.ori, b.state.vel, b.state.angVel, b.state.angMom)]
     for i in sorted(O.interactions, key=lambda i: (i.id1, i.id2)):
         vectors += [(i.id1, i.id2), *i.phys.forces, *getattr(i.phys, "shears", ())]
     vectors += [value for name, value in sorted(engine.dict().items()) if name.startswith("impact") and isinstance(value, list)]
     counters = [getattr(engine, name) for name in ("sweeps", "events", "stillSteps", "movingSteps") if hasattr(engine, name)]
-    return np.array([*(x for v in vectors for x in v), *dem.energy().values(), *counters, O.time], dtype=float).view(np.int64)
+    numbers = np.array([*(x for v in vectors for x in v), *dem.energy().values(), *counters, O.time], dtype=float)
+    return np.where(np.isnan(numbers), np.nan, numbers).view(np.int64)
 
 
 def barrier(id, block):
