@@ -19,7 +19,7 @@ def _from_motions(cls):
             attributes["samples"] = record.samples.tolist()
         make(self, *arguments, **attributes)
         if moved or unit is not None:
-            notes.has_unit(self)
+            notes.has_record(self, record)
         if moved and record.doubt():
             print(f"masonry.dem: {record.doubt()}")
 
