@@ -1,0 +1,399 @@
+#include "dynamics/assembly/admm_solver.hpp"
+#include "tolerances.hpp"
+#include <algorithm>
+#include <cmath>
+
+namespace masonry::rigid::assembly {
+
+using namespace wall;
+
+namespace {
+
+constexpr double relaxation = 1.7;
+constexpr double damping = 0.2;          // theta
+constexpr double softness = 0.15;        // r, of a point without load
+constexpr double leastSoftness = 1e-5;   // of d
+constexpr double pullBack = 0.2;         // share of a penetration or a slip that a step takes back
+constexpr double reach = 0.016;          // gap relative to the smallest half size within which points are in A
+constexpr double filterTime = 0.125;     // of the filtered load, relative to sqrt(length / gravity)
+constexpr double refactorTime = 0.125;   // relative to the same: R follows the load in such steps
+constexpr double leftPenetration = 5e-6; // relative to the smallest half size: what is less deep is not taken back
+
+template <class K>
+using RowOf = typename AdmmSolver<K>::Row;
+template <class K>
+using RowsOf = typename AdmmSolver<K>::Rows;
+
+// What is the same for all points of a step.
+struct Step {
+	double perH, fall, mix, reach, h, left;
+};
+
+// Filters the load. Returns where a point comes into reach that is not in A.
+template <class K>
+MASONRY_INLINE Mask takePoint(PointLanes<K>& p, const RowOf<K>& row, const Lanes& approach, const Step& step)
+{
+	p.steady += step.mix * (p.pn - p.steady);
+	return (p.massN > 0) & (p.gap + step.h * approach < step.reach) & (row.stiffness <= 0);
+}
+
+template <class K>
+MASONRY_INLINE bool takeGroups(Group<K>* groups, const RowsOf<K>* rows, int begin, int end, const Lanes* velocity, const Step& step)
+{
+	Mask needed {};
+	for (int g = begin; g < end; ++g) {
+		const Bodies<K> v1(velocity, groups[g].body1), v2(velocity, groups[g].body2);
+		for (int k = 0; k < groups[g].count; ++k) {
+			PointLanes<K>& p = groups[g].point[k];
+			const Lanes un = normalRate(v1, v2, p);
+			needed |= takePoint<K>(p, rows[g][k], 2. * smaller(un, all(0)), step);
+		}
+	}
+	return any(needed);
+}
+
+// R by load.
+template <class K>
+MASONRY_INLINE void setPenalties(Group<K>* groups, RowsOf<K>* rows, int begin, int end, const Lanes* velocity, const Step& step)
+{
+	const Lanes none = all(0), one = all(1);
+	for (int g = begin; g < end; ++g) {
+		const Bodies<K> v1(velocity, groups[g].body1), v2(velocity, groups[g].body2);
+		for (int k = 0; k < lanePoints<K>; ++k) {
+			PointLanes<K>& p = groups[g].point[k];
+			auto& row = rows[g][k];
+			const Lanes approach = 2. * smaller(normalRate(v1, v2, p), none);
+			const Mask in = (p.massN > 0) & (p.gap + step.h * approach < step.reach) & (all(groups[g].count - k) > 0);
+			const Lanes massN = in ? p.massN : one, massT = in ? p.massT : one;
+			const Lanes load = p.steady / (massN * step.fall), r = larger(softness / (one + load), all(leastSoftness));
+			const Lanes resistance = (0.5 * r) * (massN + massT) / (massN * massT);
+			row.resistance = in ? resistance : none;
+			row.stiffness = in ? one / resistance : none;
+		}
+	}
+}
+
+// The right-hand side of a solve; with `laws`, after the pass over the laws.
+template <class K, bool laws>
+MASONRY_INLINE void passGroup(Group<K>& group, StillGroup<K>& memory, RowsOf<K>& rows, const Lanes* velocity, Lanes* force, Lanes& worst)
+{
+	const Bodies<K> v1(velocity, group.body1), v2(velocity, group.body2);
+	Bodies<K> f1(force, group.body1), f2(force, group.body2);
+	const Mask rough = group.friction >= mostFriction;
+	for (int k = 0; k < group.count; ++k) {
+		PointLanes<K>& p = group.point[k];
+		StillLanes<K>& f = memory[k];
+		auto& row = rows[k];
+		const Lanes un = normalRate(v1, v2, p), wn = un + row.bn;
+		const auto ut = slipRate(v1, v2, p), wt = ut + row.bt;
+		if constexpr (laws) {
+			row.un = un;
+			row.ut = ut;
+			row.actedN = p.pn + (f.zn - wn) * row.stiffness;
+			row.actedT = p.pt + (f.zt - wt) * row.stiffness;
+			const Lanes miss = larger(size(wn - f.zn), size(wt - f.zt));
+			worst = larger(worst, row.stiffness > 0 ? miss : all(0));
+			const Lanes yn = p.pn - (relaxation * wn + (1 - relaxation) * f.zn) * row.stiffness;
+			const auto yt = p.pt - (relaxation * wt + (1 - relaxation) * f.zt) * row.stiffness;
+			p.pn = larger(yn, all(0));
+			row.bound += damping * (p.pn - row.bound);
+			p.pt = clip(yt, group.friction * (rough ? p.pn : row.bound));
+			f.zn = (p.pn - yn) * row.resistance;
+			f.zt = (p.pt - yt) * row.resistance;
+		}
+		add(f1, f2, p, p.pn + (f.zn - wn) * row.stiffness, p.pt + (f.zt - wt) * row.stiffness);
+	}
+	f1.store(force, group.body1, bitsOf(v1.m > 0));
+	f2.store(force, group.body2, bitsOf(v2.m > 0));
+}
+
+template <class K>
+MASONRY_INLINE void startGroups(Group<K>* groups, StillGroup<K>* memory, RowsOf<K>* rows, int begin, int end, const Step& step,
+                                const Lanes* velocity, Lanes* force)
+{
+	const Lanes none = all(0);
+	Lanes unused = none;
+	for (int g = begin; g < end; ++g) {
+		const Bodies<K> v1(velocity, groups[g].body1), v2(velocity, groups[g].body2);
+		for (int k = 0; k < groups[g].count; ++k) {
+			PointLanes<K>& p = groups[g].point[k];
+			StillLanes<K>& f = memory[g][k];
+			auto& row = rows[g][k];
+			const Mask in = row.stiffness > 0;
+			p.pn = in ? p.pn : none;
+			p.pt = select(in, p.pt, typename PointLanes<K>::Tangent {});
+			const Lanes deep = smaller(p.gap + step.left, none);
+			row.bn = in ? step.perH * (p.gap > 0 ? p.gap : pullBack * deep) : none;
+			row.bt = select(in, all(pullBack * step.perH) * f.slip, typename PointLanes<K>::Tangent {});
+			row.bound = p.pn;
+			const Lanes wn = normalRate(v1, v2, p) + row.bn;
+			const auto wt = slipRate(v1, v2, p) + row.bt;
+			f.zn = p.pn > 0 ? f.zn : larger(wn, none);
+			f.zt = select(p.pn > 0, f.zt, wt);
+		}
+		passGroup<K, false>(groups[g], memory[g], rows[g], velocity, force, unused);
+	}
+}
+
+template <class K>
+MASONRY_INLINE void advanceGroups(Group<K>* groups, StillGroup<K>* memory, const RowsOf<K>* rows, int begin, int end, double h, Lanes& loss)
+{
+	for (int g = begin; g < end; ++g) {
+		const Mask rough = groups[g].friction >= mostFriction;
+		for (int k = 0; k < groups[g].count; ++k) {
+			PointLanes<K>& p = groups[g].point[k];
+			const auto& row = rows[g][k];
+			p.gap += h * row.un;
+			auto& slip = memory[g][k].slip;
+			const Mask glides = slides(p.pt, groups[g].friction * (rough ? p.pn : row.bound));
+			slip = select(glides, typename PointLanes<K>::Tangent {}, slip + h * row.ut);
+			loss -= select(glides, dot(row.actedT, row.ut), all(0));
+		}
+	}
+}
+
+MASONRY_LANES void addTo(const std::vector<int>& members, const Lanes* change, Lanes* velocity)
+{
+	for (const int b : members)
+		velocity[b] += noMass * change[b];
+}
+// M (V_free - V)
+MASONRY_LANES void inertia(const std::vector<int>& members, const Lanes* velocity, const Lanes* free, Lanes* force)
+{
+	for (const int b : members)
+		force[b] = velocity[b][3] > 0 ? (free[b] - velocity[b]) / all(velocity[b][3]) : all(0);
+}
+
+// No template is compiled for several vector widths.
+#define MASONRY_PASSES(K)                                                                                                                  \
+	MASONRY_LANES bool takePass(Group<K>* groups, const RowsOf<K>* rows, int begin, int end, const Lanes* velocity, const Step& step)      \
+	{                                                                                                                                      \
+		return takeGroups<K>(groups, rows, begin, end, velocity, step);                                                                    \
+	}                                                                                                                                      \
+	MASONRY_LANES void penaltyPass(Group<K>* groups, RowsOf<K>* rows, int begin, int end, const Lanes* velocity, const Step& step)         \
+	{                                                                                                                                      \
+		setPenalties<K>(groups, rows, begin, end, velocity, step);                                                                         \
+	}                                                                                                                                      \
+	MASONRY_LANES void startPass(Group<K>* groups, StillGroup<K>* memory, RowsOf<K>* rows, int begin, int end, const Step& step,           \
+	                             const Lanes* velocity, Lanes* force)                                                                      \
+	{                                                                                                                                      \
+		startGroups<K>(groups, memory, rows, begin, end, step, velocity, force);                                                           \
+	}                                                                                                                                      \
+	MASONRY_LANES void lawPass(Group<K>* groups, StillGroup<K>* memory, RowsOf<K>* rows, int begin, int end, const Lanes* velocity,        \
+	                           Lanes* force, Lanes& worst)                                                                                 \
+	{                                                                                                                                      \
+		for (int g = begin; g < end; ++g)                                                                                                  \
+			passGroup<K, true>(groups[g], memory[g], rows[g], velocity, force, worst);                                                     \
+	}                                                                                                                                      \
+	MASONRY_LANES void gapPass(Group<K>* groups, StillGroup<K>* memory, const RowsOf<K>* rows, int begin, int end, double h, Lanes& loss)  \
+	{                                                                                                                                      \
+		advanceGroups<K>(groups, memory, rows, begin, end, h, loss);                                                                       \
+	}
+MASONRY_PASSES(Plane)
+MASONRY_PASSES(Space)
+#undef MASONRY_PASSES
+
+Step stepOf(const StepContext& c)
+{
+	return {1 / c.h,          c.fall, c.rocking > 0 ? -std::expm1(-c.h / (filterTime * c.rocking)) : 1,
+	        reach * c.length, c.h,    leftPenetration * c.length};
+}
+
+} // namespace
+
+template <class K>
+bool AdmmSolver<K>::takePoints(WallContacts<K>& c, const StepContext& step)
+{
+	bool anew = rows.size() != c.groups.size() || step.others;
+	for (size_t g = 0; g < lanes.size() && !anew; ++g)
+		anew = !std::equal(lanes[g].begin(), lanes[g].end(), c.features[g].pair);
+	if (rows.size() != c.groups.size() || lanes.size() != c.groups.size()) {
+		anew = true;
+		rows.assign(c.groups.size(), {});
+	}
+	bool needed[Team::mostParts + 1] {};
+	const Step same = stepOf(step);
+	c.allParts([&](const Part& part, int number) {
+		needed[number] = takePass(c.groups.data(), rows.data(), part.begin, part.end, c.velocity.data(), same);
+	});
+	anew |= std::any_of(std::begin(needed), std::end(needed), [](bool is) { return is; });
+	anew |= masses.size() != c.own.size();
+	for (size_t b = 0; b < c.own.size() && !anew; ++b)
+		anew = masses[b] != c.velocity[packs<K> * b][3];
+	age += step.h;
+	return anew || !(age < refactorTime * step.rocking);
+}
+
+template <class K>
+void AdmmSolver<K>::start(WallContacts<K>& c, const LaneArray& load, const StepContext& step)
+{
+	velocity = c.velocity;
+	free.resize(velocity.size());
+	force.assign(velocity.size(), all(0));
+	const Step same = stepOf(step);
+	const auto startBodies = [&](const Part& part) {
+		for (const int b : part.members)
+			free[b] = velocity[b] + load[b];
+		inertia(part.members, velocity.data(), free.data(), force.data());
+	};
+	const auto startPoints = [&](const Part& part) {
+		startPass(c.groups.data(), c.still.data(), rows.data(), part.begin, part.end, same, velocity.data(), force.data());
+	};
+	startBodies(c.parts.back());
+	c.eachPart([&](const Part& part, int) {
+		startBodies(part);
+		startPoints(part);
+	});
+	startPoints(c.parts.back());
+}
+
+// One solve and one pass over the laws. Returns the largest |w - z|, m/s.
+template <class K>
+double AdmmSolver<K>::iterate(WallContacts<K>& c)
+{
+	factor.solve(force.data(), places);
+	Lanes worst[Team::mostParts + 1] {};
+	const auto move = [&](const Part& part) {
+		addTo(part.members, force.data(), velocity.data());
+		inertia(part.members, velocity.data(), free.data(), force.data());
+	};
+	const auto laws = [&](const Part& part, int number) {
+		lawPass(c.groups.data(), c.still.data(), rows.data(), part.begin, part.end, velocity.data(), force.data(), worst[number]);
+	};
+	move(c.parts.back());
+	c.eachPart([&](const Part& part, int number) {
+		move(part);
+		laws(part, number);
+	});
+	laws(c.parts.back(), Team::mostParts);
+	double most = 0;
+	for (const Lanes& here : worst)
+		most = std::max(most, largest(here));
+	return most;
+}
+
+template <class K>
+void AdmmSolver<K>::solve(WallContacts<K>& c, const LaneArray& load, const StepContext& step)
+{
+	report = {};
+	if (takePoints(c, step))
+		factorise(c, step);
+	start(c, load, step);
+	const double enough = settings.tolerance * step.fall;
+	const int most = cold ? settings.first : std::min(settings.iterations + int(saved), 10 * settings.iterations);
+	do {
+		report.residual = iterate(c);
+		++report.iterations;
+	} while (report.residual > enough && report.iterations < most);
+	saved = std::clamp(saved + settings.iterations - report.iterations, 0., double(settings.reserve) * settings.iterations);
+	if (cold)
+		saved = 0;
+	cold = false;
+	report.finite = std::all_of(velocity.begin(), velocity.end(), [](const Lanes& v) { return std::isfinite(v[0] + v[1] + v[2]); });
+}
+
+template <class K>
+double AdmmSolver<K>::advanceGaps(WallContacts<K>& c, double h) const
+{
+	LaneArray loss(c.parts.size(), all(0));
+	c.allParts([&](const Part& part, int number) {
+		gapPass(c.groups.data(), c.still.data(), rows.data(), part.begin, part.end, h, loss[number]);
+	});
+	double sum = 0;
+	for (const Lanes& here : loss)
+		sum += here[0] + here[1] + here[2] + here[3];
+	return sum;
+}
+
+template <class K>
+void AdmmSolver<K>::factorise(WallContacts<K>& c, const StepContext& step)
+{
+	const Step same = stepOf(step);
+	c.allParts([&](const Part& part, int) { penaltyPass(c.groups.data(), rows.data(), part.begin, part.end, c.velocity.data(), same); });
+	lanes.resize(c.groups.size());
+	for (size_t g = 0; g < lanes.size(); ++g)
+		std::copy_n(c.features[g].pair, width, lanes[g].begin());
+	masses.resize(c.own.size());
+	for (size_t b = 0; b < masses.size(); ++b)
+		masses[b] = c.velocity[packs<K> * b][3];
+	setGraph(c);
+	for (size_t k = 0; k < places.size(); ++k)
+		factor.addDiagonal(int(k), Block::Identity() / c.velocity[places[k]][3]);
+	int edge = packs<K> > 1 ? int(places.size()) / packs<K> : 0; // after those within bodies
+	for (size_t g = 0; g < c.groups.size(); ++g)
+		for (int i = 0; i < width; ++i)
+			addPair(c, int(g), i, edge);
+	factor.factorise();
+	age = 0;
+	++report.factorisations;
+}
+
+// A node for each pack of a body; edges between those of a body, then between those of a pair.
+template <class K>
+void AdmmSolver<K>::setGraph(const WallContacts<K>& c)
+{
+	constexpr int n = packs<K>;
+	node.assign(c.own.size(), -1);
+	places.clear();
+	edges.clear();
+	for (int b = 0; b < int(c.own.size()); ++b)
+		if (c.own[b]) {
+			node[b] = int(places.size());
+			for (int k = 0; k < n; ++k)
+				places.push_back(n * b + k);
+			if (n > 1)
+				edges.push_back({node[b], node[b] + 1});
+		}
+	for (const Group<K>& group : c.groups)
+		for (int i = 0; i < width; ++i)
+			if (c.isFree(group.body1[i]) && c.isFree(group.body2[i]))
+				for (int k = 0; k < n * n; ++k)
+					edges.push_back({node[group.body1[i]] + k / n, node[group.body2[i]] + k % n});
+	factor.setGraph(int(places.size()), edges);
+}
+
+// J^T J / R of a lane's pair; its edges begin at `edge`, which goes on to the next pair's.
+template <class K>
+void AdmmSolver<K>::addPair(const WallContacts<K>& c, int g, int i, int& edge)
+{
+	const Group<K>& group = c.groups[g];
+	constexpr int n = packs<K>;
+	Block own[2][n][n], across[n][n]; // rows and columns by pack
+	for (int k = 0; k < n * n; ++k)
+		own[0][k / n][k % n] = own[1][k / n][k % n] = across[k / n][k % n] = Block::Zero();
+	for (int k = 0; k < group.count; ++k) {
+		const double stiffness = rows[g][k].stiffness[i];
+		if (!(stiffness > 0))
+			continue;
+		for (int row = 0; row < K::rows; ++row) {
+			Vector3 a1[n], a2[n];
+			for (int a = 0; a < n; ++a) {
+				a1[a] = -partOf(group.point[k], row, i, 1, a);
+				a2[a] = partOf(group.point[k], row, i, 2, a);
+			}
+			for (int a = 0; a < n; ++a)
+				for (int b = 0; b < n; ++b) {
+					own[0][a][b] += stiffness * a1[a] * a1[b].transpose();
+					own[1][a][b] += stiffness * a2[a] * a2[b].transpose();
+					across[a][b] += stiffness * a1[a] * a2[b].transpose();
+				}
+		}
+	}
+	const int body[2] = {group.body1[i], group.body2[i]};
+	for (int side = 0; side < 2; ++side) {
+		if (!c.isFree(body[side]))
+			continue;
+		for (int a = 0; a < n; ++a)
+			factor.addDiagonal(node[body[side]] + a, own[side][a][a]);
+		if (n > 1)
+			factor.addEdge(node[body[side]] / n, own[side][0][n - 1]);
+	}
+	if (c.isFree(body[0]) && c.isFree(body[1]))
+		for (int k = 0; k < n * n; ++k)
+			factor.addEdge(edge++, across[k / n][k % n]);
+}
+
+template class AdmmSolver<Plane>;
+template class AdmmSolver<Space>;
+
+} // namespace masonry::rigid::assembly
