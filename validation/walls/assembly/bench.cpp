@@ -237,7 +237,7 @@ void run(const char* name, Step& step)
 		if (k > 3)
 			(change > 0 ? rises : loss) += std::abs(change);
 		if (number("trace", 0) > 0 && k % long(number("trace", 0)) == 0) {
-			std::printf("t %.3f iterations %d factors %d top %.5f mm change %.3g kinetic %.3g base %.3f\n", s.time,
+			std::printf("t %.3f residual %.2e iterations %d factors %d top %.5f mm change %.3g kinetic %.3g base %.3f\n", s.time, step.report.residual,
 			            iterationsOf(step.report), step.report.factorisations, 1e3 * moved(top.front())[0], change, s.kineticEnergy(),
 			            s.baseWork);
 		}

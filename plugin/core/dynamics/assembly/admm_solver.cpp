@@ -202,26 +202,39 @@ Step stepOf(const StepContext& c)
 } // namespace
 
 template <class K>
-bool AdmmSolver<K>::takePoints(WallContacts<K>& c, const StepContext& step)
+typename AdmmSolver<K>::Lane AdmmSolver<K>::laneOf(const RigidSystem<K>& s, const WallContacts<K>& c, int g, int i) const
 {
-	bool anew = rows.size() != c.groups.size() || step.others;
-	for (size_t g = 0; g < lanes.size() && !anew; ++g)
-		anew = !std::equal(lanes[g].begin(), lanes[g].end(), c.features[g].pair);
-	if (rows.size() != c.groups.size() || lanes.size() != c.groups.size()) {
-		anew = true;
+	Lane lane;
+	lane.pair = c.features[g].pair[i];
+	for (int k = 0; k < c.points(s, g, i); ++k)
+		if (rows[g][k].stiffness[i] > 0)
+			lane.features[k] = s.pairs[lane.pair].points[c.features[g].first[i] + k].feature;
+	return lane;
+}
+
+// Whether A must be made anew: its points are others, one comes into reach that it does not have, or the penalties are to follow the loads.
+template <class K>
+bool AdmmSolver<K>::isOutdated(const RigidSystem<K>& s, WallContacts<K>& c, const StepContext& step)
+{
+	if (lanes.size() != c.groups.size())
 		rows.assign(c.groups.size(), {});
-	}
 	bool needed[Team::mostParts + 1] {};
 	const Step same = stepOf(step);
 	c.allParts([&](const Part& part, int number) {
 		needed[number] = takePass(c.groups.data(), rows.data(), part.begin, part.end, c.velocity.data(), same);
 	});
-	anew |= std::any_of(std::begin(needed), std::end(needed), [](bool is) { return is; });
-	anew |= masses.size() != c.own.size();
-	for (size_t b = 0; b < c.own.size() && !anew; ++b)
-		anew = masses[b] != c.velocity[packs<K> * b][3];
 	age += step.h;
-	return anew || !(age < refactorTime * step.rocking);
+	if (lanes.size() != c.groups.size() || masses.size() != c.own.size() || !(age < refactorTime * step.rocking) ||
+	    std::any_of(std::begin(needed), std::end(needed), [](bool is) { return is; }))
+		return true;
+	for (size_t g = 0; g < lanes.size(); ++g)
+		for (int i = 0; i < width; ++i)
+			if (!(lanes[g][i] == laneOf(s, c, int(g), i)))
+				return true;
+	for (size_t b = 0; b < c.own.size(); ++b)
+		if (masses[b] != c.velocity[packs<K> * b][3])
+			return true;
+	return false;
 }
 
 template <class K>
@@ -273,17 +286,26 @@ double AdmmSolver<K>::iterate(WallContacts<K>& c)
 }
 
 template <class K>
-void AdmmSolver<K>::solve(WallContacts<K>& c, const LaneArray& load, const StepContext& step)
+void AdmmSolver<K>::solve(const RigidSystem<K>& s, WallContacts<K>& c, const LaneArray& load, const StepContext& step)
 {
 	report = {};
-	if (takePoints(c, step))
-		factorise(c, step);
+	if (isOutdated(s, c, step))
+		factorise(s, c, step);
 	start(c, load, step);
 	const double enough = settings.tolerance * step.fall;
 	const int most = cold ? settings.first : std::min(settings.iterations + int(saved), 10 * settings.iterations);
+	constexpr double diverging = 10;
+	double least = INFINITY;
 	do {
 		report.residual = iterate(c);
 		++report.iterations;
+		if (report.residual > diverging * least) {
+			if (getenv("DIV"))
+				fprintf(stderr, "diverging %g %g at %g\n", report.residual, least, s.time);
+			factorise(s, c, step);
+			least = report.residual;
+		}
+		least = std::min(least, report.residual);
 	} while (report.residual > enough && report.iterations < most);
 	saved = std::clamp(saved + settings.iterations - report.iterations, 0., double(settings.reserve) * settings.iterations);
 	if (cold)
@@ -306,13 +328,14 @@ double AdmmSolver<K>::advanceGaps(WallContacts<K>& c, double h) const
 }
 
 template <class K>
-void AdmmSolver<K>::factorise(WallContacts<K>& c, const StepContext& step)
+void AdmmSolver<K>::factorise(const RigidSystem<K>& s, WallContacts<K>& c, const StepContext& step)
 {
 	const Step same = stepOf(step);
 	c.allParts([&](const Part& part, int) { penaltyPass(c.groups.data(), rows.data(), part.begin, part.end, c.velocity.data(), same); });
 	lanes.resize(c.groups.size());
 	for (size_t g = 0; g < lanes.size(); ++g)
-		std::copy_n(c.features[g].pair, width, lanes[g].begin());
+		for (int i = 0; i < width; ++i)
+			lanes[g][i] = laneOf(s, c, int(g), i);
 	masses.resize(c.own.size());
 	for (size_t b = 0; b < masses.size(); ++b)
 		masses[b] = c.velocity[packs<K> * b][3];

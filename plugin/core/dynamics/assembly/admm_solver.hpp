@@ -71,7 +71,7 @@ public:
 
 	// Solves the step from the contacts' velocities and impulses; `load` is the change of velocity by external forces, per body. Impulses,
 	// z and slips of the contacts are those of the solution afterwards; their gaps and velocities stay.
-	void solve(wall::WallContacts<K>& contacts, const wall::LaneArray& load, const StepContext& step);
+	void solve(const RigidSystem<K>& system, wall::WallContacts<K>& contacts, const wall::LaneArray& load, const StepContext& step);
 	// Gaps and slips at the end of the step, into the contacts. Returns what friction has taken, J.
 	double advanceGaps(wall::WallContacts<K>& contacts, double h) const;
 	// The next solve starts cold and makes A anew.
@@ -83,8 +83,15 @@ public:
 
 private:
 	using Block = wall::SymmetricFactor::Block;
-	bool takePoints(wall::WallContacts<K>& contacts, const StepContext& step);
-	void factorise(wall::WallContacts<K>& contacts, const StepContext& step);
+	// Which points A is of: by group and lane the pair, and the features of its points.
+	struct Lane {
+		int pair {-1};
+		std::array<typename K::Feature, wall::lanePoints<K>> features;
+		bool operator==(const Lane& o) const { return pair == o.pair && features == o.features; }
+	};
+	Lane laneOf(const RigidSystem<K>& system, const wall::WallContacts<K>& contacts, int group, int lane) const;
+	bool isOutdated(const RigidSystem<K>& system, wall::WallContacts<K>& contacts, const StepContext& step);
+	void factorise(const RigidSystem<K>& system, wall::WallContacts<K>& contacts, const StepContext& step);
 	void setGraph(const wall::WallContacts<K>& contacts);
 	void addPair(const wall::WallContacts<K>& contacts, int group, int lane, int& edge);
 	void start(wall::WallContacts<K>& contacts, const wall::LaneArray& load, const StepContext& step);
@@ -94,9 +101,8 @@ private:
 	std::vector<int> places;      // of the nodes
 	std::vector<int> node;        // of a body, its first; -1: none
 	std::vector<wall::SymmetricFactor::Edge> edges;
-	std::vector<std::array<int, wall::width>> lanes; // pairs by group that A is of
-	std::vector<double> masses;                      // by body, that A is of
-	std::vector<typename K::Pose> factored;          // poses that A is of
+	std::vector<std::array<Lane, wall::width>> lanes; // by group, that A is of
+	std::vector<double> masses;                       // by body, that A is of
 	wall::LaneArray free, force;
 	double age {0};   // s, of the factor
 	double saved {0}; // iterations

@@ -58,15 +58,15 @@ template <class K>
 void AssemblyStep<K>::advancePart(RigidSystem<K>& s, double h)
 {
 	const Scales scales(s);
-	StepContext step(scales, h);
+	const StepContext step(scales, h);
 	team.setThreads(settings.threads);
 	solver.settings = settings.solver;
 	ledger.open(s, h);
-	step.others = takeContacts(s);
+	takeContacts(s);
 	placeFrames(s, h);
 	contacts.setUnit(h);
 	setLoads(s, h);
-	solver.solve(contacts, loads, step);
+	solver.solve(s, contacts, loads, step);
 	ledger.takeContacts(s, contacts, solver, solver.advanceGaps(contacts, h));
 	moveBodies(s, h);
 	s.time += h;
@@ -77,15 +77,14 @@ void AssemblyStep<K>::advancePart(RigidSystem<K>& s, double h)
 	report.diverged |= !solver.report.finite || !s.isFinite();
 }
 
-// Returns whether pairs or features are others than in the step before.
 template <class K>
-bool AssemblyStep<K>::takeContacts(RigidSystem<K>& s)
+void AssemblyStep<K>::takeContacts(RigidSystem<K>& s)
 {
 	wall::Members members {std::vector<char>(s.bodies.size()), std::vector<char>(s.bodies.size(), 0)};
 	for (size_t b = 0; b < s.bodies.size(); ++b)
 		members.own[b] = !s.bodies[b].prescribed;
-	const bool otherPairs = contacts.take(s, members, nobody);
-	return contacts.measure(s, false) || otherPairs;
+	contacts.take(s, members, nobody);
+	contacts.measure(s, false);
 }
 
 // Normals and arms of a step are those at its middle: those at its start would lag by half of it, and take energy from what rocks in

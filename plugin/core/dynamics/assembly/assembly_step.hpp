@@ -39,7 +39,7 @@ public:
 
 private:
 	void advancePart(RigidSystem<K>& system, double h);
-	bool takeContacts(RigidSystem<K>& system);
+	void takeContacts(RigidSystem<K>& system);
 	void placeFrames(const RigidSystem<K>& system, double h);
 	void setLoads(const RigidSystem<K>& system, double h);
 	void moveBodies(RigidSystem<K>& system, double h);

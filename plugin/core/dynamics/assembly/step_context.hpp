@@ -5,11 +5,10 @@
 namespace masonry::rigid::assembly {
 
 struct StepContext {
-	double h {0};        // s
-	double fall {0};     // m/s, speed that gravity gives in the step
-	double length {0};   // m, smallest half size of the free bodies
-	double rocking {0};  // s, sqrt(length / gravity): the time in which the smallest block falls over
-	bool others {false}; // features or the list of pairs have changed
+	double h {0};       // s
+	double fall {0};    // m/s, speed that gravity gives in the step
+	double length {0};  // m, smallest half size of the free bodies
+	double rocking {0}; // s, sqrt(length / gravity): the time in which the smallest block falls over
 
 	StepContext() = default;
 	StepContext(const Scales& scales, double h)
