@@ -237,9 +237,9 @@ void run(const char* name, Step& step)
 		if (k > 3)
 			(change > 0 ? rises : loss) += std::abs(change);
 		if (number("trace", 0) > 0 && k % long(number("trace", 0)) == 0) {
-			std::printf("t %.3f residual %.2e iterations %d factors %d top %.5f mm change %.3g kinetic %.3g base %.3f\n", s.time, step.report.residual,
-			            iterationsOf(step.report), step.report.factorisations, 1e3 * moved(top.front())[0], change, s.kineticEnergy(),
-			            s.baseWork);
+			std::printf("t %.3f residual %.2e iterations %d factors %d top %.5f mm change %.3g kinetic %.3g base %.3f\n", s.time,
+			            step.report.residual, iterationsOf(step.report), step.report.factorisations, 1e3 * moved(top.front())[0], change,
+			            s.kineticEnergy(), s.baseWork);
 		}
 		if (k > restSteps && (k - restSteps) % looks == 0) {
 			typename K::Vector sum = K::Vector::Zero();
@@ -286,6 +286,15 @@ void runAll()
 		step.settings.solver.iterations = int(number("k", 20));
 		step.settings.solver.tolerance = number("tol", 1e-3);
 		step.settings.solver.reserve = int(number("reserve", 50));
+		auto& a = step.settings.solver;
+		a.softness = number("r", a.softness);
+		a.leastSoftness = number("least", a.leastSoftness);
+		a.relaxation = number("over", a.relaxation);
+		a.boundShare = number("theta", a.boundShare);
+		a.pullBack = number("pull", a.pullBack);
+		a.reach = number("reach", a.reach);
+		a.filterTime = number("filter", a.filterTime);
+		a.refactorTime = number("refactor", a.refactorTime);
 		step.settings.threads = int(number("threads", 1));
 		run<K>("one", step);
 	}

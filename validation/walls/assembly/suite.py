@@ -20,7 +20,7 @@ def run(bench, case, options):
     done = subprocess.run([bench, *words, "by=both", *options], capture_output=True, text=True, check=True)
     rows = {}
     for line in done.stdout.splitlines():
-        number = lambda key: float(re.search(key + r" ([-\d.e+]+)", line).group(1))  # noqa: E731
+        number = lambda key: float(re.search(key + r" ([-\d.e+naif]+)", line).group(1))  # noqa: E731
         rows[line.split()[0]] = dict(mean=number("mean"), cpu=number(r"\(step"), its=number("its"), fac=number("fac"), rises=number("loss"), pen=number("pen"),
                                      work=number("base") if "base" in line else 0)
     return rows

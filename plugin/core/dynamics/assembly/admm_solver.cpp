@@ -9,16 +9,6 @@ using namespace wall;
 
 namespace {
 
-constexpr double relaxation = 1.7;
-constexpr double damping = 0.2;          // theta
-constexpr double softness = 0.15;        // r, of a point without load
-constexpr double leastSoftness = 1e-5;   // of d
-constexpr double pullBack = 0.2;         // share of a penetration or a slip that a step takes back
-constexpr double reach = 0.016;          // gap relative to the smallest half size within which points are in A
-constexpr double filterTime = 0.125;     // of the filtered load, relative to sqrt(length / gravity)
-constexpr double refactorTime = 0.125;   // relative to the same: R follows the load in such steps
-constexpr double leftPenetration = 5e-6; // relative to the smallest half size: what is less deep is not taken back
-
 template <class K>
 using RowOf = typename AdmmSolver<K>::Row;
 template <class K>
@@ -26,7 +16,7 @@ using RowsOf = typename AdmmSolver<K>::Rows;
 
 // What is the same for all points of a step.
 struct Step {
-	double perH, fall, mix, reach, h, left;
+	double h, perH, fall, mix, reach, left, softness, leastSoftness, relaxation, boundShare, pullBack;
 };
 
 // Filters the load. Returns where a point comes into reach that is not in A.
@@ -65,7 +55,7 @@ MASONRY_INLINE void setPenalties(Group<K>* groups, RowsOf<K>* rows, int begin, i
 			const Lanes approach = 2. * smaller(normalRate(v1, v2, p), none);
 			const Mask in = (p.massN > 0) & (p.gap + step.h * approach < step.reach) & (all(groups[g].count - k) > 0);
 			const Lanes massN = in ? p.massN : one, massT = in ? p.massT : one;
-			const Lanes load = p.steady / (massN * step.fall), r = larger(softness / (one + load), all(leastSoftness));
+			const Lanes load = p.steady / (massN * step.fall), r = larger(step.softness / (one + load), all(step.leastSoftness));
 			const Lanes resistance = (0.5 * r) * (massN + massT) / (massN * massT);
 			row.resistance = in ? resistance : none;
 			row.stiffness = in ? one / resistance : none;
@@ -75,7 +65,8 @@ MASONRY_INLINE void setPenalties(Group<K>* groups, RowsOf<K>* rows, int begin, i
 
 // The right-hand side of a solve; with `laws`, after the pass over the laws.
 template <class K, bool laws>
-MASONRY_INLINE void passGroup(Group<K>& group, StillGroup<K>& memory, RowsOf<K>& rows, const Lanes* velocity, Lanes* force, Lanes& worst)
+MASONRY_INLINE void passGroup(Group<K>& group, StillGroup<K>& memory, RowsOf<K>& rows, const Step& step, const Lanes* velocity,
+                              Lanes* force, Lanes& worst)
 {
 	const Bodies<K> v1(velocity, group.body1), v2(velocity, group.body2);
 	Bodies<K> f1(force, group.body1), f2(force, group.body2);
@@ -93,10 +84,10 @@ MASONRY_INLINE void passGroup(Group<K>& group, StillGroup<K>& memory, RowsOf<K>&
 			row.actedT = p.pt + (f.zt - wt) * row.stiffness;
 			const Lanes miss = larger(size(wn - f.zn), size(wt - f.zt));
 			worst = larger(worst, row.stiffness > 0 ? miss : all(0));
-			const Lanes yn = p.pn - (relaxation * wn + (1 - relaxation) * f.zn) * row.stiffness;
-			const auto yt = p.pt - (relaxation * wt + (1 - relaxation) * f.zt) * row.stiffness;
+			const Lanes yn = p.pn - (step.relaxation * wn + (1 - step.relaxation) * f.zn) * row.stiffness;
+			const auto yt = p.pt - (step.relaxation * wt + (1 - step.relaxation) * f.zt) * row.stiffness;
 			p.pn = larger(yn, all(0));
-			row.bound += damping * (p.pn - row.bound);
+			row.bound += step.boundShare * (p.pn - row.bound);
 			p.pt = clip(yt, group.friction * (rough ? p.pn : row.bound));
 			f.zn = (p.pn - yn) * row.resistance;
 			f.zt = (p.pt - yt) * row.resistance;
@@ -123,15 +114,15 @@ MASONRY_INLINE void startGroups(Group<K>* groups, StillGroup<K>* memory, RowsOf<
 			p.pn = in ? p.pn : none;
 			p.pt = select(in, p.pt, typename PointLanes<K>::Tangent {});
 			const Lanes deep = smaller(p.gap + step.left, none);
-			row.bn = in ? step.perH * (p.gap > 0 ? p.gap : pullBack * deep) : none;
-			row.bt = select(in, all(pullBack * step.perH) * f.slip, typename PointLanes<K>::Tangent {});
+			row.bn = in ? step.perH * (p.gap > 0 ? p.gap : step.pullBack * deep) : none;
+			row.bt = select(in, all(step.pullBack * step.perH) * f.slip, typename PointLanes<K>::Tangent {});
 			row.bound = p.pn;
 			const Lanes wn = normalRate(v1, v2, p) + row.bn;
 			const auto wt = slipRate(v1, v2, p) + row.bt;
 			f.zn = p.pn > 0 ? f.zn : larger(wn, none);
 			f.zt = select(p.pn > 0, f.zt, wt);
 		}
-		passGroup<K, false>(groups[g], memory[g], rows[g], velocity, force, unused);
+		passGroup<K, false>(groups[g], memory[g], rows[g], step, velocity, force, unused);
 	}
 }
 
@@ -179,11 +170,11 @@ MASONRY_LANES void inertia(const std::vector<int>& members, const Lanes* velocit
 	{                                                                                                                                      \
 		startGroups<K>(groups, memory, rows, begin, end, step, velocity, force);                                                           \
 	}                                                                                                                                      \
-	MASONRY_LANES void lawPass(Group<K>* groups, StillGroup<K>* memory, RowsOf<K>* rows, int begin, int end, const Lanes* velocity,        \
-	                           Lanes* force, Lanes& worst)                                                                                 \
+	MASONRY_LANES void lawPass(Group<K>* groups, StillGroup<K>* memory, RowsOf<K>* rows, int begin, int end, const Step& step,             \
+	                           const Lanes* velocity, Lanes* force, Lanes& worst)                                                          \
 	{                                                                                                                                      \
 		for (int g = begin; g < end; ++g)                                                                                                  \
-			passGroup<K, true>(groups[g], memory[g], rows[g], velocity, force, worst);                                                     \
+			passGroup<K, true>(groups[g], memory[g], rows[g], step, velocity, force, worst);                                               \
 	}                                                                                                                                      \
 	MASONRY_LANES void gapPass(Group<K>* groups, StillGroup<K>* memory, const RowsOf<K>* rows, int begin, int end, double h, Lanes& loss)  \
 	{                                                                                                                                      \
@@ -193,10 +184,20 @@ MASONRY_PASSES(Plane)
 MASONRY_PASSES(Space)
 #undef MASONRY_PASSES
 
-Step stepOf(const StepContext& c)
+Step stepOf(const StepContext& c, const AdmmSettings& a)
 {
-	return {1 / c.h,          c.fall, c.rocking > 0 ? -std::expm1(-c.h / (filterTime * c.rocking)) : 1,
-	        reach * c.length, c.h,    leftPenetration * c.length};
+	const double filter = a.filterTime * c.rocking;
+	return {c.h,
+	        1 / c.h,
+	        c.fall,
+	        filter > 0 ? -std::expm1(-c.h / filter) : 1,
+	        a.reach * c.length,
+	        a.leftPenetration * c.length,
+	        a.softness,
+	        a.leastSoftness,
+	        a.relaxation,
+	        a.boundShare,
+	        a.pullBack};
 }
 
 } // namespace
@@ -219,12 +220,12 @@ bool AdmmSolver<K>::isOutdated(const RigidSystem<K>& s, WallContacts<K>& c, cons
 	if (lanes.size() != c.groups.size())
 		rows.assign(c.groups.size(), {});
 	bool needed[Team::mostParts + 1] {};
-	const Step same = stepOf(step);
+	const Step same = stepOf(step, settings);
 	c.allParts([&](const Part& part, int number) {
 		needed[number] = takePass(c.groups.data(), rows.data(), part.begin, part.end, c.velocity.data(), same);
 	});
 	age += step.h;
-	if (lanes.size() != c.groups.size() || masses.size() != c.own.size() || !(age < refactorTime * step.rocking) ||
+	if (lanes.size() != c.groups.size() || masses.size() != c.own.size() || !(age < settings.refactorTime * step.rocking) ||
 	    std::any_of(std::begin(needed), std::end(needed), [](bool is) { return is; }))
 		return true;
 	for (size_t g = 0; g < lanes.size(); ++g)
@@ -243,7 +244,7 @@ void AdmmSolver<K>::start(WallContacts<K>& c, const LaneArray& load, const StepC
 	velocity = c.velocity;
 	free.resize(velocity.size());
 	force.assign(velocity.size(), all(0));
-	const Step same = stepOf(step);
+	const Step same = stepOf(step, settings);
 	const auto startBodies = [&](const Part& part) {
 		for (const int b : part.members)
 			free[b] = velocity[b] + load[b];
@@ -262,8 +263,9 @@ void AdmmSolver<K>::start(WallContacts<K>& c, const LaneArray& load, const StepC
 
 // One solve and one pass over the laws. Returns the largest |w - z|, m/s.
 template <class K>
-double AdmmSolver<K>::iterate(WallContacts<K>& c)
+double AdmmSolver<K>::iterate(WallContacts<K>& c, const StepContext& step)
 {
+	const Step same = stepOf(step, settings);
 	factor.solve(force.data(), places);
 	Lanes worst[Team::mostParts + 1] {};
 	const auto move = [&](const Part& part) {
@@ -271,7 +273,7 @@ double AdmmSolver<K>::iterate(WallContacts<K>& c)
 		inertia(part.members, velocity.data(), free.data(), force.data());
 	};
 	const auto laws = [&](const Part& part, int number) {
-		lawPass(c.groups.data(), c.still.data(), rows.data(), part.begin, part.end, velocity.data(), force.data(), worst[number]);
+		lawPass(c.groups.data(), c.still.data(), rows.data(), part.begin, part.end, same, velocity.data(), force.data(), worst[number]);
 	};
 	move(c.parts.back());
 	c.eachPart([&](const Part& part, int number) {
@@ -297,7 +299,7 @@ void AdmmSolver<K>::solve(const RigidSystem<K>& s, WallContacts<K>& c, const Lan
 	constexpr double diverging = 10;
 	double least = INFINITY;
 	do {
-		report.residual = iterate(c);
+		report.residual = iterate(c, step);
 		++report.iterations;
 		if (report.residual > diverging * least) {
 			if (getenv("DIV"))
@@ -330,7 +332,7 @@ double AdmmSolver<K>::advanceGaps(WallContacts<K>& c, double h) const
 template <class K>
 void AdmmSolver<K>::factorise(const RigidSystem<K>& s, WallContacts<K>& c, const StepContext& step)
 {
-	const Step same = stepOf(step);
+	const Step same = stepOf(step, settings);
 	c.allParts([&](const Part& part, int) { penaltyPass(c.groups.data(), rows.data(), part.begin, part.end, c.velocity.data(), same); });
 	lanes.resize(c.groups.size());
 	for (size_t g = 0; g < lanes.size(); ++g)

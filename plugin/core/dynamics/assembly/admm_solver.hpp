@@ -36,10 +36,19 @@
 namespace masonry::rigid::assembly {
 
 struct AdmmSettings {
-	double tolerance {1e-3}; // largest |w - z| relative to the speed that gravity gives in a step. Larger: joints drift and sink
-	int iterations {20};     // at most in a step, beside the reserve. Fewer: excursions are too small; 10 give 18 % of error
-	int reserve {50};        // times `iterations` that quiet steps save for impacts at most. 0: walls under impacts drift
-	int first {3000};        // iterations of a step that starts without impulses, at most
+	double tolerance {1e-3};       // largest |w - z| relative to the speed that gravity gives in a step. Larger: joints drift and sink
+	int iterations {20};           // at most in a step, beside the reserve. Fewer: excursions are too small; 10 give 18 % of error
+	int reserve {50};              // times `iterations` that quiet steps save for impacts at most. 0: walls under impacts drift
+	int first {3000};              // iterations of a step that starts without impulses, at most
+	double softness {0.15};        // r. Larger: loads lag, excursions are too small; smaller: slips lag
+	double leastSoftness {1e-5};   // of d, at the most loaded points. Smaller: rounding of the factorisation in single precision
+	double relaxation {1.7};       // a, 1 to 2. Larger: residuals oscillate; smaller: they fall more slowly
+	double boundShare {0.2};       // theta. 1: sliding points run into a limit cycle; smaller: friction lags
+	double pullBack {0.2};         // share of a penetration or of a slip that a step takes back. Larger: shivering; smaller: drift
+	double reach {0.016};          // gap relative to the smallest half size within which points are in A. Smaller: more factorisations
+	double filterTime {0.125};     // of the filtered load, relative to sqrt(smallest half size / gravity)
+	double refactorTime {0.125};   // relative to the same, after which R follows the loads
+	double leftPenetration {5e-6}; // relative to the smallest half size, which is not taken back. 0: blocks at rest never come to rest
 };
 
 struct AdmmReport {
@@ -95,7 +104,7 @@ private:
 	void setGraph(const wall::WallContacts<K>& contacts);
 	void addPair(const wall::WallContacts<K>& contacts, int group, int lane, int& edge);
 	void start(wall::WallContacts<K>& contacts, const wall::LaneArray& load, const StepContext& step);
-	double iterate(wall::WallContacts<K>& contacts);
+	double iterate(wall::WallContacts<K>& contacts, const StepContext& step);
 
 	wall::SymmetricFactor factor; // a node for each pack of the free bodies
 	std::vector<int> places;      // of the nodes
