@@ -15,6 +15,7 @@
 #include "dynamics/assembly/assembly_step.hpp"
 #include "dynamics/rigid/neighbours.hpp"
 #include "dynamics/wall/wall_step.hpp"
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
@@ -79,6 +80,7 @@ struct World {
 	static constexpr int up = K::dimension - 1;
 	RigidSystem<K> system;
 	int wallBodies {0};
+	std::vector<int> smooth; // bodies without friction
 	double L, T, H;
 
 	int add(double x, double z, double l, double h, double times = 1, double y = 0, double t = 0)
@@ -107,6 +109,8 @@ struct World {
 		base.prescribed = true;
 		system.bodies.push_back(base);
 		const double left = -per * L / 2;
+		if (scene == "row")
+			return buildRow(per);
 		for (int c = 0; c < courses; ++c) {
 			const double z = H * (c + 0.5);
 			const bool odd = c % 2;
@@ -142,6 +146,29 @@ struct World {
 				body.velocity[2] = w0;
 			else
 				body.velocity[4] = -w0;
+		}
+	}
+	void prescribe(int b)
+	{
+		system.bodies[b].prescribed = true;
+		system.bodies[b].force.setZero();
+	}
+	// Boxes 0.2 m long between a wall and a pusher that two smooth shelves guide, 5 m above the base; friction 0.4 (mu=0.4).
+	void buildRow(int n)
+	{
+		T = 0.4, H = 0.4;
+		constexpr double z = 5;
+		const double end = 0.2 * n + 0.3;
+		double weight = 0;
+		for (int k = 0; k < n; ++k)
+			weight += system.bodies[add(0.1 + 0.2 * k, z, 0.2, 0.4)].mass * g;
+		wallBodies = n + 1;
+		const int pusher = add(end, z, 0.6, 1);
+		system.bodies[pusher].force[0] = -number("thrust", 6) * std::max(weight / 0.8, weight * n / 16);
+		prescribe(add(-0.5, z, 1, 3, 1, 0, 1));
+		for (const double side : {-0.55, 0.55}) {
+			smooth.push_back(add(end, z + side, 0.58, 0.1, 1, 0, 1));
+			prescribe(smooth.back());
 		}
 	}
 	double energy() const
@@ -188,7 +215,8 @@ void run(const char* name, Step& step)
 	s.drives.push_back({{{&sine, direction}}});
 	s.bodies[0].drive = 0;
 	Neighbours<K> near(0.1 * world.H, [&](ContactPair<K>& pair) {
-		pair.friction = mu;
+		const auto isSmooth = [&](int b) { return std::count(world.smooth.begin(), world.smooth.end(), b) > 0; };
+		pair.friction = isSmooth(pair.body1) || isSmooth(pair.body2) ? 0 : mu;
 		pair.restitution = number("C", NAN);
 	});
 	constexpr int up = K::dimension - 1;
@@ -209,8 +237,8 @@ void run(const char* name, Step& step)
 	double mean = 0, drift = 0, rises = 0, loss = 0, deepest = 0, created = 0, sumIterations = 0, factors = 0, kinetic = 0;
 	typename K::Vector last = K::Vector::Zero();
 	double before = world.energy() - s.baseWork;
-	const double begin = cpu(), stepTime = 0;
-	double inStep = stepTime, firstStep = 0;
+	const double begin = cpu();
+	double inStep = 0, firstStep = 0;
 	double tilted = -1;
 	const double rate = number("rate", 0) * M_PI / 180;
 	for (long k = 1; k <= steps; ++k) {
@@ -225,8 +253,6 @@ void run(const char* name, Step& step)
 					b.force.template head<K::dimension>() = b.mass * s.gravity;
 		}
 		const double t0 = cpu();
-		const double baseBefore = s.baseWork;
-		(void)baseBefore;
 		step.advance(s, h);
 		(k == 1 ? firstStep : inStep) += cpu() - t0;
 		created += step.report.created;

@@ -83,7 +83,6 @@ MASONRY_INLINE void passGroup(Group<K>& group, StillGroup<K>& memory, RowsOf<K>&
 			row.actedN = p.pn + (f.zn - wn) * row.stiffness;
 			row.actedT = p.pt + (f.zt - wt) * row.stiffness;
 			const Lanes miss = larger(size(wn - f.zn), size(wt - f.zt));
-			worst = larger(worst, row.stiffness > 0 ? miss : all(0));
 			const Lanes yn = p.pn - (step.relaxation * wn + (1 - step.relaxation) * f.zn) * row.stiffness;
 			const auto yt = p.pt - (step.relaxation * wt + (1 - step.relaxation) * f.zt) * row.stiffness;
 			p.pn = larger(yn, all(0));
@@ -91,6 +90,10 @@ MASONRY_INLINE void passGroup(Group<K>& group, StillGroup<K>& memory, RowsOf<K>&
 			p.pt = clip(yt, group.friction * (rough ? p.pn : row.bound));
 			f.zn = (p.pn - yn) * row.resistance;
 			f.zt = (p.pt - yt) * row.resistance;
+			// Where a point slides the bound must have settled too; times R, as z is.
+			const Mask follows = ~rough & slides(p.pt, group.friction * row.bound);
+			const Lanes lag = group.friction * size(p.pn - row.bound) * row.resistance;
+			worst = larger(worst, row.stiffness > 0 ? larger(miss, follows ? lag : all(0)) : all(0));
 		}
 		add(f1, f2, p, p.pn + (f.zn - wn) * row.stiffness, p.pt + (f.zt - wt) * row.stiffness);
 	}
@@ -302,8 +305,6 @@ void AdmmSolver<K>::solve(const RigidSystem<K>& s, WallContacts<K>& c, const Lan
 		report.residual = iterate(c, step);
 		++report.iterations;
 		if (report.residual > diverging * least) {
-			if (getenv("DIV"))
-				fprintf(stderr, "diverging %g %g at %g\n", report.residual, least, s.time);
 			factorise(s, c, step);
 			least = report.residual;
 		}

@@ -13,8 +13,8 @@
 //     p_t = y_t within |p_t| <= mu g
 //     z   = (p - y) R
 //
-// until w = z. A does not depend on which points stick, slide or part, so that it need not be factorised when states change. Only residuals
-// are corrected, so that A may be of slightly other positions.
+// until w = z, and g = p_n where points slide. A does not depend on which points stick, slide or part, so that it need not be factorised
+// when states change. Only residuals are corrected, so that A may be of slightly other positions.
 //
 // The method is that of Boyd et al. (Foundations and Trends in Machine Learning 3, 2011); for contact with friction see Acary, Bremond and
 // Huber (2018) and Carpentier, Le Lidec and Montaut (RSS 2024). These choices are ours; docs/numerics.md has what was measured:
@@ -37,13 +37,13 @@ namespace masonry::rigid::assembly {
 
 struct AdmmSettings {
 	double tolerance {1e-3};       // largest |w - z| relative to the speed that gravity gives in a step. Larger: joints drift and sink
-	int iterations {20};           // at most in a step, beside the reserve. Fewer: excursions are too small; 10 give 18 % of error
+	int iterations {20};           // at most in a step, beside the reserve. Fewer: excursions are too small
 	int reserve {50};              // times `iterations` that quiet steps save for impacts at most. 0: walls under impacts drift
 	int first {3000};              // iterations of a step that starts without impulses, at most
-	double softness {0.15};        // r. Larger: loads lag, excursions are too small; smaller: slips lag
+	double softness {0.2};         // r. Larger: loads lag, excursions are too small; smaller: slips lag
 	double leastSoftness {1e-5};   // of d, at the most loaded points. Smaller: rounding of the factorisation in single precision
 	double relaxation {1.7};       // a, 1 to 2. Larger: residuals oscillate; smaller: they fall more slowly
-	double boundShare {0.2};       // theta. 1: sliding points run into a limit cycle; smaller: friction lags
+	double boundShare {0.3};       // theta. 1: sliding points run into a limit cycle; smaller: friction lags
 	double pullBack {0.2};         // share of a penetration or of a slip that a step takes back. Larger: shivering; smaller: drift
 	double reach {0.016};          // gap relative to the smallest half size within which points are in A. Smaller: more factorisations
 	double filterTime {0.125};     // of the filtered load, relative to sqrt(smallest half size / gravity)
@@ -53,7 +53,7 @@ struct AdmmSettings {
 
 struct AdmmReport {
 	int iterations {0}, factorisations {0};
-	double residual {0}; // largest |w - z|, m/s
+	double residual {0}; // largest |w - z|, and mu R |g - p_n| where points slide, m/s
 	bool finite {true};
 };
 
