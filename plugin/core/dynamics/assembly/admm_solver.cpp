@@ -1,0 +1,425 @@
+#include "dynamics/assembly/admm_solver.hpp"
+#include "tolerances.hpp"
+#include <algorithm>
+#include <cmath>
+
+namespace masonry::rigid::assembly {
+
+using namespace wall;
+
+namespace {
+
+template <class K>
+using RowOf = typename AdmmSolver<K>::Row;
+template <class K>
+using RowsOf = typename AdmmSolver<K>::Rows;
+
+// What is the same for all points of a step.
+struct Step {
+	double h, perH, fall, mix, reach, left, softness, leastSoftness, relaxation, boundShare, pullBack;
+};
+
+// Filters the load. Returns where a point comes into reach that is not in A.
+template <class K>
+MASONRY_INLINE Mask takePoint(PointLanes<K>& p, const RowOf<K>& row, const Lanes& approach, const Step& step)
+{
+	p.steady += step.mix * (p.pn - p.steady);
+	return (p.massN > 0) & (p.gap + step.h * approach < step.reach) & (row.stiffness <= 0);
+}
+
+template <class K>
+MASONRY_INLINE bool takeGroups(Group<K>* groups, const RowsOf<K>* rows, int begin, int end, const Lanes* velocity, const Step& step)
+{
+	Mask needed {};
+	for (int g = begin; g < end; ++g) {
+		const Bodies<K> v1(velocity, groups[g].body1), v2(velocity, groups[g].body2);
+		for (int k = 0; k < groups[g].count; ++k) {
+			PointLanes<K>& p = groups[g].point[k];
+			const Lanes un = normalRate(v1, v2, p);
+			needed |= takePoint<K>(p, rows[g][k], 2. * smaller(un, all(0)), step);
+		}
+	}
+	return any(needed);
+}
+
+// R by load.
+template <class K>
+MASONRY_INLINE void setPenalties(Group<K>* groups, RowsOf<K>* rows, int begin, int end, const Lanes* velocity, const Step& step)
+{
+	const Lanes none = all(0), one = all(1);
+	for (int g = begin; g < end; ++g) {
+		const Bodies<K> v1(velocity, groups[g].body1), v2(velocity, groups[g].body2);
+		for (int k = 0; k < lanePoints<K>; ++k) {
+			PointLanes<K>& p = groups[g].point[k];
+			auto& row = rows[g][k];
+			const Lanes approach = 2. * smaller(normalRate(v1, v2, p), none);
+			const Mask in = (p.massN > 0) & (p.gap + step.h * approach < step.reach) & (all(groups[g].count - k) > 0);
+			const Lanes massN = in ? p.massN : one, massT = in ? p.massT : one;
+			const Lanes load = p.steady / (massN * step.fall), r = larger(step.softness / (one + load), all(step.leastSoftness));
+			const Lanes resistance = (0.5 * r) * (massN + massT) / (massN * massT);
+			row.resistance = in ? resistance : none;
+			row.stiffness = in ? one / resistance : none;
+		}
+	}
+}
+
+// The right-hand side of a solve; with `laws`, after the pass over the laws.
+template <class K, bool laws>
+MASONRY_INLINE void passGroup(Group<K>& group, StillGroup<K>& memory, RowsOf<K>& rows, const Step& step, const Lanes* velocity,
+                              Lanes* force, Lanes& worst)
+{
+	const Bodies<K> v1(velocity, group.body1), v2(velocity, group.body2);
+	Bodies<K> f1(force, group.body1), f2(force, group.body2);
+	const Mask rough = group.friction >= mostFriction;
+	for (int k = 0; k < group.count; ++k) {
+		PointLanes<K>& p = group.point[k];
+		StillLanes<K>& f = memory[k];
+		auto& row = rows[k];
+		const Lanes un = normalRate(v1, v2, p), wn = un + row.bn;
+		const auto ut = slipRate(v1, v2, p), wt = ut + row.bt;
+		if constexpr (laws) {
+			row.un = un;
+			row.ut = ut;
+			row.actedN = p.pn + (f.zn - wn) * row.stiffness;
+			row.actedT = p.pt + (f.zt - wt) * row.stiffness;
+			const Lanes miss = larger(size(wn - f.zn), size(wt - f.zt));
+			const Lanes yn = p.pn - (step.relaxation * wn + (1 - step.relaxation) * f.zn) * row.stiffness;
+			const auto yt = p.pt - (step.relaxation * wt + (1 - step.relaxation) * f.zt) * row.stiffness;
+			p.pn = larger(yn, all(0));
+			row.bound += step.boundShare * (p.pn - row.bound);
+			p.pt = clip(yt, group.friction * (rough ? p.pn : row.bound));
+			f.zn = (p.pn - yn) * row.resistance;
+			f.zt = (p.pt - yt) * row.resistance;
+			// Where a point slides the bound must have settled too; times R, as z is.
+			const Mask follows = ~rough & slides(p.pt, group.friction * row.bound);
+			const Lanes lag = group.friction * size(p.pn - row.bound) * row.resistance;
+			worst = larger(worst, row.stiffness > 0 ? larger(miss, follows ? lag : all(0)) : all(0));
+		}
+		add(f1, f2, p, p.pn + (f.zn - wn) * row.stiffness, p.pt + (f.zt - wt) * row.stiffness);
+	}
+	f1.store(force, group.body1, bitsOf(v1.m > 0));
+	f2.store(force, group.body2, bitsOf(v2.m > 0));
+}
+
+template <class K>
+MASONRY_INLINE void startGroups(Group<K>* groups, StillGroup<K>* memory, RowsOf<K>* rows, int begin, int end, const Step& step,
+                                const Lanes* velocity, Lanes* force)
+{
+	const Lanes none = all(0);
+	Lanes unused = none;
+	for (int g = begin; g < end; ++g) {
+		const Bodies<K> v1(velocity, groups[g].body1), v2(velocity, groups[g].body2);
+		for (int k = 0; k < groups[g].count; ++k) {
+			PointLanes<K>& p = groups[g].point[k];
+			StillLanes<K>& f = memory[g][k];
+			auto& row = rows[g][k];
+			const Mask in = row.stiffness > 0;
+			p.pn = in ? p.pn : none;
+			p.pt = select(in, p.pt, typename PointLanes<K>::Tangent {});
+			const Lanes deep = smaller(p.gap + step.left, none);
+			row.bn = in ? step.perH * (p.gap > 0 ? p.gap : step.pullBack * deep) : none;
+			row.bt = select(in, all(step.pullBack * step.perH) * f.slip, typename PointLanes<K>::Tangent {});
+			row.bound = p.pn;
+			const Lanes wn = normalRate(v1, v2, p) + row.bn;
+			const auto wt = slipRate(v1, v2, p) + row.bt;
+			f.zn = p.pn > 0 ? f.zn : larger(wn, none);
+			f.zt = select(p.pn > 0, f.zt, wt);
+		}
+		passGroup<K, false>(groups[g], memory[g], rows[g], step, velocity, force, unused);
+	}
+}
+
+template <class K>
+MASONRY_INLINE void advanceGroups(Group<K>* groups, StillGroup<K>* memory, const RowsOf<K>* rows, int begin, int end, double h, Lanes& loss)
+{
+	for (int g = begin; g < end; ++g) {
+		const Mask rough = groups[g].friction >= mostFriction;
+		for (int k = 0; k < groups[g].count; ++k) {
+			PointLanes<K>& p = groups[g].point[k];
+			const auto& row = rows[g][k];
+			p.gap += h * row.un;
+			auto& slip = memory[g][k].slip;
+			const Mask glides = slides(p.pt, groups[g].friction * (rough ? p.pn : row.bound));
+			slip = select(glides, typename PointLanes<K>::Tangent {}, slip + h * row.ut);
+			loss -= select(glides, dot(row.actedT, row.ut), all(0));
+		}
+	}
+}
+
+MASONRY_LANES void addTo(const std::vector<int>& members, const Lanes* change, Lanes* velocity)
+{
+	for (const int b : members)
+		velocity[b] += noMass * change[b];
+}
+// M (V_free - V)
+MASONRY_LANES void inertia(const std::vector<int>& members, const Lanes* velocity, const Lanes* free, Lanes* force)
+{
+	for (const int b : members)
+		force[b] = velocity[b][3] > 0 ? (free[b] - velocity[b]) / all(velocity[b][3]) : all(0);
+}
+
+// No template is compiled for several vector widths.
+#define MASONRY_PASSES(K)                                                                                                                  \
+	MASONRY_LANES bool takePass(Group<K>* groups, const RowsOf<K>* rows, int begin, int end, const Lanes* velocity, const Step& step)      \
+	{                                                                                                                                      \
+		return takeGroups<K>(groups, rows, begin, end, velocity, step);                                                                    \
+	}                                                                                                                                      \
+	MASONRY_LANES void penaltyPass(Group<K>* groups, RowsOf<K>* rows, int begin, int end, const Lanes* velocity, const Step& step)         \
+	{                                                                                                                                      \
+		setPenalties<K>(groups, rows, begin, end, velocity, step);                                                                         \
+	}                                                                                                                                      \
+	MASONRY_LANES void startPass(Group<K>* groups, StillGroup<K>* memory, RowsOf<K>* rows, int begin, int end, const Step& step,           \
+	                             const Lanes* velocity, Lanes* force)                                                                      \
+	{                                                                                                                                      \
+		startGroups<K>(groups, memory, rows, begin, end, step, velocity, force);                                                           \
+	}                                                                                                                                      \
+	MASONRY_LANES void lawPass(Group<K>* groups, StillGroup<K>* memory, RowsOf<K>* rows, int begin, int end, const Step& step,             \
+	                           const Lanes* velocity, Lanes* force, Lanes& worst)                                                          \
+	{                                                                                                                                      \
+		for (int g = begin; g < end; ++g)                                                                                                  \
+			passGroup<K, true>(groups[g], memory[g], rows[g], step, velocity, force, worst);                                               \
+	}                                                                                                                                      \
+	MASONRY_LANES void gapPass(Group<K>* groups, StillGroup<K>* memory, const RowsOf<K>* rows, int begin, int end, double h, Lanes& loss)  \
+	{                                                                                                                                      \
+		advanceGroups<K>(groups, memory, rows, begin, end, h, loss);                                                                       \
+	}
+MASONRY_PASSES(Plane)
+MASONRY_PASSES(Space)
+#undef MASONRY_PASSES
+
+Step stepOf(const StepContext& c, const AdmmSettings& a)
+{
+	const double filter = a.filterTime * c.rocking;
+	return {c.h,
+	        1 / c.h,
+	        c.fall,
+	        filter > 0 ? -std::expm1(-c.h / filter) : 1,
+	        a.reach * c.length,
+	        a.leftPenetration * c.length,
+	        a.softness,
+	        a.leastSoftness,
+	        a.relaxation,
+	        a.boundShare,
+	        a.pullBack};
+}
+
+} // namespace
+
+template <class K>
+typename AdmmSolver<K>::Lane AdmmSolver<K>::laneOf(const RigidSystem<K>& s, const WallContacts<K>& c, int g, int i) const
+{
+	Lane lane;
+	lane.pair = c.features[g].pair[i];
+	for (int k = 0; k < c.points(s, g, i); ++k)
+		if (rows[g][k].stiffness[i] > 0)
+			lane.features[k] = s.pairs[lane.pair].points[c.features[g].first[i] + k].feature;
+	return lane;
+}
+
+// Whether A must be made anew: its points are others, one comes into reach that it does not have, or the penalties are to follow the loads.
+template <class K>
+bool AdmmSolver<K>::isOutdated(const RigidSystem<K>& s, WallContacts<K>& c, const StepContext& step)
+{
+	if (lanes.size() != c.groups.size())
+		rows.assign(c.groups.size(), {});
+	bool needed[Team::mostParts + 1] {};
+	const Step same = stepOf(step, settings);
+	c.allParts([&](const Part& part, int number) {
+		needed[number] = takePass(c.groups.data(), rows.data(), part.begin, part.end, c.velocity.data(), same);
+	});
+	age += step.h;
+	if (lanes.size() != c.groups.size() || masses.size() != c.own.size() || !(age < settings.refactorTime * step.rocking) ||
+	    std::any_of(std::begin(needed), std::end(needed), [](bool is) { return is; }))
+		return true;
+	for (size_t g = 0; g < lanes.size(); ++g)
+		for (int i = 0; i < width; ++i)
+			if (!(lanes[g][i] == laneOf(s, c, int(g), i)))
+				return true;
+	for (size_t b = 0; b < c.own.size(); ++b)
+		if (masses[b] != c.velocity[packs<K> * b][3])
+			return true;
+	return false;
+}
+
+template <class K>
+void AdmmSolver<K>::start(WallContacts<K>& c, const LaneArray& load, const StepContext& step)
+{
+	velocity = c.velocity;
+	free.resize(velocity.size());
+	force.assign(velocity.size(), all(0));
+	const Step same = stepOf(step, settings);
+	const auto startBodies = [&](const Part& part) {
+		for (const int b : part.members)
+			free[b] = velocity[b] + load[b];
+		inertia(part.members, velocity.data(), free.data(), force.data());
+	};
+	const auto startPoints = [&](const Part& part) {
+		startPass(c.groups.data(), c.still.data(), rows.data(), part.begin, part.end, same, velocity.data(), force.data());
+	};
+	startBodies(c.parts.back());
+	c.eachPart([&](const Part& part, int) {
+		startBodies(part);
+		startPoints(part);
+	});
+	startPoints(c.parts.back());
+}
+
+// One solve and one pass over the laws. Returns the largest |w - z|, m/s.
+template <class K>
+double AdmmSolver<K>::iterate(WallContacts<K>& c, const StepContext& step)
+{
+	const Step same = stepOf(step, settings);
+	factor.solve(force.data(), places);
+	Lanes worst[Team::mostParts + 1] {};
+	const auto move = [&](const Part& part) {
+		addTo(part.members, force.data(), velocity.data());
+		inertia(part.members, velocity.data(), free.data(), force.data());
+	};
+	const auto laws = [&](const Part& part, int number) {
+		lawPass(c.groups.data(), c.still.data(), rows.data(), part.begin, part.end, same, velocity.data(), force.data(), worst[number]);
+	};
+	move(c.parts.back());
+	c.eachPart([&](const Part& part, int number) {
+		move(part);
+		laws(part, number);
+	});
+	laws(c.parts.back(), Team::mostParts);
+	double most = 0;
+	for (const Lanes& here : worst)
+		most = std::max(most, largest(here));
+	return most;
+}
+
+template <class K>
+void AdmmSolver<K>::solve(const RigidSystem<K>& s, WallContacts<K>& c, const LaneArray& load, const StepContext& step)
+{
+	report = {};
+	if (isOutdated(s, c, step))
+		factorise(s, c, step);
+	start(c, load, step);
+	const double enough = settings.tolerance * step.fall;
+	const int most = cold ? settings.first : std::min(settings.iterations + int(saved), 10 * settings.iterations);
+	constexpr double diverging = 10;
+	double least = INFINITY;
+	do {
+		report.residual = iterate(c, step);
+		++report.iterations;
+		if (report.residual > diverging * least) {
+			factorise(s, c, step);
+			least = report.residual;
+		}
+		least = std::min(least, report.residual);
+	} while (report.residual > enough && report.iterations < most);
+	saved = std::clamp(saved + settings.iterations - report.iterations, 0., double(settings.reserve) * settings.iterations);
+	if (cold)
+		saved = 0;
+	cold = false;
+	report.finite = std::all_of(velocity.begin(), velocity.end(), [](const Lanes& v) { return std::isfinite(v[0] + v[1] + v[2]); });
+}
+
+template <class K>
+double AdmmSolver<K>::advanceGaps(WallContacts<K>& c, double h) const
+{
+	LaneArray loss(c.parts.size(), all(0));
+	c.allParts([&](const Part& part, int number) {
+		gapPass(c.groups.data(), c.still.data(), rows.data(), part.begin, part.end, h, loss[number]);
+	});
+	double sum = 0;
+	for (const Lanes& here : loss)
+		sum += here[0] + here[1] + here[2] + here[3];
+	return sum;
+}
+
+template <class K>
+void AdmmSolver<K>::factorise(const RigidSystem<K>& s, WallContacts<K>& c, const StepContext& step)
+{
+	const Step same = stepOf(step, settings);
+	c.allParts([&](const Part& part, int) { penaltyPass(c.groups.data(), rows.data(), part.begin, part.end, c.velocity.data(), same); });
+	lanes.resize(c.groups.size());
+	for (size_t g = 0; g < lanes.size(); ++g)
+		for (int i = 0; i < width; ++i)
+			lanes[g][i] = laneOf(s, c, int(g), i);
+	masses.resize(c.own.size());
+	for (size_t b = 0; b < masses.size(); ++b)
+		masses[b] = c.velocity[packs<K> * b][3];
+	setGraph(c);
+	for (size_t k = 0; k < places.size(); ++k)
+		factor.addDiagonal(int(k), Block::Identity() / c.velocity[places[k]][3]);
+	int edge = packs<K> > 1 ? int(places.size()) / packs<K> : 0; // after those within bodies
+	for (size_t g = 0; g < c.groups.size(); ++g)
+		for (int i = 0; i < width; ++i)
+			addPair(c, int(g), i, edge);
+	factor.factorise();
+	age = 0;
+	++report.factorisations;
+}
+
+// A node for each pack of a body; edges between those of a body, then between those of a pair.
+template <class K>
+void AdmmSolver<K>::setGraph(const WallContacts<K>& c)
+{
+	constexpr int n = packs<K>;
+	node.assign(c.own.size(), -1);
+	places.clear();
+	edges.clear();
+	for (int b = 0; b < int(c.own.size()); ++b)
+		if (c.own[b]) {
+			node[b] = int(places.size());
+			for (int k = 0; k < n; ++k)
+				places.push_back(n * b + k);
+			if (n > 1)
+				edges.push_back({node[b], node[b] + 1});
+		}
+	for (const Group<K>& group : c.groups)
+		for (int i = 0; i < width; ++i)
+			if (c.isFree(group.body1[i]) && c.isFree(group.body2[i]))
+				for (int k = 0; k < n * n; ++k)
+					edges.push_back({node[group.body1[i]] + k / n, node[group.body2[i]] + k % n});
+	factor.setGraph(int(places.size()), edges);
+}
+
+// J^T J / R of a lane's pair; its edges begin at `edge`, which goes on to the next pair's.
+template <class K>
+void AdmmSolver<K>::addPair(const WallContacts<K>& c, int g, int i, int& edge)
+{
+	const Group<K>& group = c.groups[g];
+	constexpr int n = packs<K>;
+	Block own[2][n][n], across[n][n]; // rows and columns by pack
+	for (int k = 0; k < n * n; ++k)
+		own[0][k / n][k % n] = own[1][k / n][k % n] = across[k / n][k % n] = Block::Zero();
+	for (int k = 0; k < group.count; ++k) {
+		const double stiffness = rows[g][k].stiffness[i];
+		if (!(stiffness > 0))
+			continue;
+		for (int row = 0; row < K::rows; ++row) {
+			Vector3 a1[n], a2[n];
+			for (int a = 0; a < n; ++a) {
+				a1[a] = -partOf(group.point[k], row, i, 1, a);
+				a2[a] = partOf(group.point[k], row, i, 2, a);
+			}
+			for (int a = 0; a < n; ++a)
+				for (int b = 0; b < n; ++b) {
+					own[0][a][b] += stiffness * a1[a] * a1[b].transpose();
+					own[1][a][b] += stiffness * a2[a] * a2[b].transpose();
+					across[a][b] += stiffness * a1[a] * a2[b].transpose();
+				}
+		}
+	}
+	const int body[2] = {group.body1[i], group.body2[i]};
+	for (int side = 0; side < 2; ++side) {
+		if (!c.isFree(body[side]))
+			continue;
+		for (int a = 0; a < n; ++a)
+			factor.addDiagonal(node[body[side]] + a, own[side][a][a]);
+		if (n > 1)
+			factor.addEdge(node[body[side]] / n, own[side][0][n - 1]);
+	}
+	if (c.isFree(body[0]) && c.isFree(body[1]))
+		for (int k = 0; k < n * n; ++k)
+			factor.addEdge(edge++, across[k / n][k % n]);
+}
+
+template class AdmmSolver<Plane>;
+template class AdmmSolver<Space>;
+
+} // namespace masonry::rigid::assembly

@@ -1,0 +1,121 @@
+#pragma once
+// The contact laws of a whole assembly in one step, by the alternating direction method of multipliers (ADMM) with one factorisation that
+// is kept over many steps. There is one method for blocks that stand and for blocks that move.
+//
+// Unknown are the velocities V at the end of the step, the impulses p and the relative velocities z that the laws allow. J maps V to the
+// relative velocities at the points, b is the bias of each point, R its penalty, w = J V + b, and A = M + J^T J / R over all points in
+// reach, whatever their state:
+//
+//     V += A^-1 [ M (V_free - V) + J^T (p + (z - w)/R) ]
+//     y   = p - (a w + (1 - a) z)/R                                   a = 1.7: over-relaxation
+//     p_n = max(0, y_n)
+//     g  += theta (p_n - g)                                           friction bound, damped
+//     p_t = y_t within |p_t| <= mu g
+//     z   = (p - y) R
+//
+// until w = z, and g = p_n where points slide. A does not depend on which points stick, slide or part, so that it need not be factorised
+// when states change. Only residuals are corrected, so that A may be of slightly other positions.
+//
+// The method is that of Boyd et al. (Foundations and Trends in Machine Learning 3, 2011); for contact with friction see Acary, Bremond and
+// Huber (2018) and Carpentier, Le Lidec and Montaut (RSS 2024). These choices are ours; docs/numerics.md has what was measured:
+//
+//     R by load       R = d r/(1 + l): d is the mean of J M^-1 J^T over the rows of the point, l the filtered normal impulse of the point
+//     in
+//                     units of the impulse that stops it alone after the fall of one step. R p is then a velocity of about the same size at
+//                     light and heavy points. A uniform R suits either a wall that slides or one that rocks.
+//     damped bound    With the bound mu p_n, sliding points run into a limit cycle whose residual does not fall.
+//     start of z      Points without an impulse start from the velocity that they have, z = (max(0, w_n), w_t): their bias changes in each
+//                     step. Others keep z, as they keep p.
+//
+// Biases. A point with a gap may close within the step: b_n = gap/h. Of a penetration, and of a slip that unfinished iterations have left
+// at a point that sticks, a share is taken back in each step: b = share x/h.
+#include "dynamics/assembly/step_context.hpp"
+#include "dynamics/wall/symmetric_factor.hpp"
+#include "dynamics/wall/wall_contacts.hpp"
+
+namespace masonry::rigid::assembly {
+
+struct AdmmSettings {
+	double tolerance {1e-3};       // largest |w - z| relative to the speed that gravity gives in a step. Larger: joints drift and sink
+	int iterations {20};           // at most in a step, beside the reserve. Fewer: excursions are too small
+	int reserve {50};              // times `iterations` that quiet steps save for impacts at most. 0: walls under impacts drift
+	int first {3000};              // iterations of a step that starts without impulses, at most
+	double softness {0.2};         // r. Larger: loads lag, excursions are too small; smaller: slips lag
+	double leastSoftness {1e-5};   // of d, at the most loaded points. Smaller: rounding of the factorisation in single precision
+	double relaxation {1.7};       // a, 1 to 2. Larger: residuals oscillate; smaller: they fall more slowly
+	double boundShare {0.3};       // theta. 1: sliding points run into a limit cycle; smaller: friction lags
+	double pullBack {0.2};         // share of a penetration or of a slip that a step takes back. Larger: shivering; smaller: drift
+	double reach {0.016};          // gap relative to the smallest half size within which points are in A. Smaller: more factorisations
+	double filterTime {0.125};     // of the filtered load, relative to sqrt(smallest half size / gravity)
+	double refactorTime {0.125};   // relative to the same, after which R follows the loads
+	double leftPenetration {5e-6}; // relative to the smallest half size, which is not taken back. 0: blocks at rest never come to rest
+};
+
+struct AdmmReport {
+	int iterations {0}, factorisations {0};
+	double residual {0}; // largest |w - z|, and mu R |g - p_n| where points slide, m/s
+	bool finite {true};
+};
+
+template <class K>
+class AdmmSolver {
+public:
+	using Tangent = typename wall::PointLanes<K>::Tangent;
+	struct alignas(wall::alignment) Row {  // of a point
+		wall::Lanes resistance, stiffness; // R and 1/R; zero: the point is not in A and carries nothing
+		wall::Lanes bn;                    // m/s
+		Tangent bt;
+		wall::Lanes bound; // g, N s
+		wall::Lanes un;    // J V, m/s
+		Tangent ut;
+		wall::Lanes actedN; // impulse with which V obeys the momentum equation, N s
+		Tangent actedT;
+	};
+	using Rows = std::array<Row, wall::lanePoints<K>>;
+
+	AdmmSettings settings;
+	AdmmReport report;
+	wall::LaneArray velocity; // V, in the packs of the contacts
+	std::vector<Rows> rows;   // by group of the contacts
+
+	// Solves the step from the contacts' velocities and impulses; `load` is the change of velocity by external forces, per body. Impulses,
+	// z and slips of the contacts are those of the solution afterwards; their gaps and velocities stay.
+	void solve(const RigidSystem<K>& system, wall::WallContacts<K>& contacts, const wall::LaneArray& load, const StepContext& step);
+	// Gaps and slips at the end of the step, into the contacts. Returns what friction has taken, J.
+	double advanceGaps(wall::WallContacts<K>& contacts, double h) const;
+	// The next solve starts cold and makes A anew.
+	void forget()
+	{
+		cold = true;
+		lanes.clear();
+	}
+
+private:
+	using Block = wall::SymmetricFactor::Block;
+	// Which points A is of: by group and lane the pair, and the features of its points.
+	struct Lane {
+		int pair {-1};
+		std::array<typename K::Feature, wall::lanePoints<K>> features;
+		bool operator==(const Lane& o) const { return pair == o.pair && features == o.features; }
+	};
+	Lane laneOf(const RigidSystem<K>& system, const wall::WallContacts<K>& contacts, int group, int lane) const;
+	bool isOutdated(const RigidSystem<K>& system, wall::WallContacts<K>& contacts, const StepContext& step);
+	void factorise(const RigidSystem<K>& system, wall::WallContacts<K>& contacts, const StepContext& step);
+	void setGraph(const wall::WallContacts<K>& contacts);
+	void addPair(const wall::WallContacts<K>& contacts, int group, int lane, int& edge);
+	void start(wall::WallContacts<K>& contacts, const wall::LaneArray& load, const StepContext& step);
+	double iterate(wall::WallContacts<K>& contacts, const StepContext& step);
+
+	wall::SymmetricFactor factor; // a node for each pack of the free bodies
+	std::vector<int> places;      // of the nodes
+	std::vector<int> node;        // of a body, its first; -1: none
+	std::vector<wall::SymmetricFactor::Edge> edges;
+	std::vector<std::array<Lane, wall::width>> lanes; // by group, that A is of
+	std::vector<double> masses;                       // by body, that A is of
+	wall::LaneArray free, force;
+	double age {0};   // s, of the factor
+	double saved {0}; // iterations
+	bool cold {true};
+};
+
+} // namespace masonry::rigid::assembly

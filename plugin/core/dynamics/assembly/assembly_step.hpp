@@ -1,0 +1,56 @@
+#pragma once
+// The step of an assembly of many rigid blocks, in a plane or in space: walls that stand, that rock, that slide and that fall, by one
+// method (admm_solver.hpp).
+//
+//     frames at the middle of the step, gaps at its start (wall::WallContacts)
+//     V by the contact laws, all at once (AdmmSolver)
+//     q += h V, and penetrations that are left are taken off by positions alone (wall::Lift)
+//     energies (EnergyLedger)
+//
+// Positions are first order in the step; impacts are plastic and happen at the end of a step.
+#include "dynamics/assembly/admm_solver.hpp"
+#include "dynamics/assembly/energy_ledger.hpp"
+#include "dynamics/wall/lift.hpp"
+
+namespace masonry::rigid::assembly {
+
+struct AssemblySettings {
+	AdmmSettings solver;
+	int threads {1}; // at most; small assemblies use one. The bits do not depend on it
+};
+
+struct AssemblyReport : StepReport {
+	int iterations {0};          // of the solver in this step
+	double velocityResidual {0}; // m/s
+	int courses {0};             // blocks one upon another, at most
+};
+
+template <class K>
+class AssemblyStep {
+public:
+	AssemblySettings settings;
+	AssemblyReport report; // of the last step
+
+	StepReport advance(RigidSystem<K>& system, double dt);
+
+	// Gaps, forces and places of the points as they are after the step, into the system's pairs. To be called before the list of pairs
+	// changes.
+	void showPoints(RigidSystem<K>& system) { contacts.showPoints(system); }
+
+private:
+	void advancePart(RigidSystem<K>& system, double h);
+	void takeContacts(RigidSystem<K>& system);
+	void placeFrames(const RigidSystem<K>& system, double h);
+	void setLoads(const RigidSystem<K>& system, double h);
+	void moveBodies(RigidSystem<K>& system, double h);
+
+	wall::Team team;
+	wall::WallContacts<K> contacts {team}, nobody {team};
+	AdmmSolver<K> solver;
+	EnergyLedger<K> ledger;
+	wall::Lift<K> projection;
+	wall::LaneArray loads;
+	std::vector<typename K::Pose> middle; // poses at the middle of the step, as the velocities at its start predict them
+};
+
+} // namespace masonry::rigid::assembly

@@ -1,0 +1,68 @@
+#include "dynamics/assembly/energy_ledger.hpp"
+#include "tolerances.hpp"
+#include <algorithm>
+#include <cmath>
+
+namespace masonry::rigid::assembly {
+
+template <class K>
+void EnergyLedger<K>::open(const RigidSystem<K>& s, double h)
+{
+	kinetic = s.kineticEnergy();
+	baseWork = friction = 0;
+	std::vector<typename K::Vector> now;
+	for (const Drive<K>& drive : s.drives)
+		now.push_back(drive.meanVelocity(s.time, h));
+	if (last.size() != now.size())
+		last = now;
+	halfBack.clear();
+	for (size_t d = 0; d < now.size(); ++d)
+		halfBack.push_back((last[d] - now[d]) / 2);
+	last = std::move(now);
+}
+
+template <class K>
+void EnergyLedger<K>::takeContacts(const RigidSystem<K>& s, const wall::WallContacts<K>& c, const AdmmSolver<K>& solver, double loss)
+{
+	friction = loss;
+	for (const auto& [g, i] : c.onBase) {
+		const wall::Group<K>& group = c.groups[g];
+		const bool first = s.bodies[group.body1[i]].prescribed;
+		const int base = (first ? group.body1 : group.body2)[i];
+		wall::Lanes v[wall::packs<K>];
+		std::copy_n(&c.velocity[wall::packs<K> * base], wall::packs<K>, v);
+		if (const int drive = s.bodies[base].drive; drive >= 0)
+			for (int k = 0; k < K::dimension; ++k)
+				v[0][k] += halfBack[drive][k];
+		for (int k = 0; k < group.count; ++k) {
+			const auto& row = solver.rows[g][k];
+			Eigen::Matrix<double, K::rows, 1> impulse;
+			impulse[0] = row.actedN[i];
+			for (int n = 1; n < K::rows; ++n)
+				impulse[n] = wall::component(row.actedT, n - 1, i);
+			for (int n = 0; n < K::rows; ++n)
+				baseWork += (first ? impulse[n] : -impulse[n]) * wall::rateOf(group.point[k], n, i, first ? 1 : 2, v);
+		}
+	}
+}
+
+template <class K>
+double EnergyLedger<K>::close(RigidSystem<K>& s, const Scales& scales, double h, double work)
+{
+	double mass = 0;
+	for (const auto& body : s.bodies)
+		mass += body.prescribed ? 0 : body.mass;
+	const double lost = work + baseWork + kinetic - s.kineticEnergy() - friction;
+	s.baseWork += baseWork;
+	s.frictDissip += friction;
+	s.impactDissip += lost;
+	const double atStake = std::abs(baseWork) + std::abs(work) + kinetic, liftedAll = mass * scales.acceleration * scales.length,
+	             slowest = tolerance::wall::createdTravel * scales.length / h;
+	const double allowed = tolerance::wall::createdShare * atStake + tolerance::wall::createdLift * liftedAll + mass * slowest * slowest;
+	return lost < -allowed ? -lost : 0;
+}
+
+template class EnergyLedger<Plane>;
+template class EnergyLedger<Space>;
+
+} // namespace masonry::rigid::assembly
