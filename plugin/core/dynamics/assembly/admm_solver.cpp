@@ -19,30 +19,45 @@ struct Step {
 	double h, perH, fall, mix, reach, left, softness, leastSoftness, relaxation, boundShare, pullBack;
 };
 
-// Filters the load. Returns where a point comes into reach that is not in A.
+// R by load.
 template <class K>
-MASONRY_INLINE Mask takePoint(PointLanes<K>& p, const RowOf<K>& row, const Lanes& approach, const Step& step)
+MASONRY_INLINE Lanes resistanceOf(const PointLanes<K>& p, const Step& step)
 {
+	const Lanes load = p.steady / (p.massN * step.fall), r = larger(step.softness / (all(1) + load), all(step.leastSoftness));
+	return (0.5 * r) * (p.massN + p.massT) / (p.massN * p.massT);
+}
+
+// What a look at the points has found: one in reach that is not in A; one whose R no longer follows its load.
+struct alignas(alignment) Outdated {
+	Mask reached, loaded;
+};
+
+// Filters the load.
+template <class K>
+MASONRY_INLINE void takePoint(PointLanes<K>& p, const RowOf<K>& row, const Lanes& approach, const Step& step, Outdated& outdated)
+{
+	constexpr double follows = 0.1; // share by which R may differ
 	p.steady += step.mix * (p.pn - p.steady);
-	return (p.massN > 0) & (p.gap + step.h * approach < step.reach) & (row.stiffness <= 0);
+	const Mask in = row.stiffness > 0;
+	outdated.reached |= (p.massN > 0) & (p.gap + step.h * approach < step.reach) & ~in;
+	outdated.loaded |= in & (p.massN > 0) & (size(resistanceOf(p, step) - row.resistance) > follows * row.resistance);
 }
 
 template <class K>
-MASONRY_INLINE bool takeGroups(Group<K>* groups, const RowsOf<K>* rows, int begin, int end, const Lanes* velocity, const Step& step)
+MASONRY_INLINE Outdated takeGroups(Group<K>* groups, const RowsOf<K>* rows, int begin, int end, const Lanes* velocity, const Step& step)
 {
-	Mask needed {};
+	Outdated outdated {};
 	for (int g = begin; g < end; ++g) {
 		const Bodies<K> v1(velocity, groups[g].body1), v2(velocity, groups[g].body2);
 		for (int k = 0; k < groups[g].count; ++k) {
 			PointLanes<K>& p = groups[g].point[k];
 			const Lanes un = normalRate(v1, v2, p);
-			needed |= takePoint<K>(p, rows[g][k], 2. * smaller(un, all(0)), step);
+			takePoint<K>(p, rows[g][k], 2. * smaller(un, all(0)), step, outdated);
 		}
 	}
-	return any(needed);
+	return outdated;
 }
 
-// R by load.
 template <class K>
 MASONRY_INLINE void setPenalties(Group<K>* groups, RowsOf<K>* rows, int begin, int end, const Lanes* velocity, const Step& step)
 {
@@ -54,9 +69,7 @@ MASONRY_INLINE void setPenalties(Group<K>* groups, RowsOf<K>* rows, int begin, i
 			auto& row = rows[g][k];
 			const Lanes approach = 2. * smaller(normalRate(v1, v2, p), none);
 			const Mask in = (p.massN > 0) & (p.gap + step.h * approach < step.reach) & (all(groups[g].count - k) > 0);
-			const Lanes massN = in ? p.massN : one, massT = in ? p.massT : one;
-			const Lanes load = p.steady / (massN * step.fall), r = larger(step.softness / (one + load), all(step.leastSoftness));
-			const Lanes resistance = (0.5 * r) * (massN + massT) / (massN * massT);
+			const Lanes resistance = in ? resistanceOf(p, step) : one;
 			row.resistance = in ? resistance : none;
 			row.stiffness = in ? one / resistance : none;
 		}
@@ -160,9 +173,10 @@ MASONRY_LANES void inertia(const std::vector<int>& members, const Lanes* velocit
 
 // No template is compiled for several vector widths.
 #define MASONRY_PASSES(K)                                                                                                                  \
-	MASONRY_LANES bool takePass(Group<K>* groups, const RowsOf<K>* rows, int begin, int end, const Lanes* velocity, const Step& step)      \
+	MASONRY_LANES void takePass(Group<K>* groups, const RowsOf<K>* rows, int begin, int end, const Lanes* velocity, const Step& step,      \
+	                            Outdated& outdated)                                                                                        \
 	{                                                                                                                                      \
-		return takeGroups<K>(groups, rows, begin, end, velocity, step);                                                                    \
+		outdated = takeGroups<K>(groups, rows, begin, end, velocity, step);                                                                \
 	}                                                                                                                                      \
 	MASONRY_LANES void penaltyPass(Group<K>* groups, RowsOf<K>* rows, int begin, int end, const Lanes* velocity, const Step& step)         \
 	{                                                                                                                                      \
@@ -222,15 +236,20 @@ bool AdmmSolver<K>::isOutdated(const RigidSystem<K>& s, WallContacts<K>& c, cons
 {
 	if (lanes.size() != c.groups.size())
 		rows.assign(c.groups.size(), {});
-	bool needed[Team::mostParts + 1] {};
+	Outdated found[Team::mostParts + 1] {};
 	const Step same = stepOf(step, settings);
 	c.allParts([&](const Part& part, int number) {
-		needed[number] = takePass(c.groups.data(), rows.data(), part.begin, part.end, c.velocity.data(), same);
+		takePass(c.groups.data(), rows.data(), part.begin, part.end, c.velocity.data(), same, found[number]);
 	});
 	age += step.h;
-	if (lanes.size() != c.groups.size() || masses.size() != c.own.size() || !(age < settings.refactorTime * step.rocking) ||
-	    std::any_of(std::begin(needed), std::end(needed), [](bool is) { return is; }))
+	if (lanes.size() != c.groups.size() || masses.size() != c.own.size())
 		return true;
+	const bool isOld = !(age < settings.refactorTime * step.rocking);
+	if (isOld)
+		age = 0;
+	for (const Outdated& here : found)
+		if (any(here.reached) || (isOld && any(here.loaded)))
+			return true;
 	for (size_t g = 0; g < lanes.size(); ++g)
 		for (int i = 0; i < width; ++i)
 			if (!(lanes[g][i] == laneOf(s, c, int(g), i)))

@@ -19,10 +19,9 @@
 // The method is that of Boyd et al. (Foundations and Trends in Machine Learning 3, 2011); for contact with friction see Acary, Bremond and
 // Huber (2018) and Carpentier, Le Lidec and Montaut (RSS 2024). These choices are ours; docs/numerics.md has what was measured:
 //
-//     R by load       R = d r/(1 + l): d is the mean of J M^-1 J^T over the rows of the point, l the filtered normal impulse of the point
-//     in
-//                     units of the impulse that stops it alone after the fall of one step. R p is then a velocity of about the same size at
-//                     light and heavy points. A uniform R suits either a wall that slides or one that rocks.
+//     R by load       R = d r/(1 + l): d is the mean of J M^-1 J^T over the rows of the point, l its filtered normal impulse in units of
+//                     the impulse that stops it alone after the fall of one step. R p is then a velocity of about the same size at light
+//                     and heavy points. A uniform R suits either a wall that slides or one that rocks.
 //     damped bound    With the bound mu p_n, sliding points run into a limit cycle whose residual does not fall.
 //     start of z      Points without an impulse start from the velocity that they have, z = (max(0, w_n), w_t): their bias changes in each
 //                     step. Others keep z, as they keep p.
@@ -40,7 +39,7 @@ struct AdmmSettings {
 	int iterations {20};           // at most in a step, beside the reserve. Fewer: excursions are too small
 	int reserve {50};              // times `iterations` that quiet steps save for impacts at most. 0: walls under impacts drift
 	int first {3000};              // iterations of a step that starts without impulses, at most
-	double softness {0.2};         // r. Larger: loads lag, excursions are too small; smaller: slips lag
+	double softness {0.2};         // r. Larger: high walls go too far; smaller: low walls that begin to move do not go far enough
 	double leastSoftness {1e-5};   // of d, at the most loaded points. Smaller: rounding of the factorisation in single precision
 	double relaxation {1.7};       // a, 1 to 2. Larger: residuals oscillate; smaller: they fall more slowly
 	double boundShare {0.3};       // theta. 1: sliding points run into a limit cycle; smaller: friction lags
@@ -113,7 +112,7 @@ private:
 	std::vector<std::array<Lane, wall::width>> lanes; // by group, that A is of
 	std::vector<double> masses;                       // by body, that A is of
 	wall::LaneArray free, force;
-	double age {0};   // s, of the factor
+	double age {0};   // s, since R was last compared with the loads
 	double saved {0}; // iterations
 	bool cold {true};
 };

@@ -77,6 +77,20 @@ TEMPLATE_TEST_CASE("the work of the base is that of the momentum that it gives",
 	CHECK(lost > 0);
 }
 
+// The loads of a wall at rest stay, and so does the matrix: it is made at the start, and once more when the filtered loads are those of
+// rest.
+TEST_CASE("an assembly at rest keeps its factorisation")
+{
+	AssemblyScene<Plane> scene;
+	scene.addWall(10, 10);
+	int factorisations = 0;
+	for (int k = 0; k < 300; ++k) {
+		scene.advance(1e-3);
+		factorisations += k >= 100 ? scene.one.report.factorisations : 0;
+	}
+	CHECK(factorisations == 0);
+}
+
 TEST_CASE("an assembly's bits do not depend on the number of threads")
 {
 	std::vector<double> numbers[2];
