@@ -70,7 +70,7 @@ void RockingJointEngine::postLoad(RockingJointEngine&)
 void RockingJointEngine::leaveScene()
 {
 	forgetImpacts(*this);
-	forget(started, worstResidual, failures, madeEnergy, lostEnergy, turnedOver, toldMade, toldLost, kinetic, potential, elastPotential,
+	forget(started, worstResidual, failures, madeEnergy, lostEnergy, turnedOver, toldMade, toldLost, toldDeep, kinetic, potential, elastPotential,
 	       frictDissip, dampDissip, impactDissip, baseWork, reactionIds, reactions, reactionMoments, checkedTimeStep, boundAt);
 }
 
@@ -333,6 +333,28 @@ void RockingJointEngine::report(Real energy, Real most, const char* what, bool& 
 	                   << "RockingJointEngine.madeEnergy and lostEnergy sum up such errors.");
 }
 
+/// A landing that presses a spring in by more than 2 % of the smaller block is no rigid impact any more: the corner passes to other faces too deep, and
+/// the time of contact is not short. The depth of a landing at the speed v is about v sqrt(mass / stiffness).
+void RockingJointEngine::reportDepth()
+{
+	constexpr Real most = 0.02; // of the smallest half size of the pair
+	if (toldDeep)
+		return;
+	const auto smallest = [&](int b) { return static_cast<const Box&>(*(*scene->bodies)[ids[b]]->shape).extents.minCoeff(); };
+	for (const auto& contact : system.contacts)
+		for (int i = 0; i < contact.size; ++i) {
+			const Real depth = -contact.patch.points[i].gap / std::min(smallest(contact.body1), smallest(contact.body2));
+			if (!(depth > most))
+				continue;
+			toldDeep = true;
+			++failures;
+			LOG_WARN("at t = " << scene->time << " s blocks " << ids[contact.body1] << " and " << ids[contact.body2] << " press into each other by "
+			                   << 100 * depth << " % of the smallest half size: their joint is too soft for this landing. Give dem.engines() a smaller "
+			                      "penetration, or take rigid blocks. The run goes on.");
+			return;
+		}
+}
+
 bool RockingJointEngine::applyJumps(const vector<BaseMotionEngine*>& motions, const vector<StepImpact>& impacts)
 {
 	bool acted = false;
@@ -504,6 +526,7 @@ void RockingJointEngine::action()
 	keepReactions();
 	measureEnergy();
 	reportErrors();
+	reportDepth();
 	lowerTimeStep();
 }
 

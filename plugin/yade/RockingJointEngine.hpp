@@ -38,7 +38,7 @@ public:
 		((vector<int>, impactSwitched, , Attr::readonly, "1: the block rocks on about the other pivot; 0: the joint came to rest."))
 		((vector<int>, impactCapped, , Attr::readonly, "1: the restitution that was asked for was not reached. It was lowered so that energy does not grow, or no value satisfies the laws."))
 		((Real, worstResidual, 0, Attr::readonly, "Largest residual of the impulse problems so far [m/s]; that of accelerations is multiplied by the time step."))
-		((long, failures, 0, Attr::readonly, "Number of impulse problems so far that missed their laws (residual above 1e-8 of their speed). One failure each is added when madeEnergy or lostEnergy reaches a twentieth of turnedOver."))
+		((long, failures, 0, Attr::readonly, "Number of impulse problems so far that missed their laws (residual above 1e-8 of their speed). One failure each is added when madeEnergy or lostEnergy reaches a twentieth of turnedOver, and when blocks first press deeper into each other than 2 % of the smallest half size."))
 		((Real, madeEnergy, 0, Attr::readonly, "Energy that integration errors have added so far [J]; lost energy is not subtracted. Causes: a spring acts from the start of the step in which its point closes, or to the end of the step in which it opens; a corner that passes to another face, or becomes the new pivot, is suddenly deeper or stiffer. Use a smaller dt, a smaller penetration or rigid blocks to reduce it."))
 		((Real, lostEnergy, 0, Attr::readonly, "Energy that integration errors have removed so far, for the same causes [J]; dashpots, friction and impacts are not part of it."))
 		((Real, turnedOver, 0, Attr::readonly, "Largest value so far of kinetic and elastic energy plus all dissipated energy [J]."))
@@ -54,6 +54,7 @@ public:
 		((vector<Vector3r>, reactionMoments, , Attr::readonly, "Moment of the joints about the centre of each body of reactionIds in the last step [N m]."))
 		((bool, toldMade, false, Attr::hidden, ""))
 		((bool, toldLost, false, Attr::hidden, ""))
+		((bool, toldDeep, false, Attr::hidden, ""))
 		((long, lastStep, -1, Attr::hidden, "")),
 		/* ctor */,
 		.def("criticalTimeStep", &RockingJointEngine::criticalTimeStep, "Largest stable time step of the joints without their dashpots [s].")
@@ -86,6 +87,7 @@ private:
 	void addErrors();
 	void addUnexplained(Real energy);
 	void reportErrors();
+	void reportDepth();
 	void report(Real energy, Real most, const char* what, bool& told);
 	void recordImpact(const masonry::ImpactRecord&);
 	bool applyJumps(const vector<BaseMotionEngine*>& motions, const vector<StepImpact>& impacts);
