@@ -97,6 +97,13 @@ def test_restitution_left_out_is_the_natural_one():
         assert masonry.closed_form.time_to_stabilise(block, 0.05, given, 0.01).shape == (2,)
 
 
+def test_sizes_in_mm_are_named(recwarn):
+    masonry.RockingBlock.from_size(width=[0.4, 8], height=40)
+    assert not recwarn.list
+    masonry.RockingBlock.from_size(width=[0.4, 400], height=2000)
+    assert [str(warning.message) for warning in recwarn.list] == ["width = 400: is it in mm? Sizes are in m", "height = 2000: is it in mm? Sizes are in m"]
+
+
 def test_a_package_without_its_compiled_module_says_how_to_build_it(tmp_path):
     shutil.copytree(os.path.dirname(masonry.__file__), tmp_path / "masonry", ignore=shutil.ignore_patterns("*.so", "__pycache__"))
     done = subprocess.run([sys.executable, "-c", "import masonry"], env={**os.environ, "PYTHONPATH": str(tmp_path)}, capture_output=True, text=True)

@@ -345,3 +345,8 @@ def test_picture_of_a_history(tmp_path):
         assert (tmp_path / f"{k}.png").stat().st_size > 10000
     with pytest.raises(ValueError, match=r"the history is of \(2,\) cases: must be of one block"):
         masonry.simulate(block, record.scaled([1, 2])).draw(tmp_path / "two.png")
+    for name in ("picture", "picture.pgn"):
+        with pytest.raises(ValueError, match=rf"path = .*{name}: must end in .png, .pdf, .svg"):
+            histories[0].draw(tmp_path / name)
+    with pytest.raises(IsADirectoryError, match="path = .*: is a folder: must be the name of a file"):
+        histories[0].draw(tmp_path)

@@ -186,6 +186,9 @@ def test_records_have_a_unit_and_a_peak(recwarn):
     masonry.simulate(block, plain)
     assert [str(warning.message) for warning in recwarn.list] == [
         "The record has no unit and a peak of 0.35: is it in g? It is taken in m/s^2, 0.036 g. Give unit='g' or unit='m/s^2' to Record."]
+    recwarn.clear()
+    masonry.simulate(block, masonry.Record(0.01, [0, 293, 0], unit="m/s^2"))      # cm/s^2 taken for m/s^2
+    assert [str(warning.message) for warning in recwarn.list] == ["The record reaches 293 m/s^2 before its scale, 29.9 g: is its unit right?"]
     with pytest.raises(ValueError, match="unit = 'gal': must be one of"):
         masonry.Record(0.01, [0, 1], unit="gal")
 

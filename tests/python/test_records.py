@@ -258,6 +258,8 @@ def test_units_that_are_said_twice(path):
                              (dict(component="a"), r"component = 'a': must be the name of a column in the first line of .*'acceleration \[gal\]'")):
         with pytest.raises(ValueError, match=words):
             masonry.read_record(file, **arguments)
+    with pytest.raises(ValueError, match=r"columns = \(0, 0\): must be acceleration or \(time, acceleration\), two columns"):
+        masonry.read_record(file, columns=(0, 0))
     for arguments in (dict(unit="g"), dict(dt=0.01), dict(columns=1)):
         with pytest.raises(ValueError, match=f"{next(iter(arguments))} = .*must be left out for .*, a PEER file, which says it"):
             masonry.read_record(path(at2(A / G)), **arguments)

@@ -11,7 +11,7 @@ import sys
 import numpy as np
 import pytest
 from masonry import _pose, results
-from masonry.results.reporting import view3d
+from masonry.results.reporting import view3d, words
 from test_results import history, rocking
 
 import masonry
@@ -28,6 +28,11 @@ ABOUT = {"script": "wall.py", "versions": {"masonry": "0.1.0", "YADE": "2023.02a
 IMPACTS = np.array([(0.5, 11, 10, np.nan, 0.8, 0.3, 1.25, 0.4, 0.1, True, False)],
                    dtype=[("time", float), ("body", int), ("support", int), ("restitution_asked", float), ("restitution", float), ("velocity", float),
                           ("energy_lost", float), ("friction_demand", float), ("application", float), ("switched", bool), ("capped", bool)])
+
+
+@pytest.mark.parametrize("value, digits, text", [(1208, 3, "1210"), (44.37, 3, "44.4"), (14683.2, 4, "14680"), (0.01234, 3, "0.0123"), (-1208, 3, "-1210"), (0, 3, "0")])
+def test_large_numbers_have_no_power_of_ten(value, digits, text):
+    assert words.decimal(value, digits) == text
 
 
 class Page(html.parser.HTMLParser):

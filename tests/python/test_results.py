@@ -607,9 +607,12 @@ def test_a_file_is_written_whole_or_not_at_all(tmp_path):
     plain = tmp_path / "plain"
     plain.write_text("")
     assert path.stat().st_mode == plain.stat().st_mode  # as any file that is opened
-    with pytest.raises(FileNotFoundError):
-        with written(tmp_path / "nowhere" / "some.txt"):
-            pass
+    for kind, wrong, words in ((FileNotFoundError, tmp_path / "nowhere" / "some.txt", "no file can be written in the folder .*nowhere: No such file or directory"),
+                               (NotADirectoryError, path / "some.txt", "no file can be written in the folder .*some.txt: Not a directory"),
+                               (IsADirectoryError, tmp_path, "is a folder: must be the name of a file")):
+        with pytest.raises(kind, match=f"^path = .*: {words}$"):
+            with written(wrong):
+                pass
 
 
 def test_writers_that_fail_leave_the_old_file(tmp_path, monkeypatch):

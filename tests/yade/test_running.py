@@ -61,6 +61,21 @@ for train, end in ((dem.PulseTrainEngine(ids=[0], impulse=0.1, times=[0, 0.4], s
                    (dem.PulseTrainEngine(ids=[0], impulse=0.1, resonantBlock=1), math.inf)):
     assert train.end == end
 raised(ValueError, "not known", lambda: dem.run(until=train))
+
+print("the end of a motion that moves nothing is refused; one that the integrator was given later is not, nor one of a loaded scene")
+shaken()
+later = dem.record_motion(RECORD, ids=[0])
+raised(ValueError, "until: this RecordMotionEngine of body 0 moves nothing: give it to dem.engines(motion=...)", lambda: dem.run(until=later))
+O.engines[-1].motions = [later]
+dem.run(until=later)
+assert 1.0 - 1e-3 * O.dt <= O.time < 1.0 + O.dt
+with tempfile.NamedTemporaryFile(suffix=".yade.gz") as file:
+    shaken()
+    O.save(file.name)
+    O.load(file.name)
+    dem.run(until=O.engines[-1].motions)
+assert 1.0 - 1e-3 * O.dt <= O.time < 1.0 + O.dt
+
 O.reset()
 stone = dem.BlockMat(density=2000, frictionAngle=0.6, restitution=0.9, noSlip=True)
 base = dem.base((2, 1, 0.2), stone)

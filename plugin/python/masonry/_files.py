@@ -13,7 +13,12 @@ def written(path):
     """Path to write to in a `with` block, of the same ending and in the same folder; it gets the name `path` when the block has ended, in one step
     of the file system, and vanishes when the block raises. Writers at the same time do not meet: the last one stays."""
     path = Path(path)
-    handle, beside = tempfile.mkstemp(prefix=f".{path.stem}.", suffix=f".part{path.suffix}", dir=path.parent)
+    if path.is_dir():
+        raise IsADirectoryError(f"path = {path}: is a folder: must be the name of a file")
+    try:
+        handle, beside = tempfile.mkstemp(prefix=f".{path.stem}.", suffix=f".part{path.suffix}", dir=path.parent)
+    except OSError as error:
+        raise type(error)(f"path = {path}: no file can be written in the folder {path.parent}: {error.strerror}") from None
     os.close(handle)
     try:
         yield beside
@@ -24,6 +29,15 @@ def written(path):
     except BaseException:
         Path(beside).unlink(missing_ok=True)
         raise
+
+
+def save_picture(figure, path, **options):
+    """Writes a figure of Matplotlib; ValueError where no picture has the ending of the path. options: those of Figure.savefig."""
+    path = Path(path)
+    if not path.is_dir() and path.suffix[1:].lower() not in figure.canvas.get_supported_filetypes():
+        raise ValueError(f"path = {path}: must end in .png, .pdf, .svg or another ending of pictures that Matplotlib writes")
+    with written(path) as beside:
+        figure.savefig(beside, **options)
 
 
 def read_npz(path, what):

@@ -7,7 +7,7 @@ import re
 import numpy as np
 
 from . import _core
-from ._files import written
+from ._files import save_picture, written
 from ._given import array_given, number_given, positive_given, shown
 from ._lognormal import LognormalFit, NoMaximum, wilson
 from ._optional import needs
@@ -103,8 +103,7 @@ class Fragility:
             axes.set_title(textwrap.fill(self.verdict, 80), fontsize=9)
         axes.grid(alpha=0.3)
         axes.legend(fontsize=8)
-        with written(path) as beside:
-            figure.savefig(beside, dpi=120)
+        save_picture(figure, path, dpi=120)
         plt.close(figure)
 
     def __repr__(self):

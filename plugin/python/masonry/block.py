@@ -1,10 +1,14 @@
 """The rocking block."""
 
+import warnings
+
 import numpy as np
 
 from . import _core
 from ._given import array_given
 from ._arrays import columns, restore, shape_of
+
+_LARGEST = 50  # m; larger sizes are rather mm
 
 
 class RockingBlock:
@@ -34,7 +38,11 @@ class RockingBlock:
     @classmethod
     def from_size(cls, width, height, gravity=9.81):
         """The block of that whole width (2b) and height (2a), m."""
-        return cls(array_given("width", width) / 2, array_given("height", height) / 2, gravity)
+        width, height = array_given("width", width), array_given("height", height)
+        for name, size in (("width", width), ("height", height)):
+            if np.max(size, initial=0) > _LARGEST:
+                warnings.warn(f"{name} = {np.max(size):g}: is it in mm? Sizes are in m", stacklevel=2)
+        return cls(width / 2, height / 2, gravity)
 
     def _restitution(self, given):
         """C as given; the natural one where it is None or NaN."""

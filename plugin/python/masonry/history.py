@@ -6,7 +6,7 @@ import numpy as np
 
 from . import _core
 from ._arrays import columns, restore, shape_of
-from ._files import written
+from ._files import save_picture
 from ._given import array_given, shown, whole_given
 from ._optional import needs
 from .motions import Motion, PulseTrain, Record, Still
@@ -76,8 +76,7 @@ class History:
             below.plot(times, self.sample_base(times), color="tab:red")
             below.set(ylabel="base (m)")
         below.set(xlabel="time (s)", xlim=(0, times[-1]))
-        with written(path) as beside:
-            figure.savefig(beside, dpi=150)
+        save_picture(figure, path, dpi=150)
 
 
 def warn_of_doubt(*motions):

@@ -259,8 +259,8 @@ class Record(Motion):
         return result
 
     def doubt(self):
-        """A sentence on what may not be meant: a record without a unit whose peak is one of strong motion in g; displacements or velocities that are too fast, or
-        that do not begin or end at rest. '' otherwise."""
+        """A sentence on what may not be meant: a record whose peak is beyond those of earthquakes, or, without a unit, that of strong motion in g;
+        displacements or velocities that are too fast, or that do not begin or end at rest. '' otherwise."""
         peak = np.max(self.peak)
         name = f" {self.name[:60]!r}" if self.name else ""
         if self.quantity != "acceleration":
@@ -272,6 +272,9 @@ class Record(Motion):
                 return (f"The record{name} of a {self.quantity} has no unit and reaches {peak:.3g} m/s^2: is it in {QUANTITIES[self.quantity]}? "
                         "Give unit= to Record.")
             return ""
+        largest = np.abs(self._unscaled).max()
+        if largest > _FASTEST:
+            return f"The record{name} reaches {largest:.3g} m/s^2 before its scale, {largest / STANDARD_GRAVITY:.3g} g: is its unit right?"
         if self.unit_given or not 0.1 <= peak <= 1.5:
             return ""
         return (f"The record{name} has no unit and a peak of {peak:.3g}: is it in g? It is taken in m/s^2, "

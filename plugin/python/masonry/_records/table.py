@@ -63,8 +63,8 @@ def _chosen(path, names, count, first, columns):
         return tuple(range(count))
     chosen = tuple(columns) if isinstance(columns, (tuple, list)) else (columns,)
     places = [names.index(column) if names and column in names else column for column in chosen]
-    if len(places) not in (1, 2) or not all(isinstance(place, (int, np.integer)) and 0 <= place < count for place in places):
-        raise ValueError(f"columns = {shown(columns)}: must be acceleration or (time, acceleration), by number (0 to {count - 1}) or by the names in the "
+    if len(places) not in (1, 2) or len(set(places)) < len(places) or not all(isinstance(place, (int, np.integer)) and 0 <= place < count for place in places):
+        raise ValueError(f"columns = {shown(columns)}: must be acceleration or (time, acceleration), two columns, by number (0 to {count - 1}) or by the names in the "
                          f"first line of {path}" + (f", {shown(names)}" if names else ", which has none"))
     return tuple(places)
 

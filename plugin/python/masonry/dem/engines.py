@@ -147,7 +147,8 @@ def _check_arguments(model, method, impact_order, penetration, tolerance, dt, gr
     if dt is not None and not number_given("dt", dt) > 0:
         raise ValueError(f"dt = {dt}: must be positive, in s")
     if not isinstance(gravity, numbers.Real) or isinstance(gravity, bool):
-        raise ValueError(f"gravity = {shown(gravity)}: must be one number in m/s^2, which acts along -z")
+        raise ValueError(f"gravity = {shown(gravity)}: must be one number in m/s^2, which acts along -z; for another direction set "
+                         "O.engines[-1].gravity = (x, y, z) of the rigid model, or use dem.TiltTable")
     if not (gravity == 0 or _GRAVITIES[0] <= gravity <= _GRAVITIES[1]):
         raise ValueError(f"gravity = {gravity}: must be 0, or from {_GRAVITIES[0]:g} to {_GRAVITIES[1]:g}, in m/s^2")
 

@@ -139,6 +139,11 @@ def _untouched(others):
             + ("; no engine of `others` moves those that are free" if unmoved else ""))
 
 
+def is_left_out(motion):
+    """Whether the script has made this motion engine and given it to no dem.engines()."""
+    return any(known() is motion for known, _ in _made)
+
+
 def _motion_left_out(motions):
     """Sentence on a motion engine that the script has made in this scene and given to no dem.engines()."""
     _made[:] = [(known, mark) for known, mark in _made if known() is not None and not any(known() is given for given in motions)]

@@ -7,6 +7,9 @@ import time
 from masonry._given import number_given, shown
 from yade import O, wrapper
 
+from masonry.dem import notes
+from masonry.dem.scene import listed
+
 # Wall clock between two looks at the bar, s.
 _SHOWN = 0.1
 # Share of a step by which O.time may miss the end: it is a sum of steps.
@@ -26,6 +29,14 @@ def motion_end(motion, name="until"):
     return max(one.end for one in several)
 
 
+def _check_given(until):
+    """ValueError where a motion that the script has made does not move the scene."""
+    moving = [*O.engines, *(motion for engine in O.engines for motion in getattr(engine, "motions", ()))]
+    for one in until if isinstance(until, (list, tuple)) else [until]:
+        if notes.is_left_out(one) and not any(motion is one for motion in moving):
+            raise ValueError(f"until: this {type(one).__name__} of body {listed(one.ids)} moves nothing: give it to dem.engines(motion=...)")
+
+
 def run(seconds=None, until=None, progress=None):
     """Runs the scene and returns when that is done.
 
@@ -35,7 +46,8 @@ def run(seconds=None, until=None, progress=None):
 
     The last step is the first one that reaches the end. What goes wrong in the run is raised as it comes out of O.step(), which
     this calls; Ctrl-C stops between two steps. O.pause() does not stop it, nor do O.stopAtIter and O.stopAtTime: a script that is to stop earlier
-    calls it in pieces. Raises ValueError where there are no engines, O runs already, or the motion is over.
+    calls it in pieces. Raises ValueError where there are no engines, O runs already, the motion is over, or the
+    script has not given it to an engine.
     """
     from tqdm import tqdm
 
@@ -53,6 +65,8 @@ def run(seconds=None, until=None, progress=None):
     end = start + seconds if until is None else motion_end(until)
     if not end > start:
         raise ValueError(f"until: that motion is over at {end:g} s and O.time = {start:g} s: give seconds")
+    if until is not None:
+        _check_given(until)
     shown = sys.stderr is not None and sys.stderr.isatty() if progress is None else progress
     with tqdm(total=float(f"{end - start:.4g}"), desc="run", disable=not shown, bar_format="{desc}: {percentage:3.0f}%|{bar}| {n:.3g} of {total:g} s [{elapsed}<{remaining}]") as bar:
         look = time.monotonic() + _SHOWN

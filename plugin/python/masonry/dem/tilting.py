@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from masonry._boxes import bounds
-from masonry._files import written
+from masonry._files import save_picture
 from masonry._given import number_given, positive_given, shown
 from masonry._pose import axes_of
 from masonry.dem.engines import _FEW_BLOCKS, _METHODS, engines, has_stiffness
@@ -419,5 +419,4 @@ class _Mechanism:
         axes.set(xlim=(left - margin, right + margin), ylim=(low - margin, high + margin))
         axes.set(xlabel=f"{'xy'[self._axis]} (m)", ylabel="z (m)")
         axes.set_title(f"{title}\nmovement drawn {scale:.3g} times", fontsize="small")
-        with written(path) as beside:
-            figure.savefig(beside, dpi=150, bbox_inches="tight")
+        save_picture(figure, path, dpi=150, bbox_inches="tight")

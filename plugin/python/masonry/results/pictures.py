@@ -1,7 +1,7 @@
 """Pictures and films of a WallHistory. Files are written without a screen; matplotlib is imported where it is needed."""
 
 import numpy as np
-from masonry._files import written
+from masonry._files import save_picture, written
 from masonry._given import number_given, positive_given, shown
 from masonry.results.collapse import collapse, fallen
 from masonry.results.forces import has_forces, thrust_at_first
@@ -126,8 +126,7 @@ class _Painter:
 
 
 def _save(figure, path):
-    with written(path) as beside:
-        figure.savefig(beside, dpi=150)
+    save_picture(figure, path, dpi=150)
 
 
 def shape_figure(history, time=None, enlarge=None, color="displacement", view=None, title=""):

@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 
-from .._files import written
+from .._files import save_picture
 from .._given import shown
 from .._optional import needs
 
@@ -38,8 +38,7 @@ def draw(spectrum, path, value=None, x=None, y=None):
         if x == y or x not in spectrum.dims:
             raise ValueError(f"x = {shown(x)}, y = {shown(y)}: must be two dimensions of {', '.join(spectrum.dims)}")
         figure = _maps(plt, spectrum, value, x, y)
-    with written(path) as beside:
-        figure.savefig(beside, dpi=120)
+    save_picture(figure, path, dpi=120)
     plt.close(figure)
 
 

@@ -71,7 +71,7 @@ def _oscillators_given(period, damping):
     if not (np.all(periods > 0) and np.all(np.isfinite(periods))):
         raise ValueError(f"period = {shown(period)}: must be positive and finite, in s")
     if not (np.all(ratios >= 0) and np.all(ratios < 1)):
-        raise ValueError(f"damping = {shown(damping)}: must be at least 0 and below 1")
+        raise ValueError(f"damping = {shown(damping)}: must be at least 0 and below 1, a ratio: 0.05 for 5 %")
     return periods, ratios
 
 

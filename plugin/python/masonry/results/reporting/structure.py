@@ -87,8 +87,8 @@ def _warnings(history, verdict):
 def _numbers(history, verdict, table):
     """Rows (name, value, when)."""
     before = " before the collapse" if verdict.collapsed else ""
-    rows = [("Largest drift" + before, f"{100 * verdict.peak_drift:.3g} % of the height", f"{verdict.peak_drift_time:.4g} s"),
-            ("Drift in the last sample", f"{100 * verdict.residual_drift:.3g} % of the height", f"{history.time[-1]:.4g} s"),
+    rows = [("Largest drift" + before, f"{words.decimal(100 * verdict.peak_drift)} % of the height", f"{verdict.peak_drift_time:.4g} s"),
+            ("Drift in the last sample", f"{words.decimal(100 * verdict.residual_drift)} % of the height", f"{history.time[-1]:.4g} s"),
             (f"First drift of {100 * verdict.excursion:g} %", "never" if math.isnan(verdict.first_excursion) else "reached",
              "" if math.isnan(verdict.first_excursion) else f"{verdict.first_excursion:.4g} s")]
     for id, time in list(zip(verdict.fallen, verdict.fall_times))[:1]:
@@ -99,12 +99,12 @@ def _numbers(history, verdict, table):
         values = np.where(stands, np.nan_to_num(table[name]), 0)
         if len(values) and values.max() > still(history):
             k = int(values.argmax())
-            rows.append((f"Joint that {verb} most", f"{1e3 * values[k]:.4g} mm, blocks {table['id1'][k]} and {table['id2'][k]}", f"{table[name + '_time'][k]:.4g} s"))
+            rows.append((f"Joint that {verb} most", f"{words.decimal(1e3 * values[k], 4)} mm, blocks {table['id1'][k]} and {table['id2'][k]}", f"{table[name + '_time'][k]:.4g} s"))
     energy = history.energy[-1]
     for name, word in (("baseWork", "Work of the base"), ("frictDissip", "Dissipated by friction"), ("impactDissip", "Dissipated by impacts"),
                        ("dampDissip", "Dissipated by dashpots")):
         if np.isfinite(energy[name]) and (energy[name] != 0 or name == "baseWork"):
-            rows.append((word, f"{energy[name]:.4g} J", "in all"))
+            rows.append((word, f"{words.decimal(energy[name], 4)} J", "in all"))
     return rows
 
 

@@ -5,6 +5,12 @@ import math
 _GRAVITY = 9.80665  # m/s^2, as records are given in g
 
 
+def decimal(value, digits=3):
+    """The value rounded to so many significant digits; large ones are written without a power of ten."""
+    value = float(f"{value:.{digits}g}")
+    return f"{value:.0f}" if 1 <= abs(value) / 10 ** (digits - 1) < 1e9 else f"{value:.{digits}g}"
+
+
 def quantity(value, unit=""):
     return "not known" if value is None else f"{value:.4g}{' ' if unit else ''}{unit}"
 
