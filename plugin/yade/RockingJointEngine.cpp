@@ -70,8 +70,9 @@ void RockingJointEngine::postLoad(RockingJointEngine&)
 void RockingJointEngine::leaveScene()
 {
 	forgetImpacts(*this);
-	forget(started, worstResidual, failures, madeEnergy, lostEnergy, turnedOver, toldMade, toldLost, toldDeep, kinetic, potential, elastPotential,
-	       frictDissip, dampDissip, impactDissip, baseWork, reactionIds, reactions, reactionMoments, checkedTimeStep, boundAt);
+	forget(started, worstResidual, failures, madeEnergy, lostEnergy, turnedOver, toldMade, toldLost, toldDeep, kinetic, potential,
+	       elastPotential, frictDissip, dampDissip, impactDissip, baseWork, reactionIds, reactions, reactionMoments, checkedTimeStep,
+	       boundAt);
 }
 
 void RockingJointEngine::checkScene()
@@ -333,8 +334,8 @@ void RockingJointEngine::report(Real energy, Real most, const char* what, bool& 
 	                   << "RockingJointEngine.madeEnergy and lostEnergy sum up such errors.");
 }
 
-/// A landing that presses a spring in by more than 2 % of the smaller block is no rigid impact any more: the corner passes to other faces too deep, and
-/// the time of contact is not short. The depth of a landing at the speed v is about v sqrt(mass / stiffness).
+/// A landing that presses a spring in by more than 2 % of the smaller block is no rigid impact any more: the corner passes to other faces
+/// too deep, and the time of contact is not short. The depth of a landing at the speed v is about v sqrt(mass / stiffness).
 void RockingJointEngine::reportDepth()
 {
 	constexpr Real most = 0.02; // of the smallest half size of the pair
@@ -348,8 +349,9 @@ void RockingJointEngine::reportDepth()
 				continue;
 			toldDeep = true;
 			++failures;
-			LOG_WARN("at t = " << scene->time << " s blocks " << ids[contact.body1] << " and " << ids[contact.body2] << " press into each other by "
-			                   << 100 * depth << " % of the smallest half size: their joint is too soft for this landing. Give dem.engines() a smaller "
+			LOG_WARN("at t = " << scene->time << " s blocks " << ids[contact.body1] << " and " << ids[contact.body2]
+			                   << " press into each other by " << 100 * depth
+			                   << " % of the smallest half size: their joint is too soft for this landing. Give dem.engines() a smaller "
 			                      "penetration, or take rigid blocks. The run goes on.");
 			return;
 		}
