@@ -117,7 +117,7 @@ bool collide(const Box& box1, const Pose& pose1, const Box& box2, const Pose& po
 	const auto edgesCross = [&] { return bestEdges(box1, box2, second, edges) && edges.separation > reference.separation; };
 	bool crossing = !isFaceContact(pair, task, cosineLimit) && edgesCross();
 	if (!crossing || edges.separation <= reference.separation + gainOfEdges(reference.separation, pair.length, previous)) {
-		// Where the deepest vertex lies beyond the border of the face, the patch lacks it, and the edges beside it may be nearer.
+		// If the deepest vertex lies beyond the border of the face, the patch lacks it, and the edges beside it may be nearer.
 		const bool found = patchOn(pair, task);
 		if (found && !(crossing && smallestGap(out) > edges.separation + tolerance::contact::edge * pair.length))
 			return smallestGap(out) <= margin;

@@ -14,7 +14,7 @@ using RowOf = typename AdmmSolver<K>::Row;
 template <class K>
 using RowsOf = typename AdmmSolver<K>::Rows;
 
-// What is the same for all points of a step.
+// These values are the same for all points of a step.
 struct Step {
 	double h, perH, fall, mix, reach, left, softness, leastSoftness, relaxation, boundShare, pullBack;
 };
@@ -27,7 +27,7 @@ MASONRY_INLINE Lanes resistanceOf(const PointLanes<K>& p, const Step& step)
 	return (0.5 * r) * (p.massN + p.massT) / (p.massN * p.massT);
 }
 
-// What a look at the points has found: one in reach that is not in A; one whose R no longer follows its load.
+// A look at the points sets these: a point in reach is not in A; the R of a point no longer follows its load.
 struct alignas(alignment) Outdated {
 	Mask reached, loaded;
 };
@@ -103,7 +103,7 @@ MASONRY_INLINE void passGroup(Group<K>& group, StillGroup<K>& memory, RowsOf<K>&
 			p.pt = clip(yt, group.friction * (rough ? p.pn : row.bound));
 			f.zn = (p.pn - yn) * row.resistance;
 			f.zt = (p.pt - yt) * row.resistance;
-			// Where a point slides the bound must have settled too; times R, as z is.
+			// At a point that slides, the bound must have settled too; R turns it into a velocity, as z is.
 			const Mask follows = ~rough & slides(p.pt, group.friction * row.bound);
 			const Lanes lag = group.friction * size(p.pn - row.bound) * row.resistance;
 			worst = larger(worst, row.stiffness > 0 ? larger(miss, follows ? lag : all(0)) : all(0));

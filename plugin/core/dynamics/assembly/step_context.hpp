@@ -1,5 +1,5 @@
 #pragma once
-// What is the same for all bodies and points of an assembly in one step.
+// These values are the same for all bodies and points of an assembly in one step.
 #include "dynamics/rigid/scales.hpp"
 
 namespace masonry::rigid::assembly {

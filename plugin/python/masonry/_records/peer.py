@@ -18,7 +18,7 @@ _COUNTED = re.compile(rf"\s*{_COUNT}[\s,]+{_STEP}\s*NPTS[\s,]+DT\s*(.*)", re.IGN
 _SECONDS = {**dict.fromkeys(("", "S", "SEC", "SECS", "SECOND", "SECONDS"), 1.0),
             **dict.fromkeys(("MS", "MSEC", "MSECS", "MILLISECOND", "MILLISECONDS"), 1e-3)}
 
-# Where a line says its unit.
+# These patterns find the unit in a line.
 _UNIT_PLACES = [re.compile(pattern) for pattern in (r"\bUNITS?\b\s*(?:OF|ARE|IS|IN|:|=)?\s*(.+)", r"\bIN\s+(.+)", r"[(\[]([^()\[\]]+)[)\]]$", r"[,:=]\s*([^,:=]+)$")]
 _QUANTITIES = {"acceleration": r"ACCEL|\bACC\b", "velocity": r"VELOCIT|\bVEL\b", "displacement": r"DISPLACEMENT|\bDISP\b"}
 _MUST = {"acceleration": "state ACCELERATION in units of G, G/10, %G, CM/S^2, GAL or M/S^2",

@@ -13,7 +13,7 @@ from .cases import RUN_CASE, code, path_of, read
 
 # Lines of what a failed case has said that the error repeats; s between two looks at whether the run still goes on.
 _TAIL, _LOOK = 15, 0.25
-# What MPI's launchers tell their processes: YADE would take itself for one of them.
+# MPI's launchers set these variables; with them YADE would count itself as one of their processes.
 _OF_MPI = ("OMPI_", "PMIX_", "PMI_", "PRTE_", "HYDRA_", "HYDI_", "MPI_LOCAL")
 
 

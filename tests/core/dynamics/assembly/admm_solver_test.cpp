@@ -32,8 +32,8 @@ void obeysTheLaws(const RigidSystem<K>& s, Frozen<K>& frozen, bool all)
 		CHECK(sticks > 0);
 		CHECK(slides > 0);
 	}
-	// Of both: the residual is that of the laws with the velocities that the impulses give; ADMM stops at 1e-8 of the fall in |w - z|, and
-	// an impulse is wrong by that over R, some hundred times as much.
+	// The residual measures how far the impulses and the velocities that they give miss the laws. ADMM stops at 1e-8 of the fall in |w - z|,
+	// and an impulse is wrong by that over R, some hundred times as much.
 	CHECK(general.residual() < 1e-5 * frozen.step.fall);
 }
 

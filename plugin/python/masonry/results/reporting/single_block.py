@@ -10,7 +10,7 @@ from masonry.results.wall_history import WallHistory
 from . import curves, view3d
 
 _SAMPLES, _SHOWN = 2000, 400
-# Where no end is given and the motion has none: so many periods 2 pi / p.
+# A history without an end, under a motion without one, is drawn for this number of periods 2 pi / p.
 _PERIODS = 20
 # Rows of the table of impacts.
 _IMPACTS = 200

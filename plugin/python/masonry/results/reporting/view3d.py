@@ -10,7 +10,7 @@ from masonry.results.collapse import fallen
 from masonry.results.pictures import scale_end, shades
 from masonry.results.view import STILL, enlargement, plane_normal, still
 
-# Where Debian's package libjs-three has it. It is MIT-licensed, which asks for the notice in copies: report.html has it.
+# Debian's package libjs-three installs it here. Its MIT licence asks for the notice in copies; report.html has it.
 _LIBRARY = Path("/usr/share/javascript/three/three.min.js")
 # Frames, and numbers in all of them: 4 MB of the file.
 _FRAMES, _NUMBERS = 300, 1_000_000
