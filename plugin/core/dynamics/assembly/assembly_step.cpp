@@ -1,42 +1,12 @@
 #include "dynamics/assembly/assembly_step.hpp"
+#include "dynamics/rigid/drive_kinks.hpp"
+#include "dynamics/rigid/free_motion.hpp"
 #include "tolerances.hpp"
 #include <algorithm>
 
 namespace masonry::rigid::assembly {
 
 using wall::all;
-
-namespace {
-
-// A step is divided once at most, into halves, where a drive has a kink within it: the impulses of a part are where those of the next
-// start, and a part that is much shorter would hand on an impact's as many times too large.
-template <class K>
-double untilKink(const RigidSystem<K>& s, double left, double dt)
-{
-	const double half = dt / 2;
-	if (left <= half)
-		return left;
-	for (const Drive<K>& drive : s.drives)
-		if (drive.nextKink(s.time + tolerance::rigid::instant * dt, s.time + half) <= s.time + half)
-			return half;
-	return left;
-}
-
-// Moves a free body by `moved` (displacement and turn); its angular momentum stays. In space the spin follows from that in the new pose,
-// and changes on the way: to first order from the one at the middle.
-void move(RigidBody<Plane>& body, const Plane::Velocity& moved, double) { Plane::advance(body.pose, moved, 1); }
-
-void move(RigidBody<Space>& body, Space::Velocity moved, double h)
-{
-	const Vector3 spin = body.velocity.tail<3>(), momentum = Space::angularMomentum(body.inertia, body.pose, spin);
-	Pose middle = body.pose;
-	Space::advance(middle, moved, 0.5);
-	moved.tail<3>() += h * (Space::inverseInertia(body.inertia, middle) * momentum - spin);
-	Space::advance(body.pose, moved, 1);
-	body.velocity.tail<3>() = Space::inverseInertia(body.inertia, body.pose) * momentum;
-}
-
-} // namespace
 
 template <class K>
 StepReport AssemblyStep<K>::advance(RigidSystem<K>& s, double dt)
@@ -144,7 +114,7 @@ void AssemblyStep<K>::moveBodies(RigidSystem<K>& s, double h)
 		}
 		const typename K::Velocity moved = contacts.inGlobal(contacts.shift, b), before = body.velocity;
 		body.velocity = contacts.inGlobal(contacts.velocity, b);
-		move(body, moved, h);
+		moveFree(body, moved, h);
 		body.increment = (body.velocity - before) / h;
 		work += body.force.dot(moved);
 	}

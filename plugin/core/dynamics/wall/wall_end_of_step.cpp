@@ -1,27 +1,10 @@
 // Motions and energies of a step, back into the system.
+#include "dynamics/rigid/free_motion.hpp"
 #include "dynamics/wall/wall_step.hpp"
 #include "tolerances.hpp"
 #include <algorithm>
 
 namespace masonry::rigid {
-
-namespace {
-
-// Moves a free body by what its velocities of the step add up to; its momentum stays. In space the spin follows from it in the new pose,
-// and changes on the way: from that of the middle to first order.
-void move(RigidBody<Plane>& body, const Plane::Velocity& moved, double) { Plane::advance(body.pose, moved, 1); }
-
-void move(RigidBody<Space>& body, Space::Velocity moved, double h)
-{
-	const Vector3 spin = body.velocity.tail<3>(), momentum = Space::angularMomentum(body.inertia, body.pose, spin);
-	Pose middle = body.pose;
-	Space::advance(middle, moved, 0.5);
-	moved.tail<3>() += h * (Space::inverseInertia(body.inertia, middle) * momentum - spin);
-	Space::advance(body.pose, moved, 1);
-	body.velocity.tail<3>() = Space::inverseInertia(body.inertia, body.pose) * momentum;
-}
-
-} // namespace
 
 // A body's pose and velocity back into the system. Returns the work of the force on it, J.
 template <class K>
@@ -43,7 +26,7 @@ double WallStep<K>::takeBody(RigidSystem<K>& s, size_t b, double h)
 		K::advance(body.pose, moved, 1);
 		return 0;
 	}
-	move(body, moved, h);
+	moveFree(body, moved, h);
 	body.increment = (body.velocity - before) / h;
 	return body.force.dot(moved);
 }

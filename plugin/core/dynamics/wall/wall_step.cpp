@@ -1,4 +1,5 @@
 #include "dynamics/wall/wall_step.hpp"
+#include "dynamics/rigid/drive_kinks.hpp"
 #include "tolerances.hpp"
 #include <algorithm>
 
@@ -10,21 +11,6 @@ using wall::Lanes;
 namespace {
 
 constexpr int coldSolves = 3000, mostSolves = 300;
-
-// A step is divided once at most, into halves: the impulses of a part are where those of the next start, and one that is much shorter
-// would hand on an impact's as many times too large. Displacements of the base are exact anyway; a pulse of the first half acts at the
-// middle, one of the second at the end.
-template <class K>
-double untilKink(const RigidSystem<K>& s, double left, double dt)
-{
-	const double half = dt / 2;
-	if (left <= half)
-		return left;
-	for (const Drive<K>& drive : s.drives)
-		if (drive.nextKink(s.time + tolerance::rigid::instant * dt, s.time + half) <= s.time + half)
-			return half;
-	return left;
-}
 
 } // namespace
 
