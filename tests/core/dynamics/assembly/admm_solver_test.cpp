@@ -32,7 +32,7 @@ void obeysTheLaws(const RigidSystem<K>& s, Frozen<K>& frozen, bool all)
 		CHECK(sticks > 0);
 		CHECK(slides > 0);
 	}
-	// The residual measures how far the impulses and the velocities that they give miss the laws. ADMM stops at 1e-8 of the fall in |w - z|,
+	// The residual measures how far the impulses and their velocities miss the laws. ADMM stops where w and z differ by 1e-8 of the fall,
 	// and an impulse is wrong by that over R, some hundred times as much.
 	CHECK(general.residual() < 1e-5 * frozen.step.fall);
 }
