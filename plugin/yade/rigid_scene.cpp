@@ -66,7 +66,7 @@ masonry::rigid::StepReport RigidScene<K>::step()
 		system.moved = true;
 		system.startAnew();
 		showPoints();
-		bySize.emplace(); // what it remembers would be of steps long ago
+		scheduler.emplace(); // what it remembers would be of steps long ago
 	}
 	if (integrator.isWall() && lawsChanged)
 		system.moved = true;
@@ -98,14 +98,14 @@ void RigidScene<K>::takeSettings()
 template <class K>
 masonry::rigid::StepReport RigidScene<K>::advanceWall()
 {
-	masonry::rigid::WallStep<K>& walls = bySize->walls;
+	masonry::rigid::WallStep<K>& walls = scheduler->walls;
 	walls.settings = {integrator.tolerance, integrator.strictForces, std::max(1, integrator.ompThreads)};
-	const auto report = bySize->advance(system, scene.dt);
+	const auto report = scheduler->advance(system, scene.dt);
 	const masonry::rigid::WallReport& ofWalls = walls.report;
 	const bool still = ofWalls.mode == masonry::rigid::WallMode::still;
 	integrator.mode = still ? "still" : "moving";
 	integrator.movingBlocks = ofWalls.moved;
-	integrator.localisedBlocks = bySize->localised();
+	integrator.localisedBlocks = scheduler->localised();
 	++(still ? integrator.stillSteps : integrator.movingSteps);
 	integrator.velocityResidual = ofWalls.velocityResidual;
 	integrator.forceResidual = ofWalls.forceResidual;
@@ -156,7 +156,7 @@ template <class K>
 void RigidScene<K>::readStates()
 {
 	others.resize(links.size());
-	bySize->walls.eachShare(links.size(), [&](size_t begin, size_t end) {
+	scheduler->walls.eachShare(links.size(), [&](size_t begin, size_t end) {
 		for (size_t b = begin; b < end; ++b) {
 			fetch(b + 6);
 			others[b] = links[b].written.isOf(*links[b].state) ? 0 : system.bodies[b].drive < 0 ? 1 : driven;
@@ -247,7 +247,7 @@ template <class K>
 void RigidScene<K>::showPoints()
 {
 	if (byWalls)
-		bySize->walls.showPoints(system);
+		scheduler->walls.showPoints(system);
 }
 
 template <class K>
@@ -263,7 +263,7 @@ void RigidScene<K>::fetch(size_t b) const
 template <class K>
 void RigidScene<K>::writeStates()
 {
-	bySize->walls.eachShare(links.size(), [&](size_t begin, size_t end) {
+	scheduler->walls.eachShare(links.size(), [&](size_t begin, size_t end) {
 		for (size_t b = begin; b < end; ++b) {
 			const auto& block = system.bodies[b];
 			if (block.prescribed && block.drive < 0 && block.velocity.isZero(0))
@@ -332,7 +332,7 @@ vector<Real> RigidScene<K>::pack()
 	packer(lawsChanged);
 	neighbours->pass(packer);
 	if (byWalls)
-		bySize->pass(packer, system);
+		scheduler->pass(packer, system);
 	return packer.values;
 }
 
@@ -348,7 +348,7 @@ void RigidScene<K>::unpackStepper(Unpacker& unpacker, const Remembered<K>& befor
 	lawsChanged |= laws;
 	neighbours->pass(unpacker);
 	if (byWalls) {
-		bySize->pass(unpacker, system);
+		scheduler->pass(unpacker, system);
 		system.moved = false;
 	}
 	unpacker.end();

@@ -7,7 +7,7 @@
 
 #include "dynamics/rigid/islands.hpp"
 #include "dynamics/rigid/neighbours.hpp"
-#include "dynamics/wall/step_by_size.hpp"
+#include "dynamics/scheduler/scheduler.hpp"
 #include <core/Scene.hpp>
 #include <optional>
 
@@ -138,7 +138,7 @@ private:
 	void warnOfPlace(size_t b);
 
 	/// What walls know of a pair is of places alone.
-	bool isOfWall(const Pair& pair) const { return byWalls && !bySize->isLocalised(pair.body1) && !bySize->isLocalised(pair.body2); }
+	bool isOfWall(const Pair& pair) const { return byWalls && !scheduler->isLocalised(pair.body1) && !scheduler->isLocalised(pair.body2); }
 
 	/// The points of a pair that nothing is known of: in touch where they are, and do not approach each other. `placed`: by a script, not
 	/// by a step.
@@ -167,8 +167,8 @@ private:
 	const Coordinates<K> coordinates;
 	System system;
 	masonry::rigid::Islands<K> islands;
-	std::optional<masonry::rigid::StepBySize<K>> bySize {std::in_place}; // method='wall'
-	bool changed = false;                                                // what is moved, and how, is not as it was
+	std::optional<masonry::rigid::Scheduler<K>> scheduler {std::in_place}; // method='wall'
+	bool changed = false;                                                  // what is moved, and how, is not as it was
 	bool byWalls = false, lawsChanged = false;
 	bool ownsContacts = false; // what O.interactions shows of blocks is of this object
 	int unshown = 1;           // steps since the interactions were written

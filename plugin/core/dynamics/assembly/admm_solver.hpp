@@ -29,8 +29,8 @@
 // Biases. A point with a gap may close within the step: b_n = gap/h. Of a penetration, and of a slip that unfinished iterations have left
 // at a point that sticks, a share is taken back in each step: b = share x/h.
 #include "dynamics/assembly/step_context.hpp"
-#include "dynamics/wall/symmetric_factor.hpp"
 #include "dynamics/wall/wall_contacts.hpp"
+#include "linalg/block_ldlt.hpp"
 
 namespace masonry::rigid::assembly {
 
@@ -90,7 +90,7 @@ public:
 	}
 
 private:
-	using Block = wall::SymmetricFactor::Block;
+	using Block = linalg::BlockLDLT::Block;
 	// Which points A is of: by group and lane the pair, and the features of its points.
 	struct Lane {
 		int pair {-1};
@@ -105,10 +105,10 @@ private:
 	void start(wall::WallContacts<K>& contacts, const wall::LaneArray& load, const StepContext& step);
 	double iterate(wall::WallContacts<K>& contacts, const StepContext& step);
 
-	wall::SymmetricFactor factor; // a node for each pack of the free bodies
-	std::vector<int> places;      // of the nodes
-	std::vector<int> node;        // of a body, its first; -1: none
-	std::vector<wall::SymmetricFactor::Edge> edges;
+	linalg::BlockLDLT factor; // a node for each pack of the free bodies
+	std::vector<int> places;  // of the nodes
+	std::vector<int> node;    // of a body, its first; -1: none
+	std::vector<linalg::BlockLDLT::Edge> edges;
 	std::vector<std::array<Lane, wall::width>> lanes; // by group, that A is of
 	std::vector<double> masses;                       // by body, that A is of
 	wall::LaneArray free, force;

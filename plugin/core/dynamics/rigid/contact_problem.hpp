@@ -17,7 +17,7 @@
 //
 // Method. A proximal semi-smooth Newton method: with R = softness * trace and a centre l (the last impulses) the regularised law
 // p = P(l - u/R) makes V the root of M (V - free) - J^T P(l - (J V + offset)/R); each linear system M + J^T P' J / R is
-// factorised over the graph of bodies (block_factor.hpp). Redundant points and any mass ratio are harmless to it.
+// factorised over the graph of bodies (block_lu.hpp). Redundant points and any mass ratio are harmless to it.
 // A point alone is solved by its law at once. Else, first, Newton with a small R from the states of the impulses given (stick, slip,
 // open), and with the factor of the last solve while the points are the same: one back-substitution where no state changes. From
 // impulses far from the solution: in space the impulses given stay the centre while R falls (contact_approach.hpp); in the plane, and where

@@ -6,8 +6,8 @@
 //
 // Only increments enter, so that round-off does not grow with 1/R; and P(y) is the next centre. While a solution is sought a point may have
 // another law than its own, and a least normal impulse b: then P(y) = P(y - b n) + b n.
-#include "dynamics/rigid/block_factor.hpp"
 #include "dynamics/rigid/contact_state.hpp"
+#include "linalg/block_lu.hpp"
 #include "tolerances.hpp"
 
 namespace masonry::rigid {
@@ -18,7 +18,7 @@ protected:
 	using Rows = typename ContactRows<K>::Rows;
 	using Block = typename OnePoint<K::rows>::Block;
 	using Velocity = typename K::Velocity;
-	using Edge = typename BlockFactor<K::dof>::Edge;
+	using Edge = typename linalg::BlockLU<K::dof>::Edge;
 
 public:
 	explicit ContactRoot(ContactState<K>& state) : s(state) {}
@@ -306,7 +306,7 @@ protected:
 	std::vector<Body> bodies;
 	std::vector<Velocity> step;
 	std::vector<Edge> edges; // the pairs known to be near, then those of points between others
-	BlockFactor<K::dof> factor;
+	linalg::BlockLU<K::dof> factor;
 	bool factored {false};
 	std::vector<Edge> kept; // bodies of the points of the factor that the next solve may start with
 	double softness {0};    // R relative to the response of the point

@@ -27,8 +27,8 @@
 //
 // which grows where k (1.6 + g) < 1.6 g. After a wall has been shaken, blocks that stand on points near each other have such modes: taken
 // back from at rest, walls shivered at 1e-4 m/s and set off again after seconds.
-#include "dynamics/wall/symmetric_factor.hpp"
 #include "dynamics/wall/wall_contacts.hpp"
+#include "linalg/block_ldlt.hpp"
 
 namespace masonry::rigid::wall {
 
@@ -141,7 +141,7 @@ private:
 	using Touches = std::vector<std::array<Mask, lanePoints<K>>>; // which points touch, by group
 
 	bool takeSoftness();
-	using Block = SymmetricFactor::Block;
+	using Block = linalg::BlockLDLT::Block;
 	void factorise();
 	void setGraph();
 	void addPair(int group, int lane, int& edge);
@@ -150,11 +150,11 @@ private:
 	LaneBits where(const Mark& mark) const;
 
 	WallContacts<K>* contacts {nullptr};
-	SymmetricFactor factor;  // a node for each pack of the bodies here
-	std::vector<int> places; // of the nodes
-	std::vector<int> node;   // of a body, its first; -1: none
-	size_t nodes {0};        // of the factor, those of bodies that have gone included
-	std::vector<SymmetricFactor::Edge> edges;
+	linalg::BlockLDLT factor; // a node for each pack of the bodies here
+	std::vector<int> places;  // of the nodes
+	std::vector<int> node;    // of a body, its first; -1: none
+	size_t nodes {0};         // of the factor, those of bodies that have gone included
+	std::vector<linalg::BlockLDLT::Edge> edges;
 	LaneArray free, force;
 	std::vector<Befores> before; // by group
 	LaneArray mostHeld;          // by group, as findHeld() last found it

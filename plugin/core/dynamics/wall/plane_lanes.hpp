@@ -5,10 +5,55 @@
 //     u_n = n.(v2 - v1) + a2n W2 - a1n W1        a_n = (r x n)/rho,  a_t = (r x t)/rho = (r.n)/rho
 //     u_t = t.(v2 - v1) + a2t W2 - a1t W1
 #include "dynamics/rigid/kinematics.hpp"
-#include "dynamics/wall/wide.hpp"
+#include "simd/wide.hpp"
 #include <array>
 
 namespace masonry::rigid::wall {
+
+// Numbers side by side by their own names; contact points add overloads to some functions.
+using simd::alignment;
+using simd::all;
+using simd::allFloats;
+using simd::allLanes;
+using simd::any;
+using simd::Array;
+using simd::bitsOf;
+using simd::copyLane;
+using simd::FloatMask;
+using simd::FloatPack;
+using simd::Floats;
+using simd::floatWidth;
+using simd::gather;
+using simd::highOf;
+using simd::joined;
+using simd::LaneArray;
+using simd::Lanes;
+using simd::larger;
+using simd::largest;
+using simd::length;
+using simd::lowOf;
+using simd::Mask;
+using simd::MaskOf;
+using simd::maskOf;
+using simd::narrow;
+using simd::noMass;
+using simd::NumberOf;
+using simd::packAt;
+using simd::PackOf;
+using simd::PlaceOf;
+using simd::quarterOf;
+using simd::quartersOfWide;
+using simd::root;
+using simd::scatter;
+using simd::select;
+using simd::size;
+using simd::smaller;
+using simd::TinyIsZero;
+using simd::transpose;
+using simd::Wide;
+using simd::widen;
+using simd::width;
+using simd::widthOf;
 
 template <class K, class L = Lanes>
 struct Bodies;

@@ -61,7 +61,7 @@ public:
 	}
 
 private:
-	// Bodies of no structure are prescribed, or new (step_by_size.hpp) and join what they are near.
+	// Bodies of no structure are prescribed, or new (scheduler.hpp) and join what they are near.
 	bool isCut(const ContactPair<K>& pair) const
 	{
 		const int a = of[pair.body1], b = of[pair.body2];

@@ -17,10 +17,12 @@
 // of its size since (tolerance::wall::search).
 #include "dynamics/rigid/rigid_system.hpp"
 #include "dynamics/wall/space_lanes.hpp"
-#include "dynamics/wall/team.hpp"
+#include "parallel/team.hpp"
 #include <atomic>
 
 namespace masonry::rigid::wall {
+
+using parallel::Team;
 
 constexpr double mostFriction = 1e12; // stands for noSlip: infinity times a zero impulse is no number
 template <class K>

@@ -17,7 +17,7 @@ _MODELS = ("auto", "planar", "spatial", "compliant")
 _METHODS = ("auto", "localised", "wall")
 _ORDERS = (None, "simultaneous", "sequential")
 # Up to so many free blocks that are stepped together, impacts are found one by one. Larger: shaken walls of ten blocks in space take
-# minutes a second. StepBySize::fewBlocks of the core is the same.
+# minutes a second. Scheduler::maxBlocks of the core is the same.
 _FEW_BLOCKS = {"planar": 20, "spatial": 6}
 # Time step of rigid blocks, share of the largest that is allowed (0.15 sqrt(R/g) of the smallest block): 2.5e-3 sqrt(R/g), 1e-3 s for a
 # block 3 m high. Rocking angles of one block are then right to 1e-6.

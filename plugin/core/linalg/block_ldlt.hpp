@@ -1,10 +1,10 @@
 #pragma once
-// Symmetric positive definite matrix of 3 x 3 blocks over the graph of bodies, as L D L^T in a minimum-degree order.
-#include "dynamics/wall/supernodes.hpp"
+// Sparse factorisation L D L^T of a symmetric positive definite matrix of 3 x 3 blocks over a graph, in a minimum-degree order.
+#include "linalg/supernodes.hpp"
 
-namespace masonry::rigid::wall {
+namespace masonry::linalg {
 
-class SymmetricFactor {
+class BlockLDLT {
 public:
 	using Block = Eigen::Matrix3d;
 	using Edge = EliminationOrder::Edge;
@@ -14,8 +14,8 @@ public:
 	void addEdge(int edge, const Block& firstSecond); // the block in the row of the edge's first node and the column of its second
 	void factorise();
 
-	// x = A^-1 x to single precision; the entry of node k is x[places[k]], whose fourth component is not used.
-	void solve(Lanes* x, const std::vector<int>& places);
+	// Solves A x = b in place, to single precision. The entry of node k is x[places[k]], whose fourth component is not used.
+	void solve(simd::Lanes* x, const std::vector<int>& places);
 
 private:
 	EliminationOrder order;
@@ -24,4 +24,4 @@ private:
 	std::vector<float> work;
 };
 
-} // namespace masonry::rigid::wall
+} // namespace masonry::linalg

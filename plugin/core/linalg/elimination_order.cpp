@@ -1,9 +1,9 @@
-#include "dynamics/rigid/elimination_order.hpp"
+#include "linalg/elimination_order.hpp"
 #include <Eigen/OrderingMethods>
 #include <Eigen/SparseCore>
 #include <algorithm>
 
-namespace masonry::rigid {
+namespace masonry::linalg {
 
 bool EliminationOrder::setGraph(int nodeCount, const std::vector<Edge>& graph)
 {
@@ -64,4 +64,4 @@ int EliminationOrder::entry(int a, int b) const
 	return int(std::lower_bound(row.begin() + first[ends.first], row.begin() + first[ends.first + 1], ends.second) - row.begin());
 }
 
-} // namespace masonry::rigid
+} // namespace masonry::linalg

@@ -1,6 +1,6 @@
 // Walls beside structures of few blocks: each moves as by its own method alone.
-#include "dynamics/wall/step_by_size.hpp"
-#include "wall_rig.hpp"
+#include "core/dynamics/wall/wall_rig.hpp"
+#include "dynamics/scheduler/scheduler.hpp"
 #include <catch.hpp>
 
 using namespace rig;
@@ -58,11 +58,11 @@ TEST_CASE("a wall moves as by the walls' method alone, a pier beside it as with 
 	REQUIRE(both.system.bodies.size() == 1 + wallBlocks + 3);
 	pier.system.settings = Settings();
 	both.system.settings.tolerance = wall.system.settings.tolerance = 1e-3;
-	StepBySize<Plane> bySize;
+	Scheduler<Plane> scheduler;
 	WallStep<Plane> byWalls;
 	RigidStep<Plane> localised;
-	const auto impacts = shake(both, bySize, time), ofWall = shake(wall, byWalls, time), ofPier = shake(pier, localised, time);
-	CHECK(bySize.localised() == 3);
+	const auto impacts = shake(both, scheduler, time), ofWall = shake(wall, byWalls, time), ofPier = shake(pier, localised, time);
+	CHECK(scheduler.localised() == 3);
 	CHECK(motionOf(both.system, 1, wallBlocks) == motionOf(wall.system, 1, wallBlocks));
 	CHECK(motionOf(both.system, 1 + wallBlocks, 3) == motionOf(pier.system, 1, 3));
 	CHECK(both.system.bodies[0].pose.position == pier.system.bodies[0].pose.position);
@@ -88,10 +88,10 @@ TEST_CASE("without a wall and with motions in order of time the walls' method ha
 		scene->drive(motion);
 		scene->system.settings.tolerance = 1e-3;
 	}
-	StepBySize<Plane> bySize;
-	shake(bySizes, bySize, 0.5);
+	Scheduler<Plane> scheduler;
+	shake(bySizes, scheduler, 0.5);
 	shake(byWalls, byWalls.step, 0.5);
-	CHECK(bySize.localised() == 0);
+	CHECK(scheduler.localised() == 0);
 	CHECK(numbersOf(bySizes.system) == numbersOf(byWalls.system));
 }
 
@@ -102,12 +102,12 @@ TEST_CASE("what has been near a wall stays with it, and what leaves it does")
 	const int thrown = addBlock(scene.system, {0.2, 0.2}, {13, 1.5});
 	scene.system.settings.tolerance = 1e-3;
 	scene.system.bodies[thrown].velocity << -10, 2, 1;
-	StepBySize<Plane> bySize;
-	shake(scene, bySize, 0.1);
-	CHECK(bySize.localised() == 1);
+	Scheduler<Plane> scheduler;
+	shake(scene, scheduler, 0.1);
+	CHECK(scheduler.localised() == 1);
 	CHECK(scene.system.bodies[thrown].pose.position.x() == Approx(12).epsilon(1e-12)); // it flies
-	shake(scene, bySize, 1.4);
-	CHECK(bySize.localised() == 0);
+	shake(scene, scheduler, 1.4);
+	CHECK(scheduler.localised() == 0);
 	CHECK(scene.system.bodies[thrown].pose.position.x() > 8.2 - 1e-3); // not into the wall
 	CHECK(scene.system.bodies[thrown].pose.position.y() > 0.2 - 1e-3);
 	CHECK(scene.system.bodies[thrown].velocity.norm() < 1);

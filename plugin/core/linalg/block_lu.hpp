@@ -1,15 +1,15 @@
 #pragma once
-// Square matrix of blocks over a graph: one row of blocks a node, and for every edge the two blocks that couple its nodes.
-// Factorised as L U, with ones in U's diagonal, in a minimum-degree order (the pattern is symmetric, the values need not be), without
-// pivoting between blocks. The pattern, its fill and every update's target are found once per graph.
-#include "dynamics/rigid/elimination_order.hpp"
-#include "dynamics/rigid/pivot_factor.hpp"
+// Sparse LU factorisation of a square matrix of blocks over a graph: one row of blocks a node, and for every edge the two blocks that
+// couple its nodes. U has ones in its diagonal. The order is one of minimum degree, without pivoting between blocks; the pattern is
+// symmetric, the values need not be. The pattern, its fill and the target of every update are found once per graph.
+#include "linalg/elimination_order.hpp"
+#include "linalg/pivot_lu.hpp"
 #include <algorithm>
 
-namespace masonry::rigid {
+namespace masonry::linalg {
 
 template <int size>
-class BlockFactor {
+class BlockLU {
 public:
 	using Block = Eigen::Matrix<double, size, size>;
 	using Rows = Eigen::Matrix<double, size, 1>;
@@ -89,8 +89,8 @@ private:
 	EliminationOrder order;
 	std::vector<int> targets;
 	std::vector<Block> pivots, lower, upper; // lower and upper: entry by entry of `order`
-	std::vector<PivotFactor<size>> factors;  // of the pivots
+	std::vector<PivotLU<size>> factors;      // of the pivots
 	std::vector<Rows> work;
 };
 
-} // namespace masonry::rigid
+} // namespace masonry::linalg

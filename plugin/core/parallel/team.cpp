@@ -1,4 +1,4 @@
-#include "dynamics/wall/team.hpp"
+#include "parallel/team.hpp"
 #include <algorithm>
 #include <atomic>
 #include <condition_variable>
@@ -6,7 +6,7 @@
 #include <mutex>
 #include <thread>
 
-namespace masonry::rigid::wall {
+namespace masonry::parallel {
 
 namespace {
 
@@ -136,4 +136,4 @@ void Team::share(int parts, Call call, const void* context)
 		rest = shortestRest;
 }
 
-} // namespace masonry::rigid::wall
+} // namespace masonry::parallel

@@ -1,13 +1,13 @@
 #pragma once
-// Threads that share the parts of a wall. What is done does not depend on who does it: nor do the bits, on how many there are.
+// Threads that share the parts of a loop. The results have the same bits for any number of threads, since no part depends on who does it.
 //
-// The caller takes every part that no helper has begun, so that it waits for a helper only while that is at work: a helper whose processor
-// is taken by another program is missed, not waited for. One that is interrupted at work is, and then the caller goes on alone for a while:
-// longer each time that this happens again soon.
-// Between two calls a helper spins, then lets others go first, then sleeps.
+// The caller takes every part that no helper has begun, so it waits only for helpers that are at work. If another program takes the
+// processor of a helper before it begins, the caller does that part too. If a helper is interrupted at work, the caller waits for it and
+// then works alone for a while; the while doubles each time that this happens again soon.
+// Between two calls a helper spins, then yields, then sleeps.
 #include <memory>
 
-namespace masonry::rigid::wall {
+namespace masonry::parallel {
 
 class Team {
 public:
@@ -17,7 +17,7 @@ public:
 	Team(const Team&) = delete;
 	~Team();
 
-	void setThreads(int count); // the caller's is one of them
+	void setThreads(int count); // with the caller's own
 
 	// work(part) for 0 .. parts - 1; returns when all are done.
 	template <class Work>
@@ -45,4 +45,4 @@ private:
 	int rest {shortestRest}, undisturbed {0}; // calls without helpers the next time; calls since the last
 };
 
-} // namespace masonry::rigid::wall
+} // namespace masonry::parallel

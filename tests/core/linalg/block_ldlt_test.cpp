@@ -1,10 +1,10 @@
-#include "dynamics/wall/symmetric_factor.hpp"
+#include "linalg/block_ldlt.hpp"
 #include <Eigen/Dense>
 #include <catch.hpp>
 #include <random>
 
-using namespace masonry::rigid;
-using namespace masonry::rigid::wall;
+using namespace masonry::linalg;
+using namespace masonry::simd;
 
 namespace {
 
@@ -35,7 +35,7 @@ Eigen::MatrixXd random(int rows, int columns, std::mt19937& generator)
 double error(int nodes, const std::vector<EliminationOrder::Edge>& edges)
 {
 	std::mt19937 generator(nodes);
-	SymmetricFactor factor;
+	BlockLDLT factor;
 	double worst = 0;
 	for (int time = 0; time < 2; ++time) { // the second on the graph that is known
 		factor.setGraph(nodes, edges);

@@ -1,12 +1,12 @@
 #pragma once
-// The floats that the sweeps of moving walls compute with side by side: eight, or sixteen in code that is compiled for AVX-512. Each lane
-// is computed as a scalar would be, so both give the same bits.
-#include "dynamics/wall/lanes.hpp"
+// Batches of floats as wide as the code is compiled for: eight, or sixteen with AVX-512. Each lane is computed as a scalar would be, so
+// both give the same bits.
+#include "simd/lanes.hpp"
 #ifdef __AVX512F__
 #include <immintrin.h>
 #endif
 
-namespace masonry::rigid::wall {
+namespace masonry::simd {
 
 #ifndef __AVX512F__
 
@@ -33,7 +33,7 @@ MASONRY_INLINE FloatPack quarterOf(const Wide& a, int quarter)
 	return quarter == 0 ? quarterOf<0>(a) : quarter == 1 ? quarterOf<1>(a) : quarter == 2 ? quarterOf<2>(a) : quarterOf<3>(a);
 }
 
-// Each quarter for itself.
+// Transposes each quarter by itself.
 MASONRY_INLINE void transpose(Wide& a, Wide& b, Wide& c, Wide& d)
 {
 	const __m512 ab0 = _mm512_unpacklo_ps(__m512(a), __m512(b)), ab1 = _mm512_unpackhi_ps(__m512(a), __m512(b)),
@@ -76,6 +76,6 @@ MASONRY_INLINE void scatter(Wide a, Wide b, Wide c, Wide d, FloatPack* to, const
 
 #endif
 
-constexpr int quartersOfWide = widthOf<Wide> / width; // contacts' groups side by side
+constexpr int quartersOfWide = widthOf<Wide> / width; // groups of contacts in a batch
 
-} // namespace masonry::rigid::wall
+} // namespace masonry::simd

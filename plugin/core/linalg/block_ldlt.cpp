@@ -1,9 +1,9 @@
-#include "dynamics/wall/symmetric_factor.hpp"
+#include "linalg/block_ldlt.hpp"
 #include <Eigen/LU>
 
-namespace masonry::rigid::wall {
+namespace masonry::linalg {
 
-void SymmetricFactor::setGraph(int nodeCount, const std::vector<Edge>& edges)
+void BlockLDLT::setGraph(int nodeCount, const std::vector<Edge>& edges)
 {
 	if (order.setGraph(nodeCount, edges))
 		supernodes.setPattern(order);
@@ -11,7 +11,7 @@ void SymmetricFactor::setGraph(int nodeCount, const std::vector<Edge>& edges)
 	lower.assign(order.row.size(), Block::Zero());
 }
 
-void SymmetricFactor::addEdge(int edge, const Block& firstSecond)
+void BlockLDLT::addEdge(int edge, const Block& firstSecond)
 {
 	if (order.firstIsLater(edge))
 		lower[order.slot[edge]] += firstSecond;
@@ -19,9 +19,9 @@ void SymmetricFactor::addEdge(int edge, const Block& firstSecond)
 		lower[order.slot[edge]] += firstSecond.transpose();
 }
 
-// Column by column: what column k takes from the later ones. Rows of a column are sorted, and so the rows that two columns share are met
-// in one pass over both.
-void SymmetricFactor::factorise()
+// Right-looking: column k updates the later columns. The rows of a column are sorted, so one pass over two columns finds the rows that
+// they share.
+void BlockLDLT::factorise()
 {
 	const auto &first = order.first, &row = order.row;
 	for (int k = 0; k < order.nodes(); ++k) {
@@ -43,7 +43,7 @@ void SymmetricFactor::factorise()
 	supernodes.take(order, lower, pivots);
 }
 
-void SymmetricFactor::solve(Lanes* x, const std::vector<int>& places)
+void BlockLDLT::solve(simd::Lanes* x, const std::vector<int>& places)
 {
 	const int n = order.nodes();
 	work.resize(3 * n);
@@ -52,7 +52,7 @@ void SymmetricFactor::solve(Lanes* x, const std::vector<int>& places)
 			work[3 * k + i] = float(x[places[order.nodeAt[k]]][i]);
 	supernodes.solve(order, work.data());
 	for (int k = 0; k < n; ++k)
-		x[places[order.nodeAt[k]]] = Lanes {work[3 * k], work[3 * k + 1], work[3 * k + 2], 0};
+		x[places[order.nodeAt[k]]] = simd::Lanes {work[3 * k], work[3 * k + 1], work[3 * k + 2], 0};
 }
 
-} // namespace masonry::rigid::wall
+} // namespace masonry::linalg

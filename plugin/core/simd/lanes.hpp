@@ -1,7 +1,7 @@
 #pragma once
-// Numbers side by side: four doubles (Lanes), or floats, whose errors the next sweep or solve corrects: eight (Floats), or sixteen
-// (wide.hpp). Each lane is computed as a scalar would be, so that the bits do not depend on the vector width that the processor has;
-// functions marked MASONRY_LANES are compiled for several and the widest is picked when the program starts.
+// Batches of numbers: four doubles (Lanes), eight floats (Floats) or sixteen (wide.hpp). Floats serve where the next sweep or solve
+// corrects the error. Each lane is computed as a scalar would be, so the bits do not depend on the vector width of the processor. Functions
+// marked MASONRY_LANES are compiled for several widths, and the widest that the processor has is chosen when the program starts.
 
 #include <cstddef>
 #include <cstring>
@@ -11,14 +11,14 @@
 
 #pragma GCC diagnostic ignored "-Wpsabi" // lanes are passed between inlined functions only
 
-#ifdef __SANITIZE_ADDRESS__ // checked once is enough, and takes a minute less to compile
+#ifdef __SANITIZE_ADDRESS__ // one version is enough for sanitizers, and compiles a minute faster
 #define MASONRY_LANES
 #else
 #define MASONRY_LANES __attribute__((target_clones("arch=x86-64-v4", "avx2", "default")))
 #endif
 #define MASONRY_INLINE __attribute__((always_inline)) inline
 
-namespace masonry::rigid::wall {
+namespace masonry::simd {
 
 constexpr int width = 4;
 using Lanes = double __attribute__((vector_size(32)));
@@ -40,11 +40,11 @@ using FloatPack = float __attribute__((vector_size(16)));
 template <class L>
 using PackOf = std::conditional_t<std::is_same_v<L, Lanes>, Lanes, FloatPack>;
 constexpr Lanes noMass {1, 1, 1, 0}; // times a pack: its components alone
-// Where the packs of a body are: for doubles its number, for floats bytes from the first pack of all to its own.
+// Place of the packs of a body: for doubles its number, for floats the bytes from the first pack of all.
 template <class L>
 using PlaceOf = std::conditional_t<std::is_same_v<L, Lanes>, int, unsigned>;
 
-// Code for wide vectors counts on this alignment, code for narrow ones does not ask for it: structures of lanes state it.
+// Code for wide vectors relies on this alignment and code for narrow ones does not demand it, so structures of lanes state it.
 constexpr std::size_t alignment = 32;
 
 template <class T>
@@ -73,7 +73,7 @@ MASONRY_INLINE L all(double value)
 {
 	return NumberOf<L>(value) - L {};
 }
-// Lane by lane; for what is made of several vectors beside it.
+// Chooses lane by lane. Structures of several vectors have overloads of their own.
 template <class M, class L>
 MASONRY_INLINE std::enable_if_t<!std::is_class_v<L>, L> select(const M& mask, const L& a, const L& b)
 {
@@ -148,7 +148,7 @@ MASONRY_INLINE void transpose(Lanes& a, Lanes& b, Lanes& c, Lanes& d)
 	c = __builtin_shuffle(ab0, cd0, Mask {2, 3, 6, 7});
 	d = __builtin_shuffle(ab1, cd1, Mask {2, 3, 6, 7});
 }
-// Each half for itself.
+// Transposes each half by itself.
 MASONRY_INLINE void transpose(Floats& a, Floats& b, Floats& c, Floats& d)
 {
 	const Floats ab0 = __builtin_shufflevector(a, b, 0, 8, 1, 9, 4, 12, 5, 13),
@@ -161,7 +161,7 @@ MASONRY_INLINE void transpose(Floats& a, Floats& b, Floats& c, Floats& d)
 	d = __builtin_shufflevector(ab1, cd1, 2, 3, 10, 11, 6, 7, 14, 15);
 }
 
-// Packs of bodies in, one lane a body out; and back, of those that are free. A body has `packs` of them.
+// gather reads packs of bodies into one lane a body; scatter writes those of free bodies back. A body has `packs` packs.
 template <int packs>
 MASONRY_INLINE void gather(const Lanes* from, const int* body, Lanes& a, Lanes& b, Lanes& c, Lanes& d)
 {
@@ -203,8 +203,8 @@ MASONRY_INLINE void scatter(Floats a, Floats b, Floats c, Floats d, FloatPack* t
 	}
 }
 
-// While it lives, floats below the smallest normal one are zero in this thread: what decays comes to be such, and processors take many
-// times as long for it.
+// While an instance lives, this thread treats floats below the smallest normal one as zero. Decaying values become so small, and processors
+// take many times as long for them.
 class TinyIsZero {
 #ifdef __SSE__
 public:
@@ -219,7 +219,7 @@ private:
 #endif
 };
 
-// All numbers of a lane of a structure of lanes.
+// Copies all numbers of one lane of a structure of lanes.
 template <class T>
 void copyLane(const T& from, int i, T& to, int j)
 {
@@ -230,4 +230,4 @@ void copyLane(const T& from, int i, T& to, int j)
 		std::memcpy(target + at, source + at, sizeof(double));
 }
 
-} // namespace masonry::rigid::wall
+} // namespace masonry::simd

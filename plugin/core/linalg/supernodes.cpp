@@ -1,9 +1,11 @@
-#include "dynamics/wall/supernodes.hpp"
+#include "linalg/supernodes.hpp"
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cstring>
 
-namespace masonry::rigid::wall {
+namespace masonry::linalg {
+
+using namespace simd;
 
 namespace {
 
@@ -11,12 +13,12 @@ using Node = Supernodes::Node;
 
 constexpr int mostWidth = 16; // columns of blocks; limits the arrays on the stack
 
-// Eights that hold so many blocks of three.
+// Number of vectors of eight that hold so many blocks of three.
 constexpr int eights(int blocks) { return (3 * blocks + floatWidth - 1) / floatWidth; }
 
 size_t size(const Node& s) { return size_t(eights(s.width) + eights(s.rows)) * 3 * s.width; }
 
-// Of a solve, in eights that are read; each supernode costs as much as some more.
+// Cost of a solve in vectors of eight that are read; `own` is the cost of a supernode by itself.
 double cost(int width, int rows)
 {
 	constexpr double own = 24;
@@ -28,13 +30,13 @@ MASONRY_INLINE Floats sums(const Floats& a, const Floats& b)
 {
 	return __builtin_shuffle(a, b, FloatMask {0, 2, 4, 6, 8, 10, 12, 14}) + __builtin_shuffle(a, b, FloatMask {1, 3, 5, 7, 9, 11, 13, 15});
 }
-// The sum of each of eight.
+// The sum of each of eight vectors.
 MASONRY_INLINE Floats sumsOf(const Floats* a)
 {
 	return sums(sums(sums(a[0], a[1]), sums(a[2], a[3])), sums(sums(a[4], a[5]), sums(a[6], a[7])));
 }
 
-// Eight rows of a panel of so many columns times x.
+// The product of eight rows of a panel with x.
 MASONRY_INLINE Floats times(const Floats* panel, int columns, const float* x)
 {
 	Floats even {}, odd {};
@@ -90,8 +92,8 @@ MASONRY_LANES void substitute(const Node* nodes, int count, const int* row, cons
 
 } // namespace
 
-// A column joins the one before it where the solve gains by it. The column before has its rows among the column's own and those below it if
-// the column is the first of them.
+// A column joins the supernode before it if that makes the solve cheaper. The rows of the column before are among the column and its rows
+// if the column is the first of them.
 void Supernodes::setPattern(const EliminationOrder& order)
 {
 	nodes.clear();
@@ -121,7 +123,7 @@ void Supernodes::setPattern(const EliminationOrder& order)
 void Supernodes::take(const EliminationOrder& order, const std::vector<Block>& lower, const std::vector<Block>& pivots)
 {
 	Eigen::MatrixXd own, inverse, below;
-	// A matrix as eight rows by eight rows, each column by column.
+	// Stores a matrix as panels of eight rows, each column by column.
 	const auto store = [&](const Eigen::MatrixXd& from, size_t begin) {
 		for (int i = 0; i < from.rows(); ++i)
 			for (int c = 0; c < from.cols(); ++c)
@@ -158,4 +160,4 @@ void Supernodes::solve(const EliminationOrder& order, float* x)
 	substitute(nodes.data(), int(nodes.size()), order.row.data(), numbers.data(), x, below.data());
 }
 
-} // namespace masonry::rigid::wall
+} // namespace masonry::linalg

@@ -1,11 +1,11 @@
 // Parts of a call: each is done once and before the call returns, whoever does it and however often helpers are interrupted.
-#include "dynamics/wall/team.hpp"
+#include "parallel/team.hpp"
 #include <array>
 #include <catch.hpp>
 #include <chrono>
 #include <thread>
 
-using masonry::rigid::wall::Team;
+using masonry::parallel::Team;
 
 TEST_CASE("every part is done once, by any number of threads")
 {

@@ -1,15 +1,15 @@
 #pragma once
-// A factor L D L^T of 3 x 3 blocks in the form that is solved with many times: columns with nearly the same rows are one dense panel.
+// Supernodal form of a factor L D L^T of 3 x 3 blocks, for many solves: columns with nearly the same rows form one dense panel.
 // With S such columns and R the rows below them, the factors of A = L D L^T with one block a supernode are
 //
 //     M_RS = L_RS L_SS^-1,    D_SS^-1 = L_SS^-T D_S^-1 L_SS^-1
 //
-// In single precision: who uses it corrects a residual, which needs no more, and the factor is read twice a solve.
-#include "dynamics/rigid/elimination_order.hpp"
-#include "dynamics/wall/lanes.hpp"
+// It is stored in single precision: its users correct a residual, and a solve, which reads the factor twice, takes half the time.
+#include "linalg/elimination_order.hpp"
+#include "simd/lanes.hpp"
 #include <Eigen/Core>
 
-namespace masonry::rigid::wall {
+namespace masonry::linalg {
 
 class Supernodes {
 public:
@@ -23,13 +23,13 @@ public:
 
 	struct Node {
 		int column, width, firstRow, rows; // in 3 x 3 blocks; rows of the last column
-		size_t begin;                      // of its numbers: D^-1, then M, eight rows by eight rows, each column by column
+		size_t begin;                      // of its numbers: D^-1, then M, in panels of eight rows that are stored column by column
 	};
 
 private:
 	std::vector<Node> nodes;
-	Array<Floats> numbers;
-	Array<Floats> below; // workspace
+	simd::Array<simd::Floats> numbers;
+	simd::Array<simd::Floats> below; // workspace
 };
 
-} // namespace masonry::rigid::wall
+} // namespace masonry::linalg

@@ -1,16 +1,15 @@
 #pragma once
-// Factors of a small matrix, to solve with. Its inverse will not do where the matrix is stiff along some directions and soft across them:
-// the round-off of the inverse, of the size of the soft part, would move the stiff directions.
+// Dense LU factorisation of a small matrix with row pivoting. An inverse is not accurate enough if the matrix is stiff along some
+// directions and soft across them: its round-off, which has the size of the soft part, would move the stiff directions.
 #include <Eigen/Core>
 #include <array>
 #include <cmath>
 #include <utility>
 
-namespace masonry::rigid {
+namespace masonry::linalg {
 
-// Small matrix as L U, its rows exchanged for the largest pivots.
 template <int size>
-class PivotFactor {
+class PivotLU {
 public:
 	using Block = Eigen::Matrix<double, size, size>;
 
@@ -55,7 +54,7 @@ public:
 private:
 	Block LU;
 	std::array<double, size> reciprocal; // of U's diagonal
-	std::array<int, size> exchanged;     // row k with this one, one after the other
+	std::array<int, size> exchanged;     // row k is exchanged with this one, in the order of k
 };
 
-} // namespace masonry::rigid
+} // namespace masonry::linalg
