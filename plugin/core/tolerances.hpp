@@ -78,6 +78,10 @@ constexpr double parting = 1e-6;
 // Smaller values lose the pivot of a block just before it lands, and with it its restitution; larger: a point parts that much later.
 constexpr double shortPart = 0.02;
 constexpr double stray = 0.01;
+// Slip speed, relative to what gravity gives in a whole step, from which on the end of the slip is localised inside the step. The place of
+// a point that stops from less is wrong by at most half the product of speed and step, g dt^2/2000. Larger: stops lose the second order;
+// smaller: where a structure stops, each of its points stops at an instant of its own, microseconds apart.
+constexpr double slowSlip = 1e-3;
 // Share of the friction limit within which a point counts as sliding.
 constexpr double cone = 1e-9;
 // Angle, rad, by which a block may turn, and way relative to the smaller half size by which blocks near each other may pass, in a part of a

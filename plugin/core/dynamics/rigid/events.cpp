@@ -102,7 +102,7 @@ Event findEvent(const RigidSystem<K>& s, SmoothStep<K>& step, double slow)
 					consider(Event::closing, ref, crossing.at);
 			} else if (point.sliding && !step.stopsInside) {
 				const double before = atStart(s, ref).slip.norm(), after = slipOn(s, step, ref);
-				if (after < -still && before > still)
+				if (after < -still && before > step.slowSlip())
 					consider(Event::stop, ref, h * before / (before - after));
 			}
 		}

@@ -75,6 +75,7 @@ public:
 	double work {0};                   // of the forces on the bodies in this step so far, J
 	std::vector<PointRef> anticipated; // open points that are about to close and are not localised
 	bool stopsInside {false};          // sliding points may stop inside the step: friction opposes their last velocity, not the mean
+	double slowSlip() const { return tolerance::rigid::slowSlip * scales.stepSpeed(whole); } // m/s
 
 	// Normal rate of a point's gap, and its tangential velocity, at the end of the trial.
 	Eigen::Matrix<double, K::rows, 1> relativeVelocity(const RigidSystem<K>& system, int pair, int point) const;

@@ -238,6 +238,33 @@ TEST_CASE("Dirac pulses of the base turn no scene that is its own mirror image")
 			}
 }
 
+// Oracle: one block of the wall's size. Every joint of the wall slides or is at its limit, and all stop within a microsecond. Bound: g
+// dt^2/2000 (tolerance::rigid::slowSlip) at each of two stops in each of three joints.
+TEST_CASE("a wall that slides as one block stops as one block")
+{
+	constexpr double h = 1e-3;
+	auto boxes = wall();
+	boxes.push_back({{.2, .1, .1}, {-.2, 0, .5}});
+	boxes.push_back({{.2, .1, .1}, {.2, 0, .5}});
+	const auto slide = [](System& s) {
+		Harmonic shaking(g, 2, 0);
+		moveBase(s, shaking);
+		RigidStep<Space> step;
+		int events = 0;
+		while (s.time < .6 - h / 2) {
+			const StepReport report = step.advance(s, h);
+			CHECK(report.converged);
+			events += report.events;
+		}
+		return events;
+	};
+	System s = sceneOf(boxes, 0, .7), one = sceneOf({{{.4, .1, .3}, {0, 0, .3}}}, 0, .7);
+	CHECK(slide(s) == slide(one));
+	for (size_t k = 0; k < boxes.size(); ++k)
+		CHECK((s.bodies[k + 1].pose.position - boxes[k].centre - one.bodies[1].pose.position + Vector3(0, 0, .3)).norm() <
+		      g * h * h / 1000);
+}
+
 // The velocities are unique here but where points cannot slip, and so is what of all solutions the solver takes. Bound: residuals of 1e-11
 // of the speed, divided by what the softest motion of a scene answers to an impulse, 1e-4 of that of a point.
 TEST_CASE("contact problem: the order of the points decides nothing")
