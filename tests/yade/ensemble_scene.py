@@ -10,7 +10,7 @@ def record(scale):
 
     import masonry
 
-    return masonry.Record(0.01, scale * 9.81 * np.sin(2 * np.pi * np.arange(0, 1.005, 0.01)), baseline="constant")
+    return masonry.Record(0.01, scale * 9.81 * np.sin(2 * np.pi * np.arange(0, 1.005, 0.01)), baseline="constant", unit="m/s^2")
 
 
 def run(case):

@@ -37,10 +37,10 @@ class Samples:
 
     instance = None
 
-    def __init__(self, value, period):
+    def __init__(self, value, iterPeriod=0, **period):
         self.times, self.values, self._value = [], [], value
         Samples.instance = self
-        O.engines = O.engines + [PyRunner(command="import rocking_scene; rocking_scene.Samples.instance.take()", iterPeriod=period)]
+        O.engines = O.engines + [PyRunner(command="import rocking_scene; rocking_scene.Samples.instance.take()", iterPeriod=iterPeriod, **period)]
 
     def take(self):
         self.times.append(O.time + O.dt)  # NewtonIntegrator has moved the bodies already; O.time follows after the step
@@ -97,6 +97,15 @@ def bits():
 def barrier(id, block):
     """Energy from rest to overturning, J."""
     return O.bodies[id].state.mass * block.gravity * block.radius * (1 - math.cos(block.critical_angle))
+
+
+def turned_over():
+    """Energy that the scene has had in hand, J: what energy from nowhere is compared with."""
+    return sum(value for key, value in dem.energy().items() if key not in ("potential", "baseWork"))
+
+
+def joint_engine():
+    return next(e for e in O.engines if isinstance(e, dem.RockingJointEngine))
 
 
 def steps(count):

@@ -1,33 +1,16 @@
 """The same bits: in one run or two, through files and memory, with one thread or two; bodies that leave, objects that are copied."""
 
 import copy
-import hashlib
-import os
 import pickle
+from pathlib import Path
 import subprocess
-import sys
-import tempfile
 
 import numpy as np
+import pytest
 from masonry import dem
 from rocking_scene import bits, one_block, quiet_engines, stone
+from wall_hash import wall_hash
 from yade import O
-
-
-def wall_hash():
-    """A pulse under a running-bond wall of seven blocks: many joints, friction, several impacts in one step."""
-    O.reset()
-    material = stone(0.7, noSlip=False, frictionAngle=0.6)
-    base = dem.base((2, 1, 0.2), material)
-    dem.wall(3, 2, (0.4, 0.2, 0.175), material, on=base)
-    O.engines = quiet_engines(dem.PulseTrainEngine(ids=[base], impulse=0.3, times=[0, 0.1], assembly=True), penetration=1e-4)
-    O.run(3000, True)
-    return hashlib.sha256(bits()).hexdigest()
-
-
-if os.environ.get("MASONRY_WALL_HASH"):
-    print("hash", wall_hash(), flush=True)  # the exit does not
-    O.exitNoBacktrace()
 
 
 def pulsed():
@@ -39,83 +22,98 @@ def run_to(step):
     O.run(step - O.iter, True)
 
 
-# Steps right before, at and after an impact, and in the middle of a half cycle.
-pulsed()
-while len(dem.impacts()) < 2:
-    O.step()
-impact = O.iter
-stops = [impact - 1, impact, impact + 1, impact + 700]
-run_to(impact + 5000)
-wanted, seen = bits(), dem.impacts()
-assert len(seen) >= 3
+@pytest.fixture(scope="module")
+def whole():
+    """A run in one piece: its second impact, steps right before, at and after it and in the middle of a half cycle, and the bits 5000 steps later."""
+    pulsed()
+    while len(dem.impacts()) < 2:
+        O.step()
+    impact = O.iter
+    run_to(impact + 5000)
+    assert len(dem.impacts()) >= 3
+    return impact, (impact - 1, impact, impact + 1, impact + 700), bits()
 
-pulsed()
-for stop in stops:
-    run_to(stop)
-run_to(impact + 5000)
-assert np.array_equal(bits(), wanted), "runs in pieces"
 
-with tempfile.TemporaryDirectory() as folder:
-    for ending in ("xml", "yade", "memory"):
-        for stop in stops:
-            pulsed()
-            run_to(stop)
-            if ending == "memory":
-                O.saveTmp()
-                O.reset()
-                O.loadTmp()
-            else:
-                path = os.path.join(folder, "scene." + ending)
-                O.save(path)
-                O.reset()
-                O.load(path)
-            run_to(impact + 5000)
-            assert np.array_equal(bits(), wanted), (ending, stop - impact)
+def test_runs_in_pieces(whole):
+    impact, stops, wanted = whole
+    pulsed()
+    for stop in stops:
+        run_to(stop)
+    run_to(impact + 5000)
+    assert np.array_equal(bits(), wanted)
 
-# The critical time step of the joints is known after loading, before the first step, too.
+
+@pytest.mark.parametrize("ending", ("xml", "yade", "memory"))
+def test_saved_and_loaded(ending, whole, tmp_path):
+    impact, stops, wanted = whole
+    path = str(tmp_path / f"scene.{ending}")
+    for stop in stops:
+        pulsed()
+        run_to(stop)
+        if ending == "memory":
+            O.saveTmp()
+            O.reset()
+            O.loadTmp()
+        else:
+            O.save(path)
+            O.reset()
+            O.load(path)
+        run_to(impact + 5000)
+        assert np.array_equal(bits(), wanted), stop - impact
+
+
 def critical_step():
     return next(e for e in O.engines if isinstance(e, dem.RockingJointEngine)).criticalTimeStep()
 
 
-pulsed()
-run_to(impact)
-known = critical_step()
-O.saveTmp()
-O.loadTmp()
-assert np.isclose(critical_step(), known, rtol=1e-6), (critical_step(), known)
+def test_the_critical_time_step_is_known_after_loading(whole):
+    impact, _, _ = whole
+    pulsed()
+    run_to(impact)
+    known = critical_step()
+    O.saveTmp()
+    O.loadTmp()
+    assert np.isclose(critical_step(), known, rtol=1e-6)
 
-# Any number of threads; here, after other scenes, one.
-own = wall_hash()
-output = subprocess.run(["yade", "-j2", "-n", "-x", os.path.abspath(sys.argv[0])], env={**os.environ, "MASONRY_WALL_HASH": "1"},
-                        capture_output=True, text=True, timeout=200).stdout
-assert f"hash {own}" in output, (own, output[-300:])
 
-# A block that is taken away while it rocks leaves the others as if it had never been there (but for the order of sums).
-O.reset()
-material = stone(0.7)
-base = dem.base((6, 1, 0.2), material)
-left = dem.block((0.3, 0.3, 0.9), material, center=(-1, 0, 0.45))
-right = dem.block((0.3, 0.3, 0.9), material, center=(1, 0, 0.45))
-for id in (left, right):
-    dem.tilt(id, 0.2)
-O.engines = quiet_engines()
-O.run(1000, True)
-O.bodies.erase(right)
-O.run(5000, True)
-alone = tuple(O.bodies[left].state.pos)
-assert all(right not in (i.id1, i.id2) for i in O.interactions if i.isReal)
-O.reset()
-material = stone(0.7)
-base = dem.base((6, 1, 0.2), material)
-left = dem.block((0.3, 0.3, 0.9), material, center=(-1, 0, 0.45))
-dem.tilt(left, 0.2)
-O.engines = quiet_engines()
-O.run(6000, True)
-assert np.allclose(O.bodies[left].state.pos, alone, rtol=0, atol=1e-10)
+def test_any_number_of_threads():
+    """Here, after other scenes, one; there two."""
+    own = wall_hash()
+    script = Path(__file__).with_name("wall_hash.py")
+    output = subprocess.run(["yade", "-j2", "-n", "-x", str(script)], capture_output=True, text=True, timeout=200).stdout
+    assert f"hash {own}" in output, output[-300:]
 
-# What a scene holds can be copied and pickled, and keeps its values.
-for thing in (*O.engines, *(i.phys for i in O.interactions), *(i.geom for i in O.interactions)):
-    for twin in (copy.deepcopy(thing), pickle.loads(pickle.dumps(thing))):
-        for name, value in thing.dict().items():
-            if isinstance(value, (int, float, str)) or (isinstance(value, list) and value and isinstance(value[0], (int, float))):
-                assert np.array_equal(getattr(twin, name), value, equal_nan=not isinstance(value, str)), (type(thing).__name__, name)
+
+def rocking(*places):
+    """Ids of blocks that rock beside each other."""
+    O.reset()
+    material = stone(0.7)
+    dem.base((6, 1, 0.2), material)
+    ids = [dem.block((0.3, 0.3, 0.9), material, center=(x, 0, 0.45)) for x in places]
+    for id in ids:
+        dem.tilt(id, 0.2)
+    O.engines = quiet_engines()
+    return ids
+
+
+def test_a_block_is_taken_away_while_it_rocks():
+    """It leaves the others as if it had never been there (but for the order of sums)."""
+    left, right = rocking(-1, 1)
+    O.run(1000, True)
+    O.bodies.erase(right)
+    O.run(5000, True)
+    alone = tuple(O.bodies[left].state.pos)
+    assert all(right not in (i.id1, i.id2) for i in O.interactions if i.isReal)
+    left, = rocking(-1)
+    O.run(6000, True)
+    assert np.allclose(O.bodies[left].state.pos, alone, rtol=0, atol=1e-10)
+
+
+def test_what_a_scene_holds_is_copied_and_pickled():
+    rocking(-1)
+    O.run(6000, True)
+    for thing in (*O.engines, *(i.phys for i in O.interactions), *(i.geom for i in O.interactions)):
+        for twin in (copy.deepcopy(thing), pickle.loads(pickle.dumps(thing))):
+            for name, value in thing.dict().items():
+                if isinstance(value, (int, float, str)) or (isinstance(value, list) and value and isinstance(value[0], (int, float))):
+                    assert np.array_equal(getattr(twin, name), value, equal_nan=not isinstance(value, str)), type(thing).__name__

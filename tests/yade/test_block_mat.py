@@ -2,21 +2,27 @@
 
 import math
 
+import pytest
 from masonry import dem
 from rocking_scene import quiet_engines, refuses, said_by
 from yade import O, Quaternion, Vector3
 
-stone = dem.BlockMat()
-assert all(math.isnan(getattr(stone, name)) for name in ("restitution", "normalStiffness", "shearStiffness"))
-assert stone.noSlip is False
 
-stone = dem.BlockMat(density=2000, frictionAngle=0.6, restitution=0.7, normalStiffness=1e9, shearStiffness=5e8, noSlip=True)
-assert (stone.density, stone.frictionAngle, stone.restitution) == (2000, 0.6, 0.7)
-assert (stone.normalStiffness, stone.shearStiffness, stone.noSlip) == (1e9, 5e8, True)
-for edge in (0, 1, math.nan):
-    dem.BlockMat(restitution=edge).restitution = edge
+def test_defaults():
+    stone = dem.BlockMat()
+    assert all(math.isnan(getattr(stone, name)) for name in ("restitution", "normalStiffness", "shearStiffness"))
+    assert stone.noSlip is False
 
-for attribute, bad, allowed in [
+
+def test_given_values():
+    stone = dem.BlockMat(density=2000, frictionAngle=0.6, restitution=0.7, normalStiffness=1e9, shearStiffness=5e8, noSlip=True)
+    assert (stone.density, stone.frictionAngle, stone.restitution) == (2000, 0.6, 0.7)
+    assert (stone.normalStiffness, stone.shearStiffness, stone.noSlip) == (1e9, 5e8, True)
+    for edge in (0, 1, math.nan):
+        dem.BlockMat(restitution=edge).restitution = edge
+
+
+@pytest.mark.parametrize("attribute, bad, allowed", (
     ("restitution", -0.1, "from 0 to 1"),
     ("restitution", 1.0000001, "from 0 to 1"),
     ("restitution", math.inf, "from 0 to 1"),
@@ -24,70 +30,76 @@ for attribute, bad, allowed in [
     ("normalStiffness", -1e9, "positive"),
     ("shearStiffness", 0, "positive"),
     ("shearStiffness", math.inf, "positive"),
-]:
+))
+def test_bad_values(attribute, bad, allowed):
+    stone = dem.BlockMat(density=2000, frictionAngle=0.6, restitution=0.7, normalStiffness=1e9, shearStiffness=5e8, noSlip=True)
     refuses(lambda: dem.BlockMat(**{attribute: bad}), attribute, allowed)
     old = getattr(stone, attribute)
     refuses(lambda: setattr(stone, attribute, bad), attribute, allowed)
     assert getattr(stone, attribute) == old, "a refused value must not stay"
     refuses(lambda: stone.updateAttrs({attribute: bad}), attribute, allowed)
-    setattr(stone, attribute, old)
 
-# The weight presses the most loaded joint in by the penetration times the smallest width. Half of a block bears on each of the two below it: their
-# joints with the base carry one and a half weights.
-for above, weights in ((0, 1.0), (1, 1.5)):
-    O.reset()
+
+@pytest.mark.parametrize("above, weights", ((0, 1.0), (1, 1.5)))
+def test_the_weight_presses_the_most_loaded_joint_in(above, weights):
+    """The weight presses the most loaded joint in by the penetration times the smallest width. Half of a block bears on each of the two below it:
+    their joints with the base carry one and a half weights."""
     stone = dem.BlockMat(density=2000, frictionAngle=0.6)
     base = dem.base((4, 2, 0.2), stone)
     for place in [(-0.5, 0, 0.2), (0.5, 0, 0.2), (0, 0, 0.6)][: 2 + above]:
         dem.block((1, 0.5, 0.4), stone, center=place)
     said = said_by(lambda: setattr(O, "engines", dem.engines(model="compliant", penetration=1e-4)))
-    assert f"; stiffness {stone.normalStiffness:.3g} Pa/m (the weight presses the joints in by 0.0001 of the width); dt" in said, said
+    assert f"; stiffness {stone.normalStiffness:.3g} Pa/m (the weight presses the joints in by 0.0001 of the width); dt" in said
     pressure = weights * 2000 * 0.4 * 9.81
-    assert abs(stone.normalStiffness * 1e-4 * 0.5 / pressure - 1) < 1e-9 and stone.shearStiffness == stone.normalStiffness, (weights, stone.normalStiffness)
+    assert abs(stone.normalStiffness * 1e-4 * 0.5 / pressure - 1) < 1e-9 and stone.shearStiffness == stone.normalStiffness
 
-# The same of a block whose longest axis is its own x, stood on end. Materials outlive their scenes, and another penetration chooses anew; what a
-# script has given stays.
-stone = dem.BlockMat(density=2000, frictionAngle=0.6)
-for penetration in (1e-4, 1e-5):
-    for size, turn in (((0.5, 0.6, 1.5), 0), ((1.5, 0.6, 0.5), math.pi / 2)):
-        O.reset()
-        dem.base((4, 2, 0.2), stone)
-        dem.block(size, stone, center=(0, 0, 0.75), orientation=Quaternion(Vector3(0, 1, 0), turn))
-        O.engines = quiet_engines(penetration=penetration)
-        assert abs(stone.normalStiffness * penetration * 0.5 / (2000 * 1.5 * 9.81) - 1) < 1e-9 and stone.shearStiffness == stone.normalStiffness
-assert isinstance(quiet_engines(model="auto")[-1], dem.MoreauJeanIntegrator)
-same = dem.BlockMat(density=2000, normalStiffness=stone.normalStiffness)  # of the number alone it is not told who has given it
-O.engines = quiet_engines(model="auto", penetration=1e-4)
-chosen = stone.normalStiffness
-O.run(2, True)
-assert not isinstance(quiet_engines(model="auto")[-1], dem.MoreauJeanIntegrator) and stone.normalStiffness == chosen  # a run that goes on keeps it
-O.reset()
-dem.block((0.5, 0.6, 1.5), same, on=dem.base((4, 2, 0.2), same))
-assert not isinstance(quiet_engines(model="auto")[-1], dem.MoreauJeanIntegrator) and same.normalStiffness == 2000 * 1.5 * 9.81 / (1e-5 * 0.5)
-O.reset()
-dem.block((0.5, 0.6, 1.5), stone, on=dem.base((4, 2, 0.2), stone))
-stone.normalStiffness *= 2
-given = stone.normalStiffness
-assert "penetration = 0.0001 is not used" in said_by(dem.engines, penetration=1e-4) and stone.normalStiffness == given
-assert not isinstance(quiet_engines(model="auto")[-1], dem.MoreauJeanIntegrator) and stone.normalStiffness == given
 
-# Of two stiffnesses a joint has the harmonic mean: two layers of half the thickness, one on the other.
-O.reset()
-below, above = dem.BlockMat(density=2000, normalStiffness=1e9, shearStiffness=4e8), dem.BlockMat(density=2000, normalStiffness=3e9, shearStiffness=1e9)
-block = dem.block((0.5, 0.6, 1.5), above, on=dem.base((4, 2, 0.2), below))
-O.engines = quiet_engines()
-O.step()
-joint = O.interactions[0, block].phys
-normal, shear = joint.normalStiffness, joint.shearStiffness
-assert math.isclose(normal, 2 / (1 / 1e9 + 1 / 3e9)) and math.isclose(shear, 2 / (1 / 4e8 + 1 / 1e9)), (normal, shear)
+def test_a_stiffness_that_is_chosen_or_given():
+    """A block whose longest axis is its own x, stood on end, presses like one that is made upright. Materials outlive their scenes, and another
+    penetration chooses anew; what a script has given stays."""
+    stone = dem.BlockMat(density=2000, frictionAngle=0.6)
+    for penetration in (1e-4, 1e-5):
+        for size, turn in (((0.5, 0.6, 1.5), 0), ((1.5, 0.6, 0.5), math.pi / 2)):
+            O.reset()
+            dem.base((4, 2, 0.2), stone)
+            dem.block(size, stone, center=(0, 0, 0.75), orientation=Quaternion(Vector3(0, 1, 0), turn))
+            O.engines = quiet_engines(penetration=penetration)
+            assert abs(stone.normalStiffness * penetration * 0.5 / (2000 * 1.5 * 9.81) - 1) < 1e-9 and stone.shearStiffness == stone.normalStiffness
+    assert isinstance(quiet_engines(model="auto")[-1], dem.MoreauJeanIntegrator)
+    same = dem.BlockMat(density=2000, normalStiffness=stone.normalStiffness)  # of the number alone it is not told who has given it
+    O.engines = quiet_engines(model="auto", penetration=1e-4)
+    chosen = stone.normalStiffness
+    O.run(2, True)
+    assert not isinstance(quiet_engines(model="auto")[-1], dem.MoreauJeanIntegrator) and stone.normalStiffness == chosen  # a run that goes on keeps it
+    O.reset()
+    dem.block((0.5, 0.6, 1.5), same, on=dem.base((4, 2, 0.2), same))
+    assert not isinstance(quiet_engines(model="auto")[-1], dem.MoreauJeanIntegrator) and same.normalStiffness == 2000 * 1.5 * 9.81 / (1e-5 * 0.5)
+    O.reset()
+    dem.block((0.5, 0.6, 1.5), stone, on=dem.base((4, 2, 0.2), stone))
+    stone.normalStiffness *= 2
+    given = stone.normalStiffness
+    assert "penetration = 0.0001 is not used" in said_by(dem.engines, penetration=1e-4) and stone.normalStiffness == given
+    assert not isinstance(quiet_engines(model="auto")[-1], dem.MoreauJeanIntegrator) and stone.normalStiffness == given
 
-# Where nothing touches yet the critical step is that of a landing with all springs of the largest face at a corner, (2/step)^2 = k A (1/m + r^2/I). The
-# base, thin and light, does not move.
-O.reset()
-stone = dem.BlockMat(density=2000, normalStiffness=1e9, shearStiffness=4e8)
-dem.base((1, 1, 0.01), stone)
-dem.block((0.5, 0.6, 1.5), stone, center=(0, 0, 9))
-quiet_engines()
-mass = 2000 * 0.5 * 0.6 * 1.5
-stiffness = 1e9 * 0.6 * 1.5 * (1 / mass + (0.5**2 + 0.6**2 + 1.5**2) / 4 / (mass * (0.5**2 + 0.6**2) / 12))
-assert math.isclose(O.dt, 0.2 * 2 / math.sqrt(stiffness)), O.dt
+
+def test_a_joint_has_the_harmonic_mean_of_two_stiffnesses():
+    """Of two stiffnesses a joint has the harmonic mean: two layers of half the thickness, one on the other."""
+    below, above = dem.BlockMat(density=2000, normalStiffness=1e9, shearStiffness=4e8), dem.BlockMat(density=2000, normalStiffness=3e9, shearStiffness=1e9)
+    block = dem.block((0.5, 0.6, 1.5), above, on=dem.base((4, 2, 0.2), below))
+    O.engines = quiet_engines()
+    O.step()
+    joint = O.interactions[0, block].phys
+    normal, shear = joint.normalStiffness, joint.shearStiffness
+    assert math.isclose(normal, 2 / (1 / 1e9 + 1 / 3e9)) and math.isclose(shear, 2 / (1 / 4e8 + 1 / 1e9))
+
+
+def test_the_critical_step_where_nothing_touches_yet():
+    """Where nothing touches yet the critical step is that of a landing with all springs of the largest face at a corner, (2/step)^2 = k A (1/m +
+    r^2/I). The base, thin and light, does not move."""
+    stone = dem.BlockMat(density=2000, normalStiffness=1e9, shearStiffness=4e8)
+    dem.base((1, 1, 0.01), stone)
+    dem.block((0.5, 0.6, 1.5), stone, center=(0, 0, 9))
+    quiet_engines()
+    mass = 2000 * 0.5 * 0.6 * 1.5
+    stiffness = 1e9 * 0.6 * 1.5 * (1 / mass + (0.5**2 + 0.6**2 + 1.5**2) / 4 / (mass * (0.5**2 + 0.6**2) / 12))
+    assert math.isclose(O.dt, 0.2 * 2 / math.sqrt(stiffness))

@@ -6,6 +6,7 @@ import pickle
 import sys
 
 import numpy as np
+import pytest
 import yade
 from masonry import dem
 from rocking_scene import refuses
@@ -13,8 +14,11 @@ from yade import O
 
 import masonry._yade
 
-names = masonry._yade.setup()
-assert "BlockMat" in names and names == sorted(names)
+NAMES = masonry._yade.setup()
+
+
+def test_names():
+    assert "BlockMat" in NAMES and NAMES == sorted(NAMES)
 
 
 def same(a, b):
@@ -30,12 +34,13 @@ def same(a, b):
     )
 
 
-for name in names:
+@pytest.mark.parametrize("name", NAMES)
+def test_a_class(name):
     cls = getattr(dem, name)
-    assert getattr(yade, name) is cls and name in yade.__all__, name
+    assert getattr(yade, name) is cls and name in yade.__all__
     assert cls.__doc__, f"{name} has no documentation"
     base = cls.__mro__[1].__name__
-    assert name in yade.system.childClasses(base), (name, base)
+    assert name in yade.system.childClasses(base)
 
     plain = cls()
     assert type(plain) is cls
@@ -46,34 +51,32 @@ for name in names:
     # YADE's object editor reads type and flags there.
     for attribute in plain.dict().keys() - cls.__mro__[1]().dict().keys():
         doc = getattr(cls, attribute).__doc__
-        assert ":yattrtype:`" in doc and ":yattrflags:`" in doc, (name, attribute, doc)
+        assert ":yattrtype:`" in doc and ":yattrflags:`" in doc, attribute
 
-    try:
+    with pytest.raises(AttributeError, match="noSuchAttribute"):
         cls(noSuchAttribute=1)
-    except AttributeError as error:
-        assert "noSuchAttribute" in str(error), error
-    else:
-        raise AssertionError(f"{name} took an attribute that it does not have")
 
-# Numbers out of arrays are numbers; what does not fit, or is none, still has its error.
-train = dem.PulseTrainEngine(ids=np.array([3, 4]), impulse=np.float32(0.5), resonantBlock=np.int64(7), times=np.array([0, 1]))
-assert (train.ids, train.impulse, train.resonantBlock, train.times) == ([3, 4], 0.5, 7, [0, 1])
-for value, error in ((np.int64(2**40), OverflowError), (np.float64(1.5), TypeError), (np.array([1, 2]), TypeError), ("1", TypeError)):
-    try:
-        train.resonantBlock = value
-    except error:
+
+def test_numbers_out_of_arrays():
+    """Numbers out of arrays are numbers; what does not fit, or is none, still has its error."""
+    train = dem.PulseTrainEngine(ids=np.array([3, 4]), impulse=np.float32(0.5), resonantBlock=np.int64(7), times=np.array([0, 1]))
+    assert (train.ids, train.impulse, train.resonantBlock, train.times) == ([3, 4], 0.5, 7, [0, 1])
+    for value, error in ((np.int64(2**40), OverflowError), (np.float64(1.5), TypeError), (np.array([1, 2]), TypeError), ("1", TypeError)):
+        with pytest.raises(error):
+            train.resonantBlock = value
         assert train.resonantBlock == 7
-    else:
-        raise AssertionError(f"resonantBlock took {value!r}")
 
-# Loading again changes nothing: neither the classes nor what is made of them.
-before = dem.BlockMat
-importlib.reload(dem)
-assert dem.BlockMat is before and masonry._yade.setup() == names
-O.materials.append(dem.BlockMat(label="stone"))
-assert O.materials["stone"].dispHierarchy() == ["BlockMat", "FrictMat", "ElastMat", "Material"]
 
-# Where the plugin has not been built the import says what to do.
-sys.modules["masonry._yade"] = None
-refuses(dem._load.load_classes, "build it with `cmake -B build", "PYTHONPATH", kind=ImportError)
-sys.modules["masonry._yade"] = masonry._yade
+def test_loading_again_changes_nothing():
+    """Loading again changes nothing: neither the classes nor what is made of them."""
+    before = dem.BlockMat
+    importlib.reload(dem)
+    assert dem.BlockMat is before and masonry._yade.setup() == NAMES
+    O.materials.append(dem.BlockMat(label="stone"))
+    assert O.materials["stone"].dispHierarchy() == ["BlockMat", "FrictMat", "ElastMat", "Material"]
+
+
+def test_without_a_build(monkeypatch):
+    """The import says what to do."""
+    monkeypatch.setitem(sys.modules, "masonry._yade", None)
+    refuses(dem._load.load_classes, "build it with `cmake -B build", "PYTHONPATH", kind=ImportError)

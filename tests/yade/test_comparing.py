@@ -1,9 +1,9 @@
 """dem.compare(): runs agree where a scene is far from its limit; where the step decides whether it falls, it says so."""
 import contextlib
 import io
-import math
 
 import numpy as np
+import pytest
 from masonry import dem
 from rocking_scene import refuses
 from yade import O
@@ -37,39 +37,46 @@ def quiet(*arguments, **options):
         return dem.compare(*arguments, **options)
 
 
-# Safe: it rocks far from overturning (above 9.81/3, below 3.89 m/s^2), and far beyond; both models.
-for amplitude, model, verdict in ((3.5, "planar", "stands"), (3.5, "compliant", "stands"), (14.0, "planar", "collapsed")):
+@pytest.mark.parametrize("amplitude, model, verdict", ((3.5, "planar", "stands"), (3.5, "compliant", "stands"), (14.0, "planar", "collapsed")))
+def test_far_from_its_limit(amplitude, model, verdict):
+    """It rocks far from overturning (above 9.81/3, below 3.89 m/s^2), and far beyond; both models."""
     found = quiet(block(amplitude, model))
     print(found)
     assert not found.doubts and {one.verdict for one in found.runs} == {verdict} and "all runs agree" in str(found)
     names = ["as given", "half the step"] + (["tolerance 1e-05"] if model == "planar" else [])
     assert [one.name for one in found.runs] == names and found.runs[1].dt == found.runs[0].dt / 2
 
-# At its limit: the amplitude that just overturns depends on the step; between those of a coarse step and of its half the verdicts differ.
-dt = 0.03
-limits = []
-for step in (dt, dt / 2):
-    low, high = 3.0, 14.0
-    assert falls(high, step) and not falls(low, step)
-    while high - low > 1e-6:
-        middle = (low + high) / 2
-        low, high = (low, middle) if falls(middle, step) else (middle, high)
-    limits.append(high)
-print(f"least amplitude that overturns: {limits[0]:.5f} m/s^2 with dt = {dt} s, {limits[1]:.5f} with its half")
-assert abs(limits[0] - limits[1]) > 1e-4, limits  # the differences of verdicts are no accident of the last digits
-found = quiet(block(sum(limits) / 2, dt=dt))
-print(found)
-assert {found.runs[0].verdict, found.runs[1].verdict} == {"stands", "collapsed"} and "DO NOT TRUST: the verdict depends on the method" in str(found)
 
-# Before the end of the motion nobody knows.
-found = quiet(block(3.0), seconds=1.0)
-assert "unfinished" in str(found) and "DO NOT TRUST: nobody knows yet" in str(found) and "stands" not in str(found).replace("whether it stands", "")
+def test_at_its_limit():
+    """At its limit: the amplitude that just overturns depends on the step; between those of a coarse step and of its half the verdicts differ."""
+    dt = 0.03
+    limits = []
+    for step in (dt, dt / 2):
+        low, high = 3.0, 14.0
+        assert falls(high, step) and not falls(low, step)
+        while high - low > 1e-6:
+            middle = (low + high) / 2
+            low, high = (low, middle) if falls(middle, step) else (middle, high)
+        limits.append(high)
+    print(f"least amplitude that overturns: {limits[0]:.5f} m/s^2 with dt = {dt} s, {limits[1]:.5f} with its half")
+    assert abs(limits[0] - limits[1]) > 1e-4, limits  # the differences of verdicts are no accident of the last digits
+    found = quiet(block(sum(limits) / 2, dt=dt))
+    print(found)
+    assert {found.runs[0].verdict, found.runs[1].verdict} == {"stands", "collapsed"} and "DO NOT TRUST: the verdict depends on the method" in str(found)
 
-refuses(lambda: quiet(3), "scene_function = 3")
-refuses(lambda: quiet(lambda **changes: None), "returned no list of engines")
-refuses(lambda: quiet(lambda **changes: block(3.0)(dt=0.01)), "**changes")
-refuses(lambda: quiet(block(3.0), share=1), "share = 1")
-refuses(lambda: quiet(block(3.0), seconds=-1), "seconds = -1")
+
+def test_before_the_end_of_the_motion():
+    """Nobody knows."""
+    found = quiet(block(3.0), seconds=1.0)
+    assert "unfinished" in str(found) and "DO NOT TRUST: nobody knows yet" in str(found) and "stands" not in str(found).replace("whether it stands", "")
+
+
+def test_scenes_that_cannot_be_compared():
+    refuses(lambda: quiet(3), "scene_function = 3")
+    refuses(lambda: quiet(lambda **changes: None), "returned no list of engines")
+    refuses(lambda: quiet(lambda **changes: block(3.0)(dt=0.01)), "**changes")
+    refuses(lambda: quiet(block(3.0), share=1), "share = 1")
+    refuses(lambda: quiet(block(3.0), seconds=-1), "seconds = -1")
 
 
 def still(**changes):
@@ -78,4 +85,5 @@ def still(**changes):
     return dem.engines(**changes)
 
 
-refuses(lambda: quiet(still), "seconds = None", "no motion")
+def test_seconds_without_a_motion():
+    refuses(lambda: quiet(still), "seconds = None", "no motion")

@@ -2,8 +2,9 @@
 
 import math
 
+import pytest
 from masonry import dem
-from rocking_scene import Balance, quiet_engines, refuses
+from rocking_scene import Balance, joint_engine, quiet_engines, refuses, turned_over
 from yade import O
 
 
@@ -17,39 +18,40 @@ def board(thickness, dt=None):
     return O.engines[3]
 
 
-def turned_over():
-    return sum(value for key, value in dem.energy().items() if key not in ("potential", "baseWork"))
-
-
-# The face on which a board lands has the area of its edge times 1 / thickness, and so has its stiffness: the step chosen for the edge is too
-# long for it, is lowered before it makes energy, and the velocities follow. Wanted: 2 % of what is turned over, either way.
-for thickness in (0.05, 0.02):
+@pytest.mark.parametrize("thickness", (0.05, 0.02))
+def test_a_board_falls_on_its_large_face(thickness):
+    """The face on which a board lands has the area of its edge times 1 / thickness, and so has its stiffness: the step chosen for the edge is too
+    long for it, is lowered before it makes energy, and the velocities follow. Wanted: 2 % of what is turned over, either way."""
     joints = board(thickness)
     first = O.dt
     balance = Balance()
     while O.time < 1.2:
         O.run(1000, True)
     error = balance.error() / turned_over()
-    print(f"    thickness {thickness} m: dt {first:.2e} s, then {O.dt:.2e} s; energy {error:.1e}")
-    assert abs(error) < 0.02, error
-    assert O.dt < first * math.sqrt(thickness) * 1.5, (first, O.dt)
+    print(f"thickness {thickness} m: dt {first:.2e} s, then {O.dt:.2e} s; energy {error:.1e}")
+    assert abs(error) < 0.02
+    assert O.dt < first * math.sqrt(thickness) * 1.5
+
+
     assert max(O.bodies[1].state.pos[2], abs(O.bodies[1].state.pos[0])) < 1.1  # it lies, and has flown nowhere
 
-# A given step is not touched: the run ends in an error where the face needs a shorter one.
-board(0.02)
-given = 2 * O.dt
-board(0.02, given)
+
+def test_a_given_step_is_not_touched():
+    """A given step is not touched: the run ends in an error where the face needs a shorter one."""
+    board(0.02)
+    given = 2 * O.dt
+    board(0.02, given)
 
 
-def run():
-    while O.time < 1.2:
-        O.step()
-        assert O.dt == given
+    def run():
+        while O.time < 1.2:
+            O.step()
+            assert O.dt == given
 
 
-print("   ", refuses(run, "O.dt", "below", kind=RuntimeError))
-# What has been made until then is no more than what was there: the board has fallen by half of its height.
-assert dem.energy()["kinetic"] < 1.02 * O.bodies[1].state.mass * 9.81 * 0.5
+    print(refuses(run, "O.dt", "below", kind=RuntimeError))
+    # What has been made until then is no more than what was there: the board has fallen by half of its height.
+    assert dem.energy()["kinetic"] < 1.02 * O.bodies[1].state.mass * 9.81 * 0.5
 
 
 def bounce(step, seconds=2):
@@ -60,7 +62,7 @@ def bounce(step, seconds=2):
     base = dem.base((6, 4, 0.4), material)
     dem.block((0.6, 0.6, 0.4), material, center=(0, 0, 0.3))
     O.engines = quiet_engines(penetration=1e-3)
-    critical = O.dt / joints_of().stepFraction
+    critical = O.dt / joint_engine().stepFraction
     O.engines = quiet_engines(penetration=1e-3, dt=step * critical)
     O.engines[2].lawDispatcher.functors[0].dampingRatio = 0
     block = O.bodies[1]
@@ -68,44 +70,46 @@ def bounce(step, seconds=2):
     balance = Balance()
     while O.time < seconds or any(i.isReal for i in O.interactions):
         O.step()
-    return joints_of(), balance.error(), stiffness / block.state.mass * O.dt**2 / 4
+    return joint_engine(), balance.error(), stiffness / block.state.mass * O.dt**2 / 4
 
 
-def joints_of():
-    return next(e for e in O.engines if isinstance(e, dem.RockingJointEngine))
-
-
-# Springs act from the start of the step in which their points land: the bodies lose k d (v dt - d)/2 over what is stored, at most (w dt)^2/4 of the
-# kinetic energy, and get as much back where they part. The sum of energies, in flight, knows the difference to rounding.
-for step in (0.5, 0.1, 0.03):
+@pytest.mark.parametrize("step", (0.5, 0.1, 0.03))
+def test_bounces(step):
+    """Springs act from the start of the step in which their points land: the bodies lose k d (v dt - d)/2 over what is stored, at most (w dt)^2/4 of
+    the kinetic energy, and get as much back where they part. The sum of energies, in flight, knows the difference to rounding."""
     joints, error, most = bounce(step)
     made, lost = joints.madeEnergy, joints.lostEnergy
     fall = O.bodies[1].state.mass * 9.81 * 0.1
     landings = 2 / 0.28  # of 0.1 m: one each 0.29 s
-    print(f"    bounces at {step:g} of the critical step: made {made / fall:.1e}, lost {lost / fall:.1e} of the fall, failures {joints.failures}")
-    assert abs(error - (made - lost)) < 1e-9 * fall, (error, made, lost)
-    assert 0.2 * landings * most * fall < min(made, lost) and max(made, lost) < 1.1 * (landings + 1) * most * fall, (made, lost, most * fall)
+    print(f"bounces at {step:g} of the critical step: made {made / fall:.1e}, lost {lost / fall:.1e} of the fall, failures {joints.failures}")
+    assert abs(error - (made - lost)) < 1e-9 * fall
+    assert 0.2 * landings * most * fall < min(made, lost) and max(made, lost) < 1.1 * (landings + 1) * most * fall, most * fall
     told = (made > 0.05 * joints.turnedOver) + (lost > 0.05 * joints.turnedOver)
     block = O.bodies[1]  # it lands at v = sqrt(2 g h) and goes as deep as its kinetic energy presses the spring in
     depth = (2 * 9.81 * 0.1 * block.state.mass / (block.mat.normalStiffness * 0.6 * 0.6)) ** 0.5
     deep = depth > 0.02 * min(block.shape.extents)
-    assert deep and joints.failures == told + deep and (step > 0.1) == (told > 0), (joints.failures, told, depth)
+    assert deep and joints.failures == told + deep and (step > 0.1) == (told > 0), depth
 
-# dem.engines() refuses a given step where the run would, with the same number in the message, and nowhere else: the dashpots count in both.
-for make in (lambda: dem.block((0.5, 0.5, 1), stone, on=0), lambda: dem.stack(3, (0.3, 0.3, 0.6), stone, on=0), lambda: dem.tilt(dem.block((0.3, 0.6, 1), stone, on=0), 0.05)):
+
+@pytest.mark.parametrize("make", (
+    lambda stone: dem.block((0.5, 0.5, 1), stone, on=0), lambda stone: dem.stack(3, (0.3, 0.3, 0.6), stone, on=0),
+    lambda stone: dem.tilt(dem.block((0.3, 0.6, 1), stone, on=0), 0.05),
+))
+def test_a_given_step_is_refused_where_the_run_would(make):
+    """dem.engines() refuses a given step where the run would, with the same number in the message, and nowhere else. The dashpots count in both."""
+    stone = dem.BlockMat(density=2000, frictionAngle=0.6)
 
     def scene(dt=None):
         O.reset()
         dem.base((4, 4, 0.4), stone)
-        make()
+        make(stone)
         O.engines = quiet_engines(dt=dt, model="compliant")
 
-    stone = dem.BlockMat(density=2000, frictionAngle=0.6)
     scene()
-    largest, critical = joints_of().largestTimeStep, joints_of().criticalTimeStep()
-    assert 0.3 * critical < largest < 0.75 * critical, (largest, critical)  # one mode of the damping ratio 0.5: 0.62
+    largest, critical = joint_engine().largestTimeStep, joint_engine().criticalTimeStep()
+    assert 0.3 * critical < largest < 0.75 * critical  # one mode of the damping ratio 0.5: 0.62
     said = refuses(lambda: scene(1.001 * largest), "dt", "below")
     scene(largest)
     O.step()
     O.dt *= 1.01
-    print("   ", said, "|", refuses(O.step, "O.dt", "below", kind=RuntimeError))
+    print(said, "|", refuses(O.step, "O.dt", "below", kind=RuntimeError))

@@ -3,6 +3,7 @@
 import random
 
 import numpy as np
+import pytest
 from masonry import dem
 from rocking_scene import rigid_engines
 from yade import O, Quaternion
@@ -43,7 +44,8 @@ def check(interaction, rigid=True):
     return np.min(normals @ normal) < 0.9
 
 
-for seed in range(4):
+@pytest.mark.parametrize("seed", range(4))
+def test_rigid(seed):
     tumbling_blocks(seed)
     loaded = different = 0
     while O.time < 1.0:
@@ -54,12 +56,14 @@ for seed in range(4):
     print("seed", seed, "loaded", loaded, "with normals more than 25 degrees from the common one", different)
     assert loaded > 100
 
-tumbling_blocks(0, model="compliant")
-loaded = 0
-while O.time < 0.5:
-    O.step()
-    for i in O.interactions:
-        if i.isReal and np.linalg.norm(i.phys.normalForce) > 0:
-            check(i, rigid=False)
-            loaded += 1
-assert loaded > 100, loaded
+
+def test_compliant():
+    tumbling_blocks(0, model="compliant")
+    loaded = 0
+    while O.time < 0.5:
+        O.step()
+        for i in O.interactions:
+            if i.isReal and np.linalg.norm(i.phys.normalForce) > 0:
+                check(i, rigid=False)
+                loaded += 1
+    assert loaded > 100

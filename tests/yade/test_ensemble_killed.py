@@ -2,11 +2,10 @@
 
 import os
 import random
-import tempfile
 import time
-from pathlib import Path
 
-from ensemble_programs import MPI, PYTHON, STUDY, end, has, kill, none_stays, processes, start, tables, without
+import pytest
+from ensemble_programs import MPI, PYTHON, STUDY, end, has, kill, none_stays, processes, start, tables
 
 # In the place of yade: it starts at once, so that there is time for many kills. test_ensemble.py kills runs of the real one.
 YADE = "#!/bin/sh\nexec /usr/bin/python3 \"$4\" \"$5\"\n"
@@ -39,25 +38,28 @@ def cases(found):
     return [pid for pid, line in found.items() if "_run_case.py" in line]
 
 
-with tempfile.TemporaryDirectory() as root:
-    root = Path(root).resolve()
-    scene, draw = root / "quick.py", random.Random(1)
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    """The scene, the PATH with the other yade, and the tables of a run that nobody kills."""
+    root = tmp_path_factory.mktemp("whole").resolve()
+    scene, yade = root / "quick.py", root / "bin" / "yade"
     scene.write_text(SCENE)
-    yade = root / "bin" / "yade"
     yade.parent.mkdir()
     yade.write_text(YADE)
     yade.chmod(0o755)
     path = f"{yade.parent}:{os.environ['PATH']}"
-    end(PYTHON, STUDY, root / "whole", "local", scene, PATH=path)
-    expected = tables(root / "whole")
-    for name, kind, command, victims in (("driver", "local", [PYTHON], drivers), ("case", "local", [PYTHON], cases), ("rank", "mpi", MPI, drivers)):
-        if kind == "mpi" and not has("mpi4py"):
-            without("there is no mpi4py")
-            continue
-        folder = root / name
-        kills = killed_and_resumed(command, kind, folder, scene, path, victims, draw)
-        print(f"{name}: killed {kills} times")
-        assert kills > 0
-        assert tables(folder) == expected, name
-        assert not list(folder.glob(".case_*")), list(folder.iterdir())
-print("ensemble: killed")
+    end(PYTHON, STUDY, root / "out", "local", scene, PATH=path)
+    return scene, path, tables(root / "out")
+
+
+@pytest.mark.parametrize("name, kind, command, victims", (("driver", "local", [PYTHON], drivers), ("case", "local", [PYTHON], cases), ("rank", "mpi", MPI, drivers)))
+def test_killed_and_resumed(name, kind, command, victims, whole, tmp_path):
+    if kind == "mpi" and not has("mpi4py"):
+        pytest.skip("there is no mpi4py")
+    scene, path, expected = whole
+    folder = tmp_path.resolve() / name
+    kills = killed_and_resumed(command, kind, folder, scene, path, victims, random.Random(1))
+    print(f"killed {kills} times")
+    assert kills > 0
+    assert tables(folder) == expected
+    assert not list(folder.glob(".case_*")), list(folder.iterdir())

@@ -4,21 +4,20 @@ import sys
 
 import guard_probe
 import guard_probe_shifted
+import pytest
 import yade
 from masonry import _build, _fit
 
 REBUILD = "scripts/quickstart"
+VERSION = _build.YADE
 
 
 def refused(act, *parts, kind=RuntimeError):
-    try:
+    with pytest.raises(kind) as error:
         act()
-    except kind as error:
-        sentence = str(error)
-        assert all(part in sentence for part in parts), sentence
-        assert "\n" not in sentence and sentence.count(". ") == 0 and sentence.endswith("."), sentence
-    else:
-        raise AssertionError(f"accepted, without {parts}")
+    sentence = str(error.value)
+    assert all(part in sentence for part in parts), sentence
+    assert "\n" not in sentence and sentence.count(". ") == 0 and sentence.endswith("."), sentence
     assert "masonry._yade" not in sys.modules and not hasattr(yade.wrapper, "BlockMat"), "YADE is no longer as it was"
 
 
@@ -26,33 +25,47 @@ def load():
     from masonry import dem  # noqa: F401
 
 
-# Sizes, as the guard alone says it. State has 320 bytes in every YADE without DEFORM.
-guard_probe.require()
-for change, found in ((("State", 336), "its State takes 320 bytes instead of 336"), (("LawFunctor", 96), "its LawFunctor takes 88 bytes instead of 96")):
-    try:
+# Only the last test of this file loads the plugin: what has been loaded stays in YADE.
+
+
+def test_sizes_as_the_guard_alone_accepts_them():
+    guard_probe.require()
+
+
+# State has 320 bytes in every YADE without DEFORM.
+@pytest.mark.parametrize("change, found", (
+    (("State", 336), "its State takes 320 bytes instead of 336"), (("LawFunctor", 96), "its LawFunctor takes 88 bytes instead of 96"),
+))
+def test_sizes_as_the_guard_alone_refuses_them(change, found):
+    with pytest.raises(RuntimeError) as error:
         guard_probe.require([change])
-    except RuntimeError as error:
-        assert str(error) == found, error
-    else:
-        raise AssertionError(f"accepted {change}")
+    assert str(error.value) == found
 
-# Another version, and another Python.
-here, _build.YADE = _build.YADE, "2024.01"
-refused(load, f"masonry does not fit this YADE: it is YADE {here}, but the plugin was built for YADE 2024.01", REBUILD)
-_build.YADE = here
-python, _build.PYTHON = _build.PYTHON, "3.1"
-refused(_fit.require_python, f"masonry was built for Python 3.1, but this is Python {python}", REBUILD, kind=ImportError)
-_build.PYTHON = python
 
-# A wrong definition: YADE_DEFORM gives State a member more. The build id tells whether it is the same build of YADE.
-sys.modules["masonry._guard"] = guard_probe_shifted
-refused(load, "its State takes 320 bytes instead of 328", f"on this very build of YADE {here}", REBUILD)
-build_id, _build.YADE_BUILD_ID = _build.YADE_BUILD_ID, "0123"
-refused(load, "its State takes 320 bytes instead of 328", f"on another build of YADE {here}", REBUILD)
+def test_another_version(monkeypatch):
+    monkeypatch.setattr(_build, "YADE", "2024.01")
+    refused(load, f"masonry does not fit this YADE: it is YADE {VERSION}, but the plugin was built for YADE 2024.01", REBUILD)
 
-# A rebuild of the same version passes where all sizes and tables agree.
-del sys.modules["masonry._guard"]
-from masonry import dem  # noqa: E402
 
-assert dem.BlockMat(density=2000).density == 2000
-assert guard_probe.build_id("libyade.so") == build_id and len(build_id) == 40, build_id
+def test_another_python(monkeypatch):
+    python = _build.PYTHON
+    monkeypatch.setattr(_build, "PYTHON", "3.1")
+    refused(_fit.require_python, f"masonry was built for Python 3.1, but this is Python {python}", REBUILD, kind=ImportError)
+
+
+@pytest.mark.parametrize("build_id, built_on", ((_build.YADE_BUILD_ID, "this very"), ("0123", "another")))
+def test_a_wrong_definition(build_id, built_on, monkeypatch):
+    """YADE_DEFORM gives State a member more. The build id tells whether it is the same build of YADE."""
+    monkeypatch.setitem(sys.modules, "masonry._guard", guard_probe_shifted)
+    monkeypatch.setattr(_build, "YADE_BUILD_ID", build_id)
+    refused(load, "its State takes 320 bytes instead of 328", f"on {built_on} build of YADE {VERSION}", REBUILD)
+
+
+def test_a_rebuild_of_the_same_version(monkeypatch):
+    """It passes where all sizes and tables agree."""
+    build_id = _build.YADE_BUILD_ID
+    monkeypatch.setattr(_build, "YADE_BUILD_ID", "0123")
+    from masonry import dem
+
+    assert dem.BlockMat(density=2000).density == 2000
+    assert guard_probe.build_id("libyade.so") == build_id and len(build_id) == 40, build_id

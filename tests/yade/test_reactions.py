@@ -3,6 +3,7 @@
 import math
 
 import numpy as np
+import pytest
 from masonry import dem, results
 from rocking_scene import quiet_engines, refuses
 from yade import O, Vector3
@@ -23,34 +24,35 @@ def weight():
     return GRAVITY * sum(b.state.mass for b in O.bodies if b.dynamic)
 
 
-# --- at rest: the weight, and nothing sideways ---
-for model in MODELS:
-    O.reset()
+@pytest.mark.parametrize("model", MODELS)
+def test_at_rest(model):
+    """The weight, and nothing sideways."""
     base = dem.base((4, 1, 0.2), stone())
     dem.stack(4, (0.6, 0.5, 0.5), stone(), on=base)
     O.engines = quiet_engines(model=model)
     dem.run(0.5 if model == "compliant" else 0.05)
     table = dem.reactions(base)
     assert len(table) == 1 and table["id"][0] == 1
-    assert np.abs(table["force"].sum(axis=0) - [0, 0, weight()]).max() < EXACT[model] * weight(), (model, table)
-    assert np.abs(table["point"][0] - [0, 0, 0]).max() < 1e-4, (model, table)
+    assert np.abs(table["force"].sum(axis=0) - [0, 0, weight()]).max() < EXACT[model] * weight(), table
+    assert np.abs(table["point"][0] - [0, 0, 0]).max() < 1e-4, table
     middle = dem.reactions(2)  # it carries two blocks, and presses one down
     assert sorted(middle["id"]) == [1, 3]
     assert abs(middle[middle["id"] == 3]["force"][0, 2] - weight() / 2) < EXACT[model] * weight()
     assert abs(middle[middle["id"] == 1]["force"][0, 2] + 3 * weight() / 4) < EXACT[model] * weight()  # the weight of 2, 3, 4 on 1
 
-# --- a wall with method='wall', at rest ---
-O.reset()
-base = dem.base((6, 1, 0.2), stone())
-ids = dem.wall(courses=6, per_course=5, size=(0.4, 0.2, 0.2), material=stone(), on=base)
-O.engines = quiet_engines(model="planar", method="wall")
-dem.run(0.1)
-total = dem.reactions(base)["force"].sum(axis=0)
-assert np.abs(total - [0, 0, weight()]).max() < 1e-2 * weight(), (total, weight())
 
-# --- the base accelerates: m (a - g), up to where it is constant ---
-for model in MODELS:
-    O.reset()
+def test_a_wall_at_rest():
+    base = dem.base((6, 1, 0.2), stone())
+    ids = dem.wall(courses=6, per_course=5, size=(0.4, 0.2, 0.2), material=stone(), on=base)
+    O.engines = quiet_engines(model="planar", method="wall")
+    dem.run(0.1)
+    total = dem.reactions(base)["force"].sum(axis=0)
+    assert np.abs(total - [0, 0, weight()]).max() < 1e-2 * weight()
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_a_base_that_accelerates(model):
+    """M (a - g), up to where it is constant."""
     acceleration = 1.0
     base = dem.base((4, 1, 0.2), stone())
     dem.stack(3, (0.6, 0.5, 0.4), stone(), on=base)
@@ -61,20 +63,21 @@ for model in MODELS:
     dem.run(0.9)
     mass = weight() / GRAVITY
     force = dem.reactions(base)["force"].sum(axis=0)
-    assert np.abs(force - [mass * acceleration, 0, weight()]).max() < EXACT[model] * weight(), (model, force)
+    assert np.abs(force - [mass * acceleration, 0, weight()]).max() < EXACT[model] * weight()
     history = dem.wall_history(recorder)
     table = results.base_reactions(history)
     assert np.isnan(table["force"][0]).all() == (not (history.forces["sample"] == 0).any()) and abs(table["time"][-1] - 0.9) < 0.06
     late = table[table["time"] > 0.6]
-    assert np.abs(late["force"] - [mass * acceleration, 0, weight()]).max() < 2 * EXACT[model] * weight(), (model, late)
+    assert np.abs(late["force"] - [mass * acceleration, 0, weight()]).max() < 2 * EXACT[model] * weight(), late
     # About the middle of the base: the change of angular momentum, m a at half the height of 1.2 m.
-    assert np.abs(late["moment"] - [0, mass * acceleration * 0.6, 0]).max() < 2 * EXACT[model] * weight(), (model, late["moment"])
+    assert np.abs(late["moment"] - [0, mass * acceleration * 0.6, 0]).max() < 2 * EXACT[model] * weight()
 
-# --- the line of thrust of a column under gravity that is tilted by an angle: at each joint the weight above acts along gravity and meets the joint where
-# its line through the centre of what is above comes to it: tan(angle) times the height of that centre over the joint from the middle ---
-angle, blocks, height = 0.08, 5, 0.4
-for model in MODELS:
-    O.reset()
+
+@pytest.mark.parametrize("model", MODELS)
+def test_the_line_of_thrust(model):
+    """The line of thrust of a column under gravity that is tilted by an angle: at each joint the weight above acts along gravity and meets the joint
+    where its line through the centre of what is above comes to it: tan(angle) times the height of that centre over the joint from the middle."""
+    angle, blocks, height = 0.08, 5, 0.4
     base = dem.base((4, 1, 0.2), stone())
     ids = dem.stack(blocks, (0.6, 0.5, height), stone(), on=base)
     recorder = dem.WallRecorder(iterPeriod=50, recordForces=True)
@@ -85,21 +88,22 @@ for model in MODELS:
     # Compliant: pressed in by 1e-5 of the width, blocks lean by some 1e-5 of it, at up to four times the width in height.
     close = 1e-3 if model == "compliant" else 1e-6
     table = dem.joint_forces()
-    assert len(table) == blocks, (model, table)
+    assert len(table) == blocks
     one = weight() / blocks
     for k, row in enumerate(np.sort(table, order="id1")):
         above = (blocks - k) * height / 2
         assert (row["id1"], row["id2"]) == (([base] + ids)[k], ids[k])
-        assert np.abs(row["force"] - np.array([-math.sin(angle), 0, math.cos(angle)]) * (blocks - k) * one).max() < max(close, EXACT[model]) * weight(), (model, k, row)
-        assert abs(row["point"][0] - math.tan(angle) * above) < close and abs(row["point"][2] - k * height) < 1e-4, (model, k, row["point"])
+        assert np.abs(row["force"] - np.array([-math.sin(angle), 0, math.cos(angle)]) * (blocks - k) * one).max() < max(close, EXACT[model]) * weight(), row
+        assert abs(row["point"][0] - math.tan(angle) * above) < close and abs(row["point"][2] - k * height) < 1e-4, row["point"]
     history = dem.wall_history(recorder)
     assert np.abs(results.thrust(history)["point"][:, 0] - table["point"][:, 0]).max() < 2 * close
     overturning = results.base_reactions(history)["moment"][-1]
-    assert abs(overturning[1] + weight() * math.sin(angle) * blocks * height / 2) < 5 * EXACT[model] * weight(), (model, overturning)
+    assert abs(overturning[1] + weight() * math.sin(angle) * blocks * height / 2) < 5 * EXACT[model] * weight(), overturning
 
-# --- momentum: what a rocking block gains in a step is the force of the joint and its weight ---
-for model in ("planar", "spatial"):
-    O.reset()
+
+@pytest.mark.parametrize("model", ("planar", "spatial"))
+def test_momentum(model):
+    """What a rocking block gains in a step is the force of the joint and its weight."""
     base = dem.base((4, 1, 0.2), stone())
     block = dem.block((0.6, 0.5, 2.0), stone(), on=base)
     dem.tilt(block, 0.12)
@@ -111,14 +115,19 @@ for model in ("planar", "spatial"):
         O.step()
         gained = state.mass * (np.array(state.vel) - before) / O.dt
         force = dem.reactions(base)["force"].sum(axis=0)
-        assert np.abs(force + [0, 0, -weight()] - gained).max() < 1e-6 * weight(), (model, force, gained)
+        assert np.abs(force + [0, 0, -weight()] - gained).max() < 1e-6 * weight()
 
-refuses(lambda: dem.reactions(99), "id = 99")
 
-# Forces are kept from the first sample on, or not at all.
-recorder = dem.WallRecorder(iterPeriod=1)
-O.engines = quiet_engines(model="planar", recorder=recorder)
-dem.run(10 * O.dt)
-assert dem.wall_history(recorder).forces is None and len(recorder.jointCounts) == 0
-recorder.recordForces = True
-refuses(O.step, "WallRecorder.recordForces", "new WallRecorder")
+def test_reactions_of_no_body():
+    refuses(lambda: dem.reactions(99), "id = 99")
+
+
+def test_forces_are_kept_from_the_first_sample_on():
+    """Forces are kept from the first sample on, or not at all."""
+    dem.block((0.6, 0.5, 2.0), stone(), on=dem.base((4, 1, 0.2), stone()))
+    recorder = dem.WallRecorder(iterPeriod=1)
+    O.engines = quiet_engines(model="planar", recorder=recorder)
+    dem.run(10 * O.dt)
+    assert dem.wall_history(recorder).forces is None and len(recorder.jointCounts) == 0
+    recorder.recordForces = True
+    refuses(O.step, "WallRecorder.recordForces", "new WallRecorder")

@@ -4,6 +4,7 @@ import contextlib
 import io
 
 import numpy as np
+import pytest
 from masonry import dem
 from rocking_scene import Samples, one_block, refuses, rigid_engines
 from yade import O
@@ -30,68 +31,85 @@ def run(make, **options):
     return np.array(seen.times) - 0.5, moved, angles, block, O.bodies[base].state, engine
 
 
-rounded = np.round(displacement(T), 4)
-record = masonry.Record(INTERVAL, displacement=rounded, unit="m")
-for method in ("localised", "wall"):
-    times, moved, angles, block, base, engine = run(lambda base: dem.record_motion(record, ids=[base], start=0.5), method=method)
+ROUNDED = np.round(displacement(T), 4)
+RECORD = masonry.Record(INTERVAL, displacement=ROUNDED, unit="m")
+SPEEDS = 0.2 * np.sin(2 * np.pi * T / END) ** 2  # m/s
+
+
+@pytest.mark.parametrize("method", ("localised", "wall"))
+def test_a_base_moves_as_the_record_says(method):
+    times, moved, angles, block, base, engine = run(lambda base: dem.record_motion(RECORD, ids=[base], start=0.5), method=method)
     inside = (times >= 0) & (times <= END)
     # The engine puts the base where the motion is: round-off of coordinates of a metre.
-    assert np.abs(moved[inside] - record.displacement(times[inside])).max() < 1e-13
+    assert np.abs(moved[inside] - RECORD.displacement(times[inside])).max() < 1e-13
     # At the samples the smooth motion differs from the rounded ones by at most one unit of their last digit, and so it does from the exact displacement.
     at = np.abs(times[:, None] - T[None, 1:-1]).argmin(axis=0)
     assert np.abs(times[at] - T[1:-1]).max() < 1e-9
-    off = np.abs(moved[at] - rounded[1:-1]).max(), np.abs(moved[inside] - displacement(times[inside])).max()
-    print(f"{method}: base off the samples by {off[0]:.1e} m, off the exact displacement by {off[1]:.1e} m, at the end by {moved[-1] - rounded[-1]:.1e} m")
+    off = np.abs(moved[at] - ROUNDED[1:-1]).max(), np.abs(moved[inside] - displacement(times[inside])).max()
+    print(f"{method}: base off the samples by {off[0]:.1e} m, off the exact displacement by {off[1]:.1e} m, at the end by {moved[-1] - ROUNDED[-1]:.1e} m")
     assert max(off) <= 1e-4
     # It ends at the last sample and stays there: 3000 steps of the sum of accelerations, in double precision.
-    assert abs(moved[-1] - rounded[-1]) < 1e-12 and base.vel.norm() < 1e-12
+    assert abs(moved[-1] - ROUNDED[-1]) < 1e-12 and base.vel.norm() < 1e-12
     # As exact as under any record (test_rigid_motion.py); method='wall' is of first order.
-    exact = masonry.simulate(block, record, restitution=0.8, t_end=END + 1)
+    exact = masonry.simulate(block, RECORD, restitution=0.8, t_end=END + 1)
     wanted = exact.sample(np.maximum(times, 0))[0]
     error = np.abs(angles - wanted).max() / np.abs(wanted).max()
     print(f"{method}: {len(exact.impact_times)} impacts, angle {error:.1e} of {np.abs(wanted).max():.3f} rad")
     assert len(exact.impact_times) >= 3 and error < (1e-4 if method == "localised" else 0.02)
 
-# The constructor takes them, in any unit.
-wanted = record.samples.tolist()
-for factor, unit in ((1, "m"), (1000, "mm")):
-    made = dem.RecordMotionEngine(ids=[0], displacement=(factor * rounded).tolist(), interval=INTERVAL, unit=unit)
-    assert np.abs(np.array(made.samples) - wanted).max() < 1e-6 and made.baseline == "none"
-speeds = 0.2 * np.sin(2 * np.pi * T / END) ** 2  # m/s
-times, moved, *_, base, _ = run(lambda base: dem.RecordMotionEngine(ids=[base], velocity=speeds, interval=INTERVAL, unit="m/s", start=0.5))
-# The integral of the velocity, 0.1 m/s over 3 s; its quadratic spline has an error of third order, 1e-6 of it at 300 samples.
-assert abs(moved[-1] - 0.3) < 3e-7 and base.vel.norm() < 1e-12, (moved[-1], base.vel)
-plain = dem.RecordMotionEngine(ids=[0], samples=[0.0, 0.5, 0.0], unit="g")
-assert plain.samples[1] == 0.5 * 9.80665
 
-# What it does not take.
-for options, words in ((dict(displacement=[0.0, 1.0]), "displacement has 2 samples: must be at least 8"),
-                       (dict(displacement=rounded, unit="g"), "unit = 'g': must be one of m, cm, mm"),
-                       (dict(displacement=rounded, baseline="constant"), "baseline = 'constant': must be 'none' for a displacement"),
-                       (dict(velocity=speeds, samples=[1.0, 2.0]), "acceleration and velocity of acceleration, velocity and displacement is given"),
-                       (dict(velocity=speeds + 1), "velocity[0] = 1: must be 0")):
-    refuses(lambda options=options: dem.RecordMotionEngine(ids=[0], **options), words)
+def test_the_constructor_takes_any_unit():
+    """The constructor takes them, in any unit."""
+    wanted = RECORD.samples.tolist()
+    for factor, unit in ((1, "m"), (1000, "mm")):
+        made = dem.RecordMotionEngine(ids=[0], displacement=(factor * ROUNDED).tolist(), interval=INTERVAL, unit=unit)
+        assert np.abs(np.array(made.samples) - wanted).max() < 1e-6 and made.baseline == "none"
+    times, moved, *_, base, _ = run(lambda base: dem.RecordMotionEngine(ids=[base], velocity=SPEEDS, interval=INTERVAL, unit="m/s", start=0.5))
+    # The integral of the velocity, 0.1 m/s over 3 s; its quadratic spline has an error of third order, 1e-6 of it at 300 samples.
+    assert abs(moved[-1] - 0.3) < 3e-7 and base.vel.norm() < 1e-12
+    plain = dem.RecordMotionEngine(ids=[0], samples=[0.0, 0.5, 0.0], unit="g")
+    assert plain.samples[1] == 0.5 * 9.80665
 
-# A motion that is cut off while it is under way is named, once.
-for make in (lambda: dem.RecordMotionEngine(ids=[0], displacement=rounded[:150]), lambda: dem.record_motion(masonry.Record(INTERVAL, displacement=rounded[:150]), ids=[0])):
+
+@pytest.mark.parametrize("options, words", (
+    (dict(displacement=[0.0, 1.0]), "displacement has 2 samples: must be at least 8"),
+    (dict(displacement=ROUNDED, unit="g"), "unit = 'g': must be one of m, cm, mm"),
+    (dict(displacement=ROUNDED, baseline="constant"), "baseline = 'constant': must be 'none' for a displacement"),
+    (dict(velocity=SPEEDS, samples=[1.0, 2.0]), "acceleration and velocity of acceleration, velocity and displacement is given"),
+    (dict(velocity=SPEEDS + 1), "velocity[0] = 1: must be 0"),
+))
+def test_what_is_refused(options, words):
+    """It names what it does not take."""
+    refuses(lambda: dem.RecordMotionEngine(ids=[0], **options), words)
+
+
+@pytest.mark.parametrize("make", (
+    lambda: dem.RecordMotionEngine(ids=[0], displacement=ROUNDED[:150]), lambda: dem.record_motion(masonry.Record(INTERVAL, displacement=ROUNDED[:150]), ids=[0]),
+))
+def test_a_motion_that_is_cut_off_is_named_once(make):
+    """A motion that is cut off while it is under way is named, once."""
     said = io.StringIO()
     with contextlib.redirect_stdout(said):
         make()
-    assert said.getvalue().startswith("masonry.dem: The record of a displacement does not begin or end at rest"), said.getvalue()
+    assert said.getvalue().startswith("masonry.dem: The record of a displacement does not begin or end at rest")
     assert said.getvalue().count("\n") == 1
 
-# Filtered records are given as they are filtered; their padding is part of the motion.
-filtered = masonry.Record(INTERVAL, np.sin(7 * T) + 0.2, baseline="high-pass", corner=0.5)
-engine = dem.record_motion(filtered, ids=[0])
-assert engine.baseline == "none" and engine.samples == filtered.samples.tolist() and engine.end == filtered.duration
 
-# A saved run goes on with the same bits.
-times, moved, *_ = run(lambda base: dem.record_motion(record, ids=[base], start=0.5))
-O.save("record_of_displacements.yade.gz")
-end = O.time
-O.run(100, True)
-kept = [tuple(b.state.pos) for b in O.bodies]
-O.load("record_of_displacements.yade.gz")
-assert O.time == end
-O.run(100, True)
-assert [tuple(b.state.pos) for b in O.bodies] == kept
+def test_filtered_records():
+    """They are given as they are filtered; their padding is part of the motion."""
+    filtered = masonry.Record(INTERVAL, np.sin(7 * T) + 0.2, baseline="high-pass", corner=0.5)
+    engine = dem.record_motion(filtered, ids=[0])
+    assert engine.baseline == "none" and engine.samples == filtered.samples.tolist() and engine.end == filtered.duration
+
+
+def test_a_saved_run_goes_on_with_the_same_bits(tmp_path):
+    path = str(tmp_path / "scene.yade.gz")
+    times, moved, *_ = run(lambda base: dem.record_motion(RECORD, ids=[base], start=0.5))
+    O.save(path)
+    end = O.time
+    O.run(100, True)
+    kept = [tuple(b.state.pos) for b in O.bodies]
+    O.load(path)
+    assert O.time == end
+    O.run(100, True)
+    assert [tuple(b.state.pos) for b in O.bodies] == kept

@@ -1,6 +1,7 @@
 """Rigid blocks on a base that moves: resonant and scheduled pulses, finite pulses, records, and a base with a velocity of its own."""
 
 import numpy as np
+import pytest
 from driven_block import IMPULSE, compare_record, compare_schedules, compare_shapes, keep_place
 from masonry import dem
 from rocking_scene import Balance, Samples, one_block, quiet_engines, refuses, refuses_to_run, rigid_engines
@@ -9,11 +10,15 @@ from yade import O, Vector3
 import masonry
 
 
+TIMES = [0.0, 0.15037, 0.5]  # the second not at a step's end
+
+
 def engines(motion, **options):
     return rigid_engines(motion, dt=1e-3, **options)
 
 
-def resonant(model):
+@pytest.mark.parametrize("model", ("auto", "spatial"))
+def test_resonant(model):
     """Eq. 7's velocities; times and base displacement of the exact history; a base that ends at rest."""
     n = 20
     base, id, block = one_block(5, restitution=0.7)
@@ -41,28 +46,39 @@ def resonant(model):
     assert abs(balance.error()) <= 1e-5 * dem.energy()["baseWork"]
 
 
-resonant("auto")
-resonant("spatial")
-TIMES = [0.0, 0.15037, 0.5]  # the second not at a step's end
-compare_schedules(engines, TIMES, 1e-5)
-# An acceleration that is constant between the ends of a pulse, inside steps too, adds nothing to the error of the integrator, that of resonant().
-compare_shapes(engines, TIMES, 1e-4, rectangular=3e-6)
-compare_record(engines, 1e-4)
-for method in ("localised", "wall"):
+def test_schedules():
+    compare_schedules(engines, TIMES, 1e-5)
+
+
+def test_shapes():
+    """An acceleration that is constant between the ends of a pulse, inside steps too, adds nothing to the error of the integrator, that of resonant()."""
+    compare_shapes(engines, TIMES, 1e-4, rectangular=3e-6)
+
+
+def test_a_record():
+    compare_record(engines, 1e-4)
+
+
+@pytest.mark.parametrize("method", ("localised", "wall"))
+def test_a_base_keeps_its_place(method):
     keep_place(lambda motion: engines(motion, method=method))
 
-# A base that moves by itself carries its block along: nobody accelerates.
-base, id, block = one_block(5)
-for body in O.bodies:
-    body.state.vel = (0.1, 0, 0)
-O.engines = rigid_engines(dt=1e-3)
-O.run(1000, True)
-for body in O.bodies:
-    assert abs(body.state.pos[0] - 0.1) < 1e-12 and abs(body.state.vel[0] - 0.1) < 1e-12, body.state.pos
 
-# On a base that turns, an impact takes away (1 - C^2) of what the block has relative to it: of the turning about the pivot, (4/3) m R^2 its moment. That
-# is of the impulse alone, to round-off; the restitution is met to 1e-10.
-for model in ("planar", "spatial"):
+def test_a_base_that_moves_by_itself():
+    """A base that moves by itself carries its block along: nobody accelerates."""
+    base, id, block = one_block(5)
+    for body in O.bodies:
+        body.state.vel = (0.1, 0, 0)
+    O.engines = rigid_engines(dt=1e-3)
+    O.run(1000, True)
+    for body in O.bodies:
+        assert abs(body.state.pos[0] - 0.1) < 1e-12 and abs(body.state.vel[0] - 0.1) < 1e-12, body.state.pos
+
+
+@pytest.mark.parametrize("model", ("planar", "spatial"))
+def test_a_base_that_turns(model):
+    """On a base that turns, an impact takes away (1 - C^2) of what the block has relative to it: of the turning about the pivot, (4/3) m R^2 its
+    moment. That is of the impulse alone, to round-off; the restitution is met to 1e-10."""
     base, id, block = one_block(5, restitution=0.6)
     dem.tilt(id, 0.3 * block.critical_angle)
     O.bodies[base].state.angVel = (0, 0.1, 0)
@@ -72,21 +88,24 @@ for model in ("planar", "spatial"):
     first = dem.impacts()[0]
     lost = 2 / 3 * O.bodies[id].state.mass * block.radius**2 * (1 - 0.6**2) * first["velocity"] ** 2
     print(f"{model}, on a base that turns: energy lost {first['energy_lost'] / lost - 1:.1e}")
-    assert abs(first["energy_lost"] / lost - 1) < 1e-8, (model, first)
+    assert abs(first["energy_lost"] / lost - 1) < 1e-8, first
 
-# Two blocks alike that a pulse sets rocking land at the same instant: what they lose is listed once. The pulse, from rest and about pivots that hold, loses
-# nothing, and a smooth step no more than its residual: of 20 J far below 1e-6.
-base, id, block = one_block(5, restitution=0.7)
-beside = dem.block((0.6, 1, 3), O.bodies[id].mat, center=(3, 0, 1.5))
-O.engines = engines(dem.PulseTrainEngine(ids=[base], impulse=IMPULSE, times=[0]))
-while len(dem.impacts()) == 0:
-    O.step()
-listed = dem.impacts()
-print(f"two blocks that land at once: {listed['energy_lost']} J, dissipated {dem.energy()['impactDissip']} J")
-assert set(listed["body"]) == {id, beside} and listed["time"][0] == listed["time"][1], listed
-assert abs(listed["energy_lost"].sum() / dem.energy()["impactDissip"] - 1) < 1e-6, (listed, dem.energy())
 
-# --- motions that a script changes on the way ---
+def test_two_blocks_that_land_at_once():
+    """Two blocks alike that a pulse sets rocking land at the same instant: what they lose is listed once. The pulse, from rest and about pivots that
+    hold, loses nothing, and a smooth step no more than its residual: of 20 J far below 1e-6."""
+    base, id, block = one_block(5, restitution=0.7)
+    beside = dem.block((0.6, 1, 3), O.bodies[id].mat, center=(3, 0, 1.5))
+    O.engines = engines(dem.PulseTrainEngine(ids=[base], impulse=IMPULSE, times=[0]))
+    while len(dem.impacts()) == 0:
+        O.step()
+    listed = dem.impacts()
+    print(f"two blocks that land at once: {listed['energy_lost']} J, dissipated {dem.energy()['impactDissip']} J")
+    assert set(listed["body"]) == {id, beside} and listed["time"][0] == listed["time"][1], listed
+    assert abs(listed["energy_lost"].sum() / dem.energy()["impactDissip"] - 1) < 1e-6, (listed, dem.energy())
+
+
+# Motions that a script changes on the way.
 
 
 def pushed(method="localised", **options):
@@ -102,8 +121,9 @@ def record(base, value, **attributes):
     return dem.RecordMotionEngine(ids=[base], samples=[value] * 201, interval=0.01, **attributes)
 
 
-for method in ("localised", "wall"):
-    # Taken out: the base goes on as fast as it was, and so do what stands on it and the energies.
+@pytest.mark.parametrize("method", ("localised", "wall"))
+def test_a_motion_that_is_taken_out(method):
+    """The base goes on as fast as it was, and so do what stands on it and the energies."""
     base, block, integrator = pushed(method)
     integrator.motions = []
     O.step()
@@ -112,7 +132,10 @@ for method in ("localised", "wall"):
     assert abs(base.vel[0] - 1) < 1e-9 and abs(base.pos[0] - 1.5) < 1e-9, (base.vel, base.pos)
     assert abs(block.pos[0] - base.pos[0]) < 1e-6 and abs(integrator.baseWork - work) < 1e-4 * work
 
-    # Dead: the same; one that was from the beginning moves nothing, and another may move its base.
+
+@pytest.mark.parametrize("method", ("localised", "wall"))
+def test_a_motion_that_is_dead(method):
+    """As if it were taken out; one that was from the beginning moves nothing, and another may move its base."""
     base, block, integrator = pushed(method)
     integrator.motions[0].dead = True
     O.run(1000, True)
@@ -127,7 +150,10 @@ for method in ("localised", "wall"):
     O.run(1000, True)
     assert abs(O.bodies[base].state.pos[0] + 0.5) < 1e-9
 
-    # Another in its place, and one beside it: each counts from where its body is when it begins.
+
+@pytest.mark.parametrize("method", ("localised", "wall"))
+def test_a_motion_in_the_place_of_another(method):
+    """It counts from where its body is when it begins."""
     base, block, integrator = pushed(method)
     base.vel, gone = (0, 0, 0), integrator.motions[0]
     integrator.motions = [record(0, -1.0, start=O.time)]
@@ -146,6 +172,9 @@ for method in ("localised", "wall"):
     O.run(500, True)
     assert integrator.chosenModel == "spatial" and abs(base.pos[1] - 0.125) < 1e-9 and abs(base.pos[0] - at) < 2e-3
 
+
+@pytest.mark.parametrize("method", ("localised", "wall"))
+def test_a_motion_beside_another(method):
     base, block, integrator = pushed(method)
     other = dem.base((1, 1, 0.2), O.bodies[0].mat)
     O.bodies[other].state.pos += Vector3(50, 0, 0)
@@ -153,7 +182,10 @@ for method in ("localised", "wall"):
     O.run(500, True)
     assert abs(O.bodies[other].state.pos[0] - 50.0625) < 1e-9 and abs(base.pos[0] - 1.125) < 1e-9
 
-    # What has begun goes on as it is; the run too.
+
+@pytest.mark.parametrize("method", ("localised", "wall"))
+def test_a_motion_that_has_begun(method):
+    """It goes on as it is; the run too."""
     base, block, integrator = pushed(method)
     motion = integrator.motions[0]
     for name, bad in (("scale", 3), ("samples", [3.0] * 201), ("start", 0.5), ("interval", 0.02), ("baseline", "linear"), ("direction", (0, 1, 0))):
@@ -177,21 +209,25 @@ for method in ("localised", "wall"):
     O.run(500, True)
     assert abs(base.pos[0] - 1.125) < 1e-9 and integrator.failures == 0
 
-# What waits for its time may still be changed, finite pulses among it.
-base, block, _ = one_block(2)
-train = dem.PulseTrainEngine(ids=[base], impulse=0.1, times=[0, 1], shape="half-sine", duration=0.1, singleKeeps="duration", start=1e9)
-O.engines = engines(train)
-O.run(500, True)
-train.start = O.time
-train.impulse = 0.2
-train.direction = (-1, 0, 0)
-O.run(500, True)
-assert abs(O.bodies[base].state.vel[0] + 0.2) < 1e-9 and abs(O.bodies[base].state.pos[0] + 0.2 * 0.45) < 1e-9
-for name, bad in (("times", [0, 0.7]), ("impulse", 1), ("shape", "rectangular"), ("duration", 0.2)):
-    refuses(lambda: setattr(train, name, bad), f"PulseTrainEngine.{name} = ", "once the motion has begun")
 
-# A start that has passed, before the first step of the run and on the way; new engines with a motion that goes on.
-for model in ("planar", "compliant"):
+def test_a_motion_that_waits_for_its_time():
+    """It may still be changed, finite pulses among it."""
+    base, block, _ = one_block(2)
+    train = dem.PulseTrainEngine(ids=[base], impulse=0.1, times=[0, 1], shape="half-sine", duration=0.1, singleKeeps="duration", start=1e9)
+    O.engines = engines(train)
+    O.run(500, True)
+    train.start = O.time
+    train.impulse = 0.2
+    train.direction = (-1, 0, 0)
+    O.run(500, True)
+    assert abs(O.bodies[base].state.vel[0] + 0.2) < 1e-9 and abs(O.bodies[base].state.pos[0] + 0.2 * 0.45) < 1e-9
+    for name, bad in (("times", [0, 0.7]), ("impulse", 1), ("shape", "rectangular"), ("duration", 0.2)):
+        refuses(lambda: setattr(train, name, bad), f"PulseTrainEngine.{name} = ", "once the motion has begun")
+
+
+@pytest.mark.parametrize("model", ("planar", "compliant"))
+def test_a_start_that_has_passed(model):
+    """Before the first step of the run and on the way; new engines with a motion that goes on."""
     base, block, _ = one_block(2)
     refuses(lambda: quiet_engines(record(base, 1.0, start=-1), model=model), "RecordMotionEngine.start = -1 s has passed", "O.time = 0 s", "start=O.time")
     O.engines = quiet_engines(model=model)

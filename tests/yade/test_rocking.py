@@ -3,11 +3,15 @@
 import math
 
 import numpy as np
+import pytest
 from rocking_scene import Balance, Samples, barrier, one_block, quiet_engines, run_impacts, steps, stone
 
 import masonry
 from masonry import dem
 from yade import O
+
+
+PENETRATION = 1e-6  # where the restitution counts
 
 
 def rock(slenderness, restitution, half_cycles, penetration=1e-5, tilt=0.9):
@@ -24,57 +28,64 @@ def rock(slenderness, restitution, half_cycles, penetration=1e-5, tilt=0.9):
     return angles.peaks(), impacts, exact, abs(balance.error()) / put_in, block
 
 
-# The compressed pivot leans the block by about the penetration over the lever: an error of the angle that is proportional to
-# the penetration, and is the bound asked of the law.
-for penetration, bound in ((1e-5, 1e-3), (1e-6, 1e-4)):
+@pytest.mark.parametrize("penetration, bound", ((1e-5, 1e-3), (1e-6, 1e-4)))
+def test_peaks_and_times(penetration, bound):
+    """The compressed pivot leans the block by about the penetration over the lever: an error of the angle that is proportional to
+    the penetration, and is the bound asked of the law."""
     peaks, impacts, exact, energy, _ = rock(5, 0.9, 15, penetration)
     wanted = np.abs(exact.peak_angles[1:15])
     error = np.max(np.abs(peaks[:14] / wanted - 1))
-    assert len(peaks) >= 14 and error <= bound, (penetration, error)
+    assert len(peaks) >= 14 and error <= bound
     assert np.max(np.abs(impacts["time"][:15] / exact.impact_times[:15] - 1)) <= bound
     assert np.all(impacts["switched"][:15]) and not np.any(impacts["capped"])
     assert np.all(np.abs(impacts["restitution"][:15] - 0.9) < 1e-12)  # a row of the impulse problem, met to round-off
-    assert energy <= 1e-4, energy
+    assert energy <= 1e-4
     print(f"penetration {penetration:g}: peaks {error:.1e}, energy {energy:.1e}")
 
-# The restitution that comes out, from heights alone: the energy of a peak is m g R (cos(alpha - theta) - cos(alpha)), and the
-# ratio of two is C^2. A compressed joint turns the block by an elastic angle, penetration times width over lever: peaks that it
-# changes by more than the bound say nothing about C.
-penetration = 1e-6
-for slenderness in (3, 5, 8, 12):
-    for restitution in (0.5, 0.7, 0.9, 1.0):
-        peaks, impacts, exact, energy, block = rock(slenderness, restitution, 8, penetration)
-        peaks = peaks[peaks > penetration / 1e-3]
-        height = np.cos(block.critical_angle - peaks) - math.cos(block.critical_angle)
-        realised = np.sqrt(height[1:] / height[:-1])
-        error = np.max(np.abs(realised - restitution))
-        assert len(realised) >= 1 and error <= 1e-3, (slenderness, restitution, realised)
-        assert energy <= 1e-4, (slenderness, restitution, energy)
-        print(f"lambda {slenderness}, C {restitution}: {len(realised)} peaks, C within {error:.1e}, energy {energy:.1e}")
 
-# None given: the plastic impact on the corner gives the natural restitution by itself.
-for slenderness in (2, 5):
-    peaks, impacts, exact, energy, block = rock(slenderness, None, 4, penetration)
+@pytest.mark.parametrize("slenderness", (3, 5, 8, 12))
+@pytest.mark.parametrize("restitution", (0.5, 0.7, 0.9, 1.0))
+def test_the_restitution_that_comes_out(slenderness, restitution):
+    """The restitution that comes out, from heights alone: the energy of a peak is m g R (cos(alpha - theta) - cos(alpha)), and the
+    ratio of two is C^2. A compressed joint turns the block by an elastic angle, penetration times width over lever: peaks that it
+    changes by more than the bound say nothing about C."""
+    peaks, impacts, exact, energy, block = rock(slenderness, restitution, 8, PENETRATION)
+    peaks = peaks[peaks > PENETRATION / 1e-3]
+    height = np.cos(block.critical_angle - peaks) - math.cos(block.critical_angle)
+    realised = np.sqrt(height[1:] / height[:-1])
+    error = np.max(np.abs(realised - restitution))
+    assert len(realised) >= 1 and error <= 1e-3
+    assert energy <= 1e-4
+    print(f"lambda {slenderness}, C {restitution}: {len(realised)} peaks, C within {error:.1e}, energy {energy:.1e}")
+
+
+@pytest.mark.parametrize("slenderness", (2, 5))
+def test_the_natural_restitution(slenderness):
+    """The plastic impact on the corner gives the natural restitution by itself."""
+    peaks, impacts, exact, energy, block = rock(slenderness, None, 4, PENETRATION)
     natural = 1 - 1.5 * math.sin(block.critical_angle) ** 2
     assert np.all(np.isnan(impacts["restitution_asked"]))
     assert np.max(np.abs(impacts["restitution"][:4] - natural)) < 1e-5  # the pivot's compression moves it by that share
     assert np.max(np.abs(impacts["application"][:4])) == 0
-    assert energy <= 1e-4, energy
+    assert energy <= 1e-4
 
-# Rocking ends with the half cycle whose peak, w^2/(2 A), the springs' own angle would drown: the weight on two corners of four presses them in by twice
-# the penetration of the width, on all by once. The last impact stops the block.
-for slenderness, restitution, penetration in ((5, 0.7, 1e-4), (2, 0.7, 1e-4), (3, 0.5, 1e-5)):
+
+@pytest.mark.parametrize("slenderness, restitution, penetration", ((5, 0.7, 1e-4), (2, 0.7, 1e-4), (3, 0.5, 1e-5)))
+def test_rocking_ends(slenderness, restitution, penetration):
+    """Rocking ends with the half cycle whose peak, w^2/(2 A), the springs' own angle would drown: the weight on two corners of four presses them in
+    by twice the penetration of the width, on all by once. The last impact stops the block."""
     _, id, block = one_block(slenderness, restitution=restitution)
     dem.tilt(id, 0.5 * block.critical_angle)
     O.engines = quiet_engines(penetration=penetration)
     impacts = run_impacts(100, 4.0)
     peaks = (impacts["velocity"] * impacts["restitution"]) ** 2 / (2 * block.angular_acceleration)
-    assert len(impacts) < 20 and not impacts["switched"][-1] and np.all(peaks[impacts["switched"]] > penetration), (slenderness, peaks / penetration)
+    assert len(impacts) < 20 and not impacts["switched"][-1] and np.all(peaks[impacts["switched"]] > penetration), peaks / penetration
 
-# A stack that comes apart: the energy of springs that hand over is in the balance. Bound, of what the impacts take, set after seeing 3e-4; 1e-3 where the
-# motion that hand-offs leave to the springs is counted twice.
-for blocks, slenderness, restitution in ((3, 2, 0.5), (4, 1.5, None)):
-    O.reset()
+
+@pytest.mark.parametrize("blocks, slenderness, restitution", ((3, 2, 0.5), (4, 1.5, None)))
+def test_a_stack_that_comes_apart(blocks, slenderness, restitution):
+    """A stack that comes apart: the energy of springs that hand over is in the balance. Bound, of what the impacts take, set after seeing 3e-4; 1e-3
+    where the motion that hand-offs leave to the springs is counted twice."""
     material = stone(restitution)
     ids = dem.stack(blocks, (0.6, 1, 0.6 * slenderness), material, dem.base((8, 4, 0.3), material))
     dem.tilt(ids[-1], 0.3 * math.atan(1 / slenderness))
@@ -84,12 +95,13 @@ for blocks, slenderness, restitution in ((3, 2, 0.5), (4, 1.5, None)):
         steps(100)
     error = abs(balance.error()) / dem.energy()["impactDissip"]
     print(f"{blocks} blocks: {len(dem.impacts())} impacts, energy {error:.1e} of what they take")
-    assert error < 6e-4, (blocks, error)
+    assert error < 6e-4
 
-# A base that turns lifts what stands on it: its work is what the blocks gain; and bases that touch each other do not push each other. Energies of the springs
-# are of second order of the penetration.
-for touching in (False, True):
-    O.reset()
+
+@pytest.mark.parametrize("touching", (False, True))
+def test_a_base_that_turns(touching):
+    """A base that turns lifts what stands on it: its work is what the blocks gain; and bases that touch each other do not push each other. Energies
+    of the springs are of second order of the penetration."""
     base = dem.base((6, 1, 0.2), stone())
     block = dem.block((0.6, 1, 0.6), stone(), on=base, center=None)
     O.bodies[block].state.pos += (2, 0, 0)

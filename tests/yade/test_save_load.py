@@ -1,8 +1,6 @@
 """A simulation with the plugin's classes comes back from a file, compressed or not, and from memory."""
 
-import os
-import tempfile
-
+import pytest
 from masonry import dem
 from yade import O, Body, Box
 
@@ -27,32 +25,38 @@ def check(where):
     assert material.dispHierarchy()[1] == "FrictMat", where
 
 
-build()
-check("built")
-with tempfile.TemporaryDirectory() as folder:
-    for ending in ("xml", "xml.bz2", "yade", "yade.gz"):
-        build()
-        path = os.path.join(folder, "scene." + ending)
-        O.save(path)
-        O.reset()
-        O.load(path)
-        check(ending)
-build()
-O.saveTmp()
-O.reset()
-O.loadTmp()
-check("memory")
+def test_a_scene_as_it_is_built():
+    build()
+    check("built")
 
-# A material that outlives its scene is one of the next scene's: with an id of its own, saved and loaded with it.
-kept = dem.BlockMat(density=2000, restitution=0.7, label="kept")
-with tempfile.TemporaryDirectory() as folder:
-    for ending in ("xml", "yade.gz"):
-        for _ in range(2):
-            O.reset()
-            own = dem.BlockMat(density=1000)
-            base = dem.base((4, 2, 0.2), own)
-            block = dem.block((0.6, 1, 3), kept, on=base)
-            assert len({O.bodies[base].mat.id, O.bodies[block].mat.id}) == len(O.materials) == 2
-            O.save(os.path.join(folder, "kept." + ending))
-            O.load(os.path.join(folder, "kept." + ending))
-            assert O.bodies[block].mat.restitution == 0.7 and O.bodies[block].mat.id == O.materials["kept"].id
+
+@pytest.mark.parametrize("ending", ("xml", "xml.bz2", "yade", "yade.gz"))
+def test_a_scene_from_a_file(ending, tmp_path):
+    build()
+    O.save(str(tmp_path / f"scene.{ending}"))
+    O.reset()
+    O.load(str(tmp_path / f"scene.{ending}"))
+    check(ending)
+
+
+def test_a_scene_from_memory():
+    build()
+    O.saveTmp()
+    O.reset()
+    O.loadTmp()
+    check("memory")
+
+
+@pytest.mark.parametrize("ending", ("xml", "yade.gz"))
+def test_a_material_outlives_its_scene(ending, tmp_path):
+    """It is one of the next scene's: with an id of its own, saved and loaded with it."""
+    kept, path = dem.BlockMat(density=2000, restitution=0.7, label="kept"), str(tmp_path / f"kept.{ending}")
+    for _ in range(2):
+        O.reset()
+        own = dem.BlockMat(density=1000)
+        base = dem.base((4, 2, 0.2), own)
+        block = dem.block((0.6, 1, 3), kept, on=base)
+        assert len({O.bodies[base].mat.id, O.bodies[block].mat.id}) == len(O.materials) == 2
+        O.save(path)
+        O.load(path)
+        assert O.bodies[block].mat.restitution == 0.7 and O.bodies[block].mat.id == O.materials["kept"].id

@@ -1,10 +1,10 @@
 """A beam on two bases of which one moves up or down at v: it follows both, and turns at v / L, whatever restitution is given. L is the distance
 of the two lines of contact: the border of the one base and the end of the beam on the other."""
 
-import itertools
 import math
 
 import numpy as np
+import pytest
 from masonry import dem
 from rocking_scene import quiet_engines
 from yade import O
@@ -16,7 +16,6 @@ BOUND = 1e-3
 
 def follow(model, order, restitution, speed=0.1, size=1.0, moved=1, on_blocks=False):
     """Spin of the beam in the second half of 0.4 s, over v / L, from the least to the largest."""
-    O.reset()
     stone = dem.BlockMat(density=2000, frictionAngle=math.atan(0.6), restitution=restitution)
     for x in (-size, size):
         O.bodies[dem.base((size, size, 0.2 * size), stone)].state.pos = (x, 0, -(0.5 if on_blocks else 0.1) * size)
@@ -38,16 +37,20 @@ def follow(model, order, restitution, speed=0.1, size=1.0, moved=1, on_blocks=Fa
     return min(spins), max(spins)
 
 
-for model, order in itertools.product(("planar", "spatial", "compliant"), ("simultaneous", "sequential")):
-    cases = [{"restitution": C} for C in (math.nan, 0, 0.2, 0.8)]
-    cases += [{"restitution": 0.2, **other} for other in ({"speed": -0.1}, {"moved": 0}, {"size": 10}, {"size": 0.1}, {"on_blocks": True})]
-    for case in cases:
-        least, largest = follow(model, order, **case)
-        print(f"{model}, {order}, {case}: spin {least:.5f} to {largest:.5f} of v/L")
-        assert abs(least - 1) < BOUND and abs(largest - 1) < BOUND, (model, order, case, least, largest)
-        for impact in dem.impacts():
-            # The cap takes a restitution back that the lever to the other support would make energy of.
-            given = not math.isnan(impact["restitution_asked"]) and impact["switched"] and not impact["capped"]
-            if given and order == "simultaneous":
-                assert abs(impact["restitution"] - impact["restitution_asked"]) < 1e-9, impact
+CASES = [{"restitution": C} for C in (math.nan, 0, 0.2, 0.8)]
+CASES += [{"restitution": 0.2, **other} for other in ({"speed": -0.1}, {"moved": 0}, {"size": 10}, {"size": 0.1}, {"on_blocks": True})]
+
+
+@pytest.mark.parametrize("model", ("planar", "spatial", "compliant"))
+@pytest.mark.parametrize("order", ("simultaneous", "sequential"))
+@pytest.mark.parametrize("case", CASES)
+def test_a_beam_follows_both_bases(model, order, case):
+    least, largest = follow(model, order, **case)
+    print(f"spin {least:.5f} to {largest:.5f} of v/L")
+    assert abs(least - 1) < BOUND and abs(largest - 1) < BOUND
+    for impact in dem.impacts():
+        # The cap takes a restitution back that the lever to the other support would make energy of.
+        given = not math.isnan(impact["restitution_asked"]) and impact["switched"] and not impact["capped"]
+        if given and order == "simultaneous":
+            assert abs(impact["restitution"] - impact["restitution_asked"]) < 1e-9, impact
     assert np.isfinite(dem.energy()["kinetic"])

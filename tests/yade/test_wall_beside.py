@@ -3,6 +3,7 @@
 import math
 
 import numpy as np
+import pytest
 from masonry import dem
 from rocking_scene import rigid_engines
 from yade import O, Vector3, utils
@@ -28,9 +29,6 @@ def fixed(size, center):
     return O.bodies.append(box)
 
 
-# --- a column that lands all at once: loads cross its twenty courses. Counted from what is beside it, as one course, it would have the sweeps of one, and
-# spring up with half of its speed and more; so the sweeps let it with 0.04 of it. Beside a fixed body it is as without, but for rounding; a free one that it
-# passes makes it fall in substeps, and land in another part of one ---
 def landing(gap, beside, model):
     base = ground()
     blocks = [dem.block(SIZE, O.bodies[base].mat, center=(0, 0, 0.2 + SIZE[2] * (i + 0.5))) for i in range(COURSES)]
@@ -45,15 +43,17 @@ def landing(gap, beside, model):
     return np.array([O.bodies[i].state.vel[2] for i in blocks]) / speed
 
 
-for model in ("planar", "spatial"):
-    for beside in ("fixed", "free"):
-        far, near = (landing(gap, beside, model) for gap in (FAR, NEAR))
-        print(f"{model}, {beside} body beside a column that lands: velocities after it {near.max():.4f} of the landing's, {far.max():.4f} where it is far")
-        assert max(near.max(), far.max()) < 0.05 and (beside == "free" or np.abs(near - far).max() < 1e-6)
+@pytest.mark.parametrize("model", ("planar", "spatial"))
+@pytest.mark.parametrize("beside", ("fixed", "free"))
+def test_a_column_that_lands_all_at_once(model, beside):
+    """Loads cross its twenty courses. Counted from what is beside it, as one course, it would have the sweeps of one, and spring up with half of its
+    speed and more; so the sweeps let it with 0.04 of it. Beside a fixed body it is as without, but for rounding; a free one that it passes makes
+    it fall in substeps, and land in another part of one."""
+    far, near = (landing(gap, beside, model) for gap in (FAR, NEAR))
+    print(f"{model}, {beside} body beside a column that lands: velocities after it {near.max():.4f} of the landing's, {far.max():.4f} where it is far")
+    assert max(near.max(), far.max()) < 0.05 and (beside == "free" or np.abs(near - far).max() < 1e-6)
 
 
-# --- a wall shaken between two plates, along them: it stays in the still mode as long as without them, and its joints slide as far. Where plates that pass
-# by counted as motion it moved from the first step on, and its top went a third too far. Its pairs are listed in another order there: 1 % ---
 def shaken(gap):
     base = ground()
     ids = dem.wall(COURSES, 8, SIZE, O.bodies[base].mat, on=base)
@@ -68,6 +68,9 @@ def shaken(gap):
     return O.engines[-1].stillSteps, slip
 
 
-(still, far), (still_near, near) = shaken(FAR), shaken(NEAR)
-print(f"wall between plates: {still_near} steps in the still mode, slip {1e3 * near:.2f} mm; {still} and {1e3 * far:.2f} mm where they are far")
-assert abs(still_near - still) <= 2 < 100 < still and abs(near / far - 1) < 0.01
+def test_a_wall_shaken_between_two_plates():
+    """Along them: it stays in the still mode as long as without them, and its joints slide as far. Where plates that pass by counted as motion it
+    moved from the first step on, and its top went a third too far. Its pairs are listed in another order there: 1 %."""
+    (still, far), (still_near, near) = shaken(FAR), shaken(NEAR)
+    print(f"wall between plates: {still_near} steps in the still mode, slip {1e3 * near:.2f} mm; {still} and {1e3 * far:.2f} mm where they are far")
+    assert abs(still_near - still) <= 2 < 100 < still and abs(near / far - 1) < 0.01

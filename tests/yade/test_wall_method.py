@@ -2,14 +2,12 @@
 same bits after loading."""
 
 import math
-import os
-import sys
-import tempfile
 
 import numpy as np
+import pytest
 from masonry import dem
-from rocking_scene import Balance, bits, refuses, rigid_engines, said_by, stone
-from yade import O, PyRunner, Quaternion, Vector3
+from rocking_scene import Balance, Samples, bits, refuses, rigid_engines, said_by, stone
+from yade import O, Vector3
 
 MU = 0.7
 
@@ -34,24 +32,42 @@ def integrator():
     return O.engines[-1] if isinstance(O.engines[-1], dem.MoreauJeanIntegrator) else [e for e in O.engines if isinstance(e, dem.MoreauJeanIntegrator)][0]
 
 
-# --- the choice ---
-for options, method in (({}, "wall"), ({"method": "localised"}, "localised"), ({"impact_order": "simultaneous"}, "localised"), ({"tolerance": 1e-9}, "localised"),
-                        ({"tolerance": 1e-4}, "wall")):
-    wall(4, 6, 0.1, **options)
-    assert integrator().method == method, options
-wall(3, 6, 0.1)
-assert integrator().method == "localised"  # 19 blocks
-for per_course, method in ((2, "localised"), (3, "wall")):  # 5 and 7 blocks
-    wall(2, per_course, 0.1, model="spatial")
-    assert integrator().method == method, per_course
+# The choice of the method.
 
-# What the choice says of sizes.
-for options, words in (({}, "; 26 blocks: method 'wall'"),
-                       ({"piers": 2}, ", localised impacts for 1 structure of 1 block beside"),
-                       ({"piers": 3}, "; largest structure 27 of 29 blocks: method 'wall', localised impacts for 2 structures of 2 blocks beside")):
+
+@pytest.mark.parametrize("options, method", (
+    ({}, "wall"), ({"method": "localised"}, "localised"), ({"impact_order": "simultaneous"}, "localised"), ({"tolerance": 1e-9}, "localised"),
+    ({"tolerance": 1e-4}, "wall"),
+))
+def test_the_choice(options, method):
+    wall(4, 6, 0.1, **options)
+
+
+    assert integrator().method == method
+
+
+def test_the_choice_in_the_plane():
+    wall(3, 6, 0.1)
+    assert integrator().method == "localised"  # 19 blocks
+
+
+@pytest.mark.parametrize("per_course, method", ((2, "localised"), (3, "wall")))
+def test_the_choice_in_space(per_course, method):
+    # 5 and 7 blocks
+    wall(2, per_course, 0.1, model="spatial")
+    assert integrator().method == method
+
+
+@pytest.mark.parametrize("options, words", (
+    ({}, "; 26 blocks: method 'wall'"),
+    ({"piers": 2}, ", localised impacts for 1 structure of 1 block beside"),
+    ({"piers": 3}, "; largest structure 27 of 29 blocks: method 'wall', localised impacts for 2 structures of 2 blocks beside"),
+))
+def test_what_the_choice_says_of_sizes(options, words):
     base, ids = wall(4, 6, 0.1, **options)
     said = said_by(dem.engines)
-    assert words in said, said
+    assert words in said
+
 
 # It is the largest structure that counts: blocks that stand apart move as each of them would alone. Pulses keep all in one step.
 
@@ -74,57 +90,55 @@ def after(ids):
     return np.array([(*O.bodies[i].state.pos, *O.bodies[i].state.vel, *O.bodies[i].state.angVel) for i in ids])
 
 
-sizes = [(0.3 + 0.01 * k, 0.5, 1 + 0.02 * k) for k in range(24)]
-ids = row(sizes, shaking)
-assert (integrator().method, integrator().tolerance) == ("localised", 1e-9) and dem.structures() == [[i] for i in ids]
-refuses(lambda: dem.structures(gap=0), "gap", "at most 1")
-assert "; 24 structures apart, each stepped by itself; dt" in said_by(dem.engines, dt=1e-3)
-assert dem.structures(gap=1) == [[i] for i in ids]  # 2.4 to 2.7 m apart, the smallest size is 0.3 m
-many = after(ids)
-assert len(integrator().impactTimes) > 24 and integrator().failures == 0
-for k in (0, 7, 23):
-    alone = after(row([size if j == k else None for j, size in enumerate(sizes)], shaking))
-    assert np.abs(alone - many[k]).max() < 1e-9, k  # round-off of the instants of impacts, which the base's velocity takes over
-row(sizes, lambda base, ids: dem.PulseTrainEngine(ids=[base], impulse=0.1, times=[0.1]))
-assert (integrator().method, integrator().tolerance) == ("wall", 1e-3)
+SIZES = [(0.3 + 0.01 * k, 0.5, 1 + 0.02 * k) for k in range(24)]
 
-# Up to 20 blocks that are near each other, in space 6, have localised impacts, and any number of those farther apart than a tenth of their size.
-for model, few in (("planar", 20), ("spatial", 6)):
+
+def test_blocks_that_stand_apart():
+    ids = row(SIZES, shaking)
+    assert (integrator().method, integrator().tolerance) == ("localised", 1e-9) and dem.structures() == [[i] for i in ids]
+    refuses(lambda: dem.structures(gap=0), "gap", "at most 1")
+    assert "; 24 structures apart, each stepped by itself; dt" in said_by(dem.engines, dt=1e-3)
+    assert dem.structures(gap=1) == [[i] for i in ids]  # 2.4 to 2.7 m apart, the smallest size is 0.3 m
+    many = after(ids)
+    assert len(integrator().impactTimes) > 24 and integrator().failures == 0
+    for k in (0, 7, 23):
+        alone = after(row([size if j == k else None for j, size in enumerate(SIZES)], shaking))
+        assert np.abs(alone - many[k]).max() < 1e-9, k  # round-off of the instants of impacts, which the base's velocity takes over
+
+
+def test_pulses_keep_all_in_one_step():
+    row(SIZES, lambda base, ids: dem.PulseTrainEngine(ids=[base], impulse=0.1, times=[0.1]))
+    assert (integrator().method, integrator().tolerance) == ("wall", 1e-3)
+
+
+@pytest.mark.parametrize("model, few", (("planar", 20), ("spatial", 6)))
+def test_few_blocks_near_each_other(model, few):
+    """Up to 20 blocks that are near each other, in space 6, have localised impacts, and any number of those farther apart than a tenth of their
+    size."""
     for count, pitch, method in ((few, 1, "localised"), (few + 1, 1.09, "wall"), (few + 1, 1.11, "localised")):
         O.reset()
         base = dem.base((60, 2, 0.4), stone())
         for k in range(count):
             dem.block((1, 1, 1), O.bodies[base].mat, center=(pitch * (k - few / 2), 0, 0.5))
-        assert rigid_engines(model=model)[-1].method == method, (model, count, pitch)
+        assert rigid_engines(model=model)[-1].method == method, (count, pitch)
 
-for options, words in (({"impact_order": "simultaneous"}, ("impactOrder", "'sequential'")), ({"tolerance": 1e-9}, ("tolerance", "1e-6 to 1e-2")),
-                       ({"model": "compliant"}, ("method", "rigid")), ({"method": "fast"}, ("method", "'fast'"))):
+
+@pytest.mark.parametrize("options, words", (
+    ({"impact_order": "simultaneous"}, ("impactOrder", "'sequential'")), ({"tolerance": 1e-9}, ("tolerance", "1e-6 to 1e-2")),
+    ({"model": "compliant"}, ("method", "rigid")), ({"method": "fast"}, ("method", "'fast'")),
+))
+def test_options_that_the_method_refuses(options, words):
     refuses(lambda: wall(4, 6, 0.1, **{"method": "wall", **options}), *words)
 
-# --- high walls that move: a warning, where docs/limits.md says so ---
 
-
-def printed(work):
-    """What work() writes to the standard error output."""
-    sys.stderr.flush()
-    kept = os.dup(2)
-    with tempfile.TemporaryFile() as file:
-        os.dup2(file.fileno(), 2)
-        try:
-            work()
-        finally:
-            os.dup2(kept, 2)
-            os.close(kept)
-        file.seek(0)
-        return file.read().decode()
-
-
-for courses, shaken, warns in ((24, 1.2, False), (25, 1.2, True), (25, 0.1, False)):
+@pytest.mark.parametrize("courses, shaken, warns", ((24, 1.2, False), (25, 1.2, True), (25, 0.1, False)))
+def test_high_walls_that_move(courses, shaken, warns, capfd):
+    """A warning, where docs/limits.md says so."""
     wall(courses, 2, shaken)
-    text = printed(lambda: O.run(300, True))
-    assert (integrator().movingSteps > 0) == (shaken > 1) and (f"{courses} courses" in text) == warns, (courses, shaken, text)
-
-# --- heavy bodies on light blocks ---
+    capfd.readouterr()
+    O.run(300, True)
+    text = capfd.readouterr().err
+    assert (integrator().movingSteps > 0) == (shaken > 1) and (f"{courses} courses" in text) == warns
 
 
 def slab(density, method):
@@ -142,130 +156,140 @@ def slab(density, method):
     return O.bodies[top].state.pos[0] - O.bodies[base].state.pos[0]
 
 
-exact = slab(2e4, "localised")
-assert exact > 0.05
-for density in (20, 2e4):
-    assert abs(slab(density, "wall") / exact - 1) < 0.01 and integrator().failures == 0, density  # first order: half a step of 0.9 m/s is 0.5 %
-slab(2e6, "wall")
-assert integrator().failures > 0 and "too heavy" in integrator().firstFailure
-
-# A block that turns by 0.3 rad in a step is none of the wall's.
-O.reset()
-dem.base((4, 4, 0.2), stone())
-O.bodies[dem.block((1, 0.5, 0.5), stone(), center=(0, 0, 9))].state.angVel = (0, 300, 0)
-O.engines = rigid_engines(dt=1e-3, method="wall")
-O.step()
-assert integrator().failures == 1 and "turns by 0.3" in integrator().firstFailure and "localised" in integrator().firstFailure
-
-# --- O.interactions: what one step after the other shows, a run shows where somebody looks ---
+def test_heavy_bodies_on_light_blocks():
+    exact = slab(2e4, "localised")
+    assert exact > 0.05
+    for density in (20, 2e4):
+        assert abs(slab(density, "wall") / exact - 1) < 0.01 and integrator().failures == 0  # first order: half a step of 0.9 m/s is 0.5 %
+    slab(2e6, "wall")
+    assert integrator().failures > 0 and "too heavy" in integrator().firstFailure
 
 
-def reaction():
+def test_a_block_that_turns_by_much_in_a_step():
+    """It is none of the wall's."""
+    dem.base((4, 4, 0.2), stone())
+    O.bodies[dem.block((1, 0.5, 0.5), stone(), center=(0, 0, 9))].state.angVel = (0, 300, 0)
+    O.engines = rigid_engines(dt=1e-3, method="wall")
+    O.step()
+    assert integrator().failures == 1 and "turns by 0.3" in integrator().firstFailure and "localised" in integrator().firstFailure
+
+
+def reaction(base):
     return sum(((1 if i.id1 == base else -1) * (i.phys.normalForce + i.phys.shearForce) for i in O.interactions if base in (i.id1, i.id2)), Vector3.Zero)
 
 
-for courses, per_course, method in ((5, 6, "wall"), (2, 2, "localised")):
+@pytest.mark.parametrize("courses, per_course, method", ((5, 6, "wall"), (2, 2, "localised")))
+def test_interactions(courses, per_course, method):
+    """What one step after the other shows, a run shows where somebody looks."""
     base, ids = wall(courses, per_course, 0.5)
     shown = []
     for _ in range(300):
         O.step()
-        shown.append(reaction())
+        shown.append(reaction(base))
     weight = sum(O.bodies[i].state.mass for i in ids) * 9.81
     assert abs(shown[90][2] / weight - 1) < 1e-3  # the tolerance, while the wall stands
     for period in ({"virtPeriod": 36.5 * O.dt}, {"iterPeriod": 37}):
         wall(courses, per_course, 0.5)
-        seen = []
-        O.engines = O.engines + [PyRunner(command="seen.append((O.iter, reaction()))", **period)]
+        seen = Samples(lambda: (O.iter, reaction(base)), **period)
         O.run(222, True)
-        assert integrator().method == method and len(seen) >= 5 and all(forces == shown[step] for step, forces in seen), period
+        assert integrator().method == method and len(seen.values) >= 5 and all(forces == shown[step] for step, forces in seen.values), period
     O.engines = O.engines[:-1]
-    assert reaction() == shown[221]
+    assert reaction(base) == shown[221]
     O.run(53, True)
-    assert reaction() == shown[274]
-    print("interactions: base reaction", reaction()[2] / weight, "of the weight, mode", integrator().mode)
+    assert reaction(base) == shown[274]
+    print("interactions: base reaction", reaction(base)[2] / weight, "of the weight, mode", integrator().mode)
 
-# --- friction changed through the interactions: blocks pushed by half their weight slide with (0.5 - mu) g ---
-O.reset()
-base = dem.base((60, 2, 0.4), dem.BlockMat(density=2000, frictionAngle=math.atan(MU)))
-ids = [dem.block((1, 0.5, 0.5), O.bodies[base].mat, center=(2 * k - 24, 0, 0.25)) for k in range(25)]
-O.engines = rigid_engines(dt=1e-3, method="wall")
-for id in ids:
-    O.forces.setPermF(id, (0.5 * O.bodies[id].state.mass * 9.81, 0, 0))
-O.run(200, True)
-assert integrator().method == "wall" and max(abs(O.bodies[i].state.vel[0]) for i in ids) < 1e-6
-for i in O.interactions:
-    i.phys.tangensOfFrictionAngle = 0.3
-O.run(200, True)
-speeds = [O.bodies[i].state.vel[0] / (0.2 * 9.81 * 0.2) - 1 for i in ids]
-print("sliding with the new friction: speed", max(map(abs, speeds)))
-assert max(map(abs, speeds)) < 2 * 9.81e-3 / (0.2 * 9.81 * 0.2)  # what gravity gives in two steps may be lost (tolerance::wall::held)
-O.bodies[base].mat.frictionAngle = 0  # a material is read when two blocks come near each other, not again
-before = np.array([O.bodies[i].state.vel[0] for i in ids])
-O.run(100, True)
-gained = np.array([O.bodies[i].state.vel[0] for i in ids]) - before
-assert max(abs(gained / (0.2 * 9.81 * 0.1) - 1)) < 1e-3  # 0.5 g without friction; sliding at a constant pull is stepped exactly
 
-# --- saved, loaded, continued: the same bits ---
-with tempfile.TemporaryDirectory() as folder:
-    for model, shaking, options in (("planar", 0.3, {}), ("planar", 1.2, {"restitution": 0.6}), ("planar", 0.3, {"restitution": 0.6, "piers": 4}),
-                                    ("spatial", 0.3, {}), ("spatial", 1.2, {"restitution": 0.6}), ("spatial", 0.3, {"restitution": 0.6, "piers": 4})):
-        last = 900 if model == "planar" else 500
-        wall(6, 6, shaking, model=model, **options)
-        O.run(last, True)
-        wanted = bits()
-        modes, beside = (integrator().stillSteps, integrator().movingSteps), integrator().movingBlocks
-        for first, ending in ((80, "xml"), (457, "yade")):
-            wall(6, 6, shaking, model=model, **options)
-            O.run(first, True)
-            path = os.path.join(folder, "wall." + ending)
-            O.save(path)
-            saved = bits()
-            O.reset()
-            O.load(path)
-            assert np.array_equal(saved, bits()), (model, shaking, first)
-            O.run(last - first, True)
-            assert np.array_equal(wanted, bits()), (model, shaking, first, np.flatnonzero(wanted != bits())[:5])
-        print(f"{model}, {shaking} g: {modes[0]} still and {modes[1]} moving steps, {len(dem.impacts())} impacts, {beside} of {len(O.bodies) - 1} blocks move")
-        if "piers" in options:
-            assert modes[1] > 200 and 0 < beside <= options["piers"] and len(dem.impacts()) >= options["piers"]  # each has landed
-            assert integrator().localisedBlocks == options["piers"] - 1  # those beside the wall
-            assert integrator().events >= len(dem.impacts())  # of both ways: each listed impact is one, and few are the wall's
-        else:
-            assert (modes[1] == 0) if shaking < MU else (modes[1] > 200 and len(dem.impacts()) > 10)
-
-# --- energy: what the base puts into a wall that stands is what its blocks have; no step gives any ---
-wall(6, 6, 0.3)
-before = sum(dem.energy()[key] for key in ("kinetic", "potential"))
-O.run(345, True)
-gained = sum(dem.energy()[key] for key in ("kinetic", "potential")) - before
-print(f"still wall: work of the base over what the blocks gain {dem.energy()['baseWork'] / gained - 1:.1e}")
-assert integrator().movingSteps == 0 and abs(dem.energy()["baseWork"] / gained - 1) < 1e-4
-wall(6, 6, 1.2, restitution=0.6)
-balance, lost = Balance(), [0]
-for _ in range(600):
-    O.step()
-    lost.append(integrator().impactDissip + integrator().frictDissip)
-rise = -min(np.diff(lost))
-print(f"largest rise of energy in a step {rise:.1e} J, of {lost[-1]:.0f} J lost; balance {balance.error():.1e} J")
-assert rise < 1e-3 * lost[-1] and abs(balance.error()) < 1e-4 * abs(dem.energy()["baseWork"])
-
-# --- what a wall has left, another run takes: a base that a script drives, new engines of either method, a saved table ---
-O.reset()
-base = dem.base((6, 4, 0.2), dem.BlockMat(density=2000, frictionAngle=0.6))
-ids = dem.wall(6, 4, (0.4, 0.2, 0.175), O.bodies[base].mat, on=base)
-O.engines = rigid_engines()
-O.run(100, True)
-for speed in (0.05, 0):
-    O.bodies[base].state.vel = (speed, 0, 0)
+def test_friction_that_is_changed_through_the_interactions():
+    """Blocks pushed by half their weight slide with (0.5 - mu) g."""
+    base = dem.base((60, 2, 0.4), dem.BlockMat(density=2000, frictionAngle=math.atan(MU)))
+    ids = [dem.block((1, 0.5, 0.5), O.bodies[base].mat, center=(2 * k - 24, 0, 0.25)) for k in range(25)]
+    O.engines = rigid_engines(dt=1e-3, method="wall")
+    for id in ids:
+        O.forces.setPermF(id, (0.5 * O.bodies[id].state.mass * 9.81, 0, 0))
+    O.run(200, True)
+    assert integrator().method == "wall" and max(abs(O.bodies[i].state.vel[0]) for i in ids) < 1e-6
+    for i in O.interactions:
+        i.phys.tangensOfFrictionAngle = 0.3
+    O.run(200, True)
+    speeds = [O.bodies[i].state.vel[0] / (0.2 * 9.81 * 0.2) - 1 for i in ids]
+    print("sliding with the new friction: speed", max(map(abs, speeds)))
+    assert max(map(abs, speeds)) < 2 * 9.81e-3 / (0.2 * 9.81 * 0.2)  # what gravity gives in two steps may be lost (tolerance::wall::held)
+    O.bodies[base].mat.frictionAngle = 0  # a material is read when two blocks come near each other, not again
+    before = np.array([O.bodies[i].state.vel[0] for i in ids])
     O.run(100, True)
-assert integrator().movingSteps > 0 and integrator().failures == 0
-with tempfile.TemporaryDirectory() as folder:
-    dem.save_blocks(f"{folder}/wall.csv")
+    gained = np.array([O.bodies[i].state.vel[0] for i in ids]) - before
+    assert max(abs(gained / (0.2 * 9.81 * 0.1) - 1)) < 1e-3  # 0.5 g without friction; sliding at a constant pull is stepped exactly
+
+
+@pytest.mark.parametrize("model, shaking, options", (
+    ("planar", 0.3, {}), ("planar", 1.2, {"restitution": 0.6}), ("planar", 0.3, {"restitution": 0.6, "piers": 4}),
+    ("spatial", 0.3, {}), ("spatial", 1.2, {"restitution": 0.6}), ("spatial", 0.3, {"restitution": 0.6, "piers": 4}),
+))
+def test_saved_and_loaded(model, shaking, options, tmp_path):
+    last = 900 if model == "planar" else 500
+    wall(6, 6, shaking, model=model, **options)
+    O.run(last, True)
+    wanted = bits()
+    modes, beside = (integrator().stillSteps, integrator().movingSteps), integrator().movingBlocks
+    for first, ending in ((80, "xml"), (457, "yade")):
+        wall(6, 6, shaking, model=model, **options)
+        O.run(first, True)
+        path = str(tmp_path / f"wall.{ending}")
+        O.save(path)
+        saved = bits()
+        O.reset()
+        O.load(path)
+        assert np.array_equal(saved, bits()), first
+        O.run(last - first, True)
+        assert np.array_equal(wanted, bits()), (first, np.flatnonzero(wanted != bits())[:5])
+    print(f"{model}, {shaking} g: {modes[0]} still and {modes[1]} moving steps, {len(dem.impacts())} impacts, {beside} of {len(O.bodies) - 1} blocks move")
+    if "piers" in options:
+        assert modes[1] > 200 and 0 < beside <= options["piers"] and len(dem.impacts()) >= options["piers"]  # each has landed
+        assert integrator().localisedBlocks == options["piers"] - 1  # those beside the wall
+        assert integrator().events >= len(dem.impacts())  # of both ways: each listed impact is one, and few are the wall's
+    else:
+        assert (modes[1] == 0) if shaking < MU else (modes[1] > 200 and len(dem.impacts()) > 10)
+
+
+def test_energy_of_a_wall_that_stands():
+    """What the base puts into it is what its blocks have."""
+    wall(6, 6, 0.3)
+    before = sum(dem.energy()[key] for key in ("kinetic", "potential"))
+    O.run(345, True)
+    gained = sum(dem.energy()[key] for key in ("kinetic", "potential")) - before
+    print(f"still wall: work of the base over what the blocks gain {dem.energy()['baseWork'] / gained - 1:.1e}")
+    assert integrator().movingSteps == 0 and abs(dem.energy()["baseWork"] / gained - 1) < 1e-4
+
+
+def test_energy_of_a_wall_that_moves():
+    """No step gives any."""
+    wall(6, 6, 1.2, restitution=0.6)
+    balance, lost = Balance(), [0]
+    for _ in range(600):
+        O.step()
+        lost.append(integrator().impactDissip + integrator().frictDissip)
+    rise = -min(np.diff(lost))
+    print(f"largest rise of energy in a step {rise:.1e} J, of {lost[-1]:.0f} J lost; balance {balance.error():.1e} J")
+    assert rise < 1e-3 * lost[-1] and abs(balance.error()) < 1e-4 * abs(dem.energy()["baseWork"])
+
+
+def test_what_a_wall_has_left_another_run_takes(tmp_path):
+    """A base that a script drives, new engines of either method, a saved table."""
+    base = dem.base((6, 4, 0.2), dem.BlockMat(density=2000, frictionAngle=0.6))
+    ids = dem.wall(6, 4, (0.4, 0.2, 0.175), O.bodies[base].mat, on=base)
+    O.engines = rigid_engines()
+    O.run(100, True)
+    for speed in (0.05, 0):
+        O.bodies[base].state.vel = (speed, 0, 0)
+        O.run(100, True)
+    assert integrator().movingSteps > 0 and integrator().failures == 0
+    dem.save_blocks(str(tmp_path / "wall.csv"))
     for method in ("wall", "localised", "table"):
         if method == "table":
             O.reset()
             base = dem.base((6, 4, 0.2), dem.BlockMat(density=2000, frictionAngle=0.6))
-            ids = dem.blocks_from_table(f"{folder}/wall.csv", O.bodies[base].mat)
+            ids = dem.blocks_from_table(str(tmp_path / "wall.csv"), O.bodies[base].mat)
         places = [O.bodies[id].state.pos for id in ids]
         O.engines = rigid_engines(method="wall" if method == "table" else method)
         O.run(50, True)
@@ -273,44 +297,46 @@ with tempfile.TemporaryDirectory() as folder:
         print(f"wall that was moved, then '{method}': its blocks move by {moved:.1e} m")
         assert moved < 1e-4 * 0.175  # what an overlap may be
 
-# --- the deepest overlap that is accepted: blocks keep it at rest, and nothing comes of it ---
-overlap = 0.95e-4 * 0.25  # of the smallest half size
-for model in ("planar", "spatial"):
-    for method in ("localised", "wall"):
-        O.reset()
-        base = dem.base((6, 4, 1), dem.BlockMat(density=2000, frictionAngle=0.6))
-        ids = [dem.block((0.6, 0.6, 0.5), O.bodies[base].mat, center=(0, 0, 0.25 + 0.5 * k - (k + 1) * overlap)) for k in range(5)]
-        places = [O.bodies[id].state.pos for id in ids]
-        O.engines = rigid_engines(model=model, method=method)
-        O.run(300, True)
-        moved = max((O.bodies[id].state.pos - place).norm() for id, place in zip(ids, places))
-        assert moved < 1e-3 * overlap and integrator().failures == 0, (model, method, moved)
 
-# --- a base whose place a script changes: a warning, since blocks do not feel it ---
-wall(2, 2, 0, method="wall")
-O.engines = rigid_engines(method="wall")
+@pytest.mark.parametrize("model", ("planar", "spatial"))
+@pytest.mark.parametrize("method", ("localised", "wall"))
+def test_the_deepest_overlap_that_is_accepted(model, method):
+    """Blocks keep it at rest, and nothing comes of it."""
+    overlap = 0.95e-4 * 0.25  # of the smallest half size
+    base = dem.base((6, 4, 1), dem.BlockMat(density=2000, frictionAngle=0.6))
+    ids = [dem.block((0.6, 0.6, 0.5), O.bodies[base].mat, center=(0, 0, 0.25 + 0.5 * k - (k + 1) * overlap)) for k in range(5)]
+    places = [O.bodies[id].state.pos for id in ids]
+    O.engines = rigid_engines(model=model, method=method)
+    O.run(300, True)
+    moved = max((O.bodies[id].state.pos - place).norm() for id, place in zip(ids, places))
+    assert moved < 1e-3 * overlap and integrator().failures == 0
 
 
-def push():
+def test_a_base_whose_place_a_script_changes(capfd):
+    """A warning, since blocks do not feel it."""
+    wall(2, 2, 0, method="wall")
+    O.engines = rigid_engines(method="wall")
+    capfd.readouterr()
     for _ in range(3):
         O.bodies[0].state.pos += Vector3(1e-4, 0, 0)
         O.step()
+    text = capfd.readouterr().err
+    assert text.count("state.pos") == 1 and "state.vel" in text
 
 
-text = printed(push)
-assert text.count("state.pos") == 1 and "state.vel" in text, text
-
-# --- gravity that a script turns out of the plane: on in space, where it topples what it must ---
-for method in ("localised", "wall"):
-    O.reset()
+@pytest.mark.parametrize("method", ("localised", "wall"))
+def test_gravity_that_a_script_turns_out_of_the_plane(method, capfd):
+    """On in space, where it topples what it must."""
     base = dem.base((4, 4, 0.2), dem.BlockMat(density=2000, frictionAngle=0.6))
     block = dem.block((0.3, 0.3, 1.5), O.bodies[base].mat, on=base)
     O.engines = rigid_engines(method=method)
     O.run(20, True)
     assert integrator().chosenModel == "planar"
     integrator().gravity = (0, 0.5 * 9.81, -9.81)
-    text = printed(lambda: O.run(600, True))
+    capfd.readouterr()
+    O.run(600, True)
+    text = capfd.readouterr().err
     # Rigid: 3/(4 R^2) (a 0.5 g - b g) at first, 3 rad/s^2.
     least = 0.5 * 3 / (4 * (0.15**2 + 0.75**2)) * (0.75 * 0.5 - 0.15) * 9.81 * (600 * O.dt) ** 2
-    assert integrator().chosenModel == "spatial" and "gravity points out of the plane" in text, text
-    assert -dem.angle(block, "x") > 0.9 * least or dem.overturned(), (dem.angle(block, "x"), least)
+    assert integrator().chosenModel == "spatial" and "gravity points out of the plane" in text
+    assert -dem.angle(block, "x") > 0.9 * least or dem.overturned()

@@ -2,13 +2,12 @@
 fall, for every model; kept bit by bit over saving and loading."""
 
 import math
-import os
-import tempfile
 
 import numpy as np
+import pytest
 from masonry import dem, results
 from rocking_scene import barrier, one_block, quiet_engines, refuses, said_by, stone
-from yade import O, Quaternion, Vector3
+from yade import O, Vector3
 
 import masonry
 
@@ -35,8 +34,9 @@ def set_turning(ids, velocity, edge):
         state.angMom = state.inertia[1] * state.angVel
 
 
-# --- a block that rocks: the joint opens by 2b sin(angle), and the angle is the exact one ---
-for model in MODELS:
+@pytest.mark.parametrize("model", MODELS)
+def test_a_block_that_rocks(model):
+    """The joint opens by 2b sin(angle), and the angle is the exact one."""
     base, block, theory = one_block(5, restitution=0.9)
     set_turning([block], 0.2, Vector3(0.3, 0, 0))
     recorder, h = recorded(2.0, model)
@@ -48,27 +48,31 @@ for model in MODELS:
     print(model, "angle:", error)
     # Rigid: as in test_rigid_scenes. Compliant: the pressed joint holds m g 6e-6 m / 2, which is 5e-4 of the kinetic energy given: half of
     # that at the first peak, twice as much after the impacts, in the seven half cycles.
-    assert error < (1e-3 if model == "compliant" else 1e-6), model
+    assert error < (1e-3 if model == "compliant" else 1e-6)
     opening, slip = (np.array([results.joints(h, time=t)[0][name] for t in h.time]) for name in ("opening", "slip"))
     press = 2e-5 if model == "compliant" else 1e-9  # m: the edge is pressed in; test_recorder has the same bound
-    assert np.max(np.abs(opening - 0.6 * np.sin(h.rotation[:, 1]))) < press and np.max(slip) < press, model
+    assert np.max(np.abs(opening - 0.6 * np.sin(h.rotation[:, 1]))) < press and np.max(slip) < press
     most, = results.joints(h)
     assert most["opening"] == opening.max() and (most["id1"], most["id2"]) == (base, block)
     assert not results.collapse(h).collapsed
 
-# --- an integrator that is dead integrates nothing: impacts and energies are those of the living one ---
-base, block, theory = one_block(5, restitution=0.9)
-dem.tilt(block, 0.05)
-recorder = dem.WallRecorder(iterPeriod=1)
-dead = quiet_engines(model="planar")[-1]
-dead.dead = True
-O.engines = [dead] + quiet_engines(model="planar", recorder=recorder)
-O.run(1500, True)
-assert len(dem.impacts()) == len(O.engines[-1].impactTimes) >= 2 and dem.energy()["impactDissip"] == O.engines[-1].impactDissip > 0
-assert dem.wall_history(recorder).energy["impactDissip"][-2] == O.engines[-1].impactDissip  # the recorder comes before the step
 
-# --- energies: those of dem.energy(), and their balance ---
-for model in MODELS:
+def test_an_integrator_that_is_dead():
+    """It integrates nothing: impacts and energies are those of the living one."""
+    base, block, theory = one_block(5, restitution=0.9)
+    dem.tilt(block, 0.05)
+    recorder = dem.WallRecorder(iterPeriod=1)
+    dead = quiet_engines(model="planar")[-1]
+    dead.dead = True
+    O.engines = [dead] + quiet_engines(model="planar", recorder=recorder)
+    O.run(1500, True)
+    assert len(dem.impacts()) == len(O.engines[-1].impactTimes) >= 2 and dem.energy()["impactDissip"] == O.engines[-1].impactDissip > 0
+    assert dem.wall_history(recorder).energy["impactDissip"][-2] == O.engines[-1].impactDissip  # the recorder comes before the step
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_energies(model):
+    """Those of dem.energy(), and their balance."""
     base, block, theory = one_block(4, restitution=0.8, noSlip=False, frictionAngle=0.6)
     wave = masonry.Record(0.01, 6 * np.sin(2 * np.pi * np.arange(0, 1.005, 0.01)), baseline="constant")
     motion = dem.record_motion(wave, ids=[base])
@@ -76,9 +80,9 @@ for model in MODELS:
     recorder, h = recorded(1.5, model, motion)
     energy = h.energy
     print(model, "balance:", np.max(np.abs(energy["error"])) / barrier(block, theory))
-    assert energy["baseWork"][-1] > 1 and energy["impactDissip"][-1] > 0, model
+    assert energy["baseWork"][-1] > 1 and energy["impactDissip"][-1] > 0
     # Of the energy that overturns: 1e-6, and 1e-4 for compliant joints (validation/README.md; they reach 3e-6 without a moving base, 5e-5 here).
-    assert np.max(np.abs(energy["error"])) < (1e-4 if model == "compliant" else 1e-6) * barrier(block, theory), model
+    assert np.max(np.abs(energy["error"])) < (1e-4 if model == "compliant" else 1e-6) * barrier(block, theory)
     assert np.allclose([energy[key][-1] for key in ("impactDissip", "baseWork")], [dem.energy()[key] for key in ("impactDissip", "baseWork")], rtol=1e-2)
     # Step by step, each column: the recorder comes before the step of rigid blocks, and behind the joints of compliant ones.
     recorder.virtPeriod, recorder.iterPeriod = 0, 1
@@ -88,7 +92,7 @@ for model in MODELS:
         seen.append(dem.energy())
     table = dem.wall_history(recorder).energy
     for key in seen[0]:
-        assert table[key][-5:].tolist() == [one[key] for one in (seen[1:] if model == "compliant" else seen[:-1])], (model, key)
+        assert table[key][-5:].tolist() == [one[key] for one in (seen[1:] if model == "compliant" else seen[:-1])], key
     assert model != "compliant" or (seen[-1]["dampDissip"] > 0 and seen[-1]["frictDissip"] > 0)
     # YADE's energies have the work with the sign that keeps the sum: the balance of above, or what YADE itself adds up of kinetic energy and the work of
     # gravity, of velocities half a step apart. With the other sign twice the work is missing.
@@ -96,14 +100,15 @@ for model in MODELS:
     start, bound = energy["kinetic"][0] + energy["potential"][0], 1e-6 * barrier(block, theory)
     if model == "compliant":
         start, bound = 0, 1e-2 * energy["baseWork"][-1]
-    assert abs(O.energy.total() - start) < bound, (model, O.energy.total() - start)
+    assert abs(O.energy.total() - start) < bound
     O.trackEnergy = False
     # Relative to the base, which ends where the record does.
     assert abs(h.position[-1, 0, 0] - wave.displacement(h.time[-1])) < 1e-9 and (h.displacement[:, 0] == 0).all()
 
-# --- a flat block given a speed v on mu slides by v^2/(2 mu g) ---
-for model in MODELS:
-    O.reset()
+
+@pytest.mark.parametrize("model", MODELS)
+def test_a_flat_block_given_a_speed(model):
+    """A flat block given a speed v on mu slides by v^2/(2 mu g)."""
     mu, speed = 0.5, 1.0
     base = dem.base((4, 2, 0.2), stone(noSlip=False, frictionAngle=math.atan(mu)))
     block = dem.block((0.8, 0.5, 0.1), O.bodies[base].mat, on=base)
@@ -112,68 +117,70 @@ for model in MODELS:
     way = speed**2 / (2 * mu * 9.81)
     joint, = results.joints(h)
     # The compliant joint gives back elastic shear of about mu g rho h / stiffness: far below 1e-4 of the way at this penetration.
-    assert abs(joint["slip"] / way - 1) < (1e-3 if model == "compliant" else 1e-9), (model, joint["slip"] / way - 1)
+    assert abs(joint["slip"] / way - 1) < (1e-3 if model == "compliant" else 1e-9)
     assert joint["opening"] < 1e-4 * way and abs(h.drift()[-1] / (way / 0.1) - 1) < 1e-3
     assert abs(h.energy["frictDissip"][-1] / (0.5 * O.bodies[block].state.mass * speed**2) - 1) < 1e-3
 
-# --- a stack thrown over falls; one that is not stands ---
-for model in MODELS:
-    for push, falls in ((0.6, False), (1.3, True)):
-        O.reset()
-        base = dem.base((8, 8, 0.2), stone(0.5, noSlip=False, frictionAngle=0.7))
-        lower, upper = dem.stack(2, (0.4, 0.4, 0.6), O.bodies[base].mat, on=base)
-        edge = Vector3(0.2, 0, 0)  # as one body: a block 1.2 m high, which this angular velocity (rad/s) lifts about its edge
-        p = masonry.RockingBlock(0.2, 0.6).frequency_parameter
-        needed = p * math.sqrt(2 * (1 - math.cos(math.atan(1 / 3))))  # (w/p)^2/2 = 1 - cos(critical angle)
-        set_turning([lower, upper], push * needed, edge)
-        recorder, h = recorded(2.5, model)
-        report = results.collapse(h, blocks=2)
-        assert report.collapsed == falls and len(report.fallen) == 2 * falls, (model, push, report)
-        assert falls == (len(dem.overturned()) == 2)
-        if falls:
-            when = int(np.flatnonzero(h.time == report.time)[0])
-            assert (h.lean[when:, 1:] > math.atan(0.2 / 0.3)).all() or results.fallen(h)[when:, 1:].all()
-            assert report.peak_drift == h.drift()[:when].max() and 0 < report.first_excursion < report.time
 
-# --- one recorder over two lists of engines, a shock and an aftershock: what was dissipated and done goes on; also through a file ---
-wave = masonry.Record(0.01, 6 * np.sin(2 * np.pi * np.arange(0, 1.005, 0.01)), baseline="constant")
+@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("push, falls", ((0.6, False), (1.3, True)))
+def test_a_stack_thrown_over_falls(model, push, falls):
+    """A stack thrown over falls; one that is not stands."""
+    base = dem.base((8, 8, 0.2), stone(0.5, noSlip=False, frictionAngle=0.7))
+    lower, upper = dem.stack(2, (0.4, 0.4, 0.6), O.bodies[base].mat, on=base)
+    edge = Vector3(0.2, 0, 0)  # as one body: a block 1.2 m high, which this angular velocity (rad/s) lifts about its edge
+    p = masonry.RockingBlock(0.2, 0.6).frequency_parameter
+    needed = p * math.sqrt(2 * (1 - math.cos(math.atan(1 / 3))))  # (w/p)^2/2 = 1 - cos(critical angle)
+    set_turning([lower, upper], push * needed, edge)
+    recorder, h = recorded(2.5, model)
+    report = results.collapse(h, blocks=2)
+    assert report.collapsed == falls and len(report.fallen) == 2 * falls
+    assert falls == (len(dem.overturned()) == 2)
+    if falls:
+        when = int(np.flatnonzero(h.time == report.time)[0])
+        assert (h.lean[when:, 1:] > math.atan(0.2 / 0.3)).all() or results.fallen(h)[when:, 1:].all()
+        assert report.peak_drift == h.drift()[:when].max() and 0 < report.first_excursion < report.time
+
+
+WAVE = masonry.Record(0.01, 6 * np.sin(2 * np.pi * np.arange(0, 1.005, 0.01)), baseline="constant")
 
 
 def shock(base, start, recorder, model):
-    motion = dem.record_motion(wave, ids=[base], start=start)
+    motion = dem.record_motion(WAVE, ids=[base], start=start)
     O.engines = quiet_engines(motion, model=model, recorder=recorder)
     O.run(int(1.2 / O.dt), True)
 
 
-for model in MODELS:
-    for saved in (False, True):
-        base, block, theory = one_block(4, restitution=0.8, noSlip=False, frictionAngle=0.6)
-        recorder = dem.WallRecorder(virtPeriod=0.01)
-        shock(base, 0, recorder, model)
-        first = dem.energy()
-        if saved:
-            with tempfile.TemporaryDirectory() as folder:
-                O.save(os.path.join(folder, "first.xml"))
-                O.load(os.path.join(folder, "first.xml"))
-            recorder, = (e for e in O.engines if isinstance(e, dem.WallRecorder))
-        shock(base, O.time, recorder, model)
-        energy, second = dem.wall_history(recorder).energy, dem.energy()
-        print(model, "balance of two shocks:", np.max(np.abs(energy["error"])) / barrier(block, theory))
-        # A new RockingJointEngine does not know the forces of the step before: it books its first step less well.
-        assert np.max(np.abs(energy["error"])) < (3e-4 if model == "compliant" else 1e-6) * barrier(block, theory), (model, saved)
-        for key in ("impactDissip", "baseWork"):
-            assert first[key] != 0 and abs(energy[key][-1] / (first[key] + second[key]) - 1) < 1e-2, (model, saved, key)
+@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("saved", (False, True))
+def test_one_recorder_over_a_shock_and_an_aftershock(model, saved, tmp_path):
+    """What was dissipated and done goes on; also through a file."""
+    base, block, theory = one_block(4, restitution=0.8, noSlip=False, frictionAngle=0.6)
+    recorder = dem.WallRecorder(virtPeriod=0.01)
+    shock(base, 0, recorder, model)
+    first = dem.energy()
+    if saved:
+        O.save(str(tmp_path / "first.xml"))
+        O.load(str(tmp_path / "first.xml"))
+        recorder, = (e for e in O.engines if isinstance(e, dem.WallRecorder))
+    shock(base, O.time, recorder, model)
+    energy, second = dem.wall_history(recorder).energy, dem.energy()
+    print(model, "balance of two shocks:", np.max(np.abs(energy["error"])) / barrier(block, theory))
+    # A new RockingJointEngine does not know the forces of the step before: it books its first step less well.
+    assert np.max(np.abs(energy["error"])) < (3e-4 if model == "compliant" else 1e-6) * barrier(block, theory)
+    for key in ("impactDissip", "baseWork"):
+        assert first[key] != 0 and abs(energy[key][-1] / (first[key] + second[key]) - 1) < 1e-2, key
 
-# --- saving and loading; erased blocks; ids given ---
-base, block, theory = one_block(5, restitution=0.9)
-other = dem.block((0.6, 1, 1), O.bodies[base].mat, center=(0.7, 0, 0.5))
-dem.tilt(block, -0.1)
-chosen, every = dem.WallRecorder(ids=[base, block], iterPeriod=7), dem.WallRecorder(iterPeriod=7)
-O.engines = quiet_engines(model="auto", recorder=[chosen, every])
-O.run(100, True)
-with tempfile.TemporaryDirectory() as folder:
+
+def test_saving_loading_erased_blocks_and_ids(tmp_path):
+    base, block, theory = one_block(5, restitution=0.9)
+    other = dem.block((0.6, 1, 1), O.bodies[base].mat, center=(0.7, 0, 0.5))
+    dem.tilt(block, -0.1)
+    chosen, every = dem.WallRecorder(ids=[base, block], iterPeriod=7), dem.WallRecorder(iterPeriod=7)
+    O.engines = quiet_engines(model="auto", recorder=[chosen, every])
+    O.run(100, True)
     for ending in ("xml", "yade.gz"):
-        path = os.path.join(folder, "scene." + ending)
+        path = str(tmp_path / f"scene.{ending}")
         O.save(path)
         O.load(path)
     O.run(100, True)
@@ -188,45 +195,57 @@ with tempfile.TemporaryDirectory() as folder:
         assert np.array_equal(first.energy, second.energy) and len(first.time) == 29
     assert histories[0].ids.tolist() == [base, block] and histories[1].ids.tolist() == [base, block, other]
     assert np.array_equal(histories[0].position, histories[1].position[:, :2])
-    history = os.path.join(folder, "wall.npz")
+    history = tmp_path / "wall.npz"
     histories[1].save(history)
     assert np.array_equal(results.WallHistory.load(history).energy, histories[1].energy)
-recorder = [e for e in O.engines if isinstance(e, dem.WallRecorder)][1]
-O.bodies.erase(other)
-O.run(7, True)
-h = dem.wall_history(recorder)
-quiet_engines(model="auto", recorder=recorder)  # goes on without the erased one
-assert np.isnan(h.position[-1, 2]).all() and np.isfinite(h.position[-1, :2]).all() and results.fallen(h)[-1].tolist() == [False, False, True]
+    recorder = [e for e in O.engines if isinstance(e, dem.WallRecorder)][1]
+    O.bodies.erase(other)
+    O.run(7, True)
+    h = dem.wall_history(recorder)
+    quiet_engines(model="auto", recorder=recorder)  # goes on without the erased one
+    assert np.isnan(h.position[-1, 2]).all() and np.isfinite(h.position[-1, :2]).all() and results.fallen(h)[-1].tolist() == [False, False, True]
 
-# --- a wall recorded without its base: said before the run and with the result ---
-base, block, theory = one_block(5)
-recorder = dem.WallRecorder(iterPeriod=1, ids=[block])
-for ids, said in (([block], True), ([base, block], False), ([], False)):
-    recorder.ids = ids
+
+@pytest.mark.parametrize("ids, said", (([1], True), ([0, 1], False), ([], False)))
+def test_a_wall_recorded_without_its_base(ids, said):
+    """It is said before the run and with the result."""
+    one_block(5)
+    recorder = dem.WallRecorder(iterPeriod=1, ids=ids)
     text = said_by(lambda: setattr(O, "engines", dem.engines(recorder=recorder)))
-    assert ("WallRecorder.ids has no prescribed body" in text) == said, text
+    assert ("WallRecorder.ids has no prescribed body" in text) == said
 
-# --- input that cannot be meant ---
-for attributes, word in (({"iterPeriod": 0}, "iterPeriod"), ({"ids": [99]}, "99")):
+
+@pytest.mark.parametrize("attributes, word", (({"iterPeriod": 0}, "iterPeriod"), ({"ids": [99]}, "99")))
+def test_attributes_that_cannot_be_meant(attributes, word):
     base, block, theory = one_block(5)
     recorder = dem.WallRecorder(iterPeriod=1)
     O.engines = quiet_engines(model="auto", recorder=recorder)
     recorder.updateAttrs(attributes)
     refuses(O.step, word)
-recorder = dem.WallRecorder(iterPeriod=1)
-refuses(lambda: dem.wall_history(recorder), "recorded nothing")
-refuses(lambda: dem.wall_history(dem.BlockRecorder()), "must be a WallRecorder")
-refuses(lambda: dem.save_history(recorder, "h.csv"), "must be a BlockRecorder", "dem.wall_history")
-base, block, theory = one_block(5)
-O.engines = quiet_engines(model="auto", recorder=recorder)
-O.run(3, True)
-O.resetTime()
-O.run(3, True)
-refuses(lambda: dem.wall_history(recorder), "must increase")
-recorder.ids = [block]
-refuses(O.step, "changed after the first sample")
-# --- what has no energy of its own stands in the error: a velocity that a script gives, a change of gravity ---
-for method in ("localised", "wall"):
+
+
+def test_recorders_that_cannot_be_meant():
+    recorder = dem.WallRecorder(iterPeriod=1)
+    refuses(lambda: dem.wall_history(recorder), "recorded nothing")
+    refuses(lambda: dem.wall_history(dem.BlockRecorder()), "must be a WallRecorder")
+    refuses(lambda: dem.save_history(recorder, "h.csv"), "must be a BlockRecorder", "dem.wall_history")
+
+
+def test_a_time_that_starts_anew():
+    recorder = dem.WallRecorder(iterPeriod=1)
+    base, block, theory = one_block(5)
+    O.engines = quiet_engines(model="auto", recorder=recorder)
+    O.run(3, True)
+    O.resetTime()
+    O.run(3, True)
+    refuses(lambda: dem.wall_history(recorder), "must increase")
+    recorder.ids = [block]
+    refuses(O.step, "changed after the first sample")
+
+
+@pytest.mark.parametrize("method", ("localised", "wall"))
+def test_what_has_no_energy_of_its_own(method):
+    """It stands in the error: a velocity that a script gives, a change of gravity."""
     base, block, theory = one_block(0.5)
     recorder, mass = dem.WallRecorder(iterPeriod=1), O.bodies[block].state.mass
     O.engines = quiet_engines(model="auto", recorder=recorder, method=method)
@@ -234,8 +253,7 @@ for method in ("localised", "wall"):
     O.bodies[block].state.vel = Vector3(0.01, 0, 0)
     O.run(10, True)
     given, height = dem.wall_history(recorder).energy["error"][-1], O.bodies[block].state.pos[2]
-    assert abs(given / (mass * 0.01**2 / 2) - 1) < 1e-6, (method, given)
+    assert abs(given / (mass * 0.01**2 / 2) - 1) < 1e-6
     O.engines[-1].gravity = Vector3(0, 0, -5)
     O.run(2, True)
-    assert abs((dem.wall_history(recorder).energy["error"][-1] - given) / (mass * (5 - 9.81) * height) - 1) < 1e-6, method
-print("wall recorder: openings, slips, energies, falls, files")
+    assert abs((dem.wall_history(recorder).energy["error"][-1] - given) / (mass * (5 - 9.81) * height) - 1) < 1e-6

@@ -3,6 +3,7 @@
 import math
 
 import numpy as np
+import pytest
 from masonry import dem
 from rocking_scene import bits, one_block, rigid_engines
 from yade import O, Vector3
@@ -28,11 +29,14 @@ def wall_and_few(size, material, base):
     dem.block((0.3, 0.3, 1.2), material, center=(-3.5, 0, 0.6))
 
 
-# --- saved every 20 steps: the list of pairs, points that come and go, and lanes have changed in between ---
-for name, build, amplitude, direction, begin in (("return wall", lambda *of: dem.return_wall(5, 3, 3, *of), 12, (0, 1, 0), 200),
-                                                 ("wall", lambda *of: dem.wall(6, 5, *of), 8, (0, 1, 0), 1000),
-                                                 ("wall and few blocks, in space", wall_and_few, 12, (0, 1, 0), 600),
-                                                 ("wall and few blocks", wall_and_few, 8, (1, 0, 0), 200)):
+@pytest.mark.parametrize("name, build, amplitude, direction, begin", (
+    ("return wall", lambda *of: dem.return_wall(5, 3, 3, *of), 12, (0, 1, 0), 200),
+    ("wall", lambda *of: dem.wall(6, 5, *of), 8, (0, 1, 0), 1000),
+    ("wall and few blocks, in space", wall_and_few, 12, (0, 1, 0), 600),
+    ("wall and few blocks", wall_and_few, 8, (1, 0, 0), 200),
+))
+def test_saved_while_it_moves(name, build, amplitude, direction, begin):
+    """Every 20 steps: the list of pairs, points that come and go, and lanes have changed in between."""
     scene(build, amplitude, direction)
     moving = 0
     for first in range(begin, begin + 500, 20):
@@ -42,7 +46,7 @@ for name, build, amplitude, direction, begin in (("return wall", lambda *of: dem
         wanted = bits()
         O.loadTmp()
         O.run(20, True)
-        assert np.array_equal(bits(), wanted), (name, first)
+        assert np.array_equal(bits(), wanted), first
         moving += O.engines[-1].mode == "moving"
         O.loadTmp()
     print(f"{name}: {moving} of 25 saved while it moves", flush=True)
@@ -50,8 +54,9 @@ for name, build, amplitude, direction, begin in (("return wall", lambda *of: dem
     assert (O.engines[-1].localisedBlocks > 0) == ("few" in name)
 
 
-# --- saved between a landing and the pulse that answers it, at the end of the same step ---
-for restitution in (0.9, None):
+@pytest.mark.parametrize("restitution", (0.9, None))
+def test_saved_between_a_landing_and_the_pulse_that_answers_it(restitution):
+    """At the end of the same step."""
     base, id, _ = one_block(5, restitution=restitution)
     train = dem.PulseTrainEngine(ids=[base], impulse=0.1, resonantBlock=id)
     O.engines = rigid_engines(train, model="spatial", method="wall", dt=1e-3)
@@ -65,7 +70,7 @@ for restitution in (0.9, None):
     O.run(5, True)
     assert len(O.engines[-1].motions[0].pulseTimes) == pulses + 1 and np.array_equal(bits(), wanted)
 
-# --- changed by a script, then saved ---
+
 def move(ids):
     O.bodies[ids[-1]].state.pos += Vector3(0.03, 0, 0)
 
@@ -80,7 +85,8 @@ def change_restitution(ids):
         i.phys.restitution = 0.9
 
 
-for change, first, later in ((move, 2, 60), (move, 2, 200), (change_friction, 300, 0), (change_restitution, 300, 0)):
+@pytest.mark.parametrize("change, first, later", ((move, 2, 60), (move, 2, 200), (change_friction, 300, 0), (change_restitution, 300, 0)))
+def test_changed_by_a_script_then_saved(change, first, later):
     ends = []
     for saved in (False, True):
         ids = scene(lambda *of: dem.return_wall(5, 3, 3, *of), 6)
@@ -93,4 +99,4 @@ for change, first, later in ((move, 2, 60), (move, 2, 200), (change_friction, 30
             O.loadTmp()
         O.run(120, True)
         ends.append(bits())
-    assert np.array_equal(*ends), (change.__name__, later)
+    assert np.array_equal(*ends)
