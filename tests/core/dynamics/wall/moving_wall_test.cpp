@@ -2,7 +2,7 @@
 #include "dynamics/rigid/rigid_step.hpp"
 #include "tolerances.hpp"
 #include "wall_rig.hpp"
-#include <catch.hpp>
+#include <catch_generators.hpp>
 #include <cstring>
 
 using namespace rig;

@@ -1,7 +1,7 @@
 // Structures on one base: each in its own mode, as if the others were not there. And what moves on top of what stands.
 #include "dynamics/rigid/rigid_step.hpp"
 #include "wall_rig.hpp"
-#include <catch.hpp>
+#include <catch_generators.hpp>
 #include <cstring>
 #include <random>
 
