@@ -1,12 +1,9 @@
 """Resonance of rocking blocks beside that of elastic oscillators, under pulse trains and harmonic motion: what Casapulla and Maione ask for in their
-conclusion. No YADE needed. Run with `PYTHONPATH=build/python /usr/bin/python3 docs/gallery/resonance.py` (half a minute); the picture is written beside
-this file and the numbers are printed.
+conclusion. `scripts/gallery resonance` runs it; the picture is written into the current folder, and the numbers are printed.
 
 Amplification is the largest response over that to the first pulse alone: the rotation of a block, the displacement of an oscillator. Blocks are exact
 under gravity. The impulse is the paper's, I = 0.0125 g s.
 """
-import os
-
 import matplotlib
 
 matplotlib.use("Agg")
@@ -100,6 +97,4 @@ for ax in axes.flat:
     ax.minorticks_off()
     ax.grid(alpha=0.3)
     ax.legend(fontsize=7)
-path = os.path.join(os.path.dirname(os.path.abspath(__file__)), "resonance.png")
-figure.savefig(path, dpi=100)
-print(f"wrote {path}")
+figure.savefig("resonance.png", dpi=100)
