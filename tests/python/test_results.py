@@ -359,7 +359,7 @@ def test_pictures_show_the_movement_enlarged(monkeypatch, tmp_path):
     # Where no time is given, the sample of the largest drift.
     drawn = []
     monkeypatch.setattr(Figure, "savefig", lambda figure, path, **given: drawn.append(figure))
-    results.draw(h, "shape.png", enlarge=1)
+    results.draw(h, tmp_path / "shape.png", enlarge=1)
     drawn = np.concatenate([path.vertices for path in drawn[0].axes[0].collections[-1].get_paths()])
     assert abs(drawn[:, 0].max() - h.corners(1)[:, :, 0].max()) < ROUND
 
@@ -397,7 +397,7 @@ def test_colours_are_left_to_what_stands_and_to_a_heap(moves, end, beyond):
 
 
 @pytest.mark.parametrize("level, lacking, panels", [(1e6, 0, 1), (1e6, 1e-10, 1), (-1e6, 1e-10, 1), (1e6, 1e-3, 2)])
-def test_a_balance_that_closes_by_definition_is_not_shown_as_its_error(monkeypatch, level, lacking, panels):
+def test_a_balance_that_closes_by_definition_is_not_shown_as_its_error(tmp_path, monkeypatch, level, lacking, panels):
     """What is lost is booked as the impacts' but for `lacking` J; 1e-10 J is round-off of a potential energy of 1e6 J, above or below z = 0."""
     from matplotlib.figure import Figure
 
@@ -406,7 +406,7 @@ def test_a_balance_that_closes_by_definition_is_not_shown_as_its_error(monkeypat
     h = rocking([0, 0.1, 0])
     energies = np.array([[0, level, 0, 0, 0, 0, 0], [3, level + 5, 0, 1, 0, 2, 11], [0, level, 0, 2, 0, 5 + lacking, 7]])
     h = history(h.sizes, h.position, h.orientation, energies=energies)
-    results.draw_energy(h, "energy.png")
+    results.draw_energy(h, tmp_path / "energy.png")
     lines = {line.get_label(): line.get_ydata().tolist() for line in drawn[0].axes[0].lines}
     assert lines["work of the base"] == [0, 11, 7] and lines["potential, since the start"] == [0, 5, 0] and lines["dissipated by friction"] == [0, 1, 2]
     assert panels == 1 or drawn[0].axes[1].lines[0].get_ydata().tolist() == h.energy["error"].tolist()
@@ -437,13 +437,13 @@ def test_a_film_has_the_frames_asked_for(tmp_path):
 
 
 @pytest.mark.parametrize("angles", [[0.1, 0.2], [0, 0], [0, 0.1]])
-def test_a_map_without_joints_says_so(monkeypatch, angles):
+def test_a_map_without_joints_says_so(tmp_path, monkeypatch, angles):
     """A block that leans in the first sample has no joint with the base: that nothing opened would be wrong."""
     from matplotlib.figure import Figure
 
     drawn = []
     monkeypatch.setattr(Figure, "savefig", lambda figure, path, **given: drawn.append(figure))
-    results.draw_joints(rocking(angles), "joints.png")
+    results.draw_joints(rocking(angles), tmp_path / "joints.png")
     titles = [axes.get_title() for axes in drawn[0].axes[:2]]
     assert [("no blocks touch at first" in t) for t in titles] == [angles[0] != 0] * 2
     assert ["nothing" in t for t in titles] == [angles == [0, 0], angles[0] == 0]
