@@ -49,9 +49,9 @@ def _escaped(text):
     return "".join(f"``{piece}``" if k % 2 else re.sub(r"([*|\\]|_(?=\W|$))", r"\\\1", piece) for k, piece in enumerate(pieces) if piece)
 
 
-def _default(name, doc):
+def _default(name, attribute):
     """The value of an attribute in a new object of its YADE class, as Python writes it; "" for attributes that only the engine sets (YADE's flag 2)."""
-    flags = re.search(r":yattrflags:`\s*(\d+)`", doc)
+    flags = re.search(r":yattrflags:`\s*(\d+)`", attribute.__doc__ or "")
     if not flags or int(flags[1]) & 2:
         return ""
     module, cls, attribute = name.rsplit(".", 2)
@@ -72,8 +72,6 @@ def _paragraphs(lines):
 
 def _as_rst(app, what, name, obj, options, lines):
     """Docstrings are plain text. Text stays text, with the signs escaped that are markup in RST; tables and code keep their columns."""
-    text = "\n".join(lines)
-    lines[:] = re.sub(r"\s*:y\w+:`[^`]*`", "", text).split("\n")
     result = []
     for paragraph in _paragraphs(lines):
         entries = _entries(paragraph)
@@ -83,7 +81,7 @@ def _as_rst(app, what, name, obj, options, lines):
             result += [line for name, text in entries for line in (f"``{name}``", "    " + _escaped(text), "")]
         else:
             result += ["::", ""] + ["    " + line for line in paragraph] + [""]
-    default = _default(name, text)
+    default = _default(name, obj)
     if default:
         result += [f"Default: ``{default}``", ""]
     lines[:] = result

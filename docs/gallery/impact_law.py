@@ -1,7 +1,5 @@
-"""Figure of docs/impact-law.md: where the impulse of a rocking impact acts, how much friction it takes and what energy stays. No YADE needed. Run with
-`/usr/bin/python3 docs/gallery/impact_law.py`; the picture is written beside this file."""
-import os
-
+"""Figure of docs/impact-law.md: where the impulse of a rocking impact acts, how much friction it takes and what energy stays.
+`scripts/gallery impact_law` runs it; the picture is written into the current folder."""
 import matplotlib
 
 matplotlib.use("Agg")
@@ -26,6 +24,4 @@ place.legend(fontsize="small", loc="lower right")
 friction.axhline(0.65, color="0.6", linestyle="--", linewidth=1)
 friction.text(0.98, 0.68, "stone, 0.65", color="0.4", ha="right", fontsize="small")
 friction.set(xlim=(0, 1), ylim=(0, 2), xlabel="restitution C", ylabel="friction coefficient", title="friction that a no-slip impact needs")
-path = os.path.join(os.path.dirname(os.path.abspath(__file__)), "impact_law.png")
-figure.savefig(path, dpi=110)
-print(f"wrote {path}")
+figure.savefig("impact_law.png", dpi=110)

@@ -1,7 +1,5 @@
-"""Which half-sine pulses overturn blocks of three sizes. No YADE needed. Run with `PYTHONPATH=build/python /usr/bin/python3
-docs/gallery/overturning.py`; the picture is written beside this file."""
-import os
-
+"""Which half-sine pulses overturn blocks of three sizes. `scripts/gallery overturning` runs it; the picture is written into
+the current folder."""
 import matplotlib
 
 matplotlib.use("Agg")
@@ -16,8 +14,7 @@ for height in (1.0, 2.0, 4.0):
     block = masonry.RockingBlock.from_size(height / 5, height)
     amplitudes = [np.min(masonry.overturning_amplitude(block, masonry.HalfSine(1.0, duration))) / 9.81 for duration in durations]
     axes.plot(durations, amplitudes, label=f"{height / 5:g} x {height:g} m")
+    print(f"height {height:g} m: {amplitudes[0]:.3f} g at {durations[0]:g} s, {amplitudes[-1]:.3f} g at {durations[-1]:g} s")
 axes.set(xlabel="duration of the pulse (s)", ylabel="least amplitude that overturns (g)", ylim=(0, 2))
 axes.legend(title="block")
-path = os.path.join(os.path.dirname(os.path.abspath(__file__)), "overturning.png")
-figure.savefig(path, dpi=110)
-print(f"wrote {path}")
+figure.savefig("overturning.png", dpi=110)

@@ -132,6 +132,13 @@ def test_mistakes_are_told_in_one_sentence(command, line, words):
     assert status == 2 and words in said and said.count("\n") == 1 and said.startswith("masonry"), said
 
 
+def test_warnings_are_sentences(command, folder):
+    """Peaks beyond those of earthquakes are asked about, without the file and line of this package."""
+    (folder / "fast.csv").write_text("\n".join(["time,acceleration", *(f"{0.01 * k:.2f},{60 * (-1)**k}" for k in range(50))]))
+    status, _, error = command("spectrum response fast.csv --unit m/s^2 --period 0.5,1 --baseline none --quiet")
+    assert status == 0 and error == "masonry: The record 'fast.csv' reaches 60 m/s^2 before its scale, 6.12 g: is its unit right?\n"
+
+
 def test_lists_of_numbers():
     assert numbers("0.5") == 0.5
     assert numbers("0.4,0.6").tolist() == [0.4, 0.6]

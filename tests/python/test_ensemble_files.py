@@ -83,9 +83,13 @@ def test_files_have_the_same_bytes_in_every_process(tmp_path):
 def test_what_is_missing_is_told_and_the_rest_gathered(tmp_path):
     script, folder = study(tmp_path)
     path_of(folder, keys(script.resolve(), "run", CASES)[1]).unlink()
-    with pytest.raises(RuntimeError, match=r"1 of 3 cases failed; 2 are kept in .*\n.*'seed': 1099511627776.*: it has no result yet") as error:
+    with pytest.raises(RuntimeError, match=r"1 of 3 cases are missing; 2 are kept in .*\n.*'seed': 1099511627776.*: it has no result yet") as error:
         ensemble.run(script, CASES, folder, gather=True)
     assert error.value.table["seed"].tolist() == [1, 7] == ensemble.load(folder)["seed"].tolist()
+    key = keys(script.resolve(), "run", CASES)[1]
+    (folder / f"case_{key}.log").write_text("what it said")  # as compute() leaves it
+    with pytest.raises(RuntimeError, match=rf"1 of 3 cases are missing, 1 of which failed; 2 are kept in .*\n.*: it failed: .*case_{key}.log"):
+        ensemble.run(script, CASES, folder, gather=True)
 
 
 @pytest.mark.parametrize("count", [1, 2, 3, 5])

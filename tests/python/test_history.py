@@ -335,6 +335,46 @@ def test_nan_is_the_natural_restitution_and_sizes_are_whole():
     assert np.abs(natural.peak_angles[1, 1]) > np.abs(mixed.peak_angles[1, 1])
 
 
+@pytest.mark.parametrize("restoring", ["exact", "constant"])
+def test_the_picture_of_a_block_that_overturns_says_when(tmp_path, monkeypatch, restoring):
+    """Set off with the angular velocity w from the upright position, the block passes its critical angle when the integral of dt = d(angle)/velocity has come
+    there: (velocity/p)^2 = (w/p)^2 - 2 (cos(alpha - angle) - cos(alpha)), and with the constant moment (w/p)^2 - 2 sin(alpha) angle."""
+    from matplotlib.figure import Figure
+    from scipy.integrate import quad
+
+    block = masonry.RockingBlock(0.3, 1.5)
+    alpha, p, w = block.critical_angle, block.frequency_parameter, 1.0
+    work = (lambda a: 2 * (np.cos(alpha - a) - np.cos(alpha))) if restoring == "exact" else (lambda a: 2 * np.sin(alpha) * a)
+    passes = quad(lambda a: 1 / (p * np.sqrt((w / p)**2 - work(a))), 0, alpha)[0]
+    drawn = []
+    monkeypatch.setattr(Figure, "savefig", lambda figure, path, **given: drawn.append(figure))
+    history = masonry.simulate(block, initial_velocity=w, restoring=restoring)
+    assert history.overturned
+    history.draw(tmp_path / "fall.png")
+    title = drawn[0].axes[0].get_title()
+    assert title == f"overturns at {passes:.4g} s, in half cycle 1"
+    assert drawn[0].axes[0].lines[0].get_xdata()[-1] > passes
+    # Driven past its critical angle more than once: the last time counts.
+    driven = masonry.simulate(block, masonry.Sine(3.5, 1.0, 3))
+    passes, lies = driven._fall()
+    around = np.abs(driven.sample([passes - 1e-4, passes + 1e-4, lies - 1e-4, lies + 1e-4])[0]) / alpha
+    assert around[0] < 1 < around[1] and np.isfinite(around[2]) and np.isnan(around[3])
+    assert np.all(np.abs(driven.sample(np.linspace(passes + 1e-4, lies - 1e-4, 1000))[0]) > alpha)
+
+
+def test_a_history_says_what_happened_in_one_line():
+    block = masonry.RockingBlock(0.3, 1.5)
+    assert repr(masonry.simulate(block, initial_velocity=1.0)) == "History(block of 0.6 x 3 m on a still base: overturns in half cycle 1)"
+    stands = masonry.simulate(block, masonry.Sine(2.5, 1.0, 3))
+    ratio = np.abs(stands.sample(np.linspace(0, 12, 100001))[0]).max() / block.critical_angle
+    assert repr(stands) == (f"History(block of 0.6 x 3 m under Sine(amplitude=2.5, frequency=1.0, cycles=3): stands, {len(stands.impact_times)} impacts, "
+                            f"at most {ratio:.3g} of the critical angle, at rest from {stands.rest_time:.4g} s on)")
+    assert repr(masonry.simulate(block, masonry.Sine([2.5, 3.5, 0.1], 1.0, 3))) == f"History(3 cases: 1 overturn, 2 stand and rotate to at most {ratio:.3g} of the critical angle)"
+    assert repr(masonry.simulate(block, initial_velocity=[1.0, 2.0])) == "History(2 cases: 2 overturn, none stands)"
+    blocks = masonry.RockingBlock.from_size(np.array([[0.6], [1.2]]), 3.0)
+    assert repr(masonry.simulate(blocks, masonry.Sine([2.5, 0.1], 1.0, 3))).startswith("History(2 x 2 cases: 0 overturn, 4 stand and rotate to at most ")
+
+
 def test_picture_of_a_history(tmp_path):
     block = masonry.RockingBlock(0.2, 1.0)
     record = masonry.Record(0.01, 3 * np.sin(2 * np.pi * 0.01 * np.arange(300)), unit="m/s^2")

@@ -145,6 +145,7 @@ def test_cosmos(path, units, factor, reals):
 
 def test_cosmos_forms_and_channels(path):
     same(masonry.read_record(path(cosmos(GAL, form=lambda value: f"{value:15.6E}"))), A, 1e-6 * 1e-2 * 1000)
+    assert masonry.read_record(path(cosmos(GAL, kind="raw accel.  "))).samples.tolist() == masonry.read_record(path(cosmos(GAL))).samples.tolist()
     text = cosmos(GAL, direction="Up") + cosmos(2 * GAL, direction="  0 deg", channel="2") + cosmos(GAL, kind="velocity", units="cm/s(05)", direction="Up")
     same(masonry.read_record(path(text), "up"), A, 1e-7)
     same(masonry.read_record(path(text), 2), 2 * A, 1e-7)
@@ -223,7 +224,7 @@ def cut(text, lines):
     (knet([1] * 50, rate="fast"), "line 11 is 'Sampling Freq.*fast': must be"), (knet([1] * 50, memo=""), "Memo"),
     (smc(GAL, count=51), "hold 50 values: must be the number in line 14 = 51"), (smc(GAL, count=48), "hold 50 values"),
     (smc(GAL, kind="5 RESPONSE SPECTRA"), "line 1 is '5 RESPONSE SPECTRA': must be 1 UNC"),
-    (smc(GAL, rate=1.7e38), "line 18 is .*must give the values a second"),
+    (smc(GAL, rate=1.7e38), "line 18 is .*must give the values a second.*unequal steps"),
     (smc(GAL, comments=["a"]).replace("|a", "a"), r"line 28 is 'a': must be one of 1 comments"),
     (smc(np.where(np.arange(50) == 20, 1.7e38, GAL), comments=(), form=lambda value: f"{value:10.3E}"), "line 30 is .*must hold values that are known"),
     (smc(GAL, count=-32768), "line 14 is .*must begin with the number of values"),
@@ -233,6 +234,7 @@ def cut(text, lines):
     (cut(csmip_2({(1, "Up"): (GAL, GAL, GAL)}), 3), "hold 40 values: must be points = 50"),
     (csmip_2({(1, "Up"): (GAL, GAL, GAL)}, ", in cm/sec. (8f10.3)"), "line 10 is .*must give a unit of acceleration"),
     (cosmos(GAL, units="counts (50)", first="Raw"), "line .*units=counts.*not counts, which only the network can convert"),
+    (cosmos(GAL, kind="raw accel.  ", units="counts (50)"), "line .*raw accel.*units=counts.*not counts, which only the network can convert"),
     (cosmos(GAL, units="g (04)"), "line .*must give values in a unit of acceleration"),
     (cosmos(GAL, units="cm/s^2 (05)"), "must give values in a unit"), (cosmos(GAL, units="cm/s (05)"), "must give values in a unit"),
     (cosmos(GAL, reals={1: 0.0}), "must agree with the step of the header, which gives none"),

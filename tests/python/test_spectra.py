@@ -2,6 +2,8 @@
 
 import csv
 import math
+import os
+import threading
 
 import numpy as np
 import pytest
@@ -106,6 +108,18 @@ def test_stiff_and_damped_oscillators_stay_finite():
     # the displacement of a stiff oscillator is a/w^2, to w_sine/w of it
     u = spectra.oscillator_peak(masonry.Sine(2.0, 0.5, cycles=20), [0.01, 0.02], 0.6)
     np.testing.assert_allclose(u, 2.0 / (2 * math.pi / np.array([0.01, 0.02])) ** 2, rtol=0.02)
+
+
+def test_a_spectrum_has_the_same_bits_on_any_number_of_cores(monkeypatch):
+    """All cores that the process may use get a part: the first oscillators wait for each other there."""
+    from masonry.spectra import _oscillator
+
+    periods = np.linspace(0.1, 3, 12)
+    alone = [spectra.oscillator_peak(RECORD, period) for period in periods]
+    together, one = threading.Barrier(3, timeout=60), _oscillator._peak_under_record
+    monkeypatch.setattr(os, "sched_getaffinity", lambda process: {0, 1, 2})
+    monkeypatch.setattr(_oscillator, "_peak_under_record", lambda source, oscillator: together.wait() * 0 + one(source, oscillator))
+    assert spectra.oscillator_peak(RECORD, periods).tolist() == alone
 
 
 def test_response_spectrum_has_names_and_units(tmp_path):
@@ -266,6 +280,25 @@ def test_pictures(tmp_path):
     assert {path.name for path in tmp_path.iterdir()} == {"map.png", "curves.png"}
     with pytest.raises(ValueError, match="y = 'width2': must be one of amplitude, frequency, width"):
         grid.plot(tmp_path / "no.png", y="width2")
+
+
+def test_curves_say_where_blocks_overturn(tmp_path, monkeypatch):
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    drawn, plotted = [], []
+    plot = Axes.plot
+    monkeypatch.setattr(Figure, "savefig", lambda figure, path, **given: drawn.append(figure))
+    monkeypatch.setattr(Axes, "plot", lambda axes, x, y, *more, **given: plotted.append((x, y, more)) or plot(axes, x, y, *more, **given))
+    slenderness = np.linspace(3, 12, 10)
+    spectrum = spectra.resonance(0.6, slenderness, 0.7)
+    infinite = np.isinf(spectrum["gravity_ratio"])
+    spectrum.plot(tmp_path / "curves.png", "gravity_ratio", x="gravity_period")
+    crosses, = [(x, y) for x, y, more in plotted if more == ("x",) and len(x)]
+    last = np.flatnonzero(~infinite)[-1]
+    assert infinite[last + 1:].all() and 0 < last < 9
+    assert crosses[0] == spectrum["gravity_period"][last] and crosses[1] == spectrum["gravity_ratio"][last]
+    assert [text.get_text() for text in drawn[0].axes[0].get_legend().get_texts()] == ["overturns beyond"]
 
 
 def test_xarray():

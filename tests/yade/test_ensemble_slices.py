@@ -16,7 +16,7 @@ def test_slices(local, tmp_path):
     command = [PYTHON, "-m", "masonry", "ensemble", STUDY, folder, "local"]
     early = start(*command, "--gather")
     said = early.communicate()[0]
-    assert early.returncode == 1 and "masonry: 2 of 2 cases failed; none is kept" in said and "no result yet" in said and "Traceback" not in said
+    assert early.returncode == 1 and "masonry: 2 of 2 cases are missing; none is kept" in said and "no result yet" in said and "Traceback" not in said
     assert list(folder.iterdir()) == []
     # Two tasks of an array that is numbered from 4 in steps of 2, and a third slice that has nothing to do.
     array = {"SLURM_ARRAY_TASK_COUNT": "2", "SLURM_ARRAY_TASK_MIN": "4", "SLURM_ARRAY_TASK_MAX": "6", "SLURM_ARRAY_TASK_STEP": "2"}

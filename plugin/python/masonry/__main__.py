@@ -2,6 +2,8 @@
 
 import argparse
 import platform
+import sys
+import warnings
 
 from . import _build, commands
 
@@ -33,10 +35,13 @@ def main():
     for command in commands.ALL:
         command.add(subcommands)
     given = parser.parse_args()
-    try:
-        given.run(given)
-    except (OSError, ValueError, ImportError) as error:  # input that is wrong, or a package that is missing: their message says which
-        parser.exit(2, f"masonry: {error}\n")
+    with warnings.catch_warnings():
+        if given.run is not commands.ensemble.run:  # which runs a script, whose author needs the place
+            warnings.showwarning = lambda message, *_: print(f"masonry: {message}", file=sys.stderr)
+        try:
+            given.run(given)
+        except (OSError, ValueError, ImportError) as error:  # input that is wrong, or a package that is missing: their message says which
+            parser.exit(2, f"masonry: {error}\n")
 
 
 if __name__ == "__main__":

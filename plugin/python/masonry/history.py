@@ -51,14 +51,40 @@ class History:
         """Displacement of the base at times t, m; of a resonant train too."""
         return self._sample(t)[2]
 
+    def __repr__(self):
+        cases, falls = np.size(self.overturned), np.count_nonzero(self.overturned)
+        ratio = np.abs(self.peak_angles) / np.reshape(np.broadcast_to(self.block.critical_angle, self.shape), (*self.shape, 1))
+        largest = np.max(ratio, where=~np.isnan(ratio) & ~np.reshape(self.overturned, (*self.shape, 1)), initial=0)
+        if self.shape:
+            stand = f"{cases - falls} stand and rotate to at most {largest:.3g} of the critical angle" if falls < cases else "none stands"
+            return f"History({' x '.join(map(str, self.shape))} cases: {falls} overturn, {stand})"
+        done = f"overturns in half cycle {self.overturn_half_cycle}" if falls else f"stands, {len(self.impact_times)} impacts, at most {largest:.3g} of the critical angle"
+        under = "on a still base" if self.motion is None else f"under {shown(self.motion)}"
+        rest = f", at rest from {self.rest_time:.4g} s on" if np.isfinite(self.rest_time) else ""
+        return f"History(block of {2 * self.block.half_width:g} x {2 * self.block.half_height:g} m {under}: {done}{rest})"
+
+    def _fall(self):
+        """(time at which one block that overturns passes its critical angle for good, time at which it lies on its side or the run ends), s."""
+        begin, end = 0.0, 1.0
+        while np.isfinite(self.sample(end)[0]):
+            begin, end = end, 2 * end
+        after = lambda t: np.isnan(self.sample(t)[0])  # noqa: E731
+        lies = _first(after, begin, end)
+        inside = np.abs(self.sample(np.linspace(0, lies, 4000))[0]) < self.block.critical_angle
+        last = np.flatnonzero(inside)[-1]
+        step = lies / 3999
+        return _first(lambda t: ~(np.abs(self.sample(t)[0]) < self.block.critical_angle), last * step, min((last + 1) * step, lies)), lies
+
     def draw(self, path):
-        """Writes a picture (.png, .pdf or .svg) of one block: its angle relative to the critical one, and the motion of the base below it."""
+        """Writes a picture (.png, .pdf or .svg) of one block: its angle relative to the critical one, and the motion of the base below it. The title says
+        whether it overturns: when it passes its critical angle for good."""
         with needs("python3-matplotlib", "a picture of a history"):
             from matplotlib.backends.backend_agg import FigureCanvasAgg
             from matplotlib.figure import Figure
         if self.shape:
             raise ValueError(f"the history is of {self.shape} cases: must be of one block and one motion to be drawn")
-        ends = [self.motion.duration if isinstance(self.motion, Record) else 0.0, *np.ravel(self.impact_times)[-1:], self.rest_time, self.end_time]
+        passes, lies = self._fall() if self.overturned else (np.nan, np.nan)
+        ends = [self.motion.duration if isinstance(self.motion, Record) else 0.0, *np.ravel(self.impact_times)[-1:], self.rest_time, self.end_time, lies]
         times = np.linspace(0, 1.02 * max((end for end in ends if np.isfinite(end) and end > 0), default=1.0), 4000)
         figure = Figure(figsize=(8, 5), layout="constrained")
         FigureCanvasAgg(figure)
@@ -67,7 +93,7 @@ class History:
         above.plot(times, angles, color="tab:blue")
         for level in (-1, 1):
             above.axhline(level, color="0.6", linestyle="--", linewidth=0.8)
-        verdict = f"overturns in half cycle {self.overturn_half_cycle}" if self.overturned else f"stands, {len(self.impact_times)} impacts"
+        verdict = f"overturns at {passes:.4g} s, in half cycle {self.overturn_half_cycle}" if self.overturned else f"stands, {len(self.impact_times)} impacts"
         above.set(ylabel="angle / critical angle", title=verdict, ylim=1.1 * np.array([-1, 1]) * np.clip(np.nanmax(np.abs(angles)), 1, 1.5))
         if isinstance(self.motion, Record):
             below.plot(times, self.motion.acceleration(times), color="tab:red", linewidth=0.8)
@@ -77,6 +103,15 @@ class History:
             below.set(ylabel="base (m)")
         below.set(xlabel="time (s)", xlim=(0, times[-1]))
         save_picture(figure, path, dpi=150)
+
+
+def _first(holds, begin, end, points=1000):
+    """The first time in [begin, end] at which holds(times) is true, to a millionth of the interval; it is at the end."""
+    for _ in range(2):
+        times = np.linspace(begin, end, points)
+        first = max(int(np.argmax(holds(times) | (times == end))), 1)
+        begin, end = times[first - 1], times[first]
+    return end
 
 
 def warn_of_doubt(*motions):

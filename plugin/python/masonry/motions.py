@@ -306,17 +306,17 @@ class Record(Motion):
         """The record of a PEER file of accelerations (.AT2); masonry.read_record reads it too, and other formats."""
         positive_given("gravity", gravity, ", in m/s^2")
         series, = _records.peer.read(_records.text_given(path), "acceleration")
-        return cls.from_series(path, series, _records.peer.NAME, gravity, scale=scale, baseline=baseline)
+        return cls._from_series(path, series, _records.peer.NAME, gravity, scale=scale, baseline=baseline)
 
     @classmethod
     def from_csv(cls, path, unit, dt=None, scale=1.0, baseline="none", gravity=STANDARD_GRAVITY, columns=None):
         """The record of a text file of columns, whose unit is named; masonry.read_record reads it too, and other formats."""
         unit_factor(unit, gravity)
         series, = _records.table.read(_records.text_given(path), unit, dt, columns)
-        return cls.from_series(path, series, _records.table.NAME, gravity, scale=scale, baseline=baseline)
+        return cls._from_series(path, series, _records.table.NAME, gravity, scale=scale, baseline=baseline)
 
     @classmethod
-    def from_series(cls, path, series, format, gravity=STANDARD_GRAVITY, **options):
+    def _from_series(cls, path, series, format, gravity=STANDARD_GRAVITY, **options):
         """The record of what a reader has found in a file."""
         quantity = series.unit.quantity
         factor = series.unit.factor(positive_given("gravity", gravity, ", in m/s^2"))

@@ -27,4 +27,4 @@ def read_record(path, component=None, quantity=None, *, unit=None, dt=None, colu
     the network can convert, missing values, and numbers of values that differ from the stated one are refused with the line.
     """
     series, name = _records.read(path, component, quantity, unit, dt, columns)
-    return Record.from_series(path, series, name, gravity, scale=scale, baseline=baseline, corner=corner, order=order)
+    return Record._from_series(path, series, name, gravity, scale=scale, baseline=baseline, corner=corner, order=order)

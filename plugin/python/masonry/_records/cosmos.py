@@ -13,7 +13,7 @@ NAME = "COSMOS"
 
 _START = re.compile(r"\(Format\s+v\s*[\d.]+\s+with\s+(\d+)\s+text\s+lines?\)", re.IGNORECASE)
 _HEADER = re.compile(r"^\s*(\d+)\s+(Integer|Real)-header values follow on\s*(\d+)\s+lines?", re.IGNORECASE)
-_BLOCK = re.compile(r"^\s*(\d+)\s+(\w+)\s+pts,\s*approx\s*([\d.]+)\s*secs?,\s*units\s*=\s*([^,]+?)\s*(?:\(\s*(\d+)\s*\))?\s*,", re.IGNORECASE)
+_BLOCK = re.compile(r"^\s*(\d+)\s+(?:\w+\s+)*(\w+)\.?\s+pts,\s*approx\s*([\d.]+)\s*secs?,\s*units\s*=\s*([^,]+?)\s*(?:\(\s*(\d+)\s*\))?\s*,", re.IGNORECASE)
 _CHANNEL = r"^\s*Sta\s+Chan\s*(\S+?)\s*:\s*(.*?)\s*(?:\(Rcrdr|Location|$)"
 _STATION = r"^\s*Statn No:\s*(.*?)\s*$"
 _CODES = r"<SCNL>\s*([^\s.]+)\.([^\s.]+)"

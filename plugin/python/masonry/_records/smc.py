@@ -39,7 +39,8 @@ def read(text):
     if not count > 1:
         text.refuse(14, "begin with the number of values, at least 2")
     if not 0 < reals[1] < min(1e5, abs(reals[0])):
-        text.refuse(18, "give the values a second in its second place, above 0 and below 100000")
+        text.refuse(18, "give the values a second in its second place, above 0 and below 100000; without it, times and values at unequal steps stand in pairs, "
+                        "which are not read")
     for number in range(28, 28 + comments):
         if not text.line(number).startswith("|"):
             text.refuse(number, f"be one of {comments} comments, which begin with |")

@@ -3,6 +3,7 @@
 import difflib
 import importlib
 import math
+import re
 
 from masonry._given import shown
 
@@ -90,6 +91,20 @@ def _guard_attributes(cls):
     cls.__init__, cls.__setattr__ = __init__, __setattr__
 
 
+class _Documentation(str):
+    """Text of an attribute, with the marks (type, default, flags) that YADE's object editor searches for in it. help(), IPython and Sphinx expand its tabs
+    first, and get the text without the marks."""
+
+    def expandtabs(self, tabsize=8):
+        return re.sub(r"\s*:y\w+:`[^`]*`", "", self).expandtabs(tabsize)
+
+
+def _hide_marks(cls):
+    for name, attribute in list(vars(cls).items()):
+        if isinstance(attribute, property):
+            setattr(cls, name, property(attribute.fget, attribute.fset, attribute.fdel, _Documentation(attribute.__doc__)))
+
+
 def load_classes():
     """Registers the plugin's classes (again: harmless) and returns them by name.
 
@@ -112,6 +127,7 @@ def load_classes():
     for name, cls in classes.items():
         if "__setattr__" not in vars(cls):
             _guard_attributes(cls)
+            _hide_marks(cls)
         setattr(yade, name, cls)
         if hasattr(yade, "__all__") and name not in yade.__all__:
             yade.__all__.append(name)

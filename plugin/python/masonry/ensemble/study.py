@@ -38,7 +38,7 @@ def run(script, cases, folder, function="run", processes=None, time_limit=None, 
                   Client. Its workers start YADE; script, folder and masonry must be on a file system that they share. None: on this machine.
     slice         'k/n' or (k, n): computes only the cases k, k + n, k + 2n, ... and returns their table, without writing tables. Several slices may run
                   in one folder at a time. 'slurm': the slice of the Slurm array job that this is, or all cases outside of one.
-    gather        True: computes nothing and makes the tables of what is there; cases without a result count as failed
+    gather        True: computes nothing and makes the tables of what is there; an error tells how many cases are missing
     units         {name: unit} for the columns and arrays in ensemble.nc; those of results.CollapseReport.numbers() are known
     dimensions    {array: name of its dimension, or a list of them} for arrays that the function returns; see ensemble.dataset()
 
@@ -83,15 +83,15 @@ def run(script, cases, folder, function="run", processes=None, time_limit=None, 
             raise KeyboardInterrupt(f"interrupted: {kept} of {len(cases)} cases are kept in {folder}; run again to go on") from None
         outcomes.update(load_all(folder, [key for _, key in missing]))
     told = [case for case, *_ in failures]
-    why = "it has no result yet" if gather else "its result has vanished since it was computed"
-    failures += [(case, why, "") for case, key in missing if outcomes[key] is None and case not in told]
+    without = [(case, folder / f"case_{key}.log") for case, key in missing if outcomes[key] is None and case not in told]
+    failures += [(case, _why_without(log, gather), "") for case, log in without]
     finished = [(case, outcomes[key]) for case, key in zip(cases, found) if outcomes[key] is not None]
     table = make_table(*zip(*finished)) if finished else None
     if finished and not part:
         write_tables(folder, table, [outcome for _, outcome in finished], len(cases[0]), script, function, units or {}, dimensions or {})
         clear(folder, {key for key in found if outcomes[key] is not None})
     if failures:
-        raise _failed(failures, table, len(cases), folder, part)
+        raise _failed(failures, table, len(cases), folder, part, gather)
     if part and part is asked.slice:
         print(f"masonry.ensemble: slice {part[0]}/{part[1]}: its {len(cases)} cases are in {folder}")
         sys.exit(0)
@@ -112,12 +112,21 @@ def _checked(cases):
     return cases
 
 
-def _failed(failures, table, total, folder, part):
+def _why_without(log, gather):
+    """Why a case that has not been run now has no result."""
+    if not gather:
+        return "its result has vanished since it was computed"
+    return f"it failed: {log}" if log.exists() else "it has no result yet"
+
+
+def _failed(failures, table, total, folder, part, gather):
     where = "the attribute `table` of this error" if part else "ensemble.nc, .csv and .npz there, and the attribute `table` of this error"
     kept = f"none is kept in {folder}" if table is None else f"{len(table)} are kept in {folder}: their table is {where}"
     named = [f"{case}: {why}" for case, why, _ in failures[:_NAMED]] + ([f"and {len(failures) - _NAMED} more"] if len(failures) > _NAMED else [])
     said = ["The first said:", failures[0][2]] if failures[0][2] else []
-    return CasesFailed("\n".join([f"{len(failures)} of {total} cases {'of the slice ' if part else ''}failed; {kept}", *named, *said]), table)
+    ended = sum(why.startswith("it failed") for _, why, _ in failures)
+    what = "failed" if not gather else "are missing" + (f", {ended} of which failed" if ended else "")
+    return CasesFailed("\n".join([f"{len(failures)} of {total} cases {'of the slice ' if part else ''}{what}; {kept}", *named, *said]), table)
 
 
 def result(script, case, folder, function="run"):

@@ -71,12 +71,27 @@ def _scale(values):
     return "log" if values.dtype.kind == "f" and len(values) > 2 and values.min() > 0 and values.max() > 20 * values.min() else "linear"
 
 
+def ends(values):
+    """The places of the finite values beside infinite ones: where a curve ends."""
+    infinite = np.isinf(values)
+    beside = np.zeros_like(infinite)
+    beside[1:] |= infinite[:-1]
+    beside[:-1] |= infinite[1:]
+    return np.flatnonzero(beside & np.isfinite(values))
+
+
 def _curves(plt, spectrum, value, x, along):
     figure, axes = plt.subplots(figsize=(7, 4.2), layout="constrained")
+    stops = 0
     for index, words in _others(spectrum, (along,), _CURVES):
         ordinate = np.asarray(spectrum.values[value][index], dtype=float)
         abscissa = spectrum.coords[x] if x in spectrum.dims else spectrum.values[x][index]
-        axes.plot(abscissa, np.where(np.isfinite(ordinate), ordinate, np.nan), label=words or None, marker="." if len(ordinate) < 15 else None)
+        line, = axes.plot(abscissa, np.where(np.isfinite(ordinate), ordinate, np.nan), label=words or None, marker="." if len(ordinate) < 15 else None)
+        last = ends(ordinate)
+        axes.plot(np.asarray(abscissa)[last], ordinate[last], "x", color=line.get_color())
+        stops += len(last)
+    if stops:
+        axes.plot([], [], "x", color="0.3", label="grows without end beyond" if value == "oscillator_amplification" else "overturns beyond")
     axes.set(xlabel=label(spectrum, x), ylabel=label(spectrum, value), xscale=_scale(np.ravel(spectrum[x])) if spectrum[x].dtype.kind == "f" else "linear")
     axes.set_ylim(bottom=0)
     axes.grid(alpha=0.3)

@@ -10,6 +10,8 @@ with f_1(x) = (e^x - 1)/x and f_2(x) = (e^x - 1 - x)/x^2 (Nigam and Jennings 196
 """
 
 import math
+import os
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
@@ -37,8 +39,10 @@ def oscillator_peak(motion, period, damping=0.05):
     shape = np.broadcast_shapes(period.shape, damping.shape)
     largest = _peak_under_record if isinstance(motion, Record) else _peak_under_pieces
     source = _samples(motion) if isinstance(motion, Record) else _pieces(motion)
-    cases = zip(np.broadcast_to(period, shape).ravel(), np.broadcast_to(damping, shape).ravel())
-    return restore(np.array([largest(source, _Oscillator(t, z)) for t, z in cases]), shape)
+    oscillators = [_Oscillator(t, z) for t, z in zip(np.broadcast_to(period, shape).ravel(), np.broadcast_to(damping, shape).ravel())]
+    # Threads, for NumPy and SciPy compute without Python's lock.
+    with ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool:
+        return restore(np.array(list(pool.map(lambda one: largest(source, one), oscillators))), shape)
 
 
 def response(motion, period, damping=0.05, progress=False):
@@ -49,7 +53,8 @@ def response(motion, period, damping=0.05, progress=False):
     period     s;  damping: ratio, at least 0 and below 1
     progress   a progress bar (tqdm)
 
-    The response to a record is exact for accelerations that are linear between its samples, also between samples and after the end of the record."""
+    The response to a record is exact for accelerations that are linear between its samples, also between samples and after the end of the record. All cores
+    that the process may use get oscillators."""
     _oscillators_given(period, damping)
     many = isinstance(motion, (list, tuple))
     motions = list(motion) if many else [motion]
