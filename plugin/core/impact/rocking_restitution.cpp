@@ -1,9 +1,8 @@
 #include "impact/rocking_restitution.hpp"
+#include "impact/energy_cap.hpp"
 #include "tolerances.hpp"
 #include <algorithm>
-#include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 #include <tuple>
 #include <utility>
@@ -100,9 +99,8 @@ struct CappedProblem {
 		double safe = 0;
 		if (withoutRows > 0) {
 			constexpr double narrow = 1e-12;
-			std::uintmax_t iterations = 100;
-			const auto enough = [](double low, double high) { return high - low <= narrow; };
-			safe = boost::math::tools::toms748_solve(spareAt, 0., 1., withoutRows, asAsked, enough, iterations).first;
+			constexpr int calls = 100;
+			safe = largestSafeShare(spareAt, withoutRows, asAsked, narrow, calls);
 		}
 		spareAt(safe);
 		return result;

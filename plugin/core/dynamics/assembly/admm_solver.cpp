@@ -1,5 +1,6 @@
 #include "dynamics/assembly/admm_solver.hpp"
 #include "tolerances.hpp"
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
@@ -159,10 +160,12 @@ MASONRY_INLINE void advanceGroups(Group<K>* groups, StillGroup<K>* memory, const
 	}
 }
 
-MASONRY_LANES void addTo(const std::vector<int>& members, const Lanes* change, Lanes* velocity)
+MASONRY_LANES void addTo(const std::vector<int>& members, const Lanes* change, Lanes* velocity, Lanes& most)
 {
-	for (const int b : members)
+	for (const int b : members) {
 		velocity[b] += noMass * change[b];
+		most = larger(most, size(change[b]));
+	}
 }
 // M (V_free - V)
 MASONRY_LANES void inertia(const std::vector<int>& members, const Lanes* velocity, const Lanes* free, Lanes* force)
@@ -207,14 +210,16 @@ Step stepOf(const StepContext& c, const AdmmSettings& a)
 	return {c.h,
 	        1 / c.h,
 	        c.fall,
-	        filter > 0 ? -std::expm1(-c.h / filter) : 1,
+	        c.instant    ? 0
+	        : filter > 0 ? -std::expm1(-c.h / filter)
+	                     : 1,
 	        a.reach * c.length,
 	        a.leftPenetration * c.length,
 	        a.softness,
 	        a.leastSoftness,
 	        a.relaxation,
 	        a.boundShare,
-	        a.pullBack};
+	        c.instant ? 0 : a.pullBack};
 }
 
 } // namespace
@@ -241,8 +246,8 @@ bool AdmmSolver<K>::isOutdated(const RigidSystem<K>& s, WallContacts<K>& c, cons
 	c.allParts([&](const Part& part, int number) {
 		takePass(c.groups.data(), rows.data(), part.begin, part.end, c.velocity.data(), same, found[number]);
 	});
-	age += step.h;
-	if (lanes.size() != c.groups.size() || masses.size() != c.own.size())
+	age += step.instant ? 0 : step.h;
+	if (lanes.size() != c.groups.size() || masses.size() != c.own.size() || turn > settings.turned)
 		return true;
 	const bool isOld = !(age < settings.refactorTime * step.rocking);
 	if (isOld)
@@ -283,56 +288,113 @@ void AdmmSolver<K>::start(WallContacts<K>& c, const LaneArray& load, const StepC
 	startPoints(c.parts.back());
 }
 
+template <class K>
+void AdmmSolver<K>::prepareSpins(const WallContacts<K>& c)
+{
+	const int n = int(spins.size());
+	response.resize(n);
+	Eigen::MatrixXd coupling(n, n);
+	for (int r = 0; r < n; ++r) {
+		response[r].assign(c.velocity.size(), all(0));
+		spins[r].push(1, c.velocity, response[r]);
+		factor.solve(response[r].data(), places);
+	}
+	for (int r = 0; r < n; ++r)
+		for (int k = 0; k < n; ++k)
+			coupling(r, k) = spins[r].rate(response[k]);
+	if (n > 0)
+		perSpin = coupling.completeOrthogonalDecomposition().pseudoInverse(); // rows may coincide
+}
+
+// Adds to the change of the velocities what gives the rows their targets.
+template <class K>
+void AdmmSolver<K>::holdSpins()
+{
+	if (spins.empty())
+		return;
+	Eigen::VectorXd miss(spins.size());
+	for (size_t r = 0; r < spins.size(); ++r)
+		miss[r] = spins[r].target - spins[r].rate(velocity) - spins[r].rate(force);
+	const Eigen::VectorXd change = perSpin * miss;
+	for (size_t r = 0; r < spins.size(); ++r) {
+		spins[r].couple += change[r];
+		for (const int b : places)
+			force[b] += change[r] * response[r][b];
+	}
+}
+
 // One solve and one pass over the laws. Returns the largest |w - z|, m/s.
 template <class K>
 double AdmmSolver<K>::iterate(WallContacts<K>& c, const StepContext& step)
 {
 	const Step same = stepOf(step, settings);
 	factor.solve(force.data(), places);
-	Lanes worst[Team::mostParts + 1] {};
-	const auto move = [&](const Part& part) {
-		addTo(part.members, force.data(), velocity.data());
+	holdSpins();
+	Lanes worst[Team::mostParts + 1] {}, changed[Team::mostParts + 1] {};
+	const auto move = [&](const Part& part, int number) {
+		addTo(part.members, force.data(), velocity.data(), changed[number]);
 		inertia(part.members, velocity.data(), free.data(), force.data());
 	};
 	const auto laws = [&](const Part& part, int number) {
 		lawPass(c.groups.data(), c.still.data(), rows.data(), part.begin, part.end, same, velocity.data(), force.data(), worst[number]);
 	};
-	move(c.parts.back());
+	move(c.parts.back(), Team::mostParts);
 	c.eachPart([&](const Part& part, int number) {
-		move(part);
+		move(part, number);
 		laws(part, number);
 	});
 	laws(c.parts.back(), Team::mostParts);
+	for (const SpinRow<K>& row : spins)
+		row.push(row.couple, c.velocity, force);
 	double most = 0;
 	for (const Lanes& here : worst)
 		most = std::max(most, largest(here));
+	for (const Lanes& here : changed)
+		most = std::max(most, turn * largest(noMass * here));
 	return most;
 }
 
 template <class K>
-void AdmmSolver<K>::solve(const RigidSystem<K>& s, WallContacts<K>& c, const LaneArray& load, const StepContext& step)
+void AdmmSolver<K>::findTurn(const WallContacts<K>& c, const Poses& poses)
+{
+	turn = 0;
+	for (size_t b = 0; b < std::min(factored.size(), poses.size()); ++b)
+		if (c.own[b])
+			turn = std::max(turn, turned(factored[b], poses[b]));
+}
+
+template <class K>
+void AdmmSolver<K>::solve(const RigidSystem<K>& s, WallContacts<K>& c, const Poses& poses, const LaneArray& load, const StepContext& step)
 {
 	report = {};
+	findTurn(c, poses);
 	if (isOutdated(s, c, step))
-		factorise(s, c, step);
+		factorise(s, c, poses, step);
+	for (SpinRow<K>& row : spins)
+		row.couple = 0;
+	prepareSpins(c);
 	start(c, load, step);
-	const double enough = settings.tolerance * step.fall;
-	const int most = cold ? settings.first : std::min(settings.iterations + int(saved), 10 * settings.iterations);
+	const double enough = (step.instant ? settings.instantTolerance : settings.tolerance) * step.speed;
+	const int most = step.instant ? settings.ofInstant
+	                 : cold       ? settings.first
+	                              : std::min(settings.iterations + int(saved), 10 * settings.iterations);
 	constexpr double diverging = 10;
 	double least = INFINITY;
 	do {
 		report.residual = iterate(c, step);
 		++report.iterations;
 		if (report.residual > diverging * least) {
-			factorise(s, c, step);
+			factorise(s, c, poses, step);
+			prepareSpins(c);
 			least = report.residual;
 		}
 		least = std::min(least, report.residual);
 	} while (report.residual > enough && report.iterations < most);
-	saved = std::clamp(saved + settings.iterations - report.iterations, 0., double(settings.reserve) * settings.iterations);
-	if (cold)
-		saved = 0;
-	cold = false;
+	report.converged = report.residual <= enough;
+	if (!step.instant) {
+		saved = cold ? 0 : std::clamp(saved + settings.iterations - report.iterations, 0., double(settings.reserve) * settings.iterations);
+		cold = false;
+	}
 	report.finite = std::all_of(velocity.begin(), velocity.end(), [](const Lanes& v) { return std::isfinite(v[0] + v[1] + v[2]); });
 }
 
@@ -350,8 +412,10 @@ double AdmmSolver<K>::advanceGaps(WallContacts<K>& c, double h) const
 }
 
 template <class K>
-void AdmmSolver<K>::factorise(const RigidSystem<K>& s, WallContacts<K>& c, const StepContext& step)
+void AdmmSolver<K>::factorise(const RigidSystem<K>& s, WallContacts<K>& c, const Poses& poses, const StepContext& step)
 {
+	factored = poses;
+	turn = 0;
 	const Step same = stepOf(step, settings);
 	c.allParts([&](const Part& part, int) { penaltyPass(c.groups.data(), rows.data(), part.begin, part.end, c.velocity.data(), same); });
 	lanes.resize(c.groups.size());

@@ -13,8 +13,9 @@
 //     p_t = y_t within |p_t| <= mu g
 //     z   = (p - y) R
 //
-// until w = z, and g = p_n where points slide. A does not depend on which points stick, slide or part, so that it need not be factorised
-// when states change. Only residuals are corrected, so that A may be of slightly other positions.
+// until w = z, g = p_n where points slide, and V hardly changes. A does not depend on which points stick, slide or part, so that it need
+// not be factorised when states change. Only residuals are corrected, so that A may be of slightly other positions: where a body has turned
+// by an angle since, V misses the momentum equation by about that angle times its last change.
 //
 // The method is that of Boyd et al. (Foundations and Trends in Machine Learning 3, 2011); for contact with friction see Acary, Bremond and
 // Huber (2018) and Carpentier, Le Lidec and Montaut (RSS 2024). These choices are ours; docs/numerics.md has what was measured:
@@ -26,8 +27,14 @@
 //     start of z      Points without an impulse start from the velocity that they have, z = (max(0, w_n), w_t): their bias changes in each
 //                     step. Others keep z, as they keep p.
 //
+// Rows that prescribe a relative spin (SpinRow) are held in each iteration: with Y = A^-1 E^T, the couples c change by
+// (E Y)^-1 (target - E V) and V by Y times that, so that E V is the target to round-off. A does not know of them.
+//
+// An instant (StepContext::instant) is the same problem without forces: impacts with rows, and jumps of the base.
+//
 // Biases. A point with a gap may close within the step: b_n = gap/h. Of a penetration, and of a slip that unfinished iterations have left
 // at a point that sticks, a share is taken back in each step: b = share x/h.
+#include "dynamics/assembly/spin_row.hpp"
 #include "dynamics/assembly/step_context.hpp"
 #include "dynamics/wall/wall_contacts.hpp"
 #include "linalg/block_ldlt.hpp"
@@ -35,24 +42,29 @@
 namespace masonry::rigid::assembly {
 
 struct AdmmSettings {
-	double tolerance {1e-3};       // largest |w - z| relative to the speed that gravity gives in a step. Larger: joints drift and sink
-	int iterations {20};           // at most in a step, beside the reserve. Fewer: excursions are too small
-	int reserve {50};              // times `iterations` that quiet steps save for impacts at most. 0: walls under impacts drift
-	int first {3000};              // iterations of a step that starts without impulses, at most
-	double softness {0.2};         // r. Larger: high walls go too far; smaller: low walls that begin to move do not go far enough
-	double leastSoftness {1e-5};   // of d, at the most loaded points. Smaller: rounding of the factorisation in single precision
-	double relaxation {1.7};       // a, 1 to 2. Larger: residuals oscillate; smaller: they fall more slowly
-	double boundShare {0.3};       // theta. 1: sliding points run into a limit cycle; smaller: friction lags
-	double pullBack {0.2};         // share of a penetration or of a slip that a step takes back. Larger: shivering; smaller: drift
-	double reach {0.016};          // gap relative to the smallest half size within which points are in A. Smaller: more factorisations
-	double filterTime {0.125};     // of the filtered load, relative to sqrt(smallest half size / gravity)
-	double refactorTime {0.125};   // relative to the same, after which R follows the loads
+	double tolerance {1e-3}; // largest |w - z| relative to the speed that gravity gives in a step. Larger: joints drift and sink
+	int iterations {20};     // at most in a step, beside the reserve. Fewer: excursions are too small
+	int reserve {50};        // times `iterations` that quiet steps save for impacts at most. 0: walls under impacts drift
+	int first {3000};        // iterations of a step that starts without impulses, at most
+	int ofInstant {1000};    // iterations of an impact or a base pulse, at most
+	double instantTolerance {
+	    1e-6};                   // largest |w - z| of an instant relative to the velocities that change. Larger: impulses are wrong by more
+	double softness {0.2};       // r. Larger: high walls go too far; smaller: low walls that begin to move do not go far enough
+	double leastSoftness {1e-5}; // of d, at the most loaded points. Smaller: rounding of the factorisation in single precision
+	double relaxation {1.7};     // a, 1 to 2. Larger: residuals oscillate; smaller: they fall more slowly
+	double boundShare {0.3};     // theta. 1: sliding points run into a limit cycle; smaller: friction lags
+	double pullBack {0.2};       // share of a penetration or of a slip that a step takes back. Larger: shivering; smaller: drift
+	double reach {0.016};        // gap relative to the smallest half size within which points are in A. Smaller: more factorisations
+	double filterTime {0.125};   // of the filtered load, relative to sqrt(smallest half size / gravity)
+	double refactorTime {0.125}; // relative to the same, after which R follows the loads
+	double turned {0.03}; // rad, by which a body may turn before A is made anew. Larger: more iterations; smaller: more factorisations
 	double leftPenetration {5e-6}; // relative to the smallest half size, which is not taken back. 0: blocks at rest never come to rest
 };
 
 struct AdmmReport {
 	int iterations {0}, factorisations {0};
-	double residual {0}; // largest |w - z|, and mu R |g - p_n| where points slide, m/s
+	double residual {0};   // largest |w - z|, and mu R |g - p_n| where points slide, m/s
+	bool converged {true}; // the residual is below what was asked for
 	bool finite {true};
 };
 
@@ -74,12 +86,16 @@ public:
 
 	AdmmSettings settings;
 	AdmmReport report;
-	wall::LaneArray velocity; // V, in the packs of the contacts
-	std::vector<Rows> rows;   // by group of the contacts
+	std::vector<SpinRow<K>> spins; // of the next solve, with their couples afterwards
+	wall::LaneArray velocity;      // V, in the packs of the contacts
+	std::vector<Rows> rows;        // by group of the contacts
 
-	// Solves the step from the contacts' velocities and impulses; `load` is the change of velocity by external forces, per body. Impulses,
-	// z and slips of the contacts are those of the solution afterwards; their gaps and velocities stay.
-	void solve(const RigidSystem<K>& system, wall::WallContacts<K>& contacts, const wall::LaneArray& load, const StepContext& step);
+	using Poses = std::vector<typename K::Pose>;
+	// Solves the step from the contacts' velocities and impulses, whose frames are those of `poses`; `load` is the change of velocity by
+	// external forces, per body. Impulses, z and slips of the contacts are those of the solution afterwards; their gaps and velocities
+	// stay.
+	void solve(const RigidSystem<K>& system, wall::WallContacts<K>& contacts, const Poses& poses, const wall::LaneArray& load,
+	           const StepContext& step);
 	// Gaps and slips at the end of the step, into the contacts. Returns what friction has taken, J.
 	double advanceGaps(wall::WallContacts<K>& contacts, double h) const;
 	// The next solve starts cold and makes A anew.
@@ -99,11 +115,14 @@ private:
 	};
 	Lane laneOf(const RigidSystem<K>& system, const wall::WallContacts<K>& contacts, int group, int lane) const;
 	bool isOutdated(const RigidSystem<K>& system, wall::WallContacts<K>& contacts, const StepContext& step);
-	void factorise(const RigidSystem<K>& system, wall::WallContacts<K>& contacts, const StepContext& step);
+	void findTurn(const wall::WallContacts<K>& contacts, const Poses& poses);
+	void factorise(const RigidSystem<K>& system, wall::WallContacts<K>& contacts, const Poses& poses, const StepContext& step);
 	void setGraph(const wall::WallContacts<K>& contacts);
 	void addPair(const wall::WallContacts<K>& contacts, int group, int lane, int& edge);
 	void start(wall::WallContacts<K>& contacts, const wall::LaneArray& load, const StepContext& step);
 	double iterate(wall::WallContacts<K>& contacts, const StepContext& step);
+	void prepareSpins(const wall::WallContacts<K>& contacts);
+	void holdSpins();
 
 	linalg::BlockLDLT factor; // a node for each pack of the free bodies
 	std::vector<int> places;  // of the nodes
@@ -111,9 +130,13 @@ private:
 	std::vector<linalg::BlockLDLT::Edge> edges;
 	std::vector<std::array<Lane, wall::width>> lanes; // by group, that A is of
 	std::vector<double> masses;                       // by body, that A is of
+	Poses factored;                                   // the frames that A is of
+	double turn {0};                                  // rad, by which a body has turned since at most
 	wall::LaneArray free, force;
-	double age {0};   // s, since R was last compared with the loads
-	double saved {0}; // iterations
+	std::vector<wall::LaneArray> response; // Y, by row
+	Eigen::MatrixXd perSpin;               // (E Y)^-1
+	double age {0};                        // s, since R was last compared with the loads
+	double saved {0};                      // iterations
 	bool cold {true};
 };
 

@@ -31,13 +31,17 @@ void AssemblyStep<K>::advancePart(RigidSystem<K>& s, double h)
 	const StepContext step(scales, h);
 	team.setThreads(settings.threads);
 	solver.settings = settings.solver;
-	ledger.open(s, h);
 	takeContacts(s);
-	placeFrames(s, h);
 	contacts.setUnit(h);
+	takeInstants(s, step);
+	placeFrames(s, h);
+	pulses.move(s, contacts, h);
+	ledger.open(s, pulses.halfBack());
 	setLoads(s, h);
-	solver.solve(s, contacts, loads, step);
+	solver.spins = events.find(s, contacts, change, step);
+	solver.solve(s, contacts, middle, loads, step);
 	ledger.takeContacts(s, contacts, solver, solver.advanceGaps(contacts, h));
+	events.take(s, contacts);
 	moveBodies(s, h);
 	s.time += h;
 	s.moved = false;
@@ -45,6 +49,53 @@ void AssemblyStep<K>::advancePart(RigidSystem<K>& s, double h)
 	report.factorisations += solver.report.factorisations;
 	report.velocityResidual = std::max(report.velocityResidual, solver.report.residual);
 	report.diverged |= !solver.report.finite || !s.isFinite();
+}
+
+// What happens between two steps: first the impacts of the joints that have landed in the last, then the jumps of the base.
+template <class K>
+void AssemblyStep<K>::takeInstants(RigidSystem<K>& s, const StepContext& step)
+{
+	const bool land = events.areRows(), jump = pulses.find(s, events.blocks());
+	if (!land && !jump)
+		return;
+	leanAt(s);
+	pulses.hold(s, contacts);
+	if (land) {
+		solver.spins = events.rows(contacts);
+		const double lostInStep = ledger.lost();
+		ledger.open(s, pulses.halfBack());
+		const InstantReport impact = solveInstant(s, step.atInstant(events.speed()), lostInStep);
+		events.report(s, contacts, solver.spins, lostInStep + impact.lost, impact.capped, impact.residual);
+		instants.restore(contacts);
+	}
+	solver.spins.clear();
+	if (jump) {
+		pulses.apply(s, contacts);
+		ledger.open(s, pulses.halfBack());
+		solveInstant(s, step.atInstant(pulses.speed()), 0);
+		instants.restore(contacts);
+	}
+}
+
+template <class K>
+InstantReport AssemblyStep<K>::solveInstant(RigidSystem<K>& s, const StepContext& instant, double spare)
+{
+	const InstantReport result = instants.solve(s, contacts, middle, solver, ledger, instant, spare);
+	report.created += ledger.close(s, Scales(s), instant.h, 0);
+	report.iterations += result.iterations;
+	report.factorisations += result.factorisations;
+	report.velocityResidual = std::max(report.velocityResidual, result.residual);
+	report.converged &= result.converged;
+	return result;
+}
+
+template <class K>
+void AssemblyStep<K>::leanAt(const RigidSystem<K>& s)
+{
+	middle.clear();
+	for (const auto& body : s.bodies)
+		middle.push_back(body.pose);
+	contacts.lean(s, middle);
 }
 
 template <class K>
@@ -75,19 +126,28 @@ void AssemblyStep<K>::placeFrames(const RigidSystem<K>& s, double h)
 	contacts.lean(s, middle);
 }
 
-// Velocities of the prescribed bodies in the step, and what forces add to those of the free ones.
+// What forces add to the velocities of the free bodies.
 template <class K>
 void AssemblyStep<K>::setLoads(const RigidSystem<K>& s, double h)
 {
 	loads.assign(contacts.velocity.size(), all(0));
 	contacts.eachShare(s.bodies.size(), [&](size_t begin, size_t end, int) {
-		for (size_t b = begin; b < end; ++b) {
-			const auto& body = s.bodies[b];
-			contacts.takeForce(body.force, h, b, loads);
-			if (body.prescribed && body.drive >= 0)
-				contacts.setLinearVelocity(int(b), s.drives[body.drive].meanVelocity(s.time, h));
-		}
+		for (size_t b = begin; b < end; ++b)
+			contacts.takeForce(s.bodies[b].force, h, b, loads);
 	});
+}
+
+// The change of velocities that the next step is expected to bring: that of this one, where nothing has struck the body.
+template <class K>
+void AssemblyStep<K>::takeChange(double fall)
+{
+	constexpr double most = 5; // times what gravity gives in the step
+	change.assign(solver.velocity.size(), all(0));
+	for (size_t b = 0; b < change.size(); ++b) {
+		const wall::Lanes now = wall::noMass * (solver.velocity[b] - contacts.velocity[b]);
+		if (solver.velocity[b][3] > 0 && now[0] * now[0] + now[1] * now[1] + now[2] * now[2] < most * most * fall * fall)
+			change[b] = now;
+	}
 }
 
 template <class K>
@@ -96,6 +156,7 @@ void AssemblyStep<K>::moveBodies(RigidSystem<K>& s, double h)
 	contacts.shift.resize(solver.velocity.size());
 	for (size_t b = 0; b < contacts.shift.size(); ++b)
 		contacts.shift[b] = h * solver.velocity[b];
+	takeChange(Scales(s).stepSpeed(h));
 	contacts.velocity = solver.velocity;
 	const double deepest = projection.settle(contacts);
 	if (deepest > tolerance::wall::sunk * contacts.length)

@@ -2,14 +2,18 @@
 // The step of an assembly of many rigid blocks, in a plane or in space: walls that stand, that rock, that slide and that fall, by one
 // method (admm_solver.hpp).
 //
+//     impacts and jumps of the base at the instant between two steps (RockingEvents, BasePulse, InstantSolve)
 //     frames at the middle of the step, gaps at its start (wall::WallContacts)
 //     V by the contact laws, all at once (AdmmSolver)
 //     q += h V, and penetrations that are left are taken off by positions alone (wall::Lift)
 //     energies (EnergyLedger)
 //
-// Positions are first order in the step; impacts are plastic and happen at the end of a step.
+// Positions are first order in the step.
 #include "dynamics/assembly/admm_solver.hpp"
+#include "dynamics/assembly/base_pulse.hpp"
 #include "dynamics/assembly/energy_ledger.hpp"
+#include "dynamics/assembly/instant_solve.hpp"
+#include "dynamics/assembly/rocking_events.hpp"
 #include "dynamics/wall/lift.hpp"
 
 namespace masonry::rigid::assembly {
@@ -40,6 +44,10 @@ public:
 private:
 	void advancePart(RigidSystem<K>& system, double h);
 	void takeContacts(RigidSystem<K>& system);
+	void takeInstants(RigidSystem<K>& system, const StepContext& step);
+	InstantReport solveInstant(RigidSystem<K>& system, const StepContext& instant, double spare);
+	void leanAt(const RigidSystem<K>& system);
+	void takeChange(double fall);
 	void placeFrames(const RigidSystem<K>& system, double h);
 	void setLoads(const RigidSystem<K>& system, double h);
 	void moveBodies(RigidSystem<K>& system, double h);
@@ -48,8 +56,11 @@ private:
 	wall::WallContacts<K> contacts {team}, nobody {team};
 	AdmmSolver<K> solver;
 	EnergyLedger<K> ledger;
+	RockingEvents<K> events;
+	BasePulse<K> pulses;
+	InstantSolve<K> instants;
 	wall::Lift<K> projection;
-	wall::LaneArray loads;
+	wall::LaneArray loads, change;
 	std::vector<typename K::Pose> middle; // poses at the middle of the step, as the velocities at its start predict them
 };
 

@@ -6,25 +6,17 @@
 namespace masonry::rigid::assembly {
 
 template <class K>
-void EnergyLedger<K>::open(const RigidSystem<K>& s, double h)
+void EnergyLedger<K>::open(const RigidSystem<K>& s, std::vector<typename K::Vector> half)
 {
 	kinetic = s.kineticEnergy();
 	baseWork = friction = 0;
-	std::vector<typename K::Vector> now;
-	for (const Drive<K>& drive : s.drives)
-		now.push_back(drive.meanVelocity(s.time, h));
-	if (last.size() != now.size())
-		last = now;
-	halfBack.clear();
-	for (size_t d = 0; d < now.size(); ++d)
-		halfBack.push_back((last[d] - now[d]) / 2);
-	last = std::move(now);
+	halfBack = std::move(half);
 }
 
 template <class K>
-void EnergyLedger<K>::takeContacts(const RigidSystem<K>& s, const wall::WallContacts<K>& c, const AdmmSolver<K>& solver, double loss)
+double EnergyLedger<K>::work(const RigidSystem<K>& s, const wall::WallContacts<K>& c, const AdmmSolver<K>& solver) const
 {
-	friction = loss;
+	double sum = 0;
 	for (const auto& [g, i] : c.onBase) {
 		const wall::Group<K>& group = c.groups[g];
 		const bool first = s.bodies[group.body1[i]].prescribed;
@@ -41,9 +33,19 @@ void EnergyLedger<K>::takeContacts(const RigidSystem<K>& s, const wall::WallCont
 			for (int n = 1; n < K::rows; ++n)
 				impulse[n] = wall::component(row.actedT, n - 1, i);
 			for (int n = 0; n < K::rows; ++n)
-				baseWork += (first ? impulse[n] : -impulse[n]) * wall::rateOf(group.point[k], n, i, first ? 1 : 2, v);
+				sum += (first ? impulse[n] : -impulse[n]) * wall::rateOf(group.point[k], n, i, first ? 1 : 2, v);
 		}
 	}
+	for (const SpinRow<K>& row : solver.spins)
+		sum += row.couple * row.baseSpin;
+	return sum;
+}
+
+template <class K>
+void EnergyLedger<K>::takeContacts(const RigidSystem<K>& s, const wall::WallContacts<K>& c, const AdmmSolver<K>& solver, double loss)
+{
+	friction = loss;
+	baseWork = work(s, c, solver);
 }
 
 template <class K>
@@ -52,14 +54,14 @@ double EnergyLedger<K>::close(RigidSystem<K>& s, const Scales& scales, double h,
 	double mass = 0;
 	for (const auto& body : s.bodies)
 		mass += body.prescribed ? 0 : body.mass;
-	const double lost = work + baseWork + kinetic - s.kineticEnergy() - friction;
+	impacts = work + baseWork + kinetic - s.kineticEnergy() - friction;
 	s.baseWork += baseWork;
 	s.frictDissip += friction;
-	s.impactDissip += lost;
+	s.impactDissip += impacts;
 	const double atStake = std::abs(baseWork) + std::abs(work) + kinetic, liftedAll = mass * scales.acceleration * scales.length,
 	             slowest = tolerance::wall::createdTravel * scales.length / h;
 	const double allowed = tolerance::wall::createdShare * atStake + tolerance::wall::createdLift * liftedAll + mass * slowest * slowest;
-	return lost < -allowed ? -lost : 0;
+	return impacts < -allowed ? -impacts : 0;
 }
 
 template class EnergyLedger<Plane>;

@@ -5,15 +5,25 @@
 namespace masonry::rigid::assembly {
 
 struct StepContext {
-	double h {0};       // s
-	double fall {0};    // m/s, speed that gravity gives in the step
-	double length {0};  // m, smallest half size of the free bodies
-	double rocking {0}; // s, sqrt(length / gravity): the time in which the smallest block falls over
+	double h {0};         // s
+	double fall {0};      // m/s, speed that gravity gives in the step
+	double length {0};    // m, smallest half size of the free bodies
+	double rocking {0};   // s, sqrt(length / gravity): the time in which the smallest block falls over
+	double speed {0};     // m/s, what residuals are relative to: `fall`; at an instant, the velocity that changes
+	bool instant {false}; // an impact or a jump of the base: nothing moves, forces give nothing, impulses start from zero
 
 	StepContext() = default;
 	StepContext(const Scales& scales, double h)
-	    : h(h), fall(scales.stepSpeed(h)), length(scales.length), rocking(scales.speed > 0 ? scales.length / scales.speed : 0)
+	    : h(h), fall(scales.stepSpeed(h)), length(scales.length), rocking(scales.speed > 0 ? scales.length / scales.speed : 0), speed(fall)
 	{
+	}
+	// The same step's instant at which velocities of this size change.
+	StepContext atInstant(double speed) const
+	{
+		StepContext result = *this;
+		result.speed = speed;
+		result.instant = true;
+		return result;
 	}
 };
 

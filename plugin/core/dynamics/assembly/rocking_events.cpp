@@ -1,0 +1,348 @@
+#include "dynamics/assembly/rocking_events.hpp"
+#include "dynamics/rigid/scales.hpp"
+#include "dynamics/wall/rocking_contact.hpp"
+#include "tolerances.hpp"
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+namespace masonry::rigid::assembly {
+
+using wall::Contact;
+using wall::contact;
+using wall::LaneArray;
+using wall::WallContacts;
+
+namespace {
+
+// The plane as the impact law knows it: z = 0.
+Vector3 inSpace(const Vector2& v) { return {v.x(), v.y(), 0}; }
+Vector3 inSpace(const Vector3& v) { return v; }
+
+template <class Point, class K>
+Vector3 normalOf(const WallContacts<K>& c, const Point& at)
+{
+	return inSpace(wall::normal(c.groups[at.group].point[at.point], at.lane));
+}
+
+template <class Point, class K>
+Vector3 positionOf(const WallContacts<K>& c, const Point& at)
+{
+	const wall::Group<K>& group = c.groups[at.group];
+	ContactFrame<K> frame;
+	const int body2 = group.body2[at.lane];
+	takeFrame(group.point[at.point], c.features[at.group].point[at.point], at.lane, c.gyration[body2], frame);
+	return inSpace(typename K::Vector(c.position(body2) + frame.position));
+}
+
+// On body 2.
+template <class Point>
+Vector3 impulseOf(const WallContacts<Plane>& c, const Point& at)
+{
+	const auto& p = c.groups[at.group].point[at.point];
+	const Vector2 n = wall::normal(p, at.lane);
+	return inSpace(Vector2(p.pn[at.lane] * n + p.pt[at.lane] * Vector2(-n.y(), n.x())));
+}
+template <class Point>
+Vector3 impulseOf(const WallContacts<Space>& c, const Point& at)
+{
+	const auto& p = c.groups[at.group].point[at.point];
+	return p.pn[at.lane] * p.normal.axis.lane(at.lane) + p.pt.x[at.lane] * p.tangent[0].axis.lane(at.lane) +
+	       p.pt.y[at.lane] * p.tangent[1].axis.lane(at.lane);
+}
+
+void takeVelocity(const Plane::Velocity& v, Body& body)
+{
+	body.velocity << v[0], v[1], 0;
+	body.angularVelocity << 0, 0, v[2];
+}
+void takeVelocity(const Space::Velocity& v, Body& body)
+{
+	body.velocity = v.head<3>();
+	body.angularVelocity = v.tail<3>();
+}
+
+} // namespace
+
+template <class K>
+void RockingEvents<K>::gather(const RigidSystem<K>& s, const WallContacts<K>& c)
+{
+	points.clear();
+	const auto hasLaw = [](const auto& pair) { return !std::isnan(pair.restitution); };
+	if (!areOrdered(s.drives) && std::none_of(s.pairs.begin(), s.pairs.end(), hasLaw))
+		return;
+	const double g = s.gravity.norm();
+	for (int group = 0; group < int(c.groups.size()); ++group)
+		for (int lane = 0; lane < wall::width && c.features[group].pair[lane] >= 0; ++lane) {
+			const ContactPair<K>& pair = s.pairs[c.features[group].pair[lane]];
+			for (int k = 0; k < c.points(s, group, lane); ++k) {
+				const double up = g > 0 ? -wall::normal(c.groups[group].point[k], lane).dot(s.gravity) / g : 1;
+				const int block = up > 0 ? pair.body2 : pair.body1;
+				if (std::abs(up) >= tolerance::uprightJoint && c.own[block])
+					points.push_back({block, up > 0 ? pair.face2 : pair.face1, group, lane, k});
+			}
+		}
+	std::sort(points.begin(), points.end(), [](const Point& a, const Point& b) {
+		return std::tie(a.block, a.face, a.group, a.lane, a.point) < std::tie(b.block, b.face, b.group, b.lane, b.point);
+	});
+}
+
+template <class K>
+double RockingEvents<K>::away(const WallContacts<K>& c, const Point& at, const Joint& joint) const
+{
+	const Vector3 from = positionOf(c, at) - joint.place;
+	return (from - joint.direction * joint.direction.dot(from)).norm();
+}
+
+// False: the joint bears at more than one place, or nowhere.
+template <class K>
+bool RockingEvents<K>::findPivot(const WallContacts<K>& c, Joint& joint) const
+{
+	if (bearing.empty())
+		return false;
+	const double narrow = tolerance::wall::pivot * c.length;
+	joint.place = positionOf(c, points[bearing.front()]);
+	Vector3 edge = Vector3::Zero();
+	for (const int i : bearing)
+		if (const Vector3 from = positionOf(c, points[i]) - joint.place; K::dimension == 3 && from.norm() > edge.norm())
+			edge = from;
+	joint.direction = edge.norm() > narrow ? Vector3(edge.normalized()) : Vector3(Vector3::Zero());
+	return std::all_of(bearing.begin(), bearing.end(), [&](int i) { return away(c, points[i], joint) <= narrow; });
+}
+
+// Normals and arms stand still in a step: the centripetal acceleration a of a pivot comes as a jump a h of its velocity where a step
+// begins, and gravity brings it back, from a = g/2 on not within the step. So it hops, and nothing presses it for many steps: it rises to
+// (a h)^2 / 2(g - a). With a >= g it leaves its support.
+template <class K>
+bool RockingEvents<K>::hops(const WallContacts<K>& c, const Point& point, double g, double h) const
+{
+	const Contact<K> at = contact(c, point);
+	if (at.impulse() > 0 || std::abs(at.normalRate(c)) > 2 * g * h) // one jump, and what it was before
+		return false;
+	masonry::Body block, support;
+	takeVelocity(c.inGlobal(c.velocity, at.block), block);
+	takeVelocity(c.inGlobal(c.velocity, at.support), support);
+	const Vector3 spin = block.angularVelocity - support.angularVelocity, arm = positionOf(c, point) - inSpace(c.position(at.block));
+	const double a = (at.second ? 1 : -1) * normalOf(c, point).dot(spin.cross(spin.cross(arm)));
+	return a > g / 4 && a < g && at.p.gap[at.lane] <= tolerance::wall::touching * c.length + a * a * h * h / (2 * (g - a));
+}
+
+template <class K>
+std::vector<SpinRow<K>> RockingEvents<K>::find(const RigidSystem<K>& s, const WallContacts<K>& c, const LaneArray& change,
+                                               const StepContext& step)
+{
+	std::vector<SpinRow<K>> result;
+	gather(s, c);
+	rocking.clear();
+	expected.clear();
+	if (points.empty())
+		return result;
+	h = step.h;
+	predicted = c.velocity;
+	for (size_t b = 0; b < std::min(change.size(), predicted.size()); ++b)
+		predicted[b] += wall::noMass * change[b];
+	const double g = scale::acceleration(s), open = tolerance::mergedClosing * c.length,
+	             fast = tolerance::restSpeed * std::sqrt(g * c.length), narrow = tolerance::wall::pivot * c.length;
+	constexpr double together = 2; // steps within which closings are one
+	for (int begin = 0, end = 0; begin < int(points.size()); begin = end) {
+		bearing.clear();
+		closing.clear();
+		bool gapes = false, lands = false;
+		for (end = begin; end < int(points.size()) && points[end].block == points[begin].block && points[end].face == points[begin].face;
+		     ++end) {
+			const Contact<K> at = contact(c, points[end]);
+			const double gap = at.p.gap[at.lane];
+			if (at.impulse() > 0 || hops(c, points[end], g, h))
+				bearing.push_back(end);
+			else
+				gapes |= gap > open || at.normalRate(c) < -fast;
+		}
+		Joint joint {begin, end, {}, {}, -1};
+		if (!gapes || !findPivot(c, joint))
+			continue;
+		for (int i = begin; i < end; ++i) {
+			const Contact<K> at = contact(c, points[i]);
+			const double gap = at.p.gap[at.lane], rate = at.rate(predicted);
+			if (at.impulse() > 0 || rate >= 0 || away(c, points[i], joint) <= narrow)
+				continue;
+			lands |= gap + h * rate <= 0;
+			if (gap + together * h * rate <= 0)
+				closing.push_back(i);
+		}
+		Landing landing;
+		if (lands && describe(s, c, joint, closing, landing)) {
+			joint.landing = int(expected.size());
+			expected.push_back(landing);
+			if (!std::isnan(landing.asked))
+				result.push_back(row(c, landing, landing.share));
+		}
+		rocking.push_back(joint);
+	}
+	return result;
+}
+
+// Of several supports, the one under the point farthest from the old pivot names the law.
+template <class K>
+bool RockingEvents<K>::describe(const RigidSystem<K>& s, const WallContacts<K>& c, const Joint& joint, const std::vector<int>& closing,
+                                Landing& landing) const
+{
+	std::vector<masonry::Body> bodies;
+	std::vector<int> numbers;
+	std::vector<ImpulsePoint> all; // new support, then old
+	const auto number = [&](int b) {
+		const auto known = std::find(numbers.begin(), numbers.end(), b);
+		if (known != numbers.end())
+			return int(known - numbers.begin());
+		masonry::Body& body = bodies.emplace_back();
+		body.pose.position = inSpace(c.position(b));
+		takeVelocity(c.inGlobal(predicted, b), body);
+		body.prescribed = !c.own[b];
+		numbers.push_back(b);
+		return int(numbers.size()) - 1;
+	};
+	const auto add = [&](int i) {
+		const wall::Group<K>& group = c.groups[points[i].group];
+		all.push_back({number(group.body1[points[i].lane]), number(group.body2[points[i].lane]), positionOf(c, points[i]),
+		               normalOf(c, points[i]), 0});
+	};
+	ClosingJoint law {};
+	double farthest = -1;
+	for (const int i : closing) {
+		add(i);
+		const double distant = away(c, points[i], joint);
+		if (distant <= farthest)
+			continue;
+		farthest = distant;
+		const Contact<K> at = contact(c, points[i]);
+		landing.block = at.block;
+		landing.support = at.support;
+		landing.asked = s.pairs[c.features[points[i].group].pair[points[i].lane]].restitution;
+		landing.speed = std::max(0., -at.rate(predicted));
+		landing.share = landing.speed > 0 ? std::clamp(1 - at.p.gap[at.lane] / (h * landing.speed), 0., 1.) : 0;
+		law.normal = (at.second ? 1 : -1) * normalOf(c, points[i]);
+	}
+	if (closing.empty())
+		return false;
+	law.block = number(landing.block);
+	law.support = number(landing.support);
+	law.oldBegin = int(all.size());
+	const double narrow = tolerance::wall::pivot * c.length;
+	for (int i = joint.begin; i < joint.end; ++i)
+		if (away(c, points[i], joint) <= narrow)
+			add(i);
+	law.oldEnd = int(all.size());
+	findRocking(bodies, law, all);
+	const double leastSpin = scale::leastSpin(s, landing.block);
+	if (law.result.axis.isZero(0) || !(law.result.before >= leastSpin))
+		return false;
+	landing.face = points[joint.begin].face;
+	landing.before = law.result.before;
+	landing.carry = law.carry;
+	landing.axis = law.result.axis;
+	landing.normal = law.normal;
+	landing.restitution = landing.asked * landing.before < leastSpin ? 0 : landing.asked;
+	landing.time = s.time + h * (1 - landing.share);
+	const bool prescribed = std::all_of(all.begin(), all.end(), [&](const ImpulsePoint& point) {
+		return bodies[point.body1 == law.block ? point.body2 : point.body1].prescribed;
+	});
+	landing.baseSpin = bodies[law.support].prescribed ? landing.axis.dot(bodies[law.support].angularVelocity) : 0;
+	if (prescribed) // the couple stands for impulses at the old and the new support
+		landing.baseSpin += landing.carry;
+	return true;
+}
+
+template <class K>
+SpinRow<K> RockingEvents<K>::row(const WallContacts<K>& c, const Landing& landing, double share) const
+{
+	SpinRow<K> result(c, landing.support, landing.block, landing.axis,
+	                  landing.carry + landing.before * (1 - share + share * landing.restitution));
+	result.baseSpin = landing.baseSpin;
+	return result;
+}
+
+template <class K>
+void RockingEvents<K>::take(const RigidSystem<K>& s, const WallContacts<K>& c)
+{
+	landings.clear();
+	const double narrow = tolerance::wall::pivot * c.length;
+	for (const Joint& joint : rocking) {
+		closing.clear();
+		for (int i = joint.begin; i < joint.end; ++i)
+			if (contact(c, points[i]).impulse() > 0 && away(c, points[i], joint) > narrow)
+				closing.push_back(i);
+		Landing landing;
+		if (joint.landing >= 0)
+			landing = expected[joint.landing];
+		if (closing.empty() || (joint.landing < 0 && !describe(s, c, joint, closing, landing)))
+			continue;
+		landings.push_back(landing);
+	}
+}
+
+template <class K>
+std::vector<SpinRow<K>> RockingEvents<K>::rows(const WallContacts<K>& c) const
+{
+	std::vector<SpinRow<K>> result;
+	for (const Landing& landing : landings)
+		if (!std::isnan(landing.asked))
+			result.push_back(row(c, landing, 1));
+	return result;
+}
+
+template <class K>
+void RockingEvents<K>::report(RigidSystem<K>& s, const WallContacts<K>& c, const std::vector<SpinRow<K>>& rows, double lost, bool capped,
+                              double residual)
+{
+	gather(s, c);
+	auto row = rows.begin();
+	for (const Landing& landing : landings) {
+		if (std::isnan(landing.asked))
+			continue;
+		Vector3 impulse = Vector3::Zero(); // of the support on the block
+		for (const Point& at : points)
+			if (at.block == landing.block && at.face == landing.face)
+				impulse += (contact(c, at).second ? 1 : -1) * impulseOf(c, at);
+		JointResult result;
+		result.axis = landing.axis;
+		result.before = landing.before;
+		result.after = row->rate(c.velocity) - landing.carry;
+		const double normal = landing.normal.dot(impulse);
+		if (normal > 0) {
+			result.application = row->couple / normal;
+			result.frictionDemand = (impulse - normal * landing.normal).norm() / normal;
+		}
+		s.impacts.push_back({landing.time, landing.block, landing.support, landing.asked,
+		                     result.after >= scale::leastSpin(s, landing.block), result, lost, capped, residual});
+		lost = 0;
+		++row;
+	}
+}
+
+template <class K>
+bool RockingEvents<K>::areRows() const
+{
+	return std::any_of(landings.begin(), landings.end(), [](const Landing& landing) { return !std::isnan(landing.asked); });
+}
+
+template <class K>
+double RockingEvents<K>::speed() const
+{
+	double most = 0;
+	for (const Landing& landing : landings)
+		most = std::max(most, landing.speed);
+	return most;
+}
+
+template <class K>
+std::vector<int> RockingEvents<K>::blocks() const
+{
+	std::vector<int> result;
+	for (const Landing& landing : landings)
+		result.push_back(landing.block);
+	return result;
+}
+
+template class RockingEvents<Plane>;
+template class RockingEvents<Space>;
+
+} // namespace masonry::rigid::assembly

@@ -1,0 +1,93 @@
+#pragma once
+// Joints that rock and land: they get rows that give them the rocking restitution law (impact/rocking_restitution.hpp).
+//
+// A joint is all that touches one face of a block from below. It rocks when it is loaded at one place, its pivot, and open beside it. A
+// step of length h brings a landing point from its gap to zero, and so takes the share
+//
+//     s = 1 - gap/(h u)          u: approach speed that the step would give without the landing
+//
+// of the impact; the rest comes at the instant after the step, when forces do nothing. Both are impacts of the same law, to the same
+// target:
+//
+//     e.w = carry + before (1 - s + s C)  in the step,        e.w = carry + before C  after it
+//
+// so that bodies move in the step as they would with an impact at its instant within the step. `before` is that of the end of the step, as
+// the last change of the velocities predicts it. All joints that land in a step do so together, with everything else in touch.
+#include "dynamics/assembly/spin_row.hpp"
+#include "dynamics/assembly/step_context.hpp"
+#include "impact/rocking_restitution.hpp"
+
+namespace masonry::rigid::assembly {
+
+template <class K>
+class RockingEvents {
+public:
+	// Before the solve of a step: the joints that rock. `change`: of the velocities, that the step is expected to bring. Returns the rows
+	// of those that will land.
+	std::vector<SpinRow<K>> find(const RigidSystem<K>& system, const wall::WallContacts<K>& contacts, const wall::LaneArray& change,
+	                             const StepContext& step);
+	// After it: those that have landed.
+	void take(const RigidSystem<K>& system, const wall::WallContacts<K>& contacts);
+	// The rows of the impacts at the instant after the step.
+	std::vector<SpinRow<K>> rows(const wall::WallContacts<K>& contacts) const;
+	// After those: writes them into system.impacts. `lost`: energy, J.
+	void report(RigidSystem<K>& system, const wall::WallContacts<K>& contacts, const std::vector<SpinRow<K>>& rows, double lost,
+	            bool capped, double residual);
+
+	bool areRows() const; // any landing has a restitution
+	double speed() const; // m/s, fastest approach of the landings
+	// Blocks that have landed in the step, with a restitution or without: a base pulse may answer them.
+	std::vector<int> blocks() const;
+	void clear() { landings.clear(); }
+
+	template <class Archive>
+	void serialize(Archive& archive, unsigned)
+	{
+		archive& landings;
+	}
+
+private:
+	struct Point { // of a joint
+		int block, face;
+		int group, lane, point; // of the contacts
+	};
+	struct Landing {
+		int block, support, face;
+		double asked;       // restitution; NaN: natural
+		double restitution; // 0 where the rocking ends
+		double time;        // s
+		double carry, before, speed, share;
+		Vector3 axis, normal;
+		double baseSpin; // rad/s, of the prescribed supports
+
+		template <class Archive>
+		void serialize(Archive& archive, unsigned)
+		{
+			archive& block& support& face& asked& restitution& time& carry& before& speed& share& baseSpin;
+			for (Vector3* v : {&axis, &normal})
+				archive&(*v)[0] & (*v)[1] & (*v)[2];
+		}
+	};
+	struct Joint {
+		int begin, end;           // points
+		Vector3 place, direction; // of the pivot: a corner, or an edge and its direction; in the plane direction is zero
+		int landing;              // expected, by number; -1: none
+	};
+	void gather(const RigidSystem<K>& system, const wall::WallContacts<K>& contacts);
+	bool findPivot(const wall::WallContacts<K>& contacts, Joint& joint) const;
+	bool hops(const wall::WallContacts<K>& contacts, const Point& point, double acceleration, double h) const;
+	double away(const wall::WallContacts<K>& contacts, const Point& point, const Joint& joint) const;
+	// The landing of a joint on these points; false: it does not rock.
+	bool describe(const RigidSystem<K>& system, const wall::WallContacts<K>& contacts, const Joint& joint, const std::vector<int>& closing,
+	              Landing& landing) const;
+	SpinRow<K> row(const wall::WallContacts<K>& contacts, const Landing& landing, double share) const;
+
+	std::vector<Point> points; // joint by joint
+	std::vector<Joint> rocking;
+	std::vector<int> bearing, closing; // points of a joint that is looked at
+	std::vector<Landing> expected, landings;
+	wall::LaneArray predicted; // velocities at the end of the step
+	double h {0};
+};
+
+} // namespace masonry::rigid::assembly
