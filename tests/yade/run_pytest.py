@@ -7,6 +7,6 @@ from pathlib import Path
 import pytest
 
 os.environ["PYTEST_DISABLE_PLUGIN_AUTOLOAD"] = "1"  # other packages' plugins take half a second to load
-sys.stdout.reconfigure(write_through=True)  # a run that is stopped has shown how far it came
 script, name, *options = sys.argv
-sys.exit(pytest.main([str(Path(script).with_name(name)), "-q", "-ra", "-p", "no:cacheprovider", *options]))
+# -v: a line a test, so that CTest shows how far a file came that takes too long
+sys.exit(pytest.main([str(Path(script).with_name(name)), "-v", "-ra", "-p", "no:cacheprovider", *options]))
