@@ -10,7 +10,7 @@ import sys
 
 import numpy as np
 import pytest
-from masonry import _pose, results
+from masonry import __main__, _pose, results
 from masonry.results.reporting import view3d, words
 from test_results import history, rocking
 
@@ -70,6 +70,13 @@ class Page(html.parser.HTMLParser):
             self.texts[self.section] = self.texts.get(self.section, "") + data
 
 
+@pytest.fixture(scope="module")
+def full(tmp_path_factory):
+    """(page, its text, its path) of a report that has all sections but that of forces."""
+    folder = tmp_path_factory.mktemp("full")
+    return *page(toppling(about=ABOUT, impacts=IMPACTS, motion=(0, 1.9)), folder, title="A <wall> & more"), folder / "report.html"
+
+
 def page(h, tmp_path, **given):
     path = tmp_path / "report.html"
     results.report(h, path, **given)
@@ -87,10 +94,9 @@ def toppling(count=40, **given):
     return results.WallHistory(0.05 * np.arange(count), h.ids, h.sizes, h.free, h.position, h.orientation, **given)
 
 
-def test_it_says_what_was_run_what_came_out_and_what_to_doubt(tmp_path):
-    h = toppling(about=ABOUT, impacts=IMPACTS, motion=(0, 1.9))
-    found, _ = page(h, tmp_path)
-    verdict = results.collapse(h)
+def test_it_says_what_was_run_what_came_out_and_what_to_doubt(full):
+    found = full[0]
+    verdict = results.collapse(toppling(motion=(0, 1.9)))
     assert f"Collapsed at {verdict.time:.4g} s" in found.texts[""] and "All 1.9 s of the motion have been run. 1 of 1 block has fallen." in found.texts[""]
     assert f"{100 * verdict.peak_drift:.3g} % of the height" in found.texts["numbers"]
     for said in ("2 steps missed the contact laws", "The first: In the step from t = 1 s", "A density is 2: densities are in kg/m^3."):
@@ -113,8 +119,8 @@ def test_a_history_that_stands_ends_with_its_motion_or_the_report_says_so(tmp_pa
     assert "does not say which script" in found.texts["run"]
 
 
-def test_it_needs_no_network_and_no_name_twice(tmp_path):
-    found, text = page(toppling(about=ABOUT, impacts=IMPACTS), tmp_path, title="A <wall> & more")
+def test_it_needs_no_network_and_no_name_twice(full):
+    found, text, _ = full
     assert all(one.startswith(("#", "data:")) for one in found.loaded)
     assert len(found.ids) == len(set(found.ids))
     assert "A <wall> & more" in found.texts[""]  # escaped
@@ -122,10 +128,9 @@ def test_it_needs_no_network_and_no_name_twice(tmp_path):
         assert not re.search(r"(src|href|url\(|import|fetch)\W{0,3}" + re.escape(address), text)
 
 
-def test_the_view_has_the_motion_relative_to_the_base_and_that_of_the_base(tmp_path):
+def test_the_view_has_the_motion_relative_to_the_base_and_that_of_the_base(full):
     h = toppling()
-    _, text = page(h, tmp_path)
-    scene = scene_of(text)
+    scene = scene_of(full[1])
     assert scene["ids"] == [10, 11] and scene["free"] == [False, True] and np.allclose(scene["time"], h.time, rtol=0, atol=1e-6)
     poses = np.frombuffer(base64.b64decode(scene["poses"]), dtype="<f4").reshape(len(h.time), 2, 7)
     base = np.frombuffer(base64.b64decode(scene["base"]), dtype="<f4").reshape(len(h.time), 7)
@@ -202,26 +207,29 @@ def test_about_and_impacts_are_kept_in_files_and_older_files_load(tmp_path):
     assert back.about == {} and back.impacts is None
 
 
-def test_the_command_writes_it_beside_the_history(tmp_path):
+def test_the_command_writes_it_beside_the_history(tmp_path, monkeypatch):
     def run(*given):
         return subprocess.run([sys.executable, "-m", "masonry", "report", *map(str, given)], capture_output=True, text=True)
 
     toppling(about=ABOUT).save(tmp_path / "wall.npz")
     assert run(tmp_path / "wall.npz").returncode == 0 and "Collapsed at" in (tmp_path / "wall.html").read_text()
-    assert run(tmp_path / "wall.npz", "-o", tmp_path / "other.html", "--title", "Mine").returncode == 0 and "Mine" in (tmp_path / "other.html").read_text()
+    asked = []
+    monkeypatch.setattr(results, "report", lambda history, path, title: asked.append((len(history.time), path, title)))
+    monkeypatch.setattr(sys, "argv", ["masonry", "report", str(tmp_path / "wall.npz"), "-o", str(tmp_path / "other.html"), "--title", "Mine"])
+    __main__.main()
+    assert asked == [(40, tmp_path / "other.html", "Mine")]
     missing = run(tmp_path / "none.npz")
     assert missing.returncode == 2 and "none.npz" in missing.stderr and "Traceback" not in missing.stderr
 
 
 @pytest.mark.skipif(CHROMIUM is None, reason="no chromium here (Debian: apt install chromium): what a browser draws of the report is not looked at")
-def test_a_browser_draws_the_blocks_and_says_nothing_on_its_console(tmp_path):
+def test_a_browser_draws_the_blocks_and_says_nothing_on_its_console(full, tmp_path):
     """One start of the browser: the page after its scripts, its console, and a picture."""
     from matplotlib.image import imread
 
-    page(toppling(about=ABOUT, impacts=IMPACTS), tmp_path)
     done = subprocess.run([CHROMIUM, "--headless", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--hide-scrollbars", f"--user-data-dir={tmp_path}/profile",
                            "--window-size=900,1000", "--virtual-time-budget=3000", "--enable-logging=stderr", f"--screenshot={tmp_path}/page.png",
-                           (tmp_path / "report.html").as_uri()], capture_output=True, text=True, timeout=240)
+                           full[2].as_uri()], capture_output=True, text=True, timeout=240)
     assert (tmp_path / "page.png").exists(), done.stderr[-1000:]
     said = [line for line in done.stderr.splitlines() if ":CONSOLE" in line]
     assert not said, said
@@ -232,9 +240,9 @@ def test_a_browser_draws_the_blocks_and_says_nothing_on_its_console(tmp_path):
     assert len(colours) > 30 and base.sum() > 5000 and block.sum() > 2000, (len(colours), base.sum(), block.sum())
 
 
-def test_recorded_forces_are_shown(tmp_path):
+def test_recorded_forces_are_shown(full, tmp_path):
     from test_forces import two_blocks
 
     found, _ = page(two_blocks(), tmp_path)
     assert "Base shear, overturning moment and thrust" in found.texts["forces"] and "base shear x" in found.texts["forces"] and "thrust, at" in found.texts["forces"]
-    assert "forces" not in page(toppling(), tmp_path)[0].ids
+    assert "forces" not in full[0].ids

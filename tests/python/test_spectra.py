@@ -38,7 +38,7 @@ def integrated(acceleration, end, period, damping, kinks=()):
 # --- oscillators ---
 
 
-@pytest.mark.parametrize("period", [0.04, 0.31, 1.0, 7.0])
+@pytest.mark.parametrize("period", [0.12, 1.0, 7.0])
 @pytest.mark.parametrize("damping", [0.0, 0.05, 0.7])
 @pytest.mark.parametrize("motion, kinks", [(masonry.Sine(2.0, 1.0, cycles=4.25), [4.25]), (masonry.HalfSine(3.0, 0.4), [0.4]),
                                            (masonry.Rectangular(2.0, 0.3), [0.3])], ids=["sine", "half-sine", "rectangle"])
