@@ -38,7 +38,7 @@ if(NOT EXISTS ${source}/core/Scene.hpp)
 endif()
 
 # Features of YADE that change what its headers declare. A wrong or missing one is found by the guard when the plugin is loaded.
-set(YADE_DEFINITIONS YADE_REAL_BIT=${bits} YADE_REAL_DEC=${decimals} MAX_LOG_LEVEL=2) # warnings to the terminal
+set(YADE_DEFINITIONS YADE_REAL_BIT=${bits} YADE_REAL_DEC=${decimals} MAX_LOG_LEVEL=3) # of the log: up to warnings
 foreach(pair OPENMP=YADE_OPENMP MPI=YADE_MPI FEMLIKE=YADE_FEM LS_DEM=YADE_LS_DEM QT5=YADE_QT5 QT6=YADE_QT6 DEFORM=YADE_DEFORM SPH=YADE_SPH
     LIQMIGRATION=YADE_LIQMIGRATION MASK_ARBITRARY=YADE_MASK_ARBITRARY PROFILING=USE_TIMING_DELTAS)
   string(REPLACE "=" ";" pair ${pair})

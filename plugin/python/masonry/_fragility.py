@@ -88,8 +88,10 @@ class Fragility:
 
         figure, axes = plt.subplots(figsize=(6.4, 4), layout="constrained")
         rows = self.levels
-        axes.errorbar(rows["measure"], rows["fraction"], (rows["fraction"] - rows["low"], rows["high"] - rows["fraction"]), fmt="o", color="0.3", markersize=4,
-                      capsize=2, linewidth=1, label=f"fraction, {self.confidence:.0%} interval (Wilson)")
+        # Lists: with an array of one number Matplotlib makes a conversion that NumPy 2 deprecates.
+        interval = [(rows["fraction"] - rows["low"]).tolist(), (rows["high"] - rows["fraction"]).tolist()]
+        axes.errorbar(rows["measure"], rows["fraction"], interval, fmt="o", color="0.3", markersize=4, capsize=2, linewidth=1,
+                      label=f"fraction, {self.confidence:.0%} interval (Wilson)")
         x = np.linspace(0, rows["measure"].max() * 1.05, 301)[1:]
         if self.fitted:
             low, high = self.band(x)
