@@ -239,7 +239,8 @@ void run(const char* name, Step& step)
 	double before = world.energy() - s.baseWork;
 	const double begin = cpu();
 	double inStep = 0, firstStep = 0;
-	double tilted = -1;
+	double tilted = -1, worstImpact = 0;
+	int impacts = 0, capped = 0;
 	const double rate = number("rate", 0) * M_PI / 180;
 	for (long k = 1; k <= steps; ++k) {
 		near.update(s, h);
@@ -256,6 +257,11 @@ void run(const char* name, Step& step)
 		step.advance(s, h);
 		(k == 1 ? firstStep : inStep) += cpu() - t0;
 		created += step.report.created;
+		for (const Impact& impact : s.impacts) {
+			++impacts;
+			capped += impact.capped;
+			worstImpact = std::max(worstImpact, impact.residual / (impact.joint.before * world.L));
+		}
 		sumIterations += iterationsOf(step.report);
 		factors += step.report.factorisations;
 		const double now = world.energy() - s.baseWork, change = now - before;
@@ -296,10 +302,10 @@ void run(const char* name, Step& step)
 	for (const int b : top)
 		sink -= moved(b)[up] / double(top.size());
 	std::printf("%-4s %zu blocks | mean %.2f mm (end %.2f) drift %.4g sink %.3g mm | cpu/s %.3f (step %.3f) its %.1f fac %.2f | rises/loss "
-	            "%.1e loss %.4g created %.2g | pen %.2g mm kin %.2g tilt %.2f\n",
+	            "%.1e loss %.4g created %.2g | pen %.2g mm kin %.2g tilt %.2f | impacts %d capped %d residual %.1e\n",
 	            name, s.bodies.size() - 1, 1e3 * mean, 1e3 * last.norm(), 1e3 * drift, 1e3 * sink, (cpu() - begin - firstStep) / seconds,
 	            inStep / seconds, sumIterations / double(steps), factors / double(steps), rises / std::max(loss, 1e-30), loss, created,
-	            1e3 * deepest, kinetic, tilted);
+	            1e3 * deepest, kinetic, tilted, impacts, capped, worstImpact);
 	std::fflush(stdout);
 }
 

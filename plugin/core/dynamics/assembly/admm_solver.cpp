@@ -18,6 +18,7 @@ using RowsOf = typename AdmmSolver<K>::Rows;
 // These values are the same for all points of a step.
 struct Step {
 	double h, perH, fall, mix, reach, left, softness, leastSoftness, relaxation, boundShare, pullBack;
+	double sticks; // m, gap up to which a point without an impulse starts as one that sticks
 };
 
 // R by load.
@@ -137,7 +138,7 @@ MASONRY_INLINE void startGroups(Group<K>* groups, StillGroup<K>* memory, RowsOf<
 			const Lanes wn = normalRate(v1, v2, p) + row.bn;
 			const auto wt = slipRate(v1, v2, p) + row.bt;
 			f.zn = p.pn > 0 ? f.zn : larger(wn, none);
-			f.zt = select(p.pn > 0, f.zt, wt);
+			f.zt = select(p.pn > 0, f.zt, select(p.gap <= step.sticks, typename PointLanes<K>::Tangent {}, wt));
 		}
 		passGroup<K, false>(groups[g], memory[g], rows[g], step, velocity, force, unused);
 	}
@@ -219,7 +220,8 @@ Step stepOf(const StepContext& c, const AdmmSettings& a)
 	        a.leastSoftness,
 	        a.relaxation,
 	        a.boundShare,
-	        c.instant ? 0 : a.pullBack};
+	        c.instant ? 0 : a.pullBack,
+	        c.instant ? tolerance::wall::touching * c.length : -farAway};
 }
 
 } // namespace
@@ -374,7 +376,7 @@ void AdmmSolver<K>::solve(const RigidSystem<K>& s, WallContacts<K>& c, const Pos
 		row.couple = 0;
 	prepareSpins(c);
 	start(c, load, step);
-	const double enough = (step.instant ? settings.instantTolerance : settings.tolerance) * step.speed;
+	const double enough = std::max(settings.tolerance * step.fall, step.instant ? settings.instantTolerance * step.speed : 0);
 	const int most = step.instant ? settings.ofInstant
 	                 : cold       ? settings.first
 	                              : std::min(settings.iterations + int(saved), 10 * settings.iterations);
@@ -418,6 +420,15 @@ void AdmmSolver<K>::factorise(const RigidSystem<K>& s, WallContacts<K>& c, const
 	turn = 0;
 	const Step same = stepOf(step, settings);
 	c.allParts([&](const Part& part, int) { penaltyPass(c.groups.data(), rows.data(), part.begin, part.end, c.velocity.data(), same); });
+	makeMatrix(s, c);
+	age = 0;
+	++report.factorisations;
+}
+
+// From the frames of the contacts and the penalties of the rows.
+template <class K>
+void AdmmSolver<K>::makeMatrix(const RigidSystem<K>& s, const WallContacts<K>& c)
+{
 	lanes.resize(c.groups.size());
 	for (size_t g = 0; g < lanes.size(); ++g)
 		for (int i = 0; i < width; ++i)
@@ -433,8 +444,6 @@ void AdmmSolver<K>::factorise(const RigidSystem<K>& s, WallContacts<K>& c, const
 		for (int i = 0; i < width; ++i)
 			addPair(c, int(g), i, edge);
 	factor.factorise();
-	age = 0;
-	++report.factorisations;
 }
 
 // A node for each pack of a body; edges between those of a body, then between those of a pair.

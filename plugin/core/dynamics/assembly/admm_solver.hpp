@@ -30,7 +30,9 @@
 // Rows that prescribe a relative spin (SpinRow) are held in each iteration: with Y = A^-1 E^T, the couples c change by
 // (E Y)^-1 (target - E V) and V by Y times that, so that E V is the target to round-off. A does not know of them.
 //
-// An instant (StepContext::instant) is the same problem without forces: impacts with rows, and jumps of the base.
+// An instant (StepContext::instant) is the same problem without forces: impacts with rows, and jumps of the base. Points in touch start as
+// ones that stick, z_t = 0: a base that jumps under a block which it only slides along is a solution too, and where nothing slips not the
+// one that is meant.
 //
 // Biases. A point with a gap may close within the step: b_n = gap/h. Of a penetration, and of a slip that unfinished iterations have left
 // at a point that sticks, a share is taken back in each step: b = share x/h.
@@ -46,9 +48,9 @@ struct AdmmSettings {
 	int iterations {20};     // at most in a step, beside the reserve. Fewer: excursions are too small
 	int reserve {50};        // times `iterations` that quiet steps save for impacts at most. 0: walls under impacts drift
 	int first {3000};        // iterations of a step that starts without impulses, at most
-	int ofInstant {1000};    // iterations of an impact or a base pulse, at most
+	int ofInstant {300};     // iterations of an impact or a base pulse, at most
 	double instantTolerance {
-	    1e-6};                   // largest |w - z| of an instant relative to the velocities that change. Larger: impulses are wrong by more
+	    1e-6}; // largest |w - z| of an instant relative to the velocities that change, if that is more. Larger: restitution is less right
 	double softness {0.2};       // r. Larger: high walls go too far; smaller: low walls that begin to move do not go far enough
 	double leastSoftness {1e-5}; // of d, at the most loaded points. Smaller: rounding of the factorisation in single precision
 	double relaxation {1.7};     // a, 1 to 2. Larger: residuals oscillate; smaller: they fall more slowly
@@ -105,6 +107,33 @@ public:
 		lanes.clear();
 	}
 
+	// What the next solve needs of the last, number by number, after the contacts. A is made anew from the frames and penalties that it is
+	// of.
+	template <class Flow>
+	void pass(Flow& f, wall::WallContacts<K>& contacts, const RigidSystem<K>& system)
+	{
+		f(age), f(saved), f(cold);
+		size_t count = factored.size();
+		f(count);
+		const bool isNew = factored.empty() && count > 0;
+		factored.resize(count);
+		for (auto& pose : factored)
+			passPose(f, pose);
+		if (count == 0)
+			return;
+		rows.resize(contacts.groups.size());
+		for (Rows& ofGroup : rows)
+			for (Row& row : ofGroup)
+				for (wall::Lanes* lanes : {&row.resistance, &row.stiffness})
+					for (int i = 0; i < wall::width; ++i) {
+						double value = (*lanes)[i];
+						f(value);
+						(*lanes)[i] = value;
+					}
+		if (isNew)
+			contacts.at(system, factored, [&] { makeMatrix(system, contacts); });
+	}
+
 private:
 	using Block = linalg::BlockLDLT::Block;
 	// Which points A is of: by group and lane the pair, and the features of its points.
@@ -117,6 +146,7 @@ private:
 	bool isOutdated(const RigidSystem<K>& system, wall::WallContacts<K>& contacts, const StepContext& step);
 	void findTurn(const wall::WallContacts<K>& contacts, const Poses& poses);
 	void factorise(const RigidSystem<K>& system, wall::WallContacts<K>& contacts, const Poses& poses, const StepContext& step);
+	void makeMatrix(const RigidSystem<K>& system, const wall::WallContacts<K>& contacts);
 	void setGraph(const wall::WallContacts<K>& contacts);
 	void addPair(const wall::WallContacts<K>& contacts, int group, int lane, int& edge);
 	void start(wall::WallContacts<K>& contacts, const wall::LaneArray& load, const StepContext& step);

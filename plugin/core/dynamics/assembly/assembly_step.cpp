@@ -7,6 +7,7 @@
 namespace masonry::rigid::assembly {
 
 using wall::all;
+using wall::LaneArray;
 
 template <class K>
 StepReport AssemblyStep<K>::advance(RigidSystem<K>& s, double dt)
@@ -31,7 +32,8 @@ void AssemblyStep<K>::advancePart(RigidSystem<K>& s, double h)
 	const StepContext step(scales, h);
 	team.setThreads(settings.threads);
 	solver.settings = settings.solver;
-	takeContacts(s);
+	contacts.take(s, members(s), nobody);
+	contacts.measure(s, false);
 	contacts.setUnit(h);
 	takeInstants(s, step);
 	placeFrames(s, h);
@@ -39,16 +41,14 @@ void AssemblyStep<K>::advancePart(RigidSystem<K>& s, double h)
 	ledger.open(s, pulses.halfBack());
 	setLoads(s, h);
 	solver.spins = events.find(s, contacts, change, step);
-	solver.solve(s, contacts, middle, loads, step);
+	const CappedReport result = solve(s, loads, step, 0);
 	ledger.takeContacts(s, contacts, solver, solver.advanceGaps(contacts, h));
-	events.take(s, contacts);
+	events.take(s, contacts, solver.spins, result.share < 1);
 	moveBodies(s, h);
 	s.time += h;
 	s.moved = false;
-	report.iterations += solver.report.iterations;
-	report.factorisations += solver.report.factorisations;
-	report.velocityResidual = std::max(report.velocityResidual, solver.report.residual);
-	report.diverged |= !solver.report.finite || !s.isFinite();
+	started = true;
+	report.diverged |= !result.finite || !s.isFinite();
 }
 
 // What happens between two steps: first the impacts of the joints that have landed in the last, then the jumps of the base.
@@ -64,28 +64,41 @@ void AssemblyStep<K>::takeInstants(RigidSystem<K>& s, const StepContext& step)
 		solver.spins = events.rows(contacts);
 		const double lostInStep = ledger.lost();
 		ledger.open(s, pulses.halfBack());
-		const InstantReport impact = solveInstant(s, step.atInstant(events.speed()), lostInStep);
-		events.report(s, contacts, solver.spins, lostInStep + impact.lost, impact.capped, impact.residual);
-		instants.restore(contacts);
+		const CappedReport impact = solveInstant(s, step.atInstant(events.speed()), lostInStep);
+		events.report(s, contacts, solver.spins, lostInStep + impact.lost, impact.share < 1, impact.residual);
+		capped.restore(contacts);
 	}
 	solver.spins.clear();
 	if (jump) {
 		pulses.apply(s, contacts);
 		ledger.open(s, pulses.halfBack());
 		solveInstant(s, step.atInstant(pulses.speed()), 0);
-		instants.restore(contacts);
+		capped.restore(contacts);
 	}
 }
 
 template <class K>
-InstantReport AssemblyStep<K>::solveInstant(RigidSystem<K>& s, const StepContext& instant, double spare)
+CappedReport AssemblyStep<K>::solve(RigidSystem<K>& s, const LaneArray& load, const StepContext& step, double spare)
 {
-	const InstantReport result = instants.solve(s, contacts, middle, solver, ledger, instant, spare);
-	report.created += ledger.close(s, Scales(s), instant.h, 0);
+	const CappedReport result = capped.solve(s, contacts, middle, load, solver, ledger, step, spare);
 	report.iterations += result.iterations;
 	report.factorisations += result.factorisations;
 	report.velocityResidual = std::max(report.velocityResidual, result.residual);
-	report.converged &= result.converged;
+	return result;
+}
+
+// Leaves the impulses of the instant in the contacts.
+template <class K>
+CappedReport AssemblyStep<K>::solveInstant(RigidSystem<K>& s, const StepContext& instant, double spare)
+{
+	noLoads.assign(contacts.velocity.size(), all(0));
+	const CappedReport result = solve(s, noLoads, instant, spare);
+	ledger.takeContacts(s, contacts, solver, 0);
+	contacts.velocity = solver.velocity;
+	for (size_t b = 0; b < s.bodies.size(); ++b)
+		if (!s.bodies[b].prescribed)
+			s.bodies[b].velocity = contacts.inGlobal(contacts.velocity, b);
+	report.created += ledger.close(s, Scales(s), instant.h, 0);
 	return result;
 }
 
@@ -99,13 +112,12 @@ void AssemblyStep<K>::leanAt(const RigidSystem<K>& s)
 }
 
 template <class K>
-void AssemblyStep<K>::takeContacts(RigidSystem<K>& s)
+wall::Members AssemblyStep<K>::members(const RigidSystem<K>& s)
 {
-	wall::Members members {std::vector<char>(s.bodies.size()), std::vector<char>(s.bodies.size(), 0)};
+	wall::Members result {std::vector<char>(s.bodies.size()), std::vector<char>(s.bodies.size(), 0)};
 	for (size_t b = 0; b < s.bodies.size(); ++b)
-		members.own[b] = !s.bodies[b].prescribed;
-	contacts.take(s, members, nobody);
-	contacts.measure(s, false);
+		result.own[b] = !s.bodies[b].prescribed;
+	return result;
 }
 
 // Normals and arms of a step are those at its middle: those at its start would lag by half of it, and take energy from what rocks in

@@ -2,7 +2,7 @@
 // The step of an assembly of many rigid blocks, in a plane or in space: walls that stand, that rock, that slide and that fall, by one
 // method (admm_solver.hpp).
 //
-//     impacts and jumps of the base at the instant between two steps (RockingEvents, BasePulse, InstantSolve)
+//     impacts and jumps of the base at the instant between two steps (RockingEvents, BasePulse, CappedSolve)
 //     frames at the middle of the step, gaps at its start (wall::WallContacts)
 //     V by the contact laws, all at once (AdmmSolver)
 //     q += h V, and penetrations that are left are taken off by positions alone (wall::Lift)
@@ -11,8 +11,7 @@
 // Positions are first order in the step.
 #include "dynamics/assembly/admm_solver.hpp"
 #include "dynamics/assembly/base_pulse.hpp"
-#include "dynamics/assembly/energy_ledger.hpp"
-#include "dynamics/assembly/instant_solve.hpp"
+#include "dynamics/assembly/capped_solve.hpp"
 #include "dynamics/assembly/rocking_events.hpp"
 #include "dynamics/wall/lift.hpp"
 
@@ -41,26 +40,52 @@ public:
 	// changes.
 	void showPoints(RigidSystem<K>& system) { contacts.showPoints(system); }
 
+	// What the next step needs of the last besides the system, number by number: f(number) takes it, or gives it to a new object, whose run
+	// has the same bits from there on.
+	template <class Flow>
+	void pass(Flow& f, RigidSystem<K>& system)
+	{
+		f(started);
+		if (!started)
+			return;
+		contacts.pass(f, system, members(system));
+		solver.pass(f, contacts, system);
+		events.pass(f);
+		pulses.pass(f);
+		ledger.pass(f);
+		size_t count = change.size();
+		f(count);
+		change.resize(count);
+		for (wall::Lanes& of : change)
+			for (int k = 0; k < 3; ++k) {
+				double value = of[k];
+				f(value);
+				of[k] = value;
+			}
+	}
+
 private:
+	static wall::Members members(const RigidSystem<K>& system);
 	void advancePart(RigidSystem<K>& system, double h);
-	void takeContacts(RigidSystem<K>& system);
 	void takeInstants(RigidSystem<K>& system, const StepContext& step);
-	InstantReport solveInstant(RigidSystem<K>& system, const StepContext& instant, double spare);
+	CappedReport solve(RigidSystem<K>& system, const wall::LaneArray& load, const StepContext& step, double spare);
+	CappedReport solveInstant(RigidSystem<K>& system, const StepContext& instant, double spare);
 	void leanAt(const RigidSystem<K>& system);
 	void takeChange(double fall);
 	void placeFrames(const RigidSystem<K>& system, double h);
 	void setLoads(const RigidSystem<K>& system, double h);
 	void moveBodies(RigidSystem<K>& system, double h);
 
+	bool started {false};
 	wall::Team team;
 	wall::WallContacts<K> contacts {team}, nobody {team};
 	AdmmSolver<K> solver;
 	EnergyLedger<K> ledger;
 	RockingEvents<K> events;
 	BasePulse<K> pulses;
-	InstantSolve<K> instants;
+	CappedSolve<K> capped;
 	wall::Lift<K> projection;
-	wall::LaneArray loads, change;
+	wall::LaneArray loads, noLoads, change;
 	std::vector<typename K::Pose> middle; // poses at the middle of the step, as the velocities at its start predict them
 };
 

@@ -34,6 +34,12 @@ public:
 	// What the last step has lost, J.
 	double lost() const { return impacts + friction; }
 
+	template <class Flow>
+	void pass(Flow& f)
+	{
+		f(friction), f(impacts);
+	}
+
 private:
 	std::vector<typename K::Vector> halfBack;                    // m/s
 	double kinetic {0}, baseWork {0}, friction {0}, impacts {0}; // J

@@ -241,6 +241,7 @@ bool RockingEvents<K>::describe(const RigidSystem<K>& s, const WallContacts<K>& 
 	landing.axis = law.result.axis;
 	landing.normal = law.normal;
 	landing.restitution = landing.asked * landing.before < leastSpin ? 0 : landing.asked;
+	landing.capped = false;
 	landing.time = s.time + h * (1 - landing.share);
 	const bool prescribed = std::all_of(all.begin(), all.end(), [&](const ImpulsePoint& point) {
 		return bodies[point.body1 == law.block ? point.body2 : point.body1].prescribed;
@@ -261,9 +262,10 @@ SpinRow<K> RockingEvents<K>::row(const WallContacts<K>& c, const Landing& landin
 }
 
 template <class K>
-void RockingEvents<K>::take(const RigidSystem<K>& s, const WallContacts<K>& c)
+void RockingEvents<K>::take(const RigidSystem<K>& s, const WallContacts<K>& c, const std::vector<SpinRow<K>>& rows, bool capped)
 {
 	landings.clear();
+	auto row = rows.begin();
 	const double narrow = tolerance::wall::pivot * c.length;
 	for (const Joint& joint : rocking) {
 		closing.clear();
@@ -271,8 +273,15 @@ void RockingEvents<K>::take(const RigidSystem<K>& s, const WallContacts<K>& c)
 			if (contact(c, points[i]).impulse() > 0 && away(c, points[i], joint) > narrow)
 				closing.push_back(i);
 		Landing landing;
-		if (joint.landing >= 0)
+		if (joint.landing >= 0) {
 			landing = expected[joint.landing];
+			if (!std::isnan(landing.asked)) {
+				if (capped && landing.share > 0)
+					landing.restitution = 1 + ((row->target - landing.carry) / landing.before - 1) / landing.share;
+				landing.capped = capped;
+				++row;
+			}
+		}
 		if (closing.empty() || (joint.landing < 0 && !describe(s, c, joint, closing, landing)))
 			continue;
 		landings.push_back(landing);
@@ -312,7 +321,7 @@ void RockingEvents<K>::report(RigidSystem<K>& s, const WallContacts<K>& c, const
 			result.frictionDemand = (impulse - normal * landing.normal).norm() / normal;
 		}
 		s.impacts.push_back({landing.time, landing.block, landing.support, landing.asked,
-		                     result.after >= scale::leastSpin(s, landing.block), result, lost, capped, residual});
+		                     result.after >= scale::leastSpin(s, landing.block), result, lost, capped || landing.capped, residual});
 		lost = 0;
 		++row;
 	}

@@ -26,8 +26,8 @@ public:
 	// of those that will land.
 	std::vector<SpinRow<K>> find(const RigidSystem<K>& system, const wall::WallContacts<K>& contacts, const wall::LaneArray& change,
 	                             const StepContext& step);
-	// After it: those that have landed.
-	void take(const RigidSystem<K>& system, const wall::WallContacts<K>& contacts);
+	// After it: those that have landed. `rows`: as they were realised, all as asked or all capped.
+	void take(const RigidSystem<K>& system, const wall::WallContacts<K>& contacts, const std::vector<SpinRow<K>>& rows, bool capped);
 	// The rows of the impacts at the instant after the step.
 	std::vector<SpinRow<K>> rows(const wall::WallContacts<K>& contacts) const;
 	// After those: writes them into system.impacts. `lost`: energy, J.
@@ -40,10 +40,19 @@ public:
 	std::vector<int> blocks() const;
 	void clear() { landings.clear(); }
 
-	template <class Archive>
-	void serialize(Archive& archive, unsigned)
+	// What the next step needs of the last, number by number.
+	template <class Flow>
+	void pass(Flow& f)
 	{
-		archive& landings;
+		size_t count = landings.size();
+		f(count);
+		landings.resize(count);
+		for (Landing& l : landings) {
+			f(l.block), f(l.support), f(l.face), f(l.capped);
+			for (double* value : {&l.asked, &l.restitution, &l.time, &l.carry, &l.before, &l.speed, &l.share, &l.baseSpin})
+				f(*value);
+			f(l.axis), f(l.normal);
+		}
 	}
 
 private:
@@ -54,19 +63,12 @@ private:
 	struct Landing {
 		int block, support, face;
 		double asked;       // restitution; NaN: natural
-		double restitution; // 0 where the rocking ends
-		double time;        // s
+		double restitution; // what is left of it: 0 where the rocking ends, what energy allows where the step was capped
+		bool capped;
+		double time; // s
 		double carry, before, speed, share;
 		Vector3 axis, normal;
 		double baseSpin; // rad/s, of the prescribed supports
-
-		template <class Archive>
-		void serialize(Archive& archive, unsigned)
-		{
-			archive& block& support& face& asked& restitution& time& carry& before& speed& share& baseSpin;
-			for (Vector3* v : {&axis, &normal})
-				archive&(*v)[0] & (*v)[1] & (*v)[2];
-		}
 	};
 	struct Joint {
 		int begin, end;           // points
