@@ -106,7 +106,7 @@ TEMPLATE_TEST_CASE("a stack lands as with localised impacts", "", Plane, Space)
 }
 
 // Rows push blocks that bear others: what would make energy is capped, step by step.
-TEMPLATE_TEST_CASE("a shaken column with restitution makes no energy", "", Plane, Space)
+TEMPLATE_TEST_CASE("a shaken column with restitution reports no created energy", "", Plane, Space)
 {
 	AssemblyScene<TestType> scene(0.7, 0.8);
 	auto& s = scene.system;
