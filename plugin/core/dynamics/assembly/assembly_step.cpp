@@ -41,9 +41,9 @@ void AssemblyStep<K>::advancePart(RigidSystem<K>& s, double h)
 	ledger.open(s, pulses.halfBack());
 	setLoads(s, h);
 	solver.spins = events.find(s, contacts, change, step);
-	const CappedReport result = solve(s, loads, step, 0);
+	const CappedReport result = solve(s, loads, step);
 	ledger.takeContacts(s, contacts, solver, solver.advanceGaps(contacts, h));
-	events.take(s, contacts, solver.spins, result.share < 1);
+	events.take(s, contacts);
 	moveBodies(s, h);
 	s.time += h;
 	s.moved = false;
@@ -64,23 +64,23 @@ void AssemblyStep<K>::takeInstants(RigidSystem<K>& s, const StepContext& step)
 		solver.spins = events.rows(contacts);
 		const double lostInStep = ledger.lost();
 		ledger.open(s, pulses.halfBack());
-		const CappedReport impact = solveInstant(s, step.atInstant(events.speed()), lostInStep);
-		events.report(s, contacts, solver.spins, lostInStep + impact.lost, impact.share < 1, impact.residual);
+		const CappedReport impact = solveInstant(s, step.atInstant(events.speed()));
+		events.report(s, contacts, solver.spins, lostInStep + impact.lost, impact.residual);
 		capped.restore(contacts);
 	}
 	solver.spins.clear();
 	if (jump) {
 		pulses.apply(s, contacts);
 		ledger.open(s, pulses.halfBack());
-		solveInstant(s, step.atInstant(pulses.speed()), 0);
+		solveInstant(s, step.atInstant(pulses.speed()));
 		capped.restore(contacts);
 	}
 }
 
 template <class K>
-CappedReport AssemblyStep<K>::solve(RigidSystem<K>& s, const LaneArray& load, const StepContext& step, double spare)
+CappedReport AssemblyStep<K>::solve(RigidSystem<K>& s, const LaneArray& load, const StepContext& step)
 {
-	const CappedReport result = capped.solve(s, contacts, middle, load, solver, ledger, step, spare);
+	const CappedReport result = capped.solve(s, contacts, middle, load, solver, ledger, step);
 	report.iterations += result.iterations;
 	report.factorisations += result.factorisations;
 	report.velocityResidual = std::max(report.velocityResidual, result.residual);
@@ -89,10 +89,10 @@ CappedReport AssemblyStep<K>::solve(RigidSystem<K>& s, const LaneArray& load, co
 
 // Leaves the impulses of the instant in the contacts.
 template <class K>
-CappedReport AssemblyStep<K>::solveInstant(RigidSystem<K>& s, const StepContext& instant, double spare)
+CappedReport AssemblyStep<K>::solveInstant(RigidSystem<K>& s, const StepContext& instant)
 {
 	noLoads.assign(contacts.velocity.size(), all(0));
-	const CappedReport result = solve(s, noLoads, instant, spare);
+	const CappedReport result = solve(s, noLoads, instant);
 	ledger.takeContacts(s, contacts, solver, 0);
 	contacts.velocity = solver.velocity;
 	for (size_t b = 0; b < s.bodies.size(); ++b)

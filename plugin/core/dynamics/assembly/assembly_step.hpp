@@ -68,8 +68,8 @@ private:
 	static wall::Members members(const RigidSystem<K>& system);
 	void advancePart(RigidSystem<K>& system, double h);
 	void takeInstants(RigidSystem<K>& system, const StepContext& step);
-	CappedReport solve(RigidSystem<K>& system, const wall::LaneArray& load, const StepContext& step, double spare);
-	CappedReport solveInstant(RigidSystem<K>& system, const StepContext& instant, double spare);
+	CappedReport solve(RigidSystem<K>& system, const wall::LaneArray& load, const StepContext& step);
+	CappedReport solveInstant(RigidSystem<K>& system, const StepContext& instant);
 	void leanAt(const RigidSystem<K>& system);
 	void takeChange(double fall);
 	void placeFrames(const RigidSystem<K>& system, double h);

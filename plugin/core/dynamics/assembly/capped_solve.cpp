@@ -1,5 +1,5 @@
 #include "dynamics/assembly/capped_solve.hpp"
-#include "impact/energy_cap.hpp"
+#include <cmath>
 
 namespace masonry::rigid::assembly {
 
@@ -8,11 +8,9 @@ using wall::LaneArray;
 
 namespace {
 
-// Residual relative to the velocities that change, above which the laws cannot be met. Larger: what has no solution is taken for one.
-constexpr double unsolvable = 0.1;
-// Energy relative to what moves that counts as none: of solves that end at their tolerance. Larger: impacts may make it; smaller: impacts
-// that keep all energy are capped.
-constexpr double small = 1e-5;
+// Gain of a joint relative to the energy that its couple and its impulses exchange, up to which it counts as none: of solves that end at
+// their tolerance. Larger: impacts may make it; smaller: impacts that keep all energy are capped.
+constexpr double small = 1e-3;
 
 // J; in packs all components have the mass of the body.
 double kineticEnergy(const LaneArray& velocity)
@@ -24,32 +22,54 @@ double kineticEnergy(const LaneArray& velocity)
 	return sum;
 }
 
-// Of the forces, on the mean of the velocities before and after, J.
-double workOf(const LaneArray& load, const LaneArray& before, const LaneArray& after)
+// Whether the joint of a row gains energy, by its couple and by the impulses at the points of its face.
+template <class K>
+bool gains(const RigidSystem<K>& s, const wall::WallContacts<K>& c, const AdmmSolver<K>& solver, const SpinRow<K>& row)
 {
-	double sum = 0;
-	for (size_t b = 0; b < load.size(); ++b)
-		if (const double perMass = before[b][3]; perMass > 0) {
-			const wall::Lanes product = load[b] * (before[b] + after[b]);
-			sum += (product[0] + product[1] + product[2]) / (2 * perMass);
+	double gain = 0, exchanged = 0; // J
+	const auto add = [&](double impulse, double before, double after) {
+		gain += impulse * (before + after) / 2;
+		exchanged += std::abs(impulse) * (std::abs(before) + std::abs(after)) / 2;
+	};
+	add(row.couple, row.rateAgainstBase(c.velocity), row.rateAgainstBase(solver.velocity));
+	for (size_t g = 0; g < c.groups.size(); ++g) {
+		const wall::Group<K>& group = c.groups[g];
+		for (int i = 0; i < wall::width && c.features[g].pair[i] >= 0; ++i) {
+			const ContactPair<K>& pair = s.pairs[c.features[g].pair[i]];
+			const bool isOfJoint =
+			    (pair.body1 == row.body2 && pair.face1 == row.face) || (pair.body2 == row.body2 && pair.face2 == row.face);
+			for (int k = 0; isOfJoint && k < group.count; ++k)
+				for (int n = 0; n < K::rows; ++n) {
+					const auto rate = [&](const LaneArray& v) {
+						return wall::rateOf(group.point[k], n, i, 2, &v[wall::packs<K> * group.body2[i]]) -
+						       wall::rateOf(group.point[k], n, i, 1, &v[wall::packs<K> * group.body1[i]]);
+					};
+					const auto& acted = solver.rows[g][k];
+					add(n == 0 ? acted.actedN[i] : wall::component(acted.actedT, n - 1, i), rate(c.velocity), rate(solver.velocity));
+				}
 		}
-	return sum;
+	}
+	return gain > small * exchanged;
 }
 
 } // namespace
 
 template <class K>
 CappedReport CappedSolve<K>::solve(const RigidSystem<K>& s, wall::WallContacts<K>& c, const Poses& poses, const LaneArray& load,
-                                   AdmmSolver<K>& solver, const EnergyLedger<K>& ledger, const StepContext& step, double spare)
+                                   AdmmSolver<K>& solver, const EnergyLedger<K>& ledger, const StepContext& step)
 {
 	CappedReport report;
 	if (!solver.spins.empty() || step.instant) {
 		groups = c.groups;
 		still = c.still;
 	}
-	const double before = kineticEnergy(c.velocity);
-	// Energy that is left, J; negative: it has grown, or the laws cannot be met.
-	const auto left = [&] {
+	std::vector<SpinRow<K>> rows = solver.spins;
+	for (bool again = true; again;) {
+		again = false;
+		solver.spins.clear();
+		for (const SpinRow<K>& row : rows)
+			if (!row.capped)
+				solver.spins.push_back(row);
 		if (step.instant)
 			for (auto& group : c.groups)
 				for (auto& p : group.point)
@@ -58,38 +78,19 @@ CappedReport CappedSolve<K>::solve(const RigidSystem<K>& s, wall::WallContacts<K
 		report.iterations += solver.report.iterations;
 		report.factorisations += solver.report.factorisations;
 		report.residual = solver.report.residual;
-		report.converged = solver.report.converged;
 		report.finite = solver.report.finite;
-		if (solver.spins.empty() && !step.instant)
-			return 0.;
-		const double base = ledger.work(s, c, solver), after = kineticEnergy(solver.velocity),
-		             forces = workOf(load, c.velocity, solver.velocity), scale = before + std::abs(base) + std::abs(forces);
-		report.lost = before + base + forces - after;
-		return !report.finite || report.residual > unsolvable * step.speed ? -scale : report.lost + spare + small * scale;
-	};
-	const double asked = left();
-	if (solver.spins.empty() || !(asked < 0))
-		return report;
-	const auto rows = solver.spins;
-	const auto again = [&] {
-		restore(c);
-		return left();
-	};
-	solver.spins.clear();
-	const double without = again();
+		auto held = solver.spins.begin();
+		for (SpinRow<K>& row : rows) {
+			row.couple = row.capped ? 0 : (held++)->couple;
+			if (!row.capped && (!report.finite || gains(s, c, solver, row)))
+				row.capped = again = true;
+		}
+		if (again)
+			restore(c);
+	}
 	solver.spins = rows;
-	std::vector<double> spins;
-	for (const auto& row : rows)
-		spins.push_back(row.rate(solver.velocity));
-	const auto leftAt = [&](double share) {
-		for (size_t r = 0; r < rows.size(); ++r)
-			solver.spins[r].target = spins[r] + share * (rows[r].target - spins[r]);
-		return again();
-	};
-	constexpr double narrow = 1e-3;
-	constexpr int attempts = 10;
-	report.share = without > 0 ? largestSafeShare(leftAt, without, asked, narrow, attempts) : 0;
-	leftAt(report.share);
+	if (step.instant)
+		report.lost = kineticEnergy(c.velocity) + ledger.work(s, c, solver) - kineticEnergy(solver.velocity);
 	return report;
 }
 

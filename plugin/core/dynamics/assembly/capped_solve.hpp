@@ -1,15 +1,16 @@
 #pragma once
-// A solve of the contact laws, of a step or of an instant, in which rows make no energy: where they would, the targets of all of them are
-// moved, by one share, from what they ask towards the spins without rows, until they do not (impact/rocking_restitution.hpp).
+// A solve of the contact laws, of a step or of an instant, in which no joint makes energy by its row. A joint's gain is the work of its
+// couple and of the impulses at its points, on the mean of the relative velocities before and after; what friction and impacts take at
+// other joints does not pay for it. A row whose joint gains energy is dropped, and the rest is solved again: the joint lands with its
+// natural restitution. Each round drops a row, so that the rounds end; without rows no joint gains energy.
 #include "dynamics/assembly/energy_ledger.hpp"
 
 namespace masonry::rigid::assembly {
 
 struct CappedReport {
 	int iterations {0}, factorisations {0};
-	double lost {0};  // energy, J; without what gravity and other forces give
-	double share {1}; // of the targets; below 1: capped
-	bool converged {true}, finite {true};
+	double lost {0}; // energy of an instant, J
+	bool finite {true};
 	double residual {0}; // m/s
 };
 
@@ -18,10 +19,10 @@ class CappedSolve {
 public:
 	using Poses = typename AdmmSolver<K>::Poses;
 
-	// As AdmmSolver::solve, with the rows that are in the solver. `spare`: energy that an earlier part of their impact has lost, J. An
-	// instant starts without impulses.
+	// As AdmmSolver::solve, with the rows that are in the solver; those that are dropped come back as `capped`. An instant starts without
+	// impulses.
 	CappedReport solve(const RigidSystem<K>& system, wall::WallContacts<K>& contacts, const Poses& poses, const wall::LaneArray& load,
-	                   AdmmSolver<K>& solver, const EnergyLedger<K>& ledger, const StepContext& step, double spare);
+	                   AdmmSolver<K>& solver, const EnergyLedger<K>& ledger, const StepContext& step);
 	// Puts back the impulses of the contacts as they were before the solve.
 	void restore(wall::WallContacts<K>& contacts) const;
 

@@ -241,7 +241,6 @@ bool RockingEvents<K>::describe(const RigidSystem<K>& s, const WallContacts<K>& 
 	landing.axis = law.result.axis;
 	landing.normal = law.normal;
 	landing.restitution = landing.asked * landing.before < leastSpin ? 0 : landing.asked;
-	landing.capped = false;
 	landing.time = s.time + h * (1 - landing.share);
 	const bool prescribed = std::all_of(all.begin(), all.end(), [&](const ImpulsePoint& point) {
 		return bodies[point.body1 == law.block ? point.body2 : point.body1].prescribed;
@@ -258,14 +257,14 @@ SpinRow<K> RockingEvents<K>::row(const WallContacts<K>& c, const Landing& landin
 	SpinRow<K> result(c, landing.support, landing.block, landing.axis,
 	                  landing.carry + landing.before * (1 - share + share * landing.restitution));
 	result.baseSpin = landing.baseSpin;
+	result.face = landing.face;
 	return result;
 }
 
 template <class K>
-void RockingEvents<K>::take(const RigidSystem<K>& s, const WallContacts<K>& c, const std::vector<SpinRow<K>>& rows, bool capped)
+void RockingEvents<K>::take(const RigidSystem<K>& s, const WallContacts<K>& c)
 {
 	landings.clear();
-	auto row = rows.begin();
 	const double narrow = tolerance::wall::pivot * c.length;
 	for (const Joint& joint : rocking) {
 		closing.clear();
@@ -273,15 +272,8 @@ void RockingEvents<K>::take(const RigidSystem<K>& s, const WallContacts<K>& c, c
 			if (contact(c, points[i]).impulse() > 0 && away(c, points[i], joint) > narrow)
 				closing.push_back(i);
 		Landing landing;
-		if (joint.landing >= 0) {
+		if (joint.landing >= 0)
 			landing = expected[joint.landing];
-			if (!std::isnan(landing.asked)) {
-				if (capped && landing.share > 0)
-					landing.restitution = 1 + ((row->target - landing.carry) / landing.before - 1) / landing.share;
-				landing.capped = capped;
-				++row;
-			}
-		}
 		if (closing.empty() || (joint.landing < 0 && !describe(s, c, joint, closing, landing)))
 			continue;
 		landings.push_back(landing);
@@ -299,7 +291,7 @@ std::vector<SpinRow<K>> RockingEvents<K>::rows(const WallContacts<K>& c) const
 }
 
 template <class K>
-void RockingEvents<K>::report(RigidSystem<K>& s, const WallContacts<K>& c, const std::vector<SpinRow<K>>& rows, double lost, bool capped,
+void RockingEvents<K>::report(RigidSystem<K>& s, const WallContacts<K>& c, const std::vector<SpinRow<K>>& rows, double lost,
                               double residual)
 {
 	gather(s, c);
@@ -321,7 +313,7 @@ void RockingEvents<K>::report(RigidSystem<K>& s, const WallContacts<K>& c, const
 			result.frictionDemand = (impulse - normal * landing.normal).norm() / normal;
 		}
 		s.impacts.push_back({landing.time, landing.block, landing.support, landing.asked,
-		                     result.after >= scale::leastSpin(s, landing.block), result, lost, capped || landing.capped, residual});
+		                     result.after >= scale::leastSpin(s, landing.block), result, lost, row->capped, residual});
 		lost = 0;
 		++row;
 	}

@@ -26,13 +26,13 @@ public:
 	// of those that will land.
 	std::vector<SpinRow<K>> find(const RigidSystem<K>& system, const wall::WallContacts<K>& contacts, const wall::LaneArray& change,
 	                             const StepContext& step);
-	// After it: those that have landed. `rows`: as they were realised, all as asked or all capped.
-	void take(const RigidSystem<K>& system, const wall::WallContacts<K>& contacts, const std::vector<SpinRow<K>>& rows, bool capped);
+	// After it: those that have landed.
+	void take(const RigidSystem<K>& system, const wall::WallContacts<K>& contacts);
 	// The rows of the impacts at the instant after the step.
 	std::vector<SpinRow<K>> rows(const wall::WallContacts<K>& contacts) const;
 	// After those: writes them into system.impacts. `lost`: energy, J.
 	void report(RigidSystem<K>& system, const wall::WallContacts<K>& contacts, const std::vector<SpinRow<K>>& rows, double lost,
-	            bool capped, double residual);
+	            double residual);
 
 	bool areRows() const; // any landing has a restitution
 	double speed() const; // m/s, fastest approach of the landings
@@ -48,7 +48,7 @@ public:
 		f(count);
 		landings.resize(count);
 		for (Landing& l : landings) {
-			f(l.block), f(l.support), f(l.face), f(l.capped);
+			f(l.block), f(l.support), f(l.face);
 			for (double* value : {&l.asked, &l.restitution, &l.time, &l.carry, &l.before, &l.speed, &l.share, &l.baseSpin})
 				f(*value);
 			f(l.axis), f(l.normal);
@@ -63,9 +63,8 @@ private:
 	struct Landing {
 		int block, support, face;
 		double asked;       // restitution; NaN: natural
-		double restitution; // what is left of it: 0 where the rocking ends, what energy allows where the step was capped
-		bool capped;
-		double time; // s
+		double restitution; // what is left of it: 0 where the rocking ends
+		double time;        // s
 		double carry, before, speed, share;
 		Vector3 axis, normal;
 		double baseSpin; // rad/s, of the prescribed supports

@@ -25,7 +25,9 @@ struct SpinRow {
 	Arm arm1, arm2;
 	double target;       // rad/s
 	double baseSpin {0}; // rad/s, about the axis: the couple times it is the work of the prescribed bodies
+	int face {-1};       // of body 2: the points of its joint
 	double couple {0};   // result: N m s
+	bool capped {false}; // result: the row was dropped, since its joint would gain energy
 
 	SpinRow(const wall::WallContacts<K>& contacts, int body1, int body2, const Vector3& axis, double target)
 	    : body1(body1), body2(body2), arm1(spinArm(contacts, body1, axis)), arm2(spinArm(contacts, body2, axis)), target(target)
@@ -33,6 +35,12 @@ struct SpinRow {
 	}
 	// e.(w2 - w1) of velocities in packs.
 	double rate(const wall::LaneArray& v) const { return along(v, body2, arm2) - along(v, body1, arm1); }
+	// The rate on which the couple works, beyond the work of the base.
+	double rateAgainstBase(const wall::LaneArray& v) const
+	{
+		const auto moves = [&](int body) { return v[wall::packs<K> * body][3] > 0; };
+		return (moves(body2) ? along(v, body2, arm2) : 0) - (moves(body1) ? along(v, body1, arm1) : 0) - baseSpin;
+	}
 	// Adds the momentum that a couple gives to the free bodies.
 	void push(double couple, const wall::LaneArray& velocity, wall::LaneArray& momentum) const
 	{
