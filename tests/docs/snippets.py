@@ -8,7 +8,7 @@ A comment above a fenced block says what the block is; every block of Python has
     <!-- run: python -->                a script for plain Python; `yade` instead: for YADE
     <!-- run: python, continued -->     the script above goes on
     <!-- prints -->                     what the last part of the script prints; `...` stands for any text within a line, or for any lines
-    <!-- prints within 5 % -->          the same, and numbers may differ by so much: 70 % where blocks have fallen, whose places differ between compilers
+    <!-- prints within 5 % -->          the same, and numbers may differ by so much
     <!-- file: NAME -->                 a file that later scripts of the page read
     <!-- not run: REASON -->            neither run nor compared
 """

@@ -6,7 +6,7 @@ import numpy as np
 from masonry import _pose, results
 
 UPRIGHT = [1.0, 0, 0, 0]
-# Of sums of a few numbers of order one.
+# The round-off of sums of a few numbers of order one is smaller.
 ROUND = 1e-13
 
 

@@ -69,7 +69,7 @@ def test_wilson_is_that_of_scipy():
         assert (low[k], high[k]) == pytest.approx((expected.low, expected.high), abs=1e-14)
 
 
-# Of 100 populations, a right 95 % interval holds the truth in 95 +- 2.2 (binomial). 86 is 4.1 standard deviations below: a right interval misses that
+# A right 95 % interval holds the truth in 95 +- 2.2 of 100 populations (binomial). 86 is 4.1 standard deviations below: a right interval misses that
 # once in some 7000 choices of the seed.
 COVERED = 86
 

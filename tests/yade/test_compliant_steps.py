@@ -50,7 +50,7 @@ def test_a_given_step_is_not_touched():
 
 
     print(refuses(run, "O.dt", "below", kind=RuntimeError))
-    # What has been made until then is no more than what was there: the board has fallen by half of its height.
+    # The energy created until then is no more than the board had: it has fallen by half of its height.
     assert dem.energy()["kinetic"] < 1.02 * O.bodies[1].state.mass * 9.81 * 0.5
 
 

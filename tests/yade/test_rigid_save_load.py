@@ -78,7 +78,7 @@ def test_saved_and_loaded(make, model, tmp_path):
     print(make.__name__, model, len(dem.impacts()), "impacts")
 
 
-# What another version has saved is not taken for ours: a row of another layout, or one that is too long for it.
+# Rows that another version has saved are not taken for ours: they have another layout, or are too long.
 def stack_by(method):
     stack_on_record("planar")
     O.engines[1].impactOrder, O.engines[1].tolerance = "sequential", 1e-3  # which both methods allow
@@ -182,7 +182,7 @@ def test_what_is_free_and_the_motions_may_change_in_between(method, tmp_path):
     assert same_when_saved(tmp_path, lambda: stack_that_is_shaken(method), take_other_motion)
 
 
-# What is not in O.bodies and O.interactions goes with the run: how long the list of pairs holds, the law of blocks that are near and have not met, a base that
+# State outside O.bodies and O.interactions is saved with the run: how long the list of pairs holds, the law of blocks that are near and have not met, a base that
 # stands still beside the plane's axes, a train whose block is gone.
 def falls_on_wall():
     O.reset()

@@ -107,8 +107,7 @@ public:
 		lanes.clear();
 	}
 
-	// What the next solve needs of the last, number by number, after the contacts. A is made anew from the frames and penalties that it is
-	// of.
+	// Passes what the next solve needs from the last, number by number, after the contacts. A is made anew from its frames and penalties.
 	template <class Flow>
 	void pass(Flow& f, wall::WallContacts<K>& contacts, const RigidSystem<K>& system)
 	{

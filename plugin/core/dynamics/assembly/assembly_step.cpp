@@ -51,7 +51,7 @@ void AssemblyStep<K>::advancePart(RigidSystem<K>& s, double h)
 	report.diverged |= !result.finite || !s.isFinite();
 }
 
-// What happens between two steps: first the impacts of the joints that have landed in the last, then the jumps of the base.
+// Two things happen between two steps: first the impacts of the joints that landed in the last one, then the jumps of the base.
 template <class K>
 void AssemblyStep<K>::takeInstants(RigidSystem<K>& s, const StepContext& step)
 {
@@ -138,7 +138,7 @@ void AssemblyStep<K>::placeFrames(const RigidSystem<K>& s, double h)
 	contacts.lean(s, middle);
 }
 
-// What forces add to the velocities of the free bodies.
+// Sets the velocities that forces add to those of the free bodies.
 template <class K>
 void AssemblyStep<K>::setLoads(const RigidSystem<K>& s, double h)
 {

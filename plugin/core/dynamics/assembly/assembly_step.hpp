@@ -40,8 +40,8 @@ public:
 	// changes.
 	void showPoints(RigidSystem<K>& system) { contacts.showPoints(system); }
 
-	// What the next step needs of the last besides the system, number by number: f(number) takes it, or gives it to a new object, whose run
-	// has the same bits from there on.
+	// Passes what the next step needs from the last besides the system, number by number: f(number) takes it, or gives it to a new object,
+	// whose run has the same bits from there on.
 	template <class Flow>
 	void pass(Flow& f, RigidSystem<K>& system)
 	{

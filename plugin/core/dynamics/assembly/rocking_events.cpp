@@ -181,7 +181,7 @@ std::vector<SpinRow<K>> RockingEvents<K>::find(const RigidSystem<K>& s, const Wa
 	return result;
 }
 
-// Of several supports, the one under the point farthest from the old pivot names the law.
+// If there are several supports, the one under the point farthest from the old pivot gives the law.
 template <class K>
 bool RockingEvents<K>::describe(const RigidSystem<K>& s, const WallContacts<K>& c, const Joint& joint, const std::vector<int>& closing,
                                 Landing& landing) const

@@ -40,7 +40,7 @@ public:
 	std::vector<int> blocks() const;
 	void clear() { landings.clear(); }
 
-	// What the next step needs of the last, number by number.
+	// Passes what the next step needs from the last, number by number.
 	template <class Flow>
 	void pass(Flow& f)
 	{
