@@ -1,7 +1,5 @@
 """How deep boxes are in each other: separating axes, in NumPy, with no line of the plugin's contact search."""
 
-import itertools
-
 import numpy as np
 from yade import O, Box
 
@@ -17,17 +15,15 @@ def layout():
 def separations(centres, axes, half, first, second):
     """The largest separation over the fifteen axes of each pair (first[k], second[k]), m: negative where the boxes overlap, and then the depth."""
     apart = centres[second] - centres[first]
-    a, b = axes[first], axes[second]
-    candidates = [a[:, :, k] for k in range(3)] + [b[:, :, k] for k in range(3)]
-    candidates += [np.cross(a[:, :, i], b[:, :, j]) for i, j in itertools.product(range(3), repeat=2)]
-    best = np.full(len(first), -np.inf)
-    for axis in candidates:
-        length = np.linalg.norm(axis, axis=1)
-        usable = length > 1e-6  # two edges that are parallel give no axis that the faces do not give
-        unit = axis / np.where(usable, length, 1)[:, None]
-        reach = (np.abs(np.einsum("nk,nkj->nj", unit, a)) * half[first]).sum(1) + (np.abs(np.einsum("nk,nkj->nj", unit, b)) * half[second]).sum(1)
-        best = np.where(usable, np.maximum(best, np.abs(np.einsum("nk,nk->n", unit, apart)) - reach), best)
-    return best
+    a, b = axes[first].transpose(0, 2, 1), axes[second].transpose(0, 2, 1)  # rows are the boxes' own axes
+    edges = np.cross(a[:, :, None], b[:, None, :]).reshape(-1, 9, 3)
+    candidates = np.concatenate((a, b, edges), axis=1)
+    length = np.sqrt((candidates**2).sum(2))
+    usable = length > 1e-6  # two edges that are parallel give no axis that the faces do not give
+    units = candidates / np.where(usable, length, 1)[:, :, None]
+    reach = np.abs(units @ a.transpose(0, 2, 1)) @ half[first][:, :, None] + np.abs(units @ b.transpose(0, 2, 1)) @ half[second][:, :, None]
+    distances = np.abs(units @ apart[:, :, None]) - reach
+    return np.where(usable, distances[:, :, 0], -np.inf).max(axis=1, initial=-np.inf)
 
 
 def near_pairs(centres, half, dynamic):

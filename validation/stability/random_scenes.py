@@ -81,10 +81,10 @@ class Flight:
             gap = separations(centres, axes, half, first, second)
             np.minimum.at(apart, first, gap)
             np.minimum.at(apart, second, gap)
-        velocity = np.array([tuple(O.bodies[i].state.vel) for i in ids])
-        turning = np.array([tuple(s.ori * Vector3(*(self.inertia[i][k] * (s.ori.conjugate() * s.angVel)[k] for k in range(3))))
-                            for i, s in ((i, O.bodies[i].state) for i in ids)])
-        spin = np.array([tuple(O.bodies[i].state.angVel) for i in ids])
+        states = [O.bodies[i].state for i in ids]
+        velocity, spin = np.array([tuple(s.vel) for s in states]), np.array([tuple(s.angVel) for s in states])
+        own = (axes.transpose(0, 2, 1) @ spin[:, :, None])[:, :, 0]  # spins along the boxes' axes
+        turning = (axes @ (self.inertia[ids] * own)[:, :, None])[:, :, 0]
         reach = O.dt * (np.linalg.norm(velocity, axis=1) + np.linalg.norm(spin, axis=1) * np.linalg.norm(half, axis=1) + 9.81 * O.dt)
         flies = free & (apart > 4 * reach.max())
         if self.before is not None:
