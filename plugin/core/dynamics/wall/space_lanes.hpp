@@ -122,7 +122,10 @@ MASONRY_INLINE double component(const Two<L>& tangent, int k, int lane)
 template <class L>
 MASONRY_INLINE void setComponent(Two<L>& tangent, int k, int lane, double value)
 {
-	(k == 0 ? tangent.x : tangent.y)[lane] = value;
+	if (k == 0)
+		tangent.x[lane] = value;
+	else // (k == 0 ? x : y)[lane] is a copy to GCC 16
+		tangent.y[lane] = value;
 }
 
 // Velocities of bodies: packs (v, 1/m) and (W, 1/m) of each in, one lane a body out.
