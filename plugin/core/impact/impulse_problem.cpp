@@ -214,20 +214,44 @@ double residual(const System<most>& s)
 	return worst;
 }
 
-// States and slip directions for the next Newton step.
+// States and slip directions for the next Newton step. `damped`: directions of points that go on slipping turn half as far.
 template <int most>
-void updateStates(System<most>& s)
+void updateStates(System<most>& s, bool damped = false)
 {
 	const auto u = s.velocity();
 	for (int i = 0; i < s.nPoints; ++i) {
 		PointState& point = s.points[i];
+		const PointState before = point;
 		const Vector3 p = project(s, i, u.template segment<3>(3 * i), point.state);
 		const Vector2 y = s.p.template segment<2>(3 * i + 1) - u.template segment<2>(3 * i + 1) / s.points[i].response;
 		if (point.state != State::slip || !(y.norm() > 0))
 			continue;
 		point.slipDirection = y.normalized();
 		point.slipTurn = p.tail<2>().norm() / y.norm();
+		if (damped && before.state == State::slip) {
+			point.slipDirection = (point.slipDirection + before.slipDirection).normalized();
+			point.slipTurn = (point.slipTurn + before.slipTurn) / 2;
+		}
 	}
+}
+
+// Goes from `before` to s.p, or half as far, or a quarter ...: where the residual is least.
+template <int most>
+void shortenStep(System<most>& s, const typename System<most>::Vector& before)
+{
+	constexpr int halvings = 9;
+	const typename System<most>::Vector step = s.p - before;
+	typename System<most>::Vector best = s.p;
+	double least = residual(s), share = 1;
+	for (int k = 0; k < halvings; ++k) {
+		share /= 2;
+		s.p = before + share * step;
+		if (const double r = residual(s); r < least) {
+			least = r;
+			best = s.p;
+		}
+	}
+	s.p = best;
 }
 
 // Without slip some problems have no solution. The way out keeps every promise on energy: all points held, then those
@@ -303,8 +327,6 @@ ImpulseReport solveDense(std::vector<Body>& bodies, std::vector<ImpulsePoint>& p
 	const auto slips = [](const PointState& point) { return std::isfinite(point.friction); };
 	const bool anySlips = std::any_of(s.points.begin(), s.points.end(), slips),
 	           allSlip = std::all_of(s.points.begin(), s.points.end(), slips);
-	const int rounds = anySlips ? 6 : 2; // where nothing slips there may be no solution to wait for
-	constexpr int maxNewton = 30;
 	ImpulseReport report {0, std::numeric_limits<double>::infinity()};
 	bool solved = false;
 	auto best = s.p;
@@ -316,18 +338,45 @@ ImpulseReport solveDense(std::vector<Body>& bodies, std::vector<ImpulsePoint>& p
 		report.residual = r;
 		best = s.p;
 	};
-	for (int round = 0; round < rounds && !solved; ++round) {
-		for (int k = 0; k < maxNewton && !solved; ++k, ++report.iterations) {
+	// Newton's method may cycle; which problems it cycles in depends on the states that it starts from, and on its steps.
+	enum class Steps { full, shorter, damped };
+	const auto newton = [&](Steps steps, int times) {
+		for (int k = 0; k < times && !solved; ++k, ++report.iterations) {
+			const auto before = s.p;
 			solveForStates(s);
+			if (steps == Steps::shorter)
+				shortenStep(s, before);
 			keepBest();
-			updateStates(s);
+			updateStates(s, steps == Steps::damped);
 		}
-		if (solved)
-			break;
+	};
+	const auto fromTheseStates = [&] {
+		constexpr int few = 30;
+		newton(Steps::full, few);
+	};
+	fromTheseStates();
+	if (!solved && anySlips) { // those of the velocities without impulses
+		s.p.setZero();
+		updateStates(s);
+		fromTheseStates();
+	}
+	if (!solved && anySlips) {
+		for (PointState& point : s.points)
+			point.state = State::stick;
+		fromTheseStates();
+	}
+	if (!solved && anySlips) {
+		letPullingPointsGo(s);
+		updateStates(s);
+		fromTheseStates();
+	}
+	const int rounds = anySlips ? 5 : 2; // where nothing slips there may be no solution to wait for
+	for (int round = 0; round < rounds && !solved; ++round) {
 		s.p = best;
 		report.iterations += gaussSeidel(s);
 		keepBest();
 		updateStates(s);
+		newton(round % 2 == 0 ? Steps::damped : Steps::shorter, anySlips ? 100 : 30);
 	}
 	s.p = best;
 	if (!solved && !allSlip) {

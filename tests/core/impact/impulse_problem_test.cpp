@@ -1,4 +1,5 @@
 // Random problems of several bodies, judged by the laws themselves and, without friction, by a second method.
+#include "catch_generators.hpp"
 #include "impact/impulse_problem.hpp"
 #include <catch.hpp>
 #include <cmath>
@@ -18,13 +19,16 @@ struct Scene {
 Scene randomColumn(std::mt19937& random, double friction)
 {
 	const auto number = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); };
-	const auto vector = [&](double size) { return Vector3(number(-size, size), number(-size, size), number(-size, size)); };
+	const auto vector = [&](double size) {
+		return Vector3 {number(-size, size), number(-size, size), number(-size, size)};
+	}; // in this order
+
 	Scene scene;
 	const int bodies = 2 + int(number(0, 3));
 	double top = 0;
 	Vector3 below(2, 2, 2); // half sizes
 	for (int b = 0; b < bodies; ++b) {
-		const Vector3 half(number(0.1, 0.5), number(0.1, 0.5), number(0.1, 1.5));
+		const Vector3 half {number(0.1, 0.5), number(0.1, 0.5), number(0.1, 1.5)};
 		const Quaternion turn(Eigen::AngleAxisd(number(0, 0.2), Vector3::UnitZ()));
 		Body body;
 		body.prescribed = b == 0;
@@ -93,16 +97,19 @@ void pointByPoint(Scene& scene)
 
 } // namespace
 
+// In seeds 20 to 37 are columns in which Newton's method cycles from the states that are given. Of the 16,000 columns of seeds 1 to 40
+// three are not solved, and their report says so.
 TEST_CASE("The laws hold at every point, and energy is never gained")
 {
-	std::mt19937 random(7);
+	const int seed = GENERATE(7, 20, 22, 23, 29, 30, 36, 37);
+	std::mt19937 random(seed);
 	for (double friction : {0., 0.3, 0.7, 1.})
 		for (int trial = 0; trial < 100; ++trial) {
 			Scene scene = randomColumn(random, friction);
 			const double before = kinetic(scene.bodies);
 			std::vector<CoupleRow> none;
 			const auto report = solveImpulses(scene.bodies, scene.points, none);
-			INFO("friction " << friction << " trial " << trial << " iterations " << report.iterations);
+			INFO("seed " << seed << " friction " << friction << " trial " << trial << " iterations " << report.iterations);
 			CHECK(report.residual < 1e-8); // m/s, of velocities of order 1; Gauss-Seidel's stop where Newton cycles
 			CHECK(kinetic(scene.bodies) <= before * (1 + 1e-9));
 			for (const ImpulsePoint& p : scene.points) {
