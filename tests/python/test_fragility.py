@@ -162,7 +162,7 @@ def test_few_histories_have_infinite_ends_and_say_so():
 
 
 # The likelihood of nearly separated data is steep: the fit must not stop short of its maximum.
-@pytest.mark.parametrize("overlap", [1e-2, 1e-4, 1e-6, 1e-8])
+@pytest.mark.parametrize("overlap", [1e-2, 1e-4, 1e-6, 1e-8, 4e-9])
 def test_nearly_separated_data(overlap):
     x = np.array([1, 1.5, 2, 2 + overlap, 3, 4.0])
     curve = masonry.Fragility(x, [0, 0, 1, 0, 1, 1])

@@ -135,6 +135,7 @@ class LognormalFit:
                 step = np.linalg.solve(-(design * curvature) @ design.T, design @ slope)
             except np.linalg.LinAlgError:
                 break
+            gain = step @ design @ slope / 2  # of likelihood, that the step promises
             while True:
                 there = self._likelihood((b + step) @ design)
                 if there[0] >= value or np.abs(step).max() < 1e-14 * (1 + np.abs(b).max()):
@@ -142,7 +143,8 @@ class LognormalFit:
                 step /= 2
             b = b + step
             value, slope, curvature = there
-            if np.abs(step).max() <= 1e-12 * (1 + np.abs(b).max()):
+            # The error is now about the square of the step, and the likelihood cannot tell. Round-off in steps is larger the nearer the data are separated.
+            if np.abs(step).max() <= 1e-6 * (1 + np.abs(b).max()) and gain <= 1e-16 * (1 - value):
                 return b
         raise NoMaximum
 
