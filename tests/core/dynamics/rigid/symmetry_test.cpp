@@ -238,11 +238,12 @@ TEST_CASE("Dirac pulses of the base turn no scene that is its own mirror image")
 			}
 }
 
-// Oracle: one block of the wall's size. Every joint of the wall slides or is at its limit, and all stop within a microsecond. Bound: g
-// dt^2/2000 (tolerance::rigid::slowSlip) at each of two stops in each of three joints.
+// Oracle: one block of the wall's size. Every joint of the wall slides or is at its limit, and all stop within a microsecond. Bound: a
+// joint's friction may point the wrong way for the rest of the step in which the wall stops, and moves what is above it by mu g dt^2/2;
+// there are three. Which joints do is decided by round-off, and under changes of the motion by 1e-13 the wall is off by 7e-9 to 3e-7 m.
 TEST_CASE("a wall that slides as one block stops as one block")
 {
-	constexpr double h = 1e-3;
+	constexpr double h = 1e-3, friction = .7;
 	auto boxes = wall();
 	boxes.push_back({{.2, .1, .1}, {-.2, 0, .5}});
 	boxes.push_back({{.2, .1, .1}, {.2, 0, .5}});
@@ -258,11 +259,11 @@ TEST_CASE("a wall that slides as one block stops as one block")
 		}
 		return events;
 	};
-	System s = sceneOf(boxes, 0, .7), one = sceneOf({{{.4, .1, .3}, {0, 0, .3}}}, 0, .7);
+	System s = sceneOf(boxes, 0, friction), one = sceneOf({{{.4, .1, .3}, {0, 0, .3}}}, 0, friction);
 	CHECK(slide(s) == slide(one));
 	const Vector3 shift = one.bodies[1].pose.position - Vector3(0, 0, .3);
 	for (size_t k = 0; k < boxes.size(); ++k)
-		CHECK((s.bodies[k + 1].pose.position - boxes[k].centre - shift).norm() < 2 * 3 * g * h * h / 2000);
+		CHECK((s.bodies[k + 1].pose.position - boxes[k].centre - shift).norm() < 3 * friction * g * h * h / 2);
 }
 
 // The velocities are unique here but where points cannot slip, and so is what of all solutions the solver takes. Bound: residuals of 1e-11
