@@ -99,7 +99,8 @@ def test_scripts_make_the_pictures_that_the_pages_show(name, tmp_path):
         assert re.search(rf"made .*/{re.escape(picture)} \(", run.stdout)
         kept = ROOT / "docs/gallery" / picture
         assert np.allclose(pictures.look(tmp_path / picture)[:2], pictures.look(kept)[:2], rtol=0.02)
-        assert alike(tmp_path / picture, kept) > 0.8, picture
+        # Other pictures are below 0.5. Compiled by another compiler a collapse is the same up to round-off, and blocks fall elsewhere: 0.79 with GCC 16.
+        assert alike(tmp_path / picture, kept) > 0.7, picture
     check = globals().get(name)
     if check:
         check(run.stdout)
