@@ -46,7 +46,7 @@ namespace masonry::rigid::assembly {
 struct AdmmSettings {
 	double tolerance {1e-3}; // largest |w - z| relative to the speed that gravity gives in a step. Larger: joints drift and sink
 	int iterations {20};     // at most in a step, beside the reserve. Fewer: excursions are too small
-	int least {5};       // iterations of a step, unless its residual is below `early`. Fewer: p lags behind what turns, and energy rises
+	int least {10};      // iterations of a step, unless its residual is below `early`. Fewer: p lags behind what turns, and energy rises
 	double early {0.1};  // of the tolerance. Smaller: more iterations at rest; larger: as with fewer `least` iterations
 	int reserve {50};    // times `iterations` that quiet steps save for impacts at most. 0: walls under impacts drift
 	int first {3000};    // iterations of a step that starts without impulses, at most

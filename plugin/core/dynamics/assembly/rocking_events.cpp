@@ -213,7 +213,7 @@ bool RockingEvents<K>::describe(const RigidSystem<K>& s, const WallContacts<K>& 
 	};
 	ClosingJoint law {};
 	double farthest = -1;
-	Vector3 place; // of the new support
+	Vector3 place = Vector3::Zero(); // of the new support
 	for (const int i : closing) {
 		add(i);
 		const double distant = away(c, points[i], joint);
