@@ -10,7 +10,8 @@
 // courses, per, L, T, H   size of the wall and of its blocks (m)
 // amp, angle, hertz       of the base's sine (g, degrees from the wall's direction, Hz)
 // rest, shake, after, h   s
-// k, tol, reserve         of the solver
+// k, tol, reserve, quick, early, instant, itol   of the solver
+// half                    1: energies with the positions of half a step earlier, to which the velocities of a step belong
 // file                    writes the scene as gauss_seidel_space.cpp reads it, and ends
 #include "dynamics/assembly/assembly_step.hpp"
 #include "dynamics/rigid/neighbours.hpp"
@@ -176,7 +177,7 @@ struct World {
 		double sum = system.kineticEnergy();
 		for (const auto& body : system.bodies)
 			if (!body.prescribed)
-				sum += body.mass * g * body.pose.position[up];
+				sum += body.mass * g * (body.pose.position[up] - number("half", 0) * number("h", 1e-3) / 2 * body.velocity[up]);
 		return sum;
 	}
 };
@@ -327,6 +328,10 @@ void runAll()
 		a.reach = number("reach", a.reach);
 		a.filterTime = number("filter", a.filterTime);
 		a.refactorTime = number("refactor", a.refactorTime);
+		a.least = int(number("quick", a.least));
+		a.early = number("early", a.early);
+		a.ofInstant = int(number("instant", a.ofInstant));
+		a.instantTolerance = number("itol", a.instantTolerance);
 		step.settings.threads = int(number("threads", 1));
 		run<K>("one", step);
 	}

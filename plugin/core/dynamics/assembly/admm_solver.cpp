@@ -380,6 +380,7 @@ void AdmmSolver<K>::solve(const RigidSystem<K>& s, WallContacts<K>& c, const Pos
 	const int most = step.instant ? settings.ofInstant
 	                 : cold       ? settings.first
 	                              : std::min(settings.iterations + int(saved), 10 * settings.iterations);
+	const auto isLagging = [&] { return !step.instant && report.iterations < settings.least; };
 	constexpr double diverging = 10;
 	double least = INFINITY;
 	do {
@@ -391,7 +392,7 @@ void AdmmSolver<K>::solve(const RigidSystem<K>& s, WallContacts<K>& c, const Pos
 			least = report.residual;
 		}
 		least = std::min(least, report.residual);
-	} while (report.residual > enough && report.iterations < most);
+	} while (report.residual > (isLagging() ? settings.early * enough : enough) && report.iterations < most);
 	report.converged = report.residual <= enough;
 	if (!step.instant) {
 		saved = cold ? 0 : std::clamp(saved + settings.iterations - report.iterations, 0., double(settings.reserve) * settings.iterations);

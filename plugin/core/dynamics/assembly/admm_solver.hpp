@@ -27,7 +27,7 @@
 //     start of z      Points without an impulse start from the velocity that they have, z = (max(0, w_n), w_t): their bias changes in each
 //                     step. Others keep z, as they keep p.
 //
-// Rows that prescribe a relative spin (SpinRow) are held in each iteration: with Y = A^-1 E^T, the couples c change by
+// Rows that prescribe a spin (SpinRow) are held in each iteration: with Y = A^-1 E^T, the couples c change by
 // (E Y)^-1 (target - E V) and V by Y times that, so that E V is the target to round-off. A does not know of them.
 //
 // An instant (StepContext::instant) is the same problem without forces: impacts with rows, and jumps of the base. Points in touch start as
@@ -46,9 +46,11 @@ namespace masonry::rigid::assembly {
 struct AdmmSettings {
 	double tolerance {1e-3}; // largest |w - z| relative to the speed that gravity gives in a step. Larger: joints drift and sink
 	int iterations {20};     // at most in a step, beside the reserve. Fewer: excursions are too small
-	int reserve {50};        // times `iterations` that quiet steps save for impacts at most. 0: walls under impacts drift
-	int first {3000};        // iterations of a step that starts without impulses, at most
-	int ofInstant {300};     // iterations of an impact or a base pulse, at most
+	int least {10};      // iterations of a step, unless its residual is below `early`. Fewer: p lags behind what turns, and energy rises
+	double early {0.1};  // of the tolerance. Smaller: more iterations at rest; larger: as with fewer `least` iterations
+	int reserve {50};    // times `iterations` that quiet steps save for impacts at most. 0: walls under impacts drift
+	int first {3000};    // iterations of a step that starts without impulses, at most
+	int ofInstant {100}; // iterations of an impact or a base pulse, at most. Fewer: the next steps take up more of it
 	double instantTolerance {
 	    1e-6}; // largest |w - z| of an instant relative to the velocities that change, if that is more. Larger: restitution is less right
 	double softness {0.2};       // r. Larger: high walls go too far; smaller: low walls that begin to move do not go far enough

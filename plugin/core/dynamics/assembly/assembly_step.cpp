@@ -43,7 +43,7 @@ void AssemblyStep<K>::advancePart(RigidSystem<K>& s, double h)
 	solver.spins = events.find(s, contacts, change, step);
 	const CappedReport result = solve(s, loads, step);
 	ledger.takeContacts(s, contacts, solver, solver.advanceGaps(contacts, h));
-	events.take(s, contacts);
+	events.take(s, contacts, solver);
 	moveBodies(s, h);
 	s.time += h;
 	s.moved = false;

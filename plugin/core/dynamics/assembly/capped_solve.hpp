@@ -1,8 +1,10 @@
 #pragma once
 // A solve of the contact laws, of a step or of an instant, in which no joint makes energy by its row. A joint's gain is the work of its
-// couple and of the impulses at its points, on the mean of the relative velocities before and after; what friction and impacts take at
-// other joints does not pay for it. A row whose joint gains energy is dropped, and the rest is solved again: the joint lands with its
-// natural restitution. Each round drops a row, so that the rounds end; without rows no joint gains energy.
+// couple and of the impulses at its points, on the mean of the relative velocities before and after (JointWork); what friction and impacts
+// take at other joints does not pay for it. Row and points of a step and of the instant after it are one
+// impact, whose last part gives back a little of what the first has taken: the balance is that of both. Of the rows whose joints make
+// energy, the one with the largest gain is dropped, and the rest is solved again: that joint lands with its natural restitution. The rounds
+// end, since each drops a row, and without rows no joint gains energy.
 #include "dynamics/assembly/energy_ledger.hpp"
 
 namespace masonry::rigid::assembly {

@@ -37,7 +37,7 @@ double EnergyLedger<K>::work(const RigidSystem<K>& s, const wall::WallContacts<K
 		}
 	}
 	for (const SpinRow<K>& row : solver.spins)
-		sum += row.couple * row.baseSpin;
+		sum += row.couple * row.baseSpin(c.velocity);
 	return sum;
 }
 

@@ -1,4 +1,5 @@
 #include "dynamics/assembly/rocking_events.hpp"
+#include "dynamics/assembly/joint_work.hpp"
 #include "dynamics/rigid/scales.hpp"
 #include "dynamics/wall/rocking_contact.hpp"
 #include "tolerances.hpp"
@@ -14,6 +15,11 @@ using wall::LaneArray;
 using wall::WallContacts;
 
 namespace {
+
+// Distance of the new support from the old one, relative to the smallest half size, from which on a joint rocks. Smaller: a block whose
+// weight goes from one end of a head joint to the other asks its supports for a spin, and gets large couples; larger: rocking on narrow
+// supports has its natural restitution.
+constexpr double leastLever = 0.2;
 
 // The plane as the impact law knows it: z = 0.
 Vector3 inSpace(const Vector2& v) { return {v.x(), v.y(), 0}; }
@@ -207,6 +213,7 @@ bool RockingEvents<K>::describe(const RigidSystem<K>& s, const WallContacts<K>& 
 	};
 	ClosingJoint law {};
 	double farthest = -1;
+	Vector3 place = Vector3::Zero(); // of the new support
 	for (const int i : closing) {
 		add(i);
 		const double distant = away(c, points[i], joint);
@@ -220,6 +227,7 @@ bool RockingEvents<K>::describe(const RigidSystem<K>& s, const WallContacts<K>& 
 		landing.speed = std::max(0., -at.rate(predicted));
 		landing.share = landing.speed > 0 ? std::clamp(1 - at.p.gap[at.lane] / (h * landing.speed), 0., 1.) : 0;
 		law.normal = (at.second ? 1 : -1) * normalOf(c, points[i]);
+		place = positionOf(c, points[i]);
 	}
 	if (closing.empty())
 		return false;
@@ -227,42 +235,64 @@ bool RockingEvents<K>::describe(const RigidSystem<K>& s, const WallContacts<K>& 
 	law.support = number(landing.support);
 	law.oldBegin = int(all.size());
 	const double narrow = tolerance::wall::pivot * c.length;
+	int near = -1, far = -1; // ends of the old pivot
 	for (int i = joint.begin; i < joint.end; ++i)
-		if (away(c, points[i], joint) <= narrow)
+		if (away(c, points[i], joint) <= narrow) {
 			add(i);
+			const auto along = [&](int k) { return joint.direction.dot(positionOf(c, points[k])); };
+			if (near < 0 || along(i) < along(near))
+				near = i;
+			if (far < 0 || along(i) > along(far))
+				far = i;
+		}
 	law.oldEnd = int(all.size());
-	findRocking(bodies, law, all);
+	landing.axis = rockingAxis(bodies, law, all);
+	if (landing.axis.isZero(0))
+		return false;
+	const Vector3 from = place - positionOf(c, points[near]), edge = positionOf(c, points[far]) - positionOf(c, points[near]);
+	double lever = landing.axis.dot(law.normal.cross(from));
+	if (lever < 0) {
+		landing.axis = -landing.axis;
+		lever = -lever;
+	}
+	if (!(lever > leastLever * c.length))
+		return false;
+	const double length = edge.norm(), share = length > narrow ? from.dot(edge) / (length * length) : 0;
+	const auto carrier = [&](const Vector3& where, int body, double perLength) {
+		return Carrier {body, perLength / lever, where - inSpace(c.position(body))};
+	};
+	landing.carriers = {carrier(positionOf(c, points[near]), contact(c, points[near]).support, 1 - share),
+	                    carrier(positionOf(c, points[far]), contact(c, points[far]).support, share), carrier(place, landing.support, -1)};
+	landing.normal = law.normal;
+	landing.before = row(c, landing, 1).rate(predicted);
 	const double leastSpin = scale::leastSpin(s, landing.block);
-	if (law.result.axis.isZero(0) || !(law.result.before >= leastSpin))
+	if (!(landing.before >= leastSpin))
 		return false;
 	landing.face = points[joint.begin].face;
-	landing.before = law.result.before;
-	landing.carry = law.carry;
-	landing.axis = law.result.axis;
-	landing.normal = law.normal;
 	landing.restitution = landing.asked * landing.before < leastSpin ? 0 : landing.asked;
+	if (landing.before < h * scale::acceleration(s) / s.bodies[landing.block].halfSize.norm()) // the step does not resolve it
+		landing.asked = NAN;
 	landing.time = s.time + h * (1 - landing.share);
-	const bool prescribed = std::all_of(all.begin(), all.end(), [&](const ImpulsePoint& point) {
-		return bodies[point.body1 == law.block ? point.body2 : point.body1].prescribed;
-	});
-	landing.baseSpin = bodies[law.support].prescribed ? landing.axis.dot(bodies[law.support].angularVelocity) : 0;
-	if (prescribed) // the couple stands for impulses at the old and the new support
-		landing.baseSpin += landing.carry;
 	return true;
 }
 
 template <class K>
 SpinRow<K> RockingEvents<K>::row(const WallContacts<K>& c, const Landing& landing, double share) const
 {
-	SpinRow<K> result(c, landing.support, landing.block, landing.axis,
-	                  landing.carry + landing.before * (1 - share + share * landing.restitution));
-	result.baseSpin = landing.baseSpin;
+	SpinRow<K> result;
+	result.parts[0] = {landing.block, spinArm(c, landing.block, landing.axis)};
+	for (size_t k = 0; k < landing.carriers.size(); ++k) {
+		const Carrier& carrier = landing.carriers[k];
+		result.parts[k + 1] = {carrier.body, speedArm(c, carrier.body, -carrier.perLength * landing.normal, carrier.arm)};
+	}
+	result.target = landing.before * (1 - share + share * landing.restitution);
 	result.face = landing.face;
+	result.spent = landing.spent;
 	return result;
 }
 
 template <class K>
-void RockingEvents<K>::take(const RigidSystem<K>& s, const WallContacts<K>& c)
+void RockingEvents<K>::take(const RigidSystem<K>& s, const WallContacts<K>& c, const AdmmSolver<K>& solver)
 {
 	landings.clear();
 	const double narrow = tolerance::wall::pivot * c.length;
@@ -276,6 +306,9 @@ void RockingEvents<K>::take(const RigidSystem<K>& s, const WallContacts<K>& c)
 			landing = expected[joint.landing];
 		if (closing.empty() || (joint.landing < 0 && !describe(s, c, joint, closing, landing)))
 			continue;
+		for (const SpinRow<K>& row : solver.spins)
+			if (row.block() == landing.block && row.face == landing.face && !row.capped)
+				landing.spent = jointWork(s, c, solver, landing.block, landing.face);
 		landings.push_back(landing);
 	}
 }
@@ -306,7 +339,7 @@ void RockingEvents<K>::report(RigidSystem<K>& s, const WallContacts<K>& c, const
 		JointResult result;
 		result.axis = landing.axis;
 		result.before = landing.before;
-		result.after = row->rate(c.velocity) - landing.carry;
+		result.after = row->rate(c.velocity);
 		const double normal = landing.normal.dot(impulse);
 		if (normal > 0) {
 			result.application = row->couple / normal;

@@ -9,12 +9,16 @@
 // of the impact; the rest comes at the instant after the step, when forces do nothing. Both are impacts of the same law, to the same
 // target:
 //
-//     e.w = carry + before (1 - s + s C)  in the step,        e.w = carry + before C  after it
+//     e.(w - w_carry) = before (1 - s + s C)  in the step,        e.(w - w_carry) = before C  after it
 //
 // so that bodies move in the step as they would with an impact at its instant within the step. `before` is that of the end of the step, as
 // the last change of the velocities predicts it. All joints that land in a step do so together, with everything else in touch.
-#include "dynamics/assembly/spin_row.hpp"
-#include "dynamics/assembly/step_context.hpp"
+//
+// w_carry is that of the supports as they move after the impact (spin_row.hpp): with C = 0 the block stays in touch with both. The law of
+// localised impacts takes e.(w_carry - w_support) from before the impact instead; both are the same on one support. Where the supports are
+// two blocks of a wall, that difference changes in the impact as much as the spin does, and rows that keep it make energy. A spin below
+// what gravity gives the block in a step lands with its natural restitution, since the step does not resolve it.
+#include "dynamics/assembly/admm_solver.hpp"
 #include "impact/rocking_restitution.hpp"
 
 namespace masonry::rigid::assembly {
@@ -27,7 +31,7 @@ public:
 	std::vector<SpinRow<K>> find(const RigidSystem<K>& system, const wall::WallContacts<K>& contacts, const wall::LaneArray& change,
 	                             const StepContext& step);
 	// After it: those that have landed.
-	void take(const RigidSystem<K>& system, const wall::WallContacts<K>& contacts);
+	void take(const RigidSystem<K>& system, const wall::WallContacts<K>& contacts, const AdmmSolver<K>& solver);
 	// The rows of the impacts at the instant after the step.
 	std::vector<SpinRow<K>> rows(const wall::WallContacts<K>& contacts) const;
 	// After those: writes them into system.impacts. `lost`: energy, J.
@@ -49,9 +53,11 @@ public:
 		landings.resize(count);
 		for (Landing& l : landings) {
 			f(l.block), f(l.support), f(l.face);
-			for (double* value : {&l.asked, &l.restitution, &l.time, &l.carry, &l.before, &l.speed, &l.share, &l.baseSpin})
+			for (double* value : {&l.asked, &l.restitution, &l.time, &l.before, &l.speed, &l.share})
 				f(*value);
-			f(l.axis), f(l.normal);
+			f(l.axis), f(l.normal), f(l.spent.gain), f(l.spent.exchanged);
+			for (Carrier& carrier : l.carriers)
+				f(carrier.body), f(carrier.perLength), f(carrier.arm);
 		}
 	}
 
@@ -60,14 +66,20 @@ private:
 		int block, face;
 		int group, lane, point; // of the contacts
 	};
+	struct Carrier { // what a support adds to w_carry
+		int body;
+		double perLength; // rad/m: e.w_carry over the support's speed along the normal
+		Vector3 arm;      // m, from the body's centre
+	};
 	struct Landing {
 		int block, support, face;
 		double asked;       // restitution; NaN: natural
 		double restitution; // what is left of it: 0 where the rocking ends
 		double time;        // s
-		double carry, before, speed, share;
+		double before, speed, share;
 		Vector3 axis, normal;
-		double baseSpin; // rad/s, of the prescribed supports
+		std::array<Carrier, 3> carriers; // two ends of the old pivot, new support
+		JointWork spent;                 // in the step, with its row
 	};
 	struct Joint {
 		int begin, end;           // points

@@ -1,11 +1,17 @@
 #pragma once
-// A row that prescribes the spin of one body against another about an axis: e.(w2 - w1) = target. The couple that does so acts on body 2
-// along e and on body 1 against it. In the packs of the contacts e.w = arm.V.
+// A row that prescribes the spin of a block about an axis, against the motion of its supports: e.(w - w_carry) = target. With n the normal,
+// O on the old support and P on the new one, at the distance L from it across the axis,
+//
+//     e.w_carry = n.(v_old(O) - v_new(P))/L
+//
+// is the spin with which the block stays in touch with both; where both are one body, it is that body's spin. The couple acts on the block
+// along e, and on the supports as the pair of forces couple/L at O and P. Each velocity is arm.V in the packs of the contacts.
 #include "dynamics/wall/wall_contacts.hpp"
+#include <cmath>
 
 namespace masonry::rigid::assembly {
 
-// e.w of a body by its packs; in the plane e is along z.
+// e.w of a body; in the plane e is along z.
 inline std::array<wall::Lanes, 1> spinArm(const wall::WallContacts<Plane>& c, int body, const Vector3& axis)
 {
 	return {wall::Lanes {0, 0, axis.z() / c.gyration[body][0], 0}};
@@ -17,48 +23,86 @@ inline std::array<wall::Lanes, 2> spinArm(const wall::WallContacts<Space>& c, in
 	return {wall::all(0), wall::noMass * local * rows[3]};
 }
 
+// n.v of the place r from the body's centre.
+inline std::array<wall::Lanes, 1> speedArm(const wall::WallContacts<Plane>& c, int body, const Vector3& n, const Vector3& r)
+{
+	return {wall::Lanes {n.x(), n.y(), r.cross(n).z() / c.gyration[body][0], 0}};
+}
+inline std::array<wall::Lanes, 2> speedArm(const wall::WallContacts<Space>& c, int body, const Vector3& n, const Vector3& r)
+{
+	return {wall::Lanes {n.x(), n.y(), n.z(), 0}, spinArm(c, body, r.cross(n))[1]};
+}
+
+// Work of a couple and of impulses at a joint, J.
+struct JointWork {
+	double gain {0}, exchanged {0}; // sum with signs; of amounts
+
+	// On the mean of the rates before and after.
+	void add(double impulse, double before, double after)
+	{
+		gain += impulse * (before + after) / 2;
+		exchanged += std::abs(impulse) * (std::abs(before) + std::abs(after)) / 2;
+	}
+	void add(const JointWork& other)
+	{
+		gain += other.gain;
+		exchanged += other.exchanged;
+	}
+	// The joint has made energy, beyond what solves that end at their tolerance seem to make.
+	bool isActive() const
+	{
+		constexpr double small = 1e-3; // larger: impacts may make it; smaller: impacts that keep all energy are capped
+		return gain > small * exchanged;
+	}
+};
+
 template <class K>
 struct SpinRow {
 	using Arm = std::array<wall::Lanes, wall::packs<K>>;
+	struct Part {
+		int body;
+		Arm arm;
+	};
 
-	int body1, body2;
-	Arm arm1, arm2;
-	double target;       // rad/s
-	double baseSpin {0}; // rad/s, about the axis: the couple times it is the work of the prescribed bodies
-	int face {-1};       // of body 2: the points of its joint
-	double couple {0};   // result: N m s
-	bool capped {false}; // result: the row was dropped, since its joint would gain energy
+	std::array<Part, 4> parts; // block, old support (the two ends of a pivot that is an edge), new support
+	double target;             // rad/s
+	int face {-1};             // of the block: the points of its joint
+	double couple {0};         // result: N m s
+	JointWork spent;           // of the same impact before this solve
+	bool capped {false};       // result: the row was dropped, since its joint would gain energy
 
-	SpinRow(const wall::WallContacts<K>& contacts, int body1, int body2, const Vector3& axis, double target)
-	    : body1(body1), body2(body2), arm1(spinArm(contacts, body1, axis)), arm2(spinArm(contacts, body2, axis)), target(target)
+	int block() const { return parts[0].body; }
+	// e.(w - w_carry) of velocities in packs.
+	double rate(const wall::LaneArray& v) const
 	{
+		double sum = 0;
+		for (const Part& part : parts)
+			sum += along(v, part);
+		return sum;
 	}
-	// e.(w2 - w1) of velocities in packs.
-	double rate(const wall::LaneArray& v) const { return along(v, body2, arm2) - along(v, body1, arm1); }
-	// The rate on which the couple works, beyond the work of the base.
-	double rateAgainstBase(const wall::LaneArray& v) const
+	// The work of the prescribed bodies is the couple times this, rad/s.
+	double baseSpin(const wall::LaneArray& v) const
 	{
-		const auto moves = [&](int body) { return v[wall::packs<K> * body][3] > 0; };
-		return (moves(body2) ? along(v, body2, arm2) : 0) - (moves(body1) ? along(v, body1, arm1) : 0) - baseSpin;
+		double sum = 0;
+		for (const Part& part : parts)
+			sum -= v[wall::packs<K> * part.body][3] > 0 ? 0 : along(v, part);
+		return sum;
 	}
 	// Adds the momentum that a couple gives to the free bodies.
 	void push(double couple, const wall::LaneArray& velocity, wall::LaneArray& momentum) const
 	{
-		for (int k = 0; k < wall::packs<K>; ++k) {
-			const size_t p1 = wall::packs<K> * body1 + k, p2 = wall::packs<K> * body2 + k;
-			if (velocity[p1][3] > 0)
-				momentum[p1] -= couple * arm1[k];
-			if (velocity[p2][3] > 0)
-				momentum[p2] += couple * arm2[k];
-		}
+		for (const Part& part : parts)
+			for (int k = 0; k < wall::packs<K>; ++k)
+				if (const size_t p = wall::packs<K> * part.body + k; velocity[p][3] > 0)
+					momentum[p] += couple * part.arm[k];
 	}
 
 private:
-	static double along(const wall::LaneArray& v, int body, const Arm& arm)
+	static double along(const wall::LaneArray& v, const Part& part)
 	{
 		double sum = 0;
 		for (int k = 0; k < wall::packs<K>; ++k) {
-			const wall::Lanes product = arm[k] * v[wall::packs<K> * body + k];
+			const wall::Lanes product = part.arm[k] * v[wall::packs<K> * part.body + k];
 			sum += product[0] + product[1] + product[2];
 		}
 		return sum;
