@@ -35,8 +35,8 @@ void AssemblyStep<K>::advancePart(RigidSystem<K>& s, double h)
 	contacts.take(s, members(s), nobody);
 	contacts.measure(s, false);
 	contacts.setUnit(h);
+	lean(s);
 	takeInstants(s, step);
-	placeFrames(s, h);
 	pulses.move(s, contacts, h);
 	ledger.open(s, pulses.halfBack());
 	setLoads(s, h);
@@ -58,7 +58,6 @@ void AssemblyStep<K>::takeInstants(RigidSystem<K>& s, const StepContext& step)
 	const bool land = events.areRows(), jump = pulses.find(s, events.blocks());
 	if (!land && !jump)
 		return;
-	leanAt(s);
 	pulses.hold(s, contacts);
 	if (land) {
 		solver.spins = events.rows(contacts);
@@ -80,7 +79,7 @@ void AssemblyStep<K>::takeInstants(RigidSystem<K>& s, const StepContext& step)
 template <class K>
 CappedReport AssemblyStep<K>::solve(RigidSystem<K>& s, const LaneArray& load, const StepContext& step)
 {
-	const CappedReport result = capped.solve(s, contacts, middle, load, solver, ledger, step);
+	const CappedReport result = capped.solve(s, contacts, poses, load, solver, ledger, step);
 	report.iterations += result.iterations;
 	report.factorisations += result.factorisations;
 	report.velocityResidual = std::max(report.velocityResidual, result.residual);
@@ -102,13 +101,16 @@ CappedReport AssemblyStep<K>::solveInstant(RigidSystem<K>& s, const StepContext&
 	return result;
 }
 
+// Normals and arms are those of the start of the step. A pivot of a block that turns has the centripetal acceleration a, and leaves each
+// step with the normal velocity -h a: the gap is allowed to close in the next step, in which the velocity goes from h a/2 to -h a/2, so
+// that its impulse does no work. With those of the middle of the step it goes from h a to zero, and the impulse p does the work p h a/2.
 template <class K>
-void AssemblyStep<K>::leanAt(const RigidSystem<K>& s)
+void AssemblyStep<K>::lean(const RigidSystem<K>& s)
 {
-	middle.clear();
+	poses.clear();
 	for (const auto& body : s.bodies)
-		middle.push_back(body.pose);
-	contacts.lean(s, middle);
+		poses.push_back(body.pose);
+	contacts.lean(s, poses);
 }
 
 template <class K>
@@ -118,24 +120,6 @@ wall::Members AssemblyStep<K>::members(const RigidSystem<K>& s)
 	for (size_t b = 0; b < s.bodies.size(); ++b)
 		result.own[b] = !s.bodies[b].prescribed;
 	return result;
-}
-
-// Normals and arms of a step are those at its middle: those at its start would lag by half of it, and take energy from what rocks in
-// proportion to it.
-template <class K>
-void AssemblyStep<K>::placeFrames(const RigidSystem<K>& s, double h)
-{
-	middle.resize(s.bodies.size());
-	contacts.eachShare(middle.size(), [&](size_t begin, size_t end, int) {
-		for (size_t b = begin; b < end; ++b) {
-			const auto& body = s.bodies[b];
-			middle[b] = body.pose;
-			K::advance(middle[b], body.velocity, h / 2);
-			if (body.drive >= 0)
-				middle[b].position = s.driven(body, s.time + h / 2);
-		}
-	});
-	contacts.lean(s, middle);
 }
 
 // Sets the velocities that forces add to those of the free bodies.

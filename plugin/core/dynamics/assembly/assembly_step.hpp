@@ -2,13 +2,14 @@
 // The step of an assembly of many rigid blocks, in a plane or in space: walls that stand, that rock, that slide and that fall, by one
 // method (admm_solver.hpp).
 //
+//     frames and gaps at the start of the step (wall::WallContacts)
 //     impacts and jumps of the base at the instant between two steps (RockingEvents, BasePulse, CappedSolve)
-//     frames at the middle of the step, gaps at its start (wall::WallContacts)
 //     V by the contact laws, all at once (AdmmSolver)
 //     q += h V, and penetrations that are left are taken off by positions alone (wall::Lift)
 //     energies (EnergyLedger)
 //
-// Positions are first order in the step.
+// Positions are first order in the step. V belongs to its middle, as in a leapfrog: energies at the end of a step are h f.V/2 off, which
+// does not add up.
 #include "dynamics/assembly/admm_solver.hpp"
 #include "dynamics/assembly/base_pulse.hpp"
 #include "dynamics/assembly/capped_solve.hpp"
@@ -70,9 +71,8 @@ private:
 	void takeInstants(RigidSystem<K>& system, const StepContext& step);
 	CappedReport solve(RigidSystem<K>& system, const wall::LaneArray& load, const StepContext& step);
 	CappedReport solveInstant(RigidSystem<K>& system, const StepContext& instant);
-	void leanAt(const RigidSystem<K>& system);
+	void lean(const RigidSystem<K>& system);
 	void takeChange(double fall);
-	void placeFrames(const RigidSystem<K>& system, double h);
 	void setLoads(const RigidSystem<K>& system, double h);
 	void moveBodies(RigidSystem<K>& system, double h);
 
@@ -86,7 +86,7 @@ private:
 	CappedSolve<K> capped;
 	wall::Lift<K> projection;
 	wall::LaneArray loads, noLoads, change;
-	std::vector<typename K::Pose> middle; // poses at the middle of the step, as the velocities at its start predict them
+	std::vector<typename K::Pose> poses; // of the frames
 };
 
 } // namespace masonry::rigid::assembly

@@ -31,20 +31,23 @@ TEMPLATE_TEST_CASE("a jump of the base turns a block about its edge and makes no
 
 // Three pulses without slip. The energy less the work of the base never rises, but for the energy h f.(V+ - V-)/2 that a step of first
 // order keeps back for the next. Up to the second pulse, which strikes a block on one edge and has more than one answer, spin and work are
-// those of the localised step; bound: twice what is measured, of the first order of the step.
+// those of the localised step. Bound: the angle lags by half a step, w h/2, and gravity's couple by p^2 times that, so that in the time t
+// since the pulse the spin is p^2 h t/2 of itself off; twice that is allowed, and the solver's tolerance, 1e-3, of what gravity takes of
+// the spin. The work of the base is off by twice as much.
 TEMPLATE_TEST_CASE("pulses of a base without slip make no energy", "", Plane, Space)
 {
-	const double h = GENERATE(2e-3, 2e-4);
+	const double h = GENERATE(2e-3, 2e-4), width = 0.05, height = 0.2, start = 0.05, look = 0.1;
+	const double bound = 0.75 * g / std::hypot(width, height) * h * (look - start) + 1e-3; // p^2 = 3g/(4R)
 	AssemblyScene<TestType> one(noSlip, 0.7);
 	SceneOf<TestType> exact(noSlip, 0.7);
 	ScheduledMotion motions[2];
 	for (auto& motion : motions) {
-		motion.append({0.05, 0.3});
+		motion.append({start, 0.3});
 		motion.append({0.11, -0.6});
 		motion.append({0.2, 0.3});
 	}
 	for (auto* s : {&one.system, &exact.system})
-		addBlock(*s, sizeOf(*s, 0.05, 0.2), placeOf(*s, 0, 0.2));
+		addBlock(*s, sizeOf(*s, width, height), placeOf(*s, 0, height));
 	one.drive(motions[0]);
 	exact.drive(motions[1]);
 	RigidStep<TestType> localised;
@@ -57,11 +60,11 @@ TEMPLATE_TEST_CASE("pulses of a base without slip make no energy", "", Plane, Sp
 		const double now = energy(one.system) - one.system.baseWork;
 		gained = std::max(gained, now - least);
 		least = std::min(least, now);
-		if (compared || one.system.time < 0.1)
+		if (compared || one.system.time < look)
 			continue;
 		compared = true;
-		CHECK(one.system.baseWork == Approx(exact.system.baseWork).epsilon(2.5e-3));
-		CHECK(spinOf(one.system.bodies[1]) == Approx(spinOf(exact.system.bodies[1])).epsilon(2.5e-3));
+		CHECK(one.system.baseWork == Approx(exact.system.baseWork).epsilon(2 * bound));
+		CHECK(spinOf(one.system.bodies[1]) == Approx(spinOf(exact.system.bodies[1])).epsilon(bound));
 	}
 	CHECK(compared);
 	CHECK(gained < 0.01 * one.system.baseWork);
