@@ -1,10 +1,10 @@
 #pragma once
-// Work that a joint has done in a solve of the contact laws, of a step or of an instant.
+// This is the work that a joint has done in a solve of the contact laws, of a step or of an instant.
 #include "dynamics/assembly/admm_solver.hpp"
 
 namespace masonry::rigid::assembly {
 
-// Of the impulses at all points of the block's face, and of the couple of its row if it has one.
+// Sums the work of the impulses at all points of the block's face, and of the couple of its row if it has one.
 template <class K>
 JointWork jointWork(const RigidSystem<K>& system, const wall::WallContacts<K>& contacts, const AdmmSolver<K>& solver, int block, int face);
 
