@@ -39,7 +39,7 @@ void BlockPhys::readPoints(masonry::JointContact& contact) const
 	const Vector3r& n = contact.patch.normal;
 	for (int i = 0; i < contact.size; ++i) {
 		const Real normal = n.dot(forces[i]);
-		contact.points[i] = {identities[i], muted[i] != 0, shears[i], normal, forces[i] - n * normal, frictionOffsets[i]};
+		contact.points[i] = {identities[i], muted[i] != 0, shears[i], normal, forces[i] - n * normal, frictionOffsets[i], areas[i]};
 	}
 	contact.energy = energy;
 }
@@ -53,6 +53,7 @@ void BlockPhys::writePoints(const masonry::JointContact& contact)
 	forces.resize(size);
 	normalForces.resize(size);
 	frictionOffsets.resize(size);
+	areas.resize(size);
 	kn = contact.law.normalStiffness * contact.stiffnessArea();
 	ks = contact.law.shearStiffness * contact.stiffnessArea();
 	normalForce.setZero();
@@ -65,6 +66,7 @@ void BlockPhys::writePoints(const masonry::JointContact& contact)
 		forces[i] = contact.force(i);
 		normalForces[i] = point.normalForce;
 		frictionOffsets[i] = point.grip;
+		areas[i] = point.area;
 		normalForce += point.normalForce * contact.patch.normal;
 		shearForce += point.shearForce;
 	}

@@ -142,6 +142,7 @@ void placeFriction(JointContact& contact)
 void release(JointPoint& point)
 {
 	point.normalForce = 0;
+	point.area = 0;
 	point.shearForce.setZero();
 	point.shear.setZero();
 }
@@ -157,14 +158,18 @@ void updateForces(JointContact& contact, const Body& body1, const Body& body2, d
 	contact.energy = {};
 	const auto before = contact.points;
 	std::array<Vector3, maxFrictionPoints> velocities; // at the points, of body 2 relative to body 1
+	std::array<double, maxFrictionPoints> areas;       // of the springs, that of points which part in this step too
 	for (int i = 0; i < contact.size; ++i) {
 		JointPoint& point = contact.points[i];
 		const double depth = -contact.patch.points[i].gap, weight = contact.patch.points[i].weight;
 		velocities[i] = motion2.velocityAt(contact.position(i)) - motion1.velocityAt(contact.position(i));
-		if (point.muted || depth <= 0)
+		areas[i] = contact.stiffnessArea(i);
+		if (point.muted || depth <= 0) {
 			release(point);
-		else
-			point.normalForce = std::max(0., contact.normalStiffness(i) * depth - dampingNormal * weight * n.dot(velocities[i]));
+			continue;
+		}
+		point.area = areas[i];
+		point.normalForce = std::max(0., contact.normalStiffness(i) * depth - dampingNormal * weight * n.dot(velocities[i]));
 	}
 	placeFriction(contact);
 	const Vector3 spin = body2.angularVelocity - body1.angularVelocity;
@@ -172,7 +177,7 @@ void updateForces(JointContact& contact, const Body& body1, const Body& body2, d
 		JointPoint& point = contact.points[i];
 		const JointPoint& old = before[i];
 		const double depth = -contact.patch.points[i].gap, weight = contact.patch.points[i].weight;
-		const double stiffness = contact.shearStiffness(i);
+		const double normalStiffness = contact.law.normalStiffness * areas[i], stiffness = contact.law.shearStiffness * areas[i];
 		const double normalVelocity = n.dot(velocities[i]);
 		const Vector3 acrossPoint = velocities[i] - n * normalVelocity, slideVelocity = acrossPoint + contact.gripMotion(i, spin);
 		double slipped = 0; // J
@@ -193,10 +198,10 @@ void updateForces(JointContact& contact, const Body& body1, const Body& body2, d
 		const double takenNormal = -0.5 * (old.normalForce + point.normalForce) * normalVelocity * dt;
 		const Vector3 oldSlideVelocity = acrossPoint + n.dot(spin) * n.cross(old.grip);
 		const double takenShear = -0.5 * (old.shearForce.dot(oldSlideVelocity) + point.shearForce.dot(slideVelocity)) * dt;
-		const double storedNormal = old.muted ? 0 : 0.5 * contact.normalStiffness(i) * (squared(depth) - squared(oldDepth));
+		const double storedNormal = old.muted ? 0 : 0.5 * normalStiffness * (squared(depth) - squared(oldDepth));
 		const double storedShear = 0.5 * stiffness * (point.shear.squaredNorm() - old.shear.squaredNorm());
 		const auto dashpot = [&](const JointPoint& p, double d) {
-			return p.muted ? 0. : contact.normalStiffness(i) * std::max(0., d) - p.normalForce;
+			return p.muted ? 0. : normalStiffness * std::max(0., d) - p.normalForce;
 		};
 		const double slowed = std::max(0., 0.5 * (dashpot(old, oldDepth) + dashpot(point, depth)) * normalVelocity * dt);
 		const bool unloaded = old.normalForce == 0 && point.normalForce == 0;
@@ -222,6 +227,7 @@ void holdForces(JointContact& contact)
 			release(point);
 			continue;
 		}
+		point.area = contact.stiffnessArea(i);
 		point.normalForce = contact.normalStiffness(i) * depth;
 		takeShearForce(contact, i);
 		contact.energy.elastic += storedEnergy(contact, i);
