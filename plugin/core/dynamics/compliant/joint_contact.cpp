@@ -61,6 +61,9 @@ void renewPatch(JointContact& contact, const ContactPatch& patch)
 	const auto old = contact.points;
 	const int oldSize = contact.size;
 	const bool rocking = contact.rocking();
+	contact.held = 0;
+	for (int i = 0; i < oldSize; ++i)
+		contact.held += old[i].muted ? 0 : old[i].pressed;
 	contact.patch = patch;
 	contact.size = patch.size;
 	for (int i = 0; i < patch.size; ++i) {
@@ -80,10 +83,11 @@ namespace {
 
 double squared(double depth) { return depth > 0 ? depth * depth : 0; }
 
-double storedEnergy(const JointContact& contact, int i)
+// Energy of the springs of a point.
+double storeEnergy(JointContact& contact, int i)
 {
-	return 0.5 * contact.normalStiffness(i) * squared(-contact.patch.points[i].gap) +
-	       0.5 * contact.shearStiffness(i) * contact.points[i].shear.squaredNorm();
+	contact.points[i].pressed = 0.5 * contact.normalStiffness(i) * squared(-contact.patch.points[i].gap);
+	return contact.points[i].pressed + 0.5 * contact.shearStiffness(i) * contact.points[i].shear.squaredNorm();
 }
 
 // Mean velocity of material points over the step dt that ends now. Leapfrog velocities belong to the middle of the
@@ -139,10 +143,28 @@ void placeFriction(JointContact& contact)
 		contact.points[i].grip = grips[i];
 }
 
+// Scales the stiffness so that the normal springs, compressed as at the start of the step, hold what they held then.
+void keepEnergy(JointContact& contact, const std::array<Vector3, maxFrictionPoints>& velocities, double dt)
+{
+	constexpr double mostChange = 10; // more is a corner that has passed to another face
+	double now = 0;
+	bool carries = false;
+	for (int i = 0; i < contact.size; ++i) {
+		const double depth = -contact.patch.points[i].gap;
+		if (contact.points[i].muted)
+			continue;
+		carries |= depth > 0;
+		now += 0.5 * contact.normalStiffness(i) * squared(depth + contact.patch.normal.dot(velocities[i]) * dt);
+	}
+	if (!carries)
+		contact.scale = 1;
+	else if (contact.held > 0 && now > 0)
+		contact.scale = std::clamp(contact.scale * contact.held / now, 1 / mostChange, mostChange);
+}
+
 void release(JointPoint& point)
 {
-	point.normalForce = 0;
-	point.area = 0;
+	point.normalForce = point.pressed = 0;
 	point.shearForce.setZero();
 	point.shear.setZero();
 }
@@ -155,21 +177,19 @@ void updateForces(JointContact& contact, const Body& body1, const Body& body2, d
 	const double mass = reducedMass(body1, body2);
 	const double dampingNormal = contact.dampingNormal(mass), dampingShear = contact.dampingShear(mass);
 	const StepMotion motion1(body1, dt), motion2(body2, dt);
-	contact.energy = {};
 	const auto before = contact.points;
 	std::array<Vector3, maxFrictionPoints> velocities; // at the points, of body 2 relative to body 1
-	std::array<double, maxFrictionPoints> areas;       // of the springs, that of points which part in this step too
+	for (int i = 0; i < contact.size; ++i)
+		velocities[i] = motion2.velocityAt(contact.position(i)) - motion1.velocityAt(contact.position(i));
+	keepEnergy(contact, velocities, dt);
+	contact.energy = {};
 	for (int i = 0; i < contact.size; ++i) {
 		JointPoint& point = contact.points[i];
 		const double depth = -contact.patch.points[i].gap, weight = contact.patch.points[i].weight;
-		velocities[i] = motion2.velocityAt(contact.position(i)) - motion1.velocityAt(contact.position(i));
-		areas[i] = contact.stiffnessArea(i);
-		if (point.muted || depth <= 0) {
+		if (point.muted || depth <= 0)
 			release(point);
-			continue;
-		}
-		point.area = areas[i];
-		point.normalForce = std::max(0., contact.normalStiffness(i) * depth - dampingNormal * weight * n.dot(velocities[i]));
+		else
+			point.normalForce = std::max(0., contact.normalStiffness(i) * depth - dampingNormal * weight * n.dot(velocities[i]));
 	}
 	placeFriction(contact);
 	const Vector3 spin = body2.angularVelocity - body1.angularVelocity;
@@ -177,7 +197,7 @@ void updateForces(JointContact& contact, const Body& body1, const Body& body2, d
 		JointPoint& point = contact.points[i];
 		const JointPoint& old = before[i];
 		const double depth = -contact.patch.points[i].gap, weight = contact.patch.points[i].weight;
-		const double normalStiffness = contact.law.normalStiffness * areas[i], stiffness = contact.law.shearStiffness * areas[i];
+		const double stiffness = contact.shearStiffness(i);
 		const double normalVelocity = n.dot(velocities[i]);
 		const Vector3 acrossPoint = velocities[i] - n * normalVelocity, slideVelocity = acrossPoint + contact.gripMotion(i, spin);
 		double slipped = 0; // J
@@ -198,10 +218,10 @@ void updateForces(JointContact& contact, const Body& body1, const Body& body2, d
 		const double takenNormal = -0.5 * (old.normalForce + point.normalForce) * normalVelocity * dt;
 		const Vector3 oldSlideVelocity = acrossPoint + n.dot(spin) * n.cross(old.grip);
 		const double takenShear = -0.5 * (old.shearForce.dot(oldSlideVelocity) + point.shearForce.dot(slideVelocity)) * dt;
-		const double storedNormal = old.muted ? 0 : 0.5 * normalStiffness * (squared(depth) - squared(oldDepth));
+		const double storedNormal = old.muted ? 0 : 0.5 * contact.normalStiffness(i) * (squared(depth) - squared(oldDepth));
 		const double storedShear = 0.5 * stiffness * (point.shear.squaredNorm() - old.shear.squaredNorm());
 		const auto dashpot = [&](const JointPoint& p, double d) {
-			return p.muted ? 0. : normalStiffness * std::max(0., d) - p.normalForce;
+			return p.muted ? 0. : contact.normalStiffness(i) * std::max(0., d) - p.normalForce;
 		};
 		const double slowed = std::max(0., 0.5 * (dashpot(old, oldDepth) + dashpot(point, depth)) * normalVelocity * dt);
 		const bool unloaded = old.normalForce == 0 && point.normalForce == 0;
@@ -213,7 +233,7 @@ void updateForces(JointContact& contact, const Body& body1, const Body& body2, d
 		contact.energy.friction += slipped;
 		contact.energy.damping += takenNormal + takenShear - taken - slipped;
 		if (!point.muted)
-			contact.energy.elastic += storedEnergy(contact, i);
+			contact.energy.elastic += storeEnergy(contact, i);
 	}
 }
 
@@ -227,10 +247,9 @@ void holdForces(JointContact& contact)
 			release(point);
 			continue;
 		}
-		point.area = contact.stiffnessArea(i);
 		point.normalForce = contact.normalStiffness(i) * depth;
 		takeShearForce(contact, i);
-		contact.energy.elastic += storedEnergy(contact, i);
+		contact.energy.elastic += storeEnergy(contact, i);
 	}
 	placeFriction(contact);
 }

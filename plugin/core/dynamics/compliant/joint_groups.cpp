@@ -427,6 +427,8 @@ double loadWork(const JointSystem& s, const std::vector<Body>& before)
 void settle(JointSystem& s, const std::vector<HeldPoint>& held, double most)
 {
 	const double stored = storedEnergy(s);
+	for (JointContact& contact : s.contacts) // what the springs hold from here on is counted: they have the stiffness of the present patch
+		contact.scale = 1;
 	const std::vector<Body> before = s.bodies;
 	const std::vector<JointContact> contactsBefore = s.contacts;
 	std::vector<HeldPoint> points;

@@ -1,6 +1,7 @@
 #include "dynamics/compliant/time_step.hpp"
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -21,12 +22,13 @@ std::vector<BodyMatrices> bodyMatrices(const std::vector<Body>& bodies, const st
 	std::vector<bool> freeNeighbour(bodies.size(), false);
 	for (const JointContact& contact : contacts) {
 		const bool bothFree = !bodies[contact.body1].prescribed && !bodies[contact.body2].prescribed;
-		const double mass = reducedMass(bodies[contact.body1], bodies[contact.body2]);
+		const double mass = reducedMass(bodies[contact.body1], bodies[contact.body2]), area = contact.stiffnessArea();
 		const Vector3& n = contact.patch.normal;
 		const auto tensor = [&n](double normal, double shear) -> Matrix3 {
 			return (normal - shear) * n * n.transpose() + shear * Matrix3::Identity();
 		};
-		const Matrix3 stiffness = tensor(contact.law.normalStiffness, contact.law.shearStiffness); // per area
+		const double stiffer = std::max(1., contact.scale);
+		const Matrix3 stiffness = tensor(stiffer * contact.law.normalStiffness * area, stiffer * contact.law.shearStiffness * area);
 		const Matrix3 damping = tensor(contact.dampingNormal(mass), contact.dampingShear(mass));
 		for (int b : {contact.body1, contact.body2}) {
 			if (bodies[b].prescribed)
@@ -43,7 +45,7 @@ std::vector<BodyMatrices> bodyMatrices(const std::vector<Body>& bodies, const st
 					sum.bottomLeftCorner<3, 3>() -= turned.transpose();
 					sum.bottomRightCorner<3, 3>() += cross.transpose() * turned;
 				};
-				add(result[b].stiffness, contact.stiffnessArea(i) * stiffness);
+				add(result[b].stiffness, contact.patch.points[i].weight * stiffness);
 				add(result[b].damping, contact.patch.points[i].weight * damping);
 			}
 		}

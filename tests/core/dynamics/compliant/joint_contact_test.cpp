@@ -167,7 +167,7 @@ TEST_CASE("Forces of a position that a hand-off has set obey Coulomb's law")
 	CHECK(blocks.contact.energy.elastic == Approx(stored).epsilon(1e-9));
 }
 
-TEST_CASE("A spring keeps its stiffness while it carries, and takes that of the patch when it comes to carry again")
+TEST_CASE("A patch that grows under load makes no energy, and has its own stiffness when it comes to carry again")
 {
 	JointLaw smooth = law;
 	smooth.friction = 0;
