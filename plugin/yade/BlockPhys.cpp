@@ -39,11 +39,9 @@ void BlockPhys::readPoints(masonry::JointContact& contact) const
 	const Vector3r& n = contact.patch.normal;
 	for (int i = 0; i < contact.size; ++i) {
 		const Real normal = n.dot(forces[i]);
-		contact.points[i] = {identities[i],          muted[i] != 0,      shears[i],         normal,
-		                     forces[i] - n * normal, frictionOffsets[i], pressedEnergies[i]};
+		contact.points[i] = {identities[i], muted[i] != 0, shears[i], normal, forces[i] - n * normal, frictionOffsets[i]};
 	}
 	contact.energy = energy;
-	contact.scale = stiffnessScale;
 }
 
 void BlockPhys::writePoints(const masonry::JointContact& contact)
@@ -55,7 +53,6 @@ void BlockPhys::writePoints(const masonry::JointContact& contact)
 	forces.resize(size);
 	normalForces.resize(size);
 	frictionOffsets.resize(size);
-	pressedEnergies.resize(size);
 	kn = contact.law.normalStiffness * contact.stiffnessArea();
 	ks = contact.law.shearStiffness * contact.stiffnessArea();
 	normalForce.setZero();
@@ -68,12 +65,10 @@ void BlockPhys::writePoints(const masonry::JointContact& contact)
 		forces[i] = contact.force(i);
 		normalForces[i] = point.normalForce;
 		frictionOffsets[i] = point.grip;
-		pressedEnergies[i] = point.pressed;
 		normalForce += point.normalForce * contact.patch.normal;
 		shearForce += point.shearForce;
 	}
 	energy = contact.energy;
-	stiffnessScale = contact.scale;
 }
 
 } // namespace yade

@@ -32,9 +32,7 @@ public:
 		((vector<int>, muted, , Attr::readonly, "1 for a point that carries no force until the rotation of the block has crossed zero."))
 		((vector<Vector3r>, shears, , Attr::readonly, "Elastic tangential displacement of each point, of body 2 relative to body 1 [m]."))
 		((vector<Vector3r>, forces, , Attr::readonly, "Force on body 2 at each point [N]; its tangential part acts at the point's place plus frictionOffsets."))
-		((vector<Vector3r>, frictionOffsets, , Attr::readonly, "Vector from each point (geom.points) to where its tangential force acts [m]. With these offsets a face that turns on its bed has the torque of an even pressure."))
-		((vector<Real>, pressedEnergies, , Attr::readonly, "Elastic energy of the normal spring of each point [J]."))
-		((Real, stiffnessScale, 1, Attr::readonly, "Factor on the stiffness of the patch. It keeps the elastic energy where the area or the points of a loaded patch change.")),
+		((vector<Vector3r>, frictionOffsets, , Attr::readonly, "Vector from each point (geom.points) to where its tangential force acts [m]. With these offsets a face that turns on its bed has the torque of an even pressure.")),
 		createIndex();,
 		.add_property("normalForces", +[](const BlockPhys& phys) { return phys.normalForces; }, "Force along the normal of each point (geom.normals) [N], compression positive; empty after loading until the next step.")
 	);

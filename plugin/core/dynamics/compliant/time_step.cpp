@@ -1,7 +1,6 @@
 #include "dynamics/compliant/time_step.hpp"
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -27,8 +26,7 @@ std::vector<BodyMatrices> bodyMatrices(const std::vector<Body>& bodies, const st
 		const auto tensor = [&n](double normal, double shear) -> Matrix3 {
 			return (normal - shear) * n * n.transpose() + shear * Matrix3::Identity();
 		};
-		const double stiffer = std::max(1., contact.scale);
-		const Matrix3 stiffness = tensor(stiffer * contact.law.normalStiffness * area, stiffer * contact.law.shearStiffness * area);
+		const Matrix3 stiffness = tensor(contact.law.normalStiffness * area, contact.law.shearStiffness * area);
 		const Matrix3 damping = tensor(contact.dampingNormal(mass), contact.dampingShear(mass));
 		for (int b : {contact.body1, contact.body2}) {
 			if (bodies[b].prescribed)

@@ -167,27 +167,6 @@ TEST_CASE("Forces of a position that a hand-off has set obey Coulomb's law")
 	CHECK(blocks.contact.energy.elastic == Approx(stored).epsilon(1e-9));
 }
 
-TEST_CASE("A patch that grows under load makes no energy, and has its own stiffness when it comes to carry again")
-{
-	JointLaw smooth = law;
-	smooth.friction = 0;
-	PressedBlocks blocks(0, 1e-6, smooth);
-	blocks.upper.pose.position.x() = 0.5; // half of the face carries
-	blocks.look();
-	blocks.move(Vector3::Zero());
-	const double stored = 0.5 * 1e9 * 0.5 * 1e-12; // k A d^2/2
-	CHECK(blocks.contact.energy.elastic == Approx(stored).epsilon(1e-9));
-	for (int k = 0; k < 10; ++k) {
-		blocks.move({-0.03, 0, 0}); // across the normal: no work
-		CHECK(blocks.contact.energy.elastic == Approx(stored).epsilon(1e-9));
-		CHECK(std::abs(blocks.contact.energy.taken) < 1e-9 * stored);
-	}
-	blocks.move({0, 0, 1.5e-6});
-	CHECK(blocks.total().norm() == 0);
-	blocks.move({0, 0, -1.5e-6});
-	CHECK(blocks.total().z() == Approx(1e9 * 0.8 * 1e-6).epsilon(1e-9));
-}
-
 TEST_CASE("No slip is a law of its own")
 {
 	JointLaw stuck = law;
