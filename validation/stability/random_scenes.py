@@ -98,14 +98,26 @@ class Flight:
         self.before = flies, velocity, turning
 
 
-def beyond_cone():
-    """By how much friction of a pair is larger than Coulomb's bound, relative to the largest normal force; of pairs whose points have one normal."""
+def one_normal(i, compliant):
+    """Where corners meet corners, the reaction may turn between the normals of two faces: rigid blocks have two points there, a compliant joint a normal
+    that is no face's."""
+    if not compliant or i.geom.kind == 3:
+        return all((n - i.geom.normals[0]).norm() < 1e-9 for n in i.geom.normals)
+    return any(max(abs((O.bodies[b].state.ori.conjugate() * i.geom.normal)[k]) for k in range(3)) > 1 - 1e-12 for b in (i.id1, i.id2))
+
+
+def beyond_cone(compliant):
+    """By how much friction is larger than Coulomb's bound, relative to the largest normal force: of compliant joints at each point, else of each pair.
+    Pairs whose reaction may turn are left out."""
     worst, largest = 0.0, 0.0
     for i in O.interactions:
         normal = i.phys.normalForce.norm()
         largest = max(largest, normal)
-        if all((n - i.geom.normals[0]).norm() < 1e-9 for n in i.geom.normals):
-            worst = max(worst, i.phys.shearForce.norm() - i.phys.tangensOfFrictionAngle * normal)
+        if not one_normal(i, compliant):
+            continue
+        n = i.geom.normal
+        parts = [(n.dot(f), (f - n * n.dot(f)).norm()) for f in i.phys.forces] if compliant else [(normal, i.phys.shearForce.norm())]
+        worst = max([worst] + [shear - i.phys.tangensOfFrictionAngle * pressure for pressure, shear in parts])
     return worst / largest if largest > 0 else 0.0
 
 
@@ -120,16 +132,20 @@ def run(seed):
             saves = seed % 10 == 0 and steps < 5000
             energies, flight, deepest = Energies(lambda: 0.0), Flight(), 0.0
             look = max(1, steps // 100)
+            compliant, impacts, own = row["model"] == "compliant", 0, engine()
             for k in range(steps):
                 O.step()
                 energies.look()
-                if row["model"] != "compliant":
+                if not compliant:
                     flight.look()
                 if k % look == 0:
                     deepest = max(deepest, depth())
-                    row["cone"] = max(row["cone"], beyond_cone())
+                hits = len(own.impactTimes) if compliant else 0  # a hand-off sets the forces of its step
+                if k % look == 0 or hits > impacts:
+                    row["cone"] = max(row["cone"], beyond_cone(compliant))
+                impacts = hits
             row.update(gain=energies.relative_gain(), depth=deepest, flight=flight.worst, failures=engine().failures)
-            if row["model"] == "compliant":
+            if compliant:
                 e = engine()
                 row["off"] = max(e.madeEnergy, e.lostEnergy) / max(e.turnedOver, energies.floor)
             if saves:

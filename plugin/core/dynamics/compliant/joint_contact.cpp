@@ -117,6 +117,18 @@ Vector3 withinFriction(const JointContact& contact, const Vector3& force, double
 	return force - excess(along, friction) - excess(force - along, contact.corner.frictionAcross(friction));
 }
 
+// Takes the shear force of point i from its spring, which slips as far as friction asks. Returns whether it slips.
+bool takeShearForce(JointContact& contact, int i)
+{
+	JointPoint& point = contact.points[i];
+	const Vector3 pull = -contact.shearStiffness(i) * point.shear;
+	point.shearForce = withinFriction(contact, pull, point.normalForce);
+	const bool slips = point.shearForce != pull;
+	if (slips)
+		point.shear = -point.shearForce / contact.shearStiffness(i);
+	return slips;
+}
+
 void placeFriction(JointContact& contact)
 {
 	std::array<double, maxFrictionPoints> forces {};
@@ -167,15 +179,12 @@ void updateForces(JointContact& contact, const Body& body1, const Body& body2, d
 		bool slips = true;
 		if (!point.muted && depth > 0) {
 			point.shear += slideVelocity * dt;
-			const Vector3 pull = -stiffness * point.shear, held = withinFriction(contact, pull, point.normalForce);
-			slips = held != pull;
-			if (slips) {
-				slipped = held.dot(pull - held) / stiffness;
-				point.shear = -held / stiffness;
-				point.shearForce = held;
-			} else {
+			const Vector3 pull = -stiffness * point.shear;
+			slips = takeShearForce(contact, i);
+			if (slips)
+				slipped = point.shearForce.dot(pull - point.shearForce) / stiffness;
+			else
 				point.shearForce = withinFriction(contact, pull - dampingShear * weight * slideVelocity, point.normalForce);
-			}
 		}
 		// The forces take energy from the bodies: dashpots and slip dissipate a part and never give it back, and the springs take the rest.
 		// A spring without any force comes back by its dashpot. The leapfrog scheme's own work of a force over a step is that of the mean
@@ -214,7 +223,7 @@ void holdForces(JointContact& contact)
 			continue;
 		}
 		point.normalForce = contact.normalStiffness(i) * depth;
-		point.shearForce = -contact.shearStiffness(i) * point.shear;
+		takeShearForce(contact, i);
 		contact.energy.elastic += storedEnergy(contact, i);
 	}
 	placeFriction(contact);

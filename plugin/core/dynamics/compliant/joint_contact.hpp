@@ -76,7 +76,8 @@ void renewPatch(JointContact& contact, const ContactPatch& patch);
 // Forces and energies after a step dt that ended in the present patch, velocities those of that step.
 void updateForces(JointContact& contact, const Body& body1, const Body& body2, double dt);
 
-// Forces and stored energy of the present gaps and shears, nothing moved (after a hand-off has set them).
+// Forces and stored energy of the present gaps and shears, nothing moved (after a hand-off has set them). Springs slip to what the
+// normal forces allow.
 void holdForces(JointContact& contact);
 
 } // namespace masonry

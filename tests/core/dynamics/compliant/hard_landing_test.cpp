@@ -112,3 +112,29 @@ TEST_CASE("A block that drops on another makes no energy")
 			drop.check(0.1, 0.5);
 		}
 }
+
+TEST_CASE("Friction stays within Coulomb's cone at every point while blocks slide and land")
+{
+	for (double friction : {0., 0.3, 1.5})
+		for (double restitution : {0., 0.7}) {
+			INFO("friction " << friction << " C " << restitution);
+			Drop drop(restitution, friction);
+			drop.add({1, 0.5, 0.5}, 0, 0.01, 2e-3);
+			drop.add({0.4, 0.4, 0.8}, 0.2, 0.6, 1e-2);
+			drop.chooseSprings(density * g * 3.3, 4e-5);
+			for (size_t b = 1; b < drop.rig.system.bodies.size(); ++b)
+				drop.rig.system.bodies[b].velocity.x() = 0.5;
+			double beyond = 0, largest = 0;
+			while (drop.rig.time < 0.5) {
+				drop.rig.step();
+				for (const JointContact& contact : drop.rig.system.contacts)
+					for (int i = 0; i < contact.size; ++i) {
+						const JointPoint& point = contact.points[i];
+						largest = std::max(largest, point.normalForce);
+						beyond = std::max(beyond, point.shearForce.norm() - friction * point.normalForce);
+					}
+			}
+			CHECK(drop.rig.impacts.size() > 0);
+			CHECK(beyond < 1e-12 * largest); // round-off
+		}
+}

@@ -150,6 +150,23 @@ TEST_CASE("Friction points that move give no energy")
 	CHECK(blocks.contact.energy.elastic - stored <= given + 1e-5 * taken);
 }
 
+TEST_CASE("Forces of a position that a hand-off has set obey Coulomb's law")
+{
+	PressedBlocks blocks(0, 1e-6, law);
+	blocks.move({4e-7, 0, 0});
+	for (int i = 0; i < blocks.contact.size; ++i)
+		blocks.contact.points[i].shear.x() *= i < 2 ? 1 : 10; // of 500 N that friction bears: 200 N and 2000 N
+	holdForces(blocks.contact);
+	double stored = 0;
+	for (int i = 0; i < blocks.contact.size; ++i) {
+		const JointPoint& point = blocks.contact.points[i];
+		CHECK(point.normalForce == Approx(250).epsilon(1e-9));
+		CHECK(point.shearForce.norm() == Approx(i < 2 ? 50 : 125).epsilon(1e-9));
+		stored += 0.5 * point.normalForce * 1e-6 + 0.5 * point.shearForce.squaredNorm() / blocks.contact.shearStiffness(i);
+	}
+	CHECK(blocks.contact.energy.elastic == Approx(stored).epsilon(1e-9));
+}
+
 TEST_CASE("No slip is a law of its own")
 {
 	JointLaw stuck = law;
