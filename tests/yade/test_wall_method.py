@@ -141,6 +141,25 @@ def test_high_walls_that_move(courses, shaken, warns, capfd):
     assert (integrator().movingSteps > 0) == (shaken > 1) and (f"{courses} courses" in text) == warns
 
 
+@pytest.mark.parametrize("shaking, moves", ((0.05, False), (1.2, True)))
+def test_a_wall_of_many_courses(shaking, moves, tmp_path, capfd):
+    """From some height on another step is taken. It goes on with the same bits after loading, and its errors do not grow with the courses: no warning."""
+    wall(42, 2, shaking)
+    capfd.readouterr()
+    O.run(260, True)
+    assert (integrator().movingSteps > 0) == moves and (integrator().movingBlocks > 0) == moves and integrator().failures == 0
+    assert "courses" not in capfd.readouterr().err
+    wanted = bits()
+    wall(42, 2, shaking)
+    O.run(130, True)
+    path = str(tmp_path / "wall.yade")
+    O.save(path)
+    O.reset()
+    O.load(path)
+    O.run(130, True)
+    assert np.array_equal(wanted, bits())
+
+
 def slab(density, method):
     """How far a slab on two courses slides on a shaken base, m; friction 0.3."""
     O.reset()

@@ -1,16 +1,41 @@
 #include "dynamics/scheduler/scheduler.hpp"
 #include "dynamics/rigid/island_numbers.hpp"
 #include <algorithm>
+#include <cmath>
 
 namespace masonry::rigid {
+
+namespace {
+
+// Largest number of blocks one upon another, from the nearest prescribed body on. What stands beside a block does not bear it.
+template <class K>
+int coursesOf(const RigidSystem<K>& s, const std::vector<char>& isWall)
+{
+	std::vector<int> course(s.bodies.size(), -1);
+	for (size_t b = 0; b < s.bodies.size(); ++b)
+		if (s.bodies[b].prescribed)
+			course[b] = 0;
+	int most = 0;
+	for (int reached = 0; reached <= most; ++reached)
+		for (const ContactPair<K>& pair : s.pairs)
+			for (const auto& [from, to] : {std::pair(pair.body1, pair.body2), std::pair(pair.body2, pair.body1)})
+				if (!pair.beside && isWall[to] && course[from] == reached && course[to] < 0)
+					most = course[to] = reached + 1;
+	return most;
+}
+
+} // namespace
 
 template <class K>
 StepReport Scheduler<K>::advance(RigidSystem<K>& s, double dt)
 {
-	if (s.lists != list || s.bodies.size() != ofWall.size())
+	const bool isNew = s.lists != list || s.bodies.size() != ofWall.size();
+	if (isNew)
 		divide(s);
+	if (isNew || s.moved) // laws change with s.moved only
+		chooseStep(s);
 	if (localisedBodies.empty())
-		return walls.advance(s, dt);
+		return advanceWalls(s, dt);
 	const Settings ofWalls = s.settings;
 	const bool moved = s.moved;
 	s.settings.tolerance = Settings().tolerance;
@@ -21,10 +46,51 @@ StepReport Scheduler<K>::advance(RigidSystem<K>& s, double dt)
 	s.moved = moved;
 	gapsAreOutdated = false;
 	hideLocalised(s);
-	StepReport report = walls.advance(s, dt);
+	StepReport sum = advanceWalls(s, dt);
 	restoreLocalised(s);
-	report += islands.advanceTaken(s, dt);
-	return report;
+	sum += islands.advanceTaken(s, dt);
+	return sum;
+}
+
+template <class K>
+StepReport Scheduler<K>::advanceWalls(RigidSystem<K>& s, double dt)
+{
+	if (!byAssembly) {
+		walls->settings = settings;
+		const StepReport sum = walls->advance(s, dt);
+		const WallReport& of = walls->report;
+		report = {of.moved, of.mode == WallMode::moving ? of.courses : 0, of.partBases, of.velocityResidual, of.forceResidual};
+		return sum;
+	}
+	assembly::AssemblySettings& of = assembly->settings;
+	const assembly::AdmmSettings usual;
+	of.solver.tolerance = settings.tolerance;
+	of.solver.strictForces = settings.strictForces;
+	of.solver.iterations = int(std::lround(usual.iterations * std::max(1., std::sqrt(usual.tolerance / settings.tolerance))));
+	of.threads = settings.threads;
+	const StepReport sum = assembly->advance(s, dt);
+	report = {assembly->report.moved, 0, false, assembly->report.velocityResidual, assembly->report.forceResidual};
+	return sum;
+}
+
+// Another step starts from the impulses that the last has left in the pairs.
+template <class K>
+void Scheduler<K>::chooseStep(RigidSystem<K>& s)
+{
+	std::vector<char> isWall(s.bodies.size(), 0);
+	for (size_t b = 0; b < s.bodies.size(); ++b)
+		isWall[b] = !s.bodies[b].prescribed && !isLocalised(int(b));
+	const bool hasLaw = std::any_of(s.pairs.begin(), s.pairs.end(), [&](const ContactPair<K>& pair) {
+		return !std::isnan(pair.restitution) && (isWall[pair.body1] || isWall[pair.body2]);
+	});
+	const bool now = !hasLaw && (byAssembly || coursesOf(s, isWall) > coursesOfTwoModes);
+	if (now == byAssembly)
+		return;
+	showPoints(s);
+	s.moved = true;
+	byAssembly = now;
+	walls.emplace();
+	assembly.emplace();
 }
 
 template <class K>

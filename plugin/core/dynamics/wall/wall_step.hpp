@@ -50,9 +50,7 @@ public:
 	template <class Work>
 	void eachShare(size_t size, const Work& work)
 	{
-		constexpr size_t least = 256; // fewer do not repay that threads meet
-		const size_t count = std::clamp<size_t>(size / least, 1, wall::Team::mostParts);
-		team.each(int(count), [&](int k) { work(size * k / count, size * (k + 1) / count); });
+		team.eachShare(size, work);
 	}
 
 	// Gaps, forces and places of the points as they are after the step, into the system's pairs: the step itself does without. To be called

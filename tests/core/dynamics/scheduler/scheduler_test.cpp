@@ -75,6 +75,41 @@ TEST_CASE("a wall moves as by the walls' method alone, a pier beside it as with 
 		CHECK(both.system.*energy == Approx(wall.system.*energy + pier.system.*energy).epsilon(1e-9)); // summed in another order
 }
 
+TEST_CASE("a high wall has the step of high walls, if no pair of it has a restitution")
+{
+	const double restitution = GENERATE(double(NAN), 0.5);
+	const bool high = GENERATE(false, true);
+	const int courses = Scheduler<Plane>::coursesOfTwoModes + high;
+	Scene scheduled(0.7, restitution), alone(0.7, restitution);
+	Harmonic motion(0.3 * g, 2, 0.005);
+	for (Scene* scene : {&scheduled, &alone}) {
+		scene->drive(motion);
+		scene->addWall(courses, 2);
+	}
+	Scheduler<Plane> scheduler;
+	WallStep<Plane> twoModes;
+	assembly::AssemblyStep<Plane> oneMethod;
+	shake(scheduled, scheduler, 0.02);
+	high&& std::isnan(restitution) ? shake(alone, oneMethod, 0.02) : shake(alone, twoModes, 0.02);
+	CHECK(numbersOf(scheduled.system) == numbersOf(alone.system));
+}
+
+TEST_CASE("a high wall that gets a restitution goes on from what bears it")
+{
+	Scene scene;
+	scene.addWall(Scheduler<Plane>::coursesOfTwoModes + 1, 2);
+	scene.start = scene.system.bodies;
+	Scheduler<Plane> scheduler;
+	shake(scene, scheduler, 0.05);
+	for (auto& pair : scene.system.pairs)
+		pair.restitution = 0.5;
+	scene.system.moved = true;
+	shake(scene, scheduler, 0.05);
+	CHECK(scheduler.report.moved == 0);
+	CHECK(scene.drift() < 1e-6);
+	CHECK(scene.sink() < 1e-5);
+}
+
 // Where all are of few blocks the walls' method has been asked for, and has them.
 TEST_CASE("without a wall and with motions in order of time the walls' method has all")
 {
