@@ -7,8 +7,6 @@ namespace yade {
 
 namespace {
 
-/// Courses of a wall above which a warning tells that it may go too far, or not far enough, as it moves (validation/walls/shaking).
-constexpr int mostCourses = 24;
 /// Steps after which O.interactions are written even if nobody seems to look.
 constexpr int mostUnshown = 64;
 
@@ -108,12 +106,6 @@ masonry::rigid::StepReport RigidScene<K>::advanceWall()
 	++(still ? integrator.stillSteps : integrator.movingSteps);
 	integrator.velocityResidual = ofWalls.velocityResidual;
 	integrator.forceResidual = ofWalls.forceResidual;
-	if (ofWalls.courses > mostCourses && !integrator.warnedOf.courses) {
-		integrator.warnedOf.courses = true;
-		LOG_WARN("blocks of a wall of "
-		         << ofWalls.courses << " courses move from t = " << scene.time << " s on: walls of more than " << mostCourses
-		         << " courses may go some tenths too far; see by dem.compare() what a smaller dt or tolerance of dem.engines() changes.");
-	}
 	if (ofWalls.partBases && !integrator.warnedOf.bases) {
 		integrator.warnedOf.bases = true;
 		LOG_WARN(

@@ -7,9 +7,9 @@ namespace masonry::rigid {
 
 namespace {
 
-// Largest number of blocks one upon another, from the nearest prescribed body on. What stands beside a block does not bear it.
+// By body: blocks from the nearest prescribed body on, one upon another; -1: of no wall. What stands beside a block does not bear it.
 template <class K>
-int coursesOf(const RigidSystem<K>& s, const std::vector<char>& isWall)
+std::vector<int> coursesOf(const RigidSystem<K>& s, const std::vector<char>& isWall)
 {
 	std::vector<int> course(s.bodies.size(), -1);
 	for (size_t b = 0; b < s.bodies.size(); ++b)
@@ -21,6 +21,19 @@ int coursesOf(const RigidSystem<K>& s, const std::vector<char>& isWall)
 			for (const auto& [from, to] : {std::pair(pair.body1, pair.body2), std::pair(pair.body2, pair.body1)})
 				if (!pair.beside && isWall[to] && course[from] == reached && course[to] < 0)
 					most = course[to] = reached + 1;
+	return course;
+}
+
+// Largest course of a block times the ratio of its mass to that of one that it is upon.
+template <class K>
+double burdenOf(const RigidSystem<K>& s, const std::vector<int>& course)
+{
+	double most = 0;
+	for (const ContactPair<K>& pair : s.pairs) {
+		const auto [low, high] = std::minmax({pair.body1, pair.body2}, [&](int a, int b) { return course[a] < course[b]; });
+		if (course[low] > 0 && course[low] < course[high])
+			most = std::max(most, course[high] * s.bodies[high].mass / s.bodies[low].mass);
+	}
 	return most;
 }
 
@@ -32,7 +45,7 @@ StepReport Scheduler<K>::advance(RigidSystem<K>& s, double dt)
 	const bool isNew = s.lists != list || s.bodies.size() != ofWall.size();
 	if (isNew)
 		divide(s);
-	if (isNew || s.moved) // laws change with s.moved only
+	if (isNew)
 		chooseStep(s);
 	if (localisedBodies.empty())
 		return advanceWalls(s, dt);
@@ -59,7 +72,7 @@ StepReport Scheduler<K>::advanceWalls(RigidSystem<K>& s, double dt)
 		walls->settings = settings;
 		const StepReport sum = walls->advance(s, dt);
 		const WallReport& of = walls->report;
-		report = {of.moved, of.mode == WallMode::moving ? of.courses : 0, of.partBases, of.velocityResidual, of.forceResidual};
+		report = {of.moved, of.partBases, of.velocityResidual, of.forceResidual};
 		return sum;
 	}
 	assembly::AssemblySettings& of = assembly->settings;
@@ -69,7 +82,7 @@ StepReport Scheduler<K>::advanceWalls(RigidSystem<K>& s, double dt)
 	of.solver.iterations = int(std::lround(usual.iterations * std::max(1., std::sqrt(usual.tolerance / settings.tolerance))));
 	of.threads = settings.threads;
 	const StepReport sum = assembly->advance(s, dt);
-	report = {assembly->report.moved, 0, false, assembly->report.velocityResidual, assembly->report.forceResidual};
+	report = {assembly->report.moved, false, assembly->report.velocityResidual, assembly->report.forceResidual};
 	return sum;
 }
 
@@ -80,10 +93,9 @@ void Scheduler<K>::chooseStep(RigidSystem<K>& s)
 	std::vector<char> isWall(s.bodies.size(), 0);
 	for (size_t b = 0; b < s.bodies.size(); ++b)
 		isWall[b] = !s.bodies[b].prescribed && !isLocalised(int(b));
-	const bool hasLaw = std::any_of(s.pairs.begin(), s.pairs.end(), [&](const ContactPair<K>& pair) {
-		return !std::isnan(pair.restitution) && (isWall[pair.body1] || isWall[pair.body2]);
-	});
-	const bool now = !hasLaw && (byAssembly || coursesOf(s, isWall) > coursesOfTwoModes);
+	const std::vector<int> course = coursesOf(s, isWall);
+	const int courses = course.empty() ? 0 : *std::max_element(course.begin(), course.end());
+	const bool now = byAssembly || courses > coursesOfTwoModes || burdenOf(s, course) > burdenOfTwoModes;
 	if (now == byAssembly)
 		return;
 	showPoints(s);

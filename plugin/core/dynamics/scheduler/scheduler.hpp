@@ -1,18 +1,18 @@
 #pragma once
 // Decides which structures get which step. A structure is a set of blocks that a chain of near pairs joins (island_numbers.hpp).
 //
-//     structure            step
-//     many courses         assembly_step.hpp
-//     many blocks          wall_step.hpp; and all walls where a pair of theirs has a given restitution: the impacts of a dense wall with
-//                          one cost assembly_step.hpp some fifteen times as much
-//     at most maxBlocks    rigid_step.hpp: its impacts are localised, and it is second order in the step
+//     structure                                      step
+//     many courses, or a heavy block on light ones   assembly_step.hpp
+//     many blocks                                    wall_step.hpp
+//     at most maxBlocks                              rigid_step.hpp: its impacts are localised, and it is second order in the step
 //
 // The two kinds of structures are near no block of each other and are stepped one after the other, each as if the other were not there.
 // Localised structures use the default tolerance and order of Settings, whatever the walls use.
 //
-// All walls of a system are stepped together, and once one has been high they stay with its step. A block that has once belonged to a wall
-// stays with the walls: the parts that break off a wall are many small structures, and each impact of theirs would be searched for. All
-// structures get the walls' step if none has more than maxBlocks, or if the motions must be asked in order of time (BaseDrive::ordered).
+// All walls of a system are stepped together, and once they have taken the step of high walls they stay with its step. A block that has
+// once belonged to a wall stays with the walls: the parts that break off a wall are many small structures, and each impact of theirs would
+// be searched for. All structures get the walls' step if none has more than maxBlocks, or if the motions must be asked in order of time
+// (BaseDrive::ordered).
 #include "dynamics/assembly/assembly_step.hpp"
 #include "dynamics/rigid/islands.hpp"
 #include "dynamics/wall/wall_step.hpp"
@@ -24,7 +24,6 @@ namespace masonry::rigid {
 // Of the last step of the walls.
 struct WallsReport {
 	int moved {0};                                  // blocks that move against a neighbour
-	int courses {0};                                // of what moves by sweeps, whose errors grow with them
 	bool partBases {false};                         // blocks of a structure stand on bases that move in different ways
 	double velocityResidual {0}, forceResidual {0}; // m/s; of an impulse, as the velocity that it gives the point
 };
@@ -36,10 +35,12 @@ public:
 	// minutes a second.
 	static constexpr int maxBlocks = K::dimension == 2 ? 20 : 6;
 
-	// Courses up to which a wall is stepped by the two modes of wall_step.hpp. Their cost grows as the square of the courses, and their
-	// errors with them; those of assembly_step.hpp do not. Smaller: walls of so many courses that stand on a shaken base take two to three
-	// times the time. Larger: those that move do, and go too far.
-	static constexpr int coursesOfTwoModes = 40;
+	// Courses, and course times the ratio of a block's mass to that of one below it, up to which a wall is stepped by the two modes of
+	// wall_step.hpp. Their cost grows as the square of the courses, and their errors with courses and burden; those of assembly_step.hpp do
+	// not. Smaller: walls of so many courses that stand on a shaken base take two to three times the time. Larger: those that move go too
+	// far.
+	static constexpr int coursesOfTwoModes = 24;
+	static constexpr double burdenOfTwoModes = 4e4;
 
 	WallSettings settings;
 	WallsReport report;

@@ -31,7 +31,6 @@ struct WallReport : StepReport {
 	WallMode mode {WallMode::still}; // moving: some structure moved
 	int moved {0};                   // blocks of structures that moved
 	bool switched {false};           // some structure has begun to
-	int courses {0};                 // blocks one upon another, at most, of those that moved if any did
 	bool partBases {false};          // structures are new, and one stands on bases that move in different ways
 	int solves {0};                  // of the still mode
 	double velocityResidual {0};     // m/s
