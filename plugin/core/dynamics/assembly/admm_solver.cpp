@@ -410,11 +410,15 @@ void AdmmSolver<K>::solve(const RigidSystem<K>& s, WallContacts<K>& c, const Pos
 	                                                 : std::min(settings.iterations + int(saved), 10 * settings.iterations);
 	const auto isLagging = [&] { return !step.instant && report.iterations < settings.least; };
 	constexpr double diverging = 10;
+	constexpr int untilLoaded = 100; // iterations of a cold start, after which R follows the loads that they have found
 	double least = INFINITY;
 	do {
 		report.residual = iterate(c, step);
 		++report.iterations;
-		if (report.residual > diverging * least) {
+		const bool isLoaded = cold && !step.instant && report.iterations % untilLoaded == 0;
+		if (isLoaded)
+			c.startMeans(LaneBits(c.groups.size(), allLanes));
+		if (isLoaded || report.residual > diverging * least) {
 			factorise(s, c, poses, step);
 			prepareSpins(c);
 			least = report.residual;

@@ -45,8 +45,6 @@ StepReport Scheduler<K>::advance(RigidSystem<K>& s, double dt)
 	const bool isNew = s.lists != list || s.bodies.size() != ofWall.size();
 	if (isNew)
 		divide(s);
-	if (isNew)
-		chooseStep(s);
 	if (localisedBodies.empty())
 		return advanceWalls(s, dt);
 	const Settings ofWalls = s.settings;
@@ -68,11 +66,14 @@ StepReport Scheduler<K>::advance(RigidSystem<K>& s, double dt)
 template <class K>
 StepReport Scheduler<K>::advanceWalls(RigidSystem<K>& s, double dt)
 {
+	if (oneMethod && !byAssembly)
+		takeAssembly(s);
 	if (!byAssembly) {
 		walls->settings = settings;
 		const StepReport sum = walls->advance(s, dt);
 		const WallReport& of = walls->report;
 		report = {of.moved, of.partBases, of.velocityResidual, of.forceResidual};
+		oneMethod |= isHigh && of.moved > 0;
 		return sum;
 	}
 	assembly::AssemblySettings& of = assembly->settings;
@@ -86,23 +87,14 @@ StepReport Scheduler<K>::advanceWalls(RigidSystem<K>& s, double dt)
 	return sum;
 }
 
-// Another step starts from the impulses that the last has left in the pairs.
+// Starts from the impulses that the two modes have left in the pairs.
 template <class K>
-void Scheduler<K>::chooseStep(RigidSystem<K>& s)
+void Scheduler<K>::takeAssembly(RigidSystem<K>& s)
 {
-	std::vector<char> isWall(s.bodies.size(), 0);
-	for (size_t b = 0; b < s.bodies.size(); ++b)
-		isWall[b] = !s.bodies[b].prescribed && !isLocalised(int(b));
-	const std::vector<int> course = coursesOf(s, isWall);
-	const int courses = course.empty() ? 0 : *std::max_element(course.begin(), course.end());
-	const bool now = byAssembly || courses > coursesOfTwoModes || burdenOf(s, course) > burdenOfTwoModes;
-	if (now == byAssembly)
-		return;
-	showPoints(s);
-	s.moved = true;
-	byAssembly = now;
+	walls->showPoints(s);
 	walls.emplace();
-	assembly.emplace();
+	s.moved = true;
+	byAssembly = true;
 }
 
 template <class K>
@@ -130,6 +122,11 @@ void Scheduler<K>::divide(const RigidSystem<K>& s)
 	for (const int b : localisedBodies)
 		isLocalised[b] = 1;
 	islands.divide(s, isLocalised);
+	for (size_t b = 0; b < s.bodies.size(); ++b)
+		isWall[b] = !s.bodies[b].prescribed && !isLocalised[b];
+	const std::vector<int> course = coursesOf(s, isWall);
+	isHigh = std::any_of(course.begin(), course.end(), [](int of) { return of > coursesOfTwoModes; });
+	oneMethod |= burdenOf(s, course) > burdenOfTwoModes || (isHigh && areOrdered(s.drives));
 }
 
 // To the walls, localised bodies are bodies at rest that nothing moves.

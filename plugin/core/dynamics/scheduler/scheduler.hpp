@@ -1,17 +1,18 @@
 #pragma once
 // Decides which structures get which step. A structure is a set of blocks that a chain of near pairs joins (island_numbers.hpp).
 //
-//     structure                                      step
-//     many courses, or a heavy block on light ones   assembly_step.hpp
-//     many blocks                                    wall_step.hpp
-//     at most maxBlocks                              rigid_step.hpp: its impacts are localised, and it is second order in the step
+//     structure            step
+//     at most maxBlocks    rigid_step.hpp: its impacts are localised, and it is second order in the step
+//     more                 wall_step.hpp: at rest and in motion by two modes
+//     many courses         the same while they stand; from their first motion on, and under Dirac pulses, assembly_step.hpp
+//     a heavy block on light ones      assembly_step.hpp
 //
 // The two kinds of structures are near no block of each other and are stepped one after the other, each as if the other were not there.
 // Localised structures use the default tolerance and order of Settings, whatever the walls use.
 //
-// All walls of a system are stepped together, and once they have taken the step of high walls they stay with its step. A block that has
-// once belonged to a wall stays with the walls: the parts that break off a wall are many small structures, and each impact of theirs would
-// be searched for. All structures get the walls' step if none has more than maxBlocks, or if the motions must be asked in order of time
+// All walls of a system are stepped together, and what has once gone over to assembly_step.hpp stays with it. A block that has once
+// belonged to a wall stays with the walls: the parts that break off a wall are many small structures, and each impact of theirs would be
+// searched for. All structures get the walls' step if none has more than maxBlocks, or if the motions must be asked in order of time
 // (BaseDrive::ordered).
 #include "dynamics/assembly/assembly_step.hpp"
 #include "dynamics/rigid/islands.hpp"
@@ -35,10 +36,9 @@ public:
 	// minutes a second.
 	static constexpr int maxBlocks = K::dimension == 2 ? 20 : 6;
 
-	// Courses, and course times the ratio of a block's mass to that of one below it, up to which a wall is stepped by the two modes of
-	// wall_step.hpp. Their cost grows as the square of the courses, and their errors with courses and burden; those of assembly_step.hpp do
-	// not. Smaller: walls of so many courses that stand on a shaken base take two to three times the time. Larger: those that move go too
-	// far.
+	// Courses, and course times the ratio of a block's mass to that of one below it, up to which a wall that moves is stepped by
+	// wall_step.hpp. The cost of its sweeps grows as the square of the courses, and their errors with courses and burden; those of
+	// assembly_step.hpp do not. Smaller: walls of so many courses that move take twice the time. Larger: they go too far.
 	static constexpr int coursesOfTwoModes = 24;
 	static constexpr double burdenOfTwoModes = 4e4;
 
@@ -65,7 +65,7 @@ public:
 		ofWall.resize(count);
 		for (char& is : ofWall)
 			f(is);
-		f(byAssembly);
+		f(oneMethod), f(byAssembly);
 		if (count == system.bodies.size())
 			divide(system);
 		hideLocalised(system);
@@ -79,14 +79,16 @@ public:
 
 private:
 	void divide(const RigidSystem<K>& system);
-	void chooseStep(RigidSystem<K>& system);
+	void takeAssembly(RigidSystem<K>& system);
 	StepReport advanceWalls(RigidSystem<K>& system, double dt);
 	void hideLocalised(RigidSystem<K>& system);
 	void restoreLocalised(RigidSystem<K>& system) const;
 
 	std::optional<WallStep<K>> walls {std::in_place};
 	std::optional<assembly::AssemblyStep<K>> assembly {std::in_place};
-	bool byAssembly {false};
+	bool isHigh {false};     // a wall has many courses
+	bool oneMethod {false};  // the next step is by the one method
+	bool byAssembly {false}; // the last one was
 	Islands<K> islands;
 	std::vector<char> ofWall;         // by body, 1: has belonged to a wall
 	std::vector<int> localisedBodies; // sorted; empty if there are no walls
