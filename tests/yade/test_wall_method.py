@@ -134,13 +134,13 @@ def test_options_that_the_method_refuses(options, words):
 @pytest.mark.parametrize("shaking, moves", ((0.05, False), (1.2, True)))
 def test_a_wall_of_many_courses(shaking, moves, tmp_path, capfd):
     """From some height on another step is taken. It goes on with the same bits after loading, and its errors do not grow with the courses: no warning."""
-    wall(25, 2, shaking)
+    wall(33, 2, shaking)
     capfd.readouterr()
     O.run(260, True)
     assert (integrator().movingSteps > 0) == moves and (integrator().movingBlocks > 0) == moves and integrator().failures == 0
     assert "courses" not in capfd.readouterr().err
     wanted = bits()
-    wall(25, 2, shaking)
+    wall(33, 2, shaking)
     O.run(130, True)
     path = str(tmp_path / "wall.yade")
     O.save(path)

@@ -20,9 +20,7 @@ namespace masonry::rigid::assembly {
 
 struct AssemblySettings {
 	AdmmSettings solver;
-	int parts {8};    // of a step in which blocks move, at most. Fewer: impacts and slips of few blocks are less right, to first order
-	int shared {400}; // blocks times parts at most: the cost of many blocks is that of one part. Larger: more time, smaller errors
-	int threads {1};  // at most; small assemblies use one. The bits do not depend on it
+	int threads {1}; // at most; small assemblies use one. The bits do not depend on it
 };
 
 struct AssemblyReport : StepReport {
@@ -56,7 +54,7 @@ public:
 	template <class Flow>
 	void pass(Flow& f, RigidSystem<K>& system)
 	{
-		f(started), f(moves), f(quiet), f(stands), f(changeTime);
+		f(started), f(quiet), f(stands), f(changeTime);
 		if (!started)
 			return;
 		contacts.pass(f, system, members(system));
@@ -77,7 +75,6 @@ public:
 
 private:
 	static wall::Members members(const RigidSystem<K>& system);
-	int partsOf(const RigidSystem<K>& system) const;
 	void advancePart(RigidSystem<K>& system, double h);
 	void takeInstants(RigidSystem<K>& system, const StepContext& step);
 	CappedReport solve(RigidSystem<K>& system, const wall::LaneArray& load, const wall::LaneArray& guess, const StepContext& step);
@@ -90,7 +87,6 @@ private:
 	int movingBlocks(const RigidSystem<K>& system, double level) const;
 
 	bool started {false};
-	bool moves {true};   // blocks have moved in the last step
 	int quiet {0};       // steps in which nothing has moved or turned, up to now
 	bool stands {false}; // some such steps have passed: gaps are added up, and frames stay
 	wall::Team team;

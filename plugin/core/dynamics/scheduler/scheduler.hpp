@@ -39,7 +39,7 @@ public:
 	// Courses, and course times the ratio of a block's mass to that of one below it, up to which a wall that moves is stepped by
 	// wall_step.hpp. The cost of its sweeps grows as the square of the courses, and their errors with courses and burden; those of
 	// assembly_step.hpp do not. Smaller: walls of so many courses that move take twice the time. Larger: they go too far.
-	static constexpr int coursesOfTwoModes = 24;
+	static constexpr int coursesOfTwoModes = 32;
 	static constexpr double burdenOfTwoModes = 4e4;
 
 	WallSettings settings;

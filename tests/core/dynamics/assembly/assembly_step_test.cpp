@@ -51,7 +51,6 @@ TEMPLATE_TEST_CASE("a block slides with the acceleration of friction", "", Plane
 	scene.one.settings.solver.tolerance =
 	    1e-6; // the default may leave 1e-3 of the fall of a step to its share of friction, here 1/mu times as much
 	scene.one.settings.solver.iterations = 1000;
-	scene.one.settings.parts = 1;
 	scene.run(time, h);
 	const double steps = time / h;
 	// The sum of h v over steps of equal acceleration is mu g h^2 n (n + 1)/2.
@@ -130,7 +129,6 @@ TEMPLATE_TEST_CASE("the work of the base is that of the momentum that it gives",
 	Harmonic motion(1.0 * g, 2, 0.02);
 	scene.drive(motion);
 	auto& s = scene.system;
-	scene.one.settings.parts = 1;
 	double work = 0, before = 0, last = 0, lost = 0, gained = 0;
 	constexpr double h = 1e-3;
 	for (int k = 0; k < 300; ++k) {
