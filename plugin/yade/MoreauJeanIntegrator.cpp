@@ -279,13 +279,12 @@ void MoreauJeanIntegrator::count(const masonry::rigid::StepReport& report)
 		             method == "localised" ? " Structures of more than some twenty blocks are for method='wall'." : ""));
 	const string sums = addErrors();
 	const bool crowded = report.unlocalised > 0;
-	if (report.converged && !crowded && sums.empty() && report.created == 0 && !(report.deepest > 0) && !(report.burden > 0) &&
-	    !(report.turn > 0))
+	if (report.converged && !crowded && sums.empty() && report.created == 0 && !(report.deepest > 0) && !(report.turn > 0))
 		return;
 
 	const Real ofStep = gravity.norm() * scene->dt; // the speed that gravity gives
 	// A residual this small moves nothing that anybody could measure: it is counted, without a word.
-	const bool matters = crowded || !sums.empty() || report.created != 0 || report.deepest > 0 || report.burden > 0 || report.turn > 0 ||
+	const bool matters = crowded || !sums.empty() || report.created != 0 || report.deepest > 0 || report.turn > 0 ||
 	                     !(report.residual <= negligible * ofStep);
 	std::ostringstream text;
 	text << "In the step from t = " << scene->time << " s ";
@@ -300,9 +299,6 @@ void MoreauJeanIntegrator::count(const masonry::rigid::StepReport& report)
 	text << sums;
 	if (report.deepest > 0)
 		text << "blocks are " << report.deepest << " m deep in each other. ";
-	if (report.burden > 0)
-		text << "a block is too heavy for a lighter one below it: its course times the ratio of their masses is " << report.burden
-		     << ", for method='wall' at most " << masonry::rigid::wall::mostBurden << ". Few blocks: method='localised'. ";
 	if (report.turn > 0)
 		text << "a block turns by " << report.turn
 		     << " rad in the step, which method='wall' does not resolve; method='localised' divides such steps. ";

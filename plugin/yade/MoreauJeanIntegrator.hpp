@@ -131,7 +131,7 @@ private:
 	Real checkedGravity = 0;
 	vector<std::pair<const Engine*, bool>> checkedEngines; // and whether they are dead; to be compared only
 	struct {
-		bool courses = false, bases = false, place = false, motion = false;
+		bool bases = false, place = false, motion = false;
 	} warnedOf;                     // once in a run
 	masonry::StepErrors stepErrors; // of the last step
 	bool sequential = false, wall = false;

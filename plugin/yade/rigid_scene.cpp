@@ -7,8 +7,6 @@ namespace yade {
 
 namespace {
 
-/// Courses of a wall above which a warning tells that it may go too far, or not far enough, as it moves (validation/walls/shaking).
-constexpr int mostCourses = 24;
 /// Steps after which O.interactions are written even if nobody seems to look.
 constexpr int mostUnshown = 64;
 
@@ -98,23 +96,16 @@ void RigidScene<K>::takeSettings()
 template <class K>
 masonry::rigid::StepReport RigidScene<K>::advanceWall()
 {
-	masonry::rigid::WallStep<K>& walls = scheduler->walls;
-	walls.settings = {integrator.tolerance, integrator.strictForces, std::max(1, integrator.ompThreads)};
+	scheduler->settings = {integrator.tolerance, integrator.strictForces, std::max(1, integrator.ompThreads)};
 	const auto report = scheduler->advance(system, scene.dt);
-	const masonry::rigid::WallReport& ofWalls = walls.report;
-	const bool still = ofWalls.mode == masonry::rigid::WallMode::still;
+	const masonry::rigid::WallsReport& ofWalls = scheduler->report;
+	const bool still = ofWalls.moved == 0;
 	integrator.mode = still ? "still" : "moving";
 	integrator.movingBlocks = ofWalls.moved;
 	integrator.localisedBlocks = scheduler->localised();
 	++(still ? integrator.stillSteps : integrator.movingSteps);
 	integrator.velocityResidual = ofWalls.velocityResidual;
 	integrator.forceResidual = ofWalls.forceResidual;
-	if (!still && ofWalls.courses > mostCourses && !integrator.warnedOf.courses) {
-		integrator.warnedOf.courses = true;
-		LOG_WARN("blocks of a wall of "
-		         << ofWalls.courses << " courses move from t = " << scene.time << " s on: walls of more than " << mostCourses
-		         << " courses may go some tenths too far; see by dem.compare() what a smaller dt or tolerance of dem.engines() changes.");
-	}
 	if (ofWalls.partBases && !integrator.warnedOf.bases) {
 		integrator.warnedOf.bases = true;
 		LOG_WARN(
@@ -156,7 +147,7 @@ template <class K>
 void RigidScene<K>::readStates()
 {
 	others.resize(links.size());
-	scheduler->walls.eachShare(links.size(), [&](size_t begin, size_t end) {
+	scheduler->eachShare(links.size(), [&](size_t begin, size_t end) {
 		for (size_t b = begin; b < end; ++b) {
 			fetch(b + 6);
 			others[b] = links[b].written.isOf(*links[b].state) ? 0 : system.bodies[b].drive < 0 ? 1 : driven;
@@ -247,7 +238,7 @@ template <class K>
 void RigidScene<K>::showPoints()
 {
 	if (byWalls)
-		scheduler->walls.showPoints(system);
+		scheduler->showPoints(system);
 }
 
 template <class K>
@@ -263,7 +254,7 @@ void RigidScene<K>::fetch(size_t b) const
 template <class K>
 void RigidScene<K>::writeStates()
 {
-	scheduler->walls.eachShare(links.size(), [&](size_t begin, size_t end) {
+	scheduler->eachShare(links.size(), [&](size_t begin, size_t end) {
 		for (size_t b = begin; b < end; ++b) {
 			const auto& block = system.bodies[b];
 			if (block.prescribed && block.drive < 0 && block.velocity.isZero(0))

@@ -5,6 +5,7 @@
 // processor of a helper before it begins, the caller does that part too. If a helper is interrupted at work, the caller waits for it and
 // then works alone for a while; the while doubles each time that this happens again soon.
 // Between two calls a helper spins, then yields, then sleeps.
+#include <algorithm>
 #include <memory>
 
 namespace masonry::parallel {
@@ -30,6 +31,15 @@ public:
 			--alone;
 		for (int part = 0; part < parts; ++part)
 			work(part);
+	}
+
+	// work(begin, end) for equal shares of 0 .. size - 1. Shares of few do not repay that threads meet.
+	template <class Work>
+	void eachShare(size_t size, const Work& work)
+	{
+		constexpr size_t least = 256;
+		const size_t count = std::clamp<size_t>(size / least, 1, mostParts);
+		each(int(count), [&](int k) { work(size * k / count, size * (k + 1) / count); });
 	}
 
 private:

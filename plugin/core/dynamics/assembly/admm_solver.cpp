@@ -3,6 +3,7 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace masonry::rigid::assembly {
 
@@ -19,6 +20,7 @@ using RowsOf = typename AdmmSolver<K>::Rows;
 struct Step {
 	double h, perH, fall, mix, reach, left, softness, leastSoftness, relaxation, boundShare, pullBack;
 	double sticks; // m, gap up to which a point without an impulse starts as one that sticks
+	bool strict;   // errors of impulses count as those of velocities
 };
 
 // R by load.
@@ -97,7 +99,9 @@ MASONRY_INLINE void passGroup(Group<K>& group, StillGroup<K>& memory, RowsOf<K>&
 			row.ut = ut;
 			row.actedN = p.pn + (f.zn - wn) * row.stiffness;
 			row.actedT = p.pt + (f.zt - wt) * row.stiffness;
-			const Lanes miss = larger(size(wn - f.zn), size(wt - f.zt));
+			Lanes miss = larger(size(wn - f.zn), size(wt - f.zt));
+			if (step.strict)
+				miss *= larger(all(1), row.stiffness / p.massN);
 			const Lanes yn = p.pn - (step.relaxation * wn + (1 - step.relaxation) * f.zn) * row.stiffness;
 			const auto yt = p.pt - (step.relaxation * wt + (1 - step.relaxation) * f.zt) * row.stiffness;
 			p.pn = larger(yn, all(0));
@@ -120,6 +124,7 @@ template <class K>
 MASONRY_INLINE void startGroups(Group<K>* groups, StillGroup<K>* memory, RowsOf<K>* rows, int begin, int end, const Step& step,
                                 const Lanes* velocity, Lanes* force)
 {
+	constexpr double almost = 0.9; // share of the friction bound from which on a point counts as sliding: the damped bound may lag so far
 	const Lanes none = all(0);
 	Lanes unused = none;
 	for (int g = begin; g < end; ++g) {
@@ -131,24 +136,33 @@ MASONRY_INLINE void startGroups(Group<K>* groups, StillGroup<K>* memory, RowsOf<
 			const Mask in = row.stiffness > 0;
 			p.pn = in ? p.pn : none;
 			p.pt = select(in, p.pt, typename PointLanes<K>::Tangent {});
-			const Lanes deep = smaller(p.gap + step.left, none);
+			f.zero = larger(f.zero, smaller(p.gap, none));
+			const Lanes deep = smaller(p.gap - f.zero + step.left, none);
 			row.bn = in ? step.perH * (p.gap > 0 ? p.gap : step.pullBack * deep) : none;
 			row.bt = select(in, all(step.pullBack * step.perH) * f.slip, typename PointLanes<K>::Tangent {});
 			row.bound = p.pn;
 			const Lanes wn = normalRate(v1, v2, p) + row.bn;
 			const auto wt = slipRate(v1, v2, p) + row.bt;
 			f.zn = p.pn > 0 ? f.zn : larger(wn, none);
-			f.zt = select(p.pn > 0, f.zt, select(p.gap <= step.sticks, typename PointLanes<K>::Tangent {}, wt));
+			const Mask keeps = (p.pn > 0) & ~slides(p.pt, almost * groups[g].friction * p.pn);
+			f.zt = select(keeps, f.zt, select(p.gap <= step.sticks, typename PointLanes<K>::Tangent {}, wt));
 		}
 		passGroup<K, false>(groups[g], memory[g], rows[g], step, velocity, force, unused);
 	}
 }
 
+// What a pass over the points finds at the end of a step, of a part.
+struct alignas(alignment) Ended {
+	Lanes loss, forceError;
+};
+
 template <class K>
-MASONRY_INLINE void advanceGroups(Group<K>* groups, StillGroup<K>* memory, const RowsOf<K>* rows, int begin, int end, double h, Lanes& loss)
+MASONRY_INLINE void advanceGroups(Group<K>* groups, StillGroup<K>* memory, const RowsOf<K>* rows, int begin, int end, double h,
+                                  double level, unsigned char* reached, unsigned char* moving, Ended& ended)
 {
 	for (int g = begin; g < end; ++g) {
 		const Mask rough = groups[g].friction >= mostFriction;
+		Mask in {}, moves {};
 		for (int k = 0; k < groups[g].count; ++k) {
 			PointLanes<K>& p = groups[g].point[k];
 			const auto& row = rows[g][k];
@@ -156,8 +170,15 @@ MASONRY_INLINE void advanceGroups(Group<K>* groups, StillGroup<K>* memory, const
 			auto& slip = memory[g][k].slip;
 			const Mask glides = slides(p.pt, groups[g].friction * (rough ? p.pn : row.bound));
 			slip = select(glides, typename PointLanes<K>::Tangent {}, slip + h * row.ut);
-			loss -= select(glides, dot(row.actedT, row.ut), all(0));
+			ended.loss -= select(glides, dot(row.actedT, row.ut), all(0));
+			const Mask here = row.stiffness > 0;
+			in |= here;
+			moves |= here & (larger(size(row.un), size(row.ut)) > level);
+			const Lanes error = larger(size(row.actedN - p.pn) / p.massN, size(row.actedT - p.pt) / p.massT);
+			ended.forceError = larger(ended.forceError, here ? error : all(0));
 		}
+		reached[g] = bitsOf(in);
+		moving[g] = bitsOf(moves);
 	}
 }
 
@@ -197,9 +218,10 @@ MASONRY_LANES void inertia(const std::vector<int>& members, const Lanes* velocit
 		for (int g = begin; g < end; ++g)                                                                                                  \
 			passGroup<K, true>(groups[g], memory[g], rows[g], step, velocity, force, worst);                                               \
 	}                                                                                                                                      \
-	MASONRY_LANES void gapPass(Group<K>* groups, StillGroup<K>* memory, const RowsOf<K>* rows, int begin, int end, double h, Lanes& loss)  \
+	MASONRY_LANES void gapPass(Group<K>* groups, StillGroup<K>* memory, const RowsOf<K>* rows, int begin, int end, double h, double level, \
+	                           unsigned char* reached, unsigned char* moving, Ended& ended)                                                \
 	{                                                                                                                                      \
-		advanceGroups<K>(groups, memory, rows, begin, end, h, loss);                                                                       \
+		advanceGroups<K>(groups, memory, rows, begin, end, h, level, reached, moving, ended);                                              \
 	}
 MASONRY_PASSES(Plane)
 MASONRY_PASSES(Space)
@@ -221,7 +243,8 @@ Step stepOf(const StepContext& c, const AdmmSettings& a)
 	        a.relaxation,
 	        a.boundShare,
 	        c.instant ? 0 : a.pullBack,
-	        c.instant ? tolerance::wall::touching * c.length : -farAway};
+	        c.instant ? tolerance::wall::touching * c.length : -farAway,
+	        a.strictForces};
 }
 
 } // namespace
@@ -257,10 +280,11 @@ bool AdmmSolver<K>::isOutdated(const RigidSystem<K>& s, WallContacts<K>& c, cons
 	for (const Outdated& here : found)
 		if (any(here.reached) || (isOld && any(here.loaded)))
 			return true;
-	for (size_t g = 0; g < lanes.size(); ++g)
-		for (int i = 0; i < width; ++i)
-			if (!(lanes[g][i] == laneOf(s, c, int(g), i)))
-				return true;
+	if (std::exchange(otherPoints, false))
+		for (size_t g = 0; g < lanes.size(); ++g)
+			for (int i = 0; i < width; ++i)
+				if (!(lanes[g][i] == laneOf(s, c, int(g), i)))
+					return true;
 	for (size_t b = 0; b < c.own.size(); ++b)
 		if (masses[b] != c.velocity[packs<K> * b][3])
 			return true;
@@ -268,7 +292,7 @@ bool AdmmSolver<K>::isOutdated(const RigidSystem<K>& s, WallContacts<K>& c, cons
 }
 
 template <class K>
-void AdmmSolver<K>::start(WallContacts<K>& c, const LaneArray& load, const StepContext& step)
+void AdmmSolver<K>::start(WallContacts<K>& c, const LaneArray& load, const LaneArray& guess, const StepContext& step)
 {
 	velocity = c.velocity;
 	free.resize(velocity.size());
@@ -277,6 +301,9 @@ void AdmmSolver<K>::start(WallContacts<K>& c, const LaneArray& load, const StepC
 	const auto startBodies = [&](const Part& part) {
 		for (const int b : part.members)
 			free[b] = velocity[b] + load[b];
+		if (!guess.empty())
+			for (const int b : part.members)
+				velocity[b] += noMass * guess[b];
 		inertia(part.members, velocity.data(), free.data(), force.data());
 	};
 	const auto startPoints = [&](const Part& part) {
@@ -366,7 +393,8 @@ void AdmmSolver<K>::findTurn(const WallContacts<K>& c, const Poses& poses)
 }
 
 template <class K>
-void AdmmSolver<K>::solve(const RigidSystem<K>& s, WallContacts<K>& c, const Poses& poses, const LaneArray& load, const StepContext& step)
+void AdmmSolver<K>::solve(const RigidSystem<K>& s, WallContacts<K>& c, const Poses& poses, const LaneArray& load, const LaneArray& guess,
+                          const StepContext& step)
 {
 	report = {};
 	findTurn(c, poses);
@@ -375,18 +403,22 @@ void AdmmSolver<K>::solve(const RigidSystem<K>& s, WallContacts<K>& c, const Pos
 	for (SpinRow<K>& row : spins)
 		row.couple = 0;
 	prepareSpins(c);
-	start(c, load, step);
+	start(c, load, guess, step);
 	const double enough = std::max(settings.tolerance * step.fall, step.instant ? settings.instantTolerance * step.speed : 0);
-	const int most = step.instant ? settings.ofInstant
-	                 : cold       ? settings.first
-	                              : std::min(settings.iterations + int(saved), 10 * settings.iterations);
+	const int most = step.instant                    ? settings.ofInstant
+	                 : cold || settings.strictForces ? settings.first
+	                                                 : std::min(settings.iterations + int(saved), 10 * settings.iterations);
 	const auto isLagging = [&] { return !step.instant && report.iterations < settings.least; };
 	constexpr double diverging = 10;
+	constexpr int untilLoaded = 100; // iterations of a cold start, after which R follows the loads that they have found
 	double least = INFINITY;
 	do {
 		report.residual = iterate(c, step);
 		++report.iterations;
-		if (report.residual > diverging * least) {
+		const bool isLoaded = cold && !step.instant && report.iterations % untilLoaded == 0;
+		if (isLoaded)
+			c.startMeans(LaneBits(c.groups.size(), allLanes));
+		if (isLoaded || report.residual > diverging * least) {
 			factorise(s, c, poses, step);
 			prepareSpins(c);
 			least = report.residual;
@@ -402,16 +434,20 @@ void AdmmSolver<K>::solve(const RigidSystem<K>& s, WallContacts<K>& c, const Pos
 }
 
 template <class K>
-double AdmmSolver<K>::advanceGaps(WallContacts<K>& c, double h) const
+PointsReport AdmmSolver<K>::advanceGaps(WallContacts<K>& c, double h, double level)
 {
-	LaneArray loss(c.parts.size(), all(0));
+	Ended ended[Team::mostParts + 1] {};
+	reached.resize(c.groups.size());
+	moving.resize(c.groups.size());
 	c.allParts([&](const Part& part, int number) {
-		gapPass(c.groups.data(), c.still.data(), rows.data(), part.begin, part.end, h, loss[number]);
+		gapPass(c.groups.data(), c.still.data(), rows.data(), part.begin, part.end, h, level, reached.data(), moving.data(), ended[number]);
 	});
-	double sum = 0;
-	for (const Lanes& here : loss)
-		sum += here[0] + here[1] + here[2] + here[3];
-	return sum;
+	PointsReport result;
+	for (const Ended& here : ended) {
+		result.friction += here.loss[0] + here.loss[1] + here.loss[2] + here.loss[3];
+		result.forceError = std::max(result.forceError, largest(here.forceError));
+	}
+	return result;
 }
 
 template <class K>

@@ -24,8 +24,10 @@
 //                     the impulse that stops it alone after the fall of one step. R p is then a velocity of about the same size at light
 //                     and heavy points. A uniform R suits either a wall that slides or one that rocks.
 //     damped bound    With the bound mu p_n, sliding points run into a limit cycle whose residual does not fall.
-//     start of z      Points without an impulse start from the velocity that they have, z = (max(0, w_n), w_t): their bias changes in each
-//                     step. Others keep z, as they keep p.
+//     start           V starts from the velocities before the step and a guess of their change. It stops where w = z, so that what slides
+//                     with a steady acceleration would lag by a multiple of the tolerance in each step without one.
+//                     Points without an impulse start from the velocity that they have, z = (max(0, w_n), w_t): their bias changes in each
+//                     step. Points that slide keep z_n and start with z_t = w_t. Others keep z, as they keep p.
 //
 // Rows that prescribe a spin (SpinRow) are held in each iteration: with Y = A^-1 E^T, the couples c change by
 // (E Y)^-1 (target - E V) and V by Y times that, so that E V is the target to round-off. A does not know of them.
@@ -35,7 +37,7 @@
 // one that is meant.
 //
 // Biases. A point with a gap may close within the step: b_n = gap/h. Of a penetration, and of a slip that unfinished iterations have left
-// at a point that sticks, a share is taken back in each step: b = share x/h.
+// at a point that sticks, a share is taken back in each step: b = share x/h. A penetration with which a point was found stays.
 #include "dynamics/assembly/spin_row.hpp"
 #include "dynamics/assembly/step_context.hpp"
 #include "dynamics/wall/wall_contacts.hpp"
@@ -44,8 +46,9 @@
 namespace masonry::rigid::assembly {
 
 struct AdmmSettings {
-	double tolerance {1e-3}; // largest |w - z| relative to the speed that gravity gives in a step. Larger: joints drift and sink
-	int iterations {20};     // at most in a step, beside the reserve. Fewer: excursions are too small
+	double tolerance {1e-3};   // largest |w - z| relative to the speed that gravity gives in a step. Larger: joints drift and sink
+	bool strictForces {false}; // the same holds for errors of impulses, as velocities; then a step takes up to `first` iterations
+	int iterations {20};       // at most in a step, beside the reserve. Fewer: excursions are too small
 	int least {10};      // iterations of a step, unless its residual is below `early`. Fewer: p lags behind what turns, and energy rises
 	double early {0.1};  // of the tolerance. Smaller: more iterations at rest; larger: as with fewer `least` iterations
 	int reserve {50};    // times `iterations` that quiet steps save for impacts at most. 0: walls under impacts drift
@@ -72,6 +75,12 @@ struct AdmmReport {
 	bool finite {true};
 };
 
+// Of the points in a step.
+struct PointsReport {
+	double friction {0};   // energy that it has taken, J
+	double forceError {0}; // between the impulses of the laws and of the momentum equation, as the velocity that it gives a point, m/s
+};
+
 template <class K>
 class AdmmSolver {
 public:
@@ -91,17 +100,20 @@ public:
 	AdmmSettings settings;
 	AdmmReport report;
 	std::vector<SpinRow<K>> spins; // of the next solve, with their couples afterwards
+	bool otherPoints {true};       // points of the contacts have changed since the last solve
 	wall::LaneArray velocity;      // V, in the packs of the contacts
 	std::vector<Rows> rows;        // by group of the contacts
+	wall::LaneBits reached;        // pairs with a point in A, after advanceGaps
+	wall::LaneBits moving;         // pairs with one that moves against its neighbour
 
 	using Poses = std::vector<typename K::Pose>;
 	// Solves the step from the contacts' velocities and impulses, whose frames are those of `poses`; `load` is the change of velocity by
-	// external forces, per body. Impulses, z and slips of the contacts are those of the solution afterwards; their gaps and velocities
-	// stay.
+	// external forces, per body; `guess` is the one that is expected altogether. Impulses, z and slips of the contacts are those of the
+	// solution afterwards; their gaps and velocities stay.
 	void solve(const RigidSystem<K>& system, wall::WallContacts<K>& contacts, const Poses& poses, const wall::LaneArray& load,
-	           const StepContext& step);
-	// Gaps and slips at the end of the step, into the contacts. Returns what friction has taken, J.
-	double advanceGaps(wall::WallContacts<K>& contacts, double h) const;
+	           const wall::LaneArray& guess, const StepContext& step);
+	// Gaps and slips at the end of the step, into the contacts; which pairs move faster than `level`, m/s.
+	PointsReport advanceGaps(wall::WallContacts<K>& contacts, double h, double level);
 	// The next solve starts cold and makes A anew.
 	void forget()
 	{
@@ -150,7 +162,7 @@ private:
 	void makeMatrix(const RigidSystem<K>& system, const wall::WallContacts<K>& contacts);
 	void setGraph(const wall::WallContacts<K>& contacts);
 	void addPair(const wall::WallContacts<K>& contacts, int group, int lane, int& edge);
-	void start(wall::WallContacts<K>& contacts, const wall::LaneArray& load, const StepContext& step);
+	void start(wall::WallContacts<K>& contacts, const wall::LaneArray& load, const wall::LaneArray& guess, const StepContext& step);
 	double iterate(wall::WallContacts<K>& contacts, const StepContext& step);
 	void prepareSpins(const wall::WallContacts<K>& contacts);
 	void holdSpins();

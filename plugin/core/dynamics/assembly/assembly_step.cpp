@@ -19,9 +19,11 @@ StepReport AssemblyStep<K>::advance(RigidSystem<K>& s, double dt)
 		advancePart(s, h);
 		left = h == left ? 0 : left - h;
 	}
-	report.residual = report.velocityResidual;
+	for (const RigidBody<K>& body : s.bodies)
+		if (const double turn = dt * body.velocity.template tail<K::spins>().norm(); !body.prescribed && turn > tolerance::rigid::partTurn)
+			report.turn = std::max(report.turn, turn);
+	report.residual = settings.solver.strictForces ? std::max(report.velocityResidual, report.forceResidual) : report.velocityResidual;
 	report.sweeps = report.iterations;
-	report.courses = contacts.depth;
 	return report;
 }
 
@@ -32,19 +34,33 @@ void AssemblyStep<K>::advancePart(RigidSystem<K>& s, double h)
 	const StepContext step(scales, h);
 	team.setThreads(settings.threads);
 	solver.settings = settings.solver;
-	contacts.take(s, members(s), nobody);
-	contacts.measure(s, false);
+	solver.otherPoints |= contacts.take(s, members(s), nobody);
+	solver.otherPoints |= contacts.measure(s, stands) || !stands; // those of a pair may have changed places
 	contacts.setUnit(h);
-	lean(s);
+	if (stands)
+		poses = contacts.located;
+	else
+		lean(s);
+	for (wall::Lanes& of : change)
+		of *= all(h / changeTime);
+	changeTime = h;
 	takeInstants(s, step);
 	pulses.move(s, contacts, h);
 	ledger.open(s, pulses.halfBack());
 	setLoads(s, h);
 	solver.spins = events.find(s, contacts, change, step);
-	const CappedReport result = solve(s, loads, step);
-	ledger.takeContacts(s, contacts, solver, solver.advanceGaps(contacts, h));
+	const CappedReport result = solve(s, loads, change.size() == loads.size() && solver.spins.empty() ? change : noGuess, step);
+	const double level = tolerance::wall::motion * tolerance::restSpeed * scales.speed;
+	const PointsReport ofPoints = solver.advanceGaps(contacts, h, level);
+	ledger.takeContacts(s, contacts, solver, ofPoints.friction);
+	report.forceResidual = std::max(report.forceResidual, ofPoints.forceError);
 	events.take(s, contacts, solver);
-	moveBodies(s, h);
+	const int moved = movingBlocks(s, level);
+	moveBodies(s, h, moved > 0);
+	constexpr int enough = 8; // steps. Fewer: blocks at the peak of a half cycle seem to stand
+	quiet = moved == 0 && !turns(s, h) ? quiet + 1 : 0;
+	stands = quiet >= enough;
+	report.moved = std::max(report.moved, moved);
 	s.time += h;
 	s.moved = false;
 	started = true;
@@ -77,9 +93,9 @@ void AssemblyStep<K>::takeInstants(RigidSystem<K>& s, const StepContext& step)
 }
 
 template <class K>
-CappedReport AssemblyStep<K>::solve(RigidSystem<K>& s, const LaneArray& load, const StepContext& step)
+CappedReport AssemblyStep<K>::solve(RigidSystem<K>& s, const LaneArray& load, const LaneArray& guess, const StepContext& step)
 {
-	const CappedReport result = capped.solve(s, contacts, poses, load, solver, ledger, step);
+	const CappedReport result = capped.solve(s, contacts, poses, load, guess, solver, ledger, step);
 	report.iterations += result.iterations;
 	report.factorisations += result.factorisations;
 	report.velocityResidual = std::max(report.velocityResidual, result.residual);
@@ -91,7 +107,8 @@ template <class K>
 CappedReport AssemblyStep<K>::solveInstant(RigidSystem<K>& s, const StepContext& instant)
 {
 	noLoads.assign(contacts.velocity.size(), all(0));
-	const CappedReport result = solve(s, noLoads, instant);
+	const CappedReport result = solve(s, noLoads, noGuess, instant);
+	report.converged &= result.residual <= settings.solver.tolerance * std::max(instant.fall, instant.speed);
 	ledger.takeContacts(s, contacts, solver, 0);
 	contacts.velocity = solver.velocity;
 	for (size_t b = 0; b < s.bodies.size(); ++b)
@@ -147,15 +164,14 @@ void AssemblyStep<K>::takeChange(double fall)
 }
 
 template <class K>
-void AssemblyStep<K>::moveBodies(RigidSystem<K>& s, double h)
+void AssemblyStep<K>::moveBodies(RigidSystem<K>& s, double h, bool isMoving)
 {
 	contacts.shift.resize(solver.velocity.size());
 	for (size_t b = 0; b < contacts.shift.size(); ++b)
 		contacts.shift[b] = h * solver.velocity[b];
 	takeChange(Scales(s).stepSpeed(h));
 	contacts.velocity = solver.velocity;
-	const double deepest = projection.settle(contacts);
-	if (deepest > tolerance::wall::sunk * contacts.length)
+	if (const double deepest = isMoving ? projection.settle(contacts) : 0; deepest > tolerance::wall::sunk * contacts.length)
 		report.deepest = std::max(report.deepest, deepest);
 	double work = 0; // of the forces, J
 	for (size_t b = 0; b < s.bodies.size(); ++b) {
@@ -176,6 +192,32 @@ void AssemblyStep<K>::moveBodies(RigidSystem<K>& s, double h)
 		work += body.force.dot(moved);
 	}
 	report.created += ledger.close(s, Scales(s), h, work);
+}
+
+// Whether a body turns so far in the step that frames must follow.
+template <class K>
+bool AssemblyStep<K>::turns(const RigidSystem<K>& s, double h) const
+{
+	return std::any_of(s.bodies.begin(), s.bodies.end(), [h](const RigidBody<K>& body) {
+		return !(h * body.velocity.template tail<K::spins>().norm() <= tolerance::wall::turned);
+	});
+}
+
+// Blocks with a point in reach that moves faster than `level` (m/s) against its neighbour, and blocks without any that are as fast.
+template <class K>
+int AssemblyStep<K>::movingBlocks(const RigidSystem<K>& s, double level) const
+{
+	std::vector<char> isHeld(s.bodies.size(), 0), moves(s.bodies.size(), 0);
+	for (size_t g = 0; g < contacts.groups.size(); ++g)
+		for (int i = 0; i < wall::width && contacts.features[g].pair[i] >= 0; ++i)
+			for (const int b : {contacts.groups[g].body1[i], contacts.groups[g].body2[i]}) {
+				isHeld[b] |= solver.reached[g] >> i & 1;
+				moves[b] |= solver.moving[g] >> i & 1;
+			}
+	int count = 0;
+	for (size_t b = 0; b < s.bodies.size(); ++b)
+		count += contacts.own[b] && (moves[b] || (!isHeld[b] && !(s.bodies[b].velocity.norm() <= level)));
+	return count;
 }
 
 template class AssemblyStep<Plane>;

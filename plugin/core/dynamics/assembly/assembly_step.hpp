@@ -26,7 +26,8 @@ struct AssemblySettings {
 struct AssemblyReport : StepReport {
 	int iterations {0};          // of the solver in this step
 	double velocityResidual {0}; // m/s
-	int courses {0};             // blocks one upon another, at most
+	double forceResidual {0};    // error of impulses, as the velocity that it gives the point, m/s
+	int moved {0};               // blocks that move against a neighbour, or that fly
 };
 
 template <class K>
@@ -37,6 +38,13 @@ public:
 
 	StepReport advance(RigidSystem<K>& system, double dt);
 
+	// work(begin, end) for shares of 0 .. size - 1, by the threads of the last step.
+	template <class Work>
+	void eachShare(size_t size, const Work& work)
+	{
+		team.eachShare(size, work);
+	}
+
 	// Gaps, forces and places of the points as they are after the step, into the system's pairs. To be called before the list of pairs
 	// changes.
 	void showPoints(RigidSystem<K>& system) { contacts.showPoints(system); }
@@ -46,7 +54,7 @@ public:
 	template <class Flow>
 	void pass(Flow& f, RigidSystem<K>& system)
 	{
-		f(started);
+		f(started), f(quiet), f(stands), f(changeTime);
 		if (!started)
 			return;
 		contacts.pass(f, system, members(system));
@@ -69,14 +77,18 @@ private:
 	static wall::Members members(const RigidSystem<K>& system);
 	void advancePart(RigidSystem<K>& system, double h);
 	void takeInstants(RigidSystem<K>& system, const StepContext& step);
-	CappedReport solve(RigidSystem<K>& system, const wall::LaneArray& load, const StepContext& step);
+	CappedReport solve(RigidSystem<K>& system, const wall::LaneArray& load, const wall::LaneArray& guess, const StepContext& step);
 	CappedReport solveInstant(RigidSystem<K>& system, const StepContext& instant);
 	void lean(const RigidSystem<K>& system);
 	void takeChange(double fall);
 	void setLoads(const RigidSystem<K>& system, double h);
-	void moveBodies(RigidSystem<K>& system, double h);
+	void moveBodies(RigidSystem<K>& system, double h, bool isMoving);
+	bool turns(const RigidSystem<K>& system, double h) const;
+	int movingBlocks(const RigidSystem<K>& system, double level) const;
 
 	bool started {false};
+	int quiet {0};       // steps in which nothing has moved or turned, up to now
+	bool stands {false}; // some such steps have passed: gaps are added up, and frames stay
 	wall::Team team;
 	wall::WallContacts<K> contacts {team}, nobody {team};
 	AdmmSolver<K> solver;
@@ -85,7 +97,8 @@ private:
 	BasePulse<K> pulses;
 	CappedSolve<K> capped;
 	wall::Lift<K> projection;
-	wall::LaneArray loads, noLoads, change;
+	wall::LaneArray loads, noLoads, noGuess, change;
+	double changeTime {1};               // s, that `change` is of
 	std::vector<typename K::Pose> poses; // of the frames
 };
 

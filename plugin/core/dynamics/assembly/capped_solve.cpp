@@ -22,7 +22,7 @@ double kineticEnergy(const LaneArray& velocity)
 
 template <class K>
 CappedReport CappedSolve<K>::solve(const RigidSystem<K>& s, wall::WallContacts<K>& c, const Poses& poses, const LaneArray& load,
-                                   AdmmSolver<K>& solver, const EnergyLedger<K>& ledger, const StepContext& step)
+                                   const LaneArray& guess, AdmmSolver<K>& solver, const EnergyLedger<K>& ledger, const StepContext& step)
 {
 	CappedReport report;
 	if (!solver.spins.empty() || step.instant) {
@@ -40,7 +40,7 @@ CappedReport CappedSolve<K>::solve(const RigidSystem<K>& s, wall::WallContacts<K
 			for (auto& group : c.groups)
 				for (auto& p : group.point)
 					p.pn = all(0), p.pt *= all(0);
-		solver.solve(s, c, poses, load, step);
+		solver.solve(s, c, poses, load, guess, step);
 		report.iterations += solver.report.iterations;
 		report.factorisations += solver.report.factorisations;
 		report.residual = solver.report.residual;

@@ -24,7 +24,7 @@ public:
 	// As AdmmSolver::solve, with the rows that are in the solver; those that are dropped come back as `capped`. An instant starts without
 	// impulses.
 	CappedReport solve(const RigidSystem<K>& system, wall::WallContacts<K>& contacts, const Poses& poses, const wall::LaneArray& load,
-	                   AdmmSolver<K>& solver, const EnergyLedger<K>& ledger, const StepContext& step);
+	                   const wall::LaneArray& guess, AdmmSolver<K>& solver, const EnergyLedger<K>& ledger, const StepContext& step);
 	// Puts back the impulses of the contacts as they were before the solve.
 	void restore(wall::WallContacts<K>& contacts) const;
 

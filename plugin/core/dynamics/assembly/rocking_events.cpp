@@ -75,7 +75,11 @@ void RockingEvents<K>::gather(const RigidSystem<K>& s, const WallContacts<K>& c)
 {
 	points.clear();
 	const auto hasLaw = [](const auto& pair) { return !std::isnan(pair.restitution); };
-	if (!areOrdered(s.drives) && std::none_of(s.pairs.begin(), s.pairs.end(), hasLaw))
+	if (s.lists != list || s.moved) { // else laws are as they were
+		list = s.lists;
+		areLaws = std::any_of(s.pairs.begin(), s.pairs.end(), hasLaw);
+	}
+	if (!areOrdered(s.drives) && !areLaws)
 		return;
 	const double g = s.gravity.norm();
 	for (int group = 0; group < int(c.groups.size()); ++group)

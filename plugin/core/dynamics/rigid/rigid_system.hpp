@@ -210,7 +210,6 @@ struct StepReport {
 	double residual {0}; // largest of the solves, m/s
 	double created {0};  // J, more than round-off and the error of a sound step can make of nothing
 	double deepest {0};  // m, of a block in another, where no sound step leaves it so deep
-	double burden {0};   // course times ratio of masses of a block upon a lighter one, where it is more than a wall's sweeps carry
 	double turn {0};     // rad, of a block in the step, where it is more than a wall's step resolves
 	bool converged {true};
 	bool diverged {false}; // the state is no longer finite
@@ -226,7 +225,6 @@ struct StepReport {
 		residual = std::max(residual, other.residual);
 		created += other.created;
 		deepest = std::max(deepest, other.deepest);
-		burden = std::max(burden, other.burden);
 		turn = std::max(turn, other.turn);
 		converged &= other.converged;
 		diverged |= other.diverged;

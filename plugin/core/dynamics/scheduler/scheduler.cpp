@@ -1,16 +1,52 @@
 #include "dynamics/scheduler/scheduler.hpp"
 #include "dynamics/rigid/island_numbers.hpp"
 #include <algorithm>
+#include <cmath>
 
 namespace masonry::rigid {
+
+namespace {
+
+// By body: blocks from the nearest prescribed body on, one upon another; -1: of no wall. What stands beside a block does not bear it.
+template <class K>
+std::vector<int> coursesOf(const RigidSystem<K>& s, const std::vector<char>& isWall)
+{
+	std::vector<int> course(s.bodies.size(), -1);
+	for (size_t b = 0; b < s.bodies.size(); ++b)
+		if (s.bodies[b].prescribed)
+			course[b] = 0;
+	int most = 0;
+	for (int reached = 0; reached <= most; ++reached)
+		for (const ContactPair<K>& pair : s.pairs)
+			for (const auto& [from, to] : {std::pair(pair.body1, pair.body2), std::pair(pair.body2, pair.body1)})
+				if (!pair.beside && isWall[to] && course[from] == reached && course[to] < 0)
+					most = course[to] = reached + 1;
+	return course;
+}
+
+// Largest course of a block times the ratio of its mass to that of one that it is upon.
+template <class K>
+double burdenOf(const RigidSystem<K>& s, const std::vector<int>& course)
+{
+	double most = 0;
+	for (const ContactPair<K>& pair : s.pairs) {
+		const auto [low, high] = std::minmax({pair.body1, pair.body2}, [&](int a, int b) { return course[a] < course[b]; });
+		if (course[low] > 0 && course[low] < course[high])
+			most = std::max(most, course[high] * s.bodies[high].mass / s.bodies[low].mass);
+	}
+	return most;
+}
+
+} // namespace
 
 template <class K>
 StepReport Scheduler<K>::advance(RigidSystem<K>& s, double dt)
 {
-	if (s.lists != list || s.bodies.size() != ofWall.size())
+	const bool isNew = s.lists != list || s.bodies.size() != ofWall.size();
+	if (isNew)
 		divide(s);
 	if (localisedBodies.empty())
-		return walls.advance(s, dt);
+		return advanceWalls(s, dt);
 	const Settings ofWalls = s.settings;
 	const bool moved = s.moved;
 	s.settings.tolerance = Settings().tolerance;
@@ -21,10 +57,44 @@ StepReport Scheduler<K>::advance(RigidSystem<K>& s, double dt)
 	s.moved = moved;
 	gapsAreOutdated = false;
 	hideLocalised(s);
-	StepReport report = walls.advance(s, dt);
+	StepReport sum = advanceWalls(s, dt);
 	restoreLocalised(s);
-	report += islands.advanceTaken(s, dt);
-	return report;
+	sum += islands.advanceTaken(s, dt);
+	return sum;
+}
+
+template <class K>
+StepReport Scheduler<K>::advanceWalls(RigidSystem<K>& s, double dt)
+{
+	if (oneMethod && !byAssembly)
+		takeAssembly(s);
+	if (!byAssembly) {
+		walls->settings = settings;
+		const StepReport sum = walls->advance(s, dt);
+		const WallReport& of = walls->report;
+		report = {of.moved, of.partBases, of.velocityResidual, of.forceResidual};
+		oneMethod |= isHigh && of.moved > 0;
+		return sum;
+	}
+	assembly::AssemblySettings& of = assembly->settings;
+	const assembly::AdmmSettings usual;
+	of.solver.tolerance = settings.tolerance;
+	of.solver.strictForces = settings.strictForces;
+	of.solver.iterations = int(std::lround(usual.iterations * std::max(1., std::sqrt(usual.tolerance / settings.tolerance))));
+	of.threads = settings.threads;
+	const StepReport sum = assembly->advance(s, dt);
+	report = {assembly->report.moved, false, assembly->report.velocityResidual, assembly->report.forceResidual};
+	return sum;
+}
+
+// Starts from the impulses that the two modes have left in the pairs.
+template <class K>
+void Scheduler<K>::takeAssembly(RigidSystem<K>& s)
+{
+	walls->showPoints(s);
+	walls.emplace();
+	s.moved = true;
+	byAssembly = true;
 }
 
 template <class K>
@@ -52,6 +122,11 @@ void Scheduler<K>::divide(const RigidSystem<K>& s)
 	for (const int b : localisedBodies)
 		isLocalised[b] = 1;
 	islands.divide(s, isLocalised);
+	for (size_t b = 0; b < s.bodies.size(); ++b)
+		isWall[b] = !s.bodies[b].prescribed && !isLocalised[b];
+	const std::vector<int> course = coursesOf(s, isWall);
+	isHigh = std::any_of(course.begin(), course.end(), [](int of) { return of > coursesOfTwoModes; });
+	oneMethod |= burdenOf(s, course) > burdenOfTwoModes || (isHigh && areOrdered(s.drives));
 }
 
 // To the walls, localised bodies are bodies at rest that nothing moves.

@@ -2,20 +2,32 @@
 // Decides which structures get which step. A structure is a set of blocks that a chain of near pairs joins (island_numbers.hpp).
 //
 //     structure            step
-//     many blocks          wall_step.hpp
 //     at most maxBlocks    rigid_step.hpp: its impacts are localised, and it is second order in the step
+//     more                 wall_step.hpp: at rest and in motion by two modes
+//     many courses         the same while they stand; from their first motion on, and under Dirac pulses, assembly_step.hpp
+//     a heavy block on light ones      assembly_step.hpp
 //
 // The two kinds of structures are near no block of each other and are stepped one after the other, each as if the other were not there.
 // Localised structures use the default tolerance and order of Settings, whatever the walls use.
 //
-// A block that has once belonged to a wall stays with the walls: the parts that break off a wall are many small structures, and each impact
-// of theirs would be searched for. All structures get the walls' step if none has more than maxBlocks, or if the motions must be asked in
-// order of time (BaseDrive::ordered).
+// All walls of a system are stepped together, and what has once gone over to assembly_step.hpp stays with it. A block that has once
+// belonged to a wall stays with the walls: the parts that break off a wall are many small structures, and each impact of theirs would be
+// searched for. All structures get the walls' step if none has more than maxBlocks, or if the motions must be asked in order of time
+// (BaseDrive::ordered).
+#include "dynamics/assembly/assembly_step.hpp"
 #include "dynamics/rigid/islands.hpp"
 #include "dynamics/wall/wall_step.hpp"
 #include <algorithm>
+#include <optional>
 
 namespace masonry::rigid {
+
+// Of the last step of the walls.
+struct WallsReport {
+	int moved {0};                                  // blocks that move against a neighbour
+	bool partBases {false};                         // blocks of a structure stand on bases that move in different ways
+	double velocityResidual {0}, forceResidual {0}; // m/s; of an impulse, as the velocity that it gives the point
+};
 
 template <class K>
 class Scheduler {
@@ -24,9 +36,24 @@ public:
 	// minutes a second.
 	static constexpr int maxBlocks = K::dimension == 2 ? 20 : 6;
 
-	WallStep<K> walls; // its settings are those of the walls
+	// Courses, and course times the ratio of a block's mass to that of one below it, up to which a wall that moves is stepped by
+	// wall_step.hpp. The cost of its sweeps grows as the square of the courses, and their errors with courses and burden; those of
+	// assembly_step.hpp do not. Smaller: walls of so many courses that move take twice the time. Larger: they go too far.
+	static constexpr int coursesOfTwoModes = 32;
+	static constexpr double burdenOfTwoModes = 4e4;
+
+	WallSettings settings;
+	WallsReport report;
 
 	StepReport advance(RigidSystem<K>& system, double dt);
+	// Gaps, forces and places of the points as they are after the step, into the system's pairs. To be called before their list changes.
+	void showPoints(RigidSystem<K>& system) { byAssembly ? assembly->showPoints(system) : walls->showPoints(system); }
+	// work(begin, end) for shares of 0 .. size - 1, by the threads of the last step.
+	template <class Work>
+	void eachShare(size_t size, const Work& work)
+	{
+		byAssembly ? assembly->eachShare(size, work) : walls->eachShare(size, work);
+	}
 	int localised() const { return int(localisedBodies.size()); } // blocks whose impacts are localised, in the last step
 	bool isLocalised(int body) const { return std::binary_search(localisedBodies.begin(), localisedBodies.end(), body); }
 
@@ -38,19 +65,30 @@ public:
 		ofWall.resize(count);
 		for (char& is : ofWall)
 			f(is);
+		f(oneMethod), f(byAssembly);
 		if (count == system.bodies.size())
 			divide(system);
 		hideLocalised(system);
-		walls.pass(f, system);
+		if (byAssembly)
+			assembly->pass(f, system);
+		else
+			walls->pass(f, system);
 		restoreLocalised(system);
 		gapsAreOutdated = true;
 	}
 
 private:
 	void divide(const RigidSystem<K>& system);
+	void takeAssembly(RigidSystem<K>& system);
+	StepReport advanceWalls(RigidSystem<K>& system, double dt);
 	void hideLocalised(RigidSystem<K>& system);
 	void restoreLocalised(RigidSystem<K>& system) const;
 
+	std::optional<WallStep<K>> walls {std::in_place};
+	std::optional<assembly::AssemblyStep<K>> assembly {std::in_place};
+	bool isHigh {false};     // a wall has many courses
+	bool oneMethod {false};  // the next step is by the one method
+	bool byAssembly {false}; // the last one was
 	Islands<K> islands;
 	std::vector<char> ofWall;         // by body, 1: has belonged to a wall
 	std::vector<int> localisedBodies; // sorted; empty if there are no walls

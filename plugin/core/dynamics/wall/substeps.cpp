@@ -36,7 +36,7 @@ constexpr double heavy = 3;
 template <class K>
 constexpr double coursesOfSlowSweep = K::dimension == 2 ? coursesOfSweep : coursesOfSweep / 2;
 // And as many as heavy blocks on light ones ask: with this burden per sweep one of 3,000 times the mass slides on two courses by 0.5 % more
-// than with ten times the sweeps. Up to mostBurden.
+// than with ten times the sweeps.
 constexpr double burdenOfSweep = 100;
 // Of what a point is too deep, what it must part by in the move of a substep, at most as fast as gravity gives in it: faster, blocks that
 // have landed deep in each other fly apart. Less: more is left to the lifts, which give back at the end of a step what a wall has lost by
@@ -129,13 +129,12 @@ void Substeps<K>::begin(WallContacts<K>& c, const Structures<K>& structures, dou
 	for (const Structure& one : structures.all)
 		pace = std::max(pace, one.pace);
 	const double courses = pace < 1 ? coursesOfSlowSweep<K> : coursesOfSweep,
-	             asked = std::max(
-	                 {double(effort.fewestSweeps), c.spread / (courses * courses), std::min(c.burden, mostBurden) / burdenOfSweep});
+	             asked = std::max({double(effort.fewestSweeps), c.spread / (courses * courses), c.burden / burdenOfSweep});
 	sweeps = int(std::ceil(asked * std::max(1., finer)));
 	const bool lags = sweeps < c.depth;
 	edges = !lags;
 	const bool mayGoOn = edges && (K::dimension == 2 || c.burden > heavy * c.depth || slips(c));
-	mostSweeps = mayGoOn ? std::max({sweeps, sweepsOfLanding, int(std::min(c.burden, mostBurden) / burdenOfLanding)}) : sweeps;
+	mostSweeps = mayGoOn ? std::max({sweeps, sweepsOfLanding, int(c.burden / burdenOfLanding)}) : sweeps;
 	lumps = lags ? float(mostLumps * std::min(1., std::pow(c.depth / coursesOfLumps, 2))) : 0;
 	if (!lags)
 		effort.relaxationBefore = effort.relaxationAfter = 1;

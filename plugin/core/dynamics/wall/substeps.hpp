@@ -28,8 +28,6 @@
 
 namespace masonry::rigid::wall {
 
-constexpr double mostBurden = 4e4; // of the contacts: what the sweeps can carry
-
 // What a step of a millisecond takes at the default tolerance.
 struct Effort {
 	int substeps, fewestSweeps;               // before the move of a substep, and after it

@@ -46,8 +46,6 @@ void WallStep<K>::stepMoving(RigidSystem<K>& s, double h)
 	const double deepest = lift.settle(contacts);
 	if (deepest > tolerance::wall::sunk * contacts.length)
 		report.deepest = std::max(report.deepest, deepest);
-	if (contacts.burden > wall::mostBurden)
-		report.burden = contacts.burden;
 	s.time = start;
 	report.substeps += count;
 	report.velocityResidual = std::max(report.velocityResidual, sweeps.report.residual);

@@ -29,7 +29,6 @@ StepReport WallStep<K>::advance(RigidSystem<K>& s, double dt)
 			report.turn = std::max(report.turn, turn);
 	report.residual = std::max(report.velocityResidual, report.forceResidual);
 	report.sweeps = report.solves;
-	report.courses = (report.mode == WallMode::still ? still() : moving()).depth;
 	return report;
 }
 

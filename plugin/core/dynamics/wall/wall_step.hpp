@@ -31,7 +31,6 @@ struct WallReport : StepReport {
 	WallMode mode {WallMode::still}; // moving: some structure moved
 	int moved {0};                   // blocks of structures that moved
 	bool switched {false};           // some structure has begun to
-	int courses {0};                 // blocks one upon another, at most, of those that moved if any did
 	bool partBases {false};          // structures are new, and one stands on bases that move in different ways
 	int solves {0};                  // of the still mode
 	double velocityResidual {0};     // m/s
@@ -50,9 +49,7 @@ public:
 	template <class Work>
 	void eachShare(size_t size, const Work& work)
 	{
-		constexpr size_t least = 256; // fewer do not repay that threads meet
-		const size_t count = std::clamp<size_t>(size / least, 1, wall::Team::mostParts);
-		team.each(int(count), [&](int k) { work(size * k / count, size * (k + 1) / count); });
+		team.eachShare(size, work);
 	}
 
 	// Gaps, forces and places of the points as they are after the step, into the system's pairs: the step itself does without. To be called

@@ -55,7 +55,7 @@ struct Frozen {
 		typename assembly::AdmmSolver<K>::Poses poses;
 		for (const auto& body : s.bodies)
 			poses.push_back(body.pose);
-		solver.solve(s, contacts, poses, loads, step);
+		solver.solve(s, contacts, poses, loads, {}, step);
 	}
 
 	// The same problem for the general solver: in the packs of the contacts each body has one mass for all components. `unknown` are its

@@ -61,6 +61,66 @@ TEMPLATE_TEST_CASE("a block slides with the acceleration of friction", "", Plane
 	CHECK(s.frictDissip == Approx(mu * s.bodies[1].mass * g * slip).epsilon(2e-2));
 }
 
+// A steady pull of half the weight: the block has (1/2 - mu) g from the first step on. With the default tolerance the impulses of a step
+// may be wrong by a multiple of it, but not again and again: the speed is late by what gravity gives in one step.
+TEMPLATE_TEST_CASE("a block that is pulled steadily has the acceleration of the pull", "", Plane, Space)
+{
+	constexpr double mu = 0.3, h = 1e-3, time = 0.4;
+	AssemblyScene<TestType> scene(mu);
+	auto& s = scene.system;
+	addBlock(s, sizeOf(s, 0.5, 0.25), placeOf(s, 0, 0.25));
+	s.bodies[1].force[0] = s.bodies[1].mass * g / 2;
+	scene.run(time, h);
+	CHECK(std::abs(s.bodies[1].velocity[0] - (0.5 - mu) * g * time) < g * h);
+	CHECK(scene.one.report.moved == 1);
+}
+
+// Blocks that have been put a little into each other stay so, whatever is taken back of penetrations that steps have left.
+TEMPLATE_TEST_CASE("an overlap with which blocks are found stays", "", Plane, Space)
+{
+	constexpr double overlap = 0.95e-4 * 0.25; // of the smallest half size, what a scene may have
+	AssemblyScene<TestType> scene;
+	auto& s = scene.system;
+	for (int k = 0; k < 5; ++k)
+		addBlock(s, sizeOf(s, 0.3, 0.25), placeOf(s, 0, 0.25 + 0.5 * k - (k + 1) * overlap));
+	double created = 0, moved = 0;
+	for (int k = 0; k < 300; ++k) {
+		scene.advance(1e-3);
+		created += scene.one.report.created;
+	}
+	for (int b = 1; b <= 5; ++b)
+		moved = std::max(moved, scene.shift(b).norm());
+	CHECK(moved < 2e-3 * overlap);
+	CHECK(created == 0);
+	CHECK(scene.one.report.moved == 0);
+}
+
+// At rest, and where a block flies.
+TEST_CASE("blocks that move are counted")
+{
+	AssemblyScene<Plane> scene;
+	auto& s = scene.system;
+	scene.addWall(4, 4);
+	scene.run(0.05, 1e-3);
+	CHECK(scene.one.report.moved == 0);
+	addBlock(s, {0.25, 0.25}, {2, 4});
+	addBlock(s, {0.25, 0.25}, {-2, 0.25});
+	s.bodies.back().velocity[0] = -1;
+	scene.run(0.05, 1e-3);
+	CHECK(scene.one.report.moved == 2);
+}
+
+TEMPLATE_TEST_CASE("forces at rest meet the tolerance if they are to", "", Plane, Space)
+{
+	constexpr double h = 1e-3, tolerance = 1e-3;
+	AssemblyScene<TestType> scene;
+	scene.addWall(6, 4);
+	scene.one.settings.solver.strictForces = true;
+	scene.run(0.05, h);
+	CHECK(scene.one.report.forceResidual < tolerance * g * h);
+	CHECK(scene.one.report.residual == std::max(scene.one.report.forceResidual, scene.one.report.velocityResidual));
+}
+
 // The base translates: its work is the change of the momentum of all blocks times its velocity, step by step, whatever the contacts are.
 TEMPLATE_TEST_CASE("the work of the base is that of the momentum that it gives", "", Plane, Space)
 {

@@ -100,23 +100,6 @@ TEST_CASE("a block that is set off slips as far as it must")
 	CHECK(scene.shift(1).x() == Approx(slip(t1)).epsilon(27 * h));
 }
 
-// A heavy block upon light ones: its course times the ratio of the masses, where that is more than the sweeps carry (4e4).
-TEST_CASE("a step says which burden its sweeps do not carry")
-{
-	const int courses = GENERATE(1, 3); // light ones
-	const double ratio = 1.5e4;
-	Scene scene;
-	for (int k = 0; k <= courses; ++k)
-		addBlock(scene.system, {0.5, 0.25}, {0, 0.25 + 0.5 * k});
-	RigidBody<Plane>& heavy = scene.system.bodies.back();
-	for (double* scaled : {&heavy.mass, &heavy.inertia[0], &heavy.force[1]})
-		*scaled *= ratio;
-	heavy.velocity[0] = 0.1;
-	scene.advance(1e-3);
-	CHECK(scene.step.report.mode == WallMode::moving);
-	CHECK(scene.step.report.burden == Approx(courses == 1 ? 0 : (courses + 1) * ratio).epsilon(1e-12));
-}
-
 // The wall's step takes the spin of its end: a quarter of a radian is what tolerance::rigid::partTurn allows a step.
 TEST_CASE("a step says by how much a block turns that turns too far for it")
 {
