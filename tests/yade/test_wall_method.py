@@ -150,6 +150,25 @@ def test_a_wall_of_many_courses(shaking, moves, tmp_path, capfd):
     assert np.array_equal(wanted, bits())
 
 
+@pytest.mark.parametrize("model, count", (("planar", 24), ("spatial", 8)))
+def test_a_row_that_thrust_clamps(model, count):
+    """Boxes that hang by friction alone, under six times the thrust that shear and the line of thrust need, stay where they are: within the 1e-2 mm
+    that a wall may drift in a second. The shelves of the block that pushes are smooth, so that Coulomb's law leaves nothing open."""
+    O.reset()
+    rough, smooth = dem.BlockMat(density=2000, frictionAngle=math.atan(0.4)), dem.BlockMat(frictionAngle=0)
+    end = 0.2 * count + 0.3
+    for size, center, material in (((1, 1, 3), (-0.5, 0, 0), rough), ((0.58, 1, 0.1), (end, 0, -0.55), smooth), ((0.58, 1, 0.1), (end, 0, 0.55), smooth)):
+        O.bodies[dem.base(size, material)].state.pos = center
+    places = [Vector3(0.1 + 0.2 * k, 0, 0) for k in range(count)]
+    boxes = [dem.block((0.2, 0.4, 0.4), rough, center=place) for place in places]
+    push = dem.block((0.6, 0.4, 1), rough, center=(end, 0, 0))
+    O.engines = rigid_engines(model=model, method="wall", dt=1e-3)
+    weight = count * O.bodies[boxes[0]].state.mass * 9.81
+    O.forces.setPermF(push, (-6 * max(weight / 2 / 0.4, weight * count / 16), 0, 0))
+    O.run(1000, True)
+    assert max((O.bodies[box].state.pos - place).norm() for box, place in zip(boxes, places)) < 1e-5 and integrator().failures == 0
+
+
 def slab(density, method):
     """How far a slab on two courses slides on a shaken base, m; friction 0.3."""
     O.reset()

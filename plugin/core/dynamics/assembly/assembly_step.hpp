@@ -2,7 +2,7 @@
 // The step of an assembly of many rigid blocks, in a plane or in space: walls that stand, that rock, that slide and that fall, by one
 // method (admm_solver.hpp).
 //
-//     frames and gaps at the start of the step (wall::WallContacts)
+//     frames and gaps at the start of the step (wall::WallContacts); while nothing moves, every few steps
 //     impacts and jumps of the base at the instant between two steps (RockingEvents, BasePulse, CappedSolve)
 //     V by the contact laws, all at once (AdmmSolver)
 //     q += h V, and penetrations that are left are taken off by positions alone (wall::Lift)

@@ -37,6 +37,20 @@ double burdenOf(const RigidSystem<K>& s, const std::vector<int>& course)
 	return most;
 }
 
+// Whether a block of a wall is held by what stands beside it alone.
+template <class K>
+bool hangs(const RigidSystem<K>& s, const std::vector<char>& isWall)
+{
+	std::vector<char> isBorne(s.bodies.size(), 0), isHeld(s.bodies.size(), 0);
+	for (const ContactPair<K>& pair : s.pairs)
+		for (const int b : {pair.body1, pair.body2})
+			(pair.beside ? isHeld : isBorne)[b] = 1;
+	for (size_t b = 0; b < s.bodies.size(); ++b)
+		if (isWall[b] && isHeld[b] && !isBorne[b])
+			return true;
+	return false;
+}
+
 } // namespace
 
 template <class K>
@@ -100,6 +114,7 @@ void Scheduler<K>::takeAssembly(RigidSystem<K>& s)
 template <class K>
 void Scheduler<K>::divide(const RigidSystem<K>& s)
 {
+	const bool begins = ofWall.empty();
 	list = s.lists;
 	ofWall.resize(s.bodies.size(), 0);
 	const std::vector<int> structure = islandNumbers(s);
@@ -126,7 +141,7 @@ void Scheduler<K>::divide(const RigidSystem<K>& s)
 		isWall[b] = !s.bodies[b].prescribed && !isLocalised[b];
 	const std::vector<int> course = coursesOf(s, isWall);
 	isHigh = std::any_of(course.begin(), course.end(), [](int of) { return of > coursesOfTwoModes; });
-	oneMethod |= burdenOf(s, course) > burdenOfTwoModes || (isHigh && areOrdered(s.drives));
+	oneMethod |= burdenOf(s, course) > burdenOfTwoModes || (isHigh && areOrdered(s.drives)) || (begins && hangs(s, isWall));
 }
 
 // To the walls, localised bodies are bodies at rest that nothing moves.

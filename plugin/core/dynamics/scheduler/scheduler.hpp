@@ -5,7 +5,8 @@
 //     at most maxBlocks    rigid_step.hpp: its impacts are localised, and it is second order in the step
 //     more                 wall_step.hpp: at rest and in motion by two modes
 //     many courses         the same while they stand; from their first motion on, and under Dirac pulses, assembly_step.hpp
-//     a heavy block on light ones      assembly_step.hpp
+//     a heavy block on light ones, or blocks that hang from what is beside them as the run begins
+//                          assembly_step.hpp
 //
 // The two kinds of structures are near no block of each other and are stepped one after the other, each as if the other were not there.
 // Localised structures use the default tolerance and order of Settings, whatever the walls use.
