@@ -405,9 +405,10 @@ void AdmmSolver<K>::solve(const RigidSystem<K>& s, WallContacts<K>& c, const Pos
 	prepareSpins(c);
 	start(c, load, guess, step);
 	const double enough = std::max(settings.tolerance * step.fall, step.instant ? settings.instantTolerance * step.speed : 0);
+	const double iterations = settings.iterations * std::max(1., double(settings.few) * packs<K> / std::max<size_t>(1, places.size()));
 	const int most = step.instant                    ? settings.ofInstant
 	                 : cold || settings.strictForces ? settings.first
-	                                                 : std::min(settings.iterations + int(saved), 10 * settings.iterations);
+	                                                 : int(std::min(iterations + saved, 10 * iterations));
 	const auto isLagging = [&] { return !step.instant && report.iterations < settings.least; };
 	constexpr double diverging = 10;
 	constexpr int untilLoaded = 100; // iterations of a cold start, after which R follows the loads that they have found
@@ -427,7 +428,7 @@ void AdmmSolver<K>::solve(const RigidSystem<K>& s, WallContacts<K>& c, const Pos
 	} while (report.residual > (isLagging() ? settings.early * enough : enough) && report.iterations < most);
 	report.converged = report.residual <= enough;
 	if (!step.instant) {
-		saved = cold ? 0 : std::clamp(saved + settings.iterations - report.iterations, 0., double(settings.reserve) * settings.iterations);
+		saved = cold ? 0 : std::clamp(saved + iterations - report.iterations, 0., settings.reserve * iterations);
 		cold = false;
 	}
 	report.finite = std::all_of(velocity.begin(), velocity.end(), [](const Lanes& v) { return std::isfinite(v[0] + v[1] + v[2]); });

@@ -49,6 +49,8 @@ struct AdmmSettings {
 	double tolerance {1e-3};   // largest |w - z| relative to the speed that gravity gives in a step. Larger: joints drift and sink
 	bool strictForces {false}; // the same holds for errors of impulses, as velocities; then a step takes up to `first` iterations
 	int iterations {20};       // at most in a step, beside the reserve. Fewer: excursions are too small
+	int few {100}; // blocks below which a step takes more of them, in inverse proportion. Smaller: walls of some tens of blocks in space go
+	               // a tenth too little
 	int least {10};      // iterations of a step, unless its residual is below `early`. Fewer: p lags behind what turns, and energy rises
 	double early {0.1};  // of the tolerance. Smaller: more iterations at rest; larger: as with fewer `least` iterations
 	int reserve {50};    // times `iterations` that quiet steps save for impacts at most. 0: walls under impacts drift

@@ -87,7 +87,7 @@ StepReport Scheduler<K>::advanceWalls(RigidSystem<K>& s, double dt)
 		const StepReport sum = walls->advance(s, dt);
 		const WallReport& of = walls->report;
 		report = {of.moved, of.partBases, of.velocityResidual, of.forceResidual};
-		oneMethod |= isHigh && of.moved > 0;
+		oneMethod |= oneInMotion && of.moved > 0;
 		return sum;
 	}
 	assembly::AssemblySettings& of = assembly->settings;
@@ -139,8 +139,18 @@ void Scheduler<K>::divide(const RigidSystem<K>& s)
 	islands.divide(s, isLocalised);
 	for (size_t b = 0; b < s.bodies.size(); ++b)
 		isWall[b] = !s.bodies[b].prescribed && !isLocalised[b];
+	choose(s, isWall, begins);
+}
+
+template <class K>
+void Scheduler<K>::choose(const RigidSystem<K>& s, const std::vector<char>& isWall, bool begins)
+{
 	const std::vector<int> course = coursesOf(s, isWall);
-	isHigh = std::any_of(course.begin(), course.end(), [](int of) { return of > coursesOfTwoModes; });
+	const bool isHigh = std::any_of(course.begin(), course.end(), [](int of) { return of > coursesOfTwoModes; });
+	const bool hasLaw = std::any_of(s.pairs.begin(), s.pairs.end(), [&](const ContactPair<K>& pair) {
+		return !std::isnan(pair.restitution) && (isWall[pair.body1] || isWall[pair.body2]);
+	});
+	oneInMotion = isHigh || (hasLaw && std::count(isWall.begin(), isWall.end(), 1) > maxBlocks);
 	oneMethod |= burdenOf(s, course) > burdenOfTwoModes || (isHigh && areOrdered(s.drives)) || (begins && hangs(s, isWall));
 }
 

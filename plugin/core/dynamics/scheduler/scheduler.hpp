@@ -4,7 +4,8 @@
 //     structure            step
 //     at most maxBlocks    rigid_step.hpp: its impacts are localised, and it is second order in the step
 //     more                 wall_step.hpp: at rest and in motion by two modes
-//     many courses         the same while they stand; from their first motion on, and under Dirac pulses, assembly_step.hpp
+//     many courses, or a given restitution
+//                          the same while they stand; assembly_step.hpp from their first motion on, and many courses under Dirac pulses
 //     a heavy block on light ones, or blocks that hang from what is beside them as the run begins
 //                          assembly_step.hpp
 //
@@ -66,9 +67,9 @@ public:
 		ofWall.resize(count);
 		for (char& is : ofWall)
 			f(is);
-		f(oneMethod), f(byAssembly);
 		if (count == system.bodies.size())
 			divide(system);
+		f(oneInMotion), f(oneMethod), f(byAssembly);
 		hideLocalised(system);
 		if (byAssembly)
 			assembly->pass(f, system);
@@ -80,6 +81,8 @@ public:
 
 private:
 	void divide(const RigidSystem<K>& system);
+	// By body, 1: of a wall; whether the run begins.
+	void choose(const RigidSystem<K>& system, const std::vector<char>& isWall, bool begins);
 	void takeAssembly(RigidSystem<K>& system);
 	StepReport advanceWalls(RigidSystem<K>& system, double dt);
 	void hideLocalised(RigidSystem<K>& system);
@@ -87,9 +90,9 @@ private:
 
 	std::optional<WallStep<K>> walls {std::in_place};
 	std::optional<assembly::AssemblyStep<K>> assembly {std::in_place};
-	bool isHigh {false};     // a wall has many courses
-	bool oneMethod {false};  // the next step is by the one method
-	bool byAssembly {false}; // the last one was
+	bool oneInMotion {false}; // the walls go over to the one method as they move
+	bool oneMethod {false};   // the next step is by the one method
+	bool byAssembly {false};  // the last one was
 	Islands<K> islands;
 	std::vector<char> ofWall;         // by body, 1: has belonged to a wall
 	std::vector<int> localisedBodies; // sorted; empty if there are no walls

@@ -43,7 +43,7 @@ std::vector<Impact> shake(Scene& scene, Step& step, double time)
 
 } // namespace
 
-TEST_CASE("a wall moves as by the walls' method alone, a pier beside it as with localised impacts alone")
+TEST_CASE("a wall moves as alone, a pier beside it as with localised impacts alone")
 {
 	const double amplitude = GENERATE(0.5 * g, 1.1 * g); // the wall stands, or moves
 	const double restitution = 0.8, time = 1;
@@ -58,8 +58,7 @@ TEST_CASE("a wall moves as by the walls' method alone, a pier beside it as with 
 	REQUIRE(both.system.bodies.size() == 1 + wallBlocks + 3);
 	pier.system.settings = Settings();
 	both.system.settings.tolerance = wall.system.settings.tolerance = 1e-3;
-	Scheduler<Plane> scheduler;
-	WallStep<Plane> byWalls;
+	Scheduler<Plane> scheduler, byWalls;
 	RigidStep<Plane> localised;
 	const auto impacts = shake(both, scheduler, time), ofWall = shake(wall, byWalls, time), ofPier = shake(pier, localised, time);
 	CHECK(scheduler.localised() == 3);
