@@ -1,6 +1,7 @@
-// The extension module masonry._yade. Its initialisation does nothing but define setup(): an exception there would
+// The extension module masonry._yade. Its initialisation does nothing but define functions: an exception there would
 // reach Python without its text.
 #include <boost/python.hpp>
+#include <dynamics/scheduler/scheduler.hpp>
 #include <string>
 #include <vector>
 
@@ -52,6 +53,20 @@ py::list setup()
 	return all;
 }
 
+/// By model of rigid blocks: up to so many free blocks that are stepped together have localised impacts.
+py::dict fewBlocks()
+{
+	py::dict all;
+	all["planar"] = int(masonry::rigid::Scheduler<masonry::rigid::Plane>::maxBlocks);
+	all["spatial"] = int(masonry::rigid::Scheduler<masonry::rigid::Space>::maxBlocks);
+	return all;
+}
+
 } // namespace
 
-BOOST_PYTHON_MODULE(_yade) { py::def("setup", setup, "Registers the plugin's classes in YADE; returns their names."); }
+BOOST_PYTHON_MODULE(_yade)
+{
+	py::def("setup", setup, "Registers the plugin's classes in YADE; returns their names.");
+	py::def("few_blocks", fewBlocks,
+	        "By model of rigid blocks: up to so many free blocks that are stepped together have localised impacts.");
+}

@@ -9,6 +9,7 @@ from masonry._given import is_whole, number_given, shown
 from masonry.motions import Motion, PulseTrain, Record
 from yade import O, wrapper
 
+from masonry import _yade
 from masonry.dem import notes
 from masonry.dem.scene import _boxes, _half_sizes, check_blocks, check_material, check_recorder, structures
 from masonry.dem.walls import finite_numbers
@@ -16,9 +17,8 @@ from masonry.dem.walls import finite_numbers
 _MODELS = ("auto", "planar", "spatial", "compliant")
 _METHODS = ("auto", "localised", "wall")
 _ORDERS = (None, "simultaneous", "sequential")
-# Up to so many free blocks that are stepped together, impacts are found one by one. Larger: shaken walls of ten blocks in space take
-# minutes a second. Scheduler::maxBlocks of the core is the same.
-_FEW_BLOCKS = {"planar": 20, "spatial": 6}
+# By model: up to so many free blocks that are stepped together, impacts are found one by one.
+_FEW_BLOCKS = _yade.few_blocks()
 # Time step of rigid blocks, share of the largest that is allowed (0.15 sqrt(R/g) of the smallest block): 2.5e-3 sqrt(R/g), 1e-3 s for a
 # block 3 m high. Rocking angles of one block are then right to 1e-6.
 _RIGID_STEP = 1 / 60
