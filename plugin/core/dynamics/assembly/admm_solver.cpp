@@ -173,12 +173,12 @@ MASONRY_INLINE void advanceGroups(Group<K>* groups, StillGroup<K>* memory, const
 			ended.loss -= select(glides, dot(row.actedT, row.ut), all(0));
 			const Mask here = row.stiffness > 0;
 			in |= here;
-			moves |= here & (larger(size(row.un), size(row.ut)) > level);
+			moves |= (p.massN > 0) & (larger(size(row.un), size(row.ut)) > level);
 			const Lanes error = larger(size(row.actedN - p.pn) / p.massN, size(row.actedT - p.pt) / p.massT);
 			ended.forceError = larger(ended.forceError, here ? error : all(0));
 		}
 		reached[g] = bitsOf(in);
-		moving[g] = bitsOf(moves);
+		moving[g] = bitsOf(moves & in);
 	}
 }
 

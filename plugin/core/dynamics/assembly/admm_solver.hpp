@@ -106,7 +106,7 @@ public:
 	wall::LaneArray velocity;      // V, in the packs of the contacts
 	std::vector<Rows> rows;        // by group of the contacts
 	wall::LaneBits reached;        // pairs with a point in A, after advanceGaps
-	wall::LaneBits moving;         // pairs with one that moves against its neighbour
+	wall::LaneBits moving;         // those of them with any point that moves: where a block rocks, only its pivot may be in A
 
 	using Poses = std::vector<typename K::Pose>;
 	// Solves the step from the contacts' velocities and impulses, whose frames are those of `poses`; `load` is the change of velocity by

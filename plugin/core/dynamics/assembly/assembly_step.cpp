@@ -203,7 +203,7 @@ bool AssemblyStep<K>::turns(const RigidSystem<K>& s, double h) const
 	});
 }
 
-// Blocks with a point in reach that moves faster than `level` (m/s) against its neighbour, and blocks without any that are as fast.
+// Blocks of a pair in reach that has a point faster than `level` (m/s), and blocks without a pair in reach that are as fast.
 template <class K>
 int AssemblyStep<K>::movingBlocks(const RigidSystem<K>& s, double level) const
 {
