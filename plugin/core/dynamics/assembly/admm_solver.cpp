@@ -151,7 +151,7 @@ MASONRY_INLINE void startGroups(Group<K>* groups, StillGroup<K>* memory, RowsOf<
 	}
 }
 
-// What a pass over the points finds at the end of a step, of a part.
+// A pass over the points of a part finds these at the end of a step.
 struct alignas(alignment) Ended {
 	Lanes loss, forceError;
 };

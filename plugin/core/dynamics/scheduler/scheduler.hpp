@@ -24,7 +24,7 @@
 
 namespace masonry::rigid {
 
-// Of the last step of the walls.
+// This is what the last step of the walls did.
 struct WallsReport {
 	int moved {0};                                  // blocks that move against a neighbour
 	bool partBases {false};                         // blocks of a structure stand on bases that move in different ways
@@ -81,7 +81,7 @@ public:
 
 private:
 	void divide(const RigidSystem<K>& system);
-	// By body, 1: of a wall; whether the run begins.
+	// Which step the walls get. `isWall` has 1 for each body of a wall; `begins`: no step has been done.
 	void choose(const RigidSystem<K>& system, const std::vector<char>& isWall, bool begins);
 	void takeAssembly(RigidSystem<K>& system);
 	StepReport advanceWalls(RigidSystem<K>& system, double dt);
