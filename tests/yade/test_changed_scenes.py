@@ -106,12 +106,11 @@ def test_a_body_at_the_place_of_an_erased_one():
     assert falls(falling, begin) and O.engines[-1].chosenModel == "planar"
 
 
-@pytest.mark.parametrize("method", ("localised", "wall"))
-def test_a_state_in_the_place_of_another(method):
+def test_a_state_in_the_place_of_another():
     """A state that a script puts in the place of another like it is the block's from then on: it falls back and rocks as it would have."""
     angles = []
     for replaced in (False, True):
-        base, standing, falling = scene(lambda: rigid_engines(dt=1e-3, method=method))
+        base, standing, falling = scene(lambda: rigid_engines(dt=1e-3))
         dem.tilt(standing, 0.2)
         O.run(50, True)
         if replaced:

@@ -45,11 +45,10 @@ def rocking(block, restitution, start, until, at):
 
 
 @pytest.mark.parametrize("options, bound", (
-    ({"model": "planar"}, 1e-4), ({"model": "spatial"}, 1e-4), ({"method": "wall", "tolerance": 1e-5}, 2e-2), ({"model": "compliant", "penetration": 1e-6}, 1e-3),
+    ({"model": "planar"}, 1e-4), ({"model": "spatial"}, 1e-4), ({"model": "compliant", "penetration": 1e-6}, 1e-3),
 ))
 def test_sideways_and_up_at_once(options, bound):
-    """Sideways and up at once, through some impacts, against an integration of the equation of motion. Bounds: as of one record (compare_record),
-    and of first order by method='wall'."""
+    """Sideways and up at once, through some impacts, against an integration of the equation of motion. Bounds: as of one record (compare_record)."""
     base, id, block = one_block(4, restitution=0.8)
     dem.tilt(id, 0.5 * block.critical_angle)
     make = quiet_engines if options.get("model") == "compliant" else rigid_engines
@@ -122,12 +121,11 @@ def test_a_pulse_train_beside_a_record():
     assert np.allclose(O.bodies[base].state.pos, wanted, rtol=0, atol=1e-13)
 
 
-@pytest.mark.parametrize("method", ("localised", "wall"))
-def test_one_joins_another_and_goes_again(method):
+def test_one_joins_another_and_goes_again():
     """One joins another, and goes again: each counts from where the base is then, across its own direction the base stays where it is."""
     base, id, block = one_block(2)
     state = O.bodies[base].state
-    O.engines = rigid_engines(component(base, np.full(200, 1.0)), method=method, dt=1e-3)
+    O.engines = rigid_engines(component(base, np.full(200, 1.0)), dt=1e-3)
     O.run(500, True)
     first = O.engines[-1].motions
     O.engines[-1].motions = [*first, component(base, np.full(200, 2.0), (0, 0, 1), start=O.time)]
@@ -136,7 +134,7 @@ def test_one_joins_another_and_goes_again(method):
     O.engines[-1].motions = first
     O.run(200, True)
     assert np.allclose(state.pos, [0.5, 0, 0.09 - 0.15], rtol=0, atol=1e-12) and np.allclose(state.vel, [1, 0, 0], rtol=0, atol=1e-12)
-    assert O.engines[-1].failures == 0 or method == "wall"
+    assert O.engines[-1].failures == 0
 
 
 def test_one_joins_another_and_goes_again_under_compliant_joints():
@@ -174,10 +172,9 @@ def test_a_slab_on_two_bases_that_part(model):
     assert way > 0.05 and abs(O.bodies[slab].state.pos[0]) < 0.01 * way and O.engines[-1].failures == 0
 
 
-@pytest.mark.parametrize("method", ("localised", "wall"))
-def test_the_same_after_loading(method):
+def test_the_same_after_loading():
     base, id, block = one_block(2)
-    O.engines = rigid_engines([component(base, np.full(200, 1.0)), component(base, np.full(200, 2.0), (0, 0, 1))], method=method, dt=1e-3)
+    O.engines = rigid_engines([component(base, np.full(200, 1.0)), component(base, np.full(200, 2.0), (0, 0, 1))], dt=1e-3)
     O.run(300, True)
     O.saveTmp()
     O.loadTmp()

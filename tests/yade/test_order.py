@@ -56,16 +56,11 @@ rocks, slips = dict(restitution=0.7), dict(restitution=0.5, noSlip=False, fricti
     (one, slender, both, 1.5, rocks, 1e-6, dict(model="spatial")),
     (one, slender, pulses, 1.2, dict(restitution=0.7, noSlip=False, frictionAngle=1.2), 1e-6, dict(model="planar")),
     (one, slender, sideways, 1.0, rocks, 1e-6, dict(model="compliant", penetration=1e-5)),
-    (one, slender, both, 1.5, rocks, 1e-4, dict(model="planar", method="wall")),
-    (one, slender, both, 1.5, rocks, 1e-4, dict(model="spatial", method="wall")),
     (two, (0.6, 1, 1.5), sideways, 1.2, rocks, 1e-5, dict(model="planar", impact_order="sequential")),
     (bond, brick, sideways, 0.6, slips, 1e-4, dict(model="planar")),
-    (bond, brick, sideways, 0.6, slips, 2e-3, dict(model="planar", method="wall")),
-    (bond, brick, sideways, 0.6, slips, 2e-3, dict(model="spatial", method="wall")),
 ))
 def test_the_same_whichever_is_made_first(places, size, motion, end, material, bound, options):
-    """Contacts are solved in another order: what that leaves is the solver's tolerance, many times grown through impacts; with `wall` it is a
-    sweep's."""
+    """Contacts are solved in another order: what that leaves is the solver's tolerance, many times grown through impacts."""
     below, above = (run(from_above, places, size, motion, end, material, options) for from_above in (False, True))
     assert places is bond or len(below["time"]) > 0
     for name in below:

@@ -36,9 +36,8 @@ RECORD = masonry.Record(INTERVAL, displacement=ROUNDED, unit="m")
 SPEEDS = 0.2 * np.sin(2 * np.pi * T / END) ** 2  # m/s
 
 
-@pytest.mark.parametrize("method", ("localised", "wall"))
-def test_a_base_moves_as_the_record_says(method):
-    times, moved, angles, block, base, engine = run(lambda base: dem.record_motion(RECORD, ids=[base], start=0.5), method=method)
+def test_a_base_moves_as_the_record_says():
+    times, moved, angles, block, base, engine = run(lambda base: dem.record_motion(RECORD, ids=[base], start=0.5))
     inside = (times >= 0) & (times <= END)
     # The engine puts the base where the motion is: round-off of coordinates of a metre.
     assert np.abs(moved[inside] - RECORD.displacement(times[inside])).max() < 1e-13
@@ -46,16 +45,16 @@ def test_a_base_moves_as_the_record_says(method):
     at = np.abs(times[:, None] - T[None, 1:-1]).argmin(axis=0)
     assert np.abs(times[at] - T[1:-1]).max() < 1e-9
     off = np.abs(moved[at] - ROUNDED[1:-1]).max(), np.abs(moved[inside] - displacement(times[inside])).max()
-    print(f"{method}: base off the samples by {off[0]:.1e} m, off the exact displacement by {off[1]:.1e} m, at the end by {moved[-1] - ROUNDED[-1]:.1e} m")
+    print(f"base off the samples by {off[0]:.1e} m, off the exact displacement by {off[1]:.1e} m, at the end by {moved[-1] - ROUNDED[-1]:.1e} m")
     assert max(off) <= 1e-4
     # It ends at the last sample and stays there: 3000 steps of the sum of accelerations, in double precision.
     assert abs(moved[-1] - ROUNDED[-1]) < 1e-12 and base.vel.norm() < 1e-12
-    # As exact as under any record (test_rigid_motion.py); method='wall' is of first order.
+    # As exact as under any record (test_rigid_motion.py).
     exact = masonry.simulate(block, RECORD, restitution=0.8, t_end=END + 1)
     wanted = exact.sample(np.maximum(times, 0))[0]
     error = np.abs(angles - wanted).max() / np.abs(wanted).max()
-    print(f"{method}: {len(exact.impact_times)} impacts, angle {error:.1e} of {np.abs(wanted).max():.3f} rad")
-    assert len(exact.impact_times) >= 3 and error < (1e-4 if method == "localised" else 0.02)
+    print(f"{len(exact.impact_times)} impacts, angle {error:.1e} of {np.abs(wanted).max():.3f} rad")
+    assert len(exact.impact_times) >= 3 and error < 1e-4
 
 
 def test_the_constructor_takes_any_unit():

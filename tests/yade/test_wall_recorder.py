@@ -243,12 +243,11 @@ def test_a_time_that_starts_anew():
     refuses(O.step, "changed after the first sample")
 
 
-@pytest.mark.parametrize("method", ("localised", "wall"))
-def test_what_has_no_energy_of_its_own(method):
+def test_what_has_no_energy_of_its_own():
     """It stands in the error: a velocity that a script gives, a change of gravity."""
     base, block, theory = one_block(0.5)
     recorder, mass = dem.WallRecorder(iterPeriod=1), O.bodies[block].state.mass
-    O.engines = quiet_engines(model="auto", recorder=recorder, method=method)
+    O.engines = quiet_engines(model="auto", recorder=recorder)
     O.run(10, True)
     O.bodies[block].state.vel = Vector3(0.01, 0, 0)
     O.run(10, True)

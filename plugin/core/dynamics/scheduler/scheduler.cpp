@@ -2,6 +2,7 @@
 #include "dynamics/rigid/island_numbers.hpp"
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace masonry::rigid {
 
@@ -61,15 +62,21 @@ StepReport Scheduler<K>::advance(RigidSystem<K>& s, double dt)
 		divide(s);
 	if (localisedBodies.empty())
 		return advanceWalls(s, dt);
+	report = {};
 	const Settings ofWalls = s.settings;
 	const bool moved = s.moved;
 	s.settings.tolerance = Settings().tolerance;
 	s.settings.order = Settings().order;
 	s.moved |= gapsAreOutdated;
+	gapsAreOutdated = false;
+	if (!areWalls) {
+		const StepReport sum = islands.advance(s, dt);
+		s.settings = ofWalls;
+		return sum;
+	}
 	islands.take(s);
 	s.settings = ofWalls;
 	s.moved = moved;
-	gapsAreOutdated = false;
 	hideLocalised(s);
 	StepReport sum = advanceWalls(s, dt);
 	restoreLocalised(s);
@@ -123,20 +130,23 @@ void Scheduler<K>::divide(const RigidSystem<K>& s)
 	for (size_t b = 0; b < structure.size(); ++b)
 		if (structure[b] >= 0)
 			isWall[structure[b]] |= ++blocks[structure[b]] > maxBlocks || ofWall[b];
+	const bool areTogether = areOrdered(s.drives);
+	areWalls = areTogether && std::accumulate(blocks.begin(), blocks.end(), 0) > maxBlocks;
 	localisedBodies.clear();
 	for (size_t b = 0; b < structure.size(); ++b)
 		if (structure[b] >= 0) {
 			ofWall[b] = isWall[structure[b]];
+			areWalls |= ofWall[b];
 			if (!ofWall[b])
 				localisedBodies.push_back(int(b));
 		}
-	const bool noWalls = std::none_of(ofWall.begin(), ofWall.end(), [](char is) { return is; });
-	if (noWalls || areOrdered(s.drives))
+	if (areWalls && areTogether)
 		localisedBodies.clear();
 	std::vector<char> isLocalised(s.bodies.size(), 0);
 	for (const int b : localisedBodies)
 		isLocalised[b] = 1;
-	islands.divide(s, isLocalised);
+	if (areWalls)
+		islands.divide(s, isLocalised);
 	for (size_t b = 0; b < s.bodies.size(); ++b)
 		isWall[b] = !s.bodies[b].prescribed && !isLocalised[b];
 	choose(s, isWall, begins);
@@ -150,7 +160,7 @@ void Scheduler<K>::choose(const RigidSystem<K>& s, const std::vector<char>& isWa
 	const bool hasLaw = std::any_of(s.pairs.begin(), s.pairs.end(), [&](const ContactPair<K>& pair) {
 		return !std::isnan(pair.restitution) && (isWall[pair.body1] || isWall[pair.body2]);
 	});
-	oneInMotion = isHigh || (hasLaw && std::count(isWall.begin(), isWall.end(), 1) > maxBlocks);
+	oneInMotion = isHigh || hasLaw;
 	oneMethod |= burdenOf(s, course) > burdenOfTwoModes || (isHigh && areOrdered(s.drives)) || (begins && hangs(s, isWall));
 }
 

@@ -14,8 +14,7 @@
 //
 // All walls of a system are stepped together, and what has once gone over to assembly_step.hpp stays with it. A block that has once
 // belonged to a wall stays with the walls: the parts that break off a wall are many small structures, and each impact of theirs would be
-// searched for. All structures get the walls' step if none has more than maxBlocks, or if the motions must be asked in order of time
-// (BaseDrive::ordered).
+// searched for. Motions that must be asked in order of time (BaseDrive::ordered) make one structure of all.
 #include "dynamics/assembly/assembly_step.hpp"
 #include "dynamics/rigid/islands.hpp"
 #include "dynamics/wall/wall_step.hpp"
@@ -95,7 +94,8 @@ private:
 	bool byAssembly {false};  // the last one was
 	Islands<K> islands;
 	std::vector<char> ofWall;         // by body, 1: has belonged to a wall
-	std::vector<int> localisedBodies; // sorted; empty if there are no walls
+	bool areWalls {false};
+	std::vector<int> localisedBodies; // sorted
 	std::vector<RigidBody<K>> hidden; // the localised bodies while the walls are stepped
 	bool gapsAreOutdated {false};     // after loading: gaps are not saved
 	int list {-1};                    // number of the list of pairs that was divided

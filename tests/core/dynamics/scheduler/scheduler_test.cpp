@@ -118,15 +118,31 @@ TEST_CASE("a wall that becomes a high one goes on from what bears it")
 	CHECK(scene.sink() < 1e-5);
 }
 
-// Where all are of few blocks the walls' method has been asked for, and has them.
-TEST_CASE("without a wall and with motions in order of time the walls' method has all")
+TEST_CASE("few blocks have localised impacts though there is no wall beside them")
 {
-	const bool withWall = GENERATE(false, true);
-	Harmonic motion(0.4 * g, 2, 0.005, withWall);
+	Harmonic motion(1.1 * g, 2, 0.005, GENERATE(false, true));
+	Scene bySizes(0.7, 0.8), byImpacts(0.7, 0.8);
+	for (Scene* scene : {&bySizes, &byImpacts}) {
+		addPier(*scene, 3);
+		scene->drive(motion);
+	}
+	bySizes.system.settings.tolerance = 1e-3;
+	Scheduler<Plane> scheduler;
+	RigidStep<Plane> localised;
+	const auto impacts = shake(bySizes, scheduler, 1), expected = shake(byImpacts, localised, 1);
+	CHECK(scheduler.localised() == 3);
+	CHECK(expected.size() > 0);
+	CHECK(impacts.size() == expected.size());
+	CHECK(numbersOf(bySizes.system) == numbersOf(byImpacts.system));
+	CHECK(bySizes.system.settings.tolerance == 1e-3);
+}
+
+TEST_CASE("with motions in order of time the walls' method has all")
+{
+	Harmonic motion(0.4 * g, 2, 0.005, true);
 	Scene bySizes, byWalls;
 	for (Scene* scene : {&bySizes, &byWalls}) {
-		if (withWall)
-			scene->addWall(4, 8);
+		scene->addWall(4, 8);
 		addPier(*scene, 3);
 		scene->drive(motion);
 		scene->system.settings.tolerance = 1e-3;
