@@ -98,7 +98,7 @@ masonry::rigid::StepReport RigidScene<K>::advanceWall()
 {
 	scheduler->settings = {integrator.tolerance, integrator.strictForces, std::max(1, integrator.ompThreads)};
 	const auto report = scheduler->advance(system, scene.dt);
-	const masonry::rigid::WallsReport& ofWalls = scheduler->report;
+	const auto& ofWalls = scheduler->report;
 	const bool still = ofWalls.moved == 0;
 	integrator.mode = still ? "still" : "moving";
 	integrator.movingBlocks = ofWalls.moved;
@@ -106,7 +106,7 @@ masonry::rigid::StepReport RigidScene<K>::advanceWall()
 	++(still ? integrator.stillSteps : integrator.movingSteps);
 	integrator.velocityResidual = ofWalls.velocityResidual;
 	integrator.forceResidual = ofWalls.forceResidual;
-	if (ofWalls.partBases && !integrator.warnedOf.bases) {
+	if (scheduler->partBases && !integrator.warnedOf.bases) {
 		integrator.warnedOf.bases = true;
 		LOG_WARN(
 		    "t = " << scene.time

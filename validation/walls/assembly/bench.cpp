@@ -1,8 +1,7 @@
-// Shakes or rests walls by the one-method step (dynamics/assembly) and by the two-mode step (dynamics/wall), in one run.
+// Shakes or rests walls by the step of assemblies (dynamics/assembly), in the core alone.
 //
 //     assembly_bench key=value ...
 //
-// by        one (default), two, both
 // dim       2 (default), 3
 // scene     wall (default), column, heavy (a block `heavy` times as heavy on the wall), pillar (a block that rocks on the wall with `w0`),
 //           tilt (gravity turns by `rate` degrees a second until a block has moved by a tenth of its height), row (two rows of blocks that
@@ -15,7 +14,6 @@
 // file                    writes the scene as gauss_seidel_space.cpp reads it, and ends
 #include "dynamics/assembly/assembly_step.hpp"
 #include "dynamics/rigid/neighbours.hpp"
-#include "dynamics/wall/wall_step.hpp"
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -194,11 +192,8 @@ void write(const RigidSystem<Space>& s, const std::string& name)
 
 double cpu() { return double(std::clock()) / CLOCKS_PER_SEC; }
 
-int iterationsOf(const assembly::AssemblyReport& r) { return r.iterations; }
-int iterationsOf(const WallReport& r) { return r.solves; }
-
-template <class K, class Step>
-void run(const char* name, Step& step)
+template <class K>
+void run(assembly::AssemblyStep<K>& step)
 {
 	World<K> world;
 	world.build();
@@ -263,7 +258,7 @@ void run(const char* name, Step& step)
 			capped += impact.capped;
 			worstImpact = std::max(worstImpact, impact.residual / (impact.joint.before * world.L));
 		}
-		sumIterations += iterationsOf(step.report);
+		sumIterations += step.report.iterations;
 		factors += step.report.factorisations;
 		const double now = world.energy() - s.baseWork, change = now - before;
 		before = now;
@@ -271,7 +266,7 @@ void run(const char* name, Step& step)
 			(change > 0 ? rises : loss) += std::abs(change);
 		if (number("trace", 0) > 0 && k % long(number("trace", 0)) == 0) {
 			std::printf("t %.3f residual %.2e iterations %d factors %d top %.5f mm change %.3g kinetic %.3g base %.3f\n", s.time,
-			            step.report.residual, iterationsOf(step.report), step.report.factorisations, 1e3 * moved(top.front())[0], change,
+			            step.report.residual, step.report.iterations, step.report.factorisations, 1e3 * moved(top.front())[0], change,
 			            s.kineticEnergy(), s.baseWork);
 		}
 		if (k > restSteps && (k - restSteps) % looks == 0) {
@@ -294,7 +289,7 @@ void run(const char* name, Step& step)
 			}
 		}
 		if (!(std::abs(now) < 1e12) || !(mean < 1e3)) {
-			std::printf("%s: BLOWN at %g s\n", name, s.time);
+			std::printf("BLOWN at %g s\n", s.time);
 			break;
 		}
 	}
@@ -302,44 +297,36 @@ void run(const char* name, Step& step)
 	double sink = 0;
 	for (const int b : top)
 		sink -= moved(b)[up] / double(top.size());
-	std::printf("%-4s %zu blocks | mean %.2f mm (end %.2f) drift %.4g sink %.3g mm | cpu/s %.3f (step %.3f) its %.1f fac %.2f | rises/loss "
+	std::printf("%zu blocks | mean %.2f mm (end %.2f) drift %.4g sink %.3g mm | cpu/s %.3f (step %.3f) its %.1f fac %.2f | rises/loss "
 	            "%.1e loss %.4g created %.2g | pen %.2g mm kin %.2g tilt %.2f | impacts %d capped %d residual %.1e\n",
-	            name, s.bodies.size() - 1, 1e3 * mean, 1e3 * last.norm(), 1e3 * drift, 1e3 * sink, (cpu() - begin - firstStep) / seconds,
+	            s.bodies.size() - 1, 1e3 * mean, 1e3 * last.norm(), 1e3 * drift, 1e3 * sink, (cpu() - begin - firstStep) / seconds,
 	            inStep / seconds, sumIterations / double(steps), factors / double(steps), rises / std::max(loss, 1e-30), loss, created,
 	            1e3 * deepest, kinetic, tilted, impacts, capped, worstImpact);
 	std::fflush(stdout);
 }
 
 template <class K>
-void runAll()
+void runWithOptions()
 {
-	const std::string by = word("by", "one");
-	if (by != "two") {
-		assembly::AssemblyStep<K> step;
-		step.settings.solver.iterations = int(number("k", 20));
-		step.settings.solver.tolerance = number("tol", 1e-3);
-		step.settings.solver.reserve = int(number("reserve", 50));
-		auto& a = step.settings.solver;
-		a.softness = number("r", a.softness);
-		a.leastSoftness = number("least", a.leastSoftness);
-		a.relaxation = number("over", a.relaxation);
-		a.boundShare = number("theta", a.boundShare);
-		a.pullBack = number("pull", a.pullBack);
-		a.reach = number("reach", a.reach);
-		a.filterTime = number("filter", a.filterTime);
-		a.refactorTime = number("refactor", a.refactorTime);
-		a.least = int(number("quick", a.least));
-		a.early = number("early", a.early);
-		a.ofInstant = int(number("instant", a.ofInstant));
-		a.instantTolerance = number("itol", a.instantTolerance);
-		step.settings.threads = int(number("threads", 1));
-		run<K>("one", step);
-	}
-	if (by != "one") {
-		WallStep<K> step;
-		step.settings.tolerance = number("tol2", 1e-3);
-		run<K>("two", step);
-	}
+	assembly::AssemblyStep<K> step;
+	auto& a = step.settings.solver;
+	a.iterations = int(number("k", a.iterations));
+	a.tolerance = number("tol", a.tolerance);
+	a.reserve = int(number("reserve", a.reserve));
+	a.softness = number("r", a.softness);
+	a.leastSoftness = number("least", a.leastSoftness);
+	a.relaxation = number("over", a.relaxation);
+	a.boundShare = number("theta", a.boundShare);
+	a.pullBack = number("pull", a.pullBack);
+	a.reach = number("reach", a.reach);
+	a.filterTime = number("filter", a.filterTime);
+	a.refactorTime = number("refactor", a.refactorTime);
+	a.least = int(number("quick", a.least));
+	a.early = number("early", a.early);
+	a.ofInstant = int(number("instant", a.ofInstant));
+	a.instantTolerance = number("itol", a.instantTolerance);
+	step.settings.threads = int(number("threads", 1));
+	run<K>(step);
 }
 
 } // namespace
@@ -351,5 +338,5 @@ int main(int argc, char** argv)
 		const auto equals = one.find('=');
 		options[one.substr(0, equals)] = one.substr(equals + 1);
 	}
-	number("dim", 2) == 3 ? runAll<Space>() : runAll<Plane>();
+	number("dim", 2) == 3 ? runWithOptions<Space>() : runWithOptions<Plane>();
 }

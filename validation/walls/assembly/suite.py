@@ -1,4 +1,4 @@
-"""First excursions of walls by the one-method step and the two-mode step, beside converged Gauss-Seidel sweeps, with CPU times of the same run.
+"""First excursions of walls by the step of assemblies, beside converged Gauss-Seidel sweeps, with its CPU times.
 
     suite.py <assembly_bench> [plane] [space] [key=value ...]
 
@@ -17,26 +17,19 @@ SPACE = {"wall": dict(courses=6, per=4, L=1, T=0.5, H=0.5), "column": dict(scene
 
 def run(bench, case, options):
     words = [f"{key}={value}" for key, value in case.items()]
-    done = subprocess.run([bench, *words, "by=both", *options], capture_output=True, text=True, check=True)
-    rows = {}
-    for line in done.stdout.splitlines():
-        number = lambda key: float(re.search(key + r" ([-\d.e+naif]+)", line).group(1))  # noqa: E731
-        rows[line.split()[0]] = dict(mean=number("mean"), cpu=number(r"\(step"), its=number("its"), fac=number("fac"), rises=number("loss"), pen=number("pen"),
-                                     work=number("base") if "base" in line else 0)
-    return rows
+    line = subprocess.run([bench, *words, *options], capture_output=True, text=True, check=True).stdout.splitlines()[-1]
+    number = lambda key: float(re.search(key + r" ([-\d.e+naif]+)", line).group(1))  # noqa: E731
+    return dict(mean=number("mean"), cpu=number(r"\(step"), its=number("its"), fac=number("fac"), rises=number("loss"), pen=number("pen"))
 
 
 def compare(bench, cases, options):
-    errors = {"one": [], "two": []}
+    errors = []
     for name, case, wanted in cases:
-        rows = run(bench, case, options)
-        for by, row in rows.items():
-            errors[by].append(row["mean"] / wanted - 1)
-        print(f"{name:34} {wanted:8.2f} " + "  ".join(f"{by} {row['mean']:7.2f} {row['mean'] / wanted - 1:+6.1%} {row['cpu']:6.3f} CPU s/s" for by, row in rows.items()),
-              f" its {rows['one']['its']:.1f} fac {rows['one']['fac']:.2f} rises {rows['one']['rises']:.1e} / {rows['two']['rises']:.1e} pen {rows['one']['pen']:.2g} mm" if "one" in rows and "two" in rows else "", flush=True)
-    for by, of in errors.items():
-        if of:
-            print(f"{by}: RMS {math.sqrt(sum(e * e for e in of) / len(of)):.1%}, worst {max(of, key=abs):+.1%}, mean {sum(of) / len(of):+.1%}, of {len(of)}")
+        row = run(bench, case, options)
+        errors.append(row["mean"] / wanted - 1)
+        print(f"{name:34} {wanted:8.2f} {row['mean']:7.2f} {errors[-1]:+6.1%} {row['cpu']:6.3f} CPU s/s, iterations {row['its']:.1f}, factorisations {row['fac']:.2f}, "
+              f"rises {row['rises']:.1e}, penetration {row['pen']:.2g} mm", flush=True)
+    print(f"RMS {math.sqrt(sum(e * e for e in errors) / len(errors)):.1%}, worst {max(errors, key=abs):+.1%}, mean {sum(errors) / len(errors):+.1%}, of {len(errors)}")
 
 
 bench, *rest = sys.argv[1:]

@@ -7,8 +7,6 @@
 
 namespace masonry::rigid::assembly {
 
-using namespace wall;
-
 namespace {
 
 template <class K>
@@ -82,7 +80,7 @@ MASONRY_INLINE void setPenalties(Group<K>* groups, RowsOf<K>* rows, int begin, i
 
 // The right-hand side of a solve; with `laws`, after the pass over the laws.
 template <class K, bool laws>
-MASONRY_INLINE void passGroup(Group<K>& group, StillGroup<K>& memory, RowsOf<K>& rows, const Step& step, const Lanes* velocity,
+MASONRY_INLINE void passGroup(Group<K>& group, SolverGroup<K>& memory, RowsOf<K>& rows, const Step& step, const Lanes* velocity,
                               Lanes* force, Lanes& worst)
 {
 	const Bodies<K> v1(velocity, group.body1), v2(velocity, group.body2);
@@ -90,7 +88,7 @@ MASONRY_INLINE void passGroup(Group<K>& group, StillGroup<K>& memory, RowsOf<K>&
 	const Mask rough = group.friction >= mostFriction;
 	for (int k = 0; k < group.count; ++k) {
 		PointLanes<K>& p = group.point[k];
-		StillLanes<K>& f = memory[k];
+		SolverLanes<K>& f = memory[k];
 		auto& row = rows[k];
 		const Lanes un = normalRate(v1, v2, p), wn = un + row.bn;
 		const auto ut = slipRate(v1, v2, p), wt = ut + row.bt;
@@ -121,7 +119,7 @@ MASONRY_INLINE void passGroup(Group<K>& group, StillGroup<K>& memory, RowsOf<K>&
 }
 
 template <class K>
-MASONRY_INLINE void startGroups(Group<K>* groups, StillGroup<K>* memory, RowsOf<K>* rows, int begin, int end, const Step& step,
+MASONRY_INLINE void startGroups(Group<K>* groups, SolverGroup<K>* memory, RowsOf<K>* rows, int begin, int end, const Step& step,
                                 const Lanes* velocity, Lanes* force)
 {
 	constexpr double almost = 0.9; // share of the friction bound from which on a point counts as sliding: the damped bound may lag so far
@@ -131,7 +129,7 @@ MASONRY_INLINE void startGroups(Group<K>* groups, StillGroup<K>* memory, RowsOf<
 		const Bodies<K> v1(velocity, groups[g].body1), v2(velocity, groups[g].body2);
 		for (int k = 0; k < groups[g].count; ++k) {
 			PointLanes<K>& p = groups[g].point[k];
-			StillLanes<K>& f = memory[g][k];
+			SolverLanes<K>& f = memory[g][k];
 			auto& row = rows[g][k];
 			const Mask in = row.stiffness > 0;
 			p.pn = in ? p.pn : none;
@@ -157,7 +155,7 @@ struct alignas(alignment) Ended {
 };
 
 template <class K>
-MASONRY_INLINE void advanceGroups(Group<K>* groups, StillGroup<K>* memory, const RowsOf<K>* rows, int begin, int end, double h,
+MASONRY_INLINE void advanceGroups(Group<K>* groups, SolverGroup<K>* memory, const RowsOf<K>* rows, int begin, int end, double h,
                                   double level, unsigned char* reached, unsigned char* moving, Ended& ended)
 {
 	for (int g = begin; g < end; ++g) {
@@ -207,19 +205,19 @@ MASONRY_LANES void inertia(const std::vector<int>& members, const Lanes* velocit
 	{                                                                                                                                      \
 		setPenalties<K>(groups, rows, begin, end, velocity, step);                                                                         \
 	}                                                                                                                                      \
-	MASONRY_LANES void startPass(Group<K>* groups, StillGroup<K>* memory, RowsOf<K>* rows, int begin, int end, const Step& step,           \
+	MASONRY_LANES void startPass(Group<K>* groups, SolverGroup<K>* memory, RowsOf<K>* rows, int begin, int end, const Step& step,          \
 	                             const Lanes* velocity, Lanes* force)                                                                      \
 	{                                                                                                                                      \
 		startGroups<K>(groups, memory, rows, begin, end, step, velocity, force);                                                           \
 	}                                                                                                                                      \
-	MASONRY_LANES void lawPass(Group<K>* groups, StillGroup<K>* memory, RowsOf<K>* rows, int begin, int end, const Step& step,             \
+	MASONRY_LANES void lawPass(Group<K>* groups, SolverGroup<K>* memory, RowsOf<K>* rows, int begin, int end, const Step& step,            \
 	                           const Lanes* velocity, Lanes* force, Lanes& worst)                                                          \
 	{                                                                                                                                      \
 		for (int g = begin; g < end; ++g)                                                                                                  \
 			passGroup<K, true>(groups[g], memory[g], rows[g], step, velocity, force, worst);                                               \
 	}                                                                                                                                      \
-	MASONRY_LANES void gapPass(Group<K>* groups, StillGroup<K>* memory, const RowsOf<K>* rows, int begin, int end, double h, double level, \
-	                           unsigned char* reached, unsigned char* moving, Ended& ended)                                                \
+	MASONRY_LANES void gapPass(Group<K>* groups, SolverGroup<K>* memory, const RowsOf<K>* rows, int begin, int end, double h,              \
+	                           double level, unsigned char* reached, unsigned char* moving, Ended& ended)                                  \
 	{                                                                                                                                      \
 		advanceGroups<K>(groups, memory, rows, begin, end, h, level, reached, moving, ended);                                              \
 	}
@@ -250,7 +248,7 @@ Step stepOf(const StepContext& c, const AdmmSettings& a)
 } // namespace
 
 template <class K>
-typename AdmmSolver<K>::Lane AdmmSolver<K>::laneOf(const RigidSystem<K>& s, const WallContacts<K>& c, int g, int i) const
+typename AdmmSolver<K>::Lane AdmmSolver<K>::laneOf(const RigidSystem<K>& s, const ContactSet<K>& c, int g, int i) const
 {
 	Lane lane;
 	lane.pair = c.features[g].pair[i];
@@ -262,7 +260,7 @@ typename AdmmSolver<K>::Lane AdmmSolver<K>::laneOf(const RigidSystem<K>& s, cons
 
 // Whether A must be made anew: its points are others, one comes into reach that it does not have, or the penalties are to follow the loads.
 template <class K>
-bool AdmmSolver<K>::isOutdated(const RigidSystem<K>& s, WallContacts<K>& c, const StepContext& step)
+bool AdmmSolver<K>::isOutdated(const RigidSystem<K>& s, ContactSet<K>& c, const StepContext& step)
 {
 	if (lanes.size() != c.groups.size())
 		rows.assign(c.groups.size(), {});
@@ -292,7 +290,7 @@ bool AdmmSolver<K>::isOutdated(const RigidSystem<K>& s, WallContacts<K>& c, cons
 }
 
 template <class K>
-void AdmmSolver<K>::start(WallContacts<K>& c, const LaneArray& load, const LaneArray& guess, const StepContext& step)
+void AdmmSolver<K>::start(ContactSet<K>& c, const LaneArray& load, const LaneArray& guess, const StepContext& step)
 {
 	velocity = c.velocity;
 	free.resize(velocity.size());
@@ -307,7 +305,7 @@ void AdmmSolver<K>::start(WallContacts<K>& c, const LaneArray& load, const LaneA
 		inertia(part.members, velocity.data(), free.data(), force.data());
 	};
 	const auto startPoints = [&](const Part& part) {
-		startPass(c.groups.data(), c.still.data(), rows.data(), part.begin, part.end, same, velocity.data(), force.data());
+		startPass(c.groups.data(), c.memory.data(), rows.data(), part.begin, part.end, same, velocity.data(), force.data());
 	};
 	startBodies(c.parts.back());
 	c.eachPart([&](const Part& part, int) {
@@ -318,7 +316,7 @@ void AdmmSolver<K>::start(WallContacts<K>& c, const LaneArray& load, const LaneA
 }
 
 template <class K>
-void AdmmSolver<K>::prepareSpins(const WallContacts<K>& c)
+void AdmmSolver<K>::prepareSpins(const ContactSet<K>& c)
 {
 	const int n = int(spins.size());
 	response.resize(n);
@@ -354,7 +352,7 @@ void AdmmSolver<K>::holdSpins()
 
 // One solve and one pass over the laws. Returns the largest |w - z|, m/s.
 template <class K>
-double AdmmSolver<K>::iterate(WallContacts<K>& c, const StepContext& step)
+double AdmmSolver<K>::iterate(ContactSet<K>& c, const StepContext& step)
 {
 	const Step same = stepOf(step, settings);
 	factor.solve(force.data(), places);
@@ -365,7 +363,7 @@ double AdmmSolver<K>::iterate(WallContacts<K>& c, const StepContext& step)
 		inertia(part.members, velocity.data(), free.data(), force.data());
 	};
 	const auto laws = [&](const Part& part, int number) {
-		lawPass(c.groups.data(), c.still.data(), rows.data(), part.begin, part.end, same, velocity.data(), force.data(), worst[number]);
+		lawPass(c.groups.data(), c.memory.data(), rows.data(), part.begin, part.end, same, velocity.data(), force.data(), worst[number]);
 	};
 	move(c.parts.back(), Team::mostParts);
 	c.eachPart([&](const Part& part, int number) {
@@ -384,7 +382,7 @@ double AdmmSolver<K>::iterate(WallContacts<K>& c, const StepContext& step)
 }
 
 template <class K>
-void AdmmSolver<K>::findTurn(const WallContacts<K>& c, const Poses& poses)
+void AdmmSolver<K>::findTurn(const ContactSet<K>& c, const Poses& poses)
 {
 	turn = 0;
 	for (size_t b = 0; b < std::min(factored.size(), poses.size()); ++b)
@@ -393,7 +391,7 @@ void AdmmSolver<K>::findTurn(const WallContacts<K>& c, const Poses& poses)
 }
 
 template <class K>
-void AdmmSolver<K>::solve(const RigidSystem<K>& s, WallContacts<K>& c, const Poses& poses, const LaneArray& load, const LaneArray& guess,
+void AdmmSolver<K>::solve(const RigidSystem<K>& s, ContactSet<K>& c, const Poses& poses, const LaneArray& load, const LaneArray& guess,
                           const StepContext& step)
 {
 	report = {};
@@ -418,7 +416,7 @@ void AdmmSolver<K>::solve(const RigidSystem<K>& s, WallContacts<K>& c, const Pos
 		++report.iterations;
 		const bool isLoaded = cold && !step.instant && report.iterations % untilLoaded == 0;
 		if (isLoaded)
-			c.startMeans(LaneBits(c.groups.size(), allLanes));
+			c.startMeans();
 		if (isLoaded || report.residual > diverging * least) {
 			factorise(s, c, poses, step);
 			prepareSpins(c);
@@ -435,13 +433,14 @@ void AdmmSolver<K>::solve(const RigidSystem<K>& s, WallContacts<K>& c, const Pos
 }
 
 template <class K>
-PointsReport AdmmSolver<K>::advanceGaps(WallContacts<K>& c, double h, double level)
+PointsReport AdmmSolver<K>::advanceGaps(ContactSet<K>& c, double h, double level)
 {
 	Ended ended[Team::mostParts + 1] {};
 	reached.resize(c.groups.size());
 	moving.resize(c.groups.size());
 	c.allParts([&](const Part& part, int number) {
-		gapPass(c.groups.data(), c.still.data(), rows.data(), part.begin, part.end, h, level, reached.data(), moving.data(), ended[number]);
+		gapPass(c.groups.data(), c.memory.data(), rows.data(), part.begin, part.end, h, level, reached.data(), moving.data(),
+		        ended[number]);
 	});
 	PointsReport result;
 	for (const Ended& here : ended) {
@@ -452,7 +451,7 @@ PointsReport AdmmSolver<K>::advanceGaps(WallContacts<K>& c, double h, double lev
 }
 
 template <class K>
-void AdmmSolver<K>::factorise(const RigidSystem<K>& s, WallContacts<K>& c, const Poses& poses, const StepContext& step)
+void AdmmSolver<K>::factorise(const RigidSystem<K>& s, ContactSet<K>& c, const Poses& poses, const StepContext& step)
 {
 	factored = poses;
 	turn = 0;
@@ -465,7 +464,7 @@ void AdmmSolver<K>::factorise(const RigidSystem<K>& s, WallContacts<K>& c, const
 
 // From the frames of the contacts and the penalties of the rows.
 template <class K>
-void AdmmSolver<K>::makeMatrix(const RigidSystem<K>& s, const WallContacts<K>& c)
+void AdmmSolver<K>::makeMatrix(const RigidSystem<K>& s, const ContactSet<K>& c)
 {
 	lanes.resize(c.groups.size());
 	for (size_t g = 0; g < lanes.size(); ++g)
@@ -486,7 +485,7 @@ void AdmmSolver<K>::makeMatrix(const RigidSystem<K>& s, const WallContacts<K>& c
 
 // A node for each pack of a body; edges between those of a body, then between those of a pair.
 template <class K>
-void AdmmSolver<K>::setGraph(const WallContacts<K>& c)
+void AdmmSolver<K>::setGraph(const ContactSet<K>& c)
 {
 	constexpr int n = packs<K>;
 	node.assign(c.own.size(), -1);
@@ -510,7 +509,7 @@ void AdmmSolver<K>::setGraph(const WallContacts<K>& c)
 
 // J^T J / R of a lane's pair; its edges begin at `edge`, which goes on to the next pair's.
 template <class K>
-void AdmmSolver<K>::addPair(const WallContacts<K>& c, int g, int i, int& edge)
+void AdmmSolver<K>::addPair(const ContactSet<K>& c, int g, int i, int& edge)
 {
 	const Group<K>& group = c.groups[g];
 	constexpr int n = packs<K>;

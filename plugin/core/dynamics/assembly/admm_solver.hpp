@@ -38,9 +38,9 @@
 //
 // Biases. A point with a gap may close within the step: b_n = gap/h. Of a penetration, and of a slip that unfinished iterations have left
 // at a point that sticks, a share is taken back in each step: b = share x/h. A penetration with which a point was found stays.
+#include "dynamics/assembly/contact_set.hpp"
 #include "dynamics/assembly/spin_row.hpp"
 #include "dynamics/assembly/step_context.hpp"
-#include "dynamics/wall/wall_contacts.hpp"
 #include "linalg/block_ldlt.hpp"
 
 namespace masonry::rigid::assembly {
@@ -86,36 +86,36 @@ struct PointsReport {
 template <class K>
 class AdmmSolver {
 public:
-	using Tangent = typename wall::PointLanes<K>::Tangent;
-	struct alignas(wall::alignment) Row {  // of a point
-		wall::Lanes resistance, stiffness; // R and 1/R; zero: the point is not in A and carries nothing
-		wall::Lanes bn;                    // m/s
+	using Tangent = typename PointLanes<K>::Tangent;
+	struct alignas(alignment) Row {  // of a point
+		Lanes resistance, stiffness; // R and 1/R; zero: the point is not in A and carries nothing
+		Lanes bn;                    // m/s
 		Tangent bt;
-		wall::Lanes bound; // g, N s
-		wall::Lanes un;    // J V, m/s
+		Lanes bound; // g, N s
+		Lanes un;    // J V, m/s
 		Tangent ut;
-		wall::Lanes actedN; // impulse with which V obeys the momentum equation, N s
+		Lanes actedN; // impulse with which V obeys the momentum equation, N s
 		Tangent actedT;
 	};
-	using Rows = std::array<Row, wall::lanePoints<K>>;
+	using Rows = std::array<Row, lanePoints<K>>;
 
 	AdmmSettings settings;
 	AdmmReport report;
 	std::vector<SpinRow<K>> spins; // of the next solve, with their couples afterwards
 	bool otherPoints {true};       // points of the contacts have changed since the last solve
-	wall::LaneArray velocity;      // V, in the packs of the contacts
+	LaneArray velocity;            // V, in the packs of the contacts
 	std::vector<Rows> rows;        // by group of the contacts
-	wall::LaneBits reached;        // pairs with a point in A, after advanceGaps
-	wall::LaneBits moving;         // those of them with any point that moves: where a block rocks, only its pivot may be in A
+	LaneBits reached;              // pairs with a point in A, after advanceGaps
+	LaneBits moving;               // those of them with any point that moves: where a block rocks, only its pivot may be in A
 
 	using Poses = std::vector<typename K::Pose>;
 	// Solves the step from the contacts' velocities and impulses, whose frames are those of `poses`; `load` is the change of velocity by
 	// external forces, per body; `guess` is the one that is expected altogether. Impulses, z and slips of the contacts are those of the
 	// solution afterwards; their gaps and velocities stay.
-	void solve(const RigidSystem<K>& system, wall::WallContacts<K>& contacts, const Poses& poses, const wall::LaneArray& load,
-	           const wall::LaneArray& guess, const StepContext& step);
+	void solve(const RigidSystem<K>& system, ContactSet<K>& contacts, const Poses& poses, const LaneArray& load, const LaneArray& guess,
+	           const StepContext& step);
 	// Gaps and slips at the end of the step, into the contacts; which pairs move faster than `level`, m/s.
-	PointsReport advanceGaps(wall::WallContacts<K>& contacts, double h, double level);
+	PointsReport advanceGaps(ContactSet<K>& contacts, double h, double level);
 	// The next solve starts cold and makes A anew.
 	void forget()
 	{
@@ -125,7 +125,7 @@ public:
 
 	// Passes what the next solve needs from the last, number by number, after the contacts. A is made anew from its frames and penalties.
 	template <class Flow>
-	void pass(Flow& f, wall::WallContacts<K>& contacts, const RigidSystem<K>& system)
+	void pass(Flow& f, ContactSet<K>& contacts, const RigidSystem<K>& system)
 	{
 		f(age), f(saved), f(cold);
 		size_t count = factored.size();
@@ -139,8 +139,8 @@ public:
 		rows.resize(contacts.groups.size());
 		for (Rows& ofGroup : rows)
 			for (Row& row : ofGroup)
-				for (wall::Lanes* lanes : {&row.resistance, &row.stiffness})
-					for (int i = 0; i < wall::width; ++i) {
+				for (Lanes* lanes : {&row.resistance, &row.stiffness})
+					for (int i = 0; i < width; ++i) {
 						double value = (*lanes)[i];
 						f(value);
 						(*lanes)[i] = value;
@@ -154,34 +154,34 @@ private:
 	// Which points A is of: by group and lane the pair, and the features of its points.
 	struct Lane {
 		int pair {-1};
-		std::array<typename K::Feature, wall::lanePoints<K>> features;
+		std::array<typename K::Feature, lanePoints<K>> features;
 		bool operator==(const Lane& o) const { return pair == o.pair && features == o.features; }
 	};
-	Lane laneOf(const RigidSystem<K>& system, const wall::WallContacts<K>& contacts, int group, int lane) const;
-	bool isOutdated(const RigidSystem<K>& system, wall::WallContacts<K>& contacts, const StepContext& step);
-	void findTurn(const wall::WallContacts<K>& contacts, const Poses& poses);
-	void factorise(const RigidSystem<K>& system, wall::WallContacts<K>& contacts, const Poses& poses, const StepContext& step);
-	void makeMatrix(const RigidSystem<K>& system, const wall::WallContacts<K>& contacts);
-	void setGraph(const wall::WallContacts<K>& contacts);
-	void addPair(const wall::WallContacts<K>& contacts, int group, int lane, int& edge);
-	void start(wall::WallContacts<K>& contacts, const wall::LaneArray& load, const wall::LaneArray& guess, const StepContext& step);
-	double iterate(wall::WallContacts<K>& contacts, const StepContext& step);
-	void prepareSpins(const wall::WallContacts<K>& contacts);
+	Lane laneOf(const RigidSystem<K>& system, const ContactSet<K>& contacts, int group, int lane) const;
+	bool isOutdated(const RigidSystem<K>& system, ContactSet<K>& contacts, const StepContext& step);
+	void findTurn(const ContactSet<K>& contacts, const Poses& poses);
+	void factorise(const RigidSystem<K>& system, ContactSet<K>& contacts, const Poses& poses, const StepContext& step);
+	void makeMatrix(const RigidSystem<K>& system, const ContactSet<K>& contacts);
+	void setGraph(const ContactSet<K>& contacts);
+	void addPair(const ContactSet<K>& contacts, int group, int lane, int& edge);
+	void start(ContactSet<K>& contacts, const LaneArray& load, const LaneArray& guess, const StepContext& step);
+	double iterate(ContactSet<K>& contacts, const StepContext& step);
+	void prepareSpins(const ContactSet<K>& contacts);
 	void holdSpins();
 
 	linalg::BlockLDLT factor; // a node for each pack of the free bodies
 	std::vector<int> places;  // of the nodes
 	std::vector<int> node;    // of a body, its first; -1: none
 	std::vector<linalg::BlockLDLT::Edge> edges;
-	std::vector<std::array<Lane, wall::width>> lanes; // by group, that A is of
-	std::vector<double> masses;                       // by body, that A is of
-	Poses factored;                                   // the frames that A is of
-	double turn {0};                                  // rad, by which a body has turned since at most
-	wall::LaneArray free, force;
-	std::vector<wall::LaneArray> response; // Y, by row
-	Eigen::MatrixXd perSpin;               // (E Y)^-1
-	double age {0};                        // s, since R was last compared with the loads
-	double saved {0};                      // iterations
+	std::vector<std::array<Lane, width>> lanes; // by group, that A is of
+	std::vector<double> masses;                 // by body, that A is of
+	Poses factored;                             // the frames that A is of
+	double turn {0};                            // rad, by which a body has turned since at most
+	LaneArray free, force;
+	std::vector<LaneArray> response; // Y, by row
+	Eigen::MatrixXd perSpin;         // (E Y)^-1
+	double age {0};                  // s, since R was last compared with the loads
+	double saved {0};                // iterations
 	bool cold {true};
 };
 

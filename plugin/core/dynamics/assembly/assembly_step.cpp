@@ -6,9 +6,6 @@
 
 namespace masonry::rigid::assembly {
 
-using wall::all;
-using wall::LaneArray;
-
 template <class K>
 StepReport AssemblyStep<K>::advance(RigidSystem<K>& s, double dt)
 {
@@ -34,14 +31,14 @@ void AssemblyStep<K>::advancePart(RigidSystem<K>& s, double h)
 	const StepContext step(scales, h);
 	team.setThreads(settings.threads);
 	solver.settings = settings.solver;
-	solver.otherPoints |= contacts.take(s, members(s), nobody);
+	solver.otherPoints |= contacts.take(s);
 	solver.otherPoints |= contacts.measure(s, stands) || !stands; // those of a pair may have changed places
 	contacts.setUnit(h);
 	if (stands)
 		poses = contacts.located;
 	else
 		lean(s);
-	for (wall::Lanes& of : change)
+	for (Lanes& of : change)
 		of *= all(h / changeTime);
 	changeTime = h;
 	takeInstants(s, step);
@@ -130,15 +127,6 @@ void AssemblyStep<K>::lean(const RigidSystem<K>& s)
 	contacts.lean(s, poses);
 }
 
-template <class K>
-wall::Members AssemblyStep<K>::members(const RigidSystem<K>& s)
-{
-	wall::Members result {std::vector<char>(s.bodies.size()), std::vector<char>(s.bodies.size(), 0)};
-	for (size_t b = 0; b < s.bodies.size(); ++b)
-		result.own[b] = !s.bodies[b].prescribed;
-	return result;
-}
-
 // Sets the velocities that forces add to those of the free bodies.
 template <class K>
 void AssemblyStep<K>::setLoads(const RigidSystem<K>& s, double h)
@@ -157,7 +145,7 @@ void AssemblyStep<K>::takeChange(double fall)
 	constexpr double most = 5; // times what gravity gives in the step
 	change.assign(solver.velocity.size(), all(0));
 	for (size_t b = 0; b < change.size(); ++b) {
-		const wall::Lanes now = wall::noMass * (solver.velocity[b] - contacts.velocity[b]);
+		const Lanes now = noMass * (solver.velocity[b] - contacts.velocity[b]);
 		if (solver.velocity[b][3] > 0 && now[0] * now[0] + now[1] * now[1] + now[2] * now[2] < most * most * fall * fall)
 			change[b] = now;
 	}
@@ -209,7 +197,7 @@ int AssemblyStep<K>::movingBlocks(const RigidSystem<K>& s, double level) const
 {
 	std::vector<char> isHeld(s.bodies.size(), 0), moves(s.bodies.size(), 0);
 	for (size_t g = 0; g < contacts.groups.size(); ++g)
-		for (int i = 0; i < wall::width && contacts.features[g].pair[i] >= 0; ++i)
+		for (int i = 0; i < width && contacts.features[g].pair[i] >= 0; ++i)
 			for (const int b : {contacts.groups[g].body1[i], contacts.groups[g].body2[i]}) {
 				isHeld[b] |= solver.reached[g] >> i & 1;
 				moves[b] |= solver.moving[g] >> i & 1;

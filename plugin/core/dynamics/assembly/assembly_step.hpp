@@ -2,10 +2,10 @@
 // The step of an assembly of many rigid blocks, in a plane or in space: walls that stand, that rock, that slide and that fall, by one
 // method (admm_solver.hpp).
 //
-//     frames and gaps at the start of the step (wall::WallContacts); while nothing moves, every few steps
+//     frames and gaps at the start of the step (ContactSet); while nothing moves, every few steps
 //     impacts and jumps of the base at the instant between two steps (RockingEvents, BasePulse, CappedSolve)
 //     V by the contact laws, all at once (AdmmSolver)
-//     q += h V, and penetrations that are left are taken off by positions alone (wall::Lift)
+//     q += h V, and penetrations that are left are taken off by positions alone (Lift)
 //     energies (EnergyLedger)
 //
 // Positions are first order in the step. V belongs to its middle, as in a leapfrog: energies at the end of a step are h f.V/2 off, which
@@ -13,8 +13,8 @@
 #include "dynamics/assembly/admm_solver.hpp"
 #include "dynamics/assembly/base_pulse.hpp"
 #include "dynamics/assembly/capped_solve.hpp"
+#include "dynamics/assembly/lift.hpp"
 #include "dynamics/assembly/rocking_events.hpp"
-#include "dynamics/wall/lift.hpp"
 
 namespace masonry::rigid::assembly {
 
@@ -57,7 +57,7 @@ public:
 		f(started), f(quiet), f(stands), f(changeTime);
 		if (!started)
 			return;
-		contacts.pass(f, system, members(system));
+		contacts.pass(f, system);
 		solver.pass(f, contacts, system);
 		events.pass(f);
 		pulses.pass(f);
@@ -65,7 +65,7 @@ public:
 		size_t count = change.size();
 		f(count);
 		change.resize(count);
-		for (wall::Lanes& of : change)
+		for (Lanes& of : change)
 			for (int k = 0; k < 3; ++k) {
 				double value = of[k];
 				f(value);
@@ -74,10 +74,9 @@ public:
 	}
 
 private:
-	static wall::Members members(const RigidSystem<K>& system);
 	void advancePart(RigidSystem<K>& system, double h);
 	void takeInstants(RigidSystem<K>& system, const StepContext& step);
-	CappedReport solve(RigidSystem<K>& system, const wall::LaneArray& load, const wall::LaneArray& guess, const StepContext& step);
+	CappedReport solve(RigidSystem<K>& system, const LaneArray& load, const LaneArray& guess, const StepContext& step);
 	CappedReport solveInstant(RigidSystem<K>& system, const StepContext& instant);
 	void lean(const RigidSystem<K>& system);
 	void takeChange(double fall);
@@ -89,15 +88,15 @@ private:
 	bool started {false};
 	int quiet {0};       // steps in which nothing has moved or turned, up to now
 	bool stands {false}; // some such steps have passed: gaps are added up, and frames stay
-	wall::Team team;
-	wall::WallContacts<K> contacts {team}, nobody {team};
+	Team team;
+	ContactSet<K> contacts {team};
 	AdmmSolver<K> solver;
 	EnergyLedger<K> ledger;
 	RockingEvents<K> events;
 	BasePulse<K> pulses;
 	CappedSolve<K> capped;
-	wall::Lift<K> projection;
-	wall::LaneArray loads, noLoads, noGuess, change;
+	Lift<K> projection;
+	LaneArray loads, noLoads, noGuess, change;
 	double changeTime {1};               // s, that `change` is of
 	std::vector<typename K::Pose> poses; // of the frames
 };

@@ -4,7 +4,7 @@
 namespace masonry::rigid::assembly {
 
 template <class K>
-void BasePulse<K>::hold(const RigidSystem<K>& s, wall::WallContacts<K>& c)
+void BasePulse<K>::hold(const RigidSystem<K>& s, ContactSet<K>& c)
 {
 	half.assign(velocity.size(), K::Vector::Zero());
 	set(s, c);
@@ -37,7 +37,7 @@ double BasePulse<K>::speed() const
 }
 
 template <class K>
-void BasePulse<K>::apply(RigidSystem<K>& s, wall::WallContacts<K>& c)
+void BasePulse<K>::apply(RigidSystem<K>& s, ContactSet<K>& c)
 {
 	for (size_t d = 0; d < velocity.size(); ++d) {
 		velocity[d] += jumps[d];
@@ -50,7 +50,7 @@ void BasePulse<K>::apply(RigidSystem<K>& s, wall::WallContacts<K>& c)
 }
 
 template <class K>
-void BasePulse<K>::move(const RigidSystem<K>& s, wall::WallContacts<K>& c, double h)
+void BasePulse<K>::move(const RigidSystem<K>& s, ContactSet<K>& c, double h)
 {
 	half.resize(velocity.size());
 	for (size_t d = 0; d < velocity.size(); ++d) {
@@ -62,7 +62,7 @@ void BasePulse<K>::move(const RigidSystem<K>& s, wall::WallContacts<K>& c, doubl
 }
 
 template <class K>
-void BasePulse<K>::set(const RigidSystem<K>& s, wall::WallContacts<K>& c) const
+void BasePulse<K>::set(const RigidSystem<K>& s, ContactSet<K>& c) const
 {
 	for (size_t b = 0; b < s.bodies.size(); ++b)
 		if (s.bodies[b].prescribed && s.bodies[b].drive >= 0)

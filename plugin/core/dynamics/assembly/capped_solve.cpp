@@ -3,16 +3,13 @@
 
 namespace masonry::rigid::assembly {
 
-using wall::all;
-using wall::LaneArray;
-
 namespace {
 
 // J; in packs all components have the mass of the body.
 double kineticEnergy(const LaneArray& velocity)
 {
 	double sum = 0;
-	for (const wall::Lanes& v : velocity)
+	for (const Lanes& v : velocity)
 		if (v[3] > 0)
 			sum += (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) / (2 * v[3]);
 	return sum;
@@ -21,13 +18,13 @@ double kineticEnergy(const LaneArray& velocity)
 } // namespace
 
 template <class K>
-CappedReport CappedSolve<K>::solve(const RigidSystem<K>& s, wall::WallContacts<K>& c, const Poses& poses, const LaneArray& load,
+CappedReport CappedSolve<K>::solve(const RigidSystem<K>& s, ContactSet<K>& c, const Poses& poses, const LaneArray& load,
                                    const LaneArray& guess, AdmmSolver<K>& solver, const EnergyLedger<K>& ledger, const StepContext& step)
 {
 	CappedReport report;
 	if (!solver.spins.empty() || step.instant) {
 		groups = c.groups;
-		still = c.still;
+		memory = c.memory;
 	}
 	std::vector<SpinRow<K>> rows = solver.spins;
 	for (bool again = true; again;) {
@@ -73,10 +70,10 @@ CappedReport CappedSolve<K>::solve(const RigidSystem<K>& s, wall::WallContacts<K
 }
 
 template <class K>
-void CappedSolve<K>::restore(wall::WallContacts<K>& c) const
+void CappedSolve<K>::restore(ContactSet<K>& c) const
 {
 	c.groups = groups;
-	c.still = still;
+	c.memory = memory;
 }
 
 template class CappedSolve<Plane>;

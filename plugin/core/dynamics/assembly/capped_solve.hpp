@@ -23,14 +23,14 @@ public:
 
 	// As AdmmSolver::solve, with the rows that are in the solver; those that are dropped come back as `capped`. An instant starts without
 	// impulses.
-	CappedReport solve(const RigidSystem<K>& system, wall::WallContacts<K>& contacts, const Poses& poses, const wall::LaneArray& load,
-	                   const wall::LaneArray& guess, AdmmSolver<K>& solver, const EnergyLedger<K>& ledger, const StepContext& step);
+	CappedReport solve(const RigidSystem<K>& system, ContactSet<K>& contacts, const Poses& poses, const LaneArray& load,
+	                   const LaneArray& guess, AdmmSolver<K>& solver, const EnergyLedger<K>& ledger, const StepContext& step);
 	// Puts back the impulses of the contacts as they were before the solve.
-	void restore(wall::WallContacts<K>& contacts) const;
+	void restore(ContactSet<K>& contacts) const;
 
 private:
-	std::vector<wall::Group<K>> groups; // before the solve
-	std::vector<wall::StillGroup<K>> still;
+	std::vector<Group<K>> groups; // before the solve
+	std::vector<SolverGroup<K>> memory;
 };
 
 } // namespace masonry::rigid::assembly

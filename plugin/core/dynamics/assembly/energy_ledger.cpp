@@ -14,15 +14,15 @@ void EnergyLedger<K>::open(const RigidSystem<K>& s, std::vector<typename K::Vect
 }
 
 template <class K>
-double EnergyLedger<K>::work(const RigidSystem<K>& s, const wall::WallContacts<K>& c, const AdmmSolver<K>& solver) const
+double EnergyLedger<K>::work(const RigidSystem<K>& s, const ContactSet<K>& c, const AdmmSolver<K>& solver) const
 {
 	double sum = 0;
 	for (const auto& [g, i] : c.onBase) {
-		const wall::Group<K>& group = c.groups[g];
+		const Group<K>& group = c.groups[g];
 		const bool first = s.bodies[group.body1[i]].prescribed;
 		const int base = (first ? group.body1 : group.body2)[i];
-		wall::Lanes v[wall::packs<K>];
-		std::copy_n(&c.velocity[wall::packs<K> * base], wall::packs<K>, v);
+		Lanes v[packs<K>];
+		std::copy_n(&c.velocity[packs<K> * base], packs<K>, v);
 		if (const int drive = s.bodies[base].drive; drive >= 0)
 			for (int k = 0; k < K::dimension; ++k)
 				v[0][k] += halfBack[drive][k];
@@ -31,9 +31,9 @@ double EnergyLedger<K>::work(const RigidSystem<K>& s, const wall::WallContacts<K
 			Eigen::Matrix<double, K::rows, 1> impulse;
 			impulse[0] = row.actedN[i];
 			for (int n = 1; n < K::rows; ++n)
-				impulse[n] = wall::component(row.actedT, n - 1, i);
+				impulse[n] = component(row.actedT, n - 1, i);
 			for (int n = 0; n < K::rows; ++n)
-				sum += (first ? impulse[n] : -impulse[n]) * wall::rateOf(group.point[k], n, i, first ? 1 : 2, v);
+				sum += (first ? impulse[n] : -impulse[n]) * rateOf(group.point[k], n, i, first ? 1 : 2, v);
 		}
 	}
 	for (const SpinRow<K>& row : solver.spins)
@@ -42,7 +42,7 @@ double EnergyLedger<K>::work(const RigidSystem<K>& s, const wall::WallContacts<K
 }
 
 template <class K>
-void EnergyLedger<K>::takeContacts(const RigidSystem<K>& s, const wall::WallContacts<K>& c, const AdmmSolver<K>& solver, double loss)
+void EnergyLedger<K>::takeContacts(const RigidSystem<K>& s, const ContactSet<K>& c, const AdmmSolver<K>& solver, double loss)
 {
 	friction = loss;
 	baseWork = work(s, c, solver);

@@ -25,9 +25,9 @@ public:
 	// of those before and after, m/s.
 	void open(const RigidSystem<K>& system, std::vector<typename K::Vector> halfBack);
 	// Returns the work of the prescribed bodies by the impulses of the last solve, J.
-	double work(const RigidSystem<K>& system, const wall::WallContacts<K>& contacts, const AdmmSolver<K>& solver) const;
+	double work(const RigidSystem<K>& system, const ContactSet<K>& contacts, const AdmmSolver<K>& solver) const;
 	// After the solve, with the frames of the step. `friction`: what it has taken, J.
-	void takeContacts(const RigidSystem<K>& system, const wall::WallContacts<K>& contacts, const AdmmSolver<K>& solver, double friction);
+	void takeContacts(const RigidSystem<K>& system, const ContactSet<K>& contacts, const AdmmSolver<K>& solver, double friction);
 	// Ends the step, in which external forces have done `work` (J), and writes the system's energies. Returns the energy that the step has
 	// created beyond what the error of a sound step can create, J.
 	double close(RigidSystem<K>& system, const Scales& scales, double h, double work);

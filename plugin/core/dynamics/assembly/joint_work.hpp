@@ -6,6 +6,6 @@ namespace masonry::rigid::assembly {
 
 // Sums the work of the impulses at all points of the block's face, and of the couple of its row if it has one.
 template <class K>
-JointWork jointWork(const RigidSystem<K>& system, const wall::WallContacts<K>& contacts, const AdmmSolver<K>& solver, int block, int face);
+JointWork jointWork(const RigidSystem<K>& system, const ContactSet<K>& contacts, const AdmmSolver<K>& solver, int block, int face);
 
 } // namespace masonry::rigid::assembly

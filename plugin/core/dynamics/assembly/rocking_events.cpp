@@ -1,18 +1,13 @@
 #include "dynamics/assembly/rocking_events.hpp"
 #include "dynamics/assembly/joint_work.hpp"
+#include "dynamics/assembly/rocking_contact.hpp"
 #include "dynamics/rigid/scales.hpp"
-#include "dynamics/wall/rocking_contact.hpp"
 #include "tolerances.hpp"
 #include <algorithm>
 #include <cmath>
 #include <tuple>
 
 namespace masonry::rigid::assembly {
-
-using wall::Contact;
-using wall::contact;
-using wall::LaneArray;
-using wall::WallContacts;
 
 namespace {
 
@@ -26,15 +21,15 @@ Vector3 inSpace(const Vector2& v) { return {v.x(), v.y(), 0}; }
 Vector3 inSpace(const Vector3& v) { return v; }
 
 template <class Point, class K>
-Vector3 normalOf(const WallContacts<K>& c, const Point& at)
+Vector3 normalOf(const ContactSet<K>& c, const Point& at)
 {
-	return inSpace(wall::normal(c.groups[at.group].point[at.point], at.lane));
+	return inSpace(normal(c.groups[at.group].point[at.point], at.lane));
 }
 
 template <class Point, class K>
-Vector3 positionOf(const WallContacts<K>& c, const Point& at)
+Vector3 positionOf(const ContactSet<K>& c, const Point& at)
 {
-	const wall::Group<K>& group = c.groups[at.group];
+	const Group<K>& group = c.groups[at.group];
 	ContactFrame<K> frame;
 	const int body2 = group.body2[at.lane];
 	takeFrame(group.point[at.point], c.features[at.group].point[at.point], at.lane, c.gyration[body2], frame);
@@ -43,14 +38,14 @@ Vector3 positionOf(const WallContacts<K>& c, const Point& at)
 
 // On body 2.
 template <class Point>
-Vector3 impulseOf(const WallContacts<Plane>& c, const Point& at)
+Vector3 impulseOf(const ContactSet<Plane>& c, const Point& at)
 {
 	const auto& p = c.groups[at.group].point[at.point];
-	const Vector2 n = wall::normal(p, at.lane);
+	const Vector2 n = normal(p, at.lane);
 	return inSpace(Vector2(p.pn[at.lane] * n + p.pt[at.lane] * Vector2(-n.y(), n.x())));
 }
 template <class Point>
-Vector3 impulseOf(const WallContacts<Space>& c, const Point& at)
+Vector3 impulseOf(const ContactSet<Space>& c, const Point& at)
 {
 	const auto& p = c.groups[at.group].point[at.point];
 	return p.pn[at.lane] * p.normal.axis.lane(at.lane) + p.pt.x[at.lane] * p.tangent[0].axis.lane(at.lane) +
@@ -71,7 +66,7 @@ void takeVelocity(const Space::Velocity& v, Body& body)
 } // namespace
 
 template <class K>
-void RockingEvents<K>::gather(const RigidSystem<K>& s, const WallContacts<K>& c)
+void RockingEvents<K>::gather(const RigidSystem<K>& s, const ContactSet<K>& c)
 {
 	points.clear();
 	const auto hasLaw = [](const auto& pair) { return !std::isnan(pair.restitution); };
@@ -83,10 +78,10 @@ void RockingEvents<K>::gather(const RigidSystem<K>& s, const WallContacts<K>& c)
 		return;
 	const double g = s.gravity.norm();
 	for (int group = 0; group < int(c.groups.size()); ++group)
-		for (int lane = 0; lane < wall::width && c.features[group].pair[lane] >= 0; ++lane) {
+		for (int lane = 0; lane < width && c.features[group].pair[lane] >= 0; ++lane) {
 			const ContactPair<K>& pair = s.pairs[c.features[group].pair[lane]];
 			for (int k = 0; k < c.points(s, group, lane); ++k) {
-				const double up = g > 0 ? -wall::normal(c.groups[group].point[k], lane).dot(s.gravity) / g : 1;
+				const double up = g > 0 ? -normal(c.groups[group].point[k], lane).dot(s.gravity) / g : 1;
 				const int block = up > 0 ? pair.body2 : pair.body1;
 				if (std::abs(up) >= tolerance::uprightJoint && c.own[block])
 					points.push_back({block, up > 0 ? pair.face2 : pair.face1, group, lane, k});
@@ -98,7 +93,7 @@ void RockingEvents<K>::gather(const RigidSystem<K>& s, const WallContacts<K>& c)
 }
 
 template <class K>
-double RockingEvents<K>::away(const WallContacts<K>& c, const Point& at, const Joint& joint) const
+double RockingEvents<K>::away(const ContactSet<K>& c, const Point& at, const Joint& joint) const
 {
 	const Vector3 from = positionOf(c, at) - joint.place;
 	return (from - joint.direction * joint.direction.dot(from)).norm();
@@ -106,7 +101,7 @@ double RockingEvents<K>::away(const WallContacts<K>& c, const Point& at, const J
 
 // False: the joint bears at more than one place, or nowhere.
 template <class K>
-bool RockingEvents<K>::findPivot(const WallContacts<K>& c, Joint& joint) const
+bool RockingEvents<K>::findPivot(const ContactSet<K>& c, Joint& joint) const
 {
 	if (bearing.empty())
 		return false;
@@ -124,7 +119,7 @@ bool RockingEvents<K>::findPivot(const WallContacts<K>& c, Joint& joint) const
 // begins, and gravity brings it back, from a = g/2 on not within the step. So it hops, and nothing presses it for many steps: it rises to
 // (a h)^2 / 2(g - a). With a >= g it leaves its support.
 template <class K>
-bool RockingEvents<K>::hops(const WallContacts<K>& c, const Point& point, double g, double h) const
+bool RockingEvents<K>::hops(const ContactSet<K>& c, const Point& point, double g, double h) const
 {
 	const Contact<K> at = contact(c, point);
 	if (at.impulse() > 0 || std::abs(at.normalRate(c)) > 2 * g * h) // one jump, and what it was before
@@ -138,7 +133,7 @@ bool RockingEvents<K>::hops(const WallContacts<K>& c, const Point& point, double
 }
 
 template <class K>
-std::vector<SpinRow<K>> RockingEvents<K>::find(const RigidSystem<K>& s, const WallContacts<K>& c, const LaneArray& change,
+std::vector<SpinRow<K>> RockingEvents<K>::find(const RigidSystem<K>& s, const ContactSet<K>& c, const LaneArray& change,
                                                const StepContext& step)
 {
 	std::vector<SpinRow<K>> result;
@@ -150,7 +145,7 @@ std::vector<SpinRow<K>> RockingEvents<K>::find(const RigidSystem<K>& s, const Wa
 	h = step.h;
 	predicted = c.velocity;
 	for (size_t b = 0; b < std::min(change.size(), predicted.size()); ++b)
-		predicted[b] += wall::noMass * change[b];
+		predicted[b] += noMass * change[b];
 	const double g = scale::acceleration(s), open = tolerance::mergedClosing * c.length,
 	             fast = tolerance::restSpeed * std::sqrt(g * c.length), narrow = tolerance::wall::pivot * c.length;
 	constexpr double together = 2; // steps within which closings are one
@@ -193,7 +188,7 @@ std::vector<SpinRow<K>> RockingEvents<K>::find(const RigidSystem<K>& s, const Wa
 
 // If there are several supports, the one under the point farthest from the old pivot gives the law.
 template <class K>
-bool RockingEvents<K>::describe(const RigidSystem<K>& s, const WallContacts<K>& c, const Joint& joint, const std::vector<int>& closing,
+bool RockingEvents<K>::describe(const RigidSystem<K>& s, const ContactSet<K>& c, const Joint& joint, const std::vector<int>& closing,
                                 Landing& landing) const
 {
 	std::vector<masonry::Body> bodies;
@@ -211,7 +206,7 @@ bool RockingEvents<K>::describe(const RigidSystem<K>& s, const WallContacts<K>& 
 		return int(numbers.size()) - 1;
 	};
 	const auto add = [&](int i) {
-		const wall::Group<K>& group = c.groups[points[i].group];
+		const Group<K>& group = c.groups[points[i].group];
 		all.push_back({number(group.body1[points[i].lane]), number(group.body2[points[i].lane]), positionOf(c, points[i]),
 		               normalOf(c, points[i]), 0});
 	};
@@ -281,7 +276,7 @@ bool RockingEvents<K>::describe(const RigidSystem<K>& s, const WallContacts<K>& 
 }
 
 template <class K>
-SpinRow<K> RockingEvents<K>::row(const WallContacts<K>& c, const Landing& landing, double share) const
+SpinRow<K> RockingEvents<K>::row(const ContactSet<K>& c, const Landing& landing, double share) const
 {
 	SpinRow<K> result;
 	result.parts[0] = {landing.block, spinArm(c, landing.block, landing.axis)};
@@ -296,7 +291,7 @@ SpinRow<K> RockingEvents<K>::row(const WallContacts<K>& c, const Landing& landin
 }
 
 template <class K>
-void RockingEvents<K>::take(const RigidSystem<K>& s, const WallContacts<K>& c, const AdmmSolver<K>& solver)
+void RockingEvents<K>::take(const RigidSystem<K>& s, const ContactSet<K>& c, const AdmmSolver<K>& solver)
 {
 	landings.clear();
 	const double narrow = tolerance::wall::pivot * c.length;
@@ -318,7 +313,7 @@ void RockingEvents<K>::take(const RigidSystem<K>& s, const WallContacts<K>& c, c
 }
 
 template <class K>
-std::vector<SpinRow<K>> RockingEvents<K>::rows(const WallContacts<K>& c) const
+std::vector<SpinRow<K>> RockingEvents<K>::rows(const ContactSet<K>& c) const
 {
 	std::vector<SpinRow<K>> result;
 	for (const Landing& landing : landings)
@@ -328,8 +323,7 @@ std::vector<SpinRow<K>> RockingEvents<K>::rows(const WallContacts<K>& c) const
 }
 
 template <class K>
-void RockingEvents<K>::report(RigidSystem<K>& s, const WallContacts<K>& c, const std::vector<SpinRow<K>>& rows, double lost,
-                              double residual)
+void RockingEvents<K>::report(RigidSystem<K>& s, const ContactSet<K>& c, const std::vector<SpinRow<K>>& rows, double lost, double residual)
 {
 	gather(s, c);
 	auto row = rows.begin();

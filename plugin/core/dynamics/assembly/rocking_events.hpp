@@ -28,15 +28,14 @@ class RockingEvents {
 public:
 	// Before the solve of a step: the joints that rock. `change`: of the velocities, that the step is expected to bring. Returns the rows
 	// of those that will land.
-	std::vector<SpinRow<K>> find(const RigidSystem<K>& system, const wall::WallContacts<K>& contacts, const wall::LaneArray& change,
+	std::vector<SpinRow<K>> find(const RigidSystem<K>& system, const ContactSet<K>& contacts, const LaneArray& change,
 	                             const StepContext& step);
 	// After it: those that have landed.
-	void take(const RigidSystem<K>& system, const wall::WallContacts<K>& contacts, const AdmmSolver<K>& solver);
+	void take(const RigidSystem<K>& system, const ContactSet<K>& contacts, const AdmmSolver<K>& solver);
 	// The rows of the impacts at the instant after the step.
-	std::vector<SpinRow<K>> rows(const wall::WallContacts<K>& contacts) const;
+	std::vector<SpinRow<K>> rows(const ContactSet<K>& contacts) const;
 	// After those: writes them into system.impacts. `lost`: energy, J.
-	void report(RigidSystem<K>& system, const wall::WallContacts<K>& contacts, const std::vector<SpinRow<K>>& rows, double lost,
-	            double residual);
+	void report(RigidSystem<K>& system, const ContactSet<K>& contacts, const std::vector<SpinRow<K>>& rows, double lost, double residual);
 
 	bool areRows() const; // any landing has a restitution
 	double speed() const; // m/s, fastest approach of the landings
@@ -86,22 +85,22 @@ private:
 		Vector3 place, direction; // of the pivot: a corner, or an edge and its direction; in the plane direction is zero
 		int landing;              // expected, by number; -1: none
 	};
-	void gather(const RigidSystem<K>& system, const wall::WallContacts<K>& contacts);
-	bool findPivot(const wall::WallContacts<K>& contacts, Joint& joint) const;
-	bool hops(const wall::WallContacts<K>& contacts, const Point& point, double acceleration, double h) const;
-	double away(const wall::WallContacts<K>& contacts, const Point& point, const Joint& joint) const;
+	void gather(const RigidSystem<K>& system, const ContactSet<K>& contacts);
+	bool findPivot(const ContactSet<K>& contacts, Joint& joint) const;
+	bool hops(const ContactSet<K>& contacts, const Point& point, double acceleration, double h) const;
+	double away(const ContactSet<K>& contacts, const Point& point, const Joint& joint) const;
 	// The landing of a joint on these points; false: it does not rock.
-	bool describe(const RigidSystem<K>& system, const wall::WallContacts<K>& contacts, const Joint& joint, const std::vector<int>& closing,
+	bool describe(const RigidSystem<K>& system, const ContactSet<K>& contacts, const Joint& joint, const std::vector<int>& closing,
 	              Landing& landing) const;
-	SpinRow<K> row(const wall::WallContacts<K>& contacts, const Landing& landing, double share) const;
+	SpinRow<K> row(const ContactSet<K>& contacts, const Landing& landing, double share) const;
 
 	std::vector<Point> points; // joint by joint
 	std::vector<Joint> rocking;
 	std::vector<int> bearing, closing; // points of a joint that is looked at
 	std::vector<Landing> expected, landings;
-	int list {-1};             // of the system's pairs, that `areLaws` is of
-	bool areLaws {false};      // a pair has a given restitution
-	wall::LaneArray predicted; // velocities at the end of the step
+	int list {-1};        // of the system's pairs, that `areLaws` is of
+	bool areLaws {false}; // a pair has a given restitution
+	LaneArray predicted;  // velocities at the end of the step
 	double h {0};
 };
 

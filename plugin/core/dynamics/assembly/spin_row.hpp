@@ -6,31 +6,31 @@
 //
 // is the spin with which the block stays in touch with both; where both are one body, it is that body's spin. The couple acts on the block
 // along e, and on the supports as the pair of forces couple/L at O and P. Each velocity is arm.V in the packs of the contacts.
-#include "dynamics/wall/wall_contacts.hpp"
+#include "dynamics/assembly/contact_set.hpp"
 #include <cmath>
 
 namespace masonry::rigid::assembly {
 
 // e.w of a body; in the plane e is along z.
-inline std::array<wall::Lanes, 1> spinArm(const wall::WallContacts<Plane>& c, int body, const Vector3& axis)
+inline std::array<Lanes, 1> spinArm(const ContactSet<Plane>& c, int body, const Vector3& axis)
 {
-	return {wall::Lanes {0, 0, axis.z() / c.gyration[body][0], 0}};
+	return {Lanes {0, 0, axis.z() / c.gyration[body][0], 0}};
 }
-inline std::array<wall::Lanes, 2> spinArm(const wall::WallContacts<Space>& c, int body, const Vector3& axis)
+inline std::array<Lanes, 2> spinArm(const ContactSet<Space>& c, int body, const Vector3& axis)
 {
-	const wall::Lanes* rows = &c.pose[4 * body]; // R; W = rho R^T w
-	const wall::Lanes local = axis[0] * rows[0] + axis[1] * rows[1] + axis[2] * rows[2];
-	return {wall::all(0), wall::noMass * local * rows[3]};
+	const Lanes* rows = &c.pose[4 * body]; // R; W = rho R^T w
+	const Lanes local = axis[0] * rows[0] + axis[1] * rows[1] + axis[2] * rows[2];
+	return {all(0), noMass * local * rows[3]};
 }
 
 // n.v of the place r from the body's centre.
-inline std::array<wall::Lanes, 1> speedArm(const wall::WallContacts<Plane>& c, int body, const Vector3& n, const Vector3& r)
+inline std::array<Lanes, 1> speedArm(const ContactSet<Plane>& c, int body, const Vector3& n, const Vector3& r)
 {
-	return {wall::Lanes {n.x(), n.y(), r.cross(n).z() / c.gyration[body][0], 0}};
+	return {Lanes {n.x(), n.y(), r.cross(n).z() / c.gyration[body][0], 0}};
 }
-inline std::array<wall::Lanes, 2> speedArm(const wall::WallContacts<Space>& c, int body, const Vector3& n, const Vector3& r)
+inline std::array<Lanes, 2> speedArm(const ContactSet<Space>& c, int body, const Vector3& n, const Vector3& r)
 {
-	return {wall::Lanes {n.x(), n.y(), n.z(), 0}, spinArm(c, body, r.cross(n))[1]};
+	return {Lanes {n.x(), n.y(), n.z(), 0}, spinArm(c, body, r.cross(n))[1]};
 }
 
 // Work of a couple and of impulses at a joint, J.
@@ -58,7 +58,7 @@ struct JointWork {
 
 template <class K>
 struct SpinRow {
-	using Arm = std::array<wall::Lanes, wall::packs<K>>;
+	using Arm = std::array<Lanes, packs<K>>;
 	struct Part {
 		int body;
 		Arm arm;
@@ -73,7 +73,7 @@ struct SpinRow {
 
 	int block() const { return parts[0].body; }
 	// e.(w - w_carry) of velocities in packs.
-	double rate(const wall::LaneArray& v) const
+	double rate(const LaneArray& v) const
 	{
 		double sum = 0;
 		for (const Part& part : parts)
@@ -81,28 +81,28 @@ struct SpinRow {
 		return sum;
 	}
 	// The work of the prescribed bodies is the couple times this, rad/s.
-	double baseSpin(const wall::LaneArray& v) const
+	double baseSpin(const LaneArray& v) const
 	{
 		double sum = 0;
 		for (const Part& part : parts)
-			sum -= v[wall::packs<K> * part.body][3] > 0 ? 0 : along(v, part);
+			sum -= v[packs<K> * part.body][3] > 0 ? 0 : along(v, part);
 		return sum;
 	}
 	// Adds the momentum that a couple gives to the free bodies.
-	void push(double couple, const wall::LaneArray& velocity, wall::LaneArray& momentum) const
+	void push(double couple, const LaneArray& velocity, LaneArray& momentum) const
 	{
 		for (const Part& part : parts)
-			for (int k = 0; k < wall::packs<K>; ++k)
-				if (const size_t p = wall::packs<K> * part.body + k; velocity[p][3] > 0)
+			for (int k = 0; k < packs<K>; ++k)
+				if (const size_t p = packs<K> * part.body + k; velocity[p][3] > 0)
 					momentum[p] += couple * part.arm[k];
 	}
 
 private:
-	static double along(const wall::LaneArray& v, const Part& part)
+	static double along(const LaneArray& v, const Part& part)
 	{
 		double sum = 0;
-		for (int k = 0; k < wall::packs<K>; ++k) {
-			const wall::Lanes product = part.arm[k] * v[wall::packs<K> * part.body + k];
+		for (int k = 0; k < packs<K>; ++k) {
+			const Lanes product = part.arm[k] * v[packs<K> * part.body + k];
 			sum += product[0] + product[1] + product[2];
 		}
 		return sum;

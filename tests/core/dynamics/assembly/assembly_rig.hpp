@@ -1,49 +1,27 @@
 #pragma once
-// Assemblies for the tests: the walls of dynamics/wall, stepped by AssemblyStep; and one step of them, frozen.
-#include "core/dynamics/wall/wall_rig.hpp"
-#include "dynamics/assembly/assembly_step.hpp"
+// One step of a wall, frozen.
+#include "core/dynamics/assembly/wall_rig.hpp"
 
 namespace rig {
 
-template <class K>
-struct AssemblyScene : SceneOf<K> {
-	assembly::AssemblyStep<K> one;
-
-	using SceneOf<K>::SceneOf;
-	void advance(double h)
-	{
-		if (this->start.empty())
-			this->start = this->system.bodies;
-		this->near.update(this->system);
-		one.advance(this->system, h);
-	}
-	void run(double time, double h)
-	{
-		for (long k = 0; k < std::lround(time / h); ++k)
-			advance(h);
-		one.showPoints(this->system);
-	}
-};
+using namespace masonry::rigid::assembly;
 
 // The contact problem of one step, from the system as it is, with the frames of the start of the step and without impulses.
 template <class K>
 struct Frozen {
-	static constexpr int packs = wall::packs<K>;
-	wall::Team team;
-	wall::WallContacts<K> contacts {team}, nobody {team};
+	static constexpr int packs = assembly::packs<K>;
+	parallel::Team team;
+	assembly::ContactSet<K> contacts {team};
 	assembly::AdmmSolver<K> solver;
 	assembly::StepContext step;
-	wall::LaneArray loads;
+	LaneArray loads;
 
 	Frozen(RigidSystem<K>& s, double h) : step(Scales(s), h)
 	{
-		wall::Members members {std::vector<char>(s.bodies.size()), std::vector<char>(s.bodies.size(), 0)};
-		for (size_t b = 0; b < s.bodies.size(); ++b)
-			members.own[b] = !s.bodies[b].prescribed;
-		contacts.take(s, members, nobody);
+		contacts.take(s);
 		contacts.measure(s, true);
 		contacts.setUnit(h);
-		loads.assign(contacts.velocity.size(), wall::all(0));
+		loads.assign(contacts.velocity.size(), all(0));
 		for (size_t b = 0; b < s.bodies.size(); ++b)
 			contacts.takeForce(s.bodies[b].force, h, b, loads);
 	}
@@ -64,7 +42,7 @@ struct Frozen {
 	{
 		ContactSolver<K> result;
 		std::vector<int> unknown(contacts.own.size(), -1);
-		const auto velocityOf = [&](const wall::LaneArray& from, size_t b) {
+		const auto velocityOf = [&](const LaneArray& from, size_t b) {
 			typename K::Velocity v;
 			for (int k = 0; k < K::dof; ++k)
 				v[k] = from[packs * b + k / 3][k % 3];
@@ -81,7 +59,7 @@ struct Frozen {
 				result.bodies.push_back(body);
 			}
 		for (size_t g = 0; g < contacts.groups.size(); ++g)
-			for (int i = 0; i < wall::width; ++i)
+			for (int i = 0; i < width; ++i)
 				for (int k = 0; k < contacts.groups[g].count; ++k) {
 					const auto& row = solver.rows[g][k];
 					if (contacts.features[g].pair[i] < 0 || !(row.stiffness[i] > 0))
@@ -94,15 +72,17 @@ struct Frozen {
 					point.friction = contacts.groups[g].friction[i];
 					for (int r = 0; r < K::rows; ++r) {
 						for (int c = 0; c < K::dof; ++c) {
-							point.J1(r, c) = -wall::partOf(p, r, i, 1, c / 3)[c % 3];
-							point.J2(r, c) = wall::partOf(p, r, i, 2, c / 3)[c % 3];
+							point.J1(r, c) = -partOf(p, r, i, 1, c / 3)[c % 3];
+							point.J2(r, c) = partOf(p, r, i, 2, c / 3)[c % 3];
 						}
-						point.offset[r] = r == 0 ? row.bn[i] : wall::component(row.bt, r - 1, i);
+						point.offset[r] = r == 0 ? row.bn[i] : component(row.bt, r - 1, i);
 						for (int side = 0; side < 2; ++side)
 							if (!contacts.own[bodies[side]])
 								point.offset[r] += (side == 0 ? point.J1 : point.J2).row(r) * velocityOf(contacts.velocity, bodies[side]);
 					}
-					point.impulse = wall::impulseOf(p, i);
+					point.impulse[0] = p.pn[i];
+					for (int r = 1; r < K::rows; ++r)
+						point.impulse[r] = component(p.pt, r - 1, i);
 					for (int side = 0; side < 2; ++side)
 						if (const int b = unknown[bodies[side]]; b >= 0)
 							result.bodies[b].velocity +=

@@ -7,7 +7,7 @@ using namespace rig;
 // Bounds are those of the two-mode step (dynamics/wall): 1e-3 mm of drift, 1e-5 mm of sinking per joint, in 1 s instead of 5.
 TEMPLATE_TEST_CASE("an assembly at rest does not drift", "", Plane, Space)
 {
-	AssemblyScene<TestType> scene;
+	SceneOf<TestType> scene;
 	scene.addWall(TestType::dimension == 2 ? 10 : 6, TestType::dimension == 2 ? 10 : 4);
 	scene.run(1, 1e-3);
 	CHECK(scene.drift() < 1e-6);
@@ -18,7 +18,7 @@ TEMPLATE_TEST_CASE("an assembly at rest does not drift", "", Plane, Space)
 // 0.3 < mu, and wall and blocks are squat: the exact wall moves with its base.
 TEMPLATE_TEST_CASE("an assembly that is shaken below sliding does not drift", "", Plane, Space)
 {
-	AssemblyScene<TestType> scene;
+	SceneOf<TestType> scene;
 	scene.addWall(TestType::dimension == 2 ? 10 : 6, TestType::dimension == 2 ? 10 : 4);
 	Harmonic motion(0.3 * g, 2, 0.02);
 	scene.drive(motion);
@@ -30,7 +30,7 @@ TEMPLATE_TEST_CASE("an assembly that is shaken below sliding does not drift", ""
 // Bound: a tenth of the 1e-2 mm that a wall may drift in such a second.
 TEST_CASE("steps that start within the tolerance do not creep")
 {
-	AssemblyScene<Plane> scene;
+	SceneOf<Plane> scene;
 	scene.addWall(10, 10);
 	Harmonic motion(0.3 * g, 2, 0.02);
 	scene.drive(motion);
@@ -42,15 +42,15 @@ TEST_CASE("steps that start within the tolerance do not creep")
 TEMPLATE_TEST_CASE("a block slides with the acceleration of friction", "", Plane, Space)
 {
 	constexpr double mu = 0.3, h = 1e-3, time = 0.1;
-	AssemblyScene<TestType> scene(mu);
+	SceneOf<TestType> scene(mu);
 	auto& s = scene.system;
 	addBlock(s, sizeOf(s, 0.5, 0.25), placeOf(s, 0, 0.25));
 	ScheduledMotion motion;
 	motion.append({0, 0, 0.8 * g});
 	scene.drive(motion);
-	scene.one.settings.solver.tolerance =
+	scene.step.settings.solver.tolerance =
 	    1e-6; // the default may leave 1e-3 of the fall of a step to its share of friction, here 1/mu times as much
-	scene.one.settings.solver.iterations = 1000;
+	scene.step.settings.solver.iterations = 1000;
 	scene.run(time, h);
 	const double steps = time / h;
 	// The sum of h v over steps of equal acceleration is mu g h^2 n (n + 1)/2.
@@ -66,13 +66,13 @@ TEMPLATE_TEST_CASE("a block slides with the acceleration of friction", "", Plane
 TEMPLATE_TEST_CASE("a block that is pulled steadily has the acceleration of the pull", "", Plane, Space)
 {
 	constexpr double mu = 0.3, h = 1e-3, time = 0.4;
-	AssemblyScene<TestType> scene(mu);
+	SceneOf<TestType> scene(mu);
 	auto& s = scene.system;
 	addBlock(s, sizeOf(s, 0.5, 0.25), placeOf(s, 0, 0.25));
 	s.bodies[1].force[0] = s.bodies[1].mass * g / 2;
 	scene.run(time, h);
 	CHECK(std::abs(s.bodies[1].velocity[0] - (0.5 - mu) * g * time) < g * h);
-	CHECK(scene.one.report.moved == 1);
+	CHECK(scene.step.report.moved == 1);
 }
 
 // Blocks that have been put a little into each other stay so, whatever is taken back of penetrations that steps have left: a fifth of those
@@ -81,41 +81,41 @@ TEMPLATE_TEST_CASE("a block that is pulled steadily has the acceleration of the 
 TEMPLATE_TEST_CASE("an overlap with which blocks are found stays", "", Plane, Space)
 {
 	constexpr double overlap = 0.95e-4 * 0.25; // of the smallest half size, what a scene may have
-	AssemblyScene<TestType> scene;
+	SceneOf<TestType> scene;
 	auto& s = scene.system;
 	for (int k = 0; k < 5; ++k)
 		addBlock(s, sizeOf(s, 0.3, 0.25), placeOf(s, 0, 0.25 + 0.5 * k - (k + 1) * overlap));
 	double created = 0, moved = 0;
 	for (int k = 0; k < 300; ++k) {
 		scene.advance(1e-3);
-		created += scene.one.report.created;
+		created += scene.step.report.created;
 	}
 	for (int b = 1; b <= 5; ++b)
 		moved = std::max(moved, scene.shift(b).norm());
 	CHECK(moved < 2e-3 * overlap);
 	CHECK(created == 0);
-	CHECK(scene.one.report.moved == 0);
+	CHECK(scene.step.report.moved == 0);
 }
 
 // At rest, and where a block flies.
 TEST_CASE("blocks that move are counted")
 {
-	AssemblyScene<Plane> scene;
+	SceneOf<Plane> scene;
 	auto& s = scene.system;
 	scene.addWall(4, 4);
 	scene.run(0.05, 1e-3);
-	CHECK(scene.one.report.moved == 0);
+	CHECK(scene.step.report.moved == 0);
 	addBlock(s, {0.25, 0.25}, {2, 4});
 	addBlock(s, {0.25, 0.25}, {-2, 0.25});
 	s.bodies.back().velocity[0] = -1;
 	scene.run(0.05, 1e-3);
-	CHECK(scene.one.report.moved == 2);
+	CHECK(scene.step.report.moved == 2);
 }
 
 // Only its pivot is in touch, which hardly moves; the other edge is open by more than the solver takes into its matrix.
 TEST_CASE("a block that rocks slowly moves, however far it is open")
 {
-	AssemblyScene<Plane> scene;
+	SceneOf<Plane> scene;
 	auto& s = scene.system;
 	constexpr double tilt = 0.1, spin = -0.02;
 	const Vector2 half(0.25, 1),
@@ -124,25 +124,25 @@ TEST_CASE("a block that rocks slowly moves, however far it is open")
 	s.bodies[b].velocity << -spin * arm.y(), spin * arm.x(), spin;
 	for (int k = 0; k < 20; ++k) {
 		scene.advance(1e-3);
-		CHECK(scene.one.report.moved == 1);
+		CHECK(scene.step.report.moved == 1);
 	}
 }
 
 TEMPLATE_TEST_CASE("forces at rest meet the tolerance if they are to", "", Plane, Space)
 {
 	constexpr double h = 1e-3, tolerance = 1e-3;
-	AssemblyScene<TestType> scene;
+	SceneOf<TestType> scene;
 	scene.addWall(6, 4);
-	scene.one.settings.solver.strictForces = true;
+	scene.step.settings.solver.strictForces = true;
 	scene.run(0.05, h);
-	CHECK(scene.one.report.forceResidual < tolerance * g * h);
-	CHECK(scene.one.report.residual == std::max(scene.one.report.forceResidual, scene.one.report.velocityResidual));
+	CHECK(scene.step.report.forceResidual < tolerance * g * h);
+	CHECK(scene.step.report.residual == std::max(scene.step.report.forceResidual, scene.step.report.velocityResidual));
 }
 
 // The base translates: its work is the change of the momentum of all blocks times its velocity, step by step, whatever the contacts are.
 TEMPLATE_TEST_CASE("the work of the base is that of the momentum that it gives", "", Plane, Space)
 {
-	AssemblyScene<TestType> scene;
+	SceneOf<TestType> scene;
 	scene.addWall(6, 4);
 	Harmonic motion(1.0 * g, 2, 0.02);
 	scene.drive(motion);
@@ -171,12 +171,12 @@ TEMPLATE_TEST_CASE("the work of the base is that of the momentum that it gives",
 // rest.
 TEST_CASE("an assembly at rest keeps its factorisation")
 {
-	AssemblyScene<Plane> scene;
+	SceneOf<Plane> scene;
 	scene.addWall(10, 10);
 	int factorisations = 0;
 	for (int k = 0; k < 300; ++k) {
 		scene.advance(1e-3);
-		factorisations += k >= 100 ? scene.one.report.factorisations : 0;
+		factorisations += k >= 100 ? scene.step.report.factorisations : 0;
 	}
 	CHECK(factorisations == 0);
 }
@@ -185,11 +185,11 @@ TEST_CASE("an assembly's bits do not depend on the number of threads")
 {
 	std::vector<double> numbers[2];
 	for (const int threads : {1, 2}) {
-		AssemblyScene<Plane> scene;
+		SceneOf<Plane> scene;
 		scene.addWall(24, 24);
 		Harmonic motion(1.0 * g, 2, 0);
 		scene.drive(motion);
-		scene.one.settings.threads = threads;
+		scene.step.settings.threads = threads;
 		scene.run(0.06, 1e-3);
 		numbers[threads - 1] = numbersOf(scene.system);
 	}

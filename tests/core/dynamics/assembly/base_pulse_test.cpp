@@ -15,7 +15,7 @@ double spinOf(const RigidBody<Space>& body) { return -body.velocity[4]; }
 TEMPLATE_TEST_CASE("a jump of the base turns a block about its edge and makes no energy", "", Plane, Space)
 {
 	const double width = 0.3, height = 0.9, jump = 0.4, h = 1e-4, square = width * width + height * height;
-	AssemblyScene<TestType> scene(noSlip, 0.7);
+	SceneOf<TestType> scene(noSlip, 0.7);
 	auto& s = scene.system;
 	addBlock(s, sizeOf(s, width, height), placeOf(s, 0, height));
 	ScheduledMotion motion;
@@ -38,7 +38,7 @@ TEMPLATE_TEST_CASE("pulses of a base without slip make no energy", "", Plane, Sp
 {
 	const double h = GENERATE(2e-3, 2e-4), width = 0.05, height = 0.2, start = 0.05, look = 0.1;
 	const double bound = 0.75 * g / std::hypot(width, height) * h * (look - start) + 1e-3; // p^2 = 3g/(4R)
-	AssemblyScene<TestType> one(noSlip, 0.7);
+	SceneOf<TestType> one(noSlip, 0.7);
 	SceneOf<TestType> exact(noSlip, 0.7);
 	ScheduledMotion motions[2];
 	for (auto& motion : motions) {

@@ -58,7 +58,7 @@ struct Giver {
 TEMPLATE_TEST_CASE("a block in an assembly lands with the restitution that is asked", "", Plane, Space)
 {
 	const double C = GENERATE(0.5, 0.9), width = 0.3, height = 0.9, slenderness = height / width, h = 2.5e-4;
-	AssemblyScene<TestType> scene(2, C);
+	SceneOf<TestType> scene(2, C);
 	auto& s = scene.system;
 	addTilted(scene, 1, width, height, 0.05);
 	std::vector<Impact> impacts;
@@ -80,7 +80,7 @@ TEMPLATE_TEST_CASE("a block in an assembly lands with the restitution that is as
 TEMPLATE_TEST_CASE("a stack lands as with localised impacts", "", Plane, Space)
 {
 	const double C = GENERATE(0.5, 0.8), friction = GENERATE(1., double(noSlip));
-	AssemblyScene<TestType> one(friction, C);
+	SceneOf<TestType> one(friction, C);
 	SceneOf<TestType> exact(friction, C);
 	addTilted(one, 2, 0.3, 0.6, 0.02);
 	addTilted(exact, 2, 0.3, 0.6, 0.02);
@@ -109,7 +109,7 @@ TEMPLATE_TEST_CASE("a stack lands as with localised impacts", "", Plane, Space)
 // rises of this column are missed numbers in docs/numerics.
 TEMPLATE_TEST_CASE("a shaken column with restitution reports no created energy", "", Plane, Space)
 {
-	AssemblyScene<TestType> scene(0.7, 0.8);
+	SceneOf<TestType> scene(0.7, 0.8);
 	auto& s = scene.system;
 	for (int k = 0; k < 6; ++k)
 		addBlock(s, sizeOf(s, 0.25, 0.25), placeOf(s, 0, 0.25 + 0.5 * k));
@@ -119,7 +119,7 @@ TEMPLATE_TEST_CASE("a shaken column with restitution reports no created energy",
 	double created = 0;
 	for (int k = 0; k < 800; ++k) {
 		scene.advance(1e-3);
-		created += scene.one.report.created;
+		created += scene.step.report.created;
 		impacts += s.impacts.size();
 	}
 	CHECK(created == 0);
@@ -137,7 +137,7 @@ TEST_CASE("a cap reaches no joint but its own, and a dense wall makes no energy"
 	int capped = 0;
 	double rises = 0, loss = 0;
 	for (const bool withWall : {false, true}) {
-		AssemblyScene<Plane> scene(0.7, C);
+		SceneOf<Plane> scene(0.7, C);
 		auto& s = scene.system;
 		addTilted(scene, 1, 0.5, 0.5, 0.05);
 		if (withWall)
@@ -182,12 +182,12 @@ TEST_CASE("a dense wall keeps most of its restitution at three times the iterati
 	double iterations[2] {};
 	int impacts = 0, capped = 0;
 	for (const bool hasRows : {false, true}) {
-		AssemblyScene<Plane> scene(0.7, hasRows ? 0.5 : NAN);
+		SceneOf<Plane> scene(0.7, hasRows ? 0.5 : NAN);
 		scene.addWall(10, 10);
 		scene.drive(motion);
 		for (int k = 0; k < 500; ++k) {
 			scene.advance(1e-3);
-			iterations[hasRows] += scene.one.report.iterations;
+			iterations[hasRows] += scene.step.report.iterations;
 			for (const Impact& impact : scene.system.impacts) {
 				++impacts;
 				capped += impact.capped;
@@ -202,15 +202,15 @@ TEST_CASE("a dense wall keeps most of its restitution at three times the iterati
 // A run that goes on from what has been passed on, in an object of its own, has the same bits; one landing is on its way.
 TEMPLATE_TEST_CASE("a step that is saved goes on with the same bits", "", Plane, Space)
 {
-	AssemblyScene<TestType> scene(0.7, 0.7);
+	SceneOf<TestType> scene(0.7, 0.7);
 	scene.addWall(4, 3);
 	Harmonic motion(0.9 * g, 2, 0.02);
 	scene.drive(motion);
 	for (int k = 0; k < 250; ++k)
 		scene.advance(1e-3);
-	scene.one.showPoints(scene.system);
+	scene.step.showPoints(scene.system);
 	Taker taken;
-	scene.one.pass(taken, scene.system);
+	scene.step.pass(taken, scene.system);
 	auto system = scene.system;
 	auto near = scene.near;
 	assembly::AssemblyStep<TestType> other;

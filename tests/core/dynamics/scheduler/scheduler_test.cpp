@@ -1,5 +1,5 @@
 // Walls beside structures of few blocks: each moves as by its own method alone.
-#include "core/dynamics/wall/wall_rig.hpp"
+#include "core/dynamics/assembly/wall_rig.hpp"
 #include "dynamics/scheduler/scheduler.hpp"
 #include <catch.hpp>
 
@@ -74,48 +74,23 @@ TEST_CASE("a wall moves as alone, a pier beside it as with localised impacts alo
 		CHECK(both.system.*energy == Approx(wall.system.*energy + pier.system.*energy).epsilon(1e-9)); // summed in another order
 }
 
-// While it stands it has the bits of the two modes. In motion it goes as far as by the one method alone, but that the two modes may notice
-// by two steps of gravity late that it slides (docs/limits.md).
-TEST_CASE("a high wall stands by the two modes and moves by the one method")
+TEST_CASE("a wall on bases that have different motions is told from walls on one each")
 {
-	const double amplitude = GENERATE(0.1, 1.2), restitution = GENERATE(double(NAN), 0.5);
-	Scene scheduled(0.7, restitution), byTwo(0.7, restitution), byOne(0.7, restitution);
-	Harmonic motion(amplitude * g, 2, 0.005);
-	for (Scene* scene : {&scheduled, &byTwo, &byOne}) {
-		scene->drive(motion);
-		scene->addWall(Scheduler<Plane>::coursesOfTwoModes + 1, 6);
-		scene->start = scene->system.bodies;
-	}
-	Scheduler<Plane> scheduler;
-	WallStep<Plane> twoModes;
-	assembly::AssemblyStep<Plane> oneMethod;
-	constexpr double time = 0.25, h = 1e-3;
-	shake(scheduled, scheduler, time);
-	shake(byTwo, twoModes, time);
-	shake(byOne, oneMethod, time);
-	const bool same = numbersOf(scheduled.system) == numbersOf(byTwo.system);
-	CHECK(same == (amplitude < 1));
-	if (amplitude > 1)
-		CHECK(std::abs(scheduled.drift() - byOne.drift()) < 2 * g * h * time);
-}
-
-// Onto a wall that is as high as the two modes take, a block falls. The step of high walls goes on from what bears the wall: it moves by no
-// more than the 1e-2 mm that a wall may drift in a second.
-TEST_CASE("a wall that becomes a high one goes on from what bears it")
-{
+	const bool isOne = GENERATE(false, true); // wall
 	Scene scene;
-	constexpr int courses = Scheduler<Plane>::coursesOfTwoModes;
-	scene.addWall(courses, 2);
-	scene.start = scene.system.bodies;
+	scene.addWall(4, 8);
+	if (!isOne)
+		scene.addWall(4, 8, farLeft);
+	RigidBody<Plane> other = scene.system.bodies[0]; // at rest, under half of the only wall, or under the other one
+	other.pose.position.x() = 0.5 * (isOne ? 8 : farLeft + 8) + other.halfSize.x();
+	scene.system.bodies[0].pose.position.x() = other.pose.position.x() - 2 * other.halfSize.x();
+	scene.system.bodies[0].origin = scene.system.bodies[0].pose.position;
+	scene.system.bodies.push_back(other);
+	Harmonic motion(0.1 * g, 2, 0);
+	scene.drive(motion);
 	Scheduler<Plane> scheduler;
-	shake(scene, scheduler, 0.05);
-	const int high = addBlock(scene.system, {0.5, 0.25}, {1, 0.5 * courses + 0.25 + 0.1});
-	shake(scene, scheduler, 0.5);
-	CHECK(scheduler.report.moved == 0);
-	CHECK(scene.system.bodies[high].pose.position.y() == Approx(0.5 * courses + 0.25).epsilon(1e-5));
-	scene.system.bodies.resize(scene.start.size());
-	CHECK(scene.drift() < 1e-5);
-	CHECK(scene.sink() < 1e-5);
+	shake(scene, scheduler, 1e-3);
+	CHECK(scheduler.partBases == isOne);
 }
 
 TEST_CASE("few blocks have localised impacts though there is no wall beside them")

@@ -1,8 +1,8 @@
 #pragma once
 // Walls for the tests: running bond with half blocks at the ends, touching head joints, on a base that may shake.
 #include "core/dynamics/rigid/space_rig.hpp"
+#include "dynamics/assembly/assembly_step.hpp"
 #include "dynamics/rigid/neighbours.hpp"
-#include "dynamics/wall/wall_step.hpp"
 
 namespace rig {
 
@@ -49,7 +49,7 @@ struct SceneOf {
 	static constexpr int up = K::dimension - 1;
 	RigidSystem<K> system = emptyScene<K>(50, 1);
 	Neighbours<K> near;
-	WallStep<K> step;
+	assembly::AssemblyStep<K> step;
 	std::vector<RigidBody<K>> start;
 
 	explicit SceneOf(double friction = 0.7, double restitution = NAN)

@@ -1,23 +1,14 @@
-// How a wall is divided into parts and groups, and which course a block is in.
-#include "dynamics/rigid/island_numbers.hpp"
-#include "dynamics/wall/wall_contacts.hpp"
+// How an assembly is divided into parts and groups, and which course a block is in.
+#include "dynamics/assembly/contact_set.hpp"
 #include <algorithm>
 #include <numeric>
 
-namespace masonry::rigid::wall {
+namespace masonry::rigid::assembly {
 
 namespace {
 
 constexpr int pairsOfPart = 1024; // at least: fewer do not repay that threads meet
 constexpr int mostSeam = 8;       // times as many pairs as are in the seam there are at least
-
-// Loads spread over the courses as by diffusion, in time as their square. A structure that is slender bends besides, and takes longer: in
-// proportion to its courses over the blocks of one from this on, up to so many times as long. Without it the first peak of a column of 48
-// that rocks is 6 % off, not 1; smaller the first, or larger the second: slender structures take more sweeps.
-constexpr double slender = 1, mostOfSlender = 7;
-
-// Blocks in a course, on average, from which on a structure does not rock as a column.
-constexpr double blocksOfBroad = 6;
 
 // Lanes of these pairs by colour, greedy in their order: no two of a colour share a body that is `own`.
 template <int lanesOfWide>
@@ -50,7 +41,7 @@ std::vector<std::vector<PairLane>> coloured(const std::vector<int>& numbers, con
 // bed joints. Where numbers say little about places the seam is large, and there are fewer parts.
 // Returns how many parts there are.
 template <class K>
-int WallContacts<K>::divide()
+int ContactSet<K>::divide()
 {
 	std::vector<int> rank; // of a body among its own
 	int free = 0;
@@ -74,7 +65,7 @@ int WallContacts<K>::divide()
 
 // In each part by colour, then packed by four.
 template <class K>
-void WallContacts<K>::colour(const RigidSystem<K>& s)
+void ContactSet<K>::colour(const RigidSystem<K>& s)
 {
 	const int none = int(s.bodies.size()), seam = divide();
 	const auto isFixed = [&](int body) { return !own[body]; };
@@ -89,8 +80,6 @@ void WallContacts<K>::colour(const RigidSystem<K>& s)
 	}
 	parts.assign(seam + 1, {});
 	for (int b = 0; b <= none; ++b) {
-		if (b < none && !own[b] && !supports[b] && !s.bodies[b].prescribed)
-			continue;
 		const bool within = b < none && !isFixed(b) && !atSeam[b];
 		for (int k = 0; k < packs<K>; ++k)
 			parts[within ? partOf[b] : seam].members.push_back(packs<K> * b + k);
@@ -108,20 +97,19 @@ void WallContacts<K>::colour(const RigidSystem<K>& s)
 		}
 		parts[p].end = int(groups.size());
 	}
-	still.assign(groups.size(), {});
+	memory.assign(groups.size(), {});
 	stale.assign(groups.size(), allLanes);
 	known.assign(pairs.size(), 0);
 	onBase.clear();
-	onStill.clear();
 	for (int g = 0; g < int(groups.size()); ++g)
 		for (int i = 0; i < width && features[g].pair[i] >= 0; ++i)
 			if (const int a = groups[g].body1[i], b = groups[g].body2[i]; isFixed(a) || isFixed(b))
-				(supports[a] || supports[b] ? onStill : onBase).push_back({g, i});
+				onBase.push_back({g, i});
 	orderUpwards();
 }
 
 template <class K>
-void WallContacts<K>::addGroup(const PairLane* lanes, int count, int none)
+void ContactSet<K>::addGroup(const PairLane* lanes, int count, int none)
 {
 	Group<K> group {};
 	FeatureGroup<K> feature {};
@@ -143,7 +131,7 @@ void WallContacts<K>::addGroup(const PairLane* lanes, int count, int none)
 }
 
 template <class K>
-void WallContacts<K>::orderUpwards()
+void ContactSet<K>::orderUpwards()
 {
 	std::vector<int> highest(groups.size(), 0); // course of a group
 	for (int g = 0; g < int(groups.size()); ++g)
@@ -155,62 +143,28 @@ void WallContacts<K>::orderUpwards()
 		std::stable_sort(upwards.begin() + part.begin, upwards.begin() + part.end, [&](int a, int b) { return highest[a] < highest[b]; });
 }
 
-// Breadth first through these pairs: how many are between a body and the nearest one that has 0; -1 stays where there is no way. What
-// stands beside a wall does not bear it: through such pairs only on from what has its number, to what else has none.
+// Breadth first: how many pairs are between a body and the nearest prescribed one; -1 where there is no way. What stands beside a block
+// does not bear it: through such pairs only on from what has its number, to what else has none.
 template <class K>
-void WallContacts<K>::countFrom(const RigidSystem<K>& s, const std::vector<int>& through, std::vector<int>& count) const
+void ContactSet<K>::findCourses(const RigidSystem<K>& s)
 {
-	for (const bool all : {false, true})
-		for (int reached = 0, most = *std::max_element(count.begin(), count.end()); reached <= most; ++reached)
-			for (const int c : through)
-				for (const auto& [from, to] : {std::pair(pairs[c][0], pairs[c][1]), std::pair(pairs[c][1], pairs[c][0])})
-					if ((all || !s.pairs[c].beside) && count[from] == reached && count[to] < 0)
-						most = std::max(most, count[to] = reached + 1);
-}
-
-template <class K>
-void WallContacts<K>::findCourses(const RigidSystem<K>& s)
-{
-	std::vector<int> everyPair(pairs.size()), above(s.bodies.size(), -1); // above what is not free here
-	std::iota(everyPair.begin(), everyPair.end(), 0);
 	course.assign(s.bodies.size(), -1);
-	for (size_t b = 0; b < s.bodies.size(); ++b) {
+	for (size_t b = 0; b < s.bodies.size(); ++b)
 		if (s.bodies[b].prescribed)
 			course[b] = 0;
-		if (s.bodies[b].prescribed || supports[b])
-			above[b] = 0;
-	}
-	countFrom(s, everyPair, course);
-	countFrom(s, numbers, above);
-	depth = std::max(0, *std::max_element(above.begin(), above.end()));
-	const auto joins = [this](const ContactPair<K>& pair) { return own[pair.body1] && own[pair.body2]; };
-	const std::vector<int> structure = islandNumbers<K>(s, joins);
-	std::vector<double> blocks(structure.size(), 0), courses = blocks;
-	for (size_t b = 0; b < structure.size(); ++b)
-		if (structure[b] >= 0 && above[b] > 0) {
-			++blocks[structure[b]];
-			courses[structure[b]] = std::max<double>(courses[structure[b]], above[b]);
-		}
-	spread = 0;
-	broad = true;
-	for (size_t k = 0; k < structure.size(); ++k)
-		if (const double square = courses[k] * courses[k]; square > 0) {
-			spread = std::max(spread, square * std::clamp(square / blocks[k] / slender, 1., mostOfSlender));
-			broad &= blocks[k] >= blocksOfBroad * courses[k];
-		}
-	burden = 0;
-	for (const int c : numbers) {
-		const auto [low, high] = std::minmax({pairs[c][0], pairs[c][1]}, [&](int a, int b) { return above[a] < above[b]; });
-		if (above[low] != above[high] && own[low])
-			burden = std::max(burden, above[high] * s.bodies[high].mass / s.bodies[low].mass);
-	}
+	for (const bool all : {false, true})
+		for (int reached = 0, most = *std::max_element(course.begin(), course.end()); reached <= most; ++reached)
+			for (const ContactPair<K>& pair : s.pairs)
+				for (const auto& [from, to] : {std::pair(pair.body1, pair.body2), std::pair(pair.body2, pair.body1)})
+					if ((all || !pair.beside) && course[from] == reached && course[to] < 0)
+						most = std::max(most, course[to] = reached + 1);
 }
 
-template void WallContacts<Plane>::colour(const RigidSystem<Plane>&);
-template void WallContacts<Space>::colour(const RigidSystem<Space>&);
-template void WallContacts<Plane>::orderUpwards();
-template void WallContacts<Space>::orderUpwards();
-template void WallContacts<Plane>::findCourses(const RigidSystem<Plane>&);
-template void WallContacts<Space>::findCourses(const RigidSystem<Space>&);
+template void ContactSet<Plane>::colour(const RigidSystem<Plane>&);
+template void ContactSet<Space>::colour(const RigidSystem<Space>&);
+template void ContactSet<Plane>::orderUpwards();
+template void ContactSet<Space>::orderUpwards();
+template void ContactSet<Plane>::findCourses(const RigidSystem<Plane>&);
+template void ContactSet<Space>::findCourses(const RigidSystem<Space>&);
 
-} // namespace masonry::rigid::wall
+} // namespace masonry::rigid::assembly

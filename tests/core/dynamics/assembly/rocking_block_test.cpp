@@ -327,7 +327,7 @@ TEMPLATE_TEST_CASE("an impact that energy caps keeps to Coulomb's law", "", Plan
 		CHECK(impact.energyLost > -1e-10 * energy(scene.system)); // round-off
 		return impact;
 	};
-	WallStep<TestType> wall;
+	assembly::AssemblyStep<TestType> wall;
 	RigidStep<TestType> localised;
 	const Impact impact = land(wall), exact = land(localised);
 	CHECK(impact.joint.frictionDemand == Approx(exact.joint.frictionDemand).margin(7e-4));

@@ -1,8 +1,8 @@
-#include "dynamics/wall/wall_contacts.hpp"
+#include "dynamics/assembly/contact_set.hpp"
 #include "tolerances.hpp"
 #include <algorithm>
 
-namespace masonry::rigid::wall {
+namespace masonry::rigid::assembly {
 
 namespace {
 
@@ -11,51 +11,47 @@ constexpr int mostStood = 16; // still steps, in which blocks may go far in smal
 } // namespace
 
 template <class K>
-typename WallContacts<K>::State WallContacts<K>::state(int pair, int point) const
+typename ContactSet<K>::State ContactSet<K>::state(int pair, int point) const
 {
 	State state;
 	const auto [group, lane] = slots[pair][point / lanePoints<K>];
 	if (group < 0)
 		return state;
 	const PointLanes<K>& p = groups[group].point[point % lanePoints<K>];
-	const StillLanes<K>& f = still[group][point % lanePoints<K>];
+	const SolverLanes<K>& f = memory[group][point % lanePoints<K>];
 	state.present = features[group].point[point % lanePoints<K>].present[lane];
 	state.pn = p.pn[lane];
 	state.steady = p.steady[lane];
 	state.zn = f.zn[lane];
 	state.zero = f.zero[lane];
-	state.heldN = f.heldN[lane];
 	for (int k = 0; k < K::rows - 1; ++k) {
 		state.pt[k] = component(p.pt, k, lane);
 		state.zt[k] = component(f.zt, k, lane);
 		state.slip[k] = component(f.slip, k, lane);
-		state.heldT[k] = component(f.heldT, k, lane);
 	}
 	return state;
 }
 
 template <class K>
-void WallContacts<K>::setState(const State& state, int pair, int point)
+void ContactSet<K>::setState(const State& state, int pair, int point)
 {
 	const auto [group, lane] = slots[pair][point / lanePoints<K>];
 	PointLanes<K>& p = groups[group].point[point % lanePoints<K>];
-	StillLanes<K>& f = still[group][point % lanePoints<K>];
+	SolverLanes<K>& f = memory[group][point % lanePoints<K>];
 	p.pn[lane] = state.pn;
 	p.steady[lane] = state.steady;
 	f.zn[lane] = state.zn;
 	f.zero[lane] = state.zero;
-	f.heldN[lane] = state.heldN;
 	for (int k = 0; k < K::rows - 1; ++k) {
 		setComponent(p.pt, k, lane, state.pt[k]);
 		setComponent(f.zt, k, lane, state.zt[k]);
 		setComponent(f.slip, k, lane, state.slip[k]);
-		setComponent(f.heldT, k, lane, state.heldT[k]);
 	}
 }
 
 // A point that was there before keeps its state (true), and so does one that another feature of the same place takes over from.
 template <class K>
-bool WallContacts<K>::inherit(const ContactPair<K>& before, const State* states, ContactPoint<K>& point, State& now) const
+bool ContactSet<K>::inherit(const ContactPair<K>& before, const State* states, ContactPoint<K>& point, State& now) const
 {
 	const double samePlace = 2 * tolerance::wall::search * length;
 	for (int j = 0; j < before.size; ++j) {
@@ -69,15 +65,13 @@ bool WallContacts<K>::inherit(const ContactPair<K>& before, const State* states,
 		now.zn = then.zn;
 		now.zt = then.zt;
 		now.slip = then.slip;
-		now.heldN = then.heldN;
-		now.heldT = then.heldT;
 		now.zero = std::min(now.zero, then.zero);
 		if (old.feature == point.feature)
 			return true;
 		if constexpr (K::rows == 3) { // along the tangents of another face
 			const Eigen::Matrix2d turn = point.frame.axes.template bottomRows<2>() * old.frame.axes.template bottomRows<2>().transpose();
 			point.force.template tail<2>() = (turn * old.force.template tail<2>()).eval();
-			for (auto* tangential : {&now.pt, &now.zt, &now.slip, &now.heldT})
+			for (auto* tangential : {&now.pt, &now.zt, &now.slip})
 				*tangential = (turn * *tangential).eval();
 		}
 	}
@@ -86,7 +80,7 @@ bool WallContacts<K>::inherit(const ContactPair<K>& before, const State* states,
 
 // True: it has other points than before.
 template <class K>
-bool WallContacts<K>::lookUp(RigidSystem<K>& s, int c)
+bool ContactSet<K>::lookUp(RigidSystem<K>& s, int c)
 {
 	const double touching = tolerance::mergedClosing * length;
 	bool changed = s.moved;
@@ -139,7 +133,7 @@ bool WallContacts<K>::lookUp(RigidSystem<K>& s, int c)
 }
 
 template <class K>
-void WallContacts<K>::lookUpStale(RigidSystem<K>& s)
+void ContactSet<K>::lookUpStale(RigidSystem<K>& s)
 {
 	bool other[Team::mostParts + 1] {};
 	allParts([&](const Part& part, int number) { other[number] = lookUpStale(s, part); });
@@ -149,7 +143,7 @@ void WallContacts<K>::lookUpStale(RigidSystem<K>& s)
 
 // Lanes of one pair are looked up together; they are in one part.
 template <class K>
-bool WallContacts<K>::lookUpStale(RigidSystem<K>& s, const Part& part)
+bool ContactSet<K>::lookUpStale(RigidSystem<K>& s, const Part& part)
 {
 	const auto isStale = [this](const Slot& slot) { return stale[slot.group] >> slot.lane & 1; };
 	for (int g = part.begin; lanesOfPair < K >> 1 && g < part.end; ++g)
@@ -175,7 +169,7 @@ bool WallContacts<K>::lookUpStale(RigidSystem<K>& s, const Part& part)
 }
 
 template <class K>
-void WallContacts<K>::countPoints(const RigidSystem<K>& s, int g)
+void ContactSet<K>::countPoints(const RigidSystem<K>& s, int g)
 {
 	int most = 1; // a pair without points still shows how far it moves
 	for (int lane = 0; lane < width; ++lane)
@@ -185,7 +179,7 @@ void WallContacts<K>::countPoints(const RigidSystem<K>& s, int g)
 
 // A system whose points are known already.
 template <class K>
-void WallContacts<K>::takeOver(const RigidSystem<K>& s)
+void ContactSet<K>::takeOver(const RigidSystem<K>& s)
 {
 	findCourses(s);
 	colour(s);
@@ -203,7 +197,7 @@ void WallContacts<K>::takeOver(const RigidSystem<K>& s)
 }
 
 template <class K>
-void WallContacts<K>::showPair(RigidSystem<K>& s, int c) const
+void ContactSet<K>::showPair(RigidSystem<K>& s, int c) const
 {
 	const double touching = tolerance::mergedClosing * length, perUnit = unit > 0 ? 1 / unit : 0;
 	ContactPair<K>& pair = s.pairs[c];
@@ -225,7 +219,7 @@ void WallContacts<K>::showPair(RigidSystem<K>& s, int c) const
 }
 
 template <class K>
-void WallContacts<K>::showPoints(RigidSystem<K>& s)
+void ContactSet<K>::showPoints(RigidSystem<K>& s)
 {
 	if (stood == 0 && !numbers.empty()) { // else frames are where the bodies are; those of a step that moves are of its middle
 		std::vector<typename K::Pose> poses;
@@ -239,7 +233,7 @@ void WallContacts<K>::showPoints(RigidSystem<K>& s)
 }
 
 template <class K>
-void WallContacts<K>::placeAll(const RigidSystem<K>& s, const std::vector<typename K::Pose>& poses)
+void ContactSet<K>::placeAll(const RigidSystem<K>& s, const std::vector<typename K::Pose>& poses)
 {
 	eachShare(poses.size(), [&](size_t begin, size_t end, int) {
 		for (size_t b = begin; b < end; ++b) {
@@ -251,7 +245,7 @@ void WallContacts<K>::placeAll(const RigidSystem<K>& s, const std::vector<typena
 
 // Points located where these poses put the bodies, which stay where they are.
 template <class K>
-void WallContacts<K>::placeAt(const RigidSystem<K>& s, const std::vector<typename K::Pose>& poses)
+void ContactSet<K>::placeAt(const RigidSystem<K>& s, const std::vector<typename K::Pose>& poses)
 {
 	takeBodies(s);
 	placeAll(s, poses);
@@ -263,7 +257,7 @@ void WallContacts<K>::placeAt(const RigidSystem<K>& s, const std::vector<typenam
 }
 
 template <class K>
-void WallContacts<K>::lean(const RigidSystem<K>& s, const std::vector<typename K::Pose>& poses)
+void ContactSet<K>::lean(const RigidSystem<K>& s, const std::vector<typename K::Pose>& poses)
 {
 	placeAll(s, poses);
 	allParts([&](const Part& part, int) { takeFrames(s, part.begin, part.end); });
@@ -271,7 +265,7 @@ void WallContacts<K>::lean(const RigidSystem<K>& s, const std::vector<typename K
 
 // Whether normals, arms and masses may stay.
 template <class K>
-bool WallContacts<K>::isLocated(const RigidSystem<K>& s) const
+bool ContactSet<K>::isLocated(const RigidSystem<K>& s) const
 {
 	if (stood == 0 || stood == mostStood || s.moved)
 		return false;
@@ -287,7 +281,7 @@ bool WallContacts<K>::isLocated(const RigidSystem<K>& s) const
 }
 
 template <class K>
-bool WallContacts<K>::measure(RigidSystem<K>& s, bool isStill)
+bool ContactSet<K>::measure(RigidSystem<K>& s, bool isStill)
 {
 	otherPoints = false;
 	if (isStill && isLocated(s)) {
@@ -321,7 +315,7 @@ bool WallContacts<K>::measure(RigidSystem<K>& s, bool isStill)
 }
 
 template <class K>
-void WallContacts<K>::setUnit(double h)
+void ContactSet<K>::setUnit(double h)
 {
 	if (h == unit)
 		return;
@@ -336,14 +330,14 @@ void WallContacts<K>::setUnit(double h)
 }
 
 template <class K>
-void WallContacts<K>::startMeans(const LaneBits& lanes)
+void ContactSet<K>::startMeans()
 {
-	for (size_t g = 0; g < groups.size(); ++g)
-		for (PointLanes<K>& p : groups[g].point)
-			p.steady = select(maskOf(lanes[g]), p.pn, p.steady);
+	for (Group<K>& group : groups)
+		for (PointLanes<K>& p : group.point)
+			p.steady = p.pn;
 }
 
-template class WallContacts<Plane>;
-template class WallContacts<Space>;
+template class ContactSet<Plane>;
+template class ContactSet<Space>;
 
-} // namespace masonry::rigid::wall
+} // namespace masonry::rigid::assembly

@@ -11,15 +11,15 @@
 // base upwards and visit pairs that are too deep, then those whose blocks have moved since. What is below is told by the courses from the
 // base, also where some blocks move and the rest stands: counted from what stands beside them, an overhang that breaks off is lifted as it
 // falls, by up to six times the energy that it loses.
-#include "dynamics/wall/wall_contacts.hpp"
+#include "dynamics/assembly/contact_set.hpp"
 
-namespace masonry::rigid::wall {
+namespace masonry::rigid::assembly {
 
 template <class K>
 class Lift {
 public:
 	// Changes the contacts' gaps and shift. Returns how deep the deepest pair still is, m.
-	double settle(WallContacts<K>& contacts);
+	double settle(ContactSet<K>& contacts);
 
 	struct alignas(alignment) Point {
 		Lanes room;    // m, by which it may close; negative: that it must part
@@ -34,4 +34,4 @@ private:
 	LaneArray moved;             // w, and 1/m'
 };
 
-} // namespace masonry::rigid::wall
+} // namespace masonry::rigid::assembly

@@ -4,9 +4,9 @@
 // two tangents, the relative velocity is
 //
 //     u_e = e.(v2 - v1) + a2.W2 - a1.W1        a = R^T (r x e) / rho
-#include "dynamics/wall/plane_lanes.hpp"
+#include "dynamics/assembly/plane_lanes.hpp"
 
-namespace masonry::rigid::wall {
+namespace masonry::rigid::assembly {
 
 template <class L>
 struct alignas(alignment) Three {
@@ -162,73 +162,12 @@ struct alignas(alignment) PointLanes<Space, L> {
 	using Number = L;
 	using Tangent = Two<L>;
 	Row<L> normal, tangent[2];
-	L gap;                   // m; far away in lanes without a point
-	L massN, massT;          // 1 / (J M^-1 J^T), kg; of the tangents along that in which the point gives most
-	L stick[2], stickAcross; // inverse of the tangents' J M^-1 J^T, kg: diagonal and beside it
-	L pn;                    // impulse of a step or substep, N s
+	L gap;          // m; far away in lanes without a point
+	L massN, massT; // 1 / (J M^-1 J^T), kg; of the tangents along that in which the point gives most
+	L pn;           // impulse of a step, N s
 	Two<L> pt;
-	L steady; // mean of pn over the last steps that moved
+	L steady; // filtered pn
 };
-
-// Of the four normals of a pair, in rows of the lower triangle.
-template <class L>
-struct alignas(alignment) Coupling<Space, L> {
-	static constexpr int points = 4;
-	static constexpr int place(int i, int j) { return i > j ? i * (i + 1) / 2 + j : j * (j + 1) / 2 + i; }
-
-	L response[10];        // J M^-1 J^T, 1/kg
-	L inverse[10];         // of it, kg; four points of a face give a singular A: what velocities no motion has are answered by nothing
-	L parted;              // share of what a point is too deep that it parts by in a substep
-	unsigned free1, free2; // a bit for each body that is not prescribed
-
-	MASONRY_INLINE void set(const PointLanes<Space, L>* point, const L& m1, const L& m2)
-	{
-		// B = (A + e D)^-1, D the diagonal of A, answers an eigenvalue k of D^-1 A by 1/(k + e), and where k = 0 by 1/e: without end. So
-		// B A B = B - e B D B is taken, which gives k/(k + e)^2. e smaller: rounding in the sum; larger: one solve is not enough.
-		constexpr double softness = 5e-3;
-		const L none = all<L>(0), one = all<L>(1);
-		L a[points][points];
-		for (int i = 0; i < points; ++i)
-			for (int j = 0; j < points; ++j) {
-				const Row<L>&r = point[i].normal, &q = point[j].normal;
-				const MaskOf<L> present = (point[i].massN > 0) & (point[j].massN > 0);
-				const L here = (m1 + m2) * dot(r.axis, q.axis) + m1 * dot(r.arm1, q.arm1) + m2 * dot(r.arm2, q.arm2);
-				a[i][j] = select(present, here, none);
-				if (j <= i)
-					response[place(i, j)] = a[i][j];
-				if (i == j)
-					a[i][i] = select(present, (1 + float(softness)) * here, one);
-			}
-		for (int k = 0; k < points; ++k) { // Gauss and Jordan
-			const L pivot = one / a[k][k];
-			a[k][k] = one;
-			for (int j = 0; j < points; ++j)
-				a[k][j] *= pivot;
-			for (int i = 0; i < points; ++i) {
-				const L factor = i == k ? none : a[i][k];
-				if (i != k)
-					a[i][k] = none;
-				for (int j = 0; j < points; ++j)
-					a[i][j] -= factor * a[k][j];
-			}
-		}
-		for (int i = 0; i < points; ++i)
-			for (int j = 0; j <= i; ++j) {
-				L known = a[i][j];
-				for (int k = 0; k < points; ++k)
-					known -= float(softness) * response[place(k, k)] * a[i][k] * a[k][j];
-				inverse[place(i, j)] = select(point[i].massN > 0, known, none);
-			}
-		free1 = bitsOf(m1 > 0);
-		free2 = bitsOf(m2 > 0);
-	}
-};
-
-template <class L>
-MASONRY_INLINE const L& firstOf(const Bodies<Space, L>& bodies)
-{
-	return bodies.v.x;
-}
 
 // What a point is made of: vertex and face in the axes of their bodies; or two edges that cross, which are looked at one by one.
 template <>
@@ -271,21 +210,6 @@ MASONRY_INLINE L normalMass(const PointLanes<Space, L>& p, const L& m1, const L&
 {
 	return all<L>(1) / (m1 + m2 + m1 * dot(p.normal.arm1, p.normal.arm1) + m2 * dot(p.normal.arm2, p.normal.arm2));
 }
-template <class L>
-MASONRY_INLINE void pushTangential(Bodies<Space, L>& v1, Bodies<Space, L>& v2, const PointLanes<Space, L>& p, const Two<L>& dt)
-{
-	const Three<L> f = dt.x * p.tangent[0].axis + dt.y * p.tangent[1].axis;
-	v1.v -= v1.m * f;
-	v1.w -= v1.m * (dt.x * p.tangent[0].arm1 + dt.y * p.tangent[1].arm1);
-	v2.v += v2.m * f;
-	v2.w += v2.m * (dt.x * p.tangent[0].arm2 + dt.y * p.tangent[1].arm2);
-}
-template <class L>
-MASONRY_INLINE void push(Bodies<Space, L>& v1, Bodies<Space, L>& v2, const PointLanes<Space, L>& p, const L& dn, const Two<L>& dt)
-{
-	pushNormal(v1, v2, p, dn);
-	pushTangential(v1, v2, p, dt);
-}
 // Impulses into momenta.
 template <class L>
 MASONRY_INLINE void add(Bodies<Space, L>& f1, Bodies<Space, L>& f2, const PointLanes<Space, L>& p, const L& qn, const Two<L>& qt)
@@ -312,24 +236,7 @@ MASONRY_INLINE MaskOf<L> slides(const Two<L>& tangential, const L& bound)
 	constexpr double offRim = std::is_same_v<L, Lanes> ? 1e-12 : 1e-6;
 	return dot(tangential, tangential) >= all<L>(1 - offRim) * bound * bound;
 }
-// The friction that a slip rate asks for: what stops it if the cone allows that. Else it opposes the slip, for which both tangents must
-// give alike.
-template <class L>
-MASONRY_INLINE Two<L> friction(const PointLanes<Space, L>& p, const Two<L>& slipRate, const L& bound)
-{
-	const Two<L> stops = {p.stick[0] * slipRate.x + p.stickAcross * slipRate.y, p.stickAcross * slipRate.x + p.stick[1] * slipRate.y};
-	const Two<L> stick = p.pt - stops;
-	return select(dot(stick, stick) <= bound * bound, stick, clip(p.pt - p.massT * slipRate, bound));
-}
-
 inline Vector3 normal(const PointLanes<Space>& p, int lane) { return p.normal.axis.lane(lane); }
-template <class L>
-MASONRY_INLINE L along(const PointLanes<Space, L>& p, const FloatPack& direction)
-{
-	const Three<L>& n = p.normal.axis;
-	return direction[0] * n.x + direction[1] * n.y + direction[2] * n.z;
-}
-
 // Along a row (0 normal, then tangential) what one lane's point takes of a body's pack (0 velocity, 1 spin).
 MASONRY_INLINE Vector3 partOf(const PointLanes<Space>& p, int row, int lane, int body, int pack)
 {
@@ -348,4 +255,4 @@ MASONRY_INLINE void takeFrame(const PointLanes<Space>& p, const FeatureLanes<Spa
 	frame.gap = p.gap[lane];
 }
 
-} // namespace masonry::rigid::wall
+} // namespace masonry::rigid::assembly

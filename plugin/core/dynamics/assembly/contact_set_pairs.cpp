@@ -1,13 +1,13 @@
-// Which pairs are in a set of contacts, and how they go from one to the other.
+// Which pairs are in a set of contacts, and how what is known of them stays when they change.
+#include "dynamics/assembly/contact_set.hpp"
 #include "dynamics/rigid/scales.hpp"
-#include "dynamics/wall/wall_contacts.hpp"
 #include <algorithm>
 #include <utility>
 
-namespace masonry::rigid::wall {
+namespace masonry::rigid::assembly {
 
 template <class K>
-bool WallContacts<K>::samePairs(const RigidSystem<K>& s)
+bool ContactSet<K>::samePairs(const RigidSystem<K>& s)
 {
 	if (s.pairs.size() != pairs.size() || gyration.size() != s.bodies.size() + 1)
 		return false;
@@ -19,16 +19,15 @@ bool WallContacts<K>::samePairs(const RigidSystem<K>& s)
 }
 
 template <class K>
-void WallContacts<K>::takePairs(const RigidSystem<K>& s)
+void ContactSet<K>::takePairs(const RigidSystem<K>& s)
 {
 	list = s.lists;
 	length = scale::length(s);
 	pairs.clear();
 	wide.clear();
 	numbers.clear();
-	const auto isHere = [&](int b) { return own[b] || supports[b] || s.bodies[b].prescribed; };
 	for (const auto& pair : s.pairs) {
-		if ((own[pair.body1] && isHere(pair.body2)) || (own[pair.body2] && isHere(pair.body1)))
+		if (own[pair.body1] || own[pair.body2])
 			numbers.push_back(int(pairs.size()));
 		pairs.push_back({pair.body1, pair.body2});
 		wide.push_back(std::min(pair.size, pairPoints<K>) > lanePoints<K>);
@@ -37,7 +36,7 @@ void WallContacts<K>::takePairs(const RigidSystem<K>& s)
 
 // Where the list of pairs has changed elsewhere only.
 template <class K>
-bool WallContacts<K>::renumber(const RigidSystem<K>& s)
+bool ContactSet<K>::renumber(const RigidSystem<K>& s)
 {
 	const auto before = pairs;
 	const auto numbersBefore = numbers;
@@ -64,51 +63,47 @@ bool WallContacts<K>::renumber(const RigidSystem<K>& s)
 }
 
 template <class K>
-bool WallContacts<K>::take(const RigidSystem<K>& s, const Members& bodies, const WallContacts& giver)
+std::vector<char> ContactSet<K>::freeBodies(const RigidSystem<K>& s)
+{
+	std::vector<char> result;
+	for (const RigidBody<K>& body : s.bodies)
+		result.push_back(!body.prescribed);
+	return result;
+}
+
+template <class K>
+bool ContactSet<K>::take(const RigidSystem<K>& s)
 {
 	const bool sameList = samePairs(s);
-	if (bodies.own == own && bodies.supports == supports && (sameList || renumber(s)))
+	const std::vector<char> isFree = freeBodies(s);
+	if (isFree == own && (sameList || renumber(s)))
 		return false;
-	WallContacts before(team);
+	ContactSet before(team);
 	before.groups.swap(groups);
 	before.features.swap(features);
-	before.still.swap(still);
+	before.memory.swap(memory);
 	before.slots.swap(slots);
 	before.wide.swap(wide);
 	before.known.swap(known);
 	before.stale.swap(stale);
-	before.unit = unit;
-	before.list = sameList ? list : -1;
-	const auto whoKnows = [&, &old = std::as_const(before)](int c) {
-		for (const WallContacts* one : {&old, &giver})
-			if (one->list == s.lists && c < int(one->slots.size()) && one->slots[c][0].group >= 0)
-				return one;
-		return static_cast<const WallContacts*>(nullptr);
-	};
-	if (isEmpty())
-		unit = giver.unit;
-	own = bodies.own;
-	supports = bodies.supports;
+	const auto isKnown = [&](int c) { return sameList && c < int(before.slots.size()) && before.slots[c][0].group >= 0; };
+	own = isFree;
 	takePairs(s);
 	for (const int c : numbers)
-		if (const WallContacts* from = whoKnows(c))
-			wide[c] = from->wide[c];
+		if (isKnown(c))
+			wide[c] = before.wide[c];
 	findCourses(s);
 	colour(s);
 	std::fill(stale.begin(), stale.end(), 0);
-	origin.assign(groups.size(), {});
 	for (const int c : numbers) {
-		const WallContacts* from = whoKnows(c);
-		if (from != &before)
-			stood = 0;
-		for (int k = 0; from == &before && k < lanesOfPair<K> && slots[c][k].group >= 0; ++k)
-			origin[slots[c][k].group][slots[c][k].lane] = before.slots[c][k];
-		if (from)
-			bring(*from, c);
-		else
-			for (const Slot& slot : slots[c])
-				if (slot.group >= 0)
-					stale[slot.group] |= 1 << slot.lane;
+		if (isKnown(c)) {
+			bring(before, c);
+			continue;
+		}
+		stood = 0;
+		for (const Slot& slot : slots[c])
+			if (slot.group >= 0)
+				stale[slot.group] |= 1 << slot.lane;
 	}
 	for (int g = 0; g < int(groups.size()); ++g)
 		if (!stale[g])
@@ -118,35 +113,29 @@ bool WallContacts<K>::take(const RigidSystem<K>& s, const Members& bodies, const
 
 // The lanes of a pair, whole.
 template <class K>
-void WallContacts<K>::bring(const WallContacts& from, int c)
+void ContactSet<K>::bring(const ContactSet& from, int c)
 {
-	const double factor = from.unit > 0 ? unit / from.unit : 1;
 	for (int k = 0; k < lanesOfPair<K> && from.slots[c][k].group >= 0; ++k) {
 		const auto [there, i] = from.slots[c][k];
 		const auto [here, j] = slots[c][k];
 		copyLane(from.groups[there].friction, i, groups[here].friction, j);
 		copyLane(from.features[there].point, i, features[here].point, j);
-		copyLane(from.still[there], i, still[here], j);
+		copyLane(from.memory[there], i, memory[here], j);
 		for (int n = 0; n < lanePoints<K>; ++n) {
 			if (!features[here].point[n].present[j])
 				continue;
-			PointLanes<K>& p = groups[here].point[n];
-			copyLane(from.groups[there].point[n], i, p, j);
-			p.pn[j] *= factor;
-			p.steady[j] *= factor;
-			for (int row = 0; row < K::rows - 1; ++row)
-				setComponent(p.pt, row, j, factor * component(p.pt, row, j));
+			copyLane(from.groups[there].point[n], i, groups[here].point[n], j);
 		}
 		stale[here] |= (from.stale[there] >> i & 1) << j;
 	}
 	known[c] = from.known[c];
 }
 
-template bool WallContacts<Plane>::samePairs(const RigidSystem<Plane>&);
-template void WallContacts<Plane>::takePairs(const RigidSystem<Plane>&);
-template bool WallContacts<Plane>::take(const RigidSystem<Plane>&, const Members&, const WallContacts&);
-template bool WallContacts<Space>::samePairs(const RigidSystem<Space>&);
-template void WallContacts<Space>::takePairs(const RigidSystem<Space>&);
-template bool WallContacts<Space>::take(const RigidSystem<Space>&, const Members&, const WallContacts&);
+template bool ContactSet<Plane>::samePairs(const RigidSystem<Plane>&);
+template void ContactSet<Plane>::takePairs(const RigidSystem<Plane>&);
+template bool ContactSet<Plane>::take(const RigidSystem<Plane>&);
+template bool ContactSet<Space>::samePairs(const RigidSystem<Space>&);
+template void ContactSet<Space>::takePairs(const RigidSystem<Space>&);
+template bool ContactSet<Space>::take(const RigidSystem<Space>&);
 
-} // namespace masonry::rigid::wall
+} // namespace masonry::rigid::assembly

@@ -1,26 +1,26 @@
 #pragma once
-// The contacts of a wall as both of its methods see them: plain arrays, four pairs a group, groups by colour. Those of the structures that
-// stand are apart from those of the structures that move.
+// All contact points of an assembly as plain arrays, four pairs a group, groups by colour. It owns gaps and impulses of the points, and
+// what the solver remembers of them (admm_solver.hpp).
 //
 // Spins are multiplied by the radius of gyration rho of the body, so that it has one mass m for all components; arms are divided by it
 // (plane_lanes.hpp, space_lanes.hpp). Velocities come in packs of three components and 1/m: in the plane (v, rho w), in space v and then
 // the spin.
 //
-// A large wall is divided into parts of equally many blocks, and the pairs within a part are taken apart from those of other parts, by any
-// thread; then those between two parts, which are the seam. The division is the wall's and not that of the threads.
+// A large assembly is divided into parts of equally many blocks, and the pairs within a part are taken apart from those of other parts, by
+// any thread; then those between two parts, which are the seam. The division is the assembly's and not that of the threads.
 //
 // Within a part no two pairs of a colour share a free body: the pairs of a colour can be taken in any order, or at the same time, with the
 // same result. A lane holds as many points as most pairs have; a pair with more takes a second lane, of another colour.
 //
-// Gaps are exact at the start of every step that moves, normals and arms near its middle (lean). While the wall is still, gaps are added
-// up, and the points are located every few steps only. Which features meet is looked up again only where a pair has moved by a small share
-// of its size since (tolerance::wall::search).
+// Gaps, normals and arms are exact at the start of every step that moves (lean). While nothing moves, gaps are added up, and the points are
+// located every few steps only. Which features meet is looked up again only where a pair has moved by a small share of its size since
+// (tolerance::wall::search).
+#include "dynamics/assembly/space_lanes.hpp"
 #include "dynamics/rigid/rigid_system.hpp"
-#include "dynamics/wall/space_lanes.hpp"
 #include "parallel/team.hpp"
 #include <atomic>
 
-namespace masonry::rigid::wall {
+namespace masonry::rigid::assembly {
 
 using parallel::Team;
 
@@ -34,12 +34,6 @@ constexpr int lanesOfPair = K::dimension == 2 ? 1 : 2;
 template <class K>
 constexpr int pairPoints = lanePoints<K>* lanesOfPair<K>; // in the plane without the second normal of a corner
 constexpr double farAway = 1e30;                          // m, gap of a lane without a point
-
-// What a step or substep hands on of an impulse at most: so many times its mean, or so many times what stops a point alone after its fall,
-// which is how a block that begins to turn about it presses. Larger: what has stopped a block pushes it up before the sweep takes it off;
-// smaller: a block that lands on another corner than the one that has carried it sinks while the sweeps build up what holds it. With 4
-// times the mean the peaks of columns are 0.5 % too high at a tenth of a step, with 12 times 0.4 % too low at a whole one.
-constexpr double mostOfMean = 8, mostOfFall = 2;
 
 // Of flags, one each of bodies or structures.
 inline bool any(const std::vector<char>& chosen) { return std::find(chosen.begin(), chosen.end(), 1) != chosen.end(); }
@@ -69,19 +63,17 @@ struct alignas(alignment) Group : PointSet<K> {
 	PointLanes<K, L> point[lanePoints<K>];
 };
 
-// What the still mode (kept_factor.hpp) remembers of a point.
+// What the solver remembers of a point.
 template <class K>
-struct alignas(alignment) StillLanes {
+struct alignas(alignment) SolverLanes {
 	using Tangent = typename PointLanes<K>::Tangent;
 	Lanes zn; // relative velocity that the laws allow
 	Tangent zt;
 	Tangent slip; // since the point last slid
 	Lanes zero;   // gap that it holds
-	Lanes heldN;  // velocity that unfinished iterations have kept from a point that parts or slides
-	Tangent heldT;
 };
 template <class K>
-using StillGroup = std::array<StillLanes<K>, lanePoints<K>>;
+using SolverGroup = std::array<SolverLanes<K>, lanePoints<K>>;
 
 // Rate along a row of one lane's point, of the velocity (packs) of either body alone.
 template <class K>
@@ -94,17 +86,6 @@ MASONRY_INLINE double rateOf(const PointLanes<K>& p, int row, int lane, int body
 			sum += part[k] * v[pack][k];
 	}
 	return sum;
-}
-
-// Of one lane's point, N s: normal and tangential.
-template <class K>
-MASONRY_INLINE Eigen::Matrix<double, K::rows, 1> impulseOf(const PointLanes<K>& p, int lane)
-{
-	Eigen::Matrix<double, K::rows, 1> impulse;
-	impulse[0] = p.pn[lane];
-	for (int row = 1; row < K::rows; ++row)
-		impulse[row] = component(p.pt, row - 1, lane);
-	return impulse;
 }
 
 template <class K>
@@ -138,15 +119,10 @@ struct PairLane {
 	int pair, part; // of the pair's points
 };
 
-// By body: 1 for a free body that is of the structures here; for one that is not and stands, on which those here press.
-struct Members {
-	std::vector<char> own, supports;
-};
-
 template <class K>
-class WallContacts {
+class ContactSet {
 public:
-	explicit WallContacts(Team& team) : team(team) {}
+	explicit ContactSet(Team& team) : team(team) {}
 
 	// work(part, number) for each part but the seam, the last number.
 	template <class Work>
@@ -170,8 +146,8 @@ public:
 		team.each(int(count), [&](int k) { work(size * k / count, size * (k + 1) / count, k); });
 	}
 
-	// The contacts of these bodies from now on, those of `giver` among them with all that it knows of them. True: other lanes than before.
-	bool take(const RigidSystem<K>& system, const Members& bodies, const WallContacts& giver);
+	// The contacts of the free bodies of a system from now on. True: other lanes than before.
+	bool take(const RigidSystem<K>& system);
 	// Takes over poses and velocities, looks up features where needed, and measures all points; `isStill`: where the last steps have been
 	// still too, every few steps. True: other points than before.
 	bool measure(RigidSystem<K>& system, bool isStill);
@@ -179,18 +155,17 @@ public:
 	void lean(const RigidSystem<K>& system, const std::vector<typename K::Pose>& poses);
 	// Impulses are those of a time h from now on; not many times the last, or an impact's would become as many.
 	void setUnit(double h);
-	// The means of the impulses of these pairs are those that there are now.
-	void startMeans(const LaneBits& lanes);
+	// The means of the impulses are those that there are now.
+	void startMeans();
 	// Gaps, forces and places of all points, as they are now, into the pairs. Needed before the list of pairs changes.
 	void showPoints(RigidSystem<K>& system);
 	// What the next step needs of the last besides the system, number by number: f(number) takes it, or gives it to a new object.
 	template <class Flow>
-	void pass(Flow& f, RigidSystem<K>& system, const Members& bodies)
+	void pass(Flow& f, RigidSystem<K>& system)
 	{
 		const bool isNew = !samePairs(system);
 		if (isNew) {
-			own = bodies.own;
-			supports = bodies.supports;
+			own = freeBodies(system);
 			takePairs(system);
 		}
 		for (const int c : numbers)
@@ -212,7 +187,7 @@ public:
 				double gap = gaps[lane];
 				f(gap);
 				gaps[lane] = gap;
-				f(now.pn), f(now.steady), f(now.pt), f(now.zn), f(now.zt), f(now.slip), f(now.zero), f(now.heldN), f(now.heldT);
+				f(now.pn), f(now.steady), f(now.pt), f(now.zn), f(now.zt), f(now.slip), f(now.zero);
 				setState(now, c, k);
 				FeatureLanes<K>& feature = features[group].point[k % lanePoints<K>];
 				auto found = feature.foundAt(lane);
@@ -234,19 +209,6 @@ public:
 		features = featuresNow;
 	}
 
-	bool isEmpty() const { return !any(own); }
-	// A body of a lane's pair that is of the structures here.
-	int freeBody(int group, int lane) const
-	{
-		const int first = groups[group].body1[lane];
-		return own[first] ? first : groups[group].body2[lane];
-	}
-	// The prescribed body of a lane's pair.
-	int base(const RigidSystem<K>& s, int group, int lane) const
-	{
-		const int first = groups[group].body1[lane];
-		return s.bodies[first].prescribed ? first : groups[group].body2[lane];
-	}
 	// Points of a lane.
 	int points(const RigidSystem<K>& s, int group, int lane) const
 	{
@@ -267,46 +229,40 @@ public:
 
 	std::vector<Group<K>> groups;
 	std::vector<FeatureGroup<K>> features;
-	std::vector<StillGroup<K>> still;
-	std::vector<Part> parts;                   // the last is the seam
-	std::vector<std::array<int, 2>> onBase;    // group and lane of the pairs with a prescribed body
-	std::vector<std::array<int, 2>> onStill;   // and of those with a support
-	LaneArray velocity;                        // packs; 1/m = 0: prescribed, or a support. One more body at the end, for empty lanes
-	LaneArray shift;                           // how far the bodies have moved in the step; components as of velocities
-	LaneArray pose;                            // plane: (position, cosine, sine). Space: axes and position in three rows, then 1/rho
-	std::vector<typename K::Spin> gyration;    // rho, m
-	std::vector<int> course;                   // of a body: pairs between it and the nearest prescribed one; -1: no way there
-	int depth {0};                             // courses upon what is not free here, at most
-	bool broad {false};                        // every structure has many blocks in a course
-	double spread {0};                         // square of the courses, times how slender: as which loads take to spread; the largest
-	double burden {0};                         // largest number of such courses times the mass of a block over that of one below it
-	double length {0};                         // m, smallest half size
-	std::vector<int> upwards;                  // groups in the order of their courses, those of a part from its begin to its end
-	std::vector<char> own, supports;           // as of Members
-	std::vector<typename K::Velocity> pressed; // on the supports in this step: impulse and moment in global axes, N s and N m s
-	std::vector<typename K::Pose> located;     // poses of all bodies where the points of still steps are
-	struct Slot {
-		int group {-1}, lane {-1};
-	};
-	std::vector<std::array<Slot, width>> origin; // by group: where lanes were before the last take(); group -1: not here
+	std::vector<SolverGroup<K>> memory;
+	std::vector<Part> parts;                // the last is the seam
+	std::vector<std::array<int, 2>> onBase; // group and lane of the pairs with a prescribed body
+	LaneArray velocity;                     // packs; 1/m = 0: prescribed. One more body at the end, for empty lanes
+	LaneArray shift;                        // how far the bodies have moved in the step; components as of velocities
+	LaneArray pose;                         // plane: (position, cosine, sine). Space: axes and position in three rows, then 1/rho
+	std::vector<typename K::Spin> gyration; // rho, m
+	std::vector<int> course;                // of a body: pairs between it and the nearest prescribed one; -1: no way there
+	double length {0};                      // m, smallest half size
+	std::vector<int> upwards;               // groups in the order of their courses, those of a part from its begin to its end
+	std::vector<char> own;                  // by body, 1: free
+	std::vector<typename K::Pose> located;  // poses of all bodies where the points of still steps are
 	Team& team;
 
 private:
+	struct Slot {
+		int group {-1}, lane {-1};
+	};
 	struct State { // of one point, in a lane
 		bool present {false};
-		double pn {0}, steady {0}, zn {0}, zero {0}, heldN {0};
-		Eigen::Matrix<double, K::rows - 1, 1> pt, zt, slip, heldT;
+		double pn {0}, steady {0}, zn {0}, zero {0};
+		Eigen::Matrix<double, K::rows - 1, 1> pt, zt, slip;
 
 		State()
 		{
-			for (auto* part : {&pt, &zt, &slip, &heldT})
+			for (auto* part : {&pt, &zt, &slip})
 				part->setZero();
 		}
 	};
 
+	static std::vector<char> freeBodies(const RigidSystem<K>& system);
 	bool samePairs(const RigidSystem<K>& system);
 	bool renumber(const RigidSystem<K>& system);
-	void bring(const WallContacts& from, int pair);
+	void bring(const ContactSet& from, int pair);
 	void takePairs(const RigidSystem<K>& system);
 	void takeOver(const RigidSystem<K>& system);
 	int divide();
@@ -316,7 +272,6 @@ private:
 	void countPoints(const RigidSystem<K>& system, int group);
 	void findCourses(const RigidSystem<K>& system);
 	void orderUpwards();
-	void countFrom(const RigidSystem<K>& system, const std::vector<int>& through, std::vector<int>& count) const;
 	void takeBodies(const RigidSystem<K>& system);
 	void place(size_t body, const typename K::Pose& pose);
 	void placeAll(const RigidSystem<K>& system, const std::vector<typename K::Pose>& poses);
@@ -350,32 +305,32 @@ private:
 // plane_points.cpp, space_points.cpp
 #define MASONRY_OF(K)                                                                                                                      \
 	template <>                                                                                                                            \
-	void WallContacts<K>::takeBodies(const RigidSystem<K>&);                                                                               \
+	void ContactSet<K>::takeBodies(const RigidSystem<K>&);                                                                                 \
 	template <>                                                                                                                            \
-	void WallContacts<K>::takePoint(const RigidSystem<K>&, int, int);                                                                      \
+	void ContactSet<K>::takePoint(const RigidSystem<K>&, int, int);                                                                        \
 	template <>                                                                                                                            \
-	void WallContacts<K>::place(size_t, const K::Pose&);                                                                                   \
+	void ContactSet<K>::place(size_t, const K::Pose&);                                                                                     \
 	template <>                                                                                                                            \
-	void WallContacts<K>::measureGaps(const RigidSystem<K>&, int, int, double, bool);                                                      \
+	void ContactSet<K>::measureGaps(const RigidSystem<K>&, int, int, double, bool);                                                        \
 	template <>                                                                                                                            \
-	void WallContacts<K>::takeFrames(const RigidSystem<K>&, int, int);                                                                     \
+	void ContactSet<K>::takeFrames(const RigidSystem<K>&, int, int);                                                                       \
 	template <>                                                                                                                            \
-	void WallContacts<K>::setVelocity(size_t, const K::Velocity&);                                                                         \
+	void ContactSet<K>::setVelocity(size_t, const K::Velocity&);                                                                           \
 	template <>                                                                                                                            \
-	K::Vector WallContacts<K>::position(size_t) const;                                                                                     \
+	K::Vector ContactSet<K>::position(size_t) const;                                                                                       \
 	template <>                                                                                                                            \
-	K::Velocity WallContacts<K>::inGlobal(const LaneArray&, size_t) const;                                                                 \
+	K::Velocity ContactSet<K>::inGlobal(const LaneArray&, size_t) const;                                                                   \
 	template <>                                                                                                                            \
-	void WallContacts<K>::takeForce(const K::Velocity&, double, size_t, LaneArray&) const;
+	void ContactSet<K>::takeForce(const K::Velocity&, double, size_t, LaneArray&) const;
 MASONRY_OF(Plane)
 MASONRY_OF(Space)
 #undef MASONRY_OF
 
 // Of every body in every step: here, since what it returns would go through memory else.
 template <>
-inline Plane::Velocity WallContacts<Plane>::inGlobal(const LaneArray& from, size_t b) const
+inline Plane::Velocity ContactSet<Plane>::inGlobal(const LaneArray& from, size_t b) const
 {
 	return {from[b][0], from[b][1], from[b][2] / gyration[b][0]};
 }
 
-} // namespace masonry::rigid::wall
+} // namespace masonry::rigid::assembly

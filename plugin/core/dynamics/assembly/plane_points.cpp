@@ -1,8 +1,8 @@
 // Contact points in the plane: what wall_contacts.cpp asks of it.
-#include "dynamics/wall/wall_contacts.hpp"
+#include "dynamics/assembly/contact_set.hpp"
 #include <cmath>
 
-namespace masonry::rigid::wall {
+namespace masonry::rigid::assembly {
 
 namespace {
 
@@ -107,19 +107,19 @@ MASONRY_LANES void frameGroups(Group<Plane>* groups, const FeatureGroup<Plane>* 
 } // namespace
 
 template <>
-void WallContacts<Plane>::measureGaps(const RigidSystem<Plane>&, int begin, int end, double travel, bool remember)
+void ContactSet<Plane>::measureGaps(const RigidSystem<Plane>&, int begin, int end, double travel, bool remember)
 {
 	measureGroups(groups.data() + begin, features.data() + begin, stale.data() + begin, end - begin, pose.data(), travel, remember);
 }
 
 template <>
-void WallContacts<Plane>::takeFrames(const RigidSystem<Plane>&, int begin, int end)
+void ContactSet<Plane>::takeFrames(const RigidSystem<Plane>&, int begin, int end)
 {
 	frameGroups(groups.data() + begin, features.data() + begin, end - begin, pose.data(), velocity.data(), gyration.data());
 }
 
 template <>
-void WallContacts<Plane>::takeBodies(const RigidSystem<Plane>& s)
+void ContactSet<Plane>::takeBodies(const RigidSystem<Plane>& s)
 {
 	const size_t n = s.bodies.size();
 	velocity.resize(n + 1);
@@ -141,13 +141,13 @@ void WallContacts<Plane>::takeBodies(const RigidSystem<Plane>& s)
 }
 
 template <>
-void WallContacts<Plane>::place(size_t b, const PlanePose& at)
+void ContactSet<Plane>::place(size_t b, const PlanePose& at)
 {
 	pose[b] = Lanes {at.position.x(), at.position.y(), at.cosine, at.sine};
 }
 
 template <>
-void WallContacts<Plane>::takePoint(const RigidSystem<Plane>& s, int c, int k)
+void ContactSet<Plane>::takePoint(const RigidSystem<Plane>& s, int c, int k)
 {
 	const ContactPair<Plane>& pair = s.pairs[c];
 	const auto [group, lane] = slots[c][0];
@@ -168,22 +168,22 @@ void WallContacts<Plane>::takePoint(const RigidSystem<Plane>& s, int c, int k)
 }
 
 template <>
-Vector2 WallContacts<Plane>::position(size_t b) const
+Vector2 ContactSet<Plane>::position(size_t b) const
 {
 	return {pose[b][0], pose[b][1]};
 }
 
 template <>
-void WallContacts<Plane>::setVelocity(size_t b, const Plane::Velocity& v)
+void ContactSet<Plane>::setVelocity(size_t b, const Plane::Velocity& v)
 {
 	velocity[b] = Lanes {v[0], v[1], gyration[b][0] * v[2], velocity[b][3]};
 }
 
 template <>
-void WallContacts<Plane>::takeForce(const Plane::Velocity& force, double h, size_t b, LaneArray& to) const
+void ContactSet<Plane>::takeForce(const Plane::Velocity& force, double h, size_t b, LaneArray& to) const
 {
 	const double perMass = velocity[b][3];
 	to[b] = h * perMass * Lanes {force[0], force[1], force[2] / gyration[b][0], 0};
 }
 
-} // namespace masonry::rigid::wall
+} // namespace masonry::rigid::assembly

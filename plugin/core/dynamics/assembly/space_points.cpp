@@ -1,8 +1,8 @@
 // Contact points in space: what wall_contacts.cpp asks of it.
 #include "contact/features.hpp"
-#include "dynamics/wall/wall_contacts.hpp"
+#include "dynamics/assembly/contact_set.hpp"
 
-namespace masonry::rigid::wall {
+namespace masonry::rigid::assembly {
 
 namespace {
 
@@ -135,10 +135,7 @@ MASONRY_INLINE void takeFound(PointLanes<Space>& p, FeatureLanes<Space>& f, cons
 	p.massN = select(f.present, one / (mass + response(p.normal, p.normal, mass1, mass2)), none);
 	const Lanes k11 = mass + response(p.tangent[0], p.tangent[0], mass1, mass2),
 	            k22 = mass + response(p.tangent[1], p.tangent[1], mass1, mass2), k12 = response(p.tangent[0], p.tangent[1], mass1, mass2);
-	const Lanes perDeterminant = one / (k11 * k22 - k12 * k12), middle = all(0.5) * (k11 + k22), half = all(0.5) * (k11 - k22);
-	p.stick[0] = select(f.present, k22 * perDeterminant, none);
-	p.stick[1] = select(f.present, k11 * perDeterminant, none);
-	p.stickAcross = select(f.present, -k12 * perDeterminant, none);
+	const Lanes middle = all(0.5) * (k11 + k22), half = all(0.5) * (k11 - k22);
 	p.massT = select(f.present, one / (middle + root(half * half + k12 * k12)), none);
 }
 
@@ -183,19 +180,19 @@ MASONRY_LANES void frameGroups(const RigidSystem<Space>& s, Group<Space>* groups
 } // namespace
 
 template <>
-void WallContacts<Space>::measureGaps(const RigidSystem<Space>& s, int begin, int end, double travel, bool remember)
+void ContactSet<Space>::measureGaps(const RigidSystem<Space>& s, int begin, int end, double travel, bool remember)
 {
 	measureGroups(s, groups.data() + begin, features.data() + begin, stale.data() + begin, end - begin, pose.data(), travel, remember);
 }
 
 template <>
-void WallContacts<Space>::takeFrames(const RigidSystem<Space>& s, int begin, int end)
+void ContactSet<Space>::takeFrames(const RigidSystem<Space>& s, int begin, int end)
 {
 	frameGroups(s, groups.data() + begin, features.data() + begin, end - begin, pose.data(), velocity.data());
 }
 
 template <>
-void WallContacts<Space>::takeBodies(const RigidSystem<Space>& s)
+void ContactSet<Space>::takeBodies(const RigidSystem<Space>& s)
 {
 	const size_t n = s.bodies.size();
 	velocity.resize(2 * (n + 1));
@@ -220,7 +217,7 @@ void WallContacts<Space>::takeBodies(const RigidSystem<Space>& s)
 }
 
 template <>
-void WallContacts<Space>::place(size_t b, const Pose& at)
+void ContactSet<Space>::place(size_t b, const Pose& at)
 {
 	const Matrix3 axes = at.orientation.toRotationMatrix();
 	for (int i = 0; i < 3; ++i)
@@ -228,7 +225,7 @@ void WallContacts<Space>::place(size_t b, const Pose& at)
 }
 
 template <>
-void WallContacts<Space>::takePoint(const RigidSystem<Space>& s, int c, int k)
+void ContactSet<Space>::takePoint(const RigidSystem<Space>& s, int c, int k)
 {
 	const ContactPair<Space>& pair = s.pairs[c];
 	const auto [group, lane] = slots[c][k / lanePoints<Space>];
@@ -253,13 +250,13 @@ void WallContacts<Space>::takePoint(const RigidSystem<Space>& s, int c, int k)
 }
 
 template <>
-Vector3 WallContacts<Space>::position(size_t b) const
+Vector3 ContactSet<Space>::position(size_t b) const
 {
 	return {pose[poseRows * b][3], pose[poseRows * b + 1][3], pose[poseRows * b + 2][3]};
 }
 
 template <>
-void WallContacts<Space>::setVelocity(size_t b, const Space::Velocity& v)
+void ContactSet<Space>::setVelocity(size_t b, const Space::Velocity& v)
 {
 	const Lanes* rows = &pose[poseRows * b];
 	const double perMass = velocity[2 * b][3];
@@ -269,7 +266,7 @@ void WallContacts<Space>::setVelocity(size_t b, const Space::Velocity& v)
 }
 
 template <>
-Space::Velocity WallContacts<Space>::inGlobal(const LaneArray& from, size_t b) const
+Space::Velocity ContactSet<Space>::inGlobal(const LaneArray& from, size_t b) const
 {
 	const Lanes &v = from[2 * b], &spin = from[2 * b + 1], *rows = &pose[poseRows * b];
 	const Lanes w = spin * rows[3];
@@ -282,7 +279,7 @@ Space::Velocity WallContacts<Space>::inGlobal(const LaneArray& from, size_t b) c
 }
 
 template <>
-void WallContacts<Space>::takeForce(const Space::Velocity& force, double h, size_t b, LaneArray& to) const
+void ContactSet<Space>::takeForce(const Space::Velocity& force, double h, size_t b, LaneArray& to) const
 {
 	const Lanes* rows = &pose[poseRows * b];
 	const double perMass = h * velocity[2 * b][3];
@@ -292,4 +289,4 @@ void WallContacts<Space>::takeForce(const Space::Velocity& force, double h, size
 	to[2 * b + 1] = Lanes {spin[0], spin[1], spin[2], 0};
 }
 
-} // namespace masonry::rigid::wall
+} // namespace masonry::rigid::assembly

@@ -1,9 +1,9 @@
-#include "dynamics/wall/lift.hpp"
+#include "dynamics/assembly/lift.hpp"
 #include "tolerances.hpp"
 #include <algorithm>
 #include <array>
 
-namespace masonry::rigid::wall {
+namespace masonry::rigid::assembly {
 
 namespace {
 
@@ -123,7 +123,7 @@ MASONRY_LIFT(Space)
 } // namespace
 
 template <class K>
-double Lift<K>::settle(WallContacts<K>& c)
+double Lift<K>::settle(ContactSet<K>& c)
 {
 	static const auto share = sharesOfCourses();
 	points.resize(c.groups.size());
@@ -161,4 +161,4 @@ double Lift<K>::settle(WallContacts<K>& c)
 template class Lift<Plane>;
 template class Lift<Space>;
 
-} // namespace masonry::rigid::wall
+} // namespace masonry::rigid::assembly

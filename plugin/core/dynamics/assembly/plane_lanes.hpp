@@ -8,7 +8,7 @@
 #include "simd/wide.hpp"
 #include <array>
 
-namespace masonry::rigid::wall {
+namespace masonry::rigid::assembly {
 
 // Numbers side by side by their own names; contact points add overloads to some functions.
 using simd::alignment;
@@ -61,8 +61,6 @@ template <class K, class L = Lanes>
 struct PointLanes;
 template <class K>
 struct FeatureLanes;
-template <class K, class L>
-struct Coupling;
 
 // Velocities of bodies: packs of `from` in, one lane a body out.
 template <class L>
@@ -81,8 +79,8 @@ struct alignas(alignment) PointLanes<Plane, L> {
 	L nx, ny, a1n, a1t, a2n, a2t;
 	L gap;          // m; far away in lanes without a point
 	L massN, massT; // 1 / (J M^-1 J^T), kg
-	L pn, pt;       // impulse of a step or substep, N s
-	L steady;       // mean of pn over the last steps that moved
+	L pn, pt;       // impulse of a step, N s
+	L steady;       // filtered pn
 };
 
 // What a point is made of: vertex and face in the axes of their bodies.
@@ -95,44 +93,6 @@ struct alignas(alignment) FeatureLanes<Plane> {
 	std::array<double, 2> foundAt(int lane) const { return {foundGap[lane], foundShift[lane]}; }
 	void setFound(const std::array<double, 2>& f, int lane) { foundGap[lane] = f[0], foundShift[lane] = f[1]; }
 };
-
-// What the sweeps of a step know of a group. Of the two points of a pair, J M^-1 J^T beside its diagonal, 1/kg: what an impulse along one
-// row adds to the velocity along another.
-template <class L>
-struct alignas(alignment) Coupling<Plane, L> {
-	L n1t1, n2t2, n1n2, t1t2, n1t2, t1n2;
-	L inverse11, inverse12, inverse22; // of the block of both normals, kg
-	L parted;                          // share of what a point is too deep that it parts by in a substep
-	unsigned free1, free2;             // a bit for each body that is not prescribed
-
-	MASONRY_INLINE void set(const PointLanes<Plane, L>* point, const L& m1, const L& m2)
-	{
-		const PointLanes<Plane, L>&p = point[0], &q = point[1];
-		const L m = m1 + m2, cosine = m * (p.nx * q.nx + p.ny * q.ny), sine = m * (p.nx * q.ny - p.ny * q.nx);
-		n1t1 = m1 * p.a1n * p.a1t + m2 * p.a2n * p.a2t;
-		n2t2 = m1 * q.a1n * q.a1t + m2 * q.a2n * q.a2t;
-		n1n2 = cosine + m1 * p.a1n * q.a1n + m2 * p.a2n * q.a2n;
-		t1t2 = cosine + m1 * p.a1t * q.a1t + m2 * p.a2t * q.a2t;
-		n1t2 = m1 * p.a1n * q.a1t + m2 * p.a2n * q.a2t - sine;
-		t1n2 = m1 * p.a1t * q.a1n + m2 * p.a2t * q.a2n + sine;
-		// Points that nearly coincide share what one of them needs: of the inverse, rounding would make impulses across an open gap.
-		constexpr double least = 1e-4;
-		const L one = all<L>(1), cross = n1n2 * p.massN * q.massN, apart = one - n1n2 * cross;
-		const MaskOf<L> coincide = apart < all<L>(least);
-		const L scale = select(coincide, all<L>(0.5), one / apart);
-		inverse11 = scale * p.massN;
-		inverse22 = scale * q.massN;
-		inverse12 = select(coincide, all<L>(0), -scale * cross);
-		free1 = bitsOf(m1 > 0);
-		free2 = bitsOf(m2 > 0);
-	}
-};
-
-template <class L>
-MASONRY_INLINE const L& firstOf(const Bodies<Plane, L>& bodies)
-{
-	return bodies.x;
-}
 
 template <class L>
 MASONRY_INLINE double component(const L& tangent, int, int lane)
@@ -158,17 +118,6 @@ MASONRY_INLINE L slipRate(const Bodies<Plane, L>& v1, const Bodies<Plane, L>& v2
 }
 
 // Impulses into velocities.
-template <class L>
-MASONRY_INLINE void push(Bodies<Plane, L>& v1, Bodies<Plane, L>& v2, const PointLanes<Plane, L>& p, const L& dn, const L& dt)
-{
-	const L fx = p.nx * dn - p.ny * dt, fy = p.ny * dn + p.nx * dt;
-	v1.x -= v1.m * fx;
-	v1.y -= v1.m * fy;
-	v1.w -= v1.m * (p.a1n * dn + p.a1t * dt);
-	v2.x += v2.m * fx;
-	v2.y += v2.m * fy;
-	v2.w += v2.m * (p.a2n * dn + p.a2t * dt);
-}
 template <class L>
 MASONRY_INLINE void pushNormal(Bodies<Plane, L>& v1, Bodies<Plane, L>& v2, const PointLanes<Plane, L>& p, const L& dn)
 {
@@ -209,21 +158,7 @@ MASONRY_INLINE MaskOf<L> slides(const L& tangential, const L& bound)
 {
 	return size(tangential) >= bound;
 }
-// The friction that a slip rate asks for.
-template <class L>
-MASONRY_INLINE L friction(const PointLanes<Plane, L>& p, const L& slipRate, const L& bound)
-{
-	return clip(p.pt - p.massT * slipRate, bound);
-}
-
 inline Vector2 normal(const PointLanes<Plane>& p, int lane) { return {p.nx[lane], p.ny[lane]}; }
-// Cosine between the normal and a direction.
-template <class L>
-MASONRY_INLINE L along(const PointLanes<Plane, L>& p, const FloatPack& direction)
-{
-	return direction[0] * p.nx + direction[1] * p.ny;
-}
-
 // Along a row (0 normal, 1 tangential) what one lane's point takes of a body's pack.
 MASONRY_INLINE Vector3 partOf(const PointLanes<Plane>& p, int row, int lane, int body, int)
 {
@@ -241,4 +176,4 @@ MASONRY_INLINE void takeFrame(const PointLanes<Plane>& p, const FeatureLanes<Pla
 	frame.gap = p.gap[lane];
 }
 
-} // namespace masonry::rigid::wall
+} // namespace masonry::rigid::assembly
