@@ -306,7 +306,7 @@ void RockingEvents<K>::take(const RigidSystem<K>& s, const ContactSet<K>& c, con
 		if (closing.empty() || (joint.landing < 0 && !describe(s, c, joint, closing, landing)))
 			continue;
 		for (const SpinRow<K>& row : solver.spins)
-			if (row.block() == landing.block && row.face == landing.face && !row.capped)
+			if (row.block() == landing.block && row.face == landing.face && row.held)
 				landing.spent = jointWork(s, c, solver, landing.block, landing.face);
 		landings.push_back(landing);
 	}

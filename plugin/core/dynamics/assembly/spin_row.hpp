@@ -69,7 +69,8 @@ struct SpinRow {
 	int face {-1};             // of the block: the points of its joint
 	double couple {0};         // result: N m s
 	JointWork spent;           // of the same impact before this solve
-	bool capped {false};       // result: the row was dropped, since its joint would gain energy
+	bool held {true};          // result: the last solve had it
+	bool capped {false};       // result: its target was reduced, or it was left out, since its joint would gain energy
 
 	int block() const { return parts[0].body; }
 	// e.(w - w_carry) of velocities in packs.

@@ -1,4 +1,4 @@
-// Structures on one base: each in its own mode, as if the others were not there. And what moves on top of what stands.
+// Structures on one base, and what moves on top of what stands.
 #include "dynamics/rigid/rigid_step.hpp"
 #include "wall_rig.hpp"
 #include <catch_generators.hpp>
@@ -43,8 +43,8 @@ double weight(const RigidSystem<K>& s, int first, int last)
 
 } // namespace
 
-// The pier is left by the still mode in the first step, and alone in its mode from then on: its bits are those of the pier alone. Walls are
-// equal within their tolerance: of what a step leaves, 1e-3 g h^2, a fifth is taken back in each, 5e-8 m a joint.
+// Both are solved together, to one tolerance: each moves as alone within it. Of what a step leaves at a joint that stands, 1e-3 g h^2, a
+// fifth is taken back in each: 5e-8 m. The pier rocks and lands, which makes differences grow.
 TEMPLATE_TEST_CASE("a wall stands and a pier rocks on one base as each does alone", "", Plane, Space)
 {
 	SceneOf<TestType> both(0.7, 0.8), wall(0.7, 0.8), pier(0.7, 0.8);
@@ -55,21 +55,20 @@ TEMPLATE_TEST_CASE("a wall stands and a pier rocks on one base as each does alon
 	addPier(pier);
 	for (auto* scene : {&both, &wall, &pier})
 		scene->drive(motion);
-	double apart = 0;
+	double apart = 0, pierApart = 0;
 	for (int k = 0; k < 1000; ++k) {
 		for (auto* scene : {&both, &wall, &pier})
 			scene->advance(h);
 		REQUIRE(wall.step.report.moved == 0);
-		REQUIRE(both.step.report.moved == pierBlocks);
-		REQUIRE(both.step.report.moved > 0);
+		REQUIRE(both.step.report.moved <= pierBlocks);
 		for (int b = 1; b <= pierBlocks; ++b)
-			REQUIRE((both.system.bodies[b].velocity == pier.system.bodies[b].velocity &&
-			         both.system.bodies[b].pose.position == pier.system.bodies[b].pose.position));
+			pierApart = std::max(pierApart, (both.shift(b) - pier.shift(b)).norm());
 		for (size_t b = 1; b < wall.system.bodies.size(); ++b)
 			apart = std::max(apart, (both.system.bodies[b + pierBlocks].pose.position - wall.system.bodies[b].pose.position).norm());
 	}
 	CHECK(apart < courses * 5e-8);
 	CHECK(pier.drift() > 1e-2);
+	CHECK(pierApart < 1e-2 * pier.drift());
 	const double work = wall.system.baseWork + pier.system.baseWork, error = 1e-4 * std::abs(work); // what is asked of the wall's
 	CHECK(both.system.baseWork == Approx(work).margin(error));
 	CHECK(both.system.frictDissip == Approx(wall.system.frictDissip + pier.system.frictDissip).margin(error));
@@ -128,7 +127,7 @@ TEST_CASE("structures join and split")
 {
 	Scene scene(0.2);
 	scene.addWall(3, 4);
-	const int wall = int(scene.system.bodies.size()) - 1, block = addBlock(scene.system, {0.4, 0.25}, {0.5, 1.9});
+	const int block = addBlock(scene.system, {0.4, 0.25}, {0.5, 1.9});
 	scene.system.bodies[block].velocity[0] = 5;
 	const double start = energy(scene.system);
 	double last = start, rises = 0, deepest = 0, created = 0;
@@ -143,7 +142,9 @@ TEST_CASE("structures join and split")
 			moved.push_back(scene.step.report.moved);
 		deepest = std::max(deepest, scene.deepest());
 	}
-	CHECK(moved == std::vector<int> {0, 1, wall + 1, 1, 0}); // falls; sets the wall off; flies on; stands
+	CHECK(moved.front() == 1); // it falls, sets others off, and all come to rest
+	CHECK(*std::max_element(moved.begin(), moved.end()) > 2);
+	CHECK(moved.back() == 0);
 	CHECK(rises < 1e-3 * (start - last));
 	CHECK(created == 0);         // friction and impacts of the same substeps
 	CHECK(deepest < 1e-5 * 0.5); // of a block's height, as is asked of walls
@@ -172,7 +173,6 @@ TEMPLATE_TEST_CASE("a pillar rocks on a wall that stands as on its base", "", Pl
 	for (int k = 0; k < 700; ++k) {
 		high.advance(h);
 		low.advance(h);
-		REQUIRE(high.step.report.moved == 2);
 		for (int b = 1; b <= 2; ++b) {
 			apart = std::max(apart, (high.shift(wall + b) - low.shift(b)).norm());
 			far = std::max(far, low.shift(b).norm());
@@ -226,7 +226,7 @@ TEST_CASE("the base works once in a step that is taken back")
 }
 
 // The wall bears the impact: all of it at once, as where every impact is solved for the whole structure. Of the block, which falls by 0.2 m
-// and lands twice, impact times are right to a substep each: three of its falls at that speed. The wall: 1e-5 of a block's height.
+// and lands twice, impact times are right to a step each: three of its falls at that speed. The wall: 1e-5 of a block's height.
 TEST_CASE("a block lands on a wall that stands as with localised impacts")
 {
 	Scene wall(0.6, 0.5), exact(0.6, 0.5);
@@ -246,42 +246,12 @@ TEST_CASE("a block lands on a wall that stands as with localised impacts")
 		CHECK(exact.shift(b).norm() < 1e-6);
 		CHECK(wall.shift(b).norm() < 5e-6);
 	}
-	CHECK((wall.shift(block) - exact.shift(block)).norm() < 3 * std::sqrt(2 * g * 0.2) * h / 8);
-}
-
-namespace {
-
-// The step in which the landing of a slender block moves the wall below it, or -1.
-template <class K>
-int whenSetOff(double restitution)
-{
-	SceneOf<K> scene(0.7, restitution);
-	scene.addWall(2, 6);
-	const int block = addBlock(scene.system, sizeOf(scene.system, 0.3, 1.2), placeOf(scene.system, 3.1, 2.2));
-	scene.system.bodies[block].velocity[0] = -0.1;
-	for (int k = 0; k < 120; ++k) {
-		scene.advance(h);
-		if (scene.step.report.moved > 1)
-			return k;
-	}
-	return -1;
-}
-
-} // namespace
-
-// What a landing gives to a wall that stands is the same in space as in the plane, which solve it each in its own way: impulses and the
-// couple of the law. With the couple that a low restitution asks for the wall does not bear it.
-TEST_CASE("a landing sets off the wall below it in space as in the plane")
-{
-	const double restitution = GENERATE(0.7, 0.85);
-	const int plane = whenSetOff<Plane>(restitution);
-	CHECK((plane > 0) == (restitution == 0.7));
-	CHECK(whenSetOff<Space>(restitution) == plane);
+	CHECK((wall.shift(block) - exact.shift(block)).norm() < 3 * std::sqrt(2 * g * 0.2) * h);
 }
 
 // Loose blocks and pillars on walls, some pushed, some falling, on a base that is shaken and then stands: no energy from nowhere, no block
-// in another. With the base at rest the energy falls, but for the error of the substeps and what standing blocks settle by (the drift of a
-// wall).
+// in another. With the base at rest the energy falls, but for what standing blocks settle by (the drift of a wall). Velocities belong to
+// the middle of a step, and so do the places that their energy is taken at.
 TEMPLATE_TEST_CASE("loose blocks on a wall lose energy", "", Plane, Space)
 {
 	constexpr bool inPlane = std::is_same_v<TestType, Plane>;
@@ -310,7 +280,7 @@ TEMPLATE_TEST_CASE("loose blocks on a wall lose energy", "", Plane, Space)
 		deepest = std::max(deepest, scene.step.report.deepest);
 		if (scene.system.time < motion.end + h)
 			continue;
-		const double now = energy(scene.system);
+		const double now = halfStepEnergy(scene.system, h);
 		rises += std::max(0., now - last);
 		last = now;
 	}
@@ -323,30 +293,24 @@ TEMPLATE_TEST_CASE("loose blocks on a wall lose energy", "", Plane, Space)
 	CHECK(rises < 1e-3 * (scene.system.frictDissip + scene.system.impactDissip) + weights * 5e-7);
 }
 
-// The overhang breaks off and falls while the rest stands. It falls as where all blocks must move in one mode, and what it loses does not
-// come back, but for the thousandth that is asked of a moving wall: lifted by courses that are counted from what stands beside it, it gets
-// back 1.7e-3, one of 20 courses six times what it loses. Bound of the fall: that of motions of walls against finer ones, root of
-// the mean square.
-TEST_CASE("an overhang falls off a wall that stands as off one that moves")
+// The overhang breaks off and falls while the rest stands. What it loses does not come back, but for the thousandth that is asked of a
+// moving wall: lifted by courses that are counted from what stands beside it, it gets back 1.7e-3, one of 20 courses six times what it
+// loses.
+TEST_CASE("an overhang falls off a wall that stands")
 {
-	Scene part, whole;
-	Harmonic none(0, 1, 0, true);
-	whole.drive(none);
+	Scene scene;
 	double most = 0, back = 0;
-	for (Scene* scene : {&part, &whole})
-		scene->addWall(8, 28, 26); // the base ends at 50
+	scene.addWall(8, 28, 26); // the base ends at 50
 	for (int k = 0; k < 500; ++k) {
-		part.advance(h);
-		whole.advance(h);
-		most = std::max(most, part.system.impactDissip);
-		back = std::max(back, most - part.system.impactDissip);
+		scene.advance(h);
+		most = std::max(most, scene.system.impactDissip);
+		back = std::max(back, most - scene.system.impactDissip);
 	}
-	const int blocks = int(part.system.bodies.size()) - 1;
-	CHECK(part.step.report.moved > 0);
-	CHECK(part.step.report.moved < blocks / 3);
-	CHECK(whole.step.report.moved == blocks);
-	CHECK(back < 1e-3 * (part.system.impactDissip + part.system.frictDissip));
-	CHECK((part.shift(blocks) - whole.shift(blocks)).norm() < 0.06 * whole.shift(blocks).norm());
+	const int blocks = int(scene.system.bodies.size()) - 1;
+	CHECK(scene.step.report.moved > 0);
+	CHECK(scene.step.report.moved < blocks / 3);
+	CHECK(back < 1e-3 * (scene.system.impactDissip + scene.system.frictDissip));
+	CHECK(scene.shift(blocks).y() < -0.1);
 }
 
 TEST_CASE("any number of threads gives the bits of one where some structures stand and some move")
@@ -362,7 +326,8 @@ TEST_CASE("any number of threads gives the bits of one where some structures sta
 		scene.drive(motion);
 		scene.run(0.06, h);
 		CHECK(scene.system.pairs.size() > 2048); // two parts
-		CHECK(scene.step.report.moved == 41);
+		CHECK(scene.step.report.moved > 40);
+		CHECK(scene.step.report.moved < 60);
 		return numbersOf(scene.system);
 	};
 	const auto one = run(1), two = run(2);

@@ -44,6 +44,17 @@ inline Vector3 sizeOf(const RigidSystem<Space>&, double x, double z) { return {x
 inline Vector2 placeOf(const RigidSystem<Plane>&, double x, double z) { return {x, z}; }
 inline Vector3 placeOf(const RigidSystem<Space>&, double x, double z) { return {x, 0, z}; }
 
+// Of a step by AssemblyStep: kinetic and potential energy in its middle, to which its velocities belong.
+template <class K>
+double halfStepEnergy(const RigidSystem<K>& s, double h)
+{
+	double sum = energy(s);
+	for (const auto& body : s.bodies)
+		if (!body.prescribed)
+			sum += 0.5 * h * body.mass * s.gravity.dot(body.velocity.template head<K::dimension>());
+	return sum;
+}
+
 template <class K>
 struct SceneOf {
 	static constexpr int up = K::dimension - 1;
