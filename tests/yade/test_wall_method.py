@@ -36,8 +36,8 @@ def integrator():
 
 
 @pytest.mark.parametrize("options, method", (
-    ({}, "wall"), ({"method": "localised"}, "localised"), ({"impact_order": "simultaneous"}, "localised"), ({"tolerance": 1e-9}, "localised"),
-    ({"tolerance": 1e-4}, "wall"),
+    ({}, "wall"), ({"method": "localised"}, "localised"), ({"impact_order": "sequential"}, "localised"), ({"tolerance": 1e-9}, "localised"),
+    ({"tolerance": 1e-4}, "wall"), ({"impact_order": "simultaneous"}, "wall"),
 ))
 def test_the_choice(options, method):
     wall(4, 6, 0.1, **options)
@@ -124,7 +124,7 @@ def test_few_blocks_near_each_other(model, few):
 
 
 @pytest.mark.parametrize("options, words", (
-    ({"impact_order": "simultaneous"}, ("impactOrder", "'sequential'")), ({"tolerance": 1e-9}, ("tolerance", "1e-6 to 1e-2")),
+    ({"impact_order": "sequential"}, ("impactOrder", "'simultaneous'")), ({"tolerance": 1e-9}, ("tolerance", "1e-6 to 1e-2")),
     ({"model": "compliant"}, ("method", "rigid")), ({"method": "fast"}, ("method", "'fast'")),
 ))
 def test_options_that_the_method_refuses(options, words):
