@@ -317,7 +317,7 @@ def impacts():
     restitution_asked     C; NaN: the natural one
     restitution           C that came out
     velocity              relative angular velocity before, rad/s
-    energy_lost           J
+    energy_lost           J, of all joints that land at the same instant; in the row of the first one
     friction_demand       friction coefficient that the impact takes; where it is the joint's own, the pivot has slipped and more was asked for
     application           distance of the resultant impulse from the new pivot, m
     switched              False: the impact stopped the rotation; a pivot that has slipped may start it again
@@ -325,8 +325,8 @@ def impacts():
                           failure of the step)
 
     Restitution and velocity are relative to the motion with which the block would stay on its old and its new support: on supports that move in
-    different ways, a block with restitution 0 follows both. The walls of method='wall' list only impacts
-    with a given restitution; energy_lost of all impacts of a step is in the row of the first one."""
+    different ways, a block with restitution 0 follows both. The walls of method='wall' list only
+    impacts with a given restitution."""
     e = _joint_engine()
     table = np.zeros(len(e.impactTimes), dtype=_IMPACT_FIELDS)
     before, after = np.array(e.impactBefore), np.array(e.impactAfter)
