@@ -50,9 +50,8 @@ TEST_CASE("a block that lands flat stays upright")
 	CHECK(scene.system.impactDissip == Approx(block.mass * g * height).epsilon(2 * gravityStep / std::sqrt(2 * g * height)));
 }
 
-// Over three impacts, the block sliding a little at each. First order in the substep; bounds: twice what was measured of the start angle
-// (2.6e-3; plastic landings, which take two substeps, 1.6e-2). Where corners that approach lose speed to the sweeps (no gap allowance in
-// the relax sweep, or open points of a rocking joint not put aside) it is 20 to 40 %.
+// Over three impacts, the block sliding a little at each. First order in the step. Where corners that approach lose speed before
+// they land, it is 20 to 40 % of the start angle.
 TEST_CASE("a block rocks as with localised impacts")
 {
 	const double restitution = GENERATE(0.7, 0.9, double(NAN));
@@ -72,11 +71,9 @@ TEST_CASE("a block rocks as with localised impacts")
 }
 
 // After its landing a block has C^2 of the energy at the first peak. So has a column without a law: plastic landings leave it one block, of
-// which C is 1 - 1.5 sin^2(critical angle). Errors are first order in the substep. Bounds: half as much again as measured of a block (0.035
+// which C is 1 - 1.5 sin^2(critical angle). Errors are first order in the step. Bounds: half as much again as measured of a block (0.035
 // and 0.36; 0.07 %), which is that of columns of 12 and 24 too (0.06 and 0.08 %; a quarter of the step 0.07 %: errors change their signs
-// there); a sixth more than that of 48 (1.9 %; with sweeps as the courses alone ask 5 %). An impact that is handed on to the next substep
-// keeps upper blocks from landing with those below, 2.4 % for twelve blocks; with one sweep before and after the move the three are 1.4,
-// 2.2 and 9.2 %.
+// there); a sixth more than that of 48 (1.9 %).
 TEST_CASE("a column rocks as the block that it makes")
 {
 	const auto [blocks, restitution, h, bound] = GENERATE(table<int, double, double, double>({{1, 0.9, 1e-3, 1e-3},
@@ -109,12 +106,11 @@ double turning(const RigidBody<Plane>& body) { return -body.velocity[2]; }
 double turning(const RigidBody<Space>& body) { return body.velocity[4]; }
 
 // A squat block lands flat while it moves sideways. Friction turns it off its rear edge, and it goes on about the front one with the
-// angular momentum about that: spin = 3/4 (height v_x - width v_z)/R^2. Bound: what gravity gives in two steps. With three sweeps before
-// and after the move it was up to 0.17 rad/s too fast, by where in its substep it landed.
+// angular momentum about that: spin = 3/4 (height v_x - width v_z)/R^2. Bound: what gravity gives in two steps.
 TEST_CASE("a block that lands flat and moves sideways turns about its front edge")
 {
 	constexpr double width = 0.3, height = 0.6, h = 2e-4;
-	const double sideways = GENERATE(0.75, 0.9, 1., 1.2), later = GENERATE(0., 0.25, 0.5, 0.75); // m/s, of a substep
+	const double sideways = GENERATE(0.75, 0.9, 1., 1.2), later = GENERATE(0., 0.25, 0.5, 0.75); // m/s, of an eighth of a step
 	const double fall = 0.1 + later * h / 8 * std::sqrt(2 * g * 0.1), down = std::sqrt(2 * g * fall);
 	const double perMoment = 0.75 / (width * width + height * height), spin = perMoment * (height * sideways - width * down);
 	SceneOf<Plane> scene(0.7);
@@ -128,9 +124,7 @@ TEST_CASE("a block that lands flat and moves sideways turns about its front edge
 }
 
 // Squat blocks, whose old pivot presses while normal impulses and friction at the new one have not found each other: C^2 of the energy is
-// left wherever in a step they land. Bounds: twice what is measured (2.8e-3 and 1.7e-3), of the first order of the step. With one sweep
-// before and after the move C is up to 0.38 for 0.25; in space, where an impact was looked for only while the old pivot carried, one of
-// eight landings was that of the shape instead of the one asked for.
+// left wherever in a step they land. Bounds: twice what is measured (2.8e-3 and 1.7e-3), of the first order of the step.
 TEMPLATE_TEST_CASE("a squat block lands with the restitution of its shape, or the one that is asked", "", Plane, Space)
 {
 	const double restitution = GENERATE(0.9, double(NAN)), slenderness = GENERATE(1., 1.2);
@@ -250,8 +244,8 @@ TEST_CASE("a step says what energy it has made of nothing")
 	CHECK(created == Approx(block.mass * g * deep).epsilon(1e-2));
 }
 
-// The law acts between two substeps: the ratio is the one asked, and the spin that goes on is that of the law up to what gravity and one
-// sweep change in a substep.
+// The law acts between two steps: the ratio is the one asked, and the spin that goes on is that of the law up to what gravity changes in a
+// step.
 TEST_CASE("a rocking joint has the restitution that is asked")
 {
 	const double restitution = GENERATE(0.3, 0.7, 0.9, 0.97);

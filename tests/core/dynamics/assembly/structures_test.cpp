@@ -43,8 +43,8 @@ double weight(const RigidSystem<K>& s, int first, int last)
 
 } // namespace
 
-// The pier is left by the still mode in the first step, and alone in its mode from then on: its bits are those of the pier alone. Walls are
-// equal within their tolerance: of what a step leaves, 1e-3 g h^2, a fifth is taken back in each, 5e-8 m a joint.
+// Wall and pier are solved together, to one tolerance, and are equal to each alone within that: of what a step leaves, 1e-3 g h^2, a fifth
+// is taken back in each, 5e-8 m a joint.
 TEMPLATE_TEST_CASE("a wall stands and a pier rocks on one base as each does alone", "", Plane, Space)
 {
 	SceneOf<TestType> both(0.7, 0.8), wall(0.7, 0.8), pier(0.7, 0.8);
@@ -123,7 +123,7 @@ TEMPLATE_TEST_CASE("a wall stands again after a step without gravity", "", Plane
 }
 
 // A block falls on one end of a wall, slides along its top and leaves it at the other, to land beside it. The base is at rest: energy only
-// falls, but for the error of the substeps.
+// falls, but for the error of the steps.
 TEST_CASE("structures join and split")
 {
 	Scene scene(0.2);
@@ -145,7 +145,7 @@ TEST_CASE("structures join and split")
 	}
 	CHECK(moved == std::vector<int> {0, 1, wall + 1, 1, 0}); // falls; sets the wall off; flies on; stands
 	CHECK(rises < 1e-3 * (start - last));
-	CHECK(created == 0);         // friction and impacts of the same substeps
+	CHECK(created == 0);         // friction and impacts of the same steps
 	CHECK(deepest < 1e-5 * 0.5); // of a block's height, as is asked of walls
 	CHECK(scene.system.bodies[block].pose.position.x() > 4.4);
 }
@@ -226,7 +226,8 @@ TEST_CASE("the base works once in a step that is taken back")
 }
 
 // The wall bears the impact: all of it at once, as where every impact is solved for the whole structure. Of the block, which falls by 0.2 m
-// and lands twice, impact times are right to a substep each: three of its falls at that speed. The wall: 1e-5 of a block's height.
+// and lands twice, impact times are right to a part of a step each: three eighths of its fall in a step at that speed. The wall: 1e-5 of a
+// block's height.
 TEST_CASE("a block lands on a wall that stands as with localised impacts")
 {
 	Scene wall(0.6, 0.5), exact(0.6, 0.5);
@@ -280,7 +281,7 @@ TEST_CASE("a landing sets off the wall below it in space as in the plane")
 }
 
 // Loose blocks and pillars on walls, some pushed, some falling, on a base that is shaken and then stands: no energy from nowhere, no block
-// in another. With the base at rest the energy falls, but for the error of the substeps and what standing blocks settle by (the drift of a
+// in another. With the base at rest the energy falls, but for the error of the steps and what standing blocks settle by (the drift of a
 // wall).
 TEMPLATE_TEST_CASE("loose blocks on a wall lose energy", "", Plane, Space)
 {
