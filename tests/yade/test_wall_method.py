@@ -265,7 +265,7 @@ def test_friction_that_is_changed_through_the_interactions():
     O.run(200, True)
     speeds = [O.bodies[i].state.vel[0] / (0.2 * 9.81 * 0.2) - 1 for i in ids]
     print("sliding with the new friction: speed", max(map(abs, speeds)))
-    assert max(map(abs, speeds)) < 2 * 9.81e-3 / (0.2 * 9.81 * 0.2)  # what gravity gives in two steps may be lost (tolerance::wall::held)
+    assert max(map(abs, speeds)) < 2 * 9.81e-3 / (0.2 * 9.81 * 0.2)  # what gravity gives in two steps
     O.bodies[base].mat.frictionAngle = 0  # a material is read when two blocks come near each other, not again
     before = np.array([O.bodies[i].state.vel[0] for i in ids])
     O.run(100, True)
