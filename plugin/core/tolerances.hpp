@@ -181,7 +181,7 @@ constexpr double onCone = 1e-9;
 } // namespace masonry::tolerance::contactProblem
 
 // --- assemblies (dynamics/assembly/), beside AdmmSettings (admm_solver.hpp) ---
-namespace masonry::tolerance::wall {
+namespace masonry::tolerance::assembly {
 
 // Relative movement of a pair, relative to the smallest half size, after which the features in touch are looked up again. Larger: a vertex
 // that has slid over the end of a face is held there that much longer; smaller: walls that move spend their time on it.
@@ -208,4 +208,4 @@ constexpr double createdShare = 0.1, createdLift = 1e-4, createdTravel = 1e-9;
 // Extent of the loaded part of a joint, relative to the smallest half size, up to which it is a pivot. Larger: narrow patches rock.
 constexpr double pivot = 1e-3;
 
-} // namespace masonry::tolerance::wall
+} // namespace masonry::tolerance::assembly

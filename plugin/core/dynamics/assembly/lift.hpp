@@ -1,9 +1,9 @@
 #pragma once
 // Takes off, by positions alone, the penetrations that a step has left.
 //
-// A pair that is deeper than tolerance::wall::penetration is moved apart, until it is tolerance::wall::lifted deep; what is less deep may
-// stay, but gets no deeper: a wall would not come to rest if every step moved it. Velocities do not see any of it, so it gives no speed;
-// the height that it gives is what the step had let sink.
+// A pair that is deeper than tolerance::assembly::penetration is moved apart, until it is tolerance::assembly::lifted deep; what is less
+// deep may stay, but gets no deeper: a wall would not come to rest if every step moved it. Velocities do not see any of it, so it gives no
+// speed; the height that it gives is what the step had let sink.
 //
 // The displacements w are those of an impulse problem with gaps for velocities, J w >= -gap, p >= 0, by Gauss-Seidel sweeps: w += M'^-1 J^T
 // dp. With the masses of the blocks, what is taken off at the base would need as many sweeps to be carried up as the square of the courses.

@@ -206,7 +206,7 @@ TEST_CASE("blocks of a high wall do not enter each other")
 }
 
 // A stack of two blocks rocks from rest: the same within the first order of the step while little has happened yet, and what counts
-// as motion (tolerance::wall::motion).
+// as motion (tolerance::assembly::motion).
 TEST_CASE("blocks start to move as with the step of few blocks")
 {
 	Scene wall, exact;
