@@ -180,54 +180,32 @@ constexpr double onCone = 1e-9;
 
 } // namespace masonry::tolerance::contactProblem
 
-// --- walls (dynamics/wall/) ---
-namespace masonry::tolerance::wall {
+// --- assemblies (dynamics/assembly/), beside AdmmSettings (admm_solver.hpp) ---
+namespace masonry::tolerance::assembly {
 
 // Relative movement of a pair, relative to the smallest half size, after which the features in touch are looked up again. Larger: a vertex
-// that has slid over the end of a face is held there that much longer; smaller: moving walls spend their time on it.
+// that has slid over the end of a face is held there that much longer; smaller: walls that move spend their time on it.
 constexpr double search = 1e-3;
-// Angle, rad, by which a block may turn in still steps before normals and arms follow. Larger: forces and gaps are so much askew.
+// Angle, rad, by which a block may turn while nothing moves before normals and arms follow. Larger: forces and gaps are so much askew.
 constexpr double turned = 1e-7;
-// And by which it may have turned since the factorisation that is kept. Larger: on a base that turns the solves of a wall that stands do
-// not converge, at some 0.3 rad; smaller: one that turns costs a factorisation more often.
-constexpr double leant = 1e-2;
-// Gap relative to the smallest half size up to which a point takes part in the still mode. Larger: open joints slow its convergence;
-// smaller: joints that close change the factorisation.
+// Gap relative to the smallest half size up to which a point takes part in an impact or a base pulse. Larger: points that are open carry
+// impulses; smaller: some of the points that close together are left out.
 constexpr double touching = 1e-4;
-// Velocity residual, relative to what gravity gives in a step, that the still mode may leave. Larger: the onset of motion is glued.
-constexpr double still = 1e-2;
-// Relative velocity of points in touch, relative to the speed of rest (restSpeed sqrt(g half size)), above which the wall moves; it
-// stands when none is above the speed of rest. Nearer to 1: what the moving mode calls rest is motion to the still mode.
+// Relative velocity of points in reach, relative to the speed of rest (restSpeed sqrt(g half size)), above which blocks count as moving.
+// Larger: frames stay while blocks creep; smaller: what the solver leaves at rest counts as motion.
 constexpr double motion = 5;
-// Relative velocity of points in touch, relative to the speed of rest, below which a wall that moves is about to stand. Larger: what lags
-// behind in the substeps bounces more, and in space they take more sweeps; smaller: high walls in space creep on by it.
-constexpr double slow = 100;
-// Change of the base's velocity in a step, relative to what gravity gives in it, from which on the still mode takes back in full what its
-// iterations leave. Larger: gentle shaking lets joints drift; smaller: a wall on a base that hardly moves any more shivers on.
-constexpr double stirred = 1e-2;
-// The same for the change in a step of forces that act on blocks, relative to the weight. Larger: loads that grow slowly let joints drift.
-constexpr double pushed = 1e-6;
-// Velocity, relative to what gravity gives in a step, that the unfinished iterations of the still mode may keep from a point that parts or
-// slides, before it is let go to see. Larger: motion sets in too late; smaller: a wall at rest, whose points flicker, spends its time on
-// it. So a structure may hold little at first, and twice as much after each time that nothing has gone.
-constexpr double held = 2, leastHeld = 0.125;
-// Relative velocity that a step gives such points when they are let go, relative to what gravity gives in it, above which the wall moves.
-// Larger: slow sliding is glued; smaller: impulses that are late are taken for motion.
-constexpr double free = 5e-3;
-// Time relative to sqrt(half size / g) for which nothing may move before the still mode is tried again.
-constexpr double patience = 0.5;
-// Depth of a pair relative to the smallest half size above which moving steps take it off, and what they leave of it. Larger: blocks deeper
-// in each other; smaller: the sweeps let loaded points sink, and what is given back costs them energy; nearer to each other: a wall that
-// comes to rest is moved again and again.
+// Depth of a pair relative to the smallest half size above which a step in which blocks move takes it off by positions, and the depth that
+// it leaves. Larger: blocks are deeper in each other; smaller: loaded points sink a little in each step, and lifting them costs time;
+// nearer to each other: a wall that comes to rest is lifted again and again.
 constexpr double penetration = 1.15e-5;
 constexpr double lifted = 5.75e-6;
-// That above which a step cannot be trusted. Larger: blocks that sink into each other are not told of; smaller: those that hit hard are.
+// Depth above which a step cannot be trusted. Larger: blocks that sink into each other are not told of; smaller: those that hit hard are.
 constexpr double sunk = 1e-3;
 // Energy that a step may seem to make: share of what moves and what the forces do in it, and of what lifts all blocks by the smallest half
-// size. And, where neither is, that of a speed: of blocks that go so far in a step, relative to the smallest half size. Smaller: the errors
-// of sound steps, 1e-3 of what is lost, or rounding, are reported; larger: a wall that flies apart is not.
+// size. Where both are zero it may seem to make that of a speed: of blocks that go so far in a step, relative to the smallest half size.
+// Smaller: the errors of sound steps, 1e-3 of what is lost, or rounding, are reported; larger: a wall that flies apart is not.
 constexpr double createdShare = 0.1, createdLift = 1e-4, createdTravel = 1e-9;
 // Extent of the loaded part of a joint, relative to the smallest half size, up to which it is a pivot. Larger: narrow patches rock.
 constexpr double pivot = 1e-3;
 
-} // namespace masonry::tolerance::wall
+} // namespace masonry::tolerance::assembly

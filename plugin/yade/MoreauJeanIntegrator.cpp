@@ -47,8 +47,8 @@ void MoreauJeanIntegrator::postLoad(MoreauJeanIntegrator&)
 	if (method != "localised" && method != "wall")
 		reject(*this, "method", "'" + method + "'", "'localised' or 'wall'");
 	if (method == "wall") {
-		if (impactOrder != "sequential")
-			reject(*this, "impactOrder", "'" + impactOrder + "'", "'sequential' with method='wall', whose impacts act joint by joint");
+		if (impactOrder != "simultaneous")
+			reject(*this, "impactOrder", "'" + impactOrder + "'", "'simultaneous' with method='wall', whose joints land together");
 		if (!(tolerance >= 1e-6 && tolerance <= 1e-2))
 			reject(*this, "tolerance", tolerance, "from 1e-6 to 1e-2 with method='wall'");
 	} else if (!(tolerance > 0 && tolerance <= 1e-3)) {

@@ -18,7 +18,7 @@ import masonry
 
 CHROMIUM = shutil.which("chromium")
 ABOUT = {"script": "wall.py", "versions": {"masonry": "0.1.0", "YADE": "2023.02a"}, "seed": 7,
-         "model": {"dt": 1e-3, "steps": 2000, "model": "planar", "reason": "all in one plane", "method": "wall", "impact order": "sequential", "tolerance": 1e-3,
+         "model": {"dt": 1e-3, "steps": 2000, "model": "planar", "reason": "all in one plane", "method": "wall", "impact order": "simultaneous", "tolerance": 1e-3,
                    "gravity": [0, 0, -9.81]},
          "materials": [{"density": 2000, "frictionAngle": 0.6, "restitution": None, "noSlip": False, "normalStiffness": None, "shearStiffness": None, "ids": [10, 11]}],
          "motions": [{"kind": "RecordMotionEngine", "ids": [10], "direction": [1, 0, 0], "start": 0, "end": 2, "record": "El Centro <NS>", "interval": 0.02,

@@ -46,9 +46,8 @@ def landing(gap, beside, model):
 @pytest.mark.parametrize("model", ("planar", "spatial"))
 @pytest.mark.parametrize("beside", ("fixed", "free"))
 def test_a_column_that_lands_all_at_once(model, beside):
-    """Loads cross its twenty courses. Counted from what is beside it, as one course, it would have the sweeps of one, and spring up with half of its
-    speed and more; so the sweeps let it with 0.04 of it. Beside a fixed body it is as without, but for rounding; a free one that it passes makes
-    it fall in substeps, and land in another part of one."""
+    """Loads cross its twenty courses, and it springs up with less than 0.05 of its speed. Beside a fixed body it is as without, but for rounding; a
+    free one that it passes is a part of the same problem, which ends at other residuals."""
     far, near = (landing(gap, beside, model) for gap in (FAR, NEAR))
     print(f"{model}, {beside} body beside a column that lands: velocities after it {near.max():.4f} of the landing's, {far.max():.4f} where it is far")
     assert max(near.max(), far.max()) < 0.05 and (beside == "free" or np.abs(near - far).max() < 1e-6)
@@ -69,8 +68,8 @@ def shaken(gap):
 
 
 def test_a_wall_shaken_between_two_plates():
-    """Along them: it stays in the still mode as long as without them, and its joints slide as far. Where plates that pass by counted as motion it
-    moved from the first step on, and its top went a third too far. Its pairs are listed in another order there: 1 %."""
+    """Along them: it starts to move when it does without them, since plates that pass by are no motion, and its joints slide as far. Its pairs
+    are listed in another order there: 1 %."""
     (still, far), (still_near, near) = shaken(FAR), shaken(NEAR)
-    print(f"wall between plates: {still_near} steps in the still mode, slip {1e3 * near:.2f} mm; {still} and {1e3 * far:.2f} mm where they are far")
+    print(f"wall between plates: {still_near} still steps, slip {1e3 * near:.2f} mm; {still} and {1e3 * far:.2f} mm where they are far")
     assert abs(still_near - still) <= 2 < 100 < still and abs(near / far - 1) < 0.01

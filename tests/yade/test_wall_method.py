@@ -36,8 +36,8 @@ def integrator():
 
 
 @pytest.mark.parametrize("options, method", (
-    ({}, "wall"), ({"method": "localised"}, "localised"), ({"impact_order": "simultaneous"}, "localised"), ({"tolerance": 1e-9}, "localised"),
-    ({"tolerance": 1e-4}, "wall"),
+    ({}, "wall"), ({"method": "localised"}, "localised"), ({"impact_order": "sequential"}, "localised"), ({"tolerance": 1e-9}, "localised"),
+    ({"tolerance": 1e-4}, "wall"), ({"impact_order": "simultaneous"}, "wall"),
 ))
 def test_the_choice(options, method):
     wall(4, 6, 0.1, **options)
@@ -124,7 +124,7 @@ def test_few_blocks_near_each_other(model, few):
 
 
 @pytest.mark.parametrize("options, words", (
-    ({"impact_order": "simultaneous"}, ("impactOrder", "'sequential'")), ({"tolerance": 1e-9}, ("tolerance", "1e-6 to 1e-2")),
+    ({"impact_order": "sequential"}, ("impactOrder", "'simultaneous'")), ({"tolerance": 1e-9}, ("tolerance", "1e-6 to 1e-2")),
     ({"model": "compliant"}, ("method", "rigid")), ({"method": "fast"}, ("method", "'fast'")),
 ))
 def test_options_that_the_method_refuses(options, words):
@@ -265,7 +265,7 @@ def test_friction_that_is_changed_through_the_interactions():
     O.run(200, True)
     speeds = [O.bodies[i].state.vel[0] / (0.2 * 9.81 * 0.2) - 1 for i in ids]
     print("sliding with the new friction: speed", max(map(abs, speeds)))
-    assert max(map(abs, speeds)) < 2 * 9.81e-3 / (0.2 * 9.81 * 0.2)  # what gravity gives in two steps may be lost (tolerance::wall::held)
+    assert max(map(abs, speeds)) < 2 * 9.81e-3 / (0.2 * 9.81 * 0.2)  # what gravity gives in two steps
     O.bodies[base].mat.frictionAngle = 0  # a material is read when two blocks come near each other, not again
     before = np.array([O.bodies[i].state.vel[0] for i in ids])
     O.run(100, True)

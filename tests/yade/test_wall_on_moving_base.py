@@ -128,8 +128,7 @@ def test_a_pulse_in_space(friction):
 
 
 def test_a_block_that_is_pulled_steadily_in_space():
-    """It lands on both corners of an edge, and keeps its plane: with fine substeps but for the rounding of floats, 1e-7 of
-    some 0.3 rad/s in each of a thousand substeps."""
+    """It lands on both corners of an edge, and keeps its plane, but for 1e-4 of some 0.3 rad/s."""
     base, id, block = one_block(4, noSlip=False, frictionAngle=math.atan(0.7), depth=0.6)
     dem.tilt(id, -0.5 * block.critical_angle)
     O.engines = rigid_engines(model="spatial", method="wall", tolerance=1e-5)
@@ -144,7 +143,7 @@ def test_a_block_that_is_pulled_steadily_in_space():
 
 @pytest.mark.parametrize("courses", (3, 8))
 def test_what_goes_along_with_a_pulse(courses):
-    """It gains m v^2/2, and that is the work of the base: also where a wall, on a base that stands, leaves the pulse to the sweeps. The
+    """It gains m v^2/2, and that is the work of the base: also beside a wall on a base that stands. The
     block is so flat that hardly a thousandth goes into its turning, (3/4) sin(a)^2 of the whole."""
     standing, ids = wall(courses, 6)
     base = dem.base((4, 4, 0.2), dem.BlockMat(density=2000, noSlip=True))
@@ -248,7 +247,7 @@ def test_larger_walls_that_cannot_slip(courses):
 
 @pytest.mark.parametrize("tolerance", (1e-3, 1e-4, 1e-5))
 def test_landings_that_begin_a_step_within_rounding_of_the_joint(tolerance):
-    """They are met with their restitution, however short the substeps."""
+    """They are met with their restitution, however fine the tolerance."""
     times = []
     for method in ("localised", "wall"):
         base, id, block = one_block(5, restitution=0.9)

@@ -241,7 +241,7 @@ Step stepOf(const StepContext& c, const AdmmSettings& a)
 	        a.relaxation,
 	        a.boundShare,
 	        c.instant ? 0 : a.pullBack,
-	        c.instant ? tolerance::wall::touching * c.length : -farAway,
+	        c.instant ? tolerance::assembly::touching * c.length : -farAway,
 	        a.strictForces};
 }
 

@@ -47,7 +47,7 @@ void AssemblyStep<K>::advancePart(RigidSystem<K>& s, double h)
 	setLoads(s, h);
 	solver.spins = events.find(s, contacts, change, step);
 	const CappedReport result = solve(s, loads, change.size() == loads.size() && solver.spins.empty() ? change : noGuess, step);
-	const double level = tolerance::wall::motion * tolerance::restSpeed * scales.speed;
+	const double level = tolerance::assembly::motion * tolerance::restSpeed * scales.speed;
 	const PointsReport ofPoints = solver.advanceGaps(contacts, h, level);
 	ledger.takeContacts(s, contacts, solver, ofPoints.friction);
 	report.forceResidual = std::max(report.forceResidual, ofPoints.forceError);
@@ -159,7 +159,7 @@ void AssemblyStep<K>::moveBodies(RigidSystem<K>& s, double h, bool isMoving)
 		contacts.shift[b] = h * solver.velocity[b];
 	takeChange(Scales(s).stepSpeed(h));
 	contacts.velocity = solver.velocity;
-	if (const double deepest = isMoving ? projection.settle(contacts) : 0; deepest > tolerance::wall::sunk * contacts.length)
+	if (const double deepest = isMoving ? projection.settle(contacts) : 0; deepest > tolerance::assembly::sunk * contacts.length)
 		report.deepest = std::max(report.deepest, deepest);
 	double work = 0; // of the forces, J
 	for (size_t b = 0; b < s.bodies.size(); ++b) {
@@ -187,7 +187,7 @@ template <class K>
 bool AssemblyStep<K>::turns(const RigidSystem<K>& s, double h) const
 {
 	return std::any_of(s.bodies.begin(), s.bodies.end(), [h](const RigidBody<K>& body) {
-		return !(h * body.velocity.template tail<K::spins>().norm() <= tolerance::wall::turned);
+		return !(h * body.velocity.template tail<K::spins>().norm() <= tolerance::assembly::turned);
 	});
 }
 

@@ -53,7 +53,7 @@ void ContactSet<K>::setState(const State& state, int pair, int point)
 template <class K>
 bool ContactSet<K>::inherit(const ContactPair<K>& before, const State* states, ContactPoint<K>& point, State& now) const
 {
-	const double samePlace = 2 * tolerance::wall::search * length;
+	const double samePlace = 2 * tolerance::assembly::search * length;
 	for (int j = 0; j < before.size; ++j) {
 		const ContactPoint<K>& old = before.points[j];
 		const State& then = states[j];
@@ -273,7 +273,7 @@ bool ContactSet<K>::isLocated(const RigidSystem<K>& s) const
 		const auto& body = s.bodies[b];
 		if (!own[b] && !body.prescribed)
 			continue;
-		if (!(turned(located[b], body.pose) <= tolerance::wall::turned) ||
+		if (!(turned(located[b], body.pose) <= tolerance::assembly::turned) ||
 		    velocity[packs<K> * b][3] != (body.prescribed ? 0 : 1 / body.mass))
 			return false;
 	}
@@ -292,7 +292,7 @@ bool ContactSet<K>::measure(RigidSystem<K>& s, bool isStill)
 	if (s.moved)
 		std::fill(stale.begin(), stale.end(), allLanes);
 	takeBodies(s);
-	const double travel = tolerance::wall::search * length;
+	const double travel = tolerance::assembly::search * length;
 	allParts([&](const Part& part, int) {
 		measureGaps(s, part.begin, part.end, travel, false);
 		if (isStill)

@@ -14,7 +14,7 @@
 //
 // Gaps, normals and arms are exact at the start of every step that moves (lean). While nothing moves, gaps are added up, and the points are
 // located every few steps only. Which features meet is looked up again only where a pair has moved by a small share of its size since
-// (tolerance::wall::search).
+// (tolerance::assembly::search).
 #include "dynamics/assembly/space_lanes.hpp"
 #include "dynamics/rigid/rigid_system.hpp"
 #include "parallel/team.hpp"

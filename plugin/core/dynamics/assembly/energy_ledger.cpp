@@ -59,8 +59,9 @@ double EnergyLedger<K>::close(RigidSystem<K>& s, const Scales& scales, double h,
 	s.frictDissip += friction;
 	s.impactDissip += impacts;
 	const double atStake = std::abs(baseWork) + std::abs(work) + kinetic, liftedAll = mass * scales.acceleration * scales.length,
-	             slowest = tolerance::wall::createdTravel * scales.length / h;
-	const double allowed = tolerance::wall::createdShare * atStake + tolerance::wall::createdLift * liftedAll + mass * slowest * slowest;
+	             slowest = tolerance::assembly::createdTravel * scales.length / h;
+	const double allowed =
+	    tolerance::assembly::createdShare * atStake + tolerance::assembly::createdLift * liftedAll + mass * slowest * slowest;
 	return impacts < -allowed ? -impacts : 0;
 }
 

@@ -29,7 +29,7 @@ template <class K>
 MASONRY_INLINE bool prepareGroups(const Group<K>* groups, typename Lift<K>::Points* points, int begin, int end, int* seen,
                                   const Lanes* moved, double length)
 {
-	const Lanes none = all(0), deep = all(-tolerance::wall::penetration * length), allowed = all(-tolerance::wall::lifted * length);
+	const Lanes none = all(0), deep = all(-tolerance::assembly::penetration * length), allowed = all(-tolerance::assembly::lifted * length);
 	bool some = false;
 	for (int g = begin; g < end; ++g) {
 		const Group<K>& group = groups[g];
@@ -137,8 +137,8 @@ double Lift<K>::settle(ContactSet<K>& c)
 		deep[number] = anyDeep(c.groups.data(), points.data(), part.begin, part.end, seen.data(), moved.data(), c.length);
 	});
 	if (std::none_of(deep.begin(), deep.end(), [](bool is) { return is; }))
-		return tolerance::wall::penetration * c.length; // or less
-	const double enough = (tolerance::wall::penetration - tolerance::wall::lifted) * c.length;
+		return tolerance::assembly::penetration * c.length; // or less
+	const double enough = (tolerance::assembly::penetration - tolerance::assembly::lifted) * c.length;
 	last.assign(c.course.size() + 1, 0);
 	for (int k = 0; k < mostSweeps; ++k) {
 		Missing missing[Team::mostParts + 1] {};

@@ -1,16 +1,16 @@
 #pragma once
-// Penetrations that the sweeps of a step have left, taken off by positions alone.
+// Takes off, by positions alone, the penetrations that a step has left.
 //
-// A pair that is deeper than tolerance::wall::penetration is moved apart, until it is tolerance::wall::lifted deep; what is less deep may
-// stay, but gets no deeper: a wall at rest would not come to rest if every step moved it. Velocities do not see any of it, so it gives no
-// speed; the height that it gives is what the sweeps had let sink.
+// A pair that is deeper than tolerance::assembly::penetration is moved apart, until it is tolerance::assembly::lifted deep; what is less
+// deep may stay, but gets no deeper: a wall would not come to rest if every step moved it. Velocities do not see any of it, so it gives no
+// speed; the height that it gives is what the step had let sink.
 //
-// The displacements w are those of an impulse problem with gaps for velocities, J w >= -gap, p >= 0, by sweeps: w += M'^-1 J^T dp. With the
-// masses of the blocks, what is taken off at the base would need as many sweeps to be carried up as the square of the courses. Here a block
-// counts for a share r of the one below it and gives way: a sweep leaves 4 r/(1 + r)^2 of what is deep in a tall column. Sweeps go from the
-// base upwards and visit pairs that are too deep, then those whose blocks have moved since. What is below is told by the courses from the
-// base, also where some blocks move and the rest stands: counted from what stands beside them, an overhang that breaks off is lifted as it
-// falls, by up to six times the energy that it loses.
+// The displacements w are those of an impulse problem with gaps for velocities, J w >= -gap, p >= 0, by Gauss-Seidel sweeps: w += M'^-1 J^T
+// dp. With the masses of the blocks, what is taken off at the base would need as many sweeps to be carried up as the square of the courses.
+// Here a block counts for a share r of the one below it and gives way: a sweep leaves 4 r/(1 + r)^2 of what is deep in a tall column.
+// Sweeps go from the base upwards and visit pairs that are too deep, then those whose blocks have moved since. What is below is told by the
+// courses from the base, also where some blocks move and the rest stands: counted from what stands beside them, an overhang that breaks off
+// is lifted as it falls, by up to six times the energy that it loses.
 #include "dynamics/assembly/contact_set.hpp"
 
 namespace masonry::rigid::assembly {

@@ -1,4 +1,4 @@
-// Contact points in the plane: what wall_contacts.cpp asks of it.
+// Contact points in the plane: the parts of ContactSet (contact_set.hpp) that depend on the dimension.
 #include "dynamics/assembly/contact_set.hpp"
 #include <cmath>
 

@@ -105,7 +105,7 @@ bool RockingEvents<K>::findPivot(const ContactSet<K>& c, Joint& joint) const
 {
 	if (bearing.empty())
 		return false;
-	const double narrow = tolerance::wall::pivot * c.length;
+	const double narrow = tolerance::assembly::pivot * c.length;
 	joint.place = positionOf(c, points[bearing.front()]);
 	Vector3 edge = Vector3::Zero();
 	for (const int i : bearing)
@@ -129,7 +129,7 @@ bool RockingEvents<K>::hops(const ContactSet<K>& c, const Point& point, double g
 	takeVelocity(c.inGlobal(c.velocity, at.support), support);
 	const Vector3 spin = block.angularVelocity - support.angularVelocity, arm = positionOf(c, point) - inSpace(c.position(at.block));
 	const double a = (at.second ? 1 : -1) * normalOf(c, point).dot(spin.cross(spin.cross(arm)));
-	return a > g / 4 && a < g && at.p.gap[at.lane] <= tolerance::wall::touching * c.length + a * a * h * h / (2 * (g - a));
+	return a > g / 4 && a < g && at.p.gap[at.lane] <= tolerance::assembly::touching * c.length + a * a * h * h / (2 * (g - a));
 }
 
 template <class K>
@@ -147,7 +147,7 @@ std::vector<SpinRow<K>> RockingEvents<K>::find(const RigidSystem<K>& s, const Co
 	for (size_t b = 0; b < std::min(change.size(), predicted.size()); ++b)
 		predicted[b] += noMass * change[b];
 	const double g = scale::acceleration(s), open = tolerance::mergedClosing * c.length,
-	             fast = tolerance::restSpeed * std::sqrt(g * c.length), narrow = tolerance::wall::pivot * c.length;
+	             fast = tolerance::restSpeed * std::sqrt(g * c.length), narrow = tolerance::assembly::pivot * c.length;
 	constexpr double together = 2; // steps within which closings are one
 	for (int begin = 0, end = 0; begin < int(points.size()); begin = end) {
 		bearing.clear();
@@ -233,7 +233,7 @@ bool RockingEvents<K>::describe(const RigidSystem<K>& s, const ContactSet<K>& c,
 	law.block = number(landing.block);
 	law.support = number(landing.support);
 	law.oldBegin = int(all.size());
-	const double narrow = tolerance::wall::pivot * c.length;
+	const double narrow = tolerance::assembly::pivot * c.length;
 	int near = -1, far = -1; // ends of the old pivot
 	for (int i = joint.begin; i < joint.end; ++i)
 		if (away(c, points[i], joint) <= narrow) {
@@ -294,7 +294,7 @@ template <class K>
 void RockingEvents<K>::take(const RigidSystem<K>& s, const ContactSet<K>& c, const AdmmSolver<K>& solver)
 {
 	landings.clear();
-	const double narrow = tolerance::wall::pivot * c.length;
+	const double narrow = tolerance::assembly::pivot * c.length;
 	for (const Joint& joint : rocking) {
 		closing.clear();
 		for (int i = joint.begin; i < joint.end; ++i)

@@ -1,4 +1,4 @@
-// Contact points in space: what wall_contacts.cpp asks of it.
+// Contact points in space: the parts of ContactSet (contact_set.hpp) that depend on the dimension.
 #include "contact/features.hpp"
 #include "dynamics/assembly/contact_set.hpp"
 

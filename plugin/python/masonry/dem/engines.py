@@ -188,17 +188,17 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
                   the smallest width (1e-10 to 1e-2; None: 1e-5). The error of rocking angles is about ten times this, and more where
                   the base's acceleration jumps (docs/limits.md);
                   the cost grows as its inverse square root.
-    impact_order  'simultaneous' or 'sequential': how an impact acts on a structure (impactOrder of the engine). None: 'sequential'
-                  with method='wall', which has no other; else 'simultaneous'
+    impact_order  'simultaneous' or 'sequential': how an impact acts on a structure (impactOrder of the engine). None: 'simultaneous', the
+                  only one of method='wall'
     gravity       m/s^2, along -z
     recorder      a BlockRecorder, a WallRecorder or a list of them, put where positions, forces and O.time belong together; None
     others        rigid: engines of bodies that are no blocks (collider, InteractionLoop, NewtonIntegrator with a mask that leaves
                   the blocks out), put between ForceResetter and the blocks' own
-    method        rigid: 'localised' (each impact found inside the step: second order) or 'wall' (many blocks: impacts met
-                  at the end of a substep, first order, hundreds of times faster when a wall moves). 'auto': 'wall' where a
-                  structure (dem.structures) has more than 20 free blocks, in space 6, or with a PulseTrainEngine the scene, unless an
-                  impact_order 'simultaneous' or a tolerance below 1e-6 is asked for. Smaller structures beside such a one go on with
-                  localised impacts (MoreauJeanIntegrator.localisedBlocks)
+    method        rigid: 'localised' (each impact found inside the step: second order) or 'wall' (all contacts of the walls solved at
+                  once, impacts at the end of the step: first order, hundreds of times faster when many blocks move). 'auto': 'wall'
+                  where a structure (dem.structures) has more than 20 free blocks, in space 6, or with a PulseTrainEngine the scene,
+                  unless an impact_order 'sequential' or a tolerance below 1e-6 is asked for. With 'wall', structures of fewer
+                  blocks have localised impacts (MoreauJeanIntegrator.localisedBlocks)
 
     A joint of two BlockMats has the smaller friction angle, the mean restitution (the given one where only one is), and noSlip if either has it.
     A BlockMat is read when two blocks come near each other. Changed during a run, it acts on pairs that come later; for those that are there
@@ -241,7 +241,7 @@ def _rigid(motions, model, method, dt, tolerance, impact_order, gravity, recorde
         pulses = any(isinstance(m, wrapper.PulseTrainEngine) for m in motions)  # they keep all structures in one step
         joined = [len(ids) for ids in structures()]
         blocks = sum(joined) if pulses else max(joined)
-        fine = impact_order == "simultaneous" or (tolerance is not None and tolerance < 1e-6)
+        fine = impact_order == "sequential" or (tolerance is not None and tolerance < 1e-6)
         method = "wall" if blocks > few and not fine else "localised"
         beside = [n for n in joined if n <= few]
         if method == "wall":
@@ -252,7 +252,7 @@ def _rigid(motions, model, method, dt, tolerance, impact_order, gravity, recorde
         elif len(joined) > 1 and not pulses:
             choice += f"; {len(joined)} structures apart, each stepped by itself"
     wall = method == "wall"
-    integrator.updateAttrs(dict(method=method, tolerance=tolerance or (1e-3 if wall else 1e-9), impactOrder=impact_order or ("sequential" if wall else "simultaneous")))
+    integrator.updateAttrs(dict(method=method, tolerance=tolerance or (1e-3 if wall else 1e-9), impactOrder=impact_order or "simultaneous"))
     if dt is None and gravity == 0:
         raise ValueError("dt = None: must be given where gravity is 0")
     step = dt if dt is not None else (_WALL_STEP if wall else _RIGID_STEP) * integrator.largestTimeStep
@@ -317,7 +317,7 @@ def impacts():
     restitution_asked     C; NaN: the natural one
     restitution           C that came out
     velocity              relative angular velocity before, rad/s
-    energy_lost           J
+    energy_lost           J, of all joints that land at the same instant; in the row of the first one
     friction_demand       friction coefficient that the impact takes; where it is the joint's own, the pivot has slipped and more was asked for
     application           distance of the resultant impulse from the new pivot, m
     switched              False: the impact stopped the rotation; a pivot that has slipped may start it again
@@ -325,9 +325,8 @@ def impacts():
                           failure of the step)
 
     Restitution and velocity are relative to the motion with which the block would stay on its old and its new support: on supports that move in
-    different ways, a block with restitution 0 follows both. With method='wall' in the plane they are relative to the new support. With method='wall' only
-    impacts with a given restitution are listed, and their values are those of the joint alone: what its neighbours answer afterwards is in
-    energy()['impactDissip']."""
+    different ways, a block with restitution 0 follows both. The walls of method='wall' list only
+    impacts with a given restitution."""
     e = _joint_engine()
     table = np.zeros(len(e.impactTimes), dtype=_IMPACT_FIELDS)
     before, after = np.array(e.impactBefore), np.array(e.impactAfter)

@@ -4,7 +4,7 @@
 
 using namespace rig;
 
-// Bounds are those of the two-mode step (dynamics/wall): 1e-3 mm of drift, 1e-5 mm of sinking per joint, in 1 s instead of 5.
+// Bounds are those that are asked of walls: 1e-3 mm of drift, 1e-5 mm of sinking per joint, in 1 s instead of 5.
 TEMPLATE_TEST_CASE("an assembly at rest does not drift", "", Plane, Space)
 {
 	SceneOf<TestType> scene;

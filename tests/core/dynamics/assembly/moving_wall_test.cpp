@@ -1,4 +1,4 @@
-// Walls and piers that move, against the localised step of few blocks, finer substeps, and invariants.
+// Walls and piers that move, against the localised step of few blocks, finer tolerances, and invariants.
 #include "dynamics/rigid/rigid_step.hpp"
 #include "tolerances.hpp"
 #include "wall_rig.hpp"
@@ -110,9 +110,9 @@ TEST_CASE("a step says by how much a block turns that turns too far for it")
 	CHECK(scene.step.report.turn == Approx(spin < 250 ? 0 : spin * h).epsilon(1e-12));
 }
 
-// Onset of sliding and rocking in a pier of eight courses. The reference is the step itself, with sixteen times as many substeps; that it
+// Onset of sliding and rocking in a pier of eight courses. The reference is the step itself with a finer tolerance; that it
 // rocks as it should is checked against localised impacts above.
-TEST_CASE("the first excursion of a pier does not depend on the substep")
+TEST_CASE("the first excursion of a pier does not depend on the tolerance")
 {
 	const auto excursion = [](double tolerance) {
 		Scene scene;
@@ -130,8 +130,8 @@ TEST_CASE("the first excursion of a pier does not depend on the substep")
 }
 
 // The mean of the top course, which all finer steps agree on; its corners go their own ways. Bound: twice the larger of what was measured
-// (0.5 and 0.9 %). With one sweep before the move and one after it: 3 and 1.5 %.
-TEST_CASE("the top of a wall at 1 g goes as far as with sixteen times the substeps, whatever the number of courses")
+// (0.5 and 0.9 %).
+TEST_CASE("the top of a wall at 1 g goes as far as with a finer tolerance, whatever the number of courses")
 {
 	const int courses = GENERATE(10, 16), perCourse = 8;
 	const auto shift = [&](double tolerance) {
@@ -149,8 +149,7 @@ TEST_CASE("the top of a wall at 1 g goes as far as with sixteen times the subste
 }
 
 // A finer tolerance goes to the answer of Gauss-Seidel with thousands of sweeps (validation/walls/shaking/gauss_seidel.json: 10 courses of
-// 10 at 1 g), which is known to 2 % and for the corner in +x to 5 %. Measured: 0.2, 0.1 and 1 %; with as many sweeps in finer substeps as
-// in coarse ones 5, 1 and 10 %.
+// 10 at 1 g), which is known to 2 % and for the corner in +x to 5 %.
 TEST_CASE("with a fine tolerance a wall goes as far as by Gauss-Seidel")
 {
 	Scene scene;
@@ -171,9 +170,8 @@ TEST_CASE("with a fine tolerance a wall goes as far as by Gauss-Seidel")
 	CHECK(follows == Approx(0.0486202).epsilon(0.05));
 }
 
-// Loads that bounce in the sweeps can let the upper half of a high wall slide where it should not, in one of two motions that are nearly
-// the same: 39 % farther where sweeps damped less (the first wall), 35 % with two sweeps for three (the second). Bounds: half as much again
-// and more as by finer substeps, 3.6 and 8.8 %; less than half of what they catch.
+// Loads that bounce from iteration to iteration can let the upper half of a high wall slide where it should not, in one of two motions that
+// are nearly the same, by a third farther. Bounds: less than half of that.
 TEST_CASE("a little more of the motion takes the top of a high wall a little farther")
 {
 	const auto [courses, amplitude, more, bound] =
@@ -206,8 +204,8 @@ TEST_CASE("blocks of a high wall do not enter each other")
 	CHECK(std::abs(topShift(scene, 33)) > 0.02); // a third of its excursion
 }
 
-// A stack of two blocks rocks from rest: the same within the first order of the step while little has happened yet, and what the still mode
-// makes of the onset (tolerance::wall::motion).
+// A stack of two blocks rocks from rest: the same within the first order of the step while little has happened yet, and what counts
+// as motion (tolerance::assembly::motion).
 TEST_CASE("blocks start to move as with the step of few blocks")
 {
 	Scene wall, exact;
@@ -228,13 +226,13 @@ TEST_CASE("blocks start to move as with the step of few blocks")
 	CHECK(wall.shift(2).x() == Approx(exact.shift(2).x()).epsilon(0.03));
 }
 
-// A block that flies over the base lands flat, in any of the eight substeps, and slides: friction alone takes what its horizontal speed
+// A block that flies over the base lands flat, in any eighth of the step, and slides: friction alone takes what its horizontal speed
 // loses, at the landing (mu times the speed of the fall) and after it. The work of an impulse is that at the speed which it leaves: too
 // small by half of what it takes off, 0.05 of 5 m/s, at the landing, which is a sixth of all.
 TEST_CASE("friction takes what a sliding block loses, its landing included")
 {
-	const int substep = GENERATE(range(0, 8));
-	const double fall = 0.05 + substep * 1.25e-4, speed = 5;
+	const int eighth = GENERATE(range(0, 8));
+	const double fall = 0.05 + eighth * 1.25e-4, speed = 5;
 	Scene scene(0.2);
 	addBlock(scene.system, {0.5, 0.25}, {0, 0.25 + 0.5 * g * fall * fall});
 	scene.system.bodies[1].velocity[0] = speed;
@@ -244,7 +242,7 @@ TEST_CASE("friction takes what a sliding block loses, its landing included")
 	CHECK(scene.system.frictDissip == Approx(0.5 * scene.system.bodies[1].mass * (speed * speed - end * end)).epsilon(5e-3));
 }
 
-// With the base at rest energy can only fall. What rises is the error of the substeps: 1e-3 of what is lost is asked. And what has come to
+// With the base at rest energy can only fall. What rises is the error of the steps: 1e-3 of what is lost is asked. And what has come to
 // rest has nothing that would set it off.
 TEST_CASE("a wall that was shaken loses energy and comes to rest")
 {

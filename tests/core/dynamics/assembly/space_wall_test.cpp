@@ -101,7 +101,7 @@ TEST_CASE("two blocks in space that meet face to face stop")
 		CHECK(scene.system.bodies[b].velocity.norm() < 1e-5); // some roundings in single precision of what they had
 }
 
-// In a shaken pier everything happens in one plane. The sweeps go over twice as many points and end at other residuals: what differs is the
+// In a shaken pier everything happens in one plane. The solver has twice as many points and ends at other residuals: what differs is the
 // error of either step. Corners that part and land in turn make round-off grow: shaken by 1e-9 more or less, the top ends elsewhere by up
 // to 4 % of its shift along the motion and 0.4 % across it (measured); hence the bounds.
 TEST_CASE("a planar pier moves in space as in the plane")
@@ -214,8 +214,8 @@ TEST_CASE("a thin wall turns over at thickness to height")
 		CHECK(scene.drift() > 5e-3);
 }
 
-// Free flight, then a flat landing: where the parabola says, and at rest soon after. The four corners land one after the other in a
-// substep, of 1.25e-4 s at 4.4 m/s: no farther to the side than that.
+// Free flight, then a flat landing: where the parabola says, and at rest soon after. The bound to the side is an eighth of a step
+// at 4.4 m/s.
 TEST_CASE("blocks fall, turn and land")
 {
 	SpaceScene scene;
@@ -263,8 +263,8 @@ TEST_CASE("a block rocks in space as in the plane, whatever its direction")
 }
 
 // Two blocks carry three others, the middle one with its centre above where they meet: one of the two can carry it alone, and the other
-// then falls back sooner than the wall. What makes them differ is what sweeps leave of a landing. Bound: what moves by a thousandth of the
-// peak is seen by nobody (measured 1.2e-5 of it; with as many sweeps in finer substeps as in coarse ones one is left behind by 0.03 rad).
+// then falls back sooner than the wall. What makes them differ is the residual of a landing. Bound: what moves by a thousandth of the
+// peak is seen by nobody.
 TEST_CASE("a wall that rocks across its plane leaves no block behind")
 {
 	SpaceScene scene(0.65);
@@ -338,9 +338,8 @@ TEST_CASE("a moment turns a block about the axis that it has in the world")
 	CHECK((momentum - 0.2 * moment).norm() < 1e-3 * momentum.norm());
 }
 
-// Shaken across and along, then held: with the base at rest energy can only fall. What rises is the error of the substeps: 1e-3 of what is
-// lost is asked. Of sixteen such motions the largest rise in a step is 1e-5 in the median and 4e-4 at most, that of all steps 6e-5 and 5e-4
-// (4e-4 and 1.4e-3, 6e-4 and 1.6e-3 where impacts are handed on to the next substep). The wall rocks across its plane for three seconds and
+// Shaken across and along, then held: with the base at rest energy can only fall. What rises is the error of the steps: 1e-3 of what is
+// lost is asked. The wall rocks across its plane for three seconds and
 // more.
 TEST_CASE("a wall that was shaken in space loses energy and comes to rest")
 {
@@ -366,7 +365,7 @@ TEST_CASE("a wall that was shaken in space loses energy and comes to rest")
 	CHECK(s.impactDissip + s.frictDissip > 0);
 }
 
-// The sweeps do not go over a scene and its mirror image in mirrored order: equal to the error of the step, until an impact or a slip
+// The solver does not go over a scene and its mirror image in mirrored order: equal to the error of the step, until an impact or a slip
 // decides otherwise.
 TEST_CASE("a mirrored wall moves as its mirror image")
 {

@@ -122,7 +122,7 @@ TEMPLATE_TEST_CASE("a wall stands again after a step without gravity", "", Plane
 }
 
 // A block falls on one end of a wall, slides along its top and leaves it at the other, to land beside it. The base is at rest: energy only
-// falls, but for the error of the substeps.
+// falls, but for the error of the steps.
 TEST_CASE("structures join and split")
 {
 	Scene scene(0.2);
@@ -146,7 +146,7 @@ TEST_CASE("structures join and split")
 	CHECK(*std::max_element(moved.begin(), moved.end()) > 2);
 	CHECK(moved.back() == 0);
 	CHECK(rises < 1e-3 * (start - last));
-	CHECK(created == 0);         // friction and impacts of the same substeps
+	CHECK(created == 0);         // friction and impacts of the same steps
 	CHECK(deepest < 1e-5 * 0.5); // of a block's height, as is asked of walls
 	CHECK(scene.system.bodies[block].pose.position.x() > 4.4);
 }
