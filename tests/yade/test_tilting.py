@@ -162,6 +162,32 @@ def test_a_wall_with_a_corner(direction, along):
     assert O.engines[-1].method == "wall" and 0.95 * possible < result.bracket[0] <= possible, result
 
 
+def collapse_of_compliant_joints(along, penetration=1e-4, rate=0.2):
+    """The multiplier at which a block has gone farther than a hundredth of its width, where it grows by `rate` a second: joints with a stiffness
+    have one answer, which depends on nothing but the load that has been."""
+    O.engines = dem.engines(model="compliant", penetration=penetration)
+    field, start, multiplier = O.engines[-1], {b.id: Vector3(b.state.pos) for b in O.bodies}, 0.0
+    while max((b.state.pos - start[b.id]).norm() for b in O.bodies) < 2e-3:
+        multiplier = max(0, rate * (O.time - 0.1))  # the weight comes to rest first
+        field.gravity = 9.81 * (multiplier * Vector3(*along) - Vector3.UnitZ)
+        for _ in range(20):
+            O.step()
+    return multiplier
+
+
+@pytest.mark.parametrize("direction, along", (("y", (0, 1, 0)), ("-y", (0, -1, 0))))
+def test_a_wall_with_a_corner_of_compliant_joints(direction, along):
+    """It collapses a tenth and more below the largest multiplier that any forces balance: between the two, rest and motion both obey the laws of
+    rigid blocks. Their multiplier may be any from there on; joints that give by 1e-4 of the width take 5 % at most."""
+    base, stone = ground(0.65)
+    dem.return_wall(4, 2, 2, (0.4, 0.2, 0.2), stone, base)
+    table = dem.TiltTable(direction=direction)
+    possible, result = statically_possible(table, along, 0.65), table.bisect(progress=False)
+    compliant = collapse_of_compliant_joints(along)
+    print(f"towards {direction}: compliant joints {compliant:.3f}, rigid blocks {result.multiplier:.3f}, forces possible up to {possible:.3f}")
+    assert compliant < 0.9 * possible and 0.95 * compliant < result.bracket[0] <= possible
+
+
 def test_a_wall_with_a_corner_that_slides():
     base, stone = ground(0.2)
     dem.return_wall(4, 2, 2, (0.4, 0.2, 0.2), stone, base)

@@ -168,7 +168,7 @@ MASONRY_INLINE void advanceGroups(Group<K>* groups, SolverGroup<K>* memory, cons
 			auto& slip = memory[g][k].slip;
 			const Mask glides = slides(p.pt, groups[g].friction * (rough ? p.pn : row.bound));
 			slip = select(glides, typename PointLanes<K>::Tangent {}, slip + h * row.ut);
-			ended.loss -= select(glides, dot(row.actedT, row.ut), all(0));
+			ended.loss -= select(glides & (p.pn > 0), dot(row.actedT, row.ut), all(0));
 			const Mask here = row.stiffness > 0;
 			in |= here;
 			moves |= (p.massN > 0) & (larger(size(row.un), size(row.ut)) > level);

@@ -79,7 +79,7 @@ struct AdmmReport {
 
 // The points have done this in a step.
 struct PointsReport {
-	double friction {0};   // energy that it has taken, J
+	double friction {0};   // energy that it has taken at points with an impulse, J
 	double forceError {0}; // between the impulses of the laws and of the momentum equation, as the velocity that it gives a point, m/s
 };
 

@@ -43,7 +43,7 @@ void AssemblyStep<K>::advancePart(RigidSystem<K>& s, double h)
 	changeTime = h;
 	takeInstants(s, step);
 	pulses.move(s, contacts, h);
-	ledger.open(s, pulses.halfBack());
+	ledger.open(s, contacts, pulses.halfBack(), h);
 	setLoads(s, h);
 	solver.spins = events.find(s, contacts, change, step);
 	const CappedReport result = solve(s, loads, change.size() == loads.size() && solver.spins.empty() ? change : noGuess, step);
@@ -75,7 +75,7 @@ void AssemblyStep<K>::takeInstants(RigidSystem<K>& s, const StepContext& step)
 	if (land) {
 		solver.spins = events.rows(contacts);
 		const double lostInStep = ledger.lost();
-		ledger.open(s, pulses.halfBack());
+		ledger.open(s, contacts, pulses.halfBack(), 0);
 		const CappedReport impact = solveInstant(s, step.atInstant(events.speed()));
 		events.report(s, contacts, solver.spins, lostInStep + impact.lost, impact.residual);
 		capped.restore(contacts);
@@ -83,7 +83,7 @@ void AssemblyStep<K>::takeInstants(RigidSystem<K>& s, const StepContext& step)
 	solver.spins.clear();
 	if (jump) {
 		pulses.apply(s, contacts);
-		ledger.open(s, pulses.halfBack());
+		ledger.open(s, contacts, pulses.halfBack(), 0);
 		solveInstant(s, step.atInstant(pulses.speed()));
 		capped.restore(contacts);
 	}
@@ -111,7 +111,7 @@ CappedReport AssemblyStep<K>::solveInstant(RigidSystem<K>& s, const StepContext&
 	for (size_t b = 0; b < s.bodies.size(); ++b)
 		if (!s.bodies[b].prescribed)
 			s.bodies[b].velocity = contacts.inGlobal(contacts.velocity, b);
-	report.created += ledger.close(s, Scales(s), instant.h, 0);
+	report.created += ledger.close(s, Scales(s), instant.h, 0, 0);
 	return result;
 }
 
@@ -161,7 +161,7 @@ void AssemblyStep<K>::moveBodies(RigidSystem<K>& s, double h, bool isMoving)
 	contacts.velocity = solver.velocity;
 	if (const double deepest = isMoving ? projection.settle(contacts) : 0; deepest > tolerance::assembly::sunk * contacts.length)
 		report.deepest = std::max(report.deepest, deepest);
-	double work = 0; // of the forces, J
+	double work = 0, onMean = 0; // of the forces, J
 	for (size_t b = 0; b < s.bodies.size(); ++b) {
 		auto& body = s.bodies[b];
 		body.fresh = false;
@@ -178,8 +178,9 @@ void AssemblyStep<K>::moveBodies(RigidSystem<K>& s, double h, bool isMoving)
 		moveFree(body, moved, h);
 		body.increment = (body.velocity - before) / h;
 		work += body.force.dot(moved);
+		onMean += h / 2 * body.force.dot(before + body.velocity);
 	}
-	report.created += ledger.close(s, Scales(s), h, work);
+	report.created += ledger.close(s, Scales(s), h, work, onMean);
 }
 
 // Whether a body turns so far in the step that frames must follow.
