@@ -1,5 +1,4 @@
 #include "linalg/supernodes.hpp"
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cstring>
 
@@ -10,6 +9,7 @@ using namespace simd;
 namespace {
 
 using Node = Supernodes::Node;
+using Doubles = double __attribute__((vector_size(64))); // eight, as of Floats
 
 constexpr int mostWidth = 16; // columns of blocks; limits the arrays on the stack
 
@@ -90,6 +90,108 @@ MASONRY_LANES void substitute(const Node* nodes, int count, const int* row, cons
 	}
 }
 
+// Gauss-Jordan, in place, of a symmetric positive definite matrix: rows of `stride` numbers, a multiple of eight.
+MASONRY_INLINE void invert(double* a, int n, int stride)
+{
+	const int vectors = stride / floatWidth;
+	for (int k = 0; k < n; ++k) {
+		auto* pivotRow = reinterpret_cast<Doubles*>(a + k * stride);
+		const double inverse = 1 / a[k * stride + k];
+		a[k * stride + k] = 1;
+		for (int q = 0; q < vectors; ++q)
+			pivotRow[q] *= inverse;
+		for (int i = 0; i < n; ++i) {
+			if (i == k)
+				continue;
+			auto* row = reinterpret_cast<Doubles*>(a + i * stride);
+			const double factor = a[i * stride + k];
+			a[i * stride + k] = 0;
+			for (int q = 0; q < vectors; ++q)
+				row[q] -= factor * pivotRow[q];
+		}
+	}
+}
+
+// Products of eight rows of a panel, its columns `stride` numbers apart, with three vectors whose components are `step` apart.
+MASONRY_INLINE void times(const double* panel, int columns, int stride, const double* x, int step, Doubles* result)
+{
+	Doubles a {}, b {}, c {};
+	for (int k = 0; k < columns; ++k, panel += stride, x += step) {
+		const auto& rows = *reinterpret_cast<const Doubles*>(panel);
+		a += rows * x[0];
+		b += rows * x[1];
+		c += rows * x[2];
+	}
+	result[0] = a, result[1] = b, result[2] = c;
+}
+
+// Takes a block column of M_RS F_RS^T off F_RR: rows from number `begin` on; `local`: the places of the blocks in the first column.
+MASONRY_INLINE void subtract(const double* product, int stride, int begin, int rows, const int* local, int own, double* inOwn,
+                             int ownStride, double* inUnder, int underStride)
+{
+	for (int a = begin; a < rows; ++a) {
+		const bool isOwn = a < own;
+		double* to = (isOwn ? inOwn : inUnder) + local[a];
+		const int apart = isOwn ? ownStride : underStride;
+		for (int c = 0; c < 3; ++c)
+			for (int i = 0; i < 3; ++i)
+				to[c * apart + i] -= product[c * stride + 3 * a + i];
+	}
+}
+
+MASONRY_LANES void eliminate(const Node* nodes, int count, const int* nodeOf, const int* row, double* open, Floats* numbers, double* panel,
+                             int* local)
+{
+	for (int k = 0; k < count; ++k) {
+		const Node& s = nodes[k];
+		const int n = 3 * s.width, stride = s.stride(), wide = eights(s.width), ownStride = floatWidth * wide;
+		const int* rows = row + s.firstRow;
+		alignas(64) double inverse[3 * mostWidth * floatWidth * eights(mostWidth)];
+		const double *own = open + s.own, *under = open + s.under;
+		for (int i = 0; i < n; ++i)
+			for (int c = 0; c < ownStride; ++c)
+				inverse[i * ownStride + c] = c >= n ? 0 : i > c ? own[c * n + i] : own[i * n + c];
+		invert(inverse, n, ownStride);
+		Floats* to = numbers + s.begin;
+		for (int q = 0; q < wide; ++q)
+			for (int c = 0; c < n; ++c, ++to) // rows are columns: the inverse is symmetric
+				*to = __builtin_convertvector(*reinterpret_cast<const Doubles*>(inverse + c * ownStride + floatWidth * q), Floats);
+		for (int q = 0; q < stride; q += floatWidth)
+			for (int c = 0; c < n; c += 3, to += 3) {
+				Doubles result[3];
+				times(under + q, n, stride, inverse + c, ownStride, result);
+				for (int i = 0; i < 3; ++i) {
+					*reinterpret_cast<Doubles*>(panel + (c + i) * stride + q) = result[i];
+					to[i] = __builtin_convertvector(result[i], Floats);
+				}
+			}
+		double* const product = panel + n * stride;
+		for (int b = 0, known = -1, ownEnd = 0; b < s.rows; ++b) {
+			const Node& target = nodes[nodeOf[rows[b]]];
+			if (nodeOf[rows[b]] != known) {
+				known = nodeOf[rows[b]];
+				const int* targetRow = row + target.firstRow;
+				for (ownEnd = b; ownEnd < s.rows && rows[ownEnd] < target.ownEnd(); ++ownEnd)
+					local[ownEnd] = 3 * (rows[ownEnd] - target.column);
+				for (int a = ownEnd, at = 0; a < s.rows; ++a) {
+					while (targetRow[at] != rows[a])
+						++at;
+					local[a] = 3 * at;
+				}
+			}
+			for (int q = 3 * b / floatWidth * floatWidth; q < stride; q += floatWidth) {
+				Doubles result[3];
+				times(panel + q, n, stride, under + 3 * b, stride, result);
+				for (int i = 0; i < 3; ++i)
+					*reinterpret_cast<Doubles*>(product + i * stride + q) = result[i];
+			}
+			const int column = 3 * (rows[b] - target.column), underStride = target.stride();
+			subtract(product, stride, b, s.rows, local, ownEnd, open + target.own + column * 3 * target.width, 3 * target.width,
+			         open + target.under + column * underStride, underStride);
+		}
+	}
+}
+
 } // namespace
 
 // A column joins the supernode before it if that makes the solve cheaper. The rows of the column before are among the column and its rows
@@ -105,54 +207,45 @@ void Supernodes::setPattern(const EliminationOrder& order)
 		    cost(nodes.back().width + 1, rowsOf(k)) <= cost(nodes.back().width, rowsOf(k - 1)) + cost(1, rowsOf(k)))
 			++nodes.back().width;
 		else
-			nodes.push_back({k, 1, 0, 0, 0});
+			nodes.push_back({k, 1, 0, 0});
 		nodes.back().firstRow = order.first[k];
 		nodes.back().rows = rowsOf(k);
 	}
+	nodeOf.clear();
+	size_t openSize = 0, panelSize = 0;
+	int most = 0;
 	for (Node& s : nodes) {
+		nodeOf.insert(nodeOf.end(), s.width, int(&s - nodes.data()));
 		s.begin = begin;
 		begin += size(s);
+		s.under = openSize;
+		s.own = s.under + 3 * s.width * s.stride();
+		openSize = s.own + floatWidth * ((9 * s.width * s.width + floatWidth - 1) / floatWidth);
+		panelSize = std::max(panelSize, size_t(3 * (s.width + 1)) * s.stride());
+		most = std::max(most, s.rows);
 	}
 	numbers.assign(begin, Floats {});
-	int most = 0;
-	for (const Node& s : nodes)
-		most = std::max(most, eights(s.rows));
-	below.resize(most);
+	open.assign(openSize / floatWidth, Eight {});
+	panel.resize(panelSize / floatWidth);
+	below.resize(eights(most));
+	local.resize(most);
 }
 
-void Supernodes::take(const EliminationOrder& order, const std::vector<Block>& lower, const std::vector<Block>& pivots)
+Supernodes::Place Supernodes::place(const EliminationOrder& order, int column, int row) const
 {
-	Eigen::MatrixXd own, inverse, below;
-	// Stores a matrix as panels of eight rows, each column by column.
-	const auto store = [&](const Eigen::MatrixXd& from, size_t begin) {
-		for (int i = 0; i < from.rows(); ++i)
-			for (int c = 0; c < from.cols(); ++c)
-				numbers[begin + size_t(i / floatWidth) * from.cols() + c][i % floatWidth] = float(from(i, c));
-	};
-	for (const Node& s : nodes) {
-		const int n = 3 * s.width, end = s.column + s.width;
-		const int *rows = order.row.data() + s.firstRow, *rowsEnd = rows + s.rows;
-		own.setIdentity(n, n);
-		inverse.setZero(n, n);
-		below.setZero(3 * s.rows, n);
-		for (int k = s.column; k < end; ++k) {
-			const int c = 3 * (k - s.column);
-			inverse.block<3, 3>(c, c) = pivots[k].inverse();
-			for (int a = order.first[k]; a < order.first[k + 1]; ++a) {
-				const int at = order.row[a];
-				if (at < end)
-					own.block<3, 3>(3 * (at - s.column), c) = lower[a];
-				else
-					below.block<3, 3>(3 * (std::lower_bound(rows, rowsEnd, at) - rows), c) = lower[a];
-			}
-		}
-		const Eigen::MatrixXd& unit = own;
-		unit.triangularView<Eigen::UnitLower>().solveInPlace<Eigen::OnTheRight>(inverse);
-		unit.transpose().triangularView<Eigen::UnitUpper>().solveInPlace(inverse);
-		unit.triangularView<Eigen::UnitLower>().solveInPlace<Eigen::OnTheRight>(below);
-		store(inverse, s.begin);
-		store(below, s.begin + size_t(eights(s.width)) * n);
-	}
+	const Node& s = nodes[nodeOf[column]];
+	const size_t c = 3 * (column - s.column);
+	if (row < s.ownEnd())
+		return {s.own + c * 3 * s.width + 3 * (row - s.column), 3 * s.width};
+	const auto first = order.row.begin() + s.firstRow;
+	const int at = int(std::lower_bound(first, first + s.rows, row) - first);
+	return {s.under + c * s.stride() + 3 * at, s.stride()};
+}
+
+void Supernodes::factorise(const EliminationOrder& order)
+{
+	eliminate(nodes.data(), int(nodes.size()), nodeOf.data(), order.row.data(), open.data()->number, numbers.data(), panel.data()->number,
+	          local.data());
 }
 
 void Supernodes::solve(const EliminationOrder& order, float* x)

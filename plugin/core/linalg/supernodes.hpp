@@ -1,35 +1,55 @@
 #pragma once
-// Supernodal form of a factor L D L^T of 3 x 3 blocks, for many solves: columns with nearly the same rows form one dense panel.
-// With S such columns and R the rows below them, the factors of A = L D L^T with one block a supernode are
+// Factorisation of a symmetric positive definite matrix of 3 x 3 blocks by supernodes: columns with nearly the same rows form one dense
+// panel. With S the columns of a supernode, R the rows below them, and F what the supernodes before have left of the matrix there,
 //
-//     M_RS = L_RS L_SS^-1,    D_SS^-1 = L_SS^-T D_S^-1 L_SS^-1
+//     D_SS^-1 = F_SS^-1,    M_RS = F_RS D_SS^-1,    F_RR -= M_RS F_RS^T
 //
-// It is stored in single precision: its users correct a residual, and a solve, which reads the factor twice, takes half the time.
+// F is in double precision. What a solve reads is stored in single precision: its users correct a residual, and a solve, which reads the
+// factor twice, takes half the time.
 #include "linalg/elimination_order.hpp"
 #include "simd/lanes.hpp"
-#include <Eigen/Core>
+#include <algorithm>
 
 namespace masonry::linalg {
 
 class Supernodes {
 public:
-	using Block = Eigen::Matrix3d;
+	// Place of a 3 x 3 block of F: column by column, `stride` numbers apart.
+	struct Place {
+		size_t at;
+		int stride;
+	};
 
 	void setPattern(const EliminationOrder& order);
-	// L without its diagonal of ones, entry by entry of the order, and D.
-	void take(const EliminationOrder& order, const std::vector<Block>& lower, const std::vector<Block>& pivots);
+	// F is zero afterwards.
+	void clear() { std::fill(open.begin(), open.end(), Eight {}); }
+	// The block of F in this column and row of the order, row >= column.
+	Place place(const EliminationOrder& order, int column, int row) const;
+	double* numberAt(const Place& place) { return open.data()->number + place.at; }
+	// F, whose blocks below the diagonal and on it have been added, is no longer valid afterwards.
+	void factorise(const EliminationOrder& order);
 	// x = A^-1 x; three numbers a node, in the order of elimination.
 	void solve(const EliminationOrder& order, float* x);
 
 	struct Node {
 		int column, width, firstRow, rows; // in 3 x 3 blocks; rows of the last column
-		size_t begin;                      // of its numbers: D^-1, then M, in panels of eight rows that are stored column by column
+		size_t begin {0};                  // of its numbers: D^-1, then M, in panels of eight rows that are stored column by column
+		size_t own {0}, under {0};         // of F_SS and F_RS
+		int ownEnd() const { return column + width; }
+		int stride() const { return (3 * rows + simd::floatWidth - 1) / simd::floatWidth * simd::floatWidth; } // of F_RS
 	};
 
 private:
+	struct alignas(64) Eight {
+		double number[simd::floatWidth] {};
+	};
 	std::vector<Node> nodes;
+	std::vector<int> nodeOf; // of a column
 	simd::Array<simd::Floats> numbers;
+	simd::Array<Eight> open;         // F
 	simd::Array<simd::Floats> below; // workspace
+	simd::Array<Eight> panel;
+	std::vector<int> local;
 };
 
 } // namespace masonry::linalg

@@ -9,7 +9,7 @@
 // courses, per, L, T, H   size of the wall and of its blocks (m)
 // amp, angle, hertz       of the base's sine (g, degrees from the wall's direction, Hz)
 // rest, shake, after, h   s
-// k, tol, reserve, quick, early, instant, itol   of the solver
+// k, tol, reserve, quick, early, instant, itol, rr, rmost, rfollows   of the solver
 // half                    1: energies with the positions of half a step earlier, to which the velocities of a step belong
 // file                    writes the scene as gauss_seidel_space.cpp reads it, and ends
 #include "dynamics/assembly/assembly_step.hpp"
@@ -314,6 +314,9 @@ void runWithOptions()
 	a.tolerance = number("tol", a.tolerance);
 	a.reserve = int(number("reserve", a.reserve));
 	a.softness = number("r", a.softness);
+	a.restSoftness = number("rr", a.restSoftness);
+	a.restMost = int(number("rmost", a.restMost));
+	a.restFollows = number("rfollows", a.restFollows);
 	a.leastSoftness = number("least", a.leastSoftness);
 	a.relaxation = number("over", a.relaxation);
 	a.boundShare = number("theta", a.boundShare);

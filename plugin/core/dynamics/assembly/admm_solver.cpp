@@ -16,9 +16,10 @@ using RowsOf = typename AdmmSolver<K>::Rows;
 
 // These values are the same for all points of a step.
 struct Step {
-	double h, perH, fall, mix, reach, left, softness, leastSoftness, relaxation, boundShare, pullBack;
+	double h, perH, fall, mix, reach, left, softness, follows, leastSoftness, relaxation, boundShare, pullBack;
 	double sticks; // m, gap up to which a point without an impulse starts as one that sticks
 	bool strict;   // errors of impulses count as those of velocities
+	bool compares; // R with the loads
 };
 
 // R by load.
@@ -38,11 +39,12 @@ struct alignas(alignment) Outdated {
 template <class K>
 MASONRY_INLINE void takePoint(PointLanes<K>& p, const RowOf<K>& row, const Lanes& approach, const Step& step, Outdated& outdated)
 {
-	constexpr double follows = 0.1; // share by which R may differ
+	constexpr double needed = 0.25; // share of the reach within which A must have a point
 	p.steady += step.mix * (p.pn - p.steady);
 	const Mask in = row.stiffness > 0;
-	outdated.reached |= (p.massN > 0) & (p.gap + step.h * approach < step.reach) & ~in;
-	outdated.loaded |= in & (p.massN > 0) & (size(resistanceOf(p, step) - row.resistance) > follows * row.resistance);
+	outdated.reached |= (p.massN > 0) & (p.gap + step.h * approach < needed * step.reach) & ~in;
+	if (step.compares)
+		outdated.loaded |= in & (p.massN > 0) & (size(resistanceOf(p, step) - row.resistance) > step.follows * row.resistance);
 }
 
 template <class K>
@@ -225,7 +227,7 @@ MASONRY_PASSES(Plane)
 MASONRY_PASSES(Space)
 #undef MASONRY_PASSES
 
-Step stepOf(const StepContext& c, const AdmmSettings& a)
+Step stepOf(const StepContext& c, const AdmmSettings& a, bool atRest)
 {
 	const double filter = a.filterTime * c.rocking;
 	return {c.h,
@@ -236,57 +238,43 @@ Step stepOf(const StepContext& c, const AdmmSettings& a)
 	                     : 1,
 	        a.reach * c.length,
 	        a.leftPenetration * c.length,
-	        a.softness,
+	        atRest ? a.restSoftness : a.softness,
+	        atRest ? a.restFollows : a.follows,
 	        a.leastSoftness,
 	        a.relaxation,
 	        a.boundShare,
 	        c.instant ? 0 : a.pullBack,
 	        c.instant ? tolerance::assembly::touching * c.length : -farAway,
-	        a.strictForces};
+	        a.strictForces,
+	        false};
 }
 
 } // namespace
 
+// Whether A must be made anew: it is of other pairs, its points are elsewhere, one may close that it does not have, or the penalties are to
+// follow the loads. Filters the loads.
 template <class K>
-typename AdmmSolver<K>::Lane AdmmSolver<K>::laneOf(const RigidSystem<K>& s, const ContactSet<K>& c, int g, int i) const
+bool AdmmSolver<K>::isOutdated(ContactSet<K>& c, const StepContext& step)
 {
-	Lane lane;
-	lane.pair = c.features[g].pair[i];
-	for (int k = 0; k < c.points(s, g, i); ++k)
-		if (rows[g][k].stiffness[i] > 0)
-			lane.features[k] = s.pairs[lane.pair].points[c.features[g].first[i] + k].feature;
-	return lane;
-}
-
-// Whether A must be made anew: its points are others, one comes into reach that it does not have, or the penalties are to follow the loads.
-template <class K>
-bool AdmmSolver<K>::isOutdated(const RigidSystem<K>& s, ContactSet<K>& c, const StepContext& step)
-{
-	if (lanes.size() != c.groups.size())
-		rows.assign(c.groups.size(), {});
+	rows.resize(c.groups.size());
+	age += step.instant ? 0 : step.h;
+	Step same = stepOf(step, settings, atRest);
+	same.compares = !(age < settings.refactorTime * step.rocking);
+	if (same.compares)
+		age = 0;
 	Outdated found[Team::mostParts + 1] {};
-	const Step same = stepOf(step, settings);
 	c.allParts([&](const Part& part, int number) {
 		takePass(c.groups.data(), rows.data(), part.begin, part.end, c.velocity.data(), same, found[number]);
 	});
-	age += step.instant ? 0 : step.h;
-	if (lanes.size() != c.groups.size() || masses.size() != c.own.size() || turn > settings.turned)
+	if (!matrix.hasMasses(c))
 		return true;
-	const bool isOld = !(age < settings.refactorTime * step.rocking);
-	if (isOld)
-		age = 0;
-	for (const Outdated& here : found)
-		if (any(here.reached) || (isOld && any(here.loaded)))
+	if (std::exchange(otherFrames, false)) {
+		if (!matrix.isOf(c))
 			return true;
-	if (std::exchange(otherPoints, false))
-		for (size_t g = 0; g < lanes.size(); ++g)
-			for (int i = 0; i < width; ++i)
-				if (!(lanes[g][i] == laneOf(s, c, int(g), i)))
-					return true;
-	for (size_t b = 0; b < c.own.size(); ++b)
-		if (masses[b] != c.velocity[packs<K> * b][3])
-			return true;
-	return false;
+		turn = matrix.change(c);
+	}
+	return turn > settings.turned ||
+	       std::any_of(std::begin(found), std::end(found), [](const Outdated& here) { return any(here.reached) || any(here.loaded); });
 }
 
 template <class K>
@@ -295,7 +283,7 @@ void AdmmSolver<K>::start(ContactSet<K>& c, const LaneArray& load, const LaneArr
 	velocity = c.velocity;
 	free.resize(velocity.size());
 	force.assign(velocity.size(), all(0));
-	const Step same = stepOf(step, settings);
+	const Step same = stepOf(step, settings, atRest);
 	const auto startBodies = [&](const Part& part) {
 		for (const int b : part.members)
 			free[b] = velocity[b] + load[b];
@@ -324,7 +312,7 @@ void AdmmSolver<K>::prepareSpins(const ContactSet<K>& c)
 	for (int r = 0; r < n; ++r) {
 		response[r].assign(c.velocity.size(), all(0));
 		spins[r].push(1, c.velocity, response[r]);
-		factor.solve(response[r].data(), places);
+		matrix.solve(response[r]);
 	}
 	for (int r = 0; r < n; ++r)
 		for (int k = 0; k < n; ++k)
@@ -345,7 +333,7 @@ void AdmmSolver<K>::holdSpins()
 	const Eigen::VectorXd change = perSpin * miss;
 	for (size_t r = 0; r < spins.size(); ++r) {
 		spins[r].couple += change[r];
-		for (const int b : places)
+		for (const int b : matrix.freePacks())
 			force[b] += change[r] * response[r][b];
 	}
 }
@@ -354,8 +342,8 @@ void AdmmSolver<K>::holdSpins()
 template <class K>
 double AdmmSolver<K>::iterate(ContactSet<K>& c, const StepContext& step)
 {
-	const Step same = stepOf(step, settings);
-	factor.solve(force.data(), places);
+	const Step same = stepOf(step, settings, atRest);
+	matrix.solve(force);
 	holdSpins();
 	Lanes worst[Team::mostParts + 1] {}, changed[Team::mostParts + 1] {};
 	const auto move = [&](const Part& part, int number) {
@@ -382,32 +370,23 @@ double AdmmSolver<K>::iterate(ContactSet<K>& c, const StepContext& step)
 }
 
 template <class K>
-void AdmmSolver<K>::findTurn(const ContactSet<K>& c, const Poses& poses)
-{
-	turn = 0;
-	for (size_t b = 0; b < std::min(factored.size(), poses.size()); ++b)
-		if (c.own[b])
-			turn = std::max(turn, turned(factored[b], poses[b]));
-}
-
-template <class K>
-void AdmmSolver<K>::solve(const RigidSystem<K>& s, ContactSet<K>& c, const Poses& poses, const LaneArray& load, const LaneArray& guess,
-                          const StepContext& step)
+void AdmmSolver<K>::solve(ContactSet<K>& c, const LaneArray& load, const LaneArray& guess, const StepContext& step)
 {
 	report = {};
-	findTurn(c, poses);
-	if (isOutdated(s, c, step))
-		factorise(s, c, poses, step);
+	const bool wasAtRest = std::exchange(atRest, step.stands && !cold && !settings.strictForces);
+	if (isOutdated(c, step) || atRest != wasAtRest)
+		makeMatrix(c, step);
 	for (SpinRow<K>& row : spins)
 		row.couple = 0;
 	prepareSpins(c);
 	start(c, load, guess, step);
 	const double enough = std::max(settings.tolerance * step.fall, step.instant ? settings.instantTolerance * step.speed : 0);
-	const double iterations = settings.iterations * std::max(1., double(settings.few) * packs<K> / std::max<size_t>(1, places.size()));
+	const double iterations =
+	    settings.iterations * std::max(1., double(settings.few) * packs<K> / std::max<size_t>(1, matrix.freePacks().size()));
 	const int most = step.instant                    ? settings.ofInstant
 	                 : cold || settings.strictForces ? settings.first
 	                                                 : int(std::min(iterations + saved, 10 * iterations));
-	const auto isLagging = [&] { return !step.instant && report.iterations < settings.least; };
+	const auto isLagging = [&] { return !step.instant && !atRest && report.iterations < settings.least; };
 	constexpr double diverging = 10;
 	constexpr int untilLoaded = 100; // iterations of a cold start, after which R follows the loads that they have found
 	double least = INFINITY;
@@ -417,8 +396,10 @@ void AdmmSolver<K>::solve(const RigidSystem<K>& s, ContactSet<K>& c, const Poses
 		const bool isLoaded = cold && !step.instant && report.iterations % untilLoaded == 0;
 		if (isLoaded)
 			c.startMeans();
-		if (isLoaded || report.residual > diverging * least) {
-			factorise(s, c, poses, step);
+		const bool isTooStiff = atRest && report.iterations >= settings.restMost && report.residual > enough;
+		atRest &= !isTooStiff;
+		if (isLoaded || isTooStiff || report.residual > diverging * least) {
+			makeMatrix(c, step);
 			prepareSpins(c);
 			least = report.residual;
 		}
@@ -429,6 +410,7 @@ void AdmmSolver<K>::solve(const RigidSystem<K>& s, ContactSet<K>& c, const Poses
 		saved = cold ? 0 : std::clamp(saved + iterations - report.iterations, 0., settings.reserve * iterations);
 		cold = false;
 	}
+	report.atRest = atRest;
 	report.finite = std::all_of(velocity.begin(), velocity.end(), [](const Lanes& v) { return std::isfinite(v[0] + v[1] + v[2]); });
 }
 
@@ -451,101 +433,18 @@ PointsReport AdmmSolver<K>::advanceGaps(ContactSet<K>& c, double h, double level
 }
 
 template <class K>
-void AdmmSolver<K>::factorise(const RigidSystem<K>& s, ContactSet<K>& c, const Poses& poses, const StepContext& step)
+void AdmmSolver<K>::makeMatrix(ContactSet<K>& c, const StepContext& step)
 {
-	factored = poses;
-	turn = 0;
-	const Step same = stepOf(step, settings);
+	const Step same = stepOf(step, settings, atRest);
 	c.allParts([&](const Part& part, int) { penaltyPass(c.groups.data(), rows.data(), part.begin, part.end, c.velocity.data(), same); });
-	makeMatrix(s, c);
-	age = 0;
+	std::vector<typename AssemblyMatrix<K>::Stiffness> stiffness(rows.size());
+	for (size_t g = 0; g < rows.size(); ++g)
+		for (int k = 0; k < lanePoints<K>; ++k)
+			stiffness[g][k] = rows[g][k].stiffness;
+	matrix.make(c, std::move(stiffness));
+	turn = age = 0;
+	otherFrames = false;
 	++report.factorisations;
-}
-
-// From the frames of the contacts and the penalties of the rows.
-template <class K>
-void AdmmSolver<K>::makeMatrix(const RigidSystem<K>& s, const ContactSet<K>& c)
-{
-	lanes.resize(c.groups.size());
-	for (size_t g = 0; g < lanes.size(); ++g)
-		for (int i = 0; i < width; ++i)
-			lanes[g][i] = laneOf(s, c, int(g), i);
-	masses.resize(c.own.size());
-	for (size_t b = 0; b < masses.size(); ++b)
-		masses[b] = c.velocity[packs<K> * b][3];
-	setGraph(c);
-	for (size_t k = 0; k < places.size(); ++k)
-		factor.addDiagonal(int(k), Block::Identity() / c.velocity[places[k]][3]);
-	int edge = packs<K> > 1 ? int(places.size()) / packs<K> : 0; // after those within bodies
-	for (size_t g = 0; g < c.groups.size(); ++g)
-		for (int i = 0; i < width; ++i)
-			addPair(c, int(g), i, edge);
-	factor.factorise();
-}
-
-// A node for each pack of a body; edges between those of a body, then between those of a pair.
-template <class K>
-void AdmmSolver<K>::setGraph(const ContactSet<K>& c)
-{
-	constexpr int n = packs<K>;
-	node.assign(c.own.size(), -1);
-	places.clear();
-	edges.clear();
-	for (int b = 0; b < int(c.own.size()); ++b)
-		if (c.own[b]) {
-			node[b] = int(places.size());
-			for (int k = 0; k < n; ++k)
-				places.push_back(n * b + k);
-			if (n > 1)
-				edges.push_back({node[b], node[b] + 1});
-		}
-	for (const Group<K>& group : c.groups)
-		for (int i = 0; i < width; ++i)
-			if (c.isFree(group.body1[i]) && c.isFree(group.body2[i]))
-				for (int k = 0; k < n * n; ++k)
-					edges.push_back({node[group.body1[i]] + k / n, node[group.body2[i]] + k % n});
-	factor.setGraph(int(places.size()), edges);
-}
-
-// J^T J / R of a lane's pair; its edges begin at `edge`, which goes on to the next pair's.
-template <class K>
-void AdmmSolver<K>::addPair(const ContactSet<K>& c, int g, int i, int& edge)
-{
-	const Group<K>& group = c.groups[g];
-	constexpr int n = packs<K>;
-	Block own[2][n][n], across[n][n]; // rows and columns by pack
-	for (int k = 0; k < n * n; ++k)
-		own[0][k / n][k % n] = own[1][k / n][k % n] = across[k / n][k % n] = Block::Zero();
-	for (int k = 0; k < group.count; ++k) {
-		const double stiffness = rows[g][k].stiffness[i];
-		if (!(stiffness > 0))
-			continue;
-		for (int row = 0; row < K::rows; ++row) {
-			Vector3 a1[n], a2[n];
-			for (int a = 0; a < n; ++a) {
-				a1[a] = -partOf(group.point[k], row, i, 1, a);
-				a2[a] = partOf(group.point[k], row, i, 2, a);
-			}
-			for (int a = 0; a < n; ++a)
-				for (int b = 0; b < n; ++b) {
-					own[0][a][b] += stiffness * a1[a] * a1[b].transpose();
-					own[1][a][b] += stiffness * a2[a] * a2[b].transpose();
-					across[a][b] += stiffness * a1[a] * a2[b].transpose();
-				}
-		}
-	}
-	const int body[2] = {group.body1[i], group.body2[i]};
-	for (int side = 0; side < 2; ++side) {
-		if (!c.isFree(body[side]))
-			continue;
-		for (int a = 0; a < n; ++a)
-			factor.addDiagonal(node[body[side]] + a, own[side][a][a]);
-		if (n > 1)
-			factor.addEdge(node[body[side]] / n, own[side][0][n - 1]);
-	}
-	if (c.isFree(body[0]) && c.isFree(body[1]))
-		for (int k = 0; k < n * n; ++k)
-			factor.addEdge(edge++, across[k / n][k % n]);
 }
 
 template class AdmmSolver<Plane>;

@@ -22,7 +22,9 @@
 //
 //     R by load       R = d r/(1 + l): d is the mean of J M^-1 J^T over the rows of the point, l its filtered normal impulse in units of
 //                     the impulse that stops it alone after the fall of one step. R p is then a velocity of about the same size at light
-//                     and heavy points. A uniform R suits either a wall that slides or one that rocks.
+//                     and heavy points. A uniform R suits either a wall that slides or one that rocks. While nothing moves, r is a
+//                     hundredth: an impulse that changes by q leaves w - z = R q, and one iteration is enough if that is small. A step that
+//                     does not end soon with it goes on with the r of motion.
 //     damped bound    With the bound mu p_n, sliding points run into a limit cycle whose residual does not fall.
 //     start           V starts from the velocities before the step and a guess of their change. It stops where w = z, so that what slides
 //                     with a steady acceleration would lag by a multiple of the tolerance in each step without one.
@@ -38,10 +40,9 @@
 //
 // Biases. A point with a gap may close within the step: b_n = gap/h. Of a penetration, and of a slip that unfinished iterations have left
 // at a point that sticks, a share is taken back in each step: b = share x/h. A penetration with which a point was found stays.
-#include "dynamics/assembly/contact_set.hpp"
+#include "dynamics/assembly/assembly_matrix.hpp"
 #include "dynamics/assembly/spin_row.hpp"
 #include "dynamics/assembly/step_context.hpp"
-#include "linalg/block_ldlt.hpp"
 
 namespace masonry::rigid::assembly {
 
@@ -58,7 +59,11 @@ struct AdmmSettings {
 	int ofInstant {100}; // iterations of an impact or a base pulse, at most. Fewer: the next steps take up more of it
 	double instantTolerance {
 	    1e-6}; // largest |w - z| of an instant relative to the velocities that change, if that is more. Larger: restitution is less right
-	double softness {0.2};       // r. Larger: high walls go too far; smaller: low walls that begin to move do not go far enough
+	double softness {0.2};      // r. Larger: high walls go too far; smaller: low walls that begin to move do not go far enough
+	double restSoftness {2e-3}; // r while the assembly rests. Larger: a wall that is shaken without moving drifts; smaller: more iterations
+	int restMost {10};          // iterations until a step at rest goes on with `softness`. More: the onset of motion costs more
+	double follows {0.1};       // share by which R may differ from that of the loads. Larger: more iterations; smaller: more factorisations
+	double restFollows {0.8};   // the same at rest, where few iterations are enough
 	double leastSoftness {1e-5}; // of d, at the most loaded points. Smaller: rounding of the factorisation in single precision
 	double relaxation {1.7};     // a, 1 to 2. Larger: residuals oscillate; smaller: they fall more slowly
 	double boundShare {0.3};     // theta. 1: sliding points run into a limit cycle; smaller: friction lags
@@ -66,7 +71,8 @@ struct AdmmSettings {
 	double reach {0.016};        // gap relative to the smallest half size within which points are in A. Smaller: more factorisations
 	double filterTime {0.125};   // of the filtered load, relative to sqrt(smallest half size / gravity)
 	double refactorTime {0.125}; // relative to the same, after which R follows the loads
-	double turned {0.03}; // rad, by which a body may turn before A is made anew. Larger: more iterations; smaller: more factorisations
+	double turned {0.03}; // by which the rows of a point may change before A is made anew, as by a turn in rad. Larger: more iterations;
+	                      // smaller: more factorisations
 	double leftPenetration {5e-6}; // relative to the smallest half size, which is not taken back. 0: blocks at rest never come to rest
 };
 
@@ -75,6 +81,7 @@ struct AdmmReport {
 	double residual {0};   // largest |w - z|, and mu R |g - p_n| where points slide, m/s
 	bool converged {true}; // the residual is below what was asked for
 	bool finite {true};
+	bool atRest {false}; // R is that of an assembly at rest
 };
 
 // The points have done this in a step.
@@ -102,40 +109,30 @@ public:
 	AdmmSettings settings;
 	AdmmReport report;
 	std::vector<SpinRow<K>> spins; // of the next solve, with their couples afterwards
-	bool otherPoints {true};       // points of the contacts have changed since the last solve
+	bool otherFrames {true};       // frames or points of the contacts have changed since the last solve
 	LaneArray velocity;            // V, in the packs of the contacts
 	std::vector<Rows> rows;        // by group of the contacts
 	LaneBits reached;              // pairs with a point in A, after advanceGaps
 	LaneBits moving;               // those of them with any point that moves: where a block rocks, only its pivot may be in A
 
-	using Poses = std::vector<typename K::Pose>;
-	// Solves the step from the contacts' velocities and impulses, whose frames are those of `poses`; `load` is the change of velocity by
-	// external forces, per body; `guess` is the one that is expected altogether. Impulses, z and slips of the contacts are those of the
-	// solution afterwards; their gaps and velocities stay.
-	void solve(const RigidSystem<K>& system, ContactSet<K>& contacts, const Poses& poses, const LaneArray& load, const LaneArray& guess,
-	           const StepContext& step);
+	// Solves the step from the contacts' velocities and impulses; `load` is the change of velocity by external forces, per body; `guess` is
+	// the one that is expected altogether. Impulses, z and slips of the contacts are those of the solution afterwards; their gaps and
+	// velocities stay.
+	void solve(ContactSet<K>& contacts, const LaneArray& load, const LaneArray& guess, const StepContext& step);
 	// Gaps and slips at the end of the step, into the contacts; which pairs move faster than `level`, m/s.
 	PointsReport advanceGaps(ContactSet<K>& contacts, double h, double level);
 	// The next solve starts cold and makes A anew.
 	void forget()
 	{
 		cold = true;
-		lanes.clear();
+		matrix.clear();
 	}
 
-	// Passes what the next solve needs from the last, number by number, after the contacts. A is made anew from its frames and penalties.
+	// Passes what the next solve needs from the last, number by number, after the contacts.
 	template <class Flow>
-	void pass(Flow& f, ContactSet<K>& contacts, const RigidSystem<K>& system)
+	void pass(Flow& f, const ContactSet<K>& contacts)
 	{
-		f(age), f(saved), f(cold);
-		size_t count = factored.size();
-		f(count);
-		const bool isNew = factored.empty() && count > 0;
-		factored.resize(count);
-		for (auto& pose : factored)
-			passPose(f, pose);
-		if (count == 0)
-			return;
+		f(age), f(saved), f(cold), f(atRest);
 		rows.resize(contacts.groups.size());
 		for (Rows& ofGroup : rows)
 			for (Row& row : ofGroup)
@@ -145,44 +142,26 @@ public:
 						f(value);
 						(*lanes)[i] = value;
 					}
-		if (isNew)
-			contacts.at(system, factored, [&] { makeMatrix(system, contacts); });
+		matrix.pass(f, contacts);
 	}
 
 private:
-	using Block = linalg::BlockLDLT::Block;
-	// Which points A is of: by group and lane the pair, and the features of its points.
-	struct Lane {
-		int pair {-1};
-		std::array<typename K::Feature, lanePoints<K>> features;
-		bool operator==(const Lane& o) const { return pair == o.pair && features == o.features; }
-	};
-	Lane laneOf(const RigidSystem<K>& system, const ContactSet<K>& contacts, int group, int lane) const;
-	bool isOutdated(const RigidSystem<K>& system, ContactSet<K>& contacts, const StepContext& step);
-	void findTurn(const ContactSet<K>& contacts, const Poses& poses);
-	void factorise(const RigidSystem<K>& system, ContactSet<K>& contacts, const Poses& poses, const StepContext& step);
-	void makeMatrix(const RigidSystem<K>& system, const ContactSet<K>& contacts);
-	void setGraph(const ContactSet<K>& contacts);
-	void addPair(const ContactSet<K>& contacts, int group, int lane, int& edge);
+	bool isOutdated(ContactSet<K>& contacts, const StepContext& step);
+	void makeMatrix(ContactSet<K>& contacts, const StepContext& step);
 	void start(ContactSet<K>& contacts, const LaneArray& load, const LaneArray& guess, const StepContext& step);
 	double iterate(ContactSet<K>& contacts, const StepContext& step);
 	void prepareSpins(const ContactSet<K>& contacts);
 	void holdSpins();
 
-	linalg::BlockLDLT factor; // a node for each pack of the free bodies
-	std::vector<int> places;  // of the nodes
-	std::vector<int> node;    // of a body, its first; -1: none
-	std::vector<linalg::BlockLDLT::Edge> edges;
-	std::vector<std::array<Lane, width>> lanes; // by group, that A is of
-	std::vector<double> masses;                 // by body, that A is of
-	Poses factored;                             // the frames that A is of
-	double turn {0};                            // rad, by which a body has turned since at most
+	AssemblyMatrix<K> matrix;
+	double turn {0}; // by which rows of a point have changed since A was made, at most
 	LaneArray free, force;
 	std::vector<LaneArray> response; // Y, by row
 	Eigen::MatrixXd perSpin;         // (E Y)^-1
 	double age {0};                  // s, since R was last compared with the loads
 	double saved {0};                // iterations
 	bool cold {true};
+	bool atRest {false}; // R is that of an assembly at rest
 };
 
 } // namespace masonry::rigid::assembly

@@ -28,15 +28,15 @@ template <class K>
 void AssemblyStep<K>::advancePart(RigidSystem<K>& s, double h)
 {
 	const Scales scales(s);
-	const StepContext step(scales, h);
+	StepContext step(scales, h);
+	step.stands = stands;
 	team.setThreads(settings.threads);
 	solver.settings = settings.solver;
-	solver.otherPoints |= contacts.take(s);
-	solver.otherPoints |= contacts.measure(s, stands) || !stands; // those of a pair may have changed places
+	solver.otherFrames |= contacts.take(s);
+	contacts.measure(s, stands);
+	solver.otherFrames |= !contacts.keepsFrames();
 	contacts.setUnit(h);
-	if (stands)
-		poses = contacts.located;
-	else
+	if (!stands)
 		lean(s);
 	for (Lanes& of : change)
 		of *= all(h / changeTime);
@@ -55,7 +55,7 @@ void AssemblyStep<K>::advancePart(RigidSystem<K>& s, double h)
 	const int moved = movingBlocks(s, level);
 	moveBodies(s, h, moved > 0);
 	constexpr int enough = 8; // steps. Fewer: blocks at the peak of a half cycle seem to stand
-	quiet = moved == 0 && !turns(s, h) ? quiet + 1 : 0;
+	quiet = moved == 0 && !turns(s, h) && solver.report.atRest == stands ? quiet + 1 : 0;
 	stands = quiet >= enough;
 	report.moved = std::max(report.moved, moved);
 	s.time += h;
@@ -92,7 +92,7 @@ void AssemblyStep<K>::takeInstants(RigidSystem<K>& s, const StepContext& step)
 template <class K>
 CappedReport AssemblyStep<K>::solve(RigidSystem<K>& s, const LaneArray& load, const LaneArray& guess, const StepContext& step)
 {
-	const CappedReport result = capped.solve(s, contacts, poses, load, guess, solver, ledger, step);
+	const CappedReport result = capped.solve(s, contacts, load, guess, solver, ledger, step);
 	report.iterations += result.iterations;
 	report.factorisations += result.factorisations;
 	report.velocityResidual = std::max(report.velocityResidual, result.residual);
@@ -121,7 +121,7 @@ CappedReport AssemblyStep<K>::solveInstant(RigidSystem<K>& s, const StepContext&
 template <class K>
 void AssemblyStep<K>::lean(const RigidSystem<K>& s)
 {
-	poses.clear();
+	std::vector<typename K::Pose> poses;
 	for (const auto& body : s.bodies)
 		poses.push_back(body.pose);
 	contacts.lean(s, poses);

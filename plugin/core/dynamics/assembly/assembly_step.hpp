@@ -58,7 +58,7 @@ public:
 		if (!started)
 			return;
 		contacts.pass(f, system);
-		solver.pass(f, contacts, system);
+		solver.pass(f, contacts);
 		events.pass(f);
 		pulses.pass(f);
 		ledger.pass(f);
@@ -97,8 +97,7 @@ private:
 	CappedSolve<K> capped;
 	Lift<K> projection;
 	LaneArray loads, noLoads, noGuess, change;
-	double changeTime {1};               // s, that `change` is of
-	std::vector<typename K::Pose> poses; // of the frames
+	double changeTime {1}; // s, that `change` is of
 };
 
 } // namespace masonry::rigid::assembly

@@ -19,8 +19,8 @@ double kineticEnergy(const LaneArray& velocity)
 } // namespace
 
 template <class K>
-CappedReport CappedSolve<K>::solve(const RigidSystem<K>& s, ContactSet<K>& c, const Poses& poses, const LaneArray& load,
-                                   const LaneArray& guess, AdmmSolver<K>& solver, const EnergyLedger<K>& ledger, const StepContext& step)
+CappedReport CappedSolve<K>::solve(const RigidSystem<K>& s, ContactSet<K>& c, const LaneArray& load, const LaneArray& guess,
+                                   AdmmSolver<K>& solver, const EnergyLedger<K>& ledger, const StepContext& step)
 {
 	constexpr int mostReductions = 1; // larger: capped joints are nearer to the restitution that keeps their energy
 	CappedReport report;
@@ -31,7 +31,7 @@ CappedReport CappedSolve<K>::solve(const RigidSystem<K>& s, ContactSet<K>& c, co
 	}
 	std::vector<double> made(rows.size(), 0); // gain of a row that made energy, with its target
 	for (int reductions = 0;; restore(c)) {
-		SpinRow<K>* worst = solveOnce(s, c, poses, load, guess, solver, step, report);
+		SpinRow<K>* worst = solveOnce(s, c, load, guess, solver, step, report);
 		if (!report.finite) {
 			const bool areRows = std::any_of(rows.begin(), rows.end(), [](const SpinRow<K>& row) { return row.held; });
 			for (SpinRow<K>& row : rows)
@@ -65,8 +65,8 @@ CappedReport CappedSolve<K>::solve(const RigidSystem<K>& s, ContactSet<K>& c, co
 }
 
 template <class K>
-SpinRow<K>* CappedSolve<K>::solveOnce(const RigidSystem<K>& s, ContactSet<K>& c, const Poses& poses, const LaneArray& load,
-                                      const LaneArray& guess, AdmmSolver<K>& solver, const StepContext& step, CappedReport& report)
+SpinRow<K>* CappedSolve<K>::solveOnce(const RigidSystem<K>& s, ContactSet<K>& c, const LaneArray& load, const LaneArray& guess,
+                                      AdmmSolver<K>& solver, const StepContext& step, CappedReport& report)
 {
 	solver.spins.clear();
 	for (const SpinRow<K>& row : rows)
@@ -76,7 +76,7 @@ SpinRow<K>* CappedSolve<K>::solveOnce(const RigidSystem<K>& s, ContactSet<K>& c,
 		for (auto& group : c.groups)
 			for (auto& p : group.point)
 				p.pn = all(0), p.pt *= all(0);
-	solver.solve(s, c, poses, load, guess, step);
+	solver.solve(c, load, guess, step);
 	report.iterations += solver.report.iterations;
 	report.factorisations += solver.report.factorisations;
 	report.residual = solver.report.residual;

@@ -22,19 +22,17 @@ struct CappedReport {
 template <class K>
 class CappedSolve {
 public:
-	using Poses = typename AdmmSolver<K>::Poses;
-
 	// As AdmmSolver::solve, with the rows that are in the solver; those whose target was not reached come back as `capped`. An instant
 	// starts without impulses.
-	CappedReport solve(const RigidSystem<K>& system, ContactSet<K>& contacts, const Poses& poses, const LaneArray& load,
-	                   const LaneArray& guess, AdmmSolver<K>& solver, const EnergyLedger<K>& ledger, const StepContext& step);
+	CappedReport solve(const RigidSystem<K>& system, ContactSet<K>& contacts, const LaneArray& load, const LaneArray& guess,
+	                   AdmmSolver<K>& solver, const EnergyLedger<K>& ledger, const StepContext& step);
 	// Puts back the impulses of the contacts as they were before the solve.
 	void restore(ContactSet<K>& contacts) const;
 
 private:
 	// With the rows that are held; their couples, and the gains of all. Returns the row that makes most energy, or nullptr.
-	SpinRow<K>* solveOnce(const RigidSystem<K>& system, ContactSet<K>& contacts, const Poses& poses, const LaneArray& load,
-	                      const LaneArray& guess, AdmmSolver<K>& solver, const StepContext& step, CappedReport& report);
+	SpinRow<K>* solveOnce(const RigidSystem<K>& system, ContactSet<K>& contacts, const LaneArray& load, const LaneArray& guess,
+	                      AdmmSolver<K>& solver, const StepContext& step, CappedReport& report);
 
 	std::vector<SpinRow<K>> rows;
 	std::vector<double> gains;    // by row, J

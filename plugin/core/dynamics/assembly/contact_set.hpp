@@ -151,6 +151,8 @@ public:
 	// Takes over poses and velocities, looks up features where needed, and measures all points; `isStill`: where the last steps have been
 	// still too, every few steps. True: other points than before.
 	bool measure(RigidSystem<K>& system, bool isStill);
+	// Whether points, normals and arms are those of the last step.
+	bool keepsFrames() const { return stood > 1; }
 	// Normals, arms and masses as they are where these poses put the bodies; gaps stay.
 	void lean(const RigidSystem<K>& system, const std::vector<typename K::Pose>& poses);
 	// Impulses are those of a time h from now on; not many times the last, or an impact's would become as many.

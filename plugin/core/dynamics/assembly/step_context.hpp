@@ -10,6 +10,7 @@ struct StepContext {
 	double length {0};    // m, smallest half size of the free bodies
 	double rocking {0};   // s, sqrt(length / gravity): the time in which the smallest block falls over
 	double speed {0};     // m/s, what residuals are relative to: `fall`; at an instant, the velocity that changes
+	bool stands {false};  // nothing has moved for some steps
 	bool instant {false}; // an impact or a jump of the base: nothing moves, forces give nothing, impulses start from zero
 
 	StepContext() = default;
@@ -23,6 +24,7 @@ struct StepContext {
 		StepContext result = *this;
 		result.speed = speed;
 		result.instant = true;
+		result.stands = false;
 		return result;
 	}
 };

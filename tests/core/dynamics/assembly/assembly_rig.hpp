@@ -30,10 +30,7 @@ struct Frozen {
 	{
 		solver.settings.tolerance = tolerance;
 		solver.settings.first = iterations;
-		typename assembly::AdmmSolver<K>::Poses poses;
-		for (const auto& body : s.bodies)
-			poses.push_back(body.pose);
-		solver.solve(s, contacts, poses, loads, {}, step);
+		solver.solve(contacts, loads, {}, step);
 	}
 
 	// The same problem for the general solver: in the packs of the contacts each body has one mass for all components. `unknown` are its

@@ -1,0 +1,81 @@
+#pragma once
+// The matrix A = M + J^T J / R of an assembly and its factorisation, which is kept over many steps: 1/M and the rows J are those of the
+// contacts when it was made. It stays where the rows of a point have changed by less than a tolerance, whatever features the point is of.
+#include "dynamics/assembly/contact_set.hpp"
+#include "linalg/block_ldlt.hpp"
+
+namespace masonry::rigid::assembly {
+
+// The rows J of a lane's point, number by number.
+inline std::array<Lanes*, 6> rowsOf(PointLanes<Plane>& p) { return {&p.nx, &p.ny, &p.a1n, &p.a1t, &p.a2n, &p.a2t}; }
+inline std::array<Lanes*, 27> rowsOf(PointLanes<Space>& p)
+{
+	std::array<Lanes*, 27> result;
+	auto next = result.begin();
+	for (auto* row : {&p.normal, &p.tangent[0], &p.tangent[1]})
+		for (auto* three : {&row->axis, &row->arm1, &row->arm2})
+			for (Lanes* lanes : {&three->x, &three->y, &three->z})
+				*next++ = lanes;
+	return result;
+}
+
+template <class K>
+class AssemblyMatrix {
+public:
+	using Stiffness = std::array<Lanes, lanePoints<K>>; // 1/R; zero: the point is not in A
+
+	// Makes A of the contacts as they are, with these stiffnesses, by group.
+	void make(const ContactSet<K>& contacts, std::vector<Stiffness> stiffness);
+	void clear() { perMass.clear(); }
+	bool isOf(const ContactSet<K>& contacts) const;      // of these pairs in these lanes
+	bool hasMasses(const ContactSet<K>& contacts) const; // those of these bodies
+	// The largest difference between the rows of a point in A and those that it has now; infinite where a point is gone. A must be of these
+	// contacts.
+	double change(ContactSet<K>& contacts) const;
+	// x = A^-1 x, by packs of the bodies.
+	void solve(LaneArray& x) { factor.solve(x.data(), places); }
+	const std::vector<int>& freePacks() const { return places; } // of the free bodies
+
+	// Passes the points that A is of, number by number; a new object makes A of them.
+	template <class Flow>
+	void pass(Flow& f, const ContactSet<K>& contacts)
+	{
+		size_t count = points.size();
+		f(count);
+		const bool isNew = points.empty() && count > 0;
+		points.resize(count);
+		stiffnesses.resize(count);
+		const auto passLanes = [&f](Lanes& lanes) {
+			for (int i = 0; i < width; ++i) {
+				double value = lanes[i];
+				f(value);
+				lanes[i] = value;
+			}
+		};
+		for (size_t g = 0; g < count; ++g)
+			for (int k = 0; k < lanePoints<K>; ++k) {
+				passLanes(stiffnesses[g][k]);
+				for (Lanes* lanes : rowsOf(points[g][k]))
+					passLanes(*lanes);
+			}
+		if (isNew)
+			factorise(contacts);
+	}
+
+private:
+	using Block = linalg::BlockLDLT::Block;
+	void factorise(const ContactSet<K>& contacts);
+	void setGraph(const ContactSet<K>& contacts);
+	void addPair(const ContactSet<K>& contacts, int group, int lane, int& edge);
+
+	linalg::BlockLDLT factor; // a node for each pack of the free bodies
+	std::vector<int> places;  // of the nodes
+	std::vector<int> node;    // of a body, its first; -1: none
+	std::vector<linalg::BlockLDLT::Edge> edges;
+	std::vector<std::array<PointLanes<K>, lanePoints<K>>> points; // that A is of, by group; their rows alone
+	std::vector<Stiffness> stiffnesses;
+	std::vector<std::array<int, width>> pairs; // by group and lane
+	std::vector<double> perMass;               // 1/m, by body
+};
+
+} // namespace masonry::rigid::assembly
