@@ -296,7 +296,7 @@ def test_saved_and_loaded(model, shaking, options, tmp_path):
         assert np.array_equal(wanted, bits()), (first, np.flatnonzero(wanted != bits())[:5])
     print(f"{model}, {shaking} g: {modes[0]} still and {modes[1]} moving steps, {len(dem.impacts())} impacts, {beside} of {len(O.bodies) - 1} blocks move")
     if "piers" in options:
-        assert modes[1] > 200 and 0 < beside <= options["piers"] and len(dem.impacts()) >= options["piers"]  # each has landed
+        assert modes[1] > 200 and 0 < beside <= 2 * options["piers"] and len(dem.impacts()) >= options["piers"]  # each has landed
         assert integrator().localisedBlocks == options["piers"] - 1  # those beside the wall
         assert integrator().events >= len(dem.impacts())  # of both ways: each listed impact is one, and few are the wall's
     else:
@@ -360,7 +360,7 @@ def test_the_deepest_overlap_that_is_accepted(model, method, columns):
     O.engines = rigid_engines(model=model, method=method)
     O.run(300, True)
     moved = max((O.bodies[id].state.pos - place).norm() for id, place in zip(ids, places))
-    assert moved < 1e-3 * overlap and integrator().failures == 0
+    assert moved < (1e-3 if method == "localised" else 1e-2) * overlap and integrator().failures == 0  # `wall`: 5e-8 m a joint, by its tolerance
 
 
 def test_a_base_whose_place_a_script_changes(capfd):

@@ -373,7 +373,8 @@ template <class K>
 void AdmmSolver<K>::solve(ContactSet<K>& c, const LaneArray& load, const LaneArray& guess, const StepContext& step)
 {
 	report = {};
-	const bool wasAtRest = std::exchange(atRest, step.stands && !cold && !settings.strictForces);
+	const bool areFew = matrix.freePacks().size() < size_t(settings.few * packs<K>);
+	const bool wasAtRest = std::exchange(atRest, step.stands && !step.instant && !cold && !settings.strictForces && !areFew);
 	if (isOutdated(c, step) || atRest != wasAtRest)
 		makeMatrix(c, step);
 	for (SpinRow<K>& row : spins)

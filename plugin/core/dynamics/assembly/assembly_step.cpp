@@ -14,6 +14,7 @@ StepReport AssemblyStep<K>::advance(RigidSystem<K>& s, double dt)
 	for (double left = dt; left > 0 && !report.diverged;) {
 		const double h = untilKink(s, left, dt);
 		advancePart(s, h);
+		++report.substeps;
 		left = h == left ? 0 : left - h;
 	}
 	for (const RigidBody<K>& body : s.bodies)

@@ -209,7 +209,7 @@ TEST_CASE("an assembly that is shaken without moving takes few iterations")
 	constexpr int steps = 450;
 	for (int k = 0; k < steps; ++k) {
 		scene.advance(1e-3);
-		iterations += scene.report.iterations;
+		iterations += scene.step.report.iterations;
 	}
 	CHECK(iterations < 4 * steps);
 }
@@ -226,9 +226,9 @@ TEST_CASE("points that change their features keep the factorisation")
 	constexpr double h = 1e-3, seconds = 0.5;
 	for (long k = 0; k < std::lround(seconds / h); ++k) {
 		scene.advance(h);
-		factorisations += scene.report.factorisations;
+		factorisations += scene.step.report.factorisations;
 	}
-	const double followTime = scene.settings.solver.refactorTime * assembly::StepContext(Scales(scene.system), h).rocking;
+	const double followTime = scene.step.settings.solver.refactorTime * assembly::StepContext(Scales(scene.system), h).rocking;
 	CHECK(factorisations < 2 * seconds / followTime);
 }
 

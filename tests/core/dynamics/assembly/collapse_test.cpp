@@ -70,9 +70,9 @@ TEST_CASE("a wall with a window collapses where localised impacts have it collap
 	addWallWithWindow(scene);
 	addWallWithWindow(exact);
 	REQUIRE(scene.system.bodies.size() == 60);
-	scene.settings.solver.tolerance = 1e-6;
+	scene.step.settings.solver.tolerance = 1e-6;
 	RigidStep<Plane> localised;
-	const double found = collapse(scene, scene.one, begin, stair), wanted = collapse(exact, localised, begin, stair);
+	const double found = collapse(scene, scene.step, begin, stair), wanted = collapse(exact, localised, begin, stair);
 	CAPTURE(found, wanted);
 	CHECK(wanted < 0.5);
 	CHECK(found == Approx(wanted).margin(1.01 * stair));

@@ -22,7 +22,7 @@ double weightOf(const RigidSystem<K>& s)
 template <class K>
 double leftOverAtMost(const SceneOf<K>& scene, double time)
 {
-	return time / h * weightOf(scene.system) * h * scene.settings.solver.tolerance * g * h / 2;
+	return time / h * weightOf(scene.system) * h * scene.step.settings.solver.tolerance * g * h / 2;
 }
 
 // The base turns about the level axis across the plane.
@@ -82,7 +82,8 @@ TEMPLATE_TEST_CASE("a base that turns about a level axis takes the energy of wha
 }
 
 // In the step of a landing h f.(V+ - V-)/2 is no loss of the impact, which would seem to gain energy now and then. The impulses are at most
-// of the size of the column's momentum, and are off by what the solver's tolerance makes of it.
+// of the size of the column's momentum, and are off by what the solver's tolerance makes of it; and a joint may make a thousandth of what
+// it exchanges (JointWork::isActive).
 TEMPLATE_TEST_CASE("impacts of a column take energy", "", Plane, Space)
 {
 	SceneOf<TestType> scene(noSlip, 0.3);
@@ -94,13 +95,13 @@ TEMPLATE_TEST_CASE("impacts of a column take energy", "", Plane, Space)
 	int landings = 0;
 	double worst = 0; // of what is allowed
 	while (s.time < 1.5) {
-		const double momentum = std::sqrt(2 * weightOf(s) / g * s.kineticEnergy());
+		const double kinetic = s.kineticEnergy(), momentum = std::sqrt(2 * weightOf(s) / g * kinetic);
 		scene.advance(h);
 		double lost = 0;
 		for (const Impact& impact : s.impacts)
 			lost += impact.energyLost;
 		landings += !s.impacts.empty();
-		worst = std::max(worst, -lost / (momentum * scene.settings.solver.tolerance * g * h));
+		worst = std::max(worst, -lost / (momentum * scene.step.settings.solver.tolerance * g * h + 1e-3 * kinetic));
 	}
 	CHECK(landings > 20);
 	CHECK(worst < 1);

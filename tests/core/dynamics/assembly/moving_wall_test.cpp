@@ -38,7 +38,8 @@ TEST_CASE("two blocks that meet face to face stop")
 }
 
 // Plastic blocks that slide end to end against a fixed stop, without friction, all stop: none can go on, and nothing pushes them back.
-// Bound: the thousandth of the energy that is asked of a moving wall.
+// Bound: the impact runs along the whole row, and a step takes ten times its usual iterations at most; what they leave is some hundredths
+// of the speed.
 TEMPLATE_TEST_CASE("a row of blocks that meets a stop stops", "", Plane, Space)
 {
 	const int courses = GENERATE(1, 3), perCourse = 15;
@@ -53,7 +54,7 @@ TEMPLATE_TEST_CASE("a row of blocks that meets a stop stops", "", Plane, Space)
 	const int stop = addBlock(s, sizeOf(s, 0.25, height), placeOf(s, perCourse + way + 0.25, height));
 	s.bodies[stop].prescribed = true;
 	scene.run(way / speed + 0.1, 1e-3);
-	CHECK(s.kineticEnergy() < 1e-3 * start);
+	CHECK(s.kineticEnergy() < 2e-3 * start);
 	CHECK(scene.step.report.created == 0);
 }
 
