@@ -1,7 +1,7 @@
 #pragma once
-// Batches of numbers: four doubles (Lanes), eight floats (Floats) or sixteen (wide.hpp). Floats serve where the next sweep or solve
-// corrects the error. Each lane is computed as a scalar would be, so the bits do not depend on the vector width of the processor. Functions
-// marked MASONRY_LANES are compiled for several widths, and the widest that the processor has is chosen when the program starts.
+// Batches of numbers: four doubles (Lanes), or eight floats (Floats) where the next solve corrects the error. Each lane is computed as a
+// scalar would be, so the bits do not depend on the vector width of the processor. Functions marked MASONRY_LANES are compiled for several
+// widths, and the widest that the processor has is chosen when the program starts.
 
 #include <cstddef>
 #include <cstring>
@@ -28,22 +28,7 @@ constexpr int floatWidth = 8;
 using Floats = float __attribute__((vector_size(32)));
 using FloatMask = int __attribute__((vector_size(32)));
 
-template <class L>
-using NumberOf = std::conditional_t<std::is_same_v<L, Lanes>, double, float>;
-template <class L>
-constexpr int widthOf = sizeof(L) / sizeof(NumberOf<L>);
-template <class L>
-using MaskOf = decltype(L {} < L {});
-
-// Four numbers of one body: three components and 1/m.
-using FloatPack = float __attribute__((vector_size(16)));
-template <class L>
-using PackOf = std::conditional_t<std::is_same_v<L, Lanes>, Lanes, FloatPack>;
 constexpr Lanes noMass {1, 1, 1, 0}; // times a pack: its components alone
-// Place of the packs of a body: for doubles its number, for floats the bytes from the first pack of all.
-template <class L>
-using PlaceOf = std::conditional_t<std::is_same_v<L, Lanes>, int, unsigned>;
-
 // Code for wide vectors relies on this alignment and code for narrow ones does not demand it, so structures of lanes state it.
 constexpr std::size_t alignment = 32;
 
@@ -68,11 +53,7 @@ template <class T>
 using Array = std::vector<T, AlignedAllocator<T>>;
 using LaneArray = Array<Lanes>;
 
-template <class L = Lanes>
-MASONRY_INLINE L all(double value)
-{
-	return NumberOf<L>(value) - L {};
-}
+MASONRY_INLINE Lanes all(double value) { return value - Lanes {}; }
 // Chooses lane by lane. Structures of several vectors have overloads of their own.
 template <class M, class L>
 MASONRY_INLINE std::enable_if_t<!std::is_class_v<L>, L> select(const M& mask, const L& a, const L& b)
@@ -100,44 +81,24 @@ MASONRY_INLINE L length(const L& a)
 	return size(a);
 }
 // A bit for each lane.
-constexpr unsigned char allLanes = 15, allFloats = 255;
+constexpr unsigned char allLanes = 15;
 MASONRY_INLINE unsigned char bitsOf(const Mask& mask)
 {
 	const Mask bits = mask & Mask {1, 2, 4, 8};
 	return (unsigned char)(bits[0] | bits[1] | bits[2] | bits[3]);
 }
-MASONRY_INLINE unsigned char bitsOf(const FloatMask& mask)
-{
-	const FloatMask bits = mask & FloatMask {1, 2, 4, 8, 16, 32, 64, 128};
-	return (unsigned char)(bits[0] | bits[1] | bits[2] | bits[3] | bits[4] | bits[5] | bits[6] | bits[7]);
-}
 MASONRY_INLINE Mask maskOf(unsigned char bits) { return (Mask {bits, bits, bits, bits} & Mask {1, 2, 4, 8}) != 0; }
 
 MASONRY_INLINE bool any(const Mask& mask) { return (mask[0] | mask[1] | mask[2] | mask[3]) != 0; }
-MASONRY_INLINE bool any(const FloatMask& mask) { return any(Mask(mask)); }
 MASONRY_INLINE Lanes root(const Lanes& a)
 {
 	return Lanes {__builtin_sqrt(a[0]), __builtin_sqrt(a[1]), __builtin_sqrt(a[2]), __builtin_sqrt(a[3])};
-}
-MASONRY_INLINE Floats root(const Floats& a)
-{
-	return Floats {__builtin_sqrtf(a[0]), __builtin_sqrtf(a[1]), __builtin_sqrtf(a[2]), __builtin_sqrtf(a[3]),
-	               __builtin_sqrtf(a[4]), __builtin_sqrtf(a[5]), __builtin_sqrtf(a[6]), __builtin_sqrtf(a[7])};
 }
 MASONRY_INLINE double largest(const Lanes& a)
 {
 	const double low = a[0] > a[1] ? a[0] : a[1], high = a[2] > a[3] ? a[2] : a[3];
 	return low > high ? low : high;
 }
-
-MASONRY_INLINE Floats joined(const FloatPack& low, const FloatPack& high)
-{
-	return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
-}
-MASONRY_INLINE FloatPack lowOf(const Floats& a) { return __builtin_shufflevector(a, a, 0, 1, 2, 3); }
-MASONRY_INLINE FloatPack highOf(const Floats& a) { return __builtin_shufflevector(a, a, 4, 5, 6, 7); }
-MASONRY_INLINE FloatPack narrow(const Lanes& a) { return __builtin_convertvector(a, FloatPack); }
-MASONRY_INLINE Lanes widen(const FloatPack& a) { return __builtin_convertvector(a, Lanes); }
 
 MASONRY_INLINE void transpose(Lanes& a, Lanes& b, Lanes& c, Lanes& d)
 {
@@ -148,19 +109,6 @@ MASONRY_INLINE void transpose(Lanes& a, Lanes& b, Lanes& c, Lanes& d)
 	c = __builtin_shuffle(ab0, cd0, Mask {2, 3, 6, 7});
 	d = __builtin_shuffle(ab1, cd1, Mask {2, 3, 6, 7});
 }
-// Transposes each half by itself.
-MASONRY_INLINE void transpose(Floats& a, Floats& b, Floats& c, Floats& d)
-{
-	const Floats ab0 = __builtin_shufflevector(a, b, 0, 8, 1, 9, 4, 12, 5, 13),
-	             ab1 = __builtin_shufflevector(a, b, 2, 10, 3, 11, 6, 14, 7, 15);
-	const Floats cd0 = __builtin_shufflevector(c, d, 0, 8, 1, 9, 4, 12, 5, 13),
-	             cd1 = __builtin_shufflevector(c, d, 2, 10, 3, 11, 6, 14, 7, 15);
-	a = __builtin_shufflevector(ab0, cd0, 0, 1, 8, 9, 4, 5, 12, 13);
-	b = __builtin_shufflevector(ab0, cd0, 2, 3, 10, 11, 6, 7, 14, 15);
-	c = __builtin_shufflevector(ab1, cd1, 0, 1, 8, 9, 4, 5, 12, 13);
-	d = __builtin_shufflevector(ab1, cd1, 2, 3, 10, 11, 6, 7, 14, 15);
-}
-
 // gather reads packs of bodies into one lane a body; scatter writes those of free bodies back. A body has `packs` packs.
 template <int packs>
 MASONRY_INLINE void gather(const Lanes* from, const int* body, Lanes& a, Lanes& b, Lanes& c, Lanes& d)
@@ -177,47 +125,6 @@ MASONRY_INLINE void scatter(Lanes a, Lanes b, Lanes c, Lanes d, Lanes* to, const
 		if (free == allLanes || free >> i & 1)
 			to[packs * body[i]] = *row[i];
 }
-
-MASONRY_INLINE const FloatPack& packAt(const FloatPack* from, unsigned bytes)
-{
-	return *reinterpret_cast<const FloatPack*>(reinterpret_cast<const char*>(from) + bytes);
-}
-template <int>
-MASONRY_INLINE void gather(const FloatPack* from, const unsigned* body, Floats& a, Floats& b, Floats& c, Floats& d)
-{
-	Floats* row[4] = {&a, &b, &c, &d};
-	for (int i = 0; i < 4; ++i)
-		*row[i] = joined(packAt(from, body[i]), packAt(from, body[i + 4]));
-	transpose(a, b, c, d);
-}
-template <int>
-MASONRY_INLINE void scatter(Floats a, Floats b, Floats c, Floats d, FloatPack* to, const unsigned* body, unsigned free)
-{
-	transpose(a, b, c, d);
-	const Floats* row[4] = {&a, &b, &c, &d};
-	for (int i = 0; i < 4; ++i) {
-		if (free == allFloats || free >> i & 1)
-			const_cast<FloatPack&>(packAt(to, body[i])) = lowOf(*row[i]);
-		if (free == allFloats || free >> (i + 4) & 1)
-			const_cast<FloatPack&>(packAt(to, body[i + 4])) = highOf(*row[i]);
-	}
-}
-
-// While an instance lives, this thread treats floats below the smallest normal one as zero. Decaying values become so small, and processors
-// take many times as long for them.
-class TinyIsZero {
-#ifdef __SSE__
-public:
-	TinyIsZero() { __builtin_ia32_ldmxcsr(before | flushToZero | denormalsAreZero); }
-	~TinyIsZero() { __builtin_ia32_ldmxcsr(before); }
-	TinyIsZero(const TinyIsZero&) = delete;
-	TinyIsZero& operator=(const TinyIsZero&) = delete;
-
-private:
-	static constexpr unsigned flushToZero = 1 << 15, denormalsAreZero = 1 << 6;
-	const unsigned before {__builtin_ia32_stmxcsr()};
-#endif
-};
 
 // Copies all numbers of one lane of a structure of lanes.
 template <class T>

@@ -62,9 +62,9 @@ struct AdmmSettings {
 	double softness {0.2};      // r. Larger: high walls go too far; smaller: low walls that begin to move do not go far enough
 	double restSoftness {0.02}; // r while an assembly of more than `few` blocks rests. Larger: one that is shaken without moving drifts,
 	                            // and takes more iterations; smaller: its forces are less right, so that it begins to move too early
-	int restMost {10};        // iterations until a step at rest goes on with `softness`. More: the onset of motion costs more
-	double follows {0.1};     // share by which R may differ from that of the loads. Larger: more iterations; smaller: more factorisations
-	double restFollows {0.8}; // the same at rest, where few iterations are enough
+	int restMost {10};          // iterations until a step at rest goes on with `softness`. More: the onset of motion costs more
+	double follows {0.1};       // share by which R may differ from that of the loads. Larger: more iterations; smaller: more factorisations
+	double restFollows {0.8};   // the same at rest, where few iterations are enough
 	double leastSoftness {1e-5}; // of d, at the most loaded points. Smaller: rounding of the factorisation in single precision
 	double relaxation {1.7};     // a, 1 to 2. Larger: residuals oscillate; smaller: they fall more slowly
 	double boundShare {0.3};     // theta. 1: sliding points run into a limit cycle; smaller: friction lags

@@ -20,7 +20,7 @@ MASONRY_INLINE Lanes difference(const PointLanes<Space>& a, const PointLanes<Spa
 {
 	const Lanes none = all(0);
 	Lanes result = none;
-	const Row<Lanes>*rowsA[] = {&a.normal, &a.tangent[0], &a.tangent[1]}, *rowsB[] = {&b.normal, &b.tangent[0], &b.tangent[1]};
+	const Row *rowsA[] = {&a.normal, &a.tangent[0], &a.tangent[1]}, *rowsB[] = {&b.normal, &b.tangent[0], &b.tangent[1]};
 	for (int k = 0; k < 3; ++k) {
 		result = larger(result, largestOf(rowsA[k]->axis - rowsB[k]->axis));
 		result = larger(result, free1 ? largestOf(rowsA[k]->arm1 - rowsB[k]->arm1) : none);

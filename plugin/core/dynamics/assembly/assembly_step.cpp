@@ -22,6 +22,7 @@ StepReport AssemblyStep<K>::advance(RigidSystem<K>& s, double dt)
 			report.turn = std::max(report.turn, turn);
 	report.residual = settings.solver.strictForces ? std::max(report.velocityResidual, report.forceResidual) : report.velocityResidual;
 	report.sweeps = report.iterations;
+	report.events = int(s.impacts.size());
 	return report;
 }
 

@@ -56,11 +56,11 @@ struct PointSet<Space> {
 	void setCount(int value) { count = value; }
 };
 
-template <class K, class L = Lanes>
+template <class K>
 struct alignas(alignment) Group : PointSet<K> {
-	PlaceOf<L> body1[widthOf<L>], body2[widthOf<L>];
-	L friction;
-	PointLanes<K, L> point[lanePoints<K>];
+	int body1[width], body2[width];
+	Lanes friction;
+	PointLanes<K> point[lanePoints<K>];
 };
 
 // What the solver remembers of a point.

@@ -5,7 +5,7 @@
 //     u_n = n.(v2 - v1) + a2n W2 - a1n W1        a_n = (r x n)/rho,  a_t = (r x t)/rho = (r.n)/rho
 //     u_t = t.(v2 - v1) + a2t W2 - a1t W1
 #include "dynamics/rigid/kinematics.hpp"
-#include "simd/wide.hpp"
+#include "simd/lanes.hpp"
 #include <array>
 
 namespace masonry::rigid::assembly {
@@ -13,74 +13,53 @@ namespace masonry::rigid::assembly {
 // Numbers side by side by their own names; contact points add overloads to some functions.
 using simd::alignment;
 using simd::all;
-using simd::allFloats;
 using simd::allLanes;
 using simd::any;
 using simd::Array;
 using simd::bitsOf;
 using simd::copyLane;
-using simd::FloatMask;
-using simd::FloatPack;
-using simd::Floats;
-using simd::floatWidth;
 using simd::gather;
-using simd::highOf;
-using simd::joined;
 using simd::LaneArray;
 using simd::Lanes;
 using simd::larger;
 using simd::largest;
 using simd::length;
-using simd::lowOf;
 using simd::Mask;
-using simd::MaskOf;
 using simd::maskOf;
-using simd::narrow;
 using simd::noMass;
-using simd::NumberOf;
-using simd::packAt;
-using simd::PackOf;
-using simd::PlaceOf;
-using simd::quarterOf;
-using simd::quartersOfWide;
 using simd::root;
 using simd::scatter;
 using simd::select;
 using simd::size;
 using simd::smaller;
-using simd::TinyIsZero;
 using simd::transpose;
-using simd::Wide;
-using simd::widen;
 using simd::width;
-using simd::widthOf;
 
-template <class K, class L = Lanes>
+template <class K>
 struct Bodies;
-template <class K, class L = Lanes>
+template <class K>
 struct PointLanes;
 template <class K>
 struct FeatureLanes;
 
 // Velocities of bodies: packs of `from` in, one lane a body out.
-template <class L>
-struct alignas(alignment) Bodies<Plane, L> {
-	L x, y, w, m;
+template <>
+struct alignas(alignment) Bodies<Plane> {
+	Lanes x, y, w, m;
 
-	MASONRY_INLINE Bodies(const PackOf<L>* from, const PlaceOf<L>* body) { gather<1>(from, body, x, y, w, m); }
+	MASONRY_INLINE Bodies(const Lanes* from, const int* body) { gather<1>(from, body, x, y, w, m); }
 	// Back to where they came from; those that are not free stay.
-	MASONRY_INLINE void store(PackOf<L>* to, const PlaceOf<L>* body, unsigned free) const { scatter<1>(x, y, w, m, to, body, free); }
+	MASONRY_INLINE void store(Lanes* to, const int* body, unsigned free) const { scatter<1>(x, y, w, m, to, body, free); }
 };
 
-template <class L>
-struct alignas(alignment) PointLanes<Plane, L> {
-	using Number = L;
-	using Tangent = L;
-	L nx, ny, a1n, a1t, a2n, a2t;
-	L gap;          // m; far away in lanes without a point
-	L massN, massT; // 1 / (J M^-1 J^T), kg
-	L pn, pt;       // impulse of a step, N s
-	L steady;       // filtered pn
+template <>
+struct alignas(alignment) PointLanes<Plane> {
+	using Tangent = Lanes;
+	Lanes nx, ny, a1n, a1t, a2n, a2t;
+	Lanes gap;          // m; far away in lanes without a point
+	Lanes massN, massT; // 1 / (J M^-1 J^T), kg
+	Lanes pn, pt;       // impulse of a step, N s
+	Lanes steady;       // filtered pn
 };
 
 // What a point is made of: vertex and face in the axes of their bodies.
@@ -94,32 +73,21 @@ struct alignas(alignment) FeatureLanes<Plane> {
 	void setFound(const std::array<double, 2>& f, int lane) { foundGap[lane] = f[0], foundShift[lane] = f[1]; }
 };
 
-template <class L>
-MASONRY_INLINE double component(const L& tangent, int, int lane)
-{
-	return tangent[lane];
-}
+MASONRY_INLINE double component(const Lanes& tangent, int, int lane) { return tangent[lane]; }
 MASONRY_INLINE void setComponent(Lanes& tangent, int, int lane, double value) { tangent[lane] = value; }
-template <class L>
-MASONRY_INLINE L dot(const L& a, const L& b)
-{
-	return a * b;
-}
+MASONRY_INLINE Lanes dot(const Lanes& a, const Lanes& b) { return a * b; }
 
-template <class L>
-MASONRY_INLINE L normalRate(const Bodies<Plane, L>& v1, const Bodies<Plane, L>& v2, const PointLanes<Plane, L>& p)
+MASONRY_INLINE Lanes normalRate(const Bodies<Plane>& v1, const Bodies<Plane>& v2, const PointLanes<Plane>& p)
 {
 	return p.nx * (v2.x - v1.x) + p.ny * (v2.y - v1.y) + p.a2n * v2.w - p.a1n * v1.w;
 }
-template <class L>
-MASONRY_INLINE L slipRate(const Bodies<Plane, L>& v1, const Bodies<Plane, L>& v2, const PointLanes<Plane, L>& p)
+MASONRY_INLINE Lanes slipRate(const Bodies<Plane>& v1, const Bodies<Plane>& v2, const PointLanes<Plane>& p)
 {
 	return p.nx * (v2.y - v1.y) - p.ny * (v2.x - v1.x) + p.a2t * v2.w - p.a1t * v1.w;
 }
 
 // Impulses into velocities.
-template <class L>
-MASONRY_INLINE void pushNormal(Bodies<Plane, L>& v1, Bodies<Plane, L>& v2, const PointLanes<Plane, L>& p, const L& dn)
+MASONRY_INLINE void pushNormal(Bodies<Plane>& v1, Bodies<Plane>& v2, const PointLanes<Plane>& p, const Lanes& dn)
 {
 	v1.x -= v1.m * p.nx * dn;
 	v1.y -= v1.m * p.ny * dn;
@@ -129,16 +97,14 @@ MASONRY_INLINE void pushNormal(Bodies<Plane, L>& v1, Bodies<Plane, L>& v2, const
 	v2.w += v2.m * p.a2n * dn;
 }
 // 1 / (J M^-1 J^T) along the normal of bodies with these 1/m.
-template <class L>
-MASONRY_INLINE L normalMass(const PointLanes<Plane, L>& p, const L& m1, const L& m2)
+MASONRY_INLINE Lanes normalMass(const PointLanes<Plane>& p, const Lanes& m1, const Lanes& m2)
 {
-	return all<L>(1) / (m1 + m2 + m1 * p.a1n * p.a1n + m2 * p.a2n * p.a2n);
+	return all(1) / (m1 + m2 + m1 * p.a1n * p.a1n + m2 * p.a2n * p.a2n);
 }
 // Impulses into momenta.
-template <class L>
-MASONRY_INLINE void add(Bodies<Plane, L>& f1, Bodies<Plane, L>& f2, const PointLanes<Plane, L>& p, const L& qn, const L& qt)
+MASONRY_INLINE void add(Bodies<Plane>& f1, Bodies<Plane>& f2, const PointLanes<Plane>& p, const Lanes& qn, const Lanes& qt)
 {
-	const L fx = p.nx * qn - p.ny * qt, fy = p.ny * qn + p.nx * qt;
+	const Lanes fx = p.nx * qn - p.ny * qt, fy = p.ny * qn + p.nx * qt;
 	f1.x -= fx;
 	f1.y -= fy;
 	f1.w -= p.a1n * qn + p.a1t * qt;
@@ -148,16 +114,8 @@ MASONRY_INLINE void add(Bodies<Plane, L>& f1, Bodies<Plane, L>& f2, const PointL
 }
 
 // Coulomb: within the bound.
-template <class L>
-MASONRY_INLINE L clip(const L& tangential, const L& bound)
-{
-	return larger(smaller(tangential, bound), -bound);
-}
-template <class L>
-MASONRY_INLINE MaskOf<L> slides(const L& tangential, const L& bound)
-{
-	return size(tangential) >= bound;
-}
+MASONRY_INLINE Lanes clip(const Lanes& tangential, const Lanes& bound) { return larger(smaller(tangential, bound), -bound); }
+MASONRY_INLINE Mask slides(const Lanes& tangential, const Lanes& bound) { return size(tangential) >= bound; }
 inline Vector2 normal(const PointLanes<Plane>& p, int lane) { return {p.nx[lane], p.ny[lane]}; }
 // Along a row (0 normal, 1 tangential) what one lane's point takes of a body's pack.
 MASONRY_INLINE Vector3 partOf(const PointLanes<Plane>& p, int row, int lane, int body, int)

@@ -109,12 +109,12 @@ MASONRY_INLINE Found located(const RigidSystem<Space>& s, const FeatureGroup<Spa
 }
 
 // Arms and masses. Along two rows a point gives J M^-1 J^T.
-MASONRY_INLINE Lanes response(const Row<Lanes>& a, const Row<Lanes>& b, const Lanes& mass1, const Lanes& mass2)
+MASONRY_INLINE Lanes response(const Row& a, const Row& b, const Lanes& mass1, const Lanes& mass2)
 {
 	return mass1 * dot(a.arm1, b.arm1) + mass2 * dot(a.arm2, b.arm2);
 }
 
-MASONRY_INLINE void takeRow(Row<Lanes>& row, const Lanes3& axis, const Lanes3& r1, const Lanes3& r2, const Placed& p1, const Placed& p2)
+MASONRY_INLINE void takeRow(Row& row, const Lanes3& axis, const Lanes3& r1, const Lanes3& r2, const Placed& p1, const Placed& p2)
 {
 	const Lanes3 a1 = p1.turnBack(cross(r1, axis)), a2 = p2.turnBack(cross(r2, axis));
 	row.axis = axis;
