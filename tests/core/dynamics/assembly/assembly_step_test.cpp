@@ -1,4 +1,4 @@
-// The one-method step of assemblies: rest, slip, energies.
+// The step of assemblies: rest, slip, energies.
 #include "assembly_rig.hpp"
 #include <catch.hpp>
 
