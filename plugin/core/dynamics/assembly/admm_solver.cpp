@@ -438,7 +438,7 @@ void AdmmSolver<K>::makeMatrix(ContactSet<K>& c, const StepContext& step)
 {
 	const Step same = stepOf(step, settings, atRest);
 	c.allParts([&](const Part& part, int) { penaltyPass(c.groups.data(), rows.data(), part.begin, part.end, c.velocity.data(), same); });
-	std::vector<typename AssemblyMatrix<K>::Stiffness> stiffness(rows.size());
+	Array<typename AssemblyMatrix<K>::Stiffness> stiffness(rows.size());
 	for (size_t g = 0; g < rows.size(); ++g)
 		for (int k = 0; k < lanePoints<K>; ++k)
 			stiffness[g][k] = rows[g][k].stiffness;

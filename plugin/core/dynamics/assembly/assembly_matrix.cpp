@@ -59,7 +59,7 @@ MASONRY_PASSES(Space)
 } // namespace
 
 template <class K>
-void AssemblyMatrix<K>::make(const ContactSet<K>& c, std::vector<Stiffness> stiffness)
+void AssemblyMatrix<K>::make(const ContactSet<K>& c, Array<Stiffness> stiffness)
 {
 	stiffnesses = std::move(stiffness);
 	points.resize(c.groups.size());

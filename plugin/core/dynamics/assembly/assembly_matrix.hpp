@@ -25,7 +25,7 @@ public:
 	using Stiffness = std::array<Lanes, lanePoints<K>>; // 1/R; zero: the point is not in A
 
 	// Makes A of the contacts as they are, with these stiffnesses, by group.
-	void make(const ContactSet<K>& contacts, std::vector<Stiffness> stiffness);
+	void make(const ContactSet<K>& contacts, Array<Stiffness> stiffness);
 	void clear() { perMass.clear(); }
 	bool isOf(const ContactSet<K>& contacts) const;      // of these pairs in these lanes
 	bool hasMasses(const ContactSet<K>& contacts) const; // those of these bodies
@@ -73,7 +73,7 @@ private:
 	std::vector<int> node;    // of a body, its first; -1: none
 	std::vector<linalg::BlockLDLT::Edge> edges;
 	std::vector<std::array<PointLanes<K>, lanePoints<K>>> points; // that A is of, by group; their rows alone
-	std::vector<Stiffness> stiffnesses;
+	Array<Stiffness> stiffnesses;
 	std::vector<std::array<int, width>> pairs; // by group and lane
 	std::vector<double> perMass;               // 1/m, by body
 };
