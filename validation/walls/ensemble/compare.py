@@ -9,7 +9,7 @@ from pier import LAWS
 
 HERE, FOLDER = Path(__file__).resolve().parent, Path("results/pier_ensemble")
 PEAK, MOTIONS = 0.45, 30  # g
-COMPARED = ("localised", "wall", "compliant")
+COMPARED = ("localised", "compliant")
 EARLY = 0.1  # s
 
 
@@ -40,7 +40,7 @@ def draw(motions):
     import matplotlib.pyplot as plt
 
     picture, axis = plt.subplots(figsize=(6.5, 4), layout="constrained")
-    for (law, table), line in zip(motions.items(), ("k-", "C3-", "C3:", "C0-", "C0:")):
+    for (law, table), line in zip(motions.items(), ("k-", "C0-", "C0:")):
         drift = np.sort(np.where(table["collapsed"], np.inf, table["peak_drift"]))
         axis.step(np.append(drift[np.isfinite(drift)], 0.5), np.append(np.arange(1, np.isfinite(drift).sum() + 1), np.isfinite(drift).sum()) / len(drift),
                   line, where="post", label=law)

@@ -3,8 +3,6 @@ import math
 
 LAWS = {
     "localised": dict(method="localised", impact_order="sequential", dt=1e-3),
-    "wall": dict(method="wall", dt=1e-3),
-    "wall, fine": dict(method="wall", dt=1e-4, tolerance=1e-4),
     "compliant": dict(penetration=3e-5, impact_order="sequential"),
     "compliant, soft": dict(penetration=3e-4, impact_order="sequential"),
 }
