@@ -399,6 +399,7 @@ void AdmmSolver<K>::solve(ContactSet<K>& c, const LaneArray& load, const LaneArr
 			c.startMeans();
 		const bool isTooStiff = atRest && report.iterations >= settings.restMost && report.residual > enough;
 		atRest &= !isTooStiff;
+		report.leftRest |= isTooStiff;
 		if (isLoaded || isTooStiff || report.residual > diverging * least) {
 			makeMatrix(c, step);
 			prepareSpins(c);
@@ -406,12 +407,10 @@ void AdmmSolver<K>::solve(ContactSet<K>& c, const LaneArray& load, const LaneArr
 		}
 		least = std::min(least, report.residual);
 	} while (report.residual > (isLagging() ? settings.early * enough : enough) && report.iterations < most);
-	report.converged = report.residual <= enough;
 	if (!step.instant) {
 		saved = cold ? 0 : std::clamp(saved + iterations - report.iterations, 0., settings.reserve * iterations);
 		cold = false;
 	}
-	report.atRest = atRest;
 	report.finite = std::all_of(velocity.begin(), velocity.end(), [](const Lanes& v) { return std::isfinite(v[0] + v[1] + v[2]); });
 }
 

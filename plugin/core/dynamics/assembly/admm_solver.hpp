@@ -23,7 +23,7 @@
 //     R by load       R = d r/(1 + l): d is the mean of J M^-1 J^T over the rows of the point, l its filtered normal impulse in units of
 //                     the impulse that stops it alone after the fall of one step. R p is then a velocity of about the same size at light
 //                     and heavy points. A uniform R suits either a wall that slides or one that rocks. While nothing moves, r is a
-//                     hundredth: an impulse that changes by q leaves w - z = R q, and one iteration is enough if that is small. A step that
+//                     tenth: an impulse that changes by q leaves w - z = R q, and one iteration is enough if that is small. A step that
 //                     does not end soon with it goes on with the r of motion.
 //     damped bound    With the bound mu p_n, sliding points run into a limit cycle whose residual does not fall.
 //     start           V starts from the velocities before the step and a guess of their change. It stops where w = z, so that what slides
@@ -79,10 +79,9 @@ struct AdmmSettings {
 
 struct AdmmReport {
 	int iterations {0}, factorisations {0};
-	double residual {0};   // largest |w - z|, and mu R |g - p_n| where points slide, m/s
-	bool converged {true}; // the residual is below what was asked for
+	double residual {0}; // largest |w - z|, and mu R |g - p_n| where points slide, m/s
 	bool finite {true};
-	bool atRest {false}; // R is that of an assembly at rest
+	bool leftRest {false}; // R was that of an assembly at rest, until the residual would not fall
 };
 
 // The points have done this in a step.
@@ -122,13 +121,6 @@ public:
 	void solve(ContactSet<K>& contacts, const LaneArray& load, const LaneArray& guess, const StepContext& step);
 	// Gaps and slips at the end of the step, into the contacts; which pairs move faster than `level`, m/s.
 	PointsReport advanceGaps(ContactSet<K>& contacts, double h, double level);
-	// The next solve starts cold and makes A anew.
-	void forget()
-	{
-		cold = true;
-		matrix.clear();
-	}
-
 	// Passes what the next solve needs from the last, number by number, after the contacts.
 	template <class Flow>
 	void pass(Flow& f, const ContactSet<K>& contacts)

@@ -26,7 +26,6 @@ public:
 
 	// Makes A of the contacts as they are, with these stiffnesses, by group.
 	void make(const ContactSet<K>& contacts, Array<Stiffness> stiffness);
-	void clear() { perMass.clear(); }
 	bool isOf(const ContactSet<K>& contacts) const;      // of these pairs in these lanes
 	bool hasMasses(const ContactSet<K>& contacts) const; // those of these bodies
 	// The largest difference between the rows of a point in A and those that it has now; infinite where a point is gone. A must be of these

@@ -57,7 +57,7 @@ void AssemblyStep<K>::advancePart(RigidSystem<K>& s, double h)
 	const int moved = movingBlocks(s, level);
 	moveBodies(s, h, moved > 0);
 	constexpr int enough = 8; // steps. Fewer: blocks at the peak of a half cycle seem to stand
-	quiet = moved == 0 && !turns(s, h) && solver.report.atRest == stands ? quiet + 1 : 0;
+	quiet = moved == 0 && !turns(s, h) && !solver.report.leftRest ? quiet + 1 : 0;
 	stands = quiet >= enough;
 	report.moved = std::max(report.moved, moved);
 	s.time += h;

@@ -131,6 +131,8 @@ void ContactSet<K>::bring(const ContactSet& from, int c)
 	known[c] = from.known[c];
 }
 
+template std::vector<char> ContactSet<Plane>::freeBodies(const RigidSystem<Plane>&);
+template std::vector<char> ContactSet<Space>::freeBodies(const RigidSystem<Space>&);
 template bool ContactSet<Plane>::samePairs(const RigidSystem<Plane>&);
 template void ContactSet<Plane>::takePairs(const RigidSystem<Plane>&);
 template bool ContactSet<Plane>::take(const RigidSystem<Plane>&);

@@ -111,8 +111,8 @@ class TiltTable:
     these gain speed steadily. Restitution hardly matters, but 0 is fastest. Afterwards the blocks are put back, at rest, with O.time 0; O.engines and O.dt
     are left as in the last trial.
 
-    With friction the multiplier need not be unique, and the two methods may find different ones (a wall of ten courses with a window: 0.471 by
-    'localised', 0.512 by 'wall'; validation/walls/tilting), and so may 'localised' of a symmetric wall towards x and -x, or of the same blocks in another
+    With friction the multiplier need not be unique, and the two methods may find different ones (a wall of ten courses with a window, towards -x:
+    0.526 by 'localised', 0.516 by 'wall'; validation/walls/tilting), and so may 'localised' of a symmetric wall towards x and -x, or of the same blocks in another
     order. The larger is no safer: compare both methods, and both directions.
 
     The bar shows the multiplier of the last trial and its verdict:
