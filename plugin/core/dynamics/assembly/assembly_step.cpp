@@ -78,7 +78,7 @@ void AssemblyStep<K>::takeInstants(RigidSystem<K>& s, const StepContext& step)
 		solver.spins = events.rows(contacts);
 		const double lostInStep = ledger.lost();
 		ledger.open(s, contacts, pulses.halfBack(), 0);
-		const CappedReport impact = solveInstant(s, step.atInstant(events.speed()));
+		const CappedReport impact = solveInstant(s, step.atInstant(events.speed()), lostInStep);
 		events.report(s, contacts, solver.spins, lostInStep + impact.lost, impact.residual);
 		capped.restore(contacts);
 	}
@@ -86,7 +86,7 @@ void AssemblyStep<K>::takeInstants(RigidSystem<K>& s, const StepContext& step)
 	if (jump) {
 		pulses.apply(s, contacts);
 		ledger.open(s, contacts, pulses.halfBack(), 0);
-		solveInstant(s, step.atInstant(pulses.speed()));
+		solveInstant(s, step.atInstant(pulses.speed()), 0);
 		capped.restore(contacts);
 	}
 }
@@ -101,9 +101,9 @@ CappedReport AssemblyStep<K>::solve(RigidSystem<K>& s, const LaneArray& load, co
 	return result;
 }
 
-// Leaves the impulses of the instant in the contacts.
+// Leaves the impulses of the instant in the contacts. `taken`: energy that the first part of its impacts has taken, J.
 template <class K>
-CappedReport AssemblyStep<K>::solveInstant(RigidSystem<K>& s, const StepContext& instant)
+CappedReport AssemblyStep<K>::solveInstant(RigidSystem<K>& s, const StepContext& instant, double taken)
 {
 	noLoads.assign(contacts.velocity.size(), all(0));
 	const CappedReport result = solve(s, noLoads, noGuess, instant);
@@ -113,7 +113,7 @@ CappedReport AssemblyStep<K>::solveInstant(RigidSystem<K>& s, const StepContext&
 	for (size_t b = 0; b < s.bodies.size(); ++b)
 		if (!s.bodies[b].prescribed)
 			s.bodies[b].velocity = contacts.inGlobal(contacts.velocity, b);
-	report.created += ledger.close(s, Scales(s), instant.h, 0, 0);
+	report.created += ledger.close(s, Scales(s), instant.h, 0, 0, taken);
 	return result;
 }
 
@@ -182,7 +182,7 @@ void AssemblyStep<K>::moveBodies(RigidSystem<K>& s, double h, bool isMoving)
 		work += body.force.dot(moved);
 		onMean += h / 2 * body.force.dot(before + body.velocity);
 	}
-	report.created += ledger.close(s, Scales(s), h, work, onMean);
+	report.created += ledger.close(s, Scales(s), h, work, onMean, 0);
 }
 
 // Whether a body turns so far in the step that frames must follow.

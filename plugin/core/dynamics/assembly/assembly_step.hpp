@@ -77,7 +77,7 @@ private:
 	void advancePart(RigidSystem<K>& system, double h);
 	void takeInstants(RigidSystem<K>& system, const StepContext& step);
 	CappedReport solve(RigidSystem<K>& system, const LaneArray& load, const LaneArray& guess, const StepContext& step);
-	CappedReport solveInstant(RigidSystem<K>& system, const StepContext& instant);
+	CappedReport solveInstant(RigidSystem<K>& system, const StepContext& instant, double taken);
 	void lean(const RigidSystem<K>& system);
 	void takeChange(double fall);
 	void setLoads(const RigidSystem<K>& system, double h);

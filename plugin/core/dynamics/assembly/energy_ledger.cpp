@@ -90,7 +90,7 @@ void EnergyLedger<K>::takeContacts(const RigidSystem<K>& s, const ContactSet<K>&
 }
 
 template <class K>
-double EnergyLedger<K>::close(RigidSystem<K>& s, const Scales& scales, double h, double work, double onMean)
+double EnergyLedger<K>::close(RigidSystem<K>& s, const Scales& scales, double h, double work, double onMean, double taken)
 {
 	double mass = 0;
 	for (const auto& body : s.bodies)
@@ -104,7 +104,8 @@ double EnergyLedger<K>::close(RigidSystem<K>& s, const Scales& scales, double h,
 	             slowest = tolerance::assembly::createdTravel * scales.length / h;
 	const double allowed =
 	    tolerance::assembly::createdShare * atStake + tolerance::assembly::createdLift * liftedAll + mass * slowest * slowest;
-	return impacts < -allowed ? -impacts : 0;
+	const double balance = impacts + taken;
+	return balance < -allowed ? -balance : 0;
 }
 
 template class EnergyLedger<Plane>;

@@ -34,8 +34,8 @@ public:
 	void takeContacts(const RigidSystem<K>& system, const ContactSet<K>& contacts, const AdmmSolver<K>& solver, double friction);
 	// Ends the step, in which external forces have done `work` while the bodies moved and `onMean` on the mean of the velocities before and
 	// after (J), and writes the system's energies. Returns the energy that the step has created beyond what the error of a sound step can
-	// create, J.
-	double close(RigidSystem<K>& system, const Scales& scales, double h, double work, double onMean);
+	// create, J. `taken`: by the part of its impacts that was in the step before; an instant may give back some of it.
+	double close(RigidSystem<K>& system, const Scales& scales, double h, double work, double onMean, double taken);
 	// Returns the energy that the contacts of the last step have taken, J: what moves against the base and is accelerated by forces takes
 	// none.
 	double lost() const { return impacts + friction - lag; }

@@ -2,6 +2,7 @@
 #include "wall_rig.hpp"
 #include <catch.hpp>
 #include <cstring>
+#include <utility>
 
 using namespace rig;
 
@@ -339,7 +340,8 @@ TEST_CASE("a moment turns a block about the axis that it has in the world")
 }
 
 // Shaken across and along, then held: with the base at rest energy can only fall. What rises is the error of the steps: 1e-3 of what is
-// lost is asked. The wall rocks across its plane for three seconds and
+// lost is asked. An impact has a part in its step and one between that and the next, which gives back some of what the first has taken:
+// energy is compared with that of two steps, and no step says that it has made any. The wall rocks across its plane for three seconds and
 // more.
 TEST_CASE("a wall that was shaken in space loses energy and comes to rest")
 {
@@ -351,14 +353,17 @@ TEST_CASE("a wall that was shaken in space loses energy and comes to rest")
 	scene.run(0.5, 1e-3);
 	const double height = energy(scene.system);
 	CHECK(scene.drift() > 1e-2);
-	double last = height, rises = 0, largest = 0;
+	double last = height, older = height, rises = 0, largest = 0, created = 0;
 	for (int k = 0; k < 5000; ++k) {
 		scene.advance(1e-3);
 		const double now = halfStepEnergy(scene.system, 1e-3);
-		largest = std::max(largest, now - last);
-		rises += std::max(0., now - last);
-		last = now;
+		const double rise = now - std::max(last, older);
+		largest = std::max(largest, rise);
+		rises += std::max(0., rise);
+		older = std::exchange(last, now);
+		created += scene.step.report.created;
 	}
+	CHECK(created == 0);
 	CHECK(largest < 1e-3 * (height - last));
 	CHECK(rises < 1e-3 * (height - last));
 	CHECK(scene.system.kineticEnergy() < 1e-6 * (height - last));
