@@ -63,7 +63,7 @@ struct alignas(alignment) Group : PointSet<K> {
 	PointLanes<K> point[lanePoints<K>];
 };
 
-// What the solver remembers of a point.
+// The solver remembers these numbers of a point from one step to the next.
 template <class K>
 struct alignas(alignment) SolverLanes {
 	using Tangent = typename PointLanes<K>::Tangent;

@@ -62,7 +62,7 @@ struct alignas(alignment) PointLanes<Plane> {
 	Lanes steady;       // filtered pn
 };
 
-// What a point is made of: vertex and face in the axes of their bodies.
+// A point is made of a vertex and a face, which are given in the axes of their bodies.
 template <>
 struct alignas(alignment) FeatureLanes<Plane> {
 	Mask vertexOn1, present;
@@ -124,7 +124,7 @@ MASONRY_INLINE Vector3 partOf(const PointLanes<Plane>& p, int row, int lane, int
 	return row == 0 ? Vector3(n[0], n[1], n[2]) : Vector3(-n[1], n[0], (body == 1 ? p.a1t : p.a2t)[lane]);
 }
 
-// Of one lane's point; its position from the centre of body 2, whose radius of gyration is rho.
+// Sets the frame of one lane's point. Its position is from the centre of body 2, whose radius of gyration is rho.
 MASONRY_INLINE void takeFrame(const PointLanes<Plane>& p, const FeatureLanes<Plane>&, int lane, const Plane::Spin& rho,
                               ContactFrame<Plane>& frame)
 {

@@ -82,7 +82,7 @@ struct alignas(alignment) Bodies<Space> {
 	}
 };
 
-// Of one row of a point.
+// A row of a point takes the velocities of both bodies along an axis, and their spins by its arms.
 struct alignas(alignment) Row {
 	Lanes3 axis, arm1, arm2;
 	MASONRY_INLINE Lanes rate(const Bodies<Space>& v1, const Bodies<Space>& v2) const
@@ -102,7 +102,8 @@ struct alignas(alignment) PointLanes<Space> {
 	Lanes steady; // filtered pn
 };
 
-// What a point is made of: vertex and face in the axes of their bodies; or two edges that cross, which are looked at one by one.
+// A point is made of a vertex and a face, which are given in the axes of their bodies, or of two edges that cross. Those are looked at one
+// by one.
 template <>
 struct alignas(alignment) FeatureLanes<Space> {
 	Mask vertexOn1, present, crossing;
@@ -170,7 +171,7 @@ MASONRY_INLINE Vector3 partOf(const PointLanes<Space>& p, int row, int lane, int
 	return (pack == 0 ? r.axis : body == 1 ? r.arm1 : r.arm2).lane(lane);
 }
 
-// Of one lane's point; its position from the centre of body 2.
+// Sets the frame of one lane's point. Its position is from the centre of body 2.
 MASONRY_INLINE void takeFrame(const PointLanes<Space>& p, const FeatureLanes<Space>& f, int lane, const Space::Spin&,
                               ContactFrame<Space>& frame)
 {

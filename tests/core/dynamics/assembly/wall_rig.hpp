@@ -44,7 +44,7 @@ inline Vector3 sizeOf(const RigidSystem<Space>&, double x, double z) { return {x
 inline Vector2 placeOf(const RigidSystem<Plane>&, double x, double z) { return {x, z}; }
 inline Vector3 placeOf(const RigidSystem<Space>&, double x, double z) { return {x, 0, z}; }
 
-// Of a step by AssemblyStep: kinetic and potential energy in its middle, to which its velocities belong.
+// Returns the kinetic and potential energy in the middle of the last step, of length h, to which the velocities of AssemblyStep belong.
 template <class K>
 double halfStepEnergy(const RigidSystem<K>& s, double h)
 {
