@@ -27,11 +27,15 @@ void PulseTrainEngine::postLoad(PulseTrainEngine&)
 		reject(*this, "duration", duration, "a finite time >= 0 in s");
 	if (singleKeeps != "amplitude" && singleKeeps != "duration")
 		reject(*this, "singleKeeps", singleKeeps, "'amplitude' or 'duration'");
-	unit = {masonry::pulseShapeFromName(shape), duration};
-	singleUnit = masonry::singlePulse(unit, masonry::singleKeepsFromName(singleKeeps));
-	past.clear();
-	for (size_t k = 0; k < pulseTimes.size(); ++k)
-		addPast(k);
+	released = {};
+	released.train = {impulse,
+	                  resonant() ? halfCycles
+	                  : assembly ? int(times.size()) - 1
+	                             : -1,
+	                  {masonry::pulseShapeFromName(shape), duration},
+	                  masonry::singleKeepsFromName(singleKeeps)};
+	for (const Real time : pulseTimes)
+		released.release(time);
 }
 
 void PulseTrainEngine::forget()
@@ -39,51 +43,16 @@ void PulseTrainEngine::forget()
 	BaseMotionEngine::forget();
 	pulseTimes.clear();
 	pulseJumps.clear();
-	past.clear();
+	released.clear();
 }
 
-void PulseTrainEngine::addPast(size_t k)
-{
-	const masonry::UnitPulse& pulse = shapeOf(k);
-	const Real ownEnd = pulseTimes[k] + pulse.duration;
-	const Past before = past.empty() ? Past {ownEnd, 0, 0} : past.back();
-	const Real end = std::max(ownEnd, before.end), moved = pulseJumps[k] * pulse.displacement(end - pulseTimes[k]);
-	past.push_back({end, before.velocity + pulseJumps[k], before.displacement + before.velocity * (end - before.end) + moved});
-}
+Real PulseTrainEngine::displacement(Real t) const { return released.displacement(t); }
 
-bool PulseTrainEngine::isSingle(size_t k) const
-{
-	return k == 0 || (resonant() ? int(k) == halfCycles : assembly && k + 1 == times.size());
-}
+Real PulseTrainEngine::velocity(Real t) const { return released.velocity(t); }
 
-size_t PulseTrainEngine::ended(Real t) const
-{
-	const auto next = std::upper_bound(past.begin(), past.end(), t, [](Real time, const Past& pulse) { return time < pulse.end; });
-	return size_t(next - past.begin());
-}
+Real PulseTrainEngine::acceleration(Real t) const { return released.acceleration(t); }
 
-Real PulseTrainEngine::acting(Real t, Real (masonry::UnitPulse::*part)(double) const) const
-{
-	Real result = 0;
-	for (size_t k = ended(t); k < pulseTimes.size() && pulseTimes[k] <= t; ++k)
-		result += pulseJumps[k] * (shapeOf(k).*part)(t - pulseTimes[k]);
-	return result;
-}
-
-Real PulseTrainEngine::displacement(Real t) const
-{
-	const size_t k = ended(t);
-	const Real before = k == 0 ? 0 : past[k - 1].displacement + past[k - 1].velocity * (t - past[k - 1].end);
-	return before + acting(t, &masonry::UnitPulse::displacement);
-}
-
-Real PulseTrainEngine::velocity(Real t) const
-{
-	const size_t k = ended(t);
-	return (k == 0 ? 0 : past[k - 1].velocity) + acting(t, &masonry::UnitPulse::velocity);
-}
-
-Real PulseTrainEngine::acceleration(Real t) const { return acting(t, &masonry::UnitPulse::acceleration); }
+Real PulseTrainEngine::meanVelocity(Real from, Real to) const { return released.meanVelocity(from, to); }
 
 Real PulseTrainEngine::end() const
 {
@@ -93,34 +62,21 @@ Real PulseTrainEngine::end() const
 
 Real PulseTrainEngine::nextKink(Real after, Real until) const
 {
-	Real first = until;
+	Real first = released.nextKink(after);
 	const auto next = std::upper_bound(times.begin(), times.end(), after);
 	if (next != times.end())
 		first = std::min(first, *next);
 	if (resonant() && pulseTimes.empty() && after < 0)
 		first = std::min(first, Real(0));
-	for (size_t k = dirac() ? pulseTimes.size() : ended(after); k < pulseTimes.size() && pulseTimes[k] < first; ++k)
-		if (const Real end = pulseTimes[k] + shapeOf(k).duration; end > after)
-			first = std::min(first, end);
 	return first < until ? first : std::numeric_limits<Real>::infinity();
 }
 
-Real PulseTrainEngine::meanVelocity(Real from, Real to) const
+void PulseTrainEngine::release(Real time, vector<BaseJump>& jumps, Real now)
 {
-	// Between pulses the velocity is a sum of jumps, exactly zero after a train that ends; a difference of displacements
-	// would leave its round-off, divided by the step.
-	const bool acting = !past.empty() && past.back().end > from;
-	return acting ? BaseMotionEngine::meanVelocity(from, to) : velocity(from);
-}
-
-void PulseTrainEngine::addPulse(Real time, vector<BaseJump>& jumps, Real now)
-{
-	const size_t count = pulseTimes.size();
-	const Real size = isSingle(count) ? impulse : 2 * impulse;
-	const Real jump = count % 2 == 0 ? size : -size;
+	const Real jump = released.train.jump(released.count());
+	released.release(time);
 	pulseTimes.push_back(time);
 	pulseJumps.push_back(jump);
-	addPast(count);
 	if (dirac())
 		jumps.push_back({direction * jump, jump, now - time});
 }
@@ -132,17 +88,17 @@ vector<BaseJump> PulseTrainEngine::takeJumps(Real sceneTime, const vector<StepIm
 	if (!resonant()) {
 		// Finite pulses are known ahead, so that the mean velocity of a step holds a pulse that starts inside it.
 		while (pulseTimes.size() < times.size() && (!dirac() || times[pulseTimes.size()] <= now))
-			addPulse(times[pulseTimes.size()], jumps, now);
+			release(times[pulseTimes.size()], jumps, now);
 		return jumps;
 	}
 	if (pulseTimes.empty()) {
 		if (now >= 0)
-			addPulse(0, jumps, now);
+			release(0, jumps, now);
 		return jumps;
 	}
 	for (const StepImpact& impact : impacts)
 		if (impact.block == resonantBlock && (halfCycles < 0 || int(pulseTimes.size()) <= halfCycles))
-			addPulse(now - impact.before, jumps, now);
+			release(now - impact.before, jumps, now);
 	return jumps;
 }
 

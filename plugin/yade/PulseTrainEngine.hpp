@@ -1,7 +1,7 @@
 #pragma once
 
 #include "BaseMotionEngine.hpp"
-#include "motion/pulse_shape.hpp"
+#include "motion/pulse_train.hpp"
 
 namespace yade {
 
@@ -41,26 +41,11 @@ public:
 	);
 	// clang-format on
 private:
-	/// State of the base when a pulse and all before it have ended.
-	struct Past {
-		Real end, velocity, displacement;
-	};
-
 	bool resonant() const { return resonantBlock >= 0; }
-	bool dirac() const { return unit.shape == masonry::PulseShape::Dirac; }
-	/// Number of pulses that have ended at time t.
-	size_t ended(Real t) const;
-	/// Of the pulses that act at time t: their displacement, velocity or acceleration.
-	Real acting(Real t, Real (masonry::UnitPulse::*part)(double) const) const;
-	void addPulse(Real time, vector<BaseJump>& jumps, Real now);
-	void addPast(size_t pulse);
+	bool dirac() const { return released.train.pulse.shape == masonry::PulseShape::Dirac; }
+	void release(Real time, vector<BaseJump>& jumps, Real now);
 
-	/// Whether pulse k has the size I.
-	bool isSingle(size_t k) const;
-	const masonry::UnitPulse& shapeOf(size_t k) const { return isSingle(k) ? singleUnit : unit; }
-
-	masonry::UnitPulse unit, singleUnit; // shape and duration of pulses of 2I and of I
-	vector<Past> past;                   // pulse by pulse, from pulseTimes and pulseJumps
+	masonry::ReleasedPulses released; // as attributes and pulseTimes say
 };
 REGISTER_SERIALIZABLE(PulseTrainEngine);
 

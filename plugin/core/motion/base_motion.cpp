@@ -1,4 +1,5 @@
 #include "motion/base_motion.hpp"
+#include "motion/pulse_train.hpp"
 #include "validation.hpp"
 #include <algorithm>
 #include <boost/math/constants/constants.hpp>
@@ -113,20 +114,18 @@ BaseMotion pulseTrain(double impulse, const std::vector<double>& times, bool ass
 	requireFinite("impulse", impulse);
 	if (shape != PulseShape::Dirac)
 		requirePositive("duration", duration);
-	const UnitPulse twice {shape, duration}, once = singlePulse(twice, singleKeeps);
-	BaseMotion train;
+	const PulseTrain train {impulse, assembly ? int(times.size()) - 1 : -1, {shape, duration}, singleKeeps};
+	BaseMotion motion;
 	double earliest = 0;
 	for (size_t i = 0; i < times.size(); i++) {
 		require("times[" + std::to_string(i) + "]", times[i],
 		        times[i] >= earliest && (i == 0 || times[i] > times[i - 1]) && times[i] < infinity,
 		        i == 0 ? "must be >= 0 s" : "must be increasing, each pulse ended before the next");
-		const bool single = i == 0 || (assembly && i + 1 == times.size());
-		const UnitPulse& pulse = single ? once : twice;
-		const double sign = i % 2 == 0 ? 1 : -1;
-		train.appendPulse(times[i], sign * (single ? 1 : 2) * impulse, shape, pulse.duration);
+		const UnitPulse pulse = train.shape(int(i));
+		motion.appendPulse(times[i], train.jump(int(i)), shape, pulse.duration);
 		earliest = times[i] + (shape == PulseShape::Dirac ? 0 : pulse.duration);
 	}
-	return train;
+	return motion;
 }
 
 BaseMotion rectangular(double amplitude, double duration)

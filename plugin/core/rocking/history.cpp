@@ -31,7 +31,7 @@ auto velocityOf(const TaylorStep& step)
 
 class HistoryRun {
 public:
-	HistoryRun(const RockingBlock& block, const HistoryOptions& options, const ResonantTrain* train)
+	HistoryRun(const RockingBlock& block, const HistoryOptions& options, const PulseTrain* train)
 	    : options_(options), train_(train), lastJump_(!train                  ? 0
 	                                                  : train->halfCycles < 0 ? std::numeric_limits<int>::max()
 	                                                                          : train->halfCycles),
@@ -52,7 +52,7 @@ private:
 	void notePeak(double angle, double time);
 	void endHalfCycle();
 	void impact(double time, double speed, bool free);
-	void release(double time, double jump, bool single);
+	void release(double time);
 	void jumpBase(double velocityJump);
 	void restAt(double since);
 	void fallFreely(const Shaking&);
@@ -77,7 +77,7 @@ private:
 	int impacts() const { return int(history_.impactTimes.size()); }
 
 	const HistoryOptions& options_;
-	const ResonantTrain* train_;
+	const PulseTrain* train_;
 	const int lastJump_; // number of the impact after which a resonant train makes its last jump; 0: no train
 	const RockingLaw law_;
 	const double restSpeed_;
@@ -140,7 +140,7 @@ void HistoryRun::start()
 			overturn(0);
 	}
 	if (train_)
-		release(0, train_->impulse, true);
+		release(0);
 }
 
 void HistoryRun::followPiece(const Shaking& shaking, double until)
@@ -315,8 +315,7 @@ void HistoryRun::impact(double time, double speed, bool free)
 	done_ = impacts() > lastJump_ && impacts() >= options_.halfCycles;
 
 	if (impacts() <= lastJump_) {
-		const bool last = impacts() == lastJump_;
-		release(time, (impacts() % 2 == 0 ? 1 : -1) * (last ? 1 : 2) * train_->impulse, last);
+		release(time);
 		if (train_->pulse.shape == PulseShape::Dirac)
 			return; // the jump comes before all else
 	}
@@ -331,16 +330,16 @@ void HistoryRun::impact(double time, double speed, bool free)
 	keepState();
 }
 
-// Adds a pulse of the resonant train, which ends the piece of motion that is being followed.
-void HistoryRun::release(double time, double jump, bool single)
+// Adds the pulse of the resonant train that follows the last impact. It ends the piece of motion that is being followed.
+void HistoryRun::release(double time)
 {
 	const double ended = history_.motion.pieces().back().start;
 	if (time < ended)
 		throw std::runtime_error("impact " + std::to_string(impacts()) + " at " + std::to_string(time) +
 		                         " s: the pulse before acts until " + std::to_string(ended) +
 		                         " s; finite pulses of a resonant train must be shorter");
-	history_.motion.appendPulse(time, jump, train_->pulse.shape,
-	                            (single ? singlePulse(train_->pulse, train_->singleKeeps) : train_->pulse).duration);
+	const UnitPulse pulse = train_->shape(impacts());
+	history_.motion.appendPulse(time, train_->jump(impacts()), pulse.shape, pulse.duration);
 	released_ = true;
 }
 
@@ -435,7 +434,7 @@ History simulate(const RockingBlock& block, const BaseMotion& motion, const Hist
 	return HistoryRun(block, options, nullptr).run(motion, vertical);
 }
 
-History simulate(const RockingBlock& block, const ResonantTrain& train, const HistoryOptions& options, const BaseMotion& vertical)
+History simulate(const RockingBlock& block, const PulseTrain& train, const HistoryOptions& options, const BaseMotion& vertical)
 {
 	requireFinite("impulse", train.impulse);
 	if (train.pulse.shape != PulseShape::Dirac)

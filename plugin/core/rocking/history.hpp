@@ -10,7 +10,7 @@
 // at every kink of the motion, the impact being the root of the solution itself.
 
 #include "motion/base_motion.hpp"
-#include "motion/pulse_shape.hpp"
+#include "motion/pulse_train.hpp"
 #include "rocking/restoring.hpp"
 #include "rocking/taylor_step.hpp"
 #include <limits>
@@ -19,16 +19,6 @@
 #include <vector>
 
 namespace masonry {
-
-// Base velocity jumps +I at t = 0, then -2I, +2I, ..., each right after an impact (Casapulla and Maione). The jump at
-// impact number `halfCycles`, if that is >= 0, is the last: it is I and brings the base to rest.
-struct ResonantTrain {
-	double impulse;      // I, m/s
-	int halfCycles {-1}; // -1: without end
-	// How a jump of 2I is spread, and what those of I share with it. A pulse must have ended at the next impact.
-	UnitPulse pulse {};
-	SingleKeeps singleKeeps {SingleKeeps::Amplitude};
-};
 
 struct HistoryOptions {
 	double restitution {1}; // C in [0, 1]
@@ -73,11 +63,12 @@ private:
 	std::optional<RockingLaw> law_;
 };
 
+// A train's pulse 0 comes at t = 0, and pulse k right after impact k, when the pulse before must have ended.
 // vertical: the base's motion upwards, without velocity jumps and with an acceleration above -g (the block stays on its base).
 // std::invalid_argument: restitution outside [0, 1], angle outside (-pi/2, pi/2), anything not finite, such a vertical motion, or a run
 // without end (no endTime and no halfCycles, while the pulses never end, or C = 1).
 // std::runtime_error: more than a million impacts, or an impact while a finite pulse of a resonant train acts.
 History simulate(const RockingBlock&, const BaseMotion&, const HistoryOptions&, const BaseMotion& vertical = BaseMotion());
-History simulate(const RockingBlock&, const ResonantTrain&, const HistoryOptions&, const BaseMotion& vertical = BaseMotion());
+History simulate(const RockingBlock&, const PulseTrain&, const HistoryOptions&, const BaseMotion& vertical = BaseMotion());
 
 } // namespace masonry

@@ -23,7 +23,7 @@ Blocks toBlocks(const py::object& tuple); // (half_width, half_height, gravity)
 struct Motions {
 	size_t size;
 	std::function<BaseMotion(size_t)> motion;
-	std::function<ResonantTrain(size_t)> train; // empty unless resonant
+	std::function<PulseTrain(size_t)> train; // empty unless resonant
 
 	size_t place(size_t i) const { return size == 1 ? 0 : i; }
 };

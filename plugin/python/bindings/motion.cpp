@@ -15,7 +15,7 @@ Motions resonant(const py::object& impulses, int halfCycles, const std::string& 
 	const Column impulse = toVector(impulses);
 	const UnitPulse pulse {pulseShapeFromName(shape), duration};
 	const SingleKeeps keeps = singleKeepsFromName(singleKeeps);
-	return {impulse.size(), {}, [=](size_t i) { return ResonantTrain {impulse[i], halfCycles, pulse, keeps}; }};
+	return {impulse.size(), {}, [=](size_t i) { return PulseTrain {impulse[i], halfCycles, pulse, keeps}; }};
 }
 
 Motions pulses(const py::object& impulses, const py::object& times, bool assembly, const std::string& shape, double duration,

@@ -82,7 +82,7 @@ TEST_CASE("the history under a constant moment is the closed form, base displace
 	options.restitution = C;
 	options.restoring = Restoring::Constant;
 	options.halfCycles = 40;
-	const auto history = simulate(block, ResonantTrain {impulse, 40}, options);
+	const auto history = simulate(block, PulseTrain {impulse, 40}, options);
 	const auto sequence = closed_form::pulseSequence(block, impulse, C, 40);
 	for (size_t i = 0; i < 40; i++) {
 		const double sign = i % 2 == 0 ? 1 : -1;
@@ -106,7 +106,7 @@ TEST_CASE("real gravity tends to the closed form as the impulse tends to zero")
 	for (const double share : {1e-1, 1e-2, 1e-3}) {
 		const double impulse = share * 0.0125 * block.gravity;
 		const auto sequence = closed_form::pulseSequence(block, impulse, 0.7, 20);
-		const double error = std::abs(simulate(block, ResonantTrain {impulse}, options).peakAngles[19]) / sequence.peakAngle[19] - 1;
+		const double error = std::abs(simulate(block, PulseTrain {impulse}, options).peakAngles[19]) / sequence.peakAngle[19] - 1;
 		REQUIRE(error > 0);
 		REQUIRE(error < previous / 50); // falls with the square of the impulse
 		previous = error;

@@ -125,8 +125,8 @@ TEST_CASE("base velocity jumps that just overturn")
 
 	HistoryOptions train = with(C);
 	train.halfCycles = 400;
-	REQUIRE(simulate(block, ResonantTrain {(1 - C) * V1 / 2 * (1 + 1e-9)}, train).overturned());
-	REQUIRE_FALSE(simulate(block, ResonantTrain {(1 - C) * V1 / 2 * (1 - 1e-13)}, train).overturned());
+	REQUIRE(simulate(block, PulseTrain {(1 - C) * V1 / 2 * (1 + 1e-9)}, train).overturned());
+	REQUIRE_FALSE(simulate(block, PulseTrain {(1 - C) * V1 / 2 * (1 - 1e-13)}, train).overturned());
 }
 
 TEST_CASE("a schedule at the instants of a resonant train gives that train")
@@ -135,7 +135,7 @@ TEST_CASE("a schedule at the instants of a resonant train gives that train")
 	HistoryOptions options = with(0.7);
 	options.halfCycles = 20;
 	const double impulse = 0.0125 * block.gravity;
-	const auto resonant = simulate(block, ResonantTrain {impulse}, options);
+	const auto resonant = simulate(block, PulseTrain {impulse}, options);
 	for (const double shift : {0.0, 1.0}) { // some roundings before the impact is the instant of the impact
 		std::vector<double> times {0};
 		for (const double t : resonant.impactTimes)

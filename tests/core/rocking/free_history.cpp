@@ -88,7 +88,7 @@ TEST_CASE("resonant pulse train: peaks and impact times to 1e-11 over 30 half cy
 					                                                   : block.frequencyParameter * block.criticalAngle;
 					const double impulse = share * limit * (1 - restitution) / 2 / block.angularVelocityFromImpulse(1);
 					HistoryOptions options = released(0, restitution, restoring, 30);
-					const Errors errors(simulate(block, ResonantTrain {impulse}, options),
+					const Errors errors(simulate(block, PulseTrain {impulse}, options),
 					                    oracle::pulseTrain(exact, moment, restitution, impulse, 30), -1);
 					CAPTURE(int(restoring), slenderness, restitution, share);
 					CHECK(errors.peak < 1e-11);
@@ -191,5 +191,5 @@ TEST_CASE("bad options are refused by name")
 	REQUIRE_THROWS_WITH(simulate(block, BaseMotion(), released(0.1, 1.01, Restoring::Exact, 5)), containsText("restitution = 1.01"));
 	REQUIRE_THROWS_WITH(simulate(block, BaseMotion(), released(nan, 1, Restoring::Exact, 5)), containsText("initial_angle"));
 	REQUIRE_THROWS_WITH(simulate(block, BaseMotion(), released(0.1, 1, Restoring::Exact, 0)), containsText("half_cycles = 0"));
-	REQUIRE_THROWS_WITH(simulate(block, ResonantTrain {0.1}, HistoryOptions()), containsText("never ends"));
+	REQUIRE_THROWS_WITH(simulate(block, PulseTrain {0.1}, HistoryOptions()), containsText("never ends"));
 }

@@ -59,7 +59,7 @@ void pulseTrain(benchmark::State& state, Restoring restoring, oracle::Moment mom
 {
 	HistoryOptions start = options(0.7, restoring);
 	start.halfCycles = halfCycles;
-	const ResonantTrain train {0.0125 * block.gravity};
+	const PulseTrain train {0.0125 * block.gravity};
 	for (auto _ : state)
 		benchmark::DoNotOptimize(simulate(block, train, start));
 	report(state, simulate(block, train, start), FreeReference(oracle::pulseTrain(reference, moment, 0.7, train.impulse, halfCycles)),
