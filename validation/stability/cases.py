@@ -1,7 +1,7 @@
 """The hard cases. Each builds its scene and says by what it is judged: a closed form, an exact history, an integration of its own, or an invariant."""
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Callable
 
 import numpy as np
@@ -33,18 +33,17 @@ class Case:
     oracle: str
     build: Callable
     models: tuple
-    bound: dict                                # of the error, by model; 'any': of the others
-    quick: bool = True                         # takes part in `run --quick`
-    known: dict = field(default_factory=dict)  # model: why it is silently wrong there
+    bound: dict            # of the error, by model; 'any': of the others
+    quick: bool = True     # takes part in `run --quick`
 
 
 CASES = {}
 
 
-def case(oracle, bound, models=ALL, quick=True, known=None, **bounds):
+def case(oracle, bound, models=ALL, quick=True, **bounds):
     def take(build):
         name = build.__name__
-        CASES[name] = Case(name, oracle, build, models, {"any": bound, **{k.replace("_", " "): v for k, v in bounds.items()}}, quick, known or {})
+        CASES[name] = Case(name, oracle, build, models, {"any": bound, **{k.replace("_", " "): v for k, v in bounds.items()}}, quick)
         return build
     return take
 
@@ -119,7 +118,7 @@ def resonant_train_to_overturning(**how):
     train = dem.PulseTrainEngine(ids=[base], impulse=0.0125 * G, resonantBlock=id)
     exact = masonry.simulate(block, masonry.PulseTrain(0.0125 * G), restitution=0.8, half_cycles=20)
     return Scene(lambda: quiet_engines(train, **how), float(exact.impact_times[-1]) + 2,
-                 lambda: abs(len(dem.impacts()) + 1 - int(exact.overturn_half_cycle)) if dem.overturned(id) else 99.0)
+                 lambda: abs(len(dem.impacts()) + 1 - int(exact.overturn_half_cycle)) if id in dem.overturned() else 99.0)
 
 
 @case("energy alone: an unstable equilibrium has no other oracle", 1.0)

@@ -68,7 +68,7 @@ class Energies:
 
 def run(case, model, share=None):
     """One row of the table. share: step relative to the largest allowed one; None: the default step."""
-    row = {"case": case.name, "model": model, "share": share, "known": case.known.get(model, ""), "dt": math.nan, "error": math.nan, "gain": math.nan, "depth": math.nan, "cpu": math.nan}
+    row = {"case": case.name, "model": model, "share": share, "dt": math.nan, "error": math.nan, "gain": math.nan, "depth": math.nan, "cpu": math.nan}
     said = []
     begin = time.process_time()
     try:
