@@ -17,6 +17,12 @@ struct Pose {
 
 	Vector3 toGlobal(const Vector3& local) const { return position + orientation * local; }
 	Vector3 toLocal(const Vector3& global) const { return orientation.conjugate() * (global - position); }
+
+	template <class Archive>
+	void serialize(Archive& archive)
+	{
+		archive(position, orientation.coeffs());
+	}
 };
 
 } // namespace masonry

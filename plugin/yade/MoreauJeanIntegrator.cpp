@@ -24,10 +24,20 @@ std::shared_ptr<RigidRun> makeScene(MoreauJeanIntegrator& engine, const vector<B
 	if (values.empty())
 		return std::make_shared<RigidScene<K>>(engine, motions, Remembered<K>());
 	Remembered<K> before;
-	Unpacker unpacker(values, K::dimension);
-	before.pass(unpacker);
+	masonry::NumberReader archive(values);
+	Real dimension = 0;
+	readMemory([&] {
+		Real first = 0;
+		archive(first, dimension);
+		if (first != layout)
+			throw std::out_of_range("layout");
+	});
+	if (dimension != K::dimension)
+		throw std::runtime_error(
+		    "MoreauJeanIntegrator.remembered is of a run in the plane and this one is in space, or the other way round.");
+	readMemory([&] { archive(before); });
 	const auto result = std::make_shared<RigidScene<K>>(engine, motions, before);
-	result->unpackStepper(unpacker, before);
+	result->unpackStepper(archive, before);
 	return result;
 }
 

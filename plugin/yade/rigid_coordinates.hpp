@@ -119,6 +119,12 @@ struct Seat<Plane> {
 	Real depth = 0; // along the normal
 	Quaternionr reference = Quaternionr::Identity();
 
+	template <class Archive>
+	void serialize(Archive& archive)
+	{
+		archive(across, upright, lengthwise, depth, reference.coeffs());
+	}
+
 	Seat() = default;
 	Seat(const Coordinates<Plane>& c, const State& state)
 	{
@@ -176,6 +182,11 @@ struct Seat<Plane> {
 template <>
 struct Seat<Space> {
 	static constexpr Real depth = 0;
+
+	template <class Archive>
+	void serialize(Archive&)
+	{
+	}
 
 	Seat() = default;
 	Seat(const Coordinates<Space>&, const State&) {}

@@ -1,6 +1,7 @@
 #pragma once
-// All that rigid blocks remember from one step to the next, as a row of numbers that is saved with the simulation.
+// All that rigid blocks remember from one step to the next.
 
+#include "number_archive.hpp"
 #include "rigid_coordinates.hpp"
 #include <boost/serialization/level.hpp>
 #include <boost/serialization/nvp.hpp>
@@ -10,125 +11,20 @@
 
 namespace yade {
 
-/// The row begins with the number of its layout and model, to be changed with any list of members. Rows of old have none: they begin with
-/// how many blocks there are.
-constexpr Real layout = -9;
+/// The row of numbers begins with that of its layout, to be changed with any list of members, and that of the scene's dimensions.
+constexpr Real layout = -10;
 
-/// Numbers, enumerations and matrices go into the row, or come out of it, by the same list of members.
-struct Packer {
-	explicit Packer(int dimension) : values {layout, Real(dimension)} {}
-	vector<Real> values;
-	template <class T>
-	void operator()(const T& value)
-	{
-		if constexpr (std::is_arithmetic_v<T> || std::is_enum_v<T>)
-			values.push_back(Real(value));
-		else
-			for (int i = 0; i < value.size(); ++i)
-				values.push_back(value(i));
-	}
-};
-
-class Unpacker {
-public:
-	Unpacker(const vector<Real>& row, int dimension) : values(row)
-	{
-		if (take() != layout)
-			refuse();
-		if (take() != dimension)
-			throw std::runtime_error(
-			    "MoreauJeanIntegrator.remembered is of a run in the plane and this one is in space, or the other way round.");
-	}
-	template <class T>
-	void operator()(T& value)
-	{
-		if constexpr (std::is_arithmetic_v<T> || std::is_enum_v<T>)
-			value = T(take());
-		else
-			for (int i = 0; i < value.size(); ++i)
-				value(i) = take();
-	}
-	void end() const
-	{
-		if (next != values.size())
-			refuse();
-	}
-
-	[[noreturn]] static void refuse()
-	{
+/// Lets `read` read a row. Throws std::runtime_error if another version has written it.
+template <class Read>
+void readMemory(const Read& read)
+{
+	try {
+		read();
+	} catch (const std::exception&) {
 		throw std::runtime_error("MoreauJeanIntegrator cannot go on with this simulation: it was saved by another version of yade-masonry. "
 		                         "Go on with that version, or build the scene anew.");
 	}
-
-private:
-	Real take()
-	{
-		if (next == values.size())
-			refuse();
-		return values[next++];
-	}
-
-	const vector<Real>& values;
-	size_t next = 0;
-};
-
-namespace memory {
-using namespace masonry::rigid;
-
-template <class Flow>
-void pass(Flow& f, PlaneFeature& p)
-{
-	f(p.vertexBody), f(p.vertex), f(p.face);
 }
-template <class Flow>
-void pass(Flow& f, SpaceFeature& p)
-{
-	f(p.kind), f(p.first), f(p.second);
-}
-template <class Flow>
-void pass(Flow& f, PlaneMemory& m)
-{
-	f(m.reference), f(m.face1), f(m.face2);
-	for (PlaneFeature& feature : m.features)
-		pass(f, feature);
-}
-template <class Flow>
-void pass(Flow& f, masonry::PatchFeature& m)
-{
-	f(m.kind), f(m.feature1), f(m.feature2), f(m.vertices);
-}
-template <class Flow>
-void pass(Flow& f, Seat<Plane>& s)
-{
-	f(s.across), f(s.upright), f(s.lengthwise), f(s.depth), f(s.reference.coeffs());
-}
-template <class Flow>
-void pass(Flow&, Seat<Space>&)
-{
-}
-
-// Masses belong to the scene, and so do sizes, but for knowing whether they have changed; and laws, but for those that no interaction shows
-// yet; gaps are measured anew. By their places
-// points are known again that go to other features.
-template <class Flow, class K>
-void pass(Flow& f, RigidBody<K>& b)
-{
-	f(b.halfSize), passPose(f, b.pose), f(b.velocity), f(b.increment), f(b.fresh), f(b.prescribed), f(b.drive), f(b.origin);
-}
-template <class Flow, class K>
-void pass(Flow& f, ContactPair<K>& p)
-{
-	f(p.body1), f(p.body2), f(p.face1), f(p.face2), f(p.friction), f(p.restitution), f(p.beside), f(p.size);
-	if (!(p.size >= 0 && p.size <= K::maxPoints))
-		Unpacker::refuse();
-	pass(f, p.memory);
-	for (int i = 0; i < p.size; ++i) {
-		ContactPoint<K>& point = p.points[i];
-		pass(f, point.feature);
-		f(point.closed), f(point.sliding), f(point.force), f(point.frame.position);
-	}
-}
-} // namespace memory
 
 /// Blocks by their ids, pairs by the numbers of their blocks.
 template <class K>
@@ -138,22 +34,10 @@ struct Remembered {
 	vector<masonry::rigid::RigidBody<K>> bodies;
 	vector<masonry::rigid::ContactPair<K>> pairs;
 
-	template <class Flow>
-	void pass(Flow& f)
+	template <class Archive>
+	void serialize(Archive& archive)
 	{
-		size_t blocks = ids.size(), count = pairs.size();
-		f(blocks), f(count);
-		ids.resize(blocks);
-		seats.resize(blocks);
-		bodies.resize(blocks);
-		pairs.resize(count);
-		for (size_t b = 0; b < blocks; ++b) {
-			f(ids[b]);
-			memory::pass(f, seats[b]);
-			memory::pass(f, bodies[b]);
-		}
-		for (auto& pair : pairs)
-			memory::pass(f, pair);
+		archive(ids, seats, bodies, pairs);
 	}
 };
 

@@ -311,38 +311,39 @@ vector<Real> RigidScene<K>::pack()
 {
 	showPoints();
 	readLaws();
-	Packer packer(K::dimension);
+	masonry::NumberWriter archive;
+	Real first = layout, dimension = K::dimension;
+	archive(first, dimension);
 	kept.bodies = system.bodies;
 	kept.pairs = system.pairs;
 	Remembered<K> told = kept;
 	for (size_t b = 0; b < links.size(); ++b)
 		if (!isThere(b))
 			told.ids[b] = -1;
-	told.pass(packer);
-	packer(byWalls);
-	packer(lawsChanged);
-	neighbours->pass(packer);
+	archive(told, byWalls, lawsChanged, *neighbours);
 	if (byWalls)
-		scheduler->pass(packer, system);
-	return packer.values;
+		scheduler->serialize(archive, system);
+	return archive.numbers;
 }
 
 template <class K>
-void RigidScene<K>::unpackStepper(Unpacker& unpacker, const Remembered<K>& before)
+void RigidScene<K>::unpackStepper(masonry::NumberReader& archive, const Remembered<K>& before)
 {
-	unpacker(byWalls);
 	bool laws = false;
-	unpacker(laws);
+	readMemory([&] { archive(byWalls, laws); });
 	if (changed || before.ids != kept.ids || before.pairs.size() != system.pairs.size())
 		return;
 	renewContacts();
 	lawsChanged |= laws;
-	neighbours->pass(unpacker);
-	if (byWalls) {
-		scheduler->pass(unpacker, system);
+	readMemory([&] {
+		archive(*neighbours);
+		if (byWalls)
+			scheduler->serialize(archive, system);
+		if (!archive.isAtEnd())
+			throw std::out_of_range("end");
+	});
+	if (byWalls)
 		system.moved = false;
-	}
-	unpacker.end();
 }
 
 template class RigidScene<Plane>;

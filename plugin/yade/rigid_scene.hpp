@@ -87,7 +87,7 @@ public:
 	vector<Real> pack() override;
 
 	/// What the step itself remembers, if the blocks are still those of `before` and move as they did.
-	void unpackStepper(Unpacker& unpacker, const Remembered<K>& before);
+	void unpackStepper(masonry::NumberReader& archive, const Remembered<K>& before);
 
 	bool isPresent() const override { return home.lock() == Omega::instance().getScene(); }
 	bool outdated() const override;

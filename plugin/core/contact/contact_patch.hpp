@@ -22,6 +22,12 @@ struct PatchFeature {
 	int feature1 {-1};                // face 0..5 (kind Face1, Face2) or edge 0..11 (kind Edges) of body 1
 	int feature2 {-1};                // the same of body 2
 	int vertices {0};                 // bit `identity` is set for each vertex that is a corner of the patch
+
+	template <class Archive>
+	void serialize(Archive& archive)
+	{
+		archive(kind, feature1, feature2, vertices);
+	}
 };
 
 inline bool operator==(const PatchFeature& a, const PatchFeature& b)

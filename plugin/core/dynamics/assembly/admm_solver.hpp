@@ -121,21 +121,16 @@ public:
 	void solve(ContactSet<K>& contacts, const LaneArray& load, const LaneArray& guess, const StepContext& step);
 	// Gaps and slips at the end of the step, into the contacts; which pairs move faster than `level`, m/s.
 	PointsReport advanceGaps(ContactSet<K>& contacts, double h, double level);
-	// Passes what the next solve needs from the last, number by number, after the contacts.
-	template <class Flow>
-	void pass(Flow& f, const ContactSet<K>& contacts)
+	// What the next solve needs from the last, of these contacts.
+	template <class Archive>
+	void serialize(Archive& archive, const ContactSet<K>& contacts)
 	{
-		f(age), f(saved), f(cold), f(atRest);
+		archive(age, saved, cold, atRest);
 		rows.resize(contacts.groups.size());
 		for (Rows& ofGroup : rows)
 			for (Row& row : ofGroup)
-				for (Lanes* lanes : {&row.resistance, &row.stiffness})
-					for (int i = 0; i < width; ++i) {
-						double value = (*lanes)[i];
-						f(value);
-						(*lanes)[i] = value;
-					}
-		matrix.pass(f, contacts);
+				archive(row.resistance, row.stiffness);
+		matrix.serialize(archive, contacts);
 	}
 
 private:

@@ -35,29 +35,18 @@ public:
 	void solve(LaneArray& x) { factor.solve(x.data(), places); }
 	const std::vector<int>& freePacks() const { return places; } // of the free bodies
 
-	// Passes the points that A is of, number by number; a new object makes A of them.
-	template <class Flow>
-	void pass(Flow& f, const ContactSet<K>& contacts)
+	// The points that A is of; a new object makes A of them, for these contacts.
+	template <class Archive>
+	void serialize(Archive& archive, const ContactSet<K>& contacts)
 	{
-		size_t count = points.size();
-		f(count);
-		const bool isNew = points.empty() && count > 0;
-		points.resize(count);
-		stiffnesses.resize(count);
-		const auto passLanes = [&f](Lanes& lanes) {
-			for (int i = 0; i < width; ++i) {
-				double value = lanes[i];
-				f(value);
-				lanes[i] = value;
-			}
-		};
-		for (size_t g = 0; g < count; ++g)
-			for (int k = 0; k < lanePoints<K>; ++k) {
-				passLanes(stiffnesses[g][k]);
-				for (Lanes* lanes : rowsOf(points[g][k]))
-					passLanes(*lanes);
-			}
-		if (isNew)
+		const bool isNew = points.empty();
+		archive(stiffnesses);
+		points.resize(stiffnesses.size());
+		for (auto& ofGroup : points)
+			for (PointLanes<K>& point : ofGroup)
+				for (Lanes* lanes : rowsOf(point))
+					archive(*lanes);
+		if (isNew && !points.empty())
 			factorise(contacts);
 	}
 

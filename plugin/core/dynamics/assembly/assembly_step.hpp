@@ -49,28 +49,16 @@ public:
 	// changes.
 	void showPoints(RigidSystem<K>& system) { contacts.showPoints(system); }
 
-	// Passes what the next step needs from the last besides the system, number by number: f(number) takes it, or gives it to a new object,
-	// whose run has the same bits from there on.
-	template <class Flow>
-	void pass(Flow& f, RigidSystem<K>& system)
+	// What the next step needs from the last besides the system. A new object that is loaded with it has the same bits from there on.
+	template <class Archive>
+	void serialize(Archive& archive, RigidSystem<K>& system)
 	{
-		f(started), f(quiet), f(stands), f(changeTime);
+		archive(started, quiet, stands, changeTime);
 		if (!started)
 			return;
-		contacts.pass(f, system);
-		solver.pass(f, contacts);
-		events.pass(f);
-		pulses.pass(f);
-		ledger.pass(f);
-		size_t count = change.size();
-		f(count);
-		change.resize(count);
-		for (Lanes& of : change)
-			for (int k = 0; k < 3; ++k) {
-				double value = of[k];
-				f(value);
-				of[k] = value;
-			}
+		contacts.serialize(archive, system);
+		solver.serialize(archive, contacts);
+		archive(events, pulses, ledger, change);
 	}
 
 private:

@@ -22,14 +22,10 @@ public:
 	const Vectors& halfBack() const { return half; } // from the velocity after an instant, or in a step, to the mean with that before
 	Vectors velocity;                                // of the drives, in the last step or after its jump
 
-	template <class Flow>
-	void pass(Flow& f)
+	template <class Archive>
+	void serialize(Archive& archive)
 	{
-		size_t count = velocity.size();
-		f(count);
-		velocity.resize(count);
-		for (auto& one : velocity)
-			f(one);
+		archive(velocity);
 	}
 
 private:

@@ -161,9 +161,9 @@ public:
 	void startMeans();
 	// Gaps, forces and places of all points, as they are now, into the pairs. Needed before the list of pairs changes.
 	void showPoints(RigidSystem<K>& system);
-	// What the next step needs of the last besides the system, number by number: f(number) takes it, or gives it to a new object.
-	template <class Flow>
-	void pass(Flow& f, RigidSystem<K>& system)
+	// What the next step needs of the last besides the system.
+	template <class Archive>
+	void serialize(Archive& archive, RigidSystem<K>& system)
 	{
 		const bool isNew = !samePairs(system);
 		if (isNew) {
@@ -171,11 +171,8 @@ public:
 			takePairs(system);
 		}
 		for (const int c : numbers)
-			f(wide[c]);
-		f(unit), f(stood);
-		located.resize(stood > 0 ? system.bodies.size() : 0);
-		for (auto& pose : located)
-			passPose(f, pose);
+			archive(wide[c]);
+		archive(unit, stood, located);
 		if (isNew) {
 			takeOver(system);
 			if (stood > 0)
@@ -184,17 +181,14 @@ public:
 		for (const int c : numbers)
 			for (int k = 0; k < pairPoints<K> && slots[c][k / lanePoints<K>].group >= 0; ++k) {
 				const auto [group, lane] = slots[c][k / lanePoints<K>];
-				State now = state(c, k);
+				FeatureLanes<K>& feature = features[group].point[k % lanePoints<K>];
 				Lanes& gaps = groups[group].point[k % lanePoints<K>].gap;
 				double gap = gaps[lane];
-				f(gap);
-				gaps[lane] = gap;
-				f(now.pn), f(now.steady), f(now.pt), f(now.zn), f(now.zt), f(now.slip), f(now.zero);
-				setState(now, c, k);
-				FeatureLanes<K>& feature = features[group].point[k % lanePoints<K>];
+				State now = state(c, k);
 				auto found = feature.foundAt(lane);
-				for (double& value : found)
-					f(value);
+				archive(gap, now, found);
+				gaps[lane] = gap;
+				setState(now, c, k);
 				feature.setFound(found, lane);
 			}
 	}
@@ -258,6 +252,11 @@ private:
 		{
 			for (auto* part : {&pt, &zt, &slip})
 				part->setZero();
+		}
+		template <class Archive>
+		void serialize(Archive& archive)
+		{
+			archive(pn, steady, pt, zn, zt, slip, zero);
 		}
 	};
 

@@ -40,10 +40,10 @@ public:
 	// none.
 	double lost() const { return impacts + friction - lag; }
 
-	template <class Flow>
-	void pass(Flow& f)
+	template <class Archive>
+	void serialize(Archive& archive)
 	{
-		f(friction), f(impacts), f(lag);
+		archive(friction, impacts, lag);
 	}
 
 private:

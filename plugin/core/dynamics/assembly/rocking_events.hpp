@@ -43,21 +43,10 @@ public:
 	std::vector<int> blocks() const;
 	void clear() { landings.clear(); }
 
-	// Passes what the next step needs from the last, number by number.
-	template <class Flow>
-	void pass(Flow& f)
+	template <class Archive>
+	void serialize(Archive& archive)
 	{
-		size_t count = landings.size();
-		f(count);
-		landings.resize(count);
-		for (Landing& l : landings) {
-			f(l.block), f(l.support), f(l.face);
-			for (double* value : {&l.asked, &l.restitution, &l.time, &l.before, &l.speed, &l.share})
-				f(*value);
-			f(l.axis), f(l.normal), f(l.spent.gain), f(l.spent.exchanged);
-			for (Carrier& carrier : l.carriers)
-				f(carrier.body), f(carrier.perLength), f(carrier.arm);
-		}
+		archive(landings);
 	}
 
 private:
@@ -69,6 +58,12 @@ private:
 		int body;
 		double perLength; // rad/m: e.w_carry over the support's speed along the normal
 		Vector3 arm;      // m, from the body's centre
+
+		template <class Archive>
+		void serialize(Archive& archive)
+		{
+			archive(body, perLength, arm);
+		}
 	};
 	struct Landing {
 		int block, support, face;
@@ -79,6 +74,13 @@ private:
 		Vector3 axis, normal;
 		std::array<Carrier, 3> carriers; // two ends of the old pivot, new support
 		JointWork spent;                 // in the step, with its row
+
+		template <class Archive>
+		void serialize(Archive& archive)
+		{
+			archive(block, support, face, asked, restitution, time, before, speed, share, axis, normal, spent.gain, spent.exchanged,
+			        carriers);
+		}
 	};
 	struct Joint {
 		int begin, end;           // points

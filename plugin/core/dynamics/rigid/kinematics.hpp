@@ -51,19 +51,13 @@ struct PlanePose {
 	}
 	Vector2 toGlobal(const Vector2& local) const { return position + rotate(local); }
 	Vector2 toLocal(const Vector2& global) const { return rotateBack(global - position); }
-};
 
-// Number by number, to be kept or found again: f(number).
-template <class Flow>
-void passPose(Flow& f, PlanePose& pose)
-{
-	f(pose.position), f(pose.angle), f(pose.cosine), f(pose.sine);
-}
-template <class Flow>
-void passPose(Flow& f, Pose& pose)
-{
-	f(pose.position), f(pose.orientation.coeffs());
-}
+	template <class Archive>
+	void serialize(Archive& archive)
+	{
+		archive(position, angle, cosine, sine);
+	}
+};
 
 // Where a vertex of one body meets a face of the other. Vertex: bits 0, 1 set where along, up is positive; face = 2 axis +
 // (1 if it looks along +axis).
@@ -71,6 +65,12 @@ struct PlaneFeature {
 	int vertexBody {0}; // 1 or 2, the other one has the face; 0: none
 	int vertex {0}, face {0};
 	bool operator==(const PlaneFeature& o) const { return vertexBody == o.vertexBody && vertex == o.vertex && face == o.face; }
+
+	template <class Archive>
+	void serialize(Archive& archive)
+	{
+		archive(vertexBody, vertex, face);
+	}
 };
 
 // What a pair of boxes in the plane remembers from one search to the next.
@@ -78,6 +78,12 @@ struct PlaneMemory {
 	int reference {0};          // body 1 or 2 whose face was the reference; 0: none
 	int face1 {-1}, face2 {-1}; // faces in touch
 	std::array<PlaneFeature, 2> features;
+
+	template <class Archive>
+	void serialize(Archive& archive)
+	{
+		archive(reference, face1, face2, features);
+	}
 };
 
 // A vertex of one body on a face of the other, or an edge of body 1 across an edge of body 2 (numbers as in contact/features.hpp).
@@ -86,6 +92,12 @@ struct SpaceFeature {
 	int first {-1};  // Vertex1: vertex of body 1; Vertex2: face of body 1; Edges: edge of body 1
 	int second {-1}; // Vertex1: face of body 2; Vertex2: vertex of body 2; Edges: edge of body 2
 	bool operator==(const SpaceFeature& o) const { return kind == o.kind && first == o.first && second == o.second; }
+
+	template <class Archive>
+	void serialize(Archive& archive)
+	{
+		archive(kind, first, second);
+	}
 };
 
 // Where and how two bodies meet at one contact point. Axes, in rows: the normal from body 1 to body 2, then one or two tangents;

@@ -11,6 +11,12 @@ namespace masonry::rigid {
 template <class K>
 struct Bounds {
 	typename K::Vector low {K::Vector::Zero()}, high {K::Vector::Zero()};
+
+	template <class Archive>
+	void serialize(Archive& archive)
+	{
+		archive(low, high);
+	}
 };
 
 // Keeps the system's list of pairs: those with less than `margin` (m) between their bounds are always in it, farther ones may be.
@@ -26,15 +32,11 @@ public:
 
 	Neighbours(double margin, NewPair newPair) : margin(margin), newPair(std::move(newPair)) {}
 
-	// How long the list of the system's pairs holds, number by number: f(number) takes it, or gives it to a new object.
-	template <class Flow>
-	void pass(Flow& f)
+	// How long the list of the system's pairs holds.
+	template <class Archive>
+	void serialize(Archive& archive)
 	{
-		size_t count = enlarged.size();
-		f(count);
-		enlarged.resize(count);
-		for (Bounds<K>& b : enlarged)
-			f(b.low), f(b.high);
+		archive(enlarged);
 	}
 
 	// True if the list was made anew.

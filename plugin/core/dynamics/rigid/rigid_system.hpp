@@ -26,6 +26,13 @@ struct RigidBody {
 	int drive {-1};                                // index of the drive that moves it; -1: it keeps its velocity
 	typename K::Vector origin {K::Vector::Zero()}; // position at zero displacement of its drive
 
+	// Masses and forces belong to the scene; sizes are here to know whether they have changed.
+	template <class Archive>
+	void serialize(Archive& archive)
+	{
+		archive(halfSize, pose, velocity, increment, fresh, prescribed, drive, origin);
+	}
+
 	double kineticEnergy() const
 	{
 		const auto w = velocity.template tail<K::spins>();
@@ -46,6 +53,13 @@ struct ContactPoint {
 	Eigen::Matrix<double, K::rows - 1, 1> grip {
 	    Eigen::Matrix<double, K::rows - 1, 1>::Zero()}; // from the point to where its friction acts, along the tangents, m (grip.hpp)
 	ContactFrame<K> frame;                              // at the end of the last step
+
+	// Gaps are measured anew. By its place a point is known again that goes to other features.
+	template <class Archive>
+	void serialize(Archive& archive)
+	{
+		archive(feature, closed, sliding, force, frame.position);
+	}
 
 	// From the point to where its friction acts, global: the part along its tangents.
 	void setGrip(const typename K::Vector& offset)
@@ -75,6 +89,15 @@ struct ContactPair {
 	bool beside {false}; // upright when the pair was found: neither bears the other
 	int size {0};
 	std::array<ContactPoint<K>, K::maxPoints> points;
+
+	// Throws std::out_of_range for a number of points that no pair has.
+	template <class Archive>
+	void serialize(Archive& archive)
+	{
+		archive(body1, body2, face1, face2, friction, restitution, beside, size, memory);
+		for (int i = 0; i < size; ++i)
+			archive(points.at(i));
+	}
 };
 
 // Relative velocity (body 2 minus body 1) at a point of a frame, along its axes.

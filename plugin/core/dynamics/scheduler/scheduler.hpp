@@ -47,18 +47,15 @@ public:
 	int localised() const { return int(localisedBodies.size()); } // blocks whose impacts are localised, in the last step
 	bool isLocalised(int body) const { return std::binary_search(localisedBodies.begin(), localisedBodies.end(), body); }
 
-	template <class Flow>
-	void pass(Flow& f, RigidSystem<K>& system)
+	// What the next step needs from the last besides the system.
+	template <class Archive>
+	void serialize(Archive& archive, RigidSystem<K>& system)
 	{
-		size_t count = ofWall.size();
-		f(count);
-		ofWall.resize(count);
-		for (char& is : ofWall)
-			f(is);
-		if (count == system.bodies.size())
+		archive(ofWall);
+		if (ofWall.size() == system.bodies.size())
 			divide(system);
 		hideLocalised(system);
-		walls.pass(f, system);
+		walls.serialize(archive, system);
 		restoreLocalised(system);
 		gapsAreOutdated = true;
 	}

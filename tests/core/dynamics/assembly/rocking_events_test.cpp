@@ -1,6 +1,7 @@
 // The restitution of joints that land in an assembly: against closed forms of one block and against the localised step.
 #include "assembly_rig.hpp"
 #include "dynamics/rigid/rigid_step.hpp"
+#include "number_archive.hpp"
 #include <catch.hpp>
 
 using namespace rig;
@@ -22,34 +23,6 @@ void addTilted(SceneOf<K>& scene, int blocks, double width, double height, doubl
 		turn(s.bodies.back(), angle);
 	}
 }
-
-// Number by number, to be kept and found again.
-struct Taker {
-	std::vector<double> numbers;
-	template <class T>
-	void operator()(const T& value)
-	{
-		if constexpr (std::is_arithmetic_v<T>)
-			numbers.push_back(double(value));
-		else
-			for (int k = 0; k < value.size(); ++k)
-				numbers.push_back(value(k));
-	}
-};
-
-struct Giver {
-	const std::vector<double>& numbers;
-	size_t next {0};
-	template <class T>
-	void operator()(T& value)
-	{
-		if constexpr (std::is_arithmetic_v<T>)
-			value = T(numbers[next++]);
-		else
-			for (int k = 0; k < value.size(); ++k)
-				value(k) = numbers[next++];
-	}
-};
 
 } // namespace
 
@@ -209,14 +182,14 @@ TEMPLATE_TEST_CASE("a step that is saved goes on with the same bits", "", Plane,
 	for (int k = 0; k < 250; ++k)
 		scene.advance(1e-3);
 	scene.step.showPoints(scene.system);
-	Taker taken;
-	scene.step.pass(taken, scene.system);
+	NumberWriter saved;
+	scene.step.serialize(saved, scene.system);
 	auto system = scene.system;
 	auto near = scene.near;
 	assembly::AssemblyStep<TestType> other;
-	Giver giver {taken.numbers};
-	other.pass(giver, system);
-	CHECK(giver.next == taken.numbers.size());
+	NumberReader loaded(saved.numbers);
+	other.serialize(loaded, system);
+	CHECK(loaded.isAtEnd());
 	for (int k = 0; k < 100; ++k) {
 		scene.advance(1e-3);
 		near.update(system);
