@@ -14,7 +14,9 @@
 #include "dynamics/assembly/base_pulse.hpp"
 #include "dynamics/assembly/capped_solve.hpp"
 #include "dynamics/assembly/lift.hpp"
+#include "dynamics/assembly/rest_state.hpp"
 #include "dynamics/assembly/rocking_events.hpp"
+#include "dynamics/assembly/velocity_guess.hpp"
 
 namespace masonry::rigid::assembly {
 
@@ -53,29 +55,22 @@ public:
 	template <class Archive>
 	void serialize(Archive& archive, RigidSystem<K>& system)
 	{
-		archive(started, quiet, stands, changeTime);
+		archive(started);
 		if (!started)
 			return;
 		contacts.serialize(archive, system);
 		solver.serialize(archive, contacts);
-		archive(events, pulses, ledger, change);
+		archive(events, pulses, ledger, guess, rest);
 	}
 
 private:
 	void advancePart(RigidSystem<K>& system, double h);
 	void takeInstants(RigidSystem<K>& system, const StepContext& step);
-	CappedReport solve(RigidSystem<K>& system, const LaneArray& load, const LaneArray& guess, const StepContext& step);
+	CappedReport solve(RigidSystem<K>& system, const LaneArray& load, const LaneArray& expected, const StepContext& step);
 	CappedReport solveInstant(RigidSystem<K>& system, const StepContext& instant, double taken);
-	void lean(const RigidSystem<K>& system);
-	void takeChange(double fall);
-	void setLoads(const RigidSystem<K>& system, double h);
-	void moveBodies(RigidSystem<K>& system, double h, bool isMoving);
-	bool turns(const RigidSystem<K>& system, double h) const;
-	int movingBlocks(const RigidSystem<K>& system, double level) const;
+	void moveBodies(RigidSystem<K>& system, double h);
 
 	bool started {false};
-	int quiet {0};       // steps in which nothing has moved or turned, up to now
-	bool stands {false}; // some such steps have passed: gaps are added up, and frames stay
 	Team team;
 	ContactSet<K> contacts {team};
 	AdmmSolver<K> solver;
@@ -84,8 +79,10 @@ private:
 	BasePulse<K> pulses;
 	CappedSolve<K> capped;
 	Lift<K> projection;
-	LaneArray loads, noLoads, noGuess, change;
-	double changeTime {1}; // s, that `change` is of
+	RestState<K> rest;
+	VelocityGuess guess;
+	LaneArray loads; // velocities that forces give the bodies in the step, in packs
+	const LaneArray none;
 };
 
 } // namespace masonry::rigid::assembly

@@ -221,12 +221,8 @@ void ContactSet<K>::showPair(RigidSystem<K>& s, int c) const
 template <class K>
 void ContactSet<K>::showPoints(RigidSystem<K>& s)
 {
-	if (stood == 0 && !numbers.empty()) { // else frames are where the bodies are; those of a step that moves are of its middle
-		std::vector<typename K::Pose> poses;
-		for (const auto& body : s.bodies)
-			poses.push_back(body.pose);
-		lean(s, poses);
-	}
+	if (stood == 0 && !numbers.empty()) // else frames are where the bodies are; those of a step that moves are of its start
+		lean(s);
 	for (const int c : numbers)
 		if (known[c])
 			showPair(s, c);
@@ -256,9 +252,15 @@ void ContactSet<K>::placeAt(const RigidSystem<K>& s, const std::vector<typename 
 	takeBodies(s);
 }
 
+// A pivot of a block that turns has the centripetal acceleration a. With the normals and arms of the start of a step it leaves the step
+// with the normal velocity -h a: the gap is allowed to close in the next step, in which the velocity goes from h a/2 to -h a/2, so that its
+// impulse does no work. With those of the middle of the step it goes from h a to zero, and the impulse p does the work p h a/2.
 template <class K>
-void ContactSet<K>::lean(const RigidSystem<K>& s, const std::vector<typename K::Pose>& poses)
+void ContactSet<K>::lean(const RigidSystem<K>& s)
 {
+	std::vector<typename K::Pose> poses;
+	for (const auto& body : s.bodies)
+		poses.push_back(body.pose);
 	placeAll(s, poses);
 	allParts([&](const Part& part, int) { takeFrames(s, part.begin, part.end); });
 }
@@ -312,6 +314,24 @@ bool ContactSet<K>::measure(RigidSystem<K>& s, bool isStill)
 	for (size_t b = 0; isStill && b < s.bodies.size(); ++b)
 		located.push_back(s.bodies[b].pose);
 	return otherPoints;
+}
+
+template <class K>
+void ContactSet<K>::takeForces(const RigidSystem<K>& s, double h, LaneArray& to)
+{
+	to.assign(velocity.size(), all(0));
+	eachShare(s.bodies.size(), [&](size_t begin, size_t end, int) {
+		for (size_t b = begin; b < end; ++b)
+			takeForce(s.bodies[b].force, h, b, to);
+	});
+}
+
+template <class K>
+void ContactSet<K>::shiftIn(double h)
+{
+	shift.resize(velocity.size());
+	for (size_t k = 0; k < shift.size(); ++k)
+		shift[k] = h * velocity[k];
 }
 
 template <class K>

@@ -153,8 +153,8 @@ public:
 	bool measure(RigidSystem<K>& system, bool isStill);
 	// Whether points, normals and arms are those of the last step.
 	bool keepsFrames() const { return stood > 1; }
-	// Normals, arms and masses as they are where these poses put the bodies; gaps stay.
-	void lean(const RigidSystem<K>& system, const std::vector<typename K::Pose>& poses);
+	// Normals, arms and masses as they are where the bodies are; gaps stay.
+	void lean(const RigidSystem<K>& system);
 	// Impulses are those of a time h from now on; not many times the last, or an impact's would become as many.
 	void setUnit(double h);
 	// The means of the impulses are those that there are now.
@@ -193,18 +193,6 @@ public:
 			}
 	}
 
-	// work() with bodies and points where these poses put them.
-	template <class Work>
-	void at(const RigidSystem<K>& s, const std::vector<typename K::Pose>& poses, const Work& work)
-	{
-		const auto groupsNow = groups;
-		const auto featuresNow = features;
-		placeAt(s, poses);
-		work();
-		groups = groupsNow;
-		features = featuresNow;
-	}
-
 	// Points of a lane.
 	int points(const RigidSystem<K>& s, int group, int lane) const
 	{
@@ -212,9 +200,11 @@ public:
 		return f.pair[lane] < 0 ? 0 : std::min(s.pairs[f.pair[lane]].size - f.first[lane], lanePoints<K>);
 	}
 	bool isFree(int body) const { return velocity[packs<K> * body][3] > 0; }
-	// Packs of a body as a velocity in global axes; a force and moment in global axes as the velocity that it gives in a time h.
+	// Packs of a body as a velocity in global axes.
 	typename K::Velocity inGlobal(const LaneArray& from, size_t body) const;
-	void takeForce(const typename K::Velocity& force, double h, size_t body, LaneArray& to) const;
+	// The velocities that the bodies' forces give them in a time h.
+	void takeForces(const RigidSystem<K>& system, double h, LaneArray& to);
+	void shiftIn(double h);                                       // as the velocities move the bodies in that time
 	void setVelocity(size_t body, const typename K::Velocity& v); // in global axes
 	typename K::Vector position(size_t body) const;
 	void setLinearVelocity(size_t body, const typename K::Vector& v)
@@ -274,6 +264,7 @@ private:
 	void findCourses(const RigidSystem<K>& system);
 	void orderUpwards();
 	void takeBodies(const RigidSystem<K>& system);
+	void takeForce(const typename K::Velocity& force, double h, size_t body, LaneArray& to) const;
 	void place(size_t body, const typename K::Pose& pose);
 	void placeAll(const RigidSystem<K>& system, const std::vector<typename K::Pose>& poses);
 	void placeAt(const RigidSystem<K>& system, const std::vector<typename K::Pose>& poses);

@@ -21,12 +21,10 @@ struct Frozen {
 		contacts.take(s);
 		contacts.measure(s, true);
 		contacts.setUnit(h);
-		loads.assign(contacts.velocity.size(), all(0));
-		for (size_t b = 0; b < s.bodies.size(); ++b)
-			contacts.takeForce(s.bodies[b].force, h, b, loads);
+		contacts.takeForces(s, h, loads);
 	}
 
-	void solve(const RigidSystem<K>& s, double tolerance, int iterations)
+	void solve(double tolerance, int iterations)
 	{
 		solver.settings.tolerance = tolerance;
 		solver.settings.first = iterations;
