@@ -1,4 +1,5 @@
 #include "dynamics/compliant/pivot_handoff.hpp"
+#include "dynamics/compliant/elastic_equilibrium.hpp"
 #include "dynamics/compliant/joint_groups.hpp"
 #include "dynamics/compliant/rigid_acceleration.hpp"
 #include "dynamics/rigid/sparse_impulses.hpp"
@@ -174,7 +175,8 @@ void startAtEquilibrium(JointSystem& s)
 	std::vector<HeldPoint> held = selectPoints(s.contacts, near);
 	const ImpulseSolver solve = held.size() <= mostDense ? solveImpulses : rigid::solveSparsely;
 	const RigidAcceleration rates = accelerations(s, std::move(held), solve);
-	settle(s, rates.points, std::numeric_limits<double>::infinity()); // whatever energy it takes
+	if (!findElasticEquilibrium(s, rates))
+		settle(s, rates.points, std::numeric_limits<double>::infinity()); // whatever energy it takes
 	goForth(s, rates, 0.);                                            // velocities go half a step back
 }
 

@@ -1,0 +1,185 @@
+#include "dynamics/compliant/elastic_equilibrium.hpp"
+#include "dynamics/compliant/joint_groups.hpp"
+#include "impact/impulse_problem.hpp" // axesAlong
+#include "tolerances.hpp"
+#include <Eigen/SparseCholesky>
+#include <tuple>
+
+namespace masonry {
+
+namespace {
+
+using Rows = Eigen::Matrix<double, 3, 12>; // normal and two tangents, by displacement and turn of body 1, then of body 2
+
+struct Spring { // of a point that may carry
+	int contact, point, body1, body2;
+	double gap, normal, shear; // m, N/m
+	Rows rows;
+	bool closed {true}, slips {false};
+	Vector2 friction {Vector2::Zero()}; // where it slips: on body 2, N
+	Vector3 change {Vector3::Zero()};   // along the rows, m
+
+	double depth() const { return -gap - change[0]; }
+	Vector2 pull() const { return -shear * change.tail<2>(); } // of the shear spring, on body 2, N
+};
+
+std::vector<Spring> springsOf(const JointSystem& s, const std::vector<HeldPoint>& points)
+{
+	std::vector<Spring> springs;
+	const std::vector<ImpulsePoint> places = impulsePoints(s.contacts, points);
+	for (size_t k = 0; k < points.size(); ++k) {
+		const auto [c, i] = std::pair(points[k].contact, points[k].point);
+		const JointContact& contact = s.contacts[c];
+		Spring spring {c,
+		               i,
+		               contact.body1,
+		               contact.body2,
+		               contact.patch.points[i].gap,
+		               contact.normalStiffness(i),
+		               contact.shearStiffness(i),
+		               Rows::Zero()};
+		const Matrix3 axes = axesAlong(contact.patch.normal);
+		for (const auto& [body, sign, column] : {std::tuple(contact.body1, -1., 0), std::tuple(contact.body2, 1., 6)}) {
+			const Vector3 arm = contact.position(i) - s.bodies[body].pose.position;
+			spring.rows.block<3, 3>(0, column) = sign * axes;
+			for (int row = 0; row < 3; ++row)
+				spring.rows.block<1, 3>(row, column + 3) =
+				    sign * (row == 0 ? arm : Vector3(arm + places[k].grip)).cross(axes.row(row).transpose()).transpose();
+		}
+		springs.push_back(spring);
+	}
+	return springs;
+}
+
+class Equilibrium {
+public:
+	Equilibrium(const JointSystem& s, const RigidAcceleration& rates) : system(s), springs(springsOf(s, rates.points))
+	{
+		std::vector<char> isHeld(s.bodies.size(), 0);
+		for (const Spring& spring : springs)
+			isHeld[spring.body1] = isHeld[spring.body2] = 1;
+		for (size_t b = 0; b < s.bodies.size(); ++b)
+			place.push_back(isHeld[b] && !s.bodies[b].prescribed ? size++ : -1);
+		loads = Eigen::VectorXd::Zero(6 * size);
+		for (size_t b = 0; b < s.bodies.size(); ++b)
+			if (const Body& body = s.bodies[b]; place[b] >= 0) {
+				const Matrix3 axes = body.pose.orientation.toRotationMatrix();
+				loads.segment<3>(6 * place[b]) = body.force - body.mass * rates.linear[b];
+				loads.segment<3>(6 * place[b] + 3) = body.torque - axes * body.inertia.asDiagonal() * axes.transpose() * rates.angular[b];
+			}
+	}
+
+	// Returns whether the springs hold the bodies.
+	bool solve()
+	{
+		constexpr int most = 50; // turns of opening and closing points; walls of 1,000 blocks take ten
+		for (int turn = 0; turn < most; ++turn) {
+			if (!displace())
+				return false;
+			if (!change())
+				return true;
+		}
+		return false;
+	}
+
+	Eigen::VectorXd displacements;
+	std::vector<Spring> springs;
+
+	Eigen::Matrix<double, 6, 1> displacement(int body) const
+	{
+		return place[body] < 0 ? Eigen::Matrix<double, 6, 1>::Zero()
+		                       : Eigen::Matrix<double, 6, 1>(displacements.segment<6>(6 * place[body]));
+	}
+
+private:
+	bool displace()
+	{
+		std::vector<Eigen::Triplet<double>> entries;
+		Eigen::VectorXd right = loads;
+		for (const Spring& spring : springs) {
+			if (!spring.closed)
+				continue;
+			const double shear = spring.slips ? 0 : spring.shear;
+			const Vector3 stiffness(spring.normal, shear, shear);
+			const Eigen::Matrix<double, 12, 12> block = spring.rows.transpose() * stiffness.asDiagonal() * spring.rows;
+			const Eigen::Matrix<double, 12, 1> given =
+			    spring.rows.transpose() * Vector3(-spring.normal * spring.gap, spring.friction.x(), spring.friction.y());
+			const int first[2] {place[spring.body1], place[spring.body2]};
+			for (int a = 0; a < 2; ++a) {
+				if (first[a] < 0)
+					continue;
+				right.segment<6>(6 * first[a]) += given.segment<6>(6 * a);
+				for (int b = 0; b < 2; ++b)
+					for (int row = 0; first[b] >= 0 && row < 6; ++row)
+						for (int column = 0; column < 6; ++column)
+							entries.emplace_back(6 * first[a] + row, 6 * first[b] + column, block(6 * a + row, 6 * b + column));
+			}
+		}
+		Eigen::SparseMatrix<double> K(6 * size, 6 * size);
+		K.setFromTriplets(entries.begin(), entries.end());
+		const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(K);
+		if (factor.info() != Eigen::Success)
+			return false;
+		displacements = factor.solve(right);
+		constexpr double accurate = 1e-9; // of a matrix that is singular, since a body can turn or slide, nothing is left that is so
+		if (!((K * displacements - right).norm() <= accurate * right.norm()))
+			return false;
+		for (Spring& spring : springs) {
+			Eigen::Matrix<double, 12, 1> x;
+			x << displacement(spring.body1), displacement(spring.body2);
+			spring.change = spring.rows * x;
+		}
+		return true;
+	}
+
+	// Opens and closes points, and lets them slip as far as friction asks. Returns whether any force has changed.
+	bool change()
+	{
+		double deepest = 0, stiffest = 0;
+		for (const Spring& spring : springs) {
+			deepest = std::max(deepest, spring.depth());
+			stiffest = std::max(stiffest, spring.normal);
+		}
+		bool changed = false;
+		for (Spring& spring : springs) {
+			const bool closes = spring.depth() > (spring.closed ? 0 : tolerance::settle * deepest);
+			changed |= closes != spring.closed;
+			spring.closed = closes;
+			const double bound = system.contacts[spring.contact].law.friction * spring.normal * std::max(0., spring.depth());
+			const Vector2 pull = spring.pull(), before = spring.friction;
+			spring.slips = closes && pull.norm() > bound;
+			spring.friction = spring.slips ? Vector2(bound / pull.norm() * pull) : Vector2(Vector2::Zero());
+			changed |= (spring.friction - before).norm() > tolerance::settle * stiffest * deepest;
+		}
+		return changed;
+	}
+
+	const JointSystem& system;
+	std::vector<int> place; // of a body among those that the springs hold; -1: none
+	int size {0};
+	Eigen::VectorXd loads; // force, then moment, by such body
+};
+
+} // namespace
+
+bool findElasticEquilibrium(JointSystem& s, const RigidAcceleration& rates)
+{
+	Equilibrium equilibrium(s, rates);
+	if (!equilibrium.solve())
+		return false;
+	const std::vector<Body> before = s.bodies;
+	for (size_t b = 0; b < s.bodies.size(); ++b) {
+		const auto moved = equilibrium.displacement(int(b));
+		Body moving = s.bodies[b]; // over unit time
+		moving.velocity = moved.head<3>();
+		moving.angularVelocity = moved.tail<3>();
+		moving.advance(1);
+		s.bodies[b].pose = moving.pose;
+	}
+	moveContacts(s, before);
+	for (JointContact& contact : s.contacts)
+		holdForces(contact);
+	return true;
+}
+
+} // namespace masonry

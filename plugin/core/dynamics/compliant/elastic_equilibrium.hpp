@@ -1,0 +1,20 @@
+#pragma once
+// The equilibrium of a compliant structure: displacements of its bodies at which the springs of the joints carry the loads.
+//
+// With the normal and shear rows n_i, t_i of each point (changes of its gap and of its shear per displacement and turn of both bodies) the
+// displacements x solve
+//     K x = f - sum k_n,i gap_i n_i,   K = sum (k_n,i n_i n_i^T + k_s,i t_i t_i^T),
+// over the points that are pressed. Which ones are follows by repetition: a point that would pull opens, an open one that is pressed
+// closes, and one whose shear spring pulls harder than Coulomb's bound slips, with that force. K is factorised, so that a tower costs no
+// more than a wall of as many blocks.
+#include "dynamics/compliant/pivot_handoff.hpp"
+#include "dynamics/compliant/rigid_acceleration.hpp"
+
+namespace masonry {
+
+// Moves the bodies to that equilibrium and sets shears and forces. Loads are the bodies' forces, less mass times the given acceleration of
+// bodies that do not stay at rest; points are those that may carry. Returns false, and changes nothing, where these springs do not hold the
+// bodies.
+bool findElasticEquilibrium(JointSystem& system, const RigidAcceleration& rates);
+
+} // namespace masonry
