@@ -49,9 +49,9 @@ void ContactSet<K>::setState(const State& state, int pair, int point)
 	}
 }
 
-// A point that was there before keeps its state (true), and so does one that another feature of the same place takes over from.
+// A point that was there before keeps its state, and so does one that another feature of the same place takes over from.
 template <class K>
-bool ContactSet<K>::inherit(const ContactPair<K>& before, const State* states, ContactPoint<K>& point, State& now) const
+void ContactSet<K>::inherit(const ContactPair<K>& before, const State* states, ContactPoint<K>& point, State& now) const
 {
 	const double samePlace = 2 * tolerance::assembly::search * length;
 	for (int j = 0; j < before.size; ++j) {
@@ -67,7 +67,7 @@ bool ContactSet<K>::inherit(const ContactPair<K>& before, const State* states, C
 		now.slip = then.slip;
 		now.zero = std::min(now.zero, then.zero);
 		if (old.feature == point.feature)
-			return true;
+			return;
 		if constexpr (K::rows == 3) { // along the tangents of another face
 			const Eigen::Matrix2d turn = point.frame.axes.template bottomRows<2>() * old.frame.axes.template bottomRows<2>().transpose();
 			point.force.template tail<2>() = (turn * old.force.template tail<2>()).eval();
@@ -75,15 +75,12 @@ bool ContactSet<K>::inherit(const ContactPair<K>& before, const State* states, C
 				*tangential = (turn * *tangential).eval();
 		}
 	}
-	return false;
 }
 
-// True: it has other points than before.
 template <class K>
-bool ContactSet<K>::lookUp(RigidSystem<K>& s, int c)
+void ContactSet<K>::lookUp(RigidSystem<K>& s, int c)
 {
 	const double touching = tolerance::mergedClosing * length;
-	bool changed = s.moved;
 	ContactPair<K>& pair = s.pairs[c];
 	const auto &body1 = s.bodies[pair.body1], &body2 = s.bodies[pair.body2];
 	FoundPoints<K> found = findPoints(body1, body2, pair.memory);
@@ -96,7 +93,7 @@ bool ContactSet<K>::lookUp(RigidSystem<K>& s, int c)
 		if (group >= 0)
 			groups[group].friction[lane] = std::min(pair.friction, mostFriction);
 	if (same)
-		return false;
+		return;
 	if (known[c]) {
 		for (const auto [group, lane] : slots[c])
 			if (group >= 0)
@@ -119,31 +116,26 @@ bool ContactSet<K>::lookUp(RigidSystem<K>& s, int c)
 			locate(point, body1, body2);
 			point.closed = point.gap <= touching;
 			now.zero = std::min(0., point.gap);
-			changed |= !inherit(before, states, point, now);
+			inherit(before, states, point, now);
 			pair.points[k] = point;
 		}
 		const auto [group, lane] = slots[c][k / lanePoints<K>];
 		if (group < 0)
 			continue;
-		changed |= bool(features[group].point[k % lanePoints<K>].present[lane]) != (k < found.size);
 		takePoint(s, c, k);
 		setState(now, c, k);
 	}
-	return changed;
 }
 
 template <class K>
 void ContactSet<K>::lookUpStale(RigidSystem<K>& s)
 {
-	bool other[Team::mostParts + 1] {};
-	allParts([&](const Part& part, int number) { other[number] = lookUpStale(s, part); });
-	for (const bool is : other)
-		otherPoints |= is;
+	allParts([&](const Part& part, int) { lookUpStale(s, part); });
 }
 
 // Lanes of one pair are looked up together; they are in one part.
 template <class K>
-bool ContactSet<K>::lookUpStale(RigidSystem<K>& s, const Part& part)
+void ContactSet<K>::lookUpStale(RigidSystem<K>& s, const Part& part)
 {
 	const auto isStale = [this](const Slot& slot) { return stale[slot.group] >> slot.lane & 1; };
 	for (int g = part.begin; lanesOfPair < K >> 1 && g < part.end; ++g)
@@ -153,11 +145,10 @@ bool ContactSet<K>::lookUpStale(RigidSystem<K>& s, const Part& part)
 				for (const Slot& slot : lanes)
 					stale[slot.group] |= 1 << slot.lane;
 		}
-	bool other = false;
 	for (int g = part.begin; g < part.end; ++g)
 		for (int lane = 0; stale[g] && lane < width && features[g].pair[lane] >= 0; ++lane)
 			if (stale[g] >> lane & 1 && features[g].first[lane] == 0)
-				other |= lookUp(s, features[g].pair[lane]);
+				lookUp(s, features[g].pair[lane]);
 	for (int g = part.begin; g < part.end; ++g)
 		if (stale[g]) {
 			countPoints(s, g);
@@ -165,7 +156,6 @@ bool ContactSet<K>::lookUpStale(RigidSystem<K>& s, const Part& part)
 			takeFrames(s, g, g + 1);
 			stale[g] = 0;
 		}
-	return other;
 }
 
 template <class K>
@@ -283,13 +273,12 @@ bool ContactSet<K>::isLocated(const RigidSystem<K>& s) const
 }
 
 template <class K>
-bool ContactSet<K>::measure(RigidSystem<K>& s, bool isStill)
+void ContactSet<K>::measure(RigidSystem<K>& s, bool isStill)
 {
-	otherPoints = false;
 	if (isStill && isLocated(s)) {
 		takeBodies(s);
 		++stood;
-		return false;
+		return;
 	}
 	if (s.moved)
 		std::fill(stale.begin(), stale.end(), allLanes);
@@ -313,7 +302,6 @@ bool ContactSet<K>::measure(RigidSystem<K>& s, bool isStill)
 	located.clear();
 	for (size_t b = 0; isStill && b < s.bodies.size(); ++b)
 		located.push_back(s.bodies[b].pose);
-	return otherPoints;
 }
 
 template <class K>

@@ -149,8 +149,8 @@ public:
 	// The contacts of the free bodies of a system from now on. True: other lanes than before.
 	bool take(const RigidSystem<K>& system);
 	// Takes over poses and velocities, looks up features where needed, and measures all points; `isStill`: where the last steps have been
-	// still too, every few steps. True: other points than before.
-	bool measure(RigidSystem<K>& system, bool isStill);
+	// still too, every few steps.
+	void measure(RigidSystem<K>& system, bool isStill);
 	// Whether points, normals and arms are those of the last step.
 	bool keepsFrames() const { return stood > 1; }
 	// Normals, arms and masses as they are where the bodies are; gaps stay.
@@ -273,9 +273,9 @@ private:
 	void measureGaps(const RigidSystem<K>& system, int begin, int end, double travel, bool remember);
 	void takeFrames(const RigidSystem<K>& system, int begin, int end); // normals, arms and masses
 	void lookUpStale(RigidSystem<K>& system);
-	bool lookUpStale(RigidSystem<K>& system, const Part& part);
-	bool lookUp(RigidSystem<K>& system, int pair);
-	bool inherit(const ContactPair<K>& before, const State* states, ContactPoint<K>& point, State& now) const;
+	void lookUpStale(RigidSystem<K>& system, const Part& part);
+	void lookUp(RigidSystem<K>& system, int pair);
+	void inherit(const ContactPair<K>& before, const State* states, ContactPoint<K>& point, State& now) const;
 	State state(int pair, int point) const;
 	void setState(const State& state, int pair, int point);
 	void takePoint(const RigidSystem<K>& system, int pair, int point);
@@ -290,8 +290,7 @@ private:
 	std::vector<int> partOf;                             // of a body
 	std::vector<unsigned char> known;                    // pairs whose lanes hold their points
 	std::vector<unsigned char> stale;                    // lanes with a pair to be looked up, by group: a bit each
-	bool otherPoints {false};
-	std::atomic<bool> wider {false}; // a pair needs another lane
+	std::atomic<bool> wider {false};                     // a pair needs another lane
 };
 
 // plane_points.cpp, space_points.cpp

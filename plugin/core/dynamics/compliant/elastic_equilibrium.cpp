@@ -53,7 +53,8 @@ std::vector<Spring> springsOf(const JointSystem& s, const std::vector<HeldPoint>
 
 class Equilibrium {
 public:
-	Equilibrium(const JointSystem& s, const RigidAcceleration& rates) : system(s), springs(springsOf(s, rates.points))
+	Equilibrium(const JointSystem& s, const RigidAcceleration& rates, const std::vector<HeldPoint>& points)
+	    : springs(springsOf(s, points)), system(s)
 	{
 		std::vector<char> isHeld(s.bodies.size(), 0);
 		for (const Spring& spring : springs)
@@ -162,9 +163,43 @@ private:
 
 } // namespace
 
-bool findElasticEquilibrium(JointSystem& s, const RigidAcceleration& rates)
+std::pair<std::vector<HeldPoint>, std::vector<HeldPoint>> divideByRest(const JointSystem& s, const RigidAcceleration& rates)
 {
-	Equilibrium equilibrium(s, rates);
+	constexpr double still = 1e-6; // of gravity. Larger: a block that begins to rock is taken for one that stands
+	const double level = still * s.gravity.norm();
+	std::vector<char> moves(s.bodies.size(), 0);
+	const auto bodiesOf = [&](const HeldPoint& p) { return std::pair(s.contacts[p.contact].body1, s.contacts[p.contact].body2); };
+	for (const HeldPoint& p : rates.points) {
+		const auto [a, b] = bodiesOf(p);
+		const auto at = [&](int body) {
+			return Vector3(rates.linear[body] +
+			               rates.angular[body].cross(s.contacts[p.contact].position(p.point) - s.bodies[body].pose.position));
+		};
+		if (!((at(a) - at(b)).norm() <= level && (rates.linear[a] - rates.linear[b]).norm() <= level))
+			moves[a] = moves[b] = 1;
+	}
+	for (bool spreads = true; spreads;) {
+		spreads = false;
+		for (const HeldPoint& p : rates.points) {
+			const auto [a, b] = bodiesOf(p);
+			if (moves[a] != moves[b] && !s.bodies[a].prescribed && !s.bodies[b].prescribed)
+				moves[a] = moves[b] = spreads = true;
+		}
+	}
+	std::pair<std::vector<HeldPoint>, std::vector<HeldPoint>> result;
+	for (const HeldPoint& p : rates.points) {
+		const auto [a, b] = bodiesOf(p);
+		const bool isMoving = (moves[a] && !s.bodies[a].prescribed) || (moves[b] && !s.bodies[b].prescribed);
+		(isMoving ? result.second : result.first).push_back(p);
+	}
+	return result;
+}
+
+bool findElasticEquilibrium(JointSystem& s, const RigidAcceleration& rates, const std::vector<HeldPoint>& points)
+{
+	if (points.empty())
+		return true;
+	Equilibrium equilibrium(s, rates, points);
 	if (!equilibrium.solve())
 		return false;
 	const std::vector<Body> before = s.bodies;

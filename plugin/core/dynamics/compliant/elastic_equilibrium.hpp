@@ -9,12 +9,18 @@
 // more than a wall of as many blocks.
 #include "dynamics/compliant/pivot_handoff.hpp"
 #include "dynamics/compliant/rigid_acceleration.hpp"
+#include <utility>
+#include <vector>
 
 namespace masonry {
 
-// Moves the bodies to that equilibrium and sets shears and forces. Loads are the bodies' forces, less mass times the given acceleration of
-// bodies that do not stay at rest; points are those that may carry. Returns false, and changes nothing, where these springs do not hold the
+// The points of structures that rest, which is to say that all their bodies accelerate as one with what they stand on, and the other
+// points.
+std::pair<std::vector<HeldPoint>, std::vector<HeldPoint>> divideByRest(const JointSystem& system, const RigidAcceleration& rates);
+
+// Moves the bodies of these points to that equilibrium and sets shears and forces. Loads are the bodies' forces, less mass times their
+// acceleration. Returns false, and changes nothing, where these springs do not hold the
 // bodies.
-bool findElasticEquilibrium(JointSystem& system, const RigidAcceleration& rates);
+bool findElasticEquilibrium(JointSystem& system, const RigidAcceleration& rates, const std::vector<HeldPoint>& points);
 
 } // namespace masonry
