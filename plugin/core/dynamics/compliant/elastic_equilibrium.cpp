@@ -18,6 +18,16 @@ struct Spring { // of a point that may carry
 	bool closed {true}, slips {false};
 	Vector2 friction {Vector2::Zero()}; // where it slips: on body 2, N
 	Vector3 change {Vector3::Zero()};   // along the rows, m
+	Vector3 before {Vector3::Zero()};   // the same in the last turn
+
+	Vector3 stiffness() const { return {closed ? normal : 0, closed && !slips ? shear : 0, closed && !slips ? shear : 0}; }
+	// What stands in for a spring that carries nothing, so that no body is without any: it pulls back to where the last turn has left it,
+	// and its force goes to zero. Larger: more turns.
+	Vector3 standIn() const
+	{
+		constexpr double share = 1e-2;
+		return share * (Vector3(normal, shear, shear) - stiffness());
+	}
 
 	double depth() const { return -gap - change[0]; }
 	Vector2 pull() const { return -shear * change.tail<2>(); } // of the shear spring, on body 2, N
@@ -73,7 +83,7 @@ public:
 	// Returns whether the springs hold the bodies.
 	bool solve()
 	{
-		constexpr int most = 50; // turns of opening and closing points; walls of 1,000 blocks take ten
+		constexpr int most = 200; // turns: up to ten for plain walls, 30 where a wall has openings
 		for (int turn = 0; turn < most; ++turn) {
 			if (!displace())
 				return false;
@@ -98,13 +108,11 @@ private:
 		std::vector<Eigen::Triplet<double>> entries;
 		Eigen::VectorXd right = loads;
 		for (const Spring& spring : springs) {
-			if (!spring.closed)
-				continue;
-			const double shear = spring.slips ? 0 : spring.shear;
-			const Vector3 stiffness(spring.normal, shear, shear);
-			const Eigen::Matrix<double, 12, 12> block = spring.rows.transpose() * stiffness.asDiagonal() * spring.rows;
+			const Vector3 stiffness = spring.stiffness(), standIn = spring.standIn();
+			const Eigen::Matrix<double, 12, 12> block = spring.rows.transpose() * (stiffness + standIn).asDiagonal() * spring.rows;
 			const Eigen::Matrix<double, 12, 1> given =
-			    spring.rows.transpose() * Vector3(-spring.normal * spring.gap, spring.friction.x(), spring.friction.y());
+			    spring.rows.transpose() *
+			    (Vector3(-stiffness[0] * spring.gap, spring.friction.x(), spring.friction.y()) + standIn.cwiseProduct(spring.change));
 			const int first[2] {place[spring.body1], place[spring.body2]};
 			for (int a = 0; a < 2; ++a) {
 				if (first[a] < 0)
@@ -128,6 +136,7 @@ private:
 		for (Spring& spring : springs) {
 			Eigen::Matrix<double, 12, 1> x;
 			x << displacement(spring.body1), displacement(spring.body2);
+			spring.before = spring.change;
 			spring.change = spring.rows * x;
 		}
 		return true;
@@ -143,6 +152,7 @@ private:
 		}
 		bool changed = false;
 		for (Spring& spring : springs) {
+			changed |= spring.standIn().cwiseProduct(spring.change - spring.before).norm() > tolerance::settle * stiffest * deepest;
 			const bool closes = spring.depth() > (spring.closed ? 0 : tolerance::settle * deepest);
 			changed |= closes != spring.closed;
 			spring.closed = closes;
