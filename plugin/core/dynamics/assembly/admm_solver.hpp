@@ -121,7 +121,7 @@ public:
 	void solve(ContactSet<K>& contacts, const LaneArray& load, const LaneArray& guess, const StepContext& step);
 	// Gaps and slips at the end of the step, into the contacts; which pairs move faster than `level`, m/s.
 	PointsReport advanceGaps(ContactSet<K>& contacts, double h, double level);
-	// What the next solve needs from the last, of these contacts.
+	// The next solve of these contacts needs this from the last.
 	template <class Archive>
 	void serialize(Archive& archive, const ContactSet<K>& contacts)
 	{

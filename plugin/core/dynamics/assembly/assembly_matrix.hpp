@@ -35,7 +35,7 @@ public:
 	void solve(LaneArray& x) { factor.solve(x.data(), places); }
 	const std::vector<int>& freePacks() const { return places; } // of the free bodies
 
-	// The points that A is of; a new object makes A of them, for these contacts.
+	// This passes the points that A is of; a new object makes A of them, for these contacts.
 	template <class Archive>
 	void serialize(Archive& archive, const ContactSet<K>& contacts)
 	{

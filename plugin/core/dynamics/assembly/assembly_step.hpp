@@ -51,7 +51,7 @@ public:
 	// changes.
 	void showPoints(RigidSystem<K>& system) { contacts.showPoints(system); }
 
-	// What the next step needs from the last besides the system. A new object that is loaded with it has the same bits from there on.
+	// The next step needs this from the last, besides the system. A new object that is loaded with it has the same bits from there on.
 	template <class Archive>
 	void serialize(Archive& archive, RigidSystem<K>& system)
 	{

@@ -161,7 +161,7 @@ public:
 	void startMeans();
 	// Gaps, forces and places of all points, as they are now, into the pairs. Needed before the list of pairs changes.
 	void showPoints(RigidSystem<K>& system);
-	// What the next step needs of the last besides the system.
+	// The next step needs this from the last, besides the system.
 	template <class Archive>
 	void serialize(Archive& archive, RigidSystem<K>& system)
 	{

@@ -21,8 +21,8 @@ struct Spring { // of a point that may carry
 	Vector3 before {Vector3::Zero()};   // the same in the last turn
 
 	Vector3 stiffness() const { return {closed ? normal : 0, closed && !slips ? shear : 0, closed && !slips ? shear : 0}; }
-	// What stands in for a spring that carries nothing, so that no body is without any: it pulls back to where the last turn has left it,
-	// and its force goes to zero. Larger: more turns.
+	// This stiffness stands in for a spring that carries nothing, so that no body is without any. It pulls back to where the last turn has
+	// left the point, and its force goes to zero. Larger: more turns.
 	Vector3 standIn() const
 	{
 		constexpr double share = 1e-2;
@@ -87,7 +87,7 @@ public:
 		for (int turn = 0; turn < most; ++turn) {
 			if (!displace())
 				return false;
-			if (!change())
+			if (!updateStates())
 				return true;
 		}
 		return false;
@@ -130,7 +130,7 @@ private:
 		if (factor.info() != Eigen::Success)
 			return false;
 		displacements = factor.solve(right);
-		constexpr double accurate = 1e-9; // of a matrix that is singular, since a body can turn or slide, nothing is left that is so
+		constexpr double accurate = 1e-9; // relative residual. A singular matrix, of a body that can turn about its points, leaves more
 		if (!((K * displacements - right).norm() <= accurate * right.norm()))
 			return false;
 		for (Spring& spring : springs) {
@@ -143,7 +143,7 @@ private:
 	}
 
 	// Opens and closes points, and lets them slip as far as friction asks. Returns whether any force has changed.
-	bool change()
+	bool updateStates()
 	{
 		double deepest = 0, stiffest = 0;
 		for (const Spring& spring : springs) {
@@ -157,10 +157,10 @@ private:
 			changed |= closes != spring.closed;
 			spring.closed = closes;
 			const double bound = system.contacts[spring.contact].law.friction * spring.normal * std::max(0., spring.depth());
-			const Vector2 pull = spring.pull(), before = spring.friction;
+			const Vector2 pull = spring.pull(), earlier = spring.friction;
 			spring.slips = closes && pull.norm() > bound;
 			spring.friction = spring.slips ? Vector2(bound / pull.norm() * pull) : Vector2(Vector2::Zero());
-			changed |= (spring.friction - before).norm() > tolerance::settle * stiffest * deepest;
+			changed |= (spring.friction - earlier).norm() > tolerance::settle * stiffest * deepest;
 		}
 		return changed;
 	}

@@ -5,8 +5,9 @@
 // displacements x solve
 //     K x = f - sum k_n,i gap_i n_i,   K = sum (k_n,i n_i n_i^T + k_s,i t_i t_i^T),
 // over the points that are pressed. Which ones are follows by repetition: a point that would pull opens, an open one that is pressed
-// closes, and one whose shear spring pulls harder than Coulomb's bound slips, with that force. K is factorised, so that a tower costs no
-// more than a wall of as many blocks.
+// closes, and one whose shear spring pulls harder than Coulomb's bound slips, with that force. Points that open or slip keep a small
+// stiffness about where the repetition before has left them, so that K is regular on the way; its force vanishes in the end. K is
+// factorised, so that a tower costs no more than a wall of as many blocks.
 #include "dynamics/compliant/pivot_handoff.hpp"
 #include "dynamics/compliant/rigid_acceleration.hpp"
 #include <utility>
@@ -14,13 +15,11 @@
 
 namespace masonry {
 
-// The points of structures that rest, which is to say that all their bodies accelerate as one with what they stand on, and the other
-// points.
+// Returns the points of structures that rest, and all others. A structure rests if its bodies accelerate as one with what they stand on.
 std::pair<std::vector<HeldPoint>, std::vector<HeldPoint>> divideByRest(const JointSystem& system, const RigidAcceleration& rates);
 
 // Moves the bodies of these points to that equilibrium and sets shears and forces. Loads are the bodies' forces, less mass times their
-// acceleration. Returns false, and changes nothing, where these springs do not hold the
-// bodies.
+// acceleration. Returns false, and changes nothing, where these springs do not hold the bodies.
 bool findElasticEquilibrium(JointSystem& system, const RigidAcceleration& rates, const std::vector<HeldPoint>& points);
 
 } // namespace masonry

@@ -175,11 +175,10 @@ void startAtEquilibrium(JointSystem& s)
 	std::vector<HeldPoint> held = selectPoints(s.contacts, near);
 	const ImpulseSolver solve = held.size() <= mostDense ? solveImpulses : rigid::solveSparsely;
 	const RigidAcceleration rates = accelerations(s, std::move(held), solve);
-	if (const auto [resting, others] = divideByRest(s, rates); findElasticEquilibrium(s, rates, resting))
-		settle(s, others, std::numeric_limits<double>::infinity()); // whatever energy it takes
-	else
-		settle(s, rates.points, std::numeric_limits<double>::infinity());
-	goForth(s, rates, 0.); // velocities go half a step back
+	const auto [resting, others] = divideByRest(s, rates);
+	const bool isFound = findElasticEquilibrium(s, rates, resting);
+	settle(s, isFound ? others : rates.points, std::numeric_limits<double>::infinity()); // whatever energy it takes
+	goForth(s, rates, 0.);                                                               // velocities go half a step back
 }
 
 double supportPower(const JointSystem& s)

@@ -32,7 +32,7 @@ public:
 
 	Neighbours(double margin, NewPair newPair) : margin(margin), newPair(std::move(newPair)) {}
 
-	// How long the list of the system's pairs holds.
+	// The bounds tell how long the list of the system's pairs holds.
 	template <class Archive>
 	void serialize(Archive& archive)
 	{

@@ -47,7 +47,7 @@ public:
 	int localised() const { return int(localisedBodies.size()); } // blocks whose impacts are localised, in the last step
 	bool isLocalised(int body) const { return std::binary_search(localisedBodies.begin(), localisedBodies.end(), body); }
 
-	// What the next step needs from the last besides the system.
+	// The next step needs this from the last, besides the system.
 	template <class Archive>
 	void serialize(Archive& archive, RigidSystem<K>& system)
 	{

@@ -64,7 +64,7 @@ TEST_CASE("a wall in running bond stands without a kick")
 				rig.addBox({0.5, 0.5, 0.5}, {x, 0, z}, 2000, false);
 	}
 	CAPTURE(courses);
-	CHECK(imbalance(rig) < 1e-6);
+	CHECK(imbalance(rig) < 1e-6); // the same
 }
 
 // The blocks beside and below the opening slip: what carries them is found in some thirty turns.
@@ -84,5 +84,5 @@ TEST_CASE("a wall with an opening stands without a kick")
 		course(k, {{0, 0.2}, {0.2, 0.6}, {0.6, 1}, {1, 1.4}, {1.4, 1.8}, {1.8, 2.2}, {2.2, 2.4}});
 		course(k + 1, {{0, 0.4}, {0.4, 0.8}, {0.8, 1.2}, {1.2, 1.6}, {1.6, 2}, {2, 2.4}});
 	}
-	CHECK(imbalance(rig) < 1e-4); // forces of points that slip are found to 1e-9 of the largest
+	CHECK(imbalance(rig) < 3e-5); // the repetition ends where forces change by 1e-9 of the largest, and leaves 5e-6
 }
