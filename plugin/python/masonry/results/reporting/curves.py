@@ -89,17 +89,17 @@ def _limit(axes, values):
 @styled
 def drift(history, verdict):
     """Drift, and the way of the base where it moves."""
-    base = history.base
-    way = history.position[:, base] - history.position[0, base] if base is not None else np.zeros((len(history.time), 3))
-    moves = [k for k in range(3) if largest(np.abs(way[:, k])) > 1e-9 * history.sizes.max()]
+    bases = np.unique(history.bases[history.free]) if history.base is not None else []
+    ways = [(f"base {history.ids[base]}, " if len(bases) > 1 else "", history.base_path(base)[0] - history.position[0, base]) for base in bases]
+    moves = [(name, k, way[:, k]) for name, way in ways for k in range(3) if largest(np.abs(way[:, k])) > 1e-9 * history.sizes.max()]
     figure, axes = axes_of(2 if moves else 1, 3.6 if moves else 2.4, [3, 2] if moves else None)
     values = 100 * history.drift()
     axes[0].plot(history.time, values, color="tab:red")
     before = values[history.time < verdict.time] if verdict.collapsed else values
     _limit(axes[0], before if len(before) else values)
     axes[0].set_ylabel("drift (% of height)")
-    for k in moves:
-        axes[1].plot(history.time, 1e3 * way[:, k], color=f"C{k}", label=f"along {'xyz'[k]}")
+    for name, k, way in moves:
+        axes[1].plot(history.time, 1e3 * way, color=f"C{k}" if len(bases) == 1 else None, label=f"{name}along {'xyz'[k]}")
     if moves:
         axes[1].set_ylabel("base (mm)")
         if len(moves) > 1:
@@ -160,9 +160,9 @@ def joints(history, verdict, table):
 
 
 @styled
-def base_forces(history, verdict):
-    """Base shear, vertical force and overturning moment about the horizontal axis that it is largest about."""
-    table = base_reactions(history)
+def base_forces(history, verdict, base=None):
+    """Base shear, vertical force and overturning moment, of one base or of all prescribed bodies."""
+    table = base_reactions(history, base=base)
     figure, axes = axes_of(2, 3.6)
     for one, values, names in ((axes[0], 1e-3 * table["force"], ("base shear x", "base shear y", "vertical force")),
                                (axes[1], 1e-3 * table["moment"], ("about x", "about y", "about z"))):

@@ -30,7 +30,7 @@ def content(history, exact):
                      "Largest horizontal displacement in a course, relative to the base; the curve of a block ends when it falls." + _shaded(verdict))]),
         _section("shape", "Shape at the largest drift", curves.shape(history, shown_first),
                  "The sample of the largest drift" + (" before the collapse" if verdict.collapsed else "") + "; dashed: the first sample."),
-        _joints_section(history, verdict, table), _force_section(history, verdict),
+        _joints_section(history, verdict, table), *_force_sections(history, verdict),
         _energy_section(history), _impact_section(history)) if section]
     return {"title": history.about.get("script") or "Rocking masonry", "kind": verdict.verdict, "headline": _headline(verdict), "sentences": _sentences(history, verdict),
             "warnings": _warnings(history, verdict), "scene": view3d.scene(history, shown_first), "numbers": _numbers(history, verdict, table), "sections": sections,
@@ -136,14 +136,22 @@ def _mm(value):
     return "" if math.isnan(value) else f"{1e3 * value:.3f}"
 
 
-def _force_section(history, verdict):
+def _force_sections(history, verdict):
+    """Forces of each base, and with the first one the lines of thrust."""
     if not has_forces(history):
-        return None
-    return _section("forces", "Base shear, overturning moment and thrust", curves.base_forces(history, verdict),
-                    "Forces of the base on the structure, and their moment about the middle of its foot, at the instants of the samples; peaks of impacts may leave "
-                    "the picture." + _shaded(verdict), second=curves.thrust_map(history, verdict.peak_drift_time),
-                    second_caption="Lines of thrust at the largest drift" + (" before the collapse" if verdict.collapsed else "") + ": the resultant of each joint, as "
-                    "long as it is large, and a dot where it crosses the joint; on the structure as it was at first.")
+        return []
+    thrust = curves.thrust_map(history, verdict.peak_drift_time)
+    caption = ("Lines of thrust at the largest drift" + (" before the collapse" if verdict.collapsed else "") + ": the resultant of each joint, as long as it is "
+               "large, and a dot where it crosses the joint; on the structure as it was at first.")
+    if history.base is None:
+        return [_section("forces", "Thrust", thrust, caption)]
+    bases = history.ids[np.unique(history.bases[history.free])].tolist()
+    said = ("Forces of the base on the structure, and their moment about the middle of its foot, at the instants of the samples; peaks of impacts may leave "
+            "the picture." + _shaded(verdict))
+    if len(bases) == 1:
+        return [_section("forces", "Base shear, overturning moment and thrust", curves.base_forces(history, verdict), said, second=thrust, second_caption=caption)]
+    return [_section(f"forces-{base}", f"Base shear and overturning moment of base {base}", curves.base_forces(history, verdict, base), said)
+            for base in bases] + [_section("thrust", "Thrust", thrust, caption)]
 
 
 def _energy_section(history):
