@@ -31,6 +31,8 @@ public:
 	bool isWatched() const;
 	/// O.interactions as they are after the last step.
 	void writeInteractions();
+	/// Whether this engine has made a step since its scene was built or loaded.
+	bool hasRun() const { return memory.run != nullptr; }
 
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(MoreauJeanIntegrator, GlobalEngine,

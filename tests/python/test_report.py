@@ -119,6 +119,24 @@ def test_a_history_that_stands_ends_with_its_motion_or_the_report_says_so(tmp_pa
     assert "does not say which script" in found.texts["run"]
 
 
+def test_it_has_one_largest_opening(tmp_path):
+    """That of results.joints(): in the numbers, at the head of the table, and on the curve, whose samples are fewer. The peak is one sample of 1,999."""
+    angles = np.concatenate([[0.1] * 1999, np.linspace(0.1, 2, 200)])
+    angles[0], angles[1001] = 0, 0.25
+    h = rocking(angles)
+    h = results.WallHistory(0.001 * np.arange(len(angles)), h.ids, h.sizes, h.free, h.position, h.orientation)
+    table = results.joints(h)
+    critical = np.arctan(0.3)
+    last = angles[angles <= critical].max()  # of the block, until it has fallen
+    assert results.collapse(h).collapsed and abs(table["opening"][0] - 0.6 * np.sin(last)) < 1e-12
+    found, text = page(h, tmp_path)
+    most = words.decimal(1e3 * table["opening"][0], 4)
+    assert f"{most} mm, blocks 10 and 11" in found.texts["numbers"] and f"{1e3 * table['opening'][0]:.3f}" in found.texts["joints"]
+    assert "until the first of the two blocks has fallen" in found.texts["joints"]
+    from masonry.results.joints import movement
+    assert np.nanmax(movement(h, range(len(h.time)))[0]) == table["opening"][0]
+
+
 def test_it_needs_no_network_and_no_name_twice(full):
     found, text, _ = full
     assert all(one.startswith(("#", "data:")) for one in found.loaded)

@@ -55,6 +55,25 @@ def test_what_moves_in_flight_is_no_slip():
     assert abs(results.joints(h)["slip"][0] - 0.79) < ROUND
 
 
+def test_a_joint_counts_until_one_of_its_blocks_has_fallen():
+    """The upper of two blocks slides, opens its joint by 0.1 m, comes back, and falls: from then on it is 0.3 m lower, and 7 m away in the end."""
+    places = [[0, 0.6], [0.02, 0.7], [0.03, 0.6], [0.5, 0.3], [7.0, -3.0]]
+    h = history([[4, 4, 0.2], [0.6, 0.5, 0.4], [0.6, 0.5, 0.4]], [[[0, 0, -0.1], [0, 0, 0.2], [x, 0, z]] for x, z in places])
+    assert results.fallen(h)[:, 2].tolist() == [False] * 3 + [True] * 2
+    lower, upper = results.joints(h)
+    assert abs(upper["opening"] - 0.1) < ROUND and upper["opening_time"] == 0.5 and abs(upper["slip"] - 0.03) < ROUND and lower["opening"] == 0
+    for sample, counts in enumerate((True, True, True, False, False)):
+        at = results.joints(h, time=h.time[sample])
+        assert np.isfinite(at["opening"]).tolist() == [True, counts] and at["opening"][0] == 0
+    # A block that leans beyond its critical angle and comes back has not fallen; one that leans from the start, as in an arch, is a block like any other.
+    critical = math.atan(0.3)
+    leaning = results.joints(rocking([0, 1.2 * critical, 0.5 * critical]))
+    assert abs(leaning["opening"][0] - 0.6 * math.sin(1.2 * critical)) < ROUND
+    slope = turn(0.5, (0, 1, 0))
+    arch = rocking([0, 0.1], frame=slope)
+    assert results.fallen(arch)[:, 1].all() and abs(results.joints(arch)["opening"][0] - 0.6 * math.sin(0.1)) < ROUND
+
+
 def test_joints_are_the_faces_that_touch():
     # Side by side with a gap, beside each other, across a corner, lying in the air; a square on a square turned by 45 degrees: an octagon.
     size = np.array([[4, 4, 0.2], [1, 1, 1], [1, 1, 1], [1, 1, 1], [1, 1, 1]])

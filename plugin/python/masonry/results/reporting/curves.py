@@ -5,7 +5,7 @@ import io
 import re
 
 import numpy as np
-from masonry.results.collapse import fallen
+from masonry.results.collapse import lies
 from masonry.results.forces import base_reactions
 from masonry.results.joints import movement
 from masonry.results.pictures import energy_figure, joints_figure, shape_figure, thrust_figure
@@ -110,7 +110,7 @@ def drift(history, verdict):
 
 def _standing(history, values):
     """The values (s, n) up to the fall of each block."""
-    return np.where(np.logical_or.accumulate(fallen(history)), np.nan, values)
+    return np.where(lies(history), np.nan, values)
 
 
 @styled
@@ -138,21 +138,20 @@ def excursions(history, verdict):
 
 @styled
 def joints(history, verdict, table):
-    """Opening and slip of the joints that moved most before one of their blocks fell."""
-    samples = np.unique(np.linspace(0, len(history.time) - 1, min(_SAMPLES, len(history.time))).round().astype(int))
-    rows, opening, slip = movement(history, samples)
-    gone = np.logical_or.accumulate(fallen(history))[samples][:, rows].any(axis=2)
+    """Opening and slip of the joints that moved most."""
     figure, axes = axes_of(2, 4.2)
-    for one, name, values in zip(axes, ("opening", "slip"), (opening, slip)):
-        values = np.where(gone, np.nan, 1e3 * values)
+    for one, part, name in zip(axes, (0, 1), ("opening", "slip")):
         one.set_ylabel(f"{name} (mm)")
-        if largest(values) <= 1e3 * still(history):  # round-off
+        if largest(table[name]) <= still(history):  # round-off
             one.plot(history.time[[0, -1]], [0, 0], color="0.5", label="none")
             one.set_ylim(0, 1)
             continue
-        order = np.argsort(-np.nan_to_num(np.fmax.reduce(values, axis=0)), kind="stable")[:_LINES]
-        for k in order:
-            one.plot(history.time[samples], values[:, k], label=f"{table['id1'][k]} – {table['id2'][k]}")
+        most = np.argsort(-np.nan_to_num(table[name]), kind="stable")[:_LINES]
+        even = np.linspace(0, len(history.time) - 1, min(_SAMPLES, len(history.time))).round().astype(int)
+        samples = np.unique([*even, *np.searchsorted(history.time, table[name + "_time"][most])])
+        values = 1e3 * movement(history, samples)[part][:, most]
+        for k, way in zip(most, values.T):
+            one.plot(history.time[samples], way, label=f"{table['id1'][k]} – {table['id2'][k]}")
         _limit(one, values)
         one.legend(title="blocks", loc="upper left", fontsize="small", title_fontsize="small", ncol=2)
     time_axis(axes, history.time, verdict.time)

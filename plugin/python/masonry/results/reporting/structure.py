@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 from masonry import _pose
-from masonry.results.collapse import collapse, fallen
+from masonry.results.collapse import collapse
 from masonry.results.forces import has_forces
 from masonry.results.joints import joints
 from masonry.results.view import largest, movement, still
@@ -93,11 +93,9 @@ def _numbers(history, verdict, table):
              "" if math.isnan(verdict.first_excursion) else f"{verdict.first_excursion:.4g} s")]
     for id, time in list(zip(verdict.fallen, verdict.fall_times))[:1]:
         rows.append(("First block to fall", f"block {id}", f"{time:.4g} s"))
-    # Those of blocks that lie on the floor say nothing.
-    stands = ~np.isin(table["id1"], verdict.fallen) & ~np.isin(table["id2"], verdict.fallen)
     for name, verb in (("opening", "opened"), ("slip", "slid")):
-        values = np.where(stands, np.nan_to_num(table[name]), 0)
-        if len(values) and values.max() > still(history):
+        values = np.nan_to_num(table[name])
+        if largest(values) > still(history):
             k = int(values.argmax())
             rows.append((f"Joint that {verb} most", f"{words.decimal(1e3 * values[k], 4)} mm, blocks {table['id1'][k]} and {table['id2'][k]}", f"{table[name + '_time'][k]:.4g} s"))
     energy = history.energy[-1]
@@ -122,14 +120,15 @@ def _joints_section(history, verdict, table):
     if not len(table):
         return None
     rank = np.argsort(-np.nan_to_num(table["opening"]), kind="stable")
-    ids = dict(zip(history.ids.tolist(), fallen(history)[-1].tolist()))
+    fell = set(verdict.fallen.tolist())
     rows = [(f"{r['id1']} – {r['id2']}", _mm(r["opening"]), f"{r['opening_time']:.3f}", _mm(r["slip"]), "" if math.isnan(r["slip"]) else f"{r['slip_time']:.3f}",
-             "fallen" if ids[r["id1"]] or ids[r["id2"]] else "") for r in table[rank[:_JOINTS]]]
+             "fallen" if fell & {r["id1"], r["id2"]} else "") for r in table[rank[:_JOINTS]]]
     return _section("joints", "Opening and slip of the joints", curves.joints(history, verdict, table),
-                    "The joints that opened, and slid, most before one of their blocks fell; slip only while the joint is closed." + _shaded(verdict),
-                    second=curves.joint_map(history), second_caption="Largest values of all samples, on the structure as it was at first.",
+                    "The joints that opened, and slid, most. An opening or a slip counts until the first of the two blocks has fallen, a slip only while the joint "
+                    "is closed." + _shaded(verdict),
+                    second=curves.joint_map(history), second_caption="Largest values of each joint, on the structure as it was at first.",
                     columns=["Blocks", "Opening (mm)", "at (s)", "Slip (mm)", "at (s)", ""], rows=rows,
-                    more=f"The {len(rows)} joints of {len(table)} that opened most, blocks that fell included.", fold="Table of joints")
+                    more=f"The {len(rows)} joints of {len(table)} that opened most; fallen: one of the blocks has in the end.", fold="Table of joints")
 
 
 def _mm(value):

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 from masonry import _pose
-from masonry.results.collapse import fallen
+from masonry.results.collapse import lies
 from masonry.results.pictures import scale_end, shades
 from masonry.results.view import STILL, enlargement, plane_normal, still
 
@@ -61,7 +61,7 @@ def scene(history, start):
     origin = np.round(history.position[0, history.base or 0])
     poses = np.concatenate([history.relative_position[samples] - origin, history.relative_orientation[samples]], axis=2)
     motions, own = _base_motions(history, samples, origin)
-    stands = ~fallen(history)[samples][:, history.free]
+    stands = ~lies(history)[samples][:, history.free]
     quantities = []
     for name, unit, factor, values, least in (("displacement", "mm", 1e3, np.linalg.norm(history.displacement[samples], axis=2), still(history)),
                                               ("rotation", "mrad", 1e3, history.rotation[samples], STILL)):
