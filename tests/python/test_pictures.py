@@ -220,14 +220,13 @@ def test_pictures_and_films_are_of_the_structure_and_not_of_what_falls_away():
     assert axes.get_xlim()[1] > 61 and axes.get_xlim()[0] < -1
 
 
-@pytest.mark.parametrize("sizes", [(0.4, 0.5, 2), (2, 0.5, 2), (8, 0.5, 1)])
-@pytest.mark.parametrize("far", [0, 4.5e6])
-@pytest.mark.parametrize("forces", [False, True])
+@pytest.mark.parametrize("sizes", [(0.4, 0.5, 2), (0.8, 0.2, 2), (8, 0.5, 1)])
+@pytest.mark.parametrize("far, forces", [(0, False), (4.5e6, True)])
 def test_labels_do_not_lie_over_each_other(drawn, tmp_path, sizes, far, forces):
-    """Of slender, square and long walls, small movement and large, at the origin and at map coordinates."""
-    for way in (0.0123, 1.23):
+    """Of slender and long walls, small movement and large (openings of 12,345 mm), at the origin and at map coordinates."""
+    for way in (0.01234, 12.345):
         place = np.array([[far, 0, -0.1], [far, 0, sizes[2] / 2]])
-        h = history([[20, 20, 0.2], sizes], [place, place + [[0, 0, 0], [way, 0, way / 10]]])
+        h = history([[20, 20, 0.2], sizes], [place, place + [[0, 0, 0], [way / 20, 0, 0]], place + [[0, 0, 0], [way / 10, 0, way]]])
         if forces:
             h.forces = np.array([(1, 10, 11, (0, 0, 5), (far, 0, 0))], dtype=[("sample", int), ("id1", int), ("id2", int), ("force", float, 3), ("point", float, 3)])
         results.draw(h, tmp_path / "shape.png")

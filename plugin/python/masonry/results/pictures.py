@@ -23,6 +23,8 @@ _THRUST = 2.0
 _FAINT = 0.02
 # How far beside the structure a picture shows what has fallen, relative to its size: a wall that overturns lies within its height.
 _BESIDE = 1.0
+# Places so many times the width of the picture away are counted from another origin.
+_FAR = 1e3
 # Inches of an axis for each of its numbers.
 _TICK = 0.5
 _PRESCRIBED, _UNMOVED, _BEYOND = "0.62", "0.85", "tab:purple"
@@ -87,14 +89,17 @@ def _figure(view, shown, columns=1):
     margin = 0.06 * max(right - left, high - low)
     width, height = right - left + 2 * margin, high - low + 2 * margin
     scale = min(7.5 / columns / width, 5.5 / height)
+    origin = round(left) if abs(left) > _FAR * width else 0
     figure = Figure(figsize=(max(width * scale + 2.4, 3.6) * columns, max(height * scale, 1.5) + 1.0), layout="constrained")
     FigureCanvasAgg(figure)
     all_axes = figure.subplots(1, columns, squeeze=False)[0]
     for axes in all_axes:
         axes.set(aspect="equal", xlim=(left - margin, right + margin), ylim=(low - margin, high + margin))
         if view.from_side:
-            axes.set(xlabel=view.label(), ylabel="z (m)")
+            axes.set(xlabel=view.label() if origin == 0 else f"{view.label()}, from {origin:.0f} m", ylabel="z (m)")
             axes.locator_params(axis="x", nbins=max(2, int(width * scale / _TICK)))
+            if origin:
+                axes.xaxis.set_major_formatter(lambda value, _: f"{value - origin:g}")
         else:
             axes.axis("off")
             bar = nice(width / 4)
