@@ -9,7 +9,8 @@ namespace yade {
 /// stepper reads that class.
 class BlockGeom : public GenericSpheresContact {
 public:
-	// YADE's Shop::getStressForEachBody (VTKRecorder with 'stress') takes every geometry for an ScGeom: the members of that class, at its offsets.
+	// YADE's Shop::getStressForEachBody (VTKRecorder with 'stress') takes every geometry for an ScGeom: the members of that class, at its
+	// offsets.
 	Vector3r twistAxis = Vector3r::Zero(), orthonormalAxis = Vector3r::Zero();
 	const Real &radius1 = refR1, &radius2 = refR2;
 	Real penetrationDepth = 0;

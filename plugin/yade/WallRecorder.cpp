@@ -122,10 +122,11 @@ void WallRecorder::addJointForces()
 		++count;
 	}
 	jointCounts.push_back(count);
-	owesForces = count == 0 && std::any_of(scene->engines.begin(), scene->engines.end(), [](const auto& engine) {
+	const auto isNew = [](const auto& engine) {
 		const auto* rigid = dynamic_cast<MoreauJeanIntegrator*>(engine.get());
 		return rigid && !rigid->dead && !rigid->hasRun();
-	});
+	};
+	owesForces = count == 0 && std::any_of(scene->engines.begin(), scene->engines.end(), isNew);
 }
 
 void WallRecorder::action()

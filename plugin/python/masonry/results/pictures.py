@@ -90,7 +90,7 @@ def _figure(view, shown, columns=1):
     width, height = right - left + 2 * margin, high - low + 2 * margin
     scale = min(7.5 / columns / width, 5.5 / height)
     origin = round(left) if abs(left) > _FAR * width else 0
-    figure = Figure(figsize=(max(width * scale + 2.4, 3.6) * columns, max(height * scale, 1.5) + 1.0), layout="constrained")
+    figure = Figure(figsize=(max(width * scale + 2.0, 3.6) * columns, max(height * scale, 1.5) + 1.0), layout="constrained")
     FigureCanvasAgg(figure)
     all_axes = figure.subplots(1, columns, squeeze=False)[0]
     for axes in all_axes:
