@@ -9,6 +9,13 @@ namespace yade {
 /// stepper reads that class.
 class BlockGeom : public GenericSpheresContact {
 public:
+	// YADE's Shop::getStressForEachBody (VTKRecorder with 'stress') takes every geometry for an ScGeom: the members of that class, at its
+	// offsets.
+	Vector3r twistAxis = Vector3r::Zero(), orthonormalAxis = Vector3r::Zero();
+	const Real &radius1 = refR1, &radius2 = refR2;
+	Real penetrationDepth = 0;
+	Vector3r shearIncrement = Vector3r::Zero();
+
 	masonry::ContactPatch patch;
 	masonry::CornerNormals corner;        // of compliant joints
 	std::array<Vector3r, 8> pointNormals; // of the patch's points, unit, from body 1 to body 2

@@ -52,8 +52,8 @@ void MoreauJeanIntegrator::postLoad(MoreauJeanIntegrator&)
 		reject(*this, "model", "'" + model + "'", "'auto', 'planar' or 'spatial'");
 	if (impactOrder != "simultaneous" && impactOrder != "sequential")
 		reject(*this, "impactOrder", "'" + impactOrder + "'", "'simultaneous' or 'sequential'");
-	if (onTrouble != "stop" && onTrouble != "continue")
-		reject(*this, "onTrouble", "'" + onTrouble + "'", "'stop' or 'continue'");
+	if (onTrouble != "stop" && onTrouble != "continue" && onTrouble != "count")
+		reject(*this, "onTrouble", "'" + onTrouble + "'", "'stop', 'continue' or 'count'");
 	if (method != "localised" && method != "wall")
 		reject(*this, "method", "'" + method + "'", "'localised' or 'wall'");
 	if (method == "wall") {
@@ -328,7 +328,7 @@ void MoreauJeanIntegrator::count(const masonry::rigid::StepReport& report)
 		firstFailure = text.str();
 	if (onTrouble == "stop")
 		throw std::runtime_error(text.str() + " Give dem.engines() a smaller dt, or set MoreauJeanIntegrator.onTrouble='continue'.");
-	if (first)
+	if (first && onTrouble != "count")
 		LOG_WARN(
 		    firstFailure << " The run goes on; MoreauJeanIntegrator.failures counts such steps. A smaller dt of dem.engines() may help; "
 		                    "dem.compare() tells whether the answer depends on it.");

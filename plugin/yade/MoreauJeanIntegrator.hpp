@@ -31,6 +31,8 @@ public:
 	bool isWatched() const;
 	/// O.interactions as they are after the last step.
 	void writeInteractions();
+	/// Whether this engine has made a step since its scene was built or loaded.
+	bool hasRun() const { return memory.run != nullptr; }
 
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(MoreauJeanIntegrator, GlobalEngine,
@@ -44,7 +46,7 @@ public:
 		((bool, strictForces, false, , "method='wall': if true, `tolerance` also holds for the contact forces, which takes many more iterations. If false, it holds for motions, and the error of a contact force is about a hundred times the tolerance, relative to the weight of a block."))
 		((Real, mergedClosing, 1e-6, Attr::triggerPostLoad, "Points that close within this gap of each other, relative to the smallest half size, close in one impact (0 to 1e-3). It is a parameter of the model: it decides which corner of a nearly flat landing comes first."))
 		((int, mostEvents, 50, Attr::triggerPostLoad, "Impacts and stops of sliding that are found inside one step, at least 1. Points that close later in it do so at its end, plastically."))
-		((string, onTrouble, "continue", Attr::triggerPostLoad, "What happens after a step that is counted in failures: 'continue' (the first one gives a warning) or 'stop' (it is an error)."))
+		((string, onTrouble, "continue", Attr::triggerPostLoad, "What happens after a step that is counted in failures: 'continue' (the first one gives a warning), 'count' (none does) or 'stop' (it is an error)."))
 		((shared_ptr<Ip2_BlockMat_BlockMat_BlockPhys>, pairLaw, shared_ptr<Ip2_BlockMat_BlockMat_BlockPhys>(new Ip2_BlockMat_BlockMat_BlockPhys), , "Rule that gives restitution and friction of a pair of blocks from their materials."))
 		((string, mode, "", Attr::readonly, "method='wall': 'still' if no block of a wall moved against a neighbour in the last step, else 'moving'. Both are stepped in the same way."))
 		((int, movingBlocks, 0, Attr::readonly, "method='wall': number of blocks of walls that moved against a neighbour, or flew, in the last step."))

@@ -102,6 +102,14 @@ void WallRecorder::addMotions()
 	}
 }
 
+bool WallRecorder::isActivated()
+{
+	const bool due = isDue(*this);
+	onlyOwed = owesForces && !due;
+	return owesForces || due;
+}
+
+/// Rigid blocks have no forces before their first step, or the first one after loading: a sample of then gets those of that step.
 void WallRecorder::addJointForces()
 {
 	const std::unordered_set<int> recorded(ids.begin(), ids.end());
@@ -114,10 +122,21 @@ void WallRecorder::addJointForces()
 		++count;
 	}
 	jointCounts.push_back(count);
+	const auto isNew = [](const auto& engine) {
+		const auto* rigid = dynamic_cast<MoreauJeanIntegrator*>(engine.get());
+		return rigid && !rigid->dead && !rigid->hasRun();
+	};
+	owesForces = count == 0 && std::any_of(scene->engines.begin(), scene->engines.end(), isNew);
 }
 
 void WallRecorder::action()
 {
+	if (owesForces) {
+		jointCounts.pop_back();
+		addJointForces();
+		if (onlyOwed)
+			return;
+	}
 	if (times.empty())
 		begin();
 	if (blocks.size() != blockNumbers * ids.size())

@@ -30,6 +30,42 @@ def test_base_reactions_are_the_sums_over_the_joints_with_the_base():
     assert np.abs(about["moment"][1] - (moment + np.cross([0, 0, -1], [-3, 2, 80]))).max() < ROUND * 50
 
 
+def test_base_reactions_without_a_base_are_refused():
+    h = two_blocks()
+    alone = results.WallHistory(h.time, h.ids[1:], h.sizes[1:], h.free[1:], h.position[:, 1:], h.orientation[:, 1:],
+                                forces=h.forces[(h.forces["id1"] != 10) & (h.forces["id2"] != 10)])
+    with pytest.raises(ValueError, match="no prescribed body was recorded.*WallRecorder.ids"):
+        results.base_reactions(alone)
+    assert len(results.thrust(alone)) == 1  # between the two
+    for bad in (11, 7, "base"):
+        with pytest.raises(ValueError, match=r"base = .* must be the id of a prescribed body of the history, among \[10\]"):
+            results.base_reactions(h, base=bad)
+
+
+def test_forces_of_a_body_that_is_not_there_are_refused(tmp_path):
+    h = two_blocks()
+    with pytest.raises(ValueError, match="^forces: they name the body 10, which is not among the ids"):
+        results.WallHistory(h.time, h.ids[1:], h.sizes[1:], h.free[1:], h.position[:, 1:], h.orientation[:, 1:], forces=h.forces)
+    h.forces["id2"] = 77
+    h.save(tmp_path / "wall.npz")
+    with pytest.raises(ValueError, match="wall.npz: is no WallHistory, or a damaged one: forces: they name the body 77"):
+        results.WallHistory.load(tmp_path / "wall.npz")
+
+
+def test_each_base_has_its_own_reactions():
+    """Moments: about the middle of the foot of what stands there, or a given point, which goes along with the base."""
+    from test_results import on_two_bases
+
+    h = on_two_bases()
+    h.forces = np.array([(1, 10, 12, (1, 0, 50), (7.1, 0, 0)), (1, 11, 13, (2, 0, 70), (4, -5, 0)), (1, 13, 14, (0, 0, 9), (4, -5, 1))], dtype=ROWS)
+    one, other, both = (results.base_reactions(h, base=base)[1] for base in (10, 11, None))
+    assert one["force"].tolist() == [1, 0, 50] and other["force"].tolist() == [2, 0, 70] and both["force"].tolist() == [3, 0, 120]
+    assert np.abs(one["moment"] - [0, -5, 0]).max() < 50 * ROUND and np.abs(other["moment"]).max() < 70 * ROUND
+    at = [results.base_reactions(h, about=(0, 0, 1), base=base)["moment"][1] for base in (10, 11, None)]
+    assert np.abs(at[0] - [0, -6, 0]).max() < 120 * ROUND and np.abs(at[1] - [0, -2 - 4 * 70, 0]).max() < 700 * ROUND
+    assert np.abs(at[2] - at[0] - at[1]).max() < 700 * ROUND
+
+
 def test_thrust_is_that_of_the_sample():
     h = two_blocks()
     assert len(results.thrust(h, time=0.5)) == 3 and len(results.thrust(h, time=0.0)) == 0

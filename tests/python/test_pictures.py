@@ -195,3 +195,50 @@ def test_a_map_without_joints_says_so(drawn, tmp_path, angles):
     titles = [axes.get_title() for axes in drawn[0].axes[:2]]
     assert [("no blocks touch at first" in t) for t in titles] == [angles[0] != 0] * 2
     assert ["nothing" in t for t in titles] == [angles == [0, 0], angles[0] == 0]
+
+
+def falling(depth):
+    """A wall of 4 x 3 m; its upper block falls off the base, and down by `depth` m."""
+    places = np.array([[[0, 0, -0.1], [0, 0, 0.5], [0, 0, 1.5], [0, 0, 2.5]]] * 3)
+    places[1:, 3] += [[3, 0, -1], [9, 0, -depth]]
+    return history([[5, 2, 0.2], [4, 0.5, 1], [4, 0.5, 1], [4, 0.5, 1]], places)
+
+
+def test_pictures_and_films_are_of_the_structure_and_not_of_what_falls_away():
+    """The first shape, and what stands; fallen blocks only within its size, 4 m, beside it. How deep a block falls changes nothing."""
+    frames = []
+    for depth in (2.6, 20.0):
+        axes = pictures._Painter(falling(depth), [0, 1, 2], 1.0, "displacement", None, "").figure.axes[0]
+        frames.append((*axes.get_xlim(), *axes.get_ylim()))
+    assert frames[0] == frames[1]
+    left, right, low, high = frames[0]
+    assert left < -2 and right > 2 and low < 0 and high > 3  # all of the first shape
+    assert right - left < 12 * 1.2 and high - low < 3 + 2 * 0.06 * 8 + 0.1
+    # What stands is in the picture, wherever it has gone and however much it is enlarged.
+    h = facade((30, 0, 0))
+    axes = pictures._Painter(h, [1], 2.0, "displacement", None, "").figure.axes[0]
+    assert axes.get_xlim()[1] > 61 and axes.get_xlim()[0] < -1
+
+
+@pytest.mark.parametrize("sizes", [(0.4, 0.5, 2), (0.8, 0.2, 2), (8, 0.5, 1)])
+@pytest.mark.parametrize("far, forces", [(0, False), (4.5e6, True)])
+def test_labels_do_not_lie_over_each_other(drawn, tmp_path, sizes, far, forces):
+    """Of slender and long walls, small movement and large (openings of 12,345 mm), at the origin and at map coordinates."""
+    for way in (0.01234, 12.345):
+        place = np.array([[far, 0, -0.1], [far, 0, sizes[2] / 2]])
+        h = history([[20, 20, 0.2], sizes], [place, place + [[0, 0, 0], [way / 20, 0, 0]], place + [[0, 0, 0], [way / 10, 0, way]]])
+        if forces:
+            h.forces = np.array([(1, 10, 11, (0, 0, 5), (far, 0, 0))], dtype=[("sample", int), ("id1", int), ("id2", int), ("force", float, 3), ("point", float, 3)])
+        results.draw(h, tmp_path / "shape.png")
+        results.draw_joints(h, tmp_path / "joints.png")
+    for figure in drawn:
+        figure.draw_without_rendering()
+        axises = [(axis, *sorted(limits)) for axes in figure.axes for axis, limits in ((axes.xaxis, axes.get_xlim()), (axes.yaxis, axes.get_ylim()))]
+        texts = [text for axis, _, _ in axises for text in (axis.label, axis.offsetText)] + [axes.title for axes in figure.axes]
+        texts += [tick.label1 if tick.label1.get_visible() else tick.label2 for axis, low, high in axises for tick in axis.get_major_ticks() if low <= tick.get_loc() <= high]
+        texts = [text for text in texts if text.get_text() and text.get_visible()]
+        boxes = [text.get_window_extent() for text in texts]
+        for k, box in enumerate(boxes):
+            inside = figure.bbox.x0 - 1 <= box.x0 and box.x1 <= figure.bbox.x1 + 1 and figure.bbox.y0 - 1 <= box.y0 and box.y1 <= figure.bbox.y1 + 1
+            over = [texts[j].get_text() for j, other in enumerate(boxes) if j != k and box.overlaps(other)]
+            assert inside and not over, (texts[k].get_text(), over, box, figure.bbox)

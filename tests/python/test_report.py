@@ -119,6 +119,24 @@ def test_a_history_that_stands_ends_with_its_motion_or_the_report_says_so(tmp_pa
     assert "does not say which script" in found.texts["run"]
 
 
+def test_it_has_one_largest_opening(tmp_path):
+    """That of results.joints(): in the numbers, at the head of the table, and on the curve, whose samples are fewer. The peak is one sample of 1,999."""
+    angles = np.concatenate([[0.1] * 1999, np.linspace(0.1, 2, 200)])
+    angles[0], angles[1001] = 0, 0.25
+    h = rocking(angles)
+    h = results.WallHistory(0.001 * np.arange(len(angles)), h.ids, h.sizes, h.free, h.position, h.orientation)
+    table = results.joints(h)
+    critical = np.arctan(0.3)
+    last = angles[angles <= critical].max()  # of the block, until it has fallen
+    assert results.collapse(h).collapsed and abs(table["opening"][0] - 0.6 * np.sin(last)) < 1e-12
+    found, text = page(h, tmp_path)
+    most = words.decimal(1e3 * table["opening"][0], 4)
+    assert f"{most} mm, blocks 10 and 11" in found.texts["numbers"] and f"{1e3 * table['opening'][0]:.3f}" in found.texts["joints"]
+    assert "until the first of the two blocks has fallen" in found.texts["joints"]
+    from masonry.results.joints import movement
+    assert np.nanmax(movement(h, range(len(h.time)))[0]) == table["opening"][0]
+
+
 def test_it_needs_no_network_and_no_name_twice(full):
     found, text, _ = full
     assert all(one.startswith(("#", "data:")) for one in found.loaded)
@@ -134,11 +152,50 @@ def test_the_view_has_the_motion_relative_to_the_base_and_that_of_the_base(full)
     assert scene["ids"] == [10, 11] and scene["free"] == [False, True] and np.allclose(scene["time"], h.time, rtol=0, atol=1e-6)
     poses = np.frombuffer(base64.b64decode(scene["poses"]), dtype="<f4").reshape(len(h.time), 2, 7)
     base = np.frombuffer(base64.b64decode(scene["base"]), dtype="<f4").reshape(len(h.time), 7)
+    assert scene["bases"] == [0, 0]
     exact = 1e-6  # of numbers of order one in single precision
     assert np.abs(poses[..., :3] - h.relative_position).max() < exact and np.abs(poses[..., 3:] - h.relative_orientation).max() < exact
     world = np.einsum("sab,snb->sna", _pose.matrices(base[:, 3:]), poses[..., :3]) + base[:, None, :3]
     assert np.abs(world - h.position).max() < 2 * exact
     assert scene["start"] == results.collapse(h).peak_drift_time and scene["enlarge"] == 1
+
+
+def in_the_view(h, tmp_path):
+    """(what its JSON holds, places (frames, n, 3) relative to the bases, and in the world) of the 3D view, from its own origin."""
+    scene = scene_of(page(h, tmp_path)[1])
+    frames, count = len(scene["time"]), len(scene["ids"])
+    poses = np.frombuffer(base64.b64decode(scene["poses"]), dtype="<f4").reshape(frames, count, 7).astype(float)
+    base = np.frombuffer(base64.b64decode(scene["base"]), dtype="<f4").reshape(-1, frames, 7).astype(float)[scene["bases"]]
+    return scene, poses[..., :3], np.einsum("nsab,snb->sna", _pose.matrices(base[..., 3:]), poses[..., :3]) + base[..., :3].swapaxes(0, 1)
+
+
+@pytest.mark.parametrize("far", [(5e5, 4.5e6, 0), (-4.5e6, 5e5, 300)])
+def test_places_far_from_the_origin_keep_their_digits(tmp_path, far):
+    """Map coordinates: eastings of 5e5 m, northings of 4.5e6 m, whose round-off is 1e-9 m. The views, the openings and the drifts are those at the origin."""
+    near = toppling(20)
+    moved = results.WallHistory(near.time, near.ids, near.sizes, near.free, near.position + far, near.orientation)
+    exact = 1e-8
+    for one, other in zip(in_the_view(near, tmp_path)[1:], in_the_view(moved, tmp_path)[1:]):
+        apart = other - one
+        assert np.abs(apart - apart[0, 0]).max() < 1e-6  # of single precision, of numbers of order one
+    assert np.abs(moved.drift() - near.drift()).max() < exact and np.abs(moved.displacement - near.displacement).max() < exact
+    assert np.abs(moved.rotation - near.rotation).max() < exact and np.array_equal(results.fallen(moved), results.fallen(near))
+    for name in ("opening", "slip", "area"):
+        assert np.nanmax(np.abs(results.joints(moved)[name] - results.joints(near)[name])) < exact, name
+
+
+def test_structures_on_two_bases_have_their_own_motions_in_the_view(tmp_path):
+    from test_results import on_two_bases
+
+    h = on_two_bases(turned=True)
+    scene, relative, world = in_the_view(h, tmp_path)
+    assert scene["bases"] == [0, 1, 0, 1, 1]
+    assert np.abs(relative - h.relative_position).max() < 1e-6 and np.abs(world - h.position).max() < 2e-6
+    h.forces = np.array([(1, 10, 12, (1, 0, 50), (7.1, 0, 0)), (1, 11, 13, (2, 0, 70), (4, -5, 0))],
+                        dtype=[("sample", int), ("id1", int), ("id2", int), ("force", float, 3), ("point", float, 3)])
+    found, _ = page(h, tmp_path)
+    assert "of base 10" in found.texts["forces-10"] and "of base 11" in found.texts["forces-11"] and "thrust, at" in found.texts["thrust"]
+    assert "base 10, along x" in found.texts["drift"] and "base 11, along y" in found.texts["drift"]
 
 
 def test_long_histories_are_thinned_and_keep_their_ends_and_their_peak():
@@ -246,3 +303,7 @@ def test_recorded_forces_are_shown(full, tmp_path):
     found, _ = page(two_blocks(), tmp_path)
     assert "Base shear, overturning moment and thrust" in found.texts["forces"] and "base shear x" in found.texts["forces"] and "thrust, at" in found.texts["forces"]
     assert "forces" not in full[0].ids
+    h = two_blocks()
+    alone = results.WallHistory(h.time, h.ids[1:], h.sizes[1:], h.free[1:], h.position[:, 1:], h.orientation[:, 1:], forces=h.forces[2:3])
+    found, _ = page(alone, tmp_path)
+    assert "Thrust" in found.texts["forces"] and "Base shear" not in found.texts["forces"]

@@ -55,6 +55,25 @@ def test_what_moves_in_flight_is_no_slip():
     assert abs(results.joints(h)["slip"][0] - 0.79) < ROUND
 
 
+def test_a_joint_counts_until_one_of_its_blocks_has_fallen():
+    """The upper of two blocks slides, opens its joint by 0.1 m, comes back, and falls: from then on it is 0.3 m lower, and 7 m away in the end."""
+    places = [[0, 0.6], [0.02, 0.7], [0.03, 0.6], [0.5, 0.3], [7.0, -3.0]]
+    h = history([[4, 4, 0.2], [0.6, 0.5, 0.4], [0.6, 0.5, 0.4]], [[[0, 0, -0.1], [0, 0, 0.2], [x, 0, z]] for x, z in places])
+    assert results.fallen(h)[:, 2].tolist() == [False] * 3 + [True] * 2
+    lower, upper = results.joints(h)
+    assert abs(upper["opening"] - 0.1) < ROUND and upper["opening_time"] == 0.5 and abs(upper["slip"] - 0.03) < ROUND and lower["opening"] == 0
+    for sample, counts in enumerate((True, True, True, False, False)):
+        at = results.joints(h, time=h.time[sample])
+        assert np.isfinite(at["opening"]).tolist() == [True, counts] and at["opening"][0] == 0
+    # A block that leans beyond its critical angle and comes back has not fallen; one that leans from the start, as in an arch, is a block like any other.
+    critical = math.atan(0.3)
+    leaning = results.joints(rocking([0, 1.2 * critical, 0.5 * critical]))
+    assert abs(leaning["opening"][0] - 0.6 * math.sin(1.2 * critical)) < ROUND
+    slope = turn(0.5, (0, 1, 0))
+    arch = rocking([0, 0.1], frame=slope)
+    assert results.fallen(arch)[:, 1].all() and abs(results.joints(arch)["opening"][0] - 0.6 * math.sin(0.1)) < ROUND
+
+
 def test_joints_are_the_faces_that_touch():
     # Side by side with a gap, beside each other, across a corner, lying in the air; a square on a square turned by 45 degrees: an octagon.
     size = np.array([[4, 4, 0.2], [1, 1, 1], [1, 1, 1], [1, 1, 1], [1, 1, 1]])
@@ -139,6 +158,65 @@ def test_a_wall_without_its_base_says_so():
     h = rocking([0, 0.1], shift=(0.4, 0, 0))
     whole, alone = results.collapse(h), results.collapse(results.WallHistory(h.time, h.ids[1:], h.sizes[1:], h.free[1:], h.position[:, 1:], h.orientation[:, 1:]))
     assert whole.from_base and "NOT RELATIVE" not in str(whole) and not alone.from_base and "NOT RELATIVE TO THE BASE" in str(alone)
+
+
+TWO_BASES = [[2, 2, 0.2], [2, 2, 0.2], [0.6, 0.5, 1], [0.6, 0.5, 0.5], [0.6, 0.5, 0.5]]
+
+
+def on_two_bases(apart=4.0, order=(0, 1, 2, 3, 4), turned=False):
+    """A block on the base at x = 0, which goes along x, and two on each other on the base at x = `apart`, which goes along -y (turned: and turns about z
+    by 0.3). Seen from their own base, the first goes by 0.02 m and the upper of the two by 0.03 m along x. order: in which the history has them."""
+    start = np.array([[0, 0, -0.1], [apart, 0, -0.1], [0, 0, 0.5], [apart, 0, 0.25], [apart, 0, 0.75]])
+    moved = start + np.array([[0, 0, 0], [0, 0, 0], [0.02, 0, 0], [0, 0, 0], [0.03, 0, 0]])
+    spin = turn(0.3 if turned else 0, (0, 0, 1))
+    turns = np.array([UPRIGHT, spin, UPRIGHT, spin, spin])
+    second = np.array([apart, 0, 0])
+    moved[[1, 3, 4]] = second + (moved[[1, 3, 4]] - second) @ _pose.matrices(spin).T + [0, -5, 0]
+    moved[[0, 2]] += [7, 0, 0]
+    order = list(order)
+    return history(np.array(TWO_BASES)[order], np.array([start, moved])[:, order], np.array([np.tile(UPRIGHT, (5, 1)), turns])[:, order],
+                   free=np.array([False, False, True, True, True])[order])
+
+
+@pytest.mark.parametrize("order", [(0, 1, 2, 3, 4), (1, 0, 2, 3, 4), (4, 3, 1, 2, 0)])
+@pytest.mark.parametrize("apart, turned", [(4.0, False), (4.0, True), (0.6, False)])  # the last: the blocks touch side by side, which joins no structures
+def test_each_structure_is_measured_against_its_own_base(order, apart, turned):
+    h = on_two_bases(apart, order, turned)
+    if apart < 2:  # their bases would overlap
+        h = history(np.where(np.array(TWO_BASES)[list(order)] == 2, 0.6, np.array(TWO_BASES)[list(order)]), h.position, h.orientation, free=h.free)
+    row = [order.index(k) for k in range(5)]
+    assert h.bases.tolist() == [row[own] for own in np.array([0, 1, 0, 1, 1])[list(order)]]
+    assert np.allclose(h.displacement[1, row], [[0, 0, 0], [0, 0, 0], [0.02, 0, 0], [0, 0, 0], [0.03, 0, 0]], rtol=0, atol=1e-12)
+    assert (h.rotation[1] < 1e-7).all() and abs(h.drift()[1] - 0.03) < 1e-12
+    report = results.collapse(h)
+    assert not report.collapsed and report.from_base and abs(report.peak_drift - 0.03) < 1e-12
+
+
+def test_the_base_of_what_stands_on_several_bodies_on_none_or_against_one():
+    def bases(*bodies):
+        sizes, places, free = zip(*bodies)
+        return history(sizes, [places], free=free).bases.tolist()
+
+    slab, cube = (2, 2, 0.2), (1, 1, 1)
+    left, right = (slab, (-1.5, 0, -0.1), False), (slab, (1.5, 0, -0.1), False)
+    piers = [(cube, (x, 0, 0.5), True) for x in (-1.5, 1.5)]
+    lintel = ((4, 1, 0.2), (0, 0, 1.1), True)
+    assert bases(left, right, *piers) == [0, 1, 0, 1]
+    assert bases(left, right, *piers, lintel) == [0, 0, 0, 0, 0]  # one structure: seen from one base, so also the other base
+    pusher = (cube, (-2.5, 0, 0.5), False)
+    assert bases(pusher, left, piers[0]) == [1, 1, 1]  # it only touches
+    assert bases(((9, 9, 1), (0, 0, -0.7), False), left, piers[0]) == [1, 1, 1]  # the ground under the base
+    assert bases((cube, (9, 0, 0.5), False), left, right, piers[1], (cube, (1.5, 0, 3), True)) == [2, 2, 2, 2, 2]  # those that touch nothing: the nearest block's
+    assert bases(left, right, (cube, (1.5, 0, 3), True)) == [0, 1, 1]  # none stands: the nearest prescribed body
+    hung = [(cube, (k, 0, 5), k not in (0, 4)) for k in range(5)]  # a row between two jaws
+    assert bases(*hung) == [0, 0, 0, 0, 0] and bases(piers[0]) == [-1]
+    assert bases(left, piers[0], *hung) == [0, 0, 2, 2, 2, 2, 2]  # whatever stands elsewhere
+
+
+def test_a_base_that_is_erased_leaves_the_other_structure_alone():
+    h, kept = on_two_bases(), on_two_bases()
+    h.position[1, 1] = h.orientation[1, 1] = np.nan  # its structure goes by 5 m where it stood
+    assert np.array_equal(h.displacement[1, 2], kept.displacement[1, 2]) and abs(h.drift()[1] - math.hypot(5, 0.03)) < 1e-12
 
 
 def test_drift_is_that_of_the_top():

@@ -92,6 +92,23 @@ def test_tilts_add_up(axis, turns):
     assert (one.pos - other.pos).norm() < 1e-14 and (one.ori - other.ori).norm() < 1e-14
 
 
+@pytest.mark.parametrize("model", ("auto", "spatial", "compliant"))
+def test_prescribed_bodies_that_overlap(model):
+    """A cell that is run twice makes two bases at one place, each of which would carry half of the block. Those that touch are fine."""
+    material = stone(0.7)
+    ids = [dem.base((2, 1, 0.2), material) for _ in range(3)]
+    for k, id in enumerate(ids):
+        O.bodies[id].state.pos = Vector3(2 * k, 0, -0.1)
+    dem.block((0.4, 1, 2), material, on=ids[0])
+    dem.engines(model=model)
+    O.bodies[ids[1]].state.pos -= Vector3(0.3, 0, 0)
+    said = f"overlapping prescribed bodies, which would share the load on them: {ids[0]} and {ids[1]} (by 0.2 m);"
+    for act in (dem.check_blocks, lambda: dem.engines(model=model)):
+        refuses(act, said)
+    O.bodies[ids[1]].dynamic = True
+    refuses(dem.check_blocks, f"overlapping blocks: {ids[0]} and {ids[1]} (by 0.2 m);")
+
+
 def test_a_tilted_stack_does_not_overlap():
     base, material = ground()
     pair = dem.stack(2, (0.6, 0.5, 1), material, base)

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from masonry import dem
 from rocking_scene import said_by
-from yade import FrictMat, NewtonIntegrator, O, utils
+from yade import FrictMat, NewtonIntegrator, O, Vector3, utils
 
 import masonry
 
@@ -127,3 +127,33 @@ def test_attributes_without_effect(model, given, said):
     scene(**given)
     found = [line for line in lines(model=model) if "no effect" in line]
     assert len(found) == (said is not None) and (said is None or said in found[0])
+
+
+def test_forces_that_a_recorder_leaves_out():
+    """Reactions of the base would lack them; where all blocks are recorded, or no forces, nothing is said."""
+    base, block, stone = scene()
+    dem.block((0.5, 0.5, 1.0), stone, center=(1.2, 0, 0.5))
+    for ids, forces, said in (([base, block], True, 1), ([base, block], False, 0), ([], True, 0), ([0, 1, 2], True, 0)):
+        found = [line for line in lines(recorder=dem.WallRecorder(virtPeriod=1, ids=ids, recordForces=forces)) if "leaves out 1 block:" in line]
+        assert len(found) == said
+
+
+def test_warnings_are_words_alone(capfd):
+    """Without names of functions and files."""
+    base = dem.base((4, 2, 0.2), stone := dem.BlockMat(density=2000, frictionAngle=0.6))
+    dem.block((0.4, 1, 1), stone, on=base)
+    O.engines = dem.engines()
+    O.step()
+    O.bodies[base].state.pos += Vector3(0.001, 0, 0)
+    O.step()
+    said = capfd.readouterr().err.splitlines()
+    assert len(said) == 1 and said[0].startswith(f"masonry.dem: warning: a script has moved body {base} by its state.pos"), said
+
+
+def test_a_tilting_table_says_nothing_in_between(capfd):
+    """It seeks one impact in a step where blocks begin to move: such steps are counted in its trials, and give no warning."""
+    base = dem.base((5, 1, 0.2), stone := dem.BlockMat(density=2000, frictionAngle=math.atan(0.65)))
+    dem.wall(length=1.6, height=2.0, size=(0.4, 0.2, 0.2), material=stone, on=base, openings=[(0.6, 0.6, 0.4, 0.8)])
+    dem.TiltTable(direction="-x", method="localised").bisect(progress=False)
+    said = capfd.readouterr()
+    assert said.err == "" and "warning" not in said.out, said

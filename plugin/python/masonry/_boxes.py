@@ -1,6 +1,11 @@
-"""Boxes that come near each other, as arrays."""
+"""Boxes that come near each other and touch, as arrays."""
 
 import numpy as np
+
+# Smallest upward part of the normal of a joint that carries: the joint of a leaning block does, a head joint does not.
+_CARRIES = 0.1
+# Pairs that are looked at together, which bounds the memory: about 1 kB a pair.
+_TOGETHER = 20000
 
 
 def bounds(centers, sizes, axes, margins=0.0):
@@ -40,3 +45,36 @@ def near_pairs(low, high):
                 pairs.append(np.stack([i[keep], j[keep]], axis=1))
     pairs = np.sort(np.concatenate(pairs), axis=1)
     return pairs[np.lexsort((pairs[:, 1], pairs[:, 0]))]
+
+
+def _separations(i, j, centers, sizes, axes):
+    """Gaps of the pairs along the 15 separating axes of two boxes (faces of both, crossed edges), negative where they overlap, and the
+    upward part of each axis, directed from i to j: two arrays (pairs, 15)."""
+    a, b, between = axes[i], axes[j], centers[j] - centers[i]
+    n = np.concatenate([a, b, np.cross(a[:, :, None], b[:, None]).reshape(-1, 9, 3)], axis=1)
+    norm = np.linalg.norm(n, axis=2)
+    parallel = norm < 1e-6  # edges this parallel add nothing to the faces
+    n = n / np.where(parallel, 1, norm)[..., None]
+    along = np.einsum("pka,pa->pk", n, between)
+    reach = np.einsum("pkm,pm->pk", np.abs(np.einsum("pka,pma->pkm", n, a)), sizes[i] / 2)
+    reach += np.einsum("pkm,pm->pk", np.abs(np.einsum("pka,pma->pkm", n, b)), sizes[j] / 2)
+    return np.where(parallel, -np.inf, np.abs(along) - reach), np.where(along < 0, -1, 1) * n[..., 2]
+
+
+def contacts(centers, sizes, axes, tolerance):
+    """(pairs (m, 2), gaps (m,), margins (m,), supports (k, 2): lower, upper), by row. axes: (n, 3, 3), rows are the axes of a box. pairs: all that may
+    touch; their gap is negative where they overlap, m; two touch where it is at most the margin, `tolerance` of the smallest size of the two. A box
+    is supported by one that it touches from above, over more than an edge."""
+    smallest = sizes.min(axis=1)
+    pairs = near_pairs(*bounds(centers, sizes, axes, tolerance * smallest[:, None]))
+    margins, gaps, supports = tolerance * smallest[pairs].min(axis=1), np.empty(len(pairs)), [np.empty((0, 2), dtype=int)]
+    for start in range(0, len(pairs), _TOGETHER):
+        part = slice(start, start + _TOGETHER)
+        i, j = pairs[part].T
+        gap, up = _separations(i, j, centers, sizes, axes)
+        best = gap.argmax(axis=1)
+        gaps[part], up_best = np.take_along_axis(gap, best[:, None], 1)[:, 0], np.take_along_axis(up, best[:, None], 1)[:, 0]
+        beside = (np.where(np.abs(up) < _CARRIES, gap, -np.inf) >= -margins[part, None]).any(axis=1)
+        joined = (gaps[part] <= margins[part]) & ~beside
+        supports.append(np.where(up_best[:, None] > 0, np.stack([i, j], axis=1), np.stack([j, i], axis=1))[joined])
+    return pairs, gaps, margins, np.concatenate(supports)

@@ -17,6 +17,7 @@ from masonry.dem.comparing import compare  # noqa: E402
 from masonry.dem.engines import energy, engines, history, impacts, record_motion, save_history  # noqa: E402
 from masonry.dem.reactions import joint_forces, reactions  # noqa: E402
 from masonry.dem.recording import wall_history  # noqa: E402
+from masonry.dem.resting import at_rest  # noqa: E402
 from masonry.dem.running import run  # noqa: E402
 from masonry.dem.scene import (angle, base, block, blocks_from_table, check_blocks, overturned, pier,  # noqa: E402
                                return_wall, save_blocks, stack, structures, tilt, two_wythe_wall, wall)

@@ -165,6 +165,9 @@ def _check_engines(motions, recorders, others):
         if not isinstance(item, (wrapper.BlockRecorder, wrapper.WallRecorder)):
             raise ValueError(f"recorder = {shown(item)}: must be a BlockRecorder, a WallRecorder or a list of them")
         check_recorder(item)
+        left_out = len(_boxes()) - len(item.ids)
+        if getattr(item, "recordForces", False) and item.ids and left_out > 0:
+            notes.say(f"WallRecorder.ids leaves out {_counted(left_out, 'block')}: forces of their joints are not recorded, and the recorded reactions of the base lack them")
     if not isinstance(others, (list, tuple)) or not all(isinstance(one, wrapper.Engine) for one in others):
         raise ValueError(f"others = {shown(others)}: must be a list of engines")
 

@@ -37,7 +37,6 @@ def reactions(id):
     joints = joint_forces()
     table = np.zeros(np.count_nonzero((joints["id1"] == id) | (joints["id2"] == id)), dtype=_FIELDS)
     own, other = joints[joints["id1"] == id], joints[joints["id2"] == id]
-    table["id"] = [*own["id2"], *other["id1"]]
-    table["force"] = [*own["force"], *-other["force"]]
-    table["point"] = [*own["point"], *other["point"]]
+    for name, values in (("id", (own["id2"], other["id1"])), ("force", (own["force"], -other["force"])), ("point", (own["point"], other["point"]))):
+        table[name] = np.concatenate(values)
     return table

@@ -1,5 +1,6 @@
 """Running a scene for so many seconds, or to the end of its motion."""
 
+import contextlib
 import math
 import sys
 import time
@@ -8,6 +9,7 @@ from masonry._given import number_given, shown
 from yade import O, wrapper
 
 from masonry.dem import notes
+from masonry.dem.engines import _joint_engine
 from masonry.dem.scene import listed
 
 # Wall clock between two looks at the bar, s.
@@ -37,6 +39,23 @@ def _check_given(until):
             raise ValueError(f"until: this {type(one).__name__} of body {listed(one.ids)} moves nothing: give it to dem.engines(motion=...)")
 
 
+@contextlib.contextmanager
+def _pauses():
+    """A list that is no longer empty once O.pause() has been called, by a PyRunner for example."""
+    kind, asked = type(O), []
+    pause = kind.pause
+    kind.pause = lambda _: asked.append(True)
+    try:
+        yield asked
+    finally:
+        kind.pause = pause
+
+
+def _is_to_stop(before):
+    """Whether O.stopAtIter or O.stopAtTime ends the run after the step that began at the time `before`, as in O.run()."""
+    return O.iter == O.stopAtIter or before < O.stopAtTime - _ROUND_OFF * O.dt <= O.time
+
+
 def run(seconds=None, until=None, progress=None):
     """Runs the scene and returns when that is done.
 
@@ -44,10 +63,9 @@ def run(seconds=None, until=None, progress=None):
     until       instead of seconds: a motion engine, or a list of them: to the end of the last one
     progress    a progress bar; None: where stderr is a terminal
 
-    The last step is the first one that reaches the end. What goes wrong in the run is raised as it comes out of O.step(), which
-    this calls; Ctrl-C stops between two steps. O.pause() does not stop it, nor do O.stopAtIter and O.stopAtTime: a script that is to stop earlier
-    calls it in pieces. Raises ValueError where there are no engines, O runs already, the motion is over, or the
-    script has not given it to an engine.
+    The last step is the first one that reaches the end; O.stopAtIter, O.stopAtTime and O.pause(), which a PyRunner may call, end the run earlier. What goes
+    wrong in the run is raised as it comes out of O.step(), which this calls; Ctrl-C stops between two steps. Raises ValueError where O.engines has no engine of
+    dem.engines(), O runs already, the motion is over, or the script has not given it to an engine.
     """
     from tqdm import tqdm
 
@@ -57,6 +75,7 @@ def run(seconds=None, until=None, progress=None):
         raise ValueError(f"seconds = {seconds}: must be positive and finite")
     if not O.engines:
         raise ValueError("O.engines is empty: set O.engines = dem.engines(...)")
+    _joint_engine()
     if O.running:
         raise ValueError("O is running already: call O.pause() or O.wait() first")
     if not 0 < O.dt < math.inf:
@@ -68,11 +87,14 @@ def run(seconds=None, until=None, progress=None):
     if until is not None:
         _check_given(until)
     shown = sys.stderr is not None and sys.stderr.isatty() if progress is None else progress
-    with tqdm(total=float(f"{end - start:.4g}"), desc="run", disable=not shown, bar_format="{desc}: {percentage:3.0f}%|{bar}| {n:.3g} of {total:g} s [{elapsed}<{remaining}]") as bar:
+    with _pauses() as paused, tqdm(total=float(f"{end - start:.4g}"), desc="run", disable=not shown, bar_format="{desc}: {percentage:3.0f}%|{bar}| {n:.3g} of {total:g} s [{elapsed}<{remaining}]") as bar:
         look = time.monotonic() + _SHOWN
         while O.time < end - _ROUND_OFF * O.dt:
+            before = O.time
             O.step()
+            if paused or _is_to_stop(before):
+                break
             if time.monotonic() >= look:
                 look = time.monotonic() + _SHOWN
                 bar.update(min(O.time - start, bar.total) - bar.n)
-        bar.update(bar.total - bar.n)
+        bar.update(min(O.time - start, bar.total) - bar.n)

@@ -288,7 +288,7 @@ def listed(items):
 
 
 def check_blocks(tolerance=1e-3, floating=True):
-    """Raises a ValueError that names the ids of overlapping blocks and, with `floating`, of those that no chain of supports joins to
+    """Raises a ValueError that names the ids of overlapping blocks, prescribed bodies included, and, with `floating`, of those that no chain of supports joins to
     a prescribed body (head joints do not carry). tolerance: depth of an overlap, or gap in a joint, that is still accepted, relative to
     the smallest size of the two blocks; 0 < tolerance <= 0.1. Returns the ids of the floating blocks."""
     return floating_and_supports(tolerance, floating)[0]
@@ -306,9 +306,11 @@ def floating_and_supports(tolerance=1e-3, floating=True):
     pairs, depths, loose, supports = walls.faults(centers, sizes, axes_of(quaternions), prescribed, tolerance)
     ids, found = [b.id for b in bodies], []
     loose = [ids[i] for i in loose]
-    if len(pairs):
-        each = [f"{ids[i]} and {ids[j]} (by {depth:.3g} m)" for (i, j), depth in zip(pairs.tolist(), depths.tolist())]
-        found.append("overlapping blocks: " + listed(each))
+    each = [(prescribed[i] and prescribed[j], f"{ids[i]} and {ids[j]} (by {depth:.3g} m)") for (i, j), depth in zip(pairs.tolist(), depths.tolist())]
+    for both, name in ((False, "overlapping blocks: "), (True, "overlapping prescribed bodies, which would share the load on them: ")):
+        named = [text for one, text in each if one == both]
+        if named:
+            found.append(name + listed(named))
     if floating and loose:
         found.append("floating blocks, which no chain of supports joins to a prescribed body: " + listed(loose))
     if found:

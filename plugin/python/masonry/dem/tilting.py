@@ -120,8 +120,8 @@ class TiltTable:
         collapse    a block has moved by `share`, or blocks gain speed steadily
         unclear     blocks still moved, slowing down, when five times `hold` had passed: taken for collapse, and named in `doubts`
         missed      a step missed the contact laws: half the stair is tried, unless it is down to the tolerance
-    Warnings of the integrator in between are of such steps; of each it seeks one impact (mostEvents = 1), since what follows where blocks
-    begin to move does not matter. Whether the multiplier can be trusted stands in Collapse.doubts.
+    Steps that miss the contact laws are counted in the trials, without a warning; of each step it seeks one impact (mostEvents = 1), since what follows where
+    blocks begin to move does not matter. Whether the multiplier can be trusted stands in Collapse.doubts.
     """
 
     def __init__(self, direction="x", load="force", model="auto", hold=3.0, share=2e-3, gravity=9.81, method="auto"):
@@ -302,7 +302,7 @@ class TiltTable:
         with contextlib.redirect_stdout(io.StringIO()):
             O.engines = engines(model=self._model, method=self._method, tolerance=_TOLERANCES[self._method], dt=self._dt, gravity=self.gravity)
         integrator = O.engines[-1]
-        integrator.mostEvents = _EVENTS
+        integrator.mostEvents, integrator.onTrouble = _EVENTS, "count"
         integrator.along = Vector3(_DIRECTIONS[self.direction])  # the plane, before there is a pull
         self._pull(integrator, multiplier)
         return integrator

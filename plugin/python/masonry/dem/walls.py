@@ -11,7 +11,7 @@ import math
 import re
 
 import numpy as np
-from masonry._boxes import bounds, near_pairs
+from masonry._boxes import bounds, contacts, near_pairs
 from masonry._files import written
 from masonry._given import number_given, shown, whole_given
 
@@ -21,8 +21,6 @@ _FIT = 1e-6
 _SIZES = 1e-6, 1e6
 # Most blocks of a layout, and most courses: more do not fit into memory.
 _MOST = 1_000_000
-# Smallest upward part of the normal of a joint that carries: the joint of a leaning block does, a head joint does not.
-_CARRIES = 0.1
 
 
 def finite_numbers(name, values, count, what):
@@ -397,20 +395,6 @@ def structures(centers, sizes, axes, gap):
     return [np.flatnonzero(label == k).tolist() for k in range(count)]
 
 
-def _separations(i, j, centers, sizes, axes):
-    """Gaps of the pairs along the 15 separating axes of two boxes (faces of both, crossed edges), negative where they overlap, and the
-    upward part of each axis, directed from i to j: two arrays (pairs, 15)."""
-    a, b, between = axes[i], axes[j], centers[j] - centers[i]
-    n = np.concatenate([a, b, np.cross(a[:, :, None], b[:, None]).reshape(-1, 9, 3)], axis=1)
-    norm = np.linalg.norm(n, axis=2)
-    parallel = norm < 1e-6  # edges this parallel add nothing to the faces
-    n = n / np.where(parallel, 1, norm)[..., None]
-    along = np.einsum("pka,pa->pk", n, between)
-    reach = np.einsum("pkm,pm->pk", np.abs(np.einsum("pka,pma->pkm", n, a)), sizes[i] / 2)
-    reach += np.einsum("pkm,pm->pk", np.abs(np.einsum("pka,pma->pkm", n, b)), sizes[j] / 2)
-    return np.where(parallel, -np.inf, np.abs(along) - reach), np.where(along < 0, -1, 1) * n[..., 2]
-
-
 def _carried(supports, prescribed):
     """Which blocks a chain of supports (rows: lower, upper) joins to a prescribed one."""
     supports = supports[np.argsort(supports[:, 0], kind="stable")]
@@ -428,22 +412,8 @@ def _carried(supports, prescribed):
 
 def faults(centers, sizes, axes, prescribed, tolerance):
     """(overlapping pairs (m, 2), their depths in m, floating blocks, supports (k, 2): lower, upper), by row. axes: (n, 3, 3), rows are the
-    axes of a block; prescribed: (n,) bool, blocks that carry by themselves. Blocks overlap where no separating axis keeps their depth within `tolerance` of the
-    smallest size of the two. A block is supported by one that it touches within the same from above, over more than an edge."""
-    smallest = sizes.min(axis=1)
-    pairs = near_pairs(*bounds(centers, sizes, axes, tolerance * smallest[:, None]))
-    pairs = pairs[~(prescribed[pairs[:, 0]] & prescribed[pairs[:, 1]])]
-    depth, supports = np.empty(len(pairs)), [np.empty((0, 2), dtype=int)]
-    for start in range(0, len(pairs), 20000):  # bounds the memory: about 1 kB a pair
-        part = slice(start, start + 20000)
-        i, j = pairs[part].T
-        gap, up = _separations(i, j, centers, sizes, axes)
-        margin, best = tolerance * np.minimum(smallest[i], smallest[j]), gap.argmax(axis=1)
-        widest, up_best = np.take_along_axis(gap, best[:, None], 1)[:, 0], np.take_along_axis(up, best[:, None], 1)[:, 0]
-        beside = (np.where(np.abs(up) < _CARRIES, gap, -np.inf) >= -margin[:, None]).any(axis=1)
-        joined = (widest <= margin) & ~beside
-        supports.append(np.where(up_best[:, None] > 0, np.stack([i, j], axis=1), np.stack([j, i], axis=1))[joined])
-        depth[part] = -widest
-    deep = depth > tolerance * np.minimum(smallest[pairs[:, 0]], smallest[pairs[:, 1]])
-    supports = np.concatenate(supports)
-    return pairs[deep], depth[deep], np.flatnonzero(~_carried(supports, prescribed)), supports
+    axes of a block; prescribed: (n,) bool, blocks that carry by themselves. Blocks overlap where their depth is above `tolerance` of the
+    smallest size of the two."""
+    pairs, gaps, margins, supports = contacts(centers, sizes, axes, tolerance)
+    deep = -gaps > margins
+    return pairs[deep], -gaps[deep], np.flatnonzero(~_carried(supports, prescribed)), supports

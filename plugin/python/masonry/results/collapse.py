@@ -89,6 +89,11 @@ def fallen(history):
     return ~stands & history.free
 
 
+def lies(history):
+    """(s, n) bool: which blocks have fallen for good: from which sample on fallen() holds until the end of the history."""
+    return np.logical_and.accumulate(fallen(history)[::-1])[::-1]
+
+
 def collapse(history, blocks=1, excursion=0.01):
     """The CollapseReport of a WallHistory.
 
@@ -103,10 +108,9 @@ def collapse(history, blocks=1, excursion=0.01):
     if not is_whole(blocks, 1, free):
         raise ValueError(f"blocks = {shown(blocks)}: must be a whole number from 1 to {free}, the number of free blocks")
     positive_given("excursion", excursion)
-    # From the last sample backwards: True as long as the block lies.
-    lies = np.logical_and.accumulate(fallen(history)[::-1])[::-1]
-    rows = np.flatnonzero(lies[-1])
-    samples = lies[:, rows].argmax(axis=0)
+    down = lies(history)
+    rows = np.flatnonzero(down[-1])
+    samples = down[:, rows].argmax(axis=0)
     order = np.argsort(samples, kind="stable")
     times = history.time[samples[order]]
     collapsed = len(rows) >= blocks

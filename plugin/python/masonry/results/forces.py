@@ -2,6 +2,7 @@
 
 import numpy as np
 from masonry import _pose
+from masonry._given import shown
 from masonry.results.wall_history import JOINT_FORCES, history_given
 
 _REACTIONS = [("time", float), ("force", float, 3), ("moment", float, 3)]
@@ -13,32 +14,46 @@ def _forces_given(history):
     return history.forces
 
 
+def _rows(history, ids):
+    """Rows of the bodies in the history."""
+    row = {id: k for k, id in enumerate(history.ids.tolist())}
+    return np.array([row[id] for id in ids.tolist()], dtype=int)
+
+
 def has_forces(history):
     return history.forces is not None and len(history.forces) > 0
 
 
-def base_reactions(history, about=None):
-    """Forces of the prescribed bodies on the structure over time: a structured array, one row a sample.
+def base_reactions(history, about=None, base=None):
+    """Forces of the prescribed bodies on the recorded blocks over time: a structured array, one row a sample.
 
-    about    point that the moment is about, m, as the structure stands in the first sample; it moves with the base. None: the middle of the free blocks'
-             plan, at the height of their lowest point
+    about    point that the moment is about, m, as the structure stands in the first sample; it moves with the base of each block. None: the middle of the
+             plan of the free blocks (with `base`: of those that stand on it), at the height of their lowest point
+    base     id of a prescribed body: its forces alone; None: those of all
 
     time      s
     force     N; x and y: the base shear, z: the weight that the base carries
     moment    about that point, N m; y: the overturning moment in the plane x, z
 
-    Values are those at the instants of the samples, not means: between blocks that move they jump. A sample before the first step has no forces: NaN. Raises
-    ValueError where forces were not recorded."""
-    forces = _forces_given(history)
-    low = history.corners(0)[history.free].reshape(-1, 3)
+    Values are those at the instants of the samples, not means: between blocks that move they jump. The first sample is NaN where no joint carries load in
+    it, as before the first step. Raises ValueError where forces or prescribed bodies were not recorded."""
+    forces, free, bases = _forces_given(history), history.free, history.bases
+    if free.all():
+        raise ValueError("history: no prescribed body was recorded, and so no force of the base: add its id to WallRecorder.ids")
+    if base is not None and base not in history.ids[~free].tolist():
+        raise ValueError(f"base = {shown(base)}: must be the id of a prescribed body of the history, among {shown(history.ids[~free].tolist())}")
+    standing = free if base is None else free & (history.ids[bases] == base)
+    low = history.corners(0)[standing if standing.any() else free].reshape(-1, 3)
     point = np.array([*(low.min(axis=0) + low.max(axis=0))[:2] / 2, low[:, 2].min()]) if about is None else np.asarray(about, dtype=float)
-    moved = np.zeros((len(history.time), 3)) if history.base is None else history.position[:, history.base] - history.position[0, history.base]
-    free = dict(zip(history.ids.tolist(), history.free.tolist()))
-    free1, free2 = (np.array([free[id] for id in forces[name].tolist()], dtype=bool) for name in ("id1", "id2"))
+    row1, row2 = (_rows(history, forces[name]) for name in ("id1", "id2"))
     # On the structure: block 2 where block 1 is the base, else block 1.
-    side = np.where(free2 & ~free1, 1.0, np.where(free1 & ~free2, -1.0, 0.0))
+    side = np.where(free[row2] & ~free[row1], 1.0, np.where(free[row1] & ~free[row2], -1.0, 0.0))
+    if base is not None:
+        side[history.ids[np.where(free[row1], row2, row1)] != base] = 0
     force = side[:, None] * forces["force"]
-    moment = np.cross(forces["point"] - (point + moved)[forces["sample"]], force)
+    under = bases[np.where(free[row2], row2, row1)]
+    moved = history.position[forces["sample"], under] - history.position[0, under]
+    moment = np.cross(forces["point"] - (point + moved), force)
     table = np.zeros(len(history.time), dtype=_REACTIONS)
     table["time"] = history.time
     for name, values in (("force", force), ("moment", moment)):
@@ -72,7 +87,6 @@ def thrust(history, time=None):
 def thrust_at_first(history, time):
     """(points, forces) of thrust(history, time) put back to where the blocks were in the first sample, with the first block of each joint: for pictures."""
     table, sample = thrust(history, time), history.sample(time)
-    row = {id: k for k, id in enumerate(history.ids.tolist())}
-    one = np.array([row[id] for id in table["id1"].tolist()], dtype=int)
+    one = _rows(history, table["id1"])
     back = np.einsum("jab,jcb->jac", _pose.matrices(history.orientation[0, one]), _pose.matrices(history.orientation[sample, one]))
     return history.position[0, one] + np.einsum("jab,jb->ja", back, table["point"] - history.position[sample, one]), np.einsum("jab,jb->ja", back, table["force"])

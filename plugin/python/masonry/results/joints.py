@@ -5,6 +5,7 @@ import math
 import numpy as np
 from masonry import _pose
 from masonry._boxes import bounds, near_pairs
+from masonry.results.collapse import lies
 from masonry.results.wall_history import history_given
 
 # Blocks touch at first where their faces are within this share of the smallest size of the two, and opposite within this angle (rad).
@@ -69,7 +70,8 @@ def _patch(a, b, margin):
 
 
 class _Joints:
-    """Face patches of the blocks that touch in the first sample. Polygons are filled up to eight corners with their last one."""
+    """Face patches of the blocks that touch in the first sample. Polygons are filled up to eight corners with their last one. gone: (s, j) bool, one of the two
+    blocks has fallen since."""
 
     largest = None  # table of joints(history), once it has been asked for
 
@@ -90,6 +92,8 @@ class _Joints:
         self.rows = np.array(pairs, dtype=int).reshape(-1, 2)
         self.normals, self.polygons = np.array(normals).reshape(-1, 3), np.array(polygons).reshape(-1, _CORNERS, 3)
         self.centers = np.array(centers).reshape(-1, 3)
+        down = lies(history)
+        self.gone = (down & ~down[0])[:, self.rows].any(axis=2)
         self.areas, self.smallest = np.array(areas), smallest[self.rows].min(axis=1)
         self._start, self._half = axes, half
         self._across = np.abs(np.einsum("jab,ja->jb", axes[self.rows[:, 0]], self.normals)) > 0.5  # the axis of block 1 that is the normal
@@ -121,9 +125,10 @@ def _joints_of(history):
 
 def joints(history, time=None):
     """How far the joints of a WallHistory opened and slid: a structured array, one row for each pair of blocks that touch face on face in the
-    first sample (bed joints, head joints, joints with the base).
+    first sample (bed joints, head joints, joints with the base). An opening or a slip counts until the first of the two blocks has fallen for good (as
+    in collapse()): what blocks on the floor are apart is no opening of a joint.
 
-    time    None: the largest values of all samples; else those of the sample nearest to it (s)
+    time    None: the largest values of the samples that count; else those of the sample nearest to it (s), NaN where it does not count
 
     id1, id2                the blocks; id2 is the later one of the history
     center, normal, area    of the patch in the first sample: mean of its corners (m), from block 1 to block 2, m^2
@@ -142,8 +147,11 @@ def joints(history, time=None):
     samples = range(len(history.time)) if time is None else [history.sample(time)]
     table["slip"] = table["slip_time"] = np.nan
     table["opening_time"] = history.time[samples[0]]
+    if time is not None:
+        table["opening"][found.gone[samples[0]]] = np.nan
     for sample in samples:
         opening, slip, closed = found.movement(history, sample)
+        opening, closed = np.where(found.gone[sample], np.nan, opening), closed & ~found.gone[sample]
         for name, values, better in (("opening", opening, opening > table["opening"]), ("slip", slip, closed & ~(slip <= table["slip"]))):
             table[name][better] = values[better]
             table[name + "_time"][better] = history.time[sample]
@@ -157,13 +165,9 @@ def patches(history):
     return _joints_of(history).polygons
 
 
-def joint_rows(history):
-    """(j, 2) rows in the history of the blocks of joints(history)."""
-    return _joints_of(history).rows
-
-
 def movement(history, samples):
-    """(rows in the history (j, 2), openings (s, j), slips (s, j), m) of joints(history) in some samples; a slip is NaN where the joint is open all over."""
+    """(openings (s, j), slips (s, j), m) of joints(history) in some samples; NaN where they do not count, a slip also where the joint is open all over."""
     found = _joints_of(history)
     opening, slip, closed = (np.array(values).reshape(len(samples), len(found.rows)) for values in zip(*(found.movement(history, k) for k in samples)))
-    return found.rows, opening, np.where(closed, slip, np.nan)
+    gone = found.gone[samples]
+    return np.where(gone, np.nan, opening), np.where(closed & ~gone, slip, np.nan)

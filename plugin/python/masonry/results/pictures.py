@@ -3,9 +3,9 @@
 import numpy as np
 from masonry._files import save_picture, written
 from masonry._given import number_given, positive_given, shown
-from masonry.results.collapse import collapse, fallen
+from masonry.results.collapse import collapse, lies
 from masonry.results.forces import has_forces, thrust_at_first
-from masonry.results.joints import joint_rows, joints, patches
+from masonry.results.joints import joints, patches
 from masonry.results.view import STILL, View, enlargement, largest, movement, nice, still
 from masonry.results.wall_history import ENERGIES, history_given
 
@@ -21,6 +21,10 @@ _SMALL = 0.1
 _THRUST = 2.0
 # Resultants smaller than this share of the largest are left out.
 _FAINT = 0.02
+# How far beside the structure a picture shows what has fallen, relative to its size: a wall that overturns lies within its height.
+_BESIDE = 1.0
+# Places so many times the width of the picture away are counted from another origin.
+_FAR = 1e3
 # Inches of an axis for each of its numbers.
 _TICK = 0.5
 _PRESCRIBED, _UNMOVED, _BEYOND = "0.62", "0.85", "tab:purple"
@@ -61,6 +65,21 @@ def _check(color, enlarge):
         positive_given("enlarge", enlarge, ", or None")
 
 
+def _framed(history, samples, enlarge, view):
+    """Points in the picture that it shows: the blocks as they were at first and as they stand in the samples, and of those that have fallen what lies
+    beside the first shape, up to a part of its size away: blocks that fall off their base do not shrink the others."""
+    free, down = history.free, lies(history)
+    first = view.place(history.corners(0)[free]).reshape(-1, 2)
+    reach = _BESIDE * np.ptp(first, axis=0).max()
+    low, high = first.min(axis=0) - [reach, 0], first.max(axis=0) + [reach, 0]
+    points = [first]
+    for k in samples:
+        corners, fell = view.place(history.corners(k, enlarge)), down[k]
+        points += [corners[free & ~fell].reshape(-1, 2), np.clip(corners[free & fell].reshape(-1, 2), low, high)]
+    points = np.concatenate(points)
+    return points[np.isfinite(points).all(axis=1)]
+
+
 def _figure(view, shown, columns=1):
     """Axes for a wall that fills `shown` (points in the picture)."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -70,14 +89,17 @@ def _figure(view, shown, columns=1):
     margin = 0.06 * max(right - left, high - low)
     width, height = right - left + 2 * margin, high - low + 2 * margin
     scale = min(7.5 / columns / width, 5.5 / height)
-    figure = Figure(figsize=(max(width * scale + 1.8, 3.6) * columns, max(height * scale, 1.5) + 1.0), layout="constrained")
+    origin = round(left) if abs(left) > _FAR * width else 0
+    figure = Figure(figsize=(max(width * scale + 2.0, 3.6) * columns, max(height * scale, 1.5) + 1.0), layout="constrained")
     FigureCanvasAgg(figure)
     all_axes = figure.subplots(1, columns, squeeze=False)[0]
     for axes in all_axes:
         axes.set(aspect="equal", xlim=(left - margin, right + margin), ylim=(low - margin, high + margin))
         if view.from_side:
-            axes.set(xlabel=view.label(), ylabel="z (m)")
+            axes.set(xlabel=view.label() if origin == 0 else f"{view.label()}, from {origin:.0f} m", ylabel="z (m)")
             axes.locator_params(axis="x", nbins=max(2, int(width * scale / _TICK)))
+            if origin:
+                axes.xaxis.set_major_formatter(lambda value, _: f"{value - origin:g}")
         else:
             axes.axis("off")
             bar = nice(width / 4)
@@ -99,13 +121,12 @@ class _Painter:
         self._values = np.linalg.norm(history.displacement, axis=2) if color == "displacement" else history.rotation
         self._moved = movement(history, samples) > still(history)
         # One block on the floor would leave no colours to the others.
-        values, stands = self._values[samples][:, history.free], ~fallen(history)[samples][:, history.free]
+        values, stands = self._values[samples][:, history.free], ~lies(history)[samples][:, history.free]
         most, beyond = scale_end(values, stands, still(history) if color == "displacement" else STILL)
         self._map = shades("YlOrRd", most)
         self._prescribed, self._unmoved = np.array(to_rgb(_PRESCRIBED)), np.array(to_rgb(_UNMOVED))
         start, free = history.corners(0), history.free
-        shown = np.concatenate([self._view.place(history.corners(k, self._enlarge)[free]).reshape(-1, 2) for k in {0, *samples}])
-        self.figure, (self._axes,) = _figure(self._view, shown[np.isfinite(shown).all(axis=1)])
+        self.figure, (self._axes,) = _figure(self._view, _framed(history, samples, self._enlarge, self._view))
         self._axes.add_collection(LineCollection(self._view.outlines(start[free]), colors="0.6", linewidths=0.6, linestyles="--", zorder=1))
         self._blocks = PolyCollection([], edgecolors="0.2", linewidths=0.5 if len(start) < 300 else 0.25, zorder=2)
         self._axes.add_collection(self._blocks)
@@ -198,7 +219,6 @@ def joints_figure(history, time=None, view=None, title="", thrust=True):
     corners = history.corners(0)
     flat = view.place(polygons)
     when = "largest" if time is None else f"at {history.time[history.sample(time)]:.3f} s"
-    stands = ~fallen(history)[history.sample(time)][joint_rows(history)].any(axis=1)
     least = 1e3 * still(history)
     thrust = thrust and has_forces(history)
     figure, panels = _figure(view, view.place(corners[history.free]).reshape(-1, 2), columns=3 if thrust else 2)
@@ -206,7 +226,7 @@ def joints_figure(history, time=None, view=None, title="", thrust=True):
         _thrust_panel(history, panels[2], view, collapse(history).peak_drift_time if time is None else time, title)
     for axes, name, colours, none in zip(panels, ("opening", "slip"), ("YlOrRd", "YlGnBu"), ("nothing opened", "nothing slid")):
         values = 1e3 * table[name]
-        most, beyond = scale_end(values, stands, least)
+        most = max(largest(values), least)
         colours = shades(colours, most)
         order = np.argsort(np.nan_to_num(values))
         # What opens or slides by less than a hundredth of the most is left grey and thin. Edge on, the line of a joint is its outline.
@@ -217,7 +237,7 @@ def joints_figure(history, time=None, view=None, title="", thrust=True):
         axes.add_collection(PolyCollection(flat[order], facecolors=colors[order], edgecolors=colors[order], linewidths=width[order], zorder=2))
         axes.set_title(f"{title + ': ' if title else ''}{name}, {when}{'' if moves.any() else f': {none}' if len(table) else ': no blocks touch at first'}", fontsize="small")
         if moves.any():
-            _colorbar(figure, axes, colours, name, "mm", beyond)
+            _colorbar(figure, axes, colours, name, "mm", False)
     return figure
 
 
@@ -249,8 +269,7 @@ def _thrust_panel(history, axes, view, time, title):
 
 def draw_joints(history, path, time=None, view=None, title=""):
     """Writes a picture with two maps on the undisplaced structure: opening and slip of each joint (joints()), in mm. time: the sample nearest
-    to it, s; None: the largest of each joint in the whole history. view: as in draw(). The scales end as in draw(), for the joints between blocks that
-    have not fallen; where nothing opened, or slid, by more than 1e-6 of the structure's size, the map is grey and its title says so, as where no blocks
+    to it, s; None: the largest of each joint. view: as in draw(). As in joints(), an opening or a slip counts until the first of the two blocks has fallen; where nothing opened, or slid, by more than 1e-6 of the structure's size, the map is grey and its title says so, as where no blocks
     touch in the first sample (a run that starts with a tilted block).
 
     Where the forces of the joints were recorded (WallRecorder.recordForces), a third map has the lines of thrust: the resultant of each joint at `time` (None:

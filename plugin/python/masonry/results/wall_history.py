@@ -7,6 +7,7 @@ import numpy as np
 from masonry import _pose
 from masonry._files import read_npz, written
 from masonry._given import number_given, shown
+from masonry.results.own_bases import own_bases
 
 ENERGIES = ("kinetic", "potential", "elastPotential", "frictDissip", "dampDissip", "impactDissip", "baseWork")
 _SAVED = ("time", "ids", "sizes", "free", "position", "orientation", "energies")
@@ -37,8 +38,8 @@ class WallHistory:
     forces         structured array, one row for each joint that carries load in a sample: sample (its number), id1, id2, force on block 2 (N), point
                    where it acts (m); None: not recorded (WallRecorder.recordForces)
 
-    Displacements and rotations are relative to the base, which is the first prescribed block, and to the first sample. Without
-    a prescribed block they are those in the world; a base that is erased counts as staying where it was. dem.wall_history(recorder) makes one;
+    Displacements and rotations are relative to the base of the block (`bases`: the prescribed body on which its structure stands), and to the first
+    sample. Without a prescribed body they are those in the world; a base that is erased counts as staying where it was. dem.wall_history(recorder) makes one;
     save and load keep it in a file, to_csv writes a table.
     Raises ValueError when shapes do not fit, times do not increase or a block that is there at first is nowhere.
     """
@@ -63,6 +64,10 @@ class WallHistory:
             raise ValueError(f"time: must increase, and does not after {self.time[:-1][~(np.diff(self.time) > 0)][0]:g} s: record each run with a recorder of its own")
         if not (np.isfinite(self.position[0]).all() and np.isfinite(self.orientation[0]).all()):
             raise ValueError("position, orientation: must be finite in the first sample")
+        if forces is not None:
+            strangers = np.setdiff1d(np.concatenate([forces["id1"], forces["id2"]]), self.ids)
+            if len(strangers):
+                raise ValueError(f"forces: they name the body {strangers[0]}, which is not among the ids of the history: must be those of joints between its bodies")
         self.end = float(self.time[-1] if end is None else end)
         if not self.end >= self.time[-1]:
             raise ValueError(f"end = {end}: must not come before the last sample, at {self.time[-1]:g} s")
@@ -142,32 +147,46 @@ class WallHistory:
             return f"{run:.4g} s of a motion without a known end have been run"
         return f"all {end - start:.4g} s of the motion have been run" if self.motion_run == 1 else f"{run:.4g} of {end - start:.4g} s of the motion have been run"
 
+    @cached_property
+    def bases(self):
+        """(n,) row of the body that the motion of each block is relative to: the first prescribed body on which its structure (blocks that carry each
+        other) stands in the first sample; -1 where the history has no prescribed body."""
+        return own_bases(self.position[0], self.sizes, _pose.axes_of(self.orientation[0]), self.free)
+
     @property
     def base(self):
-        """Row of the block that motion is relative to, or None."""
-        return None if self.free.all() else int(np.argmin(self.free))
+        """Row of the base of the first free block, or None where the history has no prescribed body."""
+        row = int(self.bases[np.argmax(self.free)])
+        return None if row < 0 else row
+
+    def base_path(self, base):
+        """Places (s, 3) and orientations (s, 4) of a base, by its row; from where it is erased, the last ones."""
+        here = np.isfinite(self.position[:, base]).all(axis=1)
+        last = np.maximum.accumulate(np.where(here, np.arange(len(here)), 0))
+        return self.position[last, base], self.orientation[last, base]
 
     @cached_property
     def _from_base(self):
-        """Positions and orientations as one sees them from the base, put back where it was at first."""
-        if self.base is None:
-            return self.position, self.orientation
-        here = np.isfinite(self.position[:, self.base]).all(axis=1)
-        last = np.maximum.accumulate(np.where(here, np.arange(len(here)), 0))
-        place, turned = self.position[last, self.base], self.orientation[last, self.base]
-        if (turned == turned[0]).all():
-            return self.position - (place - place[0])[:, None], self.orientation
-        back = _pose.product(turned[0], _pose.inverse(turned))
-        return place[0] + np.einsum("sab,snb->sna", _pose.matrices(back), self.position - place[:, None]), _pose.product(back[:, None], self.orientation)
+        """Positions and orientations as one sees them from the base of each block, put back where it was at first."""
+        position, orientation = self.position.copy(), self.orientation.copy()
+        for base in np.unique(self.bases[self.bases >= 0]).tolist():
+            rows, (place, turned) = np.flatnonzero(self.bases == base), self.base_path(base)
+            if (turned == turned[0]).all():
+                position[:, rows] -= (place - place[0])[:, None]
+                continue
+            back = _pose.product(turned[0], _pose.inverse(turned))
+            position[:, rows] = place[0] + np.einsum("sab,snb->sna", _pose.matrices(back), position[:, rows] - place[:, None])
+            orientation[:, rows] = _pose.product(back[:, None], orientation[:, rows])
+        return position, orientation
 
     @property
     def relative_position(self):
-        """(s, n, 3) m, seen from the base, which stays where it was in the first sample."""
+        """(s, n, 3) m, each block seen from its base, which stays where it was in the first sample."""
         return self._from_base[0]
 
     @property
     def relative_orientation(self):
-        """(s, n, 4) quaternions, seen from the base."""
+        """(s, n, 4) quaternions, each block seen from its base."""
         return self._from_base[1]
 
     @cached_property
@@ -217,15 +236,20 @@ class WallHistory:
         """(s,) horizontal displacement of the top relative to the base over the height of the structure, 0 or positive, dimensionless. The
         top: the middle of the upper face (of the face that is the upper one at first), of the block where it is farthest away among those whose
         upper end is at first within half their height of the highest one. The height: from the lowest point of the free blocks to the highest,
-        at first. A block and a pier of the same shape that turn alike have the same drift."""
+        at first. A block and a pier of the same shape that turn alike have the same drift. Where structures stand on several bases, the drift is the
+        largest of those of each base."""
+        return np.fmax.reduce([self._drift_on(self.free & (self.bases == base)) for base in np.unique(self.bases[self.free])])
+
+    def _drift_on(self, blocks):
+        """drift() of what stands on one base."""
         low, high = self.extent
-        top = np.flatnonzero(self.free & (high > high[self.free].max() - (high - low) / 2))
+        top = np.flatnonzero(blocks & (high > high[blocks].max() - (high - low) / 2))
         rows, up, turned = np.arange(len(top)), self.upright[top], _pose.matrices(self.relative_orientation[:, top])
         arms = np.zeros((len(top), 3))
         arms[rows, up] = np.sign(turned[0, rows, 2, up]) * self.sizes[top, up] / 2
         middles = self.relative_position[:, top] + np.einsum("snab,nb->sna", turned, arms)
         moved = np.linalg.norm((middles - middles[0])[..., :2], axis=2)
-        return np.fmax.reduce(moved, axis=1) / (high[self.free].max() - low[self.free].min())
+        return np.fmax.reduce(moved, axis=1) / (high[blocks].max() - low[blocks].min())
 
     @cached_property
     def extent(self):
@@ -234,7 +258,7 @@ class WallHistory:
         return z.min(axis=1), z.max(axis=1)
 
     def corners(self, sample, enlarge=1.0):
-        """(n, 8, 3) corners of the blocks, seen from the base, their movement since the first sample taken `enlarge` times, m."""
+        """(n, 8, 3) corners of the blocks, each seen from its base, their movement since the first sample taken `enlarge` times, m."""
         start = _pose.corners(self.relative_position[0], self.orientation[0], self.sizes)
         return start + enlarge * (_pose.corners(self.relative_position[sample], self.relative_orientation[sample], self.sizes) - start)
 

@@ -5,7 +5,7 @@ import io
 import re
 
 import numpy as np
-from masonry.results.collapse import fallen
+from masonry.results.collapse import lies
 from masonry.results.forces import base_reactions
 from masonry.results.joints import movement
 from masonry.results.pictures import energy_figure, joints_figure, shape_figure, thrust_figure
@@ -89,17 +89,17 @@ def _limit(axes, values):
 @styled
 def drift(history, verdict):
     """Drift, and the way of the base where it moves."""
-    base = history.base
-    way = history.position[:, base] - history.position[0, base] if base is not None else np.zeros((len(history.time), 3))
-    moves = [k for k in range(3) if largest(np.abs(way[:, k])) > 1e-9 * history.sizes.max()]
+    bases = np.unique(history.bases[history.free]) if history.base is not None else []
+    ways = [(f"base {history.ids[base]}, " if len(bases) > 1 else "", history.base_path(base)[0] - history.position[0, base]) for base in bases]
+    moves = [(name, k, way[:, k]) for name, way in ways for k in range(3) if largest(np.abs(way[:, k])) > 1e-9 * history.sizes.max()]
     figure, axes = axes_of(2 if moves else 1, 3.6 if moves else 2.4, [3, 2] if moves else None)
     values = 100 * history.drift()
     axes[0].plot(history.time, values, color="tab:red")
     before = values[history.time < verdict.time] if verdict.collapsed else values
     _limit(axes[0], before if len(before) else values)
     axes[0].set_ylabel("drift (% of height)")
-    for k in moves:
-        axes[1].plot(history.time, 1e3 * way[:, k], color=f"C{k}", label=f"along {'xyz'[k]}")
+    for name, k, way in moves:
+        axes[1].plot(history.time, 1e3 * way, color=f"C{k}" if len(bases) == 1 else None, label=f"{name}along {'xyz'[k]}")
     if moves:
         axes[1].set_ylabel("base (mm)")
         if len(moves) > 1:
@@ -110,7 +110,7 @@ def drift(history, verdict):
 
 def _standing(history, values):
     """The values (s, n) up to the fall of each block."""
-    return np.where(np.logical_or.accumulate(fallen(history)), np.nan, values)
+    return np.where(lies(history), np.nan, values)
 
 
 @styled
@@ -138,21 +138,20 @@ def excursions(history, verdict):
 
 @styled
 def joints(history, verdict, table):
-    """Opening and slip of the joints that moved most before one of their blocks fell."""
-    samples = np.unique(np.linspace(0, len(history.time) - 1, min(_SAMPLES, len(history.time))).round().astype(int))
-    rows, opening, slip = movement(history, samples)
-    gone = np.logical_or.accumulate(fallen(history))[samples][:, rows].any(axis=2)
+    """Opening and slip of the joints that moved most."""
     figure, axes = axes_of(2, 4.2)
-    for one, name, values in zip(axes, ("opening", "slip"), (opening, slip)):
-        values = np.where(gone, np.nan, 1e3 * values)
+    for one, part, name in zip(axes, (0, 1), ("opening", "slip")):
         one.set_ylabel(f"{name} (mm)")
-        if largest(values) <= 1e3 * still(history):  # round-off
+        if largest(table[name]) <= still(history):  # round-off
             one.plot(history.time[[0, -1]], [0, 0], color="0.5", label="none")
             one.set_ylim(0, 1)
             continue
-        order = np.argsort(-np.nan_to_num(np.fmax.reduce(values, axis=0)), kind="stable")[:_LINES]
-        for k in order:
-            one.plot(history.time[samples], values[:, k], label=f"{table['id1'][k]} – {table['id2'][k]}")
+        most = np.argsort(-np.nan_to_num(table[name]), kind="stable")[:_LINES]
+        even = np.linspace(0, len(history.time) - 1, min(_SAMPLES, len(history.time))).round().astype(int)
+        samples = np.unique([*even, *np.searchsorted(history.time, table[name + "_time"][most])])
+        values = 1e3 * movement(history, samples)[part][:, most]
+        for k, way in zip(most, values.T):
+            one.plot(history.time[samples], way, label=f"{table['id1'][k]} – {table['id2'][k]}")
         _limit(one, values)
         one.legend(title="blocks", loc="upper left", fontsize="small", title_fontsize="small", ncol=2)
     time_axis(axes, history.time, verdict.time)
@@ -160,9 +159,9 @@ def joints(history, verdict, table):
 
 
 @styled
-def base_forces(history, verdict):
-    """Base shear, vertical force and overturning moment about the horizontal axis that it is largest about."""
-    table = base_reactions(history)
+def base_forces(history, verdict, base=None):
+    """Base shear, vertical force and overturning moment, of one base or of all prescribed bodies."""
+    table = base_reactions(history, base=base)
     figure, axes = axes_of(2, 3.6)
     for one, values, names in ((axes[0], 1e-3 * table["force"], ("base shear x", "base shear y", "vertical force")),
                                (axes[1], 1e-3 * table["moment"], ("about x", "about y", "about z"))):

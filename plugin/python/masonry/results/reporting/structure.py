@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 from masonry import _pose
-from masonry.results.collapse import collapse, fallen
+from masonry.results.collapse import collapse
 from masonry.results.forces import has_forces
 from masonry.results.joints import joints
 from masonry.results.view import largest, movement, still
@@ -30,7 +30,7 @@ def content(history, exact):
                      "Largest horizontal displacement in a course, relative to the base; the curve of a block ends when it falls." + _shaded(verdict))]),
         _section("shape", "Shape at the largest drift", curves.shape(history, shown_first),
                  "The sample of the largest drift" + (" before the collapse" if verdict.collapsed else "") + "; dashed: the first sample."),
-        _joints_section(history, verdict, table), _force_section(history, verdict),
+        _joints_section(history, verdict, table), *_force_sections(history, verdict),
         _energy_section(history), _impact_section(history)) if section]
     return {"title": history.about.get("script") or "Rocking masonry", "kind": verdict.verdict, "headline": _headline(verdict), "sentences": _sentences(history, verdict),
             "warnings": _warnings(history, verdict), "scene": view3d.scene(history, shown_first), "numbers": _numbers(history, verdict, table), "sections": sections,
@@ -93,11 +93,9 @@ def _numbers(history, verdict, table):
              "" if math.isnan(verdict.first_excursion) else f"{verdict.first_excursion:.4g} s")]
     for id, time in list(zip(verdict.fallen, verdict.fall_times))[:1]:
         rows.append(("First block to fall", f"block {id}", f"{time:.4g} s"))
-    # Those of blocks that lie on the floor say nothing.
-    stands = ~np.isin(table["id1"], verdict.fallen) & ~np.isin(table["id2"], verdict.fallen)
     for name, verb in (("opening", "opened"), ("slip", "slid")):
-        values = np.where(stands, np.nan_to_num(table[name]), 0)
-        if len(values) and values.max() > still(history):
+        values = np.nan_to_num(table[name])
+        if largest(values) > still(history):
             k = int(values.argmax())
             rows.append((f"Joint that {verb} most", f"{words.decimal(1e3 * values[k], 4)} mm, blocks {table['id1'][k]} and {table['id2'][k]}", f"{table[name + '_time'][k]:.4g} s"))
     energy = history.energy[-1]
@@ -122,28 +120,37 @@ def _joints_section(history, verdict, table):
     if not len(table):
         return None
     rank = np.argsort(-np.nan_to_num(table["opening"]), kind="stable")
-    ids = dict(zip(history.ids.tolist(), fallen(history)[-1].tolist()))
+    fell = set(verdict.fallen.tolist())
     rows = [(f"{r['id1']} – {r['id2']}", _mm(r["opening"]), f"{r['opening_time']:.3f}", _mm(r["slip"]), "" if math.isnan(r["slip"]) else f"{r['slip_time']:.3f}",
-             "fallen" if ids[r["id1"]] or ids[r["id2"]] else "") for r in table[rank[:_JOINTS]]]
+             "fallen" if fell & {r["id1"], r["id2"]} else "") for r in table[rank[:_JOINTS]]]
     return _section("joints", "Opening and slip of the joints", curves.joints(history, verdict, table),
-                    "The joints that opened, and slid, most before one of their blocks fell; slip only while the joint is closed." + _shaded(verdict),
-                    second=curves.joint_map(history), second_caption="Largest values of all samples, on the structure as it was at first.",
+                    "The joints that opened, and slid, most. An opening or a slip counts until the first of the two blocks has fallen, a slip only while the joint "
+                    "is closed." + _shaded(verdict),
+                    second=curves.joint_map(history), second_caption="Largest values of each joint, on the structure as it was at first.",
                     columns=["Blocks", "Opening (mm)", "at (s)", "Slip (mm)", "at (s)", ""], rows=rows,
-                    more=f"The {len(rows)} joints of {len(table)} that opened most, blocks that fell included.", fold="Table of joints")
+                    more=f"The {len(rows)} joints of {len(table)} that opened most; fallen: one of the blocks has in the end.", fold="Table of joints")
 
 
 def _mm(value):
     return "" if math.isnan(value) else f"{1e3 * value:.3f}"
 
 
-def _force_section(history, verdict):
+def _force_sections(history, verdict):
+    """Forces of each base, and with the first one the lines of thrust."""
     if not has_forces(history):
-        return None
-    return _section("forces", "Base shear, overturning moment and thrust", curves.base_forces(history, verdict),
-                    "Forces of the base on the structure, and their moment about the middle of its foot, at the instants of the samples; peaks of impacts may leave "
-                    "the picture." + _shaded(verdict), second=curves.thrust_map(history, verdict.peak_drift_time),
-                    second_caption="Lines of thrust at the largest drift" + (" before the collapse" if verdict.collapsed else "") + ": the resultant of each joint, as "
-                    "long as it is large, and a dot where it crosses the joint; on the structure as it was at first.")
+        return []
+    thrust = curves.thrust_map(history, verdict.peak_drift_time)
+    caption = ("Lines of thrust at the largest drift" + (" before the collapse" if verdict.collapsed else "") + ": the resultant of each joint, as long as it is "
+               "large, and a dot where it crosses the joint; on the structure as it was at first.")
+    if history.base is None:
+        return [_section("forces", "Thrust", thrust, caption)]
+    bases = history.ids[np.unique(history.bases[history.free])].tolist()
+    said = ("Forces of the base on the structure, and their moment about the middle of its foot, at the instants of the samples; peaks of impacts may leave "
+            "the picture." + _shaded(verdict))
+    if len(bases) == 1:
+        return [_section("forces", "Base shear, overturning moment and thrust", curves.base_forces(history, verdict), said, second=thrust, second_caption=caption)]
+    return [_section(f"forces-{base}", f"Base shear and overturning moment of base {base}", curves.base_forces(history, verdict, base), said)
+            for base in bases] + [_section("thrust", "Thrust", thrust, caption)]
 
 
 def _energy_section(history):

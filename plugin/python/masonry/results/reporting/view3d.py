@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 from masonry import _pose
-from masonry.results.collapse import fallen
+from masonry.results.collapse import lies
 from masonry.results.pictures import scale_end, shades
 from masonry.results.view import STILL, enlargement, plane_normal, still
 
@@ -39,16 +39,17 @@ def _packed(values):
     return base64.b64encode(np.ascontiguousarray(values, dtype="<f4").tobytes()).decode()
 
 
-def _base_motion(history, samples):
-    """(frames, 7): where the base has gone since the first sample, a turn about the origin and then a shift."""
-    if history.base is None:
-        return np.tile([0.0, 0, 0, 1, 0, 0, 0], (len(samples), 1))
-    place, turned = history.position[samples, history.base], history.orientation[samples, history.base]
-    turn = _pose.product(turned, _pose.inverse(history.orientation[0, history.base]))
-    shift = place - np.einsum("sab,b->sa", _pose.matrices(turn), history.position[0, history.base])
-    motion = np.concatenate([shift, turn], axis=1)
-    motion[~np.isfinite(motion).all(axis=1)] = 0, 0, 0, 1, 0, 0, 0  # erased
-    return motion
+def _base_motions(history, samples, origin):
+    """((bases, frames, 7) where each base has gone since the first sample: a turn about the origin and then a shift; (n,) which of them moves a block)."""
+    bases, own = np.unique(history.bases, return_inverse=True)
+    motions = np.tile([0.0, 0, 0, 1, 0, 0, 0], (len(bases), len(samples), 1))
+    for motion, base in zip(motions, bases.tolist()):
+        if base >= 0:
+            place, turned = (path[samples] for path in history.base_path(base))
+            turn = _pose.product(turned, _pose.inverse(history.orientation[0, base]))
+            motion[:, :3] = place - origin - np.einsum("sab,b->sa", _pose.matrices(turn), history.position[0, base] - origin)
+            motion[:, 3:] = turn
+    return motions, own
 
 
 def scene(history, start):
@@ -56,8 +57,11 @@ def scene(history, start):
     from matplotlib.colors import to_hex
 
     samples = frames(history)
-    poses = np.concatenate([history.relative_position[samples], history.relative_orientation[samples]], axis=2)
-    stands = ~fallen(history)[samples][:, history.free]
+    # Single precision has seven digits: places are counted from the base, in whole metres of the scene.
+    origin = np.round(history.position[0, history.base or 0])
+    poses = np.concatenate([history.relative_position[samples] - origin, history.relative_orientation[samples]], axis=2)
+    motions, own = _base_motions(history, samples, origin)
+    stands = ~lies(history)[samples][:, history.free]
     quantities = []
     for name, unit, factor, values, least in (("displacement", "mm", 1e3, np.linalg.norm(history.displacement[samples], axis=2), still(history)),
                                               ("rotation", "mrad", 1e3, history.rotation[samples], STILL)):
@@ -66,7 +70,7 @@ def scene(history, start):
     normal = plane_normal(history)
     return json.dumps({
         "time": [round(float(t), 6) for t in history.time[samples]], "ids": history.ids.tolist(), "free": history.free.tolist(),
-        "sizes": history.sizes.round(9).tolist(), "poses": _packed(poses), "base": _packed(_base_motion(history, samples)), "quantities": quantities,
+        "sizes": history.sizes.round(9).tolist(), "poses": _packed(poses), "base": _packed(motions), "bases": own.ravel().tolist(), "quantities": quantities,
         "palette": [to_hex(shades("YlOrRd", 1).to_rgba(k / (_STOPS - 1))) for k in range(_STOPS)],
         "enlarge": float(f"{enlargement(history, samples, _DRAWN):.2g}"), "front": (normal if normal is not None else np.array([0.0, -1, 0])).tolist(),
         "start": float(start)}).replace("</", "<\\/")

@@ -59,9 +59,18 @@ function cornersOf(k, [x, y, z, w, a, b, c], to, offset) {
   }
 }
 
-const corners = new Float32Array(3 * CORNERS * count), start = new Float32Array(3 * CORNERS * count), values = [new Float64Array(count), new Float64Array(count)];
+const [corners, start, dashed] = [0, 1, 2].map(() => new Float32Array(3 * CORNERS * count)), values = [new Float64Array(count), new Float64Array(count)];
 for (let k = 0; k < count; ++k)
   cornersOf(k, poseAt(poses, count, k, 0, 0), start, 3 * CORNERS * k);
+
+// Takes the corners of block `k`, now and at first, along with its base.
+function follow(k, frame, share) {
+  const [x, y, z, w, a, b, c] = poseAt(base.subarray(scene.bases[k] * frames * POSE), 1, 0, frame, share);
+  const turn = new THREE.Quaternion(a, b, c, w), shift = new THREE.Vector3(x, y, z), corner = new THREE.Vector3();
+  for (const points of [corners, dashed])
+    for (let i = 3 * CORNERS * k; i < 3 * CORNERS * (k + 1); i += 3)
+      corner.fromArray(points, i).applyQuaternion(turn).add(shift).toArray(points, i);
+}
 
 // Corners, displacements and rotations now. A block that was erased has no corners: not numbers.
 function move() {
@@ -75,6 +84,9 @@ function move() {
   }
   for (let i = 0; i < corners.length; ++i)
     corners[i] = start[i] + state.enlarge * (corners[i] - start[i]);
+  dashed.set(start);
+  for (let k = 0; at("moving").checked && k < count; ++k)
+    follow(k, frame, share);
 }
 
 // --- what is drawn ---
@@ -93,9 +105,9 @@ try {
 }
 renderer.setPixelRatio(window.devicePixelRatio || 1);
 renderer.setClearColor(0xeef1f5);
-const world = new THREE.Scene(), structure = new THREE.Group(), camera = new THREE.PerspectiveCamera(35, 1, 0.01, 1000);
+const world = new THREE.Scene(), camera = new THREE.PerspectiveCamera(35, 1, 0.01, 1000);
 camera.up.set(0, 0, 1);
-world.add(structure, new THREE.AmbientLight(0xffffff, 0.62));
+world.add(new THREE.AmbientLight(0xffffff, 0.62));
 const sun = new THREE.DirectionalLight(0xffffff, 0.5);
 world.add(sun);
 
@@ -119,7 +131,7 @@ const edges = new THREE.LineSegments(outline, new THREE.LineBasicMaterial({ colo
 const firstShape = new THREE.LineSegments(ghost, new THREE.LineBasicMaterial({ color: 0xaab2bd }));
 for (const one of [box, edges, firstShape])
   one.frustumCulled = false;
-structure.add(box, edges, firstShape);
+world.add(box, edges, firstShape);
 
 function fillEdges(from, free, to) {
   let next = 0;
@@ -132,7 +144,6 @@ function fillEdges(from, free, to) {
         }
 }
 attribute(ghost, "position", new THREE.BufferAttribute(new Float32Array(lines.array.length), 3));
-fillEdges(start, true, ghost.attributes.position.array);
 
 function colourOf(k) {
   if (!scene.free[k])
@@ -162,10 +173,8 @@ function fill() {
       }
   }
   fillEdges(corners, false, lines.array);
-  positions.needsUpdate = colours.needsUpdate = lines.needsUpdate = true;
-  const [frame, share] = frameAt(state.time), [x, y, z, w, a, b, c] = at("moving").checked ? poseAt(base, 1, 0, frame, share) : [0, 0, 0, 1, 0, 0, 0];
-  structure.position.set(x, y, z);
-  structure.quaternion.set(a, b, c, w);
+  fillEdges(dashed, true, ghost.attributes.position.array);
+  positions.needsUpdate = colours.needsUpdate = lines.needsUpdate = ghost.attributes.position.needsUpdate = true;
 }
 
 // --- the camera: turns about a target ---

@@ -1,0 +1,43 @@
+"""Whether the blocks are at rest."""
+
+import numpy as np
+from masonry.dem.engines import joint_engine
+from masonry.dem.reactions import joint_forces
+from masonry.dem.scene import _boxes
+from yade import O, wrapper
+
+# Speed of rest relative to sqrt(g R), as in plugin/core/tolerances.hpp.
+_REST_SPEED = 1e-4
+# Largest acceleration of a block at rest, share of g. Joints leave less of a resting wall; a block that rocks has more where it turns back.
+_UNBALANCED = 2e-2
+
+
+def at_rest():
+    """Whether all free blocks are at rest: True or False. Call it between steps, to end a run:
+
+        while not dem.at_rest() and O.time < 60:
+            dem.run(0.1)
+
+    A block is at rest if its centre moves slower than 1e-4 sqrt(g R) (m/s) and it turns slower than 1e-4 sqrt(g/R) (rad/s), where R (m) is half of its
+    diagonal, and if the forces on it balance within 2 % of its weight: where a rocking block turns back it stands still for an instant, and its forces do
+    not balance. Speeds are those in the world: on a base that moves, no block is at rest. Before the first step, and without gravity, it is False.
+
+    YADE's utils.unbalancedForce() does not tell it: it is 0 for rigid blocks, whether they move or not."""
+    engine = joint_engine()
+    gravity = next((np.array(one.gravity) for one in (engine, *O.engines) if hasattr(one, "gravity")), np.zeros(3))
+    strength = np.linalg.norm(gravity)
+    if O.iter == 0 or engine is None or strength == 0:
+        return False
+    blocks = [body for body in _boxes() if body.dynamic]
+    state = np.array([(*body.state.vel, *body.state.angVel, body.state.mass, body.shape.extents.norm()) for body in blocks])
+    speed, spin, mass, reach = np.linalg.norm(state[:, :3], axis=1), np.linalg.norm(state[:, 3:6], axis=1), state[:, 6], state[:, 7]
+    if (speed > _REST_SPEED * np.sqrt(strength * reach)).any() or (spin > _REST_SPEED * np.sqrt(strength / reach)).any():
+        return False
+    force = np.array([O.forces.f(body.id, True) for body in blocks]) + mass[:, None] * gravity
+    if isinstance(engine, wrapper.MoreauJeanIntegrator):  # those of compliant joints are in O.forces
+        joints, row = joint_forces(), np.full(len(O.bodies), -1)
+        row[[body.id for body in blocks]] = np.arange(len(blocks))
+        for name, sign in (("id1", -1), ("id2", 1)):
+            free = row[joints[name]] >= 0
+            np.add.at(force, row[joints[name]][free], sign * joints["force"][free])
+    return bool((np.linalg.norm(force, axis=1) <= _UNBALANCED * mass * strength).all())
