@@ -1,4 +1,5 @@
-"""Base motions: along x, exact at any time. Amplitudes, impulses and durations may be arrays (one motion a case).
+"""Base motions: along x, exact at any time. Amplitudes, impulses and durations may be arrays (one motion a case). Accelerations are at most 1e6 m/s^2 and
+velocity jumps 2e6 m/s; larger ones, such as the numbers that stand for missing values in files, are refused.
 
 Every motion with a known course has .acceleration(t), .velocity(t), .displacement(t) (m/s^2, m/s, m; values right of a jump).
 """
@@ -143,6 +144,8 @@ class Sine(_Shaped):
 _BASELINES = "none", "constant", "linear", "high-pass"
 # m/s^2: no motion of the ground, so the unit is another.
 _FASTEST = 50
+# m/s^2, m/s or m: the limit of the accelerations of a base, and of samples that make them.
+_LARGEST = 1e6
 # Steps at the ends of a displacement or velocity in which a way to or from rest shows.
 _EDGE = 10
 
@@ -185,6 +188,9 @@ class Record(Motion):
             raise ValueError(f"{self.quantity} has the shape {samples.shape}: must be one row of samples, at least two")
         self.unit_given = unit is not None
         factor = unit_factor(unit, gravity, self.quantity) if self.unit_given else 1.0
+        for k in np.flatnonzero(np.abs(factor * samples) > _LARGEST)[:1]:
+            raise ValueError(f"{self.quantity}[{k}] = {samples[k]:g}{' ' + unit if self.unit_given else ''}: must be at most {_LARGEST:g} {QUANTITIES[self.quantity]} "
+                             "without its sign; files have such numbers for values that are missing")
         self._unscaled, self.deviation = self._accelerations(samples, factor, resolution, baseline)
         array_given("scale", scale)
         self.scale = self.amplitude = scale
@@ -323,7 +329,10 @@ class Record(Motion):
         options[quantity] = factor * series.values
         if quantity != "acceleration":
             options["resolution"] = factor * resolution_of(series.values)  # of the digits in the file
-        result = cls(series.dt, name=series.title or str(path), unit=QUANTITIES[quantity], **options)
+        try:
+            result = cls(series.dt, name=series.title or str(path), unit=QUANTITIES[quantity], **options)
+        except ValueError as error:
+            raise ValueError(f"{path}: {error}") from None
         result.source = _records.source_of(path, series, format)
         return result
 
