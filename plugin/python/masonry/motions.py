@@ -27,6 +27,10 @@ class Motion:
         """The compiled motions, one a case of that shape (or one for all)."""
         raise NotImplementedError
 
+    def _end(self):
+        """When it ends, s: a number or an array of self.shape; infinite where that is not known."""
+        raise NotImplementedError
+
     def _values(self, t, which):
         table = self._motions(self.shape).values(np.ravel(np.asarray(t, dtype=float)))[which]
         return restore(table.reshape((math.prod(self.shape),) + np.shape(t)), self.shape)
@@ -43,6 +47,9 @@ class Motion:
 
 class Still(Motion):
     """A base that does not move."""
+
+    def _end(self):
+        return 0.0
 
     def _motions(self, shape):
         return _core.none()
@@ -91,6 +98,16 @@ class PulseTrain(Motion):
     def scaled(self, factor):
         return PulseTrain(np.multiply(self.impulse, factor), self.times, self.half_cycles, self.assembly, self.pulse_shape, self.duration, self.single_keeps)
 
+    def _last_pulse(self):
+        """Duration of the pulse that brings the base to rest, or of the last one, s."""
+        single = self.half_cycles is not None or self.assembly or self.times is not None and self.times.size == 1
+        return self.duration / 2 if single and self.single_keeps == "amplitude" else self.duration
+
+    def _end(self):
+        if self.times is None:
+            return np.inf
+        return self.times[-1] + self._last_pulse() if self.times.size else 0.0
+
     def _motions(self, shape):
         impulse, = columns(shape, self.impulse)
         form = (self.pulse_shape, float(self.duration), self.single_keeps)
@@ -126,6 +143,9 @@ class Rectangular(_Shaped):
     def __init__(self, amplitude, duration):
         super().__init__(_core.rectangular, amplitude=amplitude, duration=duration)
 
+    def _end(self):
+        return self.duration
+
 
 class HalfSine(_Shaped):
     """Acceleration amplitude sin(pi t/duration) for `duration` (s)."""
@@ -133,12 +153,18 @@ class HalfSine(_Shaped):
     def __init__(self, amplitude, duration):
         super().__init__(_core.half_sine, amplitude=amplitude, duration=duration)
 
+    def _end(self):
+        return self.duration
+
 
 class Sine(_Shaped):
     """Acceleration amplitude sin(2 pi frequency t), frequency in Hz, for `cycles` (> 0, need not be whole)."""
 
     def __init__(self, amplitude, frequency, cycles=1):
         super().__init__(_core.sine, amplitude=amplitude, frequency=frequency, cycles=cycles)
+
+    def _end(self):
+        return np.divide(self.cycles, self.frequency)
 
 
 _BASELINES = "none", "constant", "linear", "high-pass"
@@ -247,6 +273,9 @@ class Record(Motion):
     def duration(self):
         """Time of the last sample, s."""
         return self.dt * (len(self._unscaled) - 1)
+
+    def _end(self):
+        return self.duration
 
     @property
     def final_velocity(self):
