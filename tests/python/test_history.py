@@ -375,6 +375,35 @@ def test_a_history_says_what_happened_in_one_line():
     assert repr(masonry.simulate(blocks, masonry.Sine([2.5, 0.1], 1.0, 3))).startswith("History(2 x 2 cases: 0 overturn, 4 stand and rotate to at most ")
 
 
+def test_a_run_that_ends_before_its_motion_says_so():
+    block, sine = masonry.RockingBlock(0.2, 1.0), masonry.Sine(2.5, 1.0, 4)
+    up = masonry.Sine(1.0, 1.0, 5)
+    record = masonry.artificial_record(seed=7, peak=0.4 * 9.81, duration=12, frequency=1.2)
+    part, whole = masonry.simulate(block, record, t_end=3), masonry.simulate(block, record)
+    assert not part.overturned and part.motion_run == 0.25 and whole.overturned and whole.motion_run == 1
+    assert "stands, " in repr(part) and repr(part).endswith(", after 3 of 12 s of the motion, still rocking at 3 s)") and "overturns in half cycle" in repr(whole)
+    train = masonry.PulseTrain(0.02, half_cycles=3)  # of which the last pulse is at impact 3
+    pulses = masonry.PulseTrain(0.02, times=[1, 2], assembly=True, shape="rectangular", duration=0.1)  # the last one, of I, lasts half as long
+    for motion, options, share, words in (
+            (sine, dict(t_end=3), 0.75, "after 3 of 4 s of the motion"), (sine, dict(t_end=4), 1, ""), (sine, {}, 1, ""), (masonry.Rectangular(0.1, 2), dict(t_end=1), 0.5, "of 2 s"),
+            (masonry.HalfSine(0.1, 2), dict(t_end=1.5), 0.75, "of 2 s"), (sine, dict(t_end=3, vertical=up), 0.6, "after 3 of 5 s"), (None, dict(t_end=1, initial_angle=0.1), 1, ""),
+            (None, {}, 1, ""), (train, dict(half_cycles=2), 0, "s of a motion without a known end"), (train, dict(half_cycles=3), 1, ""), (train, {}, 1, ""),
+            (masonry.PulseTrain(0.02), dict(half_cycles=2), 0, "s of a motion without a known end"), (pulses, dict(t_end=1.025), 0.5, "after 1.025 of 2.05 s"),
+            (pulses, dict(t_end=2.05), 1, ""), (masonry.PulseTrain(0.02, times=[1, 2]), dict(t_end=2), 1, ""), (record.scaled(0.01), dict(t_end=record.duration), 1, "")):
+        history = masonry.simulate(block, motion, **options)
+        assert history.motion_run == pytest.approx(share, rel=1e-12) and not history.overturned
+        assert words in repr(history) and ("after" in repr(history)) == bool(words)
+    cases = masonry.simulate(block, masonry.Sine(1.0, [0.5, 1.0, 4.0], 2), t_end=2)
+    np.testing.assert_allclose(cases.motion_run, [0.5, 1, 1])
+    assert repr(cases).endswith(", 1 of them after only a part of the motion)")
+    # A block that is on its way over does not stand, and has not overturned yet.
+    assert repr(masonry.simulate(block, initial_velocity=1.0, t_end=0.1)).endswith("of the critical angle, still rocking at 0.1 s)")
+
+
+def test_the_version_is_that_of_the_build():
+    assert masonry.__version__ == masonry._build.VERSION and masonry.__version__[0].isdigit()
+
+
 def test_picture_of_a_history(tmp_path):
     block = masonry.RockingBlock(0.2, 1.0)
     record = masonry.Record(0.01, 3 * np.sin(2 * np.pi * 0.01 * np.arange(300)), unit="m/s^2")

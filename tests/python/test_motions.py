@@ -141,10 +141,34 @@ def test_the_unit_g_of_a_peer_file_is_positive(tmp_path):
     (lambda: masonry.Record("fast", [1.0, 2.0]), "dt = 'fast': must be a number"),
     (lambda: masonry.Record(0.01, [1.0, np.nan]), r"acceleration\[1\] = nan"),
     (lambda: masonry.Record(0.01, [1.0, 2.0], baseline="cubic"), "baseline = 'cubic'"),
+    (lambda: masonry.Record(0.01, [1.0, -9.97e36]), r"acceleration\[1\] = -9.97e\+36: must be at most 1e\+06 m/s\^2 without its sign; files have such numbers"),
+    (lambda: masonry.Record(0.01, [0.1] * 9 + [2e5], unit="g"), r"acceleration\[9\] = 200000 g: must be at most 1e\+06 m/s\^2"),
+    (lambda: masonry.Record(0.01, velocity=[0.0] * 20 + [1e20]), r"velocity\[20\] = 1e\+20: must be at most 1e\+06 m/s"),
+    (lambda: masonry.Record(0.01, displacement=[0.0] * 20 + [1e38]), r"displacement\[20\] = 1e\+38: must be at most 1e\+06 m"),
+    (lambda: masonry.Record(0.01, [0.0, 2.0], scale=[1, 1e6]), "acceleration of the base at 0.01 s = 2000000: must be at most"),
+    (lambda: masonry.Sine(1e38, 1.0), r"acceleration of the base at 0 s = 1e\+38: must be at most 1e\+06 m/s\^2 without its sign"),
+    (lambda: masonry.HalfSine(1e38, 1.0), "acceleration of the base"), (lambda: masonry.Rectangular([1.0, -1e38], 1.0), "acceleration of the base"),
+    (lambda: masonry.PulseTrain(1e38, [0.0]), "velocity jump of the base at 0 s"),
+    (lambda: masonry.simulate(masonry.RockingBlock(0.2, 1), masonry.PulseTrain(1e38), half_cycles=2), r"impulse = 1e\+38: must be at most 1e6 m/s"),
+    (lambda: masonry.simulate(masonry.RockingBlock(0.2, 1), initial_velocity=1e15), r"initial_velocity = 1e\+15: must be at most 1e6 rad/s"),
+    (lambda: masonry.simulate(masonry.RockingBlock(1e-40, 5e-40), masonry.Sine(3.0, 1.0)), "the motion is too fast to be followed"),
+    (lambda: masonry.simulate(masonry.RockingBlock(0.2, 1), masonry.Sine(3.0, 1.0), vertical=masonry.Rectangular(1e38, 1.0)), "acceleration of the base"),
+    (lambda: masonry.overturning_amplitude(masonry.RockingBlock(0.2, 1), masonry.Sine(1.0, 1.0), bracket=(1, 1e38)), "acceleration of the base"),
+    (lambda: masonry.spectra.rocking(masonry.Sine, 0.4, 5, amplitude=[1, 1e40], frequency=1), "acceleration of the base"),
+    (lambda: masonry.spectra.response(masonry.Sine(1.0, 1.0), 1e-9), "period = 1e-09: must be longer"),
+    (lambda: masonry.spectra.response(masonry.artificial_record(1, 1.0), [0.1, 1e-6]), "period = 1e-06: must be longer"),
 ])
 def test_bad_input(make, words):
     with pytest.raises(ValueError, match=words):
         make()
+
+
+@pytest.mark.parametrize("fill", ["1e20", "9.96921e36", "1d38", "-3.4028235e38"])
+def test_a_file_with_a_fill_value_is_refused(tmp_path, fill):
+    path = tmp_path / "record.csv"
+    path.write_text("time (s),acc (m/s^2)\n" + "".join(f"{0.01 * k:.2f},{fill if k == 30 else 0.5}\n" for k in range(60)))
+    with pytest.raises(ValueError, match=r"record.csv: acceleration\[30\] = .* m/s\^2: must be at most 1e\+06 m/s\^2 without its sign"):
+        masonry.read_record(path)
 
 
 def test_units_of_a_text_file(tmp_path):

@@ -252,6 +252,58 @@ def test_refused(path, text, words):
     assert "record.txt" in str(refused.value) and "\n" not in str(refused.value) and len(str(refused.value)) < 500
 
 
+TWO = csmip_2({(1, "Up"): (GAL, 0.5 * GAL, 0.3 * GAL), (2, "90 Deg"): (2 * GAL, GAL, 0.6 * GAL)})
+THREE = cosmos(GAL) + cosmos(0.5 * GAL, kind="velocity", units="cm/s(05)") + cosmos(0.3 * GAL, kind="displacement", units="cm(06)")
+PAIR = csmip_1(A / G) + csmip_1(A / G / 2, direction="90 Deg").replace("Chan  1", "Chan  2")
+
+
+@pytest.mark.parametrize("text, options, old, new, words", [
+    *((TWO, dict(component=component), "points of accel data", new, f"line .*{new}.*must say how many values of accel, veloc or displ data follow")
+      for new in ("points of acc. data", "points of Accelerations, equally", "poin ts of accel data", "points of acel data") for component in (1, 2)),
+    (TWO, dict(component=2), "points of veloc data", "points of vel. data", "line .*points of vel. data.*must say how many"),
+    (TWO, dict(component=1), "Chan  2", "Chn  2", "line .*At equally-spaced.*stand in the header of a channel, such as 'Chan"),
+    (PAIR, dict(component=2), "Accelerogram points", "Accelerogram pts", "line 8 .*Accelerogram pts.*must say how many"),
+    (THREE, {}, "Corrected acceleration    (Format v", "Corrected acceleration    (Formt v", "line .* must stand in a record, which begins with a line such as"),
+    (THREE, {}, "50 acceleration pts", "50 acceleration points", "line 48 is '50 acceleration points.*must be a comment.*or a line such as"),
+    (THREE, dict(quantity="velocity"), "50 velocity pts", "50 velocty", "50 velocty.*must be a comment.*or a line such as"),
+    (at2(A / G) + at2(A / G), {}, "", "", "line .*NPTS=    50.*must not be followed by values: those of the motion have ended above it"),
+    (esm(GAL) + esm(GAL), {}, "", "", "must not be followed by values"), (esm(GAL), {}, "DURATION_S", "NDATA", "line 10 .*must not give NDATA again: line 9 has given it"),
+    (smc(GAL, kind="3 CORRECTED ACCELEROGRAM"), {}, "", "", "line 1 is '3 CORRECTED ACCELEROGRAM': must be 1 UNC"),
+    (csmip_1(A / G), {}, "at 100 pts/sec", "at 0 pts/sec", "line 8 .*must give a step, or a number of points a second, above 0"),
+    (knet([1] * 50), {}, "100Hz", "1.0.0Hz", "line 11 .*must give a number above 0"), (afad([GAL] * 3), dict(component="N-S"), ": 0.01", ": 0.0l", "line 7 .*number of seconds above 0"),
+    (esm(GAL), {}, ": 0.010000", ": 1_0", "line 8 .*must give a number of seconds above 0"), (esm(GAL), {}, f"{GAL[9]:.6f}", "1e400", "line 28 is '1e400': must hold numbers below 1.8e308"),
+    ("time (ms),a (g)\n0,1\n10,2\n20,1\n", {}, "", "", r"the column of the times is named 'time \(ms\)': must be in seconds"),
+    ("O.0,1.5\n0.1,2.5\n0.2,1\n", dict(unit="g"), "", "", "line 1 is 'O.0,1.5': must be numbers, or words that name the columns"),
+    ("t (s),x (cm),y (gal)\n0,1\n1,2\n", {}, "", "", "unit = None: must be given"), ("time,a (g)\n0,1\n1d400,2\n", {}, "", "", "line 3 is '1d400,2': must be as many numbers"),
+    ("time,a (g)\n0e400,1\n1,2\n2,1e999\n", {}, "", "", "line 4 is '2,1e999': must be as many numbers")], ids=brief)
+def test_what_is_not_understood_is_refused(path, text, options, old, new, words):
+    with pytest.raises(ValueError, match=words) as refused:
+        masonry.read_record(path(text.replace(old, new, 1)), **options)
+    assert "record.txt" in str(refused.value) and "\n" not in str(refused.value) and len(str(refused.value)) < 500
+
+
+@pytest.mark.parametrize("text, options", [
+    (at2(A / G), {}), (esm(GAL), {}), (knet(np.round(1e3 * A).astype(int)), {}), (smc(GAL), {}), (PAIR, dict(component=2)), (TWO, dict(component=2)),
+    (TWO, dict(component=1, quantity="velocity")), (THREE, {}), (THREE, dict(quantity="velocity")), (afad([GAL, 2 * GAL, 3 * GAL]), dict(component="E-W"))], ids=brief)
+def test_a_damaged_line_of_words_changes_no_reading(path, text, options):
+    """A letter of a heading that has become an x, and a line that is lost, doubled, or the last one: the same motion is read, or the file is refused."""
+    def reading(lines):
+        record = masonry.read_record(path("\n".join(lines)), **options)
+        return record.dt, record.quantity, record.samples.tolist()
+
+    lines, refused = text.split("\n"), 0
+    whole = reading(lines)
+    for at, line in enumerate(lines):
+        damaged = [lines[:at] + lines[at + 1:], lines[:at + 1] + lines[at:], lines[:at + 1]]
+        damaged += [lines[:at] + [line[:k] + "x" + line[k + 1:]] + lines[at + 1:] for k in range(at % 2, len(line), 2) if line[k].isalpha() and len(line.split()) > 1]
+        for changed in damaged:
+            try:
+                assert reading(changed) == whole, changed[at]
+            except ValueError:
+                refused += 1
+    assert refused > 50
+
+
 def test_units_that_are_said_twice(path):
     file = path("time,acceleration [gal]\n0,1\n0.01,2\n")
     assert masonry.read_record(file, unit="cm/s^2").peak == 0.02

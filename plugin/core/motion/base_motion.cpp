@@ -5,6 +5,7 @@
 #include <boost/math/constants/constants.hpp>
 #include <cmath>
 #include <limits>
+#include <sstream>
 
 namespace masonry {
 
@@ -104,6 +105,26 @@ void BaseMotion::appendPulse(double t, double jump, PulseShape shape, double dur
 	}
 	append(pulse);
 	append(after);
+}
+
+void requireWithinLimits(const BaseMotion& motion)
+{
+	const auto check = [](const char* what, double value, double largest, double time, const char* unit) {
+		if (!(std::abs(value) <= largest)) {
+			std::ostringstream name, range;
+			name << what << " of the base at " << time << " s";
+			range << "must be at most " << largest << ' ' << unit << " without its sign";
+			require(name.str(), value, false, range.str());
+		}
+	};
+	const auto& pieces = motion.pieces();
+	for (size_t i = 1; i < pieces.size(); i++) {
+		const auto& piece = pieces[i];
+		check("velocity jump", piece.velocityJump, largestJump, piece.start, "m/s");
+		check("acceleration", piece.amplitude != 0 ? piece.amplitude : piece.constant, largestAcceleration, piece.start, "m/s^2");
+		if (piece.slope != 0 && i + 1 < pieces.size())
+			check("acceleration", piece.accelerationAt(pieces[i + 1].start), largestAcceleration, pieces[i + 1].start, "m/s^2");
+	}
 }
 
 namespace motion {

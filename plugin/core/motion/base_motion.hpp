@@ -58,6 +58,12 @@ private:
 	std::vector<Piece> pieces_;
 };
 
+// Limits of what a base can do, m/s^2, m/s. Numbers beyond them are those that stand for missing values, and the powers of them in the
+// Taylor coefficients of a history overflow.
+constexpr double largestAcceleration = 1e6, largestJump = 2e6;
+// std::invalid_argument with the time unless all accelerations and velocity jumps keep within these limits.
+void requireWithinLimits(const BaseMotion&);
+
 namespace motion {
 
 // Makers. Amplitudes in m/s^2, times in s, impulses in m/s. Bad input: std::invalid_argument naming attribute, value, range.

@@ -8,7 +8,8 @@
 namespace masonry {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr int mostImpacts = 1000000;
+constexpr int mostImpacts = 1000000, mostSteps = 20000000;
+constexpr double fastest = 1e6; // rad/s, as the limits of a base
 
 namespace {
 // For root(): value and derivative, `above` is subtracted from the value.
@@ -90,6 +91,7 @@ private:
 	double peakAngle_ {0}, peakTime_ {0};
 	bool released_ {false}; // a pulse of the train, which begins a new piece of the motion
 	bool done_ {false};
+	int steps_ {0}; // under a motion
 };
 
 History HistoryRun::run(const BaseMotion& motion, const BaseMotion& vertical)
@@ -216,6 +218,9 @@ void HistoryRun::flyForced(const Shaking& shaking, double until)
 {
 	const int side = state_.side;
 	while (time_ < until) {
+		if (++steps_ > mostSteps)
+			throw std::runtime_error(
+			    "more than 20 million steps, several for each cycle of the motion: give half_cycles or an earlier t_end");
 		keepState();
 		const TaylorStep step(law_, state_, shaking, time_, std::min(until - time_, 2 / law_.p));
 		const double length = step.length();
@@ -405,7 +410,8 @@ void check(const HistoryOptions& options, bool endless)
 {
 	require("restitution", options.restitution, options.restitution >= 0 && options.restitution <= 1, "must be in [0, 1]");
 	require("initial_angle", options.initialAngle, std::abs(options.initialAngle) < std::asin(1), "must be in (-pi/2, pi/2) rad");
-	requireFinite("initial_velocity", options.initialVelocity);
+	require("initial_velocity", options.initialVelocity, std::abs(options.initialVelocity) <= fastest,
+	        "must be at most 1e6 rad/s without its sign");
 	require("t_end", options.endTime, options.endTime >= 0, "must be >= 0 s");
 	require("half_cycles", options.halfCycles, options.halfCycles >= 1, "must be >= 1");
 	const bool bounded = std::isfinite(options.endTime) || options.halfCycles < std::numeric_limits<int>::max() || options.onlyOverturning;
@@ -436,7 +442,7 @@ History simulate(const RockingBlock& block, const BaseMotion& motion, const Hist
 
 History simulate(const RockingBlock& block, const PulseTrain& train, const HistoryOptions& options, const BaseMotion& vertical)
 {
-	requireFinite("impulse", train.impulse);
+	require("impulse", train.impulse, std::abs(train.impulse) <= largestJump / 2, "must be at most 1e6 m/s without its sign");
 	if (train.pulse.shape != PulseShape::Dirac)
 		requirePositive("duration", train.pulse.duration);
 	require("half_cycles of the train", train.halfCycles, train.halfCycles >= 1 || train.halfCycles == -1,

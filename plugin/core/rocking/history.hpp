@@ -67,7 +67,8 @@ private:
 // vertical: the base's motion upwards, without velocity jumps and with an acceleration above -g (the block stays on its base).
 // std::invalid_argument: restitution outside [0, 1], angle outside (-pi/2, pi/2), anything not finite, such a vertical motion, or a run
 // without end (no endTime and no halfCycles, while the pulses never end, or C = 1).
-// std::runtime_error: more than a million impacts, or an impact while a finite pulse of a resonant train acts.
+// std::runtime_error: more than a million impacts, more than 20 million steps under a motion, or an impact while a finite pulse of a
+// resonant train acts.
 History simulate(const RockingBlock&, const BaseMotion&, const HistoryOptions&, const BaseMotion& vertical = BaseMotion());
 History simulate(const RockingBlock&, const PulseTrain&, const HistoryOptions&, const BaseMotion& vertical = BaseMotion());
 

@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <sstream>
+#include <stdexcept>
 
 namespace masonry {
 
@@ -96,6 +98,12 @@ void TaylorStep::expand(const RockingLaw& law, int side, const Acceleration& hor
 			turned[k + 1][1] = law.restoring == Restoring::Constant ? 0 : -c_[k + 1];
 		}
 	}
+	if (!std::isfinite(c_[highestOrder])) {
+		std::ostringstream text;
+		text << "the motion is too fast to be followed: the block turns at " << c_[1] << " rad/s and accelerates by " << 2 * c_[2]
+		     << " rad/s^2; sizes must be in m, frequencies in Hz";
+		throw std::invalid_argument(text.str());
+	}
 	while (!convergesAt(length_, std::pow(length_, order_ - 1)))
 		length_ *= 0.8;
 }
@@ -105,7 +113,7 @@ bool TaylorStep::convergesAt(double s, double power) const
 {
 	const double change = s * (std::abs(c_[1]) + s * (std::abs(c_[2]) + s * std::abs(c_[3])));
 	const double last = power * std::max(std::abs(c_[order_ - 1]), s * std::abs(c_[order_]));
-	return last <= std::numeric_limits<double>::epsilon() * change;
+	return last <= std::numeric_limits<double>::epsilon() * change && change < std::numeric_limits<double>::infinity();
 }
 
 // Certain where the first term of the velocity outweighs the others, or that of the acceleration. Else the roots of the velocity

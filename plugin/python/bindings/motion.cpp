@@ -5,6 +5,13 @@ namespace masonry::python {
 namespace {
 using Column = std::vector<double>;
 
+// The motion, if it is within the limits of a base.
+BaseMotion within(BaseMotion motion)
+{
+	requireWithinLimits(motion);
+	return motion;
+}
+
 Motions none()
 {
 	return {1, [](size_t) { return BaseMotion(); }, {}};
@@ -24,32 +31,32 @@ Motions pulses(const py::object& impulses, const py::object& times, bool assembl
 	const Column impulse = toVector(impulses), at = toVector(times);
 	const PulseShape form = pulseShapeFromName(shape);
 	const SingleKeeps keeps = singleKeepsFromName(singleKeeps);
-	return {impulse.size(), [=](size_t i) { return motion::pulseTrain(impulse[i], at, assembly, form, duration, keeps); }, {}};
+	return {impulse.size(), [=](size_t i) { return within(motion::pulseTrain(impulse[i], at, assembly, form, duration, keeps)); }, {}};
 }
 
 Motions rectangular(const py::object& amplitudes, const py::object& durations)
 {
 	const Column amplitude = toVector(amplitudes), duration = toVector(durations);
-	return {amplitude.size(), [=](size_t i) { return motion::rectangular(amplitude[i], duration[i]); }, {}};
+	return {amplitude.size(), [=](size_t i) { return within(motion::rectangular(amplitude[i], duration[i])); }, {}};
 }
 
 Motions halfSine(const py::object& amplitudes, const py::object& durations)
 {
 	const Column amplitude = toVector(amplitudes), duration = toVector(durations);
-	return {amplitude.size(), [=](size_t i) { return motion::halfSine(amplitude[i], duration[i]); }, {}};
+	return {amplitude.size(), [=](size_t i) { return within(motion::halfSine(amplitude[i], duration[i])); }, {}};
 }
 
 Motions sine(const py::object& amplitudes, const py::object& frequencies, const py::object& cycleCounts)
 {
 	const Column amplitude = toVector(amplitudes), frequency = toVector(frequencies), cycles = toVector(cycleCounts);
-	return {amplitude.size(), [=](size_t i) { return motion::sine(amplitude[i], frequency[i], cycles[i]); }, {}};
+	return {amplitude.size(), [=](size_t i) { return within(motion::sine(amplitude[i], frequency[i], cycles[i])); }, {}};
 }
 
 Motions record(double dt, const py::object& accelerations, const py::object& scales, const std::string& baseline)
 {
 	const Column acceleration = toVector(accelerations), scale = toVector(scales);
 	const motion::Baseline correction = motion::baselineFromName(baseline);
-	return {scale.size(), [=](size_t i) { return motion::record(dt, acceleration, scale[i], correction); }, {}};
+	return {scale.size(), [=](size_t i) { return within(motion::record(dt, acceleration, scale[i], correction)); }, {}};
 }
 
 Motions part(const Motions& motions, size_t begin, size_t end)

@@ -18,6 +18,7 @@ except ImportError as _error:
                       f"on PYTHONPATH, and use the system's Python. ({_error})") from None
 
 from . import closed_form, spectra  # noqa: E402
+from ._build import VERSION as __version__  # noqa: E402
 from ._fragility import Fragility, fragility, fragility_of_table  # noqa: E402
 from .artificial import artificial_record  # noqa: E402
 from .block import RockingBlock  # noqa: E402

@@ -9,17 +9,19 @@ from .motions import Record
 
 
 def artificial_record(seed, peak, duration=10.0, dt=0.01, frequency=2.5, damping=0.6, cutoff=0.2):
-    """A masonry.Record of stationary noise with the spectrum of Kanai and Tajimi, high-passed after Clough and Penzien, under an envelope.
+    """A masonry.Record of stationary noise with the spectrum of Kanai and Tajimi, high-passed after Clough and Penzien, under an envelope. The base ends at
+    rest where it began.
 
     seed         whole number, 0 or larger: the same seed gives the same record
     peak         largest acceleration, m/s^2, positive
     duration     s; the envelope grows with t^2 over the first fifth, stays over two fifths, and decays to 5 % at the end
     dt           s between samples, above 0 and at most 1/(8 frequency)
     frequency    of the ground, Hz, and its damping ratio (above 0): where most of the power is
-    cutoff       Hz, positive and below `frequency`: waves much slower than this are left out, so that the base stays near its place
+    cutoff       Hz, positive and below `frequency`: waves much slower than this are left out
 
     Power over frequency f before the envelope, with r = f/frequency, q = f/cutoff: (1 + 4 z^2 r^2)/((1 - r^2)^2 + 4 z^2 r^2) times
-    q^4/((1 - q^2)^2 + 4 z^2 q^2), z the damping ratio in both. The mean acceleration is taken off (baseline 'constant').
+    q^4/((1 - q^2)^2 + 4 z^2 q^2), z the damping ratio in both. A straight line in time under the same envelope is subtracted: the one that leaves the base
+    neither a velocity nor a displacement after the last sample.
     """
     if not (isinstance(seed, (int, np.integer)) and seed >= 0):
         raise ValueError(f"seed = {shown(seed)}: must be a whole number, 0 or larger")
@@ -35,10 +37,20 @@ def artificial_record(seed, peak, duration=10.0, dt=0.01, frequency=2.5, damping
     spectrum = np.fft.rfft(np.random.default_rng(int(seed)).standard_normal(count))
     samples = np.fft.irfft(spectrum * np.sqrt(power(np.fft.rfftfreq(count, dt), frequency, damping, cutoff)), count)
     share = np.linspace(0, 1, count)
-    samples = samples * np.select([share < 0.2, share < 0.6], [(share / 0.2)**2, 1.0], np.exp(math.log(0.05) * (share - 0.6) / 0.4))
-    mean = ((samples[1:] + samples[:-1]) / 2).sum() / (count - 1)  # by the trapezoidal rule, whose name differs between versions of NumPy
-    samples = samples - mean  # what the baseline would take off
-    return Record(dt, peak / np.abs(samples).max() * samples, baseline="constant", name=f"artificial, seed {seed}", unit="m/s^2")
+    envelope = np.select([share < 0.2, share < 0.6], [(share / 0.2)**2, 1.0], np.exp(math.log(0.05) * (share - 0.6) / 0.4))
+    samples, lines = samples * envelope, np.stack([envelope, envelope * share], axis=1)
+    for _ in range(2):  # the second takes off what round-off has left
+        samples = samples - lines @ np.linalg.solve(_ends(count) @ lines, _ends(count) @ samples)
+    return Record(dt, peak / np.abs(samples).max() * samples, name=f"artificial, seed {seed}", unit="m/s^2")
+
+
+def _ends(count):
+    """(2, count) weights of the samples, linear in between, in the last velocity over the step, and in the last displacement over step and duration: the integrals
+    of 1 and of the share of time that is left, each times the hat function of a sample."""
+    weights = np.stack([np.ones(count), np.linspace(1, 0, count)])
+    third = 1 / (3 * (count - 1))
+    weights[:, 0], weights[:, -1] = (0.5, 0.5 * (1 - third)), (0.5, 0.5 * third)
+    return weights
 
 
 def power(f, frequency, damping, cutoff):

@@ -12,6 +12,10 @@ from ._optional import needs
 from .motions import Motion, PulseTrain, Record, Still
 
 
+# Relative to the time at which a motion ends, how much earlier a run may end by rounding of sums of steps.
+_ROUND = 1e-9
+
+
 class History:
     """What happened to the block(s). Scalar input: 1-D arrays and scalars. Array input: the cases' shape comes first, and the
     last axis is filled up with NaN. Angles and angular velocities are signed.
@@ -20,7 +24,9 @@ class History:
     impact_velocities    angular velocity just before each impact, rad/s
     peak_angles          largest angle of each half cycle, rad; a block released from rest starts at its first peak
     peak_times           s
-    overturned           bool
+    overturned           bool; where False, it stands for as much of the motion as has been run: motion_run
+    motion_run           share of the motion of the base that has been run, 0 to 1: 1 where there is none and where nothing more will happen, 0 where it has no
+                         known end
     overturn_half_cycle  the half cycle 1, 2, ... in which it overturns; 0: it does not
     rest_time            s, since when it has been at rest; NaN: it was rocking (or had overturned) when the run ended
     end_time             s; infinite: nothing more will happen
@@ -36,6 +42,27 @@ class History:
         for name, value in result.items():
             setattr(self, name, restore(value, shape))
         self.overturned = self.overturn_half_cycle > 0
+        ends = self._motion_ends()
+        with np.errstate(invalid="ignore"):  # an infinite run of a motion without an end
+            share = np.where(np.isinf(self.end_time) | (self.end_time >= (1 - _ROUND) * ends), 1.0, self.end_time / np.where(ends > 0, ends, 1.0))
+        self.motion_run = share if shape else share.item()
+
+    def _motion_ends(self):
+        """When the motions of the base end, s: an array of the cases' shape."""
+        ends = [np.broadcast_to(motion._end(), self.shape) for motion in (self.motion, self.vertical) if motion is not None]
+        if isinstance(self.motion, PulseTrain) and self.motion.times is None and self.motion.half_cycles:
+            n = self.motion.half_cycles  # impact n is the instant of its last pulse
+            if np.shape(self.impact_times)[-1] >= n:
+                last = self.impact_times[..., n - 1]
+                ends[0] = np.where(np.isnan(last), np.inf, last + self.motion._last_pulse())
+        return np.max(ends, axis=0) if ends else np.zeros(self.shape)
+
+    def _partly(self):
+        """How much of the motion has been run, in words; '' where all of it has been, or where the block has overturned."""
+        if self.overturned or self.motion_run == 1:
+            return ""
+        end = self._motion_ends()
+        return f", after {self.end_time:.4g} " + ("s of a motion without a known end" if np.isinf(end) else f"of {end:.4g} s of the motion")
 
     def _sample(self, t):
         return [restore(table.reshape((-1,) + np.shape(t)), self.shape)
@@ -57,10 +84,13 @@ class History:
         largest = np.max(ratio, where=~np.isnan(ratio) & ~np.reshape(self.overturned, (*self.shape, 1)), initial=0)
         if self.shape:
             stand = f"{cases - falls} stand and rotate to at most {largest:.3g} of the critical angle" if falls < cases else "none stands"
+            partly = np.count_nonzero((self.motion_run < 1) & ~self.overturned)
+            stand += f", {partly} of them after only a part of the motion" if partly else ""
             return f"History({' x '.join(map(str, self.shape))} cases: {falls} overturn, {stand})"
-        done = f"overturns in half cycle {self.overturn_half_cycle}" if falls else f"stands, {len(self.impact_times)} impacts, at most {largest:.3g} of the critical angle"
+        done = f"overturns in half cycle {self.overturn_half_cycle}" if falls else \
+            f"stands, {len(self.impact_times)} impacts, at most {largest:.3g} of the critical angle{self._partly()}"
         under = "on a still base" if self.motion is None else f"under {shown(self.motion)}"
-        rest = f", at rest from {self.rest_time:.4g} s on" if np.isfinite(self.rest_time) else ""
+        rest = f", at rest from {self.rest_time:.4g} s on" if np.isfinite(self.rest_time) else "" if falls else f", still rocking at {self.end_time:.4g} s"
         return f"History(block of {2 * self.block.half_width:g} x {2 * self.block.half_height:g} m {under}: {done}{rest})"
 
     def _fall(self):
@@ -93,7 +123,7 @@ class History:
         above.plot(times, angles, color="tab:blue")
         for level in (-1, 1):
             above.axhline(level, color="0.6", linestyle="--", linewidth=0.8)
-        verdict = f"overturns at {passes:.4g} s, in half cycle {self.overturn_half_cycle}" if self.overturned else f"stands, {len(self.impact_times)} impacts"
+        verdict = f"overturns at {passes:.4g} s, in half cycle {self.overturn_half_cycle}" if self.overturned else f"stands, {len(self.impact_times)} impacts{self._partly()}"
         above.set(ylabel="angle / critical angle", title=verdict, ylim=1.1 * np.array([-1, 1]) * np.clip(np.nanmax(np.abs(angles)), 1, 1.5))
         if isinstance(self.motion, Record):
             below.plot(times, self.motion.acceleration(times), color="tab:red", linewidth=0.8)

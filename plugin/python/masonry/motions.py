@@ -1,4 +1,5 @@
-"""Base motions: along x, exact at any time. Amplitudes, impulses and durations may be arrays (one motion a case).
+"""Base motions: along x, exact at any time. Amplitudes, impulses and durations may be arrays (one motion a case). Accelerations are at most 1e6 m/s^2 and
+velocity jumps 2e6 m/s; larger ones, such as the numbers that stand for missing values in files, are refused.
 
 Every motion with a known course has .acceleration(t), .velocity(t), .displacement(t) (m/s^2, m/s, m; values right of a jump).
 """
@@ -26,6 +27,10 @@ class Motion:
         """The compiled motions, one a case of that shape (or one for all)."""
         raise NotImplementedError
 
+    def _end(self):
+        """When it ends, s: a number or an array of self.shape; infinite where that is not known."""
+        raise NotImplementedError
+
     def _values(self, t, which):
         table = self._motions(self.shape).values(np.ravel(np.asarray(t, dtype=float)))[which]
         return restore(table.reshape((math.prod(self.shape),) + np.shape(t)), self.shape)
@@ -42,6 +47,9 @@ class Motion:
 
 class Still(Motion):
     """A base that does not move."""
+
+    def _end(self):
+        return 0.0
 
     def _motions(self, shape):
         return _core.none()
@@ -90,6 +98,16 @@ class PulseTrain(Motion):
     def scaled(self, factor):
         return PulseTrain(np.multiply(self.impulse, factor), self.times, self.half_cycles, self.assembly, self.pulse_shape, self.duration, self.single_keeps)
 
+    def _last_pulse(self):
+        """Duration of the pulse that brings the base to rest, or of the last one, s."""
+        single = self.half_cycles is not None or self.assembly or self.times is not None and self.times.size == 1
+        return self.duration / 2 if single and self.single_keeps == "amplitude" else self.duration
+
+    def _end(self):
+        if self.times is None:
+            return np.inf
+        return self.times[-1] + self._last_pulse() if self.times.size else 0.0
+
     def _motions(self, shape):
         impulse, = columns(shape, self.impulse)
         form = (self.pulse_shape, float(self.duration), self.single_keeps)
@@ -125,12 +143,18 @@ class Rectangular(_Shaped):
     def __init__(self, amplitude, duration):
         super().__init__(_core.rectangular, amplitude=amplitude, duration=duration)
 
+    def _end(self):
+        return self.duration
+
 
 class HalfSine(_Shaped):
     """Acceleration amplitude sin(pi t/duration) for `duration` (s)."""
 
     def __init__(self, amplitude, duration):
         super().__init__(_core.half_sine, amplitude=amplitude, duration=duration)
+
+    def _end(self):
+        return self.duration
 
 
 class Sine(_Shaped):
@@ -139,10 +163,15 @@ class Sine(_Shaped):
     def __init__(self, amplitude, frequency, cycles=1):
         super().__init__(_core.sine, amplitude=amplitude, frequency=frequency, cycles=cycles)
 
+    def _end(self):
+        return np.divide(self.cycles, self.frequency)
+
 
 _BASELINES = "none", "constant", "linear", "high-pass"
 # m/s^2: no motion of the ground, so the unit is another.
 _FASTEST = 50
+# m/s^2, m/s or m: the limit of the accelerations of a base, and of samples that make them.
+_LARGEST = 1e6
 # Steps at the ends of a displacement or velocity in which a way to or from rest shows.
 _EDGE = 10
 
@@ -185,6 +214,9 @@ class Record(Motion):
             raise ValueError(f"{self.quantity} has the shape {samples.shape}: must be one row of samples, at least two")
         self.unit_given = unit is not None
         factor = unit_factor(unit, gravity, self.quantity) if self.unit_given else 1.0
+        for k in np.flatnonzero(np.abs(factor * samples) > _LARGEST)[:1]:
+            raise ValueError(f"{self.quantity}[{k}] = {samples[k]:g}{' ' + unit if self.unit_given else ''}: must be at most {_LARGEST:g} {QUANTITIES[self.quantity]} "
+                             "without its sign; files have such numbers for values that are missing")
         self._unscaled, self.deviation = self._accelerations(samples, factor, resolution, baseline)
         array_given("scale", scale)
         self.scale = self.amplitude = scale
@@ -241,6 +273,9 @@ class Record(Motion):
     def duration(self):
         """Time of the last sample, s."""
         return self.dt * (len(self._unscaled) - 1)
+
+    def _end(self):
+        return self.duration
 
     @property
     def final_velocity(self):
@@ -323,7 +358,10 @@ class Record(Motion):
         options[quantity] = factor * series.values
         if quantity != "acceleration":
             options["resolution"] = factor * resolution_of(series.values)  # of the digits in the file
-        result = cls(series.dt, name=series.title or str(path), unit=QUANTITIES[quantity], **options)
+        try:
+            result = cls(series.dt, name=series.title or str(path), unit=QUANTITIES[quantity], **options)
+        except ValueError as error:
+            raise ValueError(f"{path}: {error}") from None
         result.source = _records.source_of(path, series, format)
         return result
 

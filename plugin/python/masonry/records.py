@@ -24,7 +24,8 @@ def read_record(path, component=None, quantity=None, *, unit=None, dt=None, colu
     gravity      m/s^2 of the unit g: the standard one, whatever the blocks weigh (9.81 elsewhere)
 
     scale, baseline, corner, order: those of Record. The units of the other formats are those that their files state; another one, counts that only
-    the network can convert, missing values, and numbers of values that differ from the stated one are refused with the line.
+    the network can convert, missing values, numbers of values that differ from the stated one, and values below a line that is not understood are refused with
+    the line.
     """
     series, name = _records.read(path, component, quantity, unit, dt, columns)
     return Record._from_series(path, series, name, gravity, scale=scale, baseline=baseline, corner=corner, order=order)

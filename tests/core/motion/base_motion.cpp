@@ -120,4 +120,13 @@ TEST_CASE("bad motions are refused by name")
 	REQUIRE_THROWS_WITH(motion::record(0.01, {1}), containsText("1 samples"));
 	REQUIRE_THROWS_WITH(motion::record(0.01, {1, nan, 2}), containsText("acceleration[1]"));
 	REQUIRE_THROWS_WITH(motion::record(-1, {1, 2}), containsText("dt = -1"));
+	// What a base cannot do: fill values of netCDF and Fortran among the samples, and jumps beyond those of the engines in YADE.
+	for (const double fill : {1e20, 9.96920997e36, -1e38, 3.4028235e38, 1e300})
+		REQUIRE_THROWS_WITH(requireWithinLimits(motion::record(0.01, {0, 1, fill, 1})),
+		                    containsText("acceleration of the base at 0.0") && containsText("must be at most 1e+06 m/s^2"));
+	REQUIRE_THROWS_WITH(requireWithinLimits(motion::sine(2e6, 1)),
+	                    containsText("acceleration of the base at 0 s = 2000000: must be at most"));
+	REQUIRE_THROWS_WITH(requireWithinLimits(motion::pulseTrain(2.1e6, {1})), containsText("velocity jump of the base at 1 s"));
+	requireWithinLimits(motion::record(0.01, {1e6, -1e6}));
+	requireWithinLimits(motion::pulseTrain(1e6, {1, 2}));
 }

@@ -298,3 +298,38 @@ TEST_CASE("samples of a block that is released in balance or on its separatrix")
 				REQUIRE(std::isnan(history.sample(std::numeric_limits<double>::infinity()).first));
 			}
 }
+
+// An acceleration that rises to 1e6 m/s^2 in 0.01 s moves the base by 17 m in that time: 17 times the size of the largest block.
+TEST_CASE("motions at the limits of a base end at once, and what overflows is refused")
+{
+	for (const double size : {1e-3, 0.1, 1.0})
+		for (const Restoring restoring : {Restoring::Constant, Restoring::Linear, Restoring::Exact}) {
+			const RockingBlock block(0.2 * size, size);
+			auto options = with(0.9, restoring);
+			options.keepStates = true;
+			for (const double sign : {1.0, -1.0}) {
+				auto samples = std::vector<double>(60, 0.5);
+				samples[30] = sign * largestAcceleration;
+				const auto history = simulate(block, motion::record(0.01, samples), options);
+				CAPTURE(size, int(restoring), sign);
+				REQUIRE(history.overturnHalfCycle == 1);
+				REQUIRE_FALSE(std::isnan(history.sample(0.29).first)); // the acceleration has begun to rise
+				REQUIRE(std::isnan(history.sample(0.3).first));
+				REQUIRE(simulate(block, motion::pulseTrain(sign * largestJump / 2, {0.3}), options).overturnHalfCycle == 1);
+				options.halfCycles = 3;
+				REQUIRE(simulate(block, PulseTrain {sign * largestJump / 2}, options).overturnHalfCycle == 1);
+				options.halfCycles = std::numeric_limits<int>::max();
+			}
+		}
+	const RockingBlock block(0.2, 1);
+	auto fast = with(0.9);
+	for (const double velocity : {1.1e6, -1e15, 1e300}) {
+		fast.initialVelocity = velocity;
+		REQUIRE_THROWS_WITH(simulate(block, BaseMotion(), fast), containsText("initial_velocity = ") && containsText("at most 1e6 rad/s"));
+	}
+	REQUIRE_THROWS_WITH(simulate(block, PulseTrain {1.1e6}, with(0.9)), containsText("impulse = 1100000: must be at most 1e6 m/s"));
+	for (const double acceleration : {1e38, 1e160, 1e308})
+		REQUIRE_THROWS_WITH(simulate(block, motion::sine(acceleration, 1), with(0.9)), containsText("too fast to be followed"));
+	for (const double size : {1e-31, 1e-100, 1e-300})
+		REQUIRE_THROWS_WITH(simulate(RockingBlock(size, 5 * size), motion::sine(3, 1), with(0.9)), containsText("too fast to be followed"));
+}

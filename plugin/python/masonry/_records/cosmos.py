@@ -13,7 +13,8 @@ NAME = "COSMOS"
 
 _START = re.compile(r"\(Format\s+v\s*[\d.]+\s+with\s+(\d+)\s+text\s+lines?\)", re.IGNORECASE)
 _HEADER = re.compile(r"^\s*(\d+)\s+(Integer|Real)-header values follow on\s*(\d+)\s+lines?", re.IGNORECASE)
-_BLOCK = re.compile(r"^\s*(\d+)\s+(?:\w+\s+)*(\w+)\.?\s+pts,\s*approx\s*([\d.]+)\s*secs?,\s*units\s*=\s*([^,]+?)\s*(?:\(\s*(\d+)\s*\))?\s*,", re.IGNORECASE)
+_BLOCK = re.compile(r"^\s*(\d+)\s+(?:\w+\s+)*(\w+)\.?\s+pts,\s*approx\s*(\d{1,9}\.?\d*)\s*secs?,\s*units\s*=\s*([^,]+?)\s*(?:\(\s*(\d+)\s*\))?\s*,", re.IGNORECASE)
+_COMMENTS = re.compile(r"^\s*\d+\s+Comment\s+line|^\s*\|", re.IGNORECASE)
 _CHANNEL = r"^\s*Sta\s+Chan\s*(\S+?)\s*:\s*(.*?)\s*(?:\(Rcrdr|Location|$)"
 _STATION = r"^\s*Statn No:\s*(.*?)\s*$"
 _CODES = r"<SCNL>\s*([^\s.]+)\.([^\s.]+)"
@@ -30,20 +31,26 @@ def read(text):
     result, first = [], 1
     while True:
         start, begun = text.search(_START, first)
+        for number in text.unread(first, start - 1 if begun else None):
+            text.refuse(number, "stand in a record, which begins with a line such as 'Corrected acceleration (Format v01.20 with 13 text lines)'")
         if not begun:
             return result
         series, first = _record(text, start)
         result.append(series)
 
 
-def _reals(text, start, at):
-    number, found = text.search(_HEADER, start, at)
+def _headers(text, start):
+    """(real-header values, number of the line that announces the values of the motion)"""
+    last = text.search(_START, start + 1)[0] or None  # of another record
+    number, found = text.search(_HEADER, start, last)
     while found and found[2].lower() != "real":
-        number, found = text.search(_HEADER, number + 1, at)
+        number, found = text.search(_HEADER, number + 1, last)
     if not found:
-        text.refuse(at, "come after the line 'Real-header values follow'")
-    values, _ = text.values(number + 1, int(found[1]), "real-header values", column_width(text.line(number)))
-    return values
+        text.refuse(start, "be followed by a line such as '100 Real-header values follow on  20 lines, Format= (5F15.6)'")
+    reals, at = text.values(number + 1, int(found[1]), "real-header values", column_width(text.line(number)))
+    while at < len(text.lines) and (_COMMENTS.match(text.line(at)) or not text.line(at).strip()):
+        at += 1
+    return reals, at
 
 
 def _step(text, reals, at, count, seconds):
@@ -57,15 +64,16 @@ def _step(text, reals, at, count, seconds):
 
 def _record(text, start):
     """(series, number of the line after it)"""
-    at, block = text.search(_BLOCK, start)
+    reals, at = _headers(text, start)
+    block = _BLOCK.match(text.line(at))
     if not block:
-        text.refuse(start, "be followed by a line such as '12000 acceleration pts, approx 60 secs, units=cm/s^2(04)'")
+        text.refuse(at, "be a comment, which begins with |, or a line such as '12000 acceleration pts, approx 60 secs, units=cm/s^2(04),Format=(8F10.5)'")
     code, spelled = int(block[5] or 0), shortened(block[4])
     unit = spelled_unit(spelled)
     if unit is None or not block[2].lower().startswith(unit.quantity[:5]) or code and spelled_unit(_UNITS.get(code, "")) != unit:
         text.refuse(at, "give values in a unit of acceleration, velocity or displacement (2: g, 4: cm/s^2, 5: cm/s, 6: cm), "
                         "not counts, which only the network can convert")
-    dt = _step(text, _reals(text, start, at), at, int(block[1]), float(block[3]))
+    dt = _step(text, reals, at, int(block[1]), float(block[3]))
     values, after = text.values(at + 1, int(block[1]), "pts", column_width(text.line(at)))
     _, channel = text.search(_CHANNEL, start, at)
     _, station = text.search(_STATION, start, at)
@@ -73,5 +81,5 @@ def _record(text, start):
     component = shortened(channel[2]) if channel else ""
     if codes and component.lower() in ("", "other", "unknown"):
         component = codes[2]
-    number = int(channel[1]) if channel and channel[1].isdigit() else 0
+    number = int(channel[1]) if channel and channel[1].isdecimal() else 0
     return Series(values, dt, unit, spelled, component, number, shortened(station[1]) if station else "", text.line(start + 1).strip()), after

@@ -2,7 +2,7 @@
 
 import re
 
-from masonry._records.text import Series, number_of
+from masonry._records.text import Series
 from masonry._records.units import spelled_unit
 
 NAME = "ESM"
@@ -20,6 +20,8 @@ def read(text):
     first = 1
     while _KEY.match(text.line(first)):
         key, value = _KEY.match(text.line(first)).groups()
+        if key in keys and key in _NEEDED:
+            text.refuse(first, f"not give {key} again: line {at[key]} has given it")
         keys[key], at[key] = value, first
         first += 1
     for key in _NEEDED:
@@ -30,11 +32,11 @@ def read(text):
         text.refuse(at["UNITS"], "give a unit of acceleration, velocity or displacement, such as cm/s^2")
     if kind and kind.lower() != unit.quantity:
         text.refuse(at["DATA_TYPE"], f"be {unit.quantity.upper()}, whose unit the file gives")
-    try:
-        count, dt = int(keys["NDATA"]), number_of(keys["SAMPLING_INTERVAL_S"])
-    except ValueError:
-        text.refuse(at["NDATA"], f"give a whole number, and line {at['SAMPLING_INTERVAL_S']} a number of seconds")
-    values, _ = text.values(first, count, "NDATA")
+    if not re.fullmatch(r"\d{1,9}", keys["NDATA"]):
+        text.refuse(at["NDATA"], "give a whole number")
+    dt = text.number(at["SAMPLING_INTERVAL_S"], keys["SAMPLING_INTERVAL_S"], "give a number of seconds above 0")
+    values, after = text.values(first, int(keys["NDATA"]), "NDATA")
+    text.end(after)
     place = ".".join(filter(None, (keys.get("NETWORK"), keys.get("STATION_CODE"))))
     title = " ".join(filter(None, (keys.get("EVENT_NAME"), keys.get("EVENT_ID"), keys.get("EVENT_DATE_YYYYMMDD"))))
     return [Series(values, dt, unit, keys["UNITS"], keys.get("STREAM", ""), station=place, title=title)]

@@ -7,7 +7,7 @@
 
 import re
 
-from masonry._records.text import Series, number_of
+from masonry._records.text import Series
 from masonry._records.units import spelled_unit
 
 NAME = "K-NET"
@@ -34,9 +34,9 @@ def read(text):
     unit = spelled_unit(factor[2])
     if unit is None or unit.quantity != "acceleration":
         text.refuse(line, "give a unit of acceleration in brackets, such as 3920(gal)/6182761")
-    rate, divisor = number_of(said["rate"]), number_of(factor[3])
-    if not (rate > 0 and divisor > 0):
-        text.refuse(line, "have a divisor above 0, and so must the rate")
-    counts, _ = text.values(end + 1, round(rate * number_of(said["length"])), "the rate times Duration Time")
-    return [Series(counts * (number_of(factor[1]) / divisor), 1 / rate, unit, factor[2], _DIRECTIONS.get(said["direction"], said["direction"] or ""),
+    scale, divisor = (text.number(line, factor[k], "have a divisor above 0, and a factor") for k in (1, 3))
+    rate, length = (text.number(found[key][0], said[key], "give a number above 0") for key in ("rate", "length"))
+    counts, after = text.values(end + 1, round(min(rate * length, 1e9)), "the rate times Duration Time")
+    text.end(after)
+    return [Series(counts * (scale / divisor), 1 / rate, unit, factor[2], _DIRECTIONS.get(said["direction"], said["direction"] or ""),
                    station=said["station"] or "", title=said["origin"] or "")]

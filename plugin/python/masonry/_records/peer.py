@@ -6,7 +6,7 @@ SEC, in either order; older files: 4000 .0050 NPTS, DT. Exponents may be Fortran
 
 import re
 
-from masonry._records.text import NUMBER, Series, number_of, shortened
+from masonry._records.text import NUMBER, Series, shortened
 from masonry._records.units import spelled_unit
 
 NAME = "PEER"
@@ -58,7 +58,9 @@ def read(text, quantity=None):
     seconds = re.sub(r"^NPTS.*", "", points[3].upper()).strip(" ()[].,;")
     if seconds not in _SECONDS:
         text.refuse(counted, "give DT in SEC or MSEC")
-    values, _ = text.values(counted + 1, int(points[1].replace(",", "")), "NPTS")
+    step = text.number(counted, points[2], "give a DT above 0")
+    values, after = text.values(counted + 1, int(points[1].replace(",", "")), "NPTS")
+    text.end(after)
     title = text.line(2).strip()
     station, component = [part.strip() for part in title.split(",")][-2:] if "," in title else ("", "")
-    return [Series(values, _SECONDS[seconds] * number_of(points[2]), unit, spelled, component, station=station, title=title)]
+    return [Series(values, _SECONDS[seconds] * step, unit, spelled, component, station=station, title=title)]

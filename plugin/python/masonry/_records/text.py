@@ -1,5 +1,6 @@
 """A text file of a record, by its lines, and what a reader finds in it."""
 
+import math
 import re
 from dataclasses import dataclass
 
@@ -9,7 +10,7 @@ from masonry._records.units import Unit
 
 # "Stuck" negatives (1.2-3.4) are two numbers, and an exponent's sign is not a separator. Without a sign, a number cannot follow another at once: where columns
 # are full (99.123456.654321) only the width of the columns can tell.
-NUMBER = re.compile(r"(?:[-+]|(?<![\d.]))(?:\d+\.?\d*|\.\d+)(?:[eEdD][-+]?\d+)?")
+NUMBER = re.compile(r"(?:[-+]|(?<![\d.]))(?:\d+\.?\d*|\.\d+)(?:[eEdD][-+]?\d{1,4})?")
 # Lines of a header that are searched for what tells the format.
 HEADER_LINES = 200
 
@@ -91,6 +92,30 @@ class Text:
         """Raises the error that names a line of the file."""
         raise ValueError(f"{self.path}: line {number} is {quoted(self.line(number).strip())}: must {must}")
 
+    def number(self, number, text, must):
+        """The number that a part of a line spells; ValueError with the line unless it is positive and finite. must: what the line must do."""
+        if not NUMBER.fullmatch(text) or not 0 < number_of(text) < math.inf:
+            self.refuse(number, must)
+        return number_of(text)
+
+    def unread(self, first, last=None):
+        """The numbers of the lines from `first` to `last` (None: the end of the file) that rows of numbers follow: lines of words, and a row of numbers with no words
+        above it."""
+        found, above = [], 0
+        for number in range(first, 1 + (len(self.lines) if last is None else last)):
+            if _words(self.line(number)):
+                above = number
+            elif NUMBER.search(self.line(number)):
+                above = above or number
+                if above not in found[-1:]:
+                    found.append(above)
+        return found
+
+    def end(self, first):
+        """ValueError with its line where values follow from the line `first` on, which no reader understands."""
+        for number in self.unread(first):
+            self.refuse(number, "not be followed by values: those of the motion have ended above it")
+
     def values(self, first, count, name, width=0):
         """(the `count` numbers that stand from the line `first` on, the number of the line after them). ValueError with its line unless there are so many
         until the next words or the end of the file. name: how the file calls their number. width: of the columns, where the file states it."""
@@ -110,4 +135,8 @@ class Text:
             number += 1
         if len(found) != count:
             raise ValueError(f"{self.path}: lines {first} to {number - 1} hold {len(found)} values: must be {name} = {count}")
-        return np.array([number_of(text) for text in found]), number
+        values = np.array([number_of(text) for text in found])
+        if not np.isfinite(values).all():
+            number = next((k for k in range(first, number) if any(math.isinf(number_of(text)) for text in NUMBER.findall(self.line(k)))), first)
+            self.refuse(number, "hold numbers below 1.8e308")
+        return values, number

@@ -27,6 +27,8 @@ from ._grid import UNITS, Spectrum, outer
 # Samples of the response for each period of the oscillator or of a sine. Between two of them lies at most one turning point worth finding, and Newton's
 # iteration from the chord of the velocities has converged to round-off after four steps: the first error is below (2 pi/40)^2 of the interval.
 _SAMPLES, _NEWTON = 40, 4
+# Samples of one response that memory holds, a kilobyte each.
+_MOST = 10**7
 
 
 def oscillator_peak(motion, period, damping=0.05):
@@ -184,12 +186,20 @@ def _samples(record):
     return record.dt, a
 
 
+def _parts(length, shortest, oscillator, pieces=1):
+    """Parts of each piece of that length of a motion, so that each has a share of the shortest period; ValueError where these are too many."""
+    parts = max(1.0, _SAMPLES * length / shortest)
+    if not parts * pieces <= _MOST:
+        raise ValueError(f"period = {oscillator.period:g}: must be longer, or the motion shorter or slower: the response has more than {_MOST // _SAMPLES} periods")
+    return math.ceil(parts)
+
+
 def _peak_under_record(source, oscillator):
     with needs("python3-scipy", "a response spectrum"):
         from scipy.signal import lfilter
 
     dt, a = source
-    parts = max(1, math.ceil(_SAMPLES * dt / oscillator.period))
+    parts = _parts(dt, oscillator.period, oscillator, len(a))
     h = dt / parts
     if parts > 1:
         a = np.interp(np.arange((len(a) - 1) * parts + 1), np.arange(len(a)) * parts, a)
@@ -228,7 +238,7 @@ def _peak_under_pieces(pieces, oscillator):
             break
         length = end - piece.start
         shortest = min(oscillator.period, 2 * math.pi / piece.frequency if piece.frequency else math.inf)
-        parts = max(1, math.ceil(_SAMPLES * length / shortest))
+        parts = _parts(length, shortest, oscillator)
         h, first = length / parts, q
         starts = h * np.arange(parts + 1)
         path = oscillator.along(first, piece, starts)
