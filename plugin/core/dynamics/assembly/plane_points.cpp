@@ -1,5 +1,6 @@
 // Contact points in the plane: the parts of ContactSet (contact_set.hpp) that depend on the dimension.
 #include "dynamics/assembly/contact_set.hpp"
+#include "tolerances.hpp"
 #include <cmath>
 
 namespace masonry::rigid::assembly {
@@ -42,11 +43,11 @@ MASONRY_INLINE Located located(const FeatureLanes<Plane>& f, const Placed& p1, c
 	return at;
 }
 
-// Gaps. Returns how far the pairs have moved since they were looked up.
-MASONRY_INLINE Lanes measureGroup(Group<Plane>& group, FeatureGroup<Plane>& features, const Lanes* pose, unsigned char anew)
+// Gaps. Returns which pairs are to be looked up: since they were, they have moved by more than `travel`, or a vertex has left its face.
+MASONRY_INLINE Mask measureGroup(Group<Plane>& group, FeatureGroup<Plane>& features, const Lanes* pose, double travel, unsigned char anew)
 {
 	const Placed p1 = placed(pose, group.body1), p2 = placed(pose, group.body2);
-	Lanes moved = all(0);
+	Mask stale {};
 	for (int k = 0; k < lanePoints<Plane>; ++k) {
 		FeatureLanes<Plane>& f = features.point[k];
 		const Located at = located(f, p1, p2);
@@ -54,10 +55,11 @@ MASONRY_INLINE Lanes measureGroup(Group<Plane>& group, FeatureGroup<Plane>& feat
 			f.foundGap = select(maskOf(anew), at.gap, f.foundGap);
 			f.foundShift = select(maskOf(anew), at.shift, f.foundShift);
 		}
-		moved = larger(moved, size(at.gap - f.foundGap) + size(at.shift - f.foundShift));
+		stale |= size(at.gap - f.foundGap) + size(at.shift - f.foundShift) > travel;
+		stale |= (size(at.shift) > f.faceEnd) & (size(f.foundShift) <= f.faceEnd);
 		group.point[k].gap = select(f.present, at.gap, all(farAway));
 	}
-	return moved;
+	return stale;
 }
 
 // Normals, arms and masses.
@@ -94,7 +96,7 @@ MASONRY_LANES void measureGroups(Group<Plane>* groups, FeatureGroup<Plane>* feat
                                  double travel, bool remember)
 {
 	for (size_t g = 0; g < count; ++g)
-		stale[g] |= bitsOf(measureGroup(groups[g], features[g], pose, remember ? stale[g] : 0) > travel);
+		stale[g] |= bitsOf(measureGroup(groups[g], features[g], pose, travel, remember ? stale[g] : 0));
 }
 
 MASONRY_LANES void frameGroups(Group<Plane>* groups, const FeatureGroup<Plane>* features, size_t count, const Lanes* pose,
@@ -165,6 +167,7 @@ void ContactSet<Plane>::takePoint(const RigidSystem<Plane>& s, int c, int k)
 	f.normalX[lane] = axis == 0 ? (feature.face % 2 ? 1 : -1) : 0;
 	f.normalY[lane] = axis == 1 ? (feature.face % 2 ? 1 : -1) : 0;
 	f.faceDistance[lane] = faceHalf[axis];
+	f.faceEnd[lane] = faceHalf[1 - axis] + tolerance::assembly::leftFace * std::min(vertexHalf.minCoeff(), faceHalf.minCoeff());
 }
 
 template <>

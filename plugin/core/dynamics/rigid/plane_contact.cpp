@@ -134,7 +134,10 @@ struct End {
 };
 
 // What meets at one end (-1 or +1 along the tangent) of the overlap: the incident vertex where it lies over the reference face,
-// else the reference face's own vertex.
+// else the reference face's own vertex. If both are within the slack of each other, the one that was there stays, and no farther. When a
+// block with the spin w lifts by d along an upright joint, its own vertex parts from the other block at the rate w d, and the other
+// block's vertex, which then lies below its face, would close at that rate. With friction such a joint carries any force that holds the
+// block, so the wrong vertex jams it.
 End endOfOverlap(const FacePair& pair, double end, const PlaneMemory& memory)
 {
 	const double corner = end * signOf(pair.span), inside = pair.referenceEnd() - end * (pair.middle + corner * pair.span);
@@ -143,10 +146,9 @@ End endOfOverlap(const FacePair& pair, double end, const PlaneMemory& memory)
 	const PlaneFeature ofReference {reference, vertexNumber(pair.face.axis, pair.face.sign, end * pair.direction), pair.incidentFace()};
 	const auto held = [&memory](const PlaneFeature& feature) { return feature == memory.features[0] || feature == memory.features[1]; };
 	const auto takesIncident = [&] {
-		const double reach = limits::vertexReach * pair.length;
-		if (std::abs(inside) > reach)
+		if (std::abs(inside) > limits::slack * pair.length)
 			return inside > 0;
-		return held(ofIncident) || (!held(ofReference) && inside >= -limits::slack * pair.length);
+		return held(ofIncident) || !held(ofReference);
 	};
 	if (takesIncident())
 		return {ofIncident, pair.height + corner * pair.rise, pair.middle + corner * pair.span};
@@ -242,6 +244,8 @@ bool Plane::findPoints(const Vector& half1, const Pose& pose1, const Vector& hal
 	chooseIncident(pair, before);
 	const bool beyondFace = !pair.overlaps();
 	if (beyondFace) {
+		if (std::abs(pair.normalAlong) < tolerance::rigid::leans) // nearly parallel faces that only meet corner beside corner
+			return false;
 		pair.takeIncident(1 - pair.incidentAxis);
 		if (!pair.overlaps())
 			return false;

@@ -206,6 +206,36 @@ TEST_CASE("blocks that meet corner to corner do not touch")
 			CHECK_FALSE(find({0.5, 0.25}, at(0, 0), {0.5, 0.25}, at(1 + x, 0.5 + y)).near);
 }
 
+// One that leans over the other by a small angle does not stand on its corner either.
+TEST_CASE("blocks that lean by a little do not touch corner to corner")
+{
+	for (double tilt : {-5e-4, 5e-4})
+		for (double x : {-1e-9, 0., 1e-9}) {
+			const double side = tilt > 0 ? 1 : -1;
+			const Vector2 arm = at(0, 0, tilt).rotate(Vector2(-side * 0.5, -0.25)); // to the lower corner
+			CHECK_FALSE(find({0.5, 0.25}, at(0, 0), {0.5, 0.25}, at(side * 0.5 + x - arm.x(), 0.25 - arm.y() - 1e-9, tilt)).near);
+		}
+}
+
+// Each end of the overlap is the vertex that lies over the other block's face, whichever was there before: the other vertex lies beyond
+// the end of a face whose normal is not that of the contact there. 1e-6 of a block is far less than anything to be seen.
+TEST_CASE("the ends of a joint are the vertices over the other face, as soon as one block slides along the other")
+{
+	const Vector2 half(0.5, 0.25);
+	constexpr double lift = 1e-6, turn = 1e-6;
+	for (const double sign : {1., -1.}) {
+		PlaneMemory memory;
+		REQUIRE(find(half, at(0, 0), half, at(1, 0), 0.01, memory).size == 2);
+		const Found found = find(half, at(0, 0), half, at(1, sign * lift, turn), 0.01, memory);
+		REQUIRE(found.size == 2);
+		for (int i = 0; i < 2; ++i) {
+			const bool isUpper = found.frames[i].position.y() > 0;
+			CHECK(found.features[i].vertexBody == (isUpper == (sign > 0) ? 1 : 2));
+			CHECK(std::abs(found.frames[i].axes(0, 1)) == Approx(found.features[i].vertexBody == 1 ? turn : 0).margin(1e-12));
+		}
+	}
+}
+
 TEST_CASE("a corner that stands past the middle of its turn, or at the very end of a face, is a point")
 {
 	const Vector2 base(1, 0.5), block(0.5, 0.5);
