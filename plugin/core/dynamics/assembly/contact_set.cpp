@@ -379,7 +379,7 @@ void ContactSet<K>::addJammed(std::vector<int>& bodies) const
 	constexpr double nearly = 0.9; // as in isAtLimit
 	for (const auto& [g, i] : onBase)
 		for (int k = 0; k < groups[g].count; ++k)
-			if (groups[g].point[k].pn[i] >= nearly * groups[g].most[i])
+			if (const double normal = groups[g].point[k].pn[i]; normal > 0 && normal >= nearly * groups[g].most[i])
 				bodies.insert(bodies.end(), {groups[g].body1[i], groups[g].body2[i]});
 }
 

@@ -27,7 +27,15 @@ template <class K>
 bool isAtLimit(const ContactRows<K>& row)
 {
 	constexpr double nearly = 0.9; // of two jaws one holds what the other presses, but for the inertia of the blocks between them
-	return row.impulse[0] >= nearly * row.most;
+	return row.impulse[0] > 0 && row.impulse[0] >= nearly * row.most;
+}
+
+// Whether some point presses so much more than it may that its impulse only grows while a solution is sought.
+template <class K>
+bool pressAbsurdly(const ContactState<K>& s)
+{
+	constexpr double absurd = 1e3;
+	return std::any_of(s.rows, s.rows + s.nPoints, [](const ContactRows<K>& row) { return row.impulse[0] > absurd * row.most; });
 }
 
 // Impulses with limits, from those given, in the place of those of the state, which miss the laws without limits by report.residual. False:
@@ -36,9 +44,15 @@ template <class K>
 bool solveLimited(ContactState<K>& s, const std::vector<typename ContactRows<K>::Rows>& given, double tolerance, int sweeps,
                   SolveReport& report)
 {
-	const bool areTooLarge = std::any_of(s.rows, s.rows + s.nPoints, [](const ContactRows<K>& row) { return row.impulse[0] > row.most; });
+	double share = 1; // of the impulses that the search has ended with: they grow in proportion, and balance each other but for the weights
 	for (int i = 0; i < s.nPoints; ++i)
-		s.rows[i].impulse = projectLimited(given[i], s.rows[i]);
+		if (s.rows[i].impulse[0] > s.rows[i].most)
+			share = std::min(share, s.rows[i].most / s.rows[i].impulse[0]);
+	const bool areTooLarge = share < 1;
+	for (int i = 0; i < s.nPoints; ++i) {
+		const typename ContactRows<K>::Rows start = areTooLarge ? given[i] + share * s.rows[i].impulse : given[i];
+		s.rows[i].impulse = projectLimited(start, s.rows[i]);
+	}
 	s.applyImpulses();
 	double worst = std::numeric_limits<double>::infinity();
 	for (int k = 0; k < sweeps && worst > tolerance; ++k) {

@@ -46,6 +46,8 @@ struct ContactSolver<K>::Workspace {
 				return s.bestResidual;
 			if (gaussSeidel(s, tolerance, lastSweeps * round / shares, true, report) <= tolerance)
 				return s.residual();
+			if (!given.empty() && pressAbsurdly(s)) // without limits there is no solution
+				break;
 		}
 		s.applyImpulses();
 		s.keepBest(s.residual());
@@ -60,6 +62,22 @@ struct ContactSolver<K>::Workspace {
 		if (std::any_of(s.rows, s.rows + s.nPoints, isLimited))
 			for (int i = 0; i < s.nPoints; ++i)
 				given.push_back(s.rows[i].impulse);
+	}
+
+	// Whether a jam goes on: the impulses given are at their limits, do not lead to a solution without, and stay there.
+	bool staysJammed(int sweeps, double tolerance, SolveReport& report)
+	{
+		if (given.empty() || std::none_of(s.rows, s.rows + s.nPoints, isAtLimit<K>))
+			return false;
+		s.applyImpulses();
+		if (startsClose(tolerance, report))
+			return false;
+		report.residual = std::numeric_limits<double>::infinity();
+		if (solveLimited(s, given, tolerance, sweeps, report))
+			return true;
+		for (int i = 0; i < s.nPoints; ++i)
+			s.rows[i].impulse = given[i];
+		return false;
 	}
 
 	// Whether impulses are better with their limits: those of a jam. Otherwise they stay.
@@ -137,7 +155,13 @@ SolveReport ContactSolver<K>::solve(double tolerance, double enough)
 	Workspace& w = *workspace;
 	w.s.begin(*this);
 	w.keepGiven();
-	SolveReport report = w.find(*this, tolerance, enough);
+	SolveReport report;
+	if (w.staysJammed(lastSweeps, tolerance, report)) {
+		report.converged = false;
+		w.s.addNoEnergy();
+		return report;
+	}
+	report = w.find(*this, tolerance, enough);
 	report.converged = report.residual <= std::max(tolerance, enough);
 	if (report.converged) {
 		w.s.letPartingGo(report.residual);

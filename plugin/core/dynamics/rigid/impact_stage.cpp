@@ -233,7 +233,7 @@ void ImpactStage<K>::findJammed(const RockingImpactResult& result)
 	constexpr double nearly = 0.9; // as in isAtLimit
 	jammed.clear();
 	for (const ImpulsePoint& point : impact.points)
-		if (result.jammed && point.impulse.dot(point.normal) >= nearly * point.most)
+		if (const double normal = point.impulse.dot(point.normal); result.jammed && normal > 0 && normal >= nearly * point.most)
 			jammed.insert(jammed.end(), {point.body1, point.body2});
 }
 
