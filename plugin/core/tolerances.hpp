@@ -91,6 +91,9 @@ constexpr double partTurn = 0.25, partWay = 1, mostParts = 1000;
 // Energy that a step may make or lose: share of what moves and of what acts in it, and of what lifts all blocks by the smallest half size.
 // Smaller: sound steps are told of; larger: wrong ones are not.
 constexpr double madeShare = 0.05, madeLift = 1e-4;
+// Weights of all blocks of a structure with which a body of prescribed motion presses where no motion obeys the laws. Larger: it takes more
+// energy to go into a block that it jams; smaller: it goes into blocks that it could still push.
+constexpr double mostWeights = 10;
 // Share of the step within which two instants are one.
 constexpr double instant = 1e-9;
 } // namespace rigid

@@ -135,7 +135,7 @@ void MoreauJeanIntegrator::leaveScene()
 	along = Vector3r::Zero();
 	forgetImpacts(*this);
 	forget(frictDissip, impactDissip, baseWork, worstResidual, substeps, events, unlocalised, sweeps, factorisations, stillSteps,
-	       movingSteps, madeEnergy, lostEnergy, turnedOver, toldMade, toldLost, failures, firstFailure, warnedOf);
+	       movingSteps, madeEnergy, lostEnergy, turnedOver, lift, toldMade, toldLost, failures, firstFailure, warnedOf);
 }
 
 vector<Real> MoreauJeanIntegrator::remembered()
@@ -261,18 +261,38 @@ string MoreauJeanIntegrator::addErrors()
 	turnedOver = std::max(turnedOver, stepErrors.kinetic + frictDissip + impactDissip);
 	madeEnergy += stepErrors.made;
 	lostEnergy += stepErrors.lost;
-	const Real most = masonry::mostUnexplained(turnedOver, stepErrors.lift);
+	lift = std::max(lift, stepErrors.lift); // while gravity is switched off, errors are no larger than with it
+	const Real most = masonry::mostUnexplained(turnedOver, lift);
 	string text;
 	const auto look = [&](Real energy, const char* what, bool& told) {
 		if (told || !(energy > most))
 			return;
 		told = true;
-		text += sentence("the energy that has ", what, " since the start comes to ", energy, " J, ", 100 * energy / turnedOver,
-		                 " % of what the scene has turned over: do not trust what follows. ");
+		const string share = turnedOver > 0 ? sentence(", ", 100 * energy / turnedOver, " % of what the scene has turned over") : "";
+		text += sentence("the energy that has ", what, " since the start comes to ", energy, " J", share, ": do not trust what follows. ");
 	};
 	look(madeEnergy, "come from nothing", toldMade);
 	look(lostEnergy, "vanished", toldLost);
 	return text;
+}
+
+/// A sentence where no motion obeys the contact laws, else nothing.
+string MoreauJeanIntegrator::jam(const masonry::rigid::StepReport& report) const
+{
+	if (report.jammed.empty())
+		return "";
+	const auto listed = [](const vector<int>& ids) {
+		constexpr size_t mostNamed = 10;
+		std::ostringstream text;
+		for (size_t k = 0; k < std::min(mostNamed, ids.size()); ++k)
+			text << (k ? ", " : "") << ids[k];
+		text << (ids.size() > mostNamed ? ", ..." : "");
+		return text.str();
+	};
+	const auto [blocks, prescribed] = sceneOf(memory).blocksAndPrescribed(report.jammed);
+	return sentence("bodies with prescribed motion (", listed(prescribed), ") press blocks (", listed(blocks),
+	                ") from two sides, or against others, so that no motion obeys the contact laws: they go into the blocks. Make room between "
+	                "these bodies, or let one of them give way. ");
 }
 
 void MoreauJeanIntegrator::count(const masonry::rigid::StepReport& report)
@@ -288,17 +308,19 @@ void MoreauJeanIntegrator::count(const masonry::rigid::StepReport& report)
 		    sentence("The simulation has diverged in the step from t = ", scene->time, " s: positions or velocities are no longer finite.",
 		             method == "localised" ? " Structures of more than some twenty blocks are for method='wall'." : ""));
 	const string sums = addErrors();
+	const string jammed = jam(report);
 	const bool crowded = report.unlocalised > 0;
-	if (report.converged && !crowded && sums.empty() && report.created == 0 && !(report.deepest > 0) && !(report.turn > 0))
+	if (report.converged && jammed.empty() && !crowded && sums.empty() && report.created == 0 && !(report.deepest > 0) && !(report.turn > 0))
 		return;
 
 	const Real ofStep = gravity.norm() * scene->dt; // the speed that gravity gives
 	// A residual this small moves nothing that anybody could measure: it is counted, without a word.
-	const bool matters = crowded || !sums.empty() || report.created != 0 || report.deepest > 0 || report.turn > 0 ||
+	const bool matters = !jammed.empty() || crowded || !sums.empty() || report.created != 0 || report.deepest > 0 || report.turn > 0 ||
 	                     !(report.residual <= negligible * ofStep);
 	std::ostringstream text;
 	text << "In the step from t = " << scene->time << " s ";
-	if (!report.converged)
+	text << jammed;
+	if (!report.converged && jammed.empty())
 		text << "the contact laws are missed: residual " << report.residual << " m/s (gravity gives " << ofStep << " m/s in a step). ";
 	if (crowded)
 		text << report.unlocalised << " points closed after mostEvents = " << mostEvents << " events, plastically at its end. ";

@@ -72,18 +72,19 @@ public:
 		((Real, frictDissip, 0, Attr::readonly, "Energy dissipated by friction so far [J]."))
 		((Real, impactDissip, 0, Attr::readonly, "Energy dissipated by impacts so far [J]. With method='wall' it is the remainder of the energy balance and includes numerical losses."))
 		((Real, baseWork, 0, Attr::readonly, "Work of the moved base on the blocks so far [J]."))
-		((Real, madeEnergy, 0, Attr::readonly, "method='localised': energy that integration errors have added so far [J]; lost energy is not subtracted."))
-		((Real, lostEnergy, 0, Attr::readonly, "method='localised': energy that integration errors have removed so far [J]; friction and impacts are not part of it."))
-		((Real, turnedOver, 0, Attr::readonly, "method='localised': largest value so far of kinetic energy plus all dissipated energy [J]."))
+		((Real, madeEnergy, 0, Attr::readonly, "Energy that integration errors have added so far [J]; lost energy is not subtracted."))
+		((Real, lostEnergy, 0, Attr::readonly, "Energy that integration errors have removed so far [J]; friction and impacts are not part of it. In the walls of method='wall' it is part of impactDissip and not known apart."))
+		((Real, turnedOver, 0, Attr::readonly, "Largest value so far of kinetic energy plus all dissipated energy [J]."))
 		((Real, worstResidual, 0, Attr::readonly, "Largest residual of a step so far [m/s]."))
 		((long, substeps, 0, Attr::readonly, "Number of parts into which impacts and stops of sliding have divided the steps of localised structures so far; a step without any counts as one."))
 		((long, events, 0, Attr::readonly, "Number of impacts and stops of sliding that were found inside steps so far."))
 		((long, unlocalised, 0, Attr::readonly, "Number of points so far that closed at the end of a step because mostEvents was reached."))
 		((long, sweeps, 0, Attr::readonly, "Number of sweeps of the contact solver so far; with method='wall', of its iterations."))
 		((long, factorisations, 0, Attr::readonly, "Number of factorisations of the contact solver so far. With method='wall' one is kept for many steps."))
-		((long, failures, 0, Attr::readonly, "Number of steps so far that cannot be trusted: they missed the tolerance, or the laws of an impact or pulse; had more events than mostEvents; added or removed more energy than a sound step; or, in the walls of method='wall', left blocks deep in each other or turned a block by more than 0.25 rad. A step of walls that ends above its tolerance is not counted: see velocityResidual. One failure each is added when madeEnergy or lostEnergy reaches a twentieth of turnedOver."))
+		((long, failures, 0, Attr::readonly, "Number of steps so far that cannot be trusted: they missed the tolerance, or the laws of an impact or pulse; had no solution because bodies with prescribed motion press blocks from two sides; had more events than mostEvents; added or removed more energy than a sound step; or, in the walls of method='wall', left blocks deep in each other or turned a block by more than 0.25 rad. A step of walls that ends above its tolerance is not counted: see velocityResidual. One failure each is added when madeEnergy or lostEnergy reaches a twentieth of turnedOver."))
 		((string, firstFailure, "", Attr::readonly, "Description of the first failure: time, blocks and residual. Steps whose residual is below 1e-6 of the speed that gravity gives in a step are counted but not described."))
 		((bool, toldMade, false, Attr::hidden, ""))
+		((Real, lift, 0, Attr::hidden, "Energy that lifts all blocks by the smallest half size, the largest so far [J]."))
 		((bool, toldLost, false, Attr::hidden, ""))
 		((RigidMemory, memory, , Attr::hidden, "")),
 		/* ctor */,
@@ -110,6 +111,7 @@ private:
 	bool outdated() const;
 	void beginMotions();
 	string addErrors();
+	string jam(const masonry::rigid::StepReport&) const;
 	void leaveScene();
 	/// What the run has; before the first step, what that would choose. Throws std::invalid_argument where `model` does not fit the scene.
 	Choice chosen() const;

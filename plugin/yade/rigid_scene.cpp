@@ -2,6 +2,7 @@
 
 #include "impact_lists.hpp"
 #include <algorithm>
+#include <set>
 
 namespace yade {
 
@@ -71,7 +72,7 @@ masonry::rigid::StepReport RigidScene<K>::step()
 	lawsChanged = false;
 	byWalls = integrator.isWall();
 	const auto report = byWalls ? advanceWall() : islands.advance(system, scene.dt);
-	integrator.stepErrors = byWalls ? masonry::StepErrors() : islands.lastErrors();
+	integrator.stepErrors = byWalls ? scheduler->lastErrors() : islands.lastErrors();
 	writeStates();
 	if (++unshown >= mostUnshown || integrator.isWatched())
 		writeContacts();
@@ -297,6 +298,15 @@ vector<int> RigidScene<K>::touching()
 	std::sort(result.begin(), result.end());
 	result.erase(std::unique(result.begin(), result.end()), result.end());
 	return result;
+}
+
+template <class K>
+std::pair<vector<int>, vector<int>> RigidScene<K>::blocksAndPrescribed(const vector<int>& bodies) const
+{
+	std::set<int> blocks, prescribed;
+	for (const int b : bodies)
+		(system.bodies[b].prescribed ? prescribed : blocks).insert(kept.ids[b]);
+	return {{blocks.begin(), blocks.end()}, {prescribed.begin(), prescribed.end()}};
 }
 
 template <class K>

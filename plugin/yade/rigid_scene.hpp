@@ -55,6 +55,8 @@ public:
 	/// O.interactions as they are after the last step: they are left behind while nobody looks.
 	virtual void writeContacts() = 0;
 	virtual vector<int> touching() = 0;
+	/// Ids of these bodies of the core, each once, and those with prescribed motion apart.
+	virtual std::pair<vector<int>, vector<int>> blocksAndPrescribed(const vector<int>& bodies) const = 0;
 	virtual void setInstant(Real) = 0;
 	/// Takes the interactions of erased bodies out of O.interactions.
 	virtual void dropErased() = 0;
@@ -94,6 +96,7 @@ public:
 	masonry::rigid::StepReport step() override;
 	void writeContacts() override;
 	vector<int> touching() override;
+	std::pair<vector<int>, vector<int>> blocksAndPrescribed(const vector<int>& bodies) const override;
 	void setInstant(Real instant) override;
 	void dropErased() override { contacts.dropErased(); }
 

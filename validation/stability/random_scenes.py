@@ -1,5 +1,6 @@
-"""Random scenes, one seed each, judged by invariants alone; appends one JSON line a scene. Run by `run --long`. STABILITY_MODEL=compliant (or another
-name of measures.MODELS): all seeds with that model."""
+"""Random scenes, one seed each, judged by invariants alone; appends one JSON line a scene. Run by `run --long`: of every ten scenes that are thrown one
+more is pressed by bodies with prescribed motion. STABILITY_MODEL=compliant (or another name of measures.MODELS): all seeds with that model.
+STABILITY_KIND=pressed (or thrown): these scenes alone."""
 
 import json
 import math
@@ -11,7 +12,7 @@ import warnings
 from boxes import depth, layout, near_pairs, separations
 from masonry import dem
 from measures import MODELS, MOST_DEPTH, MOST_GAIN, OTHER_DEPTH, Energies, engine, quiet_engines
-from yade import O, Quaternion, Vector3
+from yade import O, Quaternion, Vector3, utils
 
 import numpy as np
 
@@ -25,6 +26,9 @@ CONE = {"wall": 1e-2, "wall in space": 1e-2}
 OTHER_CONE = 1e-6
 # Energy that joints may make, or lose, though nothing accounts for it, relative to what is turned over.
 MOST_OFF = 2e-2
+# Energy that pressing bodies may bring in, relative to ten weights of all blocks at each of up to eight points, all along their way; in walls besides
+# to what gives all blocks their largest speed in a step.
+MOST_WORK = 1
 NAMES = (os.environ["STABILITY_MODEL"],) if "STABILITY_MODEL" in os.environ else tuple(MODELS)
 
 
@@ -61,6 +65,54 @@ def build(seed):
     motion = dem.PulseTrainEngine(ids=[base], impulse=r.uniform(0.1, 1), times=[0.05, 0.15]) if r.random() < 0.3 else None
     O.engines = quiet_engines(motion, **MODELS[model])
     return model
+
+
+def pressed(seed):
+    """Two to six boxes, stacked, in a row or (a fifth of the seeds) a wall of more than twenty, and two boxes with prescribed motion that press them: jaws
+    that move together or close, a ram against a fixed body, a weight from above."""
+    r = random.Random(-1 - seed)
+    model = NAMES[seed % len(NAMES)]
+    O.reset()
+    plane = model in ("planar", "wall")
+    material = dem.BlockMat(density=10 ** r.uniform(2.5, 4), frictionAngle=math.atan(r.choice((0.1, 0.3, 0.7, 1.2, r.uniform(0, 1.5)))))
+    base = dem.base((20, 20, 0.4), material)
+    size = [10 ** r.uniform(-1, 0) for _ in range(3)]
+    built = r.choice(("stack", "row", "stack", "row", "wall"))
+    if built == "wall" and model in ("wall", "wall in space"):
+        ids = dem.wall(courses=5, per_course=5, size=(size[0], size[1], size[0] * r.uniform(0.3, 1)), material=material, on=base)
+    elif built == "row":
+        count = r.randint(2, 6)
+        ids = [dem.block(size, material, center=((k - (count - 1) / 2) * size[0] * 1.001, 0, size[2] / 2)) for k in range(count)]
+    else:
+        ids = dem.stack(r.randint(2, 6), size, material, on=base)
+    places, halves = [O.bodies[i].state.pos for i in ids], [O.bodies[i].shape.extents for i in ids]
+    reach = max(p[0] + h[0] for p, h in zip(places, halves))
+    top = max(p[2] + h[2] for p, h in zip(places, halves))
+    small = min(min(h) for h in halves)
+    half = Vector3(r.uniform(0.3, 1) * small, r.uniform(0.5, 1.5) * size[1] / 2, r.uniform(0.2, 1) * small)
+    gap, way = 10 ** r.uniform(-4, -1.5) * small, r.uniform(0.02, 0.3) * small
+    beside = 0 if plane else r.uniform(-0.2, 0.2) * size[1]
+    def add(x, z):
+        return O.bodies.append(utils.box((x, beside, z), tuple(half), material=material, fixed=True))
+    kind = r.choice(("together", "close", "ram", "above"))
+    heights = [r.uniform(half[2], top - 0.1 * half[2]) for _ in range(2)] if r.random() < 0.5 else [r.uniform(half[2], top)] * 2
+    if kind == "above":
+        jaws = [add(r.uniform(-reach, reach), top + gap + half[2])]
+    else:
+        jaws = [add(side * (reach + gap + half[0]), height) for side, height in zip((-1, 1), heights)]
+    beat = r.choice((1, 2, 4))
+    times = np.arange(0, 1.5 * SECONDS, 0.005)
+    curve = (gap + way) * np.sin(np.pi * beat * times / SECONDS / 2) ** 3
+    axis = (0, 0, 1) if kind == "above" else (1, 0, 0)
+    def moved(ids, sign):
+        return dem.RecordMotionEngine(ids=ids, displacement=(sign * curve).tolist(), interval=0.005, direction=axis)
+    motion = {"together": lambda: moved(jaws, 1), "close": lambda: [moved(jaws[:1], 1), moved(jaws[1:], -1)], "ram": lambda: moved(jaws[:1], 1),
+              "above": lambda: moved(jaws, -1)}[kind]()
+    O.engines = quiet_engines(motion, **MODELS[model])
+    return model
+
+
+KINDS = {"thrown": build, "pressed": pressed}
 
 
 class Flight:
@@ -121,8 +173,18 @@ def beyond_cone(compliant):
     return worst / largest if largest > 0 else 0.0
 
 
-def run(seed):
-    row = {"seed": seed, "gain": math.nan, "depth": math.nan, "flight": math.nan, "cone": 0.0, "off": 0.0, "bits": True, "said": ""}
+def most_work():
+    """J, of the pressing bodies; see MOST_WORK."""
+    mass = sum(b.state.mass for b in O.bodies if b.dynamic)
+    records = [e for e in [*O.engines, *getattr(engine(), "motions", [])] if isinstance(e, dem.RecordMotionEngine)]
+    way = sum(len(e.ids) * np.abs(np.diff(e.displacement)).sum() for e in records)
+    speed = max(np.abs(np.diff(e.displacement)).max() / e.interval for e in records)
+    return 8 * mass * way * (10 * 9.81 + (speed / O.dt if getattr(engine(), "method", "") == "wall" else 0))
+
+
+def run(seed, kind):
+    build = KINDS[kind]
+    row = {"kind": kind, "seed": seed, "gain": math.nan, "depth": math.nan, "flight": math.nan, "cone": 0.0, "off": 0.0, "work": 0.0, "bits": True, "said": ""}
     begin = time.process_time()
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
@@ -148,6 +210,8 @@ def run(seed):
             if compliant:
                 e = engine()
                 row["off"] = max(e.madeEnergy, e.lostEnergy) / max(e.turnedOver, energies.floor)
+            if kind == "pressed":
+                row["work"] = dem.energy()["baseWork"] / most_work()
             if saves:
                 end = [tuple(b.state.pos) for b in O.bodies]
                 build(seed)
@@ -163,7 +227,7 @@ def run(seed):
     row["cpu"] = time.process_time() - begin
     most = MOST_DEPTH.get(row.get("model"), OTHER_DEPTH)
     row["broken"] = [name for name, bad in (("energy", not row["gain"] <= MOST_GAIN), ("depth", not row["depth"] <= most),
-                                            ("flight", not row["flight"] <= FLIGHT), ("cone", not row["cone"] <= CONE.get(row.get("model"), OTHER_CONE)), ("off", not row["off"] <= MOST_OFF),
+                                            ("flight", not row["flight"] <= FLIGHT), ("cone", not row["cone"] <= CONE.get(row.get("model"), OTHER_CONE)), ("off", not row["off"] <= MOST_OFF), ("work", not row["work"] <= MOST_WORK),
                                             ("bits", not row["bits"])) if bad]
     return row
 
@@ -172,15 +236,17 @@ def main(path, scenes, part, parts):
     done = set()
     if os.path.exists(path):
         with open(path) as file:
-            done = {json.loads(line)["seed"] for line in file}
-    for seed in range(part, scenes, parts):
-        if seed in done:
+            done = {(row.get("kind", "thrown"), row["seed"]) for row in map(json.loads, file)}
+    kinds = [os.environ["STABILITY_KIND"]] if "STABILITY_KIND" in os.environ else list(KINDS)
+    counts = {kind: scenes // 10 if kind == "pressed" and len(kinds) > 1 else scenes for kind in kinds}
+    for kind, seed in ((kind, seed) for kind in kinds for seed in range(part, counts[kind], parts)):
+        if (kind, seed) in done:
             continue
-        row = run(seed)
+        row = run(seed, kind)
         with open(path, "a") as file:
             file.write(json.dumps(row) + "\n")
         if row["broken"]:
-            print(f"seed {seed}, {row.get('model')}: {', '.join(row['broken'])}: gain {row['gain']:.1e}, depth {row['depth']:.1e}, flight {row['flight']:.1e}, off {row['off']:.1e} {row['said'][:80] or 'SILENT'}", flush=True)
+            print(f"seed {seed}, {kind}, {row.get('model')}: {', '.join(row['broken'])}: gain {row['gain']:.1e}, depth {row['depth']:.1e}, flight {row['flight']:.1e}, off {row['off']:.1e}, work {row['work']:.1e} {row['said'][:80] or 'SILENT'}", flush=True)
 
 
 main(os.environ["STABILITY_ROWS"], int(os.environ["STABILITY_SCENES"]), *map(int, os.environ.get("STABILITY_PART", "0/1").split("/")))

@@ -5,11 +5,11 @@ import sys
 
 path, scenes = sys.argv[1], int(sys.argv[2])
 with open(path) as file:
-    rows = [r for r in map(json.loads, file) if r["seed"] < scenes]
-kinds = ("energy", "depth", "flight", "cone", "off", "bits")
-print(f"\nSeeds 0 to {scenes - 1}.\n\n| model | scenes | {' | '.join(kinds)} | broken without a word | CPU s |\n" + "| --- " * (len(kinds) + 4) + "|")
-for model in dict.fromkeys(r.get("model", "refused") for r in sorted(rows, key=lambda r: r["seed"])):
-    mine = [r for r in rows if r.get("model", "refused") == model]
+    rows = [{"kind": "thrown", **r} for r in map(json.loads, file) if r["seed"] < scenes]
+invariants = ("energy", "depth", "flight", "cone", "off", "work", "bits")
+print(f"\nSeeds 0 to {scenes - 1}.\n\n| scenes of | model | scenes | {' | '.join(invariants)} | broken without a word | CPU s |\n" + "| --- " * (len(invariants) + 5) + "|")
+for kind, model in dict.fromkeys((r["kind"], r.get("model", "refused")) for r in sorted(rows, key=lambda r: (r["kind"] != "thrown", r["seed"]))):
+    mine = [r for r in rows if (r["kind"], r.get("model", "refused")) == (kind, model)]
     silent = [r["seed"] for r in mine if r["broken"] and not r["said"]]
-    print(f"| {model} | {len(mine)} | {' | '.join(str(sum(k in r['broken'] for r in mine)) for k in kinds)} | {len(silent)} | {sum(r['cpu'] for r in mine):.0f} |")
-    print(f"  silent seeds of {model}: {silent[:40]}") if silent else None
+    print(f"| {kind} | {model} | {len(mine)} | {' | '.join(str(sum(k in r['broken'] for r in mine)) for k in invariants)} | {len(silent)} | {sum(r['cpu'] for r in mine):.0f} |")
+    print(f"  silent seeds of {kind}, {model}: {silent[:40]}") if silent else None

@@ -73,6 +73,7 @@ struct CappedProblem {
 			const ImpulseReport report = solver(bodies, points, withRows ? rows : none);
 			result.residual = report.residual;
 			result.solved = report.solved;
+			result.jammed = report.jammed;
 			result.work = work(bodies, points);
 			result.energyLost = before + result.work - kineticEnergy(bodies);
 			const double scale = before + std::abs(result.work);
@@ -270,6 +271,7 @@ void addTo(RockingImpactResult& sum, const RockingImpactResult& stage)
 	sum.capped |= stage.capped;
 	sum.residual = std::max(sum.residual, stage.residual);
 	sum.solved &= stage.solved;
+	sum.jammed |= stage.jammed;
 }
 
 } // namespace

@@ -82,6 +82,7 @@ struct RockingImpactResult {
 	bool capped {false};   // the targets were moved: C is not realised
 	double residual {0};   // of the impulse problem, m/s
 	bool solved {true};    // it counts as zero
+	bool jammed {false};   // ImpulseReport
 };
 
 // Zero where there is no old support, or where it is a corner and no closing point approaches.

@@ -104,7 +104,7 @@ MASONRY_INLINE void passGroup(Group<K>& group, SolverGroup<K>& memory, RowsOf<K>
 				miss *= larger(all(1), row.stiffness / p.massN);
 			const Lanes yn = p.pn - (step.relaxation * wn + (1 - step.relaxation) * f.zn) * row.stiffness;
 			const auto yt = p.pt - (step.relaxation * wt + (1 - step.relaxation) * f.zt) * row.stiffness;
-			p.pn = larger(yn, all(0));
+			p.pn = smaller(larger(yn, all(0)), group.most);
 			row.bound += step.boundShare * (p.pn - row.bound);
 			p.pt = clip(yt, group.friction * (rough ? p.pn : row.bound));
 			f.zn = (p.pn - yn) * row.resistance;
@@ -167,6 +167,8 @@ MASONRY_INLINE void advanceGroups(Group<K>* groups, SolverGroup<K>* memory, cons
 			PointLanes<K>& p = groups[g].point[k];
 			const auto& row = rows[g][k];
 			p.gap += h * row.un;
+			Lanes& zero = memory[g][k].zero;
+			zero = p.pn < groups[g].most ? zero : smaller(zero, p.gap);
 			auto& slip = memory[g][k].slip;
 			const Mask glides = slides(p.pt, groups[g].friction * (rough ? p.pn : row.bound));
 			slip = select(glides, typename PointLanes<K>::Tangent {}, slip + h * row.ut);

@@ -8,7 +8,7 @@
 //
 //     V += A^-1 [ M (V_free - V) + J^T (p + (z - w)/R) ]
 //     y   = p - (a w + (1 - a) z)/R                                   a = 1.7: over-relaxation
-//     p_n = max(0, y_n)
+//     p_n = max(0, y_n), of prescribed bodies that move up to a limit (ContactSet::limitMoved)
 //     g  += theta (p_n - g)                                           friction bound, damped
 //     p_t = y_t within |p_t| <= mu g
 //     z   = (p - y) R
@@ -39,7 +39,8 @@
 // one that is meant.
 //
 // Biases. A point with a gap may close within the step: b_n = gap/h. Of a penetration, and of a slip that unfinished iterations have left
-// at a point that sticks, a share is taken back in each step: b = share x/h. A penetration with which a point was found stays.
+// at a point that sticks, a share is taken back in each step: b = share x/h. A penetration with which a point was found stays, and so does
+// one that a limit has let happen.
 #include "dynamics/assembly/assembly_matrix.hpp"
 #include "dynamics/assembly/spin_row.hpp"
 #include "dynamics/assembly/step_context.hpp"

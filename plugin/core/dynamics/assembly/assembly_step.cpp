@@ -10,6 +10,7 @@ template <class K>
 StepReport AssemblyStep<K>::advance(RigidSystem<K>& s, double dt)
 {
 	report = {};
+	errors = {0, 0, s.kineticEnergy(), freeMass(s) * scale::acceleration(s) * scale::length(s)};
 	s.impacts.clear();
 	for (double left = dt; left > 0 && !report.diverged;) {
 		const double h = untilKink(s, left, dt);
@@ -43,10 +44,12 @@ void AssemblyStep<K>::advancePart(RigidSystem<K>& s, double h)
 	const LaneArray& expected = guess.changeIn(h);
 	takeInstants(s, step);
 	pulses.move(s, contacts, h);
+	contacts.limitMoved(s, step.fall);
 	ledger.open(s, contacts, pulses.halfBack(), h);
 	contacts.takeForces(s, h, loads);
 	solver.spins = events.find(s, contacts, expected, step);
 	const CappedReport result = solve(s, loads, expected.size() == loads.size() && solver.spins.empty() ? expected : none, step);
+	contacts.addJammed(report.jammed);
 	const double level = tolerance::assembly::motion * tolerance::restSpeed * scales.speed;
 	const PointsReport ofPoints = solver.advanceGaps(contacts, h, level);
 	ledger.takeContacts(s, contacts, solver, ofPoints.friction);
@@ -107,7 +110,9 @@ template <class K>
 CappedReport AssemblyStep<K>::solveInstant(RigidSystem<K>& s, const StepContext& instant, double taken)
 {
 	loads.assign(contacts.velocity.size(), all(0));
+	contacts.limitMoved(s, 0);
 	const CappedReport result = solve(s, loads, none, instant);
+	contacts.addJammed(report.jammed);
 	report.converged &= result.residual <= settings.solver.tolerance * std::max(instant.fall, instant.speed);
 	ledger.takeContacts(s, contacts, solver, 0);
 	contacts.velocity = solver.velocity;
@@ -115,6 +120,7 @@ CappedReport AssemblyStep<K>::solveInstant(RigidSystem<K>& s, const StepContext&
 		if (!s.bodies[b].prescribed)
 			s.bodies[b].velocity = contacts.inGlobal(contacts.velocity, b);
 	report.created += ledger.close(s, Scales(s), instant.h, 0, 0, taken);
+	errors.made += ledger.made();
 	return result;
 }
 
@@ -141,6 +147,7 @@ void AssemblyStep<K>::moveBodies(RigidSystem<K>& s, double h)
 		onMean += h / 2 * body.force.dot(before + body.velocity);
 	}
 	report.created += ledger.close(s, Scales(s), h, work, onMean, 0);
+	errors.made += ledger.made();
 }
 
 template class AssemblyStep<Plane>;

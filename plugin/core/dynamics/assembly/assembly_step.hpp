@@ -17,6 +17,7 @@
 #include "dynamics/assembly/rest_state.hpp"
 #include "dynamics/assembly/rocking_events.hpp"
 #include "dynamics/assembly/velocity_guess.hpp"
+#include "dynamics/energy_errors.hpp"
 
 namespace masonry::rigid::assembly {
 
@@ -39,6 +40,8 @@ public:
 	AssemblyReport report; // of the last step
 
 	StepReport advance(RigidSystem<K>& system, double dt);
+	// Returns what the last step has made of energy; what it has lost is not known apart from impacts.
+	const StepErrors& lastErrors() const { return errors; }
 
 	// work(begin, end) for shares of 0 .. size - 1, by the threads of the last step.
 	template <class Work>
@@ -71,6 +74,7 @@ private:
 	void moveBodies(RigidSystem<K>& system, double h);
 
 	bool started {false};
+	StepErrors errors;
 	Team team;
 	ContactSet<K> contacts {team};
 	AdmmSolver<K> solver;

@@ -337,6 +337,52 @@ void ContactSet<K>::setUnit(double h)
 	unit = h;
 }
 
+// A moved body stops all blocks at once, or carries so many times their weight.
+template <class K>
+void ContactSet<K>::limitMoved(const RigidSystem<K>& s, double fall)
+{
+	const Lanes* seen = nullptr;
+	double limit = 0;
+	for (const auto& [g, i] : onBase) {
+		Group<K>& group = groups[g];
+		const int base = own[group.body1[i]] ? group.body2[i] : group.body1[i];
+		const Lanes* v = &velocity[packs<K> * base];
+		double moves = 0, isNew = seen ? 0 : 1;
+		for (int pack = 0; pack < packs<K>; ++pack)
+			for (int k = 0; k < 3; ++k) {
+				moves += std::abs(v[pack][k]);
+				isNew += seen ? std::abs(v[pack][k] - seen[pack][k]) : 0;
+			}
+		group.most[i] = farAway;
+		if (!(moves > 0))
+			continue;
+		if (isNew > 0) {
+			double fastest = 0;
+			for (size_t b = 0; b < s.bodies.size(); ++b) {
+				const Lanes* w = &velocity[packs<K> * b];
+				double square = 0;
+				for (int pack = 0; own[b] && pack < packs<K>; ++pack)
+					for (int k = 0; k < 3; ++k)
+						square += (w[pack][k] - v[pack][k]) * (w[pack][k] - v[pack][k]);
+				fastest = std::max(fastest, square);
+			}
+			limit = freeMass(s) * (tolerance::rigid::mostWeights * fall + std::sqrt(fastest));
+			seen = v;
+		}
+		group.most[i] = limit;
+	}
+}
+
+template <class K>
+void ContactSet<K>::addJammed(std::vector<int>& bodies) const
+{
+	constexpr double nearly = 0.9; // as in isAtLimit
+	for (const auto& [g, i] : onBase)
+		for (int k = 0; k < groups[g].count; ++k)
+			if (const double normal = groups[g].point[k].pn[i]; normal > 0 && normal >= nearly * groups[g].most[i])
+				bodies.insert(bodies.end(), {groups[g].body1[i], groups[g].body2[i]});
+}
+
 template <class K>
 void ContactSet<K>::startMeans()
 {

@@ -33,7 +33,7 @@ template <class K>
 constexpr int lanesOfPair = K::dimension == 2 ? 1 : 2;
 template <class K>
 constexpr int pairPoints = lanePoints<K>* lanesOfPair<K>; // in the plane without the second normal of a corner
-constexpr double farAway = 1e30;                          // m, gap of a lane without a point
+constexpr double farAway = 1e30;                          // m, gap of a lane without a point; N s, impulse that nothing reaches
 
 // Of flags, one each of bodies or structures.
 inline bool any(const std::vector<char>& chosen) { return std::find(chosen.begin(), chosen.end(), 1) != chosen.end(); }
@@ -60,6 +60,7 @@ template <class K>
 struct alignas(alignment) Group : PointSet<K> {
 	int body1[width], body2[width];
 	Lanes friction;
+	Lanes most; // N s, normal impulse of a point; farAway: no limit
 	PointLanes<K> point[lanePoints<K>];
 };
 
@@ -157,6 +158,11 @@ public:
 	void lean(const RigidSystem<K>& system);
 	// Impulses are those of a time h from now on; not many times the last, or an impact's would become as many.
 	void setUnit(double h);
+	// Limits the normal impulses of prescribed bodies that move, for a step or an instant in which forces give the speed `fall`: where such
+	// bodies approach each other through free ones, no motion obeys the laws, and they go into these (contact_limits.hpp).
+	void limitMoved(const RigidSystem<K>& system, double fall);
+	// Adds the bodies of points that press as much as that.
+	void addJammed(std::vector<int>& bodies) const;
 	// The means of the impulses are those that there are now.
 	void startMeans();
 	// Gaps, forces and places of all points, as they are now, into the pairs. Needed before the list of pairs changes.

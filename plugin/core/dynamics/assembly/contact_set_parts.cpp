@@ -114,6 +114,7 @@ void ContactSet<K>::addGroup(const PairLane* lanes, int count, int none)
 	Group<K> group {};
 	FeatureGroup<K> feature {};
 	group.setCount(lanePoints<K>);
+	group.most = all(farAway);
 	for (PointLanes<K>& p : group.point)
 		p.gap = all(farAway);
 	for (int i = 0; i < width; ++i) {

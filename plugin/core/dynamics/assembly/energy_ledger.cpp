@@ -105,6 +105,7 @@ double EnergyLedger<K>::close(RigidSystem<K>& s, const Scales& scales, double h,
 	const double allowed =
 	    tolerance::assembly::createdShare * atStake + tolerance::assembly::createdLift * liftedAll + mass * slowest * slowest;
 	const double balance = impacts + taken;
+	gained = std::max(0., lag - balance);
 	return balance < -allowed ? -balance : 0;
 }
 

@@ -39,6 +39,7 @@ public:
 	// Returns the energy that the contacts of the last step have taken, J: what moves against the base and is accelerated by forces takes
 	// none.
 	double lost() const { return impacts + friction - lag; }
+	double made() const { return gained; } // energy that the contacts have made in the step or instant that was closed last, J
 
 	template <class Archive>
 	void serialize(Archive& archive)
@@ -56,6 +57,7 @@ private:
 	std::vector<Vector> halfBack;                                // m/s
 	double carried {0};                                          // the sum over the blocks, J
 	double kinetic {0}, baseWork {0}, friction {0}, impacts {0}; // J
+	double gained {0};                                           // J
 	double lag {0};                                              // part of `impacts` that is h f.(V+ - V-)/2, J
 };
 

@@ -1,5 +1,6 @@
 #include "dynamics/rigid/contact_problem.hpp"
 #include "dynamics/rigid/contact_approach.hpp"
+#include "dynamics/rigid/contact_limits.hpp"
 #include "dynamics/rigid/contact_newton.hpp"
 #include "dynamics/rigid/contact_sweeps.hpp"
 #include <algorithm>
@@ -12,6 +13,7 @@ struct ContactSolver<K>::Workspace {
 	ContactState<K> s;
 	ContactNewton<K> newton {s};
 	ContactApproach<K> fromAfar {s, newton};
+	std::vector<typename ContactRows<K>::Rows> given; // impulses, where a row has a limit
 
 	// Whether the impulses given meet the laws, or lead to those that do.
 	bool startsClose(double tolerance, SolveReport& report)
@@ -44,11 +46,51 @@ struct ContactSolver<K>::Workspace {
 				return s.bestResidual;
 			if (gaussSeidel(s, tolerance, lastSweeps * round / shares, true, report) <= tolerance)
 				return s.residual();
+			if (!given.empty() && pressAbsurdly(s)) // without limits there is no solution
+				break;
 		}
 		s.applyImpulses();
 		s.keepBest(s.residual());
 		s.restoreBest();
 		return s.bestResidual;
+	}
+
+	void keepGiven()
+	{
+		given.clear();
+		const auto isLimited = [](const ContactRows<K>& row) { return !std::isinf(row.most); };
+		if (std::any_of(s.rows, s.rows + s.nPoints, isLimited))
+			for (int i = 0; i < s.nPoints; ++i)
+				given.push_back(s.rows[i].impulse);
+	}
+
+	// Whether a jam goes on: the impulses given are at their limits, do not lead to a solution without, and stay there.
+	bool staysJammed(int sweeps, double tolerance, SolveReport& report)
+	{
+		if (given.empty() || std::none_of(s.rows, s.rows + s.nPoints, isAtLimit<K>))
+			return false;
+		s.applyImpulses();
+		if (startsClose(tolerance, report))
+			return false;
+		report.residual = std::numeric_limits<double>::infinity();
+		if (solveLimited(s, given, tolerance, sweeps, report))
+			return true;
+		for (int i = 0; i < s.nPoints; ++i)
+			s.rows[i].impulse = given[i];
+		return false;
+	}
+
+	// Whether impulses are better with their limits: those of a jam. Otherwise they stay.
+	bool limit(int sweeps, double tolerance, SolveReport& report)
+	{
+		if (given.empty())
+			return false;
+		s.bestResidual = std::numeric_limits<double>::infinity();
+		s.keepBest(report.residual);
+		if (solveLimited(s, given, tolerance, sweeps, report))
+			return true;
+		s.restoreBest();
+		return false;
 	}
 
 	// Impulses and velocities that meet the laws, or the best found.
@@ -112,10 +154,19 @@ SolveReport ContactSolver<K>::solve(double tolerance, double enough)
 		workspace.reset(new Workspace);
 	Workspace& w = *workspace;
 	w.s.begin(*this);
-	SolveReport report = w.find(*this, tolerance, enough);
+	w.keepGiven();
+	SolveReport report;
+	if (w.staysJammed(lastSweeps, tolerance, report)) {
+		report.converged = false;
+		w.s.addNoEnergy();
+		return report;
+	}
+	report = w.find(*this, tolerance, enough);
 	report.converged = report.residual <= std::max(tolerance, enough);
 	if (report.converged) {
 		w.s.letPartingGo(report.residual);
+	} else if (w.limit(lastSweeps, tolerance, report)) {
+		w.s.addNoEnergy();
 	} else {
 		w.s.addNoEnergy();
 		report.residual = w.s.residual();

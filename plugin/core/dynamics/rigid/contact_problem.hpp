@@ -64,6 +64,7 @@ struct ContactRows {
 	Jacobian J1, J2;             // of body 1 with its minus sign
 	Rows offset {Rows::Zero()};  // m/s
 	double friction {0};         // mu >= 0, noSlip, or bilateral (point_law.hpp)
+	double most {noSlip};        // N s, normal impulse of a body with prescribed motion where the laws have no solution (contact_limits.hpp)
 	Rows impulse {Rows::Zero()}; // in: first guess; out: result. N s, on body 2 along the rows
 
 	// Whether the impulse has reached the friction cone.
@@ -77,6 +78,7 @@ struct SolveReport {
 	int sweeps {0}, factorisations {0};
 	double residual {0}; // m/s
 	bool converged {true};
+	bool jammed {false}; // the laws have no solution: bodies with prescribed motion press as much as they may
 };
 
 // Owns its workspace: no heap allocation once it has seen a problem of this size.

@@ -214,6 +214,29 @@ void ImpactStage<K>::gather(const RigidSystem<K>& s, const std::vector<PointRef>
 	});
 }
 
+// Limits what bodies with prescribed motion press with where the laws have no solution: what stops all blocks at once, and `impulse` (N s).
+template <class K>
+void ImpactStage<K>::limit(const RigidSystem<K>& s, double impulse)
+{
+	const auto isMoved = [&](int b) { return s.bodies[b].prescribed && !s.bodies[b].velocity.isZero(0); };
+	double speed = 0;
+	for (const ImpulsePoint& point : impact.points)
+		speed = std::max(speed, masonry::relativeVelocity(bodies, point).norm());
+	for (ImpulsePoint& point : impact.points)
+		if (isMoved(point.body1) || isMoved(point.body2))
+			point.most = freeMass(s) * speed + impulse;
+}
+
+template <class K>
+void ImpactStage<K>::findJammed(const RockingImpactResult& result)
+{
+	constexpr double nearly = 0.9; // as in isAtLimit
+	jammed.clear();
+	for (const ImpulsePoint& point : impact.points)
+		if (const double normal = point.impulse.dot(point.normal); result.jammed && normal > 0 && normal >= nearly * point.most)
+			jammed.insert(jammed.end(), {point.body1, point.body2});
+}
+
 // After an impulse: velocities, and which points stay in touch.
 template <class K>
 void ImpactStage<K>::settle(RigidSystem<K>& s)
@@ -277,6 +300,7 @@ void ImpactStage<K>::holdPivots(RigidSystem<K>& s)
 			stray = std::max(stray, held->sliding ? std::abs(point.normal.dot(u)) : u.norm());
 		}
 	const double before = kineticEnergy(bodies), impulse = enough * heaviest * stray;
+	limit(s, impulse);
 	double work = 0; // of the prescribed bodies
 	for (size_t k = 0; k < refs.size(); ++k) {
 		if (!loaded(k))
@@ -303,6 +327,7 @@ RockingImpactResult ImpactStage<K>::land(RigidSystem<K>& s, const std::vector<Po
 {
 	holdPivots(s);
 	gather(s, closing);
+	limit(s, 0);
 	asked.clear();
 	for (ClosingJoint& joint : impact.joints) {
 		asked.push_back(joint.restitution);
@@ -312,6 +337,7 @@ RockingImpactResult ImpactStage<K>::land(RigidSystem<K>& s, const std::vector<Po
 	}
 	const auto result =
 	    s.settings.order == ImpactOrder::simultaneous ? applyRockingImpact(bodies, impact) : applySequentially(bodies, impact);
+	findJammed(result);
 	settle(s);
 	s.impactDissip += result.energyLost;
 	s.baseWork += result.work;
@@ -334,7 +360,9 @@ RockingImpactResult ImpactStage<K>::pulse(RigidSystem<K>& s, int drive, const ty
 		if (body.drive == drive)
 			body.velocity.template head<K::dimension>() += jump;
 	gather(s, {});
+	limit(s, 0);
 	const auto result = applyRockingImpact(bodies, impact);
+	findJammed(result);
 	settle(s);
 	// While the base speeds up from v - jump to v, its impulse works on the mean of the two.
 	double work = result.work;

@@ -15,9 +15,14 @@ public:
 	// The bodies moved by a drive change their velocity by `jump` (m/s) at this instant.
 	RockingImpactResult pulse(RigidSystem<K>& system, int drive, const typename K::Vector& jump);
 
+	// Adds the bodies of points that press as much as they may, where the laws of the last landing or pulse have no solution.
+	void addJammed(std::vector<int>& all) const { all.insert(all.end(), jammed.begin(), jammed.end()); }
+
 private:
 	struct Builder;
 	void gather(const RigidSystem<K>& system, const std::vector<PointRef>& closing);
+	void limit(const RigidSystem<K>& system, double impulse);
+	void findJammed(const RockingImpactResult& result);
 	void holdPivots(RigidSystem<K>& system);
 	void settle(RigidSystem<K>& system);
 	void shareWeights(RigidSystem<K>& system);
@@ -30,6 +35,7 @@ private:
 	std::vector<PointRef> oldRefs;
 	std::vector<double> weights; // of the pairs: their normal impulses
 	std::vector<double> asked;   // restitution of the joints
+	std::vector<int> jammed;     // bodies
 };
 
 } // namespace masonry::rigid

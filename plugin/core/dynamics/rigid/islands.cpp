@@ -35,7 +35,10 @@ StepReport Islands<K>::advanceTaken(RigidSystem<K>& s, double dt)
 	StepReport report;
 	errors = {};
 	for (Island& island : islands) {
-		report += step.advance(island.system, dt);
+		StepReport own = step.advance(island.system, dt);
+		for (int& body : own.jammed)
+			body = island.bodies[body];
+		report += own;
 		errors += step.lastErrors();
 		giveBack(s, island);
 	}

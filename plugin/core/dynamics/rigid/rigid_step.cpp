@@ -58,10 +58,7 @@ void RigidStep<K>::balance(const RigidSystem<K>& s, const Energies& before)
 	const double friction = now.friction - before.friction, impact = now.impact - before.impact, base = now.base - before.base;
 	const double made = now.kinetic - before.kinetic - step.work - base + friction + impact;
 	const double atStake = before.kinetic + std::abs(step.work) + std::abs(base) + std::abs(friction) + std::abs(impact);
-	errors = {std::max(0., made), std::max(0., -made), before.kinetic, 0};
-	for (const RigidBody<K>& body : s.bodies)
-		if (!body.prescribed)
-			errors.lift += body.mass * s.gravity.norm() * step.scales.length;
+	errors = {std::max(0., made), std::max(0., -made), before.kinetic, freeMass(s) * step.scales.acceleration * step.scales.length};
 	if (std::abs(made) > tolerance::rigid::madeShare * atStake + tolerance::rigid::madeLift * errors.lift)
 		report.created += made;
 }
@@ -204,6 +201,7 @@ Event RigidStep<K>::tryUpTo(RigidSystem<K>& s, double h)
 	report.sweeps += solved.sweeps;
 	report.factorisations += solved.factorisations;
 	note(solved.residual, solved.converged);
+	step.addJammed(s, report.jammed);
 	return event;
 }
 
@@ -232,6 +230,7 @@ bool RigidStep<K>::land(RigidSystem<K>& s)
 	placeFriction(s);
 	placeFriction(s, closing);
 	note(impacts.land(s, closing));
+	impacts.addJammed(report.jammed);
 	answerImpacts(s, known);
 	return true;
 }
@@ -245,6 +244,7 @@ void RigidStep<K>::answerImpacts(RigidSystem<K>& s, size_t known)
 			if (const auto jump = s.drives[d].respond(s.impacts[k].block, s.time); !jump.isZero(0)) {
 				placeFriction(s);
 				note(impacts.pulse(s, int(d), jump));
+				impacts.addJammed(report.jammed);
 			}
 }
 
@@ -257,6 +257,7 @@ void RigidStep<K>::takeJumps(RigidSystem<K>& s)
 			land(s);
 			placeFriction(s);
 			note(impacts.pulse(s, int(d), jump));
+			impacts.addJammed(report.jammed);
 		}
 }
 

@@ -234,6 +234,7 @@ struct StepReport {
 	double created {0};  // J, more than round-off and the error of a sound step can make of nothing
 	double deepest {0};  // m, of a block in another, where no sound step leaves it so deep
 	double turn {0};     // rad, of a block in the step, where it is more than a wall's step resolves
+	std::vector<int> jammed; // bodies that press each other as much as they may: prescribed ones, and blocks between them
 	bool converged {true};
 	bool diverged {false}; // the state is no longer finite
 
@@ -249,6 +250,7 @@ struct StepReport {
 		created += other.created;
 		deepest = std::max(deepest, other.deepest);
 		turn = std::max(turn, other.turn);
+		jammed.insert(jammed.end(), other.jammed.begin(), other.jammed.end());
 		converged &= other.converged;
 		diverged |= other.diverged;
 		return *this;
@@ -307,5 +309,16 @@ struct RigidSystem {
 		return std::isfinite(sum);
 	}
 };
+
+// kg
+template <class K>
+double freeMass(const RigidSystem<K>& s)
+{
+	double sum = 0;
+	for (const RigidBody<K>& body : s.bodies)
+		if (!body.prescribed)
+			sum += body.mass;
+	return sum;
+}
 
 } // namespace masonry::rigid

@@ -1,4 +1,5 @@
 #include "dynamics/rigid/smooth_step.hpp"
+#include "dynamics/rigid/contact_limits.hpp"
 #include "dynamics/rigid/grip.hpp"
 #include "tolerances.hpp"
 #include <algorithm>
@@ -101,10 +102,8 @@ double SmoothStep<K>::beginPart(const RigidSystem<K>& s, int parts)
 	shifts.reserve(s.bodies.size()); // a step that closes gaps may be the first to
 	scales = Scales(s);
 	partBases = basesPart(s, whole);
-	weight = 0;
-	for (const RigidBody<K>& body : s.bodies)
-		if (!body.prescribed)
-			weight += body.mass * scales.acceleration * scales.length;
+	mass = freeMass(s);
+	weight = mass * scales.acceleration * scales.length;
 	return whole;
 }
 
@@ -272,6 +271,16 @@ void SmoothStep<K>::accept(RigidSystem<K>& s)
 	takeBodies(s);
 	if (takePoints(s))
 		s.startAnew();
+}
+
+template <class K>
+void SmoothStep<K>::addJammed(const RigidSystem<K>& s, std::vector<int>& bodies) const
+{
+	for (size_t r = 0; last.solved.jammed && r < last.rows.size(); ++r)
+		if (isAtLimit(solver.points[r])) {
+			const ContactPair<K>& pair = s.pairs[last.rows[r].pair];
+			bodies.insert(bodies.end(), {pair.body1, pair.body2});
+		}
 }
 
 // Energies of the step. Returns what the contacts have lost, J: not as a difference of what has been lost since the start.

@@ -75,6 +75,8 @@ public:
 	double work {0};                   // of the forces on the bodies in this step so far, J
 	std::vector<PointRef> anticipated; // open points that are about to close and are not localised
 	bool stopsInside {false};          // sliding points may stop inside the step: friction opposes their last velocity, not the mean
+	// Adds the bodies of points that press as much as they may, where the laws of the trial have no solution.
+	void addJammed(const RigidSystem<K>& system, std::vector<int>& bodies) const;
 	double slowSlip() const { return tolerance::rigid::slowSlip * scales.stepSpeed(whole); } // m/s
 
 	// Normal rate of a point's gap, and its tangential velocity, at the end of the trial.
@@ -112,7 +114,8 @@ private:
 	double full {0}, stepEnd {0};         // s, the whole step, and when it ends
 	double passed {0};                    // s, of the whole step
 	std::vector<typename K::Pose> starts; // of the prescribed bodies: where they go does not depend on how a structure divides the step
-	double weight {0};                    // of the free bodies times the scene's length, J
+	double mass {0};                      // of the free bodies, kg
+	double weight {0};                    // the same times the scene's acceleration and length, J
 	bool unsteady {false};                // the stray velocities were left
 	bool partBases {false}; // how much each of two bases that move apart carries is not determined: the last step's share grows
 	std::vector<ContactFrame<K>> middles; // of the rows of one pair

@@ -1,5 +1,6 @@
 // Gaps of loaded points, and penetrations, that a step has left: taken off its end.
 #include "dynamics/rigid/smooth_step.hpp"
+#include "dynamics/rigid/contact_limits.hpp"
 #include "tolerances.hpp"
 #include <algorithm>
 
@@ -21,7 +22,8 @@ double SmoothStep<K>::findShifts(const RigidSystem<K>& s, double most)
 		const double sunk = stray.empty() ? 0. : 0.5 * last.h * stray[r][0];
 		const double meant = point.closed ? point.gap + sunk : std::min(gap, 0.);
 		const double kept = meant - std::clamp(meant, -most, most);
-		misses.push_back(gap - (loaded ? kept : std::min(kept, 0.)));
+		const bool givesWay = last.solved.jammed && isAtLimit(solver.points[r]);
+		misses.push_back(givesWay ? 0 : gap - (loaded ? kept : std::min(kept, 0.)));
 		if (loaded || misses.back() < 0)
 			largest = std::max(largest, std::abs(misses.back()));
 	}
@@ -66,7 +68,7 @@ double SmoothStep<K>::findShifts(const RigidSystem<K>& s, double most)
 template <class K>
 void SmoothStep<K>::project(const RigidSystem<K>& s, double lost)
 {
-	if (findShifts(s, std::numeric_limits<double>::infinity()) > lost)
+	if (last.solved.jammed || findShifts(s, std::numeric_limits<double>::infinity()) > lost)
 		findShifts(s, tolerance::rigid::closingSpeed * scales.speed * last.h);
 	if (shifts.empty())
 		return;

@@ -28,6 +28,12 @@ Eigen::Matrix<double, K::rows, K::dof> jacobian(const ContactFrame<K>& frame, co
 	return J;
 }
 
+template <class K>
+bool isMoved(const RigidBody<K>& body, const typename K::Velocity& next)
+{
+	return body.prescribed && !(body.velocity.isZero(0) && next.isZero(0));
+}
+
 // The forces of more than three points on a face are not determined by its motion, but where it spins as it slides the friction couple
 // hangs on them: they start from linear pressure, that is from the least sum of squares with the same resultant and moments, so that the
 // solver's path does not decide. Points that would have to pull, or stick, are left as they are, and so are those of corners, whose normals
@@ -201,6 +207,8 @@ ContactRows<K> SmoothStep<K>::rowsOf(const RigidSystem<K>& s, PointRef ref, cons
 	if (body2.prescribed)
 		rows.offset += rows.J2 * next2.velocity;
 	Impulse now = rows.J1 * body1.velocity + rows.J2 * body2.velocity - astray;
+	if (isMoved(body1, next1.velocity) || isMoved(body2, next2.velocity))
+		rows.most = mass * (tolerance::rigid::mostWeights * scales.stepSpeed(h) + (point.closed ? 0 : std::max(0., -now[0])));
 	if (!point.closed)
 		now[0] = std::max(now[0] + astray[0] + 2 * std::max(point.gap, 0.) / h, 0.);
 	if (point.sliding && stopsInside)

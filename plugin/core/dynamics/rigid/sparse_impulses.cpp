@@ -2,7 +2,9 @@
 #include "dynamics/rigid/point_law.hpp"
 #include "tolerances.hpp"
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <tuple>
 
 namespace masonry::rigid {
 
@@ -110,6 +112,7 @@ void SparseImpulses<K>::addPoint(const std::vector<masonry::Body>& bodies, const
 	ContactRows<K>& rows = solver.points.emplace_back();
 	const auto axes = frame(linear<K>(point.normal));
 	rows.friction = point.friction;
+	rows.most = point.most;
 	rows.offset = axes * linear<K>(point.bias);
 	rows.body1 = unknown[point.body1];
 	rows.body2 = unknown[point.body2];
@@ -144,13 +147,33 @@ template <class K>
 ImpulseReport SparseImpulses<K>::solve(std::vector<masonry::Body>& bodies, std::vector<ImpulsePoint>& points,
                                        std::vector<CoupleRow>& couples)
 {
-	constexpr size_t few = 4, mostDense = 100; // points
-	if (points.size() <= few)
+	constexpr size_t few = 4; // points
+	if (points.size() > few)
+		return solveSparse(bodies, points, couples);
+	if (std::none_of(points.begin(), points.end(), [](const ImpulsePoint& p) { return std::isfinite(p.most); }))
 		return solveImpulses(bodies, points, couples);
+	before = bodies;
+	const ImpulseReport report = solveImpulses(bodies, points, couples);
+	if (report.solved)
+		return report;
+	const auto after = std::tuple(bodies, points, couples);
+	bodies = before;
+	const ImpulseReport limited = solveSparse(bodies, points, couples);
+	if (limited.jammed)
+		return limited;
+	std::tie(bodies, points, couples) = after;
+	return report;
+}
+
+template <class K>
+ImpulseReport SparseImpulses<K>::solveSparse(std::vector<masonry::Body>& bodies, std::vector<ImpulsePoint>& points,
+                                             std::vector<CoupleRow>& couples)
+{
+	constexpr size_t mostDense = 100; // points
 	const double length = longestArm(bodies, points);
 	const SolveReport report = solveRows(bodies, points, couples, length);
 	const bool sticks = std::any_of(points.begin(), points.end(), [](const ImpulsePoint& p) { return p.friction == noSlip; });
-	if (!report.converged && sticks && points.size() <= mostDense)
+	if (!report.converged && !report.jammed && sticks && points.size() <= mostDense)
 		return letPullingPointsGo(bodies, points, couples);
 	for (size_t b = 0; b < bodies.size(); ++b)
 		if (unknown[b] >= 0)
@@ -159,7 +182,7 @@ ImpulseReport SparseImpulses<K>::solve(std::vector<masonry::Body>& bodies, std::
 		points[i].impulse = global(typename K::Vector(frame(linear<K>(points[i].normal)).transpose() * solver.points[i].impulse));
 	for (size_t c = 0; c < couples.size(); ++c)
 		couples[c].couple = length * solver.points[points.size() + c].impulse[0];
-	return {report.factorisations, report.residual, report.converged};
+	return {report.factorisations, report.residual, report.converged, report.jammed};
 }
 
 template <class K>

@@ -16,11 +16,13 @@ public:
 private:
 	void addPoint(const std::vector<Body>& bodies, const ImpulsePoint& point);
 	void addCouple(const std::vector<Body>& bodies, const CoupleRow& couple, double length);
+	ImpulseReport solveSparse(std::vector<Body>& bodies, std::vector<ImpulsePoint>& points, std::vector<CoupleRow>& couples);
 	SolveReport solveRows(const std::vector<Body>& bodies, const std::vector<ImpulsePoint>& points, const std::vector<CoupleRow>& couples,
 	                      double length);
 
 	ContactSolver<K> solver;
 	std::vector<int> unknown; // of a body in the solver; -1: prescribed
+	std::vector<masonry::Body> before;
 };
 
 // In space, with a memory of its own (of each thread).

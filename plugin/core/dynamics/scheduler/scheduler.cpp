@@ -12,6 +12,7 @@ StepReport Scheduler<K>::advance(RigidSystem<K>& s, double dt)
 	const bool isNew = s.lists != list || s.bodies.size() != ofWall.size();
 	if (isNew)
 		divide(s);
+	errors = {};
 	if (localisedBodies.empty())
 		return advanceWalls(s, dt);
 	report = {};
@@ -23,6 +24,7 @@ StepReport Scheduler<K>::advance(RigidSystem<K>& s, double dt)
 	gapsAreOutdated = false;
 	if (!areWalls) {
 		const StepReport sum = islands.advance(s, dt);
+		errors = islands.lastErrors();
 		s.settings = ofWalls;
 		return sum;
 	}
@@ -33,6 +35,7 @@ StepReport Scheduler<K>::advance(RigidSystem<K>& s, double dt)
 	StepReport sum = advanceWalls(s, dt);
 	restoreLocalised(s);
 	sum += islands.advanceTaken(s, dt);
+	errors += islands.lastErrors();
 	return sum;
 }
 
@@ -47,6 +50,7 @@ StepReport Scheduler<K>::advanceWalls(RigidSystem<K>& s, double dt)
 	walls.settings.threads = settings.threads;
 	const StepReport sum = walls.advance(s, dt);
 	report = walls.report;
+	errors += walls.lastErrors();
 	return sum;
 }
 

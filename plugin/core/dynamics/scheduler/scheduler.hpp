@@ -36,6 +36,8 @@ public:
 	bool partBases {false};          // blocks of a wall are near bases that have different motions
 
 	StepReport advance(RigidSystem<K>& system, double dt);
+	// Returns what the last step has made and lost of energy.
+	const StepErrors& lastErrors() const { return errors; }
 	// Gaps, forces and places of the points as they are after the step, into the system's pairs. To be called before their list changes.
 	void showPoints(RigidSystem<K>& system) { walls.showPoints(system); }
 	// work(begin, end) for shares of 0 .. size - 1, by the threads of the last step.
@@ -69,6 +71,7 @@ private:
 
 	assembly::AssemblyStep<K> walls;
 	Islands<K> islands;
+	StepErrors errors;
 	std::vector<char> ofWall; // by body, 1: has belonged to a wall
 	bool areWalls {false};
 	std::vector<int> localisedBodies; // sorted
