@@ -32,7 +32,7 @@ struct Spring { // of a point that may carry
 
 	double depth() const { return -gap - change[0]; }
 	double force() const { return normal * (depth() + raised); } // of the normal springs where it carries, N
-	Vector2 pull() const { return -shear * change.tail<2>(); } // of the shear spring, on body 2, N
+	Vector2 pull() const { return -shear * change.tail<2>(); }   // of the shear spring, on body 2, N
 };
 
 std::vector<Spring> springsOf(const JointSystem& s, const std::vector<HeldPoint>& points)

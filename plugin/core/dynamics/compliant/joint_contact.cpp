@@ -50,8 +50,8 @@ PointValues shared(const JointContact& contact, double k, double r, const PointV
 
 } // namespace
 
-// The sum S of the forces is the root of S = sum w_i max(0, r k d_i + (1 - r) S). Newton's method from S = 0: the right side is convex, of a
-// slope below 1, so that S grows to the root and points only join.
+// The sum S of the forces is the root of S = sum w_i max(0, r k d_i + (1 - r) S). Newton's method from S = 0: the right side is convex, of
+// a slope below 1, so that S grows to the root and points only join.
 PointValues JointContact::springForces(const PointValues& depths) const
 {
 	const double k = normalStiffness(), r = turnShare();
@@ -170,10 +170,7 @@ void renewPatch(JointContact& contact, const ContactPatch& patch)
 
 namespace {
 
-double shearEnergy(const JointContact& contact, int i)
-{
-	return 0.5 * contact.shearStiffness(i) * contact.points[i].shear.squaredNorm();
-}
+double shearEnergy(const JointContact& contact, int i) { return 0.5 * contact.shearStiffness(i) * contact.points[i].shear.squaredNorm(); }
 
 // Mean velocity of material points over the step dt that ends now. Leapfrog velocities belong to the middle of the
 // step and arms to its end: v + w x r would creep by w^2 r dt/2.

@@ -166,8 +166,9 @@ ImpactRecord switchPivot(JointSystem& s, const Joint& joint, const Closing& clos
 ImpactRecord land(JointSystem& s, const Joint& joint, const Closing& landing)
 {
 	const double power = supportPower(s);
-	const auto loadedPoints = selectPoints(
-	    s.contacts, [&](const JointContact& contact, int i) { return !joint.has(int(&contact - s.contacts.data())) && loaded(contact, i); });
+	const auto loadedPoints = selectPoints(s.contacts, [&](const JointContact& contact, int i) {
+		return !joint.has(int(&contact - s.contacts.data())) && loaded(contact, i);
+	});
 	goBack(s, accelerations(s, loadedPoints), landing.before);
 	RockingImpact impact = closingImpact(s, joint, landing, loadedPoints);
 	double speed = 0; // of the approach
@@ -192,7 +193,7 @@ ImpactRecord land(JointSystem& s, const Joint& joint, const Closing& landing)
 	record.block = joint.block;
 	record.support = landing.support;
 	record.before = landing.before;
-	record.restitutionAsked = landing.restitution;
+	record.landed = true;
 	record.result = result;
 	record.work = result.work + landing.before * (supportPower(s) - power);
 	return record;

@@ -99,14 +99,16 @@ double largestTimeStep(const std::vector<Body>& bodies, const std::vector<JointC
 	return accepted;
 }
 
-bool isStableTimeStep(const std::vector<Body>& bodies, const std::vector<JointContact>& contacts, double dt)
+bool isStableTimeStep(const std::vector<Body>& bodies, const std::vector<JointContact>& contacts, double dt, double undamped)
 {
 	const auto matrices = bodyMatrices(bodies, contacts);
 	for (size_t b = 0; b < bodies.size(); ++b) {
 		if (bodies[b].prescribed)
 			continue;
-		const Matrix6 rest = 4 * massMatrix(bodies[b]) - 2 * dt * matrices[b].damping - dt * dt * matrices[b].stiffness;
-		if (Eigen::LLT<Matrix6>(rest).info() != Eigen::Success)
+		const Matrix6 mass = 4 * massMatrix(bodies[b]);
+		const auto isPositive = [](const Matrix6& rest) { return Eigen::LLT<Matrix6>(rest).info() == Eigen::Success; };
+		if (!isPositive(mass - 2 * dt * matrices[b].damping - dt * dt * matrices[b].stiffness) ||
+		    (undamped > dt && !isPositive(mass - undamped * undamped * matrices[b].stiffness)))
 			return false;
 	}
 	return true;
