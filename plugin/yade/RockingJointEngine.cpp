@@ -214,17 +214,17 @@ void RockingJointEngine::checkTimeStep()
 	const bool positive = scene->dt > 0;
 	if (checkedTimeStep > 0 && scene->dt != checkedTimeStep)
 		stepFraction = 0; // a script has given another
+	const auto contacts = damped(system.contacts);
 	if (positive && stepFraction > 0 && started) {
 		constexpr Real slack = 1.25;
-		if (isStableTimeStep(system.bodies, system.contacts, scene->dt / (slack * stepFraction)))
+		if (isStableTimeStep(system.bodies, contacts, scene->dt, scene->dt / (slack * stepFraction)))
 			return;
-		const Real shorter = stepFraction * masonry::criticalTimeStep(system.bodies, system.contacts);
+		const Real shorter = chosenTimeStep(contacts);
 		LOG_WARN("at t = " << scene->time << " s blocks touch in stiffer joints than so far: O.dt is lowered from " << scene->dt << " to "
 		                   << shorter << " s. Run until a time, not for a number of steps.");
 		lowered = scene->dt - shorter;
 		return;
 	}
-	const auto contacts = damped(system.contacts);
 	if (positive && isStableTimeStep(system.bodies, contacts, scene->dt))
 		return;
 	throw std::runtime_error(
@@ -232,6 +232,17 @@ void RockingJointEngine::checkTimeStep()
 	             " s: it must be positive and below ", masonry::largestTimeStep(system.bodies, contacts),
 	             " s (half of that is accurate); dem.engines() chooses one and lowers it where blocks come to lie on larger faces."));
 }
+
+/// The share of the critical step that accuracy asks for, unless dashpots, which make the largest one shorter, ask for less.
+Real RockingJointEngine::chosenTimeStep(const vector<masonry::JointContact>& contacts) const
+{
+	constexpr Real ofLargest =
+	    0.75; // larger: it becomes unstable where blocks move a little; smaller: scenes without need take a shorter step
+	return std::min(stepFraction * masonry::criticalTimeStep(system.bodies, contacts),
+	                ofLargest * masonry::largestTimeStep(system.bodies, contacts));
+}
+
+Real RockingJointEngine::chosenTimeStep() { return chosenTimeStep(damped(presentContacts())); }
 
 /// At the end of the step: from here on steps are shorter.
 void RockingJointEngine::lowerTimeStep()
@@ -253,8 +264,9 @@ void RockingJointEngine::lowerTimeStep()
 
 void RockingJointEngine::recordImpact(const masonry::ImpactRecord& record)
 {
-	addImpact(*this, scene->time - record.before, ids[record.block], ids[record.support], record.restitutionAsked, record.result,
-	          record.result.energyLost, record.switched, record.result.capped);
+	if (!record.landed)
+		addImpact(*this, scene->time - record.before, ids[record.block], ids[record.support], record.restitutionAsked, record.result,
+		          record.result.energyLost, record.switched, record.result.capped);
 	impactDissip += record.result.energyLost + record.settled;
 	addUnexplained(std::max(0., -record.result.energyLost - record.settled));
 	baseWork += record.work;
@@ -517,7 +529,8 @@ void RockingJointEngine::action()
 	const auto records = handOffPivots(system);
 	for (const auto& record : records) {
 		recordImpact(record);
-		impacts.push_back({ids[record.block], record.before});
+		if (!record.landed)
+			impacts.push_back({ids[record.block], record.before});
 	}
 	const bool jumped = applyJumps(motions, impacts);
 	reportUnsolved();

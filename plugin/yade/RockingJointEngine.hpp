@@ -19,12 +19,13 @@ public:
 	/// Without dashpots. Of the present contacts; before the first step, and after loading, of all boxes that are in touch. s
 	Real criticalTimeStep();
 	Real largestTimeStep();
+	Real chosenTimeStep();
 
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(RockingJointEngine, GlobalEngine,
 		"Joints of compliant blocks. The engine groups the patches under each block into joints, moves the pivot when the rotation of a block crosses zero, applies the rocking restitution, lets base pulses act at their instant, and puts the joint forces on the bodies. Its order is fixed, so that any number of threads gives the same bits. It must follow InteractionLoop directly.",
 		((string, impactOrder, "simultaneous", Attr::triggerPostLoad, "How an impact acts on a structure: 'simultaneous' (the closing joint and all loaded joints are solved in one impulse problem) or 'sequential' (the closing joint first; the others receive it afterwards through their springs)."))
-		((Real, stepFraction, 0, , "Fraction of the critical time step from which O.dt was chosen. Where blocks come to touch in stiffer joints, O.dt is lowered to this fraction, with a warning. 0: O.dt was given by the user, and a step that would be unstable is refused."))
+		((Real, stepFraction, 0, , "Fraction of the critical time step from which O.dt was chosen. Where blocks come to touch in stiffer joints, O.dt is lowered to chosenTimeStep, with a warning. 0: O.dt was given by the user, and a step that would be unstable is refused."))
 		((bool, started, false, Attr::readonly, "Whether the bodies have been put in equilibrium on their joints."))
 		((vector<Real>, impactTimes, , Attr::readonly, "Time of each impact [s], inside the step."))
 		((vector<int>, impactBlocks, , Attr::readonly, "Block that rocks, at each impact."))
@@ -58,6 +59,7 @@ public:
 		((long, lastStep, -1, Attr::hidden, "")),
 		/* ctor */,
 		.def("criticalTimeStep", &RockingJointEngine::criticalTimeStep, "Largest stable time step of the joints without their dashpots [s].")
+		.add_property("chosenTimeStep", static_cast<Real (RockingJointEngine::*)()>(&RockingJointEngine::chosenTimeStep), "Time step for stepFraction and the present joints [s]: that share of the critical step, at most three quarters of largestTimeStep.")
 		.add_property("largestTimeStep", &RockingJointEngine::largestTimeStep, "Largest time step that a run accepts with the present joints, dashpots included [s]: 0.4 to 0.6 of the critical one at dampingRatio = 0.5.")
 	);
 	// clang-format on
@@ -81,6 +83,7 @@ private:
 	vector<Pair> gather();
 	void addExternalForces();
 	void checkTimeStep();
+	Real chosenTimeStep(const vector<masonry::JointContact>& contacts) const;
 	void lowerTimeStep();
 	void reportUnsolved();
 	void boundTurns();

@@ -13,8 +13,9 @@ using Rows = Eigen::Matrix<double, 3, 12>; // normal and two tangents, by displa
 
 struct Spring { // of a point that may carry
 	int contact, point, body1, body2;
-	double gap, normal, shear; // m, N/m
+	double gap, weight, normal, shear; // m, share of the face, N/m: of the point's own springs (joint_contact.hpp: r k_n A w_i)
 	Rows rows;
+	double raised {0}; // what the rest of the face adds to its depth, m: (1 - r) sum N_j / (r k_n A)
 	bool closed {true}, slips {false};
 	Vector2 friction {Vector2::Zero()}; // where it slips: on body 2, N
 	Vector3 change {Vector3::Zero()};   // along the rows, m
@@ -30,7 +31,8 @@ struct Spring { // of a point that may carry
 	}
 
 	double depth() const { return -gap - change[0]; }
-	Vector2 pull() const { return -shear * change.tail<2>(); } // of the shear spring, on body 2, N
+	double force() const { return normal * (depth() + raised); } // of the normal springs where it carries, N
+	Vector2 pull() const { return -shear * change.tail<2>(); }   // of the shear spring, on body 2, N
 };
 
 std::vector<Spring> springsOf(const JointSystem& s, const std::vector<HeldPoint>& points)
@@ -45,7 +47,8 @@ std::vector<Spring> springsOf(const JointSystem& s, const std::vector<HeldPoint>
 		               contact.body1,
 		               contact.body2,
 		               contact.patch.points[i].gap,
-		               contact.normalStiffness(i),
+		               contact.patch.points[i].weight,
+		               contact.turnShare() * contact.normalStiffness() * contact.patch.points[i].weight,
 		               contact.shearStiffness(i),
 		               Rows::Zero()};
 		const Matrix3 axes = axesAlong(contact.patch.normal);
@@ -61,6 +64,11 @@ std::vector<Spring> springsOf(const JointSystem& s, const std::vector<HeldPoint>
 	return springs;
 }
 
+struct Face { // the springs [begin, end) of one contact
+	size_t begin, end;
+	double turnShare, stiffness; // r; k_n A, N/m
+};
+
 class Equilibrium {
 public:
 	Equilibrium(const JointSystem& s, const RigidAcceleration& rates, const std::vector<HeldPoint>& points)
@@ -71,6 +79,12 @@ public:
 			isHeld[spring.body1] = isHeld[spring.body2] = 1;
 		for (size_t b = 0; b < s.bodies.size(); ++b)
 			place.push_back(isHeld[b] && !s.bodies[b].prescribed ? size++ : -1);
+		for (size_t k = 0; k < springs.size(); ++k) {
+			const JointContact& contact = s.contacts[springs[k].contact];
+			if (k == 0 || springs[k].contact != springs[k - 1].contact)
+				faces.push_back({k, k, contact.turnShare(), contact.normalStiffness()});
+			++faces.back().end;
+		}
 		loads = Eigen::VectorXd::Zero(6 * size);
 		for (size_t b = 0; b < s.bodies.size(); ++b)
 			if (const Body& body = s.bodies[b]; place[b] >= 0) {
@@ -107,12 +121,7 @@ private:
 	{
 		std::vector<Eigen::Triplet<double>> entries;
 		Eigen::VectorXd right = loads;
-		for (const Spring& spring : springs) {
-			const Vector3 stiffness = spring.stiffness(), standIn = spring.standIn();
-			const Eigen::Matrix<double, 12, 12> block = spring.rows.transpose() * (stiffness + standIn).asDiagonal() * spring.rows;
-			const Eigen::Matrix<double, 12, 1> given =
-			    spring.rows.transpose() *
-			    (Vector3(-stiffness[0] * spring.gap, spring.friction.x(), spring.friction.y()) + standIn.cwiseProduct(spring.change));
+		const auto add = [&](const Spring& spring, const Eigen::Matrix<double, 12, 12>& block, const Eigen::Matrix<double, 12, 1>& given) {
 			const int first[2] {place[spring.body1], place[spring.body2]};
 			for (int a = 0; a < 2; ++a) {
 				if (first[a] < 0)
@@ -123,6 +132,23 @@ private:
 						for (int column = 0; column < 6; ++column)
 							entries.emplace_back(6 * first[a] + row, 6 * first[b] + column, block(6 * a + row, 6 * b + column));
 			}
+		};
+		for (const Spring& spring : springs) {
+			const Vector3 stiffness = spring.stiffness(), standIn = spring.standIn();
+			add(spring, spring.rows.transpose() * (stiffness + standIn).asDiagonal() * spring.rows,
+			    spring.rows.transpose() *
+			        (Vector3(-stiffness[0] * spring.gap, spring.friction.x(), spring.friction.y()) + standIn.cwiseProduct(spring.change)));
+		}
+		for (const Face& face : faces) { // the springs that its points share
+			Eigen::Matrix<double, 12, 1> row = Eigen::Matrix<double, 12, 1>::Zero();
+			double gap = 0;
+			for (size_t k = face.begin; k < face.end; ++k)
+				if (springs[k].closed) {
+					row += springs[k].weight * springs[k].rows.row(0).transpose();
+					gap += springs[k].weight * springs[k].gap;
+				}
+			const double stiffness = sharedStiffness(face);
+			add(springs[face.begin], stiffness * row * row.transpose(), -stiffness * gap * row);
 		}
 		Eigen::SparseMatrix<double> K(6 * size, 6 * size);
 		K.setFromTriplets(entries.begin(), entries.end());
@@ -139,7 +165,24 @@ private:
 			spring.before = spring.change;
 			spring.change = spring.rows * x;
 		}
+		for (const Face& face : faces) {
+			double depth = 0;
+			for (size_t k = face.begin; k < face.end; ++k)
+				if (springs[k].closed)
+					depth += springs[k].weight * springs[k].depth();
+			for (size_t k = face.begin; k < face.end; ++k)
+				springs[k].raised = sharedStiffness(face) * depth / (face.turnShare * face.stiffness);
+		}
 		return true;
+	}
+
+	// Of the springs that the closed points share, by their mean depth, N/m: (1 - r) r k_n A / (1 - (1 - r) w).
+	double sharedStiffness(const Face& face) const
+	{
+		double weights = 0;
+		for (size_t k = face.begin; k < face.end; ++k)
+			weights += springs[k].closed ? springs[k].weight : 0;
+		return (1 - face.turnShare) * face.turnShare * face.stiffness / (1 - (1 - face.turnShare) * weights);
 	}
 
 	// Opens and closes points, and lets them slip as far as friction asks. Returns whether any force has changed.
@@ -153,10 +196,10 @@ private:
 		bool changed = false;
 		for (Spring& spring : springs) {
 			changed |= spring.standIn().cwiseProduct(spring.change - spring.before).norm() > tolerance::settle * stiffest * deepest;
-			const bool closes = spring.depth() > (spring.closed ? 0 : tolerance::settle * deepest);
+			const bool closes = spring.depth() + spring.raised > (spring.closed ? 0 : tolerance::settle * deepest);
 			changed |= closes != spring.closed;
 			spring.closed = closes;
-			const double bound = system.contacts[spring.contact].law.friction * spring.normal * std::max(0., spring.depth());
+			const double bound = system.contacts[spring.contact].law.friction * std::max(0., spring.force());
 			const Vector2 pull = spring.pull(), earlier = spring.friction;
 			spring.slips = closes && pull.norm() > bound;
 			spring.friction = spring.slips ? Vector2(bound / pull.norm() * pull) : Vector2(Vector2::Zero());
@@ -166,6 +209,7 @@ private:
 	}
 
 	const JointSystem& system;
+	std::vector<Face> faces;
 	std::vector<int> place; // of a body among those that the springs hold; -1: none
 	int size {0};
 	Eigen::VectorXd loads; // force, then moment, by such body

@@ -4,10 +4,11 @@
 // With the normal and shear rows n_i, t_i of each point (changes of its gap and of its shear per displacement and turn of both bodies) the
 // displacements x solve
 //     K x = f - sum k_n,i gap_i n_i,   K = sum (k_n,i n_i n_i^T + k_s,i t_i t_i^T),
-// over the points that are pressed. Which ones are follows by repetition: a point that would pull opens, an open one that is pressed
-// closes, and one whose shear spring pulls harder than Coulomb's bound slips, with that force. Points that open or slip keep a small
-// stiffness about where the repetition before has left them, so that K is regular on the way; its force vanishes in the end. K is
-// factorised, so that a tower costs no more than a wall of as many blocks.
+// over the points that are pressed, k_n,i = r k_n A w_i; and for each face as much with n = sum w_i n_i, gap = sum w_i gap_i and the
+// stiffness that its points share (joint_contact.hpp). Which ones are follows by repetition: a point that would pull opens, an open one
+// that is pressed closes, and one whose shear spring pulls harder than Coulomb's bound slips, with that force. Points that open or slip
+// keep a small stiffness about where the repetition before has left them, so that K is regular on the way; its force vanishes in the end. K
+// is factorised, so that a tower costs no more than a wall of as many blocks.
 #include "dynamics/compliant/pivot_handoff.hpp"
 #include "dynamics/compliant/rigid_acceleration.hpp"
 #include <utility>

@@ -8,6 +8,98 @@ namespace masonry {
 
 double JointContact::stiffnessArea() const { return std::max(patch.area, tolerance::leastPatchArea * patch.nominalArea); }
 
+// Polar moments about the centroid: of the triangles (0, p, q) of the area T between it and the sides, T (p^2 + q^2 + p.q) / 6, and of
+// the points.
+double JointContact::turnShare() const
+{
+	if (size < 3)
+		return 1;
+	Vector3 centroid = Vector3::Zero();
+	for (int i = 0; i < size; ++i)
+		centroid += patch.points[i].weight * (position(i) - position(0));
+	centroid += position(0);
+	double area = 0, face = 0, points = 0;
+	for (int i = 0; i < size; ++i) {
+		const Vector3 p = position(i) - centroid, q = position((i + 1) % size) - centroid;
+		const double triangle = 0.5 * std::abs(patch.normal.dot(p.cross(q)));
+		area += triangle;
+		face += triangle / 6 * (p.squaredNorm() + q.squaredNorm() + p.dot(q));
+		points += patch.points[i].weight * p.squaredNorm();
+	}
+	return face > 0 ? std::min(1., face / (area * points)) : 1;
+}
+
+namespace {
+
+// What a face of the stiffness k gives to its points `among`: w_i (r k x_i + (1 - r) sum), zero to the others.
+PointValues shared(const JointContact& contact, double k, double r, const PointValues& x, const std::array<bool, maxFrictionPoints>& among)
+{
+	double weights = 0, sum = 0;
+	for (int i = 0; i < contact.size; ++i)
+		if (among[i]) {
+			weights += contact.patch.points[i].weight;
+			sum += contact.patch.points[i].weight * x[i];
+		}
+	const double total = r * k * sum / (1 - (1 - r) * weights);
+	PointValues result {};
+	for (int i = 0; i < contact.size; ++i)
+		if (among[i])
+			result[i] = contact.patch.points[i].weight * (r * k * x[i] + (1 - r) * total);
+	return result;
+}
+
+} // namespace
+
+// The sum S of the forces is the root of S = sum w_i max(0, r k d_i + (1 - r) S). Newton's method from S = 0: the right side is convex, of
+// a slope below 1, so that S grows to the root and points only join.
+PointValues JointContact::springForces(const PointValues& depths) const
+{
+	const double k = normalStiffness(), r = turnShare();
+	std::array<bool, maxFrictionPoints> carries {};
+	PointValues forces {};
+	for (double total = 0;;) {
+		bool joined = false;
+		for (int i = 0; i < size; ++i)
+			if (!carries[i] && !points[i].muted && r * k * depths[i] + (1 - r) * total > 0)
+				carries[i] = joined = true;
+		if (!joined)
+			return forces;
+		forces = shared(*this, k, r, depths, carries);
+		total = 0;
+		for (int i = 0; i < size; ++i)
+			total += forces[i];
+	}
+}
+
+PointValues JointContact::springForces() const
+{
+	PointValues depths {};
+	for (int i = 0; i < size; ++i)
+		depths[i] = -patch.points[i].gap;
+	return springForces(depths);
+}
+
+PointValues JointContact::depthsFor(const PointValues& forces) const
+{
+	const double k = normalStiffness(), r = turnShare();
+	double total = 0;
+	for (int i = 0; i < size; ++i)
+		total += forces[i];
+	PointValues depths {};
+	for (int i = 0; i < size; ++i)
+		depths[i] = (forces[i] / patch.points[i].weight - (1 - r) * total) / (r * k);
+	return depths;
+}
+
+double JointContact::normalEnergy() const
+{
+	const PointValues forces = springForces();
+	double sum = 0;
+	for (int i = 0; i < size; ++i)
+		sum -= 0.5 * forces[i] * patch.points[i].gap;
+	return sum;
+}
+
 double JointContact::dampingNormal(double mass) const
 {
 	return 2 * law.dampingRatio * std::sqrt(law.normalStiffness * stiffnessArea() * mass);
@@ -28,7 +120,7 @@ double JointContact::power(int i, const Body& body) const
 	return force(i).dot(body.velocityAt(position(i))) + points[i].shearForce.dot(gripMotion(i, body.angularVelocity));
 }
 
-std::array<Vector3, maxFrictionPoints> JointContact::gripsFor(const std::array<double, maxFrictionPoints>& forces) const
+std::array<Vector3, maxFrictionPoints> JointContact::gripsFor(const PointValues& forces) const
 {
 	std::array<Vector3, maxFrictionPoints> grips;
 	grips.fill(Vector3::Zero());
@@ -78,13 +170,7 @@ void renewPatch(JointContact& contact, const ContactPatch& patch)
 
 namespace {
 
-double squared(double depth) { return depth > 0 ? depth * depth : 0; }
-
-double storedEnergy(const JointContact& contact, int i)
-{
-	return 0.5 * contact.normalStiffness(i) * squared(-contact.patch.points[i].gap) +
-	       0.5 * contact.shearStiffness(i) * contact.points[i].shear.squaredNorm();
-}
+double shearEnergy(const JointContact& contact, int i) { return 0.5 * contact.shearStiffness(i) * contact.points[i].shear.squaredNorm(); }
 
 // Mean velocity of material points over the step dt that ends now. Leapfrog velocities belong to the middle of the
 // step and arms to its end: v + w x r would creep by w^2 r dt/2.
@@ -131,7 +217,7 @@ bool takeShearForce(JointContact& contact, int i)
 
 void placeFriction(JointContact& contact)
 {
-	std::array<double, maxFrictionPoints> forces {};
+	PointValues forces {};
 	for (int i = 0; i < contact.size; ++i)
 		forces[i] = contact.points[i].normalForce;
 	const auto grips = contact.gripsFor(forces);
@@ -151,33 +237,43 @@ void release(JointPoint& point)
 void updateForces(JointContact& contact, const Body& body1, const Body& body2, double dt)
 {
 	const Vector3& n = contact.patch.normal;
-	const double mass = reducedMass(body1, body2);
-	const double dampingNormal = contact.dampingNormal(mass), dampingShear = contact.dampingShear(mass);
+	const double mass = reducedMass(body1, body2), dampingShear = contact.dampingShear(mass);
 	const StepMotion motion1(body1, dt), motion2(body2, dt);
 	contact.energy = {};
 	const auto before = contact.points;
 	std::array<Vector3, maxFrictionPoints> velocities; // at the points, of body 2 relative to body 1
+	PointValues depths {}, oldDepths {}, rates {};
 	for (int i = 0; i < contact.size; ++i) {
-		JointPoint& point = contact.points[i];
-		const double depth = -contact.patch.points[i].gap, weight = contact.patch.points[i].weight;
 		velocities[i] = motion2.velocityAt(contact.position(i)) - motion1.velocityAt(contact.position(i));
-		if (point.muted || depth <= 0)
-			release(point);
+		rates[i] = -n.dot(velocities[i]);
+		depths[i] = -contact.patch.points[i].gap;
+		oldDepths[i] = depths[i] - rates[i] * dt;
+	}
+	const PointValues springs = contact.springForces(depths), oldSprings = contact.springForces(oldDepths);
+	std::array<bool, maxFrictionPoints> carries {};
+	for (int i = 0; i < contact.size; ++i)
+		carries[i] = springs[i] > 0;
+	const PointValues dashpots = shared(contact, contact.dampingNormal(mass), contact.turnShare(), rates, carries);
+	for (int i = 0; i < contact.size; ++i) {
+		if (carries[i])
+			contact.points[i].normalForce = std::max(0., springs[i] + dashpots[i]);
 		else
-			point.normalForce = std::max(0., contact.normalStiffness(i) * depth - dampingNormal * weight * n.dot(velocities[i]));
+			release(contact.points[i]);
 	}
 	placeFriction(contact);
 	const Vector3 spin = body2.angularVelocity - body1.angularVelocity;
+	// The forces take energy from the bodies: dashpots and slip dissipate a part and never give it back, and the springs take the rest.
+	// A spring without any force comes back by its dashpot. The leapfrog scheme's own work of a force over a step is that of the mean
+	// of its values at the two ends: springs do not store all that they take where points meet or part within the step.
+	double byDashpots = 0; // taken by those of the normal springs, J: below zero where they give
 	for (int i = 0; i < contact.size; ++i) {
 		JointPoint& point = contact.points[i];
 		const JointPoint& old = before[i];
-		const double depth = -contact.patch.points[i].gap, weight = contact.patch.points[i].weight;
-		const double stiffness = contact.shearStiffness(i);
-		const double normalVelocity = n.dot(velocities[i]);
-		const Vector3 acrossPoint = velocities[i] - n * normalVelocity, slideVelocity = acrossPoint + contact.gripMotion(i, spin);
+		const double weight = contact.patch.points[i].weight, stiffness = contact.shearStiffness(i), way = rates[i] * dt;
+		const Vector3 acrossPoint = velocities[i] + n * rates[i], slideVelocity = acrossPoint + contact.gripMotion(i, spin);
 		double slipped = 0; // J
 		bool slips = true;
-		if (!point.muted && depth > 0) {
+		if (carries[i]) {
 			point.shear += slideVelocity * dt;
 			const Vector3 pull = -stiffness * point.shear;
 			slips = takeShearForce(contact, i);
@@ -186,45 +282,38 @@ void updateForces(JointContact& contact, const Body& body1, const Body& body2, d
 			else
 				point.shearForce = withinFriction(contact, pull - dampingShear * weight * slideVelocity, point.normalForce);
 		}
-		// The forces take energy from the bodies: dashpots and slip dissipate a part and never give it back, and the springs take the rest.
-		// A spring without any force comes back by its dashpot. The leapfrog scheme's own work of a force over a step is that of the mean
-		// of its values at the two ends: springs do not store all that they take where points meet or part within the step.
-		const double oldDepth = depth + normalVelocity * dt;
-		const double takenNormal = -0.5 * (old.normalForce + point.normalForce) * normalVelocity * dt;
 		const Vector3 oldSlideVelocity = acrossPoint + n.dot(spin) * n.cross(old.grip);
+		const double takenNormal = 0.5 * (old.normalForce + point.normalForce) * way;
 		const double takenShear = -0.5 * (old.shearForce.dot(oldSlideVelocity) + point.shearForce.dot(slideVelocity)) * dt;
-		const double storedNormal = old.muted ? 0 : 0.5 * contact.normalStiffness(i) * (squared(depth) - squared(oldDepth));
+		const double bySprings = 0.5 * (oldSprings[i] + springs[i]) * way;
 		const double storedShear = 0.5 * stiffness * (point.shear.squaredNorm() - old.shear.squaredNorm());
-		const auto dashpot = [&](const JointPoint& p, double d) {
-			return p.muted ? 0. : contact.normalStiffness(i) * std::max(0., d) - p.normalForce;
-		};
-		const double slowed = std::max(0., 0.5 * (dashpot(old, oldDepth) + dashpot(point, depth)) * normalVelocity * dt);
-		const bool unloaded = old.normalForce == 0 && point.normalForce == 0;
+		byDashpots += takenNormal - bySprings;
 		const Vector3 drag = -stiffness * (old.shear + point.shear) - old.shearForce - point.shearForce;
 		const double elasticShear = takenShear - std::max(0., 0.5 * drag.dot(slideVelocity) * dt);
-		const double taken =
-		    (unloaded ? storedNormal : takenNormal - slowed) + (slips ? std::min(elasticShear, storedShear) : elasticShear);
-		contact.energy.taken += taken;
+		const double elastic = bySprings + (slips ? std::min(elasticShear, storedShear) : elasticShear);
+		contact.energy.taken += elastic;
 		contact.energy.friction += slipped;
-		contact.energy.damping += takenNormal + takenShear - taken - slipped;
-		if (!point.muted)
-			contact.energy.elastic += storedEnergy(contact, i);
+		contact.energy.damping += takenNormal + takenShear - elastic - slipped;
+		if (carries[i])
+			contact.energy.elastic += shearEnergy(contact, i) + 0.5 * springs[i] * depths[i];
 	}
+	contact.energy.taken += std::min(0., byDashpots);
+	contact.energy.damping -= std::min(0., byDashpots);
 }
 
 void holdForces(JointContact& contact)
 {
 	contact.energy.elastic = 0;
+	const PointValues springs = contact.springForces();
 	for (int i = 0; i < contact.size; ++i) {
 		JointPoint& point = contact.points[i];
-		const double depth = -contact.patch.points[i].gap;
-		if (point.muted || depth <= 0) {
+		if (!(springs[i] > 0)) {
 			release(point);
 			continue;
 		}
-		point.normalForce = contact.normalStiffness(i) * depth;
+		point.normalForce = springs[i];
 		takeShearForce(contact, i);
-		contact.energy.elastic += storedEnergy(contact, i);
+		contact.energy.elastic += shearEnergy(contact, i) - 0.5 * springs[i] * contact.patch.points[i].gap;
 	}
 	placeFriction(contact);
 }

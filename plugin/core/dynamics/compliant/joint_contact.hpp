@@ -4,14 +4,29 @@
 // The joint has stiffness per area, normal k_n and shear k_s (N/m^3). Point i has the share w_i of the patch area A
 // (sum w_i = 1), so the total stiffness k A does not depend on the number of points:
 //
-//     N_i = max(0, k_n A w_i d_i + c_n w_i d_i'),   d_i = -gap_i,   N_i = 0 when d_i <= 0
-//     T_i = -(k_s A w_i s_i + c_s w_i u_t,i),       |T_i| <= mu N_i
+//     N_i = w_i max(0, r k_n A d_i + (1 - r) sum N_j),   d_i = -gap_i
+//     T_i = -(k_s A w_i s_i + c_s w_i u_t,i),            |T_i| <= mu N_i
 //
-// s_i is the elastic tangential displacement, which slips as far as Coulomb's bound asks; c = 2 zeta sqrt(k A m) with m the
-// reduced mass of the pair. Where corners meet corners the bound is mu N_i along their edge and tan(half angle + atan mu) N_i across it
-// (contact/corner_patch.hpp). N_i acts at the point, and T_i at the point's share of an even friction (contact/friction_points.hpp), where
-// s_i and u_t,i are measured too: wherever it moves to, the power of T_i is that of its spring, dashpot and slip. A muted point carries no
-// force (see pivot_handoff.hpp).
+// s_i is the elastic tangential displacement, which slips as far as Coulomb's bound asks. Where corners meet corners the bound is mu N_i
+// along their edge and tan(half angle + atan mu) N_i across it (contact/corner_patch.hpp). N_i acts at the point, and T_i at the point's
+// share of an even friction (contact/friction_points.hpp), where s_i and u_t,i are measured too: wherever it moves to, the power of T_i is
+// that of its spring, dashpot and slip. A muted point carries no force (see pivot_handoff.hpp).
+//
+// Turn of a face. Springs at the corners would be too stiff: the pressure k_n d(x) of a closed face has the moment k_n J about an axis
+// through the centroid, J the second moment of the area, and springs k_n A w_i at the corners have k_n A sum w_i a_i^2. Of a rectangle that
+// is three times as much. With r = J / (A sum w_i a_i^2), both polar, the forces above have the sum k_n A d of the pressure, d = sum w_i
+// d_i, and its moment: those of springs r k_n A w_i at the corners and (1 - r) k_n A at the centroid, whose force the corners bear by their
+// shares. r is 1/3 of a rectangle, 1/4 of a triangle, 1 of an edge or a corner.
+//
+// Opening. The forces are those of a compliance, d_i = (N_i / w_i - (1 - r) sum N_j) / (r k_n A), with N_i >= 0: springs that store
+// sum N_i d_i / 2 and give all of it back, whichever points open. A point carries until the rest of the face has lifted it beyond its own
+// gap. Where the points with the share w of the face carry alone, sum N_j = r k_n A sum w_j d_j / (1 - (1 - r) w): the edge of a rectangle
+// has a quarter of the stiffness of its face. Under the constant force N a rectangle of the width b turns in proportion to the moment, up
+// to N b/2 at the turn 6 d/b; then it rocks about its edge, which is pressed in by 4 d. A pressure without tension would open from N b/6 on
+// and come to N b/2 in the end: between, the turn is up to 1.6 times as stiff.
+//
+// Dashpots. They see the points that carry, in the same way, with c_n = 2 zeta sqrt(k_n A m) in the place of k_n A, m the reduced mass of
+// the pair; c_s = 2 zeta sqrt(k_s A m). No joint pulls by them.
 #include "body.hpp"
 #include "contact/corner_patch.hpp"
 #include "contact/friction_points.hpp"
@@ -42,6 +57,8 @@ struct JointEnergy {
 	double damping {0};  // dissipated in this step, J
 };
 
+using PointValues = std::array<double, maxFrictionPoints>;
+
 struct JointContact {
 	int body1 {-1}, body2 {-1};
 	ContactPatch patch;
@@ -51,9 +68,16 @@ struct JointContact {
 	std::array<JointPoint, 8> points; // parallel to patch.points
 	JointEnergy energy;
 
-	double stiffnessArea() const; // m^2, what the stiffness per area is multiplied with
-	double normalStiffness(int i) const { return law.normalStiffness * stiffnessArea() * patch.points[i].weight; }
+	double stiffnessArea() const;                                                    // m^2, what the stiffness per area is multiplied with
+	double normalStiffness() const { return law.normalStiffness * stiffnessArea(); } // of the closed face, N/m
+	double turnShare() const;                                                        // r
 	double shearStiffness(int i) const { return law.shearStiffness * stiffnessArea() * patch.points[i].weight; }
+	// N_i of the springs at these depths (m), from the points that are not muted, N.
+	PointValues springForces(const PointValues& depths) const;
+	PointValues springForces() const; // at the present ones
+	// d_i at which the springs bear these forces, where they do not vanish, m.
+	PointValues depthsFor(const PointValues& forces) const;
+	double normalEnergy() const;             // stored by the normal springs now, J
 	double dampingNormal(double mass) const; // c_n of a pair of that reduced mass, N s/m
 	double dampingShear(double mass) const;
 	Vector3 position(int i) const { return 0.5 * (patch.points[i].position1 + patch.points[i].position2); }
@@ -63,7 +87,7 @@ struct JointContact {
 	Vector3 moment(int i, const Vector3& center) const;                                                // of the same, about `center`
 	double power(int i, const Body& body) const;                                                       // of the same, on points of the body
 	// From the points to where their friction acts if their normal forces are these, m.
-	std::array<Vector3, maxFrictionPoints> gripsFor(const std::array<double, maxFrictionPoints>& forces) const;
+	std::array<Vector3, maxFrictionPoints> gripsFor(const PointValues& forces) const;
 	bool rocking() const; // some point is muted
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <map>
 
 namespace masonry {
@@ -20,6 +21,7 @@ int faceOf(const Body& body, const Vector3& normal)
 double gapOf(const JointSystem& s, const PointRef& p) { return s.contacts[p.contact].patch.points[p.point].gap; }
 JointPoint& stateOf(JointSystem& s, const PointRef& p) { return s.contacts[p.contact].points[p.point]; }
 const JointPoint& stateOf(const JointSystem& s, const PointRef& p) { return s.contacts[p.contact].points[p.point]; }
+bool carries(const JointSystem& s, const PointRef& p) { return s.contacts[p.contact].springForces()[p.point] > 0; }
 Vector3 positionOf(const JointSystem& s, const PointRef& p) { return s.contacts[p.contact].position(p.point); }
 
 // An edge or a corner: all points on one line, as against a face.
@@ -151,8 +153,7 @@ void putBack(const Neighbourhood& part, JointSystem& s)
 
 void unmuteInFlight(JointSystem& s, const Joint& joint)
 {
-	const auto carries = [&](const PointRef& p) { return !stateOf(s, p).muted && gapOf(s, p) < 0; };
-	if (std::any_of(joint.points.begin(), joint.points.end(), carries))
+	if (std::any_of(joint.points.begin(), joint.points.end(), [&](const PointRef& p) { return carries(s, p); }))
 		return;
 	// An old pivot on its way out, whose spring has been written off with the impact, would push again.
 	for (const PointRef& p : joint.points)
@@ -177,7 +178,7 @@ void muteOpenPoints(JointSystem& s, const Joint& joint)
 	bool rocks = false;
 	for (const PointRef& p : joint.points) {
 		rocks |= stateOf(s, p).muted;
-		(gapOf(s, p) > 0 ? open : loaded).push_back(p);
+		(carries(s, p) ? loaded : open).push_back(p);
 	}
 	if (rocks) { // a support that has come into reach since
 		for (int c : joint.contacts) {
@@ -204,7 +205,7 @@ Closing findClosing(const JointSystem& s, const Joint& joint)
 	int pivots = 0;
 	Vector3 pivot = Vector3::Zero();
 	for (const PointRef& p : joint.points) {
-		if (stateOf(s, p).muted || !(gapOf(s, p) < 0))
+		if (!carries(s, p))
 			continue;
 		pivotGap += gapOf(s, p);
 		pivotRate += gapRate(s, p);
@@ -248,6 +249,45 @@ Closing findClosing(const JointSystem& s, const Joint& joint)
 	result.support = contact.body1 == joint.block ? contact.body2 : contact.body1;
 	result.restitution = contact.law.restitution;
 	return result;
+}
+
+Closing findLanding(const JointSystem& s, const Joint& joint)
+{
+	Closing result;
+	double speed = 0;
+	for (const PointRef& p : joint.points) {
+		if (stateOf(s, p).muted)
+			continue;
+		const double gap = gapOf(s, p), rate = gapRate(s, p);
+		if (gap - rate * s.dt < 0)
+			return {};
+		if (gap < 0) {
+			result.before = std::min(std::max(result.before, gap / rate), s.dt);
+			speed = std::max(speed, -rate);
+		}
+	}
+	const double size = sizeOf(s, joint);
+	if (!(speed > tolerance::restSpeed * std::sqrt(s.gravity.norm() * size)))
+		return {};
+	double lowest = std::numeric_limits<double>::infinity();
+	for (const PointRef& p : joint.points) {
+		const double touching = gapOf(s, p) - gapRate(s, p) * result.before; // gap at that instant
+		if (stateOf(s, p).muted || touching > tolerance::mergedClosing * size)
+			continue;
+		result.points.push_back(p);
+		if (touching < lowest) {
+			lowest = touching;
+			const JointContact& contact = s.contacts[p.contact];
+			result.support = contact.body1 == joint.block ? contact.body2 : contact.body1;
+			result.restitution = contact.law.restitution;
+		}
+	}
+	return result;
+}
+
+bool isPivot(const JointSystem& s, const Joint& joint, const std::vector<PointRef>& points)
+{
+	return isPivot(s, points, joint.normal, sizeOf(s, joint));
 }
 
 void moveContacts(JointSystem& s, const std::vector<Body>& before)
@@ -348,11 +388,11 @@ std::vector<std::pair<Vector3, Vector3>> leastMotion(const std::vector<Body>& bo
 double pressedEnergy(const std::vector<JointContact>& contacts)
 {
 	double sum = 0;
-	for (const JointContact& contact : contacts)
-		for (int i = 0; i < contact.size; ++i) {
-			const double depth = std::max(0., -contact.patch.points[i].gap);
-			sum += 0.5 * contact.normalStiffness(i) * depth * depth;
-		}
+	for (JointContact contact : contacts) {
+		for (JointPoint& point : contact.points)
+			point.muted = false;
+		sum += contact.normalEnergy();
+	}
 	return sum;
 }
 
@@ -376,10 +416,13 @@ double press(JointSystem& s, const std::vector<HeldPoint>& points)
 {
 	std::vector<NormalRow> rows;
 	double deepest = 0;
+	std::map<int, PointValues> forces; // by contact
+	for (const HeldPoint& p : points)
+		forces.emplace(p.contact, PointValues {}).first->second[p.point] = s.contacts[p.contact].patch.normal.dot(p.force);
 	for (const HeldPoint& p : points) {
 		const JointContact& contact = s.contacts[p.contact];
 		const Vector3 &n = contact.patch.normal, x = contact.position(p.point);
-		const double depth = n.dot(p.force) / contact.normalStiffness(p.point);
+		const double depth = contact.depthsFor(forces.at(p.contact))[p.point];
 		deepest = std::max(deepest, depth);
 		rows.push_back({contact.body1, contact.body2, n, (x - s.bodies[contact.body1].pose.position).cross(n),
 		                (x - s.bodies[contact.body2].pose.position).cross(n), -depth - contact.patch.points[p.point].gap});
@@ -421,7 +464,8 @@ void settle(JointSystem& s, const std::vector<HeldPoint>& held, double most)
 	for (size_t b = 0; b < s.bodies.size(); ++b)
 		work += s.bodies[b].force.dot(s.bodies[b].pose.position - before[b].pose.position);
 	// Bodies on their way over an edge, or that hit hard, may have no such equilibrium near.
-	if (storedEnergy(s) - stored - work <= most && pressedEnergy(s.contacts) - pressedEnergy(contactsBefore) <= most &&
+	const double pressed = pressedEnergy(contactsBefore), mostPressed = stored > 0 ? most * std::max(1., pressed / stored) : most;
+	if (storedEnergy(s) - stored - work <= most && pressedEnergy(s.contacts) - pressed <= mostPressed &&
 	    largestChange(s.contacts, contactsBefore) <= tolerance::settlingReach * deepest)
 		return;
 	s.bodies = before;

@@ -55,6 +55,11 @@ void unmuteUpright(JointSystem& system, const std::vector<Joint>& joints);
 double gapRate(const JointSystem& system, const PointRef& point);
 
 Closing findClosing(const JointSystem& system, const Joint& joint);
+// The points of a joint that come to touch first in this step, in which none of its points was pressed before: a landing out of flight.
+// One slower than what counts as rest is left to the springs.
+Closing findLanding(const JointSystem& system, const Joint& joint);
+// Whether points of a joint are an edge or a corner, about which it rocks.
+bool isPivot(const JointSystem& system, const Joint& joint, const std::vector<PointRef>& points);
 
 // Bodies have moved from the poses in `before` to their present ones: points, gaps and shears follow.
 void moveContacts(JointSystem& system, const std::vector<Body>& before);

@@ -60,7 +60,7 @@ void goForth(JointSystem& s, const RigidAcceleration& rates, double before)
 	moveContacts(s, instant);
 }
 
-bool loaded(const JointContact& contact, int i) { return !contact.points[i].muted && contact.patch.points[i].gap < 0; }
+bool loaded(const JointContact& contact, int i) { return contact.springForces()[i] > 0; }
 
 // Smallest angular velocity of a rocking impact that starts another half cycle: the next peak must exceed the angle by
 // which the springs alone turn the block, and the speed the Zeno threshold. Half cycle: peak = w^2/(2A), A = g l/(2 I/m),
@@ -159,6 +159,43 @@ ImpactRecord switchPivot(JointSystem& s, const Joint& joint, const Closing& clos
 	record.switched = !stops;
 	record.result = result;
 	record.work = result.work + closing.before * (supportPower(s) - power);
+	return record;
+}
+
+// A landing out of flight: no row, since there is no old support.
+ImpactRecord land(JointSystem& s, const Joint& joint, const Closing& landing)
+{
+	const double power = supportPower(s);
+	const auto loadedPoints = selectPoints(s.contacts, [&](const JointContact& contact, int i) {
+		return !joint.has(int(&contact - s.contacts.data())) && loaded(contact, i);
+	});
+	goBack(s, accelerations(s, loadedPoints), landing.before);
+	RockingImpact impact = closingImpact(s, joint, landing, loadedPoints);
+	double speed = 0; // of the approach
+	for (const PointRef& p : landing.points)
+		speed = std::max(speed, -gapRate(s, p));
+	const ImpactRecord::Result result = applyWithRim(s, impact);
+
+	const bool rocks = isPivot(s, joint, landing.points);
+	for (const PointRef& p : joint.points)
+		s.contacts[p.contact].points[p.point].muted = rocks && !among(landing.points, p.contact, p.point);
+	const auto held = selectPoints(s.contacts, [&](const JointContact& contact, int i) {
+		const int c = int(&contact - s.contacts.data());
+		if (!joint.has(c))
+			return s.order == ImpactOrder::simultaneous && among(loadedPoints, c, i);
+		return among(landing.points, c, i) && gapRate(s, {c, i}) <= tolerance::parting * speed;
+	});
+	const RigidAcceleration rates = accelerations(s, held);
+	goForth(s, rates, landing.before);
+	settle(s, rates.points, std::max(0., result.energyLost));
+
+	ImpactRecord record;
+	record.block = joint.block;
+	record.support = landing.support;
+	record.before = landing.before;
+	record.landed = true;
+	record.result = result;
+	record.work = result.work + landing.before * (supportPower(s) - power);
 	return record;
 }
 
@@ -275,13 +312,15 @@ std::vector<ImpactRecord> handOffPivots(JointSystem& s)
 	const auto joints = groupJoints(s);
 	unmuteUpright(s, joints);
 	for (const Joint& joint : joints) {
-		if (!closedOnMovingBase(s, joint))
+		const bool lands = !findLanding(s, joint).points.empty();
+		if (!lands && !closedOnMovingBase(s, joint))
 			muteOpenPoints(s, joint); // else liftJoints decides
-		if (findClosing(s, joint).points.empty())
+		if (!lands && findClosing(s, joint).points.empty())
 			continue;
 		const double energy = mechanicalEnergy(s);
 		Neighbourhood part = neighbourhood(s, joint);
-		ImpactRecord record = switchPivot(part.system, part.joint, findClosing(part.system, part.joint));
+		ImpactRecord record = lands ? land(part.system, part.joint, findLanding(part.system, part.joint))
+		                            : switchPivot(part.system, part.joint, findClosing(part.system, part.joint));
 		record.block = part.bodies[record.block];
 		record.support = part.bodies[record.support];
 		putBack(part, s);
@@ -297,8 +336,9 @@ namespace {
 // rocks from this instant on); those that stay are returned.
 std::vector<HeldPoint> respondToJump(JointSystem& s, const std::vector<int>& moved, const Vector3& jump, JumpResponse& response)
 {
-	const auto touching = selectPoints(
-	    s.contacts, [](const JointContact& contact, int i) { return !contact.points[i].muted && contact.patch.points[i].gap <= 0; });
+	const auto touching = selectPoints(s.contacts, [](const JointContact& contact, int i) {
+		return !contact.points[i].muted && (contact.patch.points[i].gap <= 0 || loaded(contact, i));
+	});
 	auto rows = impulsePoints(s.contacts, touching);
 	std::vector<CoupleRow> none;
 	const ImpulseReport report = rigid::solveSparsely(s.bodies, rows, none);

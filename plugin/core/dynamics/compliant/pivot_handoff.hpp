@@ -15,6 +15,10 @@
 // Accelerations are not taken from the spring forces, which are noisy, but from the rigid bodies with every loaded point
 // held (rigid_acceleration.hpp). Velocities are those of the leapfrog scheme, half a step before the positions.
 //
+// A joint that lands out of flight does so in the same way: at the instant at which its first points touch, impulses without any
+// restitution stop them, and these points carry the forces of the new phase. They do not rebound; the block goes on about them, until the
+// pivot passes on by the law above. Joints that stand upright land on their springs and dashpots.
+//
 // A base that jumps (a Dirac pulse) is handled by the same back-solve-forth, with all loaded points in one impulse problem.
 #include "dynamics/compliant/joint_contact.hpp"
 #include "impact/rocking_restitution.hpp"
@@ -42,7 +46,8 @@ struct ImpactRecord {
 	int block {-1}, support {-1}; // indices into the list of bodies
 	double before {0};            // tau: how long before the end of the step, s
 	double restitutionAsked {0};  // C, NaN: natural
-	bool switched {false};        // false: the joint came to rest
+	bool switched {false};        // false: the joint came to rest, or landed
+	bool landed {false};          // out of flight: no rocking impact
 	Result result {};             // of the restitution law
 	double work {0};              // of the moved bodies: their impulses, and the changed forces up to the end of the step, J
 	double settled {0}; // what else it takes, by the balance: springs stop and take the pivot forces of the new phase (of either sign), J

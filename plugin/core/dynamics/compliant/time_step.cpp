@@ -21,31 +21,37 @@ std::vector<BodyMatrices> bodyMatrices(const std::vector<Body>& bodies, const st
 	std::vector<bool> freeNeighbour(bodies.size(), false);
 	for (const JointContact& contact : contacts) {
 		const bool bothFree = !bodies[contact.body1].prescribed && !bodies[contact.body2].prescribed;
-		const double mass = reducedMass(bodies[contact.body1], bodies[contact.body2]), area = contact.stiffnessArea();
+		const double mass = reducedMass(bodies[contact.body1], bodies[contact.body2]), turnShare = contact.turnShare();
 		const Vector3& n = contact.patch.normal;
 		const auto tensor = [&n](double normal, double shear) -> Matrix3 {
 			return (normal - shear) * n * n.transpose() + shear * Matrix3::Identity();
 		};
-		const Matrix3 stiffness = tensor(contact.law.normalStiffness * area, contact.law.shearStiffness * area);
-		const Matrix3 damping = tensor(contact.dampingNormal(mass), contact.dampingShear(mass));
+		const auto add = [&](Matrix6& sum, const Vector3& arm, const Matrix3& point) {
+			Matrix3 cross; // velocity at the point: v - cross w
+			cross << 0, -arm.z(), arm.y(), arm.z(), 0, -arm.x(), -arm.y(), arm.x(), 0;
+			const Matrix3 turned = point * cross;
+			sum.topLeftCorner<3, 3>() += point;
+			sum.topRightCorner<3, 3>() -= turned;
+			sum.bottomLeftCorner<3, 3>() -= turned.transpose();
+			sum.bottomRightCorner<3, 3>() += cross.transpose() * turned;
+		};
+		// Of the closed face: a share of the normal springs acts at the points and the rest at their centroid.
+		const auto addFace = [&](Matrix6& sum, const Vector3& center, double normal, double shear) {
+			Vector3 centroid = Vector3::Zero();
+			for (int i = 0; i < contact.size; ++i) {
+				const double weight = contact.patch.points[i].weight;
+				centroid += weight * contact.position(i);
+				add(sum, contact.position(i) - center, weight * tensor(turnShare * normal, shear));
+			}
+			add(sum, centroid - center, tensor((1 - turnShare) * normal, 0));
+		};
 		for (int b : {contact.body1, contact.body2}) {
 			if (bodies[b].prescribed)
 				continue;
 			freeNeighbour[b] = freeNeighbour[b] || bothFree;
-			for (int i = 0; i < contact.size; ++i) {
-				const Vector3 arm = contact.position(i) - bodies[b].pose.position;
-				Matrix3 cross; // velocity at the point: v - cross w
-				cross << 0, -arm.z(), arm.y(), arm.z(), 0, -arm.x(), -arm.y(), arm.x(), 0;
-				const auto add = [&](Matrix6& sum, const Matrix3& point) {
-					const Matrix3 turned = point * cross;
-					sum.topLeftCorner<3, 3>() += point;
-					sum.topRightCorner<3, 3>() -= turned;
-					sum.bottomLeftCorner<3, 3>() -= turned.transpose();
-					sum.bottomRightCorner<3, 3>() += cross.transpose() * turned;
-				};
-				add(result[b].stiffness, contact.patch.points[i].weight * stiffness);
-				add(result[b].damping, contact.patch.points[i].weight * damping);
-			}
+			const Vector3& center = bodies[b].pose.position;
+			addFace(result[b].stiffness, center, contact.normalStiffness(), contact.law.shearStiffness * contact.stiffnessArea());
+			addFace(result[b].damping, center, contact.dampingNormal(mass), contact.dampingShear(mass));
 		}
 	}
 	for (size_t b = 0; b < bodies.size(); ++b)
@@ -93,14 +99,16 @@ double largestTimeStep(const std::vector<Body>& bodies, const std::vector<JointC
 	return accepted;
 }
 
-bool isStableTimeStep(const std::vector<Body>& bodies, const std::vector<JointContact>& contacts, double dt)
+bool isStableTimeStep(const std::vector<Body>& bodies, const std::vector<JointContact>& contacts, double dt, double undamped)
 {
 	const auto matrices = bodyMatrices(bodies, contacts);
 	for (size_t b = 0; b < bodies.size(); ++b) {
 		if (bodies[b].prescribed)
 			continue;
-		const Matrix6 rest = 4 * massMatrix(bodies[b]) - 2 * dt * matrices[b].damping - dt * dt * matrices[b].stiffness;
-		if (Eigen::LLT<Matrix6>(rest).info() != Eigen::Success)
+		const Matrix6 mass = 4 * massMatrix(bodies[b]);
+		const auto isPositive = [](const Matrix6& rest) { return Eigen::LLT<Matrix6>(rest).info() == Eigen::Success; };
+		if (!isPositive(mass - 2 * dt * matrices[b].damping - dt * dt * matrices[b].stiffness) ||
+		    (undamped > dt && !isPositive(mass - undamped * undamped * matrices[b].stiffness)))
 			return false;
 	}
 	return true;

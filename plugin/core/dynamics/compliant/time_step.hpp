@@ -16,7 +16,8 @@ double criticalTimeStep(const std::vector<Body>& bodies, const std::vector<Joint
 // With them, s: the largest step that isStableTimeStep() accepts, to 1e-3 of the critical one. Infinite without a contact.
 double largestTimeStep(const std::vector<Body>& bodies, const std::vector<JointContact>& contacts);
 
-// Whether the scheme is stable with the step dt, s, dashpots included, and all points loaded. Much cheaper than the two above.
-bool isStableTimeStep(const std::vector<Body>& bodies, const std::vector<JointContact>& contacts, double dt);
+// Whether the scheme is stable with the step dt, s, dashpots included, and all points loaded, and without dashpots with the step
+// `undamped`. Much cheaper than the two above.
+bool isStableTimeStep(const std::vector<Body>& bodies, const std::vector<JointContact>& contacts, double dt, double undamped = 0);
 
 } // namespace masonry

@@ -64,21 +64,27 @@ def _largest_pressure(free, gravity):
 
 
 def _choose_stiffness(blocks, penetration, gravity):
-    """Fills in the stiffness per area of every BlockMat that has none: the most loaded joint gets in by `penetration` times the
-    smallest width. Returns a sentence, or None when nothing was chosen."""
+    """Fills in the stiffness per area of every BlockMat that has none: the weight presses the edge of the most loaded joint in by twice the
+    `penetration`, times the smallest width, and the whole face by a quarter of that (joint_contact.hpp). The step follows from the shear stiffness
+    of slender blocks; half of the normal one leaves it as long as the edge needs. Returns a sentence, or None when nothing was chosen."""
     materials = {b.mat.id: b.mat for b in blocks}.values()
     normal, shear = ([m for m in materials if not _is_given(m, name)] for name in ("normalStiffness", "shearStiffness"))
     if normal:
         if gravity == 0:
             raise ValueError("gravity = 0: every BlockMat must have a normalStiffness, there is no weight to choose one by")
         free = [b for b in blocks if b.dynamic]
-        stiffness = _largest_pressure(free, gravity) / (penetration * 2 * _half_sizes(free)[:, :2].min())
+        stiffness = 2 * _largest_pressure(free, gravity) / (penetration * 2 * _half_sizes(free)[:, :2].min())
         for material in normal:
             material.normalStiffness = stiffness
             _chosen.append((material, stiffness))
     for material in shear:
         material.shearStiffness = material.normalStiffness
-    return f"stiffness {stiffness:.3g} Pa/m (the weight presses the joints in by {penetration:g} of the width)" if normal else None
+        if any(material is one for one in normal):
+            material.shearStiffness /= 2
+            _chosen.append((material, material.shearStiffness))
+    if normal:
+        return f"stiffness {stiffness:.3g} Pa/m (the weight presses faces in by {penetration / 2:g} of the width, edges by {2 * penetration:g})"
+    return None
 
 
 def _landing_step(body, alone):
@@ -187,8 +193,8 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
                   come to touch in stiffer joints (a board that falls flat). Too large a step is refused, also in the run.
     tolerance     rigid: residual of the contact laws relative to the speed that gravity gives in a step (above 0, at most 1e-3;
                   None: 1e-9). With method='wall' from 1e-6 to 1e-2, None: 1e-3 (MoreauJeanIntegrator.tolerance)
-    penetration   compliant, where BlockMat gives no stiffness: how far the weight presses the most loaded joint in, relative to
-                  the smallest width (1e-10 to 1e-2; None: 1e-5). The error of rocking angles is about ten times this, and more where
+    penetration   compliant, where BlockMat gives no stiffness: half of the depth by which the weight presses in the edge about which a block
+                  rocks, and twice that of a whole face, relative to the smallest width (1e-10 to 1e-2; None: 1e-5). The error of rocking angles is about ten times this, and more where
                   the base's acceleration jumps (docs/limits.md);
                   the cost grows as its inverse square root.
     impact_order  'simultaneous' or 'sequential': how an impact acts on a structure (impactOrder of the engine). None: 'simultaneous', the
@@ -279,8 +285,8 @@ def _compliant(blocks, motions, reason, dt, penetration, impact_order, gravity, 
         critical = largest = min(_landing_step(b, alone=len(free) == 1) for b in free)
     if dt is not None and not dt <= largest:
         raise ValueError(f"dt = {dt}: must be below {largest:.3g} s, the largest stable step of joints this stiff, dashpots included")
-    O.dt = float(dt if dt is not None else _STEP_FRACTION * critical)
     joints.stepFraction = _STEP_FRACTION if dt is None else 0
+    O.dt = float(dt if dt is not None else min(_STEP_FRACTION * critical, joints.chosenTimeStep))
     reasons.append(f"dt = {O.dt:.3g} s ({O.dt / critical:.2g} of the critical step)")
     print("masonry.dem:", "; ".join(reasons) + notes.of_records(motions))
 

@@ -79,6 +79,89 @@ TEST_CASE("The stiffness of a joint does not depend on the number of its points"
 	}
 }
 
+namespace {
+
+// Moment about the axis through the centroid of the upper block's lower face, of unit direction `axis`.
+double momentAbout(const PressedBlocks& blocks, const Vector3& axis)
+{
+	const Vector3 centroid = blocks.upper.pose.toGlobal({0, 0, -blocks.box.halfSize.z()});
+	double sum = 0;
+	for (int i = 0; i < blocks.contact.size; ++i)
+		sum += axis.dot((blocks.contact.position(i) - centroid).cross(blocks.contact.force(i)));
+	return sum;
+}
+
+// Turned about the axis through that centroid.
+void lean(PressedBlocks& blocks, const Vector3& axis, double angle)
+{
+	const Vector3 arm(0, 0, blocks.box.halfSize.z()), centroid = blocks.upper.pose.toGlobal(-arm);
+	blocks.upper.pose.orientation = Eigen::AngleAxisd(angle, axis) * blocks.upper.pose.orientation;
+	blocks.upper.pose.position = centroid + blocks.upper.pose.orientation * arm;
+	blocks.look();
+	holdForces(blocks.contact);
+}
+
+} // namespace
+
+// Against the second moment b d^3/12 of the area.
+TEST_CASE("A closed face turns with the stiffness of an even bed")
+{
+	for (const Vector3& half : {Vector3(0.5, 0.5, 0.5), Vector3(0.8, 0.2, 0.3), Vector3(0.2, 0.8, 0.3)})
+		for (int axis : {0, 1}) {
+			CAPTURE(half.transpose(), axis);
+			PressedBlocks blocks(0, 1e-6, law, half);
+			const double across = half[1 - axis], along = half[axis], angle = 5e-7 / across;
+			lean(blocks, Vector3::Unit(axis), angle);
+			const double second = 2 * along * std::pow(2 * across, 3) / 12;
+			CHECK(momentAbout(blocks, Vector3::Unit(axis)) == Approx(-law.normalStiffness * second * angle).epsilon(1e-5));
+			CHECK(blocks.total().z() == Approx(law.normalStiffness * blocks.patch.area * 1e-6).epsilon(1e-5));
+		}
+}
+
+// Squares turned against each other overlap in an octagon of unit inradius: the sum over its triangles has the polar second moment
+// A R^2 (2 + cos 45)/6 with the circumradius R, half of it about each axis.
+TEST_CASE("An octagonal face turns with the stiffness of its area")
+{
+	PressedBlocks blocks(0.25 * 3.14159265358979324, 1e-6, law);
+	const double radius = 0.5 / std::cos(3.14159265358979324 / 8),
+	             second = blocks.patch.area * radius * radius * (2 + std::cos(0.78539816)) / 12;
+	REQUIRE(blocks.contact.size == 8);
+	lean(blocks, Vector3::UnitX(), 5e-7);
+	CHECK(momentAbout(blocks, Vector3::UnitX()) == Approx(-law.normalStiffness * second * 5e-7).epsilon(1e-5));
+}
+
+// A face under a constant force that leans until its edge carries all. A pressure without tension opens from N b/6 on:
+// M = N b (1/2 - sqrt(2 p / angle) / 3), p the compression at rest over the width b. The law is linear up to N b/2 at 6 p, where it is
+// 1/2 / (1/2 - 1/sqrt(27)) = 1.63 times as stiff; the edge then bears the force at four times the compression. Springs give back what
+// they take: the work on the way is what they store.
+TEST_CASE("A face that leans opens between the pressure without tension and its edge, and stores the work")
+{
+	const double width = 1, p = 1e-6, k = law.normalStiffness, N = k * p * width * width;
+	PressedBlocks blocks(0, p * width, law);
+	double work = 0, before = 0;
+	const double stored = blocks.contact.normalEnergy();
+	for (int step = 1; step <= 1200; ++step) {
+		const double angle = step * 1e-2 * p, depth = blocks.upper.pose.position.z();
+		blocks.upper.pose.orientation = Eigen::AngleAxisd(angle, Vector3::UnitY());
+		for (int turn = 0; turn < 30; ++turn) { // until the face carries N
+			blocks.look();
+			holdForces(blocks.contact);
+			blocks.upper.pose.position.z() += (blocks.total().z() - N) / (k * width * width);
+		}
+		const double moment = -momentAbout(blocks, Vector3::UnitY());
+		work += 0.5 * (before + moment) * 1e-2 * p - N * (blocks.upper.pose.position.z() - depth);
+		before = moment;
+		INFO("angle over penetration " << angle / p);
+		const double exact = angle < 2 * p ? N * angle / (12 * p) : N * (0.5 - std::sqrt(2 * p / angle) / 3);
+		CHECK(moment == Approx(N * std::min(angle / (12 * p), 0.5)).epsilon(2e-3)); // of the arms, which lean by the compression
+		CHECK(moment > 0.998 * exact);
+		CHECK(moment < 1.64 * exact);
+	}
+	CHECK(blocks.contact.normalEnergy() - stored == Approx(work).epsilon(1e-2));
+	CHECK(-blocks.patch.points[0].gap + -blocks.patch.points[1].gap + -blocks.patch.points[2].gap + -blocks.patch.points[3].gap ==
+	      Approx(4 * (4 * p - 0.5 * 12 * p)).epsilon(1e-2));
+}
+
 TEST_CASE("Shear is elastic up to mu N and slips beyond, and the work done goes where the energies say")
 {
 	PressedBlocks blocks(0, 1e-6, law);
@@ -184,7 +267,8 @@ TEST_CASE("A muted point carries nothing, an open one neither, and no joint pull
 	blocks.contact.points[0].muted = true;
 	blocks.move(Vector3::Zero());
 	CHECK(blocks.contact.force(0).norm() == 0);
-	CHECK(blocks.total().z() == Approx(0.75 * 1e9 * 1e-6).epsilon(1e-9));
+	// Three corners with the share w = 3/4 of a rectangle, r = 1/3: r w / (1 - (1 - r) w) of the face.
+	CHECK(blocks.total().z() == Approx(0.5 * 1e9 * 1e-6).epsilon(1e-9));
 	blocks.move({0, 0, 0.9e-6}); // leaves fast: the dashpot would pull
 	for (int i = 0; i < blocks.contact.size; ++i)
 		CHECK(blocks.contact.points[i].normalForce >= 0);

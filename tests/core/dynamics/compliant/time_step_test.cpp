@@ -66,7 +66,13 @@ struct Assembly {
 		}
 		for (const JointContact& contact : contacts) {
 			const double inverse = bodies[contact.body1].inverseMass() + bodies[contact.body2].inverseMass();
-			for (int i = 0; i < contact.size; ++i) {
+			// The face turns as if springs of the share r stood at its points and the rest at their centroid (joint_contact.hpp).
+			const double turnShare = contact.turnShare();
+			Vector3 centroid = Vector3::Zero();
+			for (int i = 0; i < contact.size; ++i)
+				centroid += contact.patch.points[i].weight * contact.patch.points[i].position1;
+			for (int i = 0; i <= contact.size; ++i) {
+				const Vector3 place = i < contact.size ? contact.patch.points[i].position1 : centroid;
 				// Relative velocity of the point for a unit velocity of each coordinate.
 				Eigen::MatrixXd rates = Eigen::MatrixXd::Zero(3, n);
 				for (size_t k = 0; k < free.size(); ++k)
@@ -75,18 +81,19 @@ struct Assembly {
 						moving.velocity.setZero();
 						moving.angularVelocity.setZero();
 						(axis < 3 ? moving.velocity : moving.angularVelocity)[axis % 3] = 1;
-						const Vector3 at = moving.velocityAt(contact.patch.points[i].position1);
+						const Vector3 at = moving.velocityAt(place);
 						rates.col(6 * int(k) + axis) = (contact.body2 == free[k] ? at : Vector3(Vector3::Zero())) -
 						                               (contact.body1 == free[k] ? at : Vector3(Vector3::Zero()));
 					}
 				const Eigen::RowVectorXd along = contact.patch.normal.transpose() * rates;
 				const Eigen::MatrixXd across = rates - contact.patch.normal * along;
-				const double weight = contact.patch.points[i].weight;
+				const double shear = i < contact.size ? contact.patch.points[i].weight : 0;
+				const double weight = i < contact.size ? turnShare * shear : 1 - turnShare;
 				const double kn = contact.law.normalStiffness * contact.patch.area, ks = contact.law.shearStiffness * contact.patch.area;
 				const double zeta = contact.law.dampingRatio;
-				stiffness += weight * (kn * along.transpose() * along + ks * across.transpose() * across);
-				damping += weight * 2 * zeta / std::sqrt(inverse) *
-				           (std::sqrt(kn) * along.transpose() * along + std::sqrt(ks) * across.transpose() * across);
+				stiffness += weight * kn * along.transpose() * along + shear * ks * across.transpose() * across;
+				damping += 2 * zeta / std::sqrt(inverse) *
+				           (weight * std::sqrt(kn) * along.transpose() * along + shear * std::sqrt(ks) * across.transpose() * across);
 			}
 		}
 		const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(n, n), kept = one - dt * mass.ldlt().solve(damping);
