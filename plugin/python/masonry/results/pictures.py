@@ -67,17 +67,17 @@ def _check(color, enlarge):
 
 def _framed(history, samples, enlarge, view):
     """Points in the picture that it shows: the blocks as they were at first and as they stand in the samples, and of those that have fallen what lies
-    beside the first shape, up to a part of its size away: blocks that fall off their base do not shrink the others."""
+    beside the first shape, up to its size away: blocks that fall off their base do not shrink the others."""
     free, down = history.free, lies(history)
-    first = view.place(history.corners(0)[free]).reshape(-1, 2)
-    reach = _BESIDE * np.ptp(first, axis=0).max()
-    low, high = first.min(axis=0) - [reach, 0], first.max(axis=0) + [reach, 0]
+    first = history.corners(0)[free].reshape(-1, 3)
+    reach = np.array([1, 1, 0]) * _BESIDE * np.ptp(first, axis=0).max()
+    low, high = first.min(axis=0) - reach, first.max(axis=0) + reach
     points = [first]
     for k in samples:
-        corners, fell = view.place(history.corners(k, enlarge)), down[k]
-        points += [corners[free & ~fell].reshape(-1, 2), np.clip(corners[free & fell].reshape(-1, 2), low, high)]
+        corners, fell = history.corners(k, enlarge), down[k]
+        points += [corners[free & ~fell].reshape(-1, 3), np.clip(corners[free & fell].reshape(-1, 3), low, high)]
     points = np.concatenate(points)
-    return points[np.isfinite(points).all(axis=1)]
+    return view.place(points[np.isfinite(points).all(axis=1)])
 
 
 def _figure(view, shown, columns=1):
