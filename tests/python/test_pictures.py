@@ -214,6 +214,12 @@ def test_pictures_and_films_are_of_the_structure_and_not_of_what_falls_away():
     left, right, low, high = frames[0]
     assert left < -2 and right > 2 and low < 0 and high > 3  # all of the first shape
     assert right - left < 12 * 1.2 and high - low < 3 + 2 * 0.06 * 8 + 0.1
+    # Seen from above, what has fallen towards the viewer is in the picture too: 2 m in front of the wall.
+    h = falling(2.6)
+    h.position[1:, 3, :2] = 0, -2
+    painter = pictures._Painter(h, [2], 1.0, "displacement", (0.4, -1, 0.5), "")
+    axes, corner = painter.figure.axes[0], painter._view.place(h.corners(2)[3])
+    assert axes.get_ylim()[0] < corner[:, 1].min() + 0.4
     # What stands is in the picture, wherever it has gone and however much it is enlarged.
     h = facade((30, 0, 0))
     axes = pictures._Painter(h, [1], 2.0, "displacement", None, "").figure.axes[0]

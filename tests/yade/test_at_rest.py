@@ -50,6 +50,24 @@ def test_walls_stand_at_rest_and_not_on_a_base_that_moves(model):
     assert not dem.at_rest()
 
 
+@pytest.mark.parametrize("model, method", (("planar", "wall"), ("spatial", "wall"), ("planar", "localised"), ("compliant", "auto")))
+def test_what_has_been_shaken_comes_to_rest(model, method):
+    """Within half a second, and stays at rest: the forces that a solver leaves are within what counts as a balance. Walls of 126 blocks, stacks of four."""
+    base, material = dem.base((14, 4, 0.2), stone(noSlip=False, frictionAngle=0.6)), stone(noSlip=False, frictionAngle=0.6)
+    if method == "wall":
+        dem.wall(courses=12, per_course=10, size=(0.4, 0.2, 0.2), material=material, on=base)
+    else:
+        dem.stack(4, (0.6, 0.5, 0.4), material, on=base)
+    motion = dem.record_motion(masonry.artificial_record(seed=1, peak=3.0, duration=0.5, frequency=2.0), ids=[base])
+    O.engines = quiet_engines(motion, model=model, **({} if model == "compliant" else {"method": method}))
+    dem.run(1.0)
+    found = []
+    for _ in range(20):
+        dem.run(0.005)
+        found.append(dem.at_rest())
+    assert all(found), found
+
+
 @pytest.mark.parametrize("model", MODELS)
 def test_what_falls_is_not_at_rest(model):
     dem.base((6, 2, 0.2), stone(0.7))

@@ -215,6 +215,31 @@ def test_a_wall_recorded_without_its_base(ids, said):
     assert ("WallRecorder.ids has no prescribed body" in text) == said
 
 
+@pytest.mark.parametrize("model", MODELS)
+def test_two_walls_on_two_bases_under_two_records(model):
+    """Each is measured against its own base: neither moves on it by more than what YADE's states say."""
+    material = stone(noSlip=False, frictionAngle=0.6)
+    bases = [dem.base((2, 1, 0.2), material) for _ in range(2)]
+    O.bodies[bases[1]].state.pos += Vector3(3, 0, 0)
+    walls = [dem.wall(courses=2, per_course=2, size=(0.4, 0.3, 0.2), material=material, on=base) for base in bases]
+    motions = [dem.record_motion(masonry.artificial_record(seed=k + 1, peak=1 + 2 * k, duration=0.5, frequency=2.0), ids=[base]) for k, base in enumerate(bases)]
+    _, h = recorded(0.5, model, motions)
+    assert h.bases.tolist() == [0, 1] + [0] * len(walls[0]) + [1] * len(walls[1])
+    apart = np.ptp(h.position[:, 1, 0] - h.position[:, 0, 0])
+    assert apart > 1e-3 and h.drift().max() < 1e-3 * apart / 0.4 and (np.abs(h.displacement) < 1e-3 * apart).all()
+    assert results.collapse(h).verdict == "stands"
+
+
+def test_a_recorder_that_lacks_one_of_two_bases():
+    """What stands on it would be measured against the other."""
+    bases = [dem.base((2, 1, 0.2), stone()) for _ in range(2)]
+    O.bodies[bases[1]].state.pos += Vector3(5, 0, 0)
+    blocks = [dem.stack(2, (0.4, 0.5, 0.5), stone(), on=base) for base in bases]
+    for ids, lacks in (([*bases, *blocks[0], *blocks[1]], None), ([bases[0], *blocks[0]], None), ([bases[0], blocks[1][1]], bases[1]), ([bases[1], *blocks[0], *blocks[1]], bases[0])):
+        text = said_by(dem.engines, recorder=dem.WallRecorder(iterPeriod=1, ids=ids))
+        assert ("WallRecorder.ids has not the base of all its blocks" in text) == (lacks is not None) and (lacks is None or f"add {lacks} where it moves" in text), (ids, text)
+
+
 @pytest.mark.parametrize("attributes, word", (({"iterPeriod": 0}, "iterPeriod"), ({"ids": [99]}, "99")))
 def test_attributes_that_cannot_be_meant(attributes, word):
     base, block, theory = one_block(5)

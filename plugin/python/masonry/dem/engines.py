@@ -159,7 +159,7 @@ def _check_arguments(model, method, impact_order, penetration, tolerance, dt, gr
         raise ValueError(f"gravity = {gravity}: must be 0, or from {_GRAVITIES[0]:g} to {_GRAVITIES[1]:g}, in m/s^2")
 
 
-def _check_engines(motions, recorders, others):
+def _check_engines(motions, recorders, others, blocks):
     for item in motions:
         if isinstance(item, Motion):
             raise ValueError(f"motion = {shown(item)}: is of the theory, without a body that it moves: must be {_in_yade(item)}")
@@ -171,8 +171,8 @@ def _check_engines(motions, recorders, others):
         if not isinstance(item, (wrapper.BlockRecorder, wrapper.WallRecorder)):
             raise ValueError(f"recorder = {shown(item)}: must be a BlockRecorder, a WallRecorder or a list of them")
         check_recorder(item)
-        left_out = len(_boxes()) - len(item.ids)
-        if getattr(item, "recordForces", False) and item.ids and left_out > 0:
+        left_out = len({body.id for body in blocks} - set(item.ids))
+        if getattr(item, "recordForces", False) and item.ids and left_out:
             notes.say(f"WallRecorder.ids leaves out {_counted(left_out, 'block')}: forces of their joints are not recorded, and the recorded reactions of the base lack them")
     if not isinstance(others, (list, tuple)) or not all(isinstance(one, wrapper.Engine) for one in others):
         raise ValueError(f"others = {shown(others)}: must be a list of engines")
@@ -216,7 +216,7 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
     notes.said.clear()
     _check_arguments(model, method, impact_order, penetration, tolerance, dt, gravity)
     gravity, motions, recorders, blocks = float(gravity), _several(motion), _several(recorder), _boxes()
-    _check_engines(motions, recorders, others)
+    _check_engines(motions, recorders, others, blocks)
     if not any(b.dynamic for b in blocks):
         raise ValueError("there is no free block in O.bodies: add one with dem.block() before dem.engines()")
     for body in blocks:

@@ -6,6 +6,7 @@ import numpy as np
 from masonry._given import number_given, shown
 from masonry._pose import axes_of
 from masonry.dem import walls
+from masonry.results.own_bases import own_bases
 from yade import O, Quaternion, Vector3, utils, wrapper
 
 _AXES = {"x": 0, "y": 1}
@@ -66,8 +67,18 @@ def check_recorder(recorder):
     if recorder.times:  # it goes on, also without blocks that have been erased since
         return
     bodies = [_box(id) for id in recorder.ids]
-    if wall and bodies and all(b.dynamic for b in bodies) and not all(b.dynamic for b in _boxes()):
-        print(f"masonry.dem: {name}.ids has no prescribed body: drifts and falls will not be relative to the base: add its id where it moves")
+    left_out = _bases_left_out({b.id for b in bodies}) if wall and bodies else []
+    if left_out:
+        lacks = "no prescribed body" if all(b.dynamic for b in bodies) else "not the base of all its blocks"
+        print(f"masonry.dem: {name}.ids has {lacks}: drifts and falls will not be relative to the base: add {listed(left_out)} where it moves")
+
+
+def _bases_left_out(ids):
+    """Ids of the prescribed bodies on which some of the blocks stand, and which are not among them."""
+    boxes = _boxes()
+    centers, sizes, quaternions = _layout(boxes)
+    bases = own_bases(centers, sizes, axes_of(quaternions), np.array([b.dynamic for b in boxes]))
+    return sorted({boxes[base].id for body, base in zip(boxes, bases) if base >= 0 and body.id in ids} - ids)
 
 
 def _axis(name):

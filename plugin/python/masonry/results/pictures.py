@@ -67,17 +67,17 @@ def _check(color, enlarge):
 
 def _framed(history, samples, enlarge, view):
     """Points in the picture that it shows: the blocks as they were at first and as they stand in the samples, and of those that have fallen what lies
-    beside the first shape, up to a part of its size away: blocks that fall off their base do not shrink the others."""
+    beside the first shape, up to its size away: blocks that fall off their base do not shrink the others."""
     free, down = history.free, lies(history)
-    first = view.place(history.corners(0)[free]).reshape(-1, 2)
-    reach = _BESIDE * np.ptp(first, axis=0).max()
-    low, high = first.min(axis=0) - [reach, 0], first.max(axis=0) + [reach, 0]
+    first = history.corners(0)[free].reshape(-1, 3)
+    reach = np.array([1, 1, 0]) * _BESIDE * np.ptp(first, axis=0).max()
+    low, high = first.min(axis=0) - reach, first.max(axis=0) + reach
     points = [first]
     for k in samples:
-        corners, fell = view.place(history.corners(k, enlarge)), down[k]
-        points += [corners[free & ~fell].reshape(-1, 2), np.clip(corners[free & fell].reshape(-1, 2), low, high)]
+        corners, fell = history.corners(k, enlarge), down[k]
+        points += [corners[free & ~fell].reshape(-1, 3), np.clip(corners[free & fell].reshape(-1, 3), low, high)]
     points = np.concatenate(points)
-    return points[np.isfinite(points).all(axis=1)]
+    return view.place(points[np.isfinite(points).all(axis=1)])
 
 
 def _figure(view, shown, columns=1):
@@ -160,7 +160,7 @@ def shape_figure(history, time=None, enlarge=None, color="displacement", view=No
 
 def draw(history, path, time=None, enlarge=None, color="displacement", view=None, title=""):
     """Writes a picture (.png, .pdf, .svg) of the displaced structure: relative to its base, with the blocks as they were at first dashed
-    behind it. Where no corner has moved by more than 1e-6 of the structure's size, blocks are grey and the title says so.
+    behind it. It shows all that stands, and of the blocks that have fallen those that lie beside the first shape, up to its size away. Where no corner has moved by more than 1e-6 of the structure's size, blocks are grey and the title says so.
 
     time       the sample nearest to it is drawn, s; None: the one in which the drift (WallHistory.drift) is largest, before the first block falls where
                one does
@@ -268,12 +268,13 @@ def _thrust_panel(history, axes, view, time, title):
 
 
 def draw_joints(history, path, time=None, view=None, title=""):
-    """Writes a picture with two maps on the undisplaced structure: opening and slip of each joint (joints()), in mm. time: the sample nearest
-    to it, s; None: the largest of each joint. view: as in draw(). As in joints(), an opening or a slip counts until the first of the two blocks has fallen; where nothing opened, or slid, by more than 1e-6 of the structure's size, the map is grey and its title says so, as where no blocks
-    touch in the first sample (a run that starts with a tilted block).
+    """Writes a picture with two maps on the undisplaced structure: opening and slip of each joint (joints()), in mm, which count until the first of the two
+    blocks has fallen. time: the sample nearest to it, s; None: the largest of each joint. view: as in draw(). Where nothing opened, or slid, by more than 1e-6
+    of the structure's size, the map is grey and its title says so, as where no blocks touch in the first sample (a run that starts with a tilted block).
 
     Where the forces of the joints were recorded (WallRecorder.recordForces), a third map has the lines of thrust: the resultant of each joint at `time` (None:
-    at the largest drift before the first block falls), as a line in its direction whose length is its size, and a dot where it crosses the joint; those below 2 % of the largest are left out."""
+    at the largest drift before the first block falls), as a line in its direction whose length is its size, and a dot where it crosses the joint; those
+    below 2 % of the largest are left out."""
     _save(joints_figure(history, time, view, title), path)
 
 
