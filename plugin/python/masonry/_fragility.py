@@ -21,7 +21,7 @@ from .motions import Record
 _LEVELS, _BINS = 50, 12
 # Relative difference of measures that are the same: sums over a record have round-off.
 _SAME = 1e-9
-_SA = re.compile(r"Sa\(([\d.]+)\)")
+_SA = re.compile(r"Sa\((\d+\.?\d*|\.\d+)\)")
 _MEASURES = {
     "PGA": ("m/s^2", lambda record: _pga(record), lambda block: 1.0),
     "PGA/g": ("", lambda record: _pga(record) / STANDARD_GRAVITY, lambda block: 1.0),

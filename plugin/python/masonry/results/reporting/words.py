@@ -1,5 +1,6 @@
 """WallHistory.about in words."""
 
+import functools
 import math
 
 _GRAVITY = 9.80665  # m/s^2, as records are given in g
@@ -35,6 +36,19 @@ def motion(given):
     return f"{given['pulses']} pulses ({given['shape']}) of impulse {quantity(given['impulse'], 'm/s')}, along ({direction}){start}"
 
 
+def _written_by_masonry(sentences):
+    """The function of `about`; where that, which may come from a file, lacks what masonry writes into it, ValueError."""
+    @functools.wraps(sentences)
+    def checked(about):
+        try:
+            return sentences(about)
+        except (KeyError, TypeError, ValueError, AttributeError, IndexError) as error:
+            raise ValueError(f"about of the history: must be what masonry has written ({type(error).__name__}: {error})") from None
+
+    return checked
+
+
+@_written_by_masonry
 def facts(about):
     """Rows (name, value) of the table of what was run."""
     rows = [("Script", about["script"])] if about.get("script") else []
@@ -57,6 +71,7 @@ def facts(about):
     return rows
 
 
+@_written_by_masonry
 def solver(about):
     """Rows (name, value, meaning) on how well the laws were met."""
     given, model = about.get("solver", {}), about.get("model", {})
@@ -74,6 +89,7 @@ def solver(about):
     return rows
 
 
+@_written_by_masonry
 def failures(about):
     """Sentences on failures of the solver."""
     given = about.get("solver", {})
