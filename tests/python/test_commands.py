@@ -170,8 +170,20 @@ def test_examples_of_the_help_work(command, folder, help):
         assert status == 0 and "wrote" in said, mistake
 
 
-def test_a_progress_bar_is_drawn(folder):
-    line = "spectrum rocking --motion sine --amplitude 1:3:3 --frequency 2 --width 0.4 --slenderness 5"
-    run = subprocess.run([sys.executable, "-m", "masonry", *shlex.split(line)],
-                         capture_output=True, text=True, env={**os.environ, "PYTHONPATH": str(Path(masonry.__file__).parents[1])})
-    assert run.returncode == 0 and "rocking: 100%" in run.stderr
+@pytest.mark.parametrize("line, bar", [("spectrum rocking --motion sine --amplitude 1:3:3 --frequency 2 --width 0.4 --slenderness 5", "rocking: 100%"),
+                                       ("spectrum response r0.csv --unit m/s^2 --period 0.5,1", "response: 100%"),
+                                       ("fragility r0.csv r1.csv --unit m/s^2 --width 0.4 --height 2 --scales 1:3:3", "fragility: 100%")])
+def test_a_progress_bar_is_drawn_in_a_terminal_and_not_in_a_log(folder, line, bar):
+    pytest.importorskip("tqdm")
+    command = [sys.executable, "-m", "masonry", *shlex.split(line)]
+    environment = {**os.environ, "PYTHONPATH": str(Path(masonry.__file__).parents[1])}
+    run = subprocess.run(command, capture_output=True, text=True, env=environment)
+    assert run.returncode == 0 and run.stderr == ""
+    for more, drawn in ((), True), (("--quiet",), False):
+        here, there = os.openpty()
+        assert subprocess.run([*command, *more], stdout=subprocess.DEVNULL, stderr=there, env=environment).returncode == 0
+        os.write(there, b"\n")  # so that there is something to read
+        said = os.read(here, 100000).decode()
+        os.close(here)
+        os.close(there)
+        assert (bar in said) == drawn

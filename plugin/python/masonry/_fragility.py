@@ -173,7 +173,7 @@ def fragility(block, records, scales=None, levels=None, measure="PGA", restituti
                acceleration at 5 % damping, m/s^2
     restitution, restoring    as of simulate(); restitution broadcasts with the blocks
     vertical   records of the vertical motion, one for each of `records`, multiplied by the same scale; or None
-    progress   a progress bar (tqdm)
+    progress   a progress bar (tqdm); None: where stderr is a terminal
 
     The intervals allow for histories under one record not being independent of each other: they hold for new records of the same kind."""
     records = _records("records", records)

@@ -56,7 +56,11 @@ def read_records(given):
 
 def add_output(parser, name):
     parser.add_argument("-o", "--output", type=Path, default=Path(name), metavar="NAME", help=f"NAME.csv and NAME.png are written (default: {name})")
-    parser.add_argument("--quiet", action="store_true", help="no progress bar")
+    parser.add_argument("--quiet", action="store_true", help="no progress bar, which is drawn only where stderr is a terminal")
+
+
+def progress(given):
+    return False if given.quiet else None
 
 
 def write(result, given, **picture):

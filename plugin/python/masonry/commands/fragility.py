@@ -46,7 +46,7 @@ def _of_block(given):
     block = masonry.RockingBlock.from_size(given.width, given.height)
     scales, levels = (None if value is None else [value] if isinstance(value, float) else value for value in (given.scales, given.levels))
     return masonry.fragility(block, _given.read_records(given), scales, levels, given.measure or "PGA", given.restitution, confidence=given.confidence,
-                             progress=not given.quiet)
+                             progress=_given.progress(given))
 
 
 def _of_table(given):

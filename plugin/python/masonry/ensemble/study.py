@@ -23,7 +23,7 @@ class CasesFailed(RuntimeError):
         self.table = table
 
 
-def run(script, cases, folder, function="run", processes=None, time_limit=None, progress=True, executor=None, slice=None, gather=False, units=None,
+def run(script, cases, folder, function="run", processes=None, time_limit=None, progress=None, executor=None, slice=None, gather=False, units=None,
         dimensions=None):
     """Calls the function `function(case)` of a Python file inside YADE, one process a case, and returns the table of what came out.
 
@@ -33,7 +33,7 @@ def run(script, cases, folder, function="run", processes=None, time_limit=None, 
     folder        one .npz file a finished case, and the tables ensemble.nc, ensemble.csv and ensemble.npz; made if it is not there
     processes     how many run at once on this machine; None: one for each core that this process may use. Each has one thread.
     time_limit    s of wall clock after which a case is stopped, and counts as failed unless its result is there; None: no limit
-    progress      a progress bar (tqdm)
+    progress      a progress bar (tqdm); None: where stderr is a terminal
     executor      where the cases run: any executor of concurrent.futures, for instance mpi4py.futures.MPIPoolExecutor() or the get_executor() of a Dask
                   Client. Its workers start YADE; script, folder and masonry must be on a file system that they share. None: on this machine.
     slice         'k/n' or (k, n): computes only the cases k, k + n, k + 2n, ... and returns their table, without writing tables. Several slices may run
