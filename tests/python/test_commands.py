@@ -25,6 +25,8 @@ def folder(tmp_path, monkeypatch):
     for k, record in enumerate(RECORDS):
         rows = [f"{record.dt * i:.4f},{a!r}" for i, a in enumerate(record.samples.tolist())]
         (tmp_path / f"r{k}.csv").write_text("\n".join(["time,acceleration", *rows]) + "\n")
+    for name, content in (("empty", b""), ("header", b"x,collapsed\n"), ("uneven", b"x,collapsed\n1,True,3\n2,False\n"), ("binary", bytes(range(256)))):
+        (tmp_path / f"{name}.csv").write_bytes(content)
     values = "\n".join(f"{a / 9.80665:.9E}" for a in RECORDS[0].samples)
     (tmp_path / "quake.AT2").write_text(f"PEER\nTEST\nACCELERATION TIME HISTORY IN UNITS OF G\nNPTS= {len(RECORDS[0].samples)}, DT= .0100 SEC\n{values}\n")
     return tmp_path
@@ -120,6 +122,14 @@ def test_fragility_of_a_table(command, folder):
     ("fragility --table r0.csv", "--table needs --measure"),
     ("fragility --table r0.csv --measure peak", "'peak': is no column of the table, which has time, acceleration"),
     ("spectrum rocking --width 0.4 --slenderness x", "argument --slenderness: 'x' is no list of numbers"),
+    ("spectrum rocking --width 0.4 --slenderness 1:8:1000000000", "is no list of numbers: write 0.5, or 0.4,0.6,1.2, or 0.5:4:20, or 0.1:10:20:log, at most a million"),
+    ("spectrum rocking --width 0.4 --slenderness 1:1e400:3", "is no list of numbers"), ("spectrum rocking --width nan --slenderness 5", "'nan' is no list of numbers"),
+    ("spectrum rocking --motion sine --amplitude 1:8:10000 --frequency 1:8:10000 --width .4 --slenderness 5", "100000000 points of the grid must be at most 10000000"),
+    ("spectrum rocking --motion sine --amplitude 1,1e38 --frequency 1 --width .4 --slenderness 5 --quiet", "acceleration of the base at 0 s = 1e+38: must be at most"),
+    ("fragility --table none.csv --measure x", "none.csv"), ("fragility --table empty.csv --measure x", "empty.csv: has no rows"),
+    ("fragility --table header.csv --measure x", "header.csv: has no rows"), ("fragility --table uneven.csv --measure x", "uneven.csv: must be a table in CSV"),
+    ("fragility --table binary.csv --measure x", "binary.csv: must be a table in CSV"), ("report binary.csv", "is no WallHistory, or a damaged one"),
+    ("fragility r0.csv r1.csv --unit m/s^2 --width 0.4 --height 2 --scales 1:2:3 --measure Sa(1.2.3)", "measure = 'Sa(1.2.3)'"),
     ("spectrum rocking --width 0.4 --slenderness 5", "give --motion or one record"),
     ("spectrum rocking --motion sine --amplitude 2 --width 0.4 --slenderness 5 --quiet", "missing a required argument: 'frequency'"),
     ("spectrum rocking r0.csv r1.csv --unit g --width 0.4 --slenderness 5", "2 records were given"),
@@ -160,8 +170,20 @@ def test_examples_of_the_help_work(command, folder, help):
         assert status == 0 and "wrote" in said, mistake
 
 
-def test_a_progress_bar_is_drawn(folder):
-    line = "spectrum rocking --motion sine --amplitude 1:3:3 --frequency 2 --width 0.4 --slenderness 5"
-    run = subprocess.run([sys.executable, "-m", "masonry", *shlex.split(line)],
-                         capture_output=True, text=True, env={**os.environ, "PYTHONPATH": str(Path(masonry.__file__).parents[1])})
-    assert run.returncode == 0 and "rocking: 100%" in run.stderr
+@pytest.mark.parametrize("line, bar", [("spectrum rocking --motion sine --amplitude 1:3:3 --frequency 2 --width 0.4 --slenderness 5", "rocking: 100%"),
+                                       ("spectrum response r0.csv --unit m/s^2 --period 0.5,1", "response: 100%"),
+                                       ("fragility r0.csv r1.csv --unit m/s^2 --width 0.4 --height 2 --scales 1:3:3", "fragility: 100%")])
+def test_a_progress_bar_is_drawn_in_a_terminal_and_not_in_a_log(folder, line, bar):
+    pytest.importorskip("tqdm")
+    command = [sys.executable, "-m", "masonry", *shlex.split(line)]
+    environment = {**os.environ, "PYTHONPATH": str(Path(masonry.__file__).parents[1])}
+    run = subprocess.run(command, capture_output=True, text=True, env=environment)
+    assert run.returncode == 0 and run.stderr == ""
+    for more, drawn in ((), True), (("--quiet",), False):
+        here, there = os.openpty()
+        assert subprocess.run([*command, *more], stdout=subprocess.DEVNULL, stderr=there, env=environment).returncode == 0
+        os.write(there, b"\n")  # so that there is something to read
+        said = os.read(here, 100000).decode()
+        os.close(here)
+        os.close(there)
+        assert (bar in said) == drawn

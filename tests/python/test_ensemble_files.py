@@ -8,7 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 from masonry import _build, ensemble
-from masonry.ensemble.cases import keys, path_of
+from masonry.ensemble.cases import keys, path_of, plain
 from masonry.ensemble.slices import of_slurm, slice_given
 
 CASES = [{"peak": peak, "seed": seed, "wall": wall} for peak, seed, wall in ((0.4, 1, "pier"), (0.4, 2**40, "façade"), (0.8, 7, ""))]
@@ -24,7 +24,7 @@ def study(folder, change=lambda outcome, row: outcome, cases=CASES):
     for row, (case, key) in enumerate(zip(cases, keys(script.resolve(), "run", cases))):
         outcome = {"collapsed": row == 1, "peak_drift": 0.1 * row, "fallen": row, "verdict": "stands", "drift": TIMES[:5 - row] + row, "time": TIMES[:5 - row],
                    "hits": np.arange(2 * row).reshape(row, 2), "lean": np.full((2, 3), row, dtype=np.float32)}
-        np.savez_compressed(path_of(results, key), case="", **{name: np.asarray(value) for name, value in change(outcome, row).items()})
+        np.savez_compressed(path_of(results, key), case=plain(case), **{name: np.asarray(value) for name, value in change(outcome, row).items()})
     return script, results
 
 
@@ -59,6 +59,73 @@ def test_xarray_reads_the_table_and_the_arrays(tmp_path):
 def test_the_table_is_read_as_it_was_returned(tmp_path):
     table, folder = gathered(tmp_path)
     assert ensemble.load(folder).tobytes() == table.tobytes() and ensemble.load(str(folder)).dtype == table.dtype
+
+
+# a study's cases, and what the function returns for each
+NAMES = [{"α": 1, "a/b": 2, "k": 10**30}, {"α": 2, "a/b": 3, "k": 7}]
+RETURNED = [{"a_b": 1.0, "β": 2.0, "_": 3.0, "é": np.arange(2.0)}, {"a_b": 4.0, "β": 5.0, "_": 6.0, "é": np.arange(2.0) + 1}]
+
+
+def results_of(folder, cases, returned):
+    """(script, folder) with results as the cases write them."""
+    script, results = folder / "scene.py", folder / "out"
+    script.write_text("")
+    results.mkdir()
+    for case, key, outcome in zip(cases, keys(script.resolve(), "run", cases), returned):
+        np.savez_compressed(path_of(results, key), case=plain(case), **{name: np.asarray(value) for name, value in outcome.items()})
+    return script, results
+
+
+def test_columns_of_any_name_are_kept(tmp_path):
+    script, folder = results_of(tmp_path, NAMES, RETURNED)
+    table = ensemble.run(script, NAMES, folder, gather=True)
+    assert table.dtype.names == ("α", "a/b", "k", "a_b", "β", "_") and table["k"].tolist() == [str(10**30), "7"]
+    assert ensemble.load(folder).tolist() == table.tolist() and (folder / "ensemble.csv").read_text(encoding="utf-8").startswith("α,a/b,k,a_b,β,_\n")
+    pytest.importorskip("xarray")
+    data = ensemble.dataset(folder)
+    found = {variable.attrs.get("long_name", name): variable.values.tolist() for name, variable in data.variables.items()}
+    assert found == {**{name: table[name].tolist() for name in table.dtype.names}, "é": [[0, 1], [1, 2]]}
+    assert set(data.coords) == {"__2", "a_b_2", "k"}
+
+
+def test_tables_are_made_of_what_the_cases_have_returned(tmp_path, capsys):
+    """Names that only some cases return, arrays of other dimensions and a name that is a key, too, lose no table: the cases have been computed."""
+    cases = [{"x": 1, "seed": 1}, {"x": 1, "seed": 2}]
+    script, folder = results_of(tmp_path, cases, [{"x": 0.5, "n": 3, "drift": np.zeros(3), "odd": np.zeros(2)}, {"x": 0.7, "late": True, "odd": np.zeros((2, 2))}])
+    table = ensemble.run(script, cases, folder, gather=True)
+    assert table.dtype.names == ("x", "seed", "x_result", "n", "late") and table["x_result"].tolist() == [0.5, 0.7]
+    assert np.isnan(table["n"][1]) and table["n"][0] == 3 and np.isnan(table["late"][0]) and table["late"][1] == 1
+    said = capsys.readouterr().out
+    for words in ("x is a key of the cases and of what the function returns, which is x_result in the tables", "n is missing in 1 of 2 cases: it is nan there",
+                  "odd is not in ensemble.nc: it has 1 or 2 dimensions"):
+        assert words in said
+    pytest.importorskip("xarray")
+    assert set(ensemble.dataset(folder).variables) == {"x", "seed", "x_result", "n", "late", "drift"}
+
+
+@pytest.mark.parametrize("case, words", [({"": 1}, "its key '' must be a text"), ({1: 2}, "its key 1 must be a text"), ({"a": "\ud800"}, "must be a dict of numbers"),
+                                         ({"a": object()}, "must be a dict of numbers")])
+def test_cases_that_no_table_can_hold_are_refused_first(tmp_path, case, words):
+    script = tmp_path / "scene.py"
+    script.write_text("")
+    with pytest.raises(ValueError, match=words):
+        ensemble.run(script, [case], tmp_path / "out")
+    assert not (tmp_path / "out").exists()
+
+
+def test_results_of_another_case_are_not_taken(tmp_path, capsys):
+    script, folder = study(tmp_path)
+    first, second, third = (path_of(folder, key) for key in keys(script.resolve(), "run", CASES))
+    third.write_bytes(second.read_bytes())
+    first.unlink()
+    first.mkdir()
+    with pytest.raises(RuntimeError, match=r"2 of 3 cases are missing; 1 are kept") as error:
+        ensemble.run(script, CASES, folder, gather=True)
+    assert error.value.table["seed"].tolist() == [2**40]
+    said = capsys.readouterr().out
+    assert all(f"{path} is damaged, or of another case: its case counts as not yet computed" in said for path in (first, third))
+    with pytest.raises(KeyError):
+        ensemble.result(script, CASES[2], folder)
 
 
 def test_whole_numbers_are_exact(tmp_path):

@@ -132,6 +132,43 @@ def test_writers_that_fail_leave_the_old_file(tmp_path, monkeypatch):
     assert not [path.name for path in tmp_path.rglob(".*")]
 
 
+def column(name, kind=float, *shape):
+    return (name, kind, *shape)
+
+
+IMPACTS = [column(name) for name in ("time", "body", "support", "restitution_asked", "restitution", "velocity", "energy_lost", "friction_demand", "capped")]
+FORCES = [column("sample", int), column("id1", int), column("id2", int), column("force", float, 3), column("point", float, 3)]
+
+
+@pytest.mark.parametrize("name, value, words", [
+    ("about", "[1]", r"about = \[1\]: must be a dict"), ("about", "5", "about = 5: must be a dict"), ("about", "[" * 100000, "is no WallHistory"),
+    ("about", '{"materials": {}}', r"about\['materials'\] = {}: must be a list"), ("about", '{"notes": [""]}', r"about\['notes'\] = \[''\]: must be texts"),
+    ("time", np.array(0.0), r"time has the shape \(\): must be"), ("sizes", np.full((2, 3), np.nan), "sizes: must be positive and finite"),
+    ("impacts", np.zeros(3), "impacts: must be None or a structured array with the columns time, body, "),
+    ("impacts", np.zeros(2, dtype=[(name, "U3") for name, _ in IMPACTS]), "impacts: must be None .* of numbers"),
+    ("forces", np.zeros(3), "forces: must be None or a structured array with the columns sample, id1, id2, force, point"),
+    ("forces", np.zeros(2, dtype=[(name, float) for name, *_ in FORCES]), "forces: must be those of blocks and samples"),
+    ("forces", np.array([(1, 10, 99, [0] * 3, [0] * 3)], dtype=FORCES), "forces: must be those of blocks and samples"),
+    ("forces", np.array([(9, 10, 11, [0] * 3, [0] * 3)], dtype=FORCES), "forces: must be those of blocks and samples"),
+    ("ids", np.array("x"), "is no WallHistory"), ("motion", np.array(["a", "b"]), "is no WallHistory"), ("position", np.zeros(3, dtype=[("x", float)]), "is no WallHistory")])
+def test_files_with_other_contents_are_told_in_a_sentence(tmp_path, name, value, words):
+    path = tmp_path / "h.npz"
+    rocking([0, 0.1, 0.05]).save(path)
+    np.savez(path, **{**np.load(path), name: value})
+    with pytest.raises(ValueError, match=words) as refused:
+        results.WallHistory.load(path)
+    assert str(refused.value).startswith(f"path = {path}: is no WallHistory, or a damaged one") and "\n" not in str(refused.value)
+
+
+@pytest.mark.parametrize("about", [{"materials": [{}]}, {"motions": [{"kind": 5}]}, {"model": {"gravity": 5}}, {"model": {"tolerance": "x"}}, {"solver": {"worstResidual": "x"}}])
+def test_a_report_of_what_masonry_has_not_written_is_refused(tmp_path, about):
+    pytest.importorskip("jinja2")
+    h = rocking([0, 0.1, 0.05])
+    h.about.update(about)
+    with pytest.raises(ValueError, match="about of the history: must be what masonry has written"):
+        results.report(h, tmp_path / "h.html")
+
+
 def test_any_damage_of_a_saved_history_is_told_in_our_words(tmp_path):
     path = tmp_path / "wall.npz"
     rocking([0, 0.1, 0.05]).save(path)

@@ -167,11 +167,13 @@ def test_a_balance_that_closes_by_definition_is_not_shown_as_its_error(drawn, tm
     assert drawn[0].axes[-1].get_xlabel() == "time (s)"
 
 
-def test_a_film_has_the_frames_asked_for(tmp_path):
+def test_a_film_has_the_frames_asked_for(tmp_path, capfd):
     from PIL import Image
 
     h = rocking([0, 0.1, -0.05, 0.02, 0.2], shift=(0.4, 0, 0))
-    results.film(h, tmp_path / "h.gif", frames_per_second=4, progress=False)  # 2 s of motion
+    capfd.readouterr()
+    results.film(h, tmp_path / "h.gif", frames_per_second=4)  # 2 s of motion
+    assert capfd.readouterr().err == ""  # no terminal, no bar
     with Image.open(tmp_path / "h.gif") as gif:
         durations = []
         for k in range(gif.n_frames):

@@ -101,7 +101,7 @@ def test_it_says_what_was_run_what_came_out_and_what_to_doubt(full):
     assert f"{100 * verdict.peak_drift:.3g} % of the height" in found.texts["numbers"]
     for said in ("2 steps missed the contact laws", "The first: In the step from t = 1 s", "A density is 2: densities are in kg/m^3."):
         assert said in found.texts["warnings"]
-    for said in ("wall.py", "2 blocks: density 2000 kg/m³, friction coefficient 0.684, natural restitution", "“El Centro <NS>”: 101 samples every 0.02 s, peak 3.4 m/s² (0.347 g)",
+    for said in ("wall.py", "2 blocks: density 2000 kg/m^3, friction coefficient 0.684, natural restitution", "“El Centro <NS>”: 101 samples every 0.02 s, peak 3.4 m/s^2 (0.347 g)",
                  "planar: all in one plane", "Method", "wall", "0.001 s in the last of 2000 steps", "Seed", "7", "masonry 0.1.0, YADE 2023.02a"):
         assert said in found.texts["run"]
     assert "0.0001 of the speed that gravity gives in a step" in found.texts["residuals"]  # 1e-6 / (9.81 * 1e-3)
@@ -214,6 +214,13 @@ def test_without_jinja2_it_names_the_package(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "jinja2", None)
     with pytest.raises(ImportError, match="apt install python3-jinja2"):
         results.report(toppling(), tmp_path / "report.html")
+
+
+def test_a_part_of_a_motion_is_told(tmp_path):
+    block, motion = masonry.RockingBlock(0.3, 1.5), masonry.Sine(2.5, 1.0, 4)
+    part, whole = (page(masonry.simulate(block, motion, t_end=end), tmp_path)[0].texts[""] for end in (3, 4))
+    assert "Does not overturn so far" in part and "The run ends at 3 s, after 3 of 4 s of the motion." in part
+    assert "so far" not in whole and "The run ends at 4 s." in whole
 
 
 @pytest.mark.parametrize("restoring", ["exact", "linear"])

@@ -44,7 +44,7 @@ def test_every_model(model, tmp_path):
     assert results.WallHistory.load(path).about == about
     results.report(results.WallHistory.load(path), tmp_path / "wall.html")
     text = (tmp_path / "wall.html").read_text(encoding="utf-8")
-    for said in (f"{model}", "artificial, seed 11", "restitution 0.5", "density 2100 kg/m³", "All 0.5 s of the motion have been run"):
+    for said in (f"{model}", "artificial, seed 11", "restitution 0.5", "density 2100 kg/m^3", "All 0.5 s of the motion have been run"):
         assert said in text
 
 

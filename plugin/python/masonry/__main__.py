@@ -40,8 +40,12 @@ def main():
             warnings.showwarning = lambda message, *_: print(f"masonry: {message}", file=sys.stderr)
         try:
             given.run(given)
-        except (OSError, ValueError, ImportError) as error:  # input that is wrong, or a package that is missing: their message says which
-            parser.exit(2, f"masonry: {error}\n")
+        except (OSError, ValueError, ImportError, RuntimeError) as error:  # input that is wrong, or a package that is missing: their message says which
+            parser.exit(2, f"masonry: {' '.join(str(error).split())}\n")
+        except MemoryError as error:
+            parser.exit(2, f"masonry: the memory is too small for that: {error}\n")
+        except KeyboardInterrupt:
+            parser.exit(130, "masonry: interrupted\n")
 
 
 if __name__ == "__main__":

@@ -21,7 +21,7 @@ from .motions import Record
 _LEVELS, _BINS = 50, 12
 # Relative difference of measures that are the same: sums over a record have round-off.
 _SAME = 1e-9
-_SA = re.compile(r"Sa\(([\d.]+)\)")
+_SA = re.compile(r"Sa\((\d+\.?\d*|\.\d+)\)")
 _MEASURES = {
     "PGA": ("m/s^2", lambda record: _pga(record), lambda block: 1.0),
     "PGA/g": ("", lambda record: _pga(record) / STANDARD_GRAVITY, lambda block: 1.0),
@@ -173,7 +173,7 @@ def fragility(block, records, scales=None, levels=None, measure="PGA", restituti
                acceleration at 5 % damping, m/s^2
     restitution, restoring    as of simulate(); restitution broadcasts with the blocks
     vertical   records of the vertical motion, one for each of `records`, multiplied by the same scale; or None
-    progress   a progress bar (tqdm)
+    progress   a progress bar (tqdm); None: where stderr is a terminal
 
     The intervals allow for histories under one record not being independent of each other: they hold for new records of the same kind."""
     records = _records("records", records)

@@ -1,4 +1,7 @@
-"""Long loops: parts of many cases, and a progress bar that is drawn only where it was asked for."""
+"""Long loops: parts of many cases, and a progress bar. progress: True or False; None: a bar where stderr is a terminal, for in a log each of its states would be a
+line."""
+
+import sys
 
 from ._optional import needs
 
@@ -12,9 +15,14 @@ def _bar():
     return tqdm
 
 
+def wanted(progress):
+    """Whether a bar is drawn."""
+    return sys.stderr is not None and sys.stderr.isatty() if progress is None else bool(progress)
+
+
 def steps(items, progress, name, unit="case"):
     """The items, with a progress bar if it is wanted."""
-    if not progress:
+    if not wanted(progress):
         return items
     return _bar()(items, desc=name, unit=unit)
 
@@ -22,7 +30,7 @@ def steps(items, progress, name, unit="case"):
 def chunks(cases, progress, name):
     """(begin, end) of parts of so many cases, with a progress bar if it is wanted."""
     parts = [(begin, min(begin + _TOGETHER, cases)) for begin in range(0, cases, _TOGETHER)]
-    if not progress:
+    if not wanted(progress):
         yield from parts
         return
     with _bar()(total=cases, desc=name, unit="case") as bar:

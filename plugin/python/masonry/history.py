@@ -127,7 +127,7 @@ class History:
         above.set(ylabel="angle / critical angle", title=verdict, ylim=1.1 * np.array([-1, 1]) * np.clip(np.nanmax(np.abs(angles)), 1, 1.5))
         if isinstance(self.motion, Record):
             below.plot(times, self.motion.acceleration(times), color="tab:red", linewidth=0.8)
-            below.set(ylabel="base (m/s$^2$)")
+            below.set(ylabel="base (m/s^2)")
         else:
             below.plot(times, self.sample_base(times), color="tab:red")
             below.set(ylabel="base (m)")

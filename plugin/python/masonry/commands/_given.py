@@ -1,11 +1,25 @@
 """What several commands read and write: lists of numbers, records, sizes of a block."""
 
 import argparse
+import math
 from pathlib import Path
 
 import numpy as np
 
+from .._given import shown
+
 NUMBERS = "numbers: 0.5, or 0.4,0.6,1.2, or 0.5:4:20 (20 from 0.5 to 4 at equal steps), or 0.1:10:20:log (at equal factors)"
+
+
+# Numbers of one list.
+_MOST = 10**6
+
+
+def _number(text):
+    value = float(text)
+    if not math.isfinite(value):
+        raise ValueError
+    return value
 
 
 def numbers(text):
@@ -13,12 +27,12 @@ def numbers(text):
     try:
         if ":" in text:
             first, last, count, *log = text.split(":")
-            if log not in ([], ["log"]) or int(count) < 2:
+            if log not in ([], ["log"]) or not 2 <= int(count) <= _MOST:
                 raise ValueError
-            return (np.geomspace if log else np.linspace)(float(first), float(last), int(count))
-        values = [float(word) for word in text.split(",")]
+            return (np.geomspace if log else np.linspace)(_number(first), _number(last), int(count))
+        values = [_number(word) for word in text.split(",")]
     except ValueError:
-        raise argparse.ArgumentTypeError(f"{text!r} is no list of numbers: write 0.5, or 0.4,0.6,1.2, or 0.5:4:20, or 0.1:10:20:log") from None
+        raise argparse.ArgumentTypeError(f"{shown(text)} is no list of numbers: write 0.5, or 0.4,0.6,1.2, or 0.5:4:20, or 0.1:10:20:log, at most a million") from None
     return values[0] if len(values) == 1 else np.array(values)
 
 
@@ -42,7 +56,11 @@ def read_records(given):
 
 def add_output(parser, name):
     parser.add_argument("-o", "--output", type=Path, default=Path(name), metavar="NAME", help=f"NAME.csv and NAME.png are written (default: {name})")
-    parser.add_argument("--quiet", action="store_true", help="no progress bar")
+    parser.add_argument("--quiet", action="store_true", help="no progress bar, which is drawn only where stderr is a terminal")
+
+
+def progress(given):
+    return False if given.quiet else None
 
 
 def write(result, given, **picture):

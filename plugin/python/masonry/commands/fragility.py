@@ -46,7 +46,7 @@ def _of_block(given):
     block = masonry.RockingBlock.from_size(given.width, given.height)
     scales, levels = (None if value is None else [value] if isinstance(value, float) else value for value in (given.scales, given.levels))
     return masonry.fragility(block, _given.read_records(given), scales, levels, given.measure or "PGA", given.restitution, confidence=given.confidence,
-                             progress=not given.quiet)
+                             progress=_given.progress(given))
 
 
 def _of_table(given):
@@ -57,7 +57,13 @@ def _of_table(given):
         raise ValueError(f"{given.records[0]}, --table: give one of the two")
     if given.measure is None:
         raise ValueError("--table needs --measure, the column of the intensity measure")
-    table = np.atleast_1d(np.genfromtxt(given.table, delimiter=",", names=True, dtype=None, encoding="utf-8", deletechars="", replace_space=" "))
+    with open(given.table, encoding="utf-8") as file:
+        try:
+            lines = file.read().splitlines()
+            table = np.genfromtxt(lines, delimiter=",", names=True, dtype=None, encoding="utf-8", deletechars="", replace_space=" ") if any(lines[1:]) else np.zeros(0)
+        except Exception as error:  # whatever NumPy says of another file
+            raise ValueError(f"{given.table}: must be a table in CSV, as ensemble.run() writes it ({' '.join(str(error).split())[:200]})") from None
+    table = np.atleast_1d(table)
     if not table.size or not table.dtype.names:
         raise ValueError(f"{given.table}: has no rows")
     return masonry.fragility_of_table(table, given.measure, given.event, given.record, confidence=given.confidence)

@@ -80,7 +80,7 @@ def _rocking(given):
     from masonry import spectra
 
     motion, numbers = _motion(given)
-    result = spectra.rocking(motion, given.width, given.slenderness, given.restitution, progress=not given.quiet, **numbers)
+    result = spectra.rocking(motion, given.width, given.slenderness, given.restitution, progress=_given.progress(given), **numbers)
     dims = [name for name in result.dims if name in ("frequency", "duration", "amplitude", "scale")]
     print(f"masonry: {result['overturned'].sum()} of {result['overturned'].size} cases overturn")
     _given.write(result, given, **({"x": dims[1], "y": dims[0]} if len(dims) > 1 else {}))
@@ -90,14 +90,14 @@ def _overturning(given):
     from masonry import spectra
 
     motion, numbers = _motion(given)
-    _given.write(spectra.overturning(motion, given.width, given.slenderness, given.restitution, progress=not given.quiet, **numbers), given)
+    _given.write(spectra.overturning(motion, given.width, given.slenderness, given.restitution, progress=_given.progress(given), **numbers), given)
 
 
 def _response(given):
     from masonry import spectra
 
     records = _given.read_records(given)
-    _given.write(spectra.response(records if len(records) > 1 else records[0], given.period, given.damping, progress=not given.quiet), given,
+    _given.write(spectra.response(records if len(records) > 1 else records[0], given.period, given.damping, progress=_given.progress(given)), given,
                  value="pseudo_acceleration", x="period")
 
 

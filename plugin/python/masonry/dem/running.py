@@ -2,10 +2,10 @@
 
 import contextlib
 import math
-import sys
 import time
 
 from masonry._given import number_given, shown
+from masonry._progress import wanted
 from yade import O, wrapper
 
 from masonry.dem import notes
@@ -86,8 +86,7 @@ def run(seconds=None, until=None, progress=None):
         raise ValueError(f"until: that motion is over at {end:g} s and O.time = {start:g} s: give seconds")
     if until is not None:
         _check_given(until)
-    shown = sys.stderr is not None and sys.stderr.isatty() if progress is None else progress
-    with _pauses() as paused, tqdm(total=float(f"{end - start:.4g}"), desc="run", disable=not shown, bar_format="{desc}: {percentage:3.0f}%|{bar}| {n:.3g} of {total:g} s [{elapsed}<{remaining}]") as bar:
+    with _pauses() as paused, tqdm(total=float(f"{end - start:.4g}"), desc="run", disable=not wanted(progress), bar_format="{desc}: {percentage:3.0f}%|{bar}| {n:.3g} of {total:g} s [{elapsed}<{remaining}]") as bar:
         look = time.monotonic() + _SHOWN
         while O.time < end - _ROUND_OFF * O.dt:
             before = O.time

@@ -10,6 +10,7 @@ from masonry._boxes import bounds
 from masonry._files import save_picture
 from masonry._given import number_given, positive_given, shown
 from masonry._pose import axes_of
+from masonry._progress import wanted
 from masonry.dem.engines import _FEW_BLOCKS, _METHODS, engines, has_stiffness
 from masonry.dem.scene import _boxes, _layout, structures
 from tqdm import tqdm
@@ -159,7 +160,7 @@ class TiltTable:
 
     # --- the two ways to the multiplier ---
 
-    def bisect(self, tolerance=1e-3, lower=0.1, progress=True):
+    def bisect(self, tolerance=1e-3, lower=0.1, progress=None):
         """The Collapse within `tolerance` of its multiplier. lower: the first that is tried, which grows by a tenth until the blocks
         collapse; the nearer below, the faster."""
         if not 0 < number_given("tolerance", tolerance) < 1:
@@ -206,7 +207,7 @@ class TiltTable:
                     sure = True
         return self._collapse((low + high) / 2, (low, high), trials, mechanism)
 
-    def ramp(self, rate=0.02, start=0.0, progress=True):
+    def ramp(self, rate=0.02, start=0.0, progress=None):
         """The Collapse of a multiplier that grows slowly. rate: per sqrt(height / gravity) of the scene. The bracket is from where the
         blocks last rested to where one had moved by `share`; the multiplier is its lower end: what follows is delay."""
         positive_given("rate", rate)
@@ -285,7 +286,7 @@ class TiltTable:
     def _trials(self, unit, shown):
         """The progress bar; at the end, whatever it was, the scene is put back."""
         try:
-            with tqdm(desc="TiltTable", unit=unit, disable=not shown) as bar:
+            with tqdm(desc="TiltTable", unit=unit, disable=not wanted(shown)) as bar:
                 yield bar
         finally:
             self._put_back()

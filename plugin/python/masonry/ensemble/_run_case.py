@@ -10,6 +10,10 @@ import sys
 import numpy as np
 from masonry._files import written
 from masonry._given import shown
+from masonry.ensemble.cases import plain
+
+# Names of the case itself in the file, and of the arguments of NumPy's function that writes it.
+_TAKEN = "case", "file", "allow_pickle"
 
 
 def end_with(parent):
@@ -30,10 +34,11 @@ def main(script, function, case, path, parent):
         raise ValueError(f"{function}() of {script} returned {shown(outcome)}: must be a dict of numbers and arrays")
     values = {name: np.asarray(value) for name, value in outcome.items()}
     for name, value in values.items():
-        if value.dtype.kind not in "biufU" or name == "case":
-            raise ValueError(f"{function}() of {script} returned {name} = {shown(outcome[name])}: must be a number, a string or an array of them, and not named case")
+        if value.dtype.kind not in "biufU" or not isinstance(name, str) or name in ("", *_TAKEN):
+            raise ValueError(f"{function}() of {script} returned {name} = {shown(outcome[name])}: must be a number, a string or an array of them, whose name is a text, "
+                             f"and not {', '.join(_TAKEN)}")
     with written(path) as beside:
-        np.savez_compressed(beside, case=json.dumps(case), **values)
+        np.savez_compressed(beside, case=plain(case), **values)
 
 
 main(**json.loads(sys.argv[1]))

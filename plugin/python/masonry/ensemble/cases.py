@@ -21,8 +21,9 @@ def plain(case):
         raise TypeError
 
     try:
+        json.dumps(case, ensure_ascii=False, default=convert).encode()  # texts that files cannot hold
         return json.dumps(case, sort_keys=True, default=convert)
-    except TypeError:
+    except (TypeError, ValueError, RecursionError):
         raise ValueError(f"case = {shown(case)}: must be a dict of numbers, strings, None, and lists of them") from None
 
 
@@ -64,22 +65,24 @@ def path_of(folder, key):
     return folder / f"case_{key}.npz"
 
 
-def load_all(folder, keys):
-    """{key: what the case returned}; None for a case that has no file, or a damaged one, which a line tells."""
+def load_all(folder, keys, cases):
+    """{key: what the case returned}; None for a case that has no file, or a damaged one or that of another case, which a line tells."""
     # A listing shows what other machines have written: a look-up by name may be answered from the memory of a network file system.
     present = set(os.listdir(folder))
-    outcomes = {key: read(path_of(folder, key)) if path_of(folder, key).name in present else None for key in keys}
+    outcomes = {key: read(path_of(folder, key), case) if path_of(folder, key).name in present else None for key, case in zip(keys, cases)}
     for key, outcome in outcomes.items():
         if outcome is None and path_of(folder, key).exists():
-            print(f"masonry.ensemble: {path_of(folder, key)} is damaged: its case counts as not yet computed")
+            print(f"masonry.ensemble: {path_of(folder, key)} is damaged, or of another case: its case counts as not yet computed")
     return outcomes
 
 
-def read(path):
-    """What a case returned; None where it has no file, or a damaged one."""
+def read(path, case):
+    """What a case returned; None where it has no file, or a damaged one, or that of another case."""
     try:
         found = read_npz(path, "result")
-    except (FileNotFoundError, ValueError):
+    except (OSError, ValueError):
+        return None
+    if str(found.get("case")) != plain(case):
         return None
     return {name: value if value.ndim else value.item() for name, value in found.items() if name != "case"}
 

@@ -1,8 +1,11 @@
 """The table and the arrays of an ensemble as NetCDF 3 (classic), which SciPy writes, and which xarray, netCDF4, Panoply, R and MATLAB read.
 
 The format has no integers of 64 bits, no bool and no text but characters. Here they follow the conventions that xarray decodes: whole numbers are int32, or
-double where that is exact, or text; bools are bytes with the attribute dtype = bool; text is UTF-8 characters along a dimension of its own.
+double where that is exact, or text; bools are bytes with the attribute dtype = bool; text is UTF-8 characters along a dimension of its own. Names that the
+format or SciPy cannot write are spelled with _, and have a number behind them where another has that spelling; the attribute long_name is the name itself.
 """
+
+import re
 
 import numpy as np
 
@@ -22,8 +25,23 @@ def _bytes(text):
     return text.encode() or b" "  # an attribute without a character is none
 
 
-def _put(file, name, values, dimensions, attributes):
+def _spellings(names):
+    """{name: how the file spells it}, each once."""
+    found, taken = {}, set(names)
+    for name in names:
+        spelled = base = re.sub(r"[^ -~]|/", "_", name)
+        number = 2
+        while spelled != name and spelled in taken:
+            spelled, number = f"{base}_{number}", number + 1
+        found[name] = spelled
+        taken.add(spelled)
+    return found
+
+
+def _put(file, name, spelled, values, dimensions, attributes):
     attributes = dict(attributes)
+    if spelled != name:
+        attributes["long_name"] = name
     if values.dtype.kind in "iu":
         values = _whole(values)
     if values.dtype.kind == "b":
@@ -37,7 +55,7 @@ def _put(file, name, values, dimensions, attributes):
         values = np.ascontiguousarray(values).view("S1").reshape(*values.shape, length)
     if values.dtype.kind == "f" and values.dtype.itemsize not in (4, 8):
         values = values.astype(float)
-    variable = file.createVariable(name.replace("/", "_"), values.dtype, dimensions)
+    variable = file.createVariable(spelled, values.dtype, dimensions)
     variable[:] = values
     for key, text in attributes.items():
         setattr(variable, key, _bytes(text))
@@ -55,12 +73,18 @@ def _filled(arrays, shape):
     return whole
 
 
+def _even(arrays):
+    """Those of the arrays that have as many dimensions in every case; a line tells of the others."""
+    counts = {name: sorted({np.ndim(array) for array in values}) for name, values in arrays.items()}
+    for name, found in counts.items():
+        if len(found) > 1:
+            print(f"masonry.ensemble: {name} is not in ensemble.nc: it has {' or '.join(map(str, found))} dimensions, and must have the same number in every case")
+    return {name: values for name, values in arrays.items() if len(counts[name]) == 1}
+
+
 def _axes(name, arrays, dimensions):
     """The names of an array's dimensions beside `case`."""
-    counts = {np.ndim(array) for array in arrays}
-    if len(counts) > 1:
-        raise ValueError(f"{name}: has {' or '.join(map(str, sorted(counts)))} dimensions: must have the same number in every case")
-    count, = counts
+    count = np.ndim(arrays[0])
     default = [f"{name}_{k}" for k in range(count)] if count > 1 else [f"{name}_sample"]
     names = dimensions.get(name, default)
     names = [names] if isinstance(names, str) else list(names)
@@ -76,7 +100,7 @@ def write(path, table, given, arrays, units, dimensions, attributes):
     unknown = sorted(set(dimensions) - set(arrays))
     if unknown:
         raise ValueError(f"dimensions: {', '.join(unknown)} is no array that the function returns")
-    units = {**UNITS, **units}
+    units, arrays = {**UNITS, **units}, _even(arrays)
     axes = {name: _axes(name, values, dimensions) for name, values in arrays.items()}
     own = set().union(*axes.values())
     both = sorted(own & set(table.dtype.names))
@@ -94,21 +118,22 @@ def write(path, table, given, arrays, units, dimensions, attributes):
         for array in arrays[name]:
             for axis, length in zip(names, np.shape(array)):
                 shapes[axis] = max(shapes.get(axis, 1), length)
+    spelled = _spellings(dict.fromkeys((*table.dtype.names, *arrays, *shapes)))
     with netcdf_file(path, "w", version=2) as file:
         for key, text in attributes.items():
             setattr(file, key, _bytes(text))
         file.createDimension("case", len(table))
         for axis, length in shapes.items():
-            file.createDimension(axis, length)
-        told = " ".join(name.replace("/", "_") for name in table.dtype.names[:given])
+            file.createDimension(spelled[axis], length)
+        told = " ".join(spelled[name] for name in table.dtype.names[:given])
         for column, name in enumerate(table.dtype.names):
             more = {} if column < given else {"coordinates": told}
-            _put(file, name, table[name], ("case",), {**more, **_unit(units, name)})
+            _put(file, name, spelled[name], table[name], ("case",), {**more, **_unit(units, name)})
         for name, values in coordinates.items():
-            _put(file, name, values, (name,), _unit(units, name))
+            _put(file, name, spelled[name], values, (spelled[name],), _unit(units, name))
         for name in (name for name in arrays if name not in coordinates):
             shape = tuple(shapes[axis] for axis in axes[name])
-            _put(file, name, _filled(arrays[name], shape), ("case", *axes[name]), {"coordinates": told, **_unit(units, name)})
+            _put(file, name, spelled[name], _filled(arrays[name], shape), ("case", *(spelled[axis] for axis in axes[name])), {"coordinates": told, **_unit(units, name)})
 
 
 def _unit(units, name):

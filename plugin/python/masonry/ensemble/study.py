@@ -9,7 +9,7 @@ from .._given import is_whole, positive_given, shown
 from .cases import clear, keys, load_all, path_of, read
 from .slices import asked, slice_given
 from .submitting import run_missing
-from .table import make_table, write_tables
+from .table import make_table, tidied, write_tables
 
 # Failed cases that the error names.
 _NAMED = 10
@@ -23,7 +23,7 @@ class CasesFailed(RuntimeError):
         self.table = table
 
 
-def run(script, cases, folder, function="run", processes=None, time_limit=None, progress=True, executor=None, slice=None, gather=False, units=None,
+def run(script, cases, folder, function="run", processes=None, time_limit=None, progress=None, executor=None, slice=None, gather=False, units=None,
         dimensions=None):
     """Calls the function `function(case)` of a Python file inside YADE, one process a case, and returns the table of what came out.
 
@@ -33,7 +33,7 @@ def run(script, cases, folder, function="run", processes=None, time_limit=None, 
     folder        one .npz file a finished case, and the tables ensemble.nc, ensemble.csv and ensemble.npz; made if it is not there
     processes     how many run at once on this machine; None: one for each core that this process may use. Each has one thread.
     time_limit    s of wall clock after which a case is stopped, and counts as failed unless its result is there; None: no limit
-    progress      a progress bar (tqdm)
+    progress      a progress bar (tqdm); None: where stderr is a terminal
     executor      where the cases run: any executor of concurrent.futures, for instance mpi4py.futures.MPIPoolExecutor() or the get_executor() of a Dask
                   Client. Its workers start YADE; script, folder and masonry must be on a file system that they share. None: on this machine.
     slice         'k/n' or (k, n): computes only the cases k, k + n, k + 2n, ... and returns their table, without writing tables. Several slices may run
@@ -72,23 +72,25 @@ def run(script, cases, folder, function="run", processes=None, time_limit=None, 
     if part:
         cases, found = cases[part[0] - 1::part[1]], found[part[0] - 1::part[1]]
     folder.mkdir(parents=True, exist_ok=True)
-    outcomes = load_all(folder, found)
+    outcomes = load_all(folder, found, cases)
     missing = [(case, key) for case, key in zip(cases, found) if outcomes[key] is None]
     failures = []
     if missing and not gather:
         try:
             failures = run_missing(script, function, missing, len(cases), folder, executor, int(processes or len(os.sched_getaffinity(0))), time_limit, progress)
         except KeyboardInterrupt:
-            kept = sum(read(path_of(folder, key)) is not None for key in found)
+            kept = sum(read(path_of(folder, key), case) is not None for case, key in zip(cases, found))
             raise KeyboardInterrupt(f"interrupted: {kept} of {len(cases)} cases are kept in {folder}; run again to go on") from None
-        outcomes.update(load_all(folder, [key for _, key in missing]))
+        outcomes.update(load_all(folder, [key for _, key in missing], [case for case, _ in missing]))
     told = [case for case, *_ in failures]
     without = [(case, folder / f"case_{key}.log") for case, key in missing if outcomes[key] is None and case not in told]
     failures += [(case, _why_without(log, gather), "") for case, log in without]
     finished = [(case, outcomes[key]) for case, key in zip(cases, found) if outcomes[key] is not None]
-    table = make_table(*zip(*finished)) if finished else None
+    done, returned = zip(*finished) if finished else ((), ())
+    returned = tidied(done, returned) if finished else []
+    table = make_table(done, returned) if finished else None
     if finished and not part:
-        write_tables(folder, table, [outcome for _, outcome in finished], len(cases[0]), script, function, units or {}, dimensions or {})
+        write_tables(folder, table, returned, len(cases[0]), script, function, units or {}, dimensions or {})
         clear(folder, {key for key in found if outcomes[key] is not None})
     if failures:
         raise _failed(failures, table, len(cases), folder, part, gather)
@@ -107,6 +109,9 @@ def _checked(cases):
     for case in cases:
         if not isinstance(case, dict):
             raise ValueError(f"case = {shown(case)}: must be a dict of numbers, strings, None, and lists of them")
+        for name in case:
+            if not (isinstance(name, str) and name):
+                raise ValueError(f"case = {shown(case)}: its key {name!r} must be a text that is not empty: it names a column of the table")
         if case.keys() != cases[0].keys():
             raise ValueError(f"case = {case}: must have the same keys as the first, {', '.join(cases[0])}")
     return cases
@@ -134,7 +139,7 @@ def result(script, case, folder, function="run"):
     folder = Path(folder)
     outcome = None
     if folder.is_dir():
-        outcome, = load_all(folder, keys(Path(script).resolve(strict=True), function, [dict(case)])).values()
+        outcome, = load_all(folder, keys(Path(script).resolve(strict=True), function, [dict(case)]), [case]).values()
     if outcome is None:
         raise KeyError(f"{case} has no result in {folder}")
     return outcome

@@ -10,6 +10,7 @@ from concurrent.futures import ThreadPoolExecutor, as_completed
 from contextlib import contextmanager, nullcontext
 from pathlib import Path
 
+from .._progress import wanted
 from .cases import code, plain
 from .worker import compute
 
@@ -56,7 +57,7 @@ def run_missing(script, function, missing, total, folder, executor, processes, t
     failures, folder = [], folder.resolve()
     # The pool is left last: its threads end when the file has vanished.
     with termination(), ThreadPoolExecutor(processes) if executor is None else nullcontext(executor) as pool, _going_on(folder) as going_on, \
-            tqdm(total=total, initial=total - len(missing), desc="ensemble", unit="case", disable=not progress) as bar:
+            tqdm(total=total, initial=total - len(missing), desc="ensemble", unit="case", disable=not wanted(progress)) as bar:
         common = {"script": str(script), "function": function, "code": code(script), "folder": str(folder), "going_on": going_on, "time_limit": time_limit}
         waiting = {pool.submit(compute, {**common, "case": plain(case), "key": key}): case for case, key in missing}
         try:

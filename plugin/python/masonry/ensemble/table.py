@@ -3,6 +3,7 @@
 import csv
 import hashlib
 import platform
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -15,17 +16,33 @@ from . import netcdf
 def _cell(value):
     """A value of a case as the table has it: a number or text."""
     value = value.tolist() if isinstance(value, (np.generic, np.ndarray)) else value
-    return str(value) if value is None or isinstance(value, (list, tuple, dict)) else value
+    large = isinstance(value, int) and not -2**63 <= value < 2**63  # no integer of an array
+    return str(value) if value is None or large or isinstance(value, (list, tuple, dict)) else value
+
+
+def tidied(cases, outcomes):
+    """The outcomes with the same names in every case: NaN, empty text or an empty array for what a case has not returned, and `_result` behind a name that is a
+    key of the cases. A line tells of either."""
+    known = dict.fromkeys(name for outcome in outcomes for name in outcome)
+    names = {}
+    for name in known:
+        names[name] = name
+        while names[name] in cases[0] or names[name] != name and names[name] in known:
+            names[name] += "_result"
+        if names[name] != name:
+            print(f"masonry.ensemble: {name} is a key of the cases and of what the function returns, which is {names[name]} in the tables")
+    missing = {}
+    for name in known:
+        found = [outcome[name] for outcome in outcomes if name in outcome]
+        missing[name] = np.full((0,) * np.ndim(found[0]), np.nan) if np.ndim(found[0]) else "" if isinstance(found[0], str) else np.nan
+        if len(found) < len(outcomes):
+            print(f"masonry.ensemble: {name} is missing in {len(outcomes) - len(found)} of {len(outcomes)} cases: it is {missing[name]!r} there")
+    return [{names[name]: outcome.get(name, missing[name]) for name in known} for outcome in outcomes]
 
 
 def make_table(cases, outcomes):
-    for case, outcome in zip(cases, outcomes):
-        if outcome.keys() != outcomes[0].keys():
-            raise ValueError(f"case = {case}: returned {', '.join(outcome)}, and the first {', '.join(outcomes[0])}: must be the same for every case")
-    numbers = [name for name, value in outcomes[0].items() if np.ndim(value) == 0]
-    both = set(cases[0]) & set(numbers)
-    if both:
-        raise ValueError(f"{', '.join(sorted(both))}: must not be a key of the case and of what the function returns")
+    """A row a case: what the case says, and the numbers among what it returned, which tidied() has given the same names in every case."""
+    numbers = [name for name in outcomes[0] if not any(np.ndim(outcome[name]) for outcome in outcomes)]
     columns = {name: np.array([_cell(case[name]) for case in cases]) for name in cases[0]}
     columns.update({name: np.array([outcome[name] for outcome in outcomes]) for name in numbers})
     table = np.zeros(len(cases), dtype=[(name, column.dtype) for name, column in columns.items()])
@@ -36,11 +53,12 @@ def make_table(cases, outcomes):
 
 def write_tables(folder, table, outcomes, given, script, function, units, dimensions):
     """ensemble.npz, .csv and .nc. outcomes: what each case returned; given: how many columns are those of the cases."""
-    with written(folder / "ensemble.npz") as beside:
+    with written(folder / "ensemble.npz") as beside, warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)  # that NumPy before 1.17 cannot read names of any letters
         np.savez(beside, table=table)
     with written(folder / "ensemble.csv") as beside, open(beside, "w", newline="", encoding="utf-8") as file:
         csv.writer(file).writerows([table.dtype.names, *table.tolist()])
-    arrays = {name: [outcome[name] for outcome in outcomes] for name, value in outcomes[0].items() if np.ndim(value)}
+    arrays = {name: [outcome[name] for outcome in outcomes] for name in outcomes[0] if name not in table.dtype.names}
     text = script.read_bytes()
     attributes = {"title": "masonry.ensemble", "masonry": _build.VERSION, "yade": _build.YADE or "none", "python": platform.python_version(), "numpy": np.__version__,
                   "script": script.name, "script_sha256": hashlib.sha256(text).hexdigest(), "function": function, "source": text.decode(errors="replace")}

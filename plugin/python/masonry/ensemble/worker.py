@@ -44,7 +44,7 @@ def compute(job):
     try:
         with open(handle, "wb") as output:
             why = _run_yade(yade, job, path, output)
-        if why is None or read(path) is not None:  # it is done, however it ended
+        if why is None or read(path, json.loads(job["case"])) is not None:  # it is done, however it ended
             return None
         if path.exists():
             why += ", and its result cannot be read"

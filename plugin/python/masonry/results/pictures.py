@@ -3,6 +3,7 @@
 import numpy as np
 from masonry._files import save_picture, written
 from masonry._given import number_given, positive_given, shown
+from masonry._progress import steps
 from masonry.results.collapse import collapse, lies
 from masonry.results.forces import has_forces, thrust_at_first
 from masonry.results.joints import joints, patches
@@ -173,7 +174,7 @@ def draw(history, path, time=None, enlarge=None, color="displacement", view=None
     _save(shape_figure(history, time, enlarge, color, view, title), path)
 
 
-def film(history, path, start=None, end=None, frames_per_second=20, speed=1.0, enlarge=1.0, color="displacement", view=None, title="", progress=True):
+def film(history, path, start=None, end=None, frames_per_second=20, speed=1.0, enlarge=1.0, color="displacement", view=None, title="", progress=None):
     """Writes a film of the recorded motion, relative to the base: .gif, or .mp4 where ffmpeg is installed.
 
     start, end           part of the history, s; None: all of it. One picture where it holds a single sample.
@@ -181,9 +182,9 @@ def film(history, path, start=None, end=None, frames_per_second=20, speed=1.0, e
                          recorded show nothing new
     speed                seconds of motion in a second of the film, positive
     enlarge, color, view, title    as in draw(); None for enlarge chooses as there, for the largest movement of the film
+    progress             a progress bar (tqdm); None: where stderr is a terminal
     """
     from matplotlib import animation
-    from tqdm import tqdm
 
     history_given(history)
     if not 0 < number_given("frames_per_second", frames_per_second) <= 60:
@@ -204,7 +205,7 @@ def film(history, path, start=None, end=None, frames_per_second=20, speed=1.0, e
     samples = [history.sample(min(first + k * step, last)) for k in range(int((last - first) / step + 1e-9) + 1)]
     painter = _Painter(history, samples, enlarge, color, view, title)
     with written(path) as beside, writer.saving(painter.figure, beside, dpi=100):
-        for sample in tqdm(samples, desc="film", unit="frame", disable=not progress):
+        for sample in steps(samples, progress, "film", "frame"):
             painter.paint(sample)
             writer.grab_frame()
             painter.figure.set_layout_engine("none")  # the first frame has laid it out

@@ -15,6 +15,10 @@ _SAVED = ("time", "ids", "sizes", "free", "position", "orientation", "energies")
 _OPTIONAL = ("motion", "end", "about", "impacts", "forces")
 # Rows of the forces of joints: force on block 2, N, and where it acts, m.
 JOINT_FORCES = [("id1", int), ("id2", int), ("force", float, 3), ("point", float, 3)]
+# Columns of the impacts, of dem.impacts(), that a report shows.
+_IMPACTS = "time", "body", "support", "restitution_asked", "restitution", "velocity", "energy_lost", "friction_demand", "capped"
+# What masonry writes into `about`; a script may add more names.
+_ABOUT = {"script": str, "materials": list, "motions": list, "model": dict, "solver": dict, "notes": list, "versions": dict}
 # Share of the motion that may be missing from a run to its end, whose last step or sample may come a little earlier.
 _FINISHED = 1e-3
 
@@ -47,30 +51,44 @@ class WallHistory:
     def __init__(self, time, ids, sizes, free, position, orientation, energies=None, motion=None, end=None, about=None, impacts=None, forces=None):
         self.time, self.ids, self.sizes = np.asarray(time, dtype=float), np.asarray(ids, dtype=int), np.asarray(sizes, dtype=float)
         self.free, self.position, self.orientation = np.asarray(free, dtype=bool), np.asarray(position, dtype=float), np.asarray(orientation, dtype=float)
-        samples, blocks = len(self.time), len(self.ids)
+        samples, blocks = self.time.size, self.ids.size
         self._energies = np.full((samples, len(ENERGIES)), np.nan) if energies is None else np.asarray(energies, dtype=float)
         self.motion = None if motion is None else np.asarray(motion, dtype=float)
-        self.about, self.impacts, self.forces = dict(about or {}), impacts, forces
-        shapes = {"sizes": (blocks, 3), "free": (blocks,), "position": (samples, blocks, 3), "orientation": (samples, blocks, 4),
+        self.about, self.impacts, self.forces = _about_given(about), impacts, forces
+        shapes = {"time": (samples,), "ids": (blocks,), "sizes": (blocks, 3), "free": (blocks,), "position": (samples, blocks, 3), "orientation": (samples, blocks, 4),
                   "_energies": (samples, len(ENERGIES))}
         for name, shape in shapes.items():
             if getattr(self, name).shape != shape:
                 raise ValueError(f"{name.strip('_')} has the shape {getattr(self, name).shape}: must be {shape} for {samples} times and {blocks} ids")
         if self.motion is not None and self.motion.shape != (2,):
             raise ValueError(f"motion = {shown(motion)}: must be two times, of its begin and its end, or None")
+        if not ((self.sizes > 0) & np.isfinite(self.sizes)).all():
+            raise ValueError("sizes: must be positive and finite, in m")
         if samples == 0 or not self.free.any():
             raise ValueError(f"{samples} samples of {int(self.free.sum())} free blocks: there must be at least one of each")
         if not (np.diff(self.time) > 0).all():
             raise ValueError(f"time: must increase, and does not after {self.time[:-1][~(np.diff(self.time) > 0)][0]:g} s: record each run with a recorder of its own")
         if not (np.isfinite(self.position[0]).all() and np.isfinite(self.orientation[0]).all()):
             raise ValueError("position, orientation: must be finite in the first sample")
-        if forces is not None:
-            strangers = np.setdiff1d(np.concatenate([forces["id1"], forces["id2"]]), self.ids)
-            if len(strangers):
-                raise ValueError(f"forces: they name the body {strangers[0]}, which is not among the ids of the history: must be those of joints between its bodies")
+        self._check_tables()
         self.end = float(self.time[-1] if end is None else end)
         if not self.end >= self.time[-1]:
             raise ValueError(f"end = {end}: must not come before the last sample, at {self.time[-1]:g} s")
+
+    def _check_tables(self):
+        """ValueError where impacts or forces have not the columns that they should have, or forces are those of other blocks or samples."""
+        for name, columns in (("impacts", _IMPACTS), ("forces", ("sample", *(column[0] for column in JOINT_FORCES)))):
+            table = getattr(self, name)
+            found = np.asarray(table).dtype
+            if table is not None and not (np.ndim(table) == 1 and all(column in (found.names or ()) and found[column].base.kind in "biuf" for column in columns)):
+                raise ValueError(f"{name}: must be None or a structured array with the columns {', '.join(columns)}, of numbers")
+        if self.forces is None:
+            return
+        strangers = np.setdiff1d(np.concatenate([self.forces["id1"], self.forces["id2"]]), self.ids)
+        if len(strangers):
+            raise ValueError(f"forces: they name the body {strangers[0]}, which is not among the ids of the history: must be those of joints between its bodies")
+        if not (self.forces["force"].shape == self.forces["point"].shape == (len(self.forces), 3) and np.isin(self.forces["sample"], np.arange(len(self.time))).all()):
+            raise ValueError("forces: must be vectors of three components, at samples of the history")
 
     def __repr__(self):
         return f"WallHistory({len(self.ids)} blocks, {self.time[0]:g} to {self.time[-1]:g} s, {len(self.time)} samples)"
@@ -95,7 +113,7 @@ class WallHistory:
             if "about" in found:
                 found["about"] = json.loads(str(found["about"]))
             return cls(**found)
-        except ValueError as error:
+        except (ValueError, TypeError, RecursionError) as error:  # of NumPy and of json
             raise ValueError(f"path = {path}: is no WallHistory, or a damaged one: {error}") from None
 
     def to_csv(self, path, ids=()):
@@ -261,6 +279,18 @@ class WallHistory:
         """(n, 8, 3) corners of the blocks, each seen from its base, their movement since the first sample taken `enlarge` times, m."""
         start = _pose.corners(self.relative_position[0], self.orientation[0], self.sizes)
         return start + enlarge * (_pose.corners(self.relative_position[sample], self.relative_orientation[sample], self.sizes) - start)
+
+
+def _about_given(about):
+    """The dict; ValueError unless it is one, in which the names that masonry writes have values of their kinds."""
+    if about is not None and not isinstance(about, dict):
+        raise ValueError(f"about = {shown(about)}: must be a dict, or None")
+    for name, kind in _ABOUT.items():
+        if not isinstance((about or {}).get(name, kind()), kind):
+            raise ValueError(f"about[{name!r}] = {shown(about[name])}: must be a {kind.__name__}")
+    if not all(isinstance(note, str) and note for note in (about or {}).get("notes", [])):
+        raise ValueError(f"about['notes'] = {shown(about['notes'])}: must be texts that are not empty")
+    return dict(about or {})
 
 
 def history_given(history):

@@ -1,6 +1,7 @@
 """Results on a grid whose dimensions have names."""
 
 import csv
+import math
 
 import numpy as np
 
@@ -12,6 +13,10 @@ UNITS = {"amplitude": "m/s^2", "duration": "s", "frequency": "Hz", "cycles": "",
          "restitution": "", "period": "s", "damping": "", "record": ""}
 
 
+# Points of a grid that memory holds, some hundred bytes each.
+_MOST = 10**7
+
+
 def outer(**parameters):
     """(dims, coords, arrays) of a grid: each list among the parameters is a dimension of that name, in the order given; the arrays broadcast against
     each other over all of them. Single numbers add no dimension."""
@@ -19,6 +24,9 @@ def outer(**parameters):
     for name, value in parameters.items():
         if value.ndim > 1 or value.size == 0:
             raise ValueError(f"{name} = {shown(given[name])}: must be a number or a list of numbers")
+    points = math.prod(value.size for value in parameters.values())
+    if points > _MOST:
+        raise ValueError(f"{', '.join(f'{value.size} {name}' for name, value in parameters.items() if value.ndim)}: {points} points of the grid must be at most {_MOST}")
     dims = [name for name, value in parameters.items() if value.ndim]
     places = {name: [1] * len(dims) for name in dims}
     for k, name in enumerate(dims):

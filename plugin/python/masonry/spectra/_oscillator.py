@@ -53,7 +53,7 @@ def response(motion, period, damping=0.05, progress=False):
 
     motion     one motion as of oscillator_peak(), or a list of them: the dimension `record`
     period     s;  damping: ratio, at least 0 and below 1
-    progress   a progress bar (tqdm)
+    progress   a progress bar (tqdm); None: where stderr is a terminal
 
     The response to a record is exact for accelerations that are linear between its samples, also between samples and after the end of the record. All cores
     that the process may use get oscillators."""

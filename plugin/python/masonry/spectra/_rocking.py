@@ -44,7 +44,7 @@ def rocking(motion, width, slenderness, restitution=None, gravity=9.81, restorin
     width         whole width 2b, m
     slenderness   height over width
     restitution   C; None: the natural one
-    progress      a progress bar (tqdm)
+    progress      a progress bar (tqdm); None: where stderr is a terminal
 
     Each number may be a list, and each list is a dimension of the result, those of the motion first. restoring, t_end and half_cycles are those of
     simulate().

@@ -45,10 +45,11 @@ def content(history):
     peak = int(np.argmax(np.abs(angles)))
     moving = _as_structure(history, time, angles)
     return {"title": "One rocking block", "kind": "collapsed" if history.overturned else "stands",
-            "headline": f"Overturns in half cycle {history.overturn_half_cycle}" if history.overturned else "Does not overturn", "sentences": _sentences(history, end), "warnings": [],
+            "headline": f"Overturns in half cycle {history.overturn_half_cycle}" if history.overturned else
+            f"Does not overturn{' so far' if history.motion_run < 1 else ''}", "sentences": _sentences(history, end), "warnings": [],
             "scene": view3d.scene(moving, time[peak]), "sections": sections, "known": True, "solver": [],
             "numbers": [("Largest rotation", f"{abs(angles[peak]):.4g} rad, {abs(angles[peak]) / block.critical_angle:.3g} of the critical angle", f"{time[peak]:.4g} s")],
-            "facts": [("Block", f"{2 * block.half_width:g} m wide, {2 * block.half_height:g} m high, gravity {block.gravity:g} m/s²"),
+            "facts": [("Block", f"{2 * block.half_width:g} m wide, {2 * block.half_height:g} m high, gravity {block.gravity:g} m/s^2"),
                       ("Slenderness", f"{block.slenderness:.4g}"), ("Critical angle", f"{block.critical_angle:.4g} rad"),
                       ("Frequency parameter p", f"{block.frequency_parameter:.4g} rad/s"),
                       ("Restitution", f"{block.natural_restitution:.4g} (natural)" if history.restitution is None or np.isnan(history.restitution) else f"{history.restitution:g}"),
@@ -71,7 +72,7 @@ def _end(history):
 
 
 def _sentences(history, end):
-    said = [f"The run ends at {end:.4g} s."]
+    said = [f"The run ends at {end:.4g} s{history._partly()}."]
     if math.isfinite(history.rest_time):
         said.append(f"The block is at rest from {history.rest_time:.4g} s on.")
     elif not history.overturned:

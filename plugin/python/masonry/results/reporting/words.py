@@ -1,5 +1,6 @@
 """WallHistory.about in words."""
 
+import functools
 import math
 
 _GRAVITY = 9.80665  # m/s^2, as records are given in g
@@ -21,7 +22,7 @@ def material(given):
     restitution = "natural restitution" if given["restitution"] is None else f"restitution {given['restitution']:.3g}"
     stiffness = [f"{word} stiffness {given[name]:.3g} Pa/m" for name, word in (("normalStiffness", "normal"), ("shearStiffness", "shear"))
                  if given[name] is not None]
-    return ", ".join([f"{len(given['ids'])} blocks: density {given['density']:g} kg/m³", friction, restitution, *stiffness])
+    return ", ".join([f"{len(given['ids'])} blocks: density {given['density']:g} kg/m^3", friction, restitution, *stiffness])
 
 
 def motion(given):
@@ -30,11 +31,24 @@ def motion(given):
     start = f", from {given['start']:g} s" if given["start"] else ""
     if given["kind"] == "RecordMotionEngine":
         name = f" “{given['record']}”" if given["record"] else ""
-        return (f"record{name}: {given['samples']} samples every {given['interval']:g} s, peak {given['peak']:.3g} m/s² ({given['peak'] / _GRAVITY:.3g} g), "
+        return (f"record{name}: {given['samples']} samples every {given['interval']:g} s, peak {given['peak']:.3g} m/s^2 ({given['peak'] / _GRAVITY:.3g} g), "
                 f"baseline {given['baseline']}, along ({direction}){start}")
     return f"{given['pulses']} pulses ({given['shape']}) of impulse {quantity(given['impulse'], 'm/s')}, along ({direction}){start}"
 
 
+def _written_by_masonry(sentences):
+    """The function of `about`; where that, which may come from a file, lacks what masonry writes into it, ValueError."""
+    @functools.wraps(sentences)
+    def checked(about):
+        try:
+            return sentences(about)
+        except (KeyError, TypeError, ValueError, AttributeError, IndexError) as error:
+            raise ValueError(f"about of the history: must be what masonry has written ({type(error).__name__}: {error})") from None
+
+    return checked
+
+
+@_written_by_masonry
 def facts(about):
     """Rows (name, value) of the table of what was run."""
     rows = [("Script", about["script"])] if about.get("script") else []
@@ -49,7 +63,7 @@ def facts(about):
     if "dt" in model:
         rows.append(("Time step", f"{model['dt']:.4g} s in the last of {model['steps']} steps"))
     if "gravity" in model:
-        rows.append(("Gravity", f"({', '.join(f'{x:g}' for x in model['gravity'])}) m/s²"))
+        rows.append(("Gravity", f"({', '.join(f'{x:g}' for x in model['gravity'])}) m/s^2"))
     rows += [(name[0].upper() + name[1:], value if isinstance(value, str) else f"{value!r}") for name, value in about.items()
              if name not in ("script", "materials", "motions", "model", "solver", "notes", "versions")]
     if "versions" in about:
@@ -57,6 +71,7 @@ def facts(about):
     return rows
 
 
+@_written_by_masonry
 def solver(about):
     """Rows (name, value, meaning) on how well the laws were met."""
     given, model = about.get("solver", {}), about.get("model", {})
@@ -74,6 +89,7 @@ def solver(about):
     return rows
 
 
+@_written_by_masonry
 def failures(about):
     """Sentences on failures of the solver."""
     given = about.get("solver", {})
