@@ -48,7 +48,8 @@ constexpr int pointsOfFace = K::dimension == 2 ? 2 : 4;
 } // namespace
 
 // Both jaws press with all that they may, since the block, which they hold, moves with neither. Each goes `depth` into it: the work is the
-// limit of all points times that, and all of it is lost there. Bound: where a point meets the block, it may give it its speed besides, 2 v m.
+// limit of all points times that, and all of it is lost there. Bound: where a point meets the block, it may give it its speed besides, 2 v
+// m.
 TEMPLATE_TEST_CASE("jaws that close on a block press with a limited force", "", Plane, Space)
 {
 	auto s = jaws<TestType>(speed, -speed);
