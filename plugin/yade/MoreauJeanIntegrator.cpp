@@ -353,9 +353,10 @@ void MoreauJeanIntegrator::count(const masonry::rigid::StepReport& report)
 	if (onTrouble == "stop")
 		throw std::runtime_error(text.str() + " Give dem.engines() a smaller dt, or set MoreauJeanIntegrator.onTrouble='continue'.");
 	if (first)
-		LOG_WARN(
-		    firstFailure << " The run goes on; MoreauJeanIntegrator.failures counts such steps. A smaller dt of dem.engines() may help; "
-		                    "dem.compare() tells whether the answer depends on it.");
+		LOG_WARN(firstFailure << " The run goes on; MoreauJeanIntegrator.failures counts such steps."
+		                      << (jammed.empty()
+		                              ? " A smaller dt of dem.engines() may help; dem.compare() tells whether the answer depends on it."
+		                              : ""));
 }
 
 // --- energy ---

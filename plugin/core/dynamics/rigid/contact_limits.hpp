@@ -30,11 +30,13 @@ bool isAtLimit(const ContactRows<K>& row)
 	return row.impulse[0] > 0 && row.impulse[0] >= nearly * row.most;
 }
 
-// Whether some point presses so much more than it may that its impulse only grows while a solution is sought.
+// Times the limit, from which on an impulse only grows while a solution is sought. Where round-off ends the search, that is no solution.
+constexpr double absurd = 100;
+
+// Whether some point presses so much more than it may.
 template <class K>
 bool pressAbsurdly(const ContactState<K>& s)
 {
-	constexpr double absurd = 1e3;
 	return std::any_of(s.rows, s.rows + s.nPoints, [](const ContactRows<K>& row) { return row.impulse[0] > absurd * row.most; });
 }
 
