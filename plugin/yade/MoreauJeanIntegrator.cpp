@@ -290,9 +290,10 @@ string MoreauJeanIntegrator::jam(const masonry::rigid::StepReport& report) const
 		return text.str();
 	};
 	const auto [blocks, prescribed] = sceneOf(memory).blocksAndPrescribed(report.jammed);
-	return sentence("bodies with prescribed motion (", listed(prescribed), ") press blocks (", listed(blocks),
-	                ") from two sides, or against others, so that no motion obeys the contact laws: they go into the blocks. Make room between "
-	                "these bodies, or let one of them give way. ");
+	return sentence(
+	    "bodies with prescribed motion (", listed(prescribed), ") press blocks (", listed(blocks),
+	    ") from two sides, or against others, so that no motion obeys the contact laws: they go into the blocks. Make room between "
+	    "these bodies, or let one of them give way. ");
 }
 
 void MoreauJeanIntegrator::count(const masonry::rigid::StepReport& report)
@@ -310,7 +311,8 @@ void MoreauJeanIntegrator::count(const masonry::rigid::StepReport& report)
 	const string sums = addErrors();
 	const string jammed = jam(report);
 	const bool crowded = report.unlocalised > 0;
-	if (report.converged && jammed.empty() && !crowded && sums.empty() && report.created == 0 && !(report.deepest > 0) && !(report.turn > 0))
+	if (report.converged && jammed.empty() && !crowded && sums.empty() && report.created == 0 && !(report.deepest > 0) &&
+	    !(report.turn > 0))
 		return;
 
 	const Real ofStep = gravity.norm() * scene->dt; // the speed that gravity gives
@@ -351,9 +353,10 @@ void MoreauJeanIntegrator::count(const masonry::rigid::StepReport& report)
 	if (onTrouble == "stop")
 		throw std::runtime_error(text.str() + " Give dem.engines() a smaller dt, or set MoreauJeanIntegrator.onTrouble='continue'.");
 	if (first && onTrouble != "count")
-		LOG_WARN(
-		    firstFailure << " The run goes on; MoreauJeanIntegrator.failures counts such steps. A smaller dt of dem.engines() may help; "
-		                    "dem.compare() tells whether the answer depends on it.");
+		LOG_WARN(firstFailure << " The run goes on; MoreauJeanIntegrator.failures counts such steps."
+		                      << (jammed.empty()
+		                              ? " A smaller dt of dem.engines() may help; dem.compare() tells whether the answer depends on it."
+		                              : ""));
 }
 
 // --- energy ---

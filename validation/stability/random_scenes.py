@@ -29,6 +29,7 @@ MOST_OFF = 2e-2
 # Energy that pressing bodies may bring in, relative to ten weights of all blocks at each of up to eight points, all along their way; in walls besides
 # to what gives all blocks their largest speed in a step.
 MOST_WORK = 1
+pressing = {}  # of the scene: way of the pressing bodies, m, and their largest speed, m/s
 NAMES = (os.environ["STABILITY_MODEL"],) if "STABILITY_MODEL" in os.environ else tuple(MODELS)
 
 
@@ -103,6 +104,8 @@ def pressed(seed):
     beat = r.choice((1, 2, 4))
     times = np.arange(0, 1.5 * SECONDS, 0.005)
     curve = (gap + way) * np.sin(np.pi * beat * times / SECONDS / 2) ** 3
+    rates = np.abs(np.diff(curve))
+    pressing.update(way=len(jaws) * rates.sum(), speed=rates.max() / 0.005)
     axis = (0, 0, 1) if kind == "above" else (1, 0, 0)
     def moved(ids, sign):
         return dem.RecordMotionEngine(ids=ids, displacement=(sign * curve).tolist(), interval=0.005, direction=axis)
@@ -176,10 +179,7 @@ def beyond_cone(compliant):
 def most_work():
     """J, of the pressing bodies; see MOST_WORK."""
     mass = sum(b.state.mass for b in O.bodies if b.dynamic)
-    records = [e for e in [*O.engines, *getattr(engine(), "motions", [])] if isinstance(e, dem.RecordMotionEngine)]
-    way = sum(len(e.ids) * np.abs(np.diff(e.displacement)).sum() for e in records)
-    speed = max(np.abs(np.diff(e.displacement)).max() / e.interval for e in records)
-    return 8 * mass * way * (10 * 9.81 + (speed / O.dt if getattr(engine(), "method", "") == "wall" else 0))
+    return 8 * mass * pressing["way"] * (10 * 9.81 + (pressing["speed"] / O.dt if getattr(engine(), "method", "") == "wall" else 0))
 
 
 def run(seed, kind):

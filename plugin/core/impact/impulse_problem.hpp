@@ -33,7 +33,7 @@ struct ImpulsePoint {
 	Vector3 bias {Vector3::Zero()};    // added to the relative velocity u, m/s (see rigid_acceleration.hpp)
 	Vector3 impulse {Vector3::Zero()}; // result: on body 2, global, N s
 	Vector3 grip {Vector3::Zero()};    // across the normal: p_t acts, and u_t is measured, at position + grip (contact/friction_points.hpp)
-	double most {noSlip}; // N s, normal impulse where the laws have no solution, for solvers that know it (contact_limits.hpp)
+	double most {noSlip};              // N s, normal impulse where the laws have no solution, for solvers that know it (contact_limits.hpp)
 };
 
 struct CoupleRow {
@@ -45,8 +45,8 @@ struct CoupleRow {
 
 struct ImpulseReport {
 	int iterations;
-	double residual;    // largest violation of the laws above, as a velocity, m/s (natural map)
-	bool solved {true}; // the residual is what counts as zero
+	double residual;     // largest violation of the laws above, as a velocity, m/s (natural map)
+	bool solved {true};  // the residual is what counts as zero
 	bool jammed {false}; // the laws have no solution: points with a limit press as much as that
 };
 

@@ -26,8 +26,8 @@ struct alignas(2 * alignment) Missing { // a line of the cache of its own
 
 // Returns whether some pair is too deep. Groups without one are as if they had been looked at, at the first instant.
 template <class K>
-MASONRY_INLINE bool prepareGroups(const Group<K>* groups, const SolverGroup<K>* memory, typename Lift<K>::Points* points, int begin, int end, int* seen,
-                                  const Lanes* moved, double length)
+MASONRY_INLINE bool prepareGroups(const Group<K>* groups, const SolverGroup<K>* memory, typename Lift<K>::Points* points, int begin,
+                                  int end, int* seen, const Lanes* moved, double length)
 {
 	const Lanes none = all(0), deep = all(-tolerance::assembly::penetration * length), allowed = all(-tolerance::assembly::lifted * length);
 	bool some = false;

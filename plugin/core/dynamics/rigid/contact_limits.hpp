@@ -30,12 +30,32 @@ bool isAtLimit(const ContactRows<K>& row)
 	return row.impulse[0] > 0 && row.impulse[0] >= nearly * row.most;
 }
 
-// Whether some point presses so much more than it may that its impulse only grows while a solution is sought.
+// An impulse this many times the limit, and what stops all bodies at once, only grows while a solution is sought. Where round-off ends the
+// search, that is no solution.
+constexpr double absurd = 1e3;
+
 template <class K>
 bool pressAbsurdly(const ContactState<K>& s)
 {
-	constexpr double absurd = 1e3;
-	return std::any_of(s.rows, s.rows + s.nPoints, [](const ContactRows<K>& row) { return row.impulse[0] > absurd * row.most; });
+	const auto exceeds = [&](double momentum) {
+		return std::any_of(s.rows, s.rows + s.nPoints,
+		                   [=](const ContactRows<K>& row) { return row.impulse[0] > absurd * (row.most + momentum); });
+	};
+	if (!exceeds(0))
+		return false;
+	double mass = 0, speed = 0;
+	for (int b = 0; b < s.nBodies; ++b)
+		mass += 1 / s.bodies[b].inverseMass.linear;
+	for (int i = 0; i < s.nPoints; ++i) {
+		const ContactRows<K>& row = s.rows[i];
+		typename ContactRows<K>::Rows u = row.offset;
+		if (row.body1 >= 0)
+			u += row.J1 * s.bodies[row.body1].free;
+		if (row.body2 >= 0)
+			u += row.J2 * s.bodies[row.body2].free;
+		speed = std::max(speed, u.norm());
+	}
+	return exceeds(mass * speed);
 }
 
 // Impulses with limits, from those given, in the place of those of the state, which miss the laws without limits by report.residual. False:

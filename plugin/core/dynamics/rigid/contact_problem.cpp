@@ -162,7 +162,7 @@ SolveReport ContactSolver<K>::solve(double tolerance, double enough)
 		return report;
 	}
 	report = w.find(*this, tolerance, enough);
-	report.converged = report.residual <= std::max(tolerance, enough);
+	report.converged = report.residual <= std::max(tolerance, enough) && (w.given.empty() || !pressAbsurdly(w.s));
 	if (report.converged) {
 		w.s.letPartingGo(report.residual);
 	} else if (w.limit(lastSweeps, tolerance, report)) {

@@ -60,11 +60,11 @@ template <class K>
 struct ContactRows {
 	using Rows = Eigen::Matrix<double, K::rows, 1>;
 	using Jacobian = Eigen::Matrix<double, K::rows, K::dof>;
-	int body1 {-1}, body2 {-1};  // indices of free bodies; -1: prescribed, its motion is in the offset
-	Jacobian J1, J2;             // of body 1 with its minus sign
-	Rows offset {Rows::Zero()};  // m/s
-	double friction {0};         // mu >= 0, noSlip, or bilateral (point_law.hpp)
-	double most {noSlip};        // N s, normal impulse of a body with prescribed motion where the laws have no solution (contact_limits.hpp)
+	int body1 {-1}, body2 {-1}; // indices of free bodies; -1: prescribed, its motion is in the offset
+	Jacobian J1, J2;            // of body 1 with its minus sign
+	Rows offset {Rows::Zero()}; // m/s
+	double friction {0};        // mu >= 0, noSlip, or bilateral (point_law.hpp)
+	double most {noSlip};       // N s, normal impulse of a body with prescribed motion where the laws have no solution (contact_limits.hpp)
 	Rows impulse {Rows::Zero()}; // in: first guess; out: result. N s, on body 2 along the rows
 
 	// Whether the impulse has reached the friction cone.

@@ -229,11 +229,11 @@ struct Impact {
 
 struct StepReport {
 	int substeps {0}, events {0}, sweeps {0}, factorisations {0};
-	int unlocalised {0}; // points that closed beyond mostEvents
-	double residual {0}; // largest of the solves, m/s
-	double created {0};  // J, more than round-off and the error of a sound step can make of nothing
-	double deepest {0};  // m, of a block in another, where no sound step leaves it so deep
-	double turn {0};     // rad, of a block in the step, where it is more than a wall's step resolves
+	int unlocalised {0};     // points that closed beyond mostEvents
+	double residual {0};     // largest of the solves, m/s
+	double created {0};      // J, more than round-off and the error of a sound step can make of nothing
+	double deepest {0};      // m, of a block in another, where no sound step leaves it so deep
+	double turn {0};         // rad, of a block in the step, where it is more than a wall's step resolves
 	std::vector<int> jammed; // bodies that press each other as much as they may: prescribed ones, and blocks between them
 	bool converged {true};
 	bool diverged {false}; // the state is no longer finite

@@ -1,6 +1,6 @@
 // Gaps of loaded points, and penetrations, that a step has left: taken off its end.
-#include "dynamics/rigid/smooth_step.hpp"
 #include "dynamics/rigid/contact_limits.hpp"
+#include "dynamics/rigid/smooth_step.hpp"
 #include "tolerances.hpp"
 #include <algorithm>
 

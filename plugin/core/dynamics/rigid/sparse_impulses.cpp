@@ -1,4 +1,5 @@
 #include "dynamics/rigid/sparse_impulses.hpp"
+#include "dynamics/rigid/contact_limits.hpp"
 #include "dynamics/rigid/point_law.hpp"
 #include "tolerances.hpp"
 #include <algorithm>
@@ -154,12 +155,14 @@ ImpulseReport SparseImpulses<K>::solve(std::vector<masonry::Body>& bodies, std::
 		return solveImpulses(bodies, points, couples);
 	before = bodies;
 	const ImpulseReport report = solveImpulses(bodies, points, couples);
-	if (report.solved)
+	const bool isAbsurd =
+	    std::any_of(points.begin(), points.end(), [](const ImpulsePoint& p) { return p.impulse.dot(p.normal) > absurd * p.most; });
+	if (report.solved && !isAbsurd)
 		return report;
 	const auto after = std::tuple(bodies, points, couples);
 	bodies = before;
 	const ImpulseReport limited = solveSparse(bodies, points, couples);
-	if (limited.jammed)
+	if (limited.jammed || limited.solved)
 		return limited;
 	std::tie(bodies, points, couples) = after;
 	return report;

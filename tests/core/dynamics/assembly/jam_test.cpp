@@ -48,7 +48,8 @@ constexpr int pointsOfFace = K::dimension == 2 ? 2 : 4;
 } // namespace
 
 // Both jaws press with all that they may, since the block, which they hold, moves with neither. Each goes `depth` into it: the work is the
-// limit of all points times that, and all of it is lost there. Bound: the step in which they meet the block, and the one that is cut off.
+// limit of all points times that, and all of it is lost there. Bound: where a point meets the block, it may give it its speed besides, 2 v
+// m.
 TEMPLATE_TEST_CASE("jaws that close on a block press with a limited force", "", Plane, Space)
 {
 	auto s = jaws<TestType>(speed, -speed);
@@ -56,14 +57,14 @@ TEMPLATE_TEST_CASE("jaws that close on a block press with a limited force", "", 
 	RigidStep<TestType> step;
 	CHECK(run(s, step, (gap + depth) / speed) == std::set<int> {1, 2, 3});
 	const double force = pointsOfFace<TestType> * tolerance::rigid::mostWeights * weight;
-	CHECK(s.baseWork == Approx(2 * force * depth).epsilon(2 * h * speed / depth + 1e-6));
+	CHECK(s.baseWork == Approx(2 * force * depth).margin(2 * pointsOfFace<TestType> * s.bodies[1].mass * 2 * speed * speed));
 	CHECK(balance(s) == Approx(start).margin(1e-9 * s.baseWork));
 	CHECK(std::abs(s.bodies[1].pose.position[0]) < 1e-6 * half); // symmetry
 	CHECK(std::abs(potentialEnergy(s) - potential) < 1e-6 * weight * half);
 	CHECK(s.kineticEnergy() < 1e-9 * s.baseWork);
 }
 
-// The same of a wall's step, where a jaw may stop the block besides. The energy is known at the end of a step only.
+// The same of a wall's step, where a jaw may stop the block in each step besides. Bound: the step in which they meet it, and the last.
 TEMPLATE_TEST_CASE("jaws that close on a wall press with a limited force", "", Plane, Space)
 {
 	auto s = jaws<TestType>(speed, -speed);
@@ -71,8 +72,7 @@ TEMPLATE_TEST_CASE("jaws that close on a wall press with a limited force", "", P
 	assembly::AssemblyStep<TestType> step;
 	CHECK(run(s, step, (gap + depth) / speed) == std::set<int> {1, 2, 3});
 	const double force = pointsOfFace<TestType> * mass * (tolerance::rigid::mostWeights * g + speed / h);
-	CHECK(s.baseWork <= 2 * force * depth);
-	CHECK(s.baseWork > 0.5 * 2 * force * depth);
+	CHECK(s.baseWork == Approx(2 * force * depth).epsilon(2 * h * speed / depth));
 	CHECK(balance(s) == Approx(start).margin(1e-9 * s.baseWork));
 	CHECK(std::abs(s.bodies[1].pose.position[0]) < 1e-3 * half);
 	CHECK(s.kineticEnergy() < 1e-3 * s.baseWork);
@@ -100,6 +100,7 @@ TEMPLATE_TEST_CASE("jaws that move together take a block along", "", Plane, Spac
 	CHECK(run(s, step, seconds).empty());
 	const double way = seconds * speed - gap;
 	CHECK(s.bodies[1].pose.position[0] == Approx(way).epsilon(1e-6));
-	CHECK(s.frictDissip == Approx(0.5 * mass * g * way).epsilon(1e-3));
+	const double most = 0.5 * mass * g * way; // friction at the jaw may carry a part of the weight: N = mu (W - mu N)
+	CHECK((s.frictDissip < 1.001 * most && s.frictDissip > 0.999 * most / (1 + 0.5 * 0.5)));
 	CHECK(s.baseWork == Approx(s.frictDissip + mass * speed * speed).epsilon(1e-3));
 }
