@@ -5,7 +5,7 @@ import math
 import pytest
 from masonry import dem
 from rocking_scene import Balance, joint_engine, quiet_engines, refuses, turned_over
-from yade import O
+from yade import O, Quaternion
 
 
 def board(thickness, dt=None):
@@ -113,3 +113,21 @@ def test_a_given_step_is_refused_where_the_run_would(make):
     O.step()
     O.dt *= 1.01
     print(said, "|", refuses(O.step, "O.dt", "below", kind=RuntimeError))
+
+
+@pytest.mark.parametrize("depth", (0.02, 0.03, 0.05))
+@pytest.mark.parametrize("lean", (0.3, 0.4892, 0.6))
+def test_the_chosen_step_runs(lean, depth):
+    """The step that dem.engines() chooses is one that the run accepts, also where dashpots make the largest step shorter than 0.2 of the critical one:
+    two narrow boards that lean on each other."""
+    O.reset()
+    stone, thickness, length = dem.BlockMat(density=2000, frictionAngle=math.atan(0.8)), 0.01, 0.12
+    dem.base((3, 3, 0.1), stone)
+    across = (math.cos(lean) * thickness + math.sin(lean) * length) / 2, (math.sin(lean) * thickness + math.cos(lean) * length) / 2
+    for side in (-1, 1):
+        dem.block((thickness, depth, length), stone, center=(side * across[0], 0, across[1]), orientation=Quaternion((0, 1, 0), -side * lean))
+    O.engines = quiet_engines(model="compliant")
+    chosen, largest = O.dt, joint_engine().largestTimeStep
+    O.run(20, True)
+    print(f"lean {lean}, depth {depth}: dt {chosen:.3g} s, {chosen / largest:.2f} of the largest")
+    assert chosen <= 0.76 * largest and O.dt >= 0.8 * chosen

@@ -306,6 +306,14 @@ double liftJoints(JointSystem& s)
 	return given;
 }
 
+void releaseLandings(JointSystem& s)
+{
+	for (const Joint& joint : groupJoints(s))
+		if (!findLanding(s, joint).points.empty())
+			for (int c : joint.contacts)
+				releaseForces(s.contacts[c]);
+}
+
 std::vector<ImpactRecord> handOffPivots(JointSystem& s)
 {
 	std::vector<ImpactRecord> records;
