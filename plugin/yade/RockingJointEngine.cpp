@@ -509,6 +509,8 @@ void RockingJointEngine::action()
 		for (int id : motion->ids)
 			if (size_t(id) < index.size() && index[id] >= 0)
 				system.bodies[index[id]].acceleration += motion->direction * motion->acceleration(scene->time - motion->start);
+	if (started)
+		releaseLandings(system);
 	for (const auto& contact : system.contacts) {
 		frictDissip += contact.energy.friction;
 		dampDissip += contact.energy.damping;

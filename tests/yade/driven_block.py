@@ -28,7 +28,9 @@ def compare(name, engines, make, motion, t_end, bound):
     wanted, _ = exact.sample(np.array(seen.times))
     error = np.max(np.abs(angles - wanted)) / np.max(np.abs(wanted))
     moved = motion.displacement(np.array(seen.times))
-    drift = np.max(np.abs(displacements - moved)) / np.max(np.abs(moved))
+    # At the end of the step into which a Dirac pulse falls the base is where its old velocity has carried it, for that one step.
+    falls = [any(0 <= time - pulse < O.dt for pulse in getattr(engine, "pulseTimes", ())) for time in seen.times]
+    drift = np.max(np.abs(displacements - moved)[~np.array(falls)]) / np.max(np.abs(moved))
     print(f"{name}: {len(exact.impact_times)} impacts, angle {error:.1e}, base {drift:.1e}, energy {balance.error() / dem.energy()['baseWork']:.1e}")
     assert np.max(np.abs(wanted)) > 0.02 * block.critical_angle and len(exact.impact_times) >= 2  # it does rock
     assert error <= bound, (name, error)

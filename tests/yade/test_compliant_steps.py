@@ -5,7 +5,7 @@ import math
 import pytest
 from masonry import dem
 from rocking_scene import Balance, joint_engine, quiet_engines, refuses, turned_over
-from yade import O
+from yade import O, Quaternion
 
 
 def board(thickness, dt=None):
@@ -55,22 +55,27 @@ def test_a_given_step_is_not_touched():
 
 
 def bounce(step, seconds=2):
-    """Joints without dashpots under a block that falls flat and bounces; `step` relative to the critical one. Returns the joint engine, the error of the
-    sum of energies, and the share of the kinetic energy at the landing that one step may take at a landing, or give at a take-off."""
+    """Joints without dashpots between a block that flies to and fro and two upright walls, which do not rock: springs alone stop it. `step` relative to
+    the critical one. Returns the joint engine, the error of the sum of energies, and the share of the kinetic energy at the landing that one step may take
+    at a landing, or give at a take-off."""
     O.reset()
-    material = dem.BlockMat(density=2000, frictionAngle=0.6)
+    material = dem.BlockMat(density=2000, frictionAngle=0, normalStiffness=1.3e7, shearStiffness=1.3e7)
     base = dem.base((6, 4, 0.4), material)
-    dem.block((0.6, 0.6, 0.4), material, center=(0, 0, 0.3))
-    O.engines = quiet_engines(penetration=1e-3)
+    block = O.bodies[dem.block((0.4, 0.6, 0.6), material, center=(0, 0, 0.5))]
+    for side in (-1, 1):
+        O.bodies[dem.block((0.4, 1, 1), material, center=(side * 0.6, 0, 0.6))].dynamic = False
+    block.state.vel = (SPEED, 0, 0)
+    O.engines = quiet_engines(model="compliant", gravity=1e-5)
     critical = O.dt / joint_engine().stepFraction
-    O.engines = quiet_engines(penetration=1e-3, dt=step * critical)
+    O.engines = quiet_engines(model="compliant", gravity=1e-5, dt=step * critical)
     O.engines[2].lawDispatcher.functors[0].dampingRatio = 0
-    block = O.bodies[1]
-    stiffness = block.mat.normalStiffness * 0.6 * 0.6
     balance = Balance()
     while O.time < seconds or any(i.isReal for i in O.interactions):
         O.step()
-    return joint_engine(), balance.error(), stiffness / block.state.mass * O.dt**2 / 4
+    return joint_engine(), balance.error(), 1.3e7 * 0.6 * 0.6 / block.state.mass * O.dt**2 / 4
+
+
+SPEED = 1.4  # m/s
 
 
 @pytest.mark.parametrize("step", (0.5, 0.1, 0.03))
@@ -79,14 +84,15 @@ def test_bounces(step):
     the kinetic energy, and get as much back where they part. The sum of energies, in flight, knows the difference to rounding."""
     joints, error, most = bounce(step)
     made, lost = joints.madeEnergy, joints.lostEnergy
-    fall = O.bodies[1].state.mass * 9.81 * 0.1
-    landings = 2 / 0.28  # of 0.1 m: one each 0.29 s
-    print(f"bounces at {step:g} of the critical step: made {made / fall:.1e}, lost {lost / fall:.1e} of the fall, failures {joints.failures}")
-    assert abs(error - (made - lost)) < 1e-9 * fall
-    assert 0.2 * landings * most * fall < min(made, lost) and max(made, lost) < 1.1 * (landings + 1) * most * fall, most * fall
+    block = O.bodies[1]
+    energy = 0.5 * block.state.mass * SPEED**2
+    landings = 2 / (0.4 / SPEED)  # 0.4 m from wall to wall
+    print(f"bounces at {step:g} of the critical step: made {made / energy:.1e}, lost {lost / energy:.1e} of the energy, failures {joints.failures}")
+    assert abs(error - (made - lost)) < 1e-9 * energy
+    assert 0.2 * landings * most * energy < min(made, lost) and max(made, lost) < 1.1 * (landings + 1) * most * energy, most * energy
     told = (made > 0.05 * joints.turnedOver) + (lost > 0.05 * joints.turnedOver)
-    block = O.bodies[1]  # it lands at v = sqrt(2 g h) and goes as deep as its kinetic energy presses the spring in
-    depth = (2 * 9.81 * 0.1 * block.state.mass / (block.mat.normalStiffness * 0.6 * 0.6)) ** 0.5
+    # It goes as deep as its kinetic energy presses the spring in.
+    depth = SPEED * (block.state.mass / (1.3e7 * 0.6 * 0.6)) ** 0.5
     deep = depth > 0.02 * min(block.shape.extents)
     assert deep and joints.failures == told + deep and (step > 0.1) == (told > 0), depth
 
@@ -113,3 +119,21 @@ def test_a_given_step_is_refused_where_the_run_would(make):
     O.step()
     O.dt *= 1.01
     print(said, "|", refuses(O.step, "O.dt", "below", kind=RuntimeError))
+
+
+@pytest.mark.parametrize("depth", (0.02, 0.03, 0.05))
+@pytest.mark.parametrize("lean", (0.3, 0.4892, 0.6))
+def test_the_chosen_step_runs(lean, depth):
+    """The step that dem.engines() chooses is one that the run accepts, also where dashpots make the largest step shorter than 0.2 of the critical one:
+    two narrow boards that lean on each other."""
+    O.reset()
+    stone, thickness, length = dem.BlockMat(density=2000, frictionAngle=math.atan(0.8)), 0.01, 0.12
+    dem.base((3, 3, 0.1), stone)
+    across = (math.cos(lean) * thickness + math.sin(lean) * length) / 2, (math.sin(lean) * thickness + math.cos(lean) * length) / 2
+    for side in (-1, 1):
+        dem.block((thickness, depth, length), stone, center=(side * across[0], 0, across[1]), orientation=Quaternion((0, 1, 0), -side * lean))
+    O.engines = quiet_engines(model="compliant")
+    chosen, largest = O.dt, joint_engine().largestTimeStep
+    O.run(20, True)
+    print(f"lean {lean}, depth {depth}: dt {chosen:.3g} s, {chosen / largest:.2f} of the largest")
+    assert chosen <= 0.76 * largest and O.dt >= 0.8 * chosen

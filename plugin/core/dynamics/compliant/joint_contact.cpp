@@ -318,4 +318,10 @@ void holdForces(JointContact& contact)
 	placeFriction(contact);
 }
 
+void releaseForces(JointContact& contact)
+{
+	contact.energy = {};
+	std::for_each(contact.points.begin(), contact.points.begin() + contact.size, release);
+}
+
 } // namespace masonry

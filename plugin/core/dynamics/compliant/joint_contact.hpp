@@ -104,4 +104,7 @@ void updateForces(JointContact& contact, const Body& body1, const Body& body2, d
 // normal forces allow.
 void holdForces(JointContact& contact);
 
+// No forces, and no energy of this step.
+void releaseForces(JointContact& contact);
+
 } // namespace masonry

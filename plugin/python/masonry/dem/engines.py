@@ -27,6 +27,9 @@ _WALL_STEP = 2 / 75
 _PENETRATION = 1e-5
 # Smaller ones drown in the round-off of positions.
 _LEAST_PENETRATION = 1e-10
+# Share of the smallest width by which the weight presses in joints of a given stiffness: above the first, blocks sink into each other;
+# above the second, a slip of units is likelier than rubber.
+_MOST_PENETRATION, _ODD_PENETRATION = 0.1, 2e-3
 # m/s^2: whatever the units of length and time, and far from overflow.
 _GRAVITIES = 1e-6, 1e6
 # Overlap of rigid blocks relative to their smallest size: what MoreauJeanIntegrator accepts, relative to half of it.
@@ -61,6 +64,28 @@ def _largest_pressure(free, gravity):
         load = mass[k] + (mass * shares)[pos[:, 2] > pos[k, 2]].sum()
         pressures.append(load * gravity / (4 * half[k, 0] * half[k, 1]))
     return max(pressures)
+
+
+def _check_stiffness(blocks, gravity):
+    """Refuses given stiffnesses that the weight presses in by impossible depths, and names those that look like a slip of units."""
+    if gravity == 0:
+        return
+    free = [b for b in blocks if b.dynamic]
+    width = 2 * _half_sizes(free)[:, :2].min()
+    pressure = _largest_pressure(free, gravity)
+    for name in ("normalStiffness", "shearStiffness"):
+        for material in {b.mat.id: b.mat for b in blocks}.values():
+            stiffness = getattr(material, name)
+            if not _is_given(material, name):
+                continue
+            depth = pressure / (stiffness * width)
+            if not _LEAST_PENETRATION / 2 <= depth <= _MOST_PENETRATION:
+                raise ValueError(f"{name} = {stiffness:g} Pa/m: must be from {pressure / (width * _MOST_PENETRATION):.2g} to "
+                                 f"{2 * pressure / (width * _LEAST_PENETRATION):.2g} Pa/m here, where the weight presses joints in by {depth:.2g} of the smallest "
+                                 f"width. It is a stiffness per area: 10 GPa/m = 10 N/mm^3 = 1e10 Pa/m")
+            if depth > _ODD_PENETRATION:
+                notes.say(f"{name} = {stiffness:g} Pa/m: the weight presses joints in by {1e3 * depth * width:.2g} mm, {depth:.2g} of the smallest width. Joints of "
+                          "masonry have 1e9 to 1e12 Pa/m (10 GPa/m = 10 N/mm^3 = 1e10 Pa/m)")
 
 
 def _choose_stiffness(blocks, penetration, gravity):
@@ -274,6 +299,7 @@ def _rigid(motions, model, method, dt, tolerance, impact_order, gravity, recorde
 
 def _compliant(blocks, motions, reason, dt, penetration, impact_order, gravity, recorders):
     reasons = [f"compliant joints, YADE's usual loop: {reason}"]
+    _check_stiffness(blocks, gravity)
     chosen = _choose_stiffness(blocks, penetration, gravity)
     if chosen:
         reasons.append(chosen)

@@ -60,10 +60,13 @@ struct LeapfrogRig {
 			contact.law = law;
 			renewPatch(contact, patch);
 			updateForces(contact, system.bodies[a], system.bodies[b], system.dt);
-			dissipated += contact.energy.friction + contact.energy.damping;
 			system.contacts.push_back(contact);
 			index.push_back(k);
 		}
+		if (started)
+			releaseLandings(system);
+		for (const masonry::JointContact& contact : system.contacts)
+			dissipated += contact.energy.friction + contact.energy.damping;
 	}
 
 	void step()
