@@ -189,9 +189,10 @@ namespace masonry::tolerance::assembly {
 // Relative movement of a pair, relative to the smallest half size, after which the features in touch are looked up again. Larger: a vertex
 // that has slid over the end of a face is held there that much longer; smaller: walls that move spend their time on it.
 constexpr double search = 1e-3;
-// Distance past the end of its face, relative to the smallest half size of the pair, at which a vertex is looked up again at once. It must
-// exceed contact::slack, within which a vertex still lies on the end. Larger: the normal of the wrong face may hold a joint closed.
-constexpr double leftFace = 2 * contact::slack;
+// Distance past the end of its face, relative to the smallest half size, at which a vertex is looked up again at once. Larger: the normal
+// of the wrong face may hold a joint closed; smaller, down to contact::slack, within which a vertex still lies on the end: what the solver
+// leaves at rest has points looked up, and walls in space are factorised more often.
+constexpr double leftFace = 10 * contact::slack;
 // Angle, rad, by which a block may turn while nothing moves before normals and arms follow. Larger: forces and gaps are so much askew.
 constexpr double turned = 1e-7;
 // Gap relative to the smallest half size up to which a point takes part in an impact or a base pulse. Larger: points that are open carry

@@ -109,6 +109,7 @@ struct alignas(alignment) FeatureLanes<Space> {
 	Mask vertexOn1, present, crossing;
 	Lanes3 vertex, normal, tangent; // of the face: outward normal, first tangent
 	Lanes faceDistance;
+	Lanes2 faceEnd; // m, half sizes of the face along its tangents
 	Lanes3 arm;     // from body 2 to the point, global axes
 	Lanes foundGap; // when the features were looked up
 	Lanes2 found;   // where along them

@@ -1,6 +1,7 @@
 // Contact points in space: the parts of ContactSet (contact_set.hpp) that depend on the dimension.
 #include "contact/features.hpp"
 #include "dynamics/assembly/contact_set.hpp"
+#include "tolerances.hpp"
 
 namespace masonry::rigid::assembly {
 
@@ -142,10 +143,11 @@ MASONRY_INLINE void takeFound(PointLanes<Space>& p, FeatureLanes<Space>& f, cons
 MASONRY_LANES void measureGroups(const RigidSystem<Space>& s, Group<Space>* groups, FeatureGroup<Space>* features, unsigned char* stale,
                                  size_t count, const Lanes* pose, double travel, bool remember)
 {
+	const double passed = tolerance::assembly::leftFace / tolerance::assembly::search * travel;
 	for (size_t g = 0; g < count; ++g) {
 		Group<Space>& group = groups[g];
 		const Placed p1 = placed(pose, group.body1), p2 = placed(pose, group.body2);
-		Lanes moved = all(0);
+		Mask isStale {};
 		const Mask anew = maskOf(stale[g]);
 		for (int k = 0; k < group.count; ++k) {
 			FeatureLanes<Space>& f = features[g].point[k];
@@ -154,10 +156,14 @@ MASONRY_LANES void measureGroups(const RigidSystem<Space>& s, Group<Space>* grou
 				f.foundGap = select(anew, found.gap, f.foundGap);
 				f.found = select(anew, {found.along1, found.along2}, f.found);
 			}
-			moved = larger(moved, size(found.gap - f.foundGap) + size(found.along1 - f.found.x) + size(found.along2 - f.found.y));
+			const Lanes moved1 = size(found.along1 - f.found.x), moved2 = size(found.along2 - f.found.y);
+			isStale |= size(found.gap - f.foundGap) + moved1 + moved2 > travel;
+			// At a corner of the face, the vertex of either body may be the point, until one has passed the other.
+			const Lanes fromEnd = larger(size(size(f.found.x) - f.faceEnd.x), size(size(f.found.y) - f.faceEnd.y));
+			isStale |= ~f.crossing & (larger(moved1, moved2) > fromEnd + passed);
 			group.point[k].gap = select(f.present, found.gap, all(farAway));
 		}
-		stale[g] |= bitsOf(moved > travel);
+		stale[g] |= bitsOf(isStale);
 	}
 }
 
@@ -247,6 +253,8 @@ void ContactSet<Space>::takePoint(const RigidSystem<Space>& s, int c, int k)
 	set(f.normal, lane, (face % 2 ? 1. : -1.) * Vector3::Unit(axis));
 	set(f.tangent, lane, Vector3::Unit(feature::nextAxis(axis)));
 	f.faceDistance[lane] = faceHalf[axis];
+	f.faceEnd.x[lane] = faceHalf[feature::nextAxis(axis)];
+	f.faceEnd.y[lane] = faceHalf[feature::nextAxis(feature::nextAxis(axis))];
 }
 
 template <>

@@ -76,13 +76,35 @@ Frame edgeAcrossEdge(const Edge& edge1, const Vector3& centre1, const Edge& edge
 bool isCrossing(int identity) { return identity >= 16; }
 bool isCrossing(const SpaceFeature& feature) { return feature.kind == SpaceFeature::Edges; }
 
-SpaceFeature featureOf(const PatchPoint& point, const PatchFeature& faces)
+// A corner of both faces is named after body 2. The point is the vertex that lies over the other body's face, which the larger of its
+// distances from the sides of that face tells, as in the plane (endOfOverlap).
+SpaceFeature vertexFeature(int vertex2, const PatchFeature& faces, const Vector3& half1, const Pose& pose1, const Vector3& half2,
+                           const Pose& pose2)
+{
+	const double length = std::min(half1.minCoeff(), half2.minCoeff());
+	const Vector3 place = pose1.orientation.conjugate() * (pose2.position - pose1.position + pose2.orientation * vertexOf(vertex2, half2));
+	const int axis = faces.feature1 / 2;
+	Vector3 signs = place.unaryExpr(&feature::signOf);
+	signs[axis] = faces.feature1 % 2 ? 1 : -1;
+	Vector3 outside = signs.cwiseProduct(place) - half1;
+	outside[axis] = 0;
+	int side;
+	const double farthest = outside.cwiseAbs().maxCoeff(&side);
+	const int vertex1 = feature::vertexNumber(signs);
+	const bool areBoth = faces.vertices >> feature::vertexIdentity(1, vertex1) & 1 && farthest <= tolerance::contact::vertexReach * length;
+	if (areBoth && outside[side] > tolerance::contact::slack * length)
+		return {SpaceFeature::Vertex1, vertex1, faces.feature2};
+	return {SpaceFeature::Vertex2, faces.feature1, vertex2};
+}
+
+SpaceFeature featureOf(const PatchPoint& point, const PatchFeature& faces, const Vector3& half1, const Pose& pose1, const Vector3& half2,
+                       const Pose& pose2)
 {
 	if (isCrossing(point.identity))
 		return {SpaceFeature::Edges, (point.identity - 16) / 12, (point.identity - 16) % 12};
 	if (point.identity < 8)
 		return {SpaceFeature::Vertex1, point.identity, faces.feature2};
-	return {SpaceFeature::Vertex2, faces.feature1, point.identity - 8};
+	return vertexFeature(point.identity - 8, faces, half1, pose1, half2, pose2);
 }
 
 // Two edges that touch have their common normal between the outward normals of the faces beside them: along `outward` it is 1 at
@@ -108,7 +130,7 @@ void takeCorners(const ContactPatch& patch, const Vector3& half1, const Pose& po
 	SpaceFeature blunt;
 	for (int i = 0; i < patch.size; ++i) {
 		const PatchPoint& point = patch.points[i];
-		const SpaceFeature feature = featureOf(point, patch.feature);
+		const SpaceFeature feature = featureOf(point, patch.feature, half1, pose1, half2, pose2);
 		if (!isCrossing(feature) || isSharp(Edge(feature.first, half1, pose1), Edge(feature.second, half2, pose2), patch.normal)) {
 			nearest = std::min(nearest, point.gap);
 			out.features[out.size++] = feature;
