@@ -338,11 +338,11 @@ void ContactSet<K>::setUnit(double h)
 }
 
 template <class K>
-void ContactSet<K>::startMeans()
+void ContactSet<K>::startMeans(double share)
 {
 	for (Group<K>& group : groups)
 		for (PointLanes<K>& p : group.point)
-			p.steady = p.pn;
+			p.steady = share * p.pn;
 }
 
 template class ContactSet<Plane>;

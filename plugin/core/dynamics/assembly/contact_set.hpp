@@ -157,8 +157,8 @@ public:
 	void lean(const RigidSystem<K>& system);
 	// Impulses are those of a time h from now on; not many times the last, or an impact's would become as many.
 	void setUnit(double h);
-	// The means of the impulses are those that there are now.
-	void startMeans();
+	// The means of the impulses are this share of those that there are now.
+	void startMeans(double share);
 	// Gaps, forces and places of all points, as they are now, into the pairs. Needed before the list of pairs changes.
 	void showPoints(RigidSystem<K>& system);
 	// The next step needs this from the last, besides the system.
