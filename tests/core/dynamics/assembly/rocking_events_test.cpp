@@ -215,7 +215,7 @@ TEST_CASE("a dense wall keeps most of its restitution at three times the iterati
 	CHECK(failures < 0.01 * impacts);
 }
 
-// A panel of 32 blocks on one sill rocks as a whole and lands on the sill's other edge. A spin that is too large for the sill's own energy
+// A panel of 31 blocks on one sill rocks as a whole and lands on the sill's other edge. A spin that is too large for the sill's own energy
 // comes out as the largest that keeps it, whatever is asked and whatever the step. Oracle: the largest restitution, in steps of 0.02, that
 // comes out as it is asked. Bound: what docs/limits promises. All impacts obey the contact laws.
 TEMPLATE_TEST_CASE("a panel on a sill lands with the largest restitution that keeps the energy", "", Plane, Space)
