@@ -328,6 +328,8 @@ void runWithOptions()
 	a.early = number("early", a.early);
 	a.ofInstant = int(number("instant", a.ofInstant));
 	a.instantTolerance = number("itol", a.instantTolerance);
+	a.instantEnough = number("ienough", a.instantEnough);
+	a.mostOfInstant = int(number("imost", a.mostOfInstant));
 	step.settings.threads = int(number("threads", 1));
 	run<K>(step);
 }

@@ -261,7 +261,7 @@ bool AdmmSolver<K>::isOutdated(ContactSet<K>& c, const StepContext& step)
 	rows.resize(c.groups.size());
 	age += step.instant ? 0 : step.h;
 	Step same = stepOf(step, settings, atRest);
-	same.compares = !(age < settings.refactorTime * step.rocking);
+	same.compares = !ofInstant && !(age < settings.refactorTime * step.rocking);
 	if (same.compares)
 		age = 0;
 	Outdated found[Team::mostParts + 1] {};
@@ -344,7 +344,9 @@ void AdmmSolver<K>::holdSpins()
 template <class K>
 double AdmmSolver<K>::iterate(ContactSet<K>& c, const StepContext& step)
 {
-	const Step same = stepOf(step, settings, atRest);
+	Step same = stepOf(step, settings, atRest);
+	if (constexpr int late = 300; step.instant && report.iterations >= late) // sliding points are in a limit cycle
+		same.boundShare /= 3;
 	matrix.solve(force);
 	holdSpins();
 	Lanes worst[Team::mostParts + 1] {}, changed[Team::mostParts + 1] {};
@@ -377,29 +379,38 @@ void AdmmSolver<K>::solve(ContactSet<K>& c, const LaneArray& load, const LaneArr
 	report = {};
 	const bool areFew = matrix.freePacks().size() < size_t(settings.few * packs<K>);
 	const bool wasAtRest = std::exchange(atRest, step.stands && !step.instant && !cold && !settings.strictForces && !areFew);
-	if (isOutdated(c, step) || atRest != wasAtRest)
+	const bool isAfterInstant = std::exchange(ofInstant, ofInstant && step.instant) && !step.instant;
+	if (isOutdated(c, step) || isAfterInstant || atRest != wasAtRest)
 		makeMatrix(c, step);
 	for (SpinRow<K>& row : spins)
 		row.couple = 0;
 	prepareSpins(c);
 	start(c, load, guess, step);
-	const double enough = std::max(settings.tolerance * step.fall, step.instant ? settings.instantTolerance * step.speed : 0);
-	const double iterations =
-	    settings.iterations * std::max(1., double(settings.few) * packs<K> / std::max<size_t>(1, matrix.freePacks().size()));
-	const int most = step.instant                    ? settings.ofInstant
+	const double share = std::max(1., double(settings.few) * packs<K> / std::max<size_t>(1, matrix.freePacks().size())),
+	             iterations = settings.iterations * share, tolerated = settings.tolerance * step.fall;
+	const auto enough = [&] {
+		if (step.instant)
+			return std::max(tolerated, step.speed * (report.iterations < settings.ofInstant * share ? settings.instantTolerance
+			                                                                                        : settings.instantEnough));
+		const bool isLagging = !atRest && report.iterations < settings.least;
+		return isLagging ? settings.early * tolerated : tolerated;
+	};
+	const int most = step.instant                    ? settings.mostOfInstant
 	                 : cold || settings.strictForces ? settings.first
 	                                                 : int(std::min(iterations + saved, 10 * iterations));
-	const auto isLagging = [&] { return !step.instant && !atRest && report.iterations < settings.least; };
 	constexpr double diverging = 10;
-	constexpr int untilLoaded = 100; // iterations of a cold start, after which R follows the loads that they have found
+	constexpr int untilLoaded = 100;          // iterations of a cold start, after which R follows the loads that they have found
+	constexpr int looks[] {20, 50, 300, 600}; // the same of an instant
 	double least = INFINITY;
 	do {
 		report.residual = iterate(c, step);
 		++report.iterations;
-		const bool isLoaded = cold && !step.instant && report.iterations % untilLoaded == 0;
+		const bool isLoaded = step.instant ? std::count(std::begin(looks), std::end(looks), report.iterations) > 0
+		                                   : cold && report.iterations % untilLoaded == 0;
 		if (isLoaded)
-			c.startMeans();
-		const bool isTooStiff = atRest && report.iterations >= settings.restMost && report.residual > enough;
+			c.startMeans(step.instant ? step.fall / step.speed : 1);
+		ofInstant |= isLoaded && step.instant;
+		const bool isTooStiff = atRest && report.iterations >= settings.restMost && report.residual > tolerated;
 		atRest &= !isTooStiff;
 		report.leftRest |= isTooStiff;
 		if (isLoaded || isTooStiff || report.residual > diverging * least) {
@@ -408,7 +419,7 @@ void AdmmSolver<K>::solve(ContactSet<K>& c, const LaneArray& load, const LaneArr
 			least = report.residual;
 		}
 		least = std::min(least, report.residual);
-	} while (report.residual > (isLagging() ? settings.early * enough : enough) && report.iterations < most);
+	} while (report.residual > enough() && report.iterations < most);
 	if (!step.instant) {
 		saved = cold ? 0 : std::clamp(saved + iterations - report.iterations, 0., settings.reserve * iterations);
 		cold = false;

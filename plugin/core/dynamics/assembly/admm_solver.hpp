@@ -36,7 +36,8 @@
 //
 // An instant (StepContext::instant) is the same problem without forces: impacts with rows, and jumps of the base. Points in touch start as
 // ones that stick, z_t = 0: a base that jumps under a block which it only slides along is a solution too, and where nothing slips not the
-// one that is meant.
+// one that is meant. Its impulses come where nothing has pressed in the steps before, so that R follows those that it has found after some
+// iterations; the next step makes A anew.
 //
 // Biases. A point with a gap may close within the step: b_n = gap/h. Of a penetration, and of a slip that unfinished iterations have left
 // at a point that sticks, a share is taken back in each step: b = share x/h. A penetration with which a point was found stays, and so does
@@ -53,14 +54,16 @@ struct AdmmSettings {
 	int iterations {20};       // at most in a step, beside the reserve. Fewer: excursions are too small
 	int few {100}; // blocks below which a step takes more of them, in inverse proportion. Smaller: walls of some tens of blocks in space go
 	               // a tenth too little
-	int least {10};      // iterations of a step, unless its residual is below `early`. Fewer: p lags behind what turns, and energy rises
-	double early {0.1};  // of the tolerance. Smaller: more iterations at rest; larger: as with fewer `least` iterations
-	int reserve {50};    // times `iterations` that quiet steps save for impacts at most. 0: walls under impacts drift
-	int first {3000};    // iterations of a step that starts without impulses, at most
-	int ofInstant {100}; // iterations of an impact or a base pulse, at most. Fewer: the next steps take up more of it
-	double instantTolerance {
-	    1e-6}; // largest |w - z| of an instant relative to the velocities that change, if that is more. Larger: restitution is less right
-	double softness {0.2};      // r. Larger: high walls go too far; smaller: low walls that begin to move do not go far enough
+	int least {10};     // iterations of a step, unless its residual is below `early`. Fewer: p lags behind what turns, and energy rises
+	double early {0.1}; // of the tolerance. Smaller: more iterations at rest; larger: as with fewer `least` iterations
+	int reserve {50};   // times `iterations` that quiet steps save for impacts at most. 0: walls under impacts drift
+	int first {3000};   // iterations of a step that starts without impulses, at most
+	int ofInstant {40}; // iterations with which an impact or a base pulse goes on to instantTolerance; more of them below `few` blocks, as
+	                    // in a step. Fewer: single blocks land less right
+	double instantTolerance {1e-6}; // largest |w - z| of an instant relative to the velocities that change, or as in a step if that is more
+	double instantEnough {5e-3};    // the same after these iterations. Larger: the next steps take up more of it
+	int mostOfInstant {1000};       // iterations of an instant at most
+	double softness {0.2};          // r. Larger: high walls go too far; smaller: low walls that begin to move do not go far enough
 	double restSoftness {0.02}; // r while an assembly of more than `few` blocks rests. Larger: one that is shaken without moving drifts,
 	                            // and takes more iterations; smaller: its forces are less right, so that it begins to move too early
 	int restMost {10};          // iterations until a step at rest goes on with `softness`. More: the onset of motion costs more
@@ -150,7 +153,8 @@ private:
 	double age {0};                  // s, since R was last compared with the loads
 	double saved {0};                // iterations
 	bool cold {true};
-	bool atRest {false}; // R is that of an assembly at rest
+	bool ofInstant {false}; // R is that of an instant
+	bool atRest {false};    // R is that of an assembly at rest
 };
 
 } // namespace masonry::rigid::assembly

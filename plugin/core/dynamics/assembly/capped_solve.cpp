@@ -1,6 +1,7 @@
 #include "dynamics/assembly/capped_solve.hpp"
 #include "dynamics/assembly/joint_work.hpp"
 #include <algorithm>
+#include <utility>
 
 namespace masonry::rigid::assembly {
 
@@ -22,41 +23,43 @@ template <class K>
 CappedReport CappedSolve<K>::solve(const RigidSystem<K>& s, ContactSet<K>& c, const LaneArray& load, const LaneArray& guess,
                                    AdmmSolver<K>& solver, const EnergyLedger<K>& ledger, const StepContext& step)
 {
-	constexpr int mostReductions = 1; // larger: capped joints are nearer to the restitution that keeps their energy
+	constexpr int mostTrials = 2; // of lower targets. Fewer: capped joints are farther below the restitution that keeps their energy
 	CappedReport report;
 	rows = solver.spins;
+	ranges.assign(rows.size(), {});
 	if (!rows.empty() || step.instant) {
 		groups = c.groups;
 		memory = c.memory;
 	}
-	std::vector<double> made(rows.size(), 0); // gain of a row that made energy, with its target
-	for (int reductions = 0;; restore(c)) {
+	bool isBack = false;
+	for (int trials = 0;; restore(c)) {
 		SpinRow<K>* worst = solveOnce(s, c, load, guess, solver, step, report);
+		const bool areTargetsAsked = trials == 0;
 		if (!report.finite) {
 			const bool areRows = std::any_of(rows.begin(), rows.end(), [](const SpinRow<K>& row) { return row.held; });
 			for (SpinRow<K>& row : rows)
 				row.held = false, row.capped = true;
-			reductions = mostReductions;
+			trials = mostTrials;
 			if (areRows)
 				continue;
 			break;
 		}
-		if (worst) {
-			made[worst - rows.data()] = gains[worst - rows.data()];
-			worst->held = false;
-			worst->capped = true;
+		if (!worst)
+			sound = rows;
+		if (!(worst && areTargetsAsked) && trials < mostTrials && moveTargets()) {
+			++trials;
 			continue;
 		}
-		bool again = false;
-		for (size_t k = 0; reductions < mostReductions && k < rows.size(); ++k)
-			if (SpinRow<K>& row = rows[k]; !row.held && gains[k] < 0) {
-				const double natural = row.rate(solver.velocity);
-				row.target = natural + (row.target - natural) * gains[k] / (gains[k] - made[k]);
-				row.held = again = true;
-			}
-		if (!again)
+		if (!worst)
 			break;
-		++reductions;
+		if (!areTargetsAsked && !std::exchange(isBack, true)) {
+			trials = mostTrials;
+			rows = sound;
+			continue;
+		}
+		ranges[worst - rows.data()].above = ranges[worst - rows.data()].last;
+		worst->held = false;
+		worst->capped = true;
 	}
 	solver.spins = rows;
 	if (step.instant)
@@ -81,21 +84,44 @@ SpinRow<K>* CappedSolve<K>::solveOnce(const RigidSystem<K>& s, ContactSet<K>& c,
 	report.factorisations += solver.report.factorisations;
 	report.residual = solver.report.residual;
 	report.finite = solver.report.finite;
+	const double missed = step.instant ? report.residual / step.speed : 0;
 	SpinRow<K>* worst = nullptr;
 	double most = 0;
 	auto held = solver.spins.begin();
-	gains.clear();
-	for (SpinRow<K>& row : rows) {
+	for (size_t k = 0; k < rows.size(); ++k) {
+		SpinRow<K>& row = rows[k];
 		row.couple = row.held ? (held++)->couple : 0;
 		JointWork work = jointWork(s, c, solver, row.block(), row.face);
 		work.add(row.spent);
-		gains.push_back(work.gain);
-		if (row.held && work.isActive() && work.gain > most) {
+		ranges[k].last = {row.held, row.held && work.isActive(missed), row.rate(solver.velocity), row.couple, work};
+		if (ranges[k].last.makesEnergy && work.gain > most) {
 			worst = &row;
 			most = work.gain;
 		}
 	}
 	return worst;
+}
+
+template <class K>
+bool CappedSolve<K>::moveTargets()
+{
+	constexpr double enough = 0.005; // of the work exchanged, that a capped joint may lose. Larger: its restitution is less right
+	bool again = false;
+	for (size_t k = 0; k < rows.size(); ++k) {
+		SpinRow<K>& row = rows[k];
+		auto& [below, above, last] = ranges[k];
+		if (!row.capped)
+			continue;
+		(last.makesEnergy ? above : below) = last;
+		const double most = enough * last.work.exchanged;
+		if (!last.makesEnergy && last.work.gain > -most)
+			continue;
+		again = true;
+		row.held = below.work.gain < -most;
+		if (row.held)
+			row.target = below.rate + below.shareUpTo(above, most / 2) * (above.rate - below.rate);
+	}
+	return again;
 }
 
 template <class K>

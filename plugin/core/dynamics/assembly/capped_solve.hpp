@@ -5,10 +5,16 @@
 // a little of what the first has taken: the balance is that of both.
 //
 // Of the rows whose joints make energy, the one with the largest gain is left out, and the rest is solved again, until no joint makes any:
-// a joint without its row lands with its natural restitution and gains nothing. Then each such row comes back with a lower target. The gain
-// of a joint that does not slip is a convex function of the target, so that it is not above zero where its chord is, between the natural
-// spin and the target that made energy. A row that makes energy there too is left out again, and tried once more.
+// a joint without its row lands with its natural restitution and gains nothing. Then these rows come back with the largest spins that make
+// no energy. While no other contact opens, closes or begins to slide, impulses are linear in the spin x, 0 at the natural one and 1 at that
+// which made energy, and the gain is
+//
+//     G(x) = G0 + (G1 - G0) x - D x (1 - x),        D = (c1 - c0)(e.w1 - e.w0)/2
+//
+// where c are the couples. Each trial takes the root of this and replaces one of the two ends. If the last trial makes energy anywhere, the
+// last one that has made none holds.
 #include "dynamics/assembly/energy_ledger.hpp"
+#include <cmath>
 
 namespace masonry::rigid::assembly {
 
@@ -34,9 +40,29 @@ private:
 	SpinRow<K>* solveOnce(const RigidSystem<K>& system, ContactSet<K>& contacts, const LaneArray& load, const LaneArray& guess,
 	                      AdmmSolver<K>& solver, const StepContext& step, CappedReport& report);
 
-	std::vector<SpinRow<K>> rows;
-	std::vector<double> gains;    // by row, J
-	std::vector<Group<K>> groups; // before the solve
+	// Gives capped rows the targets of the next trial. False: all of them have found theirs.
+	bool moveTargets();
+
+	// What a solve has found of a row.
+	struct Trial {
+		bool held {false}, makesEnergy {false};
+		double rate {0}, couple {0}; // rad/s, N m s
+		JointWork work;
+
+		// The share x of the way to a trial that makes energy, at which the joint loses `loss`, J.
+		double shareUpTo(const Trial& above, double loss) const
+		{
+			const double curved = std::max(0., (above.couple - couple) * (above.rate - rate) / 2), low = work.gain + loss,
+			             rise = above.work.gain - work.gain - curved;
+			return -2 * low / (rise + std::sqrt(rise * rise - 4 * curved * low));
+		}
+	};
+	struct Range {
+		Trial below, above, last; // the greatest spin without energy made, the least with it; the last solve
+	};
+	std::vector<SpinRow<K>> rows, sound; // now; the last with which no joint made energy
+	std::vector<Range> ranges;           // by row
+	std::vector<Group<K>> groups;        // before the solve
 	std::vector<SolverGroup<K>> memory;
 };
 

@@ -384,11 +384,11 @@ void ContactSet<K>::addJammed(std::vector<int>& bodies) const
 }
 
 template <class K>
-void ContactSet<K>::startMeans()
+void ContactSet<K>::startMeans(double share)
 {
 	for (Group<K>& group : groups)
 		for (PointLanes<K>& p : group.point)
-			p.steady = p.pn;
+			p.steady = share * p.pn;
 }
 
 template class ContactSet<Plane>;

@@ -163,8 +163,8 @@ public:
 	void limitMoved(const RigidSystem<K>& system, double fall);
 	// Adds the bodies of points that press as much as that.
 	void addJammed(std::vector<int>& bodies) const;
-	// The means of the impulses are those that there are now.
-	void startMeans();
+	// The means of the impulses are this share of those that there are now.
+	void startMeans(double share);
 	// Gaps, forces and places of all points, as they are now, into the pairs. Needed before the list of pairs changes.
 	void showPoints(RigidSystem<K>& system);
 	// The next step needs this from the last, besides the system.

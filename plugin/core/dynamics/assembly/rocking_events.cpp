@@ -264,6 +264,7 @@ bool RockingEvents<K>::describe(const RigidSystem<K>& s, const ContactSet<K>& c,
 	                    carrier(positionOf(c, points[far]), contact(c, points[far]).support, share), carrier(place, landing.support, -1)};
 	landing.normal = law.normal;
 	landing.before = row(c, landing, 1).rate(predicted);
+	landing.speed = landing.before * lever;
 	const double leastSpin = scale::leastSpin(s, landing.block);
 	if (!(landing.before >= leastSpin))
 		return false;

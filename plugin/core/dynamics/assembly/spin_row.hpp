@@ -7,6 +7,7 @@
 // is the spin with which the block stays in touch with both; where both are one body, it is that body's spin. The couple acts on the block
 // along e, and on the supports as the pair of forces couple/L at O and P. Each velocity is arm.V in the packs of the contacts.
 #include "dynamics/assembly/contact_set.hpp"
+#include <algorithm>
 #include <cmath>
 
 namespace masonry::rigid::assembly {
@@ -48,11 +49,11 @@ struct JointWork {
 		gain += other.gain;
 		exchanged += other.exchanged;
 	}
-	// The joint has made energy, beyond what solves that end at their tolerance seem to make.
-	bool isActive() const
+	// The joint has made energy, beyond what a solve seems to make that ends with this share of its velocities missed.
+	bool isActive(double missed) const
 	{
 		constexpr double small = 1e-3; // larger: impacts may make it; smaller: impacts that keep all energy are capped
-		return gain > small * exchanged;
+		return gain > std::max(small, missed) * exchanged;
 	}
 };
 
