@@ -386,15 +386,25 @@ def write_table(path, centers, sizes, quaternions, names):
 
 
 def structures(centers, sizes, axes, gap):
-    """Rows of blocks that are joined by others whose bounding boxes are at most `gap` of the smallest size apart, a list for each structure, in
-    the order of their first rows."""
+    """Rows of blocks that are joined by others at most `gap` of the smallest size apart, along the axes of either of the two, a list for each
+    structure, in the order of their first rows."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
     i, j = near_pairs(*bounds(centers, sizes, axes, gap / 2 * sizes.min())).T
+    joined = face_gaps(i, j, centers, sizes, axes) <= gap * sizes.min()
+    i, j = i[joined], j[joined]
     near = coo_array((np.ones(len(i)), (i, j)), shape=(len(centers), len(centers)))
     count, label = connected_components(near, directed=False)
     return [np.flatnonzero(label == k).tolist() for k in range(count)]
+
+
+def face_gaps(i, j, centers, sizes, axes):
+    """Largest gap of each pair of boxes along an axis of either, negative where they overlap: at most their distance."""
+    between, turn = centers[j] - centers[i], np.abs(np.einsum("pka,pma->pkm", axes[i], axes[j]))
+    along_i = np.abs(np.einsum("pka,pa->pk", axes[i], between)) - sizes[i] / 2 - np.einsum("pkm,pm->pk", turn, sizes[j] / 2)
+    along_j = np.abs(np.einsum("pma,pa->pm", axes[j], between)) - sizes[j] / 2 - np.einsum("pkm,pk->pm", turn, sizes[i] / 2)
+    return np.maximum(along_i, along_j).max(axis=1)
 
 
 def _separations(i, j, centers, sizes, axes):
