@@ -97,7 +97,7 @@ void RigidScene<K>::takeSettings()
 template <class K>
 masonry::rigid::StepReport RigidScene<K>::advanceWall()
 {
-	scheduler->settings = {integrator.tolerance, integrator.strictForces, std::max(1, integrator.ompThreads)};
+	scheduler->settings = {integrator.tolerance, integrator.strictForces, integrator.wallsOnly, std::max(1, integrator.ompThreads)};
 	const auto report = scheduler->advance(system, scene.dt);
 	const auto& ofWalls = scheduler->report;
 	const bool still = ofWalls.moved == 0;

@@ -47,6 +47,14 @@ def near_pairs(low, high):
     return pairs[np.lexsort((pairs[:, 1], pairs[:, 0]))]
 
 
+def face_gaps(i, j, centers, sizes, axes):
+    """Largest gap of each pair of boxes along an axis of either, negative where they overlap: at most their distance."""
+    between, turn = centers[j] - centers[i], np.abs(np.einsum("pka,pma->pkm", axes[i], axes[j]))
+    along_i = np.abs(np.einsum("pka,pa->pk", axes[i], between)) - sizes[i] / 2 - np.einsum("pkm,pm->pk", turn, sizes[j] / 2)
+    along_j = np.abs(np.einsum("pma,pa->pm", axes[j], between)) - sizes[j] / 2 - np.einsum("pkm,pk->pm", turn, sizes[i] / 2)
+    return np.maximum(along_i, along_j).max(axis=1)
+
+
 def _separations(i, j, centers, sizes, axes):
     """Gaps of the pairs along the 15 separating axes of two boxes (faces of both, crossed edges), negative where they overlap, and the
     upward part of each axis, directed from i to j: two arrays (pairs, 15)."""

@@ -1,16 +1,15 @@
 #pragma once
 // Structures that are not near each other: blocks that a chain of pairs joins are an island; prescribed bodies join nothing.
 #include "dynamics/rigid/rigid_system.hpp"
-#include <functional>
 
 namespace masonry::rigid {
 
+// Returns of each body the number of its island, in the order of their first bodies; -1: prescribed. `pairs`: which bodies are joined.
 template <class K>
-using Joins = std::function<bool(const ContactPair<K>&)>;
+std::vector<int> islandNumbers(const std::vector<RigidBody<K>>& bodies, const std::vector<std::array<int, 2>>& pairs);
 
-// Of each body, the number of its island, in the order of their first bodies; -1: prescribed. `joins`: which pairs do, all if there is
-// none.
+// The islands of the system's pairs.
 template <class K>
-std::vector<int> islandNumbers(const RigidSystem<K>& system, const Joins<K>& joins = {});
+std::vector<int> islandNumbers(const RigidSystem<K>& system);
 
 } // namespace masonry::rigid

@@ -1,25 +1,33 @@
 #include "dynamics/rigid/neighbours.hpp"
+#include "dynamics/rigid/island_numbers.hpp"
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 
 namespace masonry::rigid {
 
 namespace {
 
-Vector2 reach(const Vector2& half, const PlanePose& pose)
+Eigen::Matrix2d axesOf(const PlanePose& pose)
 {
-	const double c = std::abs(pose.cosine), s = std::abs(pose.sine);
-	return {c * half.x() + s * half.y(), s * half.x() + c * half.y()};
+	Eigen::Matrix2d axes; // in columns
+	axes << pose.cosine, -pose.sine, pose.sine, pose.cosine;
+	return axes;
 }
 
-Vector3 reach(const Vector3& half, const Pose& pose) { return pose.orientation.toRotationMatrix().cwiseAbs() * half; }
+Matrix3 axesOf(const Pose& pose) { return pose.orientation.toRotationMatrix(); }
 
+// The largest gap of two boxes along an axis of either: it is at most their distance, and negative where they overlap.
 template <class K>
-Bounds<K> bounds(const RigidBody<K>& body, double enlargement)
+double separation(const RigidBody<K>& a, const RigidBody<K>& b)
 {
-	const typename K::Vector half = reach(body.halfSize, body.pose) + K::Vector::Constant(enlargement);
-	return {body.pose.position - half, body.pose.position + half};
+	const auto ofA = axesOf(a.pose), ofB = axesOf(b.pose);
+	const typename K::Vector between = b.pose.position - a.pose.position;
+	const auto turn = (ofA.transpose() * ofB).cwiseAbs().eval();
+	const typename K::Vector alongA = (ofA.transpose() * between).cwiseAbs() - a.halfSize - turn * b.halfSize,
+	                         alongB = (ofB.transpose() * between).cwiseAbs() - b.halfSize - turn.transpose() * a.halfSize;
+	return std::max(alongA.maxCoeff(), alongB.maxCoeff());
 }
 
 // How far a point of a body may go in a step.
@@ -59,6 +67,19 @@ std::array<int, 2> bodiesOf(const ContactPair<K>& pair)
 } // namespace
 
 template <class K>
+Bounds<K> Neighbours<K>::bounds(const RigidBody<K>& body, double enlargement) const
+{
+	typename K::Vector center = body.pose.position;
+	Frame axes = axesOf(body.pose);
+	if (!frame.isIdentity(0)) {
+		center = frame * center;
+		axes = frame * axes;
+	}
+	const typename K::Vector half = axes.cwiseAbs() * body.halfSize + K::Vector::Constant(enlargement);
+	return {center - half, center + half};
+}
+
+template <class K>
 bool Neighbours<K>::isValid(const RigidSystem<K>& system, double step) const
 {
 	if (enlarged.size() != system.bodies.size())
@@ -69,13 +90,18 @@ bool Neighbours<K>::isValid(const RigidSystem<K>& system, double step) const
 		least = least.cwiseMax(now.high - enlarged[i].high);
 		most = most.cwiseMin(now.low - enlarged[i].low);
 	}
-	return (least.array() <= most.array()).all();
+	return (least.array() <= most.array()).all() && std::all_of(apart.begin(), apart.end(), [&](const Bodies& bodies) {
+		       const RigidBody<K>&a = system.bodies[bodies[0]], &b = system.bodies[bodies[1]];
+		       return separation(a, b) > std::max(margin / 2, travel(a, step)) + std::max(margin / 2, travel(b, step));
+	       });
 }
 
 // Sweep: of the bodies in the order of their lower ends, each one meets those that begin before it ends.
 template <class K>
 void Neighbours<K>::findPairs(const RigidSystem<K>& system, double step)
 {
+	if (enlarged.empty() && !system.bodies.empty())
+		frame = axesOf(system.bodies.front().pose).transpose();
 	enlarged.clear();
 	for (const auto& body : system.bodies)
 		enlarged.push_back(bounds(body, std::max(margin, 4 * travel(body, step))));
@@ -92,6 +118,26 @@ void Neighbours<K>::findPairs(const RigidSystem<K>& system, double step)
 				near.push_back({body1, body2});
 		}
 	std::sort(near.begin(), near.end());
+	leaveOutPairsOfStructures(system, step);
+}
+
+template <class K>
+void Neighbours<K>::leaveOutPairsOfStructures(const RigidSystem<K>& system, double step)
+{
+	const auto join = [&](const Bodies& bodies) {
+		const RigidBody<K>&a = system.bodies[bodies[0]], &b = system.bodies[bodies[1]];
+		return separation(a, b) <= std::max(margin, 4 * travel(a, step)) + std::max(margin, 4 * travel(b, step));
+	};
+	std::vector<Bodies> joined;
+	std::copy_if(near.begin(), near.end(), std::back_inserter(joined), join);
+	const std::vector<int> structure = islandNumbers(system.bodies, joined);
+	const auto areTogether = [&](const Bodies& bodies) {
+		const int a = structure[bodies[0]], b = structure[bodies[1]];
+		return a < 0 || b < 0 || a == b;
+	};
+	const auto last = std::stable_partition(near.begin(), near.end(), areTogether);
+	apart.assign(last, near.end());
+	near.erase(last, near.end());
 }
 
 template <class K>

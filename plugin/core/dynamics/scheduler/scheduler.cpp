@@ -64,7 +64,7 @@ void Scheduler<K>::divide(const RigidSystem<K>& s)
 	std::vector<char> isWall(s.bodies.size(), 0); // of a structure
 	for (size_t b = 0; b < structure.size(); ++b)
 		if (structure[b] >= 0)
-			isWall[structure[b]] |= ++blocks[structure[b]] > maxBlocks || ofWall[b];
+			isWall[structure[b]] |= settings.ofAnySize || ++blocks[structure[b]] > maxBlocks || ofWall[b];
 	const bool areTogether = areOrdered(s.drives);
 	areWalls = areTogether && std::accumulate(blocks.begin(), blocks.end(), 0) > maxBlocks;
 	localisedBodies.clear();

@@ -3,7 +3,7 @@
 //
 //     structure            step
 //     at most maxBlocks    rigid_step.hpp: its impacts are localised, and it is second order in the step
-//     more                 assembly_step.hpp: all contacts at once, first order in the step
+//     more                 assembly_step.hpp: all contacts at once, first order in the step; all structures where walls are ofAnySize
 //
 // The two kinds of structures are near no block of each other and are stepped one after the other, each as if the other were not there.
 // Localised structures use the default tolerance and order of Settings, whatever the walls use.
@@ -21,6 +21,7 @@ namespace masonry::rigid {
 struct WallSettings {
 	double tolerance {1e-3};   // AdmmSettings::tolerance. Smaller: a step takes up to as many more iterations as its inverse square root
 	bool strictForces {false}; // AdmmSettings::strictForces
+	bool ofAnySize {false};    // structures of at most maxBlocks are walls too
 	int threads {1};
 };
 

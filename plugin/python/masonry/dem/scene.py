@@ -330,8 +330,8 @@ def floating_and_supports(tolerance=1e-3, floating=True):
 
 
 def structures(gap=0.1):
-    """Ids of the free blocks, a list for each structure: blocks that are joined by others that are near each other. gap: how far apart the
-    bounding boxes of two that are near may be, relative to the smallest size of a free block; 0 < gap <= 1. Rigid structures of their own
+    """Ids of the free blocks, a list for each structure: blocks that are joined by others that are near each other. gap: how far apart two that
+    are near may be, along the axes of either, relative to the smallest size of a free block; 0 < gap <= 1. Rigid structures of their own
     are stepped as if the others were not there, unless pulses move the base."""
     if not 0 < number_given("gap", gap) <= 1:
         raise ValueError(f"gap = {gap}: must be above 0 and at most 1")

@@ -6,13 +6,13 @@ import math
 from dataclasses import dataclass, field
 
 import numpy as np
-from masonry._boxes import bounds
+from masonry._boxes import bounds, face_gaps
 from masonry._files import save_picture
 from masonry._given import number_given, positive_given, shown
 from masonry._pose import axes_of
 from masonry._progress import wanted
-from masonry.dem.engines import _FEW_BLOCKS, _METHODS, engines, has_stiffness
-from masonry.dem.scene import _boxes, _layout, structures
+from masonry.dem.engines import _METHODS, engines, has_stiffness
+from masonry.dem.scene import _boxes, _layout
 from tqdm import tqdm
 from yade import O, Vector3
 
@@ -43,6 +43,9 @@ _GROWTH = 0.1
 _RECOVERY = 1.25
 # Larger multipliers are not tried; the time step would be too large for them.
 _MOST = 30
+# Movement of a block, relative to what is collapse, from which on blocks that come to rest have not stood. They rest only if they lean on one
+# that they did not touch in the scene as built: their gap was more than a share of the smallest size.
+_SETTLED, _GAP = 0.01, 1e-7
 # A joint opens or slides where its points have moved by more than this share of the farthest moved block.
 _MOVED = 0.05
 # Drawn movement of the farthest moved block, relative to the smallest size of a block.
@@ -57,8 +60,8 @@ def _check_multiplier(multiplier):
 
 @dataclass
 class Trial:
-    """What a multiplier did: 'rest', 'collapse', 'unclear' where blocks still moved at the end and slowed down, or 'missed' where the contact
-    laws were, so that a smaller stair is taken."""
+    """What a multiplier did: 'rest', 'collapse', 'jammed' where blocks moved and stopped in joints that were closed all along, 'unclear' where they
+    still moved at the end and slowed down, or 'missed' where the contact laws were, so that a smaller stair is taken."""
 
     multiplier: float
     verdict: str
@@ -77,6 +80,7 @@ class Collapse:
     joints: np.ndarray  # id1, id2, opening (m), slip (m, of body 2 on body 1), opens, slides; at the end of the trial that is drawn
     blocks: list  # ids that have moved
     doubts: list  # why the result cannot be trusted; empty: none
+    remarks: list  # what blocks did below collapse, or where it was not reached, in words
     _mechanism: object = field(repr=False)
 
     def __str__(self):
@@ -84,7 +88,7 @@ class Collapse:
         both = f" ({(opens & slides).sum()} of them slide too)" if (opens & slides).any() else ""
         lines = [f"collapse multiplier {self.multiplier:.5g} (stands {self.bracket[0]:.5g}, collapses {self.bracket[1]:.5g})",
                  f"{len(self.blocks)} blocks move; {opens.sum()} joints open{both}, {(slides & ~opens).sum()} slide closed"]
-        return "\n".join(lines + [f"NOT TO BE TRUSTED: {doubt}" for doubt in self.doubts])
+        return "\n".join(lines + self.remarks + [f"NOT TO BE TRUSTED: {doubt}" for doubt in self.doubts])
 
     def draw(self, path, title=None):
         """Writes a picture (.png, .pdf, ...): the blocks, their movement magnified; open joints red, sliding ones blue, those seen face on as outlines."""
@@ -100,10 +104,12 @@ class TiltTable:
     model        'auto', 'planar' or 'spatial', as in dem.engines()
     hold         how long a multiplier is held while blocks move, in sqrt(height / gravity) of the scene; a tenth of it where they rest
     share        movement of a block, relative to the smallest size of any, that is collapse: more than the gaps
-                 that the joints may close, and little, since blocks that fall apart take long
+                 that the joints may close, and little, since blocks that fall apart take long. Blocks that move less rest if
+                 they come to lean on one that they did not touch as built; Collapse.remarks says how far they have gone
     gravity      m/s^2
-    method       'localised' or 'wall', as in dem.engines(). 'auto': 'wall' in space where more than 6 blocks stand together: of walls with
-                 corners 'localised' misses the contact laws there, and takes minutes
+    method       'wall' ('auto': the same) or 'localised', as in dem.engines(). 'wall' steps structures of few blocks as walls too, so that its
+                 answer does not depend on their order; 'localised' may find multipliers that are up to 10 % larger, with a wall and its
+                 mirror image at different ones
 
     A trial starts from rest and ends when a block has moved by `share`; collapse is also when blocks still gain speed at the end of the
     hold. Rigid blocks that carry a load do not move at all, and have no spring to overshoot, so a stair of the load is put on at once: with
@@ -112,13 +118,14 @@ class TiltTable:
     these gain speed steadily. Restitution hardly matters, but 0 is fastest. Afterwards the blocks are put back, at rest, with O.time 0; O.engines and O.dt
     are left as in the last trial.
 
-    With friction the multiplier need not be unique, and the two methods may find different ones (a wall of ten courses with a window, towards -x:
-    0.526 by 'localised', 0.516 by 'wall'; validation/walls/tilting), and so may 'localised' of a symmetric wall towards x and -x, or of the same blocks in another
-    order. The larger is no safer: compare both methods, and both directions.
+    With friction the multiplier need not be unique: Coulomb's law may allow a load both to be carried and to move the blocks. 'wall' finds the load
+    that moves blocks which have stood a smaller one, as compliant joints do. TiltTable(method='localised') tells whether friction also carries
+    more: where the two differ, the multiplier is indeterminate, and the smaller one is the safe one.
 
     The bar shows the multiplier of the last trial and its verdict:
         rest        the blocks stand, and the load grows from here
         collapse    a block has moved by `share`, or blocks gain speed steadily
+        jammed      blocks moved, and stopped in joints that were closed as built: taken for collapse, since friction alone stops them
         unclear     blocks still moved, slowing down, when five times `hold` had passed: taken for collapse, and named in `doubts`
         missed      a step missed the contact laws: half the stair is tried, unless it is down to the tolerance
     Steps that miss the contact laws are counted in the trials, without a warning; of each step it seeks one impact (mostEvents = 1), since what follows where
@@ -144,6 +151,8 @@ class TiltTable:
         if model == "auto" and any(has_stiffness(b.mat) for b in self._blocks):
             raise ValueError("model = 'auto': must be 'planar' or 'spatial' where a BlockMat has a joint stiffness: TiltTable is for rigid blocks")
         self._start = [(b.state.pos, b.state.ori) for b in self._blocks]
+        centers, sizes, quaternions = _layout(self._blocks)
+        self._as_built, self._row = (centers, sizes, axes_of(quaternions)), {b.id: k for k, b in enumerate(self._blocks)}
         self._free_start = [start for b, start in zip(self._blocks, self._start) if b.dynamic]
         centers, sizes, quaternions = _layout(self._free)
         low, high = bounds(centers, sizes, axes_of(quaternions))
@@ -151,11 +160,9 @@ class TiltTable:
         self._unit = math.sqrt((high[:, 2].max() - low[:, 2].min()) / gravity)
         self._hold = hold * self._unit
         self._dt = _STEP * math.sqrt(self._reach.min() / gravity)
-        self._model, self._method = model, "localised" if method == "auto" else method
+        self._model, self._method = model, "wall" if method == "auto" else method
         if model == "auto":
             self._model = self._begin(1.0).choice().split(":")[0]  # of the pulled blocks, not of those that only stand
-        if method == "auto" and self._model == "spatial" and max(map(len, structures())) > _FEW_BLOCKS["spatial"]:
-            self._method = "wall"
         self._joints = self._find_joints()
 
     # --- the two ways to the multiplier ---
@@ -184,7 +191,7 @@ class TiltTable:
 
         with self._trials("trial", progress) as bar:
             integrator = self._begin(0.0)
-            if hold(0.0) != "rest":
+            if hold(0.0, settles=True) != "rest":
                 raise ValueError("the blocks do not stand without a sideways load: check supports and friction")
             low, high, growth, careful, sure = 0.0, math.inf, _GROWTH, False, False
             while not sure:
@@ -222,8 +229,8 @@ class TiltTable:
                 self._pull(integrator, multiplier)
                 for _ in range(_LOOK):
                     O.step()
-                if self._speed() <= _REST * self.gravity * self._unit:
-                    rested = multiplier
+                if self._speed() <= _REST * self.gravity * self._unit and (rested is None or not self._is_jammed(last)):
+                    rested, last = multiplier, self._places()
                 bar.set_postfix_str(f"{multiplier:.5g}")
                 bar.update()
             trial, mechanism = Trial(multiplier, "collapse", self._moved(), O.time, integrator.failures), self._mechanism()
@@ -242,13 +249,14 @@ class TiltTable:
 
     # --- a trial ---
 
-    def _hold_load(self, integrator, multiplier, early=False, again=False):
+    def _hold_load(self, integrator, multiplier, early=False, again=False, settles=False):
         """The Trial of a multiplier from the present state. early: it ends when the blocks gain speed steadily; again: when the solver
-        misses the contact laws, to be tried again with a smaller stair."""
+        misses the contact laws, to be tried again with a smaller stair; settles: blocks that move and rest in their own joints are no jam."""
         self._pull(integrator, multiplier)
         O.resetTime()
         O.dt = self._dt
         before, verdict, fastest, pace, moving, steady, quiet = integrator.failures, "", 0.0, 0.0, 0.0, 0, 0
+        start = self._places()
         while not verdict:
             for _ in range(_LOOK):
                 O.step()  # in this thread: O.run(n, True) looks every 40 ms only whether it has ended
@@ -265,7 +273,7 @@ class TiltTable:
             if self._moved() > self.share * self._size or (early and steady >= _STEADY):
                 verdict = "collapse"
             elif quiet >= 2 and (not moving or O.time >= moving + _QUIET * self._hold):
-                verdict = "rest"
+                verdict = "jammed" if not settles and self._is_jammed(start) else "rest"
             elif O.time >= self._hold and not quiet:
                 if speed >= fastest:
                     verdict = "collapse"
@@ -303,6 +311,7 @@ class TiltTable:
         with contextlib.redirect_stdout(io.StringIO()):
             O.engines = engines(model=self._model, method=self._method, tolerance=_TOLERANCES[self._method], dt=self._dt, gravity=self.gravity)
         integrator = O.engines[-1]
+        integrator.wallsOnly = True  # structures of few blocks too
         integrator.mostEvents, integrator.onTrouble = _EVENTS, "count"
         integrator.along = Vector3(_DIRECTIONS[self.direction])  # the plane, before there is a pull
         self._pull(integrator, multiplier)
@@ -315,9 +324,24 @@ class TiltTable:
     def _speed(self):
         return max(b.state.vel.norm() + r * b.state.angVel.norm() for b, r in zip(self._free, self._reach))
 
-    def _moved(self):
+    def _moved(self, start=None):
+        """How far the farthest moved corner can have gone since `start`, without it since the scene was built, m."""
         return max((b.state.pos - pos).norm() + reach * (b.state.ori * ori.conjugate()).toAxisAngle()[1]
-                   for b, (pos, ori), reach in zip(self._free, self._free_start, self._reach))
+                   for b, (pos, ori), reach in zip(self._free, start or self._free_start, self._reach))
+
+    def _places(self):
+        return [(b.state.pos, b.state.ori) for b in self._free]
+
+    def _settled(self):
+        return _SETTLED * self.share * self._size
+
+    def _is_jammed(self, start):
+        """Whether blocks that rest have moved since `start`, and lean on none that they had not touched before. Friction allows such a rest: a
+        smaller load has moved them, or would if they were pushed."""
+        if self._moved(start) <= self._settled():
+            return False
+        pressed = [(self._row[i.id1], self._row[i.id2]) for i in O.interactions if any(force.norm() > 0 for force in i.phys.forces)]
+        return not pressed or face_gaps(*np.array(pressed).T, *self._as_built).max() <= _GAP * self._size
 
     # --- what is reported ---
 
@@ -340,7 +364,18 @@ class TiltTable:
         unclear = [f"{t.multiplier:.5g}" for t in trials if t.verdict == "unclear"]
         if unclear:
             doubts.append(f"blocks still moved, slowing down, when the trials of {', '.join(unclear)} were ended; taken for collapse: a larger hold decides them")
-        return Collapse(multiplier, bracket, trials, mechanism.joints(), mechanism.moving(), doubts, mechanism)
+        return Collapse(multiplier, bracket, trials, mechanism.joints(), mechanism.moving(), doubts, self._remarks(trials, bracket), mechanism)
+
+    def _remarks(self, trials, bracket):
+        moved = [t for t in trials if t.verdict == "rest" and t.moved > self._settled()]
+        jammed = [t for t in trials if t.verdict == "jammed" and t.multiplier in bracket]
+        remarks = []
+        if moved:
+            remarks.append(f"below it, from {moved[0].multiplier:.5g} on, blocks move by up to {1e3 * max(t.moved for t in moved):.2g} mm and come to rest "
+                           f"against others that they did not touch: less than {1e3 * self.share * self._size:.2g} mm (share) is no collapse")
+        if jammed:
+            remarks.append(f"at {jammed[-1].multiplier:.5g} blocks move by {1e3 * jammed[-1].moved:.2g} mm and jam in joints that were closed before: taken for collapse")
+        return remarks
 
 
 def _section(size, axes, across):

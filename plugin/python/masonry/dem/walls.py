@@ -11,7 +11,7 @@ import math
 import re
 
 import numpy as np
-from masonry._boxes import bounds, contacts, near_pairs
+from masonry._boxes import bounds, contacts, face_gaps, near_pairs
 from masonry._files import written
 from masonry._given import number_given, shown, whole_given
 
@@ -384,12 +384,14 @@ def write_table(path, centers, sizes, quaternions, names):
 
 
 def structures(centers, sizes, axes, gap):
-    """Rows of blocks that are joined by others whose bounding boxes are at most `gap` of the smallest size apart, a list for each structure, in
-    the order of their first rows."""
+    """Rows of blocks that are joined by others at most `gap` of the smallest size apart, along the axes of either of the two, a list for each
+    structure, in the order of their first rows."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
     i, j = near_pairs(*bounds(centers, sizes, axes, gap / 2 * sizes.min())).T
+    joined = face_gaps(i, j, centers, sizes, axes) <= gap * sizes.min()
+    i, j = i[joined], j[joined]
     near = coo_array((np.ones(len(i)), (i, j)), shape=(len(centers), len(centers)))
     count, label = connected_components(near, directed=False)
     return [np.flatnonzero(label == k).tolist() for k in range(count)]
