@@ -7,7 +7,7 @@ import numpy as np
 from . import _core
 from ._arrays import columns, restore, shape_of
 from ._files import save_picture
-from ._given import array_given, shown, whole_given
+from ._given import shown, whole_given
 from ._optional import needs
 from .motions import Motion, PulseTrain, Record, Still
 
