@@ -10,6 +10,9 @@ namespace masonry::tolerance {
 constexpr double rank = 1e-10;
 // Residual of an impulse problem relative to the largest approach speed. Larger: corners penetrate after an impact.
 constexpr double impulse = 1e-11;
+// Compliance of a contact, relative to its own response, from which rigid contacts are approached. Larger: more steps until they are
+// rigid; smaller: round-off decides how redundant contacts share an impulse.
+constexpr double softness = 1e-7;
 // The same where the solver of many points gets no nearer: with friction the redundant points of many faces leave it little but
 // round-off to go by. Larger: blocks of a wall creep into each other by this share of their speed.
 constexpr double impulseEnough = 1e-8;
@@ -96,6 +99,12 @@ constexpr double madeShare = 0.05, madeLift = 1e-4;
 constexpr double mostWeights = 10;
 // Share of the step within which two instants are one.
 constexpr double instant = 1e-9;
+// The same for the instant at which a varying acceleration of the base sets in motion what rests; and share of gravity by which the
+// acceleration must vary in a step for it to be sought. Larger: that instant is wrong by as much; smaller: more trials.
+constexpr double release = 1e-6;
+// Share of gravity by which the acceleration of the base must vary in a step to be sought for where blocks turn. Smaller: shaken stacks cost
+// more.
+constexpr double jump = 0.05;
 } // namespace rigid
 
 // --- exact history of one block (rocking/) ---

@@ -77,6 +77,9 @@ public:
 	/// attribute that is missing or contradicts another, a start that has passed. Called before the first step.
 	virtual void check() const;
 
+	/// First instant in (after, until) at which the slope of the acceleration jumps; else infinity.
+	virtual Real nextBend(Real, Real) const { return std::numeric_limits<Real>::infinity(); }
+
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(BaseMotionEngine, PartialEngine,
 		"Base class of prescribed motions of the base; it moves nothing by itself. Motions of the same bodies in perpendicular directions add up.",

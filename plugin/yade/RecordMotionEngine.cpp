@@ -1,6 +1,7 @@
 #include "RecordMotionEngine.hpp"
 #include "sentence.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <lib/factory/ClassFactory.hpp>
 #include <limits>
@@ -38,6 +39,16 @@ Real RecordMotionEngine::nextKink(Real after, Real until) const
 	for (Real end : {Real(0), interval * Real(samples.size() - 1)})
 		if (after < end && end < until)
 			return end;
+	return std::numeric_limits<Real>::infinity();
+}
+
+Real RecordMotionEngine::nextBend(Real after, Real until) const
+{
+	// Rounding may find the sample at `after` itself.
+	for (Real sample = std::max(std::floor(after / interval), Real(0)); sample < Real(samples.size()) && sample * interval < until;
+	     ++sample)
+		if (sample * interval > after)
+			return sample * interval;
 	return std::numeric_limits<Real>::infinity();
 }
 

@@ -14,6 +14,7 @@ public:
 	Real acceleration(Real t) const override { return motion.acceleration(t); }
 	Real end() const override;
 	Real nextKink(Real after, Real until) const override;
+	Real nextBend(Real after, Real until) const override;
 	/// Throws std::invalid_argument naming attribute, value and allowed range.
 	void postLoad(RecordMotionEngine&);
 

@@ -13,6 +13,11 @@ public:
 
 	double displacement(double t) const override { return motion.displacement(t - motion.start); }
 	double velocity(double t) const override { return motion.velocity(t - motion.start); }
+	double acceleration(double t) const override { return motion.acceleration(t - motion.start); }
+	double nextBend(double after, double until) const override
+	{
+		return motion.start + motion.nextBend(after - motion.start, until - motion.start);
+	}
 	double nextKink(double after, double until) const override
 	{
 		return motion.start + motion.nextKink(after - motion.start, until - motion.start);

@@ -44,7 +44,7 @@ struct PointState {
 };
 
 // Rows: three a point (normal, two tangents), then one a couple, each couple multiplied by a length so that all rows
-// are velocities. u = G p + free, G = J M^-1 J^T. `most`: rows, or Eigen::Dynamic.
+// are velocities. u + R (p - c) = G p + free, where G = J M^-1 J^T + R, and free has the term -R c. `most`: rows, or Eigen::Dynamic.
 template <int most>
 struct System {
 	using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, most, most>;
@@ -52,15 +52,30 @@ struct System {
 
 	PerRow<Row> rows;
 	Matrix G;
-	Vector free, p;
+	Vector free, p, compliance, centre; // compliance: R, centre: c
 	int nPoints, nCouples;
 	double length; // of the couple rows, m
 	double speed;  // largest velocity that the impulses have to take away, m/s
 	double noise;  // velocity that counts as zero, m/s
+	double softer {1};
 	PerPoint<PointState> points;
 
 	System(const std::vector<Body>& bodies, const std::vector<ImpulsePoint>& points, const std::vector<CoupleRow>& couples);
 	Vector velocity() const { return G * p + free; }
+	// So many times as soft as at first.
+	void soften(double times)
+	{
+		const Vector change = (times - softer) * compliance;
+		softer = times;
+		G.diagonal() += change;
+		free -= change.cwiseProduct(centre);
+	}
+	// At p the velocity is then that of rigid contacts.
+	void moveCentre()
+	{
+		free += softer * compliance.cwiseProduct(Vector(centre - p));
+		centre = p;
+	}
 };
 
 void addSides(Row* rows, const std::vector<Body>& bodies, const ImpulsePoint& point, const Matrix3& axes)
@@ -130,12 +145,16 @@ System<most>::System(const std::vector<Body>& bodies, const std::vector<ImpulseP
 	for (int r = 0; r < n; ++r)
 		for (int s = 0; s <= r; ++s)
 			G(r, s) = G(s, r) = coupling(rows[r], rows[s]);
-	for (int i = 0; i < nPoints; ++i)
+	compliance = tolerance::softness * G.diagonal();
+	for (int i = 0; i < nPoints; ++i) {
 		points[i].response = G.template block<3, 3>(3 * i, 3 * i).trace();
-	p = Vector::Zero(n);
+		compliance.template segment<3>(3 * i).setConstant(tolerance::softness * points[i].response);
+	}
+	G.diagonal() += compliance;
+	p = centre = Vector::Zero(n);
 }
 
-// Newton step: least-norm solution of the laws, linear for the present states. A slipping point obeys u_n = 0 and
+// Newton step: solution, nearest to the present impulses, of the laws, linear for the present states. A slipping point obeys u_n = 0 and
 //     p_t = mu p_n d(y_t),  y_t = p_t - r u_t,  d(y) = y/|y| ~ d + (1 - d d^T) y / |y_k|,
 // so  p_t - mu p_n d - beta (1 - d d^T)(p_t - r u_t) = 0 with beta from the last iterate.
 template <int most>
@@ -149,9 +168,10 @@ void solveForStates(System<most>& s)
 			active.insert(active.end(), {3 * i, 3 * i + 1, 3 * i + 2});
 	for (int row = 3 * s.nPoints; row < s.p.size(); ++row)
 		active.push_back(row);
-	s.p.setZero();
-	if (active.empty())
+	if (active.empty()) {
+		s.p.setZero();
 		return;
+	}
 	const int n = int(active.size());
 	Matrix A(n, n); // velocity rows by default
 	Vector b(n);
@@ -177,8 +197,12 @@ void solveForStates(System<most>& s)
 	Eigen::CompleteOrthogonalDecomposition<Matrix> decomposition(n, n);
 	decomposition.setThreshold(tolerance::rank);
 	decomposition.compute(A);
-	Vector x = decomposition.solve(b);
-	x += decomposition.solve(b - A * x); // one refinement: long arms on slender blocks cost four digits
+	Vector x(n);
+	for (int k = 0; k < n; ++k)
+		x[k] = s.p[active[k]];
+	for (int refined = 0; refined < 2; ++refined) // twice: long arms on slender blocks cost four digits
+		x += decomposition.solve(b - A * x);
+	s.p.setZero();
 	for (int k = 0; k < n; ++k)
 		s.p[active[k]] = x[k];
 }
@@ -277,6 +301,22 @@ void letPullingPointsGo(System<most>& s)
 	}
 }
 
+constexpr int leastCentres = 2, mostCentres = 60;
+
+// Centre after centre the impulses come to be those of rigid contacts, with the states as they are.
+template <int most>
+void harden(System<most>& s)
+{
+	for (int k = 0; k < mostCentres; ++k) {
+		s.moveCentre();
+		const double before = residual(s);
+		solveForStates(s);
+		if (!(residual(s) < before / 2))
+			break;
+	}
+	s.moveCentre();
+}
+
 // Residual that counts as zero: a share of the approach speed, and round-off of the products in G p.
 template <int most>
 double target(const System<most>& s)
@@ -284,6 +324,25 @@ double target(const System<most>& s)
 	const auto terms = (s.G.cwiseAbs() * s.p.cwiseAbs()).eval();
 	const double roundOff = 64 * std::numeric_limits<double>::epsilon() * terms.maxCoeff();
 	return s.noise + roundOff;
+}
+
+// From the solution for soft contacts to the nearest for rigid ones in the same states. False: these do not obey the laws.
+template <int most>
+bool hardenAtOnce(System<most>& s)
+{
+	constexpr int leastSteps = 3, mostSteps = 10;
+	const auto soft = s.points;
+	const auto isSame = [](const PointState& a, const PointState& b) { return a.state == b.state; };
+	s.soften(0);
+	for (int k = 0; k < mostSteps; ++k) {
+		solveForStates(s);
+		if (k + 1 >= leastSteps && residual(s) <= target(s))
+			return true;
+		updateStates(s);
+		if (!std::equal(soft.begin(), soft.end(), s.points.begin(), isSame))
+			return false;
+	}
+	return false;
 }
 
 // G is symmetric, and its columns, not its rows, lie together in memory.
@@ -354,7 +413,47 @@ ImpulseReport solveDense(std::vector<Body>& bodies, std::vector<ImpulsePoint>& p
 		constexpr int few = 30;
 		newton(Steps::full, few);
 	};
+	// As many times as soft: of one face, whose redundant impulses then have fewer digits of round-off; where Newton's method cycles.
+	constexpr int ofFace = 4;
+	constexpr double gentle = 1e4, softest = 1e6, slowest = 0.8;
+	if (s.nPoints <= ofFace) {
+		const auto given = s.points;
+		s.soften(gentle);
+		fromTheseStates();
+		if (solved && hardenAtOnce(s)) {
+			report.residual = residual(s);
+			apply(s, bodies, points, couples);
+			return report;
+		}
+		s.soften(1);
+		s.p.setZero();
+		s.points = given;
+		report.residual = std::numeric_limits<double>::infinity();
+		solved = false;
+	}
 	fromTheseStates();
+	double reached = 10 * softest;
+	auto last = s.p;
+	if (!solved && anySlips) { // from the impulses of softer contacts
+		last.setZero();
+		for (double fall = 0.1; fall < slowest && !(solved && s.softer == 1);) {
+			s.soften(std::max(1., fall * reached));
+			s.p = last;
+			updateStates(s);
+			report.residual = std::numeric_limits<double>::infinity();
+			solved = false;
+			fromTheseStates();
+			if (solved) {
+				reached = s.softer;
+				last = s.p;
+			} else {
+				fall = std::sqrt(fall);
+			}
+		}
+		s.soften(1);
+		if (!solved)
+			report.residual = std::numeric_limits<double>::infinity();
+	}
 	if (!solved && anySlips) { // those of the velocities without impulses
 		s.p.setZero();
 		updateStates(s);
@@ -378,12 +477,30 @@ ImpulseReport solveDense(std::vector<Body>& bodies, std::vector<ImpulsePoint>& p
 		updateStates(s);
 		newton(round % 2 == 0 ? Steps::damped : Steps::shorter, anySlips ? 100 : 30);
 	}
+	if (!solved && reached <= softest) {
+		s.soften(reached);
+		best = last;
+		solved = true;
+	}
 	s.p = best;
-	if (!solved && !allSlip) {
-		letPullingPointsGo(s);
+	updateStates(s);
+	s.moveCentre();
+	report.residual = residual(s);
+	for (int k = 0; k < mostCentres && solved && (k < leastCentres || report.residual > target(s)); ++k) {
+		best = s.p;
+		solved = false;
+		fromTheseStates();
+		s.p = best;
+		s.moveCentre();
 		report.residual = residual(s);
 	}
-	report.solved = report.residual <= std::max(target(s), tolerance::impulseEnough * s.speed);
+	const auto isEnough = [&] { return report.residual <= std::max(target(s), tolerance::impulseEnough * s.speed); };
+	if (!allSlip && !isEnough()) {
+		letPullingPointsGo(s);
+		harden(s);
+		report.residual = residual(s);
+	}
+	report.solved = isEnough();
 	apply(s, bodies, points, couples);
 	return report;
 }
@@ -433,6 +550,7 @@ ImpulseReport letPullingPointsGo(std::vector<Body>& bodies, std::vector<ImpulseP
 {
 	System<Eigen::Dynamic> s(bodies, points, couples);
 	letPullingPointsGo(s);
+	harden(s);
 	apply(s, bodies, points, couples);
 	const double missed = residual(s);
 	return {0, missed, missed <= tolerance::impulseEnough * s.speed};

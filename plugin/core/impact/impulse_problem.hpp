@@ -11,10 +11,19 @@
 // mu = infinity is a law of its own: a point that carries an impulse never slips. A couple row is bilateral: the couple
 // along `axis` that makes axis.(w2 - w1) equal `target`.
 //
-// Method: semi-smooth Newton on the contact states (open, stick, slip), each linear system solved in the least-norm
-// sense, since the points of a face are redundant; projected Gauss-Seidel takes over should the states cycle. Without
-// slip a problem may have no solution (a point that can only be held by pulling); then points are let go until none pulls,
-// which never adds energy, and the residual tells by how much the laws are missed.
+// Redundant points. Rigid bodies do not say how four corners of a face share an impulse, and where these slip, their friction and with it
+// the motion depends on it. The rule: the impulses are those of contacts that are alike soft in all directions,
+//
+//     u + R p  in the place of  u,    R = softness times the trace of the point's own response (the same for a couple row),
+//
+// as R goes to zero. Without friction that is the least sum of R p^2, an even pressure. R follows the masses and the arms, not the axes of
+// the world, the units or the order of the points, so that the answer does not depend on these.
+//
+// Method: semi-smooth Newton on the contact states (open, stick, slip) for a small R, or for an R that falls to it where the states cycle.
+// Then u + R (p - c) with the impulses found as the centre c, again and again, leads to rigid contacts and leaves the shares as they are.
+// Projected Gauss-Seidel takes over should the states cycle all the same. Without slip a problem may have no solution (a point that can
+// only be held by pulling); then points are let go until none pulls, which never adds energy, and the residual tells by how much the laws
+// are missed.
 #include "body.hpp"
 #include <functional>
 #include <limits>

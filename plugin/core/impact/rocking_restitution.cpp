@@ -23,6 +23,8 @@ bool hasRow(const ClosingJoint& joint) { return !std::isnan(joint.restitution) &
 // One impulse problem under the cap: solved as often as the cap asks, always from the velocities at its start.
 struct CappedProblem {
 	std::vector<CoupleRow> rows, none;
+	std::vector<std::pair<int, int>> replaced;      // points that a row stands for: from, to
+	std::vector<ImpulsePoint> others;               // all but these
 	std::vector<double> carried;                    // spin of the prescribed supports of each row against its body 1, rad/s
 	std::vector<double> asked, plastic;             // targets
 	std::vector<std::pair<Vector3, Vector3>> start; // velocity and angular velocity of each body
@@ -30,10 +32,12 @@ struct CappedProblem {
 	void clear()
 	{
 		rows.clear();
+		replaced.clear();
 		carried.clear();
 	}
 
-	void add(const std::vector<Body>& bodies, const ClosingJoint& joint, const std::vector<ImpulsePoint>& points)
+	// `first`: the number among `points` of the first that the problem has.
+	void add(const std::vector<Body>& bodies, const ClosingJoint& joint, const std::vector<ImpulsePoint>& points, int first = 0)
 	{
 		if (!hasRow(joint))
 			return;
@@ -41,6 +45,43 @@ struct CappedProblem {
 		const bool prescribed = std::all_of(points.begin() + joint.newBegin, points.begin() + joint.oldEnd,
 		                                    [&](const ImpulsePoint& point) { return bodies[supportUnder(joint, point)].prescribed; });
 		carried.push_back(prescribed ? joint.carry : 0);
+		if (joint.restitution == 0)
+			replaced.emplace_back(joint.oldBegin - first, joint.oldEnd - first);
+	}
+
+	bool isReplaced(int point) const
+	{
+		return std::any_of(replaced.begin(), replaced.end(),
+		                   [point](const auto& part) { return part.first <= point && point < part.second; });
+	}
+
+	// Points that rows stand for give no impulse while none of them approaches faster than `noise`, m/s.
+	ImpulseReport solveWithRows(const ImpulseSolver& solver, std::vector<Body>& bodies, std::vector<ImpulsePoint>& points, double noise)
+	{
+		if (replaced.empty())
+			return solver(bodies, points, rows);
+		others.clear();
+		for (int i = 0; i < int(points.size()); ++i)
+			if (!isReplaced(i))
+				others.push_back(points[i]);
+		const ImpulseReport report = solver(bodies, others, rows);
+		bool approaches = false;
+		for (int i = 0, k = 0; i < int(points.size()); ++i) {
+			points[i].impulse = isReplaced(i) ? Vector3(Vector3::Zero()) : others[k++].impulse;
+			approaches |= isReplaced(i) && points[i].normal.dot(relativeVelocity(bodies, points[i])) < -noise;
+		}
+		if (!approaches)
+			return report;
+		restore(bodies);
+		return solver(bodies, points, rows);
+	}
+
+	void restore(std::vector<Body>& bodies)
+	{
+		for (size_t i = 0; i < bodies.size(); ++i)
+			std::tie(bodies[i].velocity, bodies[i].angularVelocity) = start[i];
+		for (CoupleRow& row : rows)
+			row.couple = 0;
 	}
 
 	// The couple of a row stands for normal impulses at its old and its new support. Where both are prescribed, these work on the block
@@ -66,11 +107,9 @@ struct CappedProblem {
 		RockingImpactResult result;
 		// Energy that is left, J; negative: the laws cannot be met, or energy has grown.
 		const auto spare = [&](bool withRows) {
-			for (size_t i = 0; i < bodies.size(); ++i)
-				std::tie(bodies[i].velocity, bodies[i].angularVelocity) = start[i];
-			for (CoupleRow& row : rows)
-				row.couple = 0;
-			const ImpulseReport report = solver(bodies, points, withRows ? rows : none);
+			restore(bodies);
+			const ImpulseReport report =
+			    withRows ? solveWithRows(solver, bodies, points, tolerance::impulseEnough * speed) : solver(bodies, points, none);
 			result.residual = report.residual;
 			result.solved = report.solved;
 			result.jammed = report.jammed;
@@ -287,7 +326,7 @@ RockingImpactResult applySequentially(std::vector<Body>& bodies, RockingImpact& 
 	for (const ClosingJoint& joint : impact.joints) {
 		own.assign(impact.points.begin() + joint.newBegin, impact.points.begin() + joint.oldEnd);
 		problem.clear();
-		problem.add(bodies, joint, impact.points);
+		problem.add(bodies, joint, impact.points, joint.newBegin);
 		addTo(result, problem.solve(impact.solve, bodies, own));
 		for (size_t i = 0; i < own.size(); ++i)
 			impulses[joint.newBegin + i] = own[i].impulse;
@@ -308,6 +347,7 @@ RockingImpactResult applyToNewSupport(std::vector<Body>& bodies, ClosingJoint& j
 	problem.clear();
 	begin(bodies, joint, points);
 	problem.add(bodies, joint, points);
+	problem.replaced.clear();
 	points.erase(points.begin() + joint.oldBegin, points.begin() + joint.oldEnd);
 	const RockingImpactResult result = problem.solve(solveImpulses, bodies, points);
 	couple = problem.rows.empty() ? 0 : problem.rows.front().couple;

@@ -13,6 +13,11 @@
 //
 //     C_H = 1 - 1.5 sin^2(critical angle) = (2 slenderness^2 - 1) / (2 slenderness^2 + 2)
 //
+// With C = 0 the row asks what contact at the old support asks too: that it neither leaves nor enters. Any couple, and an impulse there
+// against it, would do, and the friction of the corners would depend on the choice. So the row stands for the old support, which gives no
+// impulse unless one of its points would approach. How redundant points share their impulses is ruled in impulse_problem.hpp: there is one
+// answer, in every frame and scale.
+//
 // w_carry is the spin with which the block would stay in touch with its old and its new support, which move with their velocities just
 // before the impact. Where both are one body, or move as one, it is that body's spin. Else, with n the normal, O on the old support, P a
 // closing point at the distance L from it across the axis (e turns P towards its support), touch at both asks for

@@ -21,6 +21,10 @@ public:
 	virtual double respond(int block, double t) = 0;
 	// Whether instants must be asked for in order of time: velocities jump, or impacts are answered.
 	virtual bool ordered() const { return true; }
+	// Acceleration right after the instant t, m/s^2, NaN if it is not known; and the first instant in (after, until) at which its slope
+	// jumps, else infinity.
+	virtual double acceleration(double) const { return std::numeric_limits<double>::quiet_NaN(); }
+	virtual double nextBend(double, double) const { return std::numeric_limits<double>::infinity(); }
 };
 
 // All that moves a body: motions along directions of their own, which add up.
@@ -53,15 +57,28 @@ struct Drive {
 	{
 		return sum([=](BaseDrive& motion) { return motion.respond(block, t); });
 	}
+	Vector acceleration(double t) const
+	{
+		return sum([t](const BaseDrive& motion) { return motion.acceleration(t); });
+	}
 	double nextKink(double after, double until) const
 	{
-		double first = std::numeric_limits<double>::infinity();
-		for (const Component& one : components)
-			first = std::min(first, one.motion->nextKink(after, until));
-		return first;
+		return first([=](const BaseDrive& motion) { return motion.nextKink(after, until); });
+	}
+	double nextBend(double after, double until) const
+	{
+		return first([=](const BaseDrive& motion) { return motion.nextBend(after, until); });
 	}
 
 private:
+	template <class Of>
+	double first(Of of) const
+	{
+		double result = std::numeric_limits<double>::infinity();
+		for (const Component& one : components)
+			result = std::min(result, of(*one.motion));
+		return result;
+	}
 	template <class Of>
 	Vector sum(Of of) const
 	{

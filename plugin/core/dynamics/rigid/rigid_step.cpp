@@ -87,8 +87,14 @@ void RigidStep<K>::advancePart(RigidSystem<K>& s, double part)
 	findContacts(s);
 	takeJumps(s);
 	for (double left = part; left > 0;) {
-		const double h = untilKink(s, left, part);
-		const Event event = tryStep(s, h);
+		double h = untilKink(s, left, part);
+		const StepReport before = report;
+		Event event = tryStep(s, h);
+		if (const double rest = untilRelease(s); rest > 0) {
+			report = before;
+			h = std::min(h, rest);
+			event = tryStep(s, h);
+		}
 		if (event.kind == Event::none || event.at > 0) {
 			step.accept(s);
 			left = event.kind == Event::none && h == left ? 0 : left - step.trial().h;
@@ -269,6 +275,55 @@ double RigidStep<K>::untilKink(const RigidSystem<K>& s, double left, double dt) 
 	for (const Drive<K>& drive : s.drives)
 		first = std::min(first, drive.nextKink(s.time + tiny, s.time + left - tiny));
 	return first < s.time + left ? first - s.time : left;
+}
+
+// How long the step may be in which what rests goes on to rest, s, if in the trial it begins to move because the acceleration of a base
+// varies; infinity, if it turns out not to do so inside it; 0, if there was nothing to look for and the trial is as it was. The laws of a
+// step act on its mean. What rests until the acceleration passes what it bears, and moves from then on, needs a step for each: otherwise
+// the impulse that it bears for the rest of the step is lost, an error of first order.
+//
+// Where blocks turn already, only jumps are looked for: contacts are released all the time, by their own motion.
+//
+// One looks where points are released in the trial, or would be if their forces went on to the acceleration at its end as they have changed
+// since the last step. The instant is then found with the accelerations of the instants themselves, between two bends.
+template <class K>
+double RigidStep<K>::untilRelease(RigidSystem<K>& s)
+{
+	constexpr double infinity = std::numeric_limits<double>::infinity();
+	const double h = step.trial().h, end = s.time + h - tolerance::rigid::instant * h;
+	double varies = 0, further = 0; // m/s^2; the change from the mean to the end, relative to that between the means
+	for (const Drive<K>& drive : s.drives) {
+		const typename K::Vector last = drive.acceleration(end), mean = (drive.velocity(s.time + h) - drive.velocity(s.time)) / h,
+		                         before = (drive.velocity(s.time) - drive.velocity(s.time - h)) / h, change = mean - before;
+		varies = std::max(varies, (last - mean).norm());
+		if (change.squaredNorm() > 0)
+			further = std::max(further, (last - mean).dot(change) / change.squaredNorm());
+	}
+	const double least = tolerance::rigid::release;
+	const bool turns = std::any_of(s.bodies.begin(), s.bodies.end(), [&](const RigidBody<K>& body) {
+		return !body.prescribed &&
+		       body.velocity.template tail<K::spins>().norm() * step.scales.length > tolerance::restSpeed * step.scales.speed;
+	});
+	if (!(varies > (turns ? tolerance::rigid::jump : least) * step.scales.acceleration) ||
+	    !(step.isReleased(s, 0) || step.isReleased(s, further)))
+		return 0;
+	if (step.wouldMove(s, h, s.time))
+		return infinity;
+	for (double rests = s.time; rests < end;) {
+		double moves = end;
+		for (const Drive<K>& drive : s.drives)
+			moves = std::min(moves, drive.nextBend(rests, end));
+		if (!step.wouldMove(s, h, moves)) {
+			rests = moves;
+			continue;
+		}
+		while (moves - rests > least * h) {
+			const double middle = (rests + moves) / 2;
+			(step.wouldMove(s, h, middle) ? moves : rests) = middle;
+		}
+		return moves - s.time > least * h ? moves - s.time : infinity;
+	}
+	return infinity;
 }
 
 template class RigidStep<Plane>;

@@ -33,6 +33,7 @@ private:
 	void answerImpacts(RigidSystem<K>& system, size_t known);
 	void takeJumps(RigidSystem<K>& system);
 	double untilKink(const RigidSystem<K>& system, double left, double dt) const;
+	double untilRelease(RigidSystem<K>& system);
 	void note(double residual, bool solved);
 	void note(const RockingImpactResult& impact);
 

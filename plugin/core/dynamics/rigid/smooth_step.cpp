@@ -51,6 +51,14 @@ bool surprises(const RigidSystem<K>& s, const Trial<K>& trial, const std::vector
 	return false;
 }
 
+// As far as is known: after events forces may not be.
+template <class K>
+bool carriesAtRest(const RigidSystem<K>& s, PointRef ref)
+{
+	const ContactPoint<K>& point = s.pairs[ref.pair].points[ref.point];
+	return point.closed && !point.sliding && (point.force[0] > 0 || s.isFresh());
+}
+
 // Whether prescribed bodies that free ones touch move against each other in a step.
 template <class K>
 bool basesPart(const RigidSystem<K>& s, double dt)
@@ -129,6 +137,14 @@ void SmoothStep<K>::predict(const RigidSystem<K>& s, double h, bool again)
 			next.middle = prescribedPose(s, body, starts[b], passed + h / 2, s.time + h / 2);
 			next.end = prescribedPose(s, body, starts[b], after == stepEnd ? full : passed + h, after);
 			next.velocity = prescribedVelocity(s, body, after);
+			if (steadyOf && body.drive >= 0) {
+				constexpr int dimension = K::dimension;
+				const typename K::Vector v = body.velocity.template head<dimension>(),
+				                         dv = h * s.drives[body.drive].acceleration(*steadyOf);
+				next.middle.position = body.pose.position + h / 2 * (v + dv / 4);
+				next.end.position = body.pose.position + h * (v + dv / 2);
+				next.velocity.template head<dimension>() = v + dv;
+			}
 			next.mean = 0.5 * (body.velocity + next.velocity);
 			continue;
 		}
@@ -258,6 +274,36 @@ void SmoothStep<K>::attempt(RigidSystem<K>& s, double h, bool again)
 			guesses.push_back(rows.impulse);
 	}
 	findFrames(s);
+}
+
+template <class K>
+bool SmoothStep<K>::wouldMove(RigidSystem<K>& s, double h, double of)
+{
+	steadyOf = of;
+	attempt(s, h);
+	steadyOf.reset();
+	const double still = tolerance::rigid::parting * scales.stepSpeed(h);
+	for (const PointRef ref : last.rows)
+		if (carriesAtRest(s, ref) && relativeVelocity(s, ref.pair, ref.point).norm() > still)
+			return true;
+	return false;
+}
+
+template <class K>
+bool SmoothStep<K>::isReleased(const RigidSystem<K>& s, double further) const
+{
+	for (size_t r = 0; r < last.rows.size(); ++r) {
+		if (!carriesAtRest(s, last.rows[r]))
+			continue;
+		const ContactPoint<K>& point = s.pairs[last.rows[r].pair].points[last.rows[r].point];
+		if (point.force.isZero(0)) // there is no last step to tell
+			return true;
+		ContactRows<K> rows = solver.points[r];
+		rows.impulse += further * (rows.impulse - last.h * point.force);
+		if (!(rows.impulse[0] > 0) || (rows.friction > 0 && rows.slides()))
+			return true;
+	}
+	return false;
 }
 
 template <class K>

@@ -28,6 +28,7 @@
 // The middle is predicted with the acceleration of the last step, V + h/2 dV/dt: then gaps of points in touch drift by O(h^4) a step, and
 // `project` closes them without a change of velocity.
 #include "dynamics/rigid/scales.hpp"
+#include <optional>
 
 namespace masonry::rigid {
 
@@ -69,6 +70,12 @@ public:
 	void attempt(RigidSystem<K>& system, double h, bool again = false);
 	// Makes it the system's state: poses, velocities, forces, energies; gaps of loaded points closed.
 	void accept(RigidSystem<K>& system);
+
+	// The same with bases that keep the acceleration of the instant `of`: whether a point that rests and carries would leave or slip then.
+	bool wouldMove(RigidSystem<K>& system, double h, double of);
+	// Whether a point that rests and carries would pull or slip, were the forces of the trial to go on by `further` times what they have
+	// changed by since the last step.
+	bool isReleased(const RigidSystem<K>& system, double further) const;
 
 	const Trial<K>& trial() const { return last; }
 	Scales scales;                     // of this step
@@ -116,6 +123,7 @@ private:
 	std::vector<typename K::Pose> starts; // of the prescribed bodies: where they go does not depend on how a structure divides the step
 	double mass {0};                      // of the free bodies, kg
 	double weight {0};                    // the same times the scene's acceleration and length, J
+	std::optional<double> steadyOf {};    // s: bases keep the acceleration of that instant
 	bool unsteady {false};                // the stray velocities were left
 	bool partBases {false}; // how much each of two bases that move apart carries is not determined: the last step's share grows
 	std::vector<ContactFrame<K>> middles; // of the rows of one pair
