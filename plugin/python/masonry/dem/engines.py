@@ -214,8 +214,8 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
                   stiffness, YADE's usual loop with NewtonIntegrator. 'auto': compliant where a BlockMat has a stiffness or
                   `penetration` is given; else planar where the scene lies in one upright plane; else spatial.
     dt            time step, s; None: rigid 2.5e-3 sqrt(R/g) of the smallest block (1 ms for a block 3 m high), with method='wall'
-                  4e-3 sqrt(R/g); compliant 0.2 of the critical step, to which the run lowers O.dt, with a warning, where blocks
-                  come to touch in stiffer joints (a board that falls flat). Too large a step is refused, also in the run.
+                  4e-3 sqrt(R/g); compliant 0.2 of the critical step, at most 0.75 of the largest, to which the run lowers O.dt, with a
+                  warning, where blocks come to touch in stiffer joints (a board that falls flat). Too large a step is refused, also in the run.
     tolerance     rigid: residual of the contact laws relative to the speed that gravity gives in a step (above 0, at most 1e-3;
                   None: 1e-9). With method='wall' from 1e-6 to 1e-2, None: 1e-3 (MoreauJeanIntegrator.tolerance)
     penetration   compliant, where BlockMat gives no stiffness: half of the depth by which the weight presses in the edge about which a block
