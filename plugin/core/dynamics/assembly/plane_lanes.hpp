@@ -67,7 +67,7 @@ template <>
 struct alignas(alignment) FeatureLanes<Plane> {
 	Mask vertexOn1, present;
 	Lanes vertexX, vertexY, normalX, normalY, faceDistance;
-	Lanes faceEnd;              // m, from the middle of the face, where a vertex beside it no longer counts as over it
+	Lanes faceEnd;              // m, half size of the face
 	Lanes foundGap, foundShift; // of the vertex over and along the face when they were looked up
 
 	std::array<double, 2> foundAt(int lane) const { return {foundGap[lane], foundShift[lane]}; }

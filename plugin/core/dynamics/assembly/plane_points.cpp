@@ -47,6 +47,7 @@ MASONRY_INLINE Located located(const FeatureLanes<Plane>& f, const Placed& p1, c
 MASONRY_INLINE Mask measureGroup(Group<Plane>& group, FeatureGroup<Plane>& features, const Lanes* pose, double travel, unsigned char anew)
 {
 	const Placed p1 = placed(pose, group.body1), p2 = placed(pose, group.body2);
+	const Lanes passed = all(tolerance::assembly::leftFace / tolerance::assembly::search * travel);
 	Mask stale {};
 	for (int k = 0; k < lanePoints<Plane>; ++k) {
 		FeatureLanes<Plane>& f = features.point[k];
@@ -56,7 +57,7 @@ MASONRY_INLINE Mask measureGroup(Group<Plane>& group, FeatureGroup<Plane>& featu
 			f.foundShift = select(maskOf(anew), at.shift, f.foundShift);
 		}
 		stale |= size(at.gap - f.foundGap) + size(at.shift - f.foundShift) > travel;
-		stale |= (size(at.shift) > f.faceEnd) & (size(f.foundShift) <= f.faceEnd);
+		stale |= (size(at.shift) > f.faceEnd + passed) & (size(f.foundShift) <= f.faceEnd + passed);
 		group.point[k].gap = select(f.present, at.gap, all(farAway));
 	}
 	return stale;
@@ -167,7 +168,7 @@ void ContactSet<Plane>::takePoint(const RigidSystem<Plane>& s, int c, int k)
 	f.normalX[lane] = axis == 0 ? (feature.face % 2 ? 1 : -1) : 0;
 	f.normalY[lane] = axis == 1 ? (feature.face % 2 ? 1 : -1) : 0;
 	f.faceDistance[lane] = faceHalf[axis];
-	f.faceEnd[lane] = faceHalf[1 - axis] + tolerance::assembly::leftFace * std::min(vertexHalf.minCoeff(), faceHalf.minCoeff());
+	f.faceEnd[lane] = faceHalf[1 - axis];
 }
 
 template <>
