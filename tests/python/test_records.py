@@ -44,7 +44,7 @@ def same(record, values, rounding=0.0):
 @pytest.mark.parametrize("options, factor", [
     ({}, G), (dict(before=["a line", "CORRECTED BY SOMEBODY", ""]), G), (dict(after=["COLUMNS 5"]), G), (dict(per_line=1), G), (dict(per_line=8), G),
     (dict(points="{count:5d}   {dt:.4f}  NPTS, DT"), G), (dict(points="DT= {dt:.4f}SEC, NPTS= {count}"), G), (dict(points="NPTS={count}, DT=10 MSEC"), G),
-    (dict(points="NPTS={count}, DT=.1000D-01 SEC"), G), (dict(unit="ACCELERATION IN UNITS OF CM/S^2"), 0.01), (dict(unit="ACCELERATION (GAL)"), 0.01),
+    (dict(points="NPTS={count}, DT=.1000D-01 SEC"), G), (dict(points="{count},0.0100   NPTS, DT"), G), (dict(unit="ACCELERATION IN UNITS OF CM/S^2"), 0.01), (dict(unit="ACCELERATION (GAL)"), 0.01),
     (dict(unit="ACCELERATION TIME HISTORY IN UNITS OF G.  FILTER POINTS: HP=0.1 Hz"), G), (dict(form=fortran(15, 7, "D")), G),
     (dict(form=fortran(14, 7, "E")), G)])
 def test_peer(path, options, factor):
@@ -267,6 +267,7 @@ PAIR = csmip_1(A / G) + csmip_1(A / G / 2, direction="90 Deg").replace("Chan  1"
     (THREE, {}, "50 acceleration pts", "50 acceleration points", "line 48 is '50 acceleration points.*must be a comment.*or a line such as"),
     (THREE, dict(quantity="velocity"), "50 velocity pts", "50 velocty", "50 velocty.*must be a comment.*or a line such as"),
     (at2(A / G) + at2(A / G), {}, "", "", "line .*NPTS=    50.*must not be followed by values: those of the motion have ended above it"),
+    (at2(A / G, points="NPTS= " + "9" * 5000 + ", DT= .01 SEC"), {}, "", "", "line 2 is .*read as columns, because it has the header of no other format"),
     (esm(GAL) + esm(GAL), {}, "", "", "must not be followed by values"), (esm(GAL), {}, "DURATION_S", "NDATA", "line 10 .*must not give NDATA again: line 9 has given it"),
     (smc(GAL, kind="3 CORRECTED ACCELEROGRAM"), {}, "", "", "line 1 is '3 CORRECTED ACCELEROGRAM': must be 1 UNC"),
     (csmip_1(A / G), {}, "at 100 pts/sec", "at 0 pts/sec", "line 8 .*must give a step, or a number of points a second, above 0"),

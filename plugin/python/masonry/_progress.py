@@ -1,5 +1,5 @@
-"""Long loops: parts of many cases, and a progress bar. progress: True or False; None: a bar where stderr is a terminal, for in a log each of its states would be a
-line."""
+"""Long loops: parts of many cases, and a progress bar. progress: True or False; None: a bar where stderr is a terminal, for in a log each state of it would
+be a line."""
 
 import sys
 

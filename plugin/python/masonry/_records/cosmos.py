@@ -12,10 +12,10 @@ from masonry._records.units import spelled_unit
 NAME = "COSMOS"
 
 _START = re.compile(r"\(Format\s+v\s*[\d.]+\s+with\s+(\d+)\s+text\s+lines?\)", re.IGNORECASE)
-_HEADER = re.compile(r"^\s*(\d+)\s+(Integer|Real)-header values follow on\s*(\d+)\s+lines?", re.IGNORECASE)
-_BLOCK = re.compile(r"^\s*(\d+)\s+(?:\w+\s+)*(\w+)\.?\s+pts,\s*approx\s*(\d{1,9}\.?\d*)\s*secs?,\s*units\s*=\s*([^,]+?)\s*(?:\(\s*(\d+)\s*\))?\s*,", re.IGNORECASE)
+_HEADER = re.compile(r"^\s*(\d{1,9})\s+(Integer|Real)-header values follow on\s*(\d+)\s+lines?", re.IGNORECASE)
+_BLOCK = re.compile(r"^\s*(\d{1,9})\s+(?:\w+\s+)*(\w+)\.?\s+pts,\s*approx\s*(\d{1,9}\.?\d*)\s*secs?,\s*units\s*=\s*([^,]+?)\s*(?:\(\s*(\d{1,9})\s*\))?\s*,", re.IGNORECASE)
 _COMMENTS = re.compile(r"^\s*\d+\s+Comment\s+line|^\s*\|", re.IGNORECASE)
-_CHANNEL = r"^\s*Sta\s+Chan\s*(\S+?)\s*:\s*(.*?)\s*(?:\(Rcrdr|Location|$)"
+_CHANNEL = r"^\s*Sta\s+Chan\s*(\S{1,9})\s*:\s*(.*?)\s*(?:\(Rcrdr|Location|$)"
 _STATION = r"^\s*Statn No:\s*(.*?)\s*$"
 _CODES = r"<SCNL>\s*([^\s.]+)\.([^\s.]+)"
 # Units by their numbers, table 2 of the format, and what a script would write for them.

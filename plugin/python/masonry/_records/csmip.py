@@ -14,10 +14,10 @@ from masonry._records.units import spelled_unit
 NAME = "CSMIP V1/V2"
 
 _NUMBER = r"(\d*\.?\d+(?:E[-+]?\d+)?)"
-_BLOCK = re.compile(rf"^\s*(\d+)\s+(?:points of (accel|veloc|displ)\w* data equally[- ]spaced at\s*{_NUMBER}\s*sec|"
+_BLOCK = re.compile(rf"^\s*(\d{{1,9}})\s+(?:points of (accel|veloc|displ)\w* data equally[- ]spaced at\s*{_NUMBER}\s*sec|"
                     rf"(accel)erogram points at\s*{_NUMBER}\s*(?:pts|points|samples)/sec)", re.IGNORECASE)
 _UNIT = re.compile(r"(?:\bunits?\s*(?:of|:|=)|\bin(?!\s+units))\s*([^\s(),;]+)", re.IGNORECASE)
-_CHANNEL = r"\bchan(?:nel)?\.?\s*(\d+)\s*:\s*(\S.*?)\s*(?:\s{2}|\bfrom\b|$)"
+_CHANNEL = r"\bchan(?:nel)?\.?\s*(\d{1,9})\s*:\s*(\S.*?)\s*(?:\s{2}|\bfrom\b|$)"
 _STATION = r"^\s*Station No\.?\s*(\S+)"
 _QUANTITIES = {"a": "acceleration", "v": "velocity", "d": "displacement"}
 _MUST = ("say how many values of accel, veloc or displ data follow, their step and their unit, such as '12000 points of accel data equally spaced at .005 sec, in "

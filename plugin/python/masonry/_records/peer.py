@@ -12,7 +12,7 @@ from masonry._records.units import spelled_unit
 NAME = "PEER"
 
 # NPTS and DT, as they are named or, in older files, in this order before their names. Thousands may be parted by commas.
-_COUNT, _STEP = r"(\d{1,3}(?:,\d{3})+|\d+)", rf"({NUMBER.pattern})(?![-+.\d]|[A-Z][-+\d])"
+_COUNT, _STEP = r"(\d{1,3}(?:,\d{3})+|\d{1,9})(?!\d)", rf"({NUMBER.pattern})(?![-+.\d]|[A-Z][-+\d])"
 _NAMED = re.compile(rf"(?=.*NPTS\s*=\s*{_COUNT})(?=.*DT\s*=\s*{_STEP}\s*([^\s,;]*))", re.IGNORECASE)
 _COUNTED = re.compile(rf"\s*{_COUNT}[\s,]+{_STEP}\s*NPTS[\s,]+DT\s*(.*)", re.IGNORECASE)
 _SECONDS = {**dict.fromkeys(("", "S", "SEC", "SECS", "SECOND", "SECONDS"), 1.0),

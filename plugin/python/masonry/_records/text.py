@@ -59,7 +59,7 @@ def _parted(line, width):
 
 def column_width(line):
     """The width of the columns by the line's Fortran format, such as (8f10.6) or (10I8); 0: it has none."""
-    found = re.search(r"\(\s*\d*\s*[FEDGI]\s*(\d+)(?:\.\d+)?[ED]?\s*\)", line, re.IGNORECASE)
+    found = re.search(r"\(\s*\d*\s*[FEDGI]\s*(\d{1,3})(?:\.\d+)?[ED]?\s*\)", line, re.IGNORECASE)
     return int(found[1]) if found else 0
 
 

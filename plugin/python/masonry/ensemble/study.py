@@ -42,9 +42,10 @@ def run(script, cases, folder, function="run", processes=None, time_limit=None, 
     units         {name: unit} for the columns and arrays in ensemble.nc; those of results.CollapseReport.numbers() are known
     dimensions    {array: name of its dimension, or a list of them} for arrays that the function returns; see ensemble.dataset()
 
-    The function returns a dict of numbers (and, if it likes, arrays: ensemble.result() and ensemble.dataset() read them), the same keys for every case.
+    The function returns a dict of numbers (and, if it likes, arrays: ensemble.result() and ensemble.dataset() read them), the same keys for every case; where a
+    case lacks one, NaN or an empty text stands in the tables, and a line tells. A name that is a key of the cases, too, has `_result` behind it there.
     Results are kept: a later call computes only cases that have none, or whose values, script, files named in them or masonry package
-    have changed since, or whose file is damaged, which a line tells. Other files that the function reads, and modules beside the script, are not looked into.
+    have changed since, or whose file is damaged or that of another case, which a line tells. Other files that the function reads, and modules beside the script, are not looked into.
     The tables have the same bytes wherever and in whatever order the cases ran.
 
     Table: a structured array, one row a case in the order of `cases`: what the case says, then what its numbers are. None for a slice without a case.

@@ -83,8 +83,9 @@ def dataset(folder):
 
     The dimension `case` counts the rows of the table. What the cases say are coordinates, what the function returned are variables, arrays too: their
     further dimensions have the names that run(dimensions=...) gave. An array that is named as one of these dimensions is its coordinate, for instance
-    `time` with dimensions={"drift": "time"}. Where the arrays of some cases are shorter than others, NaN (or the empty text) follows. Attributes: units;
-    versions of masonry, YADE, Python and NumPy; name, checksum and text of the script.
+    `time` with dimensions={"drift": "time"}. Where the arrays of some cases are shorter than others, NaN (or the empty text) follows. Names with
+    letters beyond those of English are spelled with _, and their attribute long_name has them. Attributes: units; versions of masonry, YADE, Python and
+    NumPy; name, checksum and text of the script.
     Needs python3-xarray. Raises FileNotFoundError where there is no study, ValueError where its file is damaged.
     """
     try:
