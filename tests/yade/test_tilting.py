@@ -145,6 +145,15 @@ def test_symmetric_walls_in_any_order(wall):
     assert max(multipliers) <= (1 + CLOSE) * min(multipliers), multipliers
 
 
+def test_a_symmetric_wall_in_space():
+    """It collapses in its plane, where the planar model has it collapse, towards both sides."""
+    multipliers = []
+    for options in ({}, {"model": "spatial"}, {"model": "spatial", "direction": "-x"}):
+        wall_with_openings(1.2, 1.2, [(0.4, 0.4, 0.4, 0.4)])
+        multipliers.append(found(**options).multiplier)
+    assert max(multipliers) <= (1 + CLOSE) * min(multipliers), multipliers
+
+
 def test_a_wall_with_a_window_against_compliant_joints():
     """These have one answer, but for what their stiffness and the speed of the load make of it (5 %)."""
     wall_with_openings(1.6, 2.0, [(0.6, 0.6, 0.4, 0.8)])
