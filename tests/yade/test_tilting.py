@@ -141,6 +141,16 @@ def test_symmetric_walls_in_any_order(wall):
         for seed in (None, 1):
             wall_with_openings(*wall, seed)
             multipliers.append(found(direction=direction).multiplier)
+            assert O.engines[-1].method == "wall" and O.engines[-1].localisedBlocks == 0
+    assert max(multipliers) <= (1 + CLOSE) * min(multipliers), multipliers
+
+
+def test_a_symmetric_wall_in_space():
+    """It collapses in its plane, where the planar model has it collapse, towards both sides."""
+    multipliers = []
+    for options in ({}, {"model": "spatial"}, {"model": "spatial", "direction": "-x"}):
+        wall_with_openings(1.2, 1.2, [(0.4, 0.4, 0.4, 0.4)])
+        multipliers.append(found(**options).multiplier)
     assert max(multipliers) <= (1 + CLOSE) * min(multipliers), multipliers
 
 
@@ -317,6 +327,15 @@ def test_the_words_of_a_doubt():
     trial = table.trial(0.5)
     doubtful = table._collapse(0.5, (0.4, 0.5), [tilting.Trial(0.4, "unclear", 0, 0, 0), tilting.Trial(0.5, "collapse", 0, 0, 3)], table._mechanism())
     assert trial.verdict == "collapse" and str(doubtful).count("NOT TO BE TRUSTED") == 2 and "in 3 steps" in str(doubtful) and "method='localised'" in str(doubtful)
+
+
+def test_the_words_of_a_jam():
+    """Only one that decides the multiplier is told of."""
+    table = column()
+    table.trial(0.5)
+    trials = [tilting.Trial(0.4, "rest", 0, 0, 0), tilting.Trial(0.5, "jammed", 2e-4, 0, 0), tilting.Trial(0.6, "jammed", 3e-4, 0, 0)]
+    remark, = table._collapse(0.45, (0.4, 0.5), trials, table._mechanism()).remarks
+    assert remark == "at 0.5 blocks move by 0.2 mm and jam in joints that were closed before: taken for collapse"
 
 
 def test_a_picture_of_a_portal(figures, tmp_path):
