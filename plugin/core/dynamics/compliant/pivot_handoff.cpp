@@ -277,10 +277,7 @@ double lift(JointSystem& s, const Joint& joint, const std::vector<HeldPoint>& pa
 	for (const HeldPoint& p : parting)
 		s.contacts[p.contact].points[p.point].muted = true;
 	const RigidAcceleration rates = accelerations(s, selectPoints(s.contacts, loaded));
-	// The edge that carries what the face did goes four times as deep, and if all go as deep there is 16 times the energy; and the base presses.
-	// Smaller: the pivot carries a part of the weight and the block falls into it, again and again.
-	constexpr double gain = 16;
-	settle(s, rates.points, gain * stored);
+	settle(s, rates.points, tolerance::liftingGain * stored);
 	goForth(s, rates, 0.); // velocities go half a step back
 	return energy - mechanicalEnergy(s);
 }
