@@ -308,6 +308,20 @@ double liftJoints(JointSystem& s)
 
 void releaseLandings(JointSystem& s)
 {
+	const auto meets = [&](const JointContact& contact) { // in this step: no point was pressed at its start
+		bool pressed = false;
+		for (int i = 0; i < contact.size; ++i) {
+			const double gap = contact.patch.points[i].gap;
+			if (contact.points[i].muted || gap >= 0)
+				continue;
+			pressed = true;
+			if (gap - gapRate(s, {int(&contact - s.contacts.data()), i}) * s.dt < 0)
+				return false;
+		}
+		return pressed;
+	};
+	if (std::none_of(s.contacts.begin(), s.contacts.end(), meets)) // nearly every step
+		return;
 	for (const Joint& joint : groupJoints(s))
 		if (!findLanding(s, joint).points.empty())
 			for (int c : joint.contacts)
