@@ -46,9 +46,9 @@ constexpr double settle = 1e-9;
 // that much at most. Smaller: squat blocks at low restitution start a half cycle with a vibration; larger: a stack that
 // comes apart can gain energy.
 constexpr double settlingGain = 0.5;
-// The same where a joint that was closed lifts: two of four points carry what all did, twice as deep, and if all go as deep there is four
-// times the energy; and the base presses. Smaller: the pivot carries half the weight and the block falls into it, again and again.
-constexpr double liftingGain = 4;
+// The same where a joint that was closed lifts: the edge carries what the face did, four times as deep, and if all go as deep there is 16
+// times the energy; and the base presses. Smaller: the pivot carries a part of the weight and the block falls into it, again and again.
+constexpr double liftingGain = 16;
 // How far settling may move a point, relative to the compression of the springs: points that lie nearly in a line ask for turns of
 // any size. Smaller: half cycles of stacks start with a vibration; larger: blocks jump.
 constexpr double settlingReach = 10;

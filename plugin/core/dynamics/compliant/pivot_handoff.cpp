@@ -277,10 +277,7 @@ double lift(JointSystem& s, const Joint& joint, const std::vector<HeldPoint>& pa
 	for (const HeldPoint& p : parting)
 		s.contacts[p.contact].points[p.point].muted = true;
 	const RigidAcceleration rates = accelerations(s, selectPoints(s.contacts, loaded));
-	// The edge that carries what the face did goes four times as deep, and if all go as deep there is 16 times the energy; and the base presses.
-	// Smaller: the pivot carries a part of the weight and the block falls into it, again and again.
-	constexpr double gain = 16;
-	settle(s, rates.points, gain * stored);
+	settle(s, rates.points, tolerance::liftingGain * stored);
 	goForth(s, rates, 0.); // velocities go half a step back
 	return energy - mechanicalEnergy(s);
 }
@@ -311,6 +308,20 @@ double liftJoints(JointSystem& s)
 
 void releaseLandings(JointSystem& s)
 {
+	const auto meets = [&](const JointContact& contact) { // in this step: no point was pressed at its start
+		bool pressed = false;
+		for (int i = 0; i < contact.size; ++i) {
+			const double gap = contact.patch.points[i].gap;
+			if (contact.points[i].muted || gap >= 0)
+				continue;
+			pressed = true;
+			if (gap - gapRate(s, {int(&contact - s.contacts.data()), i}) * s.dt < 0)
+				return false;
+		}
+		return pressed;
+	};
+	if (std::none_of(s.contacts.begin(), s.contacts.end(), meets)) // nearly every step
+		return;
 	for (const Joint& joint : groupJoints(s))
 		if (!findLanding(s, joint).points.empty())
 			for (int c : joint.contacts)

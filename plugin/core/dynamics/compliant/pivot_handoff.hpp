@@ -67,8 +67,8 @@ double supportPower(const JointSystem& system);
 // Returns the energy that settling on the new pivots takes, J; 0 when no block lifts.
 double liftJoints(JointSystem& system);
 
-// Joints that land out of flight in this step: their springs and dashpots have not acted, since handOffPivots() stops them at the instant of
-// touch. For the energies of the step, before that.
+// Joints that land out of flight in this step: their springs and dashpots have not acted, since handOffPivots() stops them at the instant
+// of touch. For the energies of the step, before that.
 void releaseLandings(JointSystem& system);
 
 // Finds the joints that land, or whose rotation crossed zero in this step and hands their pivots over. Forces must be up to date.
