@@ -102,8 +102,8 @@ constexpr double instant = 1e-9;
 // The same for the instant at which a varying acceleration of the base sets in motion what rests; and share of gravity by which the
 // acceleration must vary in a step for it to be sought. Larger: that instant is wrong by as much; smaller: more trials.
 constexpr double release = 1e-6;
-// Share of gravity by which the acceleration of the base must vary in a step to be sought for where blocks turn. Smaller: shaken stacks cost
-// more.
+// Share of gravity by which the acceleration of the base must vary in a step to be sought for where blocks turn. Smaller: shaken stacks
+// cost more.
 constexpr double jump = 0.05;
 } // namespace rigid
 

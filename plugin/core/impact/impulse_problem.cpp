@@ -330,19 +330,21 @@ double target(const System<most>& s)
 template <int most>
 bool hardenAtOnce(System<most>& s)
 {
-	constexpr int leastSteps = 3, mostSteps = 10;
+	constexpr int mostSteps = 10;
 	const auto soft = s.points;
 	const auto isSame = [](const PointState& a, const PointState& b) { return a.state == b.state; };
 	s.soften(0);
+	bool solved = false;
 	for (int k = 0; k < mostSteps; ++k) {
 		solveForStates(s);
-		if (k + 1 >= leastSteps && residual(s) <= target(s))
+		if (solved)
 			return true;
+		solved = residual(s) <= target(s); // one step more doubles the digits of the slip directions
 		updateStates(s);
 		if (!std::equal(soft.begin(), soft.end(), s.points.begin(), isSame))
-			return false;
+			break;
 	}
-	return false;
+	return solved;
 }
 
 // G is symmetric, and its columns, not its rows, lie together in memory.

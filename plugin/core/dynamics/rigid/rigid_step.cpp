@@ -291,21 +291,25 @@ double RigidStep<K>::untilRelease(RigidSystem<K>& s)
 {
 	constexpr double infinity = std::numeric_limits<double>::infinity();
 	const double h = step.trial().h, end = s.time + h - tolerance::rigid::instant * h;
-	double varies = 0, further = 0; // m/s^2; the change from the mean to the end, relative to that between the means
+	const double least = tolerance::rigid::release * step.scales.acceleration, jump = tolerance::rigid::jump * step.scales.acceleration;
+	const auto turns = [&](const RigidBody<K>& body) {
+		return !body.prescribed &&
+		       body.velocity.template tail<K::spins>().norm() * step.scales.length > tolerance::restSpeed * step.scales.speed;
+	};
+	const auto varies = [&](double enough) {
+		return std::any_of(s.drives.begin(), s.drives.end(),
+		                   [&](const Drive<K>& drive) { return (drive.acceleration(end) - drive.acceleration(s.time)).norm() > enough; });
+	};
+	if (!varies(std::any_of(s.bodies.begin(), s.bodies.end(), turns) ? jump : least))
+		return 0;
+	double further = 0; // the change of the acceleration from the mean to the end, relative to that between the means
 	for (const Drive<K>& drive : s.drives) {
 		const typename K::Vector last = drive.acceleration(end), mean = (drive.velocity(s.time + h) - drive.velocity(s.time)) / h,
 		                         before = (drive.velocity(s.time) - drive.velocity(s.time - h)) / h, change = mean - before;
-		varies = std::max(varies, (last - mean).norm());
 		if (change.squaredNorm() > 0)
 			further = std::max(further, (last - mean).dot(change) / change.squaredNorm());
 	}
-	const double least = tolerance::rigid::release;
-	const bool turns = std::any_of(s.bodies.begin(), s.bodies.end(), [&](const RigidBody<K>& body) {
-		return !body.prescribed &&
-		       body.velocity.template tail<K::spins>().norm() * step.scales.length > tolerance::restSpeed * step.scales.speed;
-	});
-	if (!(varies > (turns ? tolerance::rigid::jump : least) * step.scales.acceleration) ||
-	    !(step.isReleased(s, 0) || step.isReleased(s, further)))
+	if (!step.isReleased(s, 0) && !step.isReleased(s, further))
 		return 0;
 	if (step.wouldMove(s, h, s.time))
 		return infinity;
@@ -317,11 +321,11 @@ double RigidStep<K>::untilRelease(RigidSystem<K>& s)
 			rests = moves;
 			continue;
 		}
-		while (moves - rests > least * h) {
+		while (moves - rests > tolerance::rigid::release * h) {
 			const double middle = (rests + moves) / 2;
 			(step.wouldMove(s, h, middle) ? moves : rests) = middle;
 		}
-		return moves - s.time > least * h ? moves - s.time : infinity;
+		return moves - s.time > tolerance::rigid::release * h ? moves - s.time : infinity;
 	}
 	return infinity;
 }
