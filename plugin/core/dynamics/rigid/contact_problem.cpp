@@ -67,7 +67,9 @@ struct ContactSolver<K>::Workspace {
 	// Whether a jam goes on: the impulses given are at their limits, do not lead to a solution without, and stay there.
 	bool staysJammed(int sweeps, double tolerance, SolveReport& report)
 	{
-		if (given.empty() || std::none_of(s.rows, s.rows + s.nPoints, isAtLimit<K>))
+		constexpr double roundOff = 1e-6;
+		const auto isBeyond = [](const ContactRows<K>& row) { return row.impulse[0] > (1 + roundOff) * row.most; }; // an impact, no jam
+		if (given.empty() || std::none_of(s.rows, s.rows + s.nPoints, isAtLimit<K>) || std::any_of(s.rows, s.rows + s.nPoints, isBeyond))
 			return false;
 		s.applyImpulses();
 		if (startsClose(tolerance, report))
