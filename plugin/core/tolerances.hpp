@@ -202,6 +202,9 @@ constexpr double search = 1e-3;
 // of the wrong face may hold a joint closed; smaller, down to contact::slack, within which a vertex still lies on the end: what the solver
 // leaves at rest has points looked up, and walls in space are factorised more often.
 constexpr double leftFace = 10 * contact::slack;
+// Share of the velocities that an impact changes by which its points may miss the contact laws. Larger: blocks that go into each other
+// are not told of; smaller: sound impacts are.
+constexpr double missedImpact = 1e-2;
 // Angle, rad, by which a block may turn while nothing moves before normals and arms follow. Larger: forces and gaps are so much askew.
 constexpr double turned = 1e-7;
 // Gap relative to the smallest half size up to which a point takes part in an impact or a base pulse. Larger: points that are open carry

@@ -23,7 +23,7 @@ template <class K>
 CappedReport CappedSolve<K>::solve(const RigidSystem<K>& s, ContactSet<K>& c, const LaneArray& load, const LaneArray& guess,
                                    AdmmSolver<K>& solver, const EnergyLedger<K>& ledger, const StepContext& step)
 {
-	constexpr int mostTrials = 2; // of lower targets. Fewer: capped joints are farther below the restitution that keeps their energy
+	constexpr int mostTrials = 3; // of lower targets. Fewer: capped joints are farther below the restitution that keeps their energy
 	CappedReport report;
 	rows = solver.spins;
 	ranges.assign(rows.size(), {});
@@ -46,7 +46,7 @@ CappedReport CappedSolve<K>::solve(const RigidSystem<K>& s, ContactSet<K>& c, co
 		}
 		if (!worst)
 			sound = rows;
-		if (!(worst && areTargetsAsked) && trials < mostTrials && moveTargets()) {
+		if (!(worst && areTargetsAsked) && trials < mostTrials && moveTargets(trials)) {
 			++trials;
 			continue;
 		}
@@ -103,9 +103,10 @@ SpinRow<K>* CappedSolve<K>::solveOnce(const RigidSystem<K>& s, ContactSet<K>& c,
 }
 
 template <class K>
-bool CappedSolve<K>::moveTargets()
+bool CappedSolve<K>::moveTargets(int trials)
 {
-	constexpr double enough = 0.005; // of the work exchanged, that a capped joint may lose. Larger: its restitution is less right
+	// Of the work exchanged, that a capped joint may lose. Larger: its restitution is less right; smaller: more trials.
+	const double enough = std::ldexp(0.005, trials);
 	bool again = false;
 	for (size_t k = 0; k < rows.size(); ++k) {
 		SpinRow<K>& row = rows[k];

@@ -41,7 +41,7 @@ private:
 	                      AdmmSolver<K>& solver, const StepContext& step, CappedReport& report);
 
 	// Gives capped rows the targets of the next trial. False: all of them have found theirs.
-	bool moveTargets();
+	bool moveTargets(int trials);
 
 	// What a solve has found of a row.
 	struct Trial {
