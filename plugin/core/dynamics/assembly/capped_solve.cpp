@@ -84,7 +84,7 @@ SpinRow<K>* CappedSolve<K>::solveOnce(const RigidSystem<K>& s, ContactSet<K>& c,
 	report.factorisations += solver.report.factorisations;
 	report.residual = solver.report.residual;
 	report.finite = solver.report.finite;
-	const double missed = step.instant ? report.residual / step.speed : 0;
+	const double missed = step.instant ? report.residual / (2 * step.speed) : 0; // work goes with the mean of the velocities
 	SpinRow<K>* worst = nullptr;
 	double most = 0;
 	auto held = solver.spins.begin();
