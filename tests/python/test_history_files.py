@@ -147,9 +147,9 @@ FORCES = [column("sample", int), column("id1", int), column("id2", int), column(
     ("impacts", np.zeros(3), "impacts: must be None or a structured array with the columns time, body, "),
     ("impacts", np.zeros(2, dtype=[(name, "U3") for name, _ in IMPACTS]), "impacts: must be None .* of numbers"),
     ("forces", np.zeros(3), "forces: must be None or a structured array with the columns sample, id1, id2, force, point"),
-    ("forces", np.zeros(2, dtype=[(name, float) for name, *_ in FORCES]), "forces: must be those of blocks and samples"),
-    ("forces", np.array([(1, 10, 99, [0] * 3, [0] * 3)], dtype=FORCES), "forces: must be those of blocks and samples"),
-    ("forces", np.array([(9, 10, 11, [0] * 3, [0] * 3)], dtype=FORCES), "forces: must be those of blocks and samples"),
+    ("forces", np.zeros(2, dtype=[(name, float) for name, *_ in FORCES]), "forces: they name the body 0"),
+    ("forces", np.array([(1, 10, 99, [0] * 3, [0] * 3)], dtype=FORCES), "forces: they name the body 99, which is not among the ids of the history"),
+    ("forces", np.array([(9, 10, 11, [0] * 3, [0] * 3)], dtype=FORCES), "forces: must be vectors of three components, at samples of the history"),
     ("ids", np.array("x"), "is no WallHistory"), ("motion", np.array(["a", "b"]), "is no WallHistory"), ("position", np.zeros(3, dtype=[("x", float)]), "is no WallHistory")])
 def test_files_with_other_contents_are_told_in_a_sentence(tmp_path, name, value, words):
     path = tmp_path / "h.npz"

@@ -105,7 +105,7 @@ double EnergyLedger<K>::close(RigidSystem<K>& s, const Scales& scales, double h,
 	const double allowed =
 	    tolerance::assembly::createdShare * atStake + tolerance::assembly::createdLift * liftedAll + mass * slowest * slowest;
 	const double balance = impacts + taken;
-	gained = std::max(0., lag - balance);
+	gained = std::max(0., lag - balance - friction / 2);
 	return balance < -allowed ? -balance : 0;
 }
 

@@ -361,7 +361,7 @@ def impacts():
 
     Restitution and velocity are relative to the motion with which the block would stay on its old and its new support: on supports that move in
     different ways, a block with restitution 0 follows both. The walls of method='wall' list only
-    impacts with a given restitution."""
+    impacts with a given restitution, each in the step after it: beside blocks with localised impacts the rows may be out of order by a step."""
     e = _joint_engine()
     table = np.zeros(len(e.impactTimes), dtype=_IMPACT_FIELDS)
     before, after = np.array(e.impactBefore), np.array(e.impactAfter)

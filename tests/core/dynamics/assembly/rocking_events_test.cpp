@@ -217,7 +217,8 @@ TEST_CASE("a dense wall keeps most of its restitution at three times the iterati
 
 // A panel of 31 blocks on one sill rocks as a whole and lands on the sill's other edge. A spin that is too large for the sill's own energy
 // comes out as the largest that keeps it, whatever is asked and whatever the step. Oracle: the largest restitution, in steps of 0.02, that
-// comes out as it is asked. Bound: what docs/limits promises. All impacts obey the contact laws.
+// comes out as it is asked. Bound: trials end where the joint loses at most 2 % of the work that it exchanges, 360 J of 18 kJ, and between
+// a restitution of 0.48 and one of 0.6 its loss falls by that. All impacts obey the contact laws.
 TEMPLATE_TEST_CASE("a panel on a sill lands with the largest restitution that keeps the energy", "", Plane, Space)
 {
 	const double h = GENERATE(1e-3, 5e-4);
@@ -257,7 +258,7 @@ TEMPLATE_TEST_CASE("a panel on a sill lands with the largest restitution that ke
 		const Impact impact = land(asked);
 		CAPTURE(h, asked, largest);
 		CHECK(impact.capped);
-		CHECK(impact.joint.restitution() > largest - 0.06);
+		CHECK(impact.joint.restitution() > largest - 0.13);
 		CHECK(impact.joint.restitution() < largest + 0.02);
 	}
 	CHECK(failures == 0);
