@@ -326,6 +326,28 @@ double target(const System<most>& s)
 	return s.noise + roundOff;
 }
 
+// Whether a residual counts as none.
+template <int most>
+bool isEnough(const System<most>& s, double missed)
+{
+	return missed <= std::max(target(s), tolerance::impulseEnough * s.speed);
+}
+
+// Without the points that would pull. Returns the residual. Where points that stick ask for motions that no rigid body has, no impulses
+// obey the laws, and those of soft contacts would grow as the softness falls: then the least impulses that miss the laws least are taken.
+template <int most>
+double solveWithoutPulls(System<most>& s)
+{
+	letPullingPointsGo(s);
+	harden(s);
+	if (const double missed = residual(s); isEnough(s, missed))
+		return missed;
+	s.soften(0);
+	s.p.setZero();
+	letPullingPointsGo(s);
+	return residual(s);
+}
+
 // From the solution for soft contacts to the nearest for rigid ones in the same states. False: these do not obey the laws.
 template <int most>
 bool hardenAtOnce(System<most>& s)
@@ -496,13 +518,9 @@ ImpulseReport solveDense(std::vector<Body>& bodies, std::vector<ImpulsePoint>& p
 		s.moveCentre();
 		report.residual = residual(s);
 	}
-	const auto isEnough = [&] { return report.residual <= std::max(target(s), tolerance::impulseEnough * s.speed); };
-	if (!allSlip && !isEnough()) {
-		letPullingPointsGo(s);
-		harden(s);
-		report.residual = residual(s);
-	}
-	report.solved = isEnough();
+	if (!allSlip && !isEnough(s, report.residual))
+		report.residual = solveWithoutPulls(s);
+	report.solved = isEnough(s, report.residual);
 	apply(s, bodies, points, couples);
 	return report;
 }
@@ -551,10 +569,8 @@ ImpulseReport solveImpulses(std::vector<Body>& bodies, std::vector<ImpulsePoint>
 ImpulseReport letPullingPointsGo(std::vector<Body>& bodies, std::vector<ImpulsePoint>& points, std::vector<CoupleRow>& couples)
 {
 	System<Eigen::Dynamic> s(bodies, points, couples);
-	letPullingPointsGo(s);
-	harden(s);
+	const double missed = solveWithoutPulls(s);
 	apply(s, bodies, points, couples);
-	const double missed = residual(s);
 	return {0, missed, missed <= tolerance::impulseEnough * s.speed};
 }
 
