@@ -1,5 +1,7 @@
 """A block without slip on compliant joints under fast changes of the base's acceleration, against the exact history."""
 
+import math
+
 import masonry
 import numpy as np
 import pytest
@@ -16,12 +18,13 @@ def error_of(record, until, penetration):
     base = dem.base((6, 3, 0.2), stone)
     block = dem.block((0.3, 0.5, 1.5), stone, on=base)
     O.engines = quiet_engines(dem.record_motion(record, ids=[base]), penetration=penetration)
-    worst = peak = 0
+    times, angles = [], []
     while O.time < until:
         O.step()
-        angle = float(exact.sample(O.time)[0])
-        worst, peak = max(worst, abs(dem.angle(block) - angle)), max(peak, abs(angle))
-    return worst / peak
+        times.append(O.time)
+        angles.append(dem.angle(block))
+    wanted = exact.sample(np.array(times))[0]
+    return np.max(np.abs(angles - wanted)) / np.max(np.abs(wanted))
 
 
 @pytest.mark.parametrize("penetration, bound", ((1e-5, 1e-2), (1e-6, 2e-3), (1e-7, 1e-3)))
@@ -34,10 +37,14 @@ def test_a_trapezoid(penetration, bound):
     assert error < bound
 
 
-@pytest.mark.parametrize("seed, penetration", ((0, 1e-5), (0, 1e-6), (1, 1e-5), (2, 1e-5)))
-def test_artificial_records(seed, penetration):
-    """Small rocking, a few hundredths of the critical angle, that a record sets off again and again: it is right where it depends little on the instants of
-    lifting, as under the first of these records. The others print what docs/numerics.md says."""
-    error = error_of(masonry.artificial_record(seed, 4.0, duration=3.0), 1.5, penetration)
-    print(f"artificial record {seed}, penetration {penetration:g}: error {error:.1e} of the peak")
-    assert seed > 0 or error < 1e-2
+@pytest.mark.parametrize("peak, bound", ((4.0, 4e-2), (8.0, 2e-2)))
+def test_artificial_records(peak, bound):
+    """Records that set a block rocking again and again: what it does next depends on the instants at which it has lifted and landed, and errors grow with
+    every half cycle, so that single histories may be wrong. The median of ten falls with the penetration at least as the delays of lifting do, with its
+    square root. Bounds of that at 1e-6: three times what was seen."""
+    medians = []
+    for penetration in (1e-5, 1e-6):
+        errors = [error_of(masonry.artificial_record(seed, peak, duration=3.0), 1.5, penetration) for seed in range(10)]
+        medians.append(np.median(errors))
+        print(f"records of {peak} m/s^2, penetration {penetration:g}: median {medians[-1]:.1e} of the peak, of", " ".join(f"{e:.0e}" for e in errors))
+    assert medians[1] < bound and medians[1] < medians[0] / math.sqrt(10)

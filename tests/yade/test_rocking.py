@@ -84,9 +84,9 @@ def test_rocking_ends(slenderness, restitution, penetration):
 
 @pytest.mark.parametrize("blocks, slenderness, restitution", ((3, 2, 0.5), (4, 1.5, None)))
 def test_a_stack_that_comes_apart(blocks, slenderness, restitution):
-    """A stack that comes apart: the energy of springs that hand over is in the balance. Bound, of what the impacts take, set after seeing 3e-4; 1e-3
-    where the motion that hand-offs leave to the springs is counted twice. Median of three tilts: without slip some impacts have no solution, and what is
-    taken for one may turn the stack out of its plane; a corner that leaves its side then changes its spring (1e-3 in two of nine tilts of four blocks)."""
+    """A stack that comes apart: the energy of springs that hand over is in the balance. Bound, of what the impacts take, set after seeing at most 2.2e-4
+    in seven tilts of either stack; 1e-3 where the motion that hand-offs leave to the springs is counted twice, 6e-4 where a block that moves along the face
+    of its neighbour opens the joint, and 1e-3 where the sway of a face without slip has centripetal accelerations, which no forces hold."""
     errors = []
     for tilt in (0.29, 0.3, 0.31):
         O.reset()
@@ -99,7 +99,7 @@ def test_a_stack_that_comes_apart(blocks, slenderness, restitution):
             steps(100)
         errors.append(abs(balance.error()) / dem.energy()["impactDissip"])
         print(f"{blocks} blocks, tilt {tilt}: {len(dem.impacts())} impacts, energy {errors[-1]:.1e} of what they take")
-    assert np.median(errors) < 6e-4, errors
+    assert max(errors) < 4e-4, errors
 
 
 @pytest.mark.parametrize("touching", (False, True))

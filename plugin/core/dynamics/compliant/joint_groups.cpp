@@ -290,6 +290,39 @@ bool isPivot(const JointSystem& s, const Joint& joint, const std::vector<PointRe
 	return isPivot(s, points, joint.normal, sizeOf(s, joint));
 }
 
+namespace {
+
+// Whether a point is a vertex of the body whose face is the reference. Where it is one of the other body too it goes by the name of body 2.
+bool isOfReference(const ContactPatch& patch, int i)
+{
+	const int identity = patch.points[i].identity;
+	if (patch.feature.kind == PatchKind::Face1)
+		return identity < 8;
+	if (patch.feature.kind != PatchKind::Face2 || identity < 8 || identity >= 16)
+		return false;
+	int unnamed = patch.feature.vertices & 0xff;
+	for (int k = 0; k < patch.size; ++k)
+		if (patch.points[k].identity < 8)
+			unnamed &= ~(1 << patch.points[k].identity);
+	return unnamed == 0;
+}
+
+// How the gap of point i, along the patch's normal, depends on the motion of its bodies at it: a vertex of the reference body goes over the
+// incident face, and along that it may slide.
+Vector3 opening(const JointSystem& s, const JointContact& contact, int i)
+{
+	const Vector3& n = contact.patch.normal;
+	if (!isOfReference(contact.patch, i))
+		return n;
+	const PatchFeature& faces = contact.patch.feature;
+	const bool first = faces.kind == PatchKind::Face1;
+	const Vector3 incident =
+	    s.bodies[first ? contact.body2 : contact.body1].pose.orientation * Vector3::Unit((first ? faces.feature2 : faces.feature1) / 2);
+	return incident / incident.dot(n);
+}
+
+} // namespace
+
 void moveContacts(JointSystem& s, const std::vector<Body>& before)
 {
 	for (JointContact& contact : s.contacts) {
@@ -305,7 +338,7 @@ void moveContacts(JointSystem& s, const std::vector<Body>& before)
 			point.position2 = carry(contact.body2, point.position2);
 			const Vector3 moved = point.position2 - point.position1 - old;
 			const Vector3& n = contact.patch.normal;
-			point.gap += n.dot(moved);
+			point.gap += opening(s, contact, i).dot(moved);
 			contact.points[i].shear += moved - n * n.dot(moved) + contact.gripMotion(i, turn);
 		}
 	}

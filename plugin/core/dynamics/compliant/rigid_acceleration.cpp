@@ -1,4 +1,5 @@
 #include "dynamics/compliant/rigid_acceleration.hpp"
+#include "tolerances.hpp"
 #include <algorithm>
 
 namespace masonry {
@@ -25,6 +26,45 @@ std::vector<ImpulsePoint> impulsePoints(const std::vector<JointContact>& contact
 	return rows;
 }
 
+namespace {
+
+// The part of a spin of body 2 against body 1 that rigid bodies do not have while these points of one contact are held.
+Vector3 swayOf(const JointContact& contact, const Vector3& spin, const HeldPoint* first, const HeldPoint* last)
+{
+	const auto span = [&](const HeldPoint& p) { return Vector3(contact.position(p.point) - contact.position(first->point)); };
+	Vector3 edge = Vector3::Zero();
+	for (auto p = first; p != last; ++p)
+		if (span(*p).norm() > edge.norm())
+			edge = span(*p);
+	const bool maySlip = contact.law.friction < noSlip; // and then turn about the normal
+	const bool isFace = std::any_of(
+	    first, last, [&](const HeldPoint& p) { return edge.cross(span(p)).norm() > tolerance::pivotEdge * edge.squaredNorm(); });
+	if (isFace)
+		return maySlip ? Vector3(spin - contact.patch.normal * contact.patch.normal.dot(spin)) : spin;
+	if (maySlip || edge.isZero(0))
+		return Vector3::Zero();
+	return spin - edge * (edge.dot(spin) / edge.squaredNorm());
+}
+
+// Centripetal accelerations of the friction points, of body 2 relative to body 1. A friction point turns about its point by the spin about
+// the normal.
+void setBias(const std::vector<Body>& bodies, const JointContact& contact, const HeldPoint* first, const HeldPoint* last, ImpulsePoint* row)
+{
+	const Body &body1 = bodies[contact.body1], &body2 = bodies[contact.body2];
+	const Vector3 sway = swayOf(contact, body2.angularVelocity - body1.angularVelocity, first, last);
+	const double share = body1.prescribed ? 0 : body2.prescribed ? 1 : 0.5; // of body 1
+	const Vector3 spin1 = body1.angularVelocity + share * sway, spin2 = body2.angularVelocity - (1 - share) * sway;
+	for (; first != last; ++first, ++row) {
+		const auto centripetal = [&](const Body& body, const Vector3& spin) {
+			const double turn = row->normal.dot(spin);
+			return Vector3(spin.cross(spin.cross(row->position - body.pose.position)) - turn * turn * row->grip);
+		};
+		row->bias = centripetal(body2, spin2) - centripetal(body1, spin1);
+	}
+}
+
+} // namespace
+
 RigidAcceleration rigidAcceleration(const std::vector<Body>& bodies, const std::vector<JointContact>& contacts,
                                     std::vector<HeldPoint> points, const ImpulseSolver& solve)
 {
@@ -42,13 +82,10 @@ RigidAcceleration rigidAcceleration(const std::vector<Body>& bodies, const std::
 		rates[i].angularVelocity = body.inverseInertia() * (body.torque - body.angularVelocity.cross(momentum));
 	}
 	std::vector<ImpulsePoint> rows = impulsePoints(contacts, points);
-	for (ImpulsePoint& row : rows) {
-		const auto centripetal = [&](int b) { // of the friction point relative to the point: by the spin about the normal
-			const Vector3& w = bodies[b].angularVelocity;
-			const double spin = row.normal.dot(w);
-			return Vector3(w.cross(w.cross(row.position - bodies[b].pose.position)) - spin * spin * row.grip);
-		};
-		row.bias = centripetal(row.body2) - centripetal(row.body1);
+	for (size_t k = 0, end = 0; k < points.size(); k = end) {
+		while (end < points.size() && points[end].contact == points[k].contact)
+			++end;
+		setBias(bodies, contacts[points[k].contact], points.data() + k, points.data() + end, rows.data() + k);
 	}
 	std::vector<CoupleRow> none;
 	RigidAcceleration result;

@@ -6,6 +6,10 @@
 // so the accelerations solve the impulse problem (impact/impulse_problem.hpp) in which "velocity" means acceleration, the
 // free values are external force / mass (with the gyroscopic moment) and the last two terms are the points' bias. The
 // "impulses" are then the forces at the points.
+//
+// Bodies that are held at a face do not turn against each other, and those held at an edge turn about it; what else they do is the sway of
+// their springs. The centripetal accelerations are without it: with it no rigid bodies have them at all points. Without slip the forces
+// would then grow as far as the solver takes them.
 #include "dynamics/compliant/joint_contact.hpp"
 #include "impact/impulse_problem.hpp"
 #include <vector>

@@ -1,6 +1,6 @@
 // Forces of one compliant joint.
 #include "contact/box_box.hpp"
-#include "dynamics/compliant/joint_contact.hpp"
+#include "dynamics/compliant/joint_groups.hpp"
 #include "impact/impulse_problem.hpp"
 #include <catch.hpp>
 #include <cmath>
@@ -294,6 +294,47 @@ TEST_CASE("The shear of a joint that turns with its blocks turns with it, at its
 		body->pose = {turn * body->pose.position, turn * body->pose.orientation};
 	blocks.look();
 	CHECK((blocks.contact.points[2].shear - turn * before).norm() < 1e-12 * before.norm()); // round-off
+}
+
+// Blocks of 1 m, the lower turned by 0.03 and the upper by 0.07, which leans beside the lower's edge. What moves along the upper's face
+// leaves the gaps at the lower's vertices as they are (along the lower's normal it moves by 4e-6). Gaps that are looked up anew tell, up to
+// the turn of 1e-5 times the widest gap, 0.04, times the angle between the faces, 0.04.
+TEST_CASE("Contacts that move with their bodies have the gaps that are looked up")
+{
+	for (const bool swapped : {false, true}) {
+		JointSystem s;
+		s.bodies.resize(2);
+		const int lower = swapped ? 1 : 0, upper = 1 - lower;
+		const auto turn = [](double angle) { return Quaternion(Eigen::AngleAxisd(angle, Vector3::UnitY())); };
+		const Box box {Vector3::Constant(0.5)};
+		s.bodies[lower].pose.orientation = turn(0.03);
+		s.bodies[upper].pose.orientation = turn(0.07);
+		s.bodies[upper].pose.position = turn(0.03) * Vector3(0.5, 0, 0.5) + turn(0.07) * Vector3(-0.49, 0, 0.5 - 1e-5);
+		JointContact contact;
+		contact.body1 = 0;
+		contact.body2 = 1;
+		const auto look = [&](ContactPatch& patch) {
+			PatchFeature feature = contact.patch.feature;
+			REQUIRE(collide(box, s.bodies[0].pose, box, s.bodies[1].pose, 1e-3, feature, patch));
+		};
+		ContactPatch found;
+		look(found);
+		renewPatch(contact, found);
+		s.contacts = {contact};
+		const std::vector<Body> before = s.bodies;
+		s.bodies[upper].pose.position += turn(0.07) * Vector3(1e-4, 0, 2e-6);
+		s.bodies[upper].pose.orientation = turn(0.07 + 1e-5);
+		moveContacts(s, before);
+		look(found);
+		int vertices = 0;
+		for (int i = 0; i < found.size; ++i)
+			for (int k = 0; k < contact.size; ++k)
+				if (s.contacts[0].patch.points[k].identity == found.points[i].identity) {
+					++vertices;
+					CHECK(std::abs(s.contacts[0].patch.points[k].gap - found.points[i].gap) < 2e-8);
+				}
+		CHECK(vertices == 4);
+	}
 }
 
 TEST_CASE("What springs take beyond what they store, where points land within a step, is no damping")
