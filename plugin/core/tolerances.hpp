@@ -55,6 +55,13 @@ constexpr double settlingReach = 10;
 // Energy that all steps of a run may make, or lose, though nothing accounts for it: share of what is turned over, and of what lifts all
 // blocks by their size. Smaller: coarse but sound runs are reported; larger: a run may be wrong by so much in silence.
 constexpr double madeShare = 0.05, madeLift = 1e-4;
+// The share of what is turned over that compliant joints may make. Smaller: what sound runs with many landings make adds up to it; larger:
+// wrong runs are silent.
+constexpr double madeByJoints = 7.5e-3;
+
+// Residual of the contact laws, relative to the speed that gravity gives in a step, that is like a millionth of the weight: a step that
+// misses them by less says nothing.
+constexpr double negligible = 1e-6;
 
 // --- rigid blocks (dynamics/rigid/) ---
 namespace rigid {

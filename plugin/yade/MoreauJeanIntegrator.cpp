@@ -4,6 +4,7 @@
 #include "python_lock.hpp"
 #include "rigid_scene.hpp"
 #include "sentence.hpp"
+#include "tolerances.hpp"
 
 #include <core/Scene.hpp>
 #include <lib/factory/ClassFactory.hpp>
@@ -14,9 +15,6 @@ namespace yade {
 YADE_PLUGIN((MoreauJeanIntegrator));
 
 namespace {
-
-/// Share of the speed that gravity gives in a step: a residual below it is like a millionth of the weight.
-constexpr Real negligible = 1e-6;
 
 template <class K>
 std::shared_ptr<RigidRun> makeScene(MoreauJeanIntegrator& engine, const vector<BaseMotionEngine*>& motions, const vector<Real>& values)
@@ -318,7 +316,7 @@ void MoreauJeanIntegrator::count(const masonry::rigid::StepReport& report)
 	const Real ofStep = gravity.norm() * scene->dt; // the speed that gravity gives
 	// A residual this small moves nothing that anybody could measure: it is counted, without a word.
 	const bool matters = !jammed.empty() || crowded || !sums.empty() || report.created != 0 || report.deepest > 0 || report.turn > 0 ||
-	                     !(report.residual <= negligible * ofStep);
+	                     !(report.residual <= masonry::tolerance::negligible * ofStep);
 	std::ostringstream text;
 	text << "In the step from t = " << scene->time << " s ";
 	text << jammed;

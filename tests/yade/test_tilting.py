@@ -228,12 +228,12 @@ def collapse_of_compliant_joints(along, penetration=3e-5, rate=0.2):
 @pytest.mark.parametrize("direction, along", (("y", (0, 1, 0)), ("-y", (0, -1, 0))))
 def test_a_wall_with_a_corner(direction, along):
     """Friction that does not push apart gives way a tenth and more below the largest multiplier that any forces balance. Compliant joints, which give
-    by 3e-5 of the width, tell where."""
+    by 3e-5 of the width, tell where; under a faster load they would be late."""
     base, stone = ground(0.65)
     dem.return_wall(4, 2, 2, (0.4, 0.2, 0.2), stone, base)
     possible, result = statically_possible(dem.TiltTable(direction=direction), along, 0.65), found(direction=direction)
     assert O.engines[-1].method == "wall"
-    compliant = collapse_of_compliant_joints(along)
+    compliant = collapse_of_compliant_joints(along, rate=0.1)
     print(f"towards {direction}: compliant joints {compliant:.3f}, rigid blocks {result.multiplier:.3f}, forces possible up to {possible:.3f}")
     assert compliant < 0.9 * possible and abs(result.multiplier / compliant - 1) < 0.05
 

@@ -7,7 +7,10 @@ namespace masonry {
 
 // Returns the bound of either sum, J. `turnedOver` is the largest kinetic and elastic energy so far plus all that has been dissipated.
 // `lift` is the energy that lifts all blocks by their size.
-inline double mostUnexplained(double turnedOver, double lift) { return tolerance::madeShare * turnedOver + tolerance::madeLift * lift; }
+inline double mostUnexplained(double turnedOver, double lift, double share = tolerance::madeShare)
+{
+	return share * turnedOver + tolerance::madeLift * lift;
+}
 
 // The errors of one step of rigid blocks, J. `kinetic` belongs to its start.
 struct StepErrors {
