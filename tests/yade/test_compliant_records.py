@@ -1,7 +1,5 @@
 """A block without slip on compliant joints under fast changes of the base's acceleration, against the exact history."""
 
-import math
-
 import masonry
 import numpy as np
 import pytest
@@ -37,14 +35,14 @@ def test_a_trapezoid(penetration, bound):
     assert error < bound
 
 
-@pytest.mark.parametrize("peak, bound", ((4.0, 4e-2), (8.0, 2e-2)))
-def test_artificial_records(peak, bound):
+@pytest.mark.parametrize("peak, coarse, fine", ((4.0, 0.3, 1.5e-2), (8.0, 0.05, 2e-2)))
+def test_artificial_records(peak, coarse, fine):
     """Records that set a block rocking again and again: what it does next depends on the instants at which it has lifted and landed, and errors grow with
-    every half cycle, so that single histories may be wrong. The median of ten falls with the penetration at least as the delays of lifting do, with its
-    square root. Bounds of that at 1e-6: three times what was seen."""
+    every half cycle, so that single histories may be wrong. The median of ten falls with the penetration as the delays do, with its square root: between
+    1e-5 and 1e-6 by 3.2, of which the scatter of ten leaves at least 2. Bounds: three times what was seen."""
     medians = []
     for penetration in (1e-5, 1e-6):
         errors = [error_of(masonry.artificial_record(seed, peak, duration=3.0), 1.5, penetration) for seed in range(10)]
         medians.append(np.median(errors))
         print(f"records of {peak} m/s^2, penetration {penetration:g}: median {medians[-1]:.1e} of the peak, of", " ".join(f"{e:.0e}" for e in errors))
-    assert medians[1] < bound and medians[1] < medians[0] / math.sqrt(10)
+    assert medians[0] < coarse and medians[1] < min(fine, medians[0] / 2)
