@@ -526,9 +526,10 @@ void RockingJointEngine::action()
 	if (!starting)
 		addBaseWork();
 	vector<StepImpact> impacts;
-	const Real lifted = liftJoints(system);
-	impactDissip += lifted;
-	addUnexplained(std::max(0., -lifted));
+	const auto lifted = liftJoints(system);
+	baseWork += lifted.work;
+	impactDissip += lifted.dissipated;
+	addUnexplained(std::max(0., -lifted.dissipated));
 	const auto records = handOffPivots(system);
 	for (const auto& record : records) {
 		recordImpact(record);
@@ -538,7 +539,7 @@ void RockingJointEngine::action()
 	const bool jumped = applyJumps(motions, impacts);
 	reportUnsolved();
 	for (size_t b = 0; b < ids.size(); ++b)
-		if (!system.bodies[b].prescribed && (starting || lifted != 0 || !records.empty() || jumped))
+		if (!system.bodies[b].prescribed && (starting || lifted.dissipated != 0 || !records.empty() || jumped))
 			writeState(system.bodies[b], *(*scene->bodies)[ids[b]]->state);
 	applyForces(pairs);
 	keepReactions();

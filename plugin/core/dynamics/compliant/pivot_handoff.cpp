@@ -233,7 +233,8 @@ double supportPower(const JointSystem& s)
 namespace {
 
 // A block that touches nothing but an accelerating base and stands on it with all its points, but for what its swaying springs
-// have just opened: less than their compression.
+// have just opened: less than twice their compression. The moment that lifts it turns the face by 6 d/b (joint_contact.hpp), and by up to
+// twice that if it comes at once: one edge is then open by 8 d, the other pressed in by 4 d.
 bool closedOnMovingBase(const JointSystem& s, const Joint& joint)
 {
 	const JointContact& contact = s.contacts[joint.contacts.front()];
@@ -248,7 +249,7 @@ bool closedOnMovingBase(const JointSystem& s, const Joint& joint)
 		lowest = std::min(lowest, contact.patch.points[i].gap);
 		highest = std::max(highest, contact.patch.points[i].gap);
 	}
-	return lowest < 0 && highest < -lowest;
+	return lowest < 0 && highest < -2 * lowest;
 }
 
 // The points that part in the rigid accelerations while others carry the block; empty: the joint stays closed.
@@ -261,32 +262,43 @@ std::vector<HeldPoint> partingPoints(const RigidAcceleration& rates, const std::
 	return parting.size() < rates.points.size() ? parting : std::vector<HeldPoint>();
 }
 
-// A closed joint becomes a rocking one: its springs' own swaying ends, the parting points are muted, the others take the
-// pivot forces. Returns the energy that this takes.
-double lift(JointSystem& s, const Joint& joint, const std::vector<HeldPoint>& parting)
+// A closed joint becomes a rocking one: the block goes on with the motion of its support and what it slips, without the swaying of its
+// springs; the parting points are muted, the others take the pivot forces.
+ImpulseResponse lift(JointSystem& s, const Joint& joint, const std::vector<HeldPoint>& parting)
 {
 	const double energy = mechanicalEnergy(s), stored = storedEnergy(s);
-	auto rows = impulsePoints(s.contacts, selectPoints(s.contacts, loaded));
 	const auto& contact = s.contacts[joint.contacts.front()];
-	const int support = contact.body1 == joint.block ? contact.body2 : contact.body1;
-	std::vector<CoupleRow> noTurn;
-	for (int axis = 0; axis < 3; ++axis)
-		noTurn.push_back({support, joint.block, Vector3::Unit(axis), 0.});
-	const ImpulseReport report = solveImpulses(s.bodies, rows, noTurn); // one block: few points
-	note(s, report.residual, report.solved);
+	const auto loadedPoints = selectPoints(s.contacts, loaded);
+	const Body& support = s.bodies[contact.body1 == joint.block ? contact.body2 : contact.body1];
+	Body& block = s.bodies[joint.block];
+	Vector3 slip = Vector3::Zero(); // where friction is at its limit
+	for (const HeldPoint& p : loadedPoints) {
+		const JointPoint& point = contact.points[p.point];
+		if (point.shearForce.norm() < (1 - tolerance::settle) * contact.law.friction * point.normalForce)
+			continue;
+		const Vector3 x = contact.position(p.point);
+		slip += (block.velocityAt(x) - support.velocityAt(x)) / loadedPoints.size();
+	}
+	slip -= joint.normal * joint.normal.dot(slip);
+	const Vector3 carried = support.velocityAt(block.pose.position), velocity = carried + slip;
+	ImpulseResponse response;
+	response.work = block.mass * carried.dot(velocity - block.velocity);
+	block.velocity = velocity;
+	block.angularVelocity = support.angularVelocity;
 	for (const HeldPoint& p : parting)
 		s.contacts[p.contact].points[p.point].muted = true;
 	const RigidAcceleration rates = accelerations(s, selectPoints(s.contacts, loaded));
 	settle(s, rates.points, tolerance::liftingGain * stored);
 	goForth(s, rates, 0.); // velocities go half a step back
-	return energy - mechanicalEnergy(s);
+	response.dissipated = energy + response.work - mechanicalEnergy(s);
+	return response;
 }
 
 } // namespace
 
-double liftJoints(JointSystem& s)
+ImpulseResponse liftJoints(JointSystem& s)
 {
-	double given = 0;
+	ImpulseResponse sum;
 	for (const Joint& joint : groupJoints(s)) {
 		if (!closedOnMovingBase(s, joint))
 			continue;
@@ -299,11 +311,14 @@ double liftJoints(JointSystem& s)
 		const auto parting = partingPoints(accelerations(calm, all), calm.contacts);
 		part.system.residual = calm.residual;
 		part.system.unsolved = calm.unsolved;
-		if (!parting.empty())
-			given += lift(part.system, part.joint, parting);
+		if (!parting.empty()) {
+			const ImpulseResponse response = lift(part.system, part.joint, parting);
+			sum.work += response.work;
+			sum.dissipated += response.dissipated;
+		}
 		putBack(part, s);
 	}
-	return given;
+	return sum;
 }
 
 void releaseLandings(JointSystem& s)
@@ -356,7 +371,7 @@ namespace {
 
 // The impulses of a base whose velocity has just jumped. Points that part are muted where their joint keeps a pivot (it
 // rocks from this instant on); those that stay are returned.
-std::vector<HeldPoint> respondToJump(JointSystem& s, const std::vector<int>& moved, const Vector3& jump, JumpResponse& response)
+std::vector<HeldPoint> respondToJump(JointSystem& s, const std::vector<int>& moved, const Vector3& jump, ImpulseResponse& response)
 {
 	const auto touching = selectPoints(s.contacts, [](const JointContact& contact, int i) {
 		return !contact.points[i].muted && (contact.patch.points[i].gap <= 0 || loaded(contact, i));
@@ -381,13 +396,13 @@ std::vector<HeldPoint> respondToJump(JointSystem& s, const std::vector<int>& mov
 
 } // namespace
 
-JumpResponse applyBaseJump(JointSystem& s, const std::vector<int>& moved, const Vector3& jump, double before)
+ImpulseResponse applyBaseJump(JointSystem& s, const std::vector<int>& moved, const Vector3& jump, double before)
 {
 	const double energy = mechanicalEnergy(s), stored = storedEnergy(s), power = supportPower(s);
 	goBack(s, accelerations(s, selectPoints(s.contacts, loaded)), before);
 	for (int b : moved)
 		s.bodies[b].velocity += jump;
-	JumpResponse response;
+	ImpulseResponse response;
 	const auto held = respondToJump(s, moved, jump, response);
 	const auto joints = groupJoints(s);
 	unmuteUpright(s, joints);

@@ -60,12 +60,17 @@ void startAtEquilibrium(JointSystem& system);
 // Power of the prescribed bodies on the others, W.
 double supportPower(const JointSystem& system);
 
+struct ImpulseResponse {
+	double work {0};       // of the moved bodies: their impulses, and the changed forces up to the end of the step, J
+	double dissipated {0}; // by the plastic, frictional response, or by settling on new pivots (of either sign), J
+};
+
 // A block alone on an accelerating base starts to rock as soon as the rigid block would: some of its points then carry
 // nothing any more. Waiting for the springs to let go would cost an error of the order of the square root of the penetration.
 // Not localised: it is found at the end of the step. Structures of several joints do wait for their springs: the rigid
 // accelerations of every step would cost too much there.
-// Returns the energy that settling on the new pivots takes, J; 0 when no block lifts.
-double liftJoints(JointSystem& system);
+// Zeros when no block lifts.
+ImpulseResponse liftJoints(JointSystem& system);
 
 // Joints that land out of flight in this step: their springs and dashpots have not acted, since handOffPivots() stops them at the instant
 // of touch. For the energies of the step, before that.
@@ -74,13 +79,8 @@ void releaseLandings(JointSystem& system);
 // Finds the joints that land, or whose rotation crossed zero in this step and hands their pivots over. Forces must be up to date.
 std::vector<ImpactRecord> handOffPivots(JointSystem& system);
 
-struct JumpResponse {
-	double work {0};       // of the moved bodies: their impulses, and the changed forces up to the end of the step, J
-	double dissipated {0}; // by the plastic, frictional response, J
-};
-
 // The prescribed bodies listed change their velocity by `jump` at the instant `before` seconds ago. Their own state in
 // YADE is set by their motion; everything that stands on them responds here.
-JumpResponse applyBaseJump(JointSystem& system, const std::vector<int>& moved, const Vector3& jump, double before);
+ImpulseResponse applyBaseJump(JointSystem& system, const std::vector<int>& moved, const Vector3& jump, double before);
 
 } // namespace masonry
