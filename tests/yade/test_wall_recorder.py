@@ -222,8 +222,8 @@ def test_two_walls_on_two_bases_under_two_records(model):
     bases = [dem.base((2, 1, 0.2), material) for _ in range(2)]
     O.bodies[bases[1]].state.pos += Vector3(3, 0, 0)
     walls = [dem.wall(courses=2, per_course=2, size=(0.4, 0.3, 0.2), material=material, on=base) for base in bases]
-    motions = [dem.record_motion(masonry.artificial_record(seed=k + 1, peak=1 + 2 * k, duration=0.5, frequency=2.0), ids=[base]) for k, base in enumerate(bases)]
-    _, h = recorded(0.5, model, motions)
+    motions = [dem.record_motion(masonry.artificial_record(seed=k + 1, peak=1 + 2 * k, duration=1.0, frequency=1.0), ids=[base]) for k, base in enumerate(bases)]
+    _, h = recorded(1.0, model, motions)
     assert h.bases.tolist() == [0, 1] + [0] * len(walls[0]) + [1] * len(walls[1])
     apart = np.ptp(h.position[:, 1, 0] - h.position[:, 0, 0])
     assert apart > 1e-3 and h.drift().max() < 1e-3 * apart / 0.4 and (np.abs(h.displacement) < 1e-3 * apart).all()
