@@ -112,6 +112,9 @@ constexpr double release = 1e-6;
 // Share of gravity by which the acceleration of the base must vary in a step to be sought for where blocks turn. Smaller: shaken stacks
 // cost more.
 constexpr double jump = 0.05;
+// Free blocks of a structure in which it is sought. More: in walls contacts lose their force in most steps, though nothing moves, and each
+// time it takes some twenty trials to find that out.
+constexpr int mostReleased = 5;
 } // namespace rigid
 
 // --- exact history of one block (rocking/) ---

@@ -290,6 +290,9 @@ template <class K>
 double RigidStep<K>::untilRelease(RigidSystem<K>& s)
 {
 	constexpr double infinity = std::numeric_limits<double>::infinity();
+	const auto isFree = [](const RigidBody<K>& body) { return !body.prescribed; };
+	if (std::count_if(s.bodies.begin(), s.bodies.end(), isFree) > tolerance::rigid::mostReleased)
+		return 0;
 	const double h = step.trial().h, end = s.time + h - tolerance::rigid::instant * h;
 	const double least = tolerance::rigid::release * step.scales.acceleration, jump = tolerance::rigid::jump * step.scales.acceleration;
 	const auto turns = [&](const RigidBody<K>& body) {
