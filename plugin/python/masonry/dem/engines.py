@@ -6,12 +6,13 @@ import numbers
 import numpy as np
 from masonry._files import written
 from masonry._given import is_whole, number_given, shown
+from masonry._pose import axes_of
 from masonry.motions import Motion, PulseTrain, Record
 from yade import O, wrapper
 
 from masonry import _yade
 from masonry.dem import notes
-from masonry.dem.scene import _boxes, _half_sizes, check_blocks, check_material, check_recorder, structures
+from masonry.dem.scene import _boxes, _half_sizes, _layout, check_blocks, check_material, check_recorder, structures
 from masonry.dem.walls import finite_numbers
 
 _MODELS = ("auto", "planar", "spatial", "compliant")
@@ -54,15 +55,17 @@ def has_stiffness(material):
 
 
 def _largest_pressure(free, gravity):
-    """Of the weight of a block and of what stands above it, over its lower face, Pa."""
-    half = _half_sizes(free)
-    pos, mass = np.array([tuple(b.state.pos) for b in free]), np.array([b.state.mass for b in free])
+    """Of the weight of a block and of what stands above it, over its lower face, Pa. Overlaps are measured along the axes of that face."""
+    centers, sizes, quaternions = _layout(free)
+    axes, mass = axes_of(quaternions), np.array([b.state.mass for b in free])
     pressures = []
-    for k in range(len(free)):
-        # Half of the overlap of the two intervals over half the other's length, along x and y.
-        shares = np.clip((half[k] + half - np.abs(pos[k] - pos))[:, :2] / (2 * half[:, :2]), 0, 1).prod(axis=1)
-        load = mass[k] + (mass * shares)[pos[:, 2] > pos[k, 2]].sum()
-        pressures.append(load * gravity / (4 * half[k, 0] * half[k, 1]))
+    for k, (center, own) in enumerate(zip(centers, axes)):
+        face = np.delete(own, np.abs(own[:, 2]).argmax(), axis=0)
+        half = (np.abs(axes @ face.T) * sizes[:, :, None] / 2).sum(axis=1)  # of all blocks along the two axes, m
+        # Half of the overlap of the two intervals over half the other's length, along both axes.
+        shares = np.clip((half[k] + half - np.abs((centers - center) @ face.T)) / (2 * half), 0, 1).prod(axis=1)
+        load = mass[k] + (mass * shares)[centers[:, 2] > center[2]].sum()
+        pressures.append(load * gravity / (4 * half[k].prod()))
     return max(pressures)
 
 
