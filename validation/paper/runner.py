@@ -70,7 +70,7 @@ def run(cases, store, fresh):
             failures.append("".join(said[-20:]))
         process.wait()
 
-    with tqdm(total=len(cases), initial=len(cases) - len(missing), desc="YADE", unit="case") as bar:
+    with tqdm(total=len(cases), initial=len(cases) - len(missing), desc="YADE", unit="case", disable=None) as bar:  # drawn in terminals only
         threads = [threading.Thread(target=work, args=(missing[i::PROCESSES], bar)) for i in range(PROCESSES)]
         for thread in threads:
             thread.start()
