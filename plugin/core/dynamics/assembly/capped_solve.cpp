@@ -105,7 +105,7 @@ SpinRow<K>* CappedSolve<K>::solveOnce(const RigidSystem<K>& s, ContactSet<K>& c,
 template <class K>
 bool CappedSolve<K>::moveTargets(int trials)
 {
-	// Of the work exchanged, that a capped joint may lose. Larger: its restitution is less right; smaller: more trials.
+	// A capped joint may lose this share of the work exchanged. Larger: its restitution is less right; smaller: more trials.
 	const double enough = std::ldexp(0.005, trials);
 	bool again = false;
 	for (size_t k = 0; k < rows.size(); ++k) {

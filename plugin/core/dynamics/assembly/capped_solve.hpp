@@ -43,7 +43,7 @@ private:
 	// Gives capped rows the targets of the next trial. False: all of them have found theirs.
 	bool moveTargets(int trials);
 
-	// What a solve has found of a row.
+	// The result of a solve for one row.
 	struct Trial {
 		bool held {false}, makesEnergy {false};
 		double rate {0}, couple {0}; // rad/s, N m s

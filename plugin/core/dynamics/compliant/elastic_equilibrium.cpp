@@ -176,7 +176,7 @@ private:
 		return true;
 	}
 
-	// Of the springs that the closed points share, by their mean depth, N/m: (1 - r) r k_n A / (1 - (1 - r) w).
+	// Returns the stiffness of the springs that the closed points share, N/m: (1 - r) r k_n A / (1 - (1 - r) w).
 	double sharedStiffness(const Face& face) const
 	{
 		double weights = 0;

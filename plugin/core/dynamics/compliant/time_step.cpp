@@ -35,7 +35,7 @@ std::vector<BodyMatrices> bodyMatrices(const std::vector<Body>& bodies, const st
 			sum.bottomLeftCorner<3, 3>() -= turned.transpose();
 			sum.bottomRightCorner<3, 3>() += cross.transpose() * turned;
 		};
-		// Of the closed face: a share of the normal springs acts at the points and the rest at their centroid.
+		// Adds a closed face: a share of the normal springs acts at the points and the rest at their centroid.
 		const auto addFace = [&](Matrix6& sum, const Vector3& center, double normal, double shear) {
 			Vector3 centroid = Vector3::Zero();
 			for (int i = 0; i < contact.size; ++i) {
