@@ -222,7 +222,7 @@ def test_pictures_and_films_are_of_the_structure_and_not_of_what_falls_away():
     painter = pictures._Painter(h, [2], 1.0, "displacement", (0.4, -1, 0.5), "")
     axes, corner = painter.figure.axes[0], painter._view.place(h.corners(2)[3])
     assert axes.get_ylim()[0] < corner[:, 1].min() + 0.4
-    # What stands is in the picture, wherever it has gone and however much it is enlarged.
+    # Blocks that stand are in the picture, wherever they have gone and however much they are enlarged.
     h = facade((30, 0, 0))
     axes = pictures._Painter(h, [1], 2.0, "displacement", None, "").figure.axes[0]
     assert axes.get_xlim()[1] > 61 and axes.get_xlim()[0] < -1

@@ -31,7 +31,7 @@ double JointContact::turnShare() const
 
 namespace {
 
-// What a face of the stiffness k gives to its points `among`: w_i (r k x_i + (1 - r) sum), zero to the others.
+// Returns what a face of the stiffness k gives to its points `among`: w_i (r k x_i + (1 - r) sum), zero to the others.
 PointValues shared(const JointContact& contact, double k, double r, const PointValues& x, const std::array<bool, maxFrictionPoints>& among)
 {
 	double weights = 0, sum = 0;

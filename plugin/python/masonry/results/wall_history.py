@@ -17,7 +17,7 @@ _OPTIONAL = ("motion", "end", "about", "impacts", "forces")
 JOINT_FORCES = [("id1", int), ("id2", int), ("force", float, 3), ("point", float, 3)]
 # Columns of the impacts, of dem.impacts(), that a report shows.
 _IMPACTS = "time", "body", "support", "restitution_asked", "restitution", "velocity", "energy_lost", "friction_demand", "capped"
-# What masonry writes into `about`; a script may add more names.
+# Names that masonry writes into `about`; a script may add more.
 _ABOUT = {"script": str, "materials": list, "motions": list, "model": dict, "solver": dict, "notes": list, "versions": dict}
 # Share of the motion that may be missing from a run to its end, whose last step or sample may come a little earlier.
 _FINISHED = 1e-3

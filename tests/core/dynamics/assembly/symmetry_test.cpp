@@ -71,7 +71,7 @@ struct Range {
 	double least {INFINITY}, most {-INFINITY};
 };
 
-// Of the wall and of its mirror image, with the blocks numbered upwards and downwards.
+// Returns the shifts of the wall and of its mirror image, with the blocks numbered upwards and downwards.
 template <class K>
 Range shifts(const std::vector<Rectangle>& wall, size_t place, double friction, double amplitude, int iterations)
 {
