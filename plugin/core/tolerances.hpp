@@ -28,7 +28,7 @@ constexpr double pivotEdge = 1e-6;
 // --- compliant joints (dynamics/compliant/) ---
 // Least area that the stiffness of a joint is taken from, relative to the smaller face. A sliver of overlap, an edge or a
 // corner gets the stiffness of this share of the face; smaller: corners sink in.
-constexpr double leastPatchArea = 0.1;
+constexpr double minPatchArea = 0.1;
 // Points that close within this distance of each other, relative to the size of the joint, close at one instant. A model
 // parameter: which corner of a nearly flat landing comes first is decided by it.
 constexpr double mergedClosing = 1e-6;
@@ -63,8 +63,13 @@ constexpr double madeByJoints = 7.5e-3;
 // misses them by less says nothing.
 constexpr double negligible = 1e-6;
 
-// --- rigid blocks (dynamics/rigid/) ---
-namespace rigid {
+// Share of the step within which two instants are one.
+constexpr double instant = 1e-9;
+// Angle, rad, by which a block may turn in a step, or in a part of one. Larger: fast spins gain energy.
+constexpr double partTurn = 0.25;
+
+// --- method `localised` (dynamics/localised/) ---
+namespace localised {
 // Share of the stray velocities of points in touch that a steady step takes off. Larger: round-off of the solver is damped sooner; 0: an
 // error once made changes its sign for ever.
 constexpr double damping = 1. / 16;
@@ -92,20 +97,13 @@ constexpr double stray = 0.01;
 // a point that stops from less is wrong by at most half the product of speed and step, g dt^2/2000. Larger: stops lose the second order;
 // smaller: where a structure stops, each of its points stops at an instant of its own, microseconds apart.
 constexpr double slowSlip = 1e-3;
-// Share of the friction limit within which a point counts as sliding.
-constexpr double cone = 1e-9;
-// Angle, rad, by which a block may turn, and way relative to the smaller half size by which blocks near each other may pass, in a part of a
-// step; and how many parts a step may have at most. Larger angle: fast spins gain energy; larger way: blocks meet with the wrong features;
-// smaller: ordinary steps are divided, at the cost of so many steps. More parts: steps beyond all reason take long before they are told of.
-constexpr double partTurn = 0.25, partWay = 1, mostParts = 1000;
+// Way relative to the smaller half size by which blocks near each other may pass in a part of a step; and how many parts a step may have at
+// most. Larger way: blocks meet with the wrong features; smaller: ordinary steps are divided, at the cost of so many steps. More parts:
+// steps beyond all reason take long before they are told of.
+constexpr double partWay = 1, maxParts = 1000;
 // Energy that a step may make or lose: share of what moves and of what acts in it, and of what lifts all blocks by the smallest half size.
 // Smaller: sound steps are told of; larger: wrong ones are not.
 constexpr double madeShare = 0.05, madeLift = 1e-4;
-// Weights of all blocks of a structure with which a body of prescribed motion presses where no motion obeys the laws. Larger: it takes more
-// energy to go into a block that it jams; smaller: it goes into blocks that it could still push.
-constexpr double mostWeights = 10;
-// Share of the step within which two instants are one.
-constexpr double instant = 1e-9;
 // The same for the instant at which a varying acceleration of the base sets in motion what rests; and share of gravity by which the
 // acceleration must vary in a step for it to be sought. Larger: that instant is wrong by as much; smaller: more trials.
 constexpr double release = 1e-6;
@@ -114,8 +112,8 @@ constexpr double release = 1e-6;
 constexpr double jump = 0.05;
 // Free blocks of a structure in which it is sought. More: in walls contacts lose their force in most steps, though nothing moves, and each
 // time it takes some twenty trials to find that out.
-constexpr int mostReleased = 5;
-} // namespace rigid
+constexpr int maxReleased = 5;
+} // namespace localised
 
 // --- exact history of one block (rocking/) ---
 // A rocking impact slower than this share of sqrt(g/R) ends the rocking (infinitely many impacts in finite time follow).
@@ -158,11 +156,6 @@ constexpr double faceAngle = 0.1;
 // Sine of the angle between two edges below which they are parallel. Smaller: round-off divided by it enters the normal.
 constexpr double parallelEdges = 1e-3;
 
-} // namespace masonry::tolerance::contact
-
-// --- contact points of rigid blocks (dynamics/rigid/) ---
-namespace masonry::tolerance::rigid {
-
 // Least component of the common normal of two crossing edges along the faces' normal and along the sum of the outward normals
 // beside either edge (1 or more where edges touch), for the crossing to be a contact point. Smaller: points push to the side, at 0
 // to the wrong side; larger: yawed blocks lose corners while they rock.
@@ -180,11 +173,11 @@ constexpr double passing = 0.02;
 // Penetration, relative to the smallest half size, by features that a pair did not have at the start of a step, from which on the step is
 // done in parts. Larger: boxes are so deep in each other where a corner passes another; smaller: features that change within the reach of
 // vertices (contact::vertexReach) divide steps.
-constexpr double unseen = contact::vertexReach;
+constexpr double unseen = vertexReach;
 
-} // namespace masonry::tolerance::rigid
+} // namespace masonry::tolerance::contact
 
-// --- contact problem (dynamics/rigid/) ---
+// --- contact problem (laws/) ---
 namespace masonry::tolerance::contactProblem {
 
 // Softness R of a point in Newton's first step, relative to its own response. Larger: more steps until the impulses are those
@@ -192,18 +185,23 @@ namespace masonry::tolerance::contactProblem {
 constexpr double softness = 1e-2;
 // The smallest that it falls to. Larger: tall columns and large mass ratios converge linearly; smaller: round-off of the
 // factorisation.
-constexpr double leastSoftness = 1e-9;
+constexpr double minSoftness = 1e-9;
 // That from impulses close to the solution. Larger: a second centre a step, and more changes of state; smaller: round-off decides
 // the states of unloaded points.
 constexpr double resumedSoftness = 3e-9;
 // Relative distance from the friction cone at which an impulse given is taken to slip. Larger: sticking points start as slipping;
 // smaller: round-off makes slipping ones stick. Either costs a factorisation.
 constexpr double onCone = 1e-9;
+// Share of the friction limit within which a point counts as sliding.
+constexpr double cone = 1e-9;
+// Weights of all blocks of a structure with which a body of prescribed motion presses where no motion obeys the laws. Larger: it takes more
+// energy to go into a block that it jams; smaller: it goes into blocks that it could still push.
+constexpr double maxWeights = 10;
 
 } // namespace masonry::tolerance::contactProblem
 
-// --- assemblies (dynamics/assembly/), beside AdmmSettings (admm_solver.hpp) ---
-namespace masonry::tolerance::assembly {
+// --- method `wall` (dynamics/wall/), beside AdmmSettings (admm_solver.hpp) ---
+namespace masonry::tolerance::wall {
 
 // Relative movement of a pair, relative to the smallest half size, after which the features in touch are looked up again. Larger: a vertex
 // that has slid over the end of a face is held there that much longer; smaller: walls that move spend their time on it.
@@ -237,4 +235,4 @@ constexpr double createdShare = 0.1, createdLift = 1e-4, createdTravel = 1e-9;
 // Extent of the loaded part of a joint, relative to the smallest half size, up to which it is a pivot. Larger: narrow patches rock.
 constexpr double pivot = 1e-3;
 
-} // namespace masonry::tolerance::assembly
+} // namespace masonry::tolerance::wall

@@ -188,7 +188,7 @@ void MoreauJeanIntegrator::action()
 		reject(*this, "gravity", gravity.transpose(), "three finite numbers in m/s^2");
 	if (memory.run ? !memory.run->isPresent() : memory.values.empty() && !chosenModel.empty())
 		leaveScene();
-	const masonry::rigid::StepReport report = stepRun();
+	const masonry::StepReport report = stepRun();
 	for (const auto& motion : taken)
 		static_cast<BaseMotionEngine&>(*motion).haveStepped();
 	count(report);
@@ -223,7 +223,7 @@ void MoreauJeanIntegrator::writeInteractions()
 		sceneOf(memory).writeContacts();
 }
 
-masonry::rigid::StepReport MoreauJeanIntegrator::stepRun()
+masonry::StepReport MoreauJeanIntegrator::stepRun()
 {
 	const auto isSame = [](const auto& engine, const auto& checked) {
 		return engine.get() == checked.first && engine->dead == checked.second;
@@ -260,7 +260,7 @@ string MoreauJeanIntegrator::addErrors()
 	madeEnergy += stepErrors.made;
 	lostEnergy += stepErrors.lost;
 	lift = std::max(lift, stepErrors.lift); // while gravity is switched off, errors are no larger than with it
-	const Real most = masonry::mostUnexplained(turnedOver, lift);
+	const Real most = masonry::maxUnexplained(turnedOver, lift);
 	string text;
 	const auto look = [&](Real energy, const char* what, bool& told) {
 		if (told || !(energy > most))
@@ -275,16 +275,16 @@ string MoreauJeanIntegrator::addErrors()
 }
 
 /// A sentence where no motion obeys the contact laws, else nothing.
-string MoreauJeanIntegrator::jam(const masonry::rigid::StepReport& report) const
+string MoreauJeanIntegrator::jam(const masonry::StepReport& report) const
 {
 	if (report.jammed.empty())
 		return "";
 	const auto listed = [](const vector<int>& ids) {
-		constexpr size_t mostNamed = 10;
+		constexpr size_t maxNamed = 10;
 		std::ostringstream text;
-		for (size_t k = 0; k < std::min(mostNamed, ids.size()); ++k)
+		for (size_t k = 0; k < std::min(maxNamed, ids.size()); ++k)
 			text << (k ? ", " : "") << ids[k];
-		text << (ids.size() > mostNamed ? ", ..." : "");
+		text << (ids.size() > maxNamed ? ", ..." : "");
 		return text.str();
 	};
 	const auto [blocks, prescribed] = sceneOf(memory).blocksAndPrescribed(report.jammed);
@@ -294,7 +294,7 @@ string MoreauJeanIntegrator::jam(const masonry::rigid::StepReport& report) const
 	    "these bodies, or let one of them give way. ");
 }
 
-void MoreauJeanIntegrator::count(const masonry::rigid::StepReport& report)
+void MoreauJeanIntegrator::count(const masonry::StepReport& report)
 {
 	substeps += report.substeps;
 	events += report.events;
@@ -334,13 +334,13 @@ void MoreauJeanIntegrator::count(const masonry::rigid::StepReport& report)
 	if (report.turn > 0)
 		text << "a block turns by " << report.turn
 		     << " rad in the step, which method='wall' does not resolve; method='localised' divides such steps. ";
-	constexpr size_t mostNamed = 30;
+	constexpr size_t maxNamed = 30;
 	const vector<int> touching = sceneOf(memory).touching();
 	text << "Blocks in touch:";
-	for (size_t k = 0; k < std::min(mostNamed, touching.size()); ++k)
+	for (size_t k = 0; k < std::min(maxNamed, touching.size()); ++k)
 		text << ' ' << touching[k];
-	if (touching.size() > mostNamed)
-		text << " and " << touching.size() - mostNamed << " more";
+	if (touching.size() > maxNamed)
+		text << " and " << touching.size() - maxNamed << " more";
 	text << '.';
 	++failures;
 	if (!matters)

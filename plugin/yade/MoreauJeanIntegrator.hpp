@@ -1,7 +1,7 @@
 #pragma once
 
 #include "Ip2_BlockMat_BlockMat_BlockPhys.hpp"
-#include "dynamics/energy_errors.hpp"
+#include "dynamics/model/energy_errors.hpp"
 #include "rigid_memory.hpp"
 
 #include <core/GlobalEngine.hpp>
@@ -10,7 +10,7 @@ namespace yade {
 
 class BaseMotionEngine;
 
-/// Rigid blocks (dynamics/rigid/): takes the place of InteractionLoop and NewtonIntegrator for them.
+/// Rigid blocks (dynamics/scheduler/): takes the place of InteractionLoop and NewtonIntegrator for them.
 class MoreauJeanIntegrator : public GlobalEngine {
 public:
 	void action() override;
@@ -112,7 +112,7 @@ private:
 	bool outdated() const;
 	void beginMotions();
 	string addErrors();
-	string jam(const masonry::rigid::StepReport&) const;
+	string jam(const masonry::StepReport&) const;
 	void leaveScene();
 	/// What the run has; before the first step, what that would choose. Throws std::invalid_argument where `model` does not fit the scene.
 	Choice chosen() const;
@@ -124,8 +124,8 @@ private:
 	void checkTimeStep();
 	/// Throws LeavesPlane unless blocks, motions and loads lie in the plane along this horizontal direction.
 	void checkPlane(const Vector3r& horizontal) const;
-	masonry::rigid::StepReport stepRun();
-	void count(const masonry::rigid::StepReport&);
+	masonry::StepReport stepRun();
+	void count(const masonry::StepReport&);
 	void showEnergy();
 	vector<shared_ptr<Engine>> livingMotions() const; // those that are not dead
 	vector<BaseMotionEngine*> motionEngines() const;  // the same

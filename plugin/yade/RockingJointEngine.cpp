@@ -12,7 +12,7 @@
 
 #include "contact/box_box.hpp"
 #include "dynamics/compliant/time_step.hpp"
-#include "dynamics/energy_errors.hpp"
+#include "dynamics/model/energy_errors.hpp"
 #include "tolerances.hpp"
 #include <algorithm>
 #include <boost/python/extract.hpp>
@@ -331,8 +331,8 @@ void RockingJointEngine::reportErrors()
 	for (const masonry::Body& body : system.bodies)
 		if (!body.prescribed)
 			lifted += body.mass * gravity.norm() * std::sqrt(body.inertia.minCoeff() / body.mass);
-	report(madeEnergy, masonry::mostUnexplained(turnedOver, lifted, masonry::tolerance::madeByJoints), "come from nothing", toldMade);
-	report(lostEnergy, masonry::mostUnexplained(turnedOver, lifted), "vanished", toldLost);
+	report(madeEnergy, masonry::maxUnexplained(turnedOver, lifted, masonry::tolerance::madeByJoints), "come from nothing", toldMade);
+	report(lostEnergy, masonry::maxUnexplained(turnedOver, lifted), "vanished", toldLost);
 }
 
 void RockingJointEngine::report(Real energy, Real most, const char* what, bool& told)

@@ -57,8 +57,8 @@ py::list setup()
 py::dict fewBlocks()
 {
 	py::dict all;
-	all["planar"] = int(masonry::rigid::Scheduler<masonry::rigid::Plane>::maxBlocks);
-	all["spatial"] = int(masonry::rigid::Scheduler<masonry::rigid::Space>::maxBlocks);
+	all["planar"] = int(masonry::Scheduler<masonry::Plane>::maxBlocks);
+	all["spatial"] = int(masonry::Scheduler<masonry::Space>::maxBlocks);
 	return all;
 }
 

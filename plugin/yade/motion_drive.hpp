@@ -2,11 +2,11 @@
 // A BaseMotionEngine as the rigid step asks for it.
 
 #include "BaseMotionEngine.hpp"
-#include "dynamics/rigid/base_drive.hpp"
+#include "dynamics/model/base_drive.hpp"
 
 namespace yade {
 
-class MotionDrive final : public masonry::rigid::BaseDrive {
+class MotionDrive final : public masonry::BaseDrive {
 public:
 	/// `ids`: of the blocks, by their number in the system.
 	MotionDrive(BaseMotionEngine& engine, const vector<int>& ids) : motion(engine), blocks(ids) {}

@@ -215,7 +215,7 @@ void MoreauJeanIntegrator::checkTimeStep()
 		throw std::runtime_error(sentence("O.dt = ", scene->dt, " s is not allowed for these blocks: it must be positive and at most ",
 		                                  largest, " s (", coarsestStep,
 		                                  " of sqrt(R/g) of the smallest block); dem.engines() chooses one."));
-	sceneOf(memory).setInstant(masonry::tolerance::rigid::instant * scene->dt);
+	sceneOf(memory).setInstant(masonry::tolerance::instant * scene->dt);
 	checkedTimeStep = scene->dt;
 	checkedGravity = gravity.norm();
 }

@@ -1,15 +1,15 @@
 #pragma once
 // Where the core's plane or space lies in the scene, and how a body sits in it. No physics here.
 
-#include "dynamics/rigid/rigid_system.hpp"
+#include "dynamics/model/rigid_system.hpp"
 #include "sentence.hpp"
 #include <core/Body.hpp>
 #include <pkg/common/Box.hpp>
 
 namespace yade {
 
-using masonry::rigid::Plane;
-using masonry::rigid::Space;
+using masonry::Plane;
+using masonry::Space;
 
 /// A body moves, or is pushed, out of the plane of a planar scene.
 struct LeavesPlane : std::runtime_error {
@@ -20,10 +20,7 @@ struct LeavesPlane : std::runtime_error {
 /// a yawed scene. Larger: a real push out of the plane is lost.
 constexpr Real outOfPlane = 1e-9;
 
-inline bool isSame(const masonry::rigid::PlanePose& a, const masonry::rigid::PlanePose& b)
-{
-	return a.position == b.position && a.angle == b.angle;
-}
+inline bool isSame(const masonry::PlanePose& a, const masonry::PlanePose& b) { return a.position == b.position && a.angle == b.angle; }
 inline bool isSame(const masonry::Pose& a, const masonry::Pose& b)
 {
 	return a.position == b.position && a.orientation.coeffs() == b.orientation.coeffs();
@@ -146,7 +143,7 @@ struct Seat<Plane> {
 	Plane::Inertia inertia(const Vector3r& principal) const { return Plane::Inertia(principal[across]); }
 
 	/// Angles within half a turn. Throws LeavesPlane.
-	void read(const Coordinates<Plane>& c, const State& state, Real size, int id, masonry::rigid::RigidBody<Plane>& body) const
+	void read(const Coordinates<Plane>& c, const State& state, Real size, int id, masonry::RigidBody<Plane>& body) const
 	{
 		const Quaternionr turn = state.ori * reference.conjugate();
 		const Real about = turn.vec().dot(c.normal);
@@ -159,7 +156,7 @@ struct Seat<Plane> {
 	}
 	/// To all at once: read back while it is still being written, a number keeps the processor waiting.
 	template <class... To>
-	void tell(const Coordinates<Plane>& c, const masonry::rigid::RigidBody<Plane>& body, To&... to) const
+	void tell(const Coordinates<Plane>& c, const masonry::RigidBody<Plane>& body, To&... to) const
 	{
 		// Half the angle, within a quarter turn, from its cosine and sine.
 		const auto& pose = body.pose;
@@ -173,7 +170,7 @@ struct Seat<Plane> {
 		const Quaternionr ori = turn * reference;
 		((to.pos = pos, to.vel = vel, to.angVel = angVel, to.ori = ori), ...);
 	}
-	Vector3r spin(const Coordinates<Plane>& c, const masonry::rigid::RigidBody<Plane>& body) const
+	Vector3r spin(const Coordinates<Plane>& c, const masonry::RigidBody<Plane>& body) const
 	{
 		return body.inertia[0] * body.velocity[2] * c.normal;
 	}
@@ -193,19 +190,19 @@ struct Seat<Space> {
 
 	const Vector3r& halfSize(const Vector3r& extents) const { return extents; }
 	const Vector3r& inertia(const Vector3r& principal) const { return principal; }
-	void read(const Coordinates<Space>&, const State& state, Real, int, masonry::rigid::RigidBody<Space>& body) const
+	void read(const Coordinates<Space>&, const State& state, Real, int, masonry::RigidBody<Space>& body) const
 	{
 		body.pose = {state.pos, state.ori};
 		body.velocity << state.vel, state.angVel;
 	}
 	template <class... To>
-	void tell(const Coordinates<Space>&, const masonry::rigid::RigidBody<Space>& body, To&... to) const
+	void tell(const Coordinates<Space>&, const masonry::RigidBody<Space>& body, To&... to) const
 	{
 		((to.pos = body.pose.position, to.vel = body.velocity.head<3>(), to.angVel = body.velocity.tail<3>(),
 		  to.ori = body.pose.orientation),
 		 ...);
 	}
-	Vector3r spin(const Coordinates<Space>&, const masonry::rigid::RigidBody<Space>& body) const
+	Vector3r spin(const Coordinates<Space>&, const masonry::RigidBody<Space>& body) const
 	{
 		return Space::angularMomentum(body.inertia, body.pose, body.velocity.tail<3>());
 	}

@@ -31,8 +31,8 @@ template <class K>
 struct Remembered {
 	vector<int> ids;
 	vector<Seat<K>> seats;
-	vector<masonry::rigid::RigidBody<K>> bodies;
-	vector<masonry::rigid::ContactPair<K>> pairs;
+	vector<masonry::RigidBody<K>> bodies;
+	vector<masonry::ContactPair<K>> pairs;
 
 	template <class Archive>
 	void serialize(Archive& archive)

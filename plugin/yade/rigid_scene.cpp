@@ -9,7 +9,7 @@ namespace yade {
 namespace {
 
 /// Steps after which O.interactions are written even if nobody seems to look.
-constexpr int mostUnshown = 64;
+constexpr int maxUnshown = 64;
 
 void checkFinite(const State& state, int id)
 {
@@ -42,7 +42,7 @@ bool RigidScene<K>::outdated() const
 }
 
 template <class K>
-masonry::rigid::StepReport RigidScene<K>::step()
+masonry::StepReport RigidScene<K>::step()
 {
 	try {
 		if (mayHaveChanged()) {
@@ -74,7 +74,7 @@ masonry::rigid::StepReport RigidScene<K>::step()
 	const auto report = byWalls ? advanceWall() : islands.advance(system, scene.dt);
 	integrator.stepErrors = byWalls ? scheduler->lastErrors() : islands.lastErrors();
 	writeStates();
-	if (++unshown >= mostUnshown || integrator.isWatched())
+	if (++unshown >= maxUnshown || integrator.isWatched())
 		writeContacts();
 	for (const auto& impact : system.impacts)
 		record(impact);
@@ -95,7 +95,7 @@ void RigidScene<K>::takeSettings()
 }
 
 template <class K>
-masonry::rigid::StepReport RigidScene<K>::advanceWall()
+masonry::StepReport RigidScene<K>::advanceWall()
 {
 	scheduler->settings = {integrator.tolerance, integrator.strictForces, integrator.wallsOnly, std::max(1, integrator.ompThreads)};
 	const auto report = scheduler->advance(system, scene.dt);
@@ -269,7 +269,7 @@ void RigidScene<K>::writeStates()
 }
 
 template <class K>
-void RigidScene<K>::record(const masonry::rigid::Impact& impact)
+void RigidScene<K>::record(const masonry::Impact& impact)
 {
 	addImpact(integrator, impact.time, kept.ids[impact.block], kept.ids[impact.support], impact.asked, impact.joint, impact.energyLost,
 	          impact.switched, impact.capped);

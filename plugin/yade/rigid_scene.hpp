@@ -5,8 +5,8 @@
 #include "motion_drive.hpp"
 #include "shown_contacts.hpp"
 
-#include "dynamics/rigid/islands.hpp"
-#include "dynamics/rigid/neighbours.hpp"
+#include "dynamics/localised/islands.hpp"
+#include "dynamics/model/neighbours.hpp"
 #include "dynamics/scheduler/scheduler.hpp"
 #include <core/Scene.hpp>
 #include <optional>
@@ -51,7 +51,7 @@ public:
 	/// Blocks have come, gone or changed: build it anew, with what this one remembers.
 	virtual bool outdated() const = 0;
 	/// Throws LeavesPlane before anything has moved.
-	virtual masonry::rigid::StepReport step() = 0;
+	virtual masonry::StepReport step() = 0;
 	/// O.interactions as they are after the last step: they are left behind while nobody looks.
 	virtual void writeContacts() = 0;
 	virtual vector<int> touching() = 0;
@@ -73,8 +73,8 @@ inline AnyRigidScene& sceneOf(const RigidMemory& memory) { return static_cast<An
 
 template <class K>
 class RigidScene final : public AnyRigidScene {
-	using System = masonry::rigid::RigidSystem<K>;
-	using Pair = masonry::rigid::ContactPair<K>;
+	using System = masonry::RigidSystem<K>;
+	using Pair = masonry::ContactPair<K>;
 
 	struct Link {
 		shared_ptr<Body> body;
@@ -93,7 +93,7 @@ public:
 
 	bool isPresent() const override { return home.lock() == Omega::instance().getScene(); }
 	bool outdated() const override;
-	masonry::rigid::StepReport step() override;
+	masonry::StepReport step() override;
 	void writeContacts() override;
 	vector<int> touching() override;
 	std::pair<vector<int>, vector<int>> blocksAndPrescribed(const vector<int>& bodies) const override;
@@ -102,12 +102,11 @@ public:
 
 private:
 	void takeSettings();
-	masonry::rigid::StepReport advanceWall();
+	masonry::StepReport advanceWall();
 
 	// --- building ---
 
-	bool says(const Seat<K>& seat, const State& state, const Properties& properties, int id,
-	          const masonry::rigid::RigidBody<K>& block) const;
+	bool says(const Seat<K>& seat, const State& state, const Properties& properties, int id, const masonry::RigidBody<K>& block) const;
 
 	/// Returns each block's number in `before`, or -1.
 	vector<int> addBlocks(const Remembered<K>& before);
@@ -162,20 +161,20 @@ private:
 	/// Bodies that stand still by prescription are as they were.
 	void writeStates();
 
-	void record(const masonry::rigid::Impact& impact);
+	void record(const masonry::Impact& impact);
 
 	MoreauJeanIntegrator& integrator;
 	Scene& scene;
 	const boost::weak_ptr<Scene> home; // the same; another may come to lie in its place
 	const Coordinates<K> coordinates;
 	System system;
-	masonry::rigid::Islands<K> islands;
-	std::optional<masonry::rigid::Scheduler<K>> scheduler {std::in_place}; // method='wall'
-	bool changed = false;                                                  // what is moved, and how, is not as it was
+	masonry::localised::Islands<K> islands;
+	std::optional<masonry::Scheduler<K>> scheduler {std::in_place}; // method='wall'
+	bool changed = false;                                           // what is moved, and how, is not as it was
 	bool byWalls = false, lawsChanged = false;
 	bool ownsContacts = false; // what O.interactions shows of blocks is of this object
 	int unshown = 1;           // steps since the interactions were written
-	std::unique_ptr<masonry::rigid::Neighbours<K>> neighbours;
+	std::unique_ptr<masonry::Neighbours<K>> neighbours;
 	vector<MotionDrive> motions;
 	vector<Link> links;
 	vector<char> others; // by link, 1: somebody else has written the state since the last step; elsewhere: and has moved the body; driven:

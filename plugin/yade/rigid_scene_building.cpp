@@ -3,7 +3,7 @@
 #include "checked_body.hpp"
 #include "rigid_scene.hpp"
 
-#include "dynamics/rigid/scales.hpp"
+#include "dynamics/model/scales.hpp"
 #include "tolerances.hpp"
 #include <algorithm>
 #include <utility>
@@ -14,7 +14,7 @@ namespace {
 
 /// Overlap, relative to the smallest half size, that is no rounding of coordinates and nothing that a wall has left (some 1e-5), but a
 /// mistake. Larger: blocks are lifted by as much, with energy of nothing.
-constexpr Real mostOverlap = 1e-4;
+constexpr Real maxOverlap = 1e-4;
 /// Margin of the list of pairs, relative to the smallest half size. Larger: more pairs; smaller: the list is made anew more often.
 constexpr Real searchMargin = 0.1;
 
@@ -47,9 +47,9 @@ RigidScene<K>::RigidScene(MoreauJeanIntegrator& engine, const vector<BaseMotionE
 /// bits what the plane gives back.
 template <class K>
 bool RigidScene<K>::says(const Seat<K>& seat, const State& state, const Properties& properties, int id,
-                         const masonry::rigid::RigidBody<K>& block) const
+                         const masonry::RigidBody<K>& block) const
 {
-	masonry::rigid::RigidBody<K> read = block;
+	masonry::RigidBody<K> read = block;
 	seat.read(coordinates, state, properties.extents.minCoeff(), id, read);
 	return isSame(read.pose, block.pose) && read.velocity == block.velocity;
 }
@@ -69,7 +69,7 @@ vector<int> RigidScene<K>::addBlocks(const Remembered<K>& before)
 		const Properties properties(*body);
 		const Seat<K> seat = k < 0 ? Seat<K>(coordinates, state) : before.seats[k];
 
-		masonry::rigid::RigidBody<K> block = k < 0 ? masonry::rigid::RigidBody<K>() : before.bodies[k];
+		masonry::RigidBody<K> block = k < 0 ? masonry::RigidBody<K>() : before.bodies[k];
 		block.halfSize = seat.halfSize(properties.extents);
 		block.mass = properties.mass;
 		block.inertia = seat.inertia(properties.inertia);
@@ -138,8 +138,8 @@ void RigidScene<K>::addPairs(const Remembered<K>& before, const vector<int>& inB
 template <class K>
 void RigidScene<K>::forgetNeighbours()
 {
-	length = masonry::rigid::scale::length(system);
-	neighbours = std::make_unique<masonry::rigid::Neighbours<K>>(searchMargin * length, [this](Pair& pair) { meet(pair, true); });
+	length = masonry::scale::length(system);
+	neighbours = std::make_unique<masonry::Neighbours<K>>(searchMargin * length, [this](Pair& pair) { meet(pair, true); });
 }
 
 template <class K>
@@ -165,9 +165,9 @@ void RigidScene<K>::meet(Pair& pair, bool placed)
 	const auto &body1 = system.bodies[pair.body1], &body2 = system.bodies[pair.body2];
 	const Real rest = masonry::tolerance::restSpeed * std::sqrt(integrator.gravity.norm() * length);
 	pair.memory = {};
-	const auto found = masonry::rigid::findRows(body1, body2, rest, pair.memory);
+	const auto found = masonry::findRows(body1, body2, rest, pair.memory);
 	pair.size = found.size;
-	pair.beside = found.size > 0;
+	pair.isHeadJoint = found.size > 0;
 	if (found.size == 0)
 		return;
 	pair.face1 = found.face1;
@@ -176,12 +176,12 @@ void RigidScene<K>::meet(Pair& pair, bool placed)
 		auto& point = pair.points[i];
 		point = {};
 		point.feature = found.features[i];
-		masonry::rigid::locate(point, body1, body2);
-		const auto speed =
-		    masonry::rigid::relativeVelocity(point.frame, body1.pose.position, body1.velocity, body2.pose.position, body2.velocity);
+		masonry::locate(point, body1, body2);
+		const auto speed = masonry::relativeVelocity(point.frame, body1.pose.position, body1.velocity, body2.pose.position, body2.velocity);
 		point.closed = point.gap <= integrator.mergedClosing * length && speed[0] >= -rest;
-		pair.beside &= std::abs(point.frame.axes.row(0).dot(system.gravity)) < masonry::tolerance::uprightJoint * system.gravity.norm();
-		if (placed && point.gap < -mostOverlap * length)
+		pair.isHeadJoint &=
+		    std::abs(point.frame.axes.row(0).dot(system.gravity)) < masonry::tolerance::uprightJoint * system.gravity.norm();
+		if (placed && point.gap < -maxOverlap * length)
 			refuseOverlap(pair, -point.gap);
 	}
 }

@@ -14,8 +14,8 @@ namespace yade {
 
 template <class K>
 class ShownContacts {
-	using System = masonry::rigid::RigidSystem<K>;
-	using Pair = masonry::rigid::ContactPair<K>;
+	using System = masonry::RigidSystem<K>;
+	using Pair = masonry::ContactPair<K>;
 	using PairLaw = shared_ptr<Ip2_BlockMat_BlockMat_BlockPhys>;
 
 public:
@@ -164,7 +164,7 @@ private:
 		scene.interactions->erase(contact.interaction->id1, contact.interaction->id2, contact.interaction->linIx);
 	}
 
-	Vector3r normalOf(const masonry::rigid::ContactPoint<K>& point) const { return coordinates.out(point.frame.axes.row(0).transpose()); }
+	Vector3r normalOf(const masonry::ContactPoint<K>& point) const { return coordinates.out(point.frame.axes.row(0).transpose()); }
 
 	/// The points of one pair can have normals in different directions: their common one is that of the resultant of their forces or,
 	/// without load, that of the point which is nearest to touching.

@@ -14,8 +14,8 @@ namespace {
 
 // Angle between two faces, rad, below which a corner keeps the normal of one. Smaller: a block that rocks about a corner above a corner
 // changes its normal in the middle of its swing, which shakes the springs; larger: frames that lean less need that much friction.
-constexpr double leastAngle = 0.2;
-const double leastTangent = std::tan(leastAngle);
+constexpr double minAngle = 0.2;
+const double minTangent = std::tan(minAngle);
 
 struct Mean {
 	Vector3 normal; // from box 1 to box 2
@@ -57,7 +57,7 @@ bool meanNormal(const Vertex& vertex, double depth, const PatchFeature& faces, c
 	const double reach = tolerance::contact::vertexReach * std::min(box1.halfSize.minCoeff(), box2.halfSize.minCoeff());
 	int found = 0;
 	corner.forEdges(std::numeric_limits<double>::infinity(), reach + std::max(0., depth), [&](const NormalsOnEdge& normals) {
-		if (normals.tangent < leastTangent)
+		if (normals.tangent < minTangent)
 			return;
 		++found;
 		const Matrix3 axes = facePose.orientation.toRotationMatrix();
@@ -79,7 +79,7 @@ CornerNormals takeMeanNormal(const Box& box1, const Pose& pose1, const Box& box2
 		return {};
 	const auto normal = [](int face, const Pose& pose) -> Vector3 { return pose.orientation * Vector3::Unit(face / 2); };
 	const double sine = normal(patch.feature.feature1, pose1).cross(normal(patch.feature.feature2, pose2)).norm();
-	if (sine < std::sin(leastAngle))
+	if (sine < std::sin(minAngle))
 		return {};
 	constexpr double same = 1e-3; // rad, of the normals at the ends of an edge
 	const double touching = tolerance::contact::vertexReach * std::min(box1.halfSize.minCoeff(), box2.halfSize.minCoeff());

@@ -2,7 +2,7 @@
 // The one normal of a patch whose corners meet corners.
 //
 // Where two parallel edges meet, every normal between those of two faces, one of each box, is admissible
-// (dynamics/rigid/corner_normals.hpp). A patch has one normal for all its points. It takes the mean of the two and tells how far they are
+// (contact/corner_normals.hpp). A patch has one normal for all its points. It takes the mean of the two and tells how far they are
 // from it: the reaction may turn about the edge by this angle besides the friction angle.
 #include "contact/box_box.hpp"
 

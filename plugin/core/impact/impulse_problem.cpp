@@ -301,13 +301,13 @@ void letPullingPointsGo(System<most>& s)
 	}
 }
 
-constexpr int leastCentres = 2, mostCentres = 60;
+constexpr int minCentres = 2, maxCentres = 60;
 
 // Centre after centre the impulses come to be those of rigid contacts, with the states as they are.
 template <int most>
 void harden(System<most>& s)
 {
-	for (int k = 0; k < mostCentres; ++k) {
+	for (int k = 0; k < maxCentres; ++k) {
 		s.moveCentre();
 		const double before = residual(s);
 		solveForStates(s);
@@ -352,12 +352,12 @@ double solveWithoutPulls(System<most>& s)
 template <int most>
 bool hardenAtOnce(System<most>& s)
 {
-	constexpr int mostSteps = 10;
+	constexpr int maxSteps = 10;
 	const auto soft = s.points;
 	const auto isSame = [](const PointState& a, const PointState& b) { return a.state == b.state; };
 	s.soften(0);
 	bool solved = false;
-	for (int k = 0; k < mostSteps; ++k) {
+	for (int k = 0; k < maxSteps; ++k) {
 		solveForStates(s);
 		if (solved)
 			return true;
@@ -510,7 +510,7 @@ ImpulseReport solveDense(std::vector<Body>& bodies, std::vector<ImpulsePoint>& p
 	updateStates(s);
 	s.moveCentre();
 	report.residual = residual(s);
-	for (int k = 0; k < mostCentres && solved && (k < leastCentres || report.residual > target(s)); ++k) {
+	for (int k = 0; k < maxCentres && solved && (k < minCentres || report.residual > target(s)); ++k) {
 		best = s.p;
 		solved = false;
 		fromTheseStates();

@@ -25,13 +25,12 @@
 // only be held by pulling); then points are let go until none pulls, which never adds energy, and the residual tells by how much the laws
 // are missed.
 #include "body.hpp"
+#include "laws/point_law.hpp" // noSlip
 #include <functional>
 #include <limits>
 #include <vector>
 
 namespace masonry {
-
-constexpr double noSlip = std::numeric_limits<double>::infinity();
 
 struct ImpulsePoint {
 	int body1, body2;                  // indices into the list of bodies

@@ -11,7 +11,7 @@ namespace {
 using Node = Supernodes::Node;
 using Doubles = double __attribute__((vector_size(64))); // eight, as of Floats
 
-constexpr int mostWidth = 16; // columns of blocks; limits the arrays on the stack
+constexpr int maxWidth = 16; // columns of blocks; limits the arrays on the stack
 
 // Number of vectors of eight that hold so many blocks of three.
 constexpr int eights(int blocks) { return (3 * blocks + floatWidth - 1) / floatWidth; }
@@ -78,7 +78,7 @@ MASONRY_LANES void substitute(const Node* nodes, int count, const int* row, cons
 			for (int i = 0; i < 3; ++i)
 				flat[3 * a + i] = from[i];
 		}
-		Floats fromBelow[floatWidth * eights(mostWidth)], result[eights(mostWidth)];
+		Floats fromBelow[floatWidth * eights(maxWidth)], result[eights(maxWidth)];
 		for (int c = 0; c < floatWidth * wide; ++c)
 			fromBelow[c] = Floats {};
 		for (int q = 0; q < high; ++q)
@@ -146,7 +146,7 @@ MASONRY_LANES void eliminate(const Node* nodes, int count, const int* nodeOf, co
 		const Node& s = nodes[k];
 		const int n = 3 * s.width, stride = s.stride(), wide = eights(s.width), ownStride = floatWidth * wide;
 		const int* rows = row + s.firstRow;
-		alignas(64) double inverse[3 * mostWidth * floatWidth * eights(mostWidth)];
+		alignas(64) double inverse[3 * maxWidth * floatWidth * eights(maxWidth)];
 		const double *own = open + s.own, *under = open + s.under;
 		for (int i = 0; i < n; ++i)
 			for (int c = 0; c < ownStride; ++c)
@@ -203,7 +203,7 @@ void Supernodes::setPattern(const EliminationOrder& order)
 	const auto rowsOf = [&](int k) { return order.first[k + 1] - order.first[k]; };
 	for (int k = 0; k < order.nodes(); ++k) {
 		const bool follows = k > 0 && rowsOf(k - 1) > 0 && order.row[order.first[k - 1]] == k;
-		if (follows && nodes.back().width < mostWidth &&
+		if (follows && nodes.back().width < maxWidth &&
 		    cost(nodes.back().width + 1, rowsOf(k)) <= cost(nodes.back().width, rowsOf(k - 1)) + cost(1, rowsOf(k)))
 			++nodes.back().width;
 		else

@@ -12,7 +12,7 @@ double Shaking::excessAt(double t, double level, double gravity) const
 	return std::abs(horizontal.accelerationAt(t)) - level * (1 + vertical.accelerationAt(t) / gravity);
 }
 
-constexpr int mostSteps = 40000000; // a few for each cycle of the vertical motion
+constexpr int maxSteps = 40000000; // a few for each cycle of the vertical motion
 
 // f(t) = sign a_x - level (1 + a_z/g) is followed from below: with the bound M of |f''| it stays below the parabola f + f' s + M s^2/2, so
 // it has no root before that has. The steps become quadratically smaller towards a root, and pass a maximum below zero.
@@ -26,7 +26,7 @@ std::optional<double> Shaking::firstExcess(double level, double gravity, double 
 	int steps = 0;
 	for (const int sign : {1, -1})
 		for (double t = from; t <= std::min(first, until);) {
-			if (++steps > mostSteps)
+			if (++steps > maxSteps)
 				throw std::runtime_error("the vertical motion has millions of cycles before the block moves: give an earlier t_end");
 			const double f = sign * horizontal.accelerationAt(t) - level - share * vertical.accelerationAt(t);
 			const double rate = sign * horizontal.jerkAt(t) - share * vertical.jerkAt(t);

@@ -32,7 +32,7 @@ struct Team::Board {
 	std::atomic<const void*> context {nullptr};
 	std::atomic<int> threads {1};
 	std::atomic<bool> over {false};
-	alignas(cacheLine) std::atomic<std::uint64_t> taken[mostParts] {};
+	alignas(cacheLine) std::atomic<std::uint64_t> taken[maxParts] {};
 	alignas(cacheLine) std::atomic<int> done {0};
 	std::atomic<int> asleep {0};
 	std::mutex mutex;
@@ -42,8 +42,8 @@ struct Team::Board {
 	void takeParts(std::uint64_t now, int parts, int thread)
 	{
 		const int first = parts * thread / threads.load(std::memory_order_relaxed);
-		for (int k = 0; k < mostParts; ++k) {
-			const int part = (first + k) % mostParts;
+		for (int k = 0; k < maxParts; ++k) {
+			const int part = (first + k) % maxParts;
 			std::uint64_t before = taken[part].load(std::memory_order_relaxed);
 			if (before >= now || !taken[part].compare_exchange_strong(before, now, std::memory_order_acq_rel))
 				continue;
@@ -90,7 +90,7 @@ Team::~Team() { setThreads(1); }
 
 void Team::setThreads(int count)
 {
-	count = std::clamp(count, 1, mostParts);
+	count = std::clamp(count, 1, maxParts);
 	if (helpers == count - 1)
 		return;
 	if (board) {
@@ -115,7 +115,7 @@ void Team::share(int parts, Call call, const void* context)
 	b.context.store(context, std::memory_order_relaxed);
 	b.size.store(parts, std::memory_order_relaxed);
 	b.done.store(0, std::memory_order_relaxed);
-	for (int part = parts; part < mostParts; ++part)
+	for (int part = parts; part < maxParts; ++part)
 		b.taken[part].store(now, std::memory_order_relaxed);
 	b.round.store(now);
 	b.wake();

@@ -12,7 +12,7 @@ namespace masonry::parallel {
 
 class Team {
 public:
-	static constexpr int mostParts = 16;
+	static constexpr int maxParts = 16;
 
 	Team() = default;
 	Team(const Team&) = delete;
@@ -38,7 +38,7 @@ public:
 	void eachShare(size_t size, const Work& work)
 	{
 		constexpr size_t least = 256;
-		const size_t count = std::clamp<size_t>(size / least, 1, mostParts);
+		const size_t count = std::clamp<size_t>(size / least, 1, maxParts);
 		each(int(count), [&](int k) { work(size * k / count, size * (k + 1) / count); });
 	}
 

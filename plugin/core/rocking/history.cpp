@@ -8,7 +8,7 @@
 namespace masonry {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr int mostImpacts = 1000000, mostSteps = 20000000;
+constexpr int maxImpacts = 1000000, maxSteps = 20000000;
 constexpr double fastest = 1e6; // rad/s, as the limits of a base
 
 namespace {
@@ -218,7 +218,7 @@ void HistoryRun::flyForced(const Shaking& shaking, double until)
 {
 	const int side = state_.side;
 	while (time_ < until) {
-		if (++steps_ > mostSteps)
+		if (++steps_ > maxSteps)
 			throw std::runtime_error(
 			    "more than 20 million steps, several for each cycle of the motion: give half_cycles or an earlier t_end");
 		keepState();
@@ -309,7 +309,7 @@ void HistoryRun::impact(double time, double speed, bool free)
 	endHalfCycle();
 	history_.impactTimes.push_back(time);
 	history_.impactVelocities.push_back(-state_.side * speed);
-	if (impacts() > mostImpacts)
+	if (impacts() > maxImpacts)
 		throw std::runtime_error("more than a million impacts: give half_cycles or an earlier t_end");
 
 	time_ = time;

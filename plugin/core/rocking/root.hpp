@@ -12,9 +12,9 @@ namespace masonry {
 template <typename Function>
 double root(const Function& f, double lower, double upper, double guess)
 {
-	constexpr int mostSteps = 6;
+	constexpr int maxSteps = 6;
 	constexpr double small = 1e-10; // of a step, relative to the root: the next one is about as its square
-	for (int k = 0; k < mostSteps; ++k) {
+	for (int k = 0; k < maxSteps; ++k) {
 		const auto [value, derivative] = f(guess);
 		const double step = value / derivative;
 		guess -= step;

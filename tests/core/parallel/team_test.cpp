@@ -12,12 +12,12 @@ TEST_CASE("every part is done once, by any number of threads")
 	const int threads = GENERATE(1, 2, 3, 16), parts = GENERATE(0, 1, 2, 5, 16);
 	Team team;
 	team.setThreads(threads);
-	std::array<long, Team::mostParts> done {};
+	std::array<long, Team::maxParts> done {};
 	const long calls = 500;
 	bool late = false;
 	for (long call = 0; call < calls; ++call) {
 		team.each(parts, [&](int part) { ++done[part]; });
-		for (int part = 0; part < Team::mostParts; ++part)
+		for (int part = 0; part < Team::maxParts; ++part)
 			late |= done[part] != (part < parts ? call + 1 : 0);
 	}
 	CHECK_FALSE(late);

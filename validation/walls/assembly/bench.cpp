@@ -1,4 +1,4 @@
-// Shakes or rests walls by the step of assemblies (dynamics/assembly), in the core alone.
+// Shakes or rests walls by the step of `wall` (dynamics/wall), in the core alone.
 //
 //     assembly_bench key=value ...
 //
@@ -12,8 +12,8 @@
 // k, tol, reserve, quick, early, instant, itol, rr, rmost, rfollows   of the solver
 // half                    1: energies with the positions of half a step earlier, to which the velocities of a step belong
 // file                    writes the scene as gauss_seidel_space.cpp reads it, and ends
-#include "dynamics/assembly/assembly_step.hpp"
-#include "dynamics/rigid/neighbours.hpp"
+#include "dynamics/model/neighbours.hpp"
+#include "dynamics/wall/wall_step.hpp"
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -25,7 +25,6 @@
 namespace {
 
 using namespace masonry;
-using namespace masonry::rigid;
 
 constexpr double g = 9.81, density = 2000;
 
@@ -193,7 +192,7 @@ void write(const RigidSystem<Space>& s, const std::string& name)
 double cpu() { return double(std::clock()) / CLOCKS_PER_SEC; }
 
 template <class K>
-void run(assembly::AssemblyStep<K>& step)
+void run(wall::WallStep<K>& step)
 {
 	World<K> world;
 	world.build();
@@ -308,7 +307,7 @@ void run(assembly::AssemblyStep<K>& step)
 template <class K>
 void runWithOptions()
 {
-	assembly::AssemblyStep<K> step;
+	wall::WallStep<K> step;
 	auto& a = step.settings.solver;
 	a.iterations = int(number("k", a.iterations));
 	a.tolerance = number("tol", a.tolerance);
@@ -317,7 +316,7 @@ void runWithOptions()
 	a.restSoftness = number("rr", a.restSoftness);
 	a.restMost = int(number("rmost", a.restMost));
 	a.restFollows = number("rfollows", a.restFollows);
-	a.leastSoftness = number("least", a.leastSoftness);
+	a.minSoftness = number("least", a.minSoftness);
 	a.relaxation = number("over", a.relaxation);
 	a.boundShare = number("theta", a.boundShare);
 	a.pullBack = number("pull", a.pullBack);
@@ -329,7 +328,7 @@ void runWithOptions()
 	a.ofInstant = int(number("instant", a.ofInstant));
 	a.instantTolerance = number("itol", a.instantTolerance);
 	a.instantEnough = number("ienough", a.instantEnough);
-	a.mostOfInstant = int(number("imost", a.mostOfInstant));
+	a.maxOfInstant = int(number("imost", a.maxOfInstant));
 	step.settings.threads = int(number("threads", 1));
 	run<K>(step);
 }

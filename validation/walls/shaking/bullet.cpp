@@ -17,9 +17,9 @@ struct BulletWall {
 	{
 		world.setGravity(btVector3(0, 0, -gravity));
 		world.getSolverInfo().m_numIterations = iterations;
-		add(btVector3(request.perCourse / 2. + 2, 2, 0.5), 0, btVector3(request.perCourse / 2., 0, -0.5));
+		add(btVector3(request.perLevel / 2. + 2, 2, 0.5), 0, btVector3(request.perLevel / 2., 0, -0.5));
 		bodies[0]->setCollisionFlags(btCollisionObject::CF_KINEMATIC_OBJECT);
-		for (const Block& b : wall(request.courses, request.perCourse))
+		for (const Block& b : wall(request.courses, request.perLevel))
 			add(btVector3(b.length / 2, thickness / 2, b.height / 2), density * b.length * b.height * thickness, btVector3(b.x, 0, b.z));
 	}
 	~BulletWall()

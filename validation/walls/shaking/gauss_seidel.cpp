@@ -59,8 +59,8 @@ public:
 
 	explicit World(const Request& request)
 	{
-		bodies.push_back({{100, 1}, 0, 0, {request.perCourse / 2., -1}, 0, {0, 0}, 0});
-		for (const Block& b : wall(request.courses, request.perCourse)) {
+		bodies.push_back({{100, 1}, 0, 0, {request.perLevel / 2., -1}, 0, {0, 0}, 0});
+		for (const Block& b : wall(request.courses, request.perLevel)) {
 			const double mass = density * b.length * b.height * thickness;
 			bodies.push_back({{b.length / 2, b.height / 2},
 			                  1 / mass,

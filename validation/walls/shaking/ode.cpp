@@ -13,9 +13,9 @@ struct OdeWall {
 	{
 		dRandSetSeed(0); // QuickStep shuffles its rows
 		dWorldSetGravity(world, 0, 0, -gravity);
-		add(request.perCourse + 4, 4, 1, request.perCourse / 2., -0.5);
+		add(request.perLevel + 4, 4, 1, request.perLevel / 2., -0.5);
 		dBodySetKinematic(bodies[0]);
-		for (const Block& b : wall(request.courses, request.perCourse))
+		for (const Block& b : wall(request.courses, request.perLevel))
 			add(b.length, thickness, b.height, b.x, b.z);
 	}
 	~OdeWall()

@@ -19,7 +19,7 @@ struct Block {
 	int course;
 };
 
-inline std::vector<Block> wall(int courses, int perCourse)
+inline std::vector<Block> wall(int courses, int perLevel)
 {
 	std::vector<Block> blocks;
 	for (int c = 0; c < courses; ++c) {
@@ -27,9 +27,9 @@ inline std::vector<Block> wall(int courses, int perCourse)
 		const bool odd = c % 2 == 1;
 		if (odd) {
 			blocks.push_back({0.5, 0.5, 0.25, z, c});
-			blocks.push_back({0.5, 0.5, perCourse - 0.25, z, c});
+			blocks.push_back({0.5, 0.5, perLevel - 0.25, z, c});
 		}
-		for (int i = 0; i < perCourse - odd; ++i)
+		for (int i = 0; i < perLevel - odd; ++i)
 			blocks.push_back({1, 0.5, i + 0.5 + 0.5 * odd, z, c});
 	}
 	return blocks;
@@ -37,7 +37,7 @@ inline std::vector<Block> wall(int courses, int perCourse)
 
 // Command line: courses, blocks per course, amplitude (g), seconds of rest, seconds of shaking.
 struct Request {
-	int courses, perCourse;
+	int courses, perLevel;
 	double amplitude, rest, shaking;
 
 	Request(int argc, char** argv)
@@ -45,7 +45,7 @@ struct Request {
 		if (argc != 6)
 			throw std::runtime_error("usage: <courses> <blocks per course> <amplitude, g> <rest, s> <shaking, s>");
 		courses = std::atoi(argv[1]);
-		perCourse = std::atoi(argv[2]);
+		perLevel = std::atoi(argv[2]);
 		amplitude = std::atof(argv[3]);
 		rest = std::atof(argv[4]);
 		shaking = std::atof(argv[5]);
@@ -67,7 +67,7 @@ struct Request {
 template <class World>
 void measure(const std::string& solver, const Request& request, World& world)
 {
-	const auto blocks = wall(request.courses, request.perCourse);
+	const auto blocks = wall(request.courses, request.perLevel);
 	const auto start = world.places();
 	long k = 0;
 	double atEndOfRest = 0;

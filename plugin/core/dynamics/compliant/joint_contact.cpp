@@ -6,7 +6,7 @@
 
 namespace masonry {
 
-double JointContact::stiffnessArea() const { return std::max(patch.area, tolerance::leastPatchArea * patch.nominalArea); }
+double JointContact::stiffnessArea() const { return std::max(patch.area, tolerance::minPatchArea * patch.nominalArea); }
 
 // Polar moments about the centroid: of the triangles (0, p, q) of the area T between it and the sides, T (p^2 + q^2 + p.q) / 6, and of
 // the points.

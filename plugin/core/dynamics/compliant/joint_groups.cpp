@@ -384,7 +384,7 @@ struct NormalRow {
 
 // Displacements (position, turn) that change the gaps as wanted: least motion, each turn weighted by the radius of gyration. Row by row,
 // since the rows are few per body; consistent redundant rows do no harm.
-std::vector<std::pair<Vector3, Vector3>> leastMotion(const std::vector<Body>& bodies, const std::vector<NormalRow>& rows)
+std::vector<std::pair<Vector3, Vector3>> minMotion(const std::vector<Body>& bodies, const std::vector<NormalRow>& rows)
 {
 	std::vector<std::pair<Vector3, Vector3>> motion(bodies.size(), {Vector3::Zero(), Vector3::Zero()});
 	std::vector<double> inverseMass;
@@ -461,7 +461,7 @@ double press(JointSystem& s, const std::vector<HeldPoint>& points)
 		                (x - s.bodies[contact.body2].pose.position).cross(n), -depth - contact.patch.points[p.point].gap});
 	}
 	const std::vector<Body> before = s.bodies;
-	const auto motion = leastMotion(s.bodies, rows);
+	const auto motion = minMotion(s.bodies, rows);
 	for (size_t b = 0; b < s.bodies.size(); ++b) {
 		Body& body = s.bodies[b];
 		if (body.prescribed)
@@ -497,8 +497,8 @@ void settle(JointSystem& s, const std::vector<HeldPoint>& held, double most)
 	for (size_t b = 0; b < s.bodies.size(); ++b)
 		work += s.bodies[b].force.dot(s.bodies[b].pose.position - before[b].pose.position);
 	// Bodies on their way over an edge, or that hit hard, may have no such equilibrium near.
-	const double pressed = pressedEnergy(contactsBefore), mostPressed = stored > 0 ? most * std::max(1., pressed / stored) : most;
-	if (storedEnergy(s) - stored - work <= most && pressedEnergy(s.contacts) - pressed <= mostPressed &&
+	const double pressed = pressedEnergy(contactsBefore), maxPressed = stored > 0 ? most * std::max(1., pressed / stored) : most;
+	if (storedEnergy(s) - stored - work <= most && pressedEnergy(s.contacts) - pressed <= maxPressed &&
 	    largestChange(s.contacts, contactsBefore) <= tolerance::settlingReach * deepest)
 		return;
 	s.bodies = before;

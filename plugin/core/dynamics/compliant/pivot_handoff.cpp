@@ -2,7 +2,7 @@
 #include "dynamics/compliant/elastic_equilibrium.hpp"
 #include "dynamics/compliant/joint_groups.hpp"
 #include "dynamics/compliant/rigid_acceleration.hpp"
-#include "dynamics/rigid/sparse_impulses.hpp"
+#include "impact/sparse_impulses.hpp"
 #include "tolerances.hpp"
 #include <algorithm>
 #include <cmath>
@@ -19,7 +19,7 @@ void note(JointSystem& s, double residual, bool solved)
 	s.unsolved += !solved;
 }
 
-RigidAcceleration accelerations(JointSystem& s, std::vector<HeldPoint> points, const ImpulseSolver& solve = rigid::solveSparsely)
+RigidAcceleration accelerations(JointSystem& s, std::vector<HeldPoint> points, const ImpulseSolver& solve = solveSparsely)
 {
 	RigidAcceleration rates = rigidAcceleration(s.bodies, s.contacts, std::move(points), solve);
 	note(s, rates.report.residual * s.dt, rates.report.solved);
@@ -65,7 +65,7 @@ bool loaded(const JointContact& contact, int i) { return contact.springForces()[
 // Smallest angular velocity of a rocking impact that starts another half cycle: the next peak must exceed the angle by
 // which the springs alone turn the block, and the speed the Zeno threshold. Half cycle: peak = w^2/(2A), A = g l/(2 I/m),
 // with lever l from pivot to pivot and I/m = 4/3 R^2 of a rectangle (physics of the single block).
-double leastRockingSpeed(const JointSystem& s, const Joint& joint, const Vector3& pivot, double lever, double depth)
+double minRockingSpeed(const JointSystem& s, const Joint& joint, const Vector3& pivot, double lever, double depth)
 {
 	const double radius = (s.bodies[joint.block].pose.position - pivot).norm();
 	const double gravity = std::abs(s.gravity.dot(joint.normal));
@@ -104,7 +104,7 @@ ImpactRecord::Result applyWithRim(JointSystem& s, RockingImpact& impact)
 {
 	for (int b : s.rim)
 		s.bodies[b].prescribed = false;
-	impact.solve = rigid::solveSparsely;
+	impact.solve = solveSparsely;
 	const RockingImpactResult result = applyRockingImpact(s.bodies, impact);
 	note(s, result.residual, result.solved);
 	for (int b : s.rim)
@@ -139,7 +139,7 @@ ImpactRecord switchPivot(JointSystem& s, const Joint& joint, const Closing& clos
 	RockingImpact impact = closingImpact(s, joint, closing, loadedPoints);
 	ClosingJoint& law = impact.joints.front();
 	findRocking(s.bodies, law, impact.points);
-	const double least = leastRockingSpeed(s, joint, impact.points.front().position, closing.lever, closing.depth);
+	const double least = minRockingSpeed(s, joint, impact.points.front().position, closing.lever, closing.depth);
 	const bool rests = law.result.before * (std::isnan(closing.restitution) ? 1 : closing.restitution) < least;
 	if (rests)
 		law.restitution = 0;
@@ -208,9 +208,9 @@ void startAtEquilibrium(JointSystem& s)
 		size = std::max(size, std::sqrt(contact.patch.nominalArea));
 	const auto near = [&](const JointContact& contact, int i) { return contact.patch.points[i].gap <= tolerance::mergedClosing * size; };
 	// The dense solver's forces are those of least norm: without self-stress, and symmetric where the scene is.
-	constexpr size_t mostDense = 100;
+	constexpr size_t maxDense = 100;
 	std::vector<HeldPoint> held = selectPoints(s.contacts, near);
-	const ImpulseSolver solve = held.size() <= mostDense ? solveImpulses : rigid::solveSparsely;
+	const ImpulseSolver solve = held.size() <= maxDense ? solveImpulses : solveSparsely;
 	const RigidAcceleration rates = accelerations(s, std::move(held), solve);
 	const auto [resting, others] = divideByRest(s, rates);
 	const bool isFound = findElasticEquilibrium(s, rates, resting);
@@ -378,7 +378,7 @@ std::vector<HeldPoint> respondToJump(JointSystem& s, const std::vector<int>& mov
 	});
 	auto rows = impulsePoints(s.contacts, touching);
 	std::vector<CoupleRow> none;
-	const ImpulseReport report = rigid::solveSparsely(s.bodies, rows, none);
+	const ImpulseReport report = solveSparsely(s.bodies, rows, none);
 	note(s, report.residual, report.solved);
 	for (const ImpulsePoint& row : rows)
 		for (int b : moved) // impulse times the mean of the base's velocities before and after

@@ -1,10 +1,10 @@
 #include "dynamics/scheduler/scheduler.hpp"
-#include "dynamics/rigid/island_numbers.hpp"
+#include "dynamics/model/island_numbers.hpp"
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
-namespace masonry::rigid {
+namespace masonry {
 
 template <class K>
 StepReport Scheduler<K>::advance(RigidSystem<K>& s, double dt)
@@ -42,8 +42,8 @@ StepReport Scheduler<K>::advance(RigidSystem<K>& s, double dt)
 template <class K>
 StepReport Scheduler<K>::advanceWalls(RigidSystem<K>& s, double dt)
 {
-	const assembly::AdmmSettings usual;
-	assembly::AdmmSettings& solver = walls.settings.solver;
+	const wall::AdmmSettings usual;
+	wall::AdmmSettings& solver = walls.settings.solver;
 	solver.tolerance = settings.tolerance;
 	solver.strictForces = settings.strictForces;
 	solver.iterations = int(std::lround(usual.iterations * std::max(1., std::sqrt(usual.tolerance / settings.tolerance))));
@@ -129,4 +129,4 @@ void Scheduler<K>::restoreLocalised(RigidSystem<K>& s) const
 template class Scheduler<Plane>;
 template class Scheduler<Space>;
 
-} // namespace masonry::rigid
+} // namespace masonry

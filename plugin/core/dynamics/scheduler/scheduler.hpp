@@ -2,8 +2,8 @@
 // Decides which structures get which step. A structure is a set of blocks that a chain of near pairs joins (island_numbers.hpp).
 //
 //     structure            step
-//     at most maxBlocks    rigid_step.hpp: its impacts are localised, and it is second order in the step
-//     more                 assembly_step.hpp: all contacts at once, first order in the step; all structures where walls are ofAnySize
+//     at most maxBlocks    localised_step.hpp: its impacts are localised, and it is second order in the step
+//     more                 wall_step.hpp: all contacts at once, first order in the step; all structures where walls are ofAnySize
 //
 // The two kinds of structures are near no block of each other and are stepped one after the other, each as if the other were not there.
 // Localised structures use the default tolerance and order of Settings, whatever the walls use.
@@ -11,11 +11,11 @@
 // All walls of a system are stepped together. A block that has once belonged to a wall stays with the walls: the parts that break off a
 // wall are many small structures, and each impact of theirs would be searched for. Motions that must be asked in order of time
 // (BaseDrive::ordered) make one structure of all.
-#include "dynamics/assembly/assembly_step.hpp"
-#include "dynamics/rigid/islands.hpp"
+#include "dynamics/localised/islands.hpp"
+#include "dynamics/wall/wall_step.hpp"
 #include <algorithm>
 
-namespace masonry::rigid {
+namespace masonry {
 
 // The walls are stepped with these.
 struct WallSettings {
@@ -33,8 +33,8 @@ public:
 	static constexpr int maxBlocks = K::dimension == 2 ? 20 : 6;
 
 	WallSettings settings;
-	assembly::AssemblyReport report; // of the last step of the walls
-	bool partBases {false};          // blocks of a wall are near bases that have different motions
+	wall::AssemblyReport report; // of the last step of the walls
+	bool partBases {false};      // blocks of a wall are near bases that have different motions
 
 	StepReport advance(RigidSystem<K>& system, double dt);
 	// Returns what the last step has made and lost of energy.
@@ -70,8 +70,8 @@ private:
 	void hideLocalised(RigidSystem<K>& system);
 	void restoreLocalised(RigidSystem<K>& system) const;
 
-	assembly::AssemblyStep<K> walls;
-	Islands<K> islands;
+	wall::WallStep<K> walls;
+	localised::Islands<K> islands;
 	StepErrors errors;
 	std::vector<char> ofWall; // by body, 1: has belonged to a wall
 	bool areWalls {false};
@@ -81,4 +81,4 @@ private:
 	int list {-1};                    // number of the list of pairs that was divided
 };
 
-} // namespace masonry::rigid
+} // namespace masonry

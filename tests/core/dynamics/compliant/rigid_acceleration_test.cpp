@@ -1,6 +1,6 @@
 // Accelerations of rigid bodies.
 #include "dynamics/compliant/rigid_acceleration.hpp"
-#include "dynamics/rigid/sparse_impulses.hpp"
+#include "impact/sparse_impulses.hpp"
 #include "leapfrog_rig.hpp"
 #include <catch.hpp>
 
@@ -39,7 +39,7 @@ TEST_CASE("A swaying face without slip bears its weight alike at its corners")
 	block.force = {0, 0, -weight};
 	block.angularVelocity = {0, 0.02, 0};
 	rig.findContacts();
-	for (const ImpulseSolver& solve : {ImpulseSolver(solveImpulses), ImpulseSolver(rigid::solveSparsely)}) {
+	for (const ImpulseSolver& solve : {ImpulseSolver(solveImpulses), ImpulseSolver(solveSparsely)}) {
 		const auto all = selectPoints(rig.system.contacts, [](const JointContact&, int) { return true; });
 		const RigidAcceleration rates = rigidAcceleration(rig.system.bodies, rig.system.contacts, all, solve);
 		CHECK(rates.report.solved);

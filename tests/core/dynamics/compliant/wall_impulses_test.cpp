@@ -1,5 +1,5 @@
 // Impulse problems as a wall on compliant joints meets them: every loaded point of a running bond, redundant in each face, while it moves.
-#include "dynamics/rigid/sparse_impulses.hpp"
+#include "impact/sparse_impulses.hpp"
 #include "leapfrog_rig.hpp"
 #include "tolerances.hpp"
 #include <catch.hpp>
@@ -139,7 +139,7 @@ TEST_CASE("Impulses of a moving wall: the sparse solver's velocities are the den
 			++problems;
 			const double fastest = speed(sparse);
 			INFO("friction " << friction << " state " << k << " points " << sparse.points.size());
-			if (!rigid::solveSparsely(sparse.bodies, sparse.points, sparse.couples).solved)
+			if (!solveSparsely(sparse.bodies, sparse.points, sparse.couples).solved)
 				continue;
 			++solved;
 			CHECK(missed(sparse) <= 1e-6 * fastest);
@@ -166,7 +166,7 @@ TEST_CASE("Impulses of a moving wall add no energy")
 			wall.run(200);
 			Problem p = wall.problem(friction, false);
 			const double fastest = speed(p), before = kineticEnergy(p.bodies);
-			const ImpulseReport report = rigid::solveSparsely(p.bodies, p.points, p.couples);
+			const ImpulseReport report = solveSparsely(p.bodies, p.points, p.couples);
 			INFO("friction " << friction << " state " << k << " points " << p.points.size() << " residual " << report.residual / fastest);
 			CHECK(kineticEnergy(p.bodies) <= before * (1 + 1e-7)); // round-off and the residual, 1e-8 of the speed
 			CHECK(report.solved == (report.residual <= tolerance::impulseEnough * fastest));

@@ -1,5 +1,5 @@
 // Walls beside structures of few blocks: each moves as by its own method alone.
-#include "core/dynamics/assembly/wall_rig.hpp"
+#include "core/dynamics/wall/wall_rig.hpp"
 #include "dynamics/scheduler/scheduler.hpp"
 #include <catch.hpp>
 
@@ -59,7 +59,7 @@ TEST_CASE("a wall moves as alone, a pier beside it as with localised impacts alo
 	pier.system.settings = Settings();
 	both.system.settings.tolerance = wall.system.settings.tolerance = 1e-3;
 	Scheduler<Plane> scheduler, byWalls;
-	RigidStep<Plane> localised;
+	LocalisedStep<Plane> localised;
 	const auto impacts = shake(both, scheduler, time), ofWall = shake(wall, byWalls, time), ofPier = shake(pier, localised, time);
 	CHECK(scheduler.localised() == 3);
 	CHECK(motionOf(both.system, 1, wallBlocks) == motionOf(wall.system, 1, wallBlocks));
@@ -104,7 +104,7 @@ TEST_CASE("few blocks have localised impacts though there is no wall beside them
 	}
 	bySizes.system.settings.tolerance = 1e-3;
 	Scheduler<Plane> scheduler;
-	RigidStep<Plane> localised;
+	LocalisedStep<Plane> localised;
 	const auto impacts = shake(bySizes, scheduler, 1), expected = shake(byImpacts, localised, 1);
 	CHECK(scheduler.localised() == 3);
 	CHECK(expected.size() > 0);

@@ -1,0 +1,381 @@
+#include "dynamics/localised/impact_stage.hpp"
+#include "dynamics/model/scales.hpp"
+#include "tolerances.hpp"
+#include <algorithm>
+
+namespace masonry::localised {
+
+namespace {
+
+// --- plane and space as the impact law knows them: the plane is z = 0 ---
+
+Vector3 inSpace(const Vector2& v) { return {v.x(), v.y(), 0}; }
+Vector3 inSpace(const Vector3& v) { return v; }
+
+masonry::Body inSpace(const RigidBody<Plane>& body)
+{
+	masonry::Body result;
+	result.pose = {inSpace(body.pose.position), Quaternion(Eigen::AngleAxisd(body.pose.angle, Vector3::UnitZ()))};
+	result.velocity = inSpace(Vector2(body.velocity.head<2>()));
+	result.angularVelocity = {0, 0, body.velocity[2]};
+	result.mass = body.mass;
+	result.inertia.setConstant(body.inertia[0]);
+	result.prescribed = body.prescribed;
+	return result;
+}
+
+masonry::Body inSpace(const RigidBody<Space>& body)
+{
+	masonry::Body result;
+	result.pose = body.pose;
+	result.velocity = body.velocity.head<3>();
+	result.angularVelocity = body.velocity.tail<3>();
+	result.mass = body.mass;
+	result.inertia = body.inertia;
+	result.prescribed = body.prescribed;
+	return result;
+}
+
+void takeVelocity(const masonry::Body& from, RigidBody<Plane>& to) { to.velocity << from.velocity.head<2>(), from.angularVelocity.z(); }
+void takeVelocity(const masonry::Body& from, RigidBody<Space>& to) { to.velocity << from.velocity, from.angularVelocity; }
+
+// --- joints ---
+
+template <class K>
+Vector3 normalOf(const ContactPoint<K>& point)
+{
+	return inSpace(typename K::Vector(point.frame.axes.row(0).transpose()));
+}
+template <class K>
+Vector3 positionOf(const ContactPoint<K>& point)
+{
+	return inSpace(point.frame.position);
+}
+
+template <class K>
+bool isLoaded(const ContactPoint<K>& point)
+{
+	return point.closed && point.force[0] > 0;
+}
+
+// A joint is all that touches one face of a block from below; upright faces (head joints) do not rock.
+struct JointKey {
+	int block {-1}, face {-1};
+	bool operator==(const JointKey& o) const { return block == o.block && face == o.face; }
+};
+
+template <class K>
+JointKey jointOf(const RigidSystem<K>& s, PointRef ref)
+{
+	const ContactPair<K>& pair = s.pairs[ref.pair];
+	const double g = s.gravity.norm();
+	const double up = g > 0 ? -normalOf(pair.points[ref.point]).dot(inSpace(s.gravity)) / g : 1;
+	const int block = up > 0 ? pair.body2 : pair.body1;
+	if (std::abs(up) < tolerance::uprightJoint || s.bodies[block].prescribed)
+		return {};
+	return {block, up > 0 ? pair.face2 : pair.face1};
+}
+
+// The old support, if it is a pivot: an edge or a corner.
+class OldPivot {
+public:
+	OldPivot(const std::vector<Vector3>& old, const std::vector<Vector3>& closing)
+	{
+		if (old.empty())
+			return;
+		place = old.front();
+		for (const Vector3& p : old)
+			if ((p - place).norm() > along.norm())
+				along = p - place;
+		double reach = 0;
+		for (const Vector3& p : closing)
+			reach = std::max(reach, (p - place).norm());
+		narrow = tolerance::pivotEdge * reach;
+		along = along.norm() > narrow ? Vector3(along.normalized()) : Vector3(Vector3::Zero());
+		holds = std::all_of(old.begin(), old.end(), [this](const Vector3& p) { return has(p); });
+	}
+	bool has(const Vector3& p) const { return Vector3(p - place - along * along.dot(p - place)).norm() <= narrow; }
+
+	bool holds {false};
+
+private:
+	Vector3 place, along {Vector3::Zero()};
+	double narrow {0};
+};
+
+} // namespace
+
+// Everything that touches, in the order that the law wants: for each closing joint its new support and its old, then the rest.
+template <class K>
+struct ImpactStage<K>::Builder {
+	const RigidSystem<K>& s;
+	ImpactStage<K>& stage;
+
+	void add(PointRef ref)
+	{
+		const ContactPair<K>& pair = s.pairs[ref.pair];
+		const ContactPoint<K>& point = pair.points[ref.point];
+		stage.refs.push_back(ref);
+		stage.impact.points.push_back({pair.body1, pair.body2, positionOf(point), normalOf(point), pair.friction});
+		stage.impact.points.back().grip = inSpace(point.frame.grip);
+	}
+
+	// Of four corners three carry, and round-off may have opened the fourth.
+	bool touches(PointRef ref) const
+	{
+		const ContactPoint<K>& point = s.pairs[ref.pair].points[ref.point];
+		if (point.closed || point.gap > s.settings.merged * scale::length(s))
+			return point.closed;
+		return std::abs(relativeVelocity(s, ref)[0]) <= tolerance::restSpeed * std::sqrt(scale::acceleration(s) * scale::length(s));
+	}
+
+	template <class Take>
+	void forTouching(Take take)
+	{
+		for (int c = 0; c < int(s.pairs.size()); ++c)
+			for (int i = 0; i < s.pairs[c].size; ++i)
+				if (touches({c, i}))
+					take(PointRef {c, i});
+	}
+
+	void addJoint(const JointKey& key, const std::vector<PointRef>& closing)
+	{
+		stage.oldRefs.clear();
+		stage.newPositions.clear();
+		stage.oldPositions.clear();
+		const auto position = [&](PointRef ref) { return positionOf(s.pairs[ref.pair].points[ref.point]); };
+		for (PointRef ref : closing)
+			if (jointOf(s, ref) == key)
+				stage.newPositions.push_back(position(ref));
+		forTouching([&](PointRef ref) {
+			if (!isLoaded(s.pairs[ref.pair].points[ref.point]) || !(jointOf(s, ref) == key))
+				return;
+			stage.oldRefs.push_back(ref);
+			stage.oldPositions.push_back(position(ref));
+		});
+		const OldPivot pivot(stage.oldPositions, stage.newPositions);
+		// Beside the pivot; on it, where two supports share it, round-off may open and close a point.
+		ClosingJoint joint {};
+		joint.block = key.block;
+		joint.newBegin = int(stage.refs.size());
+		for (PointRef ref : closing)
+			if (jointOf(s, ref) == key && !(pivot.holds && pivot.has(position(ref))))
+				add(ref);
+		joint.oldBegin = int(stage.refs.size());
+		for (PointRef ref : stage.oldRefs)
+			add(ref);
+		joint.oldEnd = int(stage.refs.size());
+		if (!pivot.holds || joint.newBegin == joint.oldBegin)
+			return;
+
+		// Of several supports, the one under the point farthest from the old pivot names the joint's law.
+		double farthest = -1;
+		for (int k = joint.newBegin; k < joint.oldBegin; ++k) {
+			const double distance = (stage.impact.points[k].position - stage.oldPositions.front()).norm();
+			if (distance <= farthest)
+				continue;
+			farthest = distance;
+			const ContactPair<K>& pair = s.pairs[stage.refs[k].pair];
+			const bool above = pair.body2 == key.block;
+			joint.support = above ? pair.body1 : pair.body2;
+			joint.normal = above ? stage.impact.points[k].normal : Vector3(-stage.impact.points[k].normal);
+			joint.restitution = pair.restitution;
+		}
+		stage.impact.joints.push_back(joint);
+	}
+};
+
+template <class K>
+void ImpactStage<K>::gather(const RigidSystem<K>& s, const std::vector<PointRef>& closing)
+{
+	impulses.near.clear();
+	for (const ContactPair<K>& pair : s.pairs)
+		impulses.near.push_back({pair.body1, pair.body2});
+	impact.solve = [this](auto& all, auto& points, auto& couples) { return impulses.solve(all, points, couples); };
+	impact.joints.clear();
+	impact.points.clear();
+	refs.clear();
+	bodies.clear();
+	for (const auto& body : s.bodies)
+		bodies.push_back(inSpace(body));
+	Builder builder {s, *this};
+	for (size_t k = 0; k < closing.size(); ++k) {
+		const JointKey key = jointOf(s, closing[k]);
+		const bool first = std::none_of(closing.begin(), closing.begin() + k, [&](PointRef p) { return jointOf(s, p) == key; });
+		if (first && key.block >= 0)
+			builder.addJoint(key, closing);
+	}
+	for (PointRef ref : closing) // head joints
+		if (!contains(refs, ref))
+			builder.add(ref);
+	builder.forTouching([&](PointRef ref) {
+		if (!contains(refs, ref))
+			builder.add(ref);
+	});
+}
+
+// Limits what bodies with prescribed motion press with where the laws have no solution: what stops all blocks at once, and `impulse` (N s).
+template <class K>
+void ImpactStage<K>::limit(const RigidSystem<K>& s, double impulse)
+{
+	const auto isMoved = [&](int b) { return s.bodies[b].prescribed && !s.bodies[b].velocity.isZero(0); };
+	double speed = 0;
+	for (const ImpulsePoint& point : impact.points)
+		speed = std::max(speed, masonry::relativeVelocity(bodies, point).norm());
+	for (ImpulsePoint& point : impact.points)
+		if (isMoved(point.body1) || isMoved(point.body2))
+			point.most = freeMass(s) * speed + impulse;
+}
+
+template <class K>
+void ImpactStage<K>::findJammed(const RockingImpactResult& result)
+{
+	constexpr double nearly = 0.9; // as in isAtLimit
+	jammed.clear();
+	for (const ImpulsePoint& point : impact.points)
+		if (const double normal = point.impulse.dot(point.normal); result.jammed && normal > 0 && normal >= nearly * point.most)
+			jammed.insert(jammed.end(), {point.body1, point.body2});
+}
+
+// After an impulse: velocities, and which points stay in touch.
+template <class K>
+void ImpactStage<K>::settle(RigidSystem<K>& s)
+{
+	for (size_t b = 0; b < bodies.size(); ++b)
+		if (!s.bodies[b].prescribed)
+			takeVelocity(bodies[b], s.bodies[b]);
+	const double still = tolerance::localised::parting * std::sqrt(scale::acceleration(s) * scale::length(s)) * tolerance::restSpeed;
+	for (size_t k = 0; k < refs.size(); ++k) {
+		ContactPoint<K>& point = s.pairs[refs[k].pair].points[refs[k].point];
+		const auto u = relativeVelocity(s, refs[k]);
+		point.closed = u[0] <= still;
+		point.sliding = point.closed && u.template tail<K::rows - 1>().norm() > still;
+	}
+	shareWeights(s);
+	s.startAnew();
+}
+
+// Points that carry from now on: a first guess of their forces, in proportion to their impulses. From none, sweeps give all to the first
+// corner of an edge, which is a solution too where it does not slip, but one that turns the block about that corner.
+template <class K>
+void ImpactStage<K>::shareWeights(RigidSystem<K>& s)
+{
+	weights.assign(s.pairs.size(), 0.);
+	const auto normal = [this](size_t k) { return std::max(0., impact.points[k].impulse.dot(impact.points[k].normal)); };
+	for (size_t k = 0; k < refs.size(); ++k)
+		weights[refs[k].pair] += normal(k);
+	for (size_t k = 0; k < refs.size(); ++k) {
+		ContactPair<K>& pair = s.pairs[refs[k].pair];
+		ContactPoint<K>& point = pair.points[refs[k].point];
+		const auto &body1 = s.bodies[pair.body1], &body2 = s.bodies[pair.body2];
+		if (!point.closed || isLoaded(point) || !(normal(k) > 0))
+			continue;
+		const double lighter = body1.prescribed ? body2.mass : body2.prescribed ? body1.mass : std::min(body1.mass, body2.mass);
+		point.force.setZero();
+		point.force[0] = lighter * scale::acceleration(s) * normal(k) / weights[refs[k].pair];
+	}
+}
+
+// The smooth step leaves velocities of the order h^2 at the points in touch, of either sign; the law's w- is that of bodies that hold on to
+// their pivots. Loaded points are held from both sides: an impulse larger than holding takes is taken away from each and found anew.
+template <class K>
+void ImpactStage<K>::holdPivots(RigidSystem<K>& s)
+{
+	constexpr double enough = 10;
+	gather(s, {});
+	const auto loaded = [&](size_t k) -> const ContactPoint<K>* {
+		const ContactPoint<K>& point = s.pairs[refs[k].pair].points[refs[k].point];
+		return isLoaded(point) ? &point : nullptr;
+	};
+	double stray = 0, heaviest = 0;
+	for (const masonry::Body& body : bodies)
+		if (!body.prescribed)
+			heaviest = std::max(heaviest, body.mass);
+	for (size_t k = 0; k < refs.size(); ++k)
+		if (const ContactPoint<K>* held = loaded(k)) {
+			ImpulsePoint& point = impact.points[k];
+			const Vector3 u = masonry::relativeVelocity(bodies, point);
+			if (held->sliding)
+				point.friction = 0;
+			stray = std::max(stray, held->sliding ? std::abs(point.normal.dot(u)) : u.norm());
+		}
+	const double before = kineticEnergy(bodies), impulse = enough * heaviest * stray;
+	limit(s, impulse);
+	double work = 0; // of the prescribed bodies
+	for (size_t k = 0; k < refs.size(); ++k) {
+		if (!loaded(k))
+			continue;
+		const ImpulsePoint& point = impact.points[k];
+		for (const auto& [b, sign] : {std::pair(point.body1, impulse), std::pair(point.body2, -impulse)}) {
+			masonry::Body& body = bodies[b];
+			if (body.prescribed)
+				work -= sign * point.normal.dot(body.velocityAt(point.position));
+			body.velocity += sign * body.inverseMass() * point.normal;
+			body.angularVelocity += sign * (body.inverseInertia() * (point.position - body.pose.position).cross(point.normal));
+		}
+	}
+	work += applyRockingImpact(bodies, impact).work;
+	for (size_t b = 0; b < bodies.size(); ++b)
+		if (!s.bodies[b].prescribed)
+			takeVelocity(bodies[b], s.bodies[b]);
+	s.impactDissip += before + work - kineticEnergy(bodies);
+	s.baseWork += work;
+}
+
+template <class K>
+RockingImpactResult ImpactStage<K>::land(RigidSystem<K>& s, const std::vector<PointRef>& closing)
+{
+	holdPivots(s);
+	gather(s, closing);
+	limit(s, 0);
+	asked.clear();
+	for (ClosingJoint& joint : impact.joints) {
+		asked.push_back(joint.restitution);
+		findRocking(bodies, joint, impact.points);
+		if (joint.result.before * (std::isnan(joint.restitution) ? 1 : joint.restitution) < scale::minSpin(s, joint.block))
+			joint.restitution = 0;
+	}
+	const auto result =
+	    s.settings.order == ImpactOrder::simultaneous ? applyRockingImpact(bodies, impact) : applySequentially(bodies, impact);
+	findJammed(result);
+	settle(s);
+	s.impactDissip += result.energyLost;
+	s.baseWork += result.work;
+	double energy = result.energyLost;
+	for (size_t k = 0; k < asked.size(); ++k) {
+		const ClosingJoint& joint = impact.joints[k];
+		if (joint.result.before < scale::minSpin(s, joint.block))
+			continue; // it did not rock
+		s.impacts.push_back({s.time, joint.block, joint.support, asked[k], joint.result.after >= scale::minSpin(s, joint.block),
+		                     joint.result, energy, result.capped, result.residual});
+		energy = 0;
+	}
+	return result;
+}
+
+template <class K>
+RockingImpactResult ImpactStage<K>::pulse(RigidSystem<K>& s, int drive, const typename K::Vector& jump)
+{
+	for (auto& body : s.bodies)
+		if (body.drive == drive)
+			body.velocity.template head<K::dimension>() += jump;
+	gather(s, {});
+	limit(s, 0);
+	const auto result = applyRockingImpact(bodies, impact);
+	findJammed(result);
+	settle(s);
+	// While the base speeds up from v - jump to v, its impulse works on the mean of the two.
+	double work = result.work;
+	for (const ImpulsePoint& point : impact.points)
+		for (const auto& [b, sign] : {std::pair(point.body1, 1.), std::pair(point.body2, -1.)})
+			if (s.bodies[b].drive == drive)
+				work -= 0.5 * sign * point.impulse.dot(inSpace(jump));
+	s.baseWork += work;
+	s.impactDissip += result.energyLost + work - result.work;
+	return result;
+}
+
+template class ImpactStage<Plane>;
+template class ImpactStage<Space>;
+
+} // namespace masonry::localised

@@ -1,0 +1,160 @@
+#pragma once
+// The contact laws of a whole structure in one step, by the alternating direction method of multipliers (ADMM) with one factorisation that
+// is kept over many steps. There is one method for blocks that stand and for blocks that move.
+//
+// Unknown are the velocities V at the end of the step, the impulses p and the relative velocities z that the laws allow. J maps V to the
+// relative velocities at the points, b is the bias of each point, R its penalty, w = J V + b, and A = M + J^T J / R over all points in
+// reach, whatever their state:
+//
+//     V += A^-1 [ M (V_free - V) + J^T (p + (z - w)/R) ]
+//     y   = p - (a w + (1 - a) z)/R                                   a = 1.7: over-relaxation
+//     p_n = max(0, y_n), of prescribed bodies that move up to a limit (ContactSet::limitMoved)
+//     g  += theta (p_n - g)                                           friction bound, damped
+//     p_t = y_t within |p_t| <= mu g
+//     z   = (p - y) R
+//
+// until w = z, g = p_n where points slide, and V hardly changes. A does not depend on which points stick, slide or part, so that it need
+// not be factorised when states change. Only residuals are corrected, so that A may be of slightly other positions: where a body has turned
+// by an angle since, V misses the momentum equation by about that angle times its last change.
+//
+// The method is that of Boyd et al. (Foundations and Trends in Machine Learning 3, 2011); for contact with friction see Acary, Bremond and
+// Huber (2018) and Carpentier, Le Lidec and Montaut (RSS 2024). These choices are ours; docs/numerics.md has what was measured:
+//
+//     R by load       R = d r/(1 + l): d is the mean of J M^-1 J^T over the rows of the point, l its filtered normal impulse in units of
+//                     the impulse that stops it alone after the fall of one step. R p is then a velocity of about the same size at light
+//                     and heavy points. A uniform R suits either a wall that slides or one that rocks. While nothing moves, r is a
+//                     tenth: an impulse that changes by q leaves w - z = R q, and one iteration is enough if that is small. A step that
+//                     does not end soon with it goes on with the r of motion.
+//     damped bound    With the bound mu p_n, sliding points run into a limit cycle whose residual does not fall.
+//     start           V starts from the velocities before the step and a guess of their change. It stops where w = z, so that what slides
+//                     with a steady acceleration would lag by a multiple of the tolerance in each step without one.
+//                     Points without an impulse start from the velocity that they have, z = (max(0, w_n), w_t): their bias changes in each
+//                     step. Points that slide keep z_n and start with z_t = w_t. Others keep z, as they keep p.
+//
+// Rows that prescribe a spin (SpinRow) are held in each iteration: with Y = A^-1 E^T, the couples c change by
+// (E Y)^-1 (target - E V) and V by Y times that, so that E V is the target to round-off. A does not know of them.
+//
+// An instant (StepContext::instant) is the same problem without forces: impacts with rows, and jumps of the base. Points in touch start as
+// ones that stick, z_t = 0: a base that jumps under a block which it only slides along is a solution too, and where nothing slips not the
+// one that is meant. Its impulses come where nothing has pressed in the steps before, so that R follows those that it has found after some
+// iterations; the next step makes A anew.
+//
+// Biases. A point with a gap may close within the step: b_n = gap/h. Of a penetration, and of a slip that unfinished iterations have left
+// at a point that sticks, a share is taken back in each step: b = share x/h. A penetration with which a point was found stays, and so does
+// one that a limit has let happen.
+#include "dynamics/wall/assembly_matrix.hpp"
+#include "dynamics/wall/spin_row.hpp"
+#include "dynamics/wall/step_context.hpp"
+
+namespace masonry::wall {
+
+struct AdmmSettings {
+	double tolerance {1e-3};   // largest |w - z| relative to the speed that gravity gives in a step. Larger: joints drift and sink
+	bool strictForces {false}; // the same holds for errors of impulses, as velocities; then a step takes up to `first` iterations
+	int iterations {20};       // at most in a step, beside the reserve. Fewer: excursions are too small
+	int small {100}; // blocks below which a step takes more of them, in inverse proportion. Smaller: walls of some tens of blocks in space
+	                 // go a tenth too little
+	int least {10};  // iterations of a step, unless its residual is below `early`. Fewer: p lags behind what turns, and energy rises
+	double early {0.1}; // of the tolerance. Smaller: more iterations at rest; larger: as with fewer `least` iterations
+	int reserve {50};   // times `iterations` that quiet steps save for impacts at most. 0: walls under impacts drift
+	int first {3000};   // iterations of a step that starts without impulses, at most
+	int ofInstant {40}; // iterations with which an impact or a base pulse goes on to instantTolerance; more of them below `small` blocks,
+	                    // as in a step. Fewer: single blocks land less right
+	double instantTolerance {1e-6}; // largest |w - z| of an instant relative to the velocities that change, or as in a step if that is more
+	double instantEnough {5e-3};    // the same after these iterations. Larger: the next steps take up more of it
+	int maxOfInstant {1000};        // iterations of an instant at most
+	double softness {0.2};          // r. Larger: high walls go too far; smaller: low walls that begin to move do not go far enough
+	double restSoftness {0.02}; // r while a structure of more than `small` blocks rests. Larger: one that is shaken without moving drifts,
+	                            // and takes more iterations; smaller: its forces are less right, so that it begins to move too early
+	int restMost {10};          // iterations until a step at rest goes on with `softness`. More: the onset of motion costs more
+	double follows {0.1};       // share by which R may differ from that of the loads. Larger: more iterations; smaller: more factorisations
+	double restFollows {0.8};   // the same at rest, where few iterations are enough
+	double minSoftness {1e-5};  // of d, at the most loaded points. Smaller: rounding of the factorisation in single precision
+	double relaxation {1.7};    // a, 1 to 2. Larger: residuals oscillate; smaller: they fall more slowly
+	double boundShare {0.3};    // theta. 1: sliding points run into a limit cycle; smaller: friction lags
+	double pullBack {0.2};      // share of a penetration or of a slip that a step takes back. Larger: shivering; smaller: drift
+	double reach {0.016};       // gap relative to the smallest half size within which points are in A. Smaller: more factorisations
+	double filterTime {0.125};  // of the filtered load, relative to sqrt(smallest half size / gravity)
+	double refactorTime {0.125}; // relative to the same, after which R follows the loads
+	double turned {0.03}; // by which the rows of a point may change before A is made anew, as by a turn in rad. Larger: more iterations;
+	                      // smaller: more factorisations
+	double leftPenetration {5e-6}; // relative to the smallest half size, which is not taken back. 0: blocks at rest never come to rest
+};
+
+struct AdmmReport {
+	int iterations {0}, factorisations {0};
+	double residual {0}; // largest |w - z|, and mu R |g - p_n| where points slide, m/s
+	bool finite {true};
+	bool leftRest {false}; // R was that of a structure at rest, until the residual would not fall
+};
+
+// The points have done this in a step.
+struct PointsReport {
+	double friction {0};   // energy that it has taken at points with an impulse, J
+	double forceError {0}; // between the impulses of the laws and of the momentum equation, as the velocity that it gives a point, m/s
+};
+
+template <class K>
+class AdmmSolver {
+public:
+	using Tangent = typename PointLanes<K>::Tangent;
+	struct alignas(alignment) Row {  // of a point
+		Lanes resistance, stiffness; // R and 1/R; zero: the point is not in A and carries nothing
+		Lanes bn;                    // m/s
+		Tangent bt;
+		Lanes bound; // g, N s
+		Lanes un;    // J V, m/s
+		Tangent ut;
+		Lanes actedN; // impulse with which V obeys the momentum equation, N s
+		Tangent actedT;
+	};
+	using Rows = std::array<Row, lanePoints<K>>;
+
+	AdmmSettings settings;
+	AdmmReport report;
+	std::vector<SpinRow<K>> spins; // of the next solve, with their couples afterwards
+	bool otherFrames {true};       // frames or points of the contacts have changed since the last solve
+	LaneArray velocity;            // V, in the packs of the contacts
+	std::vector<Rows> rows;        // by group of the contacts
+	LaneBits reached;              // pairs with a point in A, after advanceGaps
+	LaneBits moving;               // those of them with any point that moves: where a block rocks, only its pivot may be in A
+
+	// Solves the step from the contacts' velocities and impulses; `load` is the change of velocity by external forces, per body; `guess` is
+	// the one that is expected altogether. Impulses, z and slips of the contacts are those of the solution afterwards; their gaps and
+	// velocities stay.
+	void solve(ContactSet<K>& contacts, const LaneArray& load, const LaneArray& guess, const StepContext& step);
+	// Gaps and slips at the end of the step, into the contacts; which pairs move faster than `level`, m/s.
+	PointsReport advanceGaps(ContactSet<K>& contacts, double h, double level);
+	// The next solve of these contacts needs this from the last.
+	template <class Archive>
+	void serialize(Archive& archive, const ContactSet<K>& contacts)
+	{
+		archive(age, saved, cold, atRest);
+		rows.resize(contacts.groups.size());
+		for (Rows& ofGroup : rows)
+			for (Row& row : ofGroup)
+				archive(row.resistance, row.stiffness);
+		matrix.serialize(archive, contacts);
+	}
+
+private:
+	bool isOutdated(ContactSet<K>& contacts, const StepContext& step);
+	void makeMatrix(ContactSet<K>& contacts, const StepContext& step);
+	void start(ContactSet<K>& contacts, const LaneArray& load, const LaneArray& guess, const StepContext& step);
+	double iterate(ContactSet<K>& contacts, const StepContext& step);
+	void prepareSpins(const ContactSet<K>& contacts);
+	void holdSpins();
+
+	AssemblyMatrix<K> matrix;
+	double turn {0}; // by which rows of a point have changed since A was made, at most
+	LaneArray free, force;
+	std::vector<LaneArray> response; // Y, by row
+	Eigen::MatrixXd perSpin;         // (E Y)^-1
+	double age {0};                  // s, since R was last compared with the loads
+	double saved {0};                // iterations
+	bool cold {true};
+	bool ofInstant {false}; // R is that of an instant
+	bool atRest {false};    // R is that of a structure at rest
+};
+
+} // namespace masonry::wall

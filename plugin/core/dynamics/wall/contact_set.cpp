@@ -1,0 +1,397 @@
+#include "dynamics/wall/contact_set.hpp"
+#include "tolerances.hpp"
+#include <algorithm>
+
+namespace masonry::wall {
+
+namespace {
+
+constexpr int maxStood = 16; // still steps, in which blocks may go far in small steps
+
+} // namespace
+
+template <class K>
+typename ContactSet<K>::State ContactSet<K>::state(int pair, int point) const
+{
+	State state;
+	const auto [group, lane] = slots[pair][point / lanePoints<K>];
+	if (group < 0)
+		return state;
+	const PointLanes<K>& p = groups[group].point[point % lanePoints<K>];
+	const SolverLanes<K>& f = memory[group][point % lanePoints<K>];
+	state.present = features[group].point[point % lanePoints<K>].present[lane];
+	state.pn = p.pn[lane];
+	state.filteredImpulse = p.filteredImpulse[lane];
+	state.zn = f.zn[lane];
+	state.zero = f.zero[lane];
+	for (int k = 0; k < K::rows - 1; ++k) {
+		state.pt[k] = component(p.pt, k, lane);
+		state.zt[k] = component(f.zt, k, lane);
+		state.slip[k] = component(f.slip, k, lane);
+	}
+	return state;
+}
+
+template <class K>
+void ContactSet<K>::setState(const State& state, int pair, int point)
+{
+	const auto [group, lane] = slots[pair][point / lanePoints<K>];
+	PointLanes<K>& p = groups[group].point[point % lanePoints<K>];
+	SolverLanes<K>& f = memory[group][point % lanePoints<K>];
+	p.pn[lane] = state.pn;
+	p.filteredImpulse[lane] = state.filteredImpulse;
+	f.zn[lane] = state.zn;
+	f.zero[lane] = state.zero;
+	for (int k = 0; k < K::rows - 1; ++k) {
+		setComponent(p.pt, k, lane, state.pt[k]);
+		setComponent(f.zt, k, lane, state.zt[k]);
+		setComponent(f.slip, k, lane, state.slip[k]);
+	}
+}
+
+// A point that was there before keeps its state, and so does one that another feature of the same place takes over from.
+template <class K>
+void ContactSet<K>::inherit(const ContactPair<K>& before, const State* states, ContactPoint<K>& point, State& now) const
+{
+	const double samePlace = 2 * tolerance::wall::search * length;
+	for (int j = 0; j < before.size; ++j) {
+		const ContactPoint<K>& old = before.points[j];
+		const State& then = states[j];
+		if (!takeState(old, samePlace, point))
+			continue;
+		now.pn = then.present ? then.pn : unit * old.force[0];
+		now.pt = then.present ? then.pt : unit * old.force.template tail<K::rows - 1>();
+		now.filteredImpulse = then.present ? then.filteredImpulse : now.pn;
+		now.zn = then.zn;
+		now.zt = then.zt;
+		now.slip = then.slip;
+		now.zero = std::min(now.zero, then.zero);
+		if (old.feature == point.feature)
+			return;
+		if constexpr (K::rows == 3) { // along the tangents of another face
+			const Eigen::Matrix2d turn = point.frame.axes.template bottomRows<2>() * old.frame.axes.template bottomRows<2>().transpose();
+			point.force.template tail<2>() = (turn * old.force.template tail<2>()).eval();
+			for (auto* tangential : {&now.pt, &now.zt, &now.slip})
+				*tangential = (turn * *tangential).eval();
+		}
+	}
+}
+
+template <class K>
+void ContactSet<K>::lookUp(RigidSystem<K>& s, int c)
+{
+	const double touching = tolerance::mergedClosing * length;
+	ContactPair<K>& pair = s.pairs[c];
+	const auto &body1 = s.bodies[pair.body1], &body2 = s.bodies[pair.body2];
+	FoundPoints<K> found = findPoints(body1, body2, pair.memory);
+	found.size = std::min(found.size, pairPoints<K>);
+	pair.face1 = found.face1;
+	pair.face2 = found.face2;
+	// Of bodies that have been moved the pair may know other points than the lanes.
+	const bool same = known[c] && !s.moved && sameFeatures(pair, found);
+	for (const auto [group, lane] : slots[c])
+		if (group >= 0)
+			groups[group].friction[lane] = std::min(pair.friction, maxFriction);
+	if (same)
+		return;
+	if (known[c]) {
+		for (const auto [group, lane] : slots[c])
+			if (group >= 0)
+				takeFrames(s, group, group + 1);
+		showPair(s, c);
+	}
+	known[c] = true;
+	const ContactPair<K> before = pair;
+	State states[pairPoints<K>];
+	for (int k = 0; k < pairPoints<K>; ++k)
+		states[k] = state(c, k);
+	pair.size = found.size;
+	if (found.size > lanePoints<K> && !wide[c])
+		wide[c] = wider = true;
+	for (int k = 0; k < pairPoints<K>; ++k) {
+		State now;
+		if (k < found.size) {
+			ContactPoint<K> point;
+			point.feature = found.features[k];
+			locate(point, body1, body2);
+			point.closed = point.gap <= touching;
+			now.zero = std::min(0., point.gap);
+			inherit(before, states, point, now);
+			pair.points[k] = point;
+		}
+		const auto [group, lane] = slots[c][k / lanePoints<K>];
+		if (group < 0)
+			continue;
+		takePoint(s, c, k);
+		setState(now, c, k);
+	}
+}
+
+template <class K>
+void ContactSet<K>::lookUpStale(RigidSystem<K>& s)
+{
+	allParts([&](const Part& part, int) { lookUpStale(s, part); });
+}
+
+// Lanes of one pair are looked up together; they are in one part.
+template <class K>
+void ContactSet<K>::lookUpStale(RigidSystem<K>& s, const Part& part)
+{
+	const auto isStale = [this](const Slot& slot) { return stale[slot.group] >> slot.lane & 1; };
+	for (int g = part.begin; lanesOfPair < K >> 1 && g < part.end; ++g)
+		for (int lane = 0; stale[g] && lane < width && features[g].pair[lane] >= 0; ++lane) {
+			const auto& lanes = slots[features[g].pair[lane]];
+			if (lanes.back().group >= 0 && (isStale(lanes.front()) || isStale(lanes.back())))
+				for (const Slot& slot : lanes)
+					stale[slot.group] |= 1 << slot.lane;
+		}
+	for (int g = part.begin; g < part.end; ++g)
+		for (int lane = 0; stale[g] && lane < width && features[g].pair[lane] >= 0; ++lane)
+			if (stale[g] >> lane & 1 && features[g].first[lane] == 0)
+				lookUp(s, features[g].pair[lane]);
+	for (int g = part.begin; g < part.end; ++g)
+		if (stale[g]) {
+			countPoints(s, g);
+			measureGaps(s, g, g + 1, 0, true);
+			takeFrames(s, g, g + 1);
+			stale[g] = 0;
+		}
+}
+
+template <class K>
+void ContactSet<K>::countPoints(const RigidSystem<K>& s, int g)
+{
+	int most = 1; // a pair without points still shows how far it moves
+	for (int lane = 0; lane < width; ++lane)
+		most = std::max(most, points(s, g, lane));
+	groups[g].setCount(most);
+}
+
+// A system whose points are known already.
+template <class K>
+void ContactSet<K>::takeOver(const RigidSystem<K>& s)
+{
+	findCourses(s);
+	colour(s);
+	takeBodies(s);
+	std::fill(stale.begin(), stale.end(), 0);
+	std::fill(known.begin(), known.end(), 1);
+	for (const int c : numbers)
+		for (int k = 0; k < pairPoints<K> && slots[c][k / lanePoints<K>].group >= 0; ++k) {
+			const auto [group, lane] = slots[c][k / lanePoints<K>];
+			takePoint(s, c, k);
+			groups[group].friction[lane] = std::min(s.pairs[c].friction, maxFriction);
+		}
+	for (int g = 0; g < int(groups.size()); ++g)
+		countPoints(s, g);
+}
+
+template <class K>
+void ContactSet<K>::showPair(RigidSystem<K>& s, int c) const
+{
+	const double touching = tolerance::mergedClosing * length, perUnit = unit > 0 ? 1 / unit : 0;
+	ContactPair<K>& pair = s.pairs[c];
+	for (int k = 0; k < std::min(pair.size, pairPoints<K>); ++k) {
+		const auto [group, lane] = slots[c][k / lanePoints<K>];
+		if (group < 0)
+			return;
+		const PointLanes<K>& p = groups[group].point[k % lanePoints<K>];
+		ContactPoint<K>& point = pair.points[k];
+		point.gap = p.gap[lane];
+		point.closed = p.pn[lane] > 0 || p.gap[lane] <= touching;
+		point.sliding = p.pn[lane] > 0 && slides(p.pt, groups[group].friction * p.pn)[lane];
+		point.force[0] = p.pn[lane] * perUnit;
+		for (int row = 1; row < K::rows; ++row)
+			point.force[row] = component(p.pt, row - 1, lane) * perUnit;
+		takeFrame(p, features[group].point[k % lanePoints<K>], lane, gyration[pair.body2], point.frame);
+		point.frame.position += s.bodies[pair.body2].pose.position;
+	}
+}
+
+template <class K>
+void ContactSet<K>::showPoints(RigidSystem<K>& s)
+{
+	if (stood == 0 && !numbers.empty()) // else frames are where the bodies are; those of a step that moves are of its start
+		updateFrames(s);
+	for (const int c : numbers)
+		if (known[c])
+			showPair(s, c);
+}
+
+template <class K>
+void ContactSet<K>::placeAll(const RigidSystem<K>& s, const std::vector<typename K::Pose>& poses)
+{
+	eachShare(poses.size(), [&](size_t begin, size_t end, int) {
+		for (size_t b = begin; b < end; ++b) {
+			place(b, poses[b]);
+			setVelocity(b, s.bodies[b].velocity);
+		}
+	});
+}
+
+// Points located where these poses put the bodies, which stay where they are.
+template <class K>
+void ContactSet<K>::placeAt(const RigidSystem<K>& s, const std::vector<typename K::Pose>& poses)
+{
+	takeBodies(s);
+	placeAll(s, poses);
+	allParts([&](const Part& part, int) {
+		measureGaps(s, part.begin, part.end, std::numeric_limits<double>::infinity(), false);
+		takeFrames(s, part.begin, part.end);
+	});
+	takeBodies(s);
+}
+
+// A pivot of a block that turns has the centripetal acceleration a. With the normals and arms of the start of a step it leaves the step
+// with the normal velocity -h a: the gap is allowed to close in the next step, in which the velocity goes from h a/2 to -h a/2, so that its
+// impulse does no work. With those of the middle of the step it goes from h a to zero, and the impulse p does the work p h a/2.
+template <class K>
+void ContactSet<K>::updateFrames(const RigidSystem<K>& s)
+{
+	std::vector<typename K::Pose> poses;
+	for (const auto& body : s.bodies)
+		poses.push_back(body.pose);
+	placeAll(s, poses);
+	allParts([&](const Part& part, int) { takeFrames(s, part.begin, part.end); });
+}
+
+// Whether normals, arms and masses may stay.
+template <class K>
+bool ContactSet<K>::isLocated(const RigidSystem<K>& s) const
+{
+	if (stood == 0 || stood == maxStood || s.moved)
+		return false;
+	for (size_t b = 0; b < s.bodies.size(); ++b) {
+		const auto& body = s.bodies[b];
+		if (!own[b] && !body.prescribed)
+			continue;
+		if (!(turned(located[b], body.pose) <= tolerance::wall::turned) ||
+		    velocity[packs<K> * b][3] != (body.prescribed ? 0 : 1 / body.mass))
+			return false;
+	}
+	return true;
+}
+
+template <class K>
+void ContactSet<K>::measure(RigidSystem<K>& s, bool isStill)
+{
+	if (isStill && isLocated(s)) {
+		takeBodies(s);
+		++stood;
+		return;
+	}
+	if (s.moved)
+		std::fill(stale.begin(), stale.end(), allLanes);
+	takeBodies(s);
+	const double travel = tolerance::wall::search * length;
+	allParts([&](const Part& part, int) {
+		measureGaps(s, part.begin, part.end, travel, false);
+		if (isStill)
+			takeFrames(s, part.begin, part.end);
+	});
+	for (wider = true; wider;) {
+		wider = false;
+		lookUpStale(s);
+		if (wider) {   // a pair needs another lane
+			stood = 0; // frames of all
+			showPoints(s);
+			colour(s);
+		}
+	}
+	stood = isStill ? 1 : 0;
+	located.clear();
+	for (size_t b = 0; isStill && b < s.bodies.size(); ++b)
+		located.push_back(s.bodies[b].pose);
+}
+
+template <class K>
+void ContactSet<K>::takeForces(const RigidSystem<K>& s, double h, LaneArray& to)
+{
+	to.assign(velocity.size(), all(0));
+	eachShare(s.bodies.size(), [&](size_t begin, size_t end, int) {
+		for (size_t b = begin; b < end; ++b)
+			takeForce(s.bodies[b].force, h, b, to);
+	});
+}
+
+template <class K>
+void ContactSet<K>::shiftIn(double h)
+{
+	shift.resize(velocity.size());
+	for (size_t k = 0; k < shift.size(); ++k)
+		shift[k] = h * velocity[k];
+}
+
+template <class K>
+void ContactSet<K>::setUnit(double h)
+{
+	if (h == unit)
+		return;
+	const Lanes factor = all(unit > 0 ? h / unit : 1);
+	for (Group<K>& group : groups)
+		for (PointLanes<K>& p : group.point) {
+			p.pn *= factor;
+			p.pt *= factor;
+			p.filteredImpulse *= factor;
+		}
+	unit = h;
+}
+
+// A moved body stops all blocks at once, or carries so many times their weight.
+template <class K>
+void ContactSet<K>::limitMoved(const RigidSystem<K>& s, double fall)
+{
+	const Lanes* seen = nullptr;
+	double limit = 0;
+	for (const auto& [g, i] : onBase) {
+		Group<K>& group = groups[g];
+		const int base = own[group.body1[i]] ? group.body2[i] : group.body1[i];
+		const Lanes* v = &velocity[packs<K> * base];
+		double moves = 0, isNew = seen ? 0 : 1;
+		for (int pack = 0; pack < packs<K>; ++pack)
+			for (int k = 0; k < 3; ++k) {
+				moves += std::abs(v[pack][k]);
+				isNew += seen ? std::abs(v[pack][k] - seen[pack][k]) : 0;
+			}
+		group.most[i] = farAway;
+		if (!(moves > 0))
+			continue;
+		if (isNew > 0) {
+			double fastest = 0;
+			for (size_t b = 0; b < s.bodies.size(); ++b) {
+				const Lanes* w = &velocity[packs<K> * b];
+				double square = 0;
+				for (int pack = 0; own[b] && pack < packs<K>; ++pack)
+					for (int k = 0; k < 3; ++k)
+						square += (w[pack][k] - v[pack][k]) * (w[pack][k] - v[pack][k]);
+				fastest = std::max(fastest, square);
+			}
+			limit = freeMass(s) * (tolerance::contactProblem::maxWeights * fall + std::sqrt(fastest));
+			seen = v;
+		}
+		group.most[i] = limit;
+	}
+}
+
+template <class K>
+void ContactSet<K>::addJammed(std::vector<int>& bodies) const
+{
+	constexpr double nearly = 0.9; // as in isAtLimit
+	for (const auto& [g, i] : onBase)
+		for (int k = 0; k < groups[g].count; ++k)
+			if (const double normal = groups[g].point[k].pn[i]; normal > 0 && normal >= nearly * groups[g].most[i])
+				bodies.insert(bodies.end(), {groups[g].body1[i], groups[g].body2[i]});
+}
+
+template <class K>
+void ContactSet<K>::startMeans(double share)
+{
+	for (Group<K>& group : groups)
+		for (PointLanes<K>& p : group.point)
+			p.filteredImpulse = share * p.pn;
+}
+
+template class ContactSet<Plane>;
+template class ContactSet<Space>;
+
+} // namespace masonry::wall

@@ -1,0 +1,35 @@
+#include "dynamics/wall/joint_work.hpp"
+
+namespace masonry::wall {
+
+template <class K>
+JointWork jointWork(const RigidSystem<K>& s, const ContactSet<K>& c, const AdmmSolver<K>& solver, int block, int face)
+{
+	JointWork result;
+	for (const SpinRow<K>& row : solver.spins)
+		if (row.block() == block && row.face == face)
+			result.add(row.couple, row.rate(c.velocity), row.rate(solver.velocity));
+	for (size_t g = 0; g < c.groups.size(); ++g) {
+		const Group<K>& group = c.groups[g];
+		for (int i = 0; i < width && c.features[g].pair[i] >= 0; ++i) {
+			const ContactPair<K>& pair = s.pairs[c.features[g].pair[i]];
+			if (!(pair.body1 == block && pair.face1 == face) && !(pair.body2 == block && pair.face2 == face))
+				continue;
+			for (int k = 0; k < group.count; ++k)
+				for (int n = 0; n < K::rows; ++n) {
+					const auto rate = [&](const LaneArray& v) {
+						return rateOf(group.point[k], n, i, 2, &v[packs<K> * group.body2[i]]) -
+						       rateOf(group.point[k], n, i, 1, &v[packs<K> * group.body1[i]]);
+					};
+					const auto& acted = solver.rows[g][k];
+					result.add(n == 0 ? acted.actedN[i] : component(acted.actedT, n - 1, i), rate(c.velocity), rate(solver.velocity));
+				}
+		}
+	}
+	return result;
+}
+
+template JointWork jointWork(const RigidSystem<Plane>&, const ContactSet<Plane>&, const AdmmSolver<Plane>&, int, int);
+template JointWork jointWork(const RigidSystem<Space>&, const ContactSet<Space>&, const AdmmSolver<Space>&, int, int);
+
+} // namespace masonry::wall

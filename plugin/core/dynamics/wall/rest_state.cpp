@@ -1,0 +1,35 @@
+#include "dynamics/wall/rest_state.hpp"
+#include "tolerances.hpp"
+#include <algorithm>
+
+namespace masonry::wall {
+
+template <class K>
+int RestState<K>::movingBlocks(const RigidSystem<K>& s, const ContactSet<K>& contacts, const AdmmSolver<K>& solver, double level)
+{
+	std::vector<char> isHeld(s.bodies.size(), 0), moves(s.bodies.size(), 0);
+	for (size_t g = 0; g < contacts.groups.size(); ++g)
+		for (int i = 0; i < width && contacts.features[g].pair[i] >= 0; ++i)
+			for (const int b : {contacts.groups[g].body1[i], contacts.groups[g].body2[i]}) {
+				isHeld[b] |= solver.reached[g] >> i & 1;
+				moves[b] |= solver.moving[g] >> i & 1;
+			}
+	int count = 0;
+	for (size_t b = 0; b < s.bodies.size(); ++b)
+		count += contacts.own[b] && (moves[b] || (!isHeld[b] && !(s.bodies[b].velocity.norm() <= level)));
+	return count;
+}
+
+template <class K>
+void RestState<K>::take(const RigidSystem<K>& s, const AdmmReport& report, int movingBlocks, double h)
+{
+	const bool turns = std::any_of(s.bodies.begin(), s.bodies.end(), [h](const RigidBody<K>& body) { // so far that frames must follow
+		return !(h * body.velocity.template tail<K::spins>().norm() <= tolerance::wall::turned);
+	});
+	quiet = movingBlocks == 0 && !turns && !report.leftRest ? quiet + 1 : 0;
+}
+
+template class RestState<Plane>;
+template class RestState<Space>;
+
+} // namespace masonry::wall

@@ -1,0 +1,186 @@
+#pragma once
+// Contact points in space, side by side. The spin of a body is taken along its principal axes and multiplied by the radii of gyration
+// rho about them, W = rho R^T w: then it too goes with the mass m. Along each row e of a point, the normal n (from body 1 to body 2) and
+// two tangents, the relative velocity is
+//
+//     u_e = e.(v2 - v1) + a2.W2 - a1.W1        a = R^T (r x e) / rho
+#include "dynamics/wall/plane_lanes.hpp"
+
+namespace masonry::wall {
+
+struct alignas(alignment) Lanes3 {
+	Lanes x, y, z;
+	MASONRY_INLINE Vector3 lane(int i) const { return {x[i], y[i], z[i]}; }
+	MASONRY_INLINE void operator+=(const Lanes3& o)
+	{
+		x += o.x;
+		y += o.y;
+		z += o.z;
+	}
+	MASONRY_INLINE void operator-=(const Lanes3& o)
+	{
+		x -= o.x;
+		y -= o.y;
+		z -= o.z;
+	}
+};
+MASONRY_INLINE Lanes3 operator+(const Lanes3& a, const Lanes3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+MASONRY_INLINE Lanes3 operator-(const Lanes3& a, const Lanes3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+MASONRY_INLINE Lanes3 operator*(const Lanes& f, const Lanes3& a) { return {f * a.x, f * a.y, f * a.z}; }
+MASONRY_INLINE Lanes dot(const Lanes3& a, const Lanes3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+MASONRY_INLINE Lanes3 cross(const Lanes3& a, const Lanes3& b)
+{
+	return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+MASONRY_INLINE Lanes3 select(const Mask& mask, const Lanes3& a, const Lanes3& b)
+{
+	return {select(mask, a.x, b.x), select(mask, a.y, b.y), select(mask, a.z, b.z)};
+}
+
+// Along the two tangents.
+struct alignas(alignment) Lanes2 {
+	Lanes x, y;
+};
+MASONRY_INLINE Lanes2 operator+(const Lanes2& a, const Lanes2& b) { return {a.x + b.x, a.y + b.y}; }
+MASONRY_INLINE Lanes2 operator-(const Lanes2& a, const Lanes2& b) { return {a.x - b.x, a.y - b.y}; }
+MASONRY_INLINE Lanes2 operator*(const Lanes& f, const Lanes2& a) { return {f * a.x, f * a.y}; }
+MASONRY_INLINE Lanes2 operator*(const Lanes2& a, const Lanes& f) { return f * a; }
+MASONRY_INLINE Lanes2 operator*(double f, const Lanes2& a) { return all(f) * a; }
+MASONRY_INLINE Lanes2& operator*=(Lanes2& a, const Lanes& f) { return a = f * a; }
+MASONRY_INLINE Lanes dot(const Lanes2& a, const Lanes2& b) { return a.x * b.x + a.y * b.y; }
+MASONRY_INLINE Lanes size(const Lanes2& a) { return larger(size(a.x), size(a.y)); } // to report and compare only: saves the root
+MASONRY_INLINE Lanes length(const Lanes2& a) { return root(dot(a, a)); }
+MASONRY_INLINE Lanes2 select(const Mask& mask, const Lanes2& a, const Lanes2& b)
+{
+	return {select(mask, a.x, b.x), select(mask, a.y, b.y)};
+}
+MASONRY_INLINE double component(const Lanes2& tangent, int k, int lane) { return k == 0 ? tangent.x[lane] : tangent.y[lane]; }
+MASONRY_INLINE void setComponent(Lanes2& tangent, int k, int lane, double value)
+{
+	if (k == 0)
+		tangent.x[lane] = value;
+	else // (k == 0 ? x : y)[lane] is a copy to GCC 16
+		tangent.y[lane] = value;
+}
+
+// Velocities of bodies: packs (v, 1/m) and (W, 1/m) of each in, one lane a body out.
+template <>
+struct alignas(alignment) Bodies<Space> {
+	Lanes3 v, w;
+	Lanes m;
+
+	MASONRY_INLINE Bodies(const Lanes* from, const int* body)
+	{
+		gather<2>(from, body, v.x, v.y, v.z, m);
+		gather<2>(from + 1, body, w.x, w.y, w.z, m);
+	}
+	// Back to where they came from; those that are not free stay.
+	MASONRY_INLINE void store(Lanes* to, const int* body, unsigned free) const
+	{
+		scatter<2>(v.x, v.y, v.z, m, to, body, free);
+		scatter<2>(w.x, w.y, w.z, m, to + 1, body, free);
+	}
+};
+
+// A row of a point takes the velocities of both bodies along an axis, and their spins by its arms.
+struct alignas(alignment) Row {
+	Lanes3 axis, arm1, arm2;
+	MASONRY_INLINE Lanes rate(const Bodies<Space>& v1, const Bodies<Space>& v2) const
+	{
+		return dot(axis, v2.v - v1.v) + dot(arm2, v2.w) - dot(arm1, v1.w);
+	}
+};
+
+template <>
+struct alignas(alignment) PointLanes<Space> {
+	using Tangent = Lanes2;
+	Row normal, tangent[2];
+	Lanes gap;          // m; far away in lanes without a point
+	Lanes massN, massT; // 1 / (J M^-1 J^T), kg; of the tangents along that in which the point gives most
+	Lanes pn;           // impulse of a step, N s
+	Lanes2 pt;
+	Lanes filteredImpulse; // filtered pn
+};
+
+// A point is made of a vertex and a face, which are given in the axes of their bodies, or of two edges that cross. Those are looked at one
+// by one.
+template <>
+struct alignas(alignment) FeatureLanes<Space> {
+	Mask vertexOn1, present, crossing;
+	Lanes3 vertex, normal, tangent; // of the face: outward normal, first tangent
+	Lanes faceDistance;
+	Lanes2 faceEnd; // m, half sizes of the face along its tangents
+	Lanes3 arm;     // from body 2 to the point, global axes
+	Lanes foundGap; // when the features were looked up
+	Lanes2 found;   // where along them
+
+	std::array<double, 3> foundAt(int lane) const { return {foundGap[lane], found.x[lane], found.y[lane]}; }
+	void setFound(const std::array<double, 3>& f, int lane) { foundGap[lane] = f[0], found.x[lane] = f[1], found.y[lane] = f[2]; }
+};
+
+MASONRY_INLINE Lanes normalRate(const Bodies<Space>& v1, const Bodies<Space>& v2, const PointLanes<Space>& p)
+{
+	return p.normal.rate(v1, v2);
+}
+MASONRY_INLINE Lanes2 slipRate(const Bodies<Space>& v1, const Bodies<Space>& v2, const PointLanes<Space>& p)
+{
+	return {p.tangent[0].rate(v1, v2), p.tangent[1].rate(v1, v2)};
+}
+
+// Impulses into velocities.
+MASONRY_INLINE void pushNormal(Bodies<Space>& v1, Bodies<Space>& v2, const PointLanes<Space>& p, const Lanes& dn)
+{
+	const Lanes d1 = v1.m * dn, d2 = v2.m * dn;
+	v1.v -= d1 * p.normal.axis;
+	v1.w -= d1 * p.normal.arm1;
+	v2.v += d2 * p.normal.axis;
+	v2.w += d2 * p.normal.arm2;
+}
+// 1 / (J M^-1 J^T) along the normal of bodies with these 1/m.
+MASONRY_INLINE Lanes normalMass(const PointLanes<Space>& p, const Lanes& m1, const Lanes& m2)
+{
+	return all(1) / (m1 + m2 + m1 * dot(p.normal.arm1, p.normal.arm1) + m2 * dot(p.normal.arm2, p.normal.arm2));
+}
+// Impulses into momenta.
+MASONRY_INLINE void add(Bodies<Space>& f1, Bodies<Space>& f2, const PointLanes<Space>& p, const Lanes& qn, const Lanes2& qt)
+{
+	const Lanes3 f = qn * p.normal.axis + qt.x * p.tangent[0].axis + qt.y * p.tangent[1].axis;
+	f1.v -= f;
+	f1.w -= qn * p.normal.arm1 + qt.x * p.tangent[0].arm1 + qt.y * p.tangent[1].arm1;
+	f2.v += f;
+	f2.w += qn * p.normal.arm2 + qt.x * p.tangent[0].arm2 + qt.y * p.tangent[1].arm2;
+}
+
+// Coulomb: within the disc of radius `bound`.
+MASONRY_INLINE Lanes2 clip(const Lanes2& tangential, const Lanes& bound)
+{
+	const Lanes square = dot(tangential, tangential);
+	const Mask outside = square > bound * bound;
+	return select(outside, bound / select(outside, root(square), all(1)), all(1)) * tangential;
+}
+// On the rim but for round-off.
+MASONRY_INLINE Mask slides(const Lanes2& tangential, const Lanes& bound)
+{
+	constexpr double offRim = 1e-12;
+	return dot(tangential, tangential) >= all(1 - offRim) * bound * bound;
+}
+inline Vector3 normal(const PointLanes<Space>& p, int lane) { return p.normal.axis.lane(lane); }
+// Along a row (0 normal, then tangential) what one lane's point takes of a body's pack (0 velocity, 1 spin).
+MASONRY_INLINE Vector3 partOf(const PointLanes<Space>& p, int row, int lane, int body, int pack)
+{
+	const Row& r = row == 0 ? p.normal : p.tangent[row - 1];
+	return (pack == 0 ? r.axis : body == 1 ? r.arm1 : r.arm2).lane(lane);
+}
+
+// Sets the frame of one lane's point. Its position is from the centre of body 2.
+MASONRY_INLINE void takeFrame(const PointLanes<Space>& p, const FeatureLanes<Space>& f, int lane, const Space::Spin&,
+                              ContactFrame<Space>& frame)
+{
+	frame.position = f.arm.lane(lane);
+	frame.axes.row(0) = p.normal.axis.lane(lane);
+	frame.axes.row(1) = p.tangent[0].axis.lane(lane);
+	frame.axes.row(2) = p.tangent[1].axis.lane(lane);
+	frame.gap = p.gap[lane];
+}
+
+} // namespace masonry::wall

@@ -1,0 +1,300 @@
+// Contact points in space: the parts of ContactSet (contact_set.hpp) that depend on the dimension.
+#include "contact/features.hpp"
+#include "dynamics/wall/contact_set.hpp"
+#include "tolerances.hpp"
+
+namespace masonry::wall {
+
+namespace {
+
+constexpr int poseRows = 4;
+
+struct alignas(alignment) Placed {
+	Lanes3 row[3], position, perRho; // rows of the rotation matrix
+
+	MASONRY_INLINE Lanes3 turn(const Lanes3& local) const { return {dot(row[0], local), dot(row[1], local), dot(row[2], local)}; }
+	MASONRY_INLINE Lanes3 turnBack(const Lanes3& global) const { return global.x * row[0] + global.y * row[1] + global.z * row[2]; }
+};
+
+MASONRY_INLINE Lanes3 threeOf(const Lanes* pose, const int* body, int row, Lanes& fourth)
+{
+	Lanes a = pose[poseRows * body[0] + row], b = pose[poseRows * body[1] + row], c = pose[poseRows * body[2] + row],
+	      d = pose[poseRows * body[3] + row];
+	transpose(a, b, c, d);
+	fourth = d;
+	return {a, b, c};
+}
+
+MASONRY_INLINE Placed placed(const Lanes* pose, const int* body)
+{
+	Placed p;
+	Lanes unused;
+	p.row[0] = threeOf(pose, body, 0, p.position.x);
+	p.row[1] = threeOf(pose, body, 1, p.position.y);
+	p.row[2] = threeOf(pose, body, 2, p.position.z);
+	p.perRho = threeOf(pose, body, 3, unused);
+	return p;
+}
+
+MASONRY_INLINE Placed oneOf(const Mask& mask, const Placed& a, const Placed& b)
+{
+	return {{select(mask, a.row[0], b.row[0]), select(mask, a.row[1], b.row[1]), select(mask, a.row[2], b.row[2])},
+	        select(mask, a.position, b.position),
+	        select(mask, a.perRho, b.perRho)};
+}
+
+void set(Lanes3& to, int lane, const Vector3& value)
+{
+	to.x[lane] = value.x();
+	to.y[lane] = value.y();
+	to.z[lane] = value.z();
+}
+
+// Gap, normal, first tangent and arm of a point; where it lies along its features: what is found out lane by lane, or one by one.
+struct alignas(alignment) Found {
+	Lanes3 normal, tangent, arm2;
+	Lanes gap, along1, along2;
+};
+
+MASONRY_INLINE Found vertexOnFace(const FeatureLanes<Space>& f, const Placed& p1, const Placed& p2)
+{
+	const Placed vertexBody = oneOf(f.vertexOn1, p1, p2), faceBody = oneOf(f.vertexOn1, p2, p1);
+	const Lanes3 arm = vertexBody.turn(f.vertex), out = faceBody.turn(f.normal);
+	const Lanes3 from = (vertexBody.position - faceBody.position) + arm;
+	Found found;
+	found.normal = select(f.vertexOn1, all(-1) * out, out);
+	found.tangent = faceBody.turn(f.tangent);
+	found.arm2 = select(f.vertexOn1, from, arm);
+	found.gap = dot(out, from) - f.faceDistance;
+	found.along1 = dot(found.tangent, from);
+	found.along2 = dot(cross(out, found.tangent), from);
+	return found;
+}
+
+Pose poseOf(const Lanes* pose, int body)
+{
+	const Lanes* row = &pose[poseRows * body];
+	Matrix3 axes;
+	for (int i = 0; i < 3; ++i)
+		axes.row(i) << row[i][0], row[i][1], row[i][2];
+	return {{row[0][3], row[1][3], row[2][3]}, Quaternion(axes)};
+}
+
+// Edges that cross. The tangents are along and across body 1's edge.
+void takeCrossings(const RigidSystem<Space>& s, const FeatureGroup<Space>& features, int k, const Lanes* poses, Found& found)
+{
+	for (int i = 0; i < width; ++i) {
+		if (!features.point[k].crossing[i])
+			continue;
+		const ContactPair<Space>& pair = s.pairs[features.pair[i]];
+		const Pose pose1 = poseOf(poses, pair.body1), pose2 = poseOf(poses, pair.body2);
+		const ContactFrame<Space> frame = Space::frame(pair.points[features.first[i] + k].feature, s.bodies[pair.body1].halfSize, pose1,
+		                                               s.bodies[pair.body2].halfSize, pose2);
+		set(found.normal, i, frame.axes.row(0));
+		set(found.tangent, i, frame.axes.row(1));
+		set(found.arm2, i, frame.position - pose2.position);
+		found.gap[i] = frame.gap;
+		found.along1[i] = frame.axes.row(1) * (frame.position - pose1.position);
+		found.along2[i] = frame.axes.row(2) * (frame.position - pose2.position);
+	}
+}
+
+MASONRY_INLINE Found located(const RigidSystem<Space>& s, const FeatureGroup<Space>& features, int k, const Lanes* poses, const Placed& p1,
+                             const Placed& p2)
+{
+	const FeatureLanes<Space>& f = features.point[k];
+	Found found = vertexOnFace(f, p1, p2);
+	if (f.crossing[0] | f.crossing[1] | f.crossing[2] | f.crossing[3])
+		takeCrossings(s, features, k, poses, found);
+	return found;
+}
+
+// Arms and masses. Along two rows a point gives J M^-1 J^T.
+MASONRY_INLINE Lanes response(const Row& a, const Row& b, const Lanes& mass1, const Lanes& mass2)
+{
+	return mass1 * dot(a.arm1, b.arm1) + mass2 * dot(a.arm2, b.arm2);
+}
+
+MASONRY_INLINE void takeRow(Row& row, const Lanes3& axis, const Lanes3& r1, const Lanes3& r2, const Placed& p1, const Placed& p2)
+{
+	const Lanes3 a1 = p1.turnBack(cross(r1, axis)), a2 = p2.turnBack(cross(r2, axis));
+	row.axis = axis;
+	row.arm1 = {a1.x * p1.perRho.x, a1.y * p1.perRho.y, a1.z * p1.perRho.z};
+	row.arm2 = {a2.x * p2.perRho.x, a2.y * p2.perRho.y, a2.z * p2.perRho.z};
+}
+
+MASONRY_INLINE void takeFound(PointLanes<Space>& p, FeatureLanes<Space>& f, const Found& found, const Placed& p1, const Placed& p2,
+                              const Lanes& mass1, const Lanes& mass2)
+{
+	f.arm = found.arm2;
+	const Lanes3 r1 = (p2.position - p1.position) + found.arm2;
+	takeRow(p.normal, found.normal, r1, found.arm2, p1, p2);
+	takeRow(p.tangent[0], found.tangent, r1, found.arm2, p1, p2);
+	takeRow(p.tangent[1], cross(found.normal, found.tangent), r1, found.arm2, p1, p2);
+
+	const Lanes none = all(0), one = all(1), mass = mass1 + mass2;
+	p.massN = select(f.present, one / (mass + response(p.normal, p.normal, mass1, mass2)), none);
+	const Lanes k11 = mass + response(p.tangent[0], p.tangent[0], mass1, mass2),
+	            k22 = mass + response(p.tangent[1], p.tangent[1], mass1, mass2), k12 = response(p.tangent[0], p.tangent[1], mass1, mass2);
+	const Lanes middle = all(0.5) * (k11 + k22), half = all(0.5) * (k11 - k22);
+	p.massT = select(f.present, one / (middle + root(half * half + k12 * k12)), none);
+}
+
+MASONRY_LANES void measureGroups(const RigidSystem<Space>& s, Group<Space>* groups, FeatureGroup<Space>* features, unsigned char* stale,
+                                 size_t count, const Lanes* pose, double travel, bool remember)
+{
+	const double passed = tolerance::wall::leftFace / tolerance::wall::search * travel;
+	for (size_t g = 0; g < count; ++g) {
+		Group<Space>& group = groups[g];
+		const Placed p1 = placed(pose, group.body1), p2 = placed(pose, group.body2);
+		Mask isStale {};
+		const Mask anew = maskOf(stale[g]);
+		for (int k = 0; k < group.count; ++k) {
+			FeatureLanes<Space>& f = features[g].point[k];
+			const Found found = located(s, features[g], k, pose, p1, p2);
+			if (remember) {
+				f.foundGap = select(anew, found.gap, f.foundGap);
+				f.found = select(anew, {found.along1, found.along2}, f.found);
+			}
+			const Lanes moved1 = size(found.along1 - f.found.x), moved2 = size(found.along2 - f.found.y);
+			isStale |= size(found.gap - f.foundGap) + moved1 + moved2 > travel;
+			// At a corner of the face, the vertex of either body may be the point, until one has passed the other.
+			const Lanes fromEnd = larger(size(size(f.found.x) - f.faceEnd.x), size(size(f.found.y) - f.faceEnd.y));
+			isStale |= ~f.crossing & (larger(moved1, moved2) > fromEnd + passed);
+			group.point[k].gap = select(f.present, found.gap, all(farAway));
+		}
+		stale[g] |= bitsOf(isStale);
+	}
+}
+
+MASONRY_LANES void frameGroups(const RigidSystem<Space>& s, Group<Space>* groups, FeatureGroup<Space>* features, size_t count,
+                               const Lanes* pose, const Lanes* velocity)
+{
+	for (size_t g = 0; g < count; ++g) {
+		Group<Space>& group = groups[g];
+		const Placed p1 = placed(pose, group.body1), p2 = placed(pose, group.body2);
+		Lanes mass1, mass2;
+		for (int i = 0; i < width; ++i) {
+			mass1[i] = velocity[packs<Space> * group.body1[i]][3];
+			mass2[i] = velocity[packs<Space> * group.body2[i]][3];
+		}
+		for (int k = 0; k < group.count; ++k)
+			takeFound(group.point[k], features[g].point[k], located(s, features[g], k, pose, p1, p2), p1, p2, mass1, mass2);
+	}
+}
+
+} // namespace
+
+template <>
+void ContactSet<Space>::measureGaps(const RigidSystem<Space>& s, int begin, int end, double travel, bool remember)
+{
+	measureGroups(s, groups.data() + begin, features.data() + begin, stale.data() + begin, end - begin, pose.data(), travel, remember);
+}
+
+template <>
+void ContactSet<Space>::takeFrames(const RigidSystem<Space>& s, int begin, int end)
+{
+	frameGroups(s, groups.data() + begin, features.data() + begin, end - begin, pose.data(), velocity.data());
+}
+
+template <>
+void ContactSet<Space>::takeBodies(const RigidSystem<Space>& s)
+{
+	const size_t n = s.bodies.size();
+	velocity.resize(2 * (n + 1));
+	pose.resize(poseRows * (n + 1));
+	gyration.resize(n + 1);
+	const auto take = [this](size_t b, const Pose& at, const Space::Velocity& v, double perMass) {
+		const Vector3 perRho = gyration[b].cwiseInverse();
+		pose[poseRows * b + 3] = Lanes {perRho[0], perRho[1], perRho[2], 1};
+		velocity[2 * b][3] = perMass;
+		place(b, at);
+		setVelocity(b, v);
+	};
+	eachShare(n, [&](size_t begin, size_t end, int) {
+		for (size_t b = begin; b < end; ++b) {
+			const auto& body = s.bodies[b];
+			gyration[b] = own[b] ? Vector3((body.inertia / body.mass).cwiseSqrt()) : Vector3(Vector3::Ones());
+			take(b, body.pose, body.velocity, own[b] ? 1 / body.mass : 0);
+		}
+	});
+	gyration[n].setOnes();
+	take(n, {}, Space::Velocity::Zero(), 0);
+}
+
+template <>
+void ContactSet<Space>::place(size_t b, const Pose& at)
+{
+	const Matrix3 axes = at.orientation.toRotationMatrix();
+	for (int i = 0; i < 3; ++i)
+		pose[poseRows * b + i] = Lanes {axes(i, 0), axes(i, 1), axes(i, 2), at.position[i]};
+}
+
+template <>
+void ContactSet<Space>::takePoint(const RigidSystem<Space>& s, int c, int k)
+{
+	const ContactPair<Space>& pair = s.pairs[c];
+	const auto [group, lane] = slots[c][k / lanePoints<Space>];
+	FeatureLanes<Space>& f = features[group].point[k % lanePoints<Space>];
+	const bool present = k < pair.size;
+	const SpaceFeature feature =
+	    present ? pair.points[k].feature : SpaceFeature {SpaceFeature::Vertex1, 0, 0}; // tells how far the pair moves
+	f.present[lane] = present ? -1 : 0;
+	f.crossing[lane] = feature.kind == SpaceFeature::Edges ? -1 : 0;
+	const bool vertexOn1 = feature.kind == SpaceFeature::Vertex1;
+	f.vertexOn1[lane] = vertexOn1 ? -1 : 0;
+	const Vector3 &vertexHalf = s.bodies[vertexOn1 ? pair.body1 : pair.body2].halfSize,
+	              &faceHalf = s.bodies[vertexOn1 ? pair.body2 : pair.body1].halfSize;
+	const int vertex = vertexOn1 ? feature.first : feature.second, face = f.crossing[lane] ? 0 : vertexOn1 ? feature.second : feature.first;
+	const int axis = face / 2;
+	set(f.vertex, lane,
+	    {vertex & 1 ? vertexHalf.x() : -vertexHalf.x(), vertex & 2 ? vertexHalf.y() : -vertexHalf.y(),
+	     vertex & 4 ? vertexHalf.z() : -vertexHalf.z()});
+	set(f.normal, lane, (face % 2 ? 1. : -1.) * Vector3::Unit(axis));
+	set(f.tangent, lane, Vector3::Unit(feature::nextAxis(axis)));
+	f.faceDistance[lane] = faceHalf[axis];
+	f.faceEnd.x[lane] = faceHalf[feature::nextAxis(axis)];
+	f.faceEnd.y[lane] = faceHalf[feature::nextAxis(feature::nextAxis(axis))];
+}
+
+template <>
+Vector3 ContactSet<Space>::position(size_t b) const
+{
+	return {pose[poseRows * b][3], pose[poseRows * b + 1][3], pose[poseRows * b + 2][3]};
+}
+
+template <>
+void ContactSet<Space>::setVelocity(size_t b, const Space::Velocity& v)
+{
+	const Lanes* rows = &pose[poseRows * b];
+	const double perMass = velocity[2 * b][3];
+	const Lanes spin = (v[3] * rows[0] + v[4] * rows[1] + v[5] * rows[2]) / rows[3]; // R^T w rho
+	velocity[2 * b] = Lanes {v[0], v[1], v[2], perMass};
+	velocity[2 * b + 1] = Lanes {spin[0], spin[1], spin[2], perMass};
+}
+
+template <>
+Space::Velocity ContactSet<Space>::inGlobal(const LaneArray& from, size_t b) const
+{
+	const Lanes &v = from[2 * b], &spin = from[2 * b + 1], *rows = &pose[poseRows * b];
+	const Lanes w = spin * rows[3];
+	Space::Velocity result;
+	for (int i = 0; i < 3; ++i) {
+		result[i] = v[i];
+		result[3 + i] = rows[i][0] * w[0] + rows[i][1] * w[1] + rows[i][2] * w[2];
+	}
+	return result;
+}
+
+template <>
+void ContactSet<Space>::takeForce(const Space::Velocity& force, double h, size_t b, LaneArray& to) const
+{
+	const Lanes* rows = &pose[poseRows * b];
+	const double perMass = h * velocity[2 * b][3];
+	const Lanes moment = force[3] * rows[0] + force[4] * rows[1] + force[5] * rows[2]; // R^T times it
+	to[2 * b] = perMass * Lanes {force[0], force[1], force[2], 0};
+	const Lanes spin = perMass * moment * rows[3];
+	to[2 * b + 1] = Lanes {spin[0], spin[1], spin[2], 0};
+}
+
+} // namespace masonry::wall

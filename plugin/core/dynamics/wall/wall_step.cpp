@@ -1,0 +1,160 @@
+#include "dynamics/wall/wall_step.hpp"
+#include "dynamics/model/drive_kinks.hpp"
+#include "dynamics/model/free_motion.hpp"
+#include "tolerances.hpp"
+#include <algorithm>
+
+namespace masonry::wall {
+
+template <class K>
+StepReport WallStep<K>::advance(RigidSystem<K>& s, double dt)
+{
+	report = {};
+	errors = {0, 0, s.kineticEnergy(), freeMass(s) * scale::acceleration(s) * scale::length(s)};
+	s.impacts.clear();
+	for (double left = dt; left > 0 && !report.diverged;) {
+		const double h = untilKink(s, left, dt);
+		advancePart(s, h);
+		++report.substeps;
+		left = h == left ? 0 : left - h;
+	}
+	for (const RigidBody<K>& body : s.bodies)
+		if (const double turn = dt * body.velocity.template tail<K::spins>().norm(); !body.prescribed && turn > tolerance::partTurn)
+			report.turn = std::max(report.turn, turn);
+	report.residual = settings.solver.strictForces ? std::max(report.velocityResidual, report.forceResidual) : report.velocityResidual;
+	report.sweeps = report.iterations;
+	report.events = int(s.impacts.size());
+	return report;
+}
+
+template <class K>
+void WallStep<K>::advancePart(RigidSystem<K>& s, double h)
+{
+	const Scales scales(s);
+	StepContext step(scales, h);
+	step.stands = rest.stands();
+	team.setThreads(settings.threads);
+	solver.settings = settings.solver;
+	solver.otherFrames |= contacts.take(s);
+	contacts.measure(s, step.stands);
+	solver.otherFrames |= !contacts.keepsFrames();
+	contacts.setUnit(h);
+	if (!step.stands)
+		contacts.updateFrames(s);
+	const LaneArray& expected = guess.changeIn(h);
+	takeInstants(s, step);
+	pulses.move(s, contacts, h);
+	contacts.limitMoved(s, step.fall);
+	ledger.open(s, contacts, pulses.halfBack(), h);
+	contacts.takeForces(s, h, loads);
+	solver.spins = events.find(s, contacts, expected, step);
+	const CappedReport result = solve(s, loads, expected.size() == loads.size() && solver.spins.empty() ? expected : none, step);
+	contacts.addJammed(report.jammed);
+	const double level = tolerance::wall::motion * tolerance::restSpeed * scales.speed;
+	const PointsReport ofPoints = solver.advanceGaps(contacts, h, level);
+	ledger.takeContacts(s, contacts, solver, ofPoints.friction);
+	report.forceResidual = std::max(report.forceResidual, ofPoints.forceError);
+	events.take(s, contacts, solver);
+	const int moved = rest.movingBlocks(s, contacts, solver, level);
+	report.moved = std::max(report.moved, moved);
+	guess.take(contacts.velocity, solver.velocity, step.fall);
+	contacts.velocity = solver.velocity;
+	contacts.shiftIn(h);
+	if (const double deepest = moved > 0 ? projection.settle(contacts) : 0; deepest > tolerance::wall::sunk * contacts.length)
+		report.deepest = std::max(report.deepest, deepest);
+	moveBodies(s, h);
+	rest.take(s, solver.report, moved, h);
+	s.time += h;
+	s.moved = false;
+	started = true;
+	report.diverged |= !result.finite || !s.isFinite();
+}
+
+// Two things happen between two steps: first the impacts of the joints that landed in the last one, then the jumps of the base.
+template <class K>
+void WallStep<K>::takeInstants(RigidSystem<K>& s, const StepContext& step)
+{
+	const bool land = events.areRows(), jump = pulses.find(s, events.blocks());
+	if (!land && !jump)
+		return;
+	pulses.hold(s, contacts);
+	if (land) {
+		solver.spins = events.rows(contacts);
+		const double lostInStep = ledger.lost();
+		ledger.open(s, contacts, pulses.halfBack(), 0);
+		const CappedReport impact = solveInstant(s, step.atInstant(events.speed()), lostInStep);
+		events.report(s, contacts, solver.spins, lostInStep + impact.lost, impact.residual);
+		capped.restore(contacts);
+	}
+	solver.spins.clear();
+	if (jump) {
+		pulses.apply(s, contacts);
+		ledger.open(s, contacts, pulses.halfBack(), 0);
+		solveInstant(s, step.atInstant(pulses.speed()), 0);
+		capped.restore(contacts);
+	}
+}
+
+template <class K>
+CappedReport WallStep<K>::solve(RigidSystem<K>& s, const LaneArray& load, const LaneArray& expected, const StepContext& step)
+{
+	const CappedReport result = capped.solve(s, contacts, load, expected, solver, ledger, step);
+	report.iterations += result.iterations;
+	report.factorisations += result.factorisations;
+	report.velocityResidual = std::max(report.velocityResidual, result.residual);
+	return result;
+}
+
+// Leaves the impulses of the instant in the contacts. `taken`: energy that the first part of its impacts has taken, J.
+template <class K>
+CappedReport WallStep<K>::solveInstant(RigidSystem<K>& s, const StepContext& instant, double taken)
+{
+	loads.assign(contacts.velocity.size(), all(0));
+	contacts.limitMoved(s, 0);
+	// A jump of the base gets the stricter bound, since it may have no solution where nothing slips.
+	const double missed = solver.spins.empty() ? settings.solver.tolerance : tolerance::wall::missedImpact;
+	solver.settings.instantEnough = std::min(settings.solver.instantEnough, missed / 2);
+	const CappedReport result = solve(s, loads, none, instant);
+	contacts.addJammed(report.jammed);
+	report.converged &= result.residual <= missed * std::max(10 * instant.fall, instant.speed);
+	ledger.takeContacts(s, contacts, solver, 0);
+	contacts.velocity = solver.velocity;
+	for (size_t b = 0; b < s.bodies.size(); ++b)
+		if (!s.bodies[b].prescribed)
+			s.bodies[b].velocity = contacts.inGlobal(contacts.velocity, b);
+	report.created += ledger.close(s, Scales(s), instant.h, 0, 0, taken);
+	errors.made += ledger.made();
+	return result;
+}
+
+template <class K>
+void WallStep<K>::moveBodies(RigidSystem<K>& s, double h)
+{
+	double work = 0, onMean = 0; // of the forces, J
+	for (size_t b = 0; b < s.bodies.size(); ++b) {
+		auto& body = s.bodies[b];
+		body.fresh = false;
+		if (body.prescribed) {
+			K::advance(body.pose, body.velocity, h);
+			if (body.drive >= 0) {
+				body.pose.position = s.driven(body, s.time + h);
+				body.velocity.template head<K::dimension>() = s.drives[body.drive].velocity(s.time + h);
+			}
+			continue;
+		}
+		const typename K::Velocity moved = contacts.inGlobal(contacts.shift, b), before = body.velocity;
+		body.velocity = contacts.inGlobal(contacts.velocity, b);
+		moveFree(body, moved, h);
+		body.increment = (body.velocity - before) / h;
+		work += body.force.dot(moved);
+		onMean += h / 2 * body.force.dot(before + body.velocity);
+	}
+	report.created += ledger.close(s, Scales(s), h, work, onMean, 0);
+	if (report.moved > 0) // the solver's errors in blocks at rest go nowhere, but their sum grows with time
+		errors.made += ledger.made();
+}
+
+template class WallStep<Plane>;
+template class WallStep<Space>;
+
+} // namespace masonry::wall

@@ -1,0 +1,145 @@
+#pragma once
+// The laws of contact_problem.hpp at one point: their projection, and the impulse of a point alone.
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace masonry {
+
+// In the place of a friction coefficient: a point that carries an impulse does not slip.
+constexpr double noSlip = std::numeric_limits<double>::infinity();
+// In the same place: the first row alone acts, pulling as well as pushing.
+constexpr double bilateral = -1;
+// In the same place: presses or parts, and slips in neither case. With it a problem of points without slip has one motion that solves it.
+constexpr double tied = -2;
+
+// P: the normal part on p_n >= 0, then the tangential part on the disc of radius mu p_n.
+template <class Rows>
+Rows project(const Rows& y, double friction)
+{
+	if (friction == bilateral)
+		return Rows(y[0] * Rows::Unit(0));
+	Rows p = y;
+	if (friction == tied) {
+		p[0] = std::max(0., y[0]);
+		return p;
+	}
+	if (!(y[0] > 0))
+		return Rows::Zero();
+	auto tangential = p.template tail<Rows::RowsAtCompileTime - 1>();
+	const double bound = friction * y[0], square = tangential.squaredNorm();
+	if (square > bound * bound)
+		tangential *= bound / std::sqrt(square);
+	return p;
+}
+
+// Derivative of P.
+template <class Rows>
+auto projectionRate(const Rows& y, double friction)
+{
+	constexpr int tangents = Rows::RowsAtCompileTime - 1;
+	Eigen::Matrix<double, tangents + 1, tangents + 1> rate;
+	if (friction == tied) {
+		rate.setIdentity();
+		rate(0, 0) = y[0] > 0;
+		return rate;
+	}
+	rate.setZero();
+	if (friction == bilateral)
+		rate(0, 0) = 1;
+	if (friction == bilateral || !(y[0] > 0))
+		return rate;
+	rate.setIdentity();
+	const double size = y.template tail<tangents>().norm();
+	if (size <= friction * y[0])
+		return rate;
+	const Eigen::Matrix<double, tangents, 1> d = y.template tail<tangents>() / size;
+	rate.template bottomLeftCorner<tangents, 1>() = friction * d;
+	auto turn = rate.template bottomRightCorner<tangents, tangents>();
+	turn = friction * y[0] / size * (turn - d * d.transpose()).eval();
+	return rate;
+}
+
+// The law of one point alone, whose impulse p makes u = u0 + G p.
+template <int rows>
+struct OnePoint {
+	using Rows = Eigen::Matrix<double, rows, 1>;
+	using Block = Eigen::Matrix<double, rows, rows>;
+	using Tangential = Eigen::Matrix<double, rows - 1, 1>;
+
+	Block G {Block::Zero()};
+	double trace {0};
+
+	// Without slip a point may ask for a pull; then, as where slip finds nothing, it is held along the normal alone.
+	Rows impulse(const Rows& u0, double friction) const
+	{
+		if (friction == bilateral)
+			return Rows(-u0[0] / G(0, 0) * Rows::Unit(0));
+		if (u0[0] >= 0)
+			return Rows::Zero();
+		const Rows stick = -(G.inverse() * u0);
+		const double bound = friction * stick[0];
+		if (stick[0] > 0 && stick.template tail<rows - 1>().squaredNorm() <= bound * bound)
+			return stick;
+		Rows p = Rows::Zero();
+		if (friction > 0 && friction < noSlip && slip(u0, friction, stick.template tail<rows - 1>(), p))
+			return p;
+		p << -u0[0] / G(0, 0), Tangential::Zero();
+		return p;
+	}
+
+	// False: no slip that starts near the direction of `guess`.
+	bool slip(const Rows& u0, double friction, const Tangential& guess, Rows& p) const;
+
+	// p = p_n (1, mu d) with the p_n that makes u_n = 0. False: it would have to pull.
+	bool slipAlong(const Tangential& d, const Rows& u0, double friction, Rows& p, Tangential& ut) const
+	{
+		const double stiffness = G(0, 0) + friction * G.template topRightCorner<1, rows - 1>().dot(d);
+		if (!(stiffness > 0))
+			return false;
+		p[0] = -u0[0] / stiffness;
+		p.template tail<rows - 1>() = friction * p[0] * d;
+		ut = u0.template tail<rows - 1>() + G.template bottomRows<rows - 1>() * p;
+		return true;
+	}
+};
+
+// Plane: two directions, that of the sticking impulse first.
+template <>
+inline bool OnePoint<2>::slip(const Rows& u0, double friction, const Tangential& guess, Rows& p) const
+{
+	Tangential ut;
+	for (const double d : {std::copysign(1., guess[0]), -std::copysign(1., guess[0])})
+		if (slipAlong(Tangential(d), u0, friction, p, ut) && ut[0] * d <= 0)
+			return true;
+	return false;
+}
+
+// Space: Newton on the angle of d, a root of e.u_t with e = d turned by 90 degrees, where u_t looks against d.
+template <>
+inline bool OnePoint<3>::slip(const Rows& u0, double friction, const Tangential& guess, Rows& p) const
+{
+	constexpr int maxIterations = 20;
+	constexpr double roundOff = 1e-15, largestTurn = 0.5;
+	const double scale = std::abs(u0[0]) + std::abs(u0[1]) + std::abs(u0[2]);
+	Tangential d = guess.normalized(), ut;
+	for (int k = 0; k < maxIterations; ++k) {
+		if (!slipAlong(d, u0, friction, p, ut))
+			return false;
+		const Tangential e(-d[1], d[0]);
+		const double miss = e.dot(ut), against = -d.dot(ut);
+		if (std::abs(miss) <= roundOff * scale && against >= 0)
+			return true;
+		const double pnRate = friction * p[0] * p[0] * (G(0, 1) * e[0] + G(0, 2) * e[1]) / u0[0];
+		const Tangential ptRate = friction * (pnRate * d + p[0] * e);
+		const double rate = against + e.dot(Tangential(G.block<2, 1>(1, 0) * pnRate + G.block<2, 2>(1, 1) * ptRate));
+		if (rate > 0 && against >= 0)
+			d = (d + std::clamp(-miss / rate, -largestTurn, largestTurn) * e).normalized();
+		else
+			d = -ut.normalized();
+	}
+	return false;
+}
+
+} // namespace masonry

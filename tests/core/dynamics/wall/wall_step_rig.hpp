@@ -1,0 +1,92 @@
+#pragma once
+// One step of a wall, frozen.
+#include "core/dynamics/wall/wall_rig.hpp"
+
+namespace rig {
+
+using namespace masonry::wall;
+
+// The contact problem of one step, from the system as it is, with the frames of the start of the step and without impulses.
+template <class K>
+struct Frozen {
+	static constexpr int packs = wall::packs<K>;
+	parallel::Team team;
+	wall::ContactSet<K> contacts {team};
+	wall::AdmmSolver<K> solver;
+	wall::StepContext step;
+	LaneArray loads;
+
+	Frozen(RigidSystem<K>& s, double h) : step(Scales(s), h)
+	{
+		contacts.take(s);
+		contacts.measure(s, true);
+		contacts.setUnit(h);
+		contacts.takeForces(s, h, loads);
+	}
+
+	void solve(double tolerance, int iterations)
+	{
+		solver.settings.tolerance = tolerance;
+		solver.settings.first = iterations;
+		solver.solve(contacts, loads, {}, step);
+	}
+
+	// The same problem for the general solver: in the packs of the contacts each body has one mass for all components. `unknown` are its
+	// bodies; the impulses are those that the solver has found.
+	ContactSolver<K> general() const
+	{
+		ContactSolver<K> result;
+		std::vector<int> unknown(contacts.own.size(), -1);
+		const auto velocityOf = [&](const LaneArray& from, size_t b) {
+			typename K::Velocity v;
+			for (int k = 0; k < K::dof; ++k)
+				v[k] = from[packs * b + k / 3][k % 3];
+			return v;
+		};
+		for (size_t b = 0; b < contacts.own.size(); ++b)
+			if (contacts.own[b]) {
+				unknown[b] = int(result.bodies.size());
+				FreeBody<K> body;
+				body.inverseMass.linear = contacts.velocity[packs * b][3];
+				body.inverseMass.angular = body.inverseMass.linear * K::InverseInertia::Identity();
+				body.free = velocityOf(contacts.velocity, b) + velocityOf(loads, b);
+				body.velocity = body.free;
+				result.bodies.push_back(body);
+			}
+		for (size_t g = 0; g < contacts.groups.size(); ++g)
+			for (int i = 0; i < width; ++i)
+				for (int k = 0; k < contacts.groups[g].count; ++k) {
+					const auto& row = solver.rows[g][k];
+					if (contacts.features[g].pair[i] < 0 || !(row.stiffness[i] > 0))
+						continue;
+					const auto& p = contacts.groups[g].point[k];
+					const int bodies[2] = {contacts.groups[g].body1[i], contacts.groups[g].body2[i]};
+					ContactRows<K> point;
+					point.body1 = unknown[bodies[0]];
+					point.body2 = unknown[bodies[1]];
+					point.friction = contacts.groups[g].friction[i];
+					for (int r = 0; r < K::rows; ++r) {
+						for (int c = 0; c < K::dof; ++c) {
+							point.J1(r, c) = -partOf(p, r, i, 1, c / 3)[c % 3];
+							point.J2(r, c) = partOf(p, r, i, 2, c / 3)[c % 3];
+						}
+						point.offset[r] = r == 0 ? row.bn[i] : component(row.bt, r - 1, i);
+						for (int side = 0; side < 2; ++side)
+							if (!contacts.own[bodies[side]])
+								point.offset[r] += (side == 0 ? point.J1 : point.J2).row(r) * velocityOf(contacts.velocity, bodies[side]);
+					}
+					point.impulse[0] = p.pn[i];
+					for (int r = 1; r < K::rows; ++r)
+						point.impulse[r] = component(p.pt, r - 1, i);
+					for (int side = 0; side < 2; ++side)
+						if (const int b = unknown[bodies[side]]; b >= 0)
+							result.bodies[b].velocity +=
+							    result.bodies[b].inverseMass *
+							    typename K::Velocity((side == 0 ? point.J1 : point.J2).transpose() * point.impulse);
+					result.points.push_back(point);
+				}
+		return result;
+	}
+};
+
+} // namespace rig

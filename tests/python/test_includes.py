@@ -1,0 +1,75 @@
+"""Includes of the plugin point downwards only: the table of docs/developing.md, "The house"."""
+
+import re
+from pathlib import Path
+
+PLUGIN = Path(__file__).resolve().parents[2] / "plugin"
+# Of a folder of plugin/core: those that it may include, besides itself and the files at the top (math, tolerances, checks, archives). The order of
+# the table is that of the arrows: a folder may name only those above it.
+BELOW = {
+    "simd": "",
+    "linalg": "simd",
+    "parallel": "",
+    "motion": "",
+    "rocking": "motion",
+    "contact": "",
+    "laws": "linalg contact",
+    "impact": "contact laws",
+    "dynamics/model": "motion contact laws impact",
+    "dynamics/localised": "contact laws impact dynamics/model",
+    "dynamics/wall": "linalg simd parallel contact laws impact dynamics/model",
+    "dynamics/compliant": "contact laws impact dynamics/model",
+    "dynamics/scheduler": "dynamics/model dynamics/localised dynamics/wall",
+}
+
+
+def sources(folder):
+    return sorted(path for path in (PLUGIN / folder).rglob("*") if path.suffix in (".hpp", ".cpp"))
+
+
+def includes(path):
+    return re.findall(r'^#\s*include\s+["<]([^">]+\.hpp)[">]', path.read_text(), re.M)
+
+
+def folder_of(name):
+    """Folder of plugin/core of a file that an include names; '' for those at the top, None for others' headers."""
+    return str(Path(name).parent) if "/" in name and (PLUGIN / "core" / name).exists() else "" if (PLUGIN / "core" / name).exists() else None
+
+
+def test_table_points_downwards():
+    known = list(BELOW)
+    for folder, below in BELOW.items():
+        assert all(known.index(name) < known.index(folder) for name in below.split()), folder
+
+
+def test_core_includes_point_downwards():
+    wrong = []
+    for path in sources("core"):
+        own = str(path.parent.relative_to(PLUGIN / "core")).replace(".", "")
+        allowed = {"", own, *BELOW.get(own, "").split()}
+        for name in includes(path):
+            folder = folder_of(name)
+            if folder is None and "/" in name and name.split("/")[0] in {"contact", "dynamics", "yade", "core", "python", "abi"}:
+                wrong.append(f"{path.relative_to(PLUGIN)} includes {name}, which is not in plugin/core")
+            elif folder is not None and folder not in allowed:
+                wrong.append(f"{path.relative_to(PLUGIN)} includes {name}: {own or 'the top of plugin/core'} stands below {folder}")
+    assert not wrong, "\n".join(wrong)
+
+
+def test_every_folder_of_the_core_is_in_the_table():
+    folders = {str(path.parent.relative_to(PLUGIN / "core")) for path in sources("core")} - {"."}
+    assert folders == set(BELOW)
+
+
+def test_adapters_include_no_circle():
+    """A class of plugin/yade (header and source are one) never includes what includes it."""
+    graph = {}
+    for path in sources("yade"):
+        own = graph.setdefault(path.stem, set())
+        own.update(Path(name).stem for name in includes(path) if "/" not in name and (path.parent / name).exists() and Path(name).stem != path.stem)
+    while leaves := [name for name, below in graph.items() if not below]:
+        for leaf in leaves:
+            del graph[leaf]
+        for below in graph.values():
+            below.difference_update(leaves)
+    assert not graph, f"these include each other: {', '.join(sorted(graph))}"
