@@ -77,8 +77,7 @@ struct AdmmSettings {
 	double reach {0.016};        // (a) gap relative to the smallest half size within which points are in A. Smaller: more factorisations
 	double filterTime {0.125};   // (a) of the filtered load, relative to sqrt(smallest half size / gravity)
 	double refactorTime {0.125}; // (c) relative to the same, after which R follows the loads
-	double turned {
-	    0.03}; // (c) by which rows of a point may change before A is made anew, as by a turn in rad. Smaller: more factorisations
+	double turned {0.03}; // (c) change of a point's rows, as by a turn in rad, after which A is made anew. Smaller: more factorisations
 	double leftPenetration {5e-6}; // (c) relative to the smallest half size, which is not taken back. 0: blocks at rest never come to rest
 };
 
