@@ -1,6 +1,6 @@
 #pragma once
 // Every tolerance of the physics, each relative to a size or a speed of the scene: a scene scaled in length and
-// time gives the scaled answer. One line of consequence each.
+// time gives the scaled answer. One line of consequence each. A value that was compared with others names its table in docs/tuning.md.
 
 namespace masonry::tolerance {
 
@@ -208,7 +208,7 @@ namespace masonry::tolerance::wall {
 constexpr double search = 1e-3;
 // Distance past the end of its face, relative to the smallest half size, at which a vertex is looked up again at once. Larger: the normal
 // of the wrong face may hold a joint closed; smaller, down to contact::slack, within which a vertex still lies on the end: what the solver
-// leaves at rest has points looked up, and walls in space are factorised more often.
+// leaves at rest has points looked up, and walls in space are factorised more often. Table: what failed in wall.
 constexpr double leftFace = 10 * contact::slack;
 // Share of the velocities that an impact changes by which its points may miss the contact laws. Larger: blocks that go into each other
 // are not told of; smaller: sound impacts are.

@@ -1,6 +1,6 @@
 """The shaken wall in every program that is there: CPU time, drift, sink, first excursion, energy; what was asked for and whether it holds.
 
-    compare.py <build folder> [--quick | --from <json> | --other-walls | --space | --rest | --reference]
+    compare.py <build folder> [--quick | --from <json> | --excursions [plane] [space] [key=value ...] | --rest | --reference]
 
 Prints the tables; without an option and with --from, writes results/shaken_walls.csv, .json and .png. Ends with status 1 when something
 that must hold does not.
@@ -12,6 +12,7 @@ import datetime
 import json
 import math
 import os
+import re
 import statistics
 import subprocess
 import sys
@@ -26,12 +27,12 @@ HERE = Path(__file__).resolve().parent
 RESULTS = HERE.parents[2] / "results"
 SMALL, LARGE = (10, 10), (32, 32)  # courses, blocks per course: 105 and 1,040 blocks
 ALIKE = (0.98, 1.0, 1.02)  # g: of first excursions: a hundredth of the motion changes that of a corner by up to a tenth
-# Courses, blocks per course, motion in g of --other-walls.
+# Courses, blocks per course, motion in g: walls in the plane of --excursions, with SMALL and LARGE.
 OTHERS = [(courses, per_course, amplitude) for courses in (12, 16, 20, 24, 32) for per_course in (courses // 2, courses) for amplitude in (0.8, 1.0, 1.5)]
 OTHERS += [(40, 20, 0.8), (40, 20, 1.0), (14, 14, 0.9), (14, 14, 1.2), (18, 9, 0.9), (18, 9, 1.2), (22, 22, 0.9), (28, 14, 0.9), (28, 14, 1.1), (28, 28, 0.9), (28, 28, 1.1),
            (24, 8, 0.7)]
 REFERENCE = HERE / "gauss_seidel.json"  # first excursions as gauss_seidel.cpp finds them: written by --reference
-# Structure (of yade_space.py), motion: g, angle from x, s; of --space.
+# Structure (of yade_space.py), motion: g, angle from x, s: structures in space of --excursions.
 STRUCTURES = [("wall", 1.0, 0, 0.6), ("wall", 0.5, 90, 0.6), ("wall", 0.8, 45, 0.6), ("return wall", 0.9, 0, 0.6), ("return wall", 0.9, 90, 0.6), ("return wall", 0.9, 45, 0.6),
               ("two wythes", 0.9, 0, 0.6), ("two wythes", 0.6, 90, 0.6), ("wall with an opening", 0.4, 90, 0.6), ("pier", 0.6, 45, 0.6), ("column", 0.6, 45, 0.8)]
 IN_SPACE = dict(dt=5e-4, sweeps=1000)  # of gauss_seidel_space.cpp
@@ -177,20 +178,34 @@ def by_gauss_seidel(size, amplitudes):
     return [row for row in json.loads(REFERENCE.read_text()) if (row["courses"], row["per_course"]) == size and row["amplitude"] in amplitudes]
 
 
-def other_walls(build):
-    """Table: how far the mean of the top course of other walls goes at 1 ms, against Gauss-Seidel."""
-    def excursion(case):
-        return masonry(build, case[:2], case[2], 0, 0.5, fine=True)[0]["excursion"]
+def summary_of(errors):
+    """Root of the mean square, smallest and largest of relative errors, as cells of a table."""
+    return f"{math.sqrt(statistics.mean(e**2 for e in errors)):.1%} | {min(errors):+.1%} | {max(errors):+.1%}"
 
+
+def excursions_in_plane(build, settings):
+    """Table: how far the mean of the top course of the walls of REFERENCE goes at 1 ms by the core alone, against Gauss-Seidel. `settings`: key=value of assembly_bench."""
+    def reached(row):
+        command = [build / "validation/assembly_bench", f"courses={row['courses']}", f"per={row['per_course']}", f"amp={row['amplitude']}", *settings]
+        line = subprocess.run(command, capture_output=True, text=True, check=True).stdout.splitlines()[-1]
+        numbers = {name: float(re.search(key + r" ([-\d.e+naif]+)", line)[1])
+                   for name, key in dict(excursion="mean", cpu=r"\(step", iterations="its", factorisations="fac", rises="loss", deepest="pen").items()}
+        return numbers | dict(error=1e-3 * numbers["excursion"] / row["excursion"] - 1)
+
+    walls = sorted(json.loads(REFERENCE.read_text()), key=lambda row: (row["courses"], row["per_course"], row["amplitude"]))
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        ours = list(pool.map(excursion, OTHERS))
-    print("\n| courses | blocks a course | motion | 1 ms (mm) | Gauss-Seidel (mm) | difference |\n" + "| --- " * 6 + "|")
-    differences = []
-    for (courses, per_course, amplitude), here in zip(OTHERS, ours):
-        wanted = by_gauss_seidel((courses, per_course), [amplitude])[0]["excursion"]
-        differences.append(here / wanted - 1)
-        print(f"| {courses} | {per_course} | {amplitude:g} g | {1e3 * here:.1f} | {1e3 * wanted:.1f} | {differences[-1]:+.1%} |")
-    print(f"\nroot of the mean square: {math.sqrt(statistics.mean(d**2 for d in differences)):.1%}")
+        ours = list(pool.map(reached, walls))
+    print("\n| courses | blocks a course | motion | 1 ms (mm) | Gauss-Seidel (mm) | difference | CPU s per s | iterations a step | factorisations a step | rises of energy, of the loss"
+          " | penetration (mm) |\n" + "| --- " * 11 + "|")
+    for row, here in zip(walls, ours):
+        print(f"| {row['courses']} | {row['per_course']} | {row['amplitude']:g} g | {here['excursion']:.1f} | {1e3 * row['excursion']:.1f} | {here['error']:+.1%} | {here['cpu']:.3f} "
+              f"| {here['iterations']:.0f} | {here['factorisations']:.2f} | {here['rises']:.0e} | {here['deepest']:.4f} |")
+    groups = {"all": lambda row: True, "0.7 to 0.9 g": lambda row: row["amplitude"] <= 0.9, "0.98 to 1.5 g": lambda row: row["amplitude"] > 0.9,
+              "28 to 40 courses": lambda row: row["courses"] >= 28}
+    print("\n| walls in the plane | number | root of the mean square | smallest | largest |\n" + "| --- " * 5 + "|")
+    for name, belongs in groups.items():
+        errors = [here["error"] for row, here in zip(walls, ours) if belongs(row)]
+        print(f"| {name} | {len(errors)} | {summary_of(errors)} |")
 
 
 def cases_in_space():
@@ -255,8 +270,9 @@ def closed_forms(build):
         print(f"| {what} | {reached:.5g} | {wanted:.5g} | {reached / wanted - 1:+.3%} |")
 
 
-def space(build):
-    """Table: structures in space at 1 ms, at the default tolerance and at 1e-5, against Gauss-Seidel; before it Gauss-Seidel against closed forms."""
+def excursions_of_structures(build):
+    """Table: structures in space at 1 ms, at the default tolerance and at 1e-5, against Gauss-Seidel; before it Gauss-Seidel against closed forms. Rows of structures are
+    means over the motions of ALIKE; the last rows are of single motions."""
     closed_forms(build)
     known, cases = json.loads(REFERENCE_SPACE.read_text()), cases_in_space()
     tolerances = {"1 ms": None, "`tolerance` 1e-5": 1e-5}
@@ -269,24 +285,23 @@ def space(build):
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         rows = {name: list(pool.map(ours, cases, [tolerance] * len(cases))) for name, tolerance in tolerances.items()}
     print("\n| structure | motion | " + " | ".join(f"{what} ({unit}) | " + " | ".join(tolerances) for what, unit, _ in measured.values()) + " |\n" + "| --- " * 11 + "|")
-    differences = {(key, name): [] for key in measured for name in tolerances}
+    references = [next(row for row in known if in_reference(case).items() <= row.items()) for case in cases]
     for structure, amplitude, angle, _ in STRUCTURES:
         same = [k for k, case in enumerate(cases) if (case["structure"], case["angle"]) == (structure, angle)]
         cells = []
         for key, (_, _, scale) in measured.items():
-            wanted = statistics.mean(next(row[key] for row in known if in_reference(cases[k]).items() <= row.items()) for k in same)
+            wanted = statistics.mean(references[k][key] for k in same)
             cells.append(f"{scale * wanted:.1f}")
-            for name in tolerances:
-                differences[key, name].append(statistics.mean(rows[name][k][key] for k in same) / wanted - 1)
-                cells.append(f"{differences[key, name][-1]:+.1%}")
+            cells += [f"{statistics.mean(rows[name][k][key] for k in same) / wanted - 1:+.1%}" for name in tolerances]
         print(f"| {structure} | {amplitude:g} g {({0: 'along x', 90: 'along y', 45: 'diagonal'})[angle]} | " + " | ".join(cells) + " |")
     groups = {"structures of blocks": lambda structure: structure not in BRICKS, "all but the pillar": lambda structure: structure not in FINER, "all": lambda structure: True}
-    summaries = {"root of the mean square": lambda found: f"{math.sqrt(statistics.mean(d**2 for d in found)):.1%}", "largest": lambda found: f"{max(found, key=abs):+.1%}"}
+    print("\n| structures in space | quantity | tolerance | motions | root of the mean square | smallest | largest |\n" + "| --- " * 7 + "|")
     for name, belongs in groups.items():
-        rows_of = [k for k, (structure, *_) in enumerate(STRUCTURES) if belongs(structure)]
-        for what, summary in summaries.items():
-            cells = [summary([found[k] for k in rows_of]) for found in differences.values()]
-            print(f"| {what}, {len(rows_of)} motions: {name} | | " + " | ".join(f"| {one} | {two}" for one, two in zip(cells[::2], cells[1::2])) + " |")
+        chosen = [k for k, case in enumerate(cases) if belongs(case["structure"])]
+        for key, (what, *_) in measured.items():
+            for tolerance in tolerances:
+                errors = [rows[tolerance][k][key] / references[k][key] - 1 for k in chosen]
+                print(f"| {name} | {what} | {tolerance} | {len(errors)} | {summary_of(errors)} |")
 
 
 def walls_at_rest(build):
@@ -411,17 +426,23 @@ def main():
     parser.add_argument("build", type=Path)
     parser.add_argument("--quick", action="store_true", help="105 blocks in the plane only, writes nothing")
     parser.add_argument("--from", dest="old", type=Path, help="tables and figure of a file written before")
-    parser.add_argument("--other-walls", action="store_true", help="first excursions of other walls against Gauss-Seidel only, no CPU times")
+    parser.add_argument("--excursions", nargs="*", metavar="WORD", help="first excursions against Gauss-Seidel only: 'plane' (by the core alone; key=value are its settings), "
+                        "'space', without either both")
     parser.add_argument("--reference", action="store_true", help="compute what the files of Gauss-Seidel lack, an hour or two for all; no CPU times")
-    parser.add_argument("--space", action="store_true", help="structures in space against Gauss-Seidel only, no CPU times")
     parser.add_argument("--rest", action="store_true", help="whether walls that have been shaken rest, no CPU times")
     arguments = parser.parse_args()
-    if arguments.other_walls:
-        return other_walls(arguments.build)
+    if arguments.excursions is not None:
+        settings = [word for word in arguments.excursions if "=" in word]
+        parts = [word for word in arguments.excursions if "=" not in word] or ["plane", "space"]
+        if not {"plane", "space"}.issuperset(parts):
+            parser.error("--excursions takes 'plane', 'space' and settings key=value")
+        if "plane" in parts:
+            excursions_in_plane(arguments.build, settings)
+        if "space" in parts:
+            excursions_of_structures(arguments.build)
+        return 0
     if arguments.reference:
         return reference(arguments.build)
-    if arguments.space:
-        return space(arguments.build)
     if arguments.rest:
         return walls_at_rest(arguments.build)
     rows = json.loads(arguments.old.read_text()) if arguments.old else run(arguments.build, arguments.quick)

@@ -400,7 +400,7 @@ void AdmmSolver<K>::solve(ContactSet<K>& c, const LaneArray& load, const LaneArr
 	                                                 : int(std::min(iterations + saved, 10 * iterations));
 	constexpr double diverging = 10;
 	constexpr int untilLoaded = 100;          // iterations of a cold start, after which R follows the loads that they have found
-	constexpr int looks[] {20, 50, 300, 600}; // the same of an instant
+	constexpr int looks[] {20, 50, 300, 600}; // the same of an instant (docs/tuning.md, impacts)
 	double least = INFINITY;
 	do {
 		report.residual = iterate(c, step);

@@ -18,7 +18,7 @@
 // by an angle since, V misses the momentum equation by about that angle times its last change.
 //
 // The method is that of Boyd et al. (Foundations and Trends in Machine Learning 3, 2011); for contact with friction see Acary, Bremond and
-// Huber (2018) and Carpentier, Le Lidec and Montaut (RSS 2024). These choices are ours; docs/numerics.md has what was measured:
+// Huber (2018) and Carpentier, Le Lidec and Montaut (RSS 2024). These choices are ours; docs/tuning.md has what failed instead:
 //
 //     R by load       R = d r/(1 + l): d is the mean of J M^-1 J^T over the rows of the point, l its filtered normal impulse in units of
 //                     the impulse that stops it alone after the fall of one step. R p is then a velocity of about the same size at light
@@ -48,37 +48,37 @@
 
 namespace masonry::wall {
 
+// Tables of docs/tuning.md: (a) settings near the onset of motion, (b) softness of contacts at rest, (c) other settings, (d) impacts.
 struct AdmmSettings {
 	double tolerance {1e-3};   // largest |w - z| relative to the speed that gravity gives in a step. Larger: joints drift and sink
 	bool strictForces {false}; // the same holds for errors of impulses, as velocities; then a step takes up to `first` iterations
-	int iterations {20};       // at most in a step, beside the reserve. Fewer: excursions are too small
+	int iterations {20};       // (a) at most in a step, beside the reserve. Fewer: excursions are too small
 	int small {100}; // blocks below which a step takes more of them, in inverse proportion. Smaller: walls of some tens of blocks in space
 	                 // go a tenth too little
-	int least {10};  // iterations of a step, unless its residual is below `early`. Fewer: p lags behind what turns, and energy rises
-	double early {0.1}; // of the tolerance. Smaller: more iterations at rest; larger: as with fewer `least` iterations
-	int reserve {50};   // times `iterations` that quiet steps save for impacts at most. 0: walls under impacts drift
+	int least {10};  // (c) iterations of a step, unless its residual is below `early`. Fewer: p lags behind what turns, and energy rises
+	double early {0.1}; // (c) of the tolerance. Smaller: more iterations at rest; larger: as with fewer `least` iterations
+	int reserve {50};   // (d) times `iterations` that quiet steps save for impacts at most. 0: walls under impacts drift
 	int first {3000};   // iterations of a step that starts without impulses, at most
-	int ofInstant {40}; // iterations with which an impact or a base pulse goes on to instantTolerance; more of them below `small` blocks,
-	                    // as in a step. Fewer: single blocks land less right
-	double instantTolerance {1e-6}; // largest |w - z| of an instant relative to the velocities that change, or as in a step if that is more
-	double instantEnough {5e-3};    // the same after these iterations. Larger: the next steps take up more of it
-	int maxOfInstant {1000};        // iterations of an instant at most
-	double softness {0.2};          // r. Larger: high walls go too far; smaller: low walls that begin to move do not go far enough
-	double restSoftness {0.02}; // r while a structure of more than `small` blocks rests. Larger: one that is shaken without moving drifts,
-	                            // and takes more iterations; smaller: its forces are less right, so that it begins to move too early
-	int restMost {10};          // iterations until a step at rest goes on with `softness`. More: the onset of motion costs more
-	double follows {0.1};       // share by which R may differ from that of the loads. Larger: more iterations; smaller: more factorisations
-	double restFollows {0.8};   // the same at rest, where few iterations are enough
-	double minSoftness {1e-5};  // of d, at the most loaded points. Smaller: rounding of the factorisation in single precision
-	double relaxation {1.7};    // a, 1 to 2. Larger: residuals oscillate; smaller: they fall more slowly
-	double boundShare {0.3};    // theta. 1: sliding points run into a limit cycle; smaller: friction lags
-	double pullBack {0.2};      // share of a penetration or of a slip that a step takes back. Larger: shivering; smaller: drift
-	double reach {0.016};       // gap relative to the smallest half size within which points are in A. Smaller: more factorisations
-	double filterTime {0.125};  // of the filtered load, relative to sqrt(smallest half size / gravity)
-	double refactorTime {0.125}; // relative to the same, after which R follows the loads
-	double turned {0.03}; // by which the rows of a point may change before A is made anew, as by a turn in rad. Larger: more iterations;
-	                      // smaller: more factorisations
-	double leftPenetration {5e-6}; // relative to the smallest half size, which is not taken back. 0: blocks at rest never come to rest
+	int ofInstant {40}; // (d) iterations with which an impact or a base pulse goes on to instantTolerance; more of them below `small`
+	                    // blocks, as in a step. Fewer: single blocks land less right
+	double instantTolerance {1e-6}; // (d) largest |w - z| of an instant relative to the velocities that change; at least as in a step
+	double instantEnough {5e-3};    // (d) the same after these iterations. Larger: the next steps take up more of it
+	int maxOfInstant {1000};        // (d) iterations of an instant at most
+	double softness {0.2};          // (a) r. Larger: high walls go too far; smaller: low walls that begin to move do not go far enough
+	double restSoftness {0.02};  // (b) r while a structure of more than `small` blocks rests. Larger: one that is shaken and stands drifts,
+	                             // and takes more iterations; smaller: its forces are less right, so that it begins to move too early
+	int restMost {10};           // (c) iterations until a step at rest goes on with `softness`. More: the onset of motion costs more
+	double follows {0.1};        // (c) share by which R may differ from that of the loads. Smaller: more factorisations
+	double restFollows {0.8};    // (c) the same at rest, where few iterations are enough
+	double minSoftness {1e-5};   // (c) of d, at the most loaded points. Smaller: rounding of the factorisation in single precision
+	double relaxation {1.7};     // (a) a, 1 to 2. Larger: residuals oscillate; smaller: they fall more slowly
+	double boundShare {0.3};     // (a) theta. 1: sliding points run into a limit cycle; smaller: friction lags
+	double pullBack {0.2};       // (c) share of a penetration or of a slip that a step takes back. Larger: shivering; smaller: drift
+	double reach {0.016};        // (a) gap relative to the smallest half size within which points are in A. Smaller: more factorisations
+	double filterTime {0.125};   // (a) of the filtered load, relative to sqrt(smallest half size / gravity)
+	double refactorTime {0.125}; // (c) relative to the same, after which R follows the loads
+	double turned {0.03}; // (c) change of a point's rows, as by a turn in rad, after which A is made anew. Smaller: more factorisations
+	double leftPenetration {5e-6}; // (c) relative to the smallest half size, which is not taken back. 0: blocks at rest never come to rest
 };
 
 struct AdmmReport {

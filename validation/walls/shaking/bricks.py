@@ -1,6 +1,6 @@
 """A wall of real bricks with a door and a window, shaken in three directions: CPU time and where its top goes. From the project's root, after a build:
 
-    PYTHONPATH=build/python OMP_WAIT_POLICY=passive yade -j1 -n -x validation/walls/assembly/bricks.py
+    PYTHONPATH=build/python OMP_WAIT_POLICY=passive yade -j1 -n -x validation/walls/shaking/bricks.py
 """
 import math
 import time

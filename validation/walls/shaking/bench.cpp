@@ -9,7 +9,7 @@
 // courses, per, L, T, H   size of the wall and of its blocks (m)
 // amp, angle, hertz       of the base's sine (g, degrees from the wall's direction, Hz)
 // rest, shake, after, h   s
-// k, tol, reserve, quick, early, instant, itol, rr, rmost, rfollows   of the solver
+// settings of the solver, by the keys of runWithOptions
 // half                    1: energies with the positions of half a step earlier, to which the velocities of a step belong
 // file                    writes the scene as gauss_seidel_space.cpp reads it, and ends
 #include "dynamics/model/neighbours.hpp"
@@ -323,6 +323,9 @@ void runWithOptions()
 	a.reach = number("reach", a.reach);
 	a.filterTime = number("filter", a.filterTime);
 	a.refactorTime = number("refactor", a.refactorTime);
+	a.follows = number("follows", a.follows);
+	a.turned = number("turned", a.turned);
+	a.leftPenetration = number("left", a.leftPenetration);
 	a.least = int(number("quick", a.least));
 	a.early = number("early", a.early);
 	a.ofInstant = int(number("instant", a.ofInstant));
