@@ -4,6 +4,7 @@
 #include "contact/box_box.hpp"
 #include "contact/reference_face.hpp"
 #include "math.hpp"
+#include <array>
 
 namespace masonry {
 
@@ -22,6 +23,14 @@ struct EdgeAxis {
 	Vector3 point1, point2; // nearest points of the two edges, in the frame of box 1
 	double separation;
 };
+
+struct SeparatingAxis {
+	Vector3 normal; // unit, in the frame of box 1, from box 1 to box 2
+	double separation;
+};
+
+// The faces of box 1, those of box 2, and the nine products of edges, whose separation is -infinity where they are nearly parallel.
+std::array<SeparatingAxis, 15> separatingAxes(const Box& box1, const Box& box2, const RelativePose& second);
 
 // The reference face: that of the largest separation, ties decided as `collide` says.
 FaceAxis bestFace(const Box& box1, const Box& box2, const RelativePose& second, const PatchFeature& previous);
