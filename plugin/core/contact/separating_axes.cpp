@@ -90,15 +90,12 @@ bool bestEdges(const Box& box1, const Box& box2, const RelativePose& second, Edg
 	bool found = false;
 	for (int i = 0; i < 3; ++i) {
 		for (int j = 0; j < 3; ++j) {
-			SeparatingAxis across;
-			Vector3 normalIn2;
-			if (!alongEdges(box1, box2, second, i, j, across, normalIn2) || (found && across.separation <= best.separation))
-				continue;
 			EdgeAxis edges;
+			Vector3 normalIn2;
+			if (!alongEdges(box1, box2, second, i, j, edges, normalIn2) || (found && edges.separation <= best.separation))
+				continue;
 			edges.axis1 = i;
 			edges.axis2 = j;
-			edges.normal = across.normal;
-			edges.separation = across.separation;
 			edges.signs1 = edges.normal.unaryExpr(&signOf);
 			edges.signs2 = (-normalIn2).unaryExpr(&signOf);
 			if (placeOnEdges(box1, box2, second, edges)) {

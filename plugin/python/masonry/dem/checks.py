@@ -90,14 +90,10 @@ def floating_and_supports(tolerance=1e-3, floating=True):
 
 def _carried(supports, prescribed):
     """Which blocks a chain of supports (rows: lower, upper) joins to a prescribed one."""
-    supports = supports[np.argsort(supports[:, 0], kind="stable")]
-    first = np.searchsorted(supports[:, 0], np.arange(len(prescribed) + 1)).tolist()
-    upper, carried = supports[:, 1].tolist(), prescribed.tolist()
-    waiting = np.flatnonzero(prescribed).tolist()
-    while waiting:
-        block = waiting.pop()
-        for above in upper[first[block]:first[block + 1]]:
-            if not carried[above]:
-                carried[above] = True
-                waiting.append(above)
-    return np.array(carried, dtype=bool)
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import breadth_first_order
+
+    ground, (lower, upper), carry = len(prescribed), supports.T, np.flatnonzero(prescribed)
+    ends = np.concatenate([lower, np.full(len(carry), ground)]), np.concatenate([upper, carry])
+    chains = coo_array((np.ones(len(ends[0])), ends), shape=(ground + 1, ground + 1)).tocsr()
+    return np.isin(np.arange(ground), breadth_first_order(chains, ground, return_predecessors=False))
