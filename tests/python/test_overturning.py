@@ -35,8 +35,8 @@ def test_resonant_train_of_so_many_half_cycles(half_cycles, n):
 def test_a_bracket_is_scanned_at_equal_factors_or_from_0_at_equal_differences(monkeypatch, shape, bracket, lower, upper):
     from masonry import overturning
 
-    seen, arguments = [], overturning._arguments
-    monkeypatch.setattr(overturning, "_arguments", lambda block, motion, *rest: seen.append(motion.amplitude) or arguments(block, motion, *rest))
+    seen, arguments = [], overturning.case_arguments
+    monkeypatch.setattr(overturning, "case_arguments", lambda block, motion, *rest: seen.append(motion.amplitude) or arguments(block, motion, *rest))
     masonry.overturning_amplitude(BLOCK, shape, bracket=bracket, samples=50)
     np.testing.assert_allclose(seen[0], np.geomspace(lower, upper, 50) if lower else np.linspace(lower, upper, 50), rtol=1e-12)
 

@@ -91,6 +91,19 @@ def test_joints_are_the_faces_that_touch():
         assert len(results.joints(corner)) == count, lap
 
 
+@pytest.mark.parametrize("axis", [(0, 0, 1), (1, 0, 0), (0.6, 0, 0.8), (-0.48, 0.8, 0.36)])
+def test_joints_are_the_same_from_every_side(axis):
+    """Bricks in running bond, whose corners lie on edges and corners of others up to round-off: the whole scene turned."""
+    place = np.array([[0, 0, -0.1]] + [[0.4 * x + 0.2 * (z % 2), 0, 0.1 + 0.2 * z] for z in range(4) for x in range(-2, 3)])
+    sizes = np.array([[4, 2, 0.2]] + [[0.4, 0.2, 0.2]] * 20)
+    upright, frame = results.joints(history(sizes, place[None])), turn(1.1, axis)
+    table = results.joints(history(sizes, (place @ _pose.matrices(frame).T)[None], np.tile(frame, (1, 21, 1))))
+    assert len(table) == 5 + 16 + 27 and np.array_equal(table[["id1", "id2"]], upright[["id1", "id2"]])
+    assert np.allclose(table["area"], upright["area"], rtol=0, atol=1e-12)
+    for name in ("center", "normal"):
+        assert np.allclose(table[name], upright[name] @ _pose.matrices(frame).T, rtol=0, atol=1e-12), name
+
+
 @pytest.mark.parametrize("posture", [UPRIGHT, turn(0.4, (1, 0, 0))])
 def test_movement_is_relative_to_the_base_also_where_it_turns(posture):
     frame = turn(0.3, (0, 0, 1))

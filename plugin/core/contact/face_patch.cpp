@@ -181,11 +181,12 @@ ClipTask clipTask(const FacePair& pair, const PatchFeature& previous)
 	return task;
 }
 
-bool facePatch(const FacePair& pair, const ClipTask& task, const Pose& referencePose, const PatchFeature& previous, ContactPatch& out)
+bool facePatch(const FacePair& pair, const ClipTask& task, const Pose& referencePose, const PatchFeature& previous, ContactPatch& out,
+               double sliver)
 {
 	const ClipPolygon polygon = clip(task);
 	const Extent overlap = extent(polygon);
-	if (polygon.size < 3 || overlap.area <= tolerance::contact::sliver * pair.length * overlap.diameter)
+	if (polygon.size < 3 || overlap.area <= sliver * pair.length * overlap.diameter)
 		return false;
 
 	const Matrix3 axes = referencePose.orientation.toRotationMatrix();

@@ -3,6 +3,7 @@
 #include "contact/box_box.hpp"
 #include "contact/face_clip.hpp"
 #include "contact/separating_axes.hpp"
+#include "tolerances.hpp"
 
 namespace masonry {
 
@@ -27,7 +28,8 @@ FacePair withNextIncident(const FacePair& pair);
 // Corners and reaches of the clip. The corners are counter-clockwise about the patch normal (from body 1 to body 2).
 ClipTask clipTask(const FacePair& pair, const PatchFeature& previous);
 
-// False if the overlap is thinner than tolerance::contact::sliver.
-bool facePatch(const FacePair& pair, const ClipTask& task, const Pose& referencePose, const PatchFeature& previous, ContactPatch& out);
+// False if the overlap is thinner than `sliver`, relative to the smallest half size.
+bool facePatch(const FacePair& pair, const ClipTask& task, const Pose& referencePose, const PatchFeature& previous, ContactPatch& out,
+               double sliver = tolerance::contact::sliver);
 
 } // namespace masonry

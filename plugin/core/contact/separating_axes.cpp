@@ -2,6 +2,7 @@
 #include "contact/features.hpp"
 #include "tolerances.hpp"
 #include <algorithm>
+#include <limits>
 
 namespace masonry {
 
@@ -10,6 +11,33 @@ using feature::signOf;
 
 namespace {
 
+double alongFace(const Box& box, const Box& otherBox, const RelativePose& other, int axis)
+{
+	const double reach = other.rotation.row(axis).cwiseAbs().dot(otherBox.halfSize);
+	return std::abs(other.offset[axis]) - box.halfSize[axis] - reach;
+}
+
+// The axis e_i x c_j of an axis e_i of box 1 and c_j of box 2 in the frame of box 1. With i, k, l cyclic, (e_i x c_j)_k = -c_j[l] and
+// (e_i x c_j)_l = c_j[k]; its length is sqrt(1 - c_j[i]^2). normalIn2: the normal in the frame of box 2. False if the edges are nearly
+// parallel.
+bool alongEdges(const Box& box1, const Box& box2, const RelativePose& second, int i, int j, SeparatingAxis& out, Vector3& normalIn2)
+{
+	const int k = nextAxis(i), l = nextAxis(k);
+	const auto edge2 = second.rotation.col(j);
+	const double length = std::hypot(edge2[k], edge2[l]);
+	if (length < tolerance::contact::parallelEdges)
+		return false;
+	out.normal[i] = 0;
+	out.normal[k] = -edge2[l] / length;
+	out.normal[l] = edge2[k] / length;
+	const double distance = out.normal.dot(second.offset);
+	out.normal *= signOf(distance);
+	normalIn2 = second.rotation.transpose() * out.normal;
+	normalIn2[j] = 0;
+	out.separation = std::abs(distance) - out.normal.cwiseAbs().dot(box1.halfSize) - normalIn2.cwiseAbs().dot(box2.halfSize);
+	return true;
+}
+
 // Best face of the box in whose frame `other` is given; the previous reference face, if it is one of this box, leads.
 FaceAxis bestFaceOf(int body, const Box& box, const Box& otherBox, const RelativePose& other, int previousFace, double length)
 {
@@ -17,8 +45,7 @@ FaceAxis bestFaceOf(int body, const Box& box, const Box& otherBox, const Relativ
 	double bestScore = 0;
 	for (int axis = 0; axis < 3; ++axis) {
 		const double sign = signOf(other.offset[axis]);
-		const double reach = other.rotation.row(axis).cwiseAbs().dot(otherBox.halfSize);
-		const double separation = std::abs(other.offset[axis]) - box.halfSize[axis] - reach;
+		const double separation = alongFace(box, otherBox, other, axis);
 		const bool held = previousFace == feature::faceNumber(axis, sign);
 		const double score = held ? separation + lead(separation, length) : separation;
 		if (best.axis < 0 || score > bestScore) {
@@ -58,31 +85,17 @@ FaceAxis bestFace(const Box& box1, const Box& box2, const RelativePose& second, 
 	return reference(face1, face2, held1 ? 1 : held2 ? 2 : 0, larger2, length);
 }
 
-// The nine axes e_i x c_j, e_i the axes of box 1 and c_j those of box 2 in the frame of box 1. With i, k, l cyclic,
-// (e_i x c_j)_k = -c_j[l] and (e_i x c_j)_l = c_j[k]; its length is sqrt(1 - c_j[i]^2).
 bool bestEdges(const Box& box1, const Box& box2, const RelativePose& second, EdgeAxis& best)
 {
 	bool found = false;
 	for (int i = 0; i < 3; ++i) {
-		const int k = nextAxis(i), l = nextAxis(k);
 		for (int j = 0; j < 3; ++j) {
-			const auto edge2 = second.rotation.col(j);
-			const double length = std::hypot(edge2[k], edge2[l]);
-			if (length < tolerance::contact::parallelEdges)
-				continue;
 			EdgeAxis edges;
+			Vector3 normalIn2;
+			if (!alongEdges(box1, box2, second, i, j, edges, normalIn2) || (found && edges.separation <= best.separation))
+				continue;
 			edges.axis1 = i;
 			edges.axis2 = j;
-			edges.normal[i] = 0;
-			edges.normal[k] = -edge2[l] / length;
-			edges.normal[l] = edge2[k] / length;
-			const double distance = edges.normal.dot(second.offset);
-			edges.normal *= signOf(distance);
-			Vector3 normalIn2 = second.rotation.transpose() * edges.normal;
-			normalIn2[j] = 0;
-			edges.separation = std::abs(distance) - edges.normal.cwiseAbs().dot(box1.halfSize) - normalIn2.cwiseAbs().dot(box2.halfSize);
-			if (found && edges.separation <= best.separation)
-				continue;
 			edges.signs1 = edges.normal.unaryExpr(&signOf);
 			edges.signs2 = (-normalIn2).unaryExpr(&signOf);
 			if (placeOnEdges(box1, box2, second, edges)) {
@@ -92,6 +105,21 @@ bool bestEdges(const Box& box1, const Box& box2, const RelativePose& second, Edg
 		}
 	}
 	return found;
+}
+
+std::array<SeparatingAxis, 15> separatingAxes(const Box& box1, const Box& box2, const RelativePose& second)
+{
+	const RelativePose first = second.reversed();
+	std::array<SeparatingAxis, 15> axes;
+	axes.fill({Vector3::Zero(), -std::numeric_limits<double>::infinity()});
+	for (int i = 0; i < 3; ++i) {
+		axes[i] = {signOf(second.offset[i]) * Vector3::Unit(i), alongFace(box1, box2, second, i)};
+		axes[3 + i] = {-signOf(first.offset[i]) * second.rotation.col(i), alongFace(box2, box1, first, i)};
+		Vector3 normalIn2;
+		for (int j = 0; j < 3; ++j)
+			alongEdges(box1, box2, second, i, j, axes[6 + 3 * i + j], normalIn2);
+	}
+	return axes;
 }
 
 } // namespace masonry

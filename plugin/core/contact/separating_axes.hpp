@@ -4,6 +4,7 @@
 #include "contact/box_box.hpp"
 #include "contact/reference_face.hpp"
 #include "math.hpp"
+#include <array>
 
 namespace masonry {
 
@@ -15,13 +16,19 @@ struct RelativePose {
 	RelativePose reversed() const { return {rotation.transpose(), -(rotation.transpose() * offset)}; }
 };
 
-struct EdgeAxis {
-	int axis1, axis2;       // the edge of box 1 runs along its axis1, that of box 2 along its axis2
-	Vector3 signs1, signs2; // where the edges sit, in each box's own axes; the component along the edge is unused
-	Vector3 normal;         // unit, in the frame of box 1, from box 1 to box 2
-	Vector3 point1, point2; // nearest points of the two edges, in the frame of box 1
+struct SeparatingAxis {
+	Vector3 normal; // unit, in the frame of box 1, from box 1 to box 2
 	double separation;
 };
+
+struct EdgeAxis : SeparatingAxis {
+	int axis1, axis2;       // the edge of box 1 runs along its axis1, that of box 2 along its axis2
+	Vector3 signs1, signs2; // where the edges sit, in each box's own axes; the component along the edge is unused
+	Vector3 point1, point2; // nearest points of the two edges, in the frame of box 1
+};
+
+// The faces of box 1, those of box 2, and the nine products of edges, whose separation is -infinity where they are nearly parallel.
+std::array<SeparatingAxis, 15> separatingAxes(const Box& box1, const Box& box2, const RelativePose& second);
 
 // The reference face: that of the largest separation, ties decided as `collide` says.
 FaceAxis bestFace(const Box& box1, const Box& box2, const RelativePose& second, const PatchFeature& previous);

@@ -15,18 +15,20 @@ namespace masonry::python {
 namespace py = boost::python;
 namespace np = boost::python::numpy;
 
-// A copy of a one-dimensional float64 array (other dtypes are converted).
-inline std::vector<double> toVector(const py::object& object)
+// A copy of a one-dimensional array (other dtypes are converted).
+template <typename T = double>
+std::vector<T> toVector(const py::object& object)
 {
-	const np::ndarray array = np::from_object(object, np::dtype::get_builtin<double>(), 1, 1, np::ndarray::CARRAY);
-	const auto* data = reinterpret_cast<const double*>(array.get_data());
+	const np::ndarray array = np::from_object(object, np::dtype::get_builtin<T>(), 1, 1, np::ndarray::CARRAY);
+	const auto* data = reinterpret_cast<const T*>(array.get_data());
 	return {data, data + array.shape(0)};
 }
 
+// An array of that shape; without it, of one dimension.
 template <typename T>
-np::ndarray toArray(const std::vector<T>& values)
+np::ndarray toArray(const std::vector<T>& values, const py::tuple& shape = {})
 {
-	np::ndarray array = np::empty(py::make_tuple(values.size()), np::dtype::get_builtin<T>());
+	np::ndarray array = np::empty(py::len(shape) ? shape : py::make_tuple(values.size()), np::dtype::get_builtin<T>());
 	if (!values.empty())
 		std::memcpy(array.get_data(), values.data(), values.size() * sizeof(T));
 	return array;

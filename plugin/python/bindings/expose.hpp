@@ -28,6 +28,7 @@ struct Motions {
 	size_t place(size_t i) const { return size == 1 ? 0 : i; }
 };
 
+void exposeBoxes();
 void exposeClosedForm();
 void exposeMotion();
 void exposeHistory();

@@ -1,6 +1,7 @@
-"""Boxes that come near each other and touch, as arrays."""
+"""Boxes that come near each other and touch, as arrays: (n, 3) centres and full sizes, m, and (n, 3, 3) axes, whose rows are the axes of a box."""
 
 import numpy as np
+from masonry import _core
 
 # Smallest upward part of the normal of a joint that carries: the joint of a leaning block does, a head joint does not.
 _CARRIES = 0.1
@@ -9,7 +10,7 @@ _TOGETHER = 20000
 
 
 def bounds(centers, sizes, axes, margins=0.0):
-    """Lowest and highest coordinates (n, 3) of boxes, farther out by the margins. axes: (n, 3, 3), rows are the axes of a box; sizes: full sizes."""
+    """Lowest and highest coordinates (n, 3) of boxes, farther out by the margins."""
     reach = np.einsum("nka,nk->na", np.abs(axes), sizes / 2) + margins
     return centers - reach, centers + reach
 
@@ -47,31 +48,27 @@ def near_pairs(low, high):
     return pairs[np.lexsort((pairs[:, 1], pairs[:, 0]))]
 
 
+def separating_axes(i, j, centers, sizes, axes):
+    """Gaps (pairs, 15), m, negative where the boxes of a pair overlap, along the axes that may separate them, and these, unit vectors from i to j (pairs, 15, 3):
+    the normals of the faces of i, those of j, and of both to crossed edges (-inf where edges are parallel)."""
+    found = _core.box_axes(tuple(map(np.ravel, (centers, sizes, axes))), i, j)
+    return found[..., 3], found[..., :3]
+
+
 def face_gaps(i, j, centers, sizes, axes):
     """Largest gap of each pair of boxes along an axis of either, negative where they overlap: at most their distance."""
-    between, turn = centers[j] - centers[i], np.abs(np.einsum("pka,pma->pkm", axes[i], axes[j]))
-    along_i = np.abs(np.einsum("pka,pa->pk", axes[i], between)) - sizes[i] / 2 - np.einsum("pkm,pm->pk", turn, sizes[j] / 2)
-    along_j = np.abs(np.einsum("pma,pa->pm", axes[j], between)) - sizes[j] / 2 - np.einsum("pkm,pk->pm", turn, sizes[i] / 2)
-    return np.maximum(along_i, along_j).max(axis=1)
+    return separating_axes(i, j, centers, sizes, axes)[0][:, :6].max(axis=1)
 
 
-def _separations(i, j, centers, sizes, axes):
-    """Gaps of the pairs along the 15 separating axes of two boxes (faces of both, crossed edges), negative where they overlap, and the
-    upward part of each axis, directed from i to j: two arrays (pairs, 15)."""
-    a, b, between = axes[i], axes[j], centers[j] - centers[i]
-    n = np.concatenate([a, b, np.cross(a[:, :, None], b[:, None]).reshape(-1, 9, 3)], axis=1)
-    norm = np.linalg.norm(n, axis=2)
-    parallel = norm < 1e-6  # edges this parallel add nothing to the faces
-    n = n / np.where(parallel, 1, norm)[..., None]
-    along = np.einsum("pka,pa->pk", n, between)
-    reach = np.einsum("pkm,pm->pk", np.abs(np.einsum("pka,pma->pkm", n, a)), sizes[i] / 2)
-    reach += np.einsum("pkm,pm->pk", np.abs(np.einsum("pka,pma->pkm", n, b)), sizes[j] / 2)
-    return np.where(parallel, -np.inf, np.abs(along) - reach), np.where(along < 0, -1, 1) * n[..., 2]
+def face_patches(i, j, centers, sizes, axes, margins):
+    """Where the faces that separate the boxes of each pair best, at most the margin (m) apart, overlap: number of corners (0: they do not), area, area of the
+    smaller face (m^2), smallest gap (m), normal from i to j (pairs, 3), and corners on i (pairs, 8, 3), of which the last one is repeated."""
+    found = _core.face_patches(tuple(map(np.ravel, (centers, sizes, axes))), i, j, margins)
+    return *found[:, :4].T, found[:, 4:7], found[:, 7:].reshape(-1, 8, 3)
 
 
 def contacts(centers, sizes, axes, tolerance):
-    """(pairs (m, 2), gaps (m,), margins (m,), supports (k, 2): lower, upper), by row. axes: (n, 3, 3), rows are the axes of a box. pairs: all that may
-    touch; their gap is negative where they overlap, m; two touch where it is at most the margin, `tolerance` of the smallest size of the two. A box
+    """(pairs (m, 2), gaps (m,), margins (m,), supports (k, 2): lower, upper), by row. pairs: all that may touch; their gap is negative where they overlap, m; two touch where it is at most the margin, `tolerance` of the smallest size of the two. A box
     is supported by one that it touches from above, over more than an edge."""
     smallest = sizes.min(axis=1)
     pairs = near_pairs(*bounds(centers, sizes, axes, tolerance * smallest[:, None]))
@@ -79,10 +76,10 @@ def contacts(centers, sizes, axes, tolerance):
     for start in range(0, len(pairs), _TOGETHER):
         part = slice(start, start + _TOGETHER)
         i, j = pairs[part].T
-        gap, up = _separations(i, j, centers, sizes, axes)
-        best = gap.argmax(axis=1)
-        gaps[part], up_best = np.take_along_axis(gap, best[:, None], 1)[:, 0], np.take_along_axis(up, best[:, None], 1)[:, 0]
+        gap, normals = separating_axes(i, j, centers, sizes, axes)
+        best, up = gap.argmax(axis=1)[:, None], normals[..., 2]
+        gaps[part], up_best = np.take_along_axis(gap, best, 1)[:, 0], np.take_along_axis(up, best, 1)
         beside = (np.where(np.abs(up) < _CARRIES, gap, -np.inf) >= -margins[part, None]).any(axis=1)
         joined = (gaps[part] <= margins[part]) & ~beside
-        supports.append(np.where(up_best[:, None] > 0, np.stack([i, j], axis=1), np.stack([j, i], axis=1))[joined])
+        supports.append(np.where(up_best > 0, np.stack([i, j], axis=1), np.stack([j, i], axis=1))[joined])
     return pairs, gaps, margins, np.concatenate(supports)

@@ -13,8 +13,8 @@ from ._lognormal import LognormalFit, NoMaximum, wilson
 from ._optional import needs
 from ._progress import steps
 from ._records.units import STANDARD_GRAVITY
-from .block import RockingBlock
-from .history import _arguments, warn_of_doubt
+from .block import RockingBlock, restitution_of
+from .history import case_arguments, warn_of_doubt
 from .motions import Record
 
 # Distinct measures up to which each is a level of its own, and bins of as many histories each beyond that.
@@ -192,7 +192,7 @@ def fragility(block, records, scales=None, levels=None, measure="PGA", restituti
     unit, of_record, of_block = _measure(measure)
     _check_confidence(confidence)
 
-    restitution = block._restitution(restitution)
+    restitution = restitution_of(block, restitution)
     shape = np.broadcast_shapes(block.shape, np.shape(restitution))
     wide = RockingBlock(*(np.broadcast_to(value, shape)[..., None] for value in (block.half_width, block.half_height, block.gravity)))
     collapsed = np.zeros((*shape, len(records), given.size), dtype=bool)
@@ -203,7 +203,7 @@ def fragility(block, records, scales=None, levels=None, measure="PGA", restituti
             raise ValueError(f"records: number {k + 1}, {shown(records[k])}, does not move the base")
         scale = given if levels is None else given / unscaled
         upwards = None if vertical[k] is None else vertical[k].scaled(scale)
-        _, arguments = _arguments(wide, records[k].scaled(scale), np.broadcast_to(restitution, shape)[..., None], restoring, 0.0, 0.0, None, None, upwards)
+        _, arguments = case_arguments(wide, records[k].scaled(scale), np.broadcast_to(restitution, shape)[..., None], restoring, 0.0, 0.0, None, None, upwards)
         collapsed[..., k, :] = np.reshape(_core.overturns(*arguments), (*shape, given.size)) > 0
         values[..., k, :] = given if levels is not None else scale * unscaled
     number = np.broadcast_to(np.arange(len(records))[:, None], collapsed.shape).ravel()

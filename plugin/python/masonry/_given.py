@@ -50,3 +50,14 @@ def array_given(name, values):
     except (TypeError, ValueError, OverflowError):
         pass
     raise ValueError(f"{name} = {shown(values)}: must be a number or an array of numbers")
+
+
+def finite_numbers(name, values, count, what):
+    """`count` finite numbers as floats; or ValueError, that they must be `what`."""
+    try:
+        found = [float(number_given(name, v)) for v in values]
+    except (TypeError, ValueError, OverflowError):
+        found = []
+    if len(found) != count or not all(math.isfinite(v) for v in found):
+        raise ValueError(f"{name} = {shown(tuple(values) if isinstance(values, (list, np.ndarray)) else values)}: must be {what}")
+    return found

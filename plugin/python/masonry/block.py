@@ -33,7 +33,7 @@ class RockingBlock:
         self.gravity = gravity
         self.shape = shape_of(half_width, half_height, gravity)
         (self.slenderness, self.radius, self.critical_angle, self.frequency_parameter, self.angular_acceleration,
-         self.natural_restitution) = (restore(value, self.shape) for value in _core.block_properties(self._columns(self.shape)))
+         self.natural_restitution) = (restore(value, self.shape) for value in _core.block_properties(columns_of(self, self.shape)))
 
     @classmethod
     def from_size(cls, width, height, gravity=9.81):
@@ -44,13 +44,16 @@ class RockingBlock:
                 warnings.warn(f"{name} = {np.max(size):g}: is it in mm? Sizes are in m", stacklevel=2)
         return cls(width / 2, height / 2, gravity)
 
-    def _restitution(self, given):
-        """C as given; the natural one where it is None or NaN."""
-        given = array_given("restitution", np.nan if given is None else given)
-        return np.where(np.isnan(given), self.natural_restitution, given)
-
-    def _columns(self, shape):
-        return columns(shape, self.half_width, self.half_height, self.gravity)
-
     def __repr__(self):
         return f"RockingBlock(half_width={self.half_width}, half_height={self.half_height}, gravity={self.gravity})"
+
+
+def columns_of(block, shape):
+    """Half widths, half heights and gravities of the cases, for the compiled functions."""
+    return columns(shape, block.half_width, block.half_height, block.gravity)
+
+
+def restitution_of(block, given):
+    """C as given; the natural one where it is None or NaN."""
+    given = array_given("restitution", np.nan if given is None else given)
+    return np.where(np.isnan(given), block.natural_restitution, given)

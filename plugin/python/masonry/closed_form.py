@@ -11,6 +11,7 @@ import numpy as np
 from . import _core
 from ._given import whole_given
 from ._arrays import columns, restore, shape_of
+from .block import columns_of, restitution_of
 
 
 @dataclass(frozen=True)
@@ -44,28 +45,28 @@ class Stabilised:
 def single_pulse(block, impulse):
     """First half cycle from rest."""
     shape = shape_of(np.empty(block.shape), impulse)
-    return SinglePulse(*(restore(x, shape) for x in _core.single_pulse(block._columns(shape), *columns(shape, impulse))))
+    return SinglePulse(*(restore(x, shape) for x in _core.single_pulse(columns_of(block, shape), *columns(shape, impulse))))
 
 
 def pulse_sequence(block, impulse, restitution, n):
     """The first n half cycles, n >= 1."""
-    restitution = block._restitution(restitution)
+    restitution = restitution_of(block, restitution)
     shape = shape_of(np.empty(block.shape), impulse, restitution)
-    result = _core.pulse_sequence(block._columns(shape), *columns(shape, impulse, restitution), whole_given("n", n, 1))
+    result = _core.pulse_sequence(columns_of(block, shape), *columns(shape, impulse, restitution), whole_given("n", n, 1))
     return PulseSequence(*(restore(x, shape) for x in result))
 
 
 def stabilised(block, impulse, restitution):
     """The phase that the sequence tends to."""
-    restitution = block._restitution(restitution)
+    restitution = restitution_of(block, restitution)
     shape = shape_of(np.empty(block.shape), impulse, restitution)
-    result = [restore(x, shape) for x in _core.stabilised(block._columns(shape), *columns(shape, impulse, restitution))]
+    result = [restore(x, shape) for x in _core.stabilised(columns_of(block, shape), *columns(shape, impulse, restitution))]
     return Stabilised(*result, overturns=result[-1] >= 1)
 
 
 def time_to_stabilise(block, impulse, restitution, tolerance):
     """End time (Eq. 8, s) of the first half cycle whose angular velocity is within `tolerance` (relative, in (0, 1)) of the
     stabilised one: 1 - w_i/w* = (1+C)/2 C^(i-1). The limit itself is never reached, so the tolerance is part of the answer."""
-    restitution = block._restitution(restitution)
+    restitution = restitution_of(block, restitution)
     shape = shape_of(np.empty(block.shape), impulse, restitution, tolerance)
-    return restore(_core.time_to_stabilise(block._columns(shape), *columns(shape, impulse, restitution, tolerance)), shape)
+    return restore(_core.time_to_stabilise(columns_of(block, shape), *columns(shape, impulse, restitution, tolerance)), shape)

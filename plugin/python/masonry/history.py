@@ -9,7 +9,8 @@ from ._arrays import columns, restore, shape_of
 from ._files import save_picture
 from ._given import shown, whole_given
 from ._optional import needs
-from .motions import Motion, PulseTrain, Record, Still
+from .block import columns_of, restitution_of
+from .motions import Motion, PulseTrain, Record, Still, compiled, end_of
 
 
 # Relative to the time at which a motion ends, how much earlier a run may end by rounding of sums of steps.
@@ -49,20 +50,8 @@ class History:
 
     def _motion_ends(self):
         """When the motions of the base end, s: an array of the cases' shape."""
-        ends = [np.broadcast_to(motion._end(), self.shape) for motion in (self.motion, self.vertical) if motion is not None]
-        if isinstance(self.motion, PulseTrain) and self.motion.times is None and self.motion.half_cycles:
-            n = self.motion.half_cycles  # impact n is the instant of its last pulse
-            if np.shape(self.impact_times)[-1] >= n:
-                last = self.impact_times[..., n - 1]
-                ends[0] = np.where(np.isnan(last), np.inf, last + self.motion._last_pulse())
+        ends = [end_of(motion, self.shape, self.impact_times) for motion in (self.motion, self.vertical) if motion is not None]
         return np.max(ends, axis=0) if ends else np.zeros(self.shape)
-
-    def _partly(self):
-        """How much of the motion has been run, in words; '' where all of it has been, or where the block has overturned."""
-        if self.overturned or self.motion_run == 1:
-            return ""
-        end = self._motion_ends()
-        return f", after {self.end_time:.4g} " + ("s of a motion without a known end" if np.isinf(end) else f"of {end:.4g} s of the motion")
 
     def _sample(self, t):
         return [restore(table.reshape((-1,) + np.shape(t)), self.shape)
@@ -88,7 +77,7 @@ class History:
             stand += f", {partly} of them after only a part of the motion" if partly else ""
             return f"History({' x '.join(map(str, self.shape))} cases: {falls} overturn, {stand})"
         done = f"overturns in half cycle {self.overturn_half_cycle}" if falls else \
-            f"stands, {len(self.impact_times)} impacts, at most {largest:.3g} of the critical angle{self._partly()}"
+            f"stands, {len(self.impact_times)} impacts, at most {largest:.3g} of the critical angle{part_of_motion(self)}"
         under = "on a still base" if self.motion is None else f"under {shown(self.motion)}"
         rest = f", at rest from {self.rest_time:.4g} s on" if np.isfinite(self.rest_time) else "" if falls else f", still rocking at {self.end_time:.4g} s"
         return f"History(block of {2 * self.block.half_width:g} x {2 * self.block.half_height:g} m {under}: {done}{rest})"
@@ -123,7 +112,7 @@ class History:
         above.plot(times, angles, color="tab:blue")
         for level in (-1, 1):
             above.axhline(level, color="0.6", linestyle="--", linewidth=0.8)
-        verdict = f"overturns at {passes:.4g} s, in half cycle {self.overturn_half_cycle}" if self.overturned else f"stands, {len(self.impact_times)} impacts{self._partly()}"
+        verdict = f"overturns at {passes:.4g} s, in half cycle {self.overturn_half_cycle}" if self.overturned else f"stands, {len(self.impact_times)} impacts{part_of_motion(self)}"
         above.set(ylabel="angle / critical angle", title=verdict, ylim=1.1 * np.array([-1, 1]) * np.clip(np.nanmax(np.abs(angles)), 1, 1.5))
         if isinstance(self.motion, Record):
             below.plot(times, self.motion.acceleration(times), color="tab:red", linewidth=0.8)
@@ -133,6 +122,14 @@ class History:
             below.set(ylabel="base (m)")
         below.set(xlabel="time (s)", xlim=(0, times[-1]))
         save_picture(figure, path, dpi=150)
+
+
+def part_of_motion(history):
+    """How much of the motion has been run, in words; '' where all of it has been, or where the block has overturned."""
+    if history.overturned or history.motion_run == 1:
+        return ""
+    end = history._motion_ends()
+    return f", after {history.end_time:.4g} " + ("s of a motion without a known end" if np.isinf(end) else f"of {end:.4g} s of the motion")
 
 
 def _first(holds, begin, end, points=1000):
@@ -158,17 +155,17 @@ def _motion_given(name, motion):
     return motion
 
 
-def _arguments(block, motion, restitution, restoring, initial_angle, initial_velocity, t_end, half_cycles, vertical=None):
+def case_arguments(block, motion, restitution, restoring, initial_angle, initial_velocity, t_end, half_cycles, vertical=None):
     """(shape of the cases, arguments of the compiled functions)"""
     motion, vertical = _motion_given("motion", motion), _motion_given("vertical", vertical)
     if isinstance(vertical, PulseTrain) and vertical.times is None:
         raise ValueError(f"vertical = {shown(vertical)}: must be a motion with a known course, not a resonant train")
-    restitution = block._restitution(restitution)
+    restitution = restitution_of(block, restitution)
     t_end = np.inf if t_end is None else t_end
     half_cycles = -1 if half_cycles is None else whole_given("half_cycles", half_cycles, 1)
     shape = np.broadcast_shapes(block.shape, motion.shape, vertical.shape, shape_of(restitution, initial_angle, initial_velocity, t_end))
     state = columns(shape, restitution, initial_angle, initial_velocity, t_end)
-    return shape, (block._columns(shape), motion._motions(shape), vertical._motions(shape), state, restoring, half_cycles)
+    return shape, (columns_of(block, shape), compiled(motion, shape), compiled(vertical, shape), state, restoring, half_cycles)
 
 
 def simulate(block, motion=None, restitution=None, restoring="exact", initial_angle=0.0, initial_velocity=0.0, t_end=None, half_cycles=None,
@@ -181,6 +178,12 @@ def simulate(block, motion=None, restitution=None, restoring="exact", initial_an
     critical angle (constant moment).
 
     vertical: the base's motion upwards, whose acceleration adds to gravity; it must stay above -gravity, because the block keeps to its base."""
-    shape, arguments = _arguments(block, motion, restitution, restoring, initial_angle, initial_velocity, t_end, half_cycles, vertical)
+    shape, arguments = case_arguments(block, motion, restitution, restoring, initial_angle, initial_velocity, t_end, half_cycles, vertical)
     warn_of_doubt(motion, vertical)
     return History(shape, arguments, _core.simulate(*arguments), (block, motion, vertical, restitution, restoring))
+
+
+def with_exact_moment(history, end):
+    """History of the same block and motion with the exact restoring moment, until `end` (s)."""
+    _, angle, velocity, _ = (float(column[0]) for column in history._arguments[3])
+    return simulate(history.block, history.motion, history.restitution, "exact", angle, velocity, end, vertical=history.vertical)

@@ -341,31 +341,46 @@ class Record(Motion):
         """The record of a PEER file of accelerations (.AT2); masonry.read_record reads it too, and other formats."""
         positive_given("gravity", gravity, ", in m/s^2")
         series, = _records.peer.read(_records.text_given(path), "acceleration")
-        return cls._from_series(path, series, _records.peer.NAME, gravity, scale=scale, baseline=baseline)
+        return record_of_series(cls, path, series, _records.peer.NAME, gravity, scale=scale, baseline=baseline)
 
     @classmethod
     def from_csv(cls, path, unit, dt=None, scale=1.0, baseline="none", gravity=STANDARD_GRAVITY, columns=None):
         """The record of a text file of columns, whose unit is named; masonry.read_record reads it too, and other formats."""
         unit_factor(unit, gravity)
         series, = _records.table.read(_records.text_given(path), unit, dt, columns)
-        return cls._from_series(path, series, _records.table.NAME, gravity, scale=scale, baseline=baseline)
-
-    @classmethod
-    def _from_series(cls, path, series, format, gravity=STANDARD_GRAVITY, **options):
-        """The record of what a reader has found in a file."""
-        quantity = series.unit.quantity
-        factor = series.unit.factor(positive_given("gravity", gravity, ", in m/s^2"))
-        options[quantity] = factor * series.values
-        if quantity != "acceleration":
-            options["resolution"] = factor * resolution_of(series.values)  # of the digits in the file
-        try:
-            result = cls(series.dt, name=series.title or str(path), unit=QUANTITIES[quantity], **options)
-        except ValueError as error:
-            raise ValueError(f"{path}: {error}") from None
-        result.source = _records.source_of(path, series, format)
-        return result
+        return record_of_series(cls, path, series, _records.table.NAME, gravity, scale=scale, baseline=baseline)
 
 
 def _rounded(value):
     """A number for a text: what is round-off is 0."""
     return f"{value:.3g}" if abs(value) >= 1e-9 else "0"
+
+
+def record_of_series(cls, path, series, format, gravity=STANDARD_GRAVITY, **options):
+    """The record, of class `cls`, of what a reader has found in a file."""
+    quantity = series.unit.quantity
+    factor = series.unit.factor(positive_given("gravity", gravity, ", in m/s^2"))
+    options[quantity] = factor * series.values
+    if quantity != "acceleration":
+        options["resolution"] = factor * resolution_of(series.values)  # of the digits in the file
+    try:
+        result = cls(series.dt, name=series.title or str(path), unit=QUANTITIES[quantity], **options)
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}") from None
+    result.source = _records.source_of(path, series, format)
+    return result
+
+
+def compiled(motion, shape):
+    """The compiled motions, one a case of that shape (or one for all)."""
+    return motion._motions(shape)
+
+
+def end_of(motion, shape, impact_times):
+    """When a motion of blocks with these impacts is over, s: an array of that shape, infinite where that is not known."""
+    end = np.broadcast_to(motion._end(), shape)
+    resonant = isinstance(motion, PulseTrain) and motion.times is None and motion.half_cycles
+    if not resonant or np.shape(impact_times)[-1] < motion.half_cycles:
+        return end
+    last = impact_times[..., motion.half_cycles - 1]  # the instant of its last pulse
+    return np.where(np.isnan(last), np.inf, last + motion._last_pulse())

@@ -4,7 +4,7 @@ import numpy as np
 
 from . import _core
 from ._given import shown, whole_given
-from .history import _arguments
+from .history import case_arguments
 from .motions import Motion, PulseTrain, Record
 
 # Below its first threshold the bracket is scanned in steps of this share of it.
@@ -42,7 +42,7 @@ def overturning_amplitude(block, shape, restitution=None, restoring="exact", bra
     half_cycles = 200 if endless and half_cycles is None else half_cycles
 
     def overturns(amplitudes):
-        _, arguments = _arguments(block, unit.scaled(amplitudes), restitution, restoring, initial_angle, initial_velocity, None, half_cycles)
+        _, arguments = case_arguments(block, unit.scaled(amplitudes), restitution, restoring, initial_angle, initial_velocity, None, half_cycles)
         return _core.overturns(*arguments).astype(bool)
 
     scan = np.geomspace(lower, upper, samples) if lower > 0 else np.linspace(lower, upper, samples)

@@ -2,7 +2,7 @@
 
 from . import _records
 from ._records.units import STANDARD_GRAVITY
-from .motions import Record
+from .motions import Record, record_of_series
 
 
 def read_record(path, component=None, quantity=None, *, unit=None, dt=None, columns=None, gravity=STANDARD_GRAVITY, scale=1.0, baseline="none",
@@ -28,4 +28,4 @@ def read_record(path, component=None, quantity=None, *, unit=None, dt=None, colu
     the line.
     """
     series, name = _records.read(path, component, quantity, unit, dt, columns)
-    return Record._from_series(path, series, name, gravity, scale=scale, baseline=baseline, corner=corner, order=order)
+    return record_of_series(Record, path, series, name, gravity, scale=scale, baseline=baseline, corner=corner, order=order)

@@ -13,12 +13,14 @@ from masonry.dem._load import load_classes as _load_classes
 globals().update(_load_classes())
 
 from masonry.dem import records as _records  # noqa: E402, F401  (YADE's classes must be registered first)
+from masonry.dem.checks import check_blocks  # noqa: E402
 from masonry.dem.comparing import compare  # noqa: E402
 from masonry.dem.engines import energy, engines, history, impacts, record_motion, save_history  # noqa: E402
 from masonry.dem.reactions import joint_forces, reactions  # noqa: E402
 from masonry.dem.recording import wall_history  # noqa: E402
 from masonry.dem.resting import at_rest  # noqa: E402
 from masonry.dem.running import run  # noqa: E402
-from masonry.dem.scene import (angle, base, block, blocks_from_table, check_blocks, overturned, pier,  # noqa: E402
-                               return_wall, save_blocks, stack, structures, tilt, two_wythe_wall, wall)
+from masonry.dem.scene import (angle, base, block, blocks_from_table, overturned, pier, return_wall, save_blocks,  # noqa: E402
+                               stack, tilt, two_wythe_wall, wall)
+from masonry.dem.structures import structures  # noqa: E402
 from masonry.dem.tilting import TiltTable  # noqa: E402

@@ -5,18 +5,18 @@ import numbers
 
 import numpy as np
 from masonry._files import written
-from masonry._given import is_whole, number_given, shown
-from masonry._pose import axes_of
+from masonry._given import finite_numbers, is_whole, number_given, shown
 from masonry.motions import Motion, PulseTrain, Record
 from yade import O, wrapper
 
 from masonry import _yade
 from masonry.dem import notes
-from masonry.dem.scene import _boxes, _half_sizes, _layout, check_blocks, check_material, check_recorder, structures
-from masonry.dem.walls import finite_numbers
+from masonry.dem.bodies import boxes, geometry, half_sizes
+from masonry.dem.checks import check_blocks, check_material, check_recorder
+from masonry.dem.structures import structures
 
 _MODELS = ("auto", "planar", "spatial", "compliant")
-_METHODS = ("auto", "localised", "wall")
+METHODS = ("auto", "localised", "wall")
 _ORDERS = (None, "simultaneous", "sequential")
 # By model: up to so many free blocks that are stepped together, impacts are found one by one.
 _FEW_BLOCKS = _yade.few_blocks()
@@ -56,8 +56,7 @@ def has_stiffness(material):
 
 def _largest_pressure(free, gravity):
     """Of the weight of a block and of what stands above it, over its lower face, Pa. Overlaps are measured along the axes of that face."""
-    centers, sizes, quaternions = _layout(free)
-    axes, mass = axes_of(quaternions), np.array([b.state.mass for b in free])
+    (centers, sizes, axes), mass = geometry(free), np.array([b.state.mass for b in free])
     pressures = []
     for k, (center, own) in enumerate(zip(centers, axes)):
         face = np.delete(own, np.abs(own[:, 2]).argmax(), axis=0)
@@ -74,7 +73,7 @@ def _check_stiffness(blocks, gravity):
     if gravity == 0:
         return
     free = [b for b in blocks if b.dynamic]
-    width = 2 * _half_sizes(free)[:, :2].min()
+    width = 2 * half_sizes(free)[:, :2].min()
     pressure = _largest_pressure(free, gravity)
     for name in ("normalStiffness", "shearStiffness"):
         for material in {b.mat.id: b.mat for b in blocks}.values():
@@ -101,7 +100,7 @@ def _choose_stiffness(blocks, penetration, gravity):
         if gravity == 0:
             raise ValueError("gravity = 0: every BlockMat must have a normalStiffness, there is no weight to choose one by")
         free = [b for b in blocks if b.dynamic]
-        stiffness = 2 * _largest_pressure(free, gravity) / (penetration * 2 * _half_sizes(free)[:, :2].min())
+        stiffness = 2 * _largest_pressure(free, gravity) / (penetration * 2 * half_sizes(free)[:, :2].min())
         for material in normal:
             material.normalStiffness = stiffness
             _chosen.append((material, stiffness))
@@ -170,8 +169,8 @@ def _several(value):
 def _check_arguments(model, method, impact_order, penetration, tolerance, dt, gravity):
     if model not in _MODELS:
         raise ValueError(f"model = {shown(model)}: must be one of {', '.join(_MODELS)}")
-    if method not in _METHODS:
-        raise ValueError(f"method = {shown(method)}: must be one of {', '.join(_METHODS)}")
+    if method not in METHODS:
+        raise ValueError(f"method = {shown(method)}: must be one of {', '.join(METHODS)}")
     if impact_order not in _ORDERS:
         raise ValueError(f"impact_order = {shown(impact_order)}: must be 'simultaneous', 'sequential' or None")
     if penetration is not None and not _LEAST_PENETRATION <= number_given("penetration", penetration) <= 1e-2:
@@ -243,7 +242,7 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
     """
     notes.said.clear()
     _check_arguments(model, method, impact_order, penetration, tolerance, dt, gravity)
-    gravity, motions, recorders, blocks = float(gravity), _several(motion), _several(recorder), _boxes()
+    gravity, motions, recorders, blocks = float(gravity), _several(motion), _several(recorder), boxes()
     _check_engines(motions, recorders, others, blocks)
     if not any(b.dynamic for b in blocks):
         raise ValueError("there is no free block in O.bodies: add one with dem.block() before dem.engines()")
@@ -336,7 +335,8 @@ def joint_engine():
     return next((one for one in O.engines if isinstance(one, (wrapper.MoreauJeanIntegrator, wrapper.RockingJointEngine)) and not one.dead), None)
 
 
-def _joint_engine():
+def joint_engine_given():
+    """The same; ValueError without one."""
     engine = joint_engine()
     if engine is not None:
         return engine
@@ -365,7 +365,7 @@ def impacts():
     Restitution and velocity are relative to the motion with which the block would stay on its old and its new support: on supports that move in
     different ways, a block with restitution 0 follows both. The walls of method='wall' list only
     impacts with a given restitution, each in the step after it: beside blocks with localised impacts the rows may be out of order by a step."""
-    e = _joint_engine()
+    e = joint_engine_given()
     table = np.zeros(len(e.impactTimes), dtype=_IMPACT_FIELDS)
     before, after = np.array(e.impactBefore), np.array(e.impactAfter)
     columns = (e.impactTimes, e.impactBlocks, e.impactSupports, e.impactAsked, np.divide(after, before, out=np.zeros_like(before), where=before > 0),
@@ -384,7 +384,7 @@ def energy():
 
     The sum of all others less baseWork is constant, except for madeEnergy less lostEnergy of the engine, and for the work of other
     engines' forces, a change of gravity or velocities by a script, and erased blocks. With compliant joints all energies are 0 before the first step."""
-    e = _joint_engine()
+    e = joint_engine_given()
     keys = ("kinetic", "potential", "elastPotential", "frictDissip", "dampDissip", "impactDissip", "baseWork")
     return {key: getattr(e, key) for key in keys if hasattr(e, key)}
 

@@ -5,7 +5,8 @@ import weakref
 
 import masonry
 import numpy as np
-from masonry.dem.scene import _half_sizes, floating_and_supports, listed
+from masonry.dem.bodies import half_sizes
+from masonry.dem.checks import floating_and_supports, listed
 from yade import O, wrapper
 
 # What is no slip of units: the longest free block (mm for m), m; densities (g/cm^3) and those of masonry, kg/m^3; peaks of records (g, cm/s^2), m/s^2.
@@ -181,7 +182,7 @@ def _pivots_that_slip(supports):
     """Sentence on the block whose landings slip most: without slip, one that obeys C asks for a friction of slenderness (1 - C)/(1 + C).
     supports: (body below, body on it)."""
     slip = []
-    for (below, body), half in zip(supports, _half_sizes([body for _, body in supports])):
+    for (below, body), half in zip(supports, half_sizes([body for _, body in supports])):
         restitution, friction = _law(below, body)
         if body.dynamic and restitution is not None:
             asked = half[2] / min(half[0], half[1]) * (1 - restitution) / (1 + restitution)
@@ -205,7 +206,7 @@ def _pulses_that_slip(supports, motions):
         if not isinstance(motion, wrapper.PulseTrainEngine) or motion.shape != "dirac" or motion.direction[2] != 0:
             continue
         along = 0 if abs(motion.direction[0]) >= abs(motion.direction[1]) else 1
-        for (below, body), half in zip(supports, _half_sizes([body for _, body in supports])):
+        for (below, body), half in zip(supports, half_sizes([body for _, body in supports])):
             friction, slenderness = _law(below, body)[1], half[2] / half[along]
             asked = (slenderness**2 + 4) / (3 * slenderness)
             if body.dynamic and body.id not in carrying and below.id in motion.ids and asked > friction:

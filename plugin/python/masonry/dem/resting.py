@@ -1,9 +1,9 @@
 """Whether the blocks are at rest."""
 
 import numpy as np
+from masonry.dem.bodies import boxes
 from masonry.dem.engines import joint_engine
 from masonry.dem.reactions import joint_forces
-from masonry.dem.scene import _boxes
 from yade import O, wrapper
 
 # Speed of rest relative to sqrt(g R), as in plugin/core/tolerances.hpp.
@@ -30,7 +30,7 @@ def at_rest():
     strength = np.linalg.norm(gravity)
     if O.iter == 0 or engine is None or strength == 0:
         return False
-    blocks = [body for body in _boxes() if body.dynamic]
+    blocks = [body for body in boxes() if body.dynamic]
     state = np.array([(*body.state.vel, *body.state.angVel, body.state.mass, body.shape.extents.norm()) for body in blocks])
     speed, spin, mass, reach = np.linalg.norm(state[:, :3], axis=1), np.linalg.norm(state[:, 3:6], axis=1), state[:, 6], state[:, 7]
     if (speed > _REST_SPEED * np.sqrt(strength * reach)).any() or (spin > _REST_SPEED * np.sqrt(strength / reach)).any():

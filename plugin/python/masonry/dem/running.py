@@ -9,8 +9,8 @@ from masonry._progress import wanted
 from yade import O, wrapper
 
 from masonry.dem import notes
-from masonry.dem.engines import _joint_engine
-from masonry.dem.scene import listed
+from masonry.dem.checks import listed
+from masonry.dem.engines import joint_engine_given
 
 # Wall clock between two looks at the bar, s.
 _SHOWN = 0.1
@@ -75,7 +75,7 @@ def run(seconds=None, until=None, progress=None):
         raise ValueError(f"seconds = {seconds}: must be positive and finite")
     if not O.engines:
         raise ValueError("O.engines is empty: set O.engines = dem.engines(...)")
-    _joint_engine()
+    joint_engine_given()
     if O.running:
         raise ValueError("O is running already: call O.pause() or O.wait() first")
     if not 0 < O.dt < math.inf:

@@ -3,17 +3,14 @@
 import math
 
 import numpy as np
-from masonry._given import number_given, shown
-from masonry._pose import axes_of
-from masonry.dem import walls
-from masonry.results.own_bases import own_bases
-from yade import O, Quaternion, Vector3, utils, wrapper
+from masonry._given import finite_numbers, number_given, shown
+from masonry.dem import layouts
+from masonry.dem.bodies import box, boxes, poses
+from masonry.dem.checks import check_material, listed
+from masonry.dem.tables import read_table, write_table
+from yade import O, Quaternion, Vector3, utils
 
 _AXES = {"x": 0, "y": 1}
-# Faults that a message names one by one; more are counted.
-_NAMED = 10
-# kg/m^3. Wide enough for other units (t/mm^3), far from overflow.
-_DENSITIES = 1e-12, 1e12
 # Share of a half size by which a block's centre must be inside its support: a centre above the edge is off, whatever the round-off.
 _INSIDE = 1e-9
 # Upward part of a block's own x or y axis up to which it may lean about it.
@@ -21,16 +18,7 @@ _LEVEL = 0.7
 
 
 def _positive_size(name, size):
-    return Vector3(walls.positive_size(name, size))
-
-
-def check_material(material):
-    if not isinstance(material, wrapper.BlockMat):
-        raise ValueError(f"material = {shown(material)}: must be a BlockMat")
-    if not _DENSITIES[0] <= material.density <= _DENSITIES[1]:
-        raise ValueError(f"density = {material.density}: must be positive, from {_DENSITIES[0]:g} to {_DENSITIES[1]:g}, in kg/m^3")
-    if not 0 <= material.frictionAngle < math.pi / 2:
-        raise ValueError(f"frictionAngle = {material.frictionAngle}: must be from 0 to below pi/2, in rad (noSlip=True where nothing may slip)")
+    return Vector3(layouts.positive_size(name, size))
 
 
 def _block_material(material):
@@ -38,47 +26,6 @@ def _block_material(material):
     if not (0 <= material.id < len(O.materials) and O.materials[material.id] is material):  # new, or of a scene before
         O.materials.append(material)
     return material
-
-
-def _box(id, name="id"):
-    """The body of that id, which the script gave as `name`; ValueError unless it exists and is a Box."""
-    if not isinstance(id, (int, np.integer)) or isinstance(id, bool) or not 0 <= id < len(O.bodies) or O.bodies[int(id)] is None:
-        allowed = f"must be an id, a whole number from 0 to {len(O.bodies) - 1}" if len(O.bodies) else "it is empty, dem.base() makes the first one"
-        raise ValueError(f"{name} = {shown(id)}: there is no such body in O.bodies: {allowed}")
-    body = O.bodies[int(id)]
-    if not isinstance(body.shape, wrapper.Box):
-        raise ValueError(f"{name} = {id}: that body is a {type(body.shape).__name__}, it must be a Box")
-    return body
-
-
-def check_recorder(recorder):
-    name = type(recorder).__name__
-    periods = recorder.iterPeriod, recorder.virtPeriod, recorder.realPeriod
-    later = isinstance(recorder, wrapper.BlockRecorder) and not any(periods)  # by O.dt, which dem.engines() is to choose
-    if later:
-        print(f"masonry.dem: {name} records nothing until its iterPeriod or virtPeriod is set")
-    elif not any(0 < period < math.inf for period in periods):
-        raise ValueError(f"{name}.iterPeriod = {recorder.iterPeriod}, virtPeriod = {recorder.virtPeriod}: one of them must be positive and finite")
-    if isinstance(recorder, wrapper.BlockRecorder) and not recorder.ids:
-        raise ValueError(f"{name}.ids is empty: it must name at least one block")
-    wall = isinstance(recorder, wrapper.WallRecorder)
-    if recorder.times and recorder.times[-1] > O.time:
-        raise ValueError(f"{name}.times ends at {recorder.times[-1]:g} s, after O.time = {O.time:g} s: it holds an earlier run: make a new {name} (after loading, O.engines has the one of the run)")
-    if recorder.times:  # it goes on, also without blocks that have been erased since
-        return
-    bodies = [_box(id) for id in recorder.ids]
-    left_out = _bases_left_out({b.id for b in bodies}) if wall and bodies else []
-    if left_out:
-        lacks = "no prescribed body" if all(b.dynamic for b in bodies) else "not the base of all its blocks"
-        print(f"masonry.dem: {name}.ids has {lacks}: drifts and falls will not be relative to the base: add {listed(left_out)} where it moves")
-
-
-def _bases_left_out(ids):
-    """Ids of the prescribed bodies on which some of the blocks stand, and which are not among them."""
-    boxes = _boxes()
-    centers, sizes, quaternions = _layout(boxes)
-    bases = own_bases(centers, sizes, axes_of(quaternions), np.array([b.dynamic for b in boxes]))
-    return sorted({boxes[base].id for body, base in zip(boxes, bases) if base >= 0 and body.id in ids} - ids)
 
 
 def _axis(name):
@@ -109,7 +56,7 @@ def _append_all(centers, sizes, material, orientations, resting):
 
 def _top(on, at=(0.0, 0.0)):
     """Where a layout stands on the body: the place `at` on its upper face, in world axes, and the body's orientation."""
-    below, at = _box(on, "on"), walls.finite_numbers("at", at, 2, "two finite numbers, in m")
+    below, at = box(on, "on"), finite_numbers("at", at, 2, "two finite numbers, in m")
     return below.state.pos + below.state.ori * Vector3(at[0], at[1], below.shape.extents[2]), below.state.ori
 
 
@@ -119,7 +66,7 @@ def _placed(centers, foot, orientation):
 
 def _check_support(layout, on, at):
     """ValueError unless every block of the bottom course has its centre above the body `on`."""
-    (centers, sizes), half = layout, np.array(_box(on, "on").shape.extents)
+    (centers, sizes), half = layout, np.array(box(on, "on").shape.extents)
     bottom = centers[centers[:, 2] - sizes[:, 2] / 2 < sizes[:, 2].min() / 2, :2] + at
     off = bottom[(np.abs(bottom) > half[:2] * (1 - _INSIDE)).any(axis=1)]
     if len(off):
@@ -156,19 +103,19 @@ def block(size, material, on=None, center=None, orientation=None):
         raise ValueError(f"orientation = {shown(orientation)}: must be a Quaternion of length 1")
     resting = _turn_about_z(orientation)
     if on is not None:
-        below = _box(on, "on")
+        below = box(on, "on")
         if not (orientation * Vector3.UnitZ)[2] > 1 - 1e-12:
             raise ValueError(f"orientation = {shown(orientation)}: must be a turn about z where the block stands on a body")
         center = below.state.pos + below.state.ori * Vector3(0, 0, below.shape.extents[2] + size[2] / 2)
         orientation = resting = below.state.ori * orientation
-    center = walls.finite_numbers("center", center, 3, "three finite numbers, in m")
+    center = finite_numbers("center", center, 3, "three finite numbers, in m")
     return _append_all(np.array([center]), np.array([size]), _block_material(material), orientation, resting)[0]
 
 
 def stack(n, size, material, on):
     """n equal blocks on top of each other, the lowest on the body `on`. Returns their ids, bottom up."""
     ids = []
-    for _ in range(walls.whole("n", n, 1)):
+    for _ in range(layouts.whole("n", n, 1)):
         ids.append(block(size, material, on=ids[-1] if ids else on))
     return ids
 
@@ -193,8 +140,8 @@ def wall(courses=None, per_course=None, size=None, material=None, on=None, gap=0
     missing = [name for name, value in (("material", material), ("on", on)) if value is None]
     if missing:
         raise ValueError(f"{' = None, '.join(missing)} = None: must be given: a BlockMat, and the id of the body that the wall stands on")
-    courses, per_course, size = walls.wall_modules(courses, per_course, size, length, height, thickness, gap)
-    return _stand(walls.wall_layout(courses, per_course, size, gap, openings, openings_in), material, on, at)
+    courses, per_course, size = layouts.wall_modules(courses, per_course, size, length, height, thickness, gap)
+    return _stand(layouts.wall_layout(courses, per_course, size, gap, openings, openings_in), material, on, at)
 
 
 def two_wythe_wall(courses, per_course, size, material, on, header_every=6, gap=0.0, collar=0.0, at=(0.0, 0.0)):
@@ -206,7 +153,7 @@ def two_wythe_wall(courses, per_course, size, material, on, header_every=6, gap=
     gap, collar     widths of the head joints and of the joint between the leaves, m
     at              (x, y) of the middle of the wall on the body `on`, m
     """
-    return _stand(walls.two_wythe_layout(courses, per_course, size, header_every, gap, collar), material, on, at)
+    return _stand(layouts.two_wythe_layout(courses, per_course, size, header_every, gap, collar), material, on, at)
 
 
 def return_wall(courses, along_x, along_y, size, material, on, gap=0.0, at=(0.0, 0.0)):
@@ -219,13 +166,13 @@ def return_wall(courses, along_x, along_y, size, material, on, gap=0.0, at=(0.0,
     gap                 width of the head joints, m
     at                  (x, y) of the middle of the rectangle around the plan on the body `on`, m
     """
-    return _stand(walls.return_layout(courses, along_x, along_y, size, gap), material, on, at)
+    return _stand(layouts.return_layout(courses, along_x, along_y, size, gap), material, on, at)
 
 
 def pier(courses, size, material, on, per_course=1, at=(0.0, 0.0)):
     """A pier: a column of blocks. per_course: 1, or 2 for two blocks side by side, turned by a quarter turn from course to course (size x
     twice size y). at: (x, y) of its axis on the body `on`, m. Returns the ids, bottom up."""
-    return _stand(walls.pier_layout(courses, size, per_course), material, on, at)
+    return _stand(layouts.pier_layout(courses, size, per_course), material, on, at)
 
 
 def blocks_from_table(table, materials, on=None):
@@ -243,7 +190,7 @@ def blocks_from_table(table, materials, on=None):
 
     Columns may be written in capitals and with blanks around them.
     """
-    centers, sizes, quaternions, names, places = walls.read_table(table)
+    centers, sizes, quaternions, names, places = read_table(table)
     if not isinstance(materials, dict):
         check_material(materials)
         materials = {materials.label: materials, "": materials}
@@ -261,92 +208,23 @@ def blocks_from_table(table, materials, on=None):
     return _append_all(centers, sizes, [_block_material(materials[name]) for name in names], orientations, resting)
 
 
-def _boxes():
-    return [b for b in O.bodies if isinstance(b.mat, wrapper.BlockMat) and isinstance(b.shape, wrapper.Box)]
-
-
-def _layout(bodies):
-    """centers (n, 3), full sizes (n, 3) in m and quaternions (n, 4) as w, x, y, z."""
-    states = [b.state for b in bodies]
-    quaternions = np.array([tuple(s.ori) for s in states]).reshape(-1, 4)[:, [3, 0, 1, 2]]
-    sizes = 2 * np.array([tuple(b.shape.extents) for b in bodies]).reshape(-1, 3)
-    return np.array([tuple(s.pos) for s in states]).reshape(-1, 3), sizes, quaternions
-
-
-def _half_sizes(bodies):
-    """(n, 3), m: along the axis of each that is nearest to x of those that are not upright, along the other, and along the upright one."""
-    _, sizes, quaternions = _layout(bodies)
-    axes = np.abs(axes_of(quaternions))
-    order = [sorted(range(3), key=lambda k: (k == own[:, 2].argmax(), -own[k, 0])) for own in axes]
-    return np.take_along_axis(sizes / 2, np.array(order, dtype=int).reshape(-1, 3), axis=1)
-
-
 def save_blocks(path):
     """Writes the free blocks as they are now (centre, size, orientation, label of the material) to a .csv or .json table, in the order of their
     ids: dem.blocks_from_table(path, ...) makes the same bits of them again. Velocities are not kept: O.save does that. Raises ValueError
     where materials of blocks that are not the same have the same label, or none."""
-    bodies = [b for b in _boxes() if b.dynamic]
+    bodies = [b for b in boxes() if b.dynamic]
     labelled = {}
     for material in {b.mat.id: b.mat for b in bodies}.values():
         known = labelled.setdefault(material.label, material)
         if any(repr(value) != repr(getattr(known, name)) for name, value in material.dict().items() if name != "id"):
             raise ValueError(f"O.materials[{material.id}].label = {shown(material.label)}: must be another than that of O.materials[{known.id}], which is not the same")
-    walls.write_table(path, *_layout(bodies), [b.mat.label for b in bodies])
-
-
-def listed(items):
-    return ", ".join(str(item) for item in items[:_NAMED]) + (f" and {len(items) - _NAMED} more" if len(items) > _NAMED else "")
-
-
-def check_blocks(tolerance=1e-3, floating=True):
-    """Raises a ValueError that names the ids of overlapping blocks, prescribed bodies included, and, with `floating`, of those that no chain of supports joins to
-    a prescribed body (head joints do not carry). tolerance: depth of an overlap, or gap in a joint, that is still accepted, relative to
-    the smallest size of the two blocks; 0 < tolerance <= 0.1. Returns the ids of the floating blocks."""
-    return floating_and_supports(tolerance, floating)[0]
-
-
-def floating_and_supports(tolerance=1e-3, floating=True):
-    """What check_blocks() does and returns, and the pairs (body below, body on it) of blocks that touch."""
-    if not 0 < number_given("tolerance", tolerance) <= 0.1:
-        raise ValueError(f"tolerance = {tolerance}: must be above 0 and at most 0.1")
-    bodies = _boxes()
-    if not bodies:
-        return [], []
-    centers, sizes, quaternions = _layout(bodies)
-    prescribed = np.array([not b.dynamic for b in bodies])
-    pairs, depths, loose, supports = walls.faults(centers, sizes, axes_of(quaternions), prescribed, tolerance)
-    ids, found = [b.id for b in bodies], []
-    loose = [ids[i] for i in loose]
-    each = [(prescribed[i] and prescribed[j], f"{ids[i]} and {ids[j]} (by {depth:.3g} m)") for (i, j), depth in zip(pairs.tolist(), depths.tolist())]
-    for both, name in ((False, "overlapping blocks: "), (True, "overlapping prescribed bodies, which would share the load on them: ")):
-        named = [text for one, text in each if one == both]
-        if named:
-            found.append(name + listed(named))
-    if floating and loose:
-        found.append("floating blocks, which no chain of supports joins to a prescribed body: " + listed(loose))
-    if found:
-        raise ValueError(f"{'; '.join(found)}; overlaps and gaps must be at most {tolerance:g} of the smallest size (tolerance)")
-    return loose, [(bodies[lower], bodies[upper]) for lower, upper in supports.tolist()]
-
-
-def structures(gap=0.1):
-    """Ids of the free blocks, a list for each structure: blocks that are joined by others that are near each other. gap: how far apart two that
-    are near may be, along the axes of either, relative to the smallest size of a free block; 0 < gap <= 1. Rigid structures of their own
-    are stepped as if the others were not there, unless pulses move the base."""
-    if not 0 < number_given("gap", gap) <= 1:
-        raise ValueError(f"gap = {gap}: must be above 0 and at most 1")
-    bodies = [b for b in _boxes() if b.dynamic]
-    if not bodies:
-        return []
-    centers, sizes, quaternions = _layout(bodies)
-    found = walls.structures(centers, sizes, axes_of(quaternions), gap)
-    return [[bodies[k].id for k in members] for members in found]
+    write_table(path, *poses(bodies), [b.mat.label for b in bodies])
 
 
 def tilt(id, angle, axis="y"):
     """Turns a standing free block by `angle` (rad) about its own axis 'x' or 'y', so that it rests on its lower edge. A positive
     turn about y leans towards +x. Turns about one axis add up: one that leans already comes back to its resting pose, then leans the other way."""
-    body, row = _box(id), _axis(axis)
+    body, row = box(id), _axis(axis)
     if not -math.pi / 2 < number_given("angle", angle) < math.pi / 2:
         raise ValueError(f"angle = {angle}: must be between -pi/2 and pi/2, in rad")
     if not body.dynamic:
@@ -370,14 +248,14 @@ def _angle(state, row):
 
 def angle(id, axis="y"):
     """Rotation of a block from its resting pose about its own axis 'x' or 'y', signed, rad."""
-    return _angle(_box(id).state, _axis(axis))
+    return _angle(box(id).state, _axis(axis))
 
 
 def overturned():
     """Ids of the free blocks that lean so far that their weight no longer acts through their base, the face that was below in the
     resting pose: a single block that does will not come back."""
     found = []
-    for body in (b for b in _boxes() if b.dynamic):
+    for body in (b for b in boxes() if b.dynamic):
         half = body.shape.extents
         rest, up = (list(turn.conjugate() * Vector3.UnitZ) for turn in (body.state.refOri, body.state.ori))  # upwards, in the block's axes
         upright = max(range(3), key=lambda axis: abs(rest[axis]))

@@ -11,8 +11,8 @@ from masonry._files import save_picture
 from masonry._given import number_given, positive_given, shown
 from masonry._pose import axes_of
 from masonry._progress import wanted
-from masonry.dem.engines import _METHODS, engines, has_stiffness
-from masonry.dem.scene import _boxes, _layout
+from masonry.dem.bodies import boxes, geometry
+from masonry.dem.engines import METHODS, engines, has_stiffness
 from tqdm import tqdm
 from yade import O, Vector3
 
@@ -139,23 +139,22 @@ class TiltTable:
             raise ValueError(f"load = {shown(load)}: must be 'force' or 'turned'")
         if model not in ("auto", "planar", "spatial"):
             raise ValueError(f"model = {shown(model)}: must be 'auto', 'planar' or 'spatial'")
-        if method not in _METHODS:
-            raise ValueError(f"method = {shown(method)}: must be one of {', '.join(_METHODS)}")
+        if method not in METHODS:
+            raise ValueError(f"method = {shown(method)}: must be one of {', '.join(METHODS)}")
         for name, value in (("hold", hold), ("share", share), ("gravity", gravity)):
             positive_given(name, value)
         self.direction, self.load, self.model, self.share, self.gravity = direction, load, model, share, gravity
-        self._blocks = _boxes()
+        self._blocks = boxes()
         self._free = [b for b in self._blocks if b.dynamic]
         if not self._free:
             raise ValueError("there is no free block in O.bodies: add one with dem.block() before dem.TiltTable()")
         if model == "auto" and any(has_stiffness(b.mat) for b in self._blocks):
             raise ValueError("model = 'auto': must be 'planar' or 'spatial' where a BlockMat has a joint stiffness: TiltTable is for rigid blocks")
         self._start = [(b.state.pos, b.state.ori) for b in self._blocks]
-        centers, sizes, quaternions = _layout(self._blocks)
-        self._as_built, self._row = (centers, sizes, axes_of(quaternions)), {b.id: k for k, b in enumerate(self._blocks)}
+        self._as_built, self._row = geometry(self._blocks), {b.id: k for k, b in enumerate(self._blocks)}
         self._free_start = [start for b, start in zip(self._blocks, self._start) if b.dynamic]
-        centers, sizes, quaternions = _layout(self._free)
-        low, high = bounds(centers, sizes, axes_of(quaternions))
+        _, sizes, _ = free = geometry(self._free)
+        low, high = bounds(*free)
         self._size, self._reach = sizes.min(), np.linalg.norm(sizes, axis=1) / 2
         self._unit = math.sqrt((high[:, 2].max() - low[:, 2].min()) / gravity)
         self._hold = hold * self._unit
@@ -390,10 +389,10 @@ class _Mechanism:
     def __init__(self, blocks, start, joints, axis):
         self._ids, self._axis, self._joints = [b.id for b in blocks], axis, joints
         self._free = np.array([b.dynamic for b in blocks])
-        self._now, self._sizes, turned = _layout(blocks)
+        self._now, self._sizes, turned = geometry(blocks)
         self._before = np.array([tuple(pos) for pos, _ in start])
         self._axes = axes_of(np.array([tuple(ori) for _, ori in start])[:, [3, 0, 1, 2]])
-        self._turn = np.einsum("nka,nkb->nab", axes_of(turned), self._axes)
+        self._turn = np.einsum("nka,nkb->nab", turned, self._axes)
         self._row = {id: k for k, id in enumerate(self._ids)}
         corners = [self._movement(k, self._before[k] + _section(self._sizes[k], self._axes[k], 1 - axis)) for k in range(len(blocks))]
         self._moved = np.array([np.linalg.norm(c, axis=1).max() for c in corners])

@@ -1,10 +1,10 @@
 """Joints that opened and slid: from the motion of the blocks alone, so it holds for every model."""
 
-import math
+import weakref
 
 import numpy as np
 from masonry import _pose
-from masonry._boxes import bounds, near_pairs
+from masonry._boxes import bounds, face_patches, near_pairs, separating_axes
 from masonry.results.collapse import lies
 from masonry.results.wall_history import history_given
 
@@ -17,56 +17,9 @@ _CLOSED = 1e-2
 # Points of a joint are as closed as its least open one within this share of the smallest size of the two: more than solvers leave of gaps and overlaps. A
 # point that only turns about the closed edge moves along the joint by less than this times half of the turn.
 _LEVEL = 1e-4
-# Two faces of boxes overlap in a polygon of at most eight corners.
-_CORNERS = 8
 
 _FIELDS = [("id1", int), ("id2", int), ("center", float, 3), ("normal", float, 3), ("area", float), ("opening", float), ("opening_time", float),
            ("slip", float), ("slip_time", float)]
-
-
-def _clip(polygon, half):
-    """Part of a polygon (k, 2) within |x| <= half[0], |y| <= half[1]: side by side (Sutherland and Hodgman)."""
-    for axis in (0, 1):
-        for side in (-1, 1):
-            if not len(polygon):
-                return polygon
-            inside = half[axis] - side * polygon[:, axis]
-            kept = []
-            for k, point in enumerate(polygon):
-                before, d0, d1 = polygon[k - 1], inside[k - 1], inside[k]
-                if (d0 < 0) != (d1 < 0):
-                    kept.append(before + d0 / (d0 - d1) * (point - before))
-                if d1 >= 0:
-                    kept.append(point)
-            polygon = np.array(kept).reshape(-1, 2)
-    return polygon
-
-
-def _area(polygon):
-    x, y = polygon.T
-    return abs(x @ np.roll(y, -1) - y @ np.roll(x, -1)) / 2
-
-
-def _patch(a, b, margin):
-    """(normal from a to b, corners (k, 3), area) of the faces that touch, or None. a, b: (center, axes as columns, half sizes)."""
-    (center, axes, half), (other, turned, reach) = a, b
-    between = other - center
-    cosines = axes.T @ turned
-    for k in range(3):
-        m = int(np.abs(cosines[k]).argmax())
-        if 1 - abs(cosines[k, m]) > _TOUCH**2 / 2:
-            continue
-        side = math.copysign(1, between @ axes[:, k])
-        if abs(side * (between @ axes[:, k]) - half[k] - reach[m]) > margin:
-            continue
-        u, v, p, q = (k + 1) % 3, (k + 2) % 3, (m + 1) % 3, (m + 2) % 3
-        plane = axes[:, [u, v]]
-        face = between @ plane + np.array([[1, 1], [-1, 1], [-1, -1], [1, -1]]) * reach[[p, q]] @ (turned[:, [p, q]].T @ plane)
-        polygon = _clip(face, half[[u, v]])
-        area = _area(polygon) if len(polygon) > 2 else 0
-        if area > _LEAST_AREA * 4 * min(half[u] * half[v], reach[p] * reach[q]):
-            return side * axes[:, k], center + polygon @ plane.T + side * half[k] * axes[:, k], area
-    return None
 
 
 class _Joints:
@@ -76,28 +29,23 @@ class _Joints:
     largest = None  # table of joints(history), once it has been asked for
 
     def __init__(self, history):
-        center, axes, half = history.position[0], _pose.matrices(history.orientation[0]), history.sizes / 2
-        smallest = history.sizes.min(axis=1)
-        pairs, normals, polygons, centers, areas = [], [], [], [], []
-        for i, j in near_pairs(*bounds(center, history.sizes, axes.swapaxes(1, 2), _TOUCH / 2 * smallest[:, None])).tolist():
-            if not (history.free[i] or history.free[j]):
-                continue
-            patch = _patch((center[i], axes[i], half[i]), (center[j], axes[j], half[j]), _TOUCH * min(smallest[i], smallest[j]))
-            if patch is not None:
-                pairs.append((i, j))
-                normals.append(patch[0])
-                polygons.append(np.concatenate([patch[1], np.repeat(patch[1][-1:], _CORNERS - len(patch[1]), axis=0)]))
-                centers.append(patch[1].mean(axis=0))
-                areas.append(patch[2])
-        self.rows = np.array(pairs, dtype=int).reshape(-1, 2)
-        self.normals, self.polygons = np.array(normals).reshape(-1, 3), np.array(polygons).reshape(-1, _CORNERS, 3)
-        self.centers = np.array(centers).reshape(-1, 3)
+        boxes = center, sizes, axes = history.position[0], history.sizes, _pose.axes_of(history.orientation[0])
+        smallest = sizes.min(axis=1)
+        pairs = near_pairs(*bounds(*boxes, _TOUCH / 2 * smallest[:, None]))
+        pairs = pairs[history.free[pairs].any(axis=1)]
+        margins = _TOUCH * smallest[pairs].min(axis=1)
+        corners, areas, faces, gaps, normals, polygons = face_patches(*pairs.T, *boxes, margins)
+        cosines = np.abs(np.einsum("jbka,ja->jbk", axes[pairs], normals)).max(axis=2).min(axis=1)
+        found = (corners > 0) & (areas > _LEAST_AREA * faces) & (gaps >= -margins) & (1 - cosines <= _TOUCH**2 / 2)
+        self.rows, self.normals, self.polygons, self.areas = pairs[found], normals[found], polygons[found], areas[found]
+        own = np.arange(polygons.shape[1]) < corners[found, None]  # not the last one repeated
+        self.centers = (self.polygons * own[..., None]).sum(axis=1) / corners[found, None]
         down = lies(history)
         self.gone = (down & ~down[0])[:, self.rows].any(axis=2)
-        self.areas, self.smallest = np.array(areas), smallest[self.rows].min(axis=1)
-        self._start, self._half = axes, half
-        self._across = np.abs(np.einsum("jab,ja->jb", axes[self.rows[:, 0]], self.normals)) > 0.5  # the axis of block 1 that is the normal
-        self._arms = [np.einsum("jab,jka->jkb", axes[row], self.polygons - center[row][:, None]) for row in self.rows.T]
+        self.smallest = smallest[self.rows].min(axis=1)
+        self._start = axes.swapaxes(1, 2)
+        self._across = np.abs(np.einsum("jab,ja->jb", self._start[self.rows[:, 0]], self.normals)) > 0.5  # the axis of block 1 that is the normal
+        self._arms = [np.einsum("jab,jka->jkb", self._start[row], self.polygons - center[row][:, None]) for row in self.rows.T]
 
     def movement(self, history, sample):
         """(opening, slip, closed) of each joint at a sample: the largest gap of the points of the patch, 0 where all touch; how far the least open
@@ -111,16 +59,18 @@ class _Joints:
         least = gaps.min(axis=1)
         along = np.linalg.norm(apart - gaps[..., None] * self.normals[:, None], axis=2)
         slip = np.where(gaps <= (least + _LEVEL * self.smallest)[:, None], along, 0).max(axis=1)
-        beside = np.einsum("jab,ja->jb", axes[one], place[two] - place[one])
-        reach = self._half[one] + np.einsum("jbc,jc->jb", np.abs(np.einsum("jab,jac->jbc", axes[one], axes[two])), self._half[two])
-        over = ((np.abs(beside) <= reach) | self._across).all(axis=1)
+        beside, _ = separating_axes(one, two, place, history.sizes, axes.swapaxes(1, 2))
+        over = ((beside[:, :3] <= 0) | self._across).all(axis=1)
         return np.maximum(gaps.max(axis=1), 0), slip, over & (np.abs(least) <= _CLOSED * self.smallest)
 
 
+_found = weakref.WeakKeyDictionary()  # _Joints by history: found once
+
+
 def _joints_of(history):
-    if not hasattr(history_given(history), "_joints"):  # found once
-        history._joints = _Joints(history)
-    return history._joints
+    if history_given(history) not in _found:
+        _found[history] = _Joints(history)
+    return _found[history]
 
 
 def joints(history, time=None):

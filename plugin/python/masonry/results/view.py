@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 from masonry import _pose
-from masonry._boxes import near_pairs
+from masonry._boxes import near_pairs, separating_axes
 from masonry._given import array_given
 
 # From the scene towards the viewer of a structure that moves in space: from the right, the front, above.
@@ -96,14 +96,11 @@ class View:
         # In the picture, all at one depth. Those that only touch there do not overlap.
         low, high = (np.pad(ends, ((0, 0), (0, 1))) for ends in (np.nextafter(flat.min(axis=1), np.inf), flat.max(axis=1)))
         axes = corners[:, [1, 2, 4]] - corners[:, :1]  # rows
-        half = np.linalg.norm(axes, axis=2) / 2
-        axes = axes / np.maximum(2 * half, 1e-300)[..., None]
+        sizes = np.linalg.norm(axes, axis=2)
+        axes = axes / np.maximum(sizes, 1e-300)[..., None]
         i, j = near_pairs(low, high).T
-        normals = np.concatenate([axes[i], axes[j]], axis=1)
-        along = np.einsum("pka,pa->pk", normals, center[j] - center[i])
-        reach = sum(np.abs(np.einsum("pka,pma->pkm", normals, axes[k])) @ half[k][..., None] for k in (i, j))[..., 0]
-        best = (np.abs(along) - reach).argmax(axis=1)[:, None]
-        front = np.take_along_axis(np.sign(along) * (normals @ self.towards), best, 1)[:, 0]  # positive: j is before i
+        gaps, normals = separating_axes(i, j, center, sizes, axes)
+        front = np.take_along_axis(normals @ self.towards, gaps[:, :6].argmax(axis=1)[:, None], 1)[:, 0]  # positive: j is before i
         behind, before = np.where(front > 0, i, j), np.where(front > 0, j, i)
         told = np.abs(front) > 1e-9
         return _sorted(behind[told], before[told], depth)

@@ -9,7 +9,7 @@ from .._arrays import restore
 from .._given import shown
 from .._progress import chunks, steps
 from ..block import RockingBlock
-from ..history import _arguments, warn_of_doubt
+from ..history import case_arguments, warn_of_doubt
 from ..motions import Motion, PulseTrain, Record
 from ..overturning import overturning_amplitude
 from ._grid import UNITS, Spectrum, outer
@@ -22,8 +22,8 @@ def peak_ratio(block, motion, restitution=None, restoring="exact", t_end=None, h
 
     since: peaks before this time (s) are left out, for a steady state. The other arguments are those of simulate()."""
     warn_of_doubt(motion, vertical)
-    shape, (blocks, motions, vertical, state, restoring, half_cycles) = _arguments(block, motion, restitution, restoring, 0.0, 0.0, t_end, half_cycles,
-                                                                                    vertical)
+    shape, (blocks, motions, vertical, state, restoring, half_cycles) = case_arguments(block, motion, restitution, restoring, 0.0, 0.0, t_end, half_cycles,
+                                                                                       vertical)
     critical = np.broadcast_to(block.critical_angle, shape).ravel()
     ratio = np.zeros(critical.size)
     for begin, end in chunks(critical.size, progress, "rocking"):

@@ -3,7 +3,7 @@
 import math
 
 import numpy as np
-from masonry.history import simulate
+from masonry.history import part_of_motion, with_exact_moment
 from masonry.results.view import largest
 from masonry.results.wall_history import WallHistory
 
@@ -29,9 +29,7 @@ def content(history):
     time, angles, velocities = time[known], angles[known], velocities[known]
     exact = None
     if history.restoring != "exact":
-        start = dict(zip(("initial_angle", "initial_velocity"), (float(x[0]) for x in history._arguments[3][1:3])))
-        other = simulate(block, history.motion, history.restitution, "exact", t_end=end, vertical=history.vertical, **start)
-        exact = other.sample(time)
+        exact = with_exact_moment(history, end).sample(time)
     names = (f"restoring moment {history.restoring}", "exact")
     compared = "" if exact is None else f" Dashed: the exact solution; largest difference {largest(np.abs(angles - exact[0])):.3g} rad."
     sections = [{"name": "rotation", "heading": "Rotation", "figure": curves.rotation(time, angles, None if exact is None else exact[0], names, block.critical_angle),
@@ -72,7 +70,7 @@ def _end(history):
 
 
 def _sentences(history, end):
-    said = [f"The run ends at {end:.4g} s{history._partly()}."]
+    said = [f"The run ends at {end:.4g} s{part_of_motion(history)}."]
     if math.isfinite(history.rest_time):
         said.append(f"The block is at rest from {history.rest_time:.4g} s on.")
     elif not history.overturned:

@@ -1,0 +1,99 @@
+"""Checks of what a scene holds: materials, recorders, blocks that overlap or float."""
+
+import math
+
+import numpy as np
+from masonry._boxes import contacts
+from masonry._given import number_given, shown
+from masonry.dem.bodies import box, boxes, geometry
+from masonry.results.own_bases import own_bases
+from yade import O, wrapper
+
+# Faults that a message names one by one; more are counted.
+_NAMED = 10
+# kg/m^3. Wide enough for other units (t/mm^3), far from overflow.
+_DENSITIES = 1e-12, 1e12
+
+
+def listed(items):
+    return ", ".join(str(item) for item in items[:_NAMED]) + (f" and {len(items) - _NAMED} more" if len(items) > _NAMED else "")
+
+
+def check_material(material):
+    if not isinstance(material, wrapper.BlockMat):
+        raise ValueError(f"material = {shown(material)}: must be a BlockMat")
+    if not _DENSITIES[0] <= material.density <= _DENSITIES[1]:
+        raise ValueError(f"density = {material.density}: must be positive, from {_DENSITIES[0]:g} to {_DENSITIES[1]:g}, in kg/m^3")
+    if not 0 <= material.frictionAngle < math.pi / 2:
+        raise ValueError(f"frictionAngle = {material.frictionAngle}: must be from 0 to below pi/2, in rad (noSlip=True where nothing may slip)")
+
+
+def check_recorder(recorder):
+    name = type(recorder).__name__
+    periods = recorder.iterPeriod, recorder.virtPeriod, recorder.realPeriod
+    later = isinstance(recorder, wrapper.BlockRecorder) and not any(periods)  # by O.dt, which dem.engines() is to choose
+    if later:
+        print(f"masonry.dem: {name} records nothing until its iterPeriod or virtPeriod is set")
+    elif not any(0 < period < math.inf for period in periods):
+        raise ValueError(f"{name}.iterPeriod = {recorder.iterPeriod}, virtPeriod = {recorder.virtPeriod}: one of them must be positive and finite")
+    if isinstance(recorder, wrapper.BlockRecorder) and not recorder.ids:
+        raise ValueError(f"{name}.ids is empty: it must name at least one block")
+    wall = isinstance(recorder, wrapper.WallRecorder)
+    if recorder.times and recorder.times[-1] > O.time:
+        raise ValueError(f"{name}.times ends at {recorder.times[-1]:g} s, after O.time = {O.time:g} s: it holds an earlier run: make a new {name} (after loading, O.engines has the one of the run)")
+    if recorder.times:  # it goes on, also without blocks that have been erased since
+        return
+    bodies = [box(id) for id in recorder.ids]
+    left_out = _bases_left_out({b.id for b in bodies}) if wall and bodies else []
+    if left_out:
+        lacks = "no prescribed body" if all(b.dynamic for b in bodies) else "not the base of all its blocks"
+        print(f"masonry.dem: {name}.ids has {lacks}: drifts and falls will not be relative to the base: add {listed(left_out)} where it moves")
+
+
+def _bases_left_out(ids):
+    """Ids of the prescribed bodies on which some of the blocks stand, and which are not among them."""
+    bodies = boxes()
+    bases = own_bases(*geometry(bodies), np.array([b.dynamic for b in bodies]))
+    return sorted({bodies[base].id for body, base in zip(bodies, bases) if base >= 0 and body.id in ids} - ids)
+
+
+def check_blocks(tolerance=1e-3, floating=True):
+    """Raises a ValueError that names the ids of overlapping blocks, prescribed bodies included, and, with `floating`, of those that no chain of supports joins to
+    a prescribed body (head joints do not carry). tolerance: depth of an overlap, or gap in a joint, that is still accepted, relative to
+    the smallest size of the two blocks; 0 < tolerance <= 0.1. Returns the ids of the floating blocks."""
+    return floating_and_supports(tolerance, floating)[0]
+
+
+def floating_and_supports(tolerance=1e-3, floating=True):
+    """What check_blocks() does and returns, and the pairs (body below, body on it) of blocks that touch."""
+    if not 0 < number_given("tolerance", tolerance) <= 0.1:
+        raise ValueError(f"tolerance = {tolerance}: must be above 0 and at most 0.1")
+    bodies = boxes()
+    if not bodies:
+        return [], []
+    prescribed = np.array([not b.dynamic for b in bodies])
+    pairs, gaps, margins, supports = contacts(*geometry(bodies), tolerance)
+    deep = -gaps > margins
+    ids, found = [b.id for b in bodies], []
+    loose = [ids[i] for i in np.flatnonzero(~_carried(supports, prescribed))]
+    each = [(prescribed[i] and prescribed[j], f"{ids[i]} and {ids[j]} (by {-gap:.3g} m)") for (i, j), gap in zip(pairs[deep].tolist(), gaps[deep].tolist())]
+    for both, name in ((False, "overlapping blocks: "), (True, "overlapping prescribed bodies, which would share the load on them: ")):
+        named = [text for one, text in each if one == both]
+        if named:
+            found.append(name + listed(named))
+    if floating and loose:
+        found.append("floating blocks, which no chain of supports joins to a prescribed body: " + listed(loose))
+    if found:
+        raise ValueError(f"{'; '.join(found)}; overlaps and gaps must be at most {tolerance:g} of the smallest size (tolerance)")
+    return loose, [(bodies[lower], bodies[upper]) for lower, upper in supports.tolist()]
+
+
+def _carried(supports, prescribed):
+    """Which blocks a chain of supports (rows: lower, upper) joins to a prescribed one."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import breadth_first_order
+
+    ground, (lower, upper), carry = len(prescribed), supports.T, np.flatnonzero(prescribed)
+    ends = np.concatenate([lower, np.full(len(carry), ground)]), np.concatenate([upper, carry])
+    chains = coo_array((np.ones(len(ends[0])), ends), shape=(ground + 1, ground + 1)).tocsr()
+    return np.isin(np.arange(ground), breadth_first_order(chains, ground, return_predecessors=False))

@@ -1,0 +1,155 @@
+"""Tables of blocks: .csv and .json files, and rows in memory."""
+
+import csv
+import itertools
+import json
+import math
+import re
+
+import numpy as np
+from masonry._files import written
+from masonry._given import shown
+from masonry.dem.layouts import SIZES
+
+_PLACE, _TURN, _QUATERNION = ("x", "y", "z", "size_x", "size_y", "size_z"), ("rotation_y", "rotation_z"), ("qw", "qx", "qy", "qz")
+COLUMNS = _PLACE + _TURN + ("material",) + _QUATERNION
+# Columns that say nothing of a block.
+_IGNORED = ("id", "name")
+
+
+def _number(row, place, column):
+    if column not in row:
+        raise ValueError(f"{place}: there is no column {column}: must be a finite number")
+    value = row[column]
+    try:
+        number = math.nan if isinstance(value, (bool, np.bool_)) else float(value)
+    except (TypeError, ValueError, OverflowError):
+        number = math.nan
+    if not math.isfinite(number):
+        raise ValueError(f"{place}: {column} = {shown(value)}: must be a finite number")
+    if column.startswith("size") and not SIZES[0] <= number <= SIZES[1]:
+        raise ValueError(f"{place}: {column} = {shown(value)}: must be positive, from {SIZES[0]:g} to {SIZES[1]:g}, in m")
+    if column in _TURN and abs(number) > 2 * math.pi:
+        raise ValueError(f"{place}: {column} = {shown(value)}: must be from -2 pi to 2 pi, in rad")
+    return number
+
+
+def _quaternion(row, place):
+    """(w, x, y, z): a turn about z, then a lean about the block's own y axis; or as it stands in the row."""
+    turned = [c for c in _QUATERNION if row.get(c) not in (None, "")]
+    if turned:
+        q = [_number(row, place, c) for c in _QUATERNION]
+        if not abs(math.hypot(*q) - 1) < 1e-9:
+            raise ValueError(f"{place}: {', '.join(_QUATERNION)} = {tuple(q)}: must be a quaternion of length 1")
+        return q
+    y, z = (_number({c: 0 if row.get(c) in (None, "") else row[c]}, place, c) / 2 for c in _TURN)
+    return [math.cos(z) * math.cos(y), -math.sin(z) * math.sin(y), math.cos(z) * math.sin(y), math.sin(z) * math.cos(y)]
+
+
+def _material(row, place):
+    name = row.get("material")
+    if name is not None and not isinstance(name, str):
+        raise ValueError(f"{place}: material = {shown(name)}: must be a name")
+    return name or ""
+
+
+class _Cells(list):
+    """The (column, value) pairs of a row as they stand in a file, where a column may stand twice. line: its number in a .csv file."""
+
+    line = None
+
+
+def _is_number(text):
+    try:
+        return all(math.isfinite(float(word)) for word in re.split(r"[\s;]+", text.strip()))
+    except ValueError:
+        return False
+
+
+def _csv_rows(file):
+    lines = csv.reader(file, skipinitialspace=True)
+    header = next(lines, [])
+    if header and all(_is_number(cell) for cell in header):
+        raise ValueError(f"its first line is {shown(', '.join(header))}, numbers: must name the columns, x, y, z, size_x, size_y, size_z first")
+    if len(header) == 1 and re.search("[;\t]", header[0]):
+        raise ValueError(f"its first line is {shown(header[0])}: columns must be separated by commas, and numbers be written with a point")
+    rows = []
+    for line in lines:
+        if line:
+            rows.append(_Cells(itertools.zip_longest(header, line)))
+            rows[-1].line = lines.line_num
+    return rows
+
+
+def _pairs(row):
+    if hasattr(row, "items"):
+        return list(row.items())
+    names = getattr(getattr(row, "dtype", None), "names", None) or getattr(row, "_fields", None)  # of a structured array, a named tuple
+    return list(zip(names, row) if names else itertools.zip_longest(COLUMNS, row))
+
+
+def _rows(table):
+    """[(column, value) pairs of a block]."""
+    if not isinstance(table, str) and not hasattr(table, "__fspath__"):
+        try:
+            return [_pairs(row) for row in (table.to_dict("records") if hasattr(table, "to_dict") else table)]
+        except TypeError:
+            raise ValueError(f"table = {shown(table)}: must be a path, or rows: mappings or sequences") from None
+    path = str(table)
+    if not path.lower().endswith((".csv", ".json")):
+        raise ValueError(f"table = {path}: must end in .csv or .json, or be rows")
+    with open(path, newline="", encoding="utf-8-sig") as file:  # spreadsheets begin a file with a byte-order mark
+        try:
+            rows = json.load(file, object_pairs_hook=_Cells) if path.lower().endswith(".json") else _csv_rows(file)
+        except (ValueError, csv.Error) as error:
+            raise ValueError(f"table = {path}: cannot be read: {error}") from None
+    if isinstance(rows, _Cells) or not isinstance(rows, list) or not all(isinstance(row, _Cells) for row in rows):
+        raise ValueError(f"table = {path}: must be a list of objects, one a block")
+    return rows
+
+
+def _named(cells, place):
+    """The row as a dict: columns in small letters, without blanks around them."""
+    row = {}
+    for column, value in cells:
+        if column is None:
+            raise ValueError(f"{place}: has more values than there are columns")
+        name = str(column).strip().lower()
+        if name not in COLUMNS + _IGNORED:
+            header = "line 1" if place.startswith("line") else place
+            raise ValueError(f"{header}: column {shown(column)}: must be one of {', '.join(COLUMNS + _IGNORED)}")
+        if name in row:
+            raise ValueError(f"{place}: column {shown(column)} = {shown(value)}: stands there twice, first with {shown(row[name])}")
+        row[name] = value
+    return row
+
+
+def read_table(table):
+    """(centers (n, 3), sizes (n, 3), quaternions (n, 4) as w, x, y, z, material names, where each row stands) of a table, see
+    dem.blocks_from_table."""
+    cells = _rows(table)
+    if not cells:
+        raise ValueError("table: must have at least one row")
+    places = [f"row {k}" if getattr(row, "line", None) is None else f"line {row.line}" for k, row in enumerate(cells)]
+    rows = [(_named(row, place), place) for row, place in zip(cells, places)]
+    boxes = np.array([[_number(row, place, c) for c in _PLACE] for row, place in rows])
+    return boxes[:, :3], boxes[:, 3:], np.array([_quaternion(*row) for row in rows]), [_material(*row) for row in rows], places
+
+
+def write_table(path, centers, sizes, quaternions, names):
+    """Writes what read_table reads back bit by bit. Quaternions and names stand there only where a block is turned or named."""
+    path = str(path)
+    if not path.endswith((".csv", ".json")):
+        raise ValueError(f"path = {path}: must end in .csv or .json")
+    columns, values = list(_PLACE), [list(row) for row in np.hstack([centers, sizes]).tolist()]
+    if np.any(quaternions != [1, 0, 0, 0]):
+        columns += _QUATERNION
+        values = [row + list(q) for row, q in zip(values, np.asarray(quaternions).tolist())]
+    if any(names):
+        columns.append("material")
+        values = [row + [name] for row, name in zip(values, names)]
+    with written(path) as beside, open(beside, "w", newline="", encoding="utf-8") as file:
+        if path.endswith(".json"):
+            file.write("[\n" + ",\n".join(json.dumps(dict(zip(columns, row))) for row in values) + "\n]\n")
+        else:
+            csv.writer(file).writerows([columns, *values])
