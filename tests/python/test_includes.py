@@ -12,7 +12,7 @@ BELOW = {
     "parallel": "",
     "motion": "",
     "rocking": "motion",
-    "contact": "",
+    "contact": "simd",
     "laws": "linalg contact",
     "impact": "contact laws",
     "dynamics/model": "motion contact laws impact",

@@ -36,12 +36,12 @@ Vertex vertexOf(const PatchPoint& point, const PatchFeature& faces, const Box& b
 		const Vector3& half = on1 ? box1.halfSize : box2.halfSize;
 		return {on1, number, (on1 ? pose1 : pose2).toGlobal(feature::vertexSigns(number).cwiseProduct(half))};
 	};
-	if (point.identity < 16)
+	if (!feature::areEdges(point.identity))
 		return vertex(point.identity < 8, point.identity % 8);
 	const bool on1 = faces.kind == PatchKind::Face2;
-	const int edge = on1 ? (point.identity - 16) / 12 : (point.identity - 16) % 12, axis = edge / 4, next = feature::nextAxis(axis);
-	const int low = ((edge & 1) << next) + ((edge >> 1 & 1) << feature::nextAxis(next));
-	const Vertex first = vertex(on1, low), second = vertex(on1, low + (1 << axis));
+	const int edge = on1 ? feature::edge1Of(point.identity) : feature::edge2Of(point.identity);
+	const Vector3 signs = feature::edgeSigns(edge), along = Vector3::Unit(feature::edgeAxis(edge));
+	const Vertex first = vertex(on1, feature::vertexNumber(signs - along)), second = vertex(on1, feature::vertexNumber(signs + along));
 	return (first.position - point.position1).norm() < (second.position - point.position1).norm() ? first : second;
 }
 
@@ -61,12 +61,12 @@ bool meanNormal(const Vertex& vertex, double depth, const PatchFeature& faces, c
 			return;
 		++found;
 		const Matrix3 axes = facePose.orientation.toRotationMatrix();
-		const auto outward = [&](int number) -> Vector3 { return (number % 2 ? 1 : -1) * axes.col(number / 2); };
+		const auto outward = [&](int number) -> Vector3 { return feature::faceSign(number) * axes.col(feature::faceAxis(number)); };
 		const double half = std::atan(normals.tangent) / 2;
 		const Vector3 away = std::cos(half) * outward(face) + std::sin(half) * outward(normals.otherFace);
 		mean.normal = on1 ? Vector3(-away) : away;
 		mean.gap = std::cos(half) * normals.outside1 + std::sin(half) * normals.outside2;
-		mean.corner = {half, axes.col(normals.edge / 4)};
+		mean.corner = {half, axes.col(feature::edgeAxis(normals.edge))};
 	});
 	return found == 1;
 }
@@ -77,7 +77,7 @@ CornerNormals takeMeanNormal(const Box& box1, const Pose& pose1, const Box& box2
 {
 	if (patch.feature.kind != PatchKind::Face1 && patch.feature.kind != PatchKind::Face2)
 		return {};
-	const auto normal = [](int face, const Pose& pose) -> Vector3 { return pose.orientation * Vector3::Unit(face / 2); };
+	const auto normal = [](int face, const Pose& pose) -> Vector3 { return pose.orientation * Vector3::Unit(feature::faceAxis(face)); };
 	const double sine = normal(patch.feature.feature1, pose1).cross(normal(patch.feature.feature2, pose2)).norm();
 	if (sine < std::sin(minAngle))
 		return {};

@@ -14,6 +14,8 @@ inline double signOf(double value) { return std::signbit(value) ? -1. : 1.; }
 inline int bit(double sign) { return sign > 0 ? 1 : 0; }
 
 inline int faceNumber(int axis, double sign) { return 2 * axis + bit(sign); }
+inline int faceAxis(int face) { return face / 2; }
+inline double faceSign(int face) { return face % 2 ? 1. : -1.; }
 inline int vertexNumber(const Vector3& signs) { return bit(signs[0]) + 2 * bit(signs[1]) + 4 * bit(signs[2]); }
 inline Vector3 vertexSigns(int vertex) { return {vertex & 1 ? 1. : -1., vertex & 2 ? 1. : -1., vertex & 4 ? 1. : -1.}; }
 inline int edgeNumber(int axis, const Vector3& signs)
@@ -21,8 +23,20 @@ inline int edgeNumber(int axis, const Vector3& signs)
 	const int next = nextAxis(axis);
 	return 4 * axis + bit(signs[next]) + 2 * bit(signs[nextAxis(next)]);
 }
+inline int edgeAxis(int edge) { return edge / 4; }
+inline Vector3 edgeSigns(int edge) // 0 along the edge
+{
+	Vector3 signs = Vector3::Zero();
+	const int next = nextAxis(edgeAxis(edge));
+	signs[next] = edge & 1 ? 1 : -1;
+	signs[nextAxis(next)] = edge & 2 ? 1 : -1;
+	return signs;
+}
 
 inline int vertexIdentity(int body, int vertex) { return 8 * (body - 1) + vertex; }
 inline int edgeIdentity(int edge1, int edge2) { return 16 + 12 * edge1 + edge2; }
+inline bool areEdges(int identity) { return identity >= 16; }
+inline int edge1Of(int identity) { return (identity - 16) / 12; }
+inline int edge2Of(int identity) { return (identity - 16) % 12; }
 
 } // namespace masonry::feature

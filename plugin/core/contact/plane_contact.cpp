@@ -1,7 +1,7 @@
 // Contact points of two rectangles in the plane.
+#include "contact/corner_normals.hpp"
 #include "contact/features.hpp"
 #include "contact/reference_face.hpp"
-#include "contact/corner_normals.hpp"
 #include "tolerances.hpp"
 #include <algorithm>
 #include <cmath>
@@ -20,7 +20,7 @@ namespace limits = tolerance::contact;
 // A face looks along `sign` times `axis`; a vertex is an end of a face, where the other axis has the sign `end`.
 int vertexNumber(int axis, double sign, double end) { return axis == 0 ? bit(sign) + 2 * bit(end) : bit(end) + 2 * bit(sign); }
 
-Vector2 vertexOf(int number, const Vector2& half) { return {number & 1 ? half.x() : -half.x(), number & 2 ? half.y() : -half.y()}; }
+Vector2 vertexOf(int number, const Vector2& half) { return feature::vertexSigns(number).head<2>().cwiseProduct(half); }
 
 // One rectangle seen from the other.
 struct RelativePose {
@@ -123,7 +123,7 @@ FaceAxis referenceFace(const Vector2& half1, const Vector2& half2, const Relativ
 void chooseIncident(FacePair& pair, const PlaneMemory& memory)
 {
 	const int same = pair.face.axis, held = pair.face.body == 1 ? memory.face2 : memory.face1;
-	const double gain = memory.reference != 0 && held / 2 != same ? -limits::incident : limits::incident;
+	const double gain = memory.reference != 0 && feature::faceAxis(held) != same ? -limits::incident : limits::incident;
 	const double facing = std::abs(pair.incident.axes[0][0]), across = std::abs(pair.incident.axes[0][1]);
 	pair.takeIncident(facing + gain > across ? same : 1 - same);
 }
@@ -194,8 +194,8 @@ public:
 	}
 
 private:
-	int axis() const { return point.face / 2; }
-	double sign() const { return point.face % 2 ? 1 : -1; }
+	int axis() const { return feature::faceAxis(point.face); }
+	double sign() const { return feature::faceSign(point.face); }
 
 	const PlaneFeature point;
 	const Vector2 vertexSigns;
@@ -205,27 +205,6 @@ private:
 };
 
 } // namespace
-
-// Vertex P of body V, face of body F with outward normal m at the distance h from its centre x: gap = m.(P - x) - h. Its rate
-// m.(v_P - v_F) + (w_F x m).(P - x) = m.(v_P - v_F - w_F x (P - x)) is the relative velocity along m at P.
-ContactFrame<Plane> Plane::frame(const Feature& feature, const Vector& half1, const Pose& pose1, const Vector& half2, const Pose& pose2)
-{
-	const bool vertexOn1 = feature.vertexBody == 1;
-	const Pose &vertexPose = vertexOn1 ? pose1 : pose2, &facePose = vertexOn1 ? pose2 : pose1;
-	const Vector &vertexHalf = vertexOn1 ? half1 : half2, &faceHalf = vertexOn1 ? half2 : half1;
-	const int axis = feature.face / 2;
-	const double sign = feature.face % 2 ? 1 : -1;
-
-	ContactFrame<Plane> frame;
-	const Vector arm = vertexPose.rotate(vertexOf(feature.vertex, vertexHalf));
-	frame.position = vertexPose.position + arm;
-	const Vector outward =
-	    axis == 0 ? Vector(sign * facePose.cosine, sign * facePose.sine) : Vector(-sign * facePose.sine, sign * facePose.cosine);
-	frame.gap = outward.dot((vertexPose.position - facePose.position) + arm) - faceHalf[axis];
-	const Vector normal = vertexOn1 ? Vector(-outward) : outward;
-	frame.axes << normal.x(), normal.y(), -normal.y(), normal.x();
-	return frame;
-}
 
 bool Plane::findPoints(const Vector& half1, const Pose& pose1, const Vector& half2, const Pose& pose2, double margin, Memory& memory,
                        FoundPoints<Plane>& out)

@@ -1,8 +1,9 @@
 // Contact points of two boxes in space, and how a box turns.
 #include "contact/box_box.hpp"
-#include "contact/features.hpp"
-#include "contact/vertex_on_edge.hpp"
 #include "contact/corner_normals.hpp"
+#include "contact/features.hpp"
+#include "contact/point_geometry.hpp"
+#include "contact/vertex_on_edge.hpp"
 #include "tolerances.hpp"
 #include <algorithm>
 #include <limits>
@@ -18,62 +19,6 @@ using Frame = ContactFrame<Space>;
 
 Vector3 vertexOf(int number, const Vector3& half) { return feature::vertexSigns(number).cwiseProduct(half); }
 
-// Vertex P of one body, face of the other with outward normal m at the distance h from its centre x: gap = m.(P - x) - h. Its rate
-// m.(v_P - v_F) + (w_F x m).(P - x) = m.(v_P - v_F - w_F x (P - x)) is the relative velocity along m at P.
-Frame vertexOnFace(int vertex, const Vector3& vertexHalf, const Pose& vertexPose, int face, const Vector3& faceHalf, const Pose& facePose,
-                   bool faceOn1)
-{
-	const Matrix3 axes = facePose.orientation.toRotationMatrix();
-	const int axis = face / 2, second = nextAxis(axis), third = nextAxis(second);
-	const double outward = face % 2 ? 1 : -1, alongNormal = faceOn1 ? outward : -outward;
-	const Vector3 arm = vertexPose.orientation * vertexOf(vertex, vertexHalf);
-	Frame frame;
-	frame.position = vertexPose.position + arm;
-	frame.gap = outward * axes.col(axis).dot((vertexPose.position - facePose.position) + arm) - faceHalf[axis];
-	frame.axes.row(0) = alongNormal * axes.col(axis);
-	frame.axes.row(1) = axes.col(second);
-	frame.axes.row(2) = alongNormal * axes.col(third);
-	return frame;
-}
-
-// An edge in global axes; the corner between its two faces looks along `outward`.
-struct Edge {
-	Vector3 direction, middle, outward; // middle: from the body's centre
-
-	Edge(int number, const Vector3& half, const Pose& pose)
-	{
-		const Matrix3 axes = pose.orientation.toRotationMatrix();
-		const int axis = number / 4, next = nextAxis(axis), last = nextAxis(next);
-		const Vector3 toNext = (number & 1 ? 1. : -1.) * axes.col(next), toLast = (number & 2 ? 1. : -1.) * axes.col(last);
-		direction = axes.col(axis);
-		middle = half[next] * toNext + half[last] * toLast;
-		outward = toNext + toLast;
-	}
-};
-
-// Straight lines along e1, e2 through m1, m2, d = m2 - m1, c = e1.e2: the nearest points are m1 + s1 e1 and m2 + s2 e2 with
-// s1 = (d.e1 - c d.e2) / (1 - c^2), s2 = (c d.e1 - d.e2) / (1 - c^2). What lies between them is along n = +-e1 x e2, hence
-// gap = n.d. As n turns its change is across n, the gap's rate is the relative velocity along n at either point or between them.
-Frame edgeAcrossEdge(const Edge& edge1, const Vector3& centre1, const Edge& edge2, const Vector3& centre2)
-{
-	const Vector3 apart = (centre2 - centre1) + (edge2.middle - edge1.middle);
-	const double cosine = edge1.direction.dot(edge2.direction);
-	Vector3 normal = edge1.direction.cross(edge2.direction);
-	const double sineSquared = normal.squaredNorm();
-	normal *= feature::signOf(normal.dot(edge1.outward - edge2.outward)) / std::sqrt(sineSquared);
-	const double along1 = apart.dot(edge1.direction), along2 = apart.dot(edge2.direction);
-	const double s1 = (along1 - cosine * along2) / sineSquared, s2 = (cosine * along1 - along2) / sineSquared;
-
-	Frame frame;
-	frame.position = (centre1 + edge1.middle + s1 * edge1.direction + centre2 + edge2.middle + s2 * edge2.direction) / 2;
-	frame.gap = normal.dot(apart);
-	frame.axes.row(0) = normal;
-	frame.axes.row(1) = edge1.direction;
-	frame.axes.row(2) = normal.cross(edge1.direction);
-	return frame;
-}
-
-bool isCrossing(int identity) { return identity >= 16; }
 bool isCrossing(const SpaceFeature& feature) { return feature.kind == SpaceFeature::Edges; }
 
 // A corner of both faces is named after body 2. The point is the vertex that lies over the other body's face, which the larger of its
@@ -83,9 +28,9 @@ SpaceFeature vertexFeature(int vertex2, const PatchFeature& faces, const Vector3
 {
 	const double length = std::min(half1.minCoeff(), half2.minCoeff());
 	const Vector3 place = pose1.orientation.conjugate() * (pose2.position - pose1.position + pose2.orientation * vertexOf(vertex2, half2));
-	const int axis = faces.feature1 / 2;
+	const int axis = feature::faceAxis(faces.feature1);
 	Vector3 signs = place.unaryExpr(&feature::signOf);
-	signs[axis] = faces.feature1 % 2 ? 1 : -1;
+	signs[axis] = feature::faceSign(faces.feature1);
 	Vector3 outside = signs.cwiseProduct(place) - half1;
 	outside[axis] = 0;
 	int side;
@@ -100,24 +45,11 @@ SpaceFeature vertexFeature(int vertex2, const PatchFeature& faces, const Vector3
 SpaceFeature featureOf(const PatchPoint& point, const PatchFeature& faces, const Vector3& half1, const Pose& pose1, const Vector3& half2,
                        const Pose& pose2)
 {
-	if (isCrossing(point.identity))
-		return {SpaceFeature::Edges, (point.identity - 16) / 12, (point.identity - 16) % 12};
+	if (feature::areEdges(point.identity))
+		return {SpaceFeature::Edges, feature::edge1Of(point.identity), feature::edge2Of(point.identity)};
 	if (point.identity < 8)
 		return {SpaceFeature::Vertex1, point.identity, faces.feature2};
 	return vertexFeature(point.identity - 8, faces, half1, pose1, half2, pose2);
-}
-
-// Two edges that touch have their common normal between the outward normals of the faces beside them: along `outward` it is 1 at
-// least. The normal at a crossing of nearly parallel faces leaves theirs by their tilt / sine of the angle between the edges. Nearly
-// parallel edges mark no corner of the overlap that others do not mark; their normal can point anywhere.
-bool isSharp(const Edge& edge1, const Edge& edge2, const Vector3& faceNormal)
-{
-	Vector3 normal = edge1.direction.cross(edge2.direction);
-	const double sine = normal.norm();
-	if (sine <= tolerance::contact::parallelEdges)
-		return false;
-	normal *= feature::signOf(normal.dot(faceNormal)) / sine;
-	return std::min({normal.dot(faceNormal), normal.dot(edge1.outward), -normal.dot(edge2.outward)}) > tolerance::contact::crossing;
 }
 
 // The corners of the patch but crossings that are not sharp; of these only one that lies far deeper than all others.
@@ -131,7 +63,7 @@ void takeCorners(const ContactPatch& patch, const Vector3& half1, const Pose& po
 	for (int i = 0; i < patch.size; ++i) {
 		const PatchPoint& point = patch.points[i];
 		const SpaceFeature feature = featureOf(point, patch.feature, half1, pose1, half2, pose2);
-		if (!isCrossing(feature) || isSharp(Edge(feature.first, half1, pose1), Edge(feature.second, half2, pose2), patch.normal)) {
+		if (!isCrossing(feature) || isSharp(geometryOf(feature, half1, half2), pose1, pose2, patch.normal)) {
 			nearest = std::min(nearest, point.gap);
 			out.features[out.size++] = feature;
 		} else if (point.gap < nearestBlunt) {
@@ -172,13 +104,15 @@ void dropPassing(const ContactPatch& patch, const Vector3& half1, const Pose& po
 		if (std::none_of(frames.begin(), frames.begin() + before, hides))
 			out.features[out.size++] = features[i];
 		else if (!isCrossing(features[i]))
-			memory.vertices &= ~(1 << (features[i].kind == SpaceFeature::Vertex1 ? features[i].first : 8 + features[i].second));
+			memory.vertices &= ~(1 << (features[i].kind == SpaceFeature::Vertex1 ? feature::vertexIdentity(1, features[i].first)
+			                                                                     : feature::vertexIdentity(2, features[i].second)));
 	}
 }
 
 double sineBetween(int face1, const Pose& pose1, int face2, const Pose& pose2)
 {
-	const Vector3 normal1 = pose1.orientation * Vector3::Unit(face1 / 2), normal2 = pose2.orientation * Vector3::Unit(face2 / 2);
+	const Vector3 normal1 = pose1.orientation * Vector3::Unit(feature::faceAxis(face1)),
+	              normal2 = pose2.orientation * Vector3::Unit(feature::faceAxis(face2));
 	return normal1.cross(normal2).norm();
 }
 
@@ -208,15 +142,6 @@ void Space::advance(Pose& pose, const Velocity& velocity, double t)
 	turn.vec() = sinc * half;
 	pose.position += t * velocity.head<3>();
 	pose.orientation = (turn * pose.orientation).normalized();
-}
-
-Frame Space::frame(const Feature& feature, const Vector& half1, const Pose& pose1, const Vector& half2, const Pose& pose2)
-{
-	if (feature.kind == Feature::Vertex1)
-		return vertexOnFace(feature.first, half1, pose1, feature.second, half2, pose2, false);
-	if (feature.kind == Feature::Vertex2)
-		return vertexOnFace(feature.second, half2, pose2, feature.first, half1, pose1, true);
-	return edgeAcrossEdge(Edge(feature.first, half1, pose1), pose1.position, Edge(feature.second, half2, pose2), pose2.position);
 }
 
 bool Space::findPoints(const Vector& half1, const Pose& pose1, const Vector& half2, const Pose& pose2, double margin, Memory& memory,

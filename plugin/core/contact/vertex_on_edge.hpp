@@ -22,13 +22,13 @@ struct NormalsOnEdge {
 class VertexOnEdge {
 public:
 	VertexOnEdge(int vertex, const Vector3& vertexHalf, const Pose& vertexPose, int face, const Vector3& faceHalf, const Pose& facePose)
-	    : vertexSigns(feature::vertexSigns(vertex)), axis(face / 2),
+	    : vertexSigns(feature::vertexSigns(vertex)), axis(feature::faceAxis(face)),
 	      turn((facePose.orientation.conjugate() * vertexPose.orientation).toRotationMatrix())
 	{
 		const Vector3 place =
 		    facePose.orientation.conjugate() * (vertexPose.position - facePose.position) + turn * vertexSigns.cwiseProduct(vertexHalf);
 		faceSigns = place.unaryExpr(&feature::signOf);
-		faceSigns[axis] = face % 2 ? 1 : -1;
+		faceSigns[axis] = feature::faceSign(face);
 		outside = faceSigns.cwiseProduct(place) - faceHalf;
 	}
 

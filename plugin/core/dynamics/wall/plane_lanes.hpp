@@ -35,6 +35,23 @@ using simd::smaller;
 using simd::transpose;
 using simd::width;
 
+// Side by side: vectors of a plane, or along two tangents.
+struct alignas(alignment) Lanes2 {
+	Lanes x, y;
+};
+MASONRY_INLINE Lanes2 operator+(const Lanes2& a, const Lanes2& b) { return {a.x + b.x, a.y + b.y}; }
+MASONRY_INLINE Lanes2 operator-(const Lanes2& a, const Lanes2& b) { return {a.x - b.x, a.y - b.y}; }
+MASONRY_INLINE Lanes2 operator*(const Lanes& f, const Lanes2& a) { return {f * a.x, f * a.y}; }
+MASONRY_INLINE Lanes2 operator*(const Lanes2& a, const Lanes& f) { return f * a; }
+MASONRY_INLINE Lanes2 operator*(double f, const Lanes2& a) { return all(f) * a; }
+MASONRY_INLINE Lanes2& operator*=(Lanes2& a, const Lanes& f) { return a = f * a; }
+MASONRY_INLINE Lanes dot(const Lanes2& a, const Lanes2& b) { return a.x * b.x + a.y * b.y; }
+MASONRY_INLINE Lanes size(const Lanes2& a) { return larger(size(a.x), size(a.y)); } // to report and compare only: saves the root
+MASONRY_INLINE Lanes length(const Lanes2& a) { return root(dot(a, a)); }
+MASONRY_INLINE Lanes2 select(const Mask& mask, const Lanes2& a, const Lanes2& b)
+{
+	return {select(mask, a.x, b.x), select(mask, a.y, b.y)};
+}
 template <class K>
 struct Bodies;
 template <class K>
@@ -62,13 +79,13 @@ struct alignas(alignment) PointLanes<Plane> {
 	Lanes filteredImpulse; // filtered pn
 };
 
-// A point is made of a vertex and a face, which are given in the axes of their bodies.
+// The geometry of points (contact/point_geometry.hpp).
 template <>
 struct alignas(alignment) FeatureLanes<Plane> {
 	Mask vertexOn1, present;
-	Lanes vertexX, vertexY, normalX, normalY, faceDistance;
-	Lanes faceEnd;              // m, half size of the face
-	Lanes foundGap, foundShift; // of the vertex over and along the face when they were looked up
+	Lanes2 vertex, normal;
+	Lanes faceDistance, faceEnd; // m, of the face from the centre; half of its length
+	Lanes foundGap, foundShift;  // of the vertex over and along the face when they were looked up
 
 	std::array<double, 2> foundAt(int lane) const { return {foundGap[lane], foundShift[lane]}; }
 	void setFound(const std::array<double, 2>& f, int lane) { foundGap[lane] = f[0], foundShift[lane] = f[1]; }

@@ -1,4 +1,5 @@
 // Contact points in the plane: the parts of ContactSet (contact_set.hpp) that depend on the dimension.
+#include "contact/point_geometry.hpp"
 #include "dynamics/wall/contact_set.hpp"
 #include "tolerances.hpp"
 #include <cmath>
@@ -8,39 +9,31 @@ namespace masonry::wall {
 namespace {
 
 struct Placed {
-	Lanes x, y, cosine, sine;
+	Lanes2 position;
+	Lanes cosine, sine;
+
+	MASONRY_INLINE Lanes2 rotate(const Lanes2& local) const
+	{
+		return {cosine * local.x - sine * local.y, sine * local.x + cosine * local.y};
+	}
 };
 
 MASONRY_INLINE Placed placed(const Lanes* pose, const int* body)
 {
-	Placed p {pose[body[0]], pose[body[1]], pose[body[2]], pose[body[3]]};
-	transpose(p.x, p.y, p.cosine, p.sine);
-	return p;
+	Lanes x = pose[body[0]], y = pose[body[1]], cosine = pose[body[2]], sine = pose[body[3]];
+	transpose(x, y, cosine, sine);
+	return {{x, y}, cosine, sine};
+}
+
+MASONRY_INLINE Placed oneOf(const Mask& mask, const Placed& a, const Placed& b)
+{
+	return {select(mask, a.position, b.position), select(mask, a.cosine, b.cosine), select(mask, a.sine, b.sine)};
 }
 
 // One of the two points of four pairs.
-struct Located {
-	Lanes outX, outY;   // of the face
-	Lanes armX, armY;   // from the centre of the vertex's body
-	Lanes fromX, fromY; // and of the face's
-	Lanes gap, shift;   // of the vertex, over and along the face
-};
-
-MASONRY_INLINE Located located(const FeatureLanes<Plane>& f, const Placed& p1, const Placed& p2)
+MASONRY_INLINE VertexOverFace<Lanes2, Lanes> located(const FeatureLanes<Plane>& f, const Placed& p1, const Placed& p2)
 {
-	const Lanes vertexC = select(f.vertexOn1, p1.cosine, p2.cosine), vertexS = select(f.vertexOn1, p1.sine, p2.sine);
-	const Lanes faceC = select(f.vertexOn1, p2.cosine, p1.cosine), faceS = select(f.vertexOn1, p2.sine, p1.sine);
-	const Lanes awayX = select(f.vertexOn1, p1.x - p2.x, p2.x - p1.x), awayY = select(f.vertexOn1, p1.y - p2.y, p2.y - p1.y);
-	Located at;
-	at.armX = vertexC * f.vertexX - vertexS * f.vertexY;
-	at.armY = vertexS * f.vertexX + vertexC * f.vertexY;
-	at.outX = faceC * f.normalX - faceS * f.normalY;
-	at.outY = faceS * f.normalX + faceC * f.normalY;
-	at.fromX = awayX + at.armX;
-	at.fromY = awayY + at.armY;
-	at.gap = at.outX * at.fromX + at.outY * at.fromY - f.faceDistance;
-	at.shift = at.outX * at.fromY - at.outY * at.fromX;
-	return at;
+	return vertexOverFace(oneOf(f.vertexOn1, p1, p2), oneOf(f.vertexOn1, p2, p1), f.vertex, f.normal, f.faceDistance);
 }
 
 // Gaps. Returns which pairs are to be looked up: since they were, they have moved by more than `travel`, or a vertex has left its face.
@@ -51,13 +44,14 @@ MASONRY_INLINE Mask measureGroup(Group<Plane>& group, FeatureGroup<Plane>& featu
 	Mask stale {};
 	for (int k = 0; k < lanePoints<Plane>; ++k) {
 		FeatureLanes<Plane>& f = features.point[k];
-		const Located at = located(f, p1, p2);
+		const auto at = located(f, p1, p2);
+		const Lanes shift = at.outward.x * at.from.y - at.outward.y * at.from.x; // along the face
 		if (anew) {
 			f.foundGap = select(maskOf(anew), at.gap, f.foundGap);
-			f.foundShift = select(maskOf(anew), at.shift, f.foundShift);
+			f.foundShift = select(maskOf(anew), shift, f.foundShift);
 		}
-		stale |= size(at.gap - f.foundGap) + size(at.shift - f.foundShift) > travel;
-		stale |= (size(at.shift) > f.faceEnd + passed) & (size(f.foundShift) <= f.faceEnd + passed);
+		stale |= size(at.gap - f.foundGap) + size(shift - f.foundShift) > travel;
+		stale |= (size(shift) > f.faceEnd + passed) & (size(f.foundShift) <= f.faceEnd + passed);
 		group.point[k].gap = select(f.present, at.gap, all(farAway));
 	}
 	return stale;
@@ -79,15 +73,14 @@ MASONRY_INLINE void frameGroup(Group<Plane>& group, const FeatureGroup<Plane>& f
 	for (int k = 0; k < lanePoints<Plane>; ++k) {
 		const FeatureLanes<Plane>& f = features.point[k];
 		PointLanes<Plane>& p = group.point[k];
-		const Located at = located(f, p1, p2);
-		p.nx = select(f.vertexOn1, -at.outX, at.outX);
-		p.ny = select(f.vertexOn1, -at.outY, at.outY);
-		const Lanes r1x = select(f.vertexOn1, at.armX, at.fromX), r1y = select(f.vertexOn1, at.armY, at.fromY);
-		const Lanes r2x = select(f.vertexOn1, at.fromX, at.armX), r2y = select(f.vertexOn1, at.fromY, at.armY);
-		p.a1n = (r1x * p.ny - r1y * p.nx) * perRho1;
-		p.a1t = (r1x * p.nx + r1y * p.ny) * perRho1;
-		p.a2n = (r2x * p.ny - r2y * p.nx) * perRho2;
-		p.a2t = (r2x * p.nx + r2y * p.ny) * perRho2;
+		const auto at = located(f, p1, p2);
+		p.nx = select(f.vertexOn1, -at.outward.x, at.outward.x);
+		p.ny = select(f.vertexOn1, -at.outward.y, at.outward.y);
+		const Lanes2 r1 = select(f.vertexOn1, at.arm, at.from), r2 = select(f.vertexOn1, at.from, at.arm);
+		p.a1n = (r1.x * p.ny - r1.y * p.nx) * perRho1;
+		p.a1t = (r1.x * p.nx + r1.y * p.ny) * perRho1;
+		p.a2n = (r2.x * p.ny - r2.y * p.nx) * perRho2;
+		p.a2t = (r2.x * p.nx + r2.y * p.ny) * perRho2;
 		p.massN = select(f.present, one / (mass1 + mass2 + mass1 * p.a1n * p.a1n + mass2 * p.a2n * p.a2n), none);
 		p.massT = select(f.present, one / (mass1 + mass2 + mass1 * p.a1t * p.a1t + mass2 * p.a2t * p.a2t), none);
 	}
@@ -157,18 +150,13 @@ void ContactSet<Plane>::takePoint(const RigidSystem<Plane>& s, int c, int k)
 	FeatureLanes<Plane>& f = features[group].point[k];
 	const bool present = k < pair.size;
 	const PlaneFeature feature = present ? pair.points[k].feature : PlaneFeature {1, 0, 0}; // any will tell how far the pair moves
-	const bool vertexOn1 = feature.vertexBody == 1;
-	const Vector2 &vertexHalf = s.bodies[vertexOn1 ? pair.body1 : pair.body2].halfSize,
-	              &faceHalf = s.bodies[vertexOn1 ? pair.body2 : pair.body1].halfSize;
-	const int axis = feature.face / 2;
-	f.vertexOn1[lane] = vertexOn1 ? -1 : 0;
+	const PointGeometry<Plane> geometry = geometryOf(feature, s.bodies[pair.body1].halfSize, s.bodies[pair.body2].halfSize);
 	f.present[lane] = present ? -1 : 0;
-	f.vertexX[lane] = feature.vertex & 1 ? vertexHalf.x() : -vertexHalf.x();
-	f.vertexY[lane] = feature.vertex & 2 ? vertexHalf.y() : -vertexHalf.y();
-	f.normalX[lane] = axis == 0 ? (feature.face % 2 ? 1 : -1) : 0;
-	f.normalY[lane] = axis == 1 ? (feature.face % 2 ? 1 : -1) : 0;
-	f.faceDistance[lane] = faceHalf[axis];
-	f.faceEnd[lane] = faceHalf[1 - axis];
+	f.vertexOn1[lane] = geometry.vertexOn1 ? -1 : 0;
+	f.vertex.x[lane] = geometry.vertex.x(), f.vertex.y[lane] = geometry.vertex.y();
+	f.normal.x[lane] = geometry.normal.x(), f.normal.y[lane] = geometry.normal.y();
+	f.faceDistance[lane] = geometry.distance;
+	f.faceEnd[lane] = geometry.halfWidth;
 }
 
 template <>

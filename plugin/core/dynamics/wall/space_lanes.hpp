@@ -37,23 +37,6 @@ MASONRY_INLINE Lanes3 select(const Mask& mask, const Lanes3& a, const Lanes3& b)
 	return {select(mask, a.x, b.x), select(mask, a.y, b.y), select(mask, a.z, b.z)};
 }
 
-// Along the two tangents.
-struct alignas(alignment) Lanes2 {
-	Lanes x, y;
-};
-MASONRY_INLINE Lanes2 operator+(const Lanes2& a, const Lanes2& b) { return {a.x + b.x, a.y + b.y}; }
-MASONRY_INLINE Lanes2 operator-(const Lanes2& a, const Lanes2& b) { return {a.x - b.x, a.y - b.y}; }
-MASONRY_INLINE Lanes2 operator*(const Lanes& f, const Lanes2& a) { return {f * a.x, f * a.y}; }
-MASONRY_INLINE Lanes2 operator*(const Lanes2& a, const Lanes& f) { return f * a; }
-MASONRY_INLINE Lanes2 operator*(double f, const Lanes2& a) { return all(f) * a; }
-MASONRY_INLINE Lanes2& operator*=(Lanes2& a, const Lanes& f) { return a = f * a; }
-MASONRY_INLINE Lanes dot(const Lanes2& a, const Lanes2& b) { return a.x * b.x + a.y * b.y; }
-MASONRY_INLINE Lanes size(const Lanes2& a) { return larger(size(a.x), size(a.y)); } // to report and compare only: saves the root
-MASONRY_INLINE Lanes length(const Lanes2& a) { return root(dot(a, a)); }
-MASONRY_INLINE Lanes2 select(const Mask& mask, const Lanes2& a, const Lanes2& b)
-{
-	return {select(mask, a.x, b.x), select(mask, a.y, b.y)};
-}
 MASONRY_INLINE double component(const Lanes2& tangent, int k, int lane) { return k == 0 ? tangent.x[lane] : tangent.y[lane]; }
 MASONRY_INLINE void setComponent(Lanes2& tangent, int k, int lane, double value)
 {
@@ -102,14 +85,13 @@ struct alignas(alignment) PointLanes<Space> {
 	Lanes filteredImpulse; // filtered pn
 };
 
-// A point is made of a vertex and a face, which are given in the axes of their bodies, or of two edges that cross. Those are looked at one
-// by one.
+// The geometry of points (contact/point_geometry.hpp); edges that cross are looked at one by one.
 template <>
 struct alignas(alignment) FeatureLanes<Space> {
 	Mask vertexOn1, present, crossing;
 	Lanes3 vertex, normal, tangent; // of the face: outward normal, first tangent
 	Lanes faceDistance;
-	Lanes2 faceEnd; // m, half sizes of the face along its tangents
+	Lanes2 faceEnd; // m, half lengths of the face along its tangents
 	Lanes3 arm;     // from body 2 to the point, global axes
 	Lanes foundGap; // when the features were looked up
 	Lanes2 found;   // where along them

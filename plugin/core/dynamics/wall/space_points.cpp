@@ -1,5 +1,5 @@
 // Contact points in space: the parts of ContactSet (contact_set.hpp) that depend on the dimension.
-#include "contact/features.hpp"
+#include "contact/point_geometry.hpp"
 #include "dynamics/wall/contact_set.hpp"
 #include "tolerances.hpp"
 
@@ -12,8 +12,8 @@ constexpr int poseRows = 4;
 struct alignas(alignment) Placed {
 	Lanes3 row[3], position, perRho; // rows of the rotation matrix
 
-	MASONRY_INLINE Lanes3 turn(const Lanes3& local) const { return {dot(row[0], local), dot(row[1], local), dot(row[2], local)}; }
-	MASONRY_INLINE Lanes3 turnBack(const Lanes3& global) const { return global.x * row[0] + global.y * row[1] + global.z * row[2]; }
+	MASONRY_INLINE Lanes3 rotate(const Lanes3& local) const { return {dot(row[0], local), dot(row[1], local), dot(row[2], local)}; }
+	MASONRY_INLINE Lanes3 rotateBack(const Lanes3& global) const { return global.x * row[0] + global.y * row[1] + global.z * row[2]; }
 };
 
 MASONRY_INLINE Lanes3 threeOf(const Lanes* pose, const int* body, int row, Lanes& fourth)
@@ -56,18 +56,17 @@ struct alignas(alignment) Found {
 	Lanes gap, along1, along2;
 };
 
-MASONRY_INLINE Found vertexOnFace(const FeatureLanes<Space>& f, const Placed& p1, const Placed& p2)
+MASONRY_INLINE Found overFace(const FeatureLanes<Space>& f, const Placed& p1, const Placed& p2)
 {
 	const Placed vertexBody = oneOf(f.vertexOn1, p1, p2), faceBody = oneOf(f.vertexOn1, p2, p1);
-	const Lanes3 arm = vertexBody.turn(f.vertex), out = faceBody.turn(f.normal);
-	const Lanes3 from = (vertexBody.position - faceBody.position) + arm;
+	const auto at = vertexOverFace(vertexBody, faceBody, f.vertex, f.normal, f.faceDistance);
 	Found found;
-	found.normal = select(f.vertexOn1, all(-1) * out, out);
-	found.tangent = faceBody.turn(f.tangent);
-	found.arm2 = select(f.vertexOn1, from, arm);
-	found.gap = dot(out, from) - f.faceDistance;
-	found.along1 = dot(found.tangent, from);
-	found.along2 = dot(cross(out, found.tangent), from);
+	found.normal = select(f.vertexOn1, all(-1) * at.outward, at.outward);
+	found.tangent = faceBody.rotate(f.tangent);
+	found.arm2 = select(f.vertexOn1, at.from, at.arm);
+	found.gap = at.gap;
+	found.along1 = dot(found.tangent, at.from);
+	found.along2 = dot(cross(at.outward, found.tangent), at.from);
 	return found;
 }
 
@@ -103,7 +102,7 @@ MASONRY_INLINE Found located(const RigidSystem<Space>& s, const FeatureGroup<Spa
                              const Placed& p2)
 {
 	const FeatureLanes<Space>& f = features.point[k];
-	Found found = vertexOnFace(f, p1, p2);
+	Found found = overFace(f, p1, p2);
 	if (f.crossing[0] | f.crossing[1] | f.crossing[2] | f.crossing[3])
 		takeCrossings(s, features, k, poses, found);
 	return found;
@@ -117,7 +116,7 @@ MASONRY_INLINE Lanes response(const Row& a, const Row& b, const Lanes& mass1, co
 
 MASONRY_INLINE void takeRow(Row& row, const Lanes3& axis, const Lanes3& r1, const Lanes3& r2, const Placed& p1, const Placed& p2)
 {
-	const Lanes3 a1 = p1.turnBack(cross(r1, axis)), a2 = p2.turnBack(cross(r2, axis));
+	const Lanes3 a1 = p1.rotateBack(cross(r1, axis)), a2 = p2.rotateBack(cross(r2, axis));
 	row.axis = axis;
 	row.arm1 = {a1.x * p1.perRho.x, a1.y * p1.perRho.y, a1.z * p1.perRho.z};
 	row.arm2 = {a2.x * p2.perRho.x, a2.y * p2.perRho.y, a2.z * p2.perRho.z};
@@ -240,21 +239,15 @@ void ContactSet<Space>::takePoint(const RigidSystem<Space>& s, int c, int k)
 	const SpaceFeature feature =
 	    present ? pair.points[k].feature : SpaceFeature {SpaceFeature::Vertex1, 0, 0}; // tells how far the pair moves
 	f.present[lane] = present ? -1 : 0;
-	f.crossing[lane] = feature.kind == SpaceFeature::Edges ? -1 : 0;
-	const bool vertexOn1 = feature.kind == SpaceFeature::Vertex1;
-	f.vertexOn1[lane] = vertexOn1 ? -1 : 0;
-	const Vector3 &vertexHalf = s.bodies[vertexOn1 ? pair.body1 : pair.body2].halfSize,
-	              &faceHalf = s.bodies[vertexOn1 ? pair.body2 : pair.body1].halfSize;
-	const int vertex = vertexOn1 ? feature.first : feature.second, face = f.crossing[lane] ? 0 : vertexOn1 ? feature.second : feature.first;
-	const int axis = face / 2;
-	set(f.vertex, lane,
-	    {vertex & 1 ? vertexHalf.x() : -vertexHalf.x(), vertex & 2 ? vertexHalf.y() : -vertexHalf.y(),
-	     vertex & 4 ? vertexHalf.z() : -vertexHalf.z()});
-	set(f.normal, lane, (face % 2 ? 1. : -1.) * Vector3::Unit(axis));
-	set(f.tangent, lane, Vector3::Unit(feature::nextAxis(axis)));
-	f.faceDistance[lane] = faceHalf[axis];
-	f.faceEnd.x[lane] = faceHalf[feature::nextAxis(axis)];
-	f.faceEnd.y[lane] = faceHalf[feature::nextAxis(feature::nextAxis(axis))];
+	const PointGeometry<Space> geometry = geometryOf(feature, s.bodies[pair.body1].halfSize, s.bodies[pair.body2].halfSize);
+	f.crossing[lane] = geometry.crosses ? -1 : 0;
+	f.vertexOn1[lane] = geometry.vertexOn1 ? -1 : 0;
+	set(f.vertex, lane, geometry.vertex);
+	set(f.normal, lane, geometry.normal);
+	set(f.tangent, lane, geometry.tangent);
+	f.faceDistance[lane] = geometry.distance;
+	f.faceEnd.x[lane] = geometry.halfWidths.x();
+	f.faceEnd.y[lane] = geometry.halfWidths.y();
 }
 
 template <>

@@ -1,0 +1,139 @@
+#include "contact/point_geometry.hpp"
+#include "contact/features.hpp"
+#include "tolerances.hpp"
+#include <algorithm>
+#include <cmath>
+
+namespace masonry {
+
+namespace {
+
+struct VertexBody {
+	const Vector3& position;
+	const Quaternion& orientation;
+	Vector3 rotate(const Vector3& local) const { return orientation * local; }
+};
+struct FaceBody {
+	const Vector3& position;
+	Matrix3 rotation;
+	Vector3 rotate(const Vector3& local) const { return rotation * local; }
+};
+
+Edge edgeOf(int number, const Vector3& half)
+{
+	const Vector3 outward = feature::edgeSigns(number);
+	return {Vector3::Unit(feature::edgeAxis(number)), outward.cwiseProduct(half), outward};
+}
+Edge rotated(const Edge& edge, const Pose& pose)
+{
+	const Matrix3 axes = pose.orientation.toRotationMatrix();
+	return {axes * edge.direction, axes * edge.middle, axes * edge.outward};
+}
+
+// Straight lines along e1, e2 through m1, m2, d = m2 - m1, c = e1.e2: the nearest points are m1 + s1 e1 and m2 + s2 e2 with
+// s1 = (d.e1 - c d.e2) / (1 - c^2), s2 = (c d.e1 - d.e2) / (1 - c^2). What lies between them is along n = +-e1 x e2, hence
+// gap = n.d. As n turns its change is across n, the gap's rate is the relative velocity along n at either point or between them.
+ContactFrame<Space> edgeAcrossEdge(const Edge& edge1, const Vector3& centre1, const Edge& edge2, const Vector3& centre2)
+{
+	const Vector3 apart = (centre2 - centre1) + (edge2.middle - edge1.middle);
+	const double cosine = edge1.direction.dot(edge2.direction);
+	Vector3 normal = edge1.direction.cross(edge2.direction);
+	const double sineSquared = normal.squaredNorm();
+	normal *= feature::signOf(normal.dot(edge1.outward - edge2.outward)) / std::sqrt(sineSquared);
+	const double along1 = apart.dot(edge1.direction), along2 = apart.dot(edge2.direction);
+	const double s1 = (along1 - cosine * along2) / sineSquared, s2 = (cosine * along1 - along2) / sineSquared;
+
+	ContactFrame<Space> frame;
+	frame.position = (centre1 + edge1.middle + s1 * edge1.direction + centre2 + edge2.middle + s2 * edge2.direction) / 2;
+	frame.gap = normal.dot(apart);
+	frame.axes.row(0) = normal;
+	frame.axes.row(1) = edge1.direction;
+	frame.axes.row(2) = normal.cross(edge1.direction);
+	return frame;
+}
+
+} // namespace
+
+PointGeometry<Plane> geometryOf(const PlaneFeature& feature, const Vector2& half1, const Vector2& half2)
+{
+	const bool on1 = feature.vertexBody == 1;
+	const Vector2 &vertexHalf = on1 ? half1 : half2, &faceHalf = on1 ? half2 : half1;
+	const int axis = feature::faceAxis(feature.face);
+	return {on1, feature::vertexSigns(feature.vertex).head<2>().cwiseProduct(vertexHalf),
+	        feature::faceSign(feature.face) * Vector2::Unit(axis), faceHalf[axis], faceHalf[1 - axis]};
+}
+
+PointGeometry<Space> geometryOf(const SpaceFeature& feature, const Vector3& half1, const Vector3& half2)
+{
+	PointGeometry<Space> geometry;
+	geometry.crosses = feature.kind == SpaceFeature::Edges;
+	if (geometry.crosses) {
+		geometry.edge1 = edgeOf(feature.first, half1);
+		geometry.edge2 = edgeOf(feature.second, half2);
+		return geometry;
+	}
+	const bool on1 = geometry.vertexOn1 = feature.kind == SpaceFeature::Vertex1;
+	const Vector3& faceHalf = on1 ? half2 : half1;
+	const int vertex = on1 ? feature.first : feature.second, face = on1 ? feature.second : feature.first;
+	const int axis = feature::faceAxis(face), second = feature::nextAxis(axis);
+	geometry.vertex = feature::vertexSigns(vertex).cwiseProduct(on1 ? half1 : half2);
+	geometry.normal = feature::faceSign(face) * Vector3::Unit(axis);
+	geometry.tangent = Vector3::Unit(second);
+	geometry.distance = faceHalf[axis];
+	geometry.halfWidths = {faceHalf[second], faceHalf[feature::nextAxis(second)]};
+	return geometry;
+}
+
+ContactFrame<Plane> frameOf(const PointGeometry<Plane>& geometry, const PlanePose& pose1, const PlanePose& pose2)
+{
+	const bool on1 = geometry.vertexOn1;
+	const PlanePose &vertexPose = on1 ? pose1 : pose2, &facePose = on1 ? pose2 : pose1;
+	const auto at = vertexOverFace(vertexPose, facePose, geometry.vertex, geometry.normal, geometry.distance);
+	const Vector2 normal = on1 ? Vector2(-at.outward) : at.outward;
+	ContactFrame<Plane> frame;
+	frame.position = vertexPose.position + at.arm;
+	frame.gap = at.gap;
+	frame.axes << normal.x(), normal.y(), -normal.y(), normal.x();
+	return frame;
+}
+
+ContactFrame<Space> frameOf(const PointGeometry<Space>& geometry, const Pose& pose1, const Pose& pose2)
+{
+	if (geometry.crosses)
+		return edgeAcrossEdge(rotated(geometry.edge1, pose1), pose1.position, rotated(geometry.edge2, pose2), pose2.position);
+	const bool on1 = geometry.vertexOn1;
+	const Pose &vertexPose = on1 ? pose1 : pose2, &facePose = on1 ? pose2 : pose1;
+	const FaceBody face {facePose.position, facePose.orientation.toRotationMatrix()};
+	const auto at =
+	    vertexOverFace(VertexBody {vertexPose.position, vertexPose.orientation}, face, geometry.vertex, geometry.normal, geometry.distance);
+	const Vector3 normal = on1 ? Vector3(-geometry.normal) : geometry.normal;
+	ContactFrame<Space> frame;
+	frame.position = vertexPose.position + at.arm;
+	frame.gap = at.gap;
+	frame.axes.row(0) = face.rotate(normal);
+	frame.axes.row(1) = face.rotate(geometry.tangent);
+	frame.axes.row(2) = face.rotate(normal.cross(geometry.tangent));
+	return frame;
+}
+
+ContactFrame<Plane> Plane::frame(const Feature& feature, const Vector& half1, const Pose& pose1, const Vector& half2, const Pose& pose2)
+{
+	return frameOf(geometryOf(feature, half1, half2), pose1, pose2);
+}
+ContactFrame<Space> Space::frame(const Feature& feature, const Vector& half1, const Pose& pose1, const Vector& half2, const Pose& pose2)
+{
+	return frameOf(geometryOf(feature, half1, half2), pose1, pose2);
+}
+
+bool isSharp(const PointGeometry<Space>& crossing, const Pose& pose1, const Pose& pose2, const Vector3& faceNormal)
+{
+	const Edge edge1 = rotated(crossing.edge1, pose1), edge2 = rotated(crossing.edge2, pose2);
+	Vector3 normal = edge1.direction.cross(edge2.direction);
+	const double sine = normal.norm();
+	if (sine <= tolerance::contact::parallelEdges)
+		return false;
+	normal *= feature::signOf(normal.dot(faceNormal)) / sine;
+	return std::min({normal.dot(faceNormal), normal.dot(edge1.outward), -normal.dot(edge2.outward)}) > tolerance::contact::crossing;
+}
+
+} // namespace masonry
