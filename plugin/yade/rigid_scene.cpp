@@ -60,17 +60,14 @@ masonry::StepReport RigidScene<K>::step()
 		forgetStates();
 		throw;
 	}
-	takeSettings();
 	if (integrator.isWall() != byWalls) {
 		system.moved = true;
 		system.startAnew();
 		showPoints();
 		scheduler.emplace(); // what it remembers would be of steps long ago
 	}
-	if (integrator.isWall() && lawsChanged)
-		system.moved = true;
-	lawsChanged = false;
 	byWalls = integrator.isWall();
+	takeSettings();
 	const auto report = byWalls ? advanceWall() : islands.advance(system, scene.dt);
 	integrator.stepErrors = byWalls ? scheduler->lastErrors() : islands.lastErrors();
 	writeStates();
@@ -88,16 +85,18 @@ template <class K>
 void RigidScene<K>::takeSettings()
 {
 	system.time = scene.time;
-	system.settings.tolerance = integrator.tolerance;
-	system.settings.merged = integrator.mergedClosing;
-	system.settings.mostEvents = integrator.mostEvents;
-	system.settings.order = integrator.sequential ? masonry::ImpactOrder::sequential : masonry::ImpactOrder::simultaneous;
+	masonry::localised::Settings ofFew; // beside walls the tolerance and the order are the default ones
+	ofFew.merged = integrator.mergedClosing;
+	ofFew.mostEvents = integrator.mostEvents;
+	scheduler->settings = {integrator.tolerance, integrator.strictForces, integrator.wallsOnly, std::max(1, integrator.ompThreads), ofFew};
+	ofFew.tolerance = integrator.tolerance;
+	ofFew.order = integrator.sequential ? masonry::ImpactOrder::sequential : masonry::ImpactOrder::simultaneous;
+	islands.settings() = ofFew;
 }
 
 template <class K>
 masonry::StepReport RigidScene<K>::advanceWall()
 {
-	scheduler->settings = {integrator.tolerance, integrator.strictForces, integrator.wallsOnly, std::max(1, integrator.ompThreads)};
 	const auto report = scheduler->advance(system, scene.dt);
 	const auto& ofWalls = scheduler->report;
 	const bool still = ofWalls.moved == 0;
@@ -224,7 +223,7 @@ void RigidScene<K>::takeLaws()
 		law.check(kept.ids[pair.body1], kept.ids[pair.body2]);
 		pair.friction = friction;
 		pair.restitution = restitution;
-		lawsChanged = true;
+		++system.laws;
 	}
 }
 
@@ -330,7 +329,7 @@ vector<Real> RigidScene<K>::pack()
 	for (size_t b = 0; b < links.size(); ++b)
 		if (!isThere(b))
 			told.ids[b] = -1;
-	archive(told, byWalls, lawsChanged, *neighbours);
+	archive(told, byWalls, *neighbours);
 	if (byWalls)
 		scheduler->serialize(archive, system);
 	return archive.numbers;
@@ -339,12 +338,10 @@ vector<Real> RigidScene<K>::pack()
 template <class K>
 void RigidScene<K>::unpackStepper(masonry::NumberReader& archive, const Remembered<K>& before)
 {
-	bool laws = false;
-	readMemory([&] { archive(byWalls, laws); });
+	readMemory([&] { archive(byWalls); });
 	if (changed || before.ids != kept.ids || before.pairs.size() != system.pairs.size())
 		return;
 	renewContacts();
-	lawsChanged |= laws;
 	readMemory([&] {
 		archive(*neighbours);
 		if (byWalls)

@@ -171,7 +171,7 @@ private:
 	masonry::localised::Islands<K> islands;
 	std::optional<masonry::Scheduler<K>> scheduler {std::in_place}; // method='wall'
 	bool changed = false;                                           // what is moved, and how, is not as it was
-	bool byWalls = false, lawsChanged = false;
+	bool byWalls = false;
 	bool ownsContacts = false; // what O.interactions shows of blocks is of this object
 	int unshown = 1;           // steps since the interactions were written
 	std::unique_ptr<masonry::Neighbours<K>> neighbours;

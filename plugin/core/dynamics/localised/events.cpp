@@ -192,14 +192,14 @@ int unseenPenetration(const RigidSystem<K>& s, const SmoothStep<K>& step)
 }
 
 template <class K>
-void touchingPoints(const RigidSystem<K>& s, std::vector<PointRef>& out)
+void touchingPoints(const RigidSystem<K>& s, double merged, std::vector<PointRef>& out)
 {
 	out.clear();
-	const double merged = s.settings.merged * scale::length(s);
+	const double touching = merged * scale::length(s);
 	for (int c = 0; c < int(s.pairs.size()); ++c)
 		for (int i = 0; i < s.pairs[c].size; ++i) {
 			const ContactPoint<K>& point = s.pairs[c].points[i];
-			if (!point.closed && point.gap <= merged && atStart(s, PointRef {c, i}).rate < 0)
+			if (!point.closed && point.gap <= touching && atStart(s, PointRef {c, i}).rate < 0)
 				out.push_back({c, i});
 		}
 }
@@ -212,7 +212,7 @@ template bool isContact(const RigidSystem<Plane>&, const SmoothStep<Plane>&, con
 template bool isContact(const RigidSystem<Space>&, const SmoothStep<Space>&, const Event&);
 template int unseenPenetration(const RigidSystem<Plane>&, const SmoothStep<Plane>&);
 template int unseenPenetration(const RigidSystem<Space>&, const SmoothStep<Space>&);
-template void touchingPoints(const RigidSystem<Plane>&, std::vector<PointRef>&);
-template void touchingPoints(const RigidSystem<Space>&, std::vector<PointRef>&);
+template void touchingPoints(const RigidSystem<Plane>&, double, std::vector<PointRef>&);
+template void touchingPoints(const RigidSystem<Space>&, double, std::vector<PointRef>&);
 
 } // namespace masonry::localised

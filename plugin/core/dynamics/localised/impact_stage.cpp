@@ -109,6 +109,7 @@ private:
 template <class K>
 struct ImpactStage<K>::Builder {
 	const RigidSystem<K>& s;
+	const double merged; // see Settings
 	ImpactStage<K>& stage;
 
 	void add(PointRef ref)
@@ -124,7 +125,7 @@ struct ImpactStage<K>::Builder {
 	bool touches(PointRef ref) const
 	{
 		const ContactPoint<K>& point = s.pairs[ref.pair].points[ref.point];
-		if (point.closed || point.gap > s.settings.merged * scale::length(s))
+		if (point.closed || point.gap > merged * scale::length(s))
 			return point.closed;
 		return std::abs(relativeVelocity(s, ref)[0]) <= tolerance::restSpeed * std::sqrt(scale::acceleration(s) * scale::length(s));
 	}
@@ -186,7 +187,7 @@ struct ImpactStage<K>::Builder {
 };
 
 template <class K>
-void ImpactStage<K>::gather(const RigidSystem<K>& s, const std::vector<PointRef>& closing)
+void ImpactStage<K>::gather(const RigidSystem<K>& s, const Settings& settings, const std::vector<PointRef>& closing)
 {
 	impulses.near.clear();
 	for (const ContactPair<K>& pair : s.pairs)
@@ -198,7 +199,7 @@ void ImpactStage<K>::gather(const RigidSystem<K>& s, const std::vector<PointRef>
 	bodies.clear();
 	for (const auto& body : s.bodies)
 		bodies.push_back(inSpace(body));
-	Builder builder {s, *this};
+	Builder builder {s, settings.merged, *this};
 	for (size_t k = 0; k < closing.size(); ++k) {
 		const JointKey key = jointOf(s, closing[k]);
 		const bool first = std::none_of(closing.begin(), closing.begin() + k, [&](PointRef p) { return jointOf(s, p) == key; });
@@ -279,10 +280,10 @@ void ImpactStage<K>::shareWeights(RigidSystem<K>& s)
 // The smooth step leaves velocities of the order h^2 at the points in touch, of either sign; the law's w- is that of bodies that hold on to
 // their pivots. Loaded points are held from both sides: an impulse larger than holding takes is taken away from each and found anew.
 template <class K>
-void ImpactStage<K>::holdPivots(RigidSystem<K>& s)
+void ImpactStage<K>::holdPivots(RigidSystem<K>& s, const Settings& settings)
 {
 	constexpr double enough = 10;
-	gather(s, {});
+	gather(s, settings, {});
 	const auto loaded = [&](size_t k) -> const ContactPoint<K>* {
 		const ContactPoint<K>& point = s.pairs[refs[k].pair].points[refs[k].point];
 		return isLoaded(point) ? &point : nullptr;
@@ -323,10 +324,10 @@ void ImpactStage<K>::holdPivots(RigidSystem<K>& s)
 }
 
 template <class K>
-RockingImpactResult ImpactStage<K>::land(RigidSystem<K>& s, const std::vector<PointRef>& closing)
+RockingImpactResult ImpactStage<K>::land(RigidSystem<K>& s, const Settings& settings, const std::vector<PointRef>& closing)
 {
-	holdPivots(s);
-	gather(s, closing);
+	holdPivots(s, settings);
+	gather(s, settings, closing);
 	limit(s, 0);
 	asked.clear();
 	for (ClosingJoint& joint : impact.joints) {
@@ -336,7 +337,7 @@ RockingImpactResult ImpactStage<K>::land(RigidSystem<K>& s, const std::vector<Po
 			joint.restitution = 0;
 	}
 	const auto result =
-	    s.settings.order == ImpactOrder::simultaneous ? applyRockingImpact(bodies, impact) : applySequentially(bodies, impact);
+	    settings.order == ImpactOrder::simultaneous ? applyRockingImpact(bodies, impact) : applySequentially(bodies, impact);
 	findJammed(result);
 	settle(s);
 	s.impactDissip += result.energyLost;
@@ -354,12 +355,12 @@ RockingImpactResult ImpactStage<K>::land(RigidSystem<K>& s, const std::vector<Po
 }
 
 template <class K>
-RockingImpactResult ImpactStage<K>::pulse(RigidSystem<K>& s, int drive, const typename K::Vector& jump)
+RockingImpactResult ImpactStage<K>::pulse(RigidSystem<K>& s, const Settings& settings, int drive, const typename K::Vector& jump)
 {
 	for (auto& body : s.bodies)
 		if (body.drive == drive)
 			body.velocity.template head<K::dimension>() += jump;
-	gather(s, {});
+	gather(s, settings, {});
 	limit(s, 0);
 	const auto result = applyRockingImpact(bodies, impact);
 	findJammed(result);

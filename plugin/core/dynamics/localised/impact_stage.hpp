@@ -10,20 +10,20 @@ class ImpactStage {
 public:
 	// The open points `closing` land now. A joint that rocks on another pivot obeys its restitution; all others are plastic. Points that
 	// part afterwards are open. Impacts are appended to system.impacts.
-	RockingImpactResult land(RigidSystem<K>& system, const std::vector<PointRef>& closing);
+	RockingImpactResult land(RigidSystem<K>& system, const Settings& settings, const std::vector<PointRef>& closing);
 
 	// The bodies moved by a drive change their velocity by `jump` (m/s) at this instant.
-	RockingImpactResult pulse(RigidSystem<K>& system, int drive, const typename K::Vector& jump);
+	RockingImpactResult pulse(RigidSystem<K>& system, const Settings& settings, int drive, const typename K::Vector& jump);
 
 	// Adds the bodies of points that press as much as they may, where the laws of the last landing or pulse have no solution.
 	void addJammed(std::vector<int>& all) const { all.insert(all.end(), jammed.begin(), jammed.end()); }
 
 private:
 	struct Builder;
-	void gather(const RigidSystem<K>& system, const std::vector<PointRef>& closing);
+	void gather(const RigidSystem<K>& system, const Settings& settings, const std::vector<PointRef>& closing);
 	void limit(const RigidSystem<K>& system, double impulse);
 	void findJammed(const RockingImpactResult& result);
-	void holdPivots(RigidSystem<K>& system);
+	void holdPivots(RigidSystem<K>& system, const Settings& settings);
 	void settle(RigidSystem<K>& system);
 	void shareWeights(RigidSystem<K>& system);
 

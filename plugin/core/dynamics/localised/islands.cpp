@@ -92,7 +92,6 @@ void Islands<K>::take(const RigidSystem<K>& s, Island& island) const
 	own.time = s.time;
 	own.gravity = s.gravity;
 	own.drives = s.drives;
-	own.settings = s.settings;
 	own.moved = s.moved;
 	own.frictDissip = own.impactDissip = own.baseWork = 0;
 	own.bodies.clear();

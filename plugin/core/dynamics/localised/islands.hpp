@@ -8,6 +8,7 @@ namespace masonry::localised {
 template <class K>
 class Islands {
 public:
+	Settings& settings() { return step.settings; }
 	StepReport advance(RigidSystem<K>& system, double dt);
 	// Returns what the last step has made and lost of energy.
 	const StepErrors& lastErrors() const { return errors; }

@@ -42,7 +42,7 @@ StepReport LocalisedStep<K>::advance(RigidSystem<K>& s, double dt)
 	report = {};
 	s.impacts.clear();
 	const Energies before(s);
-	step.begin(s, dt);
+	step.begin(s, settings, dt);
 	for (int parts = partsOf(s, dt); parts > 0 && !report.diverged; parts = parts > 1 ? partsOf(s, step.left()) : 0)
 		advancePart(s, step.beginPart(s, parts));
 	balance(s, before);
@@ -132,7 +132,7 @@ void LocalisedStep<K>::findContacts(RigidSystem<K>& s)
 template <class K>
 void LocalisedStep<K>::findContacts(RigidSystem<K>& s, ContactPair<K>& pair, bool within)
 {
-	const double touching = s.settings.merged * step.scales.length, samePlace = 2 * tolerance::contact::vertexReach * step.scales.length;
+	const double touching = settings.merged * step.scales.length, samePlace = 2 * tolerance::contact::vertexReach * step.scales.length;
 	const auto &body1 = s.bodies[pair.body1], &body2 = s.bodies[pair.body2];
 	FoundPoints<K> found = findRows(body1, body2, tolerance::restSpeed * step.scales.speed, pair.memory);
 	dropIdle(found, pair, body1, body2, samePlace);
@@ -163,7 +163,7 @@ Event LocalisedStep<K>::tryStep(RigidSystem<K>& s, double h)
 {
 	constexpr int maxHalvings = 12;
 	Event event = tryUpTo(s, h);
-	if (report.events >= s.settings.mostEvents)
+	if (report.events >= settings.mostEvents)
 		return event;
 	int unseen = -1;
 	for (int k = 0; k < maxHalvings; ++k) {
@@ -185,7 +185,7 @@ Event LocalisedStep<K>::tryStep(RigidSystem<K>& s, double h)
 template <class K>
 Event LocalisedStep<K>::tryUpTo(RigidSystem<K>& s, double h)
 {
-	const bool localised = report.events < s.settings.mostEvents;
+	const bool localised = report.events < settings.mostEvents;
 	const double rest = tolerance::restSpeed * step.scales.speed;
 	step.anticipated.clear();
 	step.stopsInside = !localised;
@@ -229,13 +229,13 @@ void LocalisedStep<K>::note(const RockingImpactResult& impact)
 template <class K>
 bool LocalisedStep<K>::land(RigidSystem<K>& s)
 {
-	touchingPoints(s, closing);
+	touchingPoints(s, settings.merged, closing);
 	if (closing.empty())
 		return false;
 	const size_t known = s.impacts.size();
 	placeFriction(s);
 	placeFriction(s, closing);
-	note(impacts.land(s, closing));
+	note(impacts.land(s, settings, closing));
 	impacts.addJammed(report.jammed);
 	answerImpacts(s, known);
 	return true;
@@ -249,7 +249,7 @@ void LocalisedStep<K>::answerImpacts(RigidSystem<K>& s, size_t known)
 		for (size_t d = 0; d < s.drives.size(); ++d)
 			if (const auto jump = s.drives[d].respond(s.impacts[k].block, s.time); !jump.isZero(0)) {
 				placeFriction(s);
-				note(impacts.pulse(s, int(d), jump));
+				note(impacts.pulse(s, settings, int(d), jump));
 				impacts.addJammed(report.jammed);
 			}
 }
@@ -262,7 +262,7 @@ void LocalisedStep<K>::takeJumps(RigidSystem<K>& s)
 		if (const auto jump = s.drives[d].jumpAt(s.time); !jump.isZero(0)) {
 			land(s);
 			placeFriction(s);
-			note(impacts.pulse(s, int(d), jump));
+			note(impacts.pulse(s, settings, int(d), jump));
 			impacts.addJammed(report.jammed);
 		}
 }

@@ -10,6 +10,7 @@ namespace masonry::localised {
 template <class K>
 class LocalisedStep {
 public:
+	Settings settings;
 	StepReport advance(RigidSystem<K>& system, double dt);
 	// Returns what the last step has made and lost of energy.
 	const StepErrors& lastErrors() const { return errors; }

@@ -89,8 +89,9 @@ bool basesPart(const RigidSystem<K>& s, double dt)
 } // namespace
 
 template <class K>
-void SmoothStep<K>::begin(const RigidSystem<K>& s, double dt)
+void SmoothStep<K>::begin(const RigidSystem<K>& s, const Settings& settings, double dt)
 {
+	allowed = settings.tolerance;
 	full = dt;
 	end = s.time;
 	stepEnd = s.time + dt;
@@ -252,7 +253,7 @@ void SmoothStep<K>::attempt(RigidSystem<K>& s, double h, bool again)
 		predict(s, h, pass > 0);
 		assemble(s, h);
 		solver.guessed = fresh && pass == 0;
-		last.solved = solver.solve(s.settings.tolerance * scales.stepSpeed(h), s.settings.tolerance * scales.stepSpeed(whole));
+		last.solved = solver.solve(allowed * scales.stepSpeed(h), allowed * scales.stepSpeed(whole));
 		const bool surprised = pass == 0 && surprises(s, last, solver.bodies, scales);
 		const double gain = finish(s, h);
 		const bool first = pass == 0 && fresh;

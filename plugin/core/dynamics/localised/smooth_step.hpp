@@ -27,6 +27,7 @@
 //
 // The middle is predicted with the acceleration of the last step, V + h/2 dV/dt: then gaps of points in touch drift by O(h^4) a step, and
 // `project` closes them without a change of velocity.
+#include "dynamics/localised/settings.hpp"
 #include "dynamics/model/scales.hpp"
 #include <optional>
 
@@ -59,7 +60,7 @@ template <class K>
 class SmoothStep {
 public:
 	// Forgets earlier steps: a run that was saved goes on with the same bits.
-	void begin(const RigidSystem<K>& system, double dt);
+	void begin(const RigidSystem<K>& system, const Settings& settings, double dt);
 	// The next of so many equal parts of what is left of the step: a step of its own, but for the prescribed bodies. Returns its length, s.
 	double beginPart(const RigidSystem<K>& system, int parts);
 	double left() const { return stepEnd - end; } // s, of the step after the part
@@ -117,6 +118,7 @@ private:
 	std::vector<typename K::Velocity> shifts;
 	std::vector<double> misses, partings; // of the rows: m; normal velocities at the start of a part of a step, m/s
 	std::vector<Impulse> guesses, stray;  // of the rows: impulses of the last pass; velocities that the step takes off (none: empty)
+	double allowed {0};                   // Settings::tolerance
 	double whole {0}, end {0};            // s, the part of the step that is being done up to its events, and when it ends
 	double full {0}, stepEnd {0};         // s, the whole step, and when it ends
 	double passed {0};                    // s, of the whole step

@@ -1,5 +1,5 @@
 #pragma once
-// Rigid blocks in unilateral contact: model, state and settings. localised_step.hpp moves them.
+// Rigid blocks in unilateral contact: model and state. localised_step.hpp moves them.
 #include "contact/corner_normals.hpp"
 #include "dynamics/model/base_drive.hpp"
 #include "impact/rocking_restitution.hpp"
@@ -208,13 +208,6 @@ bool sameFeatures(const ContactPair<K>& pair, const FoundPoints<K>& found)
 	return found.size == pair.size && std::equal(found.features.begin(), found.features.begin() + found.size, pair.points.begin(), same);
 }
 
-struct Settings {
-	double tolerance {1e-9}; // residual of a step's contact laws, as a share of the speed that gravity gives in it; its parts aim at theirs
-	ImpactOrder order {ImpactOrder::simultaneous};
-	double merged {1e-6}; // closings within this gap, relative to the smallest half size, are one impact: a model parameter
-	int mostEvents {50};  // found inside one step; points that close later in it do so at its end, plastically
-};
-
 // A rocking impact as it came out.
 struct Impact {
 	double time; // s
@@ -263,10 +256,10 @@ struct RigidSystem {
 	std::vector<RigidBody<K>> bodies;
 	std::vector<ContactPair<K>> pairs;              // of boxes that are near each other, in a fixed order
 	int lists {0};                                  // of pairs that there have been
+	int laws {0};                                   // changes of the pairs' friction and restitution that there have been
 	typename K::Vector gravity {K::Vector::Zero()}; // which way is down, and the scale of tolerances; the weight itself is in `force`
 	std::vector<Drive<K>> drives;                   // of the bases
-	Settings settings;
-	bool moved {true}; // poses were set from outside: gaps are to be measured anew
+	bool moved {true};                              // poses were set from outside: gaps are to be measured anew
 
 	std::vector<Impact> impacts; // of the last step
 	// Since the start of the run.

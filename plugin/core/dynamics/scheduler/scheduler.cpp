@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 namespace masonry {
 
@@ -16,20 +17,15 @@ StepReport Scheduler<K>::advance(RigidSystem<K>& s, double dt)
 	if (localisedBodies.empty())
 		return advanceWalls(s, dt);
 	report = {};
-	const Settings ofWalls = s.settings;
+	islands.settings() = settings.localised;
 	const bool moved = s.moved;
-	s.settings.tolerance = Settings().tolerance;
-	s.settings.order = Settings().order;
-	s.moved |= gapsAreOutdated;
-	gapsAreOutdated = false;
+	s.moved |= std::exchange(gapsAreOutdated, false);
 	if (!areWalls) {
 		const StepReport sum = islands.advance(s, dt);
 		errors = islands.lastErrors();
-		s.settings = ofWalls;
 		return sum;
 	}
 	islands.take(s);
-	s.settings = ofWalls;
 	s.moved = moved;
 	hideLocalised(s);
 	StepReport sum = advanceWalls(s, dt);

@@ -6,7 +6,6 @@
 //     more                 wall_step.hpp: all contacts at once, first order in the step; all structures where walls are ofAnySize
 //
 // The two kinds of structures are near no block of each other and are stepped one after the other, each as if the other were not there.
-// Localised structures use the default tolerance and order of Settings, whatever the walls use.
 //
 // All walls of a system are stepped together. A block that has once belonged to a wall stays with the walls: the parts that break off a
 // wall are many small structures, and each impact of theirs would be searched for. Motions that must be asked in order of time
@@ -17,12 +16,13 @@
 
 namespace masonry {
 
-// The walls are stepped with these.
+// The walls are stepped with these, and localised structures with settings of their own.
 struct WallSettings {
 	double tolerance {1e-3};   // AdmmSettings::tolerance. Smaller: a step takes up to as many more iterations as its inverse square root
 	bool strictForces {false}; // AdmmSettings::strictForces
 	bool ofAnySize {false};    // structures of at most maxBlocks are walls too
 	int threads {1};
+	localised::Settings localised; // of the other structures
 };
 
 template <class K>

@@ -89,9 +89,6 @@ void ContactSet<K>::lookUp(RigidSystem<K>& s, int c)
 	pair.face2 = found.face2;
 	// Of bodies that have been moved the pair may know other points than the lanes.
 	const bool same = known[c] && !s.moved && sameFeatures(pair, found);
-	for (const auto [group, lane] : slots[c])
-		if (group >= 0)
-			groups[group].friction[lane] = std::min(pair.friction, maxFriction);
 	if (same)
 		return;
 	if (known[c]) {
@@ -273,8 +270,20 @@ bool ContactSet<K>::isLocated(const RigidSystem<K>& s) const
 }
 
 template <class K>
+void ContactSet<K>::takeLaws(const RigidSystem<K>& s)
+{
+	laws = s.laws;
+	for (size_t c = 0; c < slots.size(); ++c)
+		for (const auto [group, lane] : slots[c])
+			if (group >= 0)
+				groups[group].friction[lane] = std::min(s.pairs[c].friction, maxFriction);
+}
+
+template <class K>
 void ContactSet<K>::measure(RigidSystem<K>& s, bool isStill)
 {
+	if (laws != s.laws)
+		takeLaws(s);
 	if (isStill && isLocated(s)) {
 		takeBodies(s);
 		++stood;

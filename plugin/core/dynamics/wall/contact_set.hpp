@@ -280,6 +280,7 @@ private:
 	void takeFrames(const RigidSystem<K>& system, int begin, int end); // normals, arms and masses
 	void lookUpStale(RigidSystem<K>& system);
 	void lookUpStale(RigidSystem<K>& system, const Part& part);
+	void takeLaws(const RigidSystem<K>& system);
 	void lookUp(RigidSystem<K>& system, int pair);
 	void inherit(const ContactPair<K>& before, const State* states, ContactPoint<K>& point, State& now) const;
 	State state(int pair, int point) const;
@@ -288,6 +289,7 @@ private:
 
 	double unit {0};                                     // s, that the impulses are of
 	int list {-1};                                       // of the system, that pairs are of
+	int laws {-1};                                       // of the system, that the friction is of
 	int stood {0};                                       // still steps with the points as they are located; 0: the last moved
 	std::vector<std::array<int, 2>> pairs;               // all of the system
 	std::vector<int> numbers;                            // of those that the groups are made of

@@ -100,9 +100,9 @@ private:
 	std::vector<Joint> rocking;
 	std::vector<int> bearing, closing; // points of a joint that is looked at
 	std::vector<Landing> expected, landings;
-	int list {-1};        // of the system's pairs, that `areLaws` is of
-	bool areLaws {false}; // a pair has a given restitution
-	LaneArray predicted;  // velocities at the end of the step
+	int list {-1}, laws {-1}; // of the system's pairs, that `areLaws` is of
+	bool areLaws {false};     // a pair has a given restitution
+	LaneArray predicted;      // velocities at the end of the step
 	double h {0};
 };
 

@@ -114,7 +114,7 @@ TEST_CASE("A part of a step however short leaves no trace")
 		run(s, h, until);
 		auto parted = s;
 		SmoothStep<Plane> step;
-		step.begin(parted, h);
+		step.begin(parted, Settings(), h);
 		step.beginPart(parted, 1);
 		step.attempt(parted, part);
 		step.accept(parted);

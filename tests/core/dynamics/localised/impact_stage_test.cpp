@@ -29,7 +29,7 @@ TEST_CASE("all that a landing takes from the blocks is in its energy")
 	pair.points[0].force[0] = s.bodies[1].mass * g;
 	const double before = s.kineticEnergy();
 	ImpactStage<Plane> stage;
-	stage.land(s, {{0, 1}});
+	stage.land(s, Settings(), {{0, 1}});
 	REQUIRE(s.impacts.size() == 1);
 	CHECK(s.impacts[0].joint.restitution() == Approx(0.7).epsilon(1e-9));
 	CHECK(s.kineticEnergy() + s.impactDissip == Approx(before).epsilon(1e-12));

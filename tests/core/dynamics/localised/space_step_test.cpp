@@ -256,7 +256,7 @@ struct TurnedStack {
 
 	TurnedStack(double angle, double direction, ImpactOrder order) : s(turnedStack(2, angle, jump, direction)), watch(s)
 	{
-		s.settings.order = order;
+		step.settings.order = order;
 	}
 	Vector3 top(double time, double h)
 	{
@@ -320,8 +320,8 @@ TEST_CASE("a stack shaken along its faces is the stack of the plane under both i
 		}
 		Jump jump(0.6);
 		moveBase(flat, jump);
-		flat.settings.order = order;
 		LocalisedStep<Plane> planar;
+		planar.settings.order = order;
 		while (flat.time < 0.5 - 5e-4)
 			planar.advance(flat, 1e-3);
 		const Vector2 expected = flat.bodies[2].pose.position - flat.bodies[0].pose.position;

@@ -56,8 +56,6 @@ TEST_CASE("a wall moves as alone, a pier beside it as with localised impacts alo
 	addPier(both, 3);
 	addPier(pier, 3);
 	REQUIRE(both.system.bodies.size() == 1 + wallBlocks + 3);
-	pier.system.settings = Settings();
-	both.system.settings.tolerance = wall.system.settings.tolerance = 1e-3;
 	Scheduler<Plane> scheduler, byWalls;
 	LocalisedStep<Plane> localised;
 	const auto impacts = shake(both, scheduler, time), ofWall = shake(wall, byWalls, time), ofPier = shake(pier, localised, time);
@@ -102,7 +100,6 @@ TEST_CASE("few blocks have localised impacts though there is no wall beside them
 		addPier(*scene, 3);
 		scene->drive(motion);
 	}
-	bySizes.system.settings.tolerance = 1e-3;
 	Scheduler<Plane> scheduler;
 	LocalisedStep<Plane> localised;
 	const auto impacts = shake(bySizes, scheduler, 1), expected = shake(byImpacts, localised, 1);
@@ -110,7 +107,6 @@ TEST_CASE("few blocks have localised impacts though there is no wall beside them
 	CHECK(expected.size() > 0);
 	CHECK(impacts.size() == expected.size());
 	CHECK(numbersOf(bySizes.system) == numbersOf(byImpacts.system));
-	CHECK(bySizes.system.settings.tolerance == 1e-3);
 }
 
 TEST_CASE("with motions in order of time the walls' method has all")
@@ -121,7 +117,6 @@ TEST_CASE("with motions in order of time the walls' method has all")
 		scene->addWall(4, 8);
 		addPier(*scene, 3);
 		scene->drive(motion);
-		scene->system.settings.tolerance = 1e-3;
 	}
 	Scheduler<Plane> scheduler;
 	shake(bySizes, scheduler, 0.5);
@@ -135,7 +130,6 @@ TEST_CASE("what has been near a wall stays with it, and what leaves it does")
 	Scene scene;
 	scene.addWall(4, 8);
 	const int thrown = addBlock(scene.system, {0.2, 0.2}, {13, 1.5});
-	scene.system.settings.tolerance = 1e-3;
 	scene.system.bodies[thrown].velocity << -10, 2, 1;
 	Scheduler<Plane> scheduler;
 	shake(scene, scheduler, 0.1);
