@@ -65,6 +65,7 @@ masonry::rigid::StepReport RigidScene<K>::step()
 		system.moved = true;
 		system.startAnew();
 		showPoints();
+		system.impactDissip += scheduler->potentialShift();
 		scheduler.emplace(); // what it remembers would be of steps long ago
 	}
 	if (integrator.isWall() && lawsChanged)
@@ -81,6 +82,7 @@ masonry::rigid::StepReport RigidScene<K>::step()
 	integrator.frictDissip = system.frictDissip;
 	integrator.impactDissip = system.impactDissip;
 	integrator.baseWork = system.baseWork;
+	integrator.potentialShift = scheduler->potentialShift();
 	return report;
 }
 

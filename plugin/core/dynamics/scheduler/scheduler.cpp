@@ -25,6 +25,8 @@ StepReport Scheduler<K>::advance(RigidSystem<K>& s, double dt)
 	if (!areWalls) {
 		const StepReport sum = islands.advance(s, dt);
 		errors = islands.lastErrors();
+		s.impactDissip += walls.potentialShift();
+		walls.setPotentialShift(0);
 		s.settings = ofWalls;
 		return sum;
 	}
