@@ -9,7 +9,7 @@ template <class K>
 void EnergyLedger<K>::open(const RigidSystem<K>& s, const ContactSet<K>& c, const std::vector<typename K::Vector>& halfBack)
 {
 	kinetic = s.kineticEnergy();
-	baseWork = friction = forces = lifted = 0;
+	baseWork = friction = forces = lifted = power = 0;
 	before = c.velocity;
 	for (size_t b = 0; b < s.bodies.size(); ++b)
 		if (const int drive = s.bodies[b].drive; s.bodies[b].prescribed && drive >= 0)
@@ -49,16 +49,6 @@ void EnergyLedger<K>::takeContacts(const RigidSystem<K>& s, const ContactSet<K>&
 }
 
 template <class K>
-void EnergyLedger<K>::takeForce(const RigidSystem<K>& s, const RigidBody<K>& body, const typename K::Velocity& old,
-                                const typename K::Velocity& moved, double h)
-{
-	const typename K::Velocity& now = body.velocity;
-	forces += h / 2 * body.force.dot(old + now);
-	lifted += body.force.dot(moved - h * now);
-	shifted += h / 2 * body.mass * s.gravity.dot((now - old).template head<K::dimension>());
-}
-
-template <class K>
 double EnergyLedger<K>::close(RigidSystem<K>& s, const Scales& scales, double h, double earlier)
 {
 	const double mass = freeMass(s);
@@ -79,10 +69,7 @@ double EnergyLedger<K>::close(RigidSystem<K>& s, const Scales& scales, double h,
 template <class K>
 void EnergyLedger<K>::finish(RigidSystem<K>& s, double dt)
 {
-	double now = 0;
-	for (const RigidBody<K>& body : s.bodies)
-		if (!body.prescribed)
-			now += dt / 2 * body.mass * s.gravity.dot(body.velocity.template head<K::dimension>());
+	const double now = dt / 2 * power;
 	s.impactDissip += shifted - (now - potentialShift);
 	potentialShift = now;
 	shifted = 0;

@@ -38,7 +38,16 @@ public:
 	void takeContacts(const RigidSystem<K>& system, const ContactSet<K>& contacts, const AdmmSolver<K>& solver, double friction);
 	// Takes the forces' work in a time h on a free body, which had the velocity `before` and moves by `moved`.
 	void takeForce(const RigidSystem<K>& system, const RigidBody<K>& body, const typename K::Velocity& before,
-	               const typename K::Velocity& moved, double h);
+	               const typename K::Velocity& moved, double h)
+	{
+		constexpr int n = K::dimension;
+		const typename K::Velocity& now = body.velocity;
+		forces += h / 2 * body.force.dot(before + now);
+		lifted += body.force.dot(moved - h * now);
+		const double ofWeight = body.mass * system.gravity.dot(now.template head<n>());
+		power += ofWeight;
+		shifted += h / 2 * (ofWeight - body.mass * system.gravity.dot(before.template head<n>()));
+	}
 	// Ends the part, of length h, or the instant before it, and writes the system's energies. Returns the energy that it has created beyond
 	// what the error of a sound step can create, J. `earlier`: what the part of its impacts that was in the step before has taken; an
 	// instant may give back some of it.
@@ -63,6 +72,7 @@ private:
 	LaneArray before;                                           // V-, m/s
 	double kinetic {0}, baseWork {0}, friction {0}, forces {0}; // J
 	double lifted {0};                                          // work of the forces on the way that Lift adds, J
+	double power {0};                                           // of the weights after the part, W
 	double shifted {0};                                         // by which the step's parts would change potentialShift, J
 	double taken {0}, gained {0};                               // J
 };
