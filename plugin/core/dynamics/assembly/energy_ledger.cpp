@@ -11,10 +11,22 @@ void EnergyLedger<K>::open(const RigidSystem<K>& s, const ContactSet<K>& c, cons
 	kinetic = s.kineticEnergy();
 	baseWork = friction = forces = lifted = power = 0;
 	before = c.velocity;
-	for (size_t b = 0; b < s.bodies.size(); ++b)
-		if (const int drive = s.bodies[b].drive; s.bodies[b].prescribed && drive >= 0)
-			for (int k = 0; k < K::dimension; ++k)
-				before[packs<K> * b][k] += 2 * halfBack[drive][k];
+	LaneArray last;
+	last.swap(undriven);
+	std::vector<size_t> places;
+	for (size_t b = 0; b < s.bodies.size(); ++b) {
+		if (!s.bodies[b].prescribed)
+			continue;
+		const int drive = s.bodies[b].drive;
+		for (int k = 0; k < K::dimension && drive >= 0; ++k)
+			before[packs<K> * b][k] += 2 * halfBack[drive][k];
+		for (int pack = 0; pack < packs<K> && drive < 0; ++pack) {
+			places.push_back(packs<K> * b + pack);
+			undriven.push_back(c.velocity[places.back()]);
+		}
+	}
+	for (size_t k = 0; k < places.size() && last.size() == places.size(); ++k)
+		before[places[k]] = last[k];
 }
 
 template <class K>

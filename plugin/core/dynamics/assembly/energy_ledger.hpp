@@ -28,7 +28,8 @@ template <class K>
 class EnergyLedger {
 public:
 	// Starts a part of a step, or an instant: energies as they are before it. `halfBack`, by drive: from the velocity of the base in it to
-	// the mean of those before and after, m/s.
+	// the mean of those before and after, m/s. Prescribed bodies without a drive, whose velocities a script may set, had those of the last
+	// call.
 	void open(const RigidSystem<K>& system, const ContactSet<K>& contacts, const std::vector<typename K::Vector>& halfBack);
 	// Returns the velocities before it, in the packs of the contacts, those of the base included.
 	const LaneArray& velocityBefore() const { return before; }
@@ -65,11 +66,12 @@ public:
 	template <class Archive>
 	void serialize(Archive& archive)
 	{
-		archive(taken, potentialShift);
+		archive(taken, potentialShift, undriven);
 	}
 
 private:
 	LaneArray before;                                           // V-, m/s
+	LaneArray undriven;                                         // packs of the prescribed bodies without a drive, m/s
 	double kinetic {0}, baseWork {0}, friction {0}, forces {0}; // J
 	double lifted {0};                                          // work of the forces on the way that Lift adds, J
 	double power {0};                                           // of the weights after the part, W
