@@ -19,7 +19,7 @@
 //
 // p is the impulse with which the new velocities obey the momentum equation. The loss by impacts is the rest of the balance. It also holds
 // the solver's error, what Lift gives, and what a step of the first order loses where velocities jump between two steps: the place in the
-// middle of the step jumps with them, and U by h m g.(V+ - V-)/2. A step that is cut in parts loses up to h m g.(V+ - V-)/4 by that.
+// middle of the step jumps with them, and U by h m g.(V+ - V-)/2. A step that is cut in halves is off by h m g.(V+ - V-)/4.
 #include "dynamics/assembly/admm_solver.hpp"
 
 namespace masonry::rigid::assembly {
