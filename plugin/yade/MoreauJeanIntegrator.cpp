@@ -132,8 +132,8 @@ void MoreauJeanIntegrator::leaveScene()
 	chosenModel.clear();
 	along = Vector3r::Zero();
 	forgetImpacts(*this);
-	forget(frictDissip, impactDissip, baseWork, worstResidual, substeps, events, unlocalised, sweeps, factorisations, stillSteps,
-	       movingSteps, madeEnergy, lostEnergy, turnedOver, lift, toldMade, toldLost, failures, firstFailure, warnedOf);
+	forget(frictDissip, impactDissip, baseWork, potentialShift, worstResidual, substeps, events, unlocalised, sweeps, factorisations,
+	       stillSteps, movingSteps, madeEnergy, lostEnergy, turnedOver, lift, toldMade, toldLost, failures, firstFailure, warnedOf);
 }
 
 vector<Real> MoreauJeanIntegrator::remembered()
@@ -376,7 +376,7 @@ Real MoreauJeanIntegrator::kinetic()
 Real MoreauJeanIntegrator::potential()
 {
 	scene = Omega::instance().getScene().get();
-	Real sum = 0;
+	Real sum = potentialShift;
 	for (const Body* body : blocks())
 		if (body->isDynamic())
 			sum -= body->state->mass * gravity.dot(body->state->pos);

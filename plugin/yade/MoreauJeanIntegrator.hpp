@@ -84,13 +84,14 @@ public:
 		((long, factorisations, 0, Attr::readonly, "Number of factorisations of the contact solver so far. With method='wall' one is kept for many steps."))
 		((long, failures, 0, Attr::readonly, "Number of steps so far that cannot be trusted: they missed the tolerance, or the laws of an impact or pulse; had no solution because bodies with prescribed motion press blocks from two sides; had more events than mostEvents; added or removed more energy than a sound step; or, in the walls of method='wall', left blocks deep in each other or turned a block by more than 0.25 rad. A step of walls that ends above its tolerance is not counted: see velocityResidual. One failure each is added when madeEnergy or lostEnergy reaches a twentieth of turnedOver."))
 		((string, firstFailure, "", Attr::readonly, "Description of the first failure: time, blocks and residual. Steps whose residual is below 1e-6 of the speed that gravity gives in a step are counted but not described."))
+		((Real, potentialShift, 0, Attr::hidden, "From the potential energy of the poses to that which belongs to the velocities of the walls of method='wall', after the last step [J]."))
 		((bool, toldMade, false, Attr::hidden, ""))
 		((Real, lift, 0, Attr::hidden, "Energy that lifts all blocks by the smallest half size, the largest so far [J]."))
 		((bool, toldLost, false, Attr::hidden, ""))
 		((RigidMemory, memory, , Attr::hidden, "")),
 		/* ctor */,
 		.add_property("kinetic", &MoreauJeanIntegrator::kinetic, "Kinetic energy now [J].")
-		.add_property("potential", &MoreauJeanIntegrator::potential, "Potential energy of gravity now, zero at the origin [J].")
+		.add_property("potential", &MoreauJeanIntegrator::potential, "Potential energy of gravity now, zero at the origin [J]. The velocities of the walls of method='wall' belong to the middle of the last step: their potential energy is that of their positions half a step earlier.")
 		.add_property("largestTimeStep", &MoreauJeanIntegrator::largestTimeStep, "Largest time step that is allowed [s].")
 		.add_property("remembered", &MoreauJeanIntegrator::remembered, &MoreauJeanIntegrator::goOnFrom, "State that the next step starts from, besides the states of the blocks (forces and contact points among it), as numbers. A script can restore it together with the states of the blocks to repeat a part of a run.")
 		.def("choice", &MoreauJeanIntegrator::choice, "Returns the model that the first step would choose in the present scene, and why; raises ValueError if it would refuse the scene.")

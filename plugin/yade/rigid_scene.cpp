@@ -64,6 +64,7 @@ masonry::StepReport RigidScene<K>::step()
 		system.moved = true;
 		system.startAnew();
 		showPoints();
+		system.impactDissip += scheduler->potentialShift();
 		scheduler.emplace(); // what it remembers would be of steps long ago
 	}
 	byWalls = integrator.isWall();
@@ -78,6 +79,7 @@ masonry::StepReport RigidScene<K>::step()
 	integrator.frictDissip = system.frictDissip;
 	integrator.impactDissip = system.impactDissip;
 	integrator.baseWork = system.baseWork;
+	integrator.potentialShift = scheduler->potentialShift();
 	return report;
 }
 

@@ -28,6 +28,7 @@ RigidScene<K>::RigidScene(MoreauJeanIntegrator& engine, const vector<BaseMotionE
 	system.frictDissip = engine.frictDissip;
 	system.impactDissip = engine.impactDissip;
 	system.baseWork = engine.baseWork;
+	scheduler->setPotentialShift(engine.potentialShift);
 	const vector<int> inBefore = addBlocks(before);
 	addDrives(motions, inBefore);
 	addPairs(before, inBefore);

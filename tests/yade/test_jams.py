@@ -133,16 +133,15 @@ def test_gravity_that_is_switched_off_and_on(model, method):
 
 
 def test_walls_sum_up_what_they_make():
-    """madeEnergy of a wall that rocks under a record never falls, and no rise of the energy less the work of the base is larger, but for what a step of
-    first order keeps back: its weight times half the way of a step."""
+    """madeEnergy of a wall that rocks under a record never falls, and no rise of the energy less the work of the base is larger."""
     O.reset()
     stone = dem.BlockMat(density=2000, frictionAngle=0.6)
     base = dem.base((20, 4, 0.2), stone)
-    ids = dem.wall(courses=8, per_course=4, size=(0.4, 0.3, 0.2), material=stone, on=base)
+    dem.wall(courses=8, per_course=4, size=(0.4, 0.3, 0.2), material=stone, on=base)
     times = np.arange(0, 1.0, 0.01)
     displacement = 0.08 * np.sin(np.pi * times) ** 2 * np.sin(4 * np.pi * times)
     O.engines = quiet_engines(dem.RecordMotionEngine(ids=[base], displacement=displacement.tolist(), interval=0.01), model="planar", method="wall")
-    e, lowest, rise, made, fastest = integrator(), math.inf, 0.0, 0.0, 0.0
+    e, lowest, rise, made = integrator(), math.inf, 0.0, 0.0
     while O.time < 1.5:
         O.step()
         energy = dem.energy()
@@ -150,8 +149,6 @@ def test_walls_sum_up_what_they_make():
         lowest, rise = min(lowest, without), max(rise, without - lowest)
         assert e.madeEnergy >= made
         made = e.madeEnergy
-        fastest = max(fastest, max(abs(O.bodies[i].state.vel[2]) for i in ids))
-    kept = weight(ids) * fastest * O.dt / 2
-    print(f"made {made:.2g} J, rise {rise:.2g} J, kept back {kept:.2g} J of {e.turnedOver:.3g} J, failures {e.failures} {e.firstFailure[:100]}")
+    print(f"made {made:.2g} J, rise {rise:.2g} J of {e.turnedOver:.3g} J, failures {e.failures} {e.firstFailure[:100]}")
     assert e.localisedBlocks == 0 and 0 < made < 0.05 * e.turnedOver
-    assert rise <= made + kept
+    assert rise <= made

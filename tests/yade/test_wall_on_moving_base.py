@@ -46,11 +46,10 @@ def test_a_base_that_turns_about_the_vertical(spin):
 
 
 @pytest.mark.parametrize("model", ("planar", "spatial"))
-@pytest.mark.parametrize("places, bound", (((0,), 1e-4), ((-4, 4), 1.1 * STEP / 0.5)))
+@pytest.mark.parametrize("places, bound", (((0,), 1e-5), ((-4, 4), 1e-5)))
 def test_a_base_that_turns_about_a_level_axis(model, places, bound):
-    """It lowers what stands on it: its work is what the energy of the blocks changes by, to second order of the step. That of two, each about its
-    own centre, is of the impulses, with the arms of the start of the step: of a lever that grows from nothing in n steps, the sum lacks a share
-    of 1/n."""
+    """It lowers what stands on it: its work is what the energy of the blocks changes by, to the tolerance of the forces. With the potential energy of
+    the ends of the steps the work of a lever that grows from nothing in n steps would lack a share of 1/n."""
     spin, ids = Vector3(0, 0.2, 0), []
     for x in places:
         base = dem.base((4, 4, 1), stone(0.6))
@@ -186,6 +185,32 @@ def test_a_wall_that_cannot_slip():
     assert abs(kinetic[2] / kinetic[0] - 1) < first_order**2 and max(kinetic) / min(kinetic) - 1 < 2 * first_order
 
 
+@pytest.mark.parametrize("model, blocks, size, direction", (("planar", 22, (0.6, 0.6, 0.3), 1), ("planar", 12, (0.3, 0.6, 0.2), -1),
+                                                            ("spatial", 8, (0.6, 0.6, 0.3), 1), ("spatial", 12, (0.6, 0.4, 0.3), -1)))
+def test_a_base_that_jerks_a_column_over(model, blocks, size, direction):
+    """It turns as one body and loses nothing: kinetic and potential energy less the work of the base rise by no more than the friction of its
+    creeping edge (energy_ledger_test.cpp), below 1e-4 of what is turned over, and impactDissip falls by no more. With positions of the end of a step
+    beside velocities of its middle it would be 5e-4 and more. All energies add up to what they were before the first step."""
+    O.reset()
+    base = dem.base((40, 40, 1), stone(0.745))
+    dem.stack(blocks, size, stone(0.745), base)
+    pull = np.zeros(101)
+    pull[5:35] = direction * 0.6 * 9.81
+    O.engines = rigid_engines(dem.record_motion(masonry.Record(0.01, pull, baseline="none"), ids=[base]), model=model, method="wall")
+    O.engines[-1].wallsOnly = True
+    lowest, rise, lost, fall, fastest = math.inf, 0, 0, 0, 0
+    before = dem.energy()["potential"]
+    while O.time < 0.8:
+        O.step()
+        energy = dem.energy()
+        now = energy["kinetic"] + energy["potential"] - energy["baseWork"]
+        lowest, fastest, lost = min(lowest, now), max(fastest, energy["kinetic"]), max(lost, energy["impactDissip"])
+        rise, fall = max(rise, now - lowest), max(fall, lost - energy["impactDissip"])
+        assert abs(now + energy["frictDissip"] + energy["impactDissip"] - before) < 1e-10 * before
+    print(f"{model}, {blocks} blocks jerked over: rise {rise / fastest:.1e}, fall of impactDissip {fall / fastest:.1e} of the kinetic energy")
+    assert rise < 1e-4 * fastest and fall < 1e-4 * fastest and O.engines[-1].failures == 0
+
+
 def test_a_base_that_moves_up_and_down():
     """It bears what stands on it all the way: nothing is lost, or made. Taken with the velocity at the start of each step, the work on
     the weight would be off by m g v STEP / 2. What is left is of second order, by STEP times 4 pi, the pulsation, of that."""
@@ -224,8 +249,8 @@ def test_a_block_that_cannot_slip_shaken_along_both_axes():
 @pytest.mark.parametrize("courses", (4, 6))
 def test_larger_walls_that_cannot_slip(courses):
     """They have no solution without slip, and say so. What is done instead has no energy of nothing: as the base sees it, what the pulse has left
-    never grows, and by both methods, in the plane and in space, it is the same within a tenth (they find impulses that miss the laws, not the
-    same)."""
+    grows by no more than madeEnergy says, a thousandth at most, and by both methods, in the plane and in space, it is the same within a tenth
+    (they find impulses that miss the laws, not the same)."""
     jump, left = 0.2, {}
     for model, method in (("planar", "localised"), ("planar", "wall"), ("spatial", "wall")):
         O.reset()
@@ -234,15 +259,20 @@ def test_larger_walls_that_cannot_slip(courses):
         ids = dem.wall(courses, courses, (0.4, 0.2, 0.2), tight, on=base)
         O.engines = rigid_engines(dem.PulseTrainEngine(ids=[base], impulse=jump, times=[0.01]), model=model, method=method, dt=STEP)
         O.run(10, True)
-        before, mass = dem.energy()["potential"], sum(O.bodies[id].state.mass for id in ids)
-        seen = left[model, method] = []
+        blocks = [O.bodies[id].state for id in ids]
+        given = sum(block.mass for block in blocks) * jump**2 / 2
+        before, height, seen, made = dem.energy()["potential"], sum(block.mass * block.pos[2] for block in blocks), [], []
         for _ in range(5):
             O.step()
-            energy, momentum = dem.energy(), sum(O.bodies[id].state.mass * O.bodies[id].state.vel[0] for id in ids)
-            seen.append((energy["kinetic"] - jump * momentum + energy["potential"] - before) / (mass * jump**2 / 2) + 1)
-        print(f"{len(ids)} blocks that cannot slip, {model}, {method}: left of a pulse {seen[0]:.4f}, then {seen[-1]:.4f}; failures {O.engines[-1].failures}")
-        assert O.engines[-1].failures > 0 and np.all(np.diff(seen) < 1e-6)
-    assert all(abs(one[0] / left["planar", "localised"][0] - 1) < 0.1 for one in left.values()), left
+            energy, momentum = dem.energy(), sum(block.mass * block.vel[0] for block in blocks)
+            seen.append((energy["kinetic"] - jump * momentum + energy["potential"] - before) / given + 1)
+            made.append(O.engines[-1].madeEnergy / given)
+            if len(seen) == 1:  # with the potential energy of the places, to which half a step of the first order is not yet lost
+                rise = 9.81 * (sum(block.mass * block.pos[2] for block in blocks) - height)
+                left[model, method] = (energy["kinetic"] - jump * momentum + rise) / given + 1
+        print(f"{len(ids)} blocks that cannot slip, {model}, {method}: left of a pulse {left[model, method]:.4f}, then {seen}; failures {O.engines[-1].failures}")
+        assert O.engines[-1].failures > 0 and np.all(np.diff(seen) < np.diff(made) + 1e-6) and made[-1] < 1e-3
+    assert all(abs(one / left["planar", "localised"] - 1) < 0.1 for one in left.values()), left
 
 
 @pytest.mark.parametrize("tolerance", (1e-3, 1e-4, 1e-5))

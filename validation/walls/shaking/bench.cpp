@@ -10,7 +10,6 @@
 // amp, angle, hertz       of the base's sine (g, degrees from the wall's direction, Hz)
 // rest, shake, after, h   s
 // settings of the solver, by the keys of runWithOptions
-// half                    1: energies with the positions of half a step earlier, to which the velocities of a step belong
 // file                    writes the scene as gauss_seidel_space.cpp reads it, and ends
 #include "dynamics/model/neighbours.hpp"
 #include "dynamics/wall/wall_step.hpp"
@@ -174,7 +173,7 @@ struct World {
 		double sum = system.kineticEnergy();
 		for (const auto& body : system.bodies)
 			if (!body.prescribed)
-				sum += body.mass * g * (body.pose.position[up] - number("half", 0) * number("h", 1e-3) / 2 * body.velocity[up]);
+				sum += body.mass * g * body.pose.position[up];
 		return sum;
 	}
 };
@@ -259,7 +258,7 @@ void run(wall::WallStep<K>& step)
 		}
 		sumIterations += step.report.iterations;
 		factors += step.report.factorisations;
-		const double now = world.energy() - s.baseWork, change = now - before;
+		const double now = world.energy() + step.potentialShift() - s.baseWork, change = now - before;
 		before = now;
 		if (k > 3)
 			(change > 0 ? rises : loss) += std::abs(change);

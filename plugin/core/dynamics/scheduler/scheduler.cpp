@@ -23,6 +23,8 @@ StepReport Scheduler<K>::advance(RigidSystem<K>& s, double dt)
 	if (!areWalls) {
 		const StepReport sum = islands.advance(s, dt);
 		errors = islands.lastErrors();
+		s.impactDissip += walls.potentialShift();
+		walls.setPotentialShift(0);
 		return sum;
 	}
 	islands.take(s);

@@ -39,6 +39,9 @@ public:
 	StepReport advance(RigidSystem<K>& system, double dt);
 	// Returns what the last step has made and lost of energy.
 	const StepErrors& lastErrors() const { return errors; }
+	// From the potential energy of the poses to that which belongs to the velocities of the walls, J. A loaded run sets it.
+	double potentialShift() const { return walls.potentialShift(); }
+	void setPotentialShift(double shift) { walls.setPotentialShift(shift); }
 	// Gaps, forces and places of the points as they are after the step, into the system's pairs. To be called before their list changes.
 	void showPoints(RigidSystem<K>& system) { walls.showPoints(system); }
 	// work(begin, end) for shares of 0 .. size - 1, by the threads of the last step.

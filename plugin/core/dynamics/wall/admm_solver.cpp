@@ -157,8 +157,8 @@ struct alignas(alignment) Ended {
 };
 
 template <class K>
-MASONRY_INLINE void advanceGroups(Group<K>* groups, SolverGroup<K>* memory, const RowsOf<K>* rows, int begin, int end, double h,
-                                  double level, unsigned char* reached, unsigned char* moving, Ended& ended)
+MASONRY_INLINE void advanceGroups(Group<K>* groups, SolverGroup<K>* memory, const RowsOf<K>* rows, int begin, int end, const Lanes* before,
+                                  double h, double level, unsigned char* reached, unsigned char* moving, Ended& ended)
 {
 	for (int g = begin; g < end; ++g) {
 		const Mask rough = groups[g].friction >= maxFriction;
@@ -172,7 +172,11 @@ MASONRY_INLINE void advanceGroups(Group<K>* groups, SolverGroup<K>* memory, cons
 			auto& slip = memory[g][k].slip;
 			const Mask glides = slides(p.pt, groups[g].friction * (rough ? p.pn : row.bound));
 			slip = select(glides, typename PointLanes<K>::Tangent {}, slip + h * row.ut);
-			ended.loss -= select(glides & (p.pn > 0), dot(row.actedT, row.ut), all(0));
+			if (const Mask slid = glides & (p.pn > 0); any(slid)) {
+				const Bodies<K> v1(before, groups[g].body1), v2(before, groups[g].body2);
+				const Lanes loss = -0.5 * dot(row.actedT, slipRate(v1, v2, p) + row.ut);
+				ended.loss += slid ? larger(loss, all(0)) : all(0);
+			}
 			const Mask here = row.stiffness > 0;
 			in |= here;
 			moves |= (p.massN > 0) & (larger(size(row.un), size(row.ut)) > level);
@@ -220,10 +224,10 @@ MASONRY_LANES void inertia(const std::vector<int>& members, const Lanes* velocit
 		for (int g = begin; g < end; ++g)                                                                                                  \
 			passGroup<K, true>(groups[g], memory[g], rows[g], step, velocity, force, worst);                                               \
 	}                                                                                                                                      \
-	MASONRY_LANES void gapPass(Group<K>* groups, SolverGroup<K>* memory, const RowsOf<K>* rows, int begin, int end, double h,              \
-	                           double level, unsigned char* reached, unsigned char* moving, Ended& ended)                                  \
+	MASONRY_LANES void gapPass(Group<K>* groups, SolverGroup<K>* memory, const RowsOf<K>* rows, int begin, int end, const Lanes* before,   \
+	                           double h, double level, unsigned char* reached, unsigned char* moving, Ended& ended)                        \
 	{                                                                                                                                      \
-		advanceGroups<K>(groups, memory, rows, begin, end, h, level, reached, moving, ended);                                              \
+		advanceGroups<K>(groups, memory, rows, begin, end, before, h, level, reached, moving, ended);                                      \
 	}
 MASONRY_PASSES(Plane)
 MASONRY_PASSES(Space)
@@ -428,13 +432,13 @@ void AdmmSolver<K>::solve(ContactSet<K>& c, const LaneArray& load, const LaneArr
 }
 
 template <class K>
-PointsReport AdmmSolver<K>::advanceGaps(ContactSet<K>& c, double h, double level)
+PointsReport AdmmSolver<K>::advanceGaps(ContactSet<K>& c, const LaneArray& before, double h, double level)
 {
 	Ended ended[Team::maxParts + 1] {};
 	reached.resize(c.groups.size());
 	moving.resize(c.groups.size());
 	c.allParts([&](const Part& part, int number) {
-		gapPass(c.groups.data(), c.memory.data(), rows.data(), part.begin, part.end, h, level, reached.data(), moving.data(),
+		gapPass(c.groups.data(), c.memory.data(), rows.data(), part.begin, part.end, before.data(), h, level, reached.data(), moving.data(),
 		        ended[number]);
 	});
 	PointsReport result;

@@ -123,8 +123,8 @@ public:
 	// the one that is expected altogether. Impulses, z and slips of the contacts are those of the solution afterwards; their gaps and
 	// velocities stay.
 	void solve(ContactSet<K>& contacts, const LaneArray& load, const LaneArray& guess, const StepContext& step);
-	// Gaps and slips at the end of the step, into the contacts; which pairs move faster than `level`, m/s.
-	PointsReport advanceGaps(ContactSet<K>& contacts, double h, double level);
+	// Gaps and slips at the end of the step, into the contacts; which pairs move faster than `level`, m/s. `before`: velocities before it.
+	PointsReport advanceGaps(ContactSet<K>& contacts, const LaneArray& before, double h, double level);
 	// The next solve of these contacts needs this from the last.
 	template <class Archive>
 	void serialize(Archive& archive, const ContactSet<K>& contacts)

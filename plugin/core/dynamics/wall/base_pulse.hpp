@@ -15,7 +15,8 @@ public:
 	bool find(const RigidSystem<K>& system, const std::vector<int>& blocks);
 	// Lets the prescribed bodies jump.
 	void apply(RigidSystem<K>& system, ContactSet<K>& contacts);
-	// The base in a step of length h from now on.
+	// The base in a step of length h from now on. A jump before it is within it for what carries weights, whose potential energy belongs to
+	// half a step earlier (energy_ledger.hpp).
 	void move(const RigidSystem<K>& system, ContactSet<K>& contacts, double h);
 
 	double speed() const;                            // largest jump, m/s

@@ -6,75 +6,46 @@
 namespace masonry::wall {
 
 template <class K>
-void EnergyLedger<K>::open(const RigidSystem<K>& s, const ContactSet<K>& c, std::vector<Vector> half, double h)
+void EnergyLedger<K>::open(const RigidSystem<K>& s, const ContactSet<K>& c, const std::vector<typename K::Vector>& halfBack)
 {
 	kinetic = s.kineticEnergy();
-	baseWork = friction = 0;
-	halfBack = std::move(half);
-	if (list != s.lists || carrier.size() != s.bodies.size())
-		findCarriers(s, c);
-	carried = carriedWork(s, c, h);
-}
-
-template <class K>
-void EnergyLedger<K>::findCarriers(const RigidSystem<K>& s, const ContactSet<K>& c)
-{
-	list = s.lists;
-	carrier.assign(s.bodies.size(), -1);
-	for (size_t b = 0; b < s.bodies.size(); ++b)
-		if (s.bodies[b].prescribed)
-			carrier[b] = int(b);
-	for (bool found = true; found;) {
-		found = false;
-		for (const ContactPair<K>& pair : s.pairs)
-			for (const auto& [from, to] : {std::pair(pair.body1, pair.body2), std::pair(pair.body2, pair.body1)})
-				if (carrier[from] >= 0 && carrier[to] < 0 && c.supportLevel[to] == c.supportLevel[from] + 1) {
-					carrier[to] = carrier[from];
-					found = true;
-				}
-	}
-}
-
-template <class K>
-double EnergyLedger<K>::carriedWork(const RigidSystem<K>& s, const ContactSet<K>& c, double h) const
-{
-	constexpr int n = K::dimension;
-	double sum = 0;
+	baseWork = friction = forces = lifted = power = 0;
+	before = c.velocity;
+	LaneArray last;
+	last.swap(undriven);
+	std::vector<size_t> places;
 	for (size_t b = 0; b < s.bodies.size(); ++b) {
-		const int base = carrier[b];
-		if (s.bodies[b].prescribed || base < 0)
+		if (!s.bodies[b].prescribed)
 			continue;
-		const int drive = s.bodies[base].drive;
-		const Vector change = drive < 0 ? Vector(Vector::Zero()) : Vector(-2 * halfBack[drive]);
-		const typename K::Velocity ofBase = c.inGlobal(c.velocity, base), before = c.inGlobal(c.velocity, b);
-		const Vector apart = before.template head<n>() - (ofBase.template head<n>() - change);
-		const Vector turned = K::cross(ofBase.template tail<K::spins>(), Vector(h * apart));
-		sum -= h * s.bodies[b].force.template head<n>().dot(change + turned) / 2;
+		const int drive = s.bodies[b].drive;
+		for (int k = 0; k < K::dimension && drive >= 0; ++k)
+			before[packs<K> * b][k] += 2 * halfBack[drive][k];
+		for (int pack = 0; pack < packs<K> && drive < 0; ++pack) {
+			places.push_back(packs<K> * b + pack);
+			undriven.push_back(c.velocity[places.back()]);
+		}
 	}
-	return sum;
+	for (size_t k = 0; k < places.size() && last.size() == places.size(); ++k)
+		before[places[k]] = last[k];
 }
 
 template <class K>
 double EnergyLedger<K>::work(const RigidSystem<K>& s, const ContactSet<K>& c, const AdmmSolver<K>& solver) const
 {
-	double sum = carried;
+	double sum = 0;
 	for (const auto& [g, i] : c.onBase) {
 		const Group<K>& group = c.groups[g];
 		const bool first = s.bodies[group.body1[i]].prescribed;
 		const int base = (first ? group.body1 : group.body2)[i];
-		Lanes v[packs<K>];
-		std::copy_n(&c.velocity[packs<K> * base], packs<K>, v);
-		if (const int drive = s.bodies[base].drive; drive >= 0)
-			for (int k = 0; k < K::dimension; ++k)
-				v[0][k] += halfBack[drive][k];
+		Lanes mean[packs<K>];
+		for (int pack = 0; pack < packs<K>; ++pack)
+			mean[pack] = (before[packs<K> * base + pack] + c.velocity[packs<K> * base + pack]) / 2;
 		for (int k = 0; k < group.count; ++k) {
 			const auto& row = solver.rows[g][k];
-			Eigen::Matrix<double, K::rows, 1> impulse;
-			impulse[0] = row.actedN[i];
-			for (int n = 1; n < K::rows; ++n)
-				impulse[n] = component(row.actedT, n - 1, i);
-			for (int n = 0; n < K::rows; ++n)
-				sum += (first ? impulse[n] : -impulse[n]) * rateOf(group.point[k], n, i, first ? 1 : 2, v);
+			for (int r = 0; r < K::rows; ++r) {
+				const double impulse = r == 0 ? row.actedN[i] : component(row.actedT, r - 1, i);
+				sum += (first ? impulse : -impulse) * rateOf(group.point[k], r, i, first ? 1 : 2, mean);
+			}
 		}
 	}
 	for (const SpinRow<K>& row : solver.spins)
@@ -90,22 +61,29 @@ void EnergyLedger<K>::takeContacts(const RigidSystem<K>& s, const ContactSet<K>&
 }
 
 template <class K>
-double EnergyLedger<K>::close(RigidSystem<K>& s, const Scales& scales, double h, double work, double onMean, double taken)
+double EnergyLedger<K>::close(RigidSystem<K>& s, const Scales& scales, double h, double earlier)
 {
-	double mass = 0;
-	for (const auto& body : s.bodies)
-		mass += body.prescribed ? 0 : body.mass;
-	impacts = work + baseWork + kinetic - s.kineticEnergy() - friction;
-	lag = work - onMean + carried;
+	const double mass = freeMass(s);
+	taken = forces + baseWork + kinetic - s.kineticEnergy();
+	const double impacts = taken + lifted - friction;
 	s.baseWork += baseWork;
 	s.frictDissip += friction;
 	s.impactDissip += impacts;
-	const double atStake = std::abs(baseWork) + std::abs(work) + kinetic, liftedAll = mass * scales.acceleration * scales.length,
+	const double atStake = std::abs(baseWork) + std::abs(forces) + kinetic, liftedAll = mass * scales.acceleration * scales.length,
 	             slowest = tolerance::wall::createdTravel * scales.length / h;
 	const double allowed = tolerance::wall::createdShare * atStake + tolerance::wall::createdLift * liftedAll + mass * slowest * slowest;
-	const double balance = impacts + taken;
-	gained = std::max(0., lag - balance - friction / 2);
+	gained = std::max(0., friction - taken - earlier);
+	const double balance = impacts + earlier;
 	return balance < -allowed ? -balance : 0;
+}
+
+template <class K>
+void EnergyLedger<K>::finish(RigidSystem<K>& s, double dt)
+{
+	const double now = dt / 2 * power;
+	s.impactDissip += shifted - (now - potentialShift);
+	potentialShift = now;
+	shifted = 0;
 }
 
 template class EnergyLedger<Plane>;

@@ -4,20 +4,23 @@
 //
 //     T+ - T- = (h f + J^T p).(V- + V+)/2
 //
-// where the impulses of the base on the blocks do work on the mean of the base's velocities before and after. The forces do the work h f.V+
-// while the blocks move, and not h f.(V- + V+)/2. Where a block goes along with the base, V+ - V- is the change d of the base's velocity at
-// the block from the last step to this one, and the base makes up for the difference:
+// The velocities belong to the middle of the step, and so does the potential energy of the weights m g:
 //
-//     work of the base = sum over its points of p.(v_b- + v_b+)/2  -  sum over the blocks of h f.d/2
-//     d                = v_b+ - v_b-  +  w x h (V- - v_b-)                w: spin of the base, which takes the block elsewhere in a step
+//     U = -m g.(q - h V/2),    U+ - U- = -h m g.(V- + V+)/2
 //
-// and beside it, of a base that turns, that of the couples of rows. A block goes along with the base that it is fewest courses away from.
+// Both change by the work of the contacts alone, where that of the base and that of friction are taken on the mean of the velocities too:
 //
-// At an instant there are no forces, nothing moves, and v_b- and v_b+ are the velocities before and after a jump.
+//     work of the base = sum over its points of p.(v_b- + v_b+)/2
+//     friction         = -sum over the points that slide of p_t.(u_t- + u_t+)/2
 //
-// p is the impulse with which the new velocities obey the momentum equation. Friction takes -p_t.u_t of the points that slide. What is left
-// of the balance with the change of the potential energy is the loss by impacts. It also holds the solver's error, and in each step
-// h f.(V+ - V-)/2 of the motion against the base, which adds up to a bounded amount.
+// and beside it the base does the work of the couples of rows. Arms are those of the start of the step: the centripetal acceleration a of a
+// point then comes as a velocity h a/2 along its normal and goes as -h a/2, at a pivot and on a base that turns alike, and does no work. At
+// an instant there are no forces, nothing moves, and v_b- and v_b+ are the velocities before and after a jump.
+//
+// p is the impulse with which the new velocities obey the momentum equation. The loss by impacts is the rest of the balance. It also holds
+// the solver's error, what the position projection gives, and what a step of the first order loses where velocities jump between two steps:
+// the place in the middle of the step jumps with them, and U by h m g.(V+ - V-)/2. A step that is cut in halves is off by h m g.(V+ -
+// V-)/4.
 #include "dynamics/wall/admm_solver.hpp"
 
 namespace masonry::wall {
@@ -25,42 +28,56 @@ namespace masonry::wall {
 template <class K>
 class EnergyLedger {
 public:
-	// Starts a step of length h, or an instant, h = 0: energies as they are before it. `halfBack`, by drive: from the velocity of the base
-	// in it to the mean of those before and after, m/s.
-	void open(const RigidSystem<K>& system, const ContactSet<K>& contacts, std::vector<typename K::Vector> halfBack, double h);
-	// Returns the work of the prescribed bodies by the impulses of the last solve and, in a step, by what they carry, J.
+	// Starts a part of a step, or an instant: energies as they are before it. `halfBack`, by drive: from the velocity of the base in it to
+	// the mean of those before and after, m/s. Prescribed bodies without a drive, whose velocities a script may set, had those of the last
+	// call.
+	void open(const RigidSystem<K>& system, const ContactSet<K>& contacts, const std::vector<typename K::Vector>& halfBack);
+	// Returns the velocities before it, in the packs of the contacts, those of the base included.
+	const LaneArray& velocityBefore() const { return before; }
+	// Returns the work of the prescribed bodies by the impulses of the last solve, J.
 	double work(const RigidSystem<K>& system, const ContactSet<K>& contacts, const AdmmSolver<K>& solver) const;
-	// After the solve, with the frames of the step. `friction`: what it has taken, J.
+	// Takes the contacts' work after the solve, with the frames of the step. `friction`: what it has taken, J.
 	void takeContacts(const RigidSystem<K>& system, const ContactSet<K>& contacts, const AdmmSolver<K>& solver, double friction);
-	// Ends the step, in which external forces have done `work` while the bodies moved and `onMean` on the mean of the velocities before and
-	// after (J), and writes the system's energies. Returns the energy that the step has created beyond what the error of a sound step can
-	// create, J. `taken`: by the part of its impacts that was in the step before; an instant may give back some of it.
-	double close(RigidSystem<K>& system, const Scales& scales, double h, double work, double onMean, double taken);
-	// Returns the energy that the contacts of the last step have taken, J: what moves against the base and is accelerated by forces takes
-	// none.
-	double lost() const { return impacts + friction - lag; }
-	// Returns the energy that the contacts have made in the step or instant that was closed last, J. Friction is booked on the velocities
-	// after it: of a point that speeds up it takes as little as half of that, on the mean of those before and after.
+	// Takes the forces' work in a time h on a free body, which had the velocity `before` and moves by `moved`.
+	void takeForce(const RigidSystem<K>& system, const RigidBody<K>& body, const typename K::Velocity& before,
+	               const typename K::Velocity& moved, double h)
+	{
+		constexpr int n = K::dimension;
+		const typename K::Velocity& now = body.velocity;
+		forces += h / 2 * body.force.dot(before + now);
+		lifted += body.force.dot(moved - h * now);
+		const double ofWeight = body.mass * system.gravity.dot(now.template head<n>());
+		power += ofWeight;
+		shifted += h / 2 * (ofWeight - body.mass * system.gravity.dot(before.template head<n>()));
+	}
+	// Ends the part, of length h, or the instant before it, and writes the system's energies. Returns the energy that it has created beyond
+	// what the error of a sound step can create, J. `earlier`: what the part of its impacts that was in the step before has taken; an
+	// instant may give back some of it.
+	double close(RigidSystem<K>& system, const Scales& scales, double h, double earlier);
+	// Ends the whole step, of length `dt`.
+	void finish(RigidSystem<K>& system, double dt);
+	// Returns the energy that the contacts of the last step have taken, J.
+	double lost() const { return taken; }
+	// Returns the energy that the contacts have made in the part or instant that was closed last, J.
 	double made() const { return gained; }
+
+	// From the potential energy of the poses to that of the middle of the step, h m g.V/2, J.
+	double potentialShift {0};
 
 	template <class Archive>
 	void serialize(Archive& archive)
 	{
-		archive(friction, impacts, lag);
+		archive(taken, potentialShift, undriven);
 	}
 
 private:
-	using Vector = typename K::Vector;
-	void findCarriers(const RigidSystem<K>& system, const ContactSet<K>& contacts);
-	double carriedWork(const RigidSystem<K>& system, const ContactSet<K>& contacts, double h) const;
-
-	std::vector<int> carrier;                                    // of a body: the prescribed one that it belongs to; -1: none
-	int list {-1};                                               // of the system's pairs, that the carriers are of
-	std::vector<Vector> halfBack;                                // m/s
-	double carried {0};                                          // the sum over the blocks, J
-	double kinetic {0}, baseWork {0}, friction {0}, impacts {0}; // J
-	double gained {0};                                           // J
-	double lag {0};                                              // part of `impacts` that is h f.(V+ - V-)/2, J
+	LaneArray before;                                           // V-, m/s
+	LaneArray undriven;                                         // packs of the prescribed bodies without a drive, m/s
+	double kinetic {0}, baseWork {0}, friction {0}, forces {0}; // J
+	double lifted {0};                                          // work of the forces on the way that Lift adds, J
+	double power {0};                                           // of the weights after the part, W
+	double shifted {0};                                         // by which the step's parts would change potentialShift, J
+	double taken {0}, gained {0};                               // J
 };
 
 } // namespace masonry::wall

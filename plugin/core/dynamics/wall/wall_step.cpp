@@ -18,6 +18,7 @@ StepReport WallStep<K>::advance(RigidSystem<K>& s, double dt)
 		++report.substeps;
 		left = h == left ? 0 : left - h;
 	}
+	ledger.finish(s, dt);
 	for (const RigidBody<K>& body : s.bodies)
 		if (const double turn = dt * body.velocity.template tail<K::spins>().norm(); !body.prescribed && turn > tolerance::partTurn)
 			report.turn = std::max(report.turn, turn);
@@ -45,13 +46,13 @@ void WallStep<K>::advancePart(RigidSystem<K>& s, double h)
 	takeInstants(s, step);
 	pulses.move(s, contacts, h);
 	contacts.limitMoved(s, step.fall);
-	ledger.open(s, contacts, pulses.halfBack(), h);
+	ledger.open(s, contacts, pulses.halfBack());
 	contacts.takeForces(s, h, loads);
 	solver.spins = events.find(s, contacts, expected, step);
 	const CappedReport result = solve(s, loads, expected.size() == loads.size() && solver.spins.empty() ? expected : none, step);
 	contacts.addJammed(report.jammed);
 	const double level = tolerance::wall::motion * tolerance::restSpeed * scales.speed;
-	const PointsReport ofPoints = solver.advanceGaps(contacts, h, level);
+	const PointsReport ofPoints = solver.advanceGaps(contacts, ledger.velocityBefore(), h, level);
 	ledger.takeContacts(s, contacts, solver, ofPoints.friction);
 	report.forceResidual = std::max(report.forceResidual, ofPoints.forceError);
 	events.take(s, contacts, solver);
@@ -81,7 +82,7 @@ void WallStep<K>::takeInstants(RigidSystem<K>& s, const StepContext& step)
 	if (land) {
 		solver.spins = events.rows(contacts);
 		const double lostInStep = ledger.lost();
-		ledger.open(s, contacts, pulses.halfBack(), 0);
+		ledger.open(s, contacts, pulses.halfBack());
 		const CappedReport impact = solveInstant(s, step.atInstant(events.speed()), lostInStep);
 		events.report(s, contacts, solver.spins, lostInStep + impact.lost, impact.residual);
 		capped.restore(contacts);
@@ -89,7 +90,7 @@ void WallStep<K>::takeInstants(RigidSystem<K>& s, const StepContext& step)
 	solver.spins.clear();
 	if (jump) {
 		pulses.apply(s, contacts);
-		ledger.open(s, contacts, pulses.halfBack(), 0);
+		ledger.open(s, contacts, pulses.halfBack());
 		solveInstant(s, step.atInstant(pulses.speed()), 0);
 		capped.restore(contacts);
 	}
@@ -122,7 +123,7 @@ CappedReport WallStep<K>::solveInstant(RigidSystem<K>& s, const StepContext& ins
 	for (size_t b = 0; b < s.bodies.size(); ++b)
 		if (!s.bodies[b].prescribed)
 			s.bodies[b].velocity = contacts.inGlobal(contacts.velocity, b);
-	report.created += ledger.close(s, Scales(s), instant.h, 0, 0, taken);
+	report.created += ledger.close(s, Scales(s), instant.h, taken);
 	errors.made += ledger.made();
 	return result;
 }
@@ -130,7 +131,6 @@ CappedReport WallStep<K>::solveInstant(RigidSystem<K>& s, const StepContext& ins
 template <class K>
 void WallStep<K>::moveBodies(RigidSystem<K>& s, double h)
 {
-	double work = 0, onMean = 0; // of the forces, J
 	for (size_t b = 0; b < s.bodies.size(); ++b) {
 		auto& body = s.bodies[b];
 		body.fresh = false;
@@ -146,10 +146,9 @@ void WallStep<K>::moveBodies(RigidSystem<K>& s, double h)
 		body.velocity = contacts.inGlobal(contacts.velocity, b);
 		moveFree(body, moved, h);
 		body.increment = (body.velocity - before) / h;
-		work += body.force.dot(moved);
-		onMean += h / 2 * body.force.dot(before + body.velocity);
+		ledger.takeForce(s, body, before, moved, h);
 	}
-	report.created += ledger.close(s, Scales(s), h, work, onMean, 0);
+	report.created += ledger.close(s, Scales(s), h, 0);
 	if (report.moved > 0) // the solver's errors in blocks at rest go nowhere, but their sum grows with time
 		errors.made += ledger.made();
 }

@@ -8,8 +8,8 @@
 //     q += h V, and penetrations that are left are taken off by positions alone (Lift)
 //     energies (EnergyLedger)
 //
-// Positions are first order in the step. V belongs to its middle, as in a leapfrog: energies at the end of a step are h f.V/2 off, which
-// does not add up.
+// Positions are first order in the step. V belongs to its middle, as in a leapfrog, and potential energy is shown for the middle too
+// (potentialShift).
 #include "dynamics/model/energy_errors.hpp"
 #include "dynamics/wall/admm_solver.hpp"
 #include "dynamics/wall/base_pulse.hpp"
@@ -42,6 +42,10 @@ public:
 	StepReport advance(RigidSystem<K>& system, double dt);
 	// Returns what the last step has made of energy; what it has lost is not known apart from impacts.
 	const StepErrors& lastErrors() const { return errors; }
+
+	// From the potential energy of the poses to that which belongs to the velocities, J.
+	double potentialShift() const { return ledger.potentialShift; }
+	void setPotentialShift(double shift) { ledger.potentialShift = shift; }
 
 	// work(begin, end) for shares of 0 .. size - 1, by the threads of the last step.
 	template <class Work>

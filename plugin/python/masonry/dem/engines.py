@@ -378,7 +378,7 @@ def impacts():
 def energy():
     """Energies in J, a dict.
 
-    kinetic, potential                       now
+    kinetic, potential                       now; of walls of method='wall', whose velocities belong to the middle of a step, potential half a step earlier
     frictDissip, impactDissip, baseWork      since dem.engines() made the engines: dissipated by friction and by impacts, and the work of the base
     elastPotential, dampDissip               compliant joints: elastic energy now, dissipated by dashpots so far
 

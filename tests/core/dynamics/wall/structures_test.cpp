@@ -248,7 +248,7 @@ TEMPLATE_TEST_CASE("loose blocks on a wall lose energy", "", Plane, Space)
 		deepest = std::max(deepest, scene.step.report.deepest);
 		if (scene.system.time < motion.end + h)
 			continue;
-		const double now = halfStepEnergy(scene.system, h);
+		const double now = scene.energy();
 		rises += std::max(0., now - std::max(last, older));
 		older = std::exchange(last, now);
 	}

@@ -44,17 +44,6 @@ inline Vector3 sizeOf(const RigidSystem<Space>&, double x, double z) { return {x
 inline Vector2 placeOf(const RigidSystem<Plane>&, double x, double z) { return {x, z}; }
 inline Vector3 placeOf(const RigidSystem<Space>&, double x, double z) { return {x, 0, z}; }
 
-// Returns the kinetic and potential energy in the middle of the last step, of length h, to which the velocities of WallStep belong.
-template <class K>
-double halfStepEnergy(const RigidSystem<K>& s, double h)
-{
-	double sum = energy(s);
-	for (const auto& body : s.bodies)
-		if (!body.prescribed)
-			sum += 0.5 * h * body.mass * s.gravity.dot(body.velocity.template head<K::dimension>());
-	return sum;
-}
-
 template <class K>
 struct SceneOf {
 	static constexpr int up = K::dimension - 1;
@@ -101,6 +90,9 @@ struct SceneOf {
 		for (long k = 0; k < std::lround(time / h); ++k)
 			advance(h);
 	}
+
+	// Returns the kinetic and potential energy in the middle of the last step, J.
+	double energy() const { return rig::energy(system) + step.potentialShift(); }
 
 	// Of a block, relative to the base, since the start.
 	typename K::Vector shift(size_t block) const
