@@ -48,7 +48,7 @@ std::vector<Spring> springsOf(const JointSystem& s, const std::vector<HeldPoint>
 		               contact.body2,
 		               contact.patch.points[i].gap,
 		               contact.patch.points[i].weight,
-		               contact.turnShare() * contact.normalStiffness() * contact.patch.points[i].weight,
+		               contact.turnShare * contact.normalStiffness() * contact.patch.points[i].weight,
 		               contact.shearStiffness(i),
 		               Rows::Zero()};
 		const Matrix3 axes = axesAlong(contact.patch.normal);
@@ -82,7 +82,7 @@ public:
 		for (size_t k = 0; k < springs.size(); ++k) {
 			const JointContact& contact = s.contacts[springs[k].contact];
 			if (k == 0 || springs[k].contact != springs[k - 1].contact)
-				faces.push_back({k, k, contact.turnShare(), contact.normalStiffness()});
+				faces.push_back({k, k, contact.turnShare, contact.normalStiffness()});
 			++faces.back().end;
 		}
 		loads = Eigen::VectorXd::Zero(6 * size);

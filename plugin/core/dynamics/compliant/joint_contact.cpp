@@ -8,19 +8,26 @@ namespace masonry {
 
 double JointContact::stiffnessArea() const { return std::max(patch.area, tolerance::leastPatchArea * patch.nominalArea); }
 
-// Polar moments about the centroid: of the triangles (0, p, q) of the area T between it and the sides, T (p^2 + q^2 + p.q) / 6, and of
-// the points.
-double JointContact::turnShare() const
+namespace {
+
+// Returns r. Polar moments about the centroid: of the triangles (0, p, q) of the area T between it and the sides, T (p^2 + q^2 + p.q) / 6,
+// and of the points.
+double turnShareOf(const JointContact& contact)
 {
+	const int size = contact.size;
+	const ContactPatch& patch = contact.patch;
 	if (size < 3)
 		return 1;
+	std::array<Vector3, maxFrictionPoints> places;
+	for (int i = 0; i < size; ++i)
+		places[i] = contact.position(i);
 	Vector3 centroid = Vector3::Zero();
 	for (int i = 0; i < size; ++i)
-		centroid += patch.points[i].weight * (position(i) - position(0));
-	centroid += position(0);
+		centroid += patch.points[i].weight * (places[i] - places[0]);
+	centroid += places[0];
 	double area = 0, face = 0, points = 0;
 	for (int i = 0; i < size; ++i) {
-		const Vector3 p = position(i) - centroid, q = position((i + 1) % size) - centroid;
+		const Vector3 p = places[i] - centroid, q = places[(i + 1) % size] - centroid;
 		const double triangle = 0.5 * std::abs(patch.normal.dot(p.cross(q)));
 		area += triangle;
 		face += triangle / 6 * (p.squaredNorm() + q.squaredNorm() + p.dot(q));
@@ -28,8 +35,6 @@ double JointContact::turnShare() const
 	}
 	return face > 0 ? std::min(1., face / (area * points)) : 1;
 }
-
-namespace {
 
 // Returns what a face of the stiffness k gives to its points `among`: w_i (r k x_i + (1 - r) sum), zero to the others.
 PointValues shared(const JointContact& contact, double k, double r, const PointValues& x, const std::array<bool, maxFrictionPoints>& among)
@@ -54,7 +59,7 @@ PointValues shared(const JointContact& contact, double k, double r, const PointV
 // a slope below 1, so that S grows to the root and points only join.
 PointValues JointContact::springForces(const PointValues& depths) const
 {
-	const double k = normalStiffness(), r = turnShare();
+	const double k = normalStiffness(), r = turnShare;
 	std::array<bool, maxFrictionPoints> carries {};
 	PointValues forces {};
 	for (double total = 0;;) {
@@ -71,17 +76,9 @@ PointValues JointContact::springForces(const PointValues& depths) const
 	}
 }
 
-PointValues JointContact::springForces() const
-{
-	PointValues depths {};
-	for (int i = 0; i < size; ++i)
-		depths[i] = -patch.points[i].gap;
-	return springForces(depths);
-}
-
 PointValues JointContact::depthsFor(const PointValues& forces) const
 {
-	const double k = normalStiffness(), r = turnShare();
+	const double k = normalStiffness(), r = turnShare;
 	double total = 0;
 	for (int i = 0; i < size; ++i)
 		total += forces[i];
@@ -93,10 +90,9 @@ PointValues JointContact::depthsFor(const PointValues& forces) const
 
 double JointContact::normalEnergy() const
 {
-	const PointValues forces = springForces();
 	double sum = 0;
 	for (int i = 0; i < size; ++i)
-		sum -= 0.5 * forces[i] * patch.points[i].gap;
+		sum -= 0.5 * springs[i] * patch.points[i].gap;
 	return sum;
 }
 
@@ -166,6 +162,21 @@ void renewPatch(JointContact& contact, const ContactPatch& patch)
 		if (length > 0 && shear.norm() > 0)
 			shear *= length / shear.norm();
 	}
+	followPatch(contact);
+}
+
+void followPatch(JointContact& contact)
+{
+	contact.turnShare = turnShareOf(contact);
+	updateSprings(contact);
+}
+
+void updateSprings(JointContact& contact)
+{
+	PointValues depths {};
+	for (int i = 0; i < contact.size; ++i)
+		depths[i] = -contact.patch.points[i].gap;
+	contact.springs = contact.springForces(depths);
 }
 
 namespace {
@@ -249,11 +260,11 @@ void updateForces(JointContact& contact, const Body& body1, const Body& body2, d
 		depths[i] = -contact.patch.points[i].gap;
 		oldDepths[i] = depths[i] - rates[i] * dt;
 	}
-	const PointValues springs = contact.springForces(depths), oldSprings = contact.springForces(oldDepths);
+	const PointValues &springs = contact.springs, oldSprings = contact.springForces(oldDepths);
 	std::array<bool, maxFrictionPoints> carries {};
 	for (int i = 0; i < contact.size; ++i)
 		carries[i] = springs[i] > 0;
-	const PointValues dashpots = shared(contact, contact.dampingNormal(mass), contact.turnShare(), rates, carries);
+	const PointValues dashpots = shared(contact, contact.dampingNormal(mass), contact.turnShare, rates, carries);
 	for (int i = 0; i < contact.size; ++i) {
 		if (carries[i])
 			contact.points[i].normalForce = std::max(0., springs[i] + dashpots[i]);
@@ -304,7 +315,7 @@ void updateForces(JointContact& contact, const Body& body1, const Body& body2, d
 void holdForces(JointContact& contact)
 {
 	contact.energy.elastic = 0;
-	const PointValues springs = contact.springForces();
+	const PointValues& springs = contact.springs;
 	for (int i = 0; i < contact.size; ++i) {
 		JointPoint& point = contact.points[i];
 		if (!(springs[i] > 0)) {

@@ -21,7 +21,7 @@ int faceOf(const Body& body, const Vector3& normal)
 double gapOf(const JointSystem& s, const PointRef& p) { return s.contacts[p.contact].patch.points[p.point].gap; }
 JointPoint& stateOf(JointSystem& s, const PointRef& p) { return s.contacts[p.contact].points[p.point]; }
 const JointPoint& stateOf(const JointSystem& s, const PointRef& p) { return s.contacts[p.contact].points[p.point]; }
-bool carries(const JointSystem& s, const PointRef& p) { return s.contacts[p.contact].springForces()[p.point] > 0; }
+bool carries(const JointSystem& s, const PointRef& p) { return s.contacts[p.contact].springs[p.point] > 0; }
 Vector3 positionOf(const JointSystem& s, const PointRef& p) { return s.contacts[p.contact].position(p.point); }
 
 // An edge or a corner: all points on one line, as against a face.
@@ -158,6 +158,8 @@ void unmuteInFlight(JointSystem& s, const Joint& joint)
 	// An old pivot on its way out, whose spring has been written off with the impact, would push again.
 	for (const PointRef& p : joint.points)
 		stateOf(s, p).muted = stateOf(s, p).muted && gapOf(s, p) < 0 && gapRate(s, p) > 0;
+	for (int c : joint.contacts)
+		updateSprings(s.contacts[c]);
 }
 
 void unmuteUpright(JointSystem& s, const std::vector<Joint>& joints)
@@ -166,9 +168,13 @@ void unmuteUpright(JointSystem& s, const std::vector<Joint>& joints)
 	for (const Joint& joint : joints)
 		for (int c : joint.contacts)
 			rocks[c] = true;
-	for (size_t c = 0; c < s.contacts.size(); ++c)
+	for (size_t c = 0; c < s.contacts.size(); ++c) {
+		if (rocks[c] || !s.contacts[c].rocking())
+			continue;
 		for (JointPoint& point : s.contacts[c].points)
-			point.muted &= rocks[c];
+			point.muted = false;
+		updateSprings(s.contacts[c]);
+	}
 }
 
 void muteOpenPoints(JointSystem& s, const Joint& joint)
@@ -341,6 +347,7 @@ void moveContacts(JointSystem& s, const std::vector<Body>& before)
 			point.gap += opening(s, contact, i).dot(moved);
 			contact.points[i].shear += moved - n * n.dot(moved) + contact.gripMotion(i, turn);
 		}
+		followPatch(contact);
 	}
 }
 
@@ -424,6 +431,7 @@ double pressedEnergy(const std::vector<JointContact>& contacts)
 	for (JointContact contact : contacts) {
 		for (JointPoint& point : contact.points)
 			point.muted = false;
+		updateSprings(contact);
 		sum += contact.normalEnergy();
 	}
 	return sum;

@@ -60,7 +60,7 @@ void goForth(JointSystem& s, const RigidAcceleration& rates, double before)
 	moveContacts(s, instant);
 }
 
-bool loaded(const JointContact& contact, int i) { return contact.springForces()[i] > 0; }
+bool loaded(const JointContact& contact, int i) { return contact.springs[i] > 0; }
 
 // Smallest angular velocity of a rocking impact that starts another half cycle: the next peak must exceed the angle by
 // which the springs alone turn the block, and the speed the Zeno threshold. Half cycle: peak = w^2/(2A), A = g l/(2 I/m),
@@ -287,6 +287,7 @@ ImpulseResponse lift(JointSystem& s, const Joint& joint, const std::vector<HeldP
 	block.angularVelocity = support.angularVelocity;
 	for (const HeldPoint& p : parting)
 		s.contacts[p.contact].points[p.point].muted = true;
+	updateSprings(s.contacts[joint.contacts.front()]);
 	const RigidAcceleration rates = accelerations(s, selectPoints(s.contacts, loaded));
 	settle(s, rates.points, tolerance::liftingGain * stored);
 	goForth(s, rates, 0.); // velocities go half a step back

@@ -14,6 +14,15 @@ struct BodyMatrices {
 	Matrix6 stiffness = Matrix6::Zero(), damping = Matrix6::Zero(); // about the centre, global axes
 };
 
+void addPoint(Matrix6& sum, const Matrix3& cross, const Matrix3& point)
+{
+	const Matrix3 turned = point * cross;
+	sum.topLeftCorner<3, 3>() += point;
+	sum.topRightCorner<3, 3>() -= turned;
+	sum.bottomLeftCorner<3, 3>() -= turned.transpose();
+	sum.bottomRightCorner<3, 3>() += cross.transpose() * turned;
+}
+
 // Those of a body whose neighbours move freely are doubled.
 std::vector<BodyMatrices> bodyMatrices(const std::vector<Body>& bodies, const std::vector<JointContact>& contacts)
 {
@@ -21,37 +30,34 @@ std::vector<BodyMatrices> bodyMatrices(const std::vector<Body>& bodies, const st
 	std::vector<bool> freeNeighbour(bodies.size(), false);
 	for (const JointContact& contact : contacts) {
 		const bool bothFree = !bodies[contact.body1].prescribed && !bodies[contact.body2].prescribed;
-		const double mass = reducedMass(bodies[contact.body1], bodies[contact.body2]), turnShare = contact.turnShare();
+		const double mass = reducedMass(bodies[contact.body1], bodies[contact.body2]), turnShare = contact.turnShare;
 		const Vector3& n = contact.patch.normal;
 		const auto tensor = [&n](double normal, double shear) -> Matrix3 {
 			return (normal - shear) * n * n.transpose() + shear * Matrix3::Identity();
 		};
-		const auto add = [&](Matrix6& sum, const Vector3& arm, const Matrix3& point) {
-			Matrix3 cross; // velocity at the point: v - cross w
-			cross << 0, -arm.z(), arm.y(), arm.z(), 0, -arm.x(), -arm.y(), arm.x(), 0;
-			const Matrix3 turned = point * cross;
-			sum.topLeftCorner<3, 3>() += point;
-			sum.topRightCorner<3, 3>() -= turned;
-			sum.bottomLeftCorner<3, 3>() -= turned.transpose();
-			sum.bottomRightCorner<3, 3>() += cross.transpose() * turned;
-		};
-		// Adds a closed face: a share of the normal springs acts at the points and the rest at their centroid.
-		const auto addFace = [&](Matrix6& sum, const Vector3& center, double normal, double shear) {
-			Vector3 centroid = Vector3::Zero();
-			for (int i = 0; i < contact.size; ++i) {
-				const double weight = contact.patch.points[i].weight;
-				centroid += weight * contact.position(i);
-				add(sum, contact.position(i) - center, weight * tensor(turnShare * normal, shear));
-			}
-			add(sum, centroid - center, tensor((1 - turnShare) * normal, 0));
-		};
+		// A share of the normal springs and dashpots of a closed face acts at the points, and the rest at their centroid.
+		const double k = contact.normalStiffness(), c = contact.dampingNormal(mass), cShear = contact.dampingShear(mass);
+		const Matrix3 stiffness = tensor(turnShare * k, contact.law.shearStiffness * contact.stiffnessArea()),
+		              damping = tensor(turnShare * c, cShear);
 		for (int b : {contact.body1, contact.body2}) {
 			if (bodies[b].prescribed)
 				continue;
 			freeNeighbour[b] = freeNeighbour[b] || bothFree;
-			const Vector3& center = bodies[b].pose.position;
-			addFace(result[b].stiffness, center, contact.normalStiffness(), contact.law.shearStiffness * contact.stiffnessArea());
-			addFace(result[b].damping, center, contact.dampingNormal(mass), contact.dampingShear(mass));
+			const auto add = [&](const Vector3& place, const Matrix3& stiffnessThere, const Matrix3& dampingThere) {
+				const Vector3 arm = place - bodies[b].pose.position;
+				Matrix3 cross; // velocity at the point: v - cross w
+				cross << 0, -arm.z(), arm.y(), arm.z(), 0, -arm.x(), -arm.y(), arm.x(), 0;
+				addPoint(result[b].stiffness, cross, stiffnessThere);
+				addPoint(result[b].damping, cross, dampingThere);
+			};
+			Vector3 centroid = Vector3::Zero();
+			for (int i = 0; i < contact.size; ++i) {
+				const double weight = contact.patch.points[i].weight;
+				const Vector3 place = contact.position(i);
+				centroid += weight * place;
+				add(place, weight * stiffness, weight * damping);
+			}
+			add(centroid, tensor((1 - turnShare) * k, 0), tensor((1 - turnShare) * c, 0));
 		}
 	}
 	for (size_t b = 0; b < bodies.size(); ++b)
