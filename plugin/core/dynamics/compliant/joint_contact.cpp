@@ -200,6 +200,22 @@ private:
 	double dt;
 };
 
+struct PointMotions { // of body 2 relative to body 1 over the step that ends now
+	std::array<Vector3, maxFrictionPoints> velocities;
+	PointValues approaches {}; // along the normal, m/s
+};
+
+PointMotions motionsOf(const JointContact& contact, const Body& body1, const Body& body2, double dt)
+{
+	const StepMotion motion1(body1, dt), motion2(body2, dt);
+	PointMotions result;
+	for (int i = 0; i < contact.size; ++i) {
+		result.velocities[i] = motion2.velocityAt(contact.position(i)) - motion1.velocityAt(contact.position(i));
+		result.approaches[i] = -contact.patch.normal.dot(result.velocities[i]);
+	}
+	return result;
+}
+
 // The part of a shear force that friction can bear.
 Vector3 withinFriction(const JointContact& contact, const Vector3& force, double normalForce)
 {
@@ -249,21 +265,17 @@ void updateForces(JointContact& contact, const Body& body1, const Body& body2, d
 {
 	const Vector3& n = contact.patch.normal;
 	const double mass = reducedMass(body1, body2), dampingShear = contact.dampingShear(mass);
-	const StepMotion motion1(body1, dt), motion2(body2, dt);
+	const auto [velocities, rates] = motionsOf(contact, body1, body2, dt);
 	contact.energy = {};
 	const auto before = contact.points;
-	std::array<Vector3, maxFrictionPoints> velocities; // at the points, of body 2 relative to body 1
-	PointValues depths {}, oldDepths {}, rates {};
+	PointValues depths {}, oldDepths {};
+	std::array<bool, maxFrictionPoints> carries {};
 	for (int i = 0; i < contact.size; ++i) {
-		velocities[i] = motion2.velocityAt(contact.position(i)) - motion1.velocityAt(contact.position(i));
-		rates[i] = -n.dot(velocities[i]);
 		depths[i] = -contact.patch.points[i].gap;
 		oldDepths[i] = depths[i] - rates[i] * dt;
+		carries[i] = contact.springs[i] > 0;
 	}
 	const PointValues &springs = contact.springs, oldSprings = contact.springForces(oldDepths);
-	std::array<bool, maxFrictionPoints> carries {};
-	for (int i = 0; i < contact.size; ++i)
-		carries[i] = springs[i] > 0;
 	const PointValues dashpots = shared(contact, contact.dampingNormal(mass), contact.turnShare, rates, carries);
 	for (int i = 0; i < contact.size; ++i) {
 		if (carries[i])

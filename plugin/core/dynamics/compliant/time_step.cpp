@@ -12,6 +12,7 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
 struct BodyMatrices {
 	Matrix6 stiffness = Matrix6::Zero(), damping = Matrix6::Zero(); // about the centre, global axes
+	bool hasFreeNeighbour {false};
 };
 
 void addPoint(Matrix6& sum, const Matrix3& cross, const Matrix3& point)
@@ -23,11 +24,11 @@ void addPoint(Matrix6& sum, const Matrix3& cross, const Matrix3& point)
 	sum.bottomRightCorner<3, 3>() += cross.transpose() * turned;
 }
 
-// Those of a body whose neighbours move freely are doubled.
-std::vector<BodyMatrices> bodyMatrices(const std::vector<Body>& bodies, const std::vector<JointContact>& contacts)
+// Those of a body whose neighbours move freely are doubled. The result holds until the next call: it keeps its memory from step to step.
+const std::vector<BodyMatrices>& bodyMatrices(const std::vector<Body>& bodies, const std::vector<JointContact>& contacts)
 {
-	std::vector<BodyMatrices> result(bodies.size());
-	std::vector<bool> freeNeighbour(bodies.size(), false);
+	thread_local std::vector<BodyMatrices> result;
+	result.assign(bodies.size(), {});
 	for (const JointContact& contact : contacts) {
 		const bool bothFree = !bodies[contact.body1].prescribed && !bodies[contact.body2].prescribed;
 		const double mass = reducedMass(bodies[contact.body1], bodies[contact.body2]), turnShare = contact.turnShare;
@@ -42,7 +43,7 @@ std::vector<BodyMatrices> bodyMatrices(const std::vector<Body>& bodies, const st
 		for (int b : {contact.body1, contact.body2}) {
 			if (bodies[b].prescribed)
 				continue;
-			freeNeighbour[b] = freeNeighbour[b] || bothFree;
+			result[b].hasFreeNeighbour |= bothFree;
 			const auto add = [&](const Vector3& place, const Matrix3& stiffnessThere, const Matrix3& dampingThere) {
 				const Vector3 arm = place - bodies[b].pose.position;
 				Matrix3 cross; // velocity at the point: v - cross w
@@ -60,10 +61,10 @@ std::vector<BodyMatrices> bodyMatrices(const std::vector<Body>& bodies, const st
 			add(centroid, tensor((1 - turnShare) * k, 0), tensor((1 - turnShare) * c, 0));
 		}
 	}
-	for (size_t b = 0; b < bodies.size(); ++b)
-		if (freeNeighbour[b]) {
-			result[b].stiffness *= 2;
-			result[b].damping *= 2;
+	for (BodyMatrices& ofBody : result)
+		if (ofBody.hasFreeNeighbour) {
+			ofBody.stiffness *= 2;
+			ofBody.damping *= 2;
 		}
 	return result;
 }
@@ -81,7 +82,7 @@ Matrix6 massMatrix(const Body& body)
 
 double criticalTimeStep(const std::vector<Body>& bodies, const std::vector<JointContact>& contacts)
 {
-	const auto matrices = bodyMatrices(bodies, contacts);
+	const auto& matrices = bodyMatrices(bodies, contacts);
 	double highest = 0; // omega^2
 	for (size_t b = 0; b < bodies.size(); ++b) {
 		if (bodies[b].prescribed)
@@ -105,9 +106,16 @@ double largestTimeStep(const std::vector<Body>& bodies, const std::vector<JointC
 	return accepted;
 }
 
+double chosenTimeStep(const std::vector<Body>& bodies, const std::vector<JointContact>& contacts, double fraction)
+{
+	constexpr double ofLargest =
+	    0.75; // larger: it becomes unstable where blocks move a little; smaller: scenes without need take a shorter step
+	return std::min(fraction * criticalTimeStep(bodies, contacts), ofLargest * largestTimeStep(bodies, contacts));
+}
+
 bool isStableTimeStep(const std::vector<Body>& bodies, const std::vector<JointContact>& contacts, double dt, double undamped)
 {
-	const auto matrices = bodyMatrices(bodies, contacts);
+	const auto& matrices = bodyMatrices(bodies, contacts);
 	for (size_t b = 0; b < bodies.size(); ++b) {
 		if (bodies[b].prescribed)
 			continue;
