@@ -259,6 +259,21 @@ void release(JointPoint& point)
 	point.shear.setZero();
 }
 
+// Takes the normal forces from the springs and, for the points that carry, the dashpots.
+void takeNormalForces(JointContact& contact, double damping, const PointValues& approaches)
+{
+	std::array<bool, maxFrictionPoints> carries {};
+	for (int i = 0; i < contact.size; ++i)
+		carries[i] = contact.springs[i] > 0;
+	const PointValues dashpots = shared(contact, damping, contact.turnShare, approaches, carries);
+	for (int i = 0; i < contact.size; ++i) {
+		if (carries[i])
+			contact.points[i].normalForce = std::max(0., contact.springs[i] + dashpots[i]);
+		else
+			release(contact.points[i]);
+	}
+}
+
 } // namespace
 
 void updateForces(JointContact& contact, const Body& body1, const Body& body2, double dt)
@@ -269,20 +284,12 @@ void updateForces(JointContact& contact, const Body& body1, const Body& body2, d
 	contact.energy = {};
 	const auto before = contact.points;
 	PointValues depths {}, oldDepths {};
-	std::array<bool, maxFrictionPoints> carries {};
 	for (int i = 0; i < contact.size; ++i) {
 		depths[i] = -contact.patch.points[i].gap;
 		oldDepths[i] = depths[i] - rates[i] * dt;
-		carries[i] = contact.springs[i] > 0;
 	}
 	const PointValues &springs = contact.springs, oldSprings = contact.springForces(oldDepths);
-	const PointValues dashpots = shared(contact, contact.dampingNormal(mass), contact.turnShare, rates, carries);
-	for (int i = 0; i < contact.size; ++i) {
-		if (carries[i])
-			contact.points[i].normalForce = std::max(0., springs[i] + dashpots[i]);
-		else
-			release(contact.points[i]);
-	}
+	takeNormalForces(contact, contact.dampingNormal(mass), rates);
 	placeFriction(contact);
 	const Vector3 spin = body2.angularVelocity - body1.angularVelocity;
 	// The forces take energy from the bodies: dashpots and slip dissipate a part and never give it back, and the springs take the rest.
@@ -296,7 +303,7 @@ void updateForces(JointContact& contact, const Body& body1, const Body& body2, d
 		const Vector3 acrossPoint = velocities[i] + n * rates[i], slideVelocity = acrossPoint + contact.gripMotion(i, spin);
 		double slipped = 0; // J
 		bool slips = true;
-		if (carries[i]) {
+		if (springs[i] > 0) {
 			point.shear += slideVelocity * dt;
 			const Vector3 pull = -stiffness * point.shear;
 			slips = takeShearForce(contact, i);
@@ -317,7 +324,7 @@ void updateForces(JointContact& contact, const Body& body1, const Body& body2, d
 		contact.energy.taken += elastic;
 		contact.energy.friction += slipped;
 		contact.energy.damping += takenNormal + takenShear - elastic - slipped;
-		if (carries[i])
+		if (springs[i] > 0)
 			contact.energy.elastic += shearEnergy(contact, i) + 0.5 * springs[i] * depths[i];
 	}
 	contact.energy.taken += std::min(0., byDashpots);

@@ -10,6 +10,7 @@
 struct CompliantBlocks {
 	masonry::CompliantStep step;
 	masonry::CompliantReport report; // of the last step
+	bool fits {true};                // the last step was stable
 	std::vector<masonry::Box> boxes;
 	masonry::JointLaw law;
 	std::vector<masonry::ImpactRecord> impacts;
@@ -66,7 +67,9 @@ struct CompliantBlocks {
 		findPatches();
 		for (JointContact& contact : step.system.contacts)
 			updateForces(contact, bodies()[contact.body1], bodies()[contact.body2], step.system.dt);
+		fits = step.fitTimeStep();
 		report = step.apply(jumpsOfBase);
+		step.system.dt -= step.lowered;
 		for (const ImpactRecord& record : report.impacts) {
 			impacts.push_back(record);
 			impactTimes.push_back(time - record.before);

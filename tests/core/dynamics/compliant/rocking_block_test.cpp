@@ -198,6 +198,7 @@ TEST_CASE("The critical time step is where the leapfrog scheme turns unstable")
 		}
 		INFO("fraction " << fraction);
 		CHECK((furthest < depth) == stable);
+		CHECK(scene.rig.fits == stable);
 	}
 }
 
