@@ -43,14 +43,14 @@ void RockingJointEngine::readScene()
 	if (scene->isPeriodic)
 		throw std::runtime_error("O.periodic = True is not allowed: blocks know no periodic cell.");
 	if (checkedTimeStep > 0 && scene->iter % period != 0)
-		return blocks.read(*scene, dampingRatio, step.system);
+		return blocks.read(*scene, dampingRatio, step);
 	const auto isOne = [](const auto& engine) { return !engine->dead && dynamic_cast<RockingJointEngine*>(engine.get()); };
 	if (std::count_if(scene->engines.begin(), scene->engines.end(), isOne) > 1)
 		throw std::runtime_error("O.engines has more than one RockingJointEngine: each acts on all blocks; there must be one.");
 	const IntegratorSettings settings(*scene);
 	step.system.gravity = settings.gravity;
 	dampingRatio = settings.contactDampingRatio;
-	blocks.read(*scene, dampingRatio, step.system);
+	blocks.read(*scene, dampingRatio, step);
 	for (int id : blocks.ids) {
 		const Body& body = *(*scene->bodies)[id];
 		if (!body.isDynamic())
@@ -136,8 +136,8 @@ vector<masonry::JointContact> RockingJointEngine::presentContacts()
 	const bool inScene =
 	    std::any_of(scene->engines.begin(), scene->engines.end(), [this](const auto& engine) { return engine.get() == this; });
 	dampingRatio = inScene ? IntegratorSettings(*scene).contactDampingRatio : Law2_BlockGeom_BlockPhys_Rocking().dampingRatio;
-	blocks.read(*scene, dampingRatio, step.system);
-	return blocks.boxesInTouch(*scene, dampingRatio, step.system);
+	blocks.read(*scene, dampingRatio, step);
+	return blocks.boxesInTouch(*scene, dampingRatio, step);
 }
 
 void RockingJointEngine::checkTimeStep()
@@ -199,8 +199,8 @@ void RockingJointEngine::writeScene(const masonry::CompliantReport& report)
 	for (size_t b = 0; b < blocks.ids.size(); ++b) {
 		if (!step.system.bodies[b].prescribed && (report.moved || step.lowered > 0))
 			writeState(step.system.bodies[b], *(*scene->bodies)[blocks.ids[b]]->state);
-		scene->forces.addForce(blocks.ids[b], step.joints[b].force);
-		scene->forces.addTorque(blocks.ids[b], step.joints[b].moment);
+		scene->forces.addForce(blocks.ids[b], step.loads[b].force);
+		scene->forces.addTorque(blocks.ids[b], step.loads[b].moment);
 	}
 	for (const auto& record : report.impacts)
 		if (!record.landed)
@@ -257,7 +257,6 @@ void RockingJointEngine::action()
 	bounds.update(*scene, blocks.ids);
 	step.system.dt = scene->dt;
 	step.system.order = impactOrder == "sequential" ? masonry::ImpactOrder::sequential : masonry::ImpactOrder::simultaneous;
-	step.sizes = blocks.sizes;
 	readRun();
 	checkTimeStep();
 	const vector<BaseMotionEngine*> motions = BaseMotionEngine::inEngines(*scene);

@@ -13,17 +13,17 @@
 
 namespace yade {
 
-void CompliantScene::read(const Scene& scene, Real dampingRatio, masonry::JointSystem& system)
+void CompliantScene::read(const Scene& scene, Real dampingRatio, masonry::CompliantStep& step)
 {
-	readBodies(scene, system);
-	readJoints(scene, dampingRatio, system);
+	readBodies(scene, step);
+	readJoints(scene, dampingRatio, step.system);
 }
 
-void CompliantScene::readBodies(const Scene& scene, masonry::JointSystem& system)
+void CompliantScene::readBodies(const Scene& scene, masonry::CompliantStep& step)
 {
 	ids.clear();
-	sizes.clear();
-	system.bodies.clear();
+	step.sizes.clear();
+	step.system.bodies.clear();
 	index.assign(scene.bodies->size(), -1);
 	for (const auto& body : scene.bodies->body) {
 		if (!body || !dynamic_cast<BlockMat*>(body->material.get()))
@@ -34,8 +34,8 @@ void CompliantScene::readBodies(const Scene& scene, masonry::JointSystem& system
 		checkBody(*body);
 		index[body->id] = int(ids.size());
 		ids.push_back(body->id);
-		sizes.push_back(box->extents.minCoeff());
-		system.bodies.push_back(coreBody(*body));
+		step.sizes.push_back(box->extents.minCoeff());
+		step.system.bodies.push_back(coreBody(*body));
 	}
 }
 
@@ -68,21 +68,22 @@ void CompliantScene::readJoints(const Scene& scene, Real dampingRatio, masonry::
 	}
 }
 
-vector<masonry::JointContact> CompliantScene::boxesInTouch(const Scene& scene, Real dampingRatio, const masonry::JointSystem& system) const
+vector<masonry::JointContact> CompliantScene::boxesInTouch(const Scene& scene, Real dampingRatio, const masonry::CompliantStep& step) const
 {
+	const vector<masonry::Body>& bodies = step.system.bodies;
 	vector<masonry::JointContact> contacts;
 	Ip2_BlockMat_BlockMat_BlockPhys law;
 	for (size_t a = 0; a < ids.size(); ++a)
 		for (size_t b = a + 1; b < ids.size(); ++b) {
-			if (system.bodies[a].prescribed && system.bodies[b].prescribed)
+			if (bodies[a].prescribed && bodies[b].prescribed)
 				continue;
 			const Body &body1 = *(*scene.bodies)[ids[a]], &body2 = *(*scene.bodies)[ids[b]];
 			const Vector3r &half1 = static_cast<Box&>(*body1.shape).extents, &half2 = static_cast<Box&>(*body2.shape).extents;
 			if ((body1.state->pos - body2.state->pos).norm() > half1.norm() + half2.norm())
 				continue;
 			masonry::ContactPatch patch;
-			const Real near = 1e-2 * std::min(sizes[a], sizes[b]);
-			if (!masonry::collide({half1}, system.bodies[a].pose, {half2}, system.bodies[b].pose, near, {}, patch))
+			const Real near = 1e-2 * std::min(step.sizes[a], step.sizes[b]);
+			if (!masonry::collide({half1}, bodies[a].pose, {half2}, bodies[b].pose, near, {}, patch))
 				continue;
 			const shared_ptr<Interaction> interaction(new Interaction(ids[a], ids[b]));
 			law.go(body1.material, body2.material, interaction);

@@ -83,10 +83,10 @@ void CompliantStep::bookSprings()
 void CompliantStep::bookBaseWork()
 {
 	sumForces(true);
-	for (int b = 0; b < int(joints.size()); ++b) {
-		if (!joints[b].acts)
+	for (int b = 0; b < int(loads.size()); ++b) {
+		if (!loads[b].acts)
 			continue;
-		Vector3 force = joints[b].force, moment = joints[b].moment;
+		Vector3 force = loads[b].force, moment = loads[b].moment;
 		const auto old = std::find_if(run.reactions.begin(), run.reactions.end(), [b](const auto& r) { return r.first == b; });
 		if (old != run.reactions.end()) {
 			force = 0.5 * (force + old->second.force);
@@ -140,15 +140,15 @@ void CompliantStep::countFailures(CompliantReport& report)
 // Forces of the joints on all bodies, or on the prescribed ones alone.
 void CompliantStep::sumForces(bool ofPrescribed)
 {
-	joints.assign(system.bodies.size(), {});
+	loads.assign(system.bodies.size(), {});
 	for (const JointContact& contact : system.contacts)
 		for (const auto& [b, sign] : {std::pair(contact.body1, -1.), std::pair(contact.body2, 1.)}) {
 			if (ofPrescribed && !system.bodies[b].prescribed)
 				continue;
-			joints[b].acts = true;
+			loads[b].acts = true;
 			for (int i = 0; i < contact.size; ++i) {
-				joints[b].force += sign * contact.force(i);
-				joints[b].moment += sign * contact.moment(i, system.bodies[b].pose.position);
+				loads[b].force += sign * contact.force(i);
+				loads[b].moment += sign * contact.moment(i, system.bodies[b].pose.position);
 			}
 		}
 }
@@ -156,17 +156,17 @@ void CompliantStep::sumForces(bool ofPrescribed)
 void CompliantStep::keepReactions()
 {
 	run.reactions.clear();
-	for (int b = 0; b < int(joints.size()); ++b)
-		if (joints[b].acts && system.bodies[b].prescribed)
-			run.reactions.push_back({b, joints[b]});
+	for (int b = 0; b < int(loads.size()); ++b)
+		if (loads[b].acts && system.bodies[b].prescribed)
+			run.reactions.push_back({b, loads[b]});
 }
 
 // The body with the velocities that the present forces give it within that time.
 Body CompliantStep::after(int b, double time) const
 {
 	Body body = system.bodies[b];
-	body.velocity += time / body.mass * (body.force + joints[b].force);
-	body.angularVelocity += time * body.inverseInertia() * (body.torque + joints[b].moment);
+	body.velocity += time / body.mass * (body.force + loads[b].force);
+	body.angularVelocity += time * body.inverseInertia() * (body.torque + loads[b].moment);
 	return body;
 }
 

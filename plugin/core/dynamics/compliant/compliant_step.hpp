@@ -62,8 +62,8 @@ public:
 
 	CompliantReport apply(const JumpsOfBase& jumpsOfBase);
 
-	std::vector<JointLoad> joints; // by body, in this step
-	double lowered {0};            // by how much the steps after this one are shorter, s
+	std::vector<JointLoad> loads; // by body, in this step
+	double lowered {0};           // by how much the steps after this one are shorter, s
 
 private:
 	void addWeights();

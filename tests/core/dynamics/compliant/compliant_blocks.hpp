@@ -75,7 +75,7 @@ struct CompliantBlocks {
 			impactTimes.push_back(time - record.before);
 		}
 		for (size_t b = 0; b < bodies().size(); ++b)
-			move(bodies()[b], step.joints[b], step.system.dt);
+			move(bodies()[b], step.loads[b], step.system.dt);
 		time += step.system.dt;
 	}
 

@@ -30,7 +30,7 @@ double imbalance(CompliantBlocks& rig)
 		if (body.prescribed)
 			continue;
 		const double weight = 9.81 * body.mass, size = std::sqrt(body.inertia.maxCoeff() / body.mass);
-		const Vector3 force = body.force + rig.step.joints[b].force, moment = body.torque + rig.step.joints[b].moment;
+		const Vector3 force = body.force + rig.step.loads[b].force, moment = body.torque + rig.step.loads[b].moment;
 		largest = std::max({largest, force.norm() / weight, moment.norm() / weight / size});
 	}
 	return largest;
