@@ -1,6 +1,7 @@
 #include "dynamics/compliant/time_step.hpp"
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <cmath>
 #include <limits>
 
@@ -15,13 +16,14 @@ struct BodyMatrices {
 	bool hasFreeNeighbour {false};
 };
 
-void addPoint(Matrix6& sum, const Matrix3& cross, const Matrix3& point)
+// Adds J^T k J of a point at the end of the arm, J = (1, -arm x): the rows of k (arm x) are those of k, each times (cross) the arm.
+void addPoint(Matrix6& sum, const Vector3& arm, const Matrix3& point)
 {
-	const Matrix3 turned = point * cross;
+	const Matrix3 turned = point.rowwise().cross(arm);
 	sum.topLeftCorner<3, 3>() += point;
 	sum.topRightCorner<3, 3>() -= turned;
 	sum.bottomLeftCorner<3, 3>() -= turned.transpose();
-	sum.bottomRightCorner<3, 3>() += cross.transpose() * turned;
+	sum.bottomRightCorner<3, 3>() += turned.colwise().cross(arm);
 }
 
 // Those of a body whose neighbours move freely are doubled. The result holds until the next call: it keeps its memory from step to step.
@@ -46,10 +48,8 @@ const std::vector<BodyMatrices>& bodyMatrices(const std::vector<Body>& bodies, c
 			result[b].hasFreeNeighbour |= bothFree;
 			const auto add = [&](const Vector3& place, const Matrix3& stiffnessThere, const Matrix3& dampingThere) {
 				const Vector3 arm = place - bodies[b].pose.position;
-				Matrix3 cross; // velocity at the point: v - cross w
-				cross << 0, -arm.z(), arm.y(), arm.z(), 0, -arm.x(), -arm.y(), arm.x(), 0;
-				addPoint(result[b].stiffness, cross, stiffnessThere);
-				addPoint(result[b].damping, cross, dampingThere);
+				addPoint(result[b].stiffness, arm, stiffnessThere);
+				addPoint(result[b].damping, arm, dampingThere);
 			};
 			Vector3 centroid = Vector3::Zero();
 			for (int i = 0; i < contact.size; ++i) {

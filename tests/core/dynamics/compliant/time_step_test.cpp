@@ -47,6 +47,7 @@ struct Assembly {
 			point.position1 = point.position2 = middle + anyVector(0.5);
 			point.weight = 1. / contact.size;
 		}
+		followPatch(contact);
 		contacts.push_back(contact);
 	}
 
