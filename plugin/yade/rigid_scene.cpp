@@ -67,9 +67,6 @@ masonry::rigid::StepReport RigidScene<K>::step()
 		showPoints();
 		scheduler.emplace(); // what it remembers would be of steps long ago
 	}
-	if (integrator.isWall() && lawsChanged)
-		system.moved = true;
-	lawsChanged = false;
 	byWalls = integrator.isWall();
 	const auto report = byWalls ? advanceWall() : islands.advance(system, scene.dt);
 	integrator.stepErrors = byWalls ? scheduler->lastErrors() : islands.lastErrors();
@@ -224,7 +221,7 @@ void RigidScene<K>::takeLaws()
 		law.check(kept.ids[pair.body1], kept.ids[pair.body2]);
 		pair.friction = friction;
 		pair.restitution = restitution;
-		lawsChanged = true;
+		system.lawsChanged = true;
 	}
 }
 
@@ -330,7 +327,7 @@ vector<Real> RigidScene<K>::pack()
 	for (size_t b = 0; b < links.size(); ++b)
 		if (!isThere(b))
 			told.ids[b] = -1;
-	archive(told, byWalls, lawsChanged, *neighbours);
+	archive(told, byWalls, system.lawsChanged, *neighbours);
 	if (byWalls)
 		scheduler->serialize(archive, system);
 	return archive.numbers;
@@ -344,7 +341,7 @@ void RigidScene<K>::unpackStepper(masonry::NumberReader& archive, const Remember
 	if (changed || before.ids != kept.ids || before.pairs.size() != system.pairs.size())
 		return;
 	renewContacts();
-	lawsChanged |= laws;
+	system.lawsChanged |= laws;
 	readMemory([&] {
 		archive(*neighbours);
 		if (byWalls)

@@ -172,7 +172,7 @@ private:
 	masonry::rigid::Islands<K> islands;
 	std::optional<masonry::rigid::Scheduler<K>> scheduler {std::in_place}; // method='wall'
 	bool changed = false;                                                  // what is moved, and how, is not as it was
-	bool byWalls = false, lawsChanged = false;
+	bool byWalls = false;
 	bool ownsContacts = false; // what O.interactions shows of blocks is of this object
 	int unshown = 1;           // steps since the interactions were written
 	std::unique_ptr<masonry::rigid::Neighbours<K>> neighbours;

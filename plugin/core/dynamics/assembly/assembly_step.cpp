@@ -65,7 +65,7 @@ void AssemblyStep<K>::advancePart(RigidSystem<K>& s, double h)
 	moveBodies(s, h);
 	rest.take(s, solver.report, moved, h);
 	s.time += h;
-	s.moved = false;
+	s.moved = s.lawsChanged = false;
 	started = true;
 	report.diverged |= !result.finite || !s.isFinite();
 }

@@ -78,6 +78,14 @@ void ContactSet<K>::inherit(const ContactPair<K>& before, const State* states, C
 }
 
 template <class K>
+void ContactSet<K>::takeFriction(const RigidSystem<K>& s, int c)
+{
+	for (const auto [group, lane] : slots[c])
+		if (group >= 0)
+			groups[group].friction[lane] = std::min(s.pairs[c].friction, mostFriction);
+}
+
+template <class K>
 void ContactSet<K>::lookUp(RigidSystem<K>& s, int c)
 {
 	const double touching = tolerance::mergedClosing * length;
@@ -89,9 +97,7 @@ void ContactSet<K>::lookUp(RigidSystem<K>& s, int c)
 	pair.face2 = found.face2;
 	// Of bodies that have been moved the pair may know other points than the lanes.
 	const bool same = known[c] && !s.moved && sameFeatures(pair, found);
-	for (const auto [group, lane] : slots[c])
-		if (group >= 0)
-			groups[group].friction[lane] = std::min(pair.friction, mostFriction);
+	takeFriction(s, c);
 	if (same)
 		return;
 	if (known[c]) {
@@ -275,6 +281,8 @@ bool ContactSet<K>::isLocated(const RigidSystem<K>& s) const
 template <class K>
 void ContactSet<K>::measure(RigidSystem<K>& s, bool isStill)
 {
+	for (int c = 0; s.lawsChanged && c < int(s.pairs.size()); ++c)
+		takeFriction(s, c);
 	if (isStill && isLocated(s)) {
 		takeBodies(s);
 		++stood;

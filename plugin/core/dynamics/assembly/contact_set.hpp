@@ -281,6 +281,7 @@ private:
 	void lookUpStale(RigidSystem<K>& system);
 	void lookUpStale(RigidSystem<K>& system, const Part& part);
 	void lookUp(RigidSystem<K>& system, int pair);
+	void takeFriction(const RigidSystem<K>& system, int pair);
 	void inherit(const ContactPair<K>& before, const State* states, ContactPoint<K>& point, State& now) const;
 	State state(int pair, int point) const;
 	void setState(const State& state, int pair, int point);

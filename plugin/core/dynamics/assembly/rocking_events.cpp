@@ -70,7 +70,7 @@ void RockingEvents<K>::gather(const RigidSystem<K>& s, const ContactSet<K>& c)
 {
 	points.clear();
 	const auto hasLaw = [](const auto& pair) { return !std::isnan(pair.restitution); };
-	if (s.lists != list || s.moved) { // else laws are as they were
+	if (s.lists != list || s.lawsChanged) { // else laws are as they were
 		list = s.lists;
 		areLaws = std::any_of(s.pairs.begin(), s.pairs.end(), hasLaw);
 	}

@@ -266,7 +266,8 @@ struct RigidSystem {
 	typename K::Vector gravity {K::Vector::Zero()}; // which way is down, and the scale of tolerances; the weight itself is in `force`
 	std::vector<Drive<K>> drives;                   // of the bases
 	Settings settings;
-	bool moved {true}; // poses were set from outside: gaps are to be measured anew
+	bool moved {true};        // poses were set from outside: gaps are to be measured anew
+	bool lawsChanged {false}; // friction or restitution of pairs were set from outside
 
 	std::vector<Impact> impacts; // of the last step
 	// Since the start of the run.
