@@ -42,6 +42,8 @@ void BlockPhys::readPoints(masonry::JointContact& contact) const
 		contact.points[i] = {identities[i], muted[i] != 0, shears[i], normal, forces[i] - n * normal, frictionOffsets[i]};
 	}
 	contact.energy = energy;
+	contact.turnShare = turnShare;
+	contact.springs = springs;
 }
 
 void BlockPhys::writePoints(const masonry::JointContact& contact)
@@ -69,6 +71,8 @@ void BlockPhys::writePoints(const masonry::JointContact& contact)
 		shearForce += point.shearForce;
 	}
 	energy = contact.energy;
+	turnShare = contact.turnShare;
+	springs = contact.springs;
 }
 
 } // namespace yade

@@ -18,8 +18,11 @@ public:
 	void writePoints(const masonry::JointContact&);
 
 	masonry::JointEnergy energy; // of this step
-	vector<Real> normalForces;   // of the points, N; not saved
-	bool applied = false;        // RockingJointEngine has put the last forces on the bodies
+	// Not saved: the law finds them anew before they are used.
+	vector<Real> normalForces; // of the points, N
+	masonry::PointValues springs {};
+	Real turnShare = 1;
+	bool applied = false; // RockingJointEngine has put the last forces on the bodies
 
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(BlockPhys, FrictPhys,

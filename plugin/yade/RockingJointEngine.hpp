@@ -1,15 +1,14 @@
 #pragma once
 
 #include "BaseMotionEngine.hpp"
-#include "dynamics/compliant/pivot_handoff.hpp"
+#include "compliant_scene.hpp"
+#include "dynamics/compliant/compliant_step.hpp"
+#include "turning_bounds.hpp"
 #include <core/GlobalEngine.hpp>
 
 namespace yade {
 
-class BlockGeom;
-class BlockPhys;
-
-/// The joint stage of compliant blocks (dynamics/compliant/pivot_handoff.hpp); between InteractionLoop and the base motion.
+/// The step of compliant blocks (dynamics/compliant/compliant_step.hpp); between InteractionLoop and the base motion.
 class RockingJointEngine : public GlobalEngine {
 public:
 	void action() override;
@@ -59,58 +58,31 @@ public:
 		((long, lastStep, -1, Attr::hidden, "")),
 		/* ctor */,
 		.def("criticalTimeStep", &RockingJointEngine::criticalTimeStep, "Largest stable time step of the joints without their dashpots [s].")
-		.add_property("chosenTimeStep", static_cast<Real (RockingJointEngine::*)()>(&RockingJointEngine::chosenTimeStep), "Time step for stepFraction and the present joints [s]: that share of the critical step, at most three quarters of largestTimeStep.")
+		.add_property("chosenTimeStep", &RockingJointEngine::chosenTimeStep, "Time step for stepFraction and the present joints [s]: that share of the critical step, at most three quarters of largestTimeStep.")
 		.add_property("largestTimeStep", &RockingJointEngine::largestTimeStep, "Largest time step that a run accepts with the present joints, dashpots included [s]: 0.4 to 0.6 of the critical one at dampingRatio = 0.5.")
 	);
 	// clang-format on
 private:
-	struct Pair {
-		BlockGeom* geom;
-		BlockPhys* phys;
-	};
-	struct Reaction {
-		Vector3r force = Vector3r::Zero(), moment = Vector3r::Zero(); // about the body's centre
-	};
-	struct BoundPose { // of a body when the collider last looked
-		long iteration = -1;
-		Quaternionr orientation = Quaternionr::Identity();
-	};
-
+	void enterScene();
+	void readScene();
+	void readLoads(const vector<BaseMotionEngine*>& motions);
+	vector<int> movedBy(const BaseMotionEngine& motion) const;
+	vector<masonry::BaseJump> jumpsOf(const vector<BaseMotionEngine*>& motions, const vector<masonry::ImpactRecord>& records) const;
 	vector<masonry::JointContact> presentContacts();
-	vector<masonry::JointContact> damped(vector<masonry::JointContact> contacts) const;
-	void leaveScene();
-	void checkScene();
-	vector<Pair> gather();
-	void addExternalForces();
 	void checkTimeStep();
-	Real chosenTimeStep(const vector<masonry::JointContact>& contacts) const;
-	void lowerTimeStep();
-	void reportUnsolved();
-	void boundTurns();
-	void addErrors();
-	void addUnexplained(Real energy);
-	void reportErrors();
-	void reportDepth();
-	void report(Real energy, Real most, const char* what, bool& told);
-	void recordImpact(const masonry::ImpactRecord&);
-	bool applyJumps(const vector<BaseMotionEngine*>& motions, const vector<StepImpact>& impacts);
-	void applyForces(const vector<Pair>& pairs);
-	void measureEnergy();
-	std::map<int, Reaction> baseReactions() const;
-	void addBaseWork();
-	void keepReactions();
+	void readRun();
+	void writeRun();
+	void writeScene(const masonry::CompliantReport& report);
+	void writeEnergies();
+	void warn(const masonry::CompliantReport& report);
 
 	// Of the running process, found again after loading.
-	Vector3r gravity = Vector3r::Zero();
 	boost::weak_ptr<Scene> home;
 	Real checkedTimeStep = 0; // 0: no step yet
 	Real dampingRatio = 0;    // of the contact springs
-	Real lowered = 0;         // by how much the steps after this one are shorter, s
-	masonry::JointSystem system;
-	vector<int> ids;                        // index in system.bodies -> body id
-	vector<int> index;                      // body id -> index in system.bodies, or -1
-	vector<BoundPose> boundAt;              // by body id
-	vector<Vector3r> bodyForce, bodyTorque; // joint forces on each body
+	masonry::CompliantStep step;
+	CompliantScene blocks;
+	TurningBounds bounds;
 };
 REGISTER_SERIALIZABLE(RockingJointEngine);
 

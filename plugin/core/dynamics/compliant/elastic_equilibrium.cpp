@@ -1,8 +1,10 @@
 #include "dynamics/compliant/elastic_equilibrium.hpp"
-#include "dynamics/compliant/joint_groups.hpp"
+#include "dynamics/compliant/instant.hpp"
+#include "dynamics/compliant/settling.hpp"
 #include "impact/impulse_problem.hpp" // axesAlong
 #include "tolerances.hpp"
 #include <Eigen/SparseCholesky>
+#include <limits>
 #include <tuple>
 
 namespace masonry {
@@ -48,7 +50,7 @@ std::vector<Spring> springsOf(const JointSystem& s, const std::vector<HeldPoint>
 		               contact.body2,
 		               contact.patch.points[i].gap,
 		               contact.patch.points[i].weight,
-		               contact.turnShare() * contact.normalStiffness() * contact.patch.points[i].weight,
+		               contact.turnShare * contact.normalStiffness() * contact.patch.points[i].weight,
 		               contact.shearStiffness(i),
 		               Rows::Zero()};
 		const Matrix3 axes = axesAlong(contact.patch.normal);
@@ -82,7 +84,7 @@ public:
 		for (size_t k = 0; k < springs.size(); ++k) {
 			const JointContact& contact = s.contacts[springs[k].contact];
 			if (k == 0 || springs[k].contact != springs[k - 1].contact)
-				faces.push_back({k, k, contact.turnShare(), contact.normalStiffness()});
+				faces.push_back({k, k, contact.turnShare, contact.normalStiffness()});
 			++faces.back().end;
 		}
 		loads = Eigen::VectorXd::Zero(6 * size);
@@ -269,6 +271,23 @@ bool findElasticEquilibrium(JointSystem& s, const RigidAcceleration& rates, cons
 	for (JointContact& contact : s.contacts)
 		holdForces(contact);
 	return true;
+}
+
+void startAtEquilibrium(JointSystem& s)
+{
+	double size = 0;
+	for (const JointContact& contact : s.contacts)
+		size = std::max(size, std::sqrt(contact.patch.nominalArea));
+	const auto near = [&](const JointContact& contact, int i) { return contact.patch.points[i].gap <= tolerance::mergedClosing * size; };
+	// The dense solver's forces are those of least norm: without self-stress, and symmetric where the scene is.
+	constexpr size_t maxDense = 100;
+	std::vector<HeldPoint> held = selectPoints(s.contacts, near);
+	const ImpulseSolver solve = held.size() <= maxDense ? solveImpulses : solveSparsely;
+	const RigidAcceleration rates = accelerations(s, std::move(held), solve);
+	const auto [resting, others] = divideByRest(s, rates);
+	const bool isFound = findElasticEquilibrium(s, rates, resting);
+	settle(s, isFound ? others : rates.points, std::numeric_limits<double>::infinity()); // whatever energy it takes
+	goForth(s, rates, 0.);                                                               // velocities go half a step back
 }
 
 } // namespace masonry

@@ -9,7 +9,7 @@
 // that is pressed closes, and one whose shear spring pulls harder than Coulomb's bound slips, with that force. Points that open or slip
 // keep a small stiffness about where the repetition before has left them, so that K is regular on the way; its force vanishes in the end. K
 // is factorised, so that a tower costs no more than a wall of as many blocks.
-#include "dynamics/compliant/pivot_handoff.hpp"
+#include "dynamics/compliant/joint_system.hpp"
 #include "dynamics/compliant/rigid_acceleration.hpp"
 #include <utility>
 #include <vector>
@@ -22,5 +22,9 @@ std::pair<std::vector<HeldPoint>, std::vector<HeldPoint>> divideByRest(const Joi
 // Moves the bodies of these points to that equilibrium and sets shears and forces. Loads are the bodies' forces, less mass times their
 // acceleration. Returns false, and changes nothing, where these springs do not hold the bodies.
 bool findElasticEquilibrium(JointSystem& system, const RigidAcceleration& rates, const std::vector<HeldPoint>& points);
+
+// Puts bodies at rest in their equilibrium: compressions and shears that carry the weight (or, for a block that is let
+// go from a tilt, the pivot forces of the first instant). For the first step of a simulation.
+void startAtEquilibrium(JointSystem& system);
 
 } // namespace masonry

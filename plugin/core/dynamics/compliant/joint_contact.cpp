@@ -8,19 +8,26 @@ namespace masonry {
 
 double JointContact::stiffnessArea() const { return std::max(patch.area, tolerance::minPatchArea * patch.nominalArea); }
 
-// Polar moments about the centroid: of the triangles (0, p, q) of the area T between it and the sides, T (p^2 + q^2 + p.q) / 6, and of
-// the points.
-double JointContact::turnShare() const
+namespace {
+
+// Returns r. Polar moments about the centroid: of the triangles (0, p, q) of the area T between it and the sides, T (p^2 + q^2 + p.q) / 6,
+// and of the points.
+double turnShareOf(const JointContact& contact)
 {
+	const int size = contact.size;
+	const ContactPatch& patch = contact.patch;
 	if (size < 3)
 		return 1;
+	std::array<Vector3, maxFrictionPoints> places;
+	for (int i = 0; i < size; ++i)
+		places[i] = contact.position(i);
 	Vector3 centroid = Vector3::Zero();
 	for (int i = 0; i < size; ++i)
-		centroid += patch.points[i].weight * (position(i) - position(0));
-	centroid += position(0);
+		centroid += patch.points[i].weight * (places[i] - places[0]);
+	centroid += places[0];
 	double area = 0, face = 0, points = 0;
 	for (int i = 0; i < size; ++i) {
-		const Vector3 p = position(i) - centroid, q = position((i + 1) % size) - centroid;
+		const Vector3 p = places[i] - centroid, q = places[(i + 1) % size] - centroid;
 		const double triangle = 0.5 * std::abs(patch.normal.dot(p.cross(q)));
 		area += triangle;
 		face += triangle / 6 * (p.squaredNorm() + q.squaredNorm() + p.dot(q));
@@ -28,8 +35,6 @@ double JointContact::turnShare() const
 	}
 	return face > 0 ? std::min(1., face / (area * points)) : 1;
 }
-
-namespace {
 
 // Returns what a face of the stiffness k gives to its points `among`: w_i (r k x_i + (1 - r) sum), zero to the others.
 PointValues shared(const JointContact& contact, double k, double r, const PointValues& x, const std::array<bool, maxFrictionPoints>& among)
@@ -54,7 +59,7 @@ PointValues shared(const JointContact& contact, double k, double r, const PointV
 // a slope below 1, so that S grows to the root and points only join.
 PointValues JointContact::springForces(const PointValues& depths) const
 {
-	const double k = normalStiffness(), r = turnShare();
+	const double k = normalStiffness(), r = turnShare;
 	std::array<bool, maxFrictionPoints> carries {};
 	PointValues forces {};
 	for (double total = 0;;) {
@@ -71,17 +76,9 @@ PointValues JointContact::springForces(const PointValues& depths) const
 	}
 }
 
-PointValues JointContact::springForces() const
-{
-	PointValues depths {};
-	for (int i = 0; i < size; ++i)
-		depths[i] = -patch.points[i].gap;
-	return springForces(depths);
-}
-
 PointValues JointContact::depthsFor(const PointValues& forces) const
 {
-	const double k = normalStiffness(), r = turnShare();
+	const double k = normalStiffness(), r = turnShare;
 	double total = 0;
 	for (int i = 0; i < size; ++i)
 		total += forces[i];
@@ -93,10 +90,9 @@ PointValues JointContact::depthsFor(const PointValues& forces) const
 
 double JointContact::normalEnergy() const
 {
-	const PointValues forces = springForces();
 	double sum = 0;
 	for (int i = 0; i < size; ++i)
-		sum -= 0.5 * forces[i] * patch.points[i].gap;
+		sum -= 0.5 * springs[i] * patch.points[i].gap;
 	return sum;
 }
 
@@ -166,6 +162,21 @@ void renewPatch(JointContact& contact, const ContactPatch& patch)
 		if (length > 0 && shear.norm() > 0)
 			shear *= length / shear.norm();
 	}
+	followPatch(contact);
+}
+
+void followPatch(JointContact& contact)
+{
+	contact.turnShare = turnShareOf(contact);
+	updateSprings(contact);
+}
+
+void updateSprings(JointContact& contact)
+{
+	PointValues depths {};
+	for (int i = 0; i < contact.size; ++i)
+		depths[i] = -contact.patch.points[i].gap;
+	contact.springs = contact.springForces(depths);
 }
 
 namespace {
@@ -188,6 +199,22 @@ private:
 	Pose end, start;
 	double dt;
 };
+
+struct PointMotions { // of body 2 relative to body 1 over the step that ends now
+	std::array<Vector3, maxFrictionPoints> velocities;
+	PointValues approaches {}; // along the normal, m/s
+};
+
+PointMotions motionsOf(const JointContact& contact, const Body& body1, const Body& body2, double dt)
+{
+	const StepMotion motion1(body1, dt), motion2(body2, dt);
+	PointMotions result;
+	for (int i = 0; i < contact.size; ++i) {
+		result.velocities[i] = motion2.velocityAt(contact.position(i)) - motion1.velocityAt(contact.position(i));
+		result.approaches[i] = -contact.patch.normal.dot(result.velocities[i]);
+	}
+	return result;
+}
 
 // The part of a shear force that friction can bear.
 Vector3 withinFriction(const JointContact& contact, const Vector3& force, double normalForce)
@@ -232,34 +259,37 @@ void release(JointPoint& point)
 	point.shear.setZero();
 }
 
+// Takes the normal forces from the springs and, for the points that carry, the dashpots.
+void takeNormalForces(JointContact& contact, double damping, const PointValues& approaches)
+{
+	std::array<bool, maxFrictionPoints> carries {};
+	for (int i = 0; i < contact.size; ++i)
+		carries[i] = contact.springs[i] > 0;
+	const PointValues dashpots = shared(contact, damping, contact.turnShare, approaches, carries);
+	for (int i = 0; i < contact.size; ++i) {
+		if (carries[i])
+			contact.points[i].normalForce = std::max(0., contact.springs[i] + dashpots[i]);
+		else
+			release(contact.points[i]);
+	}
+}
+
 } // namespace
 
 void updateForces(JointContact& contact, const Body& body1, const Body& body2, double dt)
 {
 	const Vector3& n = contact.patch.normal;
 	const double mass = reducedMass(body1, body2), dampingShear = contact.dampingShear(mass);
-	const StepMotion motion1(body1, dt), motion2(body2, dt);
+	const auto [velocities, rates] = motionsOf(contact, body1, body2, dt);
 	contact.energy = {};
 	const auto before = contact.points;
-	std::array<Vector3, maxFrictionPoints> velocities; // at the points, of body 2 relative to body 1
-	PointValues depths {}, oldDepths {}, rates {};
+	PointValues depths {}, oldDepths {};
 	for (int i = 0; i < contact.size; ++i) {
-		velocities[i] = motion2.velocityAt(contact.position(i)) - motion1.velocityAt(contact.position(i));
-		rates[i] = -n.dot(velocities[i]);
 		depths[i] = -contact.patch.points[i].gap;
 		oldDepths[i] = depths[i] - rates[i] * dt;
 	}
-	const PointValues springs = contact.springForces(depths), oldSprings = contact.springForces(oldDepths);
-	std::array<bool, maxFrictionPoints> carries {};
-	for (int i = 0; i < contact.size; ++i)
-		carries[i] = springs[i] > 0;
-	const PointValues dashpots = shared(contact, contact.dampingNormal(mass), contact.turnShare(), rates, carries);
-	for (int i = 0; i < contact.size; ++i) {
-		if (carries[i])
-			contact.points[i].normalForce = std::max(0., springs[i] + dashpots[i]);
-		else
-			release(contact.points[i]);
-	}
+	const PointValues &springs = contact.springs, oldSprings = contact.springForces(oldDepths);
+	takeNormalForces(contact, contact.dampingNormal(mass), rates);
 	placeFriction(contact);
 	const Vector3 spin = body2.angularVelocity - body1.angularVelocity;
 	// The forces take energy from the bodies: dashpots and slip dissipate a part and never give it back, and the springs take the rest.
@@ -273,7 +303,7 @@ void updateForces(JointContact& contact, const Body& body1, const Body& body2, d
 		const Vector3 acrossPoint = velocities[i] + n * rates[i], slideVelocity = acrossPoint + contact.gripMotion(i, spin);
 		double slipped = 0; // J
 		bool slips = true;
-		if (carries[i]) {
+		if (springs[i] > 0) {
 			point.shear += slideVelocity * dt;
 			const Vector3 pull = -stiffness * point.shear;
 			slips = takeShearForce(contact, i);
@@ -294,7 +324,7 @@ void updateForces(JointContact& contact, const Body& body1, const Body& body2, d
 		contact.energy.taken += elastic;
 		contact.energy.friction += slipped;
 		contact.energy.damping += takenNormal + takenShear - elastic - slipped;
-		if (carries[i])
+		if (springs[i] > 0)
 			contact.energy.elastic += shearEnergy(contact, i) + 0.5 * springs[i] * depths[i];
 	}
 	contact.energy.taken += std::min(0., byDashpots);
@@ -304,7 +334,7 @@ void updateForces(JointContact& contact, const Body& body1, const Body& body2, d
 void holdForces(JointContact& contact)
 {
 	contact.energy.elastic = 0;
-	const PointValues springs = contact.springForces();
+	const PointValues& springs = contact.springs;
 	for (int i = 0; i < contact.size; ++i) {
 		JointPoint& point = contact.points[i];
 		if (!(springs[i] > 0)) {

@@ -67,14 +67,13 @@ struct JointContact {
 	int size {0};
 	std::array<JointPoint, 8> points; // parallel to patch.points
 	JointEnergy energy;
+	double turnShare {1};   // r of the present patch
+	PointValues springs {}; // N_i of the springs at the present gaps, of the points that are not muted, N
 
 	double stiffnessArea() const;                                                    // m^2, what the stiffness per area is multiplied with
 	double normalStiffness() const { return law.normalStiffness * stiffnessArea(); } // of the closed face, N/m
-	double turnShare() const;                                                        // r
 	double shearStiffness(int i) const { return law.shearStiffness * stiffnessArea() * patch.points[i].weight; }
-	// N_i of the springs at these depths (m), from the points that are not muted, N.
-	PointValues springForces(const PointValues& depths) const;
-	PointValues springForces() const; // at the present ones
+	PointValues springForces(const PointValues& depths) const; // N_i at these depths (m), N
 	// d_i at which the springs bear these forces, where they do not vanish, m.
 	PointValues depthsFor(const PointValues& forces) const;
 	double normalEnergy() const;             // stored by the normal springs now, J
@@ -96,6 +95,12 @@ double reducedMass(const Body& body1, const Body& body2);
 
 // Carries the points' state over to a new patch, by identity. A point without a past is muted when the joint rocks.
 void renewPatch(JointContact& contact, const ContactPatch& patch);
+
+// Finds r and the springs anew where points of the present patch have moved.
+void followPatch(JointContact& contact);
+
+// Finds the springs anew where points have been muted, or are muted no longer.
+void updateSprings(JointContact& contact);
 
 // Forces and energies after a step dt that ended in the present patch, velocities those of that step.
 void updateForces(JointContact& contact, const Body& body1, const Body& body2, double dt);

@@ -1,6 +1,7 @@
 #include "dynamics/compliant/time_step.hpp"
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <cmath>
 #include <limits>
 
@@ -12,52 +13,58 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
 struct BodyMatrices {
 	Matrix6 stiffness = Matrix6::Zero(), damping = Matrix6::Zero(); // about the centre, global axes
+	bool hasFreeNeighbour {false};
 };
 
-// Those of a body whose neighbours move freely are doubled.
-std::vector<BodyMatrices> bodyMatrices(const std::vector<Body>& bodies, const std::vector<JointContact>& contacts)
+// Adds J^T k J of a point at the end of the arm, J = (1, -arm x): the rows of k (arm x) are those of k, each times (cross) the arm.
+void addPoint(Matrix6& sum, const Vector3& arm, const Matrix3& point)
 {
-	std::vector<BodyMatrices> result(bodies.size());
-	std::vector<bool> freeNeighbour(bodies.size(), false);
+	const Matrix3 turned = point.rowwise().cross(arm);
+	sum.topLeftCorner<3, 3>() += point;
+	sum.topRightCorner<3, 3>() -= turned;
+	sum.bottomLeftCorner<3, 3>() -= turned.transpose();
+	sum.bottomRightCorner<3, 3>() += turned.colwise().cross(arm);
+}
+
+// Those of a body whose neighbours move freely are doubled. The result holds until the next call: it keeps its memory from step to step.
+const std::vector<BodyMatrices>& bodyMatrices(const std::vector<Body>& bodies, const std::vector<JointContact>& contacts)
+{
+	thread_local std::vector<BodyMatrices> result;
+	result.assign(bodies.size(), {});
 	for (const JointContact& contact : contacts) {
 		const bool bothFree = !bodies[contact.body1].prescribed && !bodies[contact.body2].prescribed;
-		const double mass = reducedMass(bodies[contact.body1], bodies[contact.body2]), turnShare = contact.turnShare();
+		const double mass = reducedMass(bodies[contact.body1], bodies[contact.body2]), turnShare = contact.turnShare;
 		const Vector3& n = contact.patch.normal;
 		const auto tensor = [&n](double normal, double shear) -> Matrix3 {
 			return (normal - shear) * n * n.transpose() + shear * Matrix3::Identity();
 		};
-		const auto add = [&](Matrix6& sum, const Vector3& arm, const Matrix3& point) {
-			Matrix3 cross; // velocity at the point: v - cross w
-			cross << 0, -arm.z(), arm.y(), arm.z(), 0, -arm.x(), -arm.y(), arm.x(), 0;
-			const Matrix3 turned = point * cross;
-			sum.topLeftCorner<3, 3>() += point;
-			sum.topRightCorner<3, 3>() -= turned;
-			sum.bottomLeftCorner<3, 3>() -= turned.transpose();
-			sum.bottomRightCorner<3, 3>() += cross.transpose() * turned;
-		};
-		// Adds a closed face: a share of the normal springs acts at the points and the rest at their centroid.
-		const auto addFace = [&](Matrix6& sum, const Vector3& center, double normal, double shear) {
-			Vector3 centroid = Vector3::Zero();
-			for (int i = 0; i < contact.size; ++i) {
-				const double weight = contact.patch.points[i].weight;
-				centroid += weight * contact.position(i);
-				add(sum, contact.position(i) - center, weight * tensor(turnShare * normal, shear));
-			}
-			add(sum, centroid - center, tensor((1 - turnShare) * normal, 0));
-		};
+		// A share of the normal springs and dashpots of a closed face acts at the points, and the rest at their centroid.
+		const double k = contact.normalStiffness(), c = contact.dampingNormal(mass), cShear = contact.dampingShear(mass);
+		const Matrix3 stiffness = tensor(turnShare * k, contact.law.shearStiffness * contact.stiffnessArea()),
+		              damping = tensor(turnShare * c, cShear);
 		for (int b : {contact.body1, contact.body2}) {
 			if (bodies[b].prescribed)
 				continue;
-			freeNeighbour[b] = freeNeighbour[b] || bothFree;
-			const Vector3& center = bodies[b].pose.position;
-			addFace(result[b].stiffness, center, contact.normalStiffness(), contact.law.shearStiffness * contact.stiffnessArea());
-			addFace(result[b].damping, center, contact.dampingNormal(mass), contact.dampingShear(mass));
+			result[b].hasFreeNeighbour |= bothFree;
+			const auto add = [&](const Vector3& place, const Matrix3& stiffnessThere, const Matrix3& dampingThere) {
+				const Vector3 arm = place - bodies[b].pose.position;
+				addPoint(result[b].stiffness, arm, stiffnessThere);
+				addPoint(result[b].damping, arm, dampingThere);
+			};
+			Vector3 centroid = Vector3::Zero();
+			for (int i = 0; i < contact.size; ++i) {
+				const double weight = contact.patch.points[i].weight;
+				const Vector3 place = contact.position(i);
+				centroid += weight * place;
+				add(place, weight * stiffness, weight * damping);
+			}
+			add(centroid, tensor((1 - turnShare) * k, 0), tensor((1 - turnShare) * c, 0));
 		}
 	}
-	for (size_t b = 0; b < bodies.size(); ++b)
-		if (freeNeighbour[b]) {
-			result[b].stiffness *= 2;
-			result[b].damping *= 2;
+	for (BodyMatrices& ofBody : result)
+		if (ofBody.hasFreeNeighbour) {
+			ofBody.stiffness *= 2;
+			ofBody.damping *= 2;
 		}
 	return result;
 }
@@ -75,7 +82,7 @@ Matrix6 massMatrix(const Body& body)
 
 double criticalTimeStep(const std::vector<Body>& bodies, const std::vector<JointContact>& contacts)
 {
-	const auto matrices = bodyMatrices(bodies, contacts);
+	const auto& matrices = bodyMatrices(bodies, contacts);
 	double highest = 0; // omega^2
 	for (size_t b = 0; b < bodies.size(); ++b) {
 		if (bodies[b].prescribed)
@@ -99,9 +106,16 @@ double largestTimeStep(const std::vector<Body>& bodies, const std::vector<JointC
 	return accepted;
 }
 
+double chosenTimeStep(const std::vector<Body>& bodies, const std::vector<JointContact>& contacts, double fraction)
+{
+	constexpr double ofLargest =
+	    0.75; // larger: it becomes unstable where blocks move a little; smaller: scenes without need take a shorter step
+	return std::min(fraction * criticalTimeStep(bodies, contacts), ofLargest * largestTimeStep(bodies, contacts));
+}
+
 bool isStableTimeStep(const std::vector<Body>& bodies, const std::vector<JointContact>& contacts, double dt, double undamped)
 {
-	const auto matrices = bodyMatrices(bodies, contacts);
+	const auto& matrices = bodyMatrices(bodies, contacts);
 	for (size_t b = 0; b < bodies.size(); ++b) {
 		if (bodies[b].prescribed)
 			continue;

@@ -20,4 +20,8 @@ double largestTimeStep(const std::vector<Body>& bodies, const std::vector<JointC
 // `undamped`. Much cheaper than the two above.
 bool isStableTimeStep(const std::vector<Body>& bodies, const std::vector<JointContact>& contacts, double dt, double undamped = 0);
 
+// The step that a run takes which may choose, s: `fraction` of the critical step, which accuracy asks for, unless dashpots, which make the
+// largest one shorter, ask for less.
+double chosenTimeStep(const std::vector<Body>& bodies, const std::vector<JointContact>& contacts, double fraction);
+
 } // namespace masonry

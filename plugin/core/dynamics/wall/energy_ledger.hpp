@@ -74,7 +74,7 @@ private:
 	LaneArray before;                                           // V-, m/s
 	LaneArray undriven;                                         // packs of the prescribed bodies without a drive, m/s
 	double kinetic {0}, baseWork {0}, friction {0}, forces {0}; // J
-	double lifted {0};                                          // work of the forces on the way that Lift adds, J
+	double lifted {0};                                          // work of the forces on the way that the position projection adds, J
 	double power {0};                                           // of the weights after the part, W
 	double shifted {0};                                         // by which the step's parts would change potentialShift, J
 	double taken {0}, gained {0};                               // J

@@ -5,7 +5,7 @@
 //     frames and gaps at the start of the step (ContactSet); while nothing moves, every few steps
 //     impacts and jumps of the base at the instant between two steps (RockingEvents, BasePulse, CappedSolve)
 //     V by the contact laws, all at once (AdmmSolver)
-//     q += h V, and penetrations that are left are taken off by positions alone (Lift)
+//     q += h V, and penetrations that are left are taken off by positions alone (PositionProjection)
 //     energies (EnergyLedger)
 //
 // Positions are first order in the step. V belongs to its middle, as in a leapfrog, and potential energy is shown for the middle too

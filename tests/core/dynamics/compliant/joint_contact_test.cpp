@@ -1,6 +1,6 @@
 // Forces of one compliant joint.
 #include "contact/box_box.hpp"
-#include "dynamics/compliant/joint_groups.hpp"
+#include "dynamics/compliant/joint_system.hpp"
 #include "impact/impulse_problem.hpp"
 #include <catch.hpp>
 #include <cmath>

@@ -47,6 +47,7 @@ struct Assembly {
 			point.position1 = point.position2 = middle + anyVector(0.5);
 			point.weight = 1. / contact.size;
 		}
+		followPatch(contact);
 		contacts.push_back(contact);
 	}
 
@@ -67,7 +68,7 @@ struct Assembly {
 		for (const JointContact& contact : contacts) {
 			const double inverse = bodies[contact.body1].inverseMass() + bodies[contact.body2].inverseMass();
 			// The face turns as if springs of the share r stood at its points and the rest at their centroid (joint_contact.hpp).
-			const double turnShare = contact.turnShare();
+			const double turnShare = contact.turnShare;
 			Vector3 centroid = Vector3::Zero();
 			for (int i = 0; i < contact.size; ++i)
 				centroid += contact.patch.points[i].weight * contact.patch.points[i].position1;

@@ -142,3 +142,42 @@ TEST_CASE("strict forces are those of statics")
 	CHECK(std::max(pair[0].points[0].force[0], pair[0].points[1].force[0]) == Approx(1.2 * weight).epsilon(1e-5));
 	CHECK(std::max(pair[1].points[0].force[0], pair[1].points[1].force[0]) == Approx(0.5 / 0.8 * weight).epsilon(1e-5));
 }
+
+// A script may change laws in any step: told of that, a wall at rest whose laws are as they were goes on with the same bits.
+TEST_CASE("laws that are set to what they were change nothing")
+{
+	Scene quiet, told;
+	for (Scene* scene : {&quiet, &told}) {
+		scene->addWall(4, 3);
+		scene->run(0.05, 1e-3);
+	}
+	for (int k = 0; k < 50; ++k) {
+		++told.system.laws;
+		quiet.advance(1e-3);
+		told.advance(1e-3);
+		for (size_t b = 0; b < quiet.system.bodies.size(); ++b) {
+			const auto &one = quiet.system.bodies[b], &other = told.system.bodies[b];
+			REQUIRE((one.pose.position == other.pose.position && one.velocity == other.velocity));
+		}
+	}
+}
+
+// Pushed by half its weight, a block stands at the friction 0.7, and slides with (0.5 - 0.3) g from the step on in which it is 0.3.
+TEST_CASE("friction that is changed under a block at rest acts in the next step")
+{
+	Scene scene;
+	addBlock(scene.system, {0.5, 0.25}, {0, 0.25});
+	const auto push = [&](int steps) {
+		for (int k = 0; k < steps; ++k) {
+			scene.system.bodies[1].force[0] = 0.5 * g * scene.system.bodies[1].mass;
+			scene.advance(1e-3);
+		}
+	};
+	push(50);
+	CHECK(std::abs(scene.system.bodies[1].velocity[0]) < 1e-6);
+	for (auto& pair : scene.system.pairs)
+		pair.friction = 0.3;
+	++scene.system.laws;
+	push(100);
+	CHECK(scene.system.bodies[1].velocity[0] == Approx(0.2 * g * 0.1).epsilon(0.02)); // what gravity gives in a step
+}

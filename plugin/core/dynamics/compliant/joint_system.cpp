@@ -1,0 +1,103 @@
+#include "dynamics/compliant/joint_system.hpp"
+#include <algorithm>
+
+namespace masonry {
+
+double supportPower(const JointSystem& s)
+{
+	double power = 0;
+	const auto moved = [&](int b) { return s.bodies[b].prescribed && std::find(s.rim.begin(), s.rim.end(), b) == s.rim.end(); };
+	for (const JointContact& contact : s.contacts)
+		for (int i = 0; i < contact.size; ++i)
+			for (const auto& [b, sign] : {std::pair(contact.body1, 1.), std::pair(contact.body2, -1.)})
+				if (moved(b))
+					power += sign * contact.power(i, s.bodies[b]);
+	return power;
+}
+
+double storedEnergy(const JointSystem& s)
+{
+	double sum = 0;
+	for (const JointContact& contact : s.contacts)
+		sum += contact.energy.elastic;
+	return sum;
+}
+
+double mechanicalEnergy(const JointSystem& s)
+{
+	std::vector<Body> bodies = s.bodies; // velocities are half a step behind
+	const auto push = [&](int b, const Vector3& force, const Vector3& moment) {
+		bodies[b].velocity += 0.5 * s.dt * bodies[b].inverseMass() * force;
+		bodies[b].angularVelocity += 0.5 * s.dt * (bodies[b].inverseInertia() * moment);
+	};
+	for (size_t b = 0; b < bodies.size(); ++b)
+		push(b, bodies[b].force, bodies[b].torque);
+	for (const JointContact& contact : s.contacts)
+		for (int i = 0; i < contact.size; ++i)
+			for (const auto& [b, sign] : {std::pair(contact.body1, -1.), std::pair(contact.body2, 1.)}) {
+				const Vector3 force = sign * contact.force(i);
+				push(b, force, sign * contact.moment(i, bodies[b].pose.position));
+			}
+	double energy = kineticEnergy(bodies) + storedEnergy(s);
+	for (const Body& body : bodies)
+		if (!body.prescribed)
+			energy -= body.force.dot(body.pose.position);
+	return energy;
+}
+
+namespace {
+
+// Whether a point is a vertex of the body whose face is the reference. Where it is one of the other body too it goes by the name of body 2.
+bool isOfReference(const ContactPatch& patch, int i)
+{
+	const int identity = patch.points[i].identity;
+	if (patch.feature.kind == PatchKind::Face1)
+		return identity < 8;
+	if (patch.feature.kind != PatchKind::Face2 || identity < 8 || identity >= 16)
+		return false;
+	int unnamed = patch.feature.vertices & 0xff;
+	for (int k = 0; k < patch.size; ++k)
+		if (patch.points[k].identity < 8)
+			unnamed &= ~(1 << patch.points[k].identity);
+	return unnamed == 0;
+}
+
+// How the gap of point i, along the patch's normal, depends on the motion of its bodies at it: a vertex of the reference body goes over the
+// incident face, and along that it may slide.
+Vector3 opening(const JointSystem& s, const JointContact& contact, int i)
+{
+	const Vector3& n = contact.patch.normal;
+	if (!isOfReference(contact.patch, i))
+		return n;
+	const PatchFeature& faces = contact.patch.feature;
+	const bool first = faces.kind == PatchKind::Face1;
+	const Vector3 incident =
+	    s.bodies[first ? contact.body2 : contact.body1].pose.orientation * Vector3::Unit((first ? faces.feature2 : faces.feature1) / 2);
+	return incident / incident.dot(n);
+}
+
+} // namespace
+
+void moveContacts(JointSystem& s, const std::vector<Body>& before)
+{
+	for (JointContact& contact : s.contacts) {
+		const auto carry = [&](int b, const Vector3& point) { return s.bodies[b].pose.toGlobal(before[b].pose.toLocal(point)); };
+		const auto turned = [&](int b) { // a small turn
+			return Vector3(2 * (s.bodies[b].pose.orientation * before[b].pose.orientation.conjugate()).vec());
+		};
+		const Vector3 turn = turned(contact.body2) - turned(contact.body1);
+		for (int i = 0; i < contact.size; ++i) {
+			PatchPoint& point = contact.patch.points[i];
+			const Vector3 old = point.position2 - point.position1;
+			point.position1 = carry(contact.body1, point.position1);
+			point.position2 = carry(contact.body2, point.position2);
+			const Vector3 moved = point.position2 - point.position1 - old;
+			const Vector3& n = contact.patch.normal;
+			point.gap += opening(s, contact, i).dot(moved);
+			contact.points[i].shear += moved - n * n.dot(moved) + contact.gripMotion(i, turn);
+		}
+		followPatch(contact);
+	}
+}
+
+} // namespace masonry

@@ -1,0 +1,99 @@
+#include "compliant_scene.hpp"
+#include "BlockGeom.hpp"
+#include "BlockMat.hpp"
+#include "BlockPhys.hpp"
+#include "Ip2_BlockMat_BlockMat_BlockPhys.hpp"
+#include "checked_body.hpp"
+#include "core_state.hpp"
+#include "sentence.hpp"
+
+#include "contact/box_box.hpp"
+#include <algorithm>
+#include <pkg/common/Box.hpp>
+
+namespace yade {
+
+void CompliantScene::read(const Scene& scene, Real dampingRatio, masonry::CompliantStep& step)
+{
+	readBodies(scene, step);
+	readJoints(scene, dampingRatio, step.system);
+}
+
+void CompliantScene::readBodies(const Scene& scene, masonry::CompliantStep& step)
+{
+	ids.clear();
+	step.sizes.clear();
+	step.system.bodies.clear();
+	index.assign(scene.bodies->size(), -1);
+	for (const auto& body : scene.bodies->body) {
+		if (!body || !dynamic_cast<BlockMat*>(body->material.get()))
+			continue;
+		const auto* box = dynamic_cast<Box*>(body->shape.get());
+		if (!box)
+			throw std::invalid_argument(sentence("O.bodies[", body->id, "] has a BlockMat and is no Box: blocks touch boxes only."));
+		checkBody(*body);
+		index[body->id] = int(ids.size());
+		ids.push_back(body->id);
+		step.sizes.push_back(box->extents.minCoeff());
+		step.system.bodies.push_back(coreBody(*body));
+	}
+}
+
+void CompliantScene::readJoints(const Scene& scene, Real dampingRatio, masonry::JointSystem& system)
+{
+	pairs.clear();
+	system.contacts.clear();
+	vector<Interaction*> found;
+	for (const auto& interaction : *scene.interactions)
+		if (interaction->isReal() && dynamic_cast<BlockPhys*>(interaction->phys.get()))
+			found.push_back(interaction.get());
+	std::sort(found.begin(), found.end(),
+	          [](const Interaction* a, const Interaction* b) { return std::minmax(a->id1, a->id2) < std::minmax(b->id1, b->id2); });
+	const auto isPrescribed = [&](int id) { return system.bodies[index[id]].prescribed; };
+	for (const Interaction* interaction : found) {
+		if (isPrescribed(interaction->id1) && isPrescribed(interaction->id2))
+			continue; // bases that touch do not push each other
+		auto& geom = static_cast<BlockGeom&>(*interaction->geom);
+		auto& phys = static_cast<BlockPhys&>(*interaction->phys);
+		if (!(phys.normalStiffness > 0 && phys.shearStiffness > 0))
+			throw std::runtime_error(
+			    sentence("The joint of bodies ", interaction->id1, " and ", interaction->id2,
+			             " has normalStiffness = ", phys.normalStiffness, ", shearStiffness = ", phys.shearStiffness,
+			             ": both must be positive, in Pa/m. Give them to BlockMat, or let dem.engines(model='compliant') choose."));
+		phys.check(interaction->id1, interaction->id2);
+		masonry::JointContact& contact = system.contacts.emplace_back(coreContact(*interaction, geom, phys, dampingRatio));
+		contact.body1 = index[contact.body1];
+		contact.body2 = index[contact.body2];
+		pairs.push_back({&geom, &phys});
+	}
+}
+
+vector<masonry::JointContact> CompliantScene::boxesInTouch(const Scene& scene, Real dampingRatio, const masonry::CompliantStep& step) const
+{
+	const vector<masonry::Body>& bodies = step.system.bodies;
+	vector<masonry::JointContact> contacts;
+	Ip2_BlockMat_BlockMat_BlockPhys law;
+	for (size_t a = 0; a < ids.size(); ++a)
+		for (size_t b = a + 1; b < ids.size(); ++b) {
+			if (bodies[a].prescribed && bodies[b].prescribed)
+				continue;
+			const Body &body1 = *(*scene.bodies)[ids[a]], &body2 = *(*scene.bodies)[ids[b]];
+			const Vector3r &half1 = static_cast<Box&>(*body1.shape).extents, &half2 = static_cast<Box&>(*body2.shape).extents;
+			if ((body1.state->pos - body2.state->pos).norm() > half1.norm() + half2.norm())
+				continue;
+			masonry::ContactPatch patch;
+			const Real near = 1e-2 * std::min(step.sizes[a], step.sizes[b]);
+			if (!masonry::collide({half1}, bodies[a].pose, {half2}, bodies[b].pose, near, {}, patch))
+				continue;
+			const shared_ptr<Interaction> interaction(new Interaction(ids[a], ids[b]));
+			law.go(body1.material, body2.material, interaction);
+			masonry::JointContact& contact = contacts.emplace_back();
+			contact.body1 = int(a);
+			contact.body2 = int(b);
+			contact.law = static_cast<BlockPhys&>(*interaction->phys).law(dampingRatio);
+			renewPatch(contact, patch);
+		}
+	return contacts;
+}
+
+} // namespace yade

@@ -1,0 +1,95 @@
+#pragma once
+// Boxes on compliant joints that go by masonry::CompliantStep, with what a scene does around it: the search for patches before, and the
+// motion of the bodies after. Test use only.
+#include "contact/box_box.hpp"
+#include "dynamics/compliant/compliant_step.hpp"
+#include "dynamics/compliant/time_step.hpp"
+#include <algorithm>
+#include <vector>
+
+struct CompliantBlocks {
+	masonry::CompliantStep step;
+	masonry::CompliantReport report; // of the last step
+	bool fits {true};                // the last step was stable
+	std::vector<masonry::Box> boxes;
+	masonry::JointLaw law;
+	std::vector<masonry::ImpactRecord> impacts;
+	std::vector<double> impactTimes;
+	double time {0};
+	masonry::JumpsOfBase jumpsOfBase = [](const auto&) { return std::vector<masonry::BaseJump>(); };
+
+	std::vector<masonry::Body>& bodies() { return step.system.bodies; }
+	const std::vector<masonry::Body>& bodies() const { return step.system.bodies; }
+
+	int addBox(const masonry::Vector3& size, const masonry::Vector3& centre, double density, bool prescribed)
+	{
+		masonry::Body body;
+		body.pose.position = centre;
+		body.mass = density * size.prod();
+		const masonry::Vector3 s = size.cwiseAbs2();
+		body.inertia = body.mass / 12 * masonry::Vector3(s.y() + s.z(), s.x() + s.z(), s.x() + s.y());
+		body.prescribed = prescribed;
+		boxes.push_back({size / 2});
+		step.sizes.push_back(size.minCoeff() / 2);
+		bodies().push_back(body);
+		return int(boxes.size()) - 1;
+	}
+
+	void findPatches()
+	{
+		const std::vector<masonry::JointContact> known = std::move(step.system.contacts);
+		step.system.contacts.clear();
+		for (int a = 0; a < int(boxes.size()); ++a)
+			for (int b = a + 1; b < int(boxes.size()); ++b) {
+				if (bodies()[a].prescribed && bodies()[b].prescribed)
+					continue;
+				const auto old = std::find_if(known.begin(), known.end(), [&](const auto& c) { return c.body1 == a && c.body2 == b; });
+				masonry::JointContact contact = old == known.end() ? masonry::JointContact() : *old;
+				masonry::ContactPatch patch;
+				const double margin = 1e-3 * boxes[b].halfSize.minCoeff();
+				if (!masonry::collide(boxes[a], bodies()[a].pose, boxes[b], bodies()[b].pose, margin, contact.patch.feature, patch))
+					continue;
+				contact.body1 = a;
+				contact.body2 = b;
+				contact.law = law;
+				renewPatch(contact, patch);
+				step.system.contacts.push_back(contact);
+			}
+	}
+
+	void advance()
+	{
+		using namespace masonry;
+		for (Body& body : bodies()) {
+			body.force.setZero();
+			body.torque.setZero();
+		}
+		findPatches();
+		for (JointContact& contact : step.system.contacts)
+			updateForces(contact, bodies()[contact.body1], bodies()[contact.body2], step.system.dt);
+		fits = step.fitTimeStep();
+		report = step.apply(jumpsOfBase);
+		step.system.dt -= step.lowered;
+		for (const ImpactRecord& record : report.impacts) {
+			impacts.push_back(record);
+			impactTimes.push_back(time - record.before);
+		}
+		for (size_t b = 0; b < bodies().size(); ++b)
+			move(bodies()[b], step.loads[b], step.system.dt);
+		time += step.system.dt;
+	}
+
+	static void move(masonry::Body& body, const masonry::JointLoad& joints, double dt)
+	{
+		using namespace masonry;
+		if (!body.prescribed) {
+			const Quaternion& q = body.pose.orientation;
+			// Planar tests and small spins: the gyroscopic term is left to the momentum form.
+			Vector3 L = q * body.inertia.cwiseProduct(q.conjugate() * body.angularVelocity);
+			body.velocity += (body.force + joints.force) / body.mass * dt;
+			L += (body.torque + joints.moment) * dt;
+			body.angularVelocity = q * (q.conjugate() * L).cwiseQuotient(body.inertia);
+		}
+		body.advance(dt);
+	}
+};
