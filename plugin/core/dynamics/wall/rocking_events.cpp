@@ -100,6 +100,12 @@ double RockingEvents<K>::away(const ContactSet<K>& c, const Point& at, const Joi
 	return (from - joint.direction * joint.direction.dot(from)).norm();
 }
 
+template <class K>
+bool RockingEvents<K>::isOfPivot(const ContactSet<K>& c, int i, const Joint& joint) const
+{
+	return away(c, points[i], joint) <= tolerance::wall::pivot * c.length;
+}
+
 // False: the joint bears at more than one place, or nowhere.
 template <class K>
 bool RockingEvents<K>::findPivot(const ContactSet<K>& c, Joint& joint) const
@@ -113,7 +119,7 @@ bool RockingEvents<K>::findPivot(const ContactSet<K>& c, Joint& joint) const
 		if (const Vector3 from = positionOf(c, points[i]) - joint.place; K::dimension == 3 && from.norm() > edge.norm())
 			edge = from;
 	joint.direction = edge.norm() > narrow ? Vector3(edge.normalized()) : Vector3(Vector3::Zero());
-	return std::all_of(bearing.begin(), bearing.end(), [&](int i) { return away(c, points[i], joint) <= narrow; });
+	return std::all_of(bearing.begin(), bearing.end(), [&](int i) { return isOfPivot(c, i, joint); });
 }
 
 // Normals and arms stand still in a step: the centripetal acceleration a of a pivot comes as a jump a h of its velocity where a step
@@ -148,7 +154,7 @@ std::vector<SpinRow<K>> RockingEvents<K>::find(const RigidSystem<K>& s, const Co
 	for (size_t b = 0; b < std::min(change.size(), predicted.size()); ++b)
 		predicted[b] += noMass * change[b];
 	const double g = scale::acceleration(s), open = tolerance::mergedClosing * c.length,
-	             fast = tolerance::restSpeed * std::sqrt(g * c.length), narrow = tolerance::wall::pivot * c.length;
+	             fast = tolerance::restSpeed * std::sqrt(g * c.length);
 	constexpr double together = 2; // steps within which closings are one
 	for (int begin = 0, end = 0; begin < int(points.size()); begin = end) {
 		bearing.clear();
@@ -169,7 +175,7 @@ std::vector<SpinRow<K>> RockingEvents<K>::find(const RigidSystem<K>& s, const Co
 		for (int i = begin; i < end; ++i) {
 			const Contact<K> at = contact(c, points[i]);
 			const double gap = at.p.gap[at.lane], rate = at.rate(predicted);
-			if (at.impulse() > 0 || rate >= 0 || away(c, points[i], joint) <= narrow)
+			if (at.impulse() > 0 || rate >= 0 || isOfPivot(c, i, joint))
 				continue;
 			lands |= gap + h * rate <= 0;
 			if (gap + together * h * rate <= 0)
@@ -189,8 +195,31 @@ std::vector<SpinRow<K>> RockingEvents<K>::find(const RigidSystem<K>& s, const Co
 
 // If there are several supports, the one under the point farthest from the old pivot gives the law.
 template <class K>
-bool RockingEvents<K>::describe(const RigidSystem<K>& s, const ContactSet<K>& c, const Joint& joint, const std::vector<int>& closing,
-                                Landing& landing) const
+typename RockingEvents<K>::Support RockingEvents<K>::takeSupport(const RigidSystem<K>& s, const ContactSet<K>& c, const Joint& joint,
+                                                                 const std::vector<int>& closing, Landing& landing) const
+{
+	Support result;
+	double farthest = -1;
+	for (const int i : closing) {
+		const double distant = away(c, points[i], joint);
+		if (distant <= farthest)
+			continue;
+		farthest = distant;
+		const Contact<K> at = contact(c, points[i]);
+		landing.block = at.block;
+		landing.support = at.support;
+		landing.asked = s.pairs[c.features[points[i].group].pair[points[i].lane]].restitution;
+		landing.speed = std::max(0., -at.rate(predicted));
+		landing.share = landing.speed > 0 ? std::clamp(1 - at.p.gap[at.lane] / (h * landing.speed), 0., 1.) : 0;
+		result = {positionOf(c, points[i]), (at.second ? 1 : -1) * normalOf(c, points[i])};
+	}
+	return result;
+}
+
+// The axis of the impact law, which needs the points of the new support and of the old one, and their bodies.
+template <class K>
+Vector3 RockingEvents<K>::axisOf(const ContactSet<K>& c, const Joint& joint, const std::vector<int>& closing, const Landing& landing,
+                                 const Vector3& normal) const
 {
 	std::vector<masonry::Body> bodies;
 	std::vector<int> numbers;
@@ -212,58 +241,62 @@ bool RockingEvents<K>::describe(const RigidSystem<K>& s, const ContactSet<K>& c,
 		               normalOf(c, points[i]), 0});
 	};
 	ClosingJoint law {};
-	double farthest = -1;
-	Vector3 place = Vector3::Zero(); // of the new support
-	for (const int i : closing) {
-		add(i);
-		const double distant = away(c, points[i], joint);
-		if (distant <= farthest)
-			continue;
-		farthest = distant;
-		const Contact<K> at = contact(c, points[i]);
-		landing.block = at.block;
-		landing.support = at.support;
-		landing.asked = s.pairs[c.features[points[i].group].pair[points[i].lane]].restitution;
-		landing.speed = std::max(0., -at.rate(predicted));
-		landing.share = landing.speed > 0 ? std::clamp(1 - at.p.gap[at.lane] / (h * landing.speed), 0., 1.) : 0;
-		law.normal = (at.second ? 1 : -1) * normalOf(c, points[i]);
-		place = positionOf(c, points[i]);
-	}
-	if (closing.empty())
-		return false;
+	std::for_each(closing.begin(), closing.end(), add);
 	law.block = number(landing.block);
 	law.support = number(landing.support);
+	law.normal = normal;
 	law.oldBegin = int(all.size());
-	const double narrow = tolerance::wall::pivot * c.length;
+	for (int i = joint.begin; i < joint.end; ++i)
+		if (isOfPivot(c, i, joint))
+			add(i);
+	law.oldEnd = int(all.size());
+	return rockingAxis(bodies, law, all);
+}
+
+// What the two ends of the old pivot and the new support add to the motion that the block is carried along by. Returns the lever of the new
+// support about the old one, m, and turns the axis so that it is positive; carriers are right where it is not too short.
+template <class K>
+double RockingEvents<K>::takeCarriers(const ContactSet<K>& c, const Joint& joint, const Support& support, Landing& landing) const
+{
 	int near = -1, far = -1; // ends of the old pivot
 	for (int i = joint.begin; i < joint.end; ++i)
-		if (away(c, points[i], joint) <= narrow) {
-			add(i);
+		if (isOfPivot(c, i, joint)) {
 			const auto along = [&](int k) { return joint.direction.dot(positionOf(c, points[k])); };
 			if (near < 0 || along(i) < along(near))
 				near = i;
 			if (far < 0 || along(i) > along(far))
 				far = i;
 		}
-	law.oldEnd = int(all.size());
-	landing.axis = rockingAxis(bodies, law, all);
-	if (landing.axis.isZero(0))
-		return false;
-	const Vector3 from = place - positionOf(c, points[near]), edge = positionOf(c, points[far]) - positionOf(c, points[near]);
-	double lever = landing.axis.dot(law.normal.cross(from));
+	const Vector3 from = support.place - positionOf(c, points[near]), edge = positionOf(c, points[far]) - positionOf(c, points[near]);
+	double lever = landing.axis.dot(support.normal.cross(from));
 	if (lever < 0) {
 		landing.axis = -landing.axis;
 		lever = -lever;
 	}
-	if (!(lever > minLever * c.length))
-		return false;
-	const double length = edge.norm(), share = length > narrow ? from.dot(edge) / (length * length) : 0;
+	const double length = edge.norm(), share = length > tolerance::wall::pivot * c.length ? from.dot(edge) / (length * length) : 0;
 	const auto carrier = [&](const Vector3& where, int body, double perLength) {
 		return Carrier {body, perLength / lever, where - inSpace(c.position(body))};
 	};
 	landing.carriers = {carrier(positionOf(c, points[near]), contact(c, points[near]).support, 1 - share),
-	                    carrier(positionOf(c, points[far]), contact(c, points[far]).support, share), carrier(place, landing.support, -1)};
-	landing.normal = law.normal;
+	                    carrier(positionOf(c, points[far]), contact(c, points[far]).support, share),
+	                    carrier(support.place, landing.support, -1)};
+	landing.normal = support.normal;
+	return lever;
+}
+
+template <class K>
+bool RockingEvents<K>::describe(const RigidSystem<K>& s, const ContactSet<K>& c, const Joint& joint, const std::vector<int>& closing,
+                                Landing& landing) const
+{
+	if (closing.empty())
+		return false;
+	const Support support = takeSupport(s, c, joint, closing, landing);
+	landing.axis = axisOf(c, joint, closing, landing, support.normal);
+	if (landing.axis.isZero(0))
+		return false;
+	const double lever = takeCarriers(c, joint, support, landing);
+	if (!(lever > minLever * c.length))
+		return false;
 	landing.before = row(c, landing, 1).rate(predicted);
 	landing.speed = landing.before * lever;
 	const double minSpin = scale::minSpin(s, landing.block);
@@ -296,11 +329,10 @@ template <class K>
 void RockingEvents<K>::take(const RigidSystem<K>& s, const ContactSet<K>& c, const AdmmSolver<K>& solver)
 {
 	landings.clear();
-	const double narrow = tolerance::wall::pivot * c.length;
 	for (const Joint& joint : rocking) {
 		closing.clear();
 		for (int i = joint.begin; i < joint.end; ++i)
-			if (contact(c, points[i]).impulse() > 0 && away(c, points[i], joint) > narrow)
+			if (contact(c, points[i]).impulse() > 0 && !isOfPivot(c, i, joint))
 				closing.push_back(i);
 		Landing landing;
 		if (joint.landing >= 0)

@@ -87,10 +87,19 @@ private:
 		Vector3 place, direction; // of the pivot: a corner, or an edge and its direction; in the plane direction is zero
 		int landing;              // expected, by number; -1: none
 	};
+	struct Support { // the new one
+		Vector3 place {Vector3::Zero()}, normal {Vector3::Zero()};
+	};
 	void gather(const RigidSystem<K>& system, const ContactSet<K>& contacts);
 	bool findPivot(const ContactSet<K>& contacts, Joint& joint) const;
 	bool hops(const ContactSet<K>& contacts, const Point& point, double acceleration, double h) const;
 	double away(const ContactSet<K>& contacts, const Point& point, const Joint& joint) const;
+	bool isOfPivot(const ContactSet<K>& contacts, int point, const Joint& joint) const;
+	Support takeSupport(const RigidSystem<K>& system, const ContactSet<K>& contacts, const Joint& joint, const std::vector<int>& closing,
+	                    Landing& landing) const;
+	Vector3 axisOf(const ContactSet<K>& contacts, const Joint& joint, const std::vector<int>& closing, const Landing& landing,
+	               const Vector3& normal) const;
+	double takeCarriers(const ContactSet<K>& contacts, const Joint& joint, const Support& support, Landing& landing) const;
 	// The landing of a joint on these points; false: it does not rock.
 	bool describe(const RigidSystem<K>& system, const ContactSet<K>& contacts, const Joint& joint, const std::vector<int>& closing,
 	              Landing& landing) const;

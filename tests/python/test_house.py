@@ -1,4 +1,4 @@
-"""Includes of the plugin point downwards only: the table of docs/developing.md, "The house"."""
+"""The house: includes of the plugin point downwards only, and files and functions are short."""
 
 import re
 from pathlib import Path
@@ -61,15 +61,51 @@ def test_every_folder_of_the_core_is_in_the_table():
     assert folders == set(BELOW)
 
 
-def test_adapters_include_no_circle():
-    """A class of plugin/yade (header and source are one) never includes what includes it."""
+def test_headers_of_adapters_include_no_circle():
     graph = {}
     for path in sources("yade"):
-        own = graph.setdefault(path.stem, set())
-        own.update(Path(name).stem for name in includes(path) if "/" not in name and (path.parent / name).exists() and Path(name).stem != path.stem)
+        if path.suffix == ".hpp":
+            graph[path.name] = {name for name in includes(path) if "/" not in name and (path.parent / name).exists()}
     while leaves := [name for name, below in graph.items() if not below]:
         for leaf in leaves:
             del graph[leaf]
         for below in graph.values():
             below.difference_update(leaves)
     assert not graph, f"these include each other: {', '.join(sorted(graph))}"
+
+
+# Longer on purpose, and why: lines of a file, or of the function that begins with these words.
+LONGER = {
+    "core/dynamics/wall/admm_solver.cpp": "the lanes of one iteration, which the compiler must see together to inline them",
+    "core/dynamics/wall/contact_set.cpp": "the one owner of a structure's points",
+    "core/dynamics/wall/rocking_events.cpp": "the one owner of the landings of a step",
+    "yade/MoreauJeanIntegrator.cpp: void MoreauJeanIntegrator::count": "one sentence for each kind of failure",
+}
+
+
+def functions(text):
+    """First line and number of lines of each function that begins at the left margin."""
+    lines = text.split("\n")
+    start = None
+    for k, line in enumerate(lines):
+        if line == "{":
+            start = k
+        elif line == "}" and start is not None:
+            first = start - 1
+            while first > 0 and lines[first].startswith(("\t", " ")):
+                first -= 1
+            yield lines[first], k - start + 1
+            start = None
+
+
+def test_files_and_functions_are_short():
+    """At most 400 lines a file and 60 a function, except those of the table."""
+    found = set()
+    for path in [*sources("core"), *sources("yade"), *sources("guard"), *sources("python")]:
+        name, text = str(path.relative_to(PLUGIN)), path.read_text()
+        if text.count("\n") > 400:
+            found.add(name)
+        for first, lines in functions(text):
+            if lines > 60:
+                found.add(f"{name}: {first.split('(')[0]}")
+    assert found == set(LONGER)
