@@ -3,6 +3,7 @@
 #include "dynamics/rigid/free_motion.hpp"
 #include "tolerances.hpp"
 #include <algorithm>
+#include <cmath>
 
 namespace masonry::rigid::assembly {
 
@@ -12,11 +13,16 @@ StepReport AssemblyStep<K>::advance(RigidSystem<K>& s, double dt)
 	report = {};
 	errors = {0, 0, s.kineticEnergy(), freeMass(s) * scale::acceleration(s) * scale::length(s)};
 	s.impacts.clear();
+	double part = 0; // s, of a step in which a structure lands
 	for (double left = dt; left > 0 && !report.diverged;) {
-		const double h = untilKink(s, left, dt);
-		advancePart(s, h);
+		double h = untilKink(s, left, dt);
+		if (part > 0)
+			h = std::min(h, left / std::max(1., std::round(left / part)));
+		const double done = advancePart(s, h, part == 0 && started);
+		if (done < h)
+			part = done;
 		++report.substeps;
-		left = h == left ? 0 : left - h;
+		left = done == left ? 0 : left - done;
 	}
 	for (const RigidBody<K>& body : s.bodies)
 		if (const double turn = dt * body.velocity.template tail<K::spins>().norm(); !body.prescribed && turn > tolerance::rigid::partTurn)
@@ -27,8 +33,9 @@ StepReport AssemblyStep<K>::advance(RigidSystem<K>& s, double dt)
 	return report;
 }
 
+// Returns the time that it has advanced; less than h where a structure lands and the step is `divisible`.
 template <class K>
-void AssemblyStep<K>::advancePart(RigidSystem<K>& s, double h)
+double AssemblyStep<K>::advancePart(RigidSystem<K>& s, double h, bool divisible)
 {
 	const Scales scales(s);
 	StepContext step(scales, h);
@@ -41,14 +48,20 @@ void AssemblyStep<K>::advancePart(RigidSystem<K>& s, double h)
 	contacts.setUnit(h);
 	if (!step.stands)
 		contacts.lean(s);
-	const LaneArray& expected = guess.changeIn(h);
 	takeInstants(s, step);
-	pulses.move(s, contacts, h);
-	contacts.limitMoved(s, step.fall);
-	ledger.open(s, contacts, pulses.halfBack(), h);
-	contacts.takeForces(s, h, loads);
-	solver.spins = events.find(s, contacts, expected, step);
-	const CappedReport result = solve(s, loads, expected.size() == loads.size() && solver.spins.empty() ? expected : none, step);
+	const double missed = report.velocityResidual;
+	CappedReport result = solveStep(s, step);
+	if (const int parts =
+	        divisible && !step.stands && solver.spins.empty() ? landingParts<K>(contacts.velocity, loads, solver.velocity, step.fall) : 1;
+	    parts > 1) {
+		h /= parts;
+		step = StepContext(scales, h);
+		report.velocityResidual = missed;
+		pulses.takeBack();
+		contacts.clearOpen();
+		contacts.setUnit(h);
+		result = solveStep(s, step);
+	}
 	contacts.addJammed(report.jammed);
 	const double level = tolerance::assembly::motion * tolerance::restSpeed * scales.speed;
 	const PointsReport ofPoints = solver.advanceGaps(contacts, h, level);
@@ -68,6 +81,19 @@ void AssemblyStep<K>::advancePart(RigidSystem<K>& s, double h)
 	s.moved = false;
 	started = true;
 	report.diverged |= !result.finite || !s.isFinite();
+	return h;
+}
+
+template <class K>
+CappedReport AssemblyStep<K>::solveStep(RigidSystem<K>& s, const StepContext& step)
+{
+	const LaneArray& expected = guess.changeIn(step.h);
+	pulses.move(s, contacts, step.h);
+	contacts.limitMoved(s, step.fall);
+	ledger.open(s, contacts, pulses.halfBack(), step.h);
+	contacts.takeForces(s, step.h, loads);
+	solver.spins = events.find(s, contacts, expected, step);
+	return solve(s, loads, expected.size() == loads.size() && solver.spins.empty() ? expected : none, step);
 }
 
 // Two things happen between two steps: first the impacts of the joints that landed in the last one, then the jumps of the base.

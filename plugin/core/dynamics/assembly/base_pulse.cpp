@@ -53,6 +53,7 @@ template <class K>
 void BasePulse<K>::move(const RigidSystem<K>& s, ContactSet<K>& c, double h)
 {
 	half.resize(velocity.size());
+	before = velocity;
 	for (size_t d = 0; d < velocity.size(); ++d) {
 		const typename K::Vector now = s.drives[d].meanVelocity(s.time, h);
 		half[d] = (velocity[d] - now) / 2;

@@ -17,6 +17,8 @@ public:
 	void apply(RigidSystem<K>& system, ContactSet<K>& contacts);
 	// The base in a step of length h from now on.
 	void move(const RigidSystem<K>& system, ContactSet<K>& contacts, double h);
+	// Undoes the last move, before another one of the same instant.
+	void takeBack() { velocity = before; }
 
 	double speed() const;                            // largest jump, m/s
 	const Vectors& halfBack() const { return half; } // from the velocity after an instant, or in a step, to the mean with that before
@@ -30,7 +32,7 @@ public:
 
 private:
 	void set(const RigidSystem<K>& system, ContactSet<K>& contacts) const;
-	Vectors jumps, half;
+	Vectors jumps, half, before;
 };
 
 } // namespace masonry::rigid::assembly

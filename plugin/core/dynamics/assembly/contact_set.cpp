@@ -337,6 +337,17 @@ void ContactSet<K>::setUnit(double h)
 	unit = h;
 }
 
+template <class K>
+void ContactSet<K>::clearOpen()
+{
+	for (Group<K>& group : groups)
+		for (PointLanes<K>& p : group.point) {
+			const Mask open = p.gap > all(tolerance::assembly::touching * length);
+			p.pn = open ? all(0) : p.pn;
+			p.pt = select(open, typename PointLanes<K>::Tangent {}, p.pt);
+		}
+}
+
 // A moved body stops all blocks at once, or carries so many times their weight.
 template <class K>
 void ContactSet<K>::limitMoved(const RigidSystem<K>& s, double fall)

@@ -158,6 +158,8 @@ public:
 	void lean(const RigidSystem<K>& system);
 	// Impulses are those of a time h from now on; not many times the last, or an impact's would become as many.
 	void setUnit(double h);
+	// Open points lose the impulses of a solve that is not used.
+	void clearOpen();
 	// Limits the normal impulses of prescribed bodies that move, for a step or an instant in which forces give the speed `fall`: where such
 	// bodies approach each other through free ones, no motion obeys the laws, and they go into these (contact_limits.hpp).
 	void limitMoved(const RigidSystem<K>& system, double fall);
