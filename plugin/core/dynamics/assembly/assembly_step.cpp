@@ -1,4 +1,5 @@
 #include "dynamics/assembly/assembly_step.hpp"
+#include "dynamics/assembly/landing_parts.hpp"
 #include "dynamics/rigid/drive_kinks.hpp"
 #include "dynamics/rigid/free_motion.hpp"
 #include "tolerances.hpp"
@@ -51,8 +52,9 @@ double AssemblyStep<K>::advancePart(RigidSystem<K>& s, double h, bool divisible)
 	takeInstants(s, step);
 	const double missed = report.velocityResidual;
 	CappedReport result = solveStep(s, step);
-	if (const int parts =
-	        divisible && !step.stands && solver.spins.empty() ? landingParts<K>(contacts.velocity, loads, solver.velocity, step.fall) : 1;
+	if (const int parts = divisible && !step.stands && solver.spins.empty()
+	                          ? landingParts<K>(contacts.velocity, loads, solver.velocity, step.fall, settings.solver.few)
+	                          : 1;
 	    parts > 1) {
 		h /= parts;
 		step = StepContext(scales, h);

@@ -13,7 +13,6 @@
 #include "dynamics/assembly/admm_solver.hpp"
 #include "dynamics/assembly/base_pulse.hpp"
 #include "dynamics/assembly/capped_solve.hpp"
-#include "dynamics/assembly/landing_parts.hpp"
 #include "dynamics/assembly/lift.hpp"
 #include "dynamics/assembly/rest_state.hpp"
 #include "dynamics/assembly/rocking_events.hpp"

@@ -328,8 +328,14 @@ void ContactSet<K>::setUnit(double h)
 	if (h == unit)
 		return;
 	const Lanes factor = all(unit > 0 ? h / unit : 1);
+	const bool grows = unit > 0 && h > 3 * unit; // more than a step that a kink has halved
 	for (Group<K>& group : groups)
 		for (PointLanes<K>& p : group.point) {
+			if (grows) { // what is more than the mean is of an impact
+				const Lanes share = p.pn > p.steady ? p.steady / p.pn : all(1);
+				p.pn *= share;
+				p.pt *= share;
+			}
 			p.pn *= factor;
 			p.pt *= factor;
 			p.steady *= factor;

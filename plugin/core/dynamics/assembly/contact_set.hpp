@@ -156,7 +156,8 @@ public:
 	bool keepsFrames() const { return stood > 1; }
 	// Normals, arms and masses as they are where the bodies are; gaps stay.
 	void lean(const RigidSystem<K>& system);
-	// Impulses are those of a time h from now on; not many times the last, or an impact's would become as many.
+	// Impulses are those of a time h from now on. After a much shorter one only those up to the mean go on: an impact's would become many
+	// times as large.
 	void setUnit(double h);
 	// Open points lose the impulses of a solve that is not used.
 	void clearOpen();
