@@ -14,6 +14,7 @@ StepReport AssemblyStep<K>::advance(RigidSystem<K>& s, double dt)
 	report = {};
 	errors = {0, 0, s.kineticEnergy(), freeMass(s) * scale::acceleration(s) * scale::length(s)};
 	s.impacts.clear();
+	const double end = s.time + dt;
 	double part = 0; // s, of a step in which a structure lands
 	for (double left = dt; left > 0 && !report.diverged;) {
 		double h = untilKink(s, left, dt);
@@ -25,6 +26,8 @@ StepReport AssemblyStep<K>::advance(RigidSystem<K>& s, double dt)
 		++report.substeps;
 		left = done == left ? 0 : left - done;
 	}
+	if (part > 0) // without the round-off of the parts
+		s.time = end;
 	for (const RigidBody<K>& body : s.bodies)
 		if (const double turn = dt * body.velocity.template tail<K::spins>().norm(); !body.prescribed && turn > tolerance::rigid::partTurn)
 			report.turn = std::max(report.turn, turn);
