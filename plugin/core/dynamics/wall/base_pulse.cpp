@@ -54,6 +54,7 @@ void BasePulse<K>::move(const RigidSystem<K>& s, ContactSet<K>& c, double h)
 {
 	half.resize(velocity.size());
 	const typename K::Vector down = s.gravity.normalized(); // zero without gravity
+	before = velocity;
 	for (size_t d = 0; d < velocity.size(); ++d) {
 		const typename K::Vector now = s.drives[d].meanVelocity(s.time, h);
 		half[d] = (velocity[d] - down * down.dot(jumps[d]) - now) / 2;

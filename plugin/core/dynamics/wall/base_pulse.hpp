@@ -18,6 +18,8 @@ public:
 	// The base in a step of length h from now on. A jump before it is within it for what carries weights, whose potential energy belongs to
 	// half a step earlier (energy_ledger.hpp).
 	void move(const RigidSystem<K>& system, ContactSet<K>& contacts, double h);
+	// Undoes the last move, before another one of the same instant.
+	void takeBack() { velocity = before; }
 
 	double speed() const;                            // largest jump, m/s
 	const Vectors& halfBack() const { return half; } // from the velocity after an instant, or in a step, to the mean with that before
@@ -31,7 +33,7 @@ public:
 
 private:
 	void set(const RigidSystem<K>& system, ContactSet<K>& contacts) const;
-	Vectors jumps, half;
+	Vectors jumps, half, before;
 };
 
 } // namespace masonry::wall

@@ -337,13 +337,30 @@ void ContactSet<K>::setUnit(double h)
 	if (h == unit)
 		return;
 	const Lanes factor = all(unit > 0 ? h / unit : 1);
+	const bool grows = unit > 0 && h > 3 * unit; // more than a step that a kink has halved
 	for (Group<K>& group : groups)
 		for (PointLanes<K>& p : group.point) {
+			if (grows) { // what is more than the mean is of an impact
+				const Lanes share = p.pn > p.filteredImpulse ? p.filteredImpulse / p.pn : all(1);
+				p.pn *= share;
+				p.pt *= share;
+			}
 			p.pn *= factor;
 			p.pt *= factor;
 			p.filteredImpulse *= factor;
 		}
 	unit = h;
+}
+
+template <class K>
+void ContactSet<K>::clearOpen()
+{
+	for (Group<K>& group : groups)
+		for (PointLanes<K>& p : group.point) {
+			const Mask open = p.gap > all(tolerance::wall::touching * length);
+			p.pn = open ? all(0) : p.pn;
+			p.pt = select(open, typename PointLanes<K>::Tangent {}, p.pt);
+		}
 }
 
 // A moved body stops all blocks at once, or carries so many times their weight.

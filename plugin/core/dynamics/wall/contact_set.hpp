@@ -156,8 +156,11 @@ public:
 	bool keepsFrames() const { return stood > 1; }
 	// Normals, arms and masses as they are where the bodies are; gaps stay.
 	void updateFrames(const RigidSystem<K>& system);
-	// Impulses are those of a time h from now on; not many times the last, or an impact's would become as many.
+	// Impulses are those of a time h from now on. After a much shorter one only those up to the mean go on: an impact's would become many
+	// times as large.
 	void setUnit(double h);
+	// Open points lose the impulses of a solve that is not used.
+	void clearOpen();
 	// Limits the normal impulses of prescribed bodies that move, for a step or an instant in which forces give the speed `fall`: where such
 	// bodies approach each other through free ones, no motion obeys the laws, and they go into these (contact_limits.hpp).
 	void limitMoved(const RigidSystem<K>& system, double fall);

@@ -37,9 +37,9 @@ std::vector<std::vector<PairLane>> coloured(const std::vector<int>& numbers, con
 
 } // namespace
 
-// By number: blocks of one part are neighbours in memory, which threads then do not share; of walls numbered course by course the interfaces are
-// bed joints. Where numbers say little about places the interface is large, and there are fewer parts.
-// Returns how many parts there are.
+// By number: blocks of one part are neighbours in memory, which threads then do not share; of walls numbered course by course the
+// interfaces are bed joints. Where numbers say little about places the interface is large, and there are fewer parts. Returns how many
+// parts there are.
 template <class K>
 int ContactSet<K>::divide()
 {

@@ -11,8 +11,8 @@ void EnergyLedger<K>::open(const RigidSystem<K>& s, const ContactSet<K>& c, cons
 	kinetic = s.kineticEnergy();
 	baseWork = friction = forces = lifted = power = 0;
 	before = c.velocity;
-	LaneArray last;
 	last.swap(undriven);
+	undriven.clear();
 	std::vector<size_t> places;
 	for (size_t b = 0; b < s.bodies.size(); ++b) {
 		if (!s.bodies[b].prescribed)

@@ -32,6 +32,8 @@ public:
 	// the mean of those before and after, m/s. Prescribed bodies without a drive, whose velocities a script may set, had those of the last
 	// call.
 	void open(const RigidSystem<K>& system, const ContactSet<K>& contacts, const std::vector<typename K::Vector>& halfBack);
+	// Undoes the last open(), before another one of the same instant.
+	void takeBack() { undriven.swap(last); }
 	// Returns the velocities before it, in the packs of the contacts, those of the base included.
 	const LaneArray& velocityBefore() const { return before; }
 	// Returns the work of the prescribed bodies by the impulses of the last solve, J.
@@ -72,7 +74,7 @@ public:
 
 private:
 	LaneArray before;                                           // V-, m/s
-	LaneArray undriven;                                         // packs of the prescribed bodies without a drive, m/s
+	LaneArray undriven, last;                                   // packs of the prescribed bodies without a drive, now and before, m/s
 	double kinetic {0}, baseWork {0}, friction {0}, forces {0}; // J
 	double lifted {0};                                          // work of the forces on the way that the position projection adds, J
 	double power {0};                                           // of the weights after the part, W

@@ -1,8 +1,10 @@
 #include "dynamics/wall/wall_step.hpp"
 #include "dynamics/model/drive_kinks.hpp"
 #include "dynamics/model/free_motion.hpp"
+#include "dynamics/wall/landing_parts.hpp"
 #include "tolerances.hpp"
 #include <algorithm>
+#include <cmath>
 
 namespace masonry::wall {
 
@@ -12,12 +14,20 @@ StepReport WallStep<K>::advance(RigidSystem<K>& s, double dt)
 	report = {};
 	errors = {0, 0, s.kineticEnergy(), freeMass(s) * scale::acceleration(s) * scale::length(s)};
 	s.impacts.clear();
+	const double end = s.time + dt;
+	double part = 0; // s, of a step in which a structure lands
 	for (double left = dt; left > 0 && !report.diverged;) {
-		const double h = untilKink(s, left, dt);
-		advancePart(s, h);
+		double h = untilKink(s, left, dt);
+		if (part > 0)
+			h = std::min(h, left / std::max(1., std::round(left / part)));
+		const double done = advancePart(s, h, part == 0 && started);
+		if (done < h)
+			part = done;
 		++report.substeps;
-		left = h == left ? 0 : left - h;
+		left = done == left ? 0 : left - done;
 	}
+	if (part > 0) // without the round-off of the parts
+		s.time = end;
 	ledger.finish(s, dt);
 	for (const RigidBody<K>& body : s.bodies)
 		if (const double turn = dt * body.velocity.template tail<K::spins>().norm(); !body.prescribed && turn > tolerance::partTurn)
@@ -28,8 +38,9 @@ StepReport WallStep<K>::advance(RigidSystem<K>& s, double dt)
 	return report;
 }
 
+// Returns the time that it has advanced; less than h where a structure lands and the step is `divisible`.
 template <class K>
-void WallStep<K>::advancePart(RigidSystem<K>& s, double h)
+double WallStep<K>::advancePart(RigidSystem<K>& s, double h, bool divisible)
 {
 	const Scales scales(s);
 	StepContext step(scales, h);
@@ -42,14 +53,22 @@ void WallStep<K>::advancePart(RigidSystem<K>& s, double h)
 	contacts.setUnit(h);
 	if (!step.stands)
 		contacts.updateFrames(s);
-	const LaneArray& expected = guess.changeIn(h);
 	takeInstants(s, step);
-	pulses.move(s, contacts, h);
-	contacts.limitMoved(s, step.fall);
-	ledger.open(s, contacts, pulses.halfBack());
-	contacts.takeForces(s, h, loads);
-	solver.spins = events.find(s, contacts, expected, step);
-	const CappedReport result = solve(s, loads, expected.size() == loads.size() && solver.spins.empty() ? expected : none, step);
+	const double missed = report.velocityResidual;
+	CappedReport result = solveStep(s, step);
+	if (const int parts = divisible && !step.stands && solver.spins.empty()
+	                          ? landingParts<K>(contacts.velocity, loads, solver.velocity, step.fall, settings.solver.small)
+	                          : 1;
+	    parts > 1) {
+		h /= parts;
+		step = StepContext(scales, h);
+		report.velocityResidual = missed;
+		pulses.takeBack();
+		ledger.takeBack();
+		contacts.clearOpen();
+		contacts.setUnit(h);
+		result = solveStep(s, step);
+	}
 	contacts.addJammed(report.jammed);
 	const double level = tolerance::wall::motion * tolerance::restSpeed * scales.speed;
 	const PointsReport ofPoints = solver.advanceGaps(contacts, ledger.velocityBefore(), h, level);
@@ -69,6 +88,19 @@ void WallStep<K>::advancePart(RigidSystem<K>& s, double h)
 	s.moved = false;
 	started = true;
 	report.diverged |= !result.finite || !s.isFinite();
+	return h;
+}
+
+template <class K>
+CappedReport WallStep<K>::solveStep(RigidSystem<K>& s, const StepContext& step)
+{
+	const LaneArray& expected = guess.changeIn(step.h);
+	pulses.move(s, contacts, step.h);
+	contacts.limitMoved(s, step.fall);
+	ledger.open(s, contacts, pulses.halfBack());
+	contacts.takeForces(s, step.h, loads);
+	solver.spins = events.find(s, contacts, expected, step);
+	return solve(s, loads, expected.size() == loads.size() && solver.spins.empty() ? expected : none, step);
 }
 
 // Two things happen between two steps: first the impacts of the joints that landed in the last one, then the jumps of the base.

@@ -61,17 +61,17 @@ struct SceneOf {
 	}
 	SceneOf(const SceneOf&) = delete;
 
-	// Blocks 1.0 x 0.5 m, in space 0.5 m deep.
-	void addWall(int courses, int perLevel, double left = 0)
+	// In space 0.5 m deep.
+	void addWall(int courses, int perLevel, double left = 0, double length = 1, double height = 0.5)
 	{
 		for (int c = 0; c < courses; ++c) {
-			const double y = 0.25 + 0.5 * c;
+			const double y = 0.5 * height + height * c;
 			if (c % 2 == 1) {
-				addBlock(system, sizeOf(system, 0.25, 0.25), placeOf(system, left + 0.25, y));
-				addBlock(system, sizeOf(system, 0.25, 0.25), placeOf(system, left + perLevel - 0.25, y));
+				addBlock(system, sizeOf(system, 0.25 * length, 0.5 * height), placeOf(system, left + 0.25 * length, y));
+				addBlock(system, sizeOf(system, 0.25 * length, 0.5 * height), placeOf(system, left + (perLevel - 0.25) * length, y));
 			}
 			for (int i = 0; i < perLevel - c % 2; ++i)
-				addBlock(system, sizeOf(system, 0.5, 0.25), placeOf(system, left + i + 0.5 + 0.5 * (c % 2), y));
+				addBlock(system, sizeOf(system, 0.5 * length, 0.5 * height), placeOf(system, left + (i + 0.5 + 0.5 * (c % 2)) * length, y));
 		}
 	}
 
