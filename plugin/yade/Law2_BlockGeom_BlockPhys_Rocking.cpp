@@ -56,7 +56,8 @@ bool Law2_BlockGeom_BlockPhys_Rocking::go(shared_ptr<IGeom>& ig, shared_ptr<IPhy
 	if (!phys.applied)
 		requireJointEngine(*scene);
 	phys.applied = false;
-	masonry::JointContact contact = coreContact(*interaction, geom, phys, dampingRatio);
+	masonry::JointContact contact;
+	readContact(*interaction, geom, phys, dampingRatio, contact);
 	renewPatch(contact, geom.patch);
 	const Body& body1 = *(*scene->bodies)[interaction->getId1()];
 	const Body& body2 = *(*scene->bodies)[interaction->getId2()];

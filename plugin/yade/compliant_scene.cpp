@@ -15,8 +15,13 @@ namespace yade {
 
 void CompliantScene::read(const Scene& scene, Real dampingRatio, masonry::CompliantStep& step)
 {
-	readBodies(scene, step);
-	readJoints(scene, dampingRatio, step.system);
+	try {
+		readBodies(scene, step);
+		readJoints(scene, dampingRatio, step.system);
+	} catch (...) {
+		step.system.contacts.clear(); // they are of other bodies
+		throw;
+	}
 }
 
 void CompliantScene::readBodies(const Scene& scene, masonry::CompliantStep& step)
@@ -42,13 +47,13 @@ void CompliantScene::readBodies(const Scene& scene, masonry::CompliantStep& step
 void CompliantScene::readJoints(const Scene& scene, Real dampingRatio, masonry::JointSystem& system)
 {
 	pairs.clear();
-	system.contacts.clear();
 	vector<Interaction*> found;
 	for (const auto& interaction : *scene.interactions)
 		if (interaction->isReal() && dynamic_cast<BlockPhys*>(interaction->phys.get()))
 			found.push_back(interaction.get());
 	std::sort(found.begin(), found.end(),
 	          [](const Interaction* a, const Interaction* b) { return std::minmax(a->id1, a->id2) < std::minmax(b->id1, b->id2); });
+	system.contacts.resize(found.size()); // contacts keep their memory, and all of them is read anew
 	const auto isPrescribed = [&](int id) { return system.bodies[index[id]].prescribed; };
 	for (const Interaction* interaction : found) {
 		if (isPrescribed(interaction->id1) && isPrescribed(interaction->id2))
@@ -61,11 +66,13 @@ void CompliantScene::readJoints(const Scene& scene, Real dampingRatio, masonry::
 			             " has normalStiffness = ", phys.normalStiffness, ", shearStiffness = ", phys.shearStiffness,
 			             ": both must be positive, in Pa/m. Give them to BlockMat, or let dem.engines(model='compliant') choose."));
 		phys.check(interaction->id1, interaction->id2);
-		masonry::JointContact& contact = system.contacts.emplace_back(coreContact(*interaction, geom, phys, dampingRatio));
+		masonry::JointContact& contact = system.contacts[pairs.size()];
+		readContact(*interaction, geom, phys, dampingRatio, contact);
 		contact.body1 = index[contact.body1];
 		contact.body2 = index[contact.body2];
 		pairs.push_back({&geom, &phys});
 	}
+	system.contacts.resize(pairs.size());
 }
 
 vector<masonry::JointContact> CompliantScene::boxesInTouch(const Scene& scene, Real dampingRatio, const masonry::CompliantStep& step) const

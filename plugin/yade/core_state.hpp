@@ -38,16 +38,15 @@ inline void writeState(const masonry::Body& from, State& state)
 }
 
 /// Bodies are named by their YADE ids; the points are those of the last step.
-inline masonry::JointContact coreContact(const Interaction& interaction, const BlockGeom& geom, const BlockPhys& phys, Real dampingRatio)
+inline void readContact(const Interaction& interaction, const BlockGeom& geom, const BlockPhys& phys, Real dampingRatio,
+                        masonry::JointContact& contact)
 {
-	masonry::JointContact contact;
 	contact.body1 = interaction.getId1();
 	contact.body2 = interaction.getId2();
 	contact.law = phys.law(dampingRatio);
 	contact.patch = geom.patch;
 	contact.corner = geom.corner;
 	phys.readPoints(contact);
-	return contact;
 }
 
 } // namespace yade

@@ -144,17 +144,35 @@ double reducedMass(const Body& body1, const Body& body2)
 	return inverse > 0 ? 1 / inverse : 0;
 }
 
-void renewPatch(JointContact& contact, const ContactPatch& patch)
+namespace {
+
+bool hasPointsOf(const JointContact& contact, const ContactPatch& patch)
+{
+	return std::equal(contact.points.begin(), contact.points.begin() + contact.size, patch.points.begin(),
+	                  patch.points.begin() + patch.size, [](const JointPoint& a, const PatchPoint& b) { return a.identity == b.identity; });
+}
+
+void takeIdentities(JointContact& contact, const ContactPatch& patch)
 {
 	const auto old = contact.points;
-	const int oldSize = contact.size;
+	const auto end = old.begin() + contact.size;
 	const bool rocking = contact.rocking();
-	contact.patch = patch;
 	contact.size = patch.size;
 	for (int i = 0; i < patch.size; ++i) {
 		const int identity = patch.points[i].identity;
-		const auto found = std::find_if(old.begin(), old.begin() + oldSize, [&](const JointPoint& p) { return p.identity == identity; });
-		contact.points[i] = found != old.begin() + oldSize ? *found : JointPoint {identity, rocking};
+		const auto found = std::find_if(old.begin(), end, [&](const JointPoint& p) { return p.identity == identity; });
+		contact.points[i] = found != end ? *found : JointPoint {identity, rocking};
+	}
+}
+
+} // namespace
+
+void renewPatch(JointContact& contact, const ContactPatch& patch)
+{
+	if (!hasPointsOf(contact, patch))
+		takeIdentities(contact, patch);
+	contact.patch = patch;
+	for (int i = 0; i < patch.size; ++i) {
 		// The joint's plane has turned with the bodies: keep the shear in it, at its length.
 		Vector3& shear = contact.points[i].shear;
 		const double length = shear.norm();

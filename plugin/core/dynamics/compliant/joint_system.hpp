@@ -2,6 +2,7 @@
 // Blocks and their compliant joints, as all stages of a step see them.
 #include "dynamics/compliant/joint_contact.hpp"
 #include "impact/rocking_restitution.hpp"
+#include <algorithm>
 #include <vector>
 
 namespace masonry {

@@ -16,13 +16,13 @@ struct BodyMatrices {
 	bool hasFreeNeighbour {false};
 };
 
-// Adds J^T k J of a point at the end of the arm, J = (1, -arm x): the rows of k (arm x) are those of k, each times (cross) the arm.
+// Adds J^T k J, but for its lower left quarter, of a point at the end of the arm, J = (1, -arm x): the rows of k (arm x) are those of k,
+// each times (cross) the arm.
 void addPoint(Matrix6& sum, const Vector3& arm, const Matrix3& point)
 {
 	const Matrix3 turned = point.rowwise().cross(arm);
 	sum.topLeftCorner<3, 3>() += point;
 	sum.topRightCorner<3, 3>() -= turned;
-	sum.bottomLeftCorner<3, 3>() -= turned.transpose();
 	sum.bottomRightCorner<3, 3>() += turned.colwise().cross(arm);
 }
 
@@ -62,9 +62,10 @@ const std::vector<BodyMatrices>& bodyMatrices(const std::vector<Body>& bodies, c
 		}
 	}
 	for (BodyMatrices& ofBody : result)
-		if (ofBody.hasFreeNeighbour) {
-			ofBody.stiffness *= 2;
-			ofBody.damping *= 2;
+		for (Matrix6* sum : {&ofBody.stiffness, &ofBody.damping}) {
+			sum->bottomLeftCorner<3, 3>() = sum->topRightCorner<3, 3>().transpose();
+			if (ofBody.hasFreeNeighbour)
+				*sum *= 2;
 		}
 	return result;
 }

@@ -1,6 +1,7 @@
 #include "dynamics/wall/contact_set.hpp"
 #include "tolerances.hpp"
 #include <algorithm>
+#include <utility>
 
 namespace masonry::wall {
 
@@ -89,6 +90,7 @@ void ContactSet<K>::lookUp(RigidSystem<K>& s, int c)
 	pair.face2 = found.face2;
 	// Of bodies that have been moved the pair may know other points than the lanes.
 	const bool same = known[c] && !s.moved && sameFeatures(pair, found);
+	takeFriction(s, c);
 	if (same)
 		return;
 	if (known[c]) {
@@ -173,12 +175,11 @@ void ContactSet<K>::takeOver(const RigidSystem<K>& s)
 	takeBodies(s);
 	std::fill(stale.begin(), stale.end(), 0);
 	std::fill(known.begin(), known.end(), 1);
-	for (const int c : numbers)
-		for (int k = 0; k < pairPoints<K> && slots[c][k / lanePoints<K>].group >= 0; ++k) {
-			const auto [group, lane] = slots[c][k / lanePoints<K>];
+	for (const int c : numbers) {
+		for (int k = 0; k < pairPoints<K> && slots[c][k / lanePoints<K>].group >= 0; ++k)
 			takePoint(s, c, k);
-			groups[group].friction[lane] = std::min(s.pairs[c].friction, maxFriction);
-		}
+		takeFriction(s, c);
+	}
 	for (int g = 0; g < int(groups.size()); ++g)
 		countPoints(s, g);
 }
@@ -270,20 +271,11 @@ bool ContactSet<K>::isLocated(const RigidSystem<K>& s) const
 }
 
 template <class K>
-void ContactSet<K>::takeLaws(const RigidSystem<K>& s)
-{
-	laws = s.laws;
-	for (size_t c = 0; c < slots.size(); ++c)
-		for (const auto [group, lane] : slots[c])
-			if (group >= 0)
-				groups[group].friction[lane] = std::min(s.pairs[c].friction, maxFriction);
-}
-
-template <class K>
 void ContactSet<K>::measure(RigidSystem<K>& s, bool isStill)
 {
-	if (laws != s.laws)
-		takeLaws(s);
+	if (std::exchange(laws, s.laws) != s.laws)
+		for (int c = 0; c < int(slots.size()); ++c)
+			takeFriction(s, c);
 	if (isStill && isLocated(s)) {
 		takeBodies(s);
 		++stood;

@@ -283,7 +283,7 @@ private:
 	void takeFrames(const RigidSystem<K>& system, int begin, int end); // normals, arms and masses
 	void lookUpStale(RigidSystem<K>& system);
 	void lookUpStale(RigidSystem<K>& system, const Part& part);
-	void takeLaws(const RigidSystem<K>& system);
+	void takeFriction(const RigidSystem<K>& system, int pair);
 	void lookUp(RigidSystem<K>& system, int pair);
 	void inherit(const ContactPair<K>& before, const State* states, ContactPoint<K>& point, State& now) const;
 	State state(int pair, int point) const;

@@ -131,13 +131,23 @@ void ContactSet<K>::bring(const ContactSet& from, int c)
 	known[c] = from.known[c];
 }
 
+template <class K>
+void ContactSet<K>::takeFriction(const RigidSystem<K>& s, int c)
+{
+	for (const auto [group, lane] : slots[c])
+		if (group >= 0)
+			groups[group].friction[lane] = std::min(s.pairs[c].friction, maxFriction);
+}
+
 template std::vector<char> ContactSet<Plane>::freeBodies(const RigidSystem<Plane>&);
 template std::vector<char> ContactSet<Space>::freeBodies(const RigidSystem<Space>&);
 template bool ContactSet<Plane>::samePairs(const RigidSystem<Plane>&);
 template void ContactSet<Plane>::takePairs(const RigidSystem<Plane>&);
 template bool ContactSet<Plane>::take(const RigidSystem<Plane>&);
+template void ContactSet<Plane>::takeFriction(const RigidSystem<Plane>&, int);
 template bool ContactSet<Space>::samePairs(const RigidSystem<Space>&);
 template void ContactSet<Space>::takePairs(const RigidSystem<Space>&);
 template bool ContactSet<Space>::take(const RigidSystem<Space>&);
+template void ContactSet<Space>::takeFriction(const RigidSystem<Space>&, int);
 
 } // namespace masonry::wall
