@@ -319,8 +319,8 @@ TEST_CASE("any number of threads gives the bits of one")
 }
 
 // A wall of bricks that lands flat closes hundreds of joints within two milliseconds. Its next swing is that of a step that tells them
-// apart: the same walls with a sixteenth of the step. A step that closes them together keeps too little energy, and the mean of these
-// walls swings back by 14 % less. Bound: half of that, and 1 % by which the means are known.
+// apart: the same walls with a sixteenth of the step. With steps that close them together the mean of these five swings is 14 % less.
+// Bound: half of that, and 1 % by which the means are known.
 TEST_CASE("a wall of bricks that lands flat swings back")
 {
 	const auto swing = [](double amplitude, double h) {
