@@ -1,7 +1,6 @@
 #include "Law2_BlockGeom_BlockPhys_Rocking.hpp"
 #include "BlockGeom.hpp"
 #include "BlockPhys.hpp"
-#include "RockingJointEngine.hpp"
 #include "core_state.hpp"
 
 #include <algorithm>
@@ -32,7 +31,7 @@ void requireJointEngine(Scene& scene)
 {
 	const auto& engines = scene.engines;
 	const bool found = std::any_of(engines.begin(), engines.end(), [](const shared_ptr<Engine>& engine) {
-		return !engine->dead && dynamic_cast<RockingJointEngine*>(engine.get());
+		return !engine->dead && engine->getClassName() == "RockingJointEngine";
 	});
 	if (found)
 		return;

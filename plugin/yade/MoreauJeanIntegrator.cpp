@@ -14,33 +14,6 @@ namespace yade {
 
 YADE_PLUGIN((MoreauJeanIntegrator));
 
-namespace {
-
-template <class K>
-std::shared_ptr<RigidRun> makeScene(MoreauJeanIntegrator& engine, const vector<BaseMotionEngine*>& motions, const vector<Real>& values)
-{
-	if (values.empty())
-		return std::make_shared<RigidScene<K>>(engine, motions, Remembered<K>());
-	Remembered<K> before;
-	masonry::NumberReader archive(values);
-	Real dimension = 0;
-	readMemory([&] {
-		Real first = 0;
-		archive(first, dimension);
-		if (first != layout)
-			throw std::out_of_range("layout");
-	});
-	if (dimension != K::dimension)
-		throw std::runtime_error(
-		    "MoreauJeanIntegrator.remembered is of a run in the plane and this one is in space, or the other way round.");
-	readMemory([&] { archive(before); });
-	const auto result = std::make_shared<RigidScene<K>>(engine, motions, before);
-	result->unpackStepper(archive, before);
-	return result;
-}
-
-} // namespace
-
 void MoreauJeanIntegrator::postLoad(MoreauJeanIntegrator&)
 {
 	for (const auto& motion : motions)
@@ -133,7 +106,7 @@ void MoreauJeanIntegrator::leaveScene()
 	along = Vector3r::Zero();
 	forgetImpacts(*this);
 	forget(frictDissip, impactDissip, baseWork, potentialShift, worstResidual, substeps, events, unlocalised, sweeps, factorisations,
-	       stillSteps, movingSteps, madeEnergy, lostEnergy, turnedOver, lift, toldMade, toldLost, failures, firstFailure, warnedOf);
+	       stillSteps, movingSteps, madeEnergy, lostEnergy, turnedOver, lift, toldMade, toldLost, failures, firstFailure, warned);
 }
 
 vector<Real> MoreauJeanIntegrator::remembered()
@@ -164,13 +137,40 @@ void MoreauJeanIntegrator::renew()
 	build(memory.run->pack());
 }
 
+template <class K>
+std::shared_ptr<RigidRun> MoreauJeanIntegrator::makeScene(const vector<Real>& values)
+{
+	const auto from = [this](const Remembered<K>& before) {
+		return std::make_shared<RigidScene<K>>(*scene, along, settings(),
+		                                       RigidEnergies {frictDissip, impactDissip, baseWork, potentialShift}, pairLaw, warned,
+		                                       motionEngines(), before);
+	};
+	if (values.empty())
+		return from({});
+	Remembered<K> before;
+	masonry::NumberReader archive(values);
+	Real dimension = 0;
+	readMemory([&] {
+		Real first = 0;
+		archive(first, dimension);
+		if (first != layout)
+			throw std::out_of_range("layout");
+	});
+	if (dimension != K::dimension)
+		throw std::runtime_error(
+		    "MoreauJeanIntegrator.remembered is of a run in the plane and this one is in space, or the other way round.");
+	readMemory([&] { archive(before); });
+	const auto result = from(before);
+	result->unpackStepper(archive, before);
+	return result;
+}
+
 void MoreauJeanIntegrator::build(const vector<Real>& remembered)
 {
 	checkBlocks(chosen());
 	checkEngines();
 	const PythonLock lock; // the last hold on an erased body may be given up, which Python has made
-	memory.run = chosenModel == "planar" ? makeScene<Plane>(*this, motionEngines(), remembered)
-	                                     : makeScene<Space>(*this, motionEngines(), remembered);
+	memory.run = chosenModel == "planar" ? makeScene<Plane>(remembered) : makeScene<Space>(remembered);
 	checkedTimeStep = NaN;
 	// Those that are gone begin anew when they come back.
 	const vector<shared_ptr<Engine>> living = livingMotions();
@@ -188,10 +188,11 @@ void MoreauJeanIntegrator::action()
 		reject(*this, "gravity", gravity.transpose(), "three finite numbers in m/s^2");
 	if (memory.run ? !memory.run->isPresent() : memory.values.empty() && !chosenModel.empty())
 		leaveScene();
-	const masonry::StepReport report = stepRun();
+	const RigidResults results = stepRun();
+	take(results);
 	for (const auto& motion : taken)
 		static_cast<BaseMotionEngine&>(*motion).haveStepped();
-	count(report);
+	count(results.report);
 	if (scene->trackEnergy)
 		showEnergy();
 }
@@ -223,7 +224,46 @@ void MoreauJeanIntegrator::writeInteractions()
 		sceneOf(memory).writeContacts();
 }
 
-masonry::StepReport MoreauJeanIntegrator::stepRun()
+RigidSettings MoreauJeanIntegrator::settings() const
+{
+	RigidSettings result;
+	result.gravity = gravity;
+	result.walls = wall;
+	result.watched = isWatched();
+	result.begins = substeps == 0;
+	result.ofImpacts.tolerance = tolerance;
+	result.ofImpacts.order = sequential ? masonry::ImpactOrder::sequential : masonry::ImpactOrder::simultaneous;
+	result.ofImpacts.merged = mergedClosing;
+	result.ofImpacts.mostEvents = mostEvents;
+	result.ofWalls.tolerance = tolerance;
+	result.ofWalls.strictForces = strictForces;
+	result.ofWalls.ofAnySize = wallsOnly;
+	result.ofWalls.threads = std::max(1, ompThreads);
+	return result;
+}
+
+void MoreauJeanIntegrator::take(const RigidResults& results)
+{
+	stepErrors = results.errors;
+	frictDissip = results.energies.frictDissip;
+	impactDissip = results.energies.impactDissip;
+	baseWork = results.energies.baseWork;
+	potentialShift = results.energies.potentialShift;
+	for (const masonry::Impact& impact : results.impacts)
+		addImpact(*this, impact.time, impact.block, impact.support, impact.asked, impact.joint, impact.energyLost, impact.switched,
+		          impact.capped);
+	if (!wall)
+		return;
+	const bool still = results.walls.moved == 0;
+	mode = still ? "still" : "moving";
+	++(still ? stillSteps : movingSteps);
+	movingBlocks = results.walls.moved;
+	localisedBlocks = results.localisedBlocks;
+	velocityResidual = results.walls.velocityResidual;
+	forceResidual = results.walls.forceResidual;
+}
+
+RigidResults MoreauJeanIntegrator::stepRun()
 {
 	const auto isSame = [](const auto& engine, const auto& checked) {
 		return engine.get() == checked.first && engine->dead == checked.second;
@@ -239,7 +279,7 @@ masonry::StepReport MoreauJeanIntegrator::stepRun()
 			checkEngines();
 		if (scene->dt != checkedTimeStep || gravity.norm() > checkedGravity)
 			checkTimeStep();
-		return sceneOf(memory).step();
+		return sceneOf(memory).step(settings());
 	} catch (const LeavesPlane& obstacle) {
 		if (model == "planar")
 			throw std::runtime_error(
@@ -249,112 +289,8 @@ masonry::StepReport MoreauJeanIntegrator::stepRun()
 		reason = obstacle.what();
 		build({});
 		checkTimeStep();
-		return sceneOf(memory).step();
+		return sceneOf(memory).step(settings());
 	}
-}
-
-/// Sums up what steps make and lose. Returns a sentence where either has come to matter: once.
-string MoreauJeanIntegrator::addErrors()
-{
-	turnedOver = std::max(turnedOver, stepErrors.kinetic + frictDissip + impactDissip);
-	madeEnergy += stepErrors.made;
-	lostEnergy += stepErrors.lost;
-	lift = std::max(lift, stepErrors.lift); // while gravity is switched off, errors are no larger than with it
-	const Real most = masonry::maxUnexplained(turnedOver, lift);
-	string text;
-	const auto look = [&](Real energy, const char* what, bool& told) {
-		if (told || !(energy > most))
-			return;
-		told = true;
-		const string share = turnedOver > 0 ? sentence(", ", 100 * energy / turnedOver, " % of what the scene has turned over") : "";
-		text += sentence("the energy that has ", what, " since the start comes to ", energy, " J", share, ": do not trust what follows. ");
-	};
-	look(madeEnergy, "come from nothing", toldMade);
-	look(lostEnergy, "vanished", toldLost);
-	return text;
-}
-
-/// A sentence where no motion obeys the contact laws, else nothing.
-string MoreauJeanIntegrator::jam(const masonry::StepReport& report) const
-{
-	if (report.jammed.empty())
-		return "";
-	const auto listed = [](const vector<int>& ids) {
-		constexpr size_t maxNamed = 10;
-		std::ostringstream text;
-		for (size_t k = 0; k < std::min(maxNamed, ids.size()); ++k)
-			text << (k ? ", " : "") << ids[k];
-		text << (ids.size() > maxNamed ? ", ..." : "");
-		return text.str();
-	};
-	const auto [blocks, prescribed] = sceneOf(memory).blocksAndPrescribed(report.jammed);
-	return sentence(
-	    "bodies with prescribed motion (", listed(prescribed), ") press blocks (", listed(blocks),
-	    ") from two sides, or against others, so that no motion obeys the contact laws: they go into the blocks. Make room between "
-	    "these bodies, or let one of them give way. ");
-}
-
-void MoreauJeanIntegrator::count(const masonry::StepReport& report)
-{
-	substeps += report.substeps;
-	events += report.events;
-	sweeps += report.sweeps;
-	factorisations += report.factorisations;
-	unlocalised += report.unlocalised;
-	worstResidual = std::max(worstResidual, report.residual);
-	if (report.diverged)
-		throw std::runtime_error(
-		    sentence("The simulation has diverged in the step from t = ", scene->time, " s: positions or velocities are no longer finite.",
-		             method == "localised" ? " Structures of more than some twenty blocks are for method='wall'." : ""));
-	const string sums = addErrors();
-	const string jammed = jam(report);
-	const bool crowded = report.unlocalised > 0;
-	if (report.converged && jammed.empty() && !crowded && sums.empty() && report.created == 0 && !(report.deepest > 0) &&
-	    !(report.turn > 0))
-		return;
-
-	const Real ofStep = gravity.norm() * scene->dt; // the speed that gravity gives
-	// A residual this small moves nothing that anybody could measure: it is counted, without a word.
-	const bool matters = !jammed.empty() || crowded || !sums.empty() || report.created != 0 || report.deepest > 0 || report.turn > 0 ||
-	                     !(report.residual <= masonry::tolerance::negligible * ofStep);
-	std::ostringstream text;
-	text << "In the step from t = " << scene->time << " s ";
-	text << jammed;
-	if (!report.converged && jammed.empty())
-		text << "the contact laws are missed: residual " << report.residual << " m/s (gravity gives " << ofStep << " m/s in a step). ";
-	if (crowded)
-		text << report.unlocalised << " points closed after mostEvents = " << mostEvents << " events, plastically at its end. ";
-	if (report.created > 0)
-		text << report.created << " J of energy come from nowhere. ";
-	if (report.created < 0)
-		text << -report.created << " J of energy vanish. ";
-	text << sums;
-	if (report.deepest > 0)
-		text << "blocks are " << report.deepest << " m deep in each other. ";
-	if (report.turn > 0)
-		text << "a block turns by " << report.turn
-		     << " rad in the step, which method='wall' does not resolve; method='localised' divides such steps. ";
-	constexpr size_t maxNamed = 30;
-	const vector<int> touching = sceneOf(memory).touching();
-	text << "Blocks in touch:";
-	for (size_t k = 0; k < std::min(maxNamed, touching.size()); ++k)
-		text << ' ' << touching[k];
-	if (touching.size() > maxNamed)
-		text << " and " << touching.size() - maxNamed << " more";
-	text << '.';
-	++failures;
-	if (!matters)
-		return;
-	const bool first = firstFailure.empty();
-	if (first)
-		firstFailure = text.str();
-	if (onTrouble == "stop")
-		throw std::runtime_error(text.str() + " Give dem.engines() a smaller dt, or set MoreauJeanIntegrator.onTrouble='continue'.");
-	if (first && onTrouble != "count")
-		LOG_WARN(firstFailure << " The run goes on; MoreauJeanIntegrator.failures counts such steps."
-		                      << (jammed.empty()
-		                              ? " A smaller dt of dem.engines() may help; dem.compare() tells whether the answer depends on it."
-		                              : ""));
 }
 
 // --- energy ---

@@ -9,6 +9,8 @@
 namespace yade {
 
 class BaseMotionEngine;
+struct RigidSettings;
+struct RigidResults;
 
 /// Rigid blocks (dynamics/scheduler/): takes the place of InteractionLoop and NewtonIntegrator for them.
 class MoreauJeanIntegrator : public GlobalEngine {
@@ -26,7 +28,6 @@ public:
 	/// What the next step goes on from besides the states of the blocks: forces, contact points.
 	vector<Real> remembered();
 	void goOnFrom(const vector<Real>&);
-	bool isWall() const { return wall; }
 	/// Whether a script or another engine may look at O.interactions before the next step of this engine.
 	bool isWatched() const;
 	/// O.interactions as they are after the last step.
@@ -98,9 +99,6 @@ public:
 	);
 	// clang-format on
 private:
-	template <class K>
-	friend class RigidScene;
-
 	struct Choice {
 		string model, reason;
 		Vector3r along;
@@ -125,7 +123,11 @@ private:
 	void checkTimeStep();
 	/// Throws LeavesPlane unless blocks, motions and loads lie in the plane along this horizontal direction.
 	void checkPlane(const Vector3r& horizontal) const;
-	masonry::StepReport stepRun();
+	template <class K>
+	std::shared_ptr<RigidRun> makeScene(const vector<Real>& remembered);
+	RigidSettings settings() const;
+	RigidResults stepRun();
+	void take(const RigidResults&);
 	void count(const masonry::StepReport&);
 	void showEnergy();
 	vector<shared_ptr<Engine>> livingMotions() const; // those that are not dead
@@ -136,9 +138,7 @@ private:
 	Real checkedTimeStep = NaN;
 	Real checkedGravity = 0;
 	vector<std::pair<const Engine*, bool>> checkedEngines; // and whether they are dead; to be compared only
-	struct {
-		bool bases = false, place = false, motion = false;
-	} warnedOf;                     // once in a run
+	RigidWarnings warned;
 	masonry::StepErrors stepErrors; // of the last step
 	bool sequential = false, wall = false;
 };

@@ -1,6 +1,7 @@
 // What MoreauJeanIntegrator asks of a scene before it steps, and whether that lies in a plane.
 
 #include "BaseMotionEngine.hpp"
+#include "MoreauJeanIntegrator.hpp"
 #include "RockingJointEngine.hpp"
 #include "checked_body.hpp"
 #include "python_lock.hpp"

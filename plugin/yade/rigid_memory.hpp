@@ -41,6 +41,11 @@ struct Remembered {
 	}
 };
 
+/// Told once in a run.
+struct RigidWarnings {
+	bool bases = false, place = false, motion = false;
+};
+
 /// The blocks of a run in the core's form.
 struct RigidRun {
 	virtual ~RigidRun() = default;

@@ -1,6 +1,5 @@
 #include "rigid_scene.hpp"
 
-#include "impact_lists.hpp"
 #include <algorithm>
 #include <set>
 
@@ -42,11 +41,12 @@ bool RigidScene<K>::outdated() const
 }
 
 template <class K>
-masonry::StepReport RigidScene<K>::step()
+RigidResults RigidScene<K>::step(const RigidSettings& given)
 {
+	settings = given;
 	try {
 		if (mayHaveChanged()) {
-			system.gravity = coordinates.gravity(integrator.gravity);
+			system.gravity = coordinates.gravity(settings.gravity);
 			readLoads();
 		}
 		readStates();
@@ -60,56 +60,40 @@ masonry::StepReport RigidScene<K>::step()
 		forgetStates();
 		throw;
 	}
-	if (integrator.isWall() != byWalls) {
+	if (settings.walls != byWalls) {
 		system.moved = true;
 		system.startAnew();
 		showPoints();
 		system.impactDissip += scheduler->potentialShift();
 		scheduler.emplace(); // what it remembers would be of steps long ago
 	}
-	byWalls = integrator.isWall();
+	byWalls = settings.walls;
 	takeSettings();
-	const auto report = byWalls ? advanceWall() : islands.advance(system, scene.dt);
-	integrator.stepErrors = byWalls ? scheduler->lastErrors() : islands.lastErrors();
+	const masonry::StepReport report = advance();
 	writeStates();
-	if (++unshown >= maxUnshown || integrator.isWatched())
+	if (++unshown >= maxUnshown || settings.watched)
 		writeContacts();
-	for (const auto& impact : system.impacts)
-		record(impact);
-	integrator.frictDissip = system.frictDissip;
-	integrator.impactDissip = system.impactDissip;
-	integrator.baseWork = system.baseWork;
-	integrator.potentialShift = scheduler->potentialShift();
-	return report;
+	return results(report);
 }
 
 template <class K>
 void RigidScene<K>::takeSettings()
 {
 	system.time = scene.time;
-	masonry::localised::Settings ofFew; // beside walls the tolerance and the order are the default ones
-	ofFew.merged = integrator.mergedClosing;
-	ofFew.mostEvents = integrator.mostEvents;
-	scheduler->settings = {integrator.tolerance, integrator.strictForces, integrator.wallsOnly, std::max(1, integrator.ompThreads), ofFew};
-	ofFew.tolerance = integrator.tolerance;
-	ofFew.order = integrator.sequential ? masonry::ImpactOrder::sequential : masonry::ImpactOrder::simultaneous;
-	islands.settings() = ofFew;
+	islands.settings() = settings.ofImpacts;
+	scheduler->settings = settings.ofWalls;
+	scheduler->settings.localised.merged = settings.ofImpacts.merged;
+	scheduler->settings.localised.mostEvents = settings.ofImpacts.mostEvents;
 }
 
 template <class K>
-masonry::StepReport RigidScene<K>::advanceWall()
+masonry::StepReport RigidScene<K>::advance()
 {
+	if (!byWalls)
+		return islands.advance(system, scene.dt);
 	const auto report = scheduler->advance(system, scene.dt);
-	const auto& ofWalls = scheduler->report;
-	const bool still = ofWalls.moved == 0;
-	integrator.mode = still ? "still" : "moving";
-	integrator.movingBlocks = ofWalls.moved;
-	integrator.localisedBlocks = scheduler->localised();
-	++(still ? integrator.stillSteps : integrator.movingSteps);
-	integrator.velocityResidual = ofWalls.velocityResidual;
-	integrator.forceResidual = ofWalls.forceResidual;
-	if (scheduler->partBases && !integrator.warnedOf.bases) {
-		integrator.warnedOf.bases = true;
+	if (scheduler->partBases && !warned.bases) {
+		warned.bases = true;
 		LOG_WARN(
 		    "t = " << scene.time
 		           << " s: blocks of a structure stand on bodies that move in different ways. Friction leaves open how much each of these "
@@ -118,6 +102,25 @@ masonry::StepReport RigidScene<K>::advanceWall()
 		              "dem.engines(model='compliant').");
 	}
 	return report;
+}
+
+template <class K>
+RigidResults RigidScene<K>::results(const masonry::StepReport& report) const
+{
+	RigidResults result;
+	result.report = report;
+	result.errors = byWalls ? scheduler->lastErrors() : islands.lastErrors();
+	result.energies = {system.frictDissip, system.impactDissip, system.baseWork, scheduler->potentialShift()};
+	result.impacts = system.impacts;
+	for (masonry::Impact& impact : result.impacts) {
+		impact.block = kept.ids[impact.block];
+		impact.support = kept.ids[impact.support];
+	}
+	if (byWalls) {
+		result.walls = scheduler->report;
+		result.localisedBlocks = scheduler->localised();
+	}
+	return result;
 }
 
 template <class K>
@@ -194,9 +197,9 @@ void RigidScene<K>::readStates()
 template <class K>
 void RigidScene<K>::warnOfMotion(size_t b)
 {
-	if (integrator.warnedOf.motion)
+	if (warned.motion)
 		return;
-	integrator.warnedOf.motion = true;
+	warned.motion = true;
 	LOG_WARN("a script has changed the state of body "
 	         << kept.ids[b] << " at t = " << scene.time
 	         << " s: it goes where its motion says all the same. A motion in another direction may move it besides.");
@@ -205,9 +208,9 @@ void RigidScene<K>::warnOfMotion(size_t b)
 template <class K>
 void RigidScene<K>::warnOfPlace(size_t b)
 {
-	if (integrator.warnedOf.place)
+	if (warned.place)
 		return;
-	integrator.warnedOf.place = true;
+	warned.place = true;
 	LOG_WARN("a script has moved body " << kept.ids[b] << " by its state.pos at t = " << scene.time
 	                                    << " s, with state.vel = 0: blocks on it do not feel that it moves. Set state.vel, by which it "
 	                                       "goes on, or give it a RecordMotionEngine.");
@@ -267,13 +270,6 @@ void RigidScene<K>::writeStates()
 			state.angMom = kept.seats[b].spin(coordinates, block);
 		}
 	});
-}
-
-template <class K>
-void RigidScene<K>::record(const masonry::Impact& impact)
-{
-	addImpact(integrator, impact.time, kept.ids[impact.block], kept.ids[impact.support], impact.asked, impact.joint, impact.energyLost,
-	          impact.switched, impact.capped);
 }
 
 template <class K>

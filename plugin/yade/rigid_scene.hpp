@@ -1,8 +1,8 @@
 #pragma once
 // Rigid blocks of a scene in the core's form, and back after each step. No physics here.
 
-#include "MoreauJeanIntegrator.hpp"
 #include "motion_drive.hpp"
+#include "rigid_memory.hpp"
 #include "shown_contacts.hpp"
 
 #include "dynamics/localised/islands.hpp"
@@ -46,12 +46,34 @@ struct Seen {
 	bool isStill(const shared_ptr<Body>& now) const { return now == body && (!now || (now->material == material && now->shape == shape)); }
 };
 
+/// What a scene is stepped by.
+struct RigidSettings {
+	Vector3r gravity;
+	bool walls, watched, begins;            // method='wall'; O.interactions may be looked at before the next step; no step has been made
+	masonry::localised::Settings ofImpacts; // of method='localised'; beside walls with the default tolerance and order
+	masonry::WallSettings ofWalls;
+};
+
+struct RigidEnergies { // J, since the start of the run
+	Real frictDissip, impactDissip, baseWork, potentialShift;
+};
+
+/// What a step has come to.
+struct RigidResults {
+	masonry::StepReport report;
+	masonry::StepErrors errors;
+	RigidEnergies energies;
+	vector<masonry::Impact> impacts; // block and support by their ids
+	masonry::wall::AssemblyReport walls;
+	int localisedBlocks = 0; // beside walls
+};
+
 class AnyRigidScene : public RigidRun {
 public:
 	/// Blocks have come, gone or changed: build it anew, with what this one remembers.
 	virtual bool outdated() const = 0;
 	/// Throws LeavesPlane before anything has moved.
-	virtual masonry::StepReport step() = 0;
+	virtual RigidResults step(const RigidSettings& settings) = 0;
 	/// O.interactions as they are after the last step: they are left behind while nobody looks.
 	virtual void writeContacts() = 0;
 	virtual vector<int> touching() = 0;
@@ -84,7 +106,10 @@ class RigidScene final : public AnyRigidScene {
 	};
 
 public:
-	RigidScene(MoreauJeanIntegrator& engine, const vector<BaseMotionEngine*>& motions, const Remembered<K>& before);
+	/// In the plane: `along` is the horizontal direction of the plane.
+	RigidScene(Scene& scene, const Vector3r& along, const RigidSettings& settings, const RigidEnergies& energies,
+	           const shared_ptr<Ip2_BlockMat_BlockMat_BlockPhys>& pairLaw, RigidWarnings& warned, const vector<BaseMotionEngine*>& motions,
+	           const Remembered<K>& before);
 
 	vector<Real> pack() override;
 
@@ -93,7 +118,7 @@ public:
 
 	bool isPresent() const override { return home.lock() == Omega::instance().getScene(); }
 	bool outdated() const override;
-	masonry::StepReport step() override;
+	RigidResults step(const RigidSettings& settings) override;
 	void writeContacts() override;
 	vector<int> touching() override;
 	std::pair<vector<int>, vector<int>> blocksAndPrescribed(const vector<int>& bodies) const override;
@@ -102,7 +127,7 @@ public:
 
 private:
 	void takeSettings();
-	masonry::StepReport advanceWall();
+	masonry::StepReport advance();
 
 	// --- building ---
 
@@ -161,9 +186,10 @@ private:
 	/// Bodies that stand still by prescription are as they were.
 	void writeStates();
 
-	void record(const masonry::Impact& impact);
+	RigidResults results(const masonry::StepReport& report) const;
 
-	MoreauJeanIntegrator& integrator;
+	RigidSettings settings; // of the last step, or of the first to come
+	RigidWarnings& warned;
 	Scene& scene;
 	const boost::weak_ptr<Scene> home; // the same; another may come to lie in its place
 	const Coordinates<K> coordinates;

@@ -21,14 +21,16 @@ constexpr Real searchMargin = 0.1;
 } // namespace
 
 template <class K>
-RigidScene<K>::RigidScene(MoreauJeanIntegrator& engine, const vector<BaseMotionEngine*>& motions, const Remembered<K>& before)
-    : integrator(engine), scene(*engine.scene), home(Omega::instance().getScene()), coordinates(engine.along),
-      contacts(scene, coordinates, engine.pairLaw)
+RigidScene<K>::RigidScene(Scene& of, const Vector3r& along, const RigidSettings& given, const RigidEnergies& energies,
+                          const shared_ptr<Ip2_BlockMat_BlockMat_BlockPhys>& pairLaw, RigidWarnings& told,
+                          const vector<BaseMotionEngine*>& motions, const Remembered<K>& before)
+    : settings(given), warned(told), scene(of), home(Omega::instance().getScene()), coordinates(along),
+      contacts(scene, coordinates, pairLaw)
 {
-	system.frictDissip = engine.frictDissip;
-	system.impactDissip = engine.impactDissip;
-	system.baseWork = engine.baseWork;
-	scheduler->setPotentialShift(engine.potentialShift);
+	system.frictDissip = energies.frictDissip;
+	system.impactDissip = energies.impactDissip;
+	system.baseWork = energies.baseWork;
+	scheduler->setPotentialShift(energies.potentialShift);
 	const vector<int> inBefore = addBlocks(before);
 	addDrives(motions, inBefore);
 	addPairs(before, inBefore);
@@ -164,7 +166,7 @@ template <class K>
 void RigidScene<K>::meet(Pair& pair, bool placed)
 {
 	const auto &body1 = system.bodies[pair.body1], &body2 = system.bodies[pair.body2];
-	const Real rest = masonry::tolerance::restSpeed * std::sqrt(integrator.gravity.norm() * length);
+	const Real rest = masonry::tolerance::restSpeed * std::sqrt(settings.gravity.norm() * length);
 	pair.memory = {};
 	const auto found = masonry::findRows(body1, body2, rest, pair.memory);
 	pair.size = found.size;
@@ -179,7 +181,7 @@ void RigidScene<K>::meet(Pair& pair, bool placed)
 		point.feature = found.features[i];
 		masonry::locate(point, body1, body2);
 		const auto speed = masonry::relativeVelocity(point.frame, body1.pose.position, body1.velocity, body2.pose.position, body2.velocity);
-		point.closed = point.gap <= integrator.mergedClosing * length && speed[0] >= -rest;
+		point.closed = point.gap <= settings.ofImpacts.merged * length && speed[0] >= -rest;
 		pair.isHeadJoint &=
 		    std::abs(point.frame.axes.row(0).dot(system.gravity)) < masonry::tolerance::uprightJoint * system.gravity.norm();
 		if (placed && point.gap < -maxOverlap * length)
@@ -190,16 +192,20 @@ void RigidScene<K>::meet(Pair& pair, bool placed)
 template <class K>
 void RigidScene<K>::refuseOverlap(const Pair& pair, Real depth) const
 {
-	const bool starts = integrator.substeps == 0;
 	throw std::runtime_error(sentence(
 	    "Blocks ", kept.ids[pair.body1], " and ", kept.ids[pair.body2], " overlap by ", depth, " m at t = ", scene.time, " s: ",
-	    starts ? "rigid blocks must be apart or just touch when their engines begin; dem.check_blocks() lists all that do not."
-	           : "they have come near each other only now. Either a script has put one into the other, or they move too far in a step: "
-	             "give dem.engines() a smaller dt."));
+	    settings.begins
+	        ? "rigid blocks must be apart or just touch when their engines begin; dem.check_blocks() lists all that do not."
+	        : "they have come near each other only now. Either a script has put one into the other, or they move too far in a step: "
+	          "give dem.engines() a smaller dt."));
 }
 
-template RigidScene<Plane>::RigidScene(MoreauJeanIntegrator&, const vector<BaseMotionEngine*>&, const Remembered<Plane>&);
-template RigidScene<Space>::RigidScene(MoreauJeanIntegrator&, const vector<BaseMotionEngine*>&, const Remembered<Space>&);
+template RigidScene<Plane>::RigidScene(Scene&, const Vector3r&, const RigidSettings&, const RigidEnergies&,
+                                       const shared_ptr<Ip2_BlockMat_BlockMat_BlockPhys>&, RigidWarnings&, const vector<BaseMotionEngine*>&,
+                                       const Remembered<Plane>&);
+template RigidScene<Space>::RigidScene(Scene&, const Vector3r&, const RigidSettings&, const RigidEnergies&,
+                                       const shared_ptr<Ip2_BlockMat_BlockMat_BlockPhys>&, RigidWarnings&, const vector<BaseMotionEngine*>&,
+                                       const Remembered<Space>&);
 template void RigidScene<Plane>::forgetStates();
 template void RigidScene<Space>::forgetStates();
 template void RigidScene<Plane>::renewContacts();
