@@ -1,5 +1,5 @@
 #pragma once
-// What the engines beside RockingJointEngine are set to.
+// Settings of the engines beside RockingJointEngine.
 
 #include "Law2_BlockGeom_BlockPhys_Rocking.hpp"
 #include "python_lock.hpp"

@@ -36,7 +36,7 @@ struct CompliantRun {
 	bool hasMade {false}, hasLost {false}, isDeep {false};
 };
 
-// Of one step.
+// The results of one step.
 struct CompliantReport {
 	bool moved {false};                // bodies have other poses or velocities than before
 	std::vector<ImpactRecord> impacts; // and landings

@@ -50,7 +50,7 @@ std::vector<std::pair<Vector3, Vector3>> minMotion(const std::vector<Body>& bodi
 	return motion;
 }
 
-// What the normal springs would store if no point were muted.
+// Returns the energy that the normal springs would store if no point were muted.
 double pressedEnergy(const std::vector<JointContact>& contacts)
 {
 	double sum = 0;

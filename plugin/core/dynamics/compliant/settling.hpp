@@ -1,5 +1,5 @@
 #pragma once
-// Where bodies go so that springs carry given forces, at an instant at which the pivots of a joint change.
+// Bodies go where springs carry given forces, at an instant at which the pivots of a joint change.
 #include "dynamics/compliant/joint_system.hpp"
 #include "dynamics/compliant/rigid_acceleration.hpp"
 

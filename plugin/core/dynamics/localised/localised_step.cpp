@@ -282,7 +282,7 @@ double LocalisedStep<K>::untilKink(const RigidSystem<K>& s, double left, double 
 // step act on its mean. What rests until the acceleration passes what it bears, and moves from then on, needs a step for each: otherwise
 // the impulse that it bears for the rest of the step is lost, an error of first order.
 //
-// Where blocks turn already, only jumps are looked for: contacts are released all the time, by their own motion.
+// Only jumps are looked for where blocks turn already: their own motion releases contacts all the time.
 //
 // One looks where points are released in the trial, or would be if their forces went on to the acceleration at its end as they have changed
 // since the last step. The instant is then found with the accelerations of the instants themselves, between two bends.

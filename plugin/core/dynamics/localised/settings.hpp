@@ -1,5 +1,5 @@
 #pragma once
-// What a caller chooses for the steps of `localised`.
+// The caller chooses these for the steps of `localised`.
 #include "impact/rocking_restitution.hpp"
 
 namespace masonry::localised {

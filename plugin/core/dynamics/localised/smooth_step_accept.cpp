@@ -59,7 +59,7 @@ void SmoothStep<K>::takeBodies(RigidSystem<K>& s)
 	s.setFresh(unsteady || (isShort() && s.isFresh()));
 }
 
-// What points carry, and whether they are in touch. True: some have landed.
+// Writes what points carry and whether they are in touch. Returns whether some have landed.
 template <class K>
 bool SmoothStep<K>::takePoints(RigidSystem<K>& s) const
 {

@@ -12,13 +12,15 @@
 
 namespace masonry::wall {
 
+// The shares and the table on which they were found: docs/numerics.md, Landings of whole walls.
+//
 // Share of the energy above which what a step loses is a landing; the share that a part loses; and the least loss, relative to the energy
 // that all blocks have with the speed that gravity gives in a step. Larger: walls that land flat swing back too little; smaller: more CPU
 // time.
 constexpr double landing = 0.12, ofPart = 0.03, minLanding = 10;
 
 // Number of parts in which to take a step from the velocities `before`, to which forces add `load`, to `after`; 1 where nothing lands.
-// `fall`: speed that gravity gives in the step, m/s; `small`: blocks that a structure has fewer than.
+// `fall`: speed that gravity gives in the step, m/s; `small`: number of free blocks from which on nothing is divided.
 template <class K>
 int landingParts(const LaneArray& before, const LaneArray& load, const LaneArray& after, double fall, int small)
 {

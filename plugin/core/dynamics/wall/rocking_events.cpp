@@ -253,7 +253,7 @@ Vector3 RockingEvents<K>::axisOf(const ContactSet<K>& c, const Joint& joint, con
 	return rockingAxis(bodies, law, all);
 }
 
-// What the two ends of the old pivot and the new support add to the motion that the block is carried along by. Returns the lever of the new
+// Sets what the two ends of the old pivot and the new support add to the motion that carries the block. Returns the lever of the new
 // support about the old one, m, and turns the axis so that it is positive; carriers are right where it is not too short.
 template <class K>
 double RockingEvents<K>::takeCarriers(const ContactSet<K>& c, const Joint& joint, const Support& support, Landing& landing) const
