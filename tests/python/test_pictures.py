@@ -250,3 +250,14 @@ def test_labels_do_not_lie_over_each_other(drawn, tmp_path, sizes, far, forces):
             inside = figure.bbox.x0 - 1 <= box.x0 and box.x1 <= figure.bbox.x1 + 1 and figure.bbox.y0 - 1 <= box.y0 and box.y1 <= figure.bbox.y1 + 1
             over = [texts[j].get_text() for j, other in enumerate(boxes) if j != k and box.overlaps(other)]
             assert inside and not over, (texts[k].get_text(), over, box, figure.bbox)
+
+
+def test_titles_are_in_the_picture(tmp_path):
+    """The border of a saved picture is white: its title is not cut off."""
+    from matplotlib.image import imread
+
+    place = np.array([[0, 0, -0.1], [0, 0, 0.875]])
+    h = history([[20, 20, 0.2], (2, 0.2, 1.75)], [place, place + [[0, 0, 0], [0.1, 0, 0]], place + [[0, 0, 0], [0.2, 0, 0.4]]])
+    results.draw_joints(h, tmp_path / "joints.png")
+    picture = imread(tmp_path / "joints.png")
+    assert min(side.min() for side in (picture[:3], picture[-3:], picture[:, :3], picture[:, -3:])) == 1

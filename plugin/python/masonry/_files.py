@@ -36,6 +36,7 @@ def save_picture(figure, path, **options):
     path = Path(path)
     if not path.is_dir() and path.suffix[1:].lower() not in figure.canvas.get_supported_filetypes():
         raise ValueError(f"path = {path}: must end in .png, .pdf, .svg or another ending of pictures that Matplotlib writes")
+    figure.draw_without_rendering()  # the constrained layout finds the height of axes of equal aspect in its first pass, and room for titles in its second
     with written(path) as beside:
         figure.savefig(beside, **options)
 
