@@ -4,7 +4,7 @@ import re
 from pathlib import Path
 
 PLUGIN = Path(__file__).resolve().parents[2] / "plugin"
-# Of a folder of plugin/core: those that it may include, besides itself and the files at the top (math, tolerances, checks, archives). The order of
+# A folder of plugin/core may include these, besides itself and the files at the top (math, tolerances, checks, archives). The order of
 # the table is that of the arrows: a folder may name only those above it.
 BELOW = {
     "simd": "",

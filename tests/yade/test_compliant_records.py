@@ -22,7 +22,7 @@ def error_of(record, until, **options):
         O.step()
         times.append(O.time)
         angles.append(dem.angle(block))
-    # What springs take of the motion between two steps, (w dt)^2/4 of the energy that sways.
+    # The springs take (w dt)^2/4 of the energy that sways from the motion between two steps.
     assert abs(balance.error()) < 1e-4 * turned_over()
     wanted = exact.sample(np.array(times))[0]
     return np.max(np.abs(angles - wanted)) / np.max(np.abs(wanted))

@@ -51,7 +51,7 @@ template <>
 struct PointGeometry<Space> {
 	bool crosses {false}; // edges cross; else a vertex is over a face
 	Edge edge1, edge2;    // in the axes of their bodies, where they cross
-	// Where they do not:
+	// These hold where they do not cross:
 	bool vertexOn1 {false};
 	Vector3 vertex {Vector3::Zero()};                            // m, from the centre
 	Vector3 normal {Vector3::Zero()}, tangent {Vector3::Zero()}; // of the face: outward, and along one of its sides

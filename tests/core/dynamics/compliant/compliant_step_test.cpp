@@ -1,4 +1,4 @@
-// What CompliantStep keeps in order around the joints: springs that belong to their patches, the balance of energies, shorter steps,
+// CompliantStep keeps in order what surrounds the joints: springs that belong to their patches, the balance of energies, shorter steps,
 // failures.
 #include "compliant_blocks.hpp"
 #include <catch.hpp>

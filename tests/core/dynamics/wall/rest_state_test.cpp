@@ -38,7 +38,7 @@ TEMPLATE_TEST_CASE("a structure stands after some quiet steps and no longer than
 	CHECK(!rest.stands());
 }
 
-// Of three blocks one rests, one slides on the base and one flies.
+// One block rests, one slides on the base and one flies.
 TEMPLATE_TEST_CASE("blocks that slide or fly move", "", Plane, Space)
 {
 	SceneOf<TestType> scene(0.1);
