@@ -1,4 +1,5 @@
 #include "shape/convex_polyhedron.hpp"
+#include "shape/convex_hull.hpp"
 #include "validation.hpp"
 #include <algorithm>
 #include <limits>
@@ -18,12 +19,9 @@ ConvexPolyhedron::ConvexPolyhedron(std::vector<Vector3> vertices, Loops loops, c
 void ConvexPolyhedron::addFace(std::vector<int> loop)
 {
 	Face face;
-	// Twice the area vector, by triangles about the first vertex. The sum of zero turns -0 into 0.
-	Vector3 sum = Vector3::Zero();
-	for (std::size_t k = 2; k < loop.size(); ++k)
-		sum += (points[loop[k - 1]] - points[loop[0]]).cross(points[loop[k]] - points[loop[0]]);
-	face.area = sum.norm() / 2;
-	face.normal = sum.normalized() + Vector3::Zero();
+	const Vector3 area = areaVector(points, loop);
+	face.area = area.norm();
+	face.normal = area.normalized() + Vector3::Zero(); // turns -0 into 0
 	face.tangent = (points[loop[0]] - points[loop[1]]).normalized() + Vector3::Zero();
 	face.offset = -std::numeric_limits<double>::infinity();
 	for (const int vertex : loop) {

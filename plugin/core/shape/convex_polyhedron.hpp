@@ -4,7 +4,7 @@
 // Coordinates are body axes, m. The dynamics need the origin at the centre of mass and the axes along the principal axes of inertia
 // (shape/mass_properties.hpp). Vertices, faces and edges have numbers; these numbers identify contact points, so they depend on the shape
 // alone and not on the order in which its points were given.
-#include "math.hpp"
+#include "shape/mass_properties.hpp"
 #include <array>
 #include <vector>
 
@@ -39,6 +39,15 @@ public:
 	// The first tangent of a face is the axis after its own.
 	static ConvexPolyhedron box(const Vector3& half);
 
+	// The convex hull of points, in their own axes (m). Points within tolerance::shape::plane of each other are one, and triangles within
+	// it of one plane are one face; the vertices of that face are moved onto the plane. Vertices are numbered from the lowest z, then y,
+	// then x; coordinates within the tolerance of each other count as equal. Faces and edges follow in the order of their vertices. The
+	// hull of a box about the origin along the axes is `box`. The hull of a hull's vertices is the same, bit by bit.
+	static ConvexPolyhedron hull(std::vector<Vector3> points);
+	// The same from faces, which are loops of vertices in either direction, triangles for example. Refuses vertices inside the hull, faces
+	// that are not plane or not on the hull (a concave block), and faces that leave a part of the hull open.
+	static ConvexPolyhedron fromFaces(const std::vector<Vector3>& points, const std::vector<std::vector<int>>& faces);
+
 	const std::vector<Vector3>& vertices() const { return points; }
 	const std::vector<Face>& faces() const { return planes; }
 	const std::vector<Edge>& edges() const { return lines; }
@@ -52,6 +61,7 @@ public:
 
 	double thickness() const { return leastHalfWidth; }       // m, half of the least width across a face; the smallest half size of a box
 	double radius() const { return farthest; }                // m, from the origin to the farthest vertex
+	MassProperties massProperties(double density) const;      // kg/m^3
 	bool isBox() const { return madeAsBox; }                  // made by `box`: its vertices are +-halfSize
 	const Vector3& halfSize() const { return points.back(); } // m; of a box
 
@@ -70,6 +80,13 @@ private:
 	double leastHalfWidth {0}, farthest {0};
 	bool madeAsBox {false};
 };
+
+// The shape as the dynamics need it, with its centre of mass and its principal axes, and the pose that puts it where it was.
+struct PlacedPolyhedron {
+	ConvexPolyhedron shape;
+	Pose pose;
+};
+PlacedPolyhedron inPrincipalAxes(const ConvexPolyhedron&);
 
 // Whether two shapes have the same vertices and faces, number by number and bit by bit.
 bool operator==(const ConvexPolyhedron&, const ConvexPolyhedron&);
