@@ -4,6 +4,13 @@
 
 namespace masonry::tolerance {
 
+// --- shapes (shape/) ---
+namespace shape {
+// Distance of a vertex from the line or plane of its neighbours, relative to the size of the shape, within which it is none. Larger: faces
+// that meet at a small angle become one; smaller: round-off of the points that are given makes vertices.
+constexpr double flat = 1e-9;
+} // namespace shape
+
 // --- impulses at one instant (impact/) ---
 // Relative pivot below which a contact row counts as redundant. Larger: real rows are dropped; smaller: round-off of
 // redundant rows becomes impulses.
