@@ -4,6 +4,7 @@
 // Coordinates are body axes, m. The dynamics need the origin at the centre of mass and the axes along the principal axes of inertia
 // (shape/mass_properties.hpp). Vertices, faces and edges have numbers; these numbers identify contact points, so they depend on the shape
 // alone and not on the order in which its points were given.
+#include "shape/convex_polygon.hpp"
 #include "shape/mass_properties.hpp"
 #include <array>
 #include <vector>
@@ -59,9 +60,12 @@ public:
 		return planes[edge.left].normal + planes[edge.right].normal;
 	} // its component along either is > 0
 
-	double thickness() const { return leastHalfWidth; }       // m, half of the least width across a face; the smallest half size of a box
-	double radius() const { return farthest; }                // m, from the origin to the farthest vertex
-	MassProperties massProperties(double density) const;      // kg/m^3
+	double thickness() const { return leastHalfWidth; }  // m, half of the least width across a face; the smallest half size of a box
+	double radius() const { return farthest; }           // m, from the origin to the farthest vertex
+	MassProperties massProperties(double density) const; // kg/m^3
+	// The section of a right prism across these axes (unit, perpendicular to each other, in body axes), which are those of the polygon.
+	// Refuses other shapes.
+	ConvexPolygon section(const Vector3& along, const Vector3& up) const;
 	bool isBox() const { return madeAsBox; }                  // made by `box`: its vertices are +-halfSize
 	const Vector3& halfSize() const { return points.back(); } // m; of a box
 
