@@ -164,7 +164,7 @@ constexpr double incident = 1e-7;
 // A vertex this far beyond an edge lies on the edge. Smaller: round-off makes edge crossings out of vertices.
 constexpr double slack = 1e-7;
 // A vertex that was a corner of the patch stays one up to this far beyond the edge, so that elastic slip in the joint
-// changes no identity. Larger: lever arms are wrong by as much.
+// changes no feature. Larger: lever arms are wrong by as much.
 constexpr double vertexReach = 1e-4;
 // Overlaps narrower than this are no contact. Smaller: blocks that meet corner to corner push each other sideways;
 // larger: a block sliding off an edge falls that much too early.
