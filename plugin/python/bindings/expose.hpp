@@ -31,6 +31,7 @@ struct Motions {
 void exposeBoxes();
 void exposeClosedForm();
 void exposeMotion();
+void exposeShapes();
 void exposeHistory();
 
 } // namespace masonry::python
