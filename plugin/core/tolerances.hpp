@@ -124,6 +124,25 @@ constexpr double oneInstant = 1e-12;
 
 } // namespace masonry::tolerance
 
+// --- shapes (shape/) --- lengths relative to the diagonal of the box around the points of the shape
+namespace masonry::tolerance::shape {
+
+// Distance within which points are one, vertices lie in one plane and a given vertex lies on the hull. Smaller: faces from files with
+// single precision are split into triangles, whose contact points come and go; larger: fine details are lost.
+constexpr double plane = 1e-6;
+// Distance of vertices from the plane of their face that is round-off. Vertices that are farther off are moved onto it. Smaller: shapes
+// that are turned lose the last digits of their vertices; larger: a block stands on three of its four vertices.
+constexpr double precise = 1e-13;
+// The same for vertices of what is a box. Smaller: boxes that have been turned miss the search for boxes.
+constexpr double box = 1e-12;
+// Product of inertia, relative to the sum of the moments, that is none. Larger: inertia is wrong by as much; smaller: round-off turns axes.
+constexpr double product = 1e-13;
+// Difference of two moments, relative to the same, and product between them, that makes them equal: their axes stay as they are given.
+// Smaller: the noise of single precision turns the axes of square blocks.
+constexpr double equalMoments = 1e-6;
+
+} // namespace masonry::tolerance::shape
+
 // --- box-box contact patches (contact/) --- lengths relative to the smallest half size of the two boxes
 namespace masonry::tolerance::contact {
 
