@@ -17,6 +17,7 @@ public:
 
 	vector<Vector3r> v() const { return vertices; }
 	boost::python::list surfaces() const;
+	bool isBox() const { return polyhedron && polyhedron->isBox(); }
 
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(ConvexBlock, Shape,
@@ -25,6 +26,7 @@ public:
 		createIndex();,
 		.add_property("v", &ConvexBlock::v, "The same as vertices, under the name that YADE's Polyhedra has.")
 		.add_property("faces", &ConvexBlock::surfaces, "Numbers of the vertices of each face, counter-clockwise from outside. Faces in one plane are one.")
+		.add_property("isBox", &ConvexBlock::isBox, "Whether it is a box.")
 		.def("GetSurfaces", &ConvexBlock::surfaces, "The same as faces, under the name that YADE's Polyhedra has.")
 	);
 	// clang-format on

@@ -1,6 +1,8 @@
 // Convex polyhedra: the hull of points, its faces and its mass, by the shapes of the simulation.
 #include "expose.hpp"
 #include "shape/convex_polyhedron.hpp"
+#include "tolerances.hpp"
+#include "validation.hpp"
 
 namespace masonry::python {
 
@@ -25,12 +27,29 @@ std::vector<std::vector<int>> toLoops(const py::object& numbers, const py::objec
 	return loops;
 }
 
-// The polyhedron in its own axes: principal axes, the origin at the centre of mass.
-py::dict convexBlock(const py::object& points, const py::object& faces, const py::object& starts)
+// Refuses points inside the polyhedron.
+void requireVertices(const std::vector<Vector3>& points, const PlacedPolyhedron& placed)
+{
+	const double tolerance = 4 * tolerance::shape::plane * placed.shape.radius();
+	for (std::size_t k = 0; k < points.size(); ++k) {
+		const Vector3 point = placed.pose.orientation.conjugate() * (points[k] - placed.pose.position);
+		double depth = std::numeric_limits<double>::infinity();
+		for (const ConvexPolyhedron::Face& face : placed.shape.faces())
+			depth = std::min(depth, face.offset - face.normal.dot(point));
+		require("vertex " + std::to_string(k) + ": depth inside the convex hull", depth, depth <= tolerance,
+		        "m: leave it out, or make two blocks");
+	}
+}
+
+// The polyhedron in its own axes: principal axes, the origin at the centre of mass. Points that are in them already stay, bit by bit.
+py::dict convexBlock(const py::object& points, const py::object& faces, const py::object& starts, bool inOwnAxes)
 {
 	const std::vector<std::vector<int>> given = toLoops(faces, starts);
+	const std::vector<Vector3> corners = toPoints(points);
+	const ConvexPolyhedron shape = given.empty() ? ConvexPolyhedron::hull(corners) : ConvexPolyhedron::fromFaces(corners, given);
 	const PlacedPolyhedron placed =
-	    inPrincipalAxes(given.empty() ? ConvexPolyhedron::hull(toPoints(points)) : ConvexPolyhedron::fromFaces(toPoints(points), given));
+	    inOwnAxes ? PlacedPolyhedron {shape, {Vector3::Zero(), Quaternion::Identity()}} : inPrincipalAxes(shape);
+	requireVertices(corners, placed);
 	const MassProperties mass = placed.shape.massProperties(1);
 	std::vector<double> vertices, inertia;
 	std::vector<long> loops, start {0};
@@ -60,9 +79,11 @@ py::dict convexBlock(const py::object& points, const py::object& faces, const py
 
 void exposeShapes()
 {
-	py::def("convex_block", convexBlock, py::args("points", "faces", "starts"),
-	        "The convex polyhedron over points (or of faces, checked) in its principal axes: vertices (k, 3), faces one after the other and where each "
-	        "begins, position and orientation (w, x, y, z) of these axes, volume, principal moments of inertia per unit of density, whether it is a box");
+	py::def("convex_block", convexBlock, py::args("points", "faces", "starts", "in_own_axes"),
+	        "The convex polyhedron over points (or of faces, checked) in its principal axes: vertices (k, 3), faces one after the other "
+	        "and where each "
+	        "begins, position and orientation (w, x, y, z) of these axes, volume, principal moments of inertia per unit of density, "
+	        "whether it is a box");
 }
 
 } // namespace masonry::python

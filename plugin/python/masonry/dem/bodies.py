@@ -14,6 +14,16 @@ def boxes():
     return [b for b in O.bodies if isinstance(b.mat, wrapper.BlockMat) and isinstance(b.shape, wrapper.Box)]
 
 
+def convex_blocks():
+    """All bodies that are convex blocks with a BlockMat."""
+    return [b for b in O.bodies if isinstance(b.mat, wrapper.BlockMat) and isinstance(b.shape, wrapper.ConvexBlock)]
+
+
+def blocks():
+    """Boxes and convex blocks, in the order of their ids."""
+    return sorted(boxes() + convex_blocks(), key=lambda b: b.id)
+
+
 def _body(id, name, allowed, says):
     """The body of that id, which the script gave as `name`; ValueError unless it exists and its shape is one of `allowed`."""
     if not isinstance(id, (int, np.integer)) or isinstance(id, bool) or not 0 <= id < len(O.bodies) or O.bodies[int(id)] is None:
@@ -63,11 +73,15 @@ def world_shape(body):
     return position + np.array([tuple(v) for v in body.shape.vertices]) @ matrices(turn).T, body.shape.faces
 
 
+def _size(shape):
+    return 2 * np.array(tuple(shape.extents)) if isinstance(shape, wrapper.Box) else np.ptp([tuple(v) for v in shape.vertices], axis=0)
+
+
 def poses(bodies):
-    """centers (n, 3), full sizes (n, 3) in m and quaternions (n, 4) as w, x, y, z."""
+    """centers (n, 3), full sizes (n, 3) in m, those of the box around a ConvexBlock in its own axes, and quaternions (n, 4) as w, x, y, z."""
     states = [b.state for b in bodies]
     quaternions = np.array([tuple(s.ori) for s in states]).reshape(-1, 4)[:, [3, 0, 1, 2]]
-    sizes = 2 * np.array([tuple(b.shape.extents) for b in bodies]).reshape(-1, 3)
+    sizes = np.array([_size(b.shape) for b in bodies]).reshape(-1, 3)
     return np.array([tuple(s.pos) for s in states]).reshape(-1, 3), sizes, quaternions
 
 

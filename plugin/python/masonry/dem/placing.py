@@ -29,23 +29,27 @@ def turn_about_z(turn):
     return Quaternion(turn[3] / norm, 0, 0, turn[2] / norm) if norm else Quaternion.Identity
 
 
-def _one_each(value, count):
-    return value if isinstance(value, list) else [value] * count
+def box_body(size, material):
+    """A free box of that full size, at the origin."""
+    body = utils.box(Vector3.Zero, Vector3(np.asarray(size) / 2), material=material)
+    body.aspherical = True
+    return body
 
 
-def append_boxes(centers, sizes, material, orientations, resting):
-    """Free blocks at those places of the world. material, orientations, resting (the pose from which dem.angle counts): one for all,
-    or one a block."""
-    bodies = []
-    each = (_one_each(value, len(centers)) for value in (material, orientations, resting))
-    for center, half, mat, turn, rest in zip(centers.tolist(), (sizes / 2).tolist(), *each):
-        body = utils.box(Vector3(center), Vector3(half), turn, material=mat)
-        body.aspherical, body.state.refOri = True, rest
-        bodies.append(body)
-    return O.bodies.append(bodies)
+def posed(body, center, orientation, resting):
+    """The body there; it rests in the orientation `resting`, from which dem.angle counts."""
+    state = body.state
+    state.pos = state.refPos = Vector3(center)
+    state.ori, state.refOri = orientation, resting
+    return body
 
 
-def polyhedron(points, name, faces=None, placed=True):
+def append_boxes(centers, sizes, material, orientation, resting):
+    """Ids of free boxes at those places of the world."""
+    return O.bodies.append([posed(box_body(size, material), center, orientation, resting) for center, size in zip(centers, sizes)])
+
+
+def polyhedron(points, name, faces=None, in_own_axes=False):
     """What the core makes of the points (k, 3), m (masonry._core.convex_block); ValueError that begins with `name` unless they are a block."""
     extent = np.ptp(points, axis=0).max() if len(points) else 0.0
     if np.isfinite(points).all() and not _EXTENTS[0] <= extent <= _EXTENTS[1]:
@@ -53,13 +57,13 @@ def polyhedron(points, name, faces=None, placed=True):
     loops = [] if faces is None else faces
     try:
         return _core.convex_block(np.ravel(points).astype(float), np.array([v for loop in loops for v in loop], dtype=int),
-                                  np.cumsum([0, *map(len, loops)]) if loops else np.zeros(0, dtype=int), placed)
+                                  np.cumsum([0, *map(len, loops)]) if loops else np.zeros(0, dtype=int), in_own_axes)
     except ValueError as error:
         raise ValueError(f"{name}: {error}") from None
 
 
 def convex_body(found, material):
-    """The free body of a polyhedron, where its points were."""
+    """The free body of a polyhedron, where its points were; it rests as it is."""
     body = Body()
     body.shape = wrapper.ConvexBlock(vertices=[Vector3(v) for v in found["vertices"].tolist()], color=utils.randomColor())
     body.mat, body.state = material, material.newAssocState()
@@ -71,29 +75,34 @@ def convex_body(found, material):
     return body
 
 
-def append_convex(blocks, material, foot=(0, 0, 0), orientation=None, faces=None):
-    """Free convex blocks: corners (k, 3) of each, from the foot and in the axes that `orientation` turns. Everything is checked before the first one is made."""
+def turned(body, orientation):
+    """The body, turned about the origin; it rests as it is, less what it leans."""
+    state = body.state
+    state.refOri, state.ori, state.pos = turn_about_z(orientation) * state.ori, orientation * state.ori, orientation * state.pos
+    return body
+
+
+def moved(body, foot):
+    body.state.pos = body.state.refPos = body.state.pos + foot
+    return body
+
+
+def convex_bodies(blocks, material, faces=None):
+    """The free bodies of convex blocks: corners (k, 3) of each, m. They are not in the scene yet."""
+    check_material(material)
     found = [polyhedron(np.asarray(corners, dtype=float), "vertices" if len(blocks) == 1 else f"block {k}", None if faces is None else faces[k])
              for k, corners in enumerate(blocks)]
-    bodies, material = [], block_material(material)
-    resting = None if orientation is None else turn_about_z(orientation)
-    for one in found:
-        body = convex_body(one, material)
-        state = body.state
-        if orientation is not None:
-            state.refOri, state.ori, state.pos = resting * state.ori, orientation * state.ori, orientation * state.pos
-        state.pos = state.refPos = Vector3(foot) + state.pos
-        bodies.append(body)
-    return O.bodies.append(bodies)
+    material = block_material(material)
+    return [convex_body(one, material) for one in found]
 
 
-def top_of(on, at=(0.0, 0.0)):
-    """Where a layout stands on the body: the place `at` from the middle of its upper face, and the orientation of the axes of `at`."""
+def top_of(on, at=(0.0, 0.0), above=0.0):
+    """Where a layout stands on the body: the place `at` from the middle of its upper face, so high above it, and the orientation of the axes of `at`."""
     below, at = block_body(on, "on"), finite_numbers("at", at, 2, "two finite numbers, in m")
     if isinstance(below.shape, wrapper.Box):
-        return below.state.pos + below.state.ori * Vector3(at[0], at[1], below.shape.extents[2]), below.state.ori
+        return below.state.pos + below.state.ori * Vector3(at[0], at[1], below.shape.extents[2] + above), below.state.ori
     middle, orientation, _ = upper_face(below, f"on = {on}")
-    return middle + Vector3(at[0], at[1], 0), orientation
+    return middle + Vector3(at[0], at[1], above), orientation
 
 
 def placed(centers, foot, orientation):
@@ -120,4 +129,4 @@ def stand(layout, material, on, at):
     foot, orientation = top_of(on, at)
     bottom = centers[centers[:, 2] - sizes[:, 2] / 2 < sizes[:, 2].min() / 2, :2]
     check_support(bottom, on, at, np.ptp(np.concatenate([centers - sizes / 2, centers + sizes / 2]), axis=0))
-    return append_boxes(placed(centers, foot, orientation), sizes, block_material(material), orientation, orientation)
+    return append_boxes(placed(centers, foot, orientation).tolist(), sizes, block_material(material), orientation, orientation)

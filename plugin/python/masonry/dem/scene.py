@@ -4,10 +4,11 @@ import math
 
 from masonry._given import finite_numbers, number_given, shown
 from masonry.dem import layouts
-from masonry.dem.bodies import box, boxes, poses
+from masonry.dem.bodies import block_body, blocks, box, boxes, poses, world_shape
 from masonry.dem.checks import check_material
-from masonry.dem.placing import append_boxes, block_material, placed, stand, top_of, turn_about_z
-from masonry.dem.tables import read_table, write_table
+from masonry.dem.meshes import write_obj
+from masonry.dem.placing import append_boxes, block_material, box_body, convex_body, placed, polyhedron, posed, stand, top_of, turn_about_z
+from masonry.dem.tables import read_table, table_rows, write_table
 from yade import O, Quaternion, Vector3, utils
 
 _AXES = {"x": 0, "y": 1}
@@ -46,13 +47,12 @@ def block(size, material, on=None, center=None, orientation=None):
         raise ValueError(f"orientation = {shown(orientation)}: must be a Quaternion of length 1")
     resting = turn_about_z(orientation)
     if on is not None:
-        below = box(on, "on")
         if not (orientation * Vector3.UnitZ)[2] > 1 - 1e-12:
             raise ValueError(f"orientation = {shown(orientation)}: must be a turn about z where the block stands on a body")
-        center = below.state.pos + below.state.ori * Vector3(0, 0, below.shape.extents[2] + size[2] / 2)
-        orientation = resting = below.state.ori * orientation
+        center, turn = top_of(on, above=size[2] / 2)
+        orientation = resting = turn * orientation
     center = finite_numbers("center", center, 3, "three finite numbers, in m")
-    return append_boxes(np.array([center]), np.array([size]), block_material(material), orientation, resting)[0]
+    return append_boxes([center], [size], block_material(material), orientation, resting)[0]
 
 
 def stack(n, size, material, on):
@@ -129,39 +129,52 @@ def blocks_from_table(table, materials, on=None):
     material                  optional: a key of `materials`, a dict of BlockMats. One BlockMat instead serves the rows that name
                               none, or its label.
     qw, qx, qy, qz            optional, instead of the rotations: the orientation as a quaternion (dem.save_blocks writes it)
+    vertices                  in rows of .json and in memory, instead of the sizes: the corners of a convex block in its own axes, m, from its centre of mass
+                              (dem.save_blocks writes them, and `resting`, the quaternion from which dem.angle counts)
     id, name                  optional, ignored
 
     Columns may be written in capitals and with blanks around them.
     """
-    centers, sizes, quaternions, names, places = read_table(table)
+    given = read_table(table)
     if not isinstance(materials, dict):
         check_material(materials)
         materials = {materials.label: materials, "": materials}
     for material in materials.values():
         check_material(material)
-    for place, name in zip(places, names):
+    for place, name in zip(given.places, given.names):
         if name not in materials:
             raise ValueError(f"{place}: material = {shown(name)}: must be one of {', '.join(repr(key) for key in materials)}")
-    orientations = [Quaternion(*q) for q in quaternions.tolist()]
-    resting = [turn_about_z(q) for q in orientations]
+    shapes = [None if points is None else polyhedron(points, place, in_own_axes=True) for place, points in zip(given.places, given.corners)]
+    centers, orientations, resting = given.centers, [Quaternion(*q) for q in given.quaternions.tolist()], [Quaternion(*q) for q in given.resting]
     if on is not None:
         foot, turn = top_of(on)
         centers = placed(centers, foot, turn)
         orientations, resting = [turn * q for q in orientations], [turn * q for q in resting]
-    return append_boxes(centers, sizes, [block_material(materials[name]) for name in names], orientations, resting)
+    bodies = []
+    for shape, center, size, name, *turns in zip(shapes, centers.tolist(), given.sizes, given.names, orientations, resting):
+        material = block_material(materials[name])
+        bodies.append(posed(box_body(size, material) if shape is None else convex_body(shape, material), center, *turns))
+    return O.bodies.append(bodies)
 
 
 def save_blocks(path):
-    """Writes the free blocks as they are now (centre, size, orientation, label of the material) to a .csv or .json table, in the order of their
-    ids: dem.blocks_from_table(path, ...) makes the same bits of them again. Velocities are not kept: O.save does that. Raises ValueError
-    where materials of blocks that are not the same have the same label, or none."""
-    bodies = [b for b in boxes() if b.dynamic]
+    """Writes the free blocks as they are now, in the order of their ids.
+
+    .csv, .json    a table: centre, size (of a convex block, in .json: its corners), orientation, label of the material. dem.blocks_from_table(path, ...)
+                   makes the same bits of them again. Velocities are not kept: O.save does that. Raises ValueError where materials of blocks that are not the
+                   same have the same label, or none.
+    .obj           a mesh in the world for other programs, one object each; dem.blocks_from_mesh(path, ...) reads it"""
+    bodies = [b for b in blocks() if b.dynamic]
+    if str(path).endswith(".obj"):
+        return write_obj(path, [(f"block_{b.id}", *world_shape(b)) for b in bodies])
     labelled = {}
     for material in {b.mat.id: b.mat for b in bodies}.values():
         known = labelled.setdefault(material.label, material)
         if any(repr(value) != repr(getattr(known, name)) for name, value in material.dict().items() if name != "id"):
             raise ValueError(f"O.materials[{material.id}].label = {shown(material.label)}: must be another than that of O.materials[{known.id}], which is not the same")
-    write_table(path, *poses(bodies), [b.mat.label for b in bodies])
+    corners = [None if hasattr(b.shape, "extents") else [tuple(v) for v in b.shape.vertices] for b in bodies]
+    resting = [[b.state.refOri[k] for k in (3, 0, 1, 2)] for b in bodies]
+    write_table(path, table_rows(*poses(bodies), [b.mat.label for b in bodies], corners, resting))
 
 
 def tilt(id, angle, axis="y"):
@@ -190,8 +203,9 @@ def _angle(state, row):
 
 
 def angle(id, axis="y"):
-    """Rotation of a block from its resting pose about its own axis 'x' or 'y', signed, rad."""
-    return _angle(box(id).state, _axis(axis))
+    """Rotation of a block from its resting pose about its own axis 'x' or 'y', signed, rad. The own axes of a convex block are its principal axes of inertia that
+    are nearest to those in which its corners were given."""
+    return _angle(block_body(id).state, _axis(axis))
 
 
 def overturned():

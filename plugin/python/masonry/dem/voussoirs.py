@@ -133,14 +133,19 @@ def flat_arch_layout(span, depth, n, below, width, springers=False):
 
 def _in_depth(joints, crown, depth, springer):
     half = length_given("depth", depth) / 2
+    return [extruded(outline, -half, half) for outline in _with_springers(joints, crown, springer)]
+
+
+def _with_springers(joints, crown, below):
+    """Outlines of the blocks between joints, and first and last those of the springers, `below` high under the joint; 0: there are none."""
     outlines = profiles(joints, crown)
-    if springer:
-        left, right = springer_profiles(joints, springer)
-        outlines = [left, *outlines, right]
-    return [extruded(outline, -half, half) for outline in outlines]
+    if not below:
+        return outlines
+    left, right = springer_profiles(joints, below)
+    return [left, *outlines, right]
 
 
-def barrel_vault_layout(span, rise, thickness, n, length, along, shape="circular", measured="intrados", bond="running"):
+def barrel_vault_layout(span, rise, thickness, n, length, along, shape="circular", measured="intrados", bond="running", springers=False):
     """Blocks of a barrel vault, course by course from left to right, along y in each. The axis of the vault is y."""
     length, along = length_given("length", length), whole("along", along, 1)
     choice_given("bond", bond, BONDS)
@@ -149,7 +154,7 @@ def barrel_vault_layout(span, rise, thickness, n, length, along, shape="circular
     halves = length * (np.arange(2 * along + 1) / (2 * along) - 0.5)
     shifted = np.concatenate([halves[:1], halves[1::2], halves[-1:]])
     cuts = whole_blocks, shifted if bond == "running" else whole_blocks
-    return [extruded(outline, front, back) for course, outline in enumerate(profiles(joints, crown))
+    return [extruded(outline, front, back) for course, outline in enumerate(_with_springers(joints, crown, thickness if springers else 0))
             for front, back in zip(cuts[course % 2][:-1], cuts[course % 2][1:])]
 
 
