@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from masonry import dem
+from masonry import dem, results
 from rocking_scene import refuses, said_by, stone
 from scipy.spatial import ConvexHull
 from yade import Bo1_Box_Aabb, InsertionSortCollider, O, Quaternion, Vector3
@@ -240,3 +240,25 @@ def test_runs_are_refused_in_one_sentence():
     O.engines = [dem.MoreauJeanIntegrator()]
     O.dt = 1e-3
     refuses(O.step, f"O.bodies[{id}] has a BlockMat and is no Box", kind=(RuntimeError, ValueError))
+
+
+def test_recorded_blocks_have_their_shapes(tmp_path):
+    """An arch on its base is recorded without an engine of the joints: the corners of the history are those of dem.geometry, also after loading and after a
+    block has been erased."""
+    base = dem.base((9, 9, 0.2), stone())
+    ids = dem.arch(2, 1, 0.2, 7, 0.5, stone(), on=base)
+    recorder = dem.WallRecorder(iterPeriod=1)
+    O.engines, O.dt = [recorder], 1e-3
+    O.step()
+    O.save(str(tmp_path / "a.xml"))
+    O.reset()
+    O.load(str(tmp_path / "a.xml"))
+    wanted = {id: dem.geometry(id) for id in [base, *ids]}
+    O.bodies.erase(ids[3])
+    O.step()
+    h = dem.wall_history(O.engines[0])
+    assert h.ids.tolist() == [base, *ids] and h.convex.tolist() == [False] + [True] * 7
+    for row, id in enumerate(h.ids.tolist()):
+        count = len(wanted[id].vertices)
+        assert np.allclose(h.corners(0)[row, :count], wanted[id].vertices, rtol=0, atol=1e-14) and h.shapes.loops[row] == wanted[id].faces
+    assert h.bases.tolist() == [0] * 8 and results.fallen(h)[-1].tolist() == [False] * 4 + [True] + [False] * 3
