@@ -6,6 +6,7 @@
 // serialize() can be members.
 #include <Eigen/Core>
 #include <array>
+#include <boost/container/small_vector.hpp>
 #include <stdexcept>
 #include <type_traits>
 #include <vector>
@@ -26,12 +27,22 @@ private:
 	template <class T, class Allocator>
 	void member(std::vector<T, Allocator>& list)
 	{
+		sized(list);
+	}
+	template <class T, size_t usual>
+	void member(boost::container::small_vector<T, usual>& list)
+	{
+		sized(list);
+	}
+	template <class List>
+	void sized(List& list)
+	{
 		double size = double(list.size());
 		self().number(size);
 		if (!(size >= 0 && size < double(list.max_size())))
 			throw std::length_error("size of a list");
 		list.resize(size_t(size));
-		for (T& one : list)
+		for (auto& one : list)
 			member(one);
 	}
 	template <class T, size_t size>

@@ -4,6 +4,13 @@
 
 namespace masonry::tolerance {
 
+// --- shapes (shape/) ---
+namespace shape {
+// Distance of a vertex from the line or plane of its neighbours, relative to the size of the shape, within which it is none. Larger: faces
+// that meet at a small angle become one; smaller: round-off of the points that are given makes vertices.
+constexpr double flat = 1e-9;
+} // namespace shape
+
 // --- impulses at one instant (impact/) ---
 // Relative pivot below which a contact row counts as redundant. Larger: real rows are dropped; smaller: round-off of
 // redundant rows becomes impulses.
@@ -157,7 +164,7 @@ constexpr double incident = 1e-7;
 // A vertex this far beyond an edge lies on the edge. Smaller: round-off makes edge crossings out of vertices.
 constexpr double slack = 1e-7;
 // A vertex that was a corner of the patch stays one up to this far beyond the edge, so that elastic slip in the joint
-// changes no identity. Larger: lever arms are wrong by as much.
+// changes no feature. Larger: lever arms are wrong by as much.
 constexpr double vertexReach = 1e-4;
 // Overlaps narrower than this are no contact. Smaller: blocks that meet corner to corner push each other sideways;
 // larger: a block sliding off an edge falls that much too early.

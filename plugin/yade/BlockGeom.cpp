@@ -6,7 +6,13 @@ namespace yade {
 
 YADE_PLUGIN((BlockGeom));
 
-masonry::PatchFeature BlockGeom::feature() const { return {masonry::PatchKind(kind), feature1, feature2, vertices}; }
+masonry::PatchFeature BlockGeom::feature() const
+{
+	masonry::PatchFeature result {masonry::PatchKind(kind), feature1, feature2, {}};
+	for (size_t i = 0; 3 * i < vertices.size(); ++i)
+		result.add(featureAt(vertices, i));
+	return result;
+}
 
 void BlockGeom::setPatch(const masonry::ContactPatch& found)
 {
@@ -14,31 +20,31 @@ void BlockGeom::setPatch(const masonry::ContactPatch& found)
 	kind = int(patch.feature.kind);
 	feature1 = patch.feature.feature1;
 	feature2 = patch.feature.feature2;
-	vertices = patch.feature.vertices;
+	vertices.clear();
+	for (const masonry::Feature& vertex : patch.feature.vertices)
+		append(vertex, vertices);
 	area = patch.area;
 	normal = patch.normal;
-	pointNormals.fill(patch.normal);
+	pointNormals.assign(patch.points.size(), patch.normal);
 	contactPoint.setZero();
-	for (int i = 0; i < patch.size; ++i)
-		contactPoint += patch.points[i].weight * 0.5 * (patch.points[i].position1 + patch.points[i].position2);
+	for (const masonry::PatchPoint& point : patch.points)
+		contactPoint += point.weight * 0.5 * (point.position1 + point.position2);
 }
 
 vector<Real> BlockGeom::gaps() const
 {
 	vector<Real> result;
-	for (int i = 0; i < patch.size; ++i)
-		result.push_back(patch.points[i].gap);
+	for (const masonry::PatchPoint& point : patch.points)
+		result.push_back(point.gap);
 	return result;
 }
 
 vector<Vector3r> BlockGeom::points() const
 {
 	vector<Vector3r> result;
-	for (int i = 0; i < patch.size; ++i)
-		result.push_back(0.5 * (patch.points[i].position1 + patch.points[i].position2));
+	for (const masonry::PatchPoint& point : patch.points)
+		result.push_back(0.5 * (point.position1 + point.position2));
 	return result;
 }
-
-vector<Vector3r> BlockGeom::normals() const { return {pointNormals.begin(), pointNormals.begin() + patch.size}; }
 
 } // namespace yade

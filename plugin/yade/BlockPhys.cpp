@@ -1,4 +1,5 @@
 #include "BlockPhys.hpp"
+#include "BlockGeom.hpp"
 #include "sentence.hpp"
 
 #include "impact/impulse_problem.hpp"
@@ -35,21 +36,23 @@ void BlockPhys::takeLaw(Real friction, Real c)
 
 void BlockPhys::readPoints(masonry::JointContact& contact) const
 {
-	contact.size = int(identities.size());
 	const Vector3r& n = contact.patch.normal;
-	for (int i = 0; i < contact.size; ++i) {
+	contact.points.clear();
+	for (size_t i = 0; i < muted.size(); ++i) {
 		const Real normal = n.dot(forces[i]);
-		contact.points[i] = {identities[i], muted[i] != 0, shears[i], normal, forces[i] - n * normal, frictionOffsets[i]};
+		contact.points.push_back({featureAt(features, i), muted[i] != 0, shears[i], normal, forces[i] - n * normal, frictionOffsets[i]});
 	}
 	contact.energy = energy;
 	contact.turnShare = turnShare;
 	contact.springs = springs;
+	contact.springs.resize(contact.size());
+	contact.patch.points.resize(contact.size()); // it has none after loading
 }
 
 void BlockPhys::writePoints(const masonry::JointContact& contact)
 {
-	const size_t size = contact.size;
-	identities.resize(size);
+	const size_t size = contact.points.size();
+	features.clear();
 	muted.resize(size);
 	shears.resize(size);
 	forces.resize(size);
@@ -61,7 +64,7 @@ void BlockPhys::writePoints(const masonry::JointContact& contact)
 	shearForce.setZero();
 	for (size_t i = 0; i < size; ++i) {
 		const masonry::JointPoint& point = contact.points[i];
-		identities[i] = point.identity;
+		append(point.feature, features);
 		muted[i] = point.muted;
 		shears[i] = point.shear;
 		forces[i] = contact.force(i);

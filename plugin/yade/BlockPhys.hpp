@@ -20,7 +20,7 @@ public:
 	masonry::JointEnergy energy; // of this step
 	// Not saved: the law finds them anew before they are used.
 	vector<Real> normalForces; // of the points, N
-	masonry::PointValues springs {};
+	masonry::PointValues springs;
 	Real turnShare = 1;
 	bool applied = false; // RockingJointEngine has put the last forces on the bodies
 
@@ -31,7 +31,7 @@ public:
 		((Real, shearStiffness, NaN, , "Shear stiffness per area [Pa/m]."))
 		((Real, restitution, NaN, , "Rocking restitution of the pair, 0 to 1; NaN: natural."))
 		((bool, noSlip, false, , "Whether the points never slip."))
-		((vector<int>, identities, , Attr::readonly, "Number that identifies the two features that make each point; it stays the same from step to step."))
+		((vector<int>, features, , Attr::readonly, "Three numbers for each point, which stay the same from step to step: 1, 2 or 3 for a vertex of body 1 on body 2, a vertex of body 2 on body 1, or an edge across an edge; the number of the vertex or edge of body 1, and that of body 2 (-1: its face)."))
 		((vector<int>, muted, , Attr::readonly, "1 for a point that carries no force until the rotation of the block has crossed zero."))
 		((vector<Vector3r>, shears, , Attr::readonly, "Elastic tangential displacement of each point, of body 2 relative to body 1 [m]."))
 		((vector<Vector3r>, forces, , Attr::readonly, "Force on body 2 at each point [N]; its tangential part acts at the point's place plus frictionOffsets."))

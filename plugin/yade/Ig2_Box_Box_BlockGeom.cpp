@@ -25,7 +25,7 @@ bool Ig2_Box_Box_BlockGeom::go(const shared_ptr<Shape>& shape1, const shared_ptr
 	if (!masonry::collide({half1}, pose1, {half2}, pose2, distance, old, patch)) {
 		if (!keep)
 			return false;
-		patch.size = 0; // no overlap seen along any normal: no point, no force
+		patch.points.clear(); // no overlap seen along any normal: no point, no force
 		patch.normal = (pose2.position - pose1.position).normalized();
 	}
 	if (!interaction->geom)

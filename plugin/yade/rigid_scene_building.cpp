@@ -169,13 +169,13 @@ void RigidScene<K>::meet(Pair& pair, bool placed)
 	const Real rest = masonry::tolerance::restSpeed * std::sqrt(settings.gravity.norm() * length);
 	pair.memory = {};
 	const auto found = masonry::findRows(body1, body2, rest, pair.memory);
-	pair.size = found.size;
-	pair.isHeadJoint = found.size > 0;
-	if (found.size == 0)
+	pair.points.resize(found.size());
+	pair.isHeadJoint = found.size() > 0;
+	if (found.size() == 0)
 		return;
 	pair.face1 = found.face1;
 	pair.face2 = found.face2;
-	for (int i = 0; i < found.size; ++i) {
+	for (int i = 0; i < found.size(); ++i) {
 		auto& point = pair.points[i];
 		point = {};
 		point.feature = found.features[i];

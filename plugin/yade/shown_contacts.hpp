@@ -138,7 +138,7 @@ private:
 	{
 		const Real far =
 		    clearlyApart * std::min(system.bodies[pair.body1].halfSize.minCoeff(), system.bodies[pair.body2].halfSize.minCoeff());
-		return std::none_of(pair.points.begin(), pair.points.begin() + pair.size, [&](const auto& point) { return point.gap <= far; });
+		return std::none_of(pair.points.begin(), pair.points.end(), [&](const auto& point) { return point.gap <= far; });
 	}
 
 	/// Not so before the blocks are near, and when a script or the end of a body has erased it.
@@ -172,15 +172,16 @@ private:
 	{
 		geom.feature1 = pair.face1;
 		geom.feature2 = pair.face2;
-		geom.patch.size = pair.size;
+		geom.patch.points.resize(pair.size());
+		geom.pointNormals.resize(pair.size());
 		geom.contactPoint.setZero();
 		int nearest = 0;
-		for (int i = 0; i < pair.size; ++i) {
+		for (int i = 0; i < pair.size(); ++i) {
 			const auto& point = pair.points[i];
 			auto& to = geom.patch.points[i];
 			to.position1 = to.position2 = pointInScene(coordinates, point.frame.position, depth);
 			to.gap = point.gap;
-			geom.contactPoint += to.position1 / pair.size;
+			geom.contactPoint += to.position1 / pair.size();
 			geom.pointNormals[i] = normalOf(point);
 			if (point.gap < pair.points[nearest].gap)
 				nearest = i;
@@ -190,12 +191,12 @@ private:
 
 	void writePhys(BlockPhys& phys, const Pair& pair) const
 	{
-		phys.forces.resize(pair.size);
-		phys.normalForces.resize(pair.size);
-		phys.frictionOffsets.resize(pair.size);
+		phys.forces.resize(pair.size());
+		phys.normalForces.resize(pair.size());
+		phys.frictionOffsets.resize(pair.size());
 		phys.normalForce.setZero();
 		phys.shearForce.setZero();
-		for (int i = 0; i < pair.size; ++i) {
+		for (int i = 0; i < pair.size(); ++i) {
 			const auto& point = pair.points[i];
 			const Vector3r normal = normalOf(point) * point.force[0];
 			phys.normalForces[i] = point.force[0];

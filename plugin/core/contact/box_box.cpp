@@ -73,16 +73,15 @@ void edgePatch(const Box& box1, const Box& box2, const RelativePose& second, con
 	out.normal = pose1.orientation * edges.normal;
 	out.area = 0;
 	out.nominalArea = std::min(areaAcross(box1, edges.normal), areaAcross(box2, second.rotation.transpose() * edges.normal));
-	out.size = 1;
-	out.points[0] = {pose1.toGlobal(edges.point1), pose1.toGlobal(edges.point2), edges.separation, 1, feature::edgeIdentity(edge1, edge2)};
-	out.feature = {PatchKind::Edges, edge1, edge2, 0};
+	out.points = {{pose1.toGlobal(edges.point1), pose1.toGlobal(edges.point2), edges.separation, 1, {Feature::Edges, edge1, edge2}}};
+	out.feature = {PatchKind::Edges, edge1, edge2, {}};
 }
 
 double smallestGap(const ContactPatch& patch)
 {
 	double gap = patch.points[0].gap;
-	for (int i = 1; i < patch.size; ++i)
-		gap = std::min(gap, patch.points[i].gap);
+	for (const PatchPoint& point : patch.points)
+		gap = std::min(gap, point.gap);
 	return gap;
 }
 

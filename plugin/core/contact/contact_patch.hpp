@@ -1,7 +1,7 @@
 #pragma once
 // Where two faces (or two edges) of a pair of boxes meet: the contact patch.
-#include "math.hpp"
-#include <array>
+#include "contact/features.hpp"
+#include <algorithm>
 
 namespace masonry {
 
@@ -11,7 +11,7 @@ struct PatchPoint {
 	Vector3 position1 {Vector3::Zero()}, position2 {Vector3::Zero()}; // global, m: on body 1 and on body 2
 	double gap {0};                                                   // m, along the normal; negative = penetration
 	double weight {0}; // share of the patch; the weights sum to 1, sum of weight * position = centroid of the patch
-	int identity {-1}; // which features meet here, independent of the reference: see features.hpp
+	Feature feature;   // independent of the reference; a vertex without the face that it is on
 };
 
 enum class PatchKind { None = 0, Face1 = 1, Face2 = 2, Edges = 3 };
@@ -21,7 +21,16 @@ struct PatchFeature {
 	PatchKind kind {PatchKind::None}; // Face1, Face2: face on face, the number names the reference body; Edges: edge across edge
 	int feature1 {-1};                // face 0..5 (kind Face1, Face2) or edge 0..11 (kind Edges) of body 1
 	int feature2 {-1};                // the same of body 2
-	int vertices {0};                 // bit `identity` is set for each vertex that is a corner of the patch
+	PerPoint<Feature> vertices;       // the vertices that are corners of the patch, sorted
+
+	bool has(const Feature& vertex) const { return std::binary_search(vertices.begin(), vertices.end(), vertex); }
+	void add(const Feature& vertex)
+	{
+		const auto place = std::lower_bound(vertices.begin(), vertices.end(), vertex);
+		if (place == vertices.end() || *place != vertex)
+			vertices.insert(place, vertex);
+	}
+	void drop(const Feature& vertex) { vertices.erase(std::remove(vertices.begin(), vertices.end(), vertex), vertices.end()); }
 
 	template <class Archive>
 	void serialize(Archive& archive)
@@ -42,9 +51,10 @@ struct ContactPatch {
 	Vector3 normal {Vector3::Zero()}; // unit, from body 1 to body 2; of the reference face, or normal to both edges
 	double area {0};                  // of the overlap in the reference plane, m^2; 0 for edge across edge
 	double nominalArea {0};           // the smaller of the two faces' areas, m^2; for edges, of the faces nearest to the normal
-	int size {0};
-	std::array<PatchPoint, 8> points; // the first `size`, counter-clockwise about the normal
+	PerPoint<PatchPoint> points;      // counter-clockwise about the normal
 	PatchFeature feature;
+
+	int size() const { return int(points.size()); }
 };
 
 } // namespace masonry

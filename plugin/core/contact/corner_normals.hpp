@@ -22,7 +22,6 @@
 // A corner is at a corner within tolerance::contact::vertexReach. Faces that enclose less than tolerance::contact::cornerSpread have one
 // normal: a block on its bed carries no second rows, and what is lost is that angle of the friction on one side.
 #include "contact/kinematics.hpp"
-#include <algorithm>
 
 namespace masonry {
 
@@ -31,17 +30,14 @@ namespace masonry {
 template <class K, class Rate>
 void dropPassed(FoundPoints<K>& found, Rate rate, double rest)
 {
-	for (int i = found.places; i < found.size; ++i) {
-		typename K::Feature &first = found.features[found.corner[i]], &second = found.features[i];
+	for (int i = found.places; i < found.size(); ++i) {
+		Feature &first = found.features[found.cornerOf(i)], &second = found.features[i];
 		const bool closes1 = rate(first) < -rest, closes2 = rate(second) < -rest;
 		if (closes1 == closes2)
 			continue;
 		if (closes1)
 			first = second;
-		std::copy(found.features.begin() + i + 1, found.features.begin() + found.size, found.features.begin() + i);
-		std::copy(found.corner.begin() + i + 1, found.corner.begin() + found.size, found.corner.begin() + i);
-		--found.size;
-		--i;
+		found.dropSecondNormal(i--);
 	}
 }
 

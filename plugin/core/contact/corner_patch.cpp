@@ -36,10 +36,10 @@ Vertex vertexOf(const PatchPoint& point, const PatchFeature& faces, const Box& b
 		const Vector3& half = on1 ? box1.halfSize : box2.halfSize;
 		return {on1, number, (on1 ? pose1 : pose2).toGlobal(feature::vertexSigns(number).cwiseProduct(half))};
 	};
-	if (!feature::areEdges(point.identity))
-		return vertex(point.identity < 8, point.identity % 8);
+	if (point.feature.kind != Feature::Edges)
+		return vertex(point.feature.vertexBody() == 1, point.feature.vertex());
 	const bool on1 = faces.kind == PatchKind::Face2;
-	const int edge = on1 ? feature::edge1Of(point.identity) : feature::edge2Of(point.identity);
+	const int edge = on1 ? point.feature.on1 : point.feature.on2;
 	const Vector3 signs = feature::edgeSigns(edge), along = Vector3::Unit(feature::edgeAxis(edge));
 	const Vertex first = vertex(on1, feature::vertexNumber(signs - along)), second = vertex(on1, feature::vertexNumber(signs + along));
 	return (first.position - point.position1).norm() < (second.position - point.position1).norm() ? first : second;
@@ -83,10 +83,10 @@ CornerNormals takeMeanNormal(const Box& box1, const Pose& pose1, const Box& box2
 		return {};
 	constexpr double same = 1e-3; // rad, of the normals at the ends of an edge
 	const double touching = tolerance::contact::vertexReach * std::min(box1.halfSize.minCoeff(), box2.halfSize.minCoeff());
-	std::array<Mean, 8> means;
-	std::array<Vertex, 8> vertices;
+	PerPoint<Mean> means(patch.points.size());
+	PerPoint<Vertex> vertices(patch.points.size());
 	int first = -1;
-	for (int i = 0; i < patch.size; ++i) {
+	for (int i = 0; i < patch.size(); ++i) {
 		if (patch.points[i].gap > touching)
 			continue;
 		vertices[i] = vertexOf(patch.points[i], patch.feature, box1, pose1, box2, pose2);
@@ -100,7 +100,7 @@ CornerNormals takeMeanNormal(const Box& box1, const Pose& pose1, const Box& box2
 	if (first < 0)
 		return {};
 	patch.normal = means[first].normal;
-	for (int i = 0; i < patch.size; ++i) {
+	for (int i = 0; i < patch.size(); ++i) {
 		PatchPoint& point = patch.points[i];
 		if (point.gap > touching)
 			continue;

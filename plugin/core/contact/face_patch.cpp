@@ -52,53 +52,50 @@ Vector3 referenceSigns(const FacePair& pair, int corner)
 	return signs;
 }
 
-int incidentVertex(const FacePair& pair, int corner)
+Feature incidentVertex(const FacePair& pair, int corner)
 {
-	return feature::vertexIdentity(3 - pair.face.body, feature::vertexNumber(incidentSigns(pair, corner)));
+	return Feature::ofVertex(3 - pair.face.body, feature::vertexNumber(incidentSigns(pair, corner)));
 }
 
-int referenceVertex(const FacePair& pair, int corner)
+Feature referenceVertex(const FacePair& pair, int corner)
 {
-	return feature::vertexIdentity(pair.face.body, feature::vertexNumber(referenceSigns(pair, corner)));
+	return Feature::ofVertex(pair.face.body, feature::vertexNumber(referenceSigns(pair, corner)));
 }
 
 // Incident edge k leads from corner k to k+1 and runs along the axis whose sign changes; side k of the reference face
 // starts or ends at corner k.
-int crossingIdentity(const FacePair& pair, int edge, int side)
+Feature crossingOf(const FacePair& pair, int edge, int side)
 {
 	const Vector3 from = incidentSigns(pair, edge), to = incidentSigns(pair, (edge + 1) % 4);
 	const int k = nextAxis(pair.incidentAxis);
 	const int incident = feature::edgeNumber(from[k] != to[k] ? k : nextAxis(k), from);
 	const int reference = feature::edgeNumber(side % 2 == 0 ? pair.axisV : pair.axisU, referenceSigns(pair, side));
-	return pair.face.body == 1 ? feature::edgeIdentity(reference, incident) : feature::edgeIdentity(incident, reference);
+	return pair.face.body == 1 ? Feature(Feature::Edges, reference, incident) : Feature(Feature::Edges, incident, reference);
 }
 
-bool has(const PatchFeature& feature, int identity) { return feature.vertices >> identity & 1; }
-
-double vertexReach(const FacePair& pair, const PatchFeature& previous, int identity)
+double vertexReach(const FacePair& pair, const PatchFeature& previous, const Feature& vertex)
 {
-	return (has(previous, identity) ? tolerance::contact::vertexReach : tolerance::contact::slack) * pair.length;
+	return (previous.has(vertex) ? tolerance::contact::vertexReach : tolerance::contact::slack) * pair.length;
 }
 
-// The identity of a corner; its vertices, up to two where corners of both faces coincide, are marked in `vertices`. Such a
+// The feature of a corner; its vertices, up to two where corners of both faces coincide, are added to `found`. Such a
 // corner is named after body 2, so that it keeps its name if the other face becomes the reference.
-int identify(const FacePair& pair, const ClipTask& task, const ClipPoint& point, const PatchFeature& previous, int& vertices)
+Feature identify(const FacePair& pair, const ClipTask& task, const ClipPoint& point, const PatchFeature& previous, PatchFeature& found)
 {
 	if (point.kind == ClipPoint::Crossing)
-		return crossingIdentity(pair, point.first, point.side);
-	if (point.kind == ClipPoint::ReferenceCorner) {
-		const int vertex = referenceVertex(pair, point.first);
-		vertices |= 1 << vertex;
+		return crossingOf(pair, point.first, point.side);
+	const Feature vertex =
+	    point.kind == ClipPoint::ReferenceCorner ? referenceVertex(pair, point.first) : incidentVertex(pair, point.first);
+	found.add(vertex);
+	if (point.kind == ClipPoint::ReferenceCorner)
 		return vertex;
-	}
-	const int vertex = incidentVertex(pair, point.first);
-	vertices |= 1 << vertex;
-	const int corner = point.u > 0 ? (point.v > 0 ? 0 : 3) : (point.v > 0 ? 1 : 2), other = referenceVertex(pair, corner);
+	const int corner = point.u > 0 ? (point.v > 0 ? 0 : 3) : (point.v > 0 ? 1 : 2);
+	const Feature other = referenceVertex(pair, corner);
 	const double reach = std::min(vertexReach(pair, previous, vertex), vertexReach(pair, previous, other));
 	if (std::max(std::abs(std::abs(point.u) - task.halfU), std::abs(std::abs(point.v) - task.halfV)) > reach)
 		return vertex;
-	vertices |= 1 << other;
-	return std::max(vertex, other);
+	found.add(other);
+	return vertex.kind == Feature::Vertex2 ? vertex : other;
 }
 
 // Weights by triangles T_i = (c, p_i, p_i+1) about the centroid c, A = sum T_i:  w_i = (T_i-1 + T_i) / (2 A).
@@ -195,8 +192,11 @@ bool facePatch(const FacePair& pair, const ClipTask& task, const Pose& reference
 	out.normal = first ? outward : Vector3(-outward);
 	out.area = overlap.area;
 	out.nominalArea = std::min(pair.referenceBox.faceArea(pair.face.axis), pair.incidentBox.faceArea(pair.incidentAxis));
-	out.size = polygon.size;
-	int vertices = 0;
+	const int referenceFace = feature::faceNumber(pair.face.axis, pair.face.sign);
+	const int incidentFace = feature::faceNumber(pair.incidentAxis, pair.incidentSign);
+	PatchFeature found {
+	    first ? PatchKind::Face1 : PatchKind::Face2, first ? referenceFace : incidentFace, first ? incidentFace : referenceFace, {}};
+	out.points.resize(polygon.size);
 	for (int i = 0; i < polygon.size; ++i) {
 		const ClipPoint& corner = polygon.points[i];
 		const Vector3 onFace = referencePose.position + corner.u * axes.col(pair.axisU) + corner.v * axes.col(pair.axisV) +
@@ -206,13 +206,10 @@ bool facePatch(const FacePair& pair, const ClipTask& task, const Pose& reference
 		point.position1 = first ? onFace : over;
 		point.position2 = first ? over : onFace;
 		point.gap = corner.height;
-		point.identity = identify(pair, task, corner, previous, vertices);
+		point.feature = identify(pair, task, corner, previous, found);
 	}
 	setWeights(polygon, overlap.area, overlap.centroid, out);
-	const int referenceFace = feature::faceNumber(pair.face.axis, pair.face.sign);
-	const int incidentFace = feature::faceNumber(pair.incidentAxis, pair.incidentSign);
-	out.feature = {first ? PatchKind::Face1 : PatchKind::Face2, first ? referenceFace : incidentFace, first ? incidentFace : referenceFace,
-	               vertices};
+	out.feature = std::move(found);
 	return true;
 }
 

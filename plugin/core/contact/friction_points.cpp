@@ -1,7 +1,7 @@
 #include "contact/friction_points.hpp"
+#include "contact/features.hpp"
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -32,15 +32,14 @@ Vector2 distanceAndArea(const Vector2& p, const Vector2& q)
 // Mean distance of the patch from its centroid. Its corners come in any order.
 double meanDistance(const PatchCorner* corners, int size, const Vector2& centroid)
 {
-	std::array<Vector2, maxFrictionPoints> around {};
+	PerPoint<Vector2> around(size);
 	for (int i = 0; i < size; ++i)
 		around[i] = corners[i].position - centroid;
 	const auto turn = [](const Vector2& p) { // grows with the angle, -2 to 2
 		const double x = p.x() / std::max(std::abs(p.x()) + std::abs(p.y()), std::numeric_limits<double>::min());
 		return p.y() < 0 ? x - 1 : 1 - x;
 	};
-	std::sort(around.begin(), around.begin() + std::min(size, maxFrictionPoints),
-	          [&](const Vector2& p, const Vector2& q) { return turn(p) < turn(q); });
+	std::sort(around.begin(), around.end(), [&](const Vector2& p, const Vector2& q) { return turn(p) < turn(q); });
 	Vector2 sum = Vector2::Zero();
 	for (int i = 0; i < size; ++i)
 		sum += distanceAndArea(around[i], around[(i + 1) % size]);

@@ -32,8 +32,6 @@
 
 namespace masonry {
 
-constexpr int maxFrictionPoints = 8;
-
 struct PatchCorner {
 	Vector2 position; // in the plane of the patch, m
 	double share;     // w_i; the sum is 1

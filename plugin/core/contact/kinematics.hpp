@@ -59,44 +59,16 @@ struct PlanePose {
 	}
 };
 
-// Where a vertex of one body meets a face of the other. Vertex: bits 0, 1 set where along, up is positive; face = 2 axis +
-// (1 if it looks along +axis).
-struct PlaneFeature {
-	int vertexBody {0}; // 1 or 2, the other one has the face; 0: none
-	int vertex {0}, face {0};
-	bool operator==(const PlaneFeature& o) const { return vertexBody == o.vertexBody && vertex == o.vertex && face == o.face; }
-
-	template <class Archive>
-	void serialize(Archive& archive)
-	{
-		archive(vertexBody, vertex, face);
-	}
-};
-
 // What a pair of boxes in the plane remembers from one search to the next.
 struct PlaneMemory {
 	int reference {0};          // body 1 or 2 whose face was the reference; 0: none
 	int face1 {-1}, face2 {-1}; // faces in touch
-	std::array<PlaneFeature, 2> features;
+	std::array<Feature, 2> features;
 
 	template <class Archive>
 	void serialize(Archive& archive)
 	{
 		archive(reference, face1, face2, features);
-	}
-};
-
-// A vertex of one body on a face of the other, or an edge of body 1 across an edge of body 2 (numbers as in contact/features.hpp).
-struct SpaceFeature {
-	enum Kind { None, Vertex1, Vertex2, Edges } kind {None};
-	int first {-1};  // Vertex1: vertex of body 1; Vertex2: face of body 1; Edges: edge of body 1
-	int second {-1}; // Vertex1: face of body 2; Vertex2: vertex of body 2; Edges: edge of body 2
-	bool operator==(const SpaceFeature& o) const { return kind == o.kind && first == o.first && second == o.second; }
-
-	template <class Archive>
-	void serialize(Archive& archive)
-	{
-		archive(kind, first, second);
 	}
 };
 
@@ -112,33 +84,42 @@ struct ContactFrame {
 };
 
 // The contact points of a pair of boxes. Those from number `places` on are second normals, at corners that meet corners
-// (corner_normals.hpp), and `corner` is the point whose place they share.
+// (corner_normals.hpp).
 template <class K>
 struct FoundPoints {
-	int size {0}, places {0};
-	std::array<typename K::Feature, K::maxPoints> features;
-	std::array<int, K::maxPoints> corner {};
-	int face1 {-1}, face2 {-1}; // the faces that meet (edges: those nearest to the normal)
+	PerPoint<Feature, K::usualPoints> features;
+	int places {0};
+	PerPoint<int, K::usualPoints> corners; // of the second normals: the points whose places they share
+	int face1 {-1}, face2 {-1};            // the faces that meet (edges: those nearest to the normal)
 
-	void addSecondNormal(const typename K::Feature& feature, int place)
+	int size() const { return int(features.size()); }
+	bool has(const Feature& feature) const { return std::find(features.begin(), features.end(), feature) != features.end(); }
+	int cornerOf(int secondNormal) const { return corners[secondNormal - places]; }
+
+	// All points found so far have places of their own.
+	void beginSecondNormals() { places = size(); }
+	void addSecondNormal(const Feature& feature, int place)
 	{
-		const auto last = features.begin() + size;
-		if (size == K::maxPoints || std::find(features.begin(), last, feature) != last)
+		if (has(feature))
 			return;
-		corner[size] = place;
-		features[size++] = feature;
+		features.push_back(feature);
+		corners.push_back(place);
+	}
+	void dropSecondNormal(int number)
+	{
+		features.erase(features.begin() + number);
+		corners.erase(corners.begin() + (number - places));
 	}
 };
 
 struct Plane {
-	static constexpr int dimension = 2, spins = 1, dof = 3, rows = 2, maxPoints = 3;
+	static constexpr int dimension = 2, spins = 1, dof = 3, rows = 2, usualPoints = 3;
 	using Vector = Vector2;
 	using Spin = Eigen::Matrix<double, 1, 1>;
 	using Velocity = Eigen::Matrix<double, 3, 1>;
 	using Inertia = Eigen::Matrix<double, 1, 1>; // kg m^2, about the centre
 	using InverseInertia = Eigen::Matrix<double, 1, 1>;
 	using Pose = PlanePose;
-	using Feature = PlaneFeature;
 	using Memory = PlaneMemory;
 
 	static Vector cross(const Spin& w, const Vector& r) { return {-w[0] * r.y(), w[0] * r.x()}; }
@@ -166,14 +147,13 @@ struct Plane {
 };
 
 struct Space {
-	static constexpr int dimension = 3, spins = 3, dof = 6, rows = 3, maxPoints = 8;
+	static constexpr int dimension = 3, spins = 3, dof = 6, rows = 3, usualPoints = 8;
 	using Vector = Vector3;
 	using Spin = Vector3;
 	using Velocity = Eigen::Matrix<double, 6, 1>;
 	using Inertia = Vector3;        // principal moments, kg m^2
 	using InverseInertia = Matrix3; // global axes
 	using Pose = masonry::Pose;
-	using Feature = SpaceFeature;
 	using Memory = PatchFeature;
 
 	static Vector cross(const Spin& w, const Vector& r) { return w.cross(r); }

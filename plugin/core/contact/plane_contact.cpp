@@ -129,7 +129,7 @@ void chooseIncident(FacePair& pair, const PlaneMemory& memory)
 }
 
 struct End {
-	PlaneFeature feature;
+	Feature feature;
 	double gap, place; // place: along the reference face
 };
 
@@ -142,9 +142,11 @@ End endOfOverlap(const FacePair& pair, double end, const PlaneMemory& memory)
 {
 	const double corner = end * signOf(pair.span), inside = pair.referenceEnd() - end * (pair.middle + corner * pair.span);
 	const int reference = pair.face.body;
-	const PlaneFeature ofIncident {3 - reference, vertexNumber(pair.incidentAxis, pair.incidentSign, corner), pair.referenceFace()};
-	const PlaneFeature ofReference {reference, vertexNumber(pair.face.axis, pair.face.sign, end * pair.direction), pair.incidentFace()};
-	const auto held = [&memory](const PlaneFeature& feature) { return feature == memory.features[0] || feature == memory.features[1]; };
+	const int incidentVertex = vertexNumber(pair.incidentAxis, pair.incidentSign, corner),
+	          referenceVertex = vertexNumber(pair.face.axis, pair.face.sign, end * pair.direction);
+	const Feature ofIncident = Feature::ofVertex(3 - reference, incidentVertex, pair.referenceFace()),
+	              ofReference = Feature::ofVertex(reference, referenceVertex, pair.incidentFace());
+	const auto held = [&memory](const Feature& feature) { return feature == memory.features[0] || feature == memory.features[1]; };
 	const auto takesIncident = [&] {
 		if (std::abs(inside) > limits::slack * pair.length)
 			return inside > 0;
@@ -166,11 +168,11 @@ bool passes(const FacePair& pair, const End& low, const End& high)
 // A vertex on a face of the other body, near a vertex of that. Columns of `axes`: those of the body with the vertex, in the other one's.
 class Corner {
 public:
-	Corner(const PlaneFeature& feature, const Vector2& vertexHalf, const PlanePose& vertexPose, const Vector2& faceHalf,
+	Corner(const Feature& feature, const Vector2& vertexHalf, const PlanePose& vertexPose, const Vector2& faceHalf,
 	       const PlanePose& facePose)
-	    : point(feature), vertexSigns(vertexOf(feature.vertex, {1, 1})), pose(relative(facePose, vertexPose))
+	    : point(feature), vertexSigns(vertexOf(feature.vertex(), {1, 1})), pose(relative(facePose, vertexPose))
 	{
-		const Vector2 arm = vertexOf(feature.vertex, vertexHalf);
+		const Vector2 arm = vertexOf(feature.vertex(), vertexHalf);
 		const int along = 1 - axis();
 		for (int row : {0, 1})
 			place[row] = pose.offset[row] + pose.axes[row][0] * arm.x() + pose.axes[row][1] * arm.y();
@@ -179,7 +181,7 @@ public:
 	}
 	// The other bound of the admissible normals (corner_normals.hpp): of the two faces beside the vertex, the one that looks against those
 	// beside the other body's. False: the corners do not meet, or their faces are nearly parallel.
-	bool secondNormal(double reach, PlaneFeature& second) const
+	bool secondNormal(double reach, Feature& second) const
 	{
 		if (apart > reach)
 			return false;
@@ -188,16 +190,16 @@ public:
 			if (vertexSigns[k] * pose.axes[axis()][k] * sign() > 0)
 				return false;
 			if (along < -tolerance::contact::cornerSpread)
-				second = {3 - point.vertexBody, vertexNumber(axis(), sign(), end), faceNumber(k, vertexSigns[k])};
+				second = Feature::ofVertex(3 - point.vertexBody(), vertexNumber(axis(), sign(), end), faceNumber(k, vertexSigns[k]));
 		}
-		return second.vertexBody != 0;
+		return second.kind != Feature::None;
 	}
 
 private:
-	int axis() const { return feature::faceAxis(point.face); }
-	double sign() const { return feature::faceSign(point.face); }
+	int axis() const { return feature::faceAxis(point.face()); }
+	double sign() const { return feature::faceSign(point.face()); }
 
-	const PlaneFeature point;
+	const Feature point;
 	const Vector2 vertexSigns;
 	const RelativePose pose;
 	Vector2 place;
@@ -232,35 +234,32 @@ bool Plane::findPoints(const Vector& half1, const Pose& pose1, const Vector& hal
 
 	End low = endOfOverlap(pair, -1, before), high = endOfOverlap(pair, 1, before);
 	for (End* end : {&low, &high})
-		if (beyondFace && end->feature.vertexBody == face.body && !pair.meetsIncident(end->place))
+		if (beyondFace && end->feature.vertexBody() == face.body && !pair.meetsIncident(end->place))
 			end->gap = std::numeric_limits<double>::infinity();
 	const End& nearer = high.gap < low.gap ? high : low;
 	if (!(nearer.gap <= margin) || std::isinf(nearer.gap))
 		return false;
-	if (beyondFace || passes(pair, low, high)) {
-		out.size = 1;
-		out.features[0] = nearer.feature;
-	} else {
-		out.size = 2;
-		out.features[0] = low.feature;
-		out.features[1] = high.feature;
-	}
+	if (beyondFace || passes(pair, low, high))
+		out.features = {nearer.feature};
+	else
+		out.features = {low.feature, high.feature};
 	out.face1 = on1 ? pair.referenceFace() : pair.incidentFace();
 	out.face2 = on1 ? pair.incidentFace() : pair.referenceFace();
-	memory = {face.body, out.face1, out.face2, {out.features[0], out.features[1]}};
+	memory = {face.body, out.face1, out.face2, {}};
+	std::copy(out.features.begin(), out.features.end(), memory.features.begin());
 	return true;
 }
 
 void Plane::addSecondNormals(const Vector& half1, const Pose& pose1, const Vector& half2, const Pose& pose2, FoundPoints<Plane>& out)
 {
-	out.places = out.size;
+	out.beginSecondNormals();
 	if (std::abs(pose1.cosine * pose2.sine - pose1.sine * pose2.cosine) < tolerance::contact::cornerSpread)
 		return; // parallel
 	const double reach = limits::vertexReach * std::min(half1.minCoeff(), half2.minCoeff());
 	for (int i = 0; i < out.places; ++i) {
-		const PlaneFeature& point = out.features[i];
-		const bool on1 = point.vertexBody == 1;
-		PlaneFeature second;
+		const Feature point = out.features[i];
+		const bool on1 = point.vertexBody() == 1;
+		Feature second;
 		if (Corner(point, on1 ? half1 : half2, on1 ? pose1 : pose2, on1 ? half2 : half1, on1 ? pose2 : pose1).secondNormal(reach, second))
 			out.addSecondNormal(second, i);
 	}

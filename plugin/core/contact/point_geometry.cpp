@@ -54,30 +54,29 @@ ContactFrame<Space> edgeAcrossEdge(const Edge& edge1, const Vector3& centre1, co
 
 } // namespace
 
-PointGeometry<Plane> geometryOf(const PlaneFeature& feature, const Vector2& half1, const Vector2& half2)
+PointGeometry<Plane> geometryOf(const Feature& feature, const Vector2& half1, const Vector2& half2)
 {
-	const bool on1 = feature.vertexBody == 1;
+	const bool on1 = feature.vertexBody() == 1;
 	const Vector2 &vertexHalf = on1 ? half1 : half2, &faceHalf = on1 ? half2 : half1;
-	const int axis = feature::faceAxis(feature.face);
-	return {on1, feature::vertexSigns(feature.vertex).head<2>().cwiseProduct(vertexHalf),
-	        feature::faceSign(feature.face) * Vector2::Unit(axis), faceHalf[axis], faceHalf[1 - axis]};
+	const int axis = feature::faceAxis(feature.face());
+	return {on1, feature::vertexSigns(feature.vertex()).head<2>().cwiseProduct(vertexHalf),
+	        feature::faceSign(feature.face()) * Vector2::Unit(axis), faceHalf[axis], faceHalf[1 - axis]};
 }
 
-PointGeometry<Space> geometryOf(const SpaceFeature& feature, const Vector3& half1, const Vector3& half2)
+PointGeometry<Space> geometryOf(const Feature& feature, const Vector3& half1, const Vector3& half2)
 {
 	PointGeometry<Space> geometry;
-	geometry.crosses = feature.kind == SpaceFeature::Edges;
+	geometry.crosses = feature.kind == Feature::Edges;
 	if (geometry.crosses) {
-		geometry.edge1 = edgeOf(feature.first, half1);
-		geometry.edge2 = edgeOf(feature.second, half2);
+		geometry.edge1 = edgeOf(feature.on1, half1);
+		geometry.edge2 = edgeOf(feature.on2, half2);
 		return geometry;
 	}
-	const bool on1 = geometry.vertexOn1 = feature.kind == SpaceFeature::Vertex1;
+	const bool on1 = geometry.vertexOn1 = feature.vertexBody() == 1;
 	const Vector3& faceHalf = on1 ? half2 : half1;
-	const int vertex = on1 ? feature.first : feature.second, face = on1 ? feature.second : feature.first;
-	const int axis = feature::faceAxis(face), second = feature::nextAxis(axis);
-	geometry.vertex = feature::vertexSigns(vertex).cwiseProduct(on1 ? half1 : half2);
-	geometry.normal = feature::faceSign(face) * Vector3::Unit(axis);
+	const int axis = feature::faceAxis(feature.face()), second = feature::nextAxis(axis);
+	geometry.vertex = feature::vertexSigns(feature.vertex()).cwiseProduct(on1 ? half1 : half2);
+	geometry.normal = feature::faceSign(feature.face()) * Vector3::Unit(axis);
 	geometry.tangent = Vector3::Unit(second);
 	geometry.distance = faceHalf[axis];
 	geometry.halfWidths = {faceHalf[second], faceHalf[feature::nextAxis(second)]};

@@ -60,8 +60,8 @@ struct PointGeometry<Space> {
 };
 
 // The geometry of a point of two boxes.
-PointGeometry<Plane> geometryOf(const PlaneFeature&, const Vector2& half1, const Vector2& half2);
-PointGeometry<Space> geometryOf(const SpaceFeature&, const Vector3& half1, const Vector3& half2);
+PointGeometry<Plane> geometryOf(const Feature&, const Vector2& half1, const Vector2& half2);
+PointGeometry<Space> geometryOf(const Feature&, const Vector3& half1, const Vector3& half2);
 
 ContactFrame<Plane> frameOf(const PointGeometry<Plane>&, const PlanePose& pose1, const PlanePose& pose2);
 ContactFrame<Space> frameOf(const PointGeometry<Space>&, const Pose& pose1, const Pose& pose2);

@@ -3,18 +3,11 @@
 // of one with an edge of the other. Positive: gap; negative: penetration; in m.
 #include "contact/box_box.hpp"
 #include "contact/reference_face.hpp"
+#include "contact/relative_pose.hpp"
 #include "math.hpp"
 #include <array>
 
 namespace masonry {
-
-// One box seen from the other.
-struct RelativePose {
-	Matrix3 rotation; // columns: the other box's axes in the frame of the first
-	Vector3 offset;   // the other box's centre in that frame
-
-	RelativePose reversed() const { return {rotation.transpose(), -(rotation.transpose() * offset)}; }
-};
 
 struct SeparatingAxis {
 	Vector3 normal; // unit, in the frame of box 1, from box 1 to box 2

@@ -19,12 +19,12 @@ using Frame = ContactFrame<Space>;
 
 Vector3 vertexOf(int number, const Vector3& half) { return feature::vertexSigns(number).cwiseProduct(half); }
 
-bool isCrossing(const SpaceFeature& feature) { return feature.kind == SpaceFeature::Edges; }
+bool isCrossing(const Feature& feature) { return feature.kind == Feature::Edges; }
 
 // A corner of both faces is named after body 2. The point is the vertex that lies over the other body's face, which the larger of its
 // distances from the sides of that face tells, as in the plane (endOfOverlap).
-SpaceFeature vertexFeature(int vertex2, const PatchFeature& faces, const Vector3& half1, const Pose& pose1, const Vector3& half2,
-                           const Pose& pose2)
+Feature vertexFeature(int vertex2, const PatchFeature& faces, const Vector3& half1, const Pose& pose1, const Vector3& half2,
+                      const Pose& pose2)
 {
 	const double length = std::min(half1.minCoeff(), half2.minCoeff());
 	const Vector3 place = pose1.orientation.conjugate() * (pose2.position - pose1.position + pose2.orientation * vertexOf(vertex2, half2));
@@ -36,20 +36,19 @@ SpaceFeature vertexFeature(int vertex2, const PatchFeature& faces, const Vector3
 	int side;
 	const double farthest = outside.cwiseAbs().maxCoeff(&side);
 	const int vertex1 = feature::vertexNumber(signs);
-	const bool areBoth = faces.vertices >> feature::vertexIdentity(1, vertex1) & 1 && farthest <= tolerance::contact::vertexReach * length;
+	const bool areBoth = faces.has(Feature::ofVertex(1, vertex1)) && farthest <= tolerance::contact::vertexReach * length;
 	if (areBoth && outside[side] > tolerance::contact::slack * length)
-		return {SpaceFeature::Vertex1, vertex1, faces.feature2};
-	return {SpaceFeature::Vertex2, faces.feature1, vertex2};
+		return {Feature::Vertex1, vertex1, faces.feature2};
+	return {Feature::Vertex2, faces.feature1, vertex2};
 }
 
-SpaceFeature featureOf(const PatchPoint& point, const PatchFeature& faces, const Vector3& half1, const Pose& pose1, const Vector3& half2,
-                       const Pose& pose2)
+// With the face that it is on.
+Feature featureOf(const PatchPoint& point, const PatchFeature& faces, const Vector3& half1, const Pose& pose1, const Vector3& half2,
+                  const Pose& pose2)
 {
-	if (feature::areEdges(point.identity))
-		return {SpaceFeature::Edges, feature::edge1Of(point.identity), feature::edge2Of(point.identity)};
-	if (point.identity < 8)
-		return {SpaceFeature::Vertex1, point.identity, faces.feature2};
-	return vertexFeature(point.identity - 8, faces, half1, pose1, half2, pose2);
+	if (point.feature.kind == Feature::Vertex1)
+		return {Feature::Vertex1, point.feature.on1, faces.feature2};
+	return isCrossing(point.feature) ? point.feature : vertexFeature(point.feature.on2, faces, half1, pose1, half2, pose2);
 }
 
 // The corners of the patch but crossings that are not sharp; of these only one that lies far deeper than all others.
@@ -59,20 +58,19 @@ void takeCorners(const ContactPatch& patch, const Vector3& half1, const Pose& po
 	constexpr double infinity = std::numeric_limits<double>::infinity();
 	const double length = std::min(half1.minCoeff(), half2.minCoeff());
 	double nearest = infinity, nearestBlunt = infinity;
-	SpaceFeature blunt;
-	for (int i = 0; i < patch.size; ++i) {
-		const PatchPoint& point = patch.points[i];
-		const SpaceFeature feature = featureOf(point, patch.feature, half1, pose1, half2, pose2);
+	Feature blunt;
+	for (const PatchPoint& point : patch.points) {
+		const Feature feature = featureOf(point, patch.feature, half1, pose1, half2, pose2);
 		if (!isCrossing(feature) || isSharp(geometryOf(feature, half1, half2), pose1, pose2, patch.normal)) {
 			nearest = std::min(nearest, point.gap);
-			out.features[out.size++] = feature;
+			out.features.push_back(feature);
 		} else if (point.gap < nearestBlunt) {
 			nearestBlunt = point.gap;
 			blunt = feature;
 		}
 	}
 	if (nearestBlunt < nearest - tolerance::contact::vertexReach * length)
-		out.features[out.size++] = blunt;
+		out.features.push_back(blunt);
 }
 
 // Where a face leans on the border of another one, a vertex of it that slides over that border lands nowhere: its gap ends there, at a
@@ -85,27 +83,25 @@ void dropPassing(const ContactPatch& patch, const Vector3& half1, const Pose& po
 	const double nearby = tolerance::contact::passing * std::min(half1.minCoeff(), half2.minCoeff());
 	const auto corner = [&](int i) -> const Vector3& { return patch.points[i].position1; };
 	bool some = false;
-	for (int i = 1; i < patch.size; ++i)
+	for (int i = 1; i < patch.size(); ++i)
 		for (int j = 0; j < i; ++j)
 			some |= (corner(i) - corner(j)).squaredNorm() < nearby * nearby;
 	if (!some)
 		return;
-	std::array<Frame, Space::maxPoints> frames;
-	for (int i = 0; i < out.size; ++i)
-		frames[i] = Space::frame(out.features[i], half1, pose1, half2, pose2);
-	const auto features = out.features;
-	const int before = std::exchange(out.size, 0);
-	for (int i = 0; i < before; ++i) {
+	PerPoint<Frame> frames;
+	for (const Feature& feature : out.features)
+		frames.push_back(Space::frame(feature, half1, pose1, half2, pose2));
+	const auto features = std::exchange(out.features, {});
+	for (size_t i = 0; i < features.size(); ++i) {
 		const auto hides = [&, i](const Frame& other) {
 			const Vector3 normal = frames[i].axes.row(0), otherNormal = other.axes.row(0);
 			return other.gap < frames[i].gap && (other.position - frames[i].position).norm() < nearby &&
 			       normal.cross(otherNormal).norm() > tolerance::contact::leans / 2;
 		};
-		if (std::none_of(frames.begin(), frames.begin() + before, hides))
-			out.features[out.size++] = features[i];
+		if (std::none_of(frames.begin(), frames.end(), hides))
+			out.features.push_back(features[i]);
 		else if (!isCrossing(features[i]))
-			memory.vertices &= ~(1 << (features[i].kind == SpaceFeature::Vertex1 ? feature::vertexIdentity(1, features[i].first)
-			                                                                     : feature::vertexIdentity(2, features[i].second)));
+			memory.drop(Feature::ofVertex(features[i].vertexBody(), features[i].vertex()));
 	}
 }
 
@@ -149,8 +145,7 @@ bool Space::findPoints(const Vector& half1, const Pose& pose1, const Vector& hal
 {
 	const Memory before = memory;
 	memory = {};
-	out.size = 0;
-	out.face1 = out.face2 = -1;
+	out = {};
 	ContactPatch patch;
 	if (!collide({half1}, pose1, {half2}, pose2, margin, before, patch))
 		return false;
@@ -167,25 +162,25 @@ bool Space::findPoints(const Vector& half1, const Pose& pose1, const Vector& hal
 
 void Space::addSecondNormals(const Vector& half1, const Pose& pose1, const Vector& half2, const Pose& pose2, FoundPoints<Space>& out)
 {
-	out.places = out.size;
-	if (out.size == 0 || sineBetween(out.face1, pose1, out.face2, pose2) < tolerance::contact::cornerSpread)
+	out.beginSecondNormals();
+	if (out.places == 0 || sineBetween(out.face1, pose1, out.face2, pose2) < tolerance::contact::cornerSpread)
 		return;
 	const double reach = tolerance::contact::vertexReach * std::min(half1.minCoeff(), half2.minCoeff());
 	for (int i = 0; i < out.places; ++i) {
-		const SpaceFeature point = out.features[i];
+		const Feature point = out.features[i];
 		if (isCrossing(point))
 			continue;
-		const bool on1 = point.kind == SpaceFeature::Vertex1;
-		const int vertex = on1 ? point.first : point.second, face = on1 ? point.second : point.first;
-		const VertexOnEdge corner(vertex, on1 ? half1 : half2, on1 ? pose1 : pose2, face, on1 ? half2 : half1, on1 ? pose2 : pose1);
+		const int body = point.vertexBody();
+		const bool on1 = body == 1;
+		const VertexOnEdge corner(point.vertex(), on1 ? half1 : half2, on1 ? pose1 : pose2, point.face(), on1 ? half2 : half1,
+		                          on1 ? pose2 : pose1);
 		corner.forEdges(reach, reach, [&](const NormalsOnEdge& normals) {
 			if (normals.tangent < tolerance::contact::cornerSpread)
 				return;
 			if (normals.vertexEdge < 0)
-				out.addSecondNormal({point.kind, on1 ? vertex : normals.otherFace, on1 ? normals.otherFace : vertex}, i);
+				out.addSecondNormal(Feature::ofVertex(body, point.vertex(), normals.otherFace), i);
 			else
-				out.addSecondNormal({SpaceFeature::Edges, on1 ? normals.vertexEdge : normals.edge, on1 ? normals.edge : normals.vertexEdge},
-				                    i);
+				out.addSecondNormal({Feature::Edges, on1 ? normals.vertexEdge : normals.edge, on1 ? normals.edge : normals.vertexEdge}, i);
 		});
 	}
 }

@@ -23,8 +23,8 @@ Triangles hullTriangles(const std::vector<Vector3>& points);
 Loops mergedFaces(const std::vector<Vector3>& points, const Triangles& triangles, double tolerance);
 
 // Moves the vertices of faces that are not plane to `precise` (m) onto the planes that fit them. Planes and vertices follow each other by
-// least squares until all agree.
-void flattenFaces(std::vector<Vector3>& points, const Loops& faces, double precise);
+// least squares until all agree. Where a vertex had to go more than `farthest` (m), between faces that are nearly coplanar, all stay.
+void flattenFaces(std::vector<Vector3>& points, const Loops& faces, double precise, double farthest);
 
 // Returns the area vector of a polygon: along its normal, as long as its area, m^2.
 Vector3 areaVector(const std::vector<Vector3>& points, const std::vector<int>& loop);

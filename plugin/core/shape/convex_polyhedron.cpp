@@ -6,6 +6,30 @@
 
 namespace masonry {
 
+namespace {
+
+// The first of those that are the largest to round-off.
+std::array<int, 3> widestTriangle(const std::vector<Vector2>& corners)
+{
+	constexpr double roundOff = 1e-9;
+	const int size = static_cast<int>(corners.size());
+	std::array<int, 3> widest {0, 1, 2};
+	double largest = 0;
+	for (int i = 0; i < size; ++i)
+		for (int j = i + 1; j < size; ++j)
+			for (int k = j + 1; k < size; ++k) {
+				const Vector2 a = corners[j] - corners[i], b = corners[k] - corners[i];
+				const double area = std::abs(a.x() * b.y() - a.y() * b.x());
+				if (area > largest * (1 + roundOff)) {
+					largest = area;
+					widest = {i, j, k};
+				}
+			}
+	return widest;
+}
+
+} // namespace
+
 ConvexPolyhedron::ConvexPolyhedron(std::vector<Vector3> vertices, Loops loops, const Ends& edges)
     : points(std::move(vertices)), meets(points.size())
 {
@@ -28,15 +52,39 @@ void ConvexPolyhedron::addFace(std::vector<int> loop)
 		face.offset = std::max(face.offset, face.normal.dot(points[vertex]));
 		meets[vertex].faces.push_back(static_cast<int>(planes.size()));
 	}
+	face.across = face.normal.cross(face.tangent) + Vector3::Zero();
 	face.loop = std::move(loop);
+	outlineFace(face);
 	face.edges.resize(face.loop.size());
 	planes.push_back(std::move(face));
+}
+
+void ConvexPolyhedron::outlineFace(Face& face)
+{
+	for (const int vertex : face.loop)
+		face.outline.push_back({face.tangent.dot(points[vertex]), face.across.dot(points[vertex])});
+	for (std::size_t k = 0; k < face.outline.size(); ++k) {
+		const Vector2 &here = face.outline[k], &next = face.outline[(k + 1) % face.outline.size()];
+		const Vector2 along = (next - here).normalized();
+		const Vector2 outward = Vector2(along.y(), -along.x()) + Vector2::Zero();
+		face.outward.push_back(outward);
+		face.reach.push_back(std::max(outward.dot(here), outward.dot(next)));
+	}
+	std::vector<Vector2> backwards(face.outline.rbegin(), face.outline.rend());
+	face.widest = widestTriangle(face.outline);
+	face.widestBackwards = widestTriangle(backwards);
 }
 
 void ConvexPolyhedron::addEdge(const std::array<int, 2>& ends)
 {
 	const int number = static_cast<int>(lines.size());
-	Edge edge {ends[0], ends[1], -1, -1, (points[ends[1]] - points[ends[0]]).normalized() + Vector3::Zero()};
+	Edge edge {ends[0],
+	           ends[1],
+	           -1,
+	           -1,
+	           (points[ends[1]] - points[ends[0]]).normalized() + Vector3::Zero(),
+	           (points[ends[0]] + points[ends[1]]) / 2,
+	           (points[ends[1]] - points[ends[0]]).norm() / 2};
 	for (const int face : meets[edge.from].faces) {
 		const std::vector<int>& loop = planes[face].loop;
 		for (std::size_t k = 0; k < loop.size(); ++k) {

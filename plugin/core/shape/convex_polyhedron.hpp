@@ -4,6 +4,7 @@
 // Coordinates are body axes, m. The dynamics need the origin at the centre of mass and the axes along the principal axes of inertia
 // (shape/mass_properties.hpp). Vertices, faces and edges have numbers; these numbers identify contact points, so they depend on the shape
 // alone and not on the order in which its points were given.
+#include "shape/convex_polygon.hpp"
 #include "shape/mass_properties.hpp"
 #include <array>
 #include <vector>
@@ -12,20 +13,29 @@ namespace masonry {
 
 class ConvexPolyhedron {
 public:
-	// A plane face, normal.x = offset. No two faces lie in one plane.
+	// A plane face, normal.x = offset. No two faces lie in one plane. In the plane of the face, points have coordinates along `tangent` and
+	// `across` from the foot of the body's origin.
 	struct Face {
-		Vector3 normal;         // unit, outward
-		Vector3 tangent;        // unit, along the side between the first two vertices of the loop, from the second to the first
-		double offset;          // m
-		double area;            // m^2
-		std::vector<int> loop;  // its vertices, counter-clockwise seen from outside
-		std::vector<int> edges; // edge k joins vertices k and k + 1 of the loop
+		Vector3 normal;          // unit, outward
+		Vector3 tangent, across; // unit: from the second vertex of the loop to the first; normal x tangent
+		double offset;           // m
+		double area;             // m^2
+		std::vector<int> loop;   // its vertices, counter-clockwise seen from outside
+		std::vector<int> edges;  // edge k joins vertices k and k + 1 of the loop
+
+		std::vector<Vector2> outline;       // the vertices, in the plane
+		std::vector<Vector2> outward;       // of side k, between vertices k and k + 1: its unit normal in the plane,
+		std::vector<double> reach;          // and its distance along it, m
+		std::array<int, 3> widest;          // places in the loop of the three vertices that span the largest triangle
+		std::array<int, 3> widestBackwards; // the same where the loop is run through backwards, from its end
 	};
 	// The edge between two faces. Seen from outside and on the way from `from` to `to`, they lie on its left and its right.
 	struct Edge {
 		int from, to;      // vertices
 		int left, right;   // faces
 		Vector3 direction; // unit, towards `to`
+		Vector3 middle;    // m
+		double halfLength; // m
 	};
 	// What meets at a vertex, in ascending order.
 	struct Corner {
@@ -53,15 +63,18 @@ public:
 	const std::vector<Edge>& edges() const { return lines; }
 	const std::vector<Corner>& corners() const { return meets; } // one for each vertex
 
-	Vector3 middle(const Edge& edge) const { return (points[edge.from] + points[edge.to]) / 2; }
+	const Vector3& middle(const Edge& edge) const { return edge.middle; }
 	Vector3 outward(const Edge& edge) const
 	{
 		return planes[edge.left].normal + planes[edge.right].normal;
 	} // its component along either is > 0
 
-	double thickness() const { return leastHalfWidth; }       // m, half of the least width across a face; the smallest half size of a box
-	double radius() const { return farthest; }                // m, from the origin to the farthest vertex
-	MassProperties massProperties(double density) const;      // kg/m^3
+	double thickness() const { return leastHalfWidth; }  // m, half of the least width across a face; the smallest half size of a box
+	double radius() const { return farthest; }           // m, from the origin to the farthest vertex
+	MassProperties massProperties(double density) const; // kg/m^3
+	// The section of a right prism across these axes (unit, perpendicular to each other, in body axes), which are those of the polygon.
+	// Refuses other shapes.
+	ConvexPolygon section(const Vector3& along, const Vector3& up) const;
 	bool isBox() const { return madeAsBox; }                  // made by `box`: its vertices are +-halfSize
 	const Vector3& halfSize() const { return points.back(); } // m; of a box
 
@@ -70,6 +83,7 @@ private:
 	using Ends = std::vector<std::array<int, 2>>;
 	ConvexPolyhedron(std::vector<Vector3> vertices, Loops loops, const Ends& edges);
 	void addFace(std::vector<int> loop);
+	void outlineFace(Face&);
 	void addEdge(const std::array<int, 2>& ends);
 	void measure();
 

@@ -131,10 +131,11 @@ Loops mergedFaces(const std::vector<Vector3>& points, const Triangles& triangles
 	return merging.loops();
 }
 
-void flattenFaces(std::vector<Vector3>& points, const Loops& faces, double precise)
+void flattenFaces(std::vector<Vector3>& points, const Loops& faces, double precise, double farthest)
 {
 	constexpr int maxPasses = 100;
-	constexpr double parallel = 1e-4; // planes that enclose less leave a vertex where it is along their common line
+	constexpr double parallel = 0.05; // planes that enclose less leave a vertex where it is along their common line: it would go far
+	const std::vector<Vector3> given = points;
 	for (int pass = 0; pass < maxPasses; ++pass) {
 		std::map<int, std::vector<std::pair<Vector3, double>>> planes; // at a vertex: normal, and how far it is from the plane
 		double worst = 0;
@@ -157,6 +158,10 @@ void flattenFaces(std::vector<Vector3>& points, const Loops& faces, double preci
 			Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
 			solver.setThreshold(parallel);
 			points[vertex] += solver.compute(normals).solve(missing);
+			if ((points[vertex] - given[vertex]).norm() > farthest) {
+				points = given;
+				return;
+			}
 		}
 	}
 }

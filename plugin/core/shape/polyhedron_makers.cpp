@@ -141,7 +141,7 @@ ConvexPolyhedron ConvexPolyhedron::hull(std::vector<Vector3> points)
 		loops = mergedFaces(points, hullTriangles(points), tolerance);
 		dropUnused(points, loops);
 	}
-	flattenFaces(points, loops, tolerance::shape::precise * extent);
+	flattenFaces(points, loops, tolerance::shape::precise * extent, 10 * tolerance);
 	const Vector3 half = halfSizeOf(points, tolerance::shape::box * extent);
 	return half.isZero() ? ConvexPolyhedron(std::move(points), loops, edgesOf(loops)) : box(half);
 }

@@ -65,13 +65,13 @@ np::ndarray facePatches(const py::object& boxes, const py::object& first, const 
 		if (face.separation > margin[pair] || !facePatch(faces, clipTask(faces, {}), pose, {}, patch, 0))
 			return;
 		double* row = &table[31 * pair];
-		row[0] = patch.size;
+		row[0] = patch.size();
 		row[1] = patch.area;
 		row[2] = patch.nominalArea;
 		row[3] = patch.points[0].gap;
 		Eigen::Map<Vector3> {row + 4} = patch.normal;
 		for (int k = 0; k < 8; ++k) {
-			const PatchPoint& point = patch.points[std::min(k, patch.size - 1)];
+			const PatchPoint& point = patch.points[std::min(k, patch.size() - 1)];
 			row[3] = std::min(row[3], point.gap);
 			Eigen::Map<Vector3> {row + 7 + 3 * k} = point.position1;
 		}

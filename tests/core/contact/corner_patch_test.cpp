@@ -56,7 +56,7 @@ TEST_CASE("corner patches: the mean normal is midway between the faces', and gap
 						CHECK((patch.normal - normal).norm() < 1e-12);
 						CHECK(std::abs(corner.edge.dot(turned * Vector3::UnitY())) == Approx(1));
 						int touching = 0;
-						for (int i = 0; i < patch.size; ++i) {
+						for (int i = 0; i < patch.size(); ++i) {
 							const PatchPoint& point = patch.points[i];
 							if (point.gap > 1e-3)
 								continue;

@@ -29,7 +29,7 @@ Found find(const Vector2& half1, const PlanePose& pose1, const Vector2& half2, c
 {
 	Found found;
 	found.near = Plane::findPoints(half1, pose1, half2, pose2, margin, memory, found);
-	for (int i = 0; i < found.size; ++i) {
+	for (int i = 0; i < found.size(); ++i) {
 		found.frames.push_back(Plane::frame(found.features[i], half1, pose1, half2, pose2));
 		found.smallestGap = std::min(found.smallestGap, found.frames.back().gap);
 	}
@@ -85,11 +85,11 @@ TEST_CASE("a block on a wider one stands on its own two corners, from left to ri
 {
 	const Vector2 base(2, 0.5), block(0.3, 1);
 	const Found found = find(base, at(0, 0), block, at(0.2, 1.5));
-	REQUIRE(found.size == 2);
+	REQUIRE(found.size() == 2);
 	CHECK(found.face1 == 3);
 	CHECK(found.face2 == 2);
-	CHECK(found.features[0] == PlaneFeature {2, 1, 3}); // the tangent is the normal turned by +90 degrees: right to left
-	CHECK(found.features[1] == PlaneFeature {2, 0, 3});
+	CHECK(found.features[0] == Feature::ofVertex(2, 1, 3)); // the tangent is the normal turned by +90 degrees: right to left
+	CHECK(found.features[1] == Feature::ofVertex(2, 0, 3));
 	for (const auto& frame : found.frames) {
 		CHECK(std::abs(frame.gap) < 1e-15);
 		CHECK((frame.axes - (Eigen::Matrix2d() << 0, 1, -1, 0).finished()).norm() < 1e-15);
@@ -101,9 +101,9 @@ TEST_CASE("a block on a wider one stands on its own two corners, from left to ri
 TEST_CASE("a block that overhangs stands on the corner of the one below")
 {
 	const Found found = find({1, 0.5}, at(0, 0), {1, 0.5}, at(0.7, 1));
-	REQUIRE(found.size == 2);
-	CHECK(found.features[0] == PlaneFeature {1, 3, 2});
-	CHECK(found.features[1] == PlaneFeature {2, 0, 3});
+	REQUIRE(found.size() == 2);
+	CHECK(found.features[0] == Feature::ofVertex(1, 3, 2));
+	CHECK(found.features[1] == Feature::ofVertex(2, 0, 3));
 	CHECK((found.frames[0].position - Vector2(1, 0.5)).norm() < 1e-15);
 	CHECK((found.frames[1].position - Vector2(-0.3, 0.5)).norm() < 1e-15);
 }
@@ -115,7 +115,7 @@ TEST_CASE("features last through a rocking motion about either corner, forwards 
 			const Vector2 half2(0.3, 1);
 			PlaneMemory memory;
 			const Found first = find(half1, at(0, 0), half2, rocking(half1, half2, shift, 0), 0.01, memory);
-			REQUIRE(first.size == 2);
+			REQUIRE(first.size() == 2);
 			for (double amplitude : {0.3, -0.3})
 				for (int i = 0; i <= 600; ++i) {
 					const double tilt = amplitude * (1 - std::abs(i / 300. - 1));
@@ -126,7 +126,7 @@ TEST_CASE("features last through a rocking motion about either corner, forwards 
 						pose2.position = centre;
 					}
 					const Found now = find(half1, at(0, 0), half2, pose2, 0.01, memory);
-					REQUIRE(now.size == 2);
+					REQUIRE(now.size() == 2);
 					CHECK(now.features == first.features);
 					// the pivot is in touch to round-off of numbers near 1, the far corner is up by 2b sin(tilt) or by
 					// the shorter span, over the face that it meets
@@ -147,12 +147,12 @@ TEST_CASE("round-off of the poses changes no feature")
 	for (const Vector2& offset : {Vector2(0, 0.5), Vector2(0.5, 0.5), Vector2(1, 0), Vector2(1, 0.1)}) {
 		PlaneMemory memory;
 		const Found first = find(half, at(0, 0), half, at(offset.x(), offset.y()), 0.01, memory);
-		REQUIRE(first.size == 2);
+		REQUIRE(first.size() == 2);
 		for (int i = 0; i < 1000; ++i) {
 			const Vector2 nudge = 1e-12 * Vector2(unit(random), unit(random));
 			const Found now = find(half, at(0, 0, 1e-12 * unit(random)), half,
 			                       at(offset.x() + nudge.x(), offset.y() + nudge.y(), 1e-12 * unit(random)), 0.01, memory);
-			REQUIRE(now.size == 2);
+			REQUIRE(now.size() == 2);
 			CHECK(now.features == first.features);
 			CHECK(std::abs(now.smallestGap) < 4e-12);
 		}
@@ -188,7 +188,7 @@ TEST_CASE("every normal in a running-bond wall with exact head joints is that of
 			if (!found.near)
 				continue;
 			head ? ++heads : ++beds;
-			CHECK(found.size == 2);
+			CHECK(found.size() == 2);
 			for (const auto& frame : found.frames) {
 				CHECK(std::abs(frame.axes(0, head ? 0 : 1)) == Approx(1).margin(1e-15));
 				CHECK(std::abs(frame.gap) < 1e-11);
@@ -224,13 +224,13 @@ TEST_CASE("the ends of a joint are the vertices over the other face, as soon as 
 	constexpr double lift = 1e-6, turn = 1e-6;
 	for (const double sign : {1., -1.}) {
 		PlaneMemory memory;
-		REQUIRE(find(half, at(0, 0), half, at(1, 0), 0.01, memory).size == 2);
+		REQUIRE(find(half, at(0, 0), half, at(1, 0), 0.01, memory).size() == 2);
 		const Found found = find(half, at(0, 0), half, at(1, sign * lift, turn), 0.01, memory);
-		REQUIRE(found.size == 2);
+		REQUIRE(found.size() == 2);
 		for (int i = 0; i < 2; ++i) {
 			const bool isUpper = found.frames[i].position.y() > 0;
-			CHECK(found.features[i].vertexBody == (isUpper == (sign > 0) ? 1 : 2));
-			CHECK(std::abs(found.frames[i].axes(0, 1)) == Approx(found.features[i].vertexBody == 1 ? turn : 0).margin(1e-12));
+			CHECK(found.features[i].vertexBody() == (isUpper == (sign > 0) ? 1 : 2));
+			CHECK(std::abs(found.frames[i].axes(0, 1)) == Approx(found.features[i].vertexBody() == 1 ? turn : 0).margin(1e-12));
 		}
 	}
 }
@@ -242,7 +242,7 @@ TEST_CASE("a corner that stands past the middle of its turn, or at the very end 
 		for (double x : {-0.5, 0.5, 0.999999, 1.}) {
 			const Vector2 arm = at(0, 0, tilt).rotate(Vector2(-0.5, -0.5)); // to the lowest corner
 			const Found found = find(base, at(0, 0), block, at(x - arm.x(), 0.5 - arm.y() - 1e-9, tilt));
-			REQUIRE(found.size >= 1);
+			REQUIRE(found.size() >= 1);
 			CHECK(found.smallestGap == Approx(-1e-9).epsilon(1e-5));
 			for (const auto& frame : found.frames)
 				if (frame.gap < 1e-8) {
@@ -272,7 +272,7 @@ TEST_CASE("the smallest gap is the penetration of boxes in any position")
 			REQUIRE_FALSE(found.near);
 		} else if (expected > 0 && found.near) {
 			++apart;
-			REQUIRE(found.smallestGap > (found.size == 2 ? expected * M_SQRT1_2 - 1e-14 : 0));
+			REQUIRE(found.smallestGap > (found.size() == 2 ? expected * M_SQRT1_2 - 1e-14 : 0));
 		} else if (expected <= 0 && expected > -0.1 * length) {
 			++touching;
 			REQUIRE(found.near);
@@ -292,7 +292,7 @@ TEST_CASE("the gap's rate is the relative velocity along the normal at the point
 	for (int i = 0; i < 2000; ++i) {
 		const Vector2 half1(1 + 0.5 * unit(random), 1 + 0.5 * unit(random)), half2(1 + 0.5 * unit(random), 1 + 0.5 * unit(random));
 		const PlanePose pose1 = at(unit(random), unit(random), 4 * unit(random)), pose2 = at(unit(random), unit(random), 4 * unit(random));
-		const PlaneFeature feature {i % 2 + 1, (i / 2) % 4, (i / 8) % 4};
+		const Feature feature = Feature::ofVertex(i % 2 + 1, (i / 2) % 4, (i / 8) % 4);
 		const Plane::Velocity velocity1 = Plane::Velocity::Random(), velocity2 = Plane::Velocity::Random();
 		const auto gap = [&](double t) {
 			PlanePose moved1 = pose1, moved2 = pose2;
@@ -327,9 +327,9 @@ TEST_CASE("a mirrored scene has the mirrored points")
 		const Vector2 half1(1 + 0.5 * unit(random), 1 + 0.5 * unit(random)), half2(1 + 0.5 * unit(random), 1 + 0.5 * unit(random));
 		const PlanePose pose1 = at(0, 0, 0.1 * unit(random)), pose2 = at(2 * unit(random), 2 * unit(random), unit(random));
 		const Found found = find(half1, pose1, half2, pose2), mirrored = find(half1, mirror(pose1), half2, mirror(pose2));
-		REQUIRE(found.size == mirrored.size);
-		for (int k = 0; k < found.size; ++k) {
-			const auto &frame = found.frames[k], &other = mirrored.frames[found.size - 1 - k];
+		REQUIRE(found.size() == mirrored.size());
+		for (int k = 0; k < found.size(); ++k) {
+			const auto &frame = found.frames[k], &other = mirrored.frames[found.size() - 1 - k];
 			CHECK(frame.gap == other.gap); // not a digit of difference
 			CHECK(frame.position.x() == -other.position.x());
 			CHECK(frame.position.y() == other.position.y());

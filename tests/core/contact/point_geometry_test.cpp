@@ -18,7 +18,7 @@ TEST_CASE("a corner over a face in the plane")
 	PlanePose block, bed;
 	block.position = {0.3, height};
 	block.setAngle(-angle);
-	const PlaneFeature feature {first ? 1 : 2, 0, 3};
+	const Feature feature = Feature::ofVertex(first ? 1 : 2, 0, 3);
 	const Vector2 ofBlock(b, a), ofBed(2, 0.25);
 	const auto geometry = first ? geometryOf(feature, ofBlock, ofBed) : geometryOf(feature, ofBed, ofBlock);
 	const auto frame = first ? frameOf(geometry, block, bed) : frameOf(geometry, bed, block);
@@ -35,7 +35,7 @@ TEST_CASE("a corner over a face in space")
 	constexpr double c = 0.4;
 	const bool first = GENERATE(false, true);
 	const Pose bed, block {{0.3, 0, height}, Quaternion(Eigen::AngleAxisd(angle, Vector3::UnitY()))};
-	const SpaceFeature feature = first ? SpaceFeature {SpaceFeature::Vertex1, 0, 5} : SpaceFeature {SpaceFeature::Vertex2, 5, 0};
+	const Feature feature = Feature::ofVertex(first ? 1 : 2, 0, 5);
 	const Vector3 ofBlock(b, c, a), ofBed(2, 3, 0.25);
 	const auto geometry = first ? geometryOf(feature, ofBlock, ofBed) : geometryOf(feature, ofBed, ofBlock);
 	const auto frame = first ? frameOf(geometry, block, bed) : frameOf(geometry, bed, block);
@@ -55,7 +55,7 @@ TEST_CASE("edges that cross")
 	const Vector3 half1(1, 0.1, 0.1), half2(0.1, 1, 0.1);
 	const Pose bar1 {{0, 0, 0}, Quaternion(Eigen::AngleAxisd(M_PI / 4, Vector3::UnitX()))},
 	    bar2 {{0.2, 0.1, apart}, Quaternion(Eigen::AngleAxisd(M_PI / 4, Vector3::UnitY()))};
-	const SpaceFeature feature {SpaceFeature::Edges, feature::edgeNumber(0, {0, 1, 1}), feature::edgeNumber(1, {1, 0, -1})};
+	const Feature feature {Feature::Edges, feature::edgeNumber(0, {0, 1, 1}), feature::edgeNumber(1, {1, 0, -1})};
 	const auto frame = frameOf(geometryOf(feature, half1, half2), bar1, bar2);
 	CHECK(std::abs(frame.gap - (apart - 0.2 * std::sqrt(2))) < roundOff);
 	CHECK((frame.position - Vector3(0.2, 0, apart / 2)).norm() < roundOff);

@@ -28,7 +28,7 @@ Found find(const Vector3& half1, const Pose& pose1, const Vector3& half2, const 
 {
 	Found found;
 	found.near = Space::findPoints(half1, pose1, half2, pose2, margin, memory, found);
-	for (int i = 0; i < found.size; ++i)
+	for (int i = 0; i < found.size(); ++i)
 		found.frames.push_back(Space::frame(found.features[i], half1, pose1, half2, pose2));
 	return found;
 }
@@ -66,13 +66,13 @@ TEST_CASE("a planar scene has the points of the plane, once in front and once be
 
 		const auto inSpace = [](const PlanePose& p) { return at({p.position.x(), 0, p.position.y()}, {0, -p.angle, 0}); };
 		const Found found = find({half1.x(), 0.5, half1.y()}, inSpace(plane1), {half2.x(), 0.5, half2.y()}, inSpace(plane2), 0.1);
-		if (expected.size == 1) // a single corner: space keeps the clipped face beside it
+		if (expected.size() == 1) // a single corner: space keeps the clipped face beside it
 			continue;
 		// heights over the reference face decide in space, gaps over the incident face in the plane: they can lie on either side
 		// of the margin
 		const auto smallest = [&] {
 			double gap = 1;
-			for (int k = 0; k < expected.size; ++k)
+			for (int k = 0; k < expected.size(); ++k)
 				gap = std::min(gap, Plane::frame(expected.features[k], half1, plane1, half2, plane2).gap);
 			return gap;
 		};
@@ -83,12 +83,12 @@ TEST_CASE("a planar scene has the points of the plane, once in front and once be
 		if (!near)
 			continue;
 		++compared;
-		REQUIRE(found.size == 4);
+		REQUIRE(found.size() == 4);
 		for (const auto& frame : found.frames) {
 			CHECK(std::abs(frame.axes(0, 1)) < 1e-15);
 			CHECK(std::abs(std::abs(frame.position.y()) - 0.5) < 1e-15);
 			int matches = 0;
-			for (int k = 0; k < expected.size; ++k) {
+			for (int k = 0; k < expected.size(); ++k) {
 				const auto flat = Plane::frame(expected.features[k], half1, plane1, half2, plane2);
 				const double error = (Vector2(frame.position.x(), frame.position.z()) - flat.position).norm() +
 				                     std::abs(frame.gap - flat.gap) +
@@ -107,7 +107,7 @@ TEST_CASE("axes are right-handed and the normal points from body 1 to body 2")
 		const Pose low = at({0, 0, 0}), high = at({0.2, 0.1, 1.5}, {0, 0, 0.4});
 		const Vector3 base(2, 2, 0.5), block(0.3, 0.4, 1);
 		const Found found = swapped ? find(block, high, base, low) : find(base, low, block, high);
-		REQUIRE(found.size == 4);
+		REQUIRE(found.size() == 4);
 		CHECK(found.face1 == (swapped ? 4 : 5));
 		CHECK(found.face2 == (swapped ? 5 : 4));
 		for (const auto& frame : found.frames) {
@@ -121,9 +121,9 @@ TEST_CASE("axes are right-handed and the normal points from body 1 to body 2")
 TEST_CASE("two bars that cross have their four crossings, with the faces' normal")
 {
 	const Found found = find({2, 0.3, 0.3}, at({0, 0, 0}), {2, 0.3, 0.3}, at({0, 0, 0.6}, {0, 0, 1}));
-	REQUIRE(found.size == 4);
+	REQUIRE(found.size() == 4);
 	for (int i = 0; i < 4; ++i) {
-		CHECK(found.features[i].kind == SpaceFeature::Edges);
+		CHECK(found.features[i].kind == Feature::Edges);
 		CHECK(found.frames[i].axes(0, 2) == Approx(1));
 		CHECK(std::abs(found.frames[i].gap) < 1e-15);
 	}
@@ -142,8 +142,8 @@ TEST_CASE("crossings of nearly parallel faces agree with the faces to first orde
 				ContactPatch patch;
 				REQUIRE(collide({half}, at({0, 0, 0}), {half}, upper, 0.1, {}, patch));
 				const Found found = find(half, at({0, 0, 0}), half, upper, 0.1);
-				REQUIRE(found.size == patch.size);
-				for (int i = 0; i < found.size; ++i) {
+				REQUIRE(found.size() == patch.size());
+				for (int i = 0; i < found.size(); ++i) {
 					CHECK((found.frames[i].axes.row(0).transpose() - patch.normal).norm() < 1.1 * tilt / std::sin(yaw));
 					const double limit = std::abs(patch.points[i].gap) * tilt / std::sin(yaw) + 1e-15;
 					CHECK(std::abs(found.frames[i].gap - patch.points[i].gap) < limit);
@@ -155,7 +155,7 @@ TEST_CASE("equal blocks with a little yaw meet at the four corners")
 {
 	for (double yaw : {1e-12, 1e-9, 1e-6, 1e-5, 3e-4}) {
 		const Found found = find({0.3, 0.3, 1}, at({0, 0, 0}), {0.3, 0.3, 1}, at({0, 0, 2}, {0, 0, yaw}));
-		REQUIRE(found.size == 4);
+		REQUIRE(found.size() == 4);
 		for (const auto& frame : found.frames) {
 			CHECK(std::abs(frame.axes(0, 2)) == Approx(1));
 			CHECK((frame.position.cwiseAbs() - Vector3(0.3, 0.3, 1)).norm() < 0.5 * yaw + 1e-15);
@@ -168,8 +168,8 @@ TEST_CASE("edge across edge")
 	// the lower edge of a box turned by 45 degrees about y upon the upper edge of one turned by 45 degrees about x
 	const double up = std::sqrt(2.) * 0.5 * 2;
 	const Found found = find({1, 0.5, 0.5}, at({0, 0, 0}, {M_PI / 4, 0, 0}), {0.5, 1, 0.5}, at({0.1, 0.2, up + 1e-3}, {0, M_PI / 4, 0}));
-	REQUIRE(found.size == 1);
-	CHECK(found.features[0].kind == SpaceFeature::Edges);
+	REQUIRE(found.size() == 1);
+	CHECK(found.features[0].kind == Feature::Edges);
 	CHECK(found.frames[0].gap == Approx(1e-3).epsilon(1e-12));
 	CHECK((found.frames[0].position - Vector3(0.1, 0, up / 2 + 5e-4)).norm() < 1e-15);
 	CHECK((found.frames[0].axes.row(0).transpose() - Vector3::UnitZ()).norm() < 1e-15);
@@ -184,10 +184,10 @@ TEST_CASE("round-off of the poses changes no feature in space")
 	for (const Vector3& offset : {Vector3(0, 0, 0.5), Vector3(0.5, 0, 0.5), Vector3(1, 0, 0), Vector3(0.5, 0.1, 0.5)}) {
 		PatchFeature memory;
 		const Found first = find(half, at({0, 0, 0}), half, at(offset), 0.01, memory);
-		REQUIRE(first.size == 4);
+		REQUIRE(first.size() == 4);
 		for (int i = 0; i < 500; ++i) {
 			const Found now = find(half, at(nudge(), nudge()), half, at(offset + nudge(), nudge()), 0.01, memory);
-			REQUIRE(now.size == 4);
+			REQUIRE(now.size() == 4);
 			for (const auto& feature : now.features)
 				CHECK(std::count(first.features.begin(), first.features.end(), feature) > 0);
 		}
@@ -201,7 +201,7 @@ TEST_CASE("features last through a rocking motion in space")
 		for (double amplitude : {0.3, -0.3}) {
 			PatchFeature memory;
 			const Found first = find(base, at({0, 0, 0}), block, at({0, 0, 1.5}, {0, 0, yaw}), 0.01, memory);
-			REQUIRE(first.size == 4);
+			REQUIRE(first.size() == 4);
 			for (int i = 0; i <= 300; ++i) {
 				const double tilt = amplitude * i / 300;
 				const Quaternion turn(Eigen::AngleAxisd(yaw, Vector3::UnitZ()) * Eigen::AngleAxisd(tilt, Vector3::UnitY()));
@@ -211,7 +211,7 @@ TEST_CASE("features last through a rocking motion in space")
 				pose.orientation = turn;
 				pose.position = pivot - turn * Vector3(side * block.x(), 0, -block.z());
 				const Found now = find(base, at({0, 0, 0}), block, pose, 0.01, memory);
-				REQUIRE(now.size == 4);
+				REQUIRE(now.size() == 4);
 				int closed = 0;
 				for (int k = 0; k < 4; ++k) {
 					CHECK(std::count(first.features.begin(), first.features.end(), now.features[k]) == 1);
@@ -234,8 +234,8 @@ TEST_CASE("the gap's rate in space is the relative velocity along the normal at 
 		const Vector3 half1 = Vector3::Ones() + 0.5 * vector(), half2 = Vector3::Ones() + 0.5 * vector();
 		const Pose pose1 = at(vector(), vector()), pose2 = at(pose1.position + 2.5 * vector(), (i % 2 ? 1 : 3) * vector());
 		const Found found = find(half1, pose1, half2, pose2, 0.1);
-		for (int k = 0; k < found.size; ++k) {
-			const SpaceFeature feature = found.features[k];
+		for (int k = 0; k < found.size(); ++k) {
+			const Feature feature = found.features[k];
 			const auto& frame = found.frames[k];
 			Space::Velocity velocity1, velocity2;
 			velocity1 << vector(), vector();
@@ -247,9 +247,9 @@ TEST_CASE("the gap's rate in space is the relative velocity along the normal at 
 				return Space::frame(feature, half1, moved1, half2, moved2).gap;
 			};
 			double h = 1e-3;
-			if (feature.kind == SpaceFeature::Edges) {
+			if (feature.kind == Feature::Edges) {
 				const Matrix3 axes1 = pose1.orientation.toRotationMatrix(), axes2 = pose2.orientation.toRotationMatrix();
-				h *= axes1.col(feature.first / 4).cross(axes2.col(feature.second / 4)).norm();
+				h *= axes1.col(feature.on1 / 4).cross(axes2.col(feature.on2 / 4)).norm();
 			}
 			const auto slope = [&gap](double t) { return (gap(t) - gap(-t)) / (2 * t); };
 			const double rate = (64 * slope(h) - 20 * slope(2 * h) + slope(4 * h)) / 45;
@@ -261,7 +261,7 @@ TEST_CASE("the gap's rate in space is the relative velocity along the normal at 
 			++kinds[feature.kind];
 		}
 	}
-	for (int kind : {SpaceFeature::Vertex1, SpaceFeature::Vertex2, SpaceFeature::Edges})
+	for (int kind : {Feature::Vertex1, Feature::Vertex2, Feature::Edges})
 		CHECK(kinds[kind] > 500);
 }
 
@@ -283,7 +283,7 @@ TEST_CASE("no box in touch is without its deepest point, and no open corner coun
 		ContactPatch patch;
 		const auto nearest = [&patch] {
 			double gap = patch.points[0].gap;
-			for (int k = 1; k < patch.size; ++k)
+			for (int k = 1; k < patch.size(); ++k)
 				gap = std::min(gap, patch.points[k].gap);
 			return gap;
 		};
@@ -294,7 +294,7 @@ TEST_CASE("no box in touch is without its deepest point, and no open corner coun
 			continue;
 		++touching;
 		const Found found = find(half1, pose1, half2, pose2, 1e-3);
-		REQUIRE(found.size > 0);
+		REQUIRE(found.size() > 0);
 		double gap = 1;
 		for (const auto& frame : found.frames)
 			gap = std::min(gap, frame.gap);

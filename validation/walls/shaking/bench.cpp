@@ -278,7 +278,7 @@ void run(wall::WallStep<K>& step)
 				drift = std::max(drift, moved(b).template head<up>().norm());
 			step.showPoints(s);
 			for (const auto& pair : s.pairs)
-				for (int i = 0; i < pair.size; ++i)
+				for (int i = 0; i < pair.size(); ++i)
 					deepest = std::max(deepest, -pair.points[i].gap);
 			kinetic = s.kineticEnergy();
 			if (rate > 0 && tilted < 0 && drift > 0.1 * world.H) {

@@ -146,7 +146,7 @@ void CompliantStep::sumForces(bool ofPrescribed)
 			if (ofPrescribed && !system.bodies[b].prescribed)
 				continue;
 			loads[b].acts = true;
-			for (int i = 0; i < contact.size; ++i) {
+			for (int i = 0; i < contact.size(); ++i) {
 				loads[b].force += sign * contact.force(i);
 				loads[b].moment += sign * contact.moment(i, system.bodies[b].pose.position);
 			}
@@ -209,7 +209,7 @@ void CompliantStep::checkDepths(CompliantReport& report)
 	for (size_t c = 0; c < system.contacts.size() && !run.isDeep; ++c) {
 		const JointContact& contact = system.contacts[c];
 		const double size = std::min(sizes[contact.body1], sizes[contact.body2]);
-		for (int i = 0; i < contact.size && !run.isDeep; ++i) {
+		for (int i = 0; i < contact.size() && !run.isDeep; ++i) {
 			const double depth = -contact.patch.points[i].gap / size;
 			if (!(depth > most))
 				continue;

@@ -14,11 +14,11 @@ namespace {
 // and of the points.
 double turnShareOf(const JointContact& contact)
 {
-	const int size = contact.size;
+	const int size = contact.size();
 	const ContactPatch& patch = contact.patch;
 	if (size < 3)
 		return 1;
-	std::array<Vector3, maxFrictionPoints> places;
+	PerPoint<Vector3> places(size);
 	for (int i = 0; i < size; ++i)
 		places[i] = contact.position(i);
 	Vector3 centroid = Vector3::Zero();
@@ -37,17 +37,17 @@ double turnShareOf(const JointContact& contact)
 }
 
 // Returns what a face of the stiffness k gives to its points `among`: w_i (r k x_i + (1 - r) sum), zero to the others.
-PointValues shared(const JointContact& contact, double k, double r, const PointValues& x, const std::array<bool, maxFrictionPoints>& among)
+PointValues shared(const JointContact& contact, double k, double r, const PointValues& x, const PerPoint<bool>& among)
 {
 	double weights = 0, sum = 0;
-	for (int i = 0; i < contact.size; ++i)
+	for (int i = 0; i < contact.size(); ++i)
 		if (among[i]) {
 			weights += contact.patch.points[i].weight;
 			sum += contact.patch.points[i].weight * x[i];
 		}
 	const double total = r * k * sum / (1 - (1 - r) * weights);
-	PointValues result {};
-	for (int i = 0; i < contact.size; ++i)
+	PointValues result(contact.size());
+	for (int i = 0; i < contact.size(); ++i)
 		if (among[i])
 			result[i] = contact.patch.points[i].weight * (r * k * x[i] + (1 - r) * total);
 	return result;
@@ -60,19 +60,19 @@ PointValues shared(const JointContact& contact, double k, double r, const PointV
 PointValues JointContact::springForces(const PointValues& depths) const
 {
 	const double k = normalStiffness(), r = turnShare;
-	std::array<bool, maxFrictionPoints> carries {};
-	PointValues forces {};
+	PerPoint<bool> carries(size());
+	PointValues forces(size());
 	for (double total = 0;;) {
 		bool joined = false;
-		for (int i = 0; i < size; ++i)
+		for (int i = 0; i < size(); ++i)
 			if (!carries[i] && !points[i].muted && r * k * depths[i] + (1 - r) * total > 0)
 				carries[i] = joined = true;
 		if (!joined)
 			return forces;
 		forces = shared(*this, k, r, depths, carries);
 		total = 0;
-		for (int i = 0; i < size; ++i)
-			total += forces[i];
+		for (const double force : forces)
+			total += force;
 	}
 }
 
@@ -80,10 +80,10 @@ PointValues JointContact::depthsFor(const PointValues& forces) const
 {
 	const double k = normalStiffness(), r = turnShare;
 	double total = 0;
-	for (int i = 0; i < size; ++i)
-		total += forces[i];
-	PointValues depths {};
-	for (int i = 0; i < size; ++i)
+	for (const double force : forces)
+		total += force;
+	PointValues depths(size());
+	for (int i = 0; i < size(); ++i)
 		depths[i] = (forces[i] / patch.points[i].weight - (1 - r) * total) / (r * k);
 	return depths;
 }
@@ -91,7 +91,7 @@ PointValues JointContact::depthsFor(const PointValues& forces) const
 double JointContact::normalEnergy() const
 {
 	double sum = 0;
-	for (int i = 0; i < size; ++i)
+	for (int i = 0; i < size(); ++i)
 		sum -= 0.5 * springs[i] * patch.points[i].gap;
 	return sum;
 }
@@ -116,26 +116,25 @@ double JointContact::power(int i, const Body& body) const
 	return force(i).dot(body.velocityAt(position(i))) + points[i].shearForce.dot(gripMotion(i, body.angularVelocity));
 }
 
-std::array<Vector3, maxFrictionPoints> JointContact::gripsFor(const PointValues& forces) const
+PerPoint<Vector3> JointContact::gripsFor(const PointValues& forces) const
 {
-	std::array<Vector3, maxFrictionPoints> grips;
-	grips.fill(Vector3::Zero());
+	PerPoint<Vector3> grips(size(), Vector3::Zero());
 	if (std::isinf(law.friction)) // no torque to limit
 		return grips;
-	std::array<PatchCorner, maxFrictionPoints> corners;
-	std::array<Vector2, maxFrictionPoints> offsets;
+	PerPoint<PatchCorner> corners(size());
+	PerPoint<Vector2> offsets(size());
 	const Eigen::Matrix<double, 2, 3> tangents = axesAlong(patch.normal).bottomRows<2>();
-	for (int i = 0; i < size; ++i)
+	for (int i = 0; i < size(); ++i)
 		corners[i] = {tangents * (position(i) - position(0)), patch.points[i].weight, forces[i]};
-	frictionOffsets(corners.data(), size, offsets.data());
-	for (int i = 0; i < size; ++i)
+	frictionOffsets(corners.data(), size(), offsets.data());
+	for (int i = 0; i < size(); ++i)
 		grips[i] = tangents.transpose() * offsets[i];
 	return grips;
 }
 
 bool JointContact::rocking() const
 {
-	return std::any_of(points.begin(), points.begin() + size, [](const JointPoint& p) { return p.muted; });
+	return std::any_of(points.begin(), points.end(), [](const JointPoint& p) { return p.muted; });
 }
 
 double reducedMass(const Body& body1, const Body& body2)
@@ -148,20 +147,18 @@ namespace {
 
 bool hasPointsOf(const JointContact& contact, const ContactPatch& patch)
 {
-	return std::equal(contact.points.begin(), contact.points.begin() + contact.size, patch.points.begin(),
-	                  patch.points.begin() + patch.size, [](const JointPoint& a, const PatchPoint& b) { return a.identity == b.identity; });
+	return std::equal(contact.points.begin(), contact.points.end(), patch.points.begin(), patch.points.end(),
+	                  [](const JointPoint& a, const PatchPoint& b) { return a.feature == b.feature; });
 }
 
-void takeIdentities(JointContact& contact, const ContactPatch& patch)
+void takePoints(JointContact& contact, const ContactPatch& patch)
 {
 	const auto old = contact.points;
-	const auto end = old.begin() + contact.size;
 	const bool rocking = contact.rocking();
-	contact.size = patch.size;
-	for (int i = 0; i < patch.size; ++i) {
-		const int identity = patch.points[i].identity;
-		const auto found = std::find_if(old.begin(), end, [&](const JointPoint& p) { return p.identity == identity; });
-		contact.points[i] = found != end ? *found : JointPoint {identity, rocking};
+	contact.points.clear();
+	for (const PatchPoint& point : patch.points) {
+		const auto found = std::find_if(old.begin(), old.end(), [&](const JointPoint& p) { return p.feature == point.feature; });
+		contact.points.push_back(found != old.end() ? *found : JointPoint {point.feature, rocking});
 	}
 }
 
@@ -170,9 +167,9 @@ void takeIdentities(JointContact& contact, const ContactPatch& patch)
 void renewPatch(JointContact& contact, const ContactPatch& patch)
 {
 	if (!hasPointsOf(contact, patch))
-		takeIdentities(contact, patch);
+		takePoints(contact, patch);
 	contact.patch = patch;
-	for (int i = 0; i < patch.size; ++i) {
+	for (int i = 0; i < patch.size(); ++i) {
 		// The joint's plane has turned with the bodies: keep the shear in it, at its length.
 		Vector3& shear = contact.points[i].shear;
 		const double length = shear.norm();
@@ -191,8 +188,8 @@ void followPatch(JointContact& contact)
 
 void updateSprings(JointContact& contact)
 {
-	PointValues depths {};
-	for (int i = 0; i < contact.size; ++i)
+	PointValues depths(contact.size());
+	for (int i = 0; i < contact.size(); ++i)
 		depths[i] = -contact.patch.points[i].gap;
 	contact.springs = contact.springForces(depths);
 }
@@ -219,17 +216,17 @@ private:
 };
 
 struct PointMotions { // of body 2 relative to body 1 over the step that ends now
-	std::array<Vector3, maxFrictionPoints> velocities;
-	PointValues approaches {}; // along the normal, m/s
+	PerPoint<Vector3> velocities;
+	PointValues approaches; // along the normal, m/s
 };
 
 PointMotions motionsOf(const JointContact& contact, const Body& body1, const Body& body2, double dt)
 {
 	const StepMotion motion1(body1, dt), motion2(body2, dt);
 	PointMotions result;
-	for (int i = 0; i < contact.size; ++i) {
-		result.velocities[i] = motion2.velocityAt(contact.position(i)) - motion1.velocityAt(contact.position(i));
-		result.approaches[i] = -contact.patch.normal.dot(result.velocities[i]);
+	for (int i = 0; i < contact.size(); ++i) {
+		result.velocities.push_back(motion2.velocityAt(contact.position(i)) - motion1.velocityAt(contact.position(i)));
+		result.approaches.push_back(-contact.patch.normal.dot(result.velocities[i]));
 	}
 	return result;
 }
@@ -262,11 +259,11 @@ bool takeShearForce(JointContact& contact, int i)
 
 void placeFriction(JointContact& contact)
 {
-	PointValues forces {};
-	for (int i = 0; i < contact.size; ++i)
-		forces[i] = contact.points[i].normalForce;
+	PointValues forces;
+	for (const JointPoint& point : contact.points)
+		forces.push_back(point.normalForce);
 	const auto grips = contact.gripsFor(forces);
-	for (int i = 0; i < contact.size; ++i)
+	for (int i = 0; i < contact.size(); ++i)
 		contact.points[i].grip = grips[i];
 }
 
@@ -280,11 +277,11 @@ void release(JointPoint& point)
 // Takes the normal forces from the springs and, for the points that carry, the dashpots.
 void takeNormalForces(JointContact& contact, double damping, const PointValues& approaches)
 {
-	std::array<bool, maxFrictionPoints> carries {};
-	for (int i = 0; i < contact.size; ++i)
-		carries[i] = contact.springs[i] > 0;
+	PerPoint<bool> carries;
+	for (const double spring : contact.springs)
+		carries.push_back(spring > 0);
 	const PointValues dashpots = shared(contact, damping, contact.turnShare, approaches, carries);
-	for (int i = 0; i < contact.size; ++i) {
+	for (int i = 0; i < contact.size(); ++i) {
 		if (carries[i])
 			contact.points[i].normalForce = std::max(0., contact.springs[i] + dashpots[i]);
 		else
@@ -301,8 +298,8 @@ void updateForces(JointContact& contact, const Body& body1, const Body& body2, d
 	const auto [velocities, rates] = motionsOf(contact, body1, body2, dt);
 	contact.energy = {};
 	const auto before = contact.points;
-	PointValues depths {}, oldDepths {};
-	for (int i = 0; i < contact.size; ++i) {
+	PointValues depths(contact.size()), oldDepths(contact.size());
+	for (int i = 0; i < contact.size(); ++i) {
 		depths[i] = -contact.patch.points[i].gap;
 		oldDepths[i] = depths[i] - rates[i] * dt;
 	}
@@ -314,7 +311,7 @@ void updateForces(JointContact& contact, const Body& body1, const Body& body2, d
 	// A spring without any force comes back by its dashpot. The leapfrog scheme's own work of a force over a step is that of the mean
 	// of its values at the two ends: springs do not store all that they take where points meet or part within the step.
 	double byDashpots = 0; // taken by those of the normal springs, J: below zero where they give
-	for (int i = 0; i < contact.size; ++i) {
+	for (int i = 0; i < contact.size(); ++i) {
 		JointPoint& point = contact.points[i];
 		const JointPoint& old = before[i];
 		const double weight = contact.patch.points[i].weight, stiffness = contact.shearStiffness(i), way = rates[i] * dt;
@@ -353,7 +350,7 @@ void holdForces(JointContact& contact)
 {
 	contact.energy.elastic = 0;
 	const PointValues& springs = contact.springs;
-	for (int i = 0; i < contact.size; ++i) {
+	for (int i = 0; i < contact.size(); ++i) {
 		JointPoint& point = contact.points[i];
 		if (!(springs[i] > 0)) {
 			release(point);
@@ -369,7 +366,7 @@ void holdForces(JointContact& contact)
 void releaseForces(JointContact& contact)
 {
 	contact.energy = {};
-	std::for_each(contact.points.begin(), contact.points.begin() + contact.size, release);
+	std::for_each(contact.points.begin(), contact.points.end(), release);
 }
 
 } // namespace masonry

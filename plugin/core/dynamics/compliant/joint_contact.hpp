@@ -42,7 +42,7 @@ struct JointLaw {
 };
 
 struct JointPoint {
-	int identity {-1};
+	Feature feature;
 	bool muted {false};
 	Vector3 shear {Vector3::Zero()};      // s_i, of body 2 relative to body 1, m
 	double normalForce {0};               // N_i on body 2 along the normal, N
@@ -57,19 +57,19 @@ struct JointEnergy {
 	double damping {0};  // dissipated in this step, J
 };
 
-using PointValues = std::array<double, maxFrictionPoints>;
+using PointValues = PerPoint<double>;
 
 struct JointContact {
 	int body1 {-1}, body2 {-1};
 	ContactPatch patch;
 	CornerNormals corner;
 	JointLaw law;
-	int size {0};
-	std::array<JointPoint, 8> points; // parallel to patch.points
+	PerPoint<JointPoint> points; // parallel to patch.points
 	JointEnergy energy;
-	double turnShare {1};   // r of the present patch
-	PointValues springs {}; // N_i of the springs at the present gaps, of the points that are not muted, N
+	double turnShare {1}; // r of the present patch
+	PointValues springs;  // N_i of the springs at the present gaps, of the points that are not muted, N
 
+	int size() const { return int(points.size()); }
 	double stiffnessArea() const;                                                    // m^2, what the stiffness per area is multiplied with
 	double normalStiffness() const { return law.normalStiffness * stiffnessArea(); } // of the closed face, N/m
 	double shearStiffness(int i) const { return law.shearStiffness * stiffnessArea() * patch.points[i].weight; }
@@ -86,14 +86,14 @@ struct JointContact {
 	Vector3 moment(int i, const Vector3& center) const;                                                // of the same, about `center`
 	double power(int i, const Body& body) const;                                                       // of the same, on points of the body
 	// From the points to where their friction acts if their normal forces are these, m.
-	std::array<Vector3, maxFrictionPoints> gripsFor(const PointValues& forces) const;
+	PerPoint<Vector3> gripsFor(const PointValues& forces) const;
 	bool rocking() const; // some point is muted
 };
 
 // 0 where neither body is free, kg
 double reducedMass(const Body& body1, const Body& body2);
 
-// Carries the points' state over to a new patch, by identity. A point without a past is muted when the joint rocks.
+// Carries the points' state over to a new patch, by their features. A point without a past is muted when the joint rocks.
 void renewPatch(JointContact& contact, const ContactPatch& patch);
 
 // Finds r and the springs anew where points of the present patch have moved.

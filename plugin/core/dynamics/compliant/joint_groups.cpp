@@ -65,7 +65,7 @@ std::vector<Joint> groupJoints(const JointSystem& s)
 		if (index == int(joints.size()))
 			joints.push_back({block, normal, {}, {}});
 		joints[index].contacts.push_back(c);
-		for (int i = 0; i < contact.size; ++i)
+		for (int i = 0; i < contact.size(); ++i)
 			joints[index].points.push_back({c, i});
 	}
 	return joints;

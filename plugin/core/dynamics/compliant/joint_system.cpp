@@ -8,7 +8,7 @@ double supportPower(const JointSystem& s)
 	double power = 0;
 	const auto moved = [&](int b) { return s.bodies[b].prescribed && std::find(s.rim.begin(), s.rim.end(), b) == s.rim.end(); };
 	for (const JointContact& contact : s.contacts)
-		for (int i = 0; i < contact.size; ++i)
+		for (int i = 0; i < contact.size(); ++i)
 			for (const auto& [b, sign] : {std::pair(contact.body1, 1.), std::pair(contact.body2, -1.)})
 				if (moved(b))
 					power += sign * contact.power(i, s.bodies[b]);
@@ -33,7 +33,7 @@ double mechanicalEnergy(const JointSystem& s)
 	for (size_t b = 0; b < bodies.size(); ++b)
 		push(b, bodies[b].force, bodies[b].torque);
 	for (const JointContact& contact : s.contacts)
-		for (int i = 0; i < contact.size; ++i)
+		for (int i = 0; i < contact.size(); ++i)
 			for (const auto& [b, sign] : {std::pair(contact.body1, -1.), std::pair(contact.body2, 1.)}) {
 				const Vector3 force = sign * contact.force(i);
 				push(b, force, sign * contact.moment(i, bodies[b].pose.position));
@@ -50,16 +50,16 @@ namespace {
 // Whether a point is a vertex of the body whose face is the reference. Where it is one of the other body too it goes by the name of body 2.
 bool isOfReference(const ContactPatch& patch, int i)
 {
-	const int identity = patch.points[i].identity;
+	const Feature::Kind kind = patch.points[i].feature.kind;
 	if (patch.feature.kind == PatchKind::Face1)
-		return identity < 8;
-	if (patch.feature.kind != PatchKind::Face2 || identity < 8 || identity >= 16)
-		return false;
-	int unnamed = patch.feature.vertices & 0xff;
-	for (int k = 0; k < patch.size; ++k)
-		if (patch.points[k].identity < 8)
-			unnamed &= ~(1 << patch.points[k].identity);
-	return unnamed == 0;
+		return kind == Feature::Vertex1;
+	const auto isUnnamed = [&](const Feature& vertex) {
+		return vertex.kind == Feature::Vertex1 &&
+		       std::none_of(patch.points.begin(), patch.points.end(), [&](const PatchPoint& point) { return point.feature == vertex; });
+	};
+	const PatchFeature& faces = patch.feature;
+	return faces.kind == PatchKind::Face2 && kind == Feature::Vertex2 &&
+	       std::none_of(faces.vertices.begin(), faces.vertices.end(), isUnnamed);
 }
 
 // How the gap of point i, along the patch's normal, depends on the motion of its bodies at it: a vertex of the reference body goes over the
@@ -86,7 +86,7 @@ void moveContacts(JointSystem& s, const std::vector<Body>& before)
 			return Vector3(2 * (s.bodies[b].pose.orientation * before[b].pose.orientation.conjugate()).vec());
 		};
 		const Vector3 turn = turned(contact.body2) - turned(contact.body1);
-		for (int i = 0; i < contact.size; ++i) {
+		for (int i = 0; i < contact.size(); ++i) {
 			PatchPoint& point = contact.patch.points[i];
 			const Vector3 old = point.position2 - point.position1;
 			point.position1 = carry(contact.body1, point.position1);

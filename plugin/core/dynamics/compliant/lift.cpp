@@ -16,7 +16,7 @@ bool isClosedOnMovingBase(const JointSystem& s, const Joint& joint)
 	if (std::count_if(s.contacts.begin(), s.contacts.end(), isIts) != 1)
 		return false;
 	double lowest = 0, highest = 0;
-	for (int i = 0; i < contact.size; ++i) {
+	for (int i = 0; i < contact.size(); ++i) {
 		lowest = std::min(lowest, contact.patch.points[i].gap);
 		highest = std::max(highest, contact.patch.points[i].gap);
 	}

@@ -151,7 +151,7 @@ void releaseLandings(JointSystem& s)
 {
 	const auto meets = [&](const JointContact& contact) { // in this step: no point was pressed at its start
 		bool pressed = false;
-		for (int i = 0; i < contact.size; ++i) {
+		for (int i = 0; i < contact.size(); ++i) {
 			const double gap = contact.patch.points[i].gap;
 			if (contact.points[i].muted || gap >= 0)
 				continue;

@@ -55,11 +55,10 @@ void muteOpenPoints(JointSystem& s, const Joint& joint)
 	if (rocks) { // a support that has come into reach since
 		for (int c : joint.contacts) {
 			JointContact& contact = s.contacts[c];
-			const auto first = contact.points.begin();
 			const bool unused = std::none_of(joint.points.begin(), joint.points.end(),
 			                                 [&](const PointRef& p) { return p.contact == c && (s.point(p).muted || !(s.gap(p) > 0)); });
 			if (unused)
-				std::for_each(first, first + contact.size, [](JointPoint& p) { p.muted = true; });
+				std::for_each(contact.points.begin(), contact.points.end(), [](JointPoint& p) { p.muted = true; });
 		}
 		return;
 	}

@@ -10,7 +10,7 @@ std::vector<ImpulsePoint> impulsePoints(const std::vector<JointContact>& contact
 	for (auto first = points.begin(); first != points.end();) {
 		const auto last = std::find_if(first, points.end(), [&](const HeldPoint& p) { return p.contact != first->contact; });
 		const JointContact& contact = contacts[first->contact];
-		std::array<double, maxFrictionPoints> forces {}, even {};
+		PointValues forces(contact.size()), even(contact.size());
 		double sum = 0;
 		for (auto p = first; p != last; ++p) {
 			even[p->point] = 1;

@@ -37,7 +37,7 @@ std::vector<HeldPoint> selectPoints(const std::vector<JointContact>& contacts, H
 {
 	std::vector<HeldPoint> result;
 	for (size_t c = 0; c < contacts.size(); ++c)
-		for (int i = 0; i < contacts[c].size; ++i)
+		for (int i = 0; i < contacts[c].size(); ++i)
 			if (held(contacts[c], i))
 				result.push_back({int(c), i, Vector3::Zero()});
 	return result;

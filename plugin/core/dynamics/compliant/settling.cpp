@@ -67,7 +67,7 @@ double largestChange(const std::vector<JointContact>& contacts, const std::vecto
 {
 	double largest = 0;
 	for (size_t c = 0; c < contacts.size(); ++c)
-		for (int i = 0; i < contacts[c].size; ++i)
+		for (int i = 0; i < contacts[c].size(); ++i)
 			largest = std::max(largest, std::abs(contacts[c].patch.points[i].gap - before[c].patch.points[i].gap));
 	return largest;
 }
@@ -85,7 +85,7 @@ double press(JointSystem& s, const std::vector<HeldPoint>& points)
 	double deepest = 0;
 	std::map<int, PointValues> forces; // by contact
 	for (const HeldPoint& p : points)
-		forces.emplace(p.contact, PointValues {}).first->second[p.point] = s.contacts[p.contact].patch.normal.dot(p.force);
+		forces.emplace(p.contact, s.contacts[p.contact].size()).first->second[p.point] = s.contacts[p.contact].patch.normal.dot(p.force);
 	for (const HeldPoint& p : points) {
 		const JointContact& contact = s.contacts[p.contact];
 		const Vector3 &n = contact.patch.normal, x = contact.position(p.point);

@@ -52,7 +52,7 @@ const std::vector<BodyMatrices>& bodyMatrices(const std::vector<Body>& bodies, c
 				addPoint(result[b].damping, arm, dampingThere);
 			};
 			Vector3 centroid = Vector3::Zero();
-			for (int i = 0; i < contact.size; ++i) {
+			for (int i = 0; i < contact.size(); ++i) {
 				const double weight = contact.patch.points[i].weight;
 				const Vector3 place = contact.position(i);
 				centroid += weight * place;

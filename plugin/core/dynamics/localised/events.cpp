@@ -88,7 +88,7 @@ Event findEvent(const RigidSystem<K>& s, SmoothStep<K>& step, double slow)
 			first = {kind, ref, at};
 	};
 	for (int c = 0; c < int(s.pairs.size()); ++c)
-		for (int i = 0; i < s.pairs[c].size; ++i) {
+		for (int i = 0; i < s.pairs[c].size(); ++i) {
 			const ContactPoint<K>& point = s.pairs[c].points[i];
 			const PointRef ref {c, i};
 			if (!point.closed) {
@@ -157,17 +157,15 @@ bool isContact(const RigidSystem<K>& s, const SmoothStep<K>& step, const Event& 
 	const ContactPair<K>& pair = s.pairs[event.point.pair];
 	const auto found = featuresAtEnd(s, step, pair);
 	const auto isKnown = [&pair](const auto& feature) {
-		return std::any_of(pair.points.begin(), pair.points.begin() + pair.size,
-		                   [&](const auto& point) { return point.feature == feature; });
+		return std::any_of(pair.points.begin(), pair.points.end(), [&](const auto& point) { return point.feature == feature; });
 	};
 	const auto& closing = pair.points[event.point.point].feature;
-	for (int i = found.places; i < found.size; ++i) { // a corner meets a corner, with both normals
-		const auto &first = found.features[found.corner[i]], &second = found.features[i];
+	for (int i = found.places; i < found.size(); ++i) { // a corner meets a corner, with both normals
+		const auto &first = found.features[found.cornerOf(i)], &second = found.features[i];
 		if ((closing == first && !isKnown(second)) || (closing == second && !isKnown(first)))
 			return false;
 	}
-	const auto last = found.features.begin() + found.size;
-	return std::find(found.features.begin(), last, closing) != last;
+	return found.has(closing);
 }
 
 template <class K>
@@ -179,13 +177,13 @@ int unseenPenetration(const RigidSystem<K>& s, const SmoothStep<K>& step)
 		if (relativeTravel(s, step, pair) < bound)
 			continue;
 		double deepest = 0;
-		for (int i = 0; i < pair.size; ++i)
+		for (int i = 0; i < pair.size(); ++i)
 			deepest = std::min(deepest, step.frame(c, i).gap);
 		const auto &body1 = s.bodies[pair.body1], &body2 = s.bodies[pair.body2];
 		const auto &end1 = step.trial().bodies[pair.body1].end, &end2 = step.trial().bodies[pair.body2].end;
 		const auto found = featuresAtEnd(s, step, pair);
-		for (int i = 0; i < found.size; ++i)
-			if (K::frame(found.features[i], body1.halfSize, end1, body2.halfSize, end2).gap < deepest - bound)
+		for (const Feature& feature : found.features)
+			if (K::frame(feature, body1.halfSize, end1, body2.halfSize, end2).gap < deepest - bound)
 				return c;
 	}
 	return -1;
@@ -197,7 +195,7 @@ void touchingPoints(const RigidSystem<K>& s, double merged, std::vector<PointRef
 	out.clear();
 	const double touching = merged * scale::length(s);
 	for (int c = 0; c < int(s.pairs.size()); ++c)
-		for (int i = 0; i < s.pairs[c].size; ++i) {
+		for (int i = 0; i < s.pairs[c].size(); ++i) {
 			const ContactPoint<K>& point = s.pairs[c].points[i];
 			if (!point.closed && point.gap <= touching && atStart(s, PointRef {c, i}).rate < 0)
 				out.push_back({c, i});

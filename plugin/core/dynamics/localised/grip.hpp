@@ -8,32 +8,29 @@
 
 namespace masonry::localised {
 
-using NormalForces = std::array<double, Space::maxPoints>; // of the points of a pair, in any unit
+using NormalForces = PerPoint<double>; // of the points of a pair, in any unit
 
-inline bool hasGrip(const ContactPair<Space>& pair) { return pair.size > 2 && pair.friction > 0 && pair.friction < noSlip; }
+inline bool hasGrip(const ContactPair<Space>& pair) { return pair.size() > 2 && pair.friction > 0 && pair.friction < noSlip; }
 
 // The friction of those points that `placed(i)` selects, for these forces of all. The second normals of corners (corner_normals.hpp) are
 // none of the face: their friction acts where they are.
 template <class Placed>
 void placeFriction(ContactPair<Space>& pair, const NormalForces& forces, Placed placed)
 {
-	static_assert(Space::maxPoints <= maxFrictionPoints);
-	std::array<PatchCorner, Space::maxPoints> corners;
-	std::array<Vector2, Space::maxPoints> offsets;
-	std::array<int, Space::maxPoints> places;
-	int size = 0;
+	PerPoint<int> places;
 	const ContactFrame<Space>& first = pair.points[0].frame;
 	const Eigen::Matrix<double, 2, 3> tangents = first.axes.bottomRows<2>();
-	for (int i = 0; i < pair.size; ++i)
+	for (int i = 0; i < pair.size(); ++i)
 		if ((tangents * pair.points[i].frame.axes.row(0).transpose()).norm() <= tolerance::contact::cornerSpread)
-			places[size++] = i;
+			places.push_back(i);
+	const int size = int(places.size());
+	PerPoint<PatchCorner> corners(size);
+	PerPoint<Vector2> offsets(size, Vector2::Zero());
 	for (int k = 0; k < size; ++k)
 		corners[k] = {tangents * (pair.points[places[k]].frame.position - first.position), 1. / size, forces[places[k]]};
 	if (size > 2)
 		frictionOffsets(corners.data(), size, offsets.data());
-	else
-		offsets.fill(Vector2::Zero());
-	for (int i = 0, k = 0; i < pair.size; ++i) {
+	for (int i = 0, k = 0; i < pair.size(); ++i) {
 		const bool ofFace = k < size && places[k] == i;
 		if (placed(i))
 			pair.points[i].setGrip(ofFace ? Vector3(tangents.transpose() * offsets[k]) : Vector3(Vector3::Zero()));
@@ -48,9 +45,9 @@ void placeFriction(RigidSystem<Space>& s, Force force)
 {
 	for (int c = 0; c < int(s.pairs.size()); ++c) {
 		ContactPair<Space>& pair = s.pairs[c];
-		NormalForces forces {}, even {};
+		NormalForces forces(pair.size()), even(pair.size());
 		double sum = 0;
-		for (int i = 0; i < pair.size; ++i) {
+		for (int i = 0; i < pair.size(); ++i) {
 			even[i] = pair.points[i].closed;
 			sum += forces[i] = force(c, i);
 		}
@@ -59,7 +56,7 @@ void placeFriction(RigidSystem<Space>& s, Force force)
 		if (sum > 0 || touches(pair))
 			placeFriction(pair, sum > 0 ? forces : even, [](int) { return true; });
 		else
-			for (int i = 0; i < pair.size; ++i)
+			for (int i = 0; i < pair.size(); ++i)
 				pair.points[i].setGrip(Vector3::Zero());
 	}
 }
@@ -76,7 +73,7 @@ inline void placeFriction(RigidSystem<Space>& s, const std::vector<PointRef>& la
 	for (PointRef first : landing) {
 		if (!hasGrip(s.pairs[first.pair]))
 			continue;
-		NormalForces forces {};
+		NormalForces forces(s.pairs[first.pair].size());
 		for (PointRef ref : landing)
 			if (ref.pair == first.pair)
 				forces[ref.point] = 1;

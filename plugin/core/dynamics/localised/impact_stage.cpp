@@ -134,7 +134,7 @@ struct ImpactStage<K>::Builder {
 	void forTouching(Take take)
 	{
 		for (int c = 0; c < int(s.pairs.size()); ++c)
-			for (int i = 0; i < s.pairs[c].size; ++i)
+			for (int i = 0; i < s.pairs[c].size(); ++i)
 				if (touches({c, i}))
 					take(PointRef {c, i});
 	}

@@ -12,25 +12,19 @@ template <class K>
 void dropIdle(FoundPoints<K>& found, const ContactPair<K>& before, const RigidBody<K>& body1, const RigidBody<K>& body2, double samePlace)
 {
 	constexpr double inside = 0.8; // of the friction limit
-	const auto frameOf = [&](const typename K::Feature& feature) {
-		return K::frame(feature, body1.halfSize, body1.pose, body2.halfSize, body2.pose);
-	};
+	const auto frameOf = [&](const Feature& feature) { return K::frame(feature, body1.halfSize, body1.pose, body2.halfSize, body2.pose); };
 	const auto isIdle = [&](int place) {
 		const ContactFrame<K> frame = frameOf(found.features[place]);
 		typename K::Vector reaction = K::Vector::Zero();
-		for (int k = 0; k < before.size; ++k)
-			if (const auto old = frameOf(before.points[k].feature); (old.position - frame.position).norm() <= samePlace)
-				reaction += old.axes.transpose() * before.points[k].force;
+		for (const ContactPoint<K>& point : before.points)
+			if (const auto old = frameOf(point.feature); (old.position - frame.position).norm() <= samePlace)
+				reaction += old.axes.transpose() * point.force;
 		const typename ContactRows<K>::Rows p = frame.axes * reaction;
 		return p[0] > 0 && p.template tail<K::rows - 1>().norm() <= inside * before.friction * p[0];
 	};
-	if (found.size == found.places)
-		return;
-	const FoundPoints<K> all = found;
-	found.size = found.places;
-	for (int i = all.places; i < all.size; ++i)
-		if (!isIdle(all.corner[i]))
-			found.addSecondNormal(all.features[i], all.corner[i]);
+	for (int i = found.size() - 1; i >= found.places; --i)
+		if (isIdle(found.cornerOf(i)))
+			found.dropSecondNormal(i);
 }
 
 } // namespace
@@ -140,10 +134,10 @@ void LocalisedStep<K>::findContacts(RigidSystem<K>& s, ContactPair<K>& pair, boo
 	if (same && !s.moved)
 		return;
 	const ContactPair<K> before = pair;
-	pair.size = found.size;
+	pair.points.resize(found.size());
 	pair.face1 = found.face1;
 	pair.face2 = found.face2;
-	for (int i = 0; i < found.size; ++i) {
+	for (int i = 0; i < found.size(); ++i) {
 		ContactPoint<K>& point = pair.points[i];
 		if (!same)
 			point = {};

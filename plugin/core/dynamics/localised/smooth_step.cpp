@@ -213,7 +213,7 @@ void SmoothStep<K>::findFrames(const RigidSystem<K>& s)
 	for (size_t c = 0; c < s.pairs.size(); ++c) {
 		const ContactPair<K>& pair = s.pairs[c];
 		first[c] = int(last.frames.size());
-		for (int i = 0; i < pair.size; ++i)
+		for (int i = 0; i < pair.size(); ++i)
 			last.frames.push_back(frameOf(pair.points[i], s.bodies[pair.body1].halfSize, last.bodies[pair.body1].end,
 			                              s.bodies[pair.body2].halfSize, last.bodies[pair.body2].end));
 	}

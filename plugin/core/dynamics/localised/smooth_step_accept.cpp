@@ -67,7 +67,7 @@ bool SmoothStep<K>::takePoints(RigidSystem<K>& s) const
 	size_t row = 0;
 	bool landed = false;
 	for (size_t c = 0; c < s.pairs.size(); ++c)
-		for (int i = 0; i < s.pairs[c].size; ++i) {
+		for (int i = 0; i < s.pairs[c].size(); ++i) {
 			ContactPoint<K>& point = s.pairs[c].points[i];
 			point.frame = last.frames[first[c] + i];
 			point.gap = point.frame.gap;

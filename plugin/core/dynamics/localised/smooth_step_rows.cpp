@@ -83,7 +83,7 @@ void SmoothStep<K>::dampStray(const RigidSystem<K>& s, double h)
 {
 	double work = 0;
 	for (int c = 0; c < int(s.pairs.size()); ++c)
-		for (int i = 0; i < s.pairs[c].size; ++i) {
+		for (int i = 0; i < s.pairs[c].size(); ++i) {
 			if (!acts(s, {c, i}))
 				continue;
 			const ContactPoint<K>& point = s.pairs[c].points[i];
@@ -133,7 +133,7 @@ template <class K>
 int SmoothStep<K>::leader(const RigidSystem<K>& s, int pair) const
 {
 	int row = int(last.rows.size()), landing = -1;
-	for (int i = 0; i < s.pairs[pair].size; ++i) {
+	for (int i = 0; i < s.pairs[pair].size(); ++i) {
 		if (!acts(s, {pair, i}))
 			continue;
 		const ContactPoint<K>& point = s.pairs[pair].points[i];
@@ -159,7 +159,7 @@ void SmoothStep<K>::assemble(const RigidSystem<K>& s, double h)
 		const size_t begin = solver.points.size();
 		const int leads = leader(s, c);
 		middles.clear();
-		for (int i = 0; i < pair.size; ++i)
+		for (int i = 0; i < pair.size(); ++i)
 			if (acts(s, {c, i})) {
 				last.rows.push_back({c, i});
 				middles.push_back(frameOf(pair.points[i], s.bodies[pair.body1].halfSize, last.bodies[pair.body1].middle,

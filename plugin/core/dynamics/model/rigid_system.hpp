@@ -44,7 +44,7 @@ struct RigidBody {
 
 template <class K>
 struct ContactPoint {
-	typename K::Feature feature;
+	Feature feature;
 	bool closed {false}; // in touch: may carry force
 	bool sliding {false};
 	double gap {0}; // m, at the end of the last step
@@ -87,16 +87,14 @@ struct ContactPair {
 	typename K::Memory memory;
 	int face1 {-1}, face2 {-1};
 	bool isHeadJoint {false}; // upright when the pair was found: neither bears the other
-	int size {0};
-	std::array<ContactPoint<K>, K::maxPoints> points;
+	PerPoint<ContactPoint<K>, K::usualPoints> points;
 
-	// Throws std::out_of_range for a number of points that no pair has.
+	int size() const { return int(points.size()); }
+
 	template <class Archive>
 	void serialize(Archive& archive)
 	{
-		archive(body1, body2, face1, face2, friction, restitution, isHeadJoint, size, memory);
-		for (int i = 0; i < size; ++i)
-			archive(points.at(i));
+		archive(body1, body2, face1, face2, friction, restitution, isHeadJoint, memory, points);
 	}
 };
 
@@ -140,7 +138,7 @@ bool takeState(const ContactPoint<K>& old, double samePlace, ContactPoint<K>& po
 template <class K>
 void takeStates(const ContactPair<K>& before, const FoundPoints<K>& found, double samePlace, ContactPoint<K>& point)
 {
-	const auto begin = before.points.begin(), end = begin + before.size;
+	const auto begin = before.points.begin(), end = before.points.end();
 	const auto same = std::find_if(begin, end, [&](const ContactPoint<K>& old) { return old.feature == point.feature; });
 	if (same == end) {
 		for (auto old = begin; old != end; ++old)
@@ -148,10 +146,8 @@ void takeStates(const ContactPair<K>& before, const FoundPoints<K>& found, doubl
 		return;
 	}
 	takeState(*same, samePlace, point);
-	const auto last = found.features.begin() + found.size;
 	for (auto old = begin; old != end; ++old)
-		if ((old->frame.position - point.frame.position).norm() <= samePlace &&
-		    std::find(found.features.begin(), last, old->feature) == last) {
+		if ((old->frame.position - point.frame.position).norm() <= samePlace && !found.has(old->feature)) {
 			point.closed |= old->closed;
 			point.force += old->force;
 		}
@@ -164,7 +160,7 @@ FoundPoints<K> findPoints(const RigidBody<K>& body1, const typename K::Pose& pos
 {
 	FoundPoints<K> found;
 	if (!K::findPoints(body1.halfSize, pose1, body2.halfSize, pose2, std::numeric_limits<double>::infinity(), memory, found))
-		found.size = 0;
+		found.features.clear();
 	return found;
 }
 template <class K>
@@ -187,7 +183,7 @@ template <class K>
 FoundPoints<K> findRows(const RigidBody<K>& body1, const RigidBody<K>& body2, double rest, typename K::Memory& memory)
 {
 	FoundPoints<K> found = findRows(body1, body1.pose, body2, body2.pose, memory);
-	const auto rate = [&](const typename K::Feature& feature) {
+	const auto rate = [&](const Feature& feature) {
 		const auto frame = K::frame(feature, body1.halfSize, body1.pose, body2.halfSize, body2.pose);
 		return relativeVelocity<K>(frame, body1.pose.position, body1.velocity, body2.pose.position, body2.velocity)[0];
 	};
@@ -198,14 +194,14 @@ FoundPoints<K> findRows(const RigidBody<K>& body1, const RigidBody<K>& body2, do
 template <class K>
 bool touches(const ContactPair<K>& pair)
 {
-	return std::any_of(pair.points.begin(), pair.points.begin() + pair.size, [](const ContactPoint<K>& point) { return point.closed; });
+	return std::any_of(pair.points.begin(), pair.points.end(), [](const ContactPoint<K>& point) { return point.closed; });
 }
 
 template <class K>
 bool sameFeatures(const ContactPair<K>& pair, const FoundPoints<K>& found)
 {
 	const auto same = [](const auto& feature, const ContactPoint<K>& point) { return feature == point.feature; };
-	return found.size == pair.size && std::equal(found.features.begin(), found.features.begin() + found.size, pair.points.begin(), same);
+	return std::equal(found.features.begin(), found.features.end(), pair.points.begin(), pair.points.end(), same);
 }
 
 // A rocking impact as it came out.

@@ -55,7 +55,7 @@ template <class K>
 void ContactSet<K>::inherit(const ContactPair<K>& before, const State* states, ContactPoint<K>& point, State& now) const
 {
 	const double samePlace = 2 * tolerance::wall::search * length;
-	for (int j = 0; j < before.size; ++j) {
+	for (int j = 0; j < before.size(); ++j) {
 		const ContactPoint<K>& old = before.points[j];
 		const State& then = states[j];
 		if (!takeState(old, samePlace, point))
@@ -85,7 +85,7 @@ void ContactSet<K>::lookUp(RigidSystem<K>& s, int c)
 	ContactPair<K>& pair = s.pairs[c];
 	const auto &body1 = s.bodies[pair.body1], &body2 = s.bodies[pair.body2];
 	FoundPoints<K> found = findPoints(body1, body2, pair.memory);
-	found.size = std::min(found.size, pairPoints<K>);
+	found.features.resize(std::min(found.size(), pairPoints<K>));
 	pair.face1 = found.face1;
 	pair.face2 = found.face2;
 	// Of bodies that have been moved the pair may know other points than the lanes.
@@ -104,12 +104,12 @@ void ContactSet<K>::lookUp(RigidSystem<K>& s, int c)
 	State states[pairPoints<K>];
 	for (int k = 0; k < pairPoints<K>; ++k)
 		states[k] = state(c, k);
-	pair.size = found.size;
-	if (found.size > lanePoints<K> && !wide[c])
+	pair.points.resize(found.size());
+	if (found.size() > lanePoints<K> && !wide[c])
 		wide[c] = wider = true;
 	for (int k = 0; k < pairPoints<K>; ++k) {
 		State now;
-		if (k < found.size) {
+		if (k < found.size()) {
 			ContactPoint<K> point;
 			point.feature = found.features[k];
 			locate(point, body1, body2);
@@ -189,7 +189,7 @@ void ContactSet<K>::showPair(RigidSystem<K>& s, int c) const
 {
 	const double touching = tolerance::mergedClosing * length, perUnit = unit > 0 ? 1 / unit : 0;
 	ContactPair<K>& pair = s.pairs[c];
-	for (int k = 0; k < std::min(pair.size, pairPoints<K>); ++k) {
+	for (int k = 0; k < std::min(pair.size(), pairPoints<K>); ++k) {
 		const auto [group, lane] = slots[c][k / lanePoints<K>];
 		if (group < 0)
 			return;

@@ -206,7 +206,7 @@ public:
 	int points(const RigidSystem<K>& s, int group, int lane) const
 	{
 		const FeatureGroup<K>& f = features[group];
-		return f.pair[lane] < 0 ? 0 : std::min(s.pairs[f.pair[lane]].size - f.first[lane], lanePoints<K>);
+		return f.pair[lane] < 0 ? 0 : std::min(s.pairs[f.pair[lane]].size() - f.first[lane], lanePoints<K>);
 	}
 	bool isFree(int body) const { return velocity[packs<K> * body][3] > 0; }
 	// Packs of a body as a velocity in global axes.

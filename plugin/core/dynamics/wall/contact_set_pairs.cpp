@@ -30,7 +30,7 @@ void ContactSet<K>::takePairs(const RigidSystem<K>& s)
 		if (own[pair.body1] || own[pair.body2])
 			numbers.push_back(int(pairs.size()));
 		pairs.push_back({pair.body1, pair.body2});
-		wide.push_back(std::min(pair.size, pairPoints<K>) > lanePoints<K>);
+		wide.push_back(std::min(pair.size(), pairPoints<K>) > lanePoints<K>);
 	}
 }
 

@@ -148,8 +148,8 @@ void ContactSet<Plane>::takePoint(const RigidSystem<Plane>& s, int c, int k)
 	const ContactPair<Plane>& pair = s.pairs[c];
 	const auto [group, lane] = slots[c][0];
 	FeatureLanes<Plane>& f = features[group].point[k];
-	const bool present = k < pair.size;
-	const PlaneFeature feature = present ? pair.points[k].feature : PlaneFeature {1, 0, 0}; // any will tell how far the pair moves
+	const bool present = k < pair.size();
+	const Feature feature = present ? pair.points[k].feature : Feature::ofVertex(1, 0, 0); // any will tell how far the pair moves
 	const PointGeometry<Plane> geometry = geometryOf(feature, s.bodies[pair.body1].halfSize, s.bodies[pair.body2].halfSize);
 	f.present[lane] = present ? -1 : 0;
 	f.vertexOn1[lane] = geometry.vertexOn1 ? -1 : 0;

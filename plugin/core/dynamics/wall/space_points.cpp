@@ -235,9 +235,8 @@ void ContactSet<Space>::takePoint(const RigidSystem<Space>& s, int c, int k)
 	const ContactPair<Space>& pair = s.pairs[c];
 	const auto [group, lane] = slots[c][k / lanePoints<Space>];
 	FeatureLanes<Space>& f = features[group].point[k % lanePoints<Space>];
-	const bool present = k < pair.size;
-	const SpaceFeature feature =
-	    present ? pair.points[k].feature : SpaceFeature {SpaceFeature::Vertex1, 0, 0}; // tells how far the pair moves
+	const bool present = k < pair.size();
+	const Feature feature = present ? pair.points[k].feature : Feature::ofVertex(1, 0, 0); // tells how far the pair moves
 	f.present[lane] = present ? -1 : 0;
 	const PointGeometry<Space> geometry = geometryOf(feature, s.bodies[pair.body1].halfSize, s.bodies[pair.body2].halfSize);
 	f.crossing[lane] = geometry.crosses ? -1 : 0;

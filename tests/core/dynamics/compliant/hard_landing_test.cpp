@@ -131,7 +131,7 @@ TEST_CASE("Friction stays within Coulomb's cone at every point while blocks slid
 			while (drop.rig.time < 0.5) {
 				drop.advance();
 				for (const JointContact& contact : drop.rig.step.system.contacts)
-					for (int i = 0; i < contact.size; ++i) {
+					for (int i = 0; i < contact.size(); ++i) {
 						const JointPoint& point = contact.points[i];
 						largest = std::max(largest, point.normalForce);
 						beyond = std::max(beyond, point.shearForce.norm() - friction * point.normalForce);

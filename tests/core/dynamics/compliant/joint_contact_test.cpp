@@ -51,14 +51,14 @@ struct PressedBlocks {
 	double torque() const
 	{
 		double sum = 0;
-		for (int i = 0; i < contact.size; ++i)
+		for (int i = 0; i < contact.size(); ++i)
 			sum += contact.moment(i, upper.pose.position).z();
 		return sum;
 	}
 	Vector3 total() const
 	{
 		Vector3 sum = Vector3::Zero();
-		for (int i = 0; i < contact.size; ++i)
+		for (int i = 0; i < contact.size(); ++i)
 			sum += contact.force(i);
 		return sum;
 	}
@@ -73,7 +73,7 @@ TEST_CASE("The stiffness of a joint does not depend on the number of its points"
 	for (double yaw : {0., 0.1, 0.5, 0.785}) {
 		PressedBlocks blocks(yaw, 1e-6, law);
 		blocks.move(Vector3::Zero());
-		INFO("yaw " << yaw << ", " << blocks.contact.size << " points");
+		INFO("yaw " << yaw << ", " << blocks.contact.size() << " points");
 		CHECK(blocks.total().z() == Approx(law.normalStiffness * blocks.patch.area * 1e-6).epsilon(1e-9));
 		CHECK(blocks.total().head<2>().norm() < 1e-9 * blocks.total().z());
 	}
@@ -86,7 +86,7 @@ double momentAbout(const PressedBlocks& blocks, const Vector3& axis)
 {
 	const Vector3 centroid = blocks.upper.pose.toGlobal({0, 0, -blocks.box.halfSize.z()});
 	double sum = 0;
-	for (int i = 0; i < blocks.contact.size; ++i)
+	for (int i = 0; i < blocks.contact.size(); ++i)
 		sum += axis.dot((blocks.contact.position(i) - centroid).cross(blocks.contact.force(i)));
 	return sum;
 }
@@ -125,7 +125,7 @@ TEST_CASE("An octagonal face turns with the stiffness of its area")
 	PressedBlocks blocks(0.25 * 3.14159265358979324, 1e-6, law);
 	const double radius = 0.5 / std::cos(3.14159265358979324 / 8),
 	             second = blocks.patch.area * radius * radius * (2 + std::cos(0.78539816)) / 12;
-	REQUIRE(blocks.contact.size == 8);
+	REQUIRE(blocks.contact.size() == 8);
 	lean(blocks, Vector3::UnitX(), 5e-7);
 	CHECK(momentAbout(blocks, Vector3::UnitX()) == Approx(-law.normalStiffness * second * 5e-7).epsilon(1e-5));
 }
@@ -206,7 +206,7 @@ TEST_CASE("Friction points that move give no energy")
 	using Load = Eigen::Matrix<double, 6, 1>;
 	const auto load = [&] {
 		Load sum = Load::Zero();
-		for (int i = 0; i < blocks.contact.size; ++i) {
+		for (int i = 0; i < blocks.contact.size(); ++i) {
 			sum.head<3>() += blocks.contact.force(i);
 			sum.tail<3>() += blocks.contact.moment(i, blocks.upper.pose.position);
 		}
@@ -237,11 +237,11 @@ TEST_CASE("Forces of a position that a hand-off has set obey Coulomb's law")
 {
 	PressedBlocks blocks(0, 1e-6, law);
 	blocks.move({4e-7, 0, 0});
-	for (int i = 0; i < blocks.contact.size; ++i)
+	for (int i = 0; i < blocks.contact.size(); ++i)
 		blocks.contact.points[i].shear.x() *= i < 2 ? 1 : 10; // of 500 N that friction bears: 200 N and 2000 N
 	holdForces(blocks.contact);
 	double stored = 0;
-	for (int i = 0; i < blocks.contact.size; ++i) {
+	for (int i = 0; i < blocks.contact.size(); ++i) {
 		const JointPoint& point = blocks.contact.points[i];
 		CHECK(point.normalForce == Approx(250).epsilon(1e-9));
 		CHECK(point.shearForce.norm() == Approx(i < 2 ? 50 : 125).epsilon(1e-9));
@@ -270,7 +270,7 @@ TEST_CASE("A muted point carries nothing, an open one neither, and no joint pull
 	// Three corners with the share w = 3/4 of a rectangle, r = 1/3: r w / (1 - (1 - r) w) of the face.
 	CHECK(blocks.total().z() == Approx(0.5 * 1e9 * 1e-6).epsilon(1e-9));
 	blocks.move({0, 0, 0.9e-6}); // leaves fast: the dashpot would pull
-	for (int i = 0; i < blocks.contact.size; ++i)
+	for (int i = 0; i < blocks.contact.size(); ++i)
 		CHECK(blocks.contact.points[i].normalForce >= 0);
 }
 
@@ -280,7 +280,7 @@ TEST_CASE("A point that stays keeps its shear when the patch is renewed")
 	blocks.move({3e-7, 0, 0});
 	const auto before = blocks.contact.points[2];
 	blocks.look();
-	CHECK(blocks.contact.points[2].identity == before.identity);
+	CHECK(blocks.contact.points[2].feature == before.feature);
 	CHECK((blocks.contact.points[2].shear - before.shear).norm() < 1e-20);
 }
 
@@ -327,9 +327,9 @@ TEST_CASE("Contacts that move with their bodies have the gaps that are looked up
 		moveContacts(s, before);
 		look(found);
 		int vertices = 0;
-		for (int i = 0; i < found.size; ++i)
-			for (int k = 0; k < contact.size; ++k)
-				if (s.contacts[0].patch.points[k].identity == found.points[i].identity) {
+		for (int i = 0; i < found.size(); ++i)
+			for (int k = 0; k < contact.size(); ++k)
+				if (s.contacts[0].patch.points[k].feature == found.points[i].feature) {
 					++vertices;
 					CHECK(std::abs(s.contacts[0].patch.points[k].gap - found.points[i].gap) < 2e-8);
 				}

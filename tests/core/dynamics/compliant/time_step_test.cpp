@@ -38,14 +38,15 @@ struct Assembly {
 		contact.body1 = body1;
 		contact.body2 = body2;
 		contact.law = {std::pow(10, uniform(8, 11)), std::pow(10, uniform(8, 11)), dampingRatio, 0.5, 0};
-		contact.size = contact.patch.size = 1 + int(uniform(0, 8));
+		contact.points.resize(1 + size_t(uniform(0, 8)));
+		contact.patch.points.resize(contact.points.size());
 		contact.patch.normal = anyVector(1).normalized();
 		contact.patch.area = contact.patch.nominalArea = uniform(0.01, 1);
 		const Vector3 middle = 0.5 * (bodies[body1].pose.position + bodies[body2].pose.position);
-		for (int i = 0; i < contact.size; ++i) {
+		for (int i = 0; i < contact.size(); ++i) {
 			PatchPoint& point = contact.patch.points[i];
 			point.position1 = point.position2 = middle + anyVector(0.5);
-			point.weight = 1. / contact.size;
+			point.weight = 1. / contact.size();
 		}
 		followPatch(contact);
 		contacts.push_back(contact);
@@ -70,10 +71,10 @@ struct Assembly {
 			// The face turns as if springs of the share r stood at its points and the rest at their centroid (joint_contact.hpp).
 			const double turnShare = contact.turnShare;
 			Vector3 centroid = Vector3::Zero();
-			for (int i = 0; i < contact.size; ++i)
+			for (int i = 0; i < contact.size(); ++i)
 				centroid += contact.patch.points[i].weight * contact.patch.points[i].position1;
-			for (int i = 0; i <= contact.size; ++i) {
-				const Vector3 place = i < contact.size ? contact.patch.points[i].position1 : centroid;
+			for (int i = 0; i <= contact.size(); ++i) {
+				const Vector3 place = i < contact.size() ? contact.patch.points[i].position1 : centroid;
 				// Relative velocity of the point for a unit velocity of each coordinate.
 				Eigen::MatrixXd rates = Eigen::MatrixXd::Zero(3, n);
 				for (size_t k = 0; k < free.size(); ++k)
@@ -88,8 +89,8 @@ struct Assembly {
 					}
 				const Eigen::RowVectorXd along = contact.patch.normal.transpose() * rates;
 				const Eigen::MatrixXd across = rates - contact.patch.normal * along;
-				const double shear = i < contact.size ? contact.patch.points[i].weight : 0;
-				const double weight = i < contact.size ? turnShare * shear : 1 - turnShare;
+				const double shear = i < contact.size() ? contact.patch.points[i].weight : 0;
+				const double weight = i < contact.size() ? turnShare * shear : 1 - turnShare;
 				const double kn = contact.law.normalStiffness * contact.patch.area, ks = contact.law.shearStiffness * contact.patch.area;
 				const double zeta = contact.law.dampingRatio;
 				stiffness += weight * kn * along.transpose() * along + shear * ks * across.transpose() * across;

@@ -66,7 +66,7 @@ struct Wall {
 		for (Body& body : p.bodies) // seen from the base, which then does no work
 			body.velocity -= s.bodies.front().velocity;
 		for (const JointContact& c : s.contacts)
-			for (int i = 0; i < c.size; ++i)
+			for (int i = 0; i < c.size(); ++i)
 				if (c.patch.points[i].gap < 0)
 					p.points.push_back({c.body1, c.body2, c.position(i), c.patch.normal, friction});
 		const int block = 1 + steps % 7;

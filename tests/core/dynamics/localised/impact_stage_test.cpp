@@ -18,10 +18,10 @@ TEST_CASE("all that a landing takes from the blocks is in its energy")
 	ContactPair<Plane>& pair = s.pairs[0];
 	pair.face1 = 3;
 	pair.face2 = 2;
-	pair.size = 2;
+	pair.points.resize(2);
 	for (int k : {0, 1}) { // left, right
 		auto& point = pair.points[k];
-		point.feature = {2, k, 3};
+		point.feature = Feature::ofVertex(2, k, 3);
 		point.frame = Plane::frame(point.feature, s.bodies[0].halfSize, s.bodies[0].pose, s.bodies[1].halfSize, s.bodies[1].pose);
 		point.gap = point.frame.gap;
 	}

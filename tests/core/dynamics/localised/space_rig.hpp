@@ -77,7 +77,7 @@ struct Watch {
 		rise = std::max(rise, now - last);
 		last = now;
 		for (const auto& pair : s.pairs)
-			for (int i = 0; i < pair.size; ++i)
+			for (int i = 0; i < pair.size(); ++i)
 				depth = std::max(depth, -pair.points[i].gap);
 		for (const Impact& impact : s.impacts)
 			impactGain = std::max(impactGain, -impact.energyLost);

@@ -169,7 +169,7 @@ TEST_CASE("a face that spins as it slides has linear pressure, whatever the orde
 		for (int i = 0; i < 300; ++i)
 			step.advance(s, h);
 		const ContactPair<Space>& pair = s.pairs[0];
-		REQUIRE(pair.size == 4);
+		REQUIRE(pair.size() == 4);
 		double opposite = 0, all = 0; // corners that the centre lies between
 		for (int i = 0; i < 4; ++i) {
 			const double force = pair.points[i].force[0];

@@ -260,7 +260,7 @@ TEST_CASE("pairs that stay keep their state, new ones get friction and restituti
 	});
 	REQUIRE(neighbours.update(system));
 	REQUIRE(system.pairs.size() == 1);
-	system.pairs[0].size = 2;
+	system.pairs[0].points.resize(2);
 	system.pairs[0].points[1].gap = 0.125;
 
 	const auto* place = system.pairs.data();
@@ -271,10 +271,10 @@ TEST_CASE("pairs that stay keep their state, new ones get friction and restituti
 	REQUIRE(neighbours.update(system));
 	REQUIRE(system.pairs.size() == 2);
 	CHECK(system.pairs[0].points[1].gap == 0.125);
-	CHECK(system.pairs[0].size == 2);
+	CHECK(system.pairs[0].size() == 2);
 	CHECK(system.pairs[1].body1 == 0);
 	CHECK(system.pairs[1].body2 == 2);
-	CHECK(system.pairs[1].size == 0);
+	CHECK(system.pairs[1].size() == 0);
 	CHECK(system.pairs[1].friction == 0.7);
 	CHECK(system.pairs[1].restitution == 0.8);
 	CHECK(made == 2);

@@ -192,7 +192,7 @@ TEST_CASE("the base holds a wall in space against what pulls it")
 	scene.run(0.1, 1e-3);
 	Vector3 held = Vector3::Zero(), pulled = Vector3::Zero();
 	for (const auto& pair : scene.system.pairs)
-		for (int k = 0; pair.body1 == 0 && k < pair.size; ++k)
+		for (int k = 0; pair.body1 == 0 && k < pair.size(); ++k)
 			held += pair.points[k].frame.axes.transpose() * pair.points[k].force;
 	for (size_t b = 1; b < scene.system.bodies.size(); ++b)
 		pulled += scene.system.bodies[b].force.head<3>();

@@ -11,7 +11,7 @@ double baseReaction(const RigidSystem<Plane>& s)
 {
 	double sum = 0;
 	for (const auto& pair : s.pairs)
-		for (int k = 0; k < pair.size; ++k) {
+		for (int k = 0; k < pair.size(); ++k) {
 			const Vector2 force = pair.points[k].frame.axes.transpose() * pair.points[k].force;
 			sum += (pair.body1 == 0) * force.y() - (pair.body2 == 0) * force.y();
 		}

@@ -28,7 +28,7 @@ double reaction(const RigidSystem<K>& s, int first, int last)
 {
 	double sum = 0;
 	for (const auto& pair : s.pairs)
-		for (int k = 0; pair.body1 == 0 && pair.body2 >= first && pair.body2 <= last && k < pair.size; ++k)
+		for (int k = 0; pair.body1 == 0 && pair.body2 >= first && pair.body2 <= last && k < pair.size(); ++k)
 			sum += (pair.points[k].frame.axes.transpose() * pair.points[k].force)[K::dimension - 1];
 	return sum;
 }

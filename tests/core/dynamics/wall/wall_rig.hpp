@@ -104,7 +104,7 @@ struct SceneOf {
 	{
 		double most = 0;
 		for (const auto& pair : system.pairs)
-			for (int i = 0; i < pair.size; ++i)
+			for (int i = 0; i < pair.size(); ++i)
 				most = std::max(most, -pair.points[i].gap);
 		return most;
 	}

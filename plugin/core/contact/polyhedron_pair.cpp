@@ -1,0 +1,160 @@
+#include "contact/polyhedron_pair.hpp"
+#include "contact/polyhedron_patch.hpp"
+#include "tolerances.hpp"
+#include <algorithm>
+#include <cmath>
+
+namespace masonry {
+
+namespace {
+
+using Face = ConvexPolyhedron::Face;
+
+// The reference face is the right normal without a look at the edges if the faces are nearly parallel or if the deepest
+// incident vertex lies over the reference face: then its distance is the separation of the bodies. Both hold for bodies that
+// touch; one body deep beside the edge of another can have a shorter way out across its edges.
+bool isFaceContact(const PolyhedronFaces& pair, const OverlapTask& task, double cosineLimit)
+{
+	if (pair.face.separation < -tolerance::contact::shallow * pair.length)
+		return false;
+	if (pair.cosine() > cosineLimit)
+		return true;
+	const auto lower = [](const OverlapPoint& a, const OverlapPoint& b) { return a.height < b.height; };
+	const Vector2 deepest = std::min_element(task.incident.begin(), task.incident.end(), lower)->place;
+	for (int side = 0; side < task.sides(); ++side)
+		if (task.outside(side, deepest) > 0)
+			return false;
+	return true;
+}
+
+// Separation that edge across edge must gain over the face: a little over any face, and as much as another face would
+// need over a face that was the reference before.
+double gainOfEdges(double separation, double length, const PatchFeature& previous)
+{
+	const bool edgesBefore = previous.kind == PatchKind::Edges;
+	const double share = previous.kind == PatchKind::None || edgesBefore ? tolerance::contact::edgeShare : tolerance::contact::depthShare;
+	const double gain = tolerance::contact::edge * length + share * std::max(0., -separation);
+	return edgesBefore ? -gain : gain;
+}
+
+int faceAlong(const ConvexPolyhedron& shape, const Vector3& direction)
+{
+	const auto& faces = shape.faces();
+	const auto less = [&](const Face& a, const Face& b) { return direction.dot(a.normal) < direction.dot(b.normal); };
+	return static_cast<int>(std::max_element(faces.begin(), faces.end(), less) - faces.begin());
+}
+
+double smallestGap(const ContactPatch& patch)
+{
+	double gap = patch.points[0].gap;
+	for (const PatchPoint& point : patch.points)
+		gap = std::min(gap, point.gap);
+	return gap;
+}
+
+class PairSearch {
+public:
+	PairSearch(const ConvexPolyhedron& shape1, const Pose& pose1, const ConvexPolyhedron& shape2, const Pose& pose2,
+	           const PatchFeature& previous, ContactPatch& out)
+	    : shape1(shape1), shape2(shape2), pose1(pose1), pose2(pose2), previous(previous), out(out),
+	      length(std::min(shape1.thickness(), shape2.thickness())),
+	      cosineLimit(std::cos(previous.kind == PatchKind::Edges ? tolerance::contact::faceAngle / 2 : tolerance::contact::faceAngle))
+	{
+		const Matrix3 axes1 = pose1.orientation.toRotationMatrix();
+		second = {axes1.transpose() * pose2.orientation.toRotationMatrix(), axes1.transpose() * (pose2.position - pose1.position)};
+	}
+
+	bool find(double margin)
+	{
+		FaceSeparation reference = bestFace(shape1, shape2, second, previous, length);
+		if (reference.separation > margin)
+			return false;
+		const PolyhedronFaces pair = facesOf(reference);
+		const OverlapTask task = overlapTask(pair, previous);
+		EdgePair edges;
+		const auto edgesCross = [&] { return bestEdges(shape1, shape2, second, reference.separation, edges); };
+		bool crossing = !isFaceContact(pair, task, cosineLimit) && edgesCross();
+		if (!crossing || edges.separation <= reference.separation + gainOfEdges(reference.separation, length, previous)) {
+			// If the deepest vertex lies beyond the border of the face, the patch lacks it, and the edges beside it may be nearer.
+			const bool found = patchOn(pair, task);
+			if (found && !(crossing && smallestGap(out) > edges.separation + tolerance::contact::edge * length))
+				return smallestGap(out) <= margin;
+			if (!found) // the edges must cross so far from their ends that more than a sliver of the bodies is there
+				crossing = (crossing || edgesCross()) && edges.room > tolerance::contact::sliver * length;
+		}
+		if (crossing) {
+			if (edges.separation > margin)
+				return false;
+			if (isNearFace(edges, reference)) {
+				const PolyhedronFaces nearby = facesOf(reference);
+				if (patchOn(nearby, overlapTask(nearby, previous)))
+					return smallestGap(out) <= margin;
+			}
+			setEdgePatch(edges);
+			return true;
+		}
+		if (pair.cosine() > cosineLimit)
+			return false;
+		const PolyhedronFaces next = withNextIncident(pair);
+		return patchOn(next, overlapTask(next, previous)) && smallestGap(out) <= margin;
+	}
+
+private:
+	PolyhedronFaces facesOf(const FaceSeparation& reference) const
+	{
+		return polyhedronFaces(shape1, shape2, second, reference, previous, length);
+	}
+
+	bool patchOn(const PolyhedronFaces& faces, const OverlapTask& task)
+	{
+		return facePatch(faces, task, faces.face.body == 1 ? pose1 : pose2, previous, out);
+	}
+
+	// Takes the face whose normal is nearest to the edges' normal if that is within the angle limit; the present reference as long as
+	// it is within.
+	bool isNearFace(const EdgePair& edges, FaceSeparation& reference) const
+	{
+		const Vector3 outward[2] = {edges.normal, -(second.rotation.transpose() * edges.normal)}; // in each body's own axes
+		const ConvexPolyhedron* shapes[2] = {&shape1, &shape2};
+		if (outward[reference.body - 1].dot(shapes[reference.body - 1]->faces()[reference.face].normal) > cosineLimit)
+			return true;
+		double nearest = cosineLimit;
+		for (int k = 0; k < 2; ++k) {
+			const int face = faceAlong(*shapes[k], outward[k]);
+			const double cosine = outward[k].dot(shapes[k]->faces()[face].normal);
+			if (cosine > nearest) {
+				nearest = cosine;
+				reference = {k + 1, face, edges.separation};
+			}
+		}
+		return nearest > cosineLimit;
+	}
+
+	void setEdgePatch(const EdgePair& edges)
+	{
+		const Vector3 outward2 = -(second.rotation.transpose() * edges.normal);
+		out.normal = pose1.orientation * edges.normal;
+		out.area = 0;
+		out.nominalArea = std::min(shape1.faces()[faceAlong(shape1, edges.normal)].area, shape2.faces()[faceAlong(shape2, outward2)].area);
+		out.points = {
+		    {pose1.toGlobal(edges.point1), pose1.toGlobal(edges.point2), edges.separation, 1, {Feature::Edges, edges.edge1, edges.edge2}}};
+		out.feature = {PatchKind::Edges, edges.edge1, edges.edge2, {}};
+	}
+
+	const ConvexPolyhedron &shape1, &shape2;
+	const Pose &pose1, &pose2;
+	const PatchFeature& previous;
+	ContactPatch& out;
+	const double length, cosineLimit;
+	RelativePose second;
+};
+
+} // namespace
+
+bool findPatch(const ConvexPolyhedron& shape1, const Pose& pose1, const ConvexPolyhedron& shape2, const Pose& pose2, double margin,
+               const PatchFeature& previous, ContactPatch& out)
+{
+	return PairSearch(shape1, pose1, shape2, pose2, previous, out).find(margin);
+}
+
+} // namespace masonry
