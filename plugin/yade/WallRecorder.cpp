@@ -1,6 +1,7 @@
 #include "WallRecorder.hpp"
 #include "BaseMotionEngine.hpp"
 #include "BlockMat.hpp"
+#include "ConvexBlock.hpp"
 #include "MoreauJeanIntegrator.hpp"
 #include "RockingJointEngine.hpp"
 #include "joint_forces.hpp"
@@ -39,7 +40,7 @@ boost::python::object asBytes(const vector<Real>& numbers)
 	return boost::python::object(boost::python::handle<>(PyBytes_FromStringAndSize(first, Py_ssize_t(numbers.size() * sizeof(Real)))));
 }
 
-const Box* boxOf(const Body& body) { return dynamic_cast<const Box*>(body.shape.get()); }
+bool isShown(const Body& body) { return dynamic_cast<const Box*>(body.shape.get()) || dynamic_cast<const ConvexBlock*>(body.shape.get()); }
 
 } // namespace
 
@@ -51,14 +52,24 @@ void WallRecorder::begin()
 		    sentence("WallRecorder.iterPeriod = ", iterPeriod, ", virtPeriod = ", virtPeriod, ": one of them must be positive."));
 	if (ids.empty())
 		for (const auto& body : scene->bodies->body)
-			if (body && boxOf(*body) && dynamic_cast<const BlockMat*>(body->material.get()))
+			if (body && isShown(*body) && dynamic_cast<const BlockMat*>(body->material.get()))
 				ids.push_back(body->id);
 	blocks.clear();
+	vertices.clear();
+	vertexCounts.clear();
 	for (int id : ids) {
-		if (!scene->bodies->exists(id) || !boxOf(*(*scene->bodies)[id]))
-			throw std::invalid_argument(sentence("WallRecorder.ids has ", id, ": there is no such box in O.bodies."));
+		if (!scene->bodies->exists(id) || !isShown(*(*scene->bodies)[id]))
+			throw std::invalid_argument(sentence("WallRecorder.ids has ", id, ": there is no such block in O.bodies."));
 		const Body& body = *(*scene->bodies)[id];
-		const Vector3r& half = boxOf(body)->extents;
+		Vector3r half = Vector3r::Zero();
+		vertexCounts.push_back(0);
+		if (const auto* box = dynamic_cast<const Box*>(body.shape.get())) {
+			half = box->extents;
+		} else {
+			const vector<Vector3r>& own = static_cast<const ConvexBlock&>(*body.shape).vertices;
+			vertices.insert(vertices.end(), own.begin(), own.end());
+			vertexCounts.back() = int(own.size());
+		}
 		add(blocks, half.x(), half.y(), half.z(), Real(body.isDynamic()));
 	}
 }

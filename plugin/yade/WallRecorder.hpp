@@ -22,10 +22,12 @@ public:
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(WallRecorder, PeriodicEngine,
 		"Motion of a structure: positions and orientations of blocks and the energies, every virtPeriod seconds of simulated time or every iterPeriod steps, from the first step on. It stores seven numbers per block and sample and, with recordForces, eight more per joint. dem.engines(recorder=...) puts it where positions and O.time belong together; dem.wall_history() returns a masonry.results.WallHistory.",
-		((vector<int>, ids, , , "Blocks to record, fixed by the first sample; empty: all boxes with a BlockMat, prescribed ones too. A block that is erased later has NaN from then on."))
+		((vector<int>, ids, , , "Blocks to record, fixed by the first sample; empty: all blocks with a BlockMat, prescribed ones too. A block that is erased later has NaN from then on."))
 		((bool, recordForces, false, , "Whether the resultant force of every loaded joint between these blocks, and the point where it acts, are stored too. Rigid blocks have forces after a step: a sample before the first one gets those of that step."))
 		((vector<Real>, times, , Attr::readonly, "Times of the samples [s]."))
-		((vector<Real>, blocks, , Attr::readonly, "At the first sample, block by block: half sizes x, y, z [m], 1 for a free block or 0."))
+		((vector<Real>, blocks, , Attr::readonly, "At the first sample, block by block: half sizes x, y, z [m] (0 for a ConvexBlock), 1 for a free block or 0."))
+		((vector<int>, vertexCounts, , Attr::readonly, "Number of vertices of each ConvexBlock, block by block; 0 for a box."))
+		((vector<Vector3r>, vertices, , Attr::readonly, "Vertices of these ConvexBlocks in their own axes [m], block by block."))
 		((vector<Real>, energies, , Attr::readonly, "Sample by sample: kinetic, potential, elastPotential, frictDissip, dampDissip, impactDissip, baseWork, as dem.energy() [J]; NaN without an engine of the joints. If O.engines is replaced during a run, dissipated energies and work are summed over the lists."))
 		((vector<shared_ptr<Engine>>, motions, , Attr::readonly, "Motion engines that have moved bodies during the recording."))
 		((vector<shared_ptr<Engine>>, integrators, , Attr::hidden, ""))

@@ -39,6 +39,7 @@ struct Motions {
 void exposeBoxes();
 void exposeClosedForm();
 void exposeMotion();
+void exposeShapes();
 void exposeHistory();
 
 } // namespace masonry::python

@@ -10,4 +10,5 @@ BOOST_PYTHON_MODULE(_core)
 	masonry::python::exposeClosedForm();
 	masonry::python::exposeMotion();
 	masonry::python::exposeHistory();
+	masonry::python::exposeShapes();
 }

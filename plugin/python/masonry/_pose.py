@@ -3,6 +3,9 @@
 import numpy as np
 
 _SIGNS = np.array([[x, y, z] for z in (-1, 1) for y in (-1, 1) for x in (-1, 1)])
+# Faces and edges of a box by its corners, in the order of `corners`; faces are counter-clockwise from outside: -x, +x, -y, +y, -z, +z.
+BOX_FACES = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]]
+BOX_EDGES = [[0, 1], [2, 3], [4, 5], [6, 7], [0, 2], [1, 3], [4, 6], [5, 7], [0, 4], [1, 5], [2, 6], [3, 7]]
 
 
 def matrices(quaternions):

@@ -1,9 +1,12 @@
-"""The boxes of the scene: bodies, and their geometry as arrays."""
+"""The blocks of the scene: bodies, and their geometry as arrays."""
 
 import numpy as np
 from masonry._given import shown
-from masonry._pose import axes_of
-from yade import O, wrapper
+from masonry._pose import BOX_FACES, axes_of, corners, matrices
+from yade import O, Quaternion, Vector3, wrapper
+
+# Upward part of the normal of a face from which on it is level.
+_LEVEL = 1 - 1e-12
 
 
 def boxes():
@@ -11,22 +14,74 @@ def boxes():
     return [b for b in O.bodies if isinstance(b.mat, wrapper.BlockMat) and isinstance(b.shape, wrapper.Box)]
 
 
-def box(id, name="id"):
-    """The body of that id, which the script gave as `name`; ValueError unless it exists and is a Box."""
+def convex_blocks():
+    """All bodies that are convex blocks with a BlockMat."""
+    return [b for b in O.bodies if isinstance(b.mat, wrapper.BlockMat) and isinstance(b.shape, wrapper.ConvexBlock)]
+
+
+def blocks():
+    """Boxes and convex blocks, in the order of their ids."""
+    return sorted(boxes() + convex_blocks(), key=lambda b: b.id)
+
+
+def _body(id, name, allowed, says):
+    """The body of that id, which the script gave as `name`; ValueError unless it exists and its shape is one of `allowed`."""
     if not isinstance(id, (int, np.integer)) or isinstance(id, bool) or not 0 <= id < len(O.bodies) or O.bodies[int(id)] is None:
-        allowed = f"must be an id, a whole number from 0 to {len(O.bodies) - 1}" if len(O.bodies) else "it is empty, dem.base() makes the first one"
-        raise ValueError(f"{name} = {shown(id)}: there is no such body in O.bodies: {allowed}")
+        hint = f"must be an id, a whole number from 0 to {len(O.bodies) - 1}" if len(O.bodies) else "it is empty, dem.base() makes the first one"
+        raise ValueError(f"{name} = {shown(id)}: there is no such body in O.bodies: {hint}")
     body = O.bodies[int(id)]
-    if not isinstance(body.shape, wrapper.Box):
-        raise ValueError(f"{name} = {id}: that body is a {type(body.shape).__name__}, it must be a Box")
+    if not isinstance(body.shape, allowed):
+        raise ValueError(f"{name} = {id}: that body is a {type(body.shape).__name__}, it must be a {says}")
     return body
 
 
+def box(id, name="id"):
+    """The body of that id, which the script gave as `name`; ValueError unless it exists and is a Box."""
+    return _body(id, name, wrapper.Box, "Box")
+
+
+def block_body(id, name="id"):
+    """The same for a Box or a ConvexBlock."""
+    return _body(id, name, (wrapper.Box, wrapper.ConvexBlock), "Box or a ConvexBlock")
+
+
+def upper_face(body, name):
+    """(middle, orientation, outline) of the face on which others stand: its middle in the world, the axes in which its outline (k, 2) is given, counter-clockwise
+    from the middle. Of a Box the face along its own z; of a ConvexBlock the one that is level, in the axes of the world."""
+    state = body.state
+    if isinstance(body.shape, wrapper.Box):
+        x, y, z = body.shape.extents
+        return state.pos + state.ori * Vector3(0, 0, z), state.ori, np.array([(-x, -y), (x, -y), (x, y), (-x, y)])
+    vertices, faces = world_shape(body)
+    for loop in faces:
+        a, b, c = (vertices[k] for k in loop[:3])
+        normal = np.cross(b - a, c - b)
+        if normal[2] >= _LEVEL * np.linalg.norm(normal):
+            outline = vertices[loop]
+            sides = np.roll(outline, -1, axis=0)
+            areas = (outline - a)[:, 0] * (sides - a)[:, 1] - (outline - a)[:, 1] * (sides - a)[:, 0]
+            middle = a + ((outline - a + sides - a) * areas[:, None]).sum(axis=0) / (3 * areas.sum())
+            return Vector3(middle), Quaternion.Identity, (outline - middle)[:, :2]
+    raise ValueError(f"{name}: that ConvexBlock has no level upper face, on which others can stand")
+
+
+def world_shape(body):
+    """Corners (k, 3) of a Box or a ConvexBlock in the world, m, and its faces: numbers of corners, counter-clockwise from outside."""
+    position, turn = np.array(tuple(body.state.pos)), np.array(tuple(body.state.ori))[[3, 0, 1, 2]]
+    if isinstance(body.shape, wrapper.Box):
+        return corners(position, turn, 2 * np.array(tuple(body.shape.extents))), BOX_FACES
+    return position + np.array([tuple(v) for v in body.shape.vertices]) @ matrices(turn).T, body.shape.faces
+
+
+def _size(shape):
+    return 2 * np.array(tuple(shape.extents)) if isinstance(shape, wrapper.Box) else np.ptp([tuple(v) for v in shape.vertices], axis=0)
+
+
 def poses(bodies):
-    """centers (n, 3), full sizes (n, 3) in m and quaternions (n, 4) as w, x, y, z."""
+    """centers (n, 3), full sizes (n, 3) in m, those of the box around a ConvexBlock in its own axes, and quaternions (n, 4) as w, x, y, z."""
     states = [b.state for b in bodies]
     quaternions = np.array([tuple(s.ori) for s in states]).reshape(-1, 4)[:, [3, 0, 1, 2]]
-    sizes = 2 * np.array([tuple(b.shape.extents) for b in bodies]).reshape(-1, 3)
+    sizes = np.array([_size(b.shape) for b in bodies]).reshape(-1, 3)
     return np.array([tuple(s.pos) for s in states]).reshape(-1, 3), sizes, quaternions
 
 

@@ -11,8 +11,8 @@ from yade import O, wrapper
 
 from masonry import _yade
 from masonry.dem import notes
-from masonry.dem.bodies import boxes, geometry, half_sizes
-from masonry.dem.checks import check_blocks, check_material, check_recorder
+from masonry.dem.bodies import boxes, convex_blocks, geometry, half_sizes
+from masonry.dem.checks import check_blocks, check_material, check_recorder, listed
 from masonry.dem.structures import structures
 
 _MODELS = ("auto", "planar", "spatial", "compliant")
@@ -244,6 +244,9 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
     _check_arguments(model, method, impact_order, penetration, tolerance, dt, gravity)
     gravity, motions, recorders, blocks = float(gravity), _several(motion), _several(recorder), boxes()
     _check_engines(motions, recorders, others, blocks)
+    convex = [b.id for b in convex_blocks()]
+    if convex:
+        raise ValueError(f"O.bodies: {listed(convex)} are convex blocks: engines move boxes only; convex blocks can be made, looked at and saved")
     if not any(b.dynamic for b in blocks):
         raise ValueError("there is no free block in O.bodies: add one with dem.block() before dem.engines()")
     for body in blocks:
@@ -321,7 +324,7 @@ def _compliant(blocks, motions, reason, dt, penetration, impact_order, gravity, 
     smallest = min(min(b.shape.extents) for b in blocks)
     return [
         wrapper.ForceResetter(),
-        wrapper.InsertionSortCollider([wrapper.Bo1_Box_Aabb()], verletDist=0.05 * smallest),
+        wrapper.InsertionSortCollider([wrapper.Bo1_Box_Aabb(), wrapper.Bo1_ConvexBlock_Aabb()], verletDist=0.05 * smallest),
         wrapper.InteractionLoop([wrapper.Ig2_Box_Box_BlockGeom()], [wrapper.Ip2_BlockMat_BlockMat_BlockPhys()], [wrapper.Law2_BlockGeom_BlockPhys_Rocking()]),
         joints,
         *motions,

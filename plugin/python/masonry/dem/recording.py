@@ -2,8 +2,11 @@
 
 import numpy as np
 from masonry._given import shown
+from masonry._pose import BOX_FACES
+from masonry._shapes import Shapes, box_corners
 from masonry.dem.describing import about
 from masonry.dem.engines import impacts, joint_engine
+from masonry.dem.placing import polyhedron
 from masonry.results import WallHistory
 from masonry.results.wall_history import JOINT_FORCES
 from yade import O, wrapper
@@ -24,9 +27,28 @@ def wall_history(recorder):
     # The last sample is up to a period older than the run, whose time is O.time while the recorder takes part in it.
     present = recorder in O.engines
     end = max(O.time, recorder.times[-1]) if present else None
-    return WallHistory(recorder.times, recorder.ids, 2 * blocks[:, :3], blocks[:, 3] > 0, poses[..., :3], poses[..., 3:],
+    sizes, shapes = _shapes(recorder, 2 * blocks[:, :3])
+    return WallHistory(recorder.times, recorder.ids, sizes, blocks[:, 3] > 0, poses[..., :3], poses[..., 3:],
                        np.array(recorder.energies).reshape(len(recorder.times), -1), motion, end,
-                       about(recorder.ids, motions) if present else None, impacts() if present and joint_engine() else None, _forces(recorder))
+                       about(recorder.ids, motions) if present else None, impacts() if present and joint_engine() else None, _forces(recorder), shapes)
+
+
+def _shapes(recorder, sizes):
+    """(full sizes of boxes, and of what is around convex blocks; the Shapes of all blocks, or None where all are boxes)."""
+    counts = recorder.vertexCounts
+    if not any(counts):
+        return sizes, None
+    own = np.split(np.array([tuple(v) for v in recorder.vertices]), np.cumsum(counts)[:-1])
+    found = {points.tobytes(): polyhedron(points, "vertices", in_own_axes=True) for points in own if len(points)}
+    blocks = []
+    for k, points in enumerate(own):
+        if len(points):
+            faces, start = (found[points.tobytes()][name] for name in ("faces", "face_start"))
+            sizes[k] = np.ptp(points, axis=0)
+            blocks.append((points, [faces[a:b] for a, b in zip(start, start[1:])]))
+        else:
+            blocks.append((box_corners(sizes[k]), BOX_FACES))
+    return sizes, Shapes.of(blocks)
 
 
 def _forces(recorder):

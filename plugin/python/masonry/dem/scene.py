@@ -2,17 +2,16 @@
 
 import math
 
-import numpy as np
 from masonry._given import finite_numbers, number_given, shown
 from masonry.dem import layouts
-from masonry.dem.bodies import box, boxes, poses
-from masonry.dem.checks import check_material, listed
-from masonry.dem.tables import read_table, write_table
+from masonry.dem.bodies import block_body, blocks, box, boxes, poses, world_shape
+from masonry.dem.checks import check_material
+from masonry.dem.meshes import write_obj
+from masonry.dem.placing import append_boxes, block_material, box_body, convex_body, placed, polyhedron, posed, stand, top_of, turn_about_z
+from masonry.dem.tables import read_table, table_rows, write_table
 from yade import O, Quaternion, Vector3, utils
 
 _AXES = {"x": 0, "y": 1}
-# Share of a half size by which a block's centre must be inside its support: a centre above the edge is off, whatever the round-off.
-_INSIDE = 1e-9
 # Upward part of a block's own x or y axis up to which it may lean about it.
 _LEVEL = 0.7
 
@@ -21,72 +20,17 @@ def _positive_size(name, size):
     return Vector3(layouts.positive_size(name, size))
 
 
-def _block_material(material):
-    check_material(material)
-    if not (0 <= material.id < len(O.materials) and O.materials[material.id] is material):  # new, or of a scene before
-        O.materials.append(material)
-    return material
-
-
 def _axis(name):
     if name not in tuple(_AXES):
         raise ValueError(f"axis = {shown(name)}: must be 'x' or 'y'")
     return _AXES[name]
 
 
-def _turn_about_z(turn):
-    """The share of a turn that is about z: a block that it leans over rests like this. Where there is none (it lies on its side): no turn."""
-    norm = math.hypot(turn[3], turn[2])
-    return Quaternion(turn[3] / norm, 0, 0, turn[2] / norm) if norm else Quaternion.Identity
-
-
-def _append_all(centers, sizes, material, orientations, resting):
-    """Free blocks at those places of the world. material, orientations, resting (the pose from which dem.angle counts): one for all,
-    or one a block."""
-    def each(value):
-        return value if isinstance(value, list) else [value] * len(centers)
-
-    bodies = []
-    for center, half, mat, turn, rest in zip(centers.tolist(), (sizes / 2).tolist(), each(material), each(orientations), each(resting)):
-        body = utils.box(Vector3(center), Vector3(half), turn, material=mat)
-        body.aspherical, body.state.refOri = True, rest
-        bodies.append(body)
-    return O.bodies.append(bodies)
-
-
-def _top(on, at=(0.0, 0.0)):
-    """Where a layout stands on the body: the place `at` on its upper face, in world axes, and the body's orientation."""
-    below, at = box(on, "on"), finite_numbers("at", at, 2, "two finite numbers, in m")
-    return below.state.pos + below.state.ori * Vector3(at[0], at[1], below.shape.extents[2]), below.state.ori
-
-
-def _placed(centers, foot, orientation):
-    return np.array(foot) + centers @ np.array(orientation.toRotationMatrix()).reshape(3, 3).T
-
-
-def _check_support(layout, on, at):
-    """ValueError unless every block of the bottom course has its centre above the body `on`."""
-    (centers, sizes), half = layout, np.array(box(on, "on").shape.extents)
-    bottom = centers[centers[:, 2] - sizes[:, 2] / 2 < sizes[:, 2].min() / 2, :2] + at
-    off = bottom[(np.abs(bottom) > half[:2] * (1 - _INSIDE)).any(axis=1)]
-    if len(off):
-        reach = np.ptp(np.concatenate([centers - sizes / 2, centers + sizes / 2]), axis=0)
-        raise ValueError(f"{reach[0]:g} x {reach[1]:g} m at ({at[0]:g}, {at[1]:g}) on body {on} of {2 * half[0]:g} x {2 * half[1]:g} m: {len(off)} blocks of the bottom "
-                         f"course have their centres off it, at {listed([f'({x:g}, {y:g})' for x, y in off])}: all must be above it")
-
-
-def _stand(layout, material, on, at):
-    """The blocks of a layout on the body `on`. Everything is checked before the first one is made."""
-    foot, orientation = _top(on, at)
-    _check_support(layout, on, at)
-    return _append_all(_placed(layout[0], foot, orientation), layout[1], _block_material(material), orientation, orientation)
-
-
 def base(size, material):
     """A body that does not move by itself, with its top face at z = 0, centred on the z axis. size: full sizes (x, y, z), m.
     A motion engine (PulseTrainEngine, RecordMotionEngine) moves it. Returns its id."""
     size = _positive_size("size", size)
-    body = utils.box(Vector3(0, 0, -size[2] / 2), size / 2, Quaternion.Identity, material=_block_material(material), fixed=True)
+    body = utils.box(Vector3(0, 0, -size[2] / 2), size / 2, Quaternion.Identity, material=block_material(material), fixed=True)
     body.aspherical = True
     return O.bodies.append(body)
 
@@ -101,15 +45,14 @@ def block(size, material, on=None, center=None, orientation=None):
     orientation = Quaternion.Identity if orientation is None else orientation
     if not isinstance(orientation, Quaternion) or not abs(orientation.norm() - 1) < 1e-9:
         raise ValueError(f"orientation = {shown(orientation)}: must be a Quaternion of length 1")
-    resting = _turn_about_z(orientation)
+    resting = turn_about_z(orientation)
     if on is not None:
-        below = box(on, "on")
         if not (orientation * Vector3.UnitZ)[2] > 1 - 1e-12:
             raise ValueError(f"orientation = {shown(orientation)}: must be a turn about z where the block stands on a body")
-        center = below.state.pos + below.state.ori * Vector3(0, 0, below.shape.extents[2] + size[2] / 2)
-        orientation = resting = below.state.ori * orientation
+        center, turn = top_of(on, above=size[2] / 2)
+        orientation = resting = turn * orientation
     center = finite_numbers("center", center, 3, "three finite numbers, in m")
-    return _append_all(np.array([center]), np.array([size]), _block_material(material), orientation, resting)[0]
+    return append_boxes([center], [size], block_material(material), orientation, resting)[0]
 
 
 def stack(n, size, material, on):
@@ -141,7 +84,7 @@ def wall(courses=None, per_course=None, size=None, material=None, on=None, gap=0
     if missing:
         raise ValueError(f"{' = None, '.join(missing)} = None: must be given: a BlockMat, and the id of the body that the wall stands on")
     courses, per_course, size = layouts.wall_modules(courses, per_course, size, length, height, thickness, gap)
-    return _stand(layouts.wall_layout(courses, per_course, size, gap, openings, openings_in), material, on, at)
+    return stand(layouts.wall_layout(courses, per_course, size, gap, openings, openings_in), material, on, at)
 
 
 def two_wythe_wall(courses, per_course, size, material, on, header_every=6, gap=0.0, collar=0.0, at=(0.0, 0.0)):
@@ -153,7 +96,7 @@ def two_wythe_wall(courses, per_course, size, material, on, header_every=6, gap=
     gap, collar     widths of the head joints and of the joint between the leaves, m
     at              (x, y) of the middle of the wall on the body `on`, m
     """
-    return _stand(layouts.two_wythe_layout(courses, per_course, size, header_every, gap, collar), material, on, at)
+    return stand(layouts.two_wythe_layout(courses, per_course, size, header_every, gap, collar), material, on, at)
 
 
 def return_wall(courses, along_x, along_y, size, material, on, gap=0.0, at=(0.0, 0.0)):
@@ -166,13 +109,13 @@ def return_wall(courses, along_x, along_y, size, material, on, gap=0.0, at=(0.0,
     gap                 width of the head joints, m
     at                  (x, y) of the middle of the rectangle around the plan on the body `on`, m
     """
-    return _stand(layouts.return_layout(courses, along_x, along_y, size, gap), material, on, at)
+    return stand(layouts.return_layout(courses, along_x, along_y, size, gap), material, on, at)
 
 
 def pier(courses, size, material, on, per_course=1, at=(0.0, 0.0)):
     """A pier: a column of blocks. per_course: 1, or 2 for two blocks side by side, turned by a quarter turn from course to course (size x
     twice size y). at: (x, y) of its axis on the body `on`, m. Returns the ids, bottom up."""
-    return _stand(layouts.pier_layout(courses, size, per_course), material, on, at)
+    return stand(layouts.pier_layout(courses, size, per_course), material, on, at)
 
 
 def blocks_from_table(table, materials, on=None):
@@ -186,39 +129,52 @@ def blocks_from_table(table, materials, on=None):
     material                  optional: a key of `materials`, a dict of BlockMats. One BlockMat instead serves the rows that name
                               none, or its label.
     qw, qx, qy, qz            optional, instead of the rotations: the orientation as a quaternion (dem.save_blocks writes it)
+    vertices                  in rows of .json and in memory, instead of the sizes: the corners of a convex block in its own axes, m, from its centre of mass
+                              (dem.save_blocks writes them, and `resting`, the quaternion from which dem.angle counts)
     id, name                  optional, ignored
 
     Columns may be written in capitals and with blanks around them.
     """
-    centers, sizes, quaternions, names, places = read_table(table)
+    given = read_table(table)
     if not isinstance(materials, dict):
         check_material(materials)
         materials = {materials.label: materials, "": materials}
     for material in materials.values():
         check_material(material)
-    for place, name in zip(places, names):
+    for place, name in zip(given.places, given.names):
         if name not in materials:
             raise ValueError(f"{place}: material = {shown(name)}: must be one of {', '.join(repr(key) for key in materials)}")
-    orientations = [Quaternion(*q) for q in quaternions.tolist()]
-    resting = [_turn_about_z(q) for q in orientations]
+    shapes = [None if points is None else polyhedron(points, place, in_own_axes=True) for place, points in zip(given.places, given.corners)]
+    centers, orientations, resting = given.centers, [Quaternion(*q) for q in given.quaternions.tolist()], [Quaternion(*q) for q in given.resting]
     if on is not None:
-        foot, turn = _top(on)
-        centers = _placed(centers, foot, turn)
+        foot, turn = top_of(on)
+        centers = placed(centers, foot, turn)
         orientations, resting = [turn * q for q in orientations], [turn * q for q in resting]
-    return _append_all(centers, sizes, [_block_material(materials[name]) for name in names], orientations, resting)
+    bodies = []
+    for shape, center, size, name, *turns in zip(shapes, centers.tolist(), given.sizes, given.names, orientations, resting):
+        material = block_material(materials[name])
+        bodies.append(posed(box_body(size, material) if shape is None else convex_body(shape, material), center, *turns))
+    return O.bodies.append(bodies)
 
 
 def save_blocks(path):
-    """Writes the free blocks as they are now (centre, size, orientation, label of the material) to a .csv or .json table, in the order of their
-    ids: dem.blocks_from_table(path, ...) makes the same bits of them again. Velocities are not kept: O.save does that. Raises ValueError
-    where materials of blocks that are not the same have the same label, or none."""
-    bodies = [b for b in boxes() if b.dynamic]
+    """Writes the free blocks as they are now, in the order of their ids.
+
+    .csv, .json    a table: centre, size (of a convex block, in .json: its corners), orientation, label of the material. dem.blocks_from_table(path, ...)
+                   makes the same bits of them again. Velocities are not kept: O.save does that. Raises ValueError where materials of blocks that are not the
+                   same have the same label, or none.
+    .obj           a mesh in the world for other programs, one object each; dem.blocks_from_mesh(path, ...) reads it"""
+    bodies = [b for b in blocks() if b.dynamic]
+    if str(path).endswith(".obj"):
+        return write_obj(path, [(f"block_{b.id}", *world_shape(b)) for b in bodies])
     labelled = {}
     for material in {b.mat.id: b.mat for b in bodies}.values():
         known = labelled.setdefault(material.label, material)
         if any(repr(value) != repr(getattr(known, name)) for name, value in material.dict().items() if name != "id"):
             raise ValueError(f"O.materials[{material.id}].label = {shown(material.label)}: must be another than that of O.materials[{known.id}], which is not the same")
-    write_table(path, *poses(bodies), [b.mat.label for b in bodies])
+    corners = [None if hasattr(b.shape, "extents") else [tuple(v) for v in b.shape.vertices] for b in bodies]
+    resting = [[b.state.refOri[k] for k in (3, 0, 1, 2)] for b in bodies]
+    write_table(path, table_rows(*poses(bodies), [b.mat.label for b in bodies], corners, resting))
 
 
 def tilt(id, angle, axis="y"):
@@ -247,8 +203,9 @@ def _angle(state, row):
 
 
 def angle(id, axis="y"):
-    """Rotation of a block from its resting pose about its own axis 'x' or 'y', signed, rad."""
-    return _angle(box(id).state, _axis(axis))
+    """Rotation of a block from its resting pose about its own axis 'x' or 'y', signed, rad. The own axes of a convex block are its principal axes of inertia that
+    are nearest to those in which its corners were given."""
+    return _angle(block_body(id).state, _axis(axis))
 
 
 def overturned():

@@ -5,14 +5,17 @@ import itertools
 import json
 import math
 import re
+from typing import NamedTuple
 
 import numpy as np
 from masonry._files import written
-from masonry._given import shown
+from masonry._given import array_given, finite_numbers, shown
 from masonry.dem.layouts import SIZES
 
 _PLACE, _TURN, _QUATERNION = ("x", "y", "z", "size_x", "size_y", "size_z"), ("rotation_y", "rotation_z"), ("qw", "qx", "qy", "qz")
 COLUMNS = _PLACE + _TURN + ("material",) + _QUATERNION
+# The corners of a convex block, in place of sizes, and the quaternion from which dem.angle counts.
+_CORNERS, _RESTING = "vertices", "resting"
 # Columns that say nothing of a block.
 _IGNORED = ("id", "name")
 
@@ -115,7 +118,7 @@ def _named(cells, place):
         if column is None:
             raise ValueError(f"{place}: has more values than there are columns")
         name = str(column).strip().lower()
-        if name not in COLUMNS + _IGNORED:
+        if name not in COLUMNS + (_CORNERS, _RESTING) + _IGNORED:
             header = "line 1" if place.startswith("line") else place
             raise ValueError(f"{header}: column {shown(column)}: must be one of {', '.join(COLUMNS + _IGNORED)}")
         if name in row:
@@ -124,32 +127,79 @@ def _named(cells, place):
     return row
 
 
+def _corners(row, place):
+    """The corners (k, 3) of a row in its own axes; None for a box."""
+    given = row.get(_CORNERS)
+    if given is None:
+        return None
+    corners = array_given(f"{place}: {_CORNERS}", given)
+    if corners.ndim != 2 or corners.shape[1] != 3 or not np.isfinite(corners).all():
+        raise ValueError(f"{place}: {_CORNERS} = {shown(given)}: must be points of three finite numbers, in m")
+    return corners
+
+
+def _resting(row, place, quaternion):
+    """The quaternion from which dem.angle counts: of the row, or the share of the turn that is about z."""
+    if _RESTING in row:
+        return _quaternion(dict(zip(_QUATERNION, finite_numbers(f"{place}: {_RESTING}", row[_RESTING], 4, "a quaternion of length 1"))), place)
+    w, z = quaternion[0], quaternion[3]
+    norm = math.hypot(w, z)
+    return [w / norm, 0, 0, z / norm] if norm else [1, 0, 0, 0]
+
+
+class Table(NamedTuple):
+    """Rows of a table, see dem.blocks_from_table: centres (n, 3), full sizes (n, 3), or NaN, quaternions (n, 4) as w, x, y, z, names of materials, where each
+    row stands, corners of each convex block (else None), and the quaternions from which dem.angle counts."""
+
+    centers: np.ndarray
+    sizes: np.ndarray
+    quaternions: np.ndarray
+    names: list
+    places: list
+    corners: list
+    resting: list
+
+
 def read_table(table):
-    """(centers (n, 3), sizes (n, 3), quaternions (n, 4) as w, x, y, z, material names, where each row stands) of a table, see
-    dem.blocks_from_table."""
+    """The Table in a file, or of rows in memory."""
     cells = _rows(table)
     if not cells:
         raise ValueError("table: must have at least one row")
     places = [f"row {k}" if getattr(row, "line", None) is None else f"line {row.line}" for k, row in enumerate(cells)]
     rows = [(_named(row, place), place) for row, place in zip(cells, places)]
-    boxes = np.array([[_number(row, place, c) for c in _PLACE] for row, place in rows])
-    return boxes[:, :3], boxes[:, 3:], np.array([_quaternion(*row) for row in rows]), [_material(*row) for row in rows], places
+    corners = [_corners(*row) for row in rows]
+    numbers = np.array([[_number(row, place, c) if one is None or not c.startswith("size") else math.nan for c in _PLACE] for (row, place), one in zip(rows, corners)])
+    quaternions = [_quaternion(*row) for row in rows]
+    resting = [_resting(*row, quaternion) for row, quaternion in zip(rows, quaternions)]
+    return Table(numbers[:, :3], numbers[:, 3:], np.array(quaternions), [_material(*row) for row in rows], places, corners, resting)
 
 
-def write_table(path, centers, sizes, quaternions, names):
-    """Writes what read_table reads back bit by bit. Quaternions and names stand there only where a block is turned or named."""
+def write_table(path, rows):
+    """Writes what read_table reads back bit by bit: rows of columns, which may lack some."""
     path = str(path)
     if not path.endswith((".csv", ".json")):
-        raise ValueError(f"path = {path}: must end in .csv or .json")
-    columns, values = list(_PLACE), [list(row) for row in np.hstack([centers, sizes]).tolist()]
-    if np.any(quaternions != [1, 0, 0, 0]):
-        columns += _QUATERNION
-        values = [row + list(q) for row, q in zip(values, np.asarray(quaternions).tolist())]
-    if any(names):
-        columns.append("material")
-        values = [row + [name] for row, name in zip(values, names)]
+        raise ValueError(f"path = {path}: must end in .csv or .json, or in .obj for a mesh")
+    if path.endswith(".csv") and any(_CORNERS in row for row in rows):
+        raise ValueError(f"path = {path}: must end in .json, or in .obj, where there are convex blocks")
     with written(path) as beside, open(beside, "w", newline="", encoding="utf-8") as file:
         if path.endswith(".json"):
-            file.write("[\n" + ",\n".join(json.dumps(dict(zip(columns, row))) for row in values) + "\n]\n")
+            file.write("[\n" + ",\n".join(json.dumps(row) for row in rows) + "\n]\n")
         else:
-            csv.writer(file).writerows([columns, *values])
+            columns = [*_PLACE, *(c for c in (*_QUATERNION, "material") if any(c in row for row in rows))]
+            csv.writer(file).writerows([columns, *([row[c] for c in columns] for row in rows)])
+
+
+def table_rows(centers, sizes, quaternions, names, corners, resting):
+    """Rows for write_table. Quaternions and names stand there only where a block is turned or named; sizes of a box, corners of a convex block."""
+    turned, named = bool(np.any(quaternions != [1, 0, 0, 0])), any(names)
+    rows = []
+    for center, size, quaternion, name, points, rest in zip(centers.tolist(), sizes.tolist(), quaternions.tolist(), names, corners, resting):
+        row = dict(zip(_PLACE, center if points is not None else center + size))
+        if turned:
+            row.update(zip(_QUATERNION, quaternion))
+        if named:
+            row["material"] = name
+        if points is not None:
+            row.update({_CORNERS: points, _RESTING: rest})
+        rows.append(row)
+    return rows

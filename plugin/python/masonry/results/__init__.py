@@ -7,6 +7,8 @@ ParaView. Needs no YADE: a history saved by one script is drawn by another.
     results.report(history, "wall.html")
 """
 
+from masonry._shapes import Shapes
+
 from .collapse import CollapseReport, collapse, fallen
 from .forces import base_reactions, thrust
 from .joints import joints, patches
@@ -15,5 +17,5 @@ from .pictures import draw, draw_energy, draw_joints, film
 from .reporting import report
 from .wall_history import WallHistory
 
-__all__ = ["CollapseReport", "WallHistory", "base_reactions", "collapse", "draw", "draw_energy", "draw_joints", "fallen", "film", "joints", "patches",
+__all__ = ["CollapseReport", "Shapes", "WallHistory", "base_reactions", "collapse", "draw", "draw_energy", "draw_joints", "fallen", "film", "joints", "patches",
            "report", "thrust", "write_paraview"]

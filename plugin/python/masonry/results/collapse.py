@@ -7,6 +7,8 @@ import numpy as np
 from masonry._given import is_whole, positive_given, shown
 from masonry.results.wall_history import history_given
 
+# Height above the lowest corner, relative to the largest size, up to which a corner belongs to the face on which a block stands.
+_LEVEL = 1e-6
 # The units of CollapseReport.numbers(); `collapsed` is a bool.
 UNITS = {"collapse_time": "s", "fallen": "1", "peak_drift": "1", "peak_drift_time": "s", "residual_drift": "1", "first_excursion": "s", "motion_run": "1"}
 
@@ -77,14 +79,19 @@ def fallen(history):
     That critical lean is atan((b |cos f| + d |sin f|) / a) for half widths b, d, half height a and a lean in the direction f of the
     block's own plan: atan(b / a) about an edge, atan(sqrt(b^2 + d^2) / a) over a corner.
     """
-    half, blocks = history_given(history).sizes / 2, np.arange(len(history.ids))
-    # Of the lean: sine times (cos f, sin f), and cosine, from the vertical in the block's axes.
-    sideways = np.abs(history.vertical)
-    sideways[:, blocks, history.upright] = 0
-    sine, cosine = np.linalg.norm(sideways, axis=2), np.cos(history.lean)
+    up = history_given(history).upwards
+    # Of the lean: cosine, and sine times the direction in the block's axes, from the vertical in them.
+    cosine = np.cos(history.lean)
+    sideways = history.vertical - np.einsum("sna,na->sn", history.vertical, up)[..., None] * up
+    sine = np.linalg.norm(sideways, axis=2)
+    # The corner of the base that is the lowest now.
+    heights = np.einsum("nca,na->nc", history.own_corners, up)
+    base = heights <= heights.min(axis=1, keepdims=True) + _LEVEL * history.sizes.max(axis=1, keepdims=True)
+    reach = np.where(base, -np.einsum("sna,nca->snc", sideways, history.own_corners), -np.inf).max(axis=2)
+    stood = ~history.convex | (base.sum(axis=1) >= 3)
     low, high = history.extent
     with np.errstate(invalid="ignore"):
-        back = (cosine > 0) & (sine**2 * half[blocks, history.upright] <= cosine * (sideways * half).sum(axis=2))
+        back = (cosine > 0) & (~stood | (sine**2 * -heights.min(axis=1) <= cosine * reach))
         stands = back & (history.displacement[..., 2] >= -(high - low) / 2)
     return ~stands & history.free
 

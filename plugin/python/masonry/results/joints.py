@@ -32,7 +32,7 @@ class _Joints:
         boxes = center, sizes, axes = history.position[0], history.sizes, _pose.axes_of(history.orientation[0])
         smallest = sizes.min(axis=1)
         pairs = near_pairs(*bounds(*boxes, _TOUCH / 2 * smallest[:, None]))
-        pairs = pairs[history.free[pairs].any(axis=1)]
+        pairs = pairs[history.free[pairs].any(axis=1) & ~history.convex[pairs].any(axis=1)]
         margins = _TOUCH * smallest[pairs].min(axis=1)
         corners, areas, faces, gaps, normals, polygons = face_patches(*pairs.T, *boxes, margins)
         cosines = np.abs(np.einsum("jbka,ja->jbk", axes[pairs], normals)).max(axis=2).min(axis=1)
@@ -75,7 +75,7 @@ def _joints_of(history):
 
 def joints(history, time=None):
     """How far the joints of a WallHistory opened and slid: a structured array, one row for each pair of blocks that touch face on face in the
-    first sample (bed joints, head joints, joints with the base). An opening or a slip counts until the first of the two blocks has fallen for good (as
+    first sample (bed joints, head joints, joints with the base). Joints of convex blocks are not among them. An opening or a slip counts until the first of the two blocks has fallen for good (as
     in collapse()): what blocks on the floor are apart is no opening of a joint.
 
     time    None: the largest values of the samples that count; else those of the sample nearest to it (s), NaN where it does not count

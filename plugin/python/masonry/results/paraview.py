@@ -1,11 +1,10 @@
-"""The motion of a structure as files that ParaView opens: one of boxes (.vtu) a sample, and a list of them with their times (.pvd)."""
+"""The motion of a structure as files that ParaView opens: one of blocks (.vtu) a sample, and a list of them with their times (.pvd)."""
 
 import base64
 from pathlib import Path
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
-from masonry import _pose
 from masonry._files import written
 from masonry._given import whole_given
 from masonry.results.wall_history import history_given
@@ -23,15 +22,32 @@ def _array(name, values):
     return f'<DataArray type="{_TYPES[values.dtype.str[1:]]}" Name="{name}"{parts} format="binary">{text}</DataArray>\n'
 
 
-def _vtu(points, cell_data, point_data):
-    count = len(points) // 8
+def _boxes(count):
+    """Cells of so many boxes: hexahedra."""
     connectivity = (8 * np.arange(count)[:, None] + _HEXAHEDRON).ravel()
-    sections = {"Points": _array("Points", points),
-                "Cells": _array("connectivity", connectivity) + _array("offsets", 8 * np.arange(1, count + 1)) + _array("types", np.full(count, 12, np.uint8)),
+    return _array("connectivity", connectivity) + _array("offsets", 8 * np.arange(1, count + 1)) + _array("types", np.full(count, 12, np.uint8))
+
+
+def _polyhedra(shapes, rows):
+    """Cells of blocks with any faces: for each the number of its faces and, face by face, the number of its points and these."""
+    counts = np.diff(shapes.vertex_start)[rows]
+    ends, faces, face_ends = np.cumsum(counts), [], []
+    for row, start in zip(rows.tolist(), (ends - counts).tolist()):
+        loops = shapes.loops[row]
+        faces.append(len(loops))
+        for loop in loops:
+            faces += [len(loop), *(start + k for k in loop)]
+        face_ends.append(len(faces))
+    return (_array("connectivity", np.arange(ends[-1] if len(rows) else 0)) + _array("offsets", ends) + _array("types", np.full(len(rows), 42, np.uint8))
+            + _array("faces", np.array(faces, dtype=int)) + _array("faceoffsets", np.array(face_ends, dtype=int)))
+
+
+def _vtu(points, cells, count, cell_data, point_data):
+    sections = {"Points": _array("Points", points), "Cells": cells,
                 "CellData": "".join(_array(*item) for item in cell_data.items()), "PointData": "".join(_array(*item) for item in point_data.items())}
     body = "".join(f"<{name}>\n{text}</{name}>\n" for name, text in sections.items())
     return ('<?xml version="1.0"?>\n<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64">\n<UnstructuredGrid>\n'
-            f'<Piece NumberOfPoints="{8 * count}" NumberOfCells="{count}">\n{body}</Piece>\n</UnstructuredGrid>\n</VTKFile>\n')
+            f'<Piece NumberOfPoints="{len(points)}" NumberOfCells="{count}">\n{body}</Piece>\n</UnstructuredGrid>\n</VTKFile>\n')
 
 
 def write_paraview(history, path, every=1, relative=False):
@@ -42,7 +58,7 @@ def write_paraview(history, path, every=1, relative=False):
     relative    True: as seen from the base, which then stands still
 
     Each block is a cell with id, free (1 or 0), displacement of its centre (m), rotation and lean (rad); the corners have their displacement too, for
-    the filter "Warp By Vector" on the first file. Displacements and rotations are relative to the base and the first sample. Erased blocks are
+    the filter "Warp By Vector" on the first file. Cells are hexahedra, or polyhedra where there are convex blocks. Displacements and rotations are relative to the base and the first sample. Erased blocks are
     left out.
     """
     history, path = history_given(history), Path(path)
@@ -53,14 +69,18 @@ def write_paraview(history, path, every=1, relative=False):
     folder.mkdir(parents=True, exist_ok=True)
     position, orientation = (history.relative_position, history.relative_orientation) if relative else (history.position, history.orientation)
     start, sets = history.corners(0), []
+    counts = np.full(len(history.ids), 8) if history.shapes is None else np.diff(history.shapes.vertex_start)
+    real = np.arange(start.shape[1]) < counts[:, None]  # not the last corner repeated
     for sample in range(0, len(history.time), every):
         there = np.isfinite(position[sample]).all(axis=1)
-        points = _pose.corners(position[sample], orientation[sample], history.sizes)
+        points = history.corners_at(position[sample], orientation[sample])
         cells = {"id": history.ids, "free": history.free.astype(np.uint8), "displacement": history.displacement[sample],
                  "rotation": history.rotation[sample], "lean": history.lean[sample]}
         moved = history.corners(sample) - start
         file = folder / f"{path.stem}_{sample:06d}.vtu"
-        text = _vtu(points[there].reshape(-1, 3), {name: values[there] for name, values in cells.items()}, {"displacement": moved[there].reshape(-1, 3)})
+        own = there[:, None] & real
+        shape = _boxes(there.sum()) if history.shapes is None else _polyhedra(history.shapes, np.flatnonzero(there))
+        text = _vtu(points[own], shape, there.sum(), {name: values[there] for name, values in cells.items()}, {"displacement": moved[own]})
         with written(file) as beside:
             Path(beside).write_text(text, encoding="utf-8")
         sets.append(f'<DataSet timestep="{float(history.time[sample])!r}" file={quoteattr(f"{folder.name}/{file.name}")}/>\n')

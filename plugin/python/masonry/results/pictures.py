@@ -126,9 +126,9 @@ class _Painter:
         most, beyond = scale_end(values, stands, still(history) if color == "displacement" else STILL)
         self._map = shades("YlOrRd", most)
         self._prescribed, self._unmoved = np.array(to_rgb(_PRESCRIBED)), np.array(to_rgb(_UNMOVED))
-        start, free = history.corners(0), history.free
+        start, free = history.corners(0), np.flatnonzero(history.free)
         self.figure, (self._axes,) = _figure(self._view, _framed(history, samples, self._enlarge, self._view))
-        self._axes.add_collection(LineCollection(self._view.outlines(start[free]), colors="0.6", linewidths=0.6, linestyles="--", zorder=1))
+        self._axes.add_collection(LineCollection(self._view.outlines(start[free], free), colors="0.6", linewidths=0.6, linestyles="--", zorder=1))
         self._blocks = PolyCollection([], edgecolors="0.2", linewidths=0.5 if len(start) < 300 else 0.25, zorder=2)
         self._axes.add_collection(self._blocks)
         if self._moved:
@@ -137,7 +137,7 @@ class _Painter:
     def paint(self, sample):
         corners = self._history.corners(sample, self._enlarge)
         there = np.flatnonzero(np.isfinite(corners).all(axis=(1, 2)))
-        polygons, rows, bright = self._view.faces(corners[there])
+        polygons, rows, bright = self._view.faces(corners[there], there)
         rows = there[rows]
         colors = self._map.to_rgba(self._values[sample, rows])[:, :3] if self._moved else self._unmoved
         colors = np.where(self._history.free[rows, None], colors, self._prescribed)
@@ -232,7 +232,7 @@ def joints_figure(history, time=None, view=None, title="", thrust=True):
         order = np.argsort(np.nan_to_num(values))
         # What opens or slides by less than a hundredth of the most is left grey and thin. Edge on, the line of a joint is its outline.
         moves = np.nan_to_num(values) > max(0.01 * most, least)
-        axes.add_collection(LineCollection(view.outlines(corners[history.free]), colors="0.8", linewidths=0.4, zorder=1))
+        axes.add_collection(LineCollection(view.outlines(corners[history.free], np.flatnonzero(history.free)), colors="0.8", linewidths=0.4, zorder=1))
         width = np.where(moves, 3.0 if view.from_side else 0.8, 0.8)
         colors = np.where(moves[:, None], colours.to_rgba(np.nan_to_num(values), alpha=1.0 if view.from_side else 0.6), to_rgba(_UNMOVED, 0.3))
         axes.add_collection(PolyCollection(flat[order], facecolors=colors[order], edgecolors=colors[order], linewidths=width[order], zorder=2))
@@ -261,7 +261,7 @@ def _thrust_panel(history, axes, view, time, title):
     corners = history.corners(0)[history.free]
     longest = np.ptp(corners[..., 2], axis=1).min() * _THRUST
     half, flat = view.place(forces[shown]) * longest / 2 / max(most, 1e-300), view.place(points[shown])
-    axes.add_collection(LineCollection(view.outlines(corners), colors="0.8", linewidths=0.4, zorder=1))
+    axes.add_collection(LineCollection(view.outlines(corners, np.flatnonzero(history.free)), colors="0.8", linewidths=0.4, zorder=1))
     axes.add_collection(LineCollection(np.stack([flat - half, flat + half], axis=1), colors="tab:blue", linewidths=1 + 1.5 * sizes[shown] / max(most, 1e-300), zorder=2))
     axes.plot(*flat.T, ".", color="tab:red", markersize=2.5, zorder=3)
     said = f", at most {most / 1e3:.3g} kN" if len(forces) else ": no joint carries load"

@@ -7,6 +7,7 @@ import numpy as np
 from masonry import _pose
 from masonry._boxes import near_pairs, separating_axes
 from masonry._given import array_given
+from masonry._pose import BOX_EDGES, BOX_FACES
 
 # From the scene towards the viewer of a structure that moves in space: from the right, the front, above.
 OBLIQUE = (0.45, -1.0, 0.4)
@@ -14,9 +15,8 @@ OBLIQUE = (0.45, -1.0, 0.4)
 _PARALLEL = 1e-6
 # Movement that is none, but what solvers leave: of lengths relative to the size of the structure, of angles in rad.
 STILL = 1e-6
-# Corners (of _pose.corners) around the face on the least side of an axis and on the other one, counterclockwise from outside.
-_FACES = np.array([[[0, 4, 6, 2], [1, 3, 7, 5]], [[0, 1, 5, 4], [2, 6, 7, 3]], [[0, 2, 3, 1], [4, 5, 7, 6]]])
-_EDGES = np.array([[0, 1], [2, 3], [4, 5], [6, 7], [0, 2], [1, 3], [4, 6], [5, 7], [0, 4], [1, 5], [2, 6], [3, 7]])
+# Pairs of convex blocks that are looked at together, which bounds the memory.
+_TOGETHER = 2000
 
 
 def still(history):
@@ -49,6 +49,7 @@ class View:
         if towards.shape != (3,) or not np.isfinite(towards).all() or not np.linalg.norm(towards) > 0:
             raise ValueError(f"view = {given}: must be three finite numbers, not all 0: the direction from the scene to the viewer")
         self.towards = towards / np.linalg.norm(towards)
+        self._shapes = history.shapes
         right = np.cross([0, 0, 1], self.towards)
         right = right / np.linalg.norm(right) if np.linalg.norm(right) > 1e-9 else np.array([1.0, 0, 0])
         self.frame = np.stack([right, np.cross(self.towards, right)], axis=1)
@@ -65,26 +66,37 @@ class View:
                 return f"{'-' if value < 0 else ''}{name} (m)"
         return "along the wall (m)"
 
-    def outlines(self, corners):
-        """(12 n, 2, 2): the edges of all blocks."""
-        return self.place(corners)[:, _EDGES].reshape(-1, 2, 2)
+    def _faces_of(self, rows):
+        """(corners of the faces of each block (n, faces, corners), which of them are faces (n, faces)); one row serves where all are boxes. rows: of the blocks
+        in the history; None: all of them."""
+        if self._shapes is None:
+            return np.array([BOX_FACES]), np.ones((1, len(BOX_FACES)), dtype=bool)
+        loops, real = self._shapes.filled_faces
+        return (loops, real) if rows is None else (loops[rows], real[rows])
 
-    def faces(self, corners):
-        """Faces that show, back to front: polygons (m, 4, 2), the row of the block of each, and how bright it is, 0 to 1."""
-        polygons = corners[:, _FACES]  # block, axis, side, corner
-        normals = np.cross(polygons[..., 1, :] - polygons[..., 0, :], polygons[..., 2, :] - polygons[..., 1, :])
-        normals /= np.maximum(np.linalg.norm(normals, axis=-1, keepdims=True), 1e-300)
-        shows = normals @ self.towards > 1e-6
+    def outlines(self, corners, rows=None):
+        """(e, 2, 2): the edges of the blocks. rows: theirs in the history; None: it has no others."""
+        if self._shapes is None:
+            edges = np.array([BOX_EDGES])
+        else:
+            edges = self._shapes.filled_edges if rows is None else self._shapes.filled_edges[rows]
+        return self.place(corners)[np.arange(len(corners))[:, None, None], edges].reshape(-1, 2, 2)
+
+    def faces(self, corners, rows=None):
+        """Faces that show, back to front: polygons (m, corners, 2), the number of the block of each, and how bright it is, 0 to 1. rows: as in outlines()."""
+        loops, real = self._faces_of(rows)
+        polygons, normals = _outward(corners, loops)
+        shows = (normals @ self.towards > 1e-6) & real
         # Tops are bright, fronts a little darker, flanks dark, so that colours can still be read off the scale.
         light = 0.9 + 0.1 * normals[..., 2] - 0.2 * np.abs(normals[..., 0])
-        order = self.back_to_front(corners)
-        block, axis, side = (v.ravel() for v in np.broadcast_arrays(order[:, None, None], np.arange(3)[:, None], np.arange(2)))
-        keep = shows[block, axis, side]
-        block, axis, side = block[keep], axis[keep], side[keep]
-        bright = np.ones(len(block)) if self.from_side else light[block, axis, side]
-        return self.place(polygons[block, axis, side]), block, bright
+        order = self.back_to_front(corners, rows)
+        block, face = (v.ravel() for v in np.broadcast_arrays(order[:, None], np.arange(loops.shape[1])))
+        keep = shows[block, face]
+        block, face = block[keep], face[keep]
+        bright = np.ones(len(block)) if self.from_side else light[block, face]
+        return self.place(polygons[block, face]), block, bright
 
-    def back_to_front(self, corners):
+    def back_to_front(self, corners, rows=None):
         """Order of the blocks in which each is drawn after those behind it: of two that overlap in the picture, the face of either that
         separates them best tells. Of those that go around in a circle the one whose middle is the deepest comes first. From the side, with all middles
         at one depth: the order given."""
@@ -95,15 +107,42 @@ class View:
         flat = self.place(corners)
         # In the picture, all at one depth. Those that only touch there do not overlap.
         low, high = (np.pad(ends, ((0, 0), (0, 1))) for ends in (np.nextafter(flat.min(axis=1), np.inf), flat.max(axis=1)))
-        axes = corners[:, [1, 2, 4]] - corners[:, :1]  # rows
-        sizes = np.linalg.norm(axes, axis=2)
-        axes = axes / np.maximum(sizes, 1e-300)[..., None]
         i, j = near_pairs(low, high).T
-        gaps, normals = separating_axes(i, j, center, sizes, axes)
-        front = np.take_along_axis(normals @ self.towards, gaps[:, :6].argmax(axis=1)[:, None], 1)[:, 0]  # positive: j is before i
+        front = self._fronts_of_boxes(i, j, corners, center) if self._shapes is None else self._fronts(i, j, corners, rows)
         behind, before = np.where(front > 0, i, j), np.where(front > 0, j, i)
         told = np.abs(front) > 1e-9
         return _sorted(behind[told], before[told], depth)
+
+
+    def _fronts_of_boxes(self, i, j, corners, center):
+        """Part towards the viewer of the normal, from i to j, of the face that separates the boxes of each pair best. Positive: j is before i."""
+        axes = corners[:, [1, 2, 4]] - corners[:, :1]  # rows
+        sizes = np.linalg.norm(axes, axis=2)
+        gaps, normals = separating_axes(i, j, center, sizes, axes / np.maximum(sizes, 1e-300)[..., None])
+        return np.take_along_axis(normals @ self.towards, gaps[:, :6].argmax(axis=1)[:, None], 1)[:, 0]
+
+    def _fronts(self, i, j, corners, rows):
+        """The same for convex blocks."""
+        loops, real = self._faces_of(rows)
+        polygons, normals = _outward(corners, loops)
+        offsets, fronts = np.einsum("nfa,nfa->nf", normals, polygons[:, :, 0]), []
+        for start in range(0, len(i), _TOGETHER):
+            gaps, towards = [], []
+            for one, other, sense in ((i, j, 1), (j, i, -1)):
+                one, other = one[start:start + _TOGETHER], other[start:start + _TOGETHER]
+                apart = np.einsum("pfa,pca->pfc", normals[one], corners[other]).min(axis=2) - offsets[one]
+                gaps.append(np.where(real[one], apart, -np.inf))
+                towards.append(sense * (normals[one] @ self.towards))
+            gaps, towards = np.concatenate(gaps, axis=1), np.concatenate(towards, axis=1)
+            fronts.append(np.take_along_axis(towards, gaps.argmax(axis=1)[:, None], 1)[:, 0])
+        return np.concatenate([np.zeros(0), *fronts])
+
+
+def _outward(corners, loops):
+    """Polygons (n, faces, corners, 3) of blocks and their unit normals (n, faces, 3)."""
+    polygons = corners[np.arange(len(corners))[:, None, None], loops]
+    normals = np.cross(polygons[..., 1, :] - polygons[..., 0, :], polygons[..., 2, :] - polygons[..., 1, :])
+    return polygons, normals / np.maximum(np.linalg.norm(normals, axis=-1, keepdims=True), 1e-300)
 
 
 def _grouped(keys, values, count):

@@ -7,12 +7,15 @@ import numpy as np
 from masonry import _pose
 from masonry._files import read_npz, written
 from masonry._given import number_given, shown
+from masonry._shapes import Shapes, box_corners
 from masonry.results.own_bases import own_bases
 
 ENERGIES = ("kinetic", "potential", "elastPotential", "frictDissip", "dampDissip", "impactDissip", "baseWork")
 _SAVED = ("time", "ids", "sizes", "free", "position", "orientation", "energies")
 # Files have these where they are known.
 _OPTIONAL = ("motion", "end", "about", "impacts", "forces")
+# Of shapes, where there are convex blocks.
+_SHAPES = ("vertices", "vertex_start", "faces", "face_start")
 # Rows of the forces of joints: force on block 2, N, and where it acts, m.
 JOINT_FORCES = [("id1", int), ("id2", int), ("force", float, 3), ("point", float, 3)]
 # Columns of the impacts, of dem.impacts(), that a report shows.
@@ -41,6 +44,8 @@ class WallHistory:
     impacts        structured array of dem.impacts(); None: not known
     forces         structured array, one row for each joint that carries load in a sample: sample (its number), id1, id2, force on block 2 (N), point
                    where it acts (m); None: not recorded (WallRecorder.recordForces)
+    shapes         masonry.results.Shapes, the corners and faces of all blocks, where some are convex blocks: their sizes are those of the box around them in
+                   their own axes; None: all are boxes
 
     Displacements and rotations are relative to the base of the block (`bases`: the prescribed body on which its structure stands), and to the first
     sample. Without a prescribed body they are those in the world; a base that is erased counts as staying where it was. dem.wall_history(recorder) makes one;
@@ -48,7 +53,8 @@ class WallHistory:
     Raises ValueError when shapes do not fit, times do not increase or a block that is there at first is nowhere.
     """
 
-    def __init__(self, time, ids, sizes, free, position, orientation, energies=None, motion=None, end=None, about=None, impacts=None, forces=None):
+    def __init__(self, time, ids, sizes, free, position, orientation, energies=None, motion=None, end=None, about=None, impacts=None, forces=None, shapes=None):
+        self.shapes = shapes
         self.time, self.ids, self.sizes = np.asarray(time, dtype=float), np.asarray(ids, dtype=int), np.asarray(sizes, dtype=float)
         self.free, self.position, self.orientation = np.asarray(free, dtype=bool), np.asarray(position, dtype=float), np.asarray(orientation, dtype=float)
         samples, blocks = self.time.size, self.ids.size
@@ -70,6 +76,8 @@ class WallHistory:
             raise ValueError(f"time: must increase, and does not after {self.time[:-1][~(np.diff(self.time) > 0)][0]:g} s: record each run with a recorder of its own")
         if not (np.isfinite(self.position[0]).all() and np.isfinite(self.orientation[0]).all()):
             raise ValueError("position, orientation: must be finite in the first sample")
+        if self.shapes is not None and (not isinstance(self.shapes, Shapes) or len(self.shapes) != blocks):
+            raise ValueError(f"shapes = {shown(self.shapes)}: must be the Shapes of {blocks} blocks, or None")
         self._check_tables()
         self.end = float(self.time[-1] if end is None else end)
         if not self.end >= self.time[-1]:
@@ -98,6 +106,8 @@ class WallHistory:
         if not str(path).endswith(".npz"):
             raise ValueError(f"path = {path}: must end in .npz")
         values = {name: getattr(self, "_energies" if name == "energies" else name) for name in (*_SAVED, *_OPTIONAL)}
+        if self.shapes is not None:
+            values.update({name: getattr(self.shapes, name) for name in _SHAPES})
         values["about"] = np.array(json.dumps(self.about))
         with written(path) as beside:
             np.savez_compressed(beside, **{name: value for name, value in values.items() if value is not None})
@@ -112,8 +122,10 @@ class WallHistory:
         try:
             if "about" in found:
                 found["about"] = json.loads(str(found["about"]))
+            if "vertices" in file:
+                found["shapes"] = Shapes(*(file[name] for name in _SHAPES))
             return cls(**found)
-        except (ValueError, TypeError, RecursionError) as error:  # of NumPy and of json
+        except (ValueError, TypeError, RecursionError, KeyError) as error:  # of NumPy and of json
             raise ValueError(f"path = {path}: is no WallHistory, or a damaged one: {error}") from None
 
     def to_csv(self, path, ids=()):
@@ -169,7 +181,10 @@ class WallHistory:
     def bases(self):
         """(n,) row of the body that the motion of each block is relative to: the first prescribed body on which its structure (blocks that carry each
         other) stands in the first sample; -1 where the history has no prescribed body."""
-        return own_bases(self.position[0], self.sizes, _pose.axes_of(self.orientation[0]), self.free)
+        axes = _pose.axes_of(self.orientation[0])
+        middles = (self.own_corners.min(axis=1) + self.own_corners.max(axis=1)) / 2  # 0 for a box
+        centers = self.position[0] + np.einsum("nab,na->nb", axes, middles) if self.shapes is not None else self.position[0]
+        return own_bases(centers, self.sizes, axes, self.free)
 
     @property
     def base(self):
@@ -219,9 +234,26 @@ class WallHistory:
         return 2 * np.arctan2(np.linalg.norm(turn[..., 1:], axis=-1), np.abs(turn[..., 0]))
 
     @cached_property
+    def convex(self):
+        """(n,) bool: which blocks are no boxes."""
+        if self.shapes is None:
+            return np.zeros(len(self.ids), dtype=bool)
+        boxes = box_corners(self.sizes)
+        return np.array([len(own) != 8 or not np.array_equal(own, box) for own, box in zip(np.split(self.shapes.vertices, self.shapes.vertex_start[1:-1]), boxes)])
+
+    @cached_property
     def upright(self):
         """(n,) which axis of each block, 0 to 2, was nearest to the vertical in the first sample."""
         return np.abs(_pose.matrices(self.orientation[0])[:, 2]).argmax(axis=1)
+
+    @cached_property
+    def upwards(self):
+        """(n, 3) the direction in the axes of each block that counts as upwards: that axis of a box, as it points at first; the vertical of the first sample for
+        a convex block."""
+        rows, first = np.arange(len(self.ids)), self.vertical[0]
+        axes = np.zeros(first.shape)
+        axes[rows, self.upright] = np.sign(first[rows, self.upright])
+        return np.where(self.convex[:, None], first, axes)
 
     @cached_property
     def vertical(self):
@@ -230,10 +262,11 @@ class WallHistory:
 
     @cached_property
     def lean(self):
-        """(s, n) angle between the upright axis of each block, which points up at first, and the vertical, 0 to pi rad."""
-        along = np.take_along_axis(self.vertical, self.upright[None, :, None], 2)[..., 0]
+        """(s, n) angle between the upright axis of each block, which points up at first, and the vertical, 0 to pi rad. Of a convex block: from the direction
+        that was vertical in the first sample."""
+        along = np.einsum("sna,na->sn", self.vertical, self.upwards)
         across = np.sqrt(np.maximum(0, (self.vertical**2).sum(axis=2) - along**2))
-        return np.arctan2(across, np.sign(along[0]) * along)
+        return np.arctan2(across, along)
 
     @cached_property
     def energy(self):
@@ -262,9 +295,8 @@ class WallHistory:
         """drift() of what stands on one base."""
         low, high = self.extent
         top = np.flatnonzero(blocks & (high > high[blocks].max() - (high - low) / 2))
-        rows, up, turned = np.arange(len(top)), self.upright[top], _pose.matrices(self.relative_orientation[:, top])
-        arms = np.zeros((len(top), 3))
-        arms[rows, up] = np.sign(turned[0, rows, 2, up]) * self.sizes[top, up] / 2
+        up, turned = self.upwards[top], _pose.matrices(self.relative_orientation[:, top])
+        arms = up * np.einsum("nca,na->nc", self.own_corners[top], up).max(axis=1)[:, None]
         middles = self.relative_position[:, top] + np.einsum("snab,nb->sna", turned, arms)
         moved = np.linalg.norm((middles - middles[0])[..., :2], axis=2)
         return np.fmax.reduce(moved, axis=1) / (high[blocks].max() - low[blocks].min())
@@ -275,10 +307,22 @@ class WallHistory:
         z = self.corners(0)[..., 2]
         return z.min(axis=1), z.max(axis=1)
 
+    @cached_property
+    def own_corners(self):
+        """(n, most corners of a block, 3) in the axes of each block, m; blocks with fewer corners repeat their last one."""
+        return box_corners(self.sizes) if self.shapes is None else self.shapes.filled_vertices
+
+    def corners_at(self, position, orientation):
+        """The same (n, corners, 3) in the world, for those poses of all blocks, m."""
+        if self.shapes is None:
+            return _pose.corners(position, orientation, self.sizes)
+        return position[:, None] + np.einsum("nab,ncb->nca", _pose.matrices(orientation), self.own_corners)
+
     def corners(self, sample, enlarge=1.0):
-        """(n, 8, 3) corners of the blocks, each seen from its base, their movement since the first sample taken `enlarge` times, m."""
-        start = _pose.corners(self.relative_position[0], self.orientation[0], self.sizes)
-        return start + enlarge * (_pose.corners(self.relative_position[sample], self.relative_orientation[sample], self.sizes) - start)
+        """(n, corners, 3) corners of the blocks, each seen from its base, their movement since the first sample taken `enlarge` times, m. A box has eight;
+        blocks with fewer corners than others repeat their last one."""
+        start = self.corners_at(self.relative_position[0], self.relative_orientation[0])
+        return start + enlarge * (self.corners_at(self.relative_position[sample], self.relative_orientation[sample]) - start)
 
 
 def _about_given(about):

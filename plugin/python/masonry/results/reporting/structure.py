@@ -110,8 +110,9 @@ def _structure(history):
     free, sizes = history.free, history.sizes[history.free]
     low, high = history.extent
     box = np.ptp(history.corners(0)[free].reshape(-1, 3), axis=0)
-    same = np.ptp(sizes, axis=0).max() < 1e-9 * sizes.max()
-    of = f" of {' × '.join(f'{x:.3g}' for x in sizes[0])} m" if same else f" of {len(np.unique(sizes.round(9), axis=0))} sizes"
+    same = history.shapes is None and np.ptp(sizes, axis=0).max() < 1e-9 * sizes.max()
+    kinds = len(np.unique(sizes.round(9), axis=0)) if history.shapes is None else len(set(np.array(history.shapes.distinct[1])[free].tolist()))
+    of = f" of {' × '.join(f'{x:.3g}' for x in sizes[0])} m" if same else f" of {kinds} {'sizes' if history.shapes is None else 'shape' if kinds == 1 else 'shapes'}"
     return (f"{_counted(int(free.sum()), 'free block')}{of}, {_counted(int((~free).sum()), 'prescribed body') if free.all() or (~free).sum() == 1 else f'{(~free).sum()} prescribed bodies'}; "
             f"{box[0]:.3g} × {box[1]:.3g} × {box[2]:.3g} m in all; {len(history.time)} samples from {history.time[0]:.4g} to {history.time[-1]:.4g} s")
 

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 from masonry import _pose
+from masonry._shapes import Shapes
 from masonry.results.collapse import lies
 from masonry.results.pictures import scale_end, shades
 from masonry.results.view import STILL, enlargement, plane_normal, still
@@ -68,9 +69,13 @@ def scene(history, start):
         most, beyond = scale_end(values[:, history.free], stands, least)
         quantities.append({"name": name, "unit": unit, "factor": factor, "most": most, "beyond": beyond})
     normal = plane_normal(history)
+    shapes = Shapes.boxes(history.sizes) if history.shapes is None else history.shapes
+    rows, shape = shapes.distinct
+    vertices = [shapes.vertices[shapes.vertex_start[row]:shapes.vertex_start[row + 1]] for row in rows]
     return json.dumps({
         "time": [round(float(t), 6) for t in history.time[samples]], "ids": history.ids.tolist(), "free": history.free.tolist(),
-        "sizes": history.sizes.round(9).tolist(), "poses": _packed(poses), "base": _packed(motions), "bases": own.ravel().tolist(), "quantities": quantities,
+        "sizes": history.sizes.round(9).tolist(), "shape": shape,
+        "shapes": [{"vertices": own.round(9).ravel().tolist(), "faces": shapes.loops[row]} for row, own in zip(rows, vertices)], "poses": _packed(poses), "base": _packed(motions), "bases": own.ravel().tolist(), "quantities": quantities,
         "palette": [to_hex(shades("YlOrRd", 1).to_rgba(k / (_STOPS - 1))) for k in range(_STOPS)],
         "enlarge": float(f"{enlargement(history, samples, _DRAWN):.2g}"), "front": (normal if normal is not None else np.array([0.0, -1, 0])).tolist(),
         "start": float(start)}).replace("</", "<\\/")

@@ -6,10 +6,15 @@ const scene = JSON.parse(at("scene").textContent);
 const count = scene.ids.length, frames = scene.time.length;
 const first = scene.time[0], last = scene.time[frames - 1];
 const poses = unpack(scene.poses), base = unpack(scene.base);
-const POSE = 7, CORNERS = 8;
-// Corners by the signs of x, y, z, x changing fastest; faces counterclockwise from outside.
-const FACES = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
-const EDGES = [[0, 1], [2, 3], [4, 5], [6, 7], [0, 2], [1, 3], [4, 6], [5, 7], [0, 4], [1, 5], [2, 6], [3, 7]];
+const POSE = 7;
+// Vertices x, y, z in the axes of the block, one after the other; faces counterclockwise from outside.
+for (const shape of scene.shapes)
+  shape.edges = shape.faces.flatMap(face => face.map((a, i) => [a, face[(i + 1) % face.length]])).filter(([a, b]) => a < b);
+const shapes = scene.shape.map(number => scene.shapes[number]);
+// Where the numbers of the vertices of each block begin, and the end of the last.
+const begin = [0];
+for (const { vertices } of shapes)
+  begin.push(begin[begin.length - 1] + vertices.length);
 const BEYOND = new THREE.Color("#9467bd"), PRESCRIBED = new THREE.Color("#9aa3ad"), UNMOVED = new THREE.Color("#d9d9d9");
 const palette = scene.palette.map(text => new THREE.Color(text));
 const state = { time: scene.start, playing: false, enlarge: 1, quantity: 0 };
@@ -47,28 +52,28 @@ function frameAt(time) {
 }
 
 function cornersOf(k, [x, y, z, w, a, b, c], to, offset) {
-  const [l, m, n] = scene.sizes[k];
+  const { vertices } = shapes[k];
   const axes = [[1 - 2 * (b * b + c * c), 2 * (a * b + w * c), 2 * (a * c - w * b)],
                 [2 * (a * b - w * c), 1 - 2 * (a * a + c * c), 2 * (b * c + w * a)],
                 [2 * (a * c + w * b), 2 * (b * c - w * a), 1 - 2 * (a * a + b * b)]];
-  for (let i = 0; i < CORNERS; ++i) {
-    const u = (i & 1 ? l : -l) / 2, v = (i & 2 ? m : -m) / 2, s = (i & 4 ? n : -n) / 2;
-    to[offset + 3 * i] = x + u * axes[0][0] + v * axes[1][0] + s * axes[2][0];
-    to[offset + 3 * i + 1] = y + u * axes[0][1] + v * axes[1][1] + s * axes[2][1];
-    to[offset + 3 * i + 2] = z + u * axes[0][2] + v * axes[1][2] + s * axes[2][2];
+  for (let i = 0; i < vertices.length; i += 3) {
+    const u = vertices[i], v = vertices[i + 1], s = vertices[i + 2];
+    to[offset + i] = x + u * axes[0][0] + v * axes[1][0] + s * axes[2][0];
+    to[offset + i + 1] = y + u * axes[0][1] + v * axes[1][1] + s * axes[2][1];
+    to[offset + i + 2] = z + u * axes[0][2] + v * axes[1][2] + s * axes[2][2];
   }
 }
 
-const [corners, start, dashed] = [0, 1, 2].map(() => new Float32Array(3 * CORNERS * count)), values = [new Float64Array(count), new Float64Array(count)];
+const [corners, start, dashed] = [0, 1, 2].map(() => new Float32Array(begin[count])), values = [new Float64Array(count), new Float64Array(count)];
 for (let k = 0; k < count; ++k)
-  cornersOf(k, poseAt(poses, count, k, 0, 0), start, 3 * CORNERS * k);
+  cornersOf(k, poseAt(poses, count, k, 0, 0), start, begin[k]);
 
 // Takes the corners of block `k`, now and at first, along with its base.
 function follow(k, frame, share) {
   const [x, y, z, w, a, b, c] = poseAt(base.subarray(scene.bases[k] * frames * POSE), 1, 0, frame, share);
   const turn = new THREE.Quaternion(a, b, c, w), shift = new THREE.Vector3(x, y, z), corner = new THREE.Vector3();
   for (const points of [corners, dashed])
-    for (let i = 3 * CORNERS * k; i < 3 * CORNERS * (k + 1); i += 3)
+    for (let i = begin[k]; i < begin[k + 1]; i += 3)
       corner.fromArray(points, i).applyQuaternion(turn).add(shift).toArray(points, i);
 }
 
@@ -77,7 +82,7 @@ function move() {
   const [frame, share] = frameAt(state.time);
   for (let k = 0; k < count; ++k) {
     const now = poseAt(poses, count, k, frame, share), then = poseAt(poses, count, k, 0, 0);
-    cornersOf(k, now, corners, 3 * CORNERS * k);
+    cornersOf(k, now, corners, begin[k]);
     values[0][k] = Math.hypot(now[0] - then[0], now[1] - then[1], now[2] - then[2]);
     const cosine = Math.min(1, Math.abs(now[3] * then[3] + now[4] * then[4] + now[5] * then[5] + now[6] * then[6]));
     values[1][k] = 2 * Math.acos(cosine);
@@ -111,14 +116,22 @@ world.add(new THREE.AmbientLight(0xffffff, 0.62));
 const sun = new THREE.DirectionalLight(0xffffff, 0.5);
 world.add(sun);
 
-// 24 corners and six faces of two triangles a block.
-const faceCount = 4 * FACES.length;
-const positions = new THREE.BufferAttribute(new Float32Array(3 * faceCount * count), 3);
-const colours = new THREE.BufferAttribute(new Float32Array(3 * faceCount * count), 3);
-const lines = new THREE.BufferAttribute(new Float32Array(6 * EDGES.length * count), 3);
-const index = [];
-for (let face = 0; face < FACES.length * count; ++face)
-  index.push(4 * face, 4 * face + 1, 4 * face + 2, 4 * face, 4 * face + 2, 4 * face + 3);
+// Each face has corners of its own and is a fan of triangles; `owner` is the block of each triangle.
+const index = [], owner = [];
+let placed = 0, sides = 0;
+for (const [k, { faces, edges }] of shapes.entries()) {
+  for (const face of faces) {
+    for (let i = 2; i < face.length; ++i) {
+      index.push(placed, placed + i - 1, placed + i);
+      owner.push(k);
+    }
+    placed += face.length;
+  }
+  sides += edges.length;
+}
+const positions = new THREE.BufferAttribute(new Float32Array(3 * placed), 3);
+const colours = new THREE.BufferAttribute(new Float32Array(3 * placed), 3);
+const lines = new THREE.BufferAttribute(new Float32Array(6 * sides), 3);
 const solid = new THREE.BufferGeometry(), outline = new THREE.BufferGeometry(), ghost = new THREE.BufferGeometry();
 const attribute = (geometry, name, data) => (geometry.setAttribute || geometry.addAttribute).call(geometry, name, data);
 attribute(solid, "position", positions);
@@ -136,10 +149,10 @@ world.add(box, edges, firstShape);
 function fillEdges(from, free, to) {
   let next = 0;
   for (let k = 0; k < count; ++k)
-    for (const [a, b] of EDGES)
+    for (const [a, b] of shapes[k].edges)
       for (const corner of [a, b])
         for (let i = 0; i < 3; ++i, ++next) {
-          const value = from[3 * (CORNERS * k + corner) + i];
+          const value = from[begin[k] + 3 * corner + i];
           to[next] = isFinite(value) && (scene.free[k] || !free) ? value : 0;
         }
 }
@@ -161,11 +174,11 @@ function fill() {
   move();
   let next = 0;
   for (let k = 0; k < count; ++k) {
-    const colour = colourOf(k), there = isFinite(corners[3 * CORNERS * k]);
-    for (const face of FACES)
+    const colour = colourOf(k), there = isFinite(corners[begin[k]]);
+    for (const face of shapes[k].faces)
       for (const corner of face) {
         for (let i = 0; i < 3; ++i)
-          positions.array[next + i] = there ? corners[3 * (CORNERS * k + corner) + i] : 0;
+          positions.array[next + i] = there ? corners[begin[k] + 3 * corner + i] : 0;
         colours.array[next] = colour.r;
         colours.array[next + 1] = colour.g;
         colours.array[next + 2] = colour.b;
@@ -181,8 +194,8 @@ function fill() {
 
 const bounds = new THREE.Box3();
 for (let k = 0; k < count; ++k)
-  for (let i = 0; scene.free[k] && i < CORNERS; ++i)
-    bounds.expandByPoint(new THREE.Vector3().fromArray(start, 3 * (CORNERS * k + i)));
+  for (let i = begin[k]; scene.free[k] && i < begin[k + 1]; i += 3)
+    bounds.expandByPoint(new THREE.Vector3().fromArray(start, i));
 const middle = bounds.getCenter(new THREE.Vector3()), radius = bounds.getSize(new THREE.Vector3()).length() / 2;
 const front = Math.atan2(scene.front[1], scene.front[0]);
 const VIEWS = { front: [front, 0.06], side: [front + Math.PI / 2, 0.06], top: [front, Math.PI / 2 - 1e-3], oblique: [front + 0.5, 0.35] };
@@ -294,7 +307,7 @@ function pick(event) {
   ray.setFromCamera(new THREE.Vector2(2 * (event.clientX - area.left) / area.width - 1, 1 - 2 * (event.clientY - area.top) / area.height), camera);
   solid.computeBoundingSphere();
   const [hit] = ray.intersectObject(box);
-  picked = hit ? Math.floor(hit.faceIndex / (2 * FACES.length)) : null;
+  picked = hit ? owner[hit.faceIndex] : null;
   draw();
 }
 

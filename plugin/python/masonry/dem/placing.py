@@ -1,0 +1,132 @@
+"""Where blocks stand, and how they become bodies."""
+
+import math
+
+import numpy as np
+from masonry import _core
+from masonry._given import finite_numbers
+from masonry.dem.bodies import block_body, upper_face
+from masonry.dem.checks import check_material, listed
+from yade import Body, O, Quaternion, Vector3, utils, wrapper
+
+# Share of the half size of a support by which a block's centre must be inside it: a centre above the edge is off, whatever the round-off.
+_INSIDE = 1e-9
+# Largest extent of a convex block, m: stones beyond come from a wrong unit.
+_EXTENTS = 1e-3, 1e2
+
+
+def block_material(material):
+    """The material, in O.materials."""
+    check_material(material)
+    if not (0 <= material.id < len(O.materials) and O.materials[material.id] is material):  # new, or of a scene before
+        O.materials.append(material)
+    return material
+
+
+def turn_about_z(turn):
+    """The share of a turn that is about z: a block that it leans over rests like this. Where there is none (it lies on its side): no turn."""
+    norm = math.hypot(turn[3], turn[2])
+    return Quaternion(turn[3] / norm, 0, 0, turn[2] / norm) if norm else Quaternion.Identity
+
+
+def box_body(size, material):
+    """A free box of that full size, at the origin."""
+    body = utils.box(Vector3.Zero, Vector3(np.asarray(size) / 2), material=material)
+    body.aspherical = True
+    return body
+
+
+def posed(body, center, orientation, resting):
+    """The body there; it rests in the orientation `resting`, from which dem.angle counts."""
+    state = body.state
+    state.pos = state.refPos = Vector3(center)
+    state.ori, state.refOri = orientation, resting
+    return body
+
+
+def append_boxes(centers, sizes, material, orientation, resting):
+    """Ids of free boxes at those places of the world."""
+    return O.bodies.append([posed(box_body(size, material), center, orientation, resting) for center, size in zip(centers, sizes)])
+
+
+def polyhedron(points, name, faces=None, in_own_axes=False):
+    """What the core makes of the points (k, 3), m (masonry._core.convex_block); ValueError that begins with `name` unless they are a block."""
+    extent = np.ptp(points, axis=0).max() if len(points) else 0.0
+    if np.isfinite(points).all() and not _EXTENTS[0] <= extent <= _EXTENTS[1]:
+        raise ValueError(f"{name}: extent = {extent:.4g}: must be from {_EXTENTS[0]:g} to {_EXTENTS[1]:g}, in m")
+    loops = [] if faces is None else faces
+    try:
+        return _core.convex_block(np.ravel(points).astype(float), np.array([v for loop in loops for v in loop], dtype=int),
+                                  np.cumsum([0, *map(len, loops)]) if loops else np.zeros(0, dtype=int), in_own_axes)
+    except ValueError as error:
+        raise ValueError(f"{name}: {error}") from None
+
+
+def convex_body(found, material):
+    """The free body of a polyhedron, where its points were; it rests as it is."""
+    body = Body()
+    body.shape = wrapper.ConvexBlock(vertices=[Vector3(v) for v in found["vertices"].tolist()], color=utils.randomColor())
+    body.mat, body.state = material, material.newAssocState()
+    body.state.mass = material.density * found["volume"]
+    body.state.inertia = Vector3(material.density * found["inertia"])
+    body.state.pos = body.state.refPos = Vector3(found["position"])
+    body.state.ori = body.state.refOri = Quaternion(*found["orientation"].tolist())
+    body.mask, body.bounded, body.aspherical = 1, True, True
+    return body
+
+
+def turned(body, orientation):
+    """The body, turned about the origin; it rests as it is, less what it leans."""
+    state = body.state
+    state.refOri, state.ori, state.pos = turn_about_z(orientation) * state.ori, orientation * state.ori, orientation * state.pos
+    return body
+
+
+def moved(body, foot):
+    body.state.pos = body.state.refPos = body.state.pos + foot
+    return body
+
+
+def convex_bodies(blocks, material, faces=None):
+    """The free bodies of convex blocks: corners (k, 3) of each, m. They are not in the scene yet."""
+    check_material(material)
+    found = [polyhedron(np.asarray(corners, dtype=float), "vertices" if len(blocks) == 1 else f"block {k}", None if faces is None else faces[k])
+             for k, corners in enumerate(blocks)]
+    material = block_material(material)
+    return [convex_body(one, material) for one in found]
+
+
+def top_of(on, at=(0.0, 0.0), above=0.0):
+    """Where a layout stands on the body: the place `at` from the middle of its upper face, so high above it, and the orientation of the axes of `at`."""
+    below, at = block_body(on, "on"), finite_numbers("at", at, 2, "two finite numbers, in m")
+    if isinstance(below.shape, wrapper.Box):
+        return below.state.pos + below.state.ori * Vector3(at[0], at[1], below.shape.extents[2] + above), below.state.ori
+    middle, orientation, _ = upper_face(below, f"on = {on}")
+    return middle + Vector3(at[0], at[1], above), orientation
+
+
+def placed(centers, foot, orientation):
+    return np.array(foot) + centers @ np.array(orientation.toRotationMatrix()).reshape(3, 3).T
+
+
+def check_support(bottom, on, at, reach):
+    """ValueError unless each of the places `bottom` (n, 2), from the foot at `at`, is above the upper face of the body `on`. reach: of the structure, m."""
+    places = np.asarray(bottom) + at
+    outline = upper_face(block_body(on, "on"), f"on = {on}")[2]
+    sides = np.roll(outline, -1, axis=0) - outline
+    inwards = np.stack([-sides[:, 1], sides[:, 0]], axis=-1) / np.hypot(*sides.T)[:, None]
+    depth = np.einsum("nsk,sk->ns", places[:, None] - outline, inwards).min(axis=1)
+    width = np.ptp(outline, axis=0)
+    off = places[depth < _INSIDE * width.min() / 2]
+    if len(off):
+        raise ValueError(f"{reach[0]:g} x {reach[1]:g} m at ({at[0]:g}, {at[1]:g}) on body {on} of {width[0]:g} x {width[1]:g} m: {len(off)} blocks of the bottom "
+                         f"course have their centres off it, at {listed([f'({x:g}, {y:g})' for x, y in off])}: all must be above it")
+
+
+def stand(layout, material, on, at):
+    """The boxes of a layout on the body `on`. Everything is checked before the first one is made."""
+    centers, sizes = layout
+    foot, orientation = top_of(on, at)
+    bottom = centers[centers[:, 2] - sizes[:, 2] / 2 < sizes[:, 2].min() / 2, :2]
+    check_support(bottom, on, at, np.ptp(np.concatenate([centers - sizes / 2, centers + sizes / 2]), axis=0))
+    return append_boxes(placed(centers, foot, orientation).tolist(), sizes, block_material(material), orientation, orientation)

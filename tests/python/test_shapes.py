@@ -1,0 +1,135 @@
+"""Histories of convex blocks: boxes that are given by corners and faces give what boxes give; wedges have their own corners, faces, files and pictures."""
+
+import json
+import math
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+from histories import ROUND, about_edge, history, rocking, turn
+from masonry import _pose, results
+from masonry.results import pictures, view
+from masonry.results.reporting import view3d
+from test_history_files import decoded
+
+# A triangle prism along y: base 2, height 3, depth 1; its centre of mass is the origin.
+WEDGE = np.array([(x, y, z - 1.0) for y in (-0.5, 0.5) for x, z in ((-1, 0), (1, 0), (0, 3))])
+LOOPS = [[0, 1, 2], [3, 5, 4], [0, 3, 4, 1], [1, 4, 5, 2], [2, 5, 3, 0]]
+
+
+def as_shapes(h):
+    """The same history, whose boxes are polyhedra with their corners in another order."""
+    shapes = results.Shapes.boxes(h.sizes)
+    order = np.array([3, 1, 7, 5, 0, 2, 6, 4])
+    number = np.argsort(order)
+    blocks = [(own[order], [[int(number[k]) for k in loop] for loop in loops]) for own, loops in zip(np.split(shapes.vertices, shapes.vertex_start[1:-1]), shapes.loops)]
+    return results.WallHistory(h.time, h.ids, h.sizes, h.free, h.position, h.orientation, shapes=results.Shapes.of(blocks))
+
+
+def wedge_on_base(angles, **given):
+    """A wedge on a base that turns about its right edge."""
+    positions = [[[0, 0, -0.1], about_edge([0, 0, 1.0], [1, 0, 0], turn(a, (0, 1, 0)))] for a in angles]
+    orientations = np.array([[[1.0, 0, 0, 0], turn(a, (0, 1, 0))] for a in angles])
+    shapes = results.Shapes.of([(results.Shapes.boxes([[4, 4, 0.2]]).vertices, _pose.BOX_FACES), (WEDGE, LOOPS)])
+    return history([[4, 4, 0.2], [2, 1, 3]], positions, orientations, shapes=shapes, **given)
+
+
+@pytest.mark.parametrize("angles", ([0, 0.1, -0.05], [0, 0.2, 0.4, 1.2]))
+def test_boxes_as_polyhedra_give_what_boxes_give(angles):
+    boxes = rocking(angles, shift=(0.4, 0, 0))
+    convex = as_shapes(boxes)
+    assert convex.convex.all() and not boxes.convex.any()
+    assert np.allclose(convex.lean, boxes.lean, rtol=0, atol=ROUND) and np.allclose(convex.drift(), boxes.drift(), rtol=0, atol=ROUND)
+    assert np.array_equal(results.fallen(convex), results.fallen(boxes))
+    for towards in ((0, -1, 0), (0.45, -1, 0.4)):
+        drawn = []
+        for h in (boxes, convex):
+            polygons, rows, bright = view.View(h, towards).faces(h.corners(1))
+            drawn.append(sorted((int(row), round(float(light), 9), *map(tuple, sorted(polygon.round(9).tolist()))) for polygon, row, light in zip(polygons, rows, bright)))
+        assert drawn[0] == drawn[1]
+
+
+@pytest.mark.parametrize("angle,down", ((0.7, False), (0.79, True)))
+def test_a_wedge_has_overturned_where_its_weight_passes_its_edge(angle, down):
+    """Critical angle of the triangle: atan(1 / 1), as its centre is 1 m over the middle of a base of 2 m."""
+    h = wedge_on_base([0, angle])
+    assert results.fallen(h)[:, 1].tolist() == [False, down] and math.atan(1) == pytest.approx(math.pi / 4)
+    assert h.lean[1, 1] == pytest.approx(angle) and h.extent[1][1] == pytest.approx(3)
+    assert h.drift()[1] == pytest.approx(np.linalg.norm(h.corners(1)[1, 2, 0] - h.corners(0)[1, 2, 0]) / 3)
+
+
+def test_saved_and_loaded(tmp_path):
+    h = wedge_on_base([0, 0.1])
+    h.save(tmp_path / "h.npz")
+    file, again = np.load(tmp_path / "h.npz"), results.WallHistory.load(tmp_path / "h.npz")
+    assert file["vertex_start"].tolist() == [0, 8, 14] and file["face_start"][-1] == len(file["faces"]) == 24 + 18
+    assert np.array_equal(again.corners(1), h.corners(1)) and again.shapes.loops == h.shapes.loops
+    rocking([0, 0.1]).save(tmp_path / "boxes.npz")
+    assert "vertices" not in np.load(tmp_path / "boxes.npz") and results.WallHistory.load(tmp_path / "boxes.npz").shapes is None
+
+
+def test_paraview_has_polyhedra(tmp_path):
+    h = wedge_on_base([0, 0.1])
+    results.write_paraview(h, tmp_path / "h.pvd")
+    piece = ElementTree.parse(tmp_path / "h/h_000001.vtu").getroot().find(".//Piece")
+    arrays = {node.get("Name"): decoded(node) for node in piece.iter("DataArray")}
+    assert piece.get("NumberOfPoints") == "14" and arrays["types"].ravel().tolist() == [42, 42] and arrays["offsets"].ravel().tolist() == [8, 14]
+    faces, ends = arrays["faces"].ravel().tolist(), arrays["faceoffsets"].ravel().tolist()
+    assert ends == [31, 31 + 1 + 4 + 4 + 15] and faces[0] == 6 and faces[31] == 5 and faces[32:36] == [3, 8, 9, 10]
+    assert np.allclose(arrays["Points"][8:], h.corners(1)[1, :6], rtol=0, atol=ROUND) and len(arrays["displacement"]) in (2, 14)
+
+
+def test_a_vtk_reader_finds_the_volume(tmp_path):
+    """Where VTK is installed: the polyhedra have the volumes 3.2 and 3 m^3."""
+    vtk = pytest.importorskip("vtk")
+    results.write_paraview(wedge_on_base([0, 0.1]), tmp_path / "h.pvd")
+    reader, measure = vtk.vtkXMLUnstructuredGridReader(), vtk.vtkCellSizeFilter()
+    reader.SetFileName(str(tmp_path / "h/h_000001.vtu"))
+    measure.SetInputConnection(reader.GetOutputPort())
+    measure.Update()
+    volumes = measure.GetOutput().GetCellData().GetArray("Volume")
+    assert [volumes.GetValue(k) for k in range(2)] == pytest.approx([3.2, 3])
+
+
+def test_the_view_of_a_report_has_the_shapes():
+    scene = json.loads(view3d.scene(wedge_on_base([0, 0.1]), 0))
+    assert scene["shape"] == [0, 1] and scene["shapes"][1]["faces"] == LOOPS and scene["shapes"][1]["vertices"] == WEDGE.ravel().tolist()
+    two = json.loads(view3d.scene(rocking([0, 0.1]), 0))
+    assert [len(shape["vertices"]) for shape in two["shapes"]] == [24, 24]
+
+
+def test_pictures_and_reports_are_written(tmp_path):
+    h = wedge_on_base([0, 0.1, 0.2])
+    results.draw(h, tmp_path / "h.png", view=(1, -1, 0.5))
+    results.draw_joints(h, tmp_path / "joints.png")
+    results.report(h, tmp_path / "h.html")
+    assert "free block of 1 shape," in (tmp_path / "h.html").read_text()
+    painter = pictures._Painter(h, [1], 1.0, "displacement", (0, -1, 0), "")
+    painter.paint(1)
+    drawn = np.concatenate([path.vertices for path in painter._blocks.get_paths()])
+    assert abs(drawn[:, 1].max() - h.corners(1)[1, :6, 2].max()) < ROUND
+
+
+def test_what_hides_what():
+    """Two wedges, the second in front of the first: it is drawn later from the front, and earlier from behind."""
+    shapes = results.Shapes.of([(results.Shapes.boxes([[4, 9, 0.2]]).vertices, _pose.BOX_FACES), (WEDGE, LOOPS), (WEDGE, LOOPS)])
+    h = history([[4, 9, 0.2], [2, 1, 3], [2, 1, 3]], [[[0, 0, -0.1], [0, 1, 1], [0.3, -1, 1]]] * 2, shapes=shapes)
+    rows = np.array([1, 2])
+    for towards, last in (((0.1, -1, 0.3), 1), ((0.1, 1, 0.3), 0)):
+        assert view.View(h, towards).faces(h.corners(0)[1:], rows)[1][-1] == last
+
+
+WRONG = [((WEDGE, [0, 5], [0, 1, 2], [0, 3]), "vertex_start: must go from 0 to 6"), ((WEDGE, [0, 6], [0, 1, 6], [0, 3]), "faces: must be numbers of corners, below 6"),
+         ((WEDGE, [0, 3, 6], [0, 1, 2], [0, 3]), "faces: each block must have some"), ((WEDGE * np.nan, [0, 6], [0, 1, 2], [0, 3]), "vertices: must be finite")]
+
+
+@pytest.mark.parametrize("arrays,sentence", WRONG)
+def test_wrong_shapes_are_refused(arrays, sentence):
+    with pytest.raises(ValueError, match=sentence):
+        results.Shapes(*arrays)
+
+
+def test_shapes_must_be_those_of_the_blocks():
+    h = rocking([0, 0.1])
+    with pytest.raises(ValueError, match="must be the Shapes of 2 blocks, or None"):
+        results.WallHistory(h.time, h.ids, h.sizes, h.free, h.position, h.orientation, shapes=results.Shapes.boxes(h.sizes[:1]))
