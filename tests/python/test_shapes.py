@@ -58,6 +58,15 @@ def test_a_wedge_has_overturned_where_its_weight_passes_its_edge(angle, down):
     assert h.drift()[1] == pytest.approx(np.linalg.norm(h.corners(1)[1, 2, 0] - h.corners(0)[1, 2, 0]) / 3)
 
 
+def test_a_block_that_would_not_stand_alone_has_fallen_at_a_right_angle():
+    """A parallelepiped whose centre is 0.1 m beside its base: it leans on another at first."""
+    corners = np.array([(x + 1.2 * z, y, z) for z in (-0.5, 0.5) for y in (-0.5, 0.5) for x in (-0.5, 0.5)])
+    shapes = results.Shapes.of([(corners, _pose.BOX_FACES)])
+    angles = 0, 1.5, 1.6
+    h = history([[2.2, 1, 1]], [[[0, 0, 0.5]]] * 3, np.array([[turn(a, (0, 1, 0))] for a in angles]), free=[True], shapes=shapes)
+    assert results.fallen(h)[:, 0].tolist() == [False, False, True]
+
+
 def test_saved_and_loaded(tmp_path):
     h = wedge_on_base([0, 0.1])
     h.save(tmp_path / "h.npz")

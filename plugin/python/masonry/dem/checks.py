@@ -3,9 +3,8 @@
 import math
 
 import numpy as np
-from masonry._boxes import contacts
 from masonry._given import number_given, shown
-from masonry.dem.bodies import box, boxes, geometry
+from masonry.dem.bodies import blocks, box, boxes, contacts_of, geometry
 from masonry.results.own_bases import own_bases
 from yade import O, wrapper
 
@@ -59,7 +58,7 @@ def _bases_left_out(ids):
 
 def check_blocks(tolerance=1e-3, floating=True):
     """Raises a ValueError that names the ids of overlapping blocks, prescribed bodies included, and, with `floating`, of those that no chain of supports joins to
-    a prescribed body (head joints do not carry). tolerance: depth of an overlap, or gap in a joint, that is still accepted, relative to
+    a prescribed body (head joints of boxes do not carry, all joints of convex blocks do). tolerance: depth of an overlap, or gap in a joint, that is still accepted, relative to
     the smallest size of the two blocks; 0 < tolerance <= 0.1. Returns the ids of the floating blocks."""
     return floating_and_supports(tolerance, floating)[0]
 
@@ -68,11 +67,11 @@ def floating_and_supports(tolerance=1e-3, floating=True):
     """What check_blocks() does and returns, and the pairs (body below, body on it) of blocks that touch."""
     if not 0 < number_given("tolerance", tolerance) <= 0.1:
         raise ValueError(f"tolerance = {tolerance}: must be above 0 and at most 0.1")
-    bodies = boxes()
+    bodies = blocks()
     if not bodies:
         return [], []
     prescribed = np.array([not b.dynamic for b in bodies])
-    pairs, gaps, margins, supports = contacts(*geometry(bodies), tolerance)
+    pairs, gaps, margins, supports = contacts_of(bodies, tolerance)
     deep = -gaps > margins
     ids, found = [b.id for b in bodies], []
     loose = [ids[i] for i in np.flatnonzero(~_carried(supports, prescribed))]
