@@ -119,6 +119,17 @@ def test_pictures_and_reports_are_written(tmp_path):
     assert abs(drawn[:, 1].max() - h.corners(1)[1, :6, 2].max()) < ROUND
 
 
+def test_joints_of_convex_blocks_are_those_of_boxes():
+    boxes = rocking([0, 0.1, -0.05])
+    one, other = results.joints(boxes), results.joints(as_shapes(boxes))
+    for name in ("id1", "id2", "center", "area", "opening", "slip", "opening_time"):
+        assert np.allclose(one[name], other[name], rtol=0, atol=1e-12), name
+    h = wedge_on_base([0, 0.1])
+    (joint,) = results.joints(h)
+    assert joint["area"] == pytest.approx(2) and joint["opening"] == pytest.approx(2 * math.sin(0.1)) and np.allclose(joint["normal"], [0, 0, 1], atol=1e-12)
+    assert results.patches(h).shape == (1, 8, 3)
+
+
 def test_what_hides_what():
     """Two wedges, the second in front of the first: it is drawn later from the front, and earlier from behind."""
     shapes = results.Shapes.of([(results.Shapes.boxes([[4, 9, 0.2]]).vertices, _pose.BOX_FACES), (WEDGE, LOOPS), (WEDGE, LOOPS)])

@@ -35,10 +35,9 @@ def pairs_of(shapes, convex, centers, quaternions, margins):
     pairs = pairs[convex[pairs].any(axis=1)]
     margins = margins[pairs].min(axis=1)
     blocks = shapes.vertices.ravel(), shapes.vertex_start, np.hstack([centers, quaternions]).ravel()
-    table = _core.polyhedron_pairs(blocks, *pairs.T, margins).reshape(len(pairs), -1)
-    table = table if table.shape[1] else np.zeros((0, 11))
+    table = _core.polyhedron_pairs(blocks, *pairs.T, margins) if len(pairs) else np.zeros((0, 11))
     gaps, counts, areas, faces, cosines = table[:, :5].T
-    points = table[:, 8:].reshape(len(table), -1, 3)
+    points = table[:, 8:].reshape(len(table), (table.shape[1] - 8) // 3, 3) if table.shape[1] > 8 else np.zeros((len(table), 1, 3))
     last = np.minimum(np.arange(points.shape[1]), np.maximum(counts.astype(int) - 1, 0)[:, None])
     return Pairs(pairs, margins, gaps, counts.astype(int), areas, faces, cosines, table[:, 5:8], np.take_along_axis(points, last[..., None], axis=1))
 
