@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 from masonry import dem, results
+from masonry.dem import tilting
 from rocking_scene import refuses, said_by, stone
 from scipy.spatial import ConvexHull
 from yade import Bo1_Box_Aabb, InsertionSortCollider, O, Quaternion, Vector3
@@ -320,3 +321,14 @@ def test_tilted_and_overturned():
         dem.tilt(id, -2 * angle)
         assert dem.angle(id) == pytest.approx(-angle) and bottom(id) == pytest.approx(0, abs=1e-14)
         O.bodies.erase(id)
+
+
+def test_outline_of_a_mechanism():
+    """A wedge as one sees it along y is its triangle or trapezoid; along x its rectangle: with corners about the centre of mass."""
+    id = dem.wedge((1, 2, 3), stone(), top=0.4)
+    corners = np.array([tuple(v) for v in O.bodies[id].shape.vertices])
+    for across, area in ((1, 3 * 0.7), (0, 6)):
+        outline = tilting._silhouette(corners, across)
+        plane = np.delete(outline, across, axis=1)
+        x, z = plane.T
+        assert len(outline) == 4 and 0.5 * abs(x @ np.roll(z, -1) - z @ np.roll(x, -1)) == pytest.approx(area) and not outline[:, across].any()

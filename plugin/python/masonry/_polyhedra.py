@@ -42,6 +42,12 @@ def pairs_of(shapes, convex, centers, quaternions, margins):
     return Pairs(pairs, margins, gaps, counts.astype(int), areas, faces, cosines, table[:, 5:8], np.take_along_axis(points, last[..., None], axis=1))
 
 
+def gaps(shapes, centers, quaternions, pairs):
+    """(m,) gap of each pair of blocks (m, 2) along the axis that separates them best, m; negative where they overlap."""
+    blocks = shapes.vertices.ravel(), shapes.vertex_start, np.hstack([centers, quaternions]).ravel()
+    return _core.polyhedron_pairs(blocks, *np.asarray(pairs).T, np.zeros(len(pairs)))[:, 0]
+
+
 def contacts(shapes, convex, centers, sizes, quaternions, tolerance):
     """(pairs (m, 2), gaps (m,), margins (m,), supports (k, 2): lower, upper), as _boxes.contacts, for blocks of which some are convex. Two that touch on a
     patch, of which one is convex, support each other, whatever its direction: the joint at the crown of an arch carries, too."""

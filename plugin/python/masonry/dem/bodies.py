@@ -80,6 +80,11 @@ def _size(shape):
     return 2 * np.array(tuple(shape.extents)) if isinstance(shape, wrapper.Box) else np.ptp([tuple(v) for v in shape.vertices], axis=0)
 
 
+def reach(body):
+    """Distance of the farthest corner from the centre of mass, m."""
+    return body.shape.extents.norm() if isinstance(body.shape, wrapper.Box) else max(v.norm() for v in body.shape.vertices)
+
+
 def poses(bodies):
     """centers (n, 3), full sizes (n, 3) in m, those of the box around a ConvexBlock in its own axes, and quaternions (n, 4) as w, x, y, z."""
     states = [b.state for b in bodies]
