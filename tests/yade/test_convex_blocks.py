@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from masonry import dem, results
 from masonry.dem import tilting
+from masonry.dem.checks import check_recorder
 from rocking_scene import refuses, said_by, stone
 from scipy.spatial import ConvexHull
 from yade import Bo1_Box_Aabb, InsertionSortCollider, O, Quaternion, Vector3
@@ -332,3 +333,10 @@ def test_outline_of_a_mechanism():
         plane = np.delete(outline, across, axis=1)
         x, z = plane.T
         assert len(outline) == 4 and 0.5 * abs(x @ np.roll(z, -1) - z @ np.roll(x, -1)) == pytest.approx(area) and not outline[:, across].any()
+
+
+def test_a_recorder_of_convex_blocks_wants_their_base():
+    base = dem.base((9, 9, 0.2), stone())
+    ids = dem.arch(2, 1, 0.2, 7, 0.5, stone(), on=base)
+    assert f"add {base} where it moves" in said_by(check_recorder, dem.WallRecorder(iterPeriod=1, ids=ids))
+    assert said_by(check_recorder, dem.WallRecorder(iterPeriod=1, ids=[base, *ids])) == ""

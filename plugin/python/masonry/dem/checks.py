@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 from masonry._given import number_given, shown
-from masonry.dem.bodies import blocks, box, boxes, contacts_of, geometry
-from masonry.results.own_bases import own_bases
+from masonry.dem.bodies import block_body, blocks, contacts_of, geometry
+from masonry.results.own_bases import TOUCH, own_bases
 from yade import O, wrapper
 
 # Faults that a message names one by one; more are counted.
@@ -42,7 +42,7 @@ def check_recorder(recorder):
         raise ValueError(f"{name}.times ends at {recorder.times[-1]:g} s, after O.time = {O.time:g} s: it holds an earlier run: make a new {name} (after loading, O.engines has the one of the run)")
     if recorder.times:  # it goes on, also without blocks that have been erased since
         return
-    bodies = [box(id) for id in recorder.ids]
+    bodies = [block_body(id) for id in recorder.ids]
     left_out = _bases_left_out({b.id for b in bodies}) if wall and bodies else []
     if left_out:
         lacks = "no prescribed body" if all(b.dynamic for b in bodies) else "not the base of all its blocks"
@@ -51,8 +51,8 @@ def check_recorder(recorder):
 
 def _bases_left_out(ids):
     """Ids of the prescribed bodies on which some of the blocks stand, and which are not among them."""
-    bodies = boxes()
-    bases = own_bases(*geometry(bodies), np.array([b.dynamic for b in bodies]))
+    bodies = blocks()
+    bases = own_bases(*geometry(bodies), np.array([b.dynamic for b in bodies]), contacts_of(bodies, TOUCH))
     return sorted({bodies[base].id for body, base in zip(bodies, bases) if base >= 0 and body.id in ids} - ids)
 
 
