@@ -58,6 +58,15 @@ def test_a_wedge_has_overturned_where_its_weight_passes_its_edge(angle, down):
     assert h.drift()[1] == pytest.approx(np.linalg.norm(h.corners(1)[1, 2, 0] - h.corners(0)[1, 2, 0]) / 3)
 
 
+def test_a_block_that_would_not_stand_alone_has_fallen_at_a_right_angle():
+    """A parallelepiped whose centre is 0.1 m beside its base: it leans on another at first."""
+    corners = np.array([(x + 1.2 * z, y, z) for z in (-0.5, 0.5) for y in (-0.5, 0.5) for x in (-0.5, 0.5)])
+    shapes = results.Shapes.of([(corners, _pose.BOX_FACES)])
+    angles = 0, 1.5, 1.6
+    h = history([[2.2, 1, 1]], [[[0, 0, 0.5]]] * 3, np.array([[turn(a, (0, 1, 0))] for a in angles]), free=[True], shapes=shapes)
+    assert results.fallen(h)[:, 0].tolist() == [False, False, True]
+
+
 def test_saved_and_loaded(tmp_path):
     h = wedge_on_base([0, 0.1])
     h.save(tmp_path / "h.npz")
@@ -108,6 +117,17 @@ def test_pictures_and_reports_are_written(tmp_path):
     painter.paint(1)
     drawn = np.concatenate([path.vertices for path in painter._blocks.get_paths()])
     assert abs(drawn[:, 1].max() - h.corners(1)[1, :6, 2].max()) < ROUND
+
+
+def test_joints_of_convex_blocks_are_those_of_boxes():
+    boxes = rocking([0, 0.1, -0.05])
+    one, other = results.joints(boxes), results.joints(as_shapes(boxes))
+    for name in ("id1", "id2", "center", "area", "opening", "slip", "opening_time"):
+        assert np.allclose(one[name], other[name], rtol=0, atol=1e-12), name
+    h = wedge_on_base([0, 0.1])
+    (joint,) = results.joints(h)
+    assert joint["area"] == pytest.approx(2) and joint["opening"] == pytest.approx(2 * math.sin(0.1)) and np.allclose(joint["normal"], [0, 0, 1], atol=1e-12)
+    assert results.patches(h).shape == (1, 8, 3)
 
 
 def test_what_hides_what():

@@ -5,6 +5,8 @@ import math
 import numpy as np
 import pytest
 from masonry import dem, results
+from masonry.dem import tilting
+from masonry.dem.checks import check_recorder
 from rocking_scene import refuses, said_by, stone
 from scipy.spatial import ConvexHull
 from yade import Bo1_Box_Aabb, InsertionSortCollider, O, Quaternion, Vector3
@@ -262,3 +264,79 @@ def test_recorded_blocks_have_their_shapes(tmp_path):
         count = len(wanted[id].vertices)
         assert np.allclose(h.corners(0)[row, :count], wanted[id].vertices, rtol=0, atol=1e-14) and h.shapes.loops[row] == wanted[id].faces
     assert h.bases.tolist() == [0] * 8 and results.fallen(h)[-1].tolist() == [False] * 4 + [True] + [False] * 3
+
+
+def test_checks_of_blocks_know_convex_ones():
+    """An arch on its base neither overlaps nor floats; a voussoir that is moved does. Two arches 0.5 m apart are two structures, 1 cm apart one."""
+    base = dem.base((9, 9, 0.2), stone())
+    ids = dem.arch(2, 1, 0.2, 7, 0.5, stone(), on=base)
+    assert dem.check_blocks() == [] and dem.structures() == [ids]
+    box = dem.block((0.5, 0.5, 0.5), stone(), on=base)
+    assert dem.check_blocks() == [] and dem.structures() == [ids, [box]]
+    other = dem.arch(2, 1, 0.2, 7, 0.5, stone(), on=base, at=(0, 1))
+    assert dem.structures() == [ids, [box], other]
+    for id in other:
+        O.bodies[id].state.pos -= Vector3(0, 0.49, 0)
+    assert dem.structures() == [ids + other, [box]]
+    O.bodies[ids[3]].state.pos -= Vector3(0, 0, 0.05)
+    refuses(dem.check_blocks, f"overlapping blocks: {ids[2]} and {ids[3]} (by", f"{ids[3]} and {ids[4]} (by")
+    O.bodies[ids[3]].state.pos += Vector3(0, 0, 1)
+    refuses(dem.check_blocks, f"floating blocks, which no chain of supports joins to a prescribed body: {ids[3]}")
+
+
+def test_depth_of_an_overlap():
+    """Two wedges with upright faces against each other, 2 cm deep."""
+    for x in (0, 0.98):
+        dem.wedge((1, 1, 1), stone(), top=0.5, shift=0.25 if x == 0 else -0.25, center=None, orientation=None)
+        O.bodies[len(O.bodies) - 1].state.pos += Vector3(x, 0, 0)
+    refuses(lambda: dem.check_blocks(floating=False), "overlapping blocks: 0 and 1 (by 0.02 m)")
+
+
+@pytest.mark.parametrize("rubble_size", (0.35, 0.5))
+def test_rubble_fits_together(rubble_size):
+    """No stone overlaps another, and each is joined to the base."""
+    base = dem.base((9, 9, 0.2), stone())
+    ids = dem.rubble_wall(2, 1.5, 0.8, rubble_size, stone(), on=base, seed=5)
+    assert dem.check_blocks() == [] and dem.structures() == [ids]
+
+
+def test_vaults_and_domes_fit_together():
+    base = dem.base((20, 20, 0.2), stone())
+    dem.barrel_vault(4, 2, 0.3, 9, 3, 4, stone(), on=base)
+    dem.dome(2, 0.2, 4, 10, stone(), on=base, at=(6, 6))
+    dem.column(4, [0.5, 0.48, 0.46, 0.44, 0.42], 0.5, stone(), on=base, at=(-6, 6))
+    dem.arch(3, 2, 0.3, 9, 0.5, stone(), on=base, shape="pointed", at=(-6, -6))
+    assert dem.check_blocks() == [] and len(dem.structures()) == 4
+
+
+def test_tilted_and_overturned():
+    """The right trapezoid of the tables: critical angles .336675 and .502843 rad about its two edges; its lower edge stays where it was."""
+    base = dem.base((9, 9, 0.2), stone())
+    for angle, down in ((-0.33, False), (-0.34, True), (0.50, False), (0.51, True)):
+        id = dem.prism(TRAPEZOID, 1.0, stone(), axis="y", on=base)
+        x = dem.geometry(id).vertices[:, 0]
+        dem.tilt(id, angle)
+        assert dem.angle(id) == pytest.approx(angle) and bottom(id) == pytest.approx(0, abs=1e-14)
+        corner = dem.geometry(id).vertices[dem.geometry(id).vertices[:, 2].argmin()]
+        assert corner[0] == pytest.approx(x.max() if angle > 0 else x.min(), abs=1e-14) and dem.overturned() == ([id] if down else [])
+        dem.tilt(id, -2 * angle)
+        assert dem.angle(id) == pytest.approx(-angle) and bottom(id) == pytest.approx(0, abs=1e-14)
+        O.bodies.erase(id)
+
+
+def test_outline_of_a_mechanism():
+    """A wedge as one sees it along y is its triangle or trapezoid; along x its rectangle: with corners about the centre of mass."""
+    id = dem.wedge((1, 2, 3), stone(), top=0.4)
+    corners = np.array([tuple(v) for v in O.bodies[id].shape.vertices])
+    for across, area in ((1, 3 * 0.7), (0, 6)):
+        outline = tilting._silhouette(corners, across)
+        plane = np.delete(outline, across, axis=1)
+        x, z = plane.T
+        assert len(outline) == 4 and 0.5 * abs(x @ np.roll(z, -1) - z @ np.roll(x, -1)) == pytest.approx(area) and not outline[:, across].any()
+
+
+def test_a_recorder_of_convex_blocks_wants_their_base():
+    base = dem.base((9, 9, 0.2), stone())
+    ids = dem.arch(2, 1, 0.2, 7, 0.5, stone(), on=base)
+    assert f"add {base} where it moves" in said_by(check_recorder, dem.WallRecorder(iterPeriod=1, ids=ids))
+    assert said_by(check_recorder, dem.WallRecorder(iterPeriod=1, ids=[base, *ids])) == ""

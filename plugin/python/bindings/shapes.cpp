@@ -1,4 +1,6 @@
 // Convex polyhedra: the hull of points, its faces and its mass, by the shapes of the simulation.
+#include "contact/polyhedron_axes.hpp"
+#include "contact/polyhedron_pair.hpp"
 #include "expose.hpp"
 #include "shape/convex_polyhedron.hpp"
 #include "tolerances.hpp"
@@ -75,10 +77,74 @@ py::dict convexBlock(const py::object& points, const py::object& faces, const py
 	return found;
 }
 
+// Blocks, one after the other: vertices in own axes and where those of each block begin, with the end of the last; places, orientations (w,
+// x, y, z).
+struct Polyhedra {
+	std::vector<ConvexPolyhedron> shapes;
+	std::vector<Pose> poses;
+
+	Polyhedra(const py::object& vertices, const py::object& starts, const py::object& poseNumbers)
+	{
+		const std::vector<Vector3> points = toPoints(vertices);
+		const std::vector<long> start = toVector<long>(starts);
+		const std::vector<double> numbers = toVector(poseNumbers);
+		for (std::size_t k = 0; k + 1 < start.size(); ++k) {
+			const double* own = &numbers[7 * k];
+			shapes.push_back(ConvexPolyhedron::hull({points.begin() + start[k], points.begin() + start[k + 1]}));
+			poses.push_back({Vector3(own), Quaternion(own[3], own[4], own[5], own[6])});
+		}
+	}
+
+	// Gap along the axis that separates the pair best, m; negative where they overlap.
+	double gap(long one, long other) const
+	{
+		const ConvexPolyhedron &first = shapes[one], &second = shapes[other];
+		const Matrix3 back = poses[one].orientation.toRotationMatrix().transpose();
+		const RelativePose seen {back * poses[other].orientation.toRotationMatrix(), back * (poses[other].position - poses[one].position)};
+		const double face = bestFace(first, second, seen, {}, std::min(first.thickness(), second.thickness())).separation;
+		EdgePair edges;
+		return bestEdges(first, second, seen, face, edges) ? std::max(face, edges.separation) : face;
+	}
+
+	// Cosine of the angle between the two faces that a patch is made of; 0 for edges.
+	double cosine(long one, long other, const PatchFeature& feature) const
+	{
+		if (feature.kind != PatchKind::Face1 && feature.kind != PatchKind::Face2)
+			return 0;
+		const Vector3 normal1 = poses[one].orientation * shapes[one].faces()[feature.feature1].normal;
+		return -normal1.dot(poses[other].orientation * shapes[other].faces()[feature.feature2].normal);
+	}
+};
+
+np::ndarray polyhedronPairs(const py::tuple& blocks, const py::object& first, const py::object& second, const py::object& margins)
+{
+	const Polyhedra all(blocks[0], blocks[1], blocks[2]);
+	const std::vector<long> ones = toVector<long>(first), others = toVector<long>(second);
+	const std::vector<double> margin = toVector(margins);
+	std::vector<std::vector<double>> rows(ones.size());
+	forEachCase(ones.size(), [&](std::size_t pair) {
+		const long one = ones[pair], other = others[pair];
+		ContactPatch patch;
+		if (!findPatch(all.shapes[one], all.poses[one], all.shapes[other], all.poses[other], margin[pair], {}, patch))
+			patch = {};
+		const Vector3& normal = patch.normal;
+		std::vector<double>& row = rows[pair];
+		row = {all.gap(one, other), double(patch.size()), patch.area, patch.nominalArea, all.cosine(one, other, patch.feature),
+		       normal.x(),          normal.y(),           normal.z()};
+		for (const PatchPoint& point : patch.points)
+			row.insert(row.end(), point.position1.begin(), point.position1.end());
+	});
+	return toTable(rows);
+}
+
 } // namespace
 
 void exposeShapes()
 {
+	py::def("polyhedron_pairs", polyhedronPairs, py::args("blocks", "first", "second", "margins"),
+	        "One row a pair: gap along the axis that separates them best, then of the patch where they are at most the margin apart: "
+	        "number of corners (0: there is "
+	        "none), area, that of the smaller face, cosine of the angle between the faces, normal, corners on the first. Filled with NaN.");
 	py::def("convex_block", convexBlock, py::args("points", "faces", "starts", "in_own_axes"),
 	        "The convex polyhedron over points (or of faces, checked) in its principal axes: vertices (k, 3), faces one after the other "
 	        "and where each "

@@ -26,6 +26,8 @@ def near_pairs(low, high):
     """Pairs (i, j) of axis-aligned boxes that meet, i < j, in the order of i, then j. A box lies by its centre in a grid whose cell, a power of two, is
     at least as large as the box; it is looked for from all boxes of the same or a smaller cell, in 3 x 3 x 3 cells: the cost is proportional to the
     number of boxes, however different their sizes."""
+    if not len(low):
+        return np.empty((0, 2), dtype=int)
     center = (low + high) / 2
     center = center - center.min(axis=0)
     # Of cells below a millionth of the whole the keys would overflow.

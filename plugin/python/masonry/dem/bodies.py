@@ -1,8 +1,11 @@
 """The blocks of the scene: bodies, and their geometry as arrays."""
 
 import numpy as np
+from masonry._boxes import contacts
 from masonry._given import shown
+from masonry._polyhedra import contacts as polyhedron_contacts
 from masonry._pose import BOX_FACES, axes_of, corners, matrices
+from masonry._shapes import Shapes, box_corners
 from yade import O, Quaternion, Vector3, wrapper
 
 # Upward part of the normal of a face from which on it is level.
@@ -77,12 +80,32 @@ def _size(shape):
     return 2 * np.array(tuple(shape.extents)) if isinstance(shape, wrapper.Box) else np.ptp([tuple(v) for v in shape.vertices], axis=0)
 
 
+def reach(body):
+    """Distance of the farthest corner from the centre of mass, m."""
+    return body.shape.extents.norm() if isinstance(body.shape, wrapper.Box) else max(v.norm() for v in body.shape.vertices)
+
+
 def poses(bodies):
     """centers (n, 3), full sizes (n, 3) in m, those of the box around a ConvexBlock in its own axes, and quaternions (n, 4) as w, x, y, z."""
     states = [b.state for b in bodies]
     quaternions = np.array([tuple(s.ori) for s in states]).reshape(-1, 4)[:, [3, 0, 1, 2]]
     sizes = np.array([_size(b.shape) for b in bodies]).reshape(-1, 3)
     return np.array([tuple(s.pos) for s in states]).reshape(-1, 3), sizes, quaternions
+
+
+def shapes_of(bodies):
+    """(the Shapes of boxes and convex blocks, (n,) which of them are convex)."""
+    convex = np.array([isinstance(b.shape, wrapper.ConvexBlock) for b in bodies], dtype=bool)
+    own = [([tuple(v) for v in b.shape.vertices], b.shape.faces) if is_convex else (box_corners(_size(b.shape)), BOX_FACES) for b, is_convex in zip(bodies, convex)]
+    return Shapes.of(own), convex
+
+
+def contacts_of(bodies, tolerance):
+    """(pairs, gaps, margins, supports: pairs lower, upper) of bodies that touch, as _boxes.contacts."""
+    centers, sizes, quaternions = poses(bodies)
+    if all(isinstance(b.shape, wrapper.Box) for b in bodies):
+        return contacts(centers, sizes, axes_of(quaternions), tolerance)
+    return polyhedron_contacts(*shapes_of(bodies), centers, sizes, quaternions, tolerance)
 
 
 def geometry(bodies):

@@ -3,10 +3,9 @@
 import math
 
 import numpy as np
-from masonry._boxes import contacts
 from masonry._given import number_given, shown
-from masonry.dem.bodies import box, boxes, geometry
-from masonry.results.own_bases import own_bases
+from masonry.dem.bodies import block_body, blocks, contacts_of, geometry
+from masonry.results.own_bases import TOUCH, own_bases
 from yade import O, wrapper
 
 # Faults that a message names one by one; more are counted.
@@ -43,7 +42,7 @@ def check_recorder(recorder):
         raise ValueError(f"{name}.times ends at {recorder.times[-1]:g} s, after O.time = {O.time:g} s: it holds an earlier run: make a new {name} (after loading, O.engines has the one of the run)")
     if recorder.times:  # it goes on, also without blocks that have been erased since
         return
-    bodies = [box(id) for id in recorder.ids]
+    bodies = [block_body(id) for id in recorder.ids]
     left_out = _bases_left_out({b.id for b in bodies}) if wall and bodies else []
     if left_out:
         lacks = "no prescribed body" if all(b.dynamic for b in bodies) else "not the base of all its blocks"
@@ -52,14 +51,14 @@ def check_recorder(recorder):
 
 def _bases_left_out(ids):
     """Ids of the prescribed bodies on which some of the blocks stand, and which are not among them."""
-    bodies = boxes()
-    bases = own_bases(*geometry(bodies), np.array([b.dynamic for b in bodies]))
+    bodies = blocks()
+    bases = own_bases(*geometry(bodies), np.array([b.dynamic for b in bodies]), contacts_of(bodies, TOUCH))
     return sorted({bodies[base].id for body, base in zip(bodies, bases) if base >= 0 and body.id in ids} - ids)
 
 
 def check_blocks(tolerance=1e-3, floating=True):
     """Raises a ValueError that names the ids of overlapping blocks, prescribed bodies included, and, with `floating`, of those that no chain of supports joins to
-    a prescribed body (head joints do not carry). tolerance: depth of an overlap, or gap in a joint, that is still accepted, relative to
+    a prescribed body (head joints of boxes do not carry, all joints of convex blocks do). tolerance: depth of an overlap, or gap in a joint, that is still accepted, relative to
     the smallest size of the two blocks; 0 < tolerance <= 0.1. Returns the ids of the floating blocks."""
     return floating_and_supports(tolerance, floating)[0]
 
@@ -68,11 +67,11 @@ def floating_and_supports(tolerance=1e-3, floating=True):
     """What check_blocks() does and returns, and the pairs (body below, body on it) of blocks that touch."""
     if not 0 < number_given("tolerance", tolerance) <= 0.1:
         raise ValueError(f"tolerance = {tolerance}: must be above 0 and at most 0.1")
-    bodies = boxes()
+    bodies = blocks()
     if not bodies:
         return [], []
     prescribed = np.array([not b.dynamic for b in bodies])
-    pairs, gaps, margins, supports = contacts(*geometry(bodies), tolerance)
+    pairs, gaps, margins, supports = contacts_of(bodies, tolerance)
     deep = -gaps > margins
     ids, found = [b.id for b in bodies], []
     loose = [ids[i] for i in np.flatnonzero(~_carried(supports, prescribed))]

@@ -5,7 +5,7 @@ import weakref
 
 import masonry
 import numpy as np
-from masonry.dem.bodies import half_sizes
+from masonry.dem.bodies import half_sizes, poses
 from masonry.dem.checks import floating_and_supports, listed
 from yade import O, wrapper
 
@@ -94,6 +94,7 @@ def say_what_looks_odd(blocks, motions, gravity, others):
     if floating and gravity > 0:
         say(f"no chain of supports joins these blocks to a prescribed body, they will fall: {listed(floating)}")
     motions = [motion for motion in motions if not motion.dead]
+    supports = [(below, body) for below, body in supports if isinstance(body.shape, wrapper.Box)]  # the others have no width and height
     for text in (_untouched(others), _motion_left_out(motions), _pivots_that_slip(supports), _pulses_that_slip(supports, motions), *map(_end_of, _records(motions))):
         if text:
             say(text)
@@ -106,7 +107,7 @@ def say_what_looks_odd(blocks, motions, gravity, others):
             say(f"a record reaches {peak:.3g}: in g or cm/s^2? Accelerations are in m/s^2")
         elif _PEAKS_IN_G[0] <= peak <= _PEAKS_IN_G[1] and not _has_unit(record):
             say(f"a record given without a unit reaches {peak:.3g} m/s^2: is it in g? Then multiply it by {_STANDARD_GRAVITY:g}; else name its unit")
-    longest = max(2 * max(b.shape.extents) for b in blocks if b.dynamic)
+    longest = poses([b for b in blocks if b.dynamic])[1].max()
     if longest > _LONGEST:
         say(f"the longest block measures {longest:g} m: sizes are in m")
 

@@ -1,7 +1,7 @@
 """Whether the blocks are at rest."""
 
 import numpy as np
-from masonry.dem.bodies import boxes
+from masonry.dem.bodies import blocks, reach
 from masonry.dem.engines import joint_engine
 from masonry.dem.reactions import joint_forces
 from yade import O, wrapper
@@ -30,19 +30,19 @@ def at_rest():
     strength = np.linalg.norm(gravity)
     if O.iter == 0 or engine is None or strength == 0:
         return False
-    blocks = [body for body in boxes() if body.dynamic]
-    state = np.array([(*body.state.vel, *body.state.angVel, body.state.mass, body.shape.extents.norm()) for body in blocks])
-    speed, spin, mass, reach = np.linalg.norm(state[:, :3], axis=1), np.linalg.norm(state[:, 3:6], axis=1), state[:, 6], state[:, 7]
-    if (speed > _REST_SPEED * np.sqrt(strength * reach)).any() or (spin > _REST_SPEED * np.sqrt(strength / reach)).any():
+    free = [body for body in blocks() if body.dynamic]
+    state = np.array([(*body.state.vel, *body.state.angVel, body.state.mass, reach(body)) for body in free])
+    speed, spin, mass, reaches = np.linalg.norm(state[:, :3], axis=1), np.linalg.norm(state[:, 3:6], axis=1), state[:, 6], state[:, 7]
+    if (speed > _REST_SPEED * np.sqrt(strength * reaches)).any() or (spin > _REST_SPEED * np.sqrt(strength / reaches)).any():
         return False
-    force = np.array([O.forces.f(body.id, True) for body in blocks]) + mass[:, None] * gravity
+    force = np.array([O.forces.f(body.id, True) for body in free]) + mass[:, None] * gravity
     sizes = mass * strength
     if isinstance(engine, wrapper.MoreauJeanIntegrator):  # those of compliant joints are in O.forces
         joints, row = joint_forces(), np.full(len(O.bodies), -1)
-        row[[body.id for body in blocks]] = np.arange(len(blocks))
+        row[[body.id for body in free]] = np.arange(len(free))
         for name, sign in (("id1", -1), ("id2", 1)):
-            free = row[joints[name]] >= 0
-            np.add.at(force, row[joints[name]][free], sign * joints["force"][free])
-            np.add.at(sizes, row[joints[name]][free], np.linalg.norm(joints["force"][free], axis=1))
+            known = row[joints[name]] >= 0
+            np.add.at(force, row[joints[name]][known], sign * joints["force"][known])
+            np.add.at(sizes, row[joints[name]][known], np.linalg.norm(joints["force"][known], axis=1))
     allowed = _UNBALANCED_IN_WALLS if getattr(engine, "method", "") == "wall" else _UNBALANCED
     return bool((np.linalg.norm(force, axis=1) <= allowed * sizes).all())

@@ -2,18 +2,22 @@
 
 import math
 
+import numpy as np
 from masonry._given import finite_numbers, number_given, shown
 from masonry.dem import layouts
-from masonry.dem.bodies import block_body, blocks, box, boxes, poses, world_shape
+from masonry.dem.bodies import block_body, blocks, boxes, convex_blocks, poses, world_shape
 from masonry.dem.checks import check_material
 from masonry.dem.meshes import write_obj
 from masonry.dem.placing import append_boxes, block_material, box_body, convex_body, placed, polyhedron, posed, stand, top_of, turn_about_z
 from masonry.dem.tables import read_table, table_rows, write_table
-from yade import O, Quaternion, Vector3, utils
+from masonry.results.collapse import comes_back
+from yade import O, Quaternion, Vector3, utils, wrapper
 
 _AXES = {"x": 0, "y": 1}
 # Upward part of a block's own x or y axis up to which it may lean about it.
 _LEVEL = 0.7
+# Height above the lowest corner, relative to the size, up to which a corner of a convex block belongs to its base.
+_BASE = 1e-6
 
 
 def _positive_size(name, size):
@@ -180,21 +184,32 @@ def save_blocks(path):
 def tilt(id, angle, axis="y"):
     """Turns a standing free block by `angle` (rad) about its own axis 'x' or 'y', so that it rests on its lower edge. A positive
     turn about y leans towards +x. Turns about one axis add up: one that leans already comes back to its resting pose, then leans the other way."""
-    body, row = box(id), _axis(axis)
+    body, row = block_body(id), _axis(axis)
     if not -math.pi / 2 < number_given("angle", angle) < math.pi / 2:
         raise ValueError(f"angle = {angle}: must be between -pi/2 and pi/2, in rad")
     if not body.dynamic:
         raise ValueError(f"id = {id}: that body is prescribed (a base): must be a free block")
-    half, state, lean = body.shape.extents, body.state, _angle(body.state, row)
+    state, lean = body.state, _angle(body.state, row)
     if abs((state.ori * Vector3.Unit(row))[2]) > _LEVEL:
         raise ValueError(f"id = {id}: that block does not stand: its own {axis} axis, about which it is to lean, must be level")
     back = min(max(angle, min(-lean, 0)), max(-lean, 0))  # about the edge on which it leans
     for turn, side in ((back, math.copysign(1, lean)), (angle - back, math.copysign(1, angle))):
         if turn:
-            edge = Vector3(side * half[0], 0, -half[2]) if axis == "y" else Vector3(0, -side * half[1], -half[2])
+            edge = _edge(body, row, side)
             pivot = state.pos + state.ori * edge
             state.ori = state.ori * Quaternion(Vector3.Unit(row), turn)
             state.pos = pivot - state.ori * edge
+
+
+def _edge(body, row, side):
+    """A point, in the axes of the body, of the edge of its base about which it turns towards that side (1: positive turns) about its own axis."""
+    if isinstance(body.shape, wrapper.Box):
+        half = body.shape.extents
+        return Vector3(side * half[0], 0, -half[2]) if row == _AXES["y"] else Vector3(0, -side * half[1], -half[2])
+    up = body.state.refOri.conjugate() * Vector3.UnitZ
+    lowest = min(up.dot(v) for v in body.shape.vertices)
+    base = [v for v in body.shape.vertices if up.dot(v) - lowest <= _BASE * max(w.norm() for w in body.shape.vertices)]
+    return max(base, key=lambda v: side * Vector3.Unit(row).cross(up).dot(v))
 
 
 def _angle(state, row):
@@ -219,4 +234,9 @@ def overturned():
         above = math.copysign(up[upright], up[upright] * rest[upright])
         if any(abs(up[axis]) * half[upright] > half[axis] * above for axis in range(3) if axis != upright):
             found.append(body.id)
-    return found
+    convex = [b for b in convex_blocks() if b.dynamic]
+    for body in convex:
+        up, now = (np.array(tuple(turn.conjugate() * Vector3.UnitZ)) for turn in (body.state.refOri, body.state.ori))
+        if not comes_back(now[None, None], up[None], np.array([[tuple(v) for v in body.shape.vertices]]), np.zeros(1, dtype=bool))[0, 0]:
+            found.append(body.id)
+    return sorted(found)

@@ -3,7 +3,9 @@
 import numpy as np
 from masonry._boxes import bounds, face_gaps, near_pairs
 from masonry._given import number_given
-from masonry.dem.bodies import boxes, geometry
+from masonry._polyhedra import pairs_of
+from masonry._pose import axes_of
+from masonry.dem.bodies import blocks, poses, shapes_of
 
 
 def structures(gap=0.1):
@@ -15,13 +17,18 @@ def structures(gap=0.1):
 
     if not 0 < number_given("gap", gap) <= 1:
         raise ValueError(f"gap = {gap}: must be above 0 and at most 1")
-    bodies = [b for b in boxes() if b.dynamic]
+    bodies = [b for b in blocks() if b.dynamic]
     if not bodies:
         return []
-    centers, sizes, axes = geometry(bodies)
-    reach = gap * sizes.min()
-    i, j = near_pairs(*bounds(centers, sizes, axes, reach / 2)).T
-    joined = face_gaps(i, j, centers, sizes, axes) <= reach
-    near = coo_array((np.ones(joined.sum()), (i[joined], j[joined])), shape=(len(bodies), len(bodies)))
+    centers, sizes, quaternions = poses(bodies)
+    reach, (shapes, convex) = gap * sizes.min(), shapes_of(bodies)
+    own = np.flatnonzero(~convex)
+    boxes = centers[own], sizes[own], axes_of(quaternions[own])
+    i, j = near_pairs(*bounds(*boxes, reach / 2)).T
+    joined = own[np.stack([i, j], axis=1)[face_gaps(i, j, *boxes) <= reach]]
+    if convex.any():
+        found = pairs_of(shapes, convex, centers, quaternions, np.full(len(bodies), reach))
+        joined = np.concatenate([joined, found.pairs[found.gaps <= reach]])
+    near = coo_array((np.ones(len(joined)), tuple(joined.T)), shape=(len(bodies), len(bodies)))
     count, label = connected_components(near, directed=False)
     return [[bodies[k].id for k in np.flatnonzero(label == one)] for one in range(count)]

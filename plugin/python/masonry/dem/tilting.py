@@ -9,12 +9,13 @@ import numpy as np
 from masonry._boxes import bounds, face_gaps
 from masonry._files import save_picture
 from masonry._given import number_given, positive_given, shown
+from masonry._polyhedra import gaps
 from masonry._pose import axes_of
 from masonry._progress import wanted
-from masonry.dem.bodies import boxes, geometry
+from masonry.dem.bodies import blocks, geometry, poses, reach, shapes_of, world_shape
 from masonry.dem.engines import METHODS, engines, has_stiffness
 from tqdm import tqdm
-from yade import O, Vector3
+from yade import O, Vector3, wrapper
 
 _DIRECTIONS = {"x": (1, 0, 0), "-x": (-1, 0, 0), "y": (0, 1, 0), "-y": (0, -1, 0)}
 # Time step of a trial relative to sqrt(R/g) of the smallest block. Blocks that stand still or begin to move ask for no small one.
@@ -144,18 +145,22 @@ class TiltTable:
         for name, value in (("hold", hold), ("share", share), ("gravity", gravity)):
             positive_given(name, value)
         self.direction, self.load, self.model, self.share, self.gravity = direction, load, model, share, gravity
-        self._blocks = boxes()
+        self._blocks = blocks()
         self._free = [b for b in self._blocks if b.dynamic]
         if not self._free:
             raise ValueError("there is no free block in O.bodies: add one with dem.block() before dem.TiltTable()")
         if model == "auto" and any(has_stiffness(b.mat) for b in self._blocks):
             raise ValueError("model = 'auto': must be 'planar' or 'spatial' where a BlockMat has a joint stiffness: TiltTable is for rigid blocks")
         self._start = [(b.state.pos, b.state.ori) for b in self._blocks]
-        self._as_built, self._row = geometry(self._blocks), {b.id: k for k, b in enumerate(self._blocks)}
+        self._as_built, self._row = poses(self._blocks), {b.id: k for k, b in enumerate(self._blocks)}
+        self._shapes, self._convex = shapes_of(self._blocks)
         self._free_start = [start for b, start in zip(self._blocks, self._start) if b.dynamic]
         _, sizes, _ = free = geometry(self._free)
         low, high = bounds(*free)
         self._size, self._reach = sizes.min(), np.linalg.norm(sizes, axis=1) / 2
+        if self._convex.any():
+            low = high = np.concatenate([world_shape(b)[0] for b in self._free])
+            self._reach = np.array([reach(b) for b in self._free])
         self._unit = math.sqrt((high[:, 2].max() - low[:, 2].min()) / gravity)
         self._hold = hold * self._unit
         self._dt = _STEP * math.sqrt(self._reach.min() / gravity)
@@ -340,7 +345,13 @@ class TiltTable:
         if self._moved(start) <= self._settled():
             return False
         pressed = [(self._row[i.id1], self._row[i.id2]) for i in O.interactions if any(force.norm() > 0 for force in i.phys.forces)]
-        return not pressed or face_gaps(*np.array(pressed).T, *self._as_built).max() <= _GAP * self._size
+        return not pressed or self._gaps_as_built(np.array(pressed)).max() <= _GAP * self._size
+
+    def _gaps_as_built(self, pairs):
+        centers, sizes, quaternions = self._as_built
+        if self._convex.any():
+            return gaps(self._shapes, centers, quaternions, pairs)
+        return face_gaps(*pairs.T, centers, sizes, axes_of(quaternions))
 
     # --- what is reported ---
 
@@ -378,9 +389,18 @@ class TiltTable:
 
 
 def _section(size, axes, across):
-    """Half diagonals (4, 3), in order around, of the middle section of a block; `across` is the axis one looks along."""
+    """Half diagonals (4, 3), in order around, of the middle section of a box; `across` is the axis one looks along."""
     one, two = (size[k] / 2 * axes[k] for k in range(3) if k != np.argmax(np.abs(axes[:, across])))
     return np.array([one + two, one - two, -one - two, two - one])
+
+
+def _silhouette(corners, across):
+    """Outline (k, 3) of the corners of a convex block, from its centre of mass, as one sees them along that axis, in order around, at its depth."""
+    from scipy.spatial import ConvexHull
+
+    outline = corners[ConvexHull(np.delete(corners, across, axis=1)).vertices]
+    outline[:, across] = 0
+    return outline
 
 
 class _Mechanism:
@@ -394,7 +414,9 @@ class _Mechanism:
         self._axes = axes_of(np.array([tuple(ori) for _, ori in start])[:, [3, 0, 1, 2]])
         self._turn = np.einsum("nka,nkb->nab", turned, self._axes)
         self._row = {id: k for k, id in enumerate(self._ids)}
-        corners = [self._movement(k, self._before[k] + _section(self._sizes[k], self._axes[k], 1 - axis)) for k in range(len(blocks))]
+        self._outlines = [_silhouette(np.array([tuple(v) for v in b.shape.vertices]) @ own, 1 - axis) if isinstance(b.shape, wrapper.ConvexBlock)
+                          else _section(size, own, 1 - axis) for b, size, own in zip(blocks, self._sizes, self._axes)]
+        corners = [self._movement(k, self._before[k] + outline) for k, outline in enumerate(self._outlines)]
         self._moved = np.array([np.linalg.norm(c, axis=1).max() for c in corners])
 
     def _movement(self, row, points):
@@ -425,7 +447,7 @@ class _Mechanism:
         def place(row, points):
             return (points + scale * self._movement(row, points))[:, plane]
 
-        outlines = [place(k, self._before[k] + _section(self._sizes[k], self._axes[k], 1 - self._axis)) for k in range(len(self._ids))]
+        outlines = [place(k, self._before[k] + outline) for k, outline in enumerate(self._outlines)]
         # From behind to the front, with x or y to the right.
         order = np.lexsort((self._before[:, 1 - self._axis] * (1 if self._axis else -1), self._free))
         figure = Figure(figsize=(7.5, 6), layout="constrained")

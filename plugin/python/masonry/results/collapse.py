@@ -79,21 +79,36 @@ def fallen(history):
     That critical lean is atan((b |cos f| + d |sin f|) / a) for half widths b, d, half height a and a lean in the direction f of the
     block's own plan: atan(b / a) about an edge, atan(sqrt(b^2 + d^2) / a) over a corner.
     """
-    up = history_given(history).upwards
-    # Of the lean: cosine, and sine times the direction in the block's axes, from the vertical in them.
-    cosine = np.cos(history.lean)
-    sideways = history.vertical - np.einsum("sna,na->sn", history.vertical, up)[..., None] * up
-    sine = np.linalg.norm(sideways, axis=2)
-    # The corner of the base that is the lowest now.
-    heights = np.einsum("nca,na->nc", history.own_corners, up)
-    base = heights <= heights.min(axis=1, keepdims=True) + _LEVEL * history.sizes.max(axis=1, keepdims=True)
-    reach = np.where(base, -np.einsum("sna,nca->snc", sideways, history.own_corners), -np.inf).max(axis=2)
-    stood = ~history.convex | (base.sum(axis=1) >= 3)
+    history_given(history)
     low, high = history.extent
     with np.errstate(invalid="ignore"):
-        back = (cosine > 0) & (~stood | (sine**2 * -heights.min(axis=1) <= cosine * reach))
+        back = comes_back(history.vertical, history.upwards, history.own_corners, ~history.convex)
         stands = back & (history.displacement[..., 2] >= -(high - low) / 2)
     return ~stands & history.free
+
+
+def comes_back(vertical, up, corners, stands):
+    """(s, n) bool: whether blocks that lean come back, alone. vertical: (s, n, 3) in the axes of each block; up: (n, 3) where it was; corners: (n, c, 3);
+    stands: (n,) which stood on their base at first in any case; the others where their centre was above it."""
+    cosine = np.einsum("sna,na->sn", vertical, up)
+    sideways = vertical - cosine[..., None] * up
+    heights = np.einsum("nca,na->nc", corners, up)
+    base = heights <= heights.min(axis=1, keepdims=True) + _LEVEL * np.ptp(corners, axis=1).max(axis=1)[:, None]
+    # The corner of the base that is the lowest now.
+    reach = np.where(base, -np.einsum("sna,nca->snc", sideways, corners), -np.inf).max(axis=2)
+    stood = stands | _stands_alone(corners, up, base)
+    return (cosine > 0) & (~stood | ((sideways**2).sum(axis=2) * -heights.min(axis=1) <= cosine * reach))
+
+
+def _stands_alone(corners, up, base):
+    """(n,) bool: whether the centre of each block is above the inside of its base: seen from it, no two neighbouring corners of the base are half a turn
+    apart."""
+    along = np.cross(up, np.eye(3)[np.abs(up).argmin(axis=1)])
+    angles = np.arctan2(*(np.einsum("nca,na->nc", corners, axis) for axis in (np.cross(up, along), along)))
+    angles = np.sort(np.where(base, angles, np.nan), axis=1)
+    last = np.nanmax(angles, axis=1, keepdims=True)
+    gaps = np.diff(np.concatenate([np.where(np.isnan(angles), last, angles), angles[:, :1] + 2 * np.pi], axis=1), axis=1)
+    return (base.sum(axis=1) >= 3) & (gaps.max(axis=1) < np.pi)
 
 
 def lies(history):

@@ -5,6 +5,7 @@ import weakref
 import numpy as np
 from masonry import _pose
 from masonry._boxes import bounds, face_patches, near_pairs, separating_axes
+from masonry._polyhedra import pairs_of
 from masonry.results.collapse import lies
 from masonry.results.wall_history import history_given
 
@@ -23,7 +24,7 @@ _FIELDS = [("id1", int), ("id2", int), ("center", float, 3), ("normal", float, 3
 
 
 class _Joints:
-    """Face patches of the blocks that touch in the first sample. Polygons are filled up to eight corners with their last one. gone: (s, j) bool, one of the two
+    """Face patches of the blocks that touch in the first sample. Polygons are filled up to the most corners, eight at least, with their last one. gone: (s, j) bool, one of the two
     blocks has fallen since."""
 
     largest = None  # table of joints(history), once it has been asked for
@@ -38,14 +39,30 @@ class _Joints:
         cosines = np.abs(np.einsum("jbka,ja->jbk", axes[pairs], normals)).max(axis=2).min(axis=1)
         found = (corners > 0) & (areas > _LEAST_AREA * faces) & (gaps >= -margins) & (1 - cosines <= _TOUCH**2 / 2)
         self.rows, self.normals, self.polygons, self.areas = pairs[found], normals[found], polygons[found], areas[found]
-        own = np.arange(polygons.shape[1]) < corners[found, None]  # not the last one repeated
-        self.centers = (self.polygons * own[..., None]).sum(axis=1) / corners[found, None]
+        counts = corners[found]
+        if history.convex.any():
+            counts = self._add_convex(history, smallest, counts)
+        own = np.arange(self.polygons.shape[1]) < counts[:, None]  # not the last one repeated
+        self.centers = (self.polygons * own[..., None]).sum(axis=1) / counts[:, None]
         down = lies(history)
         self.gone = (down & ~down[0])[:, self.rows].any(axis=2)
         self.smallest = smallest[self.rows].min(axis=1)
         self._start = axes.swapaxes(1, 2)
         self._across = np.abs(np.einsum("jab,ja->jb", self._start[self.rows[:, 0]], self.normals)) > 0.5  # the axis of block 1 that is the normal
         self._arms = [np.einsum("jab,jka->jkb", self._start[row], self.polygons - center[row][:, None]) for row in self.rows.T]
+
+    def _add_convex(self, history, smallest, counts):
+        """Adds the joints of convex blocks; returns the numbers of corners of all joints."""
+        near = pairs_of(history.shapes, history.convex, history.position[0], history.orientation[0], _TOUCH * smallest)
+        found = (history.free[near.pairs].any(axis=1) & (near.sizes > 2) & (near.areas > _LEAST_AREA * near.faces) & (near.gaps >= -near.margins)
+                 & (1 - near.cosines <= _TOUCH**2 / 2))
+        width = max(self.polygons.shape[1], near.corners.shape[1])
+        self.polygons = np.concatenate([np.pad(one, ((0, 0), (0, width - one.shape[1]), (0, 0)), mode="edge") for one in (self.polygons, near.corners[found])])
+        self.rows, self.normals = np.concatenate([self.rows, near.pairs[found]]), np.concatenate([self.normals, near.normals[found]])
+        self.areas, counts = np.concatenate([self.areas, near.areas[found]]), np.concatenate([counts, near.sizes[found]])
+        order = np.lexsort(self.rows.T[::-1])
+        self.rows, self.normals, self.polygons, self.areas = self.rows[order], self.normals[order], self.polygons[order], self.areas[order]
+        return counts[order]
 
     def movement(self, history, sample):
         """(opening, slip, closed) of each joint at a sample: the largest gap of the points of the patch, 0 where all touch; how far the least open
@@ -60,7 +77,8 @@ class _Joints:
         along = np.linalg.norm(apart - gaps[..., None] * self.normals[:, None], axis=2)
         slip = np.where(gaps <= (least + _LEVEL * self.smallest)[:, None], along, 0).max(axis=1)
         beside, _ = separating_axes(one, two, place, history.sizes, axes.swapaxes(1, 2))
-        over = ((beside[:, :3] <= 0) | self._across).all(axis=1)
+        convex = history.convex[self.rows].any(axis=1)  # as long as they have slid by less than the joint is wide
+        over = np.where(convex, slip <= np.ptp(self.polygons, axis=1).max(axis=1), ((beside[:, :3] <= 0) | self._across).all(axis=1))
         return np.maximum(gaps.max(axis=1), 0), slip, over & (np.abs(least) <= _CLOSED * self.smallest)
 
 
@@ -75,7 +93,7 @@ def _joints_of(history):
 
 def joints(history, time=None):
     """How far the joints of a WallHistory opened and slid: a structured array, one row for each pair of blocks that touch face on face in the
-    first sample (bed joints, head joints, joints with the base). Joints of convex blocks are not among them. An opening or a slip counts until the first of the two blocks has fallen for good (as
+    first sample (bed joints, head joints, joints with the base). An opening or a slip counts until the first of the two blocks has fallen for good (as
     in collapse()): what blocks on the floor are apart is no opening of a joint.
 
     time    None: the largest values of the samples that count; else those of the sample nearest to it (s), NaN where it does not count
@@ -111,7 +129,7 @@ def joints(history, time=None):
 
 
 def patches(history):
-    """(j, 8, 3) corners of the patches of joints(history), in the first sample, m; those with fewer corners repeat their last one."""
+    """(j, c, 3) corners of the patches of joints(history), in the first sample, m; those with fewer corners repeat their last one."""
     return _joints_of(history).polygons
 
 

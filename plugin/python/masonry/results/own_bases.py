@@ -4,7 +4,7 @@ import numpy as np
 from masonry._boxes import bounds, contacts
 
 # Blocks touch where they are at most this share of the smallest size of the two apart.
-_TOUCH = 1e-3
+TOUCH = 1e-3
 
 
 def _spread(base, pairs):
@@ -25,14 +25,15 @@ def _stand(base, blocks, bodies, joined, none):
     base[chosen] = chosen
 
 
-def own_bases(centers, sizes, axes, free):
+def own_bases(centers, sizes, axes, free, found=None):
     """(n,) rows of prescribed bodies; -1 for all where there is none. Free blocks that carry each other are one structure: its base is the first
     prescribed body that carries one of its blocks from below. Blocks that stand on nothing and prescribed bodies that carry nothing have the base of what they
-    touch, blocks between prescribed bodies the first of these, and what touches nothing the base of the nearest block. A base has itself."""
+    touch, blocks between prescribed bodies the first of these, and what touches nothing the base of the nearest block. A base has itself. found: what
+    touches (_boxes.contacts), where some are no boxes."""
     count = none = len(free)
     if free.all():
         return np.full(count, -1)
-    pairs, gaps, margins, supports = contacts(centers, sizes, axes, _TOUCH)
+    pairs, gaps, margins, supports = contacts(centers, sizes, axes, TOUCH) if found is None else found
     base, (lower, upper), touching = np.full(count, none), supports.T, pairs[gaps <= margins]
     stands = ~free[lower] & free[upper]
     _stand(base, upper[stands], lower[stands], supports[free[lower] & free[upper]], none)

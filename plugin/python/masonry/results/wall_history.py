@@ -7,8 +7,9 @@ import numpy as np
 from masonry import _pose
 from masonry._files import read_npz, written
 from masonry._given import number_given, shown
+from masonry._polyhedra import contacts
 from masonry._shapes import Shapes, box_corners
-from masonry.results.own_bases import own_bases
+from masonry.results.own_bases import TOUCH, own_bases
 
 ENERGIES = ("kinetic", "potential", "elastPotential", "frictDissip", "dampDissip", "impactDissip", "baseWork")
 _SAVED = ("time", "ids", "sizes", "free", "position", "orientation", "energies")
@@ -182,9 +183,11 @@ class WallHistory:
         """(n,) row of the body that the motion of each block is relative to: the first prescribed body on which its structure (blocks that carry each
         other) stands in the first sample; -1 where the history has no prescribed body."""
         axes = _pose.axes_of(self.orientation[0])
-        middles = (self.own_corners.min(axis=1) + self.own_corners.max(axis=1)) / 2  # 0 for a box
-        centers = self.position[0] + np.einsum("nab,na->nb", axes, middles) if self.shapes is not None else self.position[0]
-        return own_bases(centers, self.sizes, axes, self.free)
+        if self.shapes is None:
+            return own_bases(self.position[0], self.sizes, axes, self.free)
+        middles = (self.own_corners.min(axis=1) + self.own_corners.max(axis=1)) / 2
+        centers = self.position[0] + np.einsum("nab,na->nb", axes, middles)  # of the boxes around the blocks
+        return own_bases(centers, self.sizes, axes, self.free, contacts(self.shapes, self.convex, self.position[0], self.sizes, self.orientation[0], TOUCH))
 
     @property
     def base(self):
