@@ -85,9 +85,11 @@ public:
 		if (crossing) {
 			if (edges.separation > margin)
 				return false;
-			if (isNearFace(edges, reference)) {
+			// Along the normal of a face the edges are 1 / cosine as far apart; a patch that lacks them is farther.
+			const double allowed = tolerance::contact::edge * length + tolerance::contact::depthShare * std::max(0., edges.separation);
+			if (const double cosine = nearFace(edges, reference)) {
 				const PolyhedronFaces nearby = facesOf(reference);
-				if (patchOn(nearby, overlapTask(nearby, previous)))
+				if (patchOn(nearby, overlapTask(nearby, previous)) && smallestGap(out) * cosine <= edges.separation + allowed)
 					return smallestGap(out) <= margin;
 			}
 			setEdgePatch(edges);
@@ -110,24 +112,25 @@ private:
 		return facePatch(faces, task, faces.face.body == 1 ? pose1 : pose2, previous, out);
 	}
 
-	// Takes the face whose normal is nearest to the edges' normal if that is within the angle limit; the present reference as long as
-	// it is within.
-	bool isNearFace(const EdgePair& edges, FaceSeparation& reference) const
+	// Takes of the faces beside the edges that whose normal is nearest to theirs if that is within the angle limit; the present reference
+	// as long as it is within. Returns the cosine of the angle between the normals, or 0.
+	double nearFace(const EdgePair& edges, FaceSeparation& reference) const
 	{
-		const Vector3 outward[2] = {edges.normal, -(second.rotation.transpose() * edges.normal)}; // in each body's own axes
-		const ConvexPolyhedron* shapes[2] = {&shape1, &shape2};
-		if (outward[reference.body - 1].dot(shapes[reference.body - 1]->faces()[reference.face].normal) > cosineLimit)
-			return true;
+		const Vector3 outward2 = -(second.rotation.transpose() * edges.normal);
+		const ConvexPolyhedron::Edge &edge1 = shape1.edges()[edges.edge1], &edge2 = shape2.edges()[edges.edge2];
 		double nearest = cosineLimit;
-		for (int k = 0; k < 2; ++k) {
-			const int face = faceAlong(*shapes[k], outward[k]);
-			const double cosine = outward[k].dot(shapes[k]->faces()[face].normal);
+		FaceSeparation best = reference;
+		for (const auto& [body, face] : {std::pair(1, edge1.left), {1, edge1.right}, {2, edge2.left}, {2, edge2.right}}) {
+			const double cosine = body == 1 ? edges.normal.dot(shape1.faces()[face].normal) : outward2.dot(shape2.faces()[face].normal);
+			if (cosine > cosineLimit && body == reference.body && face == reference.face)
+				return cosine;
 			if (cosine > nearest) {
 				nearest = cosine;
-				reference = {k + 1, face, edges.separation};
+				best = {body, face, edges.separation};
 			}
 		}
-		return nearest > cosineLimit;
+		reference = best;
+		return nearest > cosineLimit ? nearest : 0;
 	}
 
 	void setEdgePatch(const EdgePair& edges)
