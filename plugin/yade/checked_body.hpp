@@ -2,16 +2,16 @@
 // What a block must be made of, for rigid and compliant joints alike.
 
 #include "BlockMat.hpp"
+#include "block_shape.hpp"
 #include "sentence.hpp"
 #include <core/Body.hpp>
-#include <pkg/common/Box.hpp>
 
 namespace yade {
 
 /// What MoreauJeanIntegrator handles.
 inline bool isBlock(const Body& body)
 {
-	return dynamic_cast<const BlockMat*>(body.material.get()) && dynamic_cast<const Box*>(body.shape.get());
+	return dynamic_cast<const BlockMat*>(body.material.get()) && body.shape && BlockShape::isOne(*body.shape);
 }
 
 /// Throws for a member of a clump, and unless half sizes, mass and moments of inertia are numbers whose squares, and those of their
@@ -32,6 +32,9 @@ inline void checkBody(const Body& body)
 		throw std::invalid_argument(sentence("O.bodies[", body.id, "] is a member of a clump: blocks cannot be clumped."));
 	if (const auto* box = dynamic_cast<const Box*>(body.shape.get()))
 		check("shape.extents", box->extents, "m");
+	else if (!BlockShape(*body.shape).polyhedron())
+		throw std::invalid_argument(
+		    sentence("O.bodies[", body.id, "].shape.vertices = [] is not allowed for a block: dem.convex() makes one."));
 	if (!body.isDynamic())
 		return;
 	check("state.mass", Eigen::Matrix<Real, 1, 1>(body.state->mass), "kg");

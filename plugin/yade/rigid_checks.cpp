@@ -71,7 +71,9 @@ void MoreauJeanIntegrator::checkBlocks(const Choice& choice) const
 		throw std::invalid_argument("There is no free block in O.bodies: add one with dem.block().");
 	for (const auto& body : scene->bodies->body)
 		if (body && dynamic_cast<BlockMat*>(body->material.get()) && !isBlock(*body))
-			throw std::invalid_argument(sentence("O.bodies[", body->id, "] has a BlockMat and is no Box: rigid blocks touch boxes only."));
+			throw std::invalid_argument(
+			    sentence("O.bodies[", body->id,
+			             "] has a BlockMat, but its shape is neither a Box nor a ConvexBlock: rigid blocks do not touch it."));
 }
 
 void MoreauJeanIntegrator::checkEngines()
@@ -122,12 +124,15 @@ void MoreauJeanIntegrator::checkPlane(const Vector3r& horizontal) const
 			if (body->isDynamic() != (pass == 0))
 				continue;
 			const State& state = *body->state;
-			const Vector3r local = state.ori.conjugate() * normal, size = static_cast<const Box&>(*body->shape).extents;
+			const Vector3r local = state.ori.conjugate() * normal;
+			const BlockShape shape(*body->shape);
 			int axis;
 			local.cwiseAbs().maxCoeff(&axis);
-			const Real half = size[axis], here = normal.dot(state.pos), rounding = outOfPlane * size.minCoeff();
+			const Real half = shape.reach(Vector3r::Unit(axis)), here = normal.dot(state.pos), rounding = outOfPlane * shape.thickness();
 			if (local.cwiseAbs().sum() - std::abs(local[axis]) > outOfPlane)
 				throw LeavesPlane(sentence("body ", body->id, " has no axis across the plane"));
+			if (!shape.isRightPrism(axis))
+				throw LeavesPlane(sentence("body ", body->id, " is no right prism across the plane"));
 			const bool shares = std::abs(here - depth) <= rounding;
 			if (body->isDynamic()) {
 				if (!shares)
@@ -202,9 +207,7 @@ Real MoreauJeanIntegrator::largestTimeStep()
 	for (const Body* body : blocks()) {
 		if (!body->isDynamic())
 			continue;
-		const Vector3r& extents = static_cast<const Box&>(*body->shape).extents;
-		const Real depth = (body->state->ori.conjugate() * across).cwiseAbs().dot(extents);
-		smallest = std::min(smallest, extents.squaredNorm() - depth * depth);
+		smallest = std::min(smallest, BlockShape(*body->shape).leastRadiusSquared(body->state->ori.conjugate() * across));
 	}
 	return coarsestStep * std::sqrt(std::sqrt(smallest) / gravity.norm());
 }

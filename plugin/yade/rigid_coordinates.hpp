@@ -1,10 +1,10 @@
 #pragma once
 // Where the core's plane or space lies in the scene, and how a body sits in it. No physics here.
 
+#include "block_shape.hpp"
 #include "dynamics/model/rigid_system.hpp"
 #include "sentence.hpp"
 #include <core/Body.hpp>
-#include <pkg/common/Box.hpp>
 
 namespace yade {
 
@@ -139,7 +139,12 @@ struct Seat<Plane> {
 		depth = c.normal.dot(state.pos);
 	}
 
-	masonry::Vector2 halfSize(const Vector3r& extents) const { return {extents[lengthwise], extents[upright]}; }
+	masonry::ConvexPolygon shape(const Coordinates<Plane>& c, const BlockShape& of) const
+	{
+		if (of.isBox())
+			return masonry::ConvexPolygon::box({of.extents()[lengthwise], of.extents()[upright]});
+		return of.polyhedron()->section(reference.conjugate() * c.along, reference.conjugate() * c.up);
+	}
 	Plane::Inertia inertia(const Vector3r& principal) const { return Plane::Inertia(principal[across]); }
 
 	/// Angles within half a turn. Throws LeavesPlane.
@@ -188,7 +193,10 @@ struct Seat<Space> {
 	Seat() = default;
 	Seat(const Coordinates<Space>&, const State&) {}
 
-	const Vector3r& halfSize(const Vector3r& extents) const { return extents; }
+	masonry::ConvexPolyhedron shape(const Coordinates<Space>&, const BlockShape& of) const
+	{
+		return of.isBox() ? masonry::ConvexPolyhedron::box(of.extents()) : *of.polyhedron();
+	}
 	const Vector3r& inertia(const Vector3r& principal) const { return principal; }
 	void read(const Coordinates<Space>&, const State& state, Real, int, masonry::RigidBody<Space>& body) const
 	{

@@ -174,7 +174,7 @@ void RigidScene<K>::readStates()
 		checkFinite(state, kept.ids[b]);
 		if (block.prescribed && scene.time > 0 && state.vel == Vector3r::Zero() && (state.pos - link.written.pos).norm() > 0)
 			warnOfPlace(b);
-		kept.seats[b].read(coordinates, state, link.properties.extents.minCoeff(), kept.ids[b], block);
+		kept.seats[b].read(coordinates, state, link.properties.shape.thickness(), kept.ids[b], block);
 		block.increment.setZero();
 		if (!link.written.isPlaceOf(state)) {
 			others[b] = elsewhere;

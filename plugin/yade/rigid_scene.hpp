@@ -15,18 +15,18 @@ namespace yade {
 
 /// What a script may change between steps and the core has taken over.
 struct Properties {
-	Vector3r extents, inertia;
+	BlockShape shape;
+	Vector3r inertia;
 	Real mass;
 	unsigned blockedDOFs;
 
 	explicit Properties(const Body& body)
-	    : extents(static_cast<const Box&>(*body.shape).extents), inertia(body.state->inertia), mass(body.state->mass),
-	      blockedDOFs(body.state->blockedDOFs)
+	    : shape(*body.shape), inertia(body.state->inertia), mass(body.state->mass), blockedDOFs(body.state->blockedDOFs)
 	{
 	}
 	bool operator==(const Properties& o) const
 	{
-		return extents == o.extents && inertia == o.inertia && mass == o.mass && blockedDOFs == o.blockedDOFs;
+		return shape == o.shape && inertia == o.inertia && mass == o.mass && blockedDOFs == o.blockedDOFs;
 	}
 };
 

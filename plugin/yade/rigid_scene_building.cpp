@@ -19,16 +19,19 @@ constexpr Real maxOverlap = 1e-4;
 /// Margin of the list of pairs, relative to the smallest half size. Larger: more pairs; smaller: the list is made anew more often.
 constexpr Real searchMargin = 0.1;
 
-/// Equal boxes share their shape.
+/// Equal blocks share their shape.
 template <class K>
-class SharedBoxes {
+class SharedShapes {
 public:
-	const std::shared_ptr<const typename K::Shape>& box(const typename K::Vector& half)
+	const std::shared_ptr<const typename K::Shape>& share(const typename K::Shape& shape)
 	{
-		auto& shape = made[vector<Real>(half.data(), half.data() + half.size())];
-		if (!shape)
-			shape = std::make_shared<const typename K::Shape>(K::Shape::box(half));
-		return shape;
+		vector<Real> coordinates;
+		for (const auto& vertex : shape.vertices())
+			coordinates.insert(coordinates.end(), vertex.data(), vertex.data() + vertex.size());
+		auto& shared = made[coordinates];
+		if (!shared)
+			shared = std::make_shared<const typename K::Shape>(shape);
+		return shared;
 	}
 
 private:
@@ -70,7 +73,7 @@ bool RigidScene<K>::says(const Seat<K>& seat, const State& state, const Properti
                          const masonry::RigidBody<K>& block) const
 {
 	masonry::RigidBody<K> read = block;
-	seat.read(coordinates, state, properties.extents.minCoeff(), id, read);
+	seat.read(coordinates, state, properties.shape.thickness(), id, read);
 	return isSame(read.pose, block.pose) && read.velocity == block.velocity;
 }
 
@@ -78,7 +81,7 @@ template <class K>
 vector<int> RigidScene<K>::addBlocks(const Remembered<K>& before)
 {
 	vector<int> inBefore;
-	SharedBoxes<K> shapes;
+	SharedShapes<K> shapes;
 	for (const auto& body : scene.bodies->body) {
 		seen.emplace_back(body);
 		if (!body || !isBlock(*body))
@@ -91,13 +94,13 @@ vector<int> RigidScene<K>::addBlocks(const Remembered<K>& before)
 		const Seat<K> seat = k < 0 ? Seat<K>(coordinates, state) : before.seats[k];
 
 		masonry::RigidBody<K> block = k < 0 ? masonry::RigidBody<K>() : before.bodies[k];
-		block.shape = shapes.box(seat.halfSize(properties.extents));
+		block.shape = shapes.share(seat.shape(coordinates, properties.shape));
 		block.mass = properties.mass;
 		block.inertia = seat.inertia(properties.inertia);
 		block.prescribed = !body->isDynamic();
 		block.drive = -1;
 		if (k < 0)
-			seat.read(coordinates, state, properties.extents.minCoeff(), body->id, block);
+			seat.read(coordinates, state, properties.shape.thickness(), body->id, block);
 		links.push_back({body, body->state, properties, {state.pos, state.vel, state.angVel, state.ori}});
 		if (k >= 0 && !(block.prescribed && says(seat, state, properties, body->id, block)))
 			seat.tell(coordinates, block, links.back().written);

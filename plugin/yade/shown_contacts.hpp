@@ -127,8 +127,8 @@ private:
 		pairLaw->go(body1.material, body2.material, contact.interaction);
 		contact.phys = boost::static_pointer_cast<BlockPhys>(contact.interaction->phys);
 		contact.geom.reset(new BlockGeom);
-		contact.geom->refR1 = static_cast<const Box&>(*body1.shape).extents.minCoeff();
-		contact.geom->refR2 = static_cast<const Box&>(*body2.shape).extents.minCoeff();
+		contact.geom->refR1 = BlockShape(*body1.shape).thickness();
+		contact.geom->refR2 = BlockShape(*body2.shape).thickness();
 		contact.interaction->geom = contact.geom;
 		keepStill(*contact.interaction, pairLaw);
 		return contact;

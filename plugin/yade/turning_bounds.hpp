@@ -2,10 +2,10 @@
 // YADE's collider looks for new pairs when a coordinate of a body's centre has moved by its sweep length. It is told here where turning
 // carries the corners that far by the end of the step.
 
+#include "block_shape.hpp"
 #include <core/Body.hpp>
 #include <core/Bound.hpp>
 #include <core/Scene.hpp>
-#include <pkg/common/Box.hpp>
 
 namespace yade {
 
@@ -25,7 +25,7 @@ public:
 			Seen& seen = seenAt[id];
 			if (seen.iteration != bound.lastUpdateIter)
 				seen = {bound.lastUpdateIter, state.ori};
-			const Real radius = static_cast<const Box&>(*body.shape).extents.norm();
+			const Real radius = BlockShape(*body.shape).radius();
 			const Vector3r displacement = state.pos - bound.refPos;
 			const Real turn = seen.orientation.angularDistance(state.ori) + state.angVel.norm() * scene.dt;
 			const Real way = displacement.norm() + radius * turn;

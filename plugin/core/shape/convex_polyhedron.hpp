@@ -74,6 +74,7 @@ public:
 	const Vector3& low() const { return least; }         // m, least coordinates
 	const Vector3& high() const { return most; }         // m, largest coordinates
 	MassProperties massProperties(double density) const; // kg/m^3
+	bool isRightPrism(const Vector3& normal) const;      // its faces are parallel or perpendicular to the unit vector, in body axes
 	// The section of a right prism across these axes (unit, perpendicular to each other, in body axes), which are those of the polygon.
 	// Refuses other shapes.
 	ConvexPolygon section(const Vector3& along, const Vector3& up) const;

@@ -1,20 +1,25 @@
 // The section of a prism, for scenes in a plane.
 #include "shape/convex_polyhedron.hpp"
 #include "tolerances.hpp"
-#include "validation.hpp"
+#include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 namespace masonry {
 
+bool ConvexPolyhedron::isRightPrism(const Vector3& normal) const
+{
+	return std::all_of(planes.begin(), planes.end(), [&](const Face& face) {
+		return std::min(std::abs(face.normal.dot(normal)), face.normal.cross(normal).norm()) <= tolerance::shape::plane;
+	});
+}
+
 ConvexPolygon ConvexPolyhedron::section(const Vector3& along, const Vector3& up) const
 {
-	const Vector3 normal = along.cross(up);
-	for (std::size_t k = 0; k < planes.size(); ++k) {
-		const double askew = std::min(std::abs(planes[k].normal.dot(normal)), planes[k].normal.cross(normal).norm());
-		require("sine between face " + std::to_string(k) + " and the nearest of the plane and its normal", askew,
-		        askew <= tolerance::shape::plane,
-		        "must be below 1e-6: blocks of the planar model are right prisms, whose faces are parallel or perpendicular to the plane");
-	}
+	if (!isRightPrism(along.cross(up)))
+		throw std::invalid_argument(
+		    "Blocks of the planar model are right prisms, whose faces are parallel or perpendicular to the plane within "
+		    "1e-6 rad; this block is none.");
 	std::vector<Vector2> corners;
 	for (const Vector3& point : points)
 		corners.push_back({along.dot(point), up.dot(point)});
