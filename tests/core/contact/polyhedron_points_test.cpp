@@ -44,7 +44,7 @@ TEST_CASE("Boxes have the points of the search for boxes, second normals too", "
 		const Vector3 half1 = shape1.halfSize(), half2 = shape2.halfSize();
 		Vector3 offset = Vector3::Zero();
 		for (int k = 0; k < 3; ++k) {
-			const double places[] = {0, half1[k], half1[k] - half2[k], random.even(-.3, .3), half1[k] + half2[k] - 1e-5};
+			const double places[] = {0, half1[k], half1[k] - half2[k], random.even(-.3, .3), half1[k] + half2[k] - 1e-3};
 			offset[k] = k == axis ? half1[k] + half2[k] - std::pow(10., -random.number(4, 9)) : places[random.number(0, 4)];
 		}
 		const Vector3 way = random.vector().normalized();
