@@ -2,6 +2,7 @@
 #include "shape/convex_hull.hpp"
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 namespace oracle {
 
@@ -151,7 +152,11 @@ ConvexPolyhedron RandomShapes::shape(int mostSides)
 	default:
 		points = hullPoints();
 	}
-	return masonry::inPrincipalAxes(ConvexPolyhedron::hull(points)).shape;
+	try {
+		return masonry::inPrincipalAxes(ConvexPolyhedron::hull(points)).shape;
+	} catch (const std::invalid_argument&) { // flat by chance
+		return shape(mostSides);
+	}
 }
 
 } // namespace oracle

@@ -89,6 +89,13 @@ int farthestVertex(const ConvexPolyhedron& shape, const Vector3& direction)
 	return farthest;
 }
 
+int faceAlong(const ConvexPolyhedron& shape, const Vector3& direction)
+{
+	const auto& faces = shape.faces();
+	const auto less = [&](const Face& a, const Face& b) { return direction.dot(a.normal) < direction.dot(b.normal); };
+	return static_cast<int>(std::max_element(faces.begin(), faces.end(), less) - faces.begin());
+}
+
 FaceSeparation bestFace(const ConvexPolyhedron& shape1, const ConvexPolyhedron& shape2, const RelativePose& second,
                         const PatchFeature& previous, double length)
 {

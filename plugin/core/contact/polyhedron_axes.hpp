@@ -24,6 +24,9 @@ struct EdgePair {
 // Number of the vertex that lies farthest along a direction.
 int farthestVertex(const ConvexPolyhedron&, const Vector3& direction);
 
+// Number of the face that looks most along a direction.
+int faceAlong(const ConvexPolyhedron&, const Vector3& direction);
+
 // The reference face: that of the largest separation, ties decided as `findPatch` says. `length`: m, to which tolerances are relative.
 FaceSeparation bestFace(const ConvexPolyhedron& shape1, const ConvexPolyhedron& shape2, const RelativePose& second,
                         const PatchFeature& previous, double length);

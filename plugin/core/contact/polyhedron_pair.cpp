@@ -8,8 +8,6 @@ namespace masonry {
 
 namespace {
 
-using Face = ConvexPolyhedron::Face;
-
 // The reference face is the right normal without a look at the edges if the faces are nearly parallel or if the deepest
 // incident vertex lies over the reference face: then its distance is the separation of the bodies. Both hold for bodies that
 // touch; one body deep beside the edge of another can have a shorter way out across its edges.
@@ -35,13 +33,6 @@ double gainOfEdges(double separation, double length, const PatchFeature& previou
 	const double share = previous.kind == PatchKind::None || edgesBefore ? tolerance::contact::edgeShare : tolerance::contact::depthShare;
 	const double gain = tolerance::contact::edge * length + share * std::max(0., -separation);
 	return edgesBefore ? -gain : gain;
-}
-
-int faceAlong(const ConvexPolyhedron& shape, const Vector3& direction)
-{
-	const auto& faces = shape.faces();
-	const auto less = [&](const Face& a, const Face& b) { return direction.dot(a.normal) < direction.dot(b.normal); };
-	return static_cast<int>(std::max_element(faces.begin(), faces.end(), less) - faces.begin());
 }
 
 double smallestGap(const ContactPatch& patch)

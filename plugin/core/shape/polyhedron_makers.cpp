@@ -133,11 +133,11 @@ ConvexPolyhedron ConvexPolyhedron::hull(std::vector<Vector3> points)
 {
 	const double extent = extentOf(points), tolerance = tolerance::shape::plane * extent;
 	points = inOrder(points, tolerance);
-	const double height = points.size() < 4 ? 0 : spannedHeight(points);
-	require("thickness of the vertices", height, height > tolerance, "m, must be above 1e-6 of their extent: they have no volume");
 	Loops loops;
 	for (std::size_t before = 0; before != points.size();) { // where faces are nearly coplanar, the hull without a vertex can have others
 		before = points.size();
+		const double height = before < 4 ? 0 : spannedHeight(points), least = 10 * tolerance;
+		require("thickness of the vertices", height, height > least, "m, must be above 1e-5 of their extent: they have no volume");
 		loops = mergedFaces(points, hullTriangles(points), tolerance);
 		dropUnused(points, loops);
 	}

@@ -1,5 +1,6 @@
 // Cost of one contact patch, with the feature of the call before, as in a time loop.
 #include "contact/box_box.hpp"
+#include "contact/polyhedron_pair.hpp"
 #include <benchmark/benchmark.h>
 
 using namespace masonry;
@@ -13,6 +14,26 @@ void measure(benchmark::State& state, const Box& box1, const Pose& pose1, const 
 	ContactPatch patch;
 	for (auto step : state)
 		benchmark::DoNotOptimize(collide(box1, pose1, box2, pose2, 1e-3, patch.feature, patch));
+}
+
+// The search for any convex polyhedra.
+void measureShapes(benchmark::State& state, const ConvexPolyhedron& shape1, const Pose& pose1, const ConvexPolyhedron& shape2,
+                   const Pose& pose2)
+{
+	ContactPatch patch;
+	for (auto step : state)
+		benchmark::DoNotOptimize(findPatch(shape1, pose1, shape2, pose2, 1e-3, patch.feature, patch));
+}
+
+ConvexPolyhedron shapeOf(const Box& box) { return ConvexPolyhedron::box(box.halfSize); }
+
+ConvexPolyhedron drum(int sides)
+{
+	std::vector<Vector3> points;
+	for (int k = 0; k < sides; ++k)
+		for (const double z : {-.5, .5})
+			points.push_back({.5 * std::cos(2 * M_PI * k / sides), .5 * std::sin(2 * M_PI * k / sides), z});
+	return ConvexPolyhedron::hull(points);
 }
 
 const Box base {{2, 2, .1}}, block {{.3, .5, 1.5}}, cube {{.5, .5, .5}};
@@ -33,6 +54,19 @@ void edgeOnEdge(benchmark::State& state)
 }
 void apart(benchmark::State& state) { measure(state, cube, lower, cube, {1.1 * z, Quaternion::Identity()}); }
 
+void shapesCubeOnCube(benchmark::State& state) { measureShapes(state, shapeOf(cube), lower, shapeOf(cube), {z, Quaternion::Identity()}); }
+void shapesEdgeOnEdge(benchmark::State& state)
+{
+	measureShapes(state, shapeOf(cube), {Vector3::Zero(), turn(.785, y)}, shapeOf(cube), {std::sqrt(2.) * z, turn(1.5, z) * turn(.785, y)});
+}
+void shapesApart(benchmark::State& state) { measureShapes(state, shapeOf(cube), lower, shapeOf(cube), {1.1 * z, Quaternion::Identity()}); }
+void hexagonOnHexagon(benchmark::State& state) { measureShapes(state, drum(6), lower, drum(6), {z, turn(.3, z)}); }
+void drumOnDrum(benchmark::State& state) { measureShapes(state, drum(24), lower, drum(24), {z, turn(.05, z)}); }
+void drumAcrossDrum(benchmark::State& state)
+{
+	measureShapes(state, drum(24), {Vector3::Zero(), turn(1.5, y)}, drum(24), {z, turn(1.5, Vector3::UnitX())});
+}
+
 BENCHMARK(flatOnBase);
 BENCHMARK(rockingOnBase);
 BENCHMARK(cubeOnCube);
@@ -40,5 +74,11 @@ BENCHMARK(runningBond);
 BENCHMARK(eightPoints);
 BENCHMARK(edgeOnEdge);
 BENCHMARK(apart);
+BENCHMARK(shapesCubeOnCube);
+BENCHMARK(shapesEdgeOnEdge);
+BENCHMARK(shapesApart);
+BENCHMARK(hexagonOnHexagon);
+BENCHMARK(drumOnDrum);
+BENCHMARK(drumAcrossDrum);
 
 } // namespace
