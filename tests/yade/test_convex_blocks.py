@@ -222,7 +222,7 @@ def test_bad_blocks_are_refused():
     refuses(lambda: dem.convex(CUBE, stone(), on=base, orientation=Quaternion(Vector3.UnitY, 0.1)), "the block has no face that looks down in this orientation")
     refuses(lambda: dem.convex(CUBE, stone(), orientation=(1, 0, 0, 0)), "orientation = (1, 0, 0, 0): must be a Quaternion of length 1")
     refuses(lambda: dem.convex(CUBE, "stone"), "material = 'stone': must be a BlockMat")
-    refuses(lambda: dem.arch(2, 0.4, 0.2, 7, 0.5, stone(), on=base), "block 0 would stand on an edge, because its lowest joint is not level")
+    refuses(lambda: dem.arch(2, 0.4, 0.2, 7, 0.5, stone(), on=base), "the blocks would stand on edges, because the lowest joints are not level")
     refuses(lambda: dem.arch(12, 6, 0.2, 7, 0.5, stone(), on=base), "2 blocks of the bottom course have their centres off it")
     refuses(lambda: dem.arch(2, 1, 0.2, 7, 0.5, stone(), on=(0, 0)), "on = (0, 0): their upper faces must be level and beside each other")
     refuses(lambda: dem.arch(2, 1, 0.2, 7, 0.5, stone(), on=(0, 1, 2)), "on = (0, 1, 2): must be the id of one body, or the ids of two")
@@ -340,3 +340,11 @@ def test_a_recorder_of_convex_blocks_wants_their_base():
     ids = dem.arch(2, 1, 0.2, 7, 0.5, stone(), on=base)
     assert f"add {base} where it moves" in said_by(check_recorder, dem.WallRecorder(iterPeriod=1, ids=ids))
     assert said_by(check_recorder, dem.WallRecorder(iterPeriod=1, ids=[base, *ids])) == ""
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_gaps_of_stones_that_are_apart_are_not_negative(seed):
+    """Stones of rubble without their short edges touch some neighbours nowhere: faces of neither separate these, and their crossed edges do."""
+    base = dem.base((9, 9, 0.2), stone())
+    dem.rubble_wall(1.5, 1, 0.6, 0.3, stone(), on=base, seed=seed)
+    dem.check_blocks(floating=False)

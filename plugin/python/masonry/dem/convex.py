@@ -128,14 +128,11 @@ def _say_critical_angle(radius, top_radius, height, sides, fit):
 
 def _bottom(blocks, lowest, extent):
     """Middles (n, 2) of the faces on which the blocks of a layout stand."""
-    middles = []
-    for k, block in enumerate(blocks):
-        corners = block[block[:, 2] - lowest <= _LEVEL * extent.max(), :2]
-        if 0 < len(corners) < 3:
-            raise ValueError(f"on: block {k} would stand on an edge, because its lowest joint is not level: springers=True gives an arch level feet; without `on` it stays "
-                             "where its layout has it")
-        if len(corners):
-            middles.append(corners.mean(axis=0))
+    level = [block[block[:, 2] - lowest <= _LEVEL * extent.max(), :2] for block in blocks]
+    middles = [corners.mean(axis=0) for corners in level if len(corners) >= 3]
+    if not middles:
+        raise ValueError("on: the blocks would stand on edges, because the lowest joints are not level: springers=True gives an arch level feet; without `on` the "
+                         "blocks stay where their layout has them")
     return np.array(middles)
 
 
@@ -268,8 +265,8 @@ def from_yade(body, material):
     """A free block with the shape, the place and the velocities of a Polyhedra of YADE, which is read once and stays as it is (O.bodies.erase(id) takes it
     away). body: a Body, or an id. Returns the id of the block."""
     if not isinstance(body, Body):
-        whole("body", body, 0)
-        body = O.bodies[body] if body < len(O.bodies) else None
+        id = whole("body", body, 0)
+        body = O.bodies[id] if id < len(O.bodies) else None
     if body is None or type(body.shape).__name__ != "Polyhedra":
         raise ValueError(f"body: {'there is no such body' if body is None else 'its shape is a ' + type(body.shape).__name__}: must be a body, or the id of one, whose shape is a Polyhedra")
     state = body.state
