@@ -8,7 +8,7 @@ import secrets
 from typing import NamedTuple
 
 import numpy as np
-from masonry._given import array_given, finite_numbers, shown
+from masonry._given import array_given, finite_numbers, is_whole, shown
 from masonry.dem import solids, voussoirs
 from masonry.dem.bodies import block_body, upper_face, world_shape
 from masonry.dem.layouts import whole
@@ -82,7 +82,19 @@ def convex(vertices, material, on=None, center=None, orientation=None, faces=Non
     points = array_given("vertices", vertices)
     if points.ndim != 2 or points.shape[1] != 3:
         raise ValueError(f"vertices = {shown(vertices)}: must be points of three numbers, in m")
-    return _one(points, material, on, center, orientation, faces)
+    return _one(points, material, on, center, orientation, None if faces is None else _loops(faces))
+
+
+def _loops(faces):
+    """The faces as lists of whole numbers; ValueError unless they are such."""
+    if not isinstance(faces, (list, tuple, np.ndarray)) or not len(faces):
+        raise ValueError(f"faces = {shown(faces)}: must be lists of numbers of vertices")
+    loops = []
+    for k, loop in enumerate(faces):
+        if not np.iterable(loop) or not all(is_whole(vertex, 0) for vertex in loop):
+            raise ValueError(f"faces[{k}] = {shown(loop)}: must be a list of numbers of vertices, whole numbers from 0 on")
+        loops.append([int(vertex) for vertex in loop])
+    return loops
 
 
 def prism(polygon, height, material, axis="z", on=None, center=None, orientation=None):
