@@ -2,16 +2,20 @@
 
 import json
 import math
+import shutil
+import subprocess
 from xml.etree import ElementTree
 
 import numpy as np
 import pytest
 from histories import ROUND, about_edge, history, rocking, turn
 from masonry import _pose, results
+from matplotlib.image import imread
 from masonry.results import pictures, view
 from masonry.results.reporting import view3d
 from test_history_files import decoded
 
+CHROMIUM = shutil.which("chromium")
 # A triangle prism along y: base 2, height 3, depth 1; its centre of mass is the origin.
 WEDGE = np.array([(x, y, z - 1.0) for y in (-0.5, 0.5) for x, z in ((-1, 0), (1, 0), (0, 3))])
 LOOPS = [[0, 1, 2], [3, 5, 4], [0, 3, 4, 1], [1, 4, 5, 2], [2, 5, 3, 0]]
@@ -128,6 +132,25 @@ def test_joints_of_convex_blocks_are_those_of_boxes():
     (joint,) = results.joints(h)
     assert joint["area"] == pytest.approx(2) and joint["opening"] == pytest.approx(2 * math.sin(0.1)) and np.allclose(joint["normal"], [0, 0, 1], atol=1e-12)
     assert results.patches(h).shape == (1, 8, 3)
+
+
+@pytest.mark.skipif(CHROMIUM is None, reason="no chromium here (Debian: apt install chromium): what a browser draws of the report is not looked at")
+def test_a_browser_draws_a_wedge(tmp_path):
+    """The console stays silent, and the upright triangle, seen from the front, is coloured over half of the rectangle around it."""
+    h = wedge_on_base([0, 0.1])
+    results.report(h, tmp_path / "h.html")
+    page = tmp_path / "front.html"
+    page.write_text((tmp_path / "h.html").read_text().replace("</body>", "<script>masonryReport.look('front'); masonryReport.go(0.5)</script></body>"))
+    done = subprocess.run([CHROMIUM, "--headless", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--hide-scrollbars", f"--user-data-dir={tmp_path}/profile",
+                           "--window-size=900,1000", "--virtual-time-budget=3000", "--enable-logging=stderr", f"--screenshot={tmp_path}/page.png", page.as_uri()],
+                          capture_output=True, text=True, timeout=240)
+    said = [line for line in done.stderr.splitlines() if ":CONSOLE" in line]
+    assert not said, said
+    picture = (255 * imread(tmp_path / "page.png")[190:625, 50:850, :3]).astype(int)  # of the canvas
+    block = picture[..., 0] - picture[..., 2] > 60  # yellow to red
+    rows, columns = (np.flatnonzero(block.any(axis=k)) for k in (1, 0))
+    share = block.sum() / (np.ptp(rows) + 1) / (np.ptp(columns) + 1)
+    assert block.sum() > 2000 and 0.4 < share < 0.6, (block.sum(), share)
 
 
 def test_what_hides_what():

@@ -218,11 +218,15 @@ def test_bad_blocks_are_refused():
     loops = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
     refuses(lambda: dem.convex(bent, stone(), faces=loops), "vertices: face 5: distance of a vertex from the plane of the others = 0.0")
     assert dem.convex(CUBE, stone(), faces=loops) == 1
+    refuses(lambda: dem.convex(CUBE, stone(), faces=7), "faces = 7: must be lists of numbers of vertices")
+    refuses(lambda: dem.convex(CUBE, stone(), faces=[[0, 1, 0.5]]), "faces[0] = [0, 1, 0.5]: must be a list of numbers of vertices")
+    refuses(lambda: dem.convex(CUBE, stone(), faces=[[0, 1, 8]]), "face 0: vertex = 8: there is no such vertex")
+    refuses(lambda: dem.convex(CUBE, stone(), faces=loops[1:]), "area of the faces = 5: m^2, must be that of the convex hull: a face is missing or given twice")
     refuses(lambda: dem.convex(CUBE, stone(), on=base, center=(0, 0, 0)), "on = 0, center = (0, 0, 0): give one of the two, or none")
     refuses(lambda: dem.convex(CUBE, stone(), on=base, orientation=Quaternion(Vector3.UnitY, 0.1)), "the block has no face that looks down in this orientation")
     refuses(lambda: dem.convex(CUBE, stone(), orientation=(1, 0, 0, 0)), "orientation = (1, 0, 0, 0): must be a Quaternion of length 1")
     refuses(lambda: dem.convex(CUBE, "stone"), "material = 'stone': must be a BlockMat")
-    refuses(lambda: dem.arch(2, 0.4, 0.2, 7, 0.5, stone(), on=base), "block 0 would stand on an edge, because its lowest joint is not level")
+    refuses(lambda: dem.arch(2, 0.4, 0.2, 7, 0.5, stone(), on=base), "the blocks would stand on edges, because the lowest joints are not level")
     refuses(lambda: dem.arch(12, 6, 0.2, 7, 0.5, stone(), on=base), "2 blocks of the bottom course have their centres off it")
     refuses(lambda: dem.arch(2, 1, 0.2, 7, 0.5, stone(), on=(0, 0)), "on = (0, 0): their upper faces must be level and beside each other")
     refuses(lambda: dem.arch(2, 1, 0.2, 7, 0.5, stone(), on=(0, 1, 2)), "on = (0, 1, 2): must be the id of one body, or the ids of two")
@@ -340,3 +344,24 @@ def test_a_recorder_of_convex_blocks_wants_their_base():
     ids = dem.arch(2, 1, 0.2, 7, 0.5, stone(), on=base)
     assert f"add {base} where it moves" in said_by(check_recorder, dem.WallRecorder(iterPeriod=1, ids=ids))
     assert said_by(check_recorder, dem.WallRecorder(iterPeriod=1, ids=[base, *ids])) == ""
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_gaps_of_stones_that_are_apart_are_not_negative(seed):
+    """Stones of rubble without their short edges touch some neighbours nowhere: faces of neither separate these, and their crossed edges do."""
+    base = dem.base((9, 9, 0.2), stone())
+    dem.rubble_wall(1.5, 1, 0.6, 0.3, stone(), on=base, seed=seed)
+    dem.check_blocks(floating=False)
+
+
+def test_joints_of_a_vault_in_running_bond():
+    """n courses of m and m + 1 blocks, m = 3: 2 and 3 head joints in them, 2 m bed joints between two courses, 2 m with the base."""
+    base = dem.base((9, 9, 0.2), stone())
+    dem.barrel_vault(3, 1.5, 0.3, 5, 3, 3, stone(), on=base)
+    recorder = dem.WallRecorder(iterPeriod=1)
+    O.engines, O.dt = [recorder], 1e-3
+    O.step()
+    table = results.joints(dem.wall_history(recorder))
+    assert len(table) == (3 * 2 + 2 * 3) + 4 * 6 + 2 * 3 and table["opening"].max() < 1e-14
+    beds = table[np.abs(table["normal"][:, 1]) < 0.5]
+    assert beds["area"].sum() == pytest.approx(6 * 3 * 0.3)  # six joints of the arch over the length

@@ -95,15 +95,28 @@ struct Polyhedra {
 		}
 	}
 
-	// Gap along the axis that separates the pair best, m; negative where they overlap.
+	// Gap along the axis that separates the pair best, m; negative where they overlap. A face that separates them is enough.
 	double gap(long one, long other) const
 	{
 		const ConvexPolyhedron &first = shapes[one], &second = shapes[other];
 		const Matrix3 back = poses[one].orientation.toRotationMatrix().transpose();
 		const RelativePose seen {back * poses[other].orientation.toRotationMatrix(), back * (poses[other].position - poses[one].position)};
-		const double face = bestFace(first, second, seen, {}, std::min(first.thickness(), second.thickness())).separation;
-		EdgePair edges;
-		return bestEdges(first, second, seen, face, edges) ? std::max(face, edges.separation) : face;
+		const double length = std::min(first.thickness(), second.thickness());
+		double best = bestFace(first, second, seen, {}, length).separation;
+		if (best >= -tolerance::contact::slack * length)
+			return best;
+		for (const ConvexPolyhedron::Edge& edge1 : first.edges())
+			for (const ConvexPolyhedron::Edge& edge2 : second.edges()) {
+				const Vector3 axis = edge1.direction.cross(seen.rotation * edge2.direction);
+				if (axis.norm() < tolerance::contact::parallelEdges)
+					continue;
+				for (const Vector3& normal : {Vector3(axis.normalized()), Vector3(-axis.normalized())}) {
+					const Vector3 own = seen.rotation.transpose() * normal;
+					const double far1 = normal.dot(first.vertices()[farthestVertex(first, normal)]);
+					best = std::max(best, normal.dot(seen.offset) + own.dot(second.vertices()[farthestVertex(second, -own)]) - far1);
+				}
+			}
+		return best;
 	}
 
 	// Cosine of the angle between the two faces that a patch is made of; 0 for edges.

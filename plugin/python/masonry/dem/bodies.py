@@ -94,8 +94,10 @@ def poses(bodies):
 
 
 def shapes_of(bodies):
-    """(the Shapes of boxes and convex blocks, (n,) which of them are convex)."""
+    """(the Shapes of boxes and convex blocks, or None where all are boxes, (n,) which of them are convex)."""
     convex = np.array([isinstance(b.shape, wrapper.ConvexBlock) for b in bodies], dtype=bool)
+    if not convex.any():
+        return None, convex
     own = [([tuple(v) for v in b.shape.vertices], b.shape.faces) if is_convex else (box_corners(_size(b.shape)), BOX_FACES) for b, is_convex in zip(bodies, convex)]
     return Shapes.of(own), convex
 
@@ -103,9 +105,10 @@ def shapes_of(bodies):
 def contacts_of(bodies, tolerance):
     """(pairs, gaps, margins, supports: pairs lower, upper) of bodies that touch, as _boxes.contacts."""
     centers, sizes, quaternions = poses(bodies)
-    if all(isinstance(b.shape, wrapper.Box) for b in bodies):
+    shapes, convex = shapes_of(bodies)
+    if shapes is None:
         return contacts(centers, sizes, axes_of(quaternions), tolerance)
-    return polyhedron_contacts(*shapes_of(bodies), centers, sizes, quaternions, tolerance)
+    return polyhedron_contacts(shapes, convex, centers, sizes, quaternions, tolerance)
 
 
 def geometry(bodies):

@@ -8,7 +8,7 @@ import secrets
 from typing import NamedTuple
 
 import numpy as np
-from masonry._given import array_given, finite_numbers, shown
+from masonry._given import array_given, finite_numbers, is_whole, shown
 from masonry.dem import solids, voussoirs
 from masonry.dem.bodies import block_body, upper_face, world_shape
 from masonry.dem.layouts import whole
@@ -82,7 +82,19 @@ def convex(vertices, material, on=None, center=None, orientation=None, faces=Non
     points = array_given("vertices", vertices)
     if points.ndim != 2 or points.shape[1] != 3:
         raise ValueError(f"vertices = {shown(vertices)}: must be points of three numbers, in m")
-    return _one(points, material, on, center, orientation, faces)
+    return _one(points, material, on, center, orientation, None if faces is None else _loops(faces))
+
+
+def _loops(faces):
+    """The faces as lists of whole numbers; ValueError unless they are such."""
+    if not isinstance(faces, (list, tuple, np.ndarray)) or not len(faces):
+        raise ValueError(f"faces = {shown(faces)}: must be lists of numbers of vertices")
+    loops = []
+    for k, loop in enumerate(faces):
+        if not np.iterable(loop) or not all(is_whole(vertex, 0) for vertex in loop):
+            raise ValueError(f"faces[{k}] = {shown(loop)}: must be a list of numbers of vertices, whole numbers from 0 on")
+        loops.append([int(vertex) for vertex in loop])
+    return loops
 
 
 def prism(polygon, height, material, axis="z", on=None, center=None, orientation=None):
@@ -128,14 +140,11 @@ def _say_critical_angle(radius, top_radius, height, sides, fit):
 
 def _bottom(blocks, lowest, extent):
     """Middles (n, 2) of the faces on which the blocks of a layout stand."""
-    middles = []
-    for k, block in enumerate(blocks):
-        corners = block[block[:, 2] - lowest <= _LEVEL * extent.max(), :2]
-        if 0 < len(corners) < 3:
-            raise ValueError(f"on: block {k} would stand on an edge, because its lowest joint is not level: springers=True gives an arch level feet; without `on` it stays "
-                             "where its layout has it")
-        if len(corners):
-            middles.append(corners.mean(axis=0))
+    level = [block[block[:, 2] - lowest <= _LEVEL * extent.max(), :2] for block in blocks]
+    middles = [corners.mean(axis=0) for corners in level if len(corners) >= 3]
+    if not middles:
+        raise ValueError("on: the blocks would stand on edges, because the lowest joints are not level: springers=True gives an arch level feet; without `on` the "
+                         "blocks stay where their layout has them")
     return np.array(middles)
 
 
@@ -268,8 +277,8 @@ def from_yade(body, material):
     """A free block with the shape, the place and the velocities of a Polyhedra of YADE, which is read once and stays as it is (O.bodies.erase(id) takes it
     away). body: a Body, or an id. Returns the id of the block."""
     if not isinstance(body, Body):
-        whole("body", body, 0)
-        body = O.bodies[body] if body < len(O.bodies) else None
+        id = whole("body", body, 0)
+        body = O.bodies[id] if id < len(O.bodies) else None
     if body is None or type(body.shape).__name__ != "Polyhedra":
         raise ValueError(f"body: {'there is no such body' if body is None else 'its shape is a ' + type(body.shape).__name__}: must be a body, or the id of one, whose shape is a Polyhedra")
     state = body.state

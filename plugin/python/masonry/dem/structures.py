@@ -26,7 +26,7 @@ def structures(gap=0.1):
     boxes = centers[own], sizes[own], axes_of(quaternions[own])
     i, j = near_pairs(*bounds(*boxes, reach / 2)).T
     joined = own[np.stack([i, j], axis=1)[face_gaps(i, j, *boxes) <= reach]]
-    if convex.any():
+    if shapes is not None:
         found = pairs_of(shapes, convex, centers, quaternions, np.full(len(bodies), reach))
         joined = np.concatenate([joined, found.pairs[found.gaps <= reach]])
     near = coo_array((np.ones(len(joined)), tuple(joined.T)), shape=(len(bodies), len(bodies)))

@@ -153,12 +153,12 @@ class TiltTable:
             raise ValueError("model = 'auto': must be 'planar' or 'spatial' where a BlockMat has a joint stiffness: TiltTable is for rigid blocks")
         self._start = [(b.state.pos, b.state.ori) for b in self._blocks]
         self._as_built, self._row = poses(self._blocks), {b.id: k for k, b in enumerate(self._blocks)}
-        self._shapes, self._convex = shapes_of(self._blocks)
+        self._shapes, _ = shapes_of(self._blocks)
         self._free_start = [start for b, start in zip(self._blocks, self._start) if b.dynamic]
         _, sizes, _ = free = geometry(self._free)
         low, high = bounds(*free)
         self._size, self._reach = sizes.min(), np.linalg.norm(sizes, axis=1) / 2
-        if self._convex.any():
+        if self._shapes is not None:
             low = high = np.concatenate([world_shape(b)[0] for b in self._free])
             self._reach = np.array([reach(b) for b in self._free])
         self._unit = math.sqrt((high[:, 2].max() - low[:, 2].min()) / gravity)
@@ -349,7 +349,7 @@ class TiltTable:
 
     def _gaps_as_built(self, pairs):
         centers, sizes, quaternions = self._as_built
-        if self._convex.any():
+        if self._shapes is not None:
             return gaps(self._shapes, centers, quaternions, pairs)
         return face_gaps(*pairs.T, centers, sizes, axes_of(quaternions))
 

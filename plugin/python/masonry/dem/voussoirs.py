@@ -7,7 +7,7 @@ corners lie on the curves and their faces are plane."""
 import math
 
 import numpy as np
-from masonry._given import number_given, positive_given, shown
+from masonry._given import number_given, shown
 from masonry.dem.layouts import SIZES, whole
 
 SHAPES, MEASURED, BONDS = ("circular", "pointed"), ("intrados", "middle"), ("running", "stack")
