@@ -6,13 +6,14 @@
 #include <boost/serialization/level.hpp>
 #include <boost/serialization/nvp.hpp>
 #include <boost/serialization/tracking.hpp>
+#include <map>
 #include <memory>
 #include <stdexcept>
 
 namespace yade {
 
 /// The row of numbers begins with that of its layout, to be changed with any list of members, and that of the scene's dimensions.
-constexpr Real layout = -13;
+constexpr Real layout = -14;
 
 /// Lets `read` read a row. Throws std::runtime_error if another version has written it.
 template <class Read>
@@ -32,13 +33,29 @@ struct Remembered {
 	vector<int> ids;
 	vector<Seat<K>> seats;
 	vector<masonry::RigidBody<K>> bodies;
+	vector<vector<typename K::Vector>> shapes; // vertices of the different ones
+	vector<int> shapeOf;                       // numbers of the bodies' shapes
 	vector<masonry::ContactPair<K>> pairs;
 
 	template <class Archive>
 	void serialize(Archive& archive)
 	{
-		archive(ids, seats, bodies, pairs);
+		archive(ids, seats, bodies, shapes, shapeOf, pairs);
 	}
+
+	void takeShapes()
+	{
+		std::map<const typename K::Shape*, int> numbers;
+		shapes.clear();
+		shapeOf.clear();
+		for (const auto& body : bodies) {
+			const auto [number, isNew] = numbers.emplace(body.shape.get(), int(shapes.size()));
+			if (isNew)
+				shapes.push_back(body.shape->vertices());
+			shapeOf.push_back(number->second);
+		}
+	}
+	bool hasShape(int body, const typename K::Shape& shape) const { return shapes.at(shapeOf.at(body)) == shape.vertices(); }
 };
 
 /// Told once in a run.

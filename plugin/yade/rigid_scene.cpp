@@ -323,6 +323,7 @@ vector<Real> RigidScene<K>::pack()
 	archive(first, dimension);
 	kept.bodies = system.bodies;
 	kept.pairs = system.pairs;
+	kept.takeShapes();
 	Remembered<K> told = kept;
 	for (size_t b = 0; b < links.size(); ++b)
 		if (!isThere(b))

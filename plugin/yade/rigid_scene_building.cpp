@@ -6,6 +6,7 @@
 #include "dynamics/model/scales.hpp"
 #include "tolerances.hpp"
 #include <algorithm>
+#include <map>
 #include <utility>
 
 namespace yade {
@@ -17,6 +18,22 @@ namespace {
 constexpr Real maxOverlap = 1e-4;
 /// Margin of the list of pairs, relative to the smallest half size. Larger: more pairs; smaller: the list is made anew more often.
 constexpr Real searchMargin = 0.1;
+
+/// Equal boxes share their shape.
+template <class K>
+class SharedBoxes {
+public:
+	const std::shared_ptr<const typename K::Shape>& box(const typename K::Vector& half)
+	{
+		auto& shape = made[vector<Real>(half.data(), half.data() + half.size())];
+		if (!shape)
+			shape = std::make_shared<const typename K::Shape>(K::Shape::box(half));
+		return shape;
+	}
+
+private:
+	std::map<vector<Real>, std::shared_ptr<const typename K::Shape>> made;
+};
 
 } // namespace
 
@@ -61,6 +78,7 @@ template <class K>
 vector<int> RigidScene<K>::addBlocks(const Remembered<K>& before)
 {
 	vector<int> inBefore;
+	SharedBoxes<K> shapes;
 	for (const auto& body : scene.bodies->body) {
 		seen.emplace_back(body);
 		if (!body || !isBlock(*body))
@@ -73,7 +91,7 @@ vector<int> RigidScene<K>::addBlocks(const Remembered<K>& before)
 		const Seat<K> seat = k < 0 ? Seat<K>(coordinates, state) : before.seats[k];
 
 		masonry::RigidBody<K> block = k < 0 ? masonry::RigidBody<K>() : before.bodies[k];
-		block.halfSize = seat.halfSize(properties.extents);
+		block.shape = shapes.box(seat.halfSize(properties.extents));
 		block.mass = properties.mass;
 		block.inertia = seat.inertia(properties.inertia);
 		block.prescribed = !body->isDynamic();
@@ -130,7 +148,7 @@ template <class K>
 void RigidScene<K>::addPairs(const Remembered<K>& before, const vector<int>& inBefore)
 {
 	const auto now = [&](int k) { return int(std::find(inBefore.begin(), inBefore.end(), k) - inBefore.begin()); };
-	const auto stays = [&](int b, int k) { return b < int(links.size()) && system.bodies[b].halfSize == before.bodies[k].halfSize; };
+	const auto stays = [&](int b, int k) { return b < int(links.size()) && before.hasShape(k, *system.bodies[b].shape); };
 	for (Pair pair : before.pairs) {
 		const int then1 = std::exchange(pair.body1, now(pair.body1)), then2 = std::exchange(pair.body2, now(pair.body2));
 		if (stays(pair.body1, then1) && stays(pair.body2, then2))

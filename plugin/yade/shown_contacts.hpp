@@ -137,7 +137,7 @@ private:
 	static bool apart(const System& system, const Pair& pair)
 	{
 		const Real far =
-		    clearlyApart * std::min(system.bodies[pair.body1].halfSize.minCoeff(), system.bodies[pair.body2].halfSize.minCoeff());
+		    clearlyApart * std::min(system.bodies[pair.body1].shape->thickness(), system.bodies[pair.body2].shape->thickness());
 		return std::none_of(pair.points.begin(), pair.points.end(), [&](const auto& point) { return point.gap <= far; });
 	}
 

@@ -5,6 +5,8 @@
 // A velocity holds the linear part, then the spin; a force likewise the force, then the moment about the centre.
 #include "contact/contact_patch.hpp"
 #include "math.hpp"
+#include "shape/convex_polygon.hpp"
+#include "shape/convex_polyhedron.hpp"
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -120,6 +122,7 @@ struct Plane {
 	using Inertia = Eigen::Matrix<double, 1, 1>; // kg m^2, about the centre
 	using InverseInertia = Eigen::Matrix<double, 1, 1>;
 	using Pose = PlanePose;
+	using Shape = ConvexPolygon;
 	using Memory = PlaneMemory;
 
 	static Vector cross(const Spin& w, const Vector& r) { return {-w[0] * r.y(), w[0] * r.x()}; }
@@ -137,13 +140,13 @@ struct Plane {
 	static Spin angularMomentum(const Inertia& inertia, const Pose&, const Spin& w) { return inertia * w; }
 	static InverseInertia inverseInertia(const Inertia& inertia, const Pose&) { return inertia.cwiseInverse(); }
 
-	static ContactFrame<Plane> frame(const Feature&, const Vector& half1, const Pose&, const Vector& half2, const Pose&);
+	static ContactFrame<Plane> frame(const Feature&, const Shape& shape1, const Pose&, const Shape& shape2, const Pose&);
 	// The vertices that meet a face at the ends of the two faces' overlap; of a corner that stands past the end of a face, only that
 	// vertex. Points keep their features by the memory until another choice is clearly better (tolerance::contact). False, with
 	// nothing found, when the boxes are farther apart than `margin` (m) or only meet corner beside corner (overlap below ::sliver).
-	static bool findPoints(const Vector& half1, const Pose&, const Vector& half2, const Pose&, double margin, Memory&, FoundPoints<Plane>&);
+	static bool findPoints(const Shape& shape1, const Pose&, const Shape& shape2, const Pose&, double margin, Memory&, FoundPoints<Plane>&);
 	// The second normals of points that are corners on corners (corner_normals.hpp).
-	static void addSecondNormals(const Vector& half1, const Pose&, const Vector& half2, const Pose&, FoundPoints<Plane>&);
+	static void addSecondNormals(const Shape& shape1, const Pose&, const Shape& shape2, const Pose&, FoundPoints<Plane>&);
 };
 
 struct Space {
@@ -154,6 +157,7 @@ struct Space {
 	using Inertia = Vector3;        // principal moments, kg m^2
 	using InverseInertia = Matrix3; // global axes
 	using Pose = masonry::Pose;
+	using Shape = ConvexPolyhedron;
 	using Memory = PatchFeature;
 
 	static Vector cross(const Spin& w, const Vector& r) { return w.cross(r); }
@@ -170,11 +174,11 @@ struct Space {
 		return axes * inertia.cwiseInverse().asDiagonal() * axes.transpose();
 	}
 
-	static ContactFrame<Space> frame(const Feature&, const Vector& half1, const Pose&, const Vector& half2, const Pose&);
+	static ContactFrame<Space> frame(const Feature&, const Shape& shape1, const Pose&, const Shape& shape2, const Pose&);
 	// The corners of the contact patch (contact/contact_patch.hpp), without the crossings of nearly parallel edges. False as in the plane.
-	static bool findPoints(const Vector& half1, const Pose&, const Vector& half2, const Pose&, double margin, Memory&, FoundPoints<Space>&);
+	static bool findPoints(const Shape& shape1, const Pose&, const Shape& shape2, const Pose&, double margin, Memory&, FoundPoints<Space>&);
 	// The second normals of vertices that are on edges (corner_normals.hpp).
-	static void addSecondNormals(const Vector& half1, const Pose&, const Vector& half2, const Pose&, FoundPoints<Space>&);
+	static void addSecondNormals(const Shape& shape1, const Pose&, const Shape& shape2, const Pose&, FoundPoints<Space>&);
 };
 
 } // namespace masonry

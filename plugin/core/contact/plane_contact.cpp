@@ -208,14 +208,15 @@ private:
 
 } // namespace
 
-bool Plane::findPoints(const Vector& half1, const Pose& pose1, const Vector& half2, const Pose& pose2, double margin, Memory& memory,
+bool Plane::findPoints(const Shape& shape1, const Pose& pose1, const Shape& shape2, const Pose& pose2, double margin, Memory& memory,
                        FoundPoints<Plane>& out)
 {
+	const Vector &half1 = shape1.halfSize(), &half2 = shape2.halfSize();
 	const Memory before = memory;
 	memory = {};
 	out = {};
 	const RelativePose second = relative(pose1, pose2), first = second.reversed();
-	const double length = std::min(half1.minCoeff(), half2.minCoeff());
+	const double length = std::min(shape1.thickness(), shape2.thickness());
 	const FaceAxis face = referenceFace(half1, half2, second, first, length, before);
 	if (face.separation > margin)
 		return false;
@@ -250,12 +251,13 @@ bool Plane::findPoints(const Vector& half1, const Pose& pose1, const Vector& hal
 	return true;
 }
 
-void Plane::addSecondNormals(const Vector& half1, const Pose& pose1, const Vector& half2, const Pose& pose2, FoundPoints<Plane>& out)
+void Plane::addSecondNormals(const Shape& shape1, const Pose& pose1, const Shape& shape2, const Pose& pose2, FoundPoints<Plane>& out)
 {
+	const Vector &half1 = shape1.halfSize(), &half2 = shape2.halfSize();
 	out.beginSecondNormals();
 	if (std::abs(pose1.cosine * pose2.sine - pose1.sine * pose2.cosine) < tolerance::contact::cornerSpread)
 		return; // parallel
-	const double reach = limits::vertexReach * std::min(half1.minCoeff(), half2.minCoeff());
+	const double reach = limits::vertexReach * std::min(shape1.thickness(), shape2.thickness());
 	for (int i = 0; i < out.places; ++i) {
 		const Feature point = out.features[i];
 		const bool on1 = point.vertexBody() == 1;

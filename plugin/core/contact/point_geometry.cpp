@@ -19,10 +19,10 @@ struct FaceBody {
 	Vector3 rotate(const Vector3& local) const { return rotation * local; }
 };
 
-Edge edgeOf(int number, const Vector3& half)
+Edge edgeOf(const ConvexPolyhedron& shape, int number)
 {
-	const Vector3 outward = feature::edgeSigns(number);
-	return {Vector3::Unit(feature::edgeAxis(number)), outward.cwiseProduct(half), outward};
+	const ConvexPolyhedron::Edge& edge = shape.edges()[number];
+	return {edge.direction, shape.middle(edge), shape.outward(edge)};
 }
 Edge rotated(const Edge& edge, const Pose& pose)
 {
@@ -54,33 +54,52 @@ ContactFrame<Space> edgeAcrossEdge(const Edge& edge1, const Vector3& centre1, co
 
 } // namespace
 
-PointGeometry<Plane> geometryOf(const Feature& feature, const Vector2& half1, const Vector2& half2)
+PointGeometry<Plane> geometryOf(const Feature& feature, const ConvexPolygon& shape1, const ConvexPolygon& shape2)
 {
 	const bool on1 = feature.vertexBody() == 1;
-	const Vector2 &vertexHalf = on1 ? half1 : half2, &faceHalf = on1 ? half2 : half1;
-	const int axis = feature::faceAxis(feature.face());
-	return {on1, feature::vertexSigns(feature.vertex()).head<2>().cwiseProduct(vertexHalf),
-	        feature::faceSign(feature.face()) * Vector2::Unit(axis), faceHalf[axis], faceHalf[1 - axis]};
+	const ConvexPolygon::Face& face = (on1 ? shape2 : shape1).faces()[feature.face()];
+	return {on1, (on1 ? shape1 : shape2).vertices()[feature.vertex()], face.normal, face.offset};
 }
 
-PointGeometry<Space> geometryOf(const Feature& feature, const Vector3& half1, const Vector3& half2)
+PointGeometry<Space> geometryOf(const Feature& feature, const ConvexPolyhedron& shape1, const ConvexPolyhedron& shape2)
 {
 	PointGeometry<Space> geometry;
 	geometry.crosses = feature.kind == Feature::Edges;
 	if (geometry.crosses) {
-		geometry.edge1 = edgeOf(feature.on1, half1);
-		geometry.edge2 = edgeOf(feature.on2, half2);
+		geometry.edge1 = edgeOf(shape1, feature.on1);
+		geometry.edge2 = edgeOf(shape2, feature.on2);
 		return geometry;
 	}
 	const bool on1 = geometry.vertexOn1 = feature.vertexBody() == 1;
-	const Vector3& faceHalf = on1 ? half2 : half1;
-	const int axis = feature::faceAxis(feature.face()), second = feature::nextAxis(axis);
-	geometry.vertex = feature::vertexSigns(feature.vertex()).cwiseProduct(on1 ? half1 : half2);
-	geometry.normal = feature::faceSign(feature.face()) * Vector3::Unit(axis);
-	geometry.tangent = Vector3::Unit(second);
-	geometry.distance = faceHalf[axis];
-	geometry.halfWidths = {faceHalf[second], faceHalf[feature::nextAxis(second)]};
+	const ConvexPolyhedron::Face& face = (on1 ? shape2 : shape1).faces()[feature.face()];
+	geometry.vertex = (on1 ? shape1 : shape2).vertices()[feature.vertex()];
+	geometry.normal = face.normal;
+	geometry.tangent = face.tangent;
+	geometry.distance = face.offset;
 	return geometry;
+}
+
+FaceReach<Plane> reachOf(const ConvexPolygon& shape, int number)
+{
+	using Place = Eigen::Matrix<double, 1, 1>;
+	const ConvexPolygon::Face& face = shape.faces()[number];
+	const Vector2 tangent(-face.normal.y(), face.normal.x());
+	return {Place(tangent.dot(shape.vertices()[face.from])), Place(tangent.dot(shape.vertices()[face.to]))};
+}
+
+FaceReach<Space> reachOf(const ConvexPolyhedron& shape, int number)
+{
+	const ConvexPolyhedron::Face& face = shape.faces()[number];
+	const Vector3 across = face.normal.cross(face.tangent);
+	const auto place = [&](int vertex) {
+		return Vector2(face.tangent.dot(shape.vertices()[vertex]), across.dot(shape.vertices()[vertex]));
+	};
+	FaceReach<Space> reach {place(face.loop[0]), place(face.loop[0])};
+	for (const int vertex : face.loop) {
+		reach.low = reach.low.cwiseMin(place(vertex));
+		reach.high = reach.high.cwiseMax(place(vertex));
+	}
+	return reach;
 }
 
 ContactFrame<Plane> frameOf(const PointGeometry<Plane>& geometry, const PlanePose& pose1, const PlanePose& pose2)
@@ -115,13 +134,13 @@ ContactFrame<Space> frameOf(const PointGeometry<Space>& geometry, const Pose& po
 	return frame;
 }
 
-ContactFrame<Plane> Plane::frame(const Feature& feature, const Vector& half1, const Pose& pose1, const Vector& half2, const Pose& pose2)
+ContactFrame<Plane> Plane::frame(const Feature& feature, const Shape& shape1, const Pose& pose1, const Shape& shape2, const Pose& pose2)
 {
-	return frameOf(geometryOf(feature, half1, half2), pose1, pose2);
+	return frameOf(geometryOf(feature, shape1, shape2), pose1, pose2);
 }
-ContactFrame<Space> Space::frame(const Feature& feature, const Vector& half1, const Pose& pose1, const Vector& half2, const Pose& pose2)
+ContactFrame<Space> Space::frame(const Feature& feature, const Shape& shape1, const Pose& pose1, const Shape& shape2, const Pose& pose2)
 {
-	return frameOf(geometryOf(feature, half1, half2), pose1, pose2);
+	return frameOf(geometryOf(feature, shape1, shape2), pose1, pose2);
 }
 
 bool isSharp(const PointGeometry<Space>& crossing, const Pose& pose1, const Pose& pose2, const Vector3& faceNormal)

@@ -43,8 +43,8 @@ struct PointGeometry;
 template <>
 struct PointGeometry<Plane> {
 	bool vertexOn1;
-	Vector2 vertex, normal;     // m, from the centre; outward normal of the face. In the axes of their bodies
-	double distance, halfWidth; // m, of the face from its body's centre; half of its length
+	Vector2 vertex, normal; // m, from the centre; outward normal of the face. In the axes of their bodies
+	double distance;        // m, of the face from its body's centre
 };
 
 template <>
@@ -56,12 +56,20 @@ struct PointGeometry<Space> {
 	Vector3 vertex {Vector3::Zero()};                            // m, from the centre
 	Vector3 normal {Vector3::Zero()}, tangent {Vector3::Zero()}; // of the face: outward, and along one of its sides
 	double distance {0};                                         // m, of the face from its body's centre
-	Vector2 halfWidths {Vector2::Zero()};                        // m, half of the face's length along the tangent and across it
 };
 
-// The geometry of a point of two boxes.
-PointGeometry<Plane> geometryOf(const Feature&, const Vector2& half1, const Vector2& half2);
-PointGeometry<Space> geometryOf(const Feature&, const Vector3& half1, const Vector3& half2);
+// The geometry of a point of two shapes.
+PointGeometry<Plane> geometryOf(const Feature&, const ConvexPolygon& shape1, const ConvexPolygon& shape2);
+PointGeometry<Space> geometryOf(const Feature&, const ConvexPolyhedron& shape1, const ConvexPolyhedron& shape2);
+
+// How far a face reaches from the foot of its body's centre, m: along its tangent, which in the plane is the normal turned by +90 degrees,
+// and in space across it too, along the normal times the tangent.
+template <class K>
+struct FaceReach {
+	Eigen::Matrix<double, K::rows - 1, 1> low, high;
+};
+FaceReach<Plane> reachOf(const ConvexPolygon&, int face);
+FaceReach<Space> reachOf(const ConvexPolyhedron&, int face);
 
 ContactFrame<Plane> frameOf(const PointGeometry<Plane>&, const PlanePose& pose1, const PlanePose& pose2);
 ContactFrame<Space> frameOf(const PointGeometry<Space>&, const Pose& pose1, const Pose& pose2);

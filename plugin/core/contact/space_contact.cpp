@@ -17,21 +17,20 @@ namespace {
 
 using Frame = ContactFrame<Space>;
 
-Vector3 vertexOf(int number, const Vector3& half) { return feature::vertexSigns(number).cwiseProduct(half); }
-
 bool isCrossing(const Feature& feature) { return feature.kind == Feature::Edges; }
 
 // A corner of both faces is named after body 2. The point is the vertex that lies over the other body's face, which the larger of its
 // distances from the sides of that face tells, as in the plane (endOfOverlap).
-Feature vertexFeature(int vertex2, const PatchFeature& faces, const Vector3& half1, const Pose& pose1, const Vector3& half2,
-                      const Pose& pose2)
+Feature vertexFeature(int vertex2, const PatchFeature& faces, const ConvexPolyhedron& shape1, const Pose& pose1,
+                      const ConvexPolyhedron& shape2, const Pose& pose2)
 {
-	const double length = std::min(half1.minCoeff(), half2.minCoeff());
-	const Vector3 place = pose1.orientation.conjugate() * (pose2.position - pose1.position + pose2.orientation * vertexOf(vertex2, half2));
+	const double length = std::min(shape1.thickness(), shape2.thickness());
+	const Vector3 place =
+	    pose1.orientation.conjugate() * (pose2.position - pose1.position + pose2.orientation * shape2.vertices()[vertex2]);
 	const int axis = feature::faceAxis(faces.feature1);
 	Vector3 signs = place.unaryExpr(&feature::signOf);
 	signs[axis] = feature::faceSign(faces.feature1);
-	Vector3 outside = signs.cwiseProduct(place) - half1;
+	Vector3 outside = signs.cwiseProduct(place) - shape1.halfSize();
 	outside[axis] = 0;
 	int side;
 	const double farthest = outside.cwiseAbs().maxCoeff(&side);
@@ -43,25 +42,25 @@ Feature vertexFeature(int vertex2, const PatchFeature& faces, const Vector3& hal
 }
 
 // With the face that it is on.
-Feature featureOf(const PatchPoint& point, const PatchFeature& faces, const Vector3& half1, const Pose& pose1, const Vector3& half2,
-                  const Pose& pose2)
+Feature featureOf(const PatchPoint& point, const PatchFeature& faces, const ConvexPolyhedron& shape1, const Pose& pose1,
+                  const ConvexPolyhedron& shape2, const Pose& pose2)
 {
 	if (point.feature.kind == Feature::Vertex1)
 		return {Feature::Vertex1, point.feature.on1, faces.feature2};
-	return isCrossing(point.feature) ? point.feature : vertexFeature(point.feature.on2, faces, half1, pose1, half2, pose2);
+	return isCrossing(point.feature) ? point.feature : vertexFeature(point.feature.on2, faces, shape1, pose1, shape2, pose2);
 }
 
 // The corners of the patch but crossings that are not sharp; of these only one that lies far deeper than all others.
-void takeCorners(const ContactPatch& patch, const Vector3& half1, const Pose& pose1, const Vector3& half2, const Pose& pose2,
-                 FoundPoints<Space>& out)
+void takeCorners(const ContactPatch& patch, const ConvexPolyhedron& shape1, const Pose& pose1, const ConvexPolyhedron& shape2,
+                 const Pose& pose2, FoundPoints<Space>& out)
 {
 	constexpr double infinity = std::numeric_limits<double>::infinity();
-	const double length = std::min(half1.minCoeff(), half2.minCoeff());
+	const double length = std::min(shape1.thickness(), shape2.thickness());
 	double nearest = infinity, nearestBlunt = infinity;
 	Feature blunt;
 	for (const PatchPoint& point : patch.points) {
-		const Feature feature = featureOf(point, patch.feature, half1, pose1, half2, pose2);
-		if (!isCrossing(feature) || isSharp(geometryOf(feature, half1, half2), pose1, pose2, patch.normal)) {
+		const Feature feature = featureOf(point, patch.feature, shape1, pose1, shape2, pose2);
+		if (!isCrossing(feature) || isSharp(geometryOf(feature, shape1, shape2), pose1, pose2, patch.normal)) {
 			nearest = std::min(nearest, point.gap);
 			out.features.push_back(feature);
 		} else if (point.gap < nearestBlunt) {
@@ -77,10 +76,10 @@ void takeCorners(const ContactPatch& patch, const Vector3& half1, const Pose& po
 // speed that is all of the sliding, and so does the face that it is over. So of two corners of the patch that are so near each other, and
 // have not the same normal, only the nearer to touch is one. And past the border the vertex is none at once: up to vertexReach beyond it,
 // the face that it has left would hold it.
-void dropPassing(const ContactPatch& patch, const Vector3& half1, const Pose& pose1, const Vector3& half2, const Pose& pose2,
-                 PatchFeature& memory, FoundPoints<Space>& out)
+void dropPassing(const ContactPatch& patch, const ConvexPolyhedron& shape1, const Pose& pose1, const ConvexPolyhedron& shape2,
+                 const Pose& pose2, PatchFeature& memory, FoundPoints<Space>& out)
 {
-	const double nearby = tolerance::contact::passing * std::min(half1.minCoeff(), half2.minCoeff());
+	const double nearby = tolerance::contact::passing * std::min(shape1.thickness(), shape2.thickness());
 	const auto corner = [&](int i) -> const Vector3& { return patch.points[i].position1; };
 	bool some = false;
 	for (int i = 1; i < patch.size(); ++i)
@@ -90,7 +89,7 @@ void dropPassing(const ContactPatch& patch, const Vector3& half1, const Pose& po
 		return;
 	PerPoint<Frame> frames;
 	for (const Feature& feature : out.features)
-		frames.push_back(Space::frame(feature, half1, pose1, half2, pose2));
+		frames.push_back(Space::frame(feature, shape1, pose1, shape2, pose2));
 	const auto features = std::exchange(out.features, {});
 	for (size_t i = 0; i < features.size(); ++i) {
 		const auto hides = [&, i](const Frame& other) {
@@ -105,26 +104,26 @@ void dropPassing(const ContactPatch& patch, const Vector3& half1, const Pose& po
 	}
 }
 
-double sineBetween(int face1, const Pose& pose1, int face2, const Pose& pose2)
+double sineBetween(const ConvexPolyhedron& shape1, int face1, const Pose& pose1, const ConvexPolyhedron& shape2, int face2,
+                   const Pose& pose2)
 {
-	const Vector3 normal1 = pose1.orientation * Vector3::Unit(feature::faceAxis(face1)),
-	              normal2 = pose2.orientation * Vector3::Unit(feature::faceAxis(face2));
+	const Vector3 normal1 = pose1.orientation * shape1.faces()[face1].normal, normal2 = pose2.orientation * shape2.faces()[face2].normal;
 	return normal1.cross(normal2).norm();
 }
 
 // Whether these faces are no longer one upon the other.
-bool leans(const PatchFeature& faces, const Pose& pose1, const Pose& pose2)
+bool leans(const PatchFeature& faces, const ConvexPolyhedron& shape1, const Pose& pose1, const ConvexPolyhedron& shape2, const Pose& pose2)
 {
 	return (faces.kind == PatchKind::Face1 || faces.kind == PatchKind::Face2) &&
-	       sineBetween(faces.feature1, pose1, faces.feature2, pose2) > tolerance::contact::leans;
+	       sineBetween(shape1, faces.feature1, pose1, shape2, faces.feature2, pose2) > tolerance::contact::leans;
 }
 
-int faceNearest(const Vector3& direction, const Pose& pose)
+int faceNearest(const Vector3& direction, const ConvexPolyhedron& shape, const Pose& pose)
 {
 	const Vector3 local = pose.orientation.conjugate() * direction;
-	int axis;
-	local.cwiseAbs().maxCoeff(&axis);
-	return feature::faceNumber(axis, local[axis]);
+	const auto& faces = shape.faces();
+	const auto looksLess = [&](const auto& a, const auto& b) { return a.normal.dot(local) < b.normal.dot(local); };
+	return int(std::max_element(faces.begin(), faces.end(), looksLess) - faces.begin());
 }
 
 } // namespace
@@ -140,40 +139,40 @@ void Space::advance(Pose& pose, const Velocity& velocity, double t)
 	pose.orientation = (turn * pose.orientation).normalized();
 }
 
-bool Space::findPoints(const Vector& half1, const Pose& pose1, const Vector& half2, const Pose& pose2, double margin, Memory& memory,
+bool Space::findPoints(const Shape& shape1, const Pose& pose1, const Shape& shape2, const Pose& pose2, double margin, Memory& memory,
                        FoundPoints<Space>& out)
 {
 	const Memory before = memory;
 	memory = {};
 	out = {};
 	ContactPatch patch;
-	if (!collide({half1}, pose1, {half2}, pose2, margin, before, patch))
+	if (!collide({shape1.halfSize()}, pose1, {shape2.halfSize()}, pose2, margin, before, patch))
 		return false;
 
 	memory = patch.feature;
 	const bool faces = patch.feature.kind != PatchKind::Edges;
-	out.face1 = faces ? patch.feature.feature1 : faceNearest(patch.normal, pose1);
-	out.face2 = faces ? patch.feature.feature2 : faceNearest(-patch.normal, pose2);
-	takeCorners(patch, half1, pose1, half2, pose2, out);
-	if (leans(memory, pose1, pose2))
-		dropPassing(patch, half1, pose1, half2, pose2, memory, out);
+	out.face1 = faces ? patch.feature.feature1 : faceNearest(patch.normal, shape1, pose1);
+	out.face2 = faces ? patch.feature.feature2 : faceNearest(-patch.normal, shape2, pose2);
+	takeCorners(patch, shape1, pose1, shape2, pose2, out);
+	if (leans(memory, shape1, pose1, shape2, pose2))
+		dropPassing(patch, shape1, pose1, shape2, pose2, memory, out);
 	return true;
 }
 
-void Space::addSecondNormals(const Vector& half1, const Pose& pose1, const Vector& half2, const Pose& pose2, FoundPoints<Space>& out)
+void Space::addSecondNormals(const Shape& shape1, const Pose& pose1, const Shape& shape2, const Pose& pose2, FoundPoints<Space>& out)
 {
 	out.beginSecondNormals();
-	if (out.places == 0 || sineBetween(out.face1, pose1, out.face2, pose2) < tolerance::contact::cornerSpread)
+	if (out.places == 0 || sineBetween(shape1, out.face1, pose1, shape2, out.face2, pose2) < tolerance::contact::cornerSpread)
 		return;
-	const double reach = tolerance::contact::vertexReach * std::min(half1.minCoeff(), half2.minCoeff());
+	const double reach = tolerance::contact::vertexReach * std::min(shape1.thickness(), shape2.thickness());
 	for (int i = 0; i < out.places; ++i) {
 		const Feature point = out.features[i];
 		if (isCrossing(point))
 			continue;
 		const int body = point.vertexBody();
 		const bool on1 = body == 1;
-		const VertexOnEdge corner(point.vertex(), on1 ? half1 : half2, on1 ? pose1 : pose2, point.face(), on1 ? half2 : half1,
-		                          on1 ? pose2 : pose1);
+		const VertexOnEdge corner(point.vertex(), (on1 ? shape1 : shape2).halfSize(), on1 ? pose1 : pose2, point.face(),
+		                          (on1 ? shape2 : shape1).halfSize(), on1 ? pose2 : pose1);
 		corner.forEdges(reach, reach, [&](const NormalsOnEdge& normals) {
 			if (normals.tangent < tolerance::contact::cornerSpread)
 				return;

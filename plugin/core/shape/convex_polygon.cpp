@@ -117,8 +117,12 @@ void ConvexPolygon::measure()
 			lowest = std::min(lowest, face.normal.dot(point));
 		leastHalfWidth = std::min(leastHalfWidth, (face.offset - lowest) / 2);
 	}
-	for (const Vector2& point : points)
+	least = most = points[0];
+	for (const Vector2& point : points) {
 		farthest = std::max(farthest, point.norm());
+		least = least.cwiseMin(point);
+		most = most.cwiseMax(point);
+	}
 }
 
 ConvexPolygon ConvexPolygon::box(const Vector2& half)

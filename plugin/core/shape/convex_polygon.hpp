@@ -43,6 +43,8 @@ public:
 	double gyrationSquared() const { return gyration; }       // m^2, second moment about the centre of mass over the area
 	double thickness() const { return leastHalfWidth; }       // m, half of the least width across a face; the smallest half size of a box
 	double radius() const { return farthest; }                // m, from the origin to the farthest vertex
+	const Vector2& low() const { return least; }              // m, least coordinates
+	const Vector2& high() const { return most; }              // m, largest coordinates
 	bool isBox() const { return madeAsBox; }                  // made by `box`: its vertices are +-halfSize
 	const Vector2& halfSize() const { return points.back(); } // m; of a box
 
@@ -54,6 +56,7 @@ private:
 	std::vector<Face> sides;
 	std::vector<Corner> meets;
 	double surface {0}, gyration {0}, leastHalfWidth {0}, farthest {0};
+	Vector2 least, most;
 	bool madeAsBox {false};
 };
 

@@ -62,8 +62,12 @@ void ConvexPolyhedron::measure()
 			lowest = std::min(lowest, face.normal.dot(point));
 		leastHalfWidth = std::min(leastHalfWidth, (face.offset - lowest) / 2);
 	}
-	for (const Vector3& point : points)
+	least = most = points[0];
+	for (const Vector3& point : points) {
 		farthest = std::max(farthest, point.norm());
+		least = least.cwiseMin(point);
+		most = most.cwiseMax(point);
+	}
 }
 
 ConvexPolyhedron ConvexPolyhedron::box(const Vector3& half)

@@ -62,6 +62,8 @@ public:
 
 	double thickness() const { return leastHalfWidth; }  // m, half of the least width across a face; the smallest half size of a box
 	double radius() const { return farthest; }           // m, from the origin to the farthest vertex
+	const Vector3& low() const { return least; }         // m, least coordinates
+	const Vector3& high() const { return most; }         // m, largest coordinates
 	MassProperties massProperties(double density) const; // kg/m^3
 	// The section of a right prism across these axes (unit, perpendicular to each other, in body axes), which are those of the polygon.
 	// Refuses other shapes.
@@ -82,6 +84,7 @@ private:
 	std::vector<Edge> lines;
 	std::vector<Corner> meets;
 	double leastHalfWidth {0}, farthest {0};
+	Vector3 least, most;
 	bool madeAsBox {false};
 };
 

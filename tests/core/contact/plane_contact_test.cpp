@@ -28,9 +28,10 @@ struct Found : FoundPoints<Plane> {
 Found find(const Vector2& half1, const PlanePose& pose1, const Vector2& half2, const PlanePose& pose2, double margin, PlaneMemory& memory)
 {
 	Found found;
-	found.near = Plane::findPoints(half1, pose1, half2, pose2, margin, memory, found);
+	const ConvexPolygon shape1 = ConvexPolygon::box(half1), shape2 = ConvexPolygon::box(half2);
+	found.near = Plane::findPoints(shape1, pose1, shape2, pose2, margin, memory, found);
 	for (int i = 0; i < found.size(); ++i) {
-		found.frames.push_back(Plane::frame(found.features[i], half1, pose1, half2, pose2));
+		found.frames.push_back(Plane::frame(found.features[i], shape1, pose1, shape2, pose2));
 		found.smallestGap = std::min(found.smallestGap, found.frames.back().gap);
 	}
 	return found;
@@ -292,18 +293,19 @@ TEST_CASE("the gap's rate is the relative velocity along the normal at the point
 	for (int i = 0; i < 2000; ++i) {
 		const Vector2 half1(1 + 0.5 * unit(random), 1 + 0.5 * unit(random)), half2(1 + 0.5 * unit(random), 1 + 0.5 * unit(random));
 		const PlanePose pose1 = at(unit(random), unit(random), 4 * unit(random)), pose2 = at(unit(random), unit(random), 4 * unit(random));
+		const ConvexPolygon shape1 = ConvexPolygon::box(half1), shape2 = ConvexPolygon::box(half2);
 		const Feature feature = Feature::ofVertex(i % 2 + 1, (i / 2) % 4, (i / 8) % 4);
 		const Plane::Velocity velocity1 = Plane::Velocity::Random(), velocity2 = Plane::Velocity::Random();
 		const auto gap = [&](double t) {
 			PlanePose moved1 = pose1, moved2 = pose2;
 			Plane::advance(moved1, velocity1, t);
 			Plane::advance(moved2, velocity2, t);
-			return Plane::frame(feature, half1, moved1, half2, moved2).gap;
+			return Plane::frame(feature, shape1, moved1, shape2, moved2).gap;
 		};
 		const auto slope = [&gap](double h) { return (gap(h) - gap(-h)) / (2 * h); };
 		const double rate = (64 * slope(1e-3) - 20 * slope(2e-3) + slope(4e-3)) / 45;
 
-		const auto frame = Plane::frame(feature, half1, pose1, half2, pose2);
+		const auto frame = Plane::frame(feature, shape1, pose1, shape2, pose2);
 		const auto at = [&frame](const PlanePose& pose, const Plane::Velocity& velocity) -> Vector2 {
 			return velocity.head<2>() + Plane::cross(velocity.tail<1>(), frame.position - pose.position);
 		};

@@ -27,9 +27,10 @@ struct Found : FoundPoints<Space> {
 Found find(const Vector3& half1, const Pose& pose1, const Vector3& half2, const Pose& pose2, double margin, PatchFeature& memory)
 {
 	Found found;
-	found.near = Space::findPoints(half1, pose1, half2, pose2, margin, memory, found);
+	const ConvexPolyhedron shape1 = ConvexPolyhedron::box(half1), shape2 = ConvexPolyhedron::box(half2);
+	found.near = Space::findPoints(shape1, pose1, shape2, pose2, margin, memory, found);
 	for (int i = 0; i < found.size(); ++i)
-		found.frames.push_back(Space::frame(found.features[i], half1, pose1, half2, pose2));
+		found.frames.push_back(Space::frame(found.features[i], shape1, pose1, shape2, pose2));
 	return found;
 }
 
@@ -62,7 +63,8 @@ TEST_CASE("a planar scene has the points of the plane, once in front and once be
 		    plane1.position.y() + half1.y() + half2.y() + 0.2 * unit(random);
 		PlaneMemory memory;
 		FoundPoints<Plane> expected;
-		const bool near = Plane::findPoints(half1, plane1, half2, plane2, 0.1, memory, expected);
+		const ConvexPolygon flat1 = ConvexPolygon::box(half1), flat2 = ConvexPolygon::box(half2);
+		const bool near = Plane::findPoints(flat1, plane1, flat2, plane2, 0.1, memory, expected);
 
 		const auto inSpace = [](const PlanePose& p) { return at({p.position.x(), 0, p.position.y()}, {0, -p.angle, 0}); };
 		const Found found = find({half1.x(), 0.5, half1.y()}, inSpace(plane1), {half2.x(), 0.5, half2.y()}, inSpace(plane2), 0.1);
@@ -73,7 +75,7 @@ TEST_CASE("a planar scene has the points of the plane, once in front and once be
 		const auto smallest = [&] {
 			double gap = 1;
 			for (int k = 0; k < expected.size(); ++k)
-				gap = std::min(gap, Plane::frame(expected.features[k], half1, plane1, half2, plane2).gap);
+				gap = std::min(gap, Plane::frame(expected.features[k], flat1, plane1, flat2, plane2).gap);
 			return gap;
 		};
 		if (near != found.near) {
@@ -89,7 +91,7 @@ TEST_CASE("a planar scene has the points of the plane, once in front and once be
 			CHECK(std::abs(std::abs(frame.position.y()) - 0.5) < 1e-15);
 			int matches = 0;
 			for (int k = 0; k < expected.size(); ++k) {
-				const auto flat = Plane::frame(expected.features[k], half1, plane1, half2, plane2);
+				const auto flat = Plane::frame(expected.features[k], flat1, plane1, flat2, plane2);
 				const double error = (Vector2(frame.position.x(), frame.position.z()) - flat.position).norm() +
 				                     std::abs(frame.gap - flat.gap) +
 				                     (Vector2(frame.axes(0, 0), frame.axes(0, 2)) - Vector2(flat.axes(0, 0), flat.axes(0, 1))).norm();
@@ -233,6 +235,7 @@ TEST_CASE("the gap's rate in space is the relative velocity along the normal at 
 	for (int i = 0; i < 40000; ++i) {
 		const Vector3 half1 = Vector3::Ones() + 0.5 * vector(), half2 = Vector3::Ones() + 0.5 * vector();
 		const Pose pose1 = at(vector(), vector()), pose2 = at(pose1.position + 2.5 * vector(), (i % 2 ? 1 : 3) * vector());
+		const ConvexPolyhedron shape1 = ConvexPolyhedron::box(half1), shape2 = ConvexPolyhedron::box(half2);
 		const Found found = find(half1, pose1, half2, pose2, 0.1);
 		for (int k = 0; k < found.size(); ++k) {
 			const Feature feature = found.features[k];
@@ -244,7 +247,7 @@ TEST_CASE("the gap's rate in space is the relative velocity along the normal at 
 				Pose moved1 = pose1, moved2 = pose2;
 				Space::advance(moved1, velocity1, t);
 				Space::advance(moved2, velocity2, t);
-				return Space::frame(feature, half1, moved1, half2, moved2).gap;
+				return Space::frame(feature, shape1, moved1, shape2, moved2).gap;
 			};
 			double h = 1e-3;
 			if (feature.kind == Feature::Edges) {

@@ -65,10 +65,10 @@ private:
 Vector2 sized(const RigidSystem<Plane>&, double x, double, double z) { return {x, z}; }
 Vector3 sized(const RigidSystem<Space>&, double x, double y, double z) { return {x, y, z}; }
 
-void setInertia(RigidBody<Plane>& b) { b.inertia[0] = b.mass * b.halfSize.squaredNorm() / 3; }
+void setInertia(RigidBody<Plane>& b) { b.inertia[0] = b.mass * b.shape->halfSize().squaredNorm() / 3; }
 void setInertia(RigidBody<Space>& b)
 {
-	const Vector3 squares = b.halfSize.cwiseAbs2();
+	const Vector3 squares = b.shape->halfSize().cwiseAbs2();
 	b.inertia = b.mass / 3 * (Vector3::Constant(squares.sum()) - squares);
 }
 
@@ -84,7 +84,7 @@ struct World {
 	{
 		RigidBody<K> b;
 		t = t > 0 ? t : T;
-		b.halfSize = sized(system, l / 2, t / 2, h / 2);
+		b.setBox(sized(system, l / 2, t / 2, h / 2));
 		b.mass = times * density * l * t * h;
 		setInertia(b);
 		b.pose.position = sized(system, x, y, z);
@@ -99,8 +99,9 @@ struct World {
 		const int courses = int(number("courses", 10)), per = int(number("per", 10));
 		L = number("L", 1), T = number("T", 0.5), H = number("H", 0.5);
 		RigidBody<K> base;
-		base.halfSize.setConstant(500 * L);
-		base.halfSize[up] = 1;
+		typename K::Vector half = K::Vector::Constant(500 * L);
+		half[up] = 1;
+		base.setBox(half);
 		base.pose.position[up] = -1;
 		base.origin = base.pose.position;
 		base.prescribed = true;
@@ -184,8 +185,8 @@ void write(const RigidSystem<Space>& s, const std::string& name)
 	std::ofstream out(name);
 	out.precision(17);
 	for (const auto& b : s.bodies)
-		out << b.pose.position.transpose() << ' ' << 2 * b.halfSize.transpose() << " 1 0 0 0 "
-		    << (b.prescribed ? 0 : b.mass / (8 * b.halfSize.prod())) << '\n';
+		out << b.pose.position.transpose() << ' ' << 2 * b.shape->halfSize().transpose() << " 1 0 0 0 "
+		    << (b.prescribed ? 0 : b.mass / (8 * b.shape->halfSize().prod())) << '\n';
 }
 
 double cpu() { return double(std::clock()) / CLOCKS_PER_SEC; }

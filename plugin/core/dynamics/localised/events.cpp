@@ -72,7 +72,7 @@ double relativeTravel(const RigidSystem<K>& s, const SmoothStep<K>& step, const 
 	const typename K::Spin spin1 = end1.mean.template tail<K::spins>();
 	const typename K::Vector apart = body2.pose.position - body1.pose.position;
 	return step.trial().h * ((difference.template head<K::dimension>() - K::cross(spin1, apart)).norm() +
-	                         difference.template tail<K::spins>().norm() * (body1.prescribed ? body2 : body1).halfSize.norm());
+	                         difference.template tail<K::spins>().norm() * (body1.prescribed ? body2 : body1).shape->radius());
 }
 
 } // namespace
@@ -183,7 +183,7 @@ int unseenPenetration(const RigidSystem<K>& s, const SmoothStep<K>& step)
 		const auto &end1 = step.trial().bodies[pair.body1].end, &end2 = step.trial().bodies[pair.body2].end;
 		const auto found = featuresAtEnd(s, step, pair);
 		for (const Feature& feature : found.features)
-			if (K::frame(feature, body1.halfSize, end1, body2.halfSize, end2).gap < deepest - bound)
+			if (K::frame(feature, *body1.shape, end1, *body2.shape, end2).gap < deepest - bound)
 				return c;
 	}
 	return -1;

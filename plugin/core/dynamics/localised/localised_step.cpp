@@ -12,7 +12,7 @@ template <class K>
 void dropIdle(FoundPoints<K>& found, const ContactPair<K>& before, const RigidBody<K>& body1, const RigidBody<K>& body2, double samePlace)
 {
 	constexpr double inside = 0.8; // of the friction limit
-	const auto frameOf = [&](const Feature& feature) { return K::frame(feature, body1.halfSize, body1.pose, body2.halfSize, body2.pose); };
+	const auto frameOf = [&](const Feature& feature) { return K::frame(feature, *body1.shape, body1.pose, *body2.shape, body2.pose); };
 	const auto isIdle = [&](int place) {
 		const ContactFrame<K> frame = frameOf(found.features[place]);
 		typename K::Vector reaction = K::Vector::Zero();
@@ -69,7 +69,7 @@ int LocalisedStep<K>::partsOf(const RigidSystem<K>& s, double left) const
 	for (const ContactPair<K>& pair : s.pairs) {
 		const auto &body1 = s.bodies[pair.body1], &body2 = s.bodies[pair.body2];
 		const double way = left * (body2.velocity - body1.velocity).template head<K::dimension>().norm();
-		parts = std::max(parts, way / (tolerance::localised::partWay * std::min(body1.halfSize.minCoeff(), body2.halfSize.minCoeff())));
+		parts = std::max(parts, way / (tolerance::localised::partWay * std::min(body1.shape->thickness(), body2.shape->thickness())));
 	}
 	return int(std::ceil(std::min(parts, tolerance::localised::maxParts)));
 }

@@ -214,8 +214,8 @@ void SmoothStep<K>::findFrames(const RigidSystem<K>& s)
 		const ContactPair<K>& pair = s.pairs[c];
 		first[c] = int(last.frames.size());
 		for (int i = 0; i < pair.size(); ++i)
-			last.frames.push_back(frameOf(pair.points[i], s.bodies[pair.body1].halfSize, last.bodies[pair.body1].end,
-			                              s.bodies[pair.body2].halfSize, last.bodies[pair.body2].end));
+			last.frames.push_back(frameOf(pair.points[i], s.bodies[pair.body1], last.bodies[pair.body1].end, s.bodies[pair.body2],
+			                              last.bodies[pair.body2].end));
 	}
 }
 

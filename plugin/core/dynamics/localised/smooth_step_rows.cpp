@@ -162,8 +162,8 @@ void SmoothStep<K>::assemble(const RigidSystem<K>& s, double h)
 		for (int i = 0; i < pair.size(); ++i)
 			if (acts(s, {c, i})) {
 				last.rows.push_back({c, i});
-				middles.push_back(frameOf(pair.points[i], s.bodies[pair.body1].halfSize, last.bodies[pair.body1].middle,
-				                          s.bodies[pair.body2].halfSize, last.bodies[pair.body2].middle));
+				middles.push_back(frameOf(pair.points[i], s.bodies[pair.body1], last.bodies[pair.body1].middle, s.bodies[pair.body2],
+				                          last.bodies[pair.body2].middle));
 			}
 		bool slides = true;
 		for (size_t k = 0; k < middles.size(); ++k) {

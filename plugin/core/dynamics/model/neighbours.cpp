@@ -18,15 +18,29 @@ Eigen::Matrix2d axesOf(const PlanePose& pose)
 
 Matrix3 axesOf(const Pose& pose) { return pose.orientation.toRotationMatrix(); }
 
-// The largest gap of two boxes along an axis of either: it is at most their distance, and negative where they overlap.
+// The box around a body along its own axes; of a box, the box itself.
 template <class K>
-double separation(const RigidBody<K>& a, const RigidBody<K>& b)
+struct Around {
+	Eigen::Matrix<double, K::dimension, K::dimension> axes; // in columns
+	typename K::Vector center, halfSize;                    // m
+
+	explicit Around(const RigidBody<K>& body) : axes(axesOf(body.pose))
+	{
+		const typename K::Vector &low = body.shape->low(), &high = body.shape->high();
+		center = body.pose.position + axes * ((low + high) / 2);
+		halfSize = (high - low) / 2;
+	}
+};
+
+// The largest gap of the boxes around two bodies along an axis of either: it is at most their distance, and negative where they overlap.
+template <class K>
+double separation(const RigidBody<K>& body1, const RigidBody<K>& body2)
 {
-	const auto ofA = axesOf(a.pose), ofB = axesOf(b.pose);
-	const typename K::Vector between = b.pose.position - a.pose.position;
-	const auto turn = (ofA.transpose() * ofB).cwiseAbs().eval();
-	const typename K::Vector alongA = (ofA.transpose() * between).cwiseAbs() - a.halfSize - turn * b.halfSize,
-	                         alongB = (ofB.transpose() * between).cwiseAbs() - b.halfSize - turn.transpose() * a.halfSize;
+	const Around<K> a(body1), b(body2);
+	const typename K::Vector between = b.center - a.center;
+	const auto turn = (a.axes.transpose() * b.axes).cwiseAbs().eval();
+	const typename K::Vector alongA = (a.axes.transpose() * between).cwiseAbs() - a.halfSize - turn * b.halfSize,
+	                         alongB = (b.axes.transpose() * between).cwiseAbs() - b.halfSize - turn.transpose() * a.halfSize;
 	return std::max(alongA.maxCoeff(), alongB.maxCoeff());
 }
 
@@ -35,7 +49,7 @@ template <class K>
 double travel(const RigidBody<K>& body, double step)
 {
 	return step *
-	       (body.velocity.template head<K::dimension>().norm() + body.velocity.template tail<K::spins>().norm() * body.halfSize.norm());
+	       (body.velocity.template head<K::dimension>().norm() + body.velocity.template tail<K::spins>().norm() * body.shape->radius());
 }
 
 template <class K>
@@ -69,14 +83,13 @@ std::array<int, 2> bodiesOf(const ContactPair<K>& pair)
 template <class K>
 Bounds<K> Neighbours<K>::bounds(const RigidBody<K>& body, double enlargement) const
 {
-	typename K::Vector center = body.pose.position;
-	Frame axes = axesOf(body.pose);
+	Around<K> around(body);
 	if (!frame.isIdentity(0)) {
-		center = frame * center;
-		axes = frame * axes;
+		around.center = frame * around.center;
+		around.axes = frame * around.axes;
 	}
-	const typename K::Vector half = axes.cwiseAbs() * body.halfSize + K::Vector::Constant(enlargement);
-	return {center - half, center + half};
+	const typename K::Vector half = around.axes.cwiseAbs() * around.halfSize + K::Vector::Constant(enlargement);
+	return {around.center - half, around.center + half};
 }
 
 template <class K>

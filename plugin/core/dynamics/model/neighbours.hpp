@@ -1,5 +1,5 @@
 #pragma once
-// Which boxes are near each other.
+// Which bodies are near each other.
 #include "dynamics/model/rigid_system.hpp"
 #include <array>
 #include <functional>
@@ -21,8 +21,8 @@ struct Bounds {
 
 // Keeps the system's list of pairs, sorted by body1 < body2. A pair stays with all its state as long as it is near; two prescribed bodies
 // are no pair, nor are free bodies of different structures. A structure is a set of free bodies that a chain of pairs joins in which the
-// boxes themselves, not their bounds, are less than twice the margin apart. Pairs with less than `margin` (m) between them are always in
-// the list, farther ones may be.
+// boxes around them (along their own axes), not their bounds, are less than twice the margin apart. Pairs with less than `margin` (m)
+// between them are always in the list, farther ones may be.
 //
 // Bounds are enlarged by the margin, and pairs are those whose enlarged bounds overlap. The list holds until a body comes nearer
 // than half the margin to the end of its enlarged bounds, which move with what moves all bodies alike: a base that shakes its wall; or

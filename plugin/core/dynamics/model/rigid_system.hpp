@@ -7,13 +7,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <vector>
 
 namespace masonry {
 
 template <class K>
 struct RigidBody {
-	typename K::Vector halfSize {K::Vector::Zero()};  // m
+	std::shared_ptr<const typename K::Shape> shape;   // equal blocks may share one
 	double mass {0};                                  // kg; not used when prescribed
 	typename K::Inertia inertia {K::Inertia::Zero()}; // about the centre, kg m^2
 	bool prescribed {false};                          // moved by the user: an infinite mass
@@ -26,12 +27,14 @@ struct RigidBody {
 	int drive {-1};                                // index of the drive that moves it; -1: it keeps its velocity
 	typename K::Vector origin {K::Vector::Zero()}; // position at zero displacement of its drive
 
-	// Masses and forces belong to the scene; sizes are here to know whether they have changed.
+	// Masses, forces and shapes belong to the scene.
 	template <class Archive>
 	void serialize(Archive& archive)
 	{
-		archive(halfSize, pose, velocity, increment, fresh, prescribed, drive, origin);
+		archive(pose, velocity, increment, fresh, prescribed, drive, origin);
 	}
+
+	void setBox(const typename K::Vector& half) { shape = std::make_shared<const typename K::Shape>(K::Shape::box(half)); }
 
 	double kineticEnergy() const
 	{
@@ -71,10 +74,10 @@ struct ContactPoint {
 
 // Of a point when the bodies are there.
 template <class K>
-ContactFrame<K> frameOf(const ContactPoint<K>& point, const typename K::Vector& half1, const typename K::Pose& pose1,
-                        const typename K::Vector& half2, const typename K::Pose& pose2)
+ContactFrame<K> frameOf(const ContactPoint<K>& point, const RigidBody<K>& body1, const typename K::Pose& pose1, const RigidBody<K>& body2,
+                        const typename K::Pose& pose2)
 {
-	ContactFrame<K> frame = K::frame(point.feature, half1, pose1, half2, pose2);
+	ContactFrame<K> frame = K::frame(point.feature, *body1.shape, pose1, *body2.shape, pose2);
 	frame.grip = frame.axes.template bottomRows<K::rows - 1>().transpose() * point.grip;
 	return frame;
 }
@@ -117,7 +120,7 @@ Eigen::Matrix<double, K::rows, 1> relativeVelocity(const ContactFrame<K>& frame,
 template <class K>
 void locate(ContactPoint<K>& point, const RigidBody<K>& body1, const RigidBody<K>& body2)
 {
-	point.frame = frameOf(point, body1.halfSize, body1.pose, body2.halfSize, body2.pose);
+	point.frame = frameOf(point, body1, body1.pose, body2, body2.pose);
 	point.gap = point.frame.gap;
 }
 
@@ -159,7 +162,7 @@ FoundPoints<K> findPoints(const RigidBody<K>& body1, const typename K::Pose& pos
                           const typename K::Pose& pose2, typename K::Memory& memory)
 {
 	FoundPoints<K> found;
-	if (!K::findPoints(body1.halfSize, pose1, body2.halfSize, pose2, std::numeric_limits<double>::infinity(), memory, found))
+	if (!K::findPoints(*body1.shape, pose1, *body2.shape, pose2, std::numeric_limits<double>::infinity(), memory, found))
 		found.features.clear();
 	return found;
 }
@@ -175,7 +178,7 @@ FoundPoints<K> findRows(const RigidBody<K>& body1, const typename K::Pose& pose1
                         typename K::Memory& memory)
 {
 	FoundPoints<K> found = findPoints(body1, pose1, body2, pose2, memory);
-	K::addSecondNormals(body1.halfSize, pose1, body2.halfSize, pose2, found);
+	K::addSecondNormals(*body1.shape, pose1, *body2.shape, pose2, found);
 	return found;
 }
 // As they move: a corner that moves over a face of the other body faster than `rest` (m/s) has that face's normal alone.
@@ -184,7 +187,7 @@ FoundPoints<K> findRows(const RigidBody<K>& body1, const RigidBody<K>& body2, do
 {
 	FoundPoints<K> found = findRows(body1, body1.pose, body2, body2.pose, memory);
 	const auto rate = [&](const Feature& feature) {
-		const auto frame = K::frame(feature, body1.halfSize, body1.pose, body2.halfSize, body2.pose);
+		const auto frame = K::frame(feature, *body1.shape, body1.pose, *body2.shape, body2.pose);
 		return relativeVelocity<K>(frame, body1.pose.position, body1.velocity, body2.pose.position, body2.velocity)[0];
 	};
 	dropPassed(found, rate, rest);

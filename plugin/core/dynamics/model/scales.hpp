@@ -7,14 +7,14 @@
 
 namespace masonry::scale {
 
-// Smallest half size of the free bodies, m.
+// Smallest thickness of the free bodies, m.
 template <class K>
 double length(const RigidSystem<K>& s)
 {
 	double smallest = std::numeric_limits<double>::infinity();
 	for (const auto& body : s.bodies)
 		if (!body.prescribed)
-			smallest = std::min(smallest, body.halfSize.minCoeff());
+			smallest = std::min(smallest, body.shape->thickness());
 	return smallest;
 }
 
@@ -30,7 +30,7 @@ double acceleration(const RigidSystem<K>& s)
 	const auto angular = [](const typename K::Velocity& of) { return of.template tail<K::spins>().norm(); };
 	double forced = 0, speed = 0;
 	for (const auto& body : s.bodies) {
-		const double reach = body.halfSize.norm();
+		const double reach = body.shape->radius();
 		if (!body.prescribed)
 			forced = std::max(forced, linear(body.force) / body.mass + angular(body.force) / body.inertia.minCoeff() * reach);
 		speed = std::max(speed, linear(body.velocity) + angular(body.velocity) * reach);
@@ -42,7 +42,7 @@ double acceleration(const RigidSystem<K>& s)
 template <class K>
 double minSpin(const RigidSystem<K>& s, int block)
 {
-	return tolerance::restSpeed * std::sqrt(acceleration(s) / s.bodies[block].halfSize.norm());
+	return tolerance::restSpeed * std::sqrt(acceleration(s) / s.bodies[block].shape->radius());
 }
 
 } // namespace masonry::scale

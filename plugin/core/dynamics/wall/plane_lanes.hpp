@@ -84,8 +84,9 @@ template <>
 struct alignas(alignment) FeatureLanes<Plane> {
 	Mask vertexOn1, present;
 	Lanes2 vertex, normal;
-	Lanes faceDistance, faceEnd; // m, of the face from the centre; half of its length
-	Lanes foundGap, foundShift;  // of the vertex over and along the face when they were looked up
+	Lanes faceDistance;         // m, of the face from the centre
+	Lanes faceBegin, faceEnd;   // m, along the face
+	Lanes foundGap, foundShift; // of the vertex over and along the face when they were looked up
 
 	std::array<double, 2> foundAt(int lane) const { return {foundGap[lane], foundShift[lane]}; }
 	void setFound(const std::array<double, 2>& f, int lane) { foundGap[lane] = f[0], foundShift[lane] = f[1]; }

@@ -36,6 +36,11 @@ MASONRY_INLINE VertexOverFace<Lanes2, Lanes> located(const FeatureLanes<Plane>& 
 	return vertexOverFace(oneOf(f.vertexOn1, p1, p2), oneOf(f.vertexOn1, p2, p1), f.vertex, f.normal, f.faceDistance);
 }
 
+MASONRY_INLINE Mask beyondFace(const FeatureLanes<Plane>& f, const Lanes& shift, const Lanes& passed)
+{
+	return (shift > f.faceEnd + passed) | (shift < f.faceBegin - passed);
+}
+
 // Gaps. Returns which pairs are to be looked up: since they were, they have moved by more than `travel`, or a vertex has left its face.
 MASONRY_INLINE Mask measureGroup(Group<Plane>& group, FeatureGroup<Plane>& features, const Lanes* pose, double travel, unsigned char anew)
 {
@@ -51,7 +56,7 @@ MASONRY_INLINE Mask measureGroup(Group<Plane>& group, FeatureGroup<Plane>& featu
 			f.foundShift = select(maskOf(anew), shift, f.foundShift);
 		}
 		stale |= size(at.gap - f.foundGap) + size(shift - f.foundShift) > travel;
-		stale |= (size(shift) > f.faceEnd + passed) & (size(f.foundShift) <= f.faceEnd + passed);
+		stale |= beyondFace(f, shift, passed) & ~beyondFace(f, f.foundShift, passed);
 		group.point[k].gap = select(f.present, at.gap, all(farAway));
 	}
 	return stale;
@@ -150,13 +155,15 @@ void ContactSet<Plane>::takePoint(const RigidSystem<Plane>& s, int c, int k)
 	FeatureLanes<Plane>& f = features[group].point[k];
 	const bool present = k < pair.size();
 	const Feature feature = present ? pair.points[k].feature : Feature::ofVertex(1, 0, 0); // any will tell how far the pair moves
-	const PointGeometry<Plane> geometry = geometryOf(feature, s.bodies[pair.body1].halfSize, s.bodies[pair.body2].halfSize);
+	const ConvexPolygon &shape1 = *s.bodies[pair.body1].shape, &shape2 = *s.bodies[pair.body2].shape;
+	const PointGeometry<Plane> geometry = geometryOf(feature, shape1, shape2);
+	const FaceReach<Plane> reach = reachOf(geometry.vertexOn1 ? shape2 : shape1, feature.face());
 	f.present[lane] = present ? -1 : 0;
 	f.vertexOn1[lane] = geometry.vertexOn1 ? -1 : 0;
 	f.vertex.x[lane] = geometry.vertex.x(), f.vertex.y[lane] = geometry.vertex.y();
 	f.normal.x[lane] = geometry.normal.x(), f.normal.y[lane] = geometry.normal.y();
 	f.faceDistance[lane] = geometry.distance;
-	f.faceEnd[lane] = geometry.halfWidth;
+	f.faceBegin[lane] = reach.low[0], f.faceEnd[lane] = reach.high[0];
 }
 
 template <>

@@ -304,7 +304,7 @@ bool RockingEvents<K>::describe(const RigidSystem<K>& s, const ContactSet<K>& c,
 		return false;
 	landing.face = points[joint.begin].face;
 	landing.restitution = landing.asked * landing.before < minSpin ? 0 : landing.asked;
-	if (landing.before < h * scale::acceleration(s) / s.bodies[landing.block].halfSize.norm()) // the step does not resolve it
+	if (landing.before < h * scale::acceleration(s) / s.bodies[landing.block].shape->radius()) // the step does not resolve it
 		landing.asked = NAN;
 	landing.time = s.time + h * (1 - landing.share);
 	return true;

@@ -91,10 +91,10 @@ struct alignas(alignment) FeatureLanes<Space> {
 	Mask vertexOn1, present, crossing;
 	Lanes3 vertex, normal, tangent; // of the face: outward normal, first tangent
 	Lanes faceDistance;
-	Lanes2 faceEnd; // m, half lengths of the face along its tangents
-	Lanes3 arm;     // from body 2 to the point, global axes
-	Lanes foundGap; // when the features were looked up
-	Lanes2 found;   // where along them
+	Lanes2 faceBegin, faceEnd; // m, along the tangents of the face
+	Lanes3 arm;                // from body 2 to the point, global axes
+	Lanes foundGap;            // when the features were looked up
+	Lanes2 found;              // where along them
 
 	std::array<double, 3> foundAt(int lane) const { return {foundGap[lane], found.x[lane], found.y[lane]}; }
 	void setFound(const std::array<double, 3>& f, int lane) { foundGap[lane] = f[0], found.x[lane] = f[1], found.y[lane] = f[2]; }

@@ -87,8 +87,8 @@ void takeCrossings(const RigidSystem<Space>& s, const FeatureGroup<Space>& featu
 			continue;
 		const ContactPair<Space>& pair = s.pairs[features.pair[i]];
 		const Pose pose1 = poseOf(poses, pair.body1), pose2 = poseOf(poses, pair.body2);
-		const ContactFrame<Space> frame = Space::frame(pair.points[features.first[i] + k].feature, s.bodies[pair.body1].halfSize, pose1,
-		                                               s.bodies[pair.body2].halfSize, pose2);
+		const ContactFrame<Space> frame = Space::frame(pair.points[features.first[i] + k].feature, *s.bodies[pair.body1].shape, pose1,
+		                                               *s.bodies[pair.body2].shape, pose2);
 		set(found.normal, i, frame.axes.row(0));
 		set(found.tangent, i, frame.axes.row(1));
 		set(found.arm2, i, frame.position - pose2.position);
@@ -139,6 +139,11 @@ MASONRY_INLINE void takeFound(PointLanes<Space>& p, FeatureLanes<Space>& f, cons
 	p.massT = select(f.present, one / (middle + root(half * half + k12 * k12)), none);
 }
 
+MASONRY_INLINE Lanes fromEnds(const Lanes& place, const Lanes& begin, const Lanes& end)
+{
+	return smaller(size(place - begin), size(place - end));
+}
+
 MASONRY_LANES void measureGroups(const RigidSystem<Space>& s, Group<Space>* groups, FeatureGroup<Space>* features, unsigned char* stale,
                                  size_t count, const Lanes* pose, double travel, bool remember)
 {
@@ -158,7 +163,7 @@ MASONRY_LANES void measureGroups(const RigidSystem<Space>& s, Group<Space>* grou
 			const Lanes moved1 = size(found.along1 - f.found.x), moved2 = size(found.along2 - f.found.y);
 			isStale |= size(found.gap - f.foundGap) + moved1 + moved2 > travel;
 			// At a corner of the face, the vertex of either body may be the point, until one has passed the other.
-			const Lanes fromEnd = larger(size(size(f.found.x) - f.faceEnd.x), size(size(f.found.y) - f.faceEnd.y));
+			const Lanes fromEnd = larger(fromEnds(f.found.x, f.faceBegin.x, f.faceEnd.x), fromEnds(f.found.y, f.faceBegin.y, f.faceEnd.y));
 			isStale |= ~f.crossing & (larger(moved1, moved2) > fromEnd + passed);
 			group.point[k].gap = select(f.present, found.gap, all(farAway));
 		}
@@ -238,15 +243,19 @@ void ContactSet<Space>::takePoint(const RigidSystem<Space>& s, int c, int k)
 	const bool present = k < pair.size();
 	const Feature feature = present ? pair.points[k].feature : Feature::ofVertex(1, 0, 0); // tells how far the pair moves
 	f.present[lane] = present ? -1 : 0;
-	const PointGeometry<Space> geometry = geometryOf(feature, s.bodies[pair.body1].halfSize, s.bodies[pair.body2].halfSize);
+	const ConvexPolyhedron &shape1 = *s.bodies[pair.body1].shape, &shape2 = *s.bodies[pair.body2].shape;
+	const PointGeometry<Space> geometry = geometryOf(feature, shape1, shape2);
 	f.crossing[lane] = geometry.crosses ? -1 : 0;
 	f.vertexOn1[lane] = geometry.vertexOn1 ? -1 : 0;
 	set(f.vertex, lane, geometry.vertex);
 	set(f.normal, lane, geometry.normal);
 	set(f.tangent, lane, geometry.tangent);
 	f.faceDistance[lane] = geometry.distance;
-	f.faceEnd.x[lane] = geometry.halfWidths.x();
-	f.faceEnd.y[lane] = geometry.halfWidths.y();
+	if (geometry.crosses)
+		return;
+	const FaceReach<Space> reach = reachOf(geometry.vertexOn1 ? shape2 : shape1, feature.face());
+	f.faceBegin.x[lane] = reach.low.x(), f.faceBegin.y[lane] = reach.low.y();
+	f.faceEnd.x[lane] = reach.high.x(), f.faceEnd.y[lane] = reach.high.y();
 }
 
 template <>

@@ -219,7 +219,7 @@ RigidSystem<Plane> wall(int courses, int perLevel)
 			const int block = rig::addBlock(s, half, 0.25, {end + half, 0.25 + 0.5 * c});
 			const auto over = [&](int other) {
 				const auto& b = s.bodies[other];
-				return std::abs(b.pose.position.x() - end - half) < b.halfSize.x() + half - 0.1;
+				return std::abs(b.pose.position.x() - end - half) < b.shape->halfSize().x() + half - 0.1;
 			};
 			if (c == 0)
 				rig::addPair(s, 0, block, 0., 0.7);

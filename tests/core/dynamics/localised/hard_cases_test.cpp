@@ -35,7 +35,7 @@ TEST_CASE("Similar blocks turn alike in time scaled by the root of the size")
 {
 	const double size = GENERATE(1e-3 / a, 30 / a), root = std::sqrt(size);
 	auto one = rockingBlock(b, a, 0.1, 0.8, 0.9), similar = rockingBlock(size * b, size * a, 0.1, 0.8, 0.9);
-	similar.bodies[0].halfSize *= size;
+	similar.bodies[0].setBox(size * one.bodies[0].shape->halfSize());
 	similar.bodies[0].pose.position *= size;
 	run(one, 1e-3, 2);
 	run(similar, root * 1e-3, root * 2);

@@ -17,7 +17,7 @@ const std::vector<Structure> structures {{1, 0.15, 0.7}, {2, 0.3, 0.4}, {1, 0.2,
 RigidSystem<Plane> scene(const std::vector<int>& which)
 {
 	auto s = emptyScene<Plane>();
-	s.bodies[0].halfSize << 20, 5;
+	s.bodies[0].setBox({20, 5});
 	for (const int k : which) {
 		const Structure& one = structures[k];
 		for (int n = 0; n < one.blocks; ++n) {

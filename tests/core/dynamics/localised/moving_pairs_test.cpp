@@ -43,7 +43,7 @@ double separation(const typename K::Vector& half1, const typename K::Pose& pose1
 template <class K>
 double separation(const std::vector<RigidBody<K>>& bodies)
 {
-	return separation<K>(bodies[0].halfSize, bodies[0].pose, bodies[1].halfSize, bodies[1].pose);
+	return separation<K>(bodies[0].shape->halfSize(), bodies[0].pose, bodies[1].shape->halfSize(), bodies[1].pose);
 }
 
 void setOrientation(Pose& pose, std::mt19937& random)
@@ -64,9 +64,9 @@ struct MovingPair {
 		system.bodies.assign(boxes.begin(), boxes.end());
 		for (auto& body : system.bodies) {
 			body.mass = 1;
-			body.inertia.setConstant(body.halfSize.squaredNorm() / 6);
+			body.inertia.setConstant(body.shape->halfSize().squaredNorm() / 6);
 		}
-		length = std::min(boxes[0].halfSize.minCoeff(), boxes[1].halfSize.minCoeff());
+		length = std::min(boxes[0].shape->thickness(), boxes[1].shape->thickness());
 		travel = (boxes[1].velocity - boxes[0].velocity).norm();
 		ContactPair<K> pair;
 		pair.body1 = 0;
@@ -96,7 +96,7 @@ struct MovingPair {
 		travel = 0.05 * length * std::pow(10, -1.5 * unit(random));
 		for (auto& body : system.bodies) {
 			body.velocity.template head<K::dimension>() = travel / 2 * vector(typename K::Vector());
-			body.velocity.template tail<K::spins>() = travel / 2 / body.halfSize.norm() * vector(typename K::Spin());
+			body.velocity.template tail<K::spins>() = travel / 2 / body.shape->radius() * vector(typename K::Spin());
 		}
 		system.bodies[1].velocity.template head<K::dimension>() -= travel * unit(random) * direction;
 		system.pairs[0].restitution = unit(random);
@@ -108,8 +108,10 @@ private:
 		std::uniform_real_distribution<double> unit;
 		std::array<RigidBody<K>, 2> boxes;
 		for (auto& body : boxes) {
+			typename K::Vector half;
 			for (int i = 0; i < K::dimension; ++i)
-				body.halfSize[i] = 0.2 + 0.8 * unit(random);
+				half[i] = 0.2 + 0.8 * unit(random);
+			body.setBox(half);
 			setOrientation(body.pose, random);
 		}
 		return boxes;
@@ -182,7 +184,7 @@ TEST_CASE("The widest slab over faces and edges is that of the Minkowski differe
 	std::mt19937 random(3);
 	for (int n = 0; n < 20; ++n) {
 		const auto bodies = MovingPair<Space>(random).system.bodies;
-		const auto truth = oracle::separation({bodies[0].halfSize}, bodies[0].pose, {bodies[1].halfSize}, bodies[1].pose);
+		const auto truth = oracle::separation({bodies[0].shape->halfSize()}, bodies[0].pose, {bodies[1].shape->halfSize()}, bodies[1].pose);
 		CHECK(separation<Space>(bodies) == Approx(truth.value).margin(1e-9));
 	}
 }
@@ -204,7 +206,7 @@ RigidBody<Space> box(const Vector3& halfSize, const Vector3& position, const std
                      const Vector3& spin)
 {
 	RigidBody<Space> body;
-	body.halfSize = halfSize;
+	body.setBox(halfSize);
 	body.pose = {position, Quaternion(q[0], q[1], q[2], q[3]).normalized()};
 	body.velocity << velocity, spin;
 	return body;
@@ -252,7 +254,7 @@ TEMPLATE_TEST_CASE("Without gravity a pair of boxes and the same a thousand time
 		const auto run = [&pair](double size) {
 			RigidSystem<K> s = pair.system;
 			for (auto& body : s.bodies) {
-				body.halfSize *= size;
+				body.setBox(size * body.shape->halfSize());
 				body.inertia *= size * size;
 				body.pose.position *= size;
 				body.velocity.template head<K::dimension>() *= size;

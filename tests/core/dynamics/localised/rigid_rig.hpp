@@ -20,8 +20,9 @@ RigidSystem<K> emptyScene(double halfLength = 5, double halfHeight = 5)
 	RigidSystem<K> s;
 	s.gravity[up] = -g;
 	RigidBody<K> base;
-	base.halfSize.setConstant(halfLength);
-	base.halfSize[up] = halfHeight;
+	typename K::Vector half = K::Vector::Constant(halfLength);
+	half[up] = halfHeight;
+	base.setBox(half);
 	base.pose.position[up] = -halfHeight;
 	base.origin = base.pose.position;
 	base.prescribed = true;
@@ -32,7 +33,7 @@ RigidSystem<K> emptyScene(double halfLength = 5, double halfHeight = 5)
 inline int addBlock(RigidSystem<Plane>& s, double b, double a, const Vector2& center, double angle = 0, double mass = 0)
 {
 	RigidBody<Plane> block;
-	block.halfSize << b, a;
+	block.setBox({b, a});
 	block.mass = mass > 0 ? mass : density * 4 * a * b;
 	block.inertia[0] = block.mass * (a * a + b * b) / 3;
 	block.pose.position = center;
@@ -105,7 +106,10 @@ double balance(const RigidSystem<K>& s)
 }
 
 // What takes a block from its base onto its corner.
-inline double overturningEnergy(const RigidBody<Plane>& block) { return block.mass * g * (block.halfSize.norm() - block.halfSize.y()); }
+inline double overturningEnergy(const RigidBody<Plane>& block)
+{
+	return block.mass * g * (block.shape->radius() - block.shape->halfSize().y());
+}
 
 // The drive moves the base along x, or along `direction`.
 template <class K>

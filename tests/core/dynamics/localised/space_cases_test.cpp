@@ -265,7 +265,7 @@ TEST_CASE("a block that lands on two unequal supports has the restitution that i
 		double rest = 0; // energy of the blocks on their faces
 		for (const auto& body : s.bodies)
 			if (!body.prescribed)
-				rest += body.mass * g * body.halfSize.z();
+				rest += body.mass * g * body.shape->halfSize().z();
 		rest += s.bodies[block].mass * g * 0.3;
 		const double before = energyOf(s) - rest;
 		LocalisedStep<Space> step;

@@ -11,7 +11,7 @@ inline int addBox(System& s, const Vector3& half, const Pose& pose)
 {
 	RigidBody<Space> box;
 	const Vector3 squares = half.cwiseAbs2();
-	box.halfSize = half;
+	box.setBox(half);
 	box.mass = density * 8 * half.prod();
 	box.inertia = box.mass / 3 * (squares.sum() * Vector3::Ones() - squares);
 	box.pose = pose;
@@ -42,7 +42,7 @@ inline System oneBox(const Vector3& half, const Pose& pose, double restitution, 
 // The box as a block of the plane, of half width b: turned by angle > 0 about its edge, with the mass and the moment of inertia of the box.
 inline RigidSystem<Plane> inPlane(const RigidBody<Space>& box, double b, double angle, double restitution)
 {
-	const double a = box.halfSize.z();
+	const double a = box.shape->halfSize().z();
 	auto s = emptyScene<Plane>();
 	addBlock(s, b, a, onEdge(b, a, angle, {-b, 0}), angle, box.mass);
 	s.bodies[1].inertia[0] = box.inertia.x();
@@ -59,7 +59,7 @@ inline double energyOf(const System& s)
 	return sum;
 }
 
-inline double overturning(const RigidBody<Space>& body) { return body.mass * g * (body.halfSize.norm() - body.halfSize.z()); }
+inline double overturning(const RigidBody<Space>& body) { return body.mass * g * (body.shape->radius() - body.shape->halfSize().z()); }
 
 inline Matrix3 axesOf(const System& s, int body = 1) { return s.bodies[body].pose.orientation.toRotationMatrix(); }
 

@@ -193,7 +193,7 @@ TEST_CASE("a millimetre and thirty metres are the same motion")
 		const Vector3 half = size * Vector3(0.3, 0.2, 1);
 		const Vector3 corner(half.x(), half.y(), -half.z());
 		System s = oneBox(half, placed(turn(0.15, {-0.5, 0.8, 0}), corner, {0, 0, 0}), 0.8, 0.5);
-		s.bodies[0].halfSize *= size;
+		s.bodies[0].setBox(size * s.bodies[0].shape->halfSize());
 		s.bodies[0].pose.position *= size;
 		LocalisedStep<Space> step;
 		for (int i = 0; i < 700; ++i)

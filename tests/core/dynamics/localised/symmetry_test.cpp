@@ -35,8 +35,8 @@ System sceneOf(const std::vector<Box>& boxes, double yaw, double friction, doubl
 	}
 	for (int b = 1; b < int(s.bodies.size()); ++b)
 		for (int a = 0; a < b; ++a) {
-			const Vector3 apart =
-			    (s.bodies[a].pose.position - s.bodies[b].pose.position).cwiseAbs() - s.bodies[a].halfSize - s.bodies[b].halfSize;
+			const Vector3 apart = (s.bodies[a].pose.position - s.bodies[b].pose.position).cwiseAbs() - s.bodies[a].shape->halfSize() -
+			                      s.bodies[b].shape->halfSize();
 			if (apart.maxCoeff() < 1e-9 && (apart.array() > -1e-9).count() == 1) // face on face
 				addPair(s, a, b, restitution, friction);
 		}

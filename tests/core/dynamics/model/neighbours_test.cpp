@@ -17,7 +17,7 @@ Bounds<K> boundsOf(const RigidBody<K>& body, const typename K::Pose& frame)
 {
 	Bounds<K> bounds;
 	for (int bits = 0; bits < 1 << K::dimension; ++bits) {
-		typename K::Vector corner = body.halfSize;
+		typename K::Vector corner = body.shape->halfSize();
 		for (int axis = 0; axis < K::dimension; ++axis)
 			if (bits >> axis & 1)
 				corner[axis] *= -1;
@@ -37,7 +37,7 @@ template <class K>
 double distance(const RigidBody<K>& a, const RigidBody<K>& b)
 {
 	const auto project = [](const RigidBody<K>& on, const typename K::Vector& point) {
-		return on.pose.toGlobal(on.pose.toLocal(point).cwiseMax(-on.halfSize).cwiseMin(on.halfSize));
+		return on.pose.toGlobal(on.pose.toLocal(point).cwiseMax(-on.shape->halfSize()).cwiseMin(on.shape->halfSize()));
 	};
 	typename K::Vector p = a.pose.position, q = b.pose.position;
 	for (int k = 0; k < 100; ++k) {
@@ -58,8 +58,10 @@ RigidSystem<K> scattered(int number, std::mt19937& random)
 		for (int k = 0; k < K::dof; ++k)
 			motion[k] = 6 * unit(random);
 		K::advance(body.pose, motion, 1);
+		typename K::Vector half;
 		for (int axis = 0; axis < K::dimension; ++axis)
-			body.halfSize[axis] = 0.6 + 0.5 * unit(random);
+			half[axis] = 0.6 + 0.5 * unit(random);
+		body.setBox(half);
 		body.mass = 1;
 		body.prescribed = i % 5 == 0;
 		system.bodies.push_back(body);
@@ -197,7 +199,7 @@ TEST_CASE("bodies of different structures are a pair only while they themselves 
 	RigidSystem<Plane> system;
 	const auto add = [&](const Vector2& position, double angle) {
 		RigidBody<Plane> body;
-		body.halfSize << 1, 1;
+		body.setBox({1, 1});
 		body.mass = 1;
 		body.pose.position = position;
 		body.pose.setAngle(angle);
@@ -248,7 +250,7 @@ TEST_CASE("pairs that stay keep their state, new ones get friction and restituti
 	RigidSystem<Plane> system;
 	for (double x : {0., 1., 5.}) {
 		RigidBody<Plane> body;
-		body.halfSize << 0.5, 0.5;
+		body.setBox({0.5, 0.5});
 		body.pose.position << x, 0;
 		system.bodies.push_back(body);
 	}
@@ -327,11 +329,28 @@ TEST_CASE("what a bar hits as it turns is near before the step")
 	const double step = 1e-2, spin = GENERATE(50., -50.);
 	RigidSystem<Plane> system;
 	system.bodies.resize(2);
-	system.bodies[0].halfSize << 2, 0.05;
+	system.bodies[0].setBox({2, 0.05});
 	system.bodies[0].velocity[2] = spin;
-	system.bodies[1].halfSize << 0.1, 0.1;
+	system.bodies[1].setBox({0.1, 0.1});
 	system.bodies[1].pose.position << std::copysign(1.7, spin), 0.6;
 	Neighbours<Plane> neighbours(0.02, [](ContactPair<Plane>&) {});
 	neighbours.update(system, step);
 	CHECK(system.pairs.size() == 1);
+}
+
+// A right triangle with legs of 3 m and 1.5 m reaches from its centre of mass 1 m to the left and 2 m to the right. Blocks of 0.2 m stand
+// as far from its centre on either side: only that on the right is near it, the margin being 0.1 m.
+TEST_CASE("the bounds of a body need not be about its centre of mass")
+{
+	RigidSystem<Plane> system;
+	system.bodies.resize(3);
+	system.bodies[0].shape = std::make_shared<const ConvexPolygon>(ConvexPolygon::hull({{0, 0}, {3, 0}, {0, 1.5}}));
+	for (int k : {1, 2}) {
+		system.bodies[k].setBox({0.1, 0.1});
+		system.bodies[k].pose.position << (k == 1 ? 2.15 : -2.15), -0.4;
+	}
+	Neighbours<Plane> neighbours(0.1, [](ContactPair<Plane>&) {});
+	neighbours.update(system);
+	REQUIRE(system.pairs.size() == 1);
+	CHECK(system.pairs[0].body2 == 1);
 }

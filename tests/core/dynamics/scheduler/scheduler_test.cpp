@@ -81,8 +81,8 @@ TEST_CASE("a wall on bases that have different motions is told from walls on one
 	if (!isOne)
 		scene.addWall(4, 8, farLeft);
 	RigidBody<Plane> other = scene.system.bodies[0]; // at rest, under half of the only wall, or under the other one
-	other.pose.position.x() = 0.5 * (isOne ? 8 : farLeft + 8) + other.halfSize.x();
-	scene.system.bodies[0].pose.position.x() = other.pose.position.x() - 2 * other.halfSize.x();
+	other.pose.position.x() = 0.5 * (isOne ? 8 : farLeft + 8) + other.shape->halfSize().x();
+	scene.system.bodies[0].pose.position.x() = other.pose.position.x() - 2 * other.shape->halfSize().x();
 	scene.system.bodies[0].origin = scene.system.bodies[0].pose.position;
 	scene.system.bodies.push_back(other);
 	Harmonic motion(0.1 * g, 2, 0);

@@ -19,7 +19,7 @@ RigidSystem<K> jaws(double left, double right)
 	addPair(s, 0, 1, NAN, 0.5);
 	for (const double side : {-1., 1.}) {
 		RigidBody<K> jaw;
-		jaw.halfSize = sizeOf(s, 0.1, 0.05);
+		jaw.setBox(sizeOf(s, 0.1, 0.05));
 		jaw.prescribed = true;
 		jaw.pose.position = placeOf(s, side * (half + gap + 0.1), half);
 		jaw.velocity[0] = side < 0 ? left : right;

@@ -77,7 +77,7 @@ TEST_CASE("a wall pushed or twisted below its limits does not drift")
 		for (auto& body : scene.system.bodies)
 			if (!body.prescribed)
 				body.force[twists ? 2 : 0] =
-				    (twists ? 0.5 * body.halfSize.x() : 0.3) * g * body.mass * std::sin(4 * M_PI * scene.system.time);
+				    (twists ? 0.5 * body.shape->halfSize().x() : 0.3) * g * body.mass * std::sin(4 * M_PI * scene.system.time);
 		scene.advance(1e-3);
 	}
 	CHECK(scene.step.report.moved == 0);
