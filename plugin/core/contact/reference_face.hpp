@@ -23,7 +23,8 @@ inline double lead(double separation, double length)
 
 // Of the best faces of both boxes that of the larger separation. The one of box `held`, the reference before (0: none), leads; a tie goes
 // to the larger face, then to box 1.
-inline const FaceAxis& reference(const FaceAxis& face1, const FaceAxis& face2, int held, bool larger2, double length)
+template <class Face>
+const Face& reference(const Face& face1, const Face& face2, int held, bool larger2, double length)
 {
 	if (held == 1)
 		return face2.separation > face1.separation + lead(face1.separation, length) ? face2 : face1;
