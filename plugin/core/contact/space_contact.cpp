@@ -3,6 +3,7 @@
 #include "contact/corner_normals.hpp"
 #include "contact/features.hpp"
 #include "contact/point_geometry.hpp"
+#include "contact/polyhedron_points.hpp"
 #include "contact/vertex_on_edge.hpp"
 #include "tolerances.hpp"
 #include <algorithm>
@@ -142,6 +143,8 @@ void Space::advance(Pose& pose, const Velocity& velocity, double t)
 bool Space::findPoints(const Shape& shape1, const Pose& pose1, const Shape& shape2, const Pose& pose2, double margin, Memory& memory,
                        FoundPoints<Space>& out)
 {
+	if (!shape1.isBox() || !shape2.isBox())
+		return findPolyhedronPoints(shape1, pose1, shape2, pose2, margin, memory, out);
 	const Memory before = memory;
 	memory = {};
 	out = {};
@@ -161,6 +164,8 @@ bool Space::findPoints(const Shape& shape1, const Pose& pose1, const Shape& shap
 
 void Space::addSecondNormals(const Shape& shape1, const Pose& pose1, const Shape& shape2, const Pose& pose2, FoundPoints<Space>& out)
 {
+	if (!shape1.isBox() || !shape2.isBox())
+		return addPolyhedronNormals(shape1, pose1, shape2, pose2, out);
 	out.beginSecondNormals();
 	if (out.places == 0 || sineBetween(shape1, out.face1, pose1, shape2, out.face2, pose2) < tolerance::contact::cornerSpread)
 		return;
