@@ -25,6 +25,10 @@ constexpr double noSolution = 1e-6;
 // Length of the old support relative to its distance from the new one above which it is an edge, not a corner.
 constexpr double pivotEdge = 1e-6;
 
+// --- joints (joints/) ---
+// Extent of the loaded part of a joint, relative to a size of the blocks, up to which it is a pivot. Larger: narrow patches rock.
+constexpr double pivot = 1e-3;
+
 // --- compliant joints (dynamics/compliant/) ---
 // Least area that the stiffness of a joint is taken from, relative to the smaller face. A sliver of overlap, an edge or a
 // corner gets the stiffness of this share of the face; smaller: corners sink in.
@@ -232,7 +236,4 @@ constexpr double sunk = 1e-3;
 // size. Where both are zero it may seem to make that of a speed: of blocks that go so far in a step, relative to the smallest half size.
 // Smaller: the errors of sound steps, 1e-3 of what is lost, or rounding, are reported; larger: a wall that flies apart is not.
 constexpr double createdShare = 0.1, createdLift = 1e-4, createdTravel = 1e-9;
-// Extent of the loaded part of a joint, relative to the smallest half size, up to which it is a pivot. Larger: narrow patches rock.
-constexpr double pivot = 1e-3;
-
 } // namespace masonry::tolerance::wall

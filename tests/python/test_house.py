@@ -15,10 +15,11 @@ BELOW = {
     "contact": "simd",
     "laws": "linalg contact",
     "impact": "contact laws",
-    "dynamics/model": "motion contact laws impact",
-    "dynamics/localised": "contact laws impact dynamics/model",
-    "dynamics/wall": "linalg simd parallel contact laws impact dynamics/model",
-    "dynamics/compliant": "contact laws impact dynamics/model",
+    "joints": "contact laws impact",
+    "dynamics/model": "motion contact laws impact joints",
+    "dynamics/localised": "contact laws impact joints dynamics/model",
+    "dynamics/wall": "linalg simd parallel contact laws impact joints dynamics/model",
+    "dynamics/compliant": "contact laws impact joints dynamics/model",
     "dynamics/scheduler": "dynamics/model dynamics/localised dynamics/wall",
 }
 
