@@ -13,7 +13,7 @@ namespace masonry {
 class Pivot {
 public:
 	Pivot() = default;
-	Pivot(const std::vector<Vector3>& loaded, double size, bool mayBeEdge) : narrow(tolerance::pivot * size)
+	Pivot(const std::vector<Vector3>& loaded, double size, bool mayBeEdge) : narrow(3e-5 * size)
 	{
 		if (loaded.empty())
 			return;
