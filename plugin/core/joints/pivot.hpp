@@ -1,29 +1,16 @@
 #pragma once
 // The pivot of a joint: the edge or corner about which its block rocks.
 #include "math.hpp"
-#include "tolerances.hpp"
-#include <algorithm>
 #include <cmath>
 #include <vector>
 
 namespace masonry {
 
-// Loaded points of a joint are a pivot if they are at one place, or in space on one line. What is nearer to each other than tolerance::pivot
-// times a size of the blocks counts as one place.
+// Loaded points of a joint are a pivot if they are at one place, or in space on one line, within `narrow` (m).
 class Pivot {
 public:
 	Pivot() = default;
-	Pivot(const std::vector<Vector3>& loaded, double size, bool mayBeEdge) : narrow(3e-5 * size)
-	{
-		if (loaded.empty())
-			return;
-		place = loaded.front();
-		for (const Vector3& p : loaded)
-			if (mayBeEdge && (p - place).norm() > direction.norm())
-				direction = p - place;
-		direction = direction.norm() > narrow ? Vector3(direction.normalized()) : Vector3(Vector3::Zero());
-		exists = std::all_of(loaded.begin(), loaded.end(), [this](const Vector3& p) { return has(p); });
-	}
+	Pivot(const std::vector<Vector3>& loaded, double narrow, bool mayBeEdge);
 
 	// False: the joint bears nowhere, or on a face.
 	explicit operator bool() const { return exists; }

@@ -1,6 +1,7 @@
 #include "dynamics/compliant/joint_groups.hpp"
 #include "joints/joint_table.hpp"
 #include "joints/pivot.hpp"
+#include "tolerances.hpp"
 #include <algorithm>
 #include <map>
 
@@ -18,8 +19,8 @@ bool isPivot(const JointSystem& s, const Joint& joint, const std::vector<PointRe
 {
 	std::vector<Vector3> places;
 	for (const PointRef& p : points)
-		places.push_back(s.position(p));
-	return bool(Pivot(places, sizeOf(s, joint), true));
+		places.push_back(s.position(p) - joint.normal * joint.normal.dot(s.position(p) - s.position(points.front()))); // all as deep
+	return bool(Pivot(places, tolerance::pivotEdge * sizeOf(s, joint), true));
 }
 
 bool Joint::has(int contact) const { return std::find(contacts.begin(), contacts.end(), contact) != contacts.end(); }

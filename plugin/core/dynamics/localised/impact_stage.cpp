@@ -107,7 +107,11 @@ struct ImpactStage<K>::Builder {
 			stage.oldRefs.push_back(ref);
 			stage.oldPositions.push_back(position(ref));
 		});
-		const Pivot pivot(stage.oldPositions, scale::length(s), K::dimension == 3);
+		double reach = 0;
+		for (PointRef ref : closing)
+			if (!stage.oldPositions.empty() && jointOf(ref) == key)
+				reach = std::max(reach, (position(ref) - stage.oldPositions.front()).norm());
+		const Pivot pivot(stage.oldPositions, tolerance::pivotEdge * reach, K::dimension == 3);
 		// Beside the pivot; on it, where two supports share it, round-off may open and close a point.
 		ClosingJoint joint {};
 		joint.block = key.block;

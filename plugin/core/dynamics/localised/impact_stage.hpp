@@ -32,7 +32,7 @@ private:
 	JointTable joints;
 	RockingImpact impact;
 	std::vector<masonry::Body> bodies;
-	std::vector<PointRef> refs;                      // of impact.points
+	std::vector<PointRef> refs;        // of impact.points
 	std::vector<Vector3> oldPositions; // of a joint
 	std::vector<PointRef> oldRefs;
 	std::vector<double> weights; // of the pairs: their normal impulses

@@ -141,7 +141,7 @@ std::vector<SpinRow<K>> RockingEvents<K>::find(const RigidSystem<K>& s, const Co
 			else
 				gapes |= gap > open || at.normalRate(c) < -fast;
 		}
-		Joint joint {begin, end, Pivot(bearing, c.length, K::dimension == 3), -1};
+		Joint joint {begin, end, Pivot(bearing, tolerance::wall::pivot * c.length, K::dimension == 3), -1};
 		if (!gapes || !joint.pivot)
 			continue;
 		for (int i = begin; i < end; ++i) {
@@ -245,7 +245,7 @@ double RockingEvents<K>::takeCarriers(const ContactSet<K>& c, const Joint& joint
 		landing.axis = -landing.axis;
 		lever = -lever;
 	}
-	const double length = edge.norm(), share = length > tolerance::pivot * c.length ? from.dot(edge) / (length * length) : 0;
+	const double length = edge.norm(), share = length > tolerance::wall::pivot * c.length ? from.dot(edge) / (length * length) : 0;
 	const auto carrier = [&](const Vector3& where, int body, double perLength) {
 		return Carrier {body, perLength / lever, where - inSpace(c.position(body))};
 	};
