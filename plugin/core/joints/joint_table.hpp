@@ -2,18 +2,19 @@
 // A joint is all that touches one face of a block. Which of two bodies is the block, and which one bears it, follows from the graph of the
 // pairs that are near each other: it stays as it is while the bodies turn, and is the same in every frame.
 //
-// The body of the higher level (support_levels.hpp) is the block, and the other one its support. Bodies of one level are equals: two
-// voussoirs at the crown of an arch, two blocks in flight. The law takes the relative spin of the two (rocking_restitution.hpp), which
-// prefers neither; body 2 is called the block.
+// The level of a body is the number of pairs between it and the nearest prescribed body. Pairs whose normals were level when they were
+// found (upright pairs) lead on only to bodies that no other pairs lead to: what stands beside a block does not bear it. The body of the
+// higher level is the block, and the other one its support. Bodies of one level are equals: two voussoirs at the crown of an arch, two
+// blocks in flight. The law takes the relative spin of the two (rocking_restitution.hpp), which prefers neither; body 2 is called the
+// block.
 //
-// Head joints do not rock. A pair is a head joint if its normals were level when it was found, or its bodies are equals, and if both bodies
-// are borne across it: by faces beside those that meet here. The bricks of a wall are borne by their bed faces, and their head faces
-// stand beside these. A voussoir is borne by the face opposite to that which meets the next one, so the crown joint of an arch rocks
-// although it is upright.
+// Head joints do not rock. A pair is a head joint if it is upright, or its bodies are equals, and if both bodies are borne across it: by
+// faces beside those that meet here. The bricks of a wall are borne by their bed faces, and their head faces stand beside these. A voussoir
+// is borne by the face opposite to that which meets the next one, so the crown joint of an arch rocks although it is upright.
 #include "contact/features.hpp"
-#include "joints/support_levels.hpp"
 #include "tolerances.hpp"
 #include <algorithm>
+#include <vector>
 
 namespace masonry {
 
@@ -41,9 +42,31 @@ public:
 	template <class Bodies, class Pairs>
 	void find(const Bodies& bodies, const Pairs& pairs)
 	{
-		pairsOf = pairsOfBodies(bodies.size(), pairs);
-		level = supportLevels(bodies, pairs, pairsOf);
+		pairsOf.resize(bodies.size());
+		for (std::vector<int>& of : pairsOf)
+			of.clear();
+		for (size_t c = 0; c < pairs.size(); ++c)
+			for (const int b : {pairs[c].body1, pairs[c].body2})
+				pairsOf[b].push_back(int(c));
+		level.assign(bodies.size(), -1);
+		for (size_t b = 0; b < bodies.size(); ++b)
+			if (bodies[b].prescribed)
+				level[b] = 0;
+		int most = 0; // of the levels
+		for (const bool all : {false, true})
+			for (int reached = 0; reached <= most; ++reached)
+				for (int from = 0; from < int(level.size()); ++from) {
+					if (level[from] != reached)
+						continue;
+					for (const int c : pairsOf[from])
+						if (const int to = pairs[c].body1 == from ? pairs[c].body2 : pairs[c].body1;
+						    (all || !pairs[c].isUpright) && level[to] < 0)
+							most = std::max(most, level[to] = reached + 1);
+				}
 	}
+
+	// By body; -1: no chain of pairs leads to a prescribed body.
+	const std::vector<int>& levels() const { return level; }
 
 	// The joint of pair c. The faces of the pairs may have changed since find().
 	template <class Pairs>

@@ -76,7 +76,7 @@ struct Structure {
 		findPairs();
 		JointTable table;
 		table.find(bodies, pairs);
-		const std::vector<int> level = supportLevels(bodies, pairs, pairsOfBodies(bodies.size(), pairs));
+		const std::vector<int>& level = table.levels();
 		std::set<std::tuple<int, int>> result;
 		for (int c = 0; c < int(pairs.size()); ++c) {
 			const JointFace joint = table.of(pairs, c);

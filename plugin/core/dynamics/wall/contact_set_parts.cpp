@@ -147,7 +147,9 @@ void ContactSet<K>::orderUpwards()
 template <class K>
 void ContactSet<K>::findCourses(const RigidSystem<K>& s)
 {
-	supportLevel = supportLevels(s.bodies, s.pairs, pairsOfBodies(s.bodies.size(), s.pairs));
+	JointTable table;
+	table.find(s.bodies, s.pairs);
+	supportLevel = table.levels();
 }
 
 template void ContactSet<Plane>::colour(const RigidSystem<Plane>&);

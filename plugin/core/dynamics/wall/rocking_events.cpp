@@ -80,7 +80,7 @@ void RockingEvents<K>::gather(const RigidSystem<K>& s, const ContactSet<K>& c)
 		return;
 	for (int group = 0; group < int(c.groups.size()); ++group)
 		for (int lane = 0; lane < width && c.features[group].pair[lane] >= 0; ++lane)
-			if (const auto [block, face] = table.of(s.pairs, c.features[group].pair[lane]); block >= 0)
+			if (const auto [block, face] = table.of(s.pairs, c.features[group].pair[lane]); block >= 0 && c.own[block])
 				for (int k = 0; k < c.points(s, group, lane); ++k)
 					points.push_back({block, face, group, lane, k});
 	std::sort(points.begin(), points.end(), [](const Point& a, const Point& b) {
@@ -137,12 +137,17 @@ std::vector<SpinRow<K>> RockingEvents<K>::find(const RigidSystem<K>& s, const Co
 			const Contact<K> at = contact(c, points[end]);
 			const double gap = at.p.gap[at.lane];
 			if (at.impulse() > 0 || hops(c, points[end], g, h))
-				bearing.push_back(positionOf(c, points[end]));
+				bearing.push_back(end);
 			else
 				gapes |= gap > open || at.normalRate(c) < -fast;
 		}
-		Joint joint {begin, end, Pivot(bearing, tolerance::wall::pivot * c.length, K::dimension == 3), -1};
-		if (!gapes || !joint.pivot)
+		if (!gapes)
+			continue;
+		places.clear();
+		for (const int i : bearing)
+			places.push_back(positionOf(c, points[i]));
+		Joint joint {begin, end, Pivot(places, tolerance::wall::pivot * c.length, K::dimension == 3), -1};
+		if (!joint.pivot)
 			continue;
 		for (int i = begin; i < end; ++i) {
 			const Contact<K> at = contact(c, points[i]);

@@ -106,8 +106,8 @@ private:
 
 	std::vector<Point> points; // joint by joint
 	std::vector<Joint> rocking;
-	std::vector<Vector3> bearing; // places of the loaded points of a joint that is looked at
-	std::vector<int> closing;     // points of it
+	std::vector<int> bearing, closing; // points of a joint that is looked at
+	std::vector<Vector3> places;       // of those that bear
 	std::vector<Landing> expected, landings;
 	JointTable table;
 	int list {-1}, laws {-1}; // of the system's pairs, that the table and `areLaws` are of
