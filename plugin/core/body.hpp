@@ -1,11 +1,13 @@
 #pragma once
 // A rigid body as the core sees it: its state, its inertia, and the loads that do not come from the joints under study.
-#include "math.hpp"
+#include "shape/convex_polyhedron.hpp"
+#include <memory>
 #include <vector>
 
 namespace masonry {
 
 struct Body {
+	std::shared_ptr<const ConvexPolyhedron> shape;
 	Pose pose;
 	Vector3 velocity {Vector3::Zero()};        // of the centre, m/s
 	Vector3 angularVelocity {Vector3::Zero()}; // global axes, rad/s
@@ -44,6 +46,8 @@ struct Body {
 			pose.orientation = (Quaternion(Eigen::AngleAxisd(angle, angularVelocity.normalized())) * pose.orientation).normalized();
 	}
 };
+
+inline const Vector3& faceNormal(const Body& body, int face) { return body.shape->faces()[face].normal; } // in the body's axes
 
 inline double kineticEnergy(const std::vector<Body>& bodies)
 {

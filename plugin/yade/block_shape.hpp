@@ -2,6 +2,8 @@
 // The shape of a block, a Box of YADE or a ConvexBlock, as the core takes it.
 
 #include "ConvexBlock.hpp"
+#include <core/Body.hpp>
+#include <optional>
 #include <pkg/common/Box.hpp>
 
 namespace yade {
@@ -56,6 +58,26 @@ public:
 private:
 	Vector3r half = Vector3r::Zero();
 	std::shared_ptr<const masonry::ConvexPolyhedron> hull;
+};
+
+/// The shapes of the bodies of a scene, made once as long as they stay the same.
+class KeptShapes {
+public:
+	const std::shared_ptr<const masonry::ConvexPolyhedron>& of(const Body& body)
+	{
+		if (size_t(body.id) >= kept.size())
+			kept.resize(body.id + 1);
+		auto& [seen, polyhedron] = kept[body.id];
+		if (const BlockShape now(*body.shape); !polyhedron || !(*seen == now)) {
+			seen = now;
+			polyhedron = now.isBox() ? std::make_shared<const masonry::ConvexPolyhedron>(masonry::ConvexPolyhedron::box(now.extents()))
+			                         : now.polyhedron();
+		}
+		return polyhedron;
+	}
+
+private:
+	vector<std::pair<std::optional<BlockShape>, std::shared_ptr<const masonry::ConvexPolyhedron>>> kept; // by id
 };
 
 } // namespace yade

@@ -8,6 +8,7 @@
 #include "sentence.hpp"
 
 #include "contact/box_box.hpp"
+#include "joints/joint_table.hpp"
 #include <algorithm>
 #include <pkg/common/Box.hpp>
 
@@ -27,20 +28,18 @@ void CompliantScene::read(const Scene& scene, Real dampingRatio, masonry::Compli
 void CompliantScene::readBodies(const Scene& scene, masonry::CompliantStep& step)
 {
 	ids.clear();
-	step.sizes.clear();
 	step.system.bodies.clear();
 	index.assign(scene.bodies->size(), -1);
 	for (const auto& body : scene.bodies->body) {
 		if (!body || !dynamic_cast<BlockMat*>(body->material.get()))
 			continue;
-		const auto* box = dynamic_cast<Box*>(body->shape.get());
-		if (!box)
+		if (!dynamic_cast<Box*>(body->shape.get()))
 			throw std::invalid_argument(sentence("O.bodies[", body->id, "] has a BlockMat and is no Box: blocks touch boxes only."));
 		checkBody(*body);
 		index[body->id] = int(ids.size());
 		ids.push_back(body->id);
-		step.sizes.push_back(box->extents.minCoeff());
 		step.system.bodies.push_back(coreBody(*body));
+		step.system.bodies.back().shape = shapes.of(*body);
 	}
 }
 
@@ -68,6 +67,9 @@ void CompliantScene::readJoints(const Scene& scene, Real dampingRatio, masonry::
 		phys.check(interaction->id1, interaction->id2);
 		masonry::JointContact& contact = system.contacts[pairs.size()];
 		readContact(*interaction, geom, phys, dampingRatio, contact);
+		if (geom.upright < 0)
+			geom.upright = masonry::isUpright(geom.normal, system.gravity);
+		contact.isUpright = geom.upright == 1;
 		contact.body1 = index[contact.body1];
 		contact.body2 = index[contact.body2];
 		pairs.push_back({&geom, &phys});
@@ -89,7 +91,7 @@ vector<masonry::JointContact> CompliantScene::boxesInTouch(const Scene& scene, R
 			if ((body1.state->pos - body2.state->pos).norm() > half1.norm() + half2.norm())
 				continue;
 			masonry::ContactPatch patch;
-			const Real near = 1e-2 * std::min(step.sizes[a], step.sizes[b]);
+			const Real near = 1e-2 * std::min(bodies[a].shape->thickness(), bodies[b].shape->thickness());
 			if (!masonry::collide({half1}, bodies[a].pose, {half2}, bodies[b].pose, near, {}, patch))
 				continue;
 			const shared_ptr<Interaction> interaction(new Interaction(ids[a], ids[b]));
@@ -97,6 +99,7 @@ vector<masonry::JointContact> CompliantScene::boxesInTouch(const Scene& scene, R
 			masonry::JointContact& contact = contacts.emplace_back();
 			contact.body1 = int(a);
 			contact.body2 = int(b);
+			contact.isUpright = masonry::isUpright(patch.normal, step.system.gravity);
 			contact.law = static_cast<BlockPhys&>(*interaction->phys).law(dampingRatio);
 			renewPatch(contact, patch);
 		}

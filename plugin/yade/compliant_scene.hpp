@@ -1,6 +1,7 @@
 #pragma once
 // Compliant blocks of a scene in the core's form. No physics here.
 
+#include "block_shape.hpp"
 #include "dynamics/compliant/compliant_step.hpp"
 #include <core/Scene.hpp>
 
@@ -31,6 +32,7 @@ private:
 	void readJoints(const Scene& scene, Real dampingRatio, masonry::JointSystem& system);
 
 	vector<int> index; // by body id
+	KeptShapes shapes;
 };
 
 } // namespace yade

@@ -1,6 +1,7 @@
 #pragma once
 // Contact patch of two boxes in any position.
 #include "contact/contact_patch.hpp"
+#include "shape/convex_polyhedron.hpp"
 
 namespace masonry {
 
@@ -30,5 +31,9 @@ struct Box {
 // distance, but it can be larger, or the patch missing, where the nearest features are corners or edges beside each other.
 bool collide(const Box& box1, const Pose& pose1, const Box& box2, const Pose& pose2, double margin, const PatchFeature& previous,
              ContactPatch& out);
+
+// The faces of body 1 and body 2 that meet; of edges, those nearest to the normal; -1: none.
+std::array<int, 2> facesOf(const ContactPatch& patch, const ConvexPolyhedron& shape1, const Pose& pose1, const ConvexPolyhedron& shape2,
+                           const Pose& pose2);
 
 } // namespace masonry

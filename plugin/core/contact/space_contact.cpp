@@ -129,6 +129,14 @@ int faceNearest(const Vector3& direction, const ConvexPolyhedron& shape, const P
 
 } // namespace
 
+std::array<int, 2> facesOf(const ContactPatch& patch, const ConvexPolyhedron& shape1, const Pose& pose1, const ConvexPolyhedron& shape2,
+                           const Pose& pose2)
+{
+	if (patch.feature.kind != PatchKind::Edges)
+		return {patch.feature.feature1, patch.feature.feature2};
+	return {faceNearest(patch.normal, shape1, pose1), faceNearest(-patch.normal, shape2, pose2)};
+}
+
 void Space::advance(Pose& pose, const Velocity& velocity, double t)
 {
 	const Vector3 half = t / 2 * velocity.tail<3>();
@@ -153,9 +161,9 @@ bool Space::findPoints(const Shape& shape1, const Pose& pose1, const Shape& shap
 		return false;
 
 	memory = patch.feature;
-	const bool faces = patch.feature.kind != PatchKind::Edges;
-	out.face1 = faces ? patch.feature.feature1 : faceNearest(patch.normal, shape1, pose1);
-	out.face2 = faces ? patch.feature.feature2 : faceNearest(-patch.normal, shape2, pose2);
+	const auto [face1, face2] = facesOf(patch, shape1, pose1, shape2, pose2);
+	out.face1 = face1;
+	out.face2 = face2;
 	takeCorners(patch, shape1, pose1, shape2, pose2, out);
 	if (leans(memory, shape1, pose1, shape2, pose2))
 		dropPassing(patch, shape1, pose1, shape2, pose2, memory, out);

@@ -52,8 +52,7 @@ using JumpsOfBase = std::function<std::vector<BaseJump>(const std::vector<Impact
 
 class CompliantStep {
 public:
-	JointSystem system;        // forces and torques of the bodies: the loads, without the weight
-	std::vector<double> sizes; // smallest half size of each body, m
+	JointSystem system; // forces and torques of the bodies: the loads, without the weight
 	CompliantRun run;
 	double stepFraction {0}; // share of the critical step by which system.dt was chosen; 0: it was given
 

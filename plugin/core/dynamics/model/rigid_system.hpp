@@ -3,6 +3,7 @@
 #include "contact/corner_normals.hpp"
 #include "dynamics/model/base_drive.hpp"
 #include "impact/rocking_restitution.hpp"
+#include "joints/joint_table.hpp"
 #include "laws/contact_problem.hpp"
 #include <algorithm>
 #include <cmath>
@@ -44,6 +45,12 @@ struct RigidBody {
 		           : 0.5 * (mass * velocity.template head<K::dimension>().squaredNorm() + w.dot(K::angularMomentum(inertia, pose, w)));
 	}
 };
+
+template <class K>
+const typename K::Vector& faceNormal(const RigidBody<K>& body, int face) // in the body's axes
+{
+	return body.shape->faces()[face].normal;
+}
 
 template <class K>
 struct ContactPoint {
@@ -89,7 +96,7 @@ struct ContactPair {
 	double restitution {NAN}; // NaN: natural
 	typename K::Memory memory;
 	int face1 {-1}, face2 {-1};
-	bool isHeadJoint {false}; // upright when the pair was found: neither bears the other
+	bool isUpright {false}; // when the pair was found (joint_table.hpp)
 	PerPoint<ContactPoint<K>, K::usualPoints> points;
 
 	int size() const { return int(points.size()); }
@@ -97,7 +104,7 @@ struct ContactPair {
 	template <class Archive>
 	void serialize(Archive& archive)
 	{
-		archive(body1, body2, face1, face2, friction, restitution, isHeadJoint, memory, points);
+		archive(body1, body2, face1, face2, friction, restitution, isUpright, memory, points);
 	}
 };
 

@@ -4,6 +4,7 @@
 #include "contact/box_box.hpp"
 #include "dynamics/compliant/compliant_step.hpp"
 #include "dynamics/compliant/time_step.hpp"
+#include "joints/joint_table.hpp"
 #include <algorithm>
 #include <vector>
 
@@ -30,7 +31,7 @@ struct CompliantBlocks {
 		body.inertia = body.mass / 12 * masonry::Vector3(s.y() + s.z(), s.x() + s.z(), s.x() + s.y());
 		body.prescribed = prescribed;
 		boxes.push_back({size / 2});
-		step.sizes.push_back(size.minCoeff() / 2);
+		body.shape = std::make_shared<const masonry::ConvexPolyhedron>(masonry::ConvexPolyhedron::box(size / 2));
 		bodies().push_back(body);
 		return int(boxes.size()) - 1;
 	}
@@ -52,6 +53,8 @@ struct CompliantBlocks {
 				contact.body1 = a;
 				contact.body2 = b;
 				contact.law = law;
+				if (old == known.end())
+					contact.isUpright = masonry::isUpright(patch.normal, step.system.gravity);
 				renewPatch(contact, patch);
 				step.system.contacts.push_back(contact);
 			}
