@@ -61,7 +61,7 @@ struct PlanePose {
 	}
 };
 
-// What a pair of boxes in the plane remembers from one search to the next.
+// What a pair of polygons in the plane remembers from one search to the next.
 struct PlaneMemory {
 	int reference {0};          // body 1 or 2 whose face was the reference; 0: none
 	int face1 {-1}, face2 {-1}; // faces in touch
@@ -143,7 +143,7 @@ struct Plane {
 	static ContactFrame<Plane> frame(const Feature&, const Shape& shape1, const Pose&, const Shape& shape2, const Pose&);
 	// The vertices that meet a face at the ends of the two faces' overlap; of a corner that stands past the end of a face, only that
 	// vertex. Points keep their features by the memory until another choice is clearly better (tolerance::contact). False, with
-	// nothing found, when the boxes are farther apart than `margin` (m) or only meet corner beside corner (overlap below ::sliver).
+	// nothing found, when the polygons are farther apart than `margin` (m) or only meet corner beside corner (overlap below ::sliver).
 	static bool findPoints(const Shape& shape1, const Pose&, const Shape& shape2, const Pose&, double margin, Memory&, FoundPoints<Plane>&);
 	// The second normals of points that are corners on corners (corner_normals.hpp).
 	static void addSecondNormals(const Shape& shape1, const Pose&, const Shape& shape2, const Pose&, FoundPoints<Plane>&);

@@ -1,4 +1,4 @@
-// Contact points of two rectangles in the plane.
+// Contact points of two convex polygons in the plane.
 #include "contact/corner_normals.hpp"
 #include "contact/features.hpp"
 #include "contact/reference_face.hpp"
@@ -9,128 +9,150 @@
 
 namespace masonry {
 
-using feature::bit;
-using feature::faceNumber;
-using feature::signOf;
-
 namespace {
 
 namespace limits = tolerance::contact;
 
-// A face looks along `sign` times `axis`; a vertex is an end of a face, where the other axis has the sign `end`.
-int vertexNumber(int axis, double sign, double end) { return axis == 0 ? bit(sign) + 2 * bit(end) : bit(end) + 2 * bit(sign); }
+// From the unit vector a counter-clockwise to b.
+double sineBetween(const Vector2& a, const Vector2& b) { return a.x() * b.y() - a.y() * b.x(); }
+Vector2 turnedLeft(const Vector2& a) { return {-a.y(), a.x()}; }
 
-Vector2 vertexOf(int number, const Vector2& half) { return feature::vertexSigns(number).head<2>().cwiseProduct(half); }
+double smallerThickness(const ConvexPolygon& a, const ConvexPolygon& b) { return std::min(a.thickness(), b.thickness()); }
 
-// One rectangle seen from the other.
+// One polygon seen from the other, whose axes are the frame.
 struct RelativePose {
-	double axes[2][2]; // [row][column]: component, along `row` of the frame, of the rectangle's own axis `column`
-	Vector2 offset;    // its centre in the frame
+	double cosine, sine;
+	Vector2 offset; // its centre in the frame
 
-	RelativePose(double cosine, double sine, const Vector2& centre) : axes {{cosine, -sine}, {sine, cosine}}, offset(centre) {}
-	RelativePose reversed() const
+	RelativePose(const PlanePose& frame, const PlanePose& seen)
+	    : cosine(frame.cosine * seen.cosine + frame.sine * seen.sine), sine(frame.cosine * seen.sine - frame.sine * seen.cosine),
+	      offset(frame.toLocal(seen.position))
 	{
-		const double c = axes[0][0], s = axes[1][0];
-		return {c, -s, {-c * offset.x() - s * offset.y(), s * offset.x() - c * offset.y()}};
 	}
+	Vector2 rotate(const Vector2& a) const { return {cosine * a.x() - sine * a.y(), sine * a.x() + cosine * a.y()}; }
+	Vector2 rotateBack(const Vector2& a) const { return {cosine * a.x() + sine * a.y(), cosine * a.y() - sine * a.x()}; }
+	Vector2 toFrame(const Vector2& local) const { return offset + rotate(local); }
 };
 
-RelativePose relative(const PlanePose& from, const PlanePose& seen)
-{
-	return {from.cosine * seen.cosine + from.sine * seen.sine, from.cosine * seen.sine - from.sine * seen.cosine,
-	        from.toLocal(seen.position)};
-}
+// A face of body 1 or 2 and how far the other body is from it.
+struct BestFace {
+	int body, face;
+	double separation;
+};
 
-FaceAxis bestFaceOf(int body, const Vector2& half, const Vector2& otherHalf, const RelativePose& other, int held, double length)
+// Of the faces that look towards the other body: behind any other face it could only be where the two go through each other.
+BestFace bestFaceOf(int body, const ConvexPolygon& own, const ConvexPolygon& other, const RelativePose& pose, int held, double length)
 {
-	FaceAxis best {body, -1, 1, 0};
-	double bestScore = 0;
-	for (int axis : {0, 1}) {
-		const double sign = signOf(other.offset[axis]);
-		const double reach = std::abs(other.axes[axis][0]) * otherHalf.x() + std::abs(other.axes[axis][1]) * otherHalf.y();
-		const double separation = std::abs(other.offset[axis]) - half[axis] - reach;
-		const double score = held == faceNumber(axis, sign) ? separation + lead(separation, length) : separation;
-		if (best.axis < 0 || score > bestScore) {
-			best = {body, axis, sign, separation};
+	constexpr double infinity = std::numeric_limits<double>::infinity();
+	BestFace best {body, -1, -infinity};
+	double bestScore = -infinity;
+	for (int k = 0; k < int(own.faces().size()); ++k) {
+		const ConvexPolygon::Face& face = own.faces()[k];
+		const double towards = face.normal.dot(pose.offset);
+		if (towards < 0)
+			continue;
+		const Vector2 normal = pose.rotateBack(face.normal);
+		double lowest = infinity;
+		for (const Vector2& vertex : other.vertices())
+			lowest = std::min(lowest, normal.dot(vertex));
+		const double separation = towards - face.offset + lowest;
+		const double score = held == k ? separation + lead(separation, length) : separation;
+		if (score > bestScore) {
+			best = {body, k, separation};
 			bestScore = score;
 		}
 	}
 	return best;
 }
 
-// The two rectangles as the reference face sees them. Lengths along the face are counted along the tangent that follows from the
-// normal (from body 1 to body 2), so that the order of the ends does not depend on the reference.
+// The two polygons as the reference face sees them: `along` is the place on its line, counted along the tangent that follows from the
+// normal (from body 1 to body 2), so that the order of the ends does not depend on the reference; `over` is the height above it.
 struct FacePair {
-	FaceAxis face;
-	const Vector2 &referenceHalf, &incidentHalf;
-	RelativePose incident; // in the frame of the reference body
-	double length;         // m, smallest half size: tolerances are relative to it
-	int tangent;           // axis of the reference body along its face
-	double direction;      // of the common tangent along it
+	struct Place {
+		int vertex;
+		double along, over;
+	};
 
-	// Incident face: its middle, the way from there to its corner of positive sign (along the face and over it), its outward normal.
-	int incidentAxis {0};
-	double incidentSign {1};
-	double middle {0}, height {0}, span {0}, rise {0}, normalAlong {0}, normalOver {0};
+	BestFace reference;
+	const ConvexPolygon &polygon, &incidentPolygon; // of the reference, and the other one
+	RelativePose pose;                              // of the other one
+	double length;                                  // m: tolerances are relative to it
+	const ConvexPolygon::Face& face;
+	Vector2 tangent;
+	Place referenceLow, referenceHigh; // the ends of the reference face
 
-	FacePair(const FaceAxis& f, const Vector2& reference, const Vector2& other, const RelativePose& pose, double size)
-	    : face(f), referenceHalf(reference), incidentHalf(other), incident(pose), length(size), tangent(1 - f.axis),
-	      direction((f.axis == 0) == (f.body == 1) ? f.sign : -f.sign)
+	// Incident face: its ends, its outward normal.
+	int incident {-1};
+	Place low {}, high {};
+	double normalAlong {0}, normalOver {0};
+
+	FacePair(const BestFace& axis, const ConvexPolygon& own, const ConvexPolygon& other, const RelativePose& seen, double size)
+	    : reference(axis), polygon(own), incidentPolygon(other), pose(seen), length(size), face(own.faces()[axis.face]),
+	      tangent(axis.body == 1 ? turnedLeft(face.normal) : Vector2(-turnedLeft(face.normal))),
+	      referenceLow(placeOnReference(axis.body == 1 ? face.from : face.to)),
+	      referenceHigh(placeOnReference(axis.body == 1 ? face.to : face.from))
 	{
 	}
 
-	// Of the two faces along this axis, the one that looks against the reference face.
-	void takeIncident(int axis)
+	Place placeOnReference(int vertex) const { return {vertex, tangent.dot(polygon.vertices()[vertex]), 0}; }
+	Place placeOfIncident(int vertex) const
 	{
-		const auto &along = incident.axes[tangent], &over = incident.axes[face.axis];
-		incidentAxis = axis;
-		incidentSign = -signOf(face.sign * over[axis]);
-		normalAlong = direction * incidentSign * along[axis];
-		normalOver = face.sign * incidentSign * over[axis];
-		middle = direction * incident.offset[tangent] + incidentHalf[axis] * normalAlong;
-		height = face.sign * incident.offset[face.axis] - referenceHalf[face.axis] + incidentHalf[axis] * normalOver;
-		span = direction * incidentHalf[1 - axis] * along[1 - axis];
-		rise = face.sign * incidentHalf[1 - axis] * over[1 - axis];
+		const Vector2 place = pose.toFrame(incidentPolygon.vertices()[vertex]);
+		return {vertex, tangent.dot(place), face.normal.dot(place) - face.offset};
+	}
+	double facing(int number) const { return -face.normal.dot(pose.rotate(incidentPolygon.faces()[number].normal)); }
+	void takeIncident(int number)
+	{
+		const ConvexPolygon::Face& other = incidentPolygon.faces()[number];
+		const Vector2 normal = pose.rotate(other.normal);
+		incident = number;
+		normalAlong = tangent.dot(normal);
+		normalOver = face.normal.dot(normal);
+		low = placeOfIncident(reference.body == 1 ? other.to : other.from);
+		high = placeOfIncident(reference.body == 1 ? other.from : other.to);
+		if (high.along < low.along) // it looks away from the reference
+			std::swap(low, high);
+	}
+	// The other face beside the vertex of the incident face that is nearest to the line of the reference face.
+	void takeNextIncident()
+	{
+		const ConvexPolygon::Corner& corner = incidentPolygon.corners()[high.over < low.over ? high.vertex : low.vertex];
+		takeIncident(corner.before == incident ? corner.after : corner.before);
 	}
 
-	double referenceEnd() const { return referenceHalf[tangent]; }
 	// Thinner than this is no contact.
 	bool overlaps() const
 	{
-		const double reach = std::abs(span);
-		return std::min(referenceEnd(), middle + reach) - std::max(-referenceEnd(), middle - reach) > limits::sliver * length;
+		return std::min(referenceHigh.along, high.along) - std::max(referenceLow.along, low.along) > limits::sliver * length;
 	}
 	// Whether this place on the reference face lies over the incident face.
-	bool meetsIncident(double place) const
+	bool meetsIncident(double along) const
 	{
-		const double half = std::hypot(span, rise);
-		return std::abs((place - middle) * span - height * rise) <= half * (half + limits::slack * length);
+		const Vector2 half(Vector2(high.along - low.along, high.over - low.over) / 2);
+		const Vector2 fromMiddle(along - (high.along + low.along) / 2, -(high.over + low.over) / 2);
+		return std::abs(fromMiddle.dot(half)) <= half.norm() * (half.norm() + limits::slack * length);
 	}
-	int referenceFace() const { return faceNumber(face.axis, face.sign); }
-	int incidentFace() const { return faceNumber(incidentAxis, incidentSign); }
 };
-
-FaceAxis referenceFace(const Vector2& half1, const Vector2& half2, const RelativePose& second, const RelativePose& first, double length,
-                       const PlaneMemory& memory)
-{
-	const FaceAxis face1 = bestFaceOf(1, half1, half2, second, memory.reference == 1 ? memory.face1 : -1, length);
-	const FaceAxis face2 = bestFaceOf(2, half2, half1, first, memory.reference == 2 ? memory.face2 : -1, length);
-	const bool larger2 = half2[1 - face2.axis] > half1[1 - face1.axis] * (1 + limits::reference);
-	return reference(face1, face2, memory.reference, larger2, length);
-}
 
 // The face that looks most against the reference face.
 void chooseIncident(FacePair& pair, const PlaneMemory& memory)
 {
-	const int same = pair.face.axis, held = pair.face.body == 1 ? memory.face2 : memory.face1;
-	const double gain = memory.reference != 0 && feature::faceAxis(held) != same ? -limits::incident : limits::incident;
-	const double facing = std::abs(pair.incident.axes[0][0]), across = std::abs(pair.incident.axes[0][1]);
-	pair.takeIncident(facing + gain > across ? same : 1 - same);
+	const int held = memory.reference == 0 ? -1 : pair.reference.body == 1 ? memory.face2 : memory.face1;
+	int best = 0;
+	double bestScore = -std::numeric_limits<double>::infinity();
+	for (int k = 0; k < int(pair.incidentPolygon.faces().size()); ++k) {
+		const double score = pair.facing(k) + (k == held ? limits::incident : 0);
+		if (score > bestScore) {
+			best = k;
+			bestScore = score;
+		}
+	}
+	pair.takeIncident(best);
 }
 
 struct End {
 	Feature feature;
-	double gap, place; // place: along the reference face
+	double gap, along;
 };
 
 // What meets at one end (-1 or +1 along the tangent) of the overlap: the incident vertex where it lies over the reference face,
@@ -140,12 +162,11 @@ struct End {
 // block, so the wrong vertex jams it.
 End endOfOverlap(const FacePair& pair, double end, const PlaneMemory& memory)
 {
-	const double corner = end * signOf(pair.span), inside = pair.referenceEnd() - end * (pair.middle + corner * pair.span);
-	const int reference = pair.face.body;
-	const int incidentVertex = vertexNumber(pair.incidentAxis, pair.incidentSign, corner),
-	          referenceVertex = vertexNumber(pair.face.axis, pair.face.sign, end * pair.direction);
-	const Feature ofIncident = Feature::ofVertex(3 - reference, incidentVertex, pair.referenceFace()),
-	              ofReference = Feature::ofVertex(reference, referenceVertex, pair.incidentFace());
+	const FacePair::Place &own = end > 0 ? pair.referenceHigh : pair.referenceLow, &other = end > 0 ? pair.high : pair.low;
+	const double inside = end * (own.along - other.along);
+	const int body = pair.reference.body;
+	const Feature ofIncident = Feature::ofVertex(3 - body, other.vertex, pair.reference.face),
+	              ofReference = Feature::ofVertex(body, own.vertex, pair.incident);
 	const auto held = [&memory](const Feature& feature) { return feature == memory.features[0] || feature == memory.features[1]; };
 	const auto takesIncident = [&] {
 		if (std::abs(inside) > limits::slack * pair.length)
@@ -153,89 +174,80 @@ End endOfOverlap(const FacePair& pair, double end, const PlaneMemory& memory)
 		return held(ofIncident) || !held(ofReference);
 	};
 	if (takesIncident())
-		return {ofIncident, pair.height + corner * pair.rise, pair.middle + corner * pair.span};
-	const double place = end * pair.referenceEnd();
-	return {ofReference, pair.normalAlong * (place - pair.middle) - pair.normalOver * pair.height, place};
+		return {ofIncident, other.over, other.along};
+	return {ofReference, pair.normalAlong * (own.along - other.along) - pair.normalOver * other.over, own.along};
 }
 
 // Where a face leans on the border of another one, a vertex of it that slides over that border lands nowhere: its gap ends there, at a
 // speed that is all of the sliding, and so does the face that it is over. So it is no end of the overlap where the border is so near.
 bool passes(const FacePair& pair, const End& low, const End& high)
 {
-	return std::abs(pair.normalAlong) > tolerance::contact::leans && high.place - low.place < tolerance::contact::passing * pair.length;
+	return std::abs(pair.normalAlong) > limits::leans && high.along - low.along < limits::passing * pair.length;
 }
 
-// A vertex on a face of the other body, near a vertex of that. Columns of `axes`: those of the body with the vertex, in the other one's.
-class Corner {
-public:
-	Corner(const Feature& feature, const Vector2& vertexHalf, const PlanePose& vertexPose, const Vector2& faceHalf,
-	       const PlanePose& facePose)
-	    : point(feature), vertexSigns(vertexOf(feature.vertex(), {1, 1})), pose(relative(facePose, vertexPose))
-	{
-		const Vector2 arm = vertexOf(feature.vertex(), vertexHalf);
-		const int along = 1 - axis();
-		for (int row : {0, 1})
-			place[row] = pose.offset[row] + pose.axes[row][0] * arm.x() + pose.axes[row][1] * arm.y();
-		end = signOf(place[along]);
-		apart = std::max(std::abs(sign() * place[axis()] - faceHalf[axis()]), std::abs(end * place[along] - faceHalf[along]));
-	}
-	// The other bound of the admissible normals (corner_normals.hpp): of the two faces beside the vertex, the one that looks against those
-	// beside the other body's. False: the corners do not meet, or their faces are nearly parallel.
-	bool secondNormal(double reach, Feature& second) const
-	{
-		if (apart > reach)
-			return false;
-		for (int k : {0, 1}) {
-			const double along = vertexSigns[k] * pose.axes[1 - axis()][k] * end;
-			if (vertexSigns[k] * pose.axes[axis()][k] * sign() > 0)
-				return false;
-			if (along < -tolerance::contact::cornerSpread)
-				second = Feature::ofVertex(3 - point.vertexBody(), vertexNumber(axis(), sign(), end), faceNumber(k, vertexSigns[k]));
-		}
-		return second.kind != Feature::None;
-	}
+// The other bound of the admissible normals (corner_normals.hpp) of a vertex that is on a face of the other body near a vertex of that.
+// From the normal n of the face towards the tangent e at that end, the normals of the other body's corner reach to its other face, those of
+// the vertex, reversed, to that of its own faces which looks against it. The first of them bounds what both have in common. None: the
+// corners do not meet, or the bound is nearly n.
+Feature secondNormal(const Feature& point, const ConvexPolygon& own, const PlanePose& ownPose, const ConvexPolygon& other,
+                     const PlanePose& otherPose, double reach)
+{
+	const ConvexPolygon::Face& face = other.faces()[point.face()];
+	const RelativePose pose(otherPose, ownPose);
+	const Vector2 place = pose.toFrame(own.vertices()[point.vertex()]), counterClockwise = turnedLeft(face.normal);
+	const bool atTo = counterClockwise.dot(place - other.vertices()[face.from]) > face.length / 2;
+	const int end = atTo ? face.to : face.from;
+	const Vector2 apart = place - other.vertices()[end];
+	if (std::max(std::abs(face.normal.dot(apart)), std::abs(counterClockwise.dot(apart))) > reach)
+		return {};
 
-private:
-	int axis() const { return feature::faceAxis(point.face()); }
-	double sign() const { return feature::faceSign(point.face()); }
-
-	const Feature point;
-	const Vector2 vertexSigns;
-	const RelativePose pose;
-	Vector2 place;
-	double end, apart;
-};
+	const ConvexPolygon::Corner &ofVertex = own.corners()[point.vertex()], &ofEnd = other.corners()[end];
+	const Vector2 before = -pose.rotate(own.faces()[ofVertex.before].normal), after = -pose.rotate(own.faces()[ofVertex.after].normal);
+	if (sineBetween(before, face.normal) < 0 || sineBetween(face.normal, after) < 0)
+		return {};                     // n is no normal of the vertex
+	const double turn = atTo ? 1 : -1; // of n towards e
+	const int otherFace = atTo ? ofEnd.after : ofEnd.before, ownFace = atTo ? ofVertex.after : ofVertex.before;
+	const Vector2 &ofOther = other.faces()[otherFace].normal, &ofOwn = atTo ? after : before;
+	const bool isOwn = turn * sineBetween(ofOwn, ofOther) >= 0;
+	const Vector2& bound = isOwn ? ofOwn : ofOther;
+	if (turn * sineBetween(face.normal, bound) <= limits::cornerSpread && face.normal.dot(bound) > 0)
+		return {};
+	return isOwn ? Feature::ofVertex(3 - point.vertexBody(), end, ownFace)
+	             : Feature::ofVertex(point.vertexBody(), point.vertex(), otherFace);
+}
 
 } // namespace
 
 bool Plane::findPoints(const Shape& shape1, const Pose& pose1, const Shape& shape2, const Pose& pose2, double margin, Memory& memory,
                        FoundPoints<Plane>& out)
 {
-	const Vector &half1 = shape1.halfSize(), &half2 = shape2.halfSize();
 	const Memory before = memory;
 	memory = {};
 	out = {};
-	const RelativePose second = relative(pose1, pose2), first = second.reversed();
-	const double length = std::min(shape1.thickness(), shape2.thickness());
-	const FaceAxis face = referenceFace(half1, half2, second, first, length, before);
+	const RelativePose second(pose1, pose2), first(pose2, pose1);
+	const double length = smallerThickness(shape1, shape2);
+	const BestFace face1 = bestFaceOf(1, shape1, shape2, second, before.reference == 1 ? before.face1 : -1, length),
+	               face2 = bestFaceOf(2, shape2, shape1, first, before.reference == 2 ? before.face2 : -1, length);
+	const bool larger2 = shape2.faces()[face2.face].length > shape1.faces()[face1.face].length * (1 + limits::reference);
+	const BestFace& face = reference(face1, face2, before.reference, larger2, length);
 	if (face.separation > margin)
 		return false;
 
 	const bool on1 = face.body == 1;
-	FacePair pair(face, on1 ? half1 : half2, on1 ? half2 : half1, on1 ? second : first, length);
+	FacePair pair(face, on1 ? shape1 : shape2, on1 ? shape2 : shape1, on1 ? second : first, length);
 	chooseIncident(pair, before);
 	const bool beyondFace = !pair.overlaps();
 	if (beyondFace) {
-		if (std::abs(pair.normalAlong) < tolerance::contact::leans) // nearly parallel faces that only meet corner beside corner
+		if (std::abs(pair.normalAlong) < limits::leans) // nearly parallel faces that only meet corner beside corner
 			return false;
-		pair.takeIncident(1 - pair.incidentAxis);
+		pair.takeNextIncident();
 		if (!pair.overlaps())
 			return false;
 	}
 
 	End low = endOfOverlap(pair, -1, before), high = endOfOverlap(pair, 1, before);
 	for (End* end : {&low, &high})
-		if (beyondFace && end->feature.vertexBody() == face.body && !pair.meetsIncident(end->place))
+		if (beyondFace && end->feature.vertexBody() == face.body && !pair.meetsIncident(end->along))
 			end->gap = std::numeric_limits<double>::infinity();
 	const End& nearer = high.gap < low.gap ? high : low;
 	if (!(nearer.gap <= margin) || std::isinf(nearer.gap))
@@ -244,8 +256,8 @@ bool Plane::findPoints(const Shape& shape1, const Pose& pose1, const Shape& shap
 		out.features = {nearer.feature};
 	else
 		out.features = {low.feature, high.feature};
-	out.face1 = on1 ? pair.referenceFace() : pair.incidentFace();
-	out.face2 = on1 ? pair.incidentFace() : pair.referenceFace();
+	out.face1 = on1 ? face.face : pair.incident;
+	out.face2 = on1 ? pair.incident : face.face;
 	memory = {face.body, out.face1, out.face2, {}};
 	std::copy(out.features.begin(), out.features.end(), memory.features.begin());
 	return true;
@@ -253,16 +265,19 @@ bool Plane::findPoints(const Shape& shape1, const Pose& pose1, const Shape& shap
 
 void Plane::addSecondNormals(const Shape& shape1, const Pose& pose1, const Shape& shape2, const Pose& pose2, FoundPoints<Plane>& out)
 {
-	const Vector &half1 = shape1.halfSize(), &half2 = shape2.halfSize();
 	out.beginSecondNormals();
-	if (std::abs(pose1.cosine * pose2.sine - pose1.sine * pose2.cosine) < tolerance::contact::cornerSpread)
+	if (out.places == 0)
+		return;
+	const Vector2 normal1 = pose1.rotate(shape1.faces()[out.face1].normal), normal2 = pose2.rotate(shape2.faces()[out.face2].normal);
+	if (std::abs(sineBetween(normal1, normal2)) < limits::cornerSpread)
 		return; // parallel
-	const double reach = limits::vertexReach * std::min(shape1.thickness(), shape2.thickness());
+	const double reach = limits::vertexReach * smallerThickness(shape1, shape2);
 	for (int i = 0; i < out.places; ++i) {
 		const Feature point = out.features[i];
 		const bool on1 = point.vertexBody() == 1;
-		Feature second;
-		if (Corner(point, on1 ? half1 : half2, on1 ? pose1 : pose2, on1 ? half2 : half1, on1 ? pose2 : pose1).secondNormal(reach, second))
+		const Feature second =
+		    secondNormal(point, on1 ? shape1 : shape2, on1 ? pose1 : pose2, on1 ? shape2 : shape1, on1 ? pose2 : pose1, reach);
+		if (second.kind != Feature::None)
 			out.addSecondNormal(second, i);
 	}
 }

@@ -45,21 +45,26 @@ double BaseMotion::Piece::displacementAt(double t) const
 	return displacement + s * (velocity + s * (constant / 2 + s * slope / 6));
 }
 
-std::optional<double> BaseMotion::Piece::firstAbove(double level, double from, double until) const
+std::optional<double> BaseMotion::Piece::firstAbove(const Levels& level, double from, double until) const
 {
 	if (isFree())
 		return std::nullopt;
-	if (std::abs(accelerationAt(from)) > level)
+	const double now = accelerationAt(from);
+	if (std::abs(now) > level.of(now))
 		return from;
 	double first = infinity;
 	if (amplitude != 0) {
-		if (std::abs(amplitude) <= level)
-			return std::nullopt;
-		// |sin| rises above the ratio at angle asin(ratio), then every half turn
-		const double angle = std::asin(level / std::abs(amplitude)), now = frequency * (from - start);
-		first = start + (angle + pi * std::ceil((now - angle) / pi)) / frequency;
+		// A half wave rises above the ratio at angle asin(ratio), after an even number of half turns the first, an odd one the other.
+		for (const double peak : {amplitude, -amplitude})
+			if (const double ratio = level.of(peak) / std::abs(peak); ratio < 1) {
+				const double angle = std::asin(ratio);
+				double halfTurns = std::ceil((frequency * (from - start) - angle) / pi);
+				if ((std::fmod(halfTurns, 2) != 0) != (peak != amplitude))
+					++halfTurns;
+				first = std::min(first, start + (angle + pi * halfTurns) / frequency);
+			}
 	} else if (slope != 0) {
-		first = start + (std::copysign(level, slope) - constant) / slope;
+		first = start + (std::copysign(level.of(slope), slope) - constant) / slope;
 	}
 	if (!(first <= until))
 		return std::nullopt;

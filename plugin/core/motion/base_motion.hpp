@@ -13,6 +13,14 @@
 
 namespace masonry {
 
+// Accelerations along +x and along -x, without sign, m/s^2, >= 0.
+struct Levels {
+	double positive, negative;
+	Levels(double both) : Levels(both, both) {}
+	Levels(double along, double against) : positive(along), negative(against) {}
+	double of(double acceleration) const { return acceleration < 0 ? negative : positive; }
+};
+
 class BaseMotion {
 public:
 	// From `start` to the start of the next piece, with s = t - start:
@@ -35,8 +43,8 @@ public:
 		double jerkAt(double t) const;                                                          // m/s^3, of the acceleration
 		double largestCurvature() const { return std::abs(amplitude) * frequency * frequency; } // bound of |jerk'|, m/s^4
 
-		// First t in [from, until] at which |acceleration| exceeds `level` (m/s^2, >= 0), if there is one.
-		std::optional<double> firstAbove(double level, double from, double until) const;
+		// First t in [from, until] at which the acceleration exceeds the level of its direction, if there is one.
+		std::optional<double> firstAbove(const Levels& level, double from, double until) const;
 	};
 
 	BaseMotion();

@@ -13,11 +13,11 @@ std::pair<double, double> History::sample(double t) const
 	if (next == knots_.begin() || !(t <= endTime) || (overturned() && t >= lostTime_))
 		return {nan, nan};
 	const Knot& knot = *(next - 1);
-	const RockingLaw& law = *law_;
 	const Shaking shaking {motion.pieceAt(knot.time), vertical.pieceAt(knot.time)};
 	RockingState state = knot.state;
 	if (state.side == 0)
 		return {0, 0};
+	const RockingLaw& law = lawOf(laws_.front(), state.side);
 	for (double time = knot.time; time < t;) {
 		const TaylorStep step(law, state, shaking, time, std::min(t - time, 2 / law.p));
 		if (step.firstChange() == 0)
@@ -32,7 +32,8 @@ std::pair<double, double> History::sample(double t) const
 namespace {
 void check(const HistoryOptions& options, bool endless)
 {
-	require("restitution", options.restitution, options.restitution >= 0 && options.restitution <= 1, "must be in [0, 1]");
+	for (const double restitution : {options.restitution.fromRight, options.restitution.fromLeft})
+		require("restitution", restitution, restitution >= 0 && restitution <= 1, "must be in [0, 1]");
 	require("initial_angle", options.initialAngle, std::abs(options.initialAngle) < std::asin(1), "must be in (-pi/2, pi/2) rad");
 	require("initial_velocity", options.initialVelocity, std::abs(options.initialVelocity) <= fastest,
 	        "must be at most 1e6 rad/s without its sign");
@@ -41,6 +42,11 @@ void check(const HistoryOptions& options, bool endless)
 	const bool bounded = std::isfinite(options.endTime) || options.halfCycles < std::numeric_limits<int>::max() || options.onlyOverturning;
 	if (endless && !bounded)
 		throw std::invalid_argument("t_end and half_cycles are not given: one is needed, this rocking never ends");
+}
+
+bool keepsEnergy(const RockingPrism& block, const Restitution& restitution)
+{
+	return restitution.fromRight == 1 && restitution.fromLeft == 1 && block.right.inertia == block.left.inertia;
 }
 
 void checkVertical(const BaseMotion& vertical, double gravity)
@@ -57,14 +63,14 @@ void checkVertical(const BaseMotion& vertical, double gravity)
 }
 } // namespace
 
-History simulate(const RockingBlock& block, const BaseMotion& motion, const HistoryOptions& options, const BaseMotion& vertical)
+History simulate(const RockingPrism& block, const BaseMotion& motion, const HistoryOptions& options, const BaseMotion& vertical)
 {
-	check(options, options.restitution == 1);
-	checkVertical(vertical, block.gravity);
+	check(options, keepsEnergy(block, options.restitution));
+	checkVertical(vertical, block.right.gravity);
 	return HistoryRun(block, options, nullptr).run(motion, vertical);
 }
 
-History simulate(const RockingBlock& block, const PulseTrain& train, const HistoryOptions& options, const BaseMotion& vertical)
+History simulate(const RockingPrism& block, const PulseTrain& train, const HistoryOptions& options, const BaseMotion& vertical)
 {
 	require("impulse", train.impulse, std::abs(train.impulse) <= largestJump / 2, "must be at most 1e6 m/s without its sign");
 	if (train.pulse.shape != PulseShape::Dirac)
@@ -74,8 +80,8 @@ History simulate(const RockingBlock& block, const PulseTrain& train, const Histo
 	HistoryOptions bounded = options;
 	if (train.halfCycles < 0)
 		bounded.onlyOverturning = false; // its pulses never end: not certain at any time
-	check(bounded, train.halfCycles < 0 || options.restitution == 1);
-	checkVertical(vertical, block.gravity);
+	check(bounded, train.halfCycles < 0 || keepsEnergy(block, options.restitution));
+	checkVertical(vertical, block.right.gravity);
 	return HistoryRun(block, options, &train).run(BaseMotion(), vertical);
 }
 

@@ -14,14 +14,21 @@
 #include "rocking/restoring.hpp"
 #include "rocking/taylor_step.hpp"
 #include <limits>
-#include <optional>
 #include <utility>
 #include <vector>
 
 namespace masonry {
 
+// C in [0, 1] of the impacts that end a turn about the right edge, and of those that end one about the left. An impact makes no energy: it
+// realises at most the root of the ratio of the moments of inertia about the old and the new edge.
+struct Restitution {
+	double fromRight, fromLeft;
+	Restitution(double both) : Restitution(both, both) {}
+	Restitution(double right, double left) : fromRight(right), fromLeft(left) {}
+};
+
 struct HistoryOptions {
-	double restitution {1}; // C in [0, 1]
+	Restitution restitution {1};
 	Restoring restoring {Restoring::Exact};
 	double initialAngle {0};    // rad, in (-pi/2, pi/2)
 	double initialVelocity {0}; // rad/s
@@ -60,16 +67,17 @@ private:
 	};
 	std::vector<Knot> knots_;
 	double lostTime_ {std::numeric_limits<double>::infinity()}; // s, when the overturned block reaches its lost angle
-	std::optional<RockingLaw> law_;
+	std::vector<RockingLaws> laws_;                             // one, from the run
 };
 
 // A train's pulse 0 comes at t = 0, and pulse k right after impact k, when the pulse before must have ended.
 // vertical: the base's motion upwards, without velocity jumps and with an acceleration above -g (the block stays on its base).
 // std::invalid_argument: restitution outside [0, 1], angle outside (-pi/2, pi/2), anything not finite, such a vertical motion, or a run
-// without end (no endTime and no halfCycles, while the pulses never end, or C = 1).
+// without end (no endTime and no halfCycles, while the pulses never end, or C = 1 and the
+// block symmetric).
 // std::runtime_error: more than a million impacts, more than 20 million steps under a motion, or an impact while a finite pulse of a
 // resonant train acts.
-History simulate(const RockingBlock&, const BaseMotion&, const HistoryOptions&, const BaseMotion& vertical = BaseMotion());
-History simulate(const RockingBlock&, const PulseTrain&, const HistoryOptions&, const BaseMotion& vertical = BaseMotion());
+History simulate(const RockingPrism&, const BaseMotion&, const HistoryOptions&, const BaseMotion& vertical = BaseMotion());
+History simulate(const RockingPrism&, const PulseTrain&, const HistoryOptions&, const BaseMotion& vertical = BaseMotion());
 
 } // namespace masonry

@@ -28,7 +28,7 @@ auto velocityOf(const TaylorStep& step)
 
 double HistoryRun::timeOfLoss(const TaylorStep& step, double before) const
 {
-	return root(angleOf(step, law_.lostAngle()), 0, before, before);
+	return root(angleOf(step, law().lostAngle()), 0, before, before);
 }
 
 History HistoryRun::run(const BaseMotion& motion, const BaseMotion& vertical)
@@ -62,7 +62,7 @@ History HistoryRun::run(const BaseMotion& motion, const BaseMotion& vertical)
 	history_.endTime = std::isinf(options_.endTime) && (atRest() || history_.overturned()) ? infinity : time_;
 	history_.baseDisplacement =
 	    moved.displacement(std::isfinite(history_.endTime) ? history_.endTime : std::max(moved.pieces().back().start, 0.0));
-	history_.law_.emplace(law_);
+	history_.laws_.push_back(laws_);
 	return std::move(history_);
 }
 
@@ -75,7 +75,7 @@ void HistoryRun::start()
 		const int side = (angle != 0 ? angle : velocity) > 0 ? 1 : -1;
 		take({side, std::abs(angle), side * velocity});
 		beginHalfCycle();
-		if (state_.angle >= law_.lostAngle())
+		if (state_.angle >= law().lostAngle())
 			overturn(0);
 	}
 	if (train_)
@@ -102,11 +102,12 @@ void HistoryRun::followPiece(const Shaking& shaking, double until)
 // True if the block does not move until then; otherwise it starts to rock at time_.
 bool HistoryRun::staysAtRest(const Shaking& shaking, double until)
 {
-	const double level = law_.upliftAcceleration();
-	auto uplift = shaking.firstExcess(level, law_.gravity, time_, until);
+	const double gravity = law().gravity;
+	const Levels level(law(-1).upliftAcceleration(), law(1).upliftAcceleration()); // a base that goes to the right tips it to the left
+	auto uplift = shaking.firstExcess(level, gravity, time_, until);
 	// Where the acceleration has only just reached the level, round-off decides whether the block falls back.
-	if (uplift && shaking.excessAt(*uplift, level, law_.gravity) <= tolerance::oneInstant * level)
-		*uplift += tolerance::oneInstant * std::max(*uplift, 1 / law_.p);
+	if (uplift && shaking.excessAt(*uplift, level, gravity) <= tolerance::oneInstant * level.of(shaking.horizontal.accelerationAt(*uplift)))
+		*uplift += tolerance::oneInstant * std::max(*uplift, 1 / law().p);
 	if (!uplift || *uplift >= until) {
 		if (until == infinity)
 			done_ = true;
@@ -126,28 +127,28 @@ bool HistoryRun::cannotReturn()
 {
 	const bool outwards = state_.velocity >= 0;
 	const double deficit = energy().deficit;
-	return state_.angle < law_.alpha ? outwards && deficit <= 0 : outwards || deficit >= 0;
+	return state_.angle < law().alpha ? outwards && deficit <= 0 : outwards || deficit >= 0;
 }
 
 // The rest of a free half cycle in closed form, if it ends by an impact before `until`.
 bool HistoryRun::flyFreely(double until)
 {
 	const FreeEnergy& now = energy();
-	if (now.deficit <= 0 || state_.angle >= law_.alpha)
+	if (now.deficit <= 0 || state_.angle >= law().alpha)
 		return false;
-	const double fall = law_.timeFromPeakToImpact(now);
-	const double sincePeak = state_.angle == 0 ? fall : law_.timeFromPeak(now, state_.angle, state_.velocity);
+	const double fall = law().timeFromPeakToImpact(now);
+	const double sincePeak = state_.angle == 0 ? fall : law().timeFromPeak(now, state_.angle, state_.velocity);
 	const double peakTime = state_.velocity > 0 ? time_ + sincePeak : time_ - sincePeak;
 	const double impactTime = peakTime + fall;
-	if (impactTime > until + tolerance::oneInstant * std::max(until, 1 / law_.p))
+	if (impactTime > until + tolerance::oneInstant * std::max(until, 1 / law().p))
 		return false;
 	if (state_.velocity > 0) {
-		const double peak = law_.peakAngle(now); // of this flight; the half cycle may have had a larger one
+		const double peak = law().peakAngle(now); // of this flight; the half cycle may have had a larger one
 		notePeak(peak, peakTime);
 		if (options_.keepStates)
 			history_.knots_.push_back({peakTime, {state_.side, peak, 0}});
 	}
-	impact(std::max(impactTime, time_), law_.impactVelocity(now), true);
+	impact(std::max(impactTime, time_), law().impactVelocity(now), true);
 	return true;
 }
 
@@ -159,7 +160,7 @@ void HistoryRun::flyForced(const Shaking& shaking, double until)
 			throw std::runtime_error(
 			    "more than 20 million steps, several for each cycle of the motion: give half_cycles or an earlier t_end");
 		keepState();
-		const TaylorStep step(law_, state_, shaking, time_, std::min(until - time_, 2 / law_.p));
+		const TaylorStep step(law(), state_, shaking, time_, std::min(until - time_, 2 / law().p));
 		const double length = step.length();
 		const auto end = step.at(length);
 		const auto angle = angleOf(step);
@@ -174,7 +175,7 @@ void HistoryRun::flyForced(const Shaking& shaking, double until)
 			const double speed = velocity(rising).first;
 			above = root(velocity, rising, length, rising + (length - rising) * speed / (speed - end.velocity));
 			notePeak(step.at(above).angle, time_ + above);
-			if (peakAngle_ >= law_.lostAngle())
+			if (peakAngle_ >= law().lostAngle())
 				return overturn(time_ + timeOfLoss(step, above));
 			if (state_.angle == 0)
 				landing = std::min(2 * above, below);
@@ -187,7 +188,7 @@ void HistoryRun::flyForced(const Shaking& shaking, double until)
 			const double s = root(angle, above, below, landing);
 			return impact(std::max(time_ + s, std::nextafter(time_, infinity)), -step.at(s).velocity, shaking.isFree());
 		}
-		if (end.angle >= law_.lostAngle())
+		if (end.angle >= law().lostAngle())
 			return overturn(time_ + timeOfLoss(step, length));
 		time_ = length == until - time_ ? until : time_ + length;
 		take({side, end.angle, end.velocity});
@@ -198,25 +199,25 @@ void HistoryRun::flyForced(const Shaking& shaking, double until)
 // inwards, it cannot be told from one that ends in balance there.
 void HistoryRun::fallFreely(const Shaking& shaking)
 {
-	const bool beyond = state_.angle >= law_.alpha;
+	const bool beyond = state_.angle >= law().alpha;
 	history_.overturnHalfCycle = impacts() + 1;
 	done_ = true;
 	while (options_.keepStates) {
-		if (state_.angle >= law_.lostAngle())
+		if (state_.angle >= law().lostAngle())
 			return overturn(time_);
 		keepState();
-		const TaylorStep step(law_, state_, shaking, time_, 2 / law_.p);
+		const TaylorStep step(law(), state_, shaking, time_, 2 / law().p);
 		if (step.firstChange() == 0)
 			return; // in balance
 		const auto velocity = velocityOf(step);
 		const bool turns = !beyond && velocity(step.length()).first < 0;
 		const double length = turns ? root(velocity, 0, step.length(), step.length()) : step.length();
 		const auto end = step.at(length);
-		if (end.angle >= law_.lostAngle())
+		if (end.angle >= law().lostAngle())
 			return overturn(time_ + timeOfLoss(step, length));
 		time_ += length;
-		const bool balanced = turns || (beyond && end.angle < law_.alpha);
-		take(balanced ? RockingState {state_.side, law_.alpha, 0} : RockingState {state_.side, end.angle, end.velocity});
+		const bool balanced = turns || (beyond && end.angle < law().alpha);
+		take(balanced ? RockingState {state_.side, law().alpha, 0} : RockingState {state_.side, end.angle, end.velocity});
 	}
 }
 
@@ -250,9 +251,10 @@ void HistoryRun::impact(double time, double speed, bool free)
 		throw std::runtime_error("more than a million impacts: give half_cycles or an earlier t_end");
 
 	time_ = time;
+	const double restitution = restitution_[state_.side < 0];
 	if (free)
-		energy_ = law_.afterImpact(energy(), options_.restitution);
-	state_ = {-state_.side, 0, options_.restitution * speed};
+		energy_ = law().afterImpact(energy(), restitution, law(-state_.side));
+	state_ = {-state_.side, 0, restitution * speed};
 	isEnergyKnown_ = free;
 	done_ = impacts() > lastJump_ && impacts() >= options_.halfCycles;
 
@@ -264,12 +266,24 @@ void HistoryRun::impact(double time, double speed, bool free)
 	// with a number of half cycles to reach, free rocking needs no threshold to end
 	const bool counted = free && options_.halfCycles < std::numeric_limits<int>::max();
 	if (state_.velocity <= (counted ? 0 : restSpeed_)) {
-		// the hops left: each takes C times the time of the one before
-		const bool hops = free && options_.restitution < 1;
-		return restAt(time + (hops ? 2 * law_.timeFromPeakToImpact(energy()) / (1 - options_.restitution) : 0));
+		return restAt(time + (free ? timeOfHops() : 0));
 	}
 	beginHalfCycle();
 	keepState();
+}
+
+// Time of the hops left after an impact: each takes C A/A' times that of the one before, A and A' being the accelerations about the old and
+// the new edge.
+double HistoryRun::timeOfHops()
+{
+	const auto acceleration = [this](int side) {
+		const RockingLaw& about = law(side);
+		return about.p * about.p * (about.restoring == Restoring::Linear ? about.alpha : about.sinAlpha);
+	};
+	const int side = state_.side;
+	const double turn = acceleration(side) / acceleration(-side), there = restitution_[side < 0] * turn,
+	             back = restitution_[side > 0] / turn;
+	return there * back < 1 ? 2 * law().timeFromPeakToImpact(energy()) * (1 + there) / (1 - there * back) : 0;
 }
 
 // Adds the pulse of the resonant train that follows the last impact. It ends the piece of motion that is being followed.
@@ -287,11 +301,14 @@ void HistoryRun::release(double time)
 
 void HistoryRun::jumpBase(double velocityJump)
 {
-	const double omega = state_.side * state_.velocity - law_.impulseLever(state_.angle) * velocityJump;
+	const int side = atRest() ? (velocityJump > 0 ? -1 : 1) : state_.side;
+	const double lever = law(side).impulseLever(state_.angle);
+	const double omega = state_.side * state_.velocity - lever * velocityJump;
 	if (state_.angle == 0) {
 		if (omega == 0)
 			return restAt(time_);
-		take({omega > 0 ? 1 : -1, 0, std::abs(omega)});
+		const int next = omega > 0 ? 1 : -1; // what is left of the jump when the turn has stopped acts about the other edge
+		take({next, 0, std::abs(omega) * (law(next).impulseLever(0) / lever)});
 		beginHalfCycle();
 	} else {
 		take({state_.side, state_.angle, state_.side * omega});

@@ -2,6 +2,7 @@
 // One run of simulate() (history.hpp), from event to event: impacts, pulses, releases, the end. Only this folder includes it.
 #include "rocking/history.hpp"
 #include "tolerances.hpp"
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -9,11 +10,14 @@ namespace masonry {
 
 class HistoryRun {
 public:
-	HistoryRun(const RockingBlock& block, const HistoryOptions& options, const PulseTrain* train)
+	HistoryRun(const RockingPrism& block, const HistoryOptions& options, const PulseTrain* train)
 	    : options_(options), train_(train), lastJump_(!train                  ? 0
 	                                                  : train->halfCycles < 0 ? std::numeric_limits<int>::max()
 	                                                                          : train->halfCycles),
-	      law_(block, options.restoring), restSpeed_(tolerance::zenoSpeed * std::sqrt(block.gravity / block.radius))
+	      laws_ {RockingLaw(block.right, options.restoring), RockingLaw(block.left, options.restoring)},
+	      restitution_ {std::min(options.restitution.fromRight, std::sqrt(block.right.inertia / block.left.inertia)),
+	                    std::min(options.restitution.fromLeft, std::sqrt(block.left.inertia / block.right.inertia))},
+	      restSpeed_(tolerance::zenoSpeed * std::sqrt(block.right.gravity / std::min(block.right.radius, block.left.radius)))
 	{
 	}
 
@@ -32,6 +36,7 @@ private:
 	void impact(double time, double speed, bool free);
 	void release(double time);
 	void jumpBase(double velocityJump);
+	double timeOfHops();
 	void restAt(double since);
 	void fallFreely(const Shaking&);
 	// When the block reaches its lost angle, which it has reached `before` seconds after the step began.
@@ -43,7 +48,7 @@ private:
 	const FreeEnergy& energy()
 	{
 		if (!isEnergyKnown_)
-			energy_ = law_.energy(state_.angle, state_.velocity);
+			energy_ = law().energy(state_.angle, state_.velocity);
 		isEnergyKnown_ = true;
 		return energy_;
 	}
@@ -52,12 +57,15 @@ private:
 		state_ = state;
 		isEnergyKnown_ = false;
 	}
+	const RockingLaw& law(int side) const { return lawOf(laws_, side); }
+	const RockingLaw& law() const { return law(state_.side); }
 	int impacts() const { return int(history_.impactTimes.size()); }
 
 	const HistoryOptions& options_;
 	const PulseTrain* train_;
 	const int lastJump_; // number of the impact after which a resonant train makes its last jump; 0: no train
-	const RockingLaw law_;
+	const RockingLaws laws_;
+	const double restitution_[2];
 	const double restSpeed_;
 
 	History history_;

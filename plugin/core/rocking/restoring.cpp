@@ -46,10 +46,10 @@ FreeEnergy RockingLaw::energy(double u, double velocity) const
 	return {kinetic + std::sin(u / 2) * std::sin(alpha - u / 2), square(std::sin(phi / 2)) - kinetic};
 }
 
-FreeEnergy RockingLaw::afterImpact(const FreeEnergy& e, double restitution) const
+FreeEnergy RockingLaw::afterImpact(const FreeEnergy& e, double restitution, const RockingLaw& next) const
 {
-	const double kept = square(restitution);
-	return {kept * e.energy, (1 - restitution) * (1 + restitution) * maximumEnergy_ + kept * e.deficit};
+	const double share = restitution * (p / next.p), kept = square(share);
+	return {kept * e.energy, (next.maximumEnergy_ - maximumEnergy_) + (1 - share) * (1 + share) * maximumEnergy_ + kept * e.deficit};
 }
 
 double RockingLaw::impactVelocity(const FreeEnergy& e) const { return 2 * p * std::sqrt(e.energy); }

@@ -19,9 +19,11 @@
 //   exact    sin(u/2) sin(alpha - u/2)   sin^2(alpha/2)      see restoring.cpp          Carlson's R_F, see restoring.cpp
 //
 // D and K are carried side by side: an impact turns them into C^2 D and (1 - C^2) D_max + C^2 K, so neither small
-// amplitudes nor amplitudes next to overturning lose digits.
+// amplitudes nor amplitudes next to overturning lose digits. Where the next edge has another p and D_max, C p/p' takes the place of C, and
+// the difference of D_max is added.
 
 #include "rocking/rocking_block.hpp"
+#include <array>
 
 namespace masonry {
 
@@ -39,9 +41,9 @@ public:
 	const Restoring restoring;
 	const double alpha, sinAlpha, cosAlpha, p, gravity;
 
-	FreeEnergy energy(double u, double velocity) const; // velocity = u', rad/s
-	FreeEnergy afterImpact(const FreeEnergy&, double restitution) const;
-	double impactVelocity(const FreeEnergy& e) const; // w, rad/s
+	FreeEnergy energy(double u, double velocity) const;                                          // velocity = u', rad/s
+	FreeEnergy afterImpact(const FreeEnergy&, double restitution, const RockingLaw& next) const; // next: about the edge that has landed
+	double impactVelocity(const FreeEnergy& e) const;                                            // w, rad/s
 
 	// For deficit > 0 and u < alpha:
 	double peakAngle(const FreeEnergy&) const;                               // rad
@@ -61,5 +63,9 @@ private:
 	const double sinHalf_, cosHalf_; // of alpha/2
 	double maximumEnergy_;           // D_max
 };
+
+// About the right edge of a block and about its left one: a positive angle turns about the first.
+using RockingLaws = std::array<RockingLaw, 2>;
+inline const RockingLaw& lawOf(const RockingLaws& laws, int side) { return laws[side < 0]; }
 
 } // namespace masonry

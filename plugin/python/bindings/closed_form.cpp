@@ -3,7 +3,21 @@
 
 namespace masonry::python {
 
-Blocks toBlocks(const py::object& tuple) { return {toVector(tuple[0]), toVector(tuple[1]), toVector(tuple[2])}; }
+Blocks toBlocks(const py::object& tuple)
+{
+	Blocks blocks;
+	for (int k = 0; k < py::len(tuple); ++k)
+		blocks.columns.push_back(toVector(tuple[k]));
+	return blocks;
+}
+
+RockingBlock Blocks::symmetric(size_t i) const
+{
+	const RockingPrism block = (*this)[i];
+	if (block.right.halfWidth != block.left.halfWidth)
+		throw std::invalid_argument("block: must be symmetric for the closed form");
+	return block.right;
+}
 
 namespace {
 using Column = std::vector<double>;
@@ -15,7 +29,7 @@ py::tuple blockProperties(const py::object& geometry)
 	const size_t n = blocks.size();
 	Column slenderness(n), radius(n), angle(n), frequency(n), acceleration(n), restitution(n);
 	forEachCase(n, [&](size_t i) {
-		const RockingBlock block = blocks[i];
+		const RockingBlock block = blocks[i].right;
 		slenderness[i] = block.slenderness;
 		radius[i] = block.radius;
 		angle[i] = block.criticalAngle;
@@ -27,6 +41,18 @@ py::tuple blockProperties(const py::object& geometry)
 	                      toArray(restitution));
 }
 
+// Of one section, by the coordinates of its corners: what toBlocks() takes, without gravity.
+py::tuple prismOf(const py::object& xs, const py::object& ys)
+{
+	const Column x = toVector(xs), y = toVector(ys);
+	std::vector<Vector2> points;
+	for (size_t k = 0; k < x.size(); ++k)
+		points.emplace_back(x[k], y[k]);
+	const ConvexPolygon section = ConvexPolygon::hull(std::move(points));
+	const RockingPrism block(section, 1);
+	return py::make_tuple(block.right.halfWidth, block.left.halfWidth, block.right.halfHeight, section.gyrationSquared());
+}
+
 py::tuple singlePulse(const py::object& geometry, const py::object& impulses)
 {
 	const Blocks blocks = toBlocks(geometry);
@@ -34,7 +60,7 @@ py::tuple singlePulse(const py::object& geometry, const py::object& impulses)
 	const size_t n = blocks.size();
 	Column velocity(n), duration(n), peak(n);
 	forEachCase(n, [&](size_t i) {
-		const auto pulse = closed_form::singlePulse(blocks[i], impulse[i]);
+		const auto pulse = closed_form::singlePulse(blocks.symmetric(i), impulse[i]);
 		velocity[i] = pulse.angularVelocity;
 		duration[i] = pulse.duration;
 		peak[i] = pulse.peakAngle;
@@ -50,7 +76,7 @@ py::tuple pulseSequence(const py::object& geometry, const py::object& impulses, 
 	const size_t n = blocks.size();
 	Table velocity(n), duration(n), end(n), peak(n);
 	forEachCase(n, [&](size_t i) {
-		auto sequence = closed_form::pulseSequence(blocks[i], impulse[i], restitution[i], halfCycles);
+		auto sequence = closed_form::pulseSequence(blocks.symmetric(i), impulse[i], restitution[i], halfCycles);
 		velocity[i] = std::move(sequence.angularVelocity);
 		duration[i] = std::move(sequence.duration);
 		end[i] = std::move(sequence.endTime);
@@ -67,7 +93,7 @@ py::tuple stabilised(const py::object& geometry, const py::object& impulses, con
 	const size_t n = blocks.size();
 	Column velocity(n), duration(n), period(n), peak(n), amplification(n), ratio(n);
 	forEachCase(n, [&](size_t i) {
-		const auto limit = closed_form::stabilised(blocks[i], impulse[i], restitution[i]);
+		const auto limit = closed_form::stabilised(blocks.symmetric(i), impulse[i], restitution[i]);
 		velocity[i] = limit.angularVelocity;
 		duration[i] = limit.duration;
 		period[i] = limit.period;
@@ -87,7 +113,7 @@ np::ndarray timeToStabilise(const py::object& geometry, const py::object& impuls
 	const Column tolerance = toVector(tolerances);
 	Column time(blocks.size());
 	forEachCase(blocks.size(),
-	            [&](size_t i) { time[i] = closed_form::timeToStabilise(blocks[i], impulse[i], restitution[i], tolerance[i]); });
+	            [&](size_t i) { time[i] = closed_form::timeToStabilise(blocks.symmetric(i), impulse[i], restitution[i], tolerance[i]); });
 	return toArray(time);
 }
 } // namespace
@@ -97,6 +123,8 @@ void exposeClosedForm()
 	using py::args;
 	py::def("block_properties", blockProperties, args("blocks"),
 	        "slenderness, radius, critical angle, frequency parameter, angular acceleration, natural restitution");
+	py::def("prism_of", prismOf, args("x", "y"),
+	        "levers about the right and the left edge, height of the centre, radius of gyration squared");
 	py::def("single_pulse", singlePulse, args("blocks", "impulse"), "angular velocity, duration, peak angle (Eqs 1, 6, 5)");
 	py::def("pulse_sequence", pulseSequence, args("blocks", "impulse", "restitution", "n"),
 	        "angular velocity, duration, end time, peak angle of half cycles 1..n (Eqs 7, 9, 8)");

@@ -10,14 +10,22 @@
 
 namespace masonry::python {
 
-// Many blocks, one a case.
+// Many blocks, one a case: rectangles by (half width, half height, gravity), others by (lever about the right edge, about the left one,
+// height of the centre of mass, radius of gyration squared, gravity).
 struct Blocks {
-	std::vector<double> halfWidth, halfHeight, gravity;
+	std::vector<std::vector<double>> columns;
 
-	size_t size() const { return halfWidth.size(); }
-	RockingBlock operator[](size_t i) const { return RockingBlock(halfWidth[i], halfHeight[i], gravity[i]); }
+	size_t size() const { return columns[0].size(); }
+	RockingPrism operator[](size_t i) const
+	{
+		const auto of = [this, i](size_t column) { return columns[column][i]; };
+		if (columns.size() == 3)
+			return RockingBlock(of(0), of(1), of(2));
+		return RockingPrism(of(0), of(1), of(2), of(3), of(4));
+	}
+	RockingBlock symmetric(size_t i) const; // std::invalid_argument if it is not
 };
-Blocks toBlocks(const py::object& tuple); // (half_width, half_height, gravity)
+Blocks toBlocks(const py::object& tuple);
 
 // One base motion a case, or one for all; either known in time or a resonant train.
 struct Motions {

@@ -10,13 +10,13 @@ using Table = std::vector<Column>;
 struct Cases {
 	Blocks blocks;
 	const Motions &motions, &vertical;
-	Column restitution, initialAngle, initialVelocity, endTime;
+	Column fromRight, fromLeft, initialAngle, initialVelocity, endTime;
 	HistoryOptions common;
 
 	History run(size_t i) const
 	{
 		HistoryOptions options = common;
-		options.restitution = restitution[i];
+		options.restitution = {fromRight[i], fromLeft[i]};
 		options.initialAngle = initialAngle[i];
 		options.initialVelocity = initialVelocity[i];
 		options.endTime = endTime[i];
@@ -41,8 +41,9 @@ Restoring restoringFromName(const std::string& name)
 Cases toCases(const py::object& blocks, const Motions& motions, const Motions& vertical, const py::object& columns,
               const std::string& restoring, int halfCycles)
 {
-	Cases cases {toBlocks(blocks),     motions, vertical, toVector(columns[0]), toVector(columns[1]), toVector(columns[2]),
-	             toVector(columns[3]), {}};
+	Cases cases {
+	    toBlocks(blocks),     motions, vertical, toVector(columns[0]), toVector(columns[1]), toVector(columns[2]), toVector(columns[3]),
+	    toVector(columns[4]), {}};
 	cases.common.restoring = restoringFromName(restoring);
 	if (halfCycles >= 0)
 		cases.common.halfCycles = halfCycles;
@@ -111,7 +112,8 @@ py::tuple sampleCases(const py::object& blocks, const Motions& motions, const Mo
 void exposeHistory()
 {
 	using py::args;
-	// columns = (restitution, initial angle, initial velocity, end time); half_cycles < 0: no limit
+	// columns = (restitution of impacts that end a turn about the right edge, about the left one, initial angle, initial velocity, end
+	// time); half_cycles < 0: no limit
 	py::def("simulate", simulateCases, args("blocks", "motions", "vertical", "columns", "restoring", "half_cycles"),
 	        "histories as a dict of arrays");
 	py::def("overturns", overturns, args("blocks", "motions", "vertical", "columns", "restoring", "half_cycles"),

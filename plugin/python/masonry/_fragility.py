@@ -13,7 +13,7 @@ from ._lognormal import LognormalFit, NoMaximum, wilson
 from ._optional import needs
 from ._progress import steps
 from ._records.units import STANDARD_GRAVITY
-from .block import RockingBlock, restitution_of
+from .block import RockingBlock
 from .history import case_arguments, warn_of_doubt
 from .motions import Record
 
@@ -192,9 +192,11 @@ def fragility(block, records, scales=None, levels=None, measure="PGA", restituti
     unit, of_record, of_block = _measure(measure)
     _check_confidence(confidence)
 
-    restitution = restitution_of(block, restitution)
+    restitution = array_given("restitution", np.nan if restitution is None else restitution)  # NaN: the natural one
     shape = np.broadcast_shapes(block.shape, np.shape(restitution))
-    wide = RockingBlock(*(np.broadcast_to(value, shape)[..., None] for value in (block.half_width, block.half_height, block.gravity)))
+    wide = block
+    if block.shape:
+        wide = RockingBlock(*(np.broadcast_to(value, shape)[..., None] for value in (block.half_width, block.half_height, block.gravity)))
     collapsed = np.zeros((*shape, len(records), given.size), dtype=bool)
     values = np.zeros(collapsed.shape)
     for k in steps(range(len(records)), progress, "fragility", "record"):

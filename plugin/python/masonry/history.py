@@ -9,7 +9,7 @@ from ._arrays import columns, restore, shape_of
 from ._files import save_picture
 from ._given import shown, whole_given
 from ._optional import needs
-from .block import columns_of, restitution_of
+from .block import columns_of, critical_angle_of, restitution_of
 from .motions import Motion, PulseTrain, Record, Still, compiled, end_of
 
 
@@ -69,7 +69,8 @@ class History:
 
     def __repr__(self):
         cases, falls = np.size(self.overturned), np.count_nonzero(self.overturned)
-        ratio = np.abs(self.peak_angles) / np.reshape(np.broadcast_to(self.block.critical_angle, self.shape), (*self.shape, 1))
+        critical = [np.reshape(np.broadcast_to(edge.critical_angle, self.shape), (*self.shape, 1)) for edge in (self.block.right, self.block.left)]
+        ratio = np.where(self.peak_angles > 0, self.peak_angles / critical[0], -self.peak_angles / critical[1])
         largest = np.max(ratio, where=~np.isnan(ratio) & ~np.reshape(self.overturned, (*self.shape, 1)), initial=0)
         if self.shape:
             stand = f"{cases - falls} stand and rotate to at most {largest:.3g} of the critical angle" if falls < cases else "none stands"
@@ -80,7 +81,14 @@ class History:
             f"stands, {len(self.impact_times)} impacts, at most {largest:.3g} of the critical angle{part_of_motion(self)}"
         under = "on a still base" if self.motion is None else f"under {shown(self.motion)}"
         rest = f", at rest from {self.rest_time:.4g} s on" if np.isfinite(self.rest_time) else "" if falls else f", still rocking at {self.end_time:.4g} s"
-        return f"History(block of {2 * self.block.half_width:g} x {2 * self.block.half_height:g} m {under}: {done}{rest})"
+        block = self.block
+        size = f"of {2 * block.half_width:g} x {2 * block.half_height:g} m" if block.right is block else f"{block}"
+        return f"History(block {size} {under}: {done}{rest})"
+
+    def _is_inside(self, t):
+        """Whether the angle of one block is below its critical angle at times t."""
+        angle = self.sample(t)[0]
+        return np.abs(angle) < critical_angle_of(self.block, angle)
 
     def _fall(self):
         """(time at which one block that overturns passes its critical angle for good, time at which it lies on its side or the run ends), s."""
@@ -89,10 +97,10 @@ class History:
             begin, end = end, 2 * end
         after = lambda t: np.isnan(self.sample(t)[0])  # noqa: E731
         lies = _first(after, begin, end)
-        inside = np.abs(self.sample(np.linspace(0, lies, 4000))[0]) < self.block.critical_angle
+        inside = self._is_inside(np.linspace(0, lies, 4000))
         last = np.flatnonzero(inside)[-1]
         step = lies / 3999
-        return _first(lambda t: ~(np.abs(self.sample(t)[0]) < self.block.critical_angle), last * step, min((last + 1) * step, lies)), lies
+        return _first(lambda t: ~self._is_inside(t), last * step, min((last + 1) * step, lies)), lies
 
     def draw(self, path):
         """Writes a picture (.png, .pdf or .svg) of one block: its angle relative to the critical one, and the motion of the base below it. The title says
@@ -108,7 +116,8 @@ class History:
         figure = Figure(figsize=(8, 5), layout="constrained")
         FigureCanvasAgg(figure)
         above, below = figure.subplots(2, 1, sharex=True, height_ratios=(2, 1))
-        angles = self.sample(times)[0] / self.block.critical_angle
+        angles = self.sample(times)[0]
+        angles = angles / critical_angle_of(self.block, angles)
         above.plot(times, angles, color="tab:blue")
         for level in (-1, 1):
             above.axhline(level, color="0.6", linestyle="--", linewidth=0.8)
@@ -160,11 +169,11 @@ def case_arguments(block, motion, restitution, restoring, initial_angle, initial
     motion, vertical = _motion_given("motion", motion), _motion_given("vertical", vertical)
     if isinstance(vertical, PulseTrain) and vertical.times is None:
         raise ValueError(f"vertical = {shown(vertical)}: must be a motion with a known course, not a resonant train")
-    restitution = restitution_of(block, restitution)
+    restitution = [restitution_of(edge, restitution) for edge in (block.right, block.left)]
     t_end = np.inf if t_end is None else t_end
     half_cycles = -1 if half_cycles is None else whole_given("half_cycles", half_cycles, 1)
-    shape = np.broadcast_shapes(block.shape, motion.shape, vertical.shape, shape_of(restitution, initial_angle, initial_velocity, t_end))
-    state = columns(shape, restitution, initial_angle, initial_velocity, t_end)
+    shape = np.broadcast_shapes(block.shape, motion.shape, vertical.shape, shape_of(restitution[0], initial_angle, initial_velocity, t_end))
+    state = columns(shape, *restitution, initial_angle, initial_velocity, t_end)
     return shape, (columns_of(block, shape), compiled(motion, shape), compiled(vertical, shape), state, restoring, half_cycles)
 
 
@@ -185,5 +194,5 @@ def simulate(block, motion=None, restitution=None, restoring="exact", initial_an
 
 def with_exact_moment(history, end):
     """History of the same block and motion with the exact restoring moment, until `end` (s)."""
-    _, angle, velocity, _ = (float(column[0]) for column in history._arguments[3])
+    _, _, angle, velocity, _ = (float(column[0]) for column in history._arguments[3])
     return simulate(history.block, history.motion, history.restitution, "exact", angle, velocity, end, vertical=history.vertical)

@@ -17,7 +17,8 @@ def overturning_amplitude(block, shape, restitution=None, restoring="exact", bra
     second, stands between the second and the third ... (the other way round if it overturns at the lower end).
 
     block          one block
-    shape          a motion; its amplitude (impulse of a PulseTrain, scale of a Record) is what is varied and returned
+    shape          a motion; its amplitude (impulse of a PulseTrain, scale of a Record) is what is varied and returned,
+                   without its sign, which tells the direction
     bracket        (lower, upper) of that amplitude, lower >= 0. None: from half the amplitude that lifts the block to 40 times
                    that (acceleration), or 0.01 to 2 times the single velocity jump that overturns (PulseTrain): for a block that
                    starts upright and at rest
@@ -34,7 +35,7 @@ def overturning_amplitude(block, shape, restitution=None, restoring="exact", bra
     if not isinstance(shape, Motion) or shape.shape or not getattr(shape, "amplitude", 0) or (isinstance(shape, Record) and not shape.samples.any()):
         raise ValueError(f"shape = {shown(shape)}: must be one motion of single numbers that moves the base: its amplitude, impulse or scale is not 0")
     samples = whole_given("samples", samples, 2)
-    unit = shape.scaled(1 / shape.amplitude)
+    unit = shape.scaled(1 / abs(shape.amplitude))
     lower, upper = _default_bracket(block, unit) if bracket is None else bracket
     if not 0 <= lower < upper < np.inf:
         raise ValueError(f"bracket = ({lower}, {upper}): must be 0 <= lower < upper, finite")
@@ -60,9 +61,10 @@ def overturning_amplitude(block, shape, restitution=None, restoring="exact", bra
 
 
 def _default_bracket(block, unit):
+    edges = (block.right, block.left)
     if isinstance(unit, PulseTrain):
-        jump = block.gravity * np.sqrt(2 * (1 - np.cos(block.critical_angle))) / (block.frequency_parameter * np.cos(block.critical_angle))
-        return 0.01 * jump, 2 * jump
+        jumps = [edge.gravity * np.sqrt(2 * (1 - np.cos(edge.critical_angle))) / (edge.frequency_parameter * np.cos(edge.critical_angle)) for edge in edges]
+        return 0.01 * min(jumps), 2 * max(jumps)
     largest = np.abs(unit.samples).max() if isinstance(unit, Record) else 1.0
-    uplift = block.gravity / block.slenderness / largest
-    return 0.5 * uplift, 40 * uplift
+    uplift = [edge.gravity / edge.slenderness / largest for edge in edges]
+    return 0.5 * min(uplift), 40 * max(uplift)

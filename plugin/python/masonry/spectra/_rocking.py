@@ -24,14 +24,15 @@ def peak_ratio(block, motion, restitution=None, restoring="exact", t_end=None, h
     warn_of_doubt(motion, vertical)
     shape, (blocks, motions, vertical, state, restoring, half_cycles) = case_arguments(block, motion, restitution, restoring, 0.0, 0.0, t_end, half_cycles,
                                                                                        vertical)
-    critical = np.broadcast_to(block.critical_angle, shape).ravel()
-    ratio = np.zeros(critical.size)
-    for begin, end in chunks(critical.size, progress, "rocking"):
+    critical = [np.broadcast_to(edge.critical_angle, shape).ravel() for edge in (block.right, block.left)]
+    ratio = np.zeros(critical[0].size)
+    for begin, end in chunks(ratio.size, progress, "rocking"):
         part = slice(begin, end)
         found = _core.simulate(tuple(column[part] for column in blocks), motions.part(begin, end), vertical.part(begin, end),
                                tuple(column[part] for column in state), restoring, half_cycles)
-        peaks = np.where(found["peak_times"] >= since, np.abs(found["peak_angles"]), 0.0)  # NaN times of short rows count as 0
-        ratio[part] = np.where(found["overturn_half_cycle"] > 0, np.inf, peaks.max(axis=1, initial=0.0) / critical[part])
+        peaks = np.where(found["peak_times"] >= since, found["peak_angles"], 0.0)  # NaN times of short rows count as 0
+        largest = np.maximum(peaks.max(axis=1, initial=0.0) / critical[0][part], -peaks.min(axis=1, initial=0.0) / critical[1][part])
+        ratio[part] = np.where(found["overturn_half_cycle"] > 0, np.inf, largest)
     return restore(ratio, shape)
 
 

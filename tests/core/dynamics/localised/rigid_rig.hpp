@@ -43,6 +43,23 @@ inline int addBlock(RigidSystem<Plane>& s, double b, double a, const Vector2& ce
 	return int(s.bodies.size()) - 1;
 }
 
+// The hull of these points, turned about a pivot.
+inline int addPolygon(RigidSystem<Plane>& s, const std::vector<Vector2>& points, double angle = 0, const Vector2& pivot = {0, 0},
+                      double mass = 0)
+{
+	RigidBody<Plane> block;
+	Vector2 centre;
+	const ConvexPolygon shape = ConvexPolygon::hull(points, &centre);
+	block.mass = mass > 0 ? mass : density * shape.area();
+	block.inertia[0] = block.mass * shape.gyrationSquared();
+	block.pose.setAngle(angle);
+	block.pose.position = pivot + block.pose.rotate(centre - pivot);
+	block.force << block.mass * s.gravity, 0;
+	block.shape = std::make_shared<const ConvexPolygon>(shape);
+	s.bodies.push_back(block);
+	return int(s.bodies.size()) - 1;
+}
+
 template <class K>
 void addPair(RigidSystem<K>& s, int body1, int body2, double restitution, double friction = noSlip)
 {
