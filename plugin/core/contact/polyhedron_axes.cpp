@@ -1,4 +1,5 @@
 #include "contact/polyhedron_axes.hpp"
+#include "contact/separating_axes.hpp"
 #include "tolerances.hpp"
 #include <algorithm>
 #include <limits>
@@ -61,6 +62,30 @@ double crossingSign(double left1, double right1, double left2, double right2)
 	return left1 < 0 && right1 > 0 && left2 < 0 && right2 > 0 ? -1 : 0;
 }
 
+// The same for boxes, whose parallel faces and edges need one look for all.
+FaceSeparation bestFaceOfBoxes(const ConvexPolyhedron& box1, const ConvexPolyhedron& box2, const RelativePose& second,
+                               const PatchFeature& previous)
+{
+	const FaceAxis face = bestFace(Box {box1.halfSize()}, Box {box2.halfSize()}, second, previous);
+	return {face.body, feature::faceNumber(face.axis, face.sign), face.separation};
+}
+
+bool bestEdgesOfBoxes(const ConvexPolyhedron& box1, const ConvexPolyhedron& box2, const RelativePose& second, double least, EdgePair& best)
+{
+	EdgeAxis edges;
+	if (!bestEdges(Box {box1.halfSize()}, Box {box2.halfSize()}, second, edges) || edges.separation <= least)
+		return false;
+	const double along1 = edges.point1[edges.axis1], along2 = second.rotation.col(edges.axis2).dot(edges.point2 - second.offset);
+	best = {feature::edgeNumber(edges.axis1, edges.signs1),
+	        feature::edgeNumber(edges.axis2, edges.signs2),
+	        edges.normal,
+	        edges.separation,
+	        edges.point1,
+	        edges.point2,
+	        std::min(box1.halfSize()[edges.axis1] - std::abs(along1), box2.halfSize()[edges.axis2] - std::abs(along2))};
+	return true;
+}
+
 // Nearest points of the two straight lines.
 void placeOnEdges(const Edge& edge1, const Edge& edge2, const Vector3& line2, const Vector3& middle2, EdgePair& pair)
 {
@@ -99,6 +124,8 @@ int faceAlong(const ConvexPolyhedron& shape, const Vector3& direction)
 FaceSeparation bestFace(const ConvexPolyhedron& shape1, const ConvexPolyhedron& shape2, const RelativePose& second,
                         const PatchFeature& previous, double length)
 {
+	if (shape1.isBox() && shape2.isBox())
+		return bestFaceOfBoxes(shape1, shape2, second, previous);
 	const bool held1 = previous.kind == PatchKind::Face1, held2 = previous.kind == PatchKind::Face2;
 	const FaceSeparation face1 = bestFaceOf(1, shape1, shape2, second, held1 ? previous.feature1 : -1, length);
 	const FaceSeparation face2 = bestFaceOf(2, shape2, shape1, second.reversed(), held2 ? previous.feature2 : -1, length);
@@ -108,6 +135,8 @@ FaceSeparation bestFace(const ConvexPolyhedron& shape1, const ConvexPolyhedron& 
 
 bool bestEdges(const ConvexPolyhedron& shape1, const ConvexPolyhedron& shape2, const RelativePose& second, double least, EdgePair& best)
 {
+	if (shape1.isBox() && shape2.isBox())
+		return bestEdgesOfBoxes(shape1, shape2, second, least, best);
 	const auto &edges1 = shape1.edges(), &edges2 = shape2.edges();
 	const int size1 = static_cast<int>(edges1.size()), size2 = static_cast<int>(edges2.size());
 	Components along2, along1; // of edges 2 along faces 1; of edges 1 along faces 2

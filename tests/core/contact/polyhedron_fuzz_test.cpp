@@ -294,3 +294,39 @@ TEST_CASE("Faces that touch keep all corners of their overlap", "[fuzz]")
 	}
 	CHECK(found > count / 4);
 }
+
+// In turned body axes a box is a polyhedron like any other, which has no search of its own for separating axes.
+TEST_CASE("A box in turned body axes has the patch of a box", "[fuzz]")
+{
+	RandomShapes random(6);
+	long found = 0, count = pairs(10000);
+	for (long trial = 0; trial < count; ++trial) {
+		const Vector3 half1(random.even(.1, .5), random.even(.1, .5), random.even(.1, .5)), half2 = trial % 3 ? Vector3(.2, .3, .4) : half1;
+		Pair boxes {ConvexPolyhedron::box(half1), ConvexPolyhedron::box(half2), {Vector3::Zero(), random.orientation()}, {}};
+		boxes.pose2 = {.5 * random.vector(), random.orientation()};
+		const auto turned = [&](const ConvexPolyhedron& box, const Pose& pose, ConvexPolyhedron& shape, Pose& shapePose) {
+			const Quaternion axes = random.orientation();
+			std::vector<Vector3> points;
+			for (const Vector3& vertex : box.vertices())
+				points.push_back(axes * vertex);
+			shape = ConvexPolyhedron::hull(points);
+			shapePose = {pose.position, pose.orientation * axes.conjugate()};
+		};
+		Pair others = boxes;
+		turned(boxes.shape1, boxes.pose1, others.shape1, others.pose1);
+		turned(boxes.shape2, boxes.pose2, others.shape2, others.pose2);
+		REQUIRE(!others.shape1.isBox());
+		ContactPatch patch, other;
+		if (!patchOf(boxes, .05, patch))
+			continue;
+		++found;
+		REQUIRE(patchOf(others, .05 + 1e-9, other));
+		CHECK(patch.feature.kind == other.feature.kind);
+		CHECK((patch.normal - other.normal).norm() < 1e-11);
+		CHECK(patch.size() == other.size());
+		CHECK(std::abs(patch.area - other.area) < 1e-11);
+		CHECK(std::abs(patch.nominalArea - other.nominalArea) < 1e-11);
+		CHECK(std::abs(smallestGap(patch) - smallestGap(other)) < 1e-11);
+	}
+	CHECK(found > count / 3);
+}
