@@ -39,8 +39,10 @@ void WallStep<K>::advancePart(RigidSystem<K>& s, double h)
 	contacts.measure(s, step.stands);
 	solver.otherFrames |= !contacts.keepsFrames();
 	contacts.setUnit(h);
-	if (!step.stands)
+	if (!step.stands) {
 		contacts.updateFrames(s);
+		contacts.placeFriction(s, h, settings.solver.refactorTime * step.rocking); // when R follows the loads
+	}
 	const LaneArray& expected = guess.changeIn(h);
 	takeInstants(s, step);
 	pulses.move(s, contacts, h);
