@@ -97,17 +97,18 @@ struct alignas(alignment) FeatureLanes<Space> {
 	Lanes3 arm;     // from body 2 to the point, global axes
 	Lanes foundGap; // when the features were looked up
 	Lanes2 found;   // where along them
-	Lanes2 grip;    // m, from the point to where its friction acts, along its tangents
-	Lanes gripOf;   // share of the pair's normal force for which the grip was found; below zero: none was looked for
+	Lanes3 grip;    // from the point to where its friction acts, in its tangent plane, global axes
+	Lanes3 gripAt;  // the same in the axes of the body that has the vertex: a face that turns on its bed takes it along
+	Lanes gripOf;   // share of the pair's normal force for which it was found; below zero: none was looked for
 
-	std::array<double, 6> saved(int lane) const
+	std::array<double, 7> saved(int lane) const
 	{
-		return {foundGap[lane], found.x[lane], found.y[lane], grip.x[lane], grip.y[lane], gripOf[lane]};
+		return {foundGap[lane], found.x[lane], found.y[lane], gripAt.x[lane], gripAt.y[lane], gripAt.z[lane], gripOf[lane]};
 	}
-	void setSaved(const std::array<double, 6>& f, int lane)
+	void setSaved(const std::array<double, 7>& f, int lane)
 	{
 		foundGap[lane] = f[0], found.x[lane] = f[1], found.y[lane] = f[2];
-		grip.x[lane] = f[3], grip.y[lane] = f[4], gripOf[lane] = f[5];
+		gripAt.x[lane] = f[3], gripAt.y[lane] = f[4], gripAt.z[lane] = f[5], gripOf[lane] = f[6];
 	}
 };
 
@@ -173,7 +174,7 @@ MASONRY_INLINE void takeFrame(const PointLanes<Space>& p, const FeatureLanes<Spa
 	frame.axes.row(0) = p.normal.axis.lane(lane);
 	frame.axes.row(1) = p.tangent[0].axis.lane(lane);
 	frame.axes.row(2) = p.tangent[1].axis.lane(lane);
-	frame.grip = frame.axes.bottomRows<2>().transpose() * Vector2(f.grip.x[lane], f.grip.y[lane]);
+	frame.grip = f.grip.lane(lane);
 	frame.gap = p.gap[lane];
 }
 

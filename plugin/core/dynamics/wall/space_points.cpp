@@ -129,7 +129,9 @@ MASONRY_INLINE void takeFound(PointLanes<Space>& p, FeatureLanes<Space>& f, cons
 {
 	f.arm = found.arm2;
 	const Lanes3 apart = p2.position - p1.position, across = cross(found.normal, found.tangent);
-	const Lanes3 gripped = found.arm2 + (f.grip.x * found.tangent + f.grip.y * across);
+	const Lanes3 grip = oneOf(f.vertexOn1, p1, p2).rotate(f.gripAt);
+	f.grip = grip - dot(found.normal, grip) * found.normal;
+	const Lanes3 gripped = found.arm2 + f.grip;
 	takeRow(p.normal, found.normal, apart + found.arm2, found.arm2, p1, p2);
 	takeRow(p.tangent[0], found.tangent, apart + gripped, gripped, p1, p2);
 	takeRow(p.tangent[1], across, apart + gripped, gripped, p1, p2);
@@ -251,7 +253,7 @@ void ContactSet<Space>::takePoint(const RigidSystem<Space>& s, int c, int k)
 	f.faceDistance[lane] = geometry.distance;
 	f.faceEnd.x[lane] = geometry.halfWidths.x();
 	f.faceEnd.y[lane] = geometry.halfWidths.y();
-	f.grip.x[lane] = f.grip.y[lane] = 0;
+	set(f.gripAt, lane, Vector3::Zero());
 	f.gripOf[lane] = -1;
 }
 
@@ -285,13 +287,13 @@ void ContactSet<Space>::placeFriction(const RigidSystem<Space>& s, int c)
 	std::array<ContactFrame<Space>, Space::maxPoints> frames;
 	for (int i = 0; i < pair.size; ++i)
 		takeFrame(pointOf(i), featureOf(i), groupOf(i).lane, gyration[pair.body2], frames[i]);
-	const auto offsets = frictionOffsets(pair.size, [&](int i) -> const ContactFrame<Space>& { return frames[i]; }, forces);
+	const auto offsets = frictionOffsets(
+	    pair.size, [&](int i) -> const ContactFrame<Space>& { return frames[i]; }, forces);
 	for (int i = 0; i < pair.size; ++i) {
 		FeatureLanes<Space>& f = featureOf(i);
-		const Vector2 grip = frames[i].axes.bottomRows<2>() * offsets[i];
-		f.grip.x[groupOf(i).lane] = grip.x();
-		f.grip.y[groupOf(i).lane] = grip.y();
-		f.gripOf[groupOf(i).lane] = forces[i];
+		const int lane = groupOf(i).lane;
+		set(f.gripAt, lane, s.bodies[f.vertexOn1[lane] ? pair.body1 : pair.body2].pose.orientation.conjugate() * offsets[i]);
+		f.gripOf[lane] = forces[i];
 	}
 	for (const Slot& slot : slots[c])
 		if (slot.group >= 0)
