@@ -79,7 +79,7 @@ void ContactSet<K>::inherit(const ContactPair<K>& before, const State* states, C
 }
 
 template <class K>
-void ContactSet<K>::lookUp(RigidSystem<K>& s, int c)
+bool ContactSet<K>::lookUp(RigidSystem<K>& s, int c)
 {
 	const double touching = tolerance::mergedClosing * length;
 	ContactPair<K>& pair = s.pairs[c];
@@ -92,7 +92,7 @@ void ContactSet<K>::lookUp(RigidSystem<K>& s, int c)
 	const bool same = known[c] && !s.moved && sameFeatures(pair, found);
 	takeFriction(s, c);
 	if (same)
-		return;
+		return false;
 	if (known[c]) {
 		for (const auto [group, lane] : slots[c])
 			if (group >= 0)
@@ -124,6 +124,7 @@ void ContactSet<K>::lookUp(RigidSystem<K>& s, int c)
 		takePoint(s, c, k);
 		setState(now, c, k);
 	}
+	return true;
 }
 
 template <class K>
@@ -144,10 +145,11 @@ void ContactSet<K>::lookUpStale(RigidSystem<K>& s, const Part& part)
 				for (const Slot& slot : lanes)
 					stale[slot.group] |= 1 << slot.lane;
 		}
+	std::vector<int> changed;
 	for (int g = part.begin; g < part.end; ++g)
 		for (int lane = 0; stale[g] && lane < width && features[g].pair[lane] >= 0; ++lane)
-			if (stale[g] >> lane & 1 && features[g].first[lane] == 0)
-				lookUp(s, features[g].pair[lane]);
+			if (stale[g] >> lane & 1 && features[g].first[lane] == 0 && lookUp(s, features[g].pair[lane]))
+				changed.push_back(features[g].pair[lane]);
 	for (int g = part.begin; g < part.end; ++g)
 		if (stale[g]) {
 			countPoints(s, g);
@@ -155,6 +157,28 @@ void ContactSet<K>::lookUpStale(RigidSystem<K>& s, const Part& part)
 			takeFrames(s, g, g + 1);
 			stale[g] = 0;
 		}
+	for (const int c : changed)
+		placeFriction(s, c);
+}
+
+template <class K>
+void ContactSet<K>::placeFriction(const RigidSystem<K>& s)
+{
+	sincePlaced = 0;
+	allParts([&](const Part& part, int) {
+		for (int g = part.begin; K::dimension == 3 && g < part.end; ++g)
+			for (int lane = 0; lane < width && features[g].pair[lane] >= 0; ++lane)
+				if (features[g].first[lane] == 0)
+					placeFriction(s, features[g].pair[lane]);
+	});
+}
+
+template <class K>
+void ContactSet<K>::placeFriction(const RigidSystem<K>& s, double h, double interval)
+{
+	sincePlaced += h;
+	if (!(sincePlaced < interval))
+		placeFriction(s);
 }
 
 template <class K>
@@ -202,6 +226,7 @@ void ContactSet<K>::showPair(RigidSystem<K>& s, int c) const
 		for (int row = 1; row < K::rows; ++row)
 			point.force[row] = component(p.pt, row - 1, lane) * perUnit;
 		takeFrame(p, features[group].point[k % lanePoints<K>], lane, gyration[pair.body2], point.frame);
+		point.setGrip(point.frame.grip);
 		point.frame.position += s.bodies[pair.body2].pose.position;
 	}
 }
@@ -227,16 +252,13 @@ void ContactSet<K>::placeAll(const RigidSystem<K>& s, const std::vector<typename
 	});
 }
 
-// Points located where these poses put the bodies, which stay where they are.
+// Frames as they are where these poses put the bodies, which stay where they are.
 template <class K>
 void ContactSet<K>::placeAt(const RigidSystem<K>& s, const std::vector<typename K::Pose>& poses)
 {
 	takeBodies(s);
 	placeAll(s, poses);
-	allParts([&](const Part& part, int) {
-		measureGaps(s, part.begin, part.end, std::numeric_limits<double>::infinity(), false);
-		takeFrames(s, part.begin, part.end);
-	});
+	allParts([&](const Part& part, int) { takeFrames(s, part.begin, part.end); });
 	takeBodies(s);
 }
 
@@ -300,6 +322,8 @@ void ContactSet<K>::measure(RigidSystem<K>& s, bool isStill)
 		}
 	}
 	stood = isStill ? 1 : 0;
+	if (isStill)
+		placeFriction(s);
 	located.clear();
 	for (size_t b = 0; isStill && b < s.bodies.size(); ++b)
 		located.push_back(s.bodies[b].pose);

@@ -156,6 +156,8 @@ public:
 	bool keepsFrames() const { return stood > 1; }
 	// Normals, arms and masses as they are where the bodies are; gaps stay.
 	void updateFrames(const RigidSystem<K>& system);
+	// Friction acts where the loads of the points have it, which is looked at once in such an interval, s. Frames must be those of now.
+	void placeFriction(const RigidSystem<K>& system, double h, double interval);
 	// Impulses are those of a time h from now on. After a much shorter one only those up to the mean go on: an impact's would become many
 	// times as large.
 	void setUnit(double h);
@@ -181,12 +183,9 @@ public:
 		}
 		for (const int c : numbers)
 			archive(wide[c]);
-		archive(unit, stood, located);
-		if (isNew) {
+		archive(unit, stood, located, sincePlaced);
+		if (isNew)
 			takeOver(system);
-			if (stood > 0)
-				placeAt(system, located);
-		}
 		for (const int c : numbers)
 			for (int k = 0; k < pairPoints<K> && slots[c][k / lanePoints<K>].group >= 0; ++k) {
 				const auto [group, lane] = slots[c][k / lanePoints<K>];
@@ -194,12 +193,14 @@ public:
 				Lanes& gaps = groups[group].point[k % lanePoints<K>].gap;
 				double gap = gaps[lane];
 				State now = state(c, k);
-				auto found = feature.foundAt(lane);
-				archive(gap, now, found);
+				auto saved = feature.saved(lane);
+				archive(gap, now, saved);
 				gaps[lane] = gap;
 				setState(now, c, k);
-				feature.setFound(found, lane);
+				feature.setSaved(saved, lane);
 			}
+		if (isNew && stood > 0)
+			placeAt(system, located);
 	}
 
 	// Points of a lane.
@@ -284,15 +285,18 @@ private:
 	void lookUpStale(RigidSystem<K>& system);
 	void lookUpStale(RigidSystem<K>& system, const Part& part);
 	void takeFriction(const RigidSystem<K>& system, int pair);
-	void lookUp(RigidSystem<K>& system, int pair);
+	bool lookUp(RigidSystem<K>& system, int pair); // true: the pair has other points
 	void inherit(const ContactPair<K>& before, const State* states, ContactPoint<K>& point, State& now) const;
 	State state(int pair, int point) const;
 	void setState(const State& state, int pair, int point);
 	void takePoint(const RigidSystem<K>& system, int pair, int point);
+	void placeFriction(const RigidSystem<K>& system);
+	void placeFriction(const RigidSystem<K>& system, int pair);
 
 	double unit {0};                                     // s, that the impulses are of
 	int list {-1};                                       // of the system, that pairs are of
 	int laws {-1};                                       // of the system, that the friction is of
+	double sincePlaced {0};                              // s, since friction was placed
 	int stood {0};                                       // still steps with the points as they are located; 0: the last moved
 	std::vector<std::array<int, 2>> pairs;               // all of the system
 	std::vector<int> numbers;                            // of those that the groups are made of
@@ -310,6 +314,8 @@ private:
 	void ContactSet<K>::takeBodies(const RigidSystem<K>&);                                                                                 \
 	template <>                                                                                                                            \
 	void ContactSet<K>::takePoint(const RigidSystem<K>&, int, int);                                                                        \
+	template <>                                                                                                                            \
+	void ContactSet<K>::placeFriction(const RigidSystem<K>&, int);                                                                         \
 	template <>                                                                                                                            \
 	void ContactSet<K>::place(size_t, const K::Pose&);                                                                                     \
 	template <>                                                                                                                            \

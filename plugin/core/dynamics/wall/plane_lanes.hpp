@@ -87,8 +87,8 @@ struct alignas(alignment) FeatureLanes<Plane> {
 	Lanes faceDistance, faceEnd; // m, of the face from the centre; half of its length
 	Lanes foundGap, foundShift;  // of the vertex over and along the face when they were looked up
 
-	std::array<double, 2> foundAt(int lane) const { return {foundGap[lane], foundShift[lane]}; }
-	void setFound(const std::array<double, 2>& f, int lane) { foundGap[lane] = f[0], foundShift[lane] = f[1]; }
+	std::array<double, 2> saved(int lane) const { return {foundGap[lane], foundShift[lane]}; }
+	void setSaved(const std::array<double, 2>& f, int lane) { foundGap[lane] = f[0], foundShift[lane] = f[1]; }
 };
 
 MASONRY_INLINE double component(const Lanes& tangent, int, int lane) { return tangent[lane]; }

@@ -1,7 +1,9 @@
 // Contact points in space: the parts of ContactSet (contact_set.hpp) that depend on the dimension.
 #include "contact/point_geometry.hpp"
+#include "dynamics/model/pair_friction.hpp"
 #include "dynamics/wall/contact_set.hpp"
 #include "tolerances.hpp"
+#include <algorithm>
 
 namespace masonry::wall {
 
@@ -126,10 +128,13 @@ MASONRY_INLINE void takeFound(PointLanes<Space>& p, FeatureLanes<Space>& f, cons
                               const Lanes& mass1, const Lanes& mass2)
 {
 	f.arm = found.arm2;
-	const Lanes3 r1 = (p2.position - p1.position) + found.arm2;
-	takeRow(p.normal, found.normal, r1, found.arm2, p1, p2);
-	takeRow(p.tangent[0], found.tangent, r1, found.arm2, p1, p2);
-	takeRow(p.tangent[1], cross(found.normal, found.tangent), r1, found.arm2, p1, p2);
+	const Lanes3 apart = p2.position - p1.position, across = cross(found.normal, found.tangent);
+	const Lanes3 grip = oneOf(f.vertexOn1, p1, p2).rotate(f.gripAt);
+	f.grip = grip - dot(found.normal, grip) * found.normal;
+	const Lanes3 gripped = found.arm2 + f.grip;
+	takeRow(p.normal, found.normal, apart + found.arm2, found.arm2, p1, p2);
+	takeRow(p.tangent[0], found.tangent, apart + gripped, gripped, p1, p2);
+	takeRow(p.tangent[1], across, apart + gripped, gripped, p1, p2);
 
 	const Lanes none = all(0), one = all(1), mass = mass1 + mass2;
 	p.massN = select(f.present, one / (mass + response(p.normal, p.normal, mass1, mass2)), none);
@@ -248,6 +253,51 @@ void ContactSet<Space>::takePoint(const RigidSystem<Space>& s, int c, int k)
 	f.faceDistance[lane] = geometry.distance;
 	f.faceEnd.x[lane] = geometry.halfWidths.x();
 	f.faceEnd.y[lane] = geometry.halfWidths.y();
+	set(f.gripAt, lane, Vector3::Zero());
+	f.gripOf[lane] = -1;
+}
+
+// By the filtered impulses. Points of a pair that has carried nothing share alike where they are as near as the nearest: these land
+// together.
+template <>
+void ContactSet<Space>::placeFriction(const RigidSystem<Space>& s, int c)
+{
+	const ContactPair<Space>& pair = s.pairs[c];
+	const auto groupOf = [&](int i) -> const Slot& { return slots[c][i / lanePoints<Space>]; };
+	const auto pointOf = [&](int i) -> PointLanes<Space>& { return groups[groupOf(i).group].point[i % lanePoints<Space>]; };
+	const auto featureOf = [&](int i) -> FeatureLanes<Space>& { return features[groupOf(i).group].point[i % lanePoints<Space>]; };
+	if (groupOf(pair.size - 1).group < 0 || !hasGrip(pair)) // it comes again with its other lane
+		return;
+	NormalForces forces {};
+	double sum = 0, nearest = farAway;
+	for (int i = 0; i < pair.size; ++i) {
+		sum += forces[i] = pointOf(i).filteredImpulse[groupOf(i).lane];
+		nearest = std::min(nearest, pointOf(i).gap[groupOf(i).lane]);
+	}
+	const bool isLoaded = sum > 0;
+	for (int i = 0; !isLoaded && i < pair.size; ++i)
+		sum += forces[i] = pointOf(i).gap[groupOf(i).lane] <= nearest + tolerance::wall::touching * length;
+	bool follows = true;
+	for (int i = 0; i < pair.size; ++i) {
+		forces[i] /= sum;
+		follows &= std::abs(forces[i] - featureOf(i).gripOf[groupOf(i).lane]) <= tolerance::wall::gripShare;
+	}
+	if (follows)
+		return;
+	std::array<ContactFrame<Space>, Space::maxPoints> frames;
+	for (int i = 0; i < pair.size; ++i)
+		takeFrame(pointOf(i), featureOf(i), groupOf(i).lane, gyration[pair.body2], frames[i]);
+	const auto offsets = frictionOffsets(
+	    pair.size, [&](int i) -> const ContactFrame<Space>& { return frames[i]; }, forces);
+	for (int i = 0; i < pair.size; ++i) {
+		FeatureLanes<Space>& f = featureOf(i);
+		const int lane = groupOf(i).lane;
+		set(f.gripAt, lane, s.bodies[f.vertexOn1[lane] ? pair.body1 : pair.body2].pose.orientation.conjugate() * offsets[i]);
+		f.gripOf[lane] = forces[i];
+	}
+	for (const Slot& slot : slots[c])
+		if (slot.group >= 0)
+			takeFrames(s, slot.group, slot.group + 1);
 }
 
 template <>

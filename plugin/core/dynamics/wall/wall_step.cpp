@@ -51,8 +51,10 @@ double WallStep<K>::advancePart(RigidSystem<K>& s, double h, bool divisible)
 	contacts.measure(s, step.stands);
 	solver.otherFrames |= !contacts.keepsFrames();
 	contacts.setUnit(h);
-	if (!step.stands)
+	if (!step.stands) {
 		contacts.updateFrames(s);
+		contacts.placeFriction(s, h, settings.solver.refactorTime * step.rocking); // when R follows the loads
+	}
 	takeInstants(s, step);
 	const double missed = report.velocityResidual;
 	CappedReport result = solveStep(s, step);
