@@ -218,9 +218,6 @@ constexpr double turned = 1e-7;
 // Gap relative to the smallest half size up to which a point takes part in an impact or a base pulse. Larger: points that are open carry
 // impulses; smaller: some of the points that close together are left out.
 constexpr double touching = 1e-4;
-// Change of a point's share of its pair's normal force after which the friction of the pair is placed anew. Larger: the torque of a bed
-// that turns is less right; smaller: a wall at rest is factorised more often.
-constexpr double gripShare = 0.03;
 // Relative velocity of points in reach, relative to the speed of rest (restSpeed sqrt(g half size)), above which blocks count as moving.
 // Larger: frames stay while blocks creep; smaller: what the solver leaves at rest counts as motion.
 constexpr double motion = 5;

@@ -157,19 +157,26 @@ void ContactSet<K>::lookUpStale(RigidSystem<K>& s, const Part& part)
 			takeFrames(s, g, g + 1);
 			stale[g] = 0;
 		}
-	for (const int c : changed)
+	for (const int c : changed) {
 		placeFriction(s, c);
+		for (const Slot& slot : slots[c])
+			if (slot.group >= 0)
+				takeFrames(s, slot.group, slot.group + 1);
+	}
 }
 
 template <class K>
 void ContactSet<K>::placeFriction(const RigidSystem<K>& s)
 {
 	sincePlaced = 0;
+	if (K::dimension == 2) // a motion in a plane turns no face about its normal
+		return;
 	allParts([&](const Part& part, int) {
-		for (int g = part.begin; K::dimension == 3 && g < part.end; ++g)
+		for (int g = part.begin; g < part.end; ++g)
 			for (int lane = 0; lane < width && features[g].pair[lane] >= 0; ++lane)
 				if (features[g].first[lane] == 0)
 					placeFriction(s, features[g].pair[lane]);
+		takeFrames(s, part.begin, part.end);
 	});
 }
 

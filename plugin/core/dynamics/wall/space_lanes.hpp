@@ -99,16 +99,15 @@ struct alignas(alignment) FeatureLanes<Space> {
 	Lanes2 found;   // where along them
 	Lanes3 grip;    // from the point to where its friction acts, in its tangent plane, global axes
 	Lanes3 gripAt;  // the same in the axes of the body that has the vertex: a face that turns on its bed takes it along
-	Lanes gripOf;   // share of the pair's normal force for which it was found; below zero: none was looked for
 
-	std::array<double, 7> saved(int lane) const
+	std::array<double, 6> saved(int lane) const
 	{
-		return {foundGap[lane], found.x[lane], found.y[lane], gripAt.x[lane], gripAt.y[lane], gripAt.z[lane], gripOf[lane]};
+		return {foundGap[lane], found.x[lane], found.y[lane], gripAt.x[lane], gripAt.y[lane], gripAt.z[lane]};
 	}
-	void setSaved(const std::array<double, 7>& f, int lane)
+	void setSaved(const std::array<double, 6>& f, int lane)
 	{
 		foundGap[lane] = f[0], found.x[lane] = f[1], found.y[lane] = f[2];
-		gripAt.x[lane] = f[3], gripAt.y[lane] = f[4], gripAt.z[lane] = f[5], gripOf[lane] = f[6];
+		gripAt.x[lane] = f[3], gripAt.y[lane] = f[4], gripAt.z[lane] = f[5];
 	}
 };
 

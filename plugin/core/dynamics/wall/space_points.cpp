@@ -254,10 +254,9 @@ void ContactSet<Space>::takePoint(const RigidSystem<Space>& s, int c, int k)
 	f.faceEnd.x[lane] = geometry.halfWidths.x();
 	f.faceEnd.y[lane] = geometry.halfWidths.y();
 	set(f.gripAt, lane, Vector3::Zero());
-	f.gripOf[lane] = -1;
 }
 
-// By the filtered impulses. Points of a pair that has carried nothing share alike where they are as near as the nearest: these land
+// By the filtered impulses; the rows of the points are to be taken anew. Points of a pair that has carried nothing share alike where they are as near as the nearest: these land
 // together.
 template <>
 void ContactSet<Space>::placeFriction(const RigidSystem<Space>& s, int c)
@@ -269,21 +268,15 @@ void ContactSet<Space>::placeFriction(const RigidSystem<Space>& s, int c)
 	if (groupOf(pair.size - 1).group < 0 || !hasGrip(pair)) // it comes again with its other lane
 		return;
 	NormalForces forces {};
-	double sum = 0, nearest = farAway;
+	bool isLoaded = false;
+	double nearest = farAway;
 	for (int i = 0; i < pair.size; ++i) {
-		sum += forces[i] = pointOf(i).filteredImpulse[groupOf(i).lane];
+		forces[i] = pointOf(i).filteredImpulse[groupOf(i).lane];
+		isLoaded |= forces[i] > 0;
 		nearest = std::min(nearest, pointOf(i).gap[groupOf(i).lane]);
 	}
-	const bool isLoaded = sum > 0;
 	for (int i = 0; !isLoaded && i < pair.size; ++i)
-		sum += forces[i] = pointOf(i).gap[groupOf(i).lane] <= nearest + tolerance::wall::touching * length;
-	bool follows = true;
-	for (int i = 0; i < pair.size; ++i) {
-		forces[i] /= sum;
-		follows &= std::abs(forces[i] - featureOf(i).gripOf[groupOf(i).lane]) <= tolerance::wall::gripShare;
-	}
-	if (follows)
-		return;
+		forces[i] = pointOf(i).gap[groupOf(i).lane] <= nearest + tolerance::wall::touching * length;
 	std::array<ContactFrame<Space>, Space::maxPoints> frames;
 	for (int i = 0; i < pair.size; ++i)
 		takeFrame(pointOf(i), featureOf(i), groupOf(i).lane, gyration[pair.body2], frames[i]);
@@ -293,11 +286,7 @@ void ContactSet<Space>::placeFriction(const RigidSystem<Space>& s, int c)
 		FeatureLanes<Space>& f = featureOf(i);
 		const int lane = groupOf(i).lane;
 		set(f.gripAt, lane, s.bodies[f.vertexOn1[lane] ? pair.body1 : pair.body2].pose.orientation.conjugate() * offsets[i]);
-		f.gripOf[lane] = forces[i];
 	}
-	for (const Slot& slot : slots[c])
-		if (slot.group >= 0)
-			takeFrames(s, slot.group, slot.group + 1);
 }
 
 template <>
