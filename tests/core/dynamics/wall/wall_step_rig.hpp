@@ -64,7 +64,7 @@ struct Frozen {
 					ContactRows<K> point;
 					point.body1 = unknown[bodies[0]];
 					point.body2 = unknown[bodies[1]];
-					point.friction = contacts.groups[g].friction[i];
+					point.law = contacts.groups[g].friction[i];
 					for (int r = 0; r < K::rows; ++r) {
 						for (int c = 0; c < K::dof; ++c) {
 							point.J1(r, c) = -partOf(p, r, i, 1, c / 3)[c % 3];
