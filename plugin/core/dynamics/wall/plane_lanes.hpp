@@ -73,10 +73,8 @@ template <>
 struct alignas(alignment) PointLanes<Plane> {
 	using Tangent = Lanes;
 	Lanes nx, ny, a1n, a1t, a2n, a2t;
-	Lanes gap;             // m; far away in lanes without a point
-	Lanes massN, massT;    // 1 / (J M^-1 J^T), kg
-	Lanes pn, pt;          // impulse of a step, N s
-	Lanes filteredImpulse; // filtered pn
+	Lanes gap;          // m; far away in lanes without a point
+	Lanes massN, massT; // 1 / (J M^-1 J^T), kg
 };
 
 // The geometry of points (contact/point_geometry.hpp).

@@ -82,9 +82,6 @@ struct alignas(alignment) PointLanes<Space> {
 	Row normal, tangent[2];
 	Lanes gap;          // m; far away in lanes without a point
 	Lanes massN, massT; // 1 / (J M^-1 J^T), kg; of the tangents along that in which the point gives most
-	Lanes pn;           // impulse of a step, N s
-	Lanes2 pt;
-	Lanes filteredImpulse; // filtered pn
 };
 
 // The geometry of points (contact/point_geometry.hpp); edges that cross are looked at one by one.

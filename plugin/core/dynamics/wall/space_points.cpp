@@ -256,8 +256,8 @@ void ContactSet<Space>::takePoint(const RigidSystem<Space>& s, int c, int k)
 	set(f.gripAt, lane, Vector3::Zero());
 }
 
-// By the filtered impulses; the rows of the points are to be taken anew. Points of a pair that has carried nothing share alike where they are as near as the nearest: these land
-// together.
+// By the filtered impulses; the rows of the points are to be taken anew. Points of a pair that has carried nothing share alike where they
+// are as near as the nearest: these land together.
 template <>
 void ContactSet<Space>::placeFriction(const RigidSystem<Space>& s, int c)
 {
@@ -271,7 +271,7 @@ void ContactSet<Space>::placeFriction(const RigidSystem<Space>& s, int c)
 	bool isLoaded = false;
 	double nearest = farAway;
 	for (int i = 0; i < pair.size; ++i) {
-		forces[i] = pointOf(i).filteredImpulse[groupOf(i).lane];
+		forces[i] = states[groupOf(i).group][i % lanePoints<Space>].filteredImpulse[groupOf(i).lane];
 		isLoaded |= forces[i] > 0;
 		nearest = std::min(nearest, pointOf(i).gap[groupOf(i).lane]);
 	}
