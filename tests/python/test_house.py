@@ -87,8 +87,6 @@ def test_adapters_include_no_circle():
 
 # Longer on purpose, and why: lines of a file, or of the function that begins with these words.
 LONGER = {
-    "core/dynamics/wall/admm_solver.cpp": "the lanes of one iteration, which the compiler must see together to inline them",
-    "core/dynamics/wall/contact_set.cpp": "the one owner of a structure's points",
     "yade/rigid_failures.cpp: void MoreauJeanIntegrator::count": "one sentence for each kind of failure",
 }
 

@@ -168,7 +168,7 @@ class Search {
 public:
 	explicit Search(System<most>& system) : s(system), best(system.p), last(system.p)
 	{
-		const auto slips = [](const PointState& point) { return std::isfinite(point.friction); };
+		const auto slips = [](const PointState& point) { return point.law.kind == PointLaw::Coulomb; };
 		anySlips = std::any_of(s.points.begin(), s.points.end(), slips);
 		allSlip = std::all_of(s.points.begin(), s.points.end(), slips);
 	}

@@ -41,7 +41,7 @@ struct ImpulsePoint {
 	Vector3 bias {Vector3::Zero()};    // added to the relative velocity u, m/s (see rigid_acceleration.hpp)
 	Vector3 impulse {Vector3::Zero()}; // result: on body 2, global, N s
 	Vector3 grip {Vector3::Zero()};    // across the normal: p_t acts, and u_t is measured, at position + grip (contact/friction_points.hpp)
-	double most {noSlip};              // N s, normal impulse where the laws have no solution, for solvers that know it (contact_limits.hpp)
+	double most {unlimited};           // N s, normal impulse where the laws have no solution, for solvers that know it (contact_limits.hpp)
 };
 
 struct CoupleRow {

@@ -35,7 +35,7 @@ struct Row {
 };
 
 struct PointState {
-	double friction;
+	PointLaw law;
 	State state;
 	Matrix3 axes;                            // rows: the normal and two tangents
 	Vector2 slipDirection {Vector2::Zero()}; // unit vector d of p_t while the point slips
@@ -192,7 +192,7 @@ void solveForStates(System<most>& s)
 		for (int l = 0; l < n; ++l)
 			A.template block<2, 1>(t, l) = (turn * A.template block<2, 1>(t, l)).eval();
 		b.template segment<2>(t) = (turn * b.template segment<2>(t)).eval();
-		A.template block<2, 1>(t, k) -= stiffness * point.friction * d;
+		A.template block<2, 1>(t, k) -= stiffness * point.law.friction * d;
 		A.template block<2, 2>(t, t) += stiffness * (Eigen::Matrix2d::Identity() - turn);
 	}
 	Eigen::CompleteOrthogonalDecomposition<Matrix> decomposition(n, n);
@@ -208,18 +208,21 @@ void solveForStates(System<most>& s)
 		s.p[active[k]] = x[k];
 }
 
-// Projection of p - r u on the friction cone of one point; also tells the state that it stands for.
+// Without slip the projection jumps where y_n changes sign: a point that just touches (C = 0) must not be held by round-off. N s
+template <int most>
+double leastImpulse(const System<most>& s, int i)
+{
+	return s.points[i].law.kind == PointLaw::NoSlip ? s.noise / s.points[i].response : 0;
+}
+
+// Projection of p - r u on the law of one point; also tells the state that it stands for.
 template <int most>
 Vector3 project(const System<most>& s, int i, const Vector3& u, State& state)
 {
 	const Vector3 y = s.p.template segment<3>(3 * i) - u / s.points[i].response;
-	state = State::open;
-	// Without slip the projection jumps where y_n changes sign: a point that just touches (C = 0) must not be held by round-off.
-	const double least = std::isinf(s.points[i].friction) ? s.noise / s.points[i].response : 0;
-	if (!(y[0] > least))
-		return Vector3::Zero();
-	const Vector3 result = masonry::project(y, s.points[i].friction);
-	state = result.tail<2>() == y.tail<2>() ? State::stick : State::slip;
+	const double least = leastImpulse(s, i);
+	const Vector3 result = masonry::project(s.points[i].law, y, least);
+	state = !(y[0] > least) ? State::open : result.tail<2>() == y.tail<2>() ? State::stick : State::slip;
 	return result;
 }
 
@@ -229,9 +232,8 @@ double residual(const System<most>& s)
 	const auto u = s.velocity();
 	double worst = s.nCouples ? u.tail(s.nCouples).cwiseAbs().maxCoeff() : 0;
 	for (int i = 0; i < s.nPoints; ++i) {
-		State ignored;
-		const Vector3 step = s.p.template segment<3>(3 * i) - project(s, i, u.template segment<3>(3 * i), ignored);
-		worst = std::max(worst, step.norm() * s.points[i].response);
+		const Vector3 p = s.p.template segment<3>(3 * i), ofPoint = u.template segment<3>(3 * i);
+		worst = std::max(worst, masonry::residual(s.points[i].law, p, ofPoint, s.points[i].response, leastImpulse(s, i)));
 	}
 	return worst;
 }

@@ -101,7 +101,7 @@ double minImpulse(const ContactSolver<K>& solver, size_t point)
 		u += *J * solver.bodies[b].free;
 		lightest = std::min(lightest, 1 / solver.bodies[b].inverseMass.linear);
 	}
-	const double slip = row.friction == noSlip && std::isfinite(lightest) ? u.template tail<K::rows - 1>().norm() * lightest : 0;
+	const double slip = row.law.kind == PointLaw::NoSlip && std::isfinite(lightest) ? u.template tail<K::rows - 1>().norm() * lightest : 0;
 	return std::max(share * slip, std::numeric_limits<double>::min());
 }
 
@@ -112,7 +112,7 @@ void SparseImpulses<K>::addPoint(const std::vector<masonry::Body>& bodies, const
 {
 	ContactRows<K>& rows = solver.points.emplace_back();
 	const auto axes = frame(linear<K>(point.normal));
-	rows.friction = point.friction;
+	rows.law = point.friction;
 	rows.most = point.most;
 	rows.offset = axes * linear<K>(point.bias);
 	rows.body1 = unknown[point.body1];
@@ -132,7 +132,7 @@ template <class K>
 void SparseImpulses<K>::addCouple(const std::vector<masonry::Body>& bodies, const CoupleRow& couple, double length)
 {
 	ContactRows<K>& rows = solver.points.emplace_back();
-	rows.friction = bilateral;
+	rows.law = PointLaw::Bilateral;
 	rows.offset[0] = -length * couple.target;
 	rows.body1 = unknown[couple.body1];
 	rows.body2 = unknown[couple.body2];

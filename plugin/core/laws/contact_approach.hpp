@@ -49,14 +49,14 @@ private:
 		int ties = 0;
 		for (int i = 0; i < s.nPoints; ++i) {
 			speed = std::max(speed, s.relativeVelocity(s.rows[i]).norm());
-			ties += s.rows[i].friction == noSlip;
+			ties += s.rows[i].law.kind == PointLaw::NoSlip;
 		}
 		if (ties > maxTied)
 			return false;
 		if (ties > 0)
 			for (int i = 0; i < s.nPoints; ++i)
-				if (s.rows[i].friction == noSlip)
-					root.setLaw(i, tied, 0);
+				if (s.rows[i].law.kind == PointLaw::NoSlip)
+					root.setLaw(i, PointLaw::Tied, 0);
 		if (!root.descend(false, report))
 			return false;
 		for (int round = 0; ties > 0; ++round) {
@@ -73,8 +73,8 @@ private:
 		}
 		for (int k = 0; k < maxCentres; ++k) {
 			for (int i = 0; k == 0 && ties > 0 && i < s.nPoints; ++i)
-				if (s.rows[i].friction == noSlip)
-					root.setLaw(i, presses(i, tolerance) ? noSlip : 0, 0);
+				if (s.rows[i].law.kind == PointLaw::NoSlip)
+					root.setLaw(i, presses(i, tolerance) ? s.rows[i].law : PointLaw {}, 0);
 			root.takeNext();
 			report.residual = s.residual();
 			if (report.residual <= tolerance)
@@ -95,12 +95,12 @@ private:
 		constexpr double parting = 1e-6; // of the largest velocity that impulses have to take away: what parts faster does part
 		bool changed = false;
 		for (int i = 0; i < s.nPoints; ++i) {
-			if (s.rows[i].friction != noSlip)
+			if (s.rows[i].law.kind != PointLaw::NoSlip)
 				continue;
 			const Rows &p = root.next(i), u = root.velocityAt(i);
-			if (root.friction(i) != tied) {
+			if (root.law(i).kind != PointLaw::Tied) {
 				if (presses(i, tolerance)) {
-					root.setLaw(i, tied, 0);
+					root.setLaw(i, PointLaw::Tied, 0);
 					changed = true;
 				}
 				continue;
@@ -110,9 +110,9 @@ private:
 				continue;
 			const bool pushedAway = least > 0 && root.parts(i);
 			if (u[0] > parting * speed || pushedAway)
-				root.setLaw(i, 0, 0);
+				root.setLaw(i, {}, 0);
 			else if (least == 0)
-				root.setLaw(i, tied, tie);
+				root.setLaw(i, PointLaw::Tied, tie);
 			else
 				continue;
 			changed = true;

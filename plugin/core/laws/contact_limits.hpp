@@ -17,9 +17,9 @@ template <class K>
 typename ContactRows<K>::Rows projectLimited(typename ContactRows<K>::Rows y, const ContactRows<K>& row)
 {
 	if (std::isinf(row.most))
-		return project(y, row.friction);
+		return project(row.law, y);
 	y[0] = std::min(y[0], row.most);
-	return project(y, std::min(row.friction, 1.));
+	return project(PointLaw(std::min(row.law.friction, 1.)), y);
 }
 
 // Whether the point presses with all that it may.

@@ -27,7 +27,7 @@ public:
 		softness = tolerance::contactProblem::resumedSoftness;
 		if (!factored) {
 			for (int i = 0; i < s.nPoints; ++i)
-				points[i].rate = projectionRate<Rows>(onCone(s.rows[i].impulse), s.rows[i].friction);
+				points[i].rate = projectionRate<Rows>(s.rows[i].law, onCone(s.rows[i].impulse));
 		}
 		for (int k = 0; k < maxCentres; ++k) {
 			if (!findRoot(true, maxSteps, report))
@@ -98,7 +98,7 @@ private:
 		}
 		const auto residualAt = [&](double moves) {
 			for (int i = 0; i < s.nPoints; ++i)
-				s.rows[i].impulse = moves > 0 ? project<Rows>(points[i].next + moves * points[i].move, s.rows[i].friction) : points[i].next;
+				s.rows[i].impulse = moves > 0 ? project<Rows>(s.rows[i].law, points[i].next + moves * points[i].move) : points[i].next;
 			s.applyImpulses();
 			return s.residual();
 		};

@@ -117,8 +117,8 @@ struct ContactSolver<K>::Workspace {
 			return report;
 		if (inSpace && fromAfar.find(tolerance, report))
 			return report;
-		const bool sticks =
-		    std::any_of(given.points.begin(), given.points.end(), [](const ContactRows<K>& row) { return row.friction == noSlip; });
+		const bool sticks = std::any_of(given.points.begin(), given.points.end(),
+		                                [](const ContactRows<K>& row) { return row.law.kind == PointLaw::NoSlip; });
 		constexpr int firstSweeps = 40;
 		report.residual = !inSpace || sticks ? gaussSeidel(s, tolerance, firstSweeps, false, report) : s.residual();
 		if (report.residual > tolerance)

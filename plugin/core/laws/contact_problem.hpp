@@ -9,7 +9,7 @@
 //     u_t = 0                 if |p_t| <  mu p_n   stick
 //     p_t = -mu p_n u_t/|u_t| otherwise            slip (Coulomb)
 //
-// mu = noSlip is a law of its own: a point that carries an impulse does not slip.
+// Points may have other laws too (point_law.hpp): without slip, or a row that pulls as well as pushes.
 //
 // The residual, one for all solvers: with r = 1/trace(J M^-1 J^T) of the point, |p - P(p - r u)| / r, in m/s, where P projects the
 // normal part on p_n >= 0 and then the tangential part on the disc of radius mu p_n; V is always the one that p gives by the
@@ -63,15 +63,15 @@ struct ContactRows {
 	int body1 {-1}, body2 {-1}; // indices of free bodies; -1: prescribed, its motion is in the offset
 	Jacobian J1, J2;            // of body 1 with its minus sign
 	Rows offset {Rows::Zero()}; // m/s
-	double friction {0};        // mu >= 0, noSlip, or bilateral (point_law.hpp)
-	double most {noSlip};       // N s, normal impulse of a body with prescribed motion where the laws have no solution (contact_limits.hpp)
+	PointLaw law;
+	double most {unlimited}; // N s, normal impulse of a body with prescribed motion where the laws have no solution (contact_limits.hpp)
 	Rows impulse {Rows::Zero()}; // in: first guess; out: result. N s, on body 2 along the rows
 
 	// Whether the impulse has reached the friction cone.
 	bool slides() const
 	{
 		return impulse[0] > 0 &&
-		       impulse.template tail<K::rows - 1>().norm() >= (1 - tolerance::contactProblem::cone) * friction * impulse[0];
+		       impulse.template tail<K::rows - 1>().norm() >= (1 - tolerance::contactProblem::cone) * law.friction * impulse[0];
 	}
 };
 

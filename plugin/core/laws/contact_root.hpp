@@ -46,7 +46,7 @@ public:
 		for (int i = 0; i < s.nPoints; ++i) {
 			const Edge edge {s.rows[i].body1, s.rows[i].body2};
 			points[i].edge = edge[0] >= 0 && edge[1] >= 0 ? last = numberOf(edge, last) : -1;
-			points[i].friction = s.rows[i].friction;
+			points[i].law = s.rows[i].law;
 			points[i].least = 0;
 			points[i].next = s.rows[i].impulse;
 		}
@@ -55,7 +55,7 @@ public:
 		kept.clear();
 	}
 
-	double friction(int i) const { return points[i].friction; }
+	const PointLaw& law(int i) const { return points[i].law; }
 	double least(int i) const { return points[i].least; }
 	bool parts(int i) const { return s.rows[i].impulse[0] - velocityAt(i)[0] / compliance(i) <= 0; } // but for the least impulse
 	const Rows& next(int i) const { return points[i].next; }                                         // P(y) at the root
@@ -70,10 +70,10 @@ public:
 		return u;
 	}
 	// From the next root on. The point keeps its impulse as far as the law lets it.
-	void setLaw(int i, double friction, double least)
+	void setLaw(int i, const PointLaw& law, double least)
 	{
 		Point& p = points[i];
-		p.friction = friction;
+		p.law = law;
 		p.least = least;
 		p.next = p.lawAt(p.next);
 		p.rate = p.rateAt(p.next);
@@ -135,11 +135,12 @@ protected:
 	struct Point {
 		Rows centre, next, move;                              // u at the centre, P(y), last change of the centre
 		Block rate {Block::Zero()}, factored {Block::Zero()}; // derivative of P(y), and the one that is in the factor
-		double friction, least;                               // of the law for the time being
+		PointLaw law;                                         // for the time being
+		double least;                                         // normal impulse, N s
 		int edge;                                             // between its bodies; -1: one of them is prescribed
 
-		Rows lawAt(const Rows& y) const { return project<Rows>(y - bound(), friction) + bound(); }
-		Block rateAt(const Rows& y) const { return projectionRate<Rows>(y - bound(), friction); }
+		Rows lawAt(const Rows& y) const { return project<Rows>(law, y - bound()) + bound(); }
+		Block rateAt(const Rows& y) const { return projectionRate<Rows>(law, y - bound()); }
 		Rows bound() const { return least * Rows::Unit(0); }
 	};
 

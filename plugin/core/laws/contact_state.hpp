@@ -75,12 +75,7 @@ struct ContactState {
 			push(i, rows[i].impulse);
 	}
 
-	double violation(int i, const Rows& u) const
-	{
-		const Rows& p = rows[i].impulse;
-		const double trace = points[i].alone.trace;
-		return (p - project<Rows>(p - u / trace, rows[i].friction)).norm() * trace;
-	}
+	double violation(int i, const Rows& u) const { return masonry::residual(rows[i].law, rows[i].impulse, u, points[i].alone.trace); }
 
 	double residual() const
 	{
@@ -123,7 +118,7 @@ struct ContactState {
 	{
 		for (int i = 0; i < nPoints; ++i) {
 			const double trace = points[i].alone.trace, pressing = rows[i].impulse[0] * trace;
-			if (rows[i].friction == bilateral || !(pressing > 0) || pressing > missed || relativeVelocity(rows[i])[0] < pressing)
+			if (rows[i].law.kind == PointLaw::Bilateral || !(pressing > 0) || pressing > missed || relativeVelocity(rows[i])[0] < pressing)
 				continue;
 			push(i, -rows[i].impulse);
 			rows[i].impulse.setZero();

@@ -17,7 +17,7 @@ double sweep(ContactState<K>& s, double tolerance)
 		if (miss <= tolerance)
 			continue;
 		const OnePoint<K::rows>& alone = s.points[i].alone;
-		const auto next = alone.impulse(u - alone.G * s.rows[i].impulse, s.rows[i].friction);
+		const auto next = alone.impulse(u - alone.G * s.rows[i].impulse, s.rows[i].law);
 		s.push(i, next - s.rows[i].impulse);
 		s.rows[i].impulse = next;
 	}
@@ -31,7 +31,7 @@ double solveAlone(ContactState<K>& s)
 	for (int b = 0; b < s.nBodies; ++b)
 		s.bodies[b].velocity = s.bodies[b].free;
 	ContactRows<K>& row = s.rows[0];
-	row.impulse = s.points[0].alone.impulse(s.relativeVelocity(row), row.friction);
+	row.impulse = s.points[0].alone.impulse(s.relativeVelocity(row), row.law);
 	s.push(0, row.impulse);
 	return s.violation(0, s.relativeVelocity(row));
 }

@@ -1,5 +1,5 @@
 #pragma once
-// The laws of contact_problem.hpp at one point: their projection, and the impulse of a point alone.
+// What a contact point may carry: its law, the projection on it, the residual of all solvers, and the impulse of a point alone.
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -7,57 +7,78 @@
 
 namespace masonry {
 
-// In the place of a friction coefficient: a point that carries an impulse does not slip.
+// The friction coefficient of a pair without slip.
 constexpr double noSlip = std::numeric_limits<double>::infinity();
-// In the same place: the first row alone acts, pulling as well as pushing.
-constexpr double bilateral = -1;
-// In the same place: presses or parts, and slips in neither case. With it a problem of points without slip has one motion that solves it.
-constexpr double tied = -2;
+// The limit of an impulse that has none, N s.
+constexpr double unlimited = std::numeric_limits<double>::infinity();
 
-// P: the normal part on p_n >= 0, then the tangential part on the disc of radius mu p_n.
+struct PointLaw {
+	enum Kind : char {
+		Coulomb,   // presses or parts, and slips where |p_t| = mu p_n
+		NoSlip,    // presses or parts; while it carries an impulse it does not slip
+		Bilateral, // the normal row alone acts, pulling as well as pushing
+		Tied       // presses or parts, and slips in neither case: then points without slip have one motion (contact_approach.hpp)
+	} kind {Coulomb};
+	double friction {0}; // mu
+
+	PointLaw() = default;
+	PointLaw(Kind kind) : kind(kind), friction(kind == NoSlip ? noSlip : 0) {}
+	PointLaw(double friction) : kind(friction == noSlip ? NoSlip : Coulomb), friction(friction) {}
+};
+
+// P: the normal part on p_n >= 0, then the tangential part on the disc of radius mu p_n. Up to `least` the normal part counts as zero.
 template <class Rows>
-Rows project(const Rows& y, double friction)
+Rows project(const PointLaw& law, const Rows& y, double least = 0)
 {
-	if (friction == bilateral)
+	if (law.kind == PointLaw::Bilateral)
 		return Rows(y[0] * Rows::Unit(0));
 	Rows p = y;
-	if (friction == tied) {
+	if (law.kind == PointLaw::Tied) {
 		p[0] = std::max(0., y[0]);
 		return p;
 	}
-	if (!(y[0] > 0))
+	if (!(y[0] > least))
 		return Rows::Zero();
+	if (law.kind == PointLaw::NoSlip)
+		return p;
 	auto tangential = p.template tail<Rows::RowsAtCompileTime - 1>();
-	const double bound = friction * y[0], square = tangential.squaredNorm();
+	const double bound = law.friction * y[0], square = tangential.squaredNorm();
 	if (square > bound * bound)
 		tangential *= bound / std::sqrt(square);
 	return p;
 }
 
+// By how much an impulse p and the relative velocity u miss the law, |p - P(p - u/stiffness)| stiffness, m/s. Zero if and only if they
+// obey it; `stiffness`: that of the point alone, as the trace of J M^-1 J^T, 1/kg.
+template <class Rows>
+double residual(const PointLaw& law, const Rows& p, const Rows& u, double stiffness, double least = 0)
+{
+	return (p - project<Rows>(law, p - u / stiffness, least)).norm() * stiffness;
+}
+
 // Derivative of P.
 template <class Rows>
-auto projectionRate(const Rows& y, double friction)
+auto projectionRate(const PointLaw& law, const Rows& y)
 {
 	constexpr int tangents = Rows::RowsAtCompileTime - 1;
 	Eigen::Matrix<double, tangents + 1, tangents + 1> rate;
-	if (friction == tied) {
-		rate.setIdentity();
+	rate.setIdentity();
+	if (law.kind == PointLaw::Tied) {
 		rate(0, 0) = y[0] > 0;
 		return rate;
 	}
-	rate.setZero();
-	if (friction == bilateral)
-		rate(0, 0) = 1;
-	if (friction == bilateral || !(y[0] > 0))
+	if (law.kind == PointLaw::Bilateral || !(y[0] > 0)) {
+		rate.setZero();
+		rate(0, 0) = law.kind == PointLaw::Bilateral;
 		return rate;
-	rate.setIdentity();
+	}
 	const double size = y.template tail<tangents>().norm();
-	if (size <= friction * y[0])
+	if (law.kind == PointLaw::NoSlip || size <= law.friction * y[0])
 		return rate;
 	const Eigen::Matrix<double, tangents, 1> d = y.template tail<tangents>() / size;
-	rate.template bottomLeftCorner<tangents, 1>() = friction * d;
+	rate.template bottomLeftCorner<tangents, 1>() = law.friction * d;
 	auto turn = rate.template bottomRightCorner<tangents, tangents>();
-	turn = friction * y[0] / size * (turn - d * d.transpose()).eval();
+	turn = law.friction * y[0] / size * (turn - d * d.transpose()).eval();
 	return rate;
 }
 
@@ -72,18 +93,18 @@ struct OnePoint {
 	double trace {0};
 
 	// Without slip a point may ask for a pull; then, as where slip finds nothing, it is held along the normal alone.
-	Rows impulse(const Rows& u0, double friction) const
+	Rows impulse(const Rows& u0, const PointLaw& law) const
 	{
-		if (friction == bilateral)
+		if (law.kind == PointLaw::Bilateral)
 			return Rows(-u0[0] / G(0, 0) * Rows::Unit(0));
 		if (u0[0] >= 0)
 			return Rows::Zero();
 		const Rows stick = -(G.inverse() * u0);
-		const double bound = friction * stick[0];
+		const double bound = law.friction * stick[0];
 		if (stick[0] > 0 && stick.template tail<rows - 1>().squaredNorm() <= bound * bound)
 			return stick;
 		Rows p = Rows::Zero();
-		if (friction > 0 && friction < noSlip && slip(u0, friction, stick.template tail<rows - 1>(), p))
+		if (law.friction > 0 && law.kind == PointLaw::Coulomb && slip(u0, law.friction, stick.template tail<rows - 1>(), p))
 			return p;
 		p << -u0[0] / G(0, 0), Tangential::Zero();
 		return p;

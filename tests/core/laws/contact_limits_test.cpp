@@ -21,11 +21,11 @@ ContactSolver<Plane> pressed(double left, double right, double most)
 		row.J1.setZero();
 		row.J2 << normal.x(), normal.y(), 0, -normal.y(), normal.x(), 0;
 		row.offset[0] = -approach;
-		row.friction = 0.3;
+		row.law = 0.3;
 		row.most = limit;
 		solver.points.push_back(row);
 	};
-	add({0, 1}, 0, noSlip);
+	add({0, 1}, 0, unlimited);
 	add({1, 0}, left, most);
 	add({-1, 0}, right, most);
 	return solver;
@@ -36,7 +36,7 @@ ContactSolver<Plane> pressed(double left, double right, double most)
 // With a left wall that pushes and a right one that goes away as fast, one impulse solves the laws.
 TEST_CASE("limits do not change impulses that obey the laws")
 {
-	auto free = pressed(0.5, -0.5, noSlip), limited = pressed(0.5, -0.5, 10);
+	auto free = pressed(0.5, -0.5, unlimited), limited = pressed(0.5, -0.5, 10);
 	CHECK(free.solve(1e-12).converged);
 	const SolveReport report = limited.solve(1e-12);
 	CHECK((report.converged && !report.jammed));

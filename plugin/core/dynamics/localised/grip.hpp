@@ -2,40 +2,20 @@
 // Where the friction of a pair's points acts: contact/friction_points.hpp. The friction points follow the normal forces from step to step;
 // while a step or an impact is computed they keep their places in the axes of their points, so that the law and the force use the same
 // rows. Without slip there is no torque to limit, and a motion in a plane turns no face about its normal.
-#include "contact/friction_points.hpp"
 #include "dynamics/localised/smooth_step.hpp"
-#include "tolerances.hpp"
+#include "dynamics/model/pair_friction.hpp"
 
 namespace masonry::localised {
 
-using NormalForces = PerPoint<double>; // of the points of a pair, in any unit
-
-inline bool hasGrip(const ContactPair<Space>& pair) { return pair.size() > 2 && pair.friction > 0 && pair.friction < noSlip; }
-
-// The friction of those points that `placed(i)` selects, for these forces of all. The second normals of corners (corner_normals.hpp) are
-// none of the face: their friction acts where they are.
+// The friction of those points that `placed(i)` selects, for these forces of all.
 template <class Placed>
 void placeFriction(ContactPair<Space>& pair, const NormalForces& forces, Placed placed)
 {
-	PerPoint<int> places;
-	const ContactFrame<Space>& first = pair.points[0].frame;
-	const Eigen::Matrix<double, 2, 3> tangents = first.axes.bottomRows<2>();
+	const auto frameOf = [&](int i) -> const ContactFrame<Space>& { return pair.points[i].frame; };
+	const auto offsets = frictionOffsets(pair.size(), frameOf, forces);
 	for (int i = 0; i < pair.size(); ++i)
-		if ((tangents * pair.points[i].frame.axes.row(0).transpose()).norm() <= tolerance::contact::cornerSpread)
-			places.push_back(i);
-	const int size = int(places.size());
-	PerPoint<PatchCorner> corners(size);
-	PerPoint<Vector2> offsets(size, Vector2::Zero());
-	for (int k = 0; k < size; ++k)
-		corners[k] = {tangents * (pair.points[places[k]].frame.position - first.position), 1. / size, forces[places[k]]};
-	if (size > 2)
-		frictionOffsets(corners.data(), size, offsets.data());
-	for (int i = 0, k = 0; i < pair.size(); ++i) {
-		const bool ofFace = k < size && places[k] == i;
 		if (placed(i))
-			pair.points[i].setGrip(ofFace ? Vector3(tangents.transpose() * offsets[k]) : Vector3(Vector3::Zero()));
-		k += ofFace;
-	}
+			pair.points[i].setGrip(offsets[i]);
 }
 
 // For the normal forces `force(pair, i)` of all points; the calls are in their order. Points in touch of a pair without any force share

@@ -301,7 +301,7 @@ bool SmoothStep<K>::isReleased(const RigidSystem<K>& s, double further) const
 			return true;
 		ContactRows<K> rows = solver.points[r];
 		rows.impulse += further * (rows.impulse - last.h * point.force);
-		if (!(rows.impulse[0] > 0) || (rows.friction > 0 && rows.slides()))
+		if (!(rows.impulse[0] > 0) || (rows.law.friction > 0 && rows.slides()))
 			return true;
 	}
 	return false;

@@ -200,7 +200,7 @@ ContactRows<K> SmoothStep<K>::rowsOf(const RigidSystem<K>& s, PointRef ref, cons
 	rows.body2 = next2.unknown;
 	rows.J1 = jacobian(frame, next1.middle.position, chord<K>(next1.mean, h), -1);
 	rows.J2 = jacobian(frame, next2.middle.position, chord<K>(next2.mean, h), 1);
-	rows.friction = pair.friction;
+	rows.law = pair.friction;
 	rows.impulse = !guesses.empty() ? guesses[row] : partBases ? Impulse::Zero() : Impulse(h * point.force);
 	if (body1.prescribed)
 		rows.offset += rows.J1 * next1.velocity;

@@ -1,4 +1,5 @@
 #include "dynamics/wall/admm_solver.hpp"
+#include "dynamics/wall/admm_passes.hpp"
 #include "tolerances.hpp"
 #include <Eigen/QR>
 #include <algorithm>
@@ -8,185 +9,6 @@
 namespace masonry::wall {
 
 namespace {
-
-template <class K>
-using RowOf = typename AdmmSolver<K>::Row;
-template <class K>
-using RowsOf = typename AdmmSolver<K>::Rows;
-
-// These values are the same for all points of a step.
-struct Step {
-	double h, perH, fall, mix, reach, left, softness, follows, minSoftness, relaxation, boundShare, pullBack;
-	double sticks; // m, gap up to which a point without an impulse starts as one that sticks
-	bool strict;   // errors of impulses count as those of velocities
-	bool compares; // R with the loads
-};
-
-// R by load.
-template <class K>
-MASONRY_INLINE Lanes resistanceOf(const PointLanes<K>& p, const Step& step)
-{
-	const Lanes load = p.filteredImpulse / (p.massN * step.fall), r = larger(step.softness / (all(1) + load), all(step.minSoftness));
-	return (0.5 * r) * (p.massN + p.massT) / (p.massN * p.massT);
-}
-
-// A look at the points sets these: a point in reach is not in A; the R of a point no longer follows its load.
-struct alignas(alignment) Outdated {
-	Mask reached, loaded;
-};
-
-// Filters the load.
-template <class K>
-MASONRY_INLINE void takePoint(PointLanes<K>& p, const RowOf<K>& row, const Lanes& approach, const Step& step, Outdated& outdated)
-{
-	constexpr double needed = 0.25; // share of the reach within which A must have a point
-	p.filteredImpulse += step.mix * (p.pn - p.filteredImpulse);
-	const Mask in = row.stiffness > 0;
-	outdated.reached |= (p.massN > 0) & (p.gap + step.h * approach < needed * step.reach) & ~in;
-	if (step.compares)
-		outdated.loaded |= in & (p.massN > 0) & (size(resistanceOf(p, step) - row.resistance) > step.follows * row.resistance);
-}
-
-template <class K>
-MASONRY_INLINE Outdated takeGroups(Group<K>* groups, const RowsOf<K>* rows, int begin, int end, const Lanes* velocity, const Step& step)
-{
-	Outdated outdated {};
-	for (int g = begin; g < end; ++g) {
-		const Bodies<K> v1(velocity, groups[g].body1), v2(velocity, groups[g].body2);
-		for (int k = 0; k < groups[g].count; ++k) {
-			PointLanes<K>& p = groups[g].point[k];
-			const Lanes un = normalRate(v1, v2, p);
-			takePoint<K>(p, rows[g][k], 2. * smaller(un, all(0)), step, outdated);
-		}
-	}
-	return outdated;
-}
-
-template <class K>
-MASONRY_INLINE void setPenalties(Group<K>* groups, RowsOf<K>* rows, int begin, int end, const Lanes* velocity, const Step& step)
-{
-	const Lanes none = all(0), one = all(1);
-	for (int g = begin; g < end; ++g) {
-		const Bodies<K> v1(velocity, groups[g].body1), v2(velocity, groups[g].body2);
-		for (int k = 0; k < lanePoints<K>; ++k) {
-			PointLanes<K>& p = groups[g].point[k];
-			auto& row = rows[g][k];
-			const Lanes approach = 2. * smaller(normalRate(v1, v2, p), none);
-			const Mask in = (p.massN > 0) & (p.gap + step.h * approach < step.reach) & (all(groups[g].count - k) > 0);
-			const Lanes resistance = in ? resistanceOf(p, step) : one;
-			row.resistance = in ? resistance : none;
-			row.stiffness = in ? one / resistance : none;
-		}
-	}
-}
-
-// The right-hand side of a solve; with `laws`, after the pass over the laws.
-template <class K, bool laws>
-MASONRY_INLINE void passGroup(Group<K>& group, SolverGroup<K>& memory, RowsOf<K>& rows, const Step& step, const Lanes* velocity,
-                              Lanes* force, Lanes& worst)
-{
-	const Bodies<K> v1(velocity, group.body1), v2(velocity, group.body2);
-	Bodies<K> f1(force, group.body1), f2(force, group.body2);
-	const Mask rough = group.friction >= maxFriction;
-	for (int k = 0; k < group.count; ++k) {
-		PointLanes<K>& p = group.point[k];
-		SolverLanes<K>& f = memory[k];
-		auto& row = rows[k];
-		const Lanes un = normalRate(v1, v2, p), wn = un + row.bn;
-		const auto ut = slipRate(v1, v2, p), wt = ut + row.bt;
-		if constexpr (laws) {
-			row.un = un;
-			row.ut = ut;
-			row.actedN = p.pn + (f.zn - wn) * row.stiffness;
-			row.actedT = p.pt + (f.zt - wt) * row.stiffness;
-			Lanes miss = larger(size(wn - f.zn), size(wt - f.zt));
-			if (step.strict)
-				miss *= larger(all(1), row.stiffness / p.massN);
-			const Lanes yn = p.pn - (step.relaxation * wn + (1 - step.relaxation) * f.zn) * row.stiffness;
-			const auto yt = p.pt - (step.relaxation * wt + (1 - step.relaxation) * f.zt) * row.stiffness;
-			p.pn = smaller(larger(yn, all(0)), group.most);
-			row.bound += step.boundShare * (p.pn - row.bound);
-			p.pt = clip(yt, group.friction * (rough ? p.pn : row.bound));
-			f.zn = (p.pn - yn) * row.resistance;
-			f.zt = (p.pt - yt) * row.resistance;
-			// At a point that slides, the bound must have settled too; R turns it into a velocity, as z is.
-			const Mask follows = ~rough & slides(p.pt, group.friction * row.bound);
-			const Lanes lag = group.friction * size(p.pn - row.bound) * row.resistance;
-			worst = larger(worst, row.stiffness > 0 ? larger(miss, follows ? lag : all(0)) : all(0));
-		}
-		add(f1, f2, p, p.pn + (f.zn - wn) * row.stiffness, p.pt + (f.zt - wt) * row.stiffness);
-	}
-	f1.store(force, group.body1, bitsOf(v1.m > 0));
-	f2.store(force, group.body2, bitsOf(v2.m > 0));
-}
-
-template <class K>
-MASONRY_INLINE void startGroups(Group<K>* groups, SolverGroup<K>* memory, RowsOf<K>* rows, int begin, int end, const Step& step,
-                                const Lanes* velocity, Lanes* force)
-{
-	constexpr double almost = 0.9; // share of the friction bound from which on a point counts as sliding: the damped bound may lag so far
-	const Lanes none = all(0);
-	Lanes unused = none;
-	for (int g = begin; g < end; ++g) {
-		const Bodies<K> v1(velocity, groups[g].body1), v2(velocity, groups[g].body2);
-		for (int k = 0; k < groups[g].count; ++k) {
-			PointLanes<K>& p = groups[g].point[k];
-			SolverLanes<K>& f = memory[g][k];
-			auto& row = rows[g][k];
-			const Mask in = row.stiffness > 0;
-			p.pn = in ? p.pn : none;
-			p.pt = select(in, p.pt, typename PointLanes<K>::Tangent {});
-			f.zero = larger(f.zero, smaller(p.gap, none));
-			const Lanes deep = smaller(p.gap - f.zero + step.left, none);
-			row.bn = in ? step.perH * (p.gap > 0 ? p.gap : step.pullBack * deep) : none;
-			row.bt = select(in, all(step.pullBack * step.perH) * f.slip, typename PointLanes<K>::Tangent {});
-			row.bound = p.pn;
-			const Lanes wn = normalRate(v1, v2, p) + row.bn;
-			const auto wt = slipRate(v1, v2, p) + row.bt;
-			f.zn = p.pn > 0 ? f.zn : larger(wn, none);
-			const Mask keeps = (p.pn > 0) & ~slides(p.pt, almost * groups[g].friction * p.pn);
-			f.zt = select(keeps, f.zt, select(p.gap <= step.sticks, typename PointLanes<K>::Tangent {}, wt));
-		}
-		passGroup<K, false>(groups[g], memory[g], rows[g], step, velocity, force, unused);
-	}
-}
-
-// A pass over the points of a part finds these at the end of a step.
-struct alignas(alignment) Ended {
-	Lanes loss, forceError;
-};
-
-template <class K>
-MASONRY_INLINE void advanceGroups(Group<K>* groups, SolverGroup<K>* memory, const RowsOf<K>* rows, int begin, int end, const Lanes* before,
-                                  double h, double level, unsigned char* reached, unsigned char* moving, Ended& ended)
-{
-	for (int g = begin; g < end; ++g) {
-		const Mask rough = groups[g].friction >= maxFriction;
-		Mask in {}, moves {};
-		for (int k = 0; k < groups[g].count; ++k) {
-			PointLanes<K>& p = groups[g].point[k];
-			const auto& row = rows[g][k];
-			p.gap += h * row.un;
-			Lanes& zero = memory[g][k].zero;
-			zero = p.pn < groups[g].most ? zero : smaller(zero, p.gap);
-			auto& slip = memory[g][k].slip;
-			const Mask glides = slides(p.pt, groups[g].friction * (rough ? p.pn : row.bound));
-			slip = select(glides, typename PointLanes<K>::Tangent {}, slip + h * row.ut);
-			if (const Mask slid = glides & (p.pn > 0); any(slid)) {
-				const Bodies<K> v1(before, groups[g].body1), v2(before, groups[g].body2);
-				const Lanes loss = -0.5 * dot(row.actedT, slipRate(v1, v2, p) + row.ut);
-				ended.loss += slid ? larger(loss, all(0)) : all(0);
-			}
-			const Mask here = row.stiffness > 0;
-			in |= here;
-			moves |= (p.massN > 0) & (larger(size(row.un), size(row.ut)) > level);
-			const Lanes error = larger(size(row.actedN - p.pn) / p.massN, size(row.actedT - p.pt) / p.massT);
-			ended.forceError = larger(ended.forceError, here ? error : all(0));
-		}
-		reached[g] = bitsOf(in);
-		moving[g] = bitsOf(moves & in);
-	}
-}
 
 MASONRY_LANES void addTo(const std::vector<int>& members, const Lanes* change, Lanes* velocity, Lanes& most)
 {
@@ -204,30 +26,26 @@ MASONRY_LANES void inertia(const std::vector<int>& members, const Lanes* velocit
 
 // No template is compiled for several vector widths.
 #define MASONRY_PASSES(K)                                                                                                                  \
-	MASONRY_LANES void takePass(Group<K>* groups, const RowsOf<K>* rows, int begin, int end, const Lanes* velocity, const Step& step,      \
-	                            Outdated& outdated)                                                                                        \
+	MASONRY_LANES void takePass(const Group<K>* groups, GroupState<K>* states, const RowsOf<K>* rows, int begin, int end,                  \
+	                            const Lanes* velocity, const Step& step, Outdated& outdated)                                               \
 	{                                                                                                                                      \
-		outdated = takeGroups<K>(groups, rows, begin, end, velocity, step);                                                                \
+		outdated = takeGroups<K>(groups, states, rows, begin, end, velocity, step);                                                        \
 	}                                                                                                                                      \
-	MASONRY_LANES void penaltyPass(Group<K>* groups, RowsOf<K>* rows, int begin, int end, const Lanes* velocity, const Step& step)         \
+	MASONRY_LANES void penaltyPass(const Group<K>* groups, const GroupState<K>* states, RowsOf<K>* rows, int begin, int end,               \
+	                               const Lanes* velocity, const Step& step)                                                                \
 	{                                                                                                                                      \
-		setPenalties<K>(groups, rows, begin, end, velocity, step);                                                                         \
+		setPenalties<K>(groups, states, rows, begin, end, velocity, step);                                                                 \
 	}                                                                                                                                      \
-	MASONRY_LANES void startPass(Group<K>* groups, SolverGroup<K>* memory, RowsOf<K>* rows, int begin, int end, const Step& step,          \
+	MASONRY_LANES void startPass(const Group<K>* groups, GroupState<K>* states, RowsOf<K>* rows, int begin, int end, const Step& step,     \
 	                             const Lanes* velocity, Lanes* force)                                                                      \
 	{                                                                                                                                      \
-		startGroups<K>(groups, memory, rows, begin, end, step, velocity, force);                                                           \
+		startGroups<K>(groups, states, rows, begin, end, step, velocity, force);                                                           \
 	}                                                                                                                                      \
-	MASONRY_LANES void lawPass(Group<K>* groups, SolverGroup<K>* memory, RowsOf<K>* rows, int begin, int end, const Step& step,            \
+	MASONRY_LANES void lawPass(const Group<K>* groups, GroupState<K>* states, RowsOf<K>* rows, int begin, int end, const Step& step,       \
 	                           const Lanes* velocity, Lanes* force, Lanes& worst)                                                          \
 	{                                                                                                                                      \
 		for (int g = begin; g < end; ++g)                                                                                                  \
-			passGroup<K, true>(groups[g], memory[g], rows[g], step, velocity, force, worst);                                               \
-	}                                                                                                                                      \
-	MASONRY_LANES void gapPass(Group<K>* groups, SolverGroup<K>* memory, const RowsOf<K>* rows, int begin, int end, const Lanes* before,   \
-	                           double h, double level, unsigned char* reached, unsigned char* moving, Ended& ended)                        \
-	{                                                                                                                                      \
-		advanceGroups<K>(groups, memory, rows, begin, end, before, h, level, reached, moving, ended);                                      \
+			passGroup<K, true>(groups[g], states[g], rows[g], step, velocity, force, worst);                                               \
 	}
 MASONRY_PASSES(Plane)
 MASONRY_PASSES(Space)
@@ -260,7 +78,7 @@ Step stepOf(const StepContext& c, const AdmmSettings& a, bool atRest)
 // Whether A must be made anew: it is of other pairs, its points are elsewhere, one may close that it does not have, or the penalties are to
 // follow the loads. Filters the loads.
 template <class K>
-bool AdmmSolver<K>::isOutdated(ContactSet<K>& c, const StepContext& step)
+bool AdmmSolver<K>::isOutdated(const ContactSet<K>& c, const StepContext& step)
 {
 	rows.resize(c.groups.size());
 	age += step.instant ? 0 : step.h;
@@ -270,7 +88,7 @@ bool AdmmSolver<K>::isOutdated(ContactSet<K>& c, const StepContext& step)
 		age = 0;
 	Outdated found[Team::maxParts + 1] {};
 	c.allParts([&](const Part& part, int number) {
-		takePass(c.groups.data(), rows.data(), part.begin, part.end, c.velocity.data(), same, found[number]);
+		takePass(c.groups.data(), states.data(), rows.data(), part.begin, part.end, c.velocity.data(), same, found[number]);
 	});
 	if (!matrix.hasMasses(c))
 		return true;
@@ -284,7 +102,7 @@ bool AdmmSolver<K>::isOutdated(ContactSet<K>& c, const StepContext& step)
 }
 
 template <class K>
-void AdmmSolver<K>::start(ContactSet<K>& c, const LaneArray& load, const LaneArray& guess, const StepContext& step)
+void AdmmSolver<K>::start(const ContactSet<K>& c, const LaneArray& load, const LaneArray& guess, const StepContext& step)
 {
 	velocity = c.velocity;
 	free.resize(velocity.size());
@@ -299,7 +117,7 @@ void AdmmSolver<K>::start(ContactSet<K>& c, const LaneArray& load, const LaneArr
 		inertia(part.members, velocity.data(), free.data(), force.data());
 	};
 	const auto startPoints = [&](const Part& part) {
-		startPass(c.groups.data(), c.memory.data(), rows.data(), part.begin, part.end, same, velocity.data(), force.data());
+		startPass(c.groups.data(), states.data(), rows.data(), part.begin, part.end, same, velocity.data(), force.data());
 	};
 	startBodies(c.parts.back());
 	c.eachPart([&](const Part& part, int) {
@@ -346,7 +164,7 @@ void AdmmSolver<K>::holdSpins()
 
 // One solve and one pass over the laws. Returns the largest |w - z|, m/s.
 template <class K>
-double AdmmSolver<K>::iterate(ContactSet<K>& c, const StepContext& step)
+double AdmmSolver<K>::iterate(const ContactSet<K>& c, const StepContext& step)
 {
 	Step same = stepOf(step, settings, atRest);
 	if (constexpr int late = 300; step.instant && report.iterations >= late) // sliding points are in a limit cycle
@@ -359,7 +177,7 @@ double AdmmSolver<K>::iterate(ContactSet<K>& c, const StepContext& step)
 		inertia(part.members, velocity.data(), free.data(), force.data());
 	};
 	const auto laws = [&](const Part& part, int number) {
-		lawPass(c.groups.data(), c.memory.data(), rows.data(), part.begin, part.end, same, velocity.data(), force.data(), worst[number]);
+		lawPass(c.groups.data(), states.data(), rows.data(), part.begin, part.end, same, velocity.data(), force.data(), worst[number]);
 	};
 	move(c.parts.back(), Team::maxParts);
 	c.eachPart([&](const Part& part, int number) {
@@ -378,9 +196,14 @@ double AdmmSolver<K>::iterate(ContactSet<K>& c, const StepContext& step)
 }
 
 template <class K>
-void AdmmSolver<K>::solve(ContactSet<K>& c, const LaneArray& load, const LaneArray& guess, const StepContext& step)
+void AdmmSolver<K>::solve(const ContactSet<K>& c, const LaneArray& load, const LaneArray& guess, const StepContext& step)
 {
 	report = {};
+	states = c.states;
+	if (step.instant)
+		for (GroupState<K>& group : states)
+			for (PointState<K>& p : group)
+				p.pn = all(0), p.pt *= all(0);
 	const bool areFew = matrix.freePacks().size() < size_t(settings.small * packs<K>);
 	const bool wasAtRest = std::exchange(atRest, step.stands && !step.instant && !cold && !settings.strictForces && !areFew);
 	const bool isAfterInstant = std::exchange(ofInstant, ofInstant && step.instant) && !step.instant;
@@ -412,7 +235,7 @@ void AdmmSolver<K>::solve(ContactSet<K>& c, const LaneArray& load, const LaneArr
 		const bool isLoaded = step.instant ? std::count(std::begin(looks), std::end(looks), report.iterations) > 0
 		                                   : cold && report.iterations % untilLoaded == 0;
 		if (isLoaded)
-			c.startMeans(step.instant ? step.fall / step.speed : 1);
+			startMeans(step.instant ? step.fall / step.speed : 1);
 		ofInstant |= isLoaded && step.instant;
 		const bool isTooStiff = atRest && report.iterations >= settings.restMost && report.residual > tolerated;
 		atRest &= !isTooStiff;
@@ -431,29 +254,22 @@ void AdmmSolver<K>::solve(ContactSet<K>& c, const LaneArray& load, const LaneArr
 	report.finite = std::all_of(velocity.begin(), velocity.end(), [](const Lanes& v) { return std::isfinite(v[0] + v[1] + v[2]); });
 }
 
+// The means of the impulses become this share of those that there are now.
 template <class K>
-PointsReport AdmmSolver<K>::advanceGaps(ContactSet<K>& c, const LaneArray& before, double h, double level)
+void AdmmSolver<K>::startMeans(double share)
 {
-	Ended ended[Team::maxParts + 1] {};
-	reached.resize(c.groups.size());
-	moving.resize(c.groups.size());
-	c.allParts([&](const Part& part, int number) {
-		gapPass(c.groups.data(), c.memory.data(), rows.data(), part.begin, part.end, before.data(), h, level, reached.data(), moving.data(),
-		        ended[number]);
-	});
-	PointsReport result;
-	for (const Ended& here : ended) {
-		result.friction += here.loss[0] + here.loss[1] + here.loss[2] + here.loss[3];
-		result.forceError = std::max(result.forceError, largest(here.forceError));
-	}
-	return result;
+	for (GroupState<K>& group : states)
+		for (PointState<K>& p : group)
+			p.filteredImpulse = share * p.pn;
 }
 
 template <class K>
-void AdmmSolver<K>::makeMatrix(ContactSet<K>& c, const StepContext& step)
+void AdmmSolver<K>::makeMatrix(const ContactSet<K>& c, const StepContext& step)
 {
 	const Step same = stepOf(step, settings, atRest);
-	c.allParts([&](const Part& part, int) { penaltyPass(c.groups.data(), rows.data(), part.begin, part.end, c.velocity.data(), same); });
+	c.allParts([&](const Part& part, int) {
+		penaltyPass(c.groups.data(), states.data(), rows.data(), part.begin, part.end, c.velocity.data(), same);
+	});
 	Array<typename AssemblyMatrix<K>::Stiffness> stiffness(rows.size());
 	for (size_t g = 0; g < rows.size(); ++g)
 		for (int k = 0; k < lanePoints<K>; ++k)

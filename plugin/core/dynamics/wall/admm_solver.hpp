@@ -88,12 +88,6 @@ struct AdmmReport {
 	bool leftRest {false}; // R was that of a structure at rest, until the residual would not fall
 };
 
-// The points have done this in a step.
-struct PointsReport {
-	double friction {0};   // energy that it has taken at points with an impulse, J
-	double forceError {0}; // between the impulses of the laws and of the momentum equation, as the velocity that it gives a point, m/s
-};
-
 template <class K>
 class AdmmSolver {
 public:
@@ -116,15 +110,11 @@ public:
 	bool otherFrames {true};       // frames or points of the contacts have changed since the last solve
 	LaneArray velocity;            // V, in the packs of the contacts
 	std::vector<Rows> rows;        // by group of the contacts
-	LaneBits reached;              // pairs with a point in A, after advanceGaps
-	LaneBits moving;               // those of them with any point that moves: where a block rocks, only its pivot may be in A
+	PointStates<K> states;         // of the solution
 
-	// Solves the step from the contacts' velocities and impulses; `load` is the change of velocity by external forces, per body; `guess` is
-	// the one that is expected altogether. Impulses, z and slips of the contacts are those of the solution afterwards; their gaps and
-	// velocities stay.
-	void solve(ContactSet<K>& contacts, const LaneArray& load, const LaneArray& guess, const StepContext& step);
-	// Gaps and slips at the end of the step, into the contacts; which pairs move faster than `level`, m/s. `before`: velocities before it.
-	PointsReport advanceGaps(ContactSet<K>& contacts, const LaneArray& before, double h, double level);
+	// Solves the step from the contacts' velocities and states; `load` is the change of velocity by external forces, per body; `guess` is
+	// the one that is expected altogether. An instant starts without impulses.
+	void solve(const ContactSet<K>& contacts, const LaneArray& load, const LaneArray& guess, const StepContext& step);
 	// The next solve of these contacts needs this from the last.
 	template <class Archive>
 	void serialize(Archive& archive, const ContactSet<K>& contacts)
@@ -138,10 +128,11 @@ public:
 	}
 
 private:
-	bool isOutdated(ContactSet<K>& contacts, const StepContext& step);
-	void makeMatrix(ContactSet<K>& contacts, const StepContext& step);
-	void start(ContactSet<K>& contacts, const LaneArray& load, const LaneArray& guess, const StepContext& step);
-	double iterate(ContactSet<K>& contacts, const StepContext& step);
+	bool isOutdated(const ContactSet<K>& contacts, const StepContext& step);
+	void makeMatrix(const ContactSet<K>& contacts, const StepContext& step);
+	void start(const ContactSet<K>& contacts, const LaneArray& load, const LaneArray& guess, const StepContext& step);
+	double iterate(const ContactSet<K>& contacts, const StepContext& step);
+	void startMeans(double share);
 	void prepareSpins(const ContactSet<K>& contacts);
 	void holdSpins();
 

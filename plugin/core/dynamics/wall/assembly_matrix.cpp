@@ -91,7 +91,7 @@ bool AssemblyMatrix<K>::hasMasses(const ContactSet<K>& c) const
 }
 
 template <class K>
-double AssemblyMatrix<K>::change(ContactSet<K>& c) const
+double AssemblyMatrix<K>::change(const ContactSet<K>& c) const
 {
 	Lanes worst[Team::maxParts + 1] {};
 	c.allParts([&](const Part& part, int number) {

@@ -30,7 +30,7 @@ public:
 	bool hasMasses(const ContactSet<K>& contacts) const; // those of these bodies
 	// The largest difference between the rows of a point in A and those that it has now; infinite where a point is gone. A must be of these
 	// contacts.
-	double change(ContactSet<K>& contacts) const;
+	double change(const ContactSet<K>& contacts) const;
 	// x = A^-1 x, by packs of the bodies.
 	void solve(LaneArray& x) { factor.solve(x.data(), places); }
 	const std::vector<int>& freePacks() const { return places; } // of the free bodies

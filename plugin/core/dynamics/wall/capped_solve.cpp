@@ -20,19 +20,15 @@ double kineticEnergy(const LaneArray& velocity)
 } // namespace
 
 template <class K>
-CappedReport CappedSolve<K>::solve(const RigidSystem<K>& s, ContactSet<K>& c, const LaneArray& load, const LaneArray& guess,
+CappedReport CappedSolve<K>::solve(const RigidSystem<K>& s, const ContactSet<K>& c, const LaneArray& load, const LaneArray& guess,
                                    AdmmSolver<K>& solver, const EnergyLedger<K>& ledger, const StepContext& step)
 {
 	constexpr int maxTrials = 3; // of lower targets. Fewer: capped joints are farther below the restitution that keeps their energy
 	CappedReport report;
 	rows = solver.spins;
 	ranges.assign(rows.size(), {});
-	if (!rows.empty() || step.instant) {
-		groups = c.groups;
-		memory = c.memory;
-	}
 	bool isBack = false;
-	for (int trials = 0;; restore(c)) {
+	for (int trials = 0;;) {
 		SpinRow<K>* worst = solveOnce(s, c, load, guess, solver, step, report);
 		const bool areTargetsAsked = trials == 0;
 		if (!report.finite) {
@@ -68,17 +64,13 @@ CappedReport CappedSolve<K>::solve(const RigidSystem<K>& s, ContactSet<K>& c, co
 }
 
 template <class K>
-SpinRow<K>* CappedSolve<K>::solveOnce(const RigidSystem<K>& s, ContactSet<K>& c, const LaneArray& load, const LaneArray& guess,
+SpinRow<K>* CappedSolve<K>::solveOnce(const RigidSystem<K>& s, const ContactSet<K>& c, const LaneArray& load, const LaneArray& guess,
                                       AdmmSolver<K>& solver, const StepContext& step, CappedReport& report)
 {
 	solver.spins.clear();
 	for (const SpinRow<K>& row : rows)
 		if (row.held)
 			solver.spins.push_back(row);
-	if (step.instant)
-		for (auto& group : c.groups)
-			for (auto& p : group.point)
-				p.pn = all(0), p.pt *= all(0);
 	solver.solve(c, load, guess, step);
 	report.iterations += solver.report.iterations;
 	report.factorisations += solver.report.factorisations;
@@ -123,13 +115,6 @@ bool CappedSolve<K>::moveTargets(int trials)
 			row.target = below.rate + below.shareUpTo(above, most / 2) * (above.rate - below.rate);
 	}
 	return again;
-}
-
-template <class K>
-void CappedSolve<K>::restore(ContactSet<K>& c) const
-{
-	c.groups = groups;
-	c.memory = memory;
 }
 
 template class CappedSolve<Plane>;

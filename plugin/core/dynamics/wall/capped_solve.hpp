@@ -28,16 +28,13 @@ struct CappedReport {
 template <class K>
 class CappedSolve {
 public:
-	// As AdmmSolver::solve, with the rows that are in the solver; those whose target was not reached come back as `capped`. An instant
-	// starts without impulses.
-	CappedReport solve(const RigidSystem<K>& system, ContactSet<K>& contacts, const LaneArray& load, const LaneArray& guess,
+	// As AdmmSolver::solve, with the rows that are in the solver; those whose target was not reached come back as `capped`.
+	CappedReport solve(const RigidSystem<K>& system, const ContactSet<K>& contacts, const LaneArray& load, const LaneArray& guess,
 	                   AdmmSolver<K>& solver, const EnergyLedger<K>& ledger, const StepContext& step);
-	// Puts back the impulses of the contacts as they were before the solve.
-	void restore(ContactSet<K>& contacts) const;
 
 private:
 	// With the rows that are held; their couples, and the gains of all. Returns the row that makes most energy, or nullptr.
-	SpinRow<K>* solveOnce(const RigidSystem<K>& system, ContactSet<K>& contacts, const LaneArray& load, const LaneArray& guess,
+	SpinRow<K>* solveOnce(const RigidSystem<K>& system, const ContactSet<K>& contacts, const LaneArray& load, const LaneArray& guess,
 	                      AdmmSolver<K>& solver, const StepContext& step, CappedReport& report);
 
 	// Gives capped rows the targets of the next trial. False: all of them have found theirs.
@@ -62,8 +59,6 @@ private:
 	};
 	std::vector<SpinRow<K>> rows, sound; // now; the last with which no joint made energy
 	std::vector<Range> ranges;           // by row
-	std::vector<Group<K>> groups;        // before the solve
-	std::vector<SolverGroup<K>> memory;
 };
 
 } // namespace masonry::wall

@@ -11,161 +11,6 @@ constexpr int maxStood = 16; // still steps, in which blocks may go far in small
 
 } // namespace
 
-template <class K>
-typename ContactSet<K>::State ContactSet<K>::state(int pair, int point) const
-{
-	State state;
-	const auto [group, lane] = slots[pair][point / lanePoints<K>];
-	if (group < 0)
-		return state;
-	const PointLanes<K>& p = groups[group].point[point % lanePoints<K>];
-	const SolverLanes<K>& f = memory[group][point % lanePoints<K>];
-	state.present = features[group].point[point % lanePoints<K>].present[lane];
-	state.pn = p.pn[lane];
-	state.filteredImpulse = p.filteredImpulse[lane];
-	state.zn = f.zn[lane];
-	state.zero = f.zero[lane];
-	for (int k = 0; k < K::rows - 1; ++k) {
-		state.pt[k] = component(p.pt, k, lane);
-		state.zt[k] = component(f.zt, k, lane);
-		state.slip[k] = component(f.slip, k, lane);
-	}
-	return state;
-}
-
-template <class K>
-void ContactSet<K>::setState(const State& state, int pair, int point)
-{
-	const auto [group, lane] = slots[pair][point / lanePoints<K>];
-	PointLanes<K>& p = groups[group].point[point % lanePoints<K>];
-	SolverLanes<K>& f = memory[group][point % lanePoints<K>];
-	p.pn[lane] = state.pn;
-	p.filteredImpulse[lane] = state.filteredImpulse;
-	f.zn[lane] = state.zn;
-	f.zero[lane] = state.zero;
-	for (int k = 0; k < K::rows - 1; ++k) {
-		setComponent(p.pt, k, lane, state.pt[k]);
-		setComponent(f.zt, k, lane, state.zt[k]);
-		setComponent(f.slip, k, lane, state.slip[k]);
-	}
-}
-
-// A point that was there before keeps its state, and so does one that another feature of the same place takes over from.
-template <class K>
-void ContactSet<K>::inherit(const ContactPair<K>& before, const State* states, ContactPoint<K>& point, State& now) const
-{
-	const double samePlace = 2 * tolerance::wall::search * length;
-	for (int j = 0; j < before.size(); ++j) {
-		const ContactPoint<K>& old = before.points[j];
-		const State& then = states[j];
-		if (!takeState(old, samePlace, point))
-			continue;
-		now.pn = then.present ? then.pn : unit * old.force[0];
-		now.pt = then.present ? then.pt : unit * old.force.template tail<K::rows - 1>();
-		now.filteredImpulse = then.present ? then.filteredImpulse : now.pn;
-		now.zn = then.zn;
-		now.zt = then.zt;
-		now.slip = then.slip;
-		now.zero = std::min(now.zero, then.zero);
-		if (old.feature == point.feature)
-			return;
-		if constexpr (K::rows == 3) { // along the tangents of another face
-			const Eigen::Matrix2d turn = point.frame.axes.template bottomRows<2>() * old.frame.axes.template bottomRows<2>().transpose();
-			point.force.template tail<2>() = (turn * old.force.template tail<2>()).eval();
-			for (auto* tangential : {&now.pt, &now.zt, &now.slip})
-				*tangential = (turn * *tangential).eval();
-		}
-	}
-}
-
-template <class K>
-void ContactSet<K>::lookUp(RigidSystem<K>& s, int c)
-{
-	const double touching = tolerance::mergedClosing * length;
-	ContactPair<K>& pair = s.pairs[c];
-	const auto &body1 = s.bodies[pair.body1], &body2 = s.bodies[pair.body2];
-	FoundPoints<K> found = findPoints(body1, body2, pair.memory);
-	found.features.resize(std::min(found.size(), pairPoints<K>));
-	pair.face1 = found.face1;
-	pair.face2 = found.face2;
-	// Of bodies that have been moved the pair may know other points than the lanes.
-	const bool same = known[c] && !s.moved && sameFeatures(pair, found);
-	takeFriction(s, c);
-	if (same)
-		return;
-	if (known[c]) {
-		for (const auto [group, lane] : slots[c])
-			if (group >= 0)
-				takeFrames(s, group, group + 1);
-		showPair(s, c);
-	}
-	known[c] = true;
-	const ContactPair<K> before = pair;
-	State states[pairPoints<K>];
-	for (int k = 0; k < pairPoints<K>; ++k)
-		states[k] = state(c, k);
-	pair.points.resize(found.size());
-	if (found.size() > lanePoints<K> && !wide[c])
-		wide[c] = wider = true;
-	for (int k = 0; k < pairPoints<K>; ++k) {
-		State now;
-		if (k < found.size()) {
-			ContactPoint<K> point;
-			point.feature = found.features[k];
-			locate(point, body1, body2);
-			point.closed = point.gap <= touching;
-			now.zero = std::min(0., point.gap);
-			inherit(before, states, point, now);
-			pair.points[k] = point;
-		}
-		const auto [group, lane] = slots[c][k / lanePoints<K>];
-		if (group < 0)
-			continue;
-		takePoint(s, c, k);
-		setState(now, c, k);
-	}
-}
-
-template <class K>
-void ContactSet<K>::lookUpStale(RigidSystem<K>& s)
-{
-	allParts([&](const Part& part, int) { lookUpStale(s, part); });
-}
-
-// Lanes of one pair are looked up together; they are in one part.
-template <class K>
-void ContactSet<K>::lookUpStale(RigidSystem<K>& s, const Part& part)
-{
-	const auto isStale = [this](const Slot& slot) { return stale[slot.group] >> slot.lane & 1; };
-	for (int g = part.begin; lanesOfPair < K >> 1 && g < part.end; ++g)
-		for (int lane = 0; stale[g] && lane < width && features[g].pair[lane] >= 0; ++lane) {
-			const auto& lanes = slots[features[g].pair[lane]];
-			if (lanes.back().group >= 0 && (isStale(lanes.front()) || isStale(lanes.back())))
-				for (const Slot& slot : lanes)
-					stale[slot.group] |= 1 << slot.lane;
-		}
-	for (int g = part.begin; g < part.end; ++g)
-		for (int lane = 0; stale[g] && lane < width && features[g].pair[lane] >= 0; ++lane)
-			if (stale[g] >> lane & 1 && features[g].first[lane] == 0)
-				lookUp(s, features[g].pair[lane]);
-	for (int g = part.begin; g < part.end; ++g)
-		if (stale[g]) {
-			countPoints(s, g);
-			measureGaps(s, g, g + 1, 0, true);
-			takeFrames(s, g, g + 1);
-			stale[g] = 0;
-		}
-}
-
-template <class K>
-void ContactSet<K>::countPoints(const RigidSystem<K>& s, int g)
-{
-	int most = 1; // a pair without points still shows how far it moves
-	for (int lane = 0; lane < width; ++lane)
-		most = std::max(most, points(s, g, lane));
-	groups[g].setCount(most);
-}
-
 // A system whose points are known already.
 template <class K>
 void ContactSet<K>::takeOver(const RigidSystem<K>& s)
@@ -196,12 +41,14 @@ void ContactSet<K>::showPair(RigidSystem<K>& s, int c) const
 		const PointLanes<K>& p = groups[group].point[k % lanePoints<K>];
 		ContactPoint<K>& point = pair.points[k];
 		point.gap = p.gap[lane];
-		point.closed = p.pn[lane] > 0 || p.gap[lane] <= touching;
-		point.sliding = p.pn[lane] > 0 && slides(p.pt, groups[group].friction * p.pn)[lane];
-		point.force[0] = p.pn[lane] * perUnit;
+		const PointState<K>& now = states[group][k % lanePoints<K>];
+		point.closed = now.pn[lane] > 0 || p.gap[lane] <= touching;
+		point.sliding = now.pn[lane] > 0 && slides(now.pt, groups[group].friction * now.pn)[lane];
+		point.force[0] = now.pn[lane] * perUnit;
 		for (int row = 1; row < K::rows; ++row)
-			point.force[row] = component(p.pt, row - 1, lane) * perUnit;
+			point.force[row] = component(now.pt, row - 1, lane) * perUnit;
 		takeFrame(p, features[group].point[k % lanePoints<K>], lane, gyration[pair.body2], point.frame);
+		point.setGrip(point.frame.grip);
 		point.frame.position += s.bodies[pair.body2].pose.position;
 	}
 }
@@ -227,16 +74,13 @@ void ContactSet<K>::placeAll(const RigidSystem<K>& s, const std::vector<typename
 	});
 }
 
-// Points located where these poses put the bodies, which stay where they are.
+// Frames as they are where these poses put the bodies, which stay where they are.
 template <class K>
 void ContactSet<K>::placeAt(const RigidSystem<K>& s, const std::vector<typename K::Pose>& poses)
 {
 	takeBodies(s);
 	placeAll(s, poses);
-	allParts([&](const Part& part, int) {
-		measureGaps(s, part.begin, part.end, std::numeric_limits<double>::infinity(), false);
-		takeFrames(s, part.begin, part.end);
-	});
+	allParts([&](const Part& part, int) { takeFrames(s, part.begin, part.end); });
 	takeBodies(s);
 }
 
@@ -300,6 +144,8 @@ void ContactSet<K>::measure(RigidSystem<K>& s, bool isStill)
 		}
 	}
 	stood = isStill ? 1 : 0;
+	if (isStill)
+		placeFriction(s);
 	located.clear();
 	for (size_t b = 0; isStill && b < s.bodies.size(); ++b)
 		located.push_back(s.bodies[b].pose);
@@ -330,8 +176,8 @@ void ContactSet<K>::setUnit(double h)
 		return;
 	const Lanes factor = all(unit > 0 ? h / unit : 1);
 	const bool grows = unit > 0 && h > 3 * unit; // more than a step that a kink has halved
-	for (Group<K>& group : groups)
-		for (PointLanes<K>& p : group.point) {
+	for (GroupState<K>& group : states)
+		for (PointState<K>& p : group) {
 			if (grows) { // what is more than the mean is of an impact
 				const Lanes share = p.pn > p.filteredImpulse ? p.filteredImpulse / p.pn : all(1);
 				p.pn *= share;
@@ -347,11 +193,12 @@ void ContactSet<K>::setUnit(double h)
 template <class K>
 void ContactSet<K>::clearOpen()
 {
-	for (Group<K>& group : groups)
-		for (PointLanes<K>& p : group.point) {
-			const Mask open = p.gap > all(tolerance::wall::touching * length);
+	for (size_t g = 0; g < groups.size(); ++g)
+		for (int k = 0; k < lanePoints<K>; ++k) {
+			PointState<K>& p = states[g][k];
+			const Mask open = groups[g].point[k].gap > all(tolerance::wall::touching * length);
 			p.pn = open ? all(0) : p.pn;
-			p.pt = select(open, typename PointLanes<K>::Tangent {}, p.pt);
+			p.pt = select(open, typename PointState<K>::Tangent {}, p.pt);
 		}
 }
 
@@ -392,21 +239,13 @@ void ContactSet<K>::limitMoved(const RigidSystem<K>& s, double fall)
 }
 
 template <class K>
-void ContactSet<K>::addJammed(std::vector<int>& bodies) const
+void ContactSet<K>::addJammed(const PointStates<K>& of, std::vector<int>& bodies) const
 {
 	constexpr double nearly = 0.9; // as in isAtLimit
 	for (const auto& [g, i] : onBase)
 		for (int k = 0; k < groups[g].count; ++k)
-			if (const double normal = groups[g].point[k].pn[i]; normal > 0 && normal >= nearly * groups[g].most[i])
+			if (const double normal = of[g][k].pn[i]; normal > 0 && normal >= nearly * groups[g].most[i])
 				bodies.insert(bodies.end(), {groups[g].body1[i], groups[g].body2[i]});
-}
-
-template <class K>
-void ContactSet<K>::startMeans(double share)
-{
-	for (Group<K>& group : groups)
-		for (PointLanes<K>& p : group.point)
-			p.filteredImpulse = share * p.pn;
 }
 
 template class ContactSet<Plane>;

@@ -1,6 +1,6 @@
 #pragma once
-// All contact points of a structure as plain arrays, four pairs a group, groups by colour. It owns gaps and impulses of the points, and
-// what the solver remembers of them (admm_solver.hpp).
+// All contact points of a structure as plain arrays, four pairs a group, groups by colour. It owns their geometry, and their states from
+// step to step: a solver reads both and returns states of its own (admm_solver.hpp).
 //
 // Spins are multiplied by the radius of gyration rho of the body, so that it has one mass m for all components; arms are divided by it
 // (plane_lanes.hpp, space_lanes.hpp). Velocities come in packs of three components and 1/m: in the plane (v, rho w), in space v and then
@@ -64,17 +64,22 @@ struct alignas(alignment) Group : PointSet<K> {
 	PointLanes<K> point[lanePoints<K>];
 };
 
-// The solver remembers these numbers of a point from one step to the next.
+// The state of a point: a solver starts from it, and returns another.
 template <class K>
-struct alignas(alignment) SolverLanes {
+struct alignas(alignment) PointState {
 	using Tangent = typename PointLanes<K>::Tangent;
-	Lanes zn; // relative velocity that the laws allow
+	Lanes pn; // impulse of a step, N s
+	Tangent pt;
+	Lanes zn; // relative velocity that the laws allow, m/s
 	Tangent zt;
-	Tangent slip; // since the point last slid
-	Lanes zero;   // gap that it holds
+	Lanes filteredImpulse; // filtered pn
+	Tangent slip;          // since the point last slid, m
+	Lanes zero;            // gap that it holds, m
 };
 template <class K>
-using SolverGroup = std::array<SolverLanes<K>, lanePoints<K>>;
+using GroupState = std::array<PointState<K>, lanePoints<K>>;
+template <class K>
+using PointStates = std::vector<GroupState<K>>;
 
 // Rate along a row of one lane's point, of the velocity (packs) of either body alone.
 template <class K>
@@ -127,13 +132,13 @@ public:
 
 	// work(part, number) for each part but the interface, the last number.
 	template <class Work>
-	void eachPart(const Work& work)
+	void eachPart(const Work& work) const
 	{
 		team.each(int(parts.size()) - 1, [&](int part) { work(parts[part], part); });
 	}
 	// For each part, the interface included, where their order does not matter.
 	template <class Work>
-	void allParts(const Work& work)
+	void allParts(const Work& work) const
 	{
 		eachPart(work);
 		work(parts.back(), int(parts.size()) - 1);
@@ -141,7 +146,7 @@ public:
 
 	// work(begin, end, number) for as many equal shares of 0 .. size - 1 as there are parts.
 	template <class Work>
-	void eachShare(size_t size, const Work& work)
+	void eachShare(size_t size, const Work& work) const
 	{
 		const size_t count = parts.size() - 1;
 		team.each(int(count), [&](int k) { work(size * k / count, size * (k + 1) / count, k); });
@@ -156,6 +161,8 @@ public:
 	bool keepsFrames() const { return stood > 1; }
 	// Normals, arms and masses as they are where the bodies are; gaps stay.
 	void updateFrames(const RigidSystem<K>& system);
+	// Friction acts where the loads of the points have it, which is looked at once in such an interval, s. Frames must be those of now.
+	void placeFriction(const RigidSystem<K>& system, double h, double interval);
 	// Impulses are those of a time h from now on. After a much shorter one only those up to the mean go on: an impact's would become many
 	// times as large.
 	void setUnit(double h);
@@ -165,9 +172,7 @@ public:
 	// bodies approach each other through free ones, no motion obeys the laws, and they go into these (contact_limits.hpp).
 	void limitMoved(const RigidSystem<K>& system, double fall);
 	// Adds the bodies of points that press as much as that.
-	void addJammed(std::vector<int>& bodies) const;
-	// The means of the impulses are this share of those that there are now.
-	void startMeans(double share);
+	void addJammed(const PointStates<K>& states, std::vector<int>& bodies) const;
 	// Gaps, forces and places of all points, as they are now, into the pairs. Needed before the list of pairs changes.
 	void showPoints(RigidSystem<K>& system);
 	// The next step needs this from the last, besides the system.
@@ -181,25 +186,24 @@ public:
 		}
 		for (const int c : numbers)
 			archive(wide[c]);
-		archive(unit, stood, located);
-		if (isNew) {
+		archive(unit, stood, located, sincePlaced);
+		if (isNew)
 			takeOver(system);
-			if (stood > 0)
-				placeAt(system, located);
-		}
 		for (const int c : numbers)
 			for (int k = 0; k < pairPoints<K> && slots[c][k / lanePoints<K>].group >= 0; ++k) {
 				const auto [group, lane] = slots[c][k / lanePoints<K>];
 				FeatureLanes<K>& feature = features[group].point[k % lanePoints<K>];
 				Lanes& gaps = groups[group].point[k % lanePoints<K>].gap;
 				double gap = gaps[lane];
-				State now = state(c, k);
-				auto found = feature.foundAt(lane);
-				archive(gap, now, found);
+				OneState now = state(c, k);
+				auto saved = feature.saved(lane);
+				archive(gap, now, saved);
 				gaps[lane] = gap;
 				setState(now, c, k);
-				feature.setFound(found, lane);
+				feature.setSaved(saved, lane);
 			}
+		if (isNew && stood > 0)
+			placeAt(system, located);
 	}
 
 	// Points of a lane.
@@ -224,7 +228,7 @@ public:
 
 	std::vector<Group<K>> groups;
 	std::vector<FeatureGroup<K>> features;
-	std::vector<SolverGroup<K>> memory;
+	PointStates<K> states;
 	std::vector<Part> parts;                // the last is the interface between them
 	std::vector<std::array<int, 2>> onBase; // group and lane of the pairs with a prescribed body
 	LaneArray velocity;                     // packs; 1/m = 0: prescribed. One more body at the end, for empty lanes
@@ -242,12 +246,12 @@ private:
 	struct Slot {
 		int group {-1}, lane {-1};
 	};
-	struct State { // of one point, in a lane
+	struct OneState { // of one point, in a lane
 		bool present {false};
 		double pn {0}, filteredImpulse {0}, zn {0}, zero {0};
 		Eigen::Matrix<double, K::rows - 1, 1> pt, zt, slip;
 
-		State()
+		OneState()
 		{
 			for (auto* part : {&pt, &zt, &slip})
 				part->setZero();
@@ -284,15 +288,18 @@ private:
 	void lookUpStale(RigidSystem<K>& system);
 	void lookUpStale(RigidSystem<K>& system, const Part& part);
 	void takeFriction(const RigidSystem<K>& system, int pair);
-	void lookUp(RigidSystem<K>& system, int pair);
-	void inherit(const ContactPair<K>& before, const State* states, ContactPoint<K>& point, State& now) const;
-	State state(int pair, int point) const;
-	void setState(const State& state, int pair, int point);
+	bool lookUp(RigidSystem<K>& system, int pair); // true: the pair has other points
+	void inherit(const ContactPair<K>& before, const OneState* states, ContactPoint<K>& point, OneState& now) const;
+	OneState state(int pair, int point) const;
+	void setState(const OneState& state, int pair, int point);
 	void takePoint(const RigidSystem<K>& system, int pair, int point);
+	void placeFriction(const RigidSystem<K>& system);
+	void placeFriction(const RigidSystem<K>& system, int pair);
 
 	double unit {0};                                     // s, that the impulses are of
 	int list {-1};                                       // of the system, that pairs are of
 	int laws {-1};                                       // of the system, that the friction is of
+	double sincePlaced {0};                              // s, since friction was placed
 	int stood {0};                                       // still steps with the points as they are located; 0: the last moved
 	std::vector<std::array<int, 2>> pairs;               // all of the system
 	std::vector<int> numbers;                            // of those that the groups are made of
@@ -310,6 +317,8 @@ private:
 	void ContactSet<K>::takeBodies(const RigidSystem<K>&);                                                                                 \
 	template <>                                                                                                                            \
 	void ContactSet<K>::takePoint(const RigidSystem<K>&, int, int);                                                                        \
+	template <>                                                                                                                            \
+	void ContactSet<K>::placeFriction(const RigidSystem<K>&, int);                                                                         \
 	template <>                                                                                                                            \
 	void ContactSet<K>::place(size_t, const K::Pose&);                                                                                     \
 	template <>                                                                                                                            \

@@ -81,7 +81,7 @@ bool ContactSet<K>::take(const RigidSystem<K>& s)
 	ContactSet before(team);
 	before.groups.swap(groups);
 	before.features.swap(features);
-	before.memory.swap(memory);
+	before.states.swap(states);
 	before.slots.swap(slots);
 	before.wide.swap(wide);
 	before.known.swap(known);
@@ -120,7 +120,7 @@ void ContactSet<K>::bring(const ContactSet& from, int c)
 		const auto [here, j] = slots[c][k];
 		copyLane(from.groups[there].friction, i, groups[here].friction, j);
 		copyLane(from.features[there].point, i, features[here].point, j);
-		copyLane(from.memory[there], i, memory[here], j);
+		copyLane(from.states[there], i, states[here], j);
 		for (int n = 0; n < lanePoints<K>; ++n) {
 			if (!features[here].point[n].present[j])
 				continue;

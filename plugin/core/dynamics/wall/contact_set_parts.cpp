@@ -97,7 +97,7 @@ void ContactSet<K>::colour(const RigidSystem<K>& s)
 		}
 		parts[p].end = int(groups.size());
 	}
-	memory.assign(groups.size(), {});
+	states.assign(groups.size(), {});
 	stale.assign(groups.size(), allLanes);
 	known.assign(pairs.size(), 0);
 	onBase.clear();

@@ -73,10 +73,8 @@ template <>
 struct alignas(alignment) PointLanes<Plane> {
 	using Tangent = Lanes;
 	Lanes nx, ny, a1n, a1t, a2n, a2t;
-	Lanes gap;             // m; far away in lanes without a point
-	Lanes massN, massT;    // 1 / (J M^-1 J^T), kg
-	Lanes pn, pt;          // impulse of a step, N s
-	Lanes filteredImpulse; // filtered pn
+	Lanes gap;          // m; far away in lanes without a point
+	Lanes massN, massT; // 1 / (J M^-1 J^T), kg
 };
 
 // The geometry of points (contact/point_geometry.hpp).
@@ -88,8 +86,8 @@ struct alignas(alignment) FeatureLanes<Plane> {
 	Lanes faceBegin, faceEnd;   // m, along the face
 	Lanes foundGap, foundShift; // of the vertex over and along the face when they were looked up
 
-	std::array<double, 2> foundAt(int lane) const { return {foundGap[lane], foundShift[lane]}; }
-	void setFound(const std::array<double, 2>& f, int lane) { foundGap[lane] = f[0], foundShift[lane] = f[1]; }
+	std::array<double, 2> saved(int lane) const { return {foundGap[lane], foundShift[lane]}; }
+	void setSaved(const std::array<double, 2>& f, int lane) { foundGap[lane] = f[0], foundShift[lane] = f[1]; }
 };
 
 MASONRY_INLINE double component(const Lanes& tangent, int, int lane) { return tangent[lane]; }

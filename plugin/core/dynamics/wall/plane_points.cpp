@@ -178,6 +178,12 @@ void ContactSet<Plane>::setVelocity(size_t b, const Plane::Velocity& v)
 	velocity[b] = Lanes {v[0], v[1], gyration[b][0] * v[2], velocity[b][3]};
 }
 
+// A motion in a plane turns no face about its normal.
+template <>
+void ContactSet<Plane>::placeFriction(const RigidSystem<Plane>&, int)
+{
+}
+
 template <>
 void ContactSet<Plane>::takeForce(const Plane::Velocity& force, double h, size_t b, LaneArray& to) const
 {

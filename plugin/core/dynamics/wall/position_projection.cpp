@@ -26,7 +26,7 @@ struct alignas(2 * alignment) Missing { // a line of the cache of its own
 
 // Returns whether some pair is too deep. Groups without one are as if they had been looked at, at the first instant.
 template <class K>
-MASONRY_INLINE bool prepareGroups(const Group<K>* groups, const SolverGroup<K>* memory, typename PositionProjection<K>::Points* points,
+MASONRY_INLINE bool prepareGroups(const Group<K>* groups, const GroupState<K>* states, typename PositionProjection<K>::Points* points,
                                   int begin, int end, int* seen, const Lanes* moved, double length)
 {
 	const Lanes none = all(0), deep = all(-tolerance::wall::penetration * length), allowed = all(-tolerance::wall::lifted * length);
@@ -37,7 +37,7 @@ MASONRY_INLINE bool prepareGroups(const Group<K>* groups, const SolverGroup<K>* 
 		Mask isDeep = none != none;
 		for (int k = 0; k < group.count; ++k) {
 			const PointLanes<K>& p = group.point[k];
-			const Lanes gap = p.gap - (group.most < all(farAway) ? memory[g][k].zero : none); // what a limit has let happen stays
+			const Lanes gap = p.gap - (group.most < all(farAway) ? states[g][k].zero : none); // what a limit has let happen stays
 			isDeep |= gap < deep;
 			const Lanes room = gap - allowed;
 			points[g][k] = {room > 0 ? room : gap < deep ? room : none, p.massN > 0 ? normalMass(p, v1.m, v2.m) : none, none};
@@ -103,10 +103,10 @@ MASONRY_INLINE Lanes partGroups(Group<K>* groups, int begin, int end, const Lane
 
 // No template is compiled for several vector widths.
 #define MASONRY_LIFT(K)                                                                                                                    \
-	MASONRY_LANES bool anyDeep(const Group<K>* groups, const SolverGroup<K>* memory, PositionProjection<K>::Points* points, int begin,     \
+	MASONRY_LANES bool anyDeep(const Group<K>* groups, const GroupState<K>* states, PositionProjection<K>::Points* points, int begin,      \
 	                           int end, int* seen, const Lanes* moved, double length)                                                      \
 	{                                                                                                                                      \
-		return prepareGroups<K>(groups, memory, points, begin, end, seen, moved, length);                                                  \
+		return prepareGroups<K>(groups, states, points, begin, end, seen, moved, length);                                                  \
 	}                                                                                                                                      \
 	MASONRY_LANES void liftSweep(const Group<K>* groups, PositionProjection<K>::Points* points, const int* upwards, int begin, int end,    \
 	                             int first, int* last, int* seen, double small, Lanes* moved, Lanes& missing)                              \
@@ -135,7 +135,7 @@ double PositionProjection<K>::settle(ContactSet<K>& c)
 			moved[packs<K> * b + pack][3] = c.velocity[packs<K> * b][3] * share[std::clamp(c.supportLevel[b], 0, highestLevel)];
 	std::array<bool, Team::maxParts + 1> deep {};
 	c.allParts([&](const Part& part, int number) {
-		deep[number] = anyDeep(c.groups.data(), c.memory.data(), points.data(), part.begin, part.end, seen.data(), moved.data(), c.length);
+		deep[number] = anyDeep(c.groups.data(), c.states.data(), points.data(), part.begin, part.end, seen.data(), moved.data(), c.length);
 	});
 	if (std::none_of(deep.begin(), deep.end(), [](bool is) { return is; }))
 		return tolerance::wall::penetration * c.length; // or less

@@ -5,14 +5,14 @@
 namespace masonry::wall {
 
 template <class K>
-int RestState<K>::movingBlocks(const RigidSystem<K>& s, const ContactSet<K>& contacts, const AdmmSolver<K>& solver, double level)
+int RestState<K>::movingBlocks(const RigidSystem<K>& s, const ContactSet<K>& contacts, const PointsReport& points, double level)
 {
 	std::vector<char> isHeld(s.bodies.size(), 0), moves(s.bodies.size(), 0);
 	for (size_t g = 0; g < contacts.groups.size(); ++g)
 		for (int i = 0; i < width && contacts.features[g].pair[i] >= 0; ++i)
 			for (const int b : {contacts.groups[g].body1[i], contacts.groups[g].body2[i]}) {
-				isHeld[b] |= solver.reached[g] >> i & 1;
-				moves[b] |= solver.moving[g] >> i & 1;
+				isHeld[b] |= points.reached[g] >> i & 1;
+				moves[b] |= points.moving[g] >> i & 1;
 			}
 	int count = 0;
 	for (size_t b = 0; b < s.bodies.size(); ++b)

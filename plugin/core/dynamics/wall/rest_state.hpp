@@ -1,6 +1,6 @@
 #pragma once
 // Whether a structure rests: then gaps are added up and frames stay, and points have the stiffness of rest (admm_solver.hpp).
-#include "dynamics/wall/admm_solver.hpp"
+#include "dynamics/wall/points_advance.hpp"
 
 namespace masonry::wall {
 
@@ -9,7 +9,7 @@ class RestState {
 public:
 	bool stands() const { return quiet >= enough; }
 	// Blocks of a pair in reach that has a point faster than `level` (m/s), and blocks without a pair in reach that are as fast.
-	static int movingBlocks(const RigidSystem<K>& system, const ContactSet<K>& contacts, const AdmmSolver<K>& solver, double level);
+	static int movingBlocks(const RigidSystem<K>& system, const ContactSet<K>& contacts, const PointsReport& points, double level);
 	// Takes a step of length h with so many moving blocks into account.
 	void take(const RigidSystem<K>& system, const AdmmReport& report, int movingBlocks, double h);
 

@@ -8,13 +8,14 @@ namespace masonry::wall {
 template <class K>
 struct Contact {
 	const PointLanes<K>& p;
+	const PointState<K>& state;
 	int lane, block, support;
 	bool second; // the block is body 2
 
 	int body1() const { return second ? support : block; }
 	int body2() const { return second ? block : support; }
 
-	double impulse() const { return p.pn[lane]; }
+	double impulse() const { return state.pn[lane]; }
 	double normalRate(const ContactSet<K>& c) const { return rate(c.velocity); }
 	double rate(const LaneArray& of) const
 	{
@@ -27,7 +28,12 @@ Contact<K> contact(const ContactSet<K>& c, const JointPoint& at)
 {
 	const Group<K>& group = c.groups[at.group];
 	const bool second = group.body2[at.lane] == at.block;
-	return {group.point[at.point], at.lane, at.block, second ? group.body1[at.lane] : group.body2[at.lane], second};
+	return {group.point[at.point],
+	        c.states[at.group][at.point],
+	        at.lane,
+	        at.block,
+	        second ? group.body1[at.lane] : group.body2[at.lane],
+	        second};
 }
 
 } // namespace masonry::wall

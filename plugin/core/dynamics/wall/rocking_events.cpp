@@ -38,18 +38,19 @@ Vector3 positionOf(const ContactSet<K>& c, const Point& at)
 
 // On body 2.
 template <class Point>
-Vector3 impulseOf(const ContactSet<Plane>& c, const Point& at)
+Vector3 impulseOf(const ContactSet<Plane>& c, const PointStates<Plane>& states, const Point& at)
 {
-	const auto& p = c.groups[at.group].point[at.point];
-	const Vector2 n = normal(p, at.lane);
+	const PointState<Plane>& p = states[at.group][at.point];
+	const Vector2 n = normal(c.groups[at.group].point[at.point], at.lane);
 	return inSpace(Vector2(p.pn[at.lane] * n + p.pt[at.lane] * Vector2(-n.y(), n.x())));
 }
 template <class Point>
-Vector3 impulseOf(const ContactSet<Space>& c, const Point& at)
+Vector3 impulseOf(const ContactSet<Space>& c, const PointStates<Space>& states, const Point& at)
 {
-	const auto& p = c.groups[at.group].point[at.point];
-	return p.pn[at.lane] * p.normal.axis.lane(at.lane) + p.pt.x[at.lane] * p.tangent[0].axis.lane(at.lane) +
-	       p.pt.y[at.lane] * p.tangent[1].axis.lane(at.lane);
+	const PointState<Space>& p = states[at.group][at.point];
+	const PointLanes<Space>& rows = c.groups[at.group].point[at.point];
+	return p.pn[at.lane] * rows.normal.axis.lane(at.lane) + p.pt.x[at.lane] * rows.tangent[0].axis.lane(at.lane) +
+	       p.pt.y[at.lane] * rows.tangent[1].axis.lane(at.lane);
 }
 
 void takeVelocity(const Plane::Velocity& v, Body& body)
@@ -334,17 +335,17 @@ std::vector<SpinRow<K>> RockingEvents<K>::rows(const ContactSet<K>& c) const
 }
 
 template <class K>
-void RockingEvents<K>::report(RigidSystem<K>& s, const ContactSet<K>& c, const std::vector<SpinRow<K>>& rows, double lost, double residual)
+void RockingEvents<K>::report(RigidSystem<K>& s, const ContactSet<K>& c, const AdmmSolver<K>& solver, double lost, double residual)
 {
 	gather(s, c);
-	auto row = rows.begin();
+	auto row = solver.spins.begin();
 	for (const Landing& landing : landings) {
 		if (std::isnan(landing.asked))
 			continue;
 		Vector3 impulse = Vector3::Zero(); // of the support on the block
 		for (const Point& at : points)
 			if (at.block == landing.block && at.face == landing.face)
-				impulse += (contact(c, at).second ? 1 : -1) * impulseOf(c, at);
+				impulse += (contact(c, at).second ? 1 : -1) * impulseOf(c, solver.states, at);
 		JointResult result;
 		result.axis = landing.axis;
 		result.before = landing.before;

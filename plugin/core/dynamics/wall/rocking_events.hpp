@@ -36,7 +36,7 @@ public:
 	// The rows of the impacts at the instant after the step.
 	std::vector<SpinRow<K>> rows(const ContactSet<K>& contacts) const;
 	// After those: writes them into system.impacts. `lost`: energy, J.
-	void report(RigidSystem<K>& system, const ContactSet<K>& contacts, const std::vector<SpinRow<K>>& rows, double lost, double residual);
+	void report(RigidSystem<K>& system, const ContactSet<K>& contacts, const AdmmSolver<K>& solver, double lost, double residual);
 
 	bool areRows() const; // any landing has a restitution
 	double speed() const; // m/s, fastest approach of the landings

@@ -4,6 +4,8 @@
 // two tangents, the relative velocity is
 //
 //     u_e = e.(v2 - v1) + a2.W2 - a1.W1        a = R^T (r x e) / rho
+//
+// The arms r of the tangents lead to the place of the friction (contact/friction_points.hpp), that of the normal to the point itself.
 #include "dynamics/wall/plane_lanes.hpp"
 
 namespace masonry::wall {
@@ -80,9 +82,6 @@ struct alignas(alignment) PointLanes<Space> {
 	Row normal, tangent[2];
 	Lanes gap;          // m; far away in lanes without a point
 	Lanes massN, massT; // 1 / (J M^-1 J^T), kg; of the tangents along that in which the point gives most
-	Lanes pn;           // impulse of a step, N s
-	Lanes2 pt;
-	Lanes filteredImpulse; // filtered pn
 };
 
 // The geometry of points (contact/point_geometry.hpp); edges that cross are looked at one by one.
@@ -95,9 +94,18 @@ struct alignas(alignment) FeatureLanes<Space> {
 	Lanes3 arm;                // from body 2 to the point, global axes
 	Lanes foundGap;            // when the features were looked up
 	Lanes2 found;              // where along them
+	Lanes3 grip;               // from the point to where its friction acts, in its tangent plane, global axes
+	Lanes3 gripAt;             // the same in the axes of the body that has the vertex: a face that turns on its bed takes it along
 
-	std::array<double, 3> foundAt(int lane) const { return {foundGap[lane], found.x[lane], found.y[lane]}; }
-	void setFound(const std::array<double, 3>& f, int lane) { foundGap[lane] = f[0], found.x[lane] = f[1], found.y[lane] = f[2]; }
+	std::array<double, 6> saved(int lane) const
+	{
+		return {foundGap[lane], found.x[lane], found.y[lane], gripAt.x[lane], gripAt.y[lane], gripAt.z[lane]};
+	}
+	void setSaved(const std::array<double, 6>& f, int lane)
+	{
+		foundGap[lane] = f[0], found.x[lane] = f[1], found.y[lane] = f[2];
+		gripAt.x[lane] = f[3], gripAt.y[lane] = f[4], gripAt.z[lane] = f[5];
+	}
 };
 
 MASONRY_INLINE Lanes normalRate(const Bodies<Space>& v1, const Bodies<Space>& v2, const PointLanes<Space>& p)
@@ -162,6 +170,7 @@ MASONRY_INLINE void takeFrame(const PointLanes<Space>& p, const FeatureLanes<Spa
 	frame.axes.row(0) = p.normal.axis.lane(lane);
 	frame.axes.row(1) = p.tangent[0].axis.lane(lane);
 	frame.axes.row(2) = p.tangent[1].axis.lane(lane);
+	frame.grip = f.grip.lane(lane);
 	frame.gap = p.gap[lane];
 }
 

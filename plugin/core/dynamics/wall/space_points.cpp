@@ -1,7 +1,9 @@
 // Contact points in space: the parts of ContactSet (contact_set.hpp) that depend on the dimension.
 #include "contact/point_geometry.hpp"
+#include "dynamics/model/pair_friction.hpp"
 #include "dynamics/wall/contact_set.hpp"
 #include "tolerances.hpp"
+#include <algorithm>
 
 namespace masonry::wall {
 
@@ -126,10 +128,13 @@ MASONRY_INLINE void takeFound(PointLanes<Space>& p, FeatureLanes<Space>& f, cons
                               const Lanes& mass1, const Lanes& mass2)
 {
 	f.arm = found.arm2;
-	const Lanes3 r1 = (p2.position - p1.position) + found.arm2;
-	takeRow(p.normal, found.normal, r1, found.arm2, p1, p2);
-	takeRow(p.tangent[0], found.tangent, r1, found.arm2, p1, p2);
-	takeRow(p.tangent[1], cross(found.normal, found.tangent), r1, found.arm2, p1, p2);
+	const Lanes3 apart = p2.position - p1.position, across = cross(found.normal, found.tangent);
+	const Lanes3 grip = oneOf(f.vertexOn1, p1, p2).rotate(f.gripAt);
+	f.grip = grip - dot(found.normal, grip) * found.normal;
+	const Lanes3 gripped = found.arm2 + f.grip;
+	takeRow(p.normal, found.normal, apart + found.arm2, found.arm2, p1, p2);
+	takeRow(p.tangent[0], found.tangent, apart + gripped, gripped, p1, p2);
+	takeRow(p.tangent[1], across, apart + gripped, gripped, p1, p2);
 
 	const Lanes none = all(0), one = all(1), mass = mass1 + mass2;
 	p.massN = select(f.present, one / (mass + response(p.normal, p.normal, mass1, mass2)), none);
@@ -251,11 +256,45 @@ void ContactSet<Space>::takePoint(const RigidSystem<Space>& s, int c, int k)
 	set(f.normal, lane, geometry.normal);
 	set(f.tangent, lane, geometry.tangent);
 	f.faceDistance[lane] = geometry.distance;
+	set(f.gripAt, lane, Vector3::Zero());
 	if (geometry.crosses)
 		return;
 	const FaceReach<Space> reach = reachOf(geometry.vertexOn1 ? shape2 : shape1, feature.face());
 	f.faceBegin.x[lane] = reach.low.x(), f.faceBegin.y[lane] = reach.low.y();
 	f.faceEnd.x[lane] = reach.high.x(), f.faceEnd.y[lane] = reach.high.y();
+}
+
+// By the filtered impulses; the rows of the points are to be taken anew. Points of a pair that has carried nothing share alike where they
+// are as near as the nearest: these land together.
+template <>
+void ContactSet<Space>::placeFriction(const RigidSystem<Space>& s, int c)
+{
+	const ContactPair<Space>& pair = s.pairs[c];
+	const auto groupOf = [&](int i) -> const Slot& { return slots[c][i / lanePoints<Space>]; };
+	const auto pointOf = [&](int i) -> PointLanes<Space>& { return groups[groupOf(i).group].point[i % lanePoints<Space>]; };
+	const auto featureOf = [&](int i) -> FeatureLanes<Space>& { return features[groupOf(i).group].point[i % lanePoints<Space>]; };
+	if (groupOf(pair.size() - 1).group < 0 || !hasGrip(pair)) // it comes again with its other lane
+		return;
+	NormalForces forces(pair.size(), 0.);
+	bool isLoaded = false;
+	double nearest = farAway;
+	for (int i = 0; i < pair.size(); ++i) {
+		forces[i] = states[groupOf(i).group][i % lanePoints<Space>].filteredImpulse[groupOf(i).lane];
+		isLoaded |= forces[i] > 0;
+		nearest = std::min(nearest, pointOf(i).gap[groupOf(i).lane]);
+	}
+	for (int i = 0; !isLoaded && i < pair.size(); ++i)
+		forces[i] = pointOf(i).gap[groupOf(i).lane] <= nearest + tolerance::wall::touching * length;
+	PerPoint<ContactFrame<Space>> frames(pair.size());
+	for (int i = 0; i < pair.size(); ++i)
+		takeFrame(pointOf(i), featureOf(i), groupOf(i).lane, gyration[pair.body2], frames[i]);
+	const auto offsets = frictionOffsets(
+	    pair.size(), [&](int i) -> const ContactFrame<Space>& { return frames[i]; }, forces);
+	for (int i = 0; i < pair.size(); ++i) {
+		FeatureLanes<Space>& f = featureOf(i);
+		const int lane = groupOf(i).lane;
+		set(f.gripAt, lane, s.bodies[f.vertexOn1[lane] ? pair.body1 : pair.body2].pose.orientation.conjugate() * offsets[i]);
+	}
 }
 
 template <>

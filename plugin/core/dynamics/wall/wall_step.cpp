@@ -51,8 +51,10 @@ double WallStep<K>::advancePart(RigidSystem<K>& s, double h, bool divisible)
 	contacts.measure(s, step.stands);
 	solver.otherFrames |= !contacts.keepsFrames();
 	contacts.setUnit(h);
-	if (!step.stands)
+	if (!step.stands) {
 		contacts.updateFrames(s);
+		contacts.placeFriction(s, h, settings.solver.refactorTime * step.rocking); // when R follows the loads
+	}
 	takeInstants(s, step);
 	const double missed = report.velocityResidual;
 	CappedReport result = solveStep(s, step);
@@ -69,13 +71,13 @@ double WallStep<K>::advancePart(RigidSystem<K>& s, double h, bool divisible)
 		contacts.setUnit(h);
 		result = solveStep(s, step);
 	}
-	contacts.addJammed(report.jammed);
+	contacts.addJammed(contacts.states, report.jammed);
 	const double level = tolerance::wall::motion * tolerance::restSpeed * scales.speed;
-	const PointsReport ofPoints = solver.advanceGaps(contacts, ledger.velocityBefore(), h, level);
-	ledger.takeContacts(s, contacts, solver, ofPoints.friction);
-	report.forceResidual = std::max(report.forceResidual, ofPoints.forceError);
+	const PointsReport points = advancePoints(contacts, solver, ledger.velocityBefore(), h, level);
+	ledger.takeContacts(s, contacts, solver, points.friction);
+	report.forceResidual = std::max(report.forceResidual, points.forceError);
 	events.take(s, contacts, solver);
-	const int moved = rest.movingBlocks(s, contacts, solver, level);
+	const int moved = rest.movingBlocks(s, contacts, points, level);
 	report.moved = std::max(report.moved, moved);
 	guess.take(contacts.velocity, solver.velocity, step.fall);
 	contacts.velocity = solver.velocity;
@@ -100,7 +102,9 @@ CappedReport WallStep<K>::solveStep(RigidSystem<K>& s, const StepContext& step)
 	ledger.open(s, contacts, pulses.halfBack());
 	contacts.takeForces(s, step.h, loads);
 	solver.spins = events.find(s, contacts, expected, step);
-	return solve(s, loads, expected.size() == loads.size() && solver.spins.empty() ? expected : none, step);
+	const CappedReport result = solve(s, loads, expected.size() == loads.size() && solver.spins.empty() ? expected : none, step);
+	contacts.states.swap(solver.states);
+	return result;
 }
 
 // Two things happen between two steps: first the impacts of the joints that landed in the last one, then the jumps of the base.
@@ -116,15 +120,13 @@ void WallStep<K>::takeInstants(RigidSystem<K>& s, const StepContext& step)
 		const double lostInStep = ledger.lost();
 		ledger.open(s, contacts, pulses.halfBack());
 		const CappedReport impact = solveInstant(s, step.atInstant(events.speed()), lostInStep);
-		events.report(s, contacts, solver.spins, lostInStep + impact.lost, impact.residual);
-		capped.restore(contacts);
+		events.report(s, contacts, solver, lostInStep + impact.lost, impact.residual);
 	}
 	solver.spins.clear();
 	if (jump) {
 		pulses.apply(s, contacts);
 		ledger.open(s, contacts, pulses.halfBack());
 		solveInstant(s, step.atInstant(pulses.speed()), 0);
-		capped.restore(contacts);
 	}
 }
 
@@ -138,7 +140,7 @@ CappedReport WallStep<K>::solve(RigidSystem<K>& s, const LaneArray& load, const 
 	return result;
 }
 
-// Leaves the impulses of the instant in the contacts. `taken`: energy that the first part of its impacts has taken, J.
+// `taken`: energy that the first part of its impacts has taken, J.
 template <class K>
 CappedReport WallStep<K>::solveInstant(RigidSystem<K>& s, const StepContext& instant, double taken)
 {
@@ -148,7 +150,7 @@ CappedReport WallStep<K>::solveInstant(RigidSystem<K>& s, const StepContext& ins
 	const double missed = solver.spins.empty() ? settings.solver.tolerance : tolerance::wall::missedImpact;
 	solver.settings.instantEnough = std::min(settings.solver.instantEnough, missed / 2);
 	const CappedReport result = solve(s, loads, none, instant);
-	contacts.addJammed(report.jammed);
+	contacts.addJammed(solver.states, report.jammed);
 	report.converged &= result.residual <= missed * std::max(10 * instant.fall, instant.speed);
 	ledger.takeContacts(s, contacts, solver, 0);
 	contacts.velocity = solver.velocity;

@@ -105,7 +105,7 @@ void addPoint(ContactSolver<Space>& solver, const Column& column, const ImpulseP
 		row.J1.row(k) << -a.transpose(), -(point.position - column.bodies[point.body1].pose.position).cross(a).transpose();
 		row.J2.row(k) << a.transpose(), (point.position - column.bodies[point.body2].pose.position).cross(a).transpose();
 	}
-	row.friction = point.friction;
+	row.law = point.friction;
 	solver.points.push_back(row);
 }
 
@@ -119,7 +119,7 @@ void addPoint(ContactSolver<Plane>& solver, const Column& column, const ImpulseP
 	              r2 = point.position - column.bodies[point.body2].pose.position;
 	row.J1 << 0, -1, -r1.x(), -1, 0, r1.z();
 	row.J2 << 0, 1, r2.x(), 1, 0, -r2.z();
-	row.friction = point.friction;
+	row.law = point.friction;
 	solver.points.push_back(row);
 }
 
@@ -332,7 +332,7 @@ TEST_CASE("contact problem: a factor kept from another problem does not change t
 	ContactSolver<Space> solver;
 	set(solver, standing(5, 1., 0.01, false));
 	for (auto& point : solver.points)
-		point.friction = 0;
+		point.law = 0;
 	REQUIRE(solver.solve(solved).converged);
 	const auto first = solver.bodies;
 	for (int k = 0; k < 100; ++k) {

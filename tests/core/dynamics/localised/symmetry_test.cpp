@@ -129,7 +129,7 @@ ContactSolver<Space> stepOf(const std::vector<Box>& boxes, double friction, doub
 				ContactRows<Space>& row = solver.points.emplace_back();
 				row.body1 = a - 1;
 				row.body2 = b - 1;
-				row.friction = friction;
+				row.law = friction;
 				for (int k = 0; k < 3; ++k) {
 					const Vector3 axis = Vector3::Unit((k + 2) % 3);
 					row.J1.row(k) << -axis.transpose(), -(place - centres[a]).cross(axis).transpose();

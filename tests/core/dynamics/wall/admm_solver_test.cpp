@@ -68,7 +68,7 @@ std::vector<Plane::Velocity> enumerated(ContactSolver<Plane> problem)
 				b[2 * k + row] = -problem.points[k].offset[row] - J(k).row(row) * body.free;
 			}
 			if (state > 1)
-				A(2 * k + 1, 2 * k) = (state == 2 ? -1 : 1) * problem.points[k].friction;
+				A(2 * k + 1, 2 * k) = (state == 2 ? -1 : 1) * problem.points[k].law.friction;
 		}
 		const Eigen::VectorXd p = A.completeOrthogonalDecomposition().solve(b);
 		if (!((A * p - b).norm() <= 1e-9 * (1 + b.norm())))
@@ -80,7 +80,7 @@ std::vector<Plane::Velocity> enumerated(ContactSolver<Plane> problem)
 		constexpr double small = 1e-9;
 		for (int k = 0; k < n; ++k) {
 			const Eigen::Vector2d u = J(k) * v + problem.points[k].offset;
-			const double bound = problem.points[k].friction * p[2 * k];
+			const double bound = problem.points[k].law.friction * p[2 * k];
 			valid &= p[2 * k] >= -small && u[0] >= -small && std::abs(p[2 * k + 1]) <= bound + small * (1 + bound);
 			if (stateOf(k) > 1)
 				valid &= (stateOf(k) == 2 ? -1 : 1) * u[1] >= -small; // slides against its friction

@@ -257,7 +257,7 @@ TEMPLATE_TEST_CASE("the work of one step is that of its impulses on the mean of 
 	const auto& moved = frozen.solver.velocity;
 	const typename TestType::Velocity before = body.velocity, after = frozen.contacts.inGlobal(moved, block);
 	const Vector impulse = body.mass * (after - before).template head<n>() - h * body.force.template head<n>();
-	const double friction = frozen.solver.advanceGaps(frozen.contacts, ledger.velocityBefore(), h, 0).friction;
+	const double friction = advancePoints(frozen.contacts, frozen.solver, ledger.velocityBefore(), h, 0).friction;
 	ledger.takeContacts(s, frozen.contacts, frozen.solver, friction);
 	body.velocity = after;
 	ledger.takeForce(s, body, before, h * after, h);

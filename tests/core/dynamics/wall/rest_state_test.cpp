@@ -50,8 +50,8 @@ TEMPLATE_TEST_CASE("blocks that slide or fly move", "", Plane, Space)
 	Frozen<TestType> frozen(s, 1e-3);
 	frozen.solve(1e-8, 20000);
 	const auto moving = [&](double level) {
-		frozen.solver.advanceGaps(frozen.contacts, frozen.contacts.velocity, 1e-3, level);
-		return RestState<TestType>::movingBlocks(s, frozen.contacts, frozen.solver, level);
+		const PointsReport points = advancePoints(frozen.contacts, frozen.solver, frozen.contacts.velocity, 1e-3, level);
+		return RestState<TestType>::movingBlocks(s, frozen.contacts, points, level);
 	};
 	CHECK(moving(1e-3) == 2);
 	CHECK(moving(2) == 0);

@@ -29,6 +29,7 @@ struct Frozen {
 		solver.settings.tolerance = tolerance;
 		solver.settings.first = iterations;
 		solver.solve(contacts, loads, {}, step);
+		contacts.states = solver.states;
 	}
 
 	// The same problem for the general solver: in the packs of the contacts each body has one mass for all components. `unknown` are its
@@ -64,7 +65,7 @@ struct Frozen {
 					ContactRows<K> point;
 					point.body1 = unknown[bodies[0]];
 					point.body2 = unknown[bodies[1]];
-					point.friction = contacts.groups[g].friction[i];
+					point.law = contacts.groups[g].friction[i];
 					for (int r = 0; r < K::rows; ++r) {
 						for (int c = 0; c < K::dof; ++c) {
 							point.J1(r, c) = -partOf(p, r, i, 1, c / 3)[c % 3];
@@ -75,9 +76,10 @@ struct Frozen {
 							if (!contacts.own[bodies[side]])
 								point.offset[r] += (side == 0 ? point.J1 : point.J2).row(r) * velocityOf(contacts.velocity, bodies[side]);
 					}
-					point.impulse[0] = p.pn[i];
+					const PointState<K>& state = solver.states[g][k];
+					point.impulse[0] = state.pn[i];
 					for (int r = 1; r < K::rows; ++r)
-						point.impulse[r] = component(p.pt, r - 1, i);
+						point.impulse[r] = component(state.pt, r - 1, i);
 					for (int side = 0; side < 2; ++side)
 						if (const int b = unknown[bodies[side]]; b >= 0)
 							result.bodies[b].velocity +=

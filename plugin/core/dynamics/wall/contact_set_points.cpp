@@ -1,0 +1,205 @@
+// Which points a pair has, what they take over from those before, and where their friction acts.
+#include "dynamics/wall/contact_set.hpp"
+#include "tolerances.hpp"
+#include <algorithm>
+
+namespace masonry::wall {
+
+template <class K>
+typename ContactSet<K>::OneState ContactSet<K>::state(int pair, int point) const
+{
+	OneState state;
+	const auto [group, lane] = slots[pair][point / lanePoints<K>];
+	if (group < 0)
+		return state;
+	const PointState<K>& p = states[group][point % lanePoints<K>];
+	state.present = features[group].point[point % lanePoints<K>].present[lane];
+	state.pn = p.pn[lane];
+	state.filteredImpulse = p.filteredImpulse[lane];
+	state.zn = p.zn[lane];
+	state.zero = p.zero[lane];
+	for (int k = 0; k < K::rows - 1; ++k) {
+		state.pt[k] = component(p.pt, k, lane);
+		state.zt[k] = component(p.zt, k, lane);
+		state.slip[k] = component(p.slip, k, lane);
+	}
+	return state;
+}
+
+template <class K>
+void ContactSet<K>::setState(const OneState& state, int pair, int point)
+{
+	const auto [group, lane] = slots[pair][point / lanePoints<K>];
+	PointState<K>& p = states[group][point % lanePoints<K>];
+	p.pn[lane] = state.pn;
+	p.filteredImpulse[lane] = state.filteredImpulse;
+	p.zn[lane] = state.zn;
+	p.zero[lane] = state.zero;
+	for (int k = 0; k < K::rows - 1; ++k) {
+		setComponent(p.pt, k, lane, state.pt[k]);
+		setComponent(p.zt, k, lane, state.zt[k]);
+		setComponent(p.slip, k, lane, state.slip[k]);
+	}
+}
+
+// A point that was there before keeps its state, and so does one that another feature of the same place takes over from.
+template <class K>
+void ContactSet<K>::inherit(const ContactPair<K>& before, const OneState* states, ContactPoint<K>& point, OneState& now) const
+{
+	const double samePlace = 2 * tolerance::wall::search * length;
+	for (int j = 0; j < before.size(); ++j) {
+		const ContactPoint<K>& old = before.points[j];
+		const OneState& then = states[j];
+		if (!takeState(old, samePlace, point))
+			continue;
+		now.pn = then.present ? then.pn : unit * old.force[0];
+		now.pt = then.present ? then.pt : unit * old.force.template tail<K::rows - 1>();
+		now.filteredImpulse = then.present ? then.filteredImpulse : now.pn;
+		now.zn = then.zn;
+		now.zt = then.zt;
+		now.slip = then.slip;
+		now.zero = std::min(now.zero, then.zero);
+		if (old.feature == point.feature)
+			return;
+		if constexpr (K::rows == 3) { // along the tangents of another face
+			const Eigen::Matrix2d turn = point.frame.axes.template bottomRows<2>() * old.frame.axes.template bottomRows<2>().transpose();
+			point.force.template tail<2>() = (turn * old.force.template tail<2>()).eval();
+			for (auto* tangential : {&now.pt, &now.zt, &now.slip})
+				*tangential = (turn * *tangential).eval();
+		}
+	}
+}
+
+template <class K>
+bool ContactSet<K>::lookUp(RigidSystem<K>& s, int c)
+{
+	const double touching = tolerance::mergedClosing * length;
+	ContactPair<K>& pair = s.pairs[c];
+	const auto &body1 = s.bodies[pair.body1], &body2 = s.bodies[pair.body2];
+	FoundPoints<K> found = findPoints(body1, body2, pair.memory);
+	found.features.resize(std::min(found.size(), pairPoints<K>));
+	pair.face1 = found.face1;
+	pair.face2 = found.face2;
+	// Of bodies that have been moved the pair may know other points than the lanes.
+	const bool same = known[c] && !s.moved && sameFeatures(pair, found);
+	takeFriction(s, c);
+	if (same)
+		return false;
+	if (known[c]) {
+		for (const auto [group, lane] : slots[c])
+			if (group >= 0)
+				takeFrames(s, group, group + 1);
+		showPair(s, c);
+	}
+	known[c] = true;
+	const ContactPair<K> before = pair;
+	OneState states[pairPoints<K>];
+	for (int k = 0; k < pairPoints<K>; ++k)
+		states[k] = state(c, k);
+	pair.points.resize(found.size());
+	if (found.size() > lanePoints<K> && !wide[c])
+		wide[c] = wider = true;
+	for (int k = 0; k < pairPoints<K>; ++k) {
+		OneState now;
+		if (k < found.size()) {
+			ContactPoint<K> point;
+			point.feature = found.features[k];
+			locate(point, body1, body2);
+			point.closed = point.gap <= touching;
+			now.zero = std::min(0., point.gap);
+			inherit(before, states, point, now);
+			pair.points[k] = point;
+		}
+		const auto [group, lane] = slots[c][k / lanePoints<K>];
+		if (group < 0)
+			continue;
+		takePoint(s, c, k);
+		setState(now, c, k);
+	}
+	return true;
+}
+
+template <class K>
+void ContactSet<K>::lookUpStale(RigidSystem<K>& s)
+{
+	allParts([&](const Part& part, int) { lookUpStale(s, part); });
+}
+
+// Lanes of one pair are looked up together; they are in one part.
+template <class K>
+void ContactSet<K>::lookUpStale(RigidSystem<K>& s, const Part& part)
+{
+	const auto isStale = [this](const Slot& slot) { return stale[slot.group] >> slot.lane & 1; };
+	for (int g = part.begin; lanesOfPair < K >> 1 && g < part.end; ++g)
+		for (int lane = 0; stale[g] && lane < width && features[g].pair[lane] >= 0; ++lane) {
+			const auto& lanes = slots[features[g].pair[lane]];
+			if (lanes.back().group >= 0 && (isStale(lanes.front()) || isStale(lanes.back())))
+				for (const Slot& slot : lanes)
+					stale[slot.group] |= 1 << slot.lane;
+		}
+	std::vector<int> changed;
+	for (int g = part.begin; g < part.end; ++g)
+		for (int lane = 0; stale[g] && lane < width && features[g].pair[lane] >= 0; ++lane)
+			if (stale[g] >> lane & 1 && features[g].first[lane] == 0 && lookUp(s, features[g].pair[lane]))
+				changed.push_back(features[g].pair[lane]);
+	for (int g = part.begin; g < part.end; ++g)
+		if (stale[g]) {
+			countPoints(s, g);
+			measureGaps(s, g, g + 1, 0, true);
+			takeFrames(s, g, g + 1);
+			stale[g] = 0;
+		}
+	for (const int c : changed) {
+		placeFriction(s, c);
+		for (const Slot& slot : slots[c])
+			if (slot.group >= 0)
+				takeFrames(s, slot.group, slot.group + 1);
+	}
+}
+
+template <class K>
+void ContactSet<K>::placeFriction(const RigidSystem<K>& s)
+{
+	sincePlaced = 0;
+	if (K::dimension == 2) // a motion in a plane turns no face about its normal
+		return;
+	allParts([&](const Part& part, int) {
+		for (int g = part.begin; g < part.end; ++g)
+			for (int lane = 0; lane < width && features[g].pair[lane] >= 0; ++lane)
+				if (features[g].first[lane] == 0)
+					placeFriction(s, features[g].pair[lane]);
+		takeFrames(s, part.begin, part.end);
+	});
+}
+
+template <class K>
+void ContactSet<K>::placeFriction(const RigidSystem<K>& s, double h, double interval)
+{
+	sincePlaced += h;
+	if (!(sincePlaced < interval))
+		placeFriction(s);
+}
+
+template <class K>
+void ContactSet<K>::countPoints(const RigidSystem<K>& s, int g)
+{
+	int most = 1; // a pair without points still shows how far it moves
+	for (int lane = 0; lane < width; ++lane)
+		most = std::max(most, points(s, g, lane));
+	groups[g].setCount(most);
+}
+
+template typename ContactSet<Plane>::OneState ContactSet<Plane>::state(int, int) const;
+template void ContactSet<Plane>::setState(const OneState&, int, int);
+template void ContactSet<Plane>::lookUpStale(RigidSystem<Plane>&);
+template void ContactSet<Plane>::placeFriction(const RigidSystem<Plane>&);
+template void ContactSet<Plane>::placeFriction(const RigidSystem<Plane>&, double, double);
+template void ContactSet<Plane>::countPoints(const RigidSystem<Plane>&, int);
+template typename ContactSet<Space>::OneState ContactSet<Space>::state(int, int) const;
+template void ContactSet<Space>::setState(const OneState&, int, int);
+template void ContactSet<Space>::lookUpStale(RigidSystem<Space>&);
+template void ContactSet<Space>::placeFriction(const RigidSystem<Space>&);
+template void ContactSet<Space>::placeFriction(const RigidSystem<Space>&, double, double);
+template void ContactSet<Space>::countPoints(const RigidSystem<Space>&, int);
+
+} // namespace masonry::wall

@@ -1,0 +1,77 @@
+#include "dynamics/wall/points_advance.hpp"
+
+namespace masonry::wall {
+
+namespace {
+
+// A pass over the points of a part finds these at the end of a step.
+struct alignas(alignment) Ended {
+	Lanes loss, forceError;
+};
+
+template <class K>
+MASONRY_INLINE void advanceGroups(Group<K>* groups, GroupState<K>* states, const typename AdmmSolver<K>::Rows* rows, int begin, int end,
+                                  const Lanes* before, double h, double level, unsigned char* reached, unsigned char* moving, Ended& ended)
+{
+	for (int g = begin; g < end; ++g) {
+		const Mask rough = groups[g].friction >= maxFriction;
+		Mask in {}, moves {};
+		for (int k = 0; k < groups[g].count; ++k) {
+			PointLanes<K>& at = groups[g].point[k];
+			PointState<K>& p = states[g][k];
+			const auto& row = rows[g][k];
+			at.gap += h * row.un;
+			p.zero = p.pn < groups[g].most ? p.zero : smaller(p.zero, at.gap);
+			const Mask glides = slides(p.pt, groups[g].friction * (rough ? p.pn : row.bound));
+			p.slip = select(glides, typename PointState<K>::Tangent {}, p.slip + h * row.ut);
+			if (const Mask slid = glides & (p.pn > 0); any(slid)) {
+				const Bodies<K> v1(before, groups[g].body1), v2(before, groups[g].body2);
+				const Lanes loss = -0.5 * dot(row.actedT, slipRate(v1, v2, at) + row.ut);
+				ended.loss += slid ? larger(loss, all(0)) : all(0);
+			}
+			const Mask here = row.stiffness > 0;
+			in |= here;
+			moves |= (at.massN > 0) & (larger(size(row.un), size(row.ut)) > level);
+			const Lanes error = larger(size(row.actedN - p.pn) / at.massN, size(row.actedT - p.pt) / at.massT);
+			ended.forceError = larger(ended.forceError, here ? error : all(0));
+		}
+		reached[g] = bitsOf(in);
+		moving[g] = bitsOf(moves & in);
+	}
+}
+
+// No template is compiled for several vector widths.
+#define MASONRY_PASS(K)                                                                                                                    \
+	MASONRY_LANES void gapPass(Group<K>* groups, GroupState<K>* states, const AdmmSolver<K>::Rows* rows, int begin, int end,               \
+	                           const Lanes* before, double h, double level, unsigned char* reached, unsigned char* moving, Ended& ended)   \
+	{                                                                                                                                      \
+		advanceGroups<K>(groups, states, rows, begin, end, before, h, level, reached, moving, ended);                                      \
+	}
+MASONRY_PASS(Plane)
+MASONRY_PASS(Space)
+#undef MASONRY_PASS
+
+} // namespace
+
+template <class K>
+PointsReport advancePoints(ContactSet<K>& c, const AdmmSolver<K>& solver, const LaneArray& before, double h, double level)
+{
+	Ended ended[Team::maxParts + 1] {};
+	PointsReport result;
+	result.reached.resize(c.groups.size());
+	result.moving.resize(c.groups.size());
+	c.allParts([&](const Part& part, int number) {
+		gapPass(c.groups.data(), c.states.data(), solver.rows.data(), part.begin, part.end, before.data(), h, level, result.reached.data(),
+		        result.moving.data(), ended[number]);
+	});
+	for (const Ended& here : ended) {
+		result.friction += here.loss[0] + here.loss[1] + here.loss[2] + here.loss[3];
+		result.forceError = std::max(result.forceError, largest(here.forceError));
+	}
+	return result;
+}
+
+template PointsReport advancePoints(ContactSet<Plane>&, const AdmmSolver<Plane>&, const LaneArray&, double, double);
+template PointsReport advancePoints(ContactSet<Space>&, const AdmmSolver<Space>&, const LaneArray&, double, double);
+
+} // namespace masonry::wall
