@@ -78,6 +78,7 @@ bool bestEdgesOfBoxes(const ConvexPolyhedron& box1, const ConvexPolyhedron& box2
 	const double along1 = edges.point1[edges.axis1], along2 = second.rotation.col(edges.axis2).dot(edges.point2 - second.offset);
 	best = {feature::edgeNumber(edges.axis1, edges.signs1),
 	        feature::edgeNumber(edges.axis2, edges.signs2),
+	        best.widest,
 	        edges.normal,
 	        edges.separation,
 	        edges.point1,
@@ -173,7 +174,8 @@ bool bestEdges(const ConvexPolyhedron& shape1, const ConvexPolyhedron& shape2, c
 			const double separation = distance - normal.dot(edge1.middle) + (second.rotation.transpose() * normal).dot(edge2.middle);
 			if (separation <= best.separation)
 				continue;
-			EdgePair pair {i, j, normal, separation, {}, {}, 0};
+			best.widest = std::max(best.widest, separation);
+			EdgePair pair {i, j, best.widest, normal, separation, {}, {}, 0};
 			placeOnEdges(edge1, edge2, lines2[j], second.offset + second.rotation * edge2.middle, pair);
 			if (pair.room >= 0)
 				best = pair;

@@ -15,7 +15,8 @@ struct FaceSeparation {
 
 struct EdgePair {
 	int edge1 {-1}, edge2 {-1};
-	Vector3 normal; // unit, from body 1 to body 2. This and the points are in the frame of body 1
+	double widest {-1e300}; // m, largest separation of edges that may also be nearest beyond their ends; not known for two boxes
+	Vector3 normal;         // unit, from body 1 to body 2. This and the points are in the frame of body 1
 	double separation;
 	Vector3 point1, point2; // nearest points of the straight lines along the edges
 	double room;            // m, from these points to the nearer end of either edge

@@ -69,7 +69,7 @@ public:
 			// If the deepest vertex lies beyond the border of the face, the patch lacks it, and the edges beside it may be nearer.
 			const bool found = patchOn(pair, task);
 			if (found && !(crossing && smallestGap(out) > edges.separation + tolerance::contact::edge * length))
-				return smallestGap(out) <= margin;
+				return isPossible(edges, smallestGap(out), margin);
 			if (!found) // the edges must cross so far from their ends that more than a sliver of the bodies is there
 				crossing = (crossing || edgesCross()) && edges.room > tolerance::contact::sliver * length;
 		}
@@ -81,15 +81,15 @@ public:
 			if (const double cosine = nearFace(edges, reference)) {
 				const PolyhedronFaces nearby = facesOf(reference);
 				if (patchOn(nearby, overlapTask(nearby, previous)) && smallestGap(out) * cosine <= edges.separation + allowed)
-					return smallestGap(out) <= margin;
+					return isPossible(edges, smallestGap(out), margin);
 			}
 			setEdgePatch(edges);
-			return true;
+			return isPossible(edges, edges.separation, margin);
 		}
 		if (pair.cosine() > cosineLimit)
 			return false;
 		const PolyhedronFaces next = withNextIncident(pair);
-		return patchOn(next, overlapTask(next, previous)) && smallestGap(out) <= margin;
+		return patchOn(next, overlapTask(next, previous)) && isPossible(edges, smallestGap(out), margin);
 	}
 
 private:
@@ -101,6 +101,12 @@ private:
 	bool patchOn(const PolyhedronFaces& faces, const OverlapTask& task)
 	{
 		return facePatch(faces, task, faces.face.body == 1 ? pose1 : pose2, previous, out);
+	}
+
+	// No point of bodies that are apart is nearer than the widest slab between them.
+	bool isPossible(const EdgePair& edges, double gap, double margin) const
+	{
+		return gap <= margin && (edges.widest <= 0 || gap >= edges.widest - tolerance::contact::edge * length);
 	}
 
 	// Takes of the faces beside the edges that whose normal is nearest to theirs if that is within the angle limit; the present reference
