@@ -22,7 +22,8 @@ constexpr double energyGain = 1e-11;
 // Residual of an impulse problem relative to the largest speed of its points above which the rows of the restitution law
 // give way. Larger: a landing corner may go on into its support by this share of its speed.
 constexpr double noSolution = 1e-6;
-// Length of the old support relative to its distance from the new one above which it is an edge, not a corner.
+// Length of the old support relative to its distance from the new one above which it is an edge, not a corner; and distance from an edge or
+// a corner, relative to the same or to the size of the joint, up to which a loaded point belongs to it (joints/pivot.hpp).
 constexpr double pivotEdge = 1e-6;
 
 // --- compliant joints (dynamics/compliant/) ---
@@ -37,8 +38,8 @@ constexpr double mergedClosing = 1e-6;
 constexpr double restSpeed = 1e-4;
 // Speed relative to a jump of the base above which a point parts from its support at the jump; below it is round-off.
 constexpr double parting = 1e-9;
-// |cos| of the angle between a joint's normal and gravity below which the joint stands upright (a head joint): it does
-// not rock, its springs and dashpots act alone. Larger: leaning beds lose their restitution.
+// |cos| of the angle between the normal of a pair and gravity below which the pair is upright when it is found. It is then a head joint,
+// unless it bears a block (joints/joint_table.hpp). Larger: leaning beds beside others lose their restitution.
 constexpr double uprightJoint = 0.1;
 // Part of the largest wanted displacement by which settled gaps may miss theirs. Larger: springs start to vibrate.
 constexpr double settle = 1e-9;
@@ -232,7 +233,8 @@ constexpr double sunk = 1e-3;
 // size. Where both are zero it may seem to make that of a speed: of blocks that go so far in a step, relative to the smallest half size.
 // Smaller: the errors of sound steps, 1e-3 of what is lost, or rounding, are reported; larger: a wall that flies apart is not.
 constexpr double createdShare = 0.1, createdLift = 1e-4, createdTravel = 1e-9;
-// Extent of the loaded part of a joint, relative to the smallest half size, up to which it is a pivot. Larger: narrow patches rock.
+// The same as pivotEdge, relative to the smallest half size: steps leave blocks up to 1e-5 of it from where they touch. Larger: narrow
+// patches rock; smaller: rocking joints of walls lose their restitution.
 constexpr double pivot = 1e-3;
 
 } // namespace masonry::tolerance::wall

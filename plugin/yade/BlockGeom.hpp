@@ -34,6 +34,7 @@ public:
 		((int, feature1, -1, Attr::readonly, "Face (0 to 5) or edge (0 to 11) of body 1."))
 		((int, feature2, -1, Attr::readonly, "Face or edge of body 2."))
 		((int, vertices, 0, Attr::readonly, "Compliant joints: bit mask of the vertices that are corners of the patch."))
+		((int, upright, -1, Attr::readonly, "Compliant joints: 1 if the normal was level when the pair was found, which makes it a head joint if other faces bear the blocks; -1: not known yet."))
 		((Real, area, 0, Attr::readonly, "Area of the overlap of a compliant joint [m^2]; 0 for edge across edge and for rigid blocks, which have points only.")),
 		normal = contactPoint = Vector3r::Zero(); createIndex();,
 		.add_property("gaps", &BlockGeom::gaps, "Distance at each point along its normal [m], negative where the bodies overlap.")

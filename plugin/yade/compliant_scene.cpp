@@ -8,6 +8,7 @@
 #include "sentence.hpp"
 
 #include "contact/box_box.hpp"
+#include "joints/joint_table.hpp"
 #include <algorithm>
 #include <pkg/common/Box.hpp>
 
@@ -68,6 +69,9 @@ void CompliantScene::readJoints(const Scene& scene, Real dampingRatio, masonry::
 		phys.check(interaction->id1, interaction->id2);
 		masonry::JointContact& contact = system.contacts[pairs.size()];
 		readContact(*interaction, geom, phys, dampingRatio, contact);
+		if (geom.upright < 0)
+			geom.upright = masonry::isUpright(geom.normal, system.gravity);
+		contact.isUpright = geom.upright == 1;
 		contact.body1 = index[contact.body1];
 		contact.body2 = index[contact.body2];
 		pairs.push_back({&geom, &phys});
@@ -97,6 +101,7 @@ vector<masonry::JointContact> CompliantScene::boxesInTouch(const Scene& scene, R
 			masonry::JointContact& contact = contacts.emplace_back();
 			contact.body1 = int(a);
 			contact.body2 = int(b);
+			contact.isUpright = masonry::isUpright(patch.normal, step.system.gravity);
 			contact.law = static_cast<BlockPhys&>(*interaction->phys).law(dampingRatio);
 			renewPatch(contact, patch);
 		}

@@ -170,7 +170,7 @@ void RigidScene<K>::meet(Pair& pair, bool placed)
 	pair.memory = {};
 	const auto found = masonry::findRows(body1, body2, rest, pair.memory);
 	pair.size = found.size;
-	pair.isHeadJoint = found.size > 0;
+	pair.isUpright = found.size > 0;
 	if (found.size == 0)
 		return;
 	pair.face1 = found.face1;
@@ -182,8 +182,7 @@ void RigidScene<K>::meet(Pair& pair, bool placed)
 		masonry::locate(point, body1, body2);
 		const auto speed = masonry::relativeVelocity(point.frame, body1.pose.position, body1.velocity, body2.pose.position, body2.velocity);
 		point.closed = point.gap <= settings.ofImpacts.merged * length && speed[0] >= -rest;
-		pair.isHeadJoint &=
-		    std::abs(point.frame.axes.row(0).dot(system.gravity)) < masonry::tolerance::uprightJoint * system.gravity.norm();
+		pair.isUpright &= masonry::isUpright<typename K::Vector>(point.frame.axes.row(0).transpose(), system.gravity);
 		if (placed && point.gap < -maxOverlap * length)
 			refuseOverlap(pair, -point.gap);
 	}

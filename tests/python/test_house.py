@@ -15,10 +15,11 @@ BELOW = {
     "contact": "simd",
     "laws": "linalg contact",
     "impact": "contact laws",
-    "dynamics/model": "motion contact laws impact",
-    "dynamics/localised": "contact laws impact dynamics/model",
-    "dynamics/wall": "linalg simd parallel contact laws impact dynamics/model",
-    "dynamics/compliant": "contact laws impact dynamics/model",
+    "joints": "contact laws impact",
+    "dynamics/model": "motion contact laws impact joints",
+    "dynamics/localised": "contact laws impact joints dynamics/model",
+    "dynamics/wall": "linalg simd parallel contact laws impact joints dynamics/model",
+    "dynamics/compliant": "contact laws impact joints dynamics/model",
     "dynamics/scheduler": "dynamics/model dynamics/localised dynamics/wall",
 }
 
@@ -87,7 +88,6 @@ def test_adapters_include_no_circle():
 LONGER = {
     "core/dynamics/wall/admm_solver.cpp": "the lanes of one iteration, which the compiler must see together to inline them",
     "core/dynamics/wall/contact_set.cpp": "the one owner of a structure's points",
-    "core/dynamics/wall/rocking_events.cpp": "the one owner of the landings of a step",
     "yade/rigid_failures.cpp: void MoreauJeanIntegrator::count": "one sentence for each kind of failure",
 }
 

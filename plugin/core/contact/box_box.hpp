@@ -31,4 +31,7 @@ struct Box {
 bool collide(const Box& box1, const Pose& pose1, const Box& box2, const Pose& pose2, double margin, const PatchFeature& previous,
              ContactPatch& out);
 
+// The faces of body 1 and body 2 that meet; of edges, those nearest to the normal; -1: none.
+std::array<int, 2> facesOf(const ContactPatch& patch, const Pose& pose1, const Pose& pose2);
+
 } // namespace masonry

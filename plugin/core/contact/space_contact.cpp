@@ -133,6 +133,13 @@ int faceNearest(const Vector3& direction, const Pose& pose)
 
 } // namespace
 
+std::array<int, 2> facesOf(const ContactPatch& patch, const Pose& pose1, const Pose& pose2)
+{
+	if (patch.feature.kind != PatchKind::Edges)
+		return {patch.feature.feature1, patch.feature.feature2};
+	return {faceNearest(patch.normal, pose1), faceNearest(-patch.normal, pose2)};
+}
+
 void Space::advance(Pose& pose, const Velocity& velocity, double t)
 {
 	const Vector3 half = t / 2 * velocity.tail<3>();
@@ -156,9 +163,9 @@ bool Space::findPoints(const Vector& half1, const Pose& pose1, const Vector& hal
 		return false;
 
 	memory = patch.feature;
-	const bool faces = patch.feature.kind != PatchKind::Edges;
-	out.face1 = faces ? patch.feature.feature1 : faceNearest(patch.normal, pose1);
-	out.face2 = faces ? patch.feature.feature2 : faceNearest(-patch.normal, pose2);
+	const auto [face1, face2] = facesOf(patch, pose1, pose2);
+	out.face1 = face1;
+	out.face2 = face2;
 	takeCorners(patch, half1, pose1, half2, pose2, out);
 	if (leans(memory, pose1, pose2))
 		dropPassing(patch, half1, pose1, half2, pose2, memory, out);

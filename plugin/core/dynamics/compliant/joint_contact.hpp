@@ -61,6 +61,7 @@ using PointValues = std::array<double, maxFrictionPoints>;
 
 struct JointContact {
 	int body1 {-1}, body2 {-1};
+	bool isUpright {false}; // when the pair was found (joint_table.hpp)
 	ContactPatch patch;
 	CornerNormals corner;
 	JointLaw law;

@@ -1,22 +1,11 @@
 #include "dynamics/compliant/joint_groups.hpp"
+#include "joints/joint_table.hpp"
+#include "joints/pivot.hpp"
 #include "tolerances.hpp"
 #include <algorithm>
-#include <cmath>
 #include <map>
 
 namespace masonry {
-
-namespace {
-
-int faceOf(const Body& body, const Vector3& normal)
-{
-	const Vector3 local = body.pose.orientation.conjugate() * normal;
-	int axis;
-	local.cwiseAbs().maxCoeff(&axis);
-	return 2 * axis + (local[axis] > 0);
-}
-
-} // namespace
 
 double sizeOf(const JointSystem& s, const Joint& joint)
 {
@@ -28,42 +17,34 @@ double sizeOf(const JointSystem& s, const Joint& joint)
 
 bool isPivot(const JointSystem& s, const Joint& joint, const std::vector<PointRef>& points)
 {
-	Vector3 line = Vector3::Zero();
-	for (const PointRef& p : points) {
-		const Vector3 d = s.position(p) - s.position(points.front());
-		if (d.norm() > line.norm())
-			line = d;
-	}
-	const double size = sizeOf(s, joint);
-	for (const PointRef& p : points) {
-		const Vector3 d = s.position(p) - s.position(points.front());
-		const Vector3 across = line.norm() > 0 ? Vector3(d - line * (line.dot(d) / line.squaredNorm())) : d;
-		if ((across - joint.normal * joint.normal.dot(across)).norm() > tolerance::pivotEdge * size)
-			return false;
-	}
-	return true;
+	std::vector<Vector3> places;
+	for (const PointRef& p : points)
+		places.push_back(s.position(p) - joint.normal * joint.normal.dot(s.position(p) - s.position(points.front()))); // all as deep
+	return bool(Pivot(places, tolerance::pivotEdge * sizeOf(s, joint), true));
 }
 
 bool Joint::has(int contact) const { return std::find(contacts.begin(), contacts.end(), contact) != contacts.end(); }
 
 std::vector<Joint> groupJoints(const JointSystem& s)
 {
+	std::vector<NearPair> pairs;
+	for (const JointContact& contact : s.contacts) {
+		const auto [face1, face2] = facesOf(contact.patch, s.bodies[contact.body1].pose, s.bodies[contact.body2].pose);
+		pairs.push_back({contact.body1, contact.body2, face1, face2, contact.isUpright});
+	}
+	JointTable table;
+	table.find(s.bodies, pairs);
 	std::vector<Joint> joints;
 	std::map<std::pair<int, int>, int> byFace; // block and face -> index of the joint
-	const double g = s.gravity.norm();
 	for (int c = 0; c < int(s.contacts.size()); ++c) {
+		const auto [block, face] = table.of(pairs, c);
+		if (block < 0)
+			continue;
 		const JointContact& contact = s.contacts[c];
 		const Vector3& n = contact.patch.normal;
-		const double up = g > 0 ? -n.dot(s.gravity) / g : 1;
-		if (std::abs(up) < tolerance::uprightJoint)
-			continue;
-		const int block = up > 0 ? contact.body2 : contact.body1;
-		if (s.bodies[block].prescribed)
-			continue;
-		const Vector3 normal = up > 0 ? n : Vector3(-n);
-		const int index = byFace.emplace(std::make_pair(block, faceOf(s.bodies[block], normal)), int(joints.size())).first->second;
+		const int index = byFace.emplace(std::make_pair(block, face), int(joints.size())).first->second;
 		if (index == int(joints.size()))
-			joints.push_back({block, normal, {}, {}});
+			joints.push_back({block, contact.body2 == block ? n : Vector3(-n), {}, {}});
 		joints[index].contacts.push_back(c);
 		for (int i = 0; i < contact.size; ++i)
 			joints[index].points.push_back({c, i});

@@ -4,8 +4,7 @@
 
 namespace masonry {
 
-// All patches under one face of a block: the block above, seen along gravity. Joints that stand upright do not rock and are
-// left out; without gravity the block is body 2.
+// All patches under one face of a block (joint_table.hpp). Head joints do not rock and are left out.
 struct Joint {
 	int block;
 	Vector3 normal; // from the supports to the block

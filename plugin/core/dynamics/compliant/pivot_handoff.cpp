@@ -3,6 +3,7 @@
 #include "dynamics/compliant/lift.hpp"
 #include "dynamics/compliant/pivots.hpp"
 #include "dynamics/compliant/settling.hpp"
+#include "joints/pivot.hpp"
 #include "tolerances.hpp"
 #include <algorithm>
 #include <cmath>
@@ -96,7 +97,7 @@ ImpactRecord switchPivot(JointSystem& s, const Joint& joint, const Closing& clos
 	ClosingJoint& law = impact.joints.front();
 	findRocking(s.bodies, law, impact.points);
 	const double least = minRockingSpeed(s, joint, impact.points.front().position, closing.lever, closing.depth);
-	const bool rests = law.result.before * (std::isnan(closing.restitution) ? 1 : closing.restitution) < least;
+	const bool rests = masonry::rests(law.result.before, closing.restitution, least);
 	if (rests)
 		law.restitution = 0;
 	const ImpactRecord::Result result = applyWithRim(s, impact);

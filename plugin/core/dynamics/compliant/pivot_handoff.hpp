@@ -17,7 +17,7 @@
 //
 // A joint that lands out of flight does so in the same way: at the instant at which its first points touch, impulses without any
 // restitution stop them, and these points carry the forces of the new phase. They do not rebound; the block goes on about them, until the
-// pivot passes on by the law above. Joints that stand upright land on their springs and dashpots.
+// pivot passes on by the law above. Head joints land on their springs and dashpots.
 #include "dynamics/compliant/joint_groups.hpp"
 
 namespace masonry {

@@ -18,7 +18,7 @@ struct Closing {
 // nothing is muted, so that it may land on any point.
 void muteOpenPoints(JointSystem& system, const Joint& joint);
 void unmuteInFlight(JointSystem& system, const Joint& joint);
-// Contacts that are in none of the joints stand upright and do not rock: all their points carry.
+// Contacts that are in none of the joints are head joints and do not rock: all their points carry.
 void unmuteUpright(JointSystem& system, const std::vector<Joint>& joints);
 
 Closing findClosing(const JointSystem& system, const Joint& joint);

@@ -58,51 +58,6 @@ bool isLoaded(const ContactPoint<K>& point)
 	return point.closed && point.force[0] > 0;
 }
 
-// A joint is all that touches one face of a block from below; upright faces (head joints) do not rock.
-struct JointKey {
-	int block {-1}, face {-1};
-	bool operator==(const JointKey& o) const { return block == o.block && face == o.face; }
-};
-
-template <class K>
-JointKey jointOf(const RigidSystem<K>& s, PointRef ref)
-{
-	const ContactPair<K>& pair = s.pairs[ref.pair];
-	const double g = s.gravity.norm();
-	const double up = g > 0 ? -normalOf(pair.points[ref.point]).dot(inSpace(s.gravity)) / g : 1;
-	const int block = up > 0 ? pair.body2 : pair.body1;
-	if (std::abs(up) < tolerance::uprightJoint || s.bodies[block].prescribed)
-		return {};
-	return {block, up > 0 ? pair.face2 : pair.face1};
-}
-
-// The old support, if it is a pivot: an edge or a corner.
-class OldPivot {
-public:
-	OldPivot(const std::vector<Vector3>& old, const std::vector<Vector3>& closing)
-	{
-		if (old.empty())
-			return;
-		place = old.front();
-		for (const Vector3& p : old)
-			if ((p - place).norm() > along.norm())
-				along = p - place;
-		double reach = 0;
-		for (const Vector3& p : closing)
-			reach = std::max(reach, (p - place).norm());
-		narrow = tolerance::pivotEdge * reach;
-		along = along.norm() > narrow ? Vector3(along.normalized()) : Vector3(Vector3::Zero());
-		holds = std::all_of(old.begin(), old.end(), [this](const Vector3& p) { return has(p); });
-	}
-	bool has(const Vector3& p) const { return Vector3(p - place - along * along.dot(p - place)).norm() <= narrow; }
-
-	bool holds {false};
-
-private:
-	Vector3 place, along {Vector3::Zero()};
-	double narrow {0};
-};
-
 } // namespace
 
 // Everything that touches, in the order that the law wants: for each closing joint its new support and its old, then the rest.
@@ -111,6 +66,8 @@ struct ImpactStage<K>::Builder {
 	const RigidSystem<K>& s;
 	const double merged; // see Settings
 	ImpactStage<K>& stage;
+
+	JointFace jointOf(PointRef ref) const { return stage.joints.of(s.pairs, ref.pair); }
 
 	void add(PointRef ref)
 	{
@@ -139,34 +96,34 @@ struct ImpactStage<K>::Builder {
 					take(PointRef {c, i});
 	}
 
-	void addJoint(const JointKey& key, const std::vector<PointRef>& closing)
+	void addJoint(const JointFace& key, const std::vector<PointRef>& closing)
 	{
 		stage.oldRefs.clear();
-		stage.newPositions.clear();
 		stage.oldPositions.clear();
 		const auto position = [&](PointRef ref) { return positionOf(s.pairs[ref.pair].points[ref.point]); };
-		for (PointRef ref : closing)
-			if (jointOf(s, ref) == key)
-				stage.newPositions.push_back(position(ref));
 		forTouching([&](PointRef ref) {
-			if (!isLoaded(s.pairs[ref.pair].points[ref.point]) || !(jointOf(s, ref) == key))
+			if (!isLoaded(s.pairs[ref.pair].points[ref.point]) || !(jointOf(ref) == key))
 				return;
 			stage.oldRefs.push_back(ref);
 			stage.oldPositions.push_back(position(ref));
 		});
-		const OldPivot pivot(stage.oldPositions, stage.newPositions);
+		double reach = 0;
+		for (PointRef ref : closing)
+			if (!stage.oldPositions.empty() && jointOf(ref) == key)
+				reach = std::max(reach, (position(ref) - stage.oldPositions.front()).norm());
+		const Pivot pivot(stage.oldPositions, tolerance::pivotEdge * reach, K::dimension == 3);
 		// Beside the pivot; on it, where two supports share it, round-off may open and close a point.
 		ClosingJoint joint {};
 		joint.block = key.block;
 		joint.newBegin = int(stage.refs.size());
 		for (PointRef ref : closing)
-			if (jointOf(s, ref) == key && !(pivot.holds && pivot.has(position(ref))))
+			if (jointOf(ref) == key && !(pivot && pivot.has(position(ref))))
 				add(ref);
 		joint.oldBegin = int(stage.refs.size());
 		for (PointRef ref : stage.oldRefs)
 			add(ref);
 		joint.oldEnd = int(stage.refs.size());
-		if (!pivot.holds || joint.newBegin == joint.oldBegin)
+		if (!pivot || joint.newBegin == joint.oldBegin)
 			return;
 
 		// Of several supports, the one under the point farthest from the old pivot names the joint's law.
@@ -199,10 +156,12 @@ void ImpactStage<K>::gather(const RigidSystem<K>& s, const Settings& settings, c
 	bodies.clear();
 	for (const auto& body : s.bodies)
 		bodies.push_back(inSpace(body));
+	if (!closing.empty())
+		joints.find(s.bodies, s.pairs);
 	Builder builder {s, settings.merged, *this};
 	for (size_t k = 0; k < closing.size(); ++k) {
-		const JointKey key = jointOf(s, closing[k]);
-		const bool first = std::none_of(closing.begin(), closing.begin() + k, [&](PointRef p) { return jointOf(s, p) == key; });
+		const JointFace key = builder.jointOf(closing[k]);
+		const bool first = std::none_of(closing.begin(), closing.begin() + k, [&](PointRef p) { return builder.jointOf(p) == key; });
 		if (first && key.block >= 0)
 			builder.addJoint(key, closing);
 	}
@@ -333,7 +292,7 @@ RockingImpactResult ImpactStage<K>::land(RigidSystem<K>& s, const Settings& sett
 	for (ClosingJoint& joint : impact.joints) {
 		asked.push_back(joint.restitution);
 		findRocking(bodies, joint, impact.points);
-		if (joint.result.before * (std::isnan(joint.restitution) ? 1 : joint.restitution) < scale::minSpin(s, joint.block))
+		if (rests(joint.result.before, joint.restitution, scale::minSpin(s, joint.block)))
 			joint.restitution = 0;
 	}
 	const auto result =

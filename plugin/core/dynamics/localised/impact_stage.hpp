@@ -2,6 +2,7 @@
 // Impulses at one instant, between two smooth steps: the rocking restitution law and base pulses, on all points in touch.
 #include "dynamics/localised/smooth_step.hpp"
 #include "impact/sparse_impulses.hpp"
+#include "joints/pivot.hpp"
 
 namespace masonry::localised {
 
@@ -28,10 +29,11 @@ private:
 	void shareWeights(RigidSystem<K>& system);
 
 	SparseImpulses<K> impulses;
+	JointTable joints;
 	RockingImpact impact;
 	std::vector<masonry::Body> bodies;
-	std::vector<PointRef> refs;                      // of impact.points
-	std::vector<Vector3> newPositions, oldPositions; // of a joint
+	std::vector<PointRef> refs;        // of impact.points
+	std::vector<Vector3> oldPositions; // of a joint
 	std::vector<PointRef> oldRefs;
 	std::vector<double> weights; // of the pairs: their normal impulses
 	std::vector<double> asked;   // restitution of the joints

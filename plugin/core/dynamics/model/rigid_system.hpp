@@ -3,6 +3,7 @@
 #include "contact/corner_normals.hpp"
 #include "dynamics/model/base_drive.hpp"
 #include "impact/rocking_restitution.hpp"
+#include "joints/joint_table.hpp"
 #include "laws/contact_problem.hpp"
 #include <algorithm>
 #include <cmath>
@@ -86,7 +87,7 @@ struct ContactPair {
 	double restitution {NAN}; // NaN: natural
 	typename K::Memory memory;
 	int face1 {-1}, face2 {-1};
-	bool isHeadJoint {false}; // upright when the pair was found: neither bears the other
+	bool isUpright {false}; // when the pair was found (joint_table.hpp)
 	int size {0};
 	std::array<ContactPoint<K>, K::maxPoints> points;
 
@@ -94,7 +95,7 @@ struct ContactPair {
 	template <class Archive>
 	void serialize(Archive& archive)
 	{
-		archive(body1, body2, face1, face2, friction, restitution, isHeadJoint, size, memory);
+		archive(body1, body2, face1, face2, friction, restitution, isUpright, size, memory);
 		for (int i = 0; i < size; ++i)
 			archive(points.at(i));
 	}

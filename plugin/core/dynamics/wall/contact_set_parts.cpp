@@ -144,21 +144,12 @@ void ContactSet<K>::orderUpwards()
 		std::stable_sort(upwards.begin() + part.begin, upwards.begin() + part.end, [&](int a, int b) { return highest[a] < highest[b]; });
 }
 
-// Breadth first: how many pairs are between a body and the nearest prescribed one; -1 where there is no way. What stands beside a block
-// does not bear it: through such pairs only on from what has its number, to what else has none.
 template <class K>
 void ContactSet<K>::findCourses(const RigidSystem<K>& s)
 {
-	supportLevel.assign(s.bodies.size(), -1);
-	for (size_t b = 0; b < s.bodies.size(); ++b)
-		if (s.bodies[b].prescribed)
-			supportLevel[b] = 0;
-	for (const bool all : {false, true})
-		for (int reached = 0, most = *std::max_element(supportLevel.begin(), supportLevel.end()); reached <= most; ++reached)
-			for (const ContactPair<K>& pair : s.pairs)
-				for (const auto& [from, to] : {std::pair(pair.body1, pair.body2), std::pair(pair.body2, pair.body1)})
-					if ((all || !pair.isHeadJoint) && supportLevel[from] == reached && supportLevel[to] < 0)
-						most = std::max(most, supportLevel[to] = reached + 1);
+	JointTable table;
+	table.find(s.bodies, s.pairs);
+	supportLevel = table.levels();
 }
 
 template void ContactSet<Plane>::colour(const RigidSystem<Plane>&);

@@ -74,52 +74,24 @@ void RockingEvents<K>::gather(const RigidSystem<K>& s, const ContactSet<K>& c)
 		list = s.lists;
 		laws = s.laws;
 		areLaws = std::any_of(s.pairs.begin(), s.pairs.end(), hasLaw);
+		table.find(s.bodies, s.pairs);
 	}
 	if (!areOrdered(s.drives) && !areLaws)
 		return;
-	const double g = s.gravity.norm();
 	for (int group = 0; group < int(c.groups.size()); ++group)
-		for (int lane = 0; lane < width && c.features[group].pair[lane] >= 0; ++lane) {
-			const ContactPair<K>& pair = s.pairs[c.features[group].pair[lane]];
-			for (int k = 0; k < c.points(s, group, lane); ++k) {
-				const double up = g > 0 ? -normal(c.groups[group].point[k], lane).dot(s.gravity) / g : 1;
-				const int block = up > 0 ? pair.body2 : pair.body1;
-				if (std::abs(up) >= tolerance::uprightJoint && c.own[block])
-					points.push_back({block, up > 0 ? pair.face2 : pair.face1, group, lane, k});
-			}
-		}
+		for (int lane = 0; lane < width && c.features[group].pair[lane] >= 0; ++lane)
+			if (const auto [block, face] = table.of(s.pairs, c.features[group].pair[lane]); block >= 0 && c.own[block])
+				for (int k = 0; k < c.points(s, group, lane); ++k)
+					points.push_back({block, face, group, lane, k});
 	std::sort(points.begin(), points.end(), [](const Point& a, const Point& b) {
 		return std::tie(a.block, a.face, a.group, a.lane, a.point) < std::tie(b.block, b.face, b.group, b.lane, b.point);
 	});
 }
 
 template <class K>
-double RockingEvents<K>::away(const ContactSet<K>& c, const Point& at, const Joint& joint) const
-{
-	const Vector3 from = positionOf(c, at) - joint.place;
-	return (from - joint.direction * joint.direction.dot(from)).norm();
-}
-
-template <class K>
 bool RockingEvents<K>::isOfPivot(const ContactSet<K>& c, int i, const Joint& joint) const
 {
-	return away(c, points[i], joint) <= tolerance::wall::pivot * c.length;
-}
-
-// False: the joint bears at more than one place, or nowhere.
-template <class K>
-bool RockingEvents<K>::findPivot(const ContactSet<K>& c, Joint& joint) const
-{
-	if (bearing.empty())
-		return false;
-	const double narrow = tolerance::wall::pivot * c.length;
-	joint.place = positionOf(c, points[bearing.front()]);
-	Vector3 edge = Vector3::Zero();
-	for (const int i : bearing)
-		if (const Vector3 from = positionOf(c, points[i]) - joint.place; K::dimension == 3 && from.norm() > edge.norm())
-			edge = from;
-	joint.direction = edge.norm() > narrow ? Vector3(edge.normalized()) : Vector3(Vector3::Zero());
-	return std::all_of(bearing.begin(), bearing.end(), [&](int i) { return isOfPivot(c, i, joint); });
+	return joint.pivot.has(positionOf(c, points[i]));
 }
 
 // Normals and arms stand still in a step: the centripetal acceleration a of a pivot comes as a jump a h of its velocity where a step
@@ -169,8 +141,13 @@ std::vector<SpinRow<K>> RockingEvents<K>::find(const RigidSystem<K>& s, const Co
 			else
 				gapes |= gap > open || at.normalRate(c) < -fast;
 		}
-		Joint joint {begin, end, {}, {}, -1};
-		if (!gapes || !findPivot(c, joint))
+		if (!gapes)
+			continue;
+		places.clear();
+		for (const int i : bearing)
+			places.push_back(positionOf(c, points[i]));
+		Joint joint {begin, end, Pivot(places, tolerance::wall::pivot * c.length, K::dimension == 3), -1};
+		if (!joint.pivot)
 			continue;
 		for (int i = begin; i < end; ++i) {
 			const Contact<K> at = contact(c, points[i]);
@@ -201,7 +178,7 @@ typename RockingEvents<K>::Support RockingEvents<K>::takeSupport(const RigidSyst
 	Support result;
 	double farthest = -1;
 	for (const int i : closing) {
-		const double distant = away(c, points[i], joint);
+		const double distant = joint.pivot.distance(positionOf(c, points[i]));
 		if (distant <= farthest)
 			continue;
 		farthest = distant;
@@ -261,7 +238,7 @@ double RockingEvents<K>::takeCarriers(const ContactSet<K>& c, const Joint& joint
 	int near = -1, far = -1; // ends of the old pivot
 	for (int i = joint.begin; i < joint.end; ++i)
 		if (isOfPivot(c, i, joint)) {
-			const auto along = [&](int k) { return joint.direction.dot(positionOf(c, points[k])); };
+			const auto along = [&](int k) { return joint.pivot.direction.dot(positionOf(c, points[k])); };
 			if (near < 0 || along(i) < along(near))
 				near = i;
 			if (far < 0 || along(i) > along(far))
@@ -303,7 +280,7 @@ bool RockingEvents<K>::describe(const RigidSystem<K>& s, const ContactSet<K>& c,
 	if (!(landing.before >= minSpin))
 		return false;
 	landing.face = points[joint.begin].face;
-	landing.restitution = landing.asked * landing.before < minSpin ? 0 : landing.asked;
+	landing.restitution = rests(landing.before, landing.asked, minSpin) ? 0 : landing.asked;
 	if (landing.before < h * scale::acceleration(s) / s.bodies[landing.block].halfSize.norm()) // the step does not resolve it
 		landing.asked = NAN;
 	landing.time = s.time + h * (1 - landing.share);

@@ -1,7 +1,7 @@
 #pragma once
 // Joints that rock and land: they get rows that give them the rocking restitution law (impact/rocking_restitution.hpp).
 //
-// A joint is all that touches one face of a block from below. It rocks when it is loaded at one place, its pivot, and open beside it. A
+// A joint (joint_table.hpp) rocks when it is loaded at one place, its pivot, and open beside it. A
 // step of length h brings a landing point from its gap to zero, and so takes the share
 //
 //     s = 1 - gap/(h u)          u: approach speed that the step would give without the landing
@@ -20,6 +20,7 @@
 // what gravity gives the block in a step lands with its natural restitution, since the step does not resolve it.
 #include "dynamics/wall/admm_solver.hpp"
 #include "impact/rocking_restitution.hpp"
+#include "joints/pivot.hpp"
 
 namespace masonry::wall {
 
@@ -83,17 +84,15 @@ private:
 		}
 	};
 	struct Joint {
-		int begin, end;           // points
-		Vector3 place, direction; // of the pivot: a corner, or an edge and its direction; in the plane direction is zero
-		int landing;              // expected, by number; -1: none
+		int begin, end; // points
+		Pivot pivot;
+		int landing; // expected, by number; -1: none
 	};
 	struct Support { // the new one
 		Vector3 place {Vector3::Zero()}, normal {Vector3::Zero()};
 	};
 	void gather(const RigidSystem<K>& system, const ContactSet<K>& contacts);
-	bool findPivot(const ContactSet<K>& contacts, Joint& joint) const;
 	bool hops(const ContactSet<K>& contacts, const Point& point, double acceleration, double h) const;
-	double away(const ContactSet<K>& contacts, const Point& point, const Joint& joint) const;
 	bool isOfPivot(const ContactSet<K>& contacts, int point, const Joint& joint) const;
 	Support takeSupport(const RigidSystem<K>& system, const ContactSet<K>& contacts, const Joint& joint, const std::vector<int>& closing,
 	                    Landing& landing) const;
@@ -108,8 +107,10 @@ private:
 	std::vector<Point> points; // joint by joint
 	std::vector<Joint> rocking;
 	std::vector<int> bearing, closing; // points of a joint that is looked at
+	std::vector<Vector3> places;       // of those that bear
 	std::vector<Landing> expected, landings;
-	int list {-1}, laws {-1}; // of the system's pairs, that `areLaws` is of
+	JointTable table;
+	int list {-1}, laws {-1}; // of the system's pairs, that the table and `areLaws` are of
 	bool areLaws {false};     // a pair has a given restitution
 	LaneArray predicted;      // velocities at the end of the step
 	double h {0};

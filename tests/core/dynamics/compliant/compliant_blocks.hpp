@@ -4,6 +4,7 @@
 #include "contact/box_box.hpp"
 #include "dynamics/compliant/compliant_step.hpp"
 #include "dynamics/compliant/time_step.hpp"
+#include "joints/joint_table.hpp"
 #include <algorithm>
 #include <vector>
 
@@ -52,6 +53,8 @@ struct CompliantBlocks {
 				contact.body1 = a;
 				contact.body2 = b;
 				contact.law = law;
+				if (old == known.end())
+					contact.isUpright = masonry::isUpright(patch.normal, step.system.gravity);
 				renewPatch(contact, patch);
 				step.system.contacts.push_back(contact);
 			}

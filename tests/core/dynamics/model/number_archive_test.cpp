@@ -11,7 +11,7 @@ std::vector<ContactPair<Space>> somePairs()
 	std::vector<ContactPair<Space>> pairs(2);
 	pairs[1].body1 = 3;
 	pairs[1].restitution = 0.7;
-	pairs[1].isHeadJoint = true;
+	pairs[1].isUpright = true;
 	pairs[1].size = 2;
 	pairs[1].points[1].feature = {SpaceFeature::Vertex2, 4, 7};
 	pairs[1].points[1].force = {1, -2, 1e-300};
@@ -32,7 +32,7 @@ TEST_CASE("what has been written to a row of numbers is read from it")
 	CHECK(read[1].body1 == 3);
 	CHECK(read[1].restitution == 0.7);
 	CHECK(std::isnan(read[0].restitution)); // natural
-	CHECK(read[1].isHeadJoint);
+	CHECK(read[1].isUpright);
 	CHECK(read[1].points[1].feature == pairs[1].points[1].feature);
 	CHECK(read[1].points[1].force == pairs[1].points[1].force);
 }
