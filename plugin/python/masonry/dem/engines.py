@@ -10,8 +10,8 @@ from masonry.motions import Motion, PulseTrain, Record
 from yade import O, wrapper
 
 from masonry import _yade
-from masonry.dem import notes
-from masonry.dem.bodies import boxes, convex_blocks, geometry, half_sizes
+from masonry.dem import bodies, notes
+from masonry.dem.bodies import convex_blocks, geometry, half_sizes
 from masonry.dem.checks import check_blocks, check_material, check_recorder, listed
 from masonry.dem.structures import structures
 
@@ -242,11 +242,8 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
     """
     notes.said.clear()
     _check_arguments(model, method, impact_order, penetration, tolerance, dt, gravity)
-    gravity, motions, recorders, blocks = float(gravity), _several(motion), _several(recorder), boxes()
+    gravity, motions, recorders, blocks = float(gravity), _several(motion), _several(recorder), bodies.blocks()
     _check_engines(motions, recorders, others, blocks)
-    convex = [b.id for b in convex_blocks()]
-    if convex:
-        raise ValueError(f"O.bodies: {listed(convex)} are convex blocks: engines move boxes only; convex blocks can be made, looked at and saved")
     if not any(b.dynamic for b in blocks):
         raise ValueError("there is no free block in O.bodies: add one with dem.block() before dem.engines()")
     for body in blocks:
@@ -263,6 +260,9 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
     if penetration is not None and all(_is_given(b.mat, "normalStiffness") for b in blocks):
         notes.say(f"penetration = {penetration:g} is not used: every BlockMat has its normalStiffness")
     if model == "compliant":
+        convex = [b.id for b in convex_blocks()]
+        if convex:
+            raise ValueError(f"O.bodies: {listed(convex)} are convex blocks: compliant joints are between boxes only")
         if tolerance is not None or others or method != "auto":
             raise ValueError("tolerance, others and method are for rigid blocks: they must be left out with model='compliant'")
         return _compliant(blocks, motions, reason, dt, penetration or _PENETRATION, impact_order or "simultaneous", gravity, recorders)

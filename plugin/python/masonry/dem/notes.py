@@ -124,20 +124,20 @@ def say_what_is_unused(blocks, model, stiff):
 
 
 def _untouched(others):
-    """Blocks touch boxes with a BlockMat; what else there is needs `others`, engines of its own."""
+    """Blocks touch boxes and convex blocks with a BlockMat; what else there is needs `others`, engines of its own."""
     untouched, unmoved = [], False
     interact, move = (any(one.__class__.__name__ == name for one in others) for name in ("InteractionLoop", "NewtonIntegrator"))
     for body in O.bodies:
-        box = isinstance(body.shape, wrapper.Box)
-        if box and isinstance(body.mat, wrapper.BlockMat) or body.isClump:
+        shaped = isinstance(body.shape, (wrapper.Box, wrapper.ConvexBlock))
+        if shaped and isinstance(body.mat, wrapper.BlockMat) or body.isClump:
             continue
         loose = body.dynamic and not move
-        if box or not interact or loose:
+        if shaped or not interact or loose:
             untouched.append(f"{body.id} ({type(body.shape).__name__ if body.shape else 'no shape'})")
             unmoved |= loose
     if not untouched:
         return None
-    return (f"no block touches these bodies, which are no boxes with a BlockMat: {listed(untouched)}"
+    return (f"no block touches these bodies, which are no boxes or convex blocks with a BlockMat: {listed(untouched)}"
             + ("; no engine of `others` moves those that are free" if unmoved else ""))
 
 
