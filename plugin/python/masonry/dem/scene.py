@@ -8,7 +8,7 @@ from masonry.dem import layouts
 from masonry.dem.bodies import block_body, blocks, boxes, convex_blocks, poses, world_shape
 from masonry.dem.checks import check_material
 from masonry.dem.meshes import write_obj
-from masonry.dem.placing import append_boxes, block_material, box_body, convex_body, placed, polyhedron, posed, stand, top_of, turn_about_z
+from masonry.dem.placing import append_boxes, block_material, box_body, check_support, convex_body, placed, polyhedron, posed, stand, top_of, turn_about_z
 from masonry.dem.tables import read_table, table_rows, write_table
 from masonry.results.collapse import comes_back
 from yade import O, Quaternion, Vector3, utils, wrapper
@@ -30,22 +30,25 @@ def _axis(name):
     return _AXES[name]
 
 
-def base(size, material):
-    """A body that does not move by itself, with its top face at z = 0, centred on the z axis. size: full sizes (x, y, z), m.
+def base(size, material, at=(0.0, 0.0)):
+    """A body that does not move by itself, with its top face at z = 0 and the middle of that face at `at` (x, y), m. size: full sizes (x, y, z), m.
     A motion engine (PulseTrainEngine, RecordMotionEngine) moves it. Returns its id."""
-    size = _positive_size("size", size)
-    body = utils.box(Vector3(0, 0, -size[2] / 2), size / 2, Quaternion.Identity, material=block_material(material), fixed=True)
+    size, (x, y) = _positive_size("size", size), finite_numbers("at", at, 2, "two finite numbers, in m")
+    body = utils.box(Vector3(x, y, -size[2] / 2), size / 2, Quaternion.Identity, material=block_material(material), fixed=True)
     body.aspherical = True
     return O.bodies.append(body)
 
 
-def block(size, material, on=None, center=None, orientation=None):
-    """A free block. size: full sizes (x, y, z), m. It stands centred on the body `on`, or has its centre at `center` (m).
+def block(size, material, on=None, center=None, orientation=None, at=(0.0, 0.0)):
+    """A free block. size: full sizes (x, y, z), m. It stands on the body `on`, with its centre above it at `at` (x, y), m, from the middle of its upper
+    face, or has its centre at `center` (m).
     orientation: a Quaternion; with `on`, a turn about z at most. dem.angle counts from that turn about z, not from the world's axes.
     Returns its id."""
     size = _positive_size("size", size)
     if (on is None) == (center is None):
         raise ValueError(f"on = {on}, center = {center}: give one of the two")
+    if on is None and tuple(at) != (0, 0):
+        raise ValueError(f"at = {shown(at)}: is from the middle of a body: give it with `on`, not with `center`")
     orientation = Quaternion.Identity if orientation is None else orientation
     if not isinstance(orientation, Quaternion) or not abs(orientation.norm() - 1) < 1e-9:
         raise ValueError(f"orientation = {shown(orientation)}: must be a Quaternion of length 1")
@@ -53,17 +56,20 @@ def block(size, material, on=None, center=None, orientation=None):
     if on is not None:
         if not (orientation * Vector3.UnitZ)[2] > 1 - 1e-12:
             raise ValueError(f"orientation = {shown(orientation)}: must be a turn about z where the block stands on a body")
-        center, turn = top_of(on, above=size[2] / 2)
+        center, turn = top_of(on, at, size[2] / 2)
+        if tuple(at) != (0, 0):
+            check_support([(0.0, 0.0)], on, at, (size[0], size[1]))
         orientation = resting = turn * orientation
     center = finite_numbers("center", center, 3, "three finite numbers, in m")
     return append_boxes([center], [size], block_material(material), orientation, resting)[0]
 
 
-def stack(n, size, material, on):
-    """n equal blocks on top of each other, the lowest on the body `on`. Returns their ids, bottom up."""
-    ids = []
-    for _ in range(layouts.whole("n", n, 1)):
-        ids.append(block(size, material, on=ids[-1] if ids else on))
+def stack(n, size, material, on, at=(0.0, 0.0)):
+    """n equal blocks on top of each other, the lowest at `at` (x, y), m, on the body `on`, as in dem.block(). Returns their ids, bottom up."""
+    n = layouts.whole("n", n, 1)
+    ids = [block(size, material, on=on, at=at)]
+    while len(ids) < n:
+        ids.append(block(size, material, on=ids[-1]))
     return ids
 
 
