@@ -4,13 +4,14 @@ import os
 import sys
 import time
 
+import arches
 import rolling
 import sliding
 import tipping
 from rows import MODES
 
 OUT = os.environ.get("CONVEX_OUT", "results/convex")
-MODULES = [rolling, sliding, tipping]
+MODULES = [rolling, sliding, tipping, arches]
 
 
 def main(wanted):
