@@ -85,7 +85,7 @@ namespace {
 // Moment about the axis through the centroid of the upper block's lower face, of unit direction `axis`.
 double momentAbout(const PressedBlocks& blocks, const Vector3& axis)
 {
-	const Vector3 centroid = blocks.upper.pose.toGlobal({0, 0, -blocks.box.halfSize.z()});
+	const Vector3 centroid = blocks.upper.pose.toGlobal({0, 0, -blocks.box.halfSize().z()});
 	double sum = 0;
 	for (int i = 0; i < blocks.contact.size(); ++i)
 		sum += axis.dot((blocks.contact.position(i) - centroid).cross(blocks.contact.force(i)));
@@ -95,7 +95,7 @@ double momentAbout(const PressedBlocks& blocks, const Vector3& axis)
 // Turned about the axis through that centroid.
 void lean(PressedBlocks& blocks, const Vector3& axis, double angle)
 {
-	const Vector3 arm(0, 0, blocks.box.halfSize.z()), centroid = blocks.upper.pose.toGlobal(-arm);
+	const Vector3 arm(0, 0, blocks.box.halfSize().z()), centroid = blocks.upper.pose.toGlobal(-arm);
 	blocks.upper.pose.orientation = Eigen::AngleAxisd(angle, axis) * blocks.upper.pose.orientation;
 	blocks.upper.pose.position = centroid + blocks.upper.pose.orientation * arm;
 	blocks.look();
