@@ -12,7 +12,7 @@ inline masonry::Feature featureAt(const vector<int>& row, size_t i)
 	return {masonry::Feature::Kind(row.at(3 * i)), row.at(3 * i + 1), row.at(3 * i + 2)};
 }
 
-/// The contact patch of two boxes (contact/contact_patch.hpp). Derived from GenericSpheresContact because YADE's time
+/// The contact patch of two blocks (contact/contact_patch.hpp). Derived from GenericSpheresContact because YADE's time
 /// stepper reads that class.
 class BlockGeom : public GenericSpheresContact {
 public:
@@ -36,9 +36,9 @@ public:
 
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(BlockGeom, GenericSpheresContact,
-		"Contact patch of two boxes: points, each with a gap and a normal (gaps, points and normals are parallel lists, empty after loading until the next step). normal points from body 1 to body 2: for rigid blocks, whose points can have different normals, it is the direction of the resultant of the normal forces or, without load, the normal of the point with the smallest gap; for compliant joints it is the normal of the patch, which all points share. contactPoint is the centroid of the patch.",
+		"Contact patch of two blocks: points, each with a gap and a normal (gaps, points and normals are parallel lists, empty after loading until the next step). normal points from body 1 to body 2: for rigid blocks, whose points can have different normals, it is the direction of the resultant of the normal forces or, without load, the normal of the point with the smallest gap; for compliant joints it is the normal of the patch, which all points share. contactPoint is the centroid of the patch.",
 		((int, kind, 0, Attr::readonly, "Kind of contact of a compliant joint: 0 none yet, 1 or 2 face on face (the number names the reference body), 3 edge across edge."))
-		((int, feature1, -1, Attr::readonly, "Face (0 to 5) or edge (0 to 11) of body 1."))
+		((int, feature1, -1, Attr::readonly, "Face or edge of body 1."))
 		((int, feature2, -1, Attr::readonly, "Face or edge of body 2."))
 		((vector<int>, vertices, , Attr::readonly, "Compliant joints: vertices that are corners of the patch, as three numbers each (BlockPhys.features)."))
 		((int, upright, -1, Attr::readonly, "Compliant joints: 1 if the normal was level when the pair was found, which makes it a head joint if other faces bear the blocks; -1: not known yet."))

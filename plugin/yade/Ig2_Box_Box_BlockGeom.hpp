@@ -13,7 +13,7 @@ public:
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS(Ig2_Box_Box_BlockGeom, IGeomFunctor,
 		"Contact patch of two boxes in any position: face on face, edge across edge, corner on face.",
-		((Real, margin, 1e-2, , "Two boxes interact when they are nearer than this fraction of the smaller box's smallest half size."))
+		((Real, margin, 1e-2, , "Two blocks interact when they are nearer than this fraction of the smaller thickness of the two, half of a block's least width."))
 	);
 	// clang-format on
 	FUNCTOR2D(Box, Box);

@@ -37,7 +37,7 @@ public:
 
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(MoreauJeanIntegrator, GlobalEngine,
-		"Motion of rigid blocks (boxes with a BlockMat) in unilateral contact. It takes the place of InteractionLoop and NewtonIntegrator for them; forces that other engines leave in O.forces act on the blocks. Blocks without a free degree of freedom move with their velocity, or as `motions` says. dem.engines() makes the list of engines.",
+		"Motion of rigid blocks (boxes and convex blocks with a BlockMat) in unilateral contact. It takes the place of InteractionLoop and NewtonIntegrator for them; forces that other engines leave in O.forces act on the blocks. Blocks without a free degree of freedom move with their velocity, or as `motions` says. dem.engines() makes the list of engines.",
 		((vector<shared_ptr<Engine>>, motions, , Attr::triggerPostLoad, "Motion engines of the base (PulseTrainEngine, RecordMotionEngine). Motions of the same bodies in perpendicular directions add up. They are evaluated at any instant inside a step and must not be in O.engines; a `dead` one is ignored. A motion that is added or removed during a run takes effect with the next step: a new one starts from where the base is then (start=O.time), and a base without a motion keeps its velocity."))
 		((Vector3r, gravity, Vector3r(0, 0, -9.81), , "Gravity [m/s^2]."))
 		((string, model, "auto", Attr::triggerPostLoad, "'planar', 'spatial' or 'auto'. 'auto' is planar if blocks, motions and loads lie in one upright plane."))

@@ -137,7 +137,7 @@ vector<masonry::JointContact> RockingJointEngine::presentContacts()
 	    std::any_of(scene->engines.begin(), scene->engines.end(), [this](const auto& engine) { return engine.get() == this; });
 	dampingRatio = inScene ? IntegratorSettings(*scene).contactDampingRatio : Law2_BlockGeom_BlockPhys_Rocking().dampingRatio;
 	blocks.read(*scene, dampingRatio, step);
-	return blocks.boxesInTouch(*scene, dampingRatio, step);
+	return blocks.blocksInTouch(*scene, dampingRatio, step);
 }
 
 void RockingJointEngine::checkTimeStep()

@@ -15,7 +15,7 @@ public:
 	/// Throws std::invalid_argument naming attribute, value and allowed range.
 	void postLoad(RockingJointEngine&);
 
-	/// Without dashpots. Of the present contacts; before the first step, and after loading, of all boxes that are in touch. s
+	/// Without dashpots. Of the present contacts; before the first step, and after loading, of all blocks that are in touch. s
 	Real criticalTimeStep();
 	Real largestTimeStep();
 	Real chosenTimeStep();

@@ -12,6 +12,13 @@ class BlockShape {
 public:
 	static bool isOne(const Shape& shape) { return dynamic_cast<const Box*>(&shape) || dynamic_cast<const ConvexBlock*>(&shape); }
 
+	/// Whether a polyhedron can be made of it.
+	static bool isWhole(const Shape& shape)
+	{
+		const BlockShape block(shape);
+		return block.hull || ((block.half.array() > 0).all() && block.half.allFinite());
+	}
+
 	explicit BlockShape(const Shape& shape)
 	{
 		if (const auto* box = dynamic_cast<const Box*>(&shape))
@@ -63,12 +70,12 @@ private:
 /// The shapes of the bodies of a scene, made once as long as they stay the same.
 class KeptShapes {
 public:
-	const std::shared_ptr<const masonry::ConvexPolyhedron>& of(const Body& body)
+	const std::shared_ptr<const masonry::ConvexPolyhedron>& of(int id, const Shape& shape)
 	{
-		if (size_t(body.id) >= kept.size())
-			kept.resize(body.id + 1);
-		auto& [seen, polyhedron] = kept[body.id];
-		if (const BlockShape now(*body.shape); !polyhedron || !(*seen == now)) {
+		if (size_t(id) >= kept.size())
+			kept.resize(id + 1);
+		auto& [seen, polyhedron] = kept[id];
+		if (const BlockShape now(shape); !polyhedron || !(*seen == now)) {
 			seen = now;
 			polyhedron = now.isBox() ? std::make_shared<const masonry::ConvexPolyhedron>(masonry::ConvexPolyhedron::box(now.extents()))
 			                         : now.polyhedron();

@@ -7,10 +7,9 @@
 #include "core_state.hpp"
 #include "sentence.hpp"
 
-#include "contact/box_box.hpp"
+#include "contact/collide.hpp"
 #include "joints/joint_table.hpp"
 #include <algorithm>
-#include <pkg/common/Box.hpp>
 
 namespace yade {
 
@@ -33,13 +32,14 @@ void CompliantScene::readBodies(const Scene& scene, masonry::CompliantStep& step
 	for (const auto& body : scene.bodies->body) {
 		if (!body || !dynamic_cast<BlockMat*>(body->material.get()))
 			continue;
-		if (!dynamic_cast<Box*>(body->shape.get()))
-			throw std::invalid_argument(sentence("O.bodies[", body->id, "] has a BlockMat and is no Box: blocks touch boxes only."));
+		if (!isBlock(*body))
+			throw std::invalid_argument(sentence(
+			    "O.bodies[", body->id, "] has a BlockMat, but its shape is neither a Box nor a ConvexBlock: blocks do not touch it."));
 		checkBody(*body);
 		index[body->id] = int(ids.size());
 		ids.push_back(body->id);
 		step.system.bodies.push_back(coreBody(*body));
-		step.system.bodies.back().shape = shapes.of(*body);
+		step.system.bodies.back().shape = shapes.of(body->id, *body->shape);
 	}
 }
 
@@ -77,7 +77,7 @@ void CompliantScene::readJoints(const Scene& scene, Real dampingRatio, masonry::
 	system.contacts.resize(pairs.size());
 }
 
-vector<masonry::JointContact> CompliantScene::boxesInTouch(const Scene& scene, Real dampingRatio, const masonry::CompliantStep& step) const
+vector<masonry::JointContact> CompliantScene::blocksInTouch(const Scene& scene, Real dampingRatio, const masonry::CompliantStep& step) const
 {
 	const vector<masonry::Body>& bodies = step.system.bodies;
 	vector<masonry::JointContact> contacts;
@@ -87,12 +87,12 @@ vector<masonry::JointContact> CompliantScene::boxesInTouch(const Scene& scene, R
 			if (bodies[a].prescribed && bodies[b].prescribed)
 				continue;
 			const Body &body1 = *(*scene.bodies)[ids[a]], &body2 = *(*scene.bodies)[ids[b]];
-			const Vector3r &half1 = static_cast<Box&>(*body1.shape).extents, &half2 = static_cast<Box&>(*body2.shape).extents;
-			if ((body1.state->pos - body2.state->pos).norm() > half1.norm() + half2.norm())
+			const masonry::ConvexPolyhedron &shape1 = *bodies[a].shape, &shape2 = *bodies[b].shape;
+			if ((body1.state->pos - body2.state->pos).norm() > shape1.radius() + shape2.radius())
 				continue;
 			masonry::ContactPatch patch;
-			const Real near = 1e-2 * std::min(bodies[a].shape->thickness(), bodies[b].shape->thickness());
-			if (!masonry::collide({half1}, bodies[a].pose, {half2}, bodies[b].pose, near, {}, patch))
+			const Real near = 1e-2 * std::min(shape1.thickness(), shape2.thickness());
+			if (!masonry::collide(shape1, bodies[a].pose, shape2, bodies[b].pose, near, {}, patch))
 				continue;
 			const shared_ptr<Interaction> interaction(new Interaction(ids[a], ids[b]));
 			law.go(body1.material, body2.material, interaction);

@@ -14,8 +14,8 @@ class CompliantScene {
 public:
 	/// Reads all blocks and their joints. Throws for what is no block, or has no joint law.
 	void read(const Scene& scene, Real dampingRatio, masonry::CompliantStep& step);
-	/// All boxes in touch, read() before: for a scene without interactions, or whose interactions have no patches after loading.
-	vector<masonry::JointContact> boxesInTouch(const Scene& scene, Real dampingRatio, const masonry::CompliantStep& step) const;
+	/// All blocks in touch, read() before: for a scene without interactions, or whose interactions have no patches after loading.
+	vector<masonry::JointContact> blocksInTouch(const Scene& scene, Real dampingRatio, const masonry::CompliantStep& step) const;
 
 	/// The number of a body in the core's list; -1: none.
 	int indexOf(int id) const { return size_t(id) < index.size() ? index[id] : -1; }

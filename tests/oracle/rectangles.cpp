@@ -1,5 +1,5 @@
 #include "rectangles.hpp"
-#include "contact/features.hpp"
+#include "contact/box_axes.hpp"
 #include "contact/reference_face.hpp"
 #include "tolerances.hpp"
 #include <algorithm>
@@ -18,10 +18,13 @@ namespace {
 
 namespace limits = tolerance::contact;
 
+int faceAxis(int face) { return face / 2; }
+double faceSign(int face) { return face % 2 ? 1. : -1.; }
+
 // A face looks along `sign` times `axis`; a vertex is an end of a face, where the other axis has the sign `end`.
 int vertexNumber(int axis, double sign, double end) { return axis == 0 ? bit(sign) + 2 * bit(end) : bit(end) + 2 * bit(sign); }
 
-Vector2 vertexOf(int number, const Vector2& half) { return feature::vertexSigns(number).head<2>().cwiseProduct(half); }
+Vector2 vertexOf(int number, const Vector2& half) { return {number & 1 ? half.x() : -half.x(), number & 2 ? half.y() : -half.y()}; }
 
 // One rectangle seen from the other.
 struct RelativePose {
@@ -124,7 +127,7 @@ FaceAxis referenceFace(const Vector2& half1, const Vector2& half2, const Relativ
 void chooseIncident(FacePair& pair, const RectangleMemory& memory)
 {
 	const int same = pair.face.axis, held = pair.face.body == 1 ? memory.face2 : memory.face1;
-	const double gain = memory.reference != 0 && feature::faceAxis(held) != same ? -limits::incident : limits::incident;
+	const double gain = memory.reference != 0 && faceAxis(held) != same ? -limits::incident : limits::incident;
 	const double facing = std::abs(pair.incident.axes[0][0]), across = std::abs(pair.incident.axes[0][1]);
 	pair.takeIncident(facing + gain > across ? same : 1 - same);
 }
@@ -195,8 +198,8 @@ public:
 	}
 
 private:
-	int axis() const { return feature::faceAxis(point.face); }
-	double sign() const { return feature::faceSign(point.face); }
+	int axis() const { return faceAxis(point.face); }
+	double sign() const { return faceSign(point.face); }
 
 	const RectangleFeature point;
 	const Vector2 vertexSigns;

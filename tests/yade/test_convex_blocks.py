@@ -251,13 +251,6 @@ def test_rigid_drum_stands(sides, method):
     assert np.allclose(dem.reactions(base)["force"].sum(axis=0), [0, 0, weight], rtol=0, atol=1e-9 * weight)
 
 
-def test_compliant_joints_of_convex_blocks_are_refused_in_one_sentence():
-    base = dem.base((9, 9, 0.2), stone())
-    dem.block((1, 1, 1), stone(), on=base)
-    id = dem.wedge((1, 1, 1), stone(), center=(3, 0, 0.5))
-    refuses(lambda: dem.engines(model="compliant"), f"O.bodies: {id} are convex blocks: compliant joints are between boxes only")
-
-
 def test_recorded_blocks_have_their_shapes(tmp_path):
     """An arch on its base is recorded without an engine of the joints: the corners of the history are those of dem.geometry, also after loading and after a
     block has been erased."""

@@ -1,5 +1,5 @@
 #pragma once
-// Where two faces (or two edges) of a pair of boxes meet: the contact patch.
+// Where two faces (or two edges) of a pair of bodies meet: the contact patch.
 #include "contact/features.hpp"
 #include <algorithm>
 
@@ -19,7 +19,7 @@ enum class PatchKind { None = 0, Face1 = 1, Face2 = 2, Edges = 3 };
 // What the patch was made of: all that `collide` remembers from one step to the next. Small integers, fit to be saved.
 struct PatchFeature {
 	PatchKind kind {PatchKind::None}; // Face1, Face2: face on face, the number names the reference body; Edges: edge across edge
-	int feature1 {-1};                // face 0..5 (kind Face1, Face2) or edge 0..11 (kind Edges) of body 1
+	int feature1 {-1};                // face (kind Face1, Face2) or edge (kind Edges) of body 1
 	int feature2 {-1};                // the same of body 2
 	PerPoint<Feature> vertices;       // the vertices that are corners of the patch, sorted
 

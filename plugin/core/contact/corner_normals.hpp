@@ -17,7 +17,7 @@
 // A corner at rest on a corner can stay there or leave over one of the faces, and both obey the laws. The two rows make it stay as long as
 // the reaction can be in the cone. A corner that moves over one of the faces already stays with that face: see dropPassed.
 //
-// In space the second normals belong to vertices on edges (contact/vertex_on_edge.hpp): of parallel edges, the ends of what they share.
+// In space the second normals belong to vertices on edges (contact/vertex_at_edges.hpp): of parallel edges, the ends of what they share.
 //
 // A corner is at a corner within tolerance::contact::vertexReach. Faces that enclose less than tolerance::contact::cornerSpread have one
 // normal: a block on its bed carries no second rows, and what is lost is that angle of the friction on one side.

@@ -1,10 +1,11 @@
 #pragma once
 // The one normal of a patch whose corners meet corners.
 //
-// Where two parallel edges meet, every normal between those of two faces, one of each box, is admissible
+// Where two parallel edges meet, every normal between those of two faces, one of each body, is admissible
 // (contact/corner_normals.hpp). A patch has one normal for all its points. It takes the mean of the two and tells how far they are
 // from it: the reaction may turn about the edge by this angle besides the friction angle.
-#include "contact/box_box.hpp"
+#include "contact/contact_patch.hpp"
+#include "shape/convex_polyhedron.hpp"
 
 namespace masonry {
 
@@ -15,8 +16,9 @@ struct CornerNormals {
 	double frictionAcross(double friction) const; // coefficient across the edge; infinite where every direction is admissible
 };
 
-// Gives the patch of two boxes (as `collide` finds it) the mean normal, and its touching points their gaps along it, if all that touches
+// Gives the patch of two bodies (as `collide` finds it) the mean normal, and its touching points their gaps along it, if all that touches
 // are corners on corners. Points touch below a gap of tolerance::contact::vertexReach; compression widens the reach of a corner by as much.
-CornerNormals takeMeanNormal(const Box& box1, const Pose& pose1, const Box& box2, const Pose& pose2, ContactPatch& patch);
+CornerNormals takeMeanNormal(const ConvexPolyhedron& shape1, const Pose& pose1, const ConvexPolyhedron& shape2, const Pose& pose2,
+                             ContactPatch& patch);
 
 } // namespace masonry

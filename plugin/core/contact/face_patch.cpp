@@ -1,115 +1,89 @@
 #include "contact/face_patch.hpp"
-#include "contact/features.hpp"
-#include "tolerances.hpp"
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace masonry {
 
-using feature::nextAxis;
-using feature::signOf;
-
 namespace {
-
-// Corners of a rectangle, counter-clockwise.
-constexpr double cornerSign[4][2] = {{1, 1}, {-1, 1}, {-1, -1}, {1, -1}};
-
-void chooseIncident(FacePair& pair, int held, int excluded)
-{
-	double largest = -1;
-	for (int axis = 0; axis < 3; ++axis) {
-		const double cosine = pair.face.sign * pair.incident.rotation(pair.face.axis, axis), sign = -signOf(cosine);
-		const double score = std::abs(cosine) + (held == feature::faceNumber(axis, sign) ? tolerance::contact::incident : 0);
-		if (axis != excluded && score > largest) {
-			largest = score;
-			pair.incidentAxis = axis;
-			pair.incidentSign = sign;
-		}
-	}
-}
-
-// Signs, in the incident box, of corner k of the incident face. With (k, l, incidentAxis) cyclic, cornerSign runs
-// counter-clockwise about +incidentAxis; the incident face looks against the reference face, whose outward normal is the
-// patch normal if it is body 1's, else the opposite.
-Vector3 incidentSigns(const FacePair& pair, int corner)
-{
-	const bool along = (pair.incidentSign < 0) == (pair.face.body == 1);
-	const auto& sign = cornerSign[along ? corner : 3 - corner];
-	const int k = nextAxis(pair.incidentAxis);
-	Vector3 signs;
-	signs[pair.incidentAxis] = pair.incidentSign;
-	signs[k] = sign[0];
-	signs[nextAxis(k)] = sign[1];
-	return signs;
-}
-
-Vector3 referenceSigns(const FacePair& pair, int corner)
-{
-	Vector3 signs;
-	signs[pair.face.axis] = pair.face.sign;
-	signs[pair.axisU] = cornerSign[corner][0];
-	signs[pair.axisV] = cornerSign[corner][1];
-	return signs;
-}
-
-Feature incidentVertex(const FacePair& pair, int corner)
-{
-	return Feature::ofVertex(3 - pair.face.body, feature::vertexNumber(incidentSigns(pair, corner)));
-}
-
-Feature referenceVertex(const FacePair& pair, int corner)
-{
-	return Feature::ofVertex(pair.face.body, feature::vertexNumber(referenceSigns(pair, corner)));
-}
-
-// Incident edge k leads from corner k to k+1 and runs along the axis whose sign changes; side k of the reference face
-// starts or ends at corner k.
-Feature crossingOf(const FacePair& pair, int edge, int side)
-{
-	const Vector3 from = incidentSigns(pair, edge), to = incidentSigns(pair, (edge + 1) % 4);
-	const int k = nextAxis(pair.incidentAxis);
-	const int incident = feature::edgeNumber(from[k] != to[k] ? k : nextAxis(k), from);
-	const int reference = feature::edgeNumber(side % 2 == 0 ? pair.axisV : pair.axisU, referenceSigns(pair, side));
-	return pair.face.body == 1 ? Feature(Feature::Edges, reference, incident) : Feature(Feature::Edges, incident, reference);
-}
 
 double vertexReach(const FacePair& pair, const PatchFeature& previous, const Feature& vertex)
 {
 	return (previous.has(vertex) ? tolerance::contact::vertexReach : tolerance::contact::slack) * pair.length;
 }
 
+// Place in the loop of the incident face of corner k of the overlap's task. The incident face looks against the reference face, whose
+// outward normal is the patch normal if it is body 1's, else the opposite.
+int placeInLoop(const FacePair& pair, int corner)
+{
+	return pair.face.body == 1 ? static_cast<int>(pair.incidentPlane().loop.size()) - 1 - corner : corner;
+}
+
+Feature incidentVertex(const FacePair& pair, int corner)
+{
+	return Feature::ofVertex(3 - pair.face.body, pair.incidentPlane().loop[placeInLoop(pair, corner)]);
+}
+
+Feature referenceVertex(const FacePair& pair, int corner) { return Feature::ofVertex(pair.face.body, pair.reference().loop[corner]); }
+
+// Edge k of the task leads from corner k to k + 1; backwards that is the edge before.
+Feature crossingOf(const FacePair& pair, int edge, int side)
+{
+	const auto& edges = pair.incidentPlane().edges;
+	const int size = static_cast<int>(edges.size()), place = placeInLoop(pair, edge);
+	const int incident = edges[pair.face.body == 1 ? (place + size - 1) % size : place], reference = pair.reference().edges[side];
+	return pair.face.body == 1 ? Feature(Feature::Edges, reference, incident) : Feature(Feature::Edges, incident, reference);
+}
+
+// The corner of the reference face where a point lies, within `reach` (m) of both its sides; -1 if there is none. At a sharp corner the
+// distance from the sides says little.
+template <class Reach>
+int cornerAt(const OverlapTask& task, const Vector2& place, Reach reach)
+{
+	constexpr double farOff = 1.5; // times the reach; above sqrt(2), where a corner is square
+	const auto& corners = task.reference->outline;
+	const auto nearer = [&](const Vector2& a, const Vector2& b) { return (a - place).squaredNorm() < (b - place).squaredNorm(); };
+	const int corner = static_cast<int>(std::min_element(corners.begin(), corners.end(), nearer) - corners.begin());
+	const double most = reach(corner);
+	const int before = corner == 0 ? task.sides() - 1 : corner - 1;
+	const double outside = std::max(std::abs(task.outside(before, place)), std::abs(task.outside(corner, place)));
+	return outside <= most && (corners[corner] - place).norm() <= farOff * most ? corner : -1;
+}
+
 // The feature of a corner; its vertices, up to two where corners of both faces coincide, are added to `found`. Such a
 // corner is named after body 2, so that it keeps its name if the other face becomes the reference.
-Feature identify(const FacePair& pair, const ClipTask& task, const ClipPoint& point, const PatchFeature& previous, PatchFeature& found)
+Feature identify(const FacePair& pair, const OverlapTask& task, const OverlapPoint& point, const PatchFeature& previous,
+                 PatchFeature& found)
 {
-	if (point.kind == ClipPoint::Crossing)
+	if (point.kind == OverlapPoint::Crossing)
 		return crossingOf(pair, point.first, point.side);
-	const Feature vertex =
-	    point.kind == ClipPoint::ReferenceCorner ? referenceVertex(pair, point.first) : incidentVertex(pair, point.first);
+	const bool isReference = point.kind == OverlapPoint::ReferenceCorner;
+	const Feature vertex = isReference ? referenceVertex(pair, point.first) : incidentVertex(pair, point.first);
 	found.add(vertex);
-	if (point.kind == ClipPoint::ReferenceCorner)
+	if (isReference)
 		return vertex;
-	const int corner = point.u > 0 ? (point.v > 0 ? 0 : 3) : (point.v > 0 ? 1 : 2);
+	const double own = vertexReach(pair, previous, vertex);
+	const int corner = cornerAt(task, point.place, [&](int k) { return std::min(own, task.referenceReach[k]); });
+	if (corner < 0)
+		return vertex;
 	const Feature other = referenceVertex(pair, corner);
-	const double reach = std::min(vertexReach(pair, previous, vertex), vertexReach(pair, previous, other));
-	if (std::max(std::abs(std::abs(point.u) - task.halfU), std::abs(std::abs(point.v) - task.halfV)) > reach)
-		return vertex;
 	found.add(other);
 	return vertex.kind == Feature::Vertex2 ? vertex : other;
 }
 
+double cross(const Vector2& a, const Vector2& b) { return a.x() * b.y() - a.y() * b.x(); }
+
 // Weights by triangles T_i = (c, p_i, p_i+1) about the centroid c, A = sum T_i:  w_i = (T_i-1 + T_i) / (2 A).
 // Their sum is 1. Their first moment is m = sum T_i (p_i + p_i+1) / (2 A); the centroid of triangle i is
 // (c + p_i + p_i+1) / 3, so c = sum T_i (c + p_i + p_i+1) / (3 A) = c/3 + 2 m/3, hence m = c.
-void setWeights(const ClipPolygon& polygon, double area, const Vector2& centroid, ContactPatch& out)
+void setWeights(const OverlapPolygon& polygon, double area, const Vector2& centroid, ContactPatch& out)
 {
-	for (int i = 0; i < polygon.size; ++i)
+	const std::size_t size = polygon.size();
+	for (std::size_t i = 0; i < size; ++i)
 		out.points[i].weight = 0;
-	for (int i = 0; i < polygon.size; ++i) {
-		const int next = i + 1 == polygon.size ? 0 : i + 1;
-		const Vector2 a = Vector2(polygon.points[i].u, polygon.points[i].v) - centroid;
-		const Vector2 b = Vector2(polygon.points[next].u, polygon.points[next].v) - centroid;
-		const double share = std::abs(a.x() * b.y() - a.y() * b.x()) / (4 * area);
+	for (std::size_t i = 0; i < size; ++i) {
+		const std::size_t next = i + 1 == size ? 0 : i + 1;
+		const double share = std::abs(cross(polygon[i].place - centroid, polygon[next].place - centroid)) / (4 * area);
 		out.points[i].weight += share;
 		out.points[next].weight += share;
 	}
@@ -119,88 +93,110 @@ void setWeights(const ClipPolygon& polygon, double area, const Vector2& centroid
 struct Extent {
 	double area {0}, diameter {0};
 	Vector2 centroid {Vector2::Zero()};
+
+	explicit Extent(const OverlapPolygon& polygon)
+	{
+		if (polygon.empty())
+			return;
+		const Vector2 origin = polygon[0].place;
+		Vector2 before = Vector2::Zero();
+		for (std::size_t i = 1; i < polygon.size(); ++i) {
+			const Vector2 here = polygon[i].place - origin;
+			const double triangle = std::abs(cross(before, here)) / 2;
+			area += triangle;
+			centroid += triangle / 3 * (before + here);
+			diameter = std::max(diameter, here.norm());
+			before = here;
+		}
+		if (area > 0)
+			centroid /= area;
+		centroid += origin;
+	}
 };
 
-Extent extent(const ClipPolygon& polygon)
+// Of some faces that which looks most along a direction; the face `held` leads.
+template <class Faces>
+int mostAlong(const ConvexPolyhedron& shape, const Faces& faces, const Vector3& direction, int held)
 {
-	Extent extent;
-	const Vector2 origin(polygon.points[0].u, polygon.points[0].v);
-	Vector2 before = Vector2::Zero();
-	for (int i = 1; i < polygon.size; ++i) {
-		const Vector2 here = Vector2(polygon.points[i].u, polygon.points[i].v) - origin;
-		const double triangle = std::abs(before.x() * here.y() - before.y() * here.x()) / 2;
-		extent.area += triangle;
-		extent.centroid += triangle / 3 * (before + here);
-		extent.diameter = std::max(extent.diameter, here.norm());
-		before = here;
+	int best = -1;
+	double largest = -std::numeric_limits<double>::infinity();
+	for (const int face : faces) {
+		const double score = direction.dot(shape.faces()[face].normal) + (face == held ? tolerance::contact::incident : 0);
+		if (score > largest) {
+			largest = score;
+			best = face;
+		}
 	}
-	if (extent.area > 0)
-		extent.centroid /= extent.area;
-	extent.centroid += origin;
-	return extent;
+	return best;
 }
 
 } // namespace
 
-FacePair facePair(const Box& box1, const Box& box2, const RelativePose& second, const FaceAxis& face, const PatchFeature& previous)
+FacePair facePair(const ConvexPolyhedron& shape1, const ConvexPolyhedron& shape2, const RelativePose& second, const FaceSeparation& face,
+                  const PatchFeature& previous, double length)
 {
 	const bool first = face.body == 1;
-	const int axisU = nextAxis(face.axis);
-	const double length = std::min(box1.halfSize.minCoeff(), box2.halfSize.minCoeff());
-	FacePair pair {
-	    first ? box1 : box2, first ? box2 : box1, first ? second : second.reversed(), face, axisU, nextAxis(axisU), 0, 1, length};
+	FacePair pair {first ? shape1 : shape2, first ? shape2 : shape1, first ? second : second.reversed(), face, -1, Vector3::Zero(), length};
+	pair.against = -(pair.incident.rotation.transpose() * pair.reference().normal);
 	const bool faces = previous.kind == PatchKind::Face1 || previous.kind == PatchKind::Face2;
-	chooseIncident(pair, !faces ? -1 : first ? previous.feature2 : previous.feature1, -1);
+	const int held = !faces ? -1 : first ? previous.feature2 : previous.feature1;
+	const int deepest = farthestVertex(pair.incidentShape, pair.against);
+	pair.incidentFace = mostAlong(pair.incidentShape, pair.incidentShape.corners()[deepest].faces, pair.against, held);
 	return pair;
 }
 
 FacePair withNextIncident(const FacePair& pair)
 {
 	FacePair next = pair;
-	chooseIncident(next, -1, pair.incidentAxis);
+	PerPoint<int> neighbours;
+	for (const int number : pair.incidentPlane().edges) {
+		const ConvexPolyhedron::Edge& edge = pair.incidentShape.edges()[number];
+		neighbours.push_back(edge.left == pair.incidentFace ? edge.right : edge.left);
+	}
+	next.incidentFace = mostAlong(pair.incidentShape, neighbours, pair.against, -1);
 	return next;
 }
 
-ClipTask clipTask(const FacePair& pair, const PatchFeature& previous)
+OverlapTask overlapTask(const FacePair& pair, const PatchFeature& previous)
 {
-	ClipTask task;
-	task.halfU = pair.referenceBox.halfSize[pair.axisU];
-	task.halfV = pair.referenceBox.halfSize[pair.axisV];
+	const ConvexPolyhedron::Face &reference = pair.reference(), &incident = pair.incidentPlane();
+	OverlapTask task {&reference, {}, pair.face.body == 1 ? incident.widestBackwards : incident.widest, {}, {}, 0};
 	task.slack = tolerance::contact::slack * pair.length;
-	for (int k = 0; k < 4; ++k) {
-		const Vector3 local = incidentSigns(pair, k).cwiseProduct(pair.incidentBox.halfSize);
+	for (int k = 0; k < static_cast<int>(incident.loop.size()); ++k) {
+		const Vector3& local = pair.incidentShape.vertices()[incident.loop[placeInLoop(pair, k)]];
 		const Vector3 corner = pair.incident.offset + pair.incident.rotation * local;
-		const double height = pair.face.sign * corner[pair.face.axis] - pair.referenceBox.halfSize[pair.face.axis];
-		task.incident[k] = {corner[pair.axisU], corner[pair.axisV], height, ClipPoint::IncidentCorner, k, -1};
-		task.incidentReach[k] = vertexReach(pair, previous, incidentVertex(pair, k));
-		task.referenceReach[k] = vertexReach(pair, previous, referenceVertex(pair, k));
+		const Vector2 place(reference.tangent.dot(corner), reference.across.dot(corner));
+		task.incident.push_back({place, reference.normal.dot(corner) - reference.offset, OverlapPoint::IncidentCorner, k, -1});
+		task.incidentReach.push_back(vertexReach(pair, previous, incidentVertex(pair, k)));
 	}
+	for (int k = 0; k < task.sides(); ++k)
+		task.referenceReach.push_back(vertexReach(pair, previous, referenceVertex(pair, k)));
 	return task;
 }
 
-bool facePatch(const FacePair& pair, const ClipTask& task, const Pose& referencePose, const PatchFeature& previous, ContactPatch& out,
+bool facePatch(const FacePair& pair, const OverlapTask& task, const Pose& referencePose, const PatchFeature& previous, ContactPatch& out,
                double sliver)
 {
-	const ClipPolygon polygon = clip(task);
-	const Extent overlap = extent(polygon);
-	if (polygon.size < 3 || overlap.area <= sliver * pair.length * overlap.diameter)
+	const OverlapPolygon polygon = overlap(task);
+	const Extent extent(polygon);
+	if (polygon.size() < 3 || extent.area <= sliver * pair.length * extent.diameter)
 		return false;
 
+	const ConvexPolyhedron::Face& reference = pair.reference();
 	const Matrix3 axes = referencePose.orientation.toRotationMatrix();
-	const Vector3 outward = pair.face.sign * axes.col(pair.face.axis);
+	const Vector3 outward = axes * reference.normal, tangent = axes * reference.tangent, across = axes * reference.across;
 	const bool first = pair.face.body == 1;
 	out.normal = first ? outward : Vector3(-outward);
-	out.area = overlap.area;
-	out.nominalArea = std::min(pair.referenceBox.faceArea(pair.face.axis), pair.incidentBox.faceArea(pair.incidentAxis));
-	const int referenceFace = feature::faceNumber(pair.face.axis, pair.face.sign);
-	const int incidentFace = feature::faceNumber(pair.incidentAxis, pair.incidentSign);
-	PatchFeature found {
-	    first ? PatchKind::Face1 : PatchKind::Face2, first ? referenceFace : incidentFace, first ? incidentFace : referenceFace, {}};
-	out.points.resize(polygon.size);
-	for (int i = 0; i < polygon.size; ++i) {
-		const ClipPoint& corner = polygon.points[i];
-		const Vector3 onFace = referencePose.position + corner.u * axes.col(pair.axisU) + corner.v * axes.col(pair.axisV) +
-		                       pair.referenceBox.halfSize[pair.face.axis] * outward;
+	out.area = extent.area;
+	out.nominalArea = std::min(reference.area, pair.incidentPlane().area);
+	PatchFeature found {first ? PatchKind::Face1 : PatchKind::Face2,
+	                    first ? pair.face.face : pair.incidentFace,
+	                    first ? pair.incidentFace : pair.face.face,
+	                    {}};
+	out.points.resize(polygon.size());
+	for (std::size_t i = 0; i < polygon.size(); ++i) {
+		const OverlapPoint& corner = polygon[i];
+		const Vector3 onFace = referencePose.position + corner.place.x() * tangent + corner.place.y() * across + reference.offset * outward;
 		const Vector3 over = onFace + corner.height * outward;
 		PatchPoint& point = out.points[i];
 		point.position1 = first ? onFace : over;
@@ -208,7 +204,7 @@ bool facePatch(const FacePair& pair, const ClipTask& task, const Pose& reference
 		point.gap = corner.height;
 		point.feature = identify(pair, task, corner, previous, found);
 	}
-	setWeights(polygon, overlap.area, overlap.centroid, out);
+	setWeights(polygon, extent.area, extent.centroid, out);
 	out.feature = std::move(found);
 	return true;
 }

@@ -1,5 +1,5 @@
 #pragma once
-// The features that meet at a contact point, and their numbers on a box.
+// The features that meet at a contact point.
 #include "math.hpp"
 #include <boost/container/small_vector.hpp>
 #include <cmath>
@@ -43,35 +43,3 @@ template <class T, size_t usual = 8>
 using PerPoint = boost::container::small_vector<T, usual>;
 
 } // namespace masonry
-
-// Numbers on a box. A sign is +1 or -1, `axis` is 0, 1, 2 for the box's own x, y, z.
-//   face   = 2 axis + (1 if it looks along +axis)
-//   vertex = bit 0, 1, 2 set where x, y, z is positive
-//   edge   = 4 axis + bits 0, 1 set where the next two axes (cyclic) are positive; the edge runs along `axis`
-namespace masonry::feature {
-
-inline int nextAxis(int axis) { return axis == 2 ? 0 : axis + 1; }
-inline double signOf(double value) { return std::signbit(value) ? -1. : 1.; }
-inline int bit(double sign) { return sign > 0 ? 1 : 0; }
-
-inline int faceNumber(int axis, double sign) { return 2 * axis + bit(sign); }
-inline int faceAxis(int face) { return face / 2; }
-inline double faceSign(int face) { return face % 2 ? 1. : -1.; }
-inline int vertexNumber(const Vector3& signs) { return bit(signs[0]) + 2 * bit(signs[1]) + 4 * bit(signs[2]); }
-inline Vector3 vertexSigns(int vertex) { return {vertex & 1 ? 1. : -1., vertex & 2 ? 1. : -1., vertex & 4 ? 1. : -1.}; }
-inline int edgeNumber(int axis, const Vector3& signs)
-{
-	const int next = nextAxis(axis);
-	return 4 * axis + bit(signs[next]) + 2 * bit(signs[nextAxis(next)]);
-}
-inline int edgeAxis(int edge) { return edge / 4; }
-inline Vector3 edgeSigns(int edge) // 0 along the edge
-{
-	Vector3 signs = Vector3::Zero();
-	const int next = nextAxis(edgeAxis(edge));
-	signs[next] = edge & 1 ? 1 : -1;
-	signs[nextAxis(next)] = edge & 2 ? 1 : -1;
-	return signs;
-}
-
-} // namespace masonry::feature

@@ -39,7 +39,7 @@ ContactFrame<Space> edgeAcrossEdge(const Edge& edge1, const Vector3& centre1, co
 	const double cosine = edge1.direction.dot(edge2.direction);
 	Vector3 normal = edge1.direction.cross(edge2.direction);
 	const double sineSquared = normal.squaredNorm();
-	normal *= feature::signOf(normal.dot(edge1.outward - edge2.outward)) / std::sqrt(sineSquared);
+	normal *= std::copysign(1., normal.dot(edge1.outward - edge2.outward)) / std::sqrt(sineSquared);
 	const double along1 = apart.dot(edge1.direction), along2 = apart.dot(edge2.direction);
 	const double s1 = (along1 - cosine * along2) / sineSquared, s2 = (cosine * along1 - along2) / sineSquared;
 
@@ -141,17 +141,6 @@ ContactFrame<Plane> Plane::frame(const Feature& feature, const Shape& shape1, co
 ContactFrame<Space> Space::frame(const Feature& feature, const Shape& shape1, const Pose& pose1, const Shape& shape2, const Pose& pose2)
 {
 	return frameOf(geometryOf(feature, shape1, shape2), pose1, pose2);
-}
-
-bool isSharp(const PointGeometry<Space>& crossing, const Pose& pose1, const Pose& pose2, const Vector3& faceNormal)
-{
-	const Edge edge1 = rotated(crossing.edge1, pose1), edge2 = rotated(crossing.edge2, pose2);
-	Vector3 normal = edge1.direction.cross(edge2.direction);
-	const double sine = normal.norm();
-	if (sine <= tolerance::contact::parallelEdges)
-		return false;
-	normal *= feature::signOf(normal.dot(faceNormal)) / sine;
-	return std::min({normal.dot(faceNormal), normal.dot(edge1.outward), -normal.dot(edge2.outward)}) > tolerance::contact::crossing;
 }
 
 } // namespace masonry

@@ -74,9 +74,4 @@ FaceReach<Space> reachOf(const ConvexPolyhedron&, int face);
 ContactFrame<Plane> frameOf(const PointGeometry<Plane>&, const PlanePose& pose1, const PlanePose& pose2);
 ContactFrame<Space> frameOf(const PointGeometry<Space>&, const Pose& pose1, const Pose& pose2);
 
-// Whether two edges that touch have their common normal between the outward normals of the faces beside them: along
-// `outward` it is 1 at least. The normal at a crossing of nearly parallel faces leaves theirs by their tilt / sine of the angle between
-// the edges. Nearly parallel edges mark no corner of the overlap that others do not mark; their normal can point anywhere.
-bool isSharp(const PointGeometry<Space>& crossing, const Pose& pose1, const Pose& pose2, const Vector3& faceNormal);
-
 } // namespace masonry

@@ -1,32 +1,38 @@
 #pragma once
-// Separation of two boxes along the axes that can separate them: the face normals of both and the products of an edge
-// of one with an edge of the other. Positive: gap; negative: penetration; in m.
-#include "contact/box_box.hpp"
+// Separation of two convex polyhedra along the axes that can separate them: the normals of the faces of both, and the common normals of an
+// edge of one and an edge of the other. Positive: gap; negative: penetration; in m.
+#include "contact/contact_patch.hpp"
 #include "contact/reference_face.hpp"
 #include "contact/relative_pose.hpp"
-#include "math.hpp"
-#include <array>
+#include "shape/convex_polyhedron.hpp"
 
 namespace masonry {
 
-struct SeparatingAxis {
-	Vector3 normal; // unit, in the frame of box 1, from box 1 to box 2
+struct FaceSeparation {
+	int body, face;
 	double separation;
 };
 
-struct EdgeAxis : SeparatingAxis {
-	int axis1, axis2;       // the edge of box 1 runs along its axis1, that of box 2 along its axis2
-	Vector3 signs1, signs2; // where the edges sit, in each box's own axes; the component along the edge is unused
-	Vector3 point1, point2; // nearest points of the two edges, in the frame of box 1
+struct EdgePair {
+	int edge1 {-1}, edge2 {-1};
+	double widest {-1e300}; // m, largest separation of edges that may also be nearest beyond their ends; not known for two boxes
+	Vector3 normal;         // unit, from body 1 to body 2. This and the points are in the frame of body 1
+	double separation;
+	Vector3 point1, point2; // nearest points of the straight lines along the edges
+	double room;            // m, from these points to the nearer end of either edge
 };
 
-// The faces of box 1, those of box 2, and the nine products of edges, whose separation is -infinity where they are nearly parallel.
-std::array<SeparatingAxis, 15> separatingAxes(const Box& box1, const Box& box2, const RelativePose& second);
+// Number of the vertex that lies farthest along a direction.
+int farthestVertex(const ConvexPolyhedron&, const Vector3& direction);
 
-// The reference face: that of the largest separation, ties decided as `collide` says.
-FaceAxis bestFace(const Box& box1, const Box& box2, const RelativePose& second, const PatchFeature& previous);
+// Number of the face that looks most along a direction.
+int faceAlong(const ConvexPolyhedron&, const Vector3& direction);
 
-// The pair of edges of the largest separation whose nearest points lie on both edges; false if there is none.
-bool bestEdges(const Box& box1, const Box& box2, const RelativePose& second, EdgeAxis& best);
+// The reference face: that of the largest separation, ties decided as `collide` says. `length`: m, to which tolerances are relative.
+FaceSeparation bestFace(const ConvexPolyhedron& shape1, const ConvexPolyhedron& shape2, const RelativePose& second,
+                        const PatchFeature& previous, double length);
+
+// The pair of edges of the largest separation whose nearest points lie on both edges; false if none separates by more than `least` (m).
+bool bestEdges(const ConvexPolyhedron& shape1, const ConvexPolyhedron& shape2, const RelativePose& second, double least, EdgePair& best);
 
 } // namespace masonry

@@ -1,6 +1,6 @@
 // Boxes that touch or not, by the contact geometry of the simulation.
+#include "contact/box_axes.hpp"
 #include "contact/face_patch.hpp"
-#include "contact/features.hpp"
 #include "expose.hpp"
 
 namespace masonry::python {
@@ -48,21 +48,22 @@ np::ndarray facePatches(const py::object& boxes, const py::object& first, const 
 {
 	const BoxPairs pairs(boxes, first, second);
 	const std::vector<double> margin = toVector(margins);
+	std::vector<ConvexPolyhedron> shapes;
+	for (size_t k = 0; 3 * k < pairs.sizes.size(); ++k)
+		shapes.push_back(ConvexPolyhedron::box(pairs.box(long(k)).halfSize));
 	std::vector<double> table(31 * pairs.first.size());
 	forEachCase(pairs.first.size(), [&](size_t pair) {
 		const long one = pairs.first[pair], other = pairs.second[pair];
-		const Box box1 = pairs.box(one), box2 = pairs.box(other);
+		const ConvexPolyhedron &box1 = shapes[one], &box2 = shapes[other];
 		const RelativePose seen = pairs.seenFromFirst(pair);
-		FaceAxis face = bestFace(box1, box2, seen, {});
-		if (face.body == 2) { // the one of the first box that it meets
-			const Vector3 outward = -face.sign * seen.rotation.col(face.axis);
-			outward.cwiseAbs().maxCoeff(&face.axis);
-			face = {1, face.axis, feature::signOf(outward[face.axis]), face.separation};
-		}
-		const FacePair faces = facePair(box1, box2, seen, face, {});
+		const double length = std::min(box1.thickness(), box2.thickness());
+		FaceSeparation face = bestFace(box1, box2, seen, {}, length);
+		if (face.body == 2) // the one of the first box that it meets
+			face = {1, faceAlong(box1, -(seen.rotation * box2.faces()[face.face].normal)), face.separation};
+		const FacePair faces = facePair(box1, box2, seen, face, {}, length);
 		ContactPatch patch;
 		const Pose pose {pairs.center(one), Quaternion(pairs.rotation(one))};
-		if (face.separation > margin[pair] || !facePatch(faces, clipTask(faces, {}), pose, {}, patch, 0))
+		if (face.separation > margin[pair] || !facePatch(faces, overlapTask(faces, {}), pose, {}, patch, 0))
 			return;
 		double* row = &table[31 * pair];
 		row[0] = patch.size();

@@ -1,6 +1,6 @@
 // Convex polyhedra: the hull of points, its faces and its mass, by the shapes of the simulation.
-#include "contact/polyhedron_axes.hpp"
-#include "contact/polyhedron_pair.hpp"
+#include "contact/collide.hpp"
+#include "contact/separating_axes.hpp"
 #include "expose.hpp"
 #include "shape/convex_polyhedron.hpp"
 #include "tolerances.hpp"
@@ -138,7 +138,7 @@ np::ndarray polyhedronPairs(const py::tuple& blocks, const py::object& first, co
 	forEachCase(ones.size(), [&](std::size_t pair) {
 		const long one = ones[pair], other = others[pair];
 		ContactPatch patch;
-		if (!findPatch(all.shapes[one], all.poses[one], all.shapes[other], all.poses[other], margin[pair], {}, patch))
+		if (!collide(all.shapes[one], all.poses[one], all.shapes[other], all.poses[other], margin[pair], {}, patch))
 			patch = {};
 		const Vector3& normal = patch.normal;
 		std::vector<double>& row = rows[pair];

@@ -1,6 +1,6 @@
 // The frames of contact points against closed forms: corners over faces, in the plane and in space, and two bars
 // whose edges cross.
-#include "contact/features.hpp"
+#include "contact/box_axes.hpp"
 #include "contact/point_geometry.hpp"
 #include <algorithm>
 #include <catch.hpp>

@@ -1,6 +1,6 @@
 // Random polyhedra judged by the hull of their Minkowski difference, by all separating axes, and by invariants that any patch must fulfil.
 // MASONRY_FUZZ_PAIRS sets the number of pairs of each test.
-#include "contact/polyhedron_pair.hpp"
+#include "contact/collide.hpp"
 #include "oracle/polyhedra.hpp"
 #include "tolerances.hpp"
 #include <catch.hpp>
@@ -22,7 +22,7 @@ struct Pair {
 
 bool patchOf(const Pair& pair, double margin, ContactPatch& patch, const PatchFeature& previous = {})
 {
-	return findPatch(pair.shape1, pair.pose1, pair.shape2, pair.pose2, margin, previous, patch);
+	return collide(pair.shape1, pair.pose1, pair.shape2, pair.pose2, margin, previous, patch);
 }
 
 long pairs(long usual)

@@ -1,5 +1,5 @@
 // Contact points of two boxes in space: against the plane, the collision patch, and differences along motions.
-#include "contact/box_box.hpp"
+#include "contact/collide.hpp"
 #include "contact/kinematics.hpp"
 #include <algorithm>
 #include <catch.hpp>
@@ -142,7 +142,7 @@ TEST_CASE("crossings of nearly parallel faces agree with the faces to first orde
 				upper.orientation = Eigen::AngleAxisd(tilt, Vector3(std::cos(direction), std::sin(direction), 0)) * upper.orientation;
 				const Vector3 half(2, 0.3, 0.3);
 				ContactPatch patch;
-				REQUIRE(collide({half}, at({0, 0, 0}), {half}, upper, 0.1, {}, patch));
+				REQUIRE(collide(ConvexPolyhedron::box(half), at({0, 0, 0}), ConvexPolyhedron::box(half), upper, 0.1, {}, patch));
 				const Found found = find(half, at({0, 0, 0}), half, upper, 0.1);
 				REQUIRE(found.size() == patch.size());
 				for (int i = 0; i < found.size(); ++i) {
@@ -290,10 +290,11 @@ TEST_CASE("no box in touch is without its deepest point, and no open corner coun
 				gap = std::min(gap, patch.points[k].gap);
 			return gap;
 		};
-		if (!collide({half1}, pose1, {half2}, pose2, 1, {}, patch))
+		const ConvexPolyhedron shape1 = ConvexPolyhedron::box(half1), shape2 = ConvexPolyhedron::box(half2);
+		if (!collide(shape1, pose1, shape2, pose2, 1, {}, patch))
 			continue;
 		pose2.position -= (nearest() + 1e-6) * patch.normal; // 1e-6 deep
-		if (!collide({half1}, pose1, {half2}, pose2, 1e-3, {}, patch) || nearest() < -1e-3)
+		if (!collide(shape1, pose1, shape2, pose2, 1e-3, {}, patch) || nearest() < -1e-3)
 			continue;
 		++touching;
 		const Found found = find(half1, pose1, half2, pose2, 1e-3);

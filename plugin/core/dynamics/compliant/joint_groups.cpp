@@ -1,4 +1,5 @@
 #include "dynamics/compliant/joint_groups.hpp"
+#include "contact/collide.hpp"
 #include "joints/joint_table.hpp"
 #include "joints/pivot.hpp"
 #include "tolerances.hpp"

@@ -76,6 +76,13 @@ def world_shape(body):
     return position + np.array([tuple(v) for v in body.shape.vertices]) @ matrices(turn).T, body.shape.faces
 
 
+def face_areas(body):
+    """Areas of the faces of a Box or a ConvexBlock, along their outward normals in the world (k, 3), m^2: of triangles from the first corner."""
+    vertices, faces = world_shape(body)
+    outlines = [vertices[loop] - vertices[loop[0]] for loop in faces]
+    return np.array([np.cross(outline[1:-1], outline[2:]).sum(axis=0) / 2 for outline in outlines])
+
+
 def _size(shape):
     return 2 * np.array(tuple(shape.extents)) if isinstance(shape, wrapper.Box) else np.ptp([tuple(v) for v in shape.vertices], axis=0)
 

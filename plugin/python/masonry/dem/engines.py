@@ -11,8 +11,8 @@ from yade import O, wrapper
 
 from masonry import _yade
 from masonry.dem import bodies, notes
-from masonry.dem.bodies import convex_blocks, geometry, half_sizes
-from masonry.dem.checks import check_blocks, check_material, check_recorder, listed
+from masonry.dem.bodies import face_areas, geometry, half_sizes, poses, reach
+from masonry.dem.checks import check_blocks, check_material, check_recorder
 from masonry.dem.structures import structures
 
 _MODELS = ("auto", "planar", "spatial", "compliant")
@@ -64,7 +64,8 @@ def _largest_pressure(free, gravity):
         # Half of the overlap of the two intervals over half the other's length, along both axes.
         shares = np.clip((half[k] + half - np.abs((centers - center) @ face.T)) / (2 * half), 0, 1).prod(axis=1)
         load = mass[k] + (mass * shares)[centers[:, 2] > center[2]].sum()
-        pressures.append(load * gravity / (4 * half[k].prod()))
+        convex = isinstance(free[k].shape, wrapper.ConvexBlock)
+        pressures.append(load * gravity / (-face_areas(free[k])[:, 2].min() if convex else 4 * half[k].prod()))
     return max(pressures)
 
 
@@ -117,10 +118,14 @@ def _choose_stiffness(blocks, penetration, gravity):
 def _landing_step(body, alone):
     """Critical time step of a block on its largest face, s. Above the frequency of any of its joints: all springs at the corner, and twice as stiff
     where it may land on another free block, which swings against it."""
-    half, state = body.shape.extents, body.state
-    area = 4 * half[0] * half[1] * half[2] / min(half)
+    shape, state = body.shape, body.state
+    if isinstance(shape, wrapper.Box):
+        x, y, z = shape.extents
+        area, reach_squared = 4 * x * y * z / min(x, y, z), shape.extents.squaredNorm()
+    else:
+        area, reach_squared = np.linalg.norm(face_areas(body), axis=1).max(), reach(body) ** 2
     stiffness = max(body.mat.normalStiffness, body.mat.shearStiffness)
-    return 2 / np.sqrt((1 if alone else 2) * stiffness * area * (1 / state.mass + half.squaredNorm() / min(state.inertia)))
+    return 2 / np.sqrt((1 if alone else 2) * stiffness * area * (1 / state.mass + reach_squared / min(state.inertia)))
 
 
 def record_motion(record, ids, direction=(1, 0, 0), start=0.0):
@@ -260,9 +265,6 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
     if penetration is not None and all(_is_given(b.mat, "normalStiffness") for b in blocks):
         notes.say(f"penetration = {penetration:g} is not used: every BlockMat has its normalStiffness")
     if model == "compliant":
-        convex = [b.id for b in convex_blocks()]
-        if convex:
-            raise ValueError(f"O.bodies: {listed(convex)} are convex blocks: compliant joints are between boxes only")
         if tolerance is not None or others or method != "auto":
             raise ValueError("tolerance, others and method are for rigid blocks: they must be left out with model='compliant'")
         return _compliant(blocks, motions, reason, dt, penetration or _PENETRATION, impact_order or "simultaneous", gravity, recorders)
@@ -321,11 +323,12 @@ def _compliant(blocks, motions, reason, dt, penetration, impact_order, gravity, 
     reasons.append(f"dt = {O.dt:.3g} s ({O.dt / critical:.2g} of the critical step)")
     print("masonry.dem:", "; ".join(reasons) + notes.of_records(motions))
 
-    smallest = min(min(b.shape.extents) for b in blocks)
+    smallest = poses(blocks)[1].min() / 2
     return [
         wrapper.ForceResetter(),
         wrapper.InsertionSortCollider([wrapper.Bo1_Box_Aabb(), wrapper.Bo1_ConvexBlock_Aabb()], verletDist=0.05 * smallest),
-        wrapper.InteractionLoop([wrapper.Ig2_Box_Box_BlockGeom()], [wrapper.Ip2_BlockMat_BlockMat_BlockPhys()], [wrapper.Law2_BlockGeom_BlockPhys_Rocking()]),
+        wrapper.InteractionLoop([wrapper.Ig2_Box_Box_BlockGeom(), wrapper.Ig2_Box_ConvexBlock_BlockGeom(), wrapper.Ig2_ConvexBlock_ConvexBlock_BlockGeom()],
+                                [wrapper.Ip2_BlockMat_BlockMat_BlockPhys()], [wrapper.Law2_BlockGeom_BlockPhys_Rocking()]),
         joints,
         *motions,
         *recorders,

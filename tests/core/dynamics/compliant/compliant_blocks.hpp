@@ -1,7 +1,7 @@
 #pragma once
 // Boxes on compliant joints that go by masonry::CompliantStep, with what a scene does around it: the search for patches before, and the
 // motion of the bodies after. Test use only.
-#include "contact/box_box.hpp"
+#include "contact/collide.hpp"
 #include "dynamics/compliant/compliant_step.hpp"
 #include "dynamics/compliant/time_step.hpp"
 #include "joints/joint_table.hpp"
@@ -12,7 +12,6 @@ struct CompliantBlocks {
 	masonry::CompliantStep step;
 	masonry::CompliantReport report; // of the last step
 	bool fits {true};                // the last step was stable
-	std::vector<masonry::Box> boxes;
 	masonry::JointLaw law;
 	std::vector<masonry::ImpactRecord> impacts;
 	std::vector<double> impactTimes;
@@ -30,25 +29,25 @@ struct CompliantBlocks {
 		const masonry::Vector3 s = size.cwiseAbs2();
 		body.inertia = body.mass / 12 * masonry::Vector3(s.y() + s.z(), s.x() + s.z(), s.x() + s.y());
 		body.prescribed = prescribed;
-		boxes.push_back({size / 2});
 		body.shape = std::make_shared<const masonry::ConvexPolyhedron>(masonry::ConvexPolyhedron::box(size / 2));
 		bodies().push_back(body);
-		return int(boxes.size()) - 1;
+		return int(bodies().size()) - 1;
 	}
 
 	void findPatches()
 	{
 		const std::vector<masonry::JointContact> known = std::move(step.system.contacts);
 		step.system.contacts.clear();
-		for (int a = 0; a < int(boxes.size()); ++a)
-			for (int b = a + 1; b < int(boxes.size()); ++b) {
+		for (int a = 0; a < int(bodies().size()); ++a)
+			for (int b = a + 1; b < int(bodies().size()); ++b) {
 				if (bodies()[a].prescribed && bodies()[b].prescribed)
 					continue;
 				const auto old = std::find_if(known.begin(), known.end(), [&](const auto& c) { return c.body1 == a && c.body2 == b; });
 				masonry::JointContact contact = old == known.end() ? masonry::JointContact() : *old;
 				masonry::ContactPatch patch;
-				const double margin = 1e-3 * boxes[b].halfSize.minCoeff();
-				if (!masonry::collide(boxes[a], bodies()[a].pose, boxes[b], bodies()[b].pose, margin, contact.patch.feature, patch))
+				const double margin = 1e-3 * bodies()[b].shape->thickness();
+				if (!masonry::collide(*bodies()[a].shape, bodies()[a].pose, *bodies()[b].shape, bodies()[b].pose, margin,
+				                      contact.patch.feature, patch))
 					continue;
 				contact.body1 = a;
 				contact.body2 = b;

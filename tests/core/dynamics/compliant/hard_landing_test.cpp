@@ -44,9 +44,9 @@ struct Drop {
 	{
 		rig.law.normalStiffness = rig.law.shearStiffness = pressure / depth;
 		rig.step.system.dt = 1;
-		for (size_t b = 0; b < rig.boxes.size(); ++b) {
+		for (size_t b = 0; b < rig.bodies().size(); ++b) {
 			const Body& body = rig.bodies()[b];
-			const Vector3& half = rig.boxes[b].halfSize;
+			const Vector3 half = rig.bodies()[b].shape->halfSize();
 			if (body.prescribed)
 				continue;
 			const double stiffness = rig.law.normalStiffness * 4 * half.prod() / half.minCoeff();

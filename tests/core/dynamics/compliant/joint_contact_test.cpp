@@ -1,5 +1,5 @@
 // Forces of one compliant joint.
-#include "contact/box_box.hpp"
+#include "contact/collide.hpp"
 #include "dynamics/compliant/joint_system.hpp"
 #include "impact/impulse_problem.hpp"
 #include <catch.hpp>
@@ -14,9 +14,10 @@ struct PressedBlocks {
 	Body lower, upper;
 	JointContact contact;
 	ContactPatch patch;
-	Box box;
+	ConvexPolyhedron box;
 
-	PressedBlocks(double yaw, double depth, const JointLaw& law, const Vector3& half = Vector3::Constant(0.5)) : box {half}
+	PressedBlocks(double yaw, double depth, const JointLaw& law, const Vector3& half = Vector3::Constant(0.5))
+	    : box(ConvexPolyhedron::box(half))
 	{
 		lower.prescribed = true;
 		upper.mass = 1000;
@@ -84,7 +85,7 @@ namespace {
 // Moment about the axis through the centroid of the upper block's lower face, of unit direction `axis`.
 double momentAbout(const PressedBlocks& blocks, const Vector3& axis)
 {
-	const Vector3 centroid = blocks.upper.pose.toGlobal({0, 0, -blocks.box.halfSize.z()});
+	const Vector3 centroid = blocks.upper.pose.toGlobal({0, 0, -blocks.box.halfSize().z()});
 	double sum = 0;
 	for (int i = 0; i < blocks.contact.size(); ++i)
 		sum += axis.dot((blocks.contact.position(i) - centroid).cross(blocks.contact.force(i)));
@@ -94,7 +95,7 @@ double momentAbout(const PressedBlocks& blocks, const Vector3& axis)
 // Turned about the axis through that centroid.
 void lean(PressedBlocks& blocks, const Vector3& axis, double angle)
 {
-	const Vector3 arm(0, 0, blocks.box.halfSize.z()), centroid = blocks.upper.pose.toGlobal(-arm);
+	const Vector3 arm(0, 0, blocks.box.halfSize().z()), centroid = blocks.upper.pose.toGlobal(-arm);
 	blocks.upper.pose.orientation = Eigen::AngleAxisd(angle, axis) * blocks.upper.pose.orientation;
 	blocks.upper.pose.position = centroid + blocks.upper.pose.orientation * arm;
 	blocks.look();
@@ -306,7 +307,7 @@ TEST_CASE("Contacts that move with their bodies have the gaps that are looked up
 		s.bodies.resize(2);
 		const int lower = swapped ? 1 : 0, upper = 1 - lower;
 		const auto turn = [](double angle) { return Quaternion(Eigen::AngleAxisd(angle, Vector3::UnitY())); };
-		const Box box {Vector3::Constant(0.5)};
+		const ConvexPolyhedron box = ConvexPolyhedron::box(Vector3::Constant(0.5));
 		s.bodies[lower].pose.orientation = turn(0.03);
 		s.bodies[upper].pose.orientation = turn(0.07);
 		s.bodies[upper].pose.position = turn(0.03) * Vector3(0.5, 0, 0.5) + turn(0.07) * Vector3(-0.49, 0, 0.5 - 1e-5);

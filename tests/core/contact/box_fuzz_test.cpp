@@ -1,6 +1,6 @@
 // Random boxes judged by the hull of their Minkowski difference and by invariants that any patch must fulfil.
-#include "contact/box_box.hpp"
-#include "oracle/minkowski.hpp"
+#include "contact/collide.hpp"
+#include "oracle/polyhedra.hpp"
 #include <catch.hpp>
 #include <functional>
 #include <random>
@@ -16,25 +16,25 @@ struct RandomPairs {
 
 	Vector3 vector() { return {normal(random), normal(random), normal(random)}; }
 	Quaternion orientation() { return Quaternion(normal(random), normal(random), normal(random), normal(random)).normalized(); }
-	Box box() { return {{size(random), size(random), size(random)}}; }
+	ConvexPolyhedron box() { return ConvexPolyhedron::box({size(random), size(random), size(random)}); }
 };
 
 struct Pair {
-	Box box1, box2;
+	ConvexPolyhedron box1, box2;
 	Pose pose1, pose2;
 };
 
 // A random pair pushed together or apart until the oracle says that it is separated by `wished`.
-Pair pairAt(RandomPairs& random, double wished, oracle::Separation& separation)
+Pair pairAt(RandomPairs& random, double wished, oracle::Slab& slab)
 {
 	for (;;) {
 		Pair pair {random.box(), random.box(), {random.vector(), random.orientation()}, {random.vector(), random.orientation()}};
 		pair.pose2.position = pair.pose1.position + 2 * random.vector();
 		for (int i = 0; i < 30; ++i) {
-			separation = oracle::separation(pair.box1, pair.pose1, pair.box2, pair.pose2);
-			if (std::abs(separation.value - wished) < 1e-12)
+			slab = oracle::slabOfDifferences(pair.box1, pair.pose1, pair.box2, pair.pose2);
+			if (std::abs(slab.width - wished) < 1e-12)
 				return pair;
-			pair.pose2.position += (wished - separation.value) * separation.normal;
+			pair.pose2.position += (wished - slab.width) * slab.normal;
 		}
 	}
 }
@@ -47,7 +47,10 @@ double smallestGap(const ContactPatch& patch)
 	return gap;
 }
 
-double beyond(const Box& box, const Pose& pose, const Vector3& point) { return (pose.toLocal(point).cwiseAbs() - box.halfSize).maxCoeff(); }
+double beyond(const ConvexPolyhedron& box, const Pose& pose, const Vector3& point)
+{
+	return (pose.toLocal(point).cwiseAbs() - box.halfSize()).maxCoeff();
+}
 
 Feature swappedBodies(const Feature& f)
 {
@@ -78,9 +81,9 @@ void checkSame(const ContactPatch& a, const ContactPatch& b, const std::function
 
 TEST_CASE("The oracle knows two cubes", "[oracle]")
 {
-	const Box cube {{.5, .5, .5}};
-	CHECK(oracle::separation(cube, {}, cube, {{.1, .2, 1.25}, Quaternion::Identity()}).value == Approx(.25).epsilon(1e-12));
-	CHECK(oracle::separation(cube, {}, cube, {{.1, .2, .75}, Quaternion::Identity()}).value == Approx(-.25).epsilon(1e-12));
+	const ConvexPolyhedron cube = ConvexPolyhedron::box({.5, .5, .5});
+	CHECK(oracle::slabOfDifferences(cube, {}, cube, {{.1, .2, 1.25}, Quaternion::Identity()}).width == Approx(.25).epsilon(1e-12));
+	CHECK(oracle::slabOfDifferences(cube, {}, cube, {{.1, .2, .75}, Quaternion::Identity()}).width == Approx(-.25).epsilon(1e-12));
 }
 
 // The gap of the nearest point, along the patch's normal n, is that of the oracle, along its normal m. Where n is a face
@@ -92,7 +95,7 @@ TEST_CASE("Boxes that touch or overlap: depth and normal are those of the Minkow
 	int kinds[4] = {}, exceptions = 0;
 	for (double depth : {0., 1e-6, 1e-4, 1e-2})
 		for (int trial = 0; trial < 100; ++trial) {
-			oracle::Separation truth;
+			oracle::Slab truth;
 			const Pair pair = pairAt(random, -depth, truth);
 			ContactPatch patch;
 			REQUIRE(collide(pair.box1, pair.pose1, pair.box2, pair.pose2, 1e-9, {}, patch));
@@ -113,12 +116,12 @@ TEST_CASE("Boxes apart: no gap is smaller than the slab between them", "[fuzz]")
 {
 	RandomPairs random;
 	for (int trial = 0; trial < 100; ++trial) {
-		oracle::Separation truth;
+		oracle::Slab truth;
 		const Pair pair = pairAt(random, 1e-2, truth);
 		ContactPatch patch;
 		CHECK_FALSE(collide(pair.box1, pair.pose1, pair.box2, pair.pose2, 9e-3, {}, patch));
 		if (collide(pair.box1, pair.pose1, pair.box2, pair.pose2, 10, {}, patch))
-			CHECK(smallestGap(patch) >= truth.value - 1e-10);
+			CHECK(smallestGap(patch) >= truth.width - 1e-10);
 	}
 }
 
@@ -127,7 +130,7 @@ TEST_CASE("Every patch: unit normal, points on both faces, weights with the cent
 	RandomPairs random;
 	int found = 0;
 	for (int trial = 0; trial < 20000; ++trial) {
-		const Box box1 = random.box(), box2 = random.box();
+		const ConvexPolyhedron box1 = random.box(), box2 = random.box();
 		const Pose pose1 {random.vector(), random.orientation()}, pose2 {pose1.position + random.vector(), random.orientation()};
 		ContactPatch patch;
 		if (!collide(box1, pose1, box2, pose2, .05, {}, patch))
@@ -176,7 +179,7 @@ TEST_CASE("Swapping the bodies reverses the normal, a rigid motion moves the pat
 		return Pose {mirror.cwiseProduct(pose.position), Quaternion(q.w(), q.x(), -q.y(), -q.z())};
 	};
 	for (int trial = 0; trial < 5000; ++trial) {
-		const Box box1 = random.box(), box2 = random.box();
+		const ConvexPolyhedron box1 = random.box(), box2 = random.box();
 		const Pose pose1 {Vector3::Zero(), random.orientation()}, pose2 {random.vector(), random.orientation()};
 		ContactPatch patch, other;
 		if (!collide(box1, pose1, box2, pose2, .05, {}, patch))
@@ -205,7 +208,7 @@ TEST_CASE("Swapping the bodies reverses the normal, a rigid motion moves the pat
 // A block on one vertex, wobbling: the reference is always the base, and what is remembered changes nothing but ties.
 TEST_CASE("Along a smooth motion gaps change as fast as the bodies move and no faster", "[continuity]")
 {
-	const Box base {{3, 3, .2}}, block {{.4, .3, .8}};
+	const ConvexPolyhedron base = ConvexPolyhedron::box({3, 3, .2}), block = ConvexPolyhedron::box({.4, .3, .8});
 	const Pose basePose {{0, 0, -.2}, Quaternion::Identity()};
 	PatchFeature previous;
 	double before[8] = {};
@@ -214,7 +217,7 @@ TEST_CASE("Along a smooth motion gaps change as fast as the bodies move and no f
 		const double t = step * 1e-3;
 		const Vector3 spin(.2 * std::cos(2 * t), .2 * std::sin(3 * t), .5 * t);
 		const Quaternion orientation(Eigen::AngleAxisd(spin.norm(), spin.normalized()));
-		const double reach = (orientation.toRotationMatrix().row(2).cwiseAbs() * block.halfSize)(0);
+		const double reach = (orientation.toRotationMatrix().row(2).cwiseAbs() * block.halfSize())(0);
 		ContactPatch patch;
 		REQUIRE(collide(base, basePose, block, {{.1 * t, 0, reach}, orientation}, 1, previous, patch));
 		REQUIRE(patch.size() == 4);

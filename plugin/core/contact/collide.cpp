@@ -1,5 +1,5 @@
-#include "contact/polyhedron_pair.hpp"
-#include "contact/polyhedron_patch.hpp"
+#include "contact/collide.hpp"
+#include "contact/face_patch.hpp"
 #include "tolerances.hpp"
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@ namespace {
 // The reference face is the right normal without a look at the edges if the faces are nearly parallel or if the deepest
 // incident vertex lies over the reference face: then its distance is the separation of the bodies. Both hold for bodies that
 // touch; one body deep beside the edge of another can have a shorter way out across its edges.
-bool isFaceContact(const PolyhedronFaces& pair, const OverlapTask& task, double cosineLimit)
+bool isFaceContact(const FacePair& pair, const OverlapTask& task, double cosineLimit)
 {
 	if (pair.face.separation < -tolerance::contact::shallow * pair.length)
 		return false;
@@ -60,7 +60,7 @@ public:
 		FaceSeparation reference = bestFace(shape1, shape2, second, previous, length);
 		if (reference.separation > margin)
 			return false;
-		const PolyhedronFaces pair = facesOf(reference);
+		const FacePair pair = pairOf(reference);
 		const OverlapTask task = overlapTask(pair, previous);
 		EdgePair edges;
 		const auto edgesCross = [&] { return bestEdges(shape1, shape2, second, reference.separation, edges); };
@@ -79,7 +79,7 @@ public:
 			// Along the normal of a face the edges are 1 / cosine as far apart; a patch that lacks them is farther.
 			const double allowed = tolerance::contact::edge * length + tolerance::contact::depthShare * std::max(0., edges.separation);
 			if (const double cosine = nearFace(edges, reference)) {
-				const PolyhedronFaces nearby = facesOf(reference);
+				const FacePair nearby = pairOf(reference);
 				if (patchOn(nearby, overlapTask(nearby, previous)) && smallestGap(out) * cosine <= edges.separation + allowed)
 					return isPossible(edges, smallestGap(out), margin);
 			}
@@ -88,17 +88,14 @@ public:
 		}
 		if (pair.cosine() > cosineLimit)
 			return false;
-		const PolyhedronFaces next = withNextIncident(pair);
+		const FacePair next = withNextIncident(pair);
 		return patchOn(next, overlapTask(next, previous)) && isPossible(edges, smallestGap(out), margin);
 	}
 
 private:
-	PolyhedronFaces facesOf(const FaceSeparation& reference) const
-	{
-		return polyhedronFaces(shape1, shape2, second, reference, previous, length);
-	}
+	FacePair pairOf(const FaceSeparation& reference) const { return facePair(shape1, shape2, second, reference, previous, length); }
 
-	bool patchOn(const PolyhedronFaces& faces, const OverlapTask& task)
+	bool patchOn(const FacePair& faces, const OverlapTask& task)
 	{
 		return facePatch(faces, task, faces.face.body == 1 ? pose1 : pose2, previous, out);
 	}
@@ -151,10 +148,19 @@ private:
 
 } // namespace
 
-bool findPatch(const ConvexPolyhedron& shape1, const Pose& pose1, const ConvexPolyhedron& shape2, const Pose& pose2, double margin,
-               const PatchFeature& previous, ContactPatch& out)
+bool collide(const ConvexPolyhedron& shape1, const Pose& pose1, const ConvexPolyhedron& shape2, const Pose& pose2, double margin,
+             const PatchFeature& previous, ContactPatch& out)
 {
 	return PairSearch(shape1, pose1, shape2, pose2, previous, out).find(margin);
+}
+
+std::array<int, 2> facesOf(const ContactPatch& patch, const ConvexPolyhedron& shape1, const Pose& pose1, const ConvexPolyhedron& shape2,
+                           const Pose& pose2)
+{
+	if (patch.feature.kind != PatchKind::Edges)
+		return {patch.feature.feature1, patch.feature.feature2};
+	return {faceAlong(shape1, pose1.orientation.conjugate() * patch.normal),
+	        faceAlong(shape2, pose2.orientation.conjugate() * -patch.normal)};
 }
 
 } // namespace masonry

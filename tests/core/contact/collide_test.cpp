@@ -1,5 +1,5 @@
 // Patches known beforehand, and the hard cases: faces that coincide, head joints, rocking.
-#include "contact/box_box.hpp"
+#include "contact/collide.hpp"
 #include <catch.hpp>
 #include <random>
 #include <set>
@@ -13,7 +13,8 @@ constexpr double pi = 3.14159265358979323846;
 
 Quaternion turn(double angle, const Vector3& axis) { return Quaternion(Eigen::AngleAxisd(angle, axis)); }
 
-ContactPatch touch(const Box& box1, const Pose& pose1, const Box& box2, const Pose& pose2, const PatchFeature& previous = {})
+ContactPatch touch(const ConvexPolyhedron& box1, const Pose& pose1, const ConvexPolyhedron& box2, const Pose& pose2,
+                   const PatchFeature& previous = {})
 {
 	ContactPatch patch;
 	REQUIRE(collide(box1, pose1, box2, pose2, 1e9, previous, patch));
@@ -53,7 +54,8 @@ const PatchPoint& at(const ContactPatch& patch, const Vector3& place)
 	return patch.points[best];
 }
 
-const Box base {{5, 5, .1}}, block {{.3, .5, 1.5}}, cube {{.5, .5, .5}};
+const ConvexPolyhedron base = ConvexPolyhedron::box({5, 5, .1}), block = ConvexPolyhedron::box({.3, .5, 1.5}),
+                       cube = ConvexPolyhedron::box({.5, .5, .5});
 const Pose basePose {{0, 0, -.1}, Quaternion::Identity()}, origin;
 
 } // namespace
@@ -170,7 +172,7 @@ TEST_CASE("Round-off in coinciding faces changes neither the kind nor a feature"
 		return Pose {pose.position + move, (turn(spin.norm(), spin.normalized()) * pose.orientation).normalized()};
 	};
 	struct Scene {
-		Box box1, box2;
+		ConvexPolyhedron box1, box2;
 		Pose pose2;
 	};
 	const Scene scenes[] = {{cube, cube, {zAxis, Quaternion::Identity()}},                                       // stack
@@ -264,7 +266,8 @@ TEST_CASE("Scaled by 1e-3 or 60, the patch is the same patch scaled", "[scale]")
 	const Vector3 place(.05, .1, 1.2);
 	const auto unit = touch(cube, origin, block, {place, tilt});
 	for (double scale : {1e-3, 60.}) {
-		const auto patch = touch({scale * cube.halfSize}, origin, {scale * block.halfSize}, {scale * place, tilt});
+		const auto patch = touch(ConvexPolyhedron::box(scale * cube.halfSize()), origin, ConvexPolyhedron::box(scale * block.halfSize()),
+		                         {scale * place, tilt});
 		REQUIRE(patch.size() == unit.size());
 		CHECK(features(patch) == features(unit));
 		CHECK(patch.area == Approx(scale * scale * unit.area).epsilon(1e-12));

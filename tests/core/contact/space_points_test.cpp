@@ -1,10 +1,8 @@
-// Contact points of polyhedra: boxes as the search for boxes has them, bases with many corners, second normals of prisms.
-#include "contact/polyhedron_points.hpp"
-#include "oracle/polyhedra.hpp"
+// Contact points of polyhedra: bases with many corners, sharp edges over borders, second normals of prisms.
+#include "contact/kinematics.hpp"
 #include <catch.hpp>
 
 using namespace masonry;
-using oracle::RandomShapes;
 
 namespace {
 
@@ -33,67 +31,20 @@ const Pose groundPose {{0, 0, -.5}, upright};
 
 } // namespace
 
-TEST_CASE("Boxes have the points of the search for boxes, second normals too", "[fuzz]")
-{
-	RandomShapes random(11);
-	const auto box = [&] { return ConvexPolyhedron::box({random.even(.1, .5), random.even(.1, .5), random.even(.1, .5)}); };
-	int found = 0, seconds = 0;
-	for (int trial = 0; trial < 20000; ++trial) {
-		const ConvexPolyhedron shape1 = box(), shape2 = trial % 3 ? box() : shape1;
-		const int axis = random.number(0, 2);
-		const Vector3 half1 = shape1.halfSize(), half2 = shape2.halfSize();
-		Vector3 offset = Vector3::Zero();
-		for (int k = 0; k < 3; ++k) {
-			const double places[] = {0, half1[k], half1[k] - half2[k], random.even(-.3, .3), half1[k] + half2[k] - 1e-3};
-			offset[k] = k == axis ? half1[k] + half2[k] - std::pow(10., -random.number(4, 9)) : places[random.number(0, 4)];
-		}
-		const Vector3 way = random.vector().normalized();
-		const double angle = trial % 2 ? std::pow(10., -random.even(.3, 9)) : 0;
-		const Pose motion {random.vector(), random.orientation()};
-		const Pose pose1 = trial % 4 < 2 ? motion : Pose {};
-		// It turns about a corner, which stays in touch with a corner where the sizes are equal.
-		const Quaternion by = turn(angle, trial % 5 ? way : Vector3::Unit((axis + 1) % 3));
-		const Vector3 pivot = offset - half2;
-		Pose pose2 {pivot + by * (offset - pivot), by};
-		pose2 = {pose1.toGlobal(pose2.position), pose1.orientation * pose2.orientation};
-		PatchFeature memory, boxMemory;
-		for (int step = 0; step < 2; ++step) {
-			FoundPoints<Space> points, boxPoints;
-			const bool touch = findPolyhedronPoints(shape1, pose1, shape2, pose2, 1e9, memory, points);
-			REQUIRE(touch == Space::findPoints(shape1, pose1, shape2, pose2, 1e9, boxMemory, boxPoints));
-			if (!touch)
-				break;
-			addPolyhedronNormals(shape1, pose1, shape2, pose2, points);
-			Space::addSecondNormals(shape1, pose1, shape2, pose2, boxPoints);
-			++found;
-			seconds += points.size() > points.places;
-			CHECK(memory == boxMemory);
-			CHECK(points.places == boxPoints.places);
-			CHECK(points.face1 == boxPoints.face1);
-			CHECK(points.face2 == boxPoints.face2);
-			CHECK(points.features == boxPoints.features);
-			CHECK(points.corners == boxPoints.corners);
-			pose2.position += 1e-5 * random.vector();
-		}
-	}
-	CHECK(found > 10000);
-	CHECK(seconds > 100);
-}
-
 TEST_CASE("A block on a base of many corners stands on all of them")
 {
 	for (const int sides : {3, 5, 6, 8, 12, 24, 48}) {
 		const ConvexPolyhedron shape = regular(sides, 2);
 		PatchFeature memory;
 		FoundPoints<Space> points;
-		REQUIRE(findPolyhedronPoints(ground, groundPose, shape, {{0, 0, 1}, turn(.3, Vector3::UnitZ())}, 1e-9, memory, points));
+		REQUIRE(Space::findPoints(ground, groundPose, shape, {{0, 0, 1}, turn(.3, Vector3::UnitZ())}, 1e-9, memory, points));
 		CHECK(points.size() == sides);
 		for (const Feature& feature : points.features)
 			CHECK(feature.kind == Feature::Vertex2);
 		// Two of them, one turned by half a side: the overlap has twice as many corners.
 		const Pose above {{0, 0, 2}, turn(M_PI / sides, Vector3::UnitZ())};
 		memory = {};
-		REQUIRE(findPolyhedronPoints(shape, {}, shape, above, 1e-9, memory, points));
+		REQUIRE(Space::findPoints(shape, {}, shape, above, 1e-9, memory, points));
 		CHECK(points.size() == 2 * sides);
 	}
 }
@@ -116,7 +67,7 @@ TEST_CASE("The edge of a wedge over the border of a face keeps its crossings, ho
 		const Quaternion lying = (turn(std::atan2(along.x(), along.y()), Vector3::UnitZ()) * down).normalized();
 		PatchFeature memory;
 		FoundPoints<Space> points;
-		REQUIRE(findPolyhedronPoints(narrow, {{0, 0, -.5}, upright}, shape, {{0, 0, face.offset}, lying}, 1e-9, memory, points));
+		REQUIRE(Space::findPoints(narrow, {{0, 0, -.5}, upright}, shape, {{0, 0, face.offset}, lying}, 1e-9, memory, points));
 		CHECK(points.size() == 4);
 		for (const Feature& feature : points.features)
 			CHECK(feature.kind == Feature::Edges);
@@ -154,7 +105,7 @@ TEST_CASE("A vertex on an edge has the normals between the faces beside it, at a
 		REQUIRE(points.face1 >= 0);
 		points.face2 = 0;
 		points.features.push_back(Feature::ofVertex(2, vertex, points.face1));
-		addPolyhedronNormals(ridge, pose, placed.shape, tip, points);
+		Space::addSecondNormals(ridge, pose, placed.shape, tip, points);
 		REQUIRE(points.size() == 2); // the tip is slimmer than the ridge is steep: it can lie on both faces
 		CHECK(points.features[1].kind == Feature::Vertex2);
 		CHECK(points.features[1].on2 == vertex);
