@@ -1,9 +1,12 @@
 """Rigid convex blocks in motion, with both methods, in the plane and in space: right values, balances, symmetries and saved runs. validation/convex has more cases."""
 
 import math
+import subprocess
+from pathlib import Path
 
 import numpy as np
 import pytest
+from convex_hash import convex_hash
 from masonry import dem, results
 from rocking_scene import Balance, bits, rigid_engines, steps, stone
 from yade import O, Quaternion, Vector3
@@ -223,6 +226,13 @@ def test_saved_and_loaded(scene, method, tmp_path):
         assert np.array_equal(saved, bits()), ending
         steps(400 - 157)
         assert np.array_equal(wanted, bits()), ending
+
+
+def test_any_number_of_threads():
+    """One thread and two give the same bits."""
+    script = Path(__file__).with_name("convex_hash.py")
+    output = subprocess.run(["yade", "-j2", "-n", "-x", str(script)], capture_output=True, text=True, timeout=200).stdout
+    assert f"hash {convex_hash()}" in output, output
 
 
 # --- what is recorded ---
