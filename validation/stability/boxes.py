@@ -35,6 +35,13 @@ def near_pairs(centres, half, dynamic):
     return first[meet], second[meet]
 
 
+def gaps():
+    """(ids, axes, radii, first, second, gaps) of near pairs, m."""
+    ids, centres, axes, half = layout()
+    first, second = near_pairs(centres, 1.05 * half, np.array([O.bodies[i].dynamic for i in ids]))
+    return ids, axes, np.linalg.norm(half, axis=1), first, second, separations(centres, axes, half, first, second) if len(first) else np.zeros(0)
+
+
 def depth():
     """Depth of the deepest pair of the scene relative to the smaller half size of the two; 0 where none overlaps."""
     ids, centres, axes, half = layout()

@@ -8,6 +8,7 @@ import warnings
 
 from boxes import depth
 from masonry import dem
+from polyhedra import Solid
 from yade import O
 
 # A run at the default step or below counts as right up to these limits: energy that appears, relative to the energy turned over, and depth, relative
@@ -51,7 +52,7 @@ class Energies:
         self.work = work
         self.lowest, self.gain, self.kinetic, self.start = math.inf, 0.0, 0.0, None
         free = [b for b in O.bodies if b.dynamic]
-        self.floor = LEAST_FALL * sum(b.state.mass * 9.81 * min(b.shape.extents) for b in free)
+        self.floor = LEAST_FALL * sum(b.state.mass * 9.81 * Solid(b).thickness for b in free)
 
     def look(self):
         e = dem.energy()

@@ -1,7 +1,9 @@
 """Random scenes, one seed each, judged by invariants alone; appends one JSON line a scene. Run by `run --long`: of every ten scenes that are thrown one
-more is pressed by bodies with prescribed motion. STABILITY_MODEL=compliant (or another name of measures.MODELS): all seeds with that model.
-STABILITY_KIND=pressed (or thrown): these scenes alone."""
+more is pressed by bodies with prescribed motion, and one more has convex blocks. STABILITY_MODEL=compliant (or another name of measures.MODELS): all seeds with that model.
+STABILITY_KIND=pressed (or thrown, convex): these scenes alone."""
 
+import contextlib
+import io
 import json
 import math
 import os
@@ -9,9 +11,10 @@ import random
 import time
 import warnings
 
-from boxes import depth, layout, near_pairs, separations
+import boxes
 from masonry import dem
 from measures import MODELS, MOST_DEPTH, MOST_GAIN, OTHER_DEPTH, Energies, engine, quiet_engines
+from polyhedra import Solids
 from yade import O, Quaternion, Vector3, utils
 
 import numpy as np
@@ -115,32 +118,86 @@ def pressed(seed):
     return model
 
 
-KINDS = {"thrown": build, "pressed": pressed}
+def polygon(r, size):
+    """Corners (n, 2) of a random convex polygon of 3 to 10 corners on an ellipse, of which the last two may be near each other."""
+    wide = size * (r.choice((1, 1, 0.03)) if r.random() < 0.5 else r.uniform(0.2, 1))
+    angles = sorted(r.uniform(0, 2 * math.pi) for _ in range(r.randint(3, 10)))
+    return [(size * math.cos(a), wide * math.sin(a)) for a in angles]
+
+
+def hull(r, size):
+    """Points on an ellipsoid: a hull of 4 to 30 corners, flat ones (slivers) among them."""
+    half = size * np.array([1, r.uniform(0.3, 1), r.choice((0.03, r.uniform(0.3, 1), r.uniform(0.3, 1)))])
+    points = np.array([[r.gauss(0, 1) for _ in range(3)] for _ in range(r.choice((4, 5, 6, 8, 12, 30)))])
+    return (points / np.linalg.norm(points, axis=1)[:, None] * half).tolist()
+
+
+def convex(seed):
+    """One to five convex blocks, thrown or let go above a base or each other: hulls, wedges, drums; in the plane prisms. Shapes that are refused are drawn anew."""
+    r = random.Random(-1000001 - seed)
+    names = [name for name in NAMES if name != "compliant"]
+    model = names[seed % len(names)]
+    O.reset()
+    plane = model in ("planar", "wall")
+    law = {} if r.random() < 0.4 else {"restitution": r.choice((0, 0.3, 0.7, 1, r.random()))}
+    material = dem.BlockMat(density=10 ** r.uniform(2.5, 4), frictionAngle=math.atan(r.choice((0, 0.3, 0.7, 1.5))), **law)
+    base = dem.base((8, 8, 0.4), material)
+    z, wanted = 0.0, r.randint(1, 5)
+    while len(O.bodies) <= wanted:
+        size = 10 ** r.uniform(-0.9, -0.1)
+        kind = "prism" if plane else r.choice(("hull", "hull", "wedge", "drum"))
+        pose = {"center": (0, 0, 0)}
+        try:
+            if kind == "prism":
+                made = dem.prism(polygon(r, size), 1.0, material, axis="y", **pose)
+            elif kind == "wedge":
+                made = dem.wedge((size, r.uniform(0.2, 1) * size, r.uniform(0.2, 1) * size), material, top=r.choice((0, 0.3 * size)), shift=r.uniform(-0.3, 0.3) * size, **pose)
+            elif kind == "drum":
+                with contextlib.redirect_stdout(io.StringIO()):
+                    made = dem.drum(size, r.uniform(0.2, 2) * size, material, sides=r.randint(3, 16), **pose)
+            else:
+                made = dem.convex(hull(r, size), material, **pose)
+        except ValueError:
+            continue
+        state = O.bodies[made].state
+        if kind in ("prism", "hull") or r.random() < 0.5:
+            q = Quaternion(Vector3.UnitY, r.uniform(-math.pi, math.pi)) if plane else Quaternion(*[r.gauss(0, 1) for _ in range(4)]).normalized()
+            state.ori = q * state.ori
+        heights = dem.geometry(made).vertices[:, 2]
+        state.pos = Vector3(r.uniform(-0.1, 0.1), 0 if plane else r.uniform(-0.1, 0.1), z - heights.min() + r.choice((0, 1e-3, 0.1)) * size)
+        z += np.ptp(heights) + 0.1 * size
+        if r.random() < 0.5:
+            state.vel = Vector3(r.gauss(0, 1), 0 if plane else r.gauss(0, 1), r.gauss(0, 1))
+            state.angVel = Vector3(0 if plane else r.gauss(0, 3), r.gauss(0, 3), 0 if plane else r.gauss(0, 3))
+    motion = dem.PulseTrainEngine(ids=[base], impulse=r.uniform(0.1, 1), times=[0.05, 0.15]) if r.random() < 0.3 else None
+    O.engines = quiet_engines(motion, **MODELS[model])
+    engine().wallsOnly = model in ("wall", "wall in space")  # few blocks, too, are stepped as walls
+    return model
+
+
+KINDS = {"thrown": build, "pressed": pressed, "convex": convex}
 
 
 class Flight:
     """Bodies whose distance from all others is more than they go in a step get nothing but gravity."""
 
-    def __init__(self):
-        self.worst = 0.0
-        self.before = None
+    def __init__(self, gaps):
+        """gaps: of boxes.py or polyhedra.py."""
+        self.worst, self.before, self.gaps = 0.0, None, gaps
         inertia = [b.state.inertia for b in O.bodies]
         self.inertia = np.array([tuple(i) if max(i) > 0 else (1, 1, 1) for i in inertia])
 
     def look(self):
-        ids, centres, axes, half = layout()
+        ids, axes, radii, first, second, gaps = self.gaps()
         free = np.array([O.bodies[i].dynamic for i in ids])
-        first, second = near_pairs(centres, 1.05 * half, free)
         apart = np.full(len(ids), np.inf)
-        if len(first):
-            gap = separations(centres, axes, half, first, second)
-            np.minimum.at(apart, first, gap)
-            np.minimum.at(apart, second, gap)
+        np.minimum.at(apart, first, gaps)
+        np.minimum.at(apart, second, gaps)
         states = [O.bodies[i].state for i in ids]
         velocity, spin = np.array([tuple(s.vel) for s in states]), np.array([tuple(s.angVel) for s in states])
-        own = (axes.transpose(0, 2, 1) @ spin[:, :, None])[:, :, 0]  # spins along the boxes' axes
+        own = (axes.transpose(0, 2, 1) @ spin[:, :, None])[:, :, 0]  # spins along the bodies' axes
         turning = (axes @ (self.inertia[ids] * own)[:, :, None])[:, :, 0]
-        reach = O.dt * (np.linalg.norm(velocity, axis=1) + np.linalg.norm(spin, axis=1) * np.linalg.norm(half, axis=1) + 9.81 * O.dt)
+        reach = O.dt * (np.linalg.norm(velocity, axis=1) + np.linalg.norm(spin, axis=1) * radii + 9.81 * O.dt)
         flies = free & (apart > 4 * reach.max())
         if self.before is not None:
             was, speed, turned = self.before
@@ -192,7 +249,8 @@ def run(seed, kind):
             row["model"] = build(seed)
             steps = math.ceil(SECONDS / O.dt)
             saves = seed % 10 == 0 and steps < 5000
-            energies, flight, deepest = Energies(lambda: 0.0), Flight(), 0.0
+            shapes = Solids() if kind == "convex" else boxes
+            energies, flight, deepest = Energies(lambda: 0.0), Flight(shapes.gaps), 0.0
             look = max(1, steps // 100)
             compliant, impacts, own = row["model"] == "compliant", 0, engine()
             for k in range(steps):
@@ -201,7 +259,7 @@ def run(seed, kind):
                 if not compliant:
                     flight.look()
                 if k % look == 0:
-                    deepest = max(deepest, depth())
+                    deepest = max(deepest, shapes.depth())
                 hits = len(own.impactTimes) if compliant else 0  # a hand-off sets the forces of its step
                 if k % look == 0 or hits > impacts:
                     row["cone"] = max(row["cone"], beyond_cone(compliant))
@@ -238,7 +296,7 @@ def main(path, scenes, part, parts):
         with open(path) as file:
             done = {(row.get("kind", "thrown"), row["seed"]) for row in map(json.loads, file)}
     kinds = [os.environ["STABILITY_KIND"]] if "STABILITY_KIND" in os.environ else list(KINDS)
-    counts = {kind: scenes // 10 if kind == "pressed" and len(kinds) > 1 else scenes for kind in kinds}
+    counts = {kind: scenes // 10 if kind != "thrown" and len(kinds) > 1 else scenes for kind in kinds}
     for kind, seed in ((kind, seed) for kind in kinds for seed in range(part, counts[kind], parts)):
         if (kind, seed) in done:
             continue

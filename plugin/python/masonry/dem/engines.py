@@ -388,8 +388,8 @@ def energy():
     frictDissip, impactDissip, baseWork      since dem.engines() made the engines: dissipated by friction and by impacts, and the work of the base
     elastPotential, dampDissip               compliant joints: elastic energy now, dissipated by dashpots so far
 
-    The sum of all others less baseWork is constant, except for madeEnergy less lostEnergy of the engine, and for the work of other
-    engines' forces, a change of gravity or velocities by a script, and erased blocks. With compliant joints all energies are 0 before the first step."""
+    The sum of all others less baseWork is constant, except for madeEnergy less lostEnergy of the engine (in walls of method='wall' they are part of
+    impactDissip), and for the work of other engines' forces, a change of gravity or velocities by a script, and erased blocks. With compliant joints all energies are 0 before the first step."""
     e = joint_engine_given()
     keys = ("kinetic", "potential", "elastPotential", "frictDissip", "dampDissip", "impactDissip", "baseWork")
     return {key: getattr(e, key) for key in keys if hasattr(e, key)}
