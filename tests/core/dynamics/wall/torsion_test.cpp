@@ -66,8 +66,8 @@ bool turns(System s, double torque, const Vector2& shear = Vector2::Zero())
 		const double share = std::min(1., double(k) / growing);
 		body.force = weight;
 		body.force.head<2>() += share * friction * shear;
-		body.force[3] += share * friction * shear.y() * body.halfSize.z(); // the shear acts in the bed: the pressure stays even
-		body.force[4] -= share * friction * shear.x() * body.halfSize.z();
+		body.force[3] += share * friction * shear.y() * body.shape->halfSize().z(); // the shear acts in the bed: the pressure stays even
+		body.force[4] -= share * friction * shear.x() * body.shape->halfSize().z();
 		body.force[5] = share * friction * torque;
 		step.advance(s, dt);
 	}
