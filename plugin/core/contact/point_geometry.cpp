@@ -79,27 +79,11 @@ PointGeometry<Space> geometryOf(const Feature& feature, const ConvexPolyhedron& 
 	return geometry;
 }
 
-FaceReach<Plane> reachOf(const ConvexPolygon& shape, int number)
+FaceReach reachOf(const ConvexPolygon& shape, int number)
 {
-	using Place = Eigen::Matrix<double, 1, 1>;
 	const ConvexPolygon::Face& face = shape.faces()[number];
 	const Vector2 tangent(-face.normal.y(), face.normal.x());
-	return {Place(tangent.dot(shape.vertices()[face.from])), Place(tangent.dot(shape.vertices()[face.to]))};
-}
-
-FaceReach<Space> reachOf(const ConvexPolyhedron& shape, int number)
-{
-	const ConvexPolyhedron::Face& face = shape.faces()[number];
-	const Vector3 across = face.normal.cross(face.tangent);
-	const auto place = [&](int vertex) {
-		return Vector2(face.tangent.dot(shape.vertices()[vertex]), across.dot(shape.vertices()[vertex]));
-	};
-	FaceReach<Space> reach {place(face.loop[0]), place(face.loop[0])};
-	for (const int vertex : face.loop) {
-		reach.low = reach.low.cwiseMin(place(vertex));
-		reach.high = reach.high.cwiseMax(place(vertex));
-	}
-	return reach;
+	return {tangent.dot(shape.vertices()[face.from]), tangent.dot(shape.vertices()[face.to])};
 }
 
 ContactFrame<Plane> frameOf(const PointGeometry<Plane>& geometry, const PlanePose& pose1, const PlanePose& pose2)

@@ -62,14 +62,11 @@ struct PointGeometry<Space> {
 PointGeometry<Plane> geometryOf(const Feature&, const ConvexPolygon& shape1, const ConvexPolygon& shape2);
 PointGeometry<Space> geometryOf(const Feature&, const ConvexPolyhedron& shape1, const ConvexPolyhedron& shape2);
 
-// How far a face reaches from the foot of its body's centre, m: along its tangent, which in the plane is the normal turned by +90 degrees,
-// and in space across it too, along the normal times the tangent.
-template <class K>
+// How far a face reaches from the foot of its body's centre, m, along its tangent, which is the normal turned by +90 degrees.
 struct FaceReach {
-	Eigen::Matrix<double, K::rows - 1, 1> low, high;
+	double low, high;
 };
-FaceReach<Plane> reachOf(const ConvexPolygon&, int face);
-FaceReach<Space> reachOf(const ConvexPolyhedron&, int face);
+FaceReach reachOf(const ConvexPolygon&, int face);
 
 ContactFrame<Plane> frameOf(const PointGeometry<Plane>&, const PlanePose& pose1, const PlanePose& pose2);
 ContactFrame<Space> frameOf(const PointGeometry<Space>&, const Pose& pose1, const Pose& pose2);

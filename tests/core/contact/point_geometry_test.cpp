@@ -28,8 +28,8 @@ TEST_CASE("a corner over a face in the plane")
 	CHECK(std::abs(frame.position.x() - (0.3 - b * std::cos(angle) - a * std::sin(angle))) < roundOff);
 	CHECK(frame.axes.row(0) == Eigen::RowVector2d(0, first ? -1 : 1));
 	CHECK(frame.axes.row(1) == Eigen::RowVector2d(first ? 1 : -1, 0));
-	const FaceReach<Plane> reach = reachOf(ofBed, feature.face());
-	CHECK((reach.low[0] == -2 && reach.high[0] == 2));
+	const FaceReach reach = reachOf(ofBed, feature.face());
+	CHECK((reach.low == -2 && reach.high == 2));
 }
 
 // The same with a depth of 2 c, which stands across y.
@@ -48,8 +48,6 @@ TEST_CASE("a corner over a face in space")
 	CHECK(frame.axes.row(0) == Eigen::RowVector3d(0, 0, first ? -1 : 1));
 	CHECK((frame.axes * frame.axes.transpose() - Matrix3::Identity()).norm() == 0);
 	CHECK(frame.axes.determinant() == 1);
-	const FaceReach<Space> reach = reachOf(ofBed, feature.face());
-	CHECK((reach.low == -Vector2(2, 3) && reach.high == Vector2(2, 3)));
 }
 
 // Bars of 0.2 m along x and y, each turned by 45 degrees about its own length: the edges between are sqrt(2)/10 m from the centres.
@@ -88,9 +86,9 @@ TEST_CASE("a corner of a triangle over the top of a trapezoid")
 	const auto frame = Plane::frame(feature, triangle, upper, trapezoid, lower);
 	CHECK(std::abs(frame.gap - (height + std::sin(angle) - 0.5 * std::cos(angle))) < roundOff);
 	CHECK(std::abs(frame.position.x() - (0.2 - std::cos(angle) - 0.5 * std::sin(angle))) < roundOff);
-	const FaceReach<Plane> reach = reachOf(trapezoid, feature.face()); // the tangent looks along -x
-	CHECK(std::abs(reach.low[0] + 0.5 - centre.x()) < roundOff);
-	CHECK(std::abs(reach.high[0] - 1 - centre.x()) < roundOff);
+	const FaceReach reach = reachOf(trapezoid, feature.face()); // the tangent looks along -x
+	CHECK(std::abs(reach.low + 0.5 - centre.x()) < roundOff);
+	CHECK(std::abs(reach.high - 1 - centre.x()) < roundOff);
 }
 
 // The square base of a pyramid, 2 m wide, looks down at a corner of a box; the apex lies 3 m above the base, the centre of mass a quarter
@@ -109,15 +107,9 @@ TEST_CASE("faces of a pyramid")
 	const auto onBase = Space::frame(Feature::ofVertex(2, 7, face({0, 0, -1})), pyramid, above, box, below);
 	CHECK(std::abs(onBase.gap - 0.01) < roundOff);
 	CHECK((onBase.position - Vector3(b, b, a)).norm() < roundOff);
-	const FaceReach<Space> base = reachOf(pyramid, face({0, 0, -1}));
-	CHECK((base.low + Vector2(1, 1)).norm() < roundOff);
-	CHECK((base.high - Vector2(1, 1)).norm() < roundOff);
 
 	const int slanted = face(Vector3(3, 0, 1) / std::sqrt(10));
 	const auto onSide = Space::frame(Feature::ofVertex(2, 7, slanted), pyramid, above, box, below);
 	const double along = (Vector3(3, 0, 1) / std::sqrt(10)).dot(Vector3(b, b, a) - above.position - Vector3(0, 0, 2.25));
 	CHECK(std::abs(onSide.gap - along) < roundOff);
-	const FaceReach<Space> side = reachOf(pyramid, slanted);
-	CHECK((side.high - side.low).minCoeff() > 2 * std::sqrt(10. / 11) - roundOff); // its least height: a base of 2, sides of sqrt(11) m
-	CHECK((side.high - side.low).maxCoeff() < std::sqrt(11.) + roundOff);
 }

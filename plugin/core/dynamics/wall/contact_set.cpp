@@ -21,7 +21,7 @@ void ContactSet<K>::takeOver(const RigidSystem<K>& s)
 	std::fill(stale.begin(), stale.end(), 0);
 	std::fill(known.begin(), known.end(), 1);
 	for (const int c : numbers) {
-		for (int k = 0; k < pairPoints<K> && slots[c][k / lanePoints<K>].group >= 0; ++k)
+		for (int k = 0; k < lanePoints<K> * int(slots[c].size()); ++k)
 			takePoint(s, c, k);
 		takeFriction(s, c);
 	}
@@ -34,10 +34,8 @@ void ContactSet<K>::showPair(RigidSystem<K>& s, int c) const
 {
 	const double touching = tolerance::mergedClosing * length, perUnit = unit > 0 ? 1 / unit : 0;
 	ContactPair<K>& pair = s.pairs[c];
-	for (int k = 0; k < std::min(pair.size(), pairPoints<K>); ++k) {
+	for (int k = 0; k < std::min(pair.size(), lanePoints<K> * int(slots[c].size())); ++k) {
 		const auto [group, lane] = slots[c][k / lanePoints<K>];
-		if (group < 0)
-			return;
 		const PointLanes<K>& p = groups[group].point[k % lanePoints<K>];
 		ContactPoint<K>& point = pair.points[k];
 		point.gap = p.gap[lane];

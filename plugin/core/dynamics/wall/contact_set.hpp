@@ -10,7 +10,7 @@
 // any thread; then those between two parts, which are the interface. The division is the structure's and not that of the threads.
 //
 // Within a part no two pairs of a colour share a free body: the pairs of a colour can be taken in any order, or at the same time, with the
-// same result. A lane holds as many points as most pairs have; a pair with more takes a second lane, of another colour.
+// same result. A lane holds as many points as most pairs have; a pair with more takes further lanes, each of another colour.
 //
 // Gaps, normals and arms are exact at the start of every step that moves (lean). While nothing moves, gaps are added up, and the points are
 // located every few steps only. Which features meet is looked up again only where a pair has moved by a small share of its size since
@@ -18,7 +18,9 @@
 #include "dynamics/model/rigid_system.hpp"
 #include "dynamics/wall/space_lanes.hpp"
 #include "parallel/team.hpp"
+#include <algorithm>
 #include <atomic>
+#include <boost/container/small_vector.hpp>
 
 namespace masonry::wall {
 
@@ -29,11 +31,13 @@ template <class K>
 constexpr int packs = K::dof / 3; // of a body
 template <class K>
 constexpr int lanePoints = K::dimension == 2 ? 2 : 4;
+// Lanes beyond the first that so many points of a pair need. In the plane there are two points, without the second normal of a corner.
 template <class K>
-constexpr int lanesOfPair = K::dimension == 2 ? 1 : 2;
-template <class K>
-constexpr int pairPoints = lanePoints<K>* lanesOfPair<K>; // in the plane without the second normal of a corner
-constexpr double farAway = 1e30;                          // m, gap of a lane without a point; N s, impulse that nothing reaches
+constexpr int moreLanes(int points)
+{
+	return K::dimension == 2 ? 0 : std::max(0, (points - 1) / lanePoints<K>);
+}
+constexpr double farAway = 1e30; // m, gap of a lane without a point; N s, impulse that nothing reaches
 
 // Of flags, one each of bodies or structures.
 inline bool any(const std::vector<char>& chosen) { return std::find(chosen.begin(), chosen.end(), 1) != chosen.end(); }
@@ -190,7 +194,7 @@ public:
 		if (isNew)
 			takeOver(system);
 		for (const int c : numbers)
-			for (int k = 0; k < pairPoints<K> && slots[c][k / lanePoints<K>].group >= 0; ++k) {
+			for (int k = 0; k < lanePoints<K> * int(slots[c].size()); ++k) {
 				const auto [group, lane] = slots[c][k / lanePoints<K>];
 				FeatureLanes<K>& feature = features[group].point[k % lanePoints<K>];
 				Lanes& gaps = groups[group].point[k % lanePoints<K>].gap;
@@ -202,6 +206,9 @@ public:
 				setState(now, c, k);
 				feature.setSaved(saved, lane);
 			}
+		for (const int c : numbers)
+			for (const auto [group, lane] : slots[c])
+				measureCorners(system, group, lane);
 		if (isNew && stood > 0)
 			placeAt(system, located);
 	}
@@ -244,9 +251,10 @@ public:
 
 private:
 	struct Slot {
-		int group {-1}, lane {-1};
+		int group, lane;
 	};
-	struct OneState { // of one point, in a lane
+	using Slots = boost::container::small_vector<Slot, 2>; // the lanes of a pair; in space two hold what rectangles have
+	struct OneState {                                      // of one point, in a lane
 		bool present {false};
 		double pn {0}, filteredImpulse {0}, zn {0}, zero {0};
 		Eigen::Matrix<double, K::rows - 1, 1> pt, zt, slip;
@@ -284,7 +292,8 @@ private:
 	bool isLocated(const RigidSystem<K>& system) const;
 	// Gaps. Pairs that have moved by more than `travel` become stale; with `remember`, movement of those that are stale counts from here.
 	void measureGaps(const RigidSystem<K>& system, int begin, int end, double travel, bool remember);
-	void takeFrames(const RigidSystem<K>& system, int begin, int end); // normals, arms and masses
+	void takeFrames(const RigidSystem<K>& system, int begin, int end);      // normals, arms and masses
+	void measureCorners(const RigidSystem<K>& system, int group, int lane); // how near the vertices of a lane are to corners of faces
 	void lookUpStale(RigidSystem<K>& system);
 	void lookUpStale(RigidSystem<K>& system, const Part& part);
 	void takeFriction(const RigidSystem<K>& system, int pair);
@@ -296,19 +305,19 @@ private:
 	void placeFriction(const RigidSystem<K>& system);
 	void placeFriction(const RigidSystem<K>& system, int pair);
 
-	double unit {0};                                     // s, that the impulses are of
-	int list {-1};                                       // of the system, that pairs are of
-	int laws {-1};                                       // of the system, that the friction is of
-	double sincePlaced {0};                              // s, since friction was placed
-	int stood {0};                                       // still steps with the points as they are located; 0: the last moved
-	std::vector<std::array<int, 2>> pairs;               // all of the system
-	std::vector<int> numbers;                            // of those that the groups are made of
-	std::vector<std::array<Slot, lanesOfPair<K>>> slots; // of a pair; group -1: none, or not here
-	std::vector<unsigned char> wide;                     // pairs that need all their lanes
-	std::vector<int> partOf;                             // of a body
-	std::vector<unsigned char> known;                    // pairs whose lanes hold their points
-	std::vector<unsigned char> stale;                    // lanes with a pair to be looked up, by group: a bit each
-	std::atomic<bool> wider {false};                     // a pair needs another lane
+	double unit {0};                       // s, that the impulses are of
+	int list {-1};                         // of the system, that pairs are of
+	int laws {-1};                         // of the system, that the friction is of
+	double sincePlaced {0};                // s, since friction was placed
+	int stood {0};                         // still steps with the points as they are located; 0: the last moved
+	std::vector<std::array<int, 2>> pairs; // all of the system
+	std::vector<int> numbers;              // of those that the groups are made of
+	std::vector<Slots> slots;              // of a pair; empty: not here
+	std::vector<unsigned char> wide;       // lanes of a pair beyond the first
+	std::vector<int> partOf;               // of a body
+	std::vector<unsigned char> known;      // pairs whose lanes hold their points
+	std::vector<unsigned char> stale;      // lanes with a pair to be looked up, by group: a bit each
+	std::atomic<bool> wider {false};       // a pair needs another lane
 };
 
 // plane_points.cpp, space_points.cpp
@@ -317,6 +326,8 @@ private:
 	void ContactSet<K>::takeBodies(const RigidSystem<K>&);                                                                                 \
 	template <>                                                                                                                            \
 	void ContactSet<K>::takePoint(const RigidSystem<K>&, int, int);                                                                        \
+	template <>                                                                                                                            \
+	void ContactSet<K>::measureCorners(const RigidSystem<K>&, int, int);                                                                   \
 	template <>                                                                                                                            \
 	void ContactSet<K>::placeFriction(const RigidSystem<K>&, int);                                                                         \
 	template <>                                                                                                                            \

@@ -30,7 +30,7 @@ void ContactSet<K>::takePairs(const RigidSystem<K>& s)
 		if (own[pair.body1] || own[pair.body2])
 			numbers.push_back(int(pairs.size()));
 		pairs.push_back({pair.body1, pair.body2});
-		wide.push_back(std::min(pair.size(), pairPoints<K>) > lanePoints<K>);
+		wide.push_back(moreLanes<K>(pair.size()));
 	}
 }
 
@@ -54,8 +54,7 @@ bool ContactSet<K>::renumber(const RigidSystem<K>& s)
 		wide[now] = wideBefore[then];
 		known[now] = knownBefore[then];
 		for (const Slot& slot : slots[now])
-			if (slot.group >= 0)
-				features[slot.group].pair[slot.lane] = now;
+			features[slot.group].pair[slot.lane] = now;
 	}
 	findCourses(s);
 	orderUpwards();
@@ -86,7 +85,7 @@ bool ContactSet<K>::take(const RigidSystem<K>& s)
 	before.wide.swap(wide);
 	before.known.swap(known);
 	before.stale.swap(stale);
-	const auto isKnown = [&](int c) { return sameList && c < int(before.slots.size()) && before.slots[c][0].group >= 0; };
+	const auto isKnown = [&](int c) { return sameList && c < int(before.slots.size()) && !before.slots[c].empty(); };
 	own = isFree;
 	takePairs(s);
 	for (const int c : numbers)
@@ -102,8 +101,7 @@ bool ContactSet<K>::take(const RigidSystem<K>& s)
 		}
 		stood = 0;
 		for (const Slot& slot : slots[c])
-			if (slot.group >= 0)
-				stale[slot.group] |= 1 << slot.lane;
+			stale[slot.group] |= 1 << slot.lane;
 	}
 	for (int g = 0; g < int(groups.size()); ++g)
 		if (!stale[g])
@@ -115,7 +113,7 @@ bool ContactSet<K>::take(const RigidSystem<K>& s)
 template <class K>
 void ContactSet<K>::bring(const ContactSet& from, int c)
 {
-	for (int k = 0; k < lanesOfPair<K> && from.slots[c][k].group >= 0; ++k) {
+	for (size_t k = 0; k < from.slots[c].size(); ++k) {
 		const auto [there, i] = from.slots[c][k];
 		const auto [here, j] = slots[c][k];
 		copyLane(from.groups[there].friction, i, groups[here].friction, j);
@@ -135,8 +133,7 @@ template <class K>
 void ContactSet<K>::takeFriction(const RigidSystem<K>& s, int c)
 {
 	for (const auto [group, lane] : slots[c])
-		if (group >= 0)
-			groups[group].friction[lane] = std::min(s.pairs[c].friction, maxFriction);
+		groups[group].friction[lane] = std::min(s.pairs[c].friction, maxFriction);
 }
 
 template std::vector<char> ContactSet<Plane>::freeBodies(const RigidSystem<Plane>&);

@@ -11,14 +11,13 @@ constexpr int pairsOfPart = 1024; // at least: fewer do not repay that threads m
 constexpr int maxInterface = 8;   // times as many pairs as are in the interface there are at least
 
 // Lanes of these pairs by colour, greedy in their order: no two of a colour share a body that is `own`.
-template <int lanesOfWide>
 std::vector<std::vector<PairLane>> coloured(const std::vector<int>& numbers, const std::vector<std::array<int, 2>>& pairs,
                                             const std::vector<unsigned char>& wide, const std::vector<char>& own)
 {
 	std::vector<std::vector<PairLane>> colours;
 	std::vector<std::vector<char>> used; // by colour, whether a body has a pair of it
 	for (const int c : numbers)
-		for (int part = 0; part < (wide[c] ? lanesOfWide : 1); ++part) {
+		for (int part = 0; part <= wide[c]; ++part) {
 			size_t k = 0;
 			for (;; ++k) {
 				if (k == colours.size()) {
@@ -88,9 +87,11 @@ void ContactSet<K>::colour(const RigidSystem<K>& s)
 	groups.clear();
 	features.clear();
 	slots.assign(pairs.size(), {});
+	for (const int c : numbers)
+		slots[c].resize(1 + wide[c]);
 	for (int p = 0; p <= interface; ++p) {
 		parts[p].begin = int(groups.size());
-		for (const auto& lanes : coloured<lanesOfPair<K>>(pairsOf[p], pairs, wide, own)) {
+		for (const auto& lanes : coloured(pairsOf[p], pairs, wide, own)) {
 			for (size_t first = 0; first < lanes.size(); first += width)
 				addGroup(&lanes[first], int(std::min<size_t>(width, lanes.size() - first)), none);
 			parts[p].colourEnd.push_back(int(groups.size()));

@@ -9,9 +9,9 @@ template <class K>
 typename ContactSet<K>::OneState ContactSet<K>::state(int pair, int point) const
 {
 	OneState state;
-	const auto [group, lane] = slots[pair][point / lanePoints<K>];
-	if (group < 0)
+	if (point >= lanePoints<K> * int(slots[pair].size()))
 		return state;
+	const auto [group, lane] = slots[pair][point / lanePoints<K>];
 	const PointState<K>& p = states[group][point % lanePoints<K>];
 	state.present = features[group].point[point % lanePoints<K>].present[lane];
 	state.pn = p.pn[lane];
@@ -76,8 +76,7 @@ bool ContactSet<K>::lookUp(RigidSystem<K>& s, int c)
 	const double touching = tolerance::mergedClosing * length;
 	ContactPair<K>& pair = s.pairs[c];
 	const auto &body1 = s.bodies[pair.body1], &body2 = s.bodies[pair.body2];
-	FoundPoints<K> found = findPoints(body1, body2, pair.memory);
-	found.features.resize(std::min(found.size(), pairPoints<K>));
+	const FoundPoints<K> found = findPoints(body1, body2, pair.memory);
 	pair.face1 = found.face1;
 	pair.face2 = found.face2;
 	// Of bodies that have been moved the pair may know other points than the lanes.
@@ -86,20 +85,22 @@ bool ContactSet<K>::lookUp(RigidSystem<K>& s, int c)
 	if (same)
 		return false;
 	if (known[c]) {
-		for (const auto [group, lane] : slots[c])
-			if (group >= 0)
-				takeFrames(s, group, group + 1);
+		for (const Slot& slot : slots[c])
+			takeFrames(s, slot.group, slot.group + 1);
 		showPair(s, c);
 	}
 	known[c] = true;
 	const ContactPair<K> before = pair;
-	OneState states[pairPoints<K>];
-	for (int k = 0; k < pairPoints<K>; ++k)
+	PerPoint<OneState> states(before.size());
+	for (int k = 0; k < before.size(); ++k)
 		states[k] = state(c, k);
 	pair.points.resize(found.size());
-	if (found.size() > lanePoints<K> && !wide[c])
-		wide[c] = wider = true;
-	for (int k = 0; k < pairPoints<K>; ++k) {
+	if (const int more = moreLanes<K>(found.size()); more > wide[c]) {
+		wide[c] = more;
+		wider = true;
+	}
+	const int room = lanePoints<K> * int(slots[c].size());
+	for (int k = 0; k < std::max(found.size(), room); ++k) {
 		OneState now;
 		if (k < found.size()) {
 			ContactPoint<K> point;
@@ -107,11 +108,10 @@ bool ContactSet<K>::lookUp(RigidSystem<K>& s, int c)
 			locate(point, body1, body2);
 			point.closed = point.gap <= touching;
 			now.zero = std::min(0., point.gap);
-			inherit(before, states, point, now);
+			inherit(before, states.data(), point, now);
 			pair.points[k] = point;
 		}
-		const auto [group, lane] = slots[c][k / lanePoints<K>];
-		if (group < 0)
+		if (k >= room)
 			continue;
 		takePoint(s, c, k);
 		setState(now, c, k);
@@ -130,10 +130,10 @@ template <class K>
 void ContactSet<K>::lookUpStale(RigidSystem<K>& s, const Part& part)
 {
 	const auto isStale = [this](const Slot& slot) { return stale[slot.group] >> slot.lane & 1; };
-	for (int g = part.begin; lanesOfPair < K >> 1 && g < part.end; ++g)
+	for (int g = part.begin; g < part.end; ++g)
 		for (int lane = 0; stale[g] && lane < width && features[g].pair[lane] >= 0; ++lane) {
-			const auto& lanes = slots[features[g].pair[lane]];
-			if (lanes.back().group >= 0 && (isStale(lanes.front()) || isStale(lanes.back())))
+			const Slots& lanes = slots[features[g].pair[lane]];
+			if (lanes.size() > 1 && std::any_of(lanes.begin(), lanes.end(), isStale))
 				for (const Slot& slot : lanes)
 					stale[slot.group] |= 1 << slot.lane;
 		}
@@ -145,15 +145,18 @@ void ContactSet<K>::lookUpStale(RigidSystem<K>& s, const Part& part)
 	for (int g = part.begin; g < part.end; ++g)
 		if (stale[g]) {
 			countPoints(s, g);
+			const unsigned char anew = stale[g];
 			measureGaps(s, g, g + 1, 0, true);
+			for (int lane = 0; lane < width; ++lane)
+				if (anew >> lane & 1 && features[g].pair[lane] >= 0)
+					measureCorners(s, g, lane);
 			takeFrames(s, g, g + 1);
 			stale[g] = 0;
 		}
 	for (const int c : changed) {
 		placeFriction(s, c);
 		for (const Slot& slot : slots[c])
-			if (slot.group >= 0)
-				takeFrames(s, slot.group, slot.group + 1);
+			takeFrames(s, slot.group, slot.group + 1);
 	}
 }
 

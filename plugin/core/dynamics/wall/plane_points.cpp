@@ -157,13 +157,19 @@ void ContactSet<Plane>::takePoint(const RigidSystem<Plane>& s, int c, int k)
 	const Feature feature = present ? pair.points[k].feature : Feature::ofVertex(1, 0, 0); // any will tell how far the pair moves
 	const ConvexPolygon &shape1 = *s.bodies[pair.body1].shape, &shape2 = *s.bodies[pair.body2].shape;
 	const PointGeometry<Plane> geometry = geometryOf(feature, shape1, shape2);
-	const FaceReach<Plane> reach = reachOf(geometry.vertexOn1 ? shape2 : shape1, feature.face());
+	const FaceReach reach = reachOf(geometry.vertexOn1 ? shape2 : shape1, feature.face());
 	f.present[lane] = present ? -1 : 0;
 	f.vertexOn1[lane] = geometry.vertexOn1 ? -1 : 0;
 	f.vertex.x[lane] = geometry.vertex.x(), f.vertex.y[lane] = geometry.vertex.y();
 	f.normal.x[lane] = geometry.normal.x(), f.normal.y[lane] = geometry.normal.y();
 	f.faceDistance[lane] = geometry.distance;
-	f.faceBegin[lane] = reach.low[0], f.faceEnd[lane] = reach.high[0];
+	f.faceBegin[lane] = reach.low, f.faceEnd[lane] = reach.high;
+}
+
+// A face of a polygon ends at its corners.
+template <>
+void ContactSet<Plane>::measureCorners(const RigidSystem<Plane>&, int, int)
+{
 }
 
 template <>

@@ -90,12 +90,12 @@ struct alignas(alignment) FeatureLanes<Space> {
 	Mask vertexOn1, present, crossing;
 	Lanes3 vertex, normal, tangent; // of the face: outward normal, first tangent
 	Lanes faceDistance;
-	Lanes2 faceBegin, faceEnd; // m, along the tangents of the face
-	Lanes3 arm;                // from body 2 to the point, global axes
-	Lanes foundGap;            // when the features were looked up
-	Lanes2 found;              // where along them
-	Lanes3 grip;               // from the point to where its friction acts, in its tangent plane, global axes
-	Lanes3 gripAt;             // the same in the axes of the body that has the vertex: a face that turns on its bed takes it along
+	Lanes3 arm;       // from body 2 to the point, global axes
+	Lanes foundGap;   // when the features were looked up
+	Lanes2 found;     // where along them
+	Lanes fromCorner; // m, of a vertex then from the nearest corner of the face: the larger component along its tangents
+	Lanes3 grip;      // from the point to where its friction acts, in its tangent plane, global axes
+	Lanes3 gripAt;    // the same in the axes of the body that has the vertex: a face that turns on its bed takes it along
 
 	std::array<double, 6> saved(int lane) const
 	{

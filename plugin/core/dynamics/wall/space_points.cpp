@@ -72,6 +72,9 @@ MASONRY_INLINE Found overFace(const FeatureLanes<Space>& f, const Placed& p1, co
 	return found;
 }
 
+// Lanes without a point tell by any vertex how far the pair moves.
+Feature featureOf(const ContactPair<Space>& pair, int k) { return k < pair.size() ? pair.points[k].feature : Feature::ofVertex(1, 0, 0); }
+
 Pose poseOf(const Lanes* pose, int body)
 {
 	const Lanes* row = &pose[poseRows * body];
@@ -144,11 +147,6 @@ MASONRY_INLINE void takeFound(PointLanes<Space>& p, FeatureLanes<Space>& f, cons
 	p.massT = select(f.present, one / (middle + root(half * half + k12 * k12)), none);
 }
 
-MASONRY_INLINE Lanes fromEnds(const Lanes& place, const Lanes& begin, const Lanes& end)
-{
-	return smaller(size(place - begin), size(place - end));
-}
-
 MASONRY_LANES void measureGroups(const RigidSystem<Space>& s, Group<Space>* groups, FeatureGroup<Space>* features, unsigned char* stale,
                                  size_t count, const Lanes* pose, double travel, bool remember)
 {
@@ -168,8 +166,7 @@ MASONRY_LANES void measureGroups(const RigidSystem<Space>& s, Group<Space>* grou
 			const Lanes moved1 = size(found.along1 - f.found.x), moved2 = size(found.along2 - f.found.y);
 			isStale |= size(found.gap - f.foundGap) + moved1 + moved2 > travel;
 			// At a corner of the face, the vertex of either body may be the point, until one has passed the other.
-			const Lanes fromEnd = larger(fromEnds(f.found.x, f.faceBegin.x, f.faceEnd.x), fromEnds(f.found.y, f.faceBegin.y, f.faceEnd.y));
-			isStale |= ~f.crossing & (larger(moved1, moved2) > fromEnd + passed);
+			isStale |= ~f.crossing & (larger(moved1, moved2) > f.fromCorner + passed);
 			group.point[k].gap = select(f.present, found.gap, all(farAway));
 		}
 		stale[g] |= bitsOf(isStale);
@@ -245,9 +242,8 @@ void ContactSet<Space>::takePoint(const RigidSystem<Space>& s, int c, int k)
 	const ContactPair<Space>& pair = s.pairs[c];
 	const auto [group, lane] = slots[c][k / lanePoints<Space>];
 	FeatureLanes<Space>& f = features[group].point[k % lanePoints<Space>];
-	const bool present = k < pair.size();
-	const Feature feature = present ? pair.points[k].feature : Feature::ofVertex(1, 0, 0); // tells how far the pair moves
-	f.present[lane] = present ? -1 : 0;
+	const Feature feature = featureOf(pair, k);
+	f.present[lane] = k < pair.size() ? -1 : 0;
 	const ConvexPolyhedron &shape1 = *s.bodies[pair.body1].shape, &shape2 = *s.bodies[pair.body2].shape;
 	const PointGeometry<Space> geometry = geometryOf(feature, shape1, shape2);
 	f.crossing[lane] = geometry.crosses ? -1 : 0;
@@ -257,11 +253,24 @@ void ContactSet<Space>::takePoint(const RigidSystem<Space>& s, int c, int k)
 	set(f.tangent, lane, geometry.tangent);
 	f.faceDistance[lane] = geometry.distance;
 	set(f.gripAt, lane, Vector3::Zero());
-	if (geometry.crosses)
-		return;
-	const FaceReach<Space> reach = reachOf(geometry.vertexOn1 ? shape2 : shape1, feature.face());
-	f.faceBegin.x[lane] = reach.low.x(), f.faceBegin.y[lane] = reach.low.y();
-	f.faceEnd.x[lane] = reach.high.x(), f.faceEnd.y[lane] = reach.high.y();
+}
+
+template <>
+void ContactSet<Space>::measureCorners(const RigidSystem<Space>& s, int group, int lane)
+{
+	const ContactPair<Space>& pair = s.pairs[features[group].pair[lane]];
+	for (int k = 0; k < groups[group].count; ++k) {
+		FeatureLanes<Space>& f = features[group].point[k];
+		if (f.crossing[lane])
+			continue;
+		const Feature feature = featureOf(pair, features[group].first[lane] + k);
+		const ConvexPolyhedron& shape = *s.bodies[f.vertexOn1[lane] ? pair.body2 : pair.body1].shape;
+		const Vector2 place(f.found.x[lane], f.found.y[lane]);
+		double nearest = farAway;
+		for (const Vector2& corner : shape.faces()[feature.face()].outline)
+			nearest = std::min(nearest, (corner - place).cwiseAbs().maxCoeff());
+		f.fromCorner[lane] = nearest;
+	}
 }
 
 // By the filtered impulses; the rows of the points are to be taken anew. Points of a pair that has carried nothing share alike where they
@@ -273,7 +282,7 @@ void ContactSet<Space>::placeFriction(const RigidSystem<Space>& s, int c)
 	const auto groupOf = [&](int i) -> const Slot& { return slots[c][i / lanePoints<Space>]; };
 	const auto pointOf = [&](int i) -> PointLanes<Space>& { return groups[groupOf(i).group].point[i % lanePoints<Space>]; };
 	const auto featureOf = [&](int i) -> FeatureLanes<Space>& { return features[groupOf(i).group].point[i % lanePoints<Space>]; };
-	if (groupOf(pair.size() - 1).group < 0 || !hasGrip(pair)) // it comes again with its other lane
+	if (!hasGrip(pair) || moreLanes<Space>(pair.size()) >= int(slots[c].size())) // it comes again with its other lanes
 		return;
 	NormalForces forces(pair.size(), 0.);
 	bool isLoaded = false;
