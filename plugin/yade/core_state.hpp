@@ -3,7 +3,7 @@
 
 #include "BlockGeom.hpp"
 #include "BlockPhys.hpp"
-#include "body.hpp"
+#include "impact/body.hpp"
 #include <core/Body.hpp>
 #include <core/Interaction.hpp>
 

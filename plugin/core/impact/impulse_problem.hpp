@@ -24,7 +24,7 @@
 // Projected Gauss-Seidel takes over should the states cycle all the same. Without slip a problem may have no solution (a point that can
 // only be held by pulling); then points are let go until none pulls, which never adds energy, and the residual tells by how much the laws
 // are missed.
-#include "body.hpp"
+#include "impact/body.hpp"
 #include "laws/point_law.hpp" // noSlip
 #include <functional>
 #include <limits>

@@ -27,9 +27,9 @@
 //
 // Dashpots. They see the points that carry, in the same way, with c_n = 2 zeta sqrt(k_n A m) in the place of k_n A, m the reduced mass of
 // the pair; c_s = 2 zeta sqrt(k_s A m). No joint pulls by them.
-#include "body.hpp"
 #include "contact/corner_patch.hpp"
 #include "contact/friction_points.hpp"
+#include "impact/body.hpp"
 
 namespace masonry {
 
