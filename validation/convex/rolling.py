@@ -1,4 +1,4 @@
-"""Prisms that roll and rock about their edges without slip (a3 to a9).
+"""Prisms roll and rock about their edges without slip (a3 to a9).
 
 Spins before and after a landing follow from the energies between landings: about its pivot, a block of moment of inertia I turns with
 I spin^2/2 = kinetic + potential energy less the potential energy where it lands. Thus a method that lands at the end of a step is measured without its delay.
@@ -196,7 +196,10 @@ def a3_ngons():
         before, after = Rolling(mode, n, 0.5, 0.0, past=0.02).landing()
         return [after / before]
 
-    return [row for n in (3, 4, 5, 6, 24) for row in rows("a3", partial(restitution, n=n), [(f"{n}-gon: restitution of a landing", max(landing_of_ngon(n), 0), (1e-5, 3e-3))])]
+    made = []
+    for n in (3, 4, 5, 6, 24):
+        made += rows("a3", partial(restitution, n=n), [(f"{n}-gon: restitution of a landing", max(landing_of_ngon(n), 0), (1e-5, 3e-3))])
+    return made
 
 
 def a4_hexagon_rolls():
@@ -288,7 +291,8 @@ def a9_triangle():
         leaning(TRIANGLE, 0)
         return restitution, math.atan(collapse(mode))
 
-    return rows("a9", measure, [("triangle: natural restitution", section.natural(0, 1), (1e-5, 3e-3)), ("critical angle, rad", math.atan(section.critical(1)), (1e-3, 1e-3))])
+    return rows("a9", measure, [("triangle: natural restitution", section.natural(0, 1), (1e-5, 3e-3)),
+                                ("critical angle, rad", math.atan(section.critical(1)), (1e-3, 1e-3))])
 
 
 CASES = [a3_ngons, a4_hexagon_rolls, a5_least_slope, a7_trapezoid, a8_trapezoid_rocks, a9_triangle]

@@ -1,4 +1,4 @@
-"""Wedges that slide on each other, in grooves and between other blocks (a10 to a13, a20)."""
+"""Wedges slide on each other, in grooves and between other blocks (a10 to a13, a20)."""
 
 import math
 from functools import partial
@@ -26,8 +26,8 @@ def acceleration(body, seconds):
 
 
 def block_on_wedge(block, wedge, angle, friction):
-    """(acceleration of the wedge, of the block along the slope relative to it, m/s^2): a block slides down a wedge, which slides back on a floor. Unknowns: both
-    accelerations and the normal forces on the slope and on the floor."""
+    """(acceleration of the wedge, of the block along the slope relative to it, m/s^2): a block slides down a wedge, which slides back on a floor. The
+    unknowns are both accelerations and the normal forces on the slope and on the floor."""
     s, c, mu = math.sin(angle), math.cos(angle), friction
     matrix = [[-block, block * c, mu * c - s, 0],  # block along its way, horizontally: a_rel c - A
               [0, block * s, mu * s + c, 0],  # block downwards, with its sign turned: -N c - mu N s + m g
@@ -55,7 +55,8 @@ def line_of(normals):
 
 
 def critical_friction(normals):
-    """(coefficient, plunge): a wedge slides along the line when its pull exceeds the friction of both normal forces, which balance the weight across the line."""
+    """(coefficient, plunge): a wedge slides along the line when its pull exceeds the friction of both normal forces, which balance the weight across
+    the line."""
     line = line_of(normals)
     across = np.array([0, 0, 1]) + line * -line[2]  # of the upward force per weight
     forces, *_ = np.linalg.lstsq(np.transpose(normals), across, rcond=None)
@@ -118,8 +119,8 @@ def v_groove(friction):
 
 
 def a12_groove():
-    """Friction across the faces may also wedge the bar in, which raises both normal forces: f^2 + t^2 <= mu^2 (n + t)^2, where n is the normal force without wedging
-    and t friction across a face, has the largest f = mu n / sqrt(1 - mu^2). `wall` finds that plunge."""
+    """Friction across the faces may also wedge the bar in, which raises both normal forces: f^2 + t^2 <= mu^2 (n + t)^2, where n is the normal force
+    without wedging and t friction across a face, has the largest f = mu n / sqrt(1 - mu^2). `wall` finds that plunge."""
     mu = 0.3
 
     def plunge(mode):
@@ -163,7 +164,8 @@ def a13_rock_wedge():
         found = [share * friction / (1 - slides(mode, share)) for share in (0.5, 0.99)]
         return (*found, slides(mode, 1.01))
 
-    return rows("a13", measure, [("rock wedge: critical friction, from its slide with half of it", friction, (1e-6, 2e-3)), ("with 0.99 of it", friction, (1e-6, 2e-3)),
+    return rows("a13", measure, [("rock wedge: critical friction, from its slide with half of it", friction, (1e-6, 2e-3)),
+                                 ("with 0.99 of it", friction, (1e-6, 2e-3)),
                                  ("with 1.01 of it: share of the pull that moves it", 0, (1e-9, 1e-3))], IN_SPACE)
 
 

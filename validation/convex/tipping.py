@@ -1,4 +1,4 @@
-"""Blocks and columns that tip over an edge when their weight acts sideways, too (a2, a19, a22). The resultant leaves the base."""
+"""A block or a column tips when the resultant of its weight and of a sideways pull leaves its base (a2, a19, a22)."""
 
 import math
 import os
@@ -48,7 +48,8 @@ def a2_tetrahedron():
         return found
 
     right = [math.degrees(math.atan(threshold(base, math.sqrt(2) / 4, t))) for t in (math.pi, 0)]
-    return rows("a2", measure, [("tetrahedron on a slope, mu 3: tips over an edge, deg", right[0], (1e-3, 1e-3)), ("over a corner", right[1], (1e-3, 1e-3))], IN_SPACE)
+    return rows("a2", measure, [("tetrahedron on a slope, mu 3: tips over an edge, deg", right[0], (1e-3, 1e-3)),
+                                ("over a corner", right[1], (1e-3, 1e-3))], IN_SPACE)
 
 
 def column(friction):
@@ -73,7 +74,8 @@ def a19_frusta():
             found.append(collapse(mode))
         return found
 
-    height = sum((k + (a + 2 * b) / (3 * (a + b))) * (a + b) for k, (a, b) in enumerate(zip(WIDTHS, WIDTHS[1:]))) / sum(WIDTHS[:-1] + WIDTHS[1:])  # of the centre
+    moments = [(k + (a + 2 * b) / (3 * (a + b))) * (a + b) for k, (a, b) in enumerate(zip(WIDTHS, WIDTHS[1:]))]
+    height = sum(moments) / sum(WIDTHS[:-1] + WIDTHS[1:])  # of the centre
     assert abs(multiplier(frusta(5, 1.0, 0.7, 5), 0.7) - WIDTHS[0] / 2 / height) < 1e-9
     return rows("a19", measure, [("frusta: multiplier, mu 0.7", WIDTHS[0] / 2 / height, (1e-3, 1e-3)), ("mu 0.15: slides", 0.15, (1e-3, 1e-3))])
 

@@ -46,10 +46,11 @@ def largest_step(default):
 
 
 class Energies:
-    """Kinetic, potential and elastic energy less the base's work must not rise."""
+    """Kinetic, potential and elastic energy less the base's work must not rise. late: blocks stepped as walls, which stop in one step and rebound in the next: a dip
+    of one step is none."""
 
-    def __init__(self, work):
-        self.work = work
+    def __init__(self, work, late=False):
+        self.work, self.late, self.last = work, late, -math.inf
         self.lowest, self.gain, self.kinetic, self.start = math.inf, 0.0, 0.0, None
         free = [b for b in O.bodies if b.dynamic]
         self.floor = LEAST_FALL * sum(b.state.mass * 9.81 * Solid(b).thickness for b in free)
@@ -59,7 +60,8 @@ class Energies:
         total = e["kinetic"] + e["potential"] + e.get("elastPotential", 0) - e["baseWork"] - self.work()
         self.start = total if self.start is None else self.start
         self.gain = max(self.gain, total - self.lowest)
-        self.lowest = min(self.lowest, total)
+        self.lowest = min(self.lowest, max(total, self.last) if self.late else total)
+        self.last = total
         self.kinetic = max(self.kinetic, e["kinetic"])
 
     def relative_gain(self):

@@ -250,7 +250,7 @@ def run(seed, kind):
             steps = math.ceil(SECONDS / O.dt)
             saves = seed % 10 == 0 and steps < 5000
             shapes = Solids() if kind == "convex" else boxes
-            energies, flight, deepest = Energies(lambda: 0.0), Flight(shapes.gaps), 0.0
+            energies, flight, deepest = Energies(lambda: 0.0, late=getattr(engine(), "wallsOnly", False)), Flight(shapes.gaps), 0.0
             look = max(1, steps // 100)
             compliant, impacts, own = row["model"] == "compliant", 0, engine()
             for k in range(steps):
