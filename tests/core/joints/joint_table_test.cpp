@@ -15,11 +15,12 @@ namespace {
 
 struct Block {
 	bool prescribed;
+	Vector2 half;
 	std::shared_ptr<const ConvexPolygon> shape;
 	PlanePose pose;
 
 	Block(bool prescribed, const Vector2& half)
-	    : prescribed(prescribed), shape(std::make_shared<const ConvexPolygon>(ConvexPolygon::box(half)))
+	    : prescribed(prescribed), half(half), shape(std::make_shared<const ConvexPolygon>(ConvexPolygon::box(half)))
 	{
 	}
 };
