@@ -163,8 +163,8 @@ TEST_CASE("the joints of a wall in running bond are its bed joints")
 	std::set<std::tuple<int, int>> beds;
 	const auto overlaps = [&](int above, int below) {
 		const Block &a = s.bodies[above], &b = s.bodies[below];
-		const double reach = a.half.x() + b.half.x() - std::abs(a.pose.position.x() - b.pose.position.x());
-		return std::abs(a.pose.position.y() - b.pose.position.y() - a.half.y() - b.half.y()) < 1e-9 && reach > 1e-9;
+		const Vector2 apart = (a.pose.position - b.pose.position).cwiseAbs(), halves = a.shape->halfSize() + b.shape->halfSize();
+		return a.pose.position.y() > b.pose.position.y() && std::abs(apart.y() - halves.y()) < 1e-9 && halves.x() - apart.x() > 1e-9;
 	};
 	for (int a = 1; a < int(s.bodies.size()); ++a)
 		for (int b = 0; b < int(s.bodies.size()); ++b)

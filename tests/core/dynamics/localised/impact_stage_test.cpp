@@ -57,10 +57,10 @@ TEST_CASE("the joint of two equals obeys its restitution, upright or not")
 	ContactPair<Plane>& pair = s.pairs[0];
 	pair.face1 = 1;
 	pair.face2 = 0;
-	pair.size = 2;
+	pair.points.resize(2);
 	for (int k : {0, 1}) { // lower, upper
 		auto& point = pair.points[k];
-		point.feature = {2, 2 * k, 1};
+		point.feature = Feature::ofVertex(2, 2 * k, 1);
 		locate(point, s.bodies[1], s.bodies[2]);
 	}
 	pair.isUpright = turned == 0;
