@@ -1,7 +1,7 @@
 // Random pairs of boxes that fly towards each other, step by step, against an independent distance: no impulse where they are apart, no
 // overlap. A long run: MASONRY_MOVING_PAIRS=1000000.
 #include "dynamics/localised/localised_step.hpp"
-#include "oracle/minkowski.hpp"
+#include "oracle/polyhedra.hpp"
 #include <algorithm>
 #include <catch.hpp>
 #include <cstdlib>
@@ -184,8 +184,8 @@ TEST_CASE("The widest slab over faces and edges is that of the Minkowski differe
 	std::mt19937 random(3);
 	for (int n = 0; n < 20; ++n) {
 		const auto bodies = MovingPair<Space>(random).system.bodies;
-		const auto truth = oracle::separation({bodies[0].shape->halfSize()}, bodies[0].pose, {bodies[1].shape->halfSize()}, bodies[1].pose);
-		CHECK(separation<Space>(bodies) == Approx(truth.value).margin(1e-9));
+		const auto truth = oracle::slabOfDifferences(*bodies[0].shape, bodies[0].pose, *bodies[1].shape, bodies[1].pose);
+		CHECK(separation<Space>(bodies) == Approx(truth.width).margin(1e-9));
 	}
 }
 
