@@ -82,9 +82,9 @@ def a19_frusta():
 
 def a22_every_direction():
     """Prisms 2 m high, turned about z: the worst deviation of 24 directions."""
-    ring = 2 * np.pi * np.arange(6) / 6
-    bases = {"hexagonal": np.column_stack([np.cos(ring), np.sin(ring)]) / 2, "triangular": [(0, 0), (1, 0), (0.3, 0.8)],
-             "trapezoidal": [(0, 0), (1, 0), (0.7, 0.6), (0.2, 0.6)]}
+    rings = {n: 2 * np.pi * np.arange(n) / n for n in (6, 12, 24)}
+    bases = {f"{n} sides": np.column_stack([np.cos(ring), np.sin(ring)]) / 2 for n, ring in rings.items()}
+    bases |= {"triangle": [(0, 0), (1, 0), (0.3, 0.8)], "trapezoid": [(0, 0), (1, 0), (0.7, 0.6), (0.2, 0.6)]}
     turns = 0.1 + 2 * np.pi * np.arange(24) / 24
     made = []
     for name, polygon in bases.items():
@@ -99,7 +99,7 @@ def a22_every_direction():
                 shares.append(collapse(mode) / threshold(polygon, 1.0, -turn))
             return [max(shares, key=lambda share: abs(share - 1))]
 
-        made += rows("a22", worst, [(f"{name} base: worst multiplier of 24 directions over that of statics", 1.0, (1e-3, 1e-3))], IN_SPACE)
+        made += rows("a22", worst, [(f"base, {name}: worst multiplier of 24 directions over that of statics", 1.0, (1e-3, 1e-3))], IN_SPACE)
     return made
 
 

@@ -107,6 +107,24 @@ private:
 		                 beyondTouch(shape2, edge2, -(axes2.transpose() * normal))}) > tolerance::contact::crossing;
 	}
 
+	// m; the bodies are at least so far apart.
+	double separation(const Vector3& normal) const
+	{
+		double least = std::numeric_limits<double>::infinity(), most = -least;
+		for (const Vector3& vertex : shape1.vertices())
+			most = std::max(most, normal.dot(pose1.toGlobal(vertex)));
+		for (const Vector3& vertex : shape2.vertices())
+			least = std::min(least, normal.dot(pose2.toGlobal(vertex)));
+		return least - most;
+	}
+
+	// Two edges are no nearer to each other than their bodies: lines that are nearer come so near beyond the ends of the edges.
+	bool crossBeyondEnds(const Feature& crossing, const Vector3& normal) const
+	{
+		const double apart = separation(normal);
+		return apart > 0 && Space::frame(crossing, shape1, pose1, shape2, pose2).gap < apart - tolerance::contact::vertexReach * length;
+	}
+
 	// Takes the corners of the patch but crossings that are not sharp; of these only one that lies far deeper than all others.
 	void takeCorners(const ContactPatch& patch)
 	{
@@ -115,6 +133,8 @@ private:
 		Feature blunt;
 		for (const PatchPoint& point : patch.points) {
 			const Feature feature = featureOf(point, patch.feature);
+			if (isCrossing(feature) && crossBeyondEnds(feature, patch.normal))
+				continue;
 			if (!isCrossing(feature) || isSharp(feature, patch.normal)) {
 				nearest = std::min(nearest, point.gap);
 				out.features.push_back(feature);

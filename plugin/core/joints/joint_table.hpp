@@ -74,6 +74,9 @@ public:
 	{
 		const auto& pair = pairs[c];
 		const int level1 = level[pair.body1], level2 = level[pair.body2];
+		const auto flies = [&](int body) { return level[body] != 0 && pairsOf[body].size() == 1; };
+		if (pair.isUpright && (flies(pair.body1) || flies(pair.body2)))
+			return {};
 		if ((pair.isUpright || level1 == level2) && isBorneAcross(bodies, pairs, pair.body1, pair.face1) &&
 		    isBorneAcross(bodies, pairs, pair.body2, pair.face2))
 			return {};
