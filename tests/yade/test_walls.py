@@ -28,6 +28,19 @@ def test_the_walls_of_the_peers(n, count):
     assert {tuple(s) for s in high - low} == {(1, 0.5, 0.5), (0.5, 0.5, 0.5)}
 
 
+def test_bases_blocks_and_stacks_have_places():
+    """`at` counts from the middle of the face below, in its axes: on a base turned by a quarter, x is the world's y."""
+    O.reset()
+    material = stone()
+    base = dem.base((4, 2, 0.2), material, at=(10, 1))
+    ids = [dem.block((0.4, 0.3, 1), material, on=base, at=(1.5, -0.5)), *dem.stack(2, (0.4, 0.3, 0.5), material, base, at=(-1, 0.25))]
+    places = [tuple(O.bodies[id].state.pos) for id in (base, *ids)]
+    assert np.allclose(places, [(10, 1, -0.1), (11.5, 0.5, 0.5), (9, 1.25, 0.25), (9, 1.25, 0.75)], rtol=0, atol=1e-15)
+    O.bodies[base].state.ori = Quaternion(Vector3.UnitZ, math.pi / 2)
+    turned = O.bodies[dem.block((0.4, 0.3, 1), material, on=base, at=(1, 0.5))].state
+    assert (turned.pos - Vector3(9.5, 2, 0.5)).norm() < 1e-14
+
+
 def test_three_ways_to_say_the_same_wall():
     """3.5 blocks a course: a half block at one end of each; 0.4 is no binary fraction, and still a whole block has exactly the size given."""
     size = (0.4, 0.2, 0.175)

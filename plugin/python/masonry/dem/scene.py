@@ -19,6 +19,8 @@ _LEVEL = 0.7
 # Height above the lowest corner, relative to the size, up to which a corner of a convex block belongs to its base.
 _BASE = 1e-6
 
+_TWO = "two finite numbers, in m"
+
 
 def _positive_size(name, size):
     return Vector3(layouts.positive_size(name, size))
@@ -33,7 +35,7 @@ def _axis(name):
 def base(size, material, at=(0.0, 0.0)):
     """A body that does not move by itself, with its top face at z = 0 and the middle of that face at `at` (x, y), m. size: full sizes (x, y, z), m.
     A motion engine (PulseTrainEngine, RecordMotionEngine) moves it. Returns its id."""
-    size, (x, y) = _positive_size("size", size), finite_numbers("at", at, 2, "two finite numbers, in m")
+    size, (x, y) = _positive_size("size", size), finite_numbers("at", at, 2, _TWO)
     body = utils.box(Vector3(x, y, -size[2] / 2), size / 2, Quaternion.Identity, material=block_material(material), fixed=True)
     body.aspherical = True
     return O.bodies.append(body)
@@ -47,7 +49,8 @@ def block(size, material, on=None, center=None, orientation=None, at=(0.0, 0.0))
     size = _positive_size("size", size)
     if (on is None) == (center is None):
         raise ValueError(f"on = {on}, center = {center}: give one of the two")
-    if on is None and tuple(at) != (0, 0):
+    at = tuple(finite_numbers("at", at, 2, _TWO))
+    if on is None and at != (0, 0):
         raise ValueError(f"at = {shown(at)}: is from the middle of a body: give it with `on`, not with `center`")
     orientation = Quaternion.Identity if orientation is None else orientation
     if not isinstance(orientation, Quaternion) or not abs(orientation.norm() - 1) < 1e-9:
@@ -57,7 +60,7 @@ def block(size, material, on=None, center=None, orientation=None, at=(0.0, 0.0))
         if not (orientation * Vector3.UnitZ)[2] > 1 - 1e-12:
             raise ValueError(f"orientation = {shown(orientation)}: must be a turn about z where the block stands on a body")
         center, turn = top_of(on, at, size[2] / 2)
-        if tuple(at) != (0, 0):
+        if at != (0, 0):
             check_support([(0.0, 0.0)], on, at, (size[0], size[1]))
         orientation = resting = turn * orientation
     center = finite_numbers("center", center, 3, "three finite numbers, in m")
