@@ -32,6 +32,7 @@ SCRIPTS = {
 # {picture under version control: (command, the file that it writes)}
 VALIDATION = {
     "validation/paper/figures/figure_6_spectrum_C0.7.png": ("validation/paper/run", "results/paper/figure_6_spectrum_C0.7.png"),
+    "validation/convex/frusta.png": ("validation/convex/run", "results/convex/frusta.png"),
     "validation/walls/tilting/wall_6.png": ("validation/walls/tilting/run", "results/tilting/wall_6.png"),
     "validation/walls/tilting/wall_10.png": ("validation/walls/tilting/run", "results/tilting/wall_10.png"),
     "validation/walls/restitution/overturning.png": ("validation/walls/restitution/run", "results/restitution/overturning.png"),

@@ -78,7 +78,7 @@ def scene(**options):
     (lambda: setattr(O, "engines", O.engines + [NewtonIntegrator()]), ("NewtonIntegrator", f"move block {base}", "mask")),
     (lambda: setattr(O, "engines", [dem.PulseTrainEngine(ids=[base], impulse=0.1, times=[0])] + O.engines), ("PulseTrainEngine", "MoreauJeanIntegrator.motions")),
     (lambda: setattr(O, "engines", [dem.RockingJointEngine()] + O.engines), ("RockingJointEngine", "not both")),
-    (lambda: O.bodies.append(utils.sphere((9, 9, 9), 1, material=O.bodies[block].mat)), ("BlockMat", "no Box")),
+    (lambda: O.bodies.append(utils.sphere((9, 9, 9), 1, material=O.bodies[block].mat)), ("BlockMat", "neither a Box nor a ConvexBlock")),
 ))
 def test_changes_after_the_engines_were_made(change, words):
     scene()

@@ -11,6 +11,7 @@
 // Head joints do not rock. A pair is a head joint if it is upright, or its bodies are equals, and if both bodies are borne across it: by
 // faces perpendicular to those that meet here. The bricks of a wall are borne by their bed faces, and their head faces stand beside these.
 // A voussoir is borne by the face opposite to that which meets the next one, so the crown joint of an arch rocks although it is upright.
+// An upright pair bears no body that has no other: that body flies past.
 #include "tolerances.hpp"
 #include <algorithm>
 #include <vector>
@@ -74,7 +75,7 @@ public:
 	{
 		const auto& pair = pairs[c];
 		const int level1 = level[pair.body1], level2 = level[pair.body2];
-		const auto flies = [&](int body) { return level[body] != 0 && pairsOf[body].size() == 1; };
+		const auto flies = [&](int body) { return level[body] > 0 && pairsOf[body].size() == 1; };
 		if (pair.isUpright && (flies(pair.body1) || flies(pair.body2)))
 			return {};
 		if ((pair.isUpright || level1 == level2) && isBorneAcross(bodies, pairs, pair.body1, pair.face1) &&
