@@ -5,7 +5,7 @@ import math
 import numpy as np
 import statics
 from masonry import dem
-from rows import collapse, rows, start
+from rows import MODES, collapse, rows, start
 from yade import O
 
 RADIUS = 1.0  # m, of the middle line
@@ -106,7 +106,7 @@ def a17_thrust():
 
     def measure(mode, by):
         ids = build(16, 0.15, 0.7)
-        start(mode)
+        start(mode).onTrouble = "continue"  # springers that stop at once leave residuals of 1e-7 m/s for a few steps
         run(1.0)
         if by:
             spread(ids, by)
@@ -159,7 +159,7 @@ def a21_pulse():
         return ((low + high) / 2,)
 
     # Found by non-smooth contact dynamics with plastic impacts and without slip; a mechanism with four hinges alone falls at 0.4287.
-    yield from rows("a21", measure, [("7 voussoirs, 10 m: pulse of 1 s that overturns, over g", 0.42262, (3e-3, 3e-3))])
+    yield from rows("a21", measure, [("7 voussoirs, 10 m: pulse of 1 s that overturns, over g", 0.42262, (3e-3, 3e-3))], [mode for mode in MODES if mode[1] == "planar"])
 
 
 CASES = [a14_least_thickness, a15_friction, a16_multiplier, a17_thrust, a18_flat_arch, a21_pulse]
