@@ -114,7 +114,7 @@ struct Extent {
 	}
 };
 
-// Of some faces that which looks most along a direction; the face `held` leads.
+// Returns the face that looks most along a direction; the face `held` leads.
 template <class Faces>
 int mostAlong(const ConvexPolyhedron& shape, const Faces& faces, const Vector3& direction, int held)
 {

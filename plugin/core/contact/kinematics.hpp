@@ -61,7 +61,7 @@ struct PlanePose {
 	}
 };
 
-// What a pair of polygons in the plane remembers from one search to the next.
+// A pair of polygons in the plane remembers this from one search to the next.
 struct PlaneMemory {
 	int reference {0};          // body 1 or 2 whose face was the reference; 0: none
 	int face1 {-1}, face2 {-1}; // faces in touch

@@ -40,7 +40,7 @@ struct BestFace {
 	double separation;
 };
 
-// Of the faces that look towards the other body: behind any other face it could only be where the two go through each other.
+// Only faces that look towards the other body count: behind any other face it could only be where the two go through each other.
 BestFace bestFaceOf(int body, const ConvexPolygon& own, const ConvexPolygon& other, const RelativePose& pose, int held, double length)
 {
 	constexpr double infinity = std::numeric_limits<double>::infinity();

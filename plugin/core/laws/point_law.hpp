@@ -1,5 +1,5 @@
 #pragma once
-// What a contact point may carry: its law, the projection on it, the residual of all solvers, and the impulse of a point alone.
+// This file holds the law of a contact point, the projection on it, the residual of all solvers, and the impulse of a point alone.
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
