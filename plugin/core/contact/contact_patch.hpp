@@ -1,5 +1,5 @@
 #pragma once
-// Where two faces (or two edges) of a pair of bodies meet: the contact patch.
+// The contact patch is where two faces, or two edges, of a pair of bodies meet.
 #include "contact/features.hpp"
 #include <algorithm>
 

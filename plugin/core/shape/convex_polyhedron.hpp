@@ -37,7 +37,7 @@ public:
 		Vector3 middle;    // m
 		double halfLength; // m
 	};
-	// What meets at a vertex, in ascending order.
+	// These meet at a vertex; their numbers ascend.
 	struct Corner {
 		std::vector<int> edges, faces;
 	};

@@ -41,7 +41,7 @@ py::tuple blockProperties(const py::object& geometry)
 	                      toArray(restitution));
 }
 
-// Of one section, by the coordinates of its corners: what toBlocks() takes, without gravity.
+// Returns the row of one section that toBlocks() takes, without gravity, from the coordinates of its corners.
 py::tuple prismOf(const py::object& xs, const py::object& ys)
 {
 	const Column x = toVector(xs), y = toVector(ys);

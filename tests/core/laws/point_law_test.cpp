@@ -71,7 +71,7 @@ void checkProjections(int seed)
 	}
 }
 
-// Of a random pair of impulse and velocity that obeys the law.
+// Returns a random pair of impulse and velocity that obeys the law.
 template <class Rows>
 void checkResiduals(const PointLaw& law, int seed)
 {

@@ -79,7 +79,7 @@ bool ContactSet<K>::lookUp(RigidSystem<K>& s, int c)
 	const FoundPoints<K> found = findPoints(body1, body2, pair.memory);
 	pair.face1 = found.face1;
 	pair.face2 = found.face2;
-	// Of bodies that have been moved the pair may know other points than the lanes.
+	// If bodies have been moved, the pair may know other points than the lanes.
 	const bool same = known[c] && !s.moved && sameFeatures(pair, found);
 	takeFriction(s, c);
 	if (same)

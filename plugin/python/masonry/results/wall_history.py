@@ -15,7 +15,7 @@ ENERGIES = ("kinetic", "potential", "elastPotential", "frictDissip", "dampDissip
 _SAVED = ("time", "ids", "sizes", "free", "position", "orientation", "energies")
 # Files have these where they are known.
 _OPTIONAL = ("motion", "end", "about", "impacts", "forces")
-# Of shapes, where there are convex blocks.
+# Files hold these fields of shapes if there are convex blocks.
 _SHAPES = ("vertices", "vertex_start", "faces", "face_start")
 # Rows of the forces of joints: force on block 2, N, and where it acts, m.
 JOINT_FORCES = [("id1", int), ("id2", int), ("force", float, 3), ("point", float, 3)]

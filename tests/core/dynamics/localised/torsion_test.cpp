@@ -1,32 +1,15 @@
 // Faces that turn about their normal on their bed: friction against pressures that are integrated over the face.
 #include "core/dynamics/localised/space_rig.hpp"
+#include "oracle/even_pressure.hpp"
 #include <catch.hpp>
 
 using namespace rig;
+using oracle::even;
+using oracle::Slowing;
 
 namespace {
 
 constexpr double mu = 0.3;
-
-struct Slowing {
-	Vector2 force; // N, against the motion
-	double torque; // N m
-};
-
-// Of an even pressure N on a face a x b (half sides) that moves with v and w about its centre, mu = 1.
-Slowing even(double a, double b, const Vector2& v, double w)
-{
-	constexpr int n = 200;
-	Slowing sum {Vector2::Zero(), 0};
-	for (int i = 0; i < n; ++i)
-		for (int j = 0; j < n; ++j) {
-			const Vector2 arm(a * (2 * i + 1. - n) / n, b * (2 * j + 1. - n) / n), u = v + w * Vector2(-arm.y(), arm.x());
-			const Vector2 pull = -u.normalized() / (n * n);
-			sum.force += pull;
-			sum.torque += arm.x() * pull.y() - arm.y() * pull.x();
-		}
-	return sum;
-}
 
 // A thin plate: friction on it moves its pressure by mu times the half thickness at most.
 System plate(double a, double b, const Vector2& v, double w)
