@@ -6,6 +6,9 @@
 #include <vector>
 
 #include <registry.hpp>
+#ifdef MASONRY_VIEWER
+#include <pkg/common/OpenGLRenderer.hpp>
+#endif
 
 namespace {
 
@@ -62,11 +65,24 @@ py::dict fewBlocks()
 	return all;
 }
 
+#ifdef MASONRY_VIEWER
+/// YADE's renderer looks for the classes that draw when YADE's windows start. It ends YADE when it meets a body or a contact of a class
+/// that came later, so that it has to look again.
+void drawOurClasses(py::object renderer)
+{
+	py::extract<yade::OpenGLRenderer&>(renderer)().init();
+	yade::OpenGLRenderer::initDone = false;
+}
+#endif
+
 } // namespace
 
 BOOST_PYTHON_MODULE(_yade)
 {
 	py::def("setup", setup, "Registers the plugin's classes in YADE; returns their names.");
+#ifdef MASONRY_VIEWER
+	py::def("draw_our_classes", drawOurClasses, "Makes yade.qt.Renderer() draw the plugin's bodies and contacts.");
+#endif
 	py::def("few_blocks", fewBlocks,
 	        "By model of rigid blocks: up to so many free blocks that are stepped together have localised impacts.");
 }

@@ -10,6 +10,7 @@
 #include <core/TimeStepper.hpp>
 #include <pkg/common/Box.hpp>
 #include <pkg/common/ElastMat.hpp>
+#include <pkg/common/GLDrawFunctors.hpp>
 #include <pkg/common/MatchMaker.hpp>
 #include <pkg/common/PeriodicEngines.hpp>
 #include <pkg/dem/FrictPhys.hpp>
@@ -283,5 +284,9 @@ SIZE(BoundFunctor, 88);
 SIZE(IGeomFunctor, 88);
 SIZE(IPhysFunctor, 88);
 SIZE(LawFunctor, 88);
+SIZE(GlShapeFunctor, 88);
+SIZE(GlIGeomFunctor, 88);
+SIZE(GlIPhysFunctor, 88);
+SIZE(GLViewInfo, 32);
 
 } // namespace yade

@@ -4,6 +4,7 @@ import difflib
 import importlib
 import math
 import re
+import sys
 
 from masonry._given import shown
 
@@ -131,4 +132,7 @@ def load_classes():
         setattr(yade, name, cls)
         if hasattr(yade, "__all__") and name not in yade.__all__:
             yade.__all__.append(name)
+    viewer = sys.modules.get("yade.qt")
+    if viewer is not None and hasattr(plugin, "draw_our_classes"):
+        plugin.draw_our_classes(viewer.Renderer())
     return classes
