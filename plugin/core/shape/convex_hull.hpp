@@ -22,9 +22,13 @@ Triangles hullTriangles(const std::vector<Vector3>& points);
 // three faces meet are left out.
 Loops mergedFaces(const std::vector<Vector3>& points, const Triangles& triangles, double tolerance);
 
+// Returns the triangles that a face was made of.
+Loops trianglesWithin(const Triangles& triangles, const std::vector<int>& face);
+
 // Moves the vertices of faces that are not plane to `precise` (m) onto the planes that fit them. Planes and vertices follow each other by
-// least squares until all agree. Where a vertex had to go more than `farthest` (m), between faces that are nearly coplanar, all stay.
-void flattenFaces(std::vector<Vector3>& points, const Loops& faces, double precise, double farthest);
+// least squares until all agree. Returns the faces that cannot be made plane so, since their vertices would have to go more than `farthest`
+// (m) between faces that are nearly coplanar; all vertices then stay.
+Loops flattenFaces(std::vector<Vector3>& points, const Loops& faces, double precise, double farthest);
 
 // Returns the area vector of a polygon: along its normal, as long as its area, m^2.
 Vector3 areaVector(const std::vector<Vector3>& points, const std::vector<int>& loop);

@@ -131,23 +131,50 @@ Loops mergedFaces(const std::vector<Vector3>& points, const Triangles& triangles
 	return merging.loops();
 }
 
-void flattenFaces(std::vector<Vector3>& points, const Loops& faces, double precise, double farthest)
+Loops trianglesWithin(const Triangles& triangles, const std::vector<int>& face)
+{
+	std::map<Side, std::array<int, 3>> triangleOf;
+	for (const auto& [a, b, c] : triangles)
+		triangleOf[{a, b}] = triangleOf[{b, c}] = triangleOf[{c, a}] = {a, b, c};
+	std::set<Side> border;
+	for (std::size_t k = 0; k < face.size(); ++k)
+		border.insert({face[k], face[(k + 1) % face.size()]});
+	std::set<std::array<int, 3>> found;
+	std::vector<Side> open {*border.begin()}; // sides whose triangle lies within
+	while (!open.empty()) {
+		const auto triangle = triangleOf.at(open.back());
+		open.pop_back();
+		if (!found.insert(triangle).second)
+			continue;
+		for (int k = 0; k < 3; ++k)
+			if (const Side side {triangle[k], triangle[(k + 1) % 3]}; border.count(side) == 0)
+				open.push_back({side.second, side.first});
+	}
+	Loops loops;
+	for (const auto& triangle : found)
+		loops.push_back({triangle.begin(), triangle.end()});
+	return loops;
+}
+
+Loops flattenFaces(std::vector<Vector3>& points, const Loops& faces, double precise, double farthest)
 {
 	constexpr int maxPasses = 100;
 	constexpr double parallel = 0.05; // planes that enclose less leave a vertex where it is along their common line: it would go far
 	const std::vector<Vector3> given = points;
-	for (int pass = 0; pass < maxPasses; ++pass) {
+	Loops bent;
+	for (int pass = 0; pass <= maxPasses; ++pass) {
 		std::map<int, std::vector<std::pair<Vector3, double>>> planes; // at a vertex: normal, and how far it is from the plane
-		double worst = 0;
+		bent.clear();
 		for (const std::vector<int>& loop : faces) {
 			const Vector3 normal = areaVector(points, loop).normalized();
 			const auto [offset, deviation] = offsetAndDeviation(points, loop, normal);
-			worst = std::max(worst, deviation);
+			if (deviation > precise)
+				bent.push_back(loop);
 			for (const int vertex : loop)
 				planes[vertex].push_back({normal, offset - normal.dot(points[vertex])});
 		}
-		if (worst <= precise)
-			return;
+		if (bent.empty())
+			return {};
 		for (const auto& [vertex, all] : planes) {
 			Eigen::MatrixXd normals(all.size(), 3);
 			Eigen::VectorXd missing(all.size());
@@ -160,10 +187,14 @@ void flattenFaces(std::vector<Vector3>& points, const Loops& faces, double preci
 			points[vertex] += solver.compute(normals).solve(missing);
 			if ((points[vertex] - given[vertex]).norm() > farthest) {
 				points = given;
-				return;
+				const auto isElsewhere = [v = vertex](const auto& loop) { return std::find(loop.begin(), loop.end(), v) == loop.end(); };
+				bent.erase(std::remove_if(bent.begin(), bent.end(), isElsewhere), bent.end());
+				return bent;
 			}
 		}
 	}
+	points = given;
+	return bent;
 }
 
 } // namespace masonry

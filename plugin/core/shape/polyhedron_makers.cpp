@@ -127,6 +127,20 @@ double checkedArea(const std::vector<Vector3>& points, const std::vector<int>& l
 	return area.norm();
 }
 
+// Moves the vertices onto the planes of their faces. Faces that cannot be made plane are triangles again.
+void makePlane(std::vector<Vector3>& points, Loops& loops, double precise, double farthest)
+{
+	const Triangles triangles = hullTriangles(points);
+	for (Loops bent; !(bent = flattenFaces(points, loops, precise, farthest)).empty();) {
+		for (const auto& face : bent) {
+			const Loops parts = trianglesWithin(triangles, face);
+			loops.erase(std::find(loops.begin(), loops.end(), face));
+			loops.insert(loops.end(), parts.begin(), parts.end());
+		}
+		dropUnused(points, loops);
+	}
+}
+
 } // namespace
 
 ConvexPolyhedron ConvexPolyhedron::hull(std::vector<Vector3> points)
@@ -141,7 +155,7 @@ ConvexPolyhedron ConvexPolyhedron::hull(std::vector<Vector3> points)
 		loops = mergedFaces(points, hullTriangles(points), tolerance);
 		dropUnused(points, loops);
 	}
-	flattenFaces(points, loops, tolerance::shape::precise * extent, 10 * tolerance);
+	makePlane(points, loops, tolerance::shape::precise * extent, 10 * tolerance);
 	const Vector3 half = halfSizeOf(points, tolerance::shape::box * extent);
 	return half.isZero() ? ConvexPolyhedron(std::move(points), loops, edgesOf(loops)) : box(half);
 }

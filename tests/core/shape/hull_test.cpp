@@ -161,3 +161,22 @@ TEST_CASE("Bad vertices and faces are refused by name and value")
 	points = {{1, 0, 0}, {0, 1, 0}, {-1, -1, 0}, {0, 0, 1}, {0, 0, -0.5}};
 	CHECK_THROWS_WITH(ConvexPolyhedron::fromFaces(points, {{0, 1, 3}, {0, 1, 2}}), containsText("face 1: depth inside the convex hull"));
 }
+
+// A sliver of 1:700 whose nearly coplanar faces leave a vertex no place on a common plane: two of them would be one face that is bent by
+// 3e-6.
+TEST_CASE("Faces that cannot be made plane stay triangles")
+{
+	const ConvexPolyhedron shape = ConvexPolyhedron::hull({{-0.768740062, -0.0859036292, -0.00157556981},
+	                                                       {-0.398759977, 0.273056216, -0.00144340644},
+	                                                       {-0.0631215293, -0.101620003, -0.00141157675},
+	                                                       {-0.0784153145, 0.473656438, -0.00132438222},
+	                                                       {0.942247032, 0.037973922, -0.00110311161},
+	                                                       {-0.557692678, -0.126420672, 0.000511889184},
+	                                                       {0.19850226, -0.662570215, 0.000552778131},
+	                                                       {0.121084719, -0.724017122, 0.000797978027},
+	                                                       {-0.0633988506, 0.441940429, 0.00248523019}});
+	CHECK(shape.faces().size() == 14);
+	for (const auto& face : shape.faces())
+		for (const int vertex : face.loop)
+			CHECK(std::abs(face.normal.dot(shape.vertices()[vertex]) - face.offset) < 1e-12);
+}
