@@ -290,7 +290,8 @@ TEST_CASE("Faces that touch keep all corners of their overlap", "[fuzz]")
 		CHECK(std::abs(patch.area - area) < 1e-6 * pair.length());
 		CHECK(patch.nominalArea == std::min(face1.area, face2.area));
 		for (const PatchPoint& point : patch.points)
-			CHECK(std::abs(point.gap) < 1e-12);
+			CHECK(std::abs(point.gap) <
+			      1e-12 + 1e-15 * (pair.shape1.radius() + pair.shape2.radius()) / pair.length()); // slivers extrapolate
 	}
 	CHECK(found > count / 4);
 }
