@@ -375,3 +375,47 @@ def test_a_union_across_half_the_depth_is_spatial():
     base = dem.base((9, 9, 0.2), material)
     id = dem.union([cuboid((0, 1), (0, 0.2)), cuboid((0, 0.3), (0.2, 1), (-0.1, 0.1))], material, on=base)
     assert f"body {id} is no right prism across the plane" in said_by(lambda: dem.engines())
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("model", MODELS)
+def test_a_block_rocks_on_a_seam(model, method):
+    """A block whose left edge is on the seam of a fixed union rocks as on one solid, with friction that holds it: the edges at the seam are none of the solid's
+    and give no reaction of their own."""
+    found = []
+    for whole in (True, False):
+        O.reset()
+        material = stone(0.8, noSlip=False, frictionAngle=0.5)
+        y = (-1, 1)
+        parts = [cuboid((-3, 3), (-0.5, 0), y)] if whole else [cuboid((-3, -0.25), (-0.5, 0), y), cuboid((-0.25, 3), (-0.5, 0), y)]
+        below = dem.union(parts, material)
+        O.bodies[below].dynamic = False
+        block = dem.block((0.5, 0.4, 1.5), material, center=(0, 0, 0.75))
+        dem.tilt(block, 0.15)
+        move(method=method, model=model, tolerance=1e-6 if method == "wall" else None)
+        found.append([])
+        for _ in range(40):
+            O.run(count(0.05), True)
+            found[-1] += [dem.angle(block), O.bodies[block].state.pos[0]]
+    assert np.ptp(found[0]) > 0.1
+    assert np.abs(np.subtract(*found)).max() < (1e-9 if method == "localised" else 2e-5)
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_a_block_slides_askew_over_a_pavement(method):
+    """A turned block slides askew over nine flush parts, across their corners: v^2 / (2 mu g) along its way, as on one solid."""
+    material = stone(0.5, noSlip=False, frictionAngle=math.atan(0.3))
+    ends = [-1, -0.1, 0.6, 2]
+    parts = [cuboid(x, (-0.3, 0), y) for x in zip(ends, ends[1:]) for y in zip(ends, ends[1:])]
+    below = dem.union(parts, material)
+    O.bodies[below].dynamic = False
+    block = dem.block((0.3, 0.2, 0.2), material, center=(-0.4, -0.4, 0.1), orientation=Quaternion(Vector3.UnitZ, 0.3))
+    O.bodies[block].state.vel = Vector3(2 * math.cos(0.7), 2 * math.sin(0.7), 0)
+    move(method=method, model="spatial")
+    highest = 0
+    for _ in range(count(1.0)):
+        O.step()
+        highest = max(highest, abs(O.bodies[block].state.pos[2] - 0.1))
+    way = np.array(tuple(O.bodies[block].state.pos)) - (-0.4, -0.4, 0.1)
+    # Its weight is ahead of its middle while it slides, and the pressure under four corners is not even: the way is not quite straight.
+    assert np.hypot(*way[:2]) == pytest.approx(4 / (2 * 0.3 * 9.81), rel=2e-2) and highest < 1e-6

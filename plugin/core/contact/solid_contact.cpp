@@ -41,12 +41,14 @@ template <class K>
 bool isHidden(const PartPair<K>& pair, const Feature& feature)
 {
 	const auto frame = frameOf(feature, pair.solid1, pair.pose1, pair.solid2, pair.pose2);
+	const typename K::Vector normal = frame.axes.row(0).transpose();
 	if (feature.kind != Feature::Edges) {
 		const bool on1 = feature.vertexBody() == 1;
-		const auto& solid = on1 ? pair.solid2 : pair.solid1;
-		return solid.isCovered(feature.face(), toLocal(on1 ? pair.pose2 : pair.pose1, frame.position));
+		const auto &ofVertex = on1 ? pair.solid1 : pair.solid2, &ofFace = on1 ? pair.solid2 : pair.solid1;
+		const typename K::Vector outward = turnBack(on1 ? pair.pose1 : pair.pose2, on1 ? normal : typename K::Vector(-normal));
+		return ofFace.isCovered(feature.face(), toLocal(on1 ? pair.pose2 : pair.pose1, frame.position)) ||
+		       ofVertex.isBuried(feature.vertex(), outward);
 	}
-	const typename K::Vector normal = frame.axes.row(0).transpose();
 	return isInside(pair.solid1, feature.on1, toLocal(pair.pose1, frame.position), turnBack(pair.pose1, normal)) ||
 	       isInside(pair.solid2, feature.on2, toLocal(pair.pose2, frame.position), turnBack(pair.pose2, typename K::Vector(-normal)));
 }

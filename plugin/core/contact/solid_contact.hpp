@@ -2,10 +2,11 @@
 // Contact points of two solids: those of their convex parts, pair by pair, with the numbers of vertices, faces and edges of the whole.
 //
 // Each part keeps every other body out of itself, so the points of all pairs of parts are constraints that the solid has, too. Only normals
-// can be wrong: where two parts touch, a part has faces that are inside the solid, and edges that are none of it. A point on a face that is
-// covered there (Solid::isCovered) is left out. So is a second normal, or a crossing, that belongs to an edge beside a covered face, but
-// for a crossing whose normal is that of the other face beside the edge: it marks where an edge of the other body leaves the part, and
-// the solid goes on in the same plane.
+// can be wrong: where two parts touch, a part has faces that are inside the solid, and edges and corners that are none of it. A point on a
+// face that is covered there (Solid::isCovered) is left out, and so is a vertex of a part that is no corner of the solid (Solid::isBuried),
+// unless it lies in a face of the solid on which the other body has a parallel one. So is a second normal, or a crossing, that belongs to
+// an edge beside a covered face, but for a crossing whose normal is that of the other face beside the edge: it marks where an edge of the
+// other body leaves the part, and the solid goes on in the same plane.
 #include "contact/point_geometry.hpp"
 #include "shape/solid.hpp"
 

@@ -111,6 +111,33 @@ bool Solid<Convex>::isCovered(int number, const Vector& point) const
 	return samples > 0 && covered == samples;
 }
 
+// Where the other part holds points farther along `outward` than the vertex, the solid goes on there. In a notch it does so beside faces
+// that can be touched all the same.
+template <class Convex>
+bool Solid<Convex>::isBuried(int number, const Vector& outward) const
+{
+	if (size() == 1)
+		return false;
+	const int own = partOfVertex(number);
+	const Vector& vertex = all[own].vertices()[number - firsts[own].vertex];
+	const double near = 4 * tolerance::contact::vertexReach * leastHalfWidth;
+	bool goesOn = false;
+	for (int k = 0; k < size() && !goesOn; ++k)
+		if (k != own && outside(all[k], vertex) <= near)
+			for (const Vector& other : all[k].vertices())
+				goesOn = goesOn || outward.dot(other - vertex) > std::max(near, tolerance::contact::leans * (other - vertex).norm());
+	if (!goesOn)
+		return false;
+	for (int k = 0; k < size(); ++k)
+		for (int f = 0; f < int(all[k].faces().size()) && outside(all[k], vertex) <= near; ++f) {
+			const Face& plane = all[k].faces()[f];
+			if (std::abs(plane.normal.dot(vertex) - plane.offset) <= near && (plane.normal - outward).norm() <= tolerance::contact::leans &&
+			    !isCovered(firsts[k].face + f, vertex))
+				return false;
+		}
+	return true;
+}
+
 template class Solid<ConvexPolygon>;
 template class Solid<ConvexPolyhedron>;
 

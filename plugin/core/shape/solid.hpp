@@ -42,6 +42,9 @@ public:
 	int joined(int face) const { return faceOf.empty() ? face : faceOf[face]; }
 	// Whether another part lies on this face of a part all around a point that is on it or beside it.
 	bool isCovered(int face, const Vector& point) const;
+	// Whether a body that touches a vertex of a part from the direction `outward` (unit) would be in another part: the vertex is no corner
+	// of the solid in that direction. Directions of faces that are not covered there are always free.
+	bool isBuried(int vertex, const Vector& outward) const;
 
 	double thickness() const { return leastHalfWidth; }          // m, the least of the parts
 	double radius() const { return farthest; }                   // m, from the origin to the farthest vertex
