@@ -55,7 +55,10 @@ struct Remembered {
 			shapeOf.push_back(number->second);
 		}
 	}
-	bool hasShape(int body, const masonry::Solid<typename K::Shape>& shape) const { return shapes.at(shapeOf.at(body)) == shape.vertices(); }
+	bool hasShape(int body, const masonry::Solid<typename K::Shape>& shape) const
+	{
+		return shapes.at(shapeOf.at(body)) == shape.vertices();
+	}
 };
 
 /// Told once in a run.

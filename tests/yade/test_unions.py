@@ -346,6 +346,11 @@ def test_tables_checks_and_results(tmp_path):
     assert O.bodies[again[0]].state.inertia == O.bodies[id].state.inertia and O.bodies[again[0]].state.pos == O.bodies[id].state.pos
     for one in again:
         O.bodies.erase(one)
+    dem.save_blocks(str(tmp_path / "blocks.obj"))  # a mesh has no unions: the parts are blocks
+    meshed = dem.blocks_from_mesh(str(tmp_path / "blocks.obj"), material)
+    assert len(meshed) == 3 and sum(dem.geometry(k).is_box for k in meshed) == 3
+    for one in meshed:
+        O.bodies.erase(one)
     recorder = dem.WallRecorder(iterPeriod=5)
     O.engines = rigid_engines() + [recorder]
     O.run(40, True)

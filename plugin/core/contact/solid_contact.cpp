@@ -53,6 +53,34 @@ bool isHidden(const PartPair<K>& pair, const Feature& feature)
 	       isInside(pair.solid2, feature.on2, toLocal(pair.pose2, frame.position), turnBack(pair.pose2, typename K::Vector(-normal)));
 }
 
+// The faces of a part that meet at a vertex.
+std::array<int, 2> facesAt(const ConvexPolygon& part, int vertex) { return {part.corners()[vertex].before, part.corners()[vertex].after}; }
+const std::vector<int>& facesAt(const ConvexPolyhedron& part, int vertex) { return part.corners()[vertex].faces; }
+
+// The search ends a face of a part at its seam, where it takes another face of a body that leans there on its edge. The solid goes on: the
+// face that meets it is that which looks most against it, and the joint is the one under that face, on either side of the seam. Gives the
+// number of that face of the body with the vertex; -1: the vertex is not on a seam.
+template <class K>
+int faceAtSeam(const PartPair<K>& pair, const Feature& feature)
+{
+	if (feature.kind == Feature::Edges)
+		return -1;
+	const bool on1 = feature.vertexBody() == 1;
+	const auto &ofVertex = on1 ? pair.solid1 : pair.solid2, &ofFace = on1 ? pair.solid2 : pair.solid1;
+	const auto frame = frameOf(feature, pair.solid1, pair.pose1, pair.solid2, pair.pose2);
+	if (ofFace.size() == 1 || !ofFace.goesOn(feature.face(), toLocal(on1 ? pair.pose2 : pair.pose1, frame.position)))
+		return -1;
+	const int number = on1 ? pair.part1 : pair.part2;
+	const auto& part = ofVertex.part(number);
+	const typename K::Vector normal = frame.axes.row(0).transpose();
+	const typename K::Vector outward = turnBack(on1 ? pair.pose1 : pair.pose2, on1 ? normal : typename K::Vector(-normal));
+	int best = -1;
+	for (const int face : facesAt(part, feature.vertex() - ofVertex.first(number).vertex))
+		if (best < 0 || outward.dot(part.faces()[face].normal) > outward.dot(part.faces()[best].normal))
+			best = face;
+	return best;
+}
+
 // The numbers of the solids for those of the parts.
 template <class K>
 Feature numbered(const PartPair<K>& pair, const Feature& feature)
@@ -107,6 +135,9 @@ FoundPoints<K> findPoints(const PartPair<K>& pair, bool secondNormals, typename 
 	for (Feature& feature : found.features)
 		feature = numbered(pair, feature);
 	dropPoints(found, [&](const Feature& feature) { return isHidden(pair, feature); });
+	for (int i = 0; i < found.places; ++i)
+		if (const int face = faceAtSeam(pair, found.features[i]); face >= 0)
+			(found.features[i].vertexBody() == 1 ? found.face1 : found.face2) = face;
 	if (!secondNormals)
 		found.places = 0; // as K::findPoints leaves it
 	if (found.face1 >= 0)

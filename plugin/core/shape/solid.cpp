@@ -76,6 +76,18 @@ void Solid<Convex>::joinFaces()
 }
 
 template <class Convex>
+bool Solid<Convex>::goesOn(int number, const Vector& point) const
+{
+	const int own = partOfFace(number);
+	const double near = 4 * tolerance::contact::vertexReach * leastHalfWidth;
+	for (int k = 0; k < size(); ++k)
+		for (int f = 0; f < int(all[k].faces().size()); ++f)
+			if (k != own && joined(firsts[k].face + f) == joined(number) && outside(all[k], point) <= near)
+				return true;
+	return false;
+}
+
+template <class Convex>
 std::vector<typename Solid<Convex>::Vector> Solid<Convex>::vertices() const
 {
 	std::vector<Vector> points;

@@ -40,6 +40,8 @@ public:
 	}
 	// The face of the solid on which a face of a part lies.
 	int joined(int face) const { return faceOf.empty() ? face : faceOf[face]; }
+	// Whether another part has a face in the same plane at a point of this face.
+	bool goesOn(int face, const Vector& point) const;
 	// Whether another part lies on this face of a part all around a point that is on it or beside it.
 	bool isCovered(int face, const Vector& point) const;
 	// Whether a body that touches a vertex of a part from the direction `outward` (unit) would be in another part: the vertex is no corner

@@ -2,7 +2,8 @@
 
 namespace masonry {
 
-// The inertia about the common centre by Steiner's theorem: I = sum (I_k + m_k (d.d 1 - d d^T)), d from the common centre to that of part k.
+// The inertia about the common centre by Steiner's theorem: I = sum (I_k + m_k (d.d 1 - d d^T)), d from the common centre to that of part
+// k.
 MassProperties massProperties(const std::vector<ConvexPolyhedron>& parts, double density)
 {
 	std::vector<MassProperties> own;

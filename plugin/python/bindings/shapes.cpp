@@ -183,10 +183,12 @@ void exposeShapes()
 	        "One row a pair: gap along the axis that separates them best, then of the patch where they are at most the margin apart: "
 	        "number of corners (0: there is "
 	        "none), area, that of the smaller face, cosine of the angle between the faces, normal, corners on the first. Filled with NaN.");
-	py::def("convex_union", convexUnion, py::args("points", "starts", "in_own_axes"),
-	        "The rigid union of convex parts in its principal axes, as convex_block: the parts begin at `starts`, with the end of the last.");
+	py::def(
+	    "convex_union", convexUnion, py::args("points", "starts", "in_own_axes"),
+	    "The rigid union of convex parts in its principal axes, as convex_block: the parts begin at `starts`, with the end of the last.");
 	py::def("convex_block", convexBlock, py::args("points", "faces", "starts", "in_own_axes"),
-	        "The convex polyhedron over points (or of faces, checked) in its principal axes: vertices (k, 3), first vertex of each part, faces one after the other "
+	        "The convex polyhedron over points (or of faces, checked) in its principal axes: vertices (k, 3), first vertex of each part, "
+	        "faces one after the other "
 	        "and where each "
 	        "begins, position and orientation (w, x, y, z) of these axes, volume, principal moments of inertia per unit of density, "
 	        "whether it is a box");
