@@ -10,15 +10,18 @@ YADE_PLUGIN((Gl1_ConvexBlock));
 void Gl1_ConvexBlock::go(const shared_ptr<Shape>& shape, const shared_ptr<State>&, bool wire, const GLViewInfo&)
 {
 	const auto& block = static_cast<const ConvexBlock&>(*shape);
-	if (!block.polyhedron)
+	if (!block.solid)
 		return;
 	gl::colour(block.color);
-	for (const auto& face : block.polyhedron->faces()) {
-		glBegin(wire || block.wire ? gl::lineLoop : gl::polygon);
-		glNormal3d(face.normal[0], face.normal[1], face.normal[2]);
-		for (const int k : face.loop)
-			gl::vertex(block.polyhedron->vertices()[k]);
-		glEnd();
+	for (int k = 0; k < block.solid->size(); ++k) {
+		const masonry::ConvexPolyhedron& part = block.solid->part(k);
+		for (const auto& face : part.faces()) {
+			glBegin(wire || block.wire ? gl::lineLoop : gl::polygon);
+			glNormal3d(face.normal[0], face.normal[1], face.normal[2]);
+			for (const int vertex : face.loop)
+				gl::vertex(part.vertices()[vertex]);
+			glEnd();
+		}
 	}
 }
 

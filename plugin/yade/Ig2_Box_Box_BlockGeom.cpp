@@ -13,7 +13,8 @@ YADE_PLUGIN((Ig2_Box_Box_BlockGeom));
 bool Ig2_Box_Box_BlockGeom::go(const shared_ptr<Shape>& first, const shared_ptr<Shape>& second, const State& state1, const State& state2,
                                const Vector3r& shift2, const bool& force, const shared_ptr<Interaction>& interaction)
 {
-	if (!BlockShape::isWhole(*first) || !BlockShape::isWhole(*second)) // RockingJointEngine says so
+	const auto isTaken = [](const Shape& shape) { return BlockShape::isWhole(shape) && !BlockShape(shape).isUnion(); };
+	if (!isTaken(*first) || !isTaken(*second)) // RockingJointEngine says so
 		return false;
 	thread_local KeptShapes shapes; // pairs are looked at side by side
 	const auto shape1 = shapes.of(interaction->getId1(), *first), shape2 = shapes.of(interaction->getId2(), *second);

@@ -57,6 +57,7 @@ void WallRecorder::begin()
 	blocks.clear();
 	vertices.clear();
 	vertexCounts.clear();
+	partCounts.clear();
 	for (int id : ids) {
 		if (!scene->bodies->exists(id) || !isShown(*(*scene->bodies)[id]))
 			throw std::invalid_argument(sentence("WallRecorder.ids has ", id, ": there is no such block in O.bodies."));
@@ -66,7 +67,10 @@ void WallRecorder::begin()
 		if (const auto* box = dynamic_cast<const Box*>(body.shape.get())) {
 			half = box->extents;
 		} else {
-			const vector<Vector3r>& own = static_cast<const ConvexBlock&>(*body.shape).vertices;
+			const ConvexBlock& block = static_cast<const ConvexBlock&>(*body.shape);
+			const vector<Vector3r>& own = block.vertices;
+			for (int part = 0; part < block.parts(); ++part)
+				partCounts.push_back(int(block.solid->part(part).vertices().size()));
 			vertices.insert(vertices.end(), own.begin(), own.end());
 			vertexCounts.back() = int(own.size());
 		}

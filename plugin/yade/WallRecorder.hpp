@@ -27,6 +27,7 @@ public:
 		((vector<Real>, times, , Attr::readonly, "Times of the samples [s]."))
 		((vector<Real>, blocks, , Attr::readonly, "At the first sample, block by block: half sizes x, y, z [m] (0 for a ConvexBlock), 1 for a free block or 0."))
 		((vector<int>, vertexCounts, , Attr::readonly, "Number of vertices of each ConvexBlock, block by block; 0 for a box."))
+		((vector<int>, partCounts, , Attr::readonly, "Number of vertices of each convex part of these ConvexBlocks, block by block."))
 		((vector<Vector3r>, vertices, , Attr::readonly, "Vertices of these ConvexBlocks in their own axes [m], block by block."))
 		((vector<Real>, energies, , Attr::readonly, "Sample by sample: kinetic, potential, elastPotential, frictDissip, dampDissip, impactDissip, baseWork, as dem.energy() [J]; NaN without an engine of the joints. If O.engines is replaced during a run, dissipated energies and work are summed over the lists."))
 		((vector<shared_ptr<Engine>>, motions, , Attr::readonly, "Motion engines that have moved bodies during the recording."))

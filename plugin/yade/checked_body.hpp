@@ -32,7 +32,7 @@ inline void checkBody(const Body& body)
 		throw std::invalid_argument(sentence("O.bodies[", body.id, "] is a member of a clump: blocks cannot be clumped."));
 	if (const auto* box = dynamic_cast<const Box*>(body.shape.get()))
 		check("shape.extents", box->extents, "m");
-	else if (!BlockShape(*body.shape).polyhedron())
+	else if (!BlockShape(*body.shape).solid())
 		throw std::invalid_argument(
 		    sentence("O.bodies[", body.id, "].shape.vertices = [] is not allowed for a block: dem.convex() makes one."));
 	if (!body.isDynamic())

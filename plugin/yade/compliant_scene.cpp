@@ -36,6 +36,10 @@ void CompliantScene::readBodies(const Scene& scene, masonry::CompliantStep& step
 			throw std::invalid_argument(sentence(
 			    "O.bodies[", body->id, "] has a BlockMat, but its shape is neither a Box nor a ConvexBlock: blocks do not touch it."));
 		checkBody(*body);
+		if (BlockShape(*body->shape).isUnion())
+			throw std::invalid_argument(sentence("O.bodies[", body->id,
+			                                     "] is a union of convex parts, which compliant joints do not take: give dem.engines() "
+			                                     "model='auto', or the parts as blocks of their own."));
 		index[body->id] = int(ids.size());
 		ids.push_back(body->id);
 		step.system.bodies.push_back(coreBody(*body));

@@ -139,11 +139,20 @@ struct Seat<Plane> {
 		depth = c.normal.dot(state.pos);
 	}
 
-	masonry::ConvexPolygon shape(const Coordinates<Plane>& c, const BlockShape& of) const
+	masonry::Solid<masonry::ConvexPolygon> shape(const Coordinates<Plane>& c, const BlockShape& of) const
 	{
 		if (of.isBox())
 			return masonry::ConvexPolygon::box({of.extents()[lengthwise], of.extents()[upright]});
-		return of.polyhedron()->section(reference.conjugate() * c.along, reference.conjugate() * c.up);
+		const Vector3r along = reference.conjugate() * c.along, up = reference.conjugate() * c.up;
+		if (!of.isUnion())
+			return of.solid()->part(0).section(along, up);
+		vector<masonry::ConvexPolygon> parts;
+		for (int part = 0; part < of.solid()->size(); ++part) {
+			masonry::Vector2 centre;
+			const masonry::ConvexPolygon section = of.solid()->part(part).section(along, up, &centre);
+			parts.push_back(section.moved(centre));
+		}
+		return masonry::Solid<masonry::ConvexPolygon>(std::move(parts));
 	}
 	Plane::Inertia inertia(const Vector3r& principal) const { return Plane::Inertia(principal[across]); }
 
@@ -193,9 +202,9 @@ struct Seat<Space> {
 	Seat() = default;
 	Seat(const Coordinates<Space>&, const State&) {}
 
-	masonry::ConvexPolyhedron shape(const Coordinates<Space>&, const BlockShape& of) const
+	masonry::Solid<masonry::ConvexPolyhedron> shape(const Coordinates<Space>&, const BlockShape& of) const
 	{
-		return of.isBox() ? masonry::ConvexPolyhedron::box(of.extents()) : *of.polyhedron();
+		return of.isBox() ? masonry::ConvexPolyhedron::box(of.extents()) : *of.solid();
 	}
 	const Vector3r& inertia(const Vector3r& principal) const { return principal; }
 	void read(const Coordinates<Space>&, const State& state, Real, int, masonry::RigidBody<Space>& body) const

@@ -13,7 +13,7 @@
 namespace yade {
 
 /// The row of numbers begins with that of its layout, to be changed with any list of members, and that of the scene's dimensions.
-constexpr Real layout = -14;
+constexpr Real layout = -15;
 
 /// Lets `read` read a row. Throws std::runtime_error if another version has written it.
 template <class Read>
@@ -33,7 +33,7 @@ struct Remembered {
 	vector<int> ids;
 	vector<Seat<K>> seats;
 	vector<masonry::RigidBody<K>> bodies;
-	vector<vector<typename K::Vector>> shapes; // vertices of the different ones
+	vector<vector<typename K::Vector>> shapes; // vertices of the different ones, part by part
 	vector<int> shapeOf;                       // numbers of the bodies' shapes
 	vector<masonry::ContactPair<K>> pairs;
 
@@ -45,7 +45,7 @@ struct Remembered {
 
 	void takeShapes()
 	{
-		std::map<const typename K::Shape*, int> numbers;
+		std::map<const masonry::Solid<typename K::Shape>*, int> numbers;
 		shapes.clear();
 		shapeOf.clear();
 		for (const auto& body : bodies) {
@@ -55,7 +55,10 @@ struct Remembered {
 			shapeOf.push_back(number->second);
 		}
 	}
-	bool hasShape(int body, const typename K::Shape& shape) const { return shapes.at(shapeOf.at(body)) == shape.vertices(); }
+	bool hasShape(int body, const masonry::Solid<typename K::Shape>& shape) const
+	{
+		return shapes.at(shapeOf.at(body)) == shape.vertices();
+	}
 };
 
 /// Told once in a run.

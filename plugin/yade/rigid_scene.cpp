@@ -219,7 +219,7 @@ void RigidScene<K>::warnOfPlace(size_t b)
 template <class K>
 void RigidScene<K>::takeLaws()
 {
-	for (size_t c = 0; c < contacts.size(); ++c) {
+	for (size_t c = 0; c < system.pairs.size(); ++c) {
 		const BlockPhys& law = contacts.law(c);
 		Pair& pair = system.pairs[c];
 		const Real friction = law.noSlip ? masonry::noSlip : law.tangensOfFrictionAngle, restitution = law.restitution;

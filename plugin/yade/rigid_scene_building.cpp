@@ -23,19 +23,23 @@ constexpr Real searchMargin = 0.1;
 template <class K>
 class SharedShapes {
 public:
-	const std::shared_ptr<const typename K::Shape>& share(const typename K::Shape& shape)
+	using Solid = masonry::Solid<typename K::Shape>;
+
+	const std::shared_ptr<const Solid>& share(const Solid& shape)
 	{
 		vector<Real> coordinates;
+		for (int part = 1; part < shape.size(); ++part)
+			coordinates.push_back(shape.first(part).vertex);
 		for (const auto& vertex : shape.vertices())
 			coordinates.insert(coordinates.end(), vertex.data(), vertex.data() + vertex.size());
 		auto& shared = made[coordinates];
 		if (!shared)
-			shared = std::make_shared<const typename K::Shape>(shape);
+			shared = std::make_shared<const Solid>(shape);
 		return shared;
 	}
 
 private:
-	std::map<vector<Real>, std::shared_ptr<const typename K::Shape>> made;
+	std::map<vector<Real>, std::shared_ptr<const Solid>> made;
 };
 
 } // namespace
@@ -189,7 +193,7 @@ void RigidScene<K>::meet(Pair& pair, bool placed)
 	const auto &body1 = system.bodies[pair.body1], &body2 = system.bodies[pair.body2];
 	const Real rest = masonry::tolerance::restSpeed * std::sqrt(settings.gravity.norm() * length);
 	pair.memory = {};
-	const auto found = masonry::findRows(body1, body2, rest, pair.memory);
+	const auto found = masonry::findRows(system, pair, rest, pair.memory);
 	pair.points.resize(found.size());
 	pair.isUpright = found.size() > 0;
 	if (found.size() == 0)

@@ -1,6 +1,6 @@
 #pragma once
-// The interactions of rigid blocks: one for each pair of the core, in O.interactions as soon as the blocks are near, until they are clearly
-// apart.
+// The interactions of rigid blocks: one for each pair of bodies, whose pairs of convex parts the core has, in O.interactions as soon as the
+// blocks are near, until they are clearly apart.
 
 #include "BlockGeom.hpp"
 #include "BlockPhys.hpp"
@@ -21,17 +21,16 @@ class ShownContacts {
 public:
 	ShownContacts(Scene& s, const Coordinates<K>& c, const PairLaw& law) : scene(s), coordinates(c), pairLaw(law) {}
 
-	size_t size() const { return contacts.size(); }
 	/// The law of a pair, which scripts may change through its interaction.
-	const BlockPhys& law(size_t pair) const { return *contacts[pair].phys; }
+	const BlockPhys& law(size_t pair) const { return *contacts[contactOfPair[pair]].phys; }
 
 	/// The pairs of a run that goes on: what no interaction shows yet has the law that it had.
 	void recall(const vector<Pair>& pairs, const vector<Body::id_t>& ids)
 	{
 		renew(pairs, ids);
-		for (size_t c = 0; c < contacts.size(); ++c)
-			if (!isListed(contacts[c]))
-				contacts[c].phys->takeLaw(pairs[c].friction, pairs[c].restitution);
+		for (size_t c = 0; c < pairs.size(); ++c)
+			if (const Contact& contact = contacts[contactOfPair[c]]; !isListed(contact))
+				contact.phys->takeLaw(pairs[c].friction, pairs[c].restitution);
 	}
 
 	/// Of blocks that another engine had near each other.
@@ -60,8 +59,14 @@ public:
 				erase(*before);
 			++before;
 		};
+		contactOfPair.clear();
 		for (const Pair& pair : pairs) {
 			const std::pair wanted(ids[pair.body1], ids[pair.body2]);
+			if (!contacts.empty() && idsOf(contacts.back()) == wanted) { // other parts of the same bodies
+				contactOfPair.push_back(contacts.size() - 1);
+				continue;
+			}
+			contactOfPair.push_back(contacts.size());
 			while (before != old.end() && idsOf(*before) < wanted)
 				drop();
 			contacts.push_back(before != old.end() && idsOf(*before) == wanted ? *before++ : contactOf(wanted));
@@ -73,17 +78,24 @@ public:
 	/// O.interactions as the system is.
 	void write(const System& system, const Remembered<K>& kept)
 	{
-		for (size_t c = 0; c < contacts.size(); ++c) {
-			Contact& contact = contacts[c];
-			const Pair& pair = system.pairs[c];
+		const auto& all = system.pairs;
+		for (size_t first = 0, last = 0; first < all.size(); first = last) {
+			for (last = first + 1; last < all.size() && contactOfPair[last] == contactOfPair[first];)
+				++last;
+			Contact& contact = contacts[contactOfPair[first]];
+			const auto isApart = [&](const Pair& pair) { return apart(system, pair); };
 			const bool listed = isListed(contact) && contact.interaction->isReal();
-			if (apart(system, pair)) { // not whether they have touched: what nobody saw must not decide
+			if (std::all_of(all.begin() + first, all.begin() + last,
+			                isApart)) { // not whether they have touched: what nobody saw must not decide
 				if (listed)
 					erase(contact);
 				continue;
 			}
 			if (!listed)
 				list(contact);
+			if (last > first + 1)
+				joined = together(all, first, last);
+			const Pair& pair = last > first + 1 ? joined : all[first];
 			writePhys(*contact.phys, pair);
 			writeGeom(*contact.geom, pair, kept.seats[pair.body2].depth, contact.phys->normalForce);
 		}
@@ -132,6 +144,20 @@ private:
 		contact.interaction->geom = contact.geom;
 		keepStill(*contact.interaction, pairLaw);
 		return contact;
+	}
+
+	/// All points of the pairs of parts of two bodies, under the faces of the first pair that is loaded.
+	static Pair together(const vector<Pair>& all, size_t first, size_t last)
+	{
+		const auto isLoaded = [](const Pair& pair) {
+			return std::any_of(pair.points.begin(), pair.points.end(), [](const auto& point) { return point.force[0] > 0; });
+		};
+		const auto loaded = std::find_if(all.begin() + first, all.begin() + last, isLoaded);
+		Pair pair = loaded == all.begin() + last ? all[first] : *loaded;
+		pair.points.clear();
+		for (size_t c = first; c < last; ++c)
+			pair.points.insert(pair.points.end(), all[c].points.begin(), all[c].points.end());
+		return pair;
 	}
 
 	static bool apart(const System& system, const Pair& pair)
@@ -212,8 +238,10 @@ private:
 
 	Scene& scene;
 	const Coordinates<K>& coordinates;
-	const PairLaw& pairLaw;   // the integrator's: a script may give another
-	vector<Contact> contacts; // of the core's pairs
+	const PairLaw& pairLaw;       // the integrator's: a script may give another
+	vector<Contact> contacts;     // of pairs of bodies
+	vector<size_t> contactOfPair; // by pair of the core
+	Pair joined;                  // of several pairs of parts, while it is written
 };
 
 } // namespace yade

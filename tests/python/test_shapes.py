@@ -9,8 +9,9 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 from histories import ROUND, about_edge, history, rocking, turn
-from masonry import _pose, results
+from masonry import _polyhedra, _pose, results
 from matplotlib.image import imread
+from masonry._shapes import box_corners
 from masonry.results import pictures, view
 from masonry.results.reporting import view3d
 from test_history_files import decoded
@@ -176,3 +177,18 @@ def test_shapes_must_be_those_of_the_blocks():
     h = rocking([0, 0.1])
     with pytest.raises(ValueError, match="must be the Shapes of 2 blocks, or None"):
         results.WallHistory(h.time, h.ids, h.sizes, h.free, h.position, h.orientation, shapes=results.Shapes.boxes(h.sizes[:1]))
+
+
+def test_parts_of_unions_are_found_by_their_faces():
+    """Two boxes of one block have no corner in common: they are parts, and gaps are those of the nearest parts, not of the hull of the whole."""
+    foot, stem = box_corners([1.0, 0.4, 0.2]) + [0, 0, 0.1], box_corners([0.3, 0.4, 0.8]) + [-0.35, 0, 0.6]
+    union = np.concatenate([foot, stem]), [*_pose.BOX_FACES, *[[8 + k for k in loop] for loop in _pose.BOX_FACES]]
+    shapes = results.Shapes.of([union, (box_corners([0.2, 0.2, 0.2]), _pose.BOX_FACES), union])
+    assert shapes.part_start.tolist() == [0, 8, 16, 24, 32, 40] and shapes.block_of_part.tolist() == [0, 0, 1, 2, 2]
+    places = np.array([(0, 0, 0), (0.25, 0, 0.5), (9.0, 0, 0)])
+    still = np.tile([1.0, 0, 0, 0], (3, 1))
+    pairs = np.array([(0, 1), (0, 2)])
+    # The small box stands in the notch: 0.2 m above the foot (z = 0.4 to 0.2), 0.35 m from the stem (x = 0.15 to -0.2).
+    assert _polyhedra.gaps(shapes, places, still, pairs) == pytest.approx([0.2, 8.0])
+    found = _polyhedra.pairs_of(shapes, np.ones(3, dtype=bool), places, still, np.full(3, 0.3))
+    assert found.pairs.tolist() == [[0, 1], [0, 1]] and found.gaps == pytest.approx([0.2, 0.35])

@@ -46,16 +46,16 @@ BestFace bestFaceOf(int body, const ConvexPolygon& own, const ConvexPolygon& oth
 	constexpr double infinity = std::numeric_limits<double>::infinity();
 	BestFace best {body, -1, -infinity};
 	double bestScore = -infinity;
+	const Vector2 between = pose.toFrame(other.inside()) - own.inside();
 	for (int k = 0; k < int(own.faces().size()); ++k) {
 		const ConvexPolygon::Face& face = own.faces()[k];
-		const double towards = face.normal.dot(pose.offset);
-		if (towards < 0)
+		if (face.normal.dot(between) < 0)
 			continue;
 		const Vector2 normal = pose.rotateBack(face.normal);
 		double lowest = infinity;
 		for (const Vector2& vertex : other.vertices())
 			lowest = std::min(lowest, normal.dot(vertex));
-		const double separation = towards - face.offset + lowest;
+		const double separation = face.normal.dot(pose.offset) - face.offset + lowest;
 		const double score = held == k ? separation + lead(separation, length) : separation;
 		if (score > bestScore) {
 			best = {body, k, separation};

@@ -23,19 +23,20 @@ double reachAlong(const ConvexPolyhedron& shape, const Vector3& direction)
 }
 
 // Best face of the shape in whose frame `other` is given; the previous reference face, if it is one of this shape, leads. The other shape
-// reaches at least to its own centre, which spares most faces the look at its vertices.
+// reaches at least to a point inside it, which spares most faces the look at its vertices.
 FaceSeparation bestFaceOf(int body, const ConvexPolyhedron& shape, const ConvexPolyhedron& otherShape, const RelativePose& other,
                           int previousFace, double length)
 {
 	FaceSeparation best {body, -1, 0};
 	double bestScore = -std::numeric_limits<double>::infinity();
+	const Vector3 inner = other.offset + other.rotation * otherShape.inside();
 	for (int number = 0; number < static_cast<int>(shape.faces().size()); ++number) {
 		const Face& face = shape.faces()[number];
-		const double centre = face.normal.dot(other.offset) - face.offset;
 		const bool held = number == previousFace;
-		if (!held && centre <= bestScore)
+		if (!held && face.normal.dot(inner) - face.offset <= bestScore)
 			continue;
-		const double separation = centre - reachAlong(otherShape, -(other.rotation.transpose() * face.normal));
+		const double separation =
+		    face.normal.dot(other.offset) - face.offset - reachAlong(otherShape, -(other.rotation.transpose() * face.normal));
 		const double score = held ? separation + lead(separation, length) : separation;
 		if (score > bestScore) {
 			best = {body, number, separation};
@@ -153,6 +154,7 @@ bool bestEdges(const ConvexPolyhedron& shape1, const ConvexPolyhedron& shape2, c
 			along1.push_back(normal.dot(edge.direction));
 	}
 	best.separation = least;
+	const Vector3 apart = second.offset + second.rotation * shape2.inside() - shape1.inside();
 	for (int i = 0; i < size1; ++i) {
 		const Edge& edge1 = edges1[i];
 		const double *left1 = &along2[edge1.left * size2], *right1 = &along2[edge1.right * size2];
@@ -168,10 +170,10 @@ bool bestEdges(const ConvexPolyhedron& shape1, const ConvexPolyhedron& shape2, c
 			if (sine < tolerance::contact::parallelEdges)
 				continue;
 			normal *= sign / sine;
-			const double distance = normal.dot(second.offset);
-			if (distance <= best.separation) // the bodies reach at least to their centres
+			if (normal.dot(apart) <= best.separation) // the bodies reach at least to points inside them
 				continue;
-			const double separation = distance - normal.dot(edge1.middle) + (second.rotation.transpose() * normal).dot(edge2.middle);
+			const double separation =
+			    normal.dot(second.offset) - normal.dot(edge1.middle) + (second.rotation.transpose() * normal).dot(edge2.middle);
 			if (separation <= best.separation)
 				continue;
 			best.widest = std::max(best.widest, separation);

@@ -75,7 +75,12 @@ public:
 	{
 		const auto& pair = pairs[c];
 		const int level1 = level[pair.body1], level2 = level[pair.body2];
-		const auto flies = [&](int body) { return level[body] > 0 && pairsOf[body].size() == 1; };
+		const auto isLike = [&](int other) { // another part of the same two bodies
+			return pairs[other].isUpright && pairs[other].body1 == pair.body1 && pairs[other].body2 == pair.body2;
+		};
+		const auto flies = [&](int body) {
+			return level[body] > 0 && (pairsOf[body].size() == 1 || std::all_of(pairsOf[body].begin(), pairsOf[body].end(), isLike));
+		};
 		if (pair.isUpright && (flies(pair.body1) || flies(pair.body2)))
 			return {};
 		if ((pair.isUpright || level1 == level2) && isBorneAcross(bodies, pairs, pair.body1, pair.face1) &&

@@ -123,6 +123,20 @@ void ConvexPolygon::measure()
 		least = least.cwiseMin(point);
 		most = most.cwiseMax(point);
 	}
+	if (std::any_of(sides.begin(), sides.end(), [](const Face& face) { return face.offset <= 0; }))
+		for (const Vector2& point : points)
+			within += point / double(points.size());
+}
+
+ConvexPolygon ConvexPolygon::moved(const Vector2& by) const
+{
+	std::vector<Vector2> vertices;
+	for (const Vector2& point : points)
+		vertices.push_back(point + by);
+	std::vector<Face> faces;
+	for (const Face& face : sides)
+		faces.push_back(faceBetween(vertices, face.from, face.to));
+	return ConvexPolygon(std::move(vertices), std::move(faces), false);
 }
 
 ConvexPolygon ConvexPolygon::box(const Vector2& half)

@@ -35,6 +35,9 @@ public:
 	// std::invalid_argument if there are fewer than three.
 	static ConvexPolygon hull(std::vector<Vector2> points, Vector2* centre = nullptr);
 
+	// The same polygon elsewhere, m: as a part of a body whose centre of mass is the origin.
+	ConvexPolygon moved(const Vector2& by) const;
+
 	const std::vector<Vector2>& vertices() const { return points; }
 	const std::vector<Face>& faces() const { return sides; }
 	const std::vector<Corner>& corners() const { return meets; } // one for each vertex
@@ -42,6 +45,7 @@ public:
 	double area() const { return surface; }                   // m^2
 	double gyrationSquared() const { return gyration; }       // m^2, second moment about the centre of mass over the area
 	double thickness() const { return leastHalfWidth; }       // m, half of the least width across a face; the smallest half size of a box
+	const Vector2& inside() const { return within; }          // m, some inner point; the origin where that is one
 	double radius() const { return farthest; }                // m, from the origin to the farthest vertex
 	const Vector2& low() const { return least; }              // m, least coordinates
 	const Vector2& high() const { return most; }              // m, largest coordinates
@@ -56,7 +60,7 @@ private:
 	std::vector<Face> sides;
 	std::vector<Corner> meets;
 	double surface {0}, gyration {0}, leastHalfWidth {0}, farthest {0};
-	Vector2 least, most;
+	Vector2 least, most, within {Vector2::Zero()};
 	bool madeAsBox {false};
 };
 

@@ -116,6 +116,9 @@ void ConvexPolyhedron::measure()
 		least = least.cwiseMin(point);
 		most = most.cwiseMax(point);
 	}
+	if (std::any_of(planes.begin(), planes.end(), [](const Face& face) { return face.offset <= 0; }))
+		for (const Vector3& point : points)
+			within += point / static_cast<double>(points.size());
 }
 
 ConvexPolyhedron ConvexPolyhedron::box(const Vector3& half)

@@ -70,14 +70,15 @@ public:
 	} // its component along either is > 0
 
 	double thickness() const { return leastHalfWidth; }  // m, half of the least width across a face; the smallest half size of a box
+	const Vector3& inside() const { return within; }     // m, some inner point; the origin where that is one
 	double radius() const { return farthest; }           // m, from the origin to the farthest vertex
 	const Vector3& low() const { return least; }         // m, least coordinates
 	const Vector3& high() const { return most; }         // m, largest coordinates
 	MassProperties massProperties(double density) const; // kg/m^3
 	bool isRightPrism(const Vector3& normal) const;      // its faces are parallel or perpendicular to the unit vector, in body axes
 	// The section of a right prism across these axes (unit, perpendicular to each other, in body axes), which are those of the polygon.
-	// Refuses other shapes.
-	ConvexPolygon section(const Vector3& along, const Vector3& up) const;
+	// Refuses other shapes. The polygon has its origin at its centre of mass; `centre` (m) is where that is along the axes.
+	ConvexPolygon section(const Vector3& along, const Vector3& up, Vector2* centre = nullptr) const;
 	bool isBox() const { return madeAsBox; }                  // made by `box`: its vertices are +-halfSize
 	const Vector3& halfSize() const { return points.back(); } // m; of a box
 
@@ -95,7 +96,7 @@ private:
 	std::vector<Edge> lines;
 	std::vector<Corner> meets;
 	double leastHalfWidth {0}, farthest {0};
-	Vector3 least, most;
+	Vector3 least, most, within {Vector3::Zero()};
 	bool madeAsBox {false};
 };
 

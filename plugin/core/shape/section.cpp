@@ -14,7 +14,7 @@ bool ConvexPolyhedron::isRightPrism(const Vector3& normal) const
 	});
 }
 
-ConvexPolygon ConvexPolyhedron::section(const Vector3& along, const Vector3& up) const
+ConvexPolygon ConvexPolyhedron::section(const Vector3& along, const Vector3& up, Vector2* centre) const
 {
 	if (!isRightPrism(along.cross(up)))
 		throw std::invalid_argument(
@@ -23,7 +23,7 @@ ConvexPolygon ConvexPolyhedron::section(const Vector3& along, const Vector3& up)
 	std::vector<Vector2> corners;
 	for (const Vector3& point : points)
 		corners.push_back({along.dot(point), up.dot(point)});
-	return ConvexPolygon::hull(std::move(corners));
+	return ConvexPolygon::hull(std::move(corners), centre);
 }
 
 } // namespace masonry

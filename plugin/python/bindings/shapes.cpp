@@ -3,6 +3,7 @@
 #include "contact/separating_axes.hpp"
 #include "expose.hpp"
 #include "shape/convex_polyhedron.hpp"
+#include "shape/union_of_parts.hpp"
 #include "tolerances.hpp"
 #include "validation.hpp"
 
@@ -43,6 +44,38 @@ void requireVertices(const std::vector<Vector3>& points, const PlacedPolyhedron&
 	}
 }
 
+// Parts of a block in its own axes, with the pose and the mass of the whole, as Python has them.
+py::dict blockOf(const std::vector<ConvexPolyhedron>& parts, const Pose& pose)
+{
+	const MassProperties mass = massProperties(parts, 1);
+	std::vector<double> vertices, inertia;
+	std::vector<long> loops, start {0}, first;
+	for (const ConvexPolyhedron& part : parts) {
+		first.push_back(static_cast<long>(vertices.size() / 3));
+		for (const Vector3& vertex : part.vertices())
+			vertices.insert(vertices.end(), vertex.begin(), vertex.end());
+		for (const ConvexPolyhedron::Face& face : part.faces()) {
+			for (const int vertex : face.loop)
+				loops.push_back(first.back() + vertex);
+			start.push_back(static_cast<long>(loops.size()));
+		}
+	}
+	for (int axis = 0; axis < 3; ++axis)
+		inertia.push_back(mass.inertia(axis, axis));
+	py::dict found;
+	found["vertices"] = toArray(vertices, py::make_tuple(vertices.size() / 3, 3));
+	found["first_vertices"] = toArray(first);
+	found["faces"] = toArray(loops);
+	found["face_start"] = toArray(start);
+	found["position"] = toArray(std::vector<double>(pose.position.begin(), pose.position.end()));
+	const Quaternion& turn = pose.orientation;
+	found["orientation"] = toArray(std::vector<double> {turn.w(), turn.x(), turn.y(), turn.z()});
+	found["volume"] = mass.mass;
+	found["inertia"] = toArray(inertia);
+	found["is_box"] = parts.size() == 1 && parts[0].isBox();
+	return found;
+}
+
 // The polyhedron in its own axes: principal axes, the origin at the centre of mass. Points that are in them already stay, bit by bit.
 py::dict convexBlock(const py::object& points, const py::object& faces, const py::object& starts, bool inOwnAxes)
 {
@@ -52,29 +85,21 @@ py::dict convexBlock(const py::object& points, const py::object& faces, const py
 	const PlacedPolyhedron placed =
 	    inOwnAxes ? PlacedPolyhedron {shape, {Vector3::Zero(), Quaternion::Identity()}} : inPrincipalAxes(shape);
 	requireVertices(corners, placed);
-	const MassProperties mass = placed.shape.massProperties(1);
-	std::vector<double> vertices, inertia;
-	std::vector<long> loops, start {0};
-	for (const Vector3& vertex : placed.shape.vertices())
-		vertices.insert(vertices.end(), vertex.begin(), vertex.end());
-	for (const ConvexPolyhedron::Face& face : placed.shape.faces()) {
-		loops.insert(loops.end(), face.loop.begin(), face.loop.end());
-		start.push_back(static_cast<long>(loops.size()));
-	}
-	for (int axis = 0; axis < 3; ++axis)
-		inertia.push_back(mass.inertia(axis, axis));
-	const Vector3& at = placed.pose.position;
-	const Quaternion& turn = placed.pose.orientation;
-	py::dict found;
-	found["vertices"] = toArray(vertices, py::make_tuple(placed.shape.vertices().size(), 3));
-	found["faces"] = toArray(loops);
-	found["face_start"] = toArray(start);
-	found["position"] = toArray(std::vector<double> {at.x(), at.y(), at.z()});
-	found["orientation"] = toArray(std::vector<double> {turn.w(), turn.x(), turn.y(), turn.z()});
-	found["volume"] = mass.mass;
-	found["inertia"] = toArray(inertia);
-	found["is_box"] = placed.shape.isBox();
-	return found;
+	return blockOf({placed.shape}, placed.pose);
+}
+
+// The union of convex parts, whose corners stand one part after the other, likewise.
+py::dict convexUnion(const py::object& points, const py::object& starts, bool inOwnAxes)
+{
+	const std::vector<Vector3> corners = toPoints(points);
+	const std::vector<long> start = toVector<long>(starts);
+	std::vector<ConvexPolyhedron> parts;
+	for (std::size_t k = 0; k + 1 < start.size(); ++k)
+		parts.push_back(ConvexPolyhedron::hull({corners.begin() + start[k], corners.begin() + start[k + 1]}));
+	if (inOwnAxes)
+		return blockOf(parts, {Vector3::Zero(), Quaternion::Identity()});
+	const PlacedUnion placed = inPrincipalAxes(parts);
+	return blockOf(placed.parts, placed.pose);
 }
 
 // Blocks, one after the other: vertices in own axes and where those of each block begin, with the end of the last; places, orientations (w,
@@ -158,8 +183,12 @@ void exposeShapes()
 	        "One row a pair: gap along the axis that separates them best, then of the patch where they are at most the margin apart: "
 	        "number of corners (0: there is "
 	        "none), area, that of the smaller face, cosine of the angle between the faces, normal, corners on the first. Filled with NaN.");
+	py::def(
+	    "convex_union", convexUnion, py::args("points", "starts", "in_own_axes"),
+	    "The rigid union of convex parts in its principal axes, as convex_block: the parts begin at `starts`, with the end of the last.");
 	py::def("convex_block", convexBlock, py::args("points", "faces", "starts", "in_own_axes"),
-	        "The convex polyhedron over points (or of faces, checked) in its principal axes: vertices (k, 3), faces one after the other "
+	        "The convex polyhedron over points (or of faces, checked) in its principal axes: vertices (k, 3), first vertex of each part, "
+	        "faces one after the other "
 	        "and where each "
 	        "begins, position and orientation (w, x, y, z) of these axes, volume, principal moments of inertia per unit of density, "
 	        "whether it is a box");

@@ -65,6 +65,20 @@ class Shapes:
         return np.searchsorted(self.vertex_start, self.faces[self.face_start[:-1]], side="right") - 1
 
     @cached_property
+    def part_start(self):
+        """Where the corners of each convex part begin, and the end of the last: the parts of a block have no corner in common."""
+        ends = [self.faces[a:b] for a, b in zip(self.face_start, self.face_start[1:])]
+        spans = np.zeros(len(self.vertices) + 1, dtype=int)  # of the faces over the place before each corner
+        np.add.at(spans, [own.min() + 1 for own in ends], 1)
+        np.add.at(spans, [own.max() + 1 for own in ends], -1)
+        return np.append(np.flatnonzero(np.cumsum(spans)[:-1] == 0), len(self.vertices))
+
+    @cached_property
+    def block_of_part(self):
+        """Row of the block of each convex part."""
+        return np.searchsorted(self.vertex_start, self.part_start[:-1], side="right") - 1
+
+    @cached_property
     def loops(self):
         """[[numbers of the corners of the block for each of its faces] for each block]."""
         found = [[] for _ in range(len(self))]

@@ -58,8 +58,7 @@ template <class K>
 FoundPoints<K> featuresAtEnd(const RigidSystem<K>& s, const SmoothStep<K>& step, const ContactPair<K>& pair)
 {
 	typename K::Memory memory = pair.memory;
-	return findRows(s.bodies[pair.body1], step.trial().bodies[pair.body1].end, s.bodies[pair.body2], step.trial().bodies[pair.body2].end,
-	                memory);
+	return findRows(s, pair, step.trial().bodies[pair.body1].end, step.trial().bodies[pair.body2].end, memory);
 }
 
 // No point of either body goes farther than this relative to the other one in the trial.
@@ -183,7 +182,7 @@ int unseenPenetration(const RigidSystem<K>& s, const SmoothStep<K>& step)
 		const auto &end1 = step.trial().bodies[pair.body1].end, &end2 = step.trial().bodies[pair.body2].end;
 		const auto found = featuresAtEnd(s, step, pair);
 		for (const Feature& feature : found.features)
-			if (K::frame(feature, *body1.shape, end1, *body2.shape, end2).gap < deepest - bound)
+			if (frameOf(feature, *body1.shape, end1, *body2.shape, end2).gap < deepest - bound)
 				return c;
 	}
 	return -1;

@@ -12,7 +12,9 @@ template <class K>
 void dropIdle(FoundPoints<K>& found, const ContactPair<K>& before, const RigidBody<K>& body1, const RigidBody<K>& body2, double samePlace)
 {
 	constexpr double inside = 0.8; // of the friction limit
-	const auto frameOf = [&](const Feature& feature) { return K::frame(feature, *body1.shape, body1.pose, *body2.shape, body2.pose); };
+	const auto frameOf = [&](const Feature& feature) {
+		return masonry::frameOf(feature, *body1.shape, body1.pose, *body2.shape, body2.pose);
+	};
 	const auto isIdle = [&](int place) {
 		const ContactFrame<K> frame = frameOf(found.features[place]);
 		typename K::Vector reaction = K::Vector::Zero();
@@ -128,7 +130,7 @@ void LocalisedStep<K>::findContacts(RigidSystem<K>& s, ContactPair<K>& pair, boo
 {
 	const double touching = settings.merged * step.scales.length, samePlace = 2 * tolerance::contact::vertexReach * step.scales.length;
 	const auto &body1 = s.bodies[pair.body1], &body2 = s.bodies[pair.body2];
-	FoundPoints<K> found = findRows(body1, body2, tolerance::restSpeed * step.scales.speed, pair.memory);
+	FoundPoints<K> found = findRows(s, pair, tolerance::restSpeed * step.scales.speed, pair.memory);
 	dropIdle(found, pair, body1, body2, samePlace);
 	const bool same = sameFeatures(pair, found);
 	if (same && !s.moved)

@@ -18,25 +18,25 @@ Eigen::Matrix2d axesOf(const PlanePose& pose)
 
 Matrix3 axesOf(const Pose& pose) { return pose.orientation.toRotationMatrix(); }
 
-// The box around a body along its own axes; of a box, the box itself.
+// The box around a part of a body along the axes of that; of a box, the box itself.
 template <class K>
 struct Around {
 	Eigen::Matrix<double, K::dimension, K::dimension> axes; // in columns
 	typename K::Vector center, halfSize;                    // m
 
-	explicit Around(const RigidBody<K>& body) : axes(axesOf(body.pose))
+	Around(const RigidBody<K>& body, int part) : axes(axesOf(body.pose))
 	{
-		const typename K::Vector &low = body.shape->low(), &high = body.shape->high();
+		const typename K::Vector &low = body.shape->part(part).low(), &high = body.shape->part(part).high();
 		center = body.pose.position + axes * ((low + high) / 2);
 		halfSize = (high - low) / 2;
 	}
 };
 
-// The largest gap of the boxes around two bodies along an axis of either: it is at most their distance, and negative where they overlap.
+// The largest gap of the boxes around two parts along an axis of either: it is at most their distance, and negative where they overlap.
 template <class K>
-double separation(const RigidBody<K>& body1, const RigidBody<K>& body2)
+double separation(const RigidBody<K>& body1, int part1, const RigidBody<K>& body2, int part2)
 {
-	const Around<K> a(body1), b(body2);
+	const Around<K> a(body1, part1), b(body2, part2);
 	const typename K::Vector between = b.center - a.center;
 	const auto turn = (a.axes.transpose() * b.axes).cwiseAbs().eval();
 	const typename K::Vector alongA = (a.axes.transpose() * between).cwiseAbs() - a.halfSize - turn * b.halfSize,
@@ -73,17 +73,17 @@ int widestAxis(const std::vector<Bounds<K>>& all)
 }
 
 template <class K>
-std::array<int, 2> bodiesOf(const ContactPair<K>& pair)
+std::array<int, 4> partsOf(const ContactPair<K>& pair)
 {
-	return {pair.body1, pair.body2};
+	return {pair.body1, pair.body2, pair.part1, pair.part2};
 }
 
 } // namespace
 
 template <class K>
-Bounds<K> Neighbours<K>::bounds(const RigidBody<K>& body, double enlargement) const
+Bounds<K> Neighbours<K>::bounds(const RigidBody<K>& body, int part, double enlargement) const
 {
-	Around<K> around(body);
+	Around<K> around(body, part);
 	if (!frame.isIdentity(0)) {
 		around.center = frame * around.center;
 		around.axes = frame * around.axes;
@@ -95,29 +95,42 @@ Bounds<K> Neighbours<K>::bounds(const RigidBody<K>& body, double enlargement) co
 template <class K>
 bool Neighbours<K>::isValid(const RigidSystem<K>& system, double step) const
 {
-	if (enlarged.size() != system.bodies.size())
+	std::size_t count = 0;
+	for (const auto& body : system.bodies)
+		count += std::size_t(body.shape->size());
+	if (enlarged.size() != count)
 		return false;
 	typename K::Vector least = K::Vector::Constant(-INFINITY), most = K::Vector::Constant(INFINITY); // that all may have moved together
-	for (size_t i = 0; i < enlarged.size(); ++i) {
-		const Bounds<K> now = bounds(system.bodies[i], std::max(margin / 2, travel(system.bodies[i], step)));
-		least = least.cwiseMax(now.high - enlarged[i].high);
-		most = most.cwiseMin(now.low - enlarged[i].low);
+	size_t i = 0;
+	for (const auto& body : system.bodies) {
+		const double enlargement = std::max(margin / 2, travel(body, step));
+		for (int part = 0; part < body.shape->size(); ++part, ++i) {
+			const Bounds<K> now = bounds(body, part, enlargement);
+			least = least.cwiseMax(now.high - enlarged[i].high);
+			most = most.cwiseMin(now.low - enlarged[i].low);
+		}
 	}
-	return (least.array() <= most.array()).all() && std::all_of(apart.begin(), apart.end(), [&](const Bodies& bodies) {
-		       const RigidBody<K>&a = system.bodies[bodies[0]], &b = system.bodies[bodies[1]];
-		       return separation(a, b) > std::max(margin / 2, travel(a, step)) + std::max(margin / 2, travel(b, step));
+	return (least.array() <= most.array()).all() && std::all_of(apart.begin(), apart.end(), [&](const Parts& parts) {
+		       const RigidBody<K>&a = system.bodies[parts[0]], &b = system.bodies[parts[1]];
+		       return separation(a, parts[2], b, parts[3]) > std::max(margin / 2, travel(a, step)) + std::max(margin / 2, travel(b, step));
 	       });
 }
 
-// Sweep: of the bodies in the order of their lower ends, each one meets those that begin before it ends.
+// Sweep: of the parts in the order of their lower ends, each one meets those that begin before it ends.
 template <class K>
 void Neighbours<K>::findPairs(const RigidSystem<K>& system, double step)
 {
 	if (enlarged.empty() && !system.bodies.empty())
 		frame = axesOf(system.bodies.front().pose).transpose();
 	enlarged.clear();
-	for (const auto& body : system.bodies)
-		enlarged.push_back(bounds(body, std::max(margin, 4 * travel(body, step))));
+	std::vector<std::array<int, 2>> places; // body and part
+	for (int b = 0; b < int(system.bodies.size()); ++b) {
+		const double enlargement = std::max(margin, 4 * travel(system.bodies[b], step));
+		for (int part = 0; part < system.bodies[b].shape->size(); ++part) {
+			enlarged.push_back(bounds(system.bodies[b], part, enlargement));
+			places.push_back({b, part});
+		}
+	}
 	order.resize(enlarged.size());
 	std::iota(order.begin(), order.end(), 0);
 	const int axis = widestAxis(enlarged);
@@ -126,9 +139,12 @@ void Neighbours<K>::findPairs(const RigidSystem<K>& system, double step)
 	near.clear();
 	for (auto first = order.begin(); first != order.end(); ++first)
 		for (auto second = first + 1; second != order.end() && enlarged[*second].low[axis] <= enlarged[*first].high[axis]; ++second) {
-			const auto [body1, body2] = std::minmax(*first, *second);
-			if (overlap(enlarged[body1], enlarged[body2]) && !(system.bodies[body1].prescribed && system.bodies[body2].prescribed))
-				near.push_back({body1, body2});
+			const auto [one, other] = std::minmax(*first, *second);
+			const auto [body1, part1] = places[one];
+			const auto [body2, part2] = places[other];
+			if (body1 != body2 && overlap(enlarged[one], enlarged[other]) &&
+			    !(system.bodies[body1].prescribed && system.bodies[body2].prescribed))
+				near.push_back({body1, body2, part1, part2});
 		}
 	std::sort(near.begin(), near.end());
 	leaveOutPairsOfStructures(system, step);
@@ -137,15 +153,17 @@ void Neighbours<K>::findPairs(const RigidSystem<K>& system, double step)
 template <class K>
 void Neighbours<K>::leaveOutPairsOfStructures(const RigidSystem<K>& system, double step)
 {
-	const auto join = [&](const Bodies& bodies) {
-		const RigidBody<K>&a = system.bodies[bodies[0]], &b = system.bodies[bodies[1]];
-		return separation(a, b) <= std::max(margin, 4 * travel(a, step)) + std::max(margin, 4 * travel(b, step));
+	const auto join = [&](const Parts& parts) {
+		const RigidBody<K>&a = system.bodies[parts[0]], &b = system.bodies[parts[1]];
+		return separation(a, parts[2], b, parts[3]) <= std::max(margin, 4 * travel(a, step)) + std::max(margin, 4 * travel(b, step));
 	};
-	std::vector<Bodies> joined;
-	std::copy_if(near.begin(), near.end(), std::back_inserter(joined), join);
+	std::vector<std::array<int, 2>> joined; // bodies
+	for (const Parts& parts : near)
+		if (join(parts))
+			joined.push_back({parts[0], parts[1]});
 	const std::vector<int> structure = islandNumbers(system.bodies, joined);
-	const auto areTogether = [&](const Bodies& bodies) {
-		const int a = structure[bodies[0]], b = structure[bodies[1]];
+	const auto areTogether = [&](const Parts& parts) {
+		const int a = structure[parts[0]], b = structure[parts[1]];
 		return a < 0 || b < 0 || a == b;
 	};
 	const auto last = std::stable_partition(near.begin(), near.end(), areTogether);
@@ -158,16 +176,18 @@ void Neighbours<K>::keepStates(const std::vector<ContactPair<K>>& old)
 {
 	pairs.clear();
 	auto before = old.begin();
-	for (const auto& bodies : near) {
-		while (before != old.end() && bodiesOf(*before) < bodies)
+	for (const auto& parts : near) {
+		while (before != old.end() && partsOf(*before) < parts)
 			++before;
-		if (before != old.end() && bodiesOf(*before) == bodies) {
+		if (before != old.end() && partsOf(*before) == parts) {
 			pairs.push_back(*before);
 			continue;
 		}
 		ContactPair<K>& pair = pairs.emplace_back();
-		pair.body1 = bodies[0];
-		pair.body2 = bodies[1];
+		pair.body1 = parts[0];
+		pair.body2 = parts[1];
+		pair.part1 = parts[2];
+		pair.part2 = parts[3];
 		newPair(pair);
 	}
 }

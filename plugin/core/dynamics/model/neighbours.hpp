@@ -19,10 +19,10 @@ struct Bounds {
 	}
 };
 
-// Keeps the system's list of pairs, sorted by body1 < body2. A pair stays with all its state as long as it is near; two prescribed bodies
-// are no pair, nor are free bodies of different structures. A structure is a set of free bodies that a chain of pairs joins in which the
-// boxes around them (along their own axes), not their bounds, are less than twice the margin apart. Pairs with less than `margin` (m)
-// between them are always in the list, farther ones may be.
+// Keeps the system's list of pairs of parts of bodies, sorted by body1 < body2, then by their parts. A pair stays with all its state as
+// long as it is near; two prescribed bodies are no pair, nor are free bodies of different structures. A structure is a set of free bodies
+// that a chain of pairs joins in which the boxes around them (along their own axes), not their bounds, are less than twice the margin
+// apart. Pairs with less than `margin` (m) between them are always in the list, farther ones may be.
 //
 // Bounds are enlarged by the margin, and pairs are those whose enlarged bounds overlap. The list holds until a body comes nearer
 // than half the margin to the end of its enlarged bounds, which move with what moves all bodies alike: a base that shakes its wall; or
@@ -51,9 +51,9 @@ public:
 
 private:
 	using Frame = Eigen::Matrix<double, K::dimension, K::dimension>;
-	using Bodies = std::array<int, 2>;
+	using Parts = std::array<int, 4>; // two bodies, and a part of each
 
-	Bounds<K> bounds(const RigidBody<K>& body, double enlargement) const;
+	Bounds<K> bounds(const RigidBody<K>& body, int part, double enlargement) const;
 	void findPairs(const RigidSystem<K>& system, double step);
 	void leaveOutPairsOfStructures(const RigidSystem<K>& system, double step);
 	void keepStates(const std::vector<ContactPair<K>>& old);
@@ -61,10 +61,10 @@ private:
 	double margin;
 	NewPair newPair;
 	Frame frame {Frame::Identity()}; // rows: the axes of the bounds
-	std::vector<Bounds<K>> enlarged;
-	std::vector<int> order;    // of bodies along the axis of the sweep
-	std::vector<Bodies> near;  // bodies of the pairs
-	std::vector<Bodies> apart; // bodies of different structures whose enlarged bounds overlap
+	std::vector<Bounds<K>> enlarged; // of all parts of all bodies
+	std::vector<int> order;          // of parts along the axis of the sweep
+	std::vector<Parts> near;         // parts of the pairs
+	std::vector<Parts> apart;        // parts of different structures whose enlarged bounds overlap
 	std::vector<ContactPair<K>> pairs;
 };
 

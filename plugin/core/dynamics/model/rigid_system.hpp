@@ -1,6 +1,7 @@
 #pragma once
 // Rigid blocks in unilateral contact: model and state. localised_step.hpp moves them.
 #include "contact/corner_normals.hpp"
+#include "contact/solid_contact.hpp"
 #include "dynamics/model/base_drive.hpp"
 #include "impact/rocking_restitution.hpp"
 #include "joints/joint_table.hpp"
@@ -15,10 +16,10 @@ namespace masonry {
 
 template <class K>
 struct RigidBody {
-	std::shared_ptr<const typename K::Shape> shape;   // equal blocks may share one
-	double mass {0};                                  // kg; not used when prescribed
-	typename K::Inertia inertia {K::Inertia::Zero()}; // about the centre, kg m^2
-	bool prescribed {false};                          // moved by the user: an infinite mass
+	std::shared_ptr<const Solid<typename K::Shape>> shape; // equal blocks may share one
+	double mass {0};                                       // kg; not used when prescribed
+	typename K::Inertia inertia {K::Inertia::Zero()};      // about the centre, kg m^2
+	bool prescribed {false};                               // moved by the user: an infinite mass
 	typename K::Pose pose;
 	typename K::Velocity velocity {K::Velocity::Zero()}; // linear, then spin
 	typename K::Velocity force {K::Velocity::Zero()};    // external force (weight included) and moment about the centre
@@ -35,7 +36,7 @@ struct RigidBody {
 		archive(pose, velocity, increment, fresh, prescribed, drive, origin);
 	}
 
-	void setBox(const typename K::Vector& half) { shape = std::make_shared<const typename K::Shape>(K::Shape::box(half)); }
+	void setBox(const typename K::Vector& half) { shape = std::make_shared<const Solid<typename K::Shape>>(K::Shape::box(half)); }
 
 	double kineticEnergy() const
 	{
@@ -49,7 +50,7 @@ struct RigidBody {
 template <class K>
 const typename K::Vector& faceNormal(const RigidBody<K>& body, int face) // in the body's axes
 {
-	return body.shape->faces()[face].normal;
+	return body.shape->face(face).normal;
 }
 
 template <class K>
@@ -84,7 +85,7 @@ template <class K>
 ContactFrame<K> frameOf(const ContactPoint<K>& point, const RigidBody<K>& body1, const typename K::Pose& pose1, const RigidBody<K>& body2,
                         const typename K::Pose& pose2)
 {
-	ContactFrame<K> frame = K::frame(point.feature, *body1.shape, pose1, *body2.shape, pose2);
+	ContactFrame<K> frame = frameOf(point.feature, *body1.shape, pose1, *body2.shape, pose2);
 	frame.grip = frame.axes.template bottomRows<K::rows - 1>().transpose() * point.grip;
 	return frame;
 }
@@ -92,6 +93,7 @@ ContactFrame<K> frameOf(const ContactPoint<K>& point, const RigidBody<K>& body1,
 template <class K>
 struct ContactPair {
 	int body1 {-1}, body2 {-1};
+	int part1 {0}, part2 {0}; // convex parts of the bodies
 	double friction {noSlip};
 	double restitution {NAN}; // NaN: natural
 	typename K::Memory memory;
@@ -104,7 +106,7 @@ struct ContactPair {
 	template <class Archive>
 	void serialize(Archive& archive)
 	{
-		archive(body1, body2, face1, face2, friction, restitution, isUpright, memory, points);
+		archive(body1, body2, part1, part2, face1, face2, friction, restitution, isUpright, memory, points);
 	}
 };
 
@@ -161,44 +163,6 @@ void takeStates(const ContactPair<K>& before, const FoundPoints<K>& found, doubl
 			point.closed |= old->closed;
 			point.force += old->force;
 		}
-}
-
-// The points of a pair of these bodies, none if there are none; without a margin, since lists of pairs hold only boxes that are near.
-template <class K>
-FoundPoints<K> findPoints(const RigidBody<K>& body1, const typename K::Pose& pose1, const RigidBody<K>& body2,
-                          const typename K::Pose& pose2, typename K::Memory& memory)
-{
-	FoundPoints<K> found;
-	if (!K::findPoints(*body1.shape, pose1, *body2.shape, pose2, std::numeric_limits<double>::infinity(), memory, found))
-		found.features.clear();
-	return found;
-}
-template <class K>
-FoundPoints<K> findPoints(const RigidBody<K>& body1, const RigidBody<K>& body2, typename K::Memory& memory)
-{
-	return findPoints(body1, body1.pose, body2, body2.pose, memory);
-}
-
-// And the second normals of corners that meet corners.
-template <class K>
-FoundPoints<K> findRows(const RigidBody<K>& body1, const typename K::Pose& pose1, const RigidBody<K>& body2, const typename K::Pose& pose2,
-                        typename K::Memory& memory)
-{
-	FoundPoints<K> found = findPoints(body1, pose1, body2, pose2, memory);
-	K::addSecondNormals(*body1.shape, pose1, *body2.shape, pose2, found);
-	return found;
-}
-// As they move: a corner that moves over a face of the other body faster than `rest` (m/s) has that face's normal alone.
-template <class K>
-FoundPoints<K> findRows(const RigidBody<K>& body1, const RigidBody<K>& body2, double rest, typename K::Memory& memory)
-{
-	FoundPoints<K> found = findRows(body1, body1.pose, body2, body2.pose, memory);
-	const auto rate = [&](const Feature& feature) {
-		const auto frame = K::frame(feature, *body1.shape, body1.pose, *body2.shape, body2.pose);
-		return relativeVelocity<K>(frame, body1.pose.position, body1.velocity, body2.pose.position, body2.velocity)[0];
-	};
-	dropPassed(found, rate, rest);
-	return found;
 }
 
 template <class K>
@@ -318,6 +282,36 @@ double freeMass(const RigidSystem<K>& s)
 		if (!body.prescribed)
 			sum += body.mass;
 	return sum;
+}
+
+// The points of the two parts when the bodies are there, none if there are none; without a margin, since lists of pairs hold only bodies
+// that are near.
+template <class K>
+FoundPoints<K> findPoints(const RigidSystem<K>& s, const ContactPair<K>& pair, typename K::Memory& memory)
+{
+	const RigidBody<K>&body1 = s.bodies[pair.body1], &body2 = s.bodies[pair.body2];
+	return findPoints<K>({*body1.shape, body1.pose, pair.part1, *body2.shape, body2.pose, pair.part2}, false, memory);
+}
+
+// And the second normals of corners that meet corners.
+template <class K>
+FoundPoints<K> findRows(const RigidSystem<K>& s, const ContactPair<K>& pair, const typename K::Pose& pose1, const typename K::Pose& pose2,
+                        typename K::Memory& memory)
+{
+	return findPoints<K>({*s.bodies[pair.body1].shape, pose1, pair.part1, *s.bodies[pair.body2].shape, pose2, pair.part2}, true, memory);
+}
+// As they move: a corner that moves over a face of the other body faster than `rest` (m/s) has that face's normal alone.
+template <class K>
+FoundPoints<K> findRows(const RigidSystem<K>& s, const ContactPair<K>& pair, double rest, typename K::Memory& memory)
+{
+	const RigidBody<K>&body1 = s.bodies[pair.body1], &body2 = s.bodies[pair.body2];
+	FoundPoints<K> found = findRows(s, pair, body1.pose, body2.pose, memory);
+	const auto rate = [&](const Feature& feature) {
+		const auto frame = frameOf(feature, *body1.shape, body1.pose, *body2.shape, body2.pose);
+		return relativeVelocity<K>(frame, body1.pose.position, body1.velocity, body2.pose.position, body2.velocity)[0];
+	};
+	dropPassed(found, rate, rest);
+	return found;
 }
 
 } // namespace masonry

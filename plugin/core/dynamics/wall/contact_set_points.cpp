@@ -76,7 +76,7 @@ bool ContactSet<K>::lookUp(RigidSystem<K>& s, int c)
 	const double touching = tolerance::mergedClosing * length;
 	ContactPair<K>& pair = s.pairs[c];
 	const auto &body1 = s.bodies[pair.body1], &body2 = s.bodies[pair.body2];
-	const FoundPoints<K> found = findPoints(body1, body2, pair.memory);
+	const FoundPoints<K> found = findPoints(s, pair, pair.memory);
 	pair.face1 = found.face1;
 	pair.face2 = found.face2;
 	// If bodies have been moved, the pair may know other points than the lanes.

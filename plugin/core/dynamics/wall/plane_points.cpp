@@ -155,7 +155,7 @@ void ContactSet<Plane>::takePoint(const RigidSystem<Plane>& s, int c, int k)
 	FeatureLanes<Plane>& f = features[group].point[k];
 	const bool present = k < pair.size();
 	const Feature feature = present ? pair.points[k].feature : Feature::ofVertex(1, 0, 0); // any will tell how far the pair moves
-	const ConvexPolygon &shape1 = *s.bodies[pair.body1].shape, &shape2 = *s.bodies[pair.body2].shape;
+	const auto &shape1 = *s.bodies[pair.body1].shape, &shape2 = *s.bodies[pair.body2].shape;
 	const PointGeometry<Plane> geometry = geometryOf(feature, shape1, shape2);
 	const FaceReach reach = reachOf(geometry.vertexOn1 ? shape2 : shape1, feature.face());
 	f.present[lane] = present ? -1 : 0;

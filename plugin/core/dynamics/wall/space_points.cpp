@@ -92,8 +92,8 @@ void takeCrossings(const RigidSystem<Space>& s, const FeatureGroup<Space>& featu
 			continue;
 		const ContactPair<Space>& pair = s.pairs[features.pair[i]];
 		const Pose pose1 = poseOf(poses, pair.body1), pose2 = poseOf(poses, pair.body2);
-		const ContactFrame<Space> frame = Space::frame(pair.points[features.first[i] + k].feature, *s.bodies[pair.body1].shape, pose1,
-		                                               *s.bodies[pair.body2].shape, pose2);
+		const ContactFrame<Space> frame =
+		    frameOf(pair.points[features.first[i] + k].feature, *s.bodies[pair.body1].shape, pose1, *s.bodies[pair.body2].shape, pose2);
 		set(found.normal, i, frame.axes.row(0));
 		set(found.tangent, i, frame.axes.row(1));
 		set(found.arm2, i, frame.position - pose2.position);
@@ -244,7 +244,7 @@ void ContactSet<Space>::takePoint(const RigidSystem<Space>& s, int c, int k)
 	FeatureLanes<Space>& f = features[group].point[k % lanePoints<Space>];
 	const Feature feature = featureOf(pair, k);
 	f.present[lane] = k < pair.size() ? -1 : 0;
-	const ConvexPolyhedron &shape1 = *s.bodies[pair.body1].shape, &shape2 = *s.bodies[pair.body2].shape;
+	const auto &shape1 = *s.bodies[pair.body1].shape, &shape2 = *s.bodies[pair.body2].shape;
 	const PointGeometry<Space> geometry = geometryOf(feature, shape1, shape2);
 	f.crossing[lane] = geometry.crosses ? -1 : 0;
 	f.vertexOn1[lane] = geometry.vertexOn1 ? -1 : 0;
@@ -264,10 +264,10 @@ void ContactSet<Space>::measureCorners(const RigidSystem<Space>& s, int group, i
 		if (f.crossing[lane])
 			continue;
 		const Feature feature = featureOf(pair, features[group].first[lane] + k);
-		const ConvexPolyhedron& shape = *s.bodies[f.vertexOn1[lane] ? pair.body2 : pair.body1].shape;
+		const auto& shape = *s.bodies[f.vertexOn1[lane] ? pair.body2 : pair.body1].shape;
 		const Vector2 place(f.found.x[lane], f.found.y[lane]);
 		double nearest = farAway;
-		for (const Vector2& corner : shape.faces()[feature.face()].outline)
+		for (const Vector2& corner : shape.face(feature.face()).outline)
 			nearest = std::min(nearest, (corner - place).cwiseAbs().maxCoeff());
 		f.fromCorner[lane] = nearest;
 	}

@@ -26,3 +26,4 @@ from masonry.dem.scene import (angle, base, block, blocks_from_table, overturned
                                stack, tilt, two_wythe_wall, wall)
 from masonry.dem.structures import structures  # noqa: E402
 from masonry.dem.tilting import TiltTable  # noqa: E402
+from masonry.dem.unions import union  # noqa: E402

@@ -50,21 +50,24 @@ def block_body(id, name="id"):
 
 def upper_face(body, name):
     """(middle, orientation, outline) of the face on which others stand: its middle in the world, the axes in which its outline (k, 2) is given, counter-clockwise
-    from the middle. Of a Box the face along its own z; of a ConvexBlock the one that is level, in the axes of the world."""
+    from the middle. Of a Box the face along its own z; of a ConvexBlock the one that is level (of several parts the highest one), in the axes of the world."""
     state = body.state
     if isinstance(body.shape, wrapper.Box):
         x, y, z = body.shape.extents
         return state.pos + state.ori * Vector3(0, 0, z), state.ori, np.array([(-x, -y), (x, -y), (x, y), (-x, y)])
     vertices, faces = world_shape(body)
+    level = []
     for loop in faces:
         a, b, c = (vertices[k] for k in loop[:3])
         normal = np.cross(b - a, c - b)
         if normal[2] >= _LEVEL * np.linalg.norm(normal):
-            outline = vertices[loop]
-            sides = np.roll(outline, -1, axis=0)
-            areas = (outline - a)[:, 0] * (sides - a)[:, 1] - (outline - a)[:, 1] * (sides - a)[:, 0]
-            middle = a + ((outline - a + sides - a) * areas[:, None]).sum(axis=0) / (3 * areas.sum())
-            return Vector3(middle), Quaternion.Identity, (outline - middle)[:, :2]
+            level.append(loop)
+    if level:
+        outline = vertices[max(level, key=lambda loop: vertices[loop[0], 2])]
+        a, sides = outline[0], np.roll(outline, -1, axis=0)
+        areas = (outline - a)[:, 0] * (sides - a)[:, 1] - (outline - a)[:, 1] * (sides - a)[:, 0]
+        middle = a + ((outline - a + sides - a) * areas[:, None]).sum(axis=0) / (3 * areas.sum())
+        return Vector3(middle), Quaternion.Identity, (outline - middle)[:, :2]
     raise ValueError(f"{name}: that ConvexBlock has no level upper face, on which others can stand")
 
 
@@ -74,6 +77,18 @@ def world_shape(body):
     if isinstance(body.shape, wrapper.Box):
         return corners(position, turn, 2 * np.array(tuple(body.shape.extents))), BOX_FACES
     return position + np.array([tuple(v) for v in body.shape.vertices]) @ matrices(turn).T, body.shape.faces
+
+
+def own_parts(shape):
+    """[[corners] of each convex part of a ConvexBlock in its own axes]."""
+    points, ends = [tuple(v) for v in shape.vertices], [*(shape.firstVertices or [0]), len(shape.vertices)]
+    return [points[a:b] for a, b in zip(ends, ends[1:])]
+
+
+def part_corners(body):
+    """[corners (k, 3) in the world, m, of each convex part of a Box or a ConvexBlock]."""
+    corners_now, _ = world_shape(body)
+    return np.split(corners_now, [] if isinstance(body.shape, wrapper.Box) else list(body.shape.firstVertices)[1:])
 
 
 def face_areas(body):

@@ -13,7 +13,7 @@ from masonry.dem import solids, voussoirs
 from masonry.dem.bodies import block_body, upper_face, world_shape
 from masonry.dem.layouts import whole
 from masonry.dem.meshes import read_meshes
-from masonry.dem.placing import check_support, convex_bodies, moved, top_of, turned
+from masonry.dem.placing import check_support, convex_bodies, moved, one_body, top_of, turned
 from masonry.dem.rubble import rubble_layout
 from yade import Body, O, Quaternion, Vector3
 
@@ -46,27 +46,8 @@ def geometry(id):
 
 
 def _one(corners, material, on, center, orientation, faces=None):
-    """Id of the block of these corners: as given, or turned and with its centre of mass at `center` or above the middle of the body `on`."""
-    if on is not None and center is not None:
-        raise ValueError(f"on = {on}, center = {center}: give one of the two, or none")
-    if orientation is not None and not (isinstance(orientation, Quaternion) and abs(orientation.norm() - 1) < 1e-9):
-        raise ValueError(f"orientation = {shown(orientation)}: must be a Quaternion of length 1")
-    foot, turn = (None, Quaternion.Identity) if on is None else top_of(on)
-    if center is not None:
-        foot = Vector3(finite_numbers("center", center, 3, "three finite numbers, in m"))
-    (body,) = convex_bodies([corners], material, None if faces is None else [faces])
-    if orientation is not None:
-        turned(body, orientation)
-    if on is not None:
-        heights = np.sort(world_shape(body)[0][:, 2])
-        if not heights[2] - heights[0] <= _LEVEL * (heights[-1] - heights[0]):
-            raise ValueError(f"on = {on}: the block has no face that looks down in this orientation, on which it could stand")
-        body.state.pos = Vector3(0, 0, body.state.pos[2] - heights[0])
-    elif center is not None:
-        body.state.pos = Vector3.Zero
-    if on is not None:
-        turned(body, turn)
-    return O.bodies.append(body if foot is None else moved(body, foot))
+    """Id of the block of these corners, where one_body() puts it."""
+    return one_body(lambda: convex_bodies([corners], material, None if faces is None else [faces])[0], on, center, orientation)
 
 
 def convex(vertices, material, on=None, center=None, orientation=None, faces=None):

@@ -4,13 +4,15 @@ import math
 
 import numpy as np
 from masonry import _core
-from masonry._given import finite_numbers
-from masonry.dem.bodies import block_body, upper_face
+from masonry._given import finite_numbers, shown
+from masonry.dem.bodies import block_body, upper_face, world_shape
 from masonry.dem.checks import check_material, listed
 from yade import Body, O, Quaternion, Vector3, utils, wrapper
 
 # Share of the half size of a support by which a block's centre must be inside it: a centre above the edge is off, whatever the round-off.
 _INSIDE = 1e-9
+# Height above the lowest corner, relative to the extent, up to which a corner stands on the ground.
+_LEVEL = 1e-9
 # Largest extent of a convex block, m: stones beyond come from a wrong unit.
 _EXTENTS = 1e-3, 1e2
 
@@ -49,11 +51,16 @@ def append_boxes(centers, sizes, material, orientation, resting):
     return O.bodies.append([posed(box_body(size, material), center, orientation, resting) for center, size in zip(centers, sizes)])
 
 
-def polyhedron(points, name, faces=None, in_own_axes=False):
-    """What the core makes of the points (k, 3), m (masonry._core.convex_block); ValueError that begins with `name` unless they are a block."""
+def check_extent(points, name):
+    """ValueError that begins with `name` unless points (k, 3) span what a block may."""
     extent = np.ptp(points, axis=0).max() if len(points) else 0.0
     if np.isfinite(points).all() and not _EXTENTS[0] <= extent <= _EXTENTS[1]:
         raise ValueError(f"{name}: extent = {extent:.4g}: must be from {_EXTENTS[0]:g} to {_EXTENTS[1]:g}, in m")
+
+
+def polyhedron(points, name, faces=None, in_own_axes=False):
+    """What the core makes of the points (k, 3), m (masonry._core.convex_block); ValueError that begins with `name` unless they are a block."""
+    check_extent(points, name)
     loops = [] if faces is None else faces
     try:
         return _core.convex_block(np.ravel(points).astype(float), np.array([v for loop in loops for v in loop], dtype=int),
@@ -62,10 +69,17 @@ def polyhedron(points, name, faces=None, in_own_axes=False):
         raise ValueError(f"{name}: {error}") from None
 
 
+def union_polyhedron(parts, in_own_axes=False):
+    """What the core makes of the union of convex parts, corners (k, 3) of each in m, as polyhedron() (masonry._core.convex_union)."""
+    return _core.convex_union(np.concatenate(parts).ravel().astype(float), np.cumsum([0, *map(len, parts)]), in_own_axes)
+
+
 def convex_body(found, material):
-    """The free body of a polyhedron, where its points were; it rests as it is."""
+    """The free body of a polyhedron or of a union, where its points were; it rests as it is."""
     body = Body()
-    body.shape = wrapper.ConvexBlock(vertices=[Vector3(v) for v in found["vertices"].tolist()], color=utils.randomColor())
+    body.shape = wrapper.ConvexBlock(color=utils.randomColor())
+    body.shape.firstVertices = found["first_vertices"].tolist()
+    body.shape.vertices = [Vector3(v) for v in found["vertices"].tolist()]
     body.mat, body.state = material, material.newAssocState()
     body.state.mass = material.density * found["volume"]
     body.state.inertia = Vector3(material.density * found["inertia"])
@@ -103,6 +117,30 @@ def top_of(on, at=(0.0, 0.0), above=0.0):
         return below.state.pos + below.state.ori * Vector3(at[0], at[1], below.shape.extents[2] + above), below.state.ori
     middle, orientation, _ = upper_face(below, f"on = {on}")
     return middle + Vector3(at[0], at[1], above), orientation
+
+
+def one_body(make, on, center, orientation):
+    """Id of the body that make() returns: as it is made, or turned and with its centre of mass at `center` or above the middle of the body `on`."""
+    if on is not None and center is not None:
+        raise ValueError(f"on = {on}, center = {center}: give one of the two, or none")
+    if orientation is not None and not (isinstance(orientation, Quaternion) and abs(orientation.norm() - 1) < 1e-9):
+        raise ValueError(f"orientation = {shown(orientation)}: must be a Quaternion of length 1")
+    foot, turn = (None, Quaternion.Identity) if on is None else top_of(on)
+    if center is not None:
+        foot = Vector3(finite_numbers("center", center, 3, "three finite numbers, in m"))
+    body = make()
+    if orientation is not None:
+        turned(body, orientation)
+    if on is not None:
+        heights = np.sort(world_shape(body)[0][:, 2])
+        if not heights[2] - heights[0] <= _LEVEL * (heights[-1] - heights[0]):
+            raise ValueError(f"on = {on}: the block has no face that looks down in this orientation, on which it could stand")
+        body.state.pos = Vector3(0, 0, body.state.pos[2] - heights[0])
+    elif center is not None:
+        body.state.pos = Vector3.Zero
+    if on is not None:
+        turned(body, turn)
+    return O.bodies.append(body if foot is None else moved(body, foot))
 
 
 def placed(centers, foot, orientation):

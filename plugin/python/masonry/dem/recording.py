@@ -6,7 +6,7 @@ from masonry._pose import BOX_FACES
 from masonry._shapes import Shapes, box_corners
 from masonry.dem.describing import about
 from masonry.dem.engines import impacts, joint_engine
-from masonry.dem.placing import polyhedron
+from masonry.dem.placing import union_polyhedron
 from masonry.results import WallHistory
 from masonry.results.wall_history import JOINT_FORCES
 from yade import O, wrapper
@@ -39,11 +39,17 @@ def _shapes(recorder, sizes):
     if not any(counts):
         return sizes, None
     own = np.split(np.array([tuple(v) for v in recorder.vertices]), np.cumsum(counts)[:-1])
-    found = {points.tobytes(): polyhedron(points, "vertices", in_own_axes=True) for points in own if len(points)}
+    parts, made = iter(recorder.partCounts), {}
     blocks = []
     for k, points in enumerate(own):
         if len(points):
-            faces, start = (found[points.tobytes()][name] for name in ("faces", "face_start"))
+            ends = [next(parts)]
+            while ends[-1] < len(points):
+                ends.append(ends[-1] + next(parts))
+            key = points.tobytes(), tuple(ends)
+            if key not in made:
+                made[key] = union_polyhedron(np.split(points, ends[:-1]), in_own_axes=True)
+            faces, start = (made[key][name] for name in ("faces", "face_start"))
             sizes[k] = np.ptp(points, axis=0)
             blocks.append((points, [faces[a:b] for a, b in zip(start, start[1:])]))
         else:

@@ -5,10 +5,10 @@ import math
 import numpy as np
 from masonry._given import finite_numbers, number_given, shown
 from masonry.dem import layouts
-from masonry.dem.bodies import block_body, blocks, boxes, convex_blocks, poses, world_shape
+from masonry.dem.bodies import block_body, blocks, boxes, convex_blocks, own_parts, poses, world_shape
 from masonry.dem.checks import check_material
 from masonry.dem.meshes import write_obj
-from masonry.dem.placing import append_boxes, block_material, box_body, check_support, convex_body, placed, polyhedron, posed, stand, top_of, turn_about_z
+from masonry.dem.placing import append_boxes, block_material, box_body, check_support, convex_body, placed, polyhedron, posed, stand, top_of, turn_about_z, union_polyhedron
 from masonry.dem.tables import read_table, table_rows, write_table
 from masonry.results.collapse import comes_back
 from yade import O, Quaternion, Vector3, utils, wrapper
@@ -143,7 +143,8 @@ def blocks_from_table(table, materials, on=None):
                               none, or its label.
     qw, qx, qy, qz            optional, instead of the rotations: the orientation as a quaternion (dem.save_blocks writes it)
     vertices                  in rows of .json and in memory, instead of the sizes: the corners of a convex block in its own axes, m, from its centre of mass
-                              (dem.save_blocks writes them, and `resting`, the quaternion from which dem.angle counts)
+                              (dem.save_blocks writes them, and `resting`, the quaternion from which dem.angle counts; first_vertices: of a dem.union, the
+                              number of the first corner of each part)
     id, name                  optional, ignored
 
     Columns may be written in capitals and with blanks around them.
@@ -157,7 +158,8 @@ def blocks_from_table(table, materials, on=None):
     for place, name in zip(given.places, given.names):
         if name not in materials:
             raise ValueError(f"{place}: material = {shown(name)}: must be one of {', '.join(repr(key) for key in materials)}")
-    shapes = [None if points is None else polyhedron(points, place, in_own_axes=True) for place, points in zip(given.places, given.corners)]
+    shapes = [None if parts is None else union_polyhedron(parts, in_own_axes=True) if len(parts) > 1 else polyhedron(*parts, place, in_own_axes=True)
+              for place, parts in zip(given.places, given.corners)]
     centers, orientations, resting = given.centers, [Quaternion(*q) for q in given.quaternions.tolist()], [Quaternion(*q) for q in given.resting]
     if on is not None:
         foot, turn = top_of(on)
@@ -185,7 +187,7 @@ def save_blocks(path):
         known = labelled.setdefault(material.label, material)
         if any(repr(value) != repr(getattr(known, name)) for name, value in material.dict().items() if name != "id"):
             raise ValueError(f"O.materials[{material.id}].label = {shown(material.label)}: must be another than that of O.materials[{known.id}], which is not the same")
-    corners = [None if hasattr(b.shape, "extents") else [tuple(v) for v in b.shape.vertices] for b in bodies]
+    corners = [None if hasattr(b.shape, "extents") else own_parts(b.shape) for b in bodies]
     resting = [[b.state.refOri[k] for k in (3, 0, 1, 2)] for b in bodies]
     write_table(path, table_rows(*poses(bodies), [b.mat.label for b in bodies], corners, resting))
 

@@ -9,13 +9,13 @@ from typing import NamedTuple
 
 import numpy as np
 from masonry._files import written
-from masonry._given import array_given, finite_numbers, shown
+from masonry._given import array_given, finite_numbers, is_whole, shown
 from masonry.dem.layouts import SIZES
 
 _PLACE, _TURN, _QUATERNION = ("x", "y", "z", "size_x", "size_y", "size_z"), ("rotation_y", "rotation_z"), ("qw", "qx", "qy", "qz")
 COLUMNS = _PLACE + _TURN + ("material",) + _QUATERNION
-# The corners of a convex block, in place of sizes, and the quaternion from which dem.angle counts.
-_CORNERS, _RESTING = "vertices", "resting"
+# The corners of a convex block, in place of sizes, the first one of each part of a union, and the quaternion from which dem.angle counts.
+_CORNERS, _PARTS, _RESTING = "vertices", "first_vertices", "resting"
 # Columns that say nothing of a block.
 _IGNORED = ("id", "name")
 
@@ -118,7 +118,7 @@ def _named(cells, place):
         if column is None:
             raise ValueError(f"{place}: has more values than there are columns")
         name = str(column).strip().lower()
-        if name not in COLUMNS + (_CORNERS, _RESTING) + _IGNORED:
+        if name not in COLUMNS + (_CORNERS, _PARTS, _RESTING) + _IGNORED:
             header = "line 1" if place.startswith("line") else place
             raise ValueError(f"{header}: column {shown(column)}: must be one of {', '.join(COLUMNS + _IGNORED)}")
         if name in row:
@@ -128,14 +128,17 @@ def _named(cells, place):
 
 
 def _corners(row, place):
-    """The corners (k, 3) of a row in its own axes; None for a box."""
+    """The corners (k, 3) of each convex part of a row in its own axes; None for a box."""
     given = row.get(_CORNERS)
     if given is None:
         return None
     corners = array_given(f"{place}: {_CORNERS}", given)
     if corners.ndim != 2 or corners.shape[1] != 3 or not np.isfinite(corners).all():
         raise ValueError(f"{place}: {_CORNERS} = {shown(given)}: must be points of three finite numbers, in m")
-    return corners
+    first = row.get(_PARTS, [0])
+    if not isinstance(first, (list, tuple, np.ndarray)) or not all(is_whole(k, 0) for k in first) or [*first][:1] != [0] or (np.diff([*first, len(corners)]) < 4).any():
+        raise ValueError(f"{place}: {_PARTS} = {shown(first)}: must begin with 0 and ascend by 4 at least, to below the number of vertices, {len(corners)}")
+    return np.split(corners, [int(k) for k in first][1:])
 
 
 def _resting(row, place, quaternion):
@@ -149,7 +152,7 @@ def _resting(row, place, quaternion):
 
 class Table(NamedTuple):
     """Rows of a table, see dem.blocks_from_table: centres (n, 3), full sizes (n, 3), or NaN, quaternions (n, 4) as w, x, y, z, names of materials, where each
-    row stands, corners of each convex block (else None), and the quaternions from which dem.angle counts."""
+    row stands, corners of each part of each convex block (else None), and the quaternions from which dem.angle counts."""
 
     centers: np.ndarray
     sizes: np.ndarray
@@ -190,7 +193,7 @@ def write_table(path, rows):
 
 
 def table_rows(centers, sizes, quaternions, names, corners, resting):
-    """Rows for write_table. Quaternions and names stand there only where a block is turned or named; sizes of a box, corners of a convex block."""
+    """Rows for write_table. Quaternions and names stand there only where a block is turned or named; sizes of a box, corners of each part of a convex block."""
     turned, named = bool(np.any(quaternions != [1, 0, 0, 0])), any(names)
     rows = []
     for center, size, quaternion, name, points, rest in zip(centers.tolist(), sizes.tolist(), quaternions.tolist(), names, corners, resting):
@@ -200,6 +203,8 @@ def table_rows(centers, sizes, quaternions, names, corners, resting):
         if named:
             row["material"] = name
         if points is not None:
-            row.update({_CORNERS: points, _RESTING: rest})
+            row.update({_CORNERS: [corner for part in points for corner in part], _RESTING: rest})
+            if len(points) > 1:
+                row[_PARTS] = np.cumsum([0, *map(len, points)])[:-1].tolist()
         rows.append(row)
     return rows

@@ -22,7 +22,7 @@ TEST_CASE("all that a landing takes from the blocks is in its energy")
 	for (int k : {0, 1}) { // left, right
 		auto& point = pair.points[k];
 		point.feature = Feature::ofVertex(2, k, 3);
-		point.frame = Plane::frame(point.feature, *s.bodies[0].shape, s.bodies[0].pose, *s.bodies[1].shape, s.bodies[1].pose);
+		point.frame = frameOf(point.feature, *s.bodies[0].shape, s.bodies[0].pose, *s.bodies[1].shape, s.bodies[1].pose);
 		point.gap = point.frame.gap;
 	}
 	pair.points[0].closed = true;

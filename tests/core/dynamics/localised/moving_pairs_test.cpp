@@ -184,7 +184,7 @@ TEST_CASE("The widest slab over faces and edges is that of the Minkowski differe
 	std::mt19937 random(3);
 	for (int n = 0; n < 20; ++n) {
 		const auto bodies = MovingPair<Space>(random).system.bodies;
-		const auto truth = oracle::slabOfDifferences(*bodies[0].shape, bodies[0].pose, *bodies[1].shape, bodies[1].pose);
+		const auto truth = oracle::slabOfDifferences(bodies[0].shape->part(0), bodies[0].pose, bodies[1].shape->part(0), bodies[1].pose);
 		CHECK(separation<Space>(bodies) == Approx(truth.width).margin(1e-9));
 	}
 }

@@ -12,7 +12,7 @@ inline int addPolyhedron(System& s, const std::vector<Vector3>& points, const Ve
 	const PlacedPolyhedron block = inPrincipalAxes(hull);
 	const MassProperties mass = block.shape.massProperties(density);
 	RigidBody<Space> body;
-	body.shape = std::make_shared<const ConvexPolyhedron>(block.shape);
+	body.shape = std::make_shared<const Solid<ConvexPolyhedron>>(block.shape);
 	body.mass = mass.mass;
 	body.inertia = mass.inertia.diagonal();
 	body.pose.position = place + orientation * block.pose.position;

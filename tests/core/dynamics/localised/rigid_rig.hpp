@@ -55,7 +55,7 @@ inline int addPolygon(RigidSystem<Plane>& s, const std::vector<Vector2>& points,
 	block.pose.setAngle(angle);
 	block.pose.position = pivot + block.pose.rotate(centre - pivot);
 	block.force << block.mass * s.gravity, 0;
-	block.shape = std::make_shared<const ConvexPolygon>(shape);
+	block.shape = std::make_shared<const Solid<ConvexPolygon>>(shape);
 	s.bodies.push_back(block);
 	return int(s.bodies.size()) - 1;
 }

@@ -344,7 +344,7 @@ TEST_CASE("the bounds of a body need not be about its centre of mass")
 {
 	RigidSystem<Plane> system;
 	system.bodies.resize(3);
-	system.bodies[0].shape = std::make_shared<const ConvexPolygon>(ConvexPolygon::hull({{0, 0}, {3, 0}, {0, 1.5}}));
+	system.bodies[0].shape = std::make_shared<const Solid<ConvexPolygon>>(ConvexPolygon::hull({{0, 0}, {3, 0}, {0, 1.5}}));
 	for (int k : {1, 2}) {
 		system.bodies[k].setBox({0.1, 0.1});
 		system.bodies[k].pose.position << (k == 1 ? 2.15 : -2.15), -0.4;

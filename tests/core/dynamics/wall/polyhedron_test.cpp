@@ -130,7 +130,7 @@ TEST_CASE("A stone that slides off a polygonal face is let go where its vertices
 	}
 	addPair(other, 0, 1, NAN, 0.);
 	LocalisedStep<Space> step;
-	const auto& face = scene.system.bodies[0].shape->faces();
+	const auto& face = scene.system.bodies[0].shape->part(0).faces();
 	double beyond = 0;
 	for (int k = 0; k < 1100; ++k) {
 		scene.advance(h);

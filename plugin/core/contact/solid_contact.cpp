@@ -1,0 +1,153 @@
+#include "contact/solid_contact.hpp"
+#include "tolerances.hpp"
+#include <limits>
+
+namespace masonry {
+
+namespace {
+
+using EdgeFaces = std::array<int, 2>;
+
+// The faces beside an edge of a solid, which crosses another one. In the plane no edges cross.
+EdgeFaces facesBeside(const Solid<ConvexPolygon>&, int) { return {-1, -1}; }
+EdgeFaces facesBeside(const Solid<ConvexPolyhedron>& solid, int edge)
+{
+	const int part = solid.partOfEdge(edge);
+	const auto& first = solid.first(part);
+	const ConvexPolyhedron::Edge& line = solid.part(part).edges()[edge - first.edge];
+	return {first.face + line.left, first.face + line.right};
+}
+
+// Whether the edge of one of two edges that cross is none of its solid there, nor the border of a part in a plane that goes on.
+// `outward`: the normal away from the solid, in its axes.
+template <class Convex, class Vector>
+bool isInside(const Solid<Convex>& solid, int edge, const Vector& point, const Vector& outward)
+{
+	const EdgeFaces beside = facesBeside(solid, edge);
+	for (int k = 0; k < 2; ++k)
+		if (solid.isCovered(beside[k], point))
+			return solid.isCovered(beside[1 - k], point) || !(solid.face(beside[1 - k]).normal.dot(outward) > 0) ||
+			       (solid.face(beside[1 - k]).normal - outward).norm() > tolerance::contact::leans;
+	return false;
+}
+
+Vector2 toLocal(const PlanePose& pose, const Vector2& point) { return pose.toLocal(point); }
+Vector3 toLocal(const Pose& pose, const Vector3& point) { return pose.toLocal(point); }
+Vector2 turnBack(const PlanePose& pose, const Vector2& direction) { return pose.rotateBack(direction); }
+Vector3 turnBack(const Pose& pose, const Vector3& direction) { return pose.orientation.conjugate() * direction; }
+
+// Whether a feature, by the numbers of the solids, has a normal that the solids have not.
+template <class K>
+bool isHidden(const PartPair<K>& pair, const Feature& feature)
+{
+	const auto frame = frameOf(feature, pair.solid1, pair.pose1, pair.solid2, pair.pose2);
+	const typename K::Vector normal = frame.axes.row(0).transpose();
+	if (feature.kind != Feature::Edges) {
+		const bool on1 = feature.vertexBody() == 1;
+		const auto &ofVertex = on1 ? pair.solid1 : pair.solid2, &ofFace = on1 ? pair.solid2 : pair.solid1;
+		const typename K::Vector outward = turnBack(on1 ? pair.pose1 : pair.pose2, on1 ? normal : typename K::Vector(-normal));
+		return ofFace.isCovered(feature.face(), toLocal(on1 ? pair.pose2 : pair.pose1, frame.position)) ||
+		       ofVertex.isBuried(feature.vertex(), outward);
+	}
+	return isInside(pair.solid1, feature.on1, toLocal(pair.pose1, frame.position), turnBack(pair.pose1, normal)) ||
+	       isInside(pair.solid2, feature.on2, toLocal(pair.pose2, frame.position), turnBack(pair.pose2, typename K::Vector(-normal)));
+}
+
+// The faces of a part that meet at a vertex.
+std::array<int, 2> facesAt(const ConvexPolygon& part, int vertex) { return {part.corners()[vertex].before, part.corners()[vertex].after}; }
+const std::vector<int>& facesAt(const ConvexPolyhedron& part, int vertex) { return part.corners()[vertex].faces; }
+
+// The search ends a face of a part at its seam, where it takes another face of a body that leans there on its edge. The solid goes on: the
+// face that meets it is that which looks most against it, and the joint is the one under that face, on either side of the seam. Gives the
+// number of that face of the body with the vertex; -1: the vertex is not on a seam.
+template <class K>
+int faceAtSeam(const PartPair<K>& pair, const Feature& feature)
+{
+	if (feature.kind == Feature::Edges)
+		return -1;
+	const bool on1 = feature.vertexBody() == 1;
+	const auto &ofVertex = on1 ? pair.solid1 : pair.solid2, &ofFace = on1 ? pair.solid2 : pair.solid1;
+	const auto frame = frameOf(feature, pair.solid1, pair.pose1, pair.solid2, pair.pose2);
+	if (ofFace.size() == 1 || !ofFace.goesOn(feature.face(), toLocal(on1 ? pair.pose2 : pair.pose1, frame.position)))
+		return -1;
+	const int number = on1 ? pair.part1 : pair.part2;
+	const auto& part = ofVertex.part(number);
+	const typename K::Vector normal = frame.axes.row(0).transpose();
+	const typename K::Vector outward = turnBack(on1 ? pair.pose1 : pair.pose2, on1 ? normal : typename K::Vector(-normal));
+	int best = -1;
+	for (const int face : facesAt(part, feature.vertex() - ofVertex.first(number).vertex))
+		if (best < 0 || outward.dot(part.faces()[face].normal) > outward.dot(part.faces()[best].normal))
+			best = face;
+	return best;
+}
+
+// The numbers of the solids for those of the parts.
+template <class K>
+Feature numbered(const PartPair<K>& pair, const Feature& feature)
+{
+	const auto &first1 = pair.solid1.first(pair.part1), &first2 = pair.solid2.first(pair.part2);
+	switch (feature.kind) {
+	case Feature::Edges:
+		return {feature.kind, feature.on1 + first1.edge, feature.on2 + first2.edge};
+	case Feature::Vertex1:
+		return {feature.kind, feature.on1 + first1.vertex, feature.on2 + first2.face};
+	default:
+		return {feature.kind, feature.on1 + first1.face, feature.on2 + first2.vertex};
+	}
+}
+
+// Leaves out the points of which `hidden` is true, and their second normals.
+template <class K, class Hidden>
+void dropPoints(FoundPoints<K>& found, Hidden hidden)
+{
+	for (int i = found.size() - 1; i >= 0; --i) {
+		if (!hidden(found.features[i]))
+			continue;
+		if (i >= found.places) {
+			found.dropSecondNormal(i);
+			continue;
+		}
+		for (int second = found.size() - 1; second >= found.places; --second)
+			if (found.cornerOf(second) == i)
+				found.dropSecondNormal(second);
+		for (int& corner : found.corners)
+			corner -= corner > i ? 1 : 0;
+		found.features.erase(found.features.begin() + i);
+		--found.places;
+	}
+}
+
+} // namespace
+
+template <class K>
+FoundPoints<K> findPoints(const PartPair<K>& pair, bool secondNormals, typename K::Memory& memory)
+{
+	const auto &part1 = pair.solid1.part(pair.part1), &part2 = pair.solid2.part(pair.part2);
+	FoundPoints<K> found;
+	if (!K::findPoints(part1, pair.pose1, part2, pair.pose2, std::numeric_limits<double>::infinity(), memory, found))
+		found.features.clear();
+	if (secondNormals)
+		K::addSecondNormals(part1, pair.pose1, part2, pair.pose2, found);
+	if (pair.solid1.size() == 1 && pair.solid2.size() == 1)
+		return found;
+	if (!secondNormals)
+		found.beginSecondNormals();
+	for (Feature& feature : found.features)
+		feature = numbered(pair, feature);
+	dropPoints(found, [&](const Feature& feature) { return isHidden(pair, feature); });
+	for (int i = 0; i < found.places; ++i)
+		if (const int face = faceAtSeam(pair, found.features[i]); face >= 0)
+			(found.features[i].vertexBody() == 1 ? found.face1 : found.face2) = face;
+	if (!secondNormals)
+		found.places = 0; // as K::findPoints leaves it
+	if (found.face1 >= 0)
+		found.face1 = pair.solid1.joined(found.face1 + pair.solid1.first(pair.part1).face);
+	if (found.face2 >= 0)
+		found.face2 = pair.solid2.joined(found.face2 + pair.solid2.first(pair.part2).face);
+	return found;
+}
+
+template FoundPoints<Plane> findPoints(const PartPair<Plane>&, bool, PlaneMemory&);
+template FoundPoints<Space> findPoints(const PartPair<Space>&, bool, PatchFeature&);
+
+} // namespace masonry

@@ -1,0 +1,156 @@
+#include "shape/solid.hpp"
+#include "tolerances.hpp"
+#include <algorithm>
+#include <limits>
+
+namespace masonry {
+
+namespace {
+
+int edgesOf(const ConvexPolygon&) { return 0; }
+int edgesOf(const ConvexPolyhedron& part) { return int(part.edges().size()); }
+
+// Calls found(direction) for unit directions all around in the plane of a face.
+template <class Found>
+void directionsIn(const ConvexPolygon::Face& face, Found found)
+{
+	const Vector2 along(-face.normal.y(), face.normal.x());
+	found(along);
+	found(Vector2(-along));
+}
+template <class Found>
+void directionsIn(const ConvexPolyhedron::Face& face, Found found)
+{
+	constexpr int count = 16;
+	for (int k = 0; k < count; ++k) {
+		const double angle = 2 * M_PI * (k + 0.5) / count; // not along the sides of rectangles
+		found(Vector3(std::cos(angle) * face.tangent + std::sin(angle) * face.across));
+	}
+}
+
+// How far a point is outside a convex part, m; negative: inside.
+template <class Convex, class Vector>
+double outside(const Convex& part, const Vector& point)
+{
+	double most = -std::numeric_limits<double>::infinity();
+	for (const auto& face : part.faces())
+		most = std::max(most, face.normal.dot(point) - face.offset);
+	return most;
+}
+
+} // namespace
+
+template <class Convex>
+Solid<Convex>::Solid(std::vector<Convex> parts) : all(std::move(parts)), leastHalfWidth(std::numeric_limits<double>::infinity())
+{
+	least = all[0].low();
+	most = all[0].high();
+	First next;
+	for (const Convex& part : all) {
+		firsts.push_back(next);
+		next.vertex += int(part.vertices().size());
+		next.face += int(part.faces().size());
+		next.edge += edgesOf(part);
+		leastHalfWidth = std::min(leastHalfWidth, part.thickness());
+		farthest = std::max(farthest, part.radius());
+		least = least.cwiseMin(part.low());
+		most = most.cwiseMax(part.high());
+	}
+	if (size() > 1)
+		joinFaces();
+}
+
+template <class Convex>
+void Solid<Convex>::joinFaces()
+{
+	const double near = tolerance::shape::plane * farthest;
+	std::vector<const Face*> faces;
+	for (const Convex& part : all)
+		for (const Face& face : part.faces()) {
+			const auto isSame = [&](const Face* other) {
+				return (other->normal - face.normal).norm() <= tolerance::shape::plane && std::abs(other->offset - face.offset) <= near;
+			};
+			faceOf.push_back(int(std::find_if(faces.begin(), faces.end(), isSame) - faces.begin()));
+			faces.push_back(&face);
+		}
+}
+
+template <class Convex>
+bool Solid<Convex>::goesOn(int number, const Vector& point) const
+{
+	const int own = partOfFace(number);
+	const double near = 4 * tolerance::contact::vertexReach * leastHalfWidth;
+	for (int k = 0; k < size(); ++k)
+		for (int f = 0; f < int(all[k].faces().size()); ++f)
+			if (k != own && joined(firsts[k].face + f) == joined(number) && outside(all[k], point) <= near)
+				return true;
+	return false;
+}
+
+template <class Convex>
+std::vector<typename Solid<Convex>::Vector> Solid<Convex>::vertices() const
+{
+	std::vector<Vector> points;
+	for (const Convex& part : all)
+		points.insert(points.end(), part.vertices().begin(), part.vertices().end());
+	return points;
+}
+
+// Samples the face around the point, at a distance that a point is displaced by at most (tolerance::contact::vertexReach), and looks
+// whether another part is there as far out.
+template <class Convex>
+bool Solid<Convex>::isCovered(int number, const Vector& point) const
+{
+	if (size() == 1)
+		return false;
+	const int own = partOfFace(number);
+	const Face& plane = face(number);
+	const double near = 4 * tolerance::contact::vertexReach * leastHalfWidth;
+	const Vector onFace = point + (plane.offset - plane.normal.dot(point)) * plane.normal;
+	int samples = 0, covered = 0;
+	directionsIn(plane, [&](const Vector& direction) {
+		const Vector sample = onFace + near * direction;
+		if (outside(all[own], sample) > near / 4)
+			return;
+		++samples;
+		const Vector beyond = sample + near / 2 * plane.normal;
+		for (int k = 0; k < size(); ++k)
+			if (k != own && outside(all[k], beyond) <= near / 4) {
+				++covered;
+				return;
+			}
+	});
+	return samples > 0 && covered == samples;
+}
+
+// Where the other part holds points farther along `outward` than the vertex, the solid goes on there. In a notch it does so beside faces
+// that can be touched all the same.
+template <class Convex>
+bool Solid<Convex>::isBuried(int number, const Vector& outward) const
+{
+	if (size() == 1)
+		return false;
+	const int own = partOfVertex(number);
+	const Vector& vertex = all[own].vertices()[number - firsts[own].vertex];
+	const double near = 4 * tolerance::contact::vertexReach * leastHalfWidth;
+	bool goesOn = false;
+	for (int k = 0; k < size() && !goesOn; ++k)
+		if (k != own && outside(all[k], vertex) <= near)
+			for (const Vector& other : all[k].vertices())
+				goesOn = goesOn || outward.dot(other - vertex) > std::max(near, tolerance::contact::leans * (other - vertex).norm());
+	if (!goesOn)
+		return false;
+	for (int k = 0; k < size(); ++k)
+		for (int f = 0; f < int(all[k].faces().size()) && outside(all[k], vertex) <= near; ++f) {
+			const Face& plane = all[k].faces()[f];
+			if (std::abs(plane.normal.dot(vertex) - plane.offset) <= near && (plane.normal - outward).norm() <= tolerance::contact::leans &&
+			    !isCovered(firsts[k].face + f, vertex))
+				return false;
+		}
+	return true;
+}
+
+template class Solid<ConvexPolygon>;
+template class Solid<ConvexPolyhedron>;
+
+} // namespace masonry

@@ -1,0 +1,153 @@
+// Contact points of rigid unions: which normals a seam must not have, and numbers through all parts.
+#include "contact/solid_contact.hpp"
+#include <catch2/catch.hpp>
+
+using namespace masonry;
+
+namespace {
+
+ConvexPolyhedron cuboid(const Vector3& low, const Vector3& high)
+{
+	std::vector<Vector3> points;
+	for (int k = 0; k < 8; ++k)
+		points.emplace_back(k & 1 ? high.x() : low.x(), k & 2 ? high.y() : low.y(), k & 4 ? high.z() : low.z());
+	return ConvexPolyhedron::hull(points);
+}
+
+// A slab 4 x 2 x 1 m below z = 0, of two halves with their seam at x = 0.
+const Solid<ConvexPolyhedron> slab({cuboid({-2, -1, -1}, {0, 1, 0}), cuboid({0, -1, -1}, {2, 1, 0})});
+
+// Points of a block and each half of the slab, one after the other.
+std::vector<ContactFrame<Space>> pointsOnSlab(const Solid<ConvexPolyhedron>& block, const Pose& pose,
+                                              std::vector<Feature>* features = nullptr)
+{
+	std::vector<ContactFrame<Space>> frames;
+	for (int part = 0; part < 2; ++part) {
+		const Pose fixed;
+		PatchFeature memory;
+		const auto found = findPoints<Space>({slab, fixed, part, block, pose, 0}, true, memory);
+		for (const Feature& feature : found.features) {
+			frames.push_back(frameOf(feature, slab, fixed, block, pose));
+			if (features)
+				features->push_back(feature);
+		}
+	}
+	return frames;
+}
+
+} // namespace
+
+TEST_CASE("A leaning block whose edge is on a seam meets the plane alone", "[solid]")
+{
+	// Its lower edge is along the seam; each half has an edge there, whose second face is inside the slab.
+	const Solid<ConvexPolyhedron> block(ConvexPolyhedron::box({0.3, 0.4, 0.5}));
+	for (const double lean : {-0.3, -0.1, 0.1, 0.3}) {
+		const Quaternion turn(Eigen::AngleAxisd(lean, Vector3::UnitY()));
+		const Vector3 edge = turn * Vector3(lean > 0 ? 0.3 : -0.3, 0, -0.5);
+		for (const double beside : {-1e-6, 0., 1e-6}) {
+			const auto frames = pointsOnSlab(block, {Vector3(beside, 0, 0) - edge, turn});
+			int touching = 0;
+			for (const auto& frame : frames) {
+				if (std::abs(frame.gap) > 1e-9)
+					continue;
+				++touching;
+				CHECK((Vector3(frame.axes.row(0)) - Vector3::UnitZ()).norm() < 1e-12);
+			}
+			CAPTURE(lean, beside);
+			CHECK(touching >= 2);
+		}
+	}
+	// One solid in its place has a second normal there where its edge is real.
+	const Solid<ConvexPolyhedron> half(cuboid({-2, -1, -1}, {0, 1, 0}));
+	const Quaternion turn(Eigen::AngleAxisd(-0.3, Vector3::UnitY()));
+	const Pose fixed, pose {-(turn * Vector3(-0.3, 0, -0.5)), turn};
+	PatchFeature memory;
+	const auto found = findPoints<Space>({half, fixed, 0, block, pose, 0}, true, memory);
+	CHECK(found.size() > found.places);
+}
+
+TEST_CASE("A block across a seam has its corners and the points where its edges cross the seam, along the plane's normal", "[solid]")
+{
+	const Solid<ConvexPolyhedron> block(ConvexPolyhedron::box({0.3, 0.4, 0.5}));
+	const Pose pose {{0.1, 0, 0.5}, Quaternion(Eigen::AngleAxisd(0.4, Vector3::UnitZ()))};
+	std::vector<Feature> features;
+	const auto frames = pointsOnSlab(block, pose, &features);
+	int corners = 0;
+	for (std::size_t k = 0; k < frames.size(); ++k) {
+		CHECK((Vector3(frames[k].axes.row(0)) - Vector3::UnitZ()).norm() < 1e-12);
+		CHECK(std::abs(frames[k].gap) < 1e-12);
+		corners += features[k].kind == Feature::Vertex2 ? 1 : 0;
+		if (features[k].kind == Feature::Vertex2)
+			CHECK(slab.face(features[k].face()).normal.z() == Approx(1));
+		else
+			CHECK(std::abs(frames[k].position.x()) < 1e-12);
+	}
+	CHECK(corners == 4);
+	CHECK(frames.size() == 8);
+}
+
+TEST_CASE("A body beside a covered face is not held by it", "[solid]")
+{
+	// The block has sunk into the slab by 1e-3 beside the seam: the half that it does not stand on has a face there that it seems to meet.
+	const Solid<ConvexPolyhedron> block(ConvexPolyhedron::box({0.3, 0.4, 0.5}));
+	for (const double distance : {0., 1e-4, 1e-2}) {
+		const auto frames = pointsOnSlab(block, {{0.3 + distance, 0, 0.499}, Quaternion::Identity()});
+		CAPTURE(distance);
+		CHECK(frames.size() >= 4);
+		for (const auto& frame : frames)
+			CHECK((Vector3(frame.axes.row(0)) - Vector3::UnitZ()).norm() < 1e-12);
+	}
+}
+
+TEST_CASE("Parts that do not hold the body's origin are found as bodies of their own are", "[solid]")
+{
+	// A block 5 m from its own origin meets the same points as the block itself, in numbers and in places.
+	const ConvexPolyhedron near = cuboid({-0.3, -0.4, 0}, {0.3, 0.4, 1}), far = cuboid({4.7, 1.6, 7}, {5.3, 2.4, 8});
+	const Quaternion turn(Eigen::AngleAxisd(0.2, Vector3(0.3, -0.2, 1).normalized()));
+	const Solid<ConvexPolyhedron> ground(cuboid({-3, -3, -1}, {3, 3, 0}));
+	for (const double height : {-0.1, 0., 0.3}) {
+		const Pose fixed, one {{0.2, 0.1, height}, turn}, other {Vector3(0.2, 0.1, height) - turn * Vector3(5, 2, 7), turn};
+		PatchFeature memory1, memory2;
+		const Solid<ConvexPolyhedron> block1(near), block2(far);
+		const auto found1 = findPoints<Space>({ground, fixed, 0, block1, one, 0}, true, memory1);
+		const auto found2 = findPoints<Space>({ground, fixed, 0, block2, other, 0}, true, memory2);
+		REQUIRE(found1.size() == found2.size());
+		for (int k = 0; k < found1.size(); ++k) {
+			CHECK(found1.features[k] == found2.features[k]);
+			const auto frame1 = frameOf(found1.features[k], ground, fixed, block1, one),
+			           frame2 = frameOf(found2.features[k], ground, fixed, block2, other);
+			CHECK((frame1.position - frame2.position).norm() < 1e-13);
+			CHECK(frame1.gap == Approx(frame2.gap).margin(1e-13));
+		}
+	}
+}
+
+TEST_CASE("In the plane a corner on a seam has the normal of the plane alone", "[solid]")
+{
+	const auto polygon = [](double x, double y, double w, double h) {
+		Vector2 centre;
+		const ConvexPolygon part = ConvexPolygon::hull({{x, y}, {x + w, y}, {x, y + h}, {x + w, y + h}}, &centre);
+		return part.moved(centre);
+	};
+	const Solid<ConvexPolygon> ground({polygon(-2, -1, 2, 1), polygon(0, -1, 2, 1)}), block(ConvexPolygon::box({0.3, 0.5}));
+	for (const double lean : {-0.3, 0.3})
+		for (const double beside : {-1e-6, 0., 1e-6}) {
+			PlanePose fixed, pose;
+			pose.setAngle(lean);
+			pose.position = Vector2(beside, 0) - pose.rotate(Vector2(lean > 0 ? -0.3 : 0.3, -0.5));
+			int touching = 0;
+			for (int part = 0; part < 2; ++part) {
+				PlaneMemory memory;
+				const auto found = findPoints<Plane>({ground, fixed, part, block, pose, 0}, true, memory);
+				for (const Feature& feature : found.features) {
+					const auto frame = frameOf(feature, ground, fixed, block, pose);
+					if (std::abs(frame.gap) > 1e-9)
+						continue;
+					++touching;
+					CHECK((Vector2(frame.axes.row(0)) - Vector2::UnitY()).norm() < 1e-12);
+				}
+			}
+			CAPTURE(lean, beside);
+			CHECK(touching >= 1);
+		}
+}
