@@ -228,7 +228,7 @@ void RigidScene<K>::takeLaws()
 		law.check(kept.ids[pair.body1], kept.ids[pair.body2]);
 		pair.friction = friction;
 		pair.restitution = restitution;
-		++system.laws;
+		system.laws.changed();
 	}
 }
 

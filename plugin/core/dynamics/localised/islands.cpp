@@ -7,7 +7,7 @@ namespace masonry::localised {
 template <class K>
 StepReport Islands<K>::advance(RigidSystem<K>& s, double dt)
 {
-	if (s.lists != list || s.bodies.size() != bodies)
+	if (!list.isUpToDate(s.list) || s.bodies.size() != bodies)
 		divide(s, std::vector<char>(s.bodies.size(), 1));
 	if (islands.size() < 2 || areOrdered(s.drives)) {
 		const StepReport report = step.advance(s, dt);
@@ -51,7 +51,7 @@ StepReport Islands<K>::advanceTaken(RigidSystem<K>& s, double dt)
 template <class K>
 void Islands<K>::divide(const RigidSystem<K>& s, const std::vector<char>& chosen)
 {
-	list = s.lists;
+	list.follow(s.list);
 	bodies = s.bodies.size();
 	const std::vector<int> number = islandNumbers(s);
 	islands.clear();

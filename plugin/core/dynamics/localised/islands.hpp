@@ -31,7 +31,7 @@ private:
 	LocalisedStep<K> step;
 	StepErrors errors;
 	std::vector<Island> islands;
-	int list {-1}; // of the system's pairs, that the islands are of
+	Follower list; // the islands are made from the system's list of pairs
 	size_t bodies {0};
 };
 

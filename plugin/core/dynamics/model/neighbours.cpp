@@ -200,7 +200,7 @@ bool Neighbours<K>::update(RigidSystem<K>& system, double step)
 	findPairs(system, step);
 	keepStates(system.pairs);
 	system.pairs.swap(pairs);
-	++system.lists;
+	system.list.changed();
 	return true;
 }
 

@@ -3,6 +3,7 @@
 #include "contact/corner_normals.hpp"
 #include "contact/solid_contact.hpp"
 #include "dynamics/model/base_drive.hpp"
+#include "dynamics/model/version.hpp"
 #include "impact/rocking_restitution.hpp"
 #include "joints/joint_table.hpp"
 #include "laws/contact_problem.hpp"
@@ -225,8 +226,8 @@ struct RigidSystem {
 	double time {0}; // s
 	std::vector<RigidBody<K>> bodies;
 	std::vector<ContactPair<K>> pairs;              // of boxes that are near each other, in a fixed order
-	int lists {0};                                  // of pairs that there have been
-	int laws {0};                                   // changes of the pairs' friction and restitution that there have been
+	Version list;                                   // of the list of pairs: which bodies they have, in which order
+	Version laws;                                   // of the pairs' friction and restitution, where the list stays
 	typename K::Vector gravity {K::Vector::Zero()}; // which way is down, and the scale of tolerances; the weight itself is in `force`
 	std::vector<Drive<K>> drives;                   // of the bases
 	bool moved {true};                              // poses were set from outside: gaps are to be measured anew

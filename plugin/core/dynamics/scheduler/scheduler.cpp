@@ -10,7 +10,7 @@ namespace masonry {
 template <class K>
 StepReport Scheduler<K>::advance(RigidSystem<K>& s, double dt)
 {
-	const bool isNew = s.lists != list || s.bodies.size() != ofWall.size();
+	const bool isNew = !list.isUpToDate(s.list) || s.bodies.size() != ofWall.size();
 	if (isNew)
 		divide(s);
 	errors = {};
@@ -55,7 +55,7 @@ StepReport Scheduler<K>::advanceWalls(RigidSystem<K>& s, double dt)
 template <class K>
 void Scheduler<K>::divide(const RigidSystem<K>& s)
 {
-	list = s.lists;
+	list.follow(s.list);
 	ofWall.resize(s.bodies.size(), 0);
 	const std::vector<int> structure = islandNumbers(s);
 	std::vector<int> blocks(s.bodies.size(), 0);  // of a structure

@@ -81,7 +81,7 @@ private:
 	std::vector<int> localisedBodies; // sorted
 	std::vector<RigidBody<K>> hidden; // the localised bodies while the walls are stepped
 	bool gapsAreOutdated {false};     // after loading: gaps are not saved
-	int list {-1};                    // number of the list of pairs that was divided
+	Follower list;                    // the division is made from the system's list of pairs
 };
 
 } // namespace masonry

@@ -1,7 +1,6 @@
 #include "dynamics/wall/contact_set.hpp"
 #include "tolerances.hpp"
 #include <algorithm>
-#include <utility>
 
 namespace masonry::wall {
 
@@ -115,7 +114,7 @@ bool ContactSet<K>::isLocated(const RigidSystem<K>& s) const
 template <class K>
 void ContactSet<K>::measure(RigidSystem<K>& s, bool isStill)
 {
-	if (std::exchange(laws, s.laws) != s.laws)
+	if (laws.follow(s.laws))
 		for (int c = 0; c < int(slots.size()); ++c)
 			takeFriction(s, c);
 	if (isStill && isLocated(s)) {

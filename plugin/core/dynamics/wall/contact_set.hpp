@@ -306,8 +306,8 @@ private:
 	void placeFriction(const RigidSystem<K>& system, int pair);
 
 	double unit {0};                       // s, that the impulses are of
-	int list {-1};                         // of the system, that pairs are of
-	int laws {-1};                         // of the system, that the friction is of
+	Follower list;                         // the pairs are those of the system's list
+	Follower laws;                         // friction is taken from the system's pairs
 	double sincePlaced {0};                // s, since friction was placed
 	int stood {0};                         // still steps with the points as they are located; 0: the last moved
 	std::vector<std::array<int, 2>> pairs; // all of the system

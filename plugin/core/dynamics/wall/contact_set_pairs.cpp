@@ -12,16 +12,16 @@ bool ContactSet<K>::samePairs(const RigidSystem<K>& s)
 	if (s.pairs.size() != pairs.size() || gyration.size() != s.bodies.size() + 1)
 		return false;
 	const auto same = [](const ContactPair<K>& a, const std::array<int, 2>& b) { return a.body1 == b[0] && a.body2 == b[1]; };
-	if (s.lists != list && !std::equal(s.pairs.begin(), s.pairs.end(), pairs.begin(), same))
+	if (!list.isUpToDate(s.list) && !std::equal(s.pairs.begin(), s.pairs.end(), pairs.begin(), same))
 		return false;
-	list = s.lists;
+	list.follow(s.list);
 	return true;
 }
 
 template <class K>
 void ContactSet<K>::takePairs(const RigidSystem<K>& s)
 {
-	list = s.lists;
+	list.follow(s.list);
 	length = scale::length(s);
 	pairs.clear();
 	wide.clear();

@@ -71,12 +71,11 @@ void RockingEvents<K>::gather(const RigidSystem<K>& s, const ContactSet<K>& c)
 {
 	points.clear();
 	const auto hasLaw = [](const auto& pair) { return !std::isnan(pair.restitution); };
-	if (s.lists != list || s.laws != laws) {
-		list = s.lists;
-		laws = s.laws;
-		areLaws = std::any_of(s.pairs.begin(), s.pairs.end(), hasLaw);
+	const bool newList = list.follow(s.list), newLaws = laws.follow(s.laws);
+	if (newList)
 		table.find(s.bodies, s.pairs);
-	}
+	if (newList || newLaws)
+		areLaws = std::any_of(s.pairs.begin(), s.pairs.end(), hasLaw);
 	if (!areOrdered(s.drives) && !areLaws)
 		return;
 	for (int group = 0; group < int(c.groups.size()); ++group)

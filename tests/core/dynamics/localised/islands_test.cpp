@@ -118,7 +118,7 @@ TEST_CASE("blocks that come near each other are one structure from then on, and 
 			s.pairs[2].body1 = left;
 			s.pairs[2].body2 = right;
 			s.pairs[2].friction = 0;
-			++s.lists;
+			s.list.changed();
 		}
 		REQUIRE(step.advance(s, 1e-3).converged);
 	}
