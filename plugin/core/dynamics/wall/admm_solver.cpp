@@ -1,5 +1,4 @@
 #include "dynamics/wall/admm_solver.hpp"
-#include "dynamics/wall/admm_passes.hpp"
 #include "tolerances.hpp"
 #include <Eigen/QR>
 #include <algorithm>
@@ -25,31 +24,14 @@ MASONRY_LANES void inertia(const std::vector<int>& members, const Lanes* velocit
 }
 
 // No template is compiled for several vector widths.
-#define MASONRY_PASSES(K)                                                                                                                  \
-	MASONRY_LANES void takePass(const Group<K>* groups, GroupState<K>* states, const RowsOf<K>* rows, int begin, int end,                  \
-	                            const Lanes* velocity, const Step& step, Outdated& outdated)                                               \
-	{                                                                                                                                      \
-		outdated = takeGroups<K>(groups, states, rows, begin, end, velocity, step);                                                        \
-	}                                                                                                                                      \
-	MASONRY_LANES void penaltyPass(const Group<K>* groups, const GroupState<K>* states, RowsOf<K>* rows, int begin, int end,               \
-	                               const Lanes* velocity, const Step& step)                                                                \
-	{                                                                                                                                      \
-		setPenalties<K>(groups, states, rows, begin, end, velocity, step);                                                                 \
-	}                                                                                                                                      \
-	MASONRY_LANES void startPass(const Group<K>* groups, GroupState<K>* states, RowsOf<K>* rows, int begin, int end, const Step& step,     \
-	                             const Lanes* velocity, Lanes* force)                                                                      \
-	{                                                                                                                                      \
-		startGroups<K>(groups, states, rows, begin, end, step, velocity, force);                                                           \
-	}                                                                                                                                      \
-	MASONRY_LANES void lawPass(const Group<K>* groups, GroupState<K>* states, RowsOf<K>* rows, int begin, int end, const Step& step,       \
-	                           const Lanes* velocity, Lanes* force, Lanes& worst)                                                          \
-	{                                                                                                                                      \
-		for (int g = begin; g < end; ++g)                                                                                                  \
-			passGroup<K, true>(groups[g], states[g], rows[g], step, velocity, force, worst);                                               \
-	}
-MASONRY_PASSES(Plane)
-MASONRY_PASSES(Space)
-#undef MASONRY_PASSES
+MASONRY_LANES void takePass(const Pass<Plane>& pass, Outdated& outdated) { outdated = takeGroups(pass); }
+MASONRY_LANES void takePass(const Pass<Space>& pass, Outdated& outdated) { outdated = takeGroups(pass); }
+MASONRY_LANES void penaltyPass(const Pass<Plane>& pass) { setPenalties(pass); }
+MASONRY_LANES void penaltyPass(const Pass<Space>& pass) { setPenalties(pass); }
+MASONRY_LANES void startPass(const Pass<Plane>& pass) { startGroups(pass); }
+MASONRY_LANES void startPass(const Pass<Space>& pass) { startGroups(pass); }
+MASONRY_LANES void lawPass(const Pass<Plane>& pass, Lanes& worst) { passGroups(pass, worst); }
+MASONRY_LANES void lawPass(const Pass<Space>& pass, Lanes& worst) { passGroups(pass, worst); }
 
 Step stepOf(const StepContext& c, const AdmmSettings& a, bool atRest)
 {
@@ -75,24 +57,38 @@ Step stepOf(const StepContext& c, const AdmmSettings& a, bool atRest)
 
 } // namespace
 
+template <class K>
+Pass<K> AdmmSolver<K>::passOf(const Problem& problem, const Part& part, const Step& step, Results& results)
+{
+	const LaneArray& velocity = results.velocity;
+	return {problem.contacts.groups.data(),
+	        results.states.data(),
+	        penalties.data(),
+	        results.points.data(),
+	        part.begin,
+	        part.end,
+	        velocity.data(),
+	        force.data(),
+	        step};
+}
+
 // Whether A must be made anew: it is of other pairs, its points are elsewhere, one may close that it does not have, or the penalties are to
 // follow the loads. Filters the loads.
 template <class K>
-bool AdmmSolver<K>::isOutdated(const ContactSet<K>& c, const StepContext& step)
+bool AdmmSolver<K>::isOutdated(const Problem& problem, const AdmmSettings& settings, Results& results)
 {
-	rows.resize(c.groups.size());
-	age += step.instant ? 0 : step.h;
-	Step same = stepOf(step, settings, atRest);
-	same.compares = !ofInstant && !(age < settings.refactorTime * step.rocking);
-	if (same.compares)
+	const ContactSet<K>& c = problem.contacts;
+	const StepContext& context = problem.step;
+	age += context.instant ? 0 : context.h;
+	Step step = stepOf(context, settings, atRest);
+	step.compares = !ofInstant && !(age < settings.refactorTime * context.rocking);
+	if (step.compares)
 		age = 0;
 	Outdated found[Team::maxParts + 1] {};
-	c.allParts([&](const Part& part, int number) {
-		takePass(c.groups.data(), states.data(), rows.data(), part.begin, part.end, c.velocity.data(), same, found[number]);
-	});
+	c.allParts([&](const Part& part, int number) { takePass(passOf(problem, part, step, results), found[number]); });
 	if (!matrix.hasMasses(c))
 		return true;
-	if (std::exchange(otherFrames, false)) {
+	if (std::exchange(compared, c.version()) != c.version()) {
 		if (!matrix.isOf(c))
 			return true;
 		turn = matrix.change(c);
@@ -102,58 +98,58 @@ bool AdmmSolver<K>::isOutdated(const ContactSet<K>& c, const StepContext& step)
 }
 
 template <class K>
-void AdmmSolver<K>::start(const ContactSet<K>& c, const LaneArray& load, const LaneArray& guess, const StepContext& step)
+void AdmmSolver<K>::start(const Problem& problem, const AdmmSettings& settings, Results& results)
 {
-	velocity = c.velocity;
+	const ContactSet<K>& c = problem.contacts;
+	LaneArray& velocity = results.velocity;
 	free.resize(velocity.size());
 	force.assign(velocity.size(), all(0));
-	const Step same = stepOf(step, settings, atRest);
+	const Step step = stepOf(problem.step, settings, atRest);
 	const auto startBodies = [&](const Part& part) {
 		for (const int b : part.members)
-			free[b] = velocity[b] + load[b];
-		if (!guess.empty())
+			free[b] = velocity[b] + problem.load[b];
+		if (!problem.guess.empty())
 			for (const int b : part.members)
-				velocity[b] += noMass * guess[b];
+				velocity[b] += noMass * problem.guess[b];
 		inertia(part.members, velocity.data(), free.data(), force.data());
-	};
-	const auto startPoints = [&](const Part& part) {
-		startPass(c.groups.data(), states.data(), rows.data(), part.begin, part.end, same, velocity.data(), force.data());
 	};
 	startBodies(c.parts.back());
 	c.eachPart([&](const Part& part, int) {
 		startBodies(part);
-		startPoints(part);
+		startPass(passOf(problem, part, step, results));
 	});
-	startPoints(c.parts.back());
+	startPass(passOf(problem, c.parts.back(), step, results));
 }
 
 template <class K>
-void AdmmSolver<K>::prepareSpins(const ContactSet<K>& c)
+void AdmmSolver<K>::prepareSpins(const Problem& problem)
 {
-	const int n = int(spins.size());
+	const LaneArray& velocity = problem.contacts.velocity;
+	const int n = int(problem.rows.size());
 	response.resize(n);
 	Eigen::MatrixXd coupling(n, n);
 	for (int r = 0; r < n; ++r) {
-		response[r].assign(c.velocity.size(), all(0));
-		spins[r].push(1, c.velocity, response[r]);
+		response[r].assign(velocity.size(), all(0));
+		problem.rows[r].push(1, velocity, response[r]);
 		matrix.solve(response[r]);
 	}
 	for (int r = 0; r < n; ++r)
 		for (int k = 0; k < n; ++k)
-			coupling(r, k) = spins[r].rate(response[k]);
+			coupling(r, k) = problem.rows[r].rate(response[k]);
 	if (n > 0)
 		perSpin = coupling.completeOrthogonalDecomposition().pseudoInverse(); // rows may coincide
 }
 
 // Adds to the change of the velocities what gives the rows their targets.
 template <class K>
-void AdmmSolver<K>::holdSpins()
+void AdmmSolver<K>::holdSpins(Results& results)
 {
+	std::vector<SpinRow<K>>& spins = results.spins;
 	if (spins.empty())
 		return;
 	Eigen::VectorXd miss(spins.size());
 	for (size_t r = 0; r < spins.size(); ++r)
-		miss[r] = spins[r].target - spins[r].rate(velocity) - spins[r].rate(force);
+		miss[r] = spins[r].target - spins[r].rate(results.velocity) - spins[r].rate(force);
 	const Eigen::VectorXd change = perSpin * miss;
 	for (size_t r = 0; r < spins.size(); ++r) {
 		spins[r].couple += change[r];
@@ -162,30 +158,29 @@ void AdmmSolver<K>::holdSpins()
 	}
 }
 
-// One solve and one pass over the laws. Returns the largest |w - z|, m/s.
+// One solve and one pass over the laws, after `number` of them. Returns the largest |w - z|, m/s.
 template <class K>
-double AdmmSolver<K>::iterate(const ContactSet<K>& c, const StepContext& step)
+double AdmmSolver<K>::iterate(const Problem& problem, const AdmmSettings& settings, int number, Results& results)
 {
-	Step same = stepOf(step, settings, atRest);
-	if (constexpr int late = 300; step.instant && report.iterations >= late) // sliding points are in a limit cycle
-		same.boundShare /= 3;
+	const ContactSet<K>& c = problem.contacts;
+	Step step = stepOf(problem.step, settings, atRest);
+	if (constexpr int late = 300; problem.step.instant && number >= late) // sliding points are in a limit cycle
+		step.boundShare /= 3;
 	matrix.solve(force);
-	holdSpins();
+	holdSpins(results);
 	Lanes worst[Team::maxParts + 1] {}, changed[Team::maxParts + 1] {};
-	const auto move = [&](const Part& part, int number) {
-		addTo(part.members, force.data(), velocity.data(), changed[number]);
-		inertia(part.members, velocity.data(), free.data(), force.data());
+	const auto move = [&](const Part& part, int k) {
+		addTo(part.members, force.data(), results.velocity.data(), changed[k]);
+		inertia(part.members, results.velocity.data(), free.data(), force.data());
 	};
-	const auto laws = [&](const Part& part, int number) {
-		lawPass(c.groups.data(), states.data(), rows.data(), part.begin, part.end, same, velocity.data(), force.data(), worst[number]);
-	};
+	const auto laws = [&](const Part& part, int k) { lawPass(passOf(problem, part, step, results), worst[k]); };
 	move(c.parts.back(), Team::maxParts);
-	c.eachPart([&](const Part& part, int number) {
-		move(part, number);
-		laws(part, number);
+	c.eachPart([&](const Part& part, int k) {
+		move(part, k);
+		laws(part, k);
 	});
 	laws(c.parts.back(), Team::maxParts);
-	for (const SpinRow<K>& row : spins)
+	for (const SpinRow<K>& row : results.spins)
 		row.push(row.couple, c.velocity, force);
 	double most = 0;
 	for (const Lanes& here : worst)
@@ -195,31 +190,50 @@ double AdmmSolver<K>::iterate(const ContactSet<K>& c, const StepContext& step)
 	return most;
 }
 
+// The means of the impulses become this share of those that there are now.
 template <class K>
-void AdmmSolver<K>::solve(const ContactSet<K>& c, const LaneArray& load, const LaneArray& guess, const StepContext& step)
+void startMeans(PointStates<K>& states, double share)
 {
-	report = {};
-	states = c.states;
+	for (GroupState<K>& group : states)
+		for (PointState<K>& p : group)
+			p.filteredImpulse = share * p.pn;
+}
+
+template <class K>
+SolverStatus AdmmSolver<K>::solve(const Problem& problem, const AdmmSettings& settings, Results& results)
+{
+	const ContactSet<K>& c = problem.contacts;
+	const StepContext& step = problem.step;
+	SolverStatus status;
+	results.velocity = c.velocity;
+	results.states = c.states;
+	results.points.resize(c.groups.size());
+	results.spins = problem.rows;
+	for (SpinRow<K>& row : results.spins)
+		row.couple = 0;
+	penalties.resize(c.groups.size());
 	if (step.instant)
-		for (GroupState<K>& group : states)
+		for (GroupState<K>& group : results.states)
 			for (PointState<K>& p : group)
 				p.pn = all(0), p.pt *= all(0);
+	const auto refactor = [&] {
+		makeMatrix(problem, settings, results);
+		++status.factorisations;
+	};
 	const bool areFew = matrix.freePacks().size() < size_t(settings.small * packs<K>);
 	const bool wasAtRest = std::exchange(atRest, step.stands && !step.instant && !cold && !settings.strictForces && !areFew);
 	const bool isAfterInstant = std::exchange(ofInstant, ofInstant && step.instant) && !step.instant;
-	if (isOutdated(c, step) || isAfterInstant || atRest != wasAtRest)
-		makeMatrix(c, step);
-	for (SpinRow<K>& row : spins)
-		row.couple = 0;
-	prepareSpins(c);
-	start(c, load, guess, step);
+	if (isOutdated(problem, settings, results) || isAfterInstant || atRest != wasAtRest)
+		refactor();
+	prepareSpins(problem);
+	start(problem, settings, results);
 	const double share = std::max(1., double(settings.small) * packs<K> / std::max<size_t>(1, matrix.freePacks().size())),
 	             iterations = settings.iterations * share, tolerated = settings.tolerance * step.fall;
 	const auto enough = [&] {
 		if (step.instant)
-			return std::max(tolerated, step.speed * (report.iterations < settings.ofInstant * share ? settings.instantTolerance
+			return std::max(tolerated, step.speed * (status.iterations < settings.ofInstant * share ? settings.instantTolerance
 			                                                                                        : settings.instantEnough));
-		const bool isLagging = !atRest && report.iterations < settings.least;
+		const bool isLagging = !atRest && status.iterations < settings.least;
 		return isLagging ? settings.early * tolerated : tolerated;
 	};
 	const int most = step.instant                    ? settings.maxOfInstant
@@ -230,54 +244,49 @@ void AdmmSolver<K>::solve(const ContactSet<K>& c, const LaneArray& load, const L
 	constexpr int looks[] {20, 50, 300, 600}; // the same of an instant (docs/tuning.md, impacts)
 	double least = INFINITY;
 	do {
-		report.residual = iterate(c, step);
-		++report.iterations;
-		const bool isLoaded = step.instant ? std::count(std::begin(looks), std::end(looks), report.iterations) > 0
-		                                   : cold && report.iterations % untilLoaded == 0;
+		status.residual = iterate(problem, settings, status.iterations, results);
+		++status.iterations;
+		const bool isLoaded = step.instant ? std::count(std::begin(looks), std::end(looks), status.iterations) > 0
+		                                   : cold && status.iterations % untilLoaded == 0;
 		if (isLoaded)
-			startMeans(step.instant ? step.fall / step.speed : 1);
+			startMeans<K>(results.states, step.instant ? step.fall / step.speed : 1);
 		ofInstant |= isLoaded && step.instant;
-		const bool isTooStiff = atRest && report.iterations >= settings.restMost && report.residual > tolerated;
+		const bool isTooStiff = atRest && status.iterations >= settings.restMost && status.residual > tolerated;
 		atRest &= !isTooStiff;
-		report.leftRest |= isTooStiff;
-		if (isLoaded || isTooStiff || report.residual > diverging * least) {
-			makeMatrix(c, step);
-			prepareSpins(c);
-			least = report.residual;
+		status.leftRest |= isTooStiff;
+		if (isLoaded || isTooStiff || status.residual > diverging * least) {
+			refactor();
+			prepareSpins(problem);
+			least = status.residual;
 		}
-		least = std::min(least, report.residual);
-	} while (report.residual > enough() && report.iterations < most);
+		least = std::min(least, status.residual);
+	} while (status.residual > enough() && status.iterations < most);
 	if (!step.instant) {
-		saved = cold ? 0 : std::clamp(saved + iterations - report.iterations, 0., settings.reserve * iterations);
+		saved = cold ? 0 : std::clamp(saved + iterations - status.iterations, 0., settings.reserve * iterations);
 		cold = false;
 	}
-	report.finite = std::all_of(velocity.begin(), velocity.end(), [](const Lanes& v) { return std::isfinite(v[0] + v[1] + v[2]); });
-}
-
-// The means of the impulses become this share of those that there are now.
-template <class K>
-void AdmmSolver<K>::startMeans(double share)
-{
-	for (GroupState<K>& group : states)
-		for (PointState<K>& p : group)
-			p.filteredImpulse = share * p.pn;
+	status.finite =
+	    std::all_of(results.velocity.begin(), results.velocity.end(), [](const Lanes& v) { return std::isfinite(v[0] + v[1] + v[2]); });
+	return status;
 }
 
 template <class K>
-void AdmmSolver<K>::makeMatrix(const ContactSet<K>& c, const StepContext& step)
+void AdmmSolver<K>::makeMatrix(const Problem& problem, const AdmmSettings& settings, Results& results)
 {
-	const Step same = stepOf(step, settings, atRest);
+	const ContactSet<K>& c = problem.contacts;
+	const Step step = stepOf(problem.step, settings, atRest);
 	c.allParts([&](const Part& part, int) {
-		penaltyPass(c.groups.data(), states.data(), rows.data(), part.begin, part.end, c.velocity.data(), same);
+		Pass<K> pass = passOf(problem, part, step, results);
+		pass.velocity = c.velocity.data(); // before the step
+		penaltyPass(pass);
 	});
-	Array<typename AssemblyMatrix<K>::Stiffness> stiffness(rows.size());
-	for (size_t g = 0; g < rows.size(); ++g)
+	Array<typename AssemblyMatrix<K>::Stiffness> stiffness(penalties.size());
+	for (size_t g = 0; g < penalties.size(); ++g)
 		for (int k = 0; k < lanePoints<K>; ++k)
-			stiffness[g][k] = rows[g][k].stiffness;
+			stiffness[g][k] = penalties[g][k].stiffness;
 	matrix.make(c, std::move(stiffness));
 	turn = age = 0;
-	otherFrames = false;
-	++report.factorisations;
+	compared = c.version();
 }
 
 template class AdmmSolver<Plane>;

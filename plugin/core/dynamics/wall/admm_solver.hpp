@@ -42,9 +42,8 @@
 // Biases. A point with a gap may close within the step: b_n = gap/h. Of a penetration, and of a slip that unfinished iterations have left
 // at a point that sticks, a share is taken back in each step: b = share x/h. A penetration with which a point was found stays, and so does
 // one that a limit has let happen.
+#include "dynamics/wall/admm_passes.hpp"
 #include "dynamics/wall/assembly_matrix.hpp"
-#include "dynamics/wall/spin_row.hpp"
-#include "dynamics/wall/step_context.hpp"
 
 namespace masonry::wall {
 
@@ -81,71 +80,46 @@ struct AdmmSettings {
 	double leftPenetration {5e-6}; // (c) relative to the smallest half size, which is not taken back. 0: blocks at rest never come to rest
 };
 
-struct AdmmReport {
-	int iterations {0}, factorisations {0};
-	double residual {0}; // largest |w - z|, and mu R |g - p_n| where points slide, m/s
-	bool finite {true};
-	bool leftRest {false}; // R was that of a structure at rest, until the residual would not fall
-};
-
 template <class K>
 class AdmmSolver {
 public:
-	using Tangent = typename PointLanes<K>::Tangent;
-	struct alignas(alignment) Row {  // of a point
-		Lanes resistance, stiffness; // R and 1/R; zero: the point is not in A and carries nothing
-		Lanes bn;                    // m/s
-		Tangent bt;
-		Lanes bound; // g, N s
-		Lanes un;    // J V, m/s
-		Tangent ut;
-		Lanes actedN; // impulse with which V obeys the momentum equation, N s
-		Tangent actedT;
-	};
-	using Rows = std::array<Row, lanePoints<K>>;
-
-	AdmmSettings settings;
-	AdmmReport report;
-	std::vector<SpinRow<K>> spins; // of the next solve, with their couples afterwards
-	bool otherFrames {true};       // frames or points of the contacts have changed since the last solve
-	LaneArray velocity;            // V, in the packs of the contacts
-	std::vector<Rows> rows;        // by group of the contacts
-	PointStates<K> states;         // of the solution
-
-	// Solves the step from the contacts' velocities and states; `load` is the change of velocity by external forces, per body; `guess` is
-	// the one that is expected altogether. An instant starts without impulses.
-	void solve(const ContactSet<K>& contacts, const LaneArray& load, const LaneArray& guess, const StepContext& step);
+	// Solves a step from the contacts' velocities and states; an instant starts without impulses.
+	SolverStatus solve(const AdmmProblem<K>& problem, const AdmmSettings& settings, AdmmResults<K>& results);
 	// The next solve of these contacts needs this from the last.
 	template <class Archive>
 	void serialize(Archive& archive, const ContactSet<K>& contacts)
 	{
 		archive(age, saved, cold, atRest);
-		rows.resize(contacts.groups.size());
-		for (Rows& ofGroup : rows)
-			for (Row& row : ofGroup)
-				archive(row.resistance, row.stiffness);
+		penalties.resize(contacts.groups.size());
+		for (GroupPenalty<K>& ofGroup : penalties)
+			for (Penalty& penalty : ofGroup)
+				archive(penalty.resistance, penalty.stiffness);
 		matrix.serialize(archive, contacts);
 	}
 
 private:
-	bool isOutdated(const ContactSet<K>& contacts, const StepContext& step);
-	void makeMatrix(const ContactSet<K>& contacts, const StepContext& step);
-	void start(const ContactSet<K>& contacts, const LaneArray& load, const LaneArray& guess, const StepContext& step);
-	double iterate(const ContactSet<K>& contacts, const StepContext& step);
-	void startMeans(double share);
-	void prepareSpins(const ContactSet<K>& contacts);
-	void holdSpins();
+	using Problem = AdmmProblem<K>;
+	using Results = AdmmResults<K>;
+	Pass<K> passOf(const Problem& problem, const Part& part, const Step& step, Results& results);
+	bool isOutdated(const Problem& problem, const AdmmSettings& settings, Results& results);
+	void makeMatrix(const Problem& problem, const AdmmSettings& settings, Results& results);
+	void start(const Problem& problem, const AdmmSettings& settings, Results& results);
+	double iterate(const Problem& problem, const AdmmSettings& settings, int number, Results& results);
+	void prepareSpins(const Problem& problem);
+	void holdSpins(Results& results);
 
 	AssemblyMatrix<K> matrix;
-	double turn {0}; // by which rows of a point have changed since A was made, at most
+	std::vector<GroupPenalty<K>> penalties; // by group
+	double turn {0};                        // by which rows of a point have changed since A was made, at most
+	int compared {-1};                      // version of the contacts that `turn` is of
 	LaneArray free, force;
 	std::vector<LaneArray> response; // Y, by row
 	Eigen::MatrixXd perSpin;         // (E Y)^-1
 	double age {0};                  // s, since R was last compared with the loads
 	double saved {0};                // iterations
-	bool cold {true};
-	bool ofInstant {false}; // R is that of an instant
-	bool atRest {false};    // R is that of a structure at rest
+	bool cold {true};                // no step has been solved
+	bool ofInstant {false};          // R is that of an instant
+	bool atRest {false};             // R is that of a structure at rest
 };
 
 } // namespace masonry::wall

@@ -1,6 +1,7 @@
 #include "dynamics/wall/capped_solve.hpp"
 #include "dynamics/wall/joint_work.hpp"
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace masonry::wall {
@@ -20,23 +21,29 @@ double kineticEnergy(const LaneArray& velocity)
 } // namespace
 
 template <class K>
-CappedReport CappedSolve<K>::solve(const RigidSystem<K>& s, const ContactSet<K>& c, const LaneArray& load, const LaneArray& guess,
-                                   AdmmSolver<K>& solver, const EnergyLedger<K>& ledger, const StepContext& step)
+CappedStatus CappedSolve<K>::solve(const RigidSystem<K>& s, const AdmmProblem<K>& problem, const AdmmSettings& settings,
+                                   AdmmSolver<K>& solver, const EnergyLedger<K>& ledger, AdmmResults<K>& results)
 {
 	constexpr int maxTrials = 3; // of lower targets. Fewer: capped joints are farther below the restitution that keeps their energy
-	CappedReport report;
-	rows = solver.spins;
+	CappedStatus status;
+	rows = problem.rows;
 	ranges.assign(rows.size(), {});
 	bool isBack = false;
 	for (int trials = 0;;) {
-		SpinRow<K>* worst = solveOnce(s, c, load, guess, solver, step, report);
+		std::vector<SpinRow<K>> held;
+		std::copy_if(rows.begin(), rows.end(), std::back_inserter(held), [](const SpinRow<K>& row) { return row.held; });
+		const int iterations = status.iterations, factorisations = status.factorisations;
+		static_cast<SolverStatus&>(status) =
+		    solver.solve({problem.contacts, problem.step, problem.load, problem.guess, held}, settings, results);
+		status.iterations += iterations;
+		status.factorisations += factorisations;
+		SpinRow<K>* worst = takeWork(s, problem, status.residual, results);
 		const bool areTargetsAsked = trials == 0;
-		if (!report.finite) {
-			const bool areRows = std::any_of(rows.begin(), rows.end(), [](const SpinRow<K>& row) { return row.held; });
+		if (!status.finite) {
 			for (SpinRow<K>& row : rows)
 				row.held = false, row.capped = true;
 			trials = maxTrials;
-			if (areRows)
+			if (!held.empty())
 				continue;
 			break;
 		}
@@ -57,35 +64,26 @@ CappedReport CappedSolve<K>::solve(const RigidSystem<K>& s, const ContactSet<K>&
 		worst->held = false;
 		worst->capped = true;
 	}
-	solver.spins = rows;
-	if (step.instant)
-		report.lost = kineticEnergy(c.velocity) + ledger.work(s, c, solver) - kineticEnergy(solver.velocity);
-	return report;
+	results.spins = rows;
+	if (problem.step.instant)
+		status.lost =
+		    kineticEnergy(problem.contacts.velocity) + ledger.work(s, problem.contacts, results) - kineticEnergy(results.velocity);
+	return status;
 }
 
 template <class K>
-SpinRow<K>* CappedSolve<K>::solveOnce(const RigidSystem<K>& s, const ContactSet<K>& c, const LaneArray& load, const LaneArray& guess,
-                                      AdmmSolver<K>& solver, const StepContext& step, CappedReport& report)
+SpinRow<K>* CappedSolve<K>::takeWork(const RigidSystem<K>& s, const AdmmProblem<K>& problem, double residual, const AdmmResults<K>& results)
 {
-	solver.spins.clear();
-	for (const SpinRow<K>& row : rows)
-		if (row.held)
-			solver.spins.push_back(row);
-	solver.solve(c, load, guess, step);
-	report.iterations += solver.report.iterations;
-	report.factorisations += solver.report.factorisations;
-	report.residual = solver.report.residual;
-	report.finite = solver.report.finite;
-	const double missed = step.instant ? report.residual / (2 * step.speed) : 0; // work goes with the mean of the velocities
+	const double missed = problem.step.instant ? residual / (2 * problem.step.speed) : 0; // work goes with the mean of the velocities
 	SpinRow<K>* worst = nullptr;
 	double most = 0;
-	auto held = solver.spins.begin();
+	auto held = results.spins.begin();
 	for (size_t k = 0; k < rows.size(); ++k) {
 		SpinRow<K>& row = rows[k];
 		row.couple = row.held ? (held++)->couple : 0;
-		JointWork work = jointWork(s, c, solver, row.block(), row.face);
+		JointWork work = jointWork(s, problem.contacts, results, row.block(), row.face);
 		work.add(row.spent);
-		ranges[k].last = {row.held, row.held && work.isActive(missed), row.rate(solver.velocity), row.couple, work};
+		ranges[k].last = {row.held, row.held && work.isActive(missed), row.rate(results.velocity), row.couple, work};
 		if (ranges[k].last.makesEnergy && work.gain > most) {
 			worst = &row;
 			most = work.gain;

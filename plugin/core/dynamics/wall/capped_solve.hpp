@@ -13,29 +13,26 @@
 //
 // where c are the couples. Each trial takes the root of this and replaces one of the two ends. If the last trial makes energy anywhere, the
 // last one that has made none holds.
+#include "dynamics/wall/admm_solver.hpp"
 #include "dynamics/wall/energy_ledger.hpp"
 #include <cmath>
 
 namespace masonry::wall {
 
-struct CappedReport {
-	int iterations {0}, factorisations {0};
-	double lost {0}; // energy of an instant, J
-	bool finite {true};
-	double residual {0}; // m/s
+struct CappedStatus : SolverStatus { // iterations and factorisations of all solves
+	double lost {0};                 // energy of an instant, J
 };
 
 template <class K>
 class CappedSolve {
 public:
-	// As AdmmSolver::solve, with the rows that are in the solver; those whose target was not reached come back as `capped`.
-	CappedReport solve(const RigidSystem<K>& system, const ContactSet<K>& contacts, const LaneArray& load, const LaneArray& guess,
-	                   AdmmSolver<K>& solver, const EnergyLedger<K>& ledger, const StepContext& step);
+	// As AdmmSolver::solve; the rows of the results whose targets were not reached are `capped`.
+	CappedStatus solve(const RigidSystem<K>& system, const AdmmProblem<K>& problem, const AdmmSettings& settings, AdmmSolver<K>& solver,
+	                   const EnergyLedger<K>& ledger, AdmmResults<K>& results);
 
 private:
-	// With the rows that are held; their couples, and the gains of all. Returns the row that makes most energy, or nullptr.
-	SpinRow<K>* solveOnce(const RigidSystem<K>& system, const ContactSet<K>& contacts, const LaneArray& load, const LaneArray& guess,
-	                      AdmmSolver<K>& solver, const StepContext& step, CappedReport& report);
+	// Looks at the work of all rows after a solve with those that are held. Returns the one that makes most energy, or nullptr.
+	SpinRow<K>* takeWork(const RigidSystem<K>& system, const AdmmProblem<K>& problem, double residual, const AdmmResults<K>& results);
 
 	// Gives capped rows the targets of the next trial. False: all of them have found theirs.
 	bool moveTargets(int trials);

@@ -122,6 +122,7 @@ void ContactSet<K>::measure(RigidSystem<K>& s, bool isStill)
 		++stood;
 		return;
 	}
+	++changes;
 	if (s.moved)
 		std::fill(stale.begin(), stale.end(), allLanes);
 	takeBodies(s);

@@ -156,13 +156,13 @@ public:
 		team.each(int(count), [&](int k) { work(size * k / count, size * (k + 1) / count, k); });
 	}
 
-	// The contacts of the free bodies of a system from now on. True: other lanes than before.
-	bool take(const RigidSystem<K>& system);
+	// The contacts of the free bodies of a system from now on.
+	void take(const RigidSystem<K>& system);
 	// Takes over poses and velocities, looks up features where needed, and measures all points; `isStill`: where the last steps have been
 	// still too, every few steps.
 	void measure(RigidSystem<K>& system, bool isStill);
-	// Whether points, normals and arms are those of the last step.
-	bool keepsFrames() const { return stood > 1; }
+	// Another number where lanes, points, normals or arms are not those of the last step.
+	int version() const { return changes; }
 	// Normals, arms and masses as they are where the bodies are; gaps stay.
 	void updateFrames(const RigidSystem<K>& system);
 	// Friction acts where the loads of the points have it, which is looked at once in such an interval, s. Frames must be those of now.
@@ -305,6 +305,7 @@ private:
 	void placeFriction(const RigidSystem<K>& system);
 	void placeFriction(const RigidSystem<K>& system, int pair);
 
+	int changes {0};                       // of lanes and frames
 	double unit {0};                       // s, that the impulses are of
 	Follower list;                         // the pairs are those of the system's list
 	Follower laws;                         // friction is taken from the system's pairs

@@ -71,12 +71,13 @@ std::vector<char> ContactSet<K>::freeBodies(const RigidSystem<K>& s)
 }
 
 template <class K>
-bool ContactSet<K>::take(const RigidSystem<K>& s)
+void ContactSet<K>::take(const RigidSystem<K>& s)
 {
 	const bool sameList = samePairs(s);
 	const std::vector<char> isFree = freeBodies(s);
 	if (isFree == own && (sameList || renumber(s)))
-		return false;
+		return;
+	++changes;
 	ContactSet before(team);
 	before.groups.swap(groups);
 	before.features.swap(features);
@@ -106,7 +107,6 @@ bool ContactSet<K>::take(const RigidSystem<K>& s)
 	for (int g = 0; g < int(groups.size()); ++g)
 		if (!stale[g])
 			countPoints(s, g);
-	return true;
 }
 
 // The lanes of a pair, whole.
@@ -140,11 +140,11 @@ template std::vector<char> ContactSet<Plane>::freeBodies(const RigidSystem<Plane
 template std::vector<char> ContactSet<Space>::freeBodies(const RigidSystem<Space>&);
 template bool ContactSet<Plane>::samePairs(const RigidSystem<Plane>&);
 template void ContactSet<Plane>::takePairs(const RigidSystem<Plane>&);
-template bool ContactSet<Plane>::take(const RigidSystem<Plane>&);
+template void ContactSet<Plane>::take(const RigidSystem<Plane>&);
 template void ContactSet<Plane>::takeFriction(const RigidSystem<Plane>&, int);
 template bool ContactSet<Space>::samePairs(const RigidSystem<Space>&);
 template void ContactSet<Space>::takePairs(const RigidSystem<Space>&);
-template bool ContactSet<Space>::take(const RigidSystem<Space>&);
+template void ContactSet<Space>::take(const RigidSystem<Space>&);
 template void ContactSet<Space>::takeFriction(const RigidSystem<Space>&, int);
 
 } // namespace masonry::wall

@@ -30,7 +30,7 @@ void EnergyLedger<K>::open(const RigidSystem<K>& s, const ContactSet<K>& c, cons
 }
 
 template <class K>
-double EnergyLedger<K>::work(const RigidSystem<K>& s, const ContactSet<K>& c, const AdmmSolver<K>& solver) const
+double EnergyLedger<K>::work(const RigidSystem<K>& s, const ContactSet<K>& c, const AdmmResults<K>& results) const
 {
 	double sum = 0;
 	for (const auto& [g, i] : c.onBase) {
@@ -41,23 +41,23 @@ double EnergyLedger<K>::work(const RigidSystem<K>& s, const ContactSet<K>& c, co
 		for (int pack = 0; pack < packs<K>; ++pack)
 			mean[pack] = (before[packs<K> * base + pack] + c.velocity[packs<K> * base + pack]) / 2;
 		for (int k = 0; k < group.count; ++k) {
-			const auto& row = solver.rows[g][k];
+			const auto& row = results.points[g][k];
 			for (int r = 0; r < K::rows; ++r) {
 				const double impulse = r == 0 ? row.actedN[i] : component(row.actedT, r - 1, i);
 				sum += (first ? impulse : -impulse) * rateOf(group.point[k], r, i, first ? 1 : 2, mean);
 			}
 		}
 	}
-	for (const SpinRow<K>& row : solver.spins)
+	for (const SpinRow<K>& row : results.spins)
 		sum += row.couple * row.baseSpin(c.velocity);
 	return sum;
 }
 
 template <class K>
-void EnergyLedger<K>::takeContacts(const RigidSystem<K>& s, const ContactSet<K>& c, const AdmmSolver<K>& solver, double loss)
+void EnergyLedger<K>::takeContacts(const RigidSystem<K>& s, const ContactSet<K>& c, const AdmmResults<K>& results, double loss)
 {
 	friction = loss;
-	baseWork = work(s, c, solver);
+	baseWork = work(s, c, results);
 }
 
 template <class K>

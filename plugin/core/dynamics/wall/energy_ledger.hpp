@@ -21,7 +21,7 @@
 // the solver's error, what the position projection gives, and what a step of the first order loses where velocities jump between two steps:
 // the place in the middle of the step jumps with them, and U by h m g.(V+ - V-)/2. A step that is cut in halves is off by h m g.(V+ -
 // V-)/4.
-#include "dynamics/wall/admm_solver.hpp"
+#include "dynamics/wall/admm_results.hpp"
 
 namespace masonry::wall {
 
@@ -37,9 +37,9 @@ public:
 	// Returns the velocities before it, in the packs of the contacts, those of the base included.
 	const LaneArray& velocityBefore() const { return before; }
 	// Returns the work of the prescribed bodies by the impulses of the last solve, J.
-	double work(const RigidSystem<K>& system, const ContactSet<K>& contacts, const AdmmSolver<K>& solver) const;
+	double work(const RigidSystem<K>& system, const ContactSet<K>& contacts, const AdmmResults<K>& results) const;
 	// Takes the contacts' work after the solve, with the frames of the step. `friction`: what it has taken, J.
-	void takeContacts(const RigidSystem<K>& system, const ContactSet<K>& contacts, const AdmmSolver<K>& solver, double friction);
+	void takeContacts(const RigidSystem<K>& system, const ContactSet<K>& contacts, const AdmmResults<K>& results, double friction);
 	// Takes the forces' work in a time h on a free body, which had the velocity `before` and moves by `moved`.
 	void takeForce(const RigidSystem<K>& system, const RigidBody<K>& body, const typename K::Velocity& before,
 	               const typename K::Velocity& moved, double h)

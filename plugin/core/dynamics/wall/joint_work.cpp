@@ -3,12 +3,12 @@
 namespace masonry::wall {
 
 template <class K>
-JointWork jointWork(const RigidSystem<K>& s, const ContactSet<K>& c, const AdmmSolver<K>& solver, int block, int face)
+JointWork jointWork(const RigidSystem<K>& s, const ContactSet<K>& c, const AdmmResults<K>& results, int block, int face)
 {
 	JointWork result;
-	for (const SpinRow<K>& row : solver.spins)
+	for (const SpinRow<K>& row : results.spins)
 		if (row.block() == block && row.face == face)
-			result.add(row.couple, row.rate(c.velocity), row.rate(solver.velocity));
+			result.add(row.couple, row.rate(c.velocity), row.rate(results.velocity));
 	for (size_t g = 0; g < c.groups.size(); ++g) {
 		const Group<K>& group = c.groups[g];
 		for (int i = 0; i < width && c.features[g].pair[i] >= 0; ++i) {
@@ -21,15 +21,15 @@ JointWork jointWork(const RigidSystem<K>& s, const ContactSet<K>& c, const AdmmS
 						return rateOf(group.point[k], n, i, 2, &v[packs<K> * group.body2[i]]) -
 						       rateOf(group.point[k], n, i, 1, &v[packs<K> * group.body1[i]]);
 					};
-					const auto& acted = solver.rows[g][k];
-					result.add(n == 0 ? acted.actedN[i] : component(acted.actedT, n - 1, i), rate(c.velocity), rate(solver.velocity));
+					const auto& acted = results.points[g][k];
+					result.add(n == 0 ? acted.actedN[i] : component(acted.actedT, n - 1, i), rate(c.velocity), rate(results.velocity));
 				}
 		}
 	}
 	return result;
 }
 
-template JointWork jointWork(const RigidSystem<Plane>&, const ContactSet<Plane>&, const AdmmSolver<Plane>&, int, int);
-template JointWork jointWork(const RigidSystem<Space>&, const ContactSet<Space>&, const AdmmSolver<Space>&, int, int);
+template JointWork jointWork(const RigidSystem<Plane>&, const ContactSet<Plane>&, const AdmmResults<Plane>&, int, int);
+template JointWork jointWork(const RigidSystem<Space>&, const ContactSet<Space>&, const AdmmResults<Space>&, int, int);
 
 } // namespace masonry::wall

@@ -10,16 +10,27 @@ struct alignas(alignment) Ended {
 };
 
 template <class K>
-MASONRY_INLINE void advanceGroups(Group<K>* groups, GroupState<K>* states, const typename AdmmSolver<K>::Rows* rows, int begin, int end,
-                                  const Lanes* before, double h, double level, unsigned char* reached, unsigned char* moving, Ended& ended)
+struct AdvancePass {
+	Group<K>* groups;
+	GroupState<K>* states;
+	const GroupResult<K>* results;
+	int begin, end;
+	const Lanes* before;
+	double h, level;
+	unsigned char *reached, *moving;
+};
+
+template <class K>
+MASONRY_INLINE void advanceGroups(const AdvancePass<K>& pass, Ended& ended)
 {
+	const auto [groups, states, results, begin, end, before, h, level, reached, moving] = pass;
 	for (int g = begin; g < end; ++g) {
 		const Mask rough = groups[g].friction >= maxFriction;
 		Mask in {}, moves {};
 		for (int k = 0; k < groups[g].count; ++k) {
 			PointLanes<K>& at = groups[g].point[k];
 			PointState<K>& p = states[g][k];
-			const auto& row = rows[g][k];
+			const PointResult<K>& row = results[g][k];
 			at.gap += h * row.un;
 			p.zero = p.pn < groups[g].most ? p.zero : smaller(p.zero, at.gap);
 			const Mask glides = slides(p.pt, groups[g].friction * (rough ? p.pn : row.bound));
@@ -29,11 +40,10 @@ MASONRY_INLINE void advanceGroups(Group<K>* groups, GroupState<K>* states, const
 				const Lanes loss = -0.5 * dot(row.actedT, slipRate(v1, v2, at) + row.ut);
 				ended.loss += slid ? larger(loss, all(0)) : all(0);
 			}
-			const Mask here = row.stiffness > 0;
-			in |= here;
+			in |= row.inReach;
 			moves |= (at.massN > 0) & (larger(size(row.un), size(row.ut)) > level);
 			const Lanes error = larger(size(row.actedN - p.pn) / at.massN, size(row.actedT - p.pt) / at.massT);
-			ended.forceError = larger(ended.forceError, here ? error : all(0));
+			ended.forceError = larger(ended.forceError, row.inReach ? error : all(0));
 		}
 		reached[g] = bitsOf(in);
 		moving[g] = bitsOf(moves & in);
@@ -41,28 +51,22 @@ MASONRY_INLINE void advanceGroups(Group<K>* groups, GroupState<K>* states, const
 }
 
 // No template is compiled for several vector widths.
-#define MASONRY_PASS(K)                                                                                                                    \
-	MASONRY_LANES void gapPass(Group<K>* groups, GroupState<K>* states, const AdmmSolver<K>::Rows* rows, int begin, int end,               \
-	                           const Lanes* before, double h, double level, unsigned char* reached, unsigned char* moving, Ended& ended)   \
-	{                                                                                                                                      \
-		advanceGroups<K>(groups, states, rows, begin, end, before, h, level, reached, moving, ended);                                      \
-	}
-MASONRY_PASS(Plane)
-MASONRY_PASS(Space)
-#undef MASONRY_PASS
+MASONRY_LANES void advancePass(const AdvancePass<Plane>& pass, Ended& ended) { advanceGroups(pass, ended); }
+MASONRY_LANES void advancePass(const AdvancePass<Space>& pass, Ended& ended) { advanceGroups(pass, ended); }
 
 } // namespace
 
 template <class K>
-PointsReport advancePoints(ContactSet<K>& c, const AdmmSolver<K>& solver, const LaneArray& before, double h, double level)
+PointsReport advancePoints(ContactSet<K>& c, const AdmmResults<K>& results, const LaneArray& before, double h, double level)
 {
 	Ended ended[Team::maxParts + 1] {};
 	PointsReport result;
 	result.reached.resize(c.groups.size());
 	result.moving.resize(c.groups.size());
 	c.allParts([&](const Part& part, int number) {
-		gapPass(c.groups.data(), c.states.data(), solver.rows.data(), part.begin, part.end, before.data(), h, level, result.reached.data(),
-		        result.moving.data(), ended[number]);
+		const AdvancePass<K> pass {c.groups.data(), c.states.data(),       results.points.data(), part.begin, part.end, before.data(), h,
+		                           level,           result.reached.data(), result.moving.data()};
+		advancePass(pass, ended[number]);
 	});
 	for (const Ended& here : ended) {
 		result.friction += here.loss[0] + here.loss[1] + here.loss[2] + here.loss[3];
@@ -71,7 +75,7 @@ PointsReport advancePoints(ContactSet<K>& c, const AdmmSolver<K>& solver, const 
 	return result;
 }
 
-template PointsReport advancePoints(ContactSet<Plane>&, const AdmmSolver<Plane>&, const LaneArray&, double, double);
-template PointsReport advancePoints(ContactSet<Space>&, const AdmmSolver<Space>&, const LaneArray&, double, double);
+template PointsReport advancePoints(ContactSet<Plane>&, const AdmmResults<Plane>&, const LaneArray&, double, double);
+template PointsReport advancePoints(ContactSet<Space>&, const AdmmResults<Space>&, const LaneArray&, double, double);
 
 } // namespace masonry::wall

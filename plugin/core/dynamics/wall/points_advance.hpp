@@ -1,6 +1,6 @@
 #pragma once
 // The end of a step at the contact points: gaps and slips follow the solution.
-#include "dynamics/wall/admm_solver.hpp"
+#include "dynamics/wall/admm_results.hpp"
 
 namespace masonry::wall {
 
@@ -15,6 +15,6 @@ struct PointsReport {
 // Takes the contacts, whose states are those of the solution, to the end of a step of length h. `before`: velocities before it; `level`:
 // speed above which a pair moves, m/s.
 template <class K>
-PointsReport advancePoints(ContactSet<K>& contacts, const AdmmSolver<K>& solver, const LaneArray& before, double h, double level);
+PointsReport advancePoints(ContactSet<K>& contacts, const AdmmResults<K>& results, const LaneArray& before, double h, double level);
 
 } // namespace masonry::wall

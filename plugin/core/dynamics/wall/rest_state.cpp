@@ -21,12 +21,12 @@ int RestState<K>::movingBlocks(const RigidSystem<K>& s, const ContactSet<K>& con
 }
 
 template <class K>
-void RestState<K>::take(const RigidSystem<K>& s, const AdmmReport& report, int movingBlocks, double h)
+void RestState<K>::take(const RigidSystem<K>& s, const SolverStatus& status, int movingBlocks, double h)
 {
 	const bool turns = std::any_of(s.bodies.begin(), s.bodies.end(), [h](const RigidBody<K>& body) { // so far that frames must follow
 		return !(h * body.velocity.template tail<K::spins>().norm() <= tolerance::wall::turned);
 	});
-	quiet = movingBlocks == 0 && !turns && !report.leftRest ? quiet + 1 : 0;
+	quiet = movingBlocks == 0 && !turns && !status.leftRest ? quiet + 1 : 0;
 }
 
 template class RestState<Plane>;

@@ -11,7 +11,7 @@ public:
 	// Blocks of a pair in reach that has a point faster than `level` (m/s), and blocks without a pair in reach that are as fast.
 	static int movingBlocks(const RigidSystem<K>& system, const ContactSet<K>& contacts, const PointsReport& points, double level);
 	// Takes a step of length h with so many moving blocks into account.
-	void take(const RigidSystem<K>& system, const AdmmReport& report, int movingBlocks, double h);
+	void take(const RigidSystem<K>& system, const SolverStatus& status, int movingBlocks, double h);
 
 	template <class Archive>
 	void serialize(Archive& archive)

@@ -303,7 +303,7 @@ SpinRow<K> RockingEvents<K>::row(const ContactSet<K>& c, const Landing& landing,
 }
 
 template <class K>
-void RockingEvents<K>::take(const RigidSystem<K>& s, const ContactSet<K>& c, const AdmmSolver<K>& solver)
+void RockingEvents<K>::take(const RigidSystem<K>& s, const ContactSet<K>& c, const AdmmResults<K>& results)
 {
 	landings.clear();
 	for (const Joint& joint : rocking) {
@@ -316,9 +316,9 @@ void RockingEvents<K>::take(const RigidSystem<K>& s, const ContactSet<K>& c, con
 			landing = expected[joint.landing];
 		if (closing.empty() || (joint.landing < 0 && !describe(s, c, joint, closing, landing)))
 			continue;
-		for (const SpinRow<K>& row : solver.spins)
+		for (const SpinRow<K>& row : results.spins)
 			if (row.block() == landing.block && row.face == landing.face && row.held)
-				landing.spent = jointWork(s, c, solver, landing.block, landing.face);
+				landing.spent = jointWork(s, c, results, landing.block, landing.face);
 		landings.push_back(landing);
 	}
 }
@@ -334,17 +334,17 @@ std::vector<SpinRow<K>> RockingEvents<K>::rows(const ContactSet<K>& c) const
 }
 
 template <class K>
-void RockingEvents<K>::report(RigidSystem<K>& s, const ContactSet<K>& c, const AdmmSolver<K>& solver, double lost, double residual)
+void RockingEvents<K>::report(RigidSystem<K>& s, const ContactSet<K>& c, const AdmmResults<K>& results, double lost, double residual)
 {
 	gather(s, c);
-	auto row = solver.spins.begin();
+	auto row = results.spins.begin();
 	for (const Landing& landing : landings) {
 		if (std::isnan(landing.asked))
 			continue;
 		Vector3 impulse = Vector3::Zero(); // of the support on the block
 		for (const Point& at : points)
 			if (at.block == landing.block && at.face == landing.face)
-				impulse += (contact(c, at).second ? 1 : -1) * impulseOf(c, solver.states, at);
+				impulse += (contact(c, at).second ? 1 : -1) * impulseOf(c, results.states, at);
 		JointResult result;
 		result.axis = landing.axis;
 		result.before = landing.before;

@@ -18,7 +18,7 @@
 // localised impacts takes e.(w_carry - w_support) from before the impact instead; both are the same on one support. Where the supports are
 // two blocks of a wall, that difference changes in the impact as much as the spin does, and rows that keep it make energy. A spin below
 // what gravity gives the block in a step lands with its natural restitution, since the step does not resolve it.
-#include "dynamics/wall/admm_solver.hpp"
+#include "dynamics/wall/admm_results.hpp"
 #include "impact/rocking_restitution.hpp"
 #include "joints/pivot.hpp"
 
@@ -32,11 +32,11 @@ public:
 	std::vector<SpinRow<K>> find(const RigidSystem<K>& system, const ContactSet<K>& contacts, const LaneArray& change,
 	                             const StepContext& step);
 	// After it: those that have landed.
-	void take(const RigidSystem<K>& system, const ContactSet<K>& contacts, const AdmmSolver<K>& solver);
+	void take(const RigidSystem<K>& system, const ContactSet<K>& contacts, const AdmmResults<K>& results);
 	// The rows of the impacts at the instant after the step.
 	std::vector<SpinRow<K>> rows(const ContactSet<K>& contacts) const;
 	// After those: writes them into system.impacts. `lost`: energy, J.
-	void report(RigidSystem<K>& system, const ContactSet<K>& contacts, const AdmmSolver<K>& solver, double lost, double residual);
+	void report(RigidSystem<K>& system, const ContactSet<K>& contacts, const AdmmResults<K>& results, double lost, double residual);
 
 	bool areRows() const; // any landing has a restitution
 	double speed() const; // m/s, fastest approach of the landings

@@ -46,10 +46,8 @@ double WallStep<K>::advancePart(RigidSystem<K>& s, double h, bool divisible)
 	StepContext step(scales, h);
 	step.stands = rest.stands();
 	team.setThreads(settings.threads);
-	solver.settings = settings.solver;
-	solver.otherFrames |= contacts.take(s);
+	contacts.take(s);
 	contacts.measure(s, step.stands);
-	solver.otherFrames |= !contacts.keepsFrames();
 	contacts.setUnit(h);
 	if (!step.stands) {
 		contacts.updateFrames(s);
@@ -57,9 +55,9 @@ double WallStep<K>::advancePart(RigidSystem<K>& s, double h, bool divisible)
 	}
 	takeInstants(s, step);
 	const double missed = report.velocityResidual;
-	CappedReport result = solveStep(s, step);
-	if (const int parts = divisible && !step.stands && solver.spins.empty()
-	                          ? landingParts<K>(contacts.velocity, loads, solver.velocity, step.fall, settings.solver.small)
+	CappedStatus status = solveStep(s, step);
+	if (const int parts = divisible && !step.stands && results.spins.empty()
+	                          ? landingParts<K>(contacts.velocity, loads, results.velocity, step.fall, settings.solver.small)
 	                          : 1;
 	    parts > 1) {
 		h /= parts;
@@ -69,42 +67,43 @@ double WallStep<K>::advancePart(RigidSystem<K>& s, double h, bool divisible)
 		ledger.takeBack();
 		contacts.clearOpen();
 		contacts.setUnit(h);
-		result = solveStep(s, step);
+		status = solveStep(s, step);
 	}
 	contacts.addJammed(contacts.states, report.jammed);
 	const double level = tolerance::wall::motion * tolerance::restSpeed * scales.speed;
-	const PointsReport points = advancePoints(contacts, solver, ledger.velocityBefore(), h, level);
-	ledger.takeContacts(s, contacts, solver, points.friction);
+	const PointsReport points = advancePoints(contacts, results, ledger.velocityBefore(), h, level);
+	ledger.takeContacts(s, contacts, results, points.friction);
 	report.forceResidual = std::max(report.forceResidual, points.forceError);
-	events.take(s, contacts, solver);
+	events.take(s, contacts, results);
 	const int moved = rest.movingBlocks(s, contacts, points, level);
 	report.moved = std::max(report.moved, moved);
-	guess.take(contacts.velocity, solver.velocity, step.fall);
-	contacts.velocity = solver.velocity;
+	guess.take(contacts.velocity, results.velocity, step.fall);
+	contacts.velocity = results.velocity;
 	contacts.shiftIn(h);
 	if (const double deepest = moved > 0 ? projection.settle(contacts) : 0; deepest > tolerance::wall::sunk * contacts.length)
 		report.deepest = std::max(report.deepest, deepest);
 	moveBodies(s, h);
-	rest.take(s, solver.report, moved, h);
+	rest.take(s, status, moved, h);
 	s.time += h;
 	s.moved = false;
 	started = true;
-	report.diverged |= !result.finite || !s.isFinite();
+	report.diverged |= !status.finite || !s.isFinite();
 	return h;
 }
 
 template <class K>
-CappedReport WallStep<K>::solveStep(RigidSystem<K>& s, const StepContext& step)
+CappedStatus WallStep<K>::solveStep(RigidSystem<K>& s, const StepContext& step)
 {
 	const LaneArray& expected = guess.changeIn(step.h);
 	pulses.move(s, contacts, step.h);
 	contacts.limitMoved(s, step.fall);
 	ledger.open(s, contacts, pulses.halfBack());
 	contacts.takeForces(s, step.h, loads);
-	solver.spins = events.find(s, contacts, expected, step);
-	const CappedReport result = solve(s, loads, expected.size() == loads.size() && solver.spins.empty() ? expected : none, step);
-	contacts.states.swap(solver.states);
-	return result;
+	const std::vector<SpinRow<K>> rows = events.find(s, contacts, expected, step);
+	const bool isExpected = expected.size() == loads.size() && rows.empty();
+	const CappedStatus status = solve(s, {contacts, step, loads, isExpected ? expected : none, rows}, settings.solver);
+	contacts.states.swap(results.states);
+	return status;
 }
 
 // Two things happen between two steps: first the impacts of the joints that landed in the last one, then the jumps of the base.
@@ -116,50 +115,49 @@ void WallStep<K>::takeInstants(RigidSystem<K>& s, const StepContext& step)
 		return;
 	pulses.hold(s, contacts);
 	if (land) {
-		solver.spins = events.rows(contacts);
 		const double lostInStep = ledger.lost();
 		ledger.open(s, contacts, pulses.halfBack());
-		const CappedReport impact = solveInstant(s, step.atInstant(events.speed()), lostInStep);
-		events.report(s, contacts, solver, lostInStep + impact.lost, impact.residual);
+		const CappedStatus impact = solveInstant(s, events.rows(contacts), step.atInstant(events.speed()), lostInStep);
+		events.report(s, contacts, results, lostInStep + impact.lost, impact.residual);
 	}
-	solver.spins.clear();
 	if (jump) {
 		pulses.apply(s, contacts);
 		ledger.open(s, contacts, pulses.halfBack());
-		solveInstant(s, step.atInstant(pulses.speed()), 0);
+		solveInstant(s, {}, step.atInstant(pulses.speed()), 0);
 	}
 }
 
 template <class K>
-CappedReport WallStep<K>::solve(RigidSystem<K>& s, const LaneArray& load, const LaneArray& expected, const StepContext& step)
+CappedStatus WallStep<K>::solve(RigidSystem<K>& s, const AdmmProblem<K>& problem, const AdmmSettings& solverSettings)
 {
-	const CappedReport result = capped.solve(s, contacts, load, expected, solver, ledger, step);
-	report.iterations += result.iterations;
-	report.factorisations += result.factorisations;
-	report.velocityResidual = std::max(report.velocityResidual, result.residual);
-	return result;
+	const CappedStatus status = capped.solve(s, problem, solverSettings, solver, ledger, results);
+	report.iterations += status.iterations;
+	report.factorisations += status.factorisations;
+	report.velocityResidual = std::max(report.velocityResidual, status.residual);
+	return status;
 }
 
 // `taken`: energy that the first part of its impacts has taken, J.
 template <class K>
-CappedReport WallStep<K>::solveInstant(RigidSystem<K>& s, const StepContext& instant, double taken)
+CappedStatus WallStep<K>::solveInstant(RigidSystem<K>& s, const std::vector<SpinRow<K>>& rows, const StepContext& instant, double taken)
 {
 	loads.assign(contacts.velocity.size(), all(0));
 	contacts.limitMoved(s, 0);
 	// A jump of the base gets the stricter bound, since it may have no solution where nothing slips.
-	const double missed = solver.spins.empty() ? settings.solver.tolerance : tolerance::wall::missedImpact;
-	solver.settings.instantEnough = std::min(settings.solver.instantEnough, missed / 2);
-	const CappedReport result = solve(s, loads, none, instant);
-	contacts.addJammed(solver.states, report.jammed);
-	report.converged &= result.residual <= missed * std::max(10 * instant.fall, instant.speed);
-	ledger.takeContacts(s, contacts, solver, 0);
-	contacts.velocity = solver.velocity;
+	const double missed = rows.empty() ? settings.solver.tolerance : tolerance::wall::missedImpact;
+	AdmmSettings ofInstant = settings.solver;
+	ofInstant.instantEnough = std::min(ofInstant.instantEnough, missed / 2);
+	const CappedStatus status = solve(s, {contacts, instant, loads, none, rows}, ofInstant);
+	contacts.addJammed(results.states, report.jammed);
+	report.converged &= status.residual <= missed * std::max(10 * instant.fall, instant.speed);
+	ledger.takeContacts(s, contacts, results, 0);
+	contacts.velocity = results.velocity;
 	for (size_t b = 0; b < s.bodies.size(); ++b)
 		if (!s.bodies[b].prescribed)
 			s.bodies[b].velocity = contacts.inGlobal(contacts.velocity, b);
 	report.created += ledger.close(s, Scales(s), instant.h, taken);
 	errors.made += ledger.made();
-	return result;
+	return status;
 }
 
 template <class K>

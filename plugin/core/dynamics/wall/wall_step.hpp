@@ -11,7 +11,6 @@
 // Positions are first order in the step. V belongs to its middle, as in a leapfrog, and potential energy is shown for the middle too
 // (potentialShift).
 #include "dynamics/model/energy_errors.hpp"
-#include "dynamics/wall/admm_solver.hpp"
 #include "dynamics/wall/base_pulse.hpp"
 #include "dynamics/wall/capped_solve.hpp"
 #include "dynamics/wall/position_projection.hpp"
@@ -72,10 +71,10 @@ public:
 
 private:
 	double advancePart(RigidSystem<K>& system, double h, bool divisible);
-	CappedReport solveStep(RigidSystem<K>& system, const StepContext& step);
+	CappedStatus solveStep(RigidSystem<K>& system, const StepContext& step);
 	void takeInstants(RigidSystem<K>& system, const StepContext& step);
-	CappedReport solve(RigidSystem<K>& system, const LaneArray& load, const LaneArray& expected, const StepContext& step);
-	CappedReport solveInstant(RigidSystem<K>& system, const StepContext& instant, double taken);
+	CappedStatus solve(RigidSystem<K>& system, const AdmmProblem<K>& problem, const AdmmSettings& solverSettings);
+	CappedStatus solveInstant(RigidSystem<K>& system, const std::vector<SpinRow<K>>& rows, const StepContext& instant, double taken);
 	void moveBodies(RigidSystem<K>& system, double h);
 
 	bool started {false};
@@ -83,6 +82,7 @@ private:
 	Team team;
 	ContactSet<K> contacts {team};
 	AdmmSolver<K> solver;
+	AdmmResults<K> results; // of the last solve
 	EnergyLedger<K> ledger;
 	RockingEvents<K> events;
 	BasePulse<K> pulses;

@@ -142,7 +142,7 @@ TEST_CASE("ADMM finds the velocities of a block that the enumeration of all stat
 		frozen.solve(1e-8, 200000);
 		const auto all = enumerated(frozen.general());
 		REQUIRE(!all.empty());
-		const Lanes& v = frozen.solver.velocity[1];
+		const Lanes& v = frozen.results.velocity[1];
 		double nearest = INFINITY;
 		for (const auto& one : all)
 			nearest = std::min(nearest, (one - Plane::Velocity(v[0], v[1], v[2])).cwiseAbs().maxCoeff());

@@ -32,15 +32,14 @@ TEMPLATE_TEST_CASE("a block that lands gets no more spin than keeps its energy",
 	row.target = asked * before;
 	for (const auto& pair : s.pairs)
 		row.face = pair.body1 == 1 ? pair.face1 : pair.face2;
-	frozen.solver.spins = {row};
 	EnergyLedger<TestType> ledger;
 	ledger.open(s, frozen.contacts, {});
 	CappedSolve<TestType> capped;
-	const auto report = capped.solve(s, frozen.contacts, frozen.loads, {}, frozen.solver, ledger,
-	                                 frozen.step.atInstant(before * std::hypot(width, height)));
-	REQUIRE(frozen.solver.spins.size() == 1);
-	const double spin = frozen.solver.spins[0].rate(frozen.solver.velocity);
-	CHECK(frozen.solver.spins[0].capped == (asked > 1));
+	const StepContext instant = frozen.step.atInstant(before * std::hypot(width, height));
+	const auto report = capped.solve(s, {frozen.contacts, instant, frozen.loads, {}, {row}}, {}, frozen.solver, ledger, frozen.results);
+	REQUIRE(frozen.results.spins.size() == 1);
+	const double spin = frozen.results.spins[0].rate(frozen.results.velocity);
+	CHECK(frozen.results.spins[0].capped == (asked > 1));
 	if (asked < 1) {
 		CHECK(spin == Approx(asked * before).epsilon(1e-6));
 		CHECK(report.lost == Approx((1 - asked * asked) * kinetic).epsilon(1e-3));

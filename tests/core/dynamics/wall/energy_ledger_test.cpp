@@ -254,11 +254,11 @@ TEMPLATE_TEST_CASE("the work of one step is that of its impulses on the mean of 
 	EnergyLedger<TestType> ledger;
 	ledger.open(s, frozen.contacts, {halfBack});
 	frozen.solve(1e-9, 20000);
-	const auto& moved = frozen.solver.velocity;
+	const auto& moved = frozen.results.velocity;
 	const typename TestType::Velocity before = body.velocity, after = frozen.contacts.inGlobal(moved, block);
 	const Vector impulse = body.mass * (after - before).template head<n>() - h * body.force.template head<n>();
-	const double friction = advancePoints(frozen.contacts, frozen.solver, ledger.velocityBefore(), h, 0).friction;
-	ledger.takeContacts(s, frozen.contacts, frozen.solver, friction);
+	const double friction = advancePoints(frozen.contacts, frozen.results, ledger.velocityBefore(), h, 0).friction;
+	ledger.takeContacts(s, frozen.contacts, frozen.results, friction);
 	body.velocity = after;
 	ledger.takeForce(s, body, before, h * after, h);
 	const double kinetic = s.kineticEnergy();

@@ -32,9 +32,9 @@ TEMPLATE_TEST_CASE("a structure stands after some quiet steps and no longer than
 	s.bodies[1].velocity[TestType::dof - 1] = 0.99 * tolerance::wall::turned / h;
 	quiet(8);
 	CHECK(rest.stands());
-	AdmmReport report;
-	report.leftRest = true; // the solver has given up the stiffness of rest
-	rest.take(s, report, 0, h);
+	SolverStatus status;
+	status.leftRest = true; // the solver has given up the stiffness of rest
+	rest.take(s, status, 0, h);
 	CHECK(!rest.stands());
 }
 
@@ -50,7 +50,7 @@ TEMPLATE_TEST_CASE("blocks that slide or fly move", "", Plane, Space)
 	Frozen<TestType> frozen(s, 1e-3);
 	frozen.solve(1e-8, 20000);
 	const auto moving = [&](double level) {
-		const PointsReport points = advancePoints(frozen.contacts, frozen.solver, frozen.contacts.velocity, 1e-3, level);
+		const PointsReport points = advancePoints(frozen.contacts, frozen.results, frozen.contacts.velocity, 1e-3, level);
 		return RestState<TestType>::movingBlocks(s, frozen.contacts, points, level);
 	};
 	CHECK(moving(1e-3) == 2);

@@ -13,6 +13,7 @@ struct Frozen {
 	parallel::Team team;
 	wall::ContactSet<K> contacts {team};
 	wall::AdmmSolver<K> solver;
+	wall::AdmmResults<K> results;
 	wall::StepContext step;
 	LaneArray loads;
 
@@ -26,10 +27,11 @@ struct Frozen {
 
 	void solve(double tolerance, int iterations)
 	{
-		solver.settings.tolerance = tolerance;
-		solver.settings.first = iterations;
-		solver.solve(contacts, loads, {}, step);
-		contacts.states = solver.states;
+		AdmmSettings settings;
+		settings.tolerance = tolerance;
+		settings.first = iterations;
+		solver.solve({contacts, step, loads, {}, {}}, settings, results);
+		contacts.states = results.states;
 	}
 
 	// The same problem for the general solver: in the packs of the contacts each body has one mass for all components. `unknown` are its
@@ -57,8 +59,8 @@ struct Frozen {
 		for (size_t g = 0; g < contacts.groups.size(); ++g)
 			for (int i = 0; i < width; ++i)
 				for (int k = 0; k < contacts.groups[g].count; ++k) {
-					const auto& row = solver.rows[g][k];
-					if (contacts.features[g].pair[i] < 0 || !(row.stiffness[i] > 0))
+					const auto& row = results.points[g][k];
+					if (contacts.features[g].pair[i] < 0 || !row.inReach[i])
 						continue;
 					const auto& p = contacts.groups[g].point[k];
 					const int bodies[2] = {contacts.groups[g].body1[i], contacts.groups[g].body2[i]};
@@ -76,7 +78,7 @@ struct Frozen {
 							if (!contacts.own[bodies[side]])
 								point.offset[r] += (side == 0 ? point.J1 : point.J2).row(r) * velocityOf(contacts.velocity, bodies[side]);
 					}
-					const PointState<K>& state = solver.states[g][k];
+					const PointState<K>& state = results.states[g][k];
 					point.impulse[0] = state.pn[i];
 					for (int r = 1; r < K::rows; ++r)
 						point.impulse[r] = component(state.pt, r - 1, i);
