@@ -70,7 +70,8 @@ py::dict fewBlocks()
 /// that came later, so that it has to look again.
 void drawOurClasses(py::object renderer)
 {
-	py::extract<yade::OpenGLRenderer&>(renderer)().init();
+	yade::OpenGLRenderer& found = py::extract<yade::OpenGLRenderer&>(renderer);
+	found.init();
 	yade::OpenGLRenderer::initDone = false;
 }
 #endif

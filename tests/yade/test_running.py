@@ -150,3 +150,36 @@ def test_a_run_without_a_motion():
     O.engines = dem.engines(recorder=recorder)
     dem.run(0.2)
     assert results.collapse(dem.wall_history(recorder)).verdict == "stands"
+
+
+def test_to_a_condition():
+    """A block that is let go comes to rest long before the minute is over; the run ends within the time between two looks after it does."""
+    O.reset()
+    stone = dem.BlockMat(density=2000, frictionAngle=0.6, restitution=0.6)
+    block = dem.block((0.4, 1.0, 1.0), stone, on=dem.base((4, 2, 0.2), stone))
+    dem.tilt(block, 0.1)
+    O.engines = rigid_engines()
+    assert dem.run(60, until=dem.at_rest) is True
+    assert dem.at_rest() and 0.1 < O.time < 5
+    there = O.iter
+    assert dem.run(60, until=dem.at_rest) is True and O.iter == there  # it is at rest already
+    assert dem.run(0.1, until=lambda: False) is False and O.iter > there
+    assert dem.run(0.1) is False
+
+
+def test_to_the_first_block_that_overturns():
+    O.reset()
+    stone = dem.BlockMat(density=2000, frictionAngle=0.6)
+    block = dem.block((0.2, 1.0, 1.0), stone, on=dem.base((4, 2, 0.2), stone))
+    dem.tilt(block, math.atan(0.2) - 0.01)
+    O.engines = rigid_engines()
+    O.bodies[block].state.angVel = Vector3(0, 1, 0)
+    seen = []
+    assert dem.run(2, until=lambda: seen.append(O.time) or dem.overturned()) is True
+    assert dem.overturned() == [block] and abs(dem.angle(block)) < math.atan(0.2) + 0.1
+    assert all(0.01 <= b - a < 0.01 + O.dt for a, b in zip(seen[1:-2], seen[2:-1]))
+
+
+def test_a_condition_needs_a_limit():
+    shaken()
+    refuses(lambda: dem.run(until=dem.at_rest), "seconds = None: must say how long the run may wait")

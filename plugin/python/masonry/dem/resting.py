@@ -14,10 +14,7 @@ _UNBALANCED, _UNBALANCED_IN_WALLS = 4e-3, 5e-2
 
 
 def at_rest():
-    """Whether all free blocks are at rest: True or False. Call it between steps, to end a run:
-
-        while not dem.at_rest() and O.time < 60:
-            dem.run(0.1)
+    """Whether all free blocks are at rest: True or False. Call it between steps, or end a run with it: dem.run(60, until=dem.at_rest).
 
     A block is at rest if its centre moves slower than 1e-4 sqrt(g R) (m/s) and it turns slower than 1e-4 sqrt(g/R) (rad/s), where R (m) is half of its
     diagonal, and if the forces on it balance within 0.4 % (method='wall': 5 %) of the sum of their sizes: where a rocking block turns back it stands still for

@@ -14,6 +14,8 @@ from masonry.dem.engines import joint_engine_given
 
 # Wall clock between two looks at the bar, s.
 _SHOWN = 0.1
+# Simulated time between two looks at a condition, s.
+_LOOKED = 0.01
 # Share of a step by which O.time may miss the end: it is a sum of steps.
 _ROUND_OFF = 1e-3
 
@@ -56,23 +58,45 @@ def _is_to_stop(before):
     return O.iter == O.stopAtIter or before < O.stopAtTime - _ROUND_OFF * O.dt <= O.time
 
 
+def _is_condition(until):
+    return callable(until) and not isinstance(until, wrapper.Engine)  # YADE's engines can be called
+
+
+def _end_given(seconds, until):
+    """The time at which the run ends at the latest, s."""
+    if seconds is not None and not 0 < number_given("seconds", seconds) < math.inf:
+        raise ValueError(f"seconds = {seconds}: must be positive and finite")
+    if _is_condition(until):
+        if seconds is None:
+            raise ValueError("seconds = None: must say how long the run may wait for the condition `until`, s")
+        return O.time + seconds
+    if (seconds is None) == (until is None):
+        raise ValueError(f"seconds = {seconds}, until = {until}: give one of the two, or seconds and a condition (a function)")
+    end = O.time + seconds if until is None else motion_end(until)
+    if not end > O.time:
+        raise ValueError(f"until: that motion is over at {end:g} s and O.time = {O.time:g} s: give seconds")
+    if until is not None:
+        _check_given(until)
+    return end
+
+
 def run(seconds=None, until=None, progress=None):
     """Runs the scene and returns when that is done.
 
-    seconds     how much simulated time from now on, s, positive
-    until       instead of seconds: a motion engine, or a list of them: to the end of the last one
+    seconds     how much simulated time from now on, s, positive; with a condition: at most
+    until       a motion engine, or a list of them, instead of seconds: to the end of the last one. Or a condition, beside seconds: a function without arguments
+                that says whether to end, as dem.at_rest or dem.overturned
     progress    a progress bar; None: where stderr is a terminal
 
-    The last step is the first one that reaches the end; O.stopAtIter, O.stopAtTime and O.pause(), which a PyRunner may call, end the run earlier. What goes
-    wrong in the run is raised as it comes out of O.step(), which this calls; Ctrl-C stops between two steps. Raises ValueError where O.engines has no engine of
-    dem.engines(), O runs already, the motion is over, or the script has not given it to an engine.
+    Returns True where a condition has ended the run, else False.
+
+    The last step is the first one that reaches the end; O.stopAtIter, O.stopAtTime and O.pause(), which a PyRunner may call, end the run earlier. A condition is
+    looked at before the first step, then once in 0.01 s and at the end. What goes wrong in the run is raised as it comes out of O.step(), which this calls;
+    Ctrl-C stops between two steps. Raises ValueError where O.engines has no engine of dem.engines(), O runs already, the motion is over, or the script has not
+    given it to an engine.
     """
     from tqdm import tqdm
 
-    if (seconds is None) == (until is None):
-        raise ValueError(f"seconds = {seconds}, until = {until}: give one of the two")
-    if seconds is not None and not 0 < number_given("seconds", seconds) < math.inf:
-        raise ValueError(f"seconds = {seconds}: must be positive and finite")
     if not O.engines:
         raise ValueError("O.engines is empty: set O.engines = dem.engines(...)")
     joint_engine_given()
@@ -80,12 +104,10 @@ def run(seconds=None, until=None, progress=None):
         raise ValueError("O is running already: call O.pause() or O.wait() first")
     if not 0 < O.dt < math.inf:
         raise ValueError(f"O.dt = {O.dt}: must be positive and finite; dem.engines() chooses one")
-    start = O.time
-    end = start + seconds if until is None else motion_end(until)
-    if not end > start:
-        raise ValueError(f"until: that motion is over at {end:g} s and O.time = {start:g} s: give seconds")
-    if until is not None:
-        _check_given(until)
+    start, end, condition = O.time, _end_given(seconds, until), until if _is_condition(until) else lambda: False
+    if condition():
+        return True
+    looked = start
     with _pauses() as paused, tqdm(total=float(f"{end - start:.4g}"), desc="run", disable=not wanted(progress), bar_format="{desc}: {percentage:3.0f}%|{bar}| {n:.3g} of {total:g} s [{elapsed}<{remaining}]") as bar:
         look = time.monotonic() + _SHOWN
         while O.time < end - _ROUND_OFF * O.dt:
@@ -93,7 +115,12 @@ def run(seconds=None, until=None, progress=None):
             O.step()
             if paused or _is_to_stop(before):
                 break
+            if O.time >= looked + _LOOKED:
+                looked = O.time
+                if condition():
+                    break
             if time.monotonic() >= look:
                 look = time.monotonic() + _SHOWN
                 bar.update(min(O.time - start, bar.total) - bar.n)
         bar.update(min(O.time - start, bar.total) - bar.n)
+    return bool(condition())
