@@ -199,23 +199,29 @@ void startMeans(PointStates<K>& states, double share)
 			p.filteredImpulse = share * p.pn;
 }
 
+// The results before the first iteration: velocities and states as the contacts have them, at an instant without impulses.
 template <class K>
-SolverStatus AdmmSolver<K>::solve(const Problem& problem, const AdmmSettings& settings, Results& results)
+void beginResults(const AdmmProblem<K>& problem, AdmmResults<K>& results)
 {
-	const ContactSet<K>& c = problem.contacts;
-	const StepContext& step = problem.step;
-	SolverStatus status;
-	results.velocity = c.velocity;
-	results.states = c.states;
-	results.points.resize(c.groups.size());
+	results.velocity = problem.contacts.velocity;
+	results.states = problem.contacts.states;
+	results.points.resize(problem.contacts.groups.size());
 	results.spins = problem.rows;
 	for (SpinRow<K>& row : results.spins)
 		row.couple = 0;
-	penalties.resize(c.groups.size());
-	if (step.instant)
+	if (problem.step.instant)
 		for (GroupState<K>& group : results.states)
 			for (PointState<K>& p : group)
 				p.pn = all(0), p.pt *= all(0);
+}
+
+template <class K>
+SolverStatus AdmmSolver<K>::solve(const Problem& problem, const AdmmSettings& settings, Results& results)
+{
+	const StepContext& step = problem.step;
+	SolverStatus status;
+	beginResults(problem, results);
+	penalties.resize(problem.contacts.groups.size());
 	const auto refactor = [&] {
 		makeMatrix(problem, settings, results);
 		++status.factorisations;

@@ -110,10 +110,10 @@ private:
 	std::vector<Vector3> places;       // of those that bear
 	std::vector<Landing> expected, landings;
 	JointTable table;
-	Follower list;            // the table is made from the system's list of pairs
-	Follower laws;            // areLaws is made from the laws of its pairs
-	bool areLaws {false};     // a pair has a given restitution
-	LaneArray predicted;      // velocities at the end of the step
+	Follower list;        // the table is made from the system's list of pairs
+	Follower laws;        // areLaws is made from the laws of its pairs
+	bool areLaws {false}; // a pair has a given restitution
+	LaneArray predicted;  // velocities at the end of the step
 	double h {0};
 };
 
