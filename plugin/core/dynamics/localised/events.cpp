@@ -116,9 +116,13 @@ Event localise(RigidSystem<K>& s, SmoothStep<K>& step, Event event)
 	double early = 0, late = step.trial().h; // the event lies between
 	const double instant = tolerance::instant * late;
 	constexpr int most = 40;
+	// The normal of two edges changes its sign where they become parallel, and with it the gap, however far apart they are. Such a trial
+	// ends behind the jump, where the search for features no longer finds them.
+	const bool jumps = event.kind == Event::closing && s.pairs[event.point.pair].points[event.point.point].gap > 0 &&
+	                   -atEnd(s, step, event.point).gap > relativeTravel(s, step, s.pairs[event.point.pair]);
 	for (int k = 0; k < most; ++k) {
 		const double h = event.at;
-		if (h <= instant) { // it is now
+		if (h <= instant && !jumps) { // it is now
 			event.at = 0;
 			return event;
 		}
@@ -144,6 +148,8 @@ Event localise(RigidSystem<K>& s, SmoothStep<K>& step, Event event)
 		if (late - early <= tolerance::instant * instant)
 			break;
 	}
+	if (jumps && atEnd(s, step, event.point).gap > tiny)
+		step.attempt(s, late, true);
 	event.at = step.trial().h;
 	return event;
 }
@@ -153,6 +159,8 @@ bool isContact(const RigidSystem<K>& s, const SmoothStep<K>& step, const Event& 
 {
 	if (event.kind != Event::closing)
 		return true;
+	if (std::abs(atEnd(s, step, event.point).gap - zeroOf(s, event.point)) > tolerance::contact::unseen * step.scales.length)
+		return false; // it has jumped (localise)
 	const ContactPair<K>& pair = s.pairs[event.point.pair];
 	const auto found = featuresAtEnd(s, step, pair);
 	const auto isKnown = [&pair](const auto& feature) {
