@@ -24,7 +24,7 @@ public:
 	int size() const { return int(all.size()); } // number of parts
 	const Convex& part(int number) const { return all[number]; }
 
-	// Where the numbers of a part begin.
+	// The numbers of a part begin with these.
 	struct First {
 		int vertex {0}, face {0}, edge {0};
 	};

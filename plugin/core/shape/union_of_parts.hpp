@@ -10,7 +10,7 @@ struct PlacedUnion {
 	Pose pose; // puts them where they were
 };
 
-// Of the union of parts that do not overlap, in the axes in which they are given.
+// Returns those of the union of parts that do not overlap, in the axes in which they are given.
 MassProperties massProperties(const std::vector<ConvexPolyhedron>& parts, double density);
 
 // The parts in the principal axes of the union, with its centre of mass as origin.

@@ -1,4 +1,4 @@
-// What draws bodies and contacts in YADE's Qt viewer.
+// These functors draw bodies and contacts in YADE's Qt viewer.
 #pragma once
 
 #include <core/Body.hpp>

@@ -1,4 +1,4 @@
-// What draws a scene in YADE's Qt viewer. It is called, never derived from or made.
+// OpenGLRenderer draws a scene in YADE's Qt viewer. It is called, never derived from or made.
 #pragma once
 
 #include <pkg/common/GLDrawFunctors.hpp>
