@@ -271,6 +271,12 @@ private:
 		}
 	};
 
+	struct LostLoad { // of a point that is no longer there
+		std::array<int, 2> bodies;
+		ContactFrame<K> frame;
+		OneState state;
+	};
+
 	static std::vector<char> freeBodies(const RigidSystem<K>& system);
 	bool samePairs(const RigidSystem<K>& system);
 	bool renumber(const RigidSystem<K>& system);
@@ -295,9 +301,11 @@ private:
 	void takeFrames(const RigidSystem<K>& system, int begin, int end);      // normals, arms and masses
 	void measureCorners(const RigidSystem<K>& system, int group, int lane); // how near the vertices of a lane are to corners of faces
 	void lookUpStale(RigidSystem<K>& system);
-	void lookUpStale(RigidSystem<K>& system, const Part& part);
+	void lookUpStale(RigidSystem<K>& system, const Part& part, std::vector<LostLoad>& lost);
 	void takeFriction(const RigidSystem<K>& system, int pair);
-	bool lookUp(RigidSystem<K>& system, int pair); // true: the pair has other points
+	bool lookUp(RigidSystem<K>& system, int pair, std::vector<LostLoad>& lost); // true: the pair has other points
+	void addLost(const ContactPair<K>& before, const OneState* states, const ContactPair<K>& pair, std::vector<LostLoad>& lost) const;
+	void handOver(RigidSystem<K>& system, const LostLoad& lost);
 	void inherit(const ContactPair<K>& before, const OneState* states, ContactPoint<K>& point, OneState& now) const;
 	OneState state(int pair, int point) const;
 	void setState(const OneState& state, int pair, int point);

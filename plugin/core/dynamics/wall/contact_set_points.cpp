@@ -70,8 +70,60 @@ void ContactSet<K>::inherit(const ContactPair<K>& before, const OneState* states
 	}
 }
 
+// Old points that bear, and whose load no other point of their pair has taken over, join `lost`.
 template <class K>
-bool ContactSet<K>::lookUp(RigidSystem<K>& s, int c)
+void ContactSet<K>::addLost(const ContactPair<K>& before, const OneState* states, const ContactPair<K>& pair,
+                            std::vector<LostLoad>& lost) const
+{
+	const double samePlace = 2 * tolerance::wall::search * length;
+	const auto has = [](const auto& points, const Feature& feature) {
+		return std::any_of(points.begin(), points.end(), [&](const ContactPoint<K>& p) { return p.feature == feature; });
+	};
+	for (int j = 0; j < before.size(); ++j) {
+		const ContactPoint<K>& old = before.points[j];
+		const auto isHeir = [&](const ContactPoint<K>& p) {
+			return !has(before.points, p.feature) && (p.frame.position - old.frame.position).norm() <= samePlace;
+		};
+		if (states[j].pn > 0 && !has(pair.points, old.feature) && std::none_of(pair.points.begin(), pair.points.end(), isHeir))
+			lost.push_back({{before.body1, before.body2}, old.frame, states[j]});
+	}
+}
+
+// A block that rocks about an edge above a head joint, or at a seam, goes from one support to the other: its load is at the same place, but
+// at the point of another pair. Without that load the joint would have no pivot there, and the next landing no restitution.
+template <class K>
+void ContactSet<K>::handOver(RigidSystem<K>& s, const LostLoad& lost)
+{
+	constexpr double sameNormal = 0.9; // cosine
+	const double samePlace = 2 * tolerance::wall::search * length;
+	for (const int c : numbers) {
+		const ContactPair<K>& pair = s.pairs[c];
+		for (const int side : {0, 1}) {
+			const int body = lost.bodies[side];
+			const bool isFirst = pair.body1 == body;
+			if (!own[body] || !(isFirst || pair.body2 == body))
+				continue;
+			const double sign = isFirst == (side == 0) ? 1 : -1;
+			for (const Slot& slot : slots[c])
+				takeFrames(s, slot.group, slot.group + 1);
+			showPair(s, c);
+			for (int k = 0; k < std::min(pair.size(), lanePoints<K> * int(slots[c].size())); ++k) {
+				const ContactFrame<K>& frame = pair.points[k].frame;
+				if ((frame.position - lost.frame.position).norm() > samePlace ||
+				    sign * frame.axes.row(0).dot(lost.frame.axes.row(0)) < sameNormal)
+					continue;
+				OneState heir = state(c, k);
+				heir.pn += lost.state.pn;
+				heir.filteredImpulse += lost.state.filteredImpulse;
+				setState(heir, c, k);
+				return;
+			}
+		}
+	}
+}
+
+template <class K>
+bool ContactSet<K>::lookUp(RigidSystem<K>& s, int c, std::vector<LostLoad>& lost)
 {
 	const double touching = tolerance::mergedClosing * length;
 	ContactPair<K>& pair = s.pairs[c];
@@ -116,18 +168,23 @@ bool ContactSet<K>::lookUp(RigidSystem<K>& s, int c)
 		takePoint(s, c, k);
 		setState(now, c, k);
 	}
+	addLost(before, states.data(), pair, lost);
 	return true;
 }
 
 template <class K>
 void ContactSet<K>::lookUpStale(RigidSystem<K>& s)
 {
-	allParts([&](const Part& part, int) { lookUpStale(s, part); });
+	std::vector<std::vector<LostLoad>> lost(parts.size()); // by part, so that their order is that of the structure
+	allParts([&](const Part& part, int number) { lookUpStale(s, part, lost[number]); });
+	for (const auto& ofPart : lost)
+		for (const LostLoad& load : ofPart)
+			handOver(s, load);
 }
 
 // Lanes of one pair are looked up together; they are in one part.
 template <class K>
-void ContactSet<K>::lookUpStale(RigidSystem<K>& s, const Part& part)
+void ContactSet<K>::lookUpStale(RigidSystem<K>& s, const Part& part, std::vector<LostLoad>& lost)
 {
 	const auto isStale = [this](const Slot& slot) { return stale[slot.group] >> slot.lane & 1; };
 	for (int g = part.begin; g < part.end; ++g)
@@ -140,7 +197,7 @@ void ContactSet<K>::lookUpStale(RigidSystem<K>& s, const Part& part)
 	std::vector<int> changed;
 	for (int g = part.begin; g < part.end; ++g)
 		for (int lane = 0; stale[g] && lane < width && features[g].pair[lane] >= 0; ++lane)
-			if (stale[g] >> lane & 1 && features[g].first[lane] == 0 && lookUp(s, features[g].pair[lane]))
+			if (stale[g] >> lane & 1 && features[g].first[lane] == 0 && lookUp(s, features[g].pair[lane], lost))
 				changed.push_back(features[g].pair[lane]);
 	for (int g = part.begin; g < part.end; ++g)
 		if (stale[g]) {
