@@ -20,7 +20,7 @@ ROOT = Path(__file__).resolve().parents[1]
 GALLERY = ROOT / "docs/gallery"
 # {script of docs/gallery: (interpreter, pictures)}
 SCRIPTS = {
-    "arch": ("yade", ("arch.png", "arch.gif")),
+    "arch": ("yade", ("thrust.png", "arch.png", "arch.gif")),
     "collapse": ("yade", ("collapse.gif", "joints.png", "energy.png", "report.png")),
     "convex_blocks": ("yade", ("convex_blocks.png",)),
     "fragility": ("python", ("fragility.png",)),

@@ -1,4 +1,4 @@
-"""The mechanism of an arch on two piers, and the film of its fall. `scripts/gallery arch` runs it; the pictures are written into the current folder."""
+"""The lines of thrust of an arch, its mechanism on two piers, and the film of its fall. `scripts/gallery arch` runs it; the pictures are written into the current folder."""
 import math
 
 from yade import O
@@ -15,6 +15,13 @@ def scene():
     dem.arch(span=3.0, rise=1.5, thickness=0.3, n=15, depth=0.5, material=stone, on=piers)
     return base
 
+
+base = dem.base((6, 3, 0.2), dem.BlockMat(density=2000, frictionAngle=math.atan(0.6)))
+dem.arch(span=3.0, rise=1.5, thickness=0.3, n=15, depth=0.5, material=O.bodies[base].mat, on=base)
+recorder = dem.WallRecorder(virtPeriod=0.05, recordForces=True)
+O.engines = dem.engines(recorder=recorder)
+dem.run(1.0)
+results.draw_joints(dem.wall_history(recorder), "thrust.png", time=0.9)
 
 scene()
 result = dem.TiltTable().bisect(progress=False)

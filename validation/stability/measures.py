@@ -8,8 +8,8 @@ import warnings
 
 from boxes import depth
 from masonry import dem
-from polyhedra import Solid
-from yade import O
+from polyhedra import Solid, Solids
+from yade import Box, O
 
 # A run at the default step or below counts as right up to these limits: energy that appears, relative to the energy turned over, and depth, relative
 # to the smaller half size. Compliant joints are deeper by what their springs give way under a landing.
@@ -88,6 +88,7 @@ def run(case, model, share=None):
                 O.engines = scene.engines()
             row.update(dt=O.dt, coarse=share is not None and dt > default)
             energies, deepest = Energies(scene.work), 0.0
+            overlap = depth if all(isinstance(b.shape, Box) for b in O.bodies) else Solids().depth
             steps = max(1, math.ceil(scene.seconds / O.dt))
             if steps > MOST_STEPS:
                 return {**row, "said": f"{steps} steps", "verdict": "not run"}
@@ -100,8 +101,8 @@ def run(case, model, share=None):
                 if scene.watch:
                     scene.watch()
                 if k % look == 0:
-                    deepest = max(deepest, depth())
-            deepest = max(deepest, depth())
+                    deepest = max(deepest, overlap())
+            deepest = max(deepest, overlap())
             row.update(gain=energies.relative_gain(), depth=deepest, error=scene.error())
             said += [str(w.message) for w in caught]
         said += ["failures"] * bool(engine().failures)

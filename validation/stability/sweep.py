@@ -3,6 +3,7 @@
 import json
 import os
 
+import convex_cases  # noqa: F401: its cases join CASES
 from cases import CASES
 from measures import run
 
