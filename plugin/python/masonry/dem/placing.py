@@ -147,9 +147,19 @@ def placed(centers, foot, orientation):
     return np.array(foot) + centers @ np.array(orientation.toRotationMatrix()).reshape(3, 3).T
 
 
-def check_support(bottom, on, at, reach):
-    """ValueError unless each of the places `bottom` (n, 2), from the foot at `at`, is above the upper face of the body `on`. reach: of the structure, m."""
-    places = np.asarray(bottom) + at
+def direction_in_plan(along):
+    """Unit vector (x, y) of a direction in plan."""
+    vector = np.array(finite_numbers("along", along, 2, "a direction in plan, two finite numbers (dx, dy)"))
+    length = math.hypot(*vector)
+    if not 0 < length < math.inf:
+        raise ValueError(f"along = {shown(along)}: must be a direction in plan, two numbers (dx, dy) that are not both 0")
+    return vector / length
+
+
+def check_support(bottom, on, at, reach, along=(1.0, 0.0)):
+    """ValueError unless each of the places `bottom` (n, 2), from the foot at `at`, is above the upper face of the body `on`. reach: of the structure, m; along: unit
+    vector of its x axis in plan."""
+    places = np.asarray(bottom) @ [along, (-along[1], along[0])] + at
     outline = upper_face(block_body(on, "on"), f"on = {on}")[2]
     sides = np.roll(outline, -1, axis=0) - outline
     inwards = np.stack([-sides[:, 1], sides[:, 0]], axis=-1) / np.hypot(*sides.T)[:, None]
@@ -161,10 +171,23 @@ def check_support(bottom, on, at, reach):
                          f"course have their centres off it, at {listed([f'({x:g}, {y:g})' for x, y in off])}: all must be above it")
 
 
-def stand(layout, material, on, at):
-    """The boxes of a layout on the body `on`. Everything is checked before the first one is made."""
+def turned_layout(layout, along):
+    """(centers, sizes, turn about z) of a layout whose x axis is to point along that direction in plan. Along the axes there is no turn: sizes and places are swapped, so
+    that the boxes stay parallel to those of other layouts to the last bit."""
+    centers, sizes = layout
+    x, y = direction_in_plan(along)
+    if x != 0 and y != 0:
+        return centers, sizes, Quaternion(Vector3.UnitZ, math.atan2(y, x))
+    centers = np.column_stack([x * centers[:, 0] - y * centers[:, 1], y * centers[:, 0] + x * centers[:, 1], centers[:, 2]])
+    return centers, sizes if y == 0 else sizes[:, [1, 0, 2]], Quaternion.Identity
+
+
+def stand(layout, material, on, at, along=(1.0, 0.0)):
+    """The boxes of a layout on the body `on`, its x axis along that direction in plan. Everything is checked before the first one is made."""
     centers, sizes = layout
     foot, orientation = top_of(on, at)
     bottom = centers[centers[:, 2] - sizes[:, 2] / 2 < sizes[:, 2].min() / 2, :2]
-    check_support(bottom, on, at, np.ptp(np.concatenate([centers - sizes / 2, centers + sizes / 2]), axis=0))
+    check_support(bottom, on, at, np.ptp(np.concatenate([centers - sizes / 2, centers + sizes / 2]), axis=0), direction_in_plan(along))
+    centers, sizes, turn = turned_layout(layout, along)
+    orientation = orientation * turn
     return append_boxes(placed(centers, foot, orientation).tolist(), sizes, block_material(material), orientation, orientation)
