@@ -234,7 +234,7 @@ def test_random_plans():
     """Where a plan has masonry there is one block at each point, and none where it has none; blocks do not overlap, lap, and stand on others."""
     rng, accepted, refused = np.random.default_rng(57), 0, []
     begin = time.time()
-    for _ in range(20):
+    for _ in range(14):
         given = random_plan(rng)
         try:
             pieces = Coursing(read_plan(**given)).pieces
@@ -257,9 +257,9 @@ def test_random_plans():
         assert (around.sum(axis=1) <= 1).all()
         if given["thickness"] == given["brick"][1]:
             assert straight_joints(low[walls], high[walls], given["brick"][0] / 8) == [], given
-    print(f"{accepted} of 20 plans in {time.time() - begin:.1f} s; {refused}")
+    print(f"{accepted} of 14 plans in {time.time() - begin:.1f} s; {refused}")
     # Openings may come too near to an inner wall; such plans are refused with the place.
-    assert accepted >= 12 and all("wall" in error for error in refused)
+    assert accepted >= 8 and all("wall" in error for error in refused)
 
 
 # --- at rest ---

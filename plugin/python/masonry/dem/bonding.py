@@ -1,10 +1,12 @@
 """Running bond in runs of any length: where the head joints of a course lie. Geometry alone, no YADE; lengths in m."""
 
+from bisect import bisect_left
 from dataclasses import dataclass
 from functools import lru_cache
 
 # Share of a block by which lengths may miss a bound: round-off.
 ROUND_OFF = 1e-9
+_FAR = float("inf")
 # What the search minimises, in pieces of a course: what a piece costs besides its own one, and what a joint costs that laps by nothing, and by less than a quarter.
 _HALF, _CUT, _SHORT, _INSIDE, _LAP, _LITTLE = 0.25, 0.5, 0.5, 0.3, 0.4, 1.0
 
@@ -44,20 +46,20 @@ def _joints(length, below, above, longest, lap, shortest):
     places = _candidates(length, below, above, longest, lap)
     places = [place for place in places if shortest - 2 <= place <= length - shortest + 2 and _distance(place, avoided) >= lap - 2]
     places = [0, *places, length]
-    cost, before, first = [0.0] + [float("inf")] * (len(places) - 1), [0] * len(places), 0
+    cost, before, first = [0.0] + [_FAR] * (len(places) - 1), [0] * len(places), 0
     for k in range(1, len(places)):
         while places[k] - places[first] > longest + 2:
             first += 1
-        joint = 0
-        if k < len(places) - 1:
-            joint = _LAP * (1 - min(2 * _distance(places[k], below) / longest, 1)) + (_LITTLE if _distance(places[k], avoided) < longest / 4 - 2 else 0)
+        place, last = places[k], k == len(places) - 1
+        joint = 0 if last else _LAP * (1 - min(2 * _distance(place, below) / longest, 1)) + (_LITTLE if _distance(place, avoided) < longest / 4 - 2 else 0)
+        least = _FAR
         for j in range(first, k):
-            piece = places[k] - places[j]
-            if piece >= shortest - 2 and cost[j] + 1 + joint < cost[k]:
-                total = cost[j] + joint + _cost(piece, longest, inside=0 < j and k < len(places) - 1)
-                if total < cost[k] - 1e-9:
-                    cost[k], before[k] = total, j
-    if cost[-1] == float("inf"):
+            if cost[j] + 1 < least and place - places[j] >= shortest - 2:
+                total = cost[j] + _cost(place - places[j], longest, inside=0 < j and not last)
+                if total < least - 1e-9:
+                    least, before[k] = total, j
+        cost[k] = least + joint
+    if cost[-1] == _FAR:
         return None
     found, k = [], before[-1]
     while k > 0:
@@ -91,4 +93,6 @@ def _candidates(length, below, above, longest, lap):
 
 
 def _distance(place, joints):
-    return min((abs(place - joint) for joint in joints), default=float("inf"))
+    """From the nearest of the joints, which increase."""
+    k = bisect_left(joints, place)
+    return min(joints[k] - place if k < len(joints) else _FAR, place - joints[k - 1] if k else _FAR)

@@ -38,7 +38,7 @@ def motion(given):
 
 def load(given):
     """One sentence on a load of WallHistory.about."""
-    on = f"on {len(given['ids'])} blocks"
+    on = f"on {len(given['ids'])} block{'s' if len(given['ids']) != 1 else ''}"
     if given["kind"] == "mass":
         return f"{given['size']:.4g} kg {on}, which move with them"
     return f"{1e-3 * given['size']:.4g} kN {on}, a constant force"
