@@ -195,6 +195,24 @@ class WallHistory:
         row = int(self.bases[np.argmax(self.free)])
         return None if row < 0 else row
 
+    def on_base(self, id):
+        """The WallHistory of what stands on the prescribed body of that id, and of that body: drift, collapse, forces, pictures and reports of one structure among
+        several. Impacts, forces, and motions and materials of `about` are those of its blocks; energies, which the recorder has of all blocks together, are not known."""
+        row = np.flatnonzero((self.ids == id) & ~self.free)
+        if len(row) != 1 or not (self.free & (self.bases == row[0])).any():
+            carrying = np.unique(self.bases[self.free & (self.bases >= 0)])
+            raise ValueError(f"id = {shown(id)}: must be a prescribed body on which blocks stand, among {shown(self.ids[carrying].tolist())}")
+        rows = np.flatnonzero((self.bases == row[0]) & (self.free | (self.ids == id)))
+        ids = self.ids[rows]
+        forces, impacts = self.forces, self.impacts
+        if forces is not None:
+            forces = forces[np.isin(forces["id1"], ids) & np.isin(forces["id2"], ids)]
+        if impacts is not None:
+            impacts = impacts[np.isin(impacts["body"], ids)]
+        shapes = None if self.shapes is None else self.shapes.of_rows(rows.tolist())
+        return WallHistory(self.time, ids, self.sizes[rows], self.free[rows], self.position[:, rows], self.orientation[:, rows], None, self.motion, self.end,
+                           _about_ids(self.about, ids.tolist()), impacts, forces, shapes)
+
     def base_path(self, base):
         """Places (s, 3) and orientations (s, 4) of a base, by its row; from where it is erased, the last ones."""
         here = np.isfinite(self.position[:, base]).all(axis=1)
@@ -338,6 +356,15 @@ def _about_given(about):
     if not all(isinstance(note, str) and note for note in (about or {}).get("notes", [])):
         raise ValueError(f"about['notes'] = {shown(about['notes'])}: must be texts that are not empty")
     return dict(about or {})
+
+
+def _about_ids(about, ids):
+    """`about` with the materials, motions and loads of these bodies alone."""
+    found = dict(about)
+    for name in ("materials", "motions", "loads"):
+        if name in about:
+            found[name] = [{**one, "ids": sorted(set(one["ids"]) & set(ids))} for one in about[name] if set(one["ids"]) & set(ids)]
+    return found
 
 
 def history_given(history):
