@@ -183,6 +183,19 @@ def test_a_turned_building_on_a_slab():
     assert dem.check_blocks(1e-8) == []
 
 
+def test_walls_on_walls():
+    """A thinner storey stands on the walls of a thicker one, its plan in the middle of theirs; a parapet on one wall; faces at different heights are refused."""
+    below = house(storeys=[1.2])
+    above = house(storeys=[1.2], brick=(0.6, 0.2, 0.3), on=below.top(1))
+    low, high = boxes(above.ids)
+    assert abs(low[:, 2].min() - 1.2) < 1e-12 and np.allclose([low[:, :2].min(axis=0), high[:, :2].max(axis=0)], [(-3.25, -2.05), (3.25, 2.05)])
+    parapet = dem.wall(courses=1, per_course=5, size=(0.6, 0.2, 0.2), material=stone(), on=above.top(1, wall="south"), at=(0.1, 0))
+    assert np.allclose(boxes(parapet)[0].min(axis=0), [0.1 - 1.5, -1.95 - 0.1, 2.4]) and dem.check_blocks(1e-8) == []
+    refuses(lambda: dem.wall(courses=1, per_course=5, size=(0.6, 0.2, 0.2), material=stone(), on=[*below.top(1), *above.top(1)]), "z = 2.4 m", "level")
+    refuses(lambda: dem.wall(courses=1, per_course=5, size=(0.6, 0.2, 0.2), material=stone(), on=below.top(1)), "off it", "34 bodies")
+    refuses(lambda: dem.wall(courses=1, per_course=5, size=(0.6, 0.2, 0.2), material=stone(), on=[]), "on = []")
+
+
 # --- random plans ---
 
 SIZES = [(0.6, 0.3, 0.2), (0.5, 0.2, 0.2), (0.4, 0.2, 0.2), (0.5, 0.15, 0.25)]

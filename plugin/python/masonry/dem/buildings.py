@@ -59,7 +59,7 @@ def building(plan, brick, storeys, material, on, thickness=None, openings=(), fl
     brick        (length, width, height) of a whole block, m, or a dict of them by wall; all have the same height
     storeys      heights of the storeys, m, from the lowest up: whole numbers of courses
     material     BlockMat of the blocks; lintel_material: of the lintels (None: the same)
-    on           id of the body on which it stands
+    on           id of the body on which it stands, or a list of ids whose upper faces are level with each other: a slab, house.top() of another building
     thickness    of the walls, m, one or a dict by wall: the width of the brick (None), or twice that: two wythes in running bond, tied by a course of headers after
                  every header_every - 1 courses of stretchers
     openings     dem.Opening, doors and windows, anywhere along a wall, a lintel over each one

@@ -91,7 +91,9 @@ def wall(courses=None, per_course=None, size=None, material=None, on=None, gap=0
                   course), or with openings_in='blocks' in blocks along x and courses along z. Half a block at least stays at both
                   ends. Over each one lies a lintel: a single block that bears on half a block or a whole one, so that it ends
                   where its course has a joint. There is none over an opening that reaches the top.
-    at            (x, y) of the middle of the wall on the body `on`, m; every block of the bottom course has its centre above that body
+    on            id of a body, or a list of ids whose upper faces are level with each other, as those of the top course of a wall
+    at            (x, y) of the middle of the wall on the body `on`, m (on several: from the middle of the rectangle around them); every block of the bottom
+                  course has its centre above that body
     along         direction of the wall in plan, (dx, dy) in the axes of the body `on`: (0, 1) along y. dem.angle(id, 'y') is the lean of a block along its
                   wall, dem.angle(id, 'x') out of it; along y, where blocks are not turned, the other way round
     """
