@@ -47,7 +47,7 @@ class Building:
     def __str__(self):
         floors = sum(map(len, self.floors))
         return (f"{len(self.walls)} walls, {len(self.ids) - floors} blocks ({len(self.lintels)} of them lintels), {floors} slabs and beams: "
-                f"{self.volume:.4g} m^3, {self.mass:.4g} kg")
+                f"{self.volume:.4g} m^3, {1e-3 * self.mass:.4g} t")
 
 
 def building(plan, brick, storeys, material, on, thickness=None, openings=(), floors=None, gables=None, heights=None, at=(0.0, 0.0), along=(1.0, 0.0), lap=None,

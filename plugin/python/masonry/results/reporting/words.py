@@ -40,8 +40,8 @@ def load(given):
     """One sentence on a load of WallHistory.about."""
     on = f"on {len(given['ids'])} block{'s' if len(given['ids']) != 1 else ''}"
     if given["kind"] == "mass":
-        return f"{given['size']:.4g} kg {on}, which move with them"
-    return f"{1e-3 * given['size']:.4g} kN {on}, a constant force"
+        return f"{decimal(given['size'], 4)} kg {on}, which move with them"
+    return f"{decimal(1e-3 * given['size'], 4)} kN {on}, a constant force"
 
 
 def _written_by_masonry(sentences):
