@@ -94,3 +94,19 @@ def test_a_base_that_swings(engines):
     assert abs(turned.max() - 0.02) < 1e-4
     # First order: blocks follow a base whose velocity a step sets; they slide or rock by less.
     assert history.drift().max() < 1e-3 and history.rotation[:, 1:].max() < 1e-3, (history.drift().max(), history.rotation.max())
+
+
+@pytest.mark.parametrize("engines", MODELS)
+def test_the_moment_on_a_base_that_turns(engines):
+    """A block that rests on a base at the angle a: about the middle of its foot, which goes with the base, the moment is -W h/2 sin(a), wherever the axis is."""
+    base = dem.base((8, 2, 0.2), stone())
+    block = dem.block((0.4, 0.5, 0.8), stone(), on=base, at=(1.5, 0))
+    recorder = dem.WallRecorder(virtPeriod=0.05, recordForces=True)
+    made = quiet_engines(recorder=recorder, **engines)
+    turn = InterpolatingHelixEngine(ids=[base], times=[0, 1.0, 2.0, 100], angularVelocities=[0, 0.1, 0, 0], rotationAxis=(0, 1, 0), rotateAroundZero=True, zeroPoint=(-2, 0, -1))
+    O.engines = [*made[:-1], turn, made[-1]]
+    dem.run(2.5)
+    weight = 9.81 * O.bodies[block].state.mass
+    moment = results.base_reactions(dem.wall_history(recorder), about=(1.5, 0, 0))["moment"][-1]
+    # Compliant: the block leans by its springs; rigid: the tolerance of the solver in forces.
+    assert np.abs(moment - [0, -weight * 0.4 * math.sin(0.1), 0]).max() < 2e-3 * weight * 0.4, (moment, weight * 0.4 * math.sin(0.1))
