@@ -70,6 +70,28 @@ def test_reactions(model):
     assert np.abs(results.base_reactions(dem.wall_history(recorder))["force"][-1] - expected).max() < 4e-3 * expected[2]
 
 
+@pytest.mark.parametrize("engines", ({"model": "planar"}, {"model": "planar", "method": "wall"}, {"model": "compliant"}))
+def test_loads_that_come_during_a_run(engines):
+    """The base carries them from then on; a load whose engine is dead is gone."""
+    base = dem.base((4, 1, 0.2), stone())
+    ids = dem.stack(2, (0.6, 0.5, 0.4), stone(), on=base)
+    O.engines = quiet_engines(**engines)
+    weight = GRAVITY * sum(O.bodies[id].state.mass for id in ids)
+
+    def carried():
+        dem.run(0.5 if engines["model"] == "compliant" else 0.1)
+        return dem.reactions(base)["force"].sum(axis=0)[2]
+
+    bound = 5e-3 * weight  # of 'wall' in forces, and springs that settle
+    assert abs(carried() - weight) < bound
+    dem.add_mass(ids[1], 100.0)
+    assert abs(carried() - weight - 100 * GRAVITY) < bound
+    (load,) = dem.dead_load(ids[1], 700.0)
+    assert abs(carried() - weight - 100 * GRAVITY - 700) < bound
+    load.dead = True
+    assert abs(carried() - weight - 100 * GRAVITY) < bound and dem.loads.dead_loads() == {}
+
+
 def test_a_dead_load_has_no_mass():
     """In free flight the acceleration is g + F/m, and kinetic and potential energy keep their sum."""
     dem.base((4, 1, 0.2), stone())

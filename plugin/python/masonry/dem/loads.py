@@ -71,7 +71,7 @@ def dead_load(ids, force):
     ids      id of a free block, or a list of them
     force    N, of all of them together, positive, shared in proportion to their areas in plan
 
-    Call it before dem.engines(), which puts the engines where they belong in the list that it returns. Reactions, joint forces and the potential energy of
+    dem.engines() takes the engines into the list that it returns; called later, dem.dead_load puts them behind the ForceResetter of O.engines. Reactions, joint forces and the potential energy of
     dem.energy() and histories have the load in them; O.save keeps it. On a dem.TiltTable it turns, or is pulled sideways, as the weights are. A load ends when
     its engines are taken out of O.engines or are `dead`."""
     bodies = _given(ids, "force", force, "N, downwards")
@@ -80,7 +80,9 @@ def dead_load(ids, force):
         by_force.setdefault(float(force * share), []).append(body.id)
     number = sum(_is_load(engine) for engine in O.engines)
     made = [wrapper.ForceEngine(ids=own, force=Vector3(0, 0, -one), label=f"{_LABEL}{number + k}") for k, (one, own) in enumerate(by_force.items())]
-    O.engines = [*O.engines, *made]
+    engines = list(O.engines)
+    first = next((k + 1 for k, engine in enumerate(engines) if isinstance(engine, wrapper.ForceResetter)), len(engines))
+    O.engines = engines[:first] + made + engines[first:]
     return made
 
 

@@ -7,6 +7,7 @@ from masonry._given import finite_numbers, number_given, shown
 from masonry.dem import layouts
 from masonry.dem.bodies import block_body, blocks, boxes, convex_blocks, own_parts, poses, world_shape
 from masonry.dem.checks import check_material
+from masonry.dem.loads import added_mass
 from masonry.dem.meshes import write_obj
 from masonry.dem.placing import append_boxes, block_material, box_body, check_support, convex_body, placed, polyhedron, posed, stand, top_of, turn_about_z, union_polyhedron
 from masonry.dem.tables import read_table, table_rows, write_table
@@ -191,6 +192,8 @@ def save_blocks(path):
         known = labelled.setdefault(material.label, material)
         if any(repr(value) != repr(getattr(known, name)) for name, value in material.dict().items() if name != "id"):
             raise ValueError(f"O.materials[{material.id}].label = {shown(material.label)}: must be another than that of O.materials[{known.id}], which is not the same")
+    if added_mass():
+        print(f"masonry.dem: {path} does not hold the mass that dem.add_mass has added to {len(added_mass())} blocks")
     corners = [None if hasattr(b.shape, "extents") else own_parts(b.shape) for b in bodies]
     resting = [[b.state.refOri[k] for k in (3, 0, 1, 2)] for b in bodies]
     write_table(path, table_rows(*poses(bodies), [b.mat.label for b in bodies], corners, resting))
