@@ -173,6 +173,17 @@ def test_beams_in_walls():
     assert abs(made.volume - volume) < 1e-8 * volume and dem.check_blocks(1e-8) == []
 
 
+def test_a_lower_wall():
+    """A garden wall is bonded with the house up to its own height; a window above it may stand over it. Walls are numbered where the plan is a list."""
+    plan = [((0, 0), (6.3, 0)), ((3.0, 0), (3.0, -2.1))]
+    made = house(plan=plan, storeys=[2.4], heights={1: 0.9}, openings=dem.Opening(0, x=2.6, width=0.8, height=0.9, sill=0.9))
+    volume = 0.3 * (6.3 * 2.4 + (2.1 - 0.15) * 0.9 - 0.8 * 0.9)
+    assert abs(made.volume - volume) < 1e-8 * volume and dem.check_blocks(1e-8) == []
+    low, high = boxes(made.walls[1])
+    assert abs(high[:, 2].max() - 0.9) < 1e-12 and abs(high[:, 1].max() - (0.15 - 1.95)) < 1e-9
+    assert straight_joints(*boxes(made.ids), 0.6 / 8) == []
+
+
 def test_a_turned_building_on_a_slab():
     """A slab can be the base of another building, at an angle."""
     below = house(floors=[None, dem.Slab(0.2)])
@@ -313,6 +324,12 @@ BAD = [
     (dict(openings=[dem.Opening("south", x=0.2, width=1, height=0.9)]), ("openings[0] in wall 'south' from (0.2, 0)", "'west' at (0, 0)", "0.15 m")),
     (dict(openings=[dem.Opening("south", x=1, width=1, height=0.9), dem.Opening("south", x=1.5, width=1, height=0.9)]), ("openings[1] in wall 'south'", "another opening")),
     (dict(openings=[dem.Opening("south", x=1, width=1, height=0.9), dem.Opening("south", x=2.2, width=1, height=0.9)]), ("openings[1]", "lintel", "farther apart")),
+    (dict(openings=[dem.Opening("south", x=6, width=1, height=0.9)]), ("from (6, 0) to (7, 0)", "within the wall", "(6.3, 0)")),
+    (dict(openings=[dem.Opening(["south"], x=1, width=1, height=0.9)]), ("openings[0]: wall = ['south']",)),
+    (dict(openings=3), ("openings = 3", "list")),
+    (dict(plan={"a": ((0, 0), (3, 0))}, openings=[dem.Opening("a", x=0.1, width=1, height=0.9)]), ("the end of the wall at (0, 0)",)),
+    (dict(floors=dem.Slab(0.2), heights=dict.fromkeys(("south", "north", "west", "east"), 1.2)), ("floors[0]: no wall reaches",)),
+    (dict(floors=dem.Beams(("south", "north"), (0.1, 0.3), at=2)), ("floors[0]: at = 2",)),
     (dict(floors=[dem.Slab(0.2)]), ("floors = ", "a list of 2")),
     (dict(floors=dem.Slab(-0.2)), ("floors[0]: thickness = -0.2",)),
     (dict(floors=dem.Beams(("south", "west"), (0.1, 0.3), number=2)), ("floors[0]", "'south' and 'west'", "parallel")),

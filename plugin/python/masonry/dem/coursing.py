@@ -150,12 +150,13 @@ class Coursing:
         for k, opening in enumerate(self.plan.openings):
             wall, start, end, bottom, top = self._span(opening)
             name, least = f"openings[{k}] in wall {wall.name!r} from {wall.place(start)} to {wall.place(end)}", wall.brick[0] / 4
-            for other, place in [(other, place) for place, other in wall.junctions] + [(None, wall.low), (None, wall.high)]:
+            if not wall.low < start < end < wall.high:
+                raise ValueError(f"{name}: must lie within the wall, which goes from {wall.place(wall.low)} to {wall.place(wall.high)}")
+            joined = [(other, place) for place, other in wall.junctions if self.courses[bottom].z < other.top - self.near]
+            ends = [(None, place) for place in (wall.low, wall.high) if not any(abs(place - one) <= self.near for one, _ in wall.junctions)]
+            for other, place in joined + ends:
                 half = other.thickness / 2 if other else 0.0
-                if other is None and any(abs(place - one) <= self.near for one, _ in wall.junctions):
-                    continue
-                inside = start < place + half + least - self.near and end > place - half - least + self.near
-                if inside or not wall.low < start < end < wall.high:
+                if start < place + half + least - self.near and end > place - half - least + self.near:
                     where = f"wall {other.name!r} at {wall.place(place)}" if other else f"the end of the wall at {wall.place(place)}"
                     raise ValueError(f"{name}: must leave at least {least:g} m (a quarter of a block) to {where}")
             for course in range(bottom, top):
@@ -235,6 +236,8 @@ class Coursing:
         if areas is None:
             ends = np.array([[(wall.low - wall.before, wall.high + wall.after), (wall.across - wall.thickness / 2, wall.across + wall.thickness / 2)][::1 - 2 * wall.axis]
                              for wall in walls if self.parts[wall.name][self.first[floor] + self.plan.storeys[floor] - 1].runs])
+            if not len(ends):
+                raise ValueError(f"floors[{floor}]: no wall reaches up to it, at {z:g} m: must be None there")
             areas = [(ends[:, :, 0].min(axis=0), ends[:, :, 1].max(axis=0))]
         for low, high in areas:
             low, high = np.array(low, dtype=float), np.array(high, dtype=float)

@@ -143,6 +143,9 @@ def read_plan(plan, thickness, brick, storeys, openings, floors, gables, heights
         whole_given("header_every", header_every, 2)
     if not isinstance(bonded, bool):
         raise ValueError(f"bonded = {shown(bonded)}: must be True or False")
+    openings = (openings,) if isinstance(openings, Opening) else openings
+    if not isinstance(openings, (list, tuple)):
+        raise ValueError(f"openings = {shown(openings)}: must be a list of dem.Opening")
     found = Plan(walls, height, courses, tuple(openings), _floors(floors, len(courses)), lap if lap is not None else longest / 8, bonded, header_every or 6)
     for k, opening in enumerate(found.openings):
         _check_opening(f"openings[{k}]", opening, found)
@@ -290,7 +293,7 @@ def _check_floor(name, floor, plan):
             if not (x1 > x0 and y1 > y0):
                 raise ValueError(f"{name}: areas[{k}] = {shown(area)}: the second corner must have the larger x and y")
     elif isinstance(floor, Beams):
-        if not isinstance(floor.walls, (list, tuple)) or len(floor.walls) != 2 or any(wall not in plan.walls for wall in floor.walls):
+        if not isinstance(floor.walls, (list, tuple)) or len(floor.walls) != 2 or not all(_is_name(wall, plan) for wall in floor.walls):
             raise ValueError(f"{name}: walls = {shown(floor.walls)}: must be the names of two walls, among {', '.join(map(repr, plan.walls))}")
         one, other = (plan.walls[wall] for wall in floor.walls)
         if one.axis != other.axis or one is other:
@@ -302,12 +305,20 @@ def _check_floor(name, floor, plan):
             raise ValueError(f"{name}: number = {floor.number}, at = {floor.at}: give one of the two")
         if floor.number is not None:
             whole_given(f"{name}: number", floor.number, 1, 10000)
+        elif not isinstance(floor.at, (list, tuple)) or not floor.at:
+            raise ValueError(f"{name}: at = {shown(floor.at)}: must be a list of places along the walls, in m")
+        else:
+            finite_numbers(f"{name}: at", floor.at, len(floor.at), "finite numbers, in m")
+
+
+def _is_name(name, plan):
+    return isinstance(name, (str, int)) and name in plan.walls
 
 
 def _check_opening(name, opening, plan):
     if not isinstance(opening, Opening):
         raise ValueError(f"{name} = {shown(opening)}: must be a dem.Opening(wall, x, width, height, sill=0, storey=1)")
-    if opening.wall not in plan.walls:
+    if not _is_name(opening.wall, plan):
         raise ValueError(f"{name}: wall = {shown(opening.wall)}: must be one of {', '.join(map(repr, plan.walls))}")
     storey = whole_given(f"{name}: storey", opening.storey, 1, len(plan.storeys))
     number_given(f"{name}: x", opening.x)
