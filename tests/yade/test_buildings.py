@@ -184,6 +184,17 @@ def test_a_lower_wall():
     assert straight_joints(*boxes(made.ids), 0.6 / 8) == []
 
 
+def test_walls_that_cross_and_bricks_of_their_own():
+    """Two inner walls of thinner bricks cross each other and end on the outer walls: all are bonded."""
+    plan = {"south": ((0, 0), (6.3, 0)), "north": ((0, 3.9), (6.3, 3.9)), "west": ((0, 0), (0, 3.9)), "east": ((6.3, 0), (6.3, 3.9)), "along": ((0, 1.8), (6.3, 1.8)),
+            "across": ((2.9, 0), (2.9, 3.9))}
+    inner, outer = (0.5, 0.2, 0.3), (0.6, 0.3, 0.3)
+    made = house(plan=plan, storeys=[1.8], brick={name: inner if name in ("along", "across") else outer for name in plan})
+    volume = 1.8 * (0.3 * 2 * (6.3 + 3.9) + 0.2 * ((6.3 - 0.3) + (3.9 - 0.3) - 0.2))
+    assert abs(made.volume - volume) < 1e-8 * volume and dem.check_blocks(1e-8) == []
+    assert straight_joints(*boxes(made.ids), 0.5 / 8) == []
+
+
 def test_a_turned_building_on_a_slab():
     """A slab can be the base of another building, at an angle."""
     below = house(floors=[None, dem.Slab(0.2)])
