@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 from masonry import dem, results
-from rocking_scene import quiet_engines, refuses
+from rocking_scene import quiet_engines, refuses, said_by
 from yade import O
 
 import masonry
@@ -166,6 +166,13 @@ def test_saved_and_loaded():
     O.engines = quiet_engines(model="planar")
     assert sum(-engine.force[2] * len(engine.ids) for engine in dem.loads.load_engines()) == pytest.approx(900, rel=1e-14)
     assert dem.loads.added_mass() == pytest.approx({ids[0]: 50.0}, rel=1e-9)
+
+
+def test_a_table_says_that_it_lacks_them(tmp_path):
+    ids = dem.stack(2, (0.4, 0.5, 0.6), stone(label="stone"), on=dem.base((4, 2, 0.2), stone()))
+    assert said_by(dem.save_blocks, tmp_path / "blocks.csv") == ""
+    dem.add_mass(ids[0], 50.0)
+    assert "added to 1 blocks" in said_by(dem.save_blocks, tmp_path / "blocks.csv")
 
 
 def test_the_report_names_them(tmp_path):
