@@ -21,6 +21,7 @@ GALLERY = ROOT / "docs/gallery"
 # {script of docs/gallery: (interpreter, pictures)}
 SCRIPTS = {
     "arch": ("yade", ("thrust.png", "arch.png", "arch.gif")),
+    "building": ("yade", ("building.png",)),
     "collapse": ("yade", ("collapse.gif", "joints.png", "energy.png", "report.png")),
     "convex_blocks": ("yade", ("convex_blocks.png",)),
     "fragility": ("python", ("fragility.png",)),

@@ -12,6 +12,7 @@ A comment above a fenced block says what the block is; every block of Python has
     <!-- file: NAME -->                 a file that later scripts of the page read
     <!-- not run: REASON -->            neither run nor compared
 """
+import builtins
 import contextlib
 import io
 import os
@@ -103,6 +104,7 @@ def _run(script, page):
             file.write(text)
     sys.modules["__main__"] = types.ModuleType("__main__")  # where YADE's PyRunner looks for names
     names = vars(sys.modules["__main__"])
+    names["__builtins__"] = builtins  # the module, as in every __main__: YADE puts labels of engines into it
     for part in script.parts:
         output = io.StringIO()
         try:

@@ -59,6 +59,10 @@ class Shapes:
     def __len__(self):
         return len(self.vertex_start) - 1
 
+    def of_rows(self, rows):
+        """The Shapes of some of the blocks."""
+        return Shapes.of([(self.vertices[self.vertex_start[row]:self.vertex_start[row + 1]], self.loops[row]) for row in rows])
+
     @cached_property
     def blocks_of_faces(self):
         """Row of the block of each face."""

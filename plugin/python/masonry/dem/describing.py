@@ -8,6 +8,7 @@ import sys
 from masonry import _build
 from masonry.dem import notes
 from masonry.dem.engines import joint_engine
+from masonry.dem.loads import added_mass, dead_loads
 from yade import O, config, wrapper
 
 _MATERIAL = ("density", "frictionAngle", "restitution", "noSlip", "normalStiffness", "shearStiffness")
@@ -17,11 +18,19 @@ _SOLVER = ("worstResidual", "failures", "firstFailure", "madeEnergy", "lostEnerg
 
 
 def about(ids, motions):
-    """A dict that JSON can hold: script, versions, model, materials (with the ids that they have among `ids`), motions, solver and notes."""
-    engine = joint_engine()
-    return _plain({"script": os.path.basename(sys.argv[0]) if sys.argv else "", "versions": _versions(), "model": _model(engine),
-                   "materials": _materials(ids), "motions": [_motion(one) for one in motions],
-                   "solver": {name: getattr(engine, name) for name in _SOLVER if hasattr(engine, name)}, "notes": list(notes.said)})
+    """A dict that JSON can hold: script, versions, model, materials (with the ids that they have among `ids`), motions, loads where there are any, solver and notes."""
+    engine, loads = joint_engine(), _loads()
+    found = {"script": os.path.basename(sys.argv[0]) if sys.argv else "", "versions": _versions(), "model": _model(engine),
+             "materials": _materials(ids), "motions": [_motion(one) for one in motions],
+             "solver": {name: getattr(engine, name) for name in _SOLVER if hasattr(engine, name)}, "notes": list(notes.said)}
+    return _plain({**found, "loads": loads} if loads else found)
+
+
+def _loads():
+    """Rows {kind, size, ids}: kg that move with blocks, and N of dead loads, with the unit of each as its kind says."""
+    mass, dead = added_mass(), dead_loads()
+    rows = [{"kind": "mass", "size": sum(mass.values()), "ids": sorted(mass)}] if mass else []
+    return rows + ([{"kind": "dead load", "size": sum(math.hypot(*force) for force in dead.values()), "ids": sorted(dead)}] if dead else [])
 
 
 def _plain(value):

@@ -13,6 +13,7 @@ from masonry import _yade
 from masonry.dem import bodies, notes
 from masonry.dem.bodies import face_areas, geometry, half_sizes, poses, reach
 from masonry.dem.checks import check_blocks, check_material, check_recorder
+from masonry.dem.loads import dead_loads, load_engines, potential_of_loads
 from masonry.dem.structures import structures
 
 _MODELS = ("auto", "planar", "spatial", "compliant")
@@ -56,7 +57,8 @@ def has_stiffness(material):
 
 def _largest_pressure(free, gravity):
     """Of the weight of a block and of what stands above it, over its lower face, Pa. Overlaps are measured along the axes of that face."""
-    (centers, sizes, axes), mass = geometry(free), np.array([b.state.mass for b in free])
+    loads = dead_loads()
+    (centers, sizes, axes), mass = geometry(free), np.array([b.state.mass + np.linalg.norm(loads.get(b.id, 0)) / gravity for b in free])
     pressures = []
     for k, (center, own) in enumerate(zip(centers, axes)):
         face = np.delete(own, np.abs(own[:, 2]).argmax(), axis=0)
@@ -301,7 +303,7 @@ def _rigid(motions, model, method, dt, tolerance, impact_order, gravity, recorde
         raise ValueError(f"dt = {dt}: must be at most {integrator.largestTimeStep:.3g} s, 0.15 sqrt(R/g) of the smallest block")
     O.dt = float(step)
     print(f"masonry.dem: rigid blocks, {choice}; dt = {O.dt:.3g} s{notes.of_records(motions)}")
-    return [wrapper.ForceResetter(), *others, *recorders, integrator]
+    return [wrapper.ForceResetter(), *load_engines(), *others, *recorders, integrator]
 
 
 def _compliant(blocks, motions, reason, dt, penetration, impact_order, gravity, recorders):
@@ -326,6 +328,7 @@ def _compliant(blocks, motions, reason, dt, penetration, impact_order, gravity, 
     smallest = poses(blocks)[1].min() / 2
     return [
         wrapper.ForceResetter(),
+        *load_engines(),
         wrapper.InsertionSortCollider([wrapper.Bo1_Box_Aabb(), wrapper.Bo1_ConvexBlock_Aabb()], verletDist=0.05 * smallest),
         wrapper.InteractionLoop([wrapper.Ig2_Box_Box_BlockGeom(), wrapper.Ig2_Box_ConvexBlock_BlockGeom(), wrapper.Ig2_ConvexBlock_ConvexBlock_BlockGeom()],
                                 [wrapper.Ip2_BlockMat_BlockMat_BlockPhys()], [wrapper.Law2_BlockGeom_BlockPhys_Rocking()]),
@@ -384,7 +387,7 @@ def impacts():
 def energy():
     """Energies in J, a dict.
 
-    kinetic, potential                       now; of walls of method='wall', whose velocities belong to the middle of a step, potential half a step earlier
+    kinetic, potential                       now, dead loads included; of walls of method='wall', whose velocities belong to the middle of a step, potential half a step earlier
     frictDissip, impactDissip, baseWork      since dem.engines() made the engines: dissipated by friction and by impacts, and the work of the base
     elastPotential, dampDissip               compliant joints: elastic energy now, dissipated by dashpots so far
 
@@ -392,7 +395,10 @@ def energy():
     impactDissip), and for the work of other engines' forces, a change of gravity or velocities by a script, and erased blocks. With compliant joints all energies are 0 before the first step."""
     e = joint_engine_given()
     keys = ("kinetic", "potential", "elastPotential", "frictDissip", "dampDissip", "impactDissip", "baseWork")
-    return {key: getattr(e, key) for key in keys if hasattr(e, key)}
+    found = {key: getattr(e, key) for key in keys if hasattr(e, key)}
+    if found["potential"] != 0 or not isinstance(e, wrapper.RockingJointEngine):
+        found["potential"] += potential_of_loads()
+    return found
 
 
 def history(recorder):

@@ -13,6 +13,8 @@ from yade import Body, O, Quaternion, Vector3, utils, wrapper
 _INSIDE = 1e-9
 # Height above the lowest corner, relative to the extent, up to which a corner stands on the ground.
 _LEVEL = 1e-9
+# Height, m, and cosine, by which upper faces on which one structure stands may differ: far below what a contact feels, above round-off.
+_LEVEL_FACES = 1e-9
 # Largest extent of a convex block, m: stones beyond come from a wrong unit.
 _EXTENTS = 1e-3, 1e2
 
@@ -110,13 +112,35 @@ def convex_bodies(blocks, material, faces=None):
     return [convex_body(one, material) for one in found]
 
 
+def faces_below(on):
+    """(middle, orientation, outlines): where a structure stands on a body, or on several whose upper faces are level with each other. The outlines (k, 2) of these faces are in the
+    axes of the orientation, that of the first body, from the middle, which is that of the rectangle around all of them; of one body that of its face."""
+    if not isinstance(on, (list, tuple)):
+        middle, orientation, outline = upper_face(block_body(on, "on"), f"on = {on}")
+        return middle, orientation, [outline]
+    if not on:
+        raise ValueError("on = []: must be the id of a body, or a list of ids")
+    faces = [upper_face(block_body(one, f"on[{k}]"), f"on[{k}] = {one}") for k, one in enumerate(on)]
+    first, orientation = faces[0][0], faces[0][1]
+    outlines = []
+    for (middle, own, outline), one in zip(faces, on):
+        if abs((orientation.conjugate() * (middle - first))[2]) > _LEVEL_FACES or abs((orientation.conjugate() * own * Vector3.UnitZ)[2] - 1) > _LEVEL_FACES:
+            raise ValueError(f"on: the upper face of body {one} is at z = {middle[2]:.6g} m and that of body {on[0]} at z = {first[2]:.6g} m: all must be level with each other")
+        outlines.append(np.array([tuple(orientation.conjugate() * (middle + own * Vector3(x, y, 0) - first)) for x, y in outline])[:, :2])
+    corners = np.concatenate(outlines)
+    shift = (corners.min(axis=0) + corners.max(axis=0)) / 2
+    return first + orientation * Vector3(*shift, 0), orientation, [outline - shift for outline in outlines]
+
+
 def top_of(on, at=(0.0, 0.0), above=0.0):
-    """Where a layout stands on the body: the place `at` from the middle of its upper face, so high above it, and the orientation of the axes of `at`."""
-    below, at = block_body(on, "on"), finite_numbers("at", at, 2, "two finite numbers, in m")
-    if isinstance(below.shape, wrapper.Box):
-        return below.state.pos + below.state.ori * Vector3(at[0], at[1], below.shape.extents[2] + above), below.state.ori
-    middle, orientation, _ = upper_face(below, f"on = {on}")
-    return middle + Vector3(at[0], at[1], above), orientation
+    """Where a layout stands on the body, or bodies: the place `at` from the middle of its upper face, so high above it, and the orientation of the axes of `at`."""
+    at = finite_numbers("at", at, 2, "two finite numbers, in m")
+    if not isinstance(on, (list, tuple)):
+        below = block_body(on, "on")
+        if isinstance(below.shape, wrapper.Box):
+            return below.state.pos + below.state.ori * Vector3(at[0], at[1], below.shape.extents[2] + above), below.state.ori
+    middle, orientation, _ = faces_below(on)
+    return middle + orientation * Vector3(at[0], at[1], above), orientation
 
 
 def one_body(make, on, center, orientation):
@@ -147,24 +171,51 @@ def placed(centers, foot, orientation):
     return np.array(foot) + centers @ np.array(orientation.toRotationMatrix()).reshape(3, 3).T
 
 
-def check_support(bottom, on, at, reach):
-    """ValueError unless each of the places `bottom` (n, 2), from the foot at `at`, is above the upper face of the body `on`. reach: of the structure, m."""
-    places = np.asarray(bottom) + at
-    outline = upper_face(block_body(on, "on"), f"on = {on}")[2]
-    sides = np.roll(outline, -1, axis=0) - outline
-    inwards = np.stack([-sides[:, 1], sides[:, 0]], axis=-1) / np.hypot(*sides.T)[:, None]
-    depth = np.einsum("nsk,sk->ns", places[:, None] - outline, inwards).min(axis=1)
-    width = np.ptp(outline, axis=0)
-    off = places[depth < _INSIDE * width.min() / 2]
+def direction_in_plan(along):
+    """Unit vector (x, y) of a direction in plan."""
+    vector = np.array(finite_numbers("along", along, 2, "a direction in plan, two finite numbers (dx, dy)"))
+    length = math.hypot(*vector)
+    if not 0 < length < math.inf:
+        raise ValueError(f"along = {shown(along)}: must be a direction in plan, two numbers (dx, dy) that are not both 0")
+    return vector / length
+
+
+def check_support(bottom, on, at, reach, along=(1.0, 0.0)):
+    """ValueError unless each of the places `bottom` (n, 2), from the foot at `at`, is above the upper face of the body `on`, or of one of several. reach: of the structure, m; along: unit
+    vector of its x axis in plan."""
+    places = np.asarray(bottom) @ [along, (-along[1], along[0])] + at
+    outlines = faces_below(on)[2]
+    depths = []
+    for outline in outlines:
+        sides = np.roll(outline, -1, axis=0) - outline
+        inwards = np.stack([-sides[:, 1], sides[:, 0]], axis=-1) / np.hypot(*sides.T)[:, None]
+        depths.append(np.einsum("nsk,sk->ns", places[:, None] - outline, inwards).min(axis=1))
+    width = np.ptp(np.concatenate(outlines), axis=0)
+    least = _INSIDE * np.ptp(outlines[0], axis=0).min() / 2
+    off = places[np.max(depths, axis=0) < (least if len(outlines) == 1 else -least)]  # of several: a centre may be above the joint of two
     if len(off):
-        raise ValueError(f"{reach[0]:g} x {reach[1]:g} m at ({at[0]:g}, {at[1]:g}) on body {on} of {width[0]:g} x {width[1]:g} m: {len(off)} blocks of the bottom "
+        name = f"body {on}" if len(outlines) == 1 else f"{len(outlines)} bodies"
+        raise ValueError(f"{reach[0]:g} x {reach[1]:g} m at ({at[0]:g}, {at[1]:g}) on {name} of {width[0]:g} x {width[1]:g} m: {len(off)} blocks of the bottom "
                          f"course have their centres off it, at {listed([f'({x:g}, {y:g})' for x, y in off])}: all must be above it")
 
 
-def stand(layout, material, on, at):
-    """The boxes of a layout on the body `on`. Everything is checked before the first one is made."""
+def turned_layout(layout, along):
+    """(centers, sizes, turn about z) of a layout whose x axis is to point along that direction in plan. Along the axes there is no turn: sizes and places are swapped, so
+    that the boxes stay parallel to those of other layouts to the last bit."""
+    centers, sizes = layout
+    x, y = direction_in_plan(along)
+    if x != 0 and y != 0:
+        return centers, sizes, Quaternion(Vector3.UnitZ, math.atan2(y, x))
+    centers = np.column_stack([x * centers[:, 0] - y * centers[:, 1], y * centers[:, 0] + x * centers[:, 1], centers[:, 2]])
+    return centers, sizes if y == 0 else sizes[:, [1, 0, 2]], Quaternion.Identity
+
+
+def stand(layout, material, on, at, along=(1.0, 0.0)):
+    """The boxes of a layout on the body `on`, its x axis along that direction in plan. Everything is checked before the first one is made."""
     centers, sizes = layout
     foot, orientation = top_of(on, at)
     bottom = centers[centers[:, 2] - sizes[:, 2] / 2 < sizes[:, 2].min() / 2, :2]
-    check_support(bottom, on, at, np.ptp(np.concatenate([centers - sizes / 2, centers + sizes / 2]), axis=0))
+    check_support(bottom, on, at, np.ptp(np.concatenate([centers - sizes / 2, centers + sizes / 2]), axis=0), direction_in_plan(along))
+    centers, sizes, turn = turned_layout(layout, along)
+    orientation = orientation * turn
     return append_boxes(placed(centers, foot, orientation).tolist(), sizes, block_material(material), orientation, orientation)

@@ -6,6 +6,7 @@ from masonry._pose import BOX_FACES
 from masonry._shapes import Shapes, box_corners
 from masonry.dem.describing import about
 from masonry.dem.engines import impacts, joint_engine
+from masonry.dem.loads import dead_loads
 from masonry.dem.placing import union_polyhedron
 from masonry.results import WallHistory
 from masonry.results.wall_history import JOINT_FORCES
@@ -28,9 +29,19 @@ def wall_history(recorder):
     present = recorder in O.engines
     end = max(O.time, recorder.times[-1]) if present else None
     sizes, shapes = _shapes(recorder, 2 * blocks[:, :3])
-    return WallHistory(recorder.times, recorder.ids, sizes, blocks[:, 3] > 0, poses[..., :3], poses[..., 3:],
-                       np.array(recorder.energies).reshape(len(recorder.times), -1), motion, end,
+    energies = np.array(recorder.energies).reshape(len(recorder.times), -1)
+    if present:
+        _add_loads(energies, recorder.ids, poses[..., :3])
+    return WallHistory(recorder.times, recorder.ids, sizes, blocks[:, 3] > 0, poses[..., :3], poses[..., 3:], energies, motion, end,
                        about(recorder.ids, motions) if present else None, impacts() if present and joint_engine() else None, _forces(recorder), shapes)
+
+
+def _add_loads(energies, ids, places):
+    """Adds the potential energy of the dead loads of now on these blocks; where one is erased its load is gone."""
+    row = {id: k for k, id in enumerate(ids)}
+    for id, force in dead_loads().items():
+        if id in row:
+            energies[:, 1] -= np.nan_to_num(places[:, row[id]] @ force)
 
 
 def _shapes(recorder, sizes):

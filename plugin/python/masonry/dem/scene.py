@@ -7,6 +7,7 @@ from masonry._given import finite_numbers, number_given, shown
 from masonry.dem import layouts
 from masonry.dem.bodies import block_body, blocks, boxes, convex_blocks, own_parts, poses, world_shape
 from masonry.dem.checks import check_material
+from masonry.dem.loads import added_mass
 from masonry.dem.meshes import write_obj
 from masonry.dem.placing import append_boxes, block_material, box_body, check_support, convex_body, placed, polyhedron, posed, stand, top_of, turn_about_z, union_polyhedron
 from masonry.dem.tables import read_table, table_rows, write_table
@@ -77,7 +78,7 @@ def stack(n, size, material, on, at=(0.0, 0.0)):
 
 
 def wall(courses=None, per_course=None, size=None, material=None, on=None, gap=0.0, *, length=None, height=None, thickness=None, openings=(),
-         openings_in="m", at=(0.0, 0.0)):
+         openings_in="m", at=(0.0, 0.0), along=(1.0, 0.0)):
     """Running-bond wall on the body `on`: every second course starts and ends with a half block. Returns the ids, bottom up, along x.
 
     The wall is given by one of
@@ -91,28 +92,32 @@ def wall(courses=None, per_course=None, size=None, material=None, on=None, gap=0
                   course), or with openings_in='blocks' in blocks along x and courses along z. Half a block at least stays at both
                   ends. Over each one lies a lintel: a single block that bears on half a block or a whole one, so that it ends
                   where its course has a joint. There is none over an opening that reaches the top.
-    at            (x, y) of the middle of the wall on the body `on`, m; every block of the bottom course has its centre above that body
+    on            id of a body, or a list of ids whose upper faces are level with each other, as those of the top course of a wall
+    at            (x, y) of the middle of the wall on the body `on`, m (on several: from the middle of the rectangle around them); every block of the bottom
+                  course has its centre above that body
+    along         direction of the wall in plan, (dx, dy) in the axes of the body `on`: (0, 1) along y. dem.angle(id, 'y') is the lean of a block along its
+                  wall, dem.angle(id, 'x') out of it; along y, where blocks are not turned, the other way round
     """
     missing = [name for name, value in (("material", material), ("on", on)) if value is None]
     if missing:
         raise ValueError(f"{' = None, '.join(missing)} = None: must be given: a BlockMat, and the id of the body that the wall stands on")
     courses, per_course, size = layouts.wall_modules(courses, per_course, size, length, height, thickness, gap)
-    return stand(layouts.wall_layout(courses, per_course, size, gap, openings, openings_in), material, on, at)
+    return stand(layouts.wall_layout(courses, per_course, size, gap, openings, openings_in), material, on, at, along)
 
 
-def two_wythe_wall(courses, per_course, size, material, on, header_every=6, gap=0.0, collar=0.0, at=(0.0, 0.0)):
+def two_wythe_wall(courses, per_course, size, material, on, header_every=6, gap=0.0, collar=0.0, at=(0.0, 0.0), along=(1.0, 0.0)):
     """Wall of two leaves in running bond, tied by courses of headers. Returns the ids, bottom up, the front leaf (least y) first.
 
     size            of a whole stretcher, m; per_course: stretchers in a course of a leaf, a multiple of one half
     header_every    courses header_every, 2 header_every, ... (counted from 1) are headers: half a block long on the face, through both
                     leaves, with a quarter closer at either end; 2 to courses
     gap, collar     widths of the head joints and of the joint between the leaves, m
-    at              (x, y) of the middle of the wall on the body `on`, m
+    at, along       (x, y) of the middle of the wall on the body `on`, m, and its direction in plan, as in dem.wall()
     """
-    return stand(layouts.two_wythe_layout(courses, per_course, size, header_every, gap, collar), material, on, at)
+    return stand(layouts.two_wythe_layout(courses, per_course, size, header_every, gap, collar), material, on, at, along)
 
 
-def return_wall(courses, along_x, along_y, size, material, on, gap=0.0, at=(0.0, 0.0)):
+def return_wall(courses, along_x, along_y, size, material, on, gap=0.0, at=(0.0, 0.0), along=(1.0, 0.0)):
     """Corner of two running-bond legs, along x and along y, that interlock: they run through the corner in turns. Returns the ids,
     bottom up, in each course the leg along x first.
 
@@ -120,9 +125,9 @@ def return_wall(courses, along_x, along_y, size, material, on, gap=0.0, at=(0.0,
                         free end is shorter by the thickness
     size                of a whole block (along its leg, through it, z), m; through it 1/4 to 3/4 of along it: that is the lap
     gap                 width of the head joints, m
-    at                  (x, y) of the middle of the rectangle around the plan on the body `on`, m
+    at, along           (x, y) of the middle of the rectangle around the plan on the body `on`, m, and the direction of its leg along x in plan, as in dem.wall()
     """
-    return stand(layouts.return_layout(courses, along_x, along_y, size, gap), material, on, at)
+    return stand(layouts.return_layout(courses, along_x, along_y, size, gap), material, on, at, along)
 
 
 def pier(courses, size, material, on, per_course=1, at=(0.0, 0.0)):
@@ -187,6 +192,8 @@ def save_blocks(path):
         known = labelled.setdefault(material.label, material)
         if any(repr(value) != repr(getattr(known, name)) for name, value in material.dict().items() if name != "id"):
             raise ValueError(f"O.materials[{material.id}].label = {shown(material.label)}: must be another than that of O.materials[{known.id}], which is not the same")
+    if added_mass():
+        print(f"masonry.dem: {path} does not hold the mass that dem.add_mass has added to {len(added_mass())} blocks")
     corners = [None if hasattr(b.shape, "extents") else own_parts(b.shape) for b in bodies]
     resting = [[b.state.refOri[k] for k in (3, 0, 1, 2)] for b in bodies]
     write_table(path, table_rows(*poses(bodies), [b.mat.label for b in bodies], corners, resting))

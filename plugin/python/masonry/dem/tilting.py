@@ -14,6 +14,7 @@ from masonry._pose import axes_of
 from masonry._progress import wanted
 from masonry.dem.bodies import blocks, geometry, poses, reach, shapes_of, world_shape
 from masonry.dem.engines import METHODS, engines, has_stiffness
+from masonry.dem.loads import load_engines
 from tqdm import tqdm
 from yade import O, Vector3, wrapper
 
@@ -101,7 +102,7 @@ class TiltTable:
 
     direction    'x', '-x', 'y' or '-y': where the blocks are pulled
     load         'force': a horizontal body force, multiplier times the weight, is added to gravity. 'turned': gravity keeps its size and is
-                 turned by the arc tangent of the multiplier, as on a tilting table.
+                 turned by the arc tangent of the multiplier, as on a tilting table. Dead loads (dem.dead_load) are pulled or turned as the weights are
     model        'auto', 'planar' or 'spatial', as in dem.engines()
     hold         how long a multiplier is held while blocks move, in sqrt(height / gravity) of the scene; a tenth of it where they rest
     share        movement of a block, relative to the smallest size of any, that is collapse: more than the gaps
@@ -152,6 +153,7 @@ class TiltTable:
         if model == "auto" and any(has_stiffness(b.mat) for b in self._blocks):
             raise ValueError("model = 'auto': must be 'planar' or 'spatial' where a BlockMat has a joint stiffness: TiltTable is for rigid blocks")
         self._start = [(b.state.pos, b.state.ori) for b in self._blocks]
+        self._loads = [(engine, Vector3(engine.force)) for engine in load_engines()]
         self._as_built, self._row = poses(self._blocks), {b.id: k for k, b in enumerate(self._blocks)}
         self._shapes, _ = shapes_of(self._blocks)
         self._free_start = [start for b, start in zip(self._blocks, self._start) if b.dynamic]
@@ -309,6 +311,8 @@ class TiltTable:
         for body, (pos, ori) in zip(self._blocks, self._start):
             body.state.pos, body.state.ori = pos, ori
             body.state.vel = body.state.angVel = body.state.angMom = Vector3.Zero
+        for engine, force in self._loads:
+            engine.force = force
 
     def _begin(self, multiplier):
         self._put_back()
@@ -323,7 +327,10 @@ class TiltTable:
 
     def _pull(self, integrator, multiplier):
         pull = Vector3(_DIRECTIONS[self.direction]) * multiplier - Vector3.UnitZ
-        integrator.gravity = self.gravity * (pull.normalized() if self.load == "turned" else pull)
+        pull = pull.normalized() if self.load == "turned" else pull
+        integrator.gravity = self.gravity * pull
+        for engine, force in self._loads:
+            engine.force = pull * force.norm()
 
     def _speed(self):
         return max(b.state.vel.norm() + r * b.state.angVel.norm() for b, r in zip(self._free, self._reach))

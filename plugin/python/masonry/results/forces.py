@@ -53,6 +53,11 @@ def base_reactions(history, about=None, base=None):
     force = side[:, None] * forces["force"]
     under = bases[np.where(free[row2], row2, row1)]
     moved = history.position[forces["sample"], under] - history.position[0, under]
+    turns = (history.orientation[forces["sample"], under] != history.orientation[0, under]).any(axis=1)
+    if turns.any():  # with its base
+        now, first = (_pose.matrices(history.orientation[sample, under[turns]]) for sample in (forces["sample"][turns], 0))
+        arm = point - history.position[0, under[turns]]
+        moved[turns] += np.einsum("jab,jcb,jc->ja", now, first, arm) - arm
     moment = np.cross(forces["point"] - (point + moved), force)
     table = np.zeros(len(history.time), dtype=_REACTIONS)
     table["time"] = history.time

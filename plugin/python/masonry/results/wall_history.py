@@ -22,7 +22,7 @@ JOINT_FORCES = [("id1", int), ("id2", int), ("force", float, 3), ("point", float
 # Columns of the impacts, of dem.impacts(), that a report shows.
 _IMPACTS = "time", "body", "support", "restitution_asked", "restitution", "velocity", "energy_lost", "friction_demand", "capped"
 # Names that masonry writes into `about`; a script may add more.
-_ABOUT = {"script": str, "materials": list, "motions": list, "model": dict, "solver": dict, "notes": list, "versions": dict}
+_ABOUT = {"script": str, "materials": list, "motions": list, "loads": list, "model": dict, "solver": dict, "notes": list, "versions": dict}
 # Share of the motion that may be missing from a run to its end, whose last step or sample may come a little earlier.
 _FINISHED = 1e-3
 
@@ -40,7 +40,7 @@ class WallHistory:
     motion         (2,) s: when the motion of the base begins and ends (infinite: its end is not known); NaN: it has none; None: not known, as in files
                    that do not say it
     end            s: how far the run has come; None: to the last sample
-    about          dict that JSON can hold: script, versions, model, materials, motions, solver, notes, and what a script adds (about["seed"] = 7); empty:
+    about          dict that JSON can hold: script, versions, model, materials, motions, loads, solver, notes, and what a script adds (about["seed"] = 7); empty:
                    not known
     impacts        structured array of dem.impacts(); None: not known
     forces         structured array, one row for each joint that carries load in a sample: sample (its number), id1, id2, force on block 2 (N), point
@@ -195,6 +195,24 @@ class WallHistory:
         row = int(self.bases[np.argmax(self.free)])
         return None if row < 0 else row
 
+    def on_base(self, id):
+        """The WallHistory of what stands on the prescribed body of that id, and of that body: drift, collapse, forces, pictures and reports of one structure among
+        several. Impacts, forces, and motions and materials of `about` are those of its blocks; energies, which the recorder has of all blocks together, are not known."""
+        row = np.flatnonzero((self.ids == id) & ~self.free)
+        if len(row) != 1 or not (self.free & (self.bases == row[0])).any():
+            carrying = np.unique(self.bases[self.free & (self.bases >= 0)])
+            raise ValueError(f"id = {shown(id)}: must be a prescribed body on which blocks stand, among {shown(self.ids[carrying].tolist())}")
+        rows = np.flatnonzero((self.bases == row[0]) & (self.free | (self.ids == id)))
+        ids = self.ids[rows]
+        forces, impacts = self.forces, self.impacts
+        if forces is not None:
+            forces = forces[np.isin(forces["id1"], ids) & np.isin(forces["id2"], ids)]
+        if impacts is not None:
+            impacts = impacts[np.isin(impacts["body"], ids)]
+        shapes = None if self.shapes is None else self.shapes.of_rows(rows.tolist())
+        return WallHistory(self.time, ids, self.sizes[rows], self.free[rows], self.position[:, rows], self.orientation[:, rows], None, self.motion, self.end,
+                           _about_ids(self.about, ids.tolist()), impacts, forces, shapes)
+
     def base_path(self, base):
         """Places (s, 3) and orientations (s, 4) of a base, by its row; from where it is erased, the last ones."""
         here = np.isfinite(self.position[:, base]).all(axis=1)
@@ -338,6 +356,15 @@ def _about_given(about):
     if not all(isinstance(note, str) and note for note in (about or {}).get("notes", [])):
         raise ValueError(f"about['notes'] = {shown(about['notes'])}: must be texts that are not empty")
     return dict(about or {})
+
+
+def _about_ids(about, ids):
+    """`about` with the materials, motions and loads of these bodies alone."""
+    found = dict(about)
+    for name in ("materials", "motions", "loads"):
+        if name in about:
+            found[name] = [{**one, "ids": sorted(set(one["ids"]) & set(ids))} for one in about[name] if set(one["ids"]) & set(ids)]
+    return found
 
 
 def history_given(history):

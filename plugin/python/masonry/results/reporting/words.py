@@ -36,6 +36,14 @@ def motion(given):
     return f"{given['pulses']} pulses ({given['shape']}) of impulse {quantity(given['impulse'], 'm/s')}, along ({direction}){start}"
 
 
+def load(given):
+    """One sentence on a load of WallHistory.about."""
+    on = f"on {len(given['ids'])} block{'s' if len(given['ids']) != 1 else ''}"
+    if given["kind"] == "mass":
+        return f"{decimal(given['size'], 4)} kg {on}, which move with them"
+    return f"{decimal(1e-3 * given['size'], 4)} kN {on}, a constant force"
+
+
 def _written_by_masonry(sentences):
     """The function of `about`; where that, which may come from a file, lacks what masonry writes into it, ValueError."""
     @functools.wraps(sentences)
@@ -54,6 +62,7 @@ def facts(about):
     rows = [("Script", about["script"])] if about.get("script") else []
     rows += [("Material" if len(about["materials"]) == 1 else f"Material {k + 1}", material(one)) for k, one in enumerate(about.get("materials", []))]
     rows += [("Motion of the base", motion(one)) for one in about.get("motions", [])] or ([("Motion of the base", "none")] if "motions" in about else [])
+    rows += [("Added mass" if one["kind"] == "mass" else "Dead load", load(one)) for one in about.get("loads", [])]
     model = about.get("model", {})
     if "model" in model:
         rows.append(("Model", f"{model['model']}{': ' + model['reason'] if model.get('reason') else ''}"))
@@ -65,7 +74,7 @@ def facts(about):
     if "gravity" in model:
         rows.append(("Gravity", f"({', '.join(f'{x:g}' for x in model['gravity'])}) m/s^2"))
     rows += [(name[0].upper() + name[1:], value if isinstance(value, str) else f"{value!r}") for name, value in about.items()
-             if name not in ("script", "materials", "motions", "model", "solver", "notes", "versions")]
+             if name not in ("script", "materials", "motions", "loads", "model", "solver", "notes", "versions")]
     if "versions" in about:
         rows.append(("Versions", ", ".join(f"{name} {value}" for name, value in about["versions"].items())))
     return rows
