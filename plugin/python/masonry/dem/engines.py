@@ -13,6 +13,7 @@ from masonry import _yade
 from masonry.dem import bodies, notes
 from masonry.dem.bodies import face_areas, geometry, half_sizes, poses, reach
 from masonry.dem.checks import check_blocks, check_material, check_recorder
+from masonry.dem.pushing import Push
 from masonry.dem.structures import structures
 
 _MODELS = ("auto", "planar", "spatial", "compliant")
@@ -196,7 +197,7 @@ def _check_engines(motions, recorders, others, blocks):
         if isinstance(item, Motion):
             raise ValueError(f"motion = {shown(item)}: is of the theory, without a body that it moves: must be {_in_yade(item)}")
         if not isinstance(item, wrapper.BaseMotionEngine):
-            raise ValueError(f"motion = {shown(item)}: must be a PulseTrainEngine, a RecordMotionEngine, or a list of them")
+            raise ValueError(f"motion = {shown(item)}: must be a PulseTrainEngine, a RecordMotionEngine, a test of dem.push(), or a list of them")
         if not item.dead:  # as if it were not there
             item.check()
     for item in recorders:
@@ -215,8 +216,8 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
     meant: blocks that stand on nothing, bodies that no block touches, pivots that slip, a base that goes on when its record ends, a motion that was
     made and not given, attributes that the model does not read, numbers that look like a slip of units.
 
-    motion        a motion engine (PulseTrainEngine, RecordMotionEngine), a list of them, or None. Those of the same bodies, in perpendicular directions
-                  (two or three components of a record), add up
+    motion        a motion engine (PulseTrainEngine, RecordMotionEngine), a test (dem.push, dem.pull_and_release), a list of them, or None. Motions of the
+                  same bodies, in perpendicular directions (two or three components of a record), add up
     model         'planar' or 'spatial': rigid blocks in a plane or in space (MoreauJeanIntegrator). 'compliant': joints with
                   stiffness, YADE's usual loop with NewtonIntegrator. 'auto': compliant where a BlockMat has a stiffness or
                   `penetration` is given; else planar where the scene lies in one upright plane; else spatial.
@@ -247,8 +248,11 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
     """
     notes.said.clear()
     _check_arguments(model, method, impact_order, penetration, tolerance, dt, gravity)
-    gravity, motions, recorders, blocks = float(gravity), _several(motion), _several(recorder), bodies.blocks()
+    gravity, recorders, blocks = float(gravity), _several(recorder), bodies.blocks()
+    pushes = [one for one in _several(motion) if isinstance(one, Push)]
+    motions = [one.motion if isinstance(one, Push) else one for one in _several(motion)]
     _check_engines(motions, recorders, others, blocks)
+    recorders += [one.recorder for one in pushes]
     if not any(b.dynamic for b in blocks):
         raise ValueError("there is no free block in O.bodies: add one with dem.block() before dem.engines()")
     for body in blocks:

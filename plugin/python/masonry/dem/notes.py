@@ -22,6 +22,7 @@ _STILL = 1e-3
 said = []  # the lines that the last dem.engines() has printed on what may not be meant
 
 _made = []  # weak references to the motion engines that a script has made and not yet given to dem.engines(), each with that of _scene_mark()
+_pushes = []  # weak references to the motion engines of dem.push()
 _given = []  # (weak reference to a motion engine, the masonry.Record that it was made of)
 
 
@@ -55,6 +56,11 @@ def has_record(engine, record):
     _given.append((weakref.ref(engine), record))
 
 
+def is_of_a_push(engine):
+    """The engine moves the platens of dem.push(): its accelerations are small and those of no record."""
+    _pushes.append(weakref.ref(engine))
+
+
 def _record_of(engine):
     return next((record for known, record in _given if known() is engine), None)
 
@@ -76,7 +82,7 @@ def peak_of(record):
 
 
 def _records(motions):
-    return [motion for motion in motions if isinstance(motion, wrapper.RecordMotionEngine)]
+    return [motion for motion in motions if isinstance(motion, wrapper.RecordMotionEngine) and not any(known() is motion for known in _pushes)]
 
 
 def of_records(motions):
