@@ -242,7 +242,8 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
                   unless an impact_order 'sequential' or a tolerance below 1e-6 is asked for. With 'wall', structures of fewer
                   blocks have localised impacts (MoreauJeanIntegrator.localisedBlocks)
 
-    A joint of two BlockMats has the smaller friction angle, the mean restitution (the given one where only one is), and noSlip if either has it.
+    A joint of two BlockMats has the smaller friction angle, the mean restitution (the given one where only one is), and noSlip if either has it and the other one
+    has no friction angle of 0.
     A BlockMat is read when two blocks come near each other. Changed during a run, it acts on pairs that come later; for those that are there
     already set phys.tangensOfFrictionAngle and phys.restitution of the interactions in O.interactions.
     """

@@ -61,6 +61,11 @@ def is_of_a_push(engine):
     _pushes.append(weakref.ref(engine))
 
 
+def moves_platens(engine):
+    """Whether it is that of a push."""
+    return any(known() is engine for known in _pushes)
+
+
 def _record_of(engine):
     return next((record for known, record in _given if known() is engine), None)
 
@@ -82,7 +87,7 @@ def peak_of(record):
 
 
 def _records(motions):
-    return [motion for motion in motions if isinstance(motion, wrapper.RecordMotionEngine) and not any(known() is motion for known in _pushes)]
+    return [motion for motion in motions if isinstance(motion, wrapper.RecordMotionEngine) and not moves_platens(motion)]
 
 
 def of_records(motions):
@@ -181,7 +186,8 @@ def _law(below, body):
     """(restitution or None, friction coefficient or infinity) of a joint, as Ip2_BlockMat_BlockMat_BlockPhys makes it of two materials."""
     materials = below.mat, body.mat
     given = [m.restitution for m in materials if not math.isnan(m.restitution)]
-    friction = math.inf if any(m.noSlip for m in materials) else math.tan(min(m.frictionAngle for m in materials))
+    smooth = any(m.frictionAngle == 0 and not m.noSlip for m in materials)
+    friction = math.inf if any(m.noSlip for m in materials) and not smooth else math.tan(min(m.frictionAngle for m in materials))
     return sum(given) / len(given) if given else None, friction
 
 

@@ -119,7 +119,7 @@ class Push:
         """Takes the platens away at once: the blocks are free from the next step on."""
         self.motion.dead = True
         for engine in O.engines:
-            if hasattr(engine, "motions"):
+            if isinstance(engine, wrapper.MoreauJeanIntegrator):
                 engine.motions = [motion for motion in engine.motions if motion is not self.motion]
         O.engines = [engine for engine in O.engines if engine is not self.motion]
         for id in self.platens:
@@ -130,7 +130,8 @@ class Push:
 
     def is_given(self):
         """Whether the motion of the platens moves the present scene."""
-        return any(motion is self.motion for engine in O.engines for motion in [engine, *getattr(engine, "motions", ())])
+        return any(motion is self.motion for engine in O.engines if not isinstance(engine, wrapper.WallRecorder)
+                   for motion in [engine, *getattr(engine, "motions", ())])
 
     def is_over(self):
         """Whether the test has ended by now; `ended` then says why."""
