@@ -50,12 +50,16 @@ class TimeHistory:
         """Writes a picture (.png, .pdf, .svg): the quantities over time, one panel for each unit."""
         save_picture(self.figure(), path, dpi=150)
 
+    def panels(self):
+        """[(label, factor on the values, [(name, word)])] of what is known."""
+        return [panel for panel in self._panels if any(np.isfinite(self.table[name]).any() for name, _ in panel[2])]
+
     def figure(self, width=7.4):
         """The matplotlib figure of picture()."""
         from matplotlib.backends.backend_agg import FigureCanvasAgg
         from matplotlib.figure import Figure
 
-        panels = [panel for panel in self._panels if any(np.isfinite(self.table[name]).any() for name, _ in panel[2])]
+        panels = self.panels()
         figure = Figure(figsize=(width, 1 + 1.7 * len(panels)), layout="constrained")
         FigureCanvasAgg(figure)
         rows = figure.subplots(len(panels), 1, sharex=True, squeeze=False)[:, 0]

@@ -159,6 +159,20 @@ def joints(history, verdict, table):
 
 
 @styled
+def of_joint(found, verdict):
+    figure = found.figure(width=_WIDTH)
+    figure.set_dpi(72)
+    figure.axes[0].set_title("")
+    for axes, (_, factor, names) in zip(figure.axes, found.panels()):
+        values = factor * np.concatenate([found[name] for name, _ in names])
+        usual = _USUAL * float(np.nanpercentile(np.abs(values), 95)) if np.isfinite(values).any() else 0
+        if 0 < usual < largest(np.abs(values)):
+            axes.set_ylim(-_ROOM * usual if np.nanmin(values) >= -_FAINT * usual else -usual, usual)
+    time_axis(figure.axes, found["time"], verdict.time)
+    return svg(figure)
+
+
+@styled
 def base_forces(history, verdict, base=None):
     """Base shear, vertical force and overturning moment, of one base or of all prescribed bodies."""
     table = base_reactions(history, base=base)
