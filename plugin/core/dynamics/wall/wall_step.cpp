@@ -13,7 +13,7 @@ template <class K>
 StepReport WallStep<K>::advance(RigidSystem<K>& s, double dt)
 {
 	report = {};
-	errors = {0, 0, s.kineticEnergy(), freeMass(s) * scale::acceleration(s) * scale::length(s)};
+	errors = {0, 0, s.kineticEnergy(), (freeMass(s) * scale::acceleration(s) + externalForce(s)) * scale::length(s)};
 	s.impacts.clear();
 	const double end = s.time + dt;
 	double part = 0; // s, of a step in which a structure lands

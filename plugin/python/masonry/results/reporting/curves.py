@@ -70,6 +70,12 @@ def svg(figure, over_time=True):
     return text
 
 
+@styled
+def plain_svg(figure):
+    """SVG text of a figure that shows no history."""
+    return svg(figure, over_time=False)
+
+
 def time_axis(axes, time, collapsed=None):
     """Limits and label of the lowest axes; what comes after the collapse is shaded."""
     for one in axes:
