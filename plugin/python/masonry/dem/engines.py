@@ -253,7 +253,7 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
     pushes = [one for one in _several(motion) if isinstance(one, Push)]
     motions = [one.motion if isinstance(one, Push) else one for one in _several(motion)]
     _check_engines(motions, recorders, others, blocks)
-    recorders += [one.recorder for one in pushes]
+    recorders += [engine for one in pushes for engine in one.engines]
     if not any(b.dynamic for b in blocks):
         raise ValueError("there is no free block in O.bodies: add one with dem.block() before dem.engines()")
     for body in blocks:

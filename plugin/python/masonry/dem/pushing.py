@@ -38,10 +38,11 @@ class Push:
     ended      why dem.run(until=push) has ended: 'displacement' (all displacements have been reached), 'drop', 'collapse', 'jam'; '' before that
     """
 
-    def __init__(self, points, platens, direction, targets, motion, recorder, drop, collapse):
-        """points: {id of a block: where a platen touches it, m}."""
+    def __init__(self, points, platens, direction, targets, motion, engines, drop, collapse):
+        """points: {id of a block: where a platen touches it, m}. engines: of the dead load, if there is one, and the recorder, in that order."""
         self.ids, self.platens, self.direction, self.targets = list(points), platens, direction, targets
-        self.motion, self.recorder, self.drop, self.collapse, self.releases, self.ended = motion, recorder, drop, collapse, False, ""
+        self.motion, self.engines, self.recorder = motion, engines, engines[-1]
+        self.drop, self.collapse, self.releases, self.ended = drop, collapse, False, ""
         states = {id: O.bodies[id].state for id in points}
         self._arms = {id: np.array(states[id].ori.conjugate() * (Vector3(point) - states[id].pos)) for id, point in points.items()}  # in the axes of the block
         self._look = 0  # O.iter of the next look at the force
@@ -231,7 +232,7 @@ def push(ids=None, displacement=None, speed=None, direction=(1, 0, 0), vertical=
     direction       level unit vector
     vertical        'free': the blocks carry no load; 'load': they carry the dead load `force` together, each the same share, at its centre; platens hold no block down.
                     ('held', which rigid blocks cannot follow, is refused)
-    force           with vertical='load': the dead load, N, downwards
+    force           with vertical='load': the dead load, N, downwards; it is there as long as dem.engines(push) is in O.engines
     height          z of the edges of the platens, m, in the world; None: that of the centre of each block
     drop            ends the test when the force, averaged over 0.02 s, has fallen below (1 - drop) times the largest one in that direction, while the displacement
                     is the farthest so far: 0 < drop <= 1; None: never
@@ -262,10 +263,8 @@ def push(ids=None, displacement=None, speed=None, direction=(1, 0, 0), vertical=
     motion = wrapper.RecordMotionEngine(ids=made, samples=samples.tolist(), interval=interval, direction=unit, start=O.time)
     notes.is_of_a_push(motion)
     recorder = wrapper.WallRecorder(ids=made + sorted(back) + (pushed or [body.id for body in free]), recordForces=True, iterPeriod=1)
-    if vertical == "load":
-        for id in pushed:
-            O.forces.setPermF(id, Vector3(0, 0, -force / len(pushed)))
-    return Push(points, made, unit, targets, motion, recorder, drop, collapse)
+    load = wrapper.ForceEngine(ids=pushed, force=Vector3(0, 0, -force / len(pushed))) if vertical == "load" else None
+    return Push(points, made, unit, targets, motion, [one for one in (load, recorder) if one], drop, collapse)
 
 
 def pull_and_release(ids, displacement, speed=None, direction=(1, 0, 0), vertical="free", force=None, height=None):
