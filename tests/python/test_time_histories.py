@@ -114,3 +114,15 @@ def test_files_and_pictures(tmp_path):
         found.save(tmp_path / "joint.txt")
     with pytest.raises(KeyError, match="must be one of time, opening"):
         found["angle"]
+
+
+def test_the_report_has_them(tmp_path):
+    """Drift along x and what remains of it, base shear over the weight of 2000 x 0.6 x 9.81 N, the joint that opened most."""
+    still = rocking([0, 0.05, 0.1, 0.02])
+    forces = np.array([(k, 10, 11, (1177.2 * k, 0, 11772.0), (0.3, 0, 0)) for k in range(4)], dtype=ROWS)
+    about = {"materials": [{"density": 2000, "frictionAngle": 0.6, "restitution": None, "noSlip": False, "normalStiffness": None, "shearStiffness": None, "ids": [11]}],
+             "model": {"gravity": [0, 0, -9.81]}, "motions": []}
+    results.report(results.WallHistory(still.time, still.ids, still.sizes, still.free, still.position, still.orientation, forces=forces, about=about), tmp_path / "r.html")
+    page = (tmp_path / "r.html").read_text(encoding="utf-8")
+    for words in ("The joint that opened most: blocks 10 and 11", "Drift along x: largest, and in the last sample", "Largest base shear along x", "0.3 of the weight"):
+        assert words in page, words

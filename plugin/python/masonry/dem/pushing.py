@@ -19,7 +19,7 @@ _ACCELERATION = 0.02
 _MOST_PARTS = 1_000_000
 # Time over which forces are averaged, s.
 _AVERAGED = 0.02
-# Steps between two looks at a drop of the force, at least.
+# Steps between two looks at a drop of the force and at fallen blocks, at least.
 _LOOK = 100
 # A failure of the integrator that names a jam has these words (rigid_failures.cpp).
 _JAM = "bodies with prescribed motion"
@@ -45,7 +45,7 @@ class Push:
         self.drop, self.collapse, self.releases, self.ended = drop, collapse, False, ""
         states = {id: O.bodies[id].state for id in points}
         self._arms = {id: np.array(states[id].ori.conjugate() * (Vector3(point) - states[id].pos)) for id, point in points.items()}  # in the axes of the block
-        self._look = 0  # O.iter of the next look at the force
+        self._look = 0  # O.iter of the next look at force and blocks: each reads the whole curve and all blocks
 
     @property
     def curve(self):
@@ -148,17 +148,17 @@ class Push:
     def _why(self):
         if any(_JAM in getattr(engine, "firstFailure", "") for engine in O.engines):
             return "jam"
-        if self.drop and self._has_dropped():
-            return "drop"
-        if self.collapse and collapsed(self.collapse):
-            return "collapse"
-        return "displacement" if O.time >= self.motion.end - _ROUND_OFF * O.dt else ""
+        over = O.time >= self.motion.end - _ROUND_OFF * O.dt
+        if O.iter >= self._look or over:
+            self._look = O.iter + max(_LOOK, O.iter // 200)
+            if self.drop and self._has_dropped():
+                return "drop"
+            if self.collapse and collapsed(self.collapse):
+                return "collapse"
+        return "displacement" if over else ""
 
     def _has_dropped(self):
-        """Whether the force on the envelope, where the displacement is the farthest so far, has dropped. Looks are rare, since each reads the whole curve."""
-        if O.iter < self._look:
-            return False
-        self._look = O.iter + max(_LOOK, O.iter // 200)
+        """Whether the force on the envelope, where the displacement is the farthest so far, has dropped."""
         table = self.averaged()
         for side in (1, -1):
             place, force = side * table["displacement"], side * table["force"]

@@ -40,7 +40,7 @@ def report(history, path, title="", exact=None):
     page = made.render(**content, **view3d.library(), style=text("report.css"), viewer=text("viewer.js"),
                        written=datetime.date.today().isoformat())
     with written(path) as beside:
-        Path(beside).writetext(page, encoding="utf-8")
+        Path(beside).write_text(page, encoding="utf-8")
 
 
 def text(name):
