@@ -9,9 +9,9 @@ from masonry import dem, results
 def scene(**given):
     """The wall carries a beam, which is bedded so that it does not slide, and 5 kN."""
     O.reset()
-    stone = dem.BlockMat(density=2000, frictionAngle=math.atan(0.8), restitution=0)
+    stone = dem.BlockMat(density=2000, frictionAngle=math.atan(0.75), restitution=0)
     base = dem.base((6, 3, 0.2), stone)
-    dem.wall(length=2.4, height=1.6, size=(0.4, 0.2, 0.2), material=stone, on=base, openings=[(0.8, 0, 0.8, 1.0)])
+    dem.wall(length=2.4, height=1.6, size=(0.4, 0.2, 0.2), material=stone, on=base, openings=[(0.6, 0, 1.2, 1.2)])
     beam = dem.block((2.4, 0.2, 0.2), dem.BlockMat(density=2500, noSlip=True), center=(0, 0, 1.7))
     push = dem.push(ids=[beam], vertical="load", force=5e3, **given)
     recorder = dem.WallRecorder(virtPeriod=0.05, recordForces=True)
@@ -21,7 +21,7 @@ def scene(**given):
     return push, dem.wall_history(recorder)
 
 
-push, history = scene(displacement=0.06)
+push, history = scene(displacement=0.4, drop=0.6)
 push.picture("push.png", title="wall with a door, pushed to the right")
 results.draw(history, "push_shape.png", enlarge=1)
 joint = results.joint_history(history)

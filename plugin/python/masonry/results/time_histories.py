@@ -66,7 +66,10 @@ class TimeHistory:
         for axes, (label, factor, names) in zip(rows, panels):
             axes.axhline(0, color="0.8", linewidth=0.8)
             for k, (name, word) in enumerate(names):
-                axes.plot(self.table["time"], factor * self.table[name], color=f"C{k}", linewidth=1, label=word)
+                values = factor * self.table[name]
+                if name == "slip":
+                    values = np.where(self.table["closed"], values, np.nan)
+                axes.plot(self.table["time"], values, color=f"C{k}", linewidth=1, label=word)
             axes.set_ylabel(label)
             if len(names) > 1:
                 axes.legend(fontsize="small")
@@ -114,7 +117,7 @@ def joint_history(history, id1=None, id2=None):
     numbers = {"largest opening (m)": np.nanmax(result["opening"], initial=0), "largest slip while closed (m)": np.nanmax(np.where(result["closed"], result["slip"], np.nan), initial=0)}
     if has_forces(history):
         numbers |= {"largest pressure (N)": np.nanmax(result["normal"], initial=0), "dissipated by sliding (J)": float(result["friction_work"][-1])}
-    panels = [("movement (mm)", 1e3, [("opening", "opening"), ("slip", "slip")]), ("force (kN)", 1e-3, [("normal", "pressure"), ("shear", "along the joint")]),
+    panels = [("movement (mm)", 1e3, [("opening", "opening"), ("slip", "slip, while closed")]), ("force (kN)", 1e-3, [("normal", "pressure"), ("shear", "along the joint")]),
               ("dissipated\nby sliding (J)", 1, [("friction_work", "")])]
     return TimeHistory(result, f"joint of the blocks {one} and {two}", panels, numbers)
 
