@@ -1,4 +1,4 @@
-"""Push-over curves of a wall with a door, monotonic and cyclic, and the joint that opened most. `scripts/gallery push` runs it; the pictures are written into the current folder."""
+"""A wall with a door in push-over tests, monotonic and cyclic, and the joint that opened most. `scripts/gallery push` runs it; the pictures are written into the current folder."""
 import math
 
 from yade import O
@@ -21,9 +21,8 @@ def scene(**given):
     return push, dem.wall_history(recorder)
 
 
-push, history = scene(displacement=0.4, drop=0.6)
-push.picture("push.png", title="wall with a door, pushed to the right")
-results.draw(history, "push_shape.png", enlarge=1)
+_, history = scene(displacement=0.4, drop=0.6)
+results.draw(history, "push_shape.png", enlarge=1, color="rotation")
 joint = results.joint_history(history)
 print(joint)
 joint.picture("push_joint.png")
