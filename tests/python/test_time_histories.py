@@ -41,6 +41,13 @@ def test_a_rocking_block():
     assert np.isnan(results.joint_history(still)["normal"]).all()
 
 
+def test_the_joint_that_is_shown():
+    """The one that opened most; where none has opened, the one that slid most, and the title says so."""
+    assert results.joint_history(rocking([0, 0.05])).title == "joint of the blocks 10 and 11"
+    assert results.joint_history(sliding()).title == "joint of the blocks 10 and 11 (no joint opened, this one slid most)"
+    assert results.joint_history(rocking([0, 0])).title.endswith("(no joint opened or slid)")
+
+
 def test_joints_that_are_not_there():
     still = rocking([0, 0.05])
     with pytest.raises(ValueError, match="must be two blocks that touch"):

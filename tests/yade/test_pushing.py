@@ -251,3 +251,19 @@ def test_a_push_that_is_saved(tmp_path):
         assert abs(len(before) - len(after)) < 100 < len(after)
         count = min(len(before), len(after))
         assert np.count_nonzero(before[:count] != after[:count]) <= differ
+
+
+def test_a_surface_without_friction():
+    """A block whose contacts do not slip slides on a base with the friction angle 0: the force is that of its inertia, at most 0.02 m/s^2, and its speed gives work that no
+    friction takes. On a base with friction it does not slide but turns."""
+    for angle, slides in ((0, True), (0.5, False)):
+        O.reset()
+        base = dem.base((6, 4, 0.2), dem.BlockMat(density=2000, frictionAngle=angle))
+        block = dem.block((WIDTH, DEPTH, 0.6), dem.BlockMat(density=2000, noSlip=True), on=base)
+        push = dem.push(ids=[block], displacement=0.01, height=0.4)
+        run(push, model="planar")
+        force = push.largest_force[0]
+        if slides:
+            assert force < 1.05 * 0.02 * O.bodies[block].state.mass and dem.energy()["frictDissip"] < 1e-9 and abs(dem.angle(block)) < 1e-9
+        else:
+            assert abs(force / (weight([block]) * WIDTH / 2 / 0.4) - 1) < 2 * CLOSE and dem.angle(block) > 0.01  # squat: more inertia for its height

@@ -6,6 +6,7 @@ from masonry._given import number_given, positive_given, shown
 from masonry._pose import matrices
 from masonry.results.forces import base_reactions, has_forces
 from masonry.results.joints import joint_movement, joints
+from masonry.results.view import still
 from masonry.results.wall_history import history_given
 
 _JOINT = [("time", float), ("opening", float), ("slip", float), ("closed", bool), ("normal", float), ("shear", float), ("point", float, 3), ("friction_work", float)]
@@ -81,7 +82,7 @@ class TimeHistory:
 def joint_history(history, id1=None, id2=None):
     """What a joint did: a TimeHistory.
 
-    id1, id2    the two blocks, in either order; both None: the joint that opened most
+    id1, id2    the two blocks, in either order; both None: the joint that opened most or, where none has opened, slid most (the title says so)
 
     time             s
     opening, slip    m, as in results.joints(): NaN from the fall of one of the blocks on. A slip counts where the joint is closed somewhere; where it is open all
@@ -99,8 +100,11 @@ def joint_history(history, id1=None, id2=None):
         raise ValueError("history: no two blocks touch face on face in the first sample: it has no joints")
     if (id1 is None) != (id2 is None):
         raise ValueError(f"id1 = {shown(id1)}, id2 = {shown(id2)}: give both, or none")
+    of = ""
     if id1 is None:
-        row = int(np.nan_to_num(table["opening"]).argmax())
+        opened = np.nan_to_num(table["opening"]).max() > still(history)
+        row = int(np.nan_to_num(table["opening" if opened else "slip"]).argmax())
+        of = "" if opened else f" (no joint opened{', this one slid most' if np.nan_to_num(table['slip']).max() > still(history) else ' or slid'})"
     else:
         found = np.flatnonzero(((table["id1"] == id1) & (table["id2"] == id2)) | ((table["id1"] == id2) & (table["id2"] == id1)))
         if not len(found):
@@ -119,7 +123,7 @@ def joint_history(history, id1=None, id2=None):
         numbers |= {"largest pressure (N)": np.nanmax(result["normal"], initial=0), "dissipated by sliding (J)": float(result["friction_work"][-1])}
     panels = [("movement (mm)", 1e3, [("opening", "opening"), ("slip", "slip, while closed")]), ("force (kN)", 1e-3, [("normal", "pressure"), ("shear", "along the joint")]),
               ("dissipated\nby sliding (J)", 1, [("friction_work", "")])]
-    return TimeHistory(result, f"joint of the blocks {one} and {two}", panels, numbers)
+    return TimeHistory(result, f"joint of the blocks {one} and {two}{of}", panels, numbers)
 
 
 def _add_forces(history, result, one, two, normal):
