@@ -27,6 +27,7 @@ SCRIPTS = {
     "fragility": ("python", ("fragility.png",)),
     "impact_law": ("python", ("impact_law.png",)),
     "overturning": ("python", ("overturning.png",)),
+    "push": ("yade", ("push_shape.png", "push_joint.png", "push_cycles.png")),
     "resonance": ("python", ("resonance.png",)),
     "spectra": ("python", ("rocking_spectrum.png", "response_spectrum.png")),
 }

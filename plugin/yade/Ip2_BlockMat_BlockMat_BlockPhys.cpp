@@ -12,6 +12,9 @@ YADE_PLUGIN((Ip2_BlockMat_BlockMat_BlockPhys));
 
 namespace {
 Real given(Real a, Real b, Real both) { return std::isnan(a) ? b : std::isnan(b) ? a : both; }
+
+/// A surface without friction, against which nothing sticks.
+bool isSmooth(const BlockMat& material) { return !material.noSlip && material.frictionAngle == 0; }
 } // namespace
 
 void Ip2_BlockMat_BlockMat_BlockPhys::go(const shared_ptr<Material>& material1, const shared_ptr<Material>& material2,
@@ -33,7 +36,7 @@ void Ip2_BlockMat_BlockMat_BlockPhys::go(const shared_ptr<Material>& material1, 
 	    angle >= 0 && angle < M_PI / 2 ? std::tan(angle) : NaN; // who reads it refuses NaN; no error may leave the loop of the functors
 	phys->normalStiffness = matched(normalStiffness, a.normalStiffness, b.normalStiffness, harmonic(a.normalStiffness, b.normalStiffness));
 	phys->shearStiffness = matched(shearStiffness, a.shearStiffness, b.shearStiffness, harmonic(a.shearStiffness, b.shearStiffness));
-	phys->noSlip = a.noSlip || b.noSlip;
+	phys->noSlip = (a.noSlip || b.noSlip) && !isSmooth(a) && !isSmooth(b);
 	interaction->phys = phys;
 }
 

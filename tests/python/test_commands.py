@@ -187,3 +187,43 @@ def test_a_progress_bar_is_drawn_in_a_terminal_and_not_in_a_log(folder, line, ba
         os.close(here)
         os.close(there)
         assert (bar in said) == drawn
+
+
+def test_rock(command, folder):
+    """The table is that of History.to_csv, and the line says what History says."""
+    status, said, wrong = command("rock quake.AT2 --width 0.6 --height 3 --scale 1.4 -o block")
+    assert status == 0 and not wrong and "stands" in said or "overturns" in said
+    record = masonry.read_record("quake.AT2", baseline="constant").scaled(1.4)
+    history = masonry.simulate(masonry.RockingBlock(0.3, 1.5), record)
+    found = table(folder / "block.csv")
+    assert picture(folder / "block.png") and np.allclose(found["angle"], history.angles, rtol=0, atol=1e-15, equal_nan=True)
+    assert np.allclose(found["acceleration of the base"], record.acceleration(history.times))
+    status, _, wrong = command("rock quake.AT2 --width 0 --height 3")
+    assert status == 2 and "--width 0: must be positive" in wrong
+    status, said, _ = command("rock quake.AT2 --width 0.6 --height 3 --end 1 -o short")
+    assert status == 0 and "after 1 of" in said  # the record goes on
+
+
+def test_the_baseline_high_pass(command, folder):
+    status, _, wrong = command("rock quake.AT2 --width 0.6 --height 3 --baseline high-pass --corner 0.2 -o high")
+    assert status == 0, wrong
+    record = masonry.read_record("quake.AT2", baseline="high-pass", corner=0.2)
+    history = masonry.simulate(masonry.RockingBlock(0.3, 1.5), record)
+    assert np.allclose(table(folder / "high.csv")["angle"], history.angles, rtol=0, atol=1e-15, equal_nan=True)
+    for more, words in (("--baseline high-pass", "corner = None"), ("--corner 1", "corner"), ("--order 3", "--order 3: must be left out")):
+        status, _, wrong = command(f"rock quake.AT2 --width 0.6 --height 3 {more}")
+        assert status == 2 and words in wrong, wrong
+
+
+def test_times_of_a_history(folder):
+    """They begin at 0, go on beyond the last impact, and belong to the angles; array input has none."""
+    history = masonry.simulate(masonry.RockingBlock(0.3, 1.5), restitution=0.9, initial_angle=0.1, half_cycles=6)
+    assert history.times[0] == 0 and history.impact_times[-1] < history.times[-1] < 1.1 * history.end_time + 1
+    assert np.array_equal(history.angles, history.sample(history.times)[0], equal_nan=True) and history.angles[0] == 0.1
+    assert np.array_equal(history.velocities, history.sample(history.times)[1], equal_nan=True)
+    history.to_csv(folder / "few.csv", times=[0, 0.1])
+    assert np.allclose(table(folder / "few.csv")["angle"], history.sample([0, 0.1])[0])
+    several = masonry.simulate(masonry.RockingBlock(0.3, 1.5), initial_angle=np.array([0.1, 0.2]), half_cycles=2)
+    for act in (lambda: several.times, lambda: several.to_csv(folder / "x.csv")):
+        with pytest.raises(ValueError, match="must be of one block and one motion"):
+            act()

@@ -183,3 +183,24 @@ def test_to_the_first_block_that_overturns():
 def test_a_condition_needs_a_limit():
     shaken()
     refuses(lambda: dem.run(until=dem.at_rest), "seconds = None: must say how long the run may wait")
+
+
+def test_to_a_collapse():
+    """Three slender blocks, of which two are let go beyond their critical angles: dem.collapsed counts what results.fallen counts in the history, also after loading."""
+    O.reset()
+    stone = dem.BlockMat(density=2000, frictionAngle=0.6, restitution=0)
+    base = dem.base((8, 2, 0.2), stone)
+    ids = [dem.block((0.2, 1.0, 1.0), stone, on=base, at=(x, 0)) for x in (-3, 0, 3)]
+    for id, lean in zip(ids, (0.0, math.atan(0.2) + 0.02, -math.atan(0.2) - 0.002)):
+        dem.tilt(id, lean)
+    recorder = dem.WallRecorder(virtPeriod=0.01)
+    O.engines = rigid_engines(recorder=recorder)
+    assert dem.collapsed() is False  # before the first step
+    assert dem.run(5, until=lambda: dem.collapsed(2)) is True and O.time < 5
+    for _ in range(2):
+        recorder = next(engine for engine in O.engines if isinstance(engine, dem.WallRecorder))
+        dem.run(1)
+        fallen = int(results.fallen(dem.wall_history(recorder))[-1].sum())
+        assert fallen == 2 and [dem.collapsed(k) for k in (1, 2, 3)] == [True, True, False]
+        O.saveTmp()
+        O.loadTmp(quiet=True)

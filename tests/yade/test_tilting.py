@@ -461,3 +461,24 @@ def test_stiff_joints():
     dem.block((0.6, 0.5, 0.4), stone, on=base)
     refuses(lambda: dem.TiltTable(), "rigid", "stiffness")
     assert abs(dem.TiltTable(model="planar").bisect(progress=False).multiplier / 0.5 - 1) < CLOSE
+
+
+@pytest.mark.parametrize("direction, multiplier", (((1, 1), math.sqrt(2) * 0.2 / 0.8), ((-2, 0), 0.2 / 0.8), ((math.cos(0.5), math.sin(0.5)), 0.2 / 0.8 / math.cos(0.5))))
+def test_any_direction_in_plan(direction, multiplier):
+    """A block of 0.4 x 0.4 x 1.6 m turns over its corner, at half the diagonal over half the height, where it is pulled along it; else over the edge that it is pulled
+    towards most, at half the width over half the height and the share of the pull across that edge."""
+    base, stone = ground(2.0)
+    dem.block((0.4, 0.4, 1.6), stone, on=base)
+    assert abs(found(direction=direction).multiplier / multiplier - 1) < CLOSE
+
+
+def test_the_report_page(tmp_path):
+    result, path = column().bisect(progress=False), tmp_path / "tilting.html"
+    result.report(path, title="a column")
+    page = path.read_text(encoding="utf-8")
+    for text in ("a column", f"Collapse multiplier {result.multiplier:.4g}", "<svg", "Table of trials", "towards y", "0 – 1", "Mechanism"):
+        assert text in page, text
+    assert page.count("<tr>") >= len(result.trials) and "NaN" not in page and 'id="view"' not in page
+    refuses(lambda: result.report(tmp_path / "tilting.txt"), ".html")
+    for direction in ((0, 0), (1, 0, 0), (math.nan, 1), 3):
+        refuses(lambda: dem.TiltTable(direction=direction), "direction")

@@ -1,13 +1,14 @@
 """Exact histories of rocking blocks."""
 
 import warnings
+from functools import cached_property
 
 import numpy as np
 
 from . import _core
 from ._arrays import columns, restore, shape_of
-from ._files import save_picture
-from ._given import shown, whole_given
+from ._files import save_picture, written
+from ._given import array_given, shown, whole_given
 from ._optional import needs
 from .block import columns_of, critical_angle_of, restitution_of
 from .motions import Motion, PulseTrain, Record, Still, compiled, end_of
@@ -15,6 +16,8 @@ from .motions import Motion, PulseTrain, Record, Still, compiled, end_of
 
 # Relative to the time at which a motion ends, how much earlier a run may end by rounding of sums of steps.
 _ROUND = 1e-9
+# Instants of History.times, and the share of the last event at which they end.
+_POINTS, _AFTER = 4000, 1.02
 
 
 class History:
@@ -85,6 +88,50 @@ class History:
         size = f"of {2 * block.half_width:g} x {2 * block.half_height:g} m" if block.right is block else f"{block}"
         return f"History(block {size} {under}: {done}{rest})"
 
+    def _of_one(self, what):
+        if self.shape:
+            raise ValueError(f"the history is of {self.shape} cases: must be of one block and one motion {what}")
+
+    def _shown_end(self):
+        """Time until which something happens, s."""
+        lies = self._fall()[1] if self.overturned else np.nan
+        ends = [self.motion.duration if isinstance(self.motion, Record) else 0.0, *np.ravel(self.impact_times)[-1:], self.rest_time, self.end_time, lies]
+        return max((end for end in ends if np.isfinite(end) and end > 0), default=1.0)
+
+    @cached_property
+    def times(self):
+        """(4000,) s, evenly from 0 to a little after the last thing that happens, of one block; angles and velocities belong to them. sample(t) has those of other times."""
+        self._of_one("to have times")
+        return np.linspace(0, _AFTER * self._shown_end(), _POINTS)
+
+    @cached_property
+    def _sampled(self):
+        return self.sample(self.times)
+
+    @property
+    def angles(self):
+        """(4000,) rad, at `times`; NaN once the block lies on its side, or after the end of the run."""
+        return self._sampled[0]
+
+    @property
+    def velocities(self):
+        """(4000,) angular velocities at `times`, rad/s."""
+        return self._sampled[1]
+
+    def to_csv(self, path, times=None):
+        """Writes a .csv file of one block, a line for each of `times` (s, None: history.times): time (s), angle (rad), angular velocity (rad/s), displacement of
+        the base (m) and, of a record, its acceleration (m/s^2)."""
+        if not str(path).endswith(".csv"):
+            raise ValueError(f"path = {path}: must end in .csv")
+        self._of_one("to be written as a table")
+        times = self.times if times is None else np.ravel(array_given("times", times))
+        angle, velocity, base = self._sample(times)
+        columns = {"time (s)": times, "angle (rad)": angle, "angular velocity (rad/s)": velocity, "base (m)": base}
+        if isinstance(self.motion, Record):
+            columns["acceleration of the base (m/s^2)"] = self.motion.acceleration(times)
+        with written(path) as beside:
+            np.savetxt(beside, np.column_stack(list(columns.values())), delimiter=",", header=",".join(columns), comments="")
+
     def _is_inside(self, t):
         """Whether the angle of one block is below its critical angle at times t."""
         angle = self.sample(t)[0]
@@ -108,16 +155,13 @@ class History:
         with needs("python3-matplotlib", "a picture of a history"):
             from matplotlib.backends.backend_agg import FigureCanvasAgg
             from matplotlib.figure import Figure
-        if self.shape:
-            raise ValueError(f"the history is of {self.shape} cases: must be of one block and one motion to be drawn")
-        passes, lies = self._fall() if self.overturned else (np.nan, np.nan)
-        ends = [self.motion.duration if isinstance(self.motion, Record) else 0.0, *np.ravel(self.impact_times)[-1:], self.rest_time, self.end_time, lies]
-        times = np.linspace(0, 1.02 * max((end for end in ends if np.isfinite(end) and end > 0), default=1.0), 4000)
+        self._of_one("to be drawn")
+        passes = self._fall()[0] if self.overturned else np.nan
+        times = self.times
         figure = Figure(figsize=(8, 5), layout="constrained")
         FigureCanvasAgg(figure)
         above, below = figure.subplots(2, 1, sharex=True, height_ratios=(2, 1))
-        angles = self.sample(times)[0]
-        angles = angles / critical_angle_of(self.block, angles)
+        angles = self.angles / critical_angle_of(self.block, self.angles)
         above.plot(times, angles, color="tab:blue")
         for level in (-1, 1):
             above.axhline(level, color="0.6", linestyle="--", linewidth=0.8)

@@ -1,5 +1,6 @@
 #include "dynamics/localised/localised_step.hpp"
 #include "dynamics/localised/grip.hpp"
+#include "dynamics/model/external_force.hpp"
 #include "tolerances.hpp"
 
 namespace masonry::localised {
@@ -54,7 +55,8 @@ void LocalisedStep<K>::balance(const RigidSystem<K>& s, const Energies& before)
 	const double friction = now.friction - before.friction, impact = now.impact - before.impact, base = now.base - before.base;
 	const double made = now.kinetic - before.kinetic - step.work - base + friction + impact;
 	const double atStake = before.kinetic + std::abs(step.work) + std::abs(base) + std::abs(friction) + std::abs(impact);
-	errors = {std::max(0., made), std::max(0., -made), before.kinetic, freeMass(s) * step.scales.acceleration * step.scales.length};
+	errors = {std::max(0., made), std::max(0., -made), before.kinetic,
+	          (freeMass(s) * step.scales.acceleration + externalForce(s)) * step.scales.length};
 	if (std::abs(made) > tolerance::localised::madeShare * atStake + tolerance::localised::madeLift * errors.lift)
 		report.created += made;
 }

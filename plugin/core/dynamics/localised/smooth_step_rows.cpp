@@ -1,5 +1,6 @@
 // The contact problem of a step: its rows, and stray velocities, which alternate from step to step.
 #include "dynamics/localised/smooth_step.hpp"
+#include "dynamics/model/external_force.hpp"
 #include "tolerances.hpp"
 #include <algorithm>
 
@@ -208,7 +209,8 @@ ContactRows<K> SmoothStep<K>::rowsOf(const RigidSystem<K>& s, PointRef ref, cons
 		rows.offset += rows.J2 * next2.velocity;
 	Impulse now = rows.J1 * body1.velocity + rows.J2 * body2.velocity - astray;
 	if (isMoved(body1, next1.velocity) || isMoved(body2, next2.velocity))
-		rows.most = mass * (tolerance::contactProblem::maxWeights * scales.stepSpeed(h) + (point.closed ? 0 : std::max(0., -now[0])));
+		rows.most = mass * (tolerance::contactProblem::maxWeights * scales.stepSpeed(h) + (point.closed ? 0 : std::max(0., -now[0]))) +
+		            tolerance::contactProblem::maxWeights * externalForce(s) * h;
 	if (!point.closed)
 		now[0] = std::max(now[0] + astray[0] + 2 * std::max(point.gap, 0.) / h, 0.);
 	if (point.sliding && stopsInside)

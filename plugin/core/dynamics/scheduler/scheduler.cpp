@@ -83,14 +83,15 @@ void Scheduler<K>::divide(const RigidSystem<K>& s)
 		islands.divide(s, isLocalised);
 }
 
-// Whether blocks of one wall are near prescribed bodies of which each has a motion of its own.
+// Whether blocks of one wall are near prescribed bodies of which each has a motion of its own, and may be taken along by each: without
+// friction a body takes none along.
 template <class K>
 bool Scheduler<K>::areOnSeveral(const RigidSystem<K>& s, const std::vector<int>& structure) const
 {
 	std::vector<const RigidBody<K>*> firstOf(s.bodies.size(), nullptr); // by structure
 	for (const ContactPair<K>& pair : s.pairs)
 		for (const auto& [block, base] : {std::pair(pair.body1, pair.body2), std::pair(pair.body2, pair.body1)}) {
-			if (structure[block] < 0 || !s.bodies[base].prescribed || !ofWall[block])
+			if (structure[block] < 0 || !s.bodies[base].prescribed || !ofWall[block] || pair.friction == 0)
 				continue;
 			const RigidBody<K>& here = s.bodies[base];
 			const RigidBody<K>*& first = firstOf[structure[block]];

@@ -200,7 +200,8 @@ void ContactSet<K>::clearOpen()
 		}
 }
 
-// A moved body stops all blocks at once, or carries so many times their weight.
+// A moved body stops all blocks at once, or carries so many times their weight and the loads on them. `fall`: the speed that these give in
+// a step, m/s.
 template <class K>
 void ContactSet<K>::limitMoved(const RigidSystem<K>& s, double fall)
 {

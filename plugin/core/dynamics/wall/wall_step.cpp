@@ -1,5 +1,6 @@
 #include "dynamics/wall/wall_step.hpp"
 #include "dynamics/model/drive_kinks.hpp"
+#include "dynamics/model/external_force.hpp"
 #include "dynamics/model/free_motion.hpp"
 #include "dynamics/wall/landing_parts.hpp"
 #include "tolerances.hpp"
@@ -12,7 +13,7 @@ template <class K>
 StepReport WallStep<K>::advance(RigidSystem<K>& s, double dt)
 {
 	report = {};
-	errors = {0, 0, s.kineticEnergy(), freeMass(s) * scale::acceleration(s) * scale::length(s)};
+	errors = {0, 0, s.kineticEnergy(), (freeMass(s) * scale::acceleration(s) + externalForce(s)) * scale::length(s)};
 	s.impacts.clear();
 	const double end = s.time + dt;
 	double part = 0; // s, of a step in which a structure lands
@@ -96,7 +97,7 @@ CappedStatus WallStep<K>::solveStep(RigidSystem<K>& s, const StepContext& step)
 {
 	const LaneArray& expected = guess.changeIn(step.h);
 	pulses.move(s, contacts, step.h);
-	contacts.limitMoved(s, step.fall);
+	contacts.limitMoved(s, step.fall + externalForce(s) * step.h / freeMass(s));
 	ledger.open(s, contacts, pulses.halfBack());
 	contacts.takeForces(s, step.h, loads);
 	const std::vector<SpinRow<K>> rows = events.find(s, contacts, expected, step);

@@ -43,15 +43,21 @@ def add_records(parser, nargs, more=""):
     parser.add_argument("--dt", type=float, help="s between the samples of text files without times")
     parser.add_argument("--quantity", default="acceleration", choices=("acceleration", "velocity", "displacement"),
                         help="what is read (default: acceleration)")
-    parser.add_argument("--baseline", default="constant", choices=("none", "constant", "linear"),
+    parser.add_argument("--baseline", default="constant", choices=("none", "constant", "linear", "high-pass"),
                         help="what is subtracted from accelerations (default: constant, their mean, so that the base comes to rest)")
+    parser.add_argument("--corner", type=float, help="Hz, of the baseline high-pass: what is slower is subtracted")
+    parser.add_argument("--order", type=int, help="of that filter (default: 2)")
 
 
 def read_records(given):
     from masonry import read_record
 
     baseline = given.baseline if given.quantity == "acceleration" else "none"
-    return [read_record(path, given.component, given.quantity, unit=given.unit, dt=given.dt, baseline=baseline) for path in given.records]
+    filtered = {} if given.order is None else {"order": given.order}
+    if given.order is not None and baseline != "high-pass":
+        raise ValueError(f"--order {given.order}: must be left out without --baseline high-pass")
+    return [read_record(path, given.component, given.quantity, unit=given.unit, dt=given.dt, baseline=baseline, corner=given.corner, **filtered)
+            for path in given.records]
 
 
 def add_output(parser, name):

@@ -15,12 +15,14 @@ globals().update(_load_classes())
 from masonry.dem import records as _records  # noqa: E402, F401  (YADE's classes must be registered first)
 from masonry.dem.buildings import building  # noqa: E402
 from masonry.dem.checks import check_blocks  # noqa: E402
+from masonry.dem.collapsing import collapsed  # noqa: E402
 from masonry.dem.comparing import compare  # noqa: E402
 from masonry.dem.convex import (Geometry, arch, barrel_vault, blocks_from_mesh, column, convex, dome, drum, flat_arch, from_yade, geometry,  # noqa: E402
                                 prism, rubble_wall, wedge)
 from masonry.dem.engines import energy, engines, history, impacts, record_motion, save_history  # noqa: E402
 from masonry.dem.loads import add_mass, dead_load  # noqa: E402
 from masonry.dem.plans import Beams, Opening, Slab  # noqa: E402
+from masonry.dem.pushing import Push, pull_and_release, push  # noqa: E402
 from masonry.dem.reactions import joint_forces, reactions  # noqa: E402
 from masonry.dem.recording import wall_history  # noqa: E402
 from masonry.dem.resting import at_rest  # noqa: E402

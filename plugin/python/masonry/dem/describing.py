@@ -70,6 +70,8 @@ def _materials(ids):
 
 
 def _motion(engine):
+    if notes.moves_platens(engine):
+        return {"kind": "push", "ids": list(engine.ids), "direction": list(engine.direction), "start": engine.start, "end": engine.end}
     said = {"kind": type(engine).__name__, "ids": list(engine.ids), "direction": list(engine.direction), "start": engine.start, "end": engine.end}
     if isinstance(engine, wrapper.RecordMotionEngine):
         said.update(record=notes.name_of(engine), interval=engine.interval, samples=len(engine.samples), peak=notes.peak_of(engine), scale=engine.scale,

@@ -14,6 +14,7 @@ from masonry.dem import bodies, notes
 from masonry.dem.bodies import face_areas, geometry, half_sizes, poses, reach
 from masonry.dem.checks import check_blocks, check_material, check_recorder
 from masonry.dem.loads import dead_loads, load_engines, potential_of_loads
+from masonry.dem.pushing import Push
 from masonry.dem.structures import structures
 
 _MODELS = ("auto", "planar", "spatial", "compliant")
@@ -198,7 +199,7 @@ def _check_engines(motions, recorders, others, blocks):
         if isinstance(item, Motion):
             raise ValueError(f"motion = {shown(item)}: is of the theory, without a body that it moves: must be {_in_yade(item)}")
         if not isinstance(item, wrapper.BaseMotionEngine):
-            raise ValueError(f"motion = {shown(item)}: must be a PulseTrainEngine, a RecordMotionEngine, or a list of them")
+            raise ValueError(f"motion = {shown(item)}: must be a PulseTrainEngine, a RecordMotionEngine, a test of dem.push(), or a list of them")
         if not item.dead:  # as if it were not there
             item.check()
     for item in recorders:
@@ -217,8 +218,8 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
     meant: blocks that stand on nothing, bodies that no block touches, pivots that slip, a base that goes on when its record ends, a motion that was
     made and not given, attributes that the model does not read, numbers that look like a slip of units.
 
-    motion        a motion engine (PulseTrainEngine, RecordMotionEngine), a list of them, or None. Those of the same bodies, in perpendicular directions
-                  (two or three components of a record), add up
+    motion        a motion engine (PulseTrainEngine, RecordMotionEngine), a test (dem.push, dem.pull_and_release), a list of them, or None. Motions of the
+                  same bodies, in perpendicular directions (two or three components of a record), add up
     model         'planar' or 'spatial': rigid blocks in a plane or in space (MoreauJeanIntegrator). 'compliant': joints with
                   stiffness, YADE's usual loop with NewtonIntegrator. 'auto': compliant where a BlockMat has a stiffness or
                   `penetration` is given; else planar where the scene lies in one upright plane; else spatial.
@@ -243,14 +244,18 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
                   unless an impact_order 'sequential' or a tolerance below 1e-6 is asked for. With 'wall', structures of fewer
                   blocks have localised impacts (MoreauJeanIntegrator.localisedBlocks)
 
-    A joint of two BlockMats has the smaller friction angle, the mean restitution (the given one where only one is), and noSlip if either has it.
+    A joint of two BlockMats has the smaller friction angle, the mean restitution (the given one where only one is), and noSlip if either has it and the other one
+    has no friction angle of 0.
     A BlockMat is read when two blocks come near each other. Changed during a run, it acts on pairs that come later; for those that are there
     already set phys.tangensOfFrictionAngle and phys.restitution of the interactions in O.interactions.
     """
     notes.said.clear()
     _check_arguments(model, method, impact_order, penetration, tolerance, dt, gravity)
-    gravity, motions, recorders, blocks = float(gravity), _several(motion), _several(recorder), bodies.blocks()
+    gravity, recorders, blocks = float(gravity), _several(recorder), bodies.blocks()
+    pushes = [one for one in _several(motion) if isinstance(one, Push)]
+    motions = [one.motion if isinstance(one, Push) else one for one in _several(motion)]
     _check_engines(motions, recorders, others, blocks)
+    recorders += [engine for one in pushes for engine in one.engines]
     if not any(b.dynamic for b in blocks):
         raise ValueError("there is no free block in O.bodies: add one with dem.block() before dem.engines()")
     for body in blocks:

@@ -22,6 +22,7 @@ _STILL = 1e-3
 said = []  # the lines that the last dem.engines() has printed on what may not be meant
 
 _made = []  # weak references to the motion engines that a script has made and not yet given to dem.engines(), each with that of _scene_mark()
+_pushes = []  # weak references to the motion engines of dem.push()
 _given = []  # (weak reference to a motion engine, the masonry.Record that it was made of)
 
 
@@ -55,6 +56,16 @@ def has_record(engine, record):
     _given.append((weakref.ref(engine), record))
 
 
+def is_of_a_push(engine):
+    """The engine moves the platens of dem.push(): its accelerations are small and those of no record."""
+    _pushes.append(weakref.ref(engine))
+
+
+def moves_platens(engine):
+    """Whether it is that of a push."""
+    return any(known() is engine for known in _pushes)
+
+
 def _record_of(engine):
     return next((record for known, record in _given if known() is engine), None)
 
@@ -76,7 +87,7 @@ def peak_of(record):
 
 
 def _records(motions):
-    return [motion for motion in motions if isinstance(motion, wrapper.RecordMotionEngine)]
+    return [motion for motion in motions if isinstance(motion, wrapper.RecordMotionEngine) and not moves_platens(motion)]
 
 
 def of_records(motions):
@@ -175,7 +186,8 @@ def _law(below, body):
     """(restitution or None, friction coefficient or infinity) of a joint, as Ip2_BlockMat_BlockMat_BlockPhys makes it of two materials."""
     materials = below.mat, body.mat
     given = [m.restitution for m in materials if not math.isnan(m.restitution)]
-    friction = math.inf if any(m.noSlip for m in materials) else math.tan(min(m.frictionAngle for m in materials))
+    smooth = any(m.frictionAngle == 0 and not m.noSlip for m in materials)
+    friction = math.inf if any(m.noSlip for m in materials) and not smooth else math.tan(min(m.frictionAngle for m in materials))
     return sum(given) / len(given) if given else None, friction
 
 

@@ -4,6 +4,7 @@ import numpy as np
 from masonry._given import shown
 from masonry._pose import BOX_FACES
 from masonry._shapes import Shapes, box_corners
+from masonry.dem import notes
 from masonry.dem.describing import about
 from masonry.dem.engines import impacts, joint_engine
 from masonry.dem.loads import dead_loads
@@ -24,7 +25,8 @@ def wall_history(recorder):
     blocks = np.array(recorder.blocks).reshape(-1, 4)
     poses = np.frombuffer(recorder.posesAsBytes()).reshape(len(recorder.times), -1, 7)
     motions = [motion for motion in recorder.motions if not motion.dead]
-    motion = (min(m.start for m in motions), max(m.end for m in motions)) if motions else (np.nan, np.nan)
+    of_bases = [motion for motion in motions if not notes.moves_platens(motion)]
+    motion = (min(m.start for m in of_bases), max(m.end for m in of_bases)) if of_bases else (np.nan, np.nan)
     # The last sample is up to a period older than the run, whose time is O.time while the recorder takes part in it.
     present = recorder in O.engines
     end = max(O.time, recorder.times[-1]) if present else None

@@ -11,6 +11,7 @@ from yade import O, wrapper
 from masonry.dem import notes
 from masonry.dem.checks import listed
 from masonry.dem.engines import joint_engine_given
+from masonry.dem.pushing import Push
 
 # Wall clock between two looks at the bar, s.
 _SHOWN = 0.1
@@ -62,10 +63,19 @@ def _is_condition(until):
     return callable(until) and not isinstance(until, wrapper.Engine)  # YADE's engines can be called
 
 
+def _condition(until):
+    """The function that says whether to end."""
+    return until.is_over if isinstance(until, Push) else until if _is_condition(until) else lambda: False
+
+
 def _end_given(seconds, until):
     """The time at which the run ends at the latest, s."""
     if seconds is not None and not 0 < number_given("seconds", seconds) < math.inf:
         raise ValueError(f"seconds = {seconds}: must be positive and finite")
+    if isinstance(until, Push):
+        if not until.is_given():
+            raise ValueError("until: this push moves nothing: O.engines = dem.engines(push)")
+        return until.motion.end + 2 * O.dt if seconds is None else O.time + seconds
     if _is_condition(until):
         if seconds is None:
             raise ValueError("seconds = None: must say how long the run may wait for the condition `until`, s")
@@ -85,7 +95,7 @@ def run(seconds=None, until=None, progress=None):
 
     seconds     how much simulated time from now on, s, positive; with a condition: at most
     until       a motion engine, or a list of them, instead of seconds: to the end of the last one. Or a condition, beside seconds: a function without arguments
-                that says whether to end, as dem.at_rest or dem.overturned
+                that says whether to end, as dem.at_rest, dem.overturned or dem.collapsed. Or a test of dem.push() or dem.pull_and_release(): to its end
     progress    a progress bar; None: where stderr is a terminal
 
     Returns True where a condition has ended the run, else False.
@@ -104,7 +114,7 @@ def run(seconds=None, until=None, progress=None):
         raise ValueError("O is running already: call O.pause() or O.wait() first")
     if not 0 < O.dt < math.inf:
         raise ValueError(f"O.dt = {O.dt}: must be positive and finite; dem.engines() chooses one")
-    start, end, condition = O.time, _end_given(seconds, until), until if _is_condition(until) else lambda: False
+    start, end, condition = O.time, _end_given(seconds, until), _condition(until)
     if condition():
         return True
     looked = start

@@ -8,11 +8,13 @@ from dataclasses import dataclass, field
 import numpy as np
 from masonry._boxes import bounds, face_gaps
 from masonry._files import save_picture
-from masonry._given import number_given, positive_given, shown
+from masonry._given import finite_numbers, number_given, positive_given, shown
 from masonry._polyhedra import gaps
 from masonry._pose import axes_of
 from masonry._progress import wanted
+from masonry.dem import tilting_report
 from masonry.dem.bodies import blocks, geometry, poses, reach, shapes_of, world_shape
+from masonry.dem.describing import about
 from masonry.dem.engines import METHODS, engines, has_stiffness
 from masonry.dem.loads import load_engines
 from tqdm import tqdm
@@ -55,6 +57,18 @@ _DRAWN = 0.4
 _JOINT_FIELDS = [("id1", int), ("id2", int), ("opening", float), ("slip", float), ("opens", bool), ("slides", bool)]
 
 
+def _direction_given(direction):
+    """The unit vector of a direction in plan."""
+    if isinstance(direction, str):
+        if direction not in _DIRECTIONS:
+            raise ValueError(f"direction = {shown(direction)}: must be one of {', '.join(map(repr, _DIRECTIONS))}, or (dx, dy)")
+        return Vector3(_DIRECTIONS[direction])
+    x, y = finite_numbers("direction", direction, 2, "two finite numbers (dx, dy) in plan, not both 0, or 'x', '-x', 'y' or '-y'")
+    if not math.hypot(x, y) > 0:
+        raise ValueError(f"direction = {shown(direction)}: must be (dx, dy) in plan, not both 0")
+    return Vector3(x, y, 0) / math.hypot(x, y)
+
+
 def _check_multiplier(multiplier):
     if multiplier > _MOST:
         raise ValueError(f"the blocks stand at any multiplier up to {_MOST:g}: they are held on all sides")
@@ -84,6 +98,7 @@ class Collapse:
     doubts: list  # why the result cannot be trusted; empty: none
     remarks: list  # what blocks did below collapse, or where it was not reached, in words
     _mechanism: object = field(repr=False)
+    about: dict = field(default_factory=dict, repr=False)  # what was run: direction, load, materials, model
 
     def __str__(self):
         opens, slides = self.joints["opens"], self.joints["slides"]
@@ -94,13 +109,21 @@ class Collapse:
 
     def draw(self, path, title=None):
         """Writes a picture (.png, .pdf, ...): the blocks, their movement magnified; open joints red, sliding ones blue, those seen face on as outlines."""
-        self._mechanism.draw(path, self, title or str(self))
+        save_picture(self.figure(title or str(self)), path, dpi=150, bbox_inches="tight")
+
+    def figure(self, title):
+        """The matplotlib figure of draw()."""
+        return self._mechanism.figure(self, title)
+
+    def report(self, path, title=""):
+        """Writes a page, one .html file: the multiplier, doubts and remarks in words, the mechanism, its joints, the trials and what was run."""
+        tilting_report.write(self, path, title)
 
 
 class TiltTable:
     """Finds the multiplier of the weight, acting sideways, at which the free blocks of the scene collapse.
 
-    direction    'x', '-x', 'y' or '-y': where the blocks are pulled
+    direction    where the blocks are pulled: 'x', '-x', 'y' or '-y', or (dx, dy) in plan, of any length
     load         'force': a horizontal body force, multiplier times the weight, is added to gravity. 'turned': gravity keeps its size and is
                  turned by the arc tangent of the multiplier, as on a tilting table. Dead loads (dem.dead_load) are pulled or turned as the weights are
     model        'auto', 'planar' or 'spatial', as in dem.engines()
@@ -120,9 +143,10 @@ class TiltTable:
     these gain speed steadily. Restitution hardly matters, but 0 is fastest. Afterwards the blocks are put back, at rest, with O.time 0; O.engines and O.dt
     are left as in the last trial.
 
-    With friction the multiplier need not be unique: Coulomb's law may allow a load both to be carried and to move the blocks. 'wall' finds the load
-    that moves blocks which have stood a smaller one, as compliant joints do. TiltTable(method='localised') tells whether friction also carries
-    more: where the two differ, the multiplier is indeterminate, and the smaller one is the safe one.
+    With friction the multiplier need not be unique: Coulomb's law may allow a load both to be carried and to move the blocks. In walls with level beds
+    'wall' finds the load that moves blocks which have stood a smaller one, as compliant joints do, and 'localised' may carry more. Where blocks wedge between
+    inclined faces it is the other way round: 'wall' carries the largest load that friction can balance, in a V groove 5 % more than 'localised'
+    (validation/convex, case a12). Neither method is safe by itself: where the two differ, the multiplier is indeterminate; trust the smaller one.
 
     The bar shows the multiplier of the last trial and its verdict:
         rest        the blocks stand, and the load grows from here
@@ -135,8 +159,7 @@ class TiltTable:
     """
 
     def __init__(self, direction="x", load="force", model="auto", hold=3.0, share=2e-3, gravity=9.81, method="auto"):
-        if direction not in tuple(_DIRECTIONS):
-            raise ValueError(f"direction = {shown(direction)}: must be one of {', '.join(map(repr, _DIRECTIONS))}")
+        self._towards = _direction_given(direction)
         if load not in ("force", "turned"):
             raise ValueError(f"load = {shown(load)}: must be 'force' or 'turned'")
         if model not in ("auto", "planar", "spatial"):
@@ -321,12 +344,12 @@ class TiltTable:
         integrator = O.engines[-1]
         integrator.wallsOnly = True  # structures of few blocks too
         integrator.mostEvents, integrator.onTrouble = _EVENTS, "count"
-        integrator.along = Vector3(_DIRECTIONS[self.direction])  # the plane, before there is a pull
+        integrator.along = self._towards  # the plane, before there is a pull
         self._pull(integrator, multiplier)
         return integrator
 
     def _pull(self, integrator, multiplier):
-        pull = Vector3(_DIRECTIONS[self.direction]) * multiplier - Vector3.UnitZ
+        pull = self._towards * multiplier - Vector3.UnitZ
         pull = pull.normalized() if self.load == "turned" else pull
         integrator.gravity = self.gravity * pull
         for engine, force in self._loads:
@@ -371,7 +394,7 @@ class TiltTable:
         return found
 
     def _mechanism(self):
-        return _Mechanism(self._blocks, self._start, self._joints, 1 if "y" in self.direction else 0)
+        return _Mechanism(self._blocks, self._start, self._joints, 1 if abs(self._towards[1]) > abs(self._towards[0]) else 0)
 
     def _collapse(self, multiplier, bracket, trials, mechanism):
         failures = sum(t.failures for t in trials if t.multiplier in bracket)
@@ -381,7 +404,12 @@ class TiltTable:
         unclear = [f"{t.multiplier:.5g}" for t in trials if t.verdict == "unclear"]
         if unclear:
             doubts.append(f"blocks still moved, slowing down, when the trials of {', '.join(unclear)} were ended; taken for collapse: a larger hold decides them")
-        return Collapse(multiplier, bracket, trials, mechanism.joints(), mechanism.moving(), doubts, self._remarks(trials, bracket), mechanism)
+        return Collapse(multiplier, bracket, trials, mechanism.joints(), mechanism.moving(), doubts, self._remarks(trials, bracket), mechanism,
+                        self._about())
+
+    def _about(self):
+        direction = self.direction if isinstance(self.direction, str) else f"({self._towards[0]:.4g}, {self._towards[1]:.4g})"
+        return {**about([b.id for b in self._blocks], []), "pull": f"towards {direction}, {'a body force' if self.load == 'force' else 'by gravity that turns'}"}
 
     def _remarks(self, trials, bracket):
         moved = [t for t in trials if t.verdict == "rest" and t.moved > self._settled()]
@@ -444,7 +472,8 @@ class _Mechanism:
             table[k] = id1, id2, max(gap.max(), 0), slip, gap.max() > least, slip > least
         return table
 
-    def draw(self, path, collapse, title):
+    def figure(self, collapse, title):
+        from matplotlib.backends.backend_agg import FigureCanvasAgg
         from matplotlib.collections import PolyCollection
         from matplotlib.colors import to_rgba
         from matplotlib.figure import Figure
@@ -458,6 +487,7 @@ class _Mechanism:
         # From behind to the front, with x or y to the right.
         order = np.lexsort((self._before[:, 1 - self._axis] * (1 if self._axis else -1), self._free))
         figure = Figure(figsize=(7.5, 6), layout="constrained")
+        FigureCanvasAgg(figure)
         axes = figure.add_subplot(aspect="equal")
         axes.add_collection(PolyCollection([outlines[k] for k in order], facecolors=np.where(self._free[order], "0.85", "0.6"), edgecolors="0.3", linewidths=0.6))
         for joint, (id1, id2, normal, points) in zip(collapse.joints, self._joints):
@@ -482,5 +512,5 @@ class _Mechanism:
         (left, low), (right, high), margin = shown.min(axis=0), shown.max(axis=0), 0.15 * np.ptp(shown, axis=0).max()
         axes.set(xlim=(left - margin, right + margin), ylim=(low - margin, high + margin))
         axes.set(xlabel=f"{'xy'[self._axis]} (m)", ylabel="z (m)")
-        axes.set_title(f"{title}\nmovement drawn {scale:.3g} times", fontsize="small")
-        save_picture(figure, path, dpi=150, bbox_inches="tight")
+        axes.set_title(f"{title}\nmovement drawn {scale:.3g} times".strip(), fontsize="small")
+        return figure

@@ -29,7 +29,7 @@ def base_reactions(history, about=None, base=None):
 
     about    point that the moment is about, m, as the structure stands in the first sample; it moves with the base of each block. None: the middle of the
              plan of the free blocks (with `base`: of those that stand on it), at the height of their lowest point
-    base     id of a prescribed body: its forces alone; None: those of all
+    base     id of a prescribed body: its forces alone; None: those of all, without the platens of dem.push()
 
     time      s
     force     N; x and y: the base shear, z: the weight that the base carries
@@ -48,7 +48,10 @@ def base_reactions(history, about=None, base=None):
     row1, row2 = (_rows(history, forces[name]) for name in ("id1", "id2"))
     # On the structure: block 2 where block 1 is the base, else block 1.
     side = np.where(free[row2] & ~free[row1], 1.0, np.where(free[row1] & ~free[row2], -1.0, 0.0))
-    if base is not None:
+    if base is None:
+        pushing = [id for motion in history.about.get("motions", []) if motion.get("kind") == "push" for id in motion["ids"]]
+        side[np.isin(history.ids[np.where(free[row1], row2, row1)], pushing)] = 0
+    else:
         side[history.ids[np.where(free[row1], row2, row1)] != base] = 0
     force = side[:, None] * forces["force"]
     under = bases[np.where(free[row2], row2, row1)]

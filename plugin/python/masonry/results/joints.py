@@ -128,6 +128,16 @@ def joints(history, time=None):
     return table
 
 
+def joint_movement(history, row):
+    """(opening, slip, closed), (s,) each, of the joint in that row of joints(history): opening and slip are NaN, and closed is False, from the fall of one of its
+    blocks on."""
+    found = _joints_of(history)
+    values = [found.movement(history, k) for k in range(len(history.time))]
+    opening, slip, closed = (np.array([one[k][row] for one in values]) for k in range(3))
+    gone = found.gone[:, row]
+    return np.where(gone, np.nan, opening), np.where(gone, np.nan, slip), closed & ~gone
+
+
 def patches(history):
     """(j, c, 3) corners of the patches of joints(history), in the first sample, m; those with fewer corners repeat their last one."""
     return _joints_of(history).polygons

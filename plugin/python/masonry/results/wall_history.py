@@ -312,21 +312,43 @@ class WallHistory:
         largest of those of each base."""
         return np.fmax.reduce([self._drift_on(self.free & (self.bases == base)) for base in np.unique(self.bases[self.free])])
 
+    def signed_drift(self, blocks):
+        """(s, 2) along x and y, with the sign of the displacement: of those blocks ((n,) bool) as drift(), where each component is largest in size."""
+        moved, height = self._top_moved(blocks)
+        filled = np.where(np.isnan(moved), 0, moved)
+        most = np.abs(filled).argmax(axis=1)
+        return np.take_along_axis(filled, most[:, None], axis=1)[:, 0] / height
+
     def _drift_on(self, blocks):
         """drift() of what stands on one base."""
+        moved, height = self._top_moved(blocks)
+        return np.fmax.reduce(np.linalg.norm(moved, axis=2), axis=1) / height
+
+    def _top_moved(self, blocks):
+        """(horizontal displacements (s, t, 2) of the tops of the upper ones among those blocks, height of these blocks), m."""
         low, high = self.extent
         top = np.flatnonzero(blocks & (high > high[blocks].max() - (high - low) / 2))
         up, turned = self.upwards[top], _pose.matrices(self.relative_orientation[:, top])
         arms = up * np.einsum("nca,na->nc", self.own_corners[top], up).max(axis=1)[:, None]
         middles = self.relative_position[:, top] + np.einsum("snab,nb->sna", turned, arms)
-        moved = np.linalg.norm((middles - middles[0])[..., :2], axis=2)
-        return np.fmax.reduce(moved, axis=1) / (high[blocks].max() - low[blocks].min())
+        return (middles - middles[0])[..., :2], high[blocks].max() - low[blocks].min()
 
     @cached_property
     def extent(self):
         """Lowest and highest point of each block in the first sample, m."""
         z = self.corners(0)[..., 2]
         return z.min(axis=1), z.max(axis=1)
+
+    @cached_property
+    def volumes(self):
+        """(n,) m^3; of boxes and of convex blocks and unions: tetrahedra from the origin of the block to the triangles of its faces."""
+        if self.shapes is None:
+            return self.sizes.prod(axis=1)
+        result = np.zeros(len(self.ids))
+        for face, block in enumerate(self.shapes.blocks_of_faces):
+            corners = self.shapes.vertices[self.shapes.faces[self.shapes.face_start[face]:self.shapes.face_start[face + 1]]]
+            result[block] += np.einsum("ka,ka->", np.cross(corners[1:-1], corners[2:]), np.broadcast_to(corners[0], (len(corners) - 2, 3))) / 6
+        return result
 
     @cached_property
     def own_corners(self):

@@ -29,7 +29,7 @@ def report(history, path, title="", exact=None):
         raise ValueError(f"path = {path}: must end in .html")
     if exact is not None and not (isinstance(exact, History) and exact.shape == ()):
         raise ValueError(f"exact = {shown(exact)}: must be the masonry.History of one block, or None")
-    template = _template("report.html")
+    made = template("report.html")
     if isinstance(history, WallHistory):
         content = structure.content(history, exact)
     elif isinstance(history, History) and exact is None:
@@ -37,17 +37,19 @@ def report(history, path, title="", exact=None):
     else:
         raise ValueError(f"history = {shown(history)}: must be a WallHistory, or a masonry.History without `exact`")
     content["title"] = title or content["title"]
-    page = template.render(**content, **view3d.library(), style=_text("report.css"), viewer=_text("viewer.js"),
-                                           written=datetime.date.today().isoformat())
+    page = made.render(**content, **view3d.library(), style=text("report.css"), viewer=text("viewer.js"),
+                       written=datetime.date.today().isoformat())
     with written(path) as beside:
         Path(beside).write_text(page, encoding="utf-8")
 
 
-def _text(name):
+def text(name):
+    """Content of a file beside the template."""
     return (_HERE / name).read_text(encoding="utf-8")
 
 
-def _template(name):
+def template(name):
+    """The template of that name; ImportError where jinja2 is missing."""
     try:
         import jinja2
     except ImportError:

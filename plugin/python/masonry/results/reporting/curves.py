@@ -70,6 +70,12 @@ def svg(figure, over_time=True):
     return text
 
 
+@styled
+def plain_svg(figure):
+    """SVG text of a figure that shows no history."""
+    return svg(figure, over_time=False)
+
+
 def time_axis(axes, time, collapsed=None):
     """Limits and label of the lowest axes; what comes after the collapse is shaded."""
     for one in axes:
@@ -155,6 +161,20 @@ def joints(history, verdict, table):
         _limit(one, values)
         one.legend(title="blocks", loc="upper left", fontsize="small", title_fontsize="small", ncol=2)
     time_axis(axes, history.time, verdict.time)
+    return svg(figure)
+
+
+@styled
+def of_joint(found, verdict):
+    figure = found.figure(width=_WIDTH)
+    figure.set_dpi(72)
+    figure.axes[0].set_title("")
+    for axes, (_, factor, names) in zip(figure.axes, found.panels()):
+        values = factor * np.concatenate([found[name] for name, _ in names])
+        usual = _USUAL * float(np.nanpercentile(np.abs(values), 95)) if np.isfinite(values).any() else 0
+        if 0 < usual < largest(np.abs(values)):
+            axes.set_ylim(-_ROOM * usual if np.nanmin(values) >= -_FAINT * usual else -usual, usual)
+    time_axis(figure.axes, found["time"], verdict.time)
     return svg(figure)
 
 

@@ -7,6 +7,7 @@ from masonry import _pose
 from masonry.results.collapse import collapse
 from masonry.results.forces import has_forces
 from masonry.results.joints import joints
+from masonry.results.time_histories import joint_history, structure_history
 from masonry.results.view import largest, movement, still
 
 from . import curves, view3d, words
@@ -15,6 +16,8 @@ from . import curves, view3d, words
 _JOINTS, _IMPACTS = 12, 200
 # Error of the energy balance that is named among the warnings, relative to the largest energy in it.
 _UNBALANCED = 0.05
+# Drifts, and base shears over the weight, along an axis that are not named.
+_FAINT = 1e-6
 
 
 def content(history, exact):
@@ -30,7 +33,7 @@ def content(history, exact):
                      "Largest horizontal displacement in a course, relative to the base; the curve of a block ends when it falls." + _shaded(verdict))]),
         _section("shape", "Shape at the largest drift", curves.shape(history, shown_first),
                  "The sample of the largest drift" + (" before the collapse" if verdict.collapsed else "") + "; dashed: the first sample."),
-        _joints_section(history, verdict, table), *_force_sections(history, verdict),
+        _joints_section(history, verdict, table), _joint_section(history, verdict, table), *_force_sections(history, verdict),
         _energy_section(history), _impact_section(history)) if section]
     return {"title": history.about.get("script") or "Rocking masonry", "kind": verdict.verdict, "headline": _headline(verdict), "sentences": _sentences(history, verdict),
             "warnings": _warnings(history, verdict), "scene": view3d.scene(history, shown_first), "numbers": _numbers(history, verdict, table), "sections": sections,
@@ -87,10 +90,12 @@ def _warnings(history, verdict):
 def _numbers(history, verdict, table):
     """Rows (name, value, when)."""
     before = " before the collapse" if verdict.collapsed else ""
+    bases = history.ids[np.unique(history.bases[history.free])].tolist() if history.base is not None else [None]
     rows = [("Largest drift" + before, f"{words.decimal(100 * verdict.peak_drift)} % of the height", f"{verdict.peak_drift_time:.4g} s"),
             ("Drift in the last sample", f"{words.decimal(100 * verdict.residual_drift)} % of the height", f"{history.time[-1]:.4g} s"),
             (f"First drift of {100 * verdict.excursion:g} %", "never" if math.isnan(verdict.first_excursion) else "reached",
              "" if math.isnan(verdict.first_excursion) else f"{verdict.first_excursion:.4g} s")]
+    rows += [row for base in bases for row in _of_structure(history, base, len(bases) > 1)]
     for id, time in list(zip(verdict.fallen, verdict.fall_times))[:1]:
         rows.append(("First block to fall", f"block {id}", f"{time:.4g} s"))
     for name, verb in (("opening", "opened"), ("slip", "slid")):
@@ -103,6 +108,23 @@ def _numbers(history, verdict, table):
                        ("dampDissip", "Dissipated by dashpots")):
         if np.isfinite(energy[name]) and (energy[name] != 0 or name == "baseWork"):
             rows.append((word, f"{words.decimal(energy[name], 4)} J", "in all"))
+    return rows
+
+
+def _of_structure(history, base, several):
+    """Rows of _numbers(): what remains of the drift, and the largest base shear, of what stands on one base."""
+    found = structure_history(history, base=base if several else None)
+    of, rows = f" on base {base}" if several else "", []
+    for axis in "xy":
+        drift = found[f"drift_{axis}"]
+        if largest(np.abs(drift)) > _FAINT:
+            most = int(np.nanargmax(np.abs(drift)))
+            rows.append((f"Drift along {axis}{of}: largest, and in the last sample", f"{words.decimal(100 * drift[most])} %, {words.decimal(100 * drift[-1])} %",
+                         f"{history.time[most]:.4g} s"))
+        share = found.numbers.get(f"the same over the weight (V/W along {axis})")
+        if share is not None and abs(share) > _FAINT:
+            most = int(np.nanargmax(np.abs(found[f"shear_{axis}"])))
+            rows.append((f"Largest base shear along {axis}{of}", f"{words.decimal(abs(share))} of the weight", f"{history.time[most]:.4g} s"))
     return rows
 
 
@@ -130,6 +152,16 @@ def _joints_section(history, verdict, table):
                     second=curves.joint_map(history), second_caption="Largest values of each joint, on the structure as it was at first.",
                     columns=["Blocks", "Opening (mm)", "at (s)", "Slip (mm)", "at (s)", ""], rows=rows,
                     more=f"The {len(rows)} joints of {len(table)} that opened most; fallen: one of the blocks has in the end.", fold="Table of joints")
+
+
+def _joint_section(history, verdict, table):
+    """The joint that opened most, where its forces are known."""
+    if not has_forces(history) or not len(table) or not largest(table["opening"]) > still(history):
+        return None
+    found = joint_history(history)
+    return _section("joint", f"The joint that opened most: blocks {found.title.split('blocks ')[1]}", curves.of_joint(found, verdict),
+                    "Opening and slip, the force across the joint (pressure) and along it, and the energy that sliding has dissipated in it, summed over the samples; results.joint_history() "
+                    "has that of every joint." + _shaded(verdict))
 
 
 def _mm(value):

@@ -29,6 +29,8 @@ def motion(given):
     """One sentence on a motion engine of WallHistory.about."""
     direction = ", ".join(f"{x:g}" for x in given["direction"])
     start = f", from {given['start']:g} s" if given["start"] else ""
+    if given["kind"] == "push":
+        return f"platens {', '.join(map(str, given['ids']))} push along ({direction}){start}"
     if given["kind"] == "RecordMotionEngine":
         name = f" “{given['record']}”" if given["record"] else ""
         return (f"record{name}: {given['samples']} samples every {given['interval']:g} s, peak {given['peak']:.3g} m/s^2 ({given['peak'] / _GRAVITY:.3g} g), "
@@ -61,7 +63,7 @@ def facts(about):
     """Rows (name, value) of the table of what was run."""
     rows = [("Script", about["script"])] if about.get("script") else []
     rows += [("Material" if len(about["materials"]) == 1 else f"Material {k + 1}", material(one)) for k, one in enumerate(about.get("materials", []))]
-    rows += [("Motion of the base", motion(one)) for one in about.get("motions", [])] or ([("Motion of the base", "none")] if "motions" in about else [])
+    rows += [("Push" if one["kind"] == "push" else "Motion of the base", motion(one)) for one in about.get("motions", [])] or ([("Motion of the base", "none")] if "motions" in about else [])
     rows += [("Added mass" if one["kind"] == "mass" else "Dead load", load(one)) for one in about.get("loads", [])]
     model = about.get("model", {})
     if "model" in model:

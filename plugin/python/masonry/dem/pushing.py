@@ -1,0 +1,311 @@
+"""Push-over tests under displacement control: rigid platens push blocks, and the forces in their contacts are the force of the test."""
+
+import math
+
+import numpy as np
+from masonry._files import save_picture, written
+from masonry._given import finite_numbers, is_whole, number_given, positive_given, shown
+from masonry._pose import matrices
+from masonry.dem import notes
+from masonry.dem.bodies import block_body, blocks, world_shape
+from masonry.dem.collapsing import collapsed
+from masonry.dem.platens import contact, last_of_course, neighbour, platen, prescribed
+from yade import O, Vector3, wrapper
+
+CURVE = [("displacement", float), ("force", float), ("time", float), ("moved", float)]
+# m/s^2, by which platens change their speed at most: a force of inertia of a thousandth of the weight.
+_ACCELERATION = 0.02
+# Most numbers of the record that moves the platens.
+_MOST_PARTS = 1_000_000
+# Time over which forces are averaged, s.
+_AVERAGED = 0.02
+# Steps between two looks at a drop of the force and at fallen blocks, at least.
+_LOOK = 100
+# A failure of the integrator that names a jam has these words (rigid_failures.cpp).
+_JAM = "bodies with prescribed motion"
+# Share of a step by which O.time may miss the end: it is a sum of steps.
+_ROUND_OFF = 1e-3
+# Extra width of the gap of the platens in front, relative to what a turn of the block takes.
+_ROOM = 1.5
+_VERTICAL = "free", "load", "held"
+
+
+class Push:
+    """A push-over test: dem.push() and dem.pull_and_release() make it, dem.engines(push) takes it, dem.run(until=push) runs it.
+
+    platens    ids of the prescribed bodies that push
+    ids        of the blocks that are pushed
+    ended      why dem.run(until=push) has ended: 'displacement' (all displacements have been reached), 'drop', 'collapse', 'jam'; '' before that
+    """
+
+    def __init__(self, points, platens, direction, targets, motion, engines, drop, collapse):
+        """points: {id of a block: where a platen touches it, m}. engines: of the dead load, if there is one, and the recorder, in that order."""
+        self.ids, self.platens, self.direction, self.targets = list(points), platens, direction, targets
+        self.motion, self.engines, self.recorder = motion, engines, engines[-1]
+        self.drop, self.collapse, self.releases, self.ended = drop, collapse, False, ""
+        states = {id: O.bodies[id].state for id in points}
+        self._arms = {id: np.array(states[id].ori.conjugate() * (Vector3(point) - states[id].pos)) for id, point in points.items()}  # in the axes of the block
+        self._look = 0  # O.iter of the next look at force and blocks: each reads the whole curve and all blocks
+
+    @property
+    def curve(self):
+        """Structured array, one row a step of the run: displacement of the platens along the direction (m), force on the blocks along it (N), time (s), and
+        moved (m): how far the points of the blocks have gone at which they were first touched, the mean over `ids`. The force is positive while
+        the platens press along the direction, negative while they press back, and without the dead load."""
+        recorder = self.recorder
+        samples, bodies = len(recorder.times), len(recorder.ids)
+        table = np.zeros(samples, dtype=CURVE)
+        if not samples:
+            return table
+        table["time"] = recorder.times
+        poses = np.frombuffer(recorder.posesAsBytes()).reshape(samples, bodies, 7)
+        row = {id: k for k, id in enumerate(recorder.ids)}
+        table["displacement"] = (poses[:, row[self.platens[0]], :3] - poses[0, row[self.platens[0]], :3]) @ self.direction
+        paths = [(own[:, :3] + matrices(own[:, 3:]) @ arm) @ self.direction for own, arm in ((poses[:, row[id]], arm) for id, arm in self._arms.items())]
+        table["moved"] = np.mean([path - path[0] for path in paths], axis=0) if paths else np.nan
+        forces = np.frombuffer(recorder.jointForcesAsBytes()).reshape(-1, 8)
+        one, two = (np.isin(forces[:, k], self.platens) for k in (0, 1))
+        on_blocks = np.where(one & ~two, 1.0, np.where(two & ~one, -1.0, 0.0)) * (forces[:, 2:5] @ self.direction)
+        np.add.at(table["force"], np.repeat(np.arange(samples), recorder.jointCounts), on_blocks)
+        return table
+
+    def averaged(self, time=_AVERAGED):
+        """The curve with its force averaged over that time before and after each sample, s."""
+        table = self.curve
+        if len(table) > 2:
+            half = int(round(positive_given("time", time) / 2 / max(np.median(np.diff(table["time"])), 1e-300)))
+            sums, rows = np.concatenate([[0.0], np.cumsum(table["force"])]), np.arange(len(table))
+            low, high = np.maximum(rows - half, 0), np.minimum(rows + half + 1, len(table))
+            table["force"] = (sums[high] - sums[low]) / (high - low)
+        return table
+
+    @property
+    def largest_force(self):
+        """(force, displacement) of the averaged curve where the force is largest in size, N and m."""
+        table = self.averaged()
+        if not len(table):
+            raise ValueError("push: nothing has been recorded yet: O.engines = dem.engines(push), then dem.run(until=push)")
+        k = int(np.abs(table["force"]).argmax())
+        return float(table["force"][k]), float(table["displacement"][k])
+
+    def save(self, path):
+        """Writes the curve as .csv: displacement (m), force (N), time (s), moved (m), a line a step."""
+        if not str(path).endswith(".csv"):
+            raise ValueError(f"path = {path}: must end in .csv")
+        table = self.curve
+        with written(path) as beside:
+            np.savetxt(beside, np.column_stack([table[name] for name, _ in CURVE]), delimiter=",", comments="",
+                       header="displacement (m),force (N),time (s),moved (m)")
+
+    def picture(self, path, title=""):
+        """Writes a picture (.png, .pdf, .svg) of force over displacement: averaged over 0.02 s in blue, as it was in each step in grey."""
+        from matplotlib.backends.backend_agg import FigureCanvasAgg
+        from matplotlib.figure import Figure
+
+        table, raw = self.averaged(), self.curve
+        if not len(table):
+            raise ValueError("push: nothing has been recorded yet: O.engines = dem.engines(push), then dem.run(until=push)")
+        figure = Figure(figsize=(6.4, 4.2), layout="constrained")
+        FigureCanvasAgg(figure)
+        axes = figure.subplots()
+        axes.axhline(0, color="0.7", linewidth=0.8)
+        axes.plot(1e3 * raw["displacement"], 1e-3 * raw["force"], color="0.8", linewidth=0.6)
+        axes.plot(1e3 * table["displacement"], 1e-3 * table["force"], color="tab:blue", linewidth=1.5)
+        least, most = 1e-3 * table["force"].min(), 1e-3 * table["force"].max()
+        room = 0.1 * max(most - least, 1e-12)
+        axes.set(xlabel="displacement (mm)", ylabel="force (kN)", title=title, ylim=(min(least, 0) - room, max(most, 0) + room))
+        save_picture(figure, path, dpi=150)
+
+    def release(self):
+        """Takes the platens away at once: the blocks are free from the next step on."""
+        self.motion.dead = True
+        for engine in O.engines:
+            if isinstance(engine, wrapper.MoreauJeanIntegrator):
+                engine.motions = [motion for motion in engine.motions if motion is not self.motion]
+        O.engines = [engine for engine in O.engines if engine is not self.motion]
+        for id in self.platens:
+            if O.bodies[id] is not None:
+                O.bodies.erase(id)
+
+    # --- what dem.run asks ---
+
+    def is_given(self):
+        """Whether the motion of the platens moves the present scene."""
+        return any(motion is self.motion for engine in O.engines if not isinstance(engine, wrapper.WallRecorder)
+                   for motion in [engine, *getattr(engine, "motions", ())])
+
+    def is_over(self):
+        """Whether the test has ended by now; `ended` then says why."""
+        if not self.ended:
+            self.ended = self._why()
+            if self.ended == "jam":
+                notes.say(f"the push jams at {O.time:.4g} s: the platens {', '.join(map(str, self.platens))} press blocks that cannot give way, and the curve "
+                          "is worthless from there on: another height, more clearance or a smaller displacement may help")
+            if self.ended and self.releases:
+                self.release()
+        return bool(self.ended)
+
+    def _why(self):
+        if any(_JAM in getattr(engine, "firstFailure", "") for engine in O.engines):
+            return "jam"
+        over = O.time >= self.motion.end - _ROUND_OFF * O.dt
+        if O.iter >= self._look or over:
+            self._look = O.iter + max(_LOOK, O.iter // 200)
+            if self.drop and self._has_dropped():
+                return "drop"
+            if self.collapse and collapsed(self.collapse):
+                return "collapse"
+        return "displacement" if over else ""
+
+    def _has_dropped(self):
+        """Whether the force on the envelope, where the displacement is the farthest so far, has dropped."""
+        table = self.averaged()
+        for side in (1, -1):
+            place, force = side * table["displacement"], side * table["force"]
+            envelope = force[(place > 0) & (place >= np.maximum.accumulate(place))]
+            if len(envelope) and place[-1] > 0 and place[-1] >= place.max() and envelope[-1] < (1 - self.drop) * envelope.max():
+                return True
+        return False
+
+
+def _direction_given(direction):
+    what = "a unit vector of three numbers that is level, as (1, 0, 0)"
+    unit = np.array(finite_numbers("direction", direction, 3, what))
+    if not (abs(np.linalg.norm(unit) - 1) < 1e-9 and abs(unit[2]) < 1e-12):
+        raise ValueError(f"direction = {shown(direction)}: must be {what}")
+    return unit
+
+
+def _targets_given(displacement, cycles):
+    if (displacement is None) == (cycles is None):
+        raise ValueError(f"displacement = {displacement}, cycles = {shown(cycles)}: give one of the two")
+    if cycles is None:
+        return [positive_given("displacement", displacement, ", in m, along `direction`")]
+    if not np.iterable(cycles) or isinstance(cycles, str) or not len(cycles):
+        raise ValueError(f"cycles = {shown(cycles)}: must be a list of displacements in m, as [1e-3, -1e-3, 2e-3, -2e-3]")
+    targets = [float(number_given("cycles", one)) for one in cycles]
+    if not all(math.isfinite(one) for one in targets) or any(a == b for a, b in zip([0.0, *targets], targets)):
+        raise ValueError(f"cycles = {shown(cycles)}: must be finite displacements in m, each another than the one before (the first one not 0)")
+    return targets
+
+
+def _record(targets, speed):
+    """(accelerations, interval) that bring the platens to each target in turn and stop them there, at that speed at most: m/s^2, s."""
+    legs = np.diff([0.0, *targets])
+    interval = min(speed / _ACCELERATION, math.sqrt(np.abs(legs).min() / (2 * _ACCELERATION)))
+    # A leg of `count` intervals has the speed leg/(count interval), reached within two intervals, and the acceleration leg/(count interval^2).
+    parts = [max(2, math.ceil(abs(leg) / interval * max(1 / speed, 1 / (_ACCELERATION * interval)) * (1 - 1e-12))) for leg in legs]
+    if sum(parts) > _MOST_PARTS:
+        raise ValueError(f"speed = {speed:g}: the displacements of {np.abs(legs).sum():g} m in all need more than {_MOST_PARTS} numbers: must be larger, in m/s")
+    samples = np.zeros(sum(parts) + 2 * len(parts) + 1)
+    at = 0
+    for leg, count in zip(legs, parts):
+        acceleration = leg / count / interval**2
+        samples[at + 1] += acceleration
+        samples[at + count + 1] -= acceleration
+        at += count + 2
+    return samples, interval
+
+
+def _ids_given(ids):
+    ids = [ids] if is_whole(ids, 0) else ids
+    if not np.iterable(ids) or isinstance(ids, str) or not len(list(ids)):
+        raise ValueError(f"ids = {shown(ids)}: must be a list of ids of free blocks")
+    for id in ids:
+        if not block_body(id, "ids").dynamic:
+            raise ValueError(f"ids = {shown(ids)}: body {id} is prescribed (a base): must be free blocks; platens=[...] moves prescribed bodies of your own")
+    if len(set(ids)) < len(ids):
+        raise ValueError(f"ids = {shown(ids)}: must name each block once")
+    return [int(id) for id in ids]
+
+
+def push(ids=None, displacement=None, speed=None, direction=(1, 0, 0), vertical="free", force=None, cycles=None, height=None, drop=None, collapse=1,
+         platens=None, clearance=None):
+    """A push-over test under displacement control: rigid platens without friction move along `direction` and press against the blocks `ids`. Give the result to
+    dem.engines(push), then dem.run(until=push); push.curve has the force over the displacement.
+
+    ids             of the free blocks that are pushed, each by a platen of its own that touches it along one horizontal edge; all platens move alike
+    displacement    of the platens, m, positive; or
+    cycles          displacements of the platens, m, to reach one after the other, [1e-3, -1e-3, 2e-3, -2e-3]. There is then a platen behind each block and
+                    one in front of it, or of the last block of its course, and they press in turns
+    speed           of the platens, at most, m/s; None: 1 % of sqrt(g height), of the height of the pushed blocks over the lowest free block
+    direction       level unit vector
+    vertical        'free': the blocks carry no load; 'load': they carry the dead load `force` together, each the same share, at its centre; platens hold no block down.
+                    ('held', which rigid blocks cannot follow, is refused)
+    force           with vertical='load': the dead load, N, downwards; it is there as long as dem.engines(push) is in O.engines
+    height          z of the edges of the platens, m, in the world; None: that of the centre of each block
+    drop            ends the test when the force, averaged over 0.02 s, has fallen below (1 - drop) times the largest one in that direction, while the displacement
+                    is the farthest so far: 0 < drop <= 1; None: never
+    collapse        ends it when so many blocks have fallen (dem.collapsed); None: never
+    platens         instead of ids: prescribed bodies of your own that move and push what they touch; all free blocks are then recorded
+    clearance       with cycles: gap between a block and the platens in front of it, m; None: room for a turn of the block about the foot of the structure
+
+    The force is the sum of the forces in the contacts of the platens. The platens begin at rest at O.time, and change their speed with 0.02 m/s^2 at most. A
+    test ends at the last displacement, at a drop, a collapse or a jam (push.ended), which is said in a line. Raises ValueError for input out of its range.
+    """
+    unit, targets = _direction_given(direction), _targets_given(displacement, cycles)
+    if (ids is None) == (platens is None):
+        raise ValueError(f"ids = {shown(ids)}, platens = {shown(platens)}: give one of the two")
+    if drop is not None and not 0 < number_given("drop", drop) <= 1:
+        raise ValueError(f"drop = {drop}: must be above 0 and at most 1, or None")
+    if collapse is not None and not is_whole(collapse, 1):
+        raise ValueError(f"collapse = {shown(collapse)}: must be a whole number of blocks from 1 on, or None")
+    _check_load(vertical, force, ids)
+    pushed = [] if ids is None else _ids_given(ids)
+    free = [body for body in blocks() if body.dynamic]
+    if not free:
+        raise ValueError("there is no free block in O.bodies: add one with dem.block() before dem.push()")
+    low = min(world_shape(body)[0][:, 2].min() for body in free)
+    speed = positive_given("speed", speed, ", in m/s") if speed is not None else 0.01 * math.sqrt(9.81 * max(
+        (O.bodies[id].state.pos[2] - low for id in pushed), default=max(body.state.pos[2] for body in free) - low))
+    samples, interval = _record(targets, speed)
+    points, back, made = ({}, set(), prescribed(platens, "platens")) if ids is None else _made(pushed, unit, height, targets, clearance, low)
+    motion = wrapper.RecordMotionEngine(ids=made, samples=samples.tolist(), interval=interval, direction=unit, start=O.time)
+    notes.is_of_a_push(motion)
+    recorder = wrapper.WallRecorder(ids=made + sorted(back) + (pushed or [body.id for body in free]), recordForces=True, iterPeriod=1)
+    load = wrapper.ForceEngine(ids=pushed, force=Vector3(0, 0, -force / len(pushed))) if vertical == "load" else None
+    return Push(points, made, unit, targets, motion, [one for one in (load, recorder) if one], drop, collapse)
+
+
+def pull_and_release(ids, displacement, speed=None, direction=(1, 0, 0), vertical="free", force=None, height=None):
+    """Free vibration from a displaced position: platens move the blocks `ids` by `displacement` as dem.push() does, and are taken away at once when they are
+    there. dem.run(until=pull) does both; dem.run(5) then runs 5 s of free vibration. The arguments are those of dem.push(). The dead load stays."""
+    made = push(ids, displacement, speed, direction, vertical, force, height=height)
+    made.releases = True
+    return made
+
+
+def _check_load(vertical, force, ids):
+    if vertical not in _VERTICAL:
+        raise ValueError(f"vertical = {shown(vertical)}: must be 'free' or 'load'")
+    if vertical == "held":
+        raise ValueError("vertical = 'held': must be 'free' or 'load': rigid blocks that are held at their height can neither rock nor give way")
+    if vertical == "load":
+        if ids is None:
+            raise ValueError("vertical = 'load': must come with ids, the blocks that carry the load; with platens of your own use O.forces.setPermF(id, (0, 0, -N))")
+        positive_given("force", force, ", in N, the dead load that the pushed blocks carry together")
+    elif force is not None:
+        raise ValueError(f"force = {force}: must come with vertical='load', or be left out")
+
+
+def _made(ids, unit, height, targets, clearance, low):
+    """({id of a block: where it is touched}, ids of the blocks that are pushed back, ids of the new platens): behind the blocks where displacements go along
+    `direction`, in front of them, or of the course that they belong to, where they go back."""
+    legs = np.diff([0.0, *targets])
+    first = -1 if legs[0] > 0 else 1
+    sides = [first, -first] if (legs * legs[0] < 0).any() else [first]
+    if clearance is not None and not 0 <= number_given("clearance", clearance) < math.inf:
+        raise ValueError(f"clearance = {clearance}: must be 0 or positive and finite, in m")
+    heights = {id: O.bodies[id].state.pos[2] if height is None else float(number_given("height", height)) for id in ids}
+    points = {id: contact(id, unit, z, first).point for id, z in heights.items()}
+    places, most = [], max(abs(one) for one in targets)
+    for id, z in heights.items():
+        beside = neighbour(id, unit, z, first)
+        if beside is not None:
+            raise ValueError(f"ids: block {beside} is in the way of a platen at block {id}, at the height of {z:.4g} m: must be blocks that are free on the side of the push")
+        turn = min(most / max(z - low, most), 1.0)
+        end = last_of_course(id, unit, z, -first)
+        width = contact(end, unit, z, -first).width + abs((contact(end, unit, z, -first).point - points[id]) @ unit)
+        room = _ROOM * width * (1 / math.cos(turn) - 1) if clearance is None else clearance
+        places += [(id if side == first else end, z, side, 0.0 if side == first else room) for side in sides]
+    return points, {id for id, *_ in places} - set(ids), [platen(id, unit, z, side, room) for id, z, side, room in places]
