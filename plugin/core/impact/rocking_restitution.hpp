@@ -57,28 +57,30 @@
 namespace masonry {
 
 struct JointResult {
-	Vector3 axis {Vector3::Zero()}; // e, directed so that `before` is not negative; zero: the joint had no row
-	double before {0}, after {0};   // e.w- and e.w+, rad/s, against the carrying motion
-	double application {0};         // x, m: couple / normal impulse (0 without a row)
-	double frictionDemand {0};      // |p_t|/p_n of the closing points' resultant
+	double before {0}, after {0}; // e.w- and e.w+, rad/s, against the carrying motion
+	double application {0};       // x, m: couple / normal impulse (0 without a row)
+	double frictionDemand {0};    // |p_t|/p_n of the closing points' resultant
 	double restitution() const { return before > 0 ? after / before : 0; }
 };
 
 enum class ImpactOrder { simultaneous, sequential };
 
+template <class K>
 struct ClosingJoint {
-	int block, support;             // indices into the list of bodies
-	Vector3 normal;                 // from the support to the block
-	double restitution;             // C in [0, 1], or NaN: natural
-	int newBegin, oldBegin, oldEnd; // points [newBegin, oldBegin) are the new support, [oldBegin, oldEnd) the old
-	double carry {0};               // e.(w_carry - w_support), rad/s: found at the impact
+	int block, support;                      // indices into the list of bodies
+	typename K::Vector normal;               // from the support to the block
+	double restitution;                      // C in [0, 1], or NaN: natural
+	int newBegin, oldBegin, oldEnd;          // points [newBegin, oldBegin) are the new support, [oldBegin, oldEnd) the old
+	typename K::Spin axis {K::Spin::Zero()}; // e, directed so that `before` is not negative; zero: the joint has no row
+	double carry {0};                        // e.(w_carry - w_support), rad/s: found at the impact
 	JointResult result {};
 };
 
+template <class K>
 struct RockingImpact {
-	std::vector<ClosingJoint> joints;
-	std::vector<ImpulsePoint> points; // all that may act: new and old supports, and what else touches
-	ImpulseSolver solve {solveImpulses};
+	std::vector<ClosingJoint<K>> joints;
+	ImpulsePoints<K> points; // all that may act: new and old supports, and what else touches
+	ImpulseSolver<K> solve {solveImpulses<K>};
 };
 
 struct RockingImpactResult {
@@ -91,23 +93,17 @@ struct RockingImpactResult {
 };
 
 // Zero where there is no old support, or where it is a corner and no closing point approaches.
-Vector3 rockingAxis(const std::vector<Body>& bodies, const ClosingJoint& joint, const std::vector<ImpulsePoint>& points);
+template <class K>
+typename K::Spin rockingAxis(const Bodies<K>& bodies, const ClosingJoint<K>& joint, const ImpulsePoints<K>& points);
 
 // How the joint rocks at this instant: joint.carry, and of joint.result the axis and `before`.
-void findRocking(const std::vector<Body>& bodies, ClosingJoint& joint, const std::vector<ImpulsePoint>& points);
-
-// Work of the prescribed bodies' impulses, which keep their velocities, J.
-double supportWork(const std::vector<Body>& bodies, const std::vector<ImpulsePoint>& points, const std::vector<CoupleRow>& rows);
-
-// What has come out, after the impulses and the row's couple, into joint.result.
-void report(const std::vector<Body>& bodies, const std::vector<ImpulsePoint>& points, ClosingJoint& joint, double couple);
+template <class K>
+void findRocking(const Bodies<K>& bodies, ClosingJoint<K>& joint, const ImpulsePoints<K>& points);
 
 // The two laws, simultaneous and sequential: they change the bodies' velocities, the points' impulses and the joints' results.
-RockingImpactResult applyRockingImpact(std::vector<Body>& bodies, RockingImpact& impact);
-RockingImpactResult applySequentially(std::vector<Body>& bodies, RockingImpact& impact);
-
-// One joint alone, the old support giving the axis and no impulse: nearly always it opens. Takes its points away, and keeps the couple
-// about the joint's axis, N m s.
-RockingImpactResult applyToNewSupport(std::vector<Body>& bodies, ClosingJoint& joint, std::vector<ImpulsePoint>& points, double& couple);
+template <class K>
+RockingImpactResult applyRockingImpact(Bodies<K>& bodies, RockingImpact<K>& impact);
+template <class K>
+RockingImpactResult applySequentially(Bodies<K>& bodies, RockingImpact<K>& impact);
 
 } // namespace masonry

@@ -16,33 +16,29 @@ namespace {
 // supports has its natural restitution.
 constexpr double minLever = 0.2;
 
-// The plane as the impact law knows it: z = 0.
-Vector3 inSpace(const Vector2& v) { return {v.x(), v.y(), 0}; }
-Vector3 inSpace(const Vector3& v) { return v; }
-
 template <class Point, class K>
-Vector3 normalOf(const ContactSet<K>& c, const Point& at)
+typename K::Vector normalOf(const ContactSet<K>& c, const Point& at)
 {
-	return inSpace(normal(c.groups[at.group].point[at.point], at.lane));
+	return normal(c.groups[at.group].point[at.point], at.lane);
 }
 
 template <class Point, class K>
-Vector3 positionOf(const ContactSet<K>& c, const Point& at)
+typename K::Vector positionOf(const ContactSet<K>& c, const Point& at)
 {
 	const Group<K>& group = c.groups[at.group];
 	ContactFrame<K> frame;
 	const int body2 = group.body2[at.lane];
 	takeFrame(group.point[at.point], c.features[at.group].point[at.point], at.lane, c.gyration[body2], frame);
-	return inSpace(typename K::Vector(c.position(body2) + frame.position));
+	return c.position(body2) + frame.position;
 }
 
 // On body 2.
 template <class Point>
-Vector3 impulseOf(const ContactSet<Plane>& c, const PointStates<Plane>& states, const Point& at)
+Vector2 impulseOf(const ContactSet<Plane>& c, const PointStates<Plane>& states, const Point& at)
 {
 	const PointState<Plane>& p = states[at.group][at.point];
 	const Vector2 n = normal(c.groups[at.group].point[at.point], at.lane);
-	return inSpace(Vector2(p.pn[at.lane] * n + p.pt[at.lane] * Vector2(-n.y(), n.x())));
+	return p.pn[at.lane] * n + p.pt[at.lane] * Vector2(-n.y(), n.x());
 }
 template <class Point>
 Vector3 impulseOf(const ContactSet<Space>& c, const PointStates<Space>& states, const Point& at)
@@ -51,17 +47,6 @@ Vector3 impulseOf(const ContactSet<Space>& c, const PointStates<Space>& states, 
 	const PointLanes<Space>& rows = c.groups[at.group].point[at.point];
 	return p.pn[at.lane] * rows.normal.axis.lane(at.lane) + p.pt.x[at.lane] * rows.tangent[0].axis.lane(at.lane) +
 	       p.pt.y[at.lane] * rows.tangent[1].axis.lane(at.lane);
-}
-
-void takeVelocity(const Plane::Velocity& v, Body& body)
-{
-	body.velocity << v[0], v[1], 0;
-	body.angularVelocity << 0, 0, v[2];
-}
-void takeVelocity(const Space::Velocity& v, Body& body)
-{
-	body.velocity = v.head<3>();
-	body.angularVelocity = v.tail<3>();
 }
 
 } // namespace
@@ -103,11 +88,10 @@ bool RockingEvents<K>::hops(const ContactSet<K>& c, const Point& point, double g
 	const Contact<K> at = contact(c, point);
 	if (at.impulse() > 0 || std::abs(at.normalRate(c)) > 2 * g * h) // one jump, and what it was before
 		return false;
-	masonry::Body block, support;
-	takeVelocity(c.inGlobal(c.velocity, at.block), block);
-	takeVelocity(c.inGlobal(c.velocity, at.support), support);
-	const Vector3 spin = block.angularVelocity - support.angularVelocity, arm = positionOf(c, point) - inSpace(c.position(at.block));
-	const double a = (at.second ? 1 : -1) * normalOf(c, point).dot(spin.cross(spin.cross(arm)));
+	const typename K::Velocity relative = c.inGlobal(c.velocity, at.block) - c.inGlobal(c.velocity, at.support);
+	const typename K::Spin spin = relative.template tail<K::spins>();
+	const typename K::Vector arm = positionOf(c, point) - c.position(at.block);
+	const double a = (at.second ? 1 : -1) * normalOf(c, point).dot(K::cross(spin, K::cross(spin, arm)));
 	return a > g / 4 && a < g && at.p.gap[at.lane] <= tolerance::wall::touching * c.length + a * a * h * h / (2 * (g - a));
 }
 
@@ -146,7 +130,7 @@ std::vector<SpinRow<K>> RockingEvents<K>::find(const RigidSystem<K>& s, const Co
 		places.clear();
 		for (const int i : bearing)
 			places.push_back(positionOf(c, points[i]));
-		Joint joint {begin, end, Pivot(places, tolerance::wall::pivot * c.length, K::dimension == 3), -1};
+		Joint joint {begin, end, Pivot<K>(places, tolerance::wall::pivot * c.length), -1};
 		if (!joint.pivot)
 			continue;
 		for (int i = begin; i < end; ++i) {
@@ -195,19 +179,19 @@ typename RockingEvents<K>::Support RockingEvents<K>::takeSupport(const RigidSyst
 
 // The axis of the impact law, which needs the points of the new support and of the old one, and their bodies.
 template <class K>
-Vector3 RockingEvents<K>::axisOf(const ContactSet<K>& c, const Joint& joint, const std::vector<int>& closing, const Landing& landing,
-                                 const Vector3& normal) const
+typename K::Spin RockingEvents<K>::axisOf(const ContactSet<K>& c, const Joint& joint, const std::vector<int>& closing,
+                                          const Landing& landing, const typename K::Vector& normal) const
 {
-	std::vector<masonry::Body> bodies;
+	masonry::Bodies<K> bodies;
 	std::vector<int> numbers;
-	std::vector<ImpulsePoint> all; // new support, then old
+	ImpulsePoints<K> all; // new support, then old
 	const auto number = [&](int b) {
 		const auto known = std::find(numbers.begin(), numbers.end(), b);
 		if (known != numbers.end())
 			return int(known - numbers.begin());
-		masonry::Body& body = bodies.emplace_back();
-		body.pose.position = inSpace(c.position(b));
-		takeVelocity(c.inGlobal(predicted, b), body);
+		RigidBody<K>& body = bodies.emplace_back();
+		body.pose.position = c.position(b);
+		body.velocity = c.inGlobal(predicted, b);
 		body.prescribed = !c.own[b];
 		numbers.push_back(b);
 		return int(numbers.size()) - 1;
@@ -217,7 +201,7 @@ Vector3 RockingEvents<K>::axisOf(const ContactSet<K>& c, const Joint& joint, con
 		all.push_back({number(group.body1[points[i].lane]), number(group.body2[points[i].lane]), positionOf(c, points[i]),
 		               normalOf(c, points[i]), 0});
 	};
-	ClosingJoint law {};
+	ClosingJoint<K> law {};
 	std::for_each(closing.begin(), closing.end(), add);
 	law.block = number(landing.block);
 	law.support = number(landing.support);
@@ -244,15 +228,16 @@ double RockingEvents<K>::takeCarriers(const ContactSet<K>& c, const Joint& joint
 			if (far < 0 || along(i) > along(far))
 				far = i;
 		}
-	const Vector3 from = support.place - positionOf(c, points[near]), edge = positionOf(c, points[far]) - positionOf(c, points[near]);
-	double lever = landing.axis.dot(support.normal.cross(from));
+	const typename K::Vector from = support.place - positionOf(c, points[near]),
+	                         edge = positionOf(c, points[far]) - positionOf(c, points[near]);
+	double lever = landing.axis.dot(K::moment(support.normal, from));
 	if (lever < 0) {
 		landing.axis = -landing.axis;
 		lever = -lever;
 	}
 	const double length = edge.norm(), share = length > tolerance::wall::pivot * c.length ? from.dot(edge) / (length * length) : 0;
-	const auto carrier = [&](const Vector3& where, int body, double perLength) {
-		return Carrier {body, perLength / lever, where - inSpace(c.position(body))};
+	const auto carrier = [&](const typename K::Vector& where, int body, double perLength) {
+		return Carrier {body, perLength / lever, where - c.position(body)};
 	};
 	landing.carriers = {carrier(positionOf(c, points[near]), contact(c, points[near]).support, 1 - share),
 	                    carrier(positionOf(c, points[far]), contact(c, points[far]).support, share),
@@ -341,12 +326,11 @@ void RockingEvents<K>::report(RigidSystem<K>& s, const ContactSet<K>& c, const A
 	for (const Landing& landing : landings) {
 		if (std::isnan(landing.asked))
 			continue;
-		Vector3 impulse = Vector3::Zero(); // of the support on the block
+		typename K::Vector impulse = K::Vector::Zero(); // of the support on the block
 		for (const Point& at : points)
 			if (at.block == landing.block && at.face == landing.face)
 				impulse += (contact(c, at).second ? 1 : -1) * impulseOf(c, results.states, at);
 		JointResult result;
-		result.axis = landing.axis;
 		result.before = landing.before;
 		result.after = row->rate(c.velocity);
 		const double normal = landing.normal.dot(impulse);

@@ -57,8 +57,8 @@ private:
 	};
 	struct Carrier { // what a support adds to w_carry
 		int body;
-		double perLength; // rad/m: e.w_carry over the support's speed along the normal
-		Vector3 arm;      // m, from the body's centre
+		double perLength;       // rad/m: e.w_carry over the support's speed along the normal
+		typename K::Vector arm; // m, from the body's centre
 
 		template <class Archive>
 		void serialize(Archive& archive)
@@ -72,7 +72,8 @@ private:
 		double restitution; // what is left of it: 0 where the rocking ends
 		double time;        // s
 		double before, speed, share;
-		Vector3 axis, normal;
+		typename K::Spin axis;
+		typename K::Vector normal;
 		std::array<Carrier, 3> carriers; // two ends of the old pivot, new support
 		JointWork spent;                 // in the step, with its row
 
@@ -85,19 +86,19 @@ private:
 	};
 	struct Joint {
 		int begin, end; // points
-		Pivot pivot;
+		Pivot<K> pivot;
 		int landing; // expected, by number; -1: none
 	};
 	struct Support { // the new one
-		Vector3 place {Vector3::Zero()}, normal {Vector3::Zero()};
+		typename K::Vector place {K::Vector::Zero()}, normal {K::Vector::Zero()};
 	};
 	void gather(const RigidSystem<K>& system, const ContactSet<K>& contacts);
 	bool hops(const ContactSet<K>& contacts, const Point& point, double acceleration, double h) const;
 	bool isOfPivot(const ContactSet<K>& contacts, int point, const Joint& joint) const;
 	Support takeSupport(const RigidSystem<K>& system, const ContactSet<K>& contacts, const Joint& joint, const std::vector<int>& closing,
 	                    Landing& landing) const;
-	Vector3 axisOf(const ContactSet<K>& contacts, const Joint& joint, const std::vector<int>& closing, const Landing& landing,
-	               const Vector3& normal) const;
+	typename K::Spin axisOf(const ContactSet<K>& contacts, const Joint& joint, const std::vector<int>& closing, const Landing& landing,
+	                        const typename K::Vector& normal) const;
 	double takeCarriers(const ContactSet<K>& contacts, const Joint& joint, const Support& support, Landing& landing) const;
 	// The landing of a joint on these points; false: it does not rock.
 	bool describe(const RigidSystem<K>& system, const ContactSet<K>& contacts, const Joint& joint, const std::vector<int>& closing,
@@ -106,8 +107,8 @@ private:
 
 	std::vector<Point> points; // joint by joint
 	std::vector<Joint> rocking;
-	std::vector<int> bearing, closing; // points of a joint that is looked at
-	std::vector<Vector3> places;       // of those that bear
+	std::vector<int> bearing, closing;      // points of a joint that is looked at
+	std::vector<typename K::Vector> places; // of those that bear
 	std::vector<Landing> expected, landings;
 	JointTable table;
 	Follower list;        // the table is made from the system's list of pairs

@@ -12,10 +12,10 @@
 
 namespace masonry::wall {
 
-// e.w of a body; in the plane e is along z.
-inline std::array<Lanes, 1> spinArm(const ContactSet<Plane>& c, int body, const Vector3& axis)
+// e.w of a body.
+inline std::array<Lanes, 1> spinArm(const ContactSet<Plane>& c, int body, const Plane::Spin& axis)
 {
-	return {Lanes {0, 0, axis.z() / c.gyration[body][0], 0}};
+	return {Lanes {0, 0, axis[0] / c.gyration[body][0], 0}};
 }
 inline std::array<Lanes, 2> spinArm(const ContactSet<Space>& c, int body, const Vector3& axis)
 {
@@ -25,9 +25,9 @@ inline std::array<Lanes, 2> spinArm(const ContactSet<Space>& c, int body, const 
 }
 
 // n.v of the place r from the body's centre.
-inline std::array<Lanes, 1> speedArm(const ContactSet<Plane>& c, int body, const Vector3& n, const Vector3& r)
+inline std::array<Lanes, 1> speedArm(const ContactSet<Plane>& c, int body, const Vector2& n, const Vector2& r)
 {
-	return {Lanes {n.x(), n.y(), r.cross(n).z() / c.gyration[body][0], 0}};
+	return {Lanes {n.x(), n.y(), Plane::moment(r, n)[0] / c.gyration[body][0], 0}};
 }
 inline std::array<Lanes, 2> speedArm(const ContactSet<Space>& c, int body, const Vector3& n, const Vector3& r)
 {
