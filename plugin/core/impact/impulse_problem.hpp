@@ -40,7 +40,7 @@ struct ImpulsePoint {
 	Vector normal;                   // unit, from body 1 to body 2
 	double friction;                 // mu >= 0, or noSlip
 	bool holds {true};               // first guess: sticks (true) or parts (false)
-	Vector bias {Vector::Zero()};    // added to the relative velocity u, m/s (see rigid_acceleration.hpp)
+	Vector bias {Vector::Zero()};    // added to the relative velocity u, m/s (rigid_acceleration.hpp)
 	Vector impulse {Vector::Zero()}; // result: on body 2, global, N s
 	Vector grip {Vector::Zero()};    // across the normal: p_t acts, and u_t is measured, at position + grip (contact/friction_points.hpp)
 	double most {unlimited};         // N s, normal impulse where the laws have no solution, for solvers that know it (contact_limits.hpp)

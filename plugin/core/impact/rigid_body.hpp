@@ -55,6 +55,10 @@ struct RigidBody {
 	}
 };
 
+// By an axis and an angle. Space::advance, by a half angle, differs from it in the last digit.
+template <>
+void RigidBody<Space>::advance(double t);
+
 template <class K>
 const typename K::Vector& faceNormal(const RigidBody<K>& body, int face) // in the body's axes
 {

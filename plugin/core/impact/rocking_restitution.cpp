@@ -11,21 +11,9 @@ namespace masonry {
 namespace {
 
 template <class K>
-double spin(const Bodies<K>& bodies, const ClosingJoint<K>& joint)
-{
-	return joint.axis.dot(bodies[joint.block].spin() - bodies[joint.support].spin()) - joint.carry;
-}
-
-template <class K>
-int supportUnder(const ClosingJoint<K>& joint, const ImpulsePoint<K>& point)
-{
-	return point.body2 == joint.block ? point.body1 : point.body2;
-}
-
-template <class K>
 bool hasRow(const ClosingJoint<K>& joint)
 {
-	return !std::isnan(joint.restitution) && !joint.axis.isZero(0);
+	return !std::isnan(joint.restitution) && !joint.landing.axis.isZero(0);
 }
 
 // Work of the prescribed bodies' impulses, which keep their velocities, J.
@@ -66,10 +54,10 @@ struct CappedProblem {
 	{
 		if (!hasRow(joint))
 			return;
-		rows.push_back({joint.support, joint.block, joint.axis, joint.restitution * spin(bodies, joint) + joint.carry});
+		rows.push_back({joint.support, joint.block, joint.landing.axis, joint.restitution * joint.spin(bodies) + joint.landing.carry});
 		const bool prescribed = std::all_of(points.begin() + joint.newBegin, points.begin() + joint.oldEnd,
-		                                    [&](const ImpulsePoint<K>& point) { return bodies[supportUnder(joint, point)].prescribed; });
-		carried.push_back(prescribed ? joint.carry : 0);
+		                                    [&](const ImpulsePoint<K>& point) { return bodies[joint.supportUnder(point)].prescribed; });
+		carried.push_back(prescribed ? joint.landing.carry : 0);
 		if (joint.restitution == 0)
 			replaced.emplace_back(joint.oldBegin - first, joint.oldEnd - first);
 	}
@@ -187,7 +175,8 @@ thread_local Workspace<K> workspace;
 template <class K>
 void begin(const Bodies<K>& bodies, ClosingJoint<K>& joint, ImpulsePoints<K>& points)
 {
-	findRocking(bodies, joint, points);
+	joint.landing = landingOf(bodies, joint, points);
+	joint.result = {};
 	for (int i = joint.oldBegin; i < joint.oldEnd; ++i)
 		points[i].holds = false;
 }
@@ -196,7 +185,8 @@ void begin(const Bodies<K>& bodies, ClosingJoint<K>& joint, ImpulsePoints<K>& po
 template <class K>
 void report(const Bodies<K>& bodies, const ImpulsePoints<K>& points, ClosingJoint<K>& joint, double couple)
 {
-	joint.result.after = spin(bodies, joint);
+	joint.result.before = joint.landing.before;
+	joint.result.after = joint.spin(bodies);
 	typename K::Vector resultant = K::Vector::Zero(); // on the block, at the new support
 	for (int i = joint.newBegin; i < joint.oldBegin; ++i)
 		resultant += points[i].body2 == joint.block ? points[i].impulse : typename K::Vector(-points[i].impulse);
@@ -208,110 +198,6 @@ void report(const Bodies<K>& bodies, const ImpulsePoints<K>& points, ClosingJoin
 }
 
 } // namespace
-
-template <class K>
-typename K::Spin rockingAxis(const Bodies<K>& bodies, const ClosingJoint<K>& joint, const ImpulsePoints<K>& points)
-{
-	using Vector = typename K::Vector;
-	if (joint.oldBegin == joint.oldEnd)
-		return K::Spin::Zero();
-	const Vector& n = joint.normal;
-	const Vector& old = points[joint.oldBegin].position;
-	const auto inPlane = [&](const Vector& v) { return Vector(v - n * n.dot(v)); };
-	// The old support is an edge when its points are apart by more than round-off of their distance from the new ones, and beside that
-	// line.
-	Vector edge = Vector::Zero();
-	for (int i = joint.oldBegin; i < joint.oldEnd; ++i) {
-		const Vector span = inPlane(points[i].position - old);
-		if (span.norm() > edge.norm())
-			edge = span;
-	}
-	Vector lever = Vector::Zero(); // from the old support to the new, weighted by the approach speeds
-	double reach = 0, beside = 0;  // of the edge's length times the distance from its line
-	for (int i = joint.newBegin; i < joint.oldBegin; ++i) {
-		const Vector d = inPlane(points[i].position - old);
-		const double side = points[i].body2 == joint.block ? 1 : -1;
-		const double approach = -side * n.dot(relativeVelocity(bodies, points[i]));
-		lever += std::max(approach, 0.) * d;
-		reach = std::max(reach, d.norm());
-		beside = std::max(beside, K::moment(edge, d).norm());
-	}
-	typename K::Spin axis = K::moment(n, lever);
-	if constexpr (K::dimension == 3)
-		if (edge.norm() > tolerance::pivotEdge * reach && beside > tolerance::pivotEdge * edge.norm() * reach)
-			axis = edge;
-	axis.normalize();
-	return axis.dot(bodies[joint.block].spin() - bodies[joint.support].spin()) < 0 ? typename K::Spin(-axis) : axis;
-}
-
-namespace {
-
-// e.(w_carry - w_support). Velocities of the supports are taken against that under the new pivot, so that of one support alone it is zero
-// without round-off.
-template <class K>
-double carryingSpin(const Bodies<K>& bodies, const ClosingJoint<K>& joint, const ImpulsePoints<K>& points)
-{
-	const typename K::Vector& n = joint.normal;
-	const typename K::Spin& axis = joint.axis;
-	const auto rise = [&](const ImpulsePoint<K>& point) { // m/s
-		const int b = supportUnder(joint, point);
-		return b == joint.support ? 0. : n.dot(bodies[b].velocityAt(point.position) - bodies[joint.support].velocityAt(point.position));
-	};
-	const ImpulsePoint<K>& old = points[joint.oldBegin];
-	const auto across = [&](const ImpulsePoint<K>& point) { return axis.dot(K::moment(n, point.position - old.position)); }; // m
-	const auto along = [&](const ImpulsePoint<K>& point) { // m; in the plane the axis stands across all points
-		if constexpr (K::dimension == 3)
-			return axis.dot(point.position - old.position);
-		return 0.;
-	};
-
-	double reach = 0, length = 0;
-	for (int i = joint.newBegin; i < joint.oldBegin; ++i)
-		reach = std::max(reach, std::abs(across(points[i])));
-	for (int i = joint.oldBegin; i < joint.oldEnd; ++i)
-		if (std::abs(along(points[i])) > std::abs(length))
-			length = along(points[i]);
-	// The velocity of the old support is linear along an edge; of several supports at one place, the one that rises fastest carries.
-	const bool isEdge = std::abs(length) > tolerance::pivotEdge * reach;
-	double nearRise = rise(old), farRise = -std::numeric_limits<double>::infinity();
-	for (int i = joint.oldBegin; i < joint.oldEnd; ++i) {
-		double& end = isEdge && std::abs(along(points[i])) > std::abs(length) / 2 ? farRise : nearRise;
-		end = std::max(end, rise(points[i]));
-	}
-	const double turn = isEdge ? (farRise - nearRise) / length : 0;
-	double carry = std::numeric_limits<double>::infinity();
-	for (int i = joint.newBegin; i < joint.oldBegin; ++i) {
-		const double lever = across(points[i]);
-		if (lever > tolerance::pivotEdge * reach)
-			carry = std::min(carry, (nearRise + turn * along(points[i]) - rise(points[i])) / lever);
-	}
-	return std::isinf(carry) ? 0 : carry;
-}
-
-} // namespace
-
-template <class K>
-void findRocking(const Bodies<K>& bodies, ClosingJoint<K>& joint, const ImpulsePoints<K>& points)
-{
-	joint.result = {};
-	joint.carry = 0;
-	joint.axis = rockingAxis(bodies, joint, points);
-	if (joint.axis.isZero(0))
-		return;
-	typename K::Vector lever = K::Vector::Zero();
-	for (int i = joint.newBegin; i < joint.oldBegin; ++i)
-		lever += points[i].position - points[joint.oldBegin].position;
-	typename K::Spin& axis = joint.axis;
-	if (axis.dot(K::moment(joint.normal, lever)) < 0) // to turn the closing points towards their support
-		axis = -axis;
-	joint.carry = carryingSpin(bodies, joint, points);
-	joint.result.before = spin(bodies, joint);
-	if (joint.result.before < 0) {
-		axis = -axis;
-		joint.carry = -joint.carry;
-		joint.result.before = -joint.result.before;
-	}
-}
 
 template <class K>
 RockingImpactResult applyRockingImpact(Bodies<K>& bodies, RockingImpact<K>& impact)
@@ -370,10 +256,6 @@ RockingImpactResult applySequentially(Bodies<K>& bodies, RockingImpact<K>& impac
 	return result;
 }
 
-template Plane::Spin rockingAxis(const Bodies<Plane>&, const ClosingJoint<Plane>&, const ImpulsePoints<Plane>&);
-template Space::Spin rockingAxis(const Bodies<Space>&, const ClosingJoint<Space>&, const ImpulsePoints<Space>&);
-template void findRocking(const Bodies<Plane>&, ClosingJoint<Plane>&, const ImpulsePoints<Plane>&);
-template void findRocking(const Bodies<Space>&, ClosingJoint<Space>&, const ImpulsePoints<Space>&);
 template RockingImpactResult applyRockingImpact(Bodies<Plane>&, RockingImpact<Plane>&);
 template RockingImpactResult applyRockingImpact(Bodies<Space>&, RockingImpact<Space>&);
 template RockingImpactResult applySequentially(Bodies<Plane>&, RockingImpact<Plane>&);

@@ -70,7 +70,7 @@ struct Scene {
 	}
 
 	const JointResult& joint(int j = 0) const { return impact.joints[j].result; }
-	const Vector3& axis() const { return impact.joints.front().axis; }
+	const Vector3& axis() const { return impact.joints.front().landing.axis; }
 	double closingSpeed(int i) const
 	{
 		const ImpulsePoint<Space>& p = impact.points[i];

@@ -95,9 +95,8 @@ ImpactRecord switchPivot(JointSystem& s, const Joint& joint, const Closing& clos
 
 	RockingImpact<Space> impact = closingImpact(s, joint, closing, loaded);
 	ClosingJoint<Space>& law = impact.joints.front();
-	findRocking(s.bodies, law, impact.points);
 	const double least = minRockingSpeed(s, joint, impact.points.front().position, closing.lever, closing.depth);
-	const bool rests = masonry::rests(law.result.before, closing.restitution, least);
+	const bool rests = masonry::rests(landingOf(s.bodies, law, impact.points).before, closing.restitution, least);
 	if (rests)
 		law.restitution = 0;
 	const ImpactRecord::Result result = applyWithRim(s, impact);

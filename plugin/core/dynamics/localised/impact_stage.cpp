@@ -237,8 +237,8 @@ RockingImpactResult ImpactStage<K>::land(RigidSystem<K>& s, const Settings& sett
 	asked.clear();
 	for (ClosingJoint<K>& joint : impact.joints) {
 		asked.push_back(joint.restitution);
-		findRocking(s.bodies, joint, impact.points);
-		if (rests(joint.result.before, joint.restitution, scale::minSpin(s, joint.block)))
+		const Landing<K> landing = landingOf(s.bodies, joint, impact.points);
+		if (rests(landing.before, joint.restitution, scale::minSpin(s, joint.block)))
 			joint.restitution = 0;
 	}
 	const auto result =

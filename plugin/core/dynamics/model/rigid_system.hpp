@@ -186,7 +186,7 @@ template <class K>
 struct RigidSystem {
 	double time {0}; // s
 	std::vector<RigidBody<K>> bodies;
-	std::vector<ContactPair<K>> pairs;              // of boxes that are near each other, in a fixed order
+	std::vector<ContactPair<K>> pairs;              // of blocks that are near each other, in a fixed order
 	Version list;                                   // of the list of pairs: which bodies they have, in which order
 	Version laws;                                   // of the pairs' friction and restitution, where the list stays
 	typename K::Vector gravity {K::Vector::Zero()}; // which way is down, and the scale of tolerances; the weight itself is in `force`

@@ -1,11 +1,7 @@
 #pragma once
-// A row that prescribes the spin of a block about an axis, against the motion of its supports: e.(w - w_carry) = target. With n the normal,
-// O on the old support and P on the new one, at the distance L from it across the axis,
-//
-//     e.w_carry = n.(v_old(O) - v_new(P))/L
-//
-// is the spin with which the block stays in touch with both; where both are one body, it is that body's spin. The couple acts on the block
-// along e, and on the supports as the pair of forces couple/L at O and P. Each velocity is arm.V in the packs of the contacts.
+// A row that prescribes the spin of a block about an axis, against the motion that carries it (impact/landing.hpp): e.(w - w_carry) =
+// target. The couple acts on the block along e, and on the supports as the pair of forces couple/L at O and P. Each velocity is arm.V in
+// the packs of the contacts.
 #include "dynamics/wall/contact_set.hpp"
 #include <algorithm>
 #include <cmath>
