@@ -151,7 +151,7 @@ constexpr double equalMoments = 1e-6;
 
 } // namespace masonry::tolerance::shape
 
-// --- box-box contact patches (contact/) --- lengths relative to the smallest half size of the two boxes
+// --- contact patches of convex blocks (contact/) --- lengths relative to the smaller thickness of the two
 namespace masonry::tolerance::contact {
 
 // Separation that a face must gain before it takes over as reference. Smaller: round-off chooses the normal of faces
@@ -198,7 +198,7 @@ constexpr double cornerSpread = 0.02;
 // falls back on its face, that carries it so far from its end; smaller: what slides farther in a step is kicked.
 constexpr double passing = 0.02;
 // Penetration, relative to the smallest half size, by features that a pair did not have at the start of a step, from which on the step is
-// done in parts. Larger: boxes are so deep in each other where a corner passes another; smaller: features that change within the reach of
+// done in parts. Larger: blocks are so deep in each other where a corner passes another; smaller: features that change within the reach of
 // vertices (contact::vertexReach) divide steps.
 constexpr double unseen = vertexReach;
 

@@ -70,15 +70,14 @@ void RockingJointEngine::readLoads(const vector<BaseMotionEngine*>& motions)
 {
 	scene->forces.sync();
 	for (size_t b = 0; b < blocks.ids.size(); ++b) {
-		masonry::Body& body = step.system.bodies[b];
+		masonry::RigidBody<masonry::Space>& body = step.system.bodies[b];
 		if (body.prescribed)
 			continue;
-		body.force = scene->forces.getForce(blocks.ids[b]);
-		body.torque = scene->forces.getTorque(blocks.ids[b]);
+		body.force << scene->forces.getForce(blocks.ids[b]), scene->forces.getTorque(blocks.ids[b]);
 	}
 	for (const BaseMotionEngine* motion : motions)
 		for (int b : movedBy(*motion))
-			step.system.bodies[b].acceleration += motion->direction * motion->acceleration(scene->time - motion->start);
+			step.system.bodies[b].increment.head<3>() += motion->direction * motion->acceleration(scene->time - motion->start);
 }
 
 vector<int> RockingJointEngine::movedBy(const BaseMotionEngine& motion) const

@@ -85,24 +85,25 @@ private:
 	std::shared_ptr<const Solid> whole;
 };
 
-/// The convex shapes of the bodies of a scene, made once as long as they stay the same.
+/// The shapes of the bodies of a scene, made once as long as they stay the same.
 class KeptShapes {
 public:
-	const std::shared_ptr<const masonry::ConvexPolyhedron>& of(int id, const Shape& shape)
+	using Solid = masonry::Solid<masonry::ConvexPolyhedron>;
+
+	const std::shared_ptr<const Solid>& of(int id, const Shape& shape)
 	{
 		if (size_t(id) >= kept.size())
 			kept.resize(id + 1);
-		auto& [seen, polyhedron] = kept[id];
-		if (const BlockShape now(shape); !polyhedron || !(*seen == now)) {
+		auto& [seen, solid] = kept[id];
+		if (const BlockShape now(shape); !solid || !(*seen == now)) {
 			seen = now;
-			polyhedron = now.isBox() ? std::make_shared<const masonry::ConvexPolyhedron>(masonry::ConvexPolyhedron::box(now.extents()))
-			                         : std::shared_ptr<const masonry::ConvexPolyhedron>(now.solid(), &now.solid()->part(0));
+			solid = now.isBox() ? std::make_shared<const Solid>(masonry::ConvexPolyhedron::box(now.extents())) : now.solid();
 		}
-		return polyhedron;
+		return solid;
 	}
 
 private:
-	vector<std::pair<std::optional<BlockShape>, std::shared_ptr<const masonry::ConvexPolyhedron>>> kept; // by id
+	vector<std::pair<std::optional<BlockShape>, std::shared_ptr<const Solid>>> kept; // by id
 };
 
 } // namespace yade

@@ -83,7 +83,7 @@ void CompliantScene::readJoints(const Scene& scene, Real dampingRatio, masonry::
 
 vector<masonry::JointContact> CompliantScene::blocksInTouch(const Scene& scene, Real dampingRatio, const masonry::CompliantStep& step) const
 {
-	const vector<masonry::Body>& bodies = step.system.bodies;
+	const masonry::Bodies<masonry::Space>& bodies = step.system.bodies;
 	vector<masonry::JointContact> contacts;
 	Ip2_BlockMat_BlockMat_BlockPhys law;
 	for (size_t a = 0; a < ids.size(); ++a)
@@ -91,7 +91,7 @@ vector<masonry::JointContact> CompliantScene::blocksInTouch(const Scene& scene, 
 			if (bodies[a].prescribed && bodies[b].prescribed)
 				continue;
 			const Body &body1 = *(*scene.bodies)[ids[a]], &body2 = *(*scene.bodies)[ids[b]];
-			const masonry::ConvexPolyhedron &shape1 = *bodies[a].shape, &shape2 = *bodies[b].shape;
+			const masonry::ConvexPolyhedron &shape1 = bodies[a].shape->part(0), &shape2 = bodies[b].shape->part(0);
 			if ((body1.state->pos - body2.state->pos).norm() > shape1.radius() + shape2.radius())
 				continue;
 			masonry::ContactPatch patch;

@@ -3,19 +3,18 @@
 
 #include "BlockGeom.hpp"
 #include "BlockPhys.hpp"
-#include "impact/body.hpp"
+#include "impact/rigid_body.hpp"
 #include <core/Body.hpp>
 #include <core/Interaction.hpp>
 
 namespace yade {
 
-inline masonry::Body coreBody(const Body& body)
+inline masonry::RigidBody<masonry::Space> coreBody(const Body& body)
 {
 	const State& state = *body.state;
-	masonry::Body result;
+	masonry::RigidBody<masonry::Space> result;
 	result.pose = {state.pos, state.ori};
-	result.velocity = state.vel;
-	result.angularVelocity = state.angVel;
+	result.velocity << state.vel, state.angVel;
 	result.mass = state.mass;
 	result.inertia = state.inertia;
 	result.prescribed = !body.isDynamic();
@@ -23,15 +22,15 @@ inline masonry::Body coreBody(const Body& body)
 }
 
 /// Blocked degrees of freedom keep their velocity.
-inline void writeState(const masonry::Body& from, State& state)
+inline void writeState(const masonry::RigidBody<masonry::Space>& from, State& state)
 {
 	state.pos = from.pose.position;
 	state.ori = from.pose.orientation;
 	for (int axis = 0; axis < 3; ++axis) {
 		if (!(state.blockedDOFs & (State::DOF_X << axis)))
-			state.vel[axis] = from.velocity[axis];
+			state.vel[axis] = from.linear()[axis];
 		if (!(state.blockedDOFs & (State::DOF_RX << axis)))
-			state.angVel[axis] = from.angularVelocity[axis];
+			state.angVel[axis] = from.spin()[axis];
 	}
 	// NewtonIntegrator carries the angular momentum of aspherical bodies.
 	state.angMom = state.ori * state.inertia.cwiseProduct(state.ori.conjugate() * state.angVel);

@@ -85,7 +85,7 @@ struct ContactFrame {
 	double gap {0};
 };
 
-// The contact points of a pair of boxes. Those from number `places` on are second normals, at corners that meet corners
+// The contact points of a pair of convex blocks. Those from number `places` on are second normals, at corners that meet corners
 // (corner_normals.hpp).
 template <class K>
 struct FoundPoints {

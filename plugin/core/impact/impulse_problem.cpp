@@ -8,19 +8,21 @@ using namespace impulse;
 namespace {
 
 // States and slip directions for the next Newton step. `damped`: directions of points that go on slipping turn half as far.
-template <int most>
-void updateStates(System<most>& s, bool damped = false)
+template <class K, int most>
+void updateStates(System<K, most>& s, bool damped = false)
 {
 	const auto u = s.velocity();
 	for (int i = 0; i < s.nPoints; ++i) {
-		PointState& point = s.points[i];
-		const PointState before = point;
-		const Vector3 p = project(s, i, u.template segment<3>(3 * i), point.state);
-		const Vector2 y = s.p.template segment<2>(3 * i + 1) - u.template segment<2>(3 * i + 1) / s.points[i].response;
+		PointState<K>& point = s.points[i];
+		const PointState<K> before = point;
+		constexpr int rows = K::rows, tangents = rows - 1;
+		const Rows<K> p = project(s, i, u.template segment<rows>(rows * i), point.state);
+		const Tangential<K> y =
+		    s.p.template segment<tangents>(rows * i + 1) - u.template segment<tangents>(rows * i + 1) / s.points[i].response;
 		if (point.state != State::slip || !(y.norm() > 0))
 			continue;
 		point.slipDirection = y.normalized();
-		point.slipTurn = p.tail<2>().norm() / y.norm();
+		point.slipTurn = p.template tail<tangents>().norm() / y.norm();
 		if (damped && before.state == State::slip) {
 			point.slipDirection = (point.slipDirection + before.slipDirection).normalized();
 			point.slipTurn = (point.slipTurn + before.slipTurn) / 2;
@@ -29,12 +31,12 @@ void updateStates(System<most>& s, bool damped = false)
 }
 
 // Goes from `before` to s.p, or half as far, or a quarter ...: where the residual is least.
-template <int most>
-void shortenStep(System<most>& s, const typename System<most>::Vector& before)
+template <class K, int most>
+void shortenStep(System<K, most>& s, const typename System<K, most>::Vector& before)
 {
 	constexpr int halvings = 9;
-	const typename System<most>::Vector step = s.p - before;
-	typename System<most>::Vector best = s.p;
+	const typename System<K, most>::Vector step = s.p - before;
+	typename System<K, most>::Vector best = s.p;
 	double least = residual(s), share = 1;
 	for (int k = 0; k < halvings; ++k) {
 		share /= 2;
@@ -50,22 +52,22 @@ void shortenStep(System<most>& s, const typename System<most>::Vector& before)
 // Without slip some problems have no solution. The way out keeps every promise on energy: all points held, then those
 // that pull most let go, until none pulls: all that pull alike, so that their order decides nothing. A point let go may still approach,
 // which the residual tells.
-template <int most>
-void letPullingPointsGo(System<most>& s)
+template <class K, int most>
+void letPullingPointsGo(System<K, most>& s)
 {
 	// Share of the largest pull. Smaller: round-off chooses between the two corners of an edge; larger: points go that would not pull.
 	constexpr double alike = 1e-6;
-	for (PointState& point : s.points)
+	for (PointState<K>& point : s.points)
 		point.state = State::stick;
 	for (int left = s.nPoints; left >= 0; --left) {
 		solveForStates(s);
 		double pull = 0;
 		for (int i = 0; i < s.nPoints; ++i)
-			pull = std::max(pull, -s.p[3 * i]);
+			pull = std::max(pull, -s.p[K::rows * i]);
 		if (pull == 0)
 			return;
 		for (int i = 0; i < s.nPoints; ++i)
-			if (-s.p[3 * i] >= (1 - alike) * pull)
+			if (-s.p[K::rows * i] >= (1 - alike) * pull)
 				s.points[i].state = State::open;
 	}
 }
@@ -73,8 +75,8 @@ void letPullingPointsGo(System<most>& s)
 constexpr int minCentres = 2, maxCentres = 60;
 
 // Centre after centre the impulses come to be those of rigid contacts, with the states as they are.
-template <int most>
-void harden(System<most>& s)
+template <class K, int most>
+void harden(System<K, most>& s)
 {
 	for (int k = 0; k < maxCentres; ++k) {
 		s.moveCentre();
@@ -87,8 +89,8 @@ void harden(System<most>& s)
 }
 
 // Residual that counts as zero: a share of the approach speed, and round-off of the products in G p.
-template <int most>
-double target(const System<most>& s)
+template <class K, int most>
+double target(const System<K, most>& s)
 {
 	const auto terms = (s.G.cwiseAbs() * s.p.cwiseAbs()).eval();
 	const double roundOff = 64 * std::numeric_limits<double>::epsilon() * terms.maxCoeff();
@@ -96,16 +98,16 @@ double target(const System<most>& s)
 }
 
 // Whether a residual counts as none.
-template <int most>
-bool isEnough(const System<most>& s, double missed)
+template <class K, int most>
+bool isEnough(const System<K, most>& s, double missed)
 {
 	return missed <= std::max(target(s), tolerance::impulseEnough * s.speed);
 }
 
 // Without the points that would pull. Returns the residual. Where points that stick ask for motions that no rigid body has, no impulses
 // obey the laws, and those of soft contacts would grow as the softness falls: then the least impulses that miss the laws least are taken.
-template <int most>
-double solveWithoutPulls(System<most>& s)
+template <class K, int most>
+double solveWithoutPulls(System<K, most>& s)
 {
 	letPullingPointsGo(s);
 	harden(s);
@@ -118,12 +120,12 @@ double solveWithoutPulls(System<most>& s)
 }
 
 // From the solution for soft contacts to the nearest for rigid ones in the same states. False: these do not obey the laws.
-template <int most>
-bool hardenAtOnce(System<most>& s)
+template <class K, int most>
+bool hardenAtOnce(System<K, most>& s)
 {
 	constexpr int maxSteps = 10;
 	const auto soft = s.points;
-	const auto isSame = [](const PointState& a, const PointState& b) { return a.state == b.state; };
+	const auto isSame = [](const PointState<K>& a, const PointState<K>& b) { return a.state == b.state; };
 	s.soften(0);
 	bool solved = false;
 	for (int k = 0; k < maxSteps; ++k) {
@@ -139,17 +141,18 @@ bool hardenAtOnce(System<most>& s)
 }
 
 // G is symmetric, and its columns, not its rows, lie together in memory.
-template <int most>
-int gaussSeidel(System<most>& s)
+template <class K, int most>
+int gaussSeidel(System<K, most>& s)
 {
 	constexpr int maxSweeps = 4000, checkEvery = 20;
 	for (int sweep = 1; sweep <= maxSweeps; ++sweep) {
 		for (int i = 0; i < s.nPoints; ++i) {
 			State ignored;
-			const Vector3 u = s.G.template middleCols<3>(3 * i).transpose() * s.p + s.free.template segment<3>(3 * i);
-			s.p.template segment<3>(3 * i) = project(s, i, u, ignored);
+			constexpr int rows = K::rows;
+			const Rows<K> u = s.G.template middleCols<rows>(rows * i).transpose() * s.p + s.free.template segment<rows>(rows * i);
+			s.p.template segment<rows>(rows * i) = project(s, i, u, ignored);
 		}
-		for (int row = 3 * s.nPoints; row < s.p.size(); ++row)
+		for (int row = K::rows * s.nPoints; row < s.p.size(); ++row)
 			s.p[row] -= (s.G.col(row).dot(s.p) + s.free[row]) / s.G(row, row);
 		if (sweep % checkEvery == 0 && residual(s) <= target(s))
 			return sweep;
@@ -160,15 +163,15 @@ int gaussSeidel(System<most>& s)
 // Finds the impulses of one problem: from several states and softnesses in turn, until one leads to a solution.
 //
 // Newton's method may cycle; which problems it cycles in depends on the states that it starts from, and on its steps.
-template <int most>
+template <class K, int most>
 class Search {
-	using Vector = typename System<most>::Vector;
+	using Vector = typename System<K, most>::Vector;
 	enum class Steps { full, shorter, damped };
 
 public:
-	explicit Search(System<most>& system) : s(system), best(system.p), last(system.p)
+	explicit Search(System<K, most>& system) : s(system), best(system.p), last(system.p)
 	{
-		const auto slips = [](const PointState& point) { return point.law.kind == PointLaw::Coulomb; };
+		const auto slips = [](const PointState<K>& point) { return point.law.kind == PointLaw::Coulomb; };
 		anySlips = std::any_of(s.points.begin(), s.points.end(), slips);
 		allSlip = std::all_of(s.points.begin(), s.points.end(), slips);
 	}
@@ -272,7 +275,7 @@ private:
 			newton();
 		}
 		if (!solved) {
-			for (PointState& point : s.points)
+			for (PointState<K>& point : s.points)
 				point.state = State::stick;
 			newton();
 		}
@@ -316,7 +319,7 @@ private:
 		}
 	}
 
-	System<most>& s;
+	System<K, most>& s;
 	ImpulseReport report {0, std::numeric_limits<double>::infinity()};
 	bool solved {false}, anySlips, allSlip;
 	Vector best;                   // impulses of the least residual
@@ -324,26 +327,16 @@ private:
 	double reached {10 * softest}; // which are so many times as soft as at first
 };
 
-template <int most>
-ImpulseReport solveDense(std::vector<Body>& bodies, std::vector<ImpulsePoint>& points, std::vector<CoupleRow>& couples)
+template <class K, int most>
+ImpulseReport solveDense(Bodies<K>& bodies, ImpulsePoints<K>& points, CoupleRows<K>& couples)
 {
-	System<most> s(bodies, points, couples);
+	System<K, most> s(bodies, points, couples);
 	const ImpulseReport report = Search(s).run();
 	apply(s, bodies, points, couples);
 	return report;
 }
 
 } // namespace
-
-Vector3 velocityAt(const Body& body, const ImpulsePoint& point)
-{
-	return body.velocityAt(point.position) + point.normal.dot(body.angularVelocity) * point.normal.cross(point.grip);
-}
-
-Vector3 relativeVelocity(const std::vector<Body>& bodies, const ImpulsePoint& point)
-{
-	return velocityAt(bodies[point.body2], point) - velocityAt(bodies[point.body1], point);
-}
 
 Matrix3 axesAlong(const Vector3& normal)
 {
@@ -356,30 +349,27 @@ Matrix3 axesAlong(const Vector3& normal)
 	return axes;
 }
 
-double longestArm(const std::vector<Body>& bodies, const std::vector<ImpulsePoint>& points)
-{
-	double longest = 0;
-	for (const auto& point : points)
-		for (int b : {point.body1, point.body2})
-			if (!bodies[b].prescribed)
-				longest = std::max(longest, (point.position - bodies[b].pose.position).norm());
-	return longest;
-}
-
-ImpulseReport solveImpulses(std::vector<Body>& bodies, std::vector<ImpulsePoint>& points, std::vector<CoupleRow>& couples)
+template <class K>
+ImpulseReport solveImpulses(Bodies<K>& bodies, ImpulsePoints<K>& points, CoupleRows<K>& couples)
 {
 	if (points.empty() && couples.empty())
 		return {0, 0.};
-	const bool few = points.size() <= fewPoints && 3 * points.size() + couples.size() <= fewRows;
-	return few ? solveDense<fewRows>(bodies, points, couples) : solveDense<Eigen::Dynamic>(bodies, points, couples);
+	const bool few = points.size() <= fewPoints && K::rows * points.size() + couples.size() <= fewRows;
+	return few ? solveDense<K, fewRows>(bodies, points, couples) : solveDense<K, Eigen::Dynamic>(bodies, points, couples);
 }
 
-ImpulseReport letPullingPointsGo(std::vector<Body>& bodies, std::vector<ImpulsePoint>& points, std::vector<CoupleRow>& couples)
+template <class K>
+ImpulseReport letPullingPointsGo(Bodies<K>& bodies, ImpulsePoints<K>& points, CoupleRows<K>& couples)
 {
-	System<Eigen::Dynamic> s(bodies, points, couples);
+	System<K, Eigen::Dynamic> s(bodies, points, couples);
 	const double missed = solveWithoutPulls(s);
 	apply(s, bodies, points, couples);
 	return {0, missed, missed <= tolerance::impulseEnough * s.speed};
 }
+
+template ImpulseReport solveImpulses(Bodies<Plane>&, ImpulsePoints<Plane>&, CoupleRows<Plane>&);
+template ImpulseReport solveImpulses(Bodies<Space>&, ImpulsePoints<Space>&, CoupleRows<Space>&);
+template ImpulseReport letPullingPointsGo(Bodies<Plane>&, ImpulsePoints<Plane>&, CoupleRows<Plane>&);
+template ImpulseReport letPullingPointsGo(Bodies<Space>&, ImpulsePoints<Space>&, CoupleRows<Space>&);
 
 } // namespace masonry

@@ -24,7 +24,7 @@
 // Projected Gauss-Seidel takes over should the states cycle all the same. Without slip a problem may have no solution (a point that can
 // only be held by pulling); then points are let go until none pulls, which never adds energy, and the residual tells by how much the laws
 // are missed.
-#include "impact/body.hpp"
+#include "impact/rigid_body.hpp"
 #include "laws/point_law.hpp" // noSlip
 #include <functional>
 #include <limits>
@@ -32,23 +32,26 @@
 
 namespace masonry {
 
+template <class K>
 struct ImpulsePoint {
-	int body1, body2;                  // indices into the list of bodies
-	Vector3 position;                  // global, m
-	Vector3 normal;                    // unit, from body 1 to body 2
-	double friction;                   // mu >= 0, or noSlip
-	bool holds {true};                 // first guess: sticks (true) or parts (false)
-	Vector3 bias {Vector3::Zero()};    // added to the relative velocity u, m/s (see rigid_acceleration.hpp)
-	Vector3 impulse {Vector3::Zero()}; // result: on body 2, global, N s
-	Vector3 grip {Vector3::Zero()};    // across the normal: p_t acts, and u_t is measured, at position + grip (contact/friction_points.hpp)
-	double most {unlimited};           // N s, normal impulse where the laws have no solution, for solvers that know it (contact_limits.hpp)
+	using Vector = typename K::Vector;
+	int body1, body2;                // indices into the list of bodies
+	Vector position;                 // global, m
+	Vector normal;                   // unit, from body 1 to body 2
+	double friction;                 // mu >= 0, or noSlip
+	bool holds {true};               // first guess: sticks (true) or parts (false)
+	Vector bias {Vector::Zero()};    // added to the relative velocity u, m/s (rigid_acceleration.hpp)
+	Vector impulse {Vector::Zero()}; // result: on body 2, global, N s
+	Vector grip {Vector::Zero()};    // across the normal: p_t acts, and u_t is measured, at position + grip (contact/friction_points.hpp)
+	double most {unlimited};         // N s, normal impulse where the laws have no solution, for solvers that know it (contact_limits.hpp)
 };
 
+template <class K>
 struct CoupleRow {
 	int body1, body2;
-	Vector3 axis;      // unit, global
-	double target;     // axis.(w2 - w1) after the instant, rad/s
-	double couple {0}; // result: on body 2, N m s
+	typename K::Spin axis; // unit, global
+	double target;         // axis.(w2 - w1) after the instant, rad/s
+	double couple {0};     // result: on body 2, N m s
 };
 
 struct ImpulseReport {
@@ -58,21 +61,50 @@ struct ImpulseReport {
 	bool jammed {false}; // the laws have no solution: points with a limit press as much as that
 };
 
+template <class K>
+using ImpulsePoints = std::vector<ImpulsePoint<K>>;
+template <class K>
+using CoupleRows = std::vector<CoupleRow<K>>;
+
 // Finds the impulses and changes the bodies' velocities. Prescribed bodies keep theirs.
-using ImpulseSolver = std::function<ImpulseReport(std::vector<Body>&, std::vector<ImpulsePoint>&, std::vector<CoupleRow>&)>;
+template <class K>
+using ImpulseSolver = std::function<ImpulseReport(Bodies<K>&, ImpulsePoints<K>&, CoupleRows<K>&)>;
 
 // Of the body: along the normal at the point's position, across it where its friction acts. m/s
-Vector3 velocityAt(const Body& body, const ImpulsePoint& point);
+template <class K>
+typename K::Vector velocityAt(const RigidBody<K>& body, const ImpulsePoint<K>& point)
+{
+	typename K::Vector v = body.velocityAt(point.position);
+	if constexpr (K::dimension == 3) // in the plane friction has the same arm everywhere along its line
+		v += point.normal.dot(body.spin()) * point.normal.cross(point.grip);
+	return v;
+}
 // Of body 2 against body 1 at the point, m/s.
-Vector3 relativeVelocity(const std::vector<Body>& bodies, const ImpulsePoint& point);
-// Rows: the unit normal, then two unit tangents.
+template <class K>
+typename K::Vector relativeVelocity(const Bodies<K>& bodies, const ImpulsePoint<K>& point)
+{
+	return velocityAt(bodies[point.body2], point) - velocityAt(bodies[point.body1], point);
+}
+// Rows: the unit normal, then one or two unit tangents.
+inline Eigen::Matrix2d axesAlong(const Vector2& n) { return (Eigen::Matrix2d() << n.x(), n.y(), -n.y(), n.x()).finished(); }
 Matrix3 axesAlong(const Vector3& normal);
 // Of a point about a free body, m: the length that makes velocities of spins.
-double longestArm(const std::vector<Body>& bodies, const std::vector<ImpulsePoint>& points);
+template <class K>
+double longestArm(const Bodies<K>& bodies, const ImpulsePoints<K>& points)
+{
+	double longest = 0;
+	for (const auto& point : points)
+		for (int b : {point.body1, point.body2})
+			if (!bodies[b].prescribed)
+				longest = std::max(longest, (point.position - bodies[b].pose.position).norm());
+	return longest;
+}
 
 // One dense problem of all points: for few, since its cost grows with their cube.
-ImpulseReport solveImpulses(std::vector<Body>& bodies, std::vector<ImpulsePoint>& points, std::vector<CoupleRow>& couples);
+template <class K>
+ImpulseReport solveImpulses(Bodies<K>& bodies, ImpulsePoints<K>& points, CoupleRows<K>& couples);
 // The way out alone, for problems without slip that are known to have no solution.
-ImpulseReport letPullingPointsGo(std::vector<Body>& bodies, std::vector<ImpulsePoint>& points, std::vector<CoupleRow>& couples);
+template <class K>
+ImpulseReport letPullingPointsGo(Bodies<K>& bodies, ImpulsePoints<K>& points, CoupleRows<K>& couples);
 
 } // namespace masonry

@@ -20,38 +20,45 @@ template <class T>
 using PerPoint = boost::container::small_vector<T, fewPoints>;
 template <class T>
 using PerRow = boost::container::small_vector<T, fewRows>;
-using Vector6 = Eigen::Matrix<double, 6, 1>;
+
+template <class K>
+using Rows = Eigen::Matrix<double, K::rows, 1>;
+template <class K>
+using Tangential = Eigen::Matrix<double, K::rows - 1, 1>;
 
 // How a row acts on one free body: the velocity that it sees is direction.(v, w), and an impulse p along it changes (v, w)
 // by response p.
+template <class K>
 struct Side {
 	int body;
-	Vector6 direction, response;
+	typename K::Velocity direction, response;
 };
 
+template <class K>
 struct Row {
 	int sides {0}; // free bodies
-	std::array<Side, 2> side;
+	std::array<Side<K>, 2> side;
 };
 
+template <class K>
 struct PointState {
 	PointLaw law;
 	State state;
-	Matrix3 axes;                            // rows: the normal and two tangents
-	Vector2 slipDirection {Vector2::Zero()}; // unit vector d of p_t while the point slips
-	double slipTurn {0};                     // beta = mu p_n / |y_t|: how d turns with y_t
+	Eigen::Matrix<double, K::rows, K::dimension> axes;   // rows: the normal and the tangents
+	Tangential<K> slipDirection {Tangential<K>::Zero()}; // unit vector d of p_t while the point slips
+	double slipTurn {0};                                 // beta = mu p_n / |y_t|: how d turns with y_t
 	// Stiffness of the point's impulse against its own velocity, an upper bound: with r = 1/response the map below contracts.
 	double response {0};
 };
 
-// Rows: three a point (normal, two tangents), then one a couple, each couple multiplied by a length so that all rows
+// Rows: K::rows a point (normal, tangents), then one a couple, each couple multiplied by a length so that all rows
 // are velocities. u + R (p - c) = G p + free, where G = J M^-1 J^T + R, and free has the term -R c. `most`: rows, or Eigen::Dynamic.
-template <int most>
+template <class K, int most>
 struct System {
 	using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, most, most>;
 	using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, most, 1>;
 
-	PerRow<Row> rows;
+	PerRow<Row<K>> rows;
 	Matrix G;
 	Vector free, p, compliance, centre; // compliance: R, centre: c
 	int nPoints, nCouples;
@@ -59,9 +66,9 @@ struct System {
 	double speed;  // largest velocity that the impulses have to take away, m/s
 	double noise;  // velocity that counts as zero, m/s
 	double softer {1};
-	PerPoint<PointState> points;
+	PerPoint<PointState<K>> points;
 
-	System(const std::vector<Body>& bodies, const std::vector<ImpulsePoint>& points, const std::vector<CoupleRow>& couples);
+	System(const Bodies<K>& bodies, const ImpulsePoints<K>& points, const CoupleRows<K>& couples);
 	Vector velocity() const { return G * p + free; }
 	// So many times as soft as at first.
 	void soften(double times)
@@ -79,38 +86,43 @@ struct System {
 	}
 };
 
-inline void addSides(Row* rows, const std::vector<Body>& bodies, const ImpulsePoint& point, const Matrix3& axes)
+template <class K>
+void addSides(Row<K>* rows, const Bodies<K>& bodies, const ImpulsePoint<K>& point, const Eigen::Matrix<double, K::rows, K::dimension>& axes)
 {
+	using Vector = typename K::Vector;
 	for (const auto& [b, sign] : {std::pair(point.body1, -1.), std::pair(point.body2, 1.)}) {
-		const Body& body = bodies[b];
+		const RigidBody<K>& body = bodies[b];
 		if (body.prescribed)
 			continue;
-		const Vector3 pressed = point.position - body.pose.position, gripped = pressed + point.grip;
-		const Matrix3 inverseInertia = body.inverseInertia();
-		for (int k = 0; k < 3; ++k) {
-			Side& side = rows[k].side[rows[k].sides++];
+		const Vector pressed = point.position - body.pose.position, gripped = pressed + point.grip;
+		const typename K::InverseInertia inverseInertia = body.inverseInertia();
+		for (int k = 0; k < K::rows; ++k) {
+			Side<K>& side = rows[k].side[rows[k].sides++];
 			side.body = b;
-			const Vector3 axis = sign * axes.row(k).transpose(), turn = (k == 0 ? pressed : gripped).cross(axis);
+			const Vector axis = sign * axes.row(k).transpose();
+			const typename K::Spin turn = K::moment(k == 0 ? pressed : gripped, axis);
 			side.direction << axis, turn;
 			side.response << body.inverseMass() * axis, inverseInertia * turn;
 		}
 	}
 }
 
-inline void addSides(Row& row, const std::vector<Body>& bodies, const CoupleRow& couple, double length)
+template <class K>
+void addSides(Row<K>& row, const Bodies<K>& bodies, const CoupleRow<K>& couple, double length)
 {
 	for (const auto& [b, sign] : {std::pair(couple.body1, -1.), std::pair(couple.body2, 1.)}) {
 		if (bodies[b].prescribed)
 			continue;
-		Side& side = row.side[row.sides++];
+		Side<K>& side = row.side[row.sides++];
 		side.body = b;
-		const Vector3 turn = sign * length * couple.axis;
-		side.direction << Vector3::Zero(), turn;
-		side.response << Vector3::Zero(), bodies[b].inverseInertia() * turn;
+		const typename K::Spin turn = sign * length * couple.axis;
+		side.direction << K::Vector::Zero(), turn;
+		side.response << K::Vector::Zero(), bodies[b].inverseInertia() * turn;
 	}
 }
 
-inline double coupling(const Row& r, const Row& s)
+template <class K>
+double coupling(const Row<K>& r, const Row<K>& s)
 {
 	double sum = 0;
 	for (int i = 0; i < r.sides; ++i)
@@ -120,25 +132,25 @@ inline double coupling(const Row& r, const Row& s)
 	return sum;
 }
 
-template <int most>
-System<most>::System(const std::vector<Body>& bodies, const std::vector<ImpulsePoint>& given, const std::vector<CoupleRow>& couples)
+template <class K, int most>
+System<K, most>::System(const Bodies<K>& bodies, const ImpulsePoints<K>& given, const CoupleRows<K>& couples)
     : nPoints(int(given.size())), nCouples(int(couples.size())), length(longestArm(bodies, given))
 {
 	if (length == 0)
 		length = 1;
-	const int n = 3 * nPoints + nCouples;
+	const int n = K::rows * nPoints + nCouples;
 	rows.resize(n);
 	free.resize(n);
 	for (int i = 0; i < nPoints; ++i) {
 		points.push_back({given[i].friction, given[i].holds ? State::stick : State::open, axesAlong(given[i].normal)});
-		addSides(&rows[3 * i], bodies, given[i], points[i].axes);
-		free.template segment<3>(3 * i) = points[i].axes * (relativeVelocity(bodies, given[i]) + given[i].bias);
+		addSides(&rows[K::rows * i], bodies, given[i], points[i].axes);
+		free.template segment<K::rows>(K::rows * i) = points[i].axes * (relativeVelocity(bodies, given[i]) + given[i].bias);
 	}
 	for (int c = 0; c < nCouples; ++c) {
-		const CoupleRow& couple = couples[c];
-		addSides(rows[3 * nPoints + c], bodies, couple, length);
-		const Vector3 spin = bodies[couple.body2].angularVelocity - bodies[couple.body1].angularVelocity;
-		free[3 * nPoints + c] = length * (couple.axis.dot(spin) - couple.target);
+		const CoupleRow<K>& couple = couples[c];
+		addSides(rows[K::rows * nPoints + c], bodies, couple, length);
+		const typename K::Spin spin = bodies[couple.body2].spin() - bodies[couple.body1].spin();
+		free[K::rows * nPoints + c] = length * (couple.axis.dot(spin) - couple.target);
 	}
 	speed = free.cwiseAbs().maxCoeff();
 	noise = tolerance::impulse * speed;
@@ -148,8 +160,8 @@ System<most>::System(const std::vector<Body>& bodies, const std::vector<ImpulseP
 			G(r, s) = G(s, r) = coupling(rows[r], rows[s]);
 	compliance = tolerance::softness * G.diagonal();
 	for (int i = 0; i < nPoints; ++i) {
-		points[i].response = G.template block<3, 3>(3 * i, 3 * i).trace();
-		compliance.template segment<3>(3 * i).setConstant(tolerance::softness * points[i].response);
+		points[i].response = G.template block<K::rows, K::rows>(K::rows * i, K::rows * i).trace();
+		compliance.template segment<K::rows>(K::rows * i).setConstant(tolerance::softness * points[i].response);
 	}
 	G.diagonal() += compliance;
 	p = centre = Vector::Zero(n);
@@ -158,16 +170,17 @@ System<most>::System(const std::vector<Body>& bodies, const std::vector<ImpulseP
 // Newton step: solution, nearest to the present impulses, of the laws, linear for the present states. A slipping point obeys u_n = 0 and
 //     p_t = mu p_n d(y_t),  y_t = p_t - r u_t,  d(y) = y/|y| ~ d + (1 - d d^T) y / |y_k|,
 // so  p_t - mu p_n d - beta (1 - d d^T)(p_t - r u_t) = 0 with beta from the last iterate.
-template <int most>
-void solveForStates(System<most>& s)
+template <class K, int most>
+void solveForStates(System<K, most>& s)
 {
-	using Matrix = typename System<most>::Matrix;
-	using Vector = typename System<most>::Vector;
+	using Matrix = typename System<K, most>::Matrix;
+	using Vector = typename System<K, most>::Vector;
 	PerRow<int> active; // rows of p that may differ from zero
 	for (int i = 0; i < s.nPoints; ++i)
 		if (s.points[i].state != State::open)
-			active.insert(active.end(), {3 * i, 3 * i + 1, 3 * i + 2});
-	for (int row = 3 * s.nPoints; row < s.p.size(); ++row)
+			for (int k = 0; k < K::rows; ++k)
+				active.push_back(K::rows * i + k);
+	for (int row = K::rows * s.nPoints; row < s.p.size(); ++row)
 		active.push_back(row);
 	if (active.empty()) {
 		s.p.setZero();
@@ -181,19 +194,21 @@ void solveForStates(System<most>& s)
 			A(l, k) = s.G(active[l], active[k]);
 		b[k] = -s.free[active[k]];
 	}
-	for (int k = 0; k < n && active[k] < 3 * s.nPoints; k += 3) {
-		const int i = active[k] / 3, t = k + 1; // t: first tangent
-		const PointState& point = s.points[i];
+	for (int k = 0; k < n && active[k] < K::rows * s.nPoints; k += K::rows) {
+		const int i = active[k] / K::rows, t = k + 1; // t: first tangent
+		const PointState<K>& point = s.points[i];
 		if (point.state != State::slip)
 			continue;
-		const Vector2& d = point.slipDirection;
-		const Eigen::Matrix2d turn = point.slipTurn * (Eigen::Matrix2d::Identity() - d * d.transpose());
+		constexpr int tangents = K::rows - 1;
+		using Tangents = Eigen::Matrix<double, tangents, tangents>;
+		const auto& d = point.slipDirection;
+		const Tangents turn = point.slipTurn * (Tangents::Identity() - d * d.transpose());
 		const double stiffness = point.response; // 1/r: turns impulses into velocities, as in the other rows
 		for (int l = 0; l < n; ++l)
-			A.template block<2, 1>(t, l) = (turn * A.template block<2, 1>(t, l)).eval();
-		b.template segment<2>(t) = (turn * b.template segment<2>(t)).eval();
-		A.template block<2, 1>(t, k) -= stiffness * point.law.friction * d;
-		A.template block<2, 2>(t, t) += stiffness * (Eigen::Matrix2d::Identity() - turn);
+			A.template block<tangents, 1>(t, l) = (turn * A.template block<tangents, 1>(t, l)).eval();
+		b.template segment<tangents>(t) = (turn * b.template segment<tangents>(t)).eval();
+		A.template block<tangents, 1>(t, k) -= stiffness * point.law.friction * d;
+		A.template block<tangents, tangents>(t, t) += stiffness * (Tangents::Identity() - turn);
 	}
 	Eigen::CompleteOrthogonalDecomposition<Matrix> decomposition(n, n);
 	decomposition.setThreshold(tolerance::rank);
@@ -209,48 +224,49 @@ void solveForStates(System<most>& s)
 }
 
 // Without slip the projection jumps where y_n changes sign: a point that just touches (C = 0) must not be held by round-off. N s
-template <int most>
-double leastImpulse(const System<most>& s, int i)
+template <class K, int most>
+double leastImpulse(const System<K, most>& s, int i)
 {
 	return s.points[i].law.kind == PointLaw::NoSlip ? s.noise / s.points[i].response : 0;
 }
 
 // Projection of p - r u on the law of one point; also tells the state that it stands for.
-template <int most>
-Vector3 project(const System<most>& s, int i, const Vector3& u, State& state)
+template <class K, int most>
+Rows<K> project(const System<K, most>& s, int i, const Rows<K>& u, State& state)
 {
-	const Vector3 y = s.p.template segment<3>(3 * i) - u / s.points[i].response;
+	const Rows<K> y = s.p.template segment<K::rows>(K::rows * i) - u / s.points[i].response;
 	const double least = leastImpulse(s, i);
-	const Vector3 result = masonry::project(s.points[i].law, y, least);
-	state = !(y[0] > least) ? State::open : result.tail<2>() == y.tail<2>() ? State::stick : State::slip;
+	const Rows<K> result = masonry::project(s.points[i].law, y, least);
+	state = !(y[0] > least)                                                         ? State::open
+	        : result.template tail<K::rows - 1>() == y.template tail<K::rows - 1>() ? State::stick
+	                                                                                : State::slip;
 	return result;
 }
 
-template <int most>
-double residual(const System<most>& s)
+template <class K, int most>
+double residual(const System<K, most>& s)
 {
 	const auto u = s.velocity();
 	double worst = s.nCouples ? u.tail(s.nCouples).cwiseAbs().maxCoeff() : 0;
 	for (int i = 0; i < s.nPoints; ++i) {
-		const Vector3 p = s.p.template segment<3>(3 * i), ofPoint = u.template segment<3>(3 * i);
+		const Rows<K> p = s.p.template segment<K::rows>(K::rows * i), ofPoint = u.template segment<K::rows>(K::rows * i);
 		worst = std::max(worst, masonry::residual(s.points[i].law, p, ofPoint, s.points[i].response, leastImpulse(s, i)));
 	}
 	return worst;
 }
 
-template <int most>
-void apply(const System<most>& s, std::vector<Body>& bodies, std::vector<ImpulsePoint>& points, std::vector<CoupleRow>& couples)
+template <class K, int most>
+void apply(const System<K, most>& s, Bodies<K>& bodies, ImpulsePoints<K>& points, CoupleRows<K>& couples)
 {
 	for (int row = 0; row < s.p.size(); ++row)
 		for (int i = 0; i < s.rows[row].sides; ++i) {
-			const Side& side = s.rows[row].side[i];
-			bodies[side.body].velocity += s.p[row] * side.response.template head<3>();
-			bodies[side.body].angularVelocity += s.p[row] * side.response.template tail<3>();
+			const Side<K>& side = s.rows[row].side[i];
+			bodies[side.body].velocity += s.p[row] * side.response;
 		}
 	for (int i = 0; i < s.nPoints; ++i)
-		points[i].impulse = s.points[i].axes.transpose() * s.p.template segment<3>(3 * i);
+		points[i].impulse = s.points[i].axes.transpose() * s.p.template segment<K::rows>(K::rows * i);
 	for (int c = 0; c < s.nCouples; ++c)
-		couples[c].couple = s.length * s.p[3 * s.nPoints + c];
+		couples[c].couple = s.length * s.p[K::rows * s.nPoints + c];
 }
 
 } // namespace masonry::impulse

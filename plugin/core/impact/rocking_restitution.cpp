@@ -4,30 +4,43 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <tuple>
 #include <utility>
 
 namespace masonry {
 
 namespace {
 
-double spin(const std::vector<Body>& bodies, const ClosingJoint& joint)
+template <class K>
+bool hasRow(const ClosingJoint<K>& joint)
 {
-	return joint.result.axis.dot(bodies[joint.block].angularVelocity - bodies[joint.support].angularVelocity) - joint.carry;
+	return !std::isnan(joint.restitution) && !joint.landing.axis.isZero(0);
 }
 
-int supportUnder(const ClosingJoint& joint, const ImpulsePoint& point) { return point.body2 == joint.block ? point.body1 : point.body2; }
-
-bool hasRow(const ClosingJoint& joint) { return !std::isnan(joint.restitution) && !joint.result.axis.isZero(0); }
+// Work of the prescribed bodies' impulses, which keep their velocities, J.
+template <class K>
+double supportWork(const Bodies<K>& bodies, const ImpulsePoints<K>& points, const CoupleRows<K>& rows)
+{
+	double sum = 0;
+	for (const ImpulsePoint<K>& point : points)
+		for (const auto& [b, sign] : {std::pair(point.body1, 1.), std::pair(point.body2, -1.)})
+			if (bodies[b].prescribed)
+				sum += sign * point.impulse.dot(velocityAt(bodies[b], point));
+	for (const CoupleRow<K>& row : rows)
+		for (const auto& [b, sign] : {std::pair(row.body1, 1.), std::pair(row.body2, -1.)})
+			if (bodies[b].prescribed)
+				sum += sign * row.couple * row.axis.dot(bodies[b].spin());
+	return sum;
+}
 
 // One impulse problem under the cap: solved as often as the cap asks, always from the velocities at its start.
+template <class K>
 struct CappedProblem {
-	std::vector<CoupleRow> rows, none;
-	std::vector<std::pair<int, int>> replaced;      // points that a row stands for: from, to
-	std::vector<ImpulsePoint> others;               // all but these
-	std::vector<double> carried;                    // spin of the prescribed supports of each row against its body 1, rad/s
-	std::vector<double> asked, plastic;             // targets
-	std::vector<std::pair<Vector3, Vector3>> start; // velocity and angular velocity of each body
+	CoupleRows<K> rows, none;
+	std::vector<std::pair<int, int>> replaced; // points that a row stands for: from, to
+	ImpulsePoints<K> others;                   // all but these
+	std::vector<double> carried;               // spin of the prescribed supports of each row against its body 1, rad/s
+	std::vector<double> asked, plastic;        // targets
+	std::vector<typename K::Velocity> start;   // of each body
 
 	void clear()
 	{
@@ -37,14 +50,14 @@ struct CappedProblem {
 	}
 
 	// `first`: the number among `points` of the first that the problem has.
-	void add(const std::vector<Body>& bodies, const ClosingJoint& joint, const std::vector<ImpulsePoint>& points, int first = 0)
+	void add(const Bodies<K>& bodies, const ClosingJoint<K>& joint, const ImpulsePoints<K>& points, int first = 0)
 	{
 		if (!hasRow(joint))
 			return;
-		rows.push_back({joint.support, joint.block, joint.result.axis, joint.restitution * spin(bodies, joint) + joint.carry});
+		rows.push_back({joint.support, joint.block, joint.landing.axis, joint.restitution * joint.spin(bodies) + joint.landing.carry});
 		const bool prescribed = std::all_of(points.begin() + joint.newBegin, points.begin() + joint.oldEnd,
-		                                    [&](const ImpulsePoint& point) { return bodies[supportUnder(joint, point)].prescribed; });
-		carried.push_back(prescribed ? joint.carry : 0);
+		                                    [&](const ImpulsePoint<K>& point) { return bodies[joint.supportUnder(point)].prescribed; });
+		carried.push_back(prescribed ? joint.landing.carry : 0);
 		if (joint.restitution == 0)
 			replaced.emplace_back(joint.oldBegin - first, joint.oldEnd - first);
 	}
@@ -56,7 +69,7 @@ struct CappedProblem {
 	}
 
 	// Points that rows stand for give no impulse while none of them approaches faster than `noise`, m/s.
-	ImpulseReport solveWithRows(const ImpulseSolver& solver, std::vector<Body>& bodies, std::vector<ImpulsePoint>& points, double noise)
+	ImpulseReport solveWithRows(const ImpulseSolver<K>& solver, Bodies<K>& bodies, ImpulsePoints<K>& points, double noise)
 	{
 		if (replaced.empty())
 			return solver(bodies, points, rows);
@@ -67,7 +80,7 @@ struct CappedProblem {
 		const ImpulseReport report = solver(bodies, others, rows);
 		bool approaches = false;
 		for (int i = 0, k = 0; i < int(points.size()); ++i) {
-			points[i].impulse = isReplaced(i) ? Vector3(Vector3::Zero()) : others[k++].impulse;
+			points[i].impulse = isReplaced(i) ? typename K::Vector(K::Vector::Zero()) : others[k++].impulse;
 			approaches |= isReplaced(i) && points[i].normal.dot(relativeVelocity(bodies, points[i])) < -noise;
 		}
 		if (!approaches)
@@ -76,17 +89,17 @@ struct CappedProblem {
 		return solver(bodies, points, rows);
 	}
 
-	void restore(std::vector<Body>& bodies)
+	void restore(Bodies<K>& bodies)
 	{
 		for (size_t i = 0; i < bodies.size(); ++i)
-			std::tie(bodies[i].velocity, bodies[i].angularVelocity) = start[i];
-		for (CoupleRow& row : rows)
+			bodies[i].velocity = start[i];
+		for (CoupleRow<K>& row : rows)
 			row.couple = 0;
 	}
 
 	// The couple of a row stands for normal impulses at its old and its new support. Where both are prescribed, these work on the block
 	// with the couple times its whole carrying spin.
-	double work(const std::vector<Body>& bodies, const std::vector<ImpulsePoint>& points) const
+	double work(const Bodies<K>& bodies, const ImpulsePoints<K>& points) const
 	{
 		double sum = supportWork(bodies, points, rows);
 		for (size_t i = 0; i < rows.size(); ++i)
@@ -94,15 +107,16 @@ struct CappedProblem {
 		return sum;
 	}
 
-	RockingImpactResult solve(const ImpulseSolver& solver, std::vector<Body>& bodies, std::vector<ImpulsePoint>& points)
+	RockingImpactResult solve(const ImpulseSolver<K>& solver, Bodies<K>& bodies, ImpulsePoints<K>& points)
 	{
 		start.clear();
-		for (const Body& body : bodies)
-			start.emplace_back(body.velocity, body.angularVelocity);
+		for (const RigidBody<K>& body : bodies)
+			start.push_back(body.velocity);
 		double speed = 0;
-		for (const ImpulsePoint& point : points)
+		for (const ImpulsePoint<K>& point : points)
 			speed = std::max(speed, relativeVelocity(bodies, point).norm());
-		const bool maySlip = std::all_of(points.begin(), points.end(), [](const ImpulsePoint& point) { return point.friction < noSlip; });
+		const bool maySlip =
+		    std::all_of(points.begin(), points.end(), [](const ImpulsePoint<K>& point) { return point.friction < noSlip; });
 		const double before = kineticEnergy(bodies);
 		RockingImpactResult result;
 		// Energy that is left, J; negative: the laws cannot be met, or energy has grown.
@@ -127,9 +141,9 @@ struct CappedProblem {
 		const double withoutRows = spare(false);
 		asked.clear();
 		plastic.clear();
-		for (const CoupleRow& row : rows) {
+		for (const CoupleRow<K>& row : rows) {
 			asked.push_back(row.target);
-			plastic.push_back(row.axis.dot(bodies[row.body2].angularVelocity - bodies[row.body1].angularVelocity));
+			plastic.push_back(row.axis.dot(bodies[row.body2].spin() - bodies[row.body1].spin()));
 		}
 		const auto spareAt = [&](double fraction) { // of the way from the plastic to the asked targets
 			for (size_t i = 0; i < rows.size(); ++i)
@@ -148,43 +162,34 @@ struct CappedProblem {
 };
 
 // Kept between impacts for its memory only.
+template <class K>
 struct Workspace {
-	CappedProblem problem;
-	std::vector<ImpulsePoint> own;
+	CappedProblem<K> problem;
+	ImpulsePoints<K> own;
 	std::vector<double> couples;
-	std::vector<Vector3> impulses;
+	std::vector<typename K::Vector> impulses;
 };
-thread_local Workspace workspace;
+template <class K>
+thread_local Workspace<K> workspace;
 
-void begin(const std::vector<Body>& bodies, ClosingJoint& joint, std::vector<ImpulsePoint>& points)
+template <class K>
+void begin(const Bodies<K>& bodies, ClosingJoint<K>& joint, ImpulsePoints<K>& points)
 {
-	findRocking(bodies, joint, points);
+	joint.landing = landingOf(bodies, joint, points);
+	joint.result = {};
 	for (int i = joint.oldBegin; i < joint.oldEnd; ++i)
 		points[i].holds = false;
 }
 
-} // namespace
-
-double supportWork(const std::vector<Body>& bodies, const std::vector<ImpulsePoint>& points, const std::vector<CoupleRow>& rows)
+// What has come out, after the impulses and the row's couple, into joint.result.
+template <class K>
+void report(const Bodies<K>& bodies, const ImpulsePoints<K>& points, ClosingJoint<K>& joint, double couple)
 {
-	double sum = 0;
-	for (const ImpulsePoint& point : points)
-		for (const auto& [b, sign] : {std::pair(point.body1, 1.), std::pair(point.body2, -1.)})
-			if (bodies[b].prescribed)
-				sum += sign * point.impulse.dot(velocityAt(bodies[b], point));
-	for (const CoupleRow& row : rows)
-		for (const auto& [b, sign] : {std::pair(row.body1, 1.), std::pair(row.body2, -1.)})
-			if (bodies[b].prescribed)
-				sum += sign * row.couple * row.axis.dot(bodies[b].angularVelocity);
-	return sum;
-}
-
-void report(const std::vector<Body>& bodies, const std::vector<ImpulsePoint>& points, ClosingJoint& joint, double couple)
-{
-	joint.result.after = spin(bodies, joint);
-	Vector3 resultant = Vector3::Zero(); // on the block, at the new support
+	joint.result.before = joint.landing.before;
+	joint.result.after = joint.spin(bodies);
+	typename K::Vector resultant = K::Vector::Zero(); // on the block, at the new support
 	for (int i = joint.newBegin; i < joint.oldBegin; ++i)
-		resultant += points[i].body2 == joint.block ? points[i].impulse : Vector3(-points[i].impulse);
+		resultant += points[i].body2 == joint.block ? points[i].impulse : typename K::Vector(-points[i].impulse);
 	const double normal = joint.normal.dot(resultant);
 	if (!(normal > 0))
 		return;
@@ -192,111 +197,20 @@ void report(const std::vector<Body>& bodies, const std::vector<ImpulsePoint>& po
 	joint.result.frictionDemand = (resultant - normal * joint.normal).norm() / normal;
 }
 
-Vector3 rockingAxis(const std::vector<Body>& bodies, const ClosingJoint& joint, const std::vector<ImpulsePoint>& points)
-{
-	if (joint.oldBegin == joint.oldEnd)
-		return Vector3::Zero();
-	const Vector3& n = joint.normal;
-	const Vector3& old = points[joint.oldBegin].position;
-	const auto inPlane = [&](const Vector3& v) { return Vector3(v - n * n.dot(v)); };
-	// The old support is an edge when its points are apart by more than round-off of their distance from the new ones, and beside that
-	// line.
-	Vector3 edge = Vector3::Zero();
-	for (int i = joint.oldBegin; i < joint.oldEnd; ++i) {
-		const Vector3 span = inPlane(points[i].position - old);
-		if (span.norm() > edge.norm())
-			edge = span;
-	}
-	Vector3 lever = Vector3::Zero(); // from the old support to the new, weighted by the approach speeds
-	double reach = 0, beside = 0;    // of the edge's length times the distance from its line
-	for (int i = joint.newBegin; i < joint.oldBegin; ++i) {
-		const Vector3 d = inPlane(points[i].position - old);
-		const double side = points[i].body2 == joint.block ? 1 : -1;
-		const double approach = -side * n.dot(relativeVelocity(bodies, points[i]));
-		lever += std::max(approach, 0.) * d;
-		reach = std::max(reach, d.norm());
-		beside = std::max(beside, edge.cross(d).norm());
-	}
-	const bool isEdge = edge.norm() > tolerance::pivotEdge * reach && beside > tolerance::pivotEdge * edge.norm() * reach;
-	Vector3 axis = isEdge ? edge : Vector3(n.cross(lever));
-	axis.normalize();
-	const Vector3 spin = bodies[joint.block].angularVelocity - bodies[joint.support].angularVelocity;
-	return axis.dot(spin) < 0 ? Vector3(-axis) : axis;
-}
-
-namespace {
-
-// e.(w_carry - w_support). Velocities of the supports are taken against that under the new pivot, so that of one support alone it is zero
-// without round-off.
-double carryingSpin(const std::vector<Body>& bodies, const ClosingJoint& joint, const std::vector<ImpulsePoint>& points)
-{
-	const Vector3 &n = joint.normal, &axis = joint.result.axis;
-	const auto rise = [&](const ImpulsePoint& point) { // m/s
-		const int b = supportUnder(joint, point);
-		return b == joint.support ? 0. : n.dot(bodies[b].velocityAt(point.position) - bodies[joint.support].velocityAt(point.position));
-	};
-	const ImpulsePoint& old = points[joint.oldBegin];
-	const auto across = [&](const ImpulsePoint& point) { return axis.dot(n.cross(point.position - old.position)); }; // m
-	const auto along = [&](const ImpulsePoint& point) { return axis.dot(point.position - old.position); };
-
-	double reach = 0, length = 0;
-	for (int i = joint.newBegin; i < joint.oldBegin; ++i)
-		reach = std::max(reach, std::abs(across(points[i])));
-	for (int i = joint.oldBegin; i < joint.oldEnd; ++i)
-		if (std::abs(along(points[i])) > std::abs(length))
-			length = along(points[i]);
-	// The velocity of the old support is linear along an edge; of several supports at one place, the one that rises fastest carries.
-	const bool isEdge = std::abs(length) > tolerance::pivotEdge * reach;
-	double nearRise = rise(old), farRise = -std::numeric_limits<double>::infinity();
-	for (int i = joint.oldBegin; i < joint.oldEnd; ++i) {
-		double& end = isEdge && std::abs(along(points[i])) > std::abs(length) / 2 ? farRise : nearRise;
-		end = std::max(end, rise(points[i]));
-	}
-	const double turn = isEdge ? (farRise - nearRise) / length : 0;
-	double carry = std::numeric_limits<double>::infinity();
-	for (int i = joint.newBegin; i < joint.oldBegin; ++i) {
-		const double lever = across(points[i]);
-		if (lever > tolerance::pivotEdge * reach)
-			carry = std::min(carry, (nearRise + turn * along(points[i]) - rise(points[i])) / lever);
-	}
-	return std::isinf(carry) ? 0 : carry;
-}
-
 } // namespace
 
-void findRocking(const std::vector<Body>& bodies, ClosingJoint& joint, const std::vector<ImpulsePoint>& points)
+template <class K>
+RockingImpactResult applyRockingImpact(Bodies<K>& bodies, RockingImpact<K>& impact)
 {
-	joint.result = {};
-	joint.carry = 0;
-	joint.result.axis = rockingAxis(bodies, joint, points);
-	if (joint.result.axis.isZero(0))
-		return;
-	Vector3 lever = Vector3::Zero();
-	for (int i = joint.newBegin; i < joint.oldBegin; ++i)
-		lever += points[i].position - points[joint.oldBegin].position;
-	Vector3& axis = joint.result.axis;
-	if (axis.dot(joint.normal.cross(lever)) < 0) // to turn the closing points towards their support
-		axis = -axis;
-	joint.carry = carryingSpin(bodies, joint, points);
-	joint.result.before = spin(bodies, joint);
-	if (joint.result.before < 0) {
-		axis = -axis;
-		joint.carry = -joint.carry;
-		joint.result.before = -joint.result.before;
-	}
-}
-
-RockingImpactResult applyRockingImpact(std::vector<Body>& bodies, RockingImpact& impact)
-{
-	CappedProblem& problem = workspace.problem;
+	CappedProblem<K>& problem = workspace<K>.problem;
 	problem.clear();
-	for (ClosingJoint& joint : impact.joints)
+	for (ClosingJoint<K>& joint : impact.joints)
 		begin(bodies, joint, impact.points);
-	for (const ClosingJoint& joint : impact.joints)
+	for (const ClosingJoint<K>& joint : impact.joints)
 		problem.add(bodies, joint, impact.points);
 	const RockingImpactResult result = problem.solve(impact.solve, bodies, impact.points);
 	auto row = problem.rows.begin();
-	for (ClosingJoint& joint : impact.joints)
+	for (ClosingJoint<K>& joint : impact.joints)
 		report(bodies, impact.points, joint, hasRow(joint) ? (row++)->couple : 0);
 	return result;
 }
@@ -315,15 +229,16 @@ void addTo(RockingImpactResult& sum, const RockingImpactResult& stage)
 
 } // namespace
 
-RockingImpactResult applySequentially(std::vector<Body>& bodies, RockingImpact& impact)
+template <class K>
+RockingImpactResult applySequentially(Bodies<K>& bodies, RockingImpact<K>& impact)
 {
-	auto& [problem, own, couples, impulses] = workspace;
+	auto& [problem, own, couples, impulses] = workspace<K>;
 	RockingImpactResult result;
 	couples.clear();
-	impulses.assign(impact.points.size(), Vector3::Zero()); // of the first stage
-	for (ClosingJoint& joint : impact.joints)
+	impulses.assign(impact.points.size(), K::Vector::Zero()); // of the first stage
+	for (ClosingJoint<K>& joint : impact.joints)
 		begin(bodies, joint, impact.points);
-	for (const ClosingJoint& joint : impact.joints) {
+	for (const ClosingJoint<K>& joint : impact.joints) {
 		own.assign(impact.points.begin() + joint.newBegin, impact.points.begin() + joint.oldEnd);
 		problem.clear();
 		problem.add(bodies, joint, impact.points, joint.newBegin);
@@ -341,18 +256,9 @@ RockingImpactResult applySequentially(std::vector<Body>& bodies, RockingImpact& 
 	return result;
 }
 
-RockingImpactResult applyToNewSupport(std::vector<Body>& bodies, ClosingJoint& joint, std::vector<ImpulsePoint>& points, double& couple)
-{
-	CappedProblem& problem = workspace.problem;
-	problem.clear();
-	begin(bodies, joint, points);
-	problem.add(bodies, joint, points);
-	problem.replaced.clear();
-	points.erase(points.begin() + joint.oldBegin, points.begin() + joint.oldEnd);
-	const RockingImpactResult result = problem.solve(solveImpulses, bodies, points);
-	couple = problem.rows.empty() ? 0 : problem.rows.front().couple;
-	report(bodies, points, joint, couple);
-	return result;
-}
+template RockingImpactResult applyRockingImpact(Bodies<Plane>&, RockingImpact<Plane>&);
+template RockingImpactResult applyRockingImpact(Bodies<Space>&, RockingImpact<Space>&);
+template RockingImpactResult applySequentially(Bodies<Plane>&, RockingImpact<Plane>&);
+template RockingImpactResult applySequentially(Bodies<Space>&, RockingImpact<Space>&);
 
 } // namespace masonry

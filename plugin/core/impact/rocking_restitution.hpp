@@ -18,21 +18,10 @@
 // impulse unless one of its points would approach. How redundant points share their impulses is ruled in impulse_problem.hpp: there is one
 // answer, in every frame and scale.
 //
-// w_carry is the spin with which the block would stay in touch with its old and its new support, which move with their velocities just
-// before the impact. Where both are one body, or move as one, it is that body's spin. Else, with n the normal, O on the old support, P a
-// closing point at the distance L from it across the axis (e turns P towards its support), touch at both asks for
-//
-//     n.v_old(O) - e.w_carry L = n.v_new(P)       e.w_carry = n.(v_old(O) - v_new(P)) / L
-//
-// For a pivot that is an edge, O is the point of its line abreast of P. Of several closing points, the one that would touch first counts:
-// the smallest e.w_carry, with which the block enters no support. Measured from the carrying motion, supports stand still: the impact is
-// that of a block on fixed supports, so C = 0 leaves the block on both, and the natural restitution is that of a fixed base. The approach
-// of the one P is u_n-(P) = -L e.w-. The velocities of free supports change during the impact; w_carry - w_support stays what it was
-// before, where w_support is the spin of the support under the new pivot, which bears the couple.
-//
-// Axis: the old support is an edge: e is its direction. It is a corner O: e = n x d, where d sums over the closing points
-// their approach speed times their lever from O in the plane of the joint, so that for one closing point P the old
-// support leaves with C times the speed at which the new one lands, u_n+(O) = -C u_n-(P).
+// landing.hpp defines the axis e, the carrying motion and w-. Here the carrying motion is that just before the impact: seen from it,
+// supports stand still, and the impact is that of a block on fixed supports, so C = 0 leaves the block on both, and the natural restitution
+// is that of a fixed base. The velocities of free supports change during the impact; w_carry - w_support stays what it was before, where
+// w_support is the spin of the support under the new pivot, which bears the couple.
 //
 // Where the resultant acts: the couple divided by the normal impulse is the distance x of the resultant from the new
 // pivot, inward positive (Giannini 1984). For the rectangular block x/b = (4/3)(1 + slenderness^2)(C - C_H)/(1 + C):
@@ -52,33 +41,17 @@
 // where they stand still), the targets of all rows are moved, by one fraction, from C e.w- towards their plastic values until
 // it is not. The same where the laws cannot all be met because the rows ask landing points to pull (without
 // slip only; if they cannot be met without rows either, impact is plastic). `capped` tells.
-#include "impact/impulse_problem.hpp"
+#include "impact/landing.hpp"
 
 namespace masonry {
 
-struct JointResult {
-	Vector3 axis {Vector3::Zero()}; // e, directed so that `before` is not negative; zero: the joint had no row
-	double before {0}, after {0};   // e.w- and e.w+, rad/s, against the carrying motion
-	double application {0};         // x, m: couple / normal impulse (0 without a row)
-	double frictionDemand {0};      // |p_t|/p_n of the closing points' resultant
-	double restitution() const { return before > 0 ? after / before : 0; }
-};
-
 enum class ImpactOrder { simultaneous, sequential };
 
-struct ClosingJoint {
-	int block, support;             // indices into the list of bodies
-	Vector3 normal;                 // from the support to the block
-	double restitution;             // C in [0, 1], or NaN: natural
-	int newBegin, oldBegin, oldEnd; // points [newBegin, oldBegin) are the new support, [oldBegin, oldEnd) the old
-	double carry {0};               // e.(w_carry - w_support), rad/s: found at the impact
-	JointResult result {};
-};
-
+template <class K>
 struct RockingImpact {
-	std::vector<ClosingJoint> joints;
-	std::vector<ImpulsePoint> points; // all that may act: new and old supports, and what else touches
-	ImpulseSolver solve {solveImpulses};
+	std::vector<ClosingJoint<K>> joints;
+	ImpulsePoints<K> points; // all that may act: new and old supports, and what else touches
+	ImpulseSolver<K> solve {solveImpulses<K>};
 };
 
 struct RockingImpactResult {
@@ -90,24 +63,10 @@ struct RockingImpactResult {
 	bool jammed {false};   // ImpulseReport
 };
 
-// Zero where there is no old support, or where it is a corner and no closing point approaches.
-Vector3 rockingAxis(const std::vector<Body>& bodies, const ClosingJoint& joint, const std::vector<ImpulsePoint>& points);
-
-// How the joint rocks at this instant: joint.carry, and of joint.result the axis and `before`.
-void findRocking(const std::vector<Body>& bodies, ClosingJoint& joint, const std::vector<ImpulsePoint>& points);
-
-// Work of the prescribed bodies' impulses, which keep their velocities, J.
-double supportWork(const std::vector<Body>& bodies, const std::vector<ImpulsePoint>& points, const std::vector<CoupleRow>& rows);
-
-// What has come out, after the impulses and the row's couple, into joint.result.
-void report(const std::vector<Body>& bodies, const std::vector<ImpulsePoint>& points, ClosingJoint& joint, double couple);
-
 // The two laws, simultaneous and sequential: they change the bodies' velocities, the points' impulses and the joints' results.
-RockingImpactResult applyRockingImpact(std::vector<Body>& bodies, RockingImpact& impact);
-RockingImpactResult applySequentially(std::vector<Body>& bodies, RockingImpact& impact);
-
-// One joint alone, the old support giving the axis and no impulse: nearly always it opens. Takes its points away, and keeps the couple
-// about the joint's axis, N m s.
-RockingImpactResult applyToNewSupport(std::vector<Body>& bodies, ClosingJoint& joint, std::vector<ImpulsePoint>& points, double& couple);
+template <class K>
+RockingImpactResult applyRockingImpact(Bodies<K>& bodies, RockingImpact<K>& impact);
+template <class K>
+RockingImpactResult applySequentially(Bodies<K>& bodies, RockingImpact<K>& impact);
 
 } // namespace masonry

@@ -12,21 +12,25 @@ public:
 	std::vector<std::array<int, 2>> near; // bodies that may meet, if known: as in the contact solver
 
 	// As solveImpulses, which small problems are left to. Without slip some have no solution: points that pull are let go.
-	ImpulseReport solve(std::vector<Body>& bodies, std::vector<ImpulsePoint>& points, std::vector<CoupleRow>& couples);
+	ImpulseReport solve(Bodies<K>& bodies, ImpulsePoints<K>& points, CoupleRows<K>& couples);
 
 private:
-	void addPoint(const std::vector<Body>& bodies, const ImpulsePoint& point);
-	void addCouple(const std::vector<Body>& bodies, const CoupleRow& couple, double length);
-	ImpulseReport solveSparse(std::vector<Body>& bodies, std::vector<ImpulsePoint>& points, std::vector<CoupleRow>& couples);
-	SolveReport solveRows(const std::vector<Body>& bodies, const std::vector<ImpulsePoint>& points, const std::vector<CoupleRow>& couples,
-	                      double length);
+	void addPoint(const Bodies<K>& bodies, const ImpulsePoint<K>& point);
+	void addCouple(const Bodies<K>& bodies, const CoupleRow<K>& couple, double length);
+	ImpulseReport solveSparse(Bodies<K>& bodies, ImpulsePoints<K>& points, CoupleRows<K>& couples);
+	SolveReport solveRows(const Bodies<K>& bodies, const ImpulsePoints<K>& points, const CoupleRows<K>& couples, double length);
 
 	ContactSolver<K> solver;
 	std::vector<int> unknown; // of a body in the solver; -1: prescribed
-	std::vector<masonry::Body> before;
+	Bodies<K> before;
 };
 
-// In space, with a memory of its own (of each thread).
-ImpulseReport solveSparsely(std::vector<masonry::Body>& bodies, std::vector<ImpulsePoint>& points, std::vector<CoupleRow>& couples);
+// The same with a memory of its own (of each thread).
+template <class K>
+ImpulseReport solveSparsely(Bodies<K>& bodies, ImpulsePoints<K>& points, CoupleRows<K>& couples)
+{
+	thread_local SparseImpulses<K> solver;
+	return solver.solve(bodies, points, couples);
+}
 
 } // namespace masonry

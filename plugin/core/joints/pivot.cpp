@@ -3,16 +3,20 @@
 
 namespace masonry {
 
-Pivot::Pivot(const std::vector<Vector3>& loaded, double narrow, bool mayBeEdge) : narrow(narrow)
+template <class K>
+Pivot<K>::Pivot(const std::vector<Vector>& loaded, double narrow) : narrow(narrow)
 {
 	if (loaded.empty())
 		return;
 	place = loaded.front();
-	for (const Vector3& p : loaded)
-		if (mayBeEdge && (p - place).norm() > direction.norm())
+	for (const Vector& p : loaded)
+		if (K::dimension == 3 && (p - place).norm() > direction.norm())
 			direction = p - place;
-	direction = direction.norm() > narrow ? Vector3(direction.normalized()) : Vector3(Vector3::Zero());
-	exists = std::all_of(loaded.begin(), loaded.end(), [this](const Vector3& p) { return has(p); });
+	direction = direction.norm() > narrow ? Vector(direction.normalized()) : Vector(Vector::Zero());
+	exists = std::all_of(loaded.begin(), loaded.end(), [this](const Vector& p) { return has(p); });
 }
+
+template class Pivot<Plane>;
+template class Pivot<Space>;
 
 } // namespace masonry

@@ -1,28 +1,31 @@
 #pragma once
 // The pivot of a joint: the edge or corner about which its block rocks.
-#include "math.hpp"
+#include "contact/kinematics.hpp"
 #include <cmath>
 #include <vector>
 
 namespace masonry {
 
 // Loaded points of a joint are a pivot if they are at one place, or in space on one line, within `narrow` (m).
+template <class K>
 class Pivot {
 public:
+	using Vector = typename K::Vector;
+
 	Pivot() = default;
-	Pivot(const std::vector<Vector3>& loaded, double narrow, bool mayBeEdge);
+	Pivot(const std::vector<Vector>& loaded, double narrow);
 
 	// False: the joint bears nowhere, or on a face.
 	explicit operator bool() const { return exists; }
 	// Distance of a point from the corner or from the line of the edge, m.
-	double distance(const Vector3& p) const
+	double distance(const Vector& p) const
 	{
-		const Vector3 from = p - place;
+		const Vector from = p - place;
 		return (from - direction * direction.dot(from)).norm();
 	}
-	bool has(const Vector3& p) const { return distance(p) <= narrow; }
+	bool has(const Vector& p) const { return distance(p) <= narrow; }
 
-	Vector3 place {Vector3::Zero()}, direction {Vector3::Zero()}; // the direction of a corner is zero
+	Vector place {Vector::Zero()}, direction {Vector::Zero()}; // the direction of a corner is zero
 
 private:
 	double narrow {0}; // m

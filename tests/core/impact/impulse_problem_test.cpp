@@ -10,8 +10,8 @@ using namespace masonry;
 namespace {
 
 struct Scene {
-	std::vector<Body> bodies;
-	std::vector<ImpulsePoint> points;
+	Bodies<Space> bodies;
+	ImpulsePoints<Space> points;
 };
 
 // A column of boxes of random sizes, densities and velocities, turned about the vertical, each touching the one below
@@ -30,7 +30,7 @@ Scene randomColumn(std::mt19937& random, double friction)
 	for (int b = 0; b < bodies; ++b) {
 		const Vector3 half {number(0.1, 0.5), number(0.1, 0.5), number(0.1, 1.5)};
 		const Quaternion turn(Eigen::AngleAxisd(number(0, 0.2), Vector3::UnitZ()));
-		Body body;
+		RigidBody<Space> body;
 		body.prescribed = b == 0;
 		body.pose = {Vector3(0, 0, b ? top + half.z() : 0), turn};
 		body.mass = std::pow(10., number(2, 4)) * half.prod();
@@ -38,8 +38,8 @@ Scene randomColumn(std::mt19937& random, double friction)
 		               Vector3(half.y() * half.y() + half.z() * half.z(), half.x() * half.x() + half.z() * half.z(),
 		                       half.x() * half.x() + half.y() * half.y());
 		if (b > 0) {
-			body.velocity = vector(1);
-			body.angularVelocity = vector(2);
+			body.linear() = vector(1);
+			body.spin() = vector(2);
 			const Vector3 face = half.cwiseMin(below);
 			const int touching = int(number(0, 3)); // all four, an edge, a corner
 			for (int corner = 0; corner < 4 >> touching; ++corner) {
@@ -54,15 +54,15 @@ Scene randomColumn(std::mt19937& random, double friction)
 	return scene;
 }
 
-double kinetic(const std::vector<Body>& bodies)
+double kinetic(const Bodies<Space>& bodies)
 {
 	double sum = 0;
-	for (const Body& body : bodies)
+	for (const RigidBody<Space>& body : bodies)
 		sum += body.kineticEnergy();
 	return sum;
 }
 
-Vector3 relativeVelocity(const Scene& scene, const ImpulsePoint& p)
+Vector3 relativeVelocity(const Scene& scene, const ImpulsePoint<Space>& p)
 {
 	return scene.bodies[p.body2].velocityAt(p.position) - scene.bodies[p.body1].velocityAt(p.position);
 }
@@ -74,10 +74,10 @@ void pointByPoint(Scene& scene)
 	for (int sweep = 0; sweep < 200000; ++sweep) {
 		double change = 0;
 		for (size_t i = 0; i < scene.points.size(); ++i) {
-			const ImpulsePoint& p = scene.points[i];
-			Body &b1 = scene.bodies[p.body1], &b2 = scene.bodies[p.body2];
+			const ImpulsePoint<Space>& p = scene.points[i];
+			RigidBody<Space>&b1 = scene.bodies[p.body1], &b2 = scene.bodies[p.body2];
 			double response = 0; // normal velocity per unit normal impulse
-			for (Body* b : {&b1, &b2}) {
+			for (RigidBody<Space>* b : {&b1, &b2}) {
 				const Vector3 turn = (p.position - b->pose.position).cross(p.normal);
 				response += b->inverseMass() + turn.dot(b->inverseInertia() * turn);
 			}
@@ -85,8 +85,8 @@ void pointByPoint(Scene& scene)
 			const double step = next - impulse[i];
 			impulse[i] = next;
 			for (const auto& [b, sign] : {std::pair(&b1, -1.), std::pair(&b2, 1.)}) {
-				b->velocity += sign * step * b->inverseMass() * p.normal;
-				b->angularVelocity += sign * step * (b->inverseInertia() * (p.position - b->pose.position).cross(p.normal));
+				b->linear() += sign * step * b->inverseMass() * p.normal;
+				b->spin() += sign * step * (b->inverseInertia() * (p.position - b->pose.position).cross(p.normal));
 			}
 			change = std::max(change, std::abs(step) * response);
 		}
@@ -107,12 +107,12 @@ TEST_CASE("The laws hold at every point, and energy is never gained")
 		for (int trial = 0; trial < 100; ++trial) {
 			Scene scene = randomColumn(random, friction);
 			const double before = kinetic(scene.bodies);
-			std::vector<CoupleRow> none;
+			CoupleRows<Space> none;
 			const auto report = solveImpulses(scene.bodies, scene.points, none);
 			INFO("seed " << seed << " friction " << friction << " trial " << trial << " iterations " << report.iterations);
 			CHECK(report.residual < 1e-8); // m/s, of velocities of order 1; Gauss-Seidel's stop where Newton cycles
 			CHECK(kinetic(scene.bodies) <= before * (1 + 1e-9));
-			for (const ImpulsePoint& p : scene.points) {
+			for (const ImpulsePoint<Space>& p : scene.points) {
 				const Vector3 u = relativeVelocity(scene, p);
 				const double normal = p.normal.dot(p.impulse), opening = p.normal.dot(u);
 				const Vector3 tangential = p.impulse - normal * p.normal, slide = u - opening * p.normal;
@@ -133,12 +133,12 @@ TEST_CASE("Without slip no point pulls and energy is never gained, and where the
 	for (int trial = 0; trial < 200; ++trial) {
 		Scene scene = randomColumn(random, noSlip);
 		const double before = kinetic(scene.bodies);
-		std::vector<CoupleRow> none;
+		CoupleRows<Space> none;
 		const auto report = solveImpulses(scene.bodies, scene.points, none);
 		INFO("trial " << trial << " residual " << report.residual);
 		CHECK(kinetic(scene.bodies) <= before * (1 + 1e-9));
 		solved += report.residual < 1e-8;
-		for (const ImpulsePoint& p : scene.points) {
+		for (const ImpulsePoint<Space>& p : scene.points) {
 			const Vector3 u = relativeVelocity(scene, p);
 			const double normal = p.normal.dot(p.impulse), opening = p.normal.dot(u);
 			CHECK(normal >= -1e-9);
@@ -157,13 +157,13 @@ TEST_CASE("Without friction the velocities equal those of the point-by-point met
 	std::mt19937 random(11);
 	for (int trial = 0; trial < 60; ++trial) {
 		Scene ours = randomColumn(random, 0.), other = ours;
-		std::vector<CoupleRow> none;
+		CoupleRows<Space> none;
 		solveImpulses(ours.bodies, ours.points, none);
 		pointByPoint(other);
 		for (size_t b = 0; b < ours.bodies.size(); ++b) {
 			INFO("trial " << trial << " body " << b);
-			CHECK((ours.bodies[b].velocity - other.bodies[b].velocity).norm() < 1e-7);
-			CHECK((ours.bodies[b].angularVelocity - other.bodies[b].angularVelocity).norm() < 1e-6);
+			CHECK((ours.bodies[b].linear() - other.bodies[b].linear()).norm() < 1e-7);
+			CHECK((ours.bodies[b].spin() - other.bodies[b].spin()).norm() < 1e-6);
 		}
 	}
 }
@@ -173,8 +173,8 @@ TEST_CASE("A couple row is met, whatever its sign")
 	std::mt19937 random(3);
 	for (double target : {-0.7, 0., 0.4}) {
 		Scene scene = randomColumn(random, 0.5);
-		std::vector<CoupleRow> rows {{0, 1, Vector3(1, 2, 2) / 3, target}};
+		CoupleRows<Space> rows {{0, 1, Vector3(1, 2, 2) / 3, target}};
 		solveImpulses(scene.bodies, scene.points, rows);
-		CHECK(rows.front().axis.dot(scene.bodies[1].angularVelocity) == Approx(target).margin(1e-9));
+		CHECK(rows.front().axis.dot(scene.bodies[1].spin()) == Approx(target).margin(1e-9));
 	}
 }

@@ -11,8 +11,8 @@ using namespace masonry;
 namespace {
 
 struct Scene {
-	std::vector<Body> bodies {1};
-	RockingImpact impact;
+	Bodies<Space> bodies {1};
+	RockingImpact<Space> impact;
 };
 
 // A column of boxes that stand face on face; the lowest rocks on one edge or corner of its own and lands on its other corners, while it
@@ -32,7 +32,7 @@ Scene randomColumn(std::mt19937& random, int boxes, double C)
 	for (int k = 0; k < boxes; ++k) {
 		const double a = number(.1, .5), b = number(.1, .5);
 		const Vector3 half(a, b, number(.1, .5)), squares = half.cwiseAbs2();
-		Body body;
+		RigidBody<Space> body;
 		body.pose.position.z() = top + half.z();
 		body.mass = 2000 * 8 * half.prod();
 		body.inertia = body.mass / 3 * (squares.sum() * Vector3::Ones() - squares);
@@ -43,14 +43,14 @@ Scene randomColumn(std::mt19937& random, int boxes, double C)
 	const bool onEdge = number(0, 1) < .5;
 	const Vector3 old(-halves[0].x(), -halves[0].y(), 0), slip(number(-.3, .3), number(-.3, .3), 0);
 	const Vector3 spin(onEdge ? 0 : -number(.1, 1), number(.1, 1), number(-.5, .5));
-	for (Body& body : scene.bodies) {
+	for (RigidBody<Space>& body : scene.bodies) {
 		if (body.prescribed)
 			continue;
-		body.angularVelocity = spin;
-		body.velocity = slip + spin.cross(body.pose.position - old);
+		body.spin() = spin;
+		body.linear() = slip + spin.cross(body.pose.position - old);
 		if (&body != &scene.bodies[1]) {
-			body.velocity += vector(.05);
-			body.angularVelocity += vector(.05);
+			body.linear() += vector(.05);
+			body.spin() += vector(.05);
 		}
 	}
 	const auto addPoint = [&](int below, double x, double y, double z) {
@@ -92,19 +92,19 @@ Scene seen(Scene scene, const View& view, std::mt19937& random)
 {
 	const Matrix3 map = view.map();
 	const double handed = map.determinant(), length = view.scale, time = std::sqrt(length);
-	for (Body& body : scene.bodies) {
+	for (RigidBody<Space>& body : scene.bodies) {
 		body.pose.position = length * (map * body.pose.position);
 		body.pose.orientation = Quaternion(Matrix3(handed * map));
-		body.velocity = length / time * (map * body.velocity);
-		body.angularVelocity = handed / time * (map * body.angularVelocity);
+		body.linear() = length / time * (map * body.linear());
+		body.spin() = handed / time * (map * body.spin());
 		body.mass *= std::pow(length, 3);
 		body.inertia *= std::pow(length, 5);
 	}
 	auto& points = scene.impact.points;
-	for (ImpulsePoint& point : points)
+	for (ImpulsePoint<Space>& point : points)
 		point.position = length * (map * point.position);
 	if (view.shuffled) {
-		const ClosingJoint& joint = scene.impact.joints.front();
+		const ClosingJoint<Space>& joint = scene.impact.joints.front();
 		std::shuffle(points.begin(), points.begin() + joint.oldBegin, random);
 		std::shuffle(points.begin() + joint.oldBegin, points.begin() + joint.oldEnd, random);
 		std::shuffle(points.begin() + joint.oldEnd, points.end(), random);
@@ -119,9 +119,9 @@ double apart(const Scene& first, const Scene& other, const View& view, double ar
 	const double handed = map.determinant(), length = view.scale, time = std::sqrt(length);
 	double most = 0;
 	for (size_t b = 1; b < first.bodies.size(); ++b) {
-		const Body &one = first.bodies[b], &two = other.bodies[b];
-		most = std::max({most, (one.velocity - time / length * (map.transpose() * two.velocity)).norm(),
-		                 arm * (one.angularVelocity - handed * time * (map.transpose() * two.angularVelocity)).norm()});
+		const RigidBody<Space>&one = first.bodies[b], &two = other.bodies[b];
+		most = std::max({most, (one.linear() - time / length * (map.transpose() * two.linear())).norm(),
+		                 arm * (one.spin() - handed * time * (map.transpose() * two.spin())).norm()});
 	}
 	return most;
 }
@@ -146,7 +146,7 @@ TEST_CASE("the impulses of a landing are the same in every view")
 					CAPTURE(k);
 					Scene start = randomColumn(random, boxes, C);
 					if (sparse)
-						start.impact.solve = solveSparsely;
+						start.impact.solve = solveSparsely<Space>;
 					Scene first = start;
 					const auto result = applyRockingImpact(first.bodies, first.impact);
 					CHECK(result.solved);

@@ -25,24 +25,24 @@ struct Carry {
 // A box with its lower face at z = 0; each of its contact points may lie on a support of its own.
 struct Scene {
 	Vector3 half;
-	std::vector<Body> bodies; // the box, then the supports
-	RockingImpact impact;
+	Bodies<Space> bodies; // the box, then the supports
+	RockingImpact<Space> impact;
 
 	explicit Scene(const Vector3& halfSize) : half(halfSize), bodies(1)
 	{
-		Body& box = bodies[0];
+		RigidBody<Space>& box = bodies[0];
 		box.pose.position = {0, 0, half.z()};
 		box.mass = 2000 * 8 * half.prod();
 		const Vector3 s = half.cwiseProduct(half);
 		box.inertia = box.mass / 3 * Vector3(s.y() + s.z(), s.x() + s.z(), s.x() + s.y());
 	}
 
-	Body& box() { return bodies[0]; }
+	RigidBody<Space>& box() { return bodies[0]; }
 	const JointResult& joint() const { return impact.joints.front().result; }
 
 	int addSupport(const Vector3& position)
 	{
-		Body& support = bodies.emplace_back();
+		RigidBody<Space>& support = bodies.emplace_back();
 		support.pose.position = position;
 		support.prescribed = true;
 		return int(bodies.size()) - 1;
@@ -58,8 +58,8 @@ struct Scene {
 
 	void turnAbout(const Vector3& point, const Vector3& w)
 	{
-		box().angularVelocity = w;
-		box().velocity = w.cross(box().pose.position - point);
+		box().spin() = w;
+		box().linear() = w.cross(box().pose.position - point);
 	}
 
 	// Every support turns by its own spin about a horizontal axis through its centre at z = 0, and moves with the carrying motion where it
@@ -67,13 +67,13 @@ struct Scene {
 	void carry(const Carry& motion, std::mt19937& random)
 	{
 		std::uniform_real_distribution<double> number(-1, 1);
-		box().velocity += motion.at(box().pose.position);
-		box().angularVelocity += motion.spin;
-		for (const ImpulsePoint& point : impact.points) {
-			Body& support = bodies[point.body1];
-			support.angularVelocity = {number(random), number(random), 0};
+		box().linear() += motion.at(box().pose.position);
+		box().spin() += motion.spin;
+		for (const ImpulsePoint<Space>& point : impact.points) {
+			RigidBody<Space>& support = bodies[point.body1];
+			support.spin() = Vector3(number(random), number(random), 0);
 			support.pose.position = point.position + Vector3(number(random), number(random), 0);
-			support.velocity = motion.at(point.position) - support.angularVelocity.cross(point.position - support.pose.position);
+			support.linear() = motion.at(point.position) - support.spin().cross(point.position - support.pose.position);
 		}
 	}
 
@@ -102,7 +102,7 @@ TEST_CASE("A block that rocks from one moving support to another answers as on f
 {
 	std::mt19937 random(3);
 	std::uniform_real_distribution<double> number(-1, 1);
-	for (const auto law : {applyRockingImpact, applySequentially})
+	for (const auto law : {applyRockingImpact<Space>, applySequentially<Space>})
 		for (bool edges : {true, false})
 			for (double slenderness : {0.125, 1., 5.})
 				for (double C : {0., 0.2, 0.8, 1., double(NAN)})
@@ -119,9 +119,9 @@ TEST_CASE("A block that rocks from one moving support to another answers as on f
 							CHECK(std::abs(moving.joint().after - fixed.joint().after) < roundOff);
 							if (C == 0 && friction != noSlip)
 								continue; // old and new support both stay in touch, and how they share the friction is open
-							const Vector3 turn = moving.box().angularVelocity - motion.spin - fixed.box().angularVelocity;
+							const Vector3 turn = moving.box().spin() - motion.spin - fixed.box().spin();
 							CHECK(turn.norm() < roundOff);
-							const Vector3 way = moving.box().velocity - motion.at(moving.box().pose.position) - fixed.box().velocity;
+							const Vector3 way = moving.box().linear() - motion.at(moving.box().pose.position) - fixed.box().linear();
 							CHECK(way.norm() < roundOff * size * (1 + slenderness));
 							if (!std::isnan(C) && !still.capped)
 								CHECK(std::abs(moving.joint().restitution() - C) < roundOff);
@@ -149,11 +149,11 @@ TEST_CASE("A beam on a base at rest and one that sinks at v keeps the spin v / L
 					points.push_back({left, {-0.5, y, 0}});
 				if (back)
 					std::rotate(points.begin(), points.begin() + 2, points.end());
-				scene.bodies[right].velocity = {0, 0, -v};
+				scene.bodies[right].linear() = Vector3(0, 0, -v);
 				scene.addJoint(points, 2, C, 0.6);
 				scene.turnAbout({-0.5, 0, 0}, {0, v / 1.7, 0});
 				const auto result = applyRockingImpact(scene.bodies, scene.impact);
-				CHECK(scene.box().angularVelocity.y() == Approx(v / 1.7).epsilon(1e-12));
+				CHECK(scene.box().spin().y() == Approx(v / 1.7).epsilon(1e-12));
 				CHECK(std::abs(result.energyLost) < 1e-12 * kineticEnergy(scene.bodies));
 				CHECK(!result.capped);
 			}
@@ -185,15 +185,15 @@ TEST_CASE("Of three supports that move in different ways the block enters none: 
 			points.push_back({scene.addSupport({x, 0, -1}), {x, 0, 0}});
 		scene.addJoint(points, 2, 0., 0.5);
 		for (int i = 1; i < 4; ++i)
-			scene.bodies[i].velocity.z() = number(random);
-		const double old = scene.bodies[3].velocity.z();
-		const double carry = std::min((old - scene.bodies[1].velocity.z()) / 2, (old - scene.bodies[2].velocity.z()) / 1.1);
+			scene.bodies[i].linear().z() = number(random);
+		const double old = scene.bodies[3].linear().z();
+		const double carry = std::min((old - scene.bodies[1].linear().z()) / 2, (old - scene.bodies[2].linear().z()) / 1.1);
 		scene.turnAbout({-1, 0, 0}, {0, carry + 1, 0});
-		scene.box().velocity.z() += old;
+		scene.box().linear().z() += old;
 		const auto result = applyRockingImpact(scene.bodies, scene.impact);
 		INFO("trial " << trial << " carry " << carry << " residual " << result.residual);
 		CHECK(scene.joint().before == Approx(1).epsilon(1e-12));
-		CHECK(scene.box().angularVelocity.y() == Approx(carry).margin(1e-12));
+		CHECK(scene.box().spin().y() == Approx(carry).margin(1e-12));
 		for (int i : {0, 1, 2})
 			CHECK(scene.gapRate(i) > -1e-10);
 	}

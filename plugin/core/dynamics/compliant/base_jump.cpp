@@ -16,12 +16,12 @@ std::vector<HeldPoint> respondToJump(JointSystem& s, const BaseJump& jump, Impul
 		return !contact.points[i].muted && (contact.patch.points[i].gap <= 0 || contact.springs[i] > 0);
 	});
 	auto rows = impulsePoints(s.contacts, touching);
-	std::vector<CoupleRow> none;
+	CoupleRows<Space> none;
 	const ImpulseReport report = solveSparsely(s.bodies, rows, none);
 	s.note(report.residual, report.solved);
-	for (const ImpulsePoint& row : rows)
+	for (const ImpulsePoint<Space>& row : rows)
 		for (int b : jump.moved) // impulse times the mean of the base's velocities before and after
-			response.work += (row.body1 == b ? 1 : row.body2 == b ? -1 : 0) * row.impulse.dot(s.bodies[b].velocity - 0.5 * jump.velocity);
+			response.work += (row.body1 == b ? 1 : row.body2 == b ? -1 : 0) * row.impulse.dot(s.bodies[b].linear() - 0.5 * jump.velocity);
 
 	std::vector<HeldPoint> held;
 	for (const HeldPoint& p : touching) {
@@ -40,7 +40,7 @@ ImpulseResponse applyBaseJump(JointSystem& s, const BaseJump& jump)
 	const double energy = mechanicalEnergy(s), stored = storedEnergy(s), power = supportPower(s);
 	goBack(s, accelerations(s, loadedPoints(s)), jump.before);
 	for (int b : jump.moved)
-		s.bodies[b].velocity += jump.velocity;
+		s.bodies[b].linear() += jump.velocity;
 	ImpulseResponse response;
 	const auto held = respondToJump(s, jump, response);
 	const auto joints = groupJoints(s);

@@ -55,9 +55,9 @@ bool CompliantStep::fitTimeStep()
 
 void CompliantStep::addWeights()
 {
-	for (Body& body : system.bodies)
+	for (RigidBody<Space>& body : system.bodies)
 		if (!body.prescribed)
-			body.force += body.mass * system.gravity;
+			body.force.head<3>() += body.mass * system.gravity;
 }
 
 void CompliantStep::bookDissipation()
@@ -92,8 +92,8 @@ void CompliantStep::bookBaseWork()
 			force = 0.5 * (force + old->second.force);
 			moment = 0.5 * (moment + old->second.moment);
 		}
-		const Body& body = system.bodies[b];
-		run.energies.baseWork -= (force.dot(body.velocity) + moment.dot(body.angularVelocity)) * system.dt;
+		const RigidBody<Space>& body = system.bodies[b];
+		run.energies.baseWork -= (force.dot(body.linear()) + moment.dot(body.spin())) * system.dt;
 	}
 }
 
@@ -162,11 +162,11 @@ void CompliantStep::keepReactions()
 }
 
 // The body with the velocities that the present forces give it within that time.
-Body CompliantStep::after(int b, double time) const
+RigidBody<Space> CompliantStep::after(int b, double time) const
 {
-	Body body = system.bodies[b];
-	body.velocity += time / body.mass * (body.force + loads[b].force);
-	body.angularVelocity += time * body.inverseInertia() * (body.torque + loads[b].moment);
+	RigidBody<Space> body = system.bodies[b];
+	body.linear() += time / body.mass * (body.force.head<3>() + loads[b].force);
+	body.spin() += time * body.inverseInertia() * (body.force.tail<3>() + loads[b].moment);
 	return body;
 }
 
@@ -188,7 +188,7 @@ void CompliantStep::checkEnergies(CompliantReport& report)
 	CompliantEnergies& e = run.energies;
 	e.turnedOver = std::max(e.turnedOver, e.kinetic + e.elastic + e.friction + e.damping + e.impacts);
 	double lifted = 0;
-	for (const Body& body : system.bodies)
+	for (const RigidBody<Space>& body : system.bodies)
 		if (!body.prescribed)
 			lifted += body.mass * system.gravity.norm() * std::sqrt(body.inertia.minCoeff() / body.mass);
 	const auto tell = [this](bool isBeyond, bool& told) {

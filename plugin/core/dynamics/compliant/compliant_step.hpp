@@ -82,7 +82,7 @@ private:
 	void shortenStep();
 
 	void addUnexplained(double energy);
-	Body after(int body, double time) const;
+	RigidBody<Space> after(int body, double time) const;
 };
 
 } // namespace masonry

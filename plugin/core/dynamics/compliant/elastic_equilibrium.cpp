@@ -40,7 +40,7 @@ struct Spring { // of a point that may carry
 std::vector<Spring> springsOf(const JointSystem& s, const std::vector<HeldPoint>& points)
 {
 	std::vector<Spring> springs;
-	const std::vector<ImpulsePoint> places = impulsePoints(s.contacts, points);
+	const ImpulsePoints<Space> places = impulsePoints(s.contacts, points);
 	for (size_t k = 0; k < points.size(); ++k) {
 		const auto [c, i] = std::pair(points[k].contact, points[k].point);
 		const JointContact& contact = s.contacts[c];
@@ -89,10 +89,11 @@ public:
 		}
 		loads = Eigen::VectorXd::Zero(6 * size);
 		for (size_t b = 0; b < s.bodies.size(); ++b)
-			if (const Body& body = s.bodies[b]; place[b] >= 0) {
+			if (const RigidBody<Space>& body = s.bodies[b]; place[b] >= 0) {
 				const Matrix3 axes = body.pose.orientation.toRotationMatrix();
-				loads.segment<3>(6 * place[b]) = body.force - body.mass * rates.linear[b];
-				loads.segment<3>(6 * place[b] + 3) = body.torque - axes * body.inertia.asDiagonal() * axes.transpose() * rates.angular[b];
+				loads.segment<3>(6 * place[b]) = body.force.head<3>() - body.mass * rates.linear[b];
+				loads.segment<3>(6 * place[b] + 3) =
+				    body.force.tail<3>() - axes * body.inertia.asDiagonal() * axes.transpose() * rates.angular[b];
 			}
 	}
 
@@ -258,12 +259,11 @@ bool findElasticEquilibrium(JointSystem& s, const RigidAcceleration& rates, cons
 	Equilibrium equilibrium(s, rates, points);
 	if (!equilibrium.solve())
 		return false;
-	const std::vector<Body> before = s.bodies;
+	const Bodies<Space> before = s.bodies;
 	for (size_t b = 0; b < s.bodies.size(); ++b) {
 		const auto moved = equilibrium.displacement(int(b));
-		Body moving = s.bodies[b]; // over unit time
-		moving.velocity = moved.head<3>();
-		moving.angularVelocity = moved.tail<3>();
+		RigidBody<Space> moving = s.bodies[b]; // over unit time
+		moving.velocity = moved;
 		moving.advance(1);
 		s.bodies[b].pose = moving.pose;
 	}
@@ -282,7 +282,7 @@ void startAtEquilibrium(JointSystem& s)
 	// The dense solver's forces are those of least norm: without self-stress, and symmetric where the scene is.
 	constexpr size_t maxDense = 100;
 	std::vector<HeldPoint> held = selectPoints(s.contacts, near);
-	const ImpulseSolver solve = held.size() <= maxDense ? solveImpulses : solveSparsely;
+	const ImpulseSolver<Space> solve = held.size() <= maxDense ? solveImpulses<Space> : solveSparsely<Space>;
 	const RigidAcceleration rates = accelerations(s, std::move(held), solve);
 	const auto [resting, others] = divideByRest(s, rates);
 	const bool isFound = findElasticEquilibrium(s, rates, resting);

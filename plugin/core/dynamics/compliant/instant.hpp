@@ -10,7 +10,8 @@
 namespace masonry {
 
 // With the residual noted.
-RigidAcceleration accelerations(JointSystem& system, std::vector<HeldPoint> points, const ImpulseSolver& solve = solveSparsely);
+RigidAcceleration accelerations(JointSystem& system, std::vector<HeldPoint> points,
+                                const ImpulseSolver<Space>& solve = solveSparsely<Space>);
 
 std::vector<HeldPoint> loadedPoints(const JointSystem& system);
 

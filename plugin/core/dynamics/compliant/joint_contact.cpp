@@ -111,9 +111,9 @@ Vector3 JointContact::moment(int i, const Vector3& center) const
 	return (position(i) - center).cross(force(i)) + points[i].grip.cross(points[i].shearForce);
 }
 
-double JointContact::power(int i, const Body& body) const
+double JointContact::power(int i, const RigidBody<Space>& body) const
 {
-	return force(i).dot(body.velocityAt(position(i))) + points[i].shearForce.dot(gripMotion(i, body.angularVelocity));
+	return force(i).dot(body.velocityAt(position(i))) + points[i].shearForce.dot(gripMotion(i, body.spin()));
 }
 
 PerPoint<Vector3> JointContact::gripsFor(const PointValues& forces) const
@@ -137,7 +137,7 @@ bool JointContact::rocking() const
 	return std::any_of(points.begin(), points.end(), [](const JointPoint& p) { return p.muted; });
 }
 
-double reducedMass(const Body& body1, const Body& body2)
+double reducedMass(const RigidBody<Space>& body1, const RigidBody<Space>& body2)
 {
 	const double inverse = body1.inverseMass() + body2.inverseMass();
 	return inverse > 0 ? 1 / inverse : 0;
@@ -202,9 +202,9 @@ double shearEnergy(const JointContact& contact, int i) { return 0.5 * contact.sh
 // step and arms to its end: v + w x r would creep by w^2 r dt/2.
 class StepMotion {
 public:
-	StepMotion(const Body& body, double dt) : end(body.pose), dt(dt)
+	StepMotion(const RigidBody<Space>& body, double dt) : end(body.pose), dt(dt)
 	{
-		Body earlier = body;
+		RigidBody<Space> earlier = body;
 		earlier.advance(-dt);
 		start = earlier.pose;
 	}
@@ -220,7 +220,7 @@ struct PointMotions { // of body 2 relative to body 1 over the step that ends no
 	PointValues approaches; // along the normal, m/s
 };
 
-PointMotions motionsOf(const JointContact& contact, const Body& body1, const Body& body2, double dt)
+PointMotions motionsOf(const JointContact& contact, const RigidBody<Space>& body1, const RigidBody<Space>& body2, double dt)
 {
 	const StepMotion motion1(body1, dt), motion2(body2, dt);
 	PointMotions result;
@@ -291,7 +291,7 @@ void takeNormalForces(JointContact& contact, double damping, const PointValues& 
 
 } // namespace
 
-void updateForces(JointContact& contact, const Body& body1, const Body& body2, double dt)
+void updateForces(JointContact& contact, const RigidBody<Space>& body1, const RigidBody<Space>& body2, double dt)
 {
 	const Vector3& n = contact.patch.normal;
 	const double mass = reducedMass(body1, body2), dampingShear = contact.dampingShear(mass);
@@ -306,7 +306,7 @@ void updateForces(JointContact& contact, const Body& body1, const Body& body2, d
 	const PointValues &springs = contact.springs, oldSprings = contact.springForces(oldDepths);
 	takeNormalForces(contact, contact.dampingNormal(mass), rates);
 	placeFriction(contact);
-	const Vector3 spin = body2.angularVelocity - body1.angularVelocity;
+	const Vector3 spin = body2.spin() - body1.spin();
 	// The forces take energy from the bodies: dashpots and slip dissipate a part and never give it back, and the springs take the rest.
 	// A spring without any force comes back by its dashpot. The leapfrog scheme's own work of a force over a step is that of the mean
 	// of its values at the two ends: springs do not store all that they take where points meet or part within the step.

@@ -29,7 +29,7 @@
 // the pair; c_s = 2 zeta sqrt(k_s A m). No joint pulls by them.
 #include "contact/corner_patch.hpp"
 #include "contact/friction_points.hpp"
-#include "impact/body.hpp"
+#include "impact/rigid_body.hpp"
 
 namespace masonry {
 
@@ -85,14 +85,14 @@ struct JointContact {
 	Vector3 gripMotion(int i, const Vector3& turn) const { return patch.normal.dot(turn) * patch.normal.cross(points[i].grip); }
 	Vector3 force(int i) const { return points[i].normalForce * patch.normal + points[i].shearForce; } // on body 2
 	Vector3 moment(int i, const Vector3& center) const;                                                // of the same, about `center`
-	double power(int i, const Body& body) const;                                                       // of the same, on points of the body
+	double power(int i, const RigidBody<Space>& body) const;                                           // of the same, on points of the body
 	// From the points to where their friction acts if their normal forces are these, m.
 	PerPoint<Vector3> gripsFor(const PointValues& forces) const;
 	bool rocking() const; // some point is muted
 };
 
 // 0 where neither body is free, kg
-double reducedMass(const Body& body1, const Body& body2);
+double reducedMass(const RigidBody<Space>& body1, const RigidBody<Space>& body2);
 
 // Carries the points' state over to a new patch, by their features. A point without a past is muted when the joint rocks.
 void renewPatch(JointContact& contact, const ContactPatch& patch);
@@ -104,7 +104,7 @@ void followPatch(JointContact& contact);
 void updateSprings(JointContact& contact);
 
 // Forces and energies after a step dt that ended in the present patch, velocities those of that step.
-void updateForces(JointContact& contact, const Body& body1, const Body& body2, double dt);
+void updateForces(JointContact& contact, const RigidBody<Space>& body1, const RigidBody<Space>& body2, double dt);
 
 // Forces and stored energy of the present gaps and shears, nothing moved (after a hand-off has set them). Springs slip to what the
 // normal forces allow.

@@ -21,7 +21,7 @@ bool isPivot(const JointSystem& s, const Joint& joint, const std::vector<PointRe
 	std::vector<Vector3> places;
 	for (const PointRef& p : points)
 		places.push_back(s.position(p) - joint.normal * joint.normal.dot(s.position(p) - s.position(points.front()))); // all as deep
-	return bool(Pivot(places, tolerance::pivotEdge * sizeOf(s, joint), true));
+	return bool(Pivot<Space>(places, tolerance::pivotEdge * sizeOf(s, joint)));
 }
 
 bool Joint::has(int contact) const { return std::find(contacts.begin(), contacts.end(), contact) != contacts.end(); }
@@ -30,8 +30,8 @@ std::vector<Joint> groupJoints(const JointSystem& s)
 {
 	std::vector<NearPair> pairs;
 	for (const JointContact& contact : s.contacts) {
-		const Body &body1 = s.bodies[contact.body1], &body2 = s.bodies[contact.body2];
-		const auto [face1, face2] = facesOf(contact.patch, *body1.shape, body1.pose, *body2.shape, body2.pose);
+		const RigidBody<Space>&body1 = s.bodies[contact.body1], &body2 = s.bodies[contact.body2];
+		const auto [face1, face2] = facesOf(contact.patch, body1.shape->part(0), body1.pose, body2.shape->part(0), body2.pose);
 		pairs.push_back({contact.body1, contact.body2, face1, face2, contact.isUpright});
 	}
 	JointTable table;
@@ -106,10 +106,8 @@ void putBack(const Neighbourhood& part, JointSystem& s)
 	for (size_t k = 0; k < part.bodies.size(); ++k)
 		if (!part.system.bodies[k].prescribed)
 			s.bodies[part.bodies[k]] = part.system.bodies[k];
-	for (int k : part.system.rim) { // the pose has only gone back and forth
+	for (int k : part.system.rim) // the pose has only gone back and forth
 		s.bodies[part.bodies[k]].velocity = part.system.bodies[k].velocity;
-		s.bodies[part.bodies[k]].angularVelocity = part.system.bodies[k].angularVelocity;
-	}
 	for (size_t k = 0; k < part.contacts.size(); ++k) {
 		JointContact& contact = s.contacts[part.contacts[k]];
 		const int body1 = contact.body1, body2 = contact.body2;

@@ -25,13 +25,13 @@ double storedEnergy(const JointSystem& s)
 
 double mechanicalEnergy(const JointSystem& s)
 {
-	std::vector<Body> bodies = s.bodies; // velocities are half a step behind
+	Bodies<Space> bodies = s.bodies; // velocities are half a step behind
 	const auto push = [&](int b, const Vector3& force, const Vector3& moment) {
-		bodies[b].velocity += 0.5 * s.dt * bodies[b].inverseMass() * force;
-		bodies[b].angularVelocity += 0.5 * s.dt * (bodies[b].inverseInertia() * moment);
+		bodies[b].linear() += 0.5 * s.dt * bodies[b].inverseMass() * force;
+		bodies[b].spin() += 0.5 * s.dt * (bodies[b].inverseInertia() * moment);
 	};
 	for (size_t b = 0; b < bodies.size(); ++b)
-		push(b, bodies[b].force, bodies[b].torque);
+		push(b, bodies[b].force.head<3>(), bodies[b].force.tail<3>());
 	for (const JointContact& contact : s.contacts)
 		for (int i = 0; i < contact.size(); ++i)
 			for (const auto& [b, sign] : {std::pair(contact.body1, -1.), std::pair(contact.body2, 1.)}) {
@@ -39,9 +39,9 @@ double mechanicalEnergy(const JointSystem& s)
 				push(b, force, sign * contact.moment(i, bodies[b].pose.position));
 			}
 	double energy = kineticEnergy(bodies) + storedEnergy(s);
-	for (const Body& body : bodies)
+	for (const RigidBody<Space>& body : bodies)
 		if (!body.prescribed)
-			energy -= body.force.dot(body.pose.position);
+			energy -= body.force.head<3>().dot(body.pose.position);
 	return energy;
 }
 
@@ -78,7 +78,7 @@ Vector3 opening(const JointSystem& s, const JointContact& contact, int i)
 
 } // namespace
 
-void moveContacts(JointSystem& s, const std::vector<Body>& before)
+void moveContacts(JointSystem& s, const Bodies<Space>& before)
 {
 	for (JointContact& contact : s.contacts) {
 		const auto carry = [&](int b, const Vector3& point) { return s.bodies[b].pose.toGlobal(before[b].pose.toLocal(point)); };

@@ -12,7 +12,7 @@ struct PointRef {
 };
 
 struct JointSystem {
-	std::vector<Body> bodies;
+	Bodies<Space> bodies;
 	std::vector<JointContact> contacts; // sorted by body pair: the order of every sum
 	Vector3 gravity {Vector3::Zero()};
 	double dt {0};
@@ -65,6 +65,6 @@ double storedEnergy(const JointSystem& system);
 double mechanicalEnergy(const JointSystem& system);
 
 // Bodies have moved from the poses in `before` to their present ones: points, gaps and shears follow.
-void moveContacts(JointSystem& system, const std::vector<Body>& before);
+void moveContacts(JointSystem& system, const Bodies<Space>& before);
 
 } // namespace masonry

@@ -9,8 +9,8 @@ namespace masonry {
 bool isClosedOnMovingBase(const JointSystem& s, const Joint& joint)
 {
 	const JointContact& contact = s.contacts[joint.contacts.front()];
-	const Body& support = s.bodies[contact.body1 == joint.block ? contact.body2 : contact.body1];
-	if (!support.prescribed || support.acceleration.isZero(0) || contact.rocking())
+	const RigidBody<Space>& support = s.bodies[contact.body1 == joint.block ? contact.body2 : contact.body1];
+	if (!support.prescribed || support.increment.head<3>().isZero(0) || contact.rocking())
 		return false;
 	const auto isIts = [&](const JointContact& other) { return other.body1 == joint.block || other.body2 == joint.block; };
 	if (std::count_if(s.contacts.begin(), s.contacts.end(), isIts) != 1)
@@ -42,8 +42,8 @@ ImpulseResponse lift(JointSystem& s, const Joint& joint, const std::vector<HeldP
 	const double energy = mechanicalEnergy(s), stored = storedEnergy(s);
 	const auto& contact = s.contacts[joint.contacts.front()];
 	const auto loaded = loadedPoints(s);
-	const Body& support = s.bodies[contact.body1 == joint.block ? contact.body2 : contact.body1];
-	Body& block = s.bodies[joint.block];
+	const RigidBody<Space>& support = s.bodies[contact.body1 == joint.block ? contact.body2 : contact.body1];
+	RigidBody<Space>& block = s.bodies[joint.block];
 	Vector3 slip = Vector3::Zero(); // where friction is at its limit
 	for (const HeldPoint& p : loaded) {
 		const JointPoint& point = contact.points[p.point];
@@ -55,9 +55,9 @@ ImpulseResponse lift(JointSystem& s, const Joint& joint, const std::vector<HeldP
 	slip -= joint.normal * joint.normal.dot(slip);
 	const Vector3 carried = support.velocityAt(block.pose.position), velocity = carried + slip;
 	ImpulseResponse response;
-	response.work = block.mass * carried.dot(velocity - block.velocity);
-	block.velocity = velocity;
-	block.angularVelocity = support.angularVelocity;
+	response.work = block.mass * carried.dot(velocity - block.linear());
+	block.linear() = velocity;
+	block.spin() = support.spin();
 	for (const HeldPoint& p : parting)
 		s.contacts[p.contact].points[p.point].muted = true;
 	updateSprings(s.contacts[joint.contacts.front()]);
@@ -79,8 +79,8 @@ ImpulseResponse liftJoints(JointSystem& s, const std::vector<Joint>& joints)
 		Neighbourhood part = neighbourhood(s, joint, 0);
 		// While the joint is closed its springs sway, and no rigid body has the centripetal accelerations of all points of a face.
 		JointSystem calm = part.system;
-		for (Body& body : calm.bodies)
-			body.angularVelocity.setZero();
+		for (RigidBody<Space>& body : calm.bodies)
+			body.spin().setZero();
 		const auto all = selectPoints(calm.contacts, [](const JointContact&, int) { return true; });
 		const auto parting = partingPoints(accelerations(calm, all), calm.contacts);
 		part.system.residual = calm.residual;

@@ -25,11 +25,11 @@ double minRockingSpeed(const JointSystem& s, const Joint& joint, const Vector3& 
 }
 
 // The impact of a closing joint, at the instant: new support, old support and, for the simultaneous law, the rest.
-RockingImpact closingImpact(const JointSystem& s, const Joint& joint, const Closing& closing, const std::vector<HeldPoint>& loaded)
+RockingImpact<Space> closingImpact(const JointSystem& s, const Joint& joint, const Closing& closing, const std::vector<HeldPoint>& loaded)
 {
-	RockingImpact impact;
+	RockingImpact<Space> impact;
 	const auto add = [&](const std::vector<HeldPoint>& points) {
-		for (const ImpulsePoint& point : impulsePoints(s.contacts, points))
+		for (const ImpulsePoint<Space>& point : impulsePoints(s.contacts, points))
 			impact.points.push_back(point);
 		return int(impact.points.size());
 	};
@@ -45,11 +45,11 @@ RockingImpact closingImpact(const JointSystem& s, const Joint& joint, const Clos
 	return impact;
 }
 
-ImpactRecord::Result applyWithRim(JointSystem& s, RockingImpact& impact)
+ImpactRecord::Result applyWithRim(JointSystem& s, RockingImpact<Space>& impact)
 {
 	for (int b : s.rim)
 		s.bodies[b].prescribed = false;
-	impact.solve = solveSparsely;
+	impact.solve = solveSparsely<Space>;
 	const RockingImpactResult result = applyRockingImpact(s.bodies, impact);
 	s.note(result.residual, result.solved);
 	for (int b : s.rim)
@@ -93,11 +93,10 @@ ImpactRecord switchPivot(JointSystem& s, const Joint& joint, const Closing& clos
 	const auto loaded = loadedPoints(s);
 	goBack(s, accelerations(s, loaded), closing.before);
 
-	RockingImpact impact = closingImpact(s, joint, closing, loaded);
-	ClosingJoint& law = impact.joints.front();
-	findRocking(s.bodies, law, impact.points);
+	RockingImpact<Space> impact = closingImpact(s, joint, closing, loaded);
+	ClosingJoint<Space>& law = impact.joints.front();
 	const double least = minRockingSpeed(s, joint, impact.points.front().position, closing.lever, closing.depth);
-	const bool rests = masonry::rests(law.result.before, closing.restitution, least);
+	const bool rests = masonry::rests(landingOf(s.bodies, law, impact.points).before, closing.restitution, least);
 	if (rests)
 		law.restitution = 0;
 	const ImpactRecord::Result result = applyWithRim(s, impact);
@@ -122,7 +121,7 @@ ImpactRecord land(JointSystem& s, const Joint& joint, const Closing& landing)
 		return !joint.has(int(&contact - s.contacts.data())) && contact.springs[i] > 0;
 	});
 	goBack(s, accelerations(s, loaded), landing.before);
-	RockingImpact impact = closingImpact(s, joint, landing, loaded);
+	RockingImpact<Space> impact = closingImpact(s, joint, landing, loaded);
 	double speed = 0; // of the approach
 	for (const PointRef& p : landing.points)
 		speed = std::max(speed, -s.gapRate(p));

@@ -4,9 +4,9 @@
 
 namespace masonry {
 
-std::vector<ImpulsePoint> impulsePoints(const std::vector<JointContact>& contacts, const std::vector<HeldPoint>& points)
+ImpulsePoints<Space> impulsePoints(const std::vector<JointContact>& contacts, const std::vector<HeldPoint>& points)
 {
-	std::vector<ImpulsePoint> rows;
+	ImpulsePoints<Space> rows;
 	for (auto first = points.begin(); first != points.end();) {
 		const auto last = std::find_if(first, points.end(), [&](const HeldPoint& p) { return p.contact != first->contact; });
 		const JointContact& contact = contacts[first->contact];
@@ -48,14 +48,15 @@ Vector3 swayOf(const JointContact& contact, const Vector3& spin, const HeldPoint
 
 // Centripetal accelerations of the friction points, of body 2 relative to body 1. A friction point turns about its point by the spin about
 // the normal.
-void setBias(const std::vector<Body>& bodies, const JointContact& contact, const HeldPoint* first, const HeldPoint* last, ImpulsePoint* row)
+void setBias(const Bodies<Space>& bodies, const JointContact& contact, const HeldPoint* first, const HeldPoint* last,
+             ImpulsePoint<Space>* row)
 {
-	const Body &body1 = bodies[contact.body1], &body2 = bodies[contact.body2];
-	const Vector3 sway = swayOf(contact, body2.angularVelocity - body1.angularVelocity, first, last);
+	const RigidBody<Space>&body1 = bodies[contact.body1], &body2 = bodies[contact.body2];
+	const Vector3 sway = swayOf(contact, body2.spin() - body1.spin(), first, last);
 	const double share = body1.prescribed ? 0 : body2.prescribed ? 1 : 0.5; // of body 1
-	const Vector3 spin1 = body1.angularVelocity + share * sway, spin2 = body2.angularVelocity - (1 - share) * sway;
+	const Vector3 spin1 = body1.spin() + share * sway, spin2 = body2.spin() - (1 - share) * sway;
 	for (; first != last; ++first, ++row) {
-		const auto centripetal = [&](const Body& body, const Vector3& spin) {
+		const auto centripetal = [&](const RigidBody<Space>& body, const Vector3& spin) {
 			const double turn = row->normal.dot(spin);
 			return Vector3(spin.cross(spin.cross(row->position - body.pose.position)) - turn * turn * row->grip);
 		};
@@ -65,34 +66,34 @@ void setBias(const std::vector<Body>& bodies, const JointContact& contact, const
 
 } // namespace
 
-RigidAcceleration rigidAcceleration(const std::vector<Body>& bodies, const std::vector<JointContact>& contacts,
-                                    std::vector<HeldPoint> points, const ImpulseSolver& solve)
+RigidAcceleration rigidAcceleration(const Bodies<Space>& bodies, const std::vector<JointContact>& contacts, std::vector<HeldPoint> points,
+                                    const ImpulseSolver<Space>& solve)
 {
-	std::vector<Body> rates = bodies; // velocities stand for accelerations
+	Bodies<Space> rates = bodies; // velocities stand for accelerations
 	for (size_t i = 0; i < bodies.size(); ++i) {
-		const Body& body = bodies[i];
+		const RigidBody<Space>& body = bodies[i];
 		if (body.prescribed) {
-			rates[i].velocity = body.acceleration;
-			rates[i].angularVelocity.setZero();
+			rates[i].linear() = body.increment.head<3>();
+			rates[i].spin().setZero();
 			continue;
 		}
 		const Quaternion& q = body.pose.orientation;
-		const Vector3 momentum = q * body.inertia.cwiseProduct(q.conjugate() * body.angularVelocity);
-		rates[i].velocity = body.force / body.mass;
-		rates[i].angularVelocity = body.inverseInertia() * (body.torque - body.angularVelocity.cross(momentum));
+		const Vector3 momentum = q * body.inertia.cwiseProduct(q.conjugate() * body.spin());
+		rates[i].linear() = body.force.head<3>() / body.mass;
+		rates[i].spin() = body.inverseInertia() * (body.force.tail<3>() - body.spin().cross(momentum));
 	}
-	std::vector<ImpulsePoint> rows = impulsePoints(contacts, points);
+	ImpulsePoints<Space> rows = impulsePoints(contacts, points);
 	for (size_t k = 0, end = 0; k < points.size(); k = end) {
 		while (end < points.size() && points[end].contact == points[k].contact)
 			++end;
 		setBias(bodies, contacts[points[k].contact], points.data() + k, points.data() + end, rows.data() + k);
 	}
-	std::vector<CoupleRow> none;
+	CoupleRows<Space> none;
 	RigidAcceleration result;
 	result.report = solve(rates, rows, none);
-	for (const Body& body : rates) {
-		result.linear.push_back(body.velocity);
-		result.angular.push_back(body.angularVelocity);
+	for (const RigidBody<Space>& body : rates) {
+		result.linear.push_back(body.linear());
+		result.angular.push_back(body.spin());
 	}
 	for (size_t k = 0; k < points.size(); ++k)
 		points[k].force = rows[k].impulse;

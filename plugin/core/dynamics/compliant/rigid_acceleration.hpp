@@ -23,7 +23,7 @@ struct HeldPoint {
 
 // Returns the impulse points of points that act together, contact by contact. Friction is placed by their normal forces; the points of a
 // contact without normal forces share alike.
-std::vector<ImpulsePoint> impulsePoints(const std::vector<JointContact>& contacts, const std::vector<HeldPoint>& points);
+ImpulsePoints<Space> impulsePoints(const std::vector<JointContact>& contacts, const std::vector<HeldPoint>& points);
 
 struct RigidAcceleration {
 	std::vector<Vector3> linear, angular; // per body, m/s^2 and rad/s^2
@@ -43,7 +43,7 @@ std::vector<HeldPoint> selectPoints(const std::vector<JointContact>& contacts, H
 	return result;
 }
 
-RigidAcceleration rigidAcceleration(const std::vector<Body>& bodies, const std::vector<JointContact>& contacts,
-                                    std::vector<HeldPoint> points, const ImpulseSolver& solve);
+RigidAcceleration rigidAcceleration(const Bodies<Space>& bodies, const std::vector<JointContact>& contacts, std::vector<HeldPoint> points,
+                                    const ImpulseSolver<Space>& solve);
 
 } // namespace masonry

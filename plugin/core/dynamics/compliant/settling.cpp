@@ -17,12 +17,12 @@ struct NormalRow {
 
 // Displacements (position, turn) that change the gaps as wanted: least motion, each turn weighted by the radius of gyration. Row by row,
 // since the rows are few per body; consistent redundant rows do no harm.
-std::vector<std::pair<Vector3, Vector3>> minMotion(const std::vector<Body>& bodies, const std::vector<NormalRow>& rows)
+std::vector<std::pair<Vector3, Vector3>> minMotion(const Bodies<Space>& bodies, const std::vector<NormalRow>& rows)
 {
 	std::vector<std::pair<Vector3, Vector3>> motion(bodies.size(), {Vector3::Zero(), Vector3::Zero()});
 	std::vector<double> inverseMass;
 	std::vector<Matrix3> inverseInertia;
-	for (const Body& body : bodies) { // as if all had the mass 1: the sweeps converge whatever stands on what
+	for (const RigidBody<Space>& body : bodies) { // as if all had the mass 1: the sweeps converge whatever stands on what
 		inverseMass.push_back(body.prescribed ? 0. : 1.);
 		inverseInertia.push_back(body.prescribed ? Matrix3(Matrix3::Zero()) : Matrix3(body.mass * body.inverseInertia()));
 	}
@@ -94,15 +94,14 @@ double press(JointSystem& s, const std::vector<HeldPoint>& points)
 		rows.push_back({contact.body1, contact.body2, n, (x - s.bodies[contact.body1].pose.position).cross(n),
 		                (x - s.bodies[contact.body2].pose.position).cross(n), -depth - contact.patch.points[p.point].gap});
 	}
-	const std::vector<Body> before = s.bodies;
+	const Bodies<Space> before = s.bodies;
 	const auto motion = minMotion(s.bodies, rows);
 	for (size_t b = 0; b < s.bodies.size(); ++b) {
-		Body& body = s.bodies[b];
+		RigidBody<Space>& body = s.bodies[b];
 		if (body.prescribed)
 			continue;
-		Body moving = body; // displacement over unit time
-		moving.velocity = motion[b].first;
-		moving.angularVelocity = motion[b].second;
+		RigidBody<Space> moving = body; // displacement over unit time
+		moving.velocity << motion[b].first, motion[b].second;
 		moving.advance(1);
 		body.pose = moving.pose;
 	}
@@ -121,7 +120,7 @@ double press(JointSystem& s, const std::vector<HeldPoint>& points)
 void settle(JointSystem& s, const std::vector<HeldPoint>& held, double most)
 {
 	const double stored = storedEnergy(s);
-	const std::vector<Body> before = s.bodies;
+	const Bodies<Space> before = s.bodies;
 	const std::vector<JointContact> contactsBefore = s.contacts;
 	std::vector<HeldPoint> points;
 	std::copy_if(held.begin(), held.end(), std::back_inserter(points),
@@ -129,7 +128,7 @@ void settle(JointSystem& s, const std::vector<HeldPoint>& held, double most)
 	const double deepest = press(s, points);
 	double work = 0; // of the loads
 	for (size_t b = 0; b < s.bodies.size(); ++b)
-		work += s.bodies[b].force.dot(s.bodies[b].pose.position - before[b].pose.position);
+		work += s.bodies[b].force.head<3>().dot(s.bodies[b].pose.position - before[b].pose.position);
 	// Bodies on their way over an edge, or that hit hard, may have no such equilibrium near.
 	const double pressed = pressedEnergy(contactsBefore), maxPressed = stored > 0 ? most * std::max(1., pressed / stored) : most;
 	if (storedEnergy(s) - stored - work <= most && pressedEnergy(s.contacts) - pressed <= maxPressed &&

@@ -27,7 +27,7 @@ void addPoint(Matrix6& sum, const Vector3& arm, const Matrix3& point)
 }
 
 // Those of a body whose neighbours move freely are doubled. The result holds until the next call: it keeps its memory from step to step.
-const std::vector<BodyMatrices>& bodyMatrices(const std::vector<Body>& bodies, const std::vector<JointContact>& contacts)
+const std::vector<BodyMatrices>& bodyMatrices(const Bodies<Space>& bodies, const std::vector<JointContact>& contacts)
 {
 	thread_local std::vector<BodyMatrices> result;
 	result.assign(bodies.size(), {});
@@ -70,7 +70,7 @@ const std::vector<BodyMatrices>& bodyMatrices(const std::vector<Body>& bodies, c
 	return result;
 }
 
-Matrix6 massMatrix(const Body& body)
+Matrix6 massMatrix(const RigidBody<Space>& body)
 {
 	const Matrix3 axes = body.pose.orientation.toRotationMatrix();
 	Matrix6 mass = Matrix6::Zero();
@@ -81,7 +81,7 @@ Matrix6 massMatrix(const Body& body)
 
 } // namespace
 
-double criticalTimeStep(const std::vector<Body>& bodies, const std::vector<JointContact>& contacts)
+double criticalTimeStep(const Bodies<Space>& bodies, const std::vector<JointContact>& contacts)
 {
 	const auto& matrices = bodyMatrices(bodies, contacts);
 	double highest = 0; // omega^2
@@ -95,7 +95,7 @@ double criticalTimeStep(const std::vector<Body>& bodies, const std::vector<Joint
 	return highest > 0 ? 2 / std::sqrt(highest) : std::numeric_limits<double>::infinity();
 }
 
-double largestTimeStep(const std::vector<Body>& bodies, const std::vector<JointContact>& contacts)
+double largestTimeStep(const Bodies<Space>& bodies, const std::vector<JointContact>& contacts)
 {
 	constexpr int halvings = 10;
 	double refused = criticalTimeStep(bodies, contacts); // without dashpots: above what is stable
@@ -107,14 +107,14 @@ double largestTimeStep(const std::vector<Body>& bodies, const std::vector<JointC
 	return accepted;
 }
 
-double chosenTimeStep(const std::vector<Body>& bodies, const std::vector<JointContact>& contacts, double fraction)
+double chosenTimeStep(const Bodies<Space>& bodies, const std::vector<JointContact>& contacts, double fraction)
 {
 	constexpr double ofLargest =
 	    0.75; // larger: it becomes unstable where blocks move a little; smaller: scenes without need take a shorter step
 	return std::min(fraction * criticalTimeStep(bodies, contacts), ofLargest * largestTimeStep(bodies, contacts));
 }
 
-bool isStableTimeStep(const std::vector<Body>& bodies, const std::vector<JointContact>& contacts, double dt, double undamped)
+bool isStableTimeStep(const Bodies<Space>& bodies, const std::vector<JointContact>& contacts, double dt, double undamped)
 {
 	const auto& matrices = bodyMatrices(bodies, contacts);
 	for (size_t b = 0; b < bodies.size(); ++b) {

@@ -11,17 +11,17 @@
 namespace masonry {
 
 // Without dashpots, s. All points of every contact are counted as loaded. Infinite without a contact.
-double criticalTimeStep(const std::vector<Body>& bodies, const std::vector<JointContact>& contacts);
+double criticalTimeStep(const Bodies<Space>& bodies, const std::vector<JointContact>& contacts);
 
 // With them, s: the largest step that isStableTimeStep() accepts, to 1e-3 of the critical one. Infinite without a contact.
-double largestTimeStep(const std::vector<Body>& bodies, const std::vector<JointContact>& contacts);
+double largestTimeStep(const Bodies<Space>& bodies, const std::vector<JointContact>& contacts);
 
 // Whether the scheme is stable with the step dt, s, dashpots included, and all points loaded, and without dashpots with the step
 // `undamped`. Much cheaper than the two above.
-bool isStableTimeStep(const std::vector<Body>& bodies, const std::vector<JointContact>& contacts, double dt, double undamped = 0);
+bool isStableTimeStep(const Bodies<Space>& bodies, const std::vector<JointContact>& contacts, double dt, double undamped = 0);
 
 // The step that a run takes which may choose, s: `fraction` of the critical step, which accuracy asks for, unless dashpots, which make the
 // largest one shorter, ask for less.
-double chosenTimeStep(const std::vector<Body>& bodies, const std::vector<JointContact>& contacts, double fraction);
+double chosenTimeStep(const Bodies<Space>& bodies, const std::vector<JointContact>& contacts, double fraction);
 
 } // namespace masonry

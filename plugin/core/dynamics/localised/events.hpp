@@ -27,11 +27,11 @@ Event findEvent(const RigidSystem<K>& system, SmoothStep<K>& step, double slow);
 template <class K>
 Event localise(RigidSystem<K>& system, SmoothStep<K>& step, Event event);
 
-// Whether the event of the trial is a contact that the boxes have at its end: any but a closing beyond the ends of the features.
+// Whether the event of the trial is a contact that the blocks have at its end: any but a closing beyond the ends of the features.
 template <class K>
 bool isContact(const RigidSystem<K>& system, const SmoothStep<K>& step, const Event& event);
 
-// A pair whose boxes penetrate each other at the end of the trial with features that it did not have at the start; -1: none.
+// A pair whose blocks penetrate each other at the end of the trial with features that it did not have at the start; -1: none.
 template <class K>
 int unseenPenetration(const RigidSystem<K>& system, const SmoothStep<K>& step);
 

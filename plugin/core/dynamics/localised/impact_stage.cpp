@@ -7,51 +7,6 @@ namespace masonry::localised {
 
 namespace {
 
-// --- plane and space as the impact law knows them: the plane is z = 0 ---
-
-Vector3 inSpace(const Vector2& v) { return {v.x(), v.y(), 0}; }
-Vector3 inSpace(const Vector3& v) { return v; }
-
-masonry::Body inSpace(const RigidBody<Plane>& body)
-{
-	masonry::Body result;
-	result.pose = {inSpace(body.pose.position), Quaternion(Eigen::AngleAxisd(body.pose.angle, Vector3::UnitZ()))};
-	result.velocity = inSpace(Vector2(body.velocity.head<2>()));
-	result.angularVelocity = {0, 0, body.velocity[2]};
-	result.mass = body.mass;
-	result.inertia.setConstant(body.inertia[0]);
-	result.prescribed = body.prescribed;
-	return result;
-}
-
-masonry::Body inSpace(const RigidBody<Space>& body)
-{
-	masonry::Body result;
-	result.pose = body.pose;
-	result.velocity = body.velocity.head<3>();
-	result.angularVelocity = body.velocity.tail<3>();
-	result.mass = body.mass;
-	result.inertia = body.inertia;
-	result.prescribed = body.prescribed;
-	return result;
-}
-
-void takeVelocity(const masonry::Body& from, RigidBody<Plane>& to) { to.velocity << from.velocity.head<2>(), from.angularVelocity.z(); }
-void takeVelocity(const masonry::Body& from, RigidBody<Space>& to) { to.velocity << from.velocity, from.angularVelocity; }
-
-// --- joints ---
-
-template <class K>
-Vector3 normalOf(const ContactPoint<K>& point)
-{
-	return inSpace(typename K::Vector(point.frame.axes.row(0).transpose()));
-}
-template <class K>
-Vector3 positionOf(const ContactPoint<K>& point)
-{
-	return inSpace(point.frame.position);
-}
-
 template <class K>
 bool isLoaded(const ContactPoint<K>& point)
 {
@@ -74,8 +29,8 @@ struct ImpactStage<K>::Builder {
 		const ContactPair<K>& pair = s.pairs[ref.pair];
 		const ContactPoint<K>& point = pair.points[ref.point];
 		stage.refs.push_back(ref);
-		stage.impact.points.push_back({pair.body1, pair.body2, positionOf(point), normalOf(point), pair.friction});
-		stage.impact.points.back().grip = inSpace(point.frame.grip);
+		stage.impact.points.push_back({pair.body1, pair.body2, point.frame.position, point.frame.axes.row(0).transpose(), pair.friction});
+		stage.impact.points.back().grip = point.frame.grip;
 	}
 
 	// Of four corners three carry, and round-off may have opened the fourth.
@@ -100,7 +55,7 @@ struct ImpactStage<K>::Builder {
 	{
 		stage.oldRefs.clear();
 		stage.oldPositions.clear();
-		const auto position = [&](PointRef ref) { return positionOf(s.pairs[ref.pair].points[ref.point]); };
+		const auto position = [&](PointRef ref) { return s.pairs[ref.pair].points[ref.point].frame.position; };
 		forTouching([&](PointRef ref) {
 			if (!isLoaded(s.pairs[ref.pair].points[ref.point]) || !(jointOf(ref) == key))
 				return;
@@ -111,9 +66,9 @@ struct ImpactStage<K>::Builder {
 		for (PointRef ref : closing)
 			if (!stage.oldPositions.empty() && jointOf(ref) == key)
 				reach = std::max(reach, (position(ref) - stage.oldPositions.front()).norm());
-		const Pivot pivot(stage.oldPositions, tolerance::pivotEdge * reach, K::dimension == 3);
+		const Pivot<K> pivot(stage.oldPositions, tolerance::pivotEdge * reach);
 		// Beside the pivot; on it, where two supports share it, round-off may open and close a point.
-		ClosingJoint joint {};
+		ClosingJoint<K> joint {};
 		joint.block = key.block;
 		joint.newBegin = int(stage.refs.size());
 		for (PointRef ref : closing)
@@ -136,7 +91,7 @@ struct ImpactStage<K>::Builder {
 			const ContactPair<K>& pair = s.pairs[stage.refs[k].pair];
 			const bool above = pair.body2 == key.block;
 			joint.support = above ? pair.body1 : pair.body2;
-			joint.normal = above ? stage.impact.points[k].normal : Vector3(-stage.impact.points[k].normal);
+			joint.normal = above ? stage.impact.points[k].normal : typename K::Vector(-stage.impact.points[k].normal);
 			joint.restitution = pair.restitution;
 		}
 		stage.impact.joints.push_back(joint);
@@ -153,9 +108,6 @@ void ImpactStage<K>::gather(const RigidSystem<K>& s, const Settings& settings, c
 	impact.joints.clear();
 	impact.points.clear();
 	refs.clear();
-	bodies.clear();
-	for (const auto& body : s.bodies)
-		bodies.push_back(inSpace(body));
 	if (!closing.empty())
 		joints.find(s.bodies, s.pairs);
 	Builder builder {s, settings.merged, *this};
@@ -180,9 +132,9 @@ void ImpactStage<K>::limit(const RigidSystem<K>& s, double impulse)
 {
 	const auto isMoved = [&](int b) { return s.bodies[b].prescribed && !s.bodies[b].velocity.isZero(0); };
 	double speed = 0;
-	for (const ImpulsePoint& point : impact.points)
-		speed = std::max(speed, masonry::relativeVelocity(bodies, point).norm());
-	for (ImpulsePoint& point : impact.points)
+	for (const ImpulsePoint<K>& point : impact.points)
+		speed = std::max(speed, masonry::relativeVelocity(s.bodies, point).norm());
+	for (ImpulsePoint<K>& point : impact.points)
 		if (isMoved(point.body1) || isMoved(point.body2))
 			point.most = freeMass(s) * speed + impulse;
 }
@@ -192,7 +144,7 @@ void ImpactStage<K>::findJammed(const RockingImpactResult& result)
 {
 	constexpr double nearly = 0.9; // as in isAtLimit
 	jammed.clear();
-	for (const ImpulsePoint& point : impact.points)
+	for (const ImpulsePoint<K>& point : impact.points)
 		if (const double normal = point.impulse.dot(point.normal); result.jammed && normal > 0 && normal >= nearly * point.most)
 			jammed.insert(jammed.end(), {point.body1, point.body2});
 }
@@ -201,9 +153,6 @@ void ImpactStage<K>::findJammed(const RockingImpactResult& result)
 template <class K>
 void ImpactStage<K>::settle(RigidSystem<K>& s)
 {
-	for (size_t b = 0; b < bodies.size(); ++b)
-		if (!s.bodies[b].prescribed)
-			takeVelocity(bodies[b], s.bodies[b]);
 	const double still = tolerance::localised::parting * std::sqrt(scale::acceleration(s) * scale::length(s)) * tolerance::restSpeed;
 	for (size_t k = 0; k < refs.size(); ++k) {
 		ContactPoint<K>& point = s.pairs[refs[k].pair].points[refs[k].point];
@@ -248,37 +197,34 @@ void ImpactStage<K>::holdPivots(RigidSystem<K>& s, const Settings& settings)
 		return isLoaded(point) ? &point : nullptr;
 	};
 	double stray = 0, heaviest = 0;
-	for (const masonry::Body& body : bodies)
+	for (const RigidBody<K>& body : s.bodies)
 		if (!body.prescribed)
 			heaviest = std::max(heaviest, body.mass);
 	for (size_t k = 0; k < refs.size(); ++k)
 		if (const ContactPoint<K>* held = loaded(k)) {
-			ImpulsePoint& point = impact.points[k];
-			const Vector3 u = masonry::relativeVelocity(bodies, point);
+			ImpulsePoint<K>& point = impact.points[k];
+			const typename K::Vector u = masonry::relativeVelocity(s.bodies, point);
 			if (held->sliding)
 				point.friction = 0;
 			stray = std::max(stray, held->sliding ? std::abs(point.normal.dot(u)) : u.norm());
 		}
-	const double before = kineticEnergy(bodies), impulse = enough * heaviest * stray;
+	const double before = s.kineticEnergy(), impulse = enough * heaviest * stray;
 	limit(s, impulse);
 	double work = 0; // of the prescribed bodies
 	for (size_t k = 0; k < refs.size(); ++k) {
 		if (!loaded(k))
 			continue;
-		const ImpulsePoint& point = impact.points[k];
+		const ImpulsePoint<K>& point = impact.points[k];
 		for (const auto& [b, sign] : {std::pair(point.body1, impulse), std::pair(point.body2, -impulse)}) {
-			masonry::Body& body = bodies[b];
+			RigidBody<K>& body = s.bodies[b];
 			if (body.prescribed)
 				work -= sign * point.normal.dot(body.velocityAt(point.position));
-			body.velocity += sign * body.inverseMass() * point.normal;
-			body.angularVelocity += sign * (body.inverseInertia() * (point.position - body.pose.position).cross(point.normal));
+			body.linear() += sign * body.inverseMass() * point.normal;
+			body.spin() += sign * (body.inverseInertia() * K::moment(point.position - body.pose.position, point.normal));
 		}
 	}
-	work += applyRockingImpact(bodies, impact).work;
-	for (size_t b = 0; b < bodies.size(); ++b)
-		if (!s.bodies[b].prescribed)
-			takeVelocity(bodies[b], s.bodies[b]);
-	s.impactDissip += before + work - kineticEnergy(bodies);
+	work += applyRockingImpact(s.bodies, impact).work;
+	s.impactDissip += before + work - s.kineticEnergy();
 	s.baseWork += work;
 }
 
@@ -289,21 +235,21 @@ RockingImpactResult ImpactStage<K>::land(RigidSystem<K>& s, const Settings& sett
 	gather(s, settings, closing);
 	limit(s, 0);
 	asked.clear();
-	for (ClosingJoint& joint : impact.joints) {
+	for (ClosingJoint<K>& joint : impact.joints) {
 		asked.push_back(joint.restitution);
-		findRocking(bodies, joint, impact.points);
-		if (rests(joint.result.before, joint.restitution, scale::minSpin(s, joint.block)))
+		const Landing<K> landing = landingOf(s.bodies, joint, impact.points);
+		if (rests(landing.before, joint.restitution, scale::minSpin(s, joint.block)))
 			joint.restitution = 0;
 	}
 	const auto result =
-	    settings.order == ImpactOrder::simultaneous ? applyRockingImpact(bodies, impact) : applySequentially(bodies, impact);
+	    settings.order == ImpactOrder::simultaneous ? applyRockingImpact(s.bodies, impact) : applySequentially(s.bodies, impact);
 	findJammed(result);
 	settle(s);
 	s.impactDissip += result.energyLost;
 	s.baseWork += result.work;
 	double energy = result.energyLost;
 	for (size_t k = 0; k < asked.size(); ++k) {
-		const ClosingJoint& joint = impact.joints[k];
+		const ClosingJoint<K>& joint = impact.joints[k];
 		if (joint.result.before < scale::minSpin(s, joint.block))
 			continue; // it did not rock
 		s.impacts.push_back({s.time, joint.block, joint.support, asked[k], joint.result.after >= scale::minSpin(s, joint.block),
@@ -321,15 +267,15 @@ RockingImpactResult ImpactStage<K>::pulse(RigidSystem<K>& s, const Settings& set
 			body.velocity.template head<K::dimension>() += jump;
 	gather(s, settings, {});
 	limit(s, 0);
-	const auto result = applyRockingImpact(bodies, impact);
+	const auto result = applyRockingImpact(s.bodies, impact);
 	findJammed(result);
 	settle(s);
 	// While the base speeds up from v - jump to v, its impulse works on the mean of the two.
 	double work = result.work;
-	for (const ImpulsePoint& point : impact.points)
+	for (const ImpulsePoint<K>& point : impact.points)
 		for (const auto& [b, sign] : {std::pair(point.body1, 1.), std::pair(point.body2, -1.)})
 			if (s.bodies[b].drive == drive)
-				work -= 0.5 * sign * point.impulse.dot(inSpace(jump));
+				work -= 0.5 * sign * point.impulse.dot(jump);
 	s.baseWork += work;
 	s.impactDissip += result.energyLost + work - result.work;
 	return result;

@@ -30,10 +30,9 @@ private:
 
 	SparseImpulses<K> impulses;
 	JointTable joints;
-	RockingImpact impact;
-	std::vector<masonry::Body> bodies;
-	std::vector<PointRef> refs;        // of impact.points
-	std::vector<Vector3> oldPositions; // of a joint
+	RockingImpact<K> impact;
+	std::vector<PointRef> refs;                   // of impact.points
+	std::vector<typename K::Vector> oldPositions; // of a joint
 	std::vector<PointRef> oldRefs;
 	std::vector<double> weights; // of the pairs: their normal impulses
 	std::vector<double> asked;   // restitution of the joints

@@ -154,7 +154,7 @@ void LocalisedStep<K>::findContacts(RigidSystem<K>& s, ContactPair<K>& pair, boo
 	}
 }
 
-// A trial that ends with the first event, or without one after h. Where boxes would penetrate each other unseen, it is halved until they
+// A trial that ends with the first event, or without one after h. Where blocks would penetrate each other unseen, it is halved until they
 // do not, and their features are searched again at its end.
 template <class K>
 Event LocalisedStep<K>::tryStep(RigidSystem<K>& s, double h)

@@ -16,45 +16,6 @@
 namespace masonry {
 
 template <class K>
-struct RigidBody {
-	std::shared_ptr<const Solid<typename K::Shape>> shape; // equal blocks may share one
-	double mass {0};                                       // kg; not used when prescribed
-	typename K::Inertia inertia {K::Inertia::Zero()};      // about the centre, kg m^2
-	bool prescribed {false};                               // moved by the user: an infinite mass
-	typename K::Pose pose;
-	typename K::Velocity velocity {K::Velocity::Zero()}; // linear, then spin
-	typename K::Velocity force {K::Velocity::Zero()};    // external force (weight included) and moment about the centre
-	typename K::Velocity increment {
-	    K::Velocity::Zero()};                      // change of velocity per second in the last smooth step: predicts the middle of the next
-	bool fresh {true};                             // the velocity has just jumped, or a stray one is left: the next step looks for those
-	int drive {-1};                                // index of the drive that moves it; -1: it keeps its velocity
-	typename K::Vector origin {K::Vector::Zero()}; // position at zero displacement of its drive
-
-	// Masses, forces and shapes belong to the scene.
-	template <class Archive>
-	void serialize(Archive& archive)
-	{
-		archive(pose, velocity, increment, fresh, prescribed, drive, origin);
-	}
-
-	void setBox(const typename K::Vector& half) { shape = std::make_shared<const Solid<typename K::Shape>>(K::Shape::box(half)); }
-
-	double kineticEnergy() const
-	{
-		const auto w = velocity.template tail<K::spins>();
-		return prescribed
-		           ? 0
-		           : 0.5 * (mass * velocity.template head<K::dimension>().squaredNorm() + w.dot(K::angularMomentum(inertia, pose, w)));
-	}
-};
-
-template <class K>
-const typename K::Vector& faceNormal(const RigidBody<K>& body, int face) // in the body's axes
-{
-	return body.shape->face(face).normal;
-}
-
-template <class K>
 struct ContactPoint {
 	Feature feature;
 	bool closed {false}; // in touch: may carry force
@@ -225,7 +186,7 @@ template <class K>
 struct RigidSystem {
 	double time {0}; // s
 	std::vector<RigidBody<K>> bodies;
-	std::vector<ContactPair<K>> pairs;              // of boxes that are near each other, in a fixed order
+	std::vector<ContactPair<K>> pairs;              // of blocks that are near each other, in a fixed order
 	Version list;                                   // of the list of pairs: which bodies they have, in which order
 	Version laws;                                   // of the pairs' friction and restitution, where the list stays
 	typename K::Vector gravity {K::Vector::Zero()}; // which way is down, and the scale of tolerances; the weight itself is in `force`

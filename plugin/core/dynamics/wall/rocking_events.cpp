@@ -16,33 +16,29 @@ namespace {
 // supports has its natural restitution.
 constexpr double minLever = 0.2;
 
-// The plane as the impact law knows it: z = 0.
-Vector3 inSpace(const Vector2& v) { return {v.x(), v.y(), 0}; }
-Vector3 inSpace(const Vector3& v) { return v; }
-
 template <class Point, class K>
-Vector3 normalOf(const ContactSet<K>& c, const Point& at)
+typename K::Vector normalOf(const ContactSet<K>& c, const Point& at)
 {
-	return inSpace(normal(c.groups[at.group].point[at.point], at.lane));
+	return normal(c.groups[at.group].point[at.point], at.lane);
 }
 
 template <class Point, class K>
-Vector3 positionOf(const ContactSet<K>& c, const Point& at)
+typename K::Vector positionOf(const ContactSet<K>& c, const Point& at)
 {
 	const Group<K>& group = c.groups[at.group];
 	ContactFrame<K> frame;
 	const int body2 = group.body2[at.lane];
 	takeFrame(group.point[at.point], c.features[at.group].point[at.point], at.lane, c.gyration[body2], frame);
-	return inSpace(typename K::Vector(c.position(body2) + frame.position));
+	return c.position(body2) + frame.position;
 }
 
 // On body 2.
 template <class Point>
-Vector3 impulseOf(const ContactSet<Plane>& c, const PointStates<Plane>& states, const Point& at)
+Vector2 impulseOf(const ContactSet<Plane>& c, const PointStates<Plane>& states, const Point& at)
 {
 	const PointState<Plane>& p = states[at.group][at.point];
 	const Vector2 n = normal(c.groups[at.group].point[at.point], at.lane);
-	return inSpace(Vector2(p.pn[at.lane] * n + p.pt[at.lane] * Vector2(-n.y(), n.x())));
+	return p.pn[at.lane] * n + p.pt[at.lane] * Vector2(-n.y(), n.x());
 }
 template <class Point>
 Vector3 impulseOf(const ContactSet<Space>& c, const PointStates<Space>& states, const Point& at)
@@ -51,17 +47,6 @@ Vector3 impulseOf(const ContactSet<Space>& c, const PointStates<Space>& states, 
 	const PointLanes<Space>& rows = c.groups[at.group].point[at.point];
 	return p.pn[at.lane] * rows.normal.axis.lane(at.lane) + p.pt.x[at.lane] * rows.tangent[0].axis.lane(at.lane) +
 	       p.pt.y[at.lane] * rows.tangent[1].axis.lane(at.lane);
-}
-
-void takeVelocity(const Plane::Velocity& v, Body& body)
-{
-	body.velocity << v[0], v[1], 0;
-	body.angularVelocity << 0, 0, v[2];
-}
-void takeVelocity(const Space::Velocity& v, Body& body)
-{
-	body.velocity = v.head<3>();
-	body.angularVelocity = v.tail<3>();
 }
 
 } // namespace
@@ -103,11 +88,10 @@ bool RockingEvents<K>::hops(const ContactSet<K>& c, const Point& point, double g
 	const Contact<K> at = contact(c, point);
 	if (at.impulse() > 0 || std::abs(at.normalRate(c)) > 2 * g * h) // one jump, and what it was before
 		return false;
-	masonry::Body block, support;
-	takeVelocity(c.inGlobal(c.velocity, at.block), block);
-	takeVelocity(c.inGlobal(c.velocity, at.support), support);
-	const Vector3 spin = block.angularVelocity - support.angularVelocity, arm = positionOf(c, point) - inSpace(c.position(at.block));
-	const double a = (at.second ? 1 : -1) * normalOf(c, point).dot(spin.cross(spin.cross(arm)));
+	const typename K::Velocity relative = c.inGlobal(c.velocity, at.block) - c.inGlobal(c.velocity, at.support);
+	const typename K::Spin spin = relative.template tail<K::spins>();
+	const typename K::Vector arm = positionOf(c, point) - c.position(at.block);
+	const double a = (at.second ? 1 : -1) * normalOf(c, point).dot(K::cross(spin, K::cross(spin, arm)));
 	return a > g / 4 && a < g && at.p.gap[at.lane] <= tolerance::wall::touching * c.length + a * a * h * h / (2 * (g - a));
 }
 
@@ -146,7 +130,7 @@ std::vector<SpinRow<K>> RockingEvents<K>::find(const RigidSystem<K>& s, const Co
 		places.clear();
 		for (const int i : bearing)
 			places.push_back(positionOf(c, points[i]));
-		Joint joint {begin, end, Pivot(places, tolerance::wall::pivot * c.length, K::dimension == 3), -1};
+		Joint joint {begin, end, Pivot<K>(places, tolerance::wall::pivot * c.length), -1};
 		if (!joint.pivot)
 			continue;
 		for (int i = begin; i < end; ++i) {
@@ -158,57 +142,53 @@ std::vector<SpinRow<K>> RockingEvents<K>::find(const RigidSystem<K>& s, const Co
 			if (gap + together * h * rate <= 0)
 				closing.push_back(i);
 		}
-		Landing landing;
-		if (lands && describe(s, c, joint, closing, landing)) {
-			joint.landing = int(expected.size());
-			expected.push_back(landing);
-			if (!std::isnan(landing.asked))
-				result.push_back(row(c, landing, landing.share));
+		Event event;
+		if (lands && describe(s, c, joint, closing, event)) {
+			joint.event = int(expected.size());
+			expected.push_back(event);
+			if (!std::isnan(event.asked))
+				result.push_back(row(c, event, event.share));
 		}
 		rocking.push_back(joint);
 	}
 	return result;
 }
 
-// If there are several supports, the one under the point farthest from the old pivot gives the law.
+// If there are several supports, the one under the point farthest from the old pivot gives the law. That point comes first of `closing`.
 template <class K>
-typename RockingEvents<K>::Support RockingEvents<K>::takeSupport(const RigidSystem<K>& s, const ContactSet<K>& c, const Joint& joint,
-                                                                 const std::vector<int>& closing, Landing& landing) const
+void RockingEvents<K>::takeLaw(const RigidSystem<K>& s, const ContactSet<K>& c, const Joint& joint, std::vector<int>& closing,
+                               Event& event) const
 {
-	Support result;
-	double farthest = -1;
-	for (const int i : closing) {
-		const double distant = joint.pivot.distance(positionOf(c, points[i]));
-		if (distant <= farthest)
-			continue;
-		farthest = distant;
-		const Contact<K> at = contact(c, points[i]);
-		landing.block = at.block;
-		landing.support = at.support;
-		landing.asked = s.pairs[c.features[points[i].group].pair[points[i].lane]].restitution;
-		landing.speed = std::max(0., -at.rate(predicted));
-		landing.share = landing.speed > 0 ? std::clamp(1 - at.p.gap[at.lane] / (h * landing.speed), 0., 1.) : 0;
-		result = {positionOf(c, points[i]), (at.second ? 1 : -1) * normalOf(c, points[i])};
-	}
-	return result;
+	size_t farthest = 0;
+	const auto distance = [&](size_t k) { return joint.pivot.distance(positionOf(c, points[closing[k]])); };
+	for (size_t k = 1; k < closing.size(); ++k)
+		farthest = distance(k) > distance(farthest) ? k : farthest;
+	std::rotate(closing.begin(), closing.begin() + farthest, closing.begin() + farthest + 1);
+	const Point& point = points[closing.front()];
+	const Contact<K> at = contact(c, point);
+	event.block = at.block;
+	event.support = at.support;
+	event.face = point.face;
+	event.asked = s.pairs[c.features[point.group].pair[point.lane]].restitution;
+	event.normal = (at.second ? 1 : -1) * normalOf(c, point);
+	event.speed = std::max(0., -at.rate(predicted));
+	event.share = event.speed > 0 ? std::clamp(1 - at.p.gap[at.lane] / (h * event.speed), 0., 1.) : 0;
 }
 
-// The axis of the impact law, which needs the points of the new support and of the old one, and their bodies.
+// The landing of the impact law with the velocities predicted. Returns its lever, m.
 template <class K>
-Vector3 RockingEvents<K>::axisOf(const ContactSet<K>& c, const Joint& joint, const std::vector<int>& closing, const Landing& landing,
-                                 const Vector3& normal) const
+double RockingEvents<K>::takeLanding(const ContactSet<K>& c, const Joint& joint, const std::vector<int>& closing, Event& event) const
 {
-	std::vector<masonry::Body> bodies;
+	masonry::Bodies<K> bodies;
 	std::vector<int> numbers;
-	std::vector<ImpulsePoint> all; // new support, then old
+	ImpulsePoints<K> all; // new support, then old
 	const auto number = [&](int b) {
 		const auto known = std::find(numbers.begin(), numbers.end(), b);
 		if (known != numbers.end())
 			return int(known - numbers.begin());
-		masonry::Body& body = bodies.emplace_back();
-		body.pose.position = inSpace(c.position(b));
-		takeVelocity(c.inGlobal(predicted, b), body);
-		body.prescribed = !c.own[b];
+		RigidBody<K>& body = bodies.emplace_back();
+		body.pose.position = c.position(b);
+		body.velocity = c.inGlobal(predicted, b);
 		numbers.push_back(b);
 		return int(numbers.size()) - 1;
 	};
@@ -217,109 +197,81 @@ Vector3 RockingEvents<K>::axisOf(const ContactSet<K>& c, const Joint& joint, con
 		all.push_back({number(group.body1[points[i].lane]), number(group.body2[points[i].lane]), positionOf(c, points[i]),
 		               normalOf(c, points[i]), 0});
 	};
-	ClosingJoint law {};
+	ClosingJoint<K> law {};
 	std::for_each(closing.begin(), closing.end(), add);
-	law.block = number(landing.block);
-	law.support = number(landing.support);
-	law.normal = normal;
+	law.block = number(event.block);
+	law.support = number(event.support);
+	law.normal = event.normal;
 	law.oldBegin = int(all.size());
 	for (int i = joint.begin; i < joint.end; ++i)
 		if (isOfPivot(c, i, joint))
 			add(i);
 	law.oldEnd = int(all.size());
-	return rockingAxis(bodies, law, all);
-}
-
-// Sets what the two ends of the old pivot and the new support add to the motion that carries the block. Returns the lever of the new
-// support about the old one, m, and turns the axis so that it is positive; carriers are right where it is not too short.
-template <class K>
-double RockingEvents<K>::takeCarriers(const ContactSet<K>& c, const Joint& joint, const Support& support, Landing& landing) const
-{
-	int near = -1, far = -1; // ends of the old pivot
-	for (int i = joint.begin; i < joint.end; ++i)
-		if (isOfPivot(c, i, joint)) {
-			const auto along = [&](int k) { return joint.pivot.direction.dot(positionOf(c, points[k])); };
-			if (near < 0 || along(i) < along(near))
-				near = i;
-			if (far < 0 || along(i) > along(far))
-				far = i;
-		}
-	const Vector3 from = support.place - positionOf(c, points[near]), edge = positionOf(c, points[far]) - positionOf(c, points[near]);
-	double lever = landing.axis.dot(support.normal.cross(from));
-	if (lever < 0) {
-		landing.axis = -landing.axis;
-		lever = -lever;
+	const Landing<K> landing = landingOf(bodies, law, all, {tolerance::wall::pivot * c.length, true});
+	event.axis = landing.axis;
+	for (size_t k = 0; k < event.carriers.size() && landing.lever > 0; ++k) {
+		const ImpulsePoint<K>& point = all[landing.carriers[k].point];
+		const int body = numbers[law.supportUnder(point)];
+		event.carriers[k] = {body, landing.carriers[k].perLength, point.position - c.position(body)};
 	}
-	const double length = edge.norm(), share = length > tolerance::wall::pivot * c.length ? from.dot(edge) / (length * length) : 0;
-	const auto carrier = [&](const Vector3& where, int body, double perLength) {
-		return Carrier {body, perLength / lever, where - inSpace(c.position(body))};
-	};
-	landing.carriers = {carrier(positionOf(c, points[near]), contact(c, points[near]).support, 1 - share),
-	                    carrier(positionOf(c, points[far]), contact(c, points[far]).support, share),
-	                    carrier(support.place, landing.support, -1)};
-	landing.normal = support.normal;
-	return lever;
+	return landing.lever;
 }
 
 template <class K>
-bool RockingEvents<K>::describe(const RigidSystem<K>& s, const ContactSet<K>& c, const Joint& joint, const std::vector<int>& closing,
-                                Landing& landing) const
+bool RockingEvents<K>::describe(const RigidSystem<K>& s, const ContactSet<K>& c, const Joint& joint, std::vector<int>& closing,
+                                Event& event) const
 {
 	if (closing.empty())
 		return false;
-	const Support support = takeSupport(s, c, joint, closing, landing);
-	landing.axis = axisOf(c, joint, closing, landing, support.normal);
-	if (landing.axis.isZero(0))
-		return false;
-	const double lever = takeCarriers(c, joint, support, landing);
+	takeLaw(s, c, joint, closing, event);
+	const double lever = takeLanding(c, joint, closing, event);
 	if (!(lever > minLever * c.length))
 		return false;
-	landing.before = row(c, landing, 1).rate(predicted);
-	landing.speed = landing.before * lever;
-	const double minSpin = scale::minSpin(s, landing.block);
-	if (!(landing.before >= minSpin))
+	event.before = row(c, event, 1).rate(predicted);
+	event.speed = event.before * lever;
+	const double minSpin = scale::minSpin(s, event.block);
+	if (!(event.before >= minSpin))
 		return false;
-	landing.face = points[joint.begin].face;
-	landing.restitution = rests(landing.before, landing.asked, minSpin) ? 0 : landing.asked;
-	if (landing.before < h * scale::acceleration(s) / s.bodies[landing.block].shape->radius()) // the step does not resolve it
-		landing.asked = NAN;
-	landing.time = s.time + h * (1 - landing.share);
+	event.restitution = rests(event.before, event.asked, minSpin) ? 0 : event.asked;
+	if (event.before < h * scale::acceleration(s) / s.bodies[event.block].shape->radius()) // the step does not resolve it
+		event.asked = NAN;
+	event.time = s.time + h * (1 - event.share);
 	return true;
 }
 
 template <class K>
-SpinRow<K> RockingEvents<K>::row(const ContactSet<K>& c, const Landing& landing, double share) const
+SpinRow<K> RockingEvents<K>::row(const ContactSet<K>& c, const Event& event, double share) const
 {
 	SpinRow<K> result;
-	result.parts[0] = {landing.block, spinArm(c, landing.block, landing.axis)};
-	for (size_t k = 0; k < landing.carriers.size(); ++k) {
-		const Carrier& carrier = landing.carriers[k];
-		result.parts[k + 1] = {carrier.body, speedArm(c, carrier.body, -carrier.perLength * landing.normal, carrier.arm)};
+	result.parts[0] = {event.block, spinArm(c, event.block, event.axis)};
+	for (size_t k = 0; k < event.carriers.size(); ++k) {
+		const Carrier& carrier = event.carriers[k];
+		result.parts[k + 1] = {carrier.body, speedArm(c, carrier.body, -carrier.perLength * event.normal, carrier.arm)};
 	}
-	result.target = landing.before * (1 - share + share * landing.restitution);
-	result.face = landing.face;
-	result.spent = landing.spent;
+	result.target = event.before * (1 - share + share * event.restitution);
+	result.face = event.face;
+	result.spent = event.spent;
 	return result;
 }
 
 template <class K>
 void RockingEvents<K>::take(const RigidSystem<K>& s, const ContactSet<K>& c, const AdmmResults<K>& results)
 {
-	landings.clear();
+	events.clear();
 	for (const Joint& joint : rocking) {
 		closing.clear();
 		for (int i = joint.begin; i < joint.end; ++i)
 			if (contact(c, points[i]).impulse() > 0 && !isOfPivot(c, i, joint))
 				closing.push_back(i);
-		Landing landing;
-		if (joint.landing >= 0)
-			landing = expected[joint.landing];
-		if (closing.empty() || (joint.landing < 0 && !describe(s, c, joint, closing, landing)))
+		Event event;
+		if (joint.event >= 0)
+			event = expected[joint.event];
+		if (closing.empty() || (joint.event < 0 && !describe(s, c, joint, closing, event)))
 			continue;
 		for (const SpinRow<K>& row : results.spins)
-			if (row.block() == landing.block && row.face == landing.face && row.held)
-				landing.spent = jointWork(s, c, results, landing.block, landing.face);
-		landings.push_back(landing);
+			if (row.block() == event.block && row.face == event.face && row.held)
+				event.spent = jointWork(s, c, results, event.block, event.face);
+		events.push_back(event);
 	}
 }
 
@@ -327,9 +279,9 @@ template <class K>
 std::vector<SpinRow<K>> RockingEvents<K>::rows(const ContactSet<K>& c) const
 {
 	std::vector<SpinRow<K>> result;
-	for (const Landing& landing : landings)
-		if (!std::isnan(landing.asked))
-			result.push_back(row(c, landing, 1));
+	for (const Event& event : events)
+		if (!std::isnan(event.asked))
+			result.push_back(row(c, event, 1));
 	return result;
 }
 
@@ -338,24 +290,23 @@ void RockingEvents<K>::report(RigidSystem<K>& s, const ContactSet<K>& c, const A
 {
 	gather(s, c);
 	auto row = results.spins.begin();
-	for (const Landing& landing : landings) {
-		if (std::isnan(landing.asked))
+	for (const Event& event : events) {
+		if (std::isnan(event.asked))
 			continue;
-		Vector3 impulse = Vector3::Zero(); // of the support on the block
+		typename K::Vector impulse = K::Vector::Zero(); // of the support on the block
 		for (const Point& at : points)
-			if (at.block == landing.block && at.face == landing.face)
+			if (at.block == event.block && at.face == event.face)
 				impulse += (contact(c, at).second ? 1 : -1) * impulseOf(c, results.states, at);
 		JointResult result;
-		result.axis = landing.axis;
-		result.before = landing.before;
+		result.before = event.before;
 		result.after = row->rate(c.velocity);
-		const double normal = landing.normal.dot(impulse);
+		const double normal = event.normal.dot(impulse);
 		if (normal > 0) {
 			result.application = row->couple / normal;
-			result.frictionDemand = (impulse - normal * landing.normal).norm() / normal;
+			result.frictionDemand = (impulse - normal * event.normal).norm() / normal;
 		}
-		s.impacts.push_back({landing.time, landing.block, landing.support, landing.asked, result.after >= scale::minSpin(s, landing.block),
-		                     result, lost, row->capped, residual});
+		s.impacts.push_back({event.time, event.block, event.support, event.asked, result.after >= scale::minSpin(s, event.block), result,
+		                     lost, row->capped, residual});
 		lost = 0;
 		++row;
 	}
@@ -364,15 +315,15 @@ void RockingEvents<K>::report(RigidSystem<K>& s, const ContactSet<K>& c, const A
 template <class K>
 bool RockingEvents<K>::areRows() const
 {
-	return std::any_of(landings.begin(), landings.end(), [](const Landing& landing) { return !std::isnan(landing.asked); });
+	return std::any_of(events.begin(), events.end(), [](const Event& event) { return !std::isnan(event.asked); });
 }
 
 template <class K>
 double RockingEvents<K>::speed() const
 {
 	double most = 0;
-	for (const Landing& landing : landings)
-		most = std::max(most, landing.speed);
+	for (const Event& event : events)
+		most = std::max(most, event.speed);
 	return most;
 }
 
@@ -380,8 +331,8 @@ template <class K>
 std::vector<int> RockingEvents<K>::blocks() const
 {
 	std::vector<int> result;
-	for (const Landing& landing : landings)
-		result.push_back(landing.block);
+	for (const Event& event : events)
+		result.push_back(event.block);
 	return result;
 }
 

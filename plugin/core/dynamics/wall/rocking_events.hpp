@@ -14,10 +14,11 @@
 // so that bodies move in the step as they would with an impact at its instant within the step. `before` is that of the end of the step, as
 // the last change of the velocities predicts it. All joints that land in a step do so together, with everything else in touch.
 //
-// w_carry is that of the supports as they move after the impact (spin_row.hpp): with C = 0 the block stays in touch with both. The law of
-// localised impacts takes e.(w_carry - w_support) from before the impact instead; both are the same on one support. Where the supports are
-// two blocks of a wall, that difference changes in the impact as much as the spin does, and rows that keep it make energy. A spin below
-// what gravity gives the block in a step lands with its natural restitution, since the step does not resolve it.
+// The landing is that of the impact law (impact/landing.hpp), with the velocities that are predicted. Here w_carry is a part of the row,
+// and so that of the supports as they move after the impact: with C = 0 the block stays in touch with both. Localised impacts keep
+// e.(w_carry - w_support) from before the impact instead; both are the same on one support. Where the supports are two blocks of a wall,
+// that difference changes in the impact as much as the spin does, and rows that keep it make energy. A spin below what gravity gives the
+// block in a step lands with its natural restitution, since the step does not resolve it.
 #include "dynamics/wall/admm_results.hpp"
 #include "impact/rocking_restitution.hpp"
 #include "joints/pivot.hpp"
@@ -42,12 +43,12 @@ public:
 	double speed() const; // m/s, fastest approach of the landings
 	// Blocks that have landed in the step, with a restitution or without: a base pulse may answer them.
 	std::vector<int> blocks() const;
-	void clear() { landings.clear(); }
+	void clear() { events.clear(); }
 
 	template <class Archive>
 	void serialize(Archive& archive)
 	{
-		archive(landings);
+		archive(events);
 	}
 
 private:
@@ -57,8 +58,8 @@ private:
 	};
 	struct Carrier { // what a support adds to w_carry
 		int body;
-		double perLength; // rad/m: e.w_carry over the support's speed along the normal
-		Vector3 arm;      // m, from the body's centre
+		double perLength;       // rad/m: e.w_carry over the support's speed along the normal
+		typename K::Vector arm; // m, from the body's centre
 
 		template <class Archive>
 		void serialize(Archive& archive)
@@ -66,15 +67,16 @@ private:
 			archive(body, perLength, arm);
 		}
 	};
-	struct Landing {
+	struct Event { // a landing
 		int block, support, face;
 		double asked;       // restitution; NaN: natural
 		double restitution; // what is left of it: 0 where the rocking ends
 		double time;        // s
 		double before, speed, share;
-		Vector3 axis, normal;
-		std::array<Carrier, 3> carriers; // two ends of the old pivot, new support
-		JointWork spent;                 // in the step, with its row
+		typename K::Spin axis;
+		typename K::Vector normal;
+		std::array<Carrier, 3> carriers {}; // two ends of the old pivot, new support
+		JointWork spent;                    // in the step, with its row
 
 		template <class Archive>
 		void serialize(Archive& archive)
@@ -85,30 +87,25 @@ private:
 	};
 	struct Joint {
 		int begin, end; // points
-		Pivot pivot;
-		int landing; // expected, by number; -1: none
-	};
-	struct Support { // the new one
-		Vector3 place {Vector3::Zero()}, normal {Vector3::Zero()};
+		Pivot<K> pivot;
+		int event; // expected, by number; -1: none
 	};
 	void gather(const RigidSystem<K>& system, const ContactSet<K>& contacts);
 	bool hops(const ContactSet<K>& contacts, const Point& point, double acceleration, double h) const;
 	bool isOfPivot(const ContactSet<K>& contacts, int point, const Joint& joint) const;
-	Support takeSupport(const RigidSystem<K>& system, const ContactSet<K>& contacts, const Joint& joint, const std::vector<int>& closing,
-	                    Landing& landing) const;
-	Vector3 axisOf(const ContactSet<K>& contacts, const Joint& joint, const std::vector<int>& closing, const Landing& landing,
-	               const Vector3& normal) const;
-	double takeCarriers(const ContactSet<K>& contacts, const Joint& joint, const Support& support, Landing& landing) const;
+	void takeLaw(const RigidSystem<K>& system, const ContactSet<K>& contacts, const Joint& joint, std::vector<int>& closing,
+	             Event& event) const;
+	double takeLanding(const ContactSet<K>& contacts, const Joint& joint, const std::vector<int>& closing, Event& event) const;
 	// The landing of a joint on these points; false: it does not rock.
-	bool describe(const RigidSystem<K>& system, const ContactSet<K>& contacts, const Joint& joint, const std::vector<int>& closing,
-	              Landing& landing) const;
-	SpinRow<K> row(const ContactSet<K>& contacts, const Landing& landing, double share) const;
+	bool describe(const RigidSystem<K>& system, const ContactSet<K>& contacts, const Joint& joint, std::vector<int>& closing,
+	              Event& event) const;
+	SpinRow<K> row(const ContactSet<K>& contacts, const Event& event, double share) const;
 
 	std::vector<Point> points; // joint by joint
 	std::vector<Joint> rocking;
-	std::vector<int> bearing, closing; // points of a joint that is looked at
-	std::vector<Vector3> places;       // of those that bear
-	std::vector<Landing> expected, landings;
+	std::vector<int> bearing, closing;      // points of a joint that is looked at
+	std::vector<typename K::Vector> places; // of those that bear
+	std::vector<Event> expected, events;
 	JointTable table;
 	Follower list;        // the table is made from the system's list of pairs
 	Follower laws;        // areLaws is made from the laws of its pairs

@@ -1,21 +1,17 @@
 #pragma once
-// A row that prescribes the spin of a block about an axis, against the motion of its supports: e.(w - w_carry) = target. With n the normal,
-// O on the old support and P on the new one, at the distance L from it across the axis,
-//
-//     e.w_carry = n.(v_old(O) - v_new(P))/L
-//
-// is the spin with which the block stays in touch with both; where both are one body, it is that body's spin. The couple acts on the block
-// along e, and on the supports as the pair of forces couple/L at O and P. Each velocity is arm.V in the packs of the contacts.
+// A row that prescribes the spin of a block about an axis, against the motion that carries it (impact/landing.hpp): e.(w - w_carry) =
+// target. The couple acts on the block along e, and on the supports as the pair of forces couple/L at O and P. Each velocity is arm.V in
+// the packs of the contacts.
 #include "dynamics/wall/contact_set.hpp"
 #include <algorithm>
 #include <cmath>
 
 namespace masonry::wall {
 
-// e.w of a body; in the plane e is along z.
-inline std::array<Lanes, 1> spinArm(const ContactSet<Plane>& c, int body, const Vector3& axis)
+// e.w of a body.
+inline std::array<Lanes, 1> spinArm(const ContactSet<Plane>& c, int body, const Plane::Spin& axis)
 {
-	return {Lanes {0, 0, axis.z() / c.gyration[body][0], 0}};
+	return {Lanes {0, 0, axis[0] / c.gyration[body][0], 0}};
 }
 inline std::array<Lanes, 2> spinArm(const ContactSet<Space>& c, int body, const Vector3& axis)
 {
@@ -25,9 +21,9 @@ inline std::array<Lanes, 2> spinArm(const ContactSet<Space>& c, int body, const 
 }
 
 // n.v of the place r from the body's centre.
-inline std::array<Lanes, 1> speedArm(const ContactSet<Plane>& c, int body, const Vector3& n, const Vector3& r)
+inline std::array<Lanes, 1> speedArm(const ContactSet<Plane>& c, int body, const Vector2& n, const Vector2& r)
 {
-	return {Lanes {n.x(), n.y(), r.cross(n).z() / c.gyration[body][0], 0}};
+	return {Lanes {n.x(), n.y(), Plane::moment(r, n)[0] / c.gyration[body][0], 0}};
 }
 inline std::array<Lanes, 2> speedArm(const ContactSet<Space>& c, int body, const Vector3& n, const Vector3& r)
 {

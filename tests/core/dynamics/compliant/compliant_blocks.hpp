@@ -18,18 +18,18 @@ struct CompliantBlocks {
 	double time {0};
 	masonry::JumpsOfBase jumpsOfBase = [](const auto&) { return std::vector<masonry::BaseJump>(); };
 
-	std::vector<masonry::Body>& bodies() { return step.system.bodies; }
-	const std::vector<masonry::Body>& bodies() const { return step.system.bodies; }
+	masonry::Bodies<masonry::Space>& bodies() { return step.system.bodies; }
+	const masonry::Bodies<masonry::Space>& bodies() const { return step.system.bodies; }
 
 	int addBox(const masonry::Vector3& size, const masonry::Vector3& centre, double density, bool prescribed)
 	{
-		masonry::Body body;
+		masonry::RigidBody<masonry::Space> body;
 		body.pose.position = centre;
 		body.mass = density * size.prod();
 		const masonry::Vector3 s = size.cwiseAbs2();
 		body.inertia = body.mass / 12 * masonry::Vector3(s.y() + s.z(), s.x() + s.z(), s.x() + s.y());
 		body.prescribed = prescribed;
-		body.shape = std::make_shared<const masonry::ConvexPolyhedron>(masonry::ConvexPolyhedron::box(size / 2));
+		body.setBox(size / 2);
 		bodies().push_back(body);
 		return int(bodies().size()) - 1;
 	}
@@ -46,7 +46,7 @@ struct CompliantBlocks {
 				masonry::JointContact contact = old == known.end() ? masonry::JointContact() : *old;
 				masonry::ContactPatch patch;
 				const double margin = 1e-3 * bodies()[b].shape->thickness();
-				if (!masonry::collide(*bodies()[a].shape, bodies()[a].pose, *bodies()[b].shape, bodies()[b].pose, margin,
+				if (!masonry::collide(bodies()[a].shape->part(0), bodies()[a].pose, bodies()[b].shape->part(0), bodies()[b].pose, margin,
 				                      contact.patch.feature, patch))
 					continue;
 				contact.body1 = a;
@@ -62,10 +62,8 @@ struct CompliantBlocks {
 	void advance()
 	{
 		using namespace masonry;
-		for (Body& body : bodies()) {
+		for (RigidBody<Space>& body : bodies())
 			body.force.setZero();
-			body.torque.setZero();
-		}
 		findPatches();
 		for (JointContact& contact : step.system.contacts)
 			updateForces(contact, bodies()[contact.body1], bodies()[contact.body2], step.system.dt);
@@ -81,16 +79,16 @@ struct CompliantBlocks {
 		time += step.system.dt;
 	}
 
-	static void move(masonry::Body& body, const masonry::JointLoad& joints, double dt)
+	static void move(masonry::RigidBody<masonry::Space>& body, const masonry::JointLoad& joints, double dt)
 	{
 		using namespace masonry;
 		if (!body.prescribed) {
 			const Quaternion& q = body.pose.orientation;
 			// Planar tests and small spins: the gyroscopic term is left to the momentum form.
-			Vector3 L = q * body.inertia.cwiseProduct(q.conjugate() * body.angularVelocity);
-			body.velocity += (body.force + joints.force) / body.mass * dt;
-			L += (body.torque + joints.moment) * dt;
-			body.angularVelocity = q * (q.conjugate() * L).cwiseQuotient(body.inertia);
+			Vector3 L = q * body.inertia.cwiseProduct(q.conjugate() * body.spin());
+			body.linear() += (body.force.head<3>() + joints.force) / body.mass * dt;
+			L += (body.force.tail<3>() + joints.moment) * dt;
+			body.spin() = q * (q.conjugate() * L).cwiseQuotient(body.inertia);
 		}
 		body.advance(dt);
 	}

@@ -81,11 +81,11 @@ TEST_CASE("Energies of blocks on a moving base close")
 	};
 	double start = NAN;
 	while (blocks.time < 2) {
-		Body& base = blocks.bodies().front();
-		base.acceleration = peak * std::sin(rate * blocks.time);
+		RigidBody<Space>& base = blocks.bodies().front();
+		base.increment.head<3>() = peak * std::sin(rate * blocks.time);
 		blocks.advance();
 		// The velocity of the step to come, its mean.
-		base.velocity = peak / rate * (1 - (std::sin(rate * (blocks.time + dt)) - std::sin(rate * blocks.time)) / (rate * dt));
+		base.linear() = peak / rate * (1 - (std::sin(rate * (blocks.time + dt)) - std::sin(rate * blocks.time)) / (rate * dt));
 		if (std::isnan(start))
 			start = sum();
 	}
@@ -104,7 +104,7 @@ TEST_CASE("A chosen step is lowered where joints become stiffer, a given one ref
 		CompliantBlocks blocks = blocksOnBase(1e-5, 0.6, 0.7);
 		blocks.addBox({0.5, 0.5, 0.5}, {0, 0, 0.25}, density, false);
 		const int thrown = blocks.addBox({0.5, 0.5, 0.5}, {2, 0, 4}, density, false);
-		blocks.bodies()[thrown].velocity = {1, 0, 2};
+		blocks.bodies()[thrown].linear() = Vector3(1, 0, 2);
 		chooseStep(blocks, fraction > 0 ? fraction : 0.9);
 		blocks.step.stepFraction = fraction;
 		const double dt = blocks.step.system.dt;
@@ -139,7 +139,7 @@ TEST_CASE("A joint that is pressed in too deep counts as one failure")
 		blocks.addBox({1, 1, 1}, {0, 0, 0.5}, density, false);
 		chooseStep(blocks, 0.05);
 		blocks.advance();
-		blocks.bodies().back().velocity = {0, 0, -speed};
+		blocks.bodies().back().linear() = Vector3(0, 0, -speed);
 		blocks.bodies().back().pose.position.z() -= speed * blocks.step.system.dt;
 		int told = 0;
 		while (blocks.time < 0.05) {

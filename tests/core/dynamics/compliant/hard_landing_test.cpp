@@ -45,7 +45,7 @@ struct Drop {
 		rig.law.normalStiffness = rig.law.shearStiffness = pressure / depth;
 		rig.step.system.dt = 1;
 		for (size_t b = 0; b < rig.bodies().size(); ++b) {
-			const Body& body = rig.bodies()[b];
+			const RigidBody<Space>& body = rig.bodies()[b];
 			const Vector3 half = rig.bodies()[b].shape->halfSize();
 			if (body.prescribed)
 				continue;
@@ -60,9 +60,9 @@ struct Drop {
 	{
 		const CompliantEnergies& energies = rig.step.run.energies;
 		double sum = kineticEnergy(rig.bodies()) + energies.friction + energies.damping + energies.impacts;
-		for (const Body& body : rig.bodies())
+		for (const RigidBody<Space>& body : rig.bodies())
 			if (!body.prescribed)
-				sum += body.mass * g * (body.pose.position.z() - 0.5 * rig.step.system.dt * body.velocity.z());
+				sum += body.mass * g * (body.pose.position.z() - 0.5 * rig.step.system.dt * body.linear().z());
 		for (const JointContact& contact : rig.step.system.contacts)
 			sum += contact.energy.elastic;
 		return sum;
@@ -126,7 +126,7 @@ TEST_CASE("Friction stays within Coulomb's cone at every point while blocks slid
 			drop.add({0.4, 0.4, 0.8}, 0.2, 0.6, 1e-2);
 			drop.chooseSprings(density * g * 3.3, 4e-5);
 			for (size_t b = 1; b < drop.rig.bodies().size(); ++b)
-				drop.rig.bodies()[b].velocity.x() = 0.5;
+				drop.rig.bodies()[b].linear().x() = 0.5;
 			double beyond = 0, largest = 0;
 			while (drop.rig.time < 0.5) {
 				drop.advance();

@@ -11,7 +11,7 @@ namespace {
 
 // A block of 1 x 1 x 1 m on another, turned by `yaw`, pressed in by `depth`; moved by `step` in the last dt = 1e-3 s.
 struct PressedBlocks {
-	Body lower, upper;
+	RigidBody<Space> lower, upper;
 	JointContact contact;
 	ContactPatch patch;
 	ConvexPolyhedron box;
@@ -36,15 +36,15 @@ struct PressedBlocks {
 	}
 	void move(const Vector3& step, double dt = 1e-3)
 	{
-		upper.velocity = step / dt;
+		upper.linear() = step / dt;
 		upper.pose.position += step;
 		look();
 		updateForces(contact, lower, upper, dt);
 	}
 	void turn(double angle, double dt = 1e-3)
 	{
-		upper.velocity.setZero();
-		upper.angularVelocity = {0, 0, angle / dt};
+		upper.linear().setZero();
+		upper.spin() = Vector3(0, 0, angle / dt);
 		upper.pose.orientation = Eigen::AngleAxisd(angle, Vector3::UnitZ()) * upper.pose.orientation;
 		look();
 		updateForces(contact, lower, upper, dt);
@@ -219,8 +219,8 @@ TEST_CASE("Friction points that move give no energy")
 		Load step;
 		step << 2e-8 * std::cos(0.05 * k), 1e-8, 0, 0, 3e-8 * std::sin(0.1 * k), 3e-8;
 		const Load before = load();
-		blocks.upper.velocity = step.head<3>() / 1e-3;
-		blocks.upper.angularVelocity = step.tail<3>() / 1e-3;
+		blocks.upper.linear() = step.head<3>() / 1e-3;
+		blocks.upper.spin() = step.tail<3>() / 1e-3;
 		blocks.upper.advance(1e-3);
 		blocks.look();
 		updateForces(blocks.contact, blocks.lower, blocks.upper, 1e-3);
@@ -291,7 +291,7 @@ TEST_CASE("The shear of a joint that turns with its blocks turns with it, at its
 	blocks.move({3e-7, 0, 0});
 	const Vector3 before = blocks.contact.points[2].shear;
 	const Quaternion turn(Eigen::AngleAxisd(0.3, Vector3::UnitY()));
-	for (Body* body : {&blocks.lower, &blocks.upper})
+	for (RigidBody<Space>* body : {&blocks.lower, &blocks.upper})
 		body->pose = {turn * body->pose.position, turn * body->pose.orientation};
 	blocks.look();
 	CHECK((blocks.contact.points[2].shear - turn * before).norm() < 1e-12 * before.norm()); // round-off
@@ -322,7 +322,7 @@ TEST_CASE("Contacts that move with their bodies have the gaps that are looked up
 		look(found);
 		renewPatch(contact, found);
 		s.contacts = {contact};
-		const std::vector<Body> before = s.bodies;
+		const Bodies<Space> before = s.bodies;
 		s.bodies[upper].pose.position += turn(0.07) * Vector3(1e-4, 0, 2e-6);
 		s.bodies[upper].pose.orientation = turn(0.07 + 1e-5);
 		moveContacts(s, before);

@@ -187,11 +187,11 @@ TEST_CASE("The critical time step is where the leapfrog scheme turns unstable")
 	for (const auto& [fraction, stable] : {std::pair(0.95, true), std::pair(1.05, false)}) {
 		RockingScene scene(0.3, 1.5, 0., 1e-4, 0, 1, fraction);
 		scene.rig.law.dampingRatio = 0;
-		Body& body = scene.rig.bodies()[scene.block];
+		RigidBody<Space>& body = scene.rig.bodies()[scene.block];
 		const double depth = 1e-4 * 2 * scene.b;
 		double furthest = 0;
 		scene.rig.advance();
-		body.velocity += Vector3(1e-3, 0, 1e-3) * depth / scene.rig.step.system.dt;
+		body.linear() += Vector3(1e-3, 0, 1e-3) * depth / scene.rig.step.system.dt;
 		for (int n = 0; n < 2000 && furthest < depth; ++n) {
 			scene.rig.advance();
 			furthest = std::max(furthest, (body.pose.position - Vector3(0, 0, scene.a)).norm() - depth);
@@ -211,7 +211,7 @@ TEST_CASE("Free blocks upon each other are stable below the critical time step")
 	const double depth = 1e-4 * 2 * scene.b;
 	double furthest = 0;
 	scene.rig.advance();
-	scene.rig.bodies()[scene.block].velocity += Vector3(1e-3, 0, 1e-3) * depth / scene.rig.step.system.dt;
+	scene.rig.bodies()[scene.block].linear() += Vector3(1e-3, 0, 1e-3) * depth / scene.rig.step.system.dt;
 	for (int n = 0; n < 2000 && furthest < depth; ++n) {
 		scene.rig.advance();
 		for (int k = 0; k < 2; ++k)

@@ -10,7 +10,7 @@ using namespace masonry;
 namespace {
 
 struct Assembly {
-	std::vector<Body> bodies;
+	Bodies<Space> bodies;
 	std::vector<JointContact> contacts;
 	std::mt19937 random;
 
@@ -21,7 +21,7 @@ struct Assembly {
 
 	void addBody(bool prescribed)
 	{
-		Body body;
+		RigidBody<Space> body;
 		body.mass = std::pow(10, uniform(1, 4));
 		const Vector3 half {uniform(0.05, 1), uniform(0.05, 1), uniform(0.05, 1)}, s = half.cwiseAbs2();
 		body.inertia = body.mass / 3 * Vector3(s.y() + s.z(), s.x() + s.z(), s.x() + s.y());
@@ -62,7 +62,7 @@ struct Assembly {
 		const int n = 6 * int(free.size());
 		Eigen::MatrixXd mass = Eigen::MatrixXd::Zero(n, n), stiffness = mass, damping = mass;
 		for (size_t k = 0; k < free.size(); ++k) {
-			const Body& body = bodies[free[k]];
+			const RigidBody<Space>& body = bodies[free[k]];
 			mass.block<3, 3>(6 * k, 6 * k) = body.mass * Matrix3::Identity();
 			mass.block<3, 3>(6 * k + 3, 6 * k + 3) = body.inverseInertia().inverse();
 		}
@@ -79,10 +79,8 @@ struct Assembly {
 				Eigen::MatrixXd rates = Eigen::MatrixXd::Zero(3, n);
 				for (size_t k = 0; k < free.size(); ++k)
 					for (int axis = 0; axis < 6; ++axis) {
-						Body moving = bodies[free[k]];
-						moving.velocity.setZero();
-						moving.angularVelocity.setZero();
-						(axis < 3 ? moving.velocity : moving.angularVelocity)[axis % 3] = 1;
+						RigidBody<Space> moving = bodies[free[k]];
+						moving.velocity = Space::Velocity::Unit(axis);
 						const Vector3 at = moving.velocityAt(place);
 						rates.col(6 * int(k) + axis) = (contact.body2 == free[k] ? at : Vector3(Vector3::Zero())) -
 						                               (contact.body1 == free[k] ? at : Vector3(Vector3::Zero()));

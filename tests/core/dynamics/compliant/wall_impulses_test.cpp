@@ -13,9 +13,9 @@ constexpr double g = 9.81, density = 2000;
 const Vector3 size(0.2, 0.2, 0.175); // of a block, m
 
 struct Problem {
-	std::vector<Body> bodies;
-	std::vector<ImpulsePoint> points;
-	std::vector<CoupleRow> couples;
+	Bodies<Space> bodies;
+	ImpulsePoints<Space> points;
+	CoupleRows<Space> couples;
 };
 
 // Two blocks, a block between halves, two blocks, on a base that jumps twice.
@@ -63,8 +63,8 @@ struct Wall {
 	{
 		const JointSystem& s = rig.step.system;
 		Problem p {s.bodies, {}, {}};
-		for (Body& body : p.bodies) // seen from the base, which then does no work
-			body.velocity -= s.bodies.front().velocity;
+		for (RigidBody<Space>& body : p.bodies) // seen from the base, which then does no work
+			body.linear() -= s.bodies.front().linear();
 		for (const JointContact& c : s.contacts)
 			for (int i = 0; i < c.size(); ++i)
 				if (c.patch.points[i].gap < 0)
@@ -73,8 +73,7 @@ struct Wall {
 		const Vector3 axis = Vector3::UnitY();
 		for (const JointContact& c : s.contacts)
 			if (withCouple && c.body2 == block && std::abs(c.patch.normal.z()) > 0.9 && p.couples.empty())
-				p.couples.push_back(
-				    {c.body1, block, axis, 0.7 * axis.dot(s.bodies[block].angularVelocity - s.bodies[c.body1].angularVelocity)});
+				p.couples.push_back({c.body1, block, axis, 0.7 * axis.dot(s.bodies[block].spin() - s.bodies[c.body1].spin())});
 		return p;
 	}
 };
@@ -82,7 +81,7 @@ struct Wall {
 double speed(const Problem& p)
 {
 	double fastest = 0;
-	for (const ImpulsePoint& q : p.points)
+	for (const ImpulsePoint<Space>& q : p.points)
 		fastest = std::max(fastest, (p.bodies[q.body2].velocityAt(q.position) - p.bodies[q.body1].velocityAt(q.position)).norm());
 	return fastest;
 }
@@ -93,10 +92,10 @@ double speed(const Problem& p)
 double missed(const Problem& p)
 {
 	double worst = 0, mass = 0;
-	for (const Body& body : p.bodies)
+	for (const RigidBody<Space>& body : p.bodies)
 		if (!body.prescribed)
 			mass = std::max(mass, body.mass);
-	for (const ImpulsePoint& q : p.points) {
+	for (const ImpulsePoint<Space>& q : p.points) {
 		const Vector3 u = p.bodies[q.body2].velocityAt(q.position) - p.bodies[q.body1].velocityAt(q.position);
 		const double un = q.normal.dot(u), pn = q.normal.dot(q.impulse) / mass;
 		const Vector3 ut = u - un * q.normal, pt = q.impulse / mass - pn * q.normal;
@@ -105,10 +104,8 @@ double missed(const Problem& p)
 		if (ut.norm() > 0 && pt.norm() > 0)
 			worst = std::max(worst, std::min(ut.norm(), pt.norm()) * (ut.normalized() + pt.normalized()).norm());
 	}
-	for (const CoupleRow& row : p.couples)
-		worst =
-		    std::max(worst, size.x() * std::abs(row.axis.dot(p.bodies[row.body2].angularVelocity - p.bodies[row.body1].angularVelocity) -
-		                                        row.target));
+	for (const CoupleRow<Space>& row : p.couples)
+		worst = std::max(worst, size.x() * std::abs(row.axis.dot(p.bodies[row.body2].spin() - p.bodies[row.body1].spin()) - row.target));
 	return worst;
 }
 
@@ -116,8 +113,8 @@ double apart(const Problem& one, const Problem& other)
 {
 	double most = 0;
 	for (size_t b = 0; b < one.bodies.size(); ++b)
-		most = std::max({most, (one.bodies[b].velocity - other.bodies[b].velocity).norm(),
-		                 size.z() * (one.bodies[b].angularVelocity - other.bodies[b].angularVelocity).norm()});
+		most = std::max({most, (one.bodies[b].linear() - other.bodies[b].linear()).norm(),
+		                 size.z() * (one.bodies[b].spin() - other.bodies[b].spin()).norm()});
 	return most;
 }
 

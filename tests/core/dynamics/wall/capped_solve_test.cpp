@@ -19,8 +19,9 @@ TEMPLATE_TEST_CASE("a block that lands gets no more spin than keeps its energy",
 	addBlock(s, sizeOf(s, width, height), placeOf(s, 0, height));
 	scene.near.update(s);
 	auto& body = s.bodies[1];
-	const Vector3 axis = flat ? Vector3(0, 0, -1) : Vector3(0, 1, 0); // clockwise
-	body.velocity[flat ? 2 : 4] = flat ? -before : before;
+	typename TestType::Spin axis = TestType::Spin::Zero(); // clockwise
+	axis[flat ? 0 : 1] = flat ? -1 : 1;
+	body.spin() = before * axis;
 	body.velocity[0] = before * height;
 	body.velocity[up] = -before * width;
 	const double kinetic = s.kineticEnergy();

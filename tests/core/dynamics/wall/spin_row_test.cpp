@@ -7,12 +7,8 @@ using namespace rig;
 
 namespace {
 
-Vector3 spatial(const Vector2& v) { return {v.x(), v.y(), 0}; }
-Vector3 spatial(const Vector3& v) { return v; }
-Vector3 linear(const Plane::Velocity& v) { return {v[0], v[1], 0}; }
-Vector3 linear(const Space::Velocity& v) { return v.head<3>(); }
-Vector3 spin(const Plane::Velocity& v) { return {0, 0, v[2]}; }
-Vector3 spin(const Space::Velocity& v) { return v.tail<3>(); }
+Plane::Spin axisOf(Plane) { return Plane::Spin(1); }
+Vector3 axisOf(Space) { return {0.6, 0.8, 0}; }
 
 } // namespace
 
@@ -33,18 +29,18 @@ TEMPLATE_TEST_CASE("a spin row measures the spin against the supports and does i
 	scene.near.update(s);
 	const Frozen<TestType> frozen(s, 1e-3);
 	const auto& c = frozen.contacts;
-	const bool flat = TestType::dimension == 2;
-	const Vector3 axis = flat ? Vector3(0, 0, 1) : Vector3(0.6, 0.8, 0), normal = flat ? Vector3(0, 1, 0) : Vector3(0, 0, 1);
-	const Vector3 old = spatial(placeOf(s, -0.5, 0.6)), now = spatial(placeOf(s, 0.7, 0.6));
+	using Vector = typename TestType::Vector;
+	const typename TestType::Spin axis = axisOf(TestType());
+	const Vector normal = Vector::Unit(TestType::dimension - 1), old = placeOf(s, -0.5, 0.6), now = placeOf(s, 0.7, 0.6);
 	const double length = 1.2;
-	const auto armOf = [&](int body, const Vector3& place) { return Vector3(place - spatial(s.bodies[body].pose.position)); };
+	const auto armOf = [&](int body, const Vector& place) { return Vector(place - s.bodies[body].pose.position); };
 	SpinRow<TestType> row;
 	row.parts[0] = {block, spinArm(c, block, axis)};
 	row.parts[1] = {support, speedArm(c, support, -normal / length, armOf(support, old))};
 	row.parts[2] = {0, speedArm(c, 0, normal / length, armOf(0, now))};
 	row.parts[3] = {0, {}};
-	const auto speed = [&](int b, const Vector3& place) { return normal.dot(linear(v[b]) + spin(v[b]).cross(armOf(b, place))); };
-	const double ofBlock = axis.dot(spin(v[block])), ofBase = -speed(0, now) / length;
+	const auto speed = [&](int b, const Vector& place) { return normal.dot(s.bodies[b].velocityAt(place)); };
+	const double ofBlock = axis.dot(s.bodies[block].spin()), ofBase = -speed(0, now) / length;
 	CHECK(row.rate(c.velocity) == Approx(ofBlock - (speed(support, old) / length + ofBase)).epsilon(1e-13));
 	CHECK(row.baseSpin(c.velocity) == Approx(ofBase).epsilon(1e-13));
 
