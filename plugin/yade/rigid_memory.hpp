@@ -13,7 +13,7 @@
 namespace yade {
 
 /// The row of numbers begins with that of its layout, to be changed with any list of members, and that of the scene's dimensions.
-constexpr Real layout = -15;
+constexpr Real layout = -16;
 
 /// Lets `read` read a row. Throws std::runtime_error if another version has written it.
 template <class Read>
@@ -36,11 +36,12 @@ struct Remembered {
 	vector<vector<typename K::Vector>> shapes; // vertices of the different ones, part by part
 	vector<int> shapeOf;                       // numbers of the bodies' shapes
 	vector<masonry::ContactPair<K>> pairs;
+	vector<masonry::Tie<K>> ties;
 
 	template <class Archive>
 	void serialize(Archive& archive)
 	{
-		archive(ids, seats, bodies, shapes, shapeOf, pairs);
+		archive(ids, seats, bodies, shapes, shapeOf, pairs, ties);
 	}
 
 	void takeShapes()

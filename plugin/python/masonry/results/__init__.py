@@ -15,7 +15,8 @@ from .joints import joints, patches
 from .paraview import write_paraview
 from .pictures import draw, draw_energy, draw_joints, film
 from .reporting import report
+from .ties import ties
 from .wall_history import WallHistory
 
 __all__ = ["CollapseReport", "Shapes", "WallHistory", "base_reactions", "collapse", "draw", "draw_energy", "draw_joints", "fallen", "film", "joints", "patches",
-           "report", "thrust", "write_paraview"]
+           "report", "thrust", "ties", "write_paraview"]
