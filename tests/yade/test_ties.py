@@ -236,6 +236,20 @@ def test_results(tmp_path):
     assert plain.ties is None and len(results.ties(plain)) == 0
 
 
+@pytest.mark.parametrize("walls", (False, True))
+def test_reactions_of_the_base_have_the_tie(walls):
+    """With the tie they balance the block's weight, and its moment about the middle of its foot."""
+    _, block, tie = held_block(stiffness=1e7, pretension=0)
+    tie.pretension = needed(0.4)
+    recorder = dem.WallRecorder(iterPeriod=100, recordForces=True)
+    O.engines = engines("planar", walls, recorder=recorder)
+    pull(0.4)
+    O.run(501, True)
+    last = results.base_reactions(dem.wall_history(recorder))[-1]
+    assert np.allclose(last["force"] / weight(), (-0.4, 0, 1), atol=5e-3), last
+    assert np.allclose(last["moment"] / (weight() * A), (0, -0.4, 0), atol=5e-3), last
+
+
 def test_what_is_refused():
     base, block, tie = held_block()
     place, other = (0, 0, 1), (-3, 0, 1)
