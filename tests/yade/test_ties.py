@@ -232,6 +232,9 @@ def test_results(tmp_path):
     results.draw(history, tmp_path / "wall.png")
     results.report(history, tmp_path / "wall.html")
     assert "Forces of 2 ties" in (tmp_path / "wall.html").read_text()
+    results.write_paraview(history, tmp_path / "wall.pvd", every=10)
+    first = (tmp_path / "wall/wall_ties_000000.vtu").read_text()
+    assert 'NumberOfPoints="4" NumberOfCells="2"' in first and 'part="1"' in (tmp_path / "wall.pvd").read_text()
     plain = results.WallHistory(history.time, history.ids, history.sizes, history.free, history.position, history.orientation)
     assert plain.ties is None and len(results.ties(plain)) == 0
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 from masonry import _pose
-from masonry.results.wall_history import history_given
+from masonry.results.wall_history import TIES, history_given
 
 _FIELDS = [("body1", int), ("body2", int), ("force", float), ("force_time", float), ("extension", float), ("extension_time", float), ("broken", bool), ("broken_time", float)]
 
@@ -27,19 +27,22 @@ def ties(history):
     return table
 
 
-def tie_ends(history, sample, enlarge=1.0):
-    """(m, 2, 3) ends of the ties that are not broken in a sample, seen from the bases of their bodies, with movements since the first sample taken `enlarge`
-    times, m."""
+def unbroken(history, sample):
+    """Rows of the ties that are not broken in a sample and whose bodies are in the history."""
     if history.ties is None:
-        return np.zeros((0, 2, 3))
+        return np.zeros(0, dtype=TIES)
     own = history.ties[sample]
-    own = own[~own["broken"]]
-    row_of = {id: row for row, id in enumerate(history.ids.tolist())}
-    known = [tie for tie in own if tie["body1"] in row_of and tie["body2"] in row_of]
-    ends = np.zeros((len(known), 2, 3))
-    for k, tie in enumerate(known):
+    return own[~own["broken"] & np.isin(own["body1"], history.ids) & np.isin(own["body2"], history.ids)]
+
+
+def tie_ends(history, sample, enlarge=1.0, relative=True):
+    """(m, 2, 3) ends of the ties of unbroken(), m, with movements since the first sample taken `enlarge` times. relative: seen from the bases of their bodies."""
+    position, orientation = (history.relative_position, history.relative_orientation) if relative else (history.position, history.orientation)
+    row_of, own = {id: row for row, id in enumerate(history.ids.tolist())}, unbroken(history, sample)
+    ends = np.zeros((len(own), 2, 3))
+    for k, tie in enumerate(own):
         for end in (0, 1):
             row, point = row_of[tie[f"body{end + 1}"]], tie[f"point{end + 1}"]
-            first, now = (history.relative_position[j, row] + _pose.matrices(history.relative_orientation[j, row]) @ point for j in (0, sample))
+            first, now = (position[j, row] + _pose.matrices(orientation[j, row]) @ point for j in (0, sample))
             ends[k, end] = first + enlarge * (now - first)
     return ends
