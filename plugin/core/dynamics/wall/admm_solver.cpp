@@ -123,10 +123,10 @@ void AdmmSolver<K>::start(const Problem& problem, const AdmmSettings& settings, 
 }
 
 template <class K>
-void AdmmSolver<K>::prepareRows(const Problem& problem)
+void AdmmSolver<K>::prepareRows(const Problem& problem, bool isNewMatrix)
 {
 	prepareSpins(problem);
-	ties.prepare(problem.ties, problem.contacts.velocity, [this](LaneArray& x) { matrix.solve(x); });
+	ties.prepare(problem.ties, problem.contacts.velocity, isNewMatrix, [this](LaneArray& x) { matrix.solve(x); });
 }
 
 // Adds the momentum that rows give to the right-hand side.
@@ -250,7 +250,7 @@ SolverStatus AdmmSolver<K>::solve(const Problem& problem, const AdmmSettings& se
 	const bool isAfterInstant = std::exchange(ofInstant, ofInstant && step.instant) && !step.instant;
 	if (isOutdated(problem, settings, results) || isAfterInstant || atRest != wasAtRest)
 		refactor();
-	prepareRows(problem);
+	prepareRows(problem, status.factorisations > 0);
 	start(problem, settings, results);
 	const double share = std::max(1., double(settings.small) * packs<K> / std::max<size_t>(1, matrix.freePacks().size())),
 	             iterations = settings.iterations * share, tolerated = settings.tolerance * step.fall;
@@ -281,7 +281,7 @@ SolverStatus AdmmSolver<K>::solve(const Problem& problem, const AdmmSettings& se
 		status.leftRest |= isTooStiff;
 		if (isLoaded || isTooStiff || status.residual > diverging * least) {
 			refactor();
-			prepareRows(problem);
+			prepareRows(problem, true);
 			least = status.residual;
 		}
 		least = std::min(least, status.residual);

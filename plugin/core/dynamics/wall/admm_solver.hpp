@@ -98,6 +98,7 @@ public:
 			for (Penalty& penalty : ofGroup)
 				archive(penalty.resistance, penalty.stiffness);
 		matrix.serialize(archive, contacts);
+		archive(ties);
 	}
 
 private:
@@ -110,7 +111,7 @@ private:
 	double iterate(const Problem& problem, const AdmmSettings& settings, int number, Results& results);
 	void prepareSpins(const Problem& problem);
 	void holdSpins(Results& results);
-	void prepareRows(const Problem& problem);
+	void prepareRows(const Problem& problem, bool isNewMatrix);
 	void pushRows(const Problem& problem, Results& results);
 
 	AssemblyMatrix<K> matrix;

@@ -27,8 +27,7 @@ std::vector<TieRow<K>> tieRows(const RigidSystem<K>& s, const ContactSet<K>& c, 
 		const Vector3 direction = inSpace(line.direction);
 		TieRow<K> row;
 		row.tie = t;
-		row.body[0] = tie.body1;
-		row.body[1] = tie.body2;
+		row.body = {tie.body1, tie.body2};
 		row.arm[0] = speedArm(c, tie.body1, -direction, inSpace(arm1));
 		row.arm[1] = speedArm(c, tie.body2, direction, inSpace(arm2));
 		const double stiff = tie.stiffness * h;
@@ -45,19 +44,31 @@ std::vector<TieRow<K>> tieRows(const RigidSystem<K>& s, const ContactSet<K>& c, 
 }
 
 template <class K>
-void TieSolve<K>::prepare(const std::vector<TieRow<K>>& rows, const LaneArray& velocity, const std::function<void(LaneArray&)>& solve)
+void TieSolve<K>::prepare(const std::vector<TieRow<K>>& rows, const LaneArray& velocity, bool isNewMatrix,
+                          const std::function<void(LaneArray&)>& solve)
 {
+	constexpr double turned = 1e-3; // by which rows may differ from those of Y. Larger: more iterations; smaller: more solves for Y
 	const int n = int(rows.size());
-	response.resize(n);
-	stiffness.resize(n, n);
-	for (int r = 0; r < n; ++r) {
-		response[r].assign(velocity.size(), all(0));
-		rows[r].push(1, velocity, response[r]);
-		solve(response[r]);
+	const auto isSame = [&](const TieRow<K>& row, const TieArms<K>& of) { return row.change(of) <= turned; };
+	if (isNewMatrix || int(known.size()) != n || !std::equal(rows.begin(), rows.end(), known.begin(), isSame)) {
+		known.assign(rows.begin(), rows.end());
+		response.clear();
 	}
+	if (int(response.size()) != n) {
+		response.resize(n);
+		coupling.resize(n, n);
+		for (int r = 0; r < n; ++r) {
+			response[r].assign(velocity.size(), all(0));
+			known[r].push(1, velocity, response[r]);
+			solve(response[r]);
+		}
+		for (int r = 0; r < n; ++r)
+			for (int k = 0; k < n; ++k)
+				coupling(r, k) = known[r].rate(response[k]);
+	}
+	stiffness = coupling;
 	for (int r = 0; r < n; ++r)
-		for (int k = 0; k < n; ++k)
-			stiffness(r, k) = rows[r].rate(response[k]) + (r == k ? rows[r].compliance : 0);
+		stiffness(r, r) += rows[r].compliance;
 }
 
 template <class K>
