@@ -1,5 +1,6 @@
 #include "MoreauJeanIntegrator.hpp"
 #include "BaseMotionEngine.hpp"
+#include "BlockTie.hpp"
 #include "impact_lists.hpp"
 #include "python_lock.hpp"
 #include "rigid_scene.hpp"
@@ -19,6 +20,9 @@ void MoreauJeanIntegrator::postLoad(MoreauJeanIntegrator&)
 	for (const auto& motion : motions)
 		if (!dynamic_cast<BaseMotionEngine*>(motion.get()))
 			reject(*this, "motions", motion ? motion->getClassName() : "None", "a list of motions (PulseTrainEngine, RecordMotionEngine)");
+	for (const auto& tie : ties)
+		if (!dynamic_cast<BlockTie*>(tie.get()))
+			reject(*this, "ties", tie ? tie->getClassName() : "None", "a list of ties (BlockTie)");
 	if (model != "auto" && model != "planar" && model != "spatial")
 		reject(*this, "model", "'" + model + "'", "'auto', 'planar' or 'spatial'");
 	if (impactOrder != "simultaneous" && impactOrder != "sequential")
@@ -47,6 +51,15 @@ vector<shared_ptr<Engine>> MoreauJeanIntegrator::livingMotions() const
 {
 	vector<shared_ptr<Engine>> result;
 	std::copy_if(motions.begin(), motions.end(), std::back_inserter(result), [](const auto& motion) { return !motion->dead; });
+	return result;
+}
+
+vector<shared_ptr<BlockTie>> MoreauJeanIntegrator::livingTies() const
+{
+	vector<shared_ptr<BlockTie>> result;
+	for (const auto& tie : ties)
+		if (!tie->dead)
+			result.push_back(boost::static_pointer_cast<BlockTie>(tie));
 	return result;
 }
 
@@ -102,11 +115,13 @@ void MoreauJeanIntegrator::leaveScene()
 	const PythonLock lock;
 	memory = {};
 	taken.clear();
+	takenTies.clear();
 	chosenModel.clear();
 	along = Vector3r::Zero();
 	forgetImpacts(*this);
-	forget(frictDissip, impactDissip, baseWork, potentialShift, worstResidual, substeps, events, unlocalised, sweeps, factorisations,
-	       stillSteps, movingSteps, madeEnergy, lostEnergy, turnedOver, lift, toldMade, toldLost, failures, firstFailure, warned);
+	forget(frictDissip, impactDissip, dampDissip, baseWork, potentialShift, worstResidual, substeps, events, unlocalised, sweeps,
+	       factorisations, stillSteps, movingSteps, madeEnergy, lostEnergy, turnedOver, lift, toldMade, toldLost, failures, firstFailure,
+	       warned);
 }
 
 vector<Real> MoreauJeanIntegrator::remembered()
@@ -125,7 +140,8 @@ void MoreauJeanIntegrator::goOnFrom(const vector<Real>& values)
 bool MoreauJeanIntegrator::outdated() const
 {
 	const auto goesOn = [](const auto& motion) { return static_cast<const BaseMotionEngine&>(*motion).goesOn(); };
-	return livingMotions() != taken || !std::all_of(taken.begin(), taken.end(), goesOn) || sceneOf(memory).outdated();
+	return livingMotions() != taken || livingTies() != takenTies || !std::all_of(taken.begin(), taken.end(), goesOn) ||
+	       sceneOf(memory).outdated();
 }
 
 void MoreauJeanIntegrator::renew()
@@ -142,8 +158,8 @@ std::shared_ptr<RigidRun> MoreauJeanIntegrator::makeScene(const vector<Real>& va
 {
 	const auto from = [this](const Remembered<K>& before) {
 		return std::make_shared<RigidScene<K>>(*scene, along, settings(),
-		                                       RigidEnergies {frictDissip, impactDissip, baseWork, potentialShift}, pairLaw, warned,
-		                                       motionEngines(), before);
+		                                       RigidEnergies {frictDissip, impactDissip, dampDissip, baseWork, potentialShift}, pairLaw,
+		                                       warned, motionEngines(), livingTies(), before);
 	};
 	if (values.empty())
 		return from({});
@@ -160,6 +176,8 @@ std::shared_ptr<RigidRun> MoreauJeanIntegrator::makeScene(const vector<Real>& va
 		throw std::runtime_error(
 		    "MoreauJeanIntegrator.remembered is of a run in the plane and this one is in space, or the other way round.");
 	readMemory([&] { archive(before); });
+	if (!takenTies.empty() && takenTies != livingTies()) // then each knows its own state
+		before.ties.clear();
 	const auto result = from(before);
 	result->unpackStepper(archive, before);
 	return result;
@@ -178,6 +196,7 @@ void MoreauJeanIntegrator::build(const vector<Real>& remembered)
 		if (std::find(living.begin(), living.end(), motion) == living.end())
 			static_cast<BaseMotionEngine&>(*motion).forget();
 	taken = living;
+	takenTies = livingTies();
 }
 
 // --- the step ---
@@ -247,6 +266,7 @@ void MoreauJeanIntegrator::take(const RigidResults& results)
 	stepErrors = results.errors;
 	frictDissip = results.energies.frictDissip;
 	impactDissip = results.energies.impactDissip;
+	dampDissip = results.energies.tieDissip;
 	baseWork = results.energies.baseWork;
 	potentialShift = results.energies.potentialShift;
 	for (const masonry::Impact& impact : results.impacts)
@@ -319,6 +339,14 @@ Real MoreauJeanIntegrator::potential()
 	return sum;
 }
 
+Real MoreauJeanIntegrator::elastPotential() const
+{
+	Real sum = 0;
+	for (const auto& tie : livingTies())
+		sum += std::isnan(tie->energy) ? 0 : tie->energy;
+	return sum;
+}
+
 void MoreauJeanIntegrator::showEnergy()
 {
 	const std::pair<const char*, Real> keys[] = {{"kinetic", kinetic()},
@@ -328,6 +356,10 @@ void MoreauJeanIntegrator::showEnergy()
 	                                             {"baseWork", -baseWork}};
 	for (const auto& [key, value] : keys)
 		scene->energy->setItem_py(key, value);
+	if (ties.empty())
+		return;
+	scene->energy->setItem_py("elastPotential", elastPotential());
+	scene->energy->setItem_py("dampDissip", dampDissip);
 }
 
 } // namespace yade

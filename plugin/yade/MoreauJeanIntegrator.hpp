@@ -9,6 +9,7 @@
 namespace yade {
 
 class BaseMotionEngine;
+class BlockTie;
 struct RigidSettings;
 struct RigidResults;
 
@@ -22,6 +23,7 @@ public:
 	// As a script asks, in the present scene: a loaded engine knows its own only from its first step on.
 	Real kinetic();
 	Real potential();
+	Real elastPotential() const;
 	Real largestTimeStep();
 	/// The model that the first step would choose in the present scene, and why.
 	string choice();
@@ -39,6 +41,7 @@ public:
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(MoreauJeanIntegrator, GlobalEngine,
 		"Motion of rigid blocks (boxes and convex blocks with a BlockMat) in unilateral contact. It takes the place of InteractionLoop and NewtonIntegrator for them; forces that other engines leave in O.forces act on the blocks. Blocks without a free degree of freedom move with their velocity, or as `motions` says. dem.engines() makes the list of engines.",
 		((vector<shared_ptr<Engine>>, motions, , Attr::triggerPostLoad, "Motion engines of the base (PulseTrainEngine, RecordMotionEngine). Motions of the same bodies in perpendicular directions add up. They are evaluated at any instant inside a step and must not be in O.engines; a `dead` one is ignored. A motion that is added or removed during a run takes effect with the next step: a new one starts from where the base is then (start=O.time), and a base without a motion keeps its velocity."))
+		((vector<shared_ptr<Engine>>, ties, , Attr::triggerPostLoad, "Ties between blocks, or blocks and bases (BlockTie; dem.tie() makes them). A `dead` one does not act."))
 		((Vector3r, gravity, Vector3r(0, 0, -9.81), , "Gravity [m/s^2]."))
 		((string, model, "auto", Attr::triggerPostLoad, "'planar', 'spatial' or 'auto'. 'auto' is planar if blocks, motions and loads lie in one upright plane."))
 		((string, method, "localised", Attr::triggerPostLoad, "'localised': every impact is found inside the step; second order; for single blocks, stacks and piers. 'wall': all contacts of the walls are solved at once, and impacts act at the end of the step; first order; for many blocks. With 'wall', structures of few blocks are integrated as with 'localised' (localisedBlocks), and `ompThreads` sets the number of threads (default 1)."))
@@ -74,6 +77,7 @@ public:
 		((Real, frictDissip, 0, Attr::readonly, "Energy dissipated by friction so far [J]."))
 		((Real, impactDissip, 0, Attr::readonly, "Energy dissipated by impacts so far [J]. With method='wall' it is the remainder of the energy balance and includes numerical losses."))
 		((Real, baseWork, 0, Attr::readonly, "Work of the moved base on the blocks so far [J]."))
+		((Real, dampDissip, 0, Attr::readonly, "Energy dissipated in ties so far [J]: by those that break, by slack that is taken up, and by the numerical damping of ties that are so stiff that no step resolves their vibration."))
 		((Real, madeEnergy, 0, Attr::readonly, "Energy that integration errors have added so far [J]; lost energy is not subtracted."))
 		((Real, lostEnergy, 0, Attr::readonly, "Energy that integration errors have removed so far [J]; friction and impacts are not part of it. In the walls of method='wall' it is part of impactDissip and not known apart."))
 		((Real, turnedOver, 0, Attr::readonly, "Largest value so far of kinetic energy plus all dissipated energy [J]."))
@@ -93,6 +97,7 @@ public:
 		/* ctor */,
 		.add_property("kinetic", &MoreauJeanIntegrator::kinetic, "Kinetic energy now [J].")
 		.add_property("potential", &MoreauJeanIntegrator::potential, "Potential energy of gravity now, zero at the origin [J]. The velocities of the walls of method='wall' belong to the middle of the last step: their potential energy is that of their positions half a step earlier.")
+		.add_property("elastPotential", &MoreauJeanIntegrator::elastPotential, "Elastic energy of the ties after the last step [J].")
 		.add_property("largestTimeStep", &MoreauJeanIntegrator::largestTimeStep, "Largest time step that is allowed [s].")
 		.add_property("remembered", &MoreauJeanIntegrator::remembered, &MoreauJeanIntegrator::goOnFrom, "State that the next step starts from, besides the states of the blocks (forces and contact points among it), as numbers. A script can restore it together with the states of the blocks to repeat a part of a run.")
 		.def("choice", &MoreauJeanIntegrator::choice, "Returns the model that the first step would choose in the present scene, and why; raises ValueError if it would refuse the scene.")
@@ -123,6 +128,7 @@ private:
 	void checkTimeStep();
 	/// Throws LeavesPlane unless blocks, motions and loads lie in the plane along this horizontal direction.
 	void checkPlane(const Vector3r& horizontal) const;
+	void checkPlane(const BlockTie& tie, const Vector3r& normal, Real depth) const;
 	template <class K>
 	std::shared_ptr<RigidRun> makeScene(const vector<Real>& remembered);
 	RigidSettings settings() const;
@@ -132,9 +138,11 @@ private:
 	void showEnergy();
 	vector<shared_ptr<Engine>> livingMotions() const; // those that are not dead
 	vector<BaseMotionEngine*> motionEngines() const;  // the same
+	vector<shared_ptr<BlockTie>> livingTies() const;
 	vector<const Body*> blocks() const;
 
 	vector<shared_ptr<Engine>> taken; // motions that the run has taken over
+	vector<shared_ptr<BlockTie>> takenTies;
 	Real checkedTimeStep = NaN;
 	Real checkedGravity = 0;
 	vector<std::pair<const Engine*, bool>> checkedEngines; // and whether they are dead; to be compared only

@@ -1,6 +1,7 @@
 #include "WallRecorder.hpp"
 #include "BaseMotionEngine.hpp"
 #include "BlockMat.hpp"
+#include "BlockTie.hpp"
 #include "ConvexBlock.hpp"
 #include "MoreauJeanIntegrator.hpp"
 #include "RockingJointEngine.hpp"
@@ -9,7 +10,9 @@
 
 #include <algorithm>
 #include <boost/python/handle.hpp>
+#include <cmath>
 #include <core/Scene.hpp>
+#include <iterator>
 #include <lib/factory/ClassFactory.hpp>
 #include <pkg/common/Box.hpp>
 #include <unordered_set>
@@ -92,12 +95,12 @@ void WallRecorder::addEnergies()
 	Real friction = 0, dashpots = 0, impacts = 0, work = 0;
 	for (const auto& engine : integrators) {
 		if (const auto* rigid = dynamic_cast<MoreauJeanIntegrator*>(engine.get()))
-			friction += rigid->frictDissip, impacts += rigid->impactDissip, work += rigid->baseWork;
+			friction += rigid->frictDissip, dashpots += rigid->dampDissip, impacts += rigid->impactDissip, work += rigid->baseWork;
 		if (const auto* joints = dynamic_cast<RockingJointEngine*>(engine.get()))
 			friction += joints->frictDissip, dashpots += joints->dampDissip, impacts += joints->impactDissip, work += joints->baseWork;
 	}
 	if (auto* rigid = dynamic_cast<MoreauJeanIntegrator*>(present->get()))
-		add(energies, rigid->kinetic(), rigid->potential(), Real(0));
+		add(energies, rigid->kinetic(), rigid->potential(), rigid->elastPotential());
 	else if (const auto* joints = dynamic_cast<RockingJointEngine*>(present->get()))
 		add(energies, joints->kinetic, joints->potential, joints->elastPotential);
 	add(energies, friction, dashpots, impacts, work);
@@ -114,6 +117,19 @@ void WallRecorder::addMotions()
 		add(engine);
 		if (const auto* rigid = dynamic_cast<MoreauJeanIntegrator*>(engine.get()); rigid && !rigid->dead)
 			std::for_each(rigid->motions.begin(), rigid->motions.end(), add);
+	}
+}
+
+/// Ties that are there at the first sample.
+void WallRecorder::addTies()
+{
+	if (times.size() == 1)
+		for (const auto& engine : scene->engines)
+			if (const auto* rigid = dynamic_cast<MoreauJeanIntegrator*>(engine.get()); rigid && !rigid->dead)
+				std::copy_if(rigid->ties.begin(), rigid->ties.end(), std::back_inserter(ties), [](const auto& tie) { return !tie->dead; });
+	for (const auto& engine : ties) {
+		const auto& tie = static_cast<const BlockTie&>(*engine);
+		add(tieStates, tie.force, tie.extension, std::isnan(tie.energy) ? Real(0) : tie.energy, Real(tie.broken));
 	}
 }
 
@@ -162,6 +178,7 @@ void WallRecorder::action()
 	times.push_back(scene->time);
 	addEnergies();
 	addMotions();
+	addTies();
 	if (recordForces)
 		addJointForces();
 	for (size_t k = 0; k < ids.size(); ++k) {
@@ -176,6 +193,8 @@ void WallRecorder::action()
 }
 
 boost::python::object WallRecorder::posesAsBytes() const { return asBytes(poses); }
+
+boost::python::object WallRecorder::tieStatesAsBytes() const { return asBytes(tieStates); }
 
 boost::python::object WallRecorder::jointForcesAsBytes() const { return asBytes(joints); }
 

@@ -16,6 +16,7 @@ public:
 	/// As rows of doubles in one piece of memory: thousands of blocks give too many numbers for a list.
 	boost::python::object posesAsBytes() const;
 	boost::python::object jointForcesAsBytes() const;
+	boost::python::object tieStatesAsBytes() const;
 	/// The same rows for the present scene, whether this engine takes part in it or not.
 	boost::python::object jointForcesNow() const;
 
@@ -31,12 +32,15 @@ public:
 		((vector<Vector3r>, vertices, , Attr::readonly, "Vertices of these ConvexBlocks in their own axes [m], block by block."))
 		((vector<Real>, energies, , Attr::readonly, "Sample by sample: kinetic, potential, elastPotential, frictDissip, dampDissip, impactDissip, baseWork, as dem.energy() [J]; NaN without an engine of the joints. If O.engines is replaced during a run, dissipated energies and work are summed over the lists."))
 		((vector<shared_ptr<Engine>>, motions, , Attr::readonly, "Motion engines that have moved bodies during the recording."))
+		((vector<shared_ptr<Engine>>, ties, , Attr::readonly, "Ties (BlockTie) that are recorded: those of the first sample."))
 		((vector<shared_ptr<Engine>>, integrators, , Attr::hidden, ""))
+		((vector<Real>, tieStates, , Attr::hidden, ""))
 		((vector<Real>, poses, , Attr::hidden, ""))
 		((vector<int>, jointCounts, , Attr::readonly, "Number of loaded joints in each sample; empty without recordForces."))
 		((vector<Real>, joints, , Attr::hidden, "")),
 		initRun = true;,
 		.def("posesAsBytes", &WallRecorder::posesAsBytes, "Sample by sample and block by block x, y, z [m], w, x, y, z, as doubles in memory: numpy.frombuffer(...).")
+		.def("tieStatesAsBytes", &WallRecorder::tieStatesAsBytes, "Sample by sample and tie by tie its force [N], extension [m], elastic energy [J] and 1 if it is broken, as doubles in memory: numpy.frombuffer(...).")
 		.def("jointForcesAsBytes", &WallRecorder::jointForcesAsBytes, "Sample by sample and joint by joint (jointCounts) id1, id2, force x, y, z on body 2 [N], point x, y, z where it acts [m], as doubles in memory.")
 		.def("jointForcesNow", &WallRecorder::jointForcesNow, "Returns the same rows for all joints of the scene now.")
 	);
@@ -45,6 +49,7 @@ private:
 	void begin();
 	void addEnergies();
 	void addMotions();
+	void addTies();
 	void addJointForces();
 
 	RecordedBodies bodies;

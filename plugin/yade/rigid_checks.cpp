@@ -1,6 +1,7 @@
 // What MoreauJeanIntegrator asks of a scene before it steps, and whether that lies in a plane.
 
 #include "BaseMotionEngine.hpp"
+#include "BlockTie.hpp"
 #include "MoreauJeanIntegrator.hpp"
 #include "RockingJointEngine.hpp"
 #include "checked_body.hpp"
@@ -67,6 +68,8 @@ void MoreauJeanIntegrator::checkBlocks(const Choice& choice) const
 			    sentence("O.bodies[", body->id, "].state.blockedDOFs = '", body->state->blockedDOFs_vec_get(),
 			             "' is not allowed for a rigid block: all six degrees of freedom are blocked ('xyzXYZ') or none."));
 	}
+	for (const auto& tie : livingTies())
+		tie->check(*scene);
 	if (!free)
 		throw std::invalid_argument("There is no free block in O.bodies: add one with dem.block().");
 	for (const auto& body : scene->bodies->body)
@@ -146,10 +149,23 @@ void MoreauJeanIntegrator::checkPlane(const Vector3r& horizontal) const
 		}
 	for (const BaseMotionEngine* motion : motionEngines())
 		plane.direction(motion->direction);
+	for (const auto& tie : livingTies())
+		checkPlane(*tie, normal, depth);
 	addUp(scene->forces, (*first)->id);
 	for (const Body* body : all)
 		if (body->isDynamic())
 			plane.load(scene->forces.getForce(body->id), scene->forces.getTorque(body->id), body->id);
+}
+
+/// `depth`: of the mid-plane of the blocks along its normal, m.
+void MoreauJeanIntegrator::checkPlane(const BlockTie& tie, const Vector3r& normal, Real depth) const
+{
+	tie.check(*scene);
+	for (const auto& [id, point] : {std::pair(tie.body1, tie.point1), std::pair(tie.body2, tie.point2)}) {
+		const Body& body = *(*scene->bodies)[id];
+		if (!(std::abs(normal.dot(BlockTie::placeOf(body, point)) - depth) <= outOfPlane * BlockShape(*body.shape).thickness()))
+			throw LeavesPlane(sentence("the tie of bodies ", tie.body1, " and ", tie.body2, " does not lie in the mid-plane"));
+	}
 }
 
 /// The plane is upright; its normal is an axis of every block. Of two that will do, the one nearest to `along` is taken, without one

@@ -36,11 +36,12 @@ struct Remembered {
 	vector<vector<typename K::Vector>> shapes; // vertices of the different ones, part by part
 	vector<int> shapeOf;                       // numbers of the bodies' shapes
 	vector<masonry::ContactPair<K>> pairs;
+	vector<masonry::Tie<K>> ties;
 
 	template <class Archive>
 	void serialize(Archive& archive)
 	{
-		archive(ids, seats, bodies, shapes, shapeOf, pairs);
+		archive(ids, seats, bodies, shapes, shapeOf, pairs, ties);
 	}
 
 	void takeShapes()

@@ -51,6 +51,7 @@ RigidResults RigidScene<K>::step(const RigidSettings& given)
 		}
 		readStates();
 		readLaws();
+		readTies();
 		if (!neighbours->isValid(system, scene.dt)) {
 			showPoints();
 			neighbours->update(system, scene.dt);
@@ -71,6 +72,7 @@ RigidResults RigidScene<K>::step(const RigidSettings& given)
 	takeSettings();
 	const masonry::StepReport report = advance();
 	writeStates();
+	writeTies();
 	if (++unshown >= maxUnshown || settings.watched)
 		writeContacts();
 	return results(report);
@@ -110,7 +112,7 @@ RigidResults RigidScene<K>::results(const masonry::StepReport& report) const
 	RigidResults result;
 	result.report = report;
 	result.errors = byWalls ? scheduler->lastErrors() : islands.lastErrors();
-	result.energies = {system.frictDissip, system.impactDissip, system.baseWork, scheduler->potentialShift()};
+	result.energies = {system.frictDissip, system.impactDissip, system.tieDissip, system.baseWork, scheduler->potentialShift()};
 	result.impacts = system.impacts;
 	for (masonry::Impact& impact : result.impacts) {
 		impact.block = kept.ids[impact.block];
@@ -323,6 +325,7 @@ vector<Real> RigidScene<K>::pack()
 	archive(first, dimension);
 	kept.bodies = system.bodies;
 	kept.pairs = system.pairs;
+	kept.ties = system.ties;
 	kept.takeShapes();
 	Remembered<K> told = kept;
 	for (size_t b = 0; b < links.size(); ++b)

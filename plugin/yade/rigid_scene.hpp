@@ -1,6 +1,7 @@
 #pragma once
 // Rigid blocks of a scene in the core's form, and back after each step. No physics here.
 
+#include "BlockTie.hpp"
 #include "motion_drive.hpp"
 #include "rigid_memory.hpp"
 #include "shown_contacts.hpp"
@@ -55,7 +56,7 @@ struct RigidSettings {
 };
 
 struct RigidEnergies { // J, since the start of the run
-	Real frictDissip, impactDissip, baseWork, potentialShift;
+	Real frictDissip, impactDissip, tieDissip, baseWork, potentialShift;
 };
 
 /// What a step has come to.
@@ -109,7 +110,7 @@ public:
 	/// In the plane: `along` is the horizontal direction of the plane.
 	RigidScene(Scene& scene, const Vector3r& along, const RigidSettings& settings, const RigidEnergies& energies,
 	           const shared_ptr<Ip2_BlockMat_BlockMat_BlockPhys>& pairLaw, RigidWarnings& warned, const vector<BaseMotionEngine*>& motions,
-	           const Remembered<K>& before);
+	           const vector<shared_ptr<BlockTie>>& ties, const Remembered<K>& before);
 
 	vector<Real> pack() override;
 
@@ -142,6 +143,9 @@ private:
 	/// Pairs of blocks that are still there, and as large as they were: others meet anew.
 	void addPairs(const Remembered<K>& before, const vector<int>& inBefore);
 
+	/// With the state that they have in `before`, or their own.
+	void addTies(const Remembered<K>& before);
+
 	void forgetNeighbours();
 	/// After a scene has been refused: all is read again when a script has put it right.
 	void forgetStates();
@@ -173,6 +177,10 @@ private:
 
 	[[noreturn]] void refuseOverlap(const Pair& pair, Real depth) const;
 
+	/// Scripts may change a tie between steps.
+	void readTies();
+	void writeTies() const;
+
 	void takeLaws();
 	/// The laws may be changed by scripts through the interactions, after they have been shown.
 	void readLaws();
@@ -202,6 +210,7 @@ private:
 	int unshown = 1;           // steps since the interactions were written
 	std::unique_ptr<masonry::Neighbours<K>> neighbours;
 	vector<MotionDrive> motions;
+	const vector<shared_ptr<BlockTie>> ties;
 	vector<Link> links;
 	vector<char> others; // by link, 1: somebody else has written the state since the last step; elsewhere: and has moved the body; driven:
 	                     // it goes where its motion says

@@ -47,17 +47,19 @@ private:
 template <class K>
 RigidScene<K>::RigidScene(Scene& of, const Vector3r& along, const RigidSettings& given, const RigidEnergies& energies,
                           const shared_ptr<Ip2_BlockMat_BlockMat_BlockPhys>& pairLaw, RigidWarnings& told,
-                          const vector<BaseMotionEngine*>& motions, const Remembered<K>& before)
-    : settings(given), warned(told), scene(of), home(Omega::instance().getScene()), coordinates(along),
+                          const vector<BaseMotionEngine*>& motions, const vector<shared_ptr<BlockTie>>& tied, const Remembered<K>& before)
+    : settings(given), warned(told), scene(of), home(Omega::instance().getScene()), coordinates(along), ties(tied),
       contacts(scene, coordinates, pairLaw)
 {
 	system.frictDissip = energies.frictDissip;
 	system.impactDissip = energies.impactDissip;
+	system.tieDissip = energies.tieDissip;
 	system.baseWork = energies.baseWork;
 	scheduler->setPotentialShift(energies.potentialShift);
 	const vector<int> inBefore = addBlocks(before);
 	addDrives(motions, inBefore);
 	addPairs(before, inBefore);
+	addTies(before);
 	contacts.recall(system.pairs, kept.ids);
 	for (size_t b = 0; b < inBefore.size(); ++b) {
 		if (inBefore[b] < 0)
@@ -226,10 +228,10 @@ void RigidScene<K>::refuseOverlap(const Pair& pair, Real depth) const
 
 template RigidScene<Plane>::RigidScene(Scene&, const Vector3r&, const RigidSettings&, const RigidEnergies&,
                                        const shared_ptr<Ip2_BlockMat_BlockMat_BlockPhys>&, RigidWarnings&, const vector<BaseMotionEngine*>&,
-                                       const Remembered<Plane>&);
+                                       const vector<shared_ptr<BlockTie>>&, const Remembered<Plane>&);
 template RigidScene<Space>::RigidScene(Scene&, const Vector3r&, const RigidSettings&, const RigidEnergies&,
                                        const shared_ptr<Ip2_BlockMat_BlockMat_BlockPhys>&, RigidWarnings&, const vector<BaseMotionEngine*>&,
-                                       const Remembered<Space>&);
+                                       const vector<shared_ptr<BlockTie>>&, const Remembered<Space>&);
 template void RigidScene<Plane>::forgetStates();
 template void RigidScene<Space>::forgetStates();
 template void RigidScene<Plane>::renewContacts();

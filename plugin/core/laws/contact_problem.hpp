@@ -9,7 +9,8 @@
 //     u_t = 0                 if |p_t| <  mu p_n   stick
 //     p_t = -mu p_n u_t/|u_t| otherwise            slip (Coulomb)
 //
-// Points may have other laws too (point_law.hpp): without slip, or a row that pulls as well as pushes.
+// Points may have other laws too (point_law.hpp): without slip, or a row that pulls as well as pushes. A normal row may have a compliance:
+// its laws then hold for u_n + compliance p_n.
 //
 // The residual, one for all solvers: with r = 1/trace(J M^-1 J^T) of the point, |p - P(p - r u)| / r, in m/s, where P projects the
 // normal part on p_n >= 0 and then the tangential part on the disc of radius mu p_n; V is always the one that p gives by the

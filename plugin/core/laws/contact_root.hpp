@@ -5,7 +5,8 @@
 //     F(w) = M w - J^T (P(y) - l),  y = l - (u + J w)/R
 //
 // Only increments enter, so that round-off does not grow with 1/R; and P(y) is the next centre. While a solution is sought a point may have
-// another law than its own, and a least normal impulse b: then P(y) = P(y - b n) + b n.
+// another law than its own, and a least normal impulse b: then P(y) = P(y - b n) + b n. A row with a compliance c has R + c in the place of
+// R, since its u grows by c (P(y) - l).
 #include "laws/contact_state.hpp"
 #include "linalg/block_lu.hpp"
 #include "tolerances.hpp"
@@ -149,7 +150,10 @@ protected:
 		Velocity w, root, start, force; // w: velocity minus that of the centre, at the last root and before the line search; force: F
 	};
 
-	double compliance(int i) const { return softness * s.points[i].alone.trace; } // R
+	double compliance(int i) const
+	{
+		return softness * s.points[i].alone.trace + s.rows[i].law.compliance;
+	} // R, and what the row has itself
 
 	// Points come pair by pair: the edge is sought from that of the last point on.
 	int numberOf(const Edge& edge, int last)

@@ -12,8 +12,9 @@ struct ContactState {
 	using Velocities = Eigen::Matrix<double, K::dof, K::rows>;
 
 	struct Response {
-		OnePoint<K::rows> alone;
-		Velocities W1, W2; // M^-1 J^T: velocities per impulse
+		OnePoint<K::rows> alone; // with the compliance of its law
+		double share {1};        // of u that the point's impulse can change: less than 1 at a compliant row
+		Velocities W1, W2;       // M^-1 J^T: velocities per impulse
 	};
 
 	FreeBody<K>* bodies {nullptr}; // the solver's own, as of this call
@@ -44,10 +45,15 @@ struct ContactState {
 				p.W2 = response(bodies[c.body2].inverseMass, c.J2);
 				p.alone.G += c.J2 * p.W2;
 			}
+			const double rigid = p.alone.G(0, 0);
+			if (c.law.compliance > 0)
+				p.alone.G(0, 0) += c.law.compliance;
+			p.share = c.law.compliance > 0 ? rigid / p.alone.G(0, 0) : 1;
 			p.alone.trace = p.alone.G.trace();
 		}
 	}
 
+	// u, to which a compliant row adds its compliance times its impulse.
 	Rows relativeVelocity(const ContactRows<K>& c) const
 	{
 		Rows u = c.offset;
@@ -55,6 +61,8 @@ struct ContactState {
 			u += c.J1 * bodies[c.body1].velocity;
 		if (c.body2 >= 0)
 			u += c.J2 * bodies[c.body2].velocity;
+		if (c.law.compliance > 0)
+			u[0] += c.law.compliance * c.impulse[0];
 		return u;
 	}
 
@@ -75,7 +83,10 @@ struct ContactState {
 			push(i, rows[i].impulse);
 	}
 
-	double violation(int i, const Rows& u) const { return masonry::residual(rows[i].law, rows[i].impulse, u, points[i].alone.trace); }
+	double violation(int i, const Rows& u) const
+	{
+		return points[i].share * masonry::residual(rows[i].law, rows[i].impulse, u, points[i].alone.trace);
+	}
 
 	double residual() const
 	{
@@ -91,23 +102,29 @@ struct ContactState {
 
 	// Impulses that miss the laws may have p.u > 0, which the laws exclude. In a step, whose u is the sum of the velocities before and
 	// after, that is twice the energy that they give. Then they are scaled until it is zero: with u0 the free velocities, s p.u0 + s^2 p.Gp
-	// = 0.
+	// = 0. Compliant rows store energy: they keep their impulses, and count as forces.
 	void addNoEnergy()
 	{
+		const auto isElastic = [&](int i) { return rows[i].law.compliance > 0; };
 		const auto power = [&] {
 			double sum = 0;
 			for (int i = 0; i < nPoints; ++i)
-				sum += rows[i].impulse.dot(relativeVelocity(rows[i]));
+				if (!isElastic(i))
+					sum += rows[i].impulse.dot(relativeVelocity(rows[i]));
 			return sum;
 		};
 		const double after = power();
 		for (int b = 0; b < nBodies; ++b)
 			bodies[b].velocity = bodies[b].free;
+		for (int i = 0; i < nPoints; ++i)
+			if (isElastic(i))
+				push(i, rows[i].impulse);
 		const double before = power();
 		if (after > 0) {
 			const double scale = std::max(0., -before / (after - before));
 			for (int i = 0; i < nPoints; ++i)
-				rows[i].impulse *= scale;
+				if (!isElastic(i))
+					rows[i].impulse *= scale;
 		}
 		applyImpulses();
 	}
@@ -118,7 +135,8 @@ struct ContactState {
 	{
 		for (int i = 0; i < nPoints; ++i) {
 			const double trace = points[i].alone.trace, pressing = rows[i].impulse[0] * trace;
-			if (rows[i].law.kind == PointLaw::Bilateral || !(pressing > 0) || pressing > missed || relativeVelocity(rows[i])[0] < pressing)
+			if (rows[i].law.kind == PointLaw::Bilateral || rows[i].law.compliance > 0 || !(pressing > 0) || pressing > missed ||
+			    relativeVelocity(rows[i])[0] < pressing)
 				continue;
 			push(i, -rows[i].impulse);
 			rows[i].impulse.setZero();

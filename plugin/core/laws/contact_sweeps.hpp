@@ -31,6 +31,7 @@ double solveAlone(ContactState<K>& s)
 	for (int b = 0; b < s.nBodies; ++b)
 		s.bodies[b].velocity = s.bodies[b].free;
 	ContactRows<K>& row = s.rows[0];
+	row.impulse.setZero(); // a compliant row's velocity depends on it
 	row.impulse = s.points[0].alone.impulse(s.relativeVelocity(row), row.law);
 	s.push(0, row.impulse);
 	return s.violation(0, s.relativeVelocity(row));

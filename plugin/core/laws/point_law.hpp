@@ -17,9 +17,11 @@ struct PointLaw {
 		Coulomb,   // presses or parts, and slips where |p_t| = mu p_n
 		NoSlip,    // presses or parts; while it carries an impulse it does not slip
 		Bilateral, // the normal row alone acts, pulling as well as pushing
+		OneWay,    // the normal row alone acts, and only presses
 		Tied       // presses or parts, and slips in neither case: then points without slip have one motion (contact_approach.hpp)
 	} kind {Coulomb};
-	double friction {0}; // mu
+	double friction {0};   // mu
+	double compliance {0}; // 1/kg, of the normal row: the law holds for u_n + compliance p_n
 
 	PointLaw() = default;
 	PointLaw(Kind kind) : kind(kind), friction(kind == NoSlip ? noSlip : 0) {}
@@ -32,6 +34,8 @@ Rows project(const PointLaw& law, const Rows& y, double least = 0)
 {
 	if (law.kind == PointLaw::Bilateral)
 		return Rows(y[0] * Rows::Unit(0));
+	if (law.kind == PointLaw::OneWay)
+		return Rows(std::max(0., y[0]) * Rows::Unit(0));
 	Rows p = y;
 	if (law.kind == PointLaw::Tied) {
 		p[0] = std::max(0., y[0]);
@@ -72,6 +76,11 @@ auto projectionRate(const PointLaw& law, const Rows& y)
 		rate(0, 0) = law.kind == PointLaw::Bilateral;
 		return rate;
 	}
+	if (law.kind == PointLaw::OneWay) {
+		rate.setZero();
+		rate(0, 0) = 1;
+		return rate;
+	}
 	const double size = y.template tail<tangents>().norm();
 	if (law.kind == PointLaw::NoSlip || size <= law.friction * y[0])
 		return rate;
@@ -99,6 +108,8 @@ struct OnePoint {
 			return Rows(-u0[0] / G(0, 0) * Rows::Unit(0));
 		if (u0[0] >= 0)
 			return Rows::Zero();
+		if (law.kind == PointLaw::OneWay)
+			return Rows(-u0[0] / G(0, 0) * Rows::Unit(0));
 		const Rows stick = -(G.inverse() * u0);
 		const double bound = law.friction * stick[0];
 		if (stick[0] > 0 && stick.template tail<rows - 1>().squaredNorm() <= bound * bound)

@@ -58,18 +58,22 @@ void Islands<K>::divide(const RigidSystem<K>& s, const std::vector<char>& chosen
 	islands.resize(number.empty() ? 0 : 1 + *std::max_element(number.begin(), number.end()));
 	std::vector<std::vector<int>> members(islands.size());
 	std::vector<char> used(bodies, 0);
-	for (size_t b = 0; b < bodies; ++b)
-		if (number[b] >= 0)
-			members[number[b]].push_back(int(b));
-	for (int c = 0; c < int(s.pairs.size()); ++c) {
-		const int a = s.pairs[c].body1, b = s.pairs[c].body2, free = number[a] >= 0 ? a : b, other = free == a ? b : a;
-		const int island = number[free];
-		islands[island].pairs.push_back(c);
-		if (number[other] < 0) {
+	const auto join = [&](int a, int b) { // returns the island of what joins these bodies, with a prescribed one that it needs
+		const int free = number[a] >= 0 ? a : b, other = free == a ? b : a, island = number[free];
+		if (island >= 0 && number[other] < 0) {
 			members[island].push_back(other);
 			used[other] = 1;
 		}
-	}
+		return island;
+	};
+	for (size_t b = 0; b < bodies; ++b)
+		if (number[b] >= 0)
+			members[number[b]].push_back(int(b));
+	for (int c = 0; c < int(s.pairs.size()); ++c)
+		islands[join(s.pairs[c].body1, s.pairs[c].body2)].pairs.push_back(c);
+	for (int t = 0; t < int(s.ties.size()); ++t)
+		if (const int island = join(s.ties[t].body1, s.ties[t].body2); island >= 0)
+			islands[island].ties.push_back(t);
 	for (size_t b = 0; b < bodies; ++b)
 		if (number[b] < 0 && !used[b] && !members.empty())
 			members[0].push_back(int(b));
@@ -93,9 +97,10 @@ void Islands<K>::take(const RigidSystem<K>& s, Island& island) const
 	own.gravity = s.gravity;
 	own.drives = s.drives;
 	own.moved = s.moved;
-	own.frictDissip = own.impactDissip = own.baseWork = 0;
+	own.frictDissip = own.impactDissip = own.tieDissip = own.baseWork = 0;
 	own.bodies.clear();
 	own.pairs.clear();
+	own.ties.clear();
 	for (const int b : island.bodies)
 		own.bodies.push_back(s.bodies[b]);
 	const auto numberOf = [&](int body) {
@@ -105,6 +110,11 @@ void Islands<K>::take(const RigidSystem<K>& s, Island& island) const
 		ContactPair<K>& pair = own.pairs.emplace_back(s.pairs[c]);
 		pair.body1 = numberOf(pair.body1);
 		pair.body2 = numberOf(pair.body2);
+	}
+	for (const int t : island.ties) {
+		Tie<K>& tie = own.ties.emplace_back(s.ties[t]);
+		tie.body1 = numberOf(tie.body1);
+		tie.body2 = numberOf(tie.body2);
 	}
 }
 
@@ -121,6 +131,13 @@ void Islands<K>::giveBack(RigidSystem<K>& s, Island& island) const
 		pair.body1 = body1;
 		pair.body2 = body2;
 	}
+	for (size_t t = 0; t < island.ties.size(); ++t) {
+		Tie<K>& tie = s.ties[island.ties[t]];
+		const int body1 = tie.body1, body2 = tie.body2;
+		tie = own.ties[t];
+		tie.body1 = body1;
+		tie.body2 = body2;
+	}
 	for (Impact impact : own.impacts) {
 		impact.block = island.bodies[impact.block];
 		impact.support = island.bodies[impact.support];
@@ -128,6 +145,7 @@ void Islands<K>::giveBack(RigidSystem<K>& s, Island& island) const
 	}
 	s.frictDissip += own.frictDissip;
 	s.impactDissip += own.impactDissip;
+	s.tieDissip += own.tieDissip;
 	s.baseWork += own.baseWork;
 }
 

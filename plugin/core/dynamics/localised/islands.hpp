@@ -22,7 +22,7 @@ public:
 private:
 	struct Island {
 		RigidSystem<K> system;
-		std::vector<int> bodies, pairs; // of the whole system
+		std::vector<int> bodies, pairs, ties; // of the whole system
 	};
 
 	void take(const RigidSystem<K>& system, Island& island) const;

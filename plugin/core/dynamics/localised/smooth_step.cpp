@@ -245,6 +245,7 @@ void SmoothStep<K>::attempt(RigidSystem<K>& s, double h, bool again)
 	last.h = h;
 	stray.clear();
 	unsteady = false;
+	breaking.clear();
 	const bool fresh = s.isFresh();
 	placeFriction(s);
 	if (!fresh)
@@ -253,7 +254,9 @@ void SmoothStep<K>::attempt(RigidSystem<K>& s, double h, bool again)
 		predict(s, h, pass > 0);
 		assemble(s, h);
 		solver.guessed = fresh && pass == 0;
-		last.solved = solver.solve(allowed * scales.stepSpeed(h), allowed * scales.stepSpeed(whole));
+		do
+			last.solved = solver.solve(allowed * scales.stepSpeed(h), allowed * scales.stepSpeed(whole));
+		while (holdTies(s, h));
 		const bool surprised = pass == 0 && surprises(s, last, solver.bodies, scales);
 		const double gain = finish(s, h);
 		const bool first = pass == 0 && fresh;

@@ -40,6 +40,14 @@ struct PointRef {
 };
 inline bool contains(const std::vector<PointRef>& list, PointRef ref) { return std::find(list.begin(), list.end(), ref) != list.end(); }
 
+// Turned by phi about the middle of the step, an arm r there moves by 2 sin(phi/2) (phi/|phi|) x r: the rows act on this chord, so that a
+// point at rest on average does not move at all.
+template <class K>
+double chord(const typename K::Velocity& mean, double h)
+{
+	return 1 - mean.template tail<K::spins>().squaredNorm() * h * h / 24;
+}
+
 // End of a step of which nothing has been accepted yet.
 template <class K>
 struct Trial {
@@ -51,7 +59,7 @@ struct Trial {
 	};
 	double h {0};
 	std::vector<BodyEnd> bodies;
-	std::vector<PointRef> rows;          // as in solver.points
+	std::vector<PointRef> rows;          // as in solver.points, in which those of the ties follow
 	std::vector<ContactFrame<K>> frames; // at the end, of all points, pair by pair
 	SolveReport solved;
 };
@@ -99,6 +107,12 @@ private:
 	int leader(const RigidSystem<K>& system, int pair) const;
 	ContactRows<K> rowsOf(const RigidSystem<K>& system, PointRef ref, const ContactFrame<K>& frame, double h, Impulse astray) const;
 	bool acts(const RigidSystem<K>& system, PointRef ref) const;
+	void addTies(const RigidSystem<K>& system, double h);
+	ContactRows<K> rowsOf(const RigidSystem<K>& system, const Tie<K>& tie, double h) const;
+	bool holdTies(const RigidSystem<K>& system, double h);
+	void holdAtStrength(const Tie<K>& tie, double h, ContactRows<K>& rows) const;
+	void bookTies(RigidSystem<K>& system);
+	void takeTies(RigidSystem<K>& system) const;
 	void dampStray(const RigidSystem<K>& system, double h);
 	void findStray(const RigidSystem<K>& system);
 	double strayWork() const;
@@ -127,6 +141,7 @@ private:
 	double weight {0};                    // the same times the scene's acceleration and length, J
 	std::optional<double> steadyOf {};    // s: bases keep the acceleration of that instant
 	bool unsteady {false};                // the stray velocities were left
+	std::vector<char> breaking;           // by tie, 1: it reaches its strength in this trial, and pulls with that
 	bool partBases {false}; // how much each of two bases that move apart carries is not determined: the last step's share grows
 	std::vector<ContactFrame<K>> middles; // of the rows of one pair
 	ContactSolver<K> solver;

@@ -8,11 +8,13 @@ template <class K>
 void SmoothStep<K>::accept(RigidSystem<K>& s)
 {
 	const double lost = book(s);
+	bookTies(s);
 	project(s, lost);
 	partings.clear();
 	for (size_t r = 0; last.h < whole && r < last.rows.size(); ++r)
 		partings.push_back(localised::relativeVelocity(s, last.rows[r])[0]);
 	takeBodies(s);
+	takeTies(s);
 	if (takePoints(s))
 		s.startAnew();
 }

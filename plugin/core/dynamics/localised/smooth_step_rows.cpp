@@ -8,14 +8,6 @@ namespace masonry::localised {
 
 namespace {
 
-// Turned by phi about the middle of the step, an arm r there moves by 2 sin(phi/2) (phi/|phi|) x r: the rows act on this chord, so that a
-// point at rest on average does not move at all.
-template <class K>
-double chord(const typename K::Velocity& mean, double h)
-{
-	return 1 - mean.template tail<K::spins>().squaredNorm() * h * h / 24;
-}
-
 template <class K>
 Eigen::Matrix<double, K::rows, K::dof> jacobian(const ContactFrame<K>& frame, const typename K::Vector& center, double chord, double sign)
 {
@@ -185,6 +177,7 @@ void SmoothStep<K>::assemble(const RigidSystem<K>& s, double h)
 			if (slides && middles.size() > 3)
 				spreadLinearly(solver.points.data() + begin, middles);
 	}
+	addTies(s, h);
 }
 
 // Of a point in the middle of the step. The law holds for the mean velocity: offset is the relative velocity now, but for what is astray.

@@ -32,6 +32,8 @@ std::vector<int> islandNumbers(const RigidSystem<K>& s)
 	std::vector<std::array<int, 2>> joined;
 	for (const ContactPair<K>& pair : s.pairs)
 		joined.push_back({pair.body1, pair.body2});
+	for (const Tie<K>& tie : s.ties)
+		joined.push_back({tie.body1, tie.body2});
 	return islandNumbers(s.bodies, joined);
 }
 

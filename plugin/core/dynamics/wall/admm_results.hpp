@@ -2,6 +2,7 @@
 // A problem of the contact laws of a structure, and what its solver (admm_solver.hpp) returns. The caller owns both.
 #include "dynamics/wall/spin_row.hpp"
 #include "dynamics/wall/step_context.hpp"
+#include "dynamics/wall/tie_rows.hpp"
 
 namespace masonry::wall {
 
@@ -12,6 +13,7 @@ struct AdmmProblem {
 	const LaneArray& load;               // change of velocity by external forces, in packs
 	const LaneArray& guess;              // change that is expected altogether; may be empty
 	const std::vector<SpinRow<K>>& rows; // prescribed spins
+	std::vector<TieRow<K>> ties {};
 };
 
 template <class K>
@@ -35,6 +37,7 @@ struct AdmmResults {
 	PointStates<K> states;              // p and z
 	std::vector<GroupResult<K>> points; // by group of the contacts
 	std::vector<SpinRow<K>> spins;      // the rows of the problem with their couples
+	std::vector<TieRow<K>> ties;        // the same with their impulses
 };
 
 struct SolverStatus {

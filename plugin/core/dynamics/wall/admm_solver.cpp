@@ -119,6 +119,24 @@ void AdmmSolver<K>::start(const Problem& problem, const AdmmSettings& settings, 
 		startPass(passOf(problem, part, step, results));
 	});
 	startPass(passOf(problem, c.parts.back(), step, results));
+	pushRows(problem, results);
+}
+
+template <class K>
+void AdmmSolver<K>::prepareRows(const Problem& problem, bool isNewMatrix)
+{
+	prepareSpins(problem);
+	ties.prepare(problem.ties, problem.contacts.velocity, isNewMatrix, [this](LaneArray& x) { matrix.solve(x); });
+}
+
+// Adds the momentum that rows give to the right-hand side.
+template <class K>
+void AdmmSolver<K>::pushRows(const Problem& problem, Results& results)
+{
+	for (const SpinRow<K>& row : results.spins)
+		row.push(row.couple, problem.contacts.velocity, force);
+	for (const TieRow<K>& row : results.ties)
+		row.push(row.impulse, problem.contacts.velocity, force);
 }
 
 template <class K>
@@ -167,6 +185,7 @@ double AdmmSolver<K>::iterate(const Problem& problem, const AdmmSettings& settin
 	if (constexpr int late = 300; problem.step.instant && number >= late) // sliding points are in a limit cycle
 		step.boundShare /= 3;
 	matrix.solve(force);
+	const double missedByTies = ties.hold(results.ties, results.velocity, matrix.freePacks(), force);
 	holdSpins(results);
 	Lanes worst[Team::maxParts + 1] {}, changed[Team::maxParts + 1] {};
 	const auto move = [&](const Part& part, int k) {
@@ -180,9 +199,8 @@ double AdmmSolver<K>::iterate(const Problem& problem, const AdmmSettings& settin
 		laws(part, k);
 	});
 	laws(c.parts.back(), Team::maxParts);
-	for (const SpinRow<K>& row : results.spins)
-		row.push(row.couple, c.velocity, force);
-	double most = 0;
+	pushRows(problem, results);
+	double most = missedByTies;
 	for (const Lanes& here : worst)
 		most = std::max(most, largest(here));
 	for (const Lanes& here : changed)
@@ -209,6 +227,7 @@ void beginResults(const AdmmProblem<K>& problem, AdmmResults<K>& results)
 	results.spins = problem.rows;
 	for (SpinRow<K>& row : results.spins)
 		row.couple = 0;
+	results.ties = problem.ties;
 	if (problem.step.instant)
 		for (GroupState<K>& group : results.states)
 			for (PointState<K>& p : group)
@@ -231,7 +250,7 @@ SolverStatus AdmmSolver<K>::solve(const Problem& problem, const AdmmSettings& se
 	const bool isAfterInstant = std::exchange(ofInstant, ofInstant && step.instant) && !step.instant;
 	if (isOutdated(problem, settings, results) || isAfterInstant || atRest != wasAtRest)
 		refactor();
-	prepareSpins(problem);
+	prepareRows(problem, status.factorisations > 0);
 	start(problem, settings, results);
 	const double share = std::max(1., double(settings.small) * packs<K> / std::max<size_t>(1, matrix.freePacks().size())),
 	             iterations = settings.iterations * share, tolerated = settings.tolerance * step.fall;
@@ -262,7 +281,7 @@ SolverStatus AdmmSolver<K>::solve(const Problem& problem, const AdmmSettings& se
 		status.leftRest |= isTooStiff;
 		if (isLoaded || isTooStiff || status.residual > diverging * least) {
 			refactor();
-			prepareSpins(problem);
+			prepareRows(problem, true);
 			least = status.residual;
 		}
 		least = std::min(least, status.residual);

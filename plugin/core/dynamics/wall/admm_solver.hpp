@@ -34,6 +34,9 @@
 // Rows that prescribe a spin (SpinRow) are held in each iteration: with Y = A^-1 E^T, the couples c change by
 // (E Y)^-1 (target - E V) and V by Y times that, so that E V is the target to round-off. A does not know of them.
 //
+// Ties (TieRow) are elastic: A does not know of them either, and after each solve their impulses obey their laws at once (TieSolve), so
+// that the solution of the other laws is the same as if A contained them.
+//
 // An instant (StepContext::instant) is the same problem without forces: impacts with rows, and jumps of the base. Points in touch start as
 // ones that stick, z_t = 0: a base that jumps under a block which it only slides along is a solution too, and where nothing slips not the
 // one that is meant. Its impulses come where nothing has pressed in the steps before, so that R follows those that it has found after some
@@ -95,6 +98,7 @@ public:
 			for (Penalty& penalty : ofGroup)
 				archive(penalty.resistance, penalty.stiffness);
 		matrix.serialize(archive, contacts);
+		archive(ties);
 	}
 
 private:
@@ -107,6 +111,8 @@ private:
 	double iterate(const Problem& problem, const AdmmSettings& settings, int number, Results& results);
 	void prepareSpins(const Problem& problem);
 	void holdSpins(Results& results);
+	void prepareRows(const Problem& problem, bool isNewMatrix);
+	void pushRows(const Problem& problem, Results& results);
 
 	AssemblyMatrix<K> matrix;
 	std::vector<GroupPenalty<K>> penalties; // by group
@@ -115,11 +121,12 @@ private:
 	LaneArray free, force;
 	std::vector<LaneArray> response; // Y, by row
 	Eigen::MatrixXd perSpin;         // (E Y)^-1
-	double age {0};                  // s, since R was last compared with the loads
-	double saved {0};                // iterations
-	bool cold {true};                // no step has been solved
-	bool ofInstant {false};          // R is that of an instant
-	bool atRest {false};             // R is that of a structure at rest
+	TieSolve<K> ties;
+	double age {0};         // s, since R was last compared with the loads
+	double saved {0};       // iterations
+	bool cold {true};       // no step has been solved
+	bool ofInstant {false}; // R is that of an instant
+	bool atRest {false};    // R is that of a structure at rest
 };
 
 } // namespace masonry::wall

@@ -50,6 +50,8 @@ double EnergyLedger<K>::work(const RigidSystem<K>& s, const ContactSet<K>& c, co
 	}
 	for (const SpinRow<K>& row : results.spins)
 		sum += row.couple * row.baseSpin(c.velocity);
+	for (const TieRow<K>& row : results.ties)
+		sum -= row.impulse * (row.baseRate(before) + row.baseRate(c.velocity)) / 2;
 	return sum;
 }
 
@@ -58,6 +60,8 @@ void EnergyLedger<K>::takeContacts(const RigidSystem<K>& s, const ContactSet<K>&
 {
 	friction = loss;
 	baseWork = work(s, c, results);
+	for (const TieRow<K>& row : results.ties)
+		forces += row.work(before, results.velocity);
 }
 
 template <class K>

@@ -84,6 +84,7 @@ double WallStep<K>::advancePart(RigidSystem<K>& s, double h, bool divisible)
 	if (const double deepest = moved > 0 ? projection.settle(contacts) : 0; deepest > tolerance::wall::sunk * contacts.length)
 		report.deepest = std::max(report.deepest, deepest);
 	moveBodies(s, h);
+	takeTies(s, h);
 	rest.take(s, status, moved, h);
 	s.time += h;
 	s.moved = false;
@@ -102,7 +103,8 @@ CappedStatus WallStep<K>::solveStep(RigidSystem<K>& s, const StepContext& step)
 	contacts.takeForces(s, step.h, loads);
 	const std::vector<SpinRow<K>> rows = events.find(s, contacts, expected, step);
 	const bool isExpected = expected.size() == loads.size() && rows.empty();
-	const CappedStatus status = solve(s, {contacts, step, loads, isExpected ? expected : none, rows}, settings.solver);
+	const std::vector<TieRow<K>> ties = tieRows(s, contacts, ledger.velocityBefore(), step.h);
+	const CappedStatus status = solve(s, {contacts, step, loads, isExpected ? expected : none, rows, ties}, settings.solver);
 	contacts.states.swap(results.states);
 	return status;
 }
@@ -148,7 +150,8 @@ CappedStatus WallStep<K>::solveInstant(RigidSystem<K>& s, const std::vector<Spin
 	const double missed = rows.empty() ? settings.solver.tolerance : tolerance::wall::missedImpact;
 	AdmmSettings ofInstant = settings.solver;
 	ofInstant.instantEnough = std::min(ofInstant.instantEnough, missed / 2);
-	const CappedStatus status = solve(s, {contacts, instant, loads, none, rows}, ofInstant);
+	const CappedStatus status =
+	    solve(s, {contacts, instant, loads, none, rows}, ofInstant); // ties have a finite stiffness: they carry no impulse
 	contacts.addJammed(results.states, report.jammed);
 	report.converged &= status.residual <= missed * std::max(10 * instant.fall, instant.speed);
 	ledger.takeContacts(s, contacts, results, 0);
@@ -159,6 +162,21 @@ CappedStatus WallStep<K>::solveInstant(RigidSystem<K>& s, const std::vector<Spin
 	report.created += ledger.close(s, Scales(s), instant.h, taken);
 	errors.made += ledger.made();
 	return status;
+}
+
+// Energies of ties belong to the middle of the step, as velocities do.
+template <class K>
+void WallStep<K>::takeTies(RigidSystem<K>& s, double h) const
+{
+	for (const TieRow<K>& row : results.ties) {
+		Tie<K>& tie = s.ties[row.tie];
+		tie.force = row.impulse / h;
+		tie.broken = row.breaks();
+		tie.extension = Tie<K>::line(tie, s.bodies[tie.body1].pose, s.bodies[tie.body2].pose).length - tie.length;
+		s.tieDissip += tie.energy - row.work(ledger.velocityBefore(), results.velocity);
+		tie.energy = tie.broken ? 0 : tie.energyAt(tie.extension + h / 2 * row.rate(results.velocity));
+		s.tieDissip -= tie.energy;
+	}
 }
 
 template <class K>

@@ -72,6 +72,7 @@ public:
 private:
 	double advancePart(RigidSystem<K>& system, double h, bool divisible);
 	CappedStatus solveStep(RigidSystem<K>& system, const StepContext& step);
+	void takeTies(RigidSystem<K>& system, double h) const;
 	void takeInstants(RigidSystem<K>& system, const StepContext& step);
 	CappedStatus solve(RigidSystem<K>& system, const AdmmProblem<K>& problem, const AdmmSettings& solverSettings);
 	CappedStatus solveInstant(RigidSystem<K>& system, const std::vector<SpinRow<K>>& rows, const StepContext& instant, double taken);

@@ -30,5 +30,6 @@ from masonry.dem.running import run  # noqa: E402
 from masonry.dem.scene import (angle, base, block, blocks_from_table, overturned, pier, return_wall, save_blocks,  # noqa: E402
                                stack, tilt, two_wythe_wall, wall)
 from masonry.dem.structures import structures  # noqa: E402
+from masonry.dem.ties import tie, ties  # noqa: E402
 from masonry.dem.tilting import TiltTable  # noqa: E402
 from masonry.dem.unions import union  # noqa: E402

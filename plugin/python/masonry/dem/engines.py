@@ -16,6 +16,7 @@ from masonry.dem.checks import check_blocks, check_material, check_recorder
 from masonry.dem.loads import dead_loads, load_engines, potential_of_loads
 from masonry.dem.pushing import Push
 from masonry.dem.structures import structures
+from masonry.dem.ties import tied, ties
 
 _MODELS = ("auto", "planar", "spatial", "compliant")
 METHODS = ("auto", "localised", "wall")
@@ -260,7 +261,7 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
         raise ValueError("there is no free block in O.bodies: add one with dem.block() before dem.engines()")
     for body in blocks:
         check_material(body.mat)
-    notes.say_what_looks_odd(blocks, motions, gravity, others)
+    notes.say_what_looks_odd(blocks, motions, gravity, others, {id for pair in tied() for id in pair})
     reason = "asked for"
     if model == "auto":
         if penetration is not None:
@@ -274,6 +275,9 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
     if model == "compliant":
         if tolerance is not None or others or method != "auto":
             raise ValueError("tolerance, others and method are for rigid blocks: they must be left out with model='compliant'")
+        if any(not one.dead for one in ties()):
+            raise ValueError(f"model = {model!r} ({reason}): compliant joints take no ties: give model='planar' or 'spatial' and no joint stiffness, or let springs of "
+                             "your own act through O.forces")
         return _compliant(blocks, motions, reason, dt, penetration or _PENETRATION, impact_order or "simultaneous", gravity, recorders)
     if penetration is not None:
         raise ValueError(f"penetration = {penetration}: must be left out with model={shown(model)}, it is for compliant joints")
@@ -282,7 +286,7 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
 
 
 def _rigid(motions, model, method, dt, tolerance, impact_order, gravity, recorders, others):
-    integrator = wrapper.MoreauJeanIntegrator(motions=motions, model=model, gravity=(0, 0, -gravity))
+    integrator = wrapper.MoreauJeanIntegrator(motions=motions, ties=ties(), model=model, gravity=(0, 0, -gravity))
     choice = integrator.choice()
     if method == "auto":
         few = _FEW_BLOCKS[choice.split(":")[0]]
@@ -394,13 +398,15 @@ def energy():
 
     kinetic, potential                       now, dead loads included; of walls of method='wall', whose velocities belong to the middle of a step, potential half a step earlier
     frictDissip, impactDissip, baseWork      since dem.engines() made the engines: dissipated by friction and by impacts, and the work of the base
-    elastPotential, dampDissip               compliant joints: elastic energy now, dissipated by dashpots so far
+    elastPotential, dampDissip               compliant joints, and scenes with ties: elastic energy now; dissipated by dashpots, and by ties that break or are damped numerically,
+                                             so far
 
     The sum of all others less baseWork is constant, except for madeEnergy less lostEnergy of the engine (in walls of method='wall' they are part of
     impactDissip), and for the work of other engines' forces, a change of gravity or velocities by a script, and erased blocks. With compliant joints all energies are 0 before the first step."""
     e = joint_engine_given()
     keys = ("kinetic", "potential", "elastPotential", "frictDissip", "dampDissip", "impactDissip", "baseWork")
-    found = {key: getattr(e, key) for key in keys if hasattr(e, key)}
+    elastic = isinstance(e, wrapper.RockingJointEngine) or bool(e.ties)
+    found = {key: getattr(e, key) for key in keys if elastic or key not in ("elastPotential", "dampDissip")}
     if found["potential"] != 0 or not isinstance(e, wrapper.RockingJointEngine):
         found["potential"] += potential_of_loads()
     return found

@@ -21,7 +21,7 @@ _STILL = 1e-3
 
 said = []  # the lines that the last dem.engines() has printed on what may not be meant
 
-_made = []  # weak references to the motion engines that a script has made and not yet given to dem.engines(), each with that of _scene_mark()
+_made = []  # weak references to the motion engines that a script has made and not yet given to dem.engines(), each with that of scene_mark()
 _pushes = []  # weak references to the motion engines of dem.push()
 _given = []  # (weak reference to a motion engine, the masonry.Record that it was made of)
 
@@ -31,7 +31,7 @@ def say(text):
     print(f"masonry.dem: {text}")
 
 
-def _scene_mark():
+def scene_mark():
     """Of the present scene: a weak reference to its first body, for O.reset() makes other bodies. Without bodies: None."""
     return weakref.ref(O.bodies[0]) if len(O.bodies) and O.bodies[0] else None
 
@@ -41,7 +41,7 @@ def _watch(cls):
 
     def __init__(self, *arguments, **attributes):
         make(self, *arguments, **attributes)
-        _made.append((weakref.ref(self), _scene_mark()))
+        _made.append((weakref.ref(self), scene_mark()))
 
     cls.__init__ = __init__
 
@@ -99,9 +99,10 @@ def of_records(motions):
     return text
 
 
-def say_what_looks_odd(blocks, motions, gravity, others):
-    """Prints a line for each; overlapping blocks are a ValueError."""
+def say_what_looks_odd(blocks, motions, gravity, others, tied=()):
+    """Prints a line for each; overlapping blocks are a ValueError. tied: ids of blocks that hang on ties."""
     floating, supports = floating_and_supports(floating=False)
+    floating = [id for id in floating if id not in tied]
     if floating and gravity > 0:
         say(f"no chain of supports joins these blocks to a prescribed body, they will fall: {listed(floating)}")
     motions = [motion for motion in motions if not motion.dead]
@@ -160,7 +161,7 @@ def is_left_out(motion):
 def _motion_left_out(motions):
     """Sentence on a motion engine that the script has made in this scene and given to no dem.engines()."""
     _made[:] = [(known, mark) for known, mark in _made if known() is not None and not any(known() is given for given in motions)]
-    here = _scene_mark()
+    here = scene_mark()
     present = [known() for known, mark in _made if mark in (here, None)]
     present = [motion for motion in present if not motion.dead and motion.ids and all(id < len(O.bodies) for id in motion.ids)]
     if motions or not present:

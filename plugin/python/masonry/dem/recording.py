@@ -10,7 +10,7 @@ from masonry.dem.engines import impacts, joint_engine
 from masonry.dem.loads import dead_loads
 from masonry.dem.placing import union_polyhedron
 from masonry.results import WallHistory
-from masonry.results.wall_history import JOINT_FORCES
+from masonry.results.wall_history import JOINT_FORCES, TIES
 from yade import O, wrapper
 
 
@@ -35,7 +35,7 @@ def wall_history(recorder):
     if present:
         _add_loads(energies, recorder.ids, poses[..., :3])
     return WallHistory(recorder.times, recorder.ids, sizes, blocks[:, 3] > 0, poses[..., :3], poses[..., 3:], energies, motion, end,
-                       about(recorder.ids, motions) if present else None, impacts() if present and joint_engine() else None, _forces(recorder), shapes)
+                       about(recorder.ids, motions) if present else None, impacts() if present and joint_engine() else None, _forces(recorder), shapes, _ties(recorder))
 
 
 def _add_loads(energies, ids, places):
@@ -68,6 +68,19 @@ def _shapes(recorder, sizes):
         else:
             blocks.append((box_corners(sizes[k]), BOX_FACES))
     return sizes, Shapes.of(blocks)
+
+
+def _ties(recorder):
+    """WallHistory.ties, or None where there are none."""
+    if not recorder.ties:
+        return None
+    states = np.frombuffer(recorder.tieStatesAsBytes()).reshape(len(recorder.times), len(recorder.ties), 4)
+    table = np.zeros(states.shape[:2], dtype=TIES)
+    for name in ("body1", "body2", "point1", "point2"):
+        table[name] = [np.array(getattr(one, name)) for one in recorder.ties]
+    for k, name in enumerate(("force", "extension", "energy", "broken")):
+        table[name] = states[..., k]
+    return table
 
 
 def _forces(recorder):

@@ -15,8 +15,9 @@ from .joints import joints, patches
 from .paraview import write_paraview
 from .pictures import draw, draw_energy, draw_joints, film
 from .reporting import report
+from .ties import ties
 from .time_histories import TimeHistory, joint_history, structure_history
 from .wall_history import WallHistory
 
 __all__ = ["CollapseReport", "Shapes", "TimeHistory", "WallHistory", "base_reactions", "collapse", "draw", "draw_energy", "draw_joints", "fallen", "film", "joint_history", "joints",
-           "patches", "report", "structure_history", "thrust", "write_paraview"]
+           "patches", "report", "structure_history", "thrust", "ties", "write_paraview"]

@@ -25,7 +25,7 @@ def has_forces(history):
 
 
 def base_reactions(history, about=None, base=None):
-    """Forces of the prescribed bodies on the recorded blocks over time: a structured array, one row a sample.
+    """Forces of the prescribed bodies on the recorded blocks over time, by joints and by ties that are fixed to them: a structured array, one row a sample.
 
     about    point that the moment is about, m, as the structure stands in the first sample; it moves with the base of each block. None: the middle of the
              plan of the free blocks (with `base`: of those that stand on it), at the height of their lowest point
@@ -66,9 +66,28 @@ def base_reactions(history, about=None, base=None):
     table["time"] = history.time
     for name, values in (("force", force), ("moment", moment)):
         np.add.at(table[name], forces["sample"], values)
-        if not (forces["sample"] == 0).any():
-            table[name][0] = np.nan
+    _add_ties(history, table, point, base)
+    if not (forces["sample"] == 0).any():
+        table["force"][0] = table["moment"][0] = np.nan
     return table
+
+
+def _add_ties(history, table, point, base):
+    """Adds the forces of ties between free blocks and prescribed bodies (`base`: that one alone) to base_reactions()."""
+    row_of = {id: row for row, id in enumerate(history.ids.tolist())}
+    for k in range(0 if history.ties is None else history.ties.shape[1]):
+        tie = history.ties[:, k]
+        ends = [(row_of.get(int(tie[body][0])), tie[place][0]) for body, place in (("body1", "point1"), ("body2", "point2"))]
+        if any(row is None for row, _ in ends) or history.free[ends[0][0]] == history.free[ends[1][0]]:
+            continue
+        (block, held), (under, fixed) = ends if history.free[ends[0][0]] else ends[::-1]
+        if base is not None and history.ids[under] != base:
+            continue
+        place, anchor = (history.position[:, row] + np.einsum("sab,b->sa", _pose.matrices(history.orientation[:, row]), own)
+                         for row, own in ((block, held), (under, fixed)))
+        force = np.nan_to_num(tie["force"][:, None] * (anchor - place) / np.linalg.norm(anchor - place, axis=1, keepdims=True))
+        table["force"] += force
+        table["moment"] += np.cross(np.nan_to_num(place - (point + history.position[:, under] - history.position[0, under])), force)
 
 
 def thrust(history, time=None):

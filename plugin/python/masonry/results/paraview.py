@@ -7,6 +7,7 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 from masonry._files import written
 from masonry._given import whole_given
+from masonry.results.ties import tie_ends, unbroken
 from masonry.results.wall_history import history_given
 
 # VTK's order of the corners of a hexahedron, from ours (x fastest, then y).
@@ -42,6 +43,14 @@ def _polyhedra(shapes, rows):
             + _array("faces", np.array(faces, dtype=int)) + _array("faceoffsets", np.array(face_ends, dtype=int)))
 
 
+def _ties(history, sample, relative):
+    """File of the ties: a line each, with force and extension."""
+    ends, own = tie_ends(history, sample, relative=relative), unbroken(history, sample)
+    count = len(own)
+    lines = (_array("connectivity", np.arange(2 * count)) + _array("offsets", 2 * np.arange(1, count + 1)) + _array("types", np.full(count, 3, np.uint8)))
+    return _vtu(ends.reshape(-1, 3), lines, count, {name: own[name] for name in ("body1", "body2", "force", "extension")}, {})
+
+
 def _vtu(points, cells, count, cell_data, point_data):
     sections = {"Points": _array("Points", points), "Cells": cells,
                 "CellData": "".join(_array(*item) for item in cell_data.items()), "PointData": "".join(_array(*item) for item in point_data.items())}
@@ -59,7 +68,7 @@ def write_paraview(history, path, every=1, relative=False):
 
     Each block is a cell with id, free (1 or 0), displacement of its centre (m), rotation and lean (rad); the corners have their displacement too, for
     the filter "Warp By Vector" on the first file. Cells are hexahedra, or polyhedra where there are convex blocks. Displacements and rotations are relative to the base and the first sample. Erased blocks are
-    left out.
+    left out. Ties that are not broken are lines with force (N) and extension (m), part 1 of the list.
     """
     history, path = history_given(history), Path(path)
     if path.suffix != ".pvd":
@@ -84,6 +93,11 @@ def write_paraview(history, path, every=1, relative=False):
         with written(file) as beside:
             Path(beside).write_text(text, encoding="utf-8")
         sets.append(f'<DataSet timestep="{float(history.time[sample])!r}" file={quoteattr(f"{folder.name}/{file.name}")}/>\n')
+        if history.ties is not None:
+            of_ties = folder / f"{path.stem}_ties_{sample:06d}.vtu"
+            with written(of_ties) as beside:
+                Path(beside).write_text(_ties(history, sample, relative), encoding="utf-8")
+            sets.append(f'<DataSet timestep="{float(history.time[sample])!r}" part="1" file={quoteattr(f"{folder.name}/{of_ties.name}")}/>\n')
     with written(path) as beside:
         Path(beside).write_text('<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1" byte_order="LittleEndian">\n<Collection>\n'
                                 f'{"".join(sets)}</Collection>\n</VTKFile>\n', encoding="utf-8")

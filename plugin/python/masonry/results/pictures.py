@@ -7,6 +7,7 @@ from masonry._progress import steps
 from masonry.results.collapse import collapse, lies
 from masonry.results.forces import has_forces, thrust_at_first
 from masonry.results.joints import joints, patches
+from masonry.results.ties import tie_ends
 from masonry.results.view import STILL, View, enlargement, largest, movement, nice, still
 from masonry.results.wall_history import ENERGIES, history_given
 
@@ -130,6 +131,8 @@ class _Painter:
         self.figure, (self._axes,) = _figure(self._view, _framed(history, samples, self._enlarge, self._view))
         self._axes.add_collection(LineCollection(self._view.outlines(start[free], free), colors="0.6", linewidths=0.6, linestyles="--", zorder=1))
         self._blocks = PolyCollection([], edgecolors="0.2", linewidths=0.5 if len(start) < 300 else 0.25, zorder=2)
+        self._ties = LineCollection([], colors="tab:blue", linewidths=1.5, capstyle="round", zorder=3)
+        self._axes.add_collection(self._ties)
         self._axes.add_collection(self._blocks)
         if self._moved:
             _colorbar(self.figure, self._axes, self._map, *_COLOURS[color], beyond)
@@ -143,6 +146,7 @@ class _Painter:
         colors = np.where(self._history.free[rows, None], colors, self._prescribed)
         self._blocks.set_verts(polygons)
         self._blocks.set_facecolor(np.clip(colors * bright[:, None], 0, 1))
+        self._ties.set_segments(self._view.place(tie_ends(self._history, sample, self._enlarge)))
         drawn = ("" if self._moved else ", nothing moved") + ("" if self._enlarge == 1 else f", movement drawn {self._enlarge:.3g} times")
         self._axes.set_title(f"{self._title + ': ' if self._title else ''}t = {self._history.time[sample]:.3f} s{drawn}", fontsize="small")
 
@@ -161,7 +165,7 @@ def shape_figure(history, time=None, enlarge=None, color="displacement", view=No
 
 def draw(history, path, time=None, enlarge=None, color="displacement", view=None, title=""):
     """Writes a picture (.png, .pdf, .svg) of the displaced structure: relative to its base, with the blocks as they were at first dashed
-    behind it. It shows all that stands, and of the blocks that have fallen those that lie beside the first shape, up to its size away. Where no corner has moved by more than 1e-6 of the structure's size, blocks are grey and the title says so.
+    behind it. It shows all that stands, and of the blocks that have fallen those that lie beside the first shape, up to its size away. Ties are blue lines, until they break. Where no corner has moved by more than 1e-6 of the structure's size, blocks are grey and the title says so.
 
     time       the sample nearest to it is drawn, s; None: the one in which the drift (WallHistory.drift) is largest, before the first block falls where
                one does
@@ -298,7 +302,7 @@ def energy_figure(history, title=""):
         lower.set(ylabel="error of the\nbalance (J)")
     names = {"baseWork": "work of the base", "kinetic": "kinetic", "potential": "potential, since the start", "elastPotential": "elastic",
              "frictDissip": "dissipated by friction", "impactDissip": f"dissipated by impacts{' and numerically' if closed else ''}",
-             "dampDissip": "dissipated by dashpots"}
+             "dampDissip": "dissipated by dashpots and ties"}
     for k, (key, name) in enumerate(names.items()):
         values = energy[key] - (energy[key][0] if key == "potential" else 0)
         if values.any() or key in ("baseWork", "kinetic"):

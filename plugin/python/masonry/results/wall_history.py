@@ -14,11 +14,13 @@ from masonry.results.own_bases import TOUCH, own_bases
 ENERGIES = ("kinetic", "potential", "elastPotential", "frictDissip", "dampDissip", "impactDissip", "baseWork")
 _SAVED = ("time", "ids", "sizes", "free", "position", "orientation", "energies")
 # Files have these where they are known.
-_OPTIONAL = ("motion", "end", "about", "impacts", "forces")
+_OPTIONAL = ("motion", "end", "about", "impacts", "forces", "ties")
 # Files hold these fields of shapes if there are convex blocks.
 _SHAPES = ("vertices", "vertex_start", "faces", "face_start")
 # Rows of the forces of joints: force on block 2, N, and where it acts, m.
 JOINT_FORCES = [("id1", int), ("id2", int), ("force", float, 3), ("point", float, 3)]
+# Columns of the ties: the bodies, where it is fixed to them (from their centres, in their own axes, m), N, m, J.
+TIES = [("body1", int), ("body2", int), ("point1", float, 3), ("point2", float, 3), ("force", float), ("extension", float), ("energy", float), ("broken", bool)]
 # Columns of the impacts, of dem.impacts(), that a report shows.
 _IMPACTS = "time", "body", "support", "restitution_asked", "restitution", "velocity", "energy_lost", "friction_demand", "capped"
 # Names that masonry writes into `about`; a script may add more.
@@ -45,6 +47,8 @@ class WallHistory:
     impacts        structured array of dem.impacts(); None: not known
     forces         structured array, one row for each joint that carries load in a sample: sample (its number), id1, id2, force on block 2 (N), point
                    where it acts (m); None: not recorded (WallRecorder.recordForces)
+    ties           (s, m) structured array, for each sample and each of m ties (dem.tie): body1, body2, point1, point2 (where it is fixed to them, from their centres
+                   in their own axes, m), force (N, tension positive, mean of the step before), extension (m), energy (J), broken; None: there are none
     shapes         masonry.results.Shapes, the corners and faces of all blocks, where some are convex blocks: their sizes are those of the box around them in
                    their own axes; None: all are boxes
 
@@ -54,14 +58,14 @@ class WallHistory:
     Raises ValueError when shapes do not fit, times do not increase or a block that is there at first is nowhere.
     """
 
-    def __init__(self, time, ids, sizes, free, position, orientation, energies=None, motion=None, end=None, about=None, impacts=None, forces=None, shapes=None):
+    def __init__(self, time, ids, sizes, free, position, orientation, energies=None, motion=None, end=None, about=None, impacts=None, forces=None, shapes=None, ties=None):
         self.shapes = shapes
         self.time, self.ids, self.sizes = np.asarray(time, dtype=float), np.asarray(ids, dtype=int), np.asarray(sizes, dtype=float)
         self.free, self.position, self.orientation = np.asarray(free, dtype=bool), np.asarray(position, dtype=float), np.asarray(orientation, dtype=float)
         samples, blocks = self.time.size, self.ids.size
         self._energies = np.full((samples, len(ENERGIES)), np.nan) if energies is None else np.asarray(energies, dtype=float)
         self.motion = None if motion is None else np.asarray(motion, dtype=float)
-        self.about, self.impacts, self.forces = _about_given(about), impacts, forces
+        self.about, self.impacts, self.forces, self.ties = _about_given(about), impacts, forces, ties
         shapes = {"time": (samples,), "ids": (blocks,), "sizes": (blocks, 3), "free": (blocks,), "position": (samples, blocks, 3), "orientation": (samples, blocks, 4),
                   "_energies": (samples, len(ENERGIES))}
         for name, shape in shapes.items():
@@ -91,6 +95,8 @@ class WallHistory:
             found = np.asarray(table).dtype
             if table is not None and not (np.ndim(table) == 1 and all(column in (found.names or ()) and found[column].base.kind in "biuf" for column in columns)):
                 raise ValueError(f"{name}: must be None or a structured array with the columns {', '.join(columns)}, of numbers")
+        if self.ties is not None and not (np.asarray(self.ties).dtype == np.dtype(TIES) and np.ndim(self.ties) == 2 and len(self.ties) == len(self.time)):
+            raise ValueError(f"ties: must be None or a structured array of {len(self.time)} samples by ties, with the columns {', '.join(name for name, *_ in TIES)}")
         if self.forces is None:
             return
         strangers = np.setdiff1d(np.concatenate([self.forces["id1"], self.forces["id2"]]), self.ids)
@@ -131,13 +137,15 @@ class WallHistory:
 
     def to_csv(self, path, ids=()):
         """Writes a .csv file, a line a sample, with a header: time (s), drift (of the height), the columns of energy (J) where they were
-        recorded, and of each block of `ids` (history.ids: all) displacement x, y, z (m) of its centre and rotation (rad), relative to the base and
+        recorded, of each tie its force (N), extension (m) and energy (J), and of each block of `ids` (history.ids: all) displacement x, y, z (m) of its centre and rotation (rad), relative to the base and
         since the first sample, and its lean (rad) from the vertical."""
         if not str(path).endswith(".csv"):
             raise ValueError(f"path = {path}: must end in .csv")
         columns = {"time (s)": self.time, "drift": self.drift()}
         if not np.isnan(self._energies).all():
             columns.update({f"{name} (J)": self.energy[name] for name in self.energy.dtype.names[1:]})
+        for k in range(0 if self.ties is None else self.ties.shape[1]):
+            columns.update({f"{name} of tie {k} ({unit})": self.ties[name][:, k] for name, unit in (("force", "N"), ("extension", "m"), ("energy", "J"))})
         for id in np.atleast_1d(ids).tolist():
             if id not in self.ids.tolist():
                 raise ValueError(f"ids: {id} is no block of the history: must be among {shown(self.ids.tolist())}")

@@ -93,6 +93,20 @@ def _limit(axes, values):
 
 
 @styled
+def tie_forces(history, verdict):
+    """Forces of the ties, of at most so many as a figure can tell apart: those that carried most."""
+    figure, axes = axes_of(1, 2.6)
+    forces = history.ties["force"]
+    for k in np.sort(np.argsort(-forces.max(axis=0), kind="stable")[:_LINES]).tolist():
+        tie = history.ties[0, k]
+        axes[0].plot(history.time, forces[:, k] / 1e3, label=f"{tie['body1']} – {tie['body2']}")
+    axes[0].set_ylabel("force (kN)")
+    axes[0].legend(title="bodies", ncols=2)
+    time_axis(axes, history.time, verdict.time)
+    return svg(figure)
+
+
+@styled
 def drift(history, verdict):
     """Drift, and the way of the base where it moves."""
     bases = np.unique(history.bases[history.free]) if history.base is not None else []

@@ -8,6 +8,7 @@ from masonry.results.collapse import collapse
 from masonry.results.forces import has_forces
 from masonry.results.joints import joints
 from masonry.results.time_histories import joint_history, structure_history
+from masonry.results.ties import ties
 from masonry.results.view import largest, movement, still
 
 from . import curves, view3d, words
@@ -33,7 +34,7 @@ def content(history, exact):
                      "Largest horizontal displacement in a course, relative to the base; the curve of a block ends when it falls." + _shaded(verdict))]),
         _section("shape", "Shape at the largest drift", curves.shape(history, shown_first),
                  "The sample of the largest drift" + (" before the collapse" if verdict.collapsed else "") + "; dashed: the first sample."),
-        _joints_section(history, verdict, table), _joint_section(history, verdict, table), *_force_sections(history, verdict),
+        _joints_section(history, verdict, table), _joint_section(history, verdict, table), *_force_sections(history, verdict), _ties_section(history, verdict),
         _energy_section(history), _impact_section(history)) if section]
     return {"title": history.about.get("script") or "Rocking masonry", "kind": verdict.verdict, "headline": _headline(verdict), "sentences": _sentences(history, verdict),
             "warnings": _warnings(history, verdict), "scene": view3d.scene(history, shown_first), "numbers": _numbers(history, verdict, table), "sections": sections,
@@ -105,7 +106,7 @@ def _numbers(history, verdict, table):
             rows.append((f"Joint that {verb} most", f"{words.decimal(1e3 * values[k], 4)} mm, blocks {table['id1'][k]} and {table['id2'][k]}", f"{table[name + '_time'][k]:.4g} s"))
     energy = history.energy[-1]
     for name, word in (("baseWork", "Work of the base"), ("frictDissip", "Dissipated by friction"), ("impactDissip", "Dissipated by impacts"),
-                       ("dampDissip", "Dissipated by dashpots")):
+                       ("dampDissip", "Dissipated by dashpots and ties")):
         if np.isfinite(energy[name]) and (energy[name] != 0 or name == "baseWork"):
             rows.append((word, f"{words.decimal(energy[name], 4)} J", "in all"))
     return rows
@@ -162,6 +163,19 @@ def _joint_section(history, verdict, table):
     return _section("joint", f"The joint that opened most: blocks {found.title.split('blocks ')[1]}", curves.of_joint(found, verdict),
                     "Opening and slip, the force across the joint (pressure) and along it, and the energy that sliding has dissipated in it, summed over the samples; results.joint_history() "
                     "has that of every joint." + _shaded(verdict))
+
+
+def _ties_section(history, verdict):
+    table = ties(history)
+    if not len(table):
+        return None
+    rank = np.argsort(-table["force"], kind="stable")
+    rows = [(f"{r['body1']} – {r['body2']}", f"{r['force'] / 1e3:.4g}", f"{r['force_time']:.3f}", _mm(r["extension"]), f"{r['extension_time']:.3f}",
+             f"{r['broken_time']:.3f}" if r["broken"] else "") for r in table[rank[:_JOINTS]]]
+    broke = f" {int(table['broken'].sum())} of them broke." if table["broken"].any() else " None of them broke."
+    return _section("ties", "Ties", curves.tie_forces(history, verdict), f"Forces of {_counted(len(table), 'tie')} at the instants of the samples, tension positive."
+                    + broke + _shaded(verdict), columns=["Bodies", "Force (kN)", "at (s)", "Extension (mm)", "at (s)", "Broken at (s)"], rows=rows,
+                    more=f"The {len(rows)} ties of {len(table)} that carried most.", fold="Table of ties")
 
 
 def _mm(value):
