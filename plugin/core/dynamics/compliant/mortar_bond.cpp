@@ -210,6 +210,9 @@ MortarState stateOf(const MortarBond& bond)
 		state.opened += fibre.area * fibre.point.opened;
 		state.sheared += fibre.area * fibre.point.sheared;
 	}
+	const double tension = state.opened > 0 ? state.opened / bond.law.fractureEnergy : 0;
+	const double shear = state.sheared > 0 ? state.sheared / bond.law.shearFractureEnergy : 0;
+	state.byTension = tension + shear > 0 ? tension / (tension + shear) : 0;
 	if (bond.isBroken)
 		state.damage = state.worst = 1;
 	return state;

@@ -55,6 +55,7 @@ struct MortarBond {
 // What dem.damage() tells of a joint.
 struct MortarState {
 	double damage {0}, worst {0};   // mean over the area, largest
+	double byTension {0};           // share of the spent fracture energies that cracks in tension have
 	double opening {0}, slip {0};   // largest opening of a crack, and path of slip, m
 	double opened {0}, sheared {0}; // energies spent so far, J
 };

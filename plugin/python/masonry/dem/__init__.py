@@ -18,6 +18,7 @@ from masonry.dem.comparing import compare  # noqa: E402
 from masonry.dem.convex import (Geometry, arch, barrel_vault, blocks_from_mesh, column, convex, dome, drum, flat_arch, from_yade, geometry,  # noqa: E402
                                 prism, rubble_wall, wedge)
 from masonry.dem.engines import energy, engines, history, impacts, record_motion, save_history  # noqa: E402
+from masonry.dem.mortar import bond, damage, scatter  # noqa: E402
 from masonry.dem.reactions import joint_forces, reactions  # noqa: E402
 from masonry.dem.recording import wall_history  # noqa: E402
 from masonry.dem.resting import at_rest  # noqa: E402
