@@ -78,16 +78,15 @@ def test_a_wall_below_its_strength_stays_sound():
 
 
 def test_the_energy_of_a_wall_that_cracks_closes():
-    """Rows of dem.damage() add up to crackDissip; what is made or lost is below 1 % of it."""
+    """Rows of dem.damage() add up to crackDissip; less than 1e-3 of what is dissipated is made, and the balance misses no more."""
     wall()
     balance = Balance()
     O.run(1500, True)
     table, energy = dem.damage(), dem.energy()
     assert (table["worst"] > 0.5).any() and energy["crackDissip"] > 0
     assert (table["energy_tension"] + table["energy_shear"]).sum() == pytest.approx(energy["crackDissip"], rel=1e-9)
-    engine = joint_engine()
-    assert abs(balance.error() - engine.madeEnergy + engine.lostEnergy) < 1e-6 * engine.turnedOver
-    assert engine.madeEnergy < 1e-2 * (energy["crackDissip"] + energy["dampDissip"])
+    lost = sum(energy[key] for key in ("crackDissip", "dampDissip", "frictDissip"))
+    assert abs(balance.error()) < 1e-3 * lost and joint_engine().madeEnergy < 1e-3 * lost
 
 
 @pytest.mark.parametrize("ending", ("xml", "yade.gz"))
@@ -196,8 +195,8 @@ def test_rigid_blocks_refuse_mortar():
     for model in ("planar", "spatial"):
         refuses(lambda: dem.engines(model=model), f"model = '{model}'", "compliant")
     O.dt = 1e-4
-    for method in ("localised", "wall"):
-        O.engines = [dem.MoreauJeanIntegrator(method=method)]
+    for method, tolerance in (("localised", 1e-9), ("wall", 1e-3)):
+        O.engines = [dem.MoreauJeanIntegrator(method=method, tolerance=tolerance)]
         refuses_to_run("mortar", "compliant")
 
 
