@@ -89,6 +89,7 @@ YADE_ABI_ARCHIVED_ELSEWHERE(std::vector<boost::shared_ptr<yade::Interaction>>)
 YADE_ABI_ARCHIVED_ELSEWHERE(std::vector<boost::shared_ptr<yade::Material>>)
 YADE_ABI_ARCHIVED_ELSEWHERE(std::vector<boost::shared_ptr<yade::Serializable>>)
 // Reached through a shared_ptr whose own archiving YADE does not export, as attribute or as base of one.
+YADE_ABI_ARCHIVED_ELSEWHERE(yade::Serializable)
 YADE_ABI_ARCHIVED_ELSEWHERE(yade::MatchMaker)
 YADE_ABI_ARCHIVED_ELSEWHERE(yade::IPhysFunctor)
 

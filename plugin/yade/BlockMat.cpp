@@ -10,6 +10,11 @@ YADE_PLUGIN((BlockMat));
 
 void BlockMat::postLoad(BlockMat&)
 {
+	if (mortar && noSlip)
+		reject(*this, "noSlip", "True", "False where mortar is given: mortar that breaks in shear slips");
+	if (mortar && std::isnan(mortar->directStrength()))
+		reject(*this, "mortar", "JointMat without strengths",
+		       "a JointMat with tensileStrength (or flexuralStrength), fractureEnergy, cohesion and shearFractureEnergy");
 	if (!std::isnan(restitution) && !(restitution >= 0 && restitution <= 1))
 		reject(*this, "restitution", restitution, "from 0 to 1, or NaN for the natural restitution of the block");
 	for (const auto& [attribute, value] : {std::pair("normalStiffness", normalStiffness), std::pair("shearStiffness", shearStiffness)})

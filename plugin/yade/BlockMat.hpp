@@ -1,5 +1,6 @@
 #pragma once
 
+#include "JointMat.hpp"
 #include <pkg/common/ElastMat.hpp>
 
 namespace yade {
@@ -16,7 +17,8 @@ public:
 		((Real, restitution, NaN, Attr::triggerPostLoad, "Rocking restitution: angular velocity after / before an impact, 0 to 1. NaN (default): the natural restitution of the block, 1 - 1.5 sin^2(critical angle)."))
 		((Real, normalStiffness, NaN, Attr::triggerPostLoad, "Normal stiffness of a joint per unit of area [Pa/m], positive. NaN (default): chosen by dem.engines()."))
 		((Real, shearStiffness, NaN, Attr::triggerPostLoad, "Shear stiffness of a joint per unit of area [Pa/m], positive. NaN (default): chosen by dem.engines()."))
-		((bool, noSlip, false, , "If true, the contact never slips, whatever the friction angle: the hypothesis of closed-form rocking.")),
+		((bool, noSlip, false, , "If true, the contact never slips, whatever the friction angle: the hypothesis of closed-form rocking."))
+		((shared_ptr<JointMat>, mortar, , Attr::triggerPostLoad, "Mortar of the joints between blocks that both have it and touch when the run starts, for compliant joints. None (default): dry joints.")),
 		createIndex();
 	);
 	// clang-format on

@@ -26,6 +26,15 @@ void BlockPhys::check(int id1, int id2) const
 		refuse("restitution", restitution, "from 0 to 1, or NaN for the natural restitution");
 }
 
+void BlockPhys::takeMortar(const shared_ptr<JointMat>& of)
+{
+	mortar = of;
+	const masonry::MortarLaw law = of->law(normalStiffness, shearStiffness, tangensOfFrictionAngle, 0, 0);
+	normalStiffness = law.normalStiffness;
+	shearStiffness = law.shearStiffness;
+	tangensOfFrictionAngle = law.friction;
+}
+
 void BlockPhys::takeLaw(Real friction, Real c)
 {
 	noSlip = friction == masonry::noSlip;
@@ -43,6 +52,8 @@ void BlockPhys::readPoints(masonry::JointContact& contact) const
 		contact.points.push_back({featureAt(features, i), muted[i] != 0, shears[i], normal, forces[i] - n * normal, frictionOffsets[i]});
 	}
 	contact.energy = energy;
+	contact.bond = bond.bond;
+	contact.load = load;
 	contact.turnShare = turnShare;
 	contact.springs = springs;
 	contact.springs.resize(contact.size());
@@ -72,6 +83,13 @@ void BlockPhys::writePoints(const masonry::JointContact& contact)
 		frictionOffsets[i] = point.grip;
 		normalForce += point.normalForce * contact.patch.normal;
 		shearForce += point.shearForce;
+	}
+	bond.bond = contact.bond;
+	load = contact.load;
+	if (contact.isBonded()) {
+		const Vector3r& n = contact.patch.normal;
+		normalForce += n * n.dot(load.force);
+		shearForce += load.force - n * n.dot(load.force);
 	}
 	energy = contact.energy;
 	turnShare = contact.turnShare;

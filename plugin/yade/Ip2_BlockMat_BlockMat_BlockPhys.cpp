@@ -37,6 +37,8 @@ void Ip2_BlockMat_BlockMat_BlockPhys::go(const shared_ptr<Material>& material1, 
 	phys->normalStiffness = matched(normalStiffness, a.normalStiffness, b.normalStiffness, harmonic(a.normalStiffness, b.normalStiffness));
 	phys->shearStiffness = matched(shearStiffness, a.shearStiffness, b.shearStiffness, harmonic(a.shearStiffness, b.shearStiffness));
 	phys->noSlip = (a.noSlip || b.noSlip) && !isSmooth(a) && !isSmooth(b);
+	if (a.mortar && b.mortar && a.mortar->isLike(*b.mortar))
+		phys->takeMortar(a.mortar);
 	interaction->phys = phys;
 }
 

@@ -29,7 +29,8 @@ void RockingJointEngine::enterScene()
 	if (loaded ? scene->iter < lastStep : home.lock() != present) {
 		forgetImpacts(*this);
 		forget(started, worstResidual, failures, madeEnergy, lostEnergy, turnedOver, toldMade, toldLost, toldDeep, kinetic, potential,
-		       elastPotential, frictDissip, dampDissip, impactDissip, baseWork, reactionIds, reactions, reactionMoments, checkedTimeStep);
+		       elastPotential, frictDissip, dampDissip, impactDissip, baseWork, reactionIds, reactions, reactionMoments, checkedTimeStep,
+		       crackDissip, bondedIds, bondedState);
 		bounds.forget();
 	}
 	home = present;
@@ -160,11 +161,15 @@ void RockingJointEngine::checkTimeStep()
 
 void RockingJointEngine::readRun()
 {
-	step.run = {
-	    started,  {kinetic, potential, elastPotential, frictDissip, dampDissip, impactDissip, baseWork, madeEnergy, lostEnergy, turnedOver},
-	    {},       worstResidual,
-	    failures, toldMade,
-	    toldLost, toldDeep};
+	step.run = {started,
+	            {kinetic, potential, elastPotential, frictDissip, dampDissip, impactDissip, crackDissip, baseWork, madeEnergy, lostEnergy,
+	             turnedOver},
+	            {},
+	            worstResidual,
+	            failures,
+	            toldMade,
+	            toldLost,
+	            toldDeep};
 	for (size_t k = 0; k < reactionIds.size(); ++k)
 		if (const int b = blocks.indexOf(reactionIds[k]); b >= 0)
 			step.run.reactions.push_back({b, {reactions[k], reactionMoments[k], true}});
@@ -174,9 +179,9 @@ void RockingJointEngine::writeRun()
 {
 	const auto& [now, energies, onBases, residual, missed, made, lost, deep] = step.run;
 	std::tie(started, worstResidual, failures, toldMade, toldLost, toldDeep) = std::tie(now, residual, missed, made, lost, deep);
-	const auto& [kin, pot, elastic, friction, damping, impacts, work, created, vanished, turned] = energies;
-	std::tie(kinetic, potential, elastPotential, frictDissip, dampDissip, impactDissip, baseWork, madeEnergy, lostEnergy, turnedOver) =
-	    std::tie(kin, pot, elastic, friction, damping, impacts, work, created, vanished, turned);
+	const auto& [kin, pot, elastic, friction, damping, impacts, cracks, work, created, vanished, turned] = energies;
+	std::tie(kinetic, potential, elastPotential, frictDissip, dampDissip, impactDissip, crackDissip, baseWork, madeEnergy, lostEnergy,
+	         turnedOver) = std::tie(kin, pot, elastic, friction, damping, impacts, cracks, work, created, vanished, turned);
 	reactionIds.clear();
 	reactions.clear();
 	reactionMoments.clear();
@@ -223,6 +228,8 @@ void RockingJointEngine::writeEnergies()
 	                                             {"baseWork", -baseWork}};
 	for (const auto& [key, value] : keys)
 		scene->energy->setItem_py(key, value);
+	if (!bondedIds.empty())
+		scene->energy->setItem_py("crackDissip", crackDissip);
 }
 
 void RockingJointEngine::warn(const masonry::CompliantReport& report)
@@ -260,9 +267,11 @@ void RockingJointEngine::action()
 	checkTimeStep();
 	const vector<BaseMotionEngine*> motions = BaseMotionEngine::inEngines(*scene);
 	readLoads(motions);
+	askForMortar();
 	const masonry::CompliantReport report = step.apply([&](const auto& records) { return jumpsOf(motions, records); });
 	writeRun();
 	writeScene(report);
+	writeMortar();
 	writeEnergies();
 	warn(report);
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "BaseMotionEngine.hpp"
+#include "JointMat.hpp"
 #include "compliant_scene.hpp"
 #include "dynamics/compliant/compliant_step.hpp"
 #include "turning_bounds.hpp"
@@ -19,6 +20,7 @@ public:
 	Real criticalTimeStep();
 	Real largestTimeStep();
 	Real chosenTimeStep();
+	int bond(const vector<int>& ids, const shared_ptr<JointMat>& mortar);
 
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(RockingJointEngine, GlobalEngine,
@@ -47,16 +49,21 @@ public:
 		((Real, elastPotential, 0, Attr::readonly, "Elastic energy stored in the joints now [J]."))
 		((Real, frictDissip, 0, Attr::readonly, "Energy dissipated by friction so far [J]."))
 		((Real, dampDissip, 0, Attr::readonly, "Energy dissipated by the joints' dashpots so far [J]."))
+		((Real, crackDissip, 0, Attr::readonly, "Energy spent by the cracks of mortar so far [J]."))
 		((Real, impactDissip, 0, Attr::readonly, "Energy dissipated by impacts so far [J]. The elastic energy that springs take up when the pivot changes, and give back later, is subtracted; so it may decrease by a fraction of the elastic energy."))
 		((Real, baseWork, 0, Attr::readonly, "Work of the moved base on the blocks so far [J]."))
 		((vector<int>, reactionIds, , Attr::readonly, "Bodies of prescribed motion for which `reactions` and `reactionMoments` hold the forces of the last step."))
 		((vector<Vector3r>, reactions, , Attr::readonly, "Force of the joints on each body of reactionIds in the last step [N]."))
 		((vector<Vector3r>, reactionMoments, , Attr::readonly, "Moment of the joints about the centre of each body of reactionIds in the last step [N m]."))
+		((vector<int>, bondedIds, , Attr::readonly, "Two ids for each joint that has been bonded (dem.damage)."))
+		((vector<Real>, bondedState, , Attr::readonly, "Numbers of each joint that has been bonded, in rows of 13 (dem.damage): centre [m], area [m^2], mean and largest damage, share of the damage by tension, largest opening and slip of its cracks [m], energies spent in tension and in shear [J], time of the first crack and of the last one [s]."))
+		((vector<Real>, bondsAsked, , Attr::readonly, "Joints that dem.bond has asked for and the next step makes, in rows of 9: two ids and the law of the mortar."))
 		((bool, toldMade, false, Attr::hidden, ""))
 		((bool, toldLost, false, Attr::hidden, ""))
 		((bool, toldDeep, false, Attr::hidden, ""))
 		((long, lastStep, -1, Attr::hidden, "")),
 		/* ctor */,
+		.def("bond", &RockingJointEngine::bond, "Bonds the pairs of these bodies that touch now with a JointMat, in the next step; returns their number. ids: those of the bodies, both of a pair among them; an empty list: all.")
 		.def("criticalTimeStep", &RockingJointEngine::criticalTimeStep, "Largest stable time step of the joints without their dashpots [s].")
 		.add_property("chosenTimeStep", &RockingJointEngine::chosenTimeStep, "Time step for stepFraction and the present joints [s]: that share of the critical step, at most three quarters of largestTimeStep.")
 		.add_property("largestTimeStep", &RockingJointEngine::largestTimeStep, "Largest time step that a run accepts with the present joints, dashpots included [s]: 0.4 to 0.6 of the critical one at dampingRatio = 0.5.")
@@ -71,7 +78,10 @@ private:
 	vector<masonry::JointContact> presentContacts();
 	void checkTimeStep();
 	void readRun();
+	void askForMortar();
+	void askForBond(size_t contact, const masonry::MortarLaw& law);
 	void writeRun();
+	void writeMortar();
 	void writeScene(const masonry::CompliantReport& report);
 	void writeEnergies();
 	void warn(const masonry::CompliantReport& report);

@@ -72,6 +72,11 @@ void MoreauJeanIntegrator::checkBlocks(const Choice& choice) const
 		tie->check(*scene);
 	if (!free)
 		throw std::invalid_argument("There is no free block in O.bodies: add one with dem.block().");
+	for (const Body* body : blocks())
+		if (const auto* material = dynamic_cast<const BlockMat*>(body->material.get()); material && material->mortar)
+			throw std::invalid_argument(sentence(
+			    "O.bodies[", body->id,
+			    "].mat.mortar is for model='compliant': the methods of rigid blocks, 'localised' and 'wall', know dry joints only."));
 	for (const auto& body : scene->bodies->body)
 		if (body && dynamic_cast<BlockMat*>(body->material.get()) && !isBlock(*body))
 			throw std::invalid_argument(

@@ -87,6 +87,8 @@ struct Identity {
 
 } // namespace yade
 
+YADE_ABI_ARCHIVED(Serializable)
+
 // Parts of an attribute: (type, name, default, flags, doc).
 #define YADE_ABI_TYPE(attr) BOOST_PP_TUPLE_ELEM(0, attr)
 #define YADE_ABI_NAME(attr) BOOST_PP_TUPLE_ELEM(1, attr)

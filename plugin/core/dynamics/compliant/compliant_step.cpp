@@ -25,10 +25,8 @@ CompliantReport CompliantStep::apply(const JumpsOfBase& jumpsOfBase)
 		startAtEquilibrium(system);
 		report.moved = run.started = true;
 	}
-	const std::vector<Joint> groups = groupJoints(system);
-	lift(groups, report);
-	handOff(groups, report);
-	jump(jumpsOfBase(report.impacts), report);
+	makeBonds();
+	actAtInstants(jumpsOfBase, report);
 	countFailures(report);
 	sumForces(false);
 	keepReactions();
@@ -37,6 +35,25 @@ CompliantReport CompliantStep::apply(const JumpsOfBase& jumpsOfBase)
 	checkDepths(report);
 	shortenStep();
 	return report;
+}
+
+void CompliantStep::makeBonds()
+{
+	for (const MortarRequest& request : requests) {
+		JointContact& contact = system.contacts[request.contact];
+		makeBond(contact, system.bodies[contact.body1], system.bodies[contact.body2], request.law);
+	}
+	requests.clear();
+}
+
+// Impacts and jumps of the base.
+void CompliantStep::actAtInstants(const JumpsOfBase& jumpsOfBase, CompliantReport& report)
+{
+	const std::vector<Joint> groups = groupJoints(system);
+	const MortarAside mortar(system);
+	lift(groups, report);
+	handOff(groups, report);
+	jump(jumpsOfBase(report.impacts), report);
 }
 
 // A chosen step keeps the share of the critical step that it was chosen by.
@@ -65,6 +82,7 @@ void CompliantStep::bookDissipation()
 	for (const JointContact& contact : system.contacts) {
 		run.energies.friction += contact.energy.friction;
 		run.energies.damping += contact.energy.damping;
+		run.energies.cracks += contact.energy.crack;
 	}
 }
 
@@ -150,6 +168,10 @@ void CompliantStep::sumForces(bool ofPrescribed)
 				loads[b].force += sign * contact.force(i);
 				loads[b].moment += sign * contact.moment(i, system.bodies[b].pose.position);
 			}
+			if (contact.isBonded()) {
+				loads[b].force += sign * contact.load.force;
+				loads[b].moment += sign * contact.bondMoment(system.bodies[b].pose.position);
+			}
 		}
 }
 
@@ -186,7 +208,7 @@ void CompliantStep::measureEnergies()
 void CompliantStep::checkEnergies(CompliantReport& report)
 {
 	CompliantEnergies& e = run.energies;
-	e.turnedOver = std::max(e.turnedOver, e.kinetic + e.elastic + e.friction + e.damping + e.impacts);
+	e.turnedOver = std::max(e.turnedOver, e.kinetic + e.elastic + e.friction + e.damping + e.impacts + e.cracks);
 	double lifted = 0;
 	for (const RigidBody<Space>& body : system.bodies)
 		if (!body.prescribed)

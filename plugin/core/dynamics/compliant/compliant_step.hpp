@@ -6,11 +6,17 @@
 //   2. CompliantStep::apply() does what concerns whole joints, blocks and bases, in a fixed order: its stages stand in compliant_step.cpp.
 //   3. The scene moves the bodies: v += dt/m (loads + forces), x += dt v, and the base by its motion.
 #include "dynamics/compliant/base_jump.hpp"
+#include "dynamics/compliant/mortar_bond.hpp"
 #include "dynamics/compliant/pivot_handoff.hpp"
 #include <functional>
 #include <vector>
 
 namespace masonry {
+
+struct MortarRequest {
+	int contact;
+	MortarLaw law;
+};
 
 struct JointLoad {                                             // of all joints of a body
 	Vector3 force {Vector3::Zero()}, moment {Vector3::Zero()}; // N; about the body's centre, N m
@@ -20,6 +26,7 @@ struct JointLoad {                                             // of all joints 
 struct CompliantEnergies {                          // J
 	double kinetic {0}, potential {0}, elastic {0}; // now
 	double friction {0}, damping {0}, impacts {0};  // dissipated so far
+	double cracks {0};                              // spent by the cracks of mortar so far
 	double baseWork {0};                            // of the prescribed bodies, so far
 	double made {0}, lost {0};                      // so far, with no source and no sink
 	double turnedOver {0};                          // largest kinetic and elastic energy plus all dissipated energy
@@ -54,7 +61,8 @@ class CompliantStep {
 public:
 	JointSystem system; // forces and torques of the bodies: the loads, without the weight
 	CompliantRun run;
-	double stepFraction {0}; // share of the critical step by which system.dt was chosen; 0: it was given
+	std::vector<MortarRequest> requests; // joints to be bonded at the end of this step; taken
+	double stepFraction {0};             // share of the critical step by which system.dt was chosen; 0: it was given
 
 	// Returns false where the present joints make a given step unstable. A chosen step is lowered instead.
 	bool fitTimeStep();
@@ -66,11 +74,13 @@ public:
 
 private:
 	void addWeights();
+	void makeBonds();
 	void bookDissipation();
 	void bookSprings();
 	void bookBaseWork();
 	void book(const ImpulseResponse& response);
 	void lift(const std::vector<Joint>& groups, CompliantReport& report);
+	void actAtInstants(const JumpsOfBase& jumpsOfBase, CompliantReport& report);
 	void handOff(const std::vector<Joint>& groups, CompliantReport& report);
 	void jump(const std::vector<BaseJump>& jumps, CompliantReport& report);
 	void countFailures(CompliantReport& report);

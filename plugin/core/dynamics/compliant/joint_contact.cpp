@@ -1,4 +1,5 @@
 #include "dynamics/compliant/joint_contact.hpp"
+#include "dynamics/compliant/mortar_bond.hpp"
 #include "impact/impulse_problem.hpp" // axesAlong
 #include "tolerances.hpp"
 #include <algorithm>
@@ -291,7 +292,9 @@ void takeNormalForces(JointContact& contact, double damping, const PointValues& 
 
 } // namespace
 
-void updateForces(JointContact& contact, const RigidBody<Space>& body1, const RigidBody<Space>& body2, double dt)
+namespace {
+
+void updateCorners(JointContact& contact, const RigidBody<Space>& body1, const RigidBody<Space>& body2, double dt)
 {
 	const Vector3& n = contact.patch.normal;
 	const double mass = reducedMass(body1, body2), dampingShear = contact.dampingShear(mass);
@@ -346,6 +349,19 @@ void updateForces(JointContact& contact, const RigidBody<Space>& body1, const Ri
 	contact.energy.damping -= std::min(0., byDashpots);
 }
 
+} // namespace
+
+void updateForces(JointContact& contact, const Body& body1, const Body& body2, double dt)
+{
+	if (!contact.isBonded())
+		return updateCorners(contact, body1, body2, dt);
+	const double friction = contact.law.friction;
+	contact.law.friction = 0; // the corners only press
+	updateCorners(contact, body1, body2, dt);
+	contact.law.friction = friction;
+	updateBond(contact, body1, body2, dt);
+}
+
 void holdForces(JointContact& contact)
 {
 	contact.energy.elastic = 0;
@@ -361,6 +377,18 @@ void holdForces(JointContact& contact)
 		contact.energy.elastic += shearEnergy(contact, i) - 0.5 * springs[i] * contact.patch.points[i].gap;
 	}
 	placeFriction(contact);
+}
+
+double restartShear(JointContact& contact, const Vector3& shear)
+{
+	double stored = 0;
+	for (int i = 0; i < contact.size(); ++i) {
+		contact.points[i].shear = contact.springs[i] > 0 ? shear : Vector3(Vector3::Zero());
+		takeShearForce(contact, i);
+		stored += shearEnergy(contact, i);
+	}
+	placeFriction(contact);
+	return stored;
 }
 
 void releaseForces(JointContact& contact)

@@ -30,6 +30,7 @@
 #include "contact/corner_patch.hpp"
 #include "contact/friction_points.hpp"
 #include "impact/rigid_body.hpp"
+#include <memory>
 
 namespace masonry {
 
@@ -55,6 +56,15 @@ struct JointEnergy {
 	double taken {0};    // work of the bodies on the springs in this step, J: elastic energy that changes otherwise is made or lost
 	double friction {0}; // dissipated in this step, J
 	double damping {0};  // dissipated in this step, J
+	double crack {0};    // spent by cracks of mortar in this step, J
+};
+
+struct MortarBond;
+
+// The forces of the mortar of a joint on body 2, on body 1 the opposite.
+struct BondLoad {
+	Vector3 place {Vector3::Zero()};                           // global, m
+	Vector3 force {Vector3::Zero()}, moment {Vector3::Zero()}; // N; about the place, N m
 };
 
 using PointValues = PerPoint<double>;
@@ -69,6 +79,9 @@ struct JointContact {
 	JointEnergy energy;
 	double turnShare {1}; // r of the present patch
 	PointValues springs;  // N_i of the springs at the present gaps, of the points that are not muted, N
+	// Mortar (mortar_bond.hpp); none: a dry joint. Copies of a contact share it.
+	std::shared_ptr<MortarBond> bond;
+	BondLoad load; // of the bond in the last step
 
 	int size() const { return int(points.size()); }
 	double stiffnessArea() const;                                                    // m^2, what the stiffness per area is multiplied with
@@ -83,12 +96,19 @@ struct JointContact {
 	Vector3 position(int i) const { return 0.5 * (patch.points[i].position1 + patch.points[i].position2); }
 	// How a turn (or spin) moves the friction point across the normal, relative to the point.
 	Vector3 gripMotion(int i, const Vector3& turn) const { return patch.normal.dot(turn) * patch.normal.cross(points[i].grip); }
+	// Of the bond, on body 2: about `center`, N m; and on points of the body, W.
+	Vector3 bondMoment(const Vector3& center) const { return load.moment + (load.place - center).cross(load.force); }
+	double bondPower(const Body& body) const { return load.force.dot(body.velocityAt(load.place)) + load.moment.dot(body.angularVelocity); }
 	Vector3 force(int i) const { return points[i].normalForce * patch.normal + points[i].shearForce; } // on body 2
 	Vector3 moment(int i, const Vector3& center) const;                                                // of the same, about `center`
 	double power(int i, const RigidBody<Space>& body) const;                                           // of the same, on points of the body
 	// From the points to where their friction acts if their normal forces are these, m.
 	PerPoint<Vector3> gripsFor(const PointValues& forces) const;
 	bool rocking() const; // some point is muted
+	bool isBonded() const { return bond && isSound(*bond); }
+
+private:
+	static bool isSound(const MortarBond& bond); // some of its mortar is left
 };
 
 // 0 where neither body is free, kg
@@ -103,12 +123,17 @@ void followPatch(JointContact& contact);
 // Finds the springs anew where points have been muted, or are muted no longer.
 void updateSprings(JointContact& contact);
 
-// Forces and energies after a step dt that ended in the present patch, velocities those of that step.
+// Forces and energies after a step dt that ended in the present patch, velocities those of that step. In a bonded joint the fibres of the
+// mortar have the friction too.
 void updateForces(JointContact& contact, const RigidBody<Space>& body1, const RigidBody<Space>& body2, double dt);
 
 // Forces and stored energy of the present gaps and shears, nothing moved (after a hand-off has set them). Springs slip to what the
 // normal forces allow.
 void holdForces(JointContact& contact);
+
+// Gives the points that carry this elastic displacement, as far as friction allows, and the others none. Returns the energy of the shear
+// springs, J.
+double restartShear(JointContact& contact, const Vector3& shear);
 
 // No forces, and no energy of this step.
 void releaseForces(JointContact& contact);

@@ -51,6 +51,10 @@ std::vector<Joint> groupJoints(const JointSystem& s)
 		for (int i = 0; i < contact.size(); ++i)
 			joints[index].points.push_back({c, i});
 	}
+	const auto isBonded = [&](const Joint& joint) {
+		return std::any_of(joint.contacts.begin(), joint.contacts.end(), [&](int c) { return s.contacts[c].isBonded(); });
+	};
+	joints.erase(std::remove_if(joints.begin(), joints.end(), isBonded), joints.end());
 	return joints;
 }
 

@@ -4,7 +4,8 @@
 
 namespace masonry {
 
-// All patches under one face of a block (joint_table.hpp). Head joints do not rock and are left out.
+// All patches under one face of a block (joint_table.hpp). Head joints do not rock and are left out; joints in which some mortar is left
+// do not rock either.
 struct Joint {
 	int block;
 	Vector3 normal; // from the supports to the block

@@ -7,11 +7,15 @@ double supportPower(const JointSystem& s)
 {
 	double power = 0;
 	const auto moved = [&](int b) { return s.bodies[b].prescribed && std::find(s.rim.begin(), s.rim.end(), b) == s.rim.end(); };
-	for (const JointContact& contact : s.contacts)
+	for (const JointContact& contact : s.contacts) {
 		for (int i = 0; i < contact.size(); ++i)
 			for (const auto& [b, sign] : {std::pair(contact.body1, 1.), std::pair(contact.body2, -1.)})
 				if (moved(b))
 					power += sign * contact.power(i, s.bodies[b]);
+		for (const auto& [b, sign] : {std::pair(contact.body1, 1.), std::pair(contact.body2, -1.)})
+			if (contact.isBonded() && moved(b))
+				power += sign * contact.bondPower(s.bodies[b]);
+	}
 	return power;
 }
 
@@ -32,12 +36,16 @@ double mechanicalEnergy(const JointSystem& s)
 	};
 	for (size_t b = 0; b < bodies.size(); ++b)
 		push(b, bodies[b].force.head<3>(), bodies[b].force.tail<3>());
-	for (const JointContact& contact : s.contacts)
+	for (const JointContact& contact : s.contacts) {
 		for (int i = 0; i < contact.size(); ++i)
 			for (const auto& [b, sign] : {std::pair(contact.body1, -1.), std::pair(contact.body2, 1.)}) {
 				const Vector3 force = sign * contact.force(i);
 				push(b, force, sign * contact.moment(i, bodies[b].pose.position));
 			}
+		if (contact.isBonded())
+			for (const auto& [b, sign] : {std::pair(contact.body1, -1.), std::pair(contact.body2, 1.)})
+				push(b, sign * contact.load.force, sign * contact.bondMoment(bodies[b].pose.position));
+	}
 	double energy = kineticEnergy(bodies) + storedEnergy(s);
 	for (const RigidBody<Space>& body : bodies)
 		if (!body.prescribed)

@@ -36,6 +36,8 @@ def _wrong_kind(thing, name, known, value):
         kind = "a number"
     elif isinstance(known, str):
         kind = "a text"
+    elif name == "mortar":
+        kind = "a JointMat or None"
     elif type(known).__name__ == "Vector3":
         kind = "three numbers (x, y, z)"
     elif isinstance(known, list):

@@ -27,6 +27,28 @@ def check_material(material):
         raise ValueError(f"frictionAngle = {material.frictionAngle}: must be from 0 to below pi/2, in rad (noSlip=True where nothing may slip)")
 
 
+def check_joint_material(mortar):
+    if not isinstance(mortar, wrapper.JointMat):
+        raise ValueError(f"material = {shown(mortar)}: must be a JointMat")
+    if math.isnan(mortar.directStrength):
+        raise ValueError("material = JointMat without strengths: must have tensileStrength (or flexuralStrength), fractureEnergy, cohesion and shearFractureEnergy")
+
+
+def check_mortar(blocks):
+    """The JointMats of blocks, without repeats; ValueError where two blocks that touch have different ones."""
+    having = [b for b in blocks if b.mat.mortar is not None]
+    if not having:
+        return []
+    known = {id: repr(sorted(b.mat.mortar.dict().items())) for id, b in ((b.mat.id, b) for b in having)}
+    if len(set(known.values())) > 1:
+        for i, j in contacts_of(blocks, TOUCH)[0].tolist():
+            one, other = blocks[i].mat, blocks[j].mat
+            if one.mortar is not None and other.mortar is not None and known[one.id] != known[other.id]:
+                raise ValueError(f"bodies {blocks[i].id} and {blocks[j].id} touch and have different mortar: a joint has one JointMat; give both bodies the same, or bond "
+                                 "the joint by dem.bond()")
+    return list({known[b.mat.id]: b.mat.mortar for b in having}.values())
+
+
 def check_recorder(recorder):
     name = type(recorder).__name__
     periods = recorder.iterPeriod, recorder.virtPeriod, recorder.realPeriod

@@ -12,7 +12,7 @@ from yade import O, wrapper
 from masonry import _yade
 from masonry.dem import bodies, notes
 from masonry.dem.bodies import face_areas, geometry, half_sizes, poses, reach
-from masonry.dem.checks import check_blocks, check_material, check_recorder
+from masonry.dem.checks import check_blocks, check_material, check_mortar, check_recorder
 from masonry.dem.loads import dead_loads, load_engines, potential_of_loads
 from masonry.dem.pushing import Push
 from masonry.dem.structures import structures
@@ -95,12 +95,21 @@ def _check_stiffness(blocks, gravity):
                           "masonry have 1e9 to 1e12 Pa/m (10 GPa/m = 10 N/mm^3 = 1e10 Pa/m)")
 
 
+def _not_of_mortar(materials, name):
+    """Gives materials the stiffness of their mortar; returns those whose mortar has none."""
+    for material in materials:
+        if material.mortar is not None and not np.isnan(getattr(material.mortar, name)):
+            setattr(material, name, getattr(material.mortar, name))
+            _chosen.append((material, getattr(material, name)))
+    return [m for m in materials if m.mortar is None or np.isnan(getattr(m.mortar, name))]
+
+
 def _choose_stiffness(blocks, penetration, gravity):
     """Fills in the stiffness per area of every BlockMat that has none: the weight presses the edge of the most loaded joint in by twice the
     `penetration`, times the smallest width, and the whole face by a quarter of that (joint_contact.hpp). The step follows from the shear stiffness
     of slender blocks; half of the normal one leaves it as long as the edge needs. Returns a sentence, or None when nothing was chosen."""
     materials = {b.mat.id: b.mat for b in blocks}.values()
-    normal, shear = ([m for m in materials if not _is_given(m, name)] for name in ("normalStiffness", "shearStiffness"))
+    normal, shear = (_not_of_mortar([m for m in materials if not _is_given(m, name)], name) for name in ("normalStiffness", "shearStiffness"))
     if normal:
         if gravity == 0:
             raise ValueError("gravity = 0: every BlockMat must have a normalStiffness, there is no weight to choose one by")
@@ -128,7 +137,7 @@ def _landing_step(body, alone):
         area, reach_squared = 4 * x * y * z / min(x, y, z), shape.extents.squaredNorm()
     else:
         area, reach_squared = np.linalg.norm(face_areas(body), axis=1).max(), reach(body) ** 2
-    stiffness = max(body.mat.normalStiffness, body.mat.shearStiffness)
+    stiffness = max(getattr(one, name) for one in (body.mat.mortar, body.mat) if one for name in ("normalStiffness", "shearStiffness") if getattr(one, name) > 0)
     return 2 / np.sqrt((1 if alone else 2) * stiffness * area * (1 / state.mass + reach_squared / min(state.inertia)))
 
 
@@ -222,7 +231,7 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
     motion        a motion engine (PulseTrainEngine, RecordMotionEngine), a test (dem.push, dem.pull_and_release), a list of them, or None. Motions of the
                   same bodies, in perpendicular directions (two or three components of a record), add up
     model         'planar' or 'spatial': rigid blocks in a plane or in space (MoreauJeanIntegrator). 'compliant': joints with
-                  stiffness, YADE's usual loop with NewtonIntegrator. 'auto': compliant where a BlockMat has a stiffness or
+                  stiffness, YADE's usual loop with NewtonIntegrator. 'auto': compliant where a BlockMat has mortar or a stiffness or
                   `penetration` is given; else planar where the scene lies in one upright plane; else spatial.
     dt            time step, s; None: rigid 2.5e-3 sqrt(R/g) of the smallest block (1 ms for a block 3 m high), with method='wall'
                   4e-3 sqrt(R/g); compliant 0.2 of the critical step, at most 0.75 of the largest, to which the run lowers O.dt, with a
@@ -263,8 +272,14 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
         check_material(body.mat)
     notes.say_what_looks_odd(blocks, motions, gravity, others, {id for pair in tied() for id in pair})
     reason = "asked for"
+    mortars = check_mortar(blocks)
+    if mortars and model not in ("auto", "compliant"):
+        raise ValueError(f"model = {shown(model)}: rigid blocks know dry joints only: must be 'compliant' (or 'auto') where a BlockMat has mortar")
+    notes.say_of_mortar(mortars)
     if model == "auto":
-        if penetration is not None:
+        if mortars:
+            model, reason = "compliant", "a BlockMat has mortar"
+        elif penetration is not None:
             model, reason = "compliant", "penetration is given"
         elif any(has_stiffness(b.mat) for b in blocks):
             model, reason = "compliant", "a BlockMat has a joint stiffness"
@@ -400,13 +415,15 @@ def energy():
     frictDissip, impactDissip, baseWork      since dem.engines() made the engines: dissipated by friction and by impacts, and the work of the base
     elastPotential, dampDissip               compliant joints, and scenes with ties: elastic energy now; dissipated by dashpots, and by ties that break or are damped numerically,
                                              so far
+    crackDissip                              joints with mortar: spent by their cracks so far
 
     The sum of all others less baseWork is constant, except for madeEnergy less lostEnergy of the engine (in walls of method='wall' they are part of
     impactDissip), and for the work of other engines' forces, a change of gravity or velocities by a script, and erased blocks. With compliant joints all energies are 0 before the first step."""
     e = joint_engine_given()
     keys = ("kinetic", "potential", "elastPotential", "frictDissip", "dampDissip", "impactDissip", "baseWork")
     elastic = isinstance(e, wrapper.RockingJointEngine) or bool(e.ties)
-    found = {key: getattr(e, key) for key in keys if elastic or key not in ("elastPotential", "dampDissip")}
+    bonded = ("crackDissip",) if getattr(e, "bondedIds", None) else ()
+    found = {key: getattr(e, key) for key in keys + bonded if elastic or key not in ("elastPotential", "dampDissip")}
     if found["potential"] != 0 or not isinstance(e, wrapper.RockingJointEngine):
         found["potential"] += potential_of_loads()
     return found

@@ -15,6 +15,9 @@ _DENSITIES = 500, 20000
 _PEAKS = 0.1, 50
 # Peaks that would be usual in g, of a record whose unit the script has not named.
 _PEAKS_IN_G = 0.1, 1.5
+# Pa and J/m^2, of mortar.
+_STRENGTHS = 1e3, 5e6
+_FRACTURE_ENERGIES = 0.1, 1000
 _STANDARD_GRAVITY = 9.80665  # m/s^2, as records are given in g
 # A base goes on when its record ends if it has more than this share of its largest speed.
 _STILL = 1e-3
@@ -29,6 +32,22 @@ _given = []  # (weak reference to a motion engine, the masonry.Record that it wa
 def say(text):
     said.append(text)
     print(f"masonry.dem: {text}")
+
+
+def say_of_mortar(mortars):
+    """What strengths and energies look like a slip of units, what a flexural strength stands for, and what waits for cracks."""
+    for mortar in mortars:
+        for name in ("tensileStrength", "flexuralStrength", "cohesion"):
+            if getattr(mortar, name) > 0 and not _STRENGTHS[0] <= getattr(mortar, name) <= _STRENGTHS[1]:
+                say(f"{name} = {getattr(mortar, name):g} Pa: mortar has 1e3 to 5e6 Pa (0.25 MPa = 0.25 N/mm^2 = 2.5e5 Pa)")
+        for name in ("fractureEnergy", "shearFractureEnergy"):
+            if not _FRACTURE_ENERGIES[0] <= getattr(mortar, name) <= _FRACTURE_ENERGIES[1]:
+                say(f"{name} = {getattr(mortar, name):g} J/m^2: mortar has 0.1 to 1000 J/m^2 (0.018 N/mm = 18 N/m = 18 J/m^2)")
+        if not math.isnan(mortar.flexuralStrength):
+            say(f"flexuralStrength = {mortar.flexuralStrength:g} Pa stands for the tensile strength {mortar.directStrength:.4g} Pa: joints of this stiffness bear "
+                f"{mortar.flexuralStrength / mortar.directStrength:.3g} times the moment at which their edge reaches its strength")
+    if mortars:
+        print("masonry.dem: mortar: a restitution acts in joints without sound mortar")
 
 
 def scene_mark():

@@ -6,6 +6,7 @@
 #include "dynamics/compliant/time_step.hpp"
 #include "joints/joint_table.hpp"
 #include <algorithm>
+#include <functional>
 #include <vector>
 
 struct CompliantBlocks {
@@ -16,6 +17,7 @@ struct CompliantBlocks {
 	std::vector<masonry::ImpactRecord> impacts;
 	std::vector<double> impactTimes;
 	double time {0};
+	std::function<void()> load = [] {}; // sets forces and torques of bodies before a step
 	masonry::JumpsOfBase jumpsOfBase = [](const auto&) { return std::vector<masonry::BaseJump>(); };
 
 	masonry::Bodies<masonry::Space>& bodies() { return step.system.bodies; }
@@ -45,7 +47,8 @@ struct CompliantBlocks {
 				const auto old = std::find_if(known.begin(), known.end(), [&](const auto& c) { return c.body1 == a && c.body2 == b; });
 				masonry::JointContact contact = old == known.end() ? masonry::JointContact() : *old;
 				masonry::ContactPatch patch;
-				const double margin = 1e-3 * bodies()[b].shape->thickness();
+				const bool isHeld = old != known.end() && old->isBonded(); // however wide its crack
+				const double margin = isHeld ? 1 : 1e-3 * bodies()[b].shape->thickness();
 				if (!masonry::collide(bodies()[a].shape->part(0), bodies()[a].pose, bodies()[b].shape->part(0), bodies()[b].pose, margin,
 				                      contact.patch.feature, patch))
 					continue;
@@ -64,6 +67,7 @@ struct CompliantBlocks {
 		using namespace masonry;
 		for (RigidBody<Space>& body : bodies())
 			body.force.setZero();
+		load();
 		findPatches();
 		for (JointContact& contact : step.system.contacts)
 			updateForces(contact, bodies()[contact.body1], bodies()[contact.body2], step.system.dt);

@@ -1,0 +1,69 @@
+"""Mortar: bonds between blocks, the damage of their joints, strengths that scatter."""
+
+import numpy as np
+from masonry._given import is_whole, number_given, shown, whole_given
+from masonry.dem.bodies import block_body
+from masonry.dem.checks import check_joint_material
+from masonry.dem.engines import joint_engine_given
+from yade import wrapper
+
+_DAMAGE_FIELDS = [("body1", int), ("body2", int), ("center", float, (3,)), ("area", float), ("damage", float), ("worst", float), ("mode", "U7"),
+                  ("opening", float), ("slip", float), ("energy_tension", float), ("energy_shear", float), ("cracked", float), ("broken", float)]
+_COLUMNS = 13  # of RockingJointEngine.bondedState
+
+
+def damage():
+    """The joints that have been bonded with mortar: a structured array, one row a joint, sorted by its bodies.
+
+    body1, body2      ids
+    center, area      of the joint when it was bonded, m and m^2
+    damage, worst     mean and largest damage D over the area, 0 (sound) to 1 (dry). D is the fracture energy spent over that of the mortar
+    mode              what has spent more of it, 'tension' or 'shear'; '' for a sound joint
+    opening, slip     largest opening of its cracks and longest path of their slip, m: of the mortar alone, they end where it is broken
+    energy_tension, energy_shear    spent by cracks so far, J; their sum over all joints is crackDissip of dem.energy()
+    cracked, broken   time at which `worst` reached 0.02, and at which the last mortar broke, s; NaN: not yet
+    """
+    engine = _compliant_engine()
+    ids = np.array(engine.bondedIds, dtype=int).reshape(-1, 2)
+    state = np.array(engine.bondedState, dtype=float).reshape(-1, _COLUMNS)
+    table = np.zeros(len(ids), dtype=_DAMAGE_FIELDS)
+    table["body1"], table["body2"], table["center"] = ids.min(axis=1, initial=2**31 - 1), ids.max(axis=1, initial=0), state[:, :3]
+    names = ("area", "damage", "worst", None, "opening", "slip", "energy_tension", "energy_shear", "cracked", "broken")
+    for name, column in zip(names, state.T[3:]):
+        if name:
+            table[name] = column
+    table["mode"] = np.where(table["worst"] == 0, "", np.where(state[:, 6] >= 0.5, "tension", "shear"))
+    return table[np.lexsort((table["body2"], table["body1"]))]
+
+
+def bond(ids=None, material=None):
+    """Bonds the joints of blocks that touch now, as they are, without stress: what the blocks weigh stays on the joints. Returns the number of joints.
+
+    ids         of blocks and bases, a list: joints of which both bodies are named; None: all
+    material    a JointMat. Stiffness and friction angle that it does not give are those of the joint
+
+    The scene must have its engines of model='compliant'; the bonds act from the next step on. A joint that has been bonded before gets new mortar."""
+    check_joint_material(material)
+    if ids is not None and not (np.iterable(ids) and all(is_whole(id, 0) for id in ids)):
+        raise ValueError(f"ids = {shown(ids)}: must be a list of ids of bodies, whole numbers from 0 on, or None for all")
+    for id in ids or []:
+        block_body(int(id))
+    return _compliant_engine().bond([int(id) for id in ids or []], material) if ids is None or len(ids) else 0
+
+
+def scatter(mortar, cov=0.3, seed=1):
+    """A JointMat like this one whose joints differ: each has one lognormal factor, of the mean 1, for both strengths and both fracture energies.
+
+    cov     standard deviation over mean, 0 to 1; measured ones of masonry are 0.2 to 0.5
+    seed    a whole number from 0 on. A joint's factor follows from the seed and the ids of its bodies"""
+    check_joint_material(mortar)
+    if not 0 <= number_given("cov", cov) <= 1:
+        raise ValueError(f"cov = {cov}: must be from 0 to 1")
+    return wrapper.JointMat(**{**mortar.dict(), "scatter": float(cov), "seed": whole_given("seed", seed, 0, 2**31 - 1)})
+
+
+def _compliant_engine():
+    engine = joint_engine_given()
+    if not isinstance(engine, wrapper.RockingJointEngine):
+        raise ValueError("O.engines are those of rigid blocks, which know dry joints only: mortar needs O.engines = dem.engines(model='compliant')")
+    return engine

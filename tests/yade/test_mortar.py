@@ -1,0 +1,215 @@
+"""Joints with mortar: single bricks against closed forms, the ledger, saved runs, threads, and bad input."""
+
+import math
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from masonry import dem
+from mortar_hash import mortar_hash, wall
+from mortar_scene import AREA, EINDHOVEN, SIZE, Loading, brick, brick_material, eindhoven
+from rocking_scene import Balance, bits, joint_engine, quiet_engines, refuses, refuses_to_run, said_by, steps
+from yade import O
+
+
+def test_a_brick_that_is_pulled():
+    """f_t A = 5.0 kN and G A = 0.36 J, of which the last 0.1 % is not spent; the work of the spring goes into crack, dashpots and motion."""
+    _, one = brick()
+    pull = Loading(one, "z", speed=0.02)
+    row = pull.run()
+    energy = dem.energy()
+    assert pull.most == pytest.approx(5000, rel=2e-3)
+    assert energy["crackDissip"] == pytest.approx(0.999 * 0.36, rel=1e-3)
+    assert row["mode"] == "tension" and row["damage"] == row["worst"] == 1
+    assert row["energy_tension"] == pytest.approx(energy["crackDissip"], rel=1e-12) and row["energy_shear"] == 0
+    assert 0 < row["cracked"] < row["broken"] <= O.time
+    engine = joint_engine()
+    assert engine.madeEnergy + engine.lostEnergy < 1e-3 * energy["crackDissip"]
+
+
+@pytest.mark.parametrize("pressure", (0, 0.1e6))
+def test_a_couplet(pressure):
+    """c + mu s at the peak and mu s at the end; the energy G A of the crack."""
+    _, one = brick()
+    O.bodies[one].state.inertia = (1e6, 1e6, 1e6)  # so that it does not turn
+    push = Loading(one, "x", speed=0.02, stiffness=2e8, force=(0, 0, -pressure * AREA))
+    row = push.run()
+    assert push.most == pytest.approx((0.35e6 + 0.75 * pressure) * AREA, rel=1e-2)
+    assert dem.energy()["crackDissip"] == pytest.approx(0.999 * 125 * AREA, rel=1e-3)
+    assert push.last == pytest.approx(0.75 * pressure * AREA, rel=1e-2, abs=2)
+    assert row["mode"] == "shear" and row["opening"] < 1e-6
+
+
+def test_a_wrench():
+    """Peak moment over f_t b h^2/6: 2.50 where the edge has half of the stiffness of the face; 2.46 with the edge of these joints and four fibres."""
+    _, one = brick()
+    turn = Loading(one, "turn", speed=0.05, stiffness=2e6)
+    turn.run(until=0.9, most=0.06)
+    assert turn.most / (0.25e6 * SIZE[1] * SIZE[0] ** 2 / 6) == pytest.approx(2.50, rel=0.03)
+
+
+def test_a_flexural_strength_is_that_of_the_wrench():
+    """f_w = m(B) f_t: with f_w = 2.456 x 0.25 MPa at the stiffness of J4D the strength is that of J4D."""
+    values = {**EINDHOVEN, "flexuralStrength": 2.456 * 0.25e6}
+    del values["tensileStrength"]
+    mortar = dem.JointMat(**values)
+    assert mortar.directStrength == pytest.approx(0.25e6, rel=5e-3)
+    stiff = dem.JointMat(**{**values, "normalStiffness": 1e15})
+    assert stiff.directStrength == pytest.approx(values["flexuralStrength"] / 3, rel=5e-3)
+    O.reset()
+    material = brick_material(mortar)
+    dem.block(SIZE, material, on=dem.base((1, 1, 0.1), material))
+    said = said_by(lambda: setattr(O, "engines", dem.engines()))
+    assert "a BlockMat has mortar" in said and "stands for the tensile strength" in said
+
+
+def test_a_wall_below_its_strength_stays_sound():
+    wall(peak=10.0)
+    balance = Balance()
+    O.run(1500, True)
+    table = dem.damage()
+    assert len(table) == len(joint_engine().bondedIds) // 2 > 15
+    assert not table["worst"].any() and np.isnan(table["cracked"]).all()
+    assert abs(balance.error()) < 1e-3 * dem.energy()["baseWork"] + 1e-6
+
+
+def test_the_energy_of_a_wall_that_cracks_closes():
+    """Rows of dem.damage() add up to crackDissip; less than 1e-3 of what is dissipated is made, and the balance misses no more."""
+    wall()
+    balance = Balance()
+    O.run(1500, True)
+    table, energy = dem.damage(), dem.energy()
+    assert (table["worst"] > 0.5).any() and energy["crackDissip"] > 0
+    assert (table["energy_tension"] + table["energy_shear"]).sum() == pytest.approx(energy["crackDissip"], rel=1e-9)
+    lost = sum(energy[key] for key in ("crackDissip", "dampDissip", "frictDissip"))
+    assert abs(balance.error()) < 1e-3 * lost and joint_engine().madeEnergy < 1e-3 * lost
+
+
+@pytest.mark.parametrize("ending", ("xml", "yade.gz"))
+def test_a_saved_wall_goes_on_with_the_same_bits(ending, tmp_path):
+    path = str(tmp_path / f"wall.{ending}")
+    wall()
+    O.run(700, True)
+    O.save(path)
+    steps(400)
+    straight, state = bits(), np.array(joint_engine().bondedState)
+    assert joint_engine().crackDissip > 0
+    O.reset()
+    O.load(path)
+    steps(400)
+    assert np.array_equal(bits(), straight)
+    assert np.array_equal(np.array(joint_engine().bondedState), state, equal_nan=True)
+
+
+def test_threads_give_the_same_bits():
+    own, script = mortar_hash(), Path(__file__).with_name("mortar_hash.py")
+    for threads in (1, 4):
+        run = subprocess.run(["yade", f"-j{threads}", "-n", "-x", str(script)], capture_output=True, text=True, timeout=600,
+                             env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}, stdin=subprocess.DEVNULL)
+        assert re.search(r"hash (\w+)", run.stdout)[1] == own, (threads, run.stdout, run.stderr)
+
+
+def test_bonds_are_made_where_they_are_asked_for():
+    """A brick with mortar on a base without is dry; dem.bond() bonds it as it stands, and it holds what a dry one would not."""
+    O.reset()
+    dry = dem.BlockMat(density=1900, frictionAngle=0.6435, normalStiffness=82e9, shearStiffness=36e9)
+    base = dem.base((0.5, 0.5, 0.1), dry)
+    one, two = dem.stack(2, SIZE, brick_material(), on=base)
+    O.engines = quiet_engines(model="auto")
+    steps(3)
+    assert [(row["body1"], row["body2"]) for row in dem.damage()] == [(one, two)]
+    assert dem.bond([base, two], eindhoven()) == 0 and dem.bond([], eindhoven()) == 0
+    assert dem.bond([base, one], eindhoven()) == 1
+    O.step()
+    assert len(dem.damage()) == 2
+    start = O.bodies[two].state.pos[2]
+    O.forces.setPermF(two, (0, 0, 1000))
+    O.run(3000, True)
+    assert O.bodies[two].state.pos[2] - start < 1e-5 and not dem.damage()["worst"].any()
+    O.forces.setPermF(two, (0, 0, 0))
+
+
+def test_a_broken_brick_rocks_with_its_restitution():
+    base, one = brick(gravity=9.81, restitution=0.6)
+    Loading(one, "turn", speed=1.0, stiffness=2e5).run()
+    assert not len(dem.impacts())
+    O.engines = [engine for engine in O.engines if type(engine).__name__ != "PyRunner"]
+    while not len(dem.impacts()) and O.time < 1:
+        O.run(1000, True)
+    assert dem.impacts()["restitution"][0] == pytest.approx(0.6, rel=1e-6)
+
+
+def test_scatter():
+    mortar = dem.scatter(eindhoven(), cov=0.3, seed=1)
+    factors = np.array([mortar.factor(a, b) for a in range(60) for b in range(a + 1, 60)])
+    assert factors.mean() == pytest.approx(1, abs=4 * 0.3 / math.sqrt(len(factors)))
+    assert factors.std() == pytest.approx(0.3, rel=0.1)
+    assert mortar.factor(3, 7) == mortar.factor(7, 3) == dem.scatter(eindhoven(), 0.3, 1).factor(3, 7) != dem.scatter(eindhoven(), 0.3, 2).factor(3, 7)
+    assert eindhoven().factor(3, 7) == 1
+    refuses(lambda: dem.scatter(eindhoven(), cov=1.5), "cov = 1.5")
+    refuses(lambda: dem.scatter(eindhoven(), seed=-1), "seed = -1")
+
+
+@pytest.mark.parametrize("changes, words", (
+    (dict(fractureEnergy=math.nan), ("fractureEnergy", "brittle")),
+    (dict(shearFractureEnergy=math.nan), ("shearFractureEnergy", "brittle")),
+    (dict(tensileStrength=math.nan), ("fractureEnergy", "tensileStrength")),
+    (dict(cohesion=math.nan, shearFractureEnergy=math.nan), ("cohesion",)),
+    (dict(flexuralStrength=0.6e6), ("flexuralStrength", "one of the two")),
+    (dict(tensileStrength=-1), ("tensileStrength = -1", "0 or positive")),
+    (dict(tensileStrength=math.inf), ("tensileStrength = inf",)),
+    (dict(fractureEnergy=0), ("fractureEnergy = 0", "positive")),
+    (dict(cohesion=0.18e6), ("cohesion", "187500")),
+    (dict(frictionAngle=1.6), ("frictionAngle = 1.6", "pi/2")),
+    (dict(normalStiffness=3e9), ("normalStiffness", "3.47222e+09")),
+    (dict(shearStiffness=0.9e9), ("shearStiffness", "9.8e+08")),
+    (dict(normalStiffness=-1), ("normalStiffness = -1", "Pa/m")),
+    (dict(scatter=2), ("scatter = 2",)),
+))
+def test_bad_mortar(changes, words):
+    assert "\n" not in refuses(lambda: eindhoven(**changes), *words)
+
+
+def test_bad_use_of_mortar():
+    refuses(lambda: dem.BlockMat(mortar=eindhoven(), noSlip=True), "noSlip", "mortar")
+    refuses(lambda: dem.BlockMat(mortar=dem.JointMat()), "mortar", "fractureEnergy")
+    refuses(lambda: dem.BlockMat(mortar=3), "mortar = 3", "JointMat", kind=TypeError)
+    refuses(lambda: dem.bond(material=3), "material = 3", "JointMat")
+    O.reset()
+    one, other = brick_material(), brick_material(eindhoven(fractureEnergy=20))
+    base = dem.base((1, 1, 0.1), one)
+    dem.block(SIZE, other, on=base)
+    refuses(dem.engines, f"bodies {base} and 1", "different mortar")
+    refuses(lambda: dem.bond(material=eindhoven()), "dem.engines")
+
+
+def test_rigid_blocks_refuse_mortar():
+    O.reset()
+    material = brick_material()
+    base = dem.base((1, 1, 0.1), material)
+    dem.block(SIZE, material, on=base)
+    for model in ("planar", "spatial"):
+        refuses(lambda: dem.engines(model=model), f"model = '{model}'", "compliant")
+    O.dt = 1e-4
+    for method, tolerance in (("localised", 1e-9), ("wall", 1e-3)):
+        O.engines = [dem.MoreauJeanIntegrator(method=method, tolerance=tolerance)]
+        refuses_to_run("mortar", "compliant")
+
+
+def test_joints_that_would_snap_or_gape_do_not_run():
+    O.reset()
+    material = brick_material(eindhoven(normalStiffness=math.nan), normalStiffness=3e9, shearStiffness=36e9)
+    base = dem.base((1, 1, 0.1), material)
+    dem.block(SIZE, material, on=base)
+    O.engines = quiet_engines(model="auto")
+    refuses_to_run("normalStiffness = 3e+09", "3.47222e+09")
+    O.reset()
+    material = brick_material()
+    base = dem.base((1, 1, 0.1), material)
+    dem.block(SIZE, material, center=(0, 0, 0.025 + 1e-4))
+    O.engines = quiet_engines(model="auto")
+    refuses_to_run("gap of 0.0001 m", "must touch")
