@@ -98,7 +98,10 @@ struct JointContact {
 	Vector3 gripMotion(int i, const Vector3& turn) const { return patch.normal.dot(turn) * patch.normal.cross(points[i].grip); }
 	// Of the bond, on body 2: about `center`, N m; and on points of the body, W.
 	Vector3 bondMoment(const Vector3& center) const { return load.moment + (load.place - center).cross(load.force); }
-	double bondPower(const Body& body) const { return load.force.dot(body.velocityAt(load.place)) + load.moment.dot(body.angularVelocity); }
+	double bondPower(const RigidBody<Space>& body) const
+	{
+		return load.force.dot(body.velocityAt(load.place)) + load.moment.dot(body.spin());
+	}
 	Vector3 force(int i) const { return points[i].normalForce * patch.normal + points[i].shearForce; } // on body 2
 	Vector3 moment(int i, const Vector3& center) const;                                                // of the same, about `center`
 	double power(int i, const RigidBody<Space>& body) const;                                           // of the same, on points of the body

@@ -218,7 +218,7 @@ MortarState stateOf(const MortarBond& bond)
 	return state;
 }
 
-void makeBond(JointContact& contact, const Body& body1, const Body& body2, const MortarLaw& law)
+void makeBond(JointContact& contact, const RigidBody<Space>& body1, const RigidBody<Space>& body2, const MortarLaw& law)
 {
 	if (contact.size() < 3)
 		return;
@@ -269,10 +269,10 @@ void makeBond(JointContact& contact, const Body& body1, const Body& body2, const
 		contact.energy.elastic += storedIn(fibre, law);
 }
 
-void updateBond(JointContact& contact, const Body& body1, const Body& body2, double dt)
+void updateBond(JointContact& contact, const RigidBody<Space>& body1, const RigidBody<Space>& body2, double dt)
 {
 	MortarBond& bond = *contact.bond;
-	Body start1 = body1, start2 = body2;
+	RigidBody<Space> start1 = body1, start2 = body2;
 	start1.advance(-dt);
 	start2.advance(-dt);
 	const Matrix3 turn1 = body1.pose.orientation.toRotationMatrix(), turn2 = body2.pose.orientation.toRotationMatrix();
@@ -339,14 +339,14 @@ void MortarAside::addLoads(double sign)
 {
 	for (const auto& [c, contact] : aside)
 		for (const auto& [b, side] : {std::pair(contact.body1, -sign), std::pair(contact.body2, sign)}) {
-			Body& body = system.bodies[b];
+			RigidBody<Space>& body = system.bodies[b];
 			if (body.prescribed)
 				continue;
-			body.force += side * contact.load.force;
-			body.torque += side * contact.bondMoment(body.pose.position);
+			body.force.head<3>() += side * contact.load.force;
+			body.force.tail<3>() += side * contact.bondMoment(body.pose.position);
 			for (int i = 0; i < contact.size(); ++i) {
-				body.force += side * contact.force(i);
-				body.torque += side * contact.moment(i, body.pose.position);
+				body.force.head<3>() += side * contact.force(i);
+				body.force.tail<3>() += side * contact.moment(i, body.pose.position);
 			}
 		}
 }

@@ -62,10 +62,10 @@ struct MortarState {
 MortarState stateOf(const MortarBond& bond);
 
 // Bonds the joint as it is now, without tension: contact.bond. The fibres take over the shear of the corners.
-void makeBond(JointContact& contact, const Body& body1, const Body& body2, const MortarLaw& law);
+void makeBond(JointContact& contact, const RigidBody<Space>& body1, const RigidBody<Space>& body2, const MortarLaw& law);
 
 // Forces and energies of the fibres after a step dt that ended in the present poses; those of the corners are up to date.
-void updateBond(JointContact& contact, const Body& body1, const Body& body2, double dt);
+void updateBond(JointContact& contact, const RigidBody<Space>& body1, const RigidBody<Space>& body2, double dt);
 
 // While it lives the bonded joints of a system are no joints: their forces are loads of their bodies. Impacts and jumps of the base act at
 // one instant, in which the springs of mortar do not move; it feels them in the steps that follow.
