@@ -351,7 +351,7 @@ void updateCorners(JointContact& contact, const RigidBody<Space>& body1, const R
 
 } // namespace
 
-void updateForces(JointContact& contact, const Body& body1, const Body& body2, double dt)
+void updateForces(JointContact& contact, const RigidBody<Space>& body1, const RigidBody<Space>& body2, double dt)
 {
 	if (!contact.isBonded())
 		return updateCorners(contact, body1, body2, dt);

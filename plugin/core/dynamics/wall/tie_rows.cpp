@@ -4,13 +4,6 @@
 
 namespace masonry::wall {
 
-namespace {
-
-Vector3 inSpace(const Vector2& v) { return {v.x(), v.y(), 0}; }
-const Vector3& inSpace(const Vector3& v) { return v; }
-
-} // namespace
-
 template <class K>
 std::vector<TieRow<K>> tieRows(const RigidSystem<K>& s, const ContactSet<K>& c, const LaneArray& before, double h)
 {
@@ -24,12 +17,11 @@ std::vector<TieRow<K>> tieRows(const RigidSystem<K>& s, const ContactSet<K>& c, 
 		if (!(line.length > 0))
 			continue;
 		const typename K::Vector arm1 = line.end1 - pose1.position, arm2 = line.end2 - pose2.position;
-		const Vector3 direction = inSpace(line.direction);
 		TieRow<K> row;
 		row.tie = t;
 		row.body = {tie.body1, tie.body2};
-		row.arm[0] = speedArm(c, tie.body1, -direction, inSpace(arm1));
-		row.arm[1] = speedArm(c, tie.body2, direction, inSpace(arm2));
+		row.arm[0] = speedArm(c, tie.body1, -line.direction, arm1);
+		row.arm[1] = speedArm(c, tie.body2, line.direction, arm2);
 		const double stiff = tie.stiffness * h;
 		const TieShares share = TieShares::ofLast(stiff * h * row.perMass(c.velocity));
 		row.compliance = 1 / (stiff * h * share.after);
