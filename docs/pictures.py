@@ -24,6 +24,7 @@ SCRIPTS = {
     "building": ("yade", ("building.png",)),
     "collapse": ("yade", ("collapse.gif", "joints.png", "energy.png", "report.png")),
     "convex_blocks": ("yade", ("convex_blocks.png",)),
+    "cracks": ("yade", ("cracks.png",)),
     "gable": ("yade", ("gable.png",)),
     "fragility": ("python", ("fragility.png",)),
     "impact_law": ("python", ("impact_law.png",)),

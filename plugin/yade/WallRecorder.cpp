@@ -133,6 +133,21 @@ void WallRecorder::addTies()
 	}
 }
 
+/// Joints with mortar: all of the scene, since crackDissip is that of all. Other engines that know fewer of them leave them as they were.
+void WallRecorder::addDamages()
+{
+	constexpr size_t row = 13, damage = 4, cracked = 11; // columns of RockingJointEngine.bondedState
+	for (const auto& engine : scene->engines)
+		if (const auto* joints = dynamic_cast<const RockingJointEngine*>(engine.get());
+		    joints && !joints->dead && joints->bondedIds.size() >= bondIds.size()) {
+			bondIds = joints->bondedIds;
+			bondStates = joints->bondedState;
+		}
+	bondCounts.push_back(int(bondIds.size() / 2));
+	for (size_t start = 0; start < bondStates.size(); start += row)
+		damages.insert(damages.end(), bondStates.begin() + start + damage, bondStates.begin() + start + cracked);
+}
+
 bool WallRecorder::isActivated()
 {
 	const bool due = isDue(*this);
@@ -179,6 +194,7 @@ void WallRecorder::action()
 	addEnergies();
 	addMotions();
 	addTies();
+	addDamages();
 	if (recordForces)
 		addJointForces();
 	for (size_t k = 0; k < ids.size(); ++k) {
@@ -195,6 +211,8 @@ void WallRecorder::action()
 boost::python::object WallRecorder::posesAsBytes() const { return asBytes(poses); }
 
 boost::python::object WallRecorder::tieStatesAsBytes() const { return asBytes(tieStates); }
+
+boost::python::object WallRecorder::damagesAsBytes() const { return asBytes(damages); }
 
 boost::python::object WallRecorder::jointForcesAsBytes() const { return asBytes(joints); }
 

@@ -9,11 +9,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from masonry import dem
+from masonry import dem, results
 from mortar_hash import mortar_hash, wall
 from mortar_scene import AREA, EINDHOVEN, SIZE, Loading, brick, brick_material, eindhoven
 from rocking_scene import Balance, bits, joint_engine, quiet_engines, refuses, refuses_to_run, said_by, steps
-from yade import O
+from yade import O, PyRunner
 
 
 def test_a_brick_that_is_pulled():
@@ -213,3 +213,86 @@ def test_joints_that_would_snap_or_gape_do_not_run():
     dem.block(SIZE, material, center=(0, 0, 0.025 + 1e-4))
     O.engines = quiet_engines(model="auto")
     refuses_to_run("gap of 0.0001 m", "must touch")
+
+
+class Kept:
+    """dem.damage() at every sample, by a second way."""
+
+    tables = []
+
+
+def test_the_history_has_the_damage_of_every_sample(tmp_path):
+    """The oracle is dem.damage(), called at the samples. Energies of the cracks add up to crackDissip; a crack is between the sample that shows it and that before."""
+    recorder = dem.WallRecorder(iterPeriod=50)
+    wall(recorder=recorder)
+    Kept.tables = []
+    place = O.engines.index(recorder)
+    O.engines = [*O.engines[:place], PyRunner(command="import test_mortar; test_mortar.Kept.tables.append(test_mortar.dem.damage())", iterPeriod=50, initRun=True), *O.engines[place:]]
+    O.run(1001, True)
+    history, kept = dem.wall_history(recorder), Kept.tables
+    assert len(history.time) == len(kept) == 21 and len(history.bonds) > 15
+    assert not history.damage["worst"][0].any()
+    for sample, table in enumerate(kept):
+        found = results.cracks(history, history.time[sample])
+        assert all(np.array_equal(found[name], table[name], equal_nan=name in ("cracked", "broken")) for name in table.dtype.names), sample
+        line = found.timeline[-1]
+        assert line["tension"] + line["shear"] == (table["worst"] >= 0.02).sum() == len(found.cracked)
+    last = results.cracks(history)
+    assert 0 < len(last.cracked) < len(last)
+    first = (history.damage["worst"] >= 0.02).argmax(axis=0)  # sample that shows the crack
+    for k in np.flatnonzero(last["worst"] >= 0.02):
+        assert history.time[first[k] - 1] < last["cracked"][k] <= history.time[first[k]]
+    assert last.energy == pytest.approx(dem.energy()["crackDissip"], rel=1e-9) and history.energy["crackDissip"][-1] == last.energy
+    energy = history.energy  # less than 1e-3 of what is dissipated is made
+    assert np.abs(energy["error"]).max() < 1e-3 * sum(energy[name][-1] for name in ("crackDissip", "dampDissip", "frictDissip"))
+    history.save(tmp_path / "wall.npz")
+    assert np.array_equal(results.WallHistory.load(tmp_path / "wall.npz").damage, history.damage)
+    results.write_paraview(history, tmp_path / "wall.pvd", every=10)
+    results.report(history, tmp_path / "wall.html")
+    last.picture(tmp_path / "cracks.png")
+
+
+@pytest.mark.parametrize("along, mode", (("z", "tension"), ("x", "shear")))
+def test_what_has_cracked_a_brick(along, mode, tmp_path):
+    """A brick that is pulled cracks in tension, a couplet that is sheared in shear. The energy is crackDissip; the other mode has next to nothing of it, since the
+    couplet, whose inertia is finite, turns a little."""
+    base, one = brick()
+    O.bodies[one].state.inertia = (1e6, 1e6, 1e6)  # so that it does not turn
+    recorder = dem.WallRecorder(iterPeriod=20)
+    Loading(one, along, speed=0.02, stiffness=1e9 if along == "z" else 2e8).run()
+    O.engines = [*O.engines[:-1], recorder, O.engines[-1]]
+    steps(30)
+    found = results.cracks(dem.wall_history(recorder))
+    (row,) = found.cracked
+    assert (row["body1"], row["body2"], row["mode"]) == (base, one, mode) and row["damage"] == 1 and np.isfinite(row["broken"])
+    assert found.energy == pytest.approx(dem.energy()["crackDissip"], rel=1e-12)
+    assert row["energy_shear" if mode == "tension" else "energy_tension"] < 1e-6 * found.energy
+    found.save(tmp_path / "cracks.csv")
+    assert f",{mode}," in (tmp_path / "cracks.csv").read_text().splitlines()[1]
+
+
+def test_a_joint_that_is_bonded_later_is_sound_before():
+    O.reset()
+    dry = dem.BlockMat(density=1900, frictionAngle=0.6435, normalStiffness=82e9, shearStiffness=36e9)
+    base = dem.base((0.5, 0.5, 0.1), dry)
+    one, two = dem.stack(2, SIZE, brick_material(), on=base)
+    recorder = dem.WallRecorder(iterPeriod=5)
+    O.engines = quiet_engines(model="auto", recorder=recorder)
+    steps(12)
+    assert len(dem.wall_history(recorder).bonds) == 1
+    dem.bond([base, one], eindhoven())
+    steps(10)
+    history = dem.wall_history(recorder)
+    assert [(row["body1"], row["body2"]) for row in history.bonds] == [(base, one), (one, two)] and history.damage.shape == (len(history.time), 2)
+    assert recorder.bondCounts[-1] == 2 and not history.damage["worst"].any()
+
+
+def test_a_comparison_has_the_damage():
+    def scene(**changes):
+        wall(**changes)
+        return O.engines
+
+    compared = dem.compare(scene, seconds=0.02)
+    assert "mean damage" in str(compared) and len(compared.runs) == 2
+    damages = [run.damage for run in compared.runs]
+    assert 0 < min(damages) <= max(damages) < 1 and (max(damages) < 1.1 * min(damages) + 0.01) == (not any("mean damage of the mortar" in doubt for doubt in compared.doubts))

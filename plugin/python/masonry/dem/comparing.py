@@ -2,18 +2,21 @@
 
 import contextlib
 import io
+import math
 import time
 from dataclasses import dataclass
 
 from masonry._given import positive_given, shown
 from masonry.dem.recording import wall_history
 from masonry.dem.running import motion_end, run
-from masonry.results import CollapseReport, collapse
+from masonry.results import CollapseReport, collapse, cracks
 from yade import O, wrapper
 
 _TOLERANCE = 1e-5
 # Samples of a run, for drifts and times of falls.
 _SAMPLES = 500
+# Mean damages of joints with mortar are the same where they differ by less than this.
+_SAME_DAMAGE = 0.01
 # Drifts are the same where they differ by less than this, of the height.
 _SAME_DRIFT = 1e-4
 
@@ -21,7 +24,7 @@ _SAME_DRIFT = 1e-4
 @dataclass
 class Run:
     """One of the runs that are compared. report: None where it failed, and `error` says why. failures: steps that missed the contact laws;
-    cpu: of the process, s."""
+    cpu: of the process, s. damage: mean D over the area of all joints with mortar at the end; NaN: none has any."""
 
     name: str
     dt: float
@@ -29,6 +32,7 @@ class Run:
     error: str
     failures: int
     cpu: float
+    damage: float = math.nan
 
     @property
     def verdict(self):
@@ -44,10 +48,12 @@ class Comparison:
 
     def __str__(self):
         rows = [("", "dt (s)", "verdict", "collapse (s)", "fallen", "peak drift", "residual", "failures", "CPU (s)")]
+        bonded = any(math.isfinite(one.damage) for one in self.runs)
+        rows = [(*rows[0], "mean damage")] if bonded else rows
         for one in self.runs:
             report = one.report
             found = (f"{report.time:.4g}" if report.collapsed else "", str(len(report.fallen)), f"{report.peak_drift:.3g}", f"{report.residual_drift:.3g}") if report else ("",) * 4
-            rows.append((one.name, f"{one.dt:.3g}", one.verdict, *found, str(one.failures), f"{one.cpu:.3g}"))
+            rows.append((one.name, f"{one.dt:.3g}", one.verdict, *found, str(one.failures), f"{one.cpu:.3g}", *([f"{one.damage:.3g}"] if bonded else [])))
         widths = [max(map(len, column)) for column in zip(*rows)]
         lines = ["  ".join(cell.ljust(width) for cell, width in zip(row, widths)).rstrip() for row in rows]
         return "\n".join(lines + ([f"DO NOT TRUST: {doubt}" for doubt in self.doubts] or ["all runs agree"]))
@@ -67,7 +73,7 @@ def compare(scene_function, seconds=None, share=0.1, blocks=1, progress=None):
     scene_function    builds the scene in O, which has been reset, and returns what dem.engines(..., **changes) returned; changes: dt or tolerance
     seconds           how long each run is, s; None: to the end of the last motion
     share             drifts (peak and residual, WallHistory.drift) and times of collapse agree when they differ by less than this share of the largest, or
-                      by 1e-4 of the height; above 0 and below 1
+                      by 1e-4 of the height, and so do mean damages of joints with mortar (or by 0.01); above 0 and below 1
     blocks            so many fallen blocks are a collapse, as in results.collapse()
     progress          bars, as in dem.run()
 
@@ -113,7 +119,11 @@ def _run(scene_function, name, changes, seconds, blocks, progress):
             raise
         error = str(failure)
     failures = next(e.failures for e in O.engines if isinstance(e, (wrapper.MoreauJeanIntegrator, wrapper.RockingJointEngine)))
-    return Run(name, dt, None if error else collapse(wall_history(recorder), blocks), error, failures, time.process_time() - start)
+    spent = time.process_time() - start
+    if error:
+        return Run(name, dt, None, error, failures, spent)
+    history = wall_history(recorder)
+    return Run(name, dt, collapse(history, blocks), "", failures, spent, cracks(history).mean_damage)
 
 
 def _doubts(runs, share):
@@ -129,4 +139,7 @@ def _doubts(runs, share):
         if apart > share * largest and (name == "time" or apart > _SAME_DRIFT):
             doubts.append(f"the {'time of collapse' if name == 'time' else name.replace('_', ' ')} depends on the method: from {min(values):.3g} to {largest:.3g}"
                           + (" s" if name == "time" else " of the height"))
+    damages = [one.damage for one in runs]
+    if max(damages) - min(damages) > max(share * max(damages), _SAME_DAMAGE):  # NaN: False
+        doubts.append(f"the mean damage of the mortar depends on the method: from {min(damages):.3g} to {max(damages):.3g}")
     return doubts

@@ -5,11 +5,8 @@ from masonry._given import is_whole, number_given, shown, whole_given
 from masonry.dem.bodies import block_body
 from masonry.dem.checks import check_joint_material
 from masonry.dem.engines import joint_engine_given
+from masonry.results.bonds import bond_table
 from yade import wrapper
-
-_DAMAGE_FIELDS = [("body1", int), ("body2", int), ("center", float, (3,)), ("area", float), ("damage", float), ("worst", float), ("mode", "U7"),
-                  ("opening", float), ("slip", float), ("energy_tension", float), ("energy_shear", float), ("cracked", float), ("broken", float)]
-_COLUMNS = 13  # of RockingJointEngine.bondedState
 
 
 def damage():
@@ -24,16 +21,7 @@ def damage():
     cracked, broken   time at which `worst` reached 0.02, and at which the last mortar broke, s; NaN: not yet
     """
     engine = _compliant_engine()
-    ids = np.array(engine.bondedIds, dtype=int).reshape(-1, 2)
-    state = np.array(engine.bondedState, dtype=float).reshape(-1, _COLUMNS)
-    table = np.zeros(len(ids), dtype=_DAMAGE_FIELDS)
-    table["body1"], table["body2"], table["center"] = ids.min(axis=1, initial=2**31 - 1), ids.max(axis=1, initial=0), state[:, :3]
-    names = ("area", "damage", "worst", None, "opening", "slip", "energy_tension", "energy_shear", "cracked", "broken")
-    for name, column in zip(names, state.T[3:]):
-        if name:
-            table[name] = column
-    table["mode"] = np.where(table["worst"] == 0, "", np.where(state[:, 6] >= 0.5, "tension", "shear"))
-    return table[np.lexsort((table["body2"], table["body1"]))]
+    return bond_table(engine.bondedIds, engine.bondedState)[0]
 
 
 def bond(ids=None, material=None):

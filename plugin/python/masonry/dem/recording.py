@@ -10,6 +10,7 @@ from masonry.dem.engines import impacts, joint_engine
 from masonry.dem.loads import dead_loads
 from masonry.dem.placing import union_polyhedron
 from masonry.results import WallHistory
+from masonry.results.bonds import DAMAGE, bond_table
 from masonry.results.wall_history import JOINT_FORCES, TIES
 from yade import O, wrapper
 
@@ -35,7 +36,7 @@ def wall_history(recorder):
     if present:
         _add_loads(energies, recorder.ids, poses[..., :3])
     return WallHistory(recorder.times, recorder.ids, sizes, blocks[:, 3] > 0, poses[..., :3], poses[..., 3:], energies, motion, end,
-                       about(recorder.ids, motions) if present else None, impacts() if present and joint_engine() else None, _forces(recorder), shapes, _ties(recorder))
+                       about(recorder.ids, motions) if present else None, impacts() if present and joint_engine() else None, _forces(recorder), shapes, _ties(recorder), *_bonds(recorder))
 
 
 def _add_loads(energies, ids, places):
@@ -81,6 +82,19 @@ def _ties(recorder):
     for k, name in enumerate(("force", "extension", "energy", "broken")):
         table[name] = states[..., k]
     return table
+
+
+def _bonds(recorder):
+    """(WallHistory.bonds, WallHistory.damage), or two None where no joint has mortar."""
+    if not recorder.bondIds:
+        return None, None
+    table, order = bond_table(recorder.bondIds, recorder.bondStates)
+    bonded = np.arange(len(order)) < np.array(recorder.bondCounts)[:, None]
+    values = np.frombuffer(recorder.damagesAsBytes()).reshape(-1, len(DAMAGE))
+    damage = np.zeros(bonded.shape, dtype=DAMAGE)
+    for (name, _), column in zip(DAMAGE, values.T):
+        damage[name][bonded] = column
+    return table, damage[:, order]
 
 
 def _forces(recorder):

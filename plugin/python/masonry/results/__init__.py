@@ -10,6 +10,7 @@ ParaView. Needs no YADE: a history saved by one script is drawn by another.
 from masonry._shapes import Shapes
 
 from .collapse import CollapseReport, collapse, fallen
+from .cracks import Cracks, cracks
 from .forces import base_reactions, thrust
 from .joints import joints, patches
 from .paraview import write_paraview
@@ -19,5 +20,5 @@ from .ties import ties
 from .time_histories import TimeHistory, joint_history, structure_history
 from .wall_history import WallHistory
 
-__all__ = ["CollapseReport", "Shapes", "TimeHistory", "WallHistory", "base_reactions", "collapse", "draw", "draw_energy", "draw_joints", "fallen", "film", "joint_history", "joints",
+__all__ = ["CollapseReport", "Cracks", "Shapes", "TimeHistory", "WallHistory", "base_reactions", "collapse", "cracks", "draw", "draw_energy", "draw_joints", "fallen", "film", "joint_history", "joints",
            "patches", "report", "structure_history", "thrust", "ties", "write_paraview"]

@@ -149,3 +149,19 @@ def movement(history, samples):
     opening, slip, closed = (np.array(values).reshape(len(samples), len(found.rows)) for values in zip(*(found.movement(history, k) for k in samples)))
     gone = found.gone[samples]
     return np.where(gone, np.nan, opening), np.where(closed & ~gone, slip, np.nan)
+
+
+def patches_of(history, id1, id2):
+    """Rows of joints(history) between the bodies of each pair: (which pair, row), two arrays."""
+    table, rows = _joints_of(history).rows, {}
+    for row, pair in enumerate(np.sort(history.ids[table], axis=1).tolist()):
+        rows.setdefault(tuple(pair), []).append(row)
+    found = [(k, row) for k, pair in enumerate(np.sort(np.column_stack([id1, id2]), axis=1).tolist()) for row in rows.get(tuple(pair), ())]
+    return tuple(np.array(found, dtype=int).reshape(-1, 2).T)
+
+
+def moved_patches(history, rows, position, orientation):
+    """(k, c, 3) corners of the patches in these rows, m, each fixed to block 1 of its joint, for poses of all blocks."""
+    found = _joints_of(history)
+    block = found.rows[rows, 0]
+    return position[block][:, None] + np.einsum("jab,jkb->jka", _pose.matrices(orientation[block]), found._arms[0][rows])

@@ -7,6 +7,8 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 from masonry._files import written
 from masonry._given import whole_given
+from masonry.results.cracks import Cracks
+from masonry.results.joints import moved_patches, patches, patches_of
 from masonry.results.ties import tie_ends, unbroken
 from masonry.results.wall_history import history_given
 
@@ -51,6 +53,21 @@ def _ties(history, sample, relative):
     return _vtu(ends.reshape(-1, 3), lines, count, {name: own[name] for name in ("body1", "body2", "force", "extension")}, {})
 
 
+def _bonds(history, sample, position, orientation):
+    """File of the joints with mortar: a polygon each, fixed to block 1, with its damage."""
+    own = Cracks(history, sample).table
+    which, rows = patches_of(history, own["body1"], own["body2"])
+    corners = moved_patches(history, rows, position, orientation)
+    there = np.isfinite(corners).all(axis=(1, 2))
+    own, corners = own[which[there]], corners[there]
+    real = np.ones(corners.shape[:2], dtype=bool)  # not the last corner repeated
+    real[:, 1:] = (np.diff(patches(history)[rows[there]], axis=1) != 0).any(axis=2)
+    cells = (_array("connectivity", np.arange(real.sum())) + _array("offsets", np.cumsum(real.sum(axis=1))) + _array("types", np.full(len(own), 7, np.uint8)))
+    values = {name: own[name] for name in ("body1", "body2", "damage", "worst", "opening", "slip", "energy_tension", "energy_shear")}
+    values["mode"] = np.where(own["mode"] == "", 0, np.where(own["mode"] == "tension", 1, 2))
+    return _vtu(corners[real], cells, len(own), values, {})
+
+
 def _vtu(points, cells, count, cell_data, point_data):
     sections = {"Points": _array("Points", points), "Cells": cells,
                 "CellData": "".join(_array(*item) for item in cell_data.items()), "PointData": "".join(_array(*item) for item in point_data.items())}
@@ -68,7 +85,8 @@ def write_paraview(history, path, every=1, relative=False):
 
     Each block is a cell with id, free (1 or 0), displacement of its centre (m), rotation and lean (rad); the corners have their displacement too, for
     the filter "Warp By Vector" on the first file. Cells are hexahedra, or polyhedra where there are convex blocks. Displacements and rotations are relative to the base and the first sample. Erased blocks are
-    left out. Ties that are not broken are lines with force (N) and extension (m), part 1 of the list.
+    left out. Ties that are not broken are lines with force (N) and extension (m), part 1 of the list. Joints with mortar are polygons fixed to their first block,
+    part 2, with damage and worst (mean and largest D), mode (0 sound, 1 tension, 2 shear), opening and slip of their cracks (m) and their energies (J).
     """
     history, path = history_given(history), Path(path)
     if path.suffix != ".pvd":
@@ -93,11 +111,13 @@ def write_paraview(history, path, every=1, relative=False):
         with written(file) as beside:
             Path(beside).write_text(text, encoding="utf-8")
         sets.append(f'<DataSet timestep="{float(history.time[sample])!r}" file={quoteattr(f"{folder.name}/{file.name}")}/>\n')
-        if history.ties is not None:
-            of_ties = folder / f"{path.stem}_ties_{sample:06d}.vtu"
-            with written(of_ties) as beside:
-                Path(beside).write_text(_ties(history, sample, relative), encoding="utf-8")
-            sets.append(f'<DataSet timestep="{float(history.time[sample])!r}" part="1" file={quoteattr(f"{folder.name}/{of_ties.name}")}/>\n')
+        others = [] if history.ties is None else [("ties", 1, _ties(history, sample, relative))]
+        others += [] if history.bonds is None else [("joints", 2, _bonds(history, sample, position[sample], orientation[sample]))]
+        for name, part, text in others:
+            file = folder / f"{path.stem}_{name}_{sample:06d}.vtu"
+            with written(file) as beside:
+                Path(beside).write_text(text, encoding="utf-8")
+            sets.append(f'<DataSet timestep="{float(history.time[sample])!r}" part="{part}" file={quoteattr(f"{folder.name}/{file.name}")}/>\n')
     with written(path) as beside:
         Path(beside).write_text('<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1" byte_order="LittleEndian">\n<Collection>\n'
                                 f'{"".join(sets)}</Collection>\n</VTKFile>\n', encoding="utf-8")

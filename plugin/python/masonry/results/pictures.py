@@ -5,8 +5,9 @@ from masonry._files import save_picture, written
 from masonry._given import number_given, positive_given, shown
 from masonry._progress import steps
 from masonry.results.collapse import collapse, lies
+from masonry.results.cracks import CRACKED
 from masonry.results.forces import has_forces, thrust_at_first
-from masonry.results.joints import joints, patches
+from masonry.results.joints import joints, patches, patches_of
 from masonry.results.ties import tie_ends
 from masonry.results.view import STILL, View, enlargement, largest, movement, nice, still
 from masonry.results.wall_history import ENERGIES, history_given
@@ -54,7 +55,7 @@ def _colorbar(figure, axes, colours, label, unit, beyond):
     from matplotlib.ticker import FuncFormatter
 
     thousandths = unit in ("m", "rad") and colours.norm.vmax < _SMALL
-    label = f"{label} ({'m' if thousandths else ''}{unit})"
+    label = f"{label} ({'m' if thousandths else ''}{unit})" if unit else label
     bar = figure.colorbar(colours, ax=axes, label=f"{label}\npurple: fallen" if beyond else label, shrink=0.8, pad=0.02, extend="max" if beyond else "neither")
     if thousandths:
         bar.formatter = FuncFormatter(lambda value, _: f"{1e3 * value:g}")
@@ -246,6 +247,27 @@ def joints_figure(history, time=None, view=None, title="", thrust=True):
     return figure
 
 
+def cracks_figure(history, cracks, view=None, title=""):
+    """The matplotlib figure of Cracks.picture()."""
+    from matplotlib.collections import LineCollection, PolyCollection
+    from matplotlib.colors import to_rgba
+
+    view, corners, free = View(history, view), history.corners(0), np.flatnonzero(history.free)
+    which, rows = patches_of(history, cracks["body1"], cracks["body2"])
+    order = np.argsort(cracks["damage"][which], kind="stable")
+    which, flat = which[order], view.place(patches(history)[rows[order]])
+    figure, (axes,) = _figure(view, view.place(corners[free]).reshape(-1, 2))
+    axes.add_collection(LineCollection(view.outlines(corners[free], free), colors="0.8", linewidths=0.4, zorder=1))
+    own, colours = cracks["worst"][which] >= CRACKED, shades("YlOrRd", 1)
+    colors = np.where(own[:, None], colours.to_rgba(cracks["damage"][which], alpha=1.0 if view.from_side else 0.6), to_rgba(_UNMOVED, 0.3))
+    axes.add_collection(PolyCollection(flat, facecolors=colors, edgecolors=colors, linewidths=np.where(own, 3.0 if view.from_side else 0.8, 0.8), zorder=2))
+    said = f"{len(cracks.cracked)} of {len(cracks)} joints cracked at {cracks.time:.3f} s"
+    axes.set_title(f"{title + ': ' if title else ''}{said}", fontsize="small")
+    if own.any():
+        _colorbar(figure, axes, colours, "mean damage D of the joint", "", False)
+    return figure
+
+
 def thrust_figure(history, time, view=None):
     """The third map of draw_joints() alone."""
     view = View(history, view)
@@ -301,9 +323,9 @@ def energy_figure(history, title=""):
         lower.plot(energy["time"], energy["error"], color="C3", linewidth=1)
         lower.set(ylabel="error of the\nbalance (J)")
     names = {"baseWork": "work of the base", "kinetic": "kinetic", "potential": "potential, since the start", "elastPotential": "elastic",
-             "frictDissip": "dissipated by friction", "impactDissip": f"dissipated by impacts{' and numerically' if closed else ''}",
+             "frictDissip": "dissipated by friction", "crackDissip": "spent by cracks of mortar", "impactDissip": f"dissipated by impacts{' and numerically' if closed else ''}",
              "dampDissip": "dissipated by dashpots and ties"}
-    for k, (key, name) in enumerate(names.items()):
+    for k, (key, name) in enumerate((key, name) for key, name in names.items() if key in energy.dtype.names):
         values = energy[key] - (energy[key][0] if key == "potential" else 0)
         if values.any() or key in ("baseWork", "kinetic"):
             upper.plot(energy["time"], values, label=name, color="k" if key == "baseWork" else f"C{k - 1}", linewidth=1.2)

@@ -9,12 +9,13 @@ from masonry._files import read_npz, written
 from masonry._given import number_given, shown
 from masonry._polyhedra import contacts
 from masonry._shapes import Shapes, box_corners
+from masonry.results.bonds import check_bonds
 from masonry.results.own_bases import TOUCH, own_bases
 
 ENERGIES = ("kinetic", "potential", "elastPotential", "frictDissip", "dampDissip", "impactDissip", "baseWork")
 _SAVED = ("time", "ids", "sizes", "free", "position", "orientation", "energies")
 # Files have these where they are known.
-_OPTIONAL = ("motion", "end", "about", "impacts", "forces", "ties")
+_OPTIONAL = ("motion", "end", "about", "impacts", "forces", "ties", "bonds", "damage")
 # Files hold these fields of shapes if there are convex blocks.
 _SHAPES = ("vertices", "vertex_start", "faces", "face_start")
 # Rows of the forces of joints: force on block 2, N, and where it acts, m.
@@ -49,6 +50,10 @@ class WallHistory:
                    where it acts (m); None: not recorded (WallRecorder.recordForces)
     ties           (s, m) structured array, for each sample and each of m ties (dem.tie): body1, body2, point1, point2 (where it is fixed to them, from their centres
                    in their own axes, m), force (N, tension positive, mean of the step before), extension (m), energy (J), broken; None: there are none
+    bonds          (m,) structured array of the joints with mortar in the last sample, with the columns of dem.damage(): all of the scene, sorted by their bodies;
+                   None: there are none
+    damage         (s, m) structured array, for each sample and each of these joints: damage, worst, by_tension (share of the damage that tension has made), opening,
+                   slip (m), energy_tension, energy_shear (J), all 0 before it is bonded; None: there are none
     shapes         masonry.results.Shapes, the corners and faces of all blocks, where some are convex blocks: their sizes are those of the box around them in
                    their own axes; None: all are boxes
 
@@ -58,7 +63,8 @@ class WallHistory:
     Raises ValueError when shapes do not fit, times do not increase or a block that is there at first is nowhere.
     """
 
-    def __init__(self, time, ids, sizes, free, position, orientation, energies=None, motion=None, end=None, about=None, impacts=None, forces=None, shapes=None, ties=None):
+    def __init__(self, time, ids, sizes, free, position, orientation, energies=None, motion=None, end=None, about=None, impacts=None, forces=None, shapes=None, ties=None,
+                 bonds=None, damage=None):
         self.shapes = shapes
         self.time, self.ids, self.sizes = np.asarray(time, dtype=float), np.asarray(ids, dtype=int), np.asarray(sizes, dtype=float)
         self.free, self.position, self.orientation = np.asarray(free, dtype=bool), np.asarray(position, dtype=float), np.asarray(orientation, dtype=float)
@@ -84,6 +90,8 @@ class WallHistory:
         if self.shapes is not None and (not isinstance(self.shapes, Shapes) or len(self.shapes) != blocks):
             raise ValueError(f"shapes = {shown(self.shapes)}: must be the Shapes of {blocks} blocks, or None")
         self._check_tables()
+        check_bonds(bonds, damage, samples)
+        self.bonds, self.damage = bonds, damage
         self.end = float(self.time[-1] if end is None else end)
         if not self.end >= self.time[-1]:
             raise ValueError(f"end = {end}: must not come before the last sample, at {self.time[-1]:g} s")
@@ -205,7 +213,7 @@ class WallHistory:
 
     def on_base(self, id):
         """The WallHistory of what stands on the prescribed body of that id, and of that body: drift, collapse, forces, pictures and reports of one structure among
-        several. Impacts, forces, and motions and materials of `about` are those of its blocks; energies, which the recorder has of all blocks together, are not known."""
+        several. Impacts, forces, joints with mortar, and motions and materials of `about` are those of its blocks; energies, which the recorder has of all blocks together, are not known."""
         row = np.flatnonzero((self.ids == id) & ~self.free)
         if len(row) != 1 or not (self.free & (self.bases == row[0])).any():
             carrying = np.unique(self.bases[self.free & (self.bases >= 0)])
@@ -217,9 +225,12 @@ class WallHistory:
             forces = forces[np.isin(forces["id1"], ids) & np.isin(forces["id2"], ids)]
         if impacts is not None:
             impacts = impacts[np.isin(impacts["body"], ids)]
-        shapes = None if self.shapes is None else self.shapes.of_rows(rows.tolist())
+        shapes, bonds, damage = None if self.shapes is None else self.shapes.of_rows(rows.tolist()), self.bonds, self.damage
+        if bonds is not None:
+            own = np.isin(bonds["body1"], ids) & np.isin(bonds["body2"], ids)
+            bonds, damage = bonds[own], damage[:, own]
         return WallHistory(self.time, ids, self.sizes[rows], self.free[rows], self.position[:, rows], self.orientation[:, rows], None, self.motion, self.end,
-                           _about_ids(self.about, ids.tolist()), impacts, forces, shapes)
+                           _about_ids(self.about, ids.tolist()), impacts, forces, shapes, bonds=bonds, damage=damage)
 
     def base_path(self, base):
         """Places (s, 3) and orientations (s, 4) of a base, by its row; from where it is erased, the last ones."""
@@ -299,16 +310,20 @@ class WallHistory:
 
     @cached_property
     def energy(self):
-        """(s,) structured array, J: kinetic, potential and elastPotential now; frictDissip, dampDissip, impactDissip and baseWork since the
+        """(s,) structured array, J: kinetic, potential and elastPotential now; frictDissip, dampDissip, impactDissip, crackDissip (with mortar alone) and baseWork since the
         start of the run, over all lists of engines that the recorder has been in; error: by how much the sum of all others less baseWork has
         grown since the first sample (with method='wall' round-off: impactDissip is there what is left over, numerical losses included), and what
         has no column of its own: the work of other engines' forces, a change of gravity or of velocities by a script, an erased block. NaN where it was
         not recorded."""
-        table = np.zeros(len(self.time), dtype=[("time", float)] + [(name, float) for name in ENERGIES] + [("error", float)])
+        cracks = () if self.damage is None else ("crackDissip",)
+        table = np.zeros(len(self.time), dtype=[("time", float)] + [(name, float) for name in (*ENERGIES[:-1], *cracks, ENERGIES[-1], "error")])
         table["time"] = self.time
         for name, column in zip(ENERGIES, self._energies.T):
             table[name] = column
         total = self._energies[:, :-1].sum(axis=1) - self._energies[:, -1]
+        if cracks:
+            table["crackDissip"] = (self.damage["energy_tension"] + self.damage["energy_shear"]).sum(axis=1)
+            total = total + table["crackDissip"]
         table["error"] = total - total[0]
         return table
 

@@ -8,7 +8,7 @@ import numpy as np
 from masonry.results.collapse import lies
 from masonry.results.forces import base_reactions
 from masonry.results.joints import movement
-from masonry.results.pictures import energy_figure, joints_figure, shape_figure, thrust_figure
+from masonry.results.pictures import cracks_figure, energy_figure, joints_figure, shape_figure, thrust_figure
 from masonry.results.view import largest, still
 
 _STYLE = {"svg.fonttype": "none", "svg.hashsalt": "masonry", "font.size": 9, "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True,
@@ -104,6 +104,28 @@ def tie_forces(history, verdict):
     axes[0].legend(title="bodies", ncols=2)
     time_axis(axes, history.time, verdict.time)
     return svg(figure)
+
+
+@styled
+def cracks(found, verdict):
+    """How many joints have cracked, and what the cracks have spent."""
+    figure, axes = axes_of(2, 3.6)
+    table = found.timeline
+    for name, color in (("tension", "tab:red"), ("shear", "tab:blue")):
+        axes[0].step(table["time"], table[name], where="post", color=color, label=f"in {name}")
+        axes[1].plot(table["time"], table[f"energy_{name}"], color=color, label=f"in {name}")
+    axes[0].step(table["time"], table["broken"], where="post", color="0.4", linestyle="--", linewidth=1, label="broken")
+    axes[0].set_ylabel("cracked joints")
+    axes[1].set_ylabel("spent by cracks (J)")
+    for one in axes:
+        one.legend(loc="upper left")
+    time_axis(axes, table["time"], verdict.time)
+    return svg(figure)
+
+
+@styled
+def crack_map(history, found):
+    return svg(cracks_figure(history, found), over_time=False)
 
 
 @styled

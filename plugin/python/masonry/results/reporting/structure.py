@@ -5,6 +5,7 @@ import math
 import numpy as np
 from masonry import _pose
 from masonry.results.collapse import collapse
+from masonry.results.cracks import Cracks
 from masonry.results.forces import has_forces
 from masonry.results.joints import joints
 from masonry.results.time_histories import joint_history, structure_history
@@ -13,8 +14,8 @@ from masonry.results.view import largest, movement, still
 
 from . import curves, view3d, words
 
-# Rows of tables: of joints, and of impacts (those that lost most).
-_JOINTS, _IMPACTS = 12, 200
+# Rows of tables: of joints, of impacts (those that lost most), and of joints that have cracked.
+_JOINTS, _IMPACTS, _CRACKS = 12, 200, 100
 # Error of the energy balance that is named among the warnings, relative to the largest energy in it.
 _UNBALANCED = 0.05
 # Drifts, and base shears over the weight, along an axis that are not named.
@@ -34,7 +35,7 @@ def content(history, exact):
                      "Largest horizontal displacement in a course, relative to the base; the curve of a block ends when it falls." + _shaded(verdict))]),
         _section("shape", "Shape at the largest drift", curves.shape(history, shown_first),
                  "The sample of the largest drift" + (" before the collapse" if verdict.collapsed else "") + "; dashed: the first sample."),
-        _joints_section(history, verdict, table), _joint_section(history, verdict, table), *_force_sections(history, verdict), _ties_section(history, verdict),
+        _joints_section(history, verdict, table), _joint_section(history, verdict, table), _cracks_section(history, verdict), *_force_sections(history, verdict), _ties_section(history, verdict),
         _energy_section(history), _impact_section(history)) if section]
     return {"title": history.about.get("script") or "Rocking masonry", "kind": verdict.verdict, "headline": _headline(verdict), "sentences": _sentences(history, verdict),
             "warnings": _warnings(history, verdict), "scene": view3d.scene(history, shown_first), "numbers": _numbers(history, verdict, table), "sections": sections,
@@ -76,7 +77,8 @@ def _warnings(history, verdict):
     said += [f"{note[0].upper()}{note[1:]}." for note in history.about.get("notes", [])]
     energy = history.energy
     if not np.isnan(energy["kinetic"]).all() and not np.isnan(energy["error"]).all():
-        turned = max(largest(np.abs(energy[name])) for name in ("kinetic", "frictDissip", "dampDissip", "impactDissip", "baseWork"))
+        turned = max(largest(np.abs(energy[name])) for name in ("kinetic", "frictDissip", "dampDissip", "impactDissip", "crackDissip", "baseWork")
+                     if name in energy.dtype.names)
         error = largest(np.abs(energy["error"]))
         if turned > 0 and error > _UNBALANCED * turned:
             said.append(f"The energies miss their balance by {error:.3g} J, {100 * error / turned:.2g} % of the largest of them: other engines' forces, erased "
@@ -106,7 +108,9 @@ def _numbers(history, verdict, table):
             rows.append((f"Joint that {verb} most", f"{words.decimal(1e3 * values[k], 4)} mm, blocks {table['id1'][k]} and {table['id2'][k]}", f"{table[name + '_time'][k]:.4g} s"))
     energy = history.energy[-1]
     for name, word in (("baseWork", "Work of the base"), ("frictDissip", "Dissipated by friction"), ("impactDissip", "Dissipated by impacts"),
-                       ("dampDissip", "Dissipated by dashpots and ties")):
+                       ("dampDissip", "Dissipated by dashpots and ties"), ("crackDissip", "Spent by cracks of mortar")):
+        if name not in energy.dtype.names:
+            continue
         if np.isfinite(energy[name]) and (energy[name] != 0 or name == "baseWork"):
             rows.append((word, f"{words.decimal(energy[name], 4)} J", "in all"))
     return rows
@@ -176,6 +180,23 @@ def _ties_section(history, verdict):
     return _section("ties", "Ties", curves.tie_forces(history, verdict), f"Forces of {_counted(len(table), 'tie')} at the instants of the samples, tension positive."
                     + broke + _shaded(verdict), columns=["Bodies", "Force (kN)", "at (s)", "Extension (mm)", "at (s)", "Broken at (s)"], rows=rows,
                     more=f"The {len(rows)} ties of {len(table)} that carried most.", fold="Table of ties")
+
+
+def _cracks_section(history, verdict):
+    found = Cracks(history, len(history.time) - 1)
+    if not len(found):
+        return None
+    text = f"{found}."
+    own = found.cracked
+    if not len(own):
+        return _section("cracks", "Cracks of the mortar", caption=f"{text[0].upper()}{text[1:]}")
+    rows = [(f"{r['body1']} – {r['body2']}", f"{r['cracked']:.4f}", str(r["mode"]), f"{r['damage']:.3f}", _mm(r["opening"]), _mm(r["slip"]),
+             f"{r['energy_tension'] + r['energy_shear']:.3g}", "" if math.isnan(r["broken"]) else f"{r['broken']:.4f}") for r in own[:_CRACKS]]
+    return _section("cracks", "Cracks of the mortar", curves.cracks(found, verdict), text + " A joint counts as cracked when the largest damage D in it is 0.02 or more; "
+                    "broken: no mortar is left." + _shaded(verdict), second=curves.crack_map(history, found),
+                    second_caption="Joints coloured by their mean damage D in the last sample, on the structure as it was at first.",
+                    columns=["Bodies", "First crack (s)", "in", "D", "Opening (mm)", "Slip (mm)", "Energy (J)", "Broken at (s)"], rows=rows,
+                    more=f"The first {len(rows)} of {len(own)} joints to crack, in their order.", fold="Table of cracks")
 
 
 def _mm(value):
