@@ -109,6 +109,14 @@ def test_colours_are_those_of_the_damage():
             assert np.abs(color[:3] - expected).max() < 0.02
 
 
+def test_the_map_shows_the_face_of_a_wall():
+    """1 m along x and 0.5 m along y: from the front; turned by a quarter: from the right.."""
+    assert results.cracks(cracking()).figure().axes[0].get_xlabel() == "x (m)"
+    own = cracking()
+    turned = results.WallHistory(own.time, own.ids, own.sizes[:, [1, 0, 2]], own.free, own.position, own.orientation, bonds=own.bonds, damage=own.damage)
+    assert results.cracks(turned).figure().axes[0].get_xlabel() == "y (m)"
+
+
 def test_paraview(tmp_path):
     """Two rectangles a sample, fixed to the first bodies of their joints."""
     import base64

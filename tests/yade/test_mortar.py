@@ -252,6 +252,20 @@ def test_the_history_has_the_damage_of_every_sample(tmp_path):
     last.picture(tmp_path / "cracks.png")
 
 
+def test_a_saved_recorder_goes_on_with_the_same_damage(tmp_path):
+    recorder = dem.WallRecorder(iterPeriod=40)
+    wall(recorder=recorder)
+    O.run(700, True)
+    O.save(str(tmp_path / "wall.yade.gz"))
+    steps(300)
+    straight = dem.wall_history(recorder)
+    O.reset()
+    O.load(str(tmp_path / "wall.yade.gz"))
+    steps(300)
+    loaded = dem.wall_history(next(engine for engine in O.engines if isinstance(engine, dem.WallRecorder)))
+    assert straight.damage["worst"].any() and np.array_equal(straight.damage, loaded.damage) and straight.bonds.tobytes() == loaded.bonds.tobytes()
+
+
 @pytest.mark.parametrize("along, mode", (("z", "tension"), ("x", "shear")))
 def test_what_has_cracked_a_brick(along, mode, tmp_path):
     """A brick that is pulled cracks in tension, a couplet that is sheared in shear. The energy is crackDissip; the other mode has next to nothing of it, since the

@@ -105,7 +105,7 @@ class Cracks:
 
     def picture(self, path, view=None, title=""):
         """Writes the crack map (.png, .pdf, .svg): the joints on the structure as it was at first, coloured by their mean damage D from 0 to 1; sound ones are thin
-        and grey. view: as in results.draw(). Raises ValueError where no joint has mortar."""
+        and grey. view: direction from the scene to the viewer; None: onto the face of a wall along x or y, else as in results.draw(). Raises ValueError where no joint has mortar."""
         save_picture(self.figure(view, title), path, dpi=150)
 
     def figure(self, view=None, title=""):

@@ -24,6 +24,8 @@ _SMALL = 0.1
 _THRUST = 2.0
 # Resultants smaller than this share of the largest are left out.
 _FAINT = 0.02
+# A wall is thinner than it is long by this factor at least.
+_THIN = 0.5
 # How far beside the structure a picture shows what has fallen, relative to its size: a wall that overturns lies within its height.
 _BESIDE = 1.0
 # Places so many times the width of the picture away are counted from another origin.
@@ -247,12 +249,19 @@ def joints_figure(history, time=None, view=None, title="", thrust=True):
     return figure
 
 
+def _face(corners):
+    """Direction from a wall along x or y towards the viewer of its face; None: there is no such wall."""
+    along_x, along_y = np.ptp(corners[..., :2].reshape(-1, 2), axis=0)
+    return (0, -1, 0) if along_y <= _THIN * along_x else (1, 0, 0) if along_x <= _THIN * along_y else None
+
+
 def cracks_figure(history, cracks, view=None, title=""):
     """The matplotlib figure of Cracks.picture()."""
     from matplotlib.collections import LineCollection, PolyCollection
     from matplotlib.colors import to_rgba
 
-    view, corners, free = View(history, view), history.corners(0), np.flatnonzero(history.free)
+    corners, free = history.corners(0), np.flatnonzero(history.free)
+    view = View(history, _face(corners[free]) if view is None else view)
     which, rows = patches_of(history, cracks["body1"], cracks["body2"])
     order = np.argsort(cracks["damage"][which], kind="stable")
     which, flat = which[order], view.place(patches(history)[rows[order]])

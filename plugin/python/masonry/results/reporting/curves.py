@@ -117,8 +117,9 @@ def cracks(found, verdict):
     axes[0].step(table["time"], table["broken"], where="post", color="0.4", linestyle="--", linewidth=1, label="broken")
     axes[0].set_ylabel("cracked joints")
     axes[1].set_ylabel("spent by cracks (J)")
+    axes[0].yaxis.get_major_locator().set_params(integer=True)
     for one in axes:
-        one.legend(loc="upper left")
+        one.legend(loc="center right")
     time_axis(axes, table["time"], verdict.time)
     return svg(figure)
 
