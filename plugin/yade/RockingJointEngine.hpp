@@ -21,6 +21,8 @@ public:
 	Real largestTimeStep();
 	Real chosenTimeStep();
 	int bond(const vector<int>& ids, const shared_ptr<JointMat>& mortar);
+	/// Bonds, their damage and the energy of the joints are those of another engine of the scene, which this one replaces.
+	void goOnFrom(const RockingJointEngine& other);
 
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(RockingJointEngine, GlobalEngine,
@@ -64,6 +66,7 @@ public:
 		((long, lastStep, -1, Attr::hidden, "")),
 		/* ctor */,
 		.def("bond", &RockingJointEngine::bond, "Bonds the pairs of these bodies that touch now with a JointMat, in the next step; returns their number. ids: those of the bodies, both of a pair among them; an empty list: all.")
+		.def("goOnFrom", &RockingJointEngine::goOnFrom, "Takes over the bonds of another RockingJointEngine of the scene and their damage, as dem.engines() does.")
 		.def("criticalTimeStep", &RockingJointEngine::criticalTimeStep, "Largest stable time step of the joints without their dashpots [s].")
 		.add_property("chosenTimeStep", &RockingJointEngine::chosenTimeStep, "Time step for stepFraction and the present joints [s]: that share of the critical step, at most three quarters of largestTimeStep.")
 		.add_property("largestTimeStep", &RockingJointEngine::largestTimeStep, "Largest time step that a run accepts with the present joints, dashpots included [s]: 0.4 to 0.6 of the critical one at dampingRatio = 0.5.")

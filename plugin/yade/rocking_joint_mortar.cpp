@@ -77,15 +77,29 @@ int RockingJointEngine::bond(const vector<int>& of, const shared_ptr<JointMat>& 
 	return count;
 }
 
+void RockingJointEngine::goOnFrom(const RockingJointEngine& other)
+{
+	started = other.started;
+	elastPotential = other.elastPotential;
+	crackDissip = other.crackDissip;
+	bondedIds = other.bondedIds;
+	bondedState = other.bondedState;
+	bondsAsked = other.bondsAsked;
+}
+
 /// Before the first step: blocks that both have the same mortar. At any time: what dem.bond has asked for.
 void RockingJointEngine::askForMortar()
 {
 	for (size_t c = 0; !started && c < blocks.pairs.size(); ++c) {
 		const auto [geom, phys] = blocks.pairs[c];
 		const masonry::JointContact& contact = step.system.contacts[c];
-		if (!phys->mortar || contact.size() < 3)
+		if (!(phys->mortar || contact.bond) || contact.size() < 3)
 			continue;
 		const int id1 = blocks.ids[contact.body1], id2 = blocks.ids[contact.body2];
+		if (contact.bond)
+			throw std::runtime_error(
+			    pairOf(id1, id2) + " has mortar that another RockingJointEngine has bonded: O.engines must keep that engine, or be made by "
+			                       "dem.engines() while it is there, which goes on with its damage.");
 		const Real gap = largestGap(contact.patch);
 		if (gap > touching * std::min(geom->refR1, geom->refR2))
 			throw std::runtime_error(
@@ -121,9 +135,10 @@ void RockingJointEngine::writeMortar()
 	for (size_t c = 0; c < blocks.pairs.size(); ++c) {
 		const masonry::JointContact& contact = step.system.contacts[c];
 		BlockPhys& phys = *blocks.pairs[c].phys;
-		if (!contact.bond || (phys.jointRow >= 0 && contact.energy.crack == 0))
+		const bool isListed = phys.jointRow >= 0 && phys.jointRow < int(bondedIds.size() / 2);
+		if (!contact.bond || (isListed && contact.energy.crack == 0))
 			continue;
-		if (phys.jointRow < 0) {
+		if (!isListed) {
 			phys.jointRow = int(bondedIds.size() / 2);
 			bondedIds.insert(bondedIds.end(), {blocks.ids[contact.body1], blocks.ids[contact.body2]});
 			const Vector3r& at = contact.load.place;

@@ -8,6 +8,7 @@ import pytest
 from histories import ROUND, history
 from masonry import results
 from masonry.results.bonds import BONDS, DAMAGE, bond_table
+from masonry.results.wall_history import TIES
 
 
 
@@ -139,6 +140,18 @@ def test_paraview(tmp_path):
 def test_a_part_of_a_structure_keeps_its_joints():
     own = cracking(free=[False, True, True])
     assert results.cracks(own.on_base(10)).energy == 2.5
+
+
+def test_a_part_of_a_structure_keeps_its_ties():
+    """Those between its bodies; none: None."""
+    own = cracking(free=[False, True, True])
+    one, other, stranger = own.ids[0], own.ids[1], own.ids.max() + 1
+    ties = np.zeros((len(own.time), 2), dtype=TIES)
+    ties["body1"], ties["body2"], ties["force"] = [one, other], [other, stranger], [3.0, 5.0]
+    for columns, forces in (([0, 1], [3.0]), ([1], None)):
+        history = results.WallHistory(own.time, own.ids, own.sizes, own.free, own.position, own.orientation, ties=ties[:, columns])
+        found = history.on_base(10).ties
+        assert found is None if forces is None else found["force"][-1].tolist() == forces
 
 
 def test_rows_of_the_engine_become_a_sorted_table():

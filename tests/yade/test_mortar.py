@@ -122,7 +122,9 @@ def test_bonds_are_made_where_they_are_asked_for():
     O.engines = quiet_engines(model="auto")
     steps(3)
     assert [(row["body1"], row["body2"]) for row in dem.damage()] == [(one, two)]
-    assert dem.bond([base, two], eindhoven()) == 0 and dem.bond([], eindhoven()) == 0
+    assert dem.bond([], eindhoven()) == 0
+    refuses(lambda: dem.bond([base, two], eindhoven()), f"ids = [{base}, {two}]", "no two of these bodies touch")
+    refuses(lambda: dem.bond([one, one], eindhoven()), f"ids = [{one}, {one}]", "two different bodies")
     assert dem.bond([base, one], eindhoven()) == 1
     O.step()
     assert len(dem.damage()) == 2
@@ -194,10 +196,79 @@ def test_rigid_blocks_refuse_mortar():
     dem.block(SIZE, material, on=base)
     for model in ("planar", "spatial"):
         refuses(lambda: dem.engines(model=model), f"model = '{model}'", "compliant")
+    refuses(lambda: dem.engines(method="wall"), "method = 'wall'", "mortar", "compliant")
+    refuses(lambda: dem.engines(tolerance=1e-6), "tolerance = 1e-06", "mortar", "compliant")
+    refuses(dem.TiltTable, "TiltTable", "mortar", "compliant")
     O.dt = 1e-4
     for method, tolerance in (("localised", 1e-9), ("wall", 1e-3)):
         O.engines = [dem.MoreauJeanIntegrator(method=method, tolerance=tolerance)]
         refuses_to_run("mortar", "compliant")
+
+
+def test_ties_and_mortar_are_not_in_one_scene():
+    """Neither order advises a model that the other one refuses."""
+    O.reset()
+    material = brick_material()
+    base = dem.base((1, 1, 0.1), material)
+    one = dem.block(SIZE, material, on=base)
+    tie = (one, (0, 0, 0.05), base, (0.4, 0, 0), 1e6)
+    O.engines = quiet_engines(model="auto")
+    assert "planar" not in refuses(lambda: dem.tie(*tie), "ties", "mortar", "cannot be in one scene")
+    O.engines = []
+    dem.tie(*tie)
+    assert "planar" not in refuses(dem.engines, "ties", "mortar", "cannot be in one scene")
+
+
+def test_a_gap_under_mortar():
+    """A gap as wide as a joint is no joint, but an opening of half a brick is one."""
+    for gap in (0.01, 0.03):
+        O.reset()
+        material = brick_material()
+        base = dem.base((1, 1, 0.1), material)
+        one = dem.block(SIZE, material, on=base)
+        two = dem.block(SIZE, material, center=(0, 0, 0.075 + gap))
+        if gap < SIZE[2] / 2:
+            refuses(dem.engines, f"bodies {one} and {two}", "a gap of 0.01 m", "must touch")
+        else:
+            quiet_engines(model="auto")
+
+
+def test_new_engines_go_on_with_the_damage():
+    """Engines that are made anew in a run have the bonds as they are; without those of before, the joints could not be told from sound ones."""
+    wall()
+    O.run(700, True)
+    before, spent, elastic = dem.damage(), dem.energy()["crackDissip"], dem.energy()["elastPotential"]
+    assert before["worst"].max() > 0.5
+    engines = list(O.engines)
+    place = engines.index(joint_engine())
+    O.engines = quiet_engines(model="auto")
+    assert dem.damage().tobytes() == before.tobytes()
+    O.step()
+    after = dem.damage()
+    assert (after["damage"] >= before["damage"]).all() and len(after) == len(before)
+    assert spent <= dem.energy()["crackDissip"] < 1.05 * spent  # a step of the cracks that grow
+    assert dem.energy()["elastPotential"] == pytest.approx(elastic, rel=0.2)
+    table = dem.damage()
+    assert (table["energy_tension"] + table["energy_shear"]).sum() == pytest.approx(dem.energy()["crackDissip"], rel=1e-9)
+    assert joint_engine().madeEnergy < 1e-3 * elastic
+    O.engines = [*engines[:place], dem.RockingJointEngine(), *engines[place + 1:]]
+    refuses_to_run("another RockingJointEngine", "keep that engine")
+
+
+def test_what_is_said_of_mortar(tmp_path):
+    """Of a restitution where one is given, and of its strengths in a report."""
+    for restitution, says in ((math.nan, False), (0.6, True)):
+        O.reset()
+        material = brick_material(restitution=restitution)
+        base = dem.base((1, 1, 0.1), material)
+        dem.block(SIZE, material, on=base)
+        assert ("restitution" in said_by(dem.engines)) == says
+    recorder = dem.WallRecorder(iterPeriod=5)
+    O.engines = quiet_engines(model="auto", recorder=recorder)
+    steps(11)
+    results.report(dem.wall_history(recorder), tmp_path / "brick.html")
+    text = (tmp_path / "brick.html").read_text()
+    assert "tensile strength 2.5e+05 Pa" in text and "cohesion 3.5e+05 Pa" in text and "fracture energy 18 J/m^2" in text
 
 
 def test_joints_that_would_snap_or_gape_do_not_run():
@@ -210,9 +281,9 @@ def test_joints_that_would_snap_or_gape_do_not_run():
     O.reset()
     material = brick_material()
     base = dem.base((1, 1, 0.1), material)
-    dem.block(SIZE, material, center=(0, 0, 0.025 + 1e-4))
+    dem.block(SIZE, material, center=(0, 0, 0.025 + 3e-5))
     O.engines = quiet_engines(model="auto")
-    refuses_to_run("gap of 0.0001 m", "must touch")
+    refuses_to_run("gap of 3e-05 m", "must touch")
 
 
 class Kept:

@@ -12,6 +12,8 @@ from yade import O, wrapper
 _NAMED = 10
 # kg/m^3. Wide enough for other units (t/mm^3), far from overflow.
 _DENSITIES = 1e-12, 1e12
+# Gap above a block with mortar from which it is an opening, relative to the smallest size of the two.
+_OPENING = 0.5
 
 
 def listed(items):
@@ -47,6 +49,31 @@ def check_mortar(blocks):
                 raise ValueError(f"bodies {blocks[i].id} and {blocks[j].id} touch and have different mortar: a joint has one JointMat; give both bodies the same, or bond "
                                  "the joint by dem.bond()")
     return list({known[b.mat.id]: b.mat.mortar for b in having}.values())
+
+
+def check_use_of_mortar(blocks, model, rigid, has_ties):
+    """ValueError where blocks with mortar have gaps, or the scene is to have what is for rigid blocks alone: a model, other arguments {name: value}, ties."""
+    if model not in ("auto", "compliant"):
+        raise ValueError(f"model = {shown(model)}: rigid blocks know dry joints only: must be 'compliant' (or 'auto') where a BlockMat has mortar")
+    for name in (name for name, value in rigid.items() if value):
+        raise ValueError(f"{name} = {shown(rigid[name])}: is for rigid blocks, which know dry joints only: must be left out where a BlockMat has mortar, which needs "
+                         "compliant joints (model='compliant')")
+    if has_ties:
+        raise ValueError("dem.tie() and BlockMat.mortar cannot be in one scene: ties need rigid blocks and mortar needs model='compliant': leave out the ties or the "
+                         "mortar, or let springs of your own act through O.forces")
+    if O.iter == 0:
+        _check_gaps(blocks)
+
+
+def _check_gaps(blocks):
+    """ValueError where blocks with mortar lie above each other and do not touch. Gaps above half of the smallest size of the two are openings."""
+    pairs, gaps, margins, supports = contacts_of(blocks, _OPENING)
+    wide = {tuple(pair): gap for pair, gap, margin in zip(pairs.tolist(), gaps.tolist(), margins.tolist()) if gap > TOUCH / _OPENING * margin}
+    for pair in map(tuple, np.sort(supports, axis=1).tolist()):
+        one, other = (blocks[k] for k in pair)
+        if pair in wide and one.mat.mortar and other.mat.mortar and (one.dynamic or other.dynamic):
+            raise ValueError(f"bodies {one.id} and {other.id} have mortar and a gap of {wide[pair]:.3g} m: blocks with mortar must touch; the mortar's thickness belongs to their "
+                             "sizes, half a joint to either")
 
 
 def check_recorder(recorder):

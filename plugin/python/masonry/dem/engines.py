@@ -12,7 +12,7 @@ from yade import O, wrapper
 from masonry import _yade
 from masonry.dem import bodies, notes
 from masonry.dem.bodies import face_areas, geometry, half_sizes, poses, reach
-from masonry.dem.checks import check_blocks, check_material, check_mortar, check_recorder
+from masonry.dem.checks import check_blocks, check_material, check_mortar, check_recorder, check_use_of_mortar
 from masonry.dem.loads import dead_loads, load_engines, potential_of_loads
 from masonry.dem.pushing import Push
 from masonry.dem.structures import structures
@@ -256,6 +256,7 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
 
     A joint of two BlockMats has the smaller friction angle, the mean restitution (the given one where only one is), and noSlip if either has it and the other one
     has no friction angle of 0.
+    Engines that are made in a run with mortar go on with its bonds, their damage and crackDissip; all other results begin anew.
     A BlockMat is read when two blocks come near each other. Changed during a run, it acts on pairs that come later; for those that are there
     already set phys.tangensOfFrictionAngle and phys.restitution of the interactions in O.interactions.
     """
@@ -273,9 +274,9 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
     notes.say_what_looks_odd(blocks, motions, gravity, others, {id for pair in tied() for id in pair})
     reason = "asked for"
     mortars = check_mortar(blocks)
-    if mortars and model not in ("auto", "compliant"):
-        raise ValueError(f"model = {shown(model)}: rigid blocks know dry joints only: must be 'compliant' (or 'auto') where a BlockMat has mortar")
-    notes.say_of_mortar(mortars)
+    if mortars:
+        check_use_of_mortar(blocks, model, {"method": method != "auto" and method, "tolerance": tolerance, "others": others}, any(not one.dead for one in ties()))
+    notes.say_of_mortar(mortars, blocks)
     if model == "auto":
         if mortars:
             model, reason = "compliant", "a BlockMat has mortar"
@@ -337,7 +338,9 @@ def _compliant(blocks, motions, reason, dt, penetration, impact_order, gravity, 
     if chosen:
         reasons.append(chosen)
 
-    joints = wrapper.RockingJointEngine(impactOrder=impact_order)
+    joints, before = wrapper.RockingJointEngine(impactOrder=impact_order), joint_engine()
+    if O.iter > 0 and getattr(before, "bondedIds", None):
+        joints.goOnFrom(before)
     critical, largest = joints.criticalTimeStep(), joints.largestTimeStep
     if not np.isfinite(critical):  # nothing touches yet
         free = [b for b in blocks if b.dynamic]

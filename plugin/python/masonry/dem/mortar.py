@@ -30,13 +30,21 @@ def bond(ids=None, material=None):
     ids         of blocks and bases, a list: joints of which both bodies are named; None: all
     material    a JointMat. Stiffness and friction angle that it does not give are those of the joint
 
-    The scene must have its engines of model='compliant'; the bonds act from the next step on. A joint that has been bonded before gets new mortar."""
+    Raises ValueError where no two of the bodies touch. The scene must have its engines of model='compliant'; the bonds act from the next step on. A joint that has been bonded before gets new mortar."""
     check_joint_material(material)
     if ids is not None and not (np.iterable(ids) and all(is_whole(id, 0) for id in ids)):
         raise ValueError(f"ids = {shown(ids)}: must be a list of ids of bodies, whole numbers from 0 on, or None for all")
     for id in ids or []:
         block_body(int(id))
-    return _compliant_engine().bond([int(id) for id in ids or []], material) if ids is None or len(ids) else 0
+    engine = _compliant_engine()
+    if ids is not None and not len(ids):
+        return 0
+    if ids is not None and len(set(map(int, ids))) < 2:
+        raise ValueError(f"ids = {shown(ids)}: must name two different bodies at least: a joint is between two")
+    count = engine.bond([int(id) for id in ids or []], material)
+    if count == 0:
+        raise ValueError(f"ids = {shown(ids)}: no two of these bodies touch face on face: there is no joint to bond")
+    return count
 
 
 def scatter(mortar, cov=0.3, seed=1):

@@ -34,7 +34,7 @@ def say(text):
     print(f"masonry.dem: {text}")
 
 
-def say_of_mortar(mortars):
+def say_of_mortar(mortars, blocks):
     """What strengths and energies look like a slip of units, what a flexural strength stands for, and what waits for cracks."""
     for mortar in mortars:
         for name in ("tensileStrength", "flexuralStrength", "cohesion"):
@@ -46,7 +46,7 @@ def say_of_mortar(mortars):
         if not math.isnan(mortar.flexuralStrength):
             say(f"flexuralStrength = {mortar.flexuralStrength:g} Pa stands for the tensile strength {mortar.directStrength:.4g} Pa: joints of this stiffness bear "
                 f"{mortar.flexuralStrength / mortar.directStrength:.3g} times the moment at which their edge reaches its strength")
-    if mortars:
+    if mortars and not all(math.isnan(b.mat.restitution) for b in blocks):
         print("masonry.dem: mortar: a restitution acts in joints without sound mortar")
 
 

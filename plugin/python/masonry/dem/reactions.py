@@ -12,11 +12,12 @@ def joint_forces():
     """The forces of all joints that carry load, after the last step: a structured array, one row for each pair of blocks.
 
     id1, id2    the blocks
-    force       on block 2, N: pressure and friction of all points of the joint
-    point       centre of the pressure, where the resultant crosses the joint, m
+    force       on block 2, N: pressure and friction of all points of the joint, with tension and shear of its mortar
+    point       where the resultant crosses the joint, m: centre of the pressure. With mortar, which also pulls, it may lie outside the joint; where hardly any force
+                crosses it, it is the place nearest to the joint on the line along which the resultant acts
 
-    In a step in which an impact happened, rigid blocks show the force after it. Pressure and friction of a joint have no other moment about `point` than
-    one about its normal. Empty before the first step."""
+    In a step in which an impact happened, rigid blocks show the force after it. The forces of a joint have no other moment about `point` than
+    one about its normal, or about the resultant where hardly any force crosses the joint. Empty before the first step."""
     rows = np.frombuffer(wrapper.WallRecorder().jointForcesNow()).reshape(-1, 8)
     table = np.zeros(len(rows), dtype=JOINT_FORCES)
     table["id1"], table["id2"], table["force"], table["point"] = rows[:, 0], rows[:, 1], rows[:, 2:5], rows[:, 5:]
@@ -28,7 +29,7 @@ def reactions(id):
 
     id       the block that is carried
     force    on it, N
-    point    where it acts: centre of the pressure of the joint, m
+    point    where it acts, m, as in joint_forces()
 
     dem.reactions(base)["force"].sum(axis=0) is the reaction of the base: for blocks at rest their weight, else m (a - g). For rigid blocks O.forces holds only
     the loads of other engines; these are the forces of the joints for every model."""

@@ -49,12 +49,14 @@ def tie(block1, point1, block2, point2, stiffness, pretension=0.0, strength=math
     made = wrapper.BlockTie(body1=bodies[0].id, body2=bodies[1].id, point1=own[0], point2=own[1], length=(places[1] - places[0]).norm(),
                             stiffness=float(positive_given("stiffness", stiffness, ", in N/m")), pretension=float(pretension), strength=float(strength),
                             tensionOnly=bool(tension_only))
-    _made.append((made, scene_mark()))
     for engine in O.engines:
         if isinstance(engine, wrapper.RockingJointEngine) and not engine.dead:
+            if engine.bondedIds or any(body.mat.mortar is not None for body in bodies):
+                raise ValueError("dem.tie() and BlockMat.mortar cannot be in one scene: ties need rigid blocks and mortar needs model='compliant'")
             raise ValueError("dem.tie() is for rigid blocks: O.engines has compliant joints; give dem.engines() model='planar' or 'spatial', or 'auto' and no stiffness")
         if isinstance(engine, wrapper.MoreauJeanIntegrator) and not engine.dead:
             engine.ties = [*engine.ties, made]
+    _made.append((made, scene_mark()))
     return made
 
 

@@ -92,7 +92,7 @@ def joint_history(history, id1=None, id2=None):
                      size of the part along it
     point            where the force crosses the joint, m; NaN where it carries none
     friction_work    J, dissipated by sliding so far: the force along the joint times the slip of its point, sample by sample. Samples must be dense: what
-                     happens between two of them is a straight way under a mean force
+                     happens between two of them is a straight way under a mean force. With mortar it has what the shear of the mortar takes up too
 
     Forces and work are NaN unless WallRecorder(recordForces=True) has kept them. Raises ValueError where the blocks do not touch in the first sample."""
     table = joints(history)

@@ -213,7 +213,7 @@ class WallHistory:
 
     def on_base(self, id):
         """The WallHistory of what stands on the prescribed body of that id, and of that body: drift, collapse, forces, pictures and reports of one structure among
-        several. Impacts, forces, joints with mortar, and motions and materials of `about` are those of its blocks; energies, which the recorder has of all blocks together, are not known."""
+        several. Impacts, forces, ties, joints with mortar, and motions and materials of `about` are those of its blocks; energies, which the recorder has of all blocks together, are not known."""
         row = np.flatnonzero((self.ids == id) & ~self.free)
         if len(row) != 1 or not (self.free & (self.bases == row[0])).any():
             carrying = np.unique(self.bases[self.free & (self.bases >= 0)])
@@ -229,8 +229,12 @@ class WallHistory:
         if bonds is not None:
             own = np.isin(bonds["body1"], ids) & np.isin(bonds["body2"], ids)
             bonds, damage = bonds[own], damage[:, own]
+        ties = self.ties
+        if ties is not None:
+            own = np.isin(ties["body1"][0], ids) & np.isin(ties["body2"][0], ids)
+            ties = ties[:, own] if own.any() else None
         return WallHistory(self.time, ids, self.sizes[rows], self.free[rows], self.position[:, rows], self.orientation[:, rows], None, self.motion, self.end,
-                           _about_ids(self.about, ids.tolist()), impacts, forces, shapes, bonds=bonds, damage=damage)
+                           _about_ids(self.about, ids.tolist()), impacts, forces, shapes, ties, bonds, damage)
 
     def base_path(self, base):
         """Places (s, 3) and orientations (s, 4) of a base, by its row; from where it is erased, the last ones."""

@@ -22,7 +22,16 @@ def material(given):
     restitution = "natural restitution" if given["restitution"] is None else f"restitution {given['restitution']:.3g}"
     stiffness = [f"{word} stiffness {given[name]:.3g} Pa/m" for name, word in (("normalStiffness", "normal"), ("shearStiffness", "shear"))
                  if given[name] is not None]
-    return ", ".join([f"{len(given['ids'])} blocks: density {given['density']:g} kg/m^3", friction, restitution, *stiffness])
+    bonded = [mortar(given["mortar"])] if given.get("mortar") else []
+    return ", ".join([f"{len(given['ids'])} blocks: density {given['density']:g} kg/m^3", friction, restitution, *stiffness, *bonded])
+
+
+def mortar(given):
+    """A clause on the JointMat of a BlockMat; what it does not give is that of the block."""
+    words = {"tensileStrength": "tensile strength {:.3g} Pa", "flexuralStrength": "flexural strength {:.3g} Pa", "fractureEnergy": "fracture energy {:.3g} J/m^2",
+             "cohesion": "cohesion {:.3g} Pa", "shearFractureEnergy": "fracture energy in shear {:.3g} J/m^2", "frictionAngle": "friction angle {:.3g} rad",
+             "normalStiffness": "normal stiffness {:.3g} Pa/m", "shearStiffness": "shear stiffness {:.3g} Pa/m", "scatter": "coefficient of variation {:.3g}"}
+    return "mortar of " + ", ".join(text.format(given[name]) for name, text in words.items() if given.get(name))
 
 
 def motion(given):
