@@ -81,6 +81,8 @@ def test_drift_with_its_sign_and_the_weight():
     known = leaning(0.1, (0, 1, 0))
     known.forces = np.array([(1, 10, 11, (1177.2, 0, 5), (0, 0, 0))], dtype=ROWS)
     assert abs(results.structure_history(known).numbers["the same over the weight (V/W along x)"] - 1177.2 / (2000 * 0.6 * 9.81)) < ROUND
+    known.about["masses"] = [{"mass": 2400.0, "ids": [11]}]  # with 1200 kg that dem.add_mass has added
+    assert abs(results.structure_history(known).numbers["the same over the weight (V/W along x)"] - 1177.2 / (2400 * 9.81)) < ROUND
     with pytest.raises(ValueError, match="weight = 0"):
         results.structure_history(moved, weight=0)
     with pytest.raises(ValueError, match="base = 11: must be the id of a prescribed body"):

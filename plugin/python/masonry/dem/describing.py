@@ -18,10 +18,10 @@ _SOLVER = ("worstResidual", "failures", "firstFailure", "madeEnergy", "lostEnerg
 
 
 def about(ids, motions):
-    """A dict that JSON can hold: script, versions, model, materials (with the ids that they have among `ids`), motions, loads where there are any, solver and notes."""
+    """A dict that JSON can hold: script, versions, model, materials (with the ids that they have among `ids`), masses of free blocks, motions, loads where there are any, solver and notes."""
     engine, loads = joint_engine(), _loads()
     found = {"script": os.path.basename(sys.argv[0]) if sys.argv else "", "versions": _versions(), "model": _model(engine),
-             "materials": _materials(ids), "motions": [_motion(one) for one in motions],
+             "materials": _materials(ids), "masses": _masses(ids), "motions": [_motion(one) for one in motions],
              "solver": {name: getattr(engine, name) for name in _SOLVER if hasattr(engine, name)}, "notes": list(notes.said)}
     return _plain({**found, "loads": loads} if loads else found)
 
@@ -69,6 +69,16 @@ def _materials(ids):
                 values["mortar"] = body.mat.mortar.dict()
             found.setdefault(repr(values), {**values, "ids": []})["ids"].append(id)
     return list(found.values())
+
+
+def _masses(ids):
+    """Rows {mass, ids}: kg of each of these free blocks, with what dem.add_mass has added."""
+    found = {}
+    for id in ids:
+        body = O.bodies[id] if id < len(O.bodies) else None
+        if body is not None and body.dynamic:
+            found.setdefault(body.state.mass, []).append(id)
+    return [{"mass": mass, "ids": own} for mass, own in found.items()]
 
 
 def _motion(engine):

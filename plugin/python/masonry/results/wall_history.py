@@ -25,7 +25,7 @@ TIES = [("body1", int), ("body2", int), ("point1", float, 3), ("point2", float, 
 # Columns of the impacts, of dem.impacts(), that a report shows.
 _IMPACTS = "time", "body", "support", "restitution_asked", "restitution", "velocity", "energy_lost", "friction_demand", "capped"
 # Names that masonry writes into `about`; a script may add more.
-_ABOUT = {"script": str, "materials": list, "motions": list, "loads": list, "model": dict, "solver": dict, "notes": list, "versions": dict}
+_ABOUT = {"script": str, "materials": list, "masses": list, "motions": list, "loads": list, "model": dict, "solver": dict, "notes": list, "versions": dict}
 # Share of the motion that may be missing from a run to its end, whose last step or sample may come a little earlier.
 _FINISHED = 1e-3
 
@@ -43,7 +43,7 @@ class WallHistory:
     motion         (2,) s: when the motion of the base begins and ends (infinite: its end is not known); NaN: it has none; None: not known, as in files
                    that do not say it
     end            s: how far the run has come; None: to the last sample
-    about          dict that JSON can hold: script, versions, model, materials, motions, loads, solver, notes, and what a script adds (about["seed"] = 7); empty:
+    about          dict that JSON can hold: script, versions, model, materials, masses, motions, loads, solver, notes, and what a script adds (about["seed"] = 7); empty:
                    not known
     impacts        structured array of dem.impacts(); None: not known
     forces         structured array, one row for each joint that carries load in a sample: sample (its number), id1, id2, force on block 2 (N), point
@@ -404,9 +404,9 @@ def _about_given(about):
 
 
 def _about_ids(about, ids):
-    """`about` with the materials, motions and loads of these bodies alone."""
+    """`about` with the materials, masses, motions and loads of these bodies alone."""
     found = dict(about)
-    for name in ("materials", "motions", "loads"):
+    for name in ("materials", "masses", "motions", "loads"):
         if name in about:
             found[name] = [{**one, "ids": sorted(set(one["ids"]) & set(ids))} for one in about[name] if set(one["ids"]) & set(ids)]
     return found

@@ -27,6 +27,7 @@ def content(history, exact):
     verdict, table = collapse(history), joints(history)
     single = history.free.sum() == 1
     shown_first = verdict.peak_drift_time
+    facts = [("Structure", _structure(history)), *words.facts(history.about)]  # first: it refuses what masonry has not written
     sections = [section for section in (
         _section("drift", "Drift", curves.drift(history, verdict),
                  "Horizontal displacement of the top relative to the base, over the height." + _shaded(verdict)),
@@ -39,7 +40,7 @@ def content(history, exact):
         _energy_section(history), _impact_section(history)) if section]
     return {"title": history.about.get("script") or "Rocking masonry", "kind": verdict.verdict, "headline": _headline(verdict), "sentences": _sentences(history, verdict),
             "warnings": _warnings(history, verdict), "scene": view3d.scene(history, shown_first), "numbers": _numbers(history, verdict, table), "sections": sections,
-            "facts": [("Structure", _structure(history)), *words.facts(history.about)], "solver": words.solver(history.about), "known": bool(history.about)}
+            "facts": facts, "solver": words.solver(history.about), "known": bool(history.about)}
 
 
 def _section(name, heading, figure="", caption="", **more):

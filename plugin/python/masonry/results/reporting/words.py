@@ -76,7 +76,7 @@ def facts(about):
     if "gravity" in model:
         rows.append(("Gravity", f"({', '.join(f'{x:g}' for x in model['gravity'])}) m/s^2"))
     rows += [(name[0].upper() + name[1:], value if isinstance(value, str) else f"{value!r}") for name, value in about.items()
-             if name not in ("script", "materials", "motions", "loads", "model", "solver", "notes", "versions")]
+             if name not in ("script", "materials", "masses", "motions", "loads", "model", "solver", "notes", "versions")]
     if "versions" in about:
         rows.append(("Versions", ", ".join(f"{name} {value}" for name, value in about["versions"].items())))
     return rows
