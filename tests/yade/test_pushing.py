@@ -95,6 +95,25 @@ def test_a_shear_wall_under_a_dead_load(model):
     assert push.curve["force"][0] >= 0
 
 
+@pytest.mark.parametrize("model", ("planar", "spatial", "compliant"))
+def test_the_dead_load_of_a_push_is_in_energies_reactions_and_reports(model):
+    """A block that is pushed up on its toe lifts the load N by dz; the work of the platen pays for it and for the weight. Later engines have the load no more."""
+    block = dem.block((WIDTH, DEPTH, HEIGHT), stone(3), on=ground(mu=3))
+    push = dem.push(ids=[block], displacement=0.1, height=1.5, vertical="load", force=30e3)
+    recorder = dem.WallRecorder(virtPeriod=0.02, recordForces=True)
+    O.engines = quiet_engines(push, recorder=recorder, model=model)
+    assert quiet_engines(push, model=model).count(push.load) == 1
+    dem.run(until=push)
+    history = dem.wall_history(recorder)
+    energy, lifted = history.energy, history.position[-1, 1, 2] - history.position[0, 1, 2]
+    assert history.about["loads"] == [{"kind": "dead load", "size": pytest.approx(30e3), "ids": [block]}]
+    assert lifted > 0.01 and abs(energy["potential"][-1] - energy["potential"][0] - (30e3 + weight([block])) * lifted) < 1e-6 * 30e3
+    assert np.abs(energy["error"]).max() < 0.02 * 30e3 * lifted
+    assert abs(dem.energy()["potential"] - energy["potential"][-1]) < 0.01 * 30e3 * lifted
+    assert abs(dem.reactions(0)["force"].sum(axis=0)[2] / (30e3 + weight([block])) - 1) < 0.05  # of one instant: the block moves
+    assert push.load not in quiet_engines(model=model) and dem.loads.dead_loads()[block][2] == -30e3
+
+
 def test_a_wall_out_of_its_plane_and_the_tilting_table():
     """Pushed at the height of its centre of mass by platens at each block of that course, a wall turns about its foot at W t/(2 z): t/H of its weight, as TiltTable has it."""
     base = ground(mu=3)

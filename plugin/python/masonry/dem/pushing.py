@@ -9,6 +9,7 @@ from masonry._pose import matrices
 from masonry.dem import notes
 from masonry.dem.bodies import block_body, blocks, world_shape
 from masonry.dem.collapsing import collapsed
+from masonry.dem.loads import load_of_a_push
 from masonry.dem.platens import contact, last_of_course, neighbour, platen, prescribed
 from yade import O, Vector3, wrapper
 
@@ -38,10 +39,10 @@ class Push:
     ended      why dem.run(until=push) has ended: 'displacement' (all displacements have been reached), 'drop', 'collapse', 'jam'; '' before that
     """
 
-    def __init__(self, points, platens, direction, targets, motion, engines, drop, collapse):
-        """points: {id of a block: where a platen touches it, m}. engines: of the dead load, if there is one, and the recorder, in that order."""
+    def __init__(self, points, platens, direction, targets, motion, recorder, load, drop, collapse):
+        """points: {id of a block: where a platen touches it, m}. load: the engine of the dead load, or None."""
         self.ids, self.platens, self.direction, self.targets = list(points), platens, direction, targets
-        self.motion, self.engines, self.recorder = motion, engines, engines[-1]
+        self.motion, self.recorder, self.load = motion, recorder, load
         self.drop, self.collapse, self.releases, self.ended = drop, collapse, False, ""
         states = {id: O.bodies[id].state for id in points}
         self._arms = {id: np.array(states[id].ori.conjugate() * (Vector3(point) - states[id].pos)) for id, point in points.items()}  # in the axes of the block
@@ -232,7 +233,8 @@ def push(ids=None, displacement=None, speed=None, direction=(1, 0, 0), vertical=
     direction       level unit vector
     vertical        'free': the blocks carry no load; 'load': they carry the dead load `force` together, each the same share, at its centre; platens hold no block down.
                     ('held', which rigid blocks cannot follow, is refused)
-    force           with vertical='load': the dead load, N, downwards; it is there as long as dem.engines(push) is in O.engines
+    force           with vertical='load': the dead load, N, downwards; it is there as long as dem.engines(push) is in O.engines, and energies, reactions and reports
+                    have it as a load of dem.dead_load()
     height          z of the edges of the platens, m, in the world; None: that of the centre of each block
     drop            ends the test when the force, averaged over 0.02 s, has fallen below (1 - drop) times the largest one in that direction, while the displacement
                     is the farthest so far: 0 < drop <= 1; None: never
@@ -263,8 +265,7 @@ def push(ids=None, displacement=None, speed=None, direction=(1, 0, 0), vertical=
     motion = wrapper.RecordMotionEngine(ids=made, samples=samples.tolist(), interval=interval, direction=unit, start=O.time)
     notes.is_of_a_push(motion)
     recorder = wrapper.WallRecorder(ids=made + sorted(back) + (pushed or [body.id for body in free]), recordForces=True, iterPeriod=1)
-    load = wrapper.ForceEngine(ids=pushed, force=Vector3(0, 0, -force / len(pushed))) if vertical == "load" else None
-    return Push(points, made, unit, targets, motion, [one for one in (load, recorder) if one], drop, collapse)
+    return Push(points, made, unit, targets, motion, recorder, load_of_a_push(pushed, force) if vertical == "load" else None, drop, collapse)
 
 
 def pull_and_release(ids, displacement, speed=None, direction=(1, 0, 0), vertical="free", force=None, height=None):
