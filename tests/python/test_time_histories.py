@@ -89,6 +89,20 @@ def test_drift_with_its_sign_and_the_weight():
         results.structure_history(moved, base=11)
 
 
+def test_forces_of_ties():
+    """A strut: its largest tension and compression, each from its sample. A tie that broke between two samples carried its strength; one that was slack, nothing."""
+    from masonry.results.wall_history import TIES
+
+    shaken = rocking([0, 0.01, 0.02, 0.01])
+    shaken.ties = np.zeros((4, 3), dtype=TIES)
+    shaken.ties["body1"], shaken.ties["body2"], shaken.ties["strength"] = 10, 11, (np.inf, 1200.0, 900.0)
+    shaken.ties["force"] = [(0, 0.5, 0), (6100, 0.56, 0), (-14900, 0, 0), (20, 0, 0)]
+    shaken.ties["broken"][2:, 1] = True
+    table = results.ties(shaken)
+    assert table["force"].tolist() == [6100, 1200, 0] and table["compression"].tolist() == [14900, 0, 0] and table["broken_time"][1] == 1.0
+    assert table["force_time"][:2].tolist() == [0.5, 1.0] and table["compression_time"][0] == 1.0 and np.isnan([table["force_time"][2], *table["compression_time"][1:]]).all()
+
+
 def test_platens_are_no_base():
     """The forces of platens that push are none of the base."""
     pushed = sliding()
