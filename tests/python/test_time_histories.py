@@ -81,10 +81,26 @@ def test_drift_with_its_sign_and_the_weight():
     known = leaning(0.1, (0, 1, 0))
     known.forces = np.array([(1, 10, 11, (1177.2, 0, 5), (0, 0, 0))], dtype=ROWS)
     assert abs(results.structure_history(known).numbers["the same over the weight (V/W along x)"] - 1177.2 / (2000 * 0.6 * 9.81)) < ROUND
+    known.about["masses"] = [{"mass": 2400.0, "ids": [11]}]  # with 1200 kg that dem.add_mass has added
+    assert abs(results.structure_history(known).numbers["the same over the weight (V/W along x)"] - 1177.2 / (2400 * 9.81)) < ROUND
     with pytest.raises(ValueError, match="weight = 0"):
         results.structure_history(moved, weight=0)
     with pytest.raises(ValueError, match="base = 11: must be the id of a prescribed body"):
         results.structure_history(moved, base=11)
+
+
+def test_forces_of_ties():
+    """A strut: its largest tension and compression, each from its sample. A tie that broke between two samples carried its strength; one that was slack, nothing."""
+    from masonry.results.wall_history import TIES
+
+    shaken = rocking([0, 0.01, 0.02, 0.01])
+    shaken.ties = np.zeros((4, 3), dtype=TIES)
+    shaken.ties["body1"], shaken.ties["body2"], shaken.ties["strength"] = 10, 11, (np.inf, 1200.0, 900.0)
+    shaken.ties["force"] = [(0, 0.5, 0), (6100, 0.56, 0), (-14900, 0, 0), (20, 0, 0)]
+    shaken.ties["broken"][2:, 1] = True
+    table = results.ties(shaken)
+    assert table["force"].tolist() == [6100, 1200, 0] and table["compression"].tolist() == [14900, 0, 0] and table["broken_time"][1] == 1.0
+    assert table["force_time"][:2].tolist() == [0.5, 1.0] and table["compression_time"][0] == 1.0 and np.isnan([table["force_time"][2], *table["compression_time"][1:]]).all()
 
 
 def test_platens_are_no_base():

@@ -52,6 +52,21 @@ def test_mass_is_shared_by_area():
     assert dem.loads.added_mass() == pytest.approx({small: 100, large: 200}, rel=1e-12)
 
 
+def test_base_shear_over_the_weight_with_added_mass():
+    """A block that stays on a base under a constant acceleration a has V/W = a/g, whatever is added to its mass."""
+    base = dem.base((4, 2, 0.2), stone())
+    block = dem.block((1.0, 1.0, 0.5), stone(), on=base)
+    dem.add_mass(block, 1000.0)
+    acceleration = 0.3 * GRAVITY
+    motion = dem.RecordMotionEngine(ids=[base], samples=[0, *[acceleration] * 20, 0], interval=0.01, direction=(1, 0, 0), baseline="none")
+    recorder = dem.WallRecorder(iterPeriod=5, recordForces=True)
+    O.engines = quiet_engines(motion, recorder=recorder, model="planar")
+    dem.run(0.15)
+    history = dem.wall_history(recorder)
+    assert history.about["masses"] == [{"mass": pytest.approx(2000, rel=1e-12), "ids": [block]}]
+    assert abs(results.structure_history(history).numbers["the same over the weight (V/W along x)"] - 0.3) < 1e-3
+
+
 @pytest.mark.parametrize("model", MODELS)
 def test_reactions(model):
     """The base carries the weight, the added mass and the dead load; under a base that accelerates only what has mass asks for a force sideways."""

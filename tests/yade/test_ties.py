@@ -239,6 +239,28 @@ def test_results(tmp_path):
     assert plain.ties is None and len(results.ties(plain)) == 0
 
 
+def test_the_largest_forces_of_a_strut_and_of_a_tie_that_breaks(tmp_path):
+    """A block is thrown to and fro between a strut and its toe; a tie that breaks between two samples shows the strength."""
+    base, block, strut = held_block(tension_only=False)
+    weak = dem.tie(block, (B, 0, 2 * A), base, (B + 3, 0, 2 * A), STIFF, strength=1200.0)
+    recorder = dem.WallRecorder(virtPeriod=0.05)
+    O.engines = engines("planar", recorder=recorder)
+    for sideways in (0.45, -0.45):
+        pull(sideways)
+        dem.run(0.3)
+    pull(-1.0)
+    dem.run(0.2)
+    history = dem.wall_history(recorder)
+    table = results.ties(history)
+    assert table["force"][0] == history.ties["force"][:, 0].max() > 0 and table["compression"][0] == -history.ties["force"][:, 0].min() > 0
+    assert weak.broken and table["broken"].tolist() == [False, True] and table["force"][1] == 1200 and history.ties["force"][:, 1].max() <= 1200
+    results.report(history, tmp_path / "wall.html")
+    page = (tmp_path / "wall.html").read_text()
+    for words in ("Compression (kN)", "1 tie: stiffness 1e+08 N/m, does not break, presses too", "1 tie: stiffness 1e+08 N/m, breaks at 1.2 kN", "Mass of the free blocks",
+                  "12 × 4 × 0.5 m"):
+        assert words in page, words
+
+
 @pytest.mark.parametrize("walls", (False, True))
 def test_reactions_of_the_base_have_the_tie(walls):
     """With the tie they balance the block's weight, and its moment about the middle of its foot."""

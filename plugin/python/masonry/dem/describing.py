@@ -9,6 +9,7 @@ from masonry import _build
 from masonry.dem import notes
 from masonry.dem.engines import joint_engine
 from masonry.dem.loads import added_mass, dead_loads
+from masonry.dem.ties import ties
 from yade import O, config, wrapper
 
 _MATERIAL = ("density", "frictionAngle", "restitution", "noSlip", "normalStiffness", "shearStiffness")
@@ -18,12 +19,13 @@ _SOLVER = ("worstResidual", "failures", "firstFailure", "madeEnergy", "lostEnerg
 
 
 def about(ids, motions):
-    """A dict that JSON can hold: script, versions, model, materials (with the ids that they have among `ids`), motions, loads where there are any, solver and notes."""
+    """A dict that JSON can hold: script, versions, model, materials (with the ids that they have among `ids`), masses of free blocks, ties where there are any, motions, loads where there are any, solver and notes."""
     engine, loads = joint_engine(), _loads()
     found = {"script": os.path.basename(sys.argv[0]) if sys.argv else "", "versions": _versions(), "model": _model(engine),
-             "materials": _materials(ids), "motions": [_motion(one) for one in motions],
+             "materials": _materials(ids), "masses": _masses(ids), "motions": [_motion(one) for one in motions],
              "solver": {name: getattr(engine, name) for name in _SOLVER if hasattr(engine, name)}, "notes": list(notes.said)}
-    return _plain({**found, "loads": loads} if loads else found)
+    more = {name: rows for name, rows in (("loads", loads), ("ties", _ties(ids))) if rows}
+    return _plain({**found, **more})
 
 
 def _loads():
@@ -68,6 +70,26 @@ def _materials(ids):
             if body.mat.mortar is not None:
                 values["mortar"] = body.mat.mortar.dict()
             found.setdefault(repr(values), {**values, "ids": []})["ids"].append(id)
+    return list(found.values())
+
+
+def _masses(ids):
+    """Rows {mass, ids}: kg of each of these free blocks, with what dem.add_mass has added."""
+    found = {}
+    for id in ids:
+        body = O.bodies[id] if id < len(O.bodies) else None
+        if body is not None and body.dynamic:
+            found.setdefault(body.state.mass, []).append(id)
+    return [{"mass": mass, "ids": own} for mass, own in found.items()]
+
+
+def _ties(ids):
+    """Rows {stiffness, pretension, strength (None: it does not break), tension_only, ids}: N/m, N, N, pairs of bodies."""
+    found = {}
+    for one in ties():
+        if not one.dead and {one.body1, one.body2} <= set(ids):
+            values = {"stiffness": one.stiffness, "pretension": one.pretension, "strength": one.strength, "tension_only": one.tensionOnly}
+            found.setdefault(repr(values), {**values, "ids": []})["ids"].append([one.body1, one.body2])
     return list(found.values())
 
 

@@ -13,7 +13,7 @@ from masonry import _yade
 from masonry.dem import bodies, notes
 from masonry.dem.bodies import face_areas, geometry, half_sizes, poses, reach
 from masonry.dem.checks import check_blocks, check_material, check_mortar, check_recorder, check_use_of_mortar
-from masonry.dem.loads import dead_loads, load_engines, potential_of_loads
+from masonry.dem.loads import dead_loads, lasting_loads, potential_of_loads
 from masonry.dem.pushing import Push
 from masonry.dem.structures import structures
 from masonry.dem.ties import tied, ties
@@ -266,7 +266,8 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
     pushes = [one for one in _several(motion) if isinstance(one, Push)]
     motions = [one.motion if isinstance(one, Push) else one for one in _several(motion)]
     _check_engines(motions, recorders, others, blocks)
-    recorders += [engine for one in pushes for engine in one.engines]
+    recorders += [one.recorder for one in pushes]
+    loads = [*lasting_loads(), *(one.load for one in pushes if one.load)]
     if not any(b.dynamic for b in blocks):
         raise ValueError("there is no free block in O.bodies: add one with dem.block() before dem.engines()")
     for body in blocks:
@@ -294,11 +295,11 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
         if any(not one.dead for one in ties()):
             raise ValueError(f"model = {model!r} ({reason}): compliant joints take no ties: give model='planar' or 'spatial' and no joint stiffness, or let springs of "
                              "your own act through O.forces")
-        return _compliant(blocks, motions, reason, dt, penetration or _PENETRATION, impact_order or "simultaneous", gravity, recorders)
+        return _compliant(blocks, motions, reason, dt, penetration or _PENETRATION, impact_order or "simultaneous", gravity, recorders, loads)
     if penetration is not None:
         raise ValueError(f"penetration = {penetration}: must be left out with model={shown(model)}, it is for compliant joints")
     check_blocks(_MOST_OVERLAP, floating=False)
-    return _rigid(motions, model, method, dt, tolerance, impact_order, gravity, recorders, list(others))
+    return _rigid(motions, model, method, dt, tolerance, impact_order, gravity, recorders, [*loads, *others])
 
 
 def _rigid(motions, model, method, dt, tolerance, impact_order, gravity, recorders, others):
@@ -328,10 +329,10 @@ def _rigid(motions, model, method, dt, tolerance, impact_order, gravity, recorde
         raise ValueError(f"dt = {dt}: must be at most {integrator.largestTimeStep:.3g} s, 0.15 sqrt(R/g) of the smallest block")
     O.dt = float(step)
     print(f"masonry.dem: rigid blocks, {choice}; dt = {O.dt:.3g} s{notes.of_records(motions)}")
-    return [wrapper.ForceResetter(), *load_engines(), *others, *recorders, integrator]
+    return [wrapper.ForceResetter(), *others, *recorders, integrator]
 
 
-def _compliant(blocks, motions, reason, dt, penetration, impact_order, gravity, recorders):
+def _compliant(blocks, motions, reason, dt, penetration, impact_order, gravity, recorders, loads):
     reasons = [f"compliant joints, YADE's usual loop: {reason}"]
     _check_stiffness(blocks, gravity)
     chosen = _choose_stiffness(blocks, penetration, gravity)
@@ -355,7 +356,7 @@ def _compliant(blocks, motions, reason, dt, penetration, impact_order, gravity, 
     smallest = poses(blocks)[1].min() / 2
     return [
         wrapper.ForceResetter(),
-        *load_engines(),
+        *loads,
         wrapper.InsertionSortCollider([wrapper.Bo1_Box_Aabb(), wrapper.Bo1_ConvexBlock_Aabb()], verletDist=0.05 * smallest),
         wrapper.InteractionLoop([wrapper.Ig2_Box_Box_BlockGeom(), wrapper.Ig2_Box_ConvexBlock_BlockGeom(), wrapper.Ig2_ConvexBlock_ConvexBlock_BlockGeom()],
                                 [wrapper.Ip2_BlockMat_BlockMat_BlockPhys()], [wrapper.Law2_BlockGeom_BlockPhys_Rocking()]),

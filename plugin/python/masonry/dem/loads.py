@@ -9,6 +9,7 @@ from yade import O, Vector3, wrapper
 
 # Engines of dead loads have labels that begin so: dem.engines() and TiltTable know them by it, also in a scene that was loaded.
 _LABEL = "deadLoad"
+_OF_A_PUSH = _LABEL + "OfPush"
 # Share of the mass of a block by which round-off may miss density times volume.
 _ROUND_OFF = 1e-9
 
@@ -90,9 +91,19 @@ def _is_load(engine):
     return isinstance(engine, wrapper.ForceEngine) and engine.label.startswith(_LABEL)
 
 
+def load_of_a_push(ids, force):
+    """The engine of a dead load of that many N downwards, on each of the ids the same share, that dem.engines(push) puts into O.engines."""
+    return wrapper.ForceEngine(ids=ids, force=Vector3(0, 0, -force / len(ids)), label=_OF_A_PUSH)
+
+
 def load_engines():
     """The engines of dead loads that are in O.engines."""
     return [engine for engine in O.engines if _is_load(engine) and not engine.dead]
+
+
+def lasting_loads():
+    """Those of dem.dead_load: what dem.push() puts on blocks ends with its engines."""
+    return [engine for engine in load_engines() if not engine.label.startswith(_OF_A_PUSH)]
 
 
 def dead_loads():

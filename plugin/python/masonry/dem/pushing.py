@@ -9,16 +9,18 @@ from masonry._pose import matrices
 from masonry.dem import notes
 from masonry.dem.bodies import block_body, blocks, world_shape
 from masonry.dem.collapsing import collapsed
+from masonry.dem.loads import load_of_a_push
 from masonry.dem.platens import contact, last_of_course, neighbour, platen, prescribed
 from yade import O, Vector3, wrapper
 
-CURVE = [("displacement", float), ("force", float), ("time", float), ("moved", float)]
+CURVE = [("displacement", float), ("force", float), ("time", float), ("moved", float), ("step_force", float)]
 # m/s^2, by which platens change their speed at most: a force of inertia of a thousandth of the weight.
 _ACCELERATION = 0.02
 # Most numbers of the record that moves the platens.
 _MOST_PARTS = 1_000_000
-# Time over which forces are averaged, s.
-_AVERAGED = 0.02
+# Time over which forces are averaged, s: a structure of the mass m that a platen of the usual speed v = 0.01 sqrt(g h) hits takes the impulse m v, a spike in the forces of
+# a few steps. Over this time that is the share v/(g 0.2 s) of its weight: 1 % for h = 0.4 m, 2 % for 1.6 m. Longer: the platens go too far meanwhile.
+_AVERAGED = 0.2
 # Steps between two looks at a drop of the force and at fallen blocks, at least.
 _LOOK = 100
 # A failure of the integrator that names a jam has these words (rigid_failures.cpp).
@@ -38,10 +40,10 @@ class Push:
     ended      why dem.run(until=push) has ended: 'displacement' (all displacements have been reached), 'drop', 'collapse', 'jam'; '' before that
     """
 
-    def __init__(self, points, platens, direction, targets, motion, engines, drop, collapse):
-        """points: {id of a block: where a platen touches it, m}. engines: of the dead load, if there is one, and the recorder, in that order."""
+    def __init__(self, points, platens, direction, targets, motion, recorder, load, drop, collapse):
+        """points: {id of a block: where a platen touches it, m}. load: the engine of the dead load, or None."""
         self.ids, self.platens, self.direction, self.targets = list(points), platens, direction, targets
-        self.motion, self.engines, self.recorder = motion, engines, engines[-1]
+        self.motion, self.recorder, self.load = motion, recorder, load
         self.drop, self.collapse, self.releases, self.ended = drop, collapse, False, ""
         states = {id: O.bodies[id].state for id in points}
         self._arms = {id: np.array(states[id].ori.conjugate() * (Vector3(point) - states[id].pos)) for id, point in points.items()}  # in the axes of the block
@@ -51,7 +53,13 @@ class Push:
     def curve(self):
         """Structured array, one row a step of the run: displacement of the platens along the direction (m), force on the blocks along it (N), time (s), and
         moved (m): how far the points of the blocks have gone at which they were first touched, the mean over `ids`. The force is positive while
-        the platens press along the direction, negative while they press back, and without the dead load."""
+        the platens press along the direction, negative while they press back, and without the dead load. It is the mean over 0.1 s before and 0.1 s after the sample:
+        the impulse of the platens over that time, divided by it. step_force (N) is that of the single step, which has spikes where a platen lands on a block or a
+        stuck block snaps."""
+        return self.averaged()
+
+    def _of_steps(self):
+        """The curve with the force of each step in both columns of forces."""
         recorder = self.recorder
         samples, bodies = len(recorder.times), len(recorder.ids)
         table = np.zeros(samples, dtype=CURVE)
@@ -66,12 +74,13 @@ class Push:
         forces = np.frombuffer(recorder.jointForcesAsBytes()).reshape(-1, 8)
         one, two = (np.isin(forces[:, k], self.platens) for k in (0, 1))
         on_blocks = np.where(one & ~two, 1.0, np.where(two & ~one, -1.0, 0.0)) * (forces[:, 2:5] @ self.direction)
-        np.add.at(table["force"], np.repeat(np.arange(samples), recorder.jointCounts), on_blocks)
+        np.add.at(table["step_force"], np.repeat(np.arange(samples), recorder.jointCounts), on_blocks)
+        table["force"] = table["step_force"]
         return table
 
     def averaged(self, time=_AVERAGED):
-        """The curve with its force averaged over that time before and after each sample, s."""
-        table = self.curve
+        """The curve with its force averaged over that time, s, half of it before and half after each sample."""
+        table = self._of_steps()
         if len(table) > 2:
             half = int(round(positive_given("time", time) / 2 / max(np.median(np.diff(table["time"])), 1e-300)))
             sums, rows = np.concatenate([[0.0], np.cumsum(table["force"])]), np.arange(len(table))
@@ -81,35 +90,35 @@ class Push:
 
     @property
     def largest_force(self):
-        """(force, displacement) of the averaged curve where the force is largest in size, N and m."""
-        table = self.averaged()
+        """(force, displacement) of the curve where its force, the mean over 0.2 s, is largest in size, N and m."""
+        table = self.curve
         if not len(table):
             raise ValueError("push: nothing has been recorded yet: O.engines = dem.engines(push), then dem.run(until=push)")
         k = int(np.abs(table["force"]).argmax())
         return float(table["force"][k]), float(table["displacement"][k])
 
     def save(self, path):
-        """Writes the curve as .csv: displacement (m), force (N), time (s), moved (m), a line a step."""
+        """Writes the curve as .csv: displacement (m), force (N), time (s), moved (m), force of the step (N), a line a step."""
         if not str(path).endswith(".csv"):
             raise ValueError(f"path = {path}: must end in .csv")
         table = self.curve
         with written(path) as beside:
             np.savetxt(beside, np.column_stack([table[name] for name, _ in CURVE]), delimiter=",", comments="",
-                       header="displacement (m),force (N),time (s),moved (m)")
+                       header="displacement (m),force (N),time (s),moved (m),force of the step (N)")
 
     def picture(self, path, title=""):
-        """Writes a picture (.png, .pdf, .svg) of force over displacement: averaged over 0.02 s in blue, as it was in each step in grey."""
+        """Writes a picture (.png, .pdf, .svg) of force over displacement: averaged over 0.2 s in blue, as it was in each step in grey."""
         from matplotlib.backends.backend_agg import FigureCanvasAgg
         from matplotlib.figure import Figure
 
-        table, raw = self.averaged(), self.curve
+        table = self.curve
         if not len(table):
             raise ValueError("push: nothing has been recorded yet: O.engines = dem.engines(push), then dem.run(until=push)")
         figure = Figure(figsize=(6.4, 4.2), layout="constrained")
         FigureCanvasAgg(figure)
         axes = figure.subplots()
         axes.axhline(0, color="0.7", linewidth=0.8)
-        axes.plot(1e3 * raw["displacement"], 1e-3 * raw["force"], color="0.8", linewidth=0.6)
+        axes.plot(1e3 * table["displacement"], 1e-3 * table["step_force"], color="0.8", linewidth=0.6)
         axes.plot(1e3 * table["displacement"], 1e-3 * table["force"], color="tab:blue", linewidth=1.5)
         least, most = 1e-3 * table["force"].min(), 1e-3 * table["force"].max()
         room = 0.1 * max(most - least, 1e-12)
@@ -159,7 +168,7 @@ class Push:
 
     def _has_dropped(self):
         """Whether the force on the envelope, where the displacement is the farthest so far, has dropped."""
-        table = self.averaged()
+        table = self.curve
         for side in (1, -1):
             place, force = side * table["displacement"], side * table["force"]
             envelope = force[(place > 0) & (place >= np.maximum.accumulate(place))]
@@ -232,15 +241,16 @@ def push(ids=None, displacement=None, speed=None, direction=(1, 0, 0), vertical=
     direction       level unit vector
     vertical        'free': the blocks carry no load; 'load': they carry the dead load `force` together, each the same share, at its centre; platens hold no block down.
                     ('held', which rigid blocks cannot follow, is refused)
-    force           with vertical='load': the dead load, N, downwards; it is there as long as dem.engines(push) is in O.engines
+    force           with vertical='load': the dead load, N, downwards; it is there as long as dem.engines(push) is in O.engines, and energies, reactions and reports
+                    have it as a load of dem.dead_load()
     height          z of the edges of the platens, m, in the world; None: that of the centre of each block
-    drop            ends the test when the force, averaged over 0.02 s, has fallen below (1 - drop) times the largest one in that direction, while the displacement
+    drop            ends the test when the force, averaged over 0.2 s, has fallen below (1 - drop) times the largest one in that direction, while the displacement
                     is the farthest so far: 0 < drop <= 1; None: never
     collapse        ends it when so many blocks have fallen (dem.collapsed); None: never
     platens         instead of ids: prescribed bodies of your own that move and push what they touch; all free blocks are then recorded
     clearance       with cycles: gap between a block and the platens in front of it, m; None: room for a turn of the block about the foot of the structure
 
-    The force is the sum of the forces in the contacts of the platens. The platens begin at rest at O.time, and change their speed with 0.02 m/s^2 at most. A
+    The force is the sum of the forces in the contacts of the platens, averaged over 0.2 s (push.curve). The platens begin at rest at O.time, and change their speed with 0.02 m/s^2 at most. A
     test ends at the last displacement, at a drop, a collapse or a jam (push.ended), which is said in a line. Raises ValueError for input out of its range.
     """
     unit, targets = _direction_given(direction), _targets_given(displacement, cycles)
@@ -263,8 +273,7 @@ def push(ids=None, displacement=None, speed=None, direction=(1, 0, 0), vertical=
     motion = wrapper.RecordMotionEngine(ids=made, samples=samples.tolist(), interval=interval, direction=unit, start=O.time)
     notes.is_of_a_push(motion)
     recorder = wrapper.WallRecorder(ids=made + sorted(back) + (pushed or [body.id for body in free]), recordForces=True, iterPeriod=1)
-    load = wrapper.ForceEngine(ids=pushed, force=Vector3(0, 0, -force / len(pushed))) if vertical == "load" else None
-    return Push(points, made, unit, targets, motion, [one for one in (load, recorder) if one], drop, collapse)
+    return Push(points, made, unit, targets, motion, recorder, load_of_a_push(pushed, force) if vertical == "load" else None, drop, collapse)
 
 
 def pull_and_release(ids, displacement, speed=None, direction=(1, 0, 0), vertical="free", force=None, height=None):

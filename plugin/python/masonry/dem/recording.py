@@ -77,7 +77,7 @@ def _ties(recorder):
         return None
     states = np.frombuffer(recorder.tieStatesAsBytes()).reshape(len(recorder.times), len(recorder.ties), 4)
     table = np.zeros(states.shape[:2], dtype=TIES)
-    for name in ("body1", "body2", "point1", "point2"):
+    for name in ("body1", "body2", "point1", "point2", "strength"):
         table[name] = [np.array(getattr(one, name)) for one in recorder.ties]
     for k, name in enumerate(("force", "extension", "energy", "broken")):
         table[name] = states[..., k]

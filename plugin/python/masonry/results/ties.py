@@ -4,26 +4,34 @@ import numpy as np
 from masonry import _pose
 from masonry.results.wall_history import TIES, history_given
 
-_FIELDS = [("body1", int), ("body2", int), ("force", float), ("force_time", float), ("extension", float), ("extension_time", float), ("broken", bool), ("broken_time", float)]
+_FIELDS = [("body1", int), ("body2", int), ("force", float), ("force_time", float), ("compression", float), ("compression_time", float), ("extension", float), ("extension_time", float), ("broken", bool), ("broken_time", float)]
 
 
 def ties(history):
     """What each tie (dem.tie) has carried: a structured array, one row a tie, in the order in which they were made. Empty where there are none.
 
     body1, body2                 ids that it joins
-    force, force_time            largest force, N (tension positive), and when
+    force, force_time            largest tension, N, and when; of a tie that broke at least its strength, at which it broke; 0 and NaN: it was never in tension
+    compression, compression_time    largest compression of a strut, N, positive, and when; 0 and NaN: it did not press
     extension, extension_time    largest extension until it broke, m, and when
     broken, broken_time          whether it broke, and the first sample in which it was broken, s; NaN: it did not
 
-    The largest values are those of the samples; history.ties has the history of each: history.ties["force"][:, k] over history.time."""
+    The forces of samples are means of the step before, while extensions belong to its end: a force need not equal stiffness times the extension in this table. The
+    largest values are those of the samples; history.ties has the history of each: history.ties["force"][:, k] over history.time."""
     table = np.zeros(0 if history_given(history).ties is None else history.ties.shape[1], dtype=_FIELDS)
     for k, row in enumerate(table):
         own = history.ties[:, k]
         row["body1"], row["body2"] = own["body1"][0], own["body2"][0]
-        for name, values in (("force", own["force"]), ("extension", np.where(own["broken"], -np.inf, own["extension"]))):
+        for name, values in (("force", own["force"]), ("compression", -own["force"]), ("extension", np.where(own["broken"], -np.inf, own["extension"]))):
             row[name], row[name + "_time"] = values.max(), history.time[values.argmax()]
         row["broken"] = own["broken"][-1]
         row["broken_time"] = history.time[own["broken"].argmax()] if row["broken"] else np.nan
+        strength = own["strength"][-1]
+        if row["broken"] and strength > row["force"]:
+            row["force"], row["force_time"] = strength, row["broken_time"]
+        for name in ("force", "compression"):
+            if row[name] <= 0:
+                row[name], row[name + "_time"] = 0, np.nan
     return table
 
 

@@ -163,7 +163,7 @@ def structure_history(history, base=None, weight=None):
     """Drift, base shear and overturning moment of a structure: a TimeHistory.
 
     base      id of the prescribed body on which it stands; None: that of the first free block, with the forces of all prescribed bodies where it is the only base
-    weight    N; None: from densities and sizes, where the history knows them (about["materials"]), else not known
+    weight    N; None: of the masses of the blocks, with what dem.add_mass has added (about["masses"]), where the history knows them, else not known
 
     time                 s
     drift_x, drift_y     displacement of the top relative to the base over the height, with its sign, dimensionless: that of the block where it is largest in size
@@ -219,10 +219,18 @@ def structure_history(history, base=None, weight=None):
 
 
 def _weight(history, blocks):
-    """Of those blocks, N; None where their densities are not known."""
-    density = np.full(len(history.ids), np.nan)
-    for material in history.about.get("materials", []):
-        density[np.isin(history.ids, material["ids"])] = material["density"]
+    """Of those blocks, N; None where neither their masses nor their densities are known."""
     gravity = history.about.get("model", {}).get("gravity")
-    weight = (density * history.volumes)[blocks].sum() * (_STANDARD_GRAVITY if gravity is None else float(np.linalg.norm(gravity)))
+    weight = masses(history)[blocks].sum() * (_STANDARD_GRAVITY if gravity is None else float(np.linalg.norm(gravity)))
     return float(weight) if np.isfinite(weight) and weight > 0 else None
+
+
+def masses(history):
+    """(n,) kg: the masses that the history was run with; of blocks without one, as of those that were erased, density times volume; NaN: not known."""
+    found = np.full(len(history.ids), np.nan)
+    for material in history.about.get("materials", []):
+        own = np.isin(history.ids, material.get("ids", []))
+        found[own] = material.get("density", np.nan) * history.volumes[own]
+    for row in history.about.get("masses", []):
+        found[np.isin(history.ids, row["ids"])] = row["mass"]
+    return found

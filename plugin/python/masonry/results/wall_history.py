@@ -20,12 +20,12 @@ _OPTIONAL = ("motion", "end", "about", "impacts", "forces", "ties", "bonds", "da
 _SHAPES = ("vertices", "vertex_start", "faces", "face_start")
 # Rows of the forces of joints: force on block 2, N, and where it acts, m.
 JOINT_FORCES = [("id1", int), ("id2", int), ("force", float, 3), ("point", float, 3)]
-# Columns of the ties: the bodies, where it is fixed to them (from their centres, in their own axes, m), N, m, J.
-TIES = [("body1", int), ("body2", int), ("point1", float, 3), ("point2", float, 3), ("force", float), ("extension", float), ("energy", float), ("broken", bool)]
+# Columns of the ties: the bodies, where it is fixed to them (from their centres, in their own axes, m), N, N, m, J.
+TIES = [("body1", int), ("body2", int), ("point1", float, 3), ("point2", float, 3), ("strength", float), ("force", float), ("extension", float), ("energy", float), ("broken", bool)]
 # Columns of the impacts, of dem.impacts(), that a report shows.
 _IMPACTS = "time", "body", "support", "restitution_asked", "restitution", "velocity", "energy_lost", "friction_demand", "capped"
 # Names that masonry writes into `about`; a script may add more.
-_ABOUT = {"script": str, "materials": list, "motions": list, "loads": list, "model": dict, "solver": dict, "notes": list, "versions": dict}
+_ABOUT = {"script": str, "materials": list, "masses": list, "motions": list, "loads": list, "ties": list, "model": dict, "solver": dict, "notes": list, "versions": dict}
 # Share of the motion that may be missing from a run to its end, whose last step or sample may come a little earlier.
 _FINISHED = 1e-3
 
@@ -43,13 +43,13 @@ class WallHistory:
     motion         (2,) s: when the motion of the base begins and ends (infinite: its end is not known); NaN: it has none; None: not known, as in files
                    that do not say it
     end            s: how far the run has come; None: to the last sample
-    about          dict that JSON can hold: script, versions, model, materials, motions, loads, solver, notes, and what a script adds (about["seed"] = 7); empty:
+    about          dict that JSON can hold: script, versions, model, materials, masses, motions, loads, ties, solver, notes, and what a script adds (about["seed"] = 7); empty:
                    not known
     impacts        structured array of dem.impacts(); None: not known
     forces         structured array, one row for each joint that carries load in a sample: sample (its number), id1, id2, force on block 2 (N), point
                    where it acts (m); None: not recorded (WallRecorder.recordForces)
     ties           (s, m) structured array, for each sample and each of m ties (dem.tie): body1, body2, point1, point2 (where it is fixed to them, from their centres
-                   in their own axes, m), force (N, tension positive, mean of the step before), extension (m), energy (J), broken; None: there are none
+                   in their own axes, m), strength (N), force (N, tension positive, mean of the step before), extension (m), energy (J), broken; None: there are none
     bonds          (m,) structured array of the joints with mortar in the last sample, with the columns of dem.damage(): all of the scene, sorted by their bodies;
                    None: there are none
     damage         (s, m) structured array, for each sample and each of these joints: damage, worst, by_tension (share of the damage that tension has made), opening,
@@ -408,11 +408,14 @@ def _about_given(about):
 
 
 def _about_ids(about, ids):
-    """`about` with the materials, motions and loads of these bodies alone."""
+    """`about` with the materials, masses, motions and loads of these bodies alone."""
     found = dict(about)
-    for name in ("materials", "motions", "loads"):
+    for name in ("materials", "masses", "motions", "loads"):
         if name in about:
             found[name] = [{**one, "ids": sorted(set(one["ids"]) & set(ids))} for one in about[name] if set(one["ids"]) & set(ids)]
+    if "ties" in about:
+        inside = [{**one, "ids": [pair for pair in one["ids"] if set(pair) <= set(ids)]} for one in about["ties"]]
+        found["ties"] = [one for one in inside if one["ids"]]
     return found
 
 

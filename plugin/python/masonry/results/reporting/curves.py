@@ -97,7 +97,7 @@ def tie_forces(history, verdict):
     """Forces of the ties, of at most so many as a figure can tell apart: those that carried most."""
     figure, axes = axes_of(1, 2.6)
     forces = history.ties["force"]
-    for k in np.sort(np.argsort(-forces.max(axis=0), kind="stable")[:_LINES]).tolist():
+    for k in np.sort(np.argsort(-np.abs(forces).max(axis=0), kind="stable")[:_LINES]).tolist():
         tie = history.ties[0, k]
         axes[0].plot(history.time, forces[:, k] / 1e3, label=f"{tie['body1']} – {tie['body2']}")
     axes[0].set_ylabel("force (kN)")

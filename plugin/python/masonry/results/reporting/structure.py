@@ -8,7 +8,7 @@ from masonry.results.collapse import collapse
 from masonry.results.cracks import Cracks
 from masonry.results.forces import has_forces
 from masonry.results.joints import joints
-from masonry.results.time_histories import joint_history, structure_history
+from masonry.results.time_histories import joint_history, masses, structure_history
 from masonry.results.ties import ties
 from masonry.results.view import largest, movement, still
 
@@ -16,6 +16,7 @@ from . import curves, view3d, words
 
 # Rows of tables: of joints, of impacts (those that lost most), and of joints that have cracked.
 _JOINTS, _IMPACTS, _CRACKS = 12, 200, 100
+_BASES = 6  # that are named
 # Error of the energy balance that is named among the warnings, relative to the largest energy in it.
 _UNBALANCED = 0.05
 # Drifts, and base shears over the weight, along an axis that are not named.
@@ -27,6 +28,8 @@ def content(history, exact):
     verdict, table = collapse(history), joints(history)
     single = history.free.sum() == 1
     shown_first = verdict.peak_drift_time
+    told = words.facts(history.about)  # first: it refuses what masonry has not written
+    facts = [("Structure", _structure(history)), *_bases(history), *_mass(history), *told]
     sections = [section for section in (
         _section("drift", "Drift", curves.drift(history, verdict),
                  "Horizontal displacement of the top relative to the base, over the height." + _shaded(verdict)),
@@ -39,7 +42,7 @@ def content(history, exact):
         _energy_section(history), _impact_section(history)) if section]
     return {"title": history.about.get("script") or "Rocking masonry", "kind": verdict.verdict, "headline": _headline(verdict), "sentences": _sentences(history, verdict),
             "warnings": _warnings(history, verdict), "scene": view3d.scene(history, shown_first), "numbers": _numbers(history, verdict, table), "sections": sections,
-            "facts": [("Structure", _structure(history)), *words.facts(history.about)], "solver": words.solver(history.about), "known": bool(history.about)}
+            "facts": facts, "solver": words.solver(history.about), "known": bool(history.about)}
 
 
 def _section(name, heading, figure="", caption="", **more):
@@ -144,6 +147,19 @@ def _structure(history):
             f"{box[0]:.3g} × {box[1]:.3g} × {box[2]:.3g} m in all; {len(history.time)} samples from {history.time[0]:.4g} to {history.time[-1]:.4g} s")
 
 
+def _bases(history):
+    """Row on the sizes of the prescribed bodies on which blocks stand."""
+    rows = np.unique(history.bases[history.free & (history.bases >= 0)])
+    said = [f"body {history.ids[row]}: {' × '.join(f'{x:.3g}' for x in history.sizes[row])} m" for row in rows[:_BASES].tolist()]
+    more = [f"and {len(rows) - _BASES} more"] if len(rows) > _BASES else []
+    return [("Base" if len(rows) == 1 else "Bases", "; ".join(said + more))] if said else []
+
+
+def _mass(history):
+    total = masses(history)[history.free].sum()
+    return [("Mass of the free blocks", words.mass(total, history.about.get("model", {}).get("gravity")))] if np.isfinite(total) else []
+
+
 def _joints_section(history, verdict, table):
     if not len(table):
         return None
@@ -173,12 +189,14 @@ def _ties_section(history, verdict):
     table = ties(history)
     if not len(table):
         return None
-    rank = np.argsort(-table["force"], kind="stable")
-    rows = [(f"{r['body1']} – {r['body2']}", f"{r['force'] / 1e3:.4g}", f"{r['force_time']:.3f}", _mm(r["extension"]), f"{r['extension_time']:.3f}",
+    rank = np.argsort(-np.maximum(table["force"], table["compression"]), kind="stable")
+    rows = [(f"{r['body1']} – {r['body2']}", *(text for name in ("force", "compression") for text in ((f"{r[name] / 1e3:.4g}", f"{r[name + '_time']:.3f}") if r[name] else ("", ""))),
+             _mm(r["extension"]), f"{r['extension_time']:.3f}",
              f"{r['broken_time']:.3f}" if r["broken"] else "") for r in table[rank[:_JOINTS]]]
     broke = f" {int(table['broken'].sum())} of them broke." if table["broken"].any() else " None of them broke."
-    return _section("ties", "Ties", curves.tie_forces(history, verdict), f"Forces of {_counted(len(table), 'tie')} at the instants of the samples, tension positive."
-                    + broke + _shaded(verdict), columns=["Bodies", "Force (kN)", "at (s)", "Extension (mm)", "at (s)", "Broken at (s)"], rows=rows,
+    return _section("ties", "Ties", curves.tie_forces(history, verdict), f"Forces of {_counted(len(table), 'tie')} at the instants of the samples, tension positive: means of the step before. One "
+                    "that broke has carried its strength."
+                    + broke + _shaded(verdict), columns=["Bodies", "Tension (kN)", "at (s)", "Compression (kN)", "at (s)", "Extension (mm)", "at (s)", "Broken at (s)"], rows=rows,
                     more=f"The {len(rows)} ties of {len(table)} that carried most.", fold="Table of ties")
 
 

@@ -55,6 +55,20 @@ def load(given):
     return f"{decimal(1e-3 * given['size'], 4)} kN {on}, a constant force"
 
 
+def tie(given):
+    """One sentence on equal ties of WallHistory.about."""
+    number = len(given["ids"])
+    breaks = "does not break" if given["strength"] is None else f"breaks at {decimal(1e-3 * given['strength'], 4)} kN"
+    said = [f"{number} tie{'s' if number != 1 else ''}: stiffness {given['stiffness']:.4g} N/m", breaks if number == 1 else breaks.replace("does", "do").replace("breaks", "break")]
+    return ", ".join(said + [f"pretension {decimal(1e-3 * given['pretension'], 4)} kN"] * (given["pretension"] != 0) + ["presses too" if number == 1 else "press too"] * (not given["tension_only"]))
+
+
+def mass(kilograms, gravity):
+    """The mass of blocks, and their weight where gravity is known."""
+    said = f"{decimal(kilograms, 4)} kg"
+    return said if gravity is None else f"{said}, weight {decimal(1e-3 * kilograms * math.hypot(*gravity), 4)} kN"
+
+
 def _written_by_masonry(sentences):
     """The function of `about`; where that, which may come from a file, lacks what masonry writes into it, ValueError."""
     @functools.wraps(sentences)
@@ -74,6 +88,7 @@ def facts(about):
     rows += [("Material" if len(about["materials"]) == 1 else f"Material {k + 1}", material(one)) for k, one in enumerate(about.get("materials", []))]
     rows += [("Push" if one["kind"] == "push" else "Motion of the base", motion(one)) for one in about.get("motions", [])] or ([("Motion of the base", "none")] if "motions" in about else [])
     rows += [("Added mass" if one["kind"] == "mass" else "Dead load", load(one)) for one in about.get("loads", [])]
+    rows += [("Ties", tie(one)) for one in about.get("ties", [])]
     model = about.get("model", {})
     if "model" in model:
         rows.append(("Model", f"{model['model']}{': ' + model['reason'] if model.get('reason') else ''}"))
@@ -85,7 +100,7 @@ def facts(about):
     if "gravity" in model:
         rows.append(("Gravity", f"({', '.join(f'{x:g}' for x in model['gravity'])}) m/s^2"))
     rows += [(name[0].upper() + name[1:], value if isinstance(value, str) else f"{value!r}") for name, value in about.items()
-             if name not in ("script", "materials", "motions", "loads", "model", "solver", "notes", "versions")]
+             if name not in ("script", "materials", "masses", "motions", "loads", "ties", "model", "solver", "notes", "versions")]
     if "versions" in about:
         rows.append(("Versions", ", ".join(f"{name} {value}" for name, value in about["versions"].items())))
     return rows
