@@ -114,6 +114,7 @@ def test_fragility_of_a_table(command, folder):
 
 @pytest.mark.parametrize("line, words", [
     ("fragility none.AT2 r1.csv --width 0.4 --height 2 --scales 1:2:3", "none.AT2"),
+    ("rock none.AT2 --width 0.4 --height 2", "masonry: none.AT2: there is no such file or folder"), ("report none.npz", "masonry: none.npz: there is no such file or folder"),
     ("fragility r0.csv r1.csv --width 0.4 --height 2 --scales 1:2:3", "r0.csv: unit = None: must be given for a text file of columns"),
     ("fragility r0.csv --unit m/s^2 --width 0.4 --height 2 --scales 1:2:3", "must be at least two"),
     ("fragility r0.csv r1.csv --unit m/s^2 --width 0.4 --height 2", "scales, levels: must give one"),
@@ -147,6 +148,12 @@ def test_warnings_are_sentences(command, folder):
     (folder / "fast.csv").write_text("\n".join(["time,acceleration", *(f"{0.01 * k:.2f},{60 * (-1)**k}" for k in range(50))]))
     status, _, error = command("spectrum response fast.csv --unit m/s^2 --period 0.5,1 --baseline none --quiet")
     assert status == 0 and error == "masonry: The record 'fast.csv' reaches 60 m/s^2 before its scale, 6.12 g: is its unit right?\n"
+
+
+def test_sizes_in_millimetres_are_asked_about(command):
+    status, _, error = command("rock quake.AT2 --width 400 --height 2000 --end 0.5")
+    assert status == 0 and error == "masonry: The block measures 400 x 2000 m: sizes are in m.\n"
+    assert command("rock quake.AT2 --width 0.4 --height 2 --end 0.5")[2] == ""
 
 
 def test_lists_of_numbers():
@@ -210,7 +217,7 @@ def test_the_baseline_high_pass(command, folder):
     record = masonry.read_record("quake.AT2", baseline="high-pass", corner=0.2)
     history = masonry.simulate(masonry.RockingBlock(0.3, 1.5), record)
     assert np.allclose(table(folder / "high.csv")["angle"], history.angles, rtol=0, atol=1e-15, equal_nan=True)
-    for more, words in (("--baseline high-pass", "corner = None"), ("--corner 1", "corner"), ("--order 3", "--order 3: must be left out")):
+    for more, words in (("--baseline high-pass", "masonry: --corner: must be given, in Hz"), ("--corner 1", "masonry: --corner 1: must be left out"), ("--order 3", "--order 3: must be left out")):
         status, _, wrong = command(f"rock quake.AT2 --width 0.6 --height 3 {more}")
         assert status == 2 and words in wrong, wrong
 

@@ -137,6 +137,17 @@ def test_a_block_on_compliant_joints():
     assert np.abs(table["force"] / rocking(table["displacement"], 1.5, weight([block])) - 1)[late].max() < 0.02
 
 
+def test_a_soft_platen_is_no_landing():
+    """Joints of a platen give by more than 2 % of its size: no failure that asks for stiffer joints of blocks."""
+    stiff, soft = ({"normalStiffness": k, "shearStiffness": k} for k in (1e10, 1e8))
+    block = dem.block((1.0, 0.5, 0.5), stone(3, **stiff), on=ground(mu=3, **stiff))
+    push = dem.push(ids=[block], displacement=0.01, height=0.45, vertical="load", force=3e4)
+    O.bodies[push.platens[0]].mat.updateAttrs(soft)
+    run(push, model="compliant")
+    joints = next(engine for engine in O.engines if isinstance(engine, dem.RockingJointEngine))
+    assert joints.failures == 0 and push.largest_force[0] > 1e4
+
+
 def test_an_oblique_push_of_a_column():
     """A block that is pushed along the diagonal of its plan turns over its corner, at W times half the diagonal over z, if it does not turn about the vertical."""
     block = dem.block((0.4, 0.4, 1.2), stone(3), on=ground(mu=3))

@@ -41,7 +41,8 @@ def main():
         try:
             given.run(given)
         except (OSError, ValueError, ImportError, RuntimeError) as error:  # input that is wrong, or a package that is missing: their message says which
-            parser.exit(2, f"masonry: {' '.join(str(error).split())}\n")
+            missing = f"{error.filename}: there is no such file or folder" if isinstance(error, FileNotFoundError) and error.filename else ""
+            parser.exit(2, f"masonry: {missing or ' '.join(str(error).split())}\n")
         except MemoryError as error:
             parser.exit(2, f"masonry: the memory is too small for that: {error}\n")
         except KeyboardInterrupt:

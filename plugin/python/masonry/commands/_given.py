@@ -54,6 +54,10 @@ def read_records(given):
 
     baseline = given.baseline if given.quantity == "acceleration" else "none"
     filtered = {} if given.order is None else {"order": given.order}
+    if given.corner is None and baseline == "high-pass":
+        raise ValueError("--corner: must be given, in Hz, with --baseline high-pass")
+    if given.corner is not None and baseline != "high-pass":
+        raise ValueError(f"--corner {given.corner:g}: must be left out without --baseline high-pass")
     if given.order is not None and baseline != "high-pass":
         raise ValueError(f"--order {given.order}: must be left out without --baseline high-pass")
     return [read_record(path, given.component, given.quantity, unit=given.unit, dt=given.dt, baseline=baseline, corner=given.corner, **filtered)

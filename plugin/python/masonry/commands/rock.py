@@ -1,9 +1,13 @@
 """masonry rock RECORD --width 0.6 --height 2: the history of one block under a record, as a table and a picture."""
 
 import argparse
+import warnings
 from pathlib import Path
 
 from . import _given
+
+# The longest block that is no slip of units (mm for m), m.
+_LONGEST = 50
 
 
 def add(subcommands):
@@ -26,6 +30,8 @@ def run(given):
     for name in ("width", "height"):
         if not 0 < getattr(given, name) < float("inf"):
             raise ValueError(f"--{name} {getattr(given, name):g}: must be positive and finite, in m")
+    if max(given.width, given.height) > _LONGEST:
+        warnings.warn(f"The block measures {given.width:g} x {given.height:g} m: sizes are in m.", stacklevel=2)
     record, = _given.read_records(given)
     history = masonry.simulate(masonry.RockingBlock(given.width / 2, given.height / 2), record.scaled(given.scale), given.restitution, t_end=given.end)
     table, picture = (given.output.with_name(given.output.name + ending) for ending in (".csv", ".png"))
