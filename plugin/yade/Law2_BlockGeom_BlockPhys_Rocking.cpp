@@ -46,7 +46,7 @@ bool Law2_BlockGeom_BlockPhys_Rocking::go(shared_ptr<IGeom>& ig, shared_ptr<IPhy
 {
 	const auto& geom = static_cast<const BlockGeom&>(*ig);
 	auto& phys = static_cast<BlockPhys&>(*ip);
-	// What it has carried works in this step too, and mortar holds blocks however wide its crack.
+	// The force that a joint has carried works in this step too, and mortar holds blocks however wide its crack.
 	bool near = phys.normalForce != Vector3r::Zero() || phys.isBonded();
 	for (const masonry::PatchPoint& point : geom.patch.points)
 		near |= point.gap <= margin * std::min(geom.refR1, geom.refR2);

@@ -21,8 +21,8 @@ inline double lead(double separation, double length)
 	return std::max(tolerance::contact::reference * length, tolerance::contact::depthShare * -separation);
 }
 
-// Of the best faces of both blocks that of the larger separation. The one of block `held`, the reference before (0: none), leads; a tie
-// goes to the larger face, then to block 1.
+// Returns the best face of the two blocks that has the larger separation. The face of block `held`, the reference before (0: none), leads;
+// a tie goes to the larger face, then to block 1.
 template <class Face>
 const Face& reference(const Face& face1, const Face& face2, int held, bool larger2, double length)
 {

@@ -181,7 +181,7 @@ void begin(const Bodies<K>& bodies, ClosingJoint<K>& joint, ImpulsePoints<K>& po
 		points[i].holds = false;
 }
 
-// What has come out, after the impulses and the row's couple, into joint.result.
+// Writes the spins and the couple after the impulses into joint.result.
 template <class K>
 void report(const Bodies<K>& bodies, const ImpulsePoints<K>& points, ClosingJoint<K>& joint, double couple)
 {

@@ -96,7 +96,7 @@ struct JointContact {
 	Vector3 position(int i) const { return 0.5 * (patch.points[i].position1 + patch.points[i].position2); }
 	// How a turn (or spin) moves the friction point across the normal, relative to the point.
 	Vector3 gripMotion(int i, const Vector3& turn) const { return patch.normal.dot(turn) * patch.normal.cross(points[i].grip); }
-	// Of the bond, on body 2: about `center`, N m; and on points of the body, W.
+	// The bond has this moment about `center` on body 2, N m, and this power on points of a body, W.
 	Vector3 bondMoment(const Vector3& center) const { return load.moment + (load.place - center).cross(load.force); }
 	double bondPower(const RigidBody<Space>& body) const
 	{

@@ -119,7 +119,7 @@ GapPlane planeOf(const JointContact& contact, const Polygon& corners, const Vect
 	return plane;
 }
 
-// Of a linear pressure that has the resultant of the corners' normal forces, kept from pulling, Pa: one value for each fibre.
+// Returns the pressure on each fibre, Pa: a linear one that has the resultant of the corners' normal forces and does not pull.
 std::vector<double> pressuresOn(const JointContact& contact, const Axes& axes, const Vector3& centroid)
 {
 	const MortarBond& bond = *contact.bond;

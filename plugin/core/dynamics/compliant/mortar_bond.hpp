@@ -52,7 +52,7 @@ struct MortarBond {
 	}
 };
 
-// What dem.damage() tells of a joint.
+// The state of a joint that dem.damage() returns.
 struct MortarState {
 	double damage {0}, worst {0};   // mean over the area, largest
 	double byTension {0};           // share of the spent fracture energies that cracks in tension have

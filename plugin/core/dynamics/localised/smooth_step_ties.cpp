@@ -127,7 +127,7 @@ void SmoothStep<K>::bookTies(RigidSystem<K>& s)
 	}
 }
 
-// Of the bodies after the step.
+// Sets the state of the ties from the bodies after the step.
 template <class K>
 void SmoothStep<K>::takeTies(RigidSystem<K>& s) const
 {

@@ -35,7 +35,7 @@ struct Tie {
 	double extension {0}; // m
 	double energy {0};    // J
 
-	// What a run goes on from; the rest belongs to the scene.
+	// A run goes on from these; the rest belongs to the scene.
 	template <class Archive>
 	void serialize(Archive& archive)
 	{

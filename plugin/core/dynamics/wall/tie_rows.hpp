@@ -26,7 +26,7 @@ struct TieArms {
 	}
 
 	double rate(const LaneArray& v) const { return along(v, 0) + along(v, 1); }
-	// That of the prescribed bodies alone.
+	// The prescribed bodies alone give this rate.
 	double baseRate(const LaneArray& v) const
 	{
 		double sum = 0;

@@ -7,7 +7,7 @@ from functools import lru_cache
 # Share of a block by which lengths may miss a bound: round-off.
 ROUND_OFF = 1e-9
 _FAR = float("inf")
-# What the search minimises, in pieces of a course: what a piece costs besides its own one, and what a joint costs that laps by nothing, and by less than a quarter.
+# The search minimises these costs, in pieces of a course: a piece beside its own one, a joint that laps by nothing, a joint that laps by less than a quarter.
 _HALF, _CUT, _SHORT, _INSIDE, _LAP, _LITTLE = 0.25, 0.5, 0.5, 0.3, 0.4, 1.0
 
 
