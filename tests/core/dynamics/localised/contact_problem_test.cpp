@@ -457,7 +457,7 @@ struct Problem {
 
 Problem<Space> problemOf(Space, const Column& column) { return {column.bodies, column.points}; }
 
-// Of a column in the plane of x and z.
+// Returns the equivalent column in the plane of x and z.
 Problem<Plane> problemOf(Plane, const Column& column)
 {
 	const auto flat = [](const Vector3& v) { return Vector2(v.x(), v.z()); };
