@@ -31,6 +31,12 @@ def written(path):
         raise
 
 
+def check_csv(path):
+    """ValueError unless the path ends in .csv."""
+    if not str(path).endswith(".csv"):
+        raise ValueError(f"path = {path}: must end in .csv")
+
+
 def save_picture(figure, path, **options):
     """Writes a figure of Matplotlib; ValueError where no picture has the ending of the path. options: those of Figure.savefig."""
     path = Path(path)

@@ -7,7 +7,7 @@ import numpy as np
 
 from . import _core
 from ._arrays import columns, restore, shape_of
-from ._files import save_picture, written
+from ._files import check_csv, save_picture, written
 from ._given import array_given, shown, whole_given
 from ._optional import needs
 from .block import columns_of, critical_angle_of, restitution_of
@@ -121,8 +121,7 @@ class History:
     def to_csv(self, path, times=None):
         """Writes a .csv file of one block, a line for each of `times` (s, None: history.times): time (s), angle (rad), angular velocity (rad/s), displacement of
         the base (m) and, of a record, its acceleration (m/s^2)."""
-        if not str(path).endswith(".csv"):
-            raise ValueError(f"path = {path}: must end in .csv")
+        check_csv(path)
         self._of_one("to be written as a table")
         times = self.times if times is None else np.ravel(array_given("times", times))
         angle, velocity, base = self._sample(times)

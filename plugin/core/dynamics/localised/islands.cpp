@@ -106,16 +106,14 @@ void Islands<K>::take(const RigidSystem<K>& s, Island& island) const
 	const auto numberOf = [&](int body) {
 		return int(std::lower_bound(island.bodies.begin(), island.bodies.end(), body) - island.bodies.begin());
 	};
-	for (const int c : island.pairs) {
-		ContactPair<K>& pair = own.pairs.emplace_back(s.pairs[c]);
-		pair.body1 = numberOf(pair.body1);
-		pair.body2 = numberOf(pair.body2);
-	}
-	for (const int t : island.ties) {
-		Tie<K>& tie = own.ties.emplace_back(s.ties[t]);
-		tie.body1 = numberOf(tie.body1);
-		tie.body2 = numberOf(tie.body2);
-	}
+	const auto renumber = [&](auto& joins) { // a pair or a tie
+		joins.body1 = numberOf(joins.body1);
+		joins.body2 = numberOf(joins.body2);
+	};
+	for (const int c : island.pairs)
+		renumber(own.pairs.emplace_back(s.pairs[c]));
+	for (const int t : island.ties)
+		renumber(own.ties.emplace_back(s.ties[t]));
 }
 
 template <class K>
@@ -124,20 +122,16 @@ void Islands<K>::giveBack(RigidSystem<K>& s, Island& island) const
 	const RigidSystem<K>& own = island.system;
 	for (size_t b = 0; b < island.bodies.size(); ++b)
 		s.bodies[island.bodies[b]] = own.bodies[b];
-	for (size_t c = 0; c < island.pairs.size(); ++c) {
-		ContactPair<K>& pair = s.pairs[island.pairs[c]];
-		const int body1 = pair.body1, body2 = pair.body2;
-		pair = own.pairs[c];
-		pair.body1 = body1;
-		pair.body2 = body2;
-	}
-	for (size_t t = 0; t < island.ties.size(); ++t) {
-		Tie<K>& tie = s.ties[island.ties[t]];
-		const int body1 = tie.body1, body2 = tie.body2;
-		tie = own.ties[t];
-		tie.body1 = body1;
-		tie.body2 = body2;
-	}
+	const auto take = [](const auto& from, auto& to) { // a pair or a tie, which keeps its numbers of bodies
+		const int body1 = to.body1, body2 = to.body2;
+		to = from;
+		to.body1 = body1;
+		to.body2 = body2;
+	};
+	for (size_t c = 0; c < island.pairs.size(); ++c)
+		take(own.pairs[c], s.pairs[island.pairs[c]]);
+	for (size_t t = 0; t < island.ties.size(); ++t)
+		take(own.ties[t], s.ties[island.ties[t]]);
 	for (Impact impact : own.impacts) {
 		impact.block = island.bodies[impact.block];
 		impact.support = island.bodies[impact.support];

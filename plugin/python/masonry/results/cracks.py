@@ -1,8 +1,8 @@
 """Cracks of the joints with mortar of a WallHistory: which joints, in tension or in shear, when, and what they have spent."""
 
 import numpy as np
-from masonry._files import save_picture, written
-from masonry._given import shown
+from masonry._files import check_csv, save_picture, written
+from masonry.results._table import Table
 from masonry.results.bonds import BONDS, modes
 from masonry.results.wall_history import history_given
 
@@ -12,7 +12,7 @@ _UNITS = {"center": "m", "area": "m^2", "opening": "m", "slip": "m", "energy_ten
 _TIMELINE = [("time", float), ("tension", int), ("shear", int), ("broken", int), ("damage", float), ("energy_tension", float), ("energy_shear", float)]
 
 
-class Cracks:
+class Cracks(Table):
     """The joints with mortar in one sample: cracks["damage"], one row a joint, sorted by its bodies.
 
     table       structured array with the columns of dem.damage(): body1, body2, center (m), area (m^2), damage (mean D over the joint), worst (largest D), mode
@@ -34,14 +34,6 @@ class Cracks:
         self.table["cracked"][now["worst"] < CRACKED] = np.nan
         self.table["broken"][now["damage"] < 1] = np.nan
 
-    def __getitem__(self, name):
-        if name not in self.table.dtype.names:
-            raise KeyError(f"{shown(name)}: must be one of {', '.join(self.table.dtype.names)}")
-        return self.table[name]
-
-    def __len__(self):
-        return len(self.table)
-
     def __str__(self):
         if not len(self):
             return "no joint has mortar"
@@ -62,7 +54,7 @@ class Cracks:
 
     @property
     def energy(self):
-        """What all cracks have spent, J: crackDissip of dem.energy()."""
+        """Energy that all cracks have spent, J: crackDissip of dem.energy()."""
         return float((self.table["energy_tension"] + self.table["energy_shear"]).sum())
 
     @property
@@ -88,8 +80,7 @@ class Cracks:
 
     def save(self, path):
         """Writes a .csv file, a line a joint, with a header line of names and units."""
-        if not str(path).endswith(".csv"):
-            raise ValueError(f"path = {path}: must end in .csv")
+        check_csv(path)
         header, columns = [], []
         for name in self.table.dtype.names:
             unit = f" ({_UNITS[name]})" if name in _UNITS else ""

@@ -1,4 +1,4 @@
-"""The ties of a WallHistory: what each has carried, and where it is."""
+"""The ties of a WallHistory: their largest forces, and where they are."""
 
 import numpy as np
 from masonry import _pose
@@ -8,7 +8,7 @@ _FIELDS = [("body1", int), ("body2", int), ("force", float), ("force_time", floa
 
 
 def ties(history):
-    """What each tie (dem.tie) has carried: a structured array, one row a tie, in the order in which they were made. Empty where there are none.
+    """Largest forces and extensions of each tie (dem.tie): a structured array, one row a tie, in the order in which they were made. Empty where there are none.
 
     body1, body2                 ids that it joins
     force, force_time            largest tension, N, and when; of a tie that broke at least its strength, at which it broke; 0 and NaN: it was never in tension

@@ -1,9 +1,10 @@
 """Quantities over time, as tables that are saved and drawn: of a joint, and of a structure as a whole."""
 
 import numpy as np
-from masonry._files import save_picture, written
+from masonry._files import check_csv, save_picture, written
 from masonry._given import number_given, positive_given, shown
 from masonry._pose import matrices
+from masonry.results._table import Table
 from masonry.results.forces import base_reactions, has_forces
 from masonry.results.joints import joint_movement, joints
 from masonry.results.view import still
@@ -16,28 +17,19 @@ _UNITS = {"time": "s", "opening": "m", "slip": "m", "closed": "1", "normal": "N"
 _STANDARD_GRAVITY = 9.81  # m/s^2
 
 
-class TimeHistory:
+class TimeHistory(Table):
     """A table over time: history["opening"], history["time"]. `table`: the structured array, one row a sample; `title`: what it is of; `numbers`: a dict of what sums
     it up."""
 
     def __init__(self, table, title, panels, numbers):
         self.table, self.title, self._panels, self.numbers = table, title, panels, numbers
 
-    def __getitem__(self, name):
-        if name not in self.table.dtype.names:
-            raise KeyError(f"{shown(name)}: must be one of {', '.join(self.table.dtype.names)}")
-        return self.table[name]
-
-    def __len__(self):
-        return len(self.table)
-
     def __str__(self):
         return "\n".join([self.title, *(f"  {name}: {value:.4g}" for name, value in self.numbers.items())])
 
     def save(self, path):
         """Writes a .csv file, a line a sample, with a header line of names and units."""
-        if not str(path).endswith(".csv"):
-            raise ValueError(f"path = {path}: must end in .csv")
+        check_csv(path)
         header, columns = [], []
         for name in self.table.dtype.names:
             values = self.table[name].astype(float)

@@ -5,7 +5,7 @@ from functools import cached_property
 
 import numpy as np
 from masonry import _pose
-from masonry._files import read_npz, written
+from masonry._files import check_csv, read_npz, written
 from masonry._given import number_given, shown
 from masonry._polyhedra import contacts
 from masonry._shapes import Shapes, box_corners
@@ -147,8 +147,7 @@ class WallHistory:
         """Writes a .csv file, a line a sample, with a header: time (s), drift (of the height), the columns of energy (J) where they were
         recorded, of each tie its force (N), extension (m) and energy (J), and of each block of `ids` (history.ids: all) displacement x, y, z (m) of its centre and rotation (rad), relative to the base and
         since the first sample, and its lean (rad) from the vertical."""
-        if not str(path).endswith(".csv"):
-            raise ValueError(f"path = {path}: must end in .csv")
+        check_csv(path)
         columns = {"time (s)": self.time, "drift": self.drift()}
         if not np.isnan(self._energies).all():
             columns.update({f"{name} (J)": self.energy[name] for name in self.energy.dtype.names[1:]})
