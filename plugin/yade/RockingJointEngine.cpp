@@ -252,7 +252,7 @@ void RockingJointEngine::warn(const masonry::CompliantReport& report)
 	const masonry::JointContact& contact = step.system.contacts[report.deep];
 	LOG_WARN("at t = " << scene->time << " s blocks " << blocks.ids[contact.body1] << " and " << blocks.ids[contact.body2]
 	                   << " press into each other by " << 100 * report.depth
-	                   << " % of the smallest half size: their joint is too soft for this landing. Give dem.engines() a smaller "
+	                   << " % of the smallest half size: their joint is too soft for this landing or load. Give dem.engines() a smaller "
 	                      "penetration, or take rigid blocks. The run goes on.");
 }
 

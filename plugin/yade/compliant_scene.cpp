@@ -28,7 +28,6 @@ void CompliantScene::readBodies(const Scene& scene, masonry::CompliantStep& step
 {
 	ids.clear();
 	step.system.bodies.clear();
-	step.platens.clear();
 	index.assign(scene.bodies->size(), -1);
 	for (const auto& body : scene.bodies->body) {
 		if (!body || !dynamic_cast<BlockMat*>(body->material.get()))
@@ -41,8 +40,6 @@ void CompliantScene::readBodies(const Scene& scene, masonry::CompliantStep& step
 			throw std::invalid_argument(sentence("O.bodies[", body->id,
 			                                     "] is a union of convex parts, which compliant joints do not take: give dem.engines() "
 			                                     "model='auto', or the parts as blocks of their own."));
-		if (!body->isDynamic() && body->material->label == "platen") // as dem.push() makes them
-			step.platens.push_back(int(ids.size()));
 		index[body->id] = int(ids.size());
 		ids.push_back(body->id);
 		step.system.bodies.push_back(coreBody(*body));

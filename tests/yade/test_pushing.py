@@ -137,15 +137,15 @@ def test_a_block_on_compliant_joints():
     assert np.abs(table["force"] / rocking(table["displacement"], 1.5, weight([block])) - 1)[late].max() < 0.02
 
 
-def test_a_soft_platen_is_no_landing():
-    """Joints of a platen give by more than 2 % of its size: no failure that asks for stiffer joints of blocks."""
+def test_a_platen_that_presses_in_deep_is_told():
+    """The joint of a platen gives by more than 2 % of its size: it is said once, in words that also fit a load."""
     stiff, soft = ({"normalStiffness": k, "shearStiffness": k} for k in (1e10, 1e8))
     block = dem.block((1.0, 0.5, 0.5), stone(3, **stiff), on=ground(mu=3, **stiff))
     push = dem.push(ids=[block], displacement=0.01, height=0.45, vertical="load", force=3e4)
     O.bodies[push.platens[0]].mat.updateAttrs(soft)
     run(push, model="compliant")
     joints = next(engine for engine in O.engines if isinstance(engine, dem.RockingJointEngine))
-    assert joints.failures == 0 and push.largest_force[0] > 1e4
+    assert joints.failures == 1 and push.largest_force[0] > 1e4
 
 
 def test_an_oblique_push_of_a_column():

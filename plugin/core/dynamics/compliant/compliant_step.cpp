@@ -230,8 +230,6 @@ void CompliantStep::checkDepths(CompliantReport& report)
 	constexpr double most = 0.02; // of the smallest half size of the pair
 	for (size_t c = 0; c < system.contacts.size() && !run.isDeep; ++c) {
 		const JointContact& contact = system.contacts[c];
-		if (std::any_of(platens.begin(), platens.end(), [&](int b) { return b == contact.body1 || b == contact.body2; }))
-			continue;
 		const double size = std::min(system.bodies[contact.body1].shape->thickness(), system.bodies[contact.body2].shape->thickness());
 		for (int i = 0; i < contact.size() && !run.isDeep; ++i) {
 			const double depth = -contact.patch.points[i].gap / size;

@@ -62,7 +62,6 @@ public:
 	JointSystem system; // forces and torques of the bodies: the loads, without the weight
 	CompliantRun run;
 	std::vector<MortarRequest> requests; // joints to be bonded at the end of this step; taken
-	std::vector<int> platens;            // bodies that push slowly: what they press in is no landing
 	double stepFraction {0};             // share of the critical step by which system.dt was chosen; 0: it was given
 
 	// Returns false where the present joints make a given step unstable. A chosen step is lowered instead.
