@@ -1,4 +1,4 @@
-"""What a structure carries besides its blocks: mass that moves with them, and dead loads that do not."""
+"""Loads on a structure besides its blocks: mass that moves with them, and dead loads that do not."""
 
 import math
 
@@ -102,7 +102,7 @@ def load_engines():
 
 
 def lasting_loads():
-    """Those of dem.dead_load: what dem.push() puts on blocks ends with its engines."""
+    """The engines of dem.dead_load alone: a load that dem.push() puts on blocks ends with its engines."""
     return [engine for engine in load_engines() if not engine.label.startswith(_OF_A_PUSH)]
 
 

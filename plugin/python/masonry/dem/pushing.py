@@ -3,7 +3,7 @@
 import math
 
 import numpy as np
-from masonry._files import save_picture, written
+from masonry._files import check_csv, save_picture, written
 from masonry._given import finite_numbers, is_whole, number_given, positive_given, shown
 from masonry._pose import matrices
 from masonry.dem import notes
@@ -99,8 +99,7 @@ class Push:
 
     def save(self, path):
         """Writes the curve as .csv: displacement (m), force (N), time (s), moved (m), force of the step (N), a line a step."""
-        if not str(path).endswith(".csv"):
-            raise ValueError(f"path = {path}: must end in .csv")
+        check_csv(path)
         table = self.curve
         with written(path) as beside:
             np.savetxt(beside, np.column_stack([table[name] for name, _ in CURVE]), delimiter=",", comments="",
@@ -291,7 +290,7 @@ def _check_load(vertical, force, ids):
         raise ValueError("vertical = 'held': must be 'free' or 'load': rigid blocks that are held at their height can neither rock nor give way")
     if vertical == "load":
         if ids is None:
-            raise ValueError("vertical = 'load': must come with ids, the blocks that carry the load; with platens of your own use O.forces.setPermF(id, (0, 0, -N))")
+            raise ValueError("vertical = 'load': must come with ids, the blocks that carry the load; with platens of your own use dem.dead_load(ids, N)")
         positive_given("force", force, ", in N, the dead load that the pushed blocks carry together")
     elif force is not None:
         raise ValueError(f"force = {force}: must come with vertical='load', or be left out")
