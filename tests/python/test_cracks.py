@@ -8,7 +8,7 @@ import pytest
 from histories import ROUND, history
 from masonry import results
 from masonry.results.bonds import BONDS, DAMAGE, bond_table
-from masonry.results.wall_history import TIES
+from masonry.results.history_tables import TIES
 
 
 

@@ -7,7 +7,7 @@ import sys
 
 from masonry import _build
 from masonry.dem import notes
-from masonry.dem.engines import joint_engine
+from masonry.dem.joint_engine import joint_engine
 from masonry.dem.loads import added_mass, dead_loads
 from masonry.dem.ties import ties
 from yade import O, config, wrapper

@@ -4,7 +4,7 @@ import numpy as np
 from masonry._given import is_whole, number_given, shown, whole_given
 from masonry.dem.bodies import block_body
 from masonry.dem.checks import check_joint_material
-from masonry.dem.engines import joint_engine_given
+from masonry.dem.joint_engine import joint_engine_given
 from masonry.results.bonds import bond_table
 from yade import wrapper
 

@@ -138,6 +138,11 @@ def joint_movement(history, row):
     return np.where(gone, np.nan, opening), np.where(gone, np.nan, slip), closed & ~gone
 
 
+def gone_at_the_end(history):
+    """(j,) bool: in which of joints(history) one of the blocks has fallen by the last sample."""
+    return _joints_of(history).gone[-1]
+
+
 def patches(history):
     """(j, c, 3) corners of the patches of joints(history), in the first sample, m; those with fewer corners repeat their last one."""
     return _joints_of(history).polygons

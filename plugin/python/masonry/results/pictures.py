@@ -7,7 +7,7 @@ from masonry._progress import steps
 from masonry.results.collapse import collapse, lies
 from masonry.results.cracks import CRACKED
 from masonry.results.forces import has_forces, thrust_at_first
-from masonry.results.joints import joints, patches, patches_of
+from masonry.results.joints import gone_at_the_end, joints, patches, patches_of
 from masonry.results.ties import tie_ends
 from masonry.results.view import STILL, View, enlargement, largest, movement, nice, still
 from masonry.results.wall_history import ENERGIES, history_given
@@ -227,14 +227,14 @@ def joints_figure(history, time=None, view=None, title="", thrust=True):
     corners = history.corners(0)
     flat = view.place(polygons)
     when = "largest" if time is None else f"at {history.time[history.sample(time)]:.3f} s"
-    least = 1e3 * still(history)
+    least, stands = 1e3 * still(history), ~gone_at_the_end(history)
     thrust = thrust and has_forces(history)
     figure, panels = _figure(view, view.place(corners[history.free]).reshape(-1, 2), columns=3 if thrust else 2)
     if thrust:
         _thrust_panel(history, panels[2], view, collapse(history).peak_drift_time if time is None else time, title)
     for axes, name, colours, none in zip(panels, ("opening", "slip"), ("YlOrRd", "YlGnBu"), ("nothing opened", "nothing slid")):
         values = 1e3 * table[name]
-        most = max(largest(values), least)
+        most, beyond = scale_end(values, stands, least)
         colours = shades(colours, most)
         order = np.argsort(np.nan_to_num(values))
         # What opens or slides by less than a hundredth of the most is left grey and thin. Edge on, the line of a joint is its outline.
@@ -243,9 +243,9 @@ def joints_figure(history, time=None, view=None, title="", thrust=True):
         width = np.where(moves, 3.0 if view.from_side else 0.8, 0.8)
         colors = np.where(moves[:, None], colours.to_rgba(np.nan_to_num(values), alpha=1.0 if view.from_side else 0.6), to_rgba(_UNMOVED, 0.3))
         axes.add_collection(PolyCollection(flat[order], facecolors=colors[order], edgecolors=colors[order], linewidths=width[order], zorder=2))
-        axes.set_title(f"{title + ': ' if title else ''}{name}, {when}{'' if moves.any() else f': {none}' if len(table) else ': no blocks touch at first'}", fontsize="small")
+        axes.set_title(f"{title + ': ' if title else ''}{name}{' while closed' if name == 'slip' else ''}, {when}{'' if moves.any() else f': {none}' if len(table) else ': no blocks touch at first'}", fontsize="small")
         if moves.any():
-            _colorbar(figure, axes, colours, name, "mm", False)
+            _colorbar(figure, axes, colours, name, "mm", beyond)
     return figure
 
 
@@ -300,16 +300,23 @@ def _thrust_panel(history, axes, view, time, title):
     axes.add_collection(LineCollection(np.stack([flat - half, flat + half], axis=1), colors="tab:blue", linewidths=1 + 1.5 * sizes[shown] / max(most, 1e-300), zorder=2))
     axes.plot(*flat.T, ".", color="tab:red", markersize=2.5, zorder=3)
     said = f", at most {most / 1e3:.3g} kN" if len(forces) else ": no joint carries load"
+    if most > 0:
+        (left, right), (_, high), bar = axes.get_xlim(), axes.get_ylim(), nice(most / 2)
+        start, level = left + 0.03 * (right - left), high - 0.02 * (right - left)
+        axes.plot([start, start + longest * bar / most], [level] * 2, color="tab:blue", linewidth=2, zorder=3)
+        axes.text(start + longest * bar / most, level, f"  {bar / 1e3:g} kN", va="center", fontsize="x-small", zorder=3)
     axes.set_title(f"{title + ': ' if title else ''}thrust, at {history.time[history.sample(time)]:.3f} s{said}", fontsize="small")
 
 
 def draw_joints(history, path, time=None, view=None, title=""):
     """Writes a picture with two maps on the undisplaced structure: opening and slip of each joint (joints()), in mm, which count until the first of the two
-    blocks has fallen. time: the sample nearest to it, s; None: the largest of each joint. view: as in draw(). Where nothing opened, or slid, by more than 1e-6
-    of the structure's size, the map is grey and its title says so, as where no blocks touch in the first sample (a run that starts with a tilted block).
+    blocks has fallen, a slip only while the joint is closed. The scales end at the largest of the joints whose blocks stand in the end, and those beyond are
+    purple; at the largest of all where most have fallen. time: the sample nearest to it, s; None: the largest of each joint. view: as in draw(). Where nothing
+    opened, or slid, by more than 1e-6 of the structure's size, the map is grey and its title says so, as where no blocks touch in the first sample (a run that
+    starts with a tilted block).
 
     Where the forces of the joints were recorded (WallRecorder.recordForces), a third map has the lines of thrust: the resultant of each joint at `time` (None:
-    at the largest drift before the first block falls), as a line in its direction whose length is its size, and a dot where it crosses the joint; those
+    at the largest drift before the first block falls), as a line in its direction whose length is its size, to the scale drawn, and a dot where it crosses the joint; those
     below 2 % of the largest are left out."""
     _save(joints_figure(history, time, view, title), path)
 
