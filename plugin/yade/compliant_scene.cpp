@@ -2,14 +2,17 @@
 #include "BlockGeom.hpp"
 #include "BlockMat.hpp"
 #include "BlockPhys.hpp"
+#include "BlockTie.hpp"
 #include "Ip2_BlockMat_BlockMat_BlockPhys.hpp"
 #include "checked_body.hpp"
 #include "core_state.hpp"
 #include "sentence.hpp"
+#include "tie_attributes.hpp"
 
 #include "contact/collide.hpp"
 #include "joints/joint_table.hpp"
 #include <algorithm>
+#include <cmath>
 
 namespace yade {
 
@@ -79,6 +82,25 @@ void CompliantScene::readJoints(const Scene& scene, Real dampingRatio, masonry::
 		pairs.push_back({&geom, &phys});
 	}
 	system.contacts.resize(pairs.size());
+}
+
+void CompliantScene::readTies(const Scene& scene, const vector<shared_ptr<BlockTie>>& ties, masonry::JointSystem& system) const
+{
+	system.ties.clear();
+	for (const auto& of : ties) {
+		of->check(scene);
+		masonry::Tie<masonry::Space> tie;
+		tie.body1 = indexOf(of->body1);
+		tie.body2 = indexOf(of->body2);
+		tie.point1 = of->point1;
+		tie.point2 = of->point2;
+		if (std::isnan(of->length))
+			of->length = masonry::Tie<masonry::Space>::line(tie, system.bodies[tie.body1].pose, system.bodies[tie.body2].pose).length;
+		takeAttributes(*of, tie);
+		tie.broken = of->broken;
+		tie.force = of->force;
+		system.ties.push_back(tie);
+	}
 }
 
 vector<masonry::JointContact> CompliantScene::blocksInTouch(const Scene& scene, Real dampingRatio, const masonry::CompliantStep& step) const

@@ -51,16 +51,13 @@ def check_mortar(blocks):
     return list({known[b.mat.id]: b.mat.mortar for b in having}.values())
 
 
-def check_use_of_mortar(blocks, model, rigid, has_ties):
-    """ValueError where blocks with mortar have gaps, or the scene is to have what is for rigid blocks alone: a model, other arguments {name: value}, ties."""
+def check_use_of_mortar(blocks, model, rigid):
+    """ValueError where blocks with mortar have gaps, or the scene is to have what is for rigid blocks alone: a model, other arguments {name: value}."""
     if model not in ("auto", "compliant"):
         raise ValueError(f"model = {shown(model)}: rigid blocks know dry joints only: must be 'compliant' (or 'auto') where a BlockMat has mortar")
     for name in (name for name, value in rigid.items() if value):
         raise ValueError(f"{name} = {shown(rigid[name])}: is for rigid blocks, which know dry joints only: must be left out where a BlockMat has mortar, which needs "
                          "compliant joints (model='compliant')")
-    if has_ties:
-        raise ValueError("dem.tie() and BlockMat.mortar cannot be in one scene: ties need rigid blocks and mortar needs model='compliant': leave out the ties or the "
-                         "mortar, or let springs of your own act through O.forces")
     if O.iter == 0:
         _check_gaps(blocks)
 

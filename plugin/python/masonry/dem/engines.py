@@ -173,7 +173,7 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
     reason = "asked for"
     mortars = check_mortar(blocks)
     if mortars:
-        check_use_of_mortar(blocks, model, {"method": method != "auto" and method, "tolerance": tolerance, "others": others}, any(not one.dead for one in ties()))
+        check_use_of_mortar(blocks, model, {"method": method != "auto" and method, "tolerance": tolerance, "others": others})
     notes.say_of_mortar(mortars, blocks)
     if model == "auto":
         if mortars:
@@ -189,9 +189,6 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
     if model == "compliant":
         if tolerance is not None or others or method != "auto":
             raise ValueError("tolerance, others and method are for rigid blocks: they must be left out with model='compliant'")
-        if any(not one.dead for one in ties()):
-            raise ValueError(f"model = {model!r} ({reason}): compliant joints take no ties: give model='planar' or 'spatial' and no joint stiffness, or let springs of "
-                             "your own act through O.forces")
         return _compliant(blocks, motions, reason, dt, penetration or _PENETRATION, impact_order or "simultaneous", gravity, recorders, loads)
     if penetration is not None:
         raise ValueError(f"penetration = {penetration}: must be left out with model={shown(model)}, it is for compliant joints")
@@ -236,7 +233,7 @@ def _compliant(blocks, motions, reason, dt, penetration, impact_order, gravity, 
     if chosen:
         reasons.append(chosen)
 
-    joints, before = wrapper.RockingJointEngine(impactOrder=impact_order), joint_engine()
+    joints, before = wrapper.RockingJointEngine(impactOrder=impact_order, ties=ties()), joint_engine()
     if O.iter > 0 and getattr(before, "bondedIds", None):
         joints.goOnFrom(before)
     critical, largest = joints.criticalTimeStep(), joints.largestTimeStep

@@ -121,8 +121,9 @@ def joint_history(history, id1=None, id2=None):
     numbers = {"largest opening (m)": np.nanmax(result["opening"], initial=0), "largest slip while closed (m)": np.nanmax(np.where(result["closed"], result["slip"], np.nan), initial=0)}
     if has_forces(history):
         numbers |= {"largest pressure (N)": np.nanmax(result["normal"], initial=0), "dissipated by sliding (J)": float(result["friction_work"][-1])}
-    panels = [("movement (mm)", 1e3, [("opening", "opening"), ("slip", "slip, while closed")]), ("force (kN)", 1e-3, [("normal", "pressure"), ("shear", "along the joint")]),
-              ("dissipated\nby sliding (J)", 1, [("friction_work", "")])]
+    panels = [("movement (mm)", 1e3, [("opening", "opening"), ("slip", "slip, while closed")]), ("force (kN)", 1e-3, [("normal", "pressure"), ("shear", "along the joint")])]
+    if has_forces(history) and result["friction_work"][-1] > still(history) * numbers["largest pressure (N)"]:  # else round-off
+        panels.append(("dissipated\nby sliding (J)", 1, [("friction_work", "")]))
     return TimeHistory(result, f"joint of the blocks {one} and {two}{of}", panels, numbers)
 
 
