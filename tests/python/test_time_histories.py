@@ -124,12 +124,12 @@ def test_energy_by_joint(tmp_path):
     assert found.table[["id1", "id2"]].tolist() == [(10, 11), (11, 12)]
     assert np.allclose(found["friction"], [6 * 0.06, 0]) and np.allclose(found["impact"], [0.5, 0.25]) and np.isnan(found["crack"]).all()
     assert np.allclose(found["total"], [0.86, 0.25]) and found.engine["friction"] == 0.4
-    assert "friction: 0.36 J in joints of 0.4 J in the whole scene" in str(found) and "blocks 10 and 11: 0.86 J (friction 0.36, impact 0.5)" in str(found)
+    assert "friction: 0.36 J in the joints (0.4 J in the balance of the whole scene)" in str(found) and "blocks 10 and 11: 0.86 J (friction 0.36, impact 0.5)" in str(found)
     found.save(tmp_path / "joints.csv")
     assert (tmp_path / "joints.csv").read_text().splitlines()[:2] == ["id1,id2,friction (J),impact (J),crack (J),total (J)", "10,11,0.36,0.5,nan,0.86"]
     results.report(dissipating(), tmp_path / "r.html")
     page = (tmp_path / "r.html").read_text(encoding="utf-8")
-    assert "Energy by joint" in page and "0.36 J of 0.4 J in the whole scene by friction" in page
+    assert "Energy by joint" in page and "friction 0.36 J (0.4 J in the balance of the whole scene)" in page
     with pytest.raises(ValueError, match="recordForces=True"):
         results.joint_energies(rocking([0, 0.05]))
 

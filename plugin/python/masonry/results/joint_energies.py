@@ -35,8 +35,8 @@ class JointEnergies(Table):
         lines = [f"{int((self.table['total'] > 0).sum())} of {len(self)} joints have dissipated energy"]
         for name in _PARTS:
             if np.isfinite(self.table[name]).any():
-                known = "" if np.isnan(self.engine[name]) else f" of {self.engine[name]:.4g} J in the whole scene"
-                lines.append(f"  {name}: {np.nansum(self.table[name]):.4g} J in joints{known}")
+                known = "" if np.isnan(self.engine[name]) else f" ({self.engine[name]:.4g} J in the balance of the whole scene)"
+                lines.append(f"  {name}: {np.nansum(self.table[name]):.4g} J in the joints{known}")
         for row in self.table[:_NAMED]:
             parts = ", ".join(f"{name} {row[name]:.3g}" for name in _PARTS if row[name] > 0)
             lines += [f"  blocks {row['id1']} and {row['id2']}: {row['total']:.4g} J ({parts})"] if row["total"] > 0 else []

@@ -179,7 +179,7 @@ def structure_history(history, base=None, weight=None):
         numbers |= {f"largest drift along {axis}": drift[np.nanargmax(np.abs(drift))], f"residual drift along {axis}": drift[-1]}
     for axis in "xy":
         moved = np.abs(result[f"displacement_{axis}"])
-        if np.isfinite(moved).any():
+        if (moved > 0).any():
             most = result[np.nanargmax(moved)]
             numbers |= {f"largest displacement along {axis} at any height (m)": most[f"displacement_{axis}"], f"its time, along {axis} (s)": most["time"],
                         f"its block, along {axis}": most[f"block_{axis}"], f"its height above the foot, along {axis} (m)": most[f"height_{axis}"]}

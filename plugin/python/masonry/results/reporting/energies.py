@@ -35,10 +35,10 @@ def joints_of(history):
     rows = [(f"{r['id1']} – {r['id2']}", *("" if math.isnan(r[name]) else f"{r[name]:.3g}" for name in ("friction", "impact", "crack", "total"))) for r in found.table[:_JOINTS] if r["total"] > 0]
     if not rows:
         return None
-    sums = [f"{words.decimal(np.nansum(found[part]), 4)} J{'' if math.isnan(found.engine[part]) else f' of {words.decimal(found.engine[part], 4)} J in the whole scene'} by {word}"
+    sums = [f"{word} {words.decimal(np.nansum(found[part]), 4)} J{'' if math.isnan(found.engine[part]) else f' ({words.decimal(found.engine[part], 4)} J in the balance of the whole scene)'}"
             for part, word in (("friction", "friction"), ("impact", "impacts"), ("crack", "cracks")) if np.isfinite(found[part]).any()]
-    return section("joint-energies", "Energy by joint", caption=f"The joints have dissipated {', '.join(sums)}. Friction by joint is the sum over the samples of force times way; the impacts are those "
-                   "of the list below. results.joint_energies() has all joints.",
+    return section("joint-energies", "Energy by joint", caption=f"Sums over the joints: {', '.join(sums)}. Friction by joint is force times way from sample to sample, which is wrong where samples are rare; the impacts are "
+                   "those of the list below. results.joint_energies() has all joints.",
                    columns=["Blocks", "Friction (J)", "Impacts (J)", "Cracks (J)", "Sum (J)"], rows=rows, more=f"The {len(rows)} joints of {len(found)} that dissipated most.",
                    fold="Table of joints")
 

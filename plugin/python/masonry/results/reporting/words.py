@@ -5,6 +5,7 @@ import math
 
 _GRAVITY = 9.80665  # m/s^2, as records are given in g
 _SMALL = 0.1  # share of a drift
+_LEAST = 1e-3  # smaller drifts are none
 
 
 def decimal(value, digits=3):
@@ -128,8 +129,8 @@ def solver(about, duration, height, moved):
 def _of_drift(way, height, moved):
     """What a residual means for the drift: way: how far it goes in the whole run, m."""
     said = f"if every step missed by as much in one direction, the top would be off by {decimal(1e3 * way, 2)} mm in the end, {decimal(100 * way / height, 2)} % of the height"
-    if way <= _SMALL * moved:
-        return f"{said}: small beside the largest drift"
+    if way <= _SMALL * max(moved, _LEAST * height):
+        return f"{said}: small beside {'the largest drift' if moved > _LEAST * height else f'a drift of {100 * _LEAST:g} %'}"
     return f"{said}: not small beside the largest drift; a run with a smaller tolerance or step tells whether it matters (dem.compare)"
 
 
