@@ -243,7 +243,8 @@ def joints_figure(history, time=None, view=None, title="", thrust=True):
     corners = history.corners(0)
     flat = view.place(polygons)
     when = "largest" if time is None else f"at {history.time[history.sample(time)]:.3f} s"
-    least, stands = 1e3 * still(history), ~gone_at_the_end(history)
+    least = 1e3 * still(history)
+    stands = ~gone_at_the_end(history) if time is None else np.ones(len(table), dtype=bool)
     thrust = thrust and has_forces(history)
     figure, panels = _figure(view, view.place(corners[history.free]).reshape(-1, 2), panels=3 if thrust else 2)
     if thrust:
@@ -331,8 +332,8 @@ def _thrust_panel(history, axes, view, time):
 
 def draw_joints(history, path, time=None, view=None, title=""):
     """Writes a picture with two maps on the undisplaced structure: opening and slip of each joint (joints()), in mm, which count until the first of the two
-    blocks has fallen, a slip only while the joint is closed. The scales end at the largest of the joints whose blocks stand in the end, and those beyond are
-    purple; at the largest of all where most have fallen. time: the sample nearest to it, s; None: the largest of each joint. view: as in draw(). Where nothing
+    blocks has fallen, a slip only while the joint is closed. time: the sample nearest to it, s; None: the largest of each joint, whose scales end at the
+    largest of the joints whose blocks stand in the end (those beyond are purple), or of all where most have fallen. view: as in draw(). Where nothing
     opened, or slid, by more than 1e-6 of the structure's size, the map is grey and its title says so, as where no blocks touch in the first sample (a run that
     starts with a tilted block).
 
