@@ -16,6 +16,26 @@
 
 namespace yade {
 
+namespace {
+
+/// O.bodies.clear() leaves the interactions of its bodies in O.interactions.
+void checkBodies(const Scene& scene, const Interaction& interaction)
+{
+	for (const auto& [id, other] : {std::pair(interaction.id1, interaction.id2), std::pair(interaction.id2, interaction.id1)}) {
+		if (scene.bodies->exists(id)) {
+			const auto& present = (*scene.bodies)[id]->intrs;
+			if (const auto found = present.find(other); found != present.end() && found->second.get() == &interaction)
+				continue;
+		}
+		throw std::runtime_error(
+		    sentence("O.interactions has a joint of bodies ", interaction.id1, " and ", interaction.id2,
+		             " that are no longer there (O.bodies.clear() leaves it): build the scene and its engines anew after "
+		             "O.reset()."));
+	}
+}
+
+} // namespace
+
 void CompliantScene::read(const Scene& scene, Real dampingRatio, masonry::CompliantStep& step)
 {
 	try {
@@ -54,9 +74,12 @@ void CompliantScene::readJoints(const Scene& scene, Real dampingRatio, masonry::
 {
 	pairs.clear();
 	vector<Interaction*> found;
-	for (const auto& interaction : *scene.interactions)
-		if (interaction->isReal() && dynamic_cast<BlockPhys*>(interaction->phys.get()))
-			found.push_back(interaction.get());
+	for (const auto& interaction : *scene.interactions) {
+		if (!interaction->isReal() || !dynamic_cast<BlockPhys*>(interaction->phys.get()))
+			continue;
+		checkBodies(scene, *interaction);
+		found.push_back(interaction.get());
+	}
 	std::sort(found.begin(), found.end(),
 	          [](const Interaction* a, const Interaction* b) { return std::minmax(a->id1, a->id2) < std::minmax(b->id1, b->id2); });
 	system.contacts.resize(found.size()); // contacts keep their memory, and all of them is read anew

@@ -1,4 +1,4 @@
-"""How deep convex blocks and boxes are in each other: separating axes, in NumPy, with no line of the plugin's contact search."""
+"""How deep convex blocks, unions and boxes are in each other: separating axes, in NumPy, with no line of the plugin's contact search."""
 
 import numpy as np
 from boxes import near_pairs
@@ -9,20 +9,32 @@ SHALLOW = 1e-3
 
 
 class Solid:
-    """Corners, distinct normals of faces and distinct directions of edges of a body, in its own axes, its half thickness and its radius."""
+    """A convex part of a body: corners, distinct normals of faces and distinct directions of edges, in the body's axes, and its half thickness."""
 
-    def __init__(self, body):
-        if isinstance(body.shape, Box):
-            half = np.array(tuple(body.shape.extents))
-            self.corners = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) * half
-            self.normals = self.edges = np.eye(3)
-        else:
-            self.corners = np.array([tuple(v) for v in body.shape.vertices])
-            loops = [self.corners[loop] for loop in body.shape.faces]
-            self.normals = distinct([np.cross(p, np.roll(p, -1, axis=0)).sum(axis=0) for p in loops])
-            self.edges = distinct(np.concatenate([np.roll(p, -1, axis=0) - p for p in loops]))
-        self.thickness = np.ptp(self.corners @ self.normals.T, axis=0).min() / 2
-        self.radius = np.linalg.norm(self.corners, axis=1).max()
+    def __init__(self, corners, normals, edges):
+        self.corners, self.normals, self.edges = corners, normals, edges
+        self.thickness = np.ptp(corners @ normals.T, axis=0).min() / 2
+
+
+def solids(body):
+    """The convex parts of a body: one, but of a union."""
+    if isinstance(body.shape, Box):
+        signs = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
+        return [Solid(signs * np.array(tuple(body.shape.extents)), np.eye(3), np.eye(3))]
+    corners = np.array([tuple(v) for v in body.shape.vertices])
+    starts = [*(body.shape.firstVertices or [0]), len(corners)]
+    found = []
+    for begin, end in zip(starts, starts[1:]):
+        loops = [corners[loop] for loop in body.shape.faces if begin <= loop[0] < end]
+        normals = [np.cross(p, np.roll(p, -1, axis=0)).sum(axis=0) for p in loops]
+        edges = np.concatenate([np.roll(p, -1, axis=0) - p for p in loops])
+        found.append(Solid(corners[begin:end], distinct(normals), distinct(edges)))
+    return found
+
+
+def thickness(body):
+    """Half thickness of the thinnest part, m."""
+    return min(part.thickness for part in solids(body))
 
 
 def distinct(vectors):
@@ -45,35 +57,37 @@ class Solids:
 
     def __init__(self):
         bodies = [b for b in O.bodies if b is not None]
-        self.ids, self.solids, self.free = [b.id for b in bodies], [Solid(b) for b in bodies], np.array([b.dynamic for b in bodies])
-        self.radii = np.array([s.radius for s in self.solids])
+        self.ids, self.solids, self.free = [b.id for b in bodies], [solids(b) for b in bodies], np.array([b.dynamic for b in bodies])
+        self.radii = np.array([max(np.linalg.norm(part.corners, axis=1).max() for part in parts) for parts in self.solids])
 
-    def _pose(self):
+    def _placed(self):
+        """Centres, axes, and of each part of each body its corners, normals and edges in the world."""
         states = [O.bodies[i].state for i in self.ids]
-        return np.array([tuple(s.pos) for s in states]), np.array([np.array(s.ori.toRotationMatrix()).reshape(3, 3) for s in states])
+        centres, axes = np.array([tuple(s.pos) for s in states]), np.array([np.array(s.ori.toRotationMatrix()).reshape(3, 3) for s in states])
+        placed = [[(p.corners @ turn.T + centre, p.normals @ turn.T, p.edges @ turn.T) for p in parts] for parts, turn, centre in zip(self.solids, axes, centres)]
+        return centres, axes, placed
 
     def gaps(self):
-        """(ids, axes, radii, first, second, gaps): of near pairs the gap along the normals of their faces, which their distance is at least, m."""
-        centres, axes = self._pose()
+        """(ids, axes, radii, first, second, gaps): of near pairs the gap along the normals of the faces of their parts, which their distance is at least, m."""
+        centres, axes, placed = self._placed()
         first, second = near_pairs(centres, 1.05 * self.radii[:, None], self.free)
-        corners = [s.corners @ turn.T + centre for s, turn, centre in zip(self.solids, axes, centres)]
-        normals = [s.normals @ turn.T for s, turn in zip(self.solids, axes)]
-        found = [separation(np.vstack([normals[i], normals[j]]), corners[i], corners[j]) for i, j in zip(first, second)]
+        found = [min(separation(np.vstack([n1, n2]), one, other) for one, n1, _ in placed[i] for other, n2, _ in placed[j]) for i, j in zip(first, second)]
         return self.ids, axes, self.radii, first, second, np.array(found)
 
     def depth(self):
-        """Depth of the deepest pair relative to the smaller half thickness of the two; 0 where none overlaps."""
-        _, axes, _, first, second, gaps = self.gaps()
-        centres, _ = self._pose()
+        """Depth of the deepest pair of parts relative to the smaller half thickness of the two; 0 where none overlaps."""
+        centres, _, placed = self._placed()
         deepest = 0.0
-        for i, j, gap in zip(first, second, gaps):
-            one, other = self.solids[i], self.solids[j]
-            smaller = min(one.thickness, other.thickness)
-            if -gap > SHALLOW * smaller:
-                across = np.cross((one.edges @ axes[i].T)[:, None], other.edges @ axes[j].T).reshape(-1, 3)
-                length = np.linalg.norm(across, axis=1)
-                across = across[length > 1e-6] / length[length > 1e-6, None]  # edges that are parallel give no axis that the faces do not give
-                if len(across):
-                    gap = max(gap, separation(across, one.corners @ axes[i].T + centres[i], other.corners @ axes[j].T + centres[j]))
-            deepest = max(deepest, -gap / smaller)
+        for i, j in zip(*near_pairs(centres, self.radii[:, None], self.free)):
+            for (one, n1, e1), part1 in zip(placed[i], self.solids[i]):
+                for (other, n2, e2), part2 in zip(placed[j], self.solids[j]):
+                    smaller = min(part1.thickness, part2.thickness)
+                    gap = separation(np.vstack([n1, n2]), one, other)
+                    if -gap > SHALLOW * smaller:
+                        across = np.cross(e1[:, None], e2).reshape(-1, 3)
+                        length = np.linalg.norm(across, axis=1)
+                        across = across[length > 1e-6] / length[length > 1e-6, None]  # edges that are parallel give no axis that the faces do not give
+                        if len(across):
+                            gap = max(gap, separation(across, one, other))
+                    deepest = max(deepest, -gap / smaller)
         return deepest

@@ -234,7 +234,8 @@ def _compliant(blocks, motions, reason, dt, penetration, impact_order, gravity, 
         reasons.append(chosen)
 
     joints, before = wrapper.RockingJointEngine(impactOrder=impact_order, ties=ties()), joint_engine()
-    if O.iter > 0 and getattr(before, "bondedIds", None):
+    bonded = getattr(before, "bondedIds", None) or []
+    if O.iter > 0 and any(O.interactions.has(*pair) for pair in zip(bonded[::2], bonded[1::2])):
         joints.goOnFrom(before)
     critical, largest = joints.criticalTimeStep(), joints.largestTimeStep
     if not np.isfinite(critical):  # nothing touches yet
