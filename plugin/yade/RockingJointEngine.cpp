@@ -145,13 +145,13 @@ vector<masonry::JointContact> RockingJointEngine::presentContacts()
 {
 	const shared_ptr<Scene>& present = Omega::instance().getScene();
 	if (checkedTimeStep > 0 && home.lock() == present)
-		return step.system.contacts;
+		return withBondsAsked(step.system.contacts);
 	scene = present.get();
 	const bool inScene =
 	    std::any_of(scene->engines.begin(), scene->engines.end(), [this](const auto& engine) { return engine.get() == this; });
 	dampingRatio = inScene ? IntegratorSettings(*scene).contactDampingRatio : Law2_BlockGeom_BlockPhys_Rocking().dampingRatio;
 	readBlocks();
-	return blocks.blocksInTouch(*scene, dampingRatio, step);
+	return withBondsAsked(blocks.blocksInTouch(*scene, dampingRatio, step));
 }
 
 void RockingJointEngine::checkTimeStep()
@@ -285,11 +285,12 @@ void RockingJointEngine::action()
 	step.system.dt = scene->dt;
 	step.system.order = impactOrder == "sequential" ? masonry::ImpactOrder::sequential : masonry::ImpactOrder::simultaneous;
 	readRun();
-	checkTimeStep();
 	const vector<BaseMotionEngine*> motions = BaseMotionEngine::inEngines(*scene);
 	readLoads(motions);
 	askForMortar();
+	checkTimeStep();
 	const masonry::CompliantReport report = step.apply([&](const auto& records) { return jumpsOf(motions, records); });
+	bondsAsked.clear();
 	writeRun();
 	writeScene(report);
 	writeMortar();

@@ -21,7 +21,7 @@ public:
 	Real criticalTimeStep();
 	Real largestTimeStep();
 	Real chosenTimeStep();
-	int bond(const vector<int>& ids, const shared_ptr<JointMat>& mortar);
+	int bond(const vector<int>& ids, const shared_ptr<JointMat>& mortar, const string& joints);
 	/// Bonds, their damage and the energy of the joints are those of another engine of the scene, which this one replaces.
 	void goOnFrom(const RockingJointEngine& other);
 
@@ -68,7 +68,7 @@ public:
 		((bool, toldDeep, false, Attr::hidden, ""))
 		((long, lastStep, -1, Attr::hidden, "")),
 		/* ctor */,
-		.def("bond", &RockingJointEngine::bond, "Bonds the pairs of these bodies that touch now with a JointMat, in the next step; returns their number. ids: those of the bodies, both of a pair among them; an empty list: all.")
+		.def("bond", &RockingJointEngine::bond, "Bonds pairs of bodies that touch now with a JointMat, in the next step; returns their number. ids: those of the bodies, both of a pair among them; an empty list: all. joints: 'all', 'bed' or 'head', or 'pairs' for the joints of the first two ids, the next two and so on.")
 		.def("goOnFrom", &RockingJointEngine::goOnFrom, "Takes over the bonds of another RockingJointEngine of the scene and their damage, as dem.engines() does.")
 		.def("criticalTimeStep", &RockingJointEngine::criticalTimeStep, "Largest stable time step of the joints without their dashpots [s].")
 		.add_property("chosenTimeStep", &RockingJointEngine::chosenTimeStep, "Time step for stepFraction and the present joints [s]: that share of the critical step, at most three quarters of largestTimeStep.")
@@ -86,6 +86,9 @@ private:
 	void checkTimeStep();
 	void readRun();
 	void askForMortar();
+	template <class Use>
+	void forBondsAsked(const vector<masonry::JointContact>& contacts, Use use) const;
+	vector<masonry::JointContact> withBondsAsked(vector<masonry::JointContact> contacts) const;
 	void askForBond(size_t contact, const masonry::MortarLaw& law);
 	void writeRun();
 	void writeMortar();

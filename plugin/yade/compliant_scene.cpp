@@ -144,6 +144,9 @@ vector<masonry::JointContact> CompliantScene::blocksInTouch(const Scene& scene, 
 			if (!masonry::collide(shape1, bodies[a].pose, shape2, bodies[b].pose, near, {}, patch))
 				continue;
 			const shared_ptr<Interaction> interaction(new Interaction(ids[a], ids[b]));
+			const shared_ptr<BlockGeom> geom(new BlockGeom);
+			geom->normal = patch.normal;
+			interaction->geom = geom;
 			law.go(body1.material, body2.material, interaction);
 			masonry::JointContact& contact = contacts.emplace_back();
 			contact.body1 = int(a);

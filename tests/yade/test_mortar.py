@@ -240,7 +240,7 @@ def test_a_gap_under_mortar():
 def test_new_engines_go_on_with_the_damage():
     """Engines that are made anew in a run have the bonds as they are; without those of before, the joints could not be told from sound ones."""
     wall()
-    O.run(700, True)
+    O.run(1000, True)
     before, spent, elastic = dem.damage(), dem.energy()["crackDissip"], dem.energy()["elastPotential"]
     assert before["worst"].max() > 0.5
     engines = list(O.engines)

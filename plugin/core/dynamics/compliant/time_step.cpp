@@ -42,6 +42,12 @@ void addTie(std::vector<BodyMatrices>& result, const Bodies<Space>& bodies, cons
 	}
 }
 
+// What a joint with mortar may have of the normal stiffness and the dashpots of its closed face. While an edge of it still presses, all
+// fibres of its mortar may pull already: of a rectangle that is 1.95 times the closed face at worst, of a triangle 1.96, of convex polygons
+// that are far from regular up to 2.07 (docs/mortar.md, validation/mortar/stiffest.py). Both together are twice the face at most, but for
+// polygons whose points and fibres turn about different axes. Shear acts at the fibres alone, and turns less stiffly than at the corners.
+constexpr double withMortar = 2.1;
+
 // Those of a body whose neighbours move freely are doubled. The result holds until the next call: it keeps its memory from step to step.
 const std::vector<BodyMatrices>& bodyMatrices(const Bodies<Space>& bodies, const std::vector<JointContact>& contacts, const Ties& ties)
 {
@@ -55,7 +61,8 @@ const std::vector<BodyMatrices>& bodyMatrices(const Bodies<Space>& bodies, const
 			return (normal - shear) * n * n.transpose() + shear * Matrix3::Identity();
 		};
 		// A share of the normal springs and dashpots of a closed face acts at the points, and the rest at their centroid.
-		const double k = contact.normalStiffness(), c = contact.dampingNormal(mass), cShear = contact.dampingShear(mass);
+		const double pulls = contact.law.hasMortar || contact.isBonded() ? withMortar : 1;
+		const double k = pulls * contact.normalStiffness(), c = pulls * contact.dampingNormal(mass), cShear = contact.dampingShear(mass);
 		const Matrix3 stiffness = tensor(turnShare * k, contact.law.shearStiffness * contact.stiffnessArea()),
 		              damping = tensor(turnShare * c, cShear);
 		for (int b : {contact.body1, contact.body2}) {

@@ -4,7 +4,8 @@
 // Each body alone on its springs (its neighbours held) has the 6x6 stiffness K = sum over points, and ends of ties, of J^T k J. Without
 // dashpots the scheme is stable up to dt = 2/omega, omega^2 = largest eigenvalue of M^-1 K; two free neighbours that swing against each
 // other at most double omega^2. Dashpots, C = sum of J^T c J, see the velocity of half a step ago, so that 4 M - 2 dt C - dt^2 K must be
-// positive definite: for one mode, dt < 2/omega (sqrt(1 + zeta^2) - zeta), zeta its damping ratio.
+// positive definite: for one mode, dt < 2/omega (sqrt(1 + zeta^2) - zeta), zeta its damping ratio. Softening of mortar only lowers the
+// stiffness, but mortar that pulls beside corners that press raises it (time_step.cpp).
 #include "dynamics/compliant/joint_contact.hpp"
 #include "dynamics/model/tie.hpp"
 #include <vector>

@@ -37,7 +37,7 @@ def _wrong_kind(thing, name, known, value):
         kind = "a number"
     elif isinstance(known, str):
         kind = "a text"
-    elif name == "mortar":
+    elif name in ("mortar", "headMortar"):
         kind = "a JointMat or None"
     elif type(known).__name__ == "Vector3":
         kind = "three numbers (x, y, z)"

@@ -14,10 +14,11 @@ from masonry.dem.bodies import poses
 from masonry.dem.checks import check_blocks, check_material, check_mortar, check_recorder, check_use_of_mortar
 from masonry.dem.joint_engine import joint_engine
 from masonry.dem.loads import lasting_loads
-from masonry.dem.pushing import Push
+from masonry.dem.pushing import HELD_RIGID, Push
 from masonry.dem.stiffness import LEAST_PENETRATION, check_stiffness, choose_stiffness, has_stiffness, is_given, landing_step
 from masonry.dem.structures import structures
 from masonry.dem.ties import tied, ties
+from masonry.dem.units import units
 
 _MODELS = ("auto", "planar", "spatial", "compliant")
 METHODS = ("auto", "localised", "wall")
@@ -171,13 +172,14 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
         check_material(body.mat)
     notes.say_what_looks_odd(blocks, motions, gravity, others, {id for pair in tied() for id in pair})
     reason = "asked for"
-    mortars = check_mortar(blocks)
+    mortars, split = check_mortar(blocks), units()
+    mortars += [material for name, (material, _) in split.items() if name not in {repr(sorted(one.dict().items())) for one in mortars}]
     if mortars:
         check_use_of_mortar(blocks, model, {"method": method != "auto" and method, "tolerance": tolerance, "others": others})
     notes.say_of_mortar(mortars, blocks)
     if model == "auto":
         if mortars:
-            model, reason = "compliant", "a BlockMat has mortar"
+            model, reason = "compliant", "units may split" if len(split) == len(mortars) else "a BlockMat has mortar"
         elif penetration is not None:
             model, reason = "compliant", "penetration is given"
         elif any(has_stiffness(b.mat) for b in blocks):
@@ -190,6 +192,8 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
         if tolerance is not None or others or method != "auto":
             raise ValueError("tolerance, others and method are for rigid blocks: they must be left out with model='compliant'")
         return _compliant(blocks, motions, reason, dt, penetration or _PENETRATION, impact_order or "simultaneous", gravity, recorders, loads)
+    if any(one.held for one in pushes):
+        raise ValueError(HELD_RIGID)
     if penetration is not None:
         raise ValueError(f"penetration = {penetration}: must be left out with model={shown(model)}, it is for compliant joints")
     check_blocks(_MOST_OVERLAP, floating=False)
@@ -234,8 +238,11 @@ def _compliant(blocks, motions, reason, dt, penetration, impact_order, gravity, 
         reasons.append(chosen)
 
     joints, before = wrapper.RockingJointEngine(impactOrder=impact_order, ties=ties()), joint_engine()
+    if O.iter == 0:
+        for material, pairs in units().values():
+            joints.bond([id for pair in pairs for id in pair], material, "pairs")
     bonded = getattr(before, "bondedIds", None) or []
-    if O.iter > 0 and any(O.interactions.has(*pair) for pair in zip(bonded[::2], bonded[1::2])):
+    if getattr(before, "bondsAsked", None) or O.iter > 0 and any(O.interactions.has(*pair) for pair in zip(bonded[::2], bonded[1::2])):
         joints.goOnFrom(before)
     critical, largest = joints.criticalTimeStep(), joints.largestTimeStep
     if not np.isfinite(critical):  # nothing touches yet

@@ -17,6 +17,7 @@ from masonry.dem.engines import METHODS, engines
 from masonry.dem.loads import load_engines
 from masonry.dem.mechanism import Mechanism
 from masonry.dem.stiffness import has_stiffness
+from masonry.dem.units import units
 from tqdm import tqdm
 from yade import O, Vector3
 
@@ -122,6 +123,9 @@ class TiltTable:
         self._free = [b for b in self._blocks if b.dynamic]
         if not self._free:
             raise ValueError("there is no free block in O.bodies: add one with dem.block() before dem.TiltTable()")
+        if units():
+            raise ValueError("the scene has units that may split (dem.wall(split=)): TiltTable is for rigid blocks, which know dry joints only, and such joints need "
+                             "model='compliant': leave `split` out")
         mortared = next((b.id for b in self._blocks if b.mat.mortar is not None), None)
         if mortared is not None:
             raise ValueError(f"O.bodies[{mortared}].mat has mortar: TiltTable is for rigid blocks, which know dry joints only, and mortar needs model='compliant': leave the "

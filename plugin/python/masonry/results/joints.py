@@ -165,6 +165,13 @@ def patches_of(history, id1, id2):
     return tuple(np.array(found, dtype=int).reshape(-1, 2).T)
 
 
+def own_patches(history, rows):
+    """(block 1 of the joint (k,), corners (k, c, 3) of its patch in the axes of that block, m, its normal there (k, 3)) in these rows."""
+    found = _joints_of(history)
+    block = found.rows[rows, 0]
+    return block, found._arms[0][rows], np.einsum("jab,ja->jb", found._start[block], found.normals[rows])
+
+
 def moved_patches(history, rows, position, orientation):
     """(k, c, 3) corners of the patches in these rows, m, each fixed to block 1 of its joint, for poses of all blocks."""
     found = _joints_of(history)

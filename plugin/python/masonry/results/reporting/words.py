@@ -25,6 +25,10 @@ def material(given):
     stiffness = [f"{word} stiffness {given[name]:.3g} Pa/m" for name, word in (("normalStiffness", "normal"), ("shearStiffness", "shear"))
                  if given[name] is not None]
     bonded = [mortar(given["mortar"])] if given.get("mortar") else []
+    if given.get("headMortar"):
+        bonded.append("in its head joints " + mortar(given["headMortar"]))
+    if given.get("unfilledHeads"):
+        bonded.append("head joints unfilled")
     return ", ".join([f"{len(given['ids'])} blocks: density {given['density']:g} kg/m^3", friction, restitution, *stiffness, *bonded])
 
 
