@@ -4,7 +4,7 @@ import numpy as np
 from masonry._files import check_csv, written
 from masonry.results._table import Table
 from masonry.results.forces import has_forces
-from masonry.results.joint_forces import joint_forces
+from masonry.results.joint_forces import ForcesOfJoints
 from masonry.results.joints import joints
 from masonry.results.wall_history import history_given
 
@@ -85,13 +85,10 @@ def _friction(history):
     """{pair: J} of the joints that touch in the first sample, or None."""
     if not has_forces(history):
         return None
-    rows = {}
-    for row, pair in enumerate(_pairs(history.forces, "id1", "id2")):
-        rows.setdefault(pair, []).append(row)
-    found = {}
-    for pair, joint in zip(_pairs(joints(history), "id1", "id2"), joints(history)):
+    forces, table, found = ForcesOfJoints(history), joints(history), {}
+    for pair, joint in zip(_pairs(table, "id1", "id2"), table):
         if pair not in found:  # of several joints between two bodies the forces are together
-            found[pair] = float(joint_forces(history, joint["id1"], joint["id2"], joint["normal"], rows[pair]).friction_work[-1]) if pair in rows else 0.0
+            found[pair] = float(forces.of(int(joint["id1"]), int(joint["id2"]), joint["normal"]).friction_work[-1])
     return found
 
 

@@ -7,7 +7,7 @@ from masonry.results._table import Table
 from masonry.results.collapse import lies
 from masonry.results.drift import farthest_of, signed_drift_of
 from masonry.results.forces import base_reactions, has_forces
-from masonry.results.joint_forces import joint_forces
+from masonry.results.joint_forces import ForcesOfJoints
 from masonry.results.joints import joint_movement, joints
 from masonry.results.view import still
 from masonry.results.wall_history import history_given
@@ -115,7 +115,7 @@ def joint_history(history, id1=None, id2=None):
     for name in ("normal", "shear", "point", "friction_work"):
         result[name] = np.nan
     if has_forces(history):
-        found = joint_forces(history, one, two, table["normal"][row])
+        found = ForcesOfJoints(history).of(one, two, table["normal"][row])
         for name in ("normal", "shear", "point", "friction_work"):
             result[name] = getattr(found, name)
     numbers = {"largest opening (m)": np.nanmax(result["opening"], initial=0), "largest slip while closed (m)": np.nanmax(np.where(result["closed"], result["slip"], np.nan), initial=0)}
