@@ -52,6 +52,12 @@ def separation(axes, one, other):
     return max((b.min(axis=0) - a.max(axis=0)).max(), (a.min(axis=0) - b.max(axis=0)).max())
 
 
+def beside(one, other):
+    """Gaps (parts of one, parts of the other) along x, y and z, m, of two bodies of Solids._placed."""
+    (_, low1, high1), (_, low2, high2) = one, other
+    return np.maximum(low2 - high1[:, None], low1[:, None] - high2).max(axis=2)
+
+
 class Solids:
     """The bodies of the scene, as it is when this is made; gaps and depths of their present poses."""
 
@@ -61,33 +67,42 @@ class Solids:
         self.radii = np.array([max(np.linalg.norm(part.corners, axis=1).max() for part in parts) for parts in self.solids])
 
     def _placed(self):
-        """Centres, axes, and of each part of each body its corners, normals and edges in the world."""
+        """Centres, axes, and of each body its parts' corners, normals and edges in the world, and the ends (parts, 3) of the boxes around these along x, y and z."""
         states = [O.bodies[i].state for i in self.ids]
         centres, axes = np.array([tuple(s.pos) for s in states]), np.array([np.array(s.ori.toRotationMatrix()).reshape(3, 3) for s in states])
-        placed = [[(p.corners @ turn.T + centre, p.normals @ turn.T, p.edges @ turn.T) for p in parts] for parts, turn, centre in zip(self.solids, axes, centres)]
+        placed = []
+        for parts, turn, centre in zip(self.solids, axes, centres):
+            own = [(p.corners @ turn.T + centre, p.normals @ turn.T, p.edges @ turn.T) for p in parts]
+            placed.append((own, np.array([c.min(axis=0) for c, _, _ in own]), np.array([c.max(axis=0) for c, _, _ in own])))
         return centres, axes, placed
 
     def gaps(self):
-        """(ids, axes, radii, first, second, gaps): of near pairs the gap along the normals of the faces of their parts, which their distance is at least, m."""
+        """(ids, axes, radii, first, second, gaps): of near pairs the gap of the boxes around their parts or, where these meet, along the normals of the parts'
+        faces, m. Their distance is at least that."""
         centres, axes, placed = self._placed()
         first, second = near_pairs(centres, 1.05 * self.radii[:, None], self.free)
-        found = [min(separation(np.vstack([n1, n2]), one, other) for one, n1, _ in placed[i] for other, n2, _ in placed[j]) for i, j in zip(first, second)]
-        return self.ids, axes, self.radii, first, second, np.array(found)
+        return self.ids, axes, self.radii, first, second, np.array([self._gap(placed[i], placed[j]) for i, j in zip(first, second)])
+
+    @staticmethod
+    def _gap(one, other):
+        apart = beside(one, other)
+        meet = [separation(np.vstack([one[0][a][1], other[0][b][1]]), one[0][a][0], other[0][b][0]) for a, b in np.argwhere(apart <= 0)]
+        return min([*meet, *apart[apart > 0]])
 
     def depth(self):
         """Depth of the deepest pair of parts relative to the smaller half thickness of the two; 0 where none overlaps."""
         centres, _, placed = self._placed()
         deepest = 0.0
         for i, j in zip(*near_pairs(centres, self.radii[:, None], self.free)):
-            for (one, n1, e1), part1 in zip(placed[i], self.solids[i]):
-                for (other, n2, e2), part2 in zip(placed[j], self.solids[j]):
-                    smaller = min(part1.thickness, part2.thickness)
-                    gap = separation(np.vstack([n1, n2]), one, other)
-                    if -gap > SHALLOW * smaller:
-                        across = np.cross(e1[:, None], e2).reshape(-1, 3)
-                        length = np.linalg.norm(across, axis=1)
-                        across = across[length > 1e-6] / length[length > 1e-6, None]  # edges that are parallel give no axis that the faces do not give
-                        if len(across):
-                            gap = max(gap, separation(across, one, other))
-                    deepest = max(deepest, -gap / smaller)
+            for a, b in np.argwhere(beside(placed[i], placed[j]) <= 0):
+                (one, n1, e1), (other, n2, e2) = placed[i][0][a], placed[j][0][b]
+                smaller = min(self.solids[i][a].thickness, self.solids[j][b].thickness)
+                gap = separation(np.vstack([n1, n2]), one, other)
+                if -gap > SHALLOW * smaller:
+                    across = np.cross(e1[:, None], e2).reshape(-1, 3)
+                    length = np.linalg.norm(across, axis=1)
+                    across = across[length > 1e-6] / length[length > 1e-6, None]  # edges that are parallel give no axis that the faces do not give
+                    if len(across):
+                        gap = max(gap, separation(across, one, other))
+                deepest = max(deepest, -gap / smaller)
         return deepest
