@@ -1,5 +1,6 @@
 #pragma once
 // A problem of the contact laws of a structure, and what its solver (admm_solver.hpp) returns. The caller owns both.
+#include "dynamics/wall/contact_set.hpp"
 #include "dynamics/wall/spin_row.hpp"
 #include "dynamics/wall/step_context.hpp"
 #include "dynamics/wall/tie_rows.hpp"
