@@ -22,7 +22,7 @@ from masonry.dem.convex import (Geometry, arch, barrel_vault, blocks_from_mesh, 
 from masonry.dem.engines import energy, engines, history, impacts, record_motion, save_history  # noqa: E402
 from masonry.dem.loads import add_mass, dead_load  # noqa: E402
 from masonry.dem.mortar import bond, damage, scatter  # noqa: E402
-from masonry.dem.plans import Beams, Opening, Slab  # noqa: E402
+from masonry.dem.plans import Arch, Beams, Opening, Slab  # noqa: E402
 from masonry.dem.pushing import Push, pull_and_release, push  # noqa: E402
 from masonry.dem.reactions import joint_forces, reactions  # noqa: E402
 from masonry.dem.recording import wall_history  # noqa: E402
