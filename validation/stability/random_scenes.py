@@ -1,7 +1,7 @@
 """Random scenes, one seed each, judged by invariants alone; appends one JSON line a scene. Run by `run --long`: of every ten scenes that are thrown one
-more is pressed by bodies with prescribed motion, one has convex blocks, one has unions, and one has bricks with mortar (random_mortar.py).
-STABILITY_MODEL=compliant (or another name of measures.MODELS): all seeds with that model. STABILITY_KIND=pressed (or thrown, convex, union, mortar): these
-scenes alone."""
+more is pressed by bodies with prescribed motion, one has convex blocks, one has unions, one has bricks with mortar (random_mortar.py), and one is a building
+(plans.py). STABILITY_MODEL=compliant (or another name of measures.MODELS): all seeds with that model (buildings are always walls in space).
+STABILITY_KIND=pressed (or thrown, convex, union, mortar, building): these scenes alone."""
 
 import contextlib
 import io
@@ -13,6 +13,7 @@ import time
 import warnings
 
 import boxes
+import plans
 import random_mortar
 import random_unions
 from masonry import dem
@@ -200,7 +201,8 @@ def let_go(seed, r, one):
     return model
 
 
-KINDS = {"thrown": build, "pressed": pressed, "convex": convex, "union": union, "mortar": None}  # mortar has invariants of its own
+# Mortar has invariants of its own.
+KINDS = {"thrown": build, "pressed": pressed, "convex": convex, "union": union, "mortar": None, "building": plans.building}
 
 
 class Flight:
@@ -266,22 +268,27 @@ def most_work():
 
 def run(seed, kind):
     build = KINDS[kind]
-    row = {"kind": kind, "seed": seed, "gain": math.nan, "depth": math.nan, "flight": math.nan, "cone": 0.0, "off": 0.0, "work": 0.0, "bits": True, "said": ""}
+    row = {"kind": kind, "seed": seed, "gain": math.nan, "depth": math.nan, "flight": math.nan, "cone": 0.0, "off": 0.0, "work": 0.0, "bits": True, "said": "",
+           "reaction": 0.0, "sink": 0.0}
     begin = time.process_time()
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         try:
             row["model"] = build(seed)
-            steps = math.ceil(SECONDS / O.dt)
+            steps = math.ceil((plans.RESTS + plans.SHAKEN if kind == "building" else SECONDS) / O.dt)
             saves = seed % 10 == 0 and steps < 5000
             shapes = Solids() if kind in ("convex", "union") else boxes
-            energies, flight, deepest = Energies(lambda: 0.0, late=getattr(engine(), "wallsOnly", False)), Flight(shapes.gaps), 0.0
+            energies, flight, deepest = Energies(lambda: 0.0, late=kind == "building" or getattr(engine(), "wallsOnly", False)), Flight(shapes.gaps), 0.0
+            rest = plans.Rest() if kind == "building" else None
             look = max(1, steps // 100)
             compliant, impacts, own = row["model"] == "compliant", 0, engine()
             for k in range(steps):
                 O.step()
                 energies.look()
-                if not compliant:
+                if rest and O.time > plans.RESTS - 2 * O.dt:
+                    row.update(rest.errors())
+                    rest = None
+                if not compliant and kind != "building":
                     flight.look()
                 if k % look == 0:
                     deepest = max(deepest, shapes.depth())
@@ -311,7 +318,8 @@ def run(seed, kind):
     most = MOST_DEPTH.get(row.get("model"), OTHER_DEPTH)
     row["broken"] = [name for name, bad in (("energy", not row["gain"] <= MOST_GAIN), ("depth", not row["depth"] <= most),
                                             ("flight", not row["flight"] <= FLIGHT), ("cone", not row["cone"] <= CONE.get(row.get("model"), OTHER_CONE)), ("off", not row["off"] <= MOST_OFF), ("work", not row["work"] <= MOST_WORK),
-                                            ("bits", not row["bits"])) if bad]
+                                            ("bits", not row["bits"]),
+                                            ("reaction", not row["reaction"] <= plans.REACTION), ("sink", not row["sink"] <= plans.SINK)) if bad]
     return row
 
 

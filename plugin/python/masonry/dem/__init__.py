@@ -24,7 +24,7 @@ from masonry.dem.engines import engines, record_motion  # noqa: E402
 from masonry.dem.joint_engine import energy, impacts  # noqa: E402
 from masonry.dem.loads import add_mass, dead_load  # noqa: E402
 from masonry.dem.mortar import bond, damage, scatter  # noqa: E402
-from masonry.dem.plans import Beams, Opening, Slab  # noqa: E402
+from masonry.dem.plans import Arch, Beams, Opening, Slab  # noqa: E402
 from masonry.dem.pushing import Push, pull_and_release, push  # noqa: E402
 from masonry.dem.reactions import joint_forces, reactions  # noqa: E402
 from masonry.dem.recording import history, save_history, wall_history  # noqa: E402
