@@ -33,8 +33,8 @@ _ROOM = 1.5
 HELD_RIGID = ("vertical = 'held': must come with compliant joints (model='compliant'): the vertical force of rigid blocks between a base and a held top has no finite "
               "value")
 _VERTICAL = "free", "load", "held"
-# Blocks that are held have no impacts of platens: time over which their forces are averaged, s, and samples of a test.
-_AVERAGED_HELD, _SAMPLES_HELD = 0.02, 2000
+# Blocks that are held have no impacts of platens, and forces far above the weight: their acceleration, m/s^2, the time over which forces are averaged, s, and the samples of a test.
+_ACCELERATION_HELD, _AVERAGED_HELD, _SAMPLES_HELD = 0.4, 0.004, 2000
 
 
 class Push:
@@ -60,7 +60,7 @@ class Push:
         """Structured array, one row a step of the run: displacement of the platens along the direction (m), force on the blocks along it (N), time (s), and
         moved (m): how far the points of the blocks have gone at which they were first touched, the mean over `ids`. The force is positive while
         the platens press along the direction, negative while they press back, and without the dead load. It is the mean over 0.1 s before and 0.1 s after the sample:
-        the impulse of the platens over that time, divided by it (0.01 s before and after with vertical='held', and 2000 rows). step_force (N) is that of the single step,
+        the impulse of the platens over that time, divided by it (2 ms before and after with vertical='held', and 2000 rows). step_force (N) is that of the single step,
         which has spikes where a platen lands on a block or a stuck block snaps."""
         return self.averaged(_AVERAGED_HELD if self.held else _AVERAGED)
 
@@ -131,14 +131,16 @@ class Push:
         save_picture(figure, path, dpi=150)
 
     def release(self):
-        """Takes the platens away at once: the blocks are free from the next step on."""
+        """Takes the platens away at once, or lets go of blocks that are held: the blocks are free from the next step on."""
         self.motion.dead = True
         for engine in O.engines:
             if isinstance(engine, wrapper.MoreauJeanIntegrator):
                 engine.motions = [motion for motion in engine.motions if motion is not self.motion]
         O.engines = [engine for engine in O.engines if engine is not self.motion]
         for id in self.platens:
-            if O.bodies[id] is not None:
+            if O.bodies[id] is not None and self.held:
+                O.bodies[id].state.blockedDOFs = ""
+            elif O.bodies[id] is not None:
                 O.bodies.erase(id)
 
     # --- what dem.run asks ---
@@ -203,12 +205,12 @@ def _targets_given(displacement, cycles):
     return targets
 
 
-def _record(targets, speed):
-    """(accelerations, interval) that bring the platens to each target in turn and stop them there, at that speed at most: m/s^2, s."""
+def _record(targets, speed, largest):
+    """(accelerations, interval) that bring the platens to each target in turn and stop them there, at that speed and acceleration at most: m/s^2, s."""
     legs = np.diff([0.0, *targets])
-    interval = min(speed / _ACCELERATION, math.sqrt(np.abs(legs).min() / (2 * _ACCELERATION)))
+    interval = min(speed / largest, math.sqrt(np.abs(legs).min() / (2 * largest)))
     # A leg of `count` intervals has the speed leg/(count interval), reached within two intervals, and the acceleration leg/(count interval^2).
-    parts = [max(2, math.ceil(abs(leg) / interval * max(1 / speed, 1 / (_ACCELERATION * interval)) * (1 - 1e-12))) for leg in legs]
+    parts = [max(2, math.ceil(abs(leg) / interval * max(1 / speed, 1 / (largest * interval)) * (1 - 1e-12))) for leg in legs]
     if sum(parts) > _MOST_PARTS:
         raise ValueError(f"speed = {speed:g}: the displacements of {np.abs(legs).sum():g} m in all need more than {_MOST_PARTS} numbers: must be larger, in m/s")
     samples = np.zeros(sum(parts) + 2 * len(parts) + 1)
@@ -256,7 +258,7 @@ def push(ids=None, displacement=None, speed=None, direction=(1, 0, 0), vertical=
     platens         instead of ids: prescribed bodies of your own that move and push what they touch; all free blocks are then recorded
     clearance       with cycles: gap between a block and the platens in front of it, m; None: room for a turn of the block about the foot of the structure
 
-    The force is the sum of the forces in the contacts of the platens, averaged over 0.2 s (push.curve). The platens begin at rest at O.time, and change their speed with 0.02 m/s^2 at most. A
+    The force is the sum of the forces in the contacts of the platens, averaged over 0.2 s (push.curve). The platens begin at rest at O.time, and change their speed with 0.02 m/s^2 at most (0.4 with vertical='held'). A
     test ends at the last displacement, at a drop, a collapse or a jam (push.ended), which is said in a line. Raises ValueError for input out of its range.
     """
     unit, targets = _direction_given(direction), _targets_given(displacement, cycles)
@@ -277,7 +279,7 @@ def push(ids=None, displacement=None, speed=None, direction=(1, 0, 0), vertical=
     low = min(world_shape(body)[0][:, 2].min() for body in free)
     speed = positive_given("speed", speed, ", in m/s") if speed is not None else 0.01 * math.sqrt(9.81 * max(
         (O.bodies[id].state.pos[2] - low for id in pushed), default=max(body.state.pos[2] for body in free) - low))
-    samples, interval = _record(targets, speed)
+    samples, interval = _record(targets, speed, _ACCELERATION_HELD if held else _ACCELERATION)
     if held:
         points, back, made = {id: O.bodies[id].state.pos for id in pushed}, set(), pushed
         for id in pushed:
