@@ -86,13 +86,13 @@ struct Bonded : CompliantBlocks {
 		return 2 / std::sqrt(Eigen::EigenSolver<Eigen::MatrixXd>(accelerations, false).eigenvalues().real().maxCoeff());
 	}
 
-	double accepted() const { return criticalTimeStep(bodies(), step.system.contacts); }
+	double accepted() const { return criticalTimeStep(bodies(), step.system.contacts, {}); }
 	double acceptedDry() const
 	{
 		std::vector<JointContact> contacts = step.system.contacts;
 		for (JointContact& contact : contacts)
 			contact.bond.reset();
-		return criticalTimeStep(bodies(), contacts);
+		return criticalTimeStep(bodies(), contacts, {});
 	}
 };
 
