@@ -1,10 +1,10 @@
-"""Keywords that a public call does not have: one sentence names the call, the word and those that are near."""
+"""Public calls: keywords that they do not have are refused in one sentence, and warnings point to the line of the user's script."""
 
 import difflib
 import functools
 import inspect
 import sys
-
+import warnings
 
 # Likeness (difflib) of two words that are near, and of those where other words are allowed too.
 _NEAR, _ALMOST = 0.6, 0.8
@@ -15,6 +15,14 @@ def near_words(word, known, likeness=_NEAR):
     lower = {name.lower(): name for name in known}  # friction_angle is near frictionAngle, and Density is density
     near = [f"`{lower[name]}`" for name in difflib.get_close_matches(word.lower(), lower, cutoff=likeness)]
     return f"did you mean {' or '.join(near)}?" if near else ""
+
+
+def warn(text):
+    """Warns at the line outside the package from which it was called."""
+    level, frame = 1, sys._getframe()
+    while frame.f_back and frame.f_globals.get("__name__", "").partition(".")[0] == __package__:
+        level, frame = level + 1, frame.f_back
+    warnings.warn(text, stacklevel=level)
 
 
 def _checked(function, call):

@@ -1,12 +1,11 @@
 """The rocking block."""
 
-import warnings
-
 import numpy as np
 
 from . import _core
-from ._given import array_given
 from ._arrays import columns, restore, shape_of
+from ._calls import warn
+from ._given import array_given
 
 _LARGEST = 50  # m; larger sizes are rather mm
 
@@ -50,7 +49,7 @@ class RockingBlock:
         width, height = array_given("width", width), array_given("height", height)
         for name, size in (("width", width), ("height", height)):
             if np.max(size, initial=0) > _LARGEST:
-                warnings.warn(f"{name} = {np.max(size):g}: is it in mm? Sizes are in m", stacklevel=2)
+                warn(f"{name} = {np.max(size):g}: is it in mm? Sizes are in m")
         return cls(width / 2, height / 2, gravity)
 
     @classmethod

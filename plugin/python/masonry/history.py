@@ -1,12 +1,12 @@
 """Exact histories of rocking blocks."""
 
-import warnings
 from functools import cached_property
 
 import numpy as np
 
 from . import _core
 from ._arrays import columns, restore, shape_of
+from ._calls import warn
 from ._files import check_csv, save_picture, written
 from ._given import array_given, shown, whole_given
 from ._optional import needs
@@ -194,10 +194,10 @@ def _first(holds, begin, end, points=1000):
 
 
 def warn_of_doubt(*motions):
-    """A warning for each record among them whose unit is in doubt, at the line that called the caller."""
+    """A warning for each record among them whose unit is in doubt."""
     for record in motions:
         if isinstance(record, Record) and record.doubt():
-            warnings.warn(record.doubt(), stacklevel=3)
+            warn(record.doubt())
 
 
 def _motion_given(name, motion):
