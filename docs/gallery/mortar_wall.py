@@ -8,7 +8,8 @@ from yade import O
 
 stiffness = dict(normalStiffness=5e9, shearStiffness=2.2e9)
 lime = dem.JointMat(tensileStrength=0.05e6, fractureEnergy=4, cohesion=0.07e6, shearFractureEnergy=28, **stiffness)
-for number, unfilled in enumerate((False, True)):
+parts = []
+for unfilled in (False, True):
     O.reset()
     brick = dem.BlockMat(density=1900, frictionAngle=math.atan(0.75), mortar=lime, unfilledHeads=unfilled, **stiffness)
     base = dem.base((4, 1, 0.2), brick)
@@ -19,8 +20,8 @@ for number, unfilled in enumerate((False, True)):
     dem.run(0.25)
     cracks = results.cracks(dem.wall_history(recorder))
     print("unfilled:" if unfilled else "filled:", cracks)
-    cracks.picture(f"mortar_wall_{number}.png", title="head joints unfilled" if unfilled else "head joints filled")
-parts = [Image.open(f"mortar_wall_{number}.png").convert("RGB") for number in (0, 1)]
+    cracks.picture("mortar_wall.png", title="head joints unfilled" if unfilled else "head joints filled")
+    parts.append(Image.open("mortar_wall.png").convert("RGB"))
 picture = Image.new("RGB", (sum(part.width for part in parts), max(part.height for part in parts)), "white")
 picture.paste(parts[0], (0, 0))
 picture.paste(parts[1], (parts[0].width, 0))

@@ -55,16 +55,20 @@ def first_peak(force):
     return int(np.argmax(force))
 
 
-def picture(curve, table, peak, path):
+def picture(curve, down, peak, cracks, path):
+    """Forces against the displacement, and the crack map beside them. down: N, the vertical force; cracks: path of the map."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
+    from matplotlib.image import imread
 
-    figure = Figure(figsize=(7, 4.4), layout="constrained")
+    figure = Figure(figsize=(12, 4.4), layout="constrained")
     FigureCanvasAgg(figure)
-    axes = figure.subplots()
+    axes, beside = figure.subplots(1, 2)
+    beside.imshow(imread(cracks))
+    beside.set_axis_off()
     axes.axhspan(*PUBLISHED, color="tab:orange", alpha=0.25, label="peaks of J4D and J5D as quoted, 50 to 57 kN")
     axes.plot(1e3 * curve["displacement"], 1e-3 * curve["force"], color="tab:blue", label="force along the push")
-    axes.plot(1e3 * curve["displacement"], 1e-3 * table, color="0.5", linewidth=1, label="vertical force of the held top")
+    axes.plot(1e3 * curve["displacement"], 1e-3 * down, color="0.5", linewidth=1, label="vertical force of the held top")
     axes.plot(1e3 * curve["displacement"][peak], 1e-3 * curve["force"][peak], "o", color="tab:red", label="first peak, or the largest force")
     axes.set(xlabel="displacement of the top (mm)", ylabel="force (kN)", xlim=(0, None), ylim=(0, None))
     axes.legend(fontsize=8)
@@ -89,7 +93,7 @@ def main(folder):
     history = dem.wall_history(recorder)
     cracks = results.cracks(history)
     cracks.picture(folder / "shear_wall_cracks.png")
-    picture(curve, down, peak, folder / "shear_wall.png")
+    picture(curve, down, peak, folder / "shear_wall_cracks.png", folder / "shear_wall.png")
     engine, table = joint_engine(), dem.damage()
     halves = {pair for _, pairs in split_units().values() for pair in pairs}
     upright = np.array([abs(O.bodies[int(a)].state.refPos[2] - O.bodies[int(b)].state.refPos[2]) < 1e-3 for a, b in zip(table["body1"], table["body2"])])
