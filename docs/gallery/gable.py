@@ -29,7 +29,7 @@ def run(tied):
                 x, y, z = O.bodies[block].state.pos
                 # A steel bar of 12 mm and 3 m, which the roof beam keeps from buckling.
                 dem.tie(block, (x, y, z), base, (x, y + BEHIND, z), stiffness=7.5e6, tension_only=False)
-    motion = dem.record_motion(artificial_record(seed=3, peak=6, duration=4, frequency=1), ids=[base], direction=(0, 1, 0))
+    motion = dem.record_motion(artificial_record(seed=3, peak=7, duration=4, frequency=0.7), ids=[base], direction=(0, 1, 0))
     recorder = dem.WallRecorder(virtPeriod=0.01)
     O.engines = dem.engines(motion, recorder=recorder)
     dem.run(until=motion)

@@ -63,7 +63,12 @@ public:
 		const FacePair pair = pairOf(reference);
 		const OverlapTask task = overlapTask(pair, previous);
 		EdgePair edges;
-		const auto edgesCross = [&] { return bestEdges(shape1, shape2, second, reference.separation, edges); };
+		widest = reference.separation;
+		const auto edgesCross = [&] {
+			const bool some = bestEdges(shape1, shape2, second, reference.separation, edges);
+			widest = std::max({widest, edges.widest, some ? edges.separation : widest});
+			return some;
+		};
 		bool crossing = !isFaceContact(pair, task, cosineLimit) && edgesCross();
 		if (!crossing || edges.separation <= reference.separation + gainOfEdges(reference.separation, length, previous)) {
 			// If the deepest vertex lies beyond the border of the face, the patch lacks it, and the edges beside it may be nearer.
@@ -90,6 +95,13 @@ public:
 			return false;
 		const FacePair next = withNextIncident(pair);
 		return patchOn(next, overlapTask(next, previous)) && isPossible(edges, smallestGap(out), margin);
+	}
+
+	// Whether the bodies overlap and the patch, `found` or not, lacks what is deepest: the face that `previous` holds as reference can end
+	// short of it, and all corners of its patch be open. `widest` is exact here, since the edges of faces so deep have been looked at.
+	bool missesDepth(bool found) const
+	{
+		return widest < -tolerance::contact::shallow * length && !(found && smallestGap(out) <= tolerance::contact::depthShare * widest);
 	}
 
 private:
@@ -144,6 +156,7 @@ private:
 	ContactPatch& out;
 	const double length, cosineLimit;
 	RelativePose second;
+	double widest {0}; // m, largest separation along the axes that the search has looked at
 };
 
 } // namespace
@@ -151,7 +164,17 @@ private:
 bool collide(const ConvexPolyhedron& shape1, const Pose& pose1, const ConvexPolyhedron& shape2, const Pose& pose2, double margin,
              const PatchFeature& previous, ContactPatch& out)
 {
-	return PairSearch(shape1, pose1, shape2, pose2, previous, out).find(margin);
+	PairSearch search(shape1, pose1, shape2, pose2, previous, out);
+	const bool found = search.find(margin); // what `previous` leads to, unless that misses the depth and a search without it does not
+	if (previous.kind == PatchKind::None || !search.missesDepth(found))
+		return found;
+	const PatchFeature none;
+	ContactPatch anew;
+	PairSearch without(shape1, pose1, shape2, pose2, none, anew);
+	if (!without.find(margin) || without.missesDepth(true))
+		return found;
+	out = std::move(anew);
+	return true;
 }
 
 std::array<int, 2> facesOf(const ContactPatch& patch, const ConvexPolyhedron& shape1, const Pose& pose1, const ConvexPolyhedron& shape2,

@@ -15,9 +15,9 @@ namespace masonry {
 //
 // Points. A vertex of the incident face keeps its own position, its partner is the projection on the reference face; a
 // vertex of the reference face likewise; elsewhere two edges cross. All corners of the overlap are points: what carries a block on a
-// hexagon has six. `previous` is the feature of the last call for this
-// pair (default: none): it keeps reference, incident face and vertices until another choice is clearly better, by the
-// limits in tolerances.hpp. The patch depends on poses and `previous` only, not on `margin`.
+// hexagon has six. `previous` is the feature of the last call for this pair (default: none): it keeps reference, incident face and
+// vertices until another choice is clearly better, by the limits in tolerances.hpp. Where the bodies overlap and the patch to which it
+// leads lacks most of the depth, it is not used. The patch depends on poses and `previous` only, not on `margin`.
 //
 // Overlaps thinner than tolerance::contact::sliver are no contact: two blocks that meet corner to corner.
 //

@@ -118,14 +118,20 @@ private:
 		return least - most;
 	}
 
-	// Two edges are no nearer to each other than their bodies: lines that are nearer come so near beyond the ends of the edges.
-	bool crossBeyondEnds(const Feature& crossing, const Vector3& normal) const
+	// Whether two crossing edges hold the bodies apart there. A contact point pushes along the normal that looks away from both edges: of
+	// edges that pass on the far side of thin bodies it looks back into them, and an open gap counts as a deep one. And two edges are no
+	// nearer to each other than their bodies: lines that are nearer come so near beyond the ends of the edges.
+	bool canTouch(const Feature& crossing, const Vector3& normal) const
 	{
+		const Frame frame = Space::frame(crossing, shape1, pose1, shape2, pose2);
+		if (!(frame.axes.row(0).dot(normal) > 0))
+			return false;
 		const double apart = separation(normal);
-		return apart > 0 && Space::frame(crossing, shape1, pose1, shape2, pose2).gap < apart - tolerance::contact::vertexReach * length;
+		return !(apart > 0 && frame.gap < apart - tolerance::contact::vertexReach * length);
 	}
 
-	// Takes the corners of the patch but crossings that are not sharp; of these only one that lies far deeper than all others.
+	// Takes the corners of the patch but crossings that cannot touch or are not sharp; of those that are not sharp only one that lies far
+	// deeper than all others.
 	void takeCorners(const ContactPatch& patch)
 	{
 		constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -133,7 +139,7 @@ private:
 		Feature blunt;
 		for (const PatchPoint& point : patch.points) {
 			const Feature feature = featureOf(point, patch.feature);
-			if (isCrossing(feature) && crossBeyondEnds(feature, patch.normal))
+			if (isCrossing(feature) && !canTouch(feature, patch.normal))
 				continue;
 			if (!isCrossing(feature) || isSharp(feature, patch.normal)) {
 				nearest = std::min(nearest, point.gap);
