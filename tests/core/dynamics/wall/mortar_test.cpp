@@ -180,3 +180,32 @@ TEST_CASE("cracks spend the energy of their damage, and energies balance")
 	const double after = s.energy() + s.system.frictDissip + s.system.impactDissip + s.system.crackDissip - s.system.baseWork;
 	CHECK(after == Approx(before).margin(1e-6 * s.system.baseWork));
 }
+
+// The table of docs/tuning.md, Mortar of rigid blocks; some minutes. Strengths of walls: validation/mortar/limit.py.
+TEST_CASE("stacks and walls of many sizes take no damage in 10 s", "[.mortar]")
+{
+	const double share = GENERATE(0.8, 0.95);
+	const int stack = GENERATE(5, 8, 18, 20, 0, -1);
+	Bonded s;
+	double strength = 0; // g
+	if (stack > 0) {
+		const double height = 0.15 * stack;
+		s.addStack(stack, 0.11, 0.15);
+		s.bond(lawOf(0.1e6));
+		strength = 0.11 / height * (1 + 0.1e6 / (heavy * g * height));
+	} else {
+		s.addRunningBond(stack == 0 ? 20 : 60, stack == 0 ? 5 : 10, 0.21, 0.052);
+		s.bond(lawOf(0.02e6));
+		strength = stack == 0 ? 2.05129 : 0.89784;
+	}
+	Harmonic motion(share * strength * g, 3, s.system.time);
+	s.drive(motion);
+	long iterations = 0;
+	const int steps = 10000;
+	for (int k = 0; k < steps; ++k) {
+		s.advance(h);
+		iterations += s.step.report.iterations;
+	}
+	INFO(s.system.bodies.size() - 1 << " blocks at " << share << ": " << double(iterations) / steps << " iterations a step");
+	CHECK(s.worst().damage() == 0);
+}
