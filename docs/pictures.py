@@ -28,6 +28,7 @@ SCRIPTS = {
     "gable": ("yade", ("gable.png",)),
     "fragility": ("python", ("fragility.png",)),
     "impact_law": ("python", ("impact_law.png",)),
+    "mortar_wall": ("yade", ("mortar_wall.png",)),
     "overturning": ("python", ("overturning.png",)),
     "push": ("yade", ("push_shape.png", "push_joint.png", "push_cycles.png")),
     "resonance": ("python", ("resonance.png",)),

@@ -1,6 +1,8 @@
 #pragma once
 
 #include "contact/corner_patch.hpp"
+#include "tolerances.hpp"
+#include <cmath>
 #include <pkg/dem/DemXDofGeom.hpp>
 
 namespace yade {
@@ -11,6 +13,9 @@ inline masonry::Feature featureAt(const vector<int>& row, size_t i)
 {
 	return {masonry::Feature::Kind(row.at(3 * i)), row.at(3 * i + 1), row.at(3 * i + 2)};
 }
+
+/// Whether mortar takes a joint with this normal for a head joint: a level one, z being up.
+inline bool isHeadJoint(const Vector3r& normal) { return std::abs(normal.z()) < masonry::tolerance::uprightJoint; }
 
 /// The contact patch of two blocks (contact/contact_patch.hpp). Derived from GenericSpheresContact because YADE's time
 /// stepper reads that class.

@@ -11,7 +11,8 @@ YADE_PLUGIN((BlockPhys));
 
 masonry::JointLaw BlockPhys::law(Real dampingRatio) const
 {
-	return {normalStiffness, shearStiffness, dampingRatio, noSlip ? masonry::noSlip : tangensOfFrictionAngle, restitution};
+	const bool hasMortar = bond.bond ? !bond.bond->isBroken : bool(mortar);
+	return {normalStiffness, shearStiffness, dampingRatio, noSlip ? masonry::noSlip : tangensOfFrictionAngle, restitution, hasMortar};
 }
 
 void BlockPhys::check(int id1, int id2) const

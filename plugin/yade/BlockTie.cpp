@@ -11,7 +11,8 @@ YADE_PLUGIN((BlockTie));
 
 void BlockTie::action()
 {
-	throw std::logic_error("BlockTie is in O.engines: a tie acts in MoreauJeanIntegrator.ties instead, where dem.engines() puts it.");
+	throw std::logic_error("BlockTie is in O.engines: a tie acts in MoreauJeanIntegrator.ties or RockingJointEngine.ties instead, where "
+	                       "dem.engines() puts it.");
 }
 
 void BlockTie::postLoad(BlockTie&)

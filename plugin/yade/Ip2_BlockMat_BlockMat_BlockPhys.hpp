@@ -13,7 +13,7 @@ public:
 
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS(Ip2_BlockMat_BlockMat_BlockPhys, IPhysFunctor,
-		"Joint of two blocks from their materials. Where the materials differ: restitution is the mean of the two (a given value wins over natural), the smaller friction angle counts, stiffness per area is the harmonic mean, and the joint does not slip if either material says so, unless the other one has the friction angle 0. A MatchMaker overrides the rule for chosen pairs of materials. Two blocks with the same mortar have its stiffness and its friction angle, where it gives them.",
+		"Joint of two blocks from their materials. Where the materials differ: restitution is the mean of the two (a given value wins over natural), the smaller friction angle counts, stiffness per area is the harmonic mean, and the joint does not slip if either material says so, unless the other one has the friction angle 0. A MatchMaker overrides the rule for chosen pairs of materials. Two blocks with the same mortar have its stiffness and its friction angle, where it gives them; in head joints, whose normal is level when the pair is found, that is headMortar.",
 		((shared_ptr<MatchMaker>, restitution, , , "Rocking restitution of a pair."))
 		((shared_ptr<MatchMaker>, frictionAngle, , , "Friction angle of a pair [rad]."))
 		((shared_ptr<MatchMaker>, normalStiffness, , , "Normal stiffness per area of a pair [Pa/m]."))

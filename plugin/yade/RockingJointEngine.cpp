@@ -5,6 +5,7 @@
 #include "impact_lists.hpp"
 #include "integrator_settings.hpp"
 #include "sentence.hpp"
+#include "tie_attributes.hpp"
 
 #include "dynamics/compliant/time_step.hpp"
 #include <algorithm>
@@ -19,6 +20,9 @@ void RockingJointEngine::postLoad(RockingJointEngine&)
 {
 	if (impactOrder != "simultaneous" && impactOrder != "sequential")
 		reject(*this, "impactOrder", "'" + impactOrder + "'", "'simultaneous' or 'sequential'");
+	for (const auto& tie : ties)
+		if (!dynamic_cast<BlockTie*>(tie.get()))
+			reject(*this, "ties", tie ? tie->getClassName() : "None", "a list of ties (BlockTie)");
 }
 
 /// In another scene than so far, where a script has put this engine, or saved it before its first step, all results are forgotten.
@@ -30,7 +34,7 @@ void RockingJointEngine::enterScene()
 		forgetImpacts(*this);
 		forget(started, worstResidual, failures, madeEnergy, lostEnergy, turnedOver, toldMade, toldLost, toldDeep, kinetic, potential,
 		       elastPotential, frictDissip, dampDissip, impactDissip, baseWork, reactionIds, reactions, reactionMoments, checkedTimeStep,
-		       crackDissip, bondedIds, bondedState);
+		       crackDissip, bondedIds, bondedState, tieEnergy);
 		bounds.forget();
 	}
 	home = present;
@@ -44,14 +48,14 @@ void RockingJointEngine::readScene()
 	if (scene->isPeriodic)
 		throw std::runtime_error("O.periodic = True is not allowed: blocks know no periodic cell.");
 	if (checkedTimeStep > 0 && scene->iter % period != 0)
-		return blocks.read(*scene, dampingRatio, step);
+		return readBlocks();
 	const auto isOne = [](const auto& engine) { return !engine->dead && dynamic_cast<RockingJointEngine*>(engine.get()); };
 	if (std::count_if(scene->engines.begin(), scene->engines.end(), isOne) > 1)
 		throw std::runtime_error("O.engines has more than one RockingJointEngine: each acts on all blocks; there must be one.");
 	const IntegratorSettings settings(*scene);
 	step.system.gravity = settings.gravity;
 	dampingRatio = settings.contactDampingRatio;
-	blocks.read(*scene, dampingRatio, step);
+	readBlocks();
 	for (int id : blocks.ids) {
 		const Body& body = *(*scene->bodies)[id];
 		if (!body.isDynamic())
@@ -65,6 +69,16 @@ void RockingJointEngine::readScene()
 			throw std::runtime_error(
 			    sentence("O.bodies[", id, "].aspherical = False is not allowed for a block: set it to True (dem.block() does)."));
 	}
+}
+
+void RockingJointEngine::readBlocks()
+{
+	blocks.read(*scene, dampingRatio, step);
+	livingTies.clear();
+	for (const auto& tie : ties)
+		if (!tie->dead)
+			livingTies.push_back(boost::static_pointer_cast<BlockTie>(tie));
+	blocks.readTies(*scene, livingTies, step.system);
 }
 
 void RockingJointEngine::readLoads(const vector<BaseMotionEngine*>& motions)
@@ -112,32 +126,32 @@ vector<masonry::BaseJump> RockingJointEngine::jumpsOf(const vector<BaseMotionEng
 Real RockingJointEngine::criticalTimeStep()
 {
 	const auto contacts = presentContacts();
-	return masonry::criticalTimeStep(step.system.bodies, contacts);
+	return masonry::criticalTimeStep(step.system.bodies, contacts, step.system.ties);
 }
 
 Real RockingJointEngine::largestTimeStep()
 {
 	const auto contacts = presentContacts();
-	return masonry::largestTimeStep(step.system.bodies, contacts);
+	return masonry::largestTimeStep(step.system.bodies, contacts, step.system.ties);
 }
 
 Real RockingJointEngine::chosenTimeStep()
 {
 	const auto contacts = presentContacts();
-	return masonry::chosenTimeStep(step.system.bodies, contacts, stepFraction);
+	return masonry::chosenTimeStep(step.system.bodies, contacts, step.system.ties, stepFraction);
 }
 
 vector<masonry::JointContact> RockingJointEngine::presentContacts()
 {
 	const shared_ptr<Scene>& present = Omega::instance().getScene();
 	if (checkedTimeStep > 0 && home.lock() == present)
-		return step.system.contacts;
+		return withBondsAsked(step.system.contacts);
 	scene = present.get();
 	const bool inScene =
 	    std::any_of(scene->engines.begin(), scene->engines.end(), [this](const auto& engine) { return engine.get() == this; });
 	dampingRatio = inScene ? IntegratorSettings(*scene).contactDampingRatio : Law2_BlockGeom_BlockPhys_Rocking().dampingRatio;
-	blocks.read(*scene, dampingRatio, step);
-	return blocks.blocksInTouch(*scene, dampingRatio, step);
+	readBlocks();
+	return withBondsAsked(blocks.blocksInTouch(*scene, dampingRatio, step));
 }
 
 void RockingJointEngine::checkTimeStep()
@@ -145,11 +159,11 @@ void RockingJointEngine::checkTimeStep()
 	if (checkedTimeStep > 0 && scene->dt != checkedTimeStep)
 		stepFraction = 0; // a script has given another
 	step.stepFraction = stepFraction;
-	const auto& [bodies, contacts] = std::tie(step.system.bodies, step.system.contacts);
+	const auto& [bodies, contacts, taut] = std::tie(step.system.bodies, step.system.contacts, step.system.ties);
 	if (!step.fitTimeStep())
 		throw std::runtime_error(
 		    sentence("O.dt = ", scene->dt, " s is not allowed with these joint stiffnesses at t = ", scene->time,
-		             " s: it must be positive and below ", masonry::largestTimeStep(bodies, contacts),
+		             " s: it must be positive and below ", masonry::largestTimeStep(bodies, contacts, taut),
 		             " s (half of that is accurate); dem.engines() chooses one and lowers it where blocks come to lie on larger faces."));
 	if (step.lowered > 0)
 		LOG_WARN("at t = " << scene->time << " s blocks touch in stiffer joints than so far: O.dt is lowered from " << scene->dt << " to "
@@ -162,8 +176,8 @@ void RockingJointEngine::checkTimeStep()
 void RockingJointEngine::readRun()
 {
 	step.run = {started,
-	            {kinetic, potential, elastPotential, frictDissip, dampDissip, impactDissip, crackDissip, baseWork, madeEnergy, lostEnergy,
-	             turnedOver},
+	            {kinetic, potential, elastPotential - tieEnergy, frictDissip, dampDissip, impactDissip, crackDissip, baseWork, madeEnergy,
+	             lostEnergy, turnedOver, tieEnergy},
 	            {},
 	            worstResidual,
 	            failures,
@@ -172,16 +186,17 @@ void RockingJointEngine::readRun()
 	            toldDeep};
 	for (size_t k = 0; k < reactionIds.size(); ++k)
 		if (const int b = blocks.indexOf(reactionIds[k]); b >= 0)
-			step.run.reactions.push_back({b, {reactions[k], reactionMoments[k], true}});
+			step.run.reactions.push_back({b, {{reactions[k], reactionMoments[k]}, true}});
 }
 
 void RockingJointEngine::writeRun()
 {
 	const auto& [now, energies, onBases, residual, missed, made, lost, deep] = step.run;
 	std::tie(started, worstResidual, failures, toldMade, toldLost, toldDeep) = std::tie(now, residual, missed, made, lost, deep);
-	const auto& [kin, pot, elastic, friction, damping, impacts, cracks, work, created, vanished, turned] = energies;
-	std::tie(kinetic, potential, elastPotential, frictDissip, dampDissip, impactDissip, crackDissip, baseWork, madeEnergy, lostEnergy,
-	         turnedOver) = std::tie(kin, pot, elastic, friction, damping, impacts, cracks, work, created, vanished, turned);
+	const auto& [kin, pot, elastic, friction, damping, impacts, cracks, work, created, vanished, turned, inTies] = energies;
+	std::tie(kinetic, potential, frictDissip, dampDissip, impactDissip, crackDissip, baseWork, madeEnergy, lostEnergy, turnedOver,
+	         tieEnergy) = std::tie(kin, pot, friction, damping, impacts, cracks, work, created, vanished, turned, inTies);
+	elastPotential = elastic + inTies;
 	reactionIds.clear();
 	reactions.clear();
 	reactionMoments.clear();
@@ -205,11 +220,17 @@ void RockingJointEngine::writeScene(const masonry::CompliantReport& report)
 			writeState(step.system.bodies[b], *(*scene->bodies)[blocks.ids[b]]->state);
 		scene->forces.addForce(blocks.ids[b], step.loads[b].force);
 		scene->forces.addTorque(blocks.ids[b], step.loads[b].moment);
+		if (!step.system.ties.empty() && !step.system.bodies[b].prescribed) {
+			scene->forces.addForce(blocks.ids[b], step.pulls[b].force);
+			scene->forces.addTorque(blocks.ids[b], step.pulls[b].moment);
+		}
 	}
 	for (const auto& record : report.impacts)
 		if (!record.landed)
 			addImpact(*this, scene->time - record.before, blocks.ids[record.block], blocks.ids[record.support], record.restitutionAsked,
 			          record.result, record.result.energyLost, record.switched, record.result.capped);
+	for (size_t t = 0; t < step.system.ties.size(); ++t)
+		writeTie(step.system.ties[t], scene->time, *livingTies[t]);
 	scene->dt -= step.lowered;
 	checkedTimeStep = scene->dt;
 }
@@ -264,11 +285,12 @@ void RockingJointEngine::action()
 	step.system.dt = scene->dt;
 	step.system.order = impactOrder == "sequential" ? masonry::ImpactOrder::sequential : masonry::ImpactOrder::simultaneous;
 	readRun();
-	checkTimeStep();
 	const vector<BaseMotionEngine*> motions = BaseMotionEngine::inEngines(*scene);
 	readLoads(motions);
 	askForMortar();
+	checkTimeStep();
 	const masonry::CompliantReport report = step.apply([&](const auto& records) { return jumpsOf(motions, records); });
+	bondsAsked.clear();
 	writeRun();
 	writeScene(report);
 	writeMortar();

@@ -123,10 +123,16 @@ void WallRecorder::addMotions()
 /// Ties that are there at the first sample.
 void WallRecorder::addTies()
 {
+	const auto addLiving = [this](const vector<shared_ptr<Engine>>& present) {
+		std::copy_if(present.begin(), present.end(), std::back_inserter(ties), [](const auto& tie) { return !tie->dead; });
+	};
 	if (times.size() == 1)
-		for (const auto& engine : scene->engines)
+		for (const auto& engine : scene->engines) {
 			if (const auto* rigid = dynamic_cast<MoreauJeanIntegrator*>(engine.get()); rigid && !rigid->dead)
-				std::copy_if(rigid->ties.begin(), rigid->ties.end(), std::back_inserter(ties), [](const auto& tie) { return !tie->dead; });
+				addLiving(rigid->ties);
+			if (const auto* joints = dynamic_cast<RockingJointEngine*>(engine.get()); joints && !joints->dead)
+				addLiving(joints->ties);
+		}
 	for (const auto& engine : ties) {
 		const auto& tie = static_cast<const BlockTie&>(*engine);
 		add(tieStates, tie.force, tie.extension, std::isnan(tie.energy) ? Real(0) : tie.energy, Real(tie.broken));

@@ -2,16 +2,39 @@
 #include "BlockGeom.hpp"
 #include "BlockMat.hpp"
 #include "BlockPhys.hpp"
+#include "BlockTie.hpp"
 #include "Ip2_BlockMat_BlockMat_BlockPhys.hpp"
 #include "checked_body.hpp"
 #include "core_state.hpp"
 #include "sentence.hpp"
+#include "tie_attributes.hpp"
 
 #include "contact/collide.hpp"
 #include "joints/joint_table.hpp"
 #include <algorithm>
+#include <cmath>
 
 namespace yade {
+
+namespace {
+
+/// O.bodies.clear() leaves the interactions of its bodies in O.interactions.
+void checkBodies(const Scene& scene, const Interaction& interaction)
+{
+	for (const auto& [id, other] : {std::pair(interaction.id1, interaction.id2), std::pair(interaction.id2, interaction.id1)}) {
+		if (scene.bodies->exists(id)) {
+			const auto& present = (*scene.bodies)[id]->intrs;
+			if (const auto found = present.find(other); found != present.end() && found->second.get() == &interaction)
+				continue;
+		}
+		throw std::runtime_error(
+		    sentence("O.interactions has a joint of bodies ", interaction.id1, " and ", interaction.id2,
+		             " that are no longer there (O.bodies.clear() leaves it): build the scene and its engines anew after "
+		             "O.reset()."));
+	}
+}
+
+} // namespace
 
 void CompliantScene::read(const Scene& scene, Real dampingRatio, masonry::CompliantStep& step)
 {
@@ -51,9 +74,12 @@ void CompliantScene::readJoints(const Scene& scene, Real dampingRatio, masonry::
 {
 	pairs.clear();
 	vector<Interaction*> found;
-	for (const auto& interaction : *scene.interactions)
-		if (interaction->isReal() && dynamic_cast<BlockPhys*>(interaction->phys.get()))
-			found.push_back(interaction.get());
+	for (const auto& interaction : *scene.interactions) {
+		if (!interaction->isReal() || !dynamic_cast<BlockPhys*>(interaction->phys.get()))
+			continue;
+		checkBodies(scene, *interaction);
+		found.push_back(interaction.get());
+	}
 	std::sort(found.begin(), found.end(),
 	          [](const Interaction* a, const Interaction* b) { return std::minmax(a->id1, a->id2) < std::minmax(b->id1, b->id2); });
 	system.contacts.resize(found.size()); // contacts keep their memory, and all of them is read anew
@@ -81,6 +107,25 @@ void CompliantScene::readJoints(const Scene& scene, Real dampingRatio, masonry::
 	system.contacts.resize(pairs.size());
 }
 
+void CompliantScene::readTies(const Scene& scene, const vector<shared_ptr<BlockTie>>& ties, masonry::JointSystem& system) const
+{
+	system.ties.clear();
+	for (const auto& of : ties) {
+		of->check(scene);
+		masonry::Tie<masonry::Space> tie;
+		tie.body1 = indexOf(of->body1);
+		tie.body2 = indexOf(of->body2);
+		tie.point1 = of->point1;
+		tie.point2 = of->point2;
+		if (std::isnan(of->length))
+			of->length = masonry::Tie<masonry::Space>::line(tie, system.bodies[tie.body1].pose, system.bodies[tie.body2].pose).length;
+		takeAttributes(*of, tie);
+		tie.broken = of->broken;
+		tie.force = of->force;
+		system.ties.push_back(tie);
+	}
+}
+
 vector<masonry::JointContact> CompliantScene::blocksInTouch(const Scene& scene, Real dampingRatio, const masonry::CompliantStep& step) const
 {
 	const masonry::Bodies<masonry::Space>& bodies = step.system.bodies;
@@ -99,6 +144,9 @@ vector<masonry::JointContact> CompliantScene::blocksInTouch(const Scene& scene, 
 			if (!masonry::collide(shape1, bodies[a].pose, shape2, bodies[b].pose, near, {}, patch))
 				continue;
 			const shared_ptr<Interaction> interaction(new Interaction(ids[a], ids[b]));
+			const shared_ptr<BlockGeom> geom(new BlockGeom);
+			geom->normal = patch.normal;
+			interaction->geom = geom;
 			law.go(body1.material, body2.material, interaction);
 			masonry::JointContact& contact = contacts.emplace_back();
 			contact.body1 = int(a);

@@ -9,11 +9,14 @@ namespace yade {
 
 class BlockGeom;
 class BlockPhys;
+class BlockTie;
 
 class CompliantScene {
 public:
 	/// Reads all blocks and their joints. Throws for what is no block, or has no joint law.
 	void read(const Scene& scene, Real dampingRatio, masonry::CompliantStep& step);
+	/// Reads the ties, whose bodies are those of read(). Throws for bodies that are no blocks.
+	void readTies(const Scene& scene, const vector<shared_ptr<BlockTie>>& ties, masonry::JointSystem& system) const;
 	/// All blocks in touch, read() before: for a scene without interactions, or whose interactions have no patches after loading.
 	vector<masonry::JointContact> blocksInTouch(const Scene& scene, Real dampingRatio, const masonry::CompliantStep& step) const;
 

@@ -78,8 +78,13 @@ void MoreauJeanIntegrator::count(const masonry::StepReport& report)
 	std::ostringstream text;
 	text << "In the step from t = " << scene->time << " s ";
 	text << jammed;
-	if (!report.converged && jammed.empty())
+	const bool missed = !report.converged && jammed.empty();
+	if (missed)
 		text << "the contact laws are missed: residual " << report.residual << " m/s (gravity gives " << ofStep << " m/s in a step). ";
+	if (missed && sceneOf(memory).neverSlips())
+		text << "Where nothing slips they may have no solution: a pivot that would have to pull, or an edge that lands while it moves "
+		        "along the "
+		        "face. Give the materials a frictionAngle instead of noSlip. ";
 	if (crowded)
 		text << report.unlocalised << " points closed after mostEvents = " << mostEvents << " events, plastically at its end. ";
 	if (report.created > 0)

@@ -300,6 +300,13 @@ vector<int> RigidScene<K>::touching()
 }
 
 template <class K>
+bool RigidScene<K>::neverSlips() const
+{
+	return std::any_of(system.pairs.begin(), system.pairs.end(),
+	                   [](const Pair& pair) { return touches(pair) && pair.friction == masonry::noSlip; });
+}
+
+template <class K>
 std::pair<vector<int>, vector<int>> RigidScene<K>::blocksAndPrescribed(const vector<int>& bodies) const
 {
 	std::set<int> blocks, prescribed;

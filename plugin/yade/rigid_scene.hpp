@@ -78,6 +78,8 @@ public:
 	/// O.interactions as they are after the last step: they are left behind while nobody looks.
 	virtual void writeContacts() = 0;
 	virtual vector<int> touching() = 0;
+	/// Whether some of these never slip on each other.
+	virtual bool neverSlips() const = 0;
 	/// Ids of these bodies of the core, each once, and those with prescribed motion apart.
 	virtual std::pair<vector<int>, vector<int>> blocksAndPrescribed(const vector<int>& bodies) const = 0;
 	virtual void setInstant(Real) = 0;
@@ -122,6 +124,7 @@ public:
 	RigidResults step(const RigidSettings& settings) override;
 	void writeContacts() override;
 	vector<int> touching() override;
+	bool neverSlips() const override;
 	std::pair<vector<int>, vector<int>> blocksAndPrescribed(const vector<int>& bodies) const override;
 	void setInstant(Real instant) override;
 	void dropErased() override { contacts.dropErased(); }

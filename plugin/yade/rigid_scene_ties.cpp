@@ -1,9 +1,9 @@
 // Ties of a scene in the core's form, and back after each step.
 
 #include "rigid_scene.hpp"
+#include "tie_attributes.hpp"
 
 #include <algorithm>
-#include <array>
 
 namespace yade {
 
@@ -15,20 +15,6 @@ masonry::Vector2 inCore(const Coordinates<Plane>& c, const Seat<Plane>& seat, co
 	return c.in(seat.reference * point);
 }
 const Vector3r& inCore(const Coordinates<Space>&, const Seat<Space>&, const Vector3r& point) { return point; }
-
-/// Returns whether any was another one.
-template <class K>
-bool takeAttributes(const BlockTie& from, masonry::Tie<K>& to)
-{
-	const auto values = [&] { return std::array<Real, 5> {to.length, to.stiffness, to.pretension, to.strength, Real(to.tensionOnly)}; };
-	const auto before = values();
-	to.length = from.length;
-	to.stiffness = from.stiffness;
-	to.pretension = from.pretension;
-	to.strength = from.strength;
-	to.tensionOnly = from.tensionOnly;
-	return values() != before;
-}
 
 } // namespace
 
@@ -74,16 +60,8 @@ void RigidScene<K>::readTies()
 template <class K>
 void RigidScene<K>::writeTies() const
 {
-	for (size_t t = 0; t < ties.size(); ++t) {
-		const masonry::Tie<K>& tie = system.ties[t];
-		BlockTie& to = *ties[t];
-		if (tie.broken != to.broken)
-			to.brokenAt = tie.broken ? system.time : NaN;
-		to.broken = tie.broken;
-		to.force = tie.broken ? 0 : tie.force;
-		to.extension = tie.extension;
-		to.energy = tie.energy;
-	}
+	for (size_t t = 0; t < ties.size(); ++t)
+		writeTie(system.ties[t], system.time, *ties[t]);
 }
 
 template void RigidScene<Plane>::addTies(const Remembered<Plane>&);

@@ -8,6 +8,8 @@
 #include "tolerances.hpp"
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <set>
 
 namespace yade {
 
@@ -55,18 +57,26 @@ masonry::MortarLaw lawAt(const Real* row)
 
 } // namespace
 
-int RockingJointEngine::bond(const vector<int>& of, const shared_ptr<JointMat>& mortar)
+int RockingJointEngine::bond(const vector<int>& of, const shared_ptr<JointMat>& mortar, const string& joints)
 {
 	if (!mortar || std::isnan(mortar->directStrength()))
 		throw std::invalid_argument("material is not allowed: it must be a JointMat with strengths and fracture energies.");
-	const auto has = [&](int id) { return of.empty() || std::find(of.begin(), of.end(), id) != of.end(); };
+	const std::set<int> members(of.begin(), of.end());
+	std::set<std::pair<int, int>> named;
+	for (size_t k = 0; joints == "pairs" && k + 1 < of.size(); k += 2)
+		named.insert(std::minmax(of[k], of[k + 1]));
+	const auto isMeant = [&](int id1, int id2, bool isHead) {
+		if (joints == "pairs")
+			return named.count(std::minmax(id1, id2)) > 0;
+		return (of.empty() || (members.count(id1) && members.count(id2))) && (joints == "all" || isHead == (joints == "head"));
+	};
 	int count = 0;
 	presentContacts(); // reads the blocks
 	for (const masonry::JointContact& contact : blocks.blocksInTouch(*scene, dampingRatio, step)) {
 		const int id1 = blocks.ids[contact.body1], id2 = blocks.ids[contact.body2];
 		const Real thickness =
 		    std::min(step.system.bodies[contact.body1].shape->thickness(), step.system.bodies[contact.body2].shape->thickness());
-		if (!has(id1) || !has(id2) || contact.size() < 3 || largestGap(contact.patch) > touching * thickness)
+		if (!isMeant(id1, id2, isHeadJoint(contact.patch.normal)) || contact.size() < 3 || largestGap(contact.patch) > touching * thickness)
 			continue;
 		const masonry::MortarLaw law = mortar->law(contact.law.normalStiffness, contact.law.shearStiffness, contact.law.friction, id1, id2);
 		checkLaw(law, id1, id2);
@@ -77,6 +87,29 @@ int RockingJointEngine::bond(const vector<int>& of, const shared_ptr<JointMat>& 
 	return count;
 }
 
+/// Calls use(contact, law) for each joint that dem.bond has asked for.
+template <class Use>
+void RockingJointEngine::forBondsAsked(const vector<masonry::JointContact>& contacts, Use use) const
+{
+	std::map<std::pair<int, int>, size_t> rows; // the last one of a pair counts
+	for (size_t row = 0; row + asked <= bondsAsked.size(); row += asked)
+		rows[std::minmax(int(bondsAsked[row]), int(bondsAsked[row + 1]))] = row;
+	for (size_t c = 0; !rows.empty() && c < contacts.size(); ++c)
+		if (const auto found = rows.find(std::minmax(blocks.ids[contacts[c].body1], blocks.ids[contacts[c].body2])); found != rows.end())
+			use(c, lawAt(&bondsAsked[found->second + 2]));
+}
+
+/// The contacts with the stiffness of the mortar that dem.bond has asked for.
+vector<masonry::JointContact> RockingJointEngine::withBondsAsked(vector<masonry::JointContact> contacts) const
+{
+	forBondsAsked(contacts, [&](size_t c, const masonry::MortarLaw& law) {
+		contacts[c].law.normalStiffness = law.normalStiffness;
+		contacts[c].law.shearStiffness = law.shearStiffness;
+		contacts[c].law.hasMortar = true;
+	});
+	return contacts;
+}
+
 void RockingJointEngine::goOnFrom(const RockingJointEngine& other)
 {
 	started = other.started;
@@ -84,12 +117,13 @@ void RockingJointEngine::goOnFrom(const RockingJointEngine& other)
 	crackDissip = other.crackDissip;
 	bondedIds = other.bondedIds;
 	bondedState = other.bondedState;
-	bondsAsked = other.bondsAsked;
+	bondsAsked.insert(bondsAsked.end(), other.bondsAsked.begin(), other.bondsAsked.end());
 }
 
 /// Before the first step: blocks that both have the same mortar. At any time: what dem.bond has asked for.
 void RockingJointEngine::askForMortar()
 {
+	step.requests.clear(); // a step that was refused has left them
 	for (size_t c = 0; !started && c < blocks.pairs.size(); ++c) {
 		const auto [geom, phys] = blocks.pairs[c];
 		const masonry::JointContact& contact = step.system.contacts[c];
@@ -107,14 +141,7 @@ void RockingJointEngine::askForMortar()
 			             " m: blocks with mortar must touch; the mortar's thickness belongs to their sizes, half a joint to either."));
 		askForBond(c, phys->mortar->law(phys->normalStiffness, phys->shearStiffness, contact.law.friction, id1, id2));
 	}
-	for (size_t row = 0; row + asked <= bondsAsked.size(); row += asked)
-		for (size_t c = 0; c < blocks.pairs.size(); ++c) {
-			const masonry::JointContact& contact = step.system.contacts[c];
-			const auto ids = std::minmax(blocks.ids[contact.body1], blocks.ids[contact.body2]);
-			if (ids == std::minmax(int(bondsAsked[row]), int(bondsAsked[row + 1])))
-				askForBond(c, lawAt(&bondsAsked[row + 2]));
-		}
-	bondsAsked.clear();
+	forBondsAsked(step.system.contacts, [this](size_t c, const masonry::MortarLaw& law) { askForBond(c, law); });
 }
 
 void RockingJointEngine::askForBond(size_t c, const masonry::MortarLaw& law)
@@ -126,6 +153,7 @@ void RockingJointEngine::askForBond(size_t c, const masonry::MortarLaw& law)
 	phys.normalStiffness = contact.law.normalStiffness = law.normalStiffness;
 	phys.shearStiffness = contact.law.shearStiffness = law.shearStiffness;
 	phys.tangensOfFrictionAngle = contact.law.friction = law.friction;
+	contact.law.hasMortar = true;
 	step.requests.push_back({int(c), law});
 }
 

@@ -1,6 +1,8 @@
 """Cracks of histories made by hand: tables, time lines, files, pictures, and histories of before."""
 
+import base64
 import csv
+import json
 import xml.etree.ElementTree
 
 import numpy as np
@@ -8,7 +10,8 @@ import pytest
 from histories import ROUND, history
 from masonry import results
 from masonry.results.bonds import BONDS, DAMAGE, bond_table
-from masonry.results.wall_history import TIES
+from masonry.results.history_tables import TIES
+from masonry.results.reporting import view3d
 
 
 
@@ -176,3 +179,19 @@ def test_bad_input(tmp_path):
         results.cracks(own).save(tmp_path / "cracks.txt")
     with pytest.raises(KeyError, match="must be one of body1"):
         results.cracks(own)["width"]
+
+
+def test_the_view_has_a_band_around_each_joint():
+    """At the side faces of the joint, a little outside, in the axes of the block below; with the damage of each frame."""
+    own = cracking()
+    scene = json.loads(view3d.scene(own, 0.0))
+    damage = np.frombuffer(base64.b64decode(scene["damage"]), dtype="<f4").reshape(len(scene["time"]), 2)
+    assert np.array_equal(damage, own.damage["damage"])
+    for band, top, (wide, deep), area in zip(scene["joints"], (0.1, 0.2), ((1, 0.5), (1, 0.5)), (0.5, 0.25)):
+        corners = np.array(band["vertices"]).reshape(-1, 2, 3)
+        assert len(corners) == 4 and np.allclose(corners[:, :, 2].mean(axis=1), top, atol=2e-6)
+        assert np.allclose(np.ptp(corners[..., 2], axis=1), 0.08 * np.sqrt(area), atol=2e-6)
+        out = 0.01 * np.sqrt(area)
+        assert np.all(np.abs(corners[..., 0]) > wide / 2) and np.all(np.abs(corners[..., 0]) < wide / 2 + out) and np.all(np.abs(corners[..., 1]) < deep / 2 + out)
+    assert [band["block"] for band in scene["joints"]] == [0, 1]
+    assert "joints" not in json.loads(view3d.scene(cracking(bonds=None, damage=None), 0.0))

@@ -261,3 +261,28 @@ def test_titles_are_in_the_picture(tmp_path):
     results.draw_joints(h, tmp_path / "joints.png")
     picture = imread(tmp_path / "joints.png")
     assert min(side.min() for side in (picture[:3], picture[-3:], picture[:, :3], picture[:, -3:])) == 1
+
+
+@pytest.mark.parametrize("sizes", [(0.4, 0.5, 2), (8, 0.5, 1)])
+def test_joint_maps_fit_a_page_and_thrust_has_a_scale(drawn, tmp_path, sizes):
+    """Three maps on 7.4 x 9 inches. The resultant of 5 kN is in the picture as a whole, and the scale of 2 kN is 2/5 as long."""
+    place = np.array([[0, 0, -0.1], [0, 0, sizes[2] / 2]])
+    h = history([[20, 20, 0.2], sizes], [place, place + [[0, 0, 0], [0.02, 0, 0]]])
+    h.forces = np.array([(1, 10, 11, (3000, 0, 4000), (0.02, 0, 0))], dtype=[("sample", int), ("id1", int), ("id2", int), ("force", float, 3), ("point", float, 3)])
+    results.draw_joints(h, tmp_path / "joints.png", title="a wall")
+    assert (drawn[0].get_size_inches() <= (7.4, 9.0)).all() and [text.get_text() for text in drawn[0].texts] == ["a wall"]
+    axes = next(one for one in drawn[0].axes if one.get_title().startswith("thrust"))
+    (low, high), (ends,) = sorted(axes.get_ylim()), axes.collections[1].get_segments()
+    assert low < ends[:, 1].min() and ends[:, 1].max() < high and np.allclose((ends[1] - ends[0]) / (2 * sizes[2]), (0.6, 0.8))
+    bar = next(text for text in axes.texts)
+    assert bar.get_text().strip() == "2 kN" and np.ptp(axes.lines[1].get_xdata()) == pytest.approx(0.4 * 2 * sizes[2])
+
+
+def test_scales_of_joint_maps_leave_out_what_has_fallen(drawn, tmp_path):
+    """The second block has slid by 0.05 m; the one above it by 3 m when it has not yet fallen."""
+    h = falling(2.6)
+    h.position[1:, 2, 0] += 0.05
+    h.position[1, 3, 0], h.position[1, 3, 2] = 0.9, 2.5
+    results.draw_joints(h, tmp_path / "joints.png")
+    labels = {one.get_ylabel().split("\n")[0]: one for one in drawn[0].axes if "fallen" in one.get_ylabel()}
+    assert labels.keys() == {"slip (mm)"} and labels["slip (mm)"].get_ylim()[1] == pytest.approx(50)

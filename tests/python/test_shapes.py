@@ -163,6 +163,48 @@ def test_what_hides_what():
         assert view.View(h, towards).faces(h.corners(0)[1:], rows)[1][-1] == last
 
 
+def on_top(h, towards, point):
+    """Of the faces that show at a point of the picture: the depth of the nearest, and the depths of those that are drawn last there."""
+    seen = view.View(h, towards)
+    def has(polygon):
+        side = np.roll(polygon, -1, axis=0) - polygon
+        off = point - polygon
+        return (side[:, 0] * off[:, 1] - side[:, 1] * off[:, 0] > -1e-12).all()
+    depths = []
+    for block, loops in enumerate(h.shapes.loops):
+        for loop in loops:
+            corners = h.corners(0)[block][loop]
+            normal, flat = np.cross(corners[1] - corners[0], corners[2] - corners[1]), seen.place(corners)
+            if normal @ seen.towards > 1e-9 and has(flat):
+                ray = point @ seen.frame.T
+                depths.append((normal @ (corners[0] - ray) / (normal @ seen.towards), flat))
+    last = [polygon for polygon in seen.faces(h.corners(0))[0] if has(polygon)]
+    drawn = [depth for depth, flat in depths if last and len(flat) == len(last[-1]) and np.allclose(flat, last[-1])]
+    return max((depth for depth, _ in depths), default=None), drawn
+
+
+def union(*boxes):
+    """(corners, faces) of a union of boxes between two x, y and z."""
+    corners = [np.array([(x, y, z) for z in ends[2] for y in ends[1] for x in ends[0]], dtype=float) for ends in boxes]
+    return np.concatenate(corners), [[k + 8 * number for k in loop] for number in range(len(boxes)) for loop in _pose.BOX_FACES]
+
+
+@pytest.mark.parametrize("towards", ((0.5, -1, 0.45), (-0.7, -1, 0.3), (0.3, 1, 0.6)))
+def test_the_parts_of_unions_hide_each_other(towards):
+    """A block in the notch of an L, and a U: at every point of the picture the face nearest to the viewer, along the ray, is the one that is drawn last."""
+    l_block, u_block = union(((0, 2), (0, 1), (0, 0.5)), ((0, 0.5), (0, 1), (0.5, 2))), union(((3, 5), (0, 1), (1, 1.4)), ((3, 3.4), (0, 1), (0, 1)), ((4.6, 5), (0, 1), (0, 1)))
+    shapes = results.Shapes.of([l_block, union(((0.6, 1.2), (0.2, 0.9), (0.5, 1.1))), u_block, union(((3.8, 4.2), (0.1, 2), (0, 0.6)))])
+    h = history([[1, 1, 1]] * 4, [[[0, 0, 0]] * 4] * 2, free=[True] * 4, shapes=shapes)
+    seen, rng, looked = view.View(h, towards), np.random.default_rng(3), 0
+    flat = seen.place(shapes.vertices)
+    for point in rng.uniform(flat.min(axis=0), flat.max(axis=0), (400, 2)):
+        nearest, drawn = on_top(h, towards, point)
+        if nearest is not None:
+            looked += 1
+            assert min(drawn) == pytest.approx(nearest, abs=1e-9), point
+    assert looked > 100
+
+
 WRONG = [((WEDGE, [0, 5], [0, 1, 2], [0, 3]), "vertex_start: must go from 0 to 6"), ((WEDGE, [0, 6], [0, 1, 6], [0, 3]), "faces: must be numbers of corners, below 6"),
          ((WEDGE, [0, 3, 6], [0, 1, 2], [0, 3]), "faces: each block must have some"), ((WEDGE * np.nan, [0, 6], [0, 1, 2], [0, 3]), "vertices: must be finite")]
 

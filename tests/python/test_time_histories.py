@@ -27,7 +27,7 @@ def test_a_sliding_block(base, swapped):
     found = results.joint_history(sliding(base, swapped=swapped), 11, 10)
     assert np.abs(found["slip"] - [0, 0.02, 0.05, 0.03]).max() < ROUND and found["closed"].all() and np.abs(found["opening"]).max() < ROUND
     assert np.abs(found["normal"] - 20).max() < 20 * ROUND and np.abs(found["shear"] - math.hypot(6, 2)).max() < 20 * ROUND
-    assert np.abs(found["friction_work"] - 6 * np.array([0, 0.02, 0.05, 0.03])).max() < 20 * ROUND  # a force that does not turn with the way gives back
+    assert np.abs(found["friction_work"] - 6 * np.array([0, 0.02, 0.05, 0.05])).max() < 20 * ROUND  # a force that does not turn with the way is no friction: nothing comes back
     assert found.numbers["largest slip while closed (m)"] == pytest.approx(0.05) and "blocks 10 and 11" in str(found)
 
 
@@ -89,9 +89,54 @@ def test_drift_with_its_sign_and_the_weight():
         results.structure_history(moved, base=11)
 
 
+def bulging():
+    """Three blocks on each other: the top goes by 0.01 m, the middle one by up to 0.05 m along -y, the lowest one by 0.02 m along x in the last sample, when the middle one falls."""
+    ways = [[(0, 0), (0, 0), (0, 0)], [(0, 0.005), (0.001, -0.03), (0, 0.01)], [(0, 0.005), (0, -0.05), (0, 0.01)], [(0.02, 0), (0, -0.4), (0, 0)]]
+    positions = [[[0, 0, -0.1]] + [[x, y, z - (2 if abs(y) > 0.1 else 0)] for (x, y), z in zip(row, (0.5, 1.5, 2.5))] for row in ways]
+    return history([[2, 2, 0.2]] + [[0.6, 0.5, 1]] * 3, positions)
+
+
+def test_the_largest_displacement_at_any_height(tmp_path):
+    """Which drift, of the top alone, does not see: with sign, block and first height above the foot; a block that has fallen does not count."""
+    found = results.structure_history(bulging())
+    assert np.abs(found["drift_y"] - np.array([0, 0.01, 0.01, 0]) / 3).max() < ROUND
+    assert np.abs(found["displacement_y"] - [0, -0.03, -0.05, 0]).max() < ROUND and np.abs(found["displacement_x"] - [0, 0.001, 0, 0.02]).max() < ROUND
+    assert found["block_y"][1:3].tolist() == [12, 12] and found["block_x"].tolist()[1::2] == [12, 11]
+    assert np.abs(found["height_y"][1:3] - 1.5).max() < ROUND and abs(found["height_x"][3] - 0.5) < ROUND
+    assert found.numbers["largest displacement along y at any height (m)"] == pytest.approx(-0.05) and found.numbers["its block, along y"] == 12
+    assert "its block, along y: 12\n" in str(found)
+    results.report(bulging(), tmp_path / "r.html")
+    assert "50 mm, block 12, 1.5 m above the foot" in (tmp_path / "r.html").read_text(encoding="utf-8").replace("-50", "50")
+
+
+def dissipating():
+    """The sliding block, with an impact of 0.5 J on the base and one of 0.25 J on a block 12 that touches nothing."""
+    moving = sliding(steps=(0.0, 0.02, 0.05, 0.06))
+    impacts = np.zeros(3, dtype=[(name, float) for name in ("time", "body", "support", "restitution_asked", "restitution", "velocity", "energy_lost", "friction_demand", "capped")])
+    impacts["body"], impacts["support"], impacts["energy_lost"] = (11, 11, 12), (10, 10, 11), (0.3, 0.2, 0.25)
+    return results.WallHistory(moving.time, moving.ids, moving.sizes, moving.free, moving.position, moving.orientation, forces=moving.forces, impacts=impacts,
+                               energies=np.tile([0, 0, 0, 0.4, 0, 0.75, 0.0], (4, 1)))
+
+
+def test_energy_by_joint(tmp_path):
+    """Force times way of the sliding joint, impacts by their pairs; the most dissipating first; what the engine counts beside it."""
+    found = results.joint_energies(dissipating())
+    assert found.table[["id1", "id2"]].tolist() == [(10, 11), (11, 12)]
+    assert np.allclose(found["friction"], [6 * 0.06, 0]) and np.allclose(found["impact"], [0.5, 0.25]) and np.isnan(found["crack"]).all()
+    assert np.allclose(found["total"], [0.86, 0.25]) and found.engine["friction"] == 0.4
+    assert "friction: 0.36 J in the joints (0.4 J in the balance of the whole scene)" in str(found) and "blocks 10 and 11: 0.86 J (friction 0.36, impact 0.5)" in str(found)
+    found.save(tmp_path / "joints.csv")
+    assert (tmp_path / "joints.csv").read_text().splitlines()[:2] == ["id1,id2,friction (J),impact (J),crack (J),total (J)", "10,11,0.36,0.5,nan,0.86"]
+    results.report(dissipating(), tmp_path / "r.html")
+    page = (tmp_path / "r.html").read_text(encoding="utf-8")
+    assert "Energy by joint" in page and "friction 0.36 J (0.4 J in the balance of the whole scene)" in page
+    with pytest.raises(ValueError, match="recordForces=True"):
+        results.joint_energies(rocking([0, 0.05]))
+
+
 def test_forces_of_ties():
     """A strut: its largest tension and compression, each from its sample. A tie that broke between two samples carried its strength; one that was slack, nothing."""
-    from masonry.results.wall_history import TIES
+    from masonry.results.history_tables import TIES
 
     shaken = rocking([0, 0.01, 0.02, 0.01])
     shaken.ties = np.zeros((4, 3), dtype=TIES)

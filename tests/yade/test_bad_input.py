@@ -1,5 +1,6 @@
 """Bad input: one clear error that names attribute, value and what is allowed, before anything has moved."""
 
+import inspect
 import math
 
 import numpy as np
@@ -241,7 +242,27 @@ def test_impact_order():
 def test_misspelled_attributes(kind, wrong, near):
     """In the constructor and set later."""
     for act in (lambda: setattr(kind(), wrong, 1), lambda: kind(**{wrong: 1})):
-        refuses(act, f"{kind.__name__} has no attribute '{wrong}': did you mean {near}", kind=AttributeError)
+        refuses(act, f"dem.{kind.__name__} has no `{wrong}`; did you mean `{near}`", kind=AttributeError)
+
+
+@pytest.mark.parametrize("act, sentence", (
+    (lambda: dem.wall(lenght=2, height=1, size=(0.4, 0.2, 0.2), material=stone(), on=0), "dem.wall() has no `lenght`; did you mean `length`?"),
+    (lambda: dem.engines(tolerence=1e-3), "dem.engines() has no `tolerence`; did you mean `tolerance`?"),
+    (lambda: dem.TiltTable(dirction="x"), "dem.TiltTable() has no `dirction`; did you mean `direction`?"),
+    (lambda: dem.Opening(widht=1), "dem.Opening() has no `widht`; did you mean `width`?"),
+    (lambda: dem.push(ids=[1], displacment=1), "dem.push() has no `displacment`; did you mean `displacement`?"),
+    (lambda: dem.at_rest(speed=1), "dem.at_rest() has no `speed`; it takes no keywords"),
+))
+def test_misspelled_keywords(act, sentence):
+    assert refuses(act, kind=TypeError) == sentence
+    refuses(lambda: dem.RecordMotionEngine(displacment=[1]), "dem.RecordMotionEngine has no `displacment`; did you mean `displacement`", kind=AttributeError)
+    refuses(lambda: dem.BlockMat(friction_angle=1), "dem.BlockMat has no `friction_angle`; did you mean `frictionAngle`?", kind=AttributeError)
+
+
+def test_every_public_call_checks_its_keywords():
+    for name, call in vars(dem).items():
+        if inspect.isfunction(call) and name[0] != "_":
+            refuses(lambda: call(no_such_word=1), f"dem.{name}() has no `no_such_word`", kind=TypeError)
 
 
 def test_attributes_that_are_there():

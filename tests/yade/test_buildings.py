@@ -218,6 +218,67 @@ def test_walls_on_walls():
     refuses(lambda: dem.wall(courses=1, per_course=5, size=(0.6, 0.2, 0.2), material=stone(), on=[]), "on = []")
 
 
+# --- arches over openings ---
+
+ARCHED = [dem.Opening("south", x=2.0, width=1.2, height=1.5, arch=dem.Arch(7, 3, rise=0.2)), dem.Opening("east", x=1.4, width=0.9, height=0.9, sill=0.6, arch=dem.Arch(5, 2)),
+          dem.Opening("north", x=4.0, width=1.0, height=1.2, sill=0.3, storey=2, arch=dem.Arch(6, 2, rise=0.15))]
+
+
+def under(arch, width):
+    """Area between the springing line and the chords of an arc of that rise: 7 chords of a circle of the radius R = (w^2/4 + f^2)/(2 f) span 2 asin(w/2R)."""
+    if not arch.rise:
+        return 0.0
+    radius = (width * width / 4 + arch.rise**2) / (2 * arch.rise)
+    angle = 2 * math.asin(width / (2 * radius))
+    return arch.number * radius**2 / 2 * math.sin(angle / arch.number) - radius**2 / 2 * math.sin(angle)
+
+
+@pytest.mark.parametrize("along", ((1, 0), (0, -1), (3, 4)))
+@pytest.mark.parametrize("wythes", (1, 2))
+def test_arches_over_openings(along, wythes):
+    """The wall is whole but for the openings and what is below the arches: volume, and one block around each point of the wall."""
+    made = house(openings=ARCHED, floors=[dem.Slab(0.2, strips=4), None], along=along, at=(0, 0), brick=(0.6, 0.3 / wythes, 0.3), thickness=0.3, on=dem.base((20, 20, 0.5), stone()))
+    assert [len(made.arches[k]) for k in range(3)] == [7, 5, 6] and made.lintels == {}
+    walls = 0.3 * (2 * (6.3 + 3.9) * 4.8 - sum(one.width * one.height + under(one.arch, one.width) for one in ARCHED)) + 6.6 * 4.2 * 0.2
+    assert abs(made.volume - walls) < 1e-8 * walls and abs(made.mass - 2000 * walls) < 1e-8 * 2000 * walls
+    assert dem.check_blocks(1e-8) == []
+    rng = np.random.default_rng(3)
+    place, height = rng.uniform(0.4, 5.9, 2000), rng.uniform(0, 2.4, 2000)
+    arch = ARCHED[0].arch
+    chords = arch.joints(1.2, 0.9)[:, 0] + [2.6, 1.5]
+    empty = (np.abs(place - 2.6) < 0.6) & (height < np.interp(place, *chords.T))
+    x, y = np.array(along) / math.hypot(*along)
+    points = np.column_stack([place, rng.uniform(-0.14, 0.14, 2000), height]) @ [(x, y, 0), (-y, x, 0), (0, 0, 1)]
+    count = np.zeros(2000, dtype=int)
+    for id in made.ids:
+        corners, faces = dem.bodies.world_shape(O.bodies[id])
+        inside = np.ones(2000, dtype=bool)
+        for loop in faces:
+            normal = np.cross(corners[loop[1]] - corners[loop[0]], corners[loop[2]] - corners[loop[1]])
+            inside &= (points - corners[loop[0]]) @ normal < 0
+        count += inside
+    assert (count == ~empty).all(), points[count != ~empty][:3]
+
+
+def test_arches_carry_a_wall():
+    """At rest the base carries the weight, the joints around an arch carry the weight of its voussoirs, and the skewbacks lift it and press it together from both sides."""
+    made = house(plan={"a": ((0, 0), (4.2, 0)), "b": ((0, 2.1), (0, -2.1))}, storeys=[2.7], openings=[dem.Opening("a", x=1.5, width=1.2, height=1.2, arch=dem.Arch(5, 2, rise=0.1))], at=(-2, 0))
+    base = made.ids[0] - 1
+    O.engines = quiet_engines(model="spatial", method="wall")
+    dem.run(0.5)
+    assert O.engines[-1].failures == 0 and dem.at_rest()
+    force = dem.reactions(base)["force"].sum(axis=0)
+    assert np.abs(force - [0, 0, made.mass * GRAVITY]).max() < 1e-3 * made.mass * GRAVITY, force
+    arch = made.arches[0]
+    weight = sum(O.bodies[id].state.mass for id in arch) * GRAVITY
+    outside = {id: [(one["force"], one["point"]) for one in dem.reactions(id) if one["id"] not in arch] for id in arch}  # on the neighbours
+    total = -sum(force for forces in outside.values() for force, _ in forces)
+    assert np.abs(total - [0, 0, weight]).max() < 0.02 * weight, total  # the error of a contact force is up to a hundred times the tolerance, of 1e-3
+    for id, inwards in ((arch[0], 1), (arch[-1], -1)):
+        beside = [force for force, point in outside[id] if inwards * (point[0] - O.bodies[id].state.pos[0]) < 0 and point[2] < 1.8 - NEAR]
+        assert -sum(force[2] for force in beside) > 0 and -inwards * sum(force[0] for force in beside) > 0, beside
+
+
 # --- random plans ---
 
 SIZES = [(0.6, 0.3, 0.2), (0.5, 0.2, 0.2), (0.4, 0.2, 0.2), (0.5, 0.15, 0.25)]
@@ -336,6 +397,12 @@ BAD = [
     (dict(openings=[dem.Opening("south", x=1, width=1, height=0.9), dem.Opening("south", x=1.5, width=1, height=0.9)]), ("openings[1] in wall 'south'", "another opening")),
     (dict(openings=[dem.Opening("south", x=1, width=1, height=0.9), dem.Opening("south", x=2.2, width=1, height=0.9)]), ("openings[1]", "lintel", "farther apart")),
     (dict(openings=[dem.Opening("south", x=6, width=1, height=0.9)]), ("from (6, 0) to (7, 0)", "within the wall", "(6.3, 0)")),
+    (dict(openings=[dem.Opening("south", x=2, width=1, height=0.9, arch=3)]), ("openings[0]: arch = 3", "dem.Arch")),
+    (dict(openings=[dem.Opening("south", x=2, width=1, height=0.9, arch=dem.Arch(5, 2, rise=0.3))]), ("arch: rise = 0.3", "0 to 0.2 m")),
+    (dict(openings=[dem.Opening("south", x=2, width=1, height=0.9, arch=dem.Arch(1, 2))]), ("arch: number = 1",)),
+    (dict(openings=[dem.Opening("south", x=2, width=1, height=0.9, bearing=0.3, arch=dem.Arch(5, 2))]), ("bearing = 0.3", "skewbacks")),
+    (dict(openings=[dem.Opening("south", x=0.4, width=1, height=0.9, arch=dem.Arch(5, 2))]), ("its arch from", "needs 0.15 m of wall")),
+    (dict(openings=[dem.Opening("south", x=2, width=1, height=2.1, arch=dem.Arch(5, 2))], floors=dem.Slab(0.2)), ("its arch takes courses 8 to 9", "below the slab")),
     (dict(openings=[dem.Opening(["south"], x=1, width=1, height=0.9)]), ("openings[0]: wall = ['south']",)),
     (dict(openings=3), ("openings = 3", "list")),
     (dict(plan={"a": ((0, 0), (3, 0))}, openings=[dem.Opening("a", x=0.1, width=1, height=0.9)]), ("the end of the wall at (0, 0)",)),

@@ -4,13 +4,15 @@ cannot do is refused then as it is before the first step."""
 import numpy as np
 import pytest
 from masonry import dem
+from mortar_scene import SIZE, brick_material
 from rocking_scene import quiet_engines, refuses, refuses_to_run, rigid_engines, stone
 from yade import FrictMat, NewtonIntegrator, O, State, Vector3, utils
 
 
-def scene(engines=rigid_engines):
+def scene(engines=rigid_engines, reset=True):
     """(base, a block that stands on it, one in the air beside it), after some steps."""
-    O.reset()
+    if reset:
+        O.reset()
     base = dem.base((4, 1, 0.2), stone(0.7))
     standing = dem.block((0.6, 1, 1), O.bodies[base].mat, on=base)
     falling = dem.block((0.6, 1, 1), O.bodies[base].mat, center=(1, 0, 1e3))
@@ -283,3 +285,33 @@ def test_engines_of_one_scene_in_another(make, tmp_path):
     O.run(10, True)
     assert len(dem.impacts()) == 0 and abs(dem.energy()["impactDissip"]) < 1e-9 and dem.energy()["kinetic"] < 1e-9
     assert compliant or O.engines[-1].substeps == 10
+
+
+def two_bricks():
+    material = brick_material()
+    return dem.stack(2, SIZE, material, on=dem.base((1, 1, 0.1), material))
+
+
+def test_cleared_bodies():
+    """O.bodies.clear() leaves the joints of its bodies in O.interactions. Compliant blocks refuse to take them for joints of the bodies that come in their
+    places; without them new engines begin anew, with sound mortar. Rigid blocks find their contacts themselves: the second scene moves as the first."""
+    two_bricks()
+    O.engines = quiet_engines(model="auto")
+    O.run(20, True)
+    O.bodies.clear()
+    two_bricks()
+    refuses(lambda: quiet_engines(model="auto"), "bodies 0 and 1", "O.bodies.clear()", "O.reset()", kind=RuntimeError)
+    refuses_to_run("O.bodies.clear()", "O.reset()")
+    O.interactions.clear()
+    O.engines = quiet_engines(model="auto")
+    O.run(20, True)
+    assert [i.phys.bonded for i in O.interactions if i.isReal] == [True, True] and len(dem.damage()) == 2
+    found = []
+    O.reset()
+    for _ in range(2):
+        O.bodies.clear()
+        base, standing, _ = scene(lambda: O.engines or rigid_engines(dt=1e-3), reset=False)
+        dem.tilt(standing, 0.2)
+        O.run(300, True)
+        found.append((tuple(O.bodies[standing].state.pos), dem.angle(standing)))
+    assert found[0] == found[1] and O.engines[-1].failures == 0

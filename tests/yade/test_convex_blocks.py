@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 from masonry import dem, results
-from masonry.dem import tilting
+from masonry.dem import mechanism
 from masonry.dem.checks import check_recorder
 from rocking_scene import refuses, said_by, stone
 from scipy.spatial import ConvexHull
@@ -336,7 +336,7 @@ def test_outline_of_a_mechanism():
     id = dem.wedge((1, 2, 3), stone(), top=0.4)
     corners = np.array([tuple(v) for v in O.bodies[id].shape.vertices])
     for across, area in ((1, 3 * 0.7), (0, 6)):
-        outline = tilting._silhouette(corners, across)
+        outline = mechanism._silhouette(corners, across)
         plane = np.delete(outline, across, axis=1)
         x, z = plane.T
         assert len(outline) == 4 and 0.5 * abs(x @ np.roll(z, -1) - z @ np.roll(x, -1)) == pytest.approx(area) and not outline[:, across].any()

@@ -205,18 +205,22 @@ def test_rigid_blocks_refuse_mortar():
         refuses_to_run("mortar", "compliant")
 
 
-def test_ties_and_mortar_are_not_in_one_scene():
-    """Neither order advises a model that the other one refuses."""
-    O.reset()
-    material = brick_material()
-    base = dem.base((1, 1, 0.1), material)
-    one = dem.block(SIZE, material, on=base)
-    tie = (one, (0, 0, 0.05), base, (0.4, 0, 0), 1e6)
-    O.engines = quiet_engines(model="auto")
-    assert "planar" not in refuses(lambda: dem.tie(*tie), "ties", "mortar", "cannot be in one scene")
-    O.engines = []
-    dem.tie(*tie)
-    assert "planar" not in refuses(dem.engines, "ties", "mortar", "cannot be in one scene")
+def test_a_tie_beside_mortar():
+    """A vertical tie through the middle of a bonded brick, made before or after the engines: the base bears the weight and its tension, and the mortar stays whole."""
+    for late in (False, True):
+        O.reset()
+        material = brick_material()
+        base = dem.base((1, 1, 0.1), material)
+        one = dem.block(SIZE, material, on=base)
+        tie, force = (one, (0, 0, SIZE[2]), base, (0, 0, 0), 1e6), 50.0
+        made = None if late else dem.tie(*tie, pretension=force)
+        O.engines = quiet_engines(model="auto")
+        made = made or dem.tie(*tie, pretension=force)
+        dem.run(0.01)
+        carried = dem.reactions(base)["force"].sum(axis=0)[2]
+        print(f"late={late}: tie {made.force:.3f} N, base {carried:.3f} N")
+        assert abs(made.force - force) < 0.01 * force and dem.damage()["worst"].max() == 0
+        assert abs(carried - 9.81 * O.bodies[one].state.mass - force) < 0.02 * force
 
 
 def test_a_gap_under_mortar():
@@ -236,7 +240,7 @@ def test_a_gap_under_mortar():
 def test_new_engines_go_on_with_the_damage():
     """Engines that are made anew in a run have the bonds as they are; without those of before, the joints could not be told from sound ones."""
     wall()
-    O.run(700, True)
+    O.run(1000, True)
     before, spent, elastic = dem.damage(), dem.energy()["crackDissip"], dem.energy()["elastPotential"]
     assert before["worst"].max() > 0.5
     engines = list(O.engines)

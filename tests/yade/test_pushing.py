@@ -260,7 +260,8 @@ def test_bad_input():
                              (dict(ids, displacement=0.1, speed=0), "speed = 0"), (dict(ids, displacement=1.0, speed=1e-9), "speed"),
                              (dict(ids=[base], displacement=0.1), "body 0 is prescribed"), (dict(ids=[7], displacement=0.1), "ids = 7"), (dict(ids=[], displacement=0.1), "ids = []"),
                              (dict(ids=[block, block], displacement=0.1), "once"), (dict(ids, displacement=0.1, height=2.5), "height = 2.5: must be from 0.002 to 1.998 m"),
-                             (dict(ids, displacement=0.1, vertical="held"), "vertical = 'held'"), (dict(ids, displacement=0.1, vertical="load"), "force = None"),
+                             (dict(ids, displacement=0.1, vertical="held", force=1.0), "force = 1"), (dict(ids, displacement=0.1, vertical="held", height=0.5), "height = 0.5"),
+                             (dict(platens=[0], displacement=0.1, vertical="held"), "vertical = 'held'"), (dict(ids, displacement=0.1, vertical="load"), "force = None"),
                              (dict(ids, displacement=0.1, force=3.0), "vertical='load'"), (dict(ids, displacement=0.1, drop=2), "drop = 2"), (dict(ids, displacement=0.1, collapse=0), "collapse"),
                              (dict(ids, displacement=0.1, platens=[base]), "give one of the two"), (dict(platens=[block], displacement=0.1), "platens: 1"),
                              (dict(ids, cycles=[0.1, -0.1], clearance=-1), "clearance = -1")):

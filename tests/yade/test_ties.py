@@ -14,10 +14,13 @@ B, A = 0.25, 1.0  # half width and half height of a block, m
 DEPTH = 0.8
 STIFF = 1e8  # N/m: 2 x 10^-5 m under the weight of the block
 EACH = [(model, walls) for model in ("planar", "spatial") for walls in (False, True)]
+EVERY = [*EACH, ("compliant", False)]
 
 
 def engines(model, walls=False, motion=None, **options):
     """walls: by the step of walls, also where there are few blocks."""
+    if model == "compliant":
+        return quiet_engines(motion, **options)
     made = rigid_engines(motion, model=model, method="wall" if walls else "localised", **options)
     made[-1].wallsOnly = walls
     return made
@@ -44,18 +47,22 @@ def pull(sideways):
     O.engines[-1].gravity = (9.81 * sideways, 0, -9.81)
 
 
-@pytest.mark.parametrize("model, walls", EACH)
+@pytest.mark.parametrize("model, walls", EVERY)
 @pytest.mark.parametrize("strength", (0.9, 1.1))
 def test_a_tie_holds_a_block_up_to_its_strength(model, walls, strength):
-    """Moments about the toe give the force; with less strength than that the tie breaks and the block overturns, with more it stands."""
+    """Moments about the toe give the force; with less strength than that the tie breaks and the block overturns, with more it stands. On compliant joints the block
+    vibrates on the tie: the force is the mean."""
     _, block, tie = held_block(pretension=0)
     sideways = 0.45
     tie.pretension, tie.strength = needed(sideways), strength * needed(sideways) if strength > 1 else math.inf
     O.engines = engines(model, walls)
     pull(sideways)
     if strength < 1:
-        dem.run(0.1)
-        assert not tie.broken and abs(tie.force / needed(sideways) - 1) < 0.02, (tie.force, needed(sideways))
+        forces = []
+        while O.time < 0.1:
+            O.step()
+            forces.append(tie.force)
+        assert not tie.broken and abs(np.mean(forces) / needed(sideways) - 1) < 0.02, (np.mean(forces), needed(sideways))
         tie.strength = strength * needed(sideways)
     dem.run(1.0)
     print(f"{model}, walls={walls}: force {tie.force:.1f} of {needed(sideways):.1f} N, broken {tie.broken} at {tie.brokenAt}, angle {dem.angle(block):.4f}")
@@ -89,9 +96,9 @@ def test_no_stiffness_bounds_the_step(model, walls, stiffness):
     assert abs(balance.error()) < 1e-3 * weight() * A
 
 
-@pytest.mark.parametrize("model, walls", EACH)
+@pytest.mark.parametrize("model, walls", EVERY)
 def test_the_period_of_a_block_between_two_ties(model, walls):
-    """x = v/w sin w t with w^2 = 2 k/m, while neither goes slack. The trapezoidal rule is slow by (w dt)^2/12 of the phase; walls start half a step off, and at their default tolerance
+    """x = v/w sin w t with w^2 = 2 k/m, while neither goes slack. The trapezoidal rule is slow by (w dt)^2/12 of the phase, the leapfrog scheme fast by (w dt)^2/24; walls start half a step off, and at their default tolerance
     velocities that change in each step lag behind."""
     O.reset()
     material = stone(noSlip=False, frictionAngle=0)
@@ -100,7 +107,7 @@ def test_the_period_of_a_block_between_two_ties(model, walls):
     omega, speed = 2 * math.pi * 5, 0.1
     k = O.bodies[block].state.mass * omega**2 / 2
     ties = [dem.tie(block, (side * 0.5, 0, 0.5), base, (side * 4, 0, 0.5), k, pretension=2 * k * speed / omega) for side in (-1, 1)]
-    O.engines = engines(model, walls, dt=1e-3, **({"tolerance": 1e-5} if walls else {}))
+    O.engines = engines(model, walls, **({} if model == "compliant" else {"dt": 1e-3}), **({"tolerance": 1e-5} if walls else {}))
     O.bodies[block].state.vel = Vector3(speed, 0, 0)
     balance, worst = Balance(), 0
     while O.time < 0.6:
@@ -129,48 +136,52 @@ def shaken(model, walls, stiffness=1e7, **how):
     return made, recorder, motion
 
 
-@pytest.mark.parametrize("model, walls", [("planar", False), ("planar", True), ("spatial", True)])
+@pytest.mark.parametrize("model, walls", [("planar", False), ("planar", True), ("spatial", True), ("compliant", False)])
 def test_the_balance_of_energies_on_a_record(model, walls):
+    """On compliant joints springs that close and open within a step make and lose energy, without ties too: up to 2e-3 of the work of the base."""
     made, _, motion = shaken(model, walls)
     balance = Balance()
     dem.run(until=motion)
     e = dem.energy()
-    print(f"{model}, walls={walls}: balance {balance.error():.2e} J, {e}, forces {[tie.force for tie in made]}, failures {O.engines[-1].failures}")
-    assert e["elastPotential"] == pytest.approx(sum(tie.energy for tie in made))
-    assert abs(balance.error()) < 2e-3 * e["baseWork"]
+    print(f"{model}, walls={walls}: balance {balance.error():.2e} J, {e}, forces {[tie.force for tie in made]}")
+    in_ties = sum(tie.energy for tie in made)
+    assert e["elastPotential"] > in_ties if model == "compliant" else e["elastPotential"] == pytest.approx(in_ties)  # joints have some too
+    assert abs(balance.error()) < (5e-3 if model == "compliant" else 2e-3) * e["baseWork"]
     assert e["dampDissip"] > -1e-3 * e["baseWork"]
 
 
-def test_localised_against_wall():
-    """The ties of shaken stacks carry as much by both methods: the mean force of the one to the base, which has a pretension, within a hundredth; of that between the
-    stacks, which is slack most of the time, within a quarter, since single impacts are chaotic."""
+@pytest.mark.parametrize("other, stiffness, share", ((("planar", True), 1e7, 0.01), (("compliant", False), 1e6, 0.05)))
+def test_localised_against_others(other, stiffness, share):
+    """The ties of shaken stacks carry as much by all methods: the mean force of the one to the base, which has a pretension, within a hundredth, on compliant joints
+    within 60 N, which is 0.06 mm of slip; of that between the stacks, which is slack most of the time, within a quarter, since single impacts are chaotic."""
     means = []
-    for walls in (False, True):
-        _, recorder, motion = shaken("planar", walls)
+    for model, walls in (("planar", False), other):
+        _, recorder, motion = shaken(model, walls, stiffness)
         dem.run(until=motion)
         history = dem.wall_history(recorder)
         means.append(history.ties["force"].mean(axis=0))
     print("mean forces", means)
-    assert (np.abs(means[0] / means[1] - 1) < (0.25, 0.01)).all()
+    assert (np.abs(means[0] / means[1] - 1) < (0.25, share)).all()
 
 
 def rows():
     return [x for b in O.bodies for x in (*b.state.pos, *b.state.ori, *b.state.vel, *b.state.angVel)] + [
-        x for tie in O.engines[-1].ties for x in (tie.force, tie.extension, tie.energy, tie.broken)] + list(dem.energy().values())
+        x for tie in dem.ties() for x in (tie.force, tie.extension, tie.energy, tie.broken)] + list(dem.energy().values())
 
 
-@pytest.mark.parametrize("model, walls", EACH)
+@pytest.mark.parametrize("model, walls", EVERY)
 def test_saved_and_loaded(model, walls, tmp_path):
     """The second tie breaks in the second half, which has the bits of a run that was not interrupted."""
-    made, _, _ = shaken(model, walls, dt=1e-3)
+    made, _, _ = shaken(model, walls, **({} if model == "compliant" else {"dt": 1e-3}))
     made[1].strength = 5e3  # the largest force is 7 to 9 kN, at 0.76 s
-    O.run(600, True)
+    half = round(0.6 / O.dt)
+    O.run(half, True)
     O.save(str(tmp_path / "half.xml"))
-    O.run(600, True)
-    whole, broken = rows(), O.engines[-1].ties[1].broken
+    O.run(half, True)
+    whole, broken = rows(), dem.ties()[1].broken
     O.load(str(tmp_path / "half.xml"))
-    assert len(O.engines[-1].ties) == 2 and O.engines[-1].ties[0].stiffness == 1e7
-    O.run(600, True)
+    assert len(dem.ties()) == 2 and dem.ties()[0].stiffness == 1e7
+    O.run(half, True)
     print(f"{model}, walls={walls}: broken {broken}")
     assert rows() == whole and broken
 
@@ -217,8 +228,27 @@ def test_a_hanging_block():
     assert abs(tie.force / (9.81 * mass) - 1) < 1e-6 and abs(O.bodies[block].state.pos[2] + 2) < 1e-8, tie.force
 
 
-def test_results(tmp_path):
-    _, recorder, motion = shaken("auto", True)
+def test_the_critical_step_counts_ties():
+    """A block that hangs on one tie through its centre, and nothing else: 2 sqrt(m/k); a longer step is refused."""
+    O.reset()
+    beam = dem.base((1, 1, 0.2), stone())
+    block = dem.block((0.3, 0.3, 0.3), O.bodies[beam].mat, center=(0, 0, -2))
+    mass, k = O.bodies[block].state.mass, 1e7
+    tie = dem.tie(beam, (0, 0, -0.2), block, (0, 0, -2), k, pretension=9.81 * mass)
+    O.engines = quiet_engines()
+    engine = next(one for one in O.engines if isinstance(one, dem.RockingJointEngine))
+    limit = 2 * math.sqrt(mass / k)
+    assert abs(engine.criticalTimeStep() / limit - 1) < 1e-6 and abs(engine.largestTimeStep / limit - 1) < 2e-3
+    refuses(lambda: quiet_engines(dt=1.01 * limit), "dt = ", "largest stable step")
+    dem.run(0.3)
+    assert abs(tie.force / (9.81 * mass) - 1) < 1e-6 and abs(O.bodies[block].state.pos[2] + 2) < 1e-8, tie.force
+    O.dt = 1.01 * limit
+    refuses(O.step, "O.dt", "must be positive and below", kind=RuntimeError)
+
+
+@pytest.mark.parametrize("model", ("auto", "compliant"))
+def test_results(model, tmp_path):
+    _, recorder, motion = shaken(model, model == "auto")
     dem.run(0.3)
     history = dem.wall_history(recorder)
     assert history.ties.shape == (len(history.time), 2) and history.ties["body2"][0].tolist() == [6, 0]
@@ -296,12 +326,12 @@ def test_what_is_refused():
     second = dem.base((1, 1, 1), O.bodies[base].mat, at=(20, 0))
     refuses(with_(block1=base, block2=second), "both are prescribed")
     refuses(lambda: setattr(tie, "stiffness", -1), "BlockTie.stiffness = -1", "positive and finite, in N/m")
-    refuses(lambda: quiet_engines(model="compliant"), "model = 'compliant'", "compliant joints take no ties", "'planar' or 'spatial'")
     tie.body1 = 9
     O.engines = [dem.MoreauJeanIntegrator(ties=[tie])]
     O.dt = 1e-3
     refuses_to_run("BlockTie.body1 = 9", "id of a block or a base")
     refuses(lambda: dem.MoreauJeanIntegrator(ties=[O.engines[0]]), "MoreauJeanIntegrator.ties", "list of ties (BlockTie)")
+    refuses(lambda: dem.RockingJointEngine(ties=[O.engines[0]]), "RockingJointEngine.ties", "list of ties (BlockTie)")
 
 
 def test_a_tie_outside_the_plane_makes_a_scene_spatial():

@@ -281,3 +281,20 @@ def test_what_has_no_energy_of_its_own():
     O.engines[-1].gravity = Vector3(0, 0, -5)
     O.run(2, True)
     assert abs((dem.wall_history(recorder).energy["error"][-1] - given) / (mass * (5 - 9.81) * height) - 1) < 1e-6
+
+
+@pytest.mark.parametrize("how", ({"model": "planar", "method": "localised"}, {"model": "planar", "method": "wall"}, {"model": "compliant"}), ids=str)
+def test_friction_of_the_joints_is_that_of_the_engine(how):
+    """Two flat blocks slide on each other and on the base, under half a g sideways: the joints' sum, from the samples, is what the engine counts, and the lower joint, which
+    carries twice the weight, slides no less far."""
+    material = stone(noSlip=False, frictionAngle=math.atan(0.3))
+    base = dem.base((20, 2, 0.2), material)
+    lower, upper = dem.stack(2, (1.0, 0.8, 0.2), material, base)
+    recorder = dem.WallRecorder(virtPeriod=5e-3, recordForces=True)
+    O.engines = quiet_engines(recorder=recorder, **how)
+    O.engines[-1].gravity = (0.5 * 9.81, 0, -9.81)
+    dem.run(0.3)
+    found = results.joint_energies(dem.wall_history(recorder))
+    print(f"{how}: joints {found['friction'].sum():.3f} J, engine {found.engine['friction']:.3f} J")
+    assert abs(found["friction"].sum() / found.engine["friction"] - 1) < 1e-3 and (found["friction"] >= 0).all()
+    assert found.table[["id1", "id2"]].tolist()[0] == (base, lower)

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import statics
 from masonry import dem
-from rows import MODES, collapse, rows, start
+from rows import BULLET, MODES, collapse, rows, start
 from yade import O
 
 RADIUS = 1.0  # m, of the middle line
@@ -81,7 +81,7 @@ def a16_multiplier():
             build(7, 0.15, friction, math.radians(157.5))
             return (collapse(mode),)
 
-        yield from rows("a16", measure, [(f"7 voussoirs, 157.5 degrees, mu {friction:g}: multiplier", right, (0.01, 0.01))])
+        yield from rows("a16", measure, [(f"7 voussoirs, 157.5 degrees, mu {friction:g}: multiplier", right, (0.01, 0.01))], MODES + BULLET)
 
 
 def thrust(ids):

@@ -9,7 +9,7 @@ from functools import partial
 
 import numpy as np
 from masonry import dem
-from rows import collapse, rows, start
+from rows import BULLET, MODES, collapse, rows, start
 from scipy.integrate import quad
 from scipy.optimize import brentq
 from yade import O, Quaternion, Vector3
@@ -198,7 +198,7 @@ def a3_ngons():
 
     made = []
     for n in (3, 4, 5, 6, 24):
-        made += rows("a3", partial(restitution, n=n), [(f"{n}-gon: restitution of a landing", max(landing_of_ngon(n), 0), (1e-5, 3e-3))])
+        made += rows("a3", partial(restitution, n=n), [(f"{n}-gon: restitution of a landing", max(landing_of_ngon(n), 0), (1e-5, 3e-3))], MODES + BULLET)
     return made
 
 
@@ -213,7 +213,7 @@ def a4_hexagon_rolls():
         return spins
 
     before, after = steady_hexagon(0.2, slope)
-    return rows("a4", spins, [("hexagon on 10 deg: spin before a landing, rad/s", before, (1e-5, 3e-3)), ("spin after it", after, (1e-5, 3e-3))])
+    return rows("a4", spins, [("hexagon on 10 deg: spin before a landing, rad/s", before, (1e-5, 3e-3)), ("spin after it", after, (1e-5, 3e-3))], MODES + BULLET)
 
 
 def a5_least_slope():
@@ -231,7 +231,7 @@ def a5_least_slope():
             low, high = (low, middle) if rolls(mode, middle) else (middle, high)
         return [math.degrees((low + high) / 2)]
 
-    return rows("a5", least, [("hexagon: least slope on which it rolls on, deg", math.degrees(least_slope()), (1e-3, 5e-3))])
+    return rows("a5", least, [("hexagon: least slope on which it rolls on, deg", math.degrees(least_slope()), (1e-3, 5e-3))], MODES + BULLET)
 
 
 def a7_trapezoid():

@@ -4,11 +4,13 @@ import contextlib
 import io
 from dataclasses import dataclass, field
 
+import peers
 from masonry import dem
 from yade import O
 
 MODES = [(method, model) for method in ("localised", "wall") for model in ("planar", "spatial")]
 IN_SPACE = [mode for mode in MODES if mode[1] == "spatial"]
+BULLET = [("Bullet", "hulls")] if peers.has_bullet() else []  # beside our own in some cases; its deviations are shown and not judged
 
 
 @dataclass
@@ -25,10 +27,11 @@ class Row:
         return abs(self.found[mode] - self.right) <= self.allowed[mode[0] == "wall"] * (abs(self.right) or 1)
 
     def holds(self):
-        return bool(self.found) and all(self._good(mode) for mode in self.found)
+        own = [mode for mode in self.found if mode not in BULLET]
+        return bool(own) and all(self._good(mode) for mode in own)
 
     def __str__(self):
-        values = [f"{self.found[mode]:.6g}" if mode in self.found else "-" for mode in MODES]
+        values = [f"{self.found[mode]:.6g}" if mode in self.found else "-" for mode in MODES + BULLET]
         allowed = " / ".join(f"{share:g}" for share in self.allowed)
         return f"| {self.case} | {self.what} | {self.right:.6g} | {' | '.join(values)} | {allowed} | {'yes' if self.holds() else 'NO'} |"
 
@@ -44,6 +47,8 @@ def rows(case, measure, wanted, modes=MODES):
 
 def start(mode, step=1.0, **options):
     """Sets the engines of the scene; the method steps few blocks, too. step: share of the default time step."""
+    if mode in BULLET:
+        return peers.start()
     method, model = mode
     with contextlib.redirect_stdout(io.StringIO()):
         O.engines = dem.engines(method=method, model=model, **options)
@@ -56,6 +61,8 @@ def start(mode, step=1.0, **options):
 
 def collapse(mode, direction="x", **options):
     """Multiplier of the weight at which the scene collapses."""
+    if mode in BULLET:
+        return peers.collapse(direction)
     result = dem.TiltTable(direction=direction, method=mode[0], model=mode[1], **options).bisect(tolerance=2e-4, progress=False)
     assert not result.doubts, result.doubts
     return result.multiplier

@@ -96,12 +96,13 @@ def multiplier(structure, friction, direction=(1, 0), load=None):
     return np.nan if result is None else np.inf if result.status == 3 else result.x[-1]
 
 
-def thrust(structure, friction, joint=0):
-    """Least and largest horizontal force through a joint, over the weight of the blocks; inf where it has no bound."""
-    _, second, a, b = structure.joints[joint]
-    along = (np.asarray(b) - a) / np.linalg.norm(np.asarray(b) - a)
+def thrust(structure, friction, joints=(0,)):
+    """Least and largest sum of the horizontal forces through some joints, over the weight of the blocks; inf where it has no bound."""
     objective = np.zeros(3 * len(structure.joints) + 1)
-    objective[3 * joint:3 * joint + 3] = -along[1], -along[1], along[0]
+    for joint in joints:
+        _, _, a, b = structure.joints[joint]
+        along = (np.asarray(b) - a) / np.linalg.norm(np.asarray(b) - a)
+        objective[3 * joint:3 * joint + 3] = -along[1], -along[1], along[0]
     ends = []
     for sign in (1, -1):
         result = _program(structure, friction, sign * objective)
@@ -129,6 +130,22 @@ def flat_arch(span, depth, voussoirs, below):
     blocks = [np.array([inner[k], inner[k + 1], outer[k + 1], outer[k]]) for k in range(voussoirs)]
     numbers = [None, *range(voussoirs), None]
     return Structure(blocks, [(numbers[k], numbers[k + 1], outer[k], inner[k]) for k in range(voussoirs + 1)])
+
+
+def assembly(blocks, ground, tolerance=1e-9):
+    """Blocks that stand on and between the polygons of `ground`: joints are what two sides share that look at each other."""
+    numbered = [*enumerate(np.asarray(block) for block in blocks), *((None, np.asarray(polygon)) for polygon in ground)]
+    joints = []
+    for k, (second, polygon) in enumerate(numbered[:len(blocks)]):
+        for first, other in numbered[k + 1:]:
+            for a, b in zip(polygon, np.roll(polygon, -1, axis=0)):
+                along = (b - a) / np.linalg.norm(b - a)
+                for c, d in zip(other, np.roll(other, -1, axis=0)):
+                    across = (c - a) @ (-along[1], along[0]), (d - a) @ (-along[1], along[0])
+                    low, high = max(0, along @ (d - a)), min(along @ (b - a), along @ (c - a))
+                    if np.abs(across).max() < tolerance < high - low:
+                        joints.append((first, second, a + low * along, a + high * along))
+    return Structure([polygon for _, polygon in numbered[:len(blocks)]], joints)
 
 
 def frusta(drums, bottom, top, height):

@@ -7,15 +7,18 @@ import time
 import arches
 import rolling
 import sliding
+import structures
 import tipping
-from rows import MODES
+from rows import BULLET, MODES
 
 OUT = os.environ.get("CONVEX_OUT", "results/convex")
-MODULES = [rolling, sliding, tipping, arches]
+MODULES = [rolling, sliding, tipping, arches, structures]
 
 
 def main(wanted):
-    head = ["case", "quantity", "right value", *(f"`{method}`, {model}" for method, model in MODES), "allowed", "holds"]
+    head = ["case", "quantity", "right value", *(f"`{method}`, {model}" for method, model in MODES), *(f"{program} {shapes}" for program, shapes in BULLET), "allowed", "holds"]
+    if not BULLET:
+        print("Bullet is left out: install libbullet-dev, and build the target convex_bullet.")
     print("| " + " | ".join(head) + " |\n" + "| --- " * len(head) + "|")
     begun, good = time.process_time(), True
     for case in (case for module in MODULES for case in module.CASES if not wanted or case.__name__.split("_")[0] in wanted):

@@ -5,7 +5,7 @@ import os
 
 import numpy as np
 from masonry import dem
-from rows import IN_SPACE, collapse, rows
+from rows import BULLET, IN_SPACE, collapse, rows
 from statics import centroid, frusta, multiplier
 from yade import O, Quaternion, Vector3
 
@@ -99,7 +99,7 @@ def a22_every_direction():
                 shares.append(collapse(mode) / threshold(polygon, 1.0, -turn))
             return [max(shares, key=lambda share: abs(share - 1))]
 
-        made += rows("a22", worst, [(f"base, {name}: worst multiplier of 24 directions over that of statics", 1.0, (1e-3, 1e-3))], IN_SPACE)
+        made += rows("a22", worst, [(f"base, {name}: worst multiplier of 24 directions over that of statics", 1.0, (1e-3, 1e-3))], IN_SPACE + BULLET)
     return made
 
 

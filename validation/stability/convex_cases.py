@@ -113,7 +113,8 @@ def cuboid(x, z, y=(-0.2, 0.2)):
 @variants(**{label: (share, f"{'stands' if share < 1 else 'falls'}: leans by {share} of the critical angle about the heel", 1e-3 if share < 1 else 0.5, {"models": RIGID})
              for label, share in (("0_98", 0.98), ("1_02", 1.02))})
 def union_l_leans(share, **how):
-    """An L, its stem above its heel, on a slope towards the heel: its centre of mass is share of the way to above the heel. No slip."""
+    """An L, its stem above its heel, on a slope towards the heel: its centre of mass is share of the way to above the heel. No slip: where it falls, the heel
+    would have to pull from a turn of 1.06 rad on, and the run says so (tests/yade/test_unions.py)."""
     material = stone(noSlip=True)
     area, x, z = np.array([1.0 * 0.2, 0.3 * 0.8]), np.array([0.5, 0.15]), np.array([0.1, 0.6])
     lean = share * math.atan2(area @ x, area @ z)  # the heel is at x = 0

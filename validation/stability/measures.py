@@ -8,7 +8,7 @@ import warnings
 
 from boxes import depth
 from masonry import dem
-from polyhedra import Solid, Solids
+from polyhedra import Solids, thickness
 from yade import Box, O
 
 # A run at the default step or below counts as right up to these limits: energy that appears, relative to the energy turned over, and depth, relative
@@ -53,7 +53,7 @@ class Energies:
         self.work, self.late, self.last = work, late, -math.inf
         self.lowest, self.gain, self.kinetic, self.start = math.inf, 0.0, 0.0, None
         free = [b for b in O.bodies if b.dynamic]
-        self.floor = LEAST_FALL * sum(b.state.mass * 9.81 * Solid(b).thickness for b in free)
+        self.floor = LEAST_FALL * sum(b.state.mass * 9.81 * thickness(b) for b in free)
 
     def look(self):
         e = dem.energy()

@@ -1,6 +1,7 @@
 """Random scenes, one seed each, judged by invariants alone; appends one JSON line a scene. Run by `run --long`: of every ten scenes that are thrown one
-more is pressed by bodies with prescribed motion, and one more has convex blocks. STABILITY_MODEL=compliant (or another name of measures.MODELS): all seeds with that model.
-STABILITY_KIND=pressed (or thrown, convex): these scenes alone."""
+more is pressed by bodies with prescribed motion, one has convex blocks, one has unions, one has bricks with mortar (random_mortar.py), and one is a building
+(plans.py). STABILITY_MODEL=compliant (or another name of measures.MODELS): all seeds with that model (buildings are always walls in space).
+STABILITY_KIND=pressed (or thrown, convex, union, mortar, building): these scenes alone."""
 
 import contextlib
 import io
@@ -12,6 +13,9 @@ import time
 import warnings
 
 import boxes
+import plans
+import random_mortar
+import random_unions
 from masonry import dem
 from measures import MODELS, MOST_DEPTH, MOST_GAIN, OTHER_DEPTH, Energies, engine, quiet_engines
 from polyhedra import Solids
@@ -132,9 +136,41 @@ def hull(r, size):
     return (points / np.linalg.norm(points, axis=1)[:, None] * half).tolist()
 
 
+def one_convex(r, size, material, plane):
+    """A hull, a wedge or a drum; in the plane a prism. Returns its id and whether it has no side to stand on."""
+    kind = "prism" if plane else r.choice(("hull", "hull", "wedge", "drum"))
+    pose = {"center": (0, 0, 0)}
+    if kind == "prism":
+        made = dem.prism(polygon(r, size), 1.0, material, axis="y", **pose)
+    elif kind == "wedge":
+        made = dem.wedge((size, r.uniform(0.2, 1) * size, r.uniform(0.2, 1) * size), material, top=r.choice((0, 0.3 * size)), shift=r.uniform(-0.3, 0.3) * size, **pose)
+    elif kind == "drum":
+        with contextlib.redirect_stdout(io.StringIO()):
+            made = dem.drum(size, r.uniform(0.2, 2) * size, material, sides=r.randint(3, 16), **pose)
+    else:
+        made = dem.convex(hull(r, size), material, **pose)
+    return made, kind in ("prism", "hull")
+
+
+def one_union(r, size, material, plane):
+    """L, T and U blocks and others of cuboids; prisms that are cut or have a dovetail; in space hulls that are cut or have pyramids on their faces."""
+    kind = r.choice(("angles", "angles", "sections" if plane else r.choice(("faces", "cut"))))
+    parts = {"angles": lambda: random_unions.angles(r, size, plane), "sections": lambda: random_unions.sections(r, polygon(r, size)),
+             "faces": lambda: random_unions.on_faces(r, hull(r, size)), "cut": lambda: random_unions.cut(r, hull(r, size))}[kind]()
+    return dem.union(parts, material, center=(0, 0, 0)), kind != "angles"
+
+
 def convex(seed):
-    """One to five convex blocks, thrown or let go above a base or each other: hulls, wedges, drums; in the plane prisms. Shapes that are refused are drawn anew."""
-    r = random.Random(-1000001 - seed)
+    """One to five convex blocks, thrown or let go above a base or each other. Shapes that are refused are drawn anew."""
+    return let_go(seed, random.Random(-1000001 - seed), one_convex)
+
+
+def union(seed):
+    """The same of unions."""
+    return let_go(seed, random.Random(-2000001 - seed), one_union)
+
+
+def let_go(seed, r, one):
     names = [name for name in NAMES if name != "compliant"]
     model = names[seed % len(names)]
     O.reset()
@@ -145,22 +181,12 @@ def convex(seed):
     z, wanted = 0.0, r.randint(1, 5)
     while len(O.bodies) <= wanted:
         size = 10 ** r.uniform(-0.9, -0.1)
-        kind = "prism" if plane else r.choice(("hull", "hull", "wedge", "drum"))
-        pose = {"center": (0, 0, 0)}
         try:
-            if kind == "prism":
-                made = dem.prism(polygon(r, size), 1.0, material, axis="y", **pose)
-            elif kind == "wedge":
-                made = dem.wedge((size, r.uniform(0.2, 1) * size, r.uniform(0.2, 1) * size), material, top=r.choice((0, 0.3 * size)), shift=r.uniform(-0.3, 0.3) * size, **pose)
-            elif kind == "drum":
-                with contextlib.redirect_stdout(io.StringIO()):
-                    made = dem.drum(size, r.uniform(0.2, 2) * size, material, sides=r.randint(3, 16), **pose)
-            else:
-                made = dem.convex(hull(r, size), material, **pose)
+            made, turns = one(r, size, material, plane)
         except ValueError:
             continue
         state = O.bodies[made].state
-        if kind in ("prism", "hull") or r.random() < 0.5:
+        if turns or r.random() < 0.5:
             q = Quaternion(Vector3.UnitY, r.uniform(-math.pi, math.pi)) if plane else Quaternion(*[r.gauss(0, 1) for _ in range(4)]).normalized()
             state.ori = q * state.ori
         heights = dem.geometry(made).vertices[:, 2]
@@ -175,7 +201,8 @@ def convex(seed):
     return model
 
 
-KINDS = {"thrown": build, "pressed": pressed, "convex": convex}
+# Mortar has invariants of its own.
+KINDS = {"thrown": build, "pressed": pressed, "convex": convex, "union": union, "mortar": None, "building": plans.building}
 
 
 class Flight:
@@ -241,22 +268,27 @@ def most_work():
 
 def run(seed, kind):
     build = KINDS[kind]
-    row = {"kind": kind, "seed": seed, "gain": math.nan, "depth": math.nan, "flight": math.nan, "cone": 0.0, "off": 0.0, "work": 0.0, "bits": True, "said": ""}
+    row = {"kind": kind, "seed": seed, "gain": math.nan, "depth": math.nan, "flight": math.nan, "cone": 0.0, "off": 0.0, "work": 0.0, "bits": True, "said": "",
+           "reaction": 0.0, "sink": 0.0}
     begin = time.process_time()
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         try:
             row["model"] = build(seed)
-            steps = math.ceil(SECONDS / O.dt)
+            steps = math.ceil((plans.RESTS + plans.SHAKEN if kind == "building" else SECONDS) / O.dt)
             saves = seed % 10 == 0 and steps < 5000
-            shapes = Solids() if kind == "convex" else boxes
-            energies, flight, deepest = Energies(lambda: 0.0, late=getattr(engine(), "wallsOnly", False)), Flight(shapes.gaps), 0.0
+            shapes = Solids() if kind in ("convex", "union") else boxes
+            energies, flight, deepest = Energies(lambda: 0.0, late=kind == "building" or getattr(engine(), "wallsOnly", False)), Flight(shapes.gaps), 0.0
+            rest = plans.Rest() if kind == "building" else None
             look = max(1, steps // 100)
             compliant, impacts, own = row["model"] == "compliant", 0, engine()
             for k in range(steps):
                 O.step()
                 energies.look()
-                if not compliant:
+                if rest and O.time > plans.RESTS - 2 * O.dt:
+                    row.update(rest.errors())
+                    rest = None
+                if not compliant and kind != "building":
                     flight.look()
                 if k % look == 0:
                     deepest = max(deepest, shapes.depth())
@@ -286,7 +318,8 @@ def run(seed, kind):
     most = MOST_DEPTH.get(row.get("model"), OTHER_DEPTH)
     row["broken"] = [name for name, bad in (("energy", not row["gain"] <= MOST_GAIN), ("depth", not row["depth"] <= most),
                                             ("flight", not row["flight"] <= FLIGHT), ("cone", not row["cone"] <= CONE.get(row.get("model"), OTHER_CONE)), ("off", not row["off"] <= MOST_OFF), ("work", not row["work"] <= MOST_WORK),
-                                            ("bits", not row["bits"])) if bad]
+                                            ("bits", not row["bits"]),
+                                            ("reaction", not row["reaction"] <= plans.REACTION), ("sink", not row["sink"] <= plans.SINK)) if bad]
     return row
 
 
@@ -300,11 +333,11 @@ def main(path, scenes, part, parts):
     for kind, seed in ((kind, seed) for kind in kinds for seed in range(part, counts[kind], parts)):
         if (kind, seed) in done:
             continue
-        row = run(seed, kind)
+        row = random_mortar.run(seed) if kind == "mortar" else run(seed, kind)
         with open(path, "a") as file:
             file.write(json.dumps(row) + "\n")
         if row["broken"]:
-            print(f"seed {seed}, {kind}, {row.get('model')}: {', '.join(row['broken'])}: gain {row['gain']:.1e}, depth {row['depth']:.1e}, flight {row['flight']:.1e}, off {row['off']:.1e}, work {row['work']:.1e} {row['said'][:80] or 'SILENT'}", flush=True)
+            print(f"seed {seed}, {kind}, {row.get('model')}: {', '.join(row['broken'])}: {', '.join(f'{k} {v:.1e}' for k, v in row.items() if isinstance(v, float) and k != 'cpu')} {row['said'][:80] or 'SILENT'}", flush=True)
 
 
 main(os.environ["STABILITY_ROWS"], int(os.environ["STABILITY_SCENES"]), *map(int, os.environ.get("STABILITY_PART", "0/1").split("/")))

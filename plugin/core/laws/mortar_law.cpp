@@ -10,13 +10,14 @@ std::string MortarLaw::fault() const
 	std::ostringstream text;
 	const double leastNormal = tensileStrength * openingRate(), leastShear = cohesion * slipRate();
 	const double leastCohesion = friction * tensileStrength;
+	constexpr double roundOff = 1e-12; // of strengths that are products of the same factors
 	if (!(normalStiffness > leastNormal))
 		text << "normalStiffness = " << normalStiffness << " Pa/m: must be above tensileStrength^2/fractureEnergy = " << leastNormal
 		     << " Pa/m, or the joint stores more energy than its crack takes up";
 	else if (!(shearStiffness > leastShear))
 		text << "shearStiffness = " << shearStiffness << " Pa/m: must be above cohesion^2/shearFractureEnergy = " << leastShear
 		     << " Pa/m, or the joint stores more energy than its crack takes up";
-	else if (!(cohesion >= leastCohesion))
+	else if (!(cohesion >= (1 - roundOff) * leastCohesion))
 		text << "cohesion = " << cohesion << " Pa: must be at least tan(frictionAngle) * tensileStrength = " << leastCohesion
 		     << " Pa, or friction limits the tension";
 	return text.str();

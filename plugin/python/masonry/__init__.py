@@ -19,6 +19,7 @@ except ImportError as _error:
 
 from . import closed_form, spectra  # noqa: E402
 from ._build import VERSION as __version__  # noqa: E402
+from ._calls import check_keywords as _check_keywords  # noqa: E402
 from ._fragility import Fragility, fragility, fragility_of_table  # noqa: E402
 from .artificial import artificial_record  # noqa: E402
 from .block import RockingBlock  # noqa: E402
@@ -29,3 +30,6 @@ from .records import read_record  # noqa: E402
 
 __all__ = ["Fragility", "HalfSine", "History", "PulseTrain", "Record", "Rectangular", "RockingBlock", "Sine", "artificial_record",
            "closed_form", "fragility", "fragility_of_table", "overturning_amplitude", "read_record", "simulate", "spectra"]
+
+_check_keywords(__name__)
+_check_keywords(closed_form.__name__)

@@ -83,6 +83,20 @@ class Shapes:
         return np.searchsorted(self.vertex_start, self.part_start[:-1], side="right") - 1
 
     @cached_property
+    def parts(self):
+        """The convex parts as blocks of their own: Shapes."""
+        return Shapes(self.vertices, self.part_start, self.faces, self.face_start)
+
+    def parts_of_rows(self, rows):
+        """Of the blocks of these rows, one after the other: (rows of their parts in `parts`, for each the place of its block in `rows`, and the numbers of its
+        corners in the block, the last one repeated)."""
+        first, last = (np.searchsorted(self.block_of_part, rows, side) for side in ("left", "right"))
+        block = np.repeat(np.arange(len(rows)), last - first)
+        part = np.concatenate([np.arange(*ends) for ends in zip(first, last)]) if len(rows) else np.zeros(0, dtype=int)
+        own = _filled([range(*ends) for ends in zip(self.part_start, self.part_start[1:])])
+        return part, block, own[part] - self.vertex_start[:-1][np.asarray(rows)[block]][:, None]
+
+    @cached_property
     def loops(self):
         """[[numbers of the corners of the block for each of its faces] for each block]."""
         found = [[] for _ in range(len(self))]

@@ -173,4 +173,13 @@ TEST_CASE("Joints that would snap back are named with the least stiffness")
 	law = eindhoven;
 	law.cohesion = 0.18e6; // mu f_t = 0.1875e6
 	CHECK(law.fault().find("187500") != std::string::npos);
+	// The least cohesion is allowed, also where round-off of the factor of a joint makes it smaller.
+	for (int k = 1; k < 200; ++k) {
+		const double factor = 0.5 + 0.01 * k;
+		law = eindhoven;
+		law.tensileStrength = factor * 0.25e6;
+		law.fractureEnergy = factor * 18;
+		law.cohesion = factor * (0.75 * 0.25e6);
+		CHECK(law.fault().empty());
+	}
 }

@@ -24,8 +24,20 @@ ConvexPolyhedron drum(int sides)
 	return ConvexPolyhedron::hull(points);
 }
 
+// A cube whose sides lean by a thousandth, as those of a voussoir: six faces, and no box.
+ConvexPolyhedron hexahedron()
+{
+	std::vector<Vector3> points;
+	for (const double x : {-.5, .5})
+		for (const double y : {-.5, .5}) {
+			points.push_back({1.001 * x, y, -.5});
+			points.push_back({x, y, .5});
+		}
+	return ConvexPolyhedron::hull(points);
+}
+
 const ConvexPolyhedron base = ConvexPolyhedron::box({2, 2, .1}), block = ConvexPolyhedron::box({.3, .5, 1.5}),
-                       cube = ConvexPolyhedron::box({.5, .5, .5});
+                       cube = ConvexPolyhedron::box({.5, .5, .5}), hexa = hexahedron();
 const Pose basePose {{0, 0, -.1}, Quaternion::Identity()}, lower;
 const Vector3 y = Vector3::UnitY(), z = Vector3::UnitZ(), pivot(.3, 0, 0);
 
@@ -43,6 +55,15 @@ void edgeOnEdge(benchmark::State& state)
 }
 void apart(benchmark::State& state) { measure(state, cube, lower, cube, {1.1 * z, Quaternion::Identity()}); }
 
+// The same poses as cubes have.
+void hexahedronOnHexahedron(benchmark::State& state) { measure(state, hexa, lower, hexa, {z, Quaternion::Identity()}); }
+void hexahedraInBond(benchmark::State& state) { measure(state, hexa, lower, hexa, {{.5, 0, 1}, Quaternion::Identity()}); }
+void hexahedraTurned(benchmark::State& state) { measure(state, hexa, lower, hexa, {z, turn(.785, z)}); }
+void hexahedraEdgeOnEdge(benchmark::State& state)
+{
+	measure(state, hexa, {Vector3::Zero(), turn(.785, y)}, hexa, {std::sqrt(2.) * z, turn(1.5, z) * turn(.785, y)});
+}
+
 void hexagonOnHexagon(benchmark::State& state) { measure(state, drum(6), lower, drum(6), {z, turn(.3, z)}); }
 void drumOnDrum(benchmark::State& state) { measure(state, drum(24), lower, drum(24), {z, turn(.05, z)}); }
 void drumAcrossDrum(benchmark::State& state)
@@ -57,6 +78,10 @@ BENCHMARK(runningBond);
 BENCHMARK(eightPoints);
 BENCHMARK(edgeOnEdge);
 BENCHMARK(apart);
+BENCHMARK(hexahedronOnHexahedron);
+BENCHMARK(hexahedraInBond);
+BENCHMARK(hexahedraTurned);
+BENCHMARK(hexahedraEdgeOnEdge);
 BENCHMARK(hexagonOnHexagon);
 BENCHMARK(drumOnDrum);
 BENCHMARK(drumAcrossDrum);

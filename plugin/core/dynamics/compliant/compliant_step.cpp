@@ -15,6 +15,7 @@ CompliantReport CompliantStep::apply(const JumpsOfBase& jumpsOfBase)
 	system.residual = 0;
 	system.unsolved = 0;
 	addWeights();
+	addTies();
 	if (run.started)
 		releaseLandings(system);
 	bookDissipation();
@@ -23,6 +24,7 @@ CompliantReport CompliantStep::apply(const JumpsOfBase& jumpsOfBase)
 		bookBaseWork();
 	} else {
 		startAtEquilibrium(system);
+		retensionTies(system);
 		report.moved = run.started = true;
 	}
 	makeBonds();
@@ -63,10 +65,10 @@ bool CompliantStep::fitTimeStep()
 	if (!(system.dt > 0))
 		return false;
 	if (!(stepFraction > 0 && run.started))
-		return isStableTimeStep(system.bodies, system.contacts, system.dt);
+		return isStableTimeStep(system.bodies, system.contacts, system.ties, system.dt);
 	constexpr double slack = 1.25;
-	if (!isStableTimeStep(system.bodies, system.contacts, system.dt, system.dt / (slack * stepFraction)))
-		lowered = system.dt - chosenTimeStep(system.bodies, system.contacts, stepFraction);
+	if (!isStableTimeStep(system.bodies, system.contacts, system.ties, system.dt, system.dt / (slack * stepFraction)))
+		lowered = system.dt - chosenTimeStep(system.bodies, system.contacts, system.ties, stepFraction);
 	return true;
 }
 
@@ -75,6 +77,17 @@ void CompliantStep::addWeights()
 	for (RigidBody<Space>& body : system.bodies)
 		if (!body.prescribed)
 			body.force.head<3>() += body.mass * system.gravity;
+}
+
+void CompliantStep::addTies()
+{
+	run.energies.damping += stretchTies(system);
+	pulls = tieLoads(system);
+	for (size_t b = 0; b < system.bodies.size(); ++b)
+		if (!system.bodies[b].prescribed) {
+			system.bodies[b].force.head<3>() += pulls[b].force;
+			system.bodies[b].force.tail<3>() += pulls[b].moment;
+		}
 }
 
 void CompliantStep::bookDissipation()
@@ -155,7 +168,7 @@ void CompliantStep::countFailures(CompliantReport& report)
 	run.failures += system.unsolved;
 }
 
-// Forces of the joints on all bodies, or on the prescribed ones alone.
+// Forces of the joints on all bodies, or on the prescribed ones alone. Those of the ties on free bodies are loads.
 void CompliantStep::sumForces(bool ofPrescribed)
 {
 	loads.assign(system.bodies.size(), {});
@@ -172,6 +185,14 @@ void CompliantStep::sumForces(bool ofPrescribed)
 				loads[b].force += sign * contact.load.force;
 				loads[b].moment += sign * contact.bondMoment(system.bodies[b].pose.position);
 			}
+		}
+	for (const Tie<Space>& tie : system.ties)
+		for (int b : {tie.body1, tie.body2})
+			loads[b].acts |= system.bodies[b].prescribed;
+	for (size_t b = 0; b < system.bodies.size(); ++b)
+		if (system.bodies[b].prescribed) {
+			loads[b].force += pulls[b].force;
+			loads[b].moment += pulls[b].moment;
 		}
 }
 
@@ -203,12 +224,13 @@ void CompliantStep::measureEnergies()
 		energies.potential -= system.bodies[b].mass * system.gravity.dot(system.bodies[b].pose.position);
 	}
 	energies.elastic = storedEnergy(system);
+	energies.ties = tieEnergy(system);
 }
 
 void CompliantStep::checkEnergies(CompliantReport& report)
 {
 	CompliantEnergies& e = run.energies;
-	e.turnedOver = std::max(e.turnedOver, e.kinetic + e.elastic + e.friction + e.damping + e.impacts + e.cracks);
+	e.turnedOver = std::max(e.turnedOver, e.kinetic + e.elastic + e.ties + e.friction + e.damping + e.impacts + e.cracks);
 	double lifted = 0;
 	for (const RigidBody<Space>& body : system.bodies)
 		if (!body.prescribed)

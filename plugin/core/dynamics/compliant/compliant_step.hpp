@@ -8,6 +8,7 @@
 #include "dynamics/compliant/base_jump.hpp"
 #include "dynamics/compliant/mortar_bond.hpp"
 #include "dynamics/compliant/pivot_handoff.hpp"
+#include "dynamics/compliant/tie_springs.hpp"
 #include <functional>
 #include <vector>
 
@@ -18,9 +19,8 @@ struct MortarRequest {
 	MortarLaw law;
 };
 
-struct JointLoad {                                             // of all joints of a body
-	Vector3 force {Vector3::Zero()}, moment {Vector3::Zero()}; // N; about the body's centre, N m
-	bool acts {false};                                         // the body has joints
+struct JointLoad : BodyLoad { // of all joints of a body, and of the ties of a prescribed one
+	bool acts {false};        // the body has joints or ties
 };
 
 struct CompliantEnergies {                          // J
@@ -30,6 +30,7 @@ struct CompliantEnergies {                          // J
 	double baseWork {0};                            // of the prescribed bodies, so far
 	double made {0}, lost {0};                      // so far, with no source and no sink
 	double turnedOver {0};                          // largest kinetic and elastic energy plus all dissipated energy
+	double ties {0};                                // elastic energy of the ties now
 };
 
 // All that a run remembers from step to step, beside its bodies and the points of its contacts.
@@ -59,7 +60,7 @@ using JumpsOfBase = std::function<std::vector<BaseJump>(const std::vector<Impact
 
 class CompliantStep {
 public:
-	JointSystem system; // forces and torques of the bodies: the loads, without the weight
+	JointSystem system; // forces and torques of the bodies: the loads, without the weight and without the ties
 	CompliantRun run;
 	std::vector<MortarRequest> requests; // joints to be bonded at the end of this step; taken
 	double stepFraction {0};             // share of the critical step by which system.dt was chosen; 0: it was given
@@ -70,10 +71,12 @@ public:
 	CompliantReport apply(const JumpsOfBase& jumpsOfBase);
 
 	std::vector<JointLoad> loads; // by body, in this step
+	std::vector<BodyLoad> pulls;  // of the ties, by body, in this step
 	double lowered {0};           // by how much the steps after this one are shorter, s
 
 private:
 	void addWeights();
+	void addTies();
 	void makeBonds();
 	void bookDissipation();
 	void bookSprings();

@@ -40,6 +40,7 @@ struct JointLaw {
 	double dampingRatio {0};    // zeta, of the contact springs
 	double friction {0};        // mu, or noSlip
 	double restitution {0};     // C in [0, 1], or NaN: natural
+	bool hasMortar {false};     // it is to be bonded, in the first step or in this one
 };
 
 struct JointPoint {

@@ -1,6 +1,7 @@
 #pragma once
 // Blocks and their compliant joints, as all stages of a step see them.
 #include "dynamics/compliant/joint_contact.hpp"
+#include "dynamics/model/tie.hpp"
 #include "impact/rocking_restitution.hpp"
 #include <algorithm>
 #include <vector>
@@ -14,6 +15,7 @@ struct PointRef {
 struct JointSystem {
 	Bodies<Space> bodies;
 	std::vector<JointContact> contacts; // sorted by body pair: the order of every sum
+	std::vector<Tie<Space>> ties;
 	Vector3 gravity {Vector3::Zero()};
 	double dt {0};
 	ImpactOrder order {ImpactOrder::simultaneous}; // sequential: the springs of the neighbours are the second stage

@@ -26,8 +26,30 @@ void addPoint(Matrix6& sum, const Vector3& arm, const Matrix3& point)
 	sum.bottomRightCorner<3, 3>() += turned.colwise().cross(arm);
 }
 
+// Along a tie its stiffness, across it that of its force, N/L.
+void addTie(std::vector<BodyMatrices>& result, const Bodies<Space>& bodies, const Tie<Space>& tie)
+{
+	const auto line = Tie<Space>::line(tie, bodies[tie.body1].pose, bodies[tie.body2].pose);
+	if (tie.broken || !(line.length > 0))
+		return;
+	const Matrix3 along = line.direction * line.direction.transpose();
+	const Matrix3 stiffness = tie.stiffness * along + std::max(0., tie.force) / line.length * (Matrix3::Identity() - along);
+	for (const auto& [b, end] : {std::pair(tie.body1, line.end1), std::pair(tie.body2, line.end2)}) {
+		if (bodies[b].prescribed)
+			continue;
+		result[b].hasFreeNeighbour |= !bodies[tie.body1].prescribed && !bodies[tie.body2].prescribed;
+		addPoint(result[b].stiffness, end - bodies[b].pose.position, stiffness);
+	}
+}
+
+// What a joint with mortar may have of the normal stiffness and the dashpots of its closed face. While an edge of it still presses, all
+// fibres of its mortar may pull already: of a rectangle that is 1.95 times the closed face at worst, of a triangle 1.96, of convex polygons
+// that are far from regular up to 2.07 (docs/mortar.md, validation/mortar/stiffest.py). Both together are twice the face at most, but for
+// polygons whose points and fibres turn about different axes. Shear acts at the fibres alone, and turns less stiffly than at the corners.
+constexpr double withMortar = 2.1;
+
 // Those of a body whose neighbours move freely are doubled. The result holds until the next call: it keeps its memory from step to step.
-const std::vector<BodyMatrices>& bodyMatrices(const Bodies<Space>& bodies, const std::vector<JointContact>& contacts)
+const std::vector<BodyMatrices>& bodyMatrices(const Bodies<Space>& bodies, const std::vector<JointContact>& contacts, const Ties& ties)
 {
 	thread_local std::vector<BodyMatrices> result;
 	result.assign(bodies.size(), {});
@@ -39,7 +61,8 @@ const std::vector<BodyMatrices>& bodyMatrices(const Bodies<Space>& bodies, const
 			return (normal - shear) * n * n.transpose() + shear * Matrix3::Identity();
 		};
 		// A share of the normal springs and dashpots of a closed face acts at the points, and the rest at their centroid.
-		const double k = contact.normalStiffness(), c = contact.dampingNormal(mass), cShear = contact.dampingShear(mass);
+		const double pulls = contact.law.hasMortar || contact.isBonded() ? withMortar : 1;
+		const double k = pulls * contact.normalStiffness(), c = pulls * contact.dampingNormal(mass), cShear = contact.dampingShear(mass);
 		const Matrix3 stiffness = tensor(turnShare * k, contact.law.shearStiffness * contact.stiffnessArea()),
 		              damping = tensor(turnShare * c, cShear);
 		for (int b : {contact.body1, contact.body2}) {
@@ -61,6 +84,8 @@ const std::vector<BodyMatrices>& bodyMatrices(const Bodies<Space>& bodies, const
 			add(centroid, tensor((1 - turnShare) * k, 0), tensor((1 - turnShare) * c, 0));
 		}
 	}
+	for (const Tie<Space>& tie : ties)
+		addTie(result, bodies, tie);
 	for (BodyMatrices& ofBody : result)
 		for (Matrix6* sum : {&ofBody.stiffness, &ofBody.damping}) {
 			sum->bottomLeftCorner<3, 3>() = sum->topRightCorner<3, 3>().transpose();
@@ -81,9 +106,9 @@ Matrix6 massMatrix(const RigidBody<Space>& body)
 
 } // namespace
 
-double criticalTimeStep(const Bodies<Space>& bodies, const std::vector<JointContact>& contacts)
+double criticalTimeStep(const Bodies<Space>& bodies, const std::vector<JointContact>& contacts, const Ties& ties)
 {
-	const auto& matrices = bodyMatrices(bodies, contacts);
+	const auto& matrices = bodyMatrices(bodies, contacts, ties);
 	double highest = 0; // omega^2
 	for (size_t b = 0; b < bodies.size(); ++b) {
 		if (bodies[b].prescribed)
@@ -95,28 +120,28 @@ double criticalTimeStep(const Bodies<Space>& bodies, const std::vector<JointCont
 	return highest > 0 ? 2 / std::sqrt(highest) : std::numeric_limits<double>::infinity();
 }
 
-double largestTimeStep(const Bodies<Space>& bodies, const std::vector<JointContact>& contacts)
+double largestTimeStep(const Bodies<Space>& bodies, const std::vector<JointContact>& contacts, const Ties& ties)
 {
 	constexpr int halvings = 10;
-	double refused = criticalTimeStep(bodies, contacts); // without dashpots: above what is stable
+	double refused = criticalTimeStep(bodies, contacts, ties); // without dashpots: above what is stable
 	double accepted = std::isfinite(refused) ? 0 : refused;
 	for (int k = 0; k < halvings && accepted < refused; ++k) {
 		const double middle = 0.5 * (accepted + refused);
-		(isStableTimeStep(bodies, contacts, middle) ? accepted : refused) = middle;
+		(isStableTimeStep(bodies, contacts, ties, middle) ? accepted : refused) = middle;
 	}
 	return accepted;
 }
 
-double chosenTimeStep(const Bodies<Space>& bodies, const std::vector<JointContact>& contacts, double fraction)
+double chosenTimeStep(const Bodies<Space>& bodies, const std::vector<JointContact>& contacts, const Ties& ties, double fraction)
 {
 	constexpr double ofLargest =
 	    0.75; // larger: it becomes unstable where blocks move a little; smaller: scenes without need take a shorter step
-	return std::min(fraction * criticalTimeStep(bodies, contacts), ofLargest * largestTimeStep(bodies, contacts));
+	return std::min(fraction * criticalTimeStep(bodies, contacts, ties), ofLargest * largestTimeStep(bodies, contacts, ties));
 }
 
-bool isStableTimeStep(const Bodies<Space>& bodies, const std::vector<JointContact>& contacts, double dt, double undamped)
+bool isStableTimeStep(const Bodies<Space>& bodies, const std::vector<JointContact>& contacts, const Ties& ties, double dt, double undamped)
 {
-	const auto& matrices = bodyMatrices(bodies, contacts);
+	const auto& matrices = bodyMatrices(bodies, contacts, ties);
 	for (size_t b = 0; b < bodies.size(); ++b) {
 		if (bodies[b].prescribed)
 			continue;

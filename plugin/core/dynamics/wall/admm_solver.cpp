@@ -74,7 +74,7 @@ template <class K>
 Pass<K> AdmmSolver<K>::passOf(const Problem& problem, const Part& part, const Step& step, Results& results)
 {
 	const LaneArray& velocity = results.velocity;
-	return {problem.contacts.groups.data(),
+	return {problem.contacts.points().groups().data(),
 	        problem.strength && !problem.strength->empty() ? problem.strength->data() : nullptr,
 	        results.states.data(),
 	        penalties.data(),
@@ -99,12 +99,12 @@ bool AdmmSolver<K>::isOutdated(const Problem& problem, const AdmmSettings& setti
 	if (step.compares)
 		age = 0;
 	Outdated found[Team::maxParts + 1] {};
-	c.allParts([&](const Part& part, int number) { takePass(passOf(problem, part, step, results), found[number]); });
+	c.layout().allParts([&](const Part& part, int number) { takePass(passOf(problem, part, step, results), found[number]); });
 	if (!matrix.hasMasses(c))
 		return true;
 	if (isMortarOutdated(problem, settings, results))
 		return true;
-	if (std::exchange(compared, c.version()) != c.version()) {
+	if (compared.follow(c.version())) {
 		if (!matrix.isOf(c))
 			return true;
 		turn = matrix.change(c);
@@ -149,7 +149,6 @@ bool AdmmSolver<K>::isMortarFar(const Problem& problem, const AdmmSettings& sett
 template <class K>
 void AdmmSolver<K>::start(const Problem& problem, const AdmmSettings& settings, Results& results)
 {
-	const ContactSet<K>& c = problem.contacts;
 	LaneArray& velocity = results.velocity;
 	free.resize(velocity.size());
 	force.assign(velocity.size(), all(0));
@@ -162,12 +161,13 @@ void AdmmSolver<K>::start(const Problem& problem, const AdmmSettings& settings, 
 				velocity[b] += noMass * problem.guess[b];
 		inertia(part.members, velocity.data(), free.data(), force.data());
 	};
-	startBodies(c.parts.back());
-	c.eachPart([&](const Part& part, int) {
+	const ContactLayout& layout = problem.contacts.layout();
+	startBodies(layout.parts().back());
+	layout.eachPart([&](const Part& part, int) {
 		startBodies(part);
 		startPass(passOf(problem, part, step, results));
 	});
-	startPass(passOf(problem, c.parts.back(), step, results));
+	startPass(passOf(problem, layout.parts().back(), step, results));
 	for (MortarRow<K>& row : results.mortar)
 		row.start(velocity);
 	pushRows(problem, results);
@@ -177,7 +177,7 @@ template <class K>
 void AdmmSolver<K>::prepareRows(const Problem& problem, bool isNewMatrix)
 {
 	prepareSpins(problem);
-	ties.prepare(problem.ties, problem.contacts.velocity, isNewMatrix, [this](LaneArray& x) { matrix.solve(x); });
+	ties.prepare(problem.ties, problem.contacts.bodies().velocity(), isNewMatrix, [this](LaneArray& x) { matrix.solve(x); });
 }
 
 // Adds the momentum that rows give to the right-hand side.
@@ -185,17 +185,17 @@ template <class K>
 void AdmmSolver<K>::pushRows(const Problem& problem, Results& results)
 {
 	for (const SpinRow<K>& row : results.spins)
-		row.push(row.couple, problem.contacts.velocity, force);
+		row.push(row.couple, problem.contacts.bodies().velocity(), force);
 	for (const TieRow<K>& row : results.ties)
-		row.push(row.impulse, problem.contacts.velocity, force);
+		row.push(row.impulse, problem.contacts.bodies().velocity(), force);
 	for (const MortarRow<K>& row : results.mortar)
-		row.push(problem.contacts.velocity, force);
+		row.push(problem.contacts.bodies().velocity(), force);
 }
 
 template <class K>
 void AdmmSolver<K>::prepareSpins(const Problem& problem)
 {
-	const LaneArray& velocity = problem.contacts.velocity;
+	const LaneArray& velocity = problem.contacts.bodies().velocity();
 	const int n = int(problem.rows.size());
 	response.resize(n);
 	Eigen::MatrixXd coupling(n, n);
@@ -233,7 +233,7 @@ void AdmmSolver<K>::holdSpins(Results& results)
 template <class K>
 double AdmmSolver<K>::iterate(const Problem& problem, const AdmmSettings& settings, int number, Results& results)
 {
-	const ContactSet<K>& c = problem.contacts;
+	const ContactLayout& layout = problem.contacts.layout();
 	Step step = stepOf(problem.step, settings, atRest);
 	if (constexpr int late = 300; problem.step.instant && number >= late) // sliding points are in a limit cycle
 		step.boundShare /= 3;
@@ -246,12 +246,12 @@ double AdmmSolver<K>::iterate(const Problem& problem, const AdmmSettings& settin
 		inertia(part.members, results.velocity.data(), free.data(), force.data());
 	};
 	const auto laws = [&](const Part& part, int k) { lawPass(passOf(problem, part, step, results), worst[k]); };
-	move(c.parts.back(), Team::maxParts);
-	c.eachPart([&](const Part& part, int k) {
+	move(layout.parts().back(), Team::maxParts);
+	layout.eachPart([&](const Part& part, int k) {
 		move(part, k);
 		laws(part, k);
 	});
-	laws(c.parts.back(), Team::maxParts);
+	laws(layout.parts().back(), Team::maxParts);
 	double missedByMortar = 0;
 	for (MortarRow<K>& row : results.mortar)
 		missedByMortar = std::max(missedByMortar, row.pass(results.velocity, rowStepOf(problem.step, settings)));
@@ -277,9 +277,9 @@ void startMeans(PointStates<K>& states, double share)
 template <class K>
 void beginResults(const AdmmProblem<K>& problem, AdmmResults<K>& results)
 {
-	results.velocity = problem.contacts.velocity;
-	results.states = problem.contacts.states;
-	results.points.resize(problem.contacts.groups.size());
+	results.velocity = problem.contacts.bodies().velocity();
+	results.states = problem.contacts.points().states();
+	results.points.resize(problem.contacts.points().groups().size());
 	results.spins = problem.rows;
 	for (SpinRow<K>& row : results.spins)
 		row.couple = 0;
@@ -297,7 +297,7 @@ SolverStatus AdmmSolver<K>::solve(const Problem& problem, const AdmmSettings& se
 	const StepContext& step = problem.step;
 	SolverStatus status;
 	beginResults(problem, results);
-	penalties.resize(problem.contacts.groups.size());
+	penalties.resize(problem.contacts.points().groups().size());
 	const auto refactor = [&] {
 		makeMatrix(problem, settings, results);
 		++status.factorisations;
@@ -357,9 +357,9 @@ void AdmmSolver<K>::makeMatrix(const Problem& problem, const AdmmSettings& setti
 {
 	const ContactSet<K>& c = problem.contacts;
 	const Step step = stepOf(problem.step, settings, atRest);
-	c.allParts([&](const Part& part, int) {
+	c.layout().allParts([&](const Part& part, int) {
 		Pass<K> pass = passOf(problem, part, step, results);
-		pass.velocity = c.velocity.data(); // before the step
+		pass.velocity = c.bodies().velocity().data(); // before the step
 		penaltyPass(pass);
 	});
 	Array<typename AssemblyMatrix<K>::Stiffness> stiffness(penalties.size());
@@ -371,7 +371,7 @@ void AdmmSolver<K>::makeMatrix(const Problem& problem, const AdmmSettings& setti
 	matrix.make(c, std::move(stiffness), results.mortar);
 	soundInA = problem.strength ? *problem.strength : Array<Strength>();
 	turn = age = 0;
-	compared = c.version();
+	compared.follow(c.version());
 }
 
 template class AdmmSolver<Plane>;

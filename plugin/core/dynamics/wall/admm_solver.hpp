@@ -8,7 +8,7 @@
 //
 //     V += A^-1 [ M (V_free - V) + J^T (p + (z - w)/R) ]
 //     y   = p - (a w + (1 - a) z)/R                                   a = 1.7: over-relaxation
-//     p_n = max(0, y_n), of prescribed bodies that move up to a limit (ContactSet::limitMoved)
+//     p_n = max(0, y_n), of prescribed bodies that move up to a limit (ContactPoints::limitMoved)
 //     g  += theta (p_n - g)                                           friction bound, damped
 //     p_t = y_t within |p_t| <= mu g
 //     z   = (p - y) R
@@ -100,7 +100,7 @@ public:
 	void serialize(Archive& archive, const ContactSet<K>& contacts)
 	{
 		archive(age, saved, cold, atRest);
-		penalties.resize(contacts.groups.size());
+		penalties.resize(contacts.points().groups().size());
 		for (GroupPenalty<K>& ofGroup : penalties)
 			for (Penalty& penalty : ofGroup)
 				archive(penalty.resistance, penalty.stiffness);
@@ -126,7 +126,7 @@ private:
 	AssemblyMatrix<K> matrix;
 	std::vector<GroupPenalty<K>> penalties; // by group
 	double turn {0};                        // by which rows of a point have changed since A was made, at most
-	int compared {-1};                      // version of the contacts that `turn` is of
+	Follower compared;                      // the contacts that `turn` is of
 	LaneArray free, force;
 	std::vector<LaneArray> response; // Y, by row
 	Eigen::MatrixXd perSpin;         // (E Y)^-1

@@ -29,10 +29,20 @@ MASONRY_INLINE Lanes difference(const PointLanes<Space>& a, const PointLanes<Spa
 	return result;
 }
 
+// The points of the groups begin .. end - 1, and those that A is of.
 template <class K>
-MASONRY_INLINE void compare(const Group<K>* groups, const Points<K>* points, const typename AssemblyMatrix<K>::Stiffness* stiffness,
-                            int begin, int end, const Lanes* velocity, Lanes& worst)
+struct ComparePass {
+	const Group<K>* groups;
+	const Points<K>* points;
+	const typename AssemblyMatrix<K>::Stiffness* stiffness;
+	int begin, end;
+	const Lanes* velocity;
+};
+
+template <class K>
+MASONRY_INLINE void compareGroups(const ComparePass<K>& pass, Lanes& worst)
 {
+	const auto [groups, points, stiffness, begin, end, velocity] = pass;
 	worst = all(0);
 	for (int g = begin; g < end; ++g) {
 		const Bodies<K> v1(velocity, groups[g].body1), v2(velocity, groups[g].body2);
@@ -46,15 +56,8 @@ MASONRY_INLINE void compare(const Group<K>* groups, const Points<K>* points, con
 }
 
 // No template is compiled for several vector widths.
-#define MASONRY_PASSES(K)                                                                                                                  \
-	MASONRY_LANES void comparePass(const Group<K>* groups, const Points<K>* points, const AssemblyMatrix<K>::Stiffness* stiffness,         \
-	                               int begin, int end, const Lanes* velocity, Lanes& worst)                                                \
-	{                                                                                                                                      \
-		compare<K>(groups, points, stiffness, begin, end, velocity, worst);                                                                \
-	}
-MASONRY_PASSES(Plane)
-MASONRY_PASSES(Space)
-#undef MASONRY_PASSES
+MASONRY_LANES void comparePass(const ComparePass<Plane>& pass, Lanes& worst) { compareGroups(pass, worst); }
+MASONRY_LANES void comparePass(const ComparePass<Space>& pass, Lanes& worst) { compareGroups(pass, worst); }
 
 } // namespace
 
@@ -63,19 +66,19 @@ void AssemblyMatrix<K>::make(const ContactSet<K>& c, Array<Stiffness> stiffness,
 {
 	stiffnesses = std::move(stiffness);
 	mortar = std::move(rows);
-	points.resize(c.groups.size());
+	points.resize(c.points().groups().size());
 	for (size_t g = 0; g < points.size(); ++g)
-		std::copy_n(c.groups[g].point, lanePoints<K>, points[g].begin());
+		std::copy_n(c.points().groups()[g].point, lanePoints<K>, points[g].begin());
 	factorise(c);
 }
 
 template <class K>
 bool AssemblyMatrix<K>::isOf(const ContactSet<K>& c) const
 {
-	if (pairs.size() != c.features.size())
+	if (pairs.size() != c.layout().groups().size())
 		return false;
 	for (size_t g = 0; g < pairs.size(); ++g)
-		if (!std::equal(pairs[g].begin(), pairs[g].end(), c.features[g].pair))
+		if (!std::equal(pairs[g].begin(), pairs[g].end(), c.layout().groups()[g].pair))
 			return false;
 	return true;
 }
@@ -83,10 +86,10 @@ bool AssemblyMatrix<K>::isOf(const ContactSet<K>& c) const
 template <class K>
 bool AssemblyMatrix<K>::hasMasses(const ContactSet<K>& c) const
 {
-	if (perMass.size() != c.own.size())
+	if (perMass.size() != c.bodies().size())
 		return false;
 	for (size_t b = 0; b < perMass.size(); ++b)
-		if (perMass[b] != c.velocity[packs<K> * b][3])
+		if (perMass[b] != c.bodies().perMass(b))
 			return false;
 	return true;
 }
@@ -95,8 +98,10 @@ template <class K>
 double AssemblyMatrix<K>::change(const ContactSet<K>& c) const
 {
 	Lanes worst[Team::maxParts + 1] {};
-	c.allParts([&](const Part& part, int number) {
-		comparePass(c.groups.data(), points.data(), stiffnesses.data(), part.begin, part.end, c.velocity.data(), worst[number]);
+	const Group<K>* groups = c.points().groups().data();
+	const Lanes* velocity = c.bodies().velocity().data();
+	c.layout().allParts([&](const Part& part, int number) {
+		comparePass(ComparePass<K> {groups, points.data(), stiffnesses.data(), part.begin, part.end, velocity}, worst[number]);
 	});
 	double most = 0;
 	for (const Lanes& here : worst)
@@ -107,17 +112,17 @@ double AssemblyMatrix<K>::change(const ContactSet<K>& c) const
 template <class K>
 void AssemblyMatrix<K>::factorise(const ContactSet<K>& c)
 {
-	pairs.resize(c.features.size());
+	pairs.resize(c.layout().groups().size());
 	for (size_t g = 0; g < pairs.size(); ++g)
-		std::copy_n(c.features[g].pair, width, pairs[g].begin());
-	perMass.resize(c.own.size());
+		std::copy_n(c.layout().groups()[g].pair, width, pairs[g].begin());
+	perMass.resize(c.bodies().size());
 	for (size_t b = 0; b < perMass.size(); ++b)
-		perMass[b] = c.velocity[packs<K> * b][3];
+		perMass[b] = c.bodies().perMass(b);
 	setGraph(c);
 	for (size_t k = 0; k < places.size(); ++k)
-		factor.addDiagonal(int(k), Block::Identity() / c.velocity[places[k]][3]);
+		factor.addDiagonal(int(k), Block::Identity() / c.bodies().velocity()[places[k]][3]);
 	int edge = packs<K> > 1 ? int(places.size()) / packs<K> : 0; // after those within bodies
-	for (size_t g = 0; g < c.groups.size(); ++g)
+	for (size_t g = 0; g < c.layout().groups().size(); ++g)
 		for (int i = 0; i < width; ++i)
 			addPair(c, int(g), i, edge);
 	factor.factorise();
@@ -128,20 +133,20 @@ template <class K>
 void AssemblyMatrix<K>::setGraph(const ContactSet<K>& c)
 {
 	constexpr int n = packs<K>;
-	node.assign(c.own.size(), -1);
+	node.assign(c.bodies().size(), -1);
 	places.clear();
 	edges.clear();
-	for (int b = 0; b < int(c.own.size()); ++b)
-		if (c.own[b]) {
+	for (int b = 0; b < int(c.bodies().size()); ++b)
+		if (c.bodies().isFree(b)) {
 			node[b] = int(places.size());
 			for (int k = 0; k < n; ++k)
 				places.push_back(n * b + k);
 			if (n > 1)
 				edges.push_back({node[b], node[b] + 1});
 		}
-	for (const Group<K>& group : c.groups)
+	for (const LaneGroup& group : c.layout().groups())
 		for (int i = 0; i < width; ++i)
-			if (c.isFree(group.body1[i]) && c.isFree(group.body2[i]))
+			if (c.bodies().isFree(group.body1[i]) && c.bodies().isFree(group.body2[i]))
 				for (int k = 0; k < n * n; ++k)
 					edges.push_back({node[group.body1[i]] + k / n, node[group.body2[i]] + k % n});
 	factor.setGraph(int(places.size()), edges);
@@ -187,16 +192,16 @@ void AssemblyMatrix<K>::addPair(const ContactSet<K>& c, int g, int i, int& edge)
 					across[a][b] += vector(0, a) * vector(1, b).transpose() / ofMortar.resistance;
 				}
 	}
-	const int body[2] = {c.groups[g].body1[i], c.groups[g].body2[i]};
+	const int body[2] = {c.layout().groups()[g].body1[i], c.layout().groups()[g].body2[i]};
 	for (int side = 0; side < 2; ++side) {
-		if (!c.isFree(body[side]))
+		if (!c.bodies().isFree(body[side]))
 			continue;
 		for (int a = 0; a < n; ++a)
 			factor.addDiagonal(node[body[side]] + a, own[side][a][a]);
 		if (n > 1)
 			factor.addEdge(node[body[side]] / n, own[side][0][n - 1]);
 	}
-	if (c.isFree(body[0]) && c.isFree(body[1]))
+	if (c.bodies().isFree(body[0]) && c.bodies().isFree(body[1]))
 		for (int k = 0; k < n * n; ++k)
 			factor.addEdge(edge++, across[k / n][k % n]);
 }

@@ -68,7 +68,7 @@ void BasePulse<K>::set(const RigidSystem<K>& s, ContactSet<K>& c) const
 {
 	for (size_t b = 0; b < s.bodies.size(); ++b)
 		if (s.bodies[b].prescribed && s.bodies[b].drive >= 0)
-			c.setLinearVelocity(int(b), velocity[s.bodies[b].drive]);
+			c.setLinearVelocity(b, velocity[s.bodies[b].drive]);
 }
 
 template class BasePulse<Plane>;

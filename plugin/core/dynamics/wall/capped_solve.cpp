@@ -67,8 +67,8 @@ CappedStatus CappedSolve<K>::solve(const RigidSystem<K>& s, const AdmmProblem<K>
 	}
 	results.spins = rows;
 	if (problem.step.instant)
-		status.lost =
-		    kineticEnergy(problem.contacts.velocity) + ledger.work(s, problem.contacts, results) - kineticEnergy(results.velocity);
+		status.lost = kineticEnergy(problem.contacts.bodies().velocity()) + ledger.work(s, problem.contacts, results) -
+		              kineticEnergy(results.velocity);
 	return status;
 }
 

@@ -1,4 +1,5 @@
 #include "dynamics/wall/contact_set.hpp"
+#include "dynamics/model/scales.hpp"
 #include "tolerances.hpp"
 #include <algorithm>
 
@@ -8,243 +9,232 @@ namespace {
 
 constexpr int maxStood = 16; // still steps, in which blocks may go far in small steps
 
+// Angle between two poses near each other, rad.
+double turned(const PlanePose& from, const PlanePose& to) { return std::abs(to.angle - from.angle); }
+double turned(const Pose& from, const Pose& to) { return 2 * (to.orientation.coeffs() - from.orientation.coeffs()).norm(); }
+
+template <class K>
+std::vector<char> freeBodies(const RigidSystem<K>& s)
+{
+	std::vector<char> result;
+	for (const RigidBody<K>& body : s.bodies)
+		result.push_back(!body.prescribed);
+	return result;
+}
+
+template <class K>
+std::vector<ContactLayout::Pair> bodiesOfPairs(const RigidSystem<K>& s)
+{
+	std::vector<ContactLayout::Pair> result;
+	for (const ContactPair<K>& pair : s.pairs)
+		result.push_back({pair.body1, pair.body2});
+	return result;
+}
+
+template <class K>
+std::vector<int> levelsOf(const RigidSystem<K>& s)
+{
+	JointTable table;
+	table.find(s.bodies, s.pairs);
+	return table.levels();
+}
+
 } // namespace
+
+template <class K>
+double ContactSet<K>::touching() const
+{
+	return tolerance::wall::touching * length_;
+}
+
+template <class K>
+bool ContactSet<K>::samePairs(const RigidSystem<K>& s)
+{
+	if (layout_.parts().empty() || s.pairs.size() != layout_.pairs().size() || s.bodies.size() != layout_.free().size())
+		return false;
+	if (!list.isUpToDate(s.list) && bodiesOfPairs(s) != layout_.pairs())
+		return false;
+	list.follow(s.list);
+	return true;
+}
+
+// Lanes that each pair needs; if the pairs `areKnown`, at least those that it has. Pairs without a free body need none.
+template <class K>
+std::vector<int> ContactSet<K>::lanesOf(const RigidSystem<K>& s, bool areKnown) const
+{
+	std::vector<int> lanes;
+	for (const ContactPair<K>& pair : s.pairs) {
+		const bool isHere = !s.bodies[pair.body1].prescribed || !s.bodies[pair.body2].prescribed;
+		const int has = areKnown ? int(layout_.slots(int(lanes.size())).size()) : 0;
+		lanes.push_back(isHere ? std::max(has, lanesFor<K>(pair.size())) : 0);
+	}
+	return lanes;
+}
+
+template <class K>
+void ContactSet<K>::layOut(const RigidSystem<K>& s, const std::vector<int>& lanes)
+{
+	list.follow(s.list);
+	length_ = scale::length(s);
+	layout_.make(bodiesOfPairs(s), lanes, freeBodies(s), levelsOf(s));
+	points_.make();
+}
+
+// Where the list of pairs has changed elsewhere only.
+template <class K>
+bool ContactSet<K>::renumber(const RigidSystem<K>& s)
+{
+	if (!layout_.renumber(bodiesOfPairs(s), lanesOf(s, false), levelsOf(s)))
+		return false;
+	list.follow(s.list);
+	length_ = scale::length(s);
+	return true;
+}
+
+template <class K>
+void ContactSet<K>::takePairs(const RigidSystem<K>& s)
+{
+	const bool sameList = samePairs(s);
+	if (freeBodies(s) == layout_.free() && (sameList || renumber(s)))
+		return;
+	version_.changed();
+	const ContactLayout before = layout_;
+	const ContactPoints<K> from = points_;
+	layOut(s, lanesOf(s, sameList));
+	for (const int c : layout_.numbers())
+		if (sameList && !before.slots(c).empty())
+			points_.bring(from, before.slots(c), c);
+	const LaneBits unknown = points_.unknown();
+	for (size_t g = 0; g < unknown.size(); ++g)
+		if (!unknown[g])
+			points_.countPoints(s, int(g));
+}
 
 // A system whose points are known already.
 template <class K>
-void ContactSet<K>::takeOver(const RigidSystem<K>& s)
+void ContactSet<K>::takeOver(const RigidSystem<K>& s, const std::vector<int>& lanes)
 {
-	findCourses(s);
-	colour(s);
-	takeBodies(s);
-	std::fill(stale.begin(), stale.end(), 0);
-	std::fill(known.begin(), known.end(), 1);
-	for (const int c : numbers) {
-		for (int k = 0; k < lanePoints<K> * int(slots[c].size()); ++k)
-			takePoint(s, c, k);
-		takeFriction(s, c);
+	layOut(s, lanes);
+	bodies_.take(s.bodies);
+	for (const int c : layout_.numbers()) {
+		points_.takePair(s, c);
+		points_.takeFriction(s, c);
 	}
-	for (int g = 0; g < int(groups.size()); ++g)
-		countPoints(s, g);
+	for (size_t g = 0; g < layout_.groups().size(); ++g)
+		points_.countPoints(s, int(g));
 }
 
 template <class K>
-void ContactSet<K>::showPair(RigidSystem<K>& s, int c) const
+void ContactSet<K>::takeFrames(const RigidSystem<K>& s)
 {
-	const double touching = tolerance::mergedClosing * length, perUnit = unit > 0 ? 1 / unit : 0;
-	ContactPair<K>& pair = s.pairs[c];
-	for (int k = 0; k < std::min(pair.size(), lanePoints<K> * int(slots[c].size())); ++k) {
-		const auto [group, lane] = slots[c][k / lanePoints<K>];
-		const PointLanes<K>& p = groups[group].point[k % lanePoints<K>];
-		ContactPoint<K>& point = pair.points[k];
-		point.gap = p.gap[lane];
-		const PointState<K>& now = states[group][k % lanePoints<K>];
-		point.closed = now.pn[lane] > 0 || p.gap[lane] <= touching;
-		point.sliding = now.pn[lane] > 0 && slides(now.pt, groups[group].friction * now.pn)[lane];
-		point.force[0] = now.pn[lane] * perUnit;
-		for (int row = 1; row < K::rows; ++row)
-			point.force[row] = component(now.pt, row - 1, lane) * perUnit;
-		takeFrame(p, features[group].point[k % lanePoints<K>], lane, gyration[pair.body2], point.frame);
-		point.setGrip(point.frame.grip);
-		point.frame.position += s.bodies[pair.body2].pose.position;
-	}
+	layout_.allParts([&](const Part& part, int) { points_.takeFrames(s, part.begin, part.end); });
 }
 
+// Frames as they were where the points are located.
 template <class K>
-void ContactSet<K>::showPoints(RigidSystem<K>& s)
+void ContactSet<K>::takeLocatedFrames(const RigidSystem<K>& s)
 {
-	if (stood == 0 && !numbers.empty()) // else frames are where the bodies are; those of a step that moves are of its start
-		updateFrames(s);
-	for (const int c : numbers)
-		if (known[c])
-			showPair(s, c);
-}
-
-template <class K>
-void ContactSet<K>::placeAll(const RigidSystem<K>& s, const std::vector<typename K::Pose>& poses)
-{
-	eachShare(poses.size(), [&](size_t begin, size_t end, int) {
-		for (size_t b = begin; b < end; ++b) {
-			place(b, poses[b]);
-			setVelocity(b, s.bodies[b].velocity);
-		}
-	});
-}
-
-// Frames as they are where these poses put the bodies, which stay where they are.
-template <class K>
-void ContactSet<K>::placeAt(const RigidSystem<K>& s, const std::vector<typename K::Pose>& poses)
-{
-	takeBodies(s);
-	placeAll(s, poses);
-	allParts([&](const Part& part, int) { takeFrames(s, part.begin, part.end); });
-	takeBodies(s);
-}
-
-// A pivot of a block that turns has the centripetal acceleration a. With the normals and arms of the start of a step it leaves the step
-// with the normal velocity -h a: the gap is allowed to close in the next step, in which the velocity goes from h a/2 to -h a/2, so that its
-// impulse does no work. With those of the middle of the step it goes from h a to zero, and the impulse p does the work p h a/2.
-template <class K>
-void ContactSet<K>::updateFrames(const RigidSystem<K>& s)
-{
-	std::vector<typename K::Pose> poses;
-	for (const auto& body : s.bodies)
-		poses.push_back(body.pose);
-	placeAll(s, poses);
-	allParts([&](const Part& part, int) { takeFrames(s, part.begin, part.end); });
+	auto there = s.bodies;
+	for (size_t b = 0; b < there.size(); ++b)
+		there[b].pose = located[b];
+	bodies_.take(there);
+	takeFrames(s);
+	bodies_.take(s.bodies);
 }
 
 // Whether normals, arms and masses may stay.
 template <class K>
 bool ContactSet<K>::isLocated(const RigidSystem<K>& s) const
 {
-	if (stood == 0 || stood == maxStood || s.moved)
+	if (stood == 0 || stood == maxStood || s.moved || !points_.areKnown() || located.size() != s.bodies.size())
 		return false;
-	for (size_t b = 0; b < s.bodies.size(); ++b) {
-		const auto& body = s.bodies[b];
-		if (!own[b] && !body.prescribed)
-			continue;
-		if (!(turned(located[b], body.pose) <= tolerance::wall::turned) ||
-		    velocity[packs<K> * b][3] != (body.prescribed ? 0 : 1 / body.mass))
+	for (size_t b = 0; b < s.bodies.size(); ++b)
+		if (!(turned(located[b], s.bodies[b].pose) <= tolerance::wall::turned) || bodies_.perMass(b) != s.bodies[b].inverseMass())
 			return false;
-	}
 	return true;
 }
 
+// A pivot of a block that turns has the centripetal acceleration a. With the normals and arms of the start of a step it leaves the step
+// with the normal velocity -h a: the gap is allowed to close in the next step, in which the velocity goes from h a/2 to -h a/2, so that its
+// impulse does no work. With those of the middle of the step it goes from h a to zero, and the impulse p does the work p h a/2.
 template <class K>
-void ContactSet<K>::measure(RigidSystem<K>& s, bool isStill)
+void ContactSet<K>::update(RigidSystem<K>& s, bool isStill)
 {
+	takePairs(s);
 	if (laws.follow(s.laws))
-		for (int c = 0; c < int(slots.size()); ++c)
-			takeFriction(s, c);
-	if (isStill && isLocated(s)) {
-		takeBodies(s);
+		for (const int c : layout_.numbers())
+			points_.takeFriction(s, c);
+	const bool staysLocated = isStill && isLocated(s);
+	bodies_.take(s.bodies);
+	if (staysLocated) {
 		++stood;
 		return;
 	}
-	++changes;
+	version_.changed();
+	LaneBits stale = points_.unknown();
 	if (s.moved)
 		std::fill(stale.begin(), stale.end(), allLanes);
-	takeBodies(s);
-	const double travel = tolerance::wall::search * length;
-	allParts([&](const Part& part, int) {
-		measureGaps(s, part.begin, part.end, travel, false);
+	layout_.allParts([&](const Part& part, int) {
+		points_.measureGaps(s, part.begin, part.end, tolerance::wall::search * length_, false, stale);
 		if (isStill)
-			takeFrames(s, part.begin, part.end);
+			points_.takeFrames(s, part.begin, part.end);
 	});
-	for (wider = true; wider;) {
-		wider = false;
-		lookUpStale(s);
-		if (wider) {   // a pair needs another lane
-			stood = 0; // frames of all
-			showPoints(s);
-			colour(s);
-		}
+	while (lookUpStale(s, stale)) { // a pair needs another lane
+		takeFrames(s);
+		showKnown(s);
+		layOut(s, lanesOf(s, true));
+		stale = points_.unknown();
 	}
 	stood = isStill ? 1 : 0;
-	if (isStill)
-		placeFriction(s);
 	located.clear();
-	for (size_t b = 0; isStill && b < s.bodies.size(); ++b)
-		located.push_back(s.bodies[b].pose);
+	if (!isStill)
+		return takeFrames(s);
+	placeFriction(s);
+	for (const RigidBody<K>& body : s.bodies)
+		located.push_back(body.pose);
 }
 
 template <class K>
-void ContactSet<K>::takeForces(const RigidSystem<K>& s, double h, LaneArray& to)
+void ContactSet<K>::placeFriction(const RigidSystem<K>& s)
 {
-	to.assign(velocity.size(), all(0));
-	eachShare(s.bodies.size(), [&](size_t begin, size_t end, int) {
-		for (size_t b = begin; b < end; ++b)
-			takeForce(s.bodies[b].force, h, b, to);
+	sincePlaced = 0;
+	if (K::dimension == 2) // a motion in a plane turns no face about its normal
+		return;
+	layout_.allParts([&](const Part& part, int) {
+		for (int g = part.begin; g < part.end; ++g) {
+			const LaneGroup& lanes = layout_.groups()[g];
+			for (int i = 0; i < lanes.count; ++i)
+				if (lanes.number[i] == 0)
+					points_.placeFriction(s, lanes.pair[i], touching());
+		}
+		points_.takeFrames(s, part.begin, part.end);
 	});
 }
 
 template <class K>
-void ContactSet<K>::shiftIn(double h)
+void ContactSet<K>::placeFriction(const RigidSystem<K>& s, double h, double interval)
 {
-	shift.resize(velocity.size());
-	for (size_t k = 0; k < shift.size(); ++k)
-		shift[k] = h * velocity[k];
+	sincePlaced += h;
+	if (!(sincePlaced < interval))
+		placeFriction(s);
 }
 
 template <class K>
-void ContactSet<K>::setUnit(double h)
+void ContactSet<K>::showKnown(RigidSystem<K>& s) const
 {
-	if (h == unit)
-		return;
-	const Lanes factor = all(unit > 0 ? h / unit : 1);
-	const bool grows = unit > 0 && h > 3 * unit; // more than a step that a kink has halved
-	for (GroupState<K>& group : states)
-		for (PointState<K>& p : group) {
-			if (grows) { // what is more than the mean is of an impact
-				const Lanes share = p.pn > p.filteredImpulse ? p.filteredImpulse / p.pn : all(1);
-				p.pn *= share;
-				p.pt *= share;
-			}
-			p.pn *= factor;
-			p.pt *= factor;
-			p.filteredImpulse *= factor;
-		}
-	unit = h;
+	for (const int c : layout_.numbers())
+		if (points_.isKnown(c))
+			points_.show(s, c, tolerance::mergedClosing * length_);
 }
 
 template <class K>
-void ContactSet<K>::clearOpen()
+void ContactSet<K>::showPoints(RigidSystem<K>& s)
 {
-	for (size_t g = 0; g < groups.size(); ++g)
-		for (int k = 0; k < lanePoints<K>; ++k) {
-			PointState<K>& p = states[g][k];
-			const Mask open = groups[g].point[k].gap > all(tolerance::wall::touching * length);
-			p.pn = open ? all(0) : p.pn;
-			p.pt = select(open, typename PointState<K>::Tangent {}, p.pt);
-		}
-}
-
-// A moved body stops all blocks at once, or carries so many times their weight and the loads on them. `fall`: the speed that these give in
-// a step, m/s.
-template <class K>
-void ContactSet<K>::limitMoved(const RigidSystem<K>& s, double fall)
-{
-	const Lanes* seen = nullptr;
-	double limit = 0;
-	for (const auto& [g, i] : onBase) {
-		Group<K>& group = groups[g];
-		const int base = own[group.body1[i]] ? group.body2[i] : group.body1[i];
-		const Lanes* v = &velocity[packs<K> * base];
-		double moves = 0, isNew = seen ? 0 : 1;
-		for (int pack = 0; pack < packs<K>; ++pack)
-			for (int k = 0; k < 3; ++k) {
-				moves += std::abs(v[pack][k]);
-				isNew += seen ? std::abs(v[pack][k] - seen[pack][k]) : 0;
-			}
-		group.most[i] = farAway;
-		if (!(moves > 0))
-			continue;
-		if (isNew > 0) {
-			double fastest = 0;
-			for (size_t b = 0; b < s.bodies.size(); ++b) {
-				const Lanes* w = &velocity[packs<K> * b];
-				double square = 0;
-				for (int pack = 0; own[b] && pack < packs<K>; ++pack)
-					for (int k = 0; k < 3; ++k)
-						square += (w[pack][k] - v[pack][k]) * (w[pack][k] - v[pack][k]);
-				fastest = std::max(fastest, square);
-			}
-			limit = freeMass(s) * (tolerance::contactProblem::maxWeights * fall + std::sqrt(fastest));
-			seen = v;
-		}
-		group.most[i] = limit;
+	if (stood == 0 && !layout_.numbers().empty()) { // else frames are where the bodies are; those of a step that moves are of its start
+		bodies_.take(s.bodies);
+		takeFrames(s);
 	}
-}
-
-template <class K>
-void ContactSet<K>::addJammed(const PointStates<K>& of, std::vector<int>& bodies) const
-{
-	constexpr double nearly = 0.9; // as in isAtLimit
-	for (const auto& [g, i] : onBase)
-		for (int k = 0; k < groups[g].count; ++k)
-			if (const double normal = of[g][k].pn[i]; normal > 0 && normal >= nearly * groups[g].most[i])
-				bodies.insert(bodies.end(), {groups[g].body1[i], groups[g].body2[i]});
+	showKnown(s);
 }
 
 template class ContactSet<Plane>;

@@ -6,11 +6,11 @@
 namespace masonry::wall {
 
 template <class K>
-void EnergyLedger<K>::open(const RigidSystem<K>& s, const ContactSet<K>& c, const std::vector<typename K::Vector>& halfBack)
+void EnergyLedger<K>::open(const RigidSystem<K>& s, const BodyLanes<K>& bodies, const std::vector<typename K::Vector>& halfBack)
 {
 	kinetic = s.kineticEnergy();
 	baseWork = friction = crack = forces = lifted = power = 0;
-	before = c.velocity;
+	before = bodies.velocity();
 	last.swap(undriven);
 	undriven.clear();
 	std::vector<size_t> places;
@@ -22,7 +22,7 @@ void EnergyLedger<K>::open(const RigidSystem<K>& s, const ContactSet<K>& c, cons
 			before[packs<K> * b][k] += 2 * halfBack[drive][k];
 		for (int pack = 0; pack < packs<K> && drive < 0; ++pack) {
 			places.push_back(packs<K> * b + pack);
-			undriven.push_back(c.velocity[places.back()]);
+			undriven.push_back(before[places.back()]);
 		}
 	}
 	for (size_t k = 0; k < places.size() && last.size() == places.size(); ++k)
@@ -33,13 +33,14 @@ template <class K>
 double EnergyLedger<K>::work(const RigidSystem<K>& s, const ContactSet<K>& c, const AdmmResults<K>& results) const
 {
 	double sum = 0;
-	for (const auto& [g, i] : c.onBase) {
-		const Group<K>& group = c.groups[g];
+	const LaneArray& velocity = c.bodies().velocity();
+	for (const auto& [g, i] : c.layout().onBase()) {
+		const Group<K>& group = c.points().groups()[g];
 		const bool first = s.bodies[group.body1[i]].prescribed;
 		const int base = (first ? group.body1 : group.body2)[i];
 		Lanes mean[packs<K>];
 		for (int pack = 0; pack < packs<K>; ++pack)
-			mean[pack] = (before[packs<K> * base + pack] + c.velocity[packs<K> * base + pack]) / 2;
+			mean[pack] = (before[packs<K> * base + pack] + velocity[packs<K> * base + pack]) / 2;
 		for (int k = 0; k < group.count; ++k) {
 			const auto& row = results.points[g][k];
 			for (int r = 0; r < K::rows; ++r) {
@@ -49,12 +50,12 @@ double EnergyLedger<K>::work(const RigidSystem<K>& s, const ContactSet<K>& c, co
 		}
 	}
 	for (const SpinRow<K>& row : results.spins)
-		sum += row.couple * row.baseSpin(c.velocity);
+		sum += row.couple * row.baseSpin(velocity);
 	for (const TieRow<K>& row : results.ties)
-		sum -= row.impulse * (row.baseRate(before) + row.baseRate(c.velocity)) / 2;
+		sum -= row.impulse * (row.baseRate(before) + row.baseRate(velocity)) / 2;
 	for (const MortarRow<K>& row : results.mortar)
 		for (int k = 0; k < K::rows; ++k)
-			sum -= row.p[k] * (row.arms[k].baseRate(before) + row.arms[k].baseRate(c.velocity)) / 2;
+			sum -= row.p[k] * (row.arms[k].baseRate(before) + row.arms[k].baseRate(velocity)) / 2;
 	return sum;
 }
 

@@ -31,7 +31,7 @@ public:
 	// Starts a part of a step, or an instant: energies as they are before it. `halfBack`, by drive: from the velocity of the base in it to
 	// the mean of those before and after, m/s. Prescribed bodies without a drive, whose velocities a script may set, had those of the last
 	// call.
-	void open(const RigidSystem<K>& system, const ContactSet<K>& contacts, const std::vector<typename K::Vector>& halfBack);
+	void open(const RigidSystem<K>& system, const BodyLanes<K>& bodies, const std::vector<typename K::Vector>& halfBack);
 	// Undoes the last open(), before another one of the same instant.
 	void takeBack() { undriven.swap(last); }
 	// Returns the velocities before it, in the packs of the contacts, those of the base included.

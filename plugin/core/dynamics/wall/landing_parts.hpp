@@ -6,7 +6,7 @@
 // do not reach an impact throughout them, so that in shorter steps it loses too little.
 //
 // The energy is that of the motion relative to the centre of mass of all free blocks, so that it is the same for every motion of the base.
-#include "dynamics/wall/contact_set.hpp"
+#include "dynamics/wall/contact_groups.hpp"
 #include <algorithm>
 #include <cmath>
 

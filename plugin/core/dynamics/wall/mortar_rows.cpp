@@ -112,12 +112,12 @@ void Mortar<K>::find(const RigidSystem<K>& s, const ContactSet<K>& c)
 	for (size_t j = 0; j < s.mortar.size(); ++j)
 		joints.push_back({{s.mortar[j].body1, s.mortar[j].body2}, int(j)});
 	std::sort(joints.begin(), joints.end());
-	slots.assign(s.mortar.size(), {});
-	for (int g = 0; g < int(c.groups.size()); ++g)
-		for (int i = 0; i < width; ++i) {
-			if (c.features[g].pair[i] < 0 || c.features[g].first[i] > 0)
+	slots.assign(s.mortar.size(), {-1, -1});
+	for (int g = 0; g < int(c.layout().groups().size()); ++g)
+		for (int i = 0; i < c.layout().groups()[g].count; ++i) {
+			if (c.layout().groups()[g].number[i] > 0)
 				continue;
-			const ContactPair<K>& pair = s.pairs[c.features[g].pair[i]];
+			const ContactPair<K>& pair = s.pairs[c.layout().groups()[g].pair[i]];
 			const std::array<int, 2> bodies {pair.body1, pair.body2};
 			const auto at = std::lower_bound(joints.begin(), joints.end(), std::pair(bodies, 0));
 			if (at != joints.end() && at->first == bodies)
@@ -133,7 +133,7 @@ void Mortar<K>::begin(const RigidSystem<K>& s, const ContactSet<K>& c, const Lan
 	if (s.mortar.empty())
 		return;
 	find(s, c);
-	strength.resize(c.groups.size());
+	strength.resize(c.layout().groups().size());
 	const double time = h > 0 ? h : 1 / std::numeric_limits<float>::epsilon(); // s
 	for (int j = 0; j < int(s.mortar.size()); ++j) {
 		const MortarJoint<K>& joint = s.mortar[j];
@@ -172,13 +172,13 @@ void Mortar<K>::addRows(const RigidSystem<K>& s, const ContactSet<K>& c, const L
 		for (int r = 0; r < K::rows; ++r) {
 			const typename K::Vector axis = axes.row(r);
 			row.arms[r].body = {joint.body1, joint.body2};
-			row.arms[r].arm[0] = speedArm(c, joint.body1, -axis, at1 - pose1.position);
-			row.arms[r].arm[1] = speedArm(c, joint.body2, axis, at2 - pose2.position);
+			row.arms[r].arm[0] = speedArm(c.bodies(), joint.body1, -axis, at1 - pose1.position);
+			row.arms[r].arm[1] = speedArm(c.bodies(), joint.body2, axis, at2 - pose2.position);
 			row.before[r] = row.arms[r].rate(before);
 			row.p[r] = h * point.force[r];
 			row.z[r] = row.u[r] = 0;
 		}
-		row.massN = 1 / row.arms[0].perMass(c.velocity);
+		row.massN = 1 / row.arms[0].perMass(c.bodies().velocity());
 		row.friction = joint.law.friction;
 		row.openingRate = joint.law.openingRate();
 		row.slipRate = joint.law.slipRate();
@@ -201,8 +201,8 @@ std::vector<int> Mortar<K>::yielding(const RigidSystem<K>& s, const ContactSet<K
 		if (!joint.isRigid || g < 0)
 			continue;
 		double most = 0;
-		for (int k = 0; k < c.groups[g].count; ++k) {
-			const PointLanes<K>& at = c.groups[g].point[k];
+		for (int k = 0; k < c.points().groups()[g].count; ++k) {
+			const PointLanes<K>& at = c.points().groups()[g].point[k];
 			const auto rate = [&, lane = i](int row, const LaneArray& v) {
 				return rateOf(at, row, lane, 2, &v[packs<K> * joint.body2]) - rateOf(at, row, lane, 1, &v[packs<K> * joint.body1]);
 			};
@@ -210,7 +210,7 @@ std::vector<int> Mortar<K>::yielding(const RigidSystem<K>& s, const ContactSet<K
 			const double opens = at.gap[i] + h * std::max(rate(0, after), rate(0, before) / 2);
 			double slides = 0;
 			for (int row = 1; row < K::rows; ++row)
-				slides = std::max(slides, std::abs(component(c.states[g][k].slip, row - 1, i)) +
+				slides = std::max(slides, std::abs(component(c.points().states()[g][k].slip, row - 1, i)) +
 				                              h * std::max(std::abs(rate(row, after)), std::abs(rate(row, before)) / 2));
 			most = std::max(most, joint.law.openingRate() * opens + joint.law.slipRate() * slides);
 		}
@@ -229,8 +229,8 @@ void Mortar<K>::letGo(RigidSystem<K>& s, const ContactSet<K>& c, const std::vect
 		joint.isRigid = false;
 		// A first guess of the forces: the tension is that of a corner, and half of the shear is at each point.
 		typename CohesivePoint<K>::Force force = CohesivePoint<K>::Force::Zero();
-		for (int k = 0; k < c.groups[g].count; ++k) {
-			const PointState<K>& p = c.states[g][k];
+		for (int k = 0; k < c.points().groups()[g].count; ++k) {
+			const PointState<K>& p = c.points().states()[g][k];
 			force[0] = std::min(force[0], p.pn[i] / h);
 			for (int row = 1; row < K::rows; ++row)
 				force[row] += component(p.pt, row - 1, i) / (h * joint.points.size());
@@ -268,8 +268,8 @@ MortarWork Mortar<K>::finish(RigidSystem<K>& s, ContactSet<K>& c, const std::vec
 		// Of a crack that is stopped, corners that are pressed meanwhile take their part of the pull.
 		double pull = -row.p[0];
 		if (row.z[0] <= clear * missed)
-			for (int corner = 0; corner < c.groups[row.group].count; ++corner)
-				pull -= point.area / joint.area * std::max(0., c.states[row.group][corner].pn[row.lane]);
+			for (int corner = 0; corner < c.points().groups()[row.group].count; ++corner)
+				pull -= point.area / joint.area * std::max(0., c.points().states()[row.group][corner].pn[row.lane]);
 		point.openingDamage += std::max(0., pull) * opening / (h * point.area * joint.law.fractureEnergy);
 		point.slipDamage += row.bound[1] * slip / (h * point.area * joint.law.shearFractureEnergy);
 		const double damage = point.openingDamage + point.slipDamage;
@@ -294,11 +294,12 @@ void Mortar<Plane>::hold(MortarJoint<Plane>& joint, const Slot& slot, ContactSet
 {
 	constexpr double within = 0.95; // share of the strength. Larger: joints yield again at once
 	const auto [g, i] = slot;
-	const PointLanes<Plane>* corners[2] = {&c.groups[g].point[0], &c.groups[g].point[1]};
-	PointState<Plane>* states[2] = {&c.states[g][0], &c.states[g][1]};
-	const int side = c.isFree(joint.body2) ? 1 : 0;
+	const PointLanes<Plane>* corners[2] = {&c.points().groups()[g].point[0], &c.points().groups()[g].point[1]};
+	const int pair = c.layout().groups()[g].pair[i];
+	OneState<Plane> states[2] = {c.points().state(pair, 0), c.points().state(pair, 1)};
+	const int side = c.bodies().isFree(joint.body2) ? 1 : 0;
 	const auto armOf = [&](int k) { return side == 1 ? corners[k]->a2n[i] : corners[k]->a1n[i]; };
-	double normal[2] = {states[0]->pn[i], states[1]->pn[i]}, shear = states[0]->pt[i] + states[1]->pt[i];
+	double normal[2] = {states[0].pn, states[1].pn}, shear = states[0].pt[0] + states[1].pt[0];
 	for (const MortarRow<Plane>* row : of) {
 		const double arm = (side == 1 ? 1 : -1) * row->arms[0].arm[side][0][2], share = (arm - armOf(0)) / (armOf(1) - armOf(0));
 		normal[0] += (1 - share) * row->p[0];
@@ -316,8 +317,9 @@ void Mortar<Plane>::hold(MortarJoint<Plane>& joint, const Slot& slot, ContactSet
 		point.force.setZero();
 	}
 	for (int k = 0; k < 2; ++k) {
-		states[k]->pn[i] = normal[k];
-		states[k]->pt[i] = shear / 2;
+		states[k].pn = normal[k];
+		states[k].pt[0] = shear / 2;
+		c.setState(states[k], pair, k);
 	}
 }
 

@@ -23,6 +23,7 @@
 // The damage of a step is the work of p_n and c_t over the fracture energies. A joint that yields and has not been damaged is rigid again
 // when it is closed and its forces are within its strength.
 #include "dynamics/model/rigid_system.hpp"
+#include "dynamics/wall/contact_set.hpp"
 #include "dynamics/wall/tie_rows.hpp"
 
 namespace masonry::wall {
@@ -108,9 +109,6 @@ public:
 	Array<Strength> strength; // by group; empty: no mortar
 
 private:
-	struct Slot {
-		int group {-1}, lane {-1};
-	};
 	void find(const RigidSystem<K>& system, const ContactSet<K>& contacts);
 	void addRows(const RigidSystem<K>& system, const ContactSet<K>& contacts, const LaneArray& before, int joint, double h);
 	void hold(MortarJoint<K>& joint, const Slot& slot, ContactSet<K>& contacts, const std::vector<const MortarRow<K>*>& rows,

@@ -7,6 +7,7 @@
 #include "contact/kinematics.hpp"
 #include "simd/lanes.hpp"
 #include <array>
+#include <cmath>
 
 namespace masonry::wall {
 
@@ -53,11 +54,36 @@ MASONRY_INLINE Lanes2 select(const Mask& mask, const Lanes2& a, const Lanes2& b)
 	return {select(mask, a.x, b.x), select(mask, a.y, b.y)};
 }
 template <class K>
+struct BodyPacks;
+template <class K>
 struct Bodies;
 template <class K>
 struct PointLanes;
 template <class K>
 struct FeatureLanes;
+
+// How the pose, the velocity and forces of a body are packed; rho: radius of gyration. The pose is (position, cosine, sine).
+template <>
+struct BodyPacks<Plane> {
+	static constexpr int poses = 1; // packs of a pose
+
+	static Plane::Spin gyration(const Plane::Inertia& inertia, double mass) { return Plane::Spin(std::sqrt(inertia[0] * (1 / mass))); }
+	static void place(const PlanePose& at, const Plane::Spin&, Lanes* pose)
+	{
+		*pose = Lanes {at.position.x(), at.position.y(), at.cosine, at.sine};
+	}
+	static Vector2 position(const Lanes* pose) { return {pose[0][0], pose[0][1]}; }
+	static void setVelocity(const Plane::Velocity& v, const Lanes*, const Plane::Spin& rho, double perMass, Lanes* to)
+	{
+		*to = Lanes {v[0], v[1], rho[0] * v[2], perMass};
+	}
+	static Plane::Velocity inGlobal(const Lanes* v, const Lanes*, const Plane::Spin& rho) { return {v[0][0], v[0][1], v[0][2] / rho[0]}; }
+	// A force and its moment times a factor.
+	static std::array<Lanes, 1> ofForce(const Plane::Velocity& force, double factor, const Lanes*, const Plane::Spin& rho)
+	{
+		return {factor * Lanes {force[0], force[1], force[2] / rho[0], 0}};
+	}
+};
 
 // Velocities of bodies: packs of `from` in, one lane a body out.
 template <>

@@ -1,8 +1,5 @@
-// Contact points in the plane: the parts of ContactSet (contact_set.hpp) that depend on the dimension.
-#include "contact/point_geometry.hpp"
-#include "dynamics/wall/contact_set.hpp"
+#include "dynamics/wall/point_passes.hpp"
 #include "tolerances.hpp"
-#include <cmath>
 
 namespace masonry::wall {
 
@@ -48,7 +45,7 @@ MASONRY_INLINE Mask measureGroup(Group<Plane>& group, FeatureGroup<Plane>& featu
 	const Lanes passed = all(tolerance::wall::leftFace / tolerance::wall::search * travel);
 	Mask stale {};
 	for (int k = 0; k < lanePoints<Plane>; ++k) {
-		FeatureLanes<Plane>& f = features.point[k];
+		FeatureLanes<Plane>& f = features[k];
 		const auto at = located(f, p1, p2);
 		const Lanes shift = at.outward.x * at.from.y - at.outward.y * at.from.x; // along the face
 		if (anew) {
@@ -76,7 +73,7 @@ MASONRY_INLINE void frameGroup(Group<Plane>& group, const FeatureGroup<Plane>& f
 	}
 	const Lanes none = all(0), one = all(1), perRho1 = one / rho1, perRho2 = one / rho2;
 	for (int k = 0; k < lanePoints<Plane>; ++k) {
-		const FeatureLanes<Plane>& f = features.point[k];
+		const FeatureLanes<Plane>& f = features[k];
 		PointLanes<Plane>& p = group.point[k];
 		const auto at = located(f, p1, p2);
 		p.nx = select(f.vertexOn1, -at.outward.x, at.outward.x);
@@ -91,110 +88,31 @@ MASONRY_INLINE void frameGroup(Group<Plane>& group, const FeatureGroup<Plane>& f
 	}
 }
 
-MASONRY_LANES void measureGroups(Group<Plane>* groups, FeatureGroup<Plane>* features, unsigned char* stale, size_t count, const Lanes* pose,
-                                 double travel, bool remember)
-{
-	for (size_t g = 0; g < count; ++g)
-		stale[g] |= bitsOf(measureGroup(groups[g], features[g], pose, travel, remember ? stale[g] : 0));
-}
-
-MASONRY_LANES void frameGroups(Group<Plane>* groups, const FeatureGroup<Plane>* features, size_t count, const Lanes* pose,
-                               const Lanes* velocity, const Plane::Spin* gyration)
-{
-	for (size_t g = 0; g < count; ++g)
-		frameGroup(groups[g], features[g], pose, velocity, gyration);
-}
-
 } // namespace
 
-template <>
-void ContactSet<Plane>::measureGaps(const RigidSystem<Plane>&, int begin, int end, double travel, bool remember)
+MASONRY_LANES void measureGaps(const PointPass<Plane>& pass, double travel, bool remember, unsigned char* stale)
 {
-	measureGroups(groups.data() + begin, features.data() + begin, stale.data() + begin, end - begin, pose.data(), travel, remember);
+	for (int g = pass.begin; g < pass.end; ++g)
+		stale[g] |= bitsOf(measureGroup(pass.groups[g], pass.features[g], pass.bodies.pose(), travel, remember ? stale[g] : 0));
 }
 
-template <>
-void ContactSet<Plane>::takeFrames(const RigidSystem<Plane>&, int begin, int end)
+MASONRY_LANES void takeFrames(const PointPass<Plane>& pass)
 {
-	frameGroups(groups.data() + begin, features.data() + begin, end - begin, pose.data(), velocity.data(), gyration.data());
+	const Lanes* velocity = pass.bodies.velocity().data();
+	for (int g = pass.begin; g < pass.end; ++g)
+		frameGroup(pass.groups[g], pass.features[g], pass.bodies.pose(), velocity, &pass.bodies.gyration(0));
 }
 
-template <>
-void ContactSet<Plane>::takeBodies(const RigidSystem<Plane>& s)
+void setFeature(FeatureLanes<Plane>& to, int lane, const Feature& feature, const Solid<ConvexPolygon>& shape1,
+                const Solid<ConvexPolygon>& shape2)
 {
-	const size_t n = s.bodies.size();
-	velocity.resize(n + 1);
-	pose.resize(n + 1);
-	gyration.resize(n + 1);
-	eachShare(n, [&](size_t begin, size_t end, int) {
-		for (size_t b = begin; b < end; ++b) {
-			const auto& body = s.bodies[b];
-			const double perMass = own[b] ? 1 / body.mass : 0;
-			gyration[b][0] = own[b] ? std::sqrt(body.inertia[0] * perMass) : 1;
-			velocity[b][3] = perMass;
-			place(b, body.pose);
-			setVelocity(b, body.velocity);
-		}
-	});
-	velocity[n] = all(0);
-	pose[n] = Lanes {0, 0, 1, 0};
-	gyration[n][0] = 1;
-}
-
-template <>
-void ContactSet<Plane>::place(size_t b, const PlanePose& at)
-{
-	pose[b] = Lanes {at.position.x(), at.position.y(), at.cosine, at.sine};
-}
-
-template <>
-void ContactSet<Plane>::takePoint(const RigidSystem<Plane>& s, int c, int k)
-{
-	const ContactPair<Plane>& pair = s.pairs[c];
-	const auto [group, lane] = slots[c][0];
-	FeatureLanes<Plane>& f = features[group].point[k];
-	const bool present = k < pair.size();
-	const Feature feature = present ? pair.points[k].feature : Feature::ofVertex(1, 0, 0); // any will tell how far the pair moves
-	const auto &shape1 = *s.bodies[pair.body1].shape, &shape2 = *s.bodies[pair.body2].shape;
 	const PointGeometry<Plane> geometry = geometryOf(feature, shape1, shape2);
 	const FaceReach reach = reachOf(geometry.vertexOn1 ? shape2 : shape1, feature.face());
-	f.present[lane] = present ? -1 : 0;
-	f.vertexOn1[lane] = geometry.vertexOn1 ? -1 : 0;
-	f.vertex.x[lane] = geometry.vertex.x(), f.vertex.y[lane] = geometry.vertex.y();
-	f.normal.x[lane] = geometry.normal.x(), f.normal.y[lane] = geometry.normal.y();
-	f.faceDistance[lane] = geometry.distance;
-	f.faceBegin[lane] = reach.low, f.faceEnd[lane] = reach.high;
-}
-
-// A face of a polygon ends at its corners.
-template <>
-void ContactSet<Plane>::measureCorners(const RigidSystem<Plane>&, int, int)
-{
-}
-
-template <>
-Vector2 ContactSet<Plane>::position(size_t b) const
-{
-	return {pose[b][0], pose[b][1]};
-}
-
-template <>
-void ContactSet<Plane>::setVelocity(size_t b, const Plane::Velocity& v)
-{
-	velocity[b] = Lanes {v[0], v[1], gyration[b][0] * v[2], velocity[b][3]};
-}
-
-// A motion in a plane turns no face about its normal.
-template <>
-void ContactSet<Plane>::placeFriction(const RigidSystem<Plane>&, int)
-{
-}
-
-template <>
-void ContactSet<Plane>::takeForce(const Plane::Velocity& force, double h, size_t b, LaneArray& to) const
-{
-	const double perMass = velocity[b][3];
-	to[b] = h * perMass * Lanes {force[0], force[1], force[2] / gyration[b][0], 0};
+	to.vertexOn1[lane] = geometry.vertexOn1 ? -1 : 0;
+	to.vertex.x[lane] = geometry.vertex.x(), to.vertex.y[lane] = geometry.vertex.y();
+	to.normal.x[lane] = geometry.normal.x(), to.normal.y[lane] = geometry.normal.y();
+	to.faceDistance[lane] = geometry.distance;
+	to.faceBegin[lane] = reach.low, to.faceEnd[lane] = reach.high;
 }
 
 } // namespace masonry::wall

@@ -1,4 +1,6 @@
-#include "dynamics/wall/points_advance.hpp"
+// Gaps and slips follow the motion of the bodies.
+#include "dynamics/wall/admm_results.hpp"
+#include "dynamics/wall/contact_points.hpp"
 
 namespace masonry::wall {
 
@@ -50,22 +52,45 @@ MASONRY_INLINE void advanceGroups(const AdvancePass<K>& pass, Ended& ended)
 	}
 }
 
+// Gaps as the bodies move. Returns the largest depth.
+template <class K>
+MASONRY_INLINE Lanes displaceGroups(Group<K>* groups, int begin, int end, const Lanes* by)
+{
+	Lanes deepest = all(0);
+	for (int g = begin; g < end; ++g) {
+		const Bodies<K> v1(by, groups[g].body1), v2(by, groups[g].body2);
+		for (int k = 0; k < groups[g].count; ++k) {
+			groups[g].point[k].gap += normalRate(v1, v2, groups[g].point[k]);
+			deepest = larger(deepest, -groups[g].point[k].gap);
+		}
+	}
+	return deepest;
+}
+
 // No template is compiled for several vector widths.
+MASONRY_LANES double displacePass(Group<Plane>* groups, int begin, int end, const Lanes* by)
+{
+	return largest(displaceGroups(groups, begin, end, by));
+}
+MASONRY_LANES double displacePass(Group<Space>* groups, int begin, int end, const Lanes* by)
+{
+	return largest(displaceGroups(groups, begin, end, by));
+}
 MASONRY_LANES void advancePass(const AdvancePass<Plane>& pass, Ended& ended) { advanceGroups(pass, ended); }
 MASONRY_LANES void advancePass(const AdvancePass<Space>& pass, Ended& ended) { advanceGroups(pass, ended); }
 
 } // namespace
 
 template <class K>
-PointsReport advancePoints(ContactSet<K>& c, const AdmmResults<K>& results, const LaneArray& before, double h, double level)
+PointsReport ContactPoints<K>::advance(const AdmmResults<K>& results, const LaneArray& before, double h, double level)
 {
 	Ended ended[Team::maxParts + 1] {};
 	PointsReport result;
-	result.reached.resize(c.groups.size());
-	result.moving.resize(c.groups.size());
-	c.allParts([&](const Part& part, int number) {
-		const AdvancePass<K> pass {c.groups.data(), c.states.data(),       results.points.data(), part.begin, part.end, before.data(), h,
-		                           level,           result.reached.data(), result.moving.data()};
+	result.reached.resize(groups_.size());
+	result.moving.resize(groups_.size());
+	layout.allParts([&](const Part& part, int number) {
+		const AdvancePass<K> pass {groups_.data(), states_.data(),        results.points.data(), part.begin, part.end, before.data(), h,
+		                           level,          result.reached.data(), result.moving.data()};
 		advancePass(pass, ended[number]);
 	});
 	for (const Ended& here : ended) {
@@ -75,7 +100,17 @@ PointsReport advancePoints(ContactSet<K>& c, const AdmmResults<K>& results, cons
 	return result;
 }
 
-template PointsReport advancePoints(ContactSet<Plane>&, const AdmmResults<Plane>&, const LaneArray&, double, double);
-template PointsReport advancePoints(ContactSet<Space>&, const AdmmResults<Space>&, const LaneArray&, double, double);
+template <class K>
+double ContactPoints<K>::displace(const LaneArray& by)
+{
+	std::array<double, Team::maxParts + 1> left {};
+	layout.allParts([&](const Part& part, int number) { left[number] = displacePass(groups_.data(), part.begin, part.end, by.data()); });
+	return *std::max_element(left.begin(), left.end());
+}
+
+template PointsReport ContactPoints<Plane>::advance(const AdmmResults<Plane>&, const LaneArray&, double, double);
+template PointsReport ContactPoints<Space>::advance(const AdmmResults<Space>&, const LaneArray&, double, double);
+template double ContactPoints<Plane>::displace(const LaneArray&);
+template double ContactPoints<Space>::displace(const LaneArray&);
 
 } // namespace masonry::wall

@@ -24,11 +24,24 @@ struct alignas(2 * alignment) Missing { // a line of the cache of its own
 	Lanes most;
 };
 
+// A pass over the groups begin .. end - 1, or over these places of `upwards`.
+template <class K>
+struct LiftPass {
+	const Group<K>* groups;
+	const GroupState<K>* states;
+	typename PositionProjection<K>::Points* points;
+	const int* upwards;
+	int *last, *seen;
+	Lanes* moved;
+	double length;
+	int begin, end;
+};
+
 // Returns whether some pair is too deep. Groups without one are as if they had been looked at, at the first instant.
 template <class K>
-MASONRY_INLINE bool prepareGroups(const Group<K>* groups, const GroupState<K>* states, typename PositionProjection<K>::Points* points,
-                                  int begin, int end, int* seen, const Lanes* moved, double length)
+MASONRY_INLINE bool prepareGroups(const LiftPass<K>& pass)
 {
+	const auto [groups, states, points, upwards, last, seen, moved, length, begin, end] = pass;
 	const Lanes none = all(0), deep = all(-tolerance::wall::penetration * length), allowed = all(-tolerance::wall::lifted * length);
 	bool some = false;
 	for (int g = begin; g < end; ++g) {
@@ -48,12 +61,16 @@ MASONRY_INLINE bool prepareGroups(const Group<K>* groups, const GroupState<K>* s
 	return some;
 }
 
+// The depth that counts as taken off, m.
+double enough(double length) { return (tolerance::wall::penetration - tolerance::wall::lifted) * length; }
+
 // Groups of which no block has moved since they were looked at stay. Each place of each sweep is an instant; `first` is that of place 0.
 template <class K>
-MASONRY_INLINE void liftGroups(const Group<K>* groups, typename PositionProjection<K>::Points* points, const int* upwards, int begin,
-                               int end, int first, int* last, int* seen, double small, Lanes* moved, Lanes& missing)
+MASONRY_INLINE void liftGroups(const LiftPass<K>& pass, int first, Lanes& missing)
 {
+	const auto [groups, states, points, upwards, last, seen, moved, length, begin, end] = pass;
 	const Lanes none = all(0);
+	const double small = passedOn * enough(length);
 	for (int place = begin; place < end; ++place) {
 		const int g = upwards[place], now = first + place;
 		const Group<K>& group = groups[g];
@@ -87,76 +104,55 @@ MASONRY_INLINE void liftGroups(const Group<K>* groups, typename PositionProjecti
 	}
 }
 
-template <class K>
-MASONRY_INLINE Lanes partGroups(Group<K>* groups, int begin, int end, const Lanes* moved)
-{
-	Lanes deepest = all(0);
-	for (int g = begin; g < end; ++g) {
-		const Bodies<K> v1(moved, groups[g].body1), v2(moved, groups[g].body2);
-		for (int k = 0; k < groups[g].count; ++k) {
-			groups[g].point[k].gap += normalRate(v1, v2, groups[g].point[k]);
-			deepest = larger(deepest, -groups[g].point[k].gap);
-		}
-	}
-	return deepest;
-}
-
 // No template is compiled for several vector widths.
-#define MASONRY_LIFT(K)                                                                                                                    \
-	MASONRY_LANES bool anyDeep(const Group<K>* groups, const GroupState<K>* states, PositionProjection<K>::Points* points, int begin,      \
-	                           int end, int* seen, const Lanes* moved, double length)                                                      \
-	{                                                                                                                                      \
-		return prepareGroups<K>(groups, states, points, begin, end, seen, moved, length);                                                  \
-	}                                                                                                                                      \
-	MASONRY_LANES void liftSweep(const Group<K>* groups, PositionProjection<K>::Points* points, const int* upwards, int begin, int end,    \
-	                             int first, int* last, int* seen, double small, Lanes* moved, Lanes& missing)                              \
-	{                                                                                                                                      \
-		liftGroups<K>(groups, points, upwards, begin, end, first, last, seen, small, moved, missing);                                      \
-	}                                                                                                                                      \
-	MASONRY_LANES double partGaps(Group<K>* groups, int begin, int end, const Lanes* moved)                                                \
-	{                                                                                                                                      \
-		return largest(partGroups<K>(groups, begin, end, moved));                                                                          \
-	}
-MASONRY_LIFT(Plane)
-MASONRY_LIFT(Space)
-#undef MASONRY_LIFT
+MASONRY_LANES bool preparePass(const LiftPass<Plane>& pass) { return prepareGroups(pass); }
+MASONRY_LANES bool preparePass(const LiftPass<Space>& pass) { return prepareGroups(pass); }
+MASONRY_LANES void liftPass(const LiftPass<Plane>& pass, int first, Lanes& missing) { liftGroups(pass, first, missing); }
+MASONRY_LANES void liftPass(const LiftPass<Space>& pass, int first, Lanes& missing) { liftGroups(pass, first, missing); }
 
 } // namespace
 
 template <class K>
-double PositionProjection<K>::settle(ContactSet<K>& c)
+const LaneArray& PositionProjection<K>::find(const ContactSet<K>& c)
 {
 	static const auto share = sharesOfCourses();
-	points.resize(c.groups.size());
-	seen.resize(c.groups.size());
-	moved.assign(c.velocity.size(), all(0));
-	for (size_t b = 0; b < c.supportLevel.size(); ++b)
+	const ContactLayout& layout = c.layout();
+	const std::vector<int>& levels = layout.levels();
+	const int size = int(layout.groups().size());
+	points.resize(size);
+	seen.resize(size);
+	last.assign(levels.size() + 1, 0);
+	moved.assign(c.bodies().velocity().size(), all(0));
+	for (size_t b = 0; b < levels.size(); ++b)
 		for (int pack = 0; pack < packs<K>; ++pack)
-			moved[packs<K> * b + pack][3] = c.velocity[packs<K> * b][3] * share[std::clamp(c.supportLevel[b], 0, highestLevel)];
+			moved[packs<K> * b + pack][3] = c.bodies().perMass(b) * share[std::clamp(levels[b], 0, highestLevel)];
+	const auto passOf = [&](const Part& part) -> LiftPass<K> {
+		return {c.points().groups().data(),
+		        c.points().states().data(),
+		        points.data(),
+		        layout.upwards().data(),
+		        last.data(),
+		        seen.data(),
+		        moved.data(),
+		        c.length(),
+		        part.begin,
+		        part.end};
+	};
 	std::array<bool, Team::maxParts + 1> deep {};
-	c.allParts([&](const Part& part, int number) {
-		deep[number] = anyDeep(c.groups.data(), c.states.data(), points.data(), part.begin, part.end, seen.data(), moved.data(), c.length);
-	});
-	if (std::none_of(deep.begin(), deep.end(), [](bool is) { return is; }))
-		return tolerance::wall::penetration * c.length; // or less
-	const double enough = (tolerance::wall::penetration - tolerance::wall::lifted) * c.length;
-	last.assign(c.supportLevel.size() + 1, 0);
-	for (int k = 0; k < maxSweeps; ++k) {
+	layout.allParts([&](const Part& part, int number) { deep[number] = preparePass(passOf(part)); });
+	const bool isDeep = std::any_of(deep.begin(), deep.end(), [](bool is) { return is; });
+	for (int k = 0; isDeep && k < maxSweeps; ++k) {
 		Missing missing[Team::maxParts + 1] {};
-		const auto lift = [&](const Part& part, int number) {
-			liftSweep(c.groups.data(), points.data(), c.upwards.data(), part.begin, part.end, 1 + k * int(c.groups.size()), last.data(),
-			          seen.data(), passedOn * enough, moved.data(), missing[number].most);
-		};
-		c.eachPart(lift);
-		lift(c.parts.back(), Team::maxParts);
-		if (std::none_of(std::begin(missing), std::end(missing), [&](const Missing& here) { return largest(here.most) > enough; }))
+		const auto lift = [&](const Part& part, int number) { liftPass(passOf(part), 1 + k * size, missing[number].most); };
+		layout.eachPart(lift);
+		lift(layout.parts().back(), Team::maxParts);
+		if (std::none_of(std::begin(missing), std::end(missing),
+		                 [&](const Missing& here) { return largest(here.most) > enough(c.length()); }))
 			break;
 	}
-	std::array<double, Team::maxParts + 1> left {};
-	c.allParts([&](const Part& part, int number) { left[number] = partGaps(c.groups.data(), part.begin, part.end, moved.data()); });
-	for (size_t b = 0; b < c.shift.size(); ++b)
-		c.shift[b] += noMass * moved[b];
-	return *std::max_element(left.begin(), left.end());
+	if (!isDeep)
+		moved.clear();
+	return moved;
 }
 
 template class PositionProjection<Plane>;

@@ -18,8 +18,8 @@ namespace masonry::wall {
 template <class K>
 class PositionProjection {
 public:
-	// Changes the contacts' gaps and shift. Returns how deep the deepest pair still is, m.
-	double settle(ContactSet<K>& contacts);
+	// Returns the displacements w of the bodies, in packs; none where no pair is too deep.
+	const LaneArray& find(const ContactSet<K>& contacts);
 
 	struct alignas(alignment) Point {
 		Lanes room;    // m, by which it may close; negative: that it must part

@@ -8,15 +8,17 @@ template <class K>
 int RestState<K>::movingBlocks(const RigidSystem<K>& s, const ContactSet<K>& contacts, const PointsReport& points, double level)
 {
 	std::vector<char> isHeld(s.bodies.size(), 0), moves(s.bodies.size(), 0);
-	for (size_t g = 0; g < contacts.groups.size(); ++g)
-		for (int i = 0; i < width && contacts.features[g].pair[i] >= 0; ++i)
-			for (const int b : {contacts.groups[g].body1[i], contacts.groups[g].body2[i]}) {
+	for (size_t g = 0; g < contacts.layout().groups().size(); ++g) {
+		const LaneGroup& lanes = contacts.layout().groups()[g];
+		for (int i = 0; i < lanes.count; ++i)
+			for (const int b : {lanes.body1[i], lanes.body2[i]}) {
 				isHeld[b] |= points.reached[g] >> i & 1;
 				moves[b] |= points.moving[g] >> i & 1;
 			}
+	}
 	int count = 0;
 	for (size_t b = 0; b < s.bodies.size(); ++b)
-		count += contacts.own[b] && (moves[b] || (!isHeld[b] && !(s.bodies[b].velocity.norm() <= level)));
+		count += contacts.bodies().isFree(b) && (moves[b] || (!isHeld[b] && !(s.bodies[b].velocity.norm() <= level)));
 	return count;
 }
 

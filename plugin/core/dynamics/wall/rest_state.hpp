@@ -1,6 +1,6 @@
 #pragma once
 // Whether a structure rests: then gaps are added up and frames stay, and points have the stiffness of rest (admm_solver.hpp).
-#include "dynamics/wall/points_advance.hpp"
+#include "dynamics/wall/admm_results.hpp"
 
 namespace masonry::wall {
 

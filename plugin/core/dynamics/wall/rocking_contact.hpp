@@ -16,7 +16,7 @@ struct Contact {
 	int body2() const { return second ? block : support; }
 
 	double impulse() const { return state.pn[lane]; }
-	double normalRate(const ContactSet<K>& c) const { return rate(c.velocity); }
+	double normalRate(const ContactSet<K>& c) const { return rate(c.bodies().velocity()); }
 	double rate(const LaneArray& of) const
 	{
 		return rateOf(p, 0, lane, 2, &of[packs<K> * body2()]) - rateOf(p, 0, lane, 1, &of[packs<K> * body1()]);
@@ -26,10 +26,10 @@ struct Contact {
 template <class K, class JointPoint>
 Contact<K> contact(const ContactSet<K>& c, const JointPoint& at)
 {
-	const Group<K>& group = c.groups[at.group];
+	const Group<K>& group = c.points().groups()[at.group];
 	const bool second = group.body2[at.lane] == at.block;
 	return {group.point[at.point],
-	        c.states[at.group][at.point],
+	        c.points().states()[at.group][at.point],
 	        at.lane,
 	        at.block,
 	        second ? group.body1[at.lane] : group.body2[at.lane],

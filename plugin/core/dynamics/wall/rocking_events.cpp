@@ -19,17 +19,17 @@ constexpr double minLever = 0.2;
 template <class Point, class K>
 typename K::Vector normalOf(const ContactSet<K>& c, const Point& at)
 {
-	return normal(c.groups[at.group].point[at.point], at.lane);
+	return normal(c.points().groups()[at.group].point[at.point], at.lane);
 }
 
 template <class Point, class K>
 typename K::Vector positionOf(const ContactSet<K>& c, const Point& at)
 {
-	const Group<K>& group = c.groups[at.group];
+	const Group<K>& group = c.points().groups()[at.group];
 	ContactFrame<K> frame;
 	const int body2 = group.body2[at.lane];
-	takeFrame(group.point[at.point], c.features[at.group].point[at.point], at.lane, c.gyration[body2], frame);
-	return c.position(body2) + frame.position;
+	takeFrame(group.point[at.point], c.points().features()[at.group][at.point], at.lane, c.bodies().gyration(body2), frame);
+	return c.bodies().position(body2) + frame.position;
 }
 
 // On body 2.
@@ -37,14 +37,14 @@ template <class Point>
 Vector2 impulseOf(const ContactSet<Plane>& c, const PointStates<Plane>& states, const Point& at)
 {
 	const PointState<Plane>& p = states[at.group][at.point];
-	const Vector2 n = normal(c.groups[at.group].point[at.point], at.lane);
+	const Vector2 n = normal(c.points().groups()[at.group].point[at.point], at.lane);
 	return p.pn[at.lane] * n + p.pt[at.lane] * Vector2(-n.y(), n.x());
 }
 template <class Point>
 Vector3 impulseOf(const ContactSet<Space>& c, const PointStates<Space>& states, const Point& at)
 {
 	const PointState<Space>& p = states[at.group][at.point];
-	const PointLanes<Space>& rows = c.groups[at.group].point[at.point];
+	const PointLanes<Space>& rows = c.points().groups()[at.group].point[at.point];
 	return p.pn[at.lane] * rows.normal.axis.lane(at.lane) + p.pt.x[at.lane] * rows.tangent[0].axis.lane(at.lane) +
 	       p.pt.y[at.lane] * rows.tangent[1].axis.lane(at.lane);
 }
@@ -63,11 +63,13 @@ void RockingEvents<K>::gather(const RigidSystem<K>& s, const ContactSet<K>& c)
 		areLaws = std::any_of(s.pairs.begin(), s.pairs.end(), hasLaw);
 	if (!areOrdered(s.drives) && !areLaws)
 		return;
-	for (int group = 0; group < int(c.groups.size()); ++group)
-		for (int lane = 0; lane < width && c.features[group].pair[lane] >= 0; ++lane)
-			if (const auto [block, face] = table.of(s.bodies, s.pairs, c.features[group].pair[lane]); block >= 0 && c.own[block])
-				for (int k = 0; k < c.points(s, group, lane); ++k)
+	for (int group = 0; group < int(c.layout().groups().size()); ++group) {
+		const LaneGroup& lanes = c.layout().groups()[group];
+		for (int lane = 0; lane < lanes.count; ++lane)
+			if (const auto [block, face] = table.of(s.bodies, s.pairs, lanes.pair[lane]); block >= 0 && c.bodies().isFree(block))
+				for (int k = 0; k < pointsOf(s, lanes, lane); ++k)
 					points.push_back({block, face, group, lane, k});
+	}
 	std::sort(points.begin(), points.end(), [](const Point& a, const Point& b) {
 		return std::tie(a.block, a.face, a.group, a.lane, a.point) < std::tie(b.block, b.face, b.group, b.lane, b.point);
 	});
@@ -88,11 +90,12 @@ bool RockingEvents<K>::hops(const ContactSet<K>& c, const Point& point, double g
 	const Contact<K> at = contact(c, point);
 	if (at.impulse() > 0 || std::abs(at.normalRate(c)) > 2 * g * h) // one jump, and what it was before
 		return false;
-	const typename K::Velocity relative = c.inGlobal(c.velocity, at.block) - c.inGlobal(c.velocity, at.support);
+	const BodyLanes<K>& bodies = c.bodies();
+	const typename K::Velocity relative = bodies.inGlobal(bodies.velocity(), at.block) - bodies.inGlobal(bodies.velocity(), at.support);
 	const typename K::Spin spin = relative.template tail<K::spins>();
-	const typename K::Vector arm = positionOf(c, point) - c.position(at.block);
+	const typename K::Vector arm = positionOf(c, point) - bodies.position(at.block);
 	const double a = (at.second ? 1 : -1) * normalOf(c, point).dot(K::cross(spin, K::cross(spin, arm)));
-	return a > g / 4 && a < g && at.p.gap[at.lane] <= tolerance::wall::touching * c.length + a * a * h * h / (2 * (g - a));
+	return a > g / 4 && a < g && at.p.gap[at.lane] <= tolerance::wall::touching * c.length() + a * a * h * h / (2 * (g - a));
 }
 
 template <class K>
@@ -106,11 +109,11 @@ std::vector<SpinRow<K>> RockingEvents<K>::find(const RigidSystem<K>& s, const Co
 	if (points.empty())
 		return result;
 	h = step.h;
-	predicted = c.velocity;
+	predicted = c.bodies().velocity();
 	for (size_t b = 0; b < std::min(change.size(), predicted.size()); ++b)
 		predicted[b] += noMass * change[b];
-	const double g = scale::acceleration(s), open = tolerance::mergedClosing * c.length,
-	             fast = tolerance::restSpeed * std::sqrt(g * c.length);
+	const double g = scale::acceleration(s), open = tolerance::mergedClosing * c.length(),
+	             fast = tolerance::restSpeed * std::sqrt(g * c.length());
 	constexpr double together = 2; // steps within which closings are one
 	for (int begin = 0, end = 0; begin < int(points.size()); begin = end) {
 		bearing.clear();
@@ -130,7 +133,7 @@ std::vector<SpinRow<K>> RockingEvents<K>::find(const RigidSystem<K>& s, const Co
 		places.clear();
 		for (const int i : bearing)
 			places.push_back(positionOf(c, points[i]));
-		Joint joint {begin, end, Pivot<K>(places, tolerance::wall::pivot * c.length), -1};
+		Joint joint {begin, end, Pivot<K>(places, tolerance::wall::pivot * c.length()), -1};
 		if (!joint.pivot)
 			continue;
 		for (int i = begin; i < end; ++i) {
@@ -169,7 +172,7 @@ void RockingEvents<K>::takeLaw(const RigidSystem<K>& s, const ContactSet<K>& c, 
 	event.block = at.block;
 	event.support = at.support;
 	event.face = point.face;
-	const ContactPair<K>& pair = s.pairs[c.features[point.group].pair[point.lane]];
+	const ContactPair<K>& pair = s.pairs[c.layout().groups()[point.group].pair[point.lane]];
 	const bool isBonded = std::any_of(s.mortar.begin(), s.mortar.end(), [&](const MortarJoint<K>& joint) {
 		return joint.body1 == pair.body1 && joint.body2 == pair.body2 && !joint.isBroken();
 	});
@@ -191,13 +194,13 @@ double RockingEvents<K>::takeLanding(const ContactSet<K>& c, const Joint& joint,
 		if (known != numbers.end())
 			return int(known - numbers.begin());
 		RigidBody<K>& body = bodies.emplace_back();
-		body.pose.position = c.position(b);
-		body.velocity = c.inGlobal(predicted, b);
+		body.pose.position = c.bodies().position(b);
+		body.velocity = c.bodies().inGlobal(predicted, b);
 		numbers.push_back(b);
 		return int(numbers.size()) - 1;
 	};
 	const auto add = [&](int i) {
-		const Group<K>& group = c.groups[points[i].group];
+		const LaneGroup& group = c.layout().groups()[points[i].group];
 		all.push_back({number(group.body1[points[i].lane]), number(group.body2[points[i].lane]), positionOf(c, points[i]),
 		               normalOf(c, points[i]), 0});
 	};
@@ -211,12 +214,12 @@ double RockingEvents<K>::takeLanding(const ContactSet<K>& c, const Joint& joint,
 		if (isOfPivot(c, i, joint))
 			add(i);
 	law.oldEnd = int(all.size());
-	const Landing<K> landing = landingOf(bodies, law, all, {tolerance::wall::pivot * c.length, true});
+	const Landing<K> landing = landingOf(bodies, law, all, {tolerance::wall::pivot * c.length(), true});
 	event.axis = landing.axis;
 	for (size_t k = 0; k < event.carriers.size() && landing.lever > 0; ++k) {
 		const ImpulsePoint<K>& point = all[landing.carriers[k].point];
 		const int body = numbers[law.supportUnder(point)];
-		event.carriers[k] = {body, landing.carriers[k].perLength, point.position - c.position(body)};
+		event.carriers[k] = {body, landing.carriers[k].perLength, point.position - c.bodies().position(body)};
 	}
 	return landing.lever;
 }
@@ -229,7 +232,7 @@ bool RockingEvents<K>::describe(const RigidSystem<K>& s, const ContactSet<K>& c,
 		return false;
 	takeLaw(s, c, joint, closing, event);
 	const double lever = takeLanding(c, joint, closing, event);
-	if (!(lever > minLever * c.length))
+	if (!(lever > minLever * c.length()))
 		return false;
 	event.before = row(c, event, 1).rate(predicted);
 	event.speed = event.before * lever;
@@ -247,10 +250,10 @@ template <class K>
 SpinRow<K> RockingEvents<K>::row(const ContactSet<K>& c, const Event& event, double share) const
 {
 	SpinRow<K> result;
-	result.parts[0] = {event.block, spinArm(c, event.block, event.axis)};
+	result.parts[0] = {event.block, spinArm(c.bodies(), event.block, event.axis)};
 	for (size_t k = 0; k < event.carriers.size(); ++k) {
 		const Carrier& carrier = event.carriers[k];
-		result.parts[k + 1] = {carrier.body, speedArm(c, carrier.body, -carrier.perLength * event.normal, carrier.arm)};
+		result.parts[k + 1] = {carrier.body, speedArm(c.bodies(), carrier.body, -carrier.perLength * event.normal, carrier.arm)};
 	}
 	result.target = event.before * (1 - share + share * event.restitution);
 	result.face = event.face;
@@ -303,7 +306,7 @@ void RockingEvents<K>::report(RigidSystem<K>& s, const ContactSet<K>& c, const A
 				impulse += (contact(c, at).second ? 1 : -1) * impulseOf(c, results.states, at);
 		JointResult result;
 		result.before = event.before;
-		result.after = row->rate(c.velocity);
+		result.after = row->rate(c.bodies().velocity());
 		const double normal = event.normal.dot(impulse);
 		if (normal > 0) {
 			result.application = row->couple / normal;

@@ -39,6 +39,13 @@ MASONRY_INLINE Lanes3 select(const Mask& mask, const Lanes3& a, const Lanes3& b)
 	return {select(mask, a.x, b.x), select(mask, a.y, b.y), select(mask, a.z, b.z)};
 }
 
+inline void setLane(Lanes3& to, int lane, const Vector3& value)
+{
+	to.x[lane] = value.x();
+	to.y[lane] = value.y();
+	to.z[lane] = value.z();
+}
+
 MASONRY_INLINE double component(const Lanes2& tangent, int k, int lane) { return k == 0 ? tangent.x[lane] : tangent.y[lane]; }
 MASONRY_INLINE void setComponent(Lanes2& tangent, int k, int lane, double value)
 {
@@ -47,6 +54,45 @@ MASONRY_INLINE void setComponent(Lanes2& tangent, int k, int lane, double value)
 	else // (k == 0 ? x : y)[lane] is a copy to GCC 16
 		tangent.y[lane] = value;
 }
+
+// The pose is (axes and position in three rows, then 1/rho).
+template <>
+struct BodyPacks<Space> {
+	static constexpr int poses = 4;
+
+	static Vector3 gyration(const Vector3& inertia, double mass) { return (inertia / mass).cwiseSqrt(); }
+	static void place(const Pose& at, const Vector3& rho, Lanes* pose)
+	{
+		const Matrix3 axes = at.orientation.toRotationMatrix();
+		for (int i = 0; i < 3; ++i)
+			pose[i] = Lanes {axes(i, 0), axes(i, 1), axes(i, 2), at.position[i]};
+		const Vector3 perRho = rho.cwiseInverse();
+		pose[3] = Lanes {perRho[0], perRho[1], perRho[2], 1};
+	}
+	static Vector3 position(const Lanes* pose) { return {pose[0][3], pose[1][3], pose[2][3]}; }
+	static void setVelocity(const Space::Velocity& v, const Lanes* pose, const Vector3&, double perMass, Lanes* to)
+	{
+		const Lanes spin = (v[3] * pose[0] + v[4] * pose[1] + v[5] * pose[2]) / pose[3]; // R^T w rho
+		to[0] = Lanes {v[0], v[1], v[2], perMass};
+		to[1] = Lanes {spin[0], spin[1], spin[2], perMass};
+	}
+	static Space::Velocity inGlobal(const Lanes* v, const Lanes* pose, const Vector3&)
+	{
+		const Lanes w = v[1] * pose[3];
+		Space::Velocity result;
+		for (int i = 0; i < 3; ++i) {
+			result[i] = v[0][i];
+			result[3 + i] = pose[i][0] * w[0] + pose[i][1] * w[1] + pose[i][2] * w[2];
+		}
+		return result;
+	}
+	static std::array<Lanes, 2> ofForce(const Space::Velocity& force, double factor, const Lanes* pose, const Vector3&)
+	{
+		const Lanes moment = force[3] * pose[0] + force[4] * pose[1] + force[5] * pose[2]; // R^T times it
+		const Lanes spin = factor * moment * pose[3];
+		return {factor * Lanes {force[0], force[1], force[2], 0}, Lanes {spin[0], spin[1], spin[2], 0}};
+	}
+};
 
 // Velocities of bodies: packs (v, 1/m) and (W, 1/m) of each in, one lane a body out.
 template <>

@@ -1,7 +1,5 @@
-// Contact points in space: the parts of ContactSet (contact_set.hpp) that depend on the dimension.
-#include "contact/point_geometry.hpp"
 #include "dynamics/model/pair_friction.hpp"
-#include "dynamics/wall/contact_set.hpp"
+#include "dynamics/wall/point_passes.hpp"
 #include "tolerances.hpp"
 #include <algorithm>
 
@@ -9,7 +7,7 @@ namespace masonry::wall {
 
 namespace {
 
-constexpr int poseRows = 4;
+constexpr int poseRows = BodyPacks<Space>::poses;
 
 struct alignas(alignment) Placed {
 	Lanes3 row[3], position, perRho; // rows of the rotation matrix
@@ -45,13 +43,6 @@ MASONRY_INLINE Placed oneOf(const Mask& mask, const Placed& a, const Placed& b)
 	        select(mask, a.perRho, b.perRho)};
 }
 
-void set(Lanes3& to, int lane, const Vector3& value)
-{
-	to.x[lane] = value.x();
-	to.y[lane] = value.y();
-	to.z[lane] = value.z();
-}
-
 // Gap, normal, first tangent and arm of a point; where it lies along its features: what is found out lane by lane, or one by one.
 struct alignas(alignment) Found {
 	Lanes3 normal, tangent, arm2;
@@ -72,9 +63,6 @@ MASONRY_INLINE Found overFace(const FeatureLanes<Space>& f, const Placed& p1, co
 	return found;
 }
 
-// Lanes without a point tell by any vertex how far the pair moves.
-Feature featureOf(const ContactPair<Space>& pair, int k) { return k < pair.size() ? pair.points[k].feature : Feature::ofVertex(1, 0, 0); }
-
 Pose poseOf(const Lanes* pose, int body)
 {
 	const Lanes* row = &pose[poseRows * body];
@@ -85,31 +73,32 @@ Pose poseOf(const Lanes* pose, int body)
 }
 
 // Edges that cross. The tangents are along and across body 1's edge.
-void takeCrossings(const RigidSystem<Space>& s, const FeatureGroup<Space>& features, int k, const Lanes* poses, Found& found)
+void takeCrossings(const PointPass<Space>& pass, int g, int k, Found& found)
 {
-	for (int i = 0; i < width; ++i) {
-		if (!features.point[k].crossing[i])
+	const LaneGroup& lanes = pass.lanes[g];
+	for (int i = 0; i < lanes.count; ++i) {
+		if (!pass.features[g][k].crossing[i])
 			continue;
-		const ContactPair<Space>& pair = s.pairs[features.pair[i]];
-		const Pose pose1 = poseOf(poses, pair.body1), pose2 = poseOf(poses, pair.body2);
-		const ContactFrame<Space> frame =
-		    frameOf(pair.points[features.first[i] + k].feature, *s.bodies[pair.body1].shape, pose1, *s.bodies[pair.body2].shape, pose2);
-		set(found.normal, i, frame.axes.row(0));
-		set(found.tangent, i, frame.axes.row(1));
-		set(found.arm2, i, frame.position - pose2.position);
+		const ContactPair<Space>& pair = pass.system.pairs[lanes.pair[i]];
+		const Pose pose1 = poseOf(pass.bodies.pose(), pair.body1), pose2 = poseOf(pass.bodies.pose(), pair.body2);
+		const auto &shape1 = *pass.system.bodies[pair.body1].shape, &shape2 = *pass.system.bodies[pair.body2].shape;
+		const Feature& feature = pair.points[lanes.number[i] * lanePoints<Space> + k].feature;
+		const ContactFrame<Space> frame = frameOf(feature, shape1, pose1, shape2, pose2);
+		setLane(found.normal, i, frame.axes.row(0));
+		setLane(found.tangent, i, frame.axes.row(1));
+		setLane(found.arm2, i, frame.position - pose2.position);
 		found.gap[i] = frame.gap;
 		found.along1[i] = frame.axes.row(1) * (frame.position - pose1.position);
 		found.along2[i] = frame.axes.row(2) * (frame.position - pose2.position);
 	}
 }
 
-MASONRY_INLINE Found located(const RigidSystem<Space>& s, const FeatureGroup<Space>& features, int k, const Lanes* poses, const Placed& p1,
-                             const Placed& p2)
+MASONRY_INLINE Found located(const PointPass<Space>& pass, int g, int k, const Placed& p1, const Placed& p2)
 {
-	const FeatureLanes<Space>& f = features.point[k];
+	const FeatureLanes<Space>& f = pass.features[g][k];
 	Found found = overFace(f, p1, p2);
 	if (f.crossing[0] | f.crossing[1] | f.crossing[2] | f.crossing[3])
-		takeCrossings(s, features, k, poses, found);
+		takeCrossings(pass, g, k, found);
 	return found;
 }
 
@@ -147,18 +136,20 @@ MASONRY_INLINE void takeFound(PointLanes<Space>& p, FeatureLanes<Space>& f, cons
 	p.massT = select(f.present, one / (middle + root(half * half + k12 * k12)), none);
 }
 
-MASONRY_LANES void measureGroups(const RigidSystem<Space>& s, Group<Space>* groups, FeatureGroup<Space>* features, unsigned char* stale,
-                                 size_t count, const Lanes* pose, double travel, bool remember)
+} // namespace
+
+MASONRY_LANES void measureGaps(const PointPass<Space>& pass, double travel, bool remember, unsigned char* stale)
 {
 	const double passed = tolerance::wall::leftFace / tolerance::wall::search * travel;
-	for (size_t g = 0; g < count; ++g) {
-		Group<Space>& group = groups[g];
+	const Lanes* pose = pass.bodies.pose();
+	for (int g = pass.begin; g < pass.end; ++g) {
+		Group<Space>& group = pass.groups[g];
 		const Placed p1 = placed(pose, group.body1), p2 = placed(pose, group.body2);
 		Mask isStale {};
 		const Mask anew = maskOf(stale[g]);
 		for (int k = 0; k < group.count; ++k) {
-			FeatureLanes<Space>& f = features[g].point[k];
-			const Found found = located(s, features[g], k, pose, p1, p2);
+			FeatureLanes<Space>& f = pass.features[g][k];
+			const Found found = located(pass, g, k, p1, p2);
 			if (remember) {
 				f.foundGap = select(anew, found.gap, f.foundGap);
 				f.found = select(anew, {found.along1, found.along2}, f.found);
@@ -173,11 +164,11 @@ MASONRY_LANES void measureGroups(const RigidSystem<Space>& s, Group<Space>* grou
 	}
 }
 
-MASONRY_LANES void frameGroups(const RigidSystem<Space>& s, Group<Space>* groups, FeatureGroup<Space>* features, size_t count,
-                               const Lanes* pose, const Lanes* velocity)
+MASONRY_LANES void takeFrames(const PointPass<Space>& pass)
 {
-	for (size_t g = 0; g < count; ++g) {
-		Group<Space>& group = groups[g];
+	const Lanes *pose = pass.bodies.pose(), *velocity = pass.bodies.velocity().data();
+	for (int g = pass.begin; g < pass.end; ++g) {
+		Group<Space>& group = pass.groups[g];
 		const Placed p1 = placed(pose, group.body1), p2 = placed(pose, group.body2);
 		Lanes mass1, mass2;
 		for (int i = 0; i < width; ++i) {
@@ -185,165 +176,62 @@ MASONRY_LANES void frameGroups(const RigidSystem<Space>& s, Group<Space>* groups
 			mass2[i] = velocity[packs<Space> * group.body2[i]][3];
 		}
 		for (int k = 0; k < group.count; ++k)
-			takeFound(group.point[k], features[g].point[k], located(s, features[g], k, pose, p1, p2), p1, p2, mass1, mass2);
+			takeFound(group.point[k], pass.features[g][k], located(pass, g, k, p1, p2), p1, p2, mass1, mass2);
 	}
 }
 
-} // namespace
-
-template <>
-void ContactSet<Space>::measureGaps(const RigidSystem<Space>& s, int begin, int end, double travel, bool remember)
+void setFeature(FeatureLanes<Space>& to, int lane, const Feature& feature, const Solid<ConvexPolyhedron>& shape1,
+                const Solid<ConvexPolyhedron>& shape2)
 {
-	measureGroups(s, groups.data() + begin, features.data() + begin, stale.data() + begin, end - begin, pose.data(), travel, remember);
-}
-
-template <>
-void ContactSet<Space>::takeFrames(const RigidSystem<Space>& s, int begin, int end)
-{
-	frameGroups(s, groups.data() + begin, features.data() + begin, end - begin, pose.data(), velocity.data());
-}
-
-template <>
-void ContactSet<Space>::takeBodies(const RigidSystem<Space>& s)
-{
-	const size_t n = s.bodies.size();
-	velocity.resize(2 * (n + 1));
-	pose.resize(poseRows * (n + 1));
-	gyration.resize(n + 1);
-	const auto take = [this](size_t b, const Pose& at, const Space::Velocity& v, double perMass) {
-		const Vector3 perRho = gyration[b].cwiseInverse();
-		pose[poseRows * b + 3] = Lanes {perRho[0], perRho[1], perRho[2], 1};
-		velocity[2 * b][3] = perMass;
-		place(b, at);
-		setVelocity(b, v);
-	};
-	eachShare(n, [&](size_t begin, size_t end, int) {
-		for (size_t b = begin; b < end; ++b) {
-			const auto& body = s.bodies[b];
-			gyration[b] = own[b] ? Vector3((body.inertia / body.mass).cwiseSqrt()) : Vector3(Vector3::Ones());
-			take(b, body.pose, body.velocity, own[b] ? 1 / body.mass : 0);
-		}
-	});
-	gyration[n].setOnes();
-	take(n, {}, Space::Velocity::Zero(), 0);
-}
-
-template <>
-void ContactSet<Space>::place(size_t b, const Pose& at)
-{
-	const Matrix3 axes = at.orientation.toRotationMatrix();
-	for (int i = 0; i < 3; ++i)
-		pose[poseRows * b + i] = Lanes {axes(i, 0), axes(i, 1), axes(i, 2), at.position[i]};
-}
-
-template <>
-void ContactSet<Space>::takePoint(const RigidSystem<Space>& s, int c, int k)
-{
-	const ContactPair<Space>& pair = s.pairs[c];
-	const auto [group, lane] = slots[c][k / lanePoints<Space>];
-	FeatureLanes<Space>& f = features[group].point[k % lanePoints<Space>];
-	const Feature feature = featureOf(pair, k);
-	f.present[lane] = k < pair.size() ? -1 : 0;
-	const auto &shape1 = *s.bodies[pair.body1].shape, &shape2 = *s.bodies[pair.body2].shape;
 	const PointGeometry<Space> geometry = geometryOf(feature, shape1, shape2);
-	f.crossing[lane] = geometry.crosses ? -1 : 0;
-	f.vertexOn1[lane] = geometry.vertexOn1 ? -1 : 0;
-	set(f.vertex, lane, geometry.vertex);
-	set(f.normal, lane, geometry.normal);
-	set(f.tangent, lane, geometry.tangent);
-	f.faceDistance[lane] = geometry.distance;
-	set(f.gripAt, lane, Vector3::Zero());
+	to.crossing[lane] = geometry.crosses ? -1 : 0;
+	to.vertexOn1[lane] = geometry.vertexOn1 ? -1 : 0;
+	setLane(to.vertex, lane, geometry.vertex);
+	setLane(to.normal, lane, geometry.normal);
+	setLane(to.tangent, lane, geometry.tangent);
+	to.faceDistance[lane] = geometry.distance;
+	setLane(to.gripAt, lane, Vector3::Zero());
 }
 
-template <>
-void ContactSet<Space>::measureCorners(const RigidSystem<Space>& s, int group, int lane)
+void measureCorner(FeatureLanes<Space>& of, int lane, const Feature& feature, const Solid<ConvexPolyhedron>& shape1,
+                   const Solid<ConvexPolyhedron>& shape2)
 {
-	const ContactPair<Space>& pair = s.pairs[features[group].pair[lane]];
-	for (int k = 0; k < groups[group].count; ++k) {
-		FeatureLanes<Space>& f = features[group].point[k];
-		if (f.crossing[lane])
-			continue;
-		const Feature feature = featureOf(pair, features[group].first[lane] + k);
-		const auto& shape = *s.bodies[f.vertexOn1[lane] ? pair.body2 : pair.body1].shape;
-		const Vector2 place(f.found.x[lane], f.found.y[lane]);
-		double nearest = farAway;
-		for (const Vector2& corner : shape.face(feature.face()).outline)
-			nearest = std::min(nearest, (corner - place).cwiseAbs().maxCoeff());
-		f.fromCorner[lane] = nearest;
-	}
-}
-
-// By the filtered impulses; the rows of the points are to be taken anew. Points of a pair that has carried nothing share alike where they
-// are as near as the nearest: these land together.
-template <>
-void ContactSet<Space>::placeFriction(const RigidSystem<Space>& s, int c)
-{
-	const ContactPair<Space>& pair = s.pairs[c];
-	const auto groupOf = [&](int i) -> const Slot& { return slots[c][i / lanePoints<Space>]; };
-	const auto pointOf = [&](int i) -> PointLanes<Space>& { return groups[groupOf(i).group].point[i % lanePoints<Space>]; };
-	const auto featureOf = [&](int i) -> FeatureLanes<Space>& { return features[groupOf(i).group].point[i % lanePoints<Space>]; };
-	if (!hasGrip(pair) || moreLanes<Space>(pair.size()) >= int(slots[c].size())) // it comes again with its other lanes
+	if (of.crossing[lane])
 		return;
+	const Vector2 place(of.found.x[lane], of.found.y[lane]);
+	double nearest = farAway;
+	for (const Vector2& corner : (of.vertexOn1[lane] ? shape2 : shape1).face(feature.face()).outline)
+		nearest = std::min(nearest, (corner - place).cwiseAbs().maxCoeff());
+	of.fromCorner[lane] = nearest;
+}
+
+void placeFriction(const PointPass<Space>& pass, const PointStates<Space>& states, const ContactPair<Space>& pair, const Slots& slots,
+                   double touching)
+{
+	if (!hasGrip(pair) || lanesFor<Space>(pair.size()) > int(slots.size())) // it comes again with its other lanes
+		return;
+	const auto slotOf = [&](int i) -> const Slot& { return slots[i / lanePoints<Space>]; };
+	const auto pointOf = [&](int i) -> const PointLanes<Space>& { return pass.groups[slotOf(i).group].point[i % lanePoints<Space>]; };
+	const auto featureOf = [&](int i) -> FeatureLanes<Space>& { return pass.features[slotOf(i).group][i % lanePoints<Space>]; };
 	NormalForces forces(pair.size(), 0.);
+	PerPoint<ContactFrame<Space>> frames(pair.size());
 	bool isLoaded = false;
 	double nearest = farAway;
 	for (int i = 0; i < pair.size(); ++i) {
-		forces[i] = states[groupOf(i).group][i % lanePoints<Space>].filteredImpulse[groupOf(i).lane];
+		forces[i] = states[slotOf(i).group][i % lanePoints<Space>].filteredImpulse[slotOf(i).lane];
+		takeFrame(pointOf(i), featureOf(i), slotOf(i).lane, pass.bodies.gyration(pair.body2), frames[i]);
 		isLoaded |= forces[i] > 0;
-		nearest = std::min(nearest, pointOf(i).gap[groupOf(i).lane]);
+		nearest = std::min(nearest, frames[i].gap);
 	}
 	for (int i = 0; !isLoaded && i < pair.size(); ++i)
-		forces[i] = pointOf(i).gap[groupOf(i).lane] <= nearest + tolerance::wall::touching * length;
-	PerPoint<ContactFrame<Space>> frames(pair.size());
-	for (int i = 0; i < pair.size(); ++i)
-		takeFrame(pointOf(i), featureOf(i), groupOf(i).lane, gyration[pair.body2], frames[i]);
+		forces[i] = frames[i].gap <= nearest + touching;
 	const auto offsets = frictionOffsets(
 	    pair.size(), [&](int i) -> const ContactFrame<Space>& { return frames[i]; }, forces);
 	for (int i = 0; i < pair.size(); ++i) {
 		FeatureLanes<Space>& f = featureOf(i);
-		const int lane = groupOf(i).lane;
-		set(f.gripAt, lane, s.bodies[f.vertexOn1[lane] ? pair.body1 : pair.body2].pose.orientation.conjugate() * offsets[i]);
+		const int lane = slotOf(i).lane, body = f.vertexOn1[lane] ? pair.body1 : pair.body2;
+		setLane(f.gripAt, lane, pass.system.bodies[body].pose.orientation.conjugate() * offsets[i]);
 	}
-}
-
-template <>
-Vector3 ContactSet<Space>::position(size_t b) const
-{
-	return {pose[poseRows * b][3], pose[poseRows * b + 1][3], pose[poseRows * b + 2][3]};
-}
-
-template <>
-void ContactSet<Space>::setVelocity(size_t b, const Space::Velocity& v)
-{
-	const Lanes* rows = &pose[poseRows * b];
-	const double perMass = velocity[2 * b][3];
-	const Lanes spin = (v[3] * rows[0] + v[4] * rows[1] + v[5] * rows[2]) / rows[3]; // R^T w rho
-	velocity[2 * b] = Lanes {v[0], v[1], v[2], perMass};
-	velocity[2 * b + 1] = Lanes {spin[0], spin[1], spin[2], perMass};
-}
-
-template <>
-Space::Velocity ContactSet<Space>::inGlobal(const LaneArray& from, size_t b) const
-{
-	const Lanes &v = from[2 * b], &spin = from[2 * b + 1], *rows = &pose[poseRows * b];
-	const Lanes w = spin * rows[3];
-	Space::Velocity result;
-	for (int i = 0; i < 3; ++i) {
-		result[i] = v[i];
-		result[3 + i] = rows[i][0] * w[0] + rows[i][1] * w[1] + rows[i][2] * w[2];
-	}
-	return result;
-}
-
-template <>
-void ContactSet<Space>::takeForce(const Space::Velocity& force, double h, size_t b, LaneArray& to) const
-{
-	const Lanes* rows = &pose[poseRows * b];
-	const double perMass = h * velocity[2 * b][3];
-	const Lanes moment = force[3] * rows[0] + force[4] * rows[1] + force[5] * rows[2]; // R^T times it
-	to[2 * b] = perMass * Lanes {force[0], force[1], force[2], 0};
-	const Lanes spin = perMass * moment * rows[3];
-	to[2 * b + 1] = Lanes {spin[0], spin[1], spin[2], 0};
 }
 
 } // namespace masonry::wall

@@ -2,33 +2,11 @@
 // A row that prescribes the spin of a block about an axis, against the motion that carries it (impact/landing.hpp): e.(w - w_carry) =
 // target. The couple acts on the block along e, and on the supports as the pair of forces couple/L at O and P. Each velocity is arm.V in
 // the packs of the contacts.
-#include "dynamics/wall/contact_set.hpp"
+#include "dynamics/wall/body_lanes.hpp"
 #include <algorithm>
 #include <cmath>
 
 namespace masonry::wall {
-
-// e.w of a body.
-inline std::array<Lanes, 1> spinArm(const ContactSet<Plane>& c, int body, const Plane::Spin& axis)
-{
-	return {Lanes {0, 0, axis[0] / c.gyration[body][0], 0}};
-}
-inline std::array<Lanes, 2> spinArm(const ContactSet<Space>& c, int body, const Vector3& axis)
-{
-	const Lanes* rows = &c.pose[4 * body]; // R; W = rho R^T w
-	const Lanes local = axis[0] * rows[0] + axis[1] * rows[1] + axis[2] * rows[2];
-	return {all(0), noMass * local * rows[3]};
-}
-
-// n.v of the place r from the body's centre.
-inline std::array<Lanes, 1> speedArm(const ContactSet<Plane>& c, int body, const Vector2& n, const Vector2& r)
-{
-	return {Lanes {n.x(), n.y(), Plane::moment(r, n)[0] / c.gyration[body][0], 0}};
-}
-inline std::array<Lanes, 2> speedArm(const ContactSet<Space>& c, int body, const Vector3& n, const Vector3& r)
-{
-	return {Lanes {n.x(), n.y(), n.z(), 0}, spinArm(c, body, r.cross(n))[1]};
-}
 
 // Work of a couple and of impulses at a joint, J.
 struct JointWork {

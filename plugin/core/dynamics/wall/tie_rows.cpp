@@ -5,12 +5,12 @@
 namespace masonry::wall {
 
 template <class K>
-std::vector<TieRow<K>> tieRows(const RigidSystem<K>& s, const ContactSet<K>& c, const LaneArray& before, double h)
+std::vector<TieRow<K>> tieRows(const RigidSystem<K>& s, const BodyLanes<K>& bodies, const LaneArray& before, double h)
 {
 	std::vector<TieRow<K>> result;
 	for (int t = 0; t < int(s.ties.size()); ++t) {
 		const Tie<K>& tie = s.ties[t];
-		if (tie.broken || !(c.own[tie.body1] || c.own[tie.body2]))
+		if (tie.broken || !(bodies.isFree(tie.body1) || bodies.isFree(tie.body2)))
 			continue;
 		const typename K::Pose &pose1 = s.bodies[tie.body1].pose, &pose2 = s.bodies[tie.body2].pose;
 		const auto line = Tie<K>::line(tie, pose1, pose2);
@@ -20,10 +20,10 @@ std::vector<TieRow<K>> tieRows(const RigidSystem<K>& s, const ContactSet<K>& c, 
 		TieRow<K> row;
 		row.tie = t;
 		row.body = {tie.body1, tie.body2};
-		row.arm[0] = speedArm(c, tie.body1, -line.direction, arm1);
-		row.arm[1] = speedArm(c, tie.body2, line.direction, arm2);
+		row.arm[0] = speedArm(bodies, tie.body1, -line.direction, arm1);
+		row.arm[1] = speedArm(bodies, tie.body2, line.direction, arm2);
 		const double stiff = tie.stiffness * h;
-		const TieShares share = TieShares::ofLast(stiff * h * row.perMass(c.velocity));
+		const TieShares share = TieShares::ofLast(stiff * h * row.perMass(bodies.velocity()));
 		row.compliance = 1 / (stiff * h * share.after);
 		row.bias = share.before / share.after * row.rate(before) -
 		           (tie.pretension + tie.stiffness * (line.length - tie.length)) / (stiff * share.after);
@@ -101,8 +101,8 @@ double TieSolve<K>::hold(std::vector<TieRow<K>>& rows, const LaneArray& velocity
 	return worst;
 }
 
-template std::vector<TieRow<Plane>> tieRows(const RigidSystem<Plane>&, const ContactSet<Plane>&, const LaneArray&, double);
-template std::vector<TieRow<Space>> tieRows(const RigidSystem<Space>&, const ContactSet<Space>&, const LaneArray&, double);
+template std::vector<TieRow<Plane>> tieRows(const RigidSystem<Plane>&, const BodyLanes<Plane>&, const LaneArray&, double);
+template std::vector<TieRow<Space>> tieRows(const RigidSystem<Space>&, const BodyLanes<Space>&, const LaneArray&, double);
 template class TieSolve<Plane>;
 template class TieSolve<Space>;
 

@@ -6,7 +6,8 @@
 //
 // TieSolve adds to a solve of the structure without ties what makes this right: with Y = A^-1 E^T and C the compliances, p changes by q and
 // V by Y q, and (E Y + C) q is what the laws are missed by, for all ties whose p is between its bounds.
-#include "dynamics/wall/spin_row.hpp"
+#include "dynamics/model/rigid_system.hpp"
+#include "dynamics/wall/body_lanes.hpp"
 #include <Eigen/Core>
 #include <algorithm>
 #include <functional>
@@ -87,9 +88,9 @@ struct TieRow : TieArms<K> {
 	bool breaks() const { return impulse >= most; }
 };
 
-// The unbroken ties of the contacts' own bodies, for a step of length h. `before`: velocities before it.
+// The unbroken ties of free bodies, for a step of length h. `before`: velocities before it.
 template <class K>
-std::vector<TieRow<K>> tieRows(const RigidSystem<K>& system, const ContactSet<K>& contacts, const LaneArray& before, double h);
+std::vector<TieRow<K>> tieRows(const RigidSystem<K>& system, const BodyLanes<K>& bodies, const LaneArray& before, double h);
 
 template <class K>
 class TieSolve {

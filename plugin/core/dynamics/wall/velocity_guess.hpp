@@ -1,7 +1,7 @@
 #pragma once
 // The change of velocities that a step is expected to bring: that of the step before, where nothing has struck the body. The solver starts
 // from it.
-#include "dynamics/wall/contact_set.hpp"
+#include "dynamics/wall/contact_groups.hpp"
 
 namespace masonry::wall {
 

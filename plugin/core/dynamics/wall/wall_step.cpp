@@ -47,18 +47,15 @@ double WallStep<K>::advancePart(RigidSystem<K>& s, double h, bool divisible)
 	StepContext step(scales, h);
 	step.stands = rest.stands();
 	team.setThreads(settings.threads);
-	contacts.take(s);
-	contacts.measure(s, step.stands);
+	contacts.update(s, step.stands);
 	contacts.setUnit(h);
-	if (!step.stands) {
-		contacts.updateFrames(s);
+	if (!step.stands)
 		contacts.placeFriction(s, h, settings.solver.refactorTime * step.rocking); // when R follows the loads
-	}
 	takeInstants(s, step);
 	const double missed = report.velocityResidual;
 	CappedStatus status = solveStep(s, step);
 	if (const int parts = divisible && !step.stands && results.spins.empty()
-	                          ? landingParts<K>(contacts.velocity, loads, results.velocity, step.fall, settings.solver.small)
+	                          ? landingParts<K>(contacts.bodies().velocity(), loads, results.velocity, step.fall, settings.solver.small)
 	                          : 1;
 	    parts > 1) {
 		h /= parts;
@@ -70,21 +67,21 @@ double WallStep<K>::advancePart(RigidSystem<K>& s, double h, bool divisible)
 		contacts.setUnit(h);
 		status = solveStep(s, step);
 	}
-	contacts.addJammed(contacts.states, report.jammed);
+	contacts.points().addJammed(contacts.points().states(), report.jammed);
 	const MortarWork cracks =
 	    mortar.finish(s, contacts, results.mortar, h, std::max(status.residual, settings.solver.tolerance * step.fall));
 	const double level = tolerance::wall::motion * tolerance::restSpeed * scales.speed;
-	const PointsReport points = advancePoints(contacts, results, ledger.velocityBefore(), h, level);
+	const PointsReport points = contacts.advance(results, ledger.velocityBefore(), h, level);
 	ledger.takeContacts(s, contacts, results, points.friction + cracks.friction, cracks.crack);
 	report.forceResidual = std::max(report.forceResidual, points.forceError);
 	events.take(s, contacts, results);
 	const int moved = rest.movingBlocks(s, contacts, points, level);
 	report.moved = std::max(report.moved, moved);
-	guess.take(contacts.velocity, results.velocity, step.fall);
-	contacts.velocity = results.velocity;
-	contacts.shiftIn(h);
-	if (const double deepest = moved > 0 ? projection.settle(contacts) : 0; deepest > tolerance::wall::sunk * contacts.length)
-		report.deepest = std::max(report.deepest, deepest);
+	guess.take(contacts.bodies().velocity(), results.velocity, step.fall);
+	contacts.setVelocity(results.velocity);
+	contacts.setShift(h);
+	if (moved > 0)
+		projectPositions();
 	moveBodies(s, h);
 	takeTies(s, h);
 	rest.take(s, status, moved, h);
@@ -101,13 +98,13 @@ CappedStatus WallStep<K>::solveStep(RigidSystem<K>& s, const StepContext& step)
 	const LaneArray& expected = guess.changeIn(step.h);
 	pulses.move(s, contacts, step.h);
 	contacts.limitMoved(s, step.fall + externalForce(s) * step.h / freeMass(s));
-	ledger.open(s, contacts, pulses.halfBack());
-	contacts.takeForces(s, step.h, loads);
+	ledger.open(s, contacts.bodies(), pulses.halfBack());
+	contacts.bodies().takeForces(s.bodies, step.h, loads);
 	const std::vector<SpinRow<K>> rows = events.find(s, contacts, expected, step);
 	const bool isExpected = expected.size() == loads.size() && rows.empty();
-	const std::vector<TieRow<K>> ties = tieRows(s, contacts, ledger.velocityBefore(), step.h);
+	const std::vector<TieRow<K>> ties = tieRows(s, contacts.bodies(), ledger.velocityBefore(), step.h);
 	const CappedStatus status = solveMortar(s, {contacts, step, loads, isExpected ? expected : none, rows, ties});
-	contacts.states.swap(results.states);
+	contacts.swapStates(results.states);
 	return status;
 }
 
@@ -150,13 +147,13 @@ void WallStep<K>::takeInstants(RigidSystem<K>& s, const StepContext& step)
 	pulses.hold(s, contacts);
 	if (land) {
 		const double lostInStep = ledger.lost();
-		ledger.open(s, contacts, pulses.halfBack());
+		ledger.open(s, contacts.bodies(), pulses.halfBack());
 		const CappedStatus impact = solveInstant(s, events.rows(contacts), step.atInstant(events.speed()), lostInStep);
 		events.report(s, contacts, results, lostInStep + impact.lost, impact.residual);
 	}
 	if (jump) {
 		pulses.apply(s, contacts);
-		ledger.open(s, contacts, pulses.halfBack());
+		ledger.open(s, contacts.bodies(), pulses.halfBack());
 		solveInstant(s, {}, step.atInstant(pulses.speed()), 0);
 	}
 }
@@ -175,7 +172,7 @@ CappedStatus WallStep<K>::solve(RigidSystem<K>& s, const AdmmProblem<K>& problem
 template <class K>
 CappedStatus WallStep<K>::solveInstant(RigidSystem<K>& s, const std::vector<SpinRow<K>>& rows, const StepContext& instant, double taken)
 {
-	loads.assign(contacts.velocity.size(), all(0));
+	loads.assign(contacts.bodies().velocity().size(), all(0));
 	contacts.limitMoved(s, 0);
 	mortar.begin(s, contacts, ledger.velocityBefore(), 0);
 	// A jump of the base gets the stricter bound, since it may have no solution where nothing slips.
@@ -184,16 +181,25 @@ CappedStatus WallStep<K>::solveInstant(RigidSystem<K>& s, const std::vector<Spin
 	ofInstant.instantEnough = std::min(ofInstant.instantEnough, missed / 2);
 	const CappedStatus status = solve(s, {contacts, instant, loads, none, rows, {}, {}, &mortar.strength},
 	                                  ofInstant); // ties have a finite stiffness: they carry no impulse
-	contacts.addJammed(results.states, report.jammed);
+	contacts.points().addJammed(results.states, report.jammed);
 	report.converged &= status.residual <= missed * std::max(10 * instant.fall, instant.speed);
 	ledger.takeContacts(s, contacts, results, 0);
-	contacts.velocity = results.velocity;
+	contacts.setVelocity(results.velocity);
 	for (size_t b = 0; b < s.bodies.size(); ++b)
 		if (!s.bodies[b].prescribed)
-			s.bodies[b].velocity = contacts.inGlobal(contacts.velocity, b);
+			s.bodies[b].velocity = contacts.bodies().inGlobal(contacts.bodies().velocity(), b);
 	report.created += ledger.close(s, Scales(s), instant.h, taken);
 	errors.made += ledger.made();
 	return status;
+}
+
+// Takes off the penetrations that the step has left.
+template <class K>
+void WallStep<K>::projectPositions()
+{
+	const LaneArray& by = projection.find(contacts);
+	if (const double deepest = by.empty() ? 0 : contacts.displace(by); deepest > tolerance::wall::sunk * contacts.length())
+		report.deepest = std::max(report.deepest, deepest);
 }
 
 // Energies of ties belong to the middle of the step, as velocities do.
@@ -225,8 +231,8 @@ void WallStep<K>::moveBodies(RigidSystem<K>& s, double h)
 			}
 			continue;
 		}
-		const typename K::Velocity moved = contacts.inGlobal(contacts.shift, b), before = body.velocity;
-		body.velocity = contacts.inGlobal(contacts.velocity, b);
+		const typename K::Velocity moved = contacts.bodies().inGlobal(contacts.bodies().shift(), b), before = body.velocity;
+		body.velocity = contacts.bodies().inGlobal(contacts.bodies().velocity(), b);
 		moveFree(body, moved, h);
 		body.increment = (body.velocity - before) / h;
 		ledger.takeForce(s, body, before, moved, h);

@@ -77,6 +77,7 @@ private:
 	void takeInstants(RigidSystem<K>& system, const StepContext& step);
 	CappedStatus solve(RigidSystem<K>& system, const AdmmProblem<K>& problem, const AdmmSettings& solverSettings);
 	CappedStatus solveInstant(RigidSystem<K>& system, const std::vector<SpinRow<K>>& rows, const StepContext& instant, double taken);
+	void projectPositions();
 	void moveBodies(RigidSystem<K>& system, double h);
 
 	bool started {false};

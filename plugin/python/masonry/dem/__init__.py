@@ -7,6 +7,7 @@ The classes also appear in the module `yade`, so that `from yade import *` bring
 holds them can be loaded once this module is imported.
 """
 
+from masonry._calls import check_keywords as _check_keywords
 from masonry.dem._load import load_classes as _load_classes
 
 # Bound by name here: BlockMat, ...
@@ -19,13 +20,14 @@ from masonry.dem.collapsing import collapsed  # noqa: E402
 from masonry.dem.comparing import compare  # noqa: E402
 from masonry.dem.convex import (Geometry, arch, barrel_vault, blocks_from_mesh, column, convex, dome, drum, flat_arch, from_yade, geometry,  # noqa: E402
                                 prism, rubble_wall, wedge)
-from masonry.dem.engines import energy, engines, history, impacts, record_motion, save_history  # noqa: E402
+from masonry.dem.engines import engines, record_motion  # noqa: E402
+from masonry.dem.joint_engine import energy, impacts  # noqa: E402
 from masonry.dem.loads import add_mass, dead_load  # noqa: E402
 from masonry.dem.mortar import bond, damage, scatter  # noqa: E402
-from masonry.dem.plans import Beams, Opening, Slab  # noqa: E402
+from masonry.dem.plans import Arch, Beams, Opening, Slab  # noqa: E402
 from masonry.dem.pushing import Push, pull_and_release, push  # noqa: E402
 from masonry.dem.reactions import joint_forces, reactions  # noqa: E402
-from masonry.dem.recording import wall_history  # noqa: E402
+from masonry.dem.recording import history, save_history, wall_history  # noqa: E402
 from masonry.dem.resting import at_rest  # noqa: E402
 from masonry.dem.running import run  # noqa: E402
 from masonry.dem.scene import (angle, base, block, blocks_from_table, overturned, pier, return_wall, save_blocks,  # noqa: E402
@@ -34,3 +36,5 @@ from masonry.dem.structures import structures  # noqa: E402
 from masonry.dem.ties import tie, ties  # noqa: E402
 from masonry.dem.tilting import TiltTable  # noqa: E402
 from masonry.dem.unions import union  # noqa: E402
+
+_check_keywords(__name__)

@@ -1,11 +1,12 @@
 """Loads the plugin into YADE, once YADE itself is up."""
 
-import difflib
 import importlib
+import inspect
 import math
 import re
 import sys
 
+from masonry._calls import near_words
 from masonry._given import shown
 
 from masonry import _fit
@@ -23,9 +24,9 @@ def _import_yade():
 
 
 def _no_such_attribute(cls, name):
-    near = difflib.get_close_matches(name, [known for known in dir(cls) if not known.startswith("_")])
-    hint = f"did you mean {' or '.join(near)}?" if near else f"see help(dem.{cls.__name__})"
-    return AttributeError(f"{cls.__name__} has no attribute {name!r}: {hint}")
+    own = (word for word, one in inspect.signature(cls.__init__).parameters.items() if one.kind is one.KEYWORD_ONLY)  # of the constructor alone
+    near = near_words(name, [*(known for known in dir(cls) if not known.startswith("_")), *own])
+    return AttributeError(f"dem.{cls.__name__} has no `{name}`; {near or f'see help(dem.{cls.__name__})'}")
 
 
 def _wrong_kind(thing, name, known, value):
@@ -36,7 +37,7 @@ def _wrong_kind(thing, name, known, value):
         kind = "a number"
     elif isinstance(known, str):
         kind = "a text"
-    elif name == "mortar":
+    elif name in ("mortar", "headMortar"):
         kind = "a JointMat or None"
     elif type(known).__name__ == "Vector3":
         kind = "three numbers (x, y, z)"

@@ -5,9 +5,10 @@ from dataclasses import dataclass, field
 import numpy as np
 from masonry.dem.checks import check_material
 from masonry.dem.coursing import Coursing
-from masonry.dem.placing import block_material, box_body, check_support, direction_in_plan, placed, posed, top_of, turned_layout
+from masonry.dem.placing import (block_material, box_body, check_support, convex_body, direction_in_plan, moved, placed, polyhedron, posed, top_of, turned,
+                                 turned_layout)
 from masonry.dem.plans import read_plan
-from yade import O
+from yade import O, Quaternion
 
 # Sizes that are a whole block or half of one, or the height of a course, but for this share, are that exactly: equal blocks are equal to the last bit.
 _SNAP = 1e-7
@@ -20,12 +21,14 @@ class Building:
     ids        of all blocks, slabs and beams
     walls      {name of the wall: ids of its blocks and lintels}
     lintels    {number of the opening in `openings`: id}; openings without a lintel are missing
+    arches     {number of the opening: ids of its voussoirs, in the direction of x or y of the plan}
     floors     ids of the slabs or beams of each storey, a list for each
     volume, mass    m^3, kg, of all"""
 
     ids: list
     walls: dict
     lintels: dict
+    arches: dict
     floors: list
     volume: float
     mass: float
@@ -46,7 +49,9 @@ class Building:
 
     def __str__(self):
         floors = sum(map(len, self.floors))
-        return (f"{len(self.walls)} walls, {len(self.ids) - floors} blocks ({len(self.lintels)} of them lintels), {floors} slabs and beams: "
+        voussoirs = sum(map(len, self.arches.values()))
+        of_arches = f", {voussoirs} voussoirs" if voussoirs else ""
+        return (f"{len(self.walls)} walls, {len(self.ids) - floors} blocks ({len(self.lintels)} of them lintels{of_arches}), {floors} slabs and beams: "
                 f"{self.volume:.4g} m^3, {1e-3 * self.mass:.4g} t")
 
 
@@ -58,11 +63,11 @@ def building(plan, brick, storeys, material, on, thickness=None, openings=(), fl
                  along x run through in odd courses (1, 3, ...), those along y in even ones
     brick        (length, width, height) of a whole block, m, or a dict of them by wall; all have the same height
     storeys      heights of the storeys, m, from the lowest up: whole numbers of courses
-    material     BlockMat of the blocks; lintel_material: of the lintels (None: the same)
+    material     BlockMat of the blocks; lintel_material: of the lintels and voussoirs (None: the same)
     on           id of the body on which it stands, or a list of ids whose upper faces are level with each other: a slab, house.top() of another building
     thickness    of the walls, m, one or a dict by wall: the width of the brick (None), or twice that: two wythes in running bond, tied by a course of headers after
                  every header_every - 1 courses of stretchers
-    openings     dem.Opening, doors and windows, anywhere along a wall, a lintel over each one
+    openings     dem.Opening, doors and windows, anywhere along a wall, a lintel or a dem.Arch over each one
     floors       dem.Slab, dem.Beams or None over every storey, or a list with one for each
     gables       {name: height of the ridge above the last storey, m, or the points (x, z) of the upper edge}: courses end in steps below it
     heights      {name: m}: walls that end lower than the others
@@ -86,10 +91,17 @@ def building(plan, brick, storeys, material, on, thickness=None, openings=(), fl
     check_support(layout[0][low[:, 2] <= read.brick_height / 2, :2], on, at, np.ptp(np.concatenate([low, high]), axis=0), direction_in_plan(along))
     centers, sizes, turn = turned_layout(layout, along)
     orientation = orientation * turn
-    materials = [_material(piece, read, material, lintel_material) for piece in pieces]
-    bodies = [posed(box_body(size, block_material(one)), center, orientation, orientation)
-              for size, one, center in zip(sizes, materials, placed(centers, foot, orientation).tolist())]
-    return _building(O.bodies.append(bodies), pieces, read, sizes, materials)
+    places = placed(centers, foot, orientation).tolist()
+    x, y = direction_in_plan(along) if turn == Quaternion.Identity else (1.0, 0.0)
+    bodies = []
+    for piece, size, center in zip(pieces, sizes, places):
+        one = block_material(_material(piece, read, material, lintel_material))
+        if piece.corners is None:
+            bodies.append(posed(box_body(size, one), center, orientation, orientation))
+        else:
+            corners = piece.corners @ [(x, y, 0), (-y, x, 0), (0, 0, 1)]
+            bodies.append(moved(turned(convex_body(polyhedron(corners, f"plan: a {piece}"), one), orientation), foot))
+    return _building(O.bodies.append(bodies), bodies, pieces, read)
 
 
 def _snapped(sizes, plan):
@@ -102,19 +114,22 @@ def _snapped(sizes, plan):
 def _material(piece, plan, material, lintel_material):
     if piece.kind in ("slab", "beam"):
         return plan.floors[piece.of].material or material
-    return lintel_material or material if piece.kind == "lintel" else material
+    return lintel_material or material if piece.kind in ("lintel", "voussoir") else material
 
 
-def _building(ids, pieces, plan, sizes, materials):
-    walls, floors, lintels, course = {name: [] for name in plan.walls}, [[] for _ in plan.floors], {}, {}
+def _building(ids, bodies, pieces, plan):
+    walls, floors, lintels, arches, course = {name: [] for name in plan.walls}, [[] for _ in plan.floors], {}, {}, {}
     for id, piece in zip(ids, pieces):
         if piece.kind in ("slab", "beam"):
             floors[piece.of].append(id)
             continue
         walls[piece.of].append(id)
         course[id] = piece.storey, piece.course
-        if piece.opening is not None:
+        if piece.kind == "voussoir":
+            arches.setdefault(piece.opening, []).append((piece.low[:2], id))
+        elif piece.opening is not None:
             lintels[piece.opening] = id
-    volumes = sizes.prod(axis=1)
-    mass = float(volumes @ [one.density for one in materials])
-    return Building(list(ids), walls, lintels, floors, float(volumes.sum()), mass, course)
+    masses = np.array([body.state.mass for body in bodies])
+    volumes = masses / [body.mat.density for body in bodies]
+    arches = {opening: [id for _, id in sorted(one)] for opening, one in arches.items()}
+    return Building(list(ids), walls, lintels, arches, floors, float(volumes.sum()), float(masses.sum()), course)

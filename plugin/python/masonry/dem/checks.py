@@ -38,29 +38,36 @@ def check_joint_material(mortar):
 
 def check_mortar(blocks):
     """The JointMats of blocks, without repeats; ValueError where two blocks that touch have different ones."""
-    having = [b for b in blocks if b.mat.mortar is not None]
-    if not having:
+    materials = {b.mat.id: b.mat for b in blocks if b.mat.mortar is not None}
+    if not materials:
         return []
-    known = {id: repr(sorted(b.mat.mortar.dict().items())) for id, b in ((b.mat.id, b) for b in having)}
+    known = {id: (_values(mat.mortar), _values(_head_mortar(mat))) for id, mat in materials.items()}
     if len(set(known.values())) > 1:
-        for i, j in contacts_of(blocks, TOUCH)[0].tolist():
-            one, other = blocks[i].mat, blocks[j].mat
-            if one.mortar is not None and other.mortar is not None and known[one.id] != known[other.id]:
+        pairs, _, _, supports = contacts_of(blocks, TOUCH)
+        beds = {tuple(pair) for pair in np.sort(supports, axis=1).tolist()}
+        for i, j in pairs.tolist():
+            own = [known.get(blocks[k].mat.id, (None, None))[(min(i, j), max(i, j)) not in beds] for k in (i, j)]
+            if None not in own and own[0] != own[1]:
                 raise ValueError(f"bodies {blocks[i].id} and {blocks[j].id} touch and have different mortar: a joint has one JointMat; give both bodies the same, or bond "
                                  "the joint by dem.bond()")
-    return list({known[b.mat.id]: b.mat.mortar for b in having}.values())
+    return list({_values(one): one for mat in materials.values() for one in (mat.mortar, _head_mortar(mat)) if one is not None}.values())
 
 
-def check_use_of_mortar(blocks, model, rigid, has_ties):
-    """ValueError where blocks with mortar have gaps, or the scene is to have what is for rigid blocks alone: a model, other arguments {name: value}, ties."""
+def _head_mortar(material):
+    return None if material.unfilledHeads else material.headMortar or material.mortar
+
+
+def _values(mortar):
+    return None if mortar is None else repr(sorted(mortar.dict().items()))
+
+
+def check_use_of_mortar(blocks, model, rigid):
+    """ValueError where blocks with mortar have gaps, or the scene is to have what is for rigid blocks alone: a model, other arguments {name: value}."""
     if model not in ("auto", "compliant"):
         raise ValueError(f"model = {shown(model)}: rigid blocks know dry joints only: must be 'compliant' (or 'auto') where a BlockMat has mortar")
     for name in (name for name, value in rigid.items() if value):
         raise ValueError(f"{name} = {shown(rigid[name])}: is for rigid blocks, which know dry joints only: must be left out where a BlockMat has mortar, which needs "
                          "compliant joints (model='compliant')")
-    if has_ties:
-        raise ValueError("dem.tie() and BlockMat.mortar cannot be in one scene: ties need rigid blocks and mortar needs model='compliant': leave out the ties or the "
-                         "mortar, or let springs of your own act through O.forces")
     if O.iter == 0:
         _check_gaps(blocks)
 

@@ -7,16 +7,17 @@ import numpy as np
 from masonry._boxes import contacts
 from masonry.dem.bonding import joints_of_run
 from masonry.dem.plans import FIT, Beams, Slab
+from masonry.dem.voussoirs import profiles
 
 # Blocks overlap, or are apart from what carries them, by more than this share of the smallest size: far above round-off, far below a joint.
 _TOUCH = 1e-6
 # Ways in which a run ends, besides the end of the wall.
-_JUNCTION, _LINTEL, _BEAM = "junction", "lintel", "beam"
+_JUNCTION, _LINTEL, _BEAM, _ARCH = "junction", "lintel", "beam", "arch"
 
 
 @dataclass
 class Piece:
-    """A block of the building. kind: 'block', 'lintel', 'slab' or 'beam'; of: name of its wall, or the floor; storey: 1 is the lowest (gables: one more)."""
+    """A block of the building. kind: 'block', 'lintel', 'voussoir', 'slab' or 'beam'; of: name of its wall, or the floor; storey: 1 is the lowest (gables: one more)."""
 
     kind: str
     of: object
@@ -24,7 +25,8 @@ class Piece:
     course: int
     low: tuple
     high: tuple
-    opening: int = None  # number of the opening of a lintel
+    opening: int = None  # number of the opening of a lintel or a voussoir
+    corners: np.ndarray = None  # (8, 3), of a voussoir or of a block with a skewback; the box from `low` to `high` is then the largest one with the same top in the latter
 
     def __str__(self):
         place = ", ".join(f"{(a + b) / 2:.4g}" for a, b in zip(self.low, self.high))
@@ -49,6 +51,7 @@ class _Runs:
     runs: list  # (start, end) of masonry
     ends: dict = field(default_factory=dict)  # places of joints that it must have: their reason
     lintels: list = field(default_factory=list)  # (start, end, number of the opening)
+    skewbacks: dict = field(default_factory=dict)  # {end of a run at the top of the course: the same at its foot}
 
     def cut(self, start, end, near, reason=None):
         """Takes out what is between, and says whether there was anything. reason: the masonry goes on at a joint."""
@@ -82,6 +85,8 @@ class Coursing:
         self._cut_openings()
         for floor, level in self.beams:
             self._add_beams(floor, level)
+        self.spans = []  # of arches, a box in each course
+        self._add_arches()
         self._add_lintels()
         for wall in plan.walls.values():
             self._fill(wall)
@@ -165,8 +170,33 @@ class Coursing:
                     raise ValueError(f"{name}: there is no wall around it in course {course + 1}: it must not meet another opening, and must lie below the top of the wall")
                 self.parts[wall.name][course].cut(start, end, self.near)
 
+    def _add_arches(self):
+        for k, opening in enumerate(self.plan.openings):
+            if opening.arch is None:
+                continue
+            wall, start, end, _, first = self._span(opening)
+            above, height, least = first + opening.arch.courses, self.plan.brick_height, wall.brick[0] / 4
+            name = f"openings[{k}] in wall {wall.name!r}: its arch"
+            if above > len(self.courses) or any(course.on_slab for course in self.courses[first:above]):
+                raise ValueError(f"{name} takes courses {first + 1} to {above}: must lie below the slab over its storey and below the top of the wall")
+            joints = opening.arch.joints(end - start, opening.arch.courses * height) + [(start + end) / 2, 0]
+            left, right = ([x + (top - x) * j / opening.arch.courses for j in range(opening.arch.courses + 1)] for x, top in ((start, joints[0, 1, 0]), (end, joints[-1, 1, 0])))
+            for j, course in enumerate(self.courses[first:above]):
+                part, a, b = self.parts[wall.name][course.number], left[j + 1], right[j + 1]
+                if not any(one + least <= a + self.near and b + least <= other + self.near for one, other in part.runs):
+                    raise ValueError(f"{name} from {wall.place(a)} to {wall.place(b)} in course {course.number + 1} needs {least:g} m of wall (a quarter of a block) at either side: "
+                                     "move the opening, junction, beam or arch beside it")
+                part.cut(a, b, self.near, _ARCH)
+                part.skewbacks.update({a: left[j], b: right[j]})
+                self.spans.append(self._piece("arch", wall, course, a, b, 0.0, wall.thickness))
+            for outline in profiles(joints):
+                self.pieces.append(self._prism("voussoir", wall, self.courses[above - 1], outline + [0, self.courses[first].z], 0.0, wall.thickness))
+                self.pieces[-1].opening = k
+
     def _add_lintels(self):
         for k, opening in enumerate(self.plan.openings):
+            if opening.arch is not None:
+                continue
             wall, start, end, bottom, top = self._span(opening)
             parts = self.parts[wall.name]
             if top >= len(parts) or self.courses[top].on_slab or not any(a < end and b > start for a, b in parts[top].runs):
@@ -267,7 +297,7 @@ class Coursing:
                 if inside is None:
                     self._refuse(wall, course, start, end, bond)
                 for a, b in zip(inside, inside[1:]):
-                    self._add_blocks(wall, course, a, b, headers)
+                    self._add_blocks(wall, course, (a, b), [part.skewbacks.get(place, place) for place in (a, b)], headers)
                 joints += inside[1:-1]
             for a, b, opening in part.lintels:
                 self.pieces.append(self._piece("lintel", wall, course, a, b, 0.0, wall.thickness))
@@ -291,42 +321,52 @@ class Coursing:
         """ValueError where joints that must be there stand over each other."""
         for place, reason in part.ends.items():
             for other, its in above.ends.items():
-                allowed = reason == its == _BEAM and abs(place - other) <= self.near or reason == its == _JUNCTION and not self.plan.bonded
+                allowed = reason == its == _BEAM and abs(place - other) <= self.near or reason == its == _JUNCTION and not self.plan.bonded or reason == its == _ARCH
                 if abs(place - other) < lap - self.near and not allowed:
                     raise ValueError(f"wall {wall.name!r}, courses {course.number + 1} and {course.number + 2}, at {wall.place(place)}: a {reason} and a {its} leave a straight "
                                      f"joint: their ends must lap by {lap:g} m")
 
-    def _add_blocks(self, wall, course, start, end, headers):
-        if wall.leaves == 2 and not headers:
-            for side in (-1, 1):
-                self.pieces.append(self._piece("block", wall, course, start, end, side * wall.brick[1] / 2, wall.brick[1]))
-        else:
-            self.pieces.append(self._piece("block", wall, course, start, end, 0.0, wall.thickness))
+    def _add_blocks(self, wall, course, ends, feet, headers):
+        """ends: of the block along the wall, at its top; feet: the same at its foot."""
+        leaves = [(side * wall.brick[1] / 2, wall.brick[1]) for side in (-1, 1)] if wall.leaves == 2 and not headers else [(0.0, wall.thickness)]
+        for aside, width in leaves:
+            piece = self._piece("block", wall, course, *ends, aside, width)
+            if feet != list(ends):
+                low, high = piece.low[2], piece.high[2]
+                piece.corners = self._prism("block", wall, course, np.array([(feet[0], low), (feet[1], low), (ends[1], high), (ends[0], high)]), aside, width).corners
+            self.pieces.append(piece)
 
     def _piece(self, kind, wall, course, start, end, aside, width):
         across = (wall.across + aside - width / 2, wall.across + aside + width / 2)
         (x0, x1), (y0, y1) = ((start, end), across) if wall.axis == 0 else (across, (start, end))
         return Piece(kind, wall.name, course.storey, course.number, (x0, y0, course.z), (x1, y1, course.z + self.plan.brick_height))
 
+    def _prism(self, kind, wall, course, outline, aside, width):
+        """The Piece over an outline (4, 2) of places along the wall and heights."""
+        sides = [np.insert(outline, 1, wall.across + aside + side * width / 2, axis=1) for side in (-1, 1)]
+        corners = np.concatenate(sides)[:, [1, 0, 2] if wall.axis == 1 else [0, 1, 2]]
+        return Piece(kind, wall.name, course.storey, course.number, tuple(corners.min(axis=0).tolist()), tuple(corners.max(axis=0).tolist()), corners=corners)
+
     # --- checks ---
 
     def _check(self):
-        """ValueError where pieces overlap, where one stands on nothing, and where one would tip from what carries it."""
-        low, high = np.array([piece.low for piece in self.pieces]), np.array([piece.high for piece in self.pieces])
+        """ValueError where pieces overlap, where one stands on nothing, and where one would tip from what carries it. Arches count as boxes from skewback to skewback."""
+        pieces = [piece for piece in self.pieces if piece.kind != "voussoir"] + self.spans
+        low, high = np.array([piece.low for piece in pieces]), np.array([piece.high for piece in pieces])
         axes = np.broadcast_to(np.eye(3), (len(low), 3, 3))
         pairs, gaps, margins, supports = contacts((low + high) / 2, high - low, axes, _TOUCH)
         for (i, j), gap in zip(pairs[gaps < -margins].tolist(), gaps[gaps < -margins].tolist()):
-            raise ValueError(f"plan: a {self.pieces[i]} and a {self.pieces[j]} overlap by {-gap:.3g} m")
+            raise ValueError(f"plan: a {pieces[i]} and a {pieces[j]} overlap by {-gap:.3g} m")
         lower, upper = supports.T
         left, right = (op(ends[lower], ends[upper])[:, :2] for op, ends in ((np.maximum, low), (np.minimum, high)))
         least, most = np.full((len(low), 2), np.inf), np.full((len(low), 2), -np.inf)
         np.minimum.at(least, upper, left)
         np.maximum.at(most, upper, right)
-        ground = low[:, 2] <= self.near
+        ground = (low[:, 2] <= self.near) | [piece.kind == "arch" for piece in pieces]
         middle = (low + high)[:, :2] / 2
         for k in np.flatnonzero(~ground):
             if not np.isfinite(least[k]).all():
-                raise ValueError(f"plan: a {self.pieces[k]} stands on nothing")
+                raise ValueError(f"plan: a {pieces[k]} stands on nothing")
             if (middle[k] < least[k]).any() or (middle[k] > most[k]).any():
-                raise ValueError(f"plan: a {self.pieces[k]} would tip: its centre is not above what carries it")
+                raise ValueError(f"plan: a {pieces[k]} would tip: its centre is not above what carries it")
 

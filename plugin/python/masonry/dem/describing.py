@@ -7,7 +7,7 @@ import sys
 
 from masonry import _build
 from masonry.dem import notes
-from masonry.dem.engines import joint_engine
+from masonry.dem.joint_engine import joint_engine
 from masonry.dem.loads import added_mass, dead_loads
 from masonry.dem.ties import ties
 from yade import O, config, wrapper
@@ -67,8 +67,11 @@ def _materials(ids):
         body = O.bodies[id] if id < len(O.bodies) else None
         if body is not None and isinstance(body.mat, wrapper.BlockMat):
             values = {name: getattr(body.mat, name) for name in _MATERIAL}
-            if body.mat.mortar is not None:
-                values["mortar"] = body.mat.mortar.dict()
+            for name in ("mortar", "headMortar"):
+                if getattr(body.mat, name) is not None:
+                    values[name] = getattr(body.mat, name).dict()
+            if body.mat.unfilledHeads:
+                values["unfilledHeads"] = True
             found.setdefault(repr(values), {**values, "ids": []})["ids"].append(id)
     return list(found.values())
 

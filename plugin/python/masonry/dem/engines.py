@@ -4,19 +4,21 @@ import math
 import numbers
 
 import numpy as np
-from masonry._files import written
 from masonry._given import finite_numbers, is_whole, number_given, shown
 from masonry.motions import Motion, PulseTrain, Record
 from yade import O, wrapper
 
 from masonry import _yade
 from masonry.dem import bodies, notes
-from masonry.dem.bodies import face_areas, geometry, half_sizes, poses, reach
+from masonry.dem.bodies import poses
 from masonry.dem.checks import check_blocks, check_material, check_mortar, check_recorder, check_use_of_mortar
-from masonry.dem.loads import dead_loads, lasting_loads, potential_of_loads
-from masonry.dem.pushing import Push
+from masonry.dem.joint_engine import joint_engine
+from masonry.dem.loads import lasting_loads
+from masonry.dem.pushing import HELD_RIGID, Push
+from masonry.dem.stiffness import LEAST_PENETRATION, check_stiffness, choose_stiffness, has_stiffness, is_given, landing_step
 from masonry.dem.structures import structures
 from masonry.dem.ties import tied, ties
+from masonry.dem.units import units
 
 _MODELS = ("auto", "planar", "spatial", "compliant")
 METHODS = ("auto", "localised", "wall")
@@ -29,116 +31,12 @@ _RIGID_STEP = 1 / 60
 # The same for method='wall': 4e-3 sqrt(R/g), 1e-3 s for blocks of 1.0 x 0.5 m.
 _WALL_STEP = 2 / 75
 _PENETRATION = 1e-5
-# Smaller ones drown in the round-off of positions.
-_LEAST_PENETRATION = 1e-10
-# Share of the smallest width by which the weight presses in joints of a given stiffness: above the first, blocks sink into each other;
-# above the second, a slip of units is likelier than rubber.
-_MOST_PENETRATION, _ODD_PENETRATION = 0.1, 2e-3
 # m/s^2: whatever the units of length and time, and far from overflow.
 _GRAVITIES = 1e-6, 1e6
 # Overlap of rigid blocks relative to their smallest size: what MoreauJeanIntegrator accepts, relative to half of it.
 _MOST_OVERLAP = 5e-5
 # Share of the critical time step: peaks of a rocking block at the default penetration change by 1 % of their error below it.
 _STEP_FRACTION = 0.2
-
-
-# (material, stiffness) that _choose_stiffness has given: materials may outlive their scenes.
-_chosen = []
-
-
-def _is_given(material, name):
-    """By a script, or for a run that goes on; what was chosen for another scene, or before the first step, is chosen anew."""
-    stiffness = getattr(material, name)
-    return not np.isnan(stiffness) and not (O.iter == 0 and any(material is one and stiffness == value for one, value in _chosen))
-
-
-def has_stiffness(material):
-    """Whether a script has given the BlockMat a joint stiffness, in either direction."""
-    return _is_given(material, "normalStiffness") or _is_given(material, "shearStiffness")
-
-
-def _largest_pressure(free, gravity):
-    """Of the weight of a block and of what stands above it, over its lower face, Pa. Overlaps are measured along the axes of that face."""
-    loads = dead_loads()
-    (centers, sizes, axes), mass = geometry(free), np.array([b.state.mass + np.linalg.norm(loads.get(b.id, 0)) / gravity for b in free])
-    pressures = []
-    for k, (center, own) in enumerate(zip(centers, axes)):
-        face = np.delete(own, np.abs(own[:, 2]).argmax(), axis=0)
-        half = (np.abs(axes @ face.T) * sizes[:, :, None] / 2).sum(axis=1)  # of all blocks along the two axes, m
-        # Half of the overlap of the two intervals over half the other's length, along both axes.
-        shares = np.clip((half[k] + half - np.abs((centers - center) @ face.T)) / (2 * half), 0, 1).prod(axis=1)
-        load = mass[k] + (mass * shares)[centers[:, 2] > center[2]].sum()
-        convex = isinstance(free[k].shape, wrapper.ConvexBlock)
-        pressures.append(load * gravity / (-face_areas(free[k])[:, 2].min() if convex else 4 * half[k].prod()))
-    return max(pressures)
-
-
-def _check_stiffness(blocks, gravity):
-    """Refuses given stiffnesses that the weight presses in by impossible depths, and names those that look like a slip of units."""
-    if gravity == 0:
-        return
-    free = [b for b in blocks if b.dynamic]
-    width = 2 * half_sizes(free)[:, :2].min()
-    pressure = _largest_pressure(free, gravity)
-    for name in ("normalStiffness", "shearStiffness"):
-        for material in {b.mat.id: b.mat for b in blocks}.values():
-            stiffness = getattr(material, name)
-            if not _is_given(material, name):
-                continue
-            depth = pressure / (stiffness * width)
-            if not _LEAST_PENETRATION / 2 <= depth <= _MOST_PENETRATION:
-                raise ValueError(f"{name} = {stiffness:g} Pa/m: must be from {pressure / (width * _MOST_PENETRATION):.2g} to "
-                                 f"{2 * pressure / (width * _LEAST_PENETRATION):.2g} Pa/m here, where the weight presses joints in by {depth:.2g} of the smallest "
-                                 f"width. It is a stiffness per area: 10 GPa/m = 10 N/mm^3 = 1e10 Pa/m")
-            if depth > _ODD_PENETRATION:
-                notes.say(f"{name} = {stiffness:g} Pa/m: the weight presses joints in by {1e3 * depth * width:.2g} mm, {depth:.2g} of the smallest width. Joints of "
-                          "masonry have 1e9 to 1e12 Pa/m (10 GPa/m = 10 N/mm^3 = 1e10 Pa/m)")
-
-
-def _not_of_mortar(materials, name):
-    """Gives materials the stiffness of their mortar; returns those whose mortar has none."""
-    for material in materials:
-        if material.mortar is not None and not np.isnan(getattr(material.mortar, name)):
-            setattr(material, name, getattr(material.mortar, name))
-            _chosen.append((material, getattr(material, name)))
-    return [m for m in materials if m.mortar is None or np.isnan(getattr(m.mortar, name))]
-
-
-def _choose_stiffness(blocks, penetration, gravity):
-    """Fills in the stiffness per area of every BlockMat that has none: the weight presses the edge of the most loaded joint in by twice the
-    `penetration`, times the smallest width, and the whole face by a quarter of that (joint_contact.hpp). The step follows from the shear stiffness
-    of slender blocks; half of the normal one leaves it as long as the edge needs. Returns a sentence, or None when nothing was chosen."""
-    materials = {b.mat.id: b.mat for b in blocks}.values()
-    normal, shear = (_not_of_mortar([m for m in materials if not _is_given(m, name)], name) for name in ("normalStiffness", "shearStiffness"))
-    if normal:
-        if gravity == 0:
-            raise ValueError("gravity = 0: every BlockMat must have a normalStiffness, there is no weight to choose one by")
-        free = [b for b in blocks if b.dynamic]
-        stiffness = 2 * _largest_pressure(free, gravity) / (penetration * 2 * half_sizes(free)[:, :2].min())
-        for material in normal:
-            material.normalStiffness = stiffness
-            _chosen.append((material, stiffness))
-    for material in shear:
-        material.shearStiffness = material.normalStiffness
-        if any(material is one for one in normal):
-            material.shearStiffness /= 2
-            _chosen.append((material, material.shearStiffness))
-    if normal:
-        return f"stiffness {stiffness:.3g} Pa/m (the weight presses faces in by {penetration / 2:g} of the width, edges by {2 * penetration:g})"
-    return None
-
-
-def _landing_step(body, alone):
-    """Critical time step of a block on its largest face, s. Above the frequency of any of its joints: all springs at the corner, and twice as stiff
-    where it may land on another free block, which swings against it."""
-    shape, state = body.shape, body.state
-    if isinstance(shape, wrapper.Box):
-        x, y, z = shape.extents
-        area, reach_squared = 4 * x * y * z / min(x, y, z), shape.extents.squaredNorm()
-    else:
-        area, reach_squared = np.linalg.norm(face_areas(body), axis=1).max(), reach(body) ** 2
-    stiffness = max(getattr(one, name) for one in (body.mat.mortar, body.mat) if one for name in ("normalStiffness", "shearStiffness") if getattr(one, name) > 0)
-    return 2 / np.sqrt((1 if alone else 2) * stiffness * area * (1 / state.mass + reach_squared / min(state.inertia)))
 
 
 def record_motion(record, ids, direction=(1, 0, 0), start=0.0):
@@ -191,8 +89,8 @@ def _check_arguments(model, method, impact_order, penetration, tolerance, dt, gr
         raise ValueError(f"method = {shown(method)}: must be one of {', '.join(METHODS)}")
     if impact_order not in _ORDERS:
         raise ValueError(f"impact_order = {shown(impact_order)}: must be 'simultaneous', 'sequential' or None")
-    if penetration is not None and not _LEAST_PENETRATION <= number_given("penetration", penetration) <= 1e-2:
-        raise ValueError(f"penetration = {penetration}: must be from {_LEAST_PENETRATION:g} to 0.01")
+    if penetration is not None and not LEAST_PENETRATION <= number_given("penetration", penetration) <= 1e-2:
+        raise ValueError(f"penetration = {penetration}: must be from {LEAST_PENETRATION:g} to 0.01")
     if tolerance is not None and not 0 < number_given("tolerance", tolerance) <= 1e-2:
         raise ValueError(f"tolerance = {tolerance}: must be above 0 and at most 0.001, with method='wall' 0.01")
     if dt is not None and not number_given("dt", dt) > 0:
@@ -274,28 +172,28 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
         check_material(body.mat)
     notes.say_what_looks_odd(blocks, motions, gravity, others, {id for pair in tied() for id in pair})
     reason = "asked for"
-    mortars = check_mortar(blocks)
+    mortars, split = check_mortar(blocks), units()
+    mortars += [material for name, (material, _) in split.items() if name not in {repr(sorted(one.dict().items())) for one in mortars}]
     if mortars:
-        check_use_of_mortar(blocks, model, {"method": method != "auto" and method, "tolerance": tolerance, "others": others}, any(not one.dead for one in ties()))
+        check_use_of_mortar(blocks, model, {"method": method != "auto" and method, "tolerance": tolerance, "others": others})
     notes.say_of_mortar(mortars, blocks)
     if model == "auto":
         if mortars:
-            model, reason = "compliant", "a BlockMat has mortar"
+            model, reason = "compliant", "units may split" if len(split) == len(mortars) else "a BlockMat has mortar"
         elif penetration is not None:
             model, reason = "compliant", "penetration is given"
         elif any(has_stiffness(b.mat) for b in blocks):
             model, reason = "compliant", "a BlockMat has a joint stiffness"
-    stiff = [name for name in ("normalStiffness", "shearStiffness") if any(_is_given(b.mat, name) for b in blocks)]
+    stiff = [name for name in ("normalStiffness", "shearStiffness") if any(is_given(b.mat, name) for b in blocks)]
     notes.say_what_is_unused(blocks, model, stiff)
-    if penetration is not None and all(_is_given(b.mat, "normalStiffness") for b in blocks):
+    if penetration is not None and all(is_given(b.mat, "normalStiffness") for b in blocks):
         notes.say(f"penetration = {penetration:g} is not used: every BlockMat has its normalStiffness")
     if model == "compliant":
         if tolerance is not None or others or method != "auto":
             raise ValueError("tolerance, others and method are for rigid blocks: they must be left out with model='compliant'")
-        if any(not one.dead for one in ties()):
-            raise ValueError(f"model = {model!r} ({reason}): compliant joints take no ties: give model='planar' or 'spatial' and no joint stiffness, or let springs of "
-                             "your own act through O.forces")
         return _compliant(blocks, motions, reason, dt, penetration or _PENETRATION, impact_order or "simultaneous", gravity, recorders, loads)
+    if any(one.held for one in pushes):
+        raise ValueError(HELD_RIGID)
     if penetration is not None:
         raise ValueError(f"penetration = {penetration}: must be left out with model={shown(model)}, it is for compliant joints")
     check_blocks(_MOST_OVERLAP, floating=False)
@@ -334,18 +232,22 @@ def _rigid(motions, model, method, dt, tolerance, impact_order, gravity, recorde
 
 def _compliant(blocks, motions, reason, dt, penetration, impact_order, gravity, recorders, loads):
     reasons = [f"compliant joints, YADE's usual loop: {reason}"]
-    _check_stiffness(blocks, gravity)
-    chosen = _choose_stiffness(blocks, penetration, gravity)
+    check_stiffness(blocks, gravity)
+    chosen = choose_stiffness(blocks, penetration, gravity)
     if chosen:
         reasons.append(chosen)
 
-    joints, before = wrapper.RockingJointEngine(impactOrder=impact_order), joint_engine()
-    if O.iter > 0 and getattr(before, "bondedIds", None):
+    joints, before = wrapper.RockingJointEngine(impactOrder=impact_order, ties=ties()), joint_engine()
+    if O.iter == 0:
+        for material, pairs in units().values():
+            joints.bond([id for pair in pairs for id in pair], material, "pairs")
+    bonded = getattr(before, "bondedIds", None) or []
+    if getattr(before, "bondsAsked", None) or O.iter > 0 and any(O.interactions.has(*pair) for pair in zip(bonded[::2], bonded[1::2])):
         joints.goOnFrom(before)
     critical, largest = joints.criticalTimeStep(), joints.largestTimeStep
     if not np.isfinite(critical):  # nothing touches yet
         free = [b for b in blocks if b.dynamic]
-        critical = largest = min(_landing_step(b, alone=len(free) == 1) for b in free)
+        critical = largest = min(landing_step(b, alone=len(free) == 1) for b in free)
     if dt is not None and not dt <= largest:
         raise ValueError(f"dt = {dt}: must be below {largest:.3g} s, the largest stable step of joints this stiff, dashpots included")
     joints.stepFraction = _STEP_FRACTION if dt is None else 0
@@ -365,106 +267,3 @@ def _compliant(blocks, motions, reason, dt, penetration, impact_order, gravity, 
         *recorders,
         wrapper.NewtonIntegrator(gravity=(0, 0, -gravity), damping=0),
     ]
-
-
-def joint_engine():
-    """The engine of the joints, or None."""
-    return next((one for one in O.engines if isinstance(one, (wrapper.MoreauJeanIntegrator, wrapper.RockingJointEngine)) and not one.dead), None)
-
-
-def joint_engine_given():
-    """The same; ValueError without one."""
-    engine = joint_engine()
-    if engine is not None:
-        return engine
-    raise ValueError("O.engines has no MoreauJeanIntegrator and no RockingJointEngine: set O.engines = dem.engines(...)")
-
-
-_IMPACT_FIELDS = [("time", float), ("body", int), ("support", int), ("restitution_asked", float), ("restitution", float), ("velocity", float),
-                  ("energy_lost", float), ("friction_demand", float), ("application", float), ("switched", bool), ("capped", bool)]
-
-
-def impacts():
-    """The rocking impacts so far: a structured array, one row an impact.
-
-    time                  s
-    body, support         ids of the block and of what it lands on
-    restitution_asked     C; NaN: the natural one
-    restitution           C that came out
-    velocity              relative angular velocity before, rad/s
-    energy_lost           J, of all joints that land at the same instant; in the row of the first one
-    friction_demand       friction coefficient that the impact takes; where it is the joint's own, the pivot has slipped and more was asked for
-    application           distance of the resultant impulse from the new pivot, m
-    switched              False: the impact stopped the rotation; a pivot that has slipped may start it again
-    capped                True: the restitution asked for did not come out, because energy would have appeared, or because no impulses obey all laws (a
-                          failure of the step)
-
-    Restitution and velocity are relative to the motion with which the block would stay on its old and its new support: on supports that move in
-    different ways, a block with restitution 0 follows both. The walls of method='wall' list only
-    impacts with a given restitution, each in the step after it: beside blocks with localised impacts the rows may be out of order by a step."""
-    e = joint_engine_given()
-    table = np.zeros(len(e.impactTimes), dtype=_IMPACT_FIELDS)
-    before, after = np.array(e.impactBefore), np.array(e.impactAfter)
-    columns = (e.impactTimes, e.impactBlocks, e.impactSupports, e.impactAsked, np.divide(after, before, out=np.zeros_like(before), where=before > 0),
-               before, e.impactEnergy, e.impactFriction, e.impactApplication, e.impactSwitched, e.impactCapped)
-    for (name, _), values in zip(_IMPACT_FIELDS, columns):
-        table[name] = values
-    return table
-
-
-def energy():
-    """Energies in J, a dict.
-
-    kinetic, potential                       now, dead loads included; of walls of method='wall', whose velocities belong to the middle of a step, potential half a step earlier
-    frictDissip, impactDissip, baseWork      since dem.engines() made the engines: dissipated by friction and by impacts, and the work of the base
-    elastPotential, dampDissip               compliant joints, and scenes with ties: elastic energy now; dissipated by dashpots, and by ties that break or are damped numerically,
-                                             so far
-    crackDissip                              joints with mortar: spent by their cracks so far
-
-    The sum of all others less baseWork is constant, except for madeEnergy less lostEnergy of the engine (in walls of method='wall' they are part of
-    impactDissip), and for the work of other engines' forces, a change of gravity or velocities by a script, and erased blocks. With compliant joints all energies are 0 before the first step."""
-    e = joint_engine_given()
-    keys = ("kinetic", "potential", "elastPotential", "frictDissip", "dampDissip", "impactDissip", "baseWork")
-    elastic = isinstance(e, wrapper.RockingJointEngine) or bool(e.ties)
-    bonded = ("crackDissip",) if getattr(e, "bondedIds", None) else ()
-    found = {key: getattr(e, key) for key in keys + bonded if elastic or key not in ("elastPotential", "dampDissip")}
-    if found["potential"] != 0 or not isinstance(e, wrapper.RockingJointEngine):
-        found["potential"] += potential_of_loads()
-    return found
-
-
-def history(recorder):
-    """What a BlockRecorder has kept, a structured array with one row per time: time (s) and, for each block in the order of its ids,
-    rotation (rad, vector in the block's own axes; the y component is dem.angle), position (m), uplift (m, largest gap of the joint
-    below, NaN in flight) and force (N, of what is below)."""
-    if not isinstance(recorder, wrapper.BlockRecorder):
-        raise ValueError(f"recorder = {shown(recorder)}: must be a BlockRecorder (a WallRecorder: dem.wall_history)")
-    rows, blocks = len(recorder.times), len(recorder.ids)
-    fields = [("time", float), ("rotation", float, (blocks, 3)), ("position", float, (blocks, 3)), ("uplift", float, (blocks,)), ("force", float, (blocks, 3))]
-    table = np.zeros(rows, dtype=fields)
-    table["time"] = recorder.times
-    for name, values in (("rotation", recorder.rotations), ("position", recorder.positions), ("uplift", recorder.uplifts), ("force", recorder.forces)):
-        table[name] = np.array(values, dtype=float).reshape(table[name].shape)
-    return table
-
-
-def save_history(recorder, path):
-    """Writes dem.history() to a file: .npz (NumPy), or .csv with one column per number and a header line (pandas, ParaView). Of a WallRecorder:
-    dem.wall_history(recorder).save("wall.npz"), or .to_csv("wall.csv") (time, drift, energies; ids=... adds the motion of blocks)."""
-    table = history(recorder)
-    if str(path).endswith(".npz"):
-        with written(path) as beside:
-            np.savez(beside, ids=recorder.ids, **{name: table[name] for name in table.dtype.names})
-    elif str(path).endswith(".csv"):
-        header, columns = ["time (s)"], [table["time"]]
-        for k, id in enumerate(recorder.ids):
-            for name, unit in (("rotation", "rad"), ("position", "m"), ("force", "N")):
-                for axis, letter in enumerate("xyz"):
-                    header.append(f"{name} {letter} of {id} ({unit})")
-                    columns.append(table[name][:, k, axis])
-            header.append(f"uplift of {id} (m)")
-            columns.append(table["uplift"][:, k])
-        with written(path) as beside:
-            np.savetxt(beside, np.column_stack(columns), delimiter=",", header=",".join(header), comments="")
-    else:
-        raise ValueError(f"path = {path}: must end in .npz or .csv")

@@ -151,6 +151,18 @@ def wall_layout(courses, per_course, size, gap=0.0, openings=(), openings_in="m"
     return _joined(parts)
 
 
+def halved(centers, sizes, length):
+    """(centers, sizes, rows): the layout with each block of this length along x as two halves; `rows` are those of the first halves, before the second ones."""
+    whole_ones = np.abs(sizes[:, 0] - length) <= _FIT * length
+    rows = np.repeat(np.arange(len(sizes)), 1 + whole_ones)
+    first = np.cumsum(1 + whole_ones)[whole_ones] - 2
+    centers, sizes = centers[rows], sizes[rows]
+    for k, side in ((first, -1), (first + 1, 1)):
+        centers[k, 0] += side * sizes[k, 0] / 4
+    sizes[np.concatenate([first, first + 1]), 0] /= 2
+    return centers, sizes, first
+
+
 # Other walls.
 
 

@@ -4,9 +4,11 @@ import numpy as np
 from masonry._given import is_whole, number_given, shown, whole_given
 from masonry.dem.bodies import block_body
 from masonry.dem.checks import check_joint_material
-from masonry.dem.engines import joint_engine_given
+from masonry.dem.joint_engine import joint_engine_given
 from masonry.results.bonds import bond_table
 from yade import wrapper
+
+_JOINTS = "all", "bed", "head"
 
 
 def damage():
@@ -24,11 +26,12 @@ def damage():
     return bond_table(engine.bondedIds, engine.bondedState)[0]
 
 
-def bond(ids=None, material=None):
+def bond(ids=None, material=None, joints="all"):
     """Bonds the joints of blocks that touch now, as they are, without stress: what the blocks weigh stays on the joints. Returns the number of joints.
 
     ids         of blocks and bases, a list: joints of which both bodies are named; None: all
     material    a JointMat. Stiffness and friction angle that it does not give are those of the joint
+    joints      'all', 'bed' or 'head': head joints have upright faces
 
     Raises ValueError where no two of the bodies touch. The scene must have its engines of model='compliant'; the bonds act from the next step on. A joint that has been bonded before gets new mortar."""
     check_joint_material(material)
@@ -36,14 +39,16 @@ def bond(ids=None, material=None):
         raise ValueError(f"ids = {shown(ids)}: must be a list of ids of bodies, whole numbers from 0 on, or None for all")
     for id in ids or []:
         block_body(int(id))
+    if joints not in _JOINTS:
+        raise ValueError(f"joints = {shown(joints)}: must be 'all', 'bed' or 'head'")
     engine = _compliant_engine()
     if ids is not None and not len(ids):
         return 0
     if ids is not None and len(set(map(int, ids))) < 2:
         raise ValueError(f"ids = {shown(ids)}: must name two different bodies at least: a joint is between two")
-    count = engine.bond([int(id) for id in ids or []], material)
+    count = engine.bond([int(id) for id in ids or []], material, joints)
     if count == 0:
-        raise ValueError(f"ids = {shown(ids)}: no two of these bodies touch face on face: there is no joint to bond")
+        raise ValueError(f"ids = {shown(ids)}, joints = {shown(joints)}: no two of these bodies touch face on face in such a joint: there is nothing to bond")
     return count
 
 

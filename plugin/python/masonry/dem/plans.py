@@ -6,14 +6,44 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+import numpy as np
 from masonry._given import finite_numbers, number_given, positive_given, shown, whole_given
 from masonry.dem.bonding import Bond
 from masonry.dem.layouts import positive_size
+from masonry.dem.voussoirs import arch_joints, flat_arch_joints
 
 # A length fits courses when it is off by less than this share of a course; points of the plan coincide when they are this share of a block apart.
 FIT = 1e-6
 _MOST_WALLS, _MOST_COURSES = 1000, 10000
+# Largest rise of an arch over an opening, relative to its width: skewbacks then are up to 44 degrees from upright, and flatter ones would cut the blocks beside them to slivers.
+_MOST_RISE = 0.2
 _POINT = "two finite numbers (x, y), in m"
+
+
+@dataclass(frozen=True)
+class Arch:
+    """An arch over an opening of dem.building(), in the place of a lintel: voussoirs through the thickness of the wall, with a level top on which the wall goes on, between
+    skewbacks, which are cut into the blocks beside it.
+
+    number     of voussoirs, at least 2; their joints are radial
+    courses    height from the springing, which is the top of the opening, to the level top, in courses
+    rise       of the intrados above the springing, m, at most a fifth of the width and half a course below the level top; 0: a flat arch, whose joints point to the apex of an
+               equilateral triangle under its soffit"""
+
+    number: int
+    courses: int
+    rise: float = 0.0
+
+    def joints(self, width, height):
+        """(n + 1, 2, 2): the point of the intrados and that of the level top, (x, z) from the middle of the springing line, of each joint; height: of the arch, m."""
+        if self.rise == 0:
+            return flat_arch_joints(width, height, self.number, math.sqrt(3) / 2 * width)
+        joints, _ = arch_joints(width, self.rise, height, self.number)
+        inner, outer = joints[:, 0], joints[:, 1]
+        share = (height - inner[:, 1]) / (outer[:, 1] - inner[:, 1])
+        top = inner + share[:, None] * (outer - inner)
+        top[:, 1] = height
+        return np.stack([inner, top], axis=1)
 
 
 @dataclass(frozen=True)
@@ -26,6 +56,7 @@ class Opening:
     sill       height of its lower edge above the foot of the storey, m, a whole number of courses; 0: a door
     storey     1 is the lowest
     bearing    least length on which the lintel lies at either side, m; None: half a block
+    arch       a dem.Arch in the place of the lintel; the opening then reaches up to its intrados, above `height`
 
     One block over the opening, a course high and as thick as the wall, is the lintel. An opening as high as its storey has none: a slab must lie over it, or nothing."""
 
@@ -36,6 +67,7 @@ class Opening:
     sill: float = 0.0
     storey: int = 1
     bearing: float = None
+    arch: Arch = None
 
 
 @dataclass(frozen=True)
@@ -210,8 +242,8 @@ def _wall(name, ends, thickness, brick):
     axis = 0 if abs(x1 - x0) >= abs(y1 - y0) else 1
     off = abs(y1 - y0) if axis == 0 else abs(x1 - x0)
     if not longest >= brick[0] / 2 or off > FIT * brick[0]:
-        raise ValueError(f"plan[{name!r}] goes from ({x0:g}, {y0:g}) to ({x1:g}, {y1:g}): must go along x or y, half a block at least; turn the whole building with "
-                         "`along`, or add walls at other angles with dem.wall(along=...)")
+        raise ValueError(f"plan[{name!r}] goes from ({x0:g}, {y0:g}) to ({x1:g}, {y1:g}): must go along x or y, half a block at least: corners at other angles are "
+                         "not supported. Turn the whole building with `along`, or add this wall with dem.wall(along=...), without a bond to the others")
     number_given(f"thickness of wall {name!r}", thickness)
     leaves = next((leaves for leaves in (1, 2) if math.isclose(thickness, leaves * brick[1], rel_tol=FIT)), None)
     if leaves is None:
@@ -328,3 +360,19 @@ def _check_opening(name, opening, plan):
     low, high = (_courses(f"{name}: {what}", value, plan.brick_height) for what, value in (("sill", opening.sill), ("height", opening.height)))
     if not (0 <= low and high >= 1 and low + high <= plan.storeys[storey - 1]):
         raise ValueError(f"{name}: sill = {opening.sill}, height = {opening.height}: must lie within the {plan.storeys[storey - 1] * plan.brick_height:g} m of storey {storey}")
+    if opening.arch is not None:
+        _check_arch(name, opening, plan.brick_height)
+
+
+def _check_arch(name, opening, course):
+    arch = opening.arch
+    if not isinstance(arch, Arch):
+        raise ValueError(f"{name}: arch = {shown(arch)}: must be a dem.Arch(number, courses, rise=0), or None for a lintel")
+    if opening.bearing is not None:
+        raise ValueError(f"{name}: bearing = {opening.bearing}: must be None where there is an arch, which bears on its skewbacks")
+    whole_given(f"{name}: arch: number", arch.number, 2, 1000)
+    whole_given(f"{name}: arch: courses", arch.courses, 1, 1000)
+    most = min(_MOST_RISE * opening.width, (arch.courses - 0.5) * course)
+    if not 0 <= number_given(f"{name}: arch: rise", arch.rise) <= most * (1 + FIT):
+        raise ValueError(f"{name}: arch: rise = {arch.rise}: must be from 0 to {most:g} m, a fifth of the width and half a course below its top; dem.arch() makes higher ones, "
+                         "on walls or piers")

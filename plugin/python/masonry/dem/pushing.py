@@ -7,10 +7,11 @@ from masonry._files import check_csv, save_picture, written
 from masonry._given import finite_numbers, is_whole, number_given, positive_given, shown
 from masonry._pose import matrices
 from masonry.dem import notes
-from masonry.dem.bodies import block_body, blocks, world_shape
+from masonry.dem.bodies import block_body, blocks, contacts_of, world_shape
 from masonry.dem.collapsing import collapsed
 from masonry.dem.loads import load_of_a_push
 from masonry.dem.platens import contact, last_of_course, neighbour, platen, prescribed
+from masonry.results.own_bases import TOUCH
 from yade import O, Vector3, wrapper
 
 CURVE = [("displacement", float), ("force", float), ("time", float), ("moved", float), ("step_force", float)]
@@ -29,7 +30,11 @@ _JAM = "bodies with prescribed motion"
 _ROUND_OFF = 1e-3
 # Extra width of the gap of the platens in front, relative to what a turn of the block takes.
 _ROOM = 1.5
+HELD_RIGID = ("vertical = 'held': must come with compliant joints (model='compliant'): the vertical force of rigid blocks between a base and a held top has no finite "
+              "value")
 _VERTICAL = "free", "load", "held"
+# Blocks that are held have no impacts of platens, and forces far above the weight: their acceleration, m/s^2, the time over which forces are averaged, s, and the samples of a test.
+_ACCELERATION_HELD, _AVERAGED_HELD, _SAMPLES_HELD = 0.4, 0.004, 2000
 
 
 class Push:
@@ -41,7 +46,8 @@ class Push:
     """
 
     def __init__(self, points, platens, direction, targets, motion, recorder, load, drop, collapse):
-        """points: {id of a block: where a platen touches it, m}. load: the engine of the dead load, or None."""
+        """points: {id of a block: where a platen touches it, m}. load: the engine of the dead load, or None. Blocks that are held are their own platens."""
+        self.held = list(points) == platens
         self.ids, self.platens, self.direction, self.targets = list(points), platens, direction, targets
         self.motion, self.recorder, self.load = motion, recorder, load
         self.drop, self.collapse, self.releases, self.ended = drop, collapse, False, ""
@@ -54,9 +60,9 @@ class Push:
         """Structured array, one row a step of the run: displacement of the platens along the direction (m), force on the blocks along it (N), time (s), and
         moved (m): how far the points of the blocks have gone at which they were first touched, the mean over `ids`. The force is positive while
         the platens press along the direction, negative while they press back, and without the dead load. It is the mean over 0.1 s before and 0.1 s after the sample:
-        the impulse of the platens over that time, divided by it. step_force (N) is that of the single step, which has spikes where a platen lands on a block or a
-        stuck block snaps."""
-        return self.averaged()
+        the impulse of the platens over that time, divided by it (2 ms before and after with vertical='held', and 2000 rows). step_force (N) is that of the single step,
+        which has spikes where a platen lands on a block or a stuck block snaps."""
+        return self.averaged(_AVERAGED_HELD if self.held else _AVERAGED)
 
     def _of_steps(self):
         """The curve with the force of each step in both columns of forces."""
@@ -125,14 +131,16 @@ class Push:
         save_picture(figure, path, dpi=150)
 
     def release(self):
-        """Takes the platens away at once: the blocks are free from the next step on."""
+        """Takes the platens away at once, or lets go of blocks that are held: the blocks are free from the next step on."""
         self.motion.dead = True
         for engine in O.engines:
             if isinstance(engine, wrapper.MoreauJeanIntegrator):
                 engine.motions = [motion for motion in engine.motions if motion is not self.motion]
         O.engines = [engine for engine in O.engines if engine is not self.motion]
         for id in self.platens:
-            if O.bodies[id] is not None:
+            if O.bodies[id] is not None and self.held:
+                O.bodies[id].state.blockedDOFs = ""
+            elif O.bodies[id] is not None:
                 O.bodies.erase(id)
 
     # --- what dem.run asks ---
@@ -197,12 +205,12 @@ def _targets_given(displacement, cycles):
     return targets
 
 
-def _record(targets, speed):
-    """(accelerations, interval) that bring the platens to each target in turn and stop them there, at that speed at most: m/s^2, s."""
+def _record(targets, speed, largest):
+    """(accelerations, interval) that bring the platens to each target in turn and stop them there, at that speed and acceleration at most: m/s^2, s."""
     legs = np.diff([0.0, *targets])
-    interval = min(speed / _ACCELERATION, math.sqrt(np.abs(legs).min() / (2 * _ACCELERATION)))
+    interval = min(speed / largest, math.sqrt(np.abs(legs).min() / (2 * largest)))
     # A leg of `count` intervals has the speed leg/(count interval), reached within two intervals, and the acceleration leg/(count interval^2).
-    parts = [max(2, math.ceil(abs(leg) / interval * max(1 / speed, 1 / (_ACCELERATION * interval)) * (1 - 1e-12))) for leg in legs]
+    parts = [max(2, math.ceil(abs(leg) / interval * max(1 / speed, 1 / (largest * interval)) * (1 - 1e-12))) for leg in legs]
     if sum(parts) > _MOST_PARTS:
         raise ValueError(f"speed = {speed:g}: the displacements of {np.abs(legs).sum():g} m in all need more than {_MOST_PARTS} numbers: must be larger, in m/s")
     samples = np.zeros(sum(parts) + 2 * len(parts) + 1)
@@ -239,7 +247,8 @@ def push(ids=None, displacement=None, speed=None, direction=(1, 0, 0), vertical=
     speed           of the platens, at most, m/s; None: 1 % of sqrt(g height), of the height of the pushed blocks over the lowest free block
     direction       level unit vector
     vertical        'free': the blocks carry no load; 'load': they carry the dead load `force` together, each the same share, at its centre; platens hold no block down.
-                    ('held', which rigid blocks cannot follow, is refused)
+                    'held' (model='compliant'): the blocks move as platens themselves. From this call on they are held at their height and do not turn, and a dead load on
+                    them no longer acts: call it when the structure is at rest under its loads
     force           with vertical='load': the dead load, N, downwards; it is there as long as dem.engines(push) is in O.engines, and energies, reactions and reports
                     have it as a load of dem.dead_load()
     height          z of the edges of the platens, m, in the world; None: that of the centre of each block
@@ -249,7 +258,7 @@ def push(ids=None, displacement=None, speed=None, direction=(1, 0, 0), vertical=
     platens         instead of ids: prescribed bodies of your own that move and push what they touch; all free blocks are then recorded
     clearance       with cycles: gap between a block and the platens in front of it, m; None: room for a turn of the block about the foot of the structure
 
-    The force is the sum of the forces in the contacts of the platens, averaged over 0.2 s (push.curve). The platens begin at rest at O.time, and change their speed with 0.02 m/s^2 at most. A
+    The force is the sum of the forces in the contacts of the platens, averaged over 0.2 s (push.curve). The platens begin at rest at O.time, and change their speed with 0.02 m/s^2 at most (0.4 with vertical='held'). A
     test ends at the last displacement, at a drop, a collapse or a jam (push.ended), which is said in a line. Raises ValueError for input out of its range.
     """
     unit, targets = _direction_given(direction), _targets_given(displacement, cycles)
@@ -260,6 +269,9 @@ def push(ids=None, displacement=None, speed=None, direction=(1, 0, 0), vertical=
     if collapse is not None and not is_whole(collapse, 1):
         raise ValueError(f"collapse = {shown(collapse)}: must be a whole number of blocks from 1 on, or None")
     _check_load(vertical, force, ids)
+    held = vertical == "held"
+    if held:
+        _check_held(ids, height, clearance)
     pushed = [] if ids is None else _ids_given(ids)
     free = [body for body in blocks() if body.dynamic]
     if not free:
@@ -267,11 +279,19 @@ def push(ids=None, displacement=None, speed=None, direction=(1, 0, 0), vertical=
     low = min(world_shape(body)[0][:, 2].min() for body in free)
     speed = positive_given("speed", speed, ", in m/s") if speed is not None else 0.01 * math.sqrt(9.81 * max(
         (O.bodies[id].state.pos[2] - low for id in pushed), default=max(body.state.pos[2] for body in free) - low))
-    samples, interval = _record(targets, speed)
-    points, back, made = ({}, set(), prescribed(platens, "platens")) if ids is None else _made(pushed, unit, height, targets, clearance, low)
+    samples, interval = _record(targets, speed, _ACCELERATION_HELD if held else _ACCELERATION)
+    if held:
+        points, back, made = {id: O.bodies[id].state.pos for id in pushed}, set(), pushed
+        for id in pushed:
+            _hold(O.bodies[id].state)
+    else:
+        points, back, made = ({}, set(), prescribed(platens, "platens")) if ids is None else _made(pushed, unit, height, targets, clearance, low)
     motion = wrapper.RecordMotionEngine(ids=made, samples=samples.tolist(), interval=interval, direction=unit, start=O.time)
     notes.is_of_a_push(motion)
-    recorder = wrapper.WallRecorder(ids=made + sorted(back) + (pushed or [body.id for body in free]), recordForces=True, iterPeriod=1)
+    if held:
+        recorder = wrapper.WallRecorder(ids=made + _beside(made), recordForces=True, virtPeriod=len(samples) * interval / _SAMPLES_HELD)
+    else:
+        recorder = wrapper.WallRecorder(ids=made + sorted(back) + (pushed or [body.id for body in free]), recordForces=True, iterPeriod=1)
     return Push(points, made, unit, targets, motion, recorder, load_of_a_push(pushed, force) if vertical == "load" else None, drop, collapse)
 
 
@@ -285,15 +305,35 @@ def pull_and_release(ids, displacement, speed=None, direction=(1, 0, 0), vertica
 
 def _check_load(vertical, force, ids):
     if vertical not in _VERTICAL:
-        raise ValueError(f"vertical = {shown(vertical)}: must be 'free' or 'load'")
-    if vertical == "held":
-        raise ValueError("vertical = 'held': must be 'free' or 'load': rigid blocks that are held at their height can neither rock nor give way")
+        raise ValueError(f"vertical = {shown(vertical)}: must be 'free', 'load' or 'held'")
     if vertical == "load":
         if ids is None:
             raise ValueError("vertical = 'load': must come with ids, the blocks that carry the load; with platens of your own use dem.dead_load(ids, N)")
         positive_given("force", force, ", in N, the dead load that the pushed blocks carry together")
     elif force is not None:
         raise ValueError(f"force = {force}: must come with vertical='load', or be left out")
+
+
+def _check_held(ids, height, clearance):
+    if ids is None:
+        raise ValueError("vertical = 'held': must come with ids, the blocks that are held; platens of your own keep their height anyway")
+    for name, value in (("height", height), ("clearance", clearance)):
+        if value is not None:
+            raise ValueError(f"{name} = {value}: must be left out with vertical='held', where no platens touch the blocks")
+    if any(isinstance(engine, wrapper.MoreauJeanIntegrator) and not engine.dead for engine in O.engines):
+        raise ValueError(HELD_RIGID)
+
+
+def _beside(ids):
+    """Ids of the other blocks that touch these."""
+    there = blocks()
+    pairs = np.array([body.id for body in there])[contacts_of(there, TOUCH)[0]]
+    return sorted(set(pairs[np.isin(pairs, ids).any(axis=1)].ravel().tolist()) - set(ids))
+
+
+def _hold(state):
+    state.blockedDOFs = "xyzXYZ"
+    state.vel = state.angVel = Vector3.Zero
 
 
 def _made(ids, unit, height, targets, clearance, low):

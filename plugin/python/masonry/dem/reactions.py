@@ -2,7 +2,7 @@
 
 import numpy as np
 from masonry._given import is_whole, shown
-from masonry.results.wall_history import JOINT_FORCES
+from masonry.results.history_tables import JOINT_FORCES
 from yade import O, wrapper
 
 _FIELDS = [("id", int), ("force", float, 3), ("point", float, 3)]

@@ -1,17 +1,18 @@
-"""What a WallRecorder has kept, as arrays."""
+"""What a recorder has kept, as arrays and files."""
 
 import numpy as np
+from masonry._files import written
 from masonry._given import shown
 from masonry._pose import BOX_FACES
 from masonry._shapes import Shapes, box_corners
 from masonry.dem import notes
 from masonry.dem.describing import about
-from masonry.dem.engines import impacts, joint_engine
+from masonry.dem.joint_engine import impacts, joint_engine
 from masonry.dem.loads import dead_loads
 from masonry.dem.placing import union_polyhedron
 from masonry.results import WallHistory
 from masonry.results.bonds import DAMAGE, bond_table
-from masonry.results.wall_history import JOINT_FORCES, TIES
+from masonry.results.history_tables import JOINT_FORCES, TIES
 from yade import O, wrapper
 
 
@@ -106,3 +107,40 @@ def _forces(recorder):
     table["sample"] = np.repeat(np.arange(len(recorder.times)), recorder.jointCounts)
     table["id1"], table["id2"], table["force"], table["point"] = rows[:, 0], rows[:, 1], rows[:, 2:5], rows[:, 5:]
     return table
+
+
+def history(recorder):
+    """What a BlockRecorder has kept, a structured array with one row per time: time (s) and, for each block in the order of its ids,
+    rotation (rad, vector in the block's own axes; the y component is dem.angle), position (m), uplift (m, largest gap of the joint
+    below, NaN in flight) and force (N, of what is below)."""
+    if not isinstance(recorder, wrapper.BlockRecorder):
+        raise ValueError(f"recorder = {shown(recorder)}: must be a BlockRecorder (a WallRecorder: dem.wall_history)")
+    rows, blocks = len(recorder.times), len(recorder.ids)
+    fields = [("time", float), ("rotation", float, (blocks, 3)), ("position", float, (blocks, 3)), ("uplift", float, (blocks,)), ("force", float, (blocks, 3))]
+    table = np.zeros(rows, dtype=fields)
+    table["time"] = recorder.times
+    for name, values in (("rotation", recorder.rotations), ("position", recorder.positions), ("uplift", recorder.uplifts), ("force", recorder.forces)):
+        table[name] = np.array(values, dtype=float).reshape(table[name].shape)
+    return table
+
+
+def save_history(recorder, path):
+    """Writes dem.history() to a file: .npz (NumPy), or .csv with one column per number and a header line (pandas, ParaView). Of a WallRecorder:
+    dem.wall_history(recorder).save("wall.npz"), or .to_csv("wall.csv") (time, drift, energies; ids=... adds the motion of blocks)."""
+    table = history(recorder)
+    if str(path).endswith(".npz"):
+        with written(path) as beside:
+            np.savez(beside, ids=recorder.ids, **{name: table[name] for name in table.dtype.names})
+    elif str(path).endswith(".csv"):
+        header, columns = ["time (s)"], [table["time"]]
+        for k, id in enumerate(recorder.ids):
+            for name, unit in (("rotation", "rad"), ("position", "m"), ("force", "N")):
+                for axis, letter in enumerate("xyz"):
+                    header.append(f"{name} {letter} of {id} ({unit})")
+                    columns.append(table[name][:, k, axis])
+            header.append(f"uplift of {id} (m)")
+            columns.append(table["uplift"][:, k])
+        with written(path) as beside:
+            np.savetxt(beside, np.column_stack(columns), delimiter=",", header=",".join(header), comments="")
+    else:
+        raise ValueError(f"path = {path}: must end in .npz or .csv")

@@ -2,7 +2,7 @@
 
 import numpy as np
 from masonry.dem.bodies import blocks, reach
-from masonry.dem.engines import joint_engine
+from masonry.dem.joint_engine import joint_engine
 from masonry.dem.reactions import joint_forces
 from yade import O, wrapper
 

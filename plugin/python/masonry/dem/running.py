@@ -10,7 +10,7 @@ from yade import O, wrapper
 
 from masonry.dem import notes
 from masonry.dem.checks import listed
-from masonry.dem.engines import joint_engine_given
+from masonry.dem.joint_engine import joint_engine_given
 from masonry.dem.pushing import Push
 
 # Wall clock between two looks at the bar, s.

@@ -11,6 +11,7 @@ from masonry.dem.loads import added_mass
 from masonry.dem.meshes import write_obj
 from masonry.dem.placing import append_boxes, block_material, box_body, check_support, convex_body, placed, polyhedron, posed, stand, top_of, turn_about_z, union_polyhedron
 from masonry.dem.tables import read_table, table_rows, write_table
+from masonry.dem.units import add_units, check_split
 from masonry.results.collapse import comes_back
 from yade import O, Quaternion, Vector3, utils, wrapper
 
@@ -78,7 +79,7 @@ def stack(n, size, material, on, at=(0.0, 0.0)):
 
 
 def wall(courses=None, per_course=None, size=None, material=None, on=None, gap=0.0, *, length=None, height=None, thickness=None, openings=(),
-         openings_in="m", at=(0.0, 0.0), along=(1.0, 0.0)):
+         openings_in="m", at=(0.0, 0.0), along=(1.0, 0.0), split=None):
     """Running-bond wall on the body `on`: every second course starts and ends with a half block. Returns the ids, bottom up, along x.
 
     The wall is given by one of
@@ -96,13 +97,21 @@ def wall(courses=None, per_course=None, size=None, material=None, on=None, gap=0
     at            (x, y) of the middle of the wall on the body `on`, m (on several: from the middle of the rectangle around them); every block of the bottom
                   course has its centre above that body
     along         direction of the wall in plan, (dx, dy) in the axes of the body `on`: (0, 1) along y. dem.angle(id, 'y') is the lean of a block along its
-                  wall, dem.angle(id, 'x') out of it; along y, where blocks are not turned, the other way round
+                  wall, dem.angle(id, 'x') out of it; along y, where blocks are not turned, the other way round    split         a JointMat: each whole block is two halves, two ids one after the other, with a joint of this mortar in its middle, where it may crack
+                  (model='compliant')
     """
     missing = [name for name, value in (("material", material), ("on", on)) if value is None]
     if missing:
         raise ValueError(f"{' = None, '.join(missing)} = None: must be given: a BlockMat, and the id of the body that the wall stands on")
     courses, per_course, size = layouts.wall_modules(courses, per_course, size, length, height, thickness, gap)
-    return stand(layouts.wall_layout(courses, per_course, size, gap, openings, openings_in), material, on, at, along)
+    layout = layouts.wall_layout(courses, per_course, size, gap, openings, openings_in)
+    if split is None:
+        return stand(layout, material, on, at, along)
+    check_split(split)
+    *halves, first = layouts.halved(*layout, size[0])
+    ids = stand(tuple(halves), material, on, at, along)
+    add_units([(ids[k], ids[k + 1]) for k in first], split)
+    return ids
 
 
 def two_wythe_wall(courses, per_course, size, material, on, header_every=6, gap=0.0, collar=0.0, at=(0.0, 0.0), along=(1.0, 0.0)):

@@ -8,6 +8,7 @@ from masonry.dem.notes import scene_mark
 from yade import O, Vector3, wrapper
 
 _PLACE = "a place in the world, three finite numbers, in m"
+_ENGINES = wrapper.MoreauJeanIntegrator, wrapper.RockingJointEngine
 _made = []  # (BlockTie, mark of the scene that a script has made it in)
 
 
@@ -24,10 +25,11 @@ def tie(block1, point1, block2, point2, stiffness, pretension=0.0, strength=math
     strength          tensile force at which it breaks for good, N; positive
     tension_only      True: it goes slack; False: a strut, which also presses (and breaks by tension alone)
 
-    Its force is pretension + stiffness * extension, with tension_only at least 0; before it breaks it is at most `strength`. The step takes it implicitly:
-    no stiffness asks for a smaller O.dt, and a vibration that is faster than the step resolves is damped (the energy is in dampDissip). A tie carries no impulse
-    at an impact. Rigid blocks only: model='compliant' refuses a scene with ties. dem.engines() finds the ties of the scene; one made after that acts from
-    the next step. `dead = True` takes a tie away. Ties do not touch blocks.
+    Its force is pretension + stiffness * extension, with tension_only at least 0; before it breaks it is at most `strength`. Steps of rigid blocks take it implicitly:
+    no stiffness asks for a smaller O.dt, and a vibration that is faster than the step resolves is damped (the energy is in dampDissip). With model='compliant' it is
+    a spring of the explicit step, without damping: a stiff tie makes the critical step, and with it O.dt, smaller; while the joints settle under the weight before
+    the first step, it keeps its force. A tie carries no impulse at an impact. dem.engines() finds the ties of the scene; one made after that acts from the next
+    step. `dead = True` takes a tie away. Ties do not touch blocks.
     """
     bodies = block_body(block1, "block1"), block_body(block2, "block2")
     if bodies[0].id == bodies[1].id:
@@ -50,11 +52,7 @@ def tie(block1, point1, block2, point2, stiffness, pretension=0.0, strength=math
                             stiffness=float(positive_given("stiffness", stiffness, ", in N/m")), pretension=float(pretension), strength=float(strength),
                             tensionOnly=bool(tension_only))
     for engine in O.engines:
-        if isinstance(engine, wrapper.RockingJointEngine) and not engine.dead:
-            if engine.bondedIds or any(body.mat.mortar is not None for body in bodies):
-                raise ValueError("dem.tie() and BlockMat.mortar cannot be in one scene: ties need rigid blocks and mortar needs model='compliant'")
-            raise ValueError("dem.tie() is for rigid blocks: O.engines has compliant joints; give dem.engines() model='planar' or 'spatial', or 'auto' and no stiffness")
-        if isinstance(engine, wrapper.MoreauJeanIntegrator) and not engine.dead:
+        if isinstance(engine, _ENGINES) and not engine.dead:
             engine.ties = [*engine.ties, made]
     _made.append((made, scene_mark()))
     return made
@@ -64,7 +62,7 @@ def ties():
     """The ties of the scene (dem.BlockTie), in the order in which they were made."""
     here = scene_mark()
     _made[:] = [(one, mark) for one, mark in _made if mark == here]
-    found = [one for engine in O.engines if isinstance(engine, wrapper.MoreauJeanIntegrator) for one in engine.ties]
+    found = [one for engine in O.engines if isinstance(engine, _ENGINES) for one in engine.ties]
     return found + [one for one, _ in _made if not any(one is known or one == known for known in found)]
 
 

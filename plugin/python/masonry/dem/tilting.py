@@ -3,22 +3,23 @@
 import contextlib
 import io
 import math
-from dataclasses import dataclass, field
 
 import numpy as np
 from masonry._boxes import bounds, face_gaps
-from masonry._files import save_picture
 from masonry._given import finite_numbers, number_given, positive_given, shown
 from masonry._polyhedra import gaps
 from masonry._pose import axes_of
 from masonry._progress import wanted
-from masonry.dem import tilting_report
 from masonry.dem.bodies import blocks, geometry, poses, reach, shapes_of, world_shape
+from masonry.dem.collapse import Collapse, Trial
 from masonry.dem.describing import about
-from masonry.dem.engines import METHODS, engines, has_stiffness
+from masonry.dem.engines import METHODS, engines
 from masonry.dem.loads import load_engines
+from masonry.dem.mechanism import Mechanism
+from masonry.dem.stiffness import has_stiffness
+from masonry.dem.units import units
 from tqdm import tqdm
-from yade import O, Vector3, wrapper
+from yade import O, Vector3
 
 _DIRECTIONS = {"x": (1, 0, 0), "-x": (-1, 0, 0), "y": (0, 1, 0), "-y": (0, -1, 0)}
 # Time step of a trial relative to sqrt(R/g) of the smallest block. Blocks that stand still or begin to move ask for no small one.
@@ -50,11 +51,6 @@ _MOST = 30
 # Movement of a block, relative to what is collapse, from which on blocks that come to rest have not stood. They rest only if they lean on one
 # that they did not touch in the scene as built: their gap was more than a share of the smallest size.
 _SETTLED, _GAP = 0.01, 1e-7
-# A joint opens or slides where its points have moved by more than this share of the farthest moved block.
-_MOVED = 0.05
-# Drawn movement of the farthest moved block, relative to the smallest size of a block.
-_DRAWN = 0.4
-_JOINT_FIELDS = [("id1", int), ("id2", int), ("opening", float), ("slip", float), ("opens", bool), ("slides", bool)]
 
 
 def _direction_given(direction):
@@ -72,52 +68,6 @@ def _direction_given(direction):
 def _check_multiplier(multiplier):
     if multiplier > _MOST:
         raise ValueError(f"the blocks stand at any multiplier up to {_MOST:g}: they are held on all sides")
-
-
-@dataclass
-class Trial:
-    """What a multiplier did: 'rest', 'collapse', 'jammed' where blocks moved and stopped in joints that were closed all along, 'unclear' where they
-    still moved at the end and slowed down, or 'missed' where the contact laws were, so that a smaller stair is taken."""
-
-    multiplier: float
-    verdict: str
-    moved: float  # m, of the farthest moved block
-    time: float  # s, simulated
-    failures: int  # of the integrator
-
-
-@dataclass
-class Collapse:
-    """Multiplier at which a scene collapses: the mean of `bracket`, the largest that it stands and the least that it does not."""
-
-    multiplier: float
-    bracket: tuple
-    trials: list
-    joints: np.ndarray  # id1, id2, opening (m), slip (m, of body 2 on body 1), opens, slides; at the end of the trial that is drawn
-    blocks: list  # ids that have moved
-    doubts: list  # why the result cannot be trusted; empty: none
-    remarks: list  # what blocks did below collapse, or where it was not reached, in words
-    _mechanism: object = field(repr=False)
-    about: dict = field(default_factory=dict, repr=False)  # what was run: direction, load, materials, model
-
-    def __str__(self):
-        opens, slides = self.joints["opens"], self.joints["slides"]
-        both = f" ({(opens & slides).sum()} of them slide too)" if (opens & slides).any() else ""
-        lines = [f"collapse multiplier {self.multiplier:.5g} (stands {self.bracket[0]:.5g}, collapses {self.bracket[1]:.5g})",
-                 f"{len(self.blocks)} blocks move; {opens.sum()} joints open{both}, {(slides & ~opens).sum()} slide closed"]
-        return "\n".join(lines + self.remarks + [f"NOT TO BE TRUSTED: {doubt}" for doubt in self.doubts])
-
-    def draw(self, path, title=None):
-        """Writes a picture (.png, .pdf, ...): the blocks, their movement magnified; open joints red, sliding ones blue, those seen face on as outlines."""
-        save_picture(self.figure(title or str(self)), path, dpi=150, bbox_inches="tight")
-
-    def figure(self, title):
-        """The matplotlib figure of draw()."""
-        return self._mechanism.figure(self, title)
-
-    def report(self, path, title=""):
-        """Writes a page, one .html file: the multiplier, doubts and remarks in words, the mechanism, its joints, the trials and what was run."""
-        tilting_report.write(self, path, title)
 
 
 class TiltTable:
@@ -173,6 +123,9 @@ class TiltTable:
         self._free = [b for b in self._blocks if b.dynamic]
         if not self._free:
             raise ValueError("there is no free block in O.bodies: add one with dem.block() before dem.TiltTable()")
+        if units():
+            raise ValueError("the scene has units that may split (dem.wall(split=)): TiltTable is for rigid blocks, which know dry joints only, and such joints need "
+                             "model='compliant': leave `split` out")
         mortared = next((b.id for b in self._blocks if b.mat.mortar is not None), None)
         if mortared is not None:
             raise ValueError(f"O.bodies[{mortared}].mat has mortar: TiltTable is for rigid blocks, which know dry joints only, and mortar needs model='compliant': leave the "
@@ -398,7 +351,7 @@ class TiltTable:
         return found
 
     def _mechanism(self):
-        return _Mechanism(self._blocks, self._start, self._joints, 1 if abs(self._towards[1]) > abs(self._towards[0]) else 0)
+        return Mechanism(self._blocks, self._start, self._joints, 1 if abs(self._towards[1]) > abs(self._towards[0]) else 0)
 
     def _collapse(self, multiplier, bracket, trials, mechanism):
         failures = sum(t.failures for t in trials if t.multiplier in bracket)
@@ -425,96 +378,3 @@ class TiltTable:
         if jammed:
             remarks.append(f"at {jammed[-1].multiplier:.5g} blocks move by {1e3 * jammed[-1].moved:.2g} mm and jam in joints that were closed before: taken for collapse")
         return remarks
-
-
-def _section(size, axes, across):
-    """Half diagonals (4, 3), in order around, of the middle section of a box; `across` is the axis one looks along."""
-    one, two = (size[k] / 2 * axes[k] for k in range(3) if k != np.argmax(np.abs(axes[:, across])))
-    return np.array([one + two, one - two, -one - two, two - one])
-
-
-def _silhouette(corners, across):
-    """Outline (k, 3) of the corners of a convex block, from its centre of mass, as one sees them along that axis, in order around, at its depth."""
-    from scipy.spatial import ConvexHull
-
-    outline = corners[ConvexHull(np.delete(corners, across, axis=1)).vertices]
-    outline[:, across] = 0
-    return outline
-
-
-class _Mechanism:
-    """Where the blocks were at the start, where they are now, and the joints that were closed at the start."""
-
-    def __init__(self, blocks, start, joints, axis):
-        self._ids, self._axis, self._joints = [b.id for b in blocks], axis, joints
-        self._free = np.array([b.dynamic for b in blocks])
-        self._now, self._sizes, turned = geometry(blocks)
-        self._before = np.array([tuple(pos) for pos, _ in start])
-        self._axes = axes_of(np.array([tuple(ori) for _, ori in start])[:, [3, 0, 1, 2]])
-        self._turn = np.einsum("nka,nkb->nab", turned, self._axes)
-        self._row = {id: k for k, id in enumerate(self._ids)}
-        self._outlines = [_silhouette(np.array([tuple(v) for v in b.shape.vertices]) @ own, 1 - axis) if isinstance(b.shape, wrapper.ConvexBlock)
-                          else _section(size, own, 1 - axis) for b, size, own in zip(blocks, self._sizes, self._axes)]
-        corners = [self._movement(k, self._before[k] + outline) for k, outline in enumerate(self._outlines)]
-        self._moved = np.array([np.linalg.norm(c, axis=1).max() for c in corners])
-
-    def _movement(self, row, points):
-        """Of points of a block, from where they were."""
-        arm = points - self._before[row]
-        return self._now[row] - self._before[row] + arm @ self._turn[row].T - arm
-
-    def moving(self):
-        return [id for id, moved in zip(self._ids, self._moved) if moved > _MOVED * self._moved.max()]
-
-    def joints(self):
-        table = np.zeros(len(self._joints), dtype=_JOINT_FIELDS)
-        for k, (id1, id2, normal, points) in enumerate(self._joints):
-            apart = self._movement(self._row[id2], points) - self._movement(self._row[id1], points)
-            gap = apart @ normal
-            least = _MOVED * self._moved.max()
-            slip = np.where(gap <= gap.min() + least, np.linalg.norm(apart - gap[:, None] * normal, axis=1), 0).max()  # where it is closed, or nearest to it
-            table[k] = id1, id2, max(gap.max(), 0), slip, gap.max() > least, slip > least
-        return table
-
-    def figure(self, collapse, title):
-        from matplotlib.backends.backend_agg import FigureCanvasAgg
-        from matplotlib.collections import PolyCollection
-        from matplotlib.colors import to_rgba
-        from matplotlib.figure import Figure
-
-        plane, scale = [self._axis, 2], _DRAWN * self._sizes[self._free].min() / self._moved.max()
-
-        def place(row, points):
-            return (points + scale * self._movement(row, points))[:, plane]
-
-        outlines = [place(k, self._before[k] + outline) for k, outline in enumerate(self._outlines)]
-        # From behind to the front, with x or y to the right.
-        order = np.lexsort((self._before[:, 1 - self._axis] * (1 if self._axis else -1), self._free))
-        figure = Figure(figsize=(7.5, 6), layout="constrained")
-        FigureCanvasAgg(figure)
-        axes = figure.add_subplot(aspect="equal")
-        axes.add_collection(PolyCollection([outlines[k] for k in order], facecolors=np.where(self._free[order], "0.85", "0.6"), edgecolors="0.3", linewidths=0.6))
-        for joint, (id1, id2, normal, points) in zip(collapse.joints, self._joints):
-            if not (joint["opens"] or joint["slides"]):
-                continue
-            colour, (across, up) = "C3" if joint["opens"] else "C0", normal[plane]
-            if math.hypot(across, up) < 0.5:  # seen face on
-                middle = (points - points.mean(axis=0))[:, plane]
-                around = np.argsort(np.arctan2(middle[:, 1], middle[:, 0]))
-                axes.fill(*place(self._row[id1], points[around]).T, facecolor=to_rgba(colour, 0.25), edgecolor=colour, linewidth=0.8)
-                continue
-            along = points[:, plane] @ [-up, across]
-            sides = [place(self._row[id], points[[along.argmin(), along.argmax()]]) for id in (id1, id2)]
-            if joint["opens"]:
-                axes.fill(*np.concatenate([sides[0], sides[1][::-1]]).T, facecolor=colour, edgecolor=colour, linewidth=1.2)
-            else:
-                axes.plot(*sides[0].T, color=colour, linewidth=1.8)
-        axes.plot([], [], color="C3", linewidth=4, label="opens")
-        axes.plot([], [], color="C0", linewidth=1.8, label="slides, closed")
-        axes.legend(loc="upper left", bbox_to_anchor=(1, 1), fontsize="small")
-        shown = np.concatenate([outline for outline, free in zip(outlines, self._free) if free])
-        (left, low), (right, high), margin = shown.min(axis=0), shown.max(axis=0), 0.15 * np.ptp(shown, axis=0).max()
-        axes.set(xlim=(left - margin, right + margin), ylim=(low - margin, high + margin))
-        axes.set(xlabel=f"{'xy'[self._axis]} (m)", ylabel="z (m)")
-        axes.set_title(f"{title}\nmovement drawn {scale:.3g} times".strip(), fontsize="small")
-        return figure

@@ -15,8 +15,12 @@ have in common.
 The same study.py runs as an array of jobs on a cluster: `masonry ensemble study.py --slice 3/40` in each job, `masonry ensemble study.py --gather` at last.
 """
 
+from masonry._calls import check_keywords as _check_keywords
+
 from .statistics import fraction, quantile, statistics
 from .study import result, run
 from .table import dataset, load
 
 __all__ = ["dataset", "fraction", "load", "quantile", "result", "run", "statistics"]
+
+_check_keywords(__name__)

@@ -7,11 +7,13 @@ ParaView. Needs no YADE: a history saved by one script is drawn by another.
     results.report(history, "wall.html")
 """
 
+from masonry._calls import check_keywords as _check_keywords
 from masonry._shapes import Shapes
 
 from .collapse import CollapseReport, collapse, fallen
 from .cracks import Cracks, cracks
 from .forces import base_reactions, thrust
+from .joint_energies import JointEnergies, joint_energies
 from .joints import joints, patches
 from .paraview import write_paraview
 from .pictures import draw, draw_energy, draw_joints, film
@@ -20,5 +22,7 @@ from .ties import ties
 from .time_histories import TimeHistory, joint_history, structure_history
 from .wall_history import WallHistory
 
-__all__ = ["CollapseReport", "Cracks", "Shapes", "TimeHistory", "WallHistory", "base_reactions", "collapse", "cracks", "draw", "draw_energy", "draw_joints", "fallen", "film", "joint_history", "joints",
-           "patches", "report", "structure_history", "thrust", "ties", "write_paraview"]
+__all__ = ["CollapseReport", "Cracks", "JointEnergies", "Shapes", "TimeHistory", "WallHistory", "base_reactions", "collapse", "cracks", "draw", "draw_energy", "draw_joints", "fallen", "film",
+           "joint_energies", "joint_history", "joints", "patches", "report", "structure_history", "thrust", "ties", "write_paraview"]
+
+_check_keywords(__name__)

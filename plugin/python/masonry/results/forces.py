@@ -3,7 +3,8 @@
 import numpy as np
 from masonry import _pose
 from masonry._given import shown
-from masonry.results.wall_history import JOINT_FORCES, history_given
+from masonry.results.history_tables import JOINT_FORCES
+from masonry.results.wall_history import history_given
 
 _REACTIONS = [("time", float), ("force", float, 3), ("moment", float, 3)]
 

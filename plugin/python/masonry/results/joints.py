@@ -138,6 +138,11 @@ def joint_movement(history, row):
     return np.where(gone, np.nan, opening), np.where(gone, np.nan, slip), closed & ~gone
 
 
+def gone_at_the_end(history):
+    """(j,) bool: in which of joints(history) one of the blocks has fallen by the last sample."""
+    return _joints_of(history).gone[-1]
+
+
 def patches(history):
     """(j, c, 3) corners of the patches of joints(history), in the first sample, m; those with fewer corners repeat their last one."""
     return _joints_of(history).polygons
@@ -158,6 +163,13 @@ def patches_of(history, id1, id2):
         rows.setdefault(tuple(pair), []).append(row)
     found = [(k, row) for k, pair in enumerate(np.sort(np.column_stack([id1, id2]), axis=1).tolist()) for row in rows.get(tuple(pair), ())]
     return tuple(np.array(found, dtype=int).reshape(-1, 2).T)
+
+
+def own_patches(history, rows):
+    """(block 1 of the joint (k,), corners (k, c, 3) of its patch in the axes of that block, m, its normal there (k, 3)) in these rows."""
+    found = _joints_of(history)
+    block = found.rows[rows, 0]
+    return block, found._arms[0][rows], np.einsum("jab,ja->jb", found._start[block], found.normals[rows])
 
 
 def moved_patches(history, rows, position, orientation):

@@ -1,5 +1,7 @@
 """Pictures and films of a WallHistory. Files are written without a screen; matplotlib is imported where it is needed."""
 
+import math
+
 import numpy as np
 from masonry._files import save_picture, written
 from masonry._given import number_given, positive_given, shown
@@ -7,7 +9,7 @@ from masonry._progress import steps
 from masonry.results.collapse import collapse, lies
 from masonry.results.cracks import CRACKED
 from masonry.results.forces import has_forces, thrust_at_first
-from masonry.results.joints import joints, patches, patches_of
+from masonry.results.joints import gone_at_the_end, joints, patches, patches_of
 from masonry.results.ties import tie_ends
 from masonry.results.view import STILL, View, enlargement, largest, movement, nice, still
 from masonry.results.wall_history import ENERGIES, history_given
@@ -32,6 +34,8 @@ _BESIDE = 1.0
 _FAR = 1e3
 # Inches of an axis for each of its numbers.
 _TICK = 0.5
+# Inches: a page; the height of a picture of one panel; what labels and a scale take beside a panel and above it; the narrowest panel.
+_PAGE, _TALLEST, _BORDER, _NARROWEST = (7.4, 9.0), 6.5, (2.0, 1.0), 3.6
 _PRESCRIBED, _UNMOVED, _BEYOND = "0.62", "0.85", "tab:purple"
 
 
@@ -85,20 +89,32 @@ def _framed(history, samples, enlarge, view):
     return view.place(points[np.isfinite(points).all(axis=1)])
 
 
-def _figure(view, shown, columns=1):
-    """Axes for a wall that fills `shown` (points in the picture)."""
+def _layout(width, height, panels):
+    """(columns, rows, inches a metre) of panels of that size, m, on a page: the ones that show the wall largest."""
+    def scale(columns):
+        rows = math.ceil(panels / columns)
+        return min((_PAGE[0] / columns - _BORDER[0]) / width, ((_PAGE[1] if panels > 1 else _TALLEST) / rows - _BORDER[1]) / height)
+
+    columns = max(range(1, panels + 1), key=scale)
+    return columns, math.ceil(panels / columns), scale(columns)
+
+
+def _figure(view, shown, panels=1):
+    """Axes for a wall that fills `shown` (points in the picture), no wider than a page."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
     (left, low), (right, high) = np.nanmin(shown, axis=0), np.nanmax(shown, axis=0)
     margin = 0.06 * max(right - left, high - low)
     width, height = right - left + 2 * margin, high - low + 2 * margin
-    scale = min(7.5 / columns / width, 5.5 / height)
+    columns, rows, scale = _layout(width, height, panels)
     origin = round(left) if abs(left) > _FAR * width else 0
-    figure = Figure(figsize=(max(width * scale + 2.0, 3.6) * columns, max(height * scale, 1.5) + 1.0), layout="constrained")
+    figure = Figure(figsize=(min(max(width * scale + _BORDER[0], _NARROWEST) * columns, _PAGE[0]), (max(height * scale, 1.5) + _BORDER[1]) * rows), layout="constrained")
     FigureCanvasAgg(figure)
-    all_axes = figure.subplots(1, columns, squeeze=False)[0]
-    for axes in all_axes:
+    all_axes = figure.subplots(rows, columns, squeeze=False).ravel()
+    for axes in all_axes[panels:]:
+        axes.set_axis_off()
+    for axes in all_axes[:panels]:
         axes.set(aspect="equal", xlim=(left - margin, right + margin), ylim=(low - margin, high + margin))
         if view.from_side:
             axes.set(xlabel=view.label() if origin == 0 else f"{view.label()}, from {origin:.0f} m", ylabel="z (m)")
@@ -110,7 +126,7 @@ def _figure(view, shown, columns=1):
             bar = nice(width / 4)
             axes.plot([left, left + bar], [low - margin / 2] * 2, color="k", linewidth=2, zorder=3)
             axes.text(left + 1.1 * bar, low - margin / 2, f"{bar:g} m", va="center", fontsize="small", zorder=3)
-    return figure, all_axes
+    return figure, all_axes[:panels]
 
 
 class _Painter:
@@ -228,13 +244,16 @@ def joints_figure(history, time=None, view=None, title="", thrust=True):
     flat = view.place(polygons)
     when = "largest" if time is None else f"at {history.time[history.sample(time)]:.3f} s"
     least = 1e3 * still(history)
+    stands = ~gone_at_the_end(history) if time is None else np.ones(len(table), dtype=bool)
     thrust = thrust and has_forces(history)
-    figure, panels = _figure(view, view.place(corners[history.free]).reshape(-1, 2), columns=3 if thrust else 2)
+    figure, panels = _figure(view, view.place(corners[history.free]).reshape(-1, 2), panels=3 if thrust else 2)
     if thrust:
-        _thrust_panel(history, panels[2], view, collapse(history).peak_drift_time if time is None else time, title)
+        _thrust_panel(history, panels[2], view, collapse(history).peak_drift_time if time is None else time)
+    if title:
+        figure.suptitle(title, fontsize="medium")
     for axes, name, colours, none in zip(panels, ("opening", "slip"), ("YlOrRd", "YlGnBu"), ("nothing opened", "nothing slid")):
         values = 1e3 * table[name]
-        most = max(largest(values), least)
+        most, beyond = scale_end(values, stands, least)
         colours = shades(colours, most)
         order = np.argsort(np.nan_to_num(values))
         # What opens or slides by less than a hundredth of the most is left grey and thin. Edge on, the line of a joint is its outline.
@@ -243,9 +262,9 @@ def joints_figure(history, time=None, view=None, title="", thrust=True):
         width = np.where(moves, 3.0 if view.from_side else 0.8, 0.8)
         colors = np.where(moves[:, None], colours.to_rgba(np.nan_to_num(values), alpha=1.0 if view.from_side else 0.6), to_rgba(_UNMOVED, 0.3))
         axes.add_collection(PolyCollection(flat[order], facecolors=colors[order], edgecolors=colors[order], linewidths=width[order], zorder=2))
-        axes.set_title(f"{title + ': ' if title else ''}{name}, {when}{'' if moves.any() else f': {none}' if len(table) else ': no blocks touch at first'}", fontsize="small")
+        axes.set_title(f"{name}{' while closed' if name == 'slip' else ''}, {when}{'' if moves.any() else f': {none}' if len(table) else ': no blocks touch at first'}", fontsize="small")
         if moves.any():
-            _colorbar(figure, axes, colours, name, "mm", False)
+            _colorbar(figure, axes, colours, name, "mm", beyond)
     return figure
 
 
@@ -281,11 +300,11 @@ def thrust_figure(history, time, view=None):
     """The third map of draw_joints() alone."""
     view = View(history, view)
     figure, (axes,) = _figure(view, view.place(history.corners(0)[history.free]).reshape(-1, 2))
-    _thrust_panel(history, axes, view, time, "")
+    _thrust_panel(history, axes, view, time)
     return figure
 
 
-def _thrust_panel(history, axes, view, time, title):
+def _thrust_panel(history, axes, view, time):
     """The resultant of every joint: a line through the point where it crosses the joint, in its direction, as long as it is large."""
     from matplotlib.collections import LineCollection
 
@@ -300,16 +319,26 @@ def _thrust_panel(history, axes, view, time, title):
     axes.add_collection(LineCollection(np.stack([flat - half, flat + half], axis=1), colors="tab:blue", linewidths=1 + 1.5 * sizes[shown] / max(most, 1e-300), zorder=2))
     axes.plot(*flat.T, ".", color="tab:red", markersize=2.5, zorder=3)
     said = f", at most {most / 1e3:.3g} kN" if len(forces) else ": no joint carries load"
-    axes.set_title(f"{title + ': ' if title else ''}thrust, at {history.time[history.sample(time)]:.3f} s{said}", fontsize="small")
+    if most > 0:
+        ends, margin = np.concatenate([flat - half, flat + half]), 0.03 * np.ptp(axes.get_xlim())
+        axes.set(xlim=(min(axes.get_xlim()[0], ends[:, 0].min() - margin), max(axes.get_xlim()[1], ends[:, 0].max() + margin)),
+                 ylim=(min(axes.get_ylim()[0], ends[:, 1].min() - margin), max(axes.get_ylim()[1], ends[:, 1].max() + 2 * margin)))
+        (left, right), (_, high), bar = axes.get_xlim(), axes.get_ylim(), nice(most / 2)
+        start, level = left + 0.03 * (right - left), high - 0.02 * (right - left)
+        axes.plot([start, start + longest * bar / most], [level] * 2, color="tab:blue", linewidth=2, zorder=3)
+        axes.text(start + longest * bar / most + margin / 3, level, f"{bar / 1e3:g} kN", va="center", fontsize="x-small", zorder=3)
+    axes.set_title(f"thrust, at {history.time[history.sample(time)]:.3f} s{said}", fontsize="small")
 
 
 def draw_joints(history, path, time=None, view=None, title=""):
     """Writes a picture with two maps on the undisplaced structure: opening and slip of each joint (joints()), in mm, which count until the first of the two
-    blocks has fallen. time: the sample nearest to it, s; None: the largest of each joint. view: as in draw(). Where nothing opened, or slid, by more than 1e-6
-    of the structure's size, the map is grey and its title says so, as where no blocks touch in the first sample (a run that starts with a tilted block).
+    blocks has fallen, a slip only while the joint is closed. time: the sample nearest to it, s; None: the largest of each joint, whose scales end at the
+    largest of the joints whose blocks stand in the end (those beyond are purple), or of all where most have fallen. view: as in draw(). Where nothing
+    opened, or slid, by more than 1e-6 of the structure's size, the map is grey and its title says so, as where no blocks touch in the first sample (a run that
+    starts with a tilted block).
 
     Where the forces of the joints were recorded (WallRecorder.recordForces), a third map has the lines of thrust: the resultant of each joint at `time` (None:
-    at the largest drift before the first block falls), as a line in its direction whose length is its size, and a dot where it crosses the joint; those
+    at the largest drift before the first block falls), as a line in its direction whose length is its size, to the scale drawn, and a dot where it crosses the joint; those
     below 2 % of the largest are left out."""
     _save(joints_figure(history, time, view, title), path)
 

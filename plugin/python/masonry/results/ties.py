@@ -2,7 +2,8 @@
 
 import numpy as np
 from masonry import _pose
-from masonry.results.wall_history import TIES, history_given
+from masonry.results.history_tables import TIES
+from masonry.results.wall_history import history_given
 
 _FIELDS = [("body1", int), ("body2", int), ("force", float), ("force_time", float), ("compression", float), ("compression_time", float), ("extension", float), ("extension_time", float), ("broken", bool), ("broken_time", float)]
 

@@ -3,16 +3,21 @@
 import numpy as np
 from masonry._files import check_csv, save_picture, written
 from masonry._given import number_given, positive_given, shown
-from masonry._pose import matrices
 from masonry.results._table import Table
+from masonry.results.collapse import lies
+from masonry.results.drift import farthest_of, signed_drift_of
 from masonry.results.forces import base_reactions, has_forces
+from masonry.results.joint_forces import ForcesOfJoints
 from masonry.results.joints import joint_movement, joints
 from masonry.results.view import still
 from masonry.results.wall_history import history_given
 
 _JOINT = [("time", float), ("opening", float), ("slip", float), ("closed", bool), ("normal", float), ("shear", float), ("point", float, 3), ("friction_work", float)]
-_STRUCTURE = [("time", float), ("drift_x", float), ("drift_y", float), ("shear_x", float), ("shear_y", float), ("vertical", float), ("moment_x", float), ("moment_y", float)]
+_FORCES = "shear_x", "shear_y", "vertical", "moment_x", "moment_y"
+_STRUCTURE = [("time", float), ("drift_x", float), ("drift_y", float), ("displacement_x", float), ("displacement_y", float), ("block_x", int), ("block_y", int), ("height_x", float),
+              ("height_y", float), *((name, float) for name in _FORCES)]
 _UNITS = {"time": "s", "opening": "m", "slip": "m", "closed": "1", "normal": "N", "shear": "N", "point": "m", "friction_work": "J", "drift_x": "1", "drift_y": "1",
+          "displacement_x": "m", "displacement_y": "m", "block_x": "1", "block_y": "1", "height_x": "m", "height_y": "m",
           "shear_x": "N", "shear_y": "N", "vertical": "N", "moment_x": "N m", "moment_y": "N m"}
 _STANDARD_GRAVITY = 9.81  # m/s^2
 
@@ -25,7 +30,7 @@ class TimeHistory(Table):
         self.table, self.title, self._panels, self.numbers = table, title, panels, numbers
 
     def __str__(self):
-        return "\n".join([self.title, *(f"  {name}: {value:.4g}" for name, value in self.numbers.items())])
+        return "\n".join([self.title, *(f"  {name}: {value if isinstance(value, int) else f'{value:.4g}'}" for name, value in self.numbers.items())])
 
     def save(self, path):
         """Writes a .csv file, a line a sample, with a header line of names and units."""
@@ -83,8 +88,9 @@ def joint_history(history, id1=None, id2=None):
     normal, shear    force that the joint carries, N: its part across the joint in the first sample, turned with block 1 (positive: pressure), and the
                      size of the part along it
     point            where the force crosses the joint, m; NaN where it carries none
-    friction_work    J, dissipated by sliding so far: the force along the joint times the slip of its point, sample by sample. Samples must be dense: what
-                     happens between two of them is a straight way under a mean force. With mortar it has what the shear of the mortar takes up too
+    friction_work    J, dissipated by sliding so far: the force along the joint times the slip of its point, summed over the samples. It never falls: where the sum does,
+                     the way and the mean force between two samples were not those of the steps, and the largest sum so far stays. Samples must be dense. With
+                     mortar it has what the shear of the mortar takes up too
 
     Forces and work are NaN unless WallRecorder(recordForces=True) has kept them. Raises ValueError where the blocks do not touch in the first sample."""
     table = joints(history)
@@ -109,46 +115,16 @@ def joint_history(history, id1=None, id2=None):
     for name in ("normal", "shear", "point", "friction_work"):
         result[name] = np.nan
     if has_forces(history):
-        _add_forces(history, result, one, two, table["normal"][row])
+        found = ForcesOfJoints(history).of(one, two, table["normal"][row])
+        for name in ("normal", "shear", "point", "friction_work"):
+            result[name] = getattr(found, name)
     numbers = {"largest opening (m)": np.nanmax(result["opening"], initial=0), "largest slip while closed (m)": np.nanmax(np.where(result["closed"], result["slip"], np.nan), initial=0)}
     if has_forces(history):
         numbers |= {"largest pressure (N)": np.nanmax(result["normal"], initial=0), "dissipated by sliding (J)": float(result["friction_work"][-1])}
-    panels = [("movement (mm)", 1e3, [("opening", "opening"), ("slip", "slip, while closed")]), ("force (kN)", 1e-3, [("normal", "pressure"), ("shear", "along the joint")]),
-              ("dissipated\nby sliding (J)", 1, [("friction_work", "")])]
+    panels = [("movement (mm)", 1e3, [("opening", "opening"), ("slip", "slip, while closed")]), ("force (kN)", 1e-3, [("normal", "pressure"), ("shear", "along the joint")])]
+    if has_forces(history) and result["friction_work"][-1] > still(history) * numbers["largest pressure (N)"]:  # else round-off
+        panels.append(("dissipated\nby sliding (J)", 1, [("friction_work", "")]))
     return TimeHistory(result, f"joint of the blocks {one} and {two}{of}", panels, numbers)
-
-
-def _add_forces(history, result, one, two, normal):
-    """Columns of forces and of the work of friction."""
-    forces, row = history.forces, {id: k for k, id in enumerate(history.ids.tolist())}
-    first, second = row[one], row[two]
-    turned = matrices(history.orientation[:, first]) @ (matrices(history.orientation[0, first]).T @ normal)
-    force, known = np.zeros((len(history.time), 3)), np.zeros(len(history.time), dtype=bool)
-    for a, b, sign in ((one, two, 1.0), (two, one, -1.0)):
-        own = forces[(forces["id1"] == a) & (forces["id2"] == b)]
-        force[own["sample"]], known[own["sample"]] = sign * own["force"], True
-        result["point"][own["sample"]] = own["point"]
-    if not (forces["sample"] == 0).any():  # as before the first step
-        force[0] = np.nan
-    across = (force * turned).sum(axis=1)
-    along = force - across[:, None] * turned
-    result["normal"], result["shear"] = across, np.linalg.norm(along, axis=1)
-    work = np.zeros(len(history.time))
-    for k in range(1, len(history.time)):
-        if known[k] or known[k - 1]:
-            points = [result["point"][s] for s in (k - 1, k) if known[s]]
-            moved = [_moved(history, body, k, points[0]) for body in (first, second)]
-            way = moved[1] - moved[0]
-            mean = np.nan_to_num(along[k - 1]) / 2 + np.nan_to_num(along[k]) / 2
-            work[k] = -mean @ (way - way @ turned[k] * turned[k])
-    result["friction_work"] = np.cumsum(work)
-
-
-def _moved(history, body, sample, point):
-    """How far the material point of a block goes from one sample to the next, m, that is at `point` in the first of them."""
-    before, after = (history.position[k, body] for k in (sample - 1, sample))
-    turn = matrices(history.orientation[sample, body]) @ matrices(history.orientation[sample - 1, body]).T
-    return after + turn @ (point - before) - point
 
 
 def structure_history(history, base=None, weight=None):
@@ -160,12 +136,16 @@ def structure_history(history, base=None, weight=None):
     time                 s
     drift_x, drift_y     displacement of the top relative to the base over the height, with its sign, dimensionless: that of the block where it is largest in size
                          (WallHistory.drift() has both together)
+    displacement_x, displacement_y    largest displacement of a block's centre relative to the base at any height, with its sign, m, as of a wall that bulges between foot
+                         and top. A block counts until it falls; NaN where all have fallen
+    block_x, block_y     id of that block; -1: none
+    height_x, height_y   height of its centre above the foot in the first sample, m
     shear_x, shear_y     force of the base on the structure, N
     vertical             the same upwards
     moment_x, moment_y   of these forces about the middle of the foot, N m; moment_y: overturning in the plane x, z
 
-    numbers: the largest drifts and what remains of them in the last sample, the largest base shear, over the weight too, and the largest moment. Forces are NaN
-    unless they were recorded (WallRecorder(recordForces=True))."""
+    numbers: the largest drifts and what remains of them in the last sample, the largest displacements with time, block and height, the largest base shear, over the
+    weight too, and the largest moment. Forces are NaN unless they were recorded (WallRecorder(recordForces=True))."""
     rows = history_given(history).bases
     if base is None:
         row = history.base
@@ -180,8 +160,12 @@ def structure_history(history, base=None, weight=None):
         positive_given("weight", number_given("weight", weight), ", in N")
     result = np.zeros(len(history.time), dtype=_STRUCTURE)
     result["time"] = history.time
-    result["drift_x"], result["drift_y"] = history.signed_drift(standing).T
-    for name in result.dtype.names[3:]:
+    result["drift_x"], result["drift_y"] = signed_drift_of(history, standing).T
+    farthest, blocks, heights = farthest_of(history, standing, ~lies(history))
+    for k, axis in enumerate("xy"):
+        result[f"displacement_{axis}"], result[f"height_{axis}"] = farthest[:, k], heights[:, k]
+        result[f"block_{axis}"] = np.where(blocks[:, k] < 0, -1, history.ids[blocks[:, k]])
+    for name in _FORCES:
         result[name] = np.nan
     if has_forces(history) and row is not None:
         several = len(np.unique(rows[history.free])) > 1
@@ -194,6 +178,12 @@ def structure_history(history, base=None, weight=None):
         drift = result[f"drift_{axis}"]
         numbers |= {f"largest drift along {axis}": drift[np.nanargmax(np.abs(drift))], f"residual drift along {axis}": drift[-1]}
     for axis in "xy":
+        moved = np.abs(result[f"displacement_{axis}"])
+        if (moved > 0).any():
+            most = result[np.nanargmax(moved)]
+            numbers |= {f"largest displacement along {axis} at any height (m)": most[f"displacement_{axis}"], f"its time, along {axis} (s)": most["time"],
+                        f"its block, along {axis}": most[f"block_{axis}"], f"its height above the foot, along {axis} (m)": most[f"height_{axis}"]}
+    for axis in "xy":
         shear = result[f"shear_{axis}"]
         if np.isfinite(shear).any():
             most = shear[np.nanargmax(np.abs(shear))]
@@ -205,9 +195,10 @@ def structure_history(history, base=None, weight=None):
         numbers["largest overturning moment in y, z (N m)"] = result["moment_x"][np.nanargmax(np.abs(result["moment_x"]))]
     of = "" if row is None else f" on base {history.ids[row]}"
     panels = [("drift (% of height)", 100, [("drift_x", "along x"), ("drift_y", "along y")]),
+              ("largest displacement\nat any height (mm)", 1e3, [("displacement_x", "along x"), ("displacement_y", "along y")]),
               ("force (kN)", 1e-3, [("shear_x", "base shear x"), ("shear_y", "base shear y"), ("vertical", "vertical")]),
               ("moment (kN m)", 1e-3, [("moment_x", "about x"), ("moment_y", "about y")])]
-    return TimeHistory(result, f"{int(standing.sum())} blocks{of}", panels, {name: float(value) for name, value in numbers.items()})
+    return TimeHistory(result, f"{int(standing.sum())} blocks{of}", panels, {name: value.item() if isinstance(value, np.generic) else value for name, value in numbers.items()})
 
 
 def _weight(history, blocks):

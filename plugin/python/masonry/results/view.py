@@ -50,6 +50,7 @@ class View:
             raise ValueError(f"view = {given}: must be three finite numbers, not all 0: the direction from the scene to the viewer")
         self.towards = towards / np.linalg.norm(towards)
         self._shapes = history.shapes
+        self._convex = None if self._shapes is None else self._shapes.parts
         right = np.cross([0, 0, 1], self.towards)
         right = right / np.linalg.norm(right) if np.linalg.norm(right) > 1e-9 else np.array([1.0, 0, 0])
         self.frame = np.stack([right, np.cross(self.towards, right)], axis=1)
@@ -67,11 +68,11 @@ class View:
         return "along the wall (m)"
 
     def _faces_of(self, rows):
-        """(corners of the faces of each block (n, faces, corners), which of them are faces (n, faces)); one row serves where all are boxes. rows: of the blocks
-        in the history; None: all of them."""
-        if self._shapes is None:
+        """(corners of the faces of each convex part (n, faces, corners), which of them are faces (n, faces)); one row serves where all are boxes. rows: of the
+        parts in the history; None: all of them."""
+        if self._convex is None:
             return np.array([BOX_FACES]), np.ones((1, len(BOX_FACES)), dtype=bool)
-        loops, real = self._shapes.filled_faces
+        loops, real = self._convex.filled_faces
         return (loops, real) if rows is None else (loops[rows], real[rows])
 
     def outlines(self, corners, rows=None):
@@ -84,6 +85,10 @@ class View:
 
     def faces(self, corners, rows=None):
         """Faces that show, back to front: polygons (m, corners, 2), the number of the block of each, and how bright it is, 0 to 1. rows: as in outlines()."""
+        owner = np.arange(len(corners))
+        if self._shapes is not None and len(self._shapes) < len(self._convex):  # unions: what is concave has no one place behind or before another
+            rows, owner, own = self._shapes.parts_of_rows(owner if rows is None else rows)
+            corners = corners[owner[:, None], own]
         loops, real = self._faces_of(rows)
         polygons, normals = _outward(corners, loops)
         shows = (normals @ self.towards > 1e-6) & real
@@ -94,10 +99,10 @@ class View:
         keep = shows[block, face]
         block, face = block[keep], face[keep]
         bright = np.ones(len(block)) if self.from_side else light[block, face]
-        return self.place(polygons[block, face]), block, bright
+        return self.place(polygons[block, face]), owner[block], bright
 
     def back_to_front(self, corners, rows=None):
-        """Order of the blocks in which each is drawn after those behind it: of two that overlap in the picture, the face of either that
+        """Order of convex blocks in which each is drawn after those behind it: of two that overlap in the picture, the face of either that
         separates them best tells. Of those that go around in a circle the one whose middle is the deepest comes first. From the side, with all middles
         at one depth: the order given."""
         center = corners.mean(axis=1)
@@ -108,7 +113,7 @@ class View:
         # In the picture, all at one depth. Those that only touch there do not overlap.
         low, high = (np.pad(ends, ((0, 0), (0, 1))) for ends in (np.nextafter(flat.min(axis=1), np.inf), flat.max(axis=1)))
         i, j = near_pairs(low, high).T
-        front = self._fronts_of_boxes(i, j, corners, center) if self._shapes is None else self._fronts(i, j, corners, rows)
+        front = self._fronts_of_boxes(i, j, corners, center) if self._convex is None else self._fronts(i, j, corners, rows)
         behind, before = np.where(front > 0, i, j), np.where(front > 0, j, i)
         told = np.abs(front) > 1e-9
         return _sorted(behind[told], before[told], depth)

@@ -9,7 +9,10 @@ from masonry._files import check_csv, read_npz, written
 from masonry._given import number_given, shown
 from masonry._polyhedra import contacts
 from masonry._shapes import Shapes, box_corners
+from masonry.results.about import about_given, about_of
 from masonry.results.bonds import check_bonds
+from masonry.results.drift import drift_of
+from masonry.results.history_tables import check_tables
 from masonry.results.own_bases import TOUCH, own_bases
 
 ENERGIES = ("kinetic", "potential", "elastPotential", "frictDissip", "dampDissip", "impactDissip", "baseWork")
@@ -18,14 +21,6 @@ _SAVED = ("time", "ids", "sizes", "free", "position", "orientation", "energies")
 _OPTIONAL = ("motion", "end", "about", "impacts", "forces", "ties", "bonds", "damage")
 # Files hold these fields of shapes if there are convex blocks.
 _SHAPES = ("vertices", "vertex_start", "faces", "face_start")
-# Rows of the forces of joints: force on block 2, N, and where it acts, m.
-JOINT_FORCES = [("id1", int), ("id2", int), ("force", float, 3), ("point", float, 3)]
-# Columns of the ties: the bodies, where it is fixed to them (from their centres, in their own axes, m), N, N, m, J.
-TIES = [("body1", int), ("body2", int), ("point1", float, 3), ("point2", float, 3), ("strength", float), ("force", float), ("extension", float), ("energy", float), ("broken", bool)]
-# Columns of the impacts, of dem.impacts(), that a report shows.
-_IMPACTS = "time", "body", "support", "restitution_asked", "restitution", "velocity", "energy_lost", "friction_demand", "capped"
-# Names that masonry writes into `about`; a script may add more.
-_ABOUT = {"script": str, "materials": list, "masses": list, "motions": list, "loads": list, "ties": list, "model": dict, "solver": dict, "notes": list, "versions": dict}
 # Share of the motion that may be missing from a run to its end, whose last step or sample may come a little earlier.
 _FINISHED = 1e-3
 
@@ -71,7 +66,7 @@ class WallHistory:
         samples, blocks = self.time.size, self.ids.size
         self._energies = np.full((samples, len(ENERGIES)), np.nan) if energies is None else np.asarray(energies, dtype=float)
         self.motion = None if motion is None else np.asarray(motion, dtype=float)
-        self.about, self.impacts, self.forces, self.ties = _about_given(about), impacts, forces, ties
+        self.about, self.impacts, self.forces, self.ties = about_given(about), impacts, forces, ties
         shapes = {"time": (samples,), "ids": (blocks,), "sizes": (blocks, 3), "free": (blocks,), "position": (samples, blocks, 3), "orientation": (samples, blocks, 4),
                   "_energies": (samples, len(ENERGIES))}
         for name, shape in shapes.items():
@@ -89,29 +84,12 @@ class WallHistory:
             raise ValueError("position, orientation: must be finite in the first sample")
         if self.shapes is not None and (not isinstance(self.shapes, Shapes) or len(self.shapes) != blocks):
             raise ValueError(f"shapes = {shown(self.shapes)}: must be the Shapes of {blocks} blocks, or None")
-        self._check_tables()
+        check_tables(self)
         check_bonds(bonds, damage, samples)
         self.bonds, self.damage = bonds, damage
         self.end = float(self.time[-1] if end is None else end)
         if not self.end >= self.time[-1]:
             raise ValueError(f"end = {end}: must not come before the last sample, at {self.time[-1]:g} s")
-
-    def _check_tables(self):
-        """ValueError where impacts or forces have not the columns that they should have, or forces are those of other blocks or samples."""
-        for name, columns in (("impacts", _IMPACTS), ("forces", ("sample", *(column[0] for column in JOINT_FORCES)))):
-            table = getattr(self, name)
-            found = np.asarray(table).dtype
-            if table is not None and not (np.ndim(table) == 1 and all(column in (found.names or ()) and found[column].base.kind in "biuf" for column in columns)):
-                raise ValueError(f"{name}: must be None or a structured array with the columns {', '.join(columns)}, of numbers")
-        if self.ties is not None and not (np.asarray(self.ties).dtype == np.dtype(TIES) and np.ndim(self.ties) == 2 and len(self.ties) == len(self.time)):
-            raise ValueError(f"ties: must be None or a structured array of {len(self.time)} samples by ties, with the columns {', '.join(name for name, *_ in TIES)}")
-        if self.forces is None:
-            return
-        strangers = np.setdiff1d(np.concatenate([self.forces["id1"], self.forces["id2"]]), self.ids)
-        if len(strangers):
-            raise ValueError(f"forces: they name the body {strangers[0]}, which is not among the ids of the history: must be those of joints between its bodies")
-        if not (self.forces["force"].shape == self.forces["point"].shape == (len(self.forces), 3) and np.isin(self.forces["sample"], np.arange(len(self.time))).all()):
-            raise ValueError("forces: must be vectors of three components, at samples of the history")
 
     def __repr__(self):
         return f"WallHistory({len(self.ids)} blocks, {self.time[0]:g} to {self.time[-1]:g} s, {len(self.time)} samples)"
@@ -233,7 +211,7 @@ class WallHistory:
             own = np.isin(ties["body1"][0], ids) & np.isin(ties["body2"][0], ids)
             ties = ties[:, own] if own.any() else None
         return WallHistory(self.time, ids, self.sizes[rows], self.free[rows], self.position[:, rows], self.orientation[:, rows], None, self.motion, self.end,
-                           _about_ids(self.about, ids.tolist()), impacts, forces, shapes, ties, bonds, damage)
+                           about_of(self.about, ids.tolist()), impacts, forces, shapes, ties, bonds, damage)
 
     def base_path(self, base):
         """Places (s, 3) and orientations (s, 4) of a base, by its row; from where it is erased, the last ones."""
@@ -335,29 +313,8 @@ class WallHistory:
         top: the middle of the upper face (of the face that is the upper one at first), of the block where it is farthest away among those whose
         upper end is at first within half their height of the highest one. The height: from the lowest point of the free blocks to the highest,
         at first. A block and a pier of the same shape that turn alike have the same drift. Where structures stand on several bases, the drift is the
-        largest of those of each base."""
-        return np.fmax.reduce([self._drift_on(self.free & (self.bases == base)) for base in np.unique(self.bases[self.free])])
-
-    def signed_drift(self, blocks):
-        """(s, 2) along x and y, with the sign of the displacement: of those blocks ((n,) bool) as drift(), where each component is largest in size."""
-        moved, height = self._top_moved(blocks)
-        filled = np.where(np.isnan(moved), 0, moved)
-        most = np.abs(filled).argmax(axis=1)
-        return np.take_along_axis(filled, most[:, None], axis=1)[:, 0] / height
-
-    def _drift_on(self, blocks):
-        """drift() of what stands on one base."""
-        moved, height = self._top_moved(blocks)
-        return np.fmax.reduce(np.linalg.norm(moved, axis=2), axis=1) / height
-
-    def _top_moved(self, blocks):
-        """(horizontal displacements (s, t, 2) of the tops of the upper ones among those blocks, height of these blocks), m."""
-        low, high = self.extent
-        top = np.flatnonzero(blocks & (high > high[blocks].max() - (high - low) / 2))
-        up, turned = self.upwards[top], _pose.matrices(self.relative_orientation[:, top])
-        arms = up * np.einsum("nca,na->nc", self.own_corners[top], up).max(axis=1)[:, None]
-        middles = self.relative_position[:, top] + np.einsum("snab,nb->sna", turned, arms)
-        return (middles - middles[0])[..., :2], high[blocks].max() - low[blocks].min()
+        largest of those of each base. Walls that bulge between foot and top move more below it: results.structure_history() has the largest displacement at any height."""
+        return np.fmax.reduce([drift_of(self, self.free & (self.bases == base)) for base in np.unique(self.bases[self.free])])
 
     @cached_property
     def extent(self):
@@ -392,30 +349,6 @@ class WallHistory:
         blocks with fewer corners than others repeat their last one."""
         start = self.corners_at(self.relative_position[0], self.relative_orientation[0])
         return start + enlarge * (self.corners_at(self.relative_position[sample], self.relative_orientation[sample]) - start)
-
-
-def _about_given(about):
-    """The dict; ValueError unless it is one, in which the names that masonry writes have values of their kinds."""
-    if about is not None and not isinstance(about, dict):
-        raise ValueError(f"about = {shown(about)}: must be a dict, or None")
-    for name, kind in _ABOUT.items():
-        if not isinstance((about or {}).get(name, kind()), kind):
-            raise ValueError(f"about[{name!r}] = {shown(about[name])}: must be a {kind.__name__}")
-    if not all(isinstance(note, str) and note for note in (about or {}).get("notes", [])):
-        raise ValueError(f"about['notes'] = {shown(about['notes'])}: must be texts that are not empty")
-    return dict(about or {})
-
-
-def _about_ids(about, ids):
-    """`about` with the materials, masses, motions and loads of these bodies alone."""
-    found = dict(about)
-    for name in ("materials", "masses", "motions", "loads"):
-        if name in about:
-            found[name] = [{**one, "ids": sorted(set(one["ids"]) & set(ids))} for one in about[name] if set(one["ids"]) & set(ids)]
-    if "ties" in about:
-        inside = [{**one, "ids": [pair for pair in one["ids"] if set(pair) <= set(ids)]} for one in about["ties"]]
-        found["ties"] = [one for one in inside if one["ids"]]
-    return found
 
 
 def history_given(history):

@@ -6,9 +6,13 @@ resonant train of Casapulla and Maione, beside that of the elastic oscillator. T
 units, with to_csv(), to_xarray() and plot(). peak_ratio(), oscillator_peak() and half_cycle() are the pieces, for arrays that broadcast.
 """
 
+from masonry._calls import check_keywords as _check_keywords
+
 from ._grid import Spectrum
 from ._oscillator import oscillator_peak, response
 from ._resonance import half_cycle, resonance
 from ._rocking import overturning, peak_ratio, rocking
 
 __all__ = ["Spectrum", "half_cycle", "oscillator_peak", "overturning", "peak_ratio", "resonance", "response", "rocking"]
+
+_check_keywords(__name__)

@@ -6,6 +6,7 @@ import numpy as np
 
 from .. import _core
 from .._arrays import restore
+from .._calls import near_words
 from .._given import shown
 from .._progress import chunks, steps
 from ..block import RockingBlock
@@ -114,8 +115,12 @@ def _motion(motion, parameters):
         return motion.scaled(parameters.get("scale", 1.0))
     if not (isinstance(motion, type) and issubclass(motion, Motion)):
         raise ValueError(f"motion = {shown(motion)}: must be masonry.Sine, HalfSine, Rectangular or PulseTrain (without brackets), or one motion")
+    numbers = list(inspect.signature(motion).parameters)
+    unknown = next((name for name in parameters if name not in numbers), None)
+    if unknown is not None:
+        raise ValueError(f"motion = {motion.__name__}: it has no `{unknown}`; {near_words(unknown, numbers)} Its numbers are {', '.join(numbers)}")
     try:
         inspect.signature(motion).bind(**parameters)
     except TypeError as error:
-        raise ValueError(f"motion = {motion.__name__}: {error}; its numbers are {', '.join(inspect.signature(motion).parameters)}") from None
+        raise ValueError(f"motion = {motion.__name__}: {error}; its numbers are {', '.join(numbers)}") from None
     return motion(**parameters)

@@ -26,7 +26,7 @@ CompliantBlocks blocksOnBase(double depth, double friction, double restitution)
 void chooseStep(CompliantBlocks& blocks, double fraction)
 {
 	blocks.findPatches();
-	blocks.step.system.dt = chosenTimeStep(blocks.bodies(), blocks.step.system.contacts, fraction);
+	blocks.step.system.dt = chosenTimeStep(blocks.bodies(), blocks.step.system.contacts, {}, fraction);
 }
 
 } // namespace

@@ -40,7 +40,7 @@ struct OnTable : CompliantBlocks {
 		law.dampingRatio = 0.5;
 		law.friction = noSlip;
 		findPatches();
-		step.system.dt = 0.2 * criticalTimeStep(bodies(), step.system.contacts);
+		step.system.dt = 0.2 * criticalTimeStep(bodies(), step.system.contacts, {});
 	}
 
 	// The table takes on the acceleration a and keeps it.

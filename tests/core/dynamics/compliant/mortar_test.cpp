@@ -21,7 +21,7 @@ struct Bricks : CompliantBlocks {
 			addBox(size, {0, 0, 0.025 + 0.05 * k}, 1900, false);
 		step.system.gravity = {0, 0, -gravity};
 		findPatches();
-		step.system.dt = 0.3 * largestTimeStep(bodies(), step.system.contacts);
+		step.system.dt = 0.3 * largestTimeStep(bodies(), step.system.contacts, {});
 		for (int c = 0; c < int(step.system.contacts.size()); ++c)
 			step.requests.push_back({c, mortar});
 		advance();

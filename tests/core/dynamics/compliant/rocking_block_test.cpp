@@ -36,7 +36,7 @@ struct RockingScene {
 		rig.law.friction = noSlip;
 		rig.law.restitution = restitution;
 		rig.findPatches();
-		rig.step.system.dt = stepFraction * criticalTimeStep(rig.bodies(), rig.step.system.contacts);
+		rig.step.system.dt = stepFraction * criticalTimeStep(rig.bodies(), rig.step.system.contacts, {});
 	}
 
 	double angle() const

@@ -12,6 +12,7 @@ namespace {
 struct Assembly {
 	Bodies<Space> bodies;
 	std::vector<JointContact> contacts;
+	Ties ties;
 	std::mt19937 random;
 
 	explicit Assembly(unsigned seed) : random(seed) {}
@@ -50,6 +51,18 @@ struct Assembly {
 		}
 		followPatch(contact);
 		contacts.push_back(contact);
+	}
+
+	// A taut tie between any points of two bodies, as stiff as a joint, that carries no force.
+	void tie(int body1, int body2)
+	{
+		Tie<Space> made;
+		made.body1 = body1;
+		made.body2 = body2;
+		made.point1 = anyVector(0.5);
+		made.point2 = anyVector(0.5);
+		made.stiffness = std::pow(10, uniform(7, 10));
+		ties.push_back(made);
 	}
 
 	// Largest modulus of the eigenvalues of a step (velocities half a step behind, dashpots by those velocities), over all free bodies.
@@ -96,6 +109,20 @@ struct Assembly {
 				           (weight * std::sqrt(kn) * along.transpose() * along + shear * std::sqrt(ks) * across.transpose() * across);
 			}
 		}
+		for (const Tie<Space>& made : ties) {
+			const auto line = Tie<Space>::line(made, bodies[made.body1].pose, bodies[made.body2].pose);
+			Eigen::RowVectorXd rate = Eigen::RowVectorXd::Zero(n); // of its length
+			for (size_t k = 0; k < free.size(); ++k)
+				for (int axis = 0; axis < 6; ++axis) {
+					RigidBody<Space> moving = bodies[free[k]];
+					moving.velocity = Space::Velocity::Unit(axis);
+					if (made.body1 == free[k])
+						rate[6 * int(k) + axis] += line.direction.dot(moving.velocityAt(line.end1));
+					if (made.body2 == free[k])
+						rate[6 * int(k) + axis] -= line.direction.dot(moving.velocityAt(line.end2));
+				}
+			stiffness += made.stiffness * rate.transpose() * rate;
+		}
 		const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(n, n), kept = one - dt * mass.ldlt().solve(damping);
 		const Eigen::MatrixXd pushed = -dt * dt * mass.ldlt().solve(stiffness);
 		Eigen::MatrixXd step(2 * n, 2 * n); // of x and u = dt v: u' = kept u + pushed x, x' = x + u'
@@ -121,7 +148,7 @@ struct Assembly {
 
 	double accepted() const
 	{
-		return largest(1e-4, [&](double dt) { return isStableTimeStep(bodies, contacts, dt); });
+		return largest(1e-4, [&](double dt) { return isStableTimeStep(bodies, contacts, ties, dt); });
 	}
 	// Bodies that nothing holds have double eigenvalues 1, which round-off parts by its square root.
 	double stable() const
@@ -141,10 +168,12 @@ TEST_CASE("The step accepted for a block on a base is the largest stable one")
 		const double zeta = seed % 4 == 0 ? 0 : assembly.uniform(0, 1);
 		for (unsigned k = 0; k <= seed % 3; ++k)
 			assembly.join(0, 1, zeta);
+		if (seed % 2 == 0)
+			assembly.tie(int(seed % 4) / 2, 1 - int(seed % 4) / 2);
 		INFO("seed " << seed << ", damping ratio " << zeta);
 		CHECK(assembly.accepted() == Approx(assembly.stable()).epsilon(1e-4)); // by the modulus 1 + 1e-5 that counts as stable
 		if (zeta == 0)
-			CHECK(criticalTimeStep(assembly.bodies, assembly.contacts) == Approx(assembly.stable()).epsilon(1e-4));
+			CHECK(criticalTimeStep(assembly.bodies, assembly.contacts, assembly.ties) == Approx(assembly.stable()).epsilon(1e-4));
 	}
 }
 
@@ -161,12 +190,14 @@ TEST_CASE("The step accepted for blocks on each other is stable, and at least ha
 				assembly.join(b - 1, b, zeta);
 			if (b > 1 && assembly.uniform(0, 1) < 0.5)
 				assembly.join(b, int(assembly.uniform(0, b)), zeta);
+			if (seed % 3 == 0)
+				assembly.tie(b, b - 1);
 		}
 		const double accepted = assembly.accepted(), stable = assembly.stable();
 		INFO("seed " << seed << ", " << free << " blocks, damping ratio " << zeta);
 		CHECK(assembly.amplification(0.999 * accepted) < 1 + 1e-5);
 		CHECK(accepted <= 1.0001 * stable);
 		CHECK(accepted > 0.5 * stable); // doubled stiffness and damping: 1 / sqrt(2) without dashpots, 1 / 2 by dashpots alone
-		CHECK(criticalTimeStep(assembly.bodies, assembly.contacts) >= accepted * 0.999999);
+		CHECK(criticalTimeStep(assembly.bodies, assembly.contacts, assembly.ties) >= accepted * 0.999999);
 	}
 }

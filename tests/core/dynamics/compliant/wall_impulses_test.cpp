@@ -43,7 +43,7 @@ struct Wall {
 		rig.law.friction = friction;
 		rig.law.restitution = 0.7;
 		rig.findPatches();
-		rig.step.system.dt = 0.2 * criticalTimeStep(rig.bodies(), rig.step.system.contacts);
+		rig.step.system.dt = 0.2 * criticalTimeStep(rig.bodies(), rig.step.system.contacts, {});
 		rig.advance();
 	}
 

@@ -11,12 +11,14 @@ namespace {
 template <class K>
 Array<typename AssemblyMatrix<K>::Stiffness> stiffnessOf(const RigidSystem<K>& s, const ContactSet<K>& c)
 {
-	Array<typename AssemblyMatrix<K>::Stiffness> result(c.groups.size());
+	Array<typename AssemblyMatrix<K>::Stiffness> result(c.layout().groups().size());
 	int number = 0;
-	for (size_t g = 0; g < result.size(); ++g)
+	for (size_t g = 0; g < result.size(); ++g) {
+		const LaneGroup& lanes = c.layout().groups()[g];
 		for (int k = 0; k < lanePoints<K>; ++k)
 			for (int i = 0; i < width; ++i)
-				result[g][k][i] = k < c.points(s, int(g), i) && ++number % 3 ? 500. + 100 * (number % 5) : 0;
+				result[g][k][i] = i < lanes.count && k < pointsOf(s, lanes, i) && ++number % 3 ? 500. + 100 * (number % 5) : 0;
+	}
 	return result;
 }
 
@@ -39,7 +41,8 @@ TEMPLATE_TEST_CASE("a solve inverts masses and stiffnesses of the points", "", P
 	CHECK(matrix.hasMasses(c));
 	CHECK(matrix.change(c) == 0);
 
-	LaneArray right(c.velocity.size(), all(0));
+	const auto& bodies = c.bodies();
+	LaneArray right(bodies.velocity().size(), all(0));
 	for (const int p : matrix.freePacks())
 		for (int i = 0; i < 3; ++i)
 			right[p][i] = std::sin(1. + 5 * p + 2 * i);
@@ -48,25 +51,25 @@ TEMPLATE_TEST_CASE("a solve inverts masses and stiffnesses of the points", "", P
 	LaneArray product(x.size(), all(0));
 	for (const int p : matrix.freePacks())
 		for (int i = 0; i < 3; ++i)
-			product[p][i] = x[p][i] / c.velocity[p][3];
+			product[p][i] = x[p][i] / bodies.velocity()[p][3];
 	constexpr int packs = wall::packs<TestType>;
-	for (size_t g = 0; g < c.groups.size(); ++g)
-		for (int k = 0; k < c.groups[g].count; ++k)
+	for (size_t g = 0; g < c.points().groups().size(); ++g)
+		for (int k = 0; k < c.points().groups()[g].count; ++k)
 			for (int i = 0; i < width; ++i) {
-				const auto& group = c.groups[g];
+				const auto& group = c.points().groups()[g];
 				if (!(stiffness[g][k][i] > 0))
 					continue;
-				const int bodies[2] = {group.body1[i], group.body2[i]};
+				const int body[2] = {group.body1[i], group.body2[i]};
 				for (int row = 0; row < TestType::rows; ++row) {
 					double rate = 0;
 					for (int side = 0; side < 2; ++side)
-						if (c.isFree(bodies[side]))
-							rate += (side ? 1 : -1) * rateOf(group.point[k], row, i, side + 1, &x[packs * bodies[side]]);
+						if (bodies.isFree(body[side]))
+							rate += (side ? 1 : -1) * rateOf(group.point[k], row, i, side + 1, &x[packs * body[side]]);
 					for (int side = 0; side < 2; ++side)
-						for (int pack = 0; pack < packs && c.isFree(bodies[side]); ++pack) {
+						for (int pack = 0; pack < packs && bodies.isFree(body[side]); ++pack) {
 							const Vector3 part = partOf(group.point[k], row, i, side + 1, pack);
 							for (int n = 0; n < 3; ++n)
-								product[packs * bodies[side] + pack][n] += (side ? 1 : -1) * stiffness[g][k][i] * rate * part[n];
+								product[packs * body[side] + pack][n] += (side ? 1 : -1) * stiffness[g][k][i] * rate * part[n];
 						}
 				}
 			}
@@ -94,12 +97,12 @@ TEMPLATE_TEST_CASE("the matrix tells how far the rows of its points have turned"
 		TestType::advance(body.pose, turn, 1);
 	}
 	s.bodies[1].pose.position[0] = -0.25 * q;
-	frozen.contacts.updateFrames(s);
+	frozen.contacts.update(s, false);
 	CHECK(matrix.change(frozen.contacts) > 0.99 * q);
 	CHECK(matrix.change(frozen.contacts) < 3 * q);
 	scene.addWall(1, 2, 3);
 	scene.near.update(s);
-	frozen.contacts.take(s);
+	frozen.contacts.update(s, false);
 	CHECK(!matrix.isOf(frozen.contacts));
 	CHECK(!matrix.hasMasses(frozen.contacts));
 }

@@ -26,15 +26,15 @@ TEMPLATE_TEST_CASE("a block that lands gets no more spin than keeps its energy",
 	body.velocity[up] = -before * width;
 	const double kinetic = s.kineticEnergy();
 	Frozen<TestType> frozen(s, 1e-3);
-	frozen.loads.assign(frozen.contacts.velocity.size(), all(0));
+	frozen.loads.assign(frozen.contacts.bodies().velocity().size(), all(0));
 	SpinRow<TestType> row;
 	row.parts.fill({0, {}});
-	row.parts[0] = {1, spinArm(frozen.contacts, 1, axis)};
+	row.parts[0] = {1, spinArm(frozen.contacts.bodies(), 1, axis)};
 	row.target = asked * before;
 	for (const auto& pair : s.pairs)
 		row.face = pair.body1 == 1 ? pair.face1 : pair.face2;
 	EnergyLedger<TestType> ledger;
-	ledger.open(s, frozen.contacts, {});
+	ledger.open(s, frozen.contacts.bodies(), {});
 	CappedSolve<TestType> capped;
 	const StepContext instant = frozen.step.atInstant(before * std::hypot(width, height));
 	const auto report = capped.solve(s, {frozen.contacts, instant, frozen.loads, {}, {row}}, {}, frozen.solver, ledger, frozen.results);

@@ -252,12 +252,12 @@ TEMPLATE_TEST_CASE("the work of one step is that of its impulses on the mean of 
 	const Vector speed = 0.02 * Vector::Unit(0) + 0.01 * Vector::Unit(up), halfBack = -0.004 * Vector::Unit(0) - 0.006 * Vector::Unit(up);
 	frozen.contacts.setLinearVelocity(0, speed);
 	EnergyLedger<TestType> ledger;
-	ledger.open(s, frozen.contacts, {halfBack});
+	ledger.open(s, frozen.contacts.bodies(), {halfBack});
 	frozen.solve(1e-9, 20000);
 	const auto& moved = frozen.results.velocity;
-	const typename TestType::Velocity before = body.velocity, after = frozen.contacts.inGlobal(moved, block);
+	const typename TestType::Velocity before = body.velocity, after = frozen.contacts.bodies().inGlobal(moved, block);
 	const Vector impulse = body.mass * (after - before).template head<n>() - h * body.force.template head<n>();
-	const double friction = advancePoints(frozen.contacts, frozen.results, ledger.velocityBefore(), h, 0).friction;
+	const double friction = frozen.contacts.advance(frozen.results, ledger.velocityBefore(), h, 0).friction;
 	ledger.takeContacts(s, frozen.contacts, frozen.results, friction);
 	body.velocity = after;
 	ledger.takeForce(s, body, before, h * after, h);

@@ -50,7 +50,7 @@ TEMPLATE_TEST_CASE("blocks that slide or fly move", "", Plane, Space)
 	Frozen<TestType> frozen(s, 1e-3);
 	frozen.solve(1e-8, 20000);
 	const auto moving = [&](double level) {
-		const PointsReport points = advancePoints(frozen.contacts, frozen.results, frozen.contacts.velocity, 1e-3, level);
+		const PointsReport points = frozen.contacts.advance(frozen.results, frozen.contacts.bodies().velocity(), 1e-3, level);
 		return RestState<TestType>::movingBlocks(s, frozen.contacts, points, level);
 	};
 	CHECK(moving(1e-3) == 2);

@@ -28,7 +28,7 @@ TEMPLATE_TEST_CASE("a spin row measures the spin against the supports and does i
 	}
 	scene.near.update(s);
 	const Frozen<TestType> frozen(s, 1e-3);
-	const auto& c = frozen.contacts;
+	const auto& c = frozen.contacts.bodies();
 	using Vector = typename TestType::Vector;
 	const typename TestType::Spin axis = axisOf(TestType());
 	const Vector normal = Vector::Unit(TestType::dimension - 1), old = placeOf(s, -0.5, 0.6), now = placeOf(s, 0.7, 0.6);
@@ -41,17 +41,17 @@ TEMPLATE_TEST_CASE("a spin row measures the spin against the supports and does i
 	row.parts[3] = {0, {}};
 	const auto speed = [&](int b, const Vector& place) { return normal.dot(s.bodies[b].velocityAt(place)); };
 	const double ofBlock = axis.dot(s.bodies[block].spin()), ofBase = -speed(0, now) / length;
-	CHECK(row.rate(c.velocity) == Approx(ofBlock - (speed(support, old) / length + ofBase)).epsilon(1e-13));
-	CHECK(row.baseSpin(c.velocity) == Approx(ofBase).epsilon(1e-13));
+	CHECK(row.rate(c.velocity()) == Approx(ofBlock - (speed(support, old) / length + ofBase)).epsilon(1e-13));
+	CHECK(row.baseSpin(c.velocity()) == Approx(ofBase).epsilon(1e-13));
 
 	constexpr double couple = 3;
-	LaneArray momentum(c.velocity.size(), all(0));
-	row.push(couple, c.velocity, momentum);
+	LaneArray momentum(c.velocity().size(), all(0));
+	row.push(couple, c.velocity(), momentum);
 	double work = 0;
 	for (size_t k = 0; k < momentum.size(); ++k)
 		for (int i = 0; i < 3; ++i)
-			work += momentum[k][i] * c.velocity[k][i];
-	CHECK(work == Approx(couple * (row.rate(c.velocity) + ofBase)).epsilon(1e-13));
+			work += momentum[k][i] * c.velocity()[k][i];
+	CHECK(work == Approx(couple * (row.rate(c.velocity()) + ofBase)).epsilon(1e-13));
 }
 
 // Work goes with the mean of the rates before and after: an elastic blow gains nothing, one that leaves faster than it comes gains. It

@@ -19,10 +19,9 @@ struct Frozen {
 
 	Frozen(RigidSystem<K>& s, double h) : step(Scales(s), h)
 	{
-		contacts.take(s);
-		contacts.measure(s, true);
+		contacts.update(s, true);
 		contacts.setUnit(h);
-		contacts.takeForces(s, h, loads);
+		contacts.bodies().takeForces(s.bodies, h, loads);
 	}
 
 	void solve(double tolerance, int iterations)
@@ -31,7 +30,8 @@ struct Frozen {
 		settings.tolerance = tolerance;
 		settings.first = iterations;
 		solver.solve({contacts, step, loads, {}, {}}, settings, results);
-		contacts.states = results.states;
+		PointStates<K> found = results.states;
+		contacts.swapStates(found);
 	}
 
 	// The same problem for the general solver: in the packs of the contacts each body has one mass for all components. `unknown` are its
@@ -39,35 +39,37 @@ struct Frozen {
 	ContactSolver<K> general() const
 	{
 		ContactSolver<K> result;
-		std::vector<int> unknown(contacts.own.size(), -1);
+		const BodyLanes<K>& bodies = contacts.bodies();
+		std::vector<int> unknown(bodies.size(), -1);
 		const auto velocityOf = [&](const LaneArray& from, size_t b) {
 			typename K::Velocity v;
 			for (int k = 0; k < K::dof; ++k)
 				v[k] = from[packs * b + k / 3][k % 3];
 			return v;
 		};
-		for (size_t b = 0; b < contacts.own.size(); ++b)
-			if (contacts.own[b]) {
+		for (size_t b = 0; b < bodies.size(); ++b)
+			if (bodies.isFree(b)) {
 				unknown[b] = int(result.bodies.size());
 				FreeBody<K> body;
-				body.inverseMass.linear = contacts.velocity[packs * b][3];
+				body.inverseMass.linear = bodies.perMass(b);
 				body.inverseMass.angular = body.inverseMass.linear * K::InverseInertia::Identity();
-				body.free = velocityOf(contacts.velocity, b) + velocityOf(loads, b);
+				body.free = velocityOf(bodies.velocity(), b) + velocityOf(loads, b);
 				body.velocity = body.free;
 				result.bodies.push_back(body);
 			}
-		for (size_t g = 0; g < contacts.groups.size(); ++g)
-			for (int i = 0; i < width; ++i)
-				for (int k = 0; k < contacts.groups[g].count; ++k) {
+		for (size_t g = 0; g < contacts.points().groups().size(); ++g)
+			for (int i = 0; i < contacts.layout().groups()[g].count; ++i)
+				for (int k = 0; k < contacts.points().groups()[g].count; ++k) {
 					const auto& row = results.points[g][k];
-					if (contacts.features[g].pair[i] < 0 || !row.inReach[i])
+					if (!row.inReach[i])
 						continue;
-					const auto& p = contacts.groups[g].point[k];
-					const int bodies[2] = {contacts.groups[g].body1[i], contacts.groups[g].body2[i]};
+					const auto& group = contacts.points().groups()[g];
+					const auto& p = group.point[k];
+					const int body[2] = {group.body1[i], group.body2[i]};
 					ContactRows<K> point;
-					point.body1 = unknown[bodies[0]];
-					point.body2 = unknown[bodies[1]];
-					point.law = contacts.groups[g].friction[i];
+					point.body1 = unknown[body[0]];
+					point.body2 = unknown[body[1]];
+					point.law = group.friction[i];
 					for (int r = 0; r < K::rows; ++r) {
 						for (int c = 0; c < K::dof; ++c) {
 							point.J1(r, c) = -partOf(p, r, i, 1, c / 3)[c % 3];
@@ -75,15 +77,15 @@ struct Frozen {
 						}
 						point.offset[r] = r == 0 ? row.bn[i] : component(row.bt, r - 1, i);
 						for (int side = 0; side < 2; ++side)
-							if (!contacts.own[bodies[side]])
-								point.offset[r] += (side == 0 ? point.J1 : point.J2).row(r) * velocityOf(contacts.velocity, bodies[side]);
+							if (!bodies.isFree(body[side]))
+								point.offset[r] += (side == 0 ? point.J1 : point.J2).row(r) * velocityOf(bodies.velocity(), body[side]);
 					}
 					const PointState<K>& state = results.states[g][k];
 					point.impulse[0] = state.pn[i];
 					for (int r = 1; r < K::rows; ++r)
 						point.impulse[r] = component(state.pt, r - 1, i);
 					for (int side = 0; side < 2; ++side)
-						if (const int b = unknown[bodies[side]]; b >= 0)
+						if (const int b = unknown[body[side]]; b >= 0)
 							result.bodies[b].velocity +=
 							    result.bodies[b].inverseMass *
 							    typename K::Velocity((side == 0 ? point.J1 : point.J2).transpose() * point.impulse);

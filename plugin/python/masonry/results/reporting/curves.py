@@ -63,6 +63,8 @@ def svg(figure, over_time=True):
     own = hashlib.sha1(text.encode()).hexdigest()[:8]  # names of clip paths and the like: no two figures of a page have the same
     text = re.sub(r'( id="|url\(#|href="#)', rf"\g<1>f{own}-", text)
     text = re.sub(r' xmlns(:xlink)?="[^"]*"', "", text)  # not needed in HTML
+    share = min(1, figure.get_size_inches()[0] / _WIDTH)  # of the page: letters of narrow pictures are no larger than those of wide ones
+    text = text.replace("<svg", f'<svg style="width: {100 * share:.4g}%"', 1) if share < 1 else text
     if over_time:
         start, end = figure.axes[0].get_xlim()
         left, right = (figure.axes[0].transData.transform((t, 0))[0] for t in (start, end))
@@ -208,7 +210,8 @@ def of_joint(found, verdict):
     figure.axes[0].set_title("")
     for axes, (_, factor, names) in zip(figure.axes, found.panels()):
         values = factor * np.concatenate([found[name] for name, _ in names])
-        usual = _USUAL * float(np.nanpercentile(np.abs(values), 95)) if np.isfinite(values).any() else 0
+        loaded = np.abs(values[np.nan_to_num(values) != 0])
+        usual = _USUAL * float(np.percentile(loaded, 95)) if "normal" in dict(names) and len(loaded) else 0  # forces alone have peaks
         if 0 < usual < largest(np.abs(values)):
             axes.set_ylim(-_ROOM * usual if np.nanmin(values) >= -_FAINT * usual else -usual, usual)
     time_axis(figure.axes, found["time"], verdict.time)

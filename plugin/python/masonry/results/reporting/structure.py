@@ -12,11 +12,14 @@ from masonry.results.time_histories import joint_history, masses, structure_hist
 from masonry.results.ties import ties
 from masonry.results.view import largest, movement, still
 
-from . import curves, view3d, words
+from . import curves, energies, view3d, words
+from .sections import counted, section, shaded
 
-# Rows of tables: of joints, of impacts (those that lost most), and of joints that have cracked.
-_JOINTS, _IMPACTS, _CRACKS = 12, 200, 100
+# Rows of tables: of joints, and of joints that have cracked.
+_JOINTS, _CRACKS = 12, 100
 _BASES = 6  # that are named
+# Vertical part of the normal of a joint below which it is a head joint: more upright than level.
+_HEAD = 0.7
 # Error of the energy balance that is named among the warnings, relative to the largest energy in it.
 _UNBALANCED = 0.05
 # Drifts, and base shears over the weight, along an axis that are not named.
@@ -30,27 +33,19 @@ def content(history, exact):
     shown_first = verdict.peak_drift_time
     told = words.facts(history.about)  # first: it refuses what masonry has not written
     facts = [("Structure", _structure(history)), *_bases(history), *_mass(history), *told]
-    sections = [section for section in (
-        _section("drift", "Drift", curves.drift(history, verdict),
-                 "Horizontal displacement of the top relative to the base, over the height." + _shaded(verdict)),
+    sections = [one for one in (
+        section("drift", "Drift", curves.drift(history, verdict),
+                 "Horizontal displacement of the top relative to the base, over the height." + shaded(verdict)),
         *(_of_one_block(history, exact) if single else [
-            _section("excursions", "Excursions", curves.excursions(history, verdict),
-                     "Largest horizontal displacement in a course, relative to the base; the curve of a block ends when it falls." + _shaded(verdict))]),
-        _section("shape", "Shape at the largest drift", curves.shape(history, shown_first),
+            section("excursions", "Excursions", curves.excursions(history, verdict),
+                     "Largest horizontal displacement in a course, relative to the base; the curve of a block ends when it falls." + shaded(verdict))]),
+        section("shape", "Shape at the largest drift", curves.shape(history, shown_first),
                  "The sample of the largest drift" + (" before the collapse" if verdict.collapsed else "") + "; dashed: the first sample."),
         _joints_section(history, verdict, table), _joint_section(history, verdict, table), _cracks_section(history, verdict), *_force_sections(history, verdict), _ties_section(history, verdict),
-        _energy_section(history), _impact_section(history)) if section]
+        energies.section_of(history), energies.joints_of(history), energies.impacts_of(history)) if one]
     return {"title": history.about.get("script") or "Rocking masonry", "kind": verdict.verdict, "headline": _headline(verdict), "sentences": _sentences(history, verdict),
             "warnings": _warnings(history, verdict), "scene": view3d.scene(history, shown_first), "numbers": _numbers(history, verdict, table), "sections": sections,
-            "facts": facts, "solver": words.solver(history.about), "known": bool(history.about)}
-
-
-def _section(name, heading, figure="", caption="", **more):
-    return {"name": name, "heading": heading, "figure": figure, "caption": caption, **more}
-
-
-def _shaded(verdict):
-    return f" Shaded: after the collapse at {verdict.time:.4g} s, where the curve may leave the picture." if verdict.collapsed else ""
+            "facts": facts, "solver": words.solver(history.about, *_extent(history, verdict)), "known": bool(history.about)}
 
 
 def _headline(verdict):
@@ -58,13 +53,9 @@ def _headline(verdict):
             "unfinished": "Not finished: no collapse so far"}[verdict.verdict]
 
 
-def _counted(number, word):
-    return f"{number} {word}{'s' if number != 1 else ''}"
-
-
 def _sentences(history, verdict):
     run = verdict.run
-    fell = f"{len(verdict.fallen)} of {_counted(verdict.free, 'block')} {'has' if len(verdict.fallen) == 1 else 'have'} fallen."
+    fell = f"{len(verdict.fallen)} of {counted(verdict.free, 'block')} {'has' if len(verdict.fallen) == 1 else 'have'} fallen."
     return [f"{run[0].upper()}{run[1:]}.", fell]
 
 
@@ -109,14 +100,7 @@ def _numbers(history, verdict, table):
         if largest(values) > still(history):
             k = int(values.argmax())
             rows.append((f"Joint that {verb} most", f"{words.decimal(1e3 * values[k], 4)} mm, blocks {table['id1'][k]} and {table['id2'][k]}", f"{table[name + '_time'][k]:.4g} s"))
-    energy = history.energy[-1]
-    for name, word in (("baseWork", "Work of the base"), ("frictDissip", "Dissipated by friction"), ("impactDissip", "Dissipated by impacts"),
-                       ("dampDissip", "Dissipated by dashpots and ties"), ("crackDissip", "Spent by cracks of mortar")):
-        if name not in energy.dtype.names:
-            continue
-        if np.isfinite(energy[name]) and (energy[name] != 0 or name == "baseWork"):
-            rows.append((word, f"{words.decimal(energy[name], 4)} J", "in all"))
-    return rows
+    return rows + energies.numbers(history)
 
 
 def _of_structure(history, base, several):
@@ -129,11 +113,22 @@ def _of_structure(history, base, several):
             most = int(np.nanargmax(np.abs(drift)))
             rows.append((f"Drift along {axis}{of}: largest, and in the last sample", f"{words.decimal(100 * drift[most])} %, {words.decimal(100 * drift[-1])} %",
                          f"{history.time[most]:.4g} s"))
+        moved = np.abs(found[f"displacement_{axis}"])
+        if largest(moved) > still(history):
+            most = int(np.nanargmax(moved))
+            rows.append((f"Largest displacement along {axis}{of}, at any height", f"{words.decimal(1e3 * found[f'displacement_{axis}'][most])} mm, block {found[f'block_{axis}'][most]}, "
+                         f"{words.decimal(found[f'height_{axis}'][most])} m above the foot", f"{history.time[most]:.4g} s"))
         share = found.numbers.get(f"the same over the weight (V/W along {axis})")
         if share is not None and abs(share) > _FAINT:
             most = int(np.nanargmax(np.abs(found[f"shear_{axis}"])))
             rows.append((f"Largest base shear along {axis}{of}", f"{words.decimal(abs(share))} of the weight", f"{history.time[most]:.4g} s"))
     return rows
+
+
+def _extent(history, verdict):
+    """(duration of the history, s; height, m; largest displacement of the top, m)."""
+    height = float(np.ptp(history.corners(0)[history.free][..., 2]))
+    return history.end - float(history.time[0]), height, verdict.peak_drift * height
 
 
 def _structure(history):
@@ -143,7 +138,7 @@ def _structure(history):
     same = history.shapes is None and np.ptp(sizes, axis=0).max() < 1e-9 * sizes.max()
     kinds = len(np.unique(sizes.round(9), axis=0)) if history.shapes is None else len(set(np.array(history.shapes.distinct[1])[free].tolist()))
     of = f" of {' × '.join(f'{x:.3g}' for x in sizes[0])} m" if same else f" of {kinds} {'sizes' if history.shapes is None else 'shape' if kinds == 1 else 'shapes'}"
-    return (f"{_counted(int(free.sum()), 'free block')}{of}, {_counted(int((~free).sum()), 'prescribed body') if free.all() or (~free).sum() == 1 else f'{(~free).sum()} prescribed bodies'}; "
+    return (f"{counted(int(free.sum()), 'free block')}{of}, {counted(int((~free).sum()), 'prescribed body') if free.all() or (~free).sum() == 1 else f'{(~free).sum()} prescribed bodies'}; "
             f"{box[0]:.3g} × {box[1]:.3g} × {box[2]:.3g} m in all; {len(history.time)} samples from {history.time[0]:.4g} to {history.time[-1]:.4g} s")
 
 
@@ -166,13 +161,14 @@ def _joints_section(history, verdict, table):
     rank = np.argsort(-np.nan_to_num(table["opening"]), kind="stable")
     fell = set(verdict.fallen.tolist())
     rows = [(f"{r['id1']} – {r['id2']}", _mm(r["opening"]), f"{r['opening_time']:.3f}", _mm(r["slip"]), "" if math.isnan(r["slip"]) else f"{r['slip_time']:.3f}",
-             "fallen" if fell & {r["id1"], r["id2"]} else "") for r in table[rank[:_JOINTS]]]
-    return _section("joints", "Opening and slip of the joints", curves.joints(history, verdict, table),
+             ", ".join(["head joint"] * bool(abs(r["normal"][2]) < _HEAD) + ["fallen"] * bool(fell & {r["id1"], r["id2"]}))) for r in table[rank[:_JOINTS]]]
+    return section("joints", "Opening and slip of the joints", curves.joints(history, verdict, table),
                     "The joints that opened, and slid, most. An opening or a slip counts until the first of the two blocks has fallen, a slip only while the joint "
-                    "is closed." + _shaded(verdict),
+                    "is closed." + shaded(verdict),
                     second=curves.joint_map(history), second_caption="Largest values of each joint, on the structure as it was at first.",
-                    columns=["Blocks", "Opening (mm)", "at (s)", "Slip (mm)", "at (s)", ""], rows=rows,
-                    more=f"The {len(rows)} joints of {len(table)} that opened most; fallen: one of the blocks has in the end.", fold="Table of joints")
+                    columns=["Blocks", "Opening (mm)", "at (s)", "Slip while closed (mm)", "at (s)", ""], rows=rows,
+                    more=f"The {len(rows)} joints of {len(table)} that opened most; fallen: one of the blocks has in the end. Head joint: upright; "
+                         "it counts as closed while its sides are within 1 % of the smallest size of the two blocks, also where they do not press.", fold="Table of joints")
 
 
 def _joint_section(history, verdict, table):
@@ -180,9 +176,9 @@ def _joint_section(history, verdict, table):
     if not has_forces(history) or not len(table) or not largest(table["opening"]) > still(history):
         return None
     found = joint_history(history)
-    return _section("joint", f"The joint that opened most: blocks {found.title.split('blocks ')[1]}", curves.of_joint(found, verdict),
+    return section("joint", f"The joint that opened most: blocks {found.title.split('blocks ')[1]}", curves.of_joint(found, verdict),
                     "Opening and slip, the force across the joint (pressure) and along it, and the energy that sliding has dissipated in it, summed over the samples; results.joint_history() "
-                    "has that of every joint." + _shaded(verdict))
+                    "has that of every joint." + shaded(verdict))
 
 
 def _ties_section(history, verdict):
@@ -194,9 +190,9 @@ def _ties_section(history, verdict):
              _mm(r["extension"]), f"{r['extension_time']:.3f}",
              f"{r['broken_time']:.3f}" if r["broken"] else "") for r in table[rank[:_JOINTS]]]
     broke = f" {int(table['broken'].sum())} of them broke." if table["broken"].any() else " None of them broke."
-    return _section("ties", "Ties", curves.tie_forces(history, verdict), f"Forces of {_counted(len(table), 'tie')} at the instants of the samples, tension positive: means of the step before. One "
+    return section("ties", "Ties", curves.tie_forces(history, verdict), f"Forces of {counted(len(table), 'tie')} at the instants of the samples, tension positive: means of the step before. One "
                     "that broke has carried its strength."
-                    + broke + _shaded(verdict), columns=["Bodies", "Tension (kN)", "at (s)", "Compression (kN)", "at (s)", "Extension (mm)", "at (s)", "Broken at (s)"], rows=rows,
+                    + broke + shaded(verdict), columns=["Bodies", "Tension (kN)", "at (s)", "Compression (kN)", "at (s)", "Extension (mm)", "at (s)", "Broken at (s)"], rows=rows,
                     more=f"The {len(rows)} ties of {len(table)} that carried most.", fold="Table of ties")
 
 
@@ -207,11 +203,11 @@ def _cracks_section(history, verdict):
     text = f"{found}."
     own = found.cracked
     if not len(own):
-        return _section("cracks", "Cracks of the mortar", caption=f"{text[0].upper()}{text[1:]}")
+        return section("cracks", "Cracks of the mortar", caption=f"{text[0].upper()}{text[1:]}")
     rows = [(f"{r['body1']} – {r['body2']}", f"{r['cracked']:.4f}", str(r["mode"]), f"{r['damage']:.3f}", _mm(r["opening"]), _mm(r["slip"]),
              f"{r['energy_tension'] + r['energy_shear']:.3g}", "" if math.isnan(r["broken"]) else f"{r['broken']:.4f}") for r in own[:_CRACKS]]
-    return _section("cracks", "Cracks of the mortar", curves.cracks(found, verdict), text + " A joint counts as cracked when the largest damage D in it is 0.02 or more; "
-                    "broken: no mortar is left." + _shaded(verdict), second=curves.crack_map(history, found),
+    return section("cracks", "Cracks of the mortar", curves.cracks(found, verdict), text + " A joint counts as cracked when the largest damage D in it is 0.02 or more; "
+                    "broken: no mortar is left." + shaded(verdict), second=curves.crack_map(history, found),
                     second_caption="Joints coloured by their mean damage D in the last sample, on the structure as it was at first.",
                     columns=["Bodies", "First crack (s)", "in", "D", "Opening (mm)", "Slip (mm)", "Energy (J)", "Broken at (s)"], rows=rows,
                     more=f"The first {len(rows)} of {len(own)} joints to crack, in their order.", fold="Table of cracks")
@@ -229,39 +225,14 @@ def _force_sections(history, verdict):
     caption = ("Lines of thrust at the largest drift" + (" before the collapse" if verdict.collapsed else "") + ": the resultant of each joint, as long as it is "
                "large, and a dot where it crosses the joint; on the structure as it was at first.")
     if history.base is None:
-        return [_section("forces", "Thrust", thrust, caption)]
+        return [section("forces", "Thrust", thrust, caption)]
     bases = history.ids[np.unique(history.bases[history.free])].tolist()
     said = ("Forces of the base on the structure, and their moment about the middle of its foot, at the instants of the samples; peaks of impacts may leave "
-            "the picture." + _shaded(verdict))
+            "the picture." + shaded(verdict))
     if len(bases) == 1:
-        return [_section("forces", "Base shear, overturning moment and thrust", curves.base_forces(history, verdict), said, second=thrust, second_caption=caption)]
-    return [_section(f"forces-{base}", f"Base shear and overturning moment of base {base}", curves.base_forces(history, verdict, base), said)
-            for base in bases] + [_section("thrust", "Thrust", thrust, caption)]
-
-
-def _energy_section(history):
-    if np.isnan(history.energy["kinetic"]).all():
-        return None
-    return _section("energies", "Energies", curves.energies(history),
-                    "Kinetic and potential energy, what was dissipated, and the work of the base. With method='wall' what impacts dissipated is what is left over of "
-                    "the balance, numerical losses included; with other methods the error of the balance is drawn below.")
-
-
-def _impact_section(history):
-    table = history.impacts
-    if table is None:
-        return None
-    if not len(table):
-        why = (" With method='wall' only impacts with a given restitution are listed." if history.about.get("model", {}).get("method") == "wall" else "")
-        return _section("impacts", "Impacts", caption="No impact is in the list." + why)
-    kept = np.sort(np.argsort(-table["energy_lost"], kind="stable")[:_IMPACTS])
-    rows = [(f"{r['time']:.4f}", str(r["body"]), str(r["support"]), "natural" if math.isnan(r["restitution_asked"]) else f"{r['restitution_asked']:.3f}",
-             f"{r['restitution']:.3f}", f"{r['velocity']:.3g}", f"{r['energy_lost']:.3g}", f"{r['friction_demand']:.2f}", "capped" if r["capped"] else "")
-            for r in table[kept]]
-    return _section("impacts", "Impacts", curves.impacts(table, history.time),
-                    f"{_counted(len(table), 'impact')}, which lost {table['energy_lost'].sum():.4g} J.",
-                    columns=["Time (s)", "Block", "on", "C asked", "C", "Velocity before (rad/s)", "Energy lost (J)", "Friction needed", ""], rows=rows,
-                    more="All of them." if len(rows) == len(table) else f"The {len(rows)} that lost most.", fold="List of impacts")
+        return [section("forces", "Base shear, overturning moment and thrust", curves.base_forces(history, verdict), said, second=thrust, second_caption=caption)]
+    return [section(f"forces-{base}", f"Base shear and overturning moment of base {base}", curves.base_forces(history, verdict, base), said)
+            for base in bases] + [section("thrust", "Thrust", thrust, caption)]
 
 
 def _of_one_block(history, exact):
@@ -273,8 +244,8 @@ def _of_one_block(history, exact):
     other = exact.sample(time) if exact is not None else None
     caption = "Rotation relative to the base." + ("" if exact is None else f" Dashed: the exact solution; largest difference {largest(np.abs(angles - other[0])):.3g} rad.")
     speed = np.gradient(angles, time) if len(time) > 1 else np.zeros(len(time))
-    return [_section("rotation", "Rotation", curves.rotation(time, angles, None if other is None else other[0]), caption),
-            _section("phase-plane", "Phase plane", curves.phase_plane(angles, speed, None, other),
+    return [section("rotation", "Rotation", curves.rotation(time, angles, None if other is None else other[0]), caption),
+            section("phase-plane", "Phase plane", curves.phase_plane(angles, speed, None, other),
                      "Angular velocity over rotation, from differences of the samples." + ("" if exact is None else " Dashed: the exact solution."))]
 
 

@@ -8,6 +8,7 @@ import numpy as np
 from masonry import _pose
 from masonry._shapes import Shapes
 from masonry.results.collapse import lies
+from masonry.results.joints import own_patches, patches_of
 from masonry.results.pictures import scale_end, shades
 from masonry.results.view import STILL, enlargement, plane_normal, still
 
@@ -19,6 +20,8 @@ _POSE = 7
 # Movement of the farthest moved block, relative to the smallest block, that is shown enlarged where all of it is smaller.
 _DRAWN = 0.5
 _STOPS = 16
+# Half height of the band around a cracked joint, and how far it stands out, relative to the root of the joint's area.
+_BAND, _OUT = 0.04, 0.01
 
 
 def library():
@@ -53,6 +56,24 @@ def _base_motions(history, samples, origin):
     return motions, own
 
 
+def _bands(history, samples):
+    """What shows cracks: {joints: a band around each joint with mortar, its block and corners (lower and upper, one after the other) in the axes of that block, damage: mean D
+    by frame and joint}. Empty where no joint has mortar."""
+    if history.bonds is None or not len(history.bonds):
+        return {}
+    which, rows = patches_of(history, history.bonds["body1"], history.bonds["body2"])
+    blocks, corners, normals = own_patches(history, rows)
+    bands = []
+    for block, polygon, normal, area in zip(blocks.tolist(), corners, normals, history.bonds["area"][which]):
+        polygon = polygon[np.r_[True, (np.diff(polygon, axis=0) != 0).any(axis=1)]]  # the last corner is repeated
+        away = polygon - polygon.mean(axis=0)
+        size = np.sqrt(area)
+        out = polygon + _OUT * size * away / np.linalg.norm(away, axis=1, keepdims=True)
+        edges = np.stack([out - _BAND * size * normal, out + _BAND * size * normal], axis=1)
+        bands.append({"block": block, "vertices": edges.round(6).ravel().tolist()})
+    return {"joints": bands, "damage": _packed(history.damage["damage"][samples][:, which])}
+
+
 def scene(history, start):
     """The JSON text that viewer.js reads. start: the instant that it shows first, s."""
     from matplotlib.colors import to_hex
@@ -78,4 +99,4 @@ def scene(history, start):
         "shapes": [{"vertices": own.round(9).ravel().tolist(), "faces": shapes.loops[row]} for row, own in zip(rows, vertices)], "poses": _packed(poses), "base": _packed(motions), "bases": own.ravel().tolist(), "quantities": quantities,
         "palette": [to_hex(shades("YlOrRd", 1).to_rgba(k / (_STOPS - 1))) for k in range(_STOPS)],
         "enlarge": float(f"{enlargement(history, samples, _DRAWN):.2g}"), "front": (normal if normal is not None else np.array([0.0, -1, 0])).tolist(),
-        "start": float(start)}).replace("</", "<\\/")
+        "start": float(start), **_bands(history, samples)}).replace("</", "<\\/")

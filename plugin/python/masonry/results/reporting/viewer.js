@@ -51,8 +51,7 @@ function frameAt(time) {
   return [low, length > 0 ? Math.min(1, Math.max(0, (time - scene.time[low]) / length)) : 0];
 }
 
-function cornersOf(k, [x, y, z, w, a, b, c], to, offset) {
-  const { vertices } = shapes[k];
+function place(vertices, [x, y, z, w, a, b, c], to, offset) {
   const axes = [[1 - 2 * (b * b + c * c), 2 * (a * b + w * c), 2 * (a * c - w * b)],
                 [2 * (a * b - w * c), 1 - 2 * (a * a + c * c), 2 * (b * c + w * a)],
                 [2 * (a * c + w * b), 2 * (b * c - w * a), 1 - 2 * (a * a + b * b)]];
@@ -66,15 +65,14 @@ function cornersOf(k, [x, y, z, w, a, b, c], to, offset) {
 
 const [corners, start, dashed] = [0, 1, 2].map(() => new Float32Array(begin[count])), values = [new Float64Array(count), new Float64Array(count)];
 for (let k = 0; k < count; ++k)
-  cornersOf(k, poseAt(poses, count, k, 0, 0), start, begin[k]);
+  place(shapes[k].vertices, poseAt(poses, count, k, 0, 0), start, begin[k]);
 
-// Takes the corners of block `k`, now and at first, along with its base.
-function follow(k, frame, share) {
+// Takes points of block `k`, from one number to another, along with its base.
+function follow(k, points, from, to, frame, share) {
   const [x, y, z, w, a, b, c] = poseAt(base.subarray(scene.bases[k] * frames * POSE), 1, 0, frame, share);
   const turn = new THREE.Quaternion(a, b, c, w), shift = new THREE.Vector3(x, y, z), corner = new THREE.Vector3();
-  for (const points of [corners, dashed])
-    for (let i = begin[k]; i < begin[k + 1]; i += 3)
-      corner.fromArray(points, i).applyQuaternion(turn).add(shift).toArray(points, i);
+  for (let i = from; i < to; i += 3)
+    corner.fromArray(points, i).applyQuaternion(turn).add(shift).toArray(points, i);
 }
 
 // Corners, displacements and rotations now. A block that was erased has no corners: not numbers.
@@ -82,7 +80,7 @@ function move() {
   const [frame, share] = frameAt(state.time);
   for (let k = 0; k < count; ++k) {
     const now = poseAt(poses, count, k, frame, share), then = poseAt(poses, count, k, 0, 0);
-    cornersOf(k, now, corners, begin[k]);
+    place(shapes[k].vertices, now, corners, begin[k]);
     values[0][k] = Math.hypot(now[0] - then[0], now[1] - then[1], now[2] - then[2]);
     const cosine = Math.min(1, Math.abs(now[3] * then[3] + now[4] * then[4] + now[5] * then[5] + now[6] * then[6]));
     values[1][k] = 2 * Math.acos(cosine);
@@ -91,7 +89,8 @@ function move() {
     corners[i] = start[i] + state.enlarge * (corners[i] - start[i]);
   dashed.set(start);
   for (let k = 0; at("moving").checked && k < count; ++k)
-    follow(k, frame, share);
+    for (const points of [corners, dashed])
+      follow(k, points, begin[k], begin[k + 1], frame, share);
 }
 
 // --- what is drawn ---
@@ -164,14 +163,59 @@ function colourOf(k) {
   const { most } = scene.quantities[state.quantity], share = values[state.quantity][k] / most;
   if (!(most > 0))
     return UNMOVED;
-  if (share > 1.0001)
-    return BEYOND;
+  return share > 1.0001 ? BEYOND : shade(share);
+}
+
+// A band around each joint with mortar that has cracked, in the colour of its mean damage. Its corners are lower and upper ones in turns.
+const bands = scene.joints || [], damage = unpack(scene.damage || ""), CRACKED = 0.02;
+const bandAt = bands.map(() => 0), bandIndex = [];
+let bandSize = 0;
+for (const [j, { vertices }] of bands.entries()) {
+  bandAt[j] = bandSize;
+  const size = vertices.length / 3;
+  for (let i = 0; i < size; i += 2) {
+    const [a, b, c, d] = [i, i + 1, (i + 3) % size, (i + 2) % size].map(corner => bandSize / 3 + corner);
+    bandIndex.push(a, b, c, a, c, d);
+  }
+  bandSize += vertices.length;
+}
+const bandPlaces = new THREE.BufferAttribute(new Float32Array(bandSize), 3), bandColours = new THREE.BufferAttribute(new Float32Array(bandSize), 3);
+const bandSolid = new THREE.BufferGeometry(), bandFirst = new Float32Array(bandSize);
+attribute(bandSolid, "position", bandPlaces);
+attribute(bandSolid, "color", bandColours);
+bandSolid.setIndex(bandIndex);
+const bandMesh = new THREE.Mesh(bandSolid, new THREE.MeshBasicMaterial({ vertexColors: THREE.VertexColors || true, side: THREE.DoubleSide }));
+bandMesh.frustumCulled = false;
+world.add(bandMesh);
+for (const [j, { block, vertices }] of bands.entries())
+  place(vertices, poseAt(poses, count, block, 0, 0), bandFirst, bandAt[j]);
+at("has-cracks").hidden = !bands.length;
+
+function shade(share) {
   const place = share * (palette.length - 1), low = Math.min(Math.floor(place), palette.length - 2);
   return palette[low].clone().lerp(palette[low + 1], place - low);
 }
 
+function fillBands() {
+  const [frame, share] = frameAt(state.time), to = Math.min(frame + 1, frames - 1), places = bandPlaces.array;
+  bandMesh.visible = at("cracks").checked;
+  for (const [j, { block, vertices }] of bands.entries()) {
+    const cracked = (1 - share) * damage[frame * bands.length + j] + share * damage[to * bands.length + j];
+    const colour = shade(Math.min(1, cracked)), now = poseAt(poses, count, block, frame, share);
+    place(vertices, now, places, bandAt[j]);
+    for (let i = bandAt[j]; i < bandAt[j] + vertices.length; ++i)
+      places[i] = cracked >= CRACKED && isFinite(now[0]) ? bandFirst[i] + state.enlarge * (places[i] - bandFirst[i]) : 0;
+    if (at("moving").checked)
+      follow(block, places, bandAt[j], bandAt[j] + vertices.length, frame, share);
+    for (let i = bandAt[j]; i < bandAt[j] + vertices.length; i += 3)
+      colour.toArray(bandColours.array, i);
+  }
+  bandPlaces.needsUpdate = bandColours.needsUpdate = true;
+}
+
 function fill() {
   move();
+  fillBands();
   let next = 0;
   for (let k = 0; k < count; ++k) {
     const colour = colourOf(k), there = isFinite(corners[begin[k]]);
@@ -380,10 +424,12 @@ at("enlarge").addEventListener("input", () => {
 });
 at("moving").addEventListener("change", draw);
 at("ghost").addEventListener("change", draw);
+at("cracks").addEventListener("change", draw);
 
 function legend() {
   const { name, unit, factor, most, beyond } = scene.quantities[state.quantity];
   at("bar").style.background = `linear-gradient(to right, ${scene.palette.join(", ")})`;
+  at("crack-bar").style.background = at("bar").style.background;
   at("least").textContent = "0";
   at("label").textContent = `${name} (${unit})${beyond ? "; purple: beyond the scale, fallen" : ""}`;
   at("most").textContent = Number((factor * most).toPrecision(3));

@@ -4,6 +4,8 @@ import functools
 import math
 
 _GRAVITY = 9.80665  # m/s^2, as records are given in g
+_SMALL = 0.1  # share of a drift
+_LEAST = 1e-3  # smaller drifts are none
 
 
 def decimal(value, digits=3):
@@ -23,6 +25,10 @@ def material(given):
     stiffness = [f"{word} stiffness {given[name]:.3g} Pa/m" for name, word in (("normalStiffness", "normal"), ("shearStiffness", "shear"))
                  if given[name] is not None]
     bonded = [mortar(given["mortar"])] if given.get("mortar") else []
+    if given.get("headMortar"):
+        bonded.append("in its head joints " + mortar(given["headMortar"]))
+    if given.get("unfilledHeads"):
+        bonded.append("head joints unfilled")
     return ", ".join([f"{len(given['ids'])} blocks: density {given['density']:g} kg/m^3", friction, restitution, *stiffness, *bonded])
 
 
@@ -72,9 +78,9 @@ def mass(kilograms, gravity):
 def _written_by_masonry(sentences):
     """The function of `about`; where that, which may come from a file, lacks what masonry writes into it, ValueError."""
     @functools.wraps(sentences)
-    def checked(about):
+    def checked(about, *more):
         try:
-            return sentences(about)
+            return sentences(about, *more)
         except (KeyError, TypeError, ValueError, AttributeError, IndexError) as error:
             raise ValueError(f"about of the history: must be what masonry has written ({type(error).__name__}: {error})") from None
 
@@ -107,14 +113,14 @@ def facts(about):
 
 
 @_written_by_masonry
-def solver(about):
-    """Rows (name, value, meaning) on how well the laws were met."""
+def solver(about, duration, height, moved):
+    """Rows (name, value, meaning) on how well the laws were met. duration: of the run, s; height: of the structure, m; moved: the largest displacement of its top, m."""
     given, model = about.get("solver", {}), about.get("model", {})
     rows = []
     if "worstResidual" in given:
         step = (math.hypot(*model["gravity"]) * model["dt"]) if "gravity" in model else 0
-        share = f"{given['worstResidual'] / step:.2g} of the speed that gravity gives in a step" if step > 0 else ""
-        rows.append(("Largest residual of the contact laws", quantity(given["worstResidual"], "m/s"), share))
+        share = [f"{given['worstResidual'] / step:.2g} of the speed that gravity gives in a step"] if step > 0 else []
+        rows.append(("Largest residual of the contact laws", quantity(given["worstResidual"], "m/s"), "; ".join(share + [_of_drift(given["worstResidual"] * duration, height, moved)])))
     if "failures" in given:
         rows.append(("Steps that missed a law or the tolerance", str(given["failures"]), f"of {model['steps']} steps" if "steps" in model else ""))
     for name, word in (("madeEnergy", "Energy made of nothing"), ("lostEnergy", "Energy that vanished")):
@@ -122,6 +128,14 @@ def solver(about):
             turned = given.get("turnedOver") or 0
             rows.append((word, quantity(given[name], "J"), f"{100 * given[name] / turned:.2g} % of what was turned over" if turned > 0 else ""))
     return rows
+
+
+def _of_drift(way, height, moved):
+    """What a residual means for the drift: way: how far it goes in the whole run, m."""
+    said = f"if every step missed by as much in one direction, the top would be off by {decimal(1e3 * way, 2)} mm in the end, {decimal(100 * way / height, 2)} % of the height"
+    if way <= _SMALL * max(moved, _LEAST * height):
+        return f"{said}: small beside {'the largest drift' if moved > _LEAST * height else f'a drift of {100 * _LEAST:g} %'}"
+    return f"{said}: not small beside the largest drift; a run with a smaller tolerance or step tells whether it matters (dem.compare)"
 
 
 @_written_by_masonry
