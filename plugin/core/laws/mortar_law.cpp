@@ -67,22 +67,31 @@ Growth growth(const MortarLaw& law, double strength, double pull, double shear, 
 	return now;
 }
 
-// Books what the growth spends, and breaks the point where too little is left of it.
-void spend(const MortarLaw& law, MortarPoint& point, double strength, const Growth& grown, MortarTraction& result)
+} // namespace
+
+double spend(const MortarLaw& law, MortarPoint& point, double byCrack, double bySlip)
 {
-	const double byCrack = law.openingRate() * grown.crack, bySlip = law.slipRate() * grown.slip, all = byCrack + bySlip;
+	const double all = byCrack + bySlip;
 	if (!(all > 0) || point.isBroken)
-		return;
-	const double damage = -strength * std::expm1(-all);
+		return 0;
+	const double damage = -point.strength() * std::expm1(-all);
 	const double opened = law.fractureEnergy * damage * byCrack / all, sheared = law.shearFractureEnergy * damage * bySlip / all;
 	point.spent += all;
 	point.opened += opened;
 	point.sheared += sheared;
-	result.crack = opened + sheared;
 	point.isBroken = std::exp(-point.spent) <= MortarLaw::leastStrength;
+	return opened + sheared;
 }
 
-} // namespace
+double addDamage(const MortarLaw& law, MortarPoint& point, double byCrack, double bySlip)
+{
+	const double damage = byCrack + bySlip;
+	if (!(damage > 0) || point.isBroken)
+		return 0;
+	constexpr double least = MortarLaw::leastStrength / 2; // of what is left: the point breaks
+	const double left = std::max(least, 1 - damage / point.strength()), all = -std::log(left);
+	return spend(law, point, all * byCrack / damage, all * bySlip / damage);
+}
 
 MortarTraction advance(const MortarLaw& law, MortarPoint& point, double opening, const Vector2& displacement, double pressure)
 {
@@ -98,7 +107,7 @@ MortarTraction advance(const MortarLaw& law, MortarPoint& point, double opening,
 		return result;
 	}
 	Growth grown = growth(law, strength, pull, size, pressure);
-	spend(law, point, strength, grown, result);
+	result.crack = spend(law, point, law.openingRate() * grown.crack, law.slipRate() * grown.slip);
 	const double left = point.strength();
 	result.pull = left > 0 ? std::max(0., pull - law.normalStiffness * grown.crack) : 0;
 	result.bound = law.cohesion * left + law.friction * (pressure - result.pull);

@@ -68,6 +68,13 @@ struct MortarTraction {
 	bool opens {false}, slips {false};
 };
 
+// Books a growth of the crack, dx by its opening and by its slip, and breaks the point where too little is left of it. Returns the energy
+// that it spends, J/m^2.
+double spend(const MortarLaw& law, MortarPoint& point, double byCrack, double bySlip);
+
+// The same for an addition to the damage, by opening and by slip; as much of it as is left.
+double addDamage(const MortarLaw& law, MortarPoint& point, double byCrack, double bySlip);
+
 // The tractions at an opening (m) and a displacement across it (m), with the pressure (Pa, from 0 on) on the point. Its cracks grow as far
 // as they must.
 MortarTraction advance(const MortarLaw& law, MortarPoint& point, double opening, const Vector2& displacement, double pressure);

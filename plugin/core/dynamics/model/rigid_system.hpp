@@ -3,6 +3,7 @@
 #include "contact/corner_normals.hpp"
 #include "contact/solid_contact.hpp"
 #include "dynamics/model/base_drive.hpp"
+#include "dynamics/model/mortar_joint.hpp"
 #include "dynamics/model/tie.hpp"
 #include "dynamics/model/version.hpp"
 #include "impact/rocking_restitution.hpp"
@@ -189,6 +190,7 @@ struct RigidSystem {
 	std::vector<RigidBody<K>> bodies;
 	std::vector<ContactPair<K>> pairs;              // of blocks that are near each other, in a fixed order
 	std::vector<Tie<K>> ties;                       // in the scene's order
+	std::vector<MortarJoint<K>> mortar;             // joints that have been bonded
 	Version list;                                   // of the list of pairs: which bodies they have, in which order
 	Version laws;                                   // of the pairs' friction and restitution, where the list stays
 	typename K::Vector gravity {K::Vector::Zero()}; // which way is down, and the scale of tolerances; the weight itself is in `force`
@@ -197,7 +199,7 @@ struct RigidSystem {
 
 	std::vector<Impact> impacts; // of the last step
 	// Since the start of the run.
-	double frictDissip {0}, impactDissip {0}, tieDissip {0}, baseWork {0}; // J
+	double frictDissip {0}, impactDissip {0}, tieDissip {0}, crackDissip {0}, baseWork {0}; // J
 
 	// Of a body that a drive moves, at a time of the step.
 	typename K::Vector driven(const RigidBody<K>& body, double t) const { return body.origin + drives[body.drive].displacement(t); }

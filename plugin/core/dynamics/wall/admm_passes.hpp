@@ -6,10 +6,11 @@ namespace masonry::wall {
 
 // These values are the same for all points of a step.
 struct Step {
-	double h, perH, fall, mix, reach, left, softness, follows, minSoftness, relaxation, boundShare, pullBack;
-	double sticks; // m, gap up to which a point without an impulse starts as one that sticks
-	bool strict;   // errors of impulses count as those of velocities
-	bool compares; // R with the loads
+	double h, perH, fall, mix, reach, left, softness, follows, minSoftness, relaxation, boundShare, pullBack, soundSoftness;
+	double missedShare; // m/s, what an impulse that misses the strength of sound mortar counts
+	double sticks;      // m, gap up to which a point without an impulse starts as one that sticks
+	bool strict;        // errors of impulses count as those of velocities
+	bool compares;      // R with the loads
 };
 
 // R and 1/R of a point; zero: the point is not in A and carries nothing.
@@ -23,6 +24,7 @@ using GroupPenalty = std::array<Penalty, lanePoints<K>>;
 template <class K>
 struct Pass {
 	const Group<K>* groups;
+	const Strength* strength; // by group, of sound mortar; nullptr: none
 	GroupState<K>* states;
 	GroupPenalty<K>* penalties;
 	GroupResult<K>* results;
@@ -39,6 +41,16 @@ MASONRY_INLINE Lanes resistanceOf(const PointLanes<K>& p, const Lanes& filteredI
 	const Lanes load = filteredImpulse / (p.massN * step.fall), r = larger(step.softness / (all(1) + load), all(step.minSoftness));
 	return (0.5 * r) * (p.massN + p.massT) / (p.massN * p.massT);
 }
+// The same, where sound mortar holds some lanes.
+template <class K, bool bonded>
+MASONRY_INLINE Lanes resistanceOf(const PointLanes<K>& p, const Lanes& filteredImpulse, const Step& step, const Strength* strength, int g)
+{
+	if constexpr (!bonded)
+		return resistanceOf<K>(p, filteredImpulse, step);
+	else
+		return select(strength[g].pull > 0, all(0.5 * step.soundSoftness) * (p.massN + p.massT) / (p.massN * p.massT),
+		              resistanceOf<K>(p, larger(filteredImpulse, all(0)), step));
+}
 
 // A look at the points sets these: a point in reach is not in A; the R of a point no longer follows its load.
 struct alignas(alignment) Outdated {
@@ -46,10 +58,10 @@ struct alignas(alignment) Outdated {
 };
 
 // Filters the loads.
-template <class K>
+template <class K, bool bonded>
 MASONRY_INLINE Outdated takeGroups(const Pass<K>& pass)
 {
-	const auto [groups, states, penalties, results, begin, end, velocity, force, step] = pass;
+	const auto [groups, strength, states, penalties, results, begin, end, velocity, force, step] = pass;
 	constexpr double needed = 0.25; // share of the reach within which A must have a point
 	Outdated outdated {};
 	for (int g = begin; g < end; ++g) {
@@ -63,18 +75,18 @@ MASONRY_INLINE Outdated takeGroups(const Pass<K>& pass)
 			const Mask in = penalty.stiffness > 0;
 			outdated.reached |= (at.massN > 0) & (at.gap + step.h * approach < needed * step.reach) & ~in;
 			if (step.compares)
-				outdated.loaded |=
-				    in & (at.massN > 0) &
-				    (size(resistanceOf(at, p.filteredImpulse, step) - penalty.resistance) > step.follows * penalty.resistance);
+				outdated.loaded |= in & (at.massN > 0) &
+				                   (size(resistanceOf<K, bonded>(at, p.filteredImpulse, step, strength, g) - penalty.resistance) >
+				                    step.follows * penalty.resistance);
 		}
 	}
 	return outdated;
 }
 
-template <class K>
+template <class K, bool bonded>
 MASONRY_INLINE void setPenalties(const Pass<K>& pass)
 {
-	const auto [groups, states, penalties, results, begin, end, velocity, force, step] = pass;
+	const auto [groups, strength, states, penalties, results, begin, end, velocity, force, step] = pass;
 	const Lanes none = all(0), one = all(1);
 	for (int g = begin; g < end; ++g) {
 		const Bodies<K> v1(velocity, groups[g].body1), v2(velocity, groups[g].body2);
@@ -82,7 +94,7 @@ MASONRY_INLINE void setPenalties(const Pass<K>& pass)
 			const PointLanes<K>& p = groups[g].point[k];
 			const Lanes approach = 2. * smaller(normalRate(v1, v2, p), none);
 			const Mask in = (p.massN > 0) & (p.gap + step.h * approach < step.reach) & (all(groups[g].count - k) > 0);
-			const Lanes resistance = in ? resistanceOf(p, states[g][k].filteredImpulse, step) : one;
+			const Lanes resistance = in ? resistanceOf<K, bonded>(p, states[g][k].filteredImpulse, step, strength, g) : one;
 			penalties[g][k] = {in ? resistance : none, in ? one / resistance : none};
 			results[g][k].inReach = in;
 		}
@@ -90,13 +102,14 @@ MASONRY_INLINE void setPenalties(const Pass<K>& pass)
 }
 
 // The right-hand side of a solve; with `laws`, after the pass over the laws.
-template <class K, bool laws>
-MASONRY_INLINE void passGroup(const Group<K>& group, GroupState<K>& states, const GroupPenalty<K>& penalties, GroupResult<K>& results,
-                              const Step& step, const Lanes* velocity, Lanes* force, Lanes& worst)
+template <class K, bool laws, bool bonded>
+MASONRY_INLINE void passGroup(const Group<K>& group, const Strength* strength, GroupState<K>& states, const GroupPenalty<K>& penalties,
+                              GroupResult<K>& results, const Step& step, const Lanes* velocity, Lanes* force, Lanes& worst)
 {
 	const Bodies<K> v1(velocity, group.body1), v2(velocity, group.body2);
 	Bodies<K> f1(force, group.body1), f2(force, group.body2);
 	const Mask rough = group.friction >= maxFriction;
+	const Lanes pull = bonded ? strength->pull : all(0), shift = bonded ? strength->shift : all(0);
 	for (int k = 0; k < group.count; ++k) {
 		const PointLanes<K>& at = group.point[k];
 		PointState<K>& p = states[k];
@@ -110,18 +123,20 @@ MASONRY_INLINE void passGroup(const Group<K>& group, GroupState<K>& states, cons
 			row.actedN = p.pn + (p.zn - wn) * stiffness;
 			row.actedT = p.pt + (p.zt - wt) * stiffness;
 			Lanes miss = larger(size(wn - p.zn), size(wt - p.zt));
+			if constexpr (bonded)
+				miss = larger(miss, pull > 0 ? miss * stiffness / pull * step.missedShare : all(0));
 			if (step.strict)
 				miss *= larger(all(1), stiffness / at.massN);
 			const Lanes yn = p.pn - (step.relaxation * wn + (1 - step.relaxation) * p.zn) * stiffness;
 			const auto yt = p.pt - (step.relaxation * wt + (1 - step.relaxation) * p.zt) * stiffness;
-			p.pn = smaller(larger(yn, all(0)), group.most);
-			row.bound += step.boundShare * (p.pn - row.bound);
+			p.pn = smaller(larger(yn, bonded ? -pull : all(0)), group.most);
+			row.bound += step.boundShare * (bonded ? p.pn + shift - row.bound : p.pn - row.bound);
 			p.pt = clip(yt, group.friction * (rough ? p.pn : row.bound));
 			p.zn = (p.pn - yn) * resistance;
 			p.zt = (p.pt - yt) * resistance;
 			// At a point that slides, the bound must have settled too; R turns it into a velocity, as z is.
 			const Mask follows = ~rough & slides(p.pt, group.friction * row.bound);
-			const Lanes lag = group.friction * size(p.pn - row.bound) * resistance;
+			const Lanes lag = group.friction * size(bonded ? p.pn + shift - row.bound : p.pn - row.bound) * resistance;
 			worst = larger(worst, stiffness > 0 ? larger(miss, follows ? lag : all(0)) : all(0));
 		}
 		add(f1, f2, at, p.pn + (p.zn - wn) * stiffness, p.pt + (p.zt - wt) * stiffness);
@@ -130,18 +145,19 @@ MASONRY_INLINE void passGroup(const Group<K>& group, GroupState<K>& states, cons
 	f2.store(force, group.body2, bitsOf(v2.m > 0));
 }
 
-template <class K>
+template <class K, bool bonded>
 MASONRY_INLINE void passGroups(const Pass<K>& pass, Lanes& worst)
 {
-	const auto [groups, states, penalties, results, begin, end, velocity, force, step] = pass;
+	const auto [groups, strength, states, penalties, results, begin, end, velocity, force, step] = pass;
 	for (int g = begin; g < end; ++g)
-		passGroup<K, true>(groups[g], states[g], penalties[g], results[g], step, velocity, force, worst);
+		passGroup<K, true, bonded>(groups[g], strength + (bonded ? g : 0), states[g], penalties[g], results[g], step, velocity, force,
+		                           worst);
 }
 
-template <class K>
+template <class K, bool bonded>
 MASONRY_INLINE void startGroups(const Pass<K>& pass)
 {
-	const auto [groups, states, penalties, results, begin, end, velocity, force, step] = pass;
+	const auto [groups, strength, states, penalties, results, begin, end, velocity, force, step] = pass;
 	constexpr double almost = 0.9; // share of the friction bound from which on a point counts as sliding: the damped bound may lag so far
 	const Lanes none = all(0);
 	Lanes unused = none;
@@ -155,18 +171,24 @@ MASONRY_INLINE void startGroups(const Pass<K>& pass)
 			row.inReach = in;
 			p.pn = in ? p.pn : none;
 			p.pt = select(in, p.pt, typename PointLanes<K>::Tangent {});
+			if constexpr (bonded)
+				p.pn = larger(p.pn, -strength[g].pull);
 			p.zero = larger(p.zero, smaller(at.gap, none));
 			const Lanes deep = smaller(at.gap - p.zero + step.left, none);
 			row.bn = in ? step.perH * (at.gap > 0 ? at.gap : step.pullBack * deep) : none;
+			if constexpr (bonded)
+				row.bn = (strength[g].pull > 0) & (at.gap > 0) ? step.pullBack * row.bn : row.bn;
 			row.bt = select(in, all(step.pullBack * step.perH) * p.slip, typename PointLanes<K>::Tangent {});
-			row.bound = p.pn;
+			row.bound = bonded ? p.pn + strength[g].shift : p.pn;
 			const Lanes wn = normalRate(v1, v2, at) + row.bn;
 			const auto wt = slipRate(v1, v2, at) + row.bt;
-			p.zn = p.pn > 0 ? p.zn : larger(wn, none);
-			const Mask keeps = (p.pn > 0) & ~slides(p.pt, almost * groups[g].friction * p.pn);
+			const Lanes least = bonded ? -strength[g].pull : none;
+			p.zn = p.pn > least ? p.zn : larger(wn, none);
+			const Mask keeps = (p.pn > least) & ~slides(p.pt, almost * groups[g].friction * row.bound);
 			p.zt = select(keeps, p.zt, select(at.gap <= step.sticks, typename PointLanes<K>::Tangent {}, wt));
 		}
-		passGroup<K, false>(groups[g], states[g], penalties[g], results[g], step, velocity, force, unused);
+		passGroup<K, false, bonded>(groups[g], strength + (bonded ? g : 0), states[g], penalties[g], results[g], step, velocity, force,
+		                            unused);
 	}
 }
 

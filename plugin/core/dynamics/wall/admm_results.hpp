@@ -1,6 +1,6 @@
 #pragma once
 // A problem of the contact laws of a structure, and what its solver (admm_solver.hpp) returns. The caller owns both.
-#include "dynamics/wall/contact_set.hpp"
+#include "dynamics/wall/mortar_rows.hpp"
 #include "dynamics/wall/spin_row.hpp"
 #include "dynamics/wall/step_context.hpp"
 #include "dynamics/wall/tie_rows.hpp"
@@ -15,6 +15,8 @@ struct AdmmProblem {
 	const LaneArray& guess;              // change that is expected altogether; may be empty
 	const std::vector<SpinRow<K>>& rows; // prescribed spins
 	std::vector<TieRow<K>> ties {};
+	std::vector<MortarRow<K>> mortar {};
+	const Array<Strength>* strength {nullptr}; // by group, of sound mortar
 };
 
 template <class K>
@@ -39,6 +41,7 @@ struct AdmmResults {
 	std::vector<GroupResult<K>> points; // by group of the contacts
 	std::vector<SpinRow<K>> spins;      // the rows of the problem with their couples
 	std::vector<TieRow<K>> ties;        // the same with their impulses
+	std::vector<MortarRow<K>> mortar;   // the same
 };
 
 struct SolverStatus {

@@ -24,14 +24,25 @@ MASONRY_LANES void inertia(const std::vector<int>& members, const Lanes* velocit
 }
 
 // No template is compiled for several vector widths.
-MASONRY_LANES void takePass(const Pass<Plane>& pass, Outdated& outdated) { outdated = takeGroups(pass); }
-MASONRY_LANES void takePass(const Pass<Space>& pass, Outdated& outdated) { outdated = takeGroups(pass); }
-MASONRY_LANES void penaltyPass(const Pass<Plane>& pass) { setPenalties(pass); }
-MASONRY_LANES void penaltyPass(const Pass<Space>& pass) { setPenalties(pass); }
-MASONRY_LANES void startPass(const Pass<Plane>& pass) { startGroups(pass); }
-MASONRY_LANES void startPass(const Pass<Space>& pass) { startGroups(pass); }
-MASONRY_LANES void lawPass(const Pass<Plane>& pass, Lanes& worst) { passGroups(pass, worst); }
-MASONRY_LANES void lawPass(const Pass<Space>& pass, Lanes& worst) { passGroups(pass, worst); }
+#define MASONRY_PASSES(K)                                                                                                                  \
+	MASONRY_LANES void takePass(const Pass<K>& pass, Outdated& outdated)                                                                   \
+	{                                                                                                                                      \
+		outdated = pass.strength ? takeGroups<K, true>(pass) : takeGroups<K, false>(pass);                                                 \
+	}                                                                                                                                      \
+	MASONRY_LANES void penaltyPass(const Pass<K>& pass) { pass.strength ? setPenalties<K, true>(pass) : setPenalties<K, false>(pass); }    \
+	MASONRY_LANES void startPass(const Pass<K>& pass) { pass.strength ? startGroups<K, true>(pass) : startGroups<K, false>(pass); }        \
+	MASONRY_LANES void lawPass(const Pass<K>& pass, Lanes& worst)                                                                          \
+	{                                                                                                                                      \
+		pass.strength ? passGroups<K, true>(pass, worst) : passGroups<K, false>(pass, worst);                                              \
+	}
+MASONRY_PASSES(Plane)
+MASONRY_PASSES(Space)
+#undef MASONRY_PASSES
+
+RowStep rowStepOf(const StepContext& c, const AdmmSettings& a)
+{
+	return {c.h, c.fall, a.softness, a.minSoftness, a.relaxation, a.boundShare};
+}
 
 Step stepOf(const StepContext& c, const AdmmSettings& a, bool atRest)
 {
@@ -50,6 +61,8 @@ Step stepOf(const StepContext& c, const AdmmSettings& a, bool atRest)
 	        a.relaxation,
 	        a.boundShare,
 	        c.instant ? 0 : a.pullBack,
+	        a.soundSoftness,
+	        a.tolerance * c.fall / a.soundShare,
 	        c.instant ? tolerance::wall::touching * c.length : -farAway,
 	        a.strictForces,
 	        false};
@@ -62,6 +75,7 @@ Pass<K> AdmmSolver<K>::passOf(const Problem& problem, const Part& part, const St
 {
 	const LaneArray& velocity = results.velocity;
 	return {problem.contacts.points().groups().data(),
+	        problem.strength && !problem.strength->empty() ? problem.strength->data() : nullptr,
 	        results.states.data(),
 	        penalties.data(),
 	        results.points.data(),
@@ -88,6 +102,8 @@ bool AdmmSolver<K>::isOutdated(const Problem& problem, const AdmmSettings& setti
 	c.layout().allParts([&](const Part& part, int number) { takePass(passOf(problem, part, step, results), found[number]); });
 	if (!matrix.hasMasses(c))
 		return true;
+	if (isMortarOutdated(problem, settings, results))
+		return true;
 	if (compared.follow(c.version())) {
 		if (!matrix.isOf(c))
 			return true;
@@ -95,6 +111,39 @@ bool AdmmSolver<K>::isOutdated(const Problem& problem, const AdmmSettings& setti
 	}
 	return turn > settings.turned ||
 	       std::any_of(std::begin(found), std::end(found), [](const Outdated& here) { return any(here.reached) || any(here.loaded); });
+}
+
+// Whether the rows of mortar and the lanes that it holds are not those of A, or a penalty is far from that of the load.
+template <class K>
+bool AdmmSolver<K>::isMortarOutdated(const Problem& problem, const AdmmSettings& settings, Results& results) const
+{
+	constexpr double far = 4;
+	const auto isSame = [](const Strength& a, const Strength& b) { return bitsOf(a.pull > 0) == bitsOf(b.pull > 0); };
+	const Array<Strength> empty;
+	const Array<Strength>& sound = problem.strength ? *problem.strength : empty;
+	if (!std::equal(sound.begin(), sound.end(), soundInA.begin(), soundInA.end(), isSame))
+		return true;
+	const auto isSameRow = [](const MortarRow<K>& a, const MortarRow<K>& b) { return a.joint == b.joint && a.point == b.point; };
+	const std::vector<MortarRow<K>>& known = matrix.rows();
+	if (!std::equal(known.begin(), known.end(), results.mortar.begin(), results.mortar.end(), isSameRow))
+		return true;
+	const RowStep step = rowStepOf(problem.step, settings);
+	bool isFar = false;
+	for (size_t r = 0; r < known.size(); ++r) {
+		MortarRow<K>& row = results.mortar[r];
+		row.resistance = known[r].resistance;
+		const double change = row.wantedResistance(step) / row.resistance;
+		isFar |= change > far || change < 1 / far;
+	}
+	return isFar;
+}
+
+// The same, looked at after some iterations.
+template <class K>
+bool AdmmSolver<K>::isMortarFar(const Problem& problem, const AdmmSettings& settings, int iterations, Results& results) const
+{
+	constexpr int every = 20; // More: mortar that breaks in a step takes longer to let go
+	return !results.mortar.empty() && iterations % every == 0 && isMortarOutdated(problem, settings, results);
 }
 
 template <class K>
@@ -119,6 +168,8 @@ void AdmmSolver<K>::start(const Problem& problem, const AdmmSettings& settings, 
 		startPass(passOf(problem, part, step, results));
 	});
 	startPass(passOf(problem, layout.parts().back(), step, results));
+	for (MortarRow<K>& row : results.mortar)
+		row.start(velocity);
 	pushRows(problem, results);
 }
 
@@ -137,6 +188,8 @@ void AdmmSolver<K>::pushRows(const Problem& problem, Results& results)
 		row.push(row.couple, problem.contacts.bodies().velocity(), force);
 	for (const TieRow<K>& row : results.ties)
 		row.push(row.impulse, problem.contacts.bodies().velocity(), force);
+	for (const MortarRow<K>& row : results.mortar)
+		row.push(problem.contacts.bodies().velocity(), force);
 }
 
 template <class K>
@@ -199,8 +252,11 @@ double AdmmSolver<K>::iterate(const Problem& problem, const AdmmSettings& settin
 		laws(part, k);
 	});
 	laws(layout.parts().back(), Team::maxParts);
+	double missedByMortar = 0;
+	for (MortarRow<K>& row : results.mortar)
+		missedByMortar = std::max(missedByMortar, row.pass(results.velocity, rowStepOf(problem.step, settings)));
 	pushRows(problem, results);
-	double most = missedByTies;
+	double most = std::max(missedByTies, missedByMortar);
 	for (const Lanes& here : worst)
 		most = std::max(most, largest(here));
 	for (const Lanes& here : changed)
@@ -228,6 +284,7 @@ void beginResults(const AdmmProblem<K>& problem, AdmmResults<K>& results)
 	for (SpinRow<K>& row : results.spins)
 		row.couple = 0;
 	results.ties = problem.ties;
+	results.mortar = problem.mortar;
 	if (problem.step.instant)
 		for (GroupState<K>& group : results.states)
 			for (PointState<K>& p : group)
@@ -279,7 +336,7 @@ SolverStatus AdmmSolver<K>::solve(const Problem& problem, const AdmmSettings& se
 		const bool isTooStiff = atRest && status.iterations >= settings.restMost && status.residual > tolerated;
 		atRest &= !isTooStiff;
 		status.leftRest |= isTooStiff;
-		if (isLoaded || isTooStiff || status.residual > diverging * least) {
+		if (isLoaded || isTooStiff || isMortarFar(problem, settings, status.iterations, results) || status.residual > diverging * least) {
 			refactor();
 			prepareRows(problem, true);
 			least = status.residual;
@@ -309,7 +366,10 @@ void AdmmSolver<K>::makeMatrix(const Problem& problem, const AdmmSettings& setti
 	for (size_t g = 0; g < penalties.size(); ++g)
 		for (int k = 0; k < lanePoints<K>; ++k)
 			stiffness[g][k] = penalties[g][k].stiffness;
-	matrix.make(c, std::move(stiffness));
+	for (MortarRow<K>& row : results.mortar)
+		row.resistance = row.wantedResistance(rowStepOf(problem.step, settings));
+	matrix.make(c, std::move(stiffness), results.mortar);
+	soundInA = problem.strength ? *problem.strength : Array<Strength>();
 	turn = age = 0;
 	compared.follow(c.version());
 }

@@ -37,6 +37,9 @@
 // Ties (TieRow) are elastic: A does not know of them either, and after each solve their impulses obey their laws at once (TieSolve), so
 // that the solution of the other laws is the same as if A contained them.
 //
+// Mortar (mortar_rows.hpp): points of rigid joints have a shifted cone and a small R; rows of those that crack are in A, and their laws are
+// taken in the same pass. Only impulses that miss the strength by a small share of it are good enough, where R is so small.
+//
 // An instant (StepContext::instant) is the same problem without forces: impacts with rows, and jumps of the base. Points in touch start as
 // ones that stick, z_t = 0: a base that jumps under a block which it only slides along is a solution too, and where nothing slips not the
 // one that is meant. Its impulses come where nothing has pressed in the steps before, so that R follows those that it has found after some
@@ -50,7 +53,8 @@
 
 namespace masonry::wall {
 
-// Tables of docs/tuning.md: (a) settings near the onset of motion, (b) softness of contacts at rest, (c) other settings, (d) impacts.
+// Tables of docs/tuning.md: (a) settings near the onset of motion, (b) softness of contacts at rest, (c) other settings, (d) impacts,
+// (e) mortar of rigid blocks.
 struct AdmmSettings {
 	double tolerance {1e-3};   // largest |w - z| relative to the speed that gravity gives in a step. Larger: joints drift and sink
 	bool strictForces {false}; // the same holds for errors of impulses, as velocities; then a step takes up to `first` iterations
@@ -67,6 +71,9 @@ struct AdmmSettings {
 	double instantEnough {5e-3};    // (d) the same after these iterations. Larger: the next steps take up more of it
 	int maxOfInstant {1000};        // (d) iterations of an instant at most
 	double softness {0.2};          // (a) r. Larger: high walls go too far; smaller: low walls that begin to move do not go far enough
+	double soundSoftness {3e-5};    // (e) r of points that sound mortar holds. Larger: unfinished iterations crack it; smaller: rounding of
+	                                // the factorisation
+	double soundShare {0.01};       // (e) of the tension that they bear, by which an impulse may miss. Larger: cracks come late
 	double restSoftness {0.02};  // (b) r while a structure of more than `small` blocks rests. Larger: one that is shaken and stands drifts,
 	                             // and takes more iterations; smaller: its forces are less right, so that it begins to move too early
 	int restMost {10};           // (c) iterations until a step at rest goes on with `softness`. More: the onset of motion costs more
@@ -98,7 +105,7 @@ public:
 			for (Penalty& penalty : ofGroup)
 				archive(penalty.resistance, penalty.stiffness);
 		matrix.serialize(archive, contacts);
-		archive(ties);
+		archive(ties, soundInA);
 	}
 
 private:
@@ -106,6 +113,8 @@ private:
 	using Results = AdmmResults<K>;
 	Pass<K> passOf(const Problem& problem, const Part& part, const Step& step, Results& results);
 	bool isOutdated(const Problem& problem, const AdmmSettings& settings, Results& results);
+	bool isMortarOutdated(const Problem& problem, const AdmmSettings& settings, Results& results) const;
+	bool isMortarFar(const Problem& problem, const AdmmSettings& settings, int iterations, Results& results) const;
 	void makeMatrix(const Problem& problem, const AdmmSettings& settings, Results& results);
 	void start(const Problem& problem, const AdmmSettings& settings, Results& results);
 	double iterate(const Problem& problem, const AdmmSettings& settings, int number, Results& results);
@@ -122,11 +131,12 @@ private:
 	std::vector<LaneArray> response; // Y, by row
 	Eigen::MatrixXd perSpin;         // (E Y)^-1
 	TieSolve<K> ties;
-	double age {0};         // s, since R was last compared with the loads
-	double saved {0};       // iterations
-	bool cold {true};       // no step has been solved
-	bool ofInstant {false}; // R is that of an instant
-	bool atRest {false};    // R is that of a structure at rest
+	Array<Strength> soundInA; // strengths of rigid joints when A was made
+	double age {0};           // s, since R was last compared with the loads
+	double saved {0};         // iterations
+	bool cold {true};         // no step has been solved
+	bool ofInstant {false};   // R is that of an instant
+	bool atRest {false};      // R is that of a structure at rest
 };
 
 } // namespace masonry::wall

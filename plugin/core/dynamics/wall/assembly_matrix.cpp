@@ -62,9 +62,10 @@ MASONRY_LANES void comparePass(const ComparePass<Space>& pass, Lanes& worst) { c
 } // namespace
 
 template <class K>
-void AssemblyMatrix<K>::make(const ContactSet<K>& c, Array<Stiffness> stiffness)
+void AssemblyMatrix<K>::make(const ContactSet<K>& c, Array<Stiffness> stiffness, std::vector<MortarRow<K>> rows)
 {
 	stiffnesses = std::move(stiffness);
+	mortar = std::move(rows);
 	points.resize(c.points().groups().size());
 	for (size_t g = 0; g < points.size(); ++g)
 		std::copy_n(c.points().groups()[g].point, lanePoints<K>, points[g].begin());
@@ -176,6 +177,20 @@ void AssemblyMatrix<K>::addPair(const ContactSet<K>& c, int g, int i, int& edge)
 					across[a][b] += stiffness * a1[a] * a2[b].transpose();
 				}
 		}
+	}
+	for (const MortarRow<K>& ofMortar : mortar) {
+		if (!isOfRow(ofMortar, g, i))
+			continue;
+		for (const TieArms<K>& arms : ofMortar.arms)
+			for (int a = 0; a < n; ++a)
+				for (int b = 0; b < n; ++b) {
+					const auto vector = [&](int end, int pack) {
+						return Vector3(arms.arm[end][pack][0], arms.arm[end][pack][1], arms.arm[end][pack][2]);
+					};
+					own[0][a][b] += vector(0, a) * vector(0, b).transpose() / ofMortar.resistance;
+					own[1][a][b] += vector(1, a) * vector(1, b).transpose() / ofMortar.resistance;
+					across[a][b] += vector(0, a) * vector(1, b).transpose() / ofMortar.resistance;
+				}
 	}
 	const int body[2] = {c.layout().groups()[g].body1[i], c.layout().groups()[g].body2[i]};
 	for (int side = 0; side < 2; ++side) {

@@ -33,8 +33,9 @@ CappedStatus CappedSolve<K>::solve(const RigidSystem<K>& s, const AdmmProblem<K>
 		std::vector<SpinRow<K>> held;
 		std::copy_if(rows.begin(), rows.end(), std::back_inserter(held), [](const SpinRow<K>& row) { return row.held; });
 		const int iterations = status.iterations, factorisations = status.factorisations;
-		static_cast<SolverStatus&>(status) =
-		    solver.solve({problem.contacts, problem.step, problem.load, problem.guess, held, problem.ties}, settings, results);
+		static_cast<SolverStatus&>(status) = solver.solve(
+		    {problem.contacts, problem.step, problem.load, problem.guess, held, problem.ties, problem.mortar, problem.strength}, settings,
+		    results);
 		status.iterations += iterations;
 		status.factorisations += factorisations;
 		SpinRow<K>* worst = takeWork(s, problem, status.residual, results);

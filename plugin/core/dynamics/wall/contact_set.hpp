@@ -34,6 +34,7 @@ public:
 	void clearOpen() { points_.clearOpen(touching()); }
 	void limitMoved(const RigidSystem<K>& system, double fall) { points_.limitMoved(system, fall); }
 	void swapStates(PointStates<K>& states) { points_.swapStates(states); }
+	void setState(const OneState<K>& state, int pair, int point) { points_.setState(state, pair, point); }
 	PointsReport advance(const AdmmResults<K>& results, const LaneArray& before, double h, double level)
 	{
 		return points_.advance(results, before, h, level);

@@ -9,7 +9,7 @@ template <class K>
 void EnergyLedger<K>::open(const RigidSystem<K>& s, const BodyLanes<K>& bodies, const std::vector<typename K::Vector>& halfBack)
 {
 	kinetic = s.kineticEnergy();
-	baseWork = friction = forces = lifted = power = 0;
+	baseWork = friction = crack = forces = lifted = power = 0;
 	before = bodies.velocity();
 	last.swap(undriven);
 	undriven.clear();
@@ -53,13 +53,18 @@ double EnergyLedger<K>::work(const RigidSystem<K>& s, const ContactSet<K>& c, co
 		sum += row.couple * row.baseSpin(velocity);
 	for (const TieRow<K>& row : results.ties)
 		sum -= row.impulse * (row.baseRate(before) + row.baseRate(velocity)) / 2;
+	for (const MortarRow<K>& row : results.mortar)
+		for (int k = 0; k < K::rows; ++k)
+			sum -= row.p[k] * (row.arms[k].baseRate(before) + row.arms[k].baseRate(velocity)) / 2;
 	return sum;
 }
 
 template <class K>
-void EnergyLedger<K>::takeContacts(const RigidSystem<K>& s, const ContactSet<K>& c, const AdmmResults<K>& results, double loss)
+void EnergyLedger<K>::takeContacts(const RigidSystem<K>& s, const ContactSet<K>& c, const AdmmResults<K>& results, double loss,
+                                   double spent)
 {
 	friction = loss;
+	crack = spent;
 	baseWork = work(s, c, results);
 	for (const TieRow<K>& row : results.ties)
 		forces += row.work(before, results.velocity);
@@ -70,14 +75,15 @@ double EnergyLedger<K>::close(RigidSystem<K>& s, const Scales& scales, double h,
 {
 	const double mass = freeMass(s);
 	taken = forces + baseWork + kinetic - s.kineticEnergy();
-	const double impacts = taken + lifted - friction;
+	const double impacts = taken + lifted - friction - crack;
 	s.baseWork += baseWork;
+	s.crackDissip += crack;
 	s.frictDissip += friction;
 	s.impactDissip += impacts;
 	const double atStake = std::abs(baseWork) + std::abs(forces) + kinetic, liftedAll = mass * scales.acceleration * scales.length,
 	             slowest = tolerance::wall::createdTravel * scales.length / h;
 	const double allowed = tolerance::wall::createdShare * atStake + tolerance::wall::createdLift * liftedAll + mass * slowest * slowest;
-	gained = std::max(0., friction - taken - earlier);
+	gained = std::max(0., friction + crack - taken - earlier);
 	const double balance = impacts + earlier;
 	return balance < -allowed ? -balance : 0;
 }

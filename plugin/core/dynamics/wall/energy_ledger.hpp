@@ -38,8 +38,10 @@ public:
 	const LaneArray& velocityBefore() const { return before; }
 	// Returns the work of the prescribed bodies by the impulses of the last solve, J.
 	double work(const RigidSystem<K>& system, const ContactSet<K>& contacts, const AdmmResults<K>& results) const;
-	// Takes the contacts' work after the solve, with the frames of the step. `friction`: what it has taken, J.
-	void takeContacts(const RigidSystem<K>& system, const ContactSet<K>& contacts, const AdmmResults<K>& results, double friction);
+	// Takes the contacts' work after the solve, with the frames of the step. `friction` and `crack`: what it
+	// and cracks of mortar have taken, J.
+	void takeContacts(const RigidSystem<K>& system, const ContactSet<K>& contacts, const AdmmResults<K>& results, double friction,
+	                  double crack = 0);
 	// Takes the forces' work in a time h on a free body, which had the velocity `before` and moves by `moved`.
 	void takeForce(const RigidSystem<K>& system, const RigidBody<K>& body, const typename K::Velocity& before,
 	               const typename K::Velocity& moved, double h)
@@ -73,13 +75,13 @@ public:
 	}
 
 private:
-	LaneArray before;                                           // V-, m/s
-	LaneArray undriven, last;                                   // packs of the prescribed bodies without a drive, now and before, m/s
-	double kinetic {0}, baseWork {0}, friction {0}, forces {0}; // J
-	double lifted {0};                                          // work of the forces on the way that the position projection adds, J
-	double power {0};                                           // of the weights after the part, W
-	double shifted {0};                                         // by which the step's parts would change potentialShift, J
-	double taken {0}, gained {0};                               // J
+	LaneArray before;         // V-, m/s
+	LaneArray undriven, last; // packs of the prescribed bodies without a drive, now and before, m/s
+	double kinetic {0}, baseWork {0}, friction {0}, crack {0}, forces {0}; // J
+	double lifted {0};            // work of the forces on the way that the position projection adds, J
+	double power {0};             // of the weights after the part, W
+	double shifted {0};           // by which the step's parts would change potentialShift, J
+	double taken {0}, gained {0}; // J
 };
 
 } // namespace masonry::wall

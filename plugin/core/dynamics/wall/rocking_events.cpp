@@ -172,7 +172,11 @@ void RockingEvents<K>::takeLaw(const RigidSystem<K>& s, const ContactSet<K>& c, 
 	event.block = at.block;
 	event.support = at.support;
 	event.face = point.face;
-	event.asked = s.pairs[c.layout().groups()[point.group].pair[point.lane]].restitution;
+	const ContactPair<K>& pair = s.pairs[c.layout().groups()[point.group].pair[point.lane]];
+	const bool isBonded = std::any_of(s.mortar.begin(), s.mortar.end(), [&](const MortarJoint<K>& joint) {
+		return joint.body1 == pair.body1 && joint.body2 == pair.body2 && !joint.isBroken();
+	});
+	event.asked = isBonded ? NAN : pair.restitution; // the law is that of dry joints
 	event.normal = (at.second ? 1 : -1) * normalOf(c, point);
 	event.speed = std::max(0., -at.rate(predicted));
 	event.share = event.speed > 0 ? std::clamp(1 - at.p.gap[at.lane] / (h * event.speed), 0., 1.) : 0;

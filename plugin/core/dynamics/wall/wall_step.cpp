@@ -68,9 +68,11 @@ double WallStep<K>::advancePart(RigidSystem<K>& s, double h, bool divisible)
 		status = solveStep(s, step);
 	}
 	contacts.points().addJammed(contacts.points().states(), report.jammed);
+	const MortarWork cracks =
+	    mortar.finish(s, contacts, results.mortar, h, std::max(status.residual, settings.solver.tolerance * step.fall));
 	const double level = tolerance::wall::motion * tolerance::restSpeed * scales.speed;
 	const PointsReport points = contacts.advance(results, ledger.velocityBefore(), h, level);
-	ledger.takeContacts(s, contacts, results, points.friction);
+	ledger.takeContacts(s, contacts, results, points.friction + cracks.friction, cracks.crack);
 	report.forceResidual = std::max(report.forceResidual, points.forceError);
 	events.take(s, contacts, results);
 	const int moved = rest.movingBlocks(s, contacts, points, level);
@@ -101,8 +103,37 @@ CappedStatus WallStep<K>::solveStep(RigidSystem<K>& s, const StepContext& step)
 	const std::vector<SpinRow<K>> rows = events.find(s, contacts, expected, step);
 	const bool isExpected = expected.size() == loads.size() && rows.empty();
 	const std::vector<TieRow<K>> ties = tieRows(s, contacts.bodies(), ledger.velocityBefore(), step.h);
-	const CappedStatus status = solve(s, {contacts, step, loads, isExpected ? expected : none, rows, ties}, settings.solver);
+	const CappedStatus status = solveMortar(s, {contacts, step, loads, isExpected ? expected : none, rows, ties});
 	contacts.swapStates(results.states);
+	return status;
+}
+
+// Mortar that yields is a problem of its own, in which more mortar may yield. No mortar is let go by a solve that has not ended, unless its
+// crack would be as wide as G/f: then the step goes on first.
+template <class K>
+CappedStatus WallStep<K>::solveMortar(RigidSystem<K>& s, AdmmProblem<K> problem)
+{
+	constexpr int maxTrials = 8; // more in the next step
+	constexpr double longer = 10;
+	const double h = problem.step.h, tolerated = settings.solver.tolerance * problem.step.fall;
+	CappedStatus status;
+	for (int trial = 0; trial < maxTrials; ++trial) {
+		mortar.begin(s, contacts, ledger.velocityBefore(), h);
+		problem.mortar = mortar.rows;
+		problem.strength = &mortar.strength;
+		status = solve(s, problem, settings.solver);
+		std::vector<int> yielding = mortar.yielding(s, contacts, ledger.velocityBefore(), results.velocity, h, 1);
+		if (!yielding.empty() && status.residual > tolerated) {
+			AdmmSettings more = settings.solver;
+			more.iterations = int(longer * more.iterations);
+			status = solve(s, problem, more);
+			yielding = mortar.yielding(s, contacts, ledger.velocityBefore(), results.velocity, h,
+			                           status.residual > tolerated ? 1 / Mortar<K>::deadZone : 1);
+		}
+		if (yielding.empty())
+			break;
+		mortar.letGo(s, contacts, yielding, h);
+	}
 	return status;
 }
 
@@ -143,12 +174,13 @@ CappedStatus WallStep<K>::solveInstant(RigidSystem<K>& s, const std::vector<Spin
 {
 	loads.assign(contacts.bodies().velocity().size(), all(0));
 	contacts.limitMoved(s, 0);
+	mortar.begin(s, contacts, ledger.velocityBefore(), 0);
 	// A jump of the base gets the stricter bound, since it may have no solution where nothing slips.
 	const double missed = rows.empty() ? settings.solver.tolerance : tolerance::wall::missedImpact;
 	AdmmSettings ofInstant = settings.solver;
 	ofInstant.instantEnough = std::min(ofInstant.instantEnough, missed / 2);
-	const CappedStatus status =
-	    solve(s, {contacts, instant, loads, none, rows}, ofInstant); // ties have a finite stiffness: they carry no impulse
+	const CappedStatus status = solve(s, {contacts, instant, loads, none, rows, {}, {}, &mortar.strength},
+	                                  ofInstant); // ties have a finite stiffness: they carry no impulse
 	contacts.points().addJammed(results.states, report.jammed);
 	report.converged &= status.residual <= missed * std::max(10 * instant.fall, instant.speed);
 	ledger.takeContacts(s, contacts, results, 0);

@@ -72,6 +72,7 @@ public:
 private:
 	double advancePart(RigidSystem<K>& system, double h, bool divisible);
 	CappedStatus solveStep(RigidSystem<K>& system, const StepContext& step);
+	CappedStatus solveMortar(RigidSystem<K>& system, AdmmProblem<K> problem);
 	void takeTies(RigidSystem<K>& system, double h) const;
 	void takeInstants(RigidSystem<K>& system, const StepContext& step);
 	CappedStatus solve(RigidSystem<K>& system, const AdmmProblem<K>& problem, const AdmmSettings& solverSettings);
@@ -86,6 +87,7 @@ private:
 	AdmmSolver<K> solver;
 	AdmmResults<K> results; // of the last solve
 	EnergyLedger<K> ledger;
+	Mortar<K> mortar;
 	RockingEvents<K> events;
 	BasePulse<K> pulses;
 	CappedSolve<K> capped;

@@ -1,0 +1,123 @@
+#pragma once
+// Mortar of walls (dynamics/model/mortar_joint.hpp). In the plane.
+//
+// A rigid joint has no rows of its own: its corners bear more than those of a dry joint, each
+//
+//     p_n >= -h f_t A/2,    |p_t| <= h c A/2 + mu p_n
+//
+// so that its resultants obey |M| <= (N + f_t A) d/2 and |V| <= c A + mu N, with the depth d and the compression N. These are exactly the
+// limits of a joint with two cohesive points (tension f_t A/2, cohesion c A/2) and pressed corners. A structure of rigid joints is nearly a
+// linear problem: with a small penalty R the solver ends it in few iterations, and unfinished ones crack nothing.
+//
+// A rigid joint that opens or slips, by more than a dead zone, yields: the step is solved again with rows for its cohesive points and with
+// the corners of a dry joint. With the largest opening d so far, b = (gap - d)/h, w = u + b and the damped tension g, a row obeys
+//
+//     -c_n <= p_n <= 0,    w = 0 where p_n is between, w <= 0 where p_n = 0, w >= 0 where p_n = -c_n
+//     |p_t| <= c_t + mu g
+//
+// c_n and c_t are means over the step. With the strength S at its start, the opening e_n and the slip e_t by the mean of the velocities
+// before and after it, and dx = f_t/G_I e_n + c/G_II e_t,
+//
+//     c_n = h A f_t S (1 - exp(-dx))/dx,    c_t = h A c S (1 - exp(-dx))/dx
+//
+// The damage of a step is the work of p_n and c_t over the fracture energies. A joint that yields and has not been damaged is rigid again
+// when it is closed and its forces are within its strength.
+#include "dynamics/model/rigid_system.hpp"
+#include "dynamics/wall/contact_set.hpp"
+#include "dynamics/wall/tie_rows.hpp"
+
+namespace masonry::wall {
+
+// Of the points of a lane, N s: rigid mortar bears the tension `pull` at each, and its cohesion is as if it pressed more by `shift`.
+struct alignas(alignment) Strength {
+	Lanes pull {}, shift {};
+
+	template <class Archive>
+	void serialize(Archive& archive)
+	{
+		archive(pull, shift);
+	}
+};
+
+// These values are the same for all rows of a step.
+struct RowStep {
+	double h, fall, softness, minSoftness, relaxation, boundShare;
+};
+
+template <class K>
+struct MortarRow {
+	static constexpr int n = K::rows;
+	using Values = std::array<double, n>; // along the normal and the tangents
+
+	int joint, point;               // numbers in the system
+	int group, lane;                // of its pair
+	std::array<TieArms<K>, n> arms; // J
+	double massN;                   // 1/(J M^-1 J^T) of the normal, kg
+	double friction;
+	double openingRate, slipRate;   // dx per opening and per slip, 1/m
+	std::array<double, 2> strength; // tension and cohesion at the start of the step, N s
+	double bias;                    // b, m/s
+	Values before;                  // u before the step, m/s
+	double resistance {0};          // R, 1/kg
+	std::array<double, 2> bound;    // c_n, c_t, N s
+	double tension;                 // g, N s
+	Values p, z, u;                 // N s, m/s, m/s
+
+	double wantedResistance(const RowStep& step) const; // R by load
+	void start(const LaneArray& velocity);
+	// The laws after a solve. Returns the largest velocity by which they are missed, m/s.
+	double pass(const LaneArray& velocity, const RowStep& step);
+	void push(const LaneArray& velocity, LaneArray& momentum) const;
+	double opening(double h) const; // e_n, m
+	double slip(double h) const;    // e_t, m
+
+	// As far as A needs it.
+	template <class Archive>
+	void serialize(Archive& archive)
+	{
+		archive(joint, point, group, lane, arms, resistance);
+	}
+
+private:
+	double slipBound() const { return std::max(0., bound[1] + friction * tension); }
+	bool slides() const;
+};
+
+struct MortarWork {
+	double crack {0}, friction {0}; // J
+};
+
+template <class K>
+class Mortar {
+public:
+	// Opening over G_I/f_t, or slip over G_II/c, from which on a rigid joint yields. Smaller: unfinished iterations let joints go; larger:
+	// cracks begin late.
+	static constexpr double deadZone = 0.02;
+
+	// For a step of length h: strengths of the rigid joints, and rows of those that yield. `before`: velocities before it. At an instant, h
+	// = 0, rigid joints bear all, and others are dry.
+	void begin(const RigidSystem<K>& system, const ContactSet<K>& contacts, const LaneArray& before, double h);
+	// Rigid joints that the step opens by so many dead zones. `after`: velocities after it.
+	std::vector<int> yielding(const RigidSystem<K>& system, const ContactSet<K>& contacts, const LaneArray& before, const LaneArray& after,
+	                          double h, double least) const;
+	void letGo(RigidSystem<K>& system, const ContactSet<K>& contacts, const std::vector<int>& joints, double h) const;
+	// Damage of the step by its rows. `missed`: by which velocities may be wrong, m/s.
+	MortarWork finish(RigidSystem<K>& system, ContactSet<K>& contacts, const std::vector<MortarRow<K>>& done, double h,
+	                  double missed) const;
+
+	std::vector<MortarRow<K>> rows;
+	Array<Strength> strength; // by group; empty: no mortar
+
+private:
+	void find(const RigidSystem<K>& system, const ContactSet<K>& contacts);
+	void addRows(const RigidSystem<K>& system, const ContactSet<K>& contacts, const LaneArray& before, int joint, double h);
+	void hold(MortarJoint<K>& joint, const Slot& slot, ContactSet<K>& contacts, const std::vector<const MortarRow<K>*>& rows,
+	          double h) const;
+
+	std::vector<Slot> slots; // of the pairs, by joint
+};
+
+// Mortar between the two blocks of a pair, whose points and poses are those of now; `width` is that of the joint across the plane, m.
+MortarJoint<Plane> mortarJoint(const RigidSystem<Plane>& system, const ContactPair<Plane>& pair, const MortarLaw& law, double width);
+
+} // namespace masonry::wall
