@@ -30,8 +30,8 @@ def mortar_of(r, weight):
     """From mortar that the weight of the blocks above (Pa) would break to a hundred times that; smaller shares of its largest stored energy are brittle."""
     mu, strength, stiffness = r.choice((0.4, 0.75, 1.1)), weight * 10 ** r.uniform(-0.3, 2), 10 ** r.uniform(9, 10.3)
     cohesion, shear = strength * mu * r.choice((1, 1.5, 4)), stiffness * r.uniform(0.2, 1)
-    return dem.JointMat(tensileStrength=strength, fractureEnergy=strength**2 / stiffness / 10 ** r.uniform(-2.5, -0.1), cohesion=cohesion,
-                        shearFractureEnergy=cohesion**2 / shear / 10 ** r.uniform(-2.5, -0.1), frictionAngle=math.atan(mu), normalStiffness=stiffness,
+    return dem.JointMat(tensileStrength=strength, fractureEnergy=strength**2 / stiffness / 10 ** r.uniform(-2.5, -0.5), cohesion=cohesion,
+                        shearFractureEnergy=cohesion**2 / shear / 10 ** r.uniform(-2.5, -0.5), frictionAngle=math.atan(mu), normalStiffness=stiffness,
                         shearStiffness=shear, scatter=r.choice((0, 0, 0.3)), seed=r.randint(0, 99))
 
 
@@ -44,7 +44,7 @@ def build(seed, side):
     mortar = mortar_of(r, density * 9.81 * courses * size[2])
     material = dem.BlockMat(density=density, frictionAngle=mortar.frictionAngle, mortar=mortar)
     dry = dem.BlockMat(density=density, frictionAngle=mortar.frictionAngle, normalStiffness=mortar.normalStiffness, shearStiffness=mortar.shearStiffness)
-    base = dem.base((8, 8, 0.4), dry if r.random() < 0.2 else material)
+    base = dem.base((8, 8, 0.4), dry if r.random() < 0.2 and courses > 1 else material)
     if piers > 1 and r.random() < 0.5:
         ids = dem.wall(courses, piers, size, material, on=base)
     else:
