@@ -19,7 +19,7 @@ def near_words(word, known, likeness=_NEAR):
 
 def warn(text):
     """Warns at the line outside the package from which it was called."""
-    level, frame = 1, sys._getframe()
+    level, frame = 1, inspect.currentframe()
     while frame.f_back and frame.f_globals.get("__name__", "").partition(".")[0] == __package__:
         level, frame = level + 1, frame.f_back
     warnings.warn(text, stacklevel=level)
