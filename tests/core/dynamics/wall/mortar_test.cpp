@@ -1,5 +1,6 @@
 // Mortar between rigid blocks: closed forms of single joints, and structures below their strength.
 #include "core/dynamics/wall/wall_rig.hpp"
+#include "number_archive.hpp"
 #include <catch.hpp>
 
 using namespace masonry;
@@ -179,6 +180,41 @@ TEST_CASE("cracks spend the energy of their damage, and energies balance")
 	CHECK(s.system.crackDissip == Approx(spent).epsilon(1e-12));
 	const double after = s.energy() + s.system.frictDissip + s.system.impactDissip + s.system.crackDissip - s.system.baseWork;
 	CHECK(after == Approx(before).margin(1e-6 * s.system.baseWork));
+}
+
+TEST_CASE("a wall that cracks goes on with the same bits after loading")
+{
+	Bonded s;
+	s.addRunningBond(6, 3, 0.21, 0.052);
+	s.bond(lawOf(0.02e6));
+	Harmonic motion(8 * g, 3, s.system.time);
+	s.drive(motion);
+	s.run(0.15, h);
+	REQUIRE(s.damage() > 0.01);
+	NumberWriter saved;
+	saved(s.system.mortar);
+	s.step.serialize(saved, s.system);
+	RigidSystem<Plane> system = s.system;
+	system.mortar.clear();
+	auto near = s.near;
+	wall::WallStep<Plane> other;
+	NumberReader loaded(saved.numbers);
+	loaded(system.mortar);
+	other.serialize(loaded, system);
+	CHECK(loaded.isAtEnd());
+	for (int k = 0; k < 100; ++k) {
+		s.advance(h);
+		near.update(system);
+		other.advance(system, h);
+	}
+	CHECK(s.system.crackDissip == system.crackDissip);
+	for (size_t j = 0; j < system.mortar.size(); ++j)
+		CHECK(s.system.mortar[j].damage() == system.mortar[j].damage());
+	for (size_t b = 0; b < system.bodies.size(); ++b) {
+		CAPTURE(b);
+		CHECK(s.system.bodies[b].velocity == system.bodies[b].velocity);
+		CHECK(s.system.bodies[b].pose.position == system.bodies[b].pose.position);
+	}
 }
 
 // The table of docs/tuning.md, Mortar of rigid blocks; some minutes. Strengths of walls: validation/mortar/limit.py.
