@@ -245,3 +245,22 @@ TEST_CASE("stacks and walls of many sizes take no damage in 10 s", "[.mortar]")
 	INFO(s.system.bodies.size() - 1 << " blocks at " << share << ": " << double(iterations) / steps << " iterations a step");
 	CHECK(s.worst().damage() == 0);
 }
+
+TEST_CASE("a brick that is bent breaks at the moment of its strength and weight, and spends its fracture energy")
+{
+	const double step = GENERATE(1e-3, 1e-4);
+	Bonded s;
+	s.add(0.2, 0.1, 0, 0.05);
+	s.bond(lawOf(0.25e6));
+	const double area = 0.2 * depth, expected = (0.25e6 * area + s.system.bodies[1].mass * g) * 0.2 / 2; // N m
+	double first = 0;
+	for (int k = 0; k < 2200 && !s.system.mortar[0].isBroken(); ++k) {
+		s.system.bodies[1].force[2] = expected / 2000 * k;
+		s.advance(step);
+		if (first == 0 && s.damage() > 0)
+			first = s.system.bodies[1].force[2];
+	}
+	CHECK(first == Approx(expected).epsilon(0.02)); // inertia of the dead zone
+	CHECK(s.system.mortar[0].isBroken());
+	CHECK(s.system.crackDissip == Approx(lawOf(0.25e6).fractureEnergy * area).epsilon(0.02));
+}
