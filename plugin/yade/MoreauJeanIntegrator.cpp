@@ -119,9 +119,9 @@ void MoreauJeanIntegrator::leaveScene()
 	chosenModel.clear();
 	along = Vector3r::Zero();
 	forgetImpacts(*this);
-	forget(frictDissip, impactDissip, dampDissip, baseWork, potentialShift, worstResidual, substeps, events, unlocalised, sweeps,
-	       factorisations, stillSteps, movingSteps, madeEnergy, lostEnergy, turnedOver, lift, toldMade, toldLost, failures, firstFailure,
-	       warned);
+	forget(frictDissip, impactDissip, dampDissip, crackDissip, bondedIds, bondedState, baseWork, potentialShift, worstResidual, substeps,
+	       events, unlocalised, sweeps, factorisations, stillSteps, movingSteps, madeEnergy, lostEnergy, turnedOver, lift, toldMade,
+	       toldLost, failures, firstFailure, warned);
 }
 
 vector<Real> MoreauJeanIntegrator::remembered()
@@ -158,8 +158,8 @@ std::shared_ptr<RigidRun> MoreauJeanIntegrator::makeScene(const vector<Real>& va
 {
 	const auto from = [this](const Remembered<K>& before) {
 		return std::make_shared<RigidScene<K>>(*scene, along, settings(),
-		                                       RigidEnergies {frictDissip, impactDissip, dampDissip, baseWork, potentialShift}, pairLaw,
-		                                       warned, motionEngines(), livingTies(), before);
+		                                       RigidEnergies {frictDissip, impactDissip, dampDissip, crackDissip, baseWork, potentialShift},
+		                                       pairLaw, warned, motionEngines(), livingTies(), before);
 	};
 	if (values.empty())
 		return from({});
@@ -187,6 +187,7 @@ void MoreauJeanIntegrator::build(const vector<Real>& remembered)
 {
 	checkBlocks(chosen());
 	checkEngines();
+	mortared = hasMortar();
 	const PythonLock lock; // the last hold on an erased body may be given up, which Python has made
 	memory.run = chosenModel == "planar" ? makeScene<Plane>(remembered) : makeScene<Space>(remembered);
 	checkedTimeStep = NaN;
@@ -256,7 +257,7 @@ RigidSettings MoreauJeanIntegrator::settings() const
 	result.ofImpacts.mostEvents = mostEvents;
 	result.ofWalls.tolerance = tolerance;
 	result.ofWalls.strictForces = strictForces;
-	result.ofWalls.ofAnySize = wallsOnly;
+	result.ofWalls.ofAnySize = wallsOnly || mortared;
 	result.ofWalls.threads = std::max(1, ompThreads);
 	return result;
 }
@@ -267,6 +268,8 @@ void MoreauJeanIntegrator::take(const RigidResults& results)
 	frictDissip = results.energies.frictDissip;
 	impactDissip = results.energies.impactDissip;
 	dampDissip = results.energies.tieDissip;
+	crackDissip = results.energies.crackDissip;
+	sceneOf(memory).writeMortar(bondedIds, bondedState);
 	baseWork = results.energies.baseWork;
 	potentialShift = results.energies.potentialShift;
 	for (const masonry::Impact& impact : results.impacts)
@@ -356,6 +359,8 @@ void MoreauJeanIntegrator::showEnergy()
 	                                             {"baseWork", -baseWork}};
 	for (const auto& [key, value] : keys)
 		scene->energy->setItem_py(key, value);
+	if (!bondedIds.empty())
+		scene->energy->setItem_py("crackDissip", crackDissip);
 	if (ties.empty())
 		return;
 	scene->energy->setItem_py("elastPotential", elastPotential());

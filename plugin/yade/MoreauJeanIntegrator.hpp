@@ -78,6 +78,9 @@ public:
 		((Real, impactDissip, 0, Attr::readonly, "Energy dissipated by impacts so far [J]. With method='wall' it is the remainder of the energy balance and includes numerical losses."))
 		((Real, baseWork, 0, Attr::readonly, "Work of the moved base on the blocks so far [J]."))
 		((Real, dampDissip, 0, Attr::readonly, "Energy dissipated in ties so far [J]: by those that break, by slack that is taken up, and by the numerical damping of ties that are so stiff that no step resolves their vibration."))
+		((Real, crackDissip, 0, Attr::readonly, "Energy spent by the cracks of mortar so far [J]."))
+		((vector<int>, bondedIds, , Attr::readonly, "Two ids for each joint that has been bonded (dem.damage)."))
+		((vector<Real>, bondedState, , Attr::readonly, "Numbers of each joint that has been bonded, in rows of 13 as RockingJointEngine.bondedState (dem.damage)."))
 		((Real, madeEnergy, 0, Attr::readonly, "Energy that integration errors have added so far [J]; lost energy is not subtracted."))
 		((Real, lostEnergy, 0, Attr::readonly, "Energy that integration errors have removed so far [J]; friction and impacts are not part of it. In the walls of method='wall' it is part of impactDissip and not known apart."))
 		((Real, turnedOver, 0, Attr::readonly, "Largest value so far of kinetic energy plus all dissipated energy [J]."))
@@ -140,6 +143,8 @@ private:
 	vector<BaseMotionEngine*> motionEngines() const;  // the same
 	vector<shared_ptr<BlockTie>> livingTies() const;
 	vector<const Body*> blocks() const;
+	bool hasMortar() const; // a block has it
+	void checkMortar(const Choice& choice) const;
 
 	vector<shared_ptr<Engine>> taken; // motions that the run has taken over
 	vector<shared_ptr<BlockTie>> takenTies;
@@ -148,7 +153,7 @@ private:
 	vector<std::pair<const Engine*, bool>> checkedEngines; // and whether they are dead; to be compared only
 	RigidWarnings warned;
 	masonry::StepErrors stepErrors; // of the last step
-	bool sequential = false, wall = false;
+	bool sequential = false, wall = false, mortared = false;
 };
 REGISTER_SERIALIZABLE(MoreauJeanIntegrator);
 

@@ -143,12 +143,16 @@ void WallRecorder::addTies()
 void WallRecorder::addDamages()
 {
 	constexpr size_t row = 13, damage = 4, cracked = 11; // columns of RockingJointEngine.bondedState
-	for (const auto& engine : scene->engines)
-		if (const auto* joints = dynamic_cast<const RockingJointEngine*>(engine.get());
-		    joints && !joints->dead && joints->bondedIds.size() >= bondIds.size()) {
-			bondIds = joints->bondedIds;
-			bondStates = joints->bondedState;
-		}
+	const auto take = [this](const auto* joints) {
+		if (!joints || joints->dead || joints->bondedIds.size() < bondIds.size())
+			return;
+		bondIds = joints->bondedIds;
+		bondStates = joints->bondedState;
+	};
+	for (const auto& engine : scene->engines) {
+		take(dynamic_cast<const RockingJointEngine*>(engine.get()));
+		take(dynamic_cast<const MoreauJeanIntegrator*>(engine.get()));
+	}
 	bondCounts.push_back(int(bondIds.size() / 2));
 	for (size_t start = 0; start < bondStates.size(); start += row)
 		damages.insert(damages.end(), bondStates.begin() + start + damage, bondStates.begin() + start + cracked);

@@ -52,13 +52,15 @@ inline vector<JointForce> jointForces(const Scene& scene)
 		const vector<Vector3r> points = geom->points();
 		JointForce joint {interaction->getId1(), interaction->getId2(), Vector3r::Zero(), Vector3r::Zero()};
 		Real pressing = 0;
+		bool pulls = phys->isBonded() || !phys->load.force.isZero(0); // mortar does
 		for (size_t i = 0; i < std::min(points.size(), phys->forces.size()); ++i) {
 			const Real normal = phys->forces[i].dot(geom->pointNormals[i]);
 			joint.force += phys->forces[i];
 			joint.point += normal * points[i];
 			pressing += normal;
+			pulls |= normal < 0;
 		}
-		if (phys->isBonded() && !points.empty() && points.size() == phys->forces.size()) {
+		if (pulls && !points.empty() && points.size() == phys->forces.size()) {
 			addMortar(joint, *geom, *phys, points);
 			if (joint.force != Vector3r::Zero())
 				result.push_back(joint);

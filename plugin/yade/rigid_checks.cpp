@@ -3,6 +3,7 @@
 #include "BaseMotionEngine.hpp"
 #include "BlockTie.hpp"
 #include "MoreauJeanIntegrator.hpp"
+#include "PulseTrainEngine.hpp"
 #include "RockingJointEngine.hpp"
 #include "checked_body.hpp"
 #include "python_lock.hpp"
@@ -72,16 +73,46 @@ void MoreauJeanIntegrator::checkBlocks(const Choice& choice) const
 		tie->check(*scene);
 	if (!free)
 		throw std::invalid_argument("There is no free block in O.bodies: add one with dem.block().");
-	for (const Body* body : blocks())
-		if (const auto* material = dynamic_cast<const BlockMat*>(body->material.get()); material && material->mortar)
-			throw std::invalid_argument(sentence(
-			    "O.bodies[", body->id,
-			    "].mat.mortar is for model='compliant': the methods of rigid blocks, 'localised' and 'wall', know dry joints only."));
+	checkMortar(choice);
 	for (const auto& body : scene->bodies->body)
 		if (body && dynamic_cast<BlockMat*>(body->material.get()) && !isBlock(*body))
 			throw std::invalid_argument(
 			    sentence("O.bodies[", body->id,
 			             "] has a BlockMat, but its shape is neither a Box nor a ConvexBlock: rigid blocks do not touch it."));
+}
+
+bool MoreauJeanIntegrator::hasMortar() const
+{
+	const vector<const Body*> all = blocks();
+	return std::any_of(all.begin(), all.end(), [](const Body* body) {
+		const auto* material = dynamic_cast<const BlockMat*>(body->material.get());
+		return material && material->mortar;
+	});
+}
+
+void MoreauJeanIntegrator::checkMortar(const Choice& choice) const
+{
+	const string other = " or give the scene compliant joints (model='compliant').";
+	for (const Body* body : blocks()) {
+		const auto* material = dynamic_cast<const BlockMat*>(body->material.get());
+		if (!material || !material->mortar)
+			continue;
+		const string of = sentence("O.bodies[", body->id, "].mat.");
+		if (!(wall && choice.planar()))
+			throw std::invalid_argument(of +
+			                            "mortar is not allowed here: of rigid blocks, those of method='wall' in one upright plane "
+			                            "have it; leave it out," +
+			                            other);
+		if (material->headMortar || material->unfilledHeads)
+			throw std::invalid_argument(of + (material->headMortar ? "headMortar" : "unfilledHeads") +
+			                            " is not allowed with method='wall', where all joints have the same mortar: leave it out," + other);
+	}
+	for (const auto& motion : livingMotions())
+		if (const auto* pulses = dynamic_cast<const PulseTrainEngine*>(motion.get()); pulses && pulses->shape == "dirac" && hasMortar())
+			throw std::invalid_argument(
+			    "PulseTrainEngine.shape = 'dirac' is not allowed with mortar and method='wall', where no pulse at an "
+			    "instant can crack mortar: give the pulses a duration," +
+			    other);
 }
 
 void MoreauJeanIntegrator::checkEngines()

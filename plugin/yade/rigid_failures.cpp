@@ -14,7 +14,7 @@ namespace yade {
 /// Sums up what steps make and lose. Returns a sentence where either has come to matter: once.
 string MoreauJeanIntegrator::addErrors()
 {
-	turnedOver = std::max(turnedOver, stepErrors.kinetic + frictDissip + impactDissip);
+	turnedOver = std::max(turnedOver, stepErrors.kinetic + frictDissip + impactDissip + crackDissip);
 	madeEnergy += stepErrors.made;
 	lostEnergy += stepErrors.lost;
 	lift = std::max(lift, stepErrors.lift); // while gravity is switched off, errors are no larger than with it

@@ -37,11 +37,12 @@ struct Remembered {
 	vector<int> shapeOf;                       // numbers of the bodies' shapes
 	vector<masonry::ContactPair<K>> pairs;
 	vector<masonry::Tie<K>> ties;
+	vector<masonry::MortarJoint<K>> mortar;
 
 	template <class Archive>
 	void serialize(Archive& archive)
 	{
-		archive(ids, seats, bodies, shapes, shapeOf, pairs, ties);
+		archive(ids, seats, bodies, shapes, shapeOf, pairs, ties, mortar);
 	}
 
 	void takeShapes()

@@ -44,6 +44,9 @@ template <class K>
 RigidResults RigidScene<K>::step(const RigidSettings& given)
 {
 	settings = given;
+	if (!settings.walls && !system.mortar.empty())
+		throw std::invalid_argument("MoreauJeanIntegrator.method = 'localised' is not allowed: blocks have been bonded with mortar, which "
+		                            "method='wall' knows.");
 	try {
 		if (mayHaveChanged()) {
 			system.gravity = coordinates.gravity(settings.gravity);
@@ -57,6 +60,9 @@ RigidResults RigidScene<K>::step(const RigidSettings& given)
 			neighbours->update(system, scene.dt);
 			renewContacts();
 		}
+		if (bonds)
+			bond();
+		bonds = false;
 	} catch (...) {
 		forgetStates();
 		throw;
@@ -112,7 +118,8 @@ RigidResults RigidScene<K>::results(const masonry::StepReport& report) const
 	RigidResults result;
 	result.report = report;
 	result.errors = byWalls ? scheduler->lastErrors() : islands.lastErrors();
-	result.energies = {system.frictDissip, system.impactDissip, system.tieDissip, system.baseWork, scheduler->potentialShift()};
+	result.energies = {system.frictDissip, system.impactDissip, system.tieDissip,
+	                   system.crackDissip, system.baseWork,     scheduler->potentialShift()};
 	result.impacts = system.impacts;
 	for (masonry::Impact& impact : result.impacts) {
 		impact.block = kept.ids[impact.block];
@@ -231,6 +238,7 @@ void RigidScene<K>::takeLaws()
 		pair.friction = friction;
 		pair.restitution = restitution;
 		system.laws.changed();
+		checkLawsOfMortar();
 	}
 }
 
@@ -281,6 +289,7 @@ void RigidScene<K>::writeContacts()
 		return;
 	showPoints();
 	contacts.write(system, kept);
+	showMortar();
 	unshown = 0;
 }
 
@@ -333,6 +342,7 @@ vector<Real> RigidScene<K>::pack()
 	kept.bodies = system.bodies;
 	kept.pairs = system.pairs;
 	kept.ties = system.ties;
+	kept.mortar = system.mortar;
 	kept.takeShapes();
 	Remembered<K> told = kept;
 	for (size_t b = 0; b < links.size(); ++b)

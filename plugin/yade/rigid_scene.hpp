@@ -56,7 +56,7 @@ struct RigidSettings {
 };
 
 struct RigidEnergies { // J, since the start of the run
-	Real frictDissip, impactDissip, tieDissip, baseWork, potentialShift;
+	Real frictDissip, impactDissip, tieDissip, crackDissip, baseWork, potentialShift;
 };
 
 /// What a step has come to.
@@ -83,6 +83,8 @@ public:
 	/// Ids of these bodies of the core, each once, and those with prescribed motion apart.
 	virtual std::pair<vector<int>, vector<int>> blocksAndPrescribed(const vector<int>& bodies) const = 0;
 	virtual void setInstant(Real) = 0;
+	/// Brings MoreauJeanIntegrator.bondedIds and bondedState up to date.
+	virtual void writeMortar(vector<int>& ids, vector<Real>& rows) const = 0;
 	/// Takes the interactions of erased bodies out of O.interactions.
 	virtual void dropErased() = 0;
 };
@@ -127,6 +129,7 @@ public:
 	bool neverSlips() const override;
 	std::pair<vector<int>, vector<int>> blocksAndPrescribed(const vector<int>& bodies) const override;
 	void setInstant(Real instant) override;
+	void writeMortar(vector<int>& ids, vector<Real>& rows) const override;
 	void dropErased() override { contacts.dropErased(); }
 
 private:
@@ -148,6 +151,10 @@ private:
 
 	/// With the state that they have in `before`, or their own.
 	void addTies(const Remembered<K>& before);
+
+	void addMortar(const Remembered<K>& before, const vector<int>& inBefore);
+	void bond();
+	void checkLawsOfMortar() const;
 
 	void forgetNeighbours();
 	/// After a scene has been refused: all is read again when a script has put it right.
@@ -191,6 +198,7 @@ private:
 	// --- core to scene ---
 
 	void showPoints();
+	void showMortar();
 	/// YADE's states lie scattered in memory.
 	void fetch(size_t b) const;
 
@@ -209,6 +217,7 @@ private:
 	std::optional<masonry::Scheduler<K>> scheduler {std::in_place}; // method='wall'
 	bool changed = false;                                           // what is moved, and how, is not as it was
 	bool byWalls = false;
+	bool bonds = false;        // no step has been made: blocks that touch are to be bonded
 	bool ownsContacts = false; // what O.interactions shows of blocks is of this object
 	int unshown = 1;           // steps since the interactions were written
 	std::unique_ptr<masonry::Neighbours<K>> neighbours;
@@ -223,5 +232,14 @@ private:
 	vector<Seen> seen;  // by id
 	Real length = 0;    // smallest half size, m
 };
+
+template <>
+void RigidScene<Plane>::bond();
+template <>
+void RigidScene<Space>::bond();
+template <>
+void RigidScene<Plane>::showMortar();
+template <>
+void RigidScene<Space>::showMortar();
 
 } // namespace yade

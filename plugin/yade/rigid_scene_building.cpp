@@ -54,12 +54,14 @@ RigidScene<K>::RigidScene(Scene& of, const Vector3r& along, const RigidSettings&
 	system.frictDissip = energies.frictDissip;
 	system.impactDissip = energies.impactDissip;
 	system.tieDissip = energies.tieDissip;
+	system.crackDissip = energies.crackDissip;
 	system.baseWork = energies.baseWork;
 	scheduler->setPotentialShift(energies.potentialShift);
 	const vector<int> inBefore = addBlocks(before);
 	addDrives(motions, inBefore);
 	addPairs(before, inBefore);
 	addTies(before);
+	addMortar(before, inBefore);
 	contacts.recall(system.pairs, kept.ids);
 	for (size_t b = 0; b < inBefore.size(); ++b) {
 		if (inBefore[b] < 0)

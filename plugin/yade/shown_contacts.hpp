@@ -24,6 +24,9 @@ public:
 	/// The law of a pair, which scripts may change through its interaction.
 	const BlockPhys& law(size_t pair) const { return *contacts[contactOfPair[pair]].phys; }
 
+	/// Force of a pair's mortar beside that of its points.
+	void setLoad(size_t pair, const masonry::BondLoad& load) { contacts[contactOfPair[pair]].phys->load = load; }
+
 	/// The pairs of a run that goes on: what no interaction shows yet has the law that it had.
 	void recall(const vector<Pair>& pairs, const vector<Body::id_t>& ids)
 	{
@@ -212,7 +215,8 @@ private:
 			if (point.gap < pair.points[nearest].gap)
 				nearest = i;
 		}
-		geom.normal = normalForce.isZero(0) ? geom.pointNormals[nearest] : Vector3r(normalForce.normalized());
+		const Vector3r& normal = geom.pointNormals[nearest];
+		geom.normal = normalForce.isZero(0) ? normal : Vector3r((normalForce.dot(normal) < 0 ? -1 : 1) * normalForce.normalized());
 	}
 
 	void writePhys(BlockPhys& phys, const Pair& pair) const

@@ -49,7 +49,7 @@ MASONRY_INLINE Lanes resistanceOf(const PointLanes<K>& p, const Lanes& filteredI
 		return resistanceOf<K>(p, filteredImpulse, step);
 	else
 		return select(strength[g].pull > 0, all(0.5 * step.soundSoftness) * (p.massN + p.massT) / (p.massN * p.massT),
-		              resistanceOf<K>(p, larger(filteredImpulse, all(0)), step));
+		              resistanceOf<K>(p, filteredImpulse, step));
 }
 
 // A look at the points sets these: a point in reach is not in A; the R of a point no longer follows its load.
@@ -57,7 +57,7 @@ struct alignas(alignment) Outdated {
 	Mask reached, loaded;
 };
 
-// Filters the loads.
+// Filters the loads: what points press.
 template <class K, bool bonded>
 MASONRY_INLINE Outdated takeGroups(const Pass<K>& pass)
 {
@@ -71,7 +71,7 @@ MASONRY_INLINE Outdated takeGroups(const Pass<K>& pass)
 			const Penalty& penalty = penalties[g][k];
 			PointState<K>& p = states[g][k];
 			const Lanes approach = 2. * smaller(normalRate(v1, v2, at), all(0));
-			p.filteredImpulse += step.mix * (p.pn - p.filteredImpulse);
+			p.filteredImpulse += step.mix * ((bonded ? larger(p.pn, all(0)) : p.pn) - p.filteredImpulse);
 			const Mask in = penalty.stiffness > 0;
 			outdated.reached |= (at.massN > 0) & (at.gap + step.h * approach < needed * step.reach) & ~in;
 			if (step.compares)

@@ -270,7 +270,7 @@ void startMeans(PointStates<K>& states, double share)
 {
 	for (GroupState<K>& group : states)
 		for (PointState<K>& p : group)
-			p.filteredImpulse = share * p.pn;
+			p.filteredImpulse = share * larger(p.pn, all(0));
 }
 
 // The results before the first iteration: velocities and states as the contacts have them, at an instant without impulses.

@@ -57,7 +57,7 @@ struct alignas(alignment) PointState {
 	Tangent pt;
 	Lanes zn; // relative velocity that the laws allow, m/s
 	Tangent zt;
-	Lanes filteredImpulse; // filtered pn
+	Lanes filteredImpulse; // filtered pn, of what presses
 	Tangent slip;          // since the point last slid, m
 	Lanes zero;            // gap that it holds, m
 };

@@ -17,7 +17,7 @@ void ContactSet<K>::inherit(const ContactPair<K>& before, const OneState<K>* sta
 			continue;
 		now.pn = then.present ? then.pn : points_.unit() * old.force[0];
 		now.pt = then.present ? then.pt : points_.unit() * old.force.template tail<K::rows - 1>();
-		now.filteredImpulse = then.present ? then.filteredImpulse : now.pn;
+		now.filteredImpulse = then.present ? then.filteredImpulse : std::max(0., now.pn);
 		now.zn = then.zn;
 		now.zt = then.zt;
 		now.slip = then.slip;

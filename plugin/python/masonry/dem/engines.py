@@ -129,7 +129,7 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
     motion        a motion engine (PulseTrainEngine, RecordMotionEngine), a test (dem.push, dem.pull_and_release), a list of them, or None. Motions of the
                   same bodies, in perpendicular directions (two or three components of a record), add up
     model         'planar' or 'spatial': rigid blocks in a plane or in space (MoreauJeanIntegrator). 'compliant': joints with
-                  stiffness, YADE's usual loop with NewtonIntegrator. 'auto': compliant where a BlockMat has mortar or a stiffness or
+                  stiffness, YADE's usual loop with NewtonIntegrator. 'auto': compliant where a BlockMat has mortar (without method='wall') or a stiffness or
                   `penetration` is given; else planar where the scene lies in one upright plane; else spatial.
     dt            time step, s; None: rigid 2.5e-3 sqrt(R/g) of the smallest block (1 ms for a block 3 m high), with method='wall'
                   4e-3 sqrt(R/g); compliant 0.2 of the critical step, at most 0.75 of the largest, to which the run lowers O.dt, with a
@@ -178,7 +178,7 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
         check_use_of_mortar(blocks, model, {"method": method != "auto" and method, "tolerance": tolerance, "others": others})
     notes.say_of_mortar(mortars, blocks)
     if model == "auto":
-        if mortars:
+        if mortars and method != "wall":
             model, reason = "compliant", "units may split" if len(split) == len(mortars) else "a BlockMat has mortar"
         elif penetration is not None:
             model, reason = "compliant", "penetration is given"
@@ -192,16 +192,26 @@ def engines(motion=None, model="auto", dt=None, tolerance=None, penetration=None
         if tolerance is not None or others or method != "auto":
             raise ValueError("tolerance, others and method are for rigid blocks: they must be left out with model='compliant'")
         return _compliant(blocks, motions, reason, dt, penetration or _PENETRATION, impact_order or "simultaneous", gravity, recorders, loads)
+    if mortars:
+        _check_rigid_mortar()
     if any(one.held for one in pushes):
         raise ValueError(HELD_RIGID)
     if penetration is not None:
         raise ValueError(f"penetration = {penetration}: must be left out with model={shown(model)}, it is for compliant joints")
     check_blocks(_MOST_OVERLAP, floating=False)
-    return _rigid(motions, model, method, dt, tolerance, impact_order, gravity, recorders, [*loads, *others])
+    return _rigid(motions, model, method, bool(mortars), dt, tolerance, impact_order, gravity, recorders, [*loads, *others])
 
 
-def _rigid(motions, model, method, dt, tolerance, impact_order, gravity, recorders, others):
-    integrator = wrapper.MoreauJeanIntegrator(motions=motions, ties=ties(), model=model, gravity=(0, 0, -gravity))
+def _check_rigid_mortar():
+    if units():
+        raise ValueError("the scene has units that may split (dem.wall(split=)): must have model='compliant' instead of method='wall'")
+    if O.iter > 0 and getattr(joint_engine(), "bondedIds", None):
+        raise ValueError("O.engines have bonded joints in this run, and new engines of rigid blocks do not know their damage: keep the engines, and change their attributes")
+
+
+def _rigid(motions, model, method, mortared, dt, tolerance, impact_order, gravity, recorders, others):
+    attributes = {"method": "wall", "tolerance": 1e-3} if mortared else {}  # with which mortar is allowed
+    integrator = wrapper.MoreauJeanIntegrator(motions=motions, ties=ties(), model=model, gravity=(0, 0, -gravity), **attributes)
     choice = integrator.choice()
     if method == "auto":
         few = _FEW_BLOCKS[choice.split(":")[0]]

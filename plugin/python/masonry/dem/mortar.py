@@ -22,7 +22,7 @@ def damage():
     energy_tension, energy_shear    spent by cracks so far, J; their sum over all joints is crackDissip of dem.energy()
     cracked, broken   time at which `worst` reached 0.02, and at which the last mortar broke, s; NaN: not yet
     """
-    engine = _compliant_engine()
+    engine = joint_engine_given()
     return bond_table(engine.bondedIds, engine.bondedState)[0]
 
 
@@ -33,7 +33,7 @@ def bond(ids=None, material=None, joints="all"):
     material    a JointMat. Stiffness and friction angle that it does not give are those of the joint
     joints      'all', 'bed' or 'head': head joints have upright faces
 
-    Raises ValueError where no two of the bodies touch. The scene must have its engines of model='compliant'; the bonds act from the next step on. A joint that has been bonded before gets new mortar."""
+    Raises ValueError where no two of the bodies touch. The scene must have its engines of model='compliant' (with method='wall' the mortar of the BlockMats bonds blocks when the run starts); the bonds act from the next step on. A joint that has been bonded before gets new mortar."""
     check_joint_material(material)
     if ids is not None and not (np.iterable(ids) and all(is_whole(id, 0) for id in ids)):
         raise ValueError(f"ids = {shown(ids)}: must be a list of ids of bodies, whole numbers from 0 on, or None for all")
@@ -66,5 +66,5 @@ def scatter(mortar, cov=0.3, seed=1):
 def _compliant_engine():
     engine = joint_engine_given()
     if not isinstance(engine, wrapper.RockingJointEngine):
-        raise ValueError("O.engines are those of rigid blocks, which know dry joints only: mortar needs O.engines = dem.engines(model='compliant')")
+        raise ValueError("O.engines are those of rigid blocks, which dem.bond cannot bond: give BlockMat(mortar=) before the run with method='wall', or take O.engines = dem.engines(model='compliant')")
     return engine

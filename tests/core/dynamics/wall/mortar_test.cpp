@@ -1,5 +1,6 @@
 // Mortar between rigid blocks: closed forms of single joints, and structures below their strength.
 #include "core/dynamics/wall/wall_rig.hpp"
+#include "number_archive.hpp"
 #include <catch.hpp>
 
 using namespace masonry;
@@ -181,6 +182,41 @@ TEST_CASE("cracks spend the energy of their damage, and energies balance")
 	CHECK(after == Approx(before).margin(1e-6 * s.system.baseWork));
 }
 
+TEST_CASE("a wall that cracks goes on with the same bits after loading")
+{
+	Bonded s;
+	s.addRunningBond(6, 3, 0.21, 0.052);
+	s.bond(lawOf(0.02e6));
+	Harmonic motion(8 * g, 3, s.system.time);
+	s.drive(motion);
+	s.run(0.15, h);
+	REQUIRE(s.damage() > 0.01);
+	NumberWriter saved;
+	saved(s.system.mortar);
+	s.step.serialize(saved, s.system);
+	RigidSystem<Plane> system = s.system;
+	system.mortar.clear();
+	auto near = s.near;
+	wall::WallStep<Plane> other;
+	NumberReader loaded(saved.numbers);
+	loaded(system.mortar);
+	other.serialize(loaded, system);
+	CHECK(loaded.isAtEnd());
+	for (int k = 0; k < 100; ++k) {
+		s.advance(h);
+		near.update(system);
+		other.advance(system, h);
+	}
+	CHECK(s.system.crackDissip == system.crackDissip);
+	for (size_t j = 0; j < system.mortar.size(); ++j)
+		CHECK(s.system.mortar[j].damage() == system.mortar[j].damage());
+	for (size_t b = 0; b < system.bodies.size(); ++b) {
+		CAPTURE(b);
+		CHECK(s.system.bodies[b].velocity == system.bodies[b].velocity);
+		CHECK(s.system.bodies[b].pose.position == system.bodies[b].pose.position);
+	}
+}
+
 // The table of docs/tuning.md, Mortar of rigid blocks; some minutes. Strengths of walls: validation/mortar/limit.py.
 TEST_CASE("stacks and walls of many sizes take no damage in 10 s", "[.mortar]")
 {
@@ -208,4 +244,23 @@ TEST_CASE("stacks and walls of many sizes take no damage in 10 s", "[.mortar]")
 	}
 	INFO(s.system.bodies.size() - 1 << " blocks at " << share << ": " << double(iterations) / steps << " iterations a step");
 	CHECK(s.worst().damage() == 0);
+}
+
+TEST_CASE("a brick that is bent breaks at the moment of its strength and weight, and spends its fracture energy")
+{
+	const double step = GENERATE(1e-3, 1e-4);
+	Bonded s;
+	s.add(0.2, 0.1, 0, 0.05);
+	s.bond(lawOf(0.25e6));
+	const double area = 0.2 * depth, expected = (0.25e6 * area + s.system.bodies[1].mass * g) * 0.2 / 2; // N m
+	double first = 0;
+	for (int k = 0; k < 2200 && !s.system.mortar[0].isBroken(); ++k) {
+		s.system.bodies[1].force[2] = expected / 2000 * k;
+		s.advance(step);
+		if (first == 0 && s.damage() > 0)
+			first = s.system.bodies[1].force[2];
+	}
+	CHECK(first == Approx(expected).epsilon(0.02)); // inertia of the dead zone
+	CHECK(s.system.mortar[0].isBroken());
+	CHECK(s.system.crackDissip == Approx(lawOf(0.25e6).fractureEnergy * area).epsilon(0.02));
 }

@@ -1,0 +1,185 @@
+// Mortar of a scene with method='wall' in the plane: which joints it bonds, what is left of it, and its forces.
+
+#include "rigid_scene.hpp"
+
+#include "impact/impulse_problem.hpp" // axesAlong
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace yade {
+
+namespace {
+
+constexpr size_t stateSize = 13;  // numbers of a row of bondedState
+constexpr Real firstCrack = 0.02; // largest damage from which a joint counts as cracked
+constexpr Real closeBy = 1e-4; // gap up to which blocks touch, and length of a joint from which on it is one, relative to their thickness
+
+std::string pairOf(int id1, int id2) { return sentence("The joint of bodies ", id1, " and ", id2); }
+
+/// Rigid joints have no stiffness.
+masonry::MortarLaw lawOf(const JointMat& mortar, Real friction, int id1, int id2)
+{
+	constexpr Real infinite = std::numeric_limits<Real>::infinity();
+	const std::string joint = pairOf(id1, id2);
+	if (!std::isnan(mortar.flexuralStrength))
+		throw std::invalid_argument(sentence(joint, " has mortar with flexuralStrength = ", mortar.flexuralStrength,
+		                                     " Pa: a rigid joint bears three times the moment at which its edge reaches its strength: "
+		                                     "give tensileStrength = ",
+		                                     mortar.flexuralStrength / 3, " with method='wall'."));
+	masonry::MortarLaw law = mortar.law(infinite, infinite, friction, id1, id2);
+	law.normalStiffness = law.shearStiffness = infinite;
+	if (!(law.friction > 0) || !std::isfinite(law.friction))
+		throw std::invalid_argument(sentence(joint, " has mortar and the tangent of friction ", law.friction,
+		                                     ": method='wall' needs a positive frictionAngle there, and no noSlip."));
+	if (!(law.tensileStrength > 0))
+		throw std::invalid_argument(
+		    sentence(joint, " has mortar with tensileStrength = ", law.tensileStrength, " Pa: method='wall' needs a positive one."));
+	if (const std::string fault = law.fault(); !fault.empty())
+		throw std::invalid_argument(joint + " has mortar with " + fault + ".");
+	law.normalStiffness = law.shearStiffness = 0;
+	return law;
+}
+
+} // namespace
+
+/// Joints of the run that goes on, but those of blocks that are gone.
+template <class K>
+void RigidScene<K>::addMortar(const Remembered<K>& before, const vector<int>& inBefore)
+{
+	const auto now = [&](int k) { return int(std::find(inBefore.begin(), inBefore.end(), k) - inBefore.begin()); };
+	for (masonry::MortarJoint<K> joint : before.mortar) {
+		joint.body1 = now(joint.body1);
+		joint.body2 = now(joint.body2);
+		if (std::max(joint.body1, joint.body2) < int(links.size()))
+			system.mortar.push_back(joint);
+	}
+	bonds = before.ids.empty();
+}
+
+/// Joints of blocks that touch and both have the same mortar. MoreauJeanIntegrator::checkBlocks lets no mortar come to space.
+template <>
+void RigidScene<Space>::bond()
+{
+}
+
+template <>
+void RigidScene<Plane>::bond()
+{
+	system.mortar.clear();
+	for (size_t c = 0; c < system.pairs.size(); ++c) {
+		const Pair& pair = system.pairs[c];
+		const shared_ptr<JointMat>& mortar = contacts.law(c).mortar;
+		if (!mortar || pair.size() != 2)
+			continue;
+		const int id1 = kept.ids[pair.body1], id2 = kept.ids[pair.body2];
+		const Properties &one = links[pair.body1].properties, &other = links[pair.body2].properties;
+		const Real thickness = std::min(one.shape.thickness(), other.shape.thickness());
+		if (std::max(pair.points[0].gap, pair.points[1].gap) > closeBy * thickness)
+			continue;
+		const auto depthOf = [&](int b, const Properties& properties) {
+			return 2 * properties.shape.reach(links[b].state->ori.conjugate() * coordinates.normal);
+		};
+		const Real depth = std::min(depthOf(pair.body1, one), depthOf(pair.body2, other));
+		const masonry::MortarJoint<Plane> joint =
+		    masonry::wall::mortarJoint(system, pair, lawOf(*mortar, contacts.law(c).tangensOfFrictionAngle, id1, id2), depth);
+		if (!(joint.area > closeBy * thickness * depth))
+			continue;
+		const auto isSame = [&](const masonry::MortarJoint<Plane>& o) { return o.body1 == joint.body1 && o.body2 == joint.body2; };
+		if (std::any_of(system.mortar.begin(), system.mortar.end(), isSame))
+			throw std::invalid_argument(pairOf(id1, id2) +
+			                            " has mortar on two faces: method='wall' bonds one face of a pair; take model='compliant'.");
+		system.mortar.push_back(joint);
+	}
+	checkLawsOfMortar();
+}
+
+/// An instant has no time in which mortar could spend energy.
+template <class K>
+void RigidScene<K>::checkLawsOfMortar() const
+{
+	for (const Pair& pair : system.pairs)
+		if (!system.mortar.empty() && !std::isnan(pair.restitution))
+			throw std::invalid_argument(
+			    sentence(pairOf(kept.ids[pair.body1], kept.ids[pair.body2]), " has restitution = ", pair.restitution,
+			             ": it must be left out where blocks of method='wall' have mortar, which no impact at an instant can crack."));
+}
+
+/// Rows of dem.damage(), beyond the end of a joint.
+template <class K>
+void RigidScene<K>::writeMortar(vector<int>& ids, vector<Real>& rows) const
+{
+	size_t row = 0; // both lists are in the same order
+	for (const masonry::MortarJoint<K>& joint : system.mortar) {
+		const int id1 = kept.ids[joint.body1], id2 = kept.ids[joint.body2];
+		while (2 * row < ids.size() && (ids[2 * row] != id1 || ids[2 * row + 1] != id2))
+			++row;
+		if (2 * row == ids.size()) {
+			ids.insert(ids.end(), {id1, id2});
+			const auto& pose = system.bodies[joint.body2].pose;
+			typename K::Vector middle = K::Vector::Zero();
+			for (const auto& point : joint.points)
+				middle += pose.toGlobal(point.place2) / double(joint.points.size());
+			const Vector3r at = pointInScene(coordinates, middle, kept.seats[joint.body2].depth);
+			rows.insert(rows.end(), {at.x(), at.y(), at.z(), joint.area, 0, 0, 0, 0, 0, 0, 0, NaN, NaN});
+		}
+		if (joint.isSound())
+			continue;
+		Real* of = &rows.at(row * stateSize + 4);
+		std::fill(of, of + 7, 0);
+		of[0] = joint.damage();
+		for (const auto& point : joint.points) {
+			of[1] = std::max(of[1], 1 - point.state.strength());
+			of[3] = std::max(of[3], point.state.crack);
+			of[4] = std::max(of[4], point.state.slid);
+			of[5] += point.area * point.state.opened;
+			of[6] += point.area * point.state.sheared;
+		}
+		const Real tension = of[5] / joint.law.fractureEnergy, shear = of[6] / joint.law.shearFractureEnergy;
+		of[2] = tension + shear > 0 ? tension / (tension + shear) : 0;
+		if (std::isnan(of[7]) && of[1] >= firstCrack)
+			of[7] = scene.time;
+		if (std::isnan(of[8]) && joint.isBroken())
+			of[8] = scene.time;
+	}
+}
+
+/// Forces of cracking joints, beside those of the corners.
+template <>
+void RigidScene<Space>::showMortar()
+{
+}
+
+template <>
+void RigidScene<Plane>::showMortar()
+{
+	for (size_t c = 0; c < system.pairs.size() && !system.mortar.empty(); ++c) {
+		const Pair& pair = system.pairs[c];
+		const auto isOf = [&](const masonry::MortarJoint<Plane>& o) { return o.body1 == pair.body1 && o.body2 == pair.body2; };
+		const auto joint = std::find_if(system.mortar.begin(), system.mortar.end(), isOf);
+		if (joint == system.mortar.end())
+			continue;
+		const auto &pose1 = system.bodies[pair.body1].pose, &pose2 = system.bodies[pair.body2].pose;
+		const Eigen::Matrix2d axes = masonry::axesAlong((pose1.rotate(joint->normal1) + pose2.rotate(joint->normal2)).normalized());
+		const Real depth = kept.seats[pair.body2].depth;
+		masonry::BondLoad load;
+		load.place = pointInScene(coordinates, pose2.position, depth);
+		for (const auto& point : joint->points) {
+			if (point.state.isBroken)
+				continue;
+			const Vector3r force = coordinates.out(masonry::Vector2(axes.transpose() * point.force));
+			load.force += force;
+			load.moment += (pointInScene(coordinates, pose2.toGlobal(point.place2), depth) - load.place).cross(force);
+		}
+		contacts.setLoad(c, load);
+	}
+}
+
+template void RigidScene<Plane>::addMortar(const Remembered<Plane>&, const vector<int>&);
+template void RigidScene<Space>::addMortar(const Remembered<Space>&, const vector<int>&);
+template void RigidScene<Plane>::checkLawsOfMortar() const;
+template void RigidScene<Space>::checkLawsOfMortar() const;
+template void RigidScene<Plane>::writeMortar(vector<int>&, vector<Real>&) const;
+template void RigidScene<Space>::writeMortar(vector<int>&, vector<Real>&) const;
+
+} // namespace yade
