@@ -124,11 +124,11 @@ class TiltTable:
         if not self._free:
             raise ValueError("there is no free block in O.bodies: add one with dem.block() before dem.TiltTable()")
         if units():
-            raise ValueError("the scene has units that may split (dem.wall(split=)): TiltTable is for rigid blocks, which know dry joints only, and such joints need "
+            raise ValueError("the scene has units that may split (dem.wall(split=)): TiltTable knows dry joints only, and such joints need "
                              "model='compliant': leave `split` out")
         mortared = next((b.id for b in self._blocks if b.mat.mortar is not None), None)
         if mortared is not None:
-            raise ValueError(f"O.bodies[{mortared}].mat has mortar: TiltTable is for rigid blocks, which know dry joints only, and mortar needs model='compliant': leave the "
+            raise ValueError(f"O.bodies[{mortared}].mat has mortar: TiltTable knows dry joints only, and mortar needs model='compliant': leave the "
                              "mortar out, or turn the gravity of compliant blocks (O.engines[-1].gravity) step by step")
         if model == "auto" and any(has_stiffness(b.mat) for b in self._blocks):
             raise ValueError("model = 'auto': must be 'planar' or 'spatial' where a BlockMat has a joint stiffness: TiltTable is for rigid blocks")
