@@ -22,7 +22,7 @@ MOST_OFF = 2e-2  # energy that no account explains, relative to what is turned o
 # By how much a joint may seem to crack below its strength, or not to crack above it: turning of the faces and the step in between. Least damage that is a crack.
 NEAR, SOUND = 2e-2, 1e-12
 UNSPENT = 1e-3  # share of the fracture energy that a broken fibre has not spent (docs/mortar.md)
-# Of D, until a joint is broken: bits differ by the order in which corners are found, and blocks that are dry and land double such differences in each impact.
+# D may differ by so much until a joint is broken: bits depend on the order in which corners are found, and dry blocks that land double such differences in each impact.
 MIRRORED = 1e-6
 
 

@@ -42,10 +42,11 @@ void addTie(std::vector<BodyMatrices>& result, const Bodies<Space>& bodies, cons
 	}
 }
 
-// What a joint with mortar may have of the normal stiffness and the dashpots of its closed face. While an edge of it still presses, all
-// fibres of its mortar may pull already: of a rectangle that is 1.95 times the closed face at worst, of a triangle 1.96, of convex polygons
-// that are far from regular up to 2.07 (docs/mortar.md, validation/mortar/stiffest.py). Both together are twice the face at most, but for
-// polygons whose points and fibres turn about different axes. Shear acts at the fibres alone, and turns less stiffly than at the corners.
+// A joint with mortar may have so many times the normal stiffness and the dashpots of its closed face. While an edge of it still presses,
+// all fibres of its mortar may pull already: of a rectangle that is 1.95 times the closed face at worst, of a triangle 1.96, of convex
+// polygons that are far from regular up to 2.07 (docs/mortar.md, validation/mortar/stiffest.py). Both together are twice the face at most,
+// but for polygons whose points and fibres turn about different axes. Shear acts at the fibres alone, and turns less stiffly than at the
+// corners.
 constexpr double withMortar = 2.1;
 
 // Those of a body whose neighbours move freely are doubled. The result holds until the next call: it keeps its memory from step to step.

@@ -1,6 +1,6 @@
 #pragma once
-// Where the pairs of a structure are: pairs in lanes, lanes in groups of four, groups in parts; and the order of the groups from the base
-// upwards. It knows pairs by the numbers of their bodies, and nothing of points.
+// The layout says where the pairs of a structure are, which lie in lanes, four lanes in a group, groups in parts; and in which order the
+// groups go from the base upwards. It knows pairs by the numbers of their bodies, and nothing of points.
 //
 // A large structure is divided into parts of equally many blocks, and the pairs within a part are taken apart from those of other parts, by
 // any thread; then those between two parts, which are the interface. The division is the structure's and not that of the threads.
@@ -43,7 +43,7 @@ public:
 
 	// Lays out these pairs, each in so many lanes; 0: it is not here. Bodies that are not `free` may be shared. `levels`: of the bodies.
 	void make(std::vector<Pair> pairs, const std::vector<int>& lanes, std::vector<char> free, const std::vector<int>& levels);
-	// Where only the numbers of the pairs that are here have changed, and levels. Returns false, without a change, if other pairs are here.
+	// Takes over other numbers of the pairs that are here, and levels. Returns false, without a change, if other pairs are here.
 	bool renumber(std::vector<Pair> pairs, const std::vector<int>& lanes, const std::vector<int>& levels);
 
 	const std::vector<Pair>& pairs() const { return pairs_; }    // all of the system

@@ -71,7 +71,7 @@ public:
 	// Gaps, forces and places of the pair's points into the system. Points within `touching` are closed.
 	void show(RigidSystem<K>& system, int pair, double touching) const;
 
-	// Of a point of a pair, by number. A point beyond the lanes of its pair is not present.
+	// The state of a point of a pair, by number. A point beyond the lanes of its pair is not present.
 	OneState<K> state(int pair, int point) const;
 	void setState(const OneState<K>& state, int pair, int point);
 	// Takes the states that a solver has returned.

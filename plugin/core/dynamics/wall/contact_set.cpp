@@ -80,7 +80,7 @@ void ContactSet<K>::layOut(const RigidSystem<K>& s, const std::vector<int>& lane
 	points_.make();
 }
 
-// Where the list of pairs has changed elsewhere only.
+// Keeps the lanes where the list of pairs has changed elsewhere only.
 template <class K>
 bool ContactSet<K>::renumber(const RigidSystem<K>& s)
 {

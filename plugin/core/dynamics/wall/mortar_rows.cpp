@@ -206,7 +206,7 @@ std::vector<int> Mortar<K>::yielding(const RigidSystem<K>& s, const ContactSet<K
 			const auto rate = [&, lane = i](int row, const LaneArray& v) {
 				return rateOf(at, row, lane, 2, &v[packs<K> * joint.body2]) - rateOf(at, row, lane, 1, &v[packs<K> * joint.body1]);
 			};
-			// What moves before the step moves for a part of it even if it is stopped.
+			// A point that moves before the step goes on for a part of it even if it is stopped.
 			const double opens = at.gap[i] + h * std::max(rate(0, after), rate(0, before) / 2);
 			double slides = 0;
 			for (int row = 1; row < K::rows; ++row)
@@ -265,7 +265,7 @@ MortarWork Mortar<K>::finish(RigidSystem<K>& s, ContactSet<K>& c, const std::vec
 		grows[row.joint] = 1;
 		point.opening += opening;
 		point.slip += slip;
-		// Of a crack that is stopped, corners that are pressed meanwhile take their part of the pull.
+		// Where a crack is stopped, corners that are pressed meanwhile take their part of the pull.
 		double pull = -row.p[0];
 		if (row.z[0] <= clear * missed)
 			for (int corner = 0; corner < c.points().groups()[row.group].count; ++corner)

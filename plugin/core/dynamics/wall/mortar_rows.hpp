@@ -28,7 +28,7 @@
 
 namespace masonry::wall {
 
-// Of the points of a lane, N s: rigid mortar bears the tension `pull` at each, and its cohesion is as if it pressed more by `shift`.
+// Rigid mortar bears the tension `pull` at each point of a lane, and its cohesion is as if it pressed more by `shift`, N s.
 struct alignas(alignment) Strength {
 	Lanes pull {}, shift {};
 
