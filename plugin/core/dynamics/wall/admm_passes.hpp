@@ -192,4 +192,26 @@ MASONRY_INLINE void startGroups(const Pass<K>& pass)
 	}
 }
 
+// The same with sound mortar where there is any.
+template <class K>
+MASONRY_INLINE Outdated takeGroups(const Pass<K>& pass)
+{
+	return pass.strength ? takeGroups<K, true>(pass) : takeGroups<K, false>(pass);
+}
+template <class K>
+MASONRY_INLINE void setPenalties(const Pass<K>& pass)
+{
+	pass.strength ? setPenalties<K, true>(pass) : setPenalties<K, false>(pass);
+}
+template <class K>
+MASONRY_INLINE void startGroups(const Pass<K>& pass)
+{
+	pass.strength ? startGroups<K, true>(pass) : startGroups<K, false>(pass);
+}
+template <class K>
+MASONRY_INLINE void passGroups(const Pass<K>& pass, Lanes& worst)
+{
+	pass.strength ? passGroups<K, true>(pass, worst) : passGroups<K, false>(pass, worst);
+}
+
 } // namespace masonry::wall

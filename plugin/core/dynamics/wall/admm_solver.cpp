@@ -24,20 +24,14 @@ MASONRY_LANES void inertia(const std::vector<int>& members, const Lanes* velocit
 }
 
 // No template is compiled for several vector widths.
-#define MASONRY_PASSES(K)                                                                                                                  \
-	MASONRY_LANES void takePass(const Pass<K>& pass, Outdated& outdated)                                                                   \
-	{                                                                                                                                      \
-		outdated = pass.strength ? takeGroups<K, true>(pass) : takeGroups<K, false>(pass);                                                 \
-	}                                                                                                                                      \
-	MASONRY_LANES void penaltyPass(const Pass<K>& pass) { pass.strength ? setPenalties<K, true>(pass) : setPenalties<K, false>(pass); }    \
-	MASONRY_LANES void startPass(const Pass<K>& pass) { pass.strength ? startGroups<K, true>(pass) : startGroups<K, false>(pass); }        \
-	MASONRY_LANES void lawPass(const Pass<K>& pass, Lanes& worst)                                                                          \
-	{                                                                                                                                      \
-		pass.strength ? passGroups<K, true>(pass, worst) : passGroups<K, false>(pass, worst);                                              \
-	}
-MASONRY_PASSES(Plane)
-MASONRY_PASSES(Space)
-#undef MASONRY_PASSES
+MASONRY_LANES void takePass(const Pass<Plane>& pass, Outdated& outdated) { outdated = takeGroups(pass); }
+MASONRY_LANES void takePass(const Pass<Space>& pass, Outdated& outdated) { outdated = takeGroups(pass); }
+MASONRY_LANES void penaltyPass(const Pass<Plane>& pass) { setPenalties(pass); }
+MASONRY_LANES void penaltyPass(const Pass<Space>& pass) { setPenalties(pass); }
+MASONRY_LANES void startPass(const Pass<Plane>& pass) { startGroups(pass); }
+MASONRY_LANES void startPass(const Pass<Space>& pass) { startGroups(pass); }
+MASONRY_LANES void lawPass(const Pass<Plane>& pass, Lanes& worst) { passGroups(pass, worst); }
+MASONRY_LANES void lawPass(const Pass<Space>& pass, Lanes& worst) { passGroups(pass, worst); }
 
 RowStep rowStepOf(const StepContext& c, const AdmmSettings& a)
 {
