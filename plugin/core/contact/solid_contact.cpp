@@ -1,33 +1,43 @@
 #include "contact/solid_contact.hpp"
 #include "tolerances.hpp"
+#include <algorithm>
 #include <limits>
 
 namespace masonry {
 
 namespace {
 
-using EdgeFaces = std::array<int, 2>;
-
-// The faces beside an edge of a solid, which crosses another one. In the plane no edges cross.
-EdgeFaces facesBeside(const Solid<ConvexPolygon>&, int) { return {-1, -1}; }
-EdgeFaces facesBeside(const Solid<ConvexPolyhedron>& solid, int edge)
+// An edge of a solid, which crosses another one: the faces beside it, and its point that is nearest to another point. In the plane no edges
+// cross.
+template <class Vector>
+struct EdgeOfSolid {
+	std::array<int, 2> faces;
+	Vector point;
+};
+EdgeOfSolid<Vector2> edgeAt(const Solid<ConvexPolygon>&, int, const Vector2& point) { return {{-1, -1}, point}; }
+EdgeOfSolid<Vector3> edgeAt(const Solid<ConvexPolyhedron>& solid, int edge, const Vector3& point)
 {
 	const int part = solid.partOfEdge(edge);
 	const auto& first = solid.first(part);
 	const ConvexPolyhedron::Edge& line = solid.part(part).edges()[edge - first.edge];
-	return {first.face + line.left, first.face + line.right};
+	const double along = std::clamp(line.direction.dot(point - line.middle), -line.halfLength, line.halfLength);
+	return {{first.face + line.left, first.face + line.right}, line.middle + along * line.direction};
 }
 
-// Whether the edge of one of two edges that cross is none of its solid there, nor the border of a part in a plane that goes on.
+// Whether the edge of one of two edges that cross is none of its solid there, nor the border of a part in a plane that goes on. An edge
+// beside a covered face is one of the solid for the normals along which no part goes on.
 // `outward`: the normal away from the solid, in its axes.
 template <class Convex, class Vector>
 bool isInside(const Solid<Convex>& solid, int edge, const Vector& point, const Vector& outward)
 {
-	const EdgeFaces beside = facesBeside(solid, edge);
-	for (int k = 0; k < 2; ++k)
-		if (solid.isCovered(beside[k], point))
-			return solid.isCovered(beside[1 - k], point) || !(solid.face(beside[1 - k]).normal.dot(outward) > 0) ||
-			       (solid.face(beside[1 - k]).normal - outward).norm() > tolerance::contact::leans;
+	const EdgeOfSolid<Vector> own = edgeAt(solid, edge, point);
+	for (int k = 0; k < 2; ++k) {
+		if (!solid.isCovered(own.faces[k], point))
+			continue;
+		const Vector& normal = solid.face(own.faces[1 - k]).normal;
+		return solid.isCovered(own.faces[1 - k], point) || !(normal.dot(outward) > 0) ||
+		       ((normal - outward).norm() > tolerance::contact::leans && solid.goesBeyond(own.point, outward));
+	}
 	return false;
 }
 

@@ -5,8 +5,9 @@
 // can be wrong: where two parts touch, a part has faces that are inside the solid, and edges and corners that are none of it. A point on a
 // face that is covered there (Solid::isCovered) is left out, and so is a vertex of a part that is no corner of the solid (Solid::isBuried),
 // unless it lies in a face of the solid on which the other body has a parallel one. So is a second normal, or a crossing, that belongs to
-// an edge beside a covered face, but for a crossing whose normal is that of the other face beside the edge: it marks where an edge of the
-// other body leaves the part, and the solid goes on in the same plane.
+// an edge beside a covered face, with two exceptions. A crossing whose normal is that of the other face beside the edge marks where an edge
+// of the other body leaves the part, and the solid goes on in the same plane. And where no part reaches beyond the plane across the normal
+// (Solid::goesBeyond), the edge is one of the solid, between two faces of different parts.
 #include "contact/point_geometry.hpp"
 #include "shape/solid.hpp"
 

@@ -123,8 +123,19 @@ bool Solid<Convex>::isCovered(int number, const Vector& point) const
 	return samples > 0 && covered == samples;
 }
 
-// Where the other part holds points farther along `outward` than the vertex, the solid goes on there. In a notch it does so beside faces
-// that can be touched all the same.
+template <class Convex>
+bool Solid<Convex>::goesBeyond(const Vector& point, const Vector& outward, int except) const
+{
+	const double near = 4 * tolerance::contact::vertexReach * leastHalfWidth;
+	for (int k = 0; k < size(); ++k)
+		if (k != except && outside(all[k], point) <= near)
+			for (const Vector& vertex : all[k].vertices())
+				if (outward.dot(vertex - point) > std::max(near, tolerance::contact::leans * (vertex - point).norm()))
+					return true;
+	return false;
+}
+
+// In a notch the solid goes on beside faces that can be touched all the same.
 template <class Convex>
 bool Solid<Convex>::isBuried(int number, const Vector& outward) const
 {
@@ -133,12 +144,7 @@ bool Solid<Convex>::isBuried(int number, const Vector& outward) const
 	const int own = partOfVertex(number);
 	const Vector& vertex = all[own].vertices()[number - firsts[own].vertex];
 	const double near = 4 * tolerance::contact::vertexReach * leastHalfWidth;
-	bool goesOn = false;
-	for (int k = 0; k < size() && !goesOn; ++k)
-		if (k != own && outside(all[k], vertex) <= near)
-			for (const Vector& other : all[k].vertices())
-				goesOn = goesOn || outward.dot(other - vertex) > std::max(near, tolerance::contact::leans * (other - vertex).norm());
-	if (!goesOn)
+	if (!goesBeyond(vertex, outward, own))
 		return false;
 	for (int k = 0; k < size(); ++k)
 		for (int f = 0; f < int(all[k].faces().size()) && outside(all[k], vertex) <= near; ++f) {

@@ -44,6 +44,9 @@ public:
 	bool goesOn(int face, const Vector& point) const;
 	// Whether another part lies on this face of a part all around a point that is on it or beside it.
 	bool isCovered(int face, const Vector& point) const;
+	// Whether a part that holds a point, or is near it, has points farther along `outward` (unit): the solid goes on there. The part
+	// `except` is left out; -1: none.
+	bool goesBeyond(const Vector& point, const Vector& outward, int except = -1) const;
 	// Whether a body that touches a vertex of a part from the direction `outward` (unit) would be in another part: the vertex is no corner
 	// of the solid in that direction. Directions of faces that are not covered there are always free.
 	bool isBuried(int vertex, const Vector& outward) const;

@@ -99,6 +99,38 @@ TEST_CASE("A body beside a covered face is not held by it", "[solid]")
 	}
 }
 
+TEST_CASE("Two parts make an edge of the solid at their seam where it is convex", "[solid]")
+{
+	// The face x = 0 of a cuboid is covered by a prism whose top falls, or rises, by `slope` from the seam along y on. The lowest edge of a
+	// block, along x, goes across the seam with a tilt. At its crossing the normal is that of both edges if the solid lies below it.
+	const double tilt = 0.04;
+	const Vector3 normal(std::sin(tilt), 0, std::cos(tilt));
+	const Quaternion turn =
+	    Quaternion(Eigen::AngleAxisd(tilt, Vector3::UnitY())) * Quaternion(Eigen::AngleAxisd(M_PI / 4, Vector3::UnitX()));
+	const Solid<ConvexPolyhedron> block(ConvexPolyhedron::box({0.6, 0.2, 0.2}));
+	const Pose fixed, pose {0.2 * std::sqrt(2) * normal, turn};
+	for (const double slope : {-0.5, -0.08, -0.02, 0.1}) {
+		std::vector<Vector3> corners;
+		for (const double y : {-1., 1.})
+			for (const auto& [x, z] : {std::pair(0., -2.), {0., 0.}, {1., -2.}, {1., slope}})
+				corners.emplace_back(x, y, z);
+		const Solid<ConvexPolyhedron> ground({cuboid({-1, -1, -2}, {0, 1, 0}), ConvexPolyhedron::hull(corners)});
+		int held = 0;
+		for (int part = 0; part < 2; ++part) {
+			PatchFeature memory;
+			const auto found = findPoints<Space>({ground, fixed, part, block, pose, 0}, true, memory);
+			for (const Feature& feature : found.features) {
+				const auto frame = frameOf(feature, ground, fixed, block, pose);
+				held += frame.position.norm() < 1e-9 && (Vector3(frame.axes.row(0)) - normal).norm() < 1e-9 && std::abs(frame.gap) < 1e-9
+				            ? 1
+				            : 0;
+			}
+		}
+		CAPTURE(slope);
+		CHECK((held > 0) == (slope < -std::tan(tilt)));
+	}
+}
+
 TEST_CASE("Parts that do not hold the body's origin are found as bodies of their own are", "[solid]")
 {
 	// A block 5 m from its own origin meets the same points as the block itself, in numbers and in places.
