@@ -197,15 +197,16 @@ int unseenPenetration(const RigidSystem<K>& s, const SmoothStep<K>& step)
 }
 
 template <class K>
-void touchingPoints(const RigidSystem<K>& s, double merged, std::vector<PointRef>& out)
+void touchingPoints(const RigidSystem<K>& s, double merged, PointRef now, std::vector<PointRef>& out)
 {
 	out.clear();
 	const double touching = merged * scale::length(s);
 	for (int c = 0; c < int(s.pairs.size()); ++c)
 		for (int i = 0; i < s.pairs[c].size(); ++i) {
 			const ContactPoint<K>& point = s.pairs[c].points[i];
-			if (!point.closed && point.gap <= touching && atStart(s, PointRef {c, i}).rate < 0)
-				out.push_back({c, i});
+			const PointRef ref {c, i};
+			if (!point.closed && (point.gap <= touching || ref == now) && atStart(s, ref).rate < 0)
+				out.push_back(ref);
 		}
 }
 
@@ -217,7 +218,7 @@ template bool isContact(const RigidSystem<Plane>&, const SmoothStep<Plane>&, con
 template bool isContact(const RigidSystem<Space>&, const SmoothStep<Space>&, const Event&);
 template int unseenPenetration(const RigidSystem<Plane>&, const SmoothStep<Plane>&);
 template int unseenPenetration(const RigidSystem<Space>&, const SmoothStep<Space>&);
-template void touchingPoints(const RigidSystem<Plane>&, double, std::vector<PointRef>&);
-template void touchingPoints(const RigidSystem<Space>&, double, std::vector<PointRef>&);
+template void touchingPoints(const RigidSystem<Plane>&, double, PointRef, std::vector<PointRef>&);
+template void touchingPoints(const RigidSystem<Space>&, double, PointRef, std::vector<PointRef>&);
 
 } // namespace masonry::localised

@@ -35,8 +35,9 @@ bool isContact(const RigidSystem<K>& system, const SmoothStep<K>& step, const Ev
 template <class K>
 int unseenPenetration(const RigidSystem<K>& system, const SmoothStep<K>& step);
 
-// Open points that touch in the system's present state, to Settings::merged, and approach each other faster than round-off.
+// Open points that touch in the system's present state, to Settings::merged, and approach each other. The point `now` touches whatever its
+// gap: the trial ended where it closes, and the shifts that close the gaps of loaded points have moved it since.
 template <class K>
-void touchingPoints(const RigidSystem<K>& system, double merged, std::vector<PointRef>& out);
+void touchingPoints(const RigidSystem<K>& system, double merged, PointRef now, std::vector<PointRef>& out);
 
 } // namespace masonry::localised

@@ -102,7 +102,7 @@ void LocalisedStep<K>::advancePart(RigidSystem<K>& s, double part)
 			return;
 		}
 		if (event.kind == Event::closing) {
-			if (!land(s)) // the point parts and would be back at once: it stays
+			if (!land(s, event.point)) // the point parts and would be back at once: it stays
 				s.pairs[event.point.pair].points[event.point.point].closed = true;
 		} else if (event.kind == Event::stop) {
 			s.pairs[event.point.pair].points[event.point.point].sliding = false;
@@ -223,11 +223,11 @@ void LocalisedStep<K>::note(const RockingImpactResult& impact)
 	note(impact.residual, impact.solved || impact.residual <= tolerance::restSpeed * step.scales.speed);
 }
 
-// Points that touch and approach each other land; false: there are none.
+// Points that touch and approach each other land, with `now`, which an event has brought to touch; false: there are none.
 template <class K>
-bool LocalisedStep<K>::land(RigidSystem<K>& s)
+bool LocalisedStep<K>::land(RigidSystem<K>& s, PointRef now)
 {
-	touchingPoints(s, settings.merged, closing);
+	touchingPoints(s, settings.merged, now, closing);
 	if (closing.empty())
 		return false;
 	const size_t known = s.impacts.size();

@@ -30,7 +30,7 @@ private:
 	void findContacts(RigidSystem<K>& system, ContactPair<K>& pair, bool within);
 	Event tryStep(RigidSystem<K>& system, double h);
 	Event tryUpTo(RigidSystem<K>& system, double h);
-	bool land(RigidSystem<K>& system);
+	bool land(RigidSystem<K>& system, PointRef now = {-1, -1});
 	void answerImpacts(RigidSystem<K>& system, size_t known);
 	void takeJumps(RigidSystem<K>& system);
 	double untilKink(const RigidSystem<K>& system, double left, double dt) const;
