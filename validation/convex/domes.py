@@ -5,6 +5,10 @@ mirror images make of them, and that is symmetric: one sector tells whether a do
 pressure at either edge and a shear force along the radius, and the pressures of its two neighbours in the ring at the four corners of the joint
 between them. Mirror images do not shear each other. The two pressures h of both neighbours add up to 2 h sin(pi/n) outwards.
 
+With `edges` a stone also meets the four stones that it touches along an edge only, in the ring above or below and in the next sector: two pressures across
+the bed, a shear force inwards, and two forces along the ring, by which the stones of both rings pull each other inwards. At the two corners of a stone,
+which are pi/n from its middle plane, a pull t adds up to 2 t sin(pi/n) inwards.
+
 Lengths in m, forces in N per unit weight of volume; (distance from the axis, height).
 """
 
@@ -41,10 +45,12 @@ class Dome:
     def _around(points, angles):
         return np.array([(rho * np.cos(a), rho * np.sin(a), z) for rho, z in points for a in angles])
 
-    def _program(self, friction, objective):
-        """Unknowns: of each bed, bottom up, pressures at its inner and outer edge and shear inwards; of each ring the pressures at the four corners."""
+    def _program(self, friction, objective=None, edges=False):
+        """Unknowns: of each bed, bottom up, pressures at its inner and outer edge and shear inwards; of each ring the pressures at the four corners; of
+        each edge, at its inner and outer end, two pressures and two pulls, and shear inwards."""
         rings, beds = len(self.stones), len(self.joints)
-        unknowns = 3 * beds + 4 * rings
+        shared = range(1, rings) if edges else ()  # beds between two rings of stones
+        unknowns = 3 * beds + 4 * rings + 5 * len(shared)
         matrix, right = np.zeros((3 * rings + 1, unknowns)), np.zeros(3 * rings + 1)
         for bed, (inner, outer) in enumerate(self.middle):
             along = (outer - inner) / np.linalg.norm(outer - inner)
@@ -62,16 +68,29 @@ class Dome:
                 matrix[3 * ring:3 * ring + 3, 3 * beds + 4 * ring + corner] = outwards, 0, -(height - z) * outwards
             right[3 * ring + 1] = volume
         right[-1] = self.closing
-        cone = np.zeros((2 * beds, unknowns))
+        cosine, sine = np.cos(self.turn), np.sin(self.turn)
+        cone = np.zeros((2 * beds + 4 * len(shared), unknowns))
+        for k, bed in enumerate(shared):
+            first = 3 * beds + 4 * rings + 5 * k
+            inner, outer = self.joints[bed]
+            along = (outer - inner) / np.linalg.norm(outer - inner)
+            up = np.array([-along[1], along[0]])
+            for column, (force, pull, at) in enumerate(((up, 0, inner), (up, 0, outer), (0 * up, 1, inner), (0 * up, 1, outer), (-along, 0, inner))):
+                for ring, sign in ((bed, 1), (bed - 1, -1)):
+                    _, (x, _, z) = self.stones[ring]
+                    outwards, upwards = 2 * (sign * force[0] * cosine - pull * sine), 2 * sign * force[1]
+                    matrix[3 * ring:3 * ring + 3, first + column] = outwards, upwards, (at[0] * cosine - x) * upwards - (at[1] - z) * outwards
+            for row, signs in enumerate(((1, 1), (1, -1), (-1, 1), (-1, -1))):  # |pull| + |shear| within the cone of the pressures
+                cone[2 * beds + 4 * k + row, first:first + 5] = -friction, -friction, signs[0], signs[0], signs[1]
         for bed in range(beds):
             for row, sign in ((2 * bed, 1), (2 * bed + 1, -1)):
                 cone[row, 3 * bed:3 * bed + 3] = -friction, -friction, sign
-        bounds = [(0, None), (0, None), (None, None)] * beds + [(0, None)] * (4 * rings)
-        result = linprog(objective, A_ub=cone, b_ub=np.zeros(2 * beds), A_eq=matrix / self.weight, b_eq=right / self.weight, bounds=bounds, method="highs")
+        bounds = [(0, None), (0, None), (None, None)] * beds + [(0, None)] * (4 * rings) + ([(0, None)] * 2 + [(None, None)] * 3) * len(shared)
+        result = linprog(np.zeros(unknowns) if objective is None else objective, A_ub=cone, b_ub=np.zeros(len(cone)), A_eq=matrix / self.weight, b_eq=right / self.weight, bounds=bounds, method="highs")
         return result if result.status in (0, 3) else None
 
-    def stands(self, friction):
-        return self._program(friction, np.zeros(3 * len(self.joints) + 4 * len(self.stones))) is not None
+    def stands(self, friction, edges=False):
+        return self._program(friction, edges=edges) is not None
 
     def thrust(self, friction):
         """Least and largest horizontal thrust of a sector on its springing, over its weight."""

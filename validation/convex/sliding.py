@@ -94,8 +94,8 @@ def wedge_slides(friction, mode):
 
 def _wedge(case, friction):
     back, relative = block_on_wedge(1000, 2000, math.pi / 6, friction)
-    return rows(case, partial(wedge_slides, friction), [(f"block on a wedge, mu {friction}: acceleration of the wedge, m/s^2", back, (1e-6, 2e-3)),
-                                                              ("of the block along it", relative, (1e-6, 2e-3))])
+    return rows(case, partial(wedge_slides, friction), [(f"block on a wedge, mu {friction}: acceleration of the wedge, m/s^2", back, (1e-6, 2e-3, 1e-3)),
+                                                              ("of the block along it", relative, (1e-6, 2e-3, 1e-3))])
 
 
 def a10_frictionless_wedge():
@@ -135,7 +135,7 @@ def a12_groove():
     slides, wedged = (math.degrees(math.atan(mu / math.sin(math.pi / 4) * more)) for more in (1, 1 / math.sqrt(1 - mu * mu)))
     made = rows("a12", plunge, [(f"bar in a V groove, mu {mu}: plunge at which it slides, deg", slides, (1e-3, 1e-3))], IN_SPACE[:1])
     made += rows("a12", plunge, [("the largest plunge that friction can bear, deg", wedged, (2e-3, 2e-3))], IN_SPACE[1:])
-    return made + rows("a12", slide, [("acceleration at 30 deg, m/s^2", groove(mu, math.pi / 6), (1e-6, 2e-3))], IN_SPACE)
+    return made + rows("a12", slide, [("acceleration at 30 deg, m/s^2", groove(mu, math.pi / 6), (1e-6, 2e-3, 1e-3))], IN_SPACE)
 
 
 def rock_wedge(friction):
@@ -164,9 +164,9 @@ def a13_rock_wedge():
         found = [share * friction / (1 - slides(mode, share)) for share in (0.5, 0.99)]
         return (*found, slides(mode, 1.01))
 
-    return rows("a13", measure, [("rock wedge: critical friction, from its slide with half of it", friction, (1e-6, 2e-3)),
-                                 ("with 0.99 of it", friction, (1e-6, 2e-3)),
-                                 ("with 1.01 of it: share of the pull that moves it", 0, (1e-9, 1e-3))], IN_SPACE)
+    return rows("a13", measure, [("rock wedge: critical friction, from its slide with half of it", friction, (1e-6, 2e-3, 1e-3)),
+                                 ("with 0.99 of it", friction, (1e-6, 2e-3, 1e-3)),
+                                 ("with 1.01 of it: share of the pull that moves it", 0, (1e-9, 1e-3, 1e-3))], IN_SPACE)
 
 
 def pushed_keystone(mode, half_angle, friction, weight, beside, push):
@@ -199,7 +199,7 @@ def a20_keystone():
     for degrees, *given in ((20, 0.3, 1, 1), (15, 0.0, 1, 4)):
         right = keystone(math.radians(degrees), given[0], 0.5, *given[1:])
         made += rows("a20", lambda mode, d=degrees, given=given: least(mode, math.radians(d), *given),
-                     [(f"keystone, half angle {degrees} deg, mu {given[0]}: push that starts it, weights", right, (5e-3, 5e-3))])
+                     [(f"keystone, half angle {degrees} deg, mu {given[0]}: push that starts it, weights", right, (5e-3, 5e-3, 1e-2))])
     return made
 
 

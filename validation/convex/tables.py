@@ -9,14 +9,14 @@ import rolling
 import sliding
 import structures
 import tipping
-from rows import BULLET, MODES
+from rows import BULLET, COMPLIANT, MODES
 
 OUT = os.environ.get("CONVEX_OUT", "results/convex")
 MODULES = [rolling, sliding, tipping, arches, structures]
 
 
 def main(wanted):
-    head = ["case", "quantity", "right value", *(f"`{method}`, {model}" for method, model in MODES), *(f"{program} {shapes}" for program, shapes in BULLET), "allowed", "holds"]
+    head = ["case", "quantity", "right value", *(f"`{method}`, {model}" for method, model in MODES + COMPLIANT), *(f"{program} {shapes}" for program, shapes in BULLET), "allowed", "holds"]
     if not BULLET:
         print("Bullet is left out: install libbullet-dev, and build the target convex_bullet.")
     print("| " + " | ".join(head) + " |\n" + "| --- " * len(head) + "|")
@@ -27,6 +27,7 @@ def main(wanted):
             print(row, flush=True)
     if not wanted:
         os.makedirs(OUT, exist_ok=True)
+        rolling.draw(OUT)
         tipping.draw(OUT)
     print(f"\n{time.process_time() - begun:.0f} CPU s; {'all rows hold' if good else 'NOT ALL ROWS HOLD'}", flush=True)
     return 0 if good else 1
