@@ -21,7 +21,7 @@ public:
 		((Real, normalStiffness, NaN, Attr::triggerPostLoad, "Normal stiffness of a joint per unit of area [Pa/m], positive. NaN (default): chosen by dem.engines()."))
 		((Real, shearStiffness, NaN, Attr::triggerPostLoad, "Shear stiffness of a joint per unit of area [Pa/m], positive. NaN (default): chosen by dem.engines()."))
 		((bool, noSlip, false, , "If true, the contact never slips, whatever the friction angle: the hypothesis of closed-form rocking."))
-		((shared_ptr<JointMat>, mortar, , Attr::triggerPostLoad, "Mortar of the joints between blocks that both have it and touch when the run starts, for compliant joints. None (default): dry joints."))
+		((shared_ptr<JointMat>, mortar, , Attr::triggerPostLoad, "Mortar of the joints between blocks that both have it and touch when the run starts, with model='compliant' or method='wall'. None (default): dry joints."))
 		((shared_ptr<JointMat>, headMortar, , Attr::triggerPostLoad, "Mortar of the head joints, whose faces are upright, instead of `mortar`. None (default): that of `mortar`."))
 		((bool, unfilledHeads, false, Attr::triggerPostLoad, "Whether head joints have no mortar: they are dry.")),
 		createIndex();

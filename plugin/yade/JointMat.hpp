@@ -21,7 +21,7 @@ public:
 
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(JointMat, Serializable,
-		"Mortar of compliant joints. A joint is elastic up to its strengths; then it cracks and spends its fracture energies; then it is a dry joint. Give it to the BlockMat of both blocks (mortar=), or to dem.bond().",
+		"Mortar of joints, with model='compliant' or method='wall'. A joint is elastic up to its strengths; then it cracks and spends its fracture energies; then it is a dry joint. Give it to the BlockMat of both blocks (mortar=), or to dem.bond().",
 		((Real, tensileStrength, NaN, Attr::triggerPostLoad, "Direct tensile strength [Pa], 0 or positive."))
 		((Real, flexuralStrength, NaN, Attr::triggerPostLoad, "Strength that a bond wrench reports, 6 M / (b h^2) [Pa], instead of tensileStrength; it needs normalStiffness. directStrength tells the tensile strength it stands for."))
 		((Real, fractureEnergy, NaN, Attr::triggerPostLoad, "Energy that a crack in tension spends [J/m^2 = N/m], positive."))

@@ -1,4 +1,5 @@
 """README, CHANGELOG and docs: their snippets print what the pages say, their links lead somewhere, and they keep to their lengths."""
+import ast
 import os
 import re
 import shutil
@@ -66,6 +67,15 @@ def test_links_lead_somewhere(page):
         assert ROOT in (file, *file.parents), f"{page.name}: {target} leaves the project"
         if anchor:
             assert anchor in _headings(file), f"{page.name}: {target} has no such heading"
+
+
+@pytest.mark.parametrize("folder", sorted({path.parent for path in (ROOT / "plugin/python/masonry").rglob("*.py")}), ids=lambda path: path.name)
+def test_tables_of_docstrings_have_a_line_for_each_name(folder):
+    """Two gaps in a line are two lines in one, which the pages show as a block of code."""
+    for path in folder.glob("*.py"):
+        nodes = [node for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))) if isinstance(node, (ast.FunctionDef, ast.ClassDef, ast.Module))]
+        lines = [line for node in nodes for line in (ast.get_docstring(node) or "").splitlines()]
+        assert not [line for line in lines if re.search(r"\S {3,}\S.* {3,}\S", line)], path.name
 
 
 def test_comparison_of_what_is_printed():

@@ -150,10 +150,10 @@ def test_warnings_are_sentences(command, folder):
     assert status == 0 and error == "masonry: The record 'fast.csv' reaches 60 m/s^2 before its scale, 6.12 g: is its unit right?\n"
 
 
-def test_sizes_in_millimetres_are_asked_about(command):
+def test_sizes_in_millimetres_are_asked_about(command, folder):
     status, _, error = command("rock quake.AT2 --width 400 --height 2000 --end 0.5")
     assert status == 0 and error == "masonry: The block measures 400 x 2000 m: sizes are in m.\n"
-    assert command("rock quake.AT2 --width 0.4 --height 2 --end 0.5")[2] == ""
+    assert command("rock quake.AT2 --width 0.4 --height 2 --end 0.5")[2] == "" and (folder / "rotation.csv").exists()
 
 
 def test_lists_of_numbers():

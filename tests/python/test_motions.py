@@ -213,6 +213,9 @@ def test_records_have_a_unit_and_a_peak(recwarn):
     recwarn.clear()
     masonry.simulate(block, masonry.Record(0.01, [0, 293, 0], unit="m/s^2"))      # cm/s^2 taken for m/s^2
     assert [str(warning.message) for warning in recwarn.list] == ["The record reaches 293 m/s^2 before its scale, 29.9 g: is its unit right?"]
+    recwarn.clear()
+    masonry.simulate(block, masonry.Record(10, [0, 1, 0], unit="m/s^2"))          # 10 ms taken for 10 s
+    assert [str(warning.message) for warning in recwarn.list] == ["The record has steps of 10 s: are they in ms? dt is in s."]
     with pytest.raises(ValueError, match="unit = 'gal': must be one of"):
         masonry.Record(0.01, [0, 1], unit="gal")
 

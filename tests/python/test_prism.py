@@ -71,6 +71,8 @@ def test_bad_sections():
         masonry.RockingBlock.of([(0, 0), (0.2, 0), (1, 2), (0.8, 2)])
     with pytest.raises(ValueError, match=r"points \(x, y\)"):
         masonry.RockingBlock.of([1, 2, 3])
+    with pytest.raises(ValueError, match="depth of a corner of the polygon in the hull of the others = 1: must be 0 m: a section is convex"):
+        masonry.RockingBlock.of([(0, 0), (3, 0), (1, 1), (0, 4)])  # the centre of the circle in a triangle with the sides 3, 4, 5
     with pytest.raises(ValueError, match="number of vertices"):
         masonry.RockingBlock.of([(0, 0), (1, 1)])
     with pytest.raises(ValueError, match="symmetric"):

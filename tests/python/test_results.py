@@ -23,6 +23,15 @@ def test_a_rocking_block_opens_its_joint_by_2b_sin_angle(axis, width, frame):
     assert np.allclose(h.rotation[:, 1], np.abs(angles), rtol=0, atol=ROUND) and (h.rotation[:, 0] == 0).all()
 
 
+def test_the_end_of_a_run_between_two_samples():
+    """Times up to the end of the run have the last sample, but not those long after a recorder has stopped."""
+    for end, latest in ((1.0, "1"), (1.3, "1.3"), (9.0, "1.5")):
+        h = history([[2, 2, 0.2], [0.6, 0.5, 0.4]], [[[0, 0, -0.1], [0, 0, 0.2]]] * 3, end=end)
+        assert h.sample(min(end, 1.5)) == 2
+        with pytest.raises(ValueError, match=f"^time = 9.1: must be from 0 to {latest} s"):
+            h.sample(9.1)
+
+
 def test_a_sliding_block_slips_by_its_way_over_the_base():
     way = np.array([0, 0.04, 0.07, 0.05])
     base = np.array([[0, 0, -0.1], [1, 0, -0.1], [2, 0.5, -0.1], [0, 0, -0.1]])

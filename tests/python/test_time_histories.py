@@ -132,6 +132,9 @@ def test_energy_by_joint(tmp_path):
     assert "Energy by joint" in page and "friction 0.36 J (0.4 J in the balance of the whole scene)" in page
     with pytest.raises(ValueError, match="recordForces=True"):
         results.joint_energies(rocking([0, 0.05]))
+    silent = dissipating()
+    silent.forces = None
+    assert "friction: 0.4 J in the balance of the whole scene, and not known of the joints" in str(results.joint_energies(silent))
 
 
 def test_forces_of_ties():

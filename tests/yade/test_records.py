@@ -76,10 +76,12 @@ def test_the_constructor_takes_any_unit():
     (dict(displacement=ROUNDED, baseline="constant"), "baseline = 'constant': must be 'none' for a displacement"),
     (dict(velocity=SPEEDS, samples=[1.0, 2.0]), "acceleration and velocity of acceleration, velocity and displacement is given"),
     (dict(velocity=SPEEDS + 1), "velocity[0] = 1: must be 0"),
+    (dict(unit="g"), "unit = 'g': must come with samples, velocity or displacement"),
 ))
 def test_what_is_refused(options, words):
     """It names what it does not take."""
     refuses(lambda: dem.RecordMotionEngine(ids=[0], **options), words)
+    refuses(lambda: dem.RecordMotionEngine(ids=[0], sample=[0.0, 0.5], unit="g"), "has no `sample`; did you mean `samples`", kind=AttributeError)
 
 
 @pytest.mark.parametrize("make", (

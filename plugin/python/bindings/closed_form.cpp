@@ -1,5 +1,9 @@
 #include "rocking/closed_form.hpp"
 #include "expose.hpp"
+#include "tolerances.hpp"
+#include "validation.hpp"
+#include <algorithm>
+#include <limits>
 
 namespace masonry::python {
 
@@ -48,7 +52,15 @@ py::tuple prismOf(const py::object& xs, const py::object& ys)
 	std::vector<Vector2> points;
 	for (size_t k = 0; k < x.size(); ++k)
 		points.emplace_back(x[k], y[k]);
-	const ConvexPolygon section = ConvexPolygon::hull(std::move(points));
+	Vector2 centre;
+	const ConvexPolygon section = ConvexPolygon::hull(points, &centre);
+	for (const Vector2& point : points) {
+		double depth = std::numeric_limits<double>::infinity();
+		for (const ConvexPolygon::Face& face : section.faces())
+			depth = std::min(depth, face.offset - face.normal.dot(point - centre));
+		require("depth of a corner of the polygon in the hull of the others", depth, depth <= tolerance::shape::flat * 2 * section.radius(),
+		        "must be 0 m: a section is convex");
+	}
 	const RockingPrism block(section, 1);
 	return py::make_tuple(block.right.halfWidth, block.left.halfWidth, block.right.halfHeight, section.gyrationSquared());
 }

@@ -54,7 +54,7 @@ class RockingBlock:
 
     @classmethod
     def of(cls, polygon, gravity=9.81):
-        """One block whose section is the convex hull of these points (x, y), m. It stands on its lowest side, which must be level.
+        """One block whose section is the convex polygon with these corners (x, y), m, in any order. It stands on its lowest side, which must be level.
 
         Its own half_width, critical_angle, ... are those of the edge with the smaller critical angle: half_width is the distance of the
         centre of mass from the edge, half_height its height. natural_restitution of an edge is that of the impacts that end a turn about it;

@@ -85,7 +85,7 @@ class History:
         under = "on a still base" if self.motion is None else f"under {shown(self.motion)}"
         rest = f", at rest from {self.rest_time:.4g} s on" if np.isfinite(self.rest_time) else "" if falls else f", still rocking at {self.end_time:.4g} s"
         block = self.block
-        size = f"of {2 * block.half_width:g} x {2 * block.half_height:g} m" if block.right is block else f"{block}"
+        size = f"of {2 * block.half_width:g} x {2 * block.half_height:g} m" if block.right is block else f"{block}".removeprefix("RockingBlock ")
         return f"History(block {size} {under}: {done}{rest})"
 
     def _of_one(self, what):

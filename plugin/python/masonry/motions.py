@@ -170,6 +170,8 @@ class Sine(_Shaped):
 _BASELINES = "none", "constant", "linear", "high-pass"
 # m/s^2: no motion of the ground, so the unit is another.
 _FASTEST = 50
+# s: strong motion is recorded in steps of 2.5 to 20 ms, so longer ones are rather in ms.
+LONGEST_STEP = 0.5
 # m/s^2, m/s or m: the limit of the accelerations of a base, and of samples that make them.
 _LARGEST = 1e6
 # Steps at the ends of a displacement or velocity in which a way to or from rest shows.
@@ -294,10 +296,12 @@ class Record(Motion):
         return result
 
     def doubt(self):
-        """A sentence on what may not be meant: a record whose peak is beyond those of earthquakes, or, without a unit, that of strong motion in g;
+        """A sentence on what may not be meant: steps that may be in ms; a record whose peak is beyond those of earthquakes, or, without a unit, that of strong motion in g;
         displacements or velocities that are too fast, or that do not begin or end at rest. '' otherwise."""
         peak = np.max(self.peak)
         name = f" {self.name[:60]!r}" if self.name else ""
+        if self.dt > LONGEST_STEP:
+            return f"The record{name} has steps of {self.dt:g} s: are they in ms? dt is in s."
         if self.quantity != "acceleration":
             inside = np.abs(self._unscaled[_EDGE:-_EDGE]).max(initial=0) * np.abs(self.scale).max()
             if peak > 3 * inside:

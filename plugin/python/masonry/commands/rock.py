@@ -20,7 +20,7 @@ def add(subcommands):
     parser.add_argument("--restitution", type=float, help="C (default: the natural one)")
     parser.add_argument("--scale", type=float, default=1.0, help="factor on the record (default: 1)")
     parser.add_argument("--end", type=float, metavar="SECONDS", help="end of the run, s (default: when the record is over and the block at rest or overturned)")
-    parser.add_argument("-o", "--output", type=Path, metavar="NAME", help="NAME.csv and NAME.png are written (default: rocking)", default=Path("rocking"))
+    parser.add_argument("-o", "--output", type=Path, metavar="NAME", help="NAME.csv and NAME.png are written (default: rotation)", default=Path("rotation"))
     parser.set_defaults(run=run)
 
 

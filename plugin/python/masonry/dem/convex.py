@@ -171,7 +171,7 @@ def column(drums, radii, heights, material, on=None, sides=24, fit="area", at=(0
 
     radii      of the joints, m, bottom up, one more than there are drums; or one number
     heights    of the drums, m; or one number
-    sides, fit as in dem.drum()"""
+    sides, fit  as in dem.drum()"""
     radii, heights = solids.column_given(drums, radii, heights)
     ids = _structure(solids.column_layout(radii, heights, sides, fit), material, on, at)
     _say_critical_angle(*radii[:2], heights[0], sides, fit)

@@ -7,11 +7,13 @@ import masonry
 import numpy as np
 from masonry.dem.bodies import half_sizes, poses
 from masonry.dem.checks import floating_and_supports, listed
+from masonry.motions import LONGEST_STEP
 from yade import O, wrapper
 
-# What is no slip of units: the longest free block (mm for m), m; densities (g/cm^3) and those of masonry, kg/m^3; peaks of records (g, cm/s^2), m/s^2.
+# What is no slip of units: the longest free block (mm for m), m; densities, kg/m^3, of which light timber has 300, and stone 2.7 in g/cm^3 and 27 in kN/m^3; peaks of
+# records (g, cm/s^2), m/s^2.
 _LONGEST = 50
-_DENSITIES = 500, 20000
+_DENSITIES = 100, 20000
 _PEAKS = 0.1, 50
 # Peaks that would be usual in g, of a record whose unit the script has not named.
 _PEAKS_IN_G = 0.1, 1.5
@@ -138,6 +140,8 @@ def say_what_looks_odd(blocks, motions, gravity, others, tied=()):
             say(f"a record reaches {peak:.3g}: in g or cm/s^2? Accelerations are in m/s^2")
         elif _PEAKS_IN_G[0] <= peak <= _PEAKS_IN_G[1] and not _has_unit(record):
             say(f"a record given without a unit reaches {peak:.3g} m/s^2: is it in g? Then multiply it by {_STANDARD_GRAVITY:g}; else name its unit")
+        if record.interval > LONGEST_STEP:
+            say(f"a record has steps of {record.interval:g} s: are they in ms? Times are in s")
     longest = poses([b for b in blocks if b.dynamic])[1].max()
     if longest > _LONGEST:
         say(f"the longest block measures {longest:g} m: sizes are in m")

@@ -1,6 +1,7 @@
 """RecordMotionEngine from velocities and displacements."""
 
 import masonry
+from masonry._given import shown
 from yade import wrapper
 
 from masonry.dem import notes
@@ -12,6 +13,9 @@ def _from_motions(cls):
 
     def __init__(self, *arguments, displacement=None, velocity=None, unit=None, resolution=None, **attributes):
         moved = displacement is not None or velocity is not None
+        if unit is not None and not moved and "samples" not in attributes:
+            make(self, *arguments, **attributes)  # refuses a misspelled name
+            raise ValueError(f"unit = {shown(unit)}: must come with samples, velocity or displacement")
         if moved or unit is not None:
             baseline = attributes.get("baseline", "none") if moved else "none"
             record = masonry.Record(attributes.get("interval", default), attributes.get("samples"), baseline=baseline, unit=unit, velocity=velocity,

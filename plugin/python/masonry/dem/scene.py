@@ -35,7 +35,7 @@ def _axis(name):
 
 
 def base(size, material, at=(0.0, 0.0)):
-    """A body that does not move by itself, with its top face at z = 0 and the middle of that face at `at` (x, y), m. size: full sizes (x, y, z), m.
+    """A body that does not move by itself, with its top face at z = 0 and the middle of that face at the point `at`, (x, y) in m. size: full sizes (x, y, z), m.
     A motion engine (PulseTrainEngine, RecordMotionEngine) moves it. Returns its id."""
     size, (x, y) = _positive_size("size", size), finite_numbers("at", at, 2, _TWO)
     body = utils.box(Vector3(x, y, -size[2] / 2), size / 2, Quaternion.Identity, material=block_material(material), fixed=True)
@@ -44,7 +44,7 @@ def base(size, material, at=(0.0, 0.0)):
 
 
 def block(size, material, on=None, center=None, orientation=None, at=(0.0, 0.0)):
-    """A free block. size: full sizes (x, y, z), m. It stands on the body `on`, with its centre above it at `at` (x, y), m, from the middle of its upper
+    """A free block. size: full sizes (x, y, z), m. It stands on the body `on`, with its centre above the point `at`, (x, y) in m from the middle of its upper
     face, or has its centre at `center` (m).
     orientation: a Quaternion; with `on`, a turn about z at most. dem.angle counts from that turn about z, not from the world's axes.
     Returns its id."""
@@ -70,7 +70,7 @@ def block(size, material, on=None, center=None, orientation=None, at=(0.0, 0.0))
 
 
 def stack(n, size, material, on, at=(0.0, 0.0)):
-    """n equal blocks on top of each other, the lowest at `at` (x, y), m, on the body `on`, as in dem.block(). Returns their ids, bottom up."""
+    """n equal blocks on top of each other, the lowest at the point `at`, (x, y) in m, of the body `on`, as in dem.block(). Returns their ids, bottom up."""
     n = layouts.whole("n", n, 1)
     ids = [block(size, material, on=on, at=at)]
     while len(ids) < n:
@@ -97,7 +97,8 @@ def wall(courses=None, per_course=None, size=None, material=None, on=None, gap=0
     at            (x, y) of the middle of the wall on the body `on`, m (on several: from the middle of the rectangle around them); every block of the bottom
                   course has its centre above that body
     along         direction of the wall in plan, (dx, dy) in the axes of the body `on`: (0, 1) along y. dem.angle(id, 'y') is the lean of a block along its
-                  wall, dem.angle(id, 'x') out of it; along y, where blocks are not turned, the other way round    split         a JointMat: each whole block is two halves, two ids one after the other, with a joint of this mortar in its middle, where it may crack
+                  wall, dem.angle(id, 'x') out of it; along y, where blocks are not turned, the other way round
+    split         a JointMat: each whole block is two halves, two ids one after the other, with a joint of this mortar in its middle, where it may crack
                   (model='compliant')
     """
     missing = [name for name, value in (("material", material), ("on", on)) if value is None]

@@ -128,8 +128,8 @@ class TiltTable:
                              "model='compliant': leave `split` out")
         mortared = next((b.id for b in self._blocks if b.mat.mortar is not None), None)
         if mortared is not None:
-            raise ValueError(f"O.bodies[{mortared}].mat has mortar: TiltTable knows dry joints only, and mortar needs model='compliant': leave the "
-                             "mortar out, or turn the gravity of compliant blocks (O.engines[-1].gravity) step by step")
+            raise ValueError(f"O.bodies[{mortared}].mat has mortar: TiltTable knows dry joints only. Leave the mortar out, or turn the gravity of a run "
+                             "with mortar (model='compliant', in one upright plane also method='wall') step by step: O.engines[-1].gravity")
         if model == "auto" and any(has_stiffness(b.mat) for b in self._blocks):
             raise ValueError("model = 'auto': must be 'planar' or 'spatial' where a BlockMat has a joint stiffness: TiltTable is for rigid blocks")
         self._start = [(b.state.pos, b.state.ori) for b in self._blocks]

@@ -37,6 +37,8 @@ class JointEnergies(Table):
             if np.isfinite(self.table[name]).any():
                 known = "" if np.isnan(self.engine[name]) else f" ({self.engine[name]:.4g} J in the balance of the whole scene)"
                 lines.append(f"  {name}: {np.nansum(self.table[name]):.4g} J in the joints{known}")
+            elif self.engine[name] > 0:
+                lines.append(f"  {name}: {self.engine[name]:.4g} J in the balance of the whole scene, and not known of the joints")
         for row in self.table[:_NAMED]:
             parts = ", ".join(f"{name} {row[name]:.3g}" for name in _PARTS if row[name] > 0)
             lines += [f"  blocks {row['id1']} and {row['id2']}: {row['total']:.4g} J ({parts})"] if row["total"] > 0 else []

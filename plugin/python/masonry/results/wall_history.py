@@ -141,11 +141,13 @@ class WallHistory:
             np.savetxt(beside, np.column_stack(list(columns.values())), delimiter=",", header=",".join(columns), comments="")
 
     def sample(self, time=None, name="time"):
-        """Number of the sample nearest to `time` (s, within the history); None: the last. name: what an error calls it."""
+        """Number of the sample nearest to `time` (s, up to the end of the run); None: the last. name: what an error calls it."""
         if time is None:
             return len(self.time) - 1
-        if not self.time[0] <= number_given(name, time) <= self.time[-1]:
-            raise ValueError(f"{name} = {time}: must be from {self.time[0]:g} to {self.time[-1]:g} s")
+        # A run ends between two samples; a recorder that has stopped long before knows nothing of the rest.
+        latest = min(self.end, self.time[-1] + np.diff(self.time).max(initial=0.0))
+        if not self.time[0] <= number_given(name, time) <= latest:
+            raise ValueError(f"{name} = {time}: must be from {self.time[0]:g} to {latest:g} s")
         return int(np.abs(self.time - time).argmin())
 
     @property

@@ -33,7 +33,7 @@ def peak_ratio(block, motion, restitution=None, restoring="exact", t_end=None, h
                                tuple(column[part] for column in state), restoring, half_cycles)
         peaks = np.where(found["peak_times"] >= since, found["peak_angles"], 0.0)  # NaN times of short rows count as 0
         largest = np.maximum(peaks.max(axis=1, initial=0.0) / critical[0][part], -peaks.min(axis=1, initial=0.0) / critical[1][part])
-        ratio[part] = np.where(found["overturn_half_cycle"] > 0, np.inf, largest)
+        ratio[part] = np.where(found["overturn_half_cycle"] > 0, np.inf, largest + 0.0)  # not -0.0 where the block rests
     return restore(ratio, shape)
 
 
