@@ -87,8 +87,8 @@ constexpr double gap = 1e-13;
 // Speed relative to sqrt(g * smallest half size) at which a penetration is taken off where lifting costs more energy than the contacts
 // lose. Larger: a block rises with its weight times this speed; smaller: penetrations, up to the merged gap, stay longer.
 constexpr double closingSpeed = 5e-9;
-// What the spins may gain in a step over the work on them, relative to the weight times the smallest half size. Smaller: more passes over
-// a step.
+// Energy that the spins may gain in a step over the work on them, relative to the weight times the smallest half size. Smaller: more passes
+// over a step.
 constexpr double spinEnergy = 1e-11;
 // Energy, relative to the same, that a step may give where it takes stray velocities off. Larger: round-off decides more often whether it
 // does; smaller: the solver's errors stay in blocks at rest.
@@ -213,8 +213,8 @@ constexpr double softness = 1e-2;
 // The smallest that it falls to. Larger: tall columns and large mass ratios converge linearly; smaller: round-off of the
 // factorisation.
 constexpr double minSoftness = 1e-9;
-// That from impulses close to the solution. Larger: a second centre a step, and more changes of state; smaller: round-off decides
-// the states of unloaded points.
+// The softness of a first step from impulses close to the solution. Larger: a second centre, more changes of state; smaller: round-off
+// decides the states of unloaded points.
 constexpr double resumedSoftness = 3e-9;
 // Relative distance from the friction cone at which an impulse given is taken to slip. Larger: sticking points start as slipping;
 // smaller: round-off makes slipping ones stick. Either costs a factorisation.

@@ -27,7 +27,7 @@ class BaseMotionEngine : public PartialEngine {
 public:
 	void action() override;
 
-	/// Of the time in this motion, t = 0 at `start`. Along `direction`.
+	/// Motion along `direction` at a time of it, t = 0 at `start`.
 	virtual Real displacement(Real) const { return 0; } // m
 	virtual Real velocity(Real) const { return 0; }     // m/s
 	virtual Real acceleration(Real) const { return 0; } // m/s^2, jumps left out
@@ -52,7 +52,7 @@ public:
 	/// Finds where the bodies stand when the motion begins; called before every step, with all motions of the scene. Once its time has come
 	/// it goes on as it is: changed attributes are refused, as they would put the bodies elsewhere at once.
 	void begin(const Motions& all);
-	/// Where body number k of ids is without any displacement. A motion knows that along its direction, of the others' theirs.
+	/// Place of body number k of ids without any displacement. Each motion knows it along its own direction.
 	Vector3r origin(size_t k, const Motions& all) const;
 	/// begin() has nothing to do.
 	bool goesOn() const;
@@ -115,7 +115,7 @@ private:
 	void takeOrigins();
 	[[noreturn]] void refuseChange(const string& attribute, const string& value, const string& before) const;
 
-	// Of the motion that has begun; nothing yet after loading.
+	// State of the motion that has begun; nothing yet after loading.
 	boost::weak_ptr<Scene> home;
 	Settings begun;
 	vector<int> begunIds;

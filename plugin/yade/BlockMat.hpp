@@ -11,7 +11,7 @@ public:
 	/// Throws std::invalid_argument naming attribute, value and allowed range.
 	void postLoad(BlockMat&);
 
-	/// That of its head joints or of its other joints; null: they are dry.
+	/// Mortar of its head joints or of its other joints; null: they are dry.
 	shared_ptr<JointMat> mortarOf(bool isHead) const;
 
 	// clang-format off

@@ -120,7 +120,7 @@ void MoreauJeanIntegrator::leaveScene()
 	along = Vector3r::Zero();
 	forgetImpacts(*this);
 	forget(frictDissip, impactDissip, dampDissip, crackDissip, bondedIds, bondedState, baseWork, potentialShift, worstResidual, substeps,
-	       events, unlocalised, sweeps, factorisations, stillSteps, movingSteps, madeEnergy, lostEnergy, turnedOver, lift, toldMade,
+	       events, unlocalised, sweeps, factorisations, movingSteps, madeEnergy, lostEnergy, turnedOver, lift, toldMade,
 	       toldLost, failures, firstFailure, warned);
 }
 
@@ -277,9 +277,7 @@ void MoreauJeanIntegrator::take(const RigidResults& results)
 		          impact.capped);
 	if (!wall)
 		return;
-	const bool still = results.walls.moved == 0;
-	mode = still ? "still" : "moving";
-	++(still ? stillSteps : movingSteps);
+	movingSteps += results.walls.moved > 0;
 	movingBlocks = results.walls.moved;
 	localisedBlocks = results.localisedBlocks;
 	velocityResidual = results.walls.velocityResidual;

@@ -96,7 +96,7 @@ private:
 	void writeEnergies();
 	void warn(const masonry::CompliantReport& report);
 
-	// Of the running process, found again after loading.
+	// Members of the running process are found again after loading.
 	boost::weak_ptr<Scene> home;
 	Real checkedTimeStep = 0; // 0: no step yet
 	Real dampingRatio = 0;    // of the contact springs

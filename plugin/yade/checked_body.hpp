@@ -1,5 +1,5 @@
 #pragma once
-// What a block must be made of, for rigid and compliant joints alike.
+// Checks of a block's parts, for rigid and compliant joints alike.
 
 #include "BlockMat.hpp"
 #include "block_shape.hpp"
@@ -8,7 +8,7 @@
 
 namespace yade {
 
-/// What MoreauJeanIntegrator handles.
+/// Whether MoreauJeanIntegrator handles the body.
 inline bool isBlock(const Body& body)
 {
 	return dynamic_cast<const BlockMat*>(body.material.get()) && body.shape && BlockShape::isOne(*body.shape);

@@ -37,7 +37,7 @@ inline void addMortar(JointForce& joint, const BlockGeom& geom, const BlockPhys&
 		joint.point = place + joint.force.cross(moment) / joint.force.squaredNorm();
 }
 
-/// Of the joints that carry load, in the order of their ids.
+/// Forces of the joints that carry load, in the order of their ids.
 inline vector<JointForce> jointForces(const Scene& scene)
 {
 	for (const auto& engine : scene.engines)

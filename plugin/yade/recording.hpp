@@ -1,5 +1,5 @@
 #pragma once
-// What recorders have in common: when they are due, and which bodies they began with.
+// Recorders have in common when they are due, and which bodies they began with.
 
 #include <core/Scene.hpp>
 #include <pkg/common/PeriodicEngines.hpp>

@@ -1,4 +1,4 @@
-// What MoreauJeanIntegrator asks of a scene before it steps, and whether that lies in a plane.
+// MoreauJeanIntegrator checks a scene before it steps, and finds whether it lies in a plane.
 
 #include "BaseMotionEngine.hpp"
 #include "BlockTie.hpp"

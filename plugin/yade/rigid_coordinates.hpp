@@ -1,5 +1,5 @@
 #pragma once
-// Where the core's plane or space lies in the scene, and how a body sits in it. No physics here.
+// Place of the core's plane or space in the scene, and of a body in it. No physics here.
 
 #include "block_shape.hpp"
 #include "dynamics/model/rigid_system.hpp"
@@ -26,7 +26,7 @@ inline bool isSame(const masonry::Pose& a, const masonry::Pose& b)
 	return a.position == b.position && a.orientation.coeffs() == b.orientation.coeffs();
 }
 
-/// What a body's State says, as it was written last.
+/// Motion of a body's State, as it was written last.
 struct Motion {
 	Vector3r pos, vel, angVel;
 	Quaternionr ori;
@@ -55,7 +55,7 @@ struct Coordinates<Plane> {
 			throw LeavesPlane("gravity points out of the plane");
 		return in(g);
 	}
-	/// Of a motion, a unit vector. Throws LeavesPlane.
+	/// Direction of a motion, a unit vector. Throws LeavesPlane.
 	masonry::Vector2 direction(const Vector3r& d) const
 	{
 		if (std::abs(normal.dot(d)) > outOfPlane)
@@ -63,14 +63,14 @@ struct Coordinates<Plane> {
 		return in(d);
 	}
 	Vector3r out(const masonry::Vector2& v) const { return v.x() * along + v.y() * up; }
-	/// Of block `id`. Throws LeavesPlane.
+	/// Load on block `id`. Throws LeavesPlane.
 	Plane::Velocity load(const Vector3r& force, const Vector3r& torque, int id) const
 	{
 		if (leaves(force, torque))
 			throw LeavesPlane(sentence("a force or torque acts on block ", id, " out of the plane"));
 		return in(force, torque);
 	}
-	/// Of block `id`. Throws LeavesPlane.
+	/// Velocity of block `id`. Throws LeavesPlane.
 	Plane::Velocity velocity(const State& state, int id) const
 	{
 		if (leaves(state.vel, state.angVel))

@@ -14,7 +14,7 @@
 
 namespace yade {
 
-/// What a script may change between steps and the core has taken over.
+/// Properties that a script may change between steps and the core has taken over.
 struct Properties {
 	BlockShape shape;
 	Vector3r inertia;
@@ -47,7 +47,7 @@ struct Seen {
 	bool isStill(const shared_ptr<Body>& now) const { return now == body && (!now || (now->material == material && now->shape == shape)); }
 };
 
-/// What a scene is stepped by.
+/// Settings of a step.
 struct RigidSettings {
 	Vector3r gravity;
 	bool walls, watched, begins;            // method='wall'; O.interactions may be looked at before the next step; no step has been made
@@ -59,7 +59,7 @@ struct RigidEnergies { // J, since the start of the run
 	Real frictDissip, impactDissip, tieDissip, crackDissip, baseWork, potentialShift;
 };
 
-/// What a step has come to.
+/// Results of a step.
 struct RigidResults {
 	masonry::StepReport report;
 	masonry::StepErrors errors;
@@ -118,7 +118,7 @@ public:
 
 	vector<Real> pack() override;
 
-	/// What the step itself remembers, if the blocks are still those of `before` and move as they did.
+	/// Takes the memory of the step itself, if the blocks are still those of `before` and move as they did.
 	void unpackStepper(masonry::NumberReader& archive, const Remembered<K>& before);
 
 	bool isPresent() const override { return home.lock() == Omega::instance().getScene(); }
@@ -178,7 +178,7 @@ private:
 	void warnOfMotion(size_t b);
 	void warnOfPlace(size_t b);
 
-	/// What walls know of a pair is of places alone.
+	/// Walls know only the places of such a pair.
 	bool isOfWall(const Pair& pair) const { return byWalls && !scheduler->isLocalised(pair.body1) && !scheduler->isLocalised(pair.body2); }
 
 	/// The points of a pair that nothing is known of: in touch where they are, and do not approach each other. `placed`: by a script, not

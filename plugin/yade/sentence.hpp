@@ -1,5 +1,5 @@
 #pragma once
-// What errors say.
+// Sentences of errors.
 
 #include <sstream>
 #include <stdexcept>

@@ -36,7 +36,7 @@ public:
 				contact.phys->takeLaw(pairs[c].friction, pairs[c].restitution);
 	}
 
-	/// Of blocks that another engine had near each other.
+	/// Erases interactions of blocks that another engine had near each other.
 	void dropStrangers()
 	{
 		std::unordered_set<const Interaction*> own;

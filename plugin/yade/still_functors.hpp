@@ -1,5 +1,5 @@
 #pragma once
-// What an InteractionLoop for other bodies calls for a pair of rigid blocks: nothing happens, the interaction stays.
+// An InteractionLoop for other bodies calls these for a pair of rigid blocks: nothing happens, the interaction stays.
 
 #include <core/Dispatching.hpp>
 

@@ -89,7 +89,7 @@ def bits():
     for i in sorted(O.interactions, key=lambda i: (i.id1, i.id2)):
         vectors += [(i.id1, i.id2), *i.phys.forces, *getattr(i.phys, "shears", ())]
     vectors += [value for name, value in sorted(engine.dict().items()) if name.startswith("impact") and isinstance(value, list)]
-    counters = [getattr(engine, name) for name in ("sweeps", "events", "stillSteps", "movingSteps") if hasattr(engine, name)]
+    counters = [getattr(engine, name) for name in ("sweeps", "events", "movingSteps") if hasattr(engine, name)]
     numbers = np.array([*(x for v in vectors for x in v), *dem.energy().values(), *counters, O.time], dtype=float)
     return np.where(np.isnan(numbers), np.nan, numbers).view(np.int64)
 

@@ -47,7 +47,7 @@ def test_saved_while_it_moves(name, build, amplitude, direction, begin):
         O.loadTmp()
         O.run(20, True)
         assert np.array_equal(bits(), wanted), first
-        moving += O.engines[-1].mode == "moving"
+        moving += O.engines[-1].movingBlocks > 0
         O.loadTmp()
     print(f"{name}: {moving} of 25 saved while it moves", flush=True)
     assert moving > 15

@@ -16,7 +16,7 @@ struct PatchPoint {
 
 enum class PatchKind { None = 0, Face1 = 1, Face2 = 2, Edges = 3 };
 
-// What the patch was made of: all that `collide` remembers from one step to the next. Small integers, fit to be saved.
+// The features of the patch are all that `collide` remembers from one step to the next: small integers, fit to be saved.
 struct PatchFeature {
 	PatchKind kind {PatchKind::None}; // Face1, Face2: face on face, the number names the reference body; Edges: edge across edge
 	int feature1 {-1};                // face (kind Face1, Face2) or edge (kind Edges) of body 1

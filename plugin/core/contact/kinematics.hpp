@@ -74,7 +74,7 @@ struct PlaneMemory {
 	}
 };
 
-// Where and how two bodies meet at one contact point. Axes, in rows: the normal from body 1 to body 2, then one or two tangents;
+// The place where two bodies meet at one contact point, and its axes, in rows: the normal from body 1 to body 2, then one or two tangents;
 // they move with the body that has the face (edges: with body 1's edge). The gap's rate is the normal row of the relative velocity
 // (body 2 minus body 1) at `position`, also while it is open. The tangent rows hold at position + grip.
 template <class K>

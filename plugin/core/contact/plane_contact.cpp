@@ -155,7 +155,7 @@ struct End {
 	double gap, along;
 };
 
-// What meets at one end (-1 or +1 along the tangent) of the overlap: the incident vertex where it lies over the reference face,
+// The end (-1 or +1 along the tangent) of the overlap is the incident vertex where it lies over the reference face,
 // else the reference face's own vertex. If both are within the slack of each other, the one that was there stays, and no farther. When a
 // block with the spin w lifts by d along an upright joint, its own vertex parts from the other block at the rate w d, and the other
 // block's vertex, which then lies below its face, would close at that rate. With friction such a joint carries any force that holds the

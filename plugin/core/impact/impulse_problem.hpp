@@ -70,7 +70,7 @@ using CoupleRows = std::vector<CoupleRow<K>>;
 template <class K>
 using ImpulseSolver = std::function<ImpulseReport(Bodies<K>&, ImpulsePoints<K>&, CoupleRows<K>&)>;
 
-// Of the body: along the normal at the point's position, across it where its friction acts. m/s
+// Velocity of the body, m/s: along the normal at the point's position, across it where its friction acts.
 template <class K>
 typename K::Vector velocityAt(const RigidBody<K>& body, const ImpulsePoint<K>& point)
 {
@@ -79,7 +79,7 @@ typename K::Vector velocityAt(const RigidBody<K>& body, const ImpulsePoint<K>& p
 		v += point.normal.dot(body.spin()) * point.normal.cross(point.grip);
 	return v;
 }
-// Of body 2 against body 1 at the point, m/s.
+// Velocity of body 2 against body 1 at the point, m/s.
 template <class K>
 typename K::Vector relativeVelocity(const Bodies<K>& bodies, const ImpulsePoint<K>& point)
 {
@@ -88,7 +88,7 @@ typename K::Vector relativeVelocity(const Bodies<K>& bodies, const ImpulsePoint<
 // Rows: the unit normal, then one or two unit tangents.
 inline Eigen::Matrix2d axesAlong(const Vector2& n) { return (Eigen::Matrix2d() << n.x(), n.y(), -n.y(), n.x()).finished(); }
 Matrix3 axesAlong(const Vector3& normal);
-// Of a point about a free body, m: the length that makes velocities of spins.
+// Longest arm of a point about a free body, m: the length that makes velocities of spins.
 template <class K>
 double longestArm(const Bodies<K>& bodies, const ImpulsePoints<K>& points)
 {

@@ -23,7 +23,7 @@
 // is that of a fixed base. The velocities of free supports change during the impact; w_carry - w_support stays what it was before, where
 // w_support is the spin of the support under the new pivot, which bears the couple.
 //
-// Where the resultant acts: the couple divided by the normal impulse is the distance x of the resultant from the new
+// The resultant acts at the distance x = couple / normal impulse from the new
 // pivot, inward positive (Giannini 1984). For the rectangular block x/b = (4/3)(1 + slenderness^2)(C - C_H)/(1 + C):
 // C > C_H lies inside the base, C < C_H outside, a dissipative couple that no plastic no-slip contact can make.
 //

@@ -15,7 +15,7 @@ struct Speeds {
 	double zero, enough; // m/s
 };
 
-// What counts as zero: a share of the approach, and round-off of the velocities and of impulses that carry the momentum of all bodies.
+// Zero is a share of the approach, and round-off of the velocities and of impulses that carry the momentum of all bodies.
 template <class K>
 Speeds speeds(const ContactSolver<K>& solver)
 {

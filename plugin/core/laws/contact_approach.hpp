@@ -60,7 +60,7 @@ private:
 		if (!root.descend(false, report))
 			return false;
 		for (int round = 0; ties > 0; ++round) {
-			// What neither parts nor presses is known once the centre has arrived.
+			// The points that neither part nor press are known once the centre has arrived.
 			if (!root.moveCentre(report) || !root.moveCentre(report))
 				return false;
 			if (!judge(tolerance))

@@ -86,7 +86,7 @@ BaseMotion halfSine(double amplitude, double duration);
 // `cycles` (> 0, need not be whole) of amplitude sin(2 pi frequency t); frequency in Hz.
 BaseMotion sine(double amplitude, double frequency, double cycles = 1);
 
-// What is subtracted from a record so that the base does not drift away: nothing; its mean acceleration, so that the
+// The correction subtracted from a record so that the base does not drift away: nothing; its mean acceleration, so that the
 // last velocity is zero; the slope of the line through the origin that fits the velocity best (least squares).
 enum class Baseline { None, Constant, LinearVelocity };
 Baseline baselineFromName(const std::string& name); // "none", "constant", "linear"

@@ -52,7 +52,7 @@ public:
 	double endTime {0};                                         // s, infinite if nothing more will happen
 	// Displacement of the base (m) at endTime, or where the motion leaves it if the run has no end.
 	double baseDisplacement {0};
-	// Of the base; a resonant train becomes known here. Other motions are copied only with keepStates.
+	// Motion of the base; a resonant train becomes known here. Other motions are copied only with keepStates.
 	BaseMotion motion, vertical;
 
 	bool overturned() const { return overturnHalfCycle > 0; }

@@ -1,5 +1,5 @@
 #pragma once
-// What the module exposes, one function an area. Arguments that differ between cases are one-dimensional float64 arrays of
+// The module is exposed by one function an area. Arguments that differ between cases are one-dimensional float64 arrays of
 // equal length; the Python package broadcasts before it calls.
 
 #include "arrays.hpp"

@@ -234,6 +234,7 @@ void run(wall::WallStep<K>& step)
 	double before = world.energy() - s.baseWork;
 	const double begin = cpu();
 	double inStep = 0, firstStep = 0;
+	int firstIterations = 0;
 	double tilted = -1, worstImpact = 0;
 	int impacts = 0, capped = 0;
 	const double rate = number("rate", 0) * M_PI / 180;
@@ -251,6 +252,7 @@ void run(wall::WallStep<K>& step)
 		const double t0 = cpu();
 		step.advance(s, h);
 		(k == 1 ? firstStep : inStep) += cpu() - t0;
+		firstIterations = k == 1 ? step.report.iterations : firstIterations;
 		created += step.report.created;
 		for (const Impact& impact : s.impacts) {
 			++impacts;
@@ -297,10 +299,10 @@ void run(wall::WallStep<K>& step)
 	for (const int b : top)
 		sink -= moved(b)[up] / double(top.size());
 	std::printf("%zu blocks | mean %.2f mm (end %.2f) drift %.4g sink %.3g mm | cpu/s %.3f (step %.3f) its %.1f fac %.2f | rises/loss "
-	            "%.1e loss %.4g created %.2g | pen %.2g mm kin %.2g tilt %.2f | impacts %d capped %d residual %.1e\n",
+	            "%.1e loss %.4g created %.2g | pen %.2g mm kin %.2g tilt %.2f | first step %d | impacts %d capped %d residual %.1e\n",
 	            s.bodies.size() - 1, 1e3 * mean, 1e3 * last.norm(), 1e3 * drift, 1e3 * sink, (cpu() - begin - firstStep) / seconds,
 	            inStep / seconds, sumIterations / double(steps), factors / double(steps), rises / std::max(loss, 1e-30), loss, created,
-	            1e3 * deepest, kinetic, tilted, impacts, capped, worstImpact);
+	            1e3 * deepest, kinetic, tilted, firstIterations, impacts, capped, worstImpact);
 	std::fflush(stdout);
 }
 
@@ -310,6 +312,9 @@ void runWithOptions()
 	wall::WallStep<K> step;
 	auto& a = step.settings.solver;
 	a.iterations = int(number("k", a.iterations));
+	a.small = int(number("few", a.small));
+	a.first = int(number("first", a.first));
+	a.strictForces = number("strict", 0) > 0;
 	a.tolerance = number("tol", a.tolerance);
 	a.reserve = int(number("reserve", a.reserve));
 	a.softness = number("r", a.softness);

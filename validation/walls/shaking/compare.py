@@ -449,24 +449,24 @@ def main():
     RESULTS.mkdir(exist_ok=True)
     if not arguments.quick:
         (RESULTS / "shaken_walls.json").write_text(json.dumps(rows, indent=0))
-        fields = ["solver", "blocks", "amplitude", "phase", "role", "threads", "dt", "tolerance", "cpu", "wall", "drift", "sink", *EXCURSIONS, "still", "moving", "impacts", "solves", "velocityResidual", "forceResidual", "rise", "lost", "work", "unbalanced",
+        fields = ["solver", "blocks", "amplitude", "phase", "role", "threads", "dt", "tolerance", "cpu", "wall", "drift", "sink", *EXCURSIONS, "steps", "moving", "impacts", "solves", "velocityResidual", "forceResidual", "rise", "lost", "work", "unbalanced",
                   "memory", "bits"]
         with open(RESULTS / "shaken_walls.csv", "w", newline="") as out:
             writer = csv.DictWriter(out, fields, extrasaction="ignore")
             writer.writeheader()
             writer.writerows(rows)
         figure(RESULTS / "shaken_walls.png", rows)
-    print("\n| program | blocks | motion | CPU s per s | drift (mm) | sink per joint (mm) | steps still / moving | bytes per block |\n" + "| --- " * 8 + "|")
+    print("\n| program | blocks | motion | CPU s per s | drift (mm) | sink per joint (mm) | steps, moving ones | bytes per block |\n" + "| --- " * 8 + "|")
     for r in rows:
         motion = "rest" if r["phase"] == "rest" else f"{r['amplitude']:g} g"
         motion += f" ({r['role']}{', %d threads' % r['threads'] if r['role'] == 'threads' else ''})" if r.get("role") else ""
-        modes = f"{r['still']} / {r['moving']}" if "still" in r else "-"
+        modes = f"{r['steps']}, {r['moving']}" if "steps" in r else "-"
         print(f"| {r['solver']} | {r['blocks']} | {motion} | {r['cpu']:.3g} | {r['drift']:.2g} | {r['sink']:.2g} | {modes} | {r['memory']:.0f} |" if "memory" in r else
               f"| {r['solver']} | {r['blocks']} | {motion} | {r['cpu']:.3g} | {r['drift']:.2g} | {r['sink']:.2g} | - | - |")
     print("\n| blocks | forces | solves per step | velocity residual (m/s) | force residual (m/s) | CPU s per s |\n" + "| --- " * 6 + "|")
     for r in rows:
         if (r.get("role") or "").startswith("forces"):
-            print(f"| {r['blocks']} | {r['role'][7:]} | {r['solves'] / r['still']:.3g} | {r['velocityResidual']:.1e} | {r['forceResidual']:.1e} | {r['cpu']:.3g} |")
+            print(f"| {r['blocks']} | {r['role'][7:]} | {r['solves'] / r['steps']:.3g} | {r['velocityResidual']:.1e} | {r['forceResidual']:.1e} | {r['cpu']:.3g} |")
     lines = verdicts(rows)
     print("\n| what | asked | reached | |\n| --- | --- | --- | --- |")
     for what, asked, reached, holds in lines:

@@ -63,7 +63,7 @@ sunk = 0
 for phase in ("rest", "shaking"):
     if not case[phase]:
         continue
-    modes = integrator.stillSteps, integrator.movingSteps
+    moving = integrator.movingSteps
     steps, excursion, corner, rise, lost, cpu, wall, deepest = round(case[phase] / O.dt), 0, np.zeros(2), 0, losses(), 0, 0, 0
     first, solved, held, worked = lost, integrator.sweeps, mechanical(), integrator.baseWork
     # Energy and excursion are looked at on the way where the wall moves only.
@@ -86,7 +86,7 @@ for phase in ("rest", "shaking"):
     sink = -moved[top, 2].mean() / case["courses"]
     bits = hashlib.sha256(np.array([x for i in ids for v in (O.bodies[i].state.pos, O.bodies[i].state.vel) for x in v]).tobytes()).hexdigest()[:12]
     print(json.dumps(dict(case, phase=phase, blocks=len(ids), cpu=cpu / case[phase], wall=wall / case[phase], drift=1e3 * float(np.linalg.norm(moved[:, :2], axis=1).max()),
-                          sink=1e3 * float(sink - sunk), excursion=float(excursion), thrown=float(corner[0]), follows=float(corner[1]), deepest=float(deepest), still=integrator.stillSteps - modes[0], moving=integrator.movingSteps - modes[1],
+                          sink=1e3 * float(sink - sunk), excursion=float(excursion), thrown=float(corner[0]), follows=float(corner[1]), deepest=float(deepest), steps=steps, moving=integrator.movingSteps - moving,
                           movingBlocks=integrator.movingBlocks, impacts=len(integrator.impactTimes), solves=integrator.sweeps - solved, velocityResidual=integrator.velocityResidual,
                           forceResidual=integrator.forceResidual, rise=float(rise), lost=float(lost - first), impactDissip=integrator.impactDissip, work=work, unbalanced=unbalanced, memory=memory, bits=bits)), flush=True)
     sunk = sink

@@ -22,12 +22,12 @@ after = case["after"] * np.sin(6 * math.pi * np.arange(0, case["held"] + 0.01, i
 motion = dem.RecordMotionEngine(ids=[base], samples=list(9.81 * np.concatenate([shaking, after])), interval=interval, direction=(1, 0, 0))
 O.engines = dem.engines(motion, model=case["model"], method="wall", dt=1e-3)
 integrator = O.engines[-1]
-modes = []
-O.engines = O.engines + [PyRunner(command="modes.append(integrator.mode)", iterPeriod=1, initRun=True)]
+moves = []  # in each step
+O.engines = O.engines + [PyRunner(command="moves.append(integrator.movingBlocks > 0)", iterPeriod=1, initRun=True)]
 O.run(round((SHAKEN + case["held"]) / O.dt), True)
-held = modes[round(SHAKEN / O.dt):]
+held = moves[round(SHAKEN / O.dt):]
 velocity = np.array(O.bodies[base].state.vel)
 stood = round(STANDS / O.dt)
-set_off = sum(held[k] == "moving" and "moving" not in held[k - stood:k] for k in range(stood, len(held)))
-print(json.dumps(dict(case, blocks=len(ids), setOff=set_off, ends=held[-1],
-                      moving=held.count("moving") * O.dt, fastest=max(float(np.linalg.norm(np.array(O.bodies[i].state.vel) - velocity)) for i in ids))), flush=True)
+set_off = sum(held[k] and not any(held[k - stood:k]) for k in range(stood, len(held)))
+print(json.dumps(dict(case, blocks=len(ids), setOff=set_off, ends="moving" if held[-1] else "still",
+                      moving=sum(held) * O.dt, fastest=max(float(np.linalg.norm(np.array(O.bodies[i].state.vel) - velocity)) for i in ids))), flush=True)

@@ -23,7 +23,7 @@ double sizeOf(const JointSystem& system, const Joint& joint);
 // Whether points of a joint are an edge or a corner, about which it rocks: all on one line, as against a face.
 bool isPivot(const JointSystem& system, const Joint& joint, const std::vector<PointRef>& points);
 
-// What an impact of a joint is solved on: the whole system while it has at most `small` contacts, else
+// An impact of a joint is solved on the whole system while that has at most `small` contacts, else on
 // the block, its neighbours and their contacts, with the bodies beyond them as its rim.
 struct Neighbourhood {
 	JointSystem system;

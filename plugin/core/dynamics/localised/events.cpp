@@ -10,7 +10,7 @@ struct Crossing {
 	double at, speed;
 };
 
-// Where a gap with the value g0 and rate r0 at the start and g1 < 0 after h falls through zero (parabola through the three).
+// A gap with the value g0 and rate r0 at the start and g1 < 0 after h falls through zero here (parabola through the three).
 Crossing downCrossing(double g0, double r0, double g1, double h)
 {
 	const double c = (g1 - g0 - r0 * h) / (h * h);

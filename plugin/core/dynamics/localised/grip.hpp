@@ -1,5 +1,5 @@
 #pragma once
-// Where the friction of a pair's points acts: contact/friction_points.hpp. The friction points follow the normal forces from step to step;
+// Friction points of a pair (contact/friction_points.hpp) follow the normal forces of its points from step to step;
 // while a step or an impact is computed they keep their places in the axes of their points, so that the law and the force use the same
 // rows. Without slip there is no torque to limit, and a motion in a plane turns no face about its normal.
 #include "dynamics/localised/smooth_step.hpp"
@@ -47,7 +47,7 @@ inline void placeFriction(RigidSystem<Space>& s)
 	placeFriction(s, [&s](int c, int i) { return std::max(s.pairs[c].points[i].force[0], 0.); });
 }
 
-// Of points that land together: they share the impulse of their pair.
+// Points that land together share the impulse of their pair.
 inline void placeFriction(RigidSystem<Space>& s, const std::vector<PointRef>& landing)
 {
 	for (PointRef first : landing) {

@@ -33,7 +33,7 @@ struct ImpactStage<K>::Builder {
 		stage.impact.points.back().grip = point.frame.grip;
 	}
 
-	// Of four corners three carry, and round-off may have opened the fourth.
+	// Three of four corners carry, and round-off may have opened the fourth.
 	bool touches(PointRef ref) const
 	{
 		const ContactPoint<K>& point = s.pairs[ref.pair].points[ref.point];
@@ -81,7 +81,7 @@ struct ImpactStage<K>::Builder {
 		if (!pivot || joint.newBegin == joint.oldBegin)
 			return;
 
-		// Of several supports, the one under the point farthest from the old pivot names the joint's law.
+		// The support under the point farthest from the old pivot names the joint's law.
 		double farthest = -1;
 		for (int k = joint.newBegin; k < joint.oldBegin; ++k) {
 			const double distance = (stage.impact.points[k].position - stage.oldPositions.front()).norm();

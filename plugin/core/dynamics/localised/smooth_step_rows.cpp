@@ -119,7 +119,7 @@ double SmoothStep<K>::strayWork() const
 	return work;
 }
 
-// What lands in a step does so as a point of its pair that sticks, or as another that lands: at the height of that, and with its stray
+// A point that lands in a step does so as one of its pair that sticks, or as another that lands: at the height of that, and with its stray
 // velocity. Otherwise the turn that lands it would have it slip, by more than the tolerance, and two points of a face that must not slip in
 // different ways take any impulse. Returns that point's row, or -1.
 template <class K>
@@ -180,7 +180,8 @@ void SmoothStep<K>::assemble(const RigidSystem<K>& s, double h)
 	addTies(s, h);
 }
 
-// Of a point in the middle of the step. The law holds for the mean velocity: offset is the relative velocity now, but for what is astray.
+// Rows of a point in the middle of the step. The law holds for the mean velocity: offset is the relative velocity now, without what is
+// astray.
 template <class K>
 ContactRows<K> SmoothStep<K>::rowsOf(const RigidSystem<K>& s, PointRef ref, const ContactFrame<K>& frame, double h, Impulse astray) const
 {

@@ -140,13 +140,13 @@ void SmoothStep<K>::takeTies(RigidSystem<K>& s) const
 	}
 }
 
-#define MASONRY_TIES(K)                                                                                                                    \
-	template void SmoothStep<K>::addTies(const RigidSystem<K>&, double);                                                                   \
-	template bool SmoothStep<K>::holdTies(const RigidSystem<K>&, double);                                                                  \
-	template void SmoothStep<K>::bookTies(RigidSystem<K>&);                                                                                \
-	template void SmoothStep<K>::takeTies(RigidSystem<K>&) const;
-MASONRY_TIES(Plane)
-MASONRY_TIES(Space)
-#undef MASONRY_TIES
+template void SmoothStep<Plane>::addTies(const RigidSystem<Plane>&, double);
+template void SmoothStep<Space>::addTies(const RigidSystem<Space>&, double);
+template bool SmoothStep<Plane>::holdTies(const RigidSystem<Plane>&, double);
+template bool SmoothStep<Space>::holdTies(const RigidSystem<Space>&, double);
+template void SmoothStep<Plane>::bookTies(RigidSystem<Plane>&);
+template void SmoothStep<Space>::bookTies(RigidSystem<Space>&);
+template void SmoothStep<Plane>::takeTies(const RigidSystem<Plane>&) const;
+template void SmoothStep<Space>::takeTies(const RigidSystem<Space>&) const;
 
 } // namespace masonry::localised

@@ -44,7 +44,7 @@ struct ContactPoint {
 	}
 };
 
-// Of a point when the bodies are there.
+// The frame of a point when the bodies have these poses.
 template <class K>
 ContactFrame<K> frameOf(const ContactPoint<K>& point, const RigidBody<K>& body1, const typename K::Pose& pose1, const RigidBody<K>& body2,
                         const typename K::Pose& pose2)
@@ -89,7 +89,7 @@ Eigen::Matrix<double, K::rows, 1> relativeVelocity(const ContactFrame<K>& frame,
 	return u;
 }
 
-// Where the features of a point are, for these bodies.
+// Sets frame and gap of a point from its features on these bodies.
 template <class K>
 void locate(ContactPoint<K>& point, const RigidBody<K>& body1, const RigidBody<K>& body2)
 {
@@ -201,7 +201,7 @@ struct RigidSystem {
 	// Since the start of the run.
 	double frictDissip {0}, impactDissip {0}, tieDissip {0}, crackDissip {0}, baseWork {0}; // J
 
-	// Of a body that a drive moves, at a time of the step.
+	// Position of a body that a drive moves, at a time of the step.
 	typename K::Vector driven(const RigidBody<K>& body, double t) const { return body.origin + drives[body.drive].displacement(t); }
 
 	// Velocities have jumped, or forces: the last accelerations predict nothing.

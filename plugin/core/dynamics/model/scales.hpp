@@ -1,5 +1,5 @@
 #pragma once
-// What tolerances are relative to: a length, an acceleration and a speed of the scene.
+// Tolerances are relative to a length, an acceleration and a speed of the scene.
 #include "dynamics/model/rigid_system.hpp"
 #include "tolerances.hpp"
 #include <algorithm>
@@ -60,7 +60,7 @@ struct Scales {
 	{
 	}
 
-	// What gravity gives in a step; not below the round-off of speeds in the scene. m/s
+	// Speed that gravity gives in a step, m/s; not below the round-off of speeds in the scene.
 	double stepSpeed(double h) const
 	{
 		constexpr double roundOff = 1e-5; // times the solver's tolerance of 1e-9: 45 units of the last digit

@@ -54,17 +54,17 @@
 namespace masonry::wall {
 
 // Tables of docs/tuning.md: (a) settings near the onset of motion, (b) softness of contacts at rest, (c) other settings, (d) impacts,
-// (e) mortar of rigid blocks.
+// (e) mortar of rigid blocks, (f) few blocks and first steps.
 struct AdmmSettings {
 	double tolerance {1e-3};   // largest |w - z| relative to the speed that gravity gives in a step. Larger: joints drift and sink
 	bool strictForces {false}; // the same holds for errors of impulses, as velocities; then a step takes up to `first` iterations
 	int iterations {20};       // (a) at most in a step, beside the reserve. Fewer: excursions are too small
-	int small {100}; // blocks below which a step takes more of them, in inverse proportion. Smaller: walls of some tens of blocks in space
-	                 // go a tenth too little
-	int least {10};  // (c) iterations of a step, unless its residual is below `early`. Fewer: p lags behind what turns, and energy rises
+	int small {100};    // (f) blocks below which a step takes more of them, in inverse proportion. Smaller: walls of some tens of blocks in
+	                    // space go up to 14 % too little; larger: more CPU time
+	int least {10};     // (c) iterations of a step, unless its residual is below `early`. Fewer: p lags behind what turns, and energy rises
 	double early {0.1}; // (c) of the tolerance. Smaller: more iterations at rest; larger: as with fewer `least` iterations
 	int reserve {50};   // (d) times `iterations` that quiet steps save for impacts at most. 0: walls under impacts drift
-	int first {3000};   // iterations of a step that starts without impulses, at most
+	int first {3000};   // (f) iterations of a step that starts without impulses, at most. Fewer: heavy blocks fall into what bears them
 	int ofInstant {40}; // (d) iterations with which an impact or a base pulse goes on to instantTolerance; more of them below `small`
 	                    // blocks, as in a step. Fewer: single blocks land less right
 	double instantTolerance {1e-6}; // (d) largest |w - z| of an instant relative to the velocities that change; at least as in a step

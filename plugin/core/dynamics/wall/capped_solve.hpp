@@ -4,7 +4,7 @@
 // take at other joints does not pay for it. Row and points of a step and of the instant after it are one impact, whose last part gives back
 // a little of what the first has taken: the balance is that of both.
 //
-// Of the rows whose joints make energy, the one with the largest gain is left out, and the rest is solved again, until no joint makes any:
+// The row with the largest gain is left out, and the rest is solved again, until no joint makes energy:
 // a joint without its row lands with its natural restitution and gains nothing. Then these rows come back with the largest spins that make
 // no energy. While no other contact opens, closes or begins to slide, impulses are linear in the spin x, 0 at the natural one and 1 at that
 // which made energy, and the gain is

@@ -265,7 +265,7 @@ MortarWork Mortar<K>::finish(RigidSystem<K>& s, ContactSet<K>& c, const std::vec
 		grows[row.joint] = 1;
 		point.opening += opening;
 		point.slip += slip;
-		// Where a crack is stopped, corners that are pressed meanwhile take their part of the pull.
+		// Corners that are pressed while a crack is stopped take their part of the pull.
 		double pull = -row.p[0];
 		if (row.z[0] <= clear * missed)
 			for (int corner = 0; corner < c.points().groups()[row.group].count; ++corner)
