@@ -2,6 +2,7 @@
 import ast
 import os
 import re
+import runpy
 import shutil
 import subprocess
 from pathlib import Path
@@ -69,13 +70,17 @@ def test_links_lead_somewhere(page):
             assert anchor in _headings(file), f"{page.name}: {target} has no such heading"
 
 
-@pytest.mark.parametrize("folder", sorted({path.parent for path in (ROOT / "plugin/python/masonry").rglob("*.py")}), ids=lambda path: path.name)
-def test_tables_of_docstrings_have_a_line_for_each_name(folder):
-    """Two gaps in a line are two lines in one, which the pages show as a block of code."""
-    for path in folder.glob("*.py"):
-        nodes = [node for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))) if isinstance(node, (ast.FunctionDef, ast.ClassDef, ast.Module))]
-        lines = [line for node in nodes for line in (ast.get_docstring(node) or "").splitlines()]
-        assert not [line for line in lines if re.search(r"\S {3,}\S.* {3,}\S", line)], path.name
+def test_tables_of_docstrings_are_tables():
+    """The pages show a paragraph as a block of code where one of its lines is none of a table of names: two lines in one, or a name that one blank parts from its text."""
+    pages = runpy.run_path(str(ROOT / "docs/conf.py"))
+    package = ROOT / "plugin/python/masonry"
+    for path in (path for path in package.rglob("*.py") if not re.search(r"(^|/)_", str(path.relative_to(package)))):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            doc = ast.get_docstring(node) if isinstance(node, (ast.FunctionDef, ast.ClassDef, ast.Module)) else None
+            for paragraph in pages["_paragraphs"]((doc or "").splitlines()):
+                named = [line for line in paragraph if re.fullmatch(r"\S.*? {2,}\S.*", line)]
+                assert not named or pages["_entries"](paragraph), f"{path.name}: {paragraph[0]}"
+                assert not [line for line in named if re.search(r" {3,}\S.* {3,}", line)], f"{path.name}: {named}"
 
 
 def test_comparison_of_what_is_printed():

@@ -17,6 +17,7 @@ from masonry.dem.engines import METHODS, engines
 from masonry.dem.loads import load_engines
 from masonry.dem.mechanism import Mechanism
 from masonry.dem.stiffness import has_stiffness
+from masonry.dem.ties import tied
 from masonry.dem.units import units
 from tqdm import tqdm
 from yade import O, Vector3
@@ -128,8 +129,11 @@ class TiltTable:
                              "model='compliant': leave `split` out")
         mortared = next((b.id for b in self._blocks if b.mat.mortar is not None), None)
         if mortared is not None:
-            raise ValueError(f"O.bodies[{mortared}].mat has mortar: TiltTable knows dry joints only. Leave the mortar out, or turn the gravity of a run "
-                             "with mortar (model='compliant', in one upright plane also method='wall') step by step: O.engines[-1].gravity")
+            raise ValueError(f"O.bodies[{mortared}].mat has mortar: TiltTable knows dry joints only, and mortar needs model='compliant': leave the "
+                             "mortar out, or turn the gravity of compliant blocks (O.engines[-1].gravity) step by step")
+        if tied():
+            raise ValueError("the scene has ties (dem.tie), which stretch in a trial and stay broken in the next: TiltTable knows none. Take them away "
+                             "(tie.dead = True), or pull the scene by a dem.record_motion() whose acceleration grows slowly")
         if model == "auto" and any(has_stiffness(b.mat) for b in self._blocks):
             raise ValueError("model = 'auto': must be 'planar' or 'spatial' where a BlockMat has a joint stiffness: TiltTable is for rigid blocks")
         self._start = [(b.state.pos, b.state.ori) for b in self._blocks]

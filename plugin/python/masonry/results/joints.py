@@ -98,13 +98,13 @@ def joints(history, time=None):
 
     time    None: the largest values of the samples that count; else those of the sample nearest to it (s), NaN where it does not count
 
-    id1, id2                the blocks; id2 is the later one of the history
-    center, normal, area    of the patch in the first sample: mean of its corners (m), from block 1 to block 2, m^2
-    opening                 the largest distance of the two sides, m: of a block that rocks by an angle a on a joint of width 2b, 2b sin(a)
-    slip                    sliding of block 2 over block 1 where the joint is closed, or nearest to it, m: of the corner of the patch that slid farthest
-                            where a block turns on it. Of the largest: samples in which it is open all over, or the blocks have parted, are left out;
-                            NaN where that is all of them
-    opening_time, slip_time when, s
+    id1, id2                   the blocks; id2 is the later one of the history
+    center, normal, area       of the patch in the first sample: mean of its corners (m), from block 1 to block 2, m^2
+    opening                    the largest distance of the two sides, m: of a block that rocks by an angle a on a joint of width 2b, 2b sin(a)
+    slip                       sliding of block 2 over block 1 where the joint is closed, or nearest to it, m: of the corner of the patch that slid farthest
+                               where a block turns on it. Of the largest: samples in which it is open all over, or the blocks have parted, are left out;
+                               NaN where that is all of them
+    opening_time, slip_time    when, s
     """
     found = _joints_of(history)
     if time is None and found.largest is not None:

@@ -80,7 +80,7 @@ def write_paraview(history, path, every=1, relative=False):
     """Writes the history for ParaView (open the .pvd file) and returns the path of that file.
 
     path        of the .pvd file; the .vtu files go to the folder of the same name beside it, which is made
-    every       only each so-manieth sample is written, at least 1
+    every       every n-th sample is written; n, at least 1
     relative    True: as seen from the base, which then stands still
 
     Each block is a cell with id, free (1 or 0), displacement of its centre (m), rotation and lean (rad); the corners have their displacement too, for
