@@ -119,9 +119,9 @@ void MoreauJeanIntegrator::leaveScene()
 	chosenModel.clear();
 	along = Vector3r::Zero();
 	forgetImpacts(*this);
-	forget(frictDissip, impactDissip, dampDissip, crackDissip, bondedIds, bondedState, baseWork, potentialShift, worstResidual, substeps,
-	       events, unlocalised, sweeps, factorisations, stillSteps, movingSteps, madeEnergy, lostEnergy, turnedOver, lift, toldMade,
-	       toldLost, failures, firstFailure, warned);
+	forget(frictDissip, impactDissip, dampDissip, crackDissip, bondedIds, bondedState, bondsAsked, baseWork, potentialShift, worstResidual,
+	       substeps, events, unlocalised, sweeps, factorisations, stillSteps, movingSteps, madeEnergy, lostEnergy, turnedOver, lift,
+	       toldMade, toldLost, failures, firstFailure, warned);
 }
 
 vector<Real> MoreauJeanIntegrator::remembered()
@@ -302,7 +302,10 @@ RigidResults MoreauJeanIntegrator::stepRun()
 			checkEngines();
 		if (scene->dt != checkedTimeStep || gravity.norm() > checkedGravity)
 			checkTimeStep();
-		return sceneOf(memory).step(settings());
+		sceneOf(memory).ask(bondsAsked);
+		const RigidResults results = sceneOf(memory).step(settings());
+		bondsAsked.clear();
+		return results;
 	} catch (const LeavesPlane& obstacle) {
 		if (model == "planar")
 			throw std::runtime_error(
